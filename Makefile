@@ -24,6 +24,7 @@
 #   make analyze coverage         what gcc's analyzer, clang-tidy and cppcheck find (nothing is to
 #                                 be left); which lines and branches the tests reach
 #   make test-kill KILLS=10000    the writer of the shared memory killed at random points
+#   make test-power CUTS=10000    power cuts at any point of what history writes
 #   make hammer-arm64             the same readers and writer as arm64 code, in qemu
 #   make model                    the protocol of the shared memory, in a weak memory model
 #   make test-kernel              Debian's own kernel and owserver on the simulated chip, in QEMU
@@ -133,6 +134,19 @@ CPP_COMMON += -DOWSD_LIBGPIOD=$(LIBGPIOD) $(LIBGPIOD_CFLAGS)
 LIBS     += $(LIBGPIOD_LIBS)
 endif
 
+# owsd-recorder and libows-history, where SQLite is there for this compiler; LIBSQLITE3=0 leaves it out
+LIBSQLITE3 ?= $(shell printf '\043include <stdint.h>\n\043include <sqlite3.h>\nint main(void) { return !sqlite3_libversion_number(); }\n' | \
+              $(CC) $(CPPFLAGS) $(CFLAGS) $(EXTRA_CFLAGS) $(LDFLAGS) -x c -o /dev/null - -lsqlite3 2>/dev/null && echo 1)
+LIBSQLITE3 := $(LIBSQLITE3)
+SQLITE   := $(filter 1,$(LIBSQLITE3))
+LIBS     += $(if $(SQLITE),-lsqlite3)
+
+# owsd-influx, where libcurl is there for this compiler; LIBCURL=0 leaves it out
+LIBCURL  ?= $(shell printf '\043include <stdint.h>\n\043include <curl/curl.h>\nint main(void) { return !curl_multi_init(); }\n' | \
+              $(CC) $(CPPFLAGS) $(CFLAGS) $(EXTRA_CFLAGS) $(LDFLAGS) -x c -o /dev/null - -lcurl 2>/dev/null && echo 1)
+LIBCURL  := $(LIBCURL)
+CURL     := $(filter 1,$(LIBCURL))
+
 # owsd-web, where libmicrohttpd is there for this compiler; LIBMICROHTTPD=0 leaves it out
 LIBMICROHTTPD ?= $(shell printf '\043include <stdint.h>\n\043include <microhttpd.h>\nint main(void) { return !MHD_get_version(); }\n' | \
               $(CC) $(CPPFLAGS) $(CFLAGS) $(EXTRA_CFLAGS) $(LDFLAGS) -x c -o /dev/null - -lmicrohttpd 2>/dev/null && echo 1)
@@ -148,6 +162,7 @@ with_cc  := $(CC): $(call version_of,$(CC)): $(ALL_CFLAGS)
 with_cxx := $(CXX): $(call version_of,$(CXX)): $(ALL_CXXFLAGS)
 with_ld  := $(CC): $(ALL_LDFLAGS) $(LIBS)
 with_libraries := libi2c $(if $(filter 1,$(LIBI2C)),yes,no) libgpiod $(or $(filter 1 2,$(LIBGPIOD)),no) \
+    libsqlite3 $(if $(SQLITE),yes,no owsd-recorder left-out) libcurl $(if $(CURL),yes,no owsd-influx left-out) \
     libmicrohttpd $(if $(HTTPD),yes,no owsd-web left-out)
 compiler := $(firstword $(filter-out ccache,$(CC)))
 WITH     := $(patsubst %,$(B)/with/%,cc cxx ld libraries)
@@ -185,6 +200,11 @@ WEB_MAIN := src/web/owsd_web.c src/web/no_tls.c
 WEB_HTTP := $(WEB_MAIN) $(patsubst %,src/web/%.c,api command devices draft events guard http lists past save stored stream)
 # The consumers' library
 LIBOWS   := $(wildcard src/libows/*.c)
+# And the one that reads history
+LIBHISTORY := $(filter-out src/libhistory/none.c,$(wildcard src/libhistory/*.c))
+# What calls SQLite; and what stands in its place
+SQLITE_ALL := $(LIBHISTORY) $(patsubst %,src/history/%.c,file keep schema sql store writer) \
+            $(wildcard src/recorder/*.c)
 # Programs to start from, and configurations
 EXAMPLES := $(wildcard docs/examples/*.c docs/examples/*.cpp docs/examples/*.py docs/examples/*.go \
             docs/examples/*.rio docs/examples/*.rs docs/examples/*.table)
@@ -196,23 +216,24 @@ PAGE     := $(patsubst src/web/page/%,%,$(foreach e,html css js svg png webmanif
             $(wildcard src/web/page/*.$(e) src/web/page/*/*.$(e))))
 MAN      := $(wildcard docs/*.[1-8])
 # Tests
-UNIT_SRC := $(wildcard tests/unit/*/test_*.c)
+UNIT_SRC := $(filter-out $(if $(SQLITE),,%_past.c $(wildcard $(patsubst %,tests/unit/%/*.c,history libhistory recorder))),$(wildcard tests/unit/*/test_*.c))
 UNIT_AID := $(wildcard tests/unit/aid/*.c)
 ENDURANCE := $(wildcard tests/endurance/*.c)
 BENCH    := $(wildcard tests/bench/bench_*.c)
 BENCH_AID := $(filter-out $(BENCH),$(wildcard tests/bench/*.c)) tests/unit/aid/plant.c tests/unit/aid/plant_net.c tests/unit/aid/giving.c
 # ---------------------------------------------------------------------------------------------
 
-CORE     := $(filter-out src/owsd/owsd.c src/owsctl/owsctl.c src/writer/owsd_config.c \
-            $(if $(HTTPD),$(WEB_MAIN),$(WEB_HTTP)),$(SOURCES))
+CORE     := $(filter-out src/owsd/owsd.c src/owsctl/owsctl.c src/recorder/recorder.c src/influx/influx.c \
+            src/writer/owsd_config.c $(if $(SQLITE),src/libhistory/none.c,$(SQLITE_ALL)) \
+            $(if $(CURL),,src/influx/post.c) $(if $(HTTPD),$(WEB_MAIN),$(WEB_HTTP)),$(SOURCES))
 obj       = $(patsubst %.c,$(B)/%.o,$(1))
 UNIT     := $(patsubst %.c,$(B)/unit/%,$(notdir $(UNIT_SRC))) $(B)/unit/test_endurance
 BENCHES  := $(patsubst tests/bench/%.c,$(B)/bench/%,$(BENCH))
-SAMPLES  := $(patsubst docs/examples/%.c,$(B)/examples/%,$(filter %.c,$(EXAMPLES))) \
+SAMPLES  := $(patsubst docs/examples/%.c,$(B)/examples/%,$(filter-out $(if $(SQLITE),,%/past.c),$(filter %.c,$(EXAMPLES)))) \
             $(patsubst docs/examples/%.cpp,$(B)/examples/%,$(filter %.cpp,$(EXAMPLES)))
-FACES    := owsd-config $(if $(HTTPD),owsd-web)
+FACES    := owsd-config $(if $(SQLITE),owsd-recorder) $(if $(CURL),owsd-influx) $(if $(HTTPD),owsd-web)
 PROGRAMS := $(B)/owsd $(B)/owsctl $(FACES:%=$(B)/%)
-LIBRARIES := libows
+LIBRARIES := libows $(if $(SQLITE),libows-history)
 LIBRARY  := $(foreach l,$(LIBRARIES),$(B)/$(l).so.$(VERSION) $(B)/$(l).a $(B)/$(l).pc)
 
 .PHONY: all unit soak system test run bench install uninstall install-service uninstall-service \
@@ -243,18 +264,27 @@ $(PROGRAMS): $(B)/core.a $(B)/with/ld
 	$(call link)
 $(B)/owsd: $(B)/src/owsd/owsd.o
 $(B)/owsctl: $(B)/src/owsctl/owsctl.o
+$(B)/owsd-recorder: $(B)/src/recorder/recorder.o
 $(B)/owsd-config: $(B)/src/writer/owsd_config.o
+$(B)/owsd-influx: $(B)/src/influx/influx.o
+$(B)/owsd-influx: LIBS += -lcurl
 $(B)/owsd-web: $(call obj,$(WEB_MAIN))
 $(B)/owsd-web: LIBS += -lmicrohttpd -Wl,--export-dynamic-symbol=_gnutls_global_init_skip
 
-# --- libows exports ows_* and nothing else -------------------------------------------------
+# --- libows exports ows_* and nothing else, libows-history ows_history_* -----------------------
 # Of the daemon's sources they take what they need out of these; they go into the programs as they are
 LIBOWS_AID := $(call obj,$(wildcard src/shm/*.c src/signal/*.c))
-$(call obj,$(LIBOWS)) $(LIBOWS_AID): PIC := -fPIC -fno-semantic-interposition
+LIBHISTORY_AID := $(call obj,$(wildcard src/history/*.c))
+$(call obj,$(LIBOWS) $(LIBHISTORY)) $(LIBOWS_AID) $(LIBHISTORY_AID): PIC := -fPIC -fno-semantic-interposition
 libows_EXPORTS := ows_*
+libows-history_EXPORTS := ows_history_*
 $(B)/libows.so.$(VERSION) $(B)/libows.a: $(call obj,$(LIBOWS)) $(B)/libows/aid.a
+$(B)/libows-history.so.$(VERSION) $(B)/libows-history.a: $(call obj,$(LIBHISTORY)) $(B)/libows/history.a \
+    $(B)/libows/aid.a
 
 $(B)/libows/aid.a: $(LIBOWS_AID)
+$(B)/libows/history.a: $(LIBHISTORY_AID)
+$(B)/libows/aid.a $(B)/libows/history.a:
 	@mkdir -p $(@D)
 	@rm -f $@
 	$(call show,AR)
@@ -285,18 +315,20 @@ $(LIBRARIES:%=$(B)/%.a): $(B)/%.a:
 
 # PREFIX may differ from one call to the next, and two makes may do this at once
 libows_SAYS := Signals of owsd, the 1-Wire daemon, in shared memory
+libows-history_SAYS := What the signals of owsd, the 1-Wire daemon, were, as its recorder kept it
+libows-history_PRIVATE := -lsqlite3
 $(LIBRARIES:%=$(B)/%.pc): $(B)/%.pc: FORCE
 	@mkdir -p $(@D)
 	@printf '%s\n' 'prefix=$(PREFIX)' 'libdir=$(LIBDIR)' 'includedir=$${prefix}/include' '' \
 	    'Name: $*' 'Description: $($*_SAYS)' \
-	    'Version: $(VERSION)' 'Libs: -L$${libdir} -l$(*:lib%=%)' 'Libs.private: -lm -pthread' \
+	    'Version: $(VERSION)' 'Libs: -L$${libdir} -l$(*:lib%=%)' 'Libs.private: $($*_PRIVATE) -lm -pthread' \
 	    'Cflags: -I$${includedir}' >$@.$$$$ && mv $@.$$$$ $@
 
 # --- Examples ---------------------------------------------------------------------------------
 examples: $(SAMPLES)
 
-$(B)/examples/%: docs/examples/%.c $(B)/libows.a $(B)/with/cc $(B)/with/ld
-	$(call program,-Isrc/libows)
+$(B)/examples/%: docs/examples/%.c $(B)/libows.a $(if $(SQLITE),$(B)/libows-history.a) $(B)/with/cc $(B)/with/ld
+	$(call program,-Isrc/libows -Isrc/libhistory)
 
 $(B)/examples/%: docs/examples/%.cpp $(B)/libows.a $(B)/with/cxx $(B)/with/ld
 	@mkdir -p $(@D)
@@ -363,6 +395,11 @@ one-thread-units:
 # week in one. SEED=1, WORLD=native for one of them
 soak: all $(B)/unit/test_endurance
 	@$(B)/unit/test_endurance $(or $(HOURS),720) $(or $(SEED),1) $(WORLD)
+
+# Power cuts in a test of make unit, but many more
+.PHONY: test-power
+test-power: $(B)/unit/test_history_power
+	@POWER_CUTS=$(or $(CUTS),10000) $<
 
 # --- System tests, benches and the main job ---------------------------------------------------
 # Programs that system tests command
@@ -470,7 +507,7 @@ install: all
 	    install -m 644 $(B)/$$so $(B)/$$l.a $(D)$(LIBDIR); \
 	    ln -sf $$so $(D)$(LIBDIR)/$$l.so.$(SOMAJOR); ln -sf $$so $(D)$(LIBDIR)/$$l.so; \
 	    install -m 644 $(B)/$$l.pc $(D)$(LIBDIR)/pkgconfig; done
-	install -m 644 src/libows/ows.h $(D)$(PREFIX)/include
+	install -m 644 src/libows/ows.h src/libhistory/ows_history.h $(D)$(PREFIX)/include
 	install -m 644 src/shm/layout.h $(D)$(PREFIX)/include/ows_layout.h
 	install -m 644 $(EXAMPLES) $(D)$(DATADIR)/examples
 	@set -e; for h in $(HOSTED); do d=$(D)$(DATADIR)/examples/$$h; install -d $$d; \
@@ -485,10 +522,10 @@ install: all
 	$(if $(D),,-@ldconfig 2>/dev/null || true)
 
 uninstall:
-	rm -f $(addprefix $(D)$(PREFIX)/sbin/,owsd owsd-config owsd-web) $(D)$(PREFIX)/bin/owsctl \
+	rm -f $(addprefix $(D)$(PREFIX)/sbin/,owsd owsd-recorder owsd-config owsd-influx owsd-web) $(D)$(PREFIX)/bin/owsctl \
 	    $(foreach l,$(LIBRARIES),$(foreach s,so.$(VERSION) so.$(SOMAJOR) so a,$(D)$(LIBDIR)/$(l).$(s)) \
 	    $(D)$(LIBDIR)/pkgconfig/$(l).pc) \
-	    $(D)$(PREFIX)/include/ows.h $(D)$(PREFIX)/include/ows_layout.h
+	    $(D)$(PREFIX)/include/ows.h $(D)$(PREFIX)/include/ows_history.h $(D)$(PREFIX)/include/ows_layout.h
 	rm -f $(foreach m,$(MAN),$(D)$(MANDIR)/man$(patsubst .%,%,$(suffix $(m)))/$(notdir $(m)))
 	rm -f $(D)$(BASHDIR)/owsctl $(D)$(ZSHDIR)/_owsctl
 	rm -rf $(D)$(DATADIR) $(COCKPIT)
@@ -497,6 +534,8 @@ uninstall:
 # The unit names the owsd of PREFIX; what has to be done once is said
 SERVICE   := systemd/system/owsd@.service systemd/system/owsd.service sysusers.d/owsd.conf \
              tmpfiles.d/owsd.conf modules-load.d/owsd.conf udev/rules.d/60-owsd.rules \
+             $(foreach f,owsd-recorder owsd-influx,systemd/system/$f@.service systemd/system/$f.service \
+             sysusers.d/$f.conf) \
              $(foreach f,owsd-config owsd-web,systemd/system/$f@.service systemd/system/$f@.socket \
              sysusers.d/$f.conf) tmpfiles.d/owsd-config.conf
 # Started by their sockets
@@ -528,6 +567,7 @@ install-service:
 	[ -e $(D)/etc/owsd/OWS.rio ] || install -m 644 board/debian/OWS.rio $(D)/etc/owsd/OWS.rio
 	@echo 'now: systemd-sysusers; systemd-tmpfiles --create; modprobe i2c-dev; udevadm trigger;'
 	@echo '     systemctl daemon-reload; systemctl enable --now owsd      (its configuration: /etc/owsd/OWS.rio)'
+	@echo '     and for the history: systemctl enable --now owsd-recorder; for a database: owsd-influx'
 	@echo '     and for the page: systemctl enable --now owsd-web@OWS.socket'
 
 uninstall-service:

@@ -32,6 +32,18 @@ struct config_limits {
 	int64_t on_delay_ns, off_delay_ns;
 };
 
+/*
+ * When the history takes a value: at each occasion that is given. A change of quality and the first
+ * value after a gap always are occasions, unless off.
+ */
+struct config_record {
+	bool off;
+	bool change;         /* each change of the value */
+	bool raw;            /* and the raw value with it */
+	double deadband;     /* a change that is greater; 0: not given */
+	int64_t interval_ns; /* the newest value at each multiple of that time; 0: not given */
+};
+
 struct config_item {
 	const char *name;
 	const char *path;   /* normalised: leading "/", without "/uncached" and "/alarm" */
@@ -60,7 +72,9 @@ struct config_item {
 	int decimals;           /* -1: not given */
 	struct scale scale;
 	double filter_s, deadband; /* 0: none */
-	int line;                  /* of Item */
+	const char *record_text;   /* as written; NULL: as the Recorder block says */
+	struct config_record record;
+	int line; /* of Item */
 };
 /* Does the item take sets? An input with Writable off never does, whatever its _WriteEnable. */
 static inline bool config_item_takes_sets(const struct config_item *item)
@@ -107,6 +121,26 @@ struct config_serve {
 	bool read_only;
 };
 
+/* The Recorder block, for owsd-recorder; with the defaults where the file has none. */
+struct config_recorder {
+	bool given;
+	const char *directory;                        /* NULL: the program's own */
+	unsigned keep_days, keep_minutes, keep_hours; /* days; 0: no limit */
+	unsigned size_mb;                             /* 0: no limit */
+	int64_t flush_ns;
+	const char *record_text; /* of signals without a Record of their own */
+	struct config_record record;
+};
+
+/* The Influx block, for owsd-influx; the texts are NULL where the file has none. */
+struct config_influx {
+	bool given;
+	const char *url; /* NULL only without the block, or with an error in it */
+	const char *token_file, *measurement, *spool;
+	unsigned spool_mb;
+	int64_t every_ns, clock_wait_ns;
+};
+
 /* The Web block, for owsd-web; with the defaults where the file has none. */
 struct config_web {
 	bool given;
@@ -149,6 +183,8 @@ struct config {
 	struct config_serve serve;
 	struct config_allow *allows;
 	unsigned allow_count;
+	struct config_recorder recorder;
+	struct config_influx influx;
 	struct config_web web;
 };
 

@@ -9,6 +9,7 @@
 #include "src/config/build.h"
 #include "src/config/item.h"
 #include "src/config/limits.h"
+#include "src/config/recorder.h"
 #include "src/config/scaling.h"
 #include "src/signal/attribute.h"
 #include "src/signal/family.h"
@@ -343,6 +344,7 @@ void item_build(struct build *build, const struct rio_node *block, struct config
 		warn_of_decimals(build, block, values, item);
 	build_alarm(build, block, values, &path, item);
 	limits_build(build, values, item);
+	record_build(build, &values[OPT_RECORD], known, item);
 }
 
 struct named {

@@ -8,8 +8,10 @@
 #include "src/config/allow.h"
 #include "src/config/build.h"
 #include "src/config/buses.h"
+#include "src/config/influx.h"
 #include "src/config/item.h"
 #include "src/config/load.h"
+#include "src/config/recorder.h"
 #include "src/config/rio_file.h"
 #include "src/config/serve.h"
 #include "src/config/targets.h"
@@ -165,6 +167,8 @@ static void build_config(struct build *build, const struct rio *rio, const char 
 	options_read(driver, PLACE_DRIVER, values, build->report);
 	build_driver(build, values);
 	buses_build(build, driver);
+	recorder_build(build, values[OPT_RECORDER].node);
+	influx_build(build, values[OPT_INFLUX].node);
 	web_build(build, values[OPT_WEB].node);
 	build_items(build, driver, &values[OPT_ITEM_COUNT]);
 	allow_build(build, driver);

@@ -46,6 +46,10 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
 	[OPT_HEARTBEAT_LINE] = {"HeartbeatLine", PLACE_DRIVER, OPTION_TEXT,
                                 .help = "GPIO line that blinks while owsd is well"},
 	[OPT_BUS] = {"Bus", PLACE_DRIVER, OPTION_BLOCK, true, .help = "options of one target"},
+	[OPT_RECORDER] = {"Recorder", PLACE_DRIVER, OPTION_BLOCK,
+                          .help = "options of owsd-recorder, which keeps the history"},
+	[OPT_INFLUX] = {"Influx", PLACE_DRIVER, OPTION_BLOCK,
+                        .help = "options of owsd-influx, which pushes values to a server"},
 	[OPT_WEB] = {"Web", PLACE_DRIVER, OPTION_BLOCK,
                      .help = "options of owsd-web, which shows the signals in a browser"},
 	[OPT_ITEM] = {"Item", PLACE_DRIVER, OPTION_BLOCK, true, .help = "one signal"},
@@ -122,6 +126,9 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
                           "a smaller change is not listed as one"},
 	[OPT_CALIBRATED] = {"Calibrated", PLACE_ITEM, OPTION_TEXT,
                             .help = "date of the last calibration, for the record"},
+	[OPT_RECORD] =
+		{"Record", PLACE_ITEM, OPTION_TEXT,
+                 .help = "when owsd-recorder keeps a value: change, deadband, interval, off"},
 
 	[OPT_BUS_TARGET] = {"Target", PLACE_BUS, OPTION_TEXT, .help = "the target it is for"},
 	[OPT_BUS_POWER_LINE] = {"PowerLine", PLACE_BUS, OPTION_TEXT,
@@ -143,6 +150,35 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
 	[OPT_BUS_TOUCH] = {"Touch", PLACE_BUS, OPTION_FLAG, .preset = "off",
                            .help = "keys that touch the wire are noticed at once"},
 
+	[OPT_RECORDER_DIRECTORY] = {"Directory", PLACE_RECORDER, OPTION_TEXT,
+                                    .help = "where the history is kept"},
+	[OPT_RECORDER_KEEP] = {"Keep", PLACE_RECORDER, OPTION_COUNT, false, 0, 36500, "90",
+                               "days after which values are deleted; 0: never"},
+	[OPT_RECORDER_KEEP_MINUTES] = {"KeepMinutes", PLACE_RECORDER, OPTION_COUNT, false, 0, 36500,
+                                       "730", "the same of sums by the minute, and of events"},
+	[OPT_RECORDER_KEEP_HOURS] = {"KeepHours", PLACE_RECORDER, OPTION_COUNT, false, 0, 36500,
+                                     "0", "the same of sums by the hour"},
+	[OPT_RECORDER_SIZE] = {"Size", PLACE_RECORDER, OPTION_COUNT, false, 0, 1e6, "2000",
+                               "most megabytes of history, the oldest is deleted; 0: no limit"},
+	[OPT_RECORDER_FLUSH] = {"Flush", PLACE_RECORDER, OPTION_SECONDS, false, 1, 600, "60",
+                                "how long what is recorded may be in memory alone, seconds"},
+	[OPT_RECORDER_RECORD] = {"Record", PLACE_RECORDER, OPTION_TEXT, .preset = "change",
+                                 .help = "of items without a Record of their own"},
+
+	[OPT_INFLUX_URL] = {"Url", PLACE_INFLUX, OPTION_TEXT,
+                            .help = "where the server takes line protocol: http or https"},
+	[OPT_INFLUX_EVERY] = {"Every", PLACE_INFLUX, OPTION_SECONDS, false, 0.1, 3600, "10",
+                              "how often what has changed is sent, seconds"},
+	[OPT_INFLUX_TOKEN_FILE] = {"TokenFile", PLACE_INFLUX, OPTION_TEXT,
+                                   .help = "file with the token, or name of a credential"},
+	[OPT_INFLUX_MEASUREMENT] = {"Measurement", PLACE_INFLUX, OPTION_TEXT, .preset = "ows",
+                                    .help = "measurement of all points"},
+	[OPT_INFLUX_SPOOL] = {"Spool", PLACE_INFLUX, OPTION_TEXT,
+                              .help = "where batches wait for a server that is not there"},
+	[OPT_INFLUX_SPOOL_SIZE] = {"SpoolSize", PLACE_INFLUX, OPTION_COUNT, false, 1, 100000, "64",
+                                   "most megabytes that wait, the oldest are dropped"},
+	[OPT_INFLUX_CLOCK_WAIT] = {"ClockWait", PLACE_INFLUX, OPTION_SECONDS, false, 0, DAY, "600",
+                                   "uptime from which a clock that nobody set is believed"},
 	[OPT_WEB_LISTEN] = {"Listen", PLACE_WEB, OPTION_TEXT,
                             .help = "addresses where the page is served, besides its socket"},
 	[OPT_WEB_HOSTS] = {"Hosts", PLACE_WEB, OPTION_TEXT,
@@ -157,7 +193,7 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
                            .help = "where the files of the page are"},
 };
 
-static const char *const place_names[] = {"OwsDrv", "Item", "Bus", "Web"};
+static const char *const place_names[] = {"OwsDrv", "Item", "Bus", "Recorder", "Influx", "Web"};
 
 int option_find(enum option_place place, const char *key)
 {

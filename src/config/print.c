@@ -133,6 +133,39 @@ static void put_bus(FILE *out, const struct config_bus *bus)
 	fputs("  }\n", out);
 }
 
+static void put_recorder(FILE *out, const struct config_recorder *recorder)
+{
+	if (!recorder->given)
+		return;
+	fprintf(out, "  %s {\n", option_table[OPT_RECORDER].key);
+	if (recorder->directory)
+		put_text(out, 4, OPT_RECORDER_DIRECTORY, recorder->directory);
+	put_word(out, 4, OPT_RECORDER_KEEP, "%u", recorder->keep_days);
+	put_word(out, 4, OPT_RECORDER_KEEP_MINUTES, "%u", recorder->keep_minutes);
+	put_word(out, 4, OPT_RECORDER_KEEP_HOURS, "%u", recorder->keep_hours);
+	put_word(out, 4, OPT_RECORDER_SIZE, "%u", recorder->size_mb);
+	put_seconds(out, 4, OPT_RECORDER_FLUSH, recorder->flush_ns);
+	put_text(out, 4, OPT_RECORDER_RECORD, recorder->record_text);
+	fputs("  }\n", out);
+}
+
+static void put_influx(FILE *out, const struct config_influx *influx)
+{
+	if (!influx->given)
+		return;
+	fprintf(out, "  %s {\n", option_table[OPT_INFLUX].key);
+	put_text(out, 4, OPT_INFLUX_URL, influx->url);
+	put_seconds(out, 4, OPT_INFLUX_EVERY, influx->every_ns);
+	if (influx->token_file)
+		put_text(out, 4, OPT_INFLUX_TOKEN_FILE, influx->token_file);
+	put_text(out, 4, OPT_INFLUX_MEASUREMENT, influx->measurement);
+	if (influx->spool)
+		put_text(out, 4, OPT_INFLUX_SPOOL, influx->spool);
+	put_word(out, 4, OPT_INFLUX_SPOOL_SIZE, "%u", influx->spool_mb);
+	put_seconds(out, 4, OPT_INFLUX_CLOCK_WAIT, influx->clock_wait_ns);
+	fputs("  }\n", out);
+}
+
 static void put_web(FILE *out, const struct config_web *web)
 {
 	if (!web->given)
@@ -218,6 +251,7 @@ static void put_item(FILE *out, const struct config_item *item, bool all)
 	put_alarm(out, OPT_RESET_LATCH, item->reset_latch, all);
 	put_limits(out, &item->limits);
 	put_scaling(out, item);
+	put_text_if_given(out, OPT_RECORD, item->record_text);
 	fputs("  }\n", out);
 }
 
@@ -245,6 +279,8 @@ void config_print(const struct config *config, FILE *out)
 		put_text(out, 2, OPT_HEARTBEAT_LINE, config->heartbeat_line);
 	for (unsigned i = 0; i < config->bus_count; i++)
 		put_bus(out, &config->buses[i]);
+	put_recorder(out, &config->recorder);
+	put_influx(out, &config->influx);
 	put_web(out, &config->web);
 	put_word(out, 2, OPT_ITEM_COUNT, "%u", config->item_count);
 	for (unsigned i = 0; i < config->item_count; i++)

@@ -51,7 +51,7 @@ struct face_event {
 struct face;
 
 struct face_ops {
-	const char *program; /* "owsd-web": in messages, and towards owsd */
+	const char *program; /* "owsd-recorder": in messages, and towards owsd */
 	/* the one option of the face besides those of all faces; letter 0: none */
 	struct face_option option;
 	/*

@@ -16,6 +16,8 @@ the image alone, and a read takes no system call and no lock; each is verified b
 program that commands is connected to owsd until close(), and has a memory of its own for that. An
 Ows object belongs to one thread at a time, and after a fork only to the parent.
 
+What was is read by History, which needs libows-history(3); all else needs this file alone.
+
 From a shell:  python3 ows.py [-n INSTANCE] [NAME [VALUE]]
 """
 
@@ -1371,6 +1373,205 @@ def encode(kind, value):
     if number != value or not low <= number <= high:
         raise ValueError(f"a {TYPE_NAMES[kind]} cannot hold {value}")
     return number & 0xFFFFFFFFFFFFFFFF
+
+
+# --- History: what owsd-recorder kept, by libows-history ---------------------------------------
+
+Recorded = collections.namedtuple("Recorded", "name unit type output decimals")
+Records = collections.namedtuple("Records", "time_ns value integer text known quality reason trusted")
+Points = collections.namedtuple("Points", "from_ns until_ns min max mean last "
+                                "good_ns known_ns count quality worst gap trusted")
+Event = collections.namedtuple("Event", "time_ns until_ns name kind reason alarm event value before "
+                               "text program person uid pid trusted")
+HISTORY_BEGIN, HISTORY_END, HISTORY_GAP, HISTORY_CLOCK, HISTORY_COMMAND, HISTORY_ALARM = range(3, 9)
+
+
+def _fields(text):
+    """Members of a structure: "c_int64 a b; c_uint8 x[3]"."""
+    found = []
+    for line in text.split(";"):
+        kind, *names = line.split()
+        for name in names:
+            name, _, size = name.rstrip("]").partition("[")
+            one = getattr(ctypes, kind)
+            if size:
+                one = one * int(size)
+            found.append((name, one))
+    return found
+
+
+class _Signal(ctypes.Structure):
+    _fields_ = _fields("c_char_p name unit; c_uint8 type output; c_int32 decimals; "
+                       "c_uint64 spare[4]")
+
+
+class _Item(ctypes.Structure):
+    _fields_ = _fields("c_int64 time_ns boot_ns; c_double number; c_int64 integer; c_void_p text; "
+                       "c_uint32 len; c_uint8 known type quality reason trusted; c_uint64 spare[4]")
+
+
+class _Point(ctypes.Structure):
+    _fields_ = _fields("c_int64 from_ns until_ns; c_double min max mean last; "
+                       "c_int64 good_ns known_ns; c_uint32 count; c_uint8 quality worst gap "
+                       "trusted; c_uint64 spare[4]")
+
+
+class _Who(ctypes.Structure):
+    _fields_ = _fields("c_uint32 serial uid; c_int32 pid; c_char name[32] person[32]")
+
+
+class _Event(ctypes.Structure):
+    _fields_ = _fields("c_int64 time_ns boot_ns until_ns; c_double number before; c_int64 integer "
+                       "before_integer; c_int32 signal; c_uint8 kind reason alarm event type "
+                       "quality has_before has_after trusted this_boot; c_char text[160]") \
+        + [("who", _Who)] + _fields("c_uint64 spare[4]")
+
+
+def _column(values, dtype):
+    """A NumPy array where NumPy is, a list where it is not."""
+    try:
+        import numpy  # pylint: disable=import-outside-toplevel
+    except ImportError:
+        return list(values)
+    return numpy.array(values, dtype)
+
+
+class History:
+    """What owsd-recorder kept; needs libows-history.so.1, and neither owsd nor the recorder to run.
+
+        with ows.History() as history:
+            day = history.points("room1", from_ns, until_ns, 24)
+            print(day.min, day.max, day.gap)
+
+    Times are nanoseconds since 1970. Columns are NumPy arrays, or lists where NumPy is not. What
+    was not good or is not known is NaN: it belongs in no sum and no line. Raises OSError; KeyError
+    for a name that the history does not have. Belongs to one thread at a time."""
+
+    CHUNK = 4096
+
+    def __init__(self, instance="OWS", directory=None):
+        self._h = ctypes.c_void_p()
+        self._library = ctypes.CDLL("libows-history.so.1")
+        self._call("open", instance.encode(), os.fsencode(directory) if directory else None,
+                   ctypes.byref(self._h))
+
+    def _call(self, name, *arguments):
+        got = getattr(self._library, "ows_history_" + name)(*arguments)
+        if got < 0:
+            raise OSError(-got, os.strerror(-got))
+        return got
+
+    def _ask(self, name, *arguments):
+        if not self._h:
+            raise ValueError("the history is closed")
+        return self._call(name, self._h, *arguments)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def close(self):
+        if self._h:
+            self._library.ows_history_close.restype = None
+            self._library.ows_history_close(self._h)
+            self._h = ctypes.c_void_p()
+
+    def refresh(self):
+        """See what was written since."""
+        self._ask("refresh")
+
+    def _signal(self, index):
+        signal = _Signal()
+        self._ask("signal", index, ctypes.byref(signal))
+        return Recorded(signal.name.decode(), signal.unit.decode("utf-8", "replace"), signal.type,
+                        bool(signal.output), signal.decimals)
+
+    def names(self):
+        return [self._signal(i).name for i in range(self._ask("signals"))]
+
+    def _index(self, name):
+        try:
+            return self._ask("find", name.encode())
+        except OSError as e:
+            if e.errno != errno.ENOENT:
+                raise
+            raise KeyError(name) from None
+
+    def info(self, name):
+        return self._signal(self._index(name))
+
+    def span(self):
+        """The first and the last moment of which something is known, or None."""
+        begin, end = ctypes.c_int64(), ctypes.c_int64()
+        try:
+            self._ask("span", ctypes.byref(begin), ctypes.byref(end))
+        except OSError as e:
+            if e.errno != errno.ENODATA:
+                raise
+            return None
+        return begin.value, end.value
+
+    def records(self, name, from_ns, until_ns):
+        """Records of a signal, each of which holds until the next one; the first is what held at
+        from_ns. value is NaN where it was not good or is not known, text and integer None."""
+        items, rows = (_Item * self.CHUNK)(), []
+        self._ask("read", self._index(name), ctypes.c_int64(from_ns), ctypes.c_int64(until_ns))
+        while True:
+            got = self._ask("next", items, self.CHUNK)
+            if not got:
+                break
+            rows.extend(self._row(item) for item in items[:got])
+        columns = list(zip(*rows)) or [()] * len(Records._fields)
+        kinds = ("int64", "float64", object, object, "bool", "uint8", "uint8", "bool")
+        return Records(*map(_column, columns, kinds))
+
+    @staticmethod
+    def _row(item):
+        good = item.known and item.quality >= Q_GOOD
+        text = None
+        if good and item.type == STRING:
+            text = ctypes.string_at(item.text, item.len).decode("utf-8", "replace")
+        whole = good and item.type not in (FLOAT, DOUBLE, STRING)
+        return (item.time_ns, item.number if good else math.nan, item.integer if whole else None,
+                text, bool(item.known), item.quality, item.reason, bool(item.trusted))
+
+    def points(self, name, from_ns, until_ns, n):
+        """Divide the time into n stretches; a year takes milliseconds. gap: of some of it nothing
+        is known, and no line may be drawn through it."""
+        points = (_Point * n)()
+        self._ask("points", self._index(name), ctypes.c_int64(from_ns), ctypes.c_int64(until_ns),
+                  points, n)
+        kinds = ["int64"] * 2 + ["float64"] * 4 + ["int64"] * 2 + ["uint32"] + ["uint8"] * 2 \
+            + ["bool"] * 2
+        return Points(*(_column([getattr(p, field) for p in points], kind)
+                        for field, kind in zip(Points._fields, kinds)))
+
+    def events(self, from_ns, until_ns, kinds=()):
+        """The journal, as a list: commands, alarms, and what the recorder met (HISTORY_GAP)."""
+        event, found = _Event(), []
+        self._ask("events", ctypes.c_int64(from_ns), ctypes.c_int64(until_ns),
+                  ctypes.c_uint32(sum(1 << kind for kind in set(kinds))))
+        while self._ask("next_event", ctypes.byref(event)):
+            found.append(self._entry(event))
+        return found
+
+    def _entry(self, event):
+        whole = event.type not in (FLOAT, DOUBLE, STRING)
+        number = event.integer if whole else event.number
+        before = event.before_integer if whole else event.before
+        command = event.kind == HISTORY_COMMAND
+        text = event.text.decode("utf-8", "replace")
+        value = (text if event.type == STRING else number) if command else \
+            number if event.has_after else None
+        return Event(event.time_ns, event.until_ns,
+                     self._signal(event.signal).name if event.signal >= 0 else None, event.kind,
+                     event.reason, event.alarm, event.event, value,
+                     before if event.has_before else None, text,
+                     event.who.name.decode("utf-8", "replace"),
+                     event.who.person.decode("utf-8", "replace"), event.who.uid, event.who.pid,
+                     bool(event.trusted))
 
 
 def main(arguments):

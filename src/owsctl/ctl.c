@@ -75,6 +75,9 @@ static const struct option *longs_of(const char *options)
 		{"alias", required_argument, NULL, 'L'},   {"merge", required_argument, NULL, 'M'},
 		{"replace", required_argument, NULL, 'R'}, {"as", required_argument, NULL, 'A'},
 		{"follow", no_argument, NULL, 'f'},
+		{"since", required_argument, NULL, 's'}, {"csv", no_argument, NULL, 'C'},
+		{"sqlite", required_argument, NULL, 'S'}, {"parquet", required_argument, NULL, 'P'},
+		{"influx", no_argument, NULL, 'I'}, {"directory", required_argument, NULL, 'd'},
 	};
 	static struct option had[sizeof(longs) / sizeof(longs[0]) + 1];
 	struct option *next = had;

@@ -5,7 +5,7 @@
  *
  * Room src/owsctl: the command-line tool, a program over libows; scan, read and write open a target
  * themselves. Uses src/scan, src/show, src/config, src/board, src/text, src/libows,
- * src/service, src/shm, src/signal, hal/chips, hal/owfs, hal/bus.
+ * src/libhistory, src/service, src/shm, src/signal, hal/chips, hal/owfs, hal/bus.
  */
 #ifndef OWSCTL_CTL_H
 #define OWSCTL_CTL_H

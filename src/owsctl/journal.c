@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* owsctl journal: who did what and when; alarms and commands merged, and followed as they come. */
+/*
+ * owsctl journal: who did what and when; alarms and commands, of owsd's memory and of the disk,
+ * merged, and followed as they come.
+ */
 #include <errno.h>
 #include <getopt.h>
 #include <stdio.h>
@@ -10,15 +13,25 @@
 #include "src/owsctl/alarms_live.h"
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/journal_row.h"
+#include "src/owsctl/past.h"
+#include "src/owsctl/progress.h"
 #include "src/owsctl/terminal.h"
 #include "src/owsctl/verbs.h"
+#include "src/show/journal_past.h"
+#include "src/show/names.h"
 
 #define SLICE (500 * NS_PER_MS) /* a dead owsd sends no wake-up */
 #define LINE 2048
+#define SINCE (7 * 86400 * NS_PER_S)
+#define MOST 1000 /* from memory and disk together, without -c */
+#define RINGS 512 /* entries that owsd keeps */
+#define COUNT_MAX 1000000
 
 struct journal {
 	struct ctl *ctl;
-	struct ows *h;
+	struct ows *h;               /* NULL: no owsd has run */
+	struct ows_history *history; /* NULL: nothing is kept on disk */
+	int64_t since_ns;
 	char *const *patterns;
 	int pattern_count;
 	int64_t most; /* of the entries that are there; -1: all */
@@ -66,18 +79,62 @@ static void print_json(struct journal *j, unsigned from)
 	json_end(&json);
 }
 
-static bool print_entries(struct journal *j, bool first)
+static bool print_from(struct journal *j, unsigned from, bool titled)
 {
-	unsigned from = 0;
-
-	if (!journal_look(j->h, j->patterns, j->pattern_count, &j->entries))
-		return false;
-	if (first && j->most >= 0 && j->entries.count > j->most)
-		from = j->entries.count - (unsigned)j->most;
 	if (!j->ctl->json)
-		return print_rows(j, from, first);
+		return print_rows(j, from, titled);
 	print_json(j, from);
 	return true;
+}
+
+static bool print_news(struct journal *j)
+{
+	return journal_look(j->h, j->patterns, j->pattern_count, &j->entries) &&
+	       print_from(j, 0, false);
+}
+
+static void show_progress(void *ctx, int64_t done, int64_t all)
+{
+	progress_show(ctx, ows_now(), done, all);
+}
+
+/* Those of the disk first: what is entered meanwhile is then in memory. 0, -ENOMEM or another. */
+static int look_at_both(struct journal *j)
+{
+	unsigned most = j->most < 0 ? MOST : (unsigned)j->most;
+	struct when now = when_now();
+	struct progress progress = progress_begin("journal", ows_now());
+	struct journal_entries past = {0};
+	int err = 0;
+	bool ok;
+
+	if (j->history)
+		err = journal_past(j->history, &now, now.wall - j->since_ns, j->patterns,
+		                   j->pattern_count, most ? most + RINGS : 0, show_progress,
+		                   &progress, &past);
+	progress_end(&progress);
+	ok = (!j->h || journal_look(j->h, j->patterns, j->pattern_count, &j->entries)) &&
+	     journal_past_drop(&past, &j->entries) && journal_add(&j->entries, &past);
+	journal_free(&past);
+	return ok ? err : -ENOMEM;
+}
+
+/* A disk that cannot be read hides nothing of what owsd has in memory. */
+static int print_both(struct journal *j)
+{
+	int err = look_at_both(j), status = CTL_DONE;
+	unsigned count = j->entries.count, from = 0;
+
+	if (err == -ENOMEM)
+		return ctl_fail("no memory");
+	if (err)
+		status = past_fail("history", err);
+	if (j->most >= 0 || j->history) {
+		unsigned most = j->most < 0 ? MOST : (unsigned)j->most;
+
+		from = count > most ? count - most : 0;
+	}
+	return print_from(j, from, true) ? status : ctl_fail("no memory");
 }
 
 /* A start of owsd begins its journals anew; a reload goes on with them. */
@@ -98,24 +155,68 @@ static bool follow(struct journal *j)
 			ctl_fail("owsd %s was started again", j->ctl->instance);
 			j->entries.begun = false;
 		}
-		if (!print_entries(j, false))
+		if (!print_news(j))
 			return false;
 	}
 	return true;
 }
 
+static bool is_in_history(struct ows_history *history, char *const *pattern)
+{
+	struct ows_history_signal signal;
+
+	for (int i = 0; history && !ows_history_signal(history, i, &signal); i++)
+		if (names_match(signal.name, pattern, 1))
+			return true;
+	return false;
+}
+
+/* A signal may be in the history alone: it is no longer configured. */
+static bool patterns_known(struct journal *j)
+{
+	bool known = true;
+
+	for (int i = 0; i < j->pattern_count; i++) {
+		if (is_in_history(j->history, &j->patterns[i]))
+			continue;
+		if (j->h && alarms_known(j->h, &j->patterns[i], 1))
+			continue;
+		if (!j->h)
+			ctl_fail("the history has no signal %s", ctl_word(j->patterns[i]));
+		known = false;
+	}
+	return known;
+}
+
 static int show(struct journal *j)
 {
-	bool ok;
+	int status;
 
-	ctl_alive(j->ctl, j->h, ows_now());
-	if (!alarms_known(j->h, j->patterns, j->pattern_count))
+	if (j->h)
+		ctl_alive(j->ctl, j->h, ows_now());
+	if (!patterns_known(j))
 		return CTL_FAILED;
 	table_init(&j->table, journal_columns, JOURNAL_COLUMNS);
-	ok = print_entries(j, true) && (!j->follows || follow(j));
+	status = print_both(j);
+	ows_history_close(j->history);
+	j->history = NULL;
+	if (j->follows && !follow(j))
+		status = ctl_fail("no memory");
 	table_free(&j->table);
 	journal_free(&j->entries);
-	return ok ? CTL_DONE : ctl_fail("no memory");
+	return status;
+}
+
+/* The memory of owsd, the disk, or both. Nobody can follow an owsd that has never run. */
+static int open_both(struct journal *j, const char *directory)
+{
+	int status = past_look(j->ctl, directory, &j->history);
+
+	if (status)
+		return status;
+	if (j->history && !j->follows && ows_open(j->ctl->instance, OWS_READ, &j->h) == -ENOENT)
+		return CTL_DONE;
+	return j->h ? CTL_DONE : ctl_open(j->ctl, OWS_READ, &j->h);
 }
 
 static bool parse_count(const char *text, int64_t *count)
@@ -124,16 +225,17 @@ static bool parse_count(const char *text, int64_t *count)
 
 	errno = 0;
 	*count = strtoll(text, &end, 10);
-	return end != text && !*end && !errno && *count >= 0;
+	return end != text && !*end && !errno && *count >= 0 && *count <= COUNT_MAX;
 }
 
 int verb_journal(struct ctl *ctl, int argc, char **argv)
 {
-	struct journal j = {.ctl = ctl, .most = -1};
+	struct journal j = {.ctl = ctl, .most = -1, .since_ns = SINCE};
+	const char *directory = NULL;
 	int c, status;
 
 	ctl_options();
-	while ((c = ctl_option(ctl, argc, argv, "fc:")) != -1) {
+	while ((c = ctl_option(ctl, argc, argv, "fc:s:d:")) != -1) {
 		switch (c) {
 		case 'f':
 			j.follows = true;
@@ -143,16 +245,23 @@ int verb_journal(struct ctl *ctl, int argc, char **argv)
 				return ctl_usage(ctl, "-c wants a number of entries, not %s",
 				                 ctl_word(optarg));
 			break;
+		case 's':
+			if (!when_parse(optarg, &j.since_ns))
+				return ctl_usage(ctl, WHEN_WANTED, optarg);
+			break;
+		case 'd':
+			directory = optarg;
+			break;
 		default:
 			return CTL_USAGE;
 		}
 	}
 	j.patterns = argv + optind;
 	j.pattern_count = argc - optind;
-	status = ctl_open(ctl, OWS_READ, &j.h);
-	if (status)
-		return status;
-	status = show(&j);
+	status = open_both(&j, directory);
+	if (!status)
+		status = show(&j);
+	ows_history_close(j.history);
 	ows_close(j.h);
 	return status;
 }

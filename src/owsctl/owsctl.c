@@ -56,11 +56,15 @@ static const struct verb verbs[] = {
                     "  shelve NAME TIME [REASON]             keep one quiet, for 30m, 8h or 2d\n"
                     "  unshelve NAME...                      end that\n",
          .example = "alarms ack boiler", .finds = true},
-	{"journal", "[-f] [-c COUNT] [PATTERN...]",
-         "who did what and when: alarms and commands since the start", verb_journal,
+	{"journal", "[-f] [-c COUNT] [-s SPAN] [-d DIR] [PATTERN...]",
+         "who did what and when: alarms and commands, also of the history", verb_journal,
          .options = "  -f        follow what comes (--follow)\n"
-                    "  -c COUNT  the last so many\n",
-         .example = "journal -c 20 boiler", .finds = true},
+                    "  -c COUNT  the last so many\n"
+                    "  -s SPAN   since when (--since), as 2h, 7d\n"
+                    "  -d DIR    where owsd-recorder keeps the history (--directory)\n",
+         .example = "journal -s 1d boiler", .finds = true},
+	{"trend", "[-s SPAN] [-d DIR] [--csv | --influx | --sqlite FILE | --parquet FILE] NAME...",
+         "draw what signals had, from the history of owsd-recorder", verb_trend},
 	{"stats", "", "owsd itself, its targets and counters", verb_stats, .example = "stats",
          .finds = true},
 	{"metrics", "[-p] [PATTERN...]", "values, quality, targets and counters as OpenMetrics",

@@ -70,7 +70,7 @@ static bool look(struct ows *h, journal_get *get, uint32_t head, uint32_t *next,
 	for (; number != head; number++) {
 		struct journal_entry *entry = &more[entries->count];
 
-		*entry = (struct journal_entry){.number = number};
+		*entry = (struct journal_entry){.number = number, .this_boot = true};
 		if (get(h, number, entry) == 0 && is_wanted(h, entry, patterns, count))
 			entries->count++;
 	}
@@ -78,15 +78,22 @@ static bool look(struct ows *h, journal_get *get, uint32_t head, uint32_t *next,
 	return true;
 }
 
-static int by_time(const void *left, const void *right)
+int journal_order(const struct journal_entry *a, const struct journal_entry *b)
 {
-	const struct journal_entry *a = left, *b = right;
-
+	if (a->this_boot != b->this_boot)
+		return a->this_boot ? 1 : -1;
 	if (a->when_ns != b->when_ns)
 		return a->when_ns < b->when_ns ? -1 : 1;
-	if (a->is_command != b->is_command)
+	if (a->past != b->past)
+		return a->past ? -1 : 1;
+	if (!a->past && a->is_command != b->is_command)
 		return a->is_command ? 1 : -1;
 	return (int32_t)(a->number - b->number);
+}
+
+static int by_time(const void *a, const void *b)
+{
+	return journal_order(a, b);
 }
 
 bool journal_look(struct ows *h, char *const *patterns, int count, struct journal_entries *entries)
@@ -99,6 +106,23 @@ bool journal_look(struct ows *h, char *const *patterns, int count, struct journa
 		return false;
 	entries->begun = true;
 	qsort(entries->entry, entries->count, sizeof(*entries->entry), by_time);
+	return true;
+}
+
+bool journal_add(struct journal_entries *entries, const struct journal_entries *more)
+{
+	size_t count = (size_t)entries->count + more->count;
+	struct journal_entry *all;
+
+	if (!more->count)
+		return true;
+	all = realloc(entries->entry, count * sizeof(*all));
+	if (!all)
+		return false;
+	memcpy(all + entries->count, more->entry, more->count * sizeof(*all));
+	entries->entry = all;
+	entries->count = (unsigned)count;
+	qsort(all, count, sizeof(*all), by_time);
 	return true;
 }
 
@@ -179,7 +203,10 @@ void journal_json(struct json *json, const struct when *now, const struct journa
 	json_object(json, NULL);
 	json_string(json, "time", when_iso(now, entry->when_ns, time));
 	json_string(json, "journal", entry->is_command ? "commands" : "alarms");
-	json_uint(json, "number", entry->number);
+	if (entry->past)
+		json_null(json, "number");
+	else
+		json_uint(json, "number", entry->number);
 	json_string(json, "name", entry->name);
 	if (entry->is_command) {
 		json_null(json, "alarm");
@@ -191,7 +218,10 @@ void journal_json(struct json *json, const struct when *now, const struct journa
 	}
 	json_value(json, entry);
 	who_json(json, journal_is_deed(entry) ? journal_by(entry) : &nobody);
-	json_uint(json, "more", entry->is_command ? entry->command.more : 0);
+	if (entry->past && entry->is_command)
+		json_null(json, "more");
+	else
+		json_uint(json, "more", entry->is_command ? entry->command.more : 0);
 	json_string(json, "remark",
 	            !entry->is_command && *entry->alarm.text ? entry->alarm.text : NULL);
 	json_object_end(json);

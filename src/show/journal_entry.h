@@ -11,12 +11,14 @@
 #include "src/signal/value.h"
 
 struct journal_entry {
-	int64_t when_ns;  /* boot time */
+	int64_t when_ns;  /* boot time; of an earlier boot as if this one had begun before it */
 	const char *name; /* of the signal; valid until the handle that it is from is used again */
 	int decimals;     /* of the signal; -1: not known */
 	int signal;
-	uint32_t number; /* in its journal */
+	uint32_t number; /* in its journal; of the past: in the order of reading */
 	bool is_command;
+	bool past;      /* it was read from disk: without number and `more` */
+	bool this_boot; /* when_ns is of the boot that this machine is in */
 	union {
 		struct ows_alarm alarm;
 		struct ows_commanded command;
@@ -33,6 +35,10 @@ struct journal_entries {
 
 /* Get what is new since the last look, all that is kept at the first. false: no memory. */
 bool journal_look(struct ows *h, char *const *patterns, int count, struct journal_entries *entries);
+/* Put all of `more` among them, in the order of time. false: no memory. */
+bool journal_add(struct journal_entries *entries, const struct journal_entries *more);
+/* The order of entries, as for qsort(): earlier boots, then time; those of disk first. */
+int journal_order(const struct journal_entry *a, const struct journal_entry *b);
 void journal_free(struct journal_entries *entries);
 
 #define JOURNAL_EVENT 64

@@ -18,8 +18,8 @@
 #include "src/web/guard.h"
 #include "src/web/head.h"
 #include "src/web/http.h"
-#include "src/web/journal.h"
 #include "src/web/lists.h"
+#include "src/web/past.h"
 #include "src/web/person.h"
 #include "src/web/save.h"
 #include "src/web/show.h"
@@ -84,6 +84,8 @@ static int answer_info(struct request *request)
 	json_bool(&json, "writable", writable);
 	json_bool(&json, "configurable", may(request, PERSON_CONFIGURE, person));
 	json_string(&json, "person", *person ? person : NULL);
+	json_bool(&json, "history",
+	          past_is_there(web->face->arguments->instance, web->face->config));
 	json_int(&json, "signals", web->recent.count);
 	json_object_end(&json);
 	json_end(&json);
@@ -167,14 +169,23 @@ static const struct {
 	bool post;
 	web_function function;
 } paths[] = {
-	{"api/info", false, answer_info},        {"api/signals", false, answer_signals},
-	{"api/events", false, events_answer},    {"api/alarms", false, lists_alarms},
-	{"api/stats", false, lists_stats},       {"api/log", false, lists_log},
-	{"api/journal", false, journal_answer},  {"api/set", true, command_set},
-	{"api/alarm", true, command_alarm},      {"api/config", false, stored_get},
-	{"api/config/keys", false, stored_keys}, {"api/config/draft", true, draft_post},
-	{"api/config/save", true, save_post},    {"api/config/restore", true, save_restore},
-	{"metrics", false, answer_metrics},      {"api/devices", false, devices_get},
+	{"api/info", false, answer_info},
+	{"api/signals", false, answer_signals},
+	{"api/events", false, events_answer},
+	{"api/alarms", false, lists_alarms},
+	{"api/stats", false, lists_stats},
+	{"api/log", false, lists_log},
+	{"api/journal", false, past_journal},
+	{"api/trend", false, past_trend},
+	{"api/set", true, command_set},
+	{"api/alarm", true, command_alarm},
+	{"api/config", false, stored_get},
+	{"api/config/keys", false, stored_keys},
+	{"api/config/draft", true, draft_post},
+	{"api/config/save", true, save_post},
+	{"api/config/restore", true, save_restore},
+	{"metrics", false, answer_metrics},
+	{"api/devices", false, devices_get},
 };
 
 bool api_admits(const struct request *request, const char *path)

@@ -235,6 +235,7 @@ void events_alarm(struct web *web, const struct ows_alarm *alarm)
 	struct journal_entry entry = {
 		.when_ns = alarm->occurred_ns,
 		.signal = alarm->signal,
+		.this_boot = true,
 		.alarm = *alarm,
 	};
 	struct when now = when_now();

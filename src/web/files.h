@@ -13,7 +13,7 @@
 struct files {
 	int directory; /* -1: there is none */
 	unsigned count;
-	char names[FILES][FILES_NAME]; /* "style.css", "folder/style.css" */
+	char names[FILES][FILES_NAME]; /* "style.css", "uplot/uPlot.css" */
 };
 
 /* Take the names of the files there, and one level of directories deeper. 0 or a negative errno. */

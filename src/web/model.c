@@ -172,7 +172,9 @@ void model_json(struct json *json, const struct rio *rio)
 	put_keys(json, "driver", driver, OPT_ITEM, OPT_ITEM);
 	json_object(json, "blocks");
 	for (const struct rio_node *node = driver->first; node; node = node->next)
-		if (is_block(node, OPT_WEB) && is_first(driver, node))
+		if ((is_block(node, OPT_RECORDER) || is_block(node, OPT_INFLUX) ||
+		     is_block(node, OPT_WEB)) &&
+		    is_first(driver, node))
 			put_keys(json, node->key, node, OPT_ITEM, OPT_ITEM);
 	json_object_end(json);
 	put_all(json, "buses", driver, OPT_BUS, put_bus);
@@ -200,10 +202,8 @@ static void put_limit(struct json *json, const char *name, const struct option_d
 void model_keys(struct json *json)
 {
 	static const char *const places[] = {
-		[PLACE_DRIVER] = "driver",
-		[PLACE_ITEM] = "item",
-		[PLACE_BUS] = "bus",
-		[PLACE_WEB] = "web",
+		[PLACE_DRIVER] = "driver",     [PLACE_ITEM] = "item",     [PLACE_BUS] = "bus",
+		[PLACE_RECORDER] = "recorder", [PLACE_INFLUX] = "influx", [PLACE_WEB] = "web",
 	};
 	static const char *const kinds[] = {
 		[OPTION_TEXT] = "text",     [OPTION_COUNT] = "count", [OPTION_SECONDS] = "seconds",

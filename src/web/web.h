@@ -4,7 +4,7 @@
  * libmicrohttpd runs.
  *
  * Room src/web: the program owsd-web: the page of an instance, its signals as JSON and as events.
- * Uses src/face, src/scan, src/show, src/config, src/board, src/text, src/libows,
+ * Uses src/face, src/scan, src/show, src/config, src/board, src/text, src/libows, src/libhistory,
  * src/service, src/shm, src/signal, hal/owfs, hal/bus.
  */
 #ifndef WEB_WEB_H

@@ -25,14 +25,14 @@ as_user() { user=$1 && shift && setpriv --reuid "$user" --regid nogroup --init-g
 refused() { ! "$@"; }
 
 # The libraries first, so that what is compared is ours
-libraries=$(for p in owsd_*.deb owsd-web_*.deb owsd-cockpit_*.deb; do dpkg-deb -f "$p" Depends; done |
+libraries=$(for p in owsd_*.deb owsd-influx_*.deb owsd-web_*.deb owsd-cockpit_*.deb; do dpkg-deb -f "$p" Depends; done |
 	tr ',' '\n' | sed -n 's/^ *\(lib[a-z0-9.+-]*\|cockpit-bridge\).*/\1/p' | grep -v '^libows\|^libc6$' | sort -u | tr '\n' ' ')
 does "what it needs is in the system's archive ($libraries)" \
 	sh -c "apt-get -q update && $apt install $libraries"
 everything >/tmp/before
 
-does 'the packages are installed' $apt install ./libows1_*.deb ./libows-dev_*.deb \
-	./python3-ows_*.deb ./owsd_*.deb ./owsd-web_*.deb ./owsd-cockpit_*.deb
+does 'the packages are installed' $apt install ./libows1_*.deb ./libows-history1_*.deb ./libows-dev_*.deb \
+	./python3-ows_*.deb ./owsd_*.deb ./owsd-recorder_*.deb ./owsd-influx_*.deb ./owsd-web_*.deb ./owsd-cockpit_*.deb
 version=$(dpkg-query -W -f '${Version}' owsd)
 same 'their user is in the groups that it needs' 'gpio i2c owsd owsd-control' \
 	"$(id -nG owsd | tr ' ' '\n' | sort | tr '\n' ' ' | sed 's/ $//')"
@@ -61,6 +61,23 @@ does 'but does not set' refused as_user looker owsctl set pump 1
 does 'a member of both sets' as_user actor owsctl set pump 1
 does 'others do not even read' refused as_user stranger owsctl get boiler
 does 'the output is there' within 90 reads pump 1
+records() { setpriv --reuid owsd-recorder --regid owsd --init-groups timeout --preserve-status 5 \
+	owsd-recorder -d "$1" 2>/tmp/recorder; }
+same 'the recorder has a user of its own, who may look' owsd \
+	"$(id -nG owsd-recorder | tr ' ' '\n' | grep -x owsd)"
+does 'a service of it is enabled' \
+	test -L /etc/systemd/system/owsd-recorder.service.wants/owsd-recorder@OWS.service
+install -d -o owsd-recorder -g owsd -m 750 /var/lib/owsd-recorder /var/lib/owsd-recorder/OWS
+does 'it records' records /var/lib/owsd-recorder/OWS
+does 'all signals' grep -q '^recording [0-9]* of [0-9]* signals' /tmp/recorder
+same 'into a file for the group' '640 owsd-recorder owsd' \
+	"$(mode "$(ls /var/lib/owsd-recorder/OWS/history.sqlite)")"
+pushes() { setpriv --reuid owsd-influx --regid owsd --init-groups timeout --preserve-status 5 \
+	owsd-influx 2>/tmp/influx; }
+same 'owsd-influx has a user of its own, who may look' owsd "$(id -nG owsd-influx | tr ' ' '\n' | grep -x owsd)"
+does 'a service of it is enabled' test -L /etc/systemd/system/owsd-influx.service.wants/owsd-influx@OWS.service
+does 'it runs' pushes
+does 'and pushes nothing, as no server is named' grep -q 'no Influx block: nothing is pushed' /tmp/influx
 same 'owsd-config has a user of its own, who may read' 'owsd owsd-config' \
 	"$(id -nG owsd-config | tr ' ' '\n' | sort | tr '\n' ' ' | sed 's/ $//')"
 does 'the page may not write the configuration' refused sh -c 'id -nG owsd-web | grep -q -w owsd-config'
@@ -104,9 +121,9 @@ does 'a configuration that was deleted stays deleted' test ! -e /etc/owsd/OWS.ri
 cp /tmp/OWS.rio /etc/owsd/OWS.rio
 cp /tmp/OWS.rio /etc/owsd/HOUSE.rio
 service owsd restart
-does 'all are purged' $apt purge owsd owsd-web owsd-cockpit libows1 libows-dev python3-ows
+does 'all are purged' $apt purge owsd owsd-recorder owsd-influx owsd-web owsd-cockpit libows1 libows-history1 libows-dev python3-ows
 does 'nothing runs' refused pgrep -x owsd
-same 'no segment stays' '' "$(find /run/owsd /var/lib/owsd 2>/dev/null)"
+same 'no segment and no history stays' '' "$(find /run/owsd /var/lib/owsd /var/lib/owsd-recorder /var/lib/owsd-influx 2>/dev/null)"
 does 'what its owner has made does' test -e /etc/owsd/HOUSE.rio
 rm -r /etc/owsd
 everything >/tmp/after

@@ -110,6 +110,19 @@ class Page:
         one = self.find(selector)[ELEMENT]
         self.ask("POST", f"{self.base}/element/{one}/value", {"text": str(path)})
 
+    def drag(self, selector, start, end):
+        """Drag over an element, from one part of its width to another (0 to 1)."""
+        box = self.run("const b = document.querySelector(arguments[0]).getBoundingClientRect();"
+                       "return [b.left, b.top + b.height / 2, b.width]", selector)
+
+        def move(part):
+            return {"type": "pointerMove", "duration": 50, "origin": "viewport",
+                    "x": round(box[0] + part * box[2]), "y": round(box[1])}
+        self.ask("POST", f"{self.base}/actions", {"actions": [{
+            "type": "pointer", "id": "mouse", "actions": [
+                move(start), {"type": "pointerDown", "button": 0}, move((start + end) / 2),
+                move(end), {"type": "pointerUp", "button": 0}]}]})
+
     def size(self, width, height, mobile=False, scale=1):
         self.devtools("Emulation.setDeviceMetricsOverride", width=width, height=height,
                       deviceScaleFactor=scale, mobile=mobile)

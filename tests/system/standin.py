@@ -29,7 +29,7 @@ HARDWARE = re.compile(r"^(i2c:(auto|/dev/i2c-\d(:0x[0-9a-f]{2}(\.\d)?)?)|w1(:.*)
 OURS = set(re.findall(r"^Package: (\S+)$", (SOURCE / "board/debian/control").read_text(), re.M))
 DEBIAN = {"owserver", "ow-shell", "libgpiod-dev", "i2c-tools", "linuxcnc-uspace",
           "linuxcnc-uspace-dev"} | OURS
-UNIT = r"(owsd(-firstboot|@\w+|-(web|config)@\w+(\.socket|\.service)?)?|owserver(\.socket|\.service)?)"
+UNIT = r"(owsd(-firstboot|-recorder|-influx|@\w+|-(recorder|influx)@\w+|-(web|config)@\w+(\.socket|\.service)?)?|owserver(\.socket|\.service)?)"
 GROUPS = "(i2c|gpio|owsd|owsd-control|owsd-config)"
 
 # What may be said to programs that are not run: the whole of their arguments
@@ -203,9 +203,12 @@ def pkg_config(arguments):
     if arguments == ["--variable=libdir", "libows"]:
         print(BUILD)
         return
-    if sorted(arguments) != ["--cflags", "--libs", "libows"]:
+    libraries = sorted(arguments)[2:]
+    if sorted(arguments)[:2] != ["--cflags", "--libs"] or not libraries \
+            or set(libraries) - {"libows", "libows-history"}:
         fail(f"not for libows: {arguments}")
-    print(f"-I{SOURCE}/src/libows -L{BUILD} -lows")
+    print(f"-I{SOURCE}/src/libows -I{SOURCE}/src/libhistory -L{BUILD}",
+          *(f"-l{library[3:]}" for library in libraries))
 
 
 def compiler(name):
@@ -227,7 +230,9 @@ def man(arguments):
         fail(f"no page {page}")
 
 
-RUN = {"owsctl": owsctl, "owsd": owsd, "owsd-config": face("owsd-config"), "owsd-web": owsd_web, "sudo": sudo, "make": make, "apt": apt, "apt-get": apt,
+RUN = {"owsctl": owsctl, "owsd": owsd, "owsd-recorder": face("owsd-recorder"),
+       "owsd-influx": face("owsd-influx"),
+       "owsd-config": face("owsd-config"), "owsd-web": owsd_web, "sudo": sudo, "make": make, "apt": apt, "apt-get": apt,
        "pkg-config": pkg_config, "jq": jq, "man": man, "cc": compiler("gcc"), "c++": compiler("g++")}
 SHELL = ["owdir", "owread", "owwrite"]
 OWFS = ["owserver", "owfs", "owhttpd"]

@@ -202,7 +202,7 @@ def compiled(stage, text, compiler, suffix, flags):
     output = stage.path / "snippet"
     library = [f"-L{owsdtest.BUILD}", "-lows"] if whole else ["-c"]
     done = stage.run([compiler, *flags, *WARN, "-D_GNU_SOURCE", f"-I{SOURCE}/src/libows",
-                      f"-I{SOURCE}", "-isystem", HERE / "docs", source,
+                      f"-I{SOURCE}/src/libhistory", f"-I{SOURCE}", "-isystem", HERE / "docs", source,
                       *library, "-o", output])
     assert done.returncode == 0, done.stderr
     return output if whole else None

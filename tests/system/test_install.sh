@@ -14,6 +14,8 @@ on_copy() {
 on_copy install
 
 for f in lib/libows.so lib/libows.so.1 lib/libows.a lib/pkgconfig/libows.pc include/ows.h \
+	lib/libows-history.so lib/libows-history.so.1 lib/libows-history.a \
+	lib/pkgconfig/libows-history.pc include/ows_history.h \
 	include/ows_layout.h share/owsd/boards/raspberry-pi-4.board \
 	share/owsd/examples/openplc/owsd.cpp share/owsd/examples/linuxcnc/owsd_hal.c; do
 	[ -s "$root/opt/owsd/$f" ] || { echo "missing: $f"; exit 1; }
@@ -34,15 +36,18 @@ for face in "$OWSD_BUILD"/owsd-*; do
 	[ -x "$root/opt/owsd/sbin/${face##*/}" ] || { echo "missing: ${face##*/}"; exit 1; }
 done
 
-# Only ows_* is offered, in both forms
-nm -D --defined-only "$root/opt/owsd/lib/libows.so.1" | awk 'NF == 3 { sub(/@.*/, "", $3); print $3 }' >dynamic
-nm -g --defined-only "$root/opt/owsd/lib/libows.a" | awk 'NF == 3 { print $3 }' >static
-for list in dynamic static; do
-	[ -s $list ]
-	if grep -v '^ows_' $list; then
-		echo "the $list library exports the names above"
-		exit 1
-	fi
+# Only ows_* is offered by the one library, and only ows_history_* by the other, in both forms
+for library in libows:ows_ libows-history:ows_history_; do
+	name=${library%:*}
+	nm -D --defined-only "$root/opt/owsd/lib/$name.so.1" | awk 'NF == 3 { sub(/@.*/, "", $3); print $3 }' >dynamic
+	nm -g --defined-only "$root/opt/owsd/lib/$name.a" | awk 'NF == 3 { print $3 }' >static
+	for list in dynamic static; do
+		[ -s $list ]
+		if grep -v "^${library#*:}" $list; then
+			echo "the $list library $name exports the names above"
+			exit 1
+		fi
+	done
 done
 
 # The headers say everything they need, in C11, C17 and C++11
@@ -53,6 +58,15 @@ int main(void)
 	struct ows *h;
 
 	return ows_open("no-such-instance", OWS_READ, &h) == 0;
+}
+END
+cat >h.c <<'END'
+#include <ows_history.h>
+int main(void)
+{
+	struct ows_history *h;
+
+	return ows_history_open("no-such-instance", 0, &h) == 0;
 }
 END
 cat >l.c <<'END'
@@ -68,6 +82,9 @@ for compiler in 'gcc -std=c11 -x c' 'gcc -std=c17 -x c' 'g++ -std=c++11 -x c++';
 	# shellcheck disable=SC2086
 	$compiler t.c -x none -o t $flags
 	LD_LIBRARY_PATH=$root/opt/owsd/lib ./t
+	# shellcheck disable=SC2086
+	$compiler h.c -x none -o h $flags $(pkg-config --cflags --libs libows-history)
+	LD_LIBRARY_PATH=$root/opt/owsd/lib ./h
 	# shellcheck disable=SC2086
 	$compiler l.c -x none -o l $flags
 	LD_LIBRARY_PATH=$root/opt/owsd/lib ./l

@@ -4,6 +4,7 @@
 them."""
 
 import os
+import pathlib
 import re
 import shlex
 import shutil
@@ -46,11 +47,31 @@ def test_the_programs_link_libi2c_and_libgpiod(scene):
             assert bool(calls) == has, f"{program} links {name} and calls {calls}"
 
 
+def test_one_face_alone_links_a_library_of_the_network(scene):
+    has = found()["libcurl"] == "yes"
+    assert (BUILD / "owsd-influx").exists() == has, found()
+    if os.path.exists("/usr/include/curl/curl.h") or list(pathlib.Path("/usr/include").glob("*/curl/curl.h")):
+        assert has, "curl/curl.h is here; was LIBCURL=0 given?"
+    for name in ("owsd", "owsctl", *(["owsd-influx"] if has else [])):
+        links = any(n.startswith("libcurl") for n in needed(BUILD / name))
+        assert links == (name == "owsd-influx"), f"{name}: {needed(BUILD / name)}"
+
+
+def test_sqlite_is_linked_by_what_has_to_do_with_history_alone(scene):
+    has = found()["libsqlite3"] == "yes"
+    assert (BUILD / "owsd-recorder").exists() == has, found()
+    if os.path.exists("/usr/include/sqlite3.h"):
+        assert has, "sqlite3.h is here; was LIBSQLITE3=0 given?"
+    for name in ("owsd", "owsctl", "owsd-config", *(["owsd-recorder"] if has else [])):
+        links = any(n.startswith("libsqlite3") for n in needed(BUILD / name))
+        assert links == (has and name in ("owsctl", "owsd-recorder")), f"{name}: {needed(BUILD / name)}"
+
+
 def test_owsd_web_alone_links_a_library_for_the_network(scene):
     if found()["libmicrohttpd"] == "no":
         assert not (BUILD / "owsd-web").exists()
         skip("there is no libmicrohttpd here: owsd-web is left out")
-    for program in ("owsd", "owsctl", "owsd-config", "owsd-web"):
+    for program in ("owsd", "owsctl", "owsd-web"):
         has = any(name.startswith("libmicrohttpd.so.") for name in needed(BUILD / program))
         assert has == (program == "owsd-web"), (program, needed(BUILD / program))
 

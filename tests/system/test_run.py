@@ -18,6 +18,7 @@ import urllib.request
 import owsdtest
 
 RUN = owsdtest.SOURCE / "board/demo/run"
+RECORDER = owsdtest.BUILD / "owsd-recorder"
 
 
 def asked(url, **command):
@@ -31,7 +32,7 @@ class Terminal:
     """board/demo/run on a terminal of its own."""
 
     def __init__(self, scene, *arguments, name=None, build=owsdtest.BUILD, cwd=None):
-        for program in (owsdtest.OWSD, owsdtest.OWSCTL):
+        for program in (owsdtest.OWSD, owsdtest.OWSCTL, RECORDER):
             owsdtest.need(program)
         self.name = name or scene.name()
         self.port = owsdtest.free_port()
@@ -142,7 +143,7 @@ def test_it_shows_values_and_ctrl_c_leaves_nothing_behind(scene):
 def test_the_commands_that_it_names_work_as_typed_and_are_named_again_at_its_end(scene):
     checkout = scene.path / "checkout"
     (checkout / "out").mkdir(parents=True)
-    for program in (owsdtest.OWSD, owsdtest.OWSCTL):
+    for program in (owsdtest.OWSD, owsdtest.OWSCTL, RECORDER):
         (checkout / "out" / program.name).symlink_to(program)
     for build, begins in ((checkout / "out", "out/owsctl "), (owsdtest.BUILD, f"{owsdtest.OWSCTL.absolute()} ")):
         terminal = shown(scene, build=build, cwd=checkout)
@@ -150,8 +151,13 @@ def test_the_commands_that_it_names_work_as_typed_and_are_named_again_at_its_end
             commands = re.findall(r"^    (\S.*?)\r?$", terminal.text.split("\033[?1049h")[0], re.M)
             assert len(commands) >= 2 and all(c.startswith(begins) for c in commands), commands
             for command in commands:
-                done = scene._run(["sh", "-c", f"cd {checkout} && {command}"], 30)
-                assert done.returncode == 0, done
+                def works(command=command):
+                    done.append(scene._run(["sh", "-c", f"cd {checkout} && {command}"], 30))
+                    return done[-1].returncode == 0
+                done = []
+                # what was, is there after a few seconds
+                scene.until(works, 20, lambda: done[-1]) if " trend " in command else works()
+                assert done[-1].returncode == 0, done[-1]
         finally:
             os.write(terminal.master, b"\x03")
             terminal.gone()
@@ -178,6 +184,7 @@ def test_sigkill_leaves_no_process_behind(scene):
     terminal = shown(scene)
     os.kill(terminal.pid, signal.SIGKILL)
     terminal.gone()
+    shutil.rmtree(owsdtest.BUILD / f"history-{terminal.name}")
 
 
 def test_it_needs_no_owserver_and_shows_good_values_marked_as_simulated(scene):
@@ -206,6 +213,21 @@ def test_it_needs_no_owserver_and_shows_good_values_marked_as_simulated(scene):
         terminal.gone()
 
 
+def test_it_records_and_trend_draws_what_was(scene):
+    terminal = shown(scene)
+    try:
+        history = owsdtest.BUILD / f"history-{terminal.name}"
+
+        def drawn():
+            done = scene.owsctl(terminal.name, "trend", "-d", history, "boiler")
+            return done.returncode == 0 and any("\u2801" <= c <= "\u28ff" for c in done.stdout)
+        scene.until(drawn, 20, "trend draws the boiler")
+    finally:
+        os.write(terminal.master, b"\x03")
+        terminal.gone()
+    nothing_is_left(terminal)
+
+
 def test_its_page_shows_the_house_and_switches_the_light(scene):
     owsdtest.need(owsdtest.BUILD / "owsd-web")
     terminal = shown(scene)
@@ -220,6 +242,12 @@ def test_its_page_shows_the_house_and_switches_the_light(scene):
         assert json.loads(asked(page + "api/set", name="light", value=True))["ok"]
         scene.until(lambda: value("light") is True, 20, "the light is on")
         scene.until(lambda: value("lamp") is True, 20, "the lamp follows")
+
+        def drawn():
+            now = time.time_ns() // 1000000
+            trend = json.loads(asked(f"{page}api/trend?name=boiler&from={now - 60000}&until={now}&points=6"))
+            return any(value is not None for value in trend["last"])
+        scene.until(drawn, 20, "the recorder's values are there")
     finally:
         os.write(terminal.master, b"\x03")
         terminal.gone()

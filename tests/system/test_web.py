@@ -415,6 +415,38 @@ def test_an_alarm_is_an_event_with_its_entry(scene):
         events.until("alarm", lambda data: data["entry"]["event"] == "unshelved")
 
 
+def test_trends_come_from_the_recorder(scene):
+    history = scene.path / "history"
+    daemon = scene.owsd(text(scene).replace("  Web ", f'  Recorder {{ Directory "{history}" Flush 1 }}\n  Web '))
+    page = Page(scene, daemon)
+    until(lambda: page.json("/api/info")["live"], 20, "it has found owsd")
+    assert page.json("/api/info")["history"] is False
+    assert "owsd-recorder" in page.json("/api/trend?name=room", 404)["error"]
+    recorder = scene.start([BUILD / "owsd-recorder", "-n", daemon.name, "-c", daemon.config])
+    until(lambda: "recording " in recorder.log(), 20, "it records")
+    for value in (5, 9, 7):
+        set_relays(scene, daemon, value)
+        time.sleep(0.1)
+
+    def trend(name="relays", **more):
+        now = int(time.time() * 1000)
+        words = {"name": name, "from": now - 3600000, "until": now, "points": 10, **more}
+        return page.json("/api/trend?" + "&".join(f"{k}={v}" for k, v in words.items()))
+    until(lambda: page.ask("/api/trend?name=relays")[1] == 200 and 7 in trend()["last"], 20, "it is recorded")
+    assert page.json("/api/info")["history"] is True
+    got = trend()
+    assert all(len(got[c]) == 10 for c in ("from", "min", "max", "last", "quality", "gap")), got
+    assert (got["min"][-1], got["max"][-1], got["last"][-1]) == (5, 9, 7), got
+    assert got["quality"][-1] == 192 and got["min"][0] is None and got["gap"][0] == 1, got
+    assert got["from"] == sorted(got["from"]) and got["from"][1] - got["from"][0] == 360000, got
+    assert trend("room")["unit"] == "\u00b0C"
+    assert "nothing" in page.json("/api/trend?name=nothing", 404)["error"]
+    for wrong in ("points=0", "points=2001", "points=x", "from=x", "from=9&until=8", "until=0"):
+        assert page.json(f"/api/trend?name=room&{wrong}", 400)["error"], wrong
+    assert page.json("/api/trend", 400)["error"]
+    assert "commands" in {e["journal"] for e in page.json("/api/journal")["entries"]}
+
+
 def test_writing_is_off_unless_the_block_says_write_on(scene):
     daemon, page = both(scene)
     for unix in (False, True):

@@ -294,13 +294,13 @@ def test_targets_and_blocks_have_forms_too(scene):
         shows(page, "#driver-Timeout-fault", "expected seconds")
         enter(page, "#driver-Timeout", "4")
         draft_is(page, "no problem")
-        enter(page, "#web-Listen", "127.0.0.1:8080")
+        enter(page, "#recorder-Keep", "30")
         draft_is(page, "no problem")
         enter(page, "[id^=bus][data-key=PowerOffMs]", "250")
         page.until("return import('./draft.js').then(({draft}) => draft.model.buses.length)",
                    "the block Bus")
         text = draft_text(page)
-        assert "Listen " in text and "Bus {" in text, text
+        assert "Recorder {" in text and "Keep" in text and "Bus {" in text, text
         enter(page, "#targets", f"sim:{scene.path}/house.sim, localhost:4399")
         shows(page, "#part-blocks", "localhost:4399")
         well(page)

@@ -6,10 +6,13 @@ the docs."""
 
 import json
 import os
+import time
+import urllib.error
+import urllib.request
 
 import browser
 import owsdtest
-from owsdtest import SOURCE, until
+from owsdtest import BUILD, SOURCE, until
 from webhouse import (BOILER, CELLS, GONE, RELAY, ROOM, SHOWN, all_unknown, house, item, listed,
                       plant, serve, shows, text_of, view)
 
@@ -115,6 +118,62 @@ def test_an_id_of_a_device_stands_in_one_line(scene):
                            "/^[0-9A-F]{2}[.]/.test(one.textContent)).map((one) => one.offsetHeight"
                            "/ parseFloat(getComputedStyle(one).fontSize))", "the devices")
         assert max(lines) < 2, lines
+
+
+def test_a_trend_goes_on_and_a_drag_zooms(scene):
+    with plant(scene) as (_, _, page):
+        view(page, "trends")
+        page.click(".picks li:nth-child(2) label")
+        page.find("#trends .u-over")
+        shows(page, "#trends .legend", "room", "21.5000", "good")
+        before = page.run("return location.hash")
+        page.drag("#trends .u-over", 0.3, 0.6)
+        page.until("return new URLSearchParams(location.hash.split('?')[1]).get('until')",
+                   lambda: f"another window than {before}")
+        span = page.run("return new URLSearchParams(location.hash.split('?')[1]).get('span')")
+        assert 150_000 < float(span) < 220_000, span
+        assert not page.complaints()
+
+
+def test_a_trend_has_what_the_recorder_kept_and_the_time_without_owsd_is_a_gap(scene):
+    kept = scene.path / "history"
+    with browser.open_one(scene) as page:
+        daemon = house(scene, recorder=kept)
+        owsdtest.need(BUILD / "owsd-recorder")
+        recorder = scene.start([BUILD / "owsd-recorder", "-n", daemon.name, "-c", daemon.config])
+        until(lambda: "recording " in recorder.log(), 20, recorder.log)
+        web = serve(scene, daemon)
+
+        def last():
+            now = round(time.time() * 1000)
+            try:
+                with urllib.request.urlopen(f"{web.address}api/trend?name=room&points=60&"
+                                            f"from={now - 60000}&until={now}") as answer:
+                    return json.load(answer)["last"]
+            except urllib.error.HTTPError:
+                return []  # nothing is written yet
+        until(lambda: 21.5 in last(), 30, last)
+        daemon.kill()
+        until(lambda: not json.loads(urllib.request.urlopen(
+            web.address + "api/info", timeout=9).read())["live"], 20, "owsd is lost")
+        house(scene, daemon.name, recorder=kept)
+        until(lambda: last()[-20:].count(21.5) > 2, 30, last)
+        page.go(web.address + "#trends?s=room&span=60000")
+        shows(page, "#trends .legend", "room", "21.5000", "good")
+        page.until("return !document.querySelector('#trends .hint').textContent", "no complaint")
+        page.devtools("Browser.setDownloadBehavior", behavior="allow",
+                      downloadPath=str(scene.path))
+        page.click("#trends .tools button:last-child")
+        saved = until(lambda: list(scene.path.glob("*.csv")), 20, "the table")
+        lines = saved[0].read_text().splitlines()
+        assert lines[0] == "time,signal,unit,min,max,last,quality", lines[0]
+        rows = [line.split(",") for line in lines[1:]]
+        assert all(row[1] == "room" for row in rows), rows
+        good = [n for n, row in enumerate(rows) if row[6] == "good"]
+        between = [row for row in rows[good[0]:good[-1]] if row[6] != "good"]
+        assert between and all(row[3:6] == ["", "", ""] for row in between), rows
+        assert {row[5] for row in rows if row[6] == "good"} == {"21.5"}, rows
+        assert not page.complaints()
 
 
 def test_wire_names_what_is_wrong_and_what_to_do(scene):
@@ -317,8 +376,9 @@ def test_a_page_without_the_right_to_write_has_its_outputs_disabled(scene):
 
 def write_pictures(scene):
     with browser.open_one(scene) as page:
-        daemon = house(scene, "demo", True, "sine 24 8 1m",
+        daemon = house(scene, "demo", True, scene.path / "history", "sine 24 8 1m",
                        "at 50s unplug boiler for 15s\n")
+        scene.start([BUILD / "owsd-recorder", "-n", "demo", "-c", daemon.config])
         page.go(serve(scene, daemon).address + "#wire")
         page.until("return document.querySelector('#live tbody .row')", "the rows")
         until(lambda: page.run(CELLS)["attic"]["quality"] == "device absent", 30, "absent")
@@ -329,10 +389,11 @@ def write_pictures(scene):
                        ".textContent.startsWith('boiler')).classList.contains(arguments[0])",
                        "the boiler is unplugged and back", f"is-{state}", seconds=120)
         until(lambda: scene.get(daemon, "room_Age") and float(listed(scene, daemon, "boiler")
-              ["boiler"]["value"]) < 56, 120, "the boiler is below its greatest value")
+              ["boiler"]["value"]) < 56, 120, "the trend has some length")
+        page.run("location.hash = '#trends?s=room&s=boiler&span=120000'")
         for name, width, height, scheme, where in (
                 ("live", 1280, 620, "light", "live"), ("live-dark", 1280, 620, "dark", "live"),
-                ("alarms", 1280, 560, "light", "alarms"),
+                ("alarms", 1280, 560, "light", "alarms"), ("trends", 1280, 640, "light", "trends"),
                 ("wire", 1280, 860, "light", "wire"), ("phone", 360, 740, "light", "live")):
             page.scheme(scheme)
             page.size(width, height, mobile=width < 500, scale=2 if width < 500 else 1)

@@ -15,7 +15,7 @@ import browser
 import owsdtest
 from owsdtest import BUILD, raw, until
 
-VIEWS = ["live", "alarms", "wire", "config", "about"]
+VIEWS = ["live", "alarms", "trends", "wire", "config", "about"]
 BOILER, ROOM, RELAY = "28.B10000000000", "28.A10000000000", "29.000000000001"
 GONE = "28.0102030405FF"
 CELLS = """return Object.fromEntries([...document.querySelectorAll("#live tbody .row")].map((row) =>
@@ -39,7 +39,7 @@ def item(name, path, kind="double", io="input", **more):
     return dict(Name=name, Path=path, Type=raw(kind), IO=raw(io), **more)
 
 
-def house(scene, name=None, write=False, room="21.5", also=""):
+def house(scene, name=None, write=False, recorder=None, room="21.5", also=""):
     scene.file("house.sim", f"chip DS2482-100 0x18\n"
                f"DS18B20 {BOILER} as boiler temperature sine 60 6 2m\n"
                f"DS18B20 {ROOM} temperature {room}\nDS2408 {RELAY}\n"
@@ -56,7 +56,9 @@ def house(scene, name=None, write=False, room="21.5", also=""):
         item("kind", f"/{ROOM}/type", "string", PerFactor=20),
         item("fault_unplug", "/simulator/unplug", "bool", "output", Readable=raw("on"),
              InitValue="0", Description="Simulation: pulls the thermometer of the room off"),
-    ], Period=0.05, Timeout=3, Web=raw(f"{{ Write {'on' if write else 'off'} }}")), name=name)
+    ], Period=0.05, Timeout=3, Web=raw(f"{{ Write {'on' if write else 'off'} }}"),
+        **({"Recorder": raw(f'{{ Flush 1 Directory "{recorder}" }}')} if recorder else {})),
+        name=name)
 
 
 @contextlib.contextmanager

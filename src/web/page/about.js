@@ -63,6 +63,8 @@ function draw() {
 		["Process", daemon.pid],
 		["Signals", `${info.signals}${stats.not_good >= 0 ? `, ${stats.not_good} not good` : ""}`],
 		["Served protocol", stats.served || "owsd does not serve it"],
+		["History", info.history ? "kept by owsd-recorder"
+			: "not kept: owsd-recorder does not run"],
 		["Writing by this page", info.writable ? "allowed" : "not allowed"],
 		["You are", info.person],
 	].filter(([, value]) => value !== null && value !== undefined);

@@ -5,6 +5,7 @@ import * as alarms from "./alarms.js";
 import {announce, el, later, mark, put} from "./dom.js";
 import * as live from "./live.js";
 import {store} from "./store.js";
+import * as trends from "./trends.js";
 import {way} from "./way.js";
 import {alarmOf, clock} from "./words.js";
 import * as wire from "./wire.js";
@@ -34,7 +35,7 @@ function fetched(load) {
 }
 
 const config = fetched(() => import("./config.js"));
-const VIEWS = {live, alarms, wire, config, about};
+const VIEWS = {live, alarms, trends, wire, config, about};
 const $ = (id) => document.getElementById(id);
 let present = null;
 

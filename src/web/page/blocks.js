@@ -5,7 +5,8 @@ import {draft} from "./draft.js";
 import {Field, Form, edits, setter} from "./form.js";
 import {problemsOf} from "./problems.js";
 
-const SINGLE = [["OwsDrv", "driver", "Driver"], ["Web", "web", "Web"]];
+const SINGLE = [["OwsDrv", "driver", "Driver"], ["Recorder", "recorder", "Recorder"],
+	["Influx", "influx", "Influx"], ["Web", "web", "Web"]];
 // Keys without a field here: of the driver, and of Web what only the machine itself may change
 const ELSEWHERE = ["TargetName", "ItemCount", "Version", "Files"];
 

@@ -2,12 +2,13 @@
 // The view Configuration: its parts, the state of the draft, undo, import and export.
 import * as blocks from "./blocks.js";
 import {ask} from "./command.js";
-import {announce, download, el, put} from "./dom.js";
+import {announce, el, put} from "./dom.js";
 import {draft} from "./draft.js";
 import * as found from "./found.js";
 import * as items from "./items.js";
 import {countWords, hashOf} from "./problems.js";
 import * as saving from "./save.js";
+import {save as download} from "./series.js";
 import {store} from "./store.js";
 import * as text from "./text.js";
 

@@ -76,16 +76,6 @@ export function announce(text) {
 	requestAnimationFrame(() => { region.textContent = text; });
 }
 
-/** Have the browser save a text as a file. */
-export function download(name, text, type) {
-	const url = URL.createObjectURL(new Blob([text], {type}));
-	const link = document.createElement("a");
-	link.href = url;
-	link.download = name;
-	link.click();
-	setTimeout(() => URL.revokeObjectURL(url), 10000);
-}
-
 /** A call that happens once, so many ms after the first wish for it. */
 export function later(call, ms) {
 	let timer = 0;

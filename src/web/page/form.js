@@ -18,6 +18,7 @@ export const ITEM_GROUPS = [
 	["Output", ["InitValue", "SafeValue", "SafeDelay", "Start", "Confirm"]],
 	["Reading", ["PerFactor", "StaleAfter", "Readable", "Writable", "Uncached", "IOType"]],
 	["Alarm of the device", ["Alarm", "LatchAlarm", "PorAlarm", "SetAlarm", "ResetLatch"]],
+	["History", ["Record"]],
 ];
 
 function hintOf(option) {

@@ -205,7 +205,8 @@ function move(name, by, stay = false) {
 
 async function remove() {
 	const name = state.selected;
-	if (!await ask(`Remove ${name}?`, "Remove", [el("p", {}, "Undo brings it back.")]))
+	if (!await ask(`Remove ${name}?`, "Remove", [el("p", {}, "Undo brings it back. Its history "
+		+ "stays on disk.")]))
 		return;
 	attempt(async () => {
 		await draft.edit({do: "remove", name});

@@ -13,7 +13,7 @@ export function build(root) {
 	list = el("ul", {class: "found", "aria-label": "Devices that are missing"});
 	box = el("div", {hidden: true}, el("h2", {}, "Missing"), el("p", {class: "hint"}, "The draft "
 		+ "names these devices, and the scan did not find them. If a sensor was replaced, choose "
-		+ "the new one: the signals keep their names and settings."), fault, list);
+		+ "the new one: the signals keep their names, settings and history."), fault, list);
 	root.append(box);
 }
 
@@ -58,7 +58,7 @@ function row(id, items, free) {
 
 async function replace(old, {id, location}, names) {
 	if (!await ask(`Replace ${old}?`, "Replace", [el("p", {}, `${id} takes its place for the `
-		+ `signals ${names}. They keep their names and settings. Undo brings back what `
+		+ `signals ${names}. They keep their names, settings and history. Undo brings back what `
 		+ "was.")]))
 		return;
 	try {

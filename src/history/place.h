@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: MIT */
+/* Where the history of an instance is kept, if nobody says. */
+#ifndef HISTORY_PLACE_H
+#define HISTORY_PLACE_H
+
+#include <stddef.h>
+
+#define HISTORY_PATH 256
+
+/*
+ * Where a recorder of this user keeps it: the service's directory for root and for a user without
+ * a home (STATE_DIRECTORY of systemd.exec(5) names it, if it is set), which is the recorder's own,
+ * as that of owsd belongs to another user; else owsd/history below XDG_STATE_HOME or
+ * ~/.local/state. -ENAMETOOLONG.
+ */
+int history_place(const char *instance, char path[HISTORY_PATH]);
+/* The same of another program ("owsd-influx") with something else ("influx") to keep. */
+int history_place_state(const char *program, const char *what, const char *instance,
+                        char path[HISTORY_PATH]);
+/*
+ * Where a reader finds it: there, or if that is missing in the service's directory. A reader may be
+ * a service too: STATE_DIRECTORY is its own then, and does not count.
+ */
+int history_place_found(const char *instance, char path[HISTORY_PATH]);
+/* Make the directories above path, mode 0750, as far as they are missing. 0 or a negative errno. */
+int history_make_above(const char *path);
+
+#endif

@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: MIT */
+/* The tables of the file, and how an older file becomes one of this version. */
+#include "src/history/schema.h"
+
+#include <errno.h>
+#include <stddef.h>
+
+#include "src/history/record.h"
+#include "src/history/sql.h"
+
+#define BUSY_MS 200
+
+#define ISO(id) "strftime('%Y-%m-%dT%H:%M:%fZ', (" id " + date) / 1000000.0, 'unixepoch')"
+#define SESSION(id) \
+	"join session on session.start = " \
+	"(select max(start) from session where start <= " id ")"
+#define ROLLUP(name, us) \
+	"create table " name " (id integer primary key, least, most, mean, last," \
+	" good, known, count, quality, worst);" \
+	"create view trend_" name " as select " ISO( \
+		"(t.id >> 16) * " us) " as time, name, least," \
+				      " most, mean, last, unit, good, known, count, q.text as quality, w.text as worst" \
+				      " from " name \
+				      " t join signal on signal.signal = t.id & 65535" \
+				      " left join quality q on q.quality = t.quality left join quality w on w.quality = t.worst" \
+				      " " SESSION("(t.id >> 16) * " us " + " us " - 1") ";"
+
+/* Step i makes a file of version i one of version i + 1. */
+static const char *const steps[HISTORY_SCHEMA] = {
+	/* clang-format off */
+	"create table session (start integer primary key, boot integer not null,"
+	" base integer not null, date integer not null, trusted integer not null, seen integer);"
+	"create table signal (signal integer primary key, name text not null unique,"
+	" unit text not null, type integer not null, output integer not null,"
+	" decimals integer not null);"
+	"create table raw (id integer primary key, signal integer not null, value,"
+	" quality integer not null);"
+	"create table gap (start integer not null, signal integer not null, until integer,"
+	" reason integer not null, primary key (start, signal)) without rowid;"
+	"create table event (id integer primary key, time integer not null, kind integer not null,"
+	" signal integer, type integer, quality integer, reason integer, event integer, value,"
+	" before, text text, serial integer, uid integer, pid integer, program text, person text);"
+	"create index event_time on event (time);"
+	"create table quality (quality integer primary key, text text not null);"
+	"create table reason (reason integer primary key, text text not null);"
+	/* a number that is not good could be believed */
+	"create view trend as select " ISO("raw.id") " as time, name,"
+	" case when raw.quality >= 192 then value end as value, unit, q.text as quality"
+	" from raw join signal using (signal) left join quality q on q.quality = raw.quality "
+	SESSION("raw.id")
+	" union all select " ISO("gap.start") ", coalesce(name, '*'), null, unit, r.text"
+	" from gap left join signal using (signal) left join reason r on r.reason = gap.reason "
+	SESSION("gap.start") ";"
+	"create view trend_event as select " ISO("event.time") " as time,"
+	" case kind when 6 then 'clock' when 7 then 'command' else 'alarm' end as kind, name, value,"
+	" before, unit, q.text as quality, event.text, program, person"
+	" from event left join signal using (signal) left join quality q"
+	" on q.quality = event.quality " SESSION("event.id") ";"
+	ROLLUP("minute", "60000000") ROLLUP("hour", "3600000000"),
+	/* clang-format on */
+};
+
+_Static_assert(HISTORY_CLOCK == 6 && HISTORY_COMMAND == 7, "trend_event has these numbers");
+
+static int add_words(sqlite3 *db)
+{
+	sqlite3_stmt *statement;
+	int err = sql_errno(db, sqlite3_prepare_v2(db, "insert into quality values (?, ?)", -1,
+	                                           &statement, NULL));
+
+	for (int i = 0; !err && i < 256; i++) {
+		sql_bind(statement, "it", (int64_t)i, ows_quality_text((uint8_t)i));
+		err = sql_next(statement);
+	}
+	sqlite3_finalize(statement);
+	if (!err)
+		err = sql_errno(db, sqlite3_prepare_v2(db, "insert into reason values (?, ?)", -1,
+		                                       &statement, NULL));
+	for (int i = 0; !err && i < HISTORY_REASONS; i++) {
+		sql_bind(statement, "it", (int64_t)i, history_reason_text((uint8_t)i));
+		err = sql_next(statement);
+	}
+	sqlite3_finalize(statement);
+	return err;
+}
+
+static int migrate(sqlite3 *db, int64_t version)
+{
+	int err = sql_exec(db, "begin immediate");
+
+	for (int64_t i = version; !err && i < HISTORY_SCHEMA; i++)
+		err = sql_exec(db, steps[i]);
+	if (!err && version == 0)
+		err = add_words(db);
+	if (!err)
+		err = sql_exec(db, "pragma application_id = 1870099300; pragma user_version = 1");
+	if (!err)
+		err = sql_exec(db, "commit");
+	if (err)
+		sqlite3_exec(db, "rollback", NULL, NULL, NULL);
+	return err;
+}
+
+_Static_assert(HISTORY_APPLICATION == 1870099300 && HISTORY_SCHEMA == 1,
+               "migrate() says these in words");
+
+static int check(sqlite3 *db)
+{
+	int64_t version = 0, application = 0, tables = 0;
+	int err = sql_ask(db, "pragma user_version", &version);
+
+	if (err >= 0)
+		err = sql_ask(db, "pragma application_id", &application);
+	if (err >= 0)
+		err = sql_ask(db, "select count(*) from sqlite_master", &tables);
+	if (err < 0)
+		return err;
+	if (tables && application != HISTORY_APPLICATION)
+		return -EEXIST;
+	if (version > HISTORY_SCHEMA)
+		return -EPROTONOSUPPORT;
+	/*
+	 * Each commit is synced: a power cut costs what came after it, and a card that is pulled is
+	 * noticed before memory forgets. ext4 writes as much without it, a little later.
+	 */
+	err = sql_exec(db, "pragma journal_mode = wal; pragma synchronous = full;"
+	                   "pragma temp_store = memory; pragma journal_size_limit = 4194304");
+	return err || version == HISTORY_SCHEMA ? err : migrate(db, version);
+}
+
+int schema_open(const char *path, sqlite3 **db)
+{
+	int err, keep = 1;
+
+	err = sqlite3_open_v2(path, db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX, NULL);
+	err = sql_errno(*db, err);
+	if (!err) {
+		sqlite3_busy_timeout(*db, BUSY_MS);
+		/* readers that cannot write there need the two files beside it */
+		sqlite3_file_control(*db, "main", SQLITE_FCNTL_PERSIST_WAL, &keep);
+		err = check(*db);
+	}
+	if (err) {
+		sqlite3_close(*db);
+		*db = NULL;
+	}
+	return err;
+}

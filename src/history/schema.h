@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The file of history: one SQLite database for an instance of owsd. The recorder alone writes it.
+ *
+ * Rows have a time as their number (id): microseconds that never go back, neither when the clock is
+ * set nor over a restart. They are boot time plus a number of the session, which is a run of the
+ * recorder; a session says which date its ids stand for (id + date = microseconds since 1970). So a
+ * clock that is late, or that is set, changes rows of sessions and no value; and rows are appended,
+ * which a card survives. Without an error of the clock ids are microseconds since 1970.
+ *
+ *     session  a run of the recorder: from which id, in which boot, and the date
+ *     signal   names and units
+ *     raw      a signal has a value from id on; repeated each hour, so that what held at a time is
+ *              found in the hour before it
+ *     gap      nothing is known from start on, of a signal or (0) of all
+ *     event    commands and alarms with who, and steps of the clock; time may be before id
+ *     minute, hour  of each signal least, most, mean and last good value, seconds good and known,
+ *              number of rows, quality at the end (null: not known) and the worst one. The id is
+ *              the number of the minute or hour (of ids) times 65536, plus the signal. A minute in
+ *              which nothing came has no row: the value held.
+ *     trend, trend_minute, trend_hour, trend_event  the same with names, ISO times and words
+ */
+#ifndef HISTORY_SCHEMA_H
+#define HISTORY_SCHEMA_H
+
+#include <sqlite3.h>
+#include <stdint.h>
+
+#define HISTORY_FILE "history.sqlite"
+#define HISTORY_SCHEMA 1               /* user_version */
+#define HISTORY_APPLICATION 0x6f777364 /* application_id: "owsd" */
+
+#define MINUTE_US INT64_C(60000000)
+#define HOUR_US (60 * MINUTE_US)
+/* A value that holds has a row in this time, or is not known. */
+#define LOOK_BACK_US (HOUR_US + 5 * MINUTE_US)
+#define REPEAT_US HOUR_US
+
+static inline int64_t schema_key(int64_t bucket, uint32_t signal)
+{
+	return bucket << 16 | signal;
+}
+
+/*
+ * Open for writing; make the tables, or bring older ones up to date. 0; -EBADMSG: damaged, or no
+ * database; -EPROTONOSUPPORT: newer than HISTORY_SCHEMA; -EEXIST: of another program; or the error
+ * of the disk. *db is NULL unless 0 is returned.
+ */
+int schema_open(const char *path, sqlite3 **db);
+
+#endif

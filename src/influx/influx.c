@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: MIT */
+/* owsd-influx: pushes the signals of an owsd to a server that takes InfluxDB's line protocol. */
+#include "src/face/loop.h"
+#include "src/influx/pushing.h"
+#include "src/influx/sending.h"
+
+static int open_pushing(struct face *face)
+{
+	static struct pushing pushing;
+
+	face->own = &pushing;
+	return pushing_open(face);
+}
+
+int main(int argc, char **argv)
+{
+	static const struct face_ops ops = {
+		.program = "owsd-influx",
+		.option = {'d', "directory", "DIR", "where batches wait, in place of Spool"},
+		.open = open_pushing,
+		.changes = pushing_changes,
+		.event = pushing_event,
+		.tick = pushing_tick,
+		.close = pushing_close,
+	};
+
+	return face_main(&ops, argc, argv);
+}

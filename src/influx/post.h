@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * One POST at a time to one server, by libcurl, without blocking: the caller waits for the
+ * descriptors and for the time that it asks for. Names are looked up by a thread of libcurl.
+ */
+#ifndef INFLUX_POST_H
+#define INFLUX_POST_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define POST_WORDS 160
+
+struct post;
+struct post_result {
+	long status; /* of HTTP; 0: there was no answer */
+	/* "HTTP 400: the first words of the answer", or why there was none; printable */
+	char words[POST_WORDS + 16];
+};
+
+/* watch: wait for fd too, events as in poll(2); 0: no more. NULL: no memory. */
+struct post *post_open(void (*watch)(void *ctx, int fd, short events), void *ctx);
+void post_close(struct post *post);
+
+/*
+ * Begin. data has to stay until the end. token "": none. The answer has to be there within 20 s.
+ * 0 or -ENOMEM.
+ */
+int post_begin(struct post *post, const char *url, const char *token, const char *data, size_t len);
+bool post_is_busy(const struct post *post);
+/*
+ * Go on: fd is ready, as poll(2) has it; or -1: the time has come. True: it is over, and *result
+ * says how.
+ */
+bool post_step(struct post *post, int fd, short ready, struct post_result *result);
+/* When to go on if no descriptor is ready: CLOCK_BOOTTIME; INT64_MAX: never. */
+int64_t post_next(const struct post *post);
+/* Give up. The server may have got the data, or not. */
+void post_cancel(struct post *post);
+
+#endif

@@ -1,0 +1,344 @@
+/* SPDX-License-Identifier: MIT */
+/* A history is found, opened for reading, looked at again and closed. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "src/history/boot.h"
+#include "src/history/schema.h"
+#include "src/history/sql.h"
+#include "src/libhistory/open.h"
+#include "src/shm/segment.h"
+
+/* The recorder's commits take less, and wait for no reader */
+#define BUSY_MS 2000
+#define URI (3 * HISTORY_PATH + 256)
+
+static const char *const texts[H_COUNT] = {
+	[H_RAW] = "select id, value, quality, null from raw where id <= ?1 and id >= ?2"
+		  " and signal = ?3 order by id desc limit 1",
+	[H_GAPS] = "select start, null, null, reason from gap where start <= ?1"
+		   " and signal in (0, ?2) order by start desc limit 1",
+	[H_STEPS] = "select id, value, quality, null from raw where id >= ?1 and id < ?2"
+		    " and signal = ?3 union all select start, null, null, reason from gap"
+		    " where start >= ?1 and start < ?2 and signal in (0, ?3) order by 1 limit ?4",
+	[H_MINUTE] = "select least, most, mean, last, good, known, count, quality, worst"
+		     " from minute where id = ?",
+	[H_HOUR] = "select least, most, mean, last, good, known, count, quality, worst"
+		   " from hour where id = ?",
+	[H_EVENTS] = "select id, time, kind, signal, type, quality, reason, event, value, before,"
+		     " text, serial, uid, pid, program, person, null from event"
+		     " where id >= ?1 and id < ?2 and time >= ?3 and time < ?4"
+		     " union all select start, start, case reason when 1 then 4 else 5 end, null,"
+		     " null, null, reason, null, null, null, null, null, null, null, null, null,"
+		     " until from gap where start >= ?1 and start < ?2 and start >= ?3"
+		     " and start < ?4 and signal = 0 order by 1",
+};
+
+int ows_history_place(const char *instance, char *path, size_t size)
+{
+	char found[HISTORY_PATH];
+	int err;
+
+	instance = instance ? instance : "OWS";
+	if (!segment_name_ok(instance))
+		return -EINVAL;
+	err = history_place_found(instance, found);
+	if (err || strlen(found) >= size)
+		return -ENOSPC;
+	memcpy(path, found, strlen(found) + 1);
+	return 0;
+}
+
+/* --- The file ---------------------------------------------------------------------------------- */
+
+/* frozen: nobody writes it, and there is no log of commits beside it. */
+static int try_open(struct ows_history *h, bool frozen)
+{
+	char uri[URI] = "file:"; /* and zeros */
+	int64_t version = 0, application = 0;
+	size_t at = strlen(uri);
+	int err;
+
+	for (const char *from = h->path; *from && at + 32 < sizeof(uri); from++) {
+		if (strchr("%?#", *from))
+			at += (size_t)snprintf(uri + at, sizeof(uri) - at, "%%%02X", *from);
+		else
+			uri[at++] = *from;
+	}
+	snprintf(uri + at, sizeof(uri) - at, "%s", frozen ? "?immutable=1" : "");
+	err = sqlite3_open_v2(uri, &h->db,
+	                      SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_URI, NULL);
+	err = sql_errno(h->db, err);
+	if (!err) {
+		sqlite3_busy_timeout(h->db, BUSY_MS);
+		err = sql_ask(h->db, "pragma user_version", &version);
+	}
+	if (err >= 0)
+		err = sql_ask(h->db, "pragma application_id", &application);
+	if (err >= 0)
+		err = application != HISTORY_APPLICATION ? -EBADMSG
+		      : version > HISTORY_SCHEMA         ? -EPROTONOSUPPORT
+		                                         : 0;
+	for (int i = 0; !err && i < H_COUNT; i++)
+		err = sql_errno(h->db,
+		                sqlite3_prepare_v3(h->db, texts[i], -1, SQLITE_PREPARE_PERSISTENT,
+		                                   &h->statements[i], NULL));
+	return err;
+}
+
+static void close_file(struct ows_history *h)
+{
+	for (int i = 0; i < H_COUNT; i++) {
+		sqlite3_finalize(h->statements[i]);
+		h->statements[i] = NULL;
+	}
+	sqlite3_close(h->db);
+	h->db = NULL;
+}
+
+/* A reader who cannot write beside the file needs what the recorder leaves there, or no log. */
+static int open_file(struct ows_history *h)
+{
+	char log[sizeof(h->path) + 8];
+	struct stat seen;
+	int err;
+
+	if (access(h->path, R_OK) < 0 || stat(h->path, &seen) < 0)
+		return -errno;
+	h->device = seen.st_dev;
+	h->inode = seen.st_ino;
+	err = try_open(h, false);
+	snprintf(log, sizeof(log), "%s-wal", h->path);
+	if (err && err != -EPROTONOSUPPORT && err != -ENOMEM &&
+	    (stat(log, &seen) < 0 || seen.st_size == 0)) {
+		close_file(h);
+		err = try_open(h, true);
+	}
+	if (err)
+		close_file(h);
+	return err;
+}
+
+/* --- What it has ------------------------------------------------------------------------------- */
+
+static void forget(struct ows_history *h)
+{
+	for (int i = h->read.given; i < h->read.count; i++)
+		free(h->read.ready[i].text);
+	free(h->read.text);
+	memset(&h->read, 0, sizeof(h->read));
+	memset(&h->list, 0, sizeof(h->list));
+	for (int i = 0; i < h->signal_count; i++) {
+		free(h->signals[i].name);
+		free(h->signals[i].unit);
+	}
+	free(h->signals);
+	free(h->sessions);
+	h->signals = NULL;
+	h->sessions = NULL;
+	h->signal_count = h->session_count = 0;
+}
+
+/* Each row into a list that grows. Returns how many, or a negative errno. */
+static int read_all(struct ows_history *h, const char *text, void **list, size_t size,
+                    int (*take)(sqlite3_stmt *from, void *to))
+{
+	sqlite3_stmt *from;
+	int count = 0, room = 0, got;
+	int err = sql_errno(h->db, sqlite3_prepare_v2(h->db, text, -1, &from, NULL));
+
+	if (err)
+		return err;
+	while ((got = sql_next(from)) == 1) {
+		if (count == room) {
+			void *more = reallocarray(*list, (size_t)(room += room + 16), size);
+
+			if (!more) {
+				got = -ENOMEM;
+				break;
+			}
+			*list = more;
+		}
+		memset((char *)*list + (size_t)count * size, 0, size);
+		got = take(from, (char *)*list + (size_t)count++ * size);
+		if (got < 0)
+			break;
+	}
+	sqlite3_finalize(from);
+	return got < 0 ? got : count;
+}
+
+static int take_session(sqlite3_stmt *from, void *to)
+{
+	*(struct session *)to = (struct session){
+		.start = sqlite3_column_int64(from, 0),
+		.boot = sqlite3_column_int64(from, 1),
+		.base = sqlite3_column_int64(from, 2),
+		.date = sqlite3_column_int64(from, 3),
+		.trusted = sqlite3_column_int(from, 4) != 0,
+		.reason = (uint8_t)sqlite3_column_int(from, 5),
+	};
+	return 0;
+}
+
+static int take_signal(sqlite3_stmt *from, void *to)
+{
+	const char *name = (const char *)sqlite3_column_text(from, 1);
+	const char *unit = (const char *)sqlite3_column_text(from, 2);
+	struct known_signal *signal = to;
+
+	signal->number = (uint32_t)sqlite3_column_int64(from, 0);
+	signal->name = strdup(name ? name : "");
+	signal->unit = strdup(unit ? unit : "");
+	signal->type = (uint8_t)sqlite3_column_int(from, 3);
+	signal->output = (uint8_t)sqlite3_column_int(from, 4);
+	signal->decimals = (int8_t)sqlite3_column_int(from, 5);
+	return signal->name && signal->unit ? 0 : -ENOMEM;
+}
+
+static int read_places(struct ows_history *h)
+{
+	int64_t raw_end = 0, gap = 0, event = 0, seen = 0, minute = -1;
+	/* what is written of the last run says how long it looked */
+	struct {
+		const char *text;
+		int64_t *to;
+	} asked[] = {
+		{"select max(id) from raw", &raw_end},
+		{"select min(id) from raw", &h->raw_first},
+		{"select max(start) from gap where signal = 0", &gap},
+		{"select max(id) from event", &event},
+		{"select max(seen) from session", &seen},
+		{"select ((max(id) >> 16) + 1) * 3600000000 from hour", &h->hour_end},
+		{"select (min(id) >> 16) * 60000000 from minute", &minute},
+		{"select ((max(id) >> 16) + 1) * 60000000 from minute", &h->minute_end},
+	};
+
+	h->hour_end = h->minute_end = 0;
+	h->raw_first = INT64_MAX;
+	for (size_t i = 0; i < sizeof(asked) / sizeof(asked[0]); i++) {
+		int err = sql_ask(h->db, asked[i].text, asked[i].to);
+
+		if (err < 0)
+			return err;
+	}
+	h->minute_first = minute < 0 ? h->hour_end : minute;
+	if (minute < 0)
+		h->minute_end = h->hour_end;
+	h->end = raw_end > gap ? raw_end : gap;
+	h->end = event > h->end ? event : h->end;
+	h->end = seen > h->end ? seen : h->end;
+	return 0;
+}
+
+/* All at one moment of the file. */
+static int look(struct ows_history *h)
+{
+	int err = sql_exec(h->db, "begin");
+
+	if (err)
+		return err;
+	err = read_places(h);
+	if (!err)
+		err = h->session_count = read_all(
+			h,
+			"select start, boot, base, date, trusted, (select max(reason) from gap where"
+			" gap.until = session.start and signal = 0) from session order by start",
+			(void **)&h->sessions, sizeof(*h->sessions), take_session);
+	if (err >= 0)
+		err = h->signal_count = read_all(
+			h, "select signal, name, unit, type, output, decimals from signal",
+			(void **)&h->signals, sizeof(*h->signals), take_signal);
+	sqlite3_exec(h->db, "commit", NULL, NULL, NULL);
+	if (err < 0) {
+		h->session_count = h->session_count < 0 ? 0 : h->session_count;
+		h->signal_count = 0;
+		return err;
+	}
+	for (int i = 0; i < h->session_count; i++)
+		h->sessions[i].end = i + 1 < h->session_count ? h->sessions[i + 1].start
+		                                              : h->end + 1;
+	return 0;
+}
+
+int ows_history_open(const char *instance, const char *directory, struct ows_history **handle)
+{
+	char place[HISTORY_PATH];
+	struct ows_history *h;
+	int err = directory ? 0 : ows_history_place(instance, place, sizeof(place));
+
+	*handle = NULL;
+	if (err)
+		return err;
+	h = calloc(1, sizeof(*h));
+	if (!h)
+		return -ENOMEM;
+	h->boot = history_boot_present();
+	if (snprintf(h->path, sizeof(h->path), "%s/%s", directory ? directory : place,
+	             HISTORY_FILE) >= (int)sizeof(h->path))
+		err = -ENAMETOOLONG;
+	if (!err)
+		err = open_file(h);
+	if (!err)
+		err = look(h);
+	if (err) {
+		ows_history_close(h);
+		return err;
+	}
+	*handle = h;
+	return 0;
+}
+
+void ows_history_close(struct ows_history *h)
+{
+	if (!h)
+		return;
+	forget(h);
+	close_file(h);
+	free(h);
+}
+
+int ows_history_refresh(struct ows_history *h)
+{
+	struct stat seen;
+	int err = 0;
+
+	forget(h);
+	/* another one may be there now: the one before was damaged, or deleted */
+	if (!h->db || stat(h->path, &seen) < 0 || seen.st_dev != h->device ||
+	    seen.st_ino != h->inode) {
+		close_file(h);
+		err = open_file(h);
+	}
+	return err ? err : look(h);
+}
+
+int ows_history_span(struct ows_history *h, int64_t *from_ns, int64_t *until_ns)
+{
+	if (!h->session_count)
+		return -ENODATA;
+	*from_ns = *until_ns = (h->end + h->sessions[h->session_count - 1].date) * NS_PER_US;
+	for (int i = 0; i < h->session_count; i++) {
+		const struct session *session = &h->sessions[i];
+		int64_t from = (session->start + session->date) * NS_PER_US;
+
+		*from_ns = from < *from_ns ? from : *from_ns;
+	}
+	return 0;
+}
+
+bool handle_range(const struct session *session, int64_t from_us, int64_t until_us, int64_t *first,
+                  int64_t *end)
+{
+	int64_t from = session->start + session->date, until = session->end + session->date;
+
+	from = from_us > from ? from_us : from;
+	until = until_us < until ? until_us : until;
+	*first = from - session->date;
+	*end = until - session->date;
+	return from < until;
+}

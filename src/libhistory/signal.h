@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: MIT */
+/* Rows and gaps of a signal, as its steps. */
+#ifndef LIBHISTORY_SIGNAL_H
+#define LIBHISTORY_SIGNAL_H
+
+#include "src/libhistory/handle.h"
+
+/* What held at an id: 1; 0: nothing is known of it. Free the text. */
+int handle_held(struct ows_history *h, const struct known_signal *signal, int64_t id,
+                struct step *step);
+/* The steps of a signal from an id on, before end: as many as there is room for. Free the texts. */
+int handle_steps(struct ows_history *h, const struct known_signal *signal, int64_t first,
+                 int64_t end, struct step *steps, int room);
+
+#endif

@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: MIT */
+/* The history that verbs read, by libows-history. */
+#ifndef OWSCTL_PAST_H
+#define OWSCTL_PAST_H
+
+#include "src/libhistory/ows_history.h"
+#include "src/owsctl/ctl.h"
+
+/* Open the history of the instance, or of a directory; CTL_DONE, or CTL_FAILED after saying why. */
+int past_open(const struct ctl *ctl, const char *directory, struct ows_history **h);
+/*
+ * The same for a verb that goes on without: CTL_DONE with *h NULL where no recorder has kept
+ * anything for the instance; if that may not be read, after saying so. A directory that is named
+ * has to be there.
+ */
+int past_look(const struct ctl *ctl, const char *directory, struct ows_history **h);
+/* A signal by its name: its index, and *known; -ENOENT. */
+int past_signal(struct ows_history *h, const char *name, struct ows_history_signal *known);
+/* Say why something of it could not be read; returns CTL_FAILED. */
+int past_fail(const char *what, int err);
+
+#endif

@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: MIT */
+/* The rule of Record: change, deadband, interval. */
+#include <math.h>
+
+#include "src/recorder/rule.h"
+
+static bool is_float(const struct rule_sample *sample)
+{
+	return sample->type == OWS_FLOAT || sample->type == OWS_DOUBLE;
+}
+
+/* NaN is a value like others here: the same as NaN, and far from each number. */
+static double distance(const struct rule_sample *a, const struct rule_sample *b)
+{
+	if (!is_float(a)) /* beyond 2^53 it is rounded: then two numbers differ by at least 1 */
+		return a->integer == b->integer
+		               ? 0
+		               : fmax(fabs((double)a->integer - (double)b->integer), 1);
+	if (isnan(a->number) || isnan(b->number))
+		return isnan(a->number) && isnan(b->number) ? 0 : HUGE_VAL;
+	/* a difference of infinities is none */
+	return a->number == b->number ? 0 : fabs(a->number - b->number);
+}
+
+bool rule_change(const struct config_record *rule, const struct rule_kept *kept,
+                 const struct rule_sample *sample)
+{
+	double moved;
+
+	if (rule->off)
+		return false;
+	if (!kept->any || kept->sample.type != sample->type ||
+	    kept->sample.quality != sample->quality)
+		return true;
+	moved = distance(&kept->sample, sample);
+	if (rule->change && moved > 0)
+		return true;
+	return rule->deadband > 0 && moved > rule->deadband;
+}
+
+static int64_t slot_of(const struct config_record *rule, int64_t wall_ns)
+{
+	int64_t slot = wall_ns / rule->interval_ns;
+
+	return wall_ns % rule->interval_ns < 0 ? slot - 1 : slot;
+}
+
+bool rule_turn(const struct config_record *rule, struct rule_kept *kept, int64_t wall_ns)
+{
+	int64_t slot;
+
+	if (rule->interval_ns <= 0)
+		return false;
+	slot = slot_of(rule, wall_ns);
+	if (slot == kept->slot)
+		return false;
+	kept->slot = slot;
+	return true;
+}
+
+bool rule_interval(const struct rule_kept *kept, const struct rule_sample *sample)
+{
+	return !kept->any || sample->measured_ns > kept->sample.measured_ns;
+}
+
+int64_t rule_next_turn(const struct config_record *rule, int64_t wall_ns)
+{
+	if (rule->interval_ns <= 0)
+		return INT64_MAX;
+	return (slot_of(rule, wall_ns) + 1) * rule->interval_ns;
+}
+
+int64_t rule_hash(const char *text, uint32_t len)
+{
+	uint64_t hash = 0xcbf29ce484222325; /* FNV-1a */
+
+	for (uint32_t i = 0; i < len; i++)
+		hash = (hash ^ (uint8_t)text[i]) * 0x100000001b3;
+	return (int64_t)hash;
+}

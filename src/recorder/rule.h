@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Whether a value is kept, by the Record of its signal: pure functions of the rule, of what was
+ * kept last and of what there is now. Times are arguments.
+ */
+#ifndef RECORDER_RULE_H
+#define RECORDER_RULE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "src/config/config.h"
+
+struct rule_sample {
+	uint8_t type, quality;
+	double number;       /* of float and double */
+	int64_t integer;     /* of the other number types; of a string a hash of its text */
+	int64_t measured_ns; /* CLOCK_BOOTTIME; 0: never */
+};
+/* Of one signal. All zero: nothing is known, so that the next value is kept. */
+struct rule_kept {
+	bool any;
+	struct rule_sample sample;
+	int64_t slot; /* of Record's interval: that which was looked at last */
+};
+
+/* The signal has changed, or may have: is the sample kept? */
+bool rule_change(const struct config_record *rule, const struct rule_kept *kept,
+                 const struct rule_sample *sample);
+/*
+ * Has another slot of the interval begun, by the wall clock? Then *kept is in that slot; without
+ * an interval never.
+ */
+bool rule_turn(const struct config_record *rule, struct rule_kept *kept, int64_t wall_ns);
+/* At the turn of a slot: is the newest sample kept? */
+bool rule_interval(const struct rule_kept *kept, const struct rule_sample *sample);
+/* The wall-clock time of the next turn; INT64_MAX without an interval. */
+int64_t rule_next_turn(const struct config_record *rule, int64_t wall_ns);
+
+/* A string's text as the integer of a sample. */
+int64_t rule_hash(const char *text, uint32_t len);
+
+#endif

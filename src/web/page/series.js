@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+// What signals had: columns of the recorder, continued by what the page has heard; and as CSV.
+import {get} from "./api.js";
+import {store} from "./store.js";
+import {UNKNOWN, qualityWords, stateOf} from "./words.js";
+
+export const goodCode = (code) => code !== UNKNOWN && stateOf(code) === "good";
+
+/**
+ * The past of a signal as {name, x, min, max, last, code, gap}: arrays of one length. x is when a
+ * column begins, ms; each holds until the next. The code of a column of which nothing is known is
+ * UNKNOWN. min, max, last are null where there is no good value.
+ */
+export async function pastOf(signal, from, until, points) {
+	const past = {name: signal.name, x: [], min: [], max: [], last: [], code: [], gap: []};
+	if (!store.info?.history || signal.type === "string")
+		return past;
+	try {
+		take(past, await get("trend", {name: signal.name, from: Math.round(from),
+			until: Math.round(until), points}));
+	} catch (error) {
+		if (error.status !== 404)
+			throw error; // 404: the recorder has nothing of this signal
+	}
+	return past;
+}
+
+function take(past, data) {
+	const {from = [], min = [], max = [], last = [], quality = [], gap = []} = data;
+	for (let n = 0; n < from.length; n++) {
+		const good = quality[n] !== null && goodCode(quality[n]);
+		const known = quality[n] !== 0 && quality[n] !== null;
+		past.x.push(from[n]);
+		past.min.push(min[n] ?? null);
+		past.max.push(max[n] ?? null);
+		past.last.push(good ? last[n] ?? null : null);
+		past.code.push(known ? quality[n] : UNKNOWN);
+		past.gap.push(Boolean(gap[n]));
+	}
+	// What the recorder has not written yet is no gap: the page may know it
+	while (past.x.length && past.code.at(-1) === UNKNOWN)
+		for (const column of [past.x, past.min, past.max, past.last, past.code, past.gap])
+			column.pop();
+}
+
+/** The past with what the page has heard since, until the time (ms). */
+export function continued(past, signal, from, until) {
+	const all = Object.fromEntries(Object.entries(past).map(([key, value]) =>
+		[key, Array.isArray(value) ? [...value] : value]));
+	const add = (t, v, code, low = v, high = v) => {
+		all.x.push(t);
+		all.min.push(low);
+		all.max.push(high);
+		all.last.push(v);
+		all.code.push(code);
+		all.gap.push(false);
+	};
+	const end = Math.min(until, store.now());
+	// Where the last column ends; what comes then, only the page can know
+	const start = all.x.length ? all.x.at(-1) + (all.x[1] - all.x[0] || 0) : from;
+	const held = signal.recent.findLast(({t}) => t <= start);
+	const heard = signal.recent.filter(({t}) => t > start && t <= end);
+	if (start < end)
+		add(start, held?.v ?? null, held?.code ?? UNKNOWN);
+	for (const {t, v, code, low, high} of heard)
+		add(t, v, code, low, high);
+	if (all.x.length && all.x.at(-1) < end)
+		add(end, store.unknown ? null : all.last.at(-1), store.unknown ? UNKNOWN : all.code.at(-1));
+	return all;
+}
+
+const quoted = (text) => /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+// A text that a spreadsheet would take for a formula is kept one
+const harmless = (text) => /^[=+@-]/.test(text) ? `'${text}` : text;
+
+/** One line for each column of each signal. */
+export function csvOf(pasts) {
+	const lines = ["time,signal,unit,min,max,last,quality"];
+	for (const {signal, past} of pasts)
+		for (let n = 0; n < past.x.length; n++)
+			lines.push([new Date(past.x[n]).toISOString(), quoted(harmless(signal.name)),
+				quoted(signal.unit || ""), past.min[n] ?? "", past.max[n] ?? "", past.last[n] ?? "",
+				past.code[n] === UNKNOWN ? "unknown" : qualityWords(past.code[n])].join(","));
+	return `${lines.join("\r\n")}\r\n`;
+}
+
+export function save(name, text, type = "text/csv") {
+	const url = URL.createObjectURL(new Blob([text], {type}));
+	const link = document.createElement("a");
+	link.href = url;
+	link.download = name;
+	link.click();
+	setTimeout(() => URL.revokeObjectURL(url), 10000);
+}

@@ -1,0 +1,459 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""owsd-recorder beside a real owsd: what is read back is what was there, and gaps are gaps."""
+
+import contextlib
+import csv
+import json
+import os
+import re
+import shutil
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+
+import faulty
+import owsdtest
+import sandbox
+from owsdtest import BUILD, SOURCE, raw, until
+from recorded import (RECORDER, RELAY, RELAYS, ROOM, Past, boot, distinct, item, record, set_relays,
+                      text)
+
+
+def test_changes_commands_and_alarms_are_recorded(scene):
+    daemon = scene.owsd(text(scene))
+    recorder = record(scene, daemon)
+    until(lambda: scene.get(daemon, "room") == "21.5", 20, "the room is good")
+    until(lambda: scene.get(daemon, "title") == "DS18B20", 20, "so is the text")
+    for value in (1, 2, 7):
+        set_relays(scene, daemon, value)
+        time.sleep(0.1)
+    assert recorder.stop() == 0
+    past = Past(scene)
+    assert past.good("room") == ["21.5"], past.signals
+    assert past.good("title") == ['"DS18B20"'], past.signals
+    assert past.good("relays") == ["1", "2", "7"], past.signals
+    commands = [(words[2], words[3], words[-1]) for words in past.kinds("command")]
+    assert commands == [("relays", v, "owsctl") for v in "127"], commands
+    assert [words[2] for words in past.kinds("alarm")] == ["room"], past.events
+    times = [when for when, _, _ in past.signals["relays"]]
+    assert times == sorted(times), times
+    assert past.signals["relays"][-1][2] == "recorder stopped", past.signals
+
+
+def test_a_killed_owsd_is_a_gap_and_what_comes_after_it_is_new(scene):
+    daemon = scene.owsd(text(scene))
+    recorder = record(scene, daemon)
+    set_relays(scene, daemon, 5)
+    until(lambda: scene.get(daemon, "room") == "21.5", 20, "the room is good")
+    alive = boot()
+    time.sleep(1.5)  # more than from one heartbeat to the next
+    daemon.kill()
+    killed = boot()
+    until(lambda: "owsd is lost" in recorder.log(), 20, "the loss is seen")
+    time.sleep(1)
+    dead = boot()
+    again = scene.owsd(daemon.config, name=daemon.name)
+    until(lambda: recorder.log().count("recording ") == 2, 20, "it records again")
+    until(lambda: scene.get(again, "room") == "21.5", 20, "the room is good again")
+    set_relays(scene, again, 6)
+    time.sleep(0.2)
+    after = boot()
+    time.sleep(0.1)  # records have whole milliseconds
+    assert recorder.stop() == 0
+    past = Past(scene)
+    assert past.at("relays", alive) == "5", past.signals
+    # from the last heartbeat on, which may be half a second before the kill
+    for moment in (killed + 0.05, (killed + dead) / 2, dead):
+        assert past.at("room", moment) is None, (moment, past.signals)
+        assert past.at("relays", moment) is None, (moment, past.signals)
+    assert past.at("room", after) == "21.5" and past.at("relays", after) == "6", past.signals
+    assert set(past.good("relays")) <= {"5", "6"}, past.signals
+    gaps = past.kinds("gap")
+    assert gaps and all("owsd" in words for words in gaps), past.events
+
+
+def test_a_recorder_that_could_not_look_has_a_gap_where_more_than_one_change_was_missed(scene):
+    daemon = scene.owsd(text(scene))
+    recorder = record(scene, daemon)
+    until(lambda: scene.get(daemon, "room") == "21.5", 20, "the room is good")
+    set_relays(scene, daemon, 5)
+    time.sleep(1)
+    seen = boot()
+    recorder.signal(signal.SIGSTOP)
+    for value in (6, 7, 5):
+        set_relays(scene, daemon, value)
+        time.sleep(1.5)
+    unseen = boot()
+    recorder.signal(signal.SIGCONT)
+    until(lambda: "could not look" in recorder.log(), 20, "the recorder says so")
+    set_relays(scene, daemon, 8)
+    time.sleep(0.3)
+    assert recorder.stop() == 0
+    past = Past(scene)
+    assert past.at("relays", seen - 0.1) == "5" and past.at("room", unseen) == "21.5", past.signals
+    for moment in (seen + 2.5, unseen - 2):
+        assert past.at("relays", moment) is None, (moment, past.signals)
+    assert past.at("relays", unseen) == "5" and past.good("relays")[-1] == "8", past.signals
+    assert "too many changes" in str(past.signals["relays"]), past.signals
+
+
+def test_a_killed_recorder_loses_what_was_in_memory_and_nothing_else(scene):
+    daemon = scene.owsd(text(scene))
+    recorder = record(scene, daemon)
+    for value in range(1, 6):
+        set_relays(scene, daemon, value)
+    time.sleep(2.5)  # longer than Flush
+    recorder.kill()
+    set_relays(scene, daemon, 99)
+    unseen = boot()
+    time.sleep(0.3)
+    set_relays(scene, daemon, 6)
+    recorder = record(scene, daemon)
+    set_relays(scene, daemon, 7)
+    time.sleep(0.3)
+    assert recorder.stop() == 0
+    past = Past(scene)
+    assert distinct(past.good("relays")) == [*"1234567"], past.signals
+    assert past.at("relays", unseen) is None, past.signals
+    # the journal of owsd has what the recorder has not seen happen; nothing is there twice
+    commands = [words[3] for words in past.kinds("command")]
+    assert commands == ["1", "2", "3", "4", "5", "99", "6", "7"], past.events
+    assert len(past.kinds("begin")) == 2, past.events
+
+
+def test_a_reload_is_no_gap_and_brings_the_rules_anew(scene):
+    daemon = scene.owsd(text(scene))
+    recorder = record(scene, daemon)
+    set_relays(scene, daemon, 5)
+    off = dict(ROOM, Record="off")
+    other = item("other", RELAY + "/sensed.BYTE", Record="interval 0.5, raw", Scale=raw("2"))
+    daemon.config.write_text(text(scene, RELAYS, off, other))
+    daemon.signal(signal.SIGHUP)
+    until(lambda: "recording 2 of 3" in recorder.log(), 20, "the reload is seen")
+    until(lambda: scene.get(daemon, "other") == "500", 20, "the new one is good")
+    begun, values = boot(), list(range(6, 40))
+    for value in values:
+        set_relays(scene, daemon, value)
+    time.sleep(1)
+    took = boot() - begun
+    assert recorder.stop() == 0
+    past = Past(scene)
+    assert distinct(past.good("relays"))[0] == "5" and past.good("relays")[-1] == "39", past.signals
+    known = [(value, rest) for _, value, rest in past.signals["relays"]]
+    assert (None, "owsd lost") not in known and not past.kinds("gap"), past.signals
+    # what is pulled low by the relays, twice as much by Scale; the newest of each half second
+    sensed = [str(2 * (255 - value)) for value in [5, *values]]
+    kept = distinct(past.good("other"))
+    assert set(kept) <= set(sensed) and kept[-1] == sensed[-1], past.signals
+    assert 2 <= len(kept) <= took / 0.5 + 3, (took, past.signals)
+    assert [float(raw) * 2 for raw in distinct(past.good("other_Raw"))] == [float(v) for v in kept]
+    assert past.signals["room"][-1][1] is None, past.signals
+
+
+def test_it_waits_for_an_owsd_and_tells_what_is_wrong_with_its_command_line(scene):
+    config = scene.file("late.rio", text(scene))
+    name = scene.name()
+    recorder = scene.start([RECORDER, "-n", name, "-c", config, "-d", scene.path / "history"])
+    until(lambda: "waiting for it" in recorder.log(), 20, "it waits")
+    daemon = scene.owsd(config, name=name)
+    until(lambda: "recording 3 of 3" in recorder.log(), 20, "it records")
+    until(lambda: scene.get(daemon, "room") == "21.5", 20, "the room is good")
+    time.sleep(0.3)
+    assert recorder.stop() == 0
+    assert Past(scene).good("room") == ["21.5"]
+    broken = scene.file("broken.rio", text(scene, dict(ROOM, Record="sometimes")))
+    done = scene._run([RECORDER, "-c", broken], 20)
+    assert done.returncode == 2 and re.search(r"broken\.rio:\d+:\d+: error: Record", done.stderr), done
+    assert scene.owsd_once("-c", broken, "--check").returncode == 2
+    done = scene._run([RECORDER, "--nothing"], 20)
+    assert done.returncode == 2 and done.stderr.startswith("owsd-recorder: "), done
+    done = scene._run([RECORDER, "-V"], 20)
+    assert done.returncode == 0 and done.stdout.startswith("owsd-recorder 0."), done
+
+
+def test_trend_draws_and_lists_what_was_recorded(scene):
+    daemon = scene.owsd(text(scene))
+    recorder = record(scene, daemon)
+    for value in (1, 2, 9):
+        set_relays(scene, daemon, value)
+    until(lambda: scene.get(daemon, "room") == "21.5", 20, "the room is good")
+    until(lambda: scene.get(daemon, "title") == "DS18B20", 20, "the text is good")
+    time.sleep(0.3)
+    assert recorder.stop() == 0
+    trend = ("trend", "-d", scene.path / "history", "--since", "1m")
+    done = scene.owsctl(daemon, *trend, "relays", "room")
+    lines = done.stdout.splitlines()
+    assert done.returncode == 0 and lines[0] == "relays", done
+    assert lines[1].split()[0] == "9" and lines[8].split()[0] == "1", done
+    assert any("\u2801" <= c <= "\u28ff" for c in lines[1]), done
+    assert lines[12] == "room (°C)" and len(lines) > 20, done
+    done = scene.owsctl(daemon, *trend, "--csv", "relays", "title")
+    rows = list(csv.DictReader(done.stdout.splitlines()))
+    good = [(row["name"], row["value"]) for row in rows if row["quality"] == "good"]
+    assert good == [("relays", "1"), ("relays", "2"), ("relays", "9"), ("title", "DS18B20")], done
+    assert all(not row["value"] for row in rows if row["quality"] == "recorder stopped"), done
+    records = json.loads(scene.owsctl(daemon, "--json", *trend, "relays").stdout)[0]["records"]
+    assert [r["value"] for r in records if r.get("quality") == "good"] == [1, 2, 9], records
+    assert records[-1]["value"] is None and records[-1]["reason"] == "recorder stopped", records
+    points = scene.owsctl(daemon, *trend, "--influx", "relays", "room").stdout.splitlines()
+    room = [re.fullmatch(rf"ows,instance={daemon.name},signal=room,unit=°C value=21\.5 \d{{19}}", p)
+            for p in points[3:]]
+    assert [p.split()[1] for p in points[:3]] == ["value=1", "value=2", "value=9"] and all(room)
+    assert len(room) == 1, points
+    for words in (("nothing",), ("title",), ("-s", "soon", "relays"), ()):
+        done = scene.owsctl(daemon, *trend, *words)
+        assert done.returncode in (1, 2) and done.stderr.startswith("owsctl: "), done
+
+
+def pyarrow_here():
+    return subprocess.run(["python3", "-c", "import pyarrow.parquet"], capture_output=True,
+                          timeout=60, check=False).returncode == 0
+
+
+def test_trend_writes_a_table_for_other_programs(scene):
+    daemon = scene.owsd(text(scene))
+    recorder = record(scene, daemon)
+    for value in (1, 9):
+        set_relays(scene, daemon, value)
+    until(lambda: scene.get(daemon, "title") == "DS18B20", 20, "the text is good")
+    time.sleep(0.3)
+    assert recorder.stop() == 0
+    trend = ("trend", "-d", scene.path / "history", "--since", "1m")
+    listed = scene.owsctl(daemon, "--json", *trend, "relays", "title")
+    expected = []
+    for signal_ in json.loads(listed.stdout):
+        for r in signal_["records"]:
+            good = r["value"] if r.get("quality") == "good" else None
+            is_text = isinstance(good, str)
+            expected.append((signal_["name"], None if is_text else good, good if is_text else None,
+                             r.get("quality") or r["reason"]))
+    assert {row[1] for row in expected} >= {1, 9, None}, expected
+    assert {row[2] for row in expected} == {"DS18B20", None}, expected
+    assert [row[3] for row in expected].count("recorder stopped") == 2, expected
+    now = time.time_ns()
+    for kind in ("sqlite", "parquet"):
+        if kind == "parquet" and not pyarrow_here():
+            print("parquet is not looked at: no pyarrow")
+            continue
+        file = scene.path / f"past.{kind}"
+        done = scene.owsctl(daemon, *trend, f"--{kind}", file, "relays", "title")
+        assert done.returncode == 0 and not done.stdout + done.stderr, done
+        if kind == "sqlite":
+            with contextlib.closing(sqlite3.connect(file)) as db:
+                rows = db.execute("select * from history order by rowid").fetchall()
+                types = {t for t, in db.execute("select typeof(value) from history")}
+                assert types == {"real", "null"}, types
+        else:
+            code = ("import json, pyarrow.parquet, sys; t = pyarrow.parquet.read_table(sys.argv[1])\n"
+                    "assert str(t.schema.field('time').type) == 'timestamp[ns, tz=UTC]', t.schema\n"
+                    "t = t.set_column(0, 'time', t['time'].cast('int64'))\n"
+                    "print(json.dumps(list(zip(*t.to_pydict().values()))))")
+            done = scene._run(["python3", "-c", code, file], 60)
+            assert done.returncode == 0, done
+            rows = json.loads(done.stdout)
+        assert [tuple(row[1:]) for row in rows] == expected, rows
+        assert all(now - 120 * 10**9 < row[0] < now for row in rows), rows
+        before = file.read_bytes()
+        done = scene.owsctl(daemon, *trend, f"--{kind}", file, "relays")
+        assert done.returncode == 1 and "is there already" in done.stderr, done
+        assert file.read_bytes() == before
+    other = scene.path / "other"
+    for words, why in ((("nothing",), "has no signal nothing"), (("relays", "nothing"), "no signal")):
+        done = scene.owsctl(daemon, *trend, "--sqlite", other, *words)
+        assert done.returncode == 1 and why in done.stderr, done
+    done = scene.owsctl(daemon, *trend, "--sqlite", scene.path / "no" / "other", "relays")
+    assert done.returncode == 1 and "unable to open" in done.stderr, done
+    done = scene.owsctl(daemon, *trend, "--csv", "--sqlite", other, "relays")
+    assert done.returncode == 2 and "exclude" in done.stderr, done
+    # a python3 without the module; none at all
+    (scene.path / "bin").mkdir()
+    paths = {"python3 needs pyarrow": "#!/bin/sh\nshift\nscript=$1; shift\nexec "
+             f"{sys.executable} -c 'import sys\nsys.modules[\"pyarrow\"] = None\n'\"$script\" \"$@\"\n",
+             "No such file or directory": None}
+    for why, program in paths.items():
+        (scene.path / "bin" / "python3").unlink(missing_ok=True)
+        if program:
+            (scene.path / "bin" / "python3").write_text(program)
+            (scene.path / "bin" / "python3").chmod(0o755)
+        done = scene._run(["env", f"PATH={scene.path}/bin", BUILD / "owsctl", "-n", daemon.name, *trend,
+                           "--parquet", other, "relays"], 30)
+        assert done.returncode == 1 and why in done.stderr, done
+        assert "pyarrow" in done.stderr or "python3" in done.stderr, done
+    assert not [f.name for f in scene.path.iterdir() if f.name.startswith("other")]
+
+
+def test_the_journal_is_one_over_a_restart_and_without_owsd(scene):
+    daemon = scene.owsd(text(scene))
+    recorder = record(scene, daemon)
+    journal = ("journal", "-d", scene.path / "history")
+
+    def commands(*words):
+        done = scene.owsctl(daemon, "--json", *journal, *words)
+        assert done.returncode == 0, done
+        return [(e["value"], e["by"]["program"]) for e in json.loads(done.stdout)
+                if e["journal"] == "commands"]
+
+    for value in (1, 2):
+        set_relays(scene, daemon, value)
+        time.sleep(1.1)  # owsd enters one command a second
+    until(lambda: len(Past(scene).kinds("command")) == 2, 20, "both are on the disk")
+    # in memory and on the disk, each once
+    assert commands("relays") == [(1, "owsctl"), (2, "owsctl")]
+    assert scene.owsctl(daemon, *journal, "room").stdout.count("high raised") == 1
+    daemon.stop()
+    until(lambda: "owsd is lost" in recorder.log(), 20, "the end is seen")
+    again = scene.owsd(daemon.config, name=daemon.name)
+    until(lambda: recorder.log().count("recording ") == 2, 20, "it records again")
+    set_relays(scene, again, 7)
+    every = [(1, "owsctl"), (2, "owsctl"), (7, "owsctl")]
+    # what the new one took is in its memory, and perhaps on the disk
+    assert [c for c in commands("relays") if c[0] != 2][-1] == every[-1]
+    set_by_users = [c for c in commands("relays") if c[1] == "owsctl"]
+    assert set_by_users == every, set_by_users
+    assert commands("-c", "1", "relays") == every[-1:]
+    until(lambda: len([e for e in Past(scene).kinds("command") if e[-1] == "owsctl"]) >= 3, 20,
+          "the last one is on the disk")
+    assert [c for c in commands("relays") if c[1] == "owsctl"] == every
+    assert recorder.stop() == 0
+    again.stop()
+    rows = scene.owsctl(again, *journal, "relays").stdout.splitlines()
+    assert sum(" set " in row for row in rows) == 3, rows
+    # no owsd of that name has ever run: the disk alone has them
+    done = scene._run([owsdtest.OWSCTL, "-n", scene.name(), "--json", *journal, "relays"], 20)
+    assert done.returncode == 0 and not done.stderr, done
+    alone = [(e["value"], e["number"]) for e in json.loads(done.stdout) if e["by"]]
+    assert alone == [(1, None), (2, None), (7, None)], done
+    for words, status, why in ((("nothing",), 1, "the history has no signal nothing"),
+                               (("-s", "soon"), 2, "-s soon: expected a time"),
+                               (("-f",), 1, "has run here"),
+                               (("-d", scene.path / "none"), 1, "No such file")):
+        done = scene._run([owsdtest.OWSCTL, "-n", scene.name(), *journal, *words], 20)
+        assert done.returncode == status and why in done.stderr, (words, done)
+
+
+def test_the_example_program_reads_the_same(scene):
+    example = BUILD / "examples/past"
+    owsdtest.need(example)
+    daemon = scene.owsd(text(scene))
+    recorder = record(scene, daemon)
+    for value in (1, 9):
+        set_relays(scene, daemon, value)
+    time.sleep(1.1)  # the programs begin with whole seconds of the clock
+    assert recorder.stop() == 0
+    time.sleep(1)
+    done = scene._run([example, "relays", "1", scene.path / "history"], 20)
+    assert done.returncode == 0 and not done.stderr, done
+    lines = [line.split("  ", 1)[1] for line in done.stdout.splitlines()]
+    assert lines[:23] == ["no good value, not known throughout"] * 23, done
+    assert lines[23:] == ["1 to 9, not known throughout", "1 by owsctl", "9 by owsctl"], done
+    done = scene._run([example, "nothing", "1", scene.path / "history"], 20)
+    assert done.returncode == 1 and done.stderr == "nothing: No such file or directory\n", done
+    done = scene._run([example, "relays", "1", scene.path / "no-history"], 20)
+    assert done.returncode == 1 and "cannot open the history" in done.stderr, done
+
+
+def test_python_reads_the_same(scene):
+    faulty.not_sanitized("Python loads the library, and the sanitizer has to be the first")
+    daemon = scene.owsd(text(scene))
+    recorder = record(scene, daemon)
+    begun = time.time_ns()
+    for value in (1, 9):
+        set_relays(scene, daemon, value)
+    time.sleep(0.3)
+    assert recorder.stop() == 0
+    ended = time.time_ns() + 10**9
+    code = scene.file("past.py", f"""
+import sys
+if {{without}}:
+    sys.modules["numpy"] = None
+import ows
+with ows.History(directory={str(scene.path / "history")!r}) as h:
+    print(h.names(), h.info("relays")[1:])
+    r = h.records("relays", 0, {ended})
+    last = r.value[-1]
+    print([i for i in r.integer if i is not None][-2:], bool(r.known[-1]), bool(last == last))
+    p = h.points("relays", {begun - 10**9}, {ended}, 2)
+    print(len(p.gap), max(x for x in p.max if x == x), all(p.gap))
+    print([t for t in h.records("title", 0, {ended}).text if t])
+    print([(e.name, e.value, e.program) for e in h.events(0, {ended}, [ows.HISTORY_COMMAND])])
+    print(h.span() is not None)
+    print(*{{type(column).__name__ for column in (*r, *p)}})
+    if not isinstance(p.max, list):
+        print(*(column.dtype.name for column in (*r, *p)))
+        good = r.value[r.known & (r.quality >= ows.Q_GOOD)]
+        print(good.min(), good.max(), good.size == sum(i is not None for i in r.integer))
+        none = h.records("title", 5, 6)
+        print(none.value.shape, none.value.dtype.name)
+    for call in (lambda: h.info("none"), lambda: h.points("room", 5, 5, 1)):
+        try:
+            call()
+        except (KeyError, OSError) as e:
+            print(type(e).__name__)
+try:
+    h.names()
+except ValueError as e:
+    print(e)
+try:
+    ows.History(directory="/no-history")
+except OSError as e:
+    print(e.strerror)
+""".replace("{without}", "len(sys.argv) > 1"))
+    has_numpy = scene._run(["python3", "-c", "import numpy"], 30).returncode == 0
+    for arguments in ((), ("without",)):
+        done = scene._run(["env", f"LD_LIBRARY_PATH={BUILD}", f"PYTHONPATH={SOURCE}/src/libows",
+                           "PYTHONDONTWRITEBYTECODE=1", "python3", code, *arguments], 30)
+        assert done.returncode == 0 and not done.stderr, done
+        lines = done.stdout.splitlines()
+        assert lines[0] == "['room', 'relays', 'title'] ('', 2, True, -1)", done
+        assert lines[1] == "[1, 9] False False", done
+        assert lines[2] in ("2 9.0 True", "2 9.0 False"), done
+        assert lines[3] == "['DS18B20']", done
+        assert lines[4] == "[('relays', 1, 'owsctl'), ('relays', 9, 'owsctl')]", done
+        assert lines[5] == "True", done
+        if has_numpy and not arguments:
+            assert lines[6:10] == [
+                "ndarray",
+                "int64 float64 object object bool uint8 uint8 bool int64 int64 float64 float64 "
+                "float64 float64 int64 int64 uint32 uint8 uint8 bool bool",
+                "1.0 9.0 True", "(0,) float64"], done
+        else:
+            assert lines[6] == "list", done
+        assert lines[10 if has_numpy and not arguments else 7:] == [
+            "KeyError", "OSError", "the history is closed", "No such file or directory"], done
+
+
+def test_under_the_units_filter_it_does_all_that_it_does(scene):
+    unit = SOURCE / "board/systemd/owsd-recorder@.service"
+    daemon = scene.owsd(text(scene))
+    recorder = record(scene, daemon, "-v", prefix=sandbox.command(unit))
+    set_relays(scene, daemon, 3)
+    until(lambda: scene.get(daemon, "room") == "21.5", 20, "the room is good")
+    time.sleep(1.5)
+    assert recorder.stop() == 0
+    assert "ot permitted" not in recorder.log(), recorder.log()
+    assert Past(scene).good("relays") == ["3"]
+
+
+def test_no_call_that_it_makes_is_forbidden(scene):
+    if not shutil.which("strace"):
+        owsdtest.skip("strace is not installed")
+    unit = SOURCE / "board/systemd/owsd-recorder@.service"
+    # SQLite gives its files to the owner of the database where it runs as root
+    allowed = sandbox.calls(unit) | {"execve", "fchown"}
+    daemon = scene.owsd(text(scene))
+    trace = scene.path / "trace"
+    recorder = record(scene, daemon, prefix=("strace", "-f", "-qq", "-o", trace))
+    time.sleep(1.5)
+    with open(f"/proc/{recorder.pid}/task/{recorder.pid}/children", encoding="ascii") as children:
+        os.kill(int(children.read()), signal.SIGTERM)
+    assert recorder.wait(20) == 0
+    calls = set(re.findall(r"^(?:\d+ +)?(?:<\.\.\. )?(\w+)\(", trace.read_text(errors="replace"), re.M))
+    assert len(calls) > 20 and "pwrite64" in calls, calls
+    assert not calls - allowed, calls - allowed
+
+
+if __name__ == "__main__":
+    owsdtest.main(at_once=1)
