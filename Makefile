@@ -24,7 +24,7 @@
 #   make analyze coverage         what gcc's analyzer, clang-tidy and cppcheck find (nothing is to
 #                                 be left); which lines and branches the tests reach
 #   make test-kill KILLS=10000    the writer of the shared memory killed at random points
-#   make test-power CUTS=10000    power cuts at any point of what history writes
+#   make test-power CUTS=500      power cuts at any point of what history writes
 #   make hammer-arm64             the same readers and writer as arm64 code, in qemu
 #   make model                    the protocol of the shared memory, in a weak memory model
 #   make test-kernel              Debian's own kernel and owserver on the simulated chip, in QEMU
@@ -399,7 +399,7 @@ soak: all $(B)/unit/test_endurance
 # Power cuts in a test of make unit, but many more
 .PHONY: test-power
 test-power: $(B)/unit/test_history_power
-	@POWER_CUTS=$(or $(CUTS),10000) $<
+	@POWER_CUTS=$(or $(CUTS),500) $<
 
 # --- System tests, benches and the main job ---------------------------------------------------
 # Programs that system tests command
