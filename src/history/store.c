@@ -83,7 +83,9 @@ static int run(struct history_store *store, enum statement which)
 	return sql_next(store->statements[which]);
 }
 
-/* --- The file ---------------------------------------------------------------------------------- */
+/*
+ * --- The file ----------------------------------------------------------------------------------
+ */
 
 static int give_rollup(void *ctx, bool hour, int64_t bucket, uint32_t signal,
                        const struct rollup *sum, const struct rollup_state *state)
@@ -171,7 +173,9 @@ static void fail(struct history_store *store, struct store_batch *batch, int err
 		file_put_aside(&store->file);
 }
 
-/* --- What the file has ------------------------------------------------------------------------- */
+/*
+ * --- What the file has -------------------------------------------------------------------------
+ */
 
 static struct rollup_state state_of(uint8_t type, int64_t value, uint8_t quality)
 {
@@ -245,7 +249,9 @@ static int read_place(struct history_store *store)
 	return got < 0 ? got : 0;
 }
 
-/* --- What comes -------------------------------------------------------------------------------- */
+/*
+ * --- What comes --------------------------------------------------------------------------------
+ */
 
 static int add_gap(struct history_store *store, int64_t start, uint32_t signal, int64_t until,
                    uint8_t reason)

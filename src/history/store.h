@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The writer's rows on their way into the file: a commit at a time, with the roll-ups that are over,
- * and what is old deleted. After an error the file is opened again. One thread, blocking.
+ * The writer's rows on their way into the file: a commit at a time, with the roll-ups that are
+ * over, and what is old deleted. After an error the file is opened again. One thread, blocking.
  */
 #ifndef HISTORY_STORE_H
 #define HISTORY_STORE_H

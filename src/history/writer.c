@@ -93,7 +93,9 @@ int history_writer_open(const struct history_options *options, int64_t now_ns, i
 	return 0;
 }
 
-/* --- Memory ------------------------------------------------------------------------------------ */
+/*
+ * --- Memory ------------------------------------------------------------------------------------
+ */
 
 static void free_row(struct history_writer *w, struct history_row *row)
 {
@@ -189,7 +191,9 @@ static void add(struct history_writer *w, struct history_row row)
 		w->newest_us = row.us;
 }
 
-/* --- What the recorder says -------------------------------------------------------------------- */
+/*
+ * --- What the recorder says --------------------------------------------------------------------
+ */
 
 /* Among the first keys. */
 static int find_key(const struct history_writer *w, const char *name, uint32_t count)
@@ -375,7 +379,9 @@ void history_writer_clock(struct history_writer *w, int64_t now_ns, int64_t offs
 	add(w, (struct history_row){.kind = ROW_CLOCK, .us = now_ns / NS_PER_US, .key = ALL});
 }
 
-/* --- To the file ------------------------------------------------------------------------------- */
+/*
+ * --- To the file -------------------------------------------------------------------------------
+ */
 
 /* All values that hold, again: those that have no row for an hour, or all of them. */
 static void repeat(struct history_writer *w, int64_t now_us, bool all)

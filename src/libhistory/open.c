@@ -53,7 +53,9 @@ int ows_history_place(const char *instance, char *path, size_t size)
 	return 0;
 }
 
-/* --- The file ---------------------------------------------------------------------------------- */
+/*
+ * --- The file ----------------------------------------------------------------------------------
+ */
 
 /* frozen: nobody writes it, and there is no log of commits beside it. */
 static int try_open(struct ows_history *h, bool frozen)
@@ -123,7 +125,9 @@ static int open_file(struct ows_history *h)
 	return err;
 }
 
-/* --- What it has ------------------------------------------------------------------------------- */
+/*
+ * --- What it has -------------------------------------------------------------------------------
+ */
 
 static void forget(struct ows_history *h)
 {

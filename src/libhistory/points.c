@@ -87,7 +87,9 @@ static struct rollup_state state_of(const struct step *step)
 	};
 }
 
-/* --- Of its values ----------------------------------------------------------------------------- */
+/*
+ * --- Of its values -----------------------------------------------------------------------------
+ */
 
 static int draw_steps(struct draw *d, int64_t first, int64_t end)
 {
@@ -120,7 +122,9 @@ static int draw_steps(struct draw *d, int64_t first, int64_t end)
 	return got;
 }
 
-/* --- Of roll-ups ------------------------------------------------------------------------------- */
+/*
+ * --- Of roll-ups -------------------------------------------------------------------------------
+ */
 
 /* Columns: least, most, mean, last, good, known, count, quality, worst. 1; 0: there is none. */
 static int read_rollup(struct draw *d, bool hour, int64_t bucket, struct rollup *sum,
@@ -214,7 +218,9 @@ static int draw_minutes(struct draw *d, int64_t first, int64_t end)
 	return got < 0 ? got : 0;
 }
 
-/* --- All of it --------------------------------------------------------------------------------- */
+/*
+ * --- All of it ---------------------------------------------------------------------------------
+ */
 
 /* Where hours end and minutes begin, and where these end: of what there is, of what is enough. */
 static void choose(const struct draw *d, int64_t *hours, int64_t *minutes)

@@ -52,9 +52,13 @@ int ows_history_find(struct ows_history *h, const char *name)
 	return -ENOENT;
 }
 
-/* --- Steps ------------------------------------------------------------------------------------- */
+/*
+ * --- Steps -------------------------------------------------------------------------------------
+ */
 
-/* Columns: id, value, quality, reason of a gap. What a signal had before its type changed counts. */
+/*
+ * Columns: id, value, quality, reason of a gap. What a signal had before its type changed counts.
+ */
 static int take(sqlite3_stmt *from, const struct known_signal *signal, struct step *step)
 {
 	bool whole = !value_is_float((enum ows_type)signal->type) && signal->type != OWS_STRING;
@@ -144,7 +148,9 @@ int handle_steps(struct ows_history *h, const struct known_signal *signal, int64
 	return count;
 }
 
-/* --- Items ------------------------------------------------------------------------------------- */
+/*
+ * --- Items -------------------------------------------------------------------------------------
+ */
 
 int ows_history_read(struct ows_history *h, int signal, int64_t from_ns, int64_t until_ns)
 {

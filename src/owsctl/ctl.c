@@ -70,14 +70,21 @@ void ctl_options(void)
 static const struct option *longs_of(const char *options)
 {
 	static const struct option longs[] = {
-		{"json", no_argument, NULL, JSON},         {"help", no_argument, NULL, 'h'},
-		{"all", no_argument, NULL, 'a'},           {"rio", no_argument, NULL, 'r'},
-		{"alias", required_argument, NULL, 'L'},   {"merge", required_argument, NULL, 'M'},
-		{"replace", required_argument, NULL, 'R'}, {"as", required_argument, NULL, 'A'},
+		{"json", no_argument, NULL, JSON},
+		{"help", no_argument, NULL, 'h'},
+		{"all", no_argument, NULL, 'a'},
+		{"rio", no_argument, NULL, 'r'},
+		{"alias", required_argument, NULL, 'L'},
+		{"merge", required_argument, NULL, 'M'},
+		{"replace", required_argument, NULL, 'R'},
+		{"as", required_argument, NULL, 'A'},
 		{"follow", no_argument, NULL, 'f'},
-		{"since", required_argument, NULL, 's'}, {"csv", no_argument, NULL, 'C'},
-		{"sqlite", required_argument, NULL, 'S'}, {"parquet", required_argument, NULL, 'P'},
-		{"influx", no_argument, NULL, 'I'}, {"directory", required_argument, NULL, 'd'},
+		{"since", required_argument, NULL, 's'},
+		{"csv", no_argument, NULL, 'C'},
+		{"sqlite", required_argument, NULL, 'S'},
+		{"parquet", required_argument, NULL, 'P'},
+		{"influx", no_argument, NULL, 'I'},
+		{"directory", required_argument, NULL, 'd'},
 	};
 	static struct option had[sizeof(longs) / sizeof(longs[0]) + 1];
 	struct option *next = had;

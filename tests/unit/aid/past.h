@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* A history in a folder of the test, written by a writer in virtual time and read by libows-history. */
+/*
+ * A history in a folder of the test, written by a writer in virtual time and read by
+ * libows-history.
+ */
 #ifndef TESTS_PAST_H
 #define TESTS_PAST_H
 

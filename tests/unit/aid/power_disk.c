@@ -2,7 +2,6 @@
 /* A disk that notes what is asked of it, and what a power cut leaves of that. */
 #include "tests/unit/aid/power_disk.h"
 
-
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>

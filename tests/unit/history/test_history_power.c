@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Power cuts: the file and its log as they are at any moment of a recorder that writes as fast as it
- * can. What is read of them begins as what was recorded, ends somewhere, and has nothing else.
+ * Power cuts: the file and its log as they are at any moment of a recorder that writes as fast as
+ * it can. What is read of them begins as what was recorded, ends somewhere, and has nothing else.
  * POWER_CUTS=500 for more of them.
  */
 #include <fcntl.h>

@@ -236,7 +236,9 @@ static void test_a_value_that_holds_is_repeated_each_hour_and_one_of_a_gone_sign
 	                        past_ask(&past, "select count(*) from hour where id & 65535 = 2"));
 }
 
-/* --- What is old ------------------------------------------------------------------------------- */
+/*
+ * --- What is old -------------------------------------------------------------------------------
+ */
 
 static void days(int from, int until)
 {
@@ -275,7 +277,9 @@ static void test_a_file_that_is_too_large_loses_its_oldest_values(void)
 	                                 " pragma_page_size()") < 800000);
 }
 
-/* --- A disk that fails ------------------------------------------------------------------------- */
+/*
+ * --- A disk that fails -------------------------------------------------------------------------
+ */
 
 static struct history_state state(void)
 {
@@ -433,7 +437,9 @@ static void test_a_file_that_is_deleted_is_begun_again_with_all_that_holds(void)
 	expect(0, 5 * PAST_S, 1);
 }
 
-/* --- Files that are there ---------------------------------------------------------------------- */
+/*
+ * --- Files that are there ----------------------------------------------------------------------
+ */
 
 static void put_file(const char *text, size_t size)
 {

@@ -449,7 +449,9 @@ static void test_a_copy_without_its_log_is_read_too(void)
 	chmod(path, 0755);
 }
 
-/* --- Sums of minutes and hours ----------------------------------------------------------------- */
+/*
+ * --- Sums of minutes and hours -----------------------------------------------------------------
+ */
 
 #define STRETCHES 30
 
