@@ -7,6 +7,7 @@
 #include "src/engine/adopt.h"
 #include "src/engine/adopt_signal.h"
 #include "src/engine/alarm_item.h"
+#include "src/engine/alarm_refused.h"
 #include "src/engine/counters.h"
 #include "src/engine/device_facts.h"
 #include "src/engine/disown.h"
@@ -237,6 +238,8 @@ static void take_alarm(struct engine *e, struct alarm_item *item, const struct e
 	struct lane *lane = engine_lane(e, s);
 	uint32_t before = plan->rows[item->row];
 	const struct alarm_item *was = NULL;
+	const struct config_item *before_item;
+	bool visits, arms;
 
 	alarm_take_item(&lane->alarm, item, e->time.now_ns);
 	if (lane->alarm.list.polls)
@@ -247,15 +250,23 @@ static void take_alarm(struct engine *e, struct alarm_item *item, const struct e
 	if (!was)
 		return;
 	item->occurrence = was->occurrence;
-	if (same_text(s->item->por_alarm, old->table.signals[before].item->por_alarm)) {
+	before_item = old->table.signals[before].item;
+	visits = same_text(s->item->por_alarm, before_item->por_alarm) &&
+	         same_text(s->item->latch_alarm, before_item->latch_alarm) &&
+	         same_text(s->item->reset_latch, before_item->reset_latch);
+	arms = same_text(s->item->set_alarm, before_item->set_alarm);
+	if (visits)
+		item->visit = was->visit;
+	if (same_text(s->item->por_alarm, before_item->por_alarm)) {
 		item->restart = was->restart;
 		item->asks_por = was->restart.known;
 	}
-	if (!same_text(s->item->set_alarm, old->table.signals[before].item->set_alarm))
+	if (arms)
+		item->arming = was->arming;
+	if (!(alarm_is_arming(alarm_shown(&old->table.signals[before])) ? arms : visits))
 		return;
-	item->arming = was->arming;
 	s->attrs.flags |= old->table.signals[before].attrs.flags &
-	                  (OWS_ATTR_ALARM_UNARMED | OWS_ATTR_ALARM_POR);
+	                  (OWS_ATTR_ALARM_UNARMED | OWS_ATTR_ALARM_WHY);
 	s->alarm_err = old->table.signals[before].alarm_err;
 }
 

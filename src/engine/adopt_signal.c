@@ -18,7 +18,7 @@ static uint32_t flags_of(const struct signal *s, const struct signal *was)
 {
 	const uint32_t anew = OWS_ATTR_READ_ENABLE | OWS_ATTR_WRITE_ENABLE | OWS_ATTR_LIMITS |
 	                      OWS_ATTR_IN_WORK | OWS_ATTR_ALARM_POLLED | OWS_ATTR_ALARM_UNARMED |
-	                      OWS_ATTR_ALARM_POR;
+	                      OWS_ATTR_ALARM_WHY;
 	const struct config_item *item = s->item, *before = was->item;
 	uint32_t flags = was->attrs.flags & ~anew;
 

@@ -10,6 +10,7 @@
 #include "src/engine/alarm_effect.h"
 #include "src/engine/alarm_known.h"
 #include "src/engine/alarm_list.h"
+#include "src/engine/alarm_refused.h"
 #include "src/engine/alarm_text.h"
 #include "src/engine/completion.h"
 #include "src/engine/publish.h"
@@ -141,6 +142,8 @@ bool alarm_run(struct alarm_machine *m, struct lane *lane, struct alarm_request 
 		row = facts ? alarm_next(m->state, facts) : NULL;
 		if (!row)
 			return alarm_ask(m, lane, request, now_ns);
+		if (facts & FACT_KNOWN)
+			alarm_granted(lane->engine, alarm_current(m), alarm_asks(m->state));
 		if (m->state == ALARM_SET && facts & FACT_ND)
 			alarm_set_missing(lane, alarm_current(m), now_ns);
 		if (m->state == ALARM_LATCH && facts & FACT_KNOWN) {
@@ -206,6 +209,8 @@ static int take_alarm_value(struct engine *e, struct lane *lane, struct alarm_it
 	if (!signal_reads(s))
 		return 0;
 	err = engine_take_reading(e, lane, s, slot, answer, now_ns, &wait_ns);
+	if (wait_ns)
+		item->visit.not_before_ns = now_ns + wait_ns;
 	if (!err && item->occurrence.wants_after && !signal_is_string(s)) {
 		image_alarm_after(e->image, item->occurrence.journal, s->sample.value);
 		item->occurrence.wants_after = false;
@@ -236,6 +241,7 @@ static uint32_t facts_after(struct alarm_machine *m, struct lane *lane, const st
 		err = set < 0 ? set : 0;
 		if (err)
 			break;
+		alarm_granted(e, i, OWS_UNARMED_POR_READ);
 		i->por_cycle = m->list.cycle;
 		i->por_set = set;
 		if (set)
@@ -268,6 +274,7 @@ static uint32_t facts_after(struct alarm_machine *m, struct lane *lane, const st
 		err = take_latch(m, i, answer, data);
 		if (err)
 			break;
+		alarm_granted(e, i, OWS_UNARMED_LATCH);
 		if (i->latch_set)
 			engine_alarm_raised(e, lane, i, now_ns);
 		else
@@ -282,6 +289,7 @@ static uint32_t facts_after(struct alarm_machine *m, struct lane *lane, const st
 	case ALARM_LATCH_RESET_WAIT:
 		if (!err) {
 			i->reset_cycle = m->list.cycle;
+			alarm_granted(e, i, OWS_UNARMED_RESET);
 			engine_alarm_ended(e, i);
 		}
 		break;
@@ -298,8 +306,10 @@ static uint32_t facts_after(struct alarm_machine *m, struct lane *lane, const st
 	case ALARM_BYPASS:
 		break;
 	}
-	if (err && i)
+	if (err && i && alarm_of_device(err))
 		engine_alarm_failed(e, lane, i, err);
+	if (err && i)
+		alarm_refused(lane, i, alarm_asks(m->state), err, now_ns);
 	return err ? FACT_FAILED : FACT_DONE;
 }
 

@@ -10,6 +10,7 @@
 #include "src/engine/alarm_effect.h"
 #include "src/engine/alarm_item.h"
 #include "src/engine/alarm_known.h"
+#include "src/engine/alarm_refused.h"
 #include "src/engine/alarm_text.h"
 #include "src/engine/publish.h"
 #include "src/engine/retry.h"
@@ -27,41 +28,18 @@ static bool same_por(const struct alarm_item *a, const struct alarm_item *b)
 
 bool alarm_takes_part(const struct alarm_item *i, int64_t now_ns)
 {
-	return i->asks_por ||
-	       (i->listed && !(i->restart.known && now_ns < i->arming.not_before_ns));
-}
-
-static void show_unarmed(struct engine *e, struct alarm_item *i, int err, const char *property,
-                         const char *why)
-{
-	struct signal *s = alarm_signal(e, i);
-	bool before = s->attrs.flags & OWS_ATTR_ALARM_UNARMED;
-
-	s->attrs.flags &= ~(uint32_t)OWS_ATTR_ALARM_POR;
-	s->attrs.flags |= OWS_ATTR_ALARM_UNARMED;
-	if (property == i->strings.por)
-		s->attrs.flags |= OWS_ATTR_ALARM_POR;
-	s->alarm_err = err;
-	if (!before) {
-		log_warning(e->log, "%s (%s): the alarm cannot be armed: %s%s%s", s->item->name,
-		            s->item->path, property, why, err == -EBADRQC ? "" : error_text(err));
-		engine_read_now(e, s);
-	}
-	engine_publish(e, s);
+	return i->asks_por || (i->listed && now_ns >= i->visit.not_before_ns &&
+	                       !(i->restart.known && now_ns < i->arming.not_before_ns));
 }
 
 /* Arming begins anew, without the failures so far. True: the signal was shown as not armed. */
 static bool arm_anew(struct engine *e, struct alarm_item *i)
 {
-	struct signal *s = alarm_signal(e, i);
-
 	retry_clear(&i->arming.retry);
 	i->arming.not_before_ns = 0;
-	if (!(s->attrs.flags & OWS_ATTR_ALARM_UNARMED))
+	if (!alarm_is_arming(alarm_shown(alarm_signal(e, i))))
 		return false;
-	s->attrs.flags &= ~(uint32_t)(OWS_ATTR_ALARM_UNARMED | OWS_ATTR_ALARM_POR);
-	s->alarm_err = 0;
-	engine_publish(e, s);
+	alarm_hide(e, i);
 	return true;
 }
 
@@ -85,7 +63,8 @@ static void count_unarmed(struct lane *lane, struct alarm_item *i, int err, cons
 		return;
 	i->arming.not_before_ns = now_ns + wait_ns;
 	if (err != -ENODEV) /* its quality says so */
-		show_unarmed(e, i, err, property, why);
+		alarm_show(e, i, property == i->strings.por ? OWS_UNARMED_POR : OWS_UNARMED_SET,
+		           err, property, why);
 }
 
 /* --- Restarts -------------------------------------------------------------------------------- */
@@ -152,6 +131,7 @@ void alarm_rearm(struct alarm_machine *m, struct engine *e, uint32_t device)
 		i->arming.wanted = alarm_arms(i);
 		i->restart.known = i->restart.differs = i->asks_por = false;
 		arm_anew(e, i);
+		alarm_visit_anew(e, i);
 	}
 }
 

@@ -48,8 +48,8 @@ void engine_alarm_raised(struct engine *e, struct lane *lane, struct alarm_item 
 		item->occurrence.journal = image_alarm(e->image, &entry);
 		item->occurrence.entered |= channels;
 		item->occurrence.wants_after = true;
-		log_info(e->log, "%s: alarm, %s is %s", s->item->name, item->strings.latch,
-		         item->occurrence.latch_text);
+		log_notice(e->log, "%s: alarm, %s is %s", s->item->name, item->strings.latch,
+		           item->occurrence.latch_text);
 	}
 	engine_publish(e, s);
 }

@@ -156,6 +156,8 @@ void alarm_take_item(struct alarm_machine *m, struct alarm_item *item, int64_t n
 	item->asks_por = item->restart.known; /* unless it is listed there */
 	retry_clear(&item->arming.retry);
 	item->arming.not_before_ns = 0;
+	retry_clear(&item->visit.retry); /* what is shown stays until it succeeds */
+	item->visit.not_before_ns = 0;
 	item->por_cycle = item->latch_cycle = item->set_cycle = item->init_cycle = 0;
 	item->por_reset_cycle = item->reset_cycle = item->collect_cycle = 0;
 	m->named = false;

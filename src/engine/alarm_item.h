@@ -48,6 +48,13 @@ struct alarm_arming {
 	int64_t not_before_ns;
 };
 
+/* Its requests in a visit, but for arming and the value; a reload carries it over. */
+struct alarm_visit {
+	struct retry retry;
+	int64_t not_before_ns;
+	uint8_t refused; /* which the retries are of, as enum ows_unarmed; 0: none */
+};
+
 struct alarm_item {
 	uint32_t row, device;
 	struct alarm_strings strings;
@@ -56,6 +63,7 @@ struct alarm_item {
 	struct alarm_occurrence occurrence;
 	struct alarm_restart restart;
 	struct alarm_arming arming;
+	struct alarm_visit visit;
 	/* what was done for it in the cycle of that number; 0: never */
 	uint32_t por_cycle, latch_cycle, set_cycle, init_cycle, por_reset_cycle, reset_cycle;
 	uint32_t collect_cycle;

@@ -112,7 +112,7 @@ struct signal {
 	bool reading, writing; /* a request of the lane is with the bus */
 	bool alarming;         /* a request of the alarm machine counts for it */
 	uint16_t doubts; /* writes that may still reach it over other targets: it is not written */
-	int alarm_err;   /* why its alarm cannot be armed, if OWS_ATTR_ALARM_UNARMED */
+	int alarm_err;   /* why its alarm does not come, if OWS_ATTR_ALARM_UNARMED */
 	struct signal_entered entered;
 
 	struct ows_sample sample; /* as published */

@@ -51,6 +51,13 @@ int ows_alarm(struct ows *h, uint32_t number, struct ows_alarm *alarm)
 	return 0;
 }
 
+static uint8_t unarmed_of(uint32_t flags)
+{
+	if (!(flags & OWS_ATTR_ALARM_UNARMED))
+		return 0;
+	return (uint8_t)(1 + ((flags & OWS_ATTR_ALARM_WHY) >> OWS_ATTR_ALARM_WHY_SHIFT));
+}
+
 int ows_alarm_state(struct ows *h, int id, struct ows_alarm_state *state)
 {
 	const struct ows_record *r;
@@ -71,9 +78,7 @@ int ows_alarm_state(struct ows *h, int id, struct ows_alarm_state *state)
 		.limits = (a->flags & OWS_ATTR_LIMITS) != 0,
 		.limit_state = a->limit_state,
 		.limit_kind = a->limit_condition,
-		.unarmed = !(a->flags & OWS_ATTR_ALARM_UNARMED) ? 0
-	                   : a->flags & OWS_ATTR_ALARM_POR      ? 2
-	                                                        : 1,
+		.unarmed = unarmed_of(a->flags),
 		.shelved = a->shelved,
 	};
 	if (a->shelved)
@@ -113,6 +118,7 @@ const char *ows_alarm_event_text(uint8_t event)
 		[OWS_ALARM_ACKNOWLEDGED] = "acknowledged",
 		[OWS_ALARM_SHELVED] = "shelved",
 		[OWS_ALARM_UNSHELVED] = "unshelved",
+		[OWS_ALARM_FAILED] = "failed",
 	};
 
 	return event < sizeof(texts) / sizeof(texts[0]) && texts[event] ? texts[event] : "unknown";

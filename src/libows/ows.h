@@ -473,6 +473,7 @@ enum ows_alarm_event {
 	OWS_ALARM_ACKNOWLEDGED,
 	OWS_ALARM_SHELVED,
 	OWS_ALARM_UNSHELVED,
+	OWS_ALARM_FAILED, /* the device's alarm does not come: something of it is refused */
 };
 /* The words for a kind or an event ("high", "raised"); never NULL. */
 const char *ows_alarm_kind_text(uint8_t kind);
@@ -488,7 +489,7 @@ struct ows_alarm {
 	uint8_t kind;        /* enum ows_alarm_kind */
 	uint8_t event;       /* enum ows_alarm_event */
 	uint8_t quality;     /* of the signal at that moment */
-	char text[64];       /* what the latch showed, or why it was shelved; NUL-terminated */
+	char text[64];       /* the latch, why it was shelved, or what is refused; NUL-terminated */
 	struct ows_by who;   /* who acknowledged or shelved it */
 	uint64_t spare[4]; /* 0: room for later members */
 };
@@ -501,6 +502,14 @@ enum ows_limit_state {
 };
 const char *ows_limit_state_text(uint8_t state);
 
+/* Which request of owsd's for the device's alarm fails: then the alarm does not come. */
+enum ows_unarmed {
+	OWS_UNARMED_SET = 1,  /* cannot be armed: SetAlarm is missing or refused */
+	OWS_UNARMED_POR,      /* cannot be armed: PorAlarm cannot be set to 0 */
+	OWS_UNARMED_LATCH,    /* cannot be read: LatchAlarm */
+	OWS_UNARMED_RESET,    /* cannot be reset: ResetLatch */
+	OWS_UNARMED_POR_READ, /* cannot be read: PorAlarm */
+};
 /* How the alarms of a signal stand now. */
 struct ows_alarm_state {
 	uint32_t occurrences; /* of the device's alarm, since owsd started */
@@ -510,8 +519,7 @@ struct ows_alarm_state {
 	uint8_t limits;       /* 1: the signal has limit alarms */
 	uint8_t limit_state;  /* enum ows_limit_state */
 	uint8_t limit_kind;   /* enum ows_alarm_kind of the limit alarm; 0: none */
-	/* The device's alarm cannot be armed: 1 for its SetAlarm, 2 for PorAlarm; err says why. */
-	uint8_t unarmed;
+	uint8_t unarmed;      /* enum ows_unarmed, err of the sample says why; 0: nothing fails */
 	/* The limit alarm is shelved: its state is normal, its kind that of what is active. */
 	uint8_t shelved;
 	int64_t since_ns, until_ns; /* this and the next two: of the shelving */

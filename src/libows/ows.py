@@ -150,7 +150,8 @@ class Value(collections.namedtuple("Value", "value type quality detail target er
 ALARM_KINDS = ["none", "device", "power-on reset", "high high", "high", "low", "low low", "stale",
                "bad"]
 LIMIT_STATES = ["normal", "unacknowledged", "acknowledged", "returned to normal unacknowledged"]
-ALARM_EVENTS = ["unknown", "raised", "returned", "acknowledged", "shelved", "unshelved"]
+ALARM_EVENTS = ["unknown", "raised", "returned", "acknowledged", "shelved", "unshelved",
+                "failed"]
 REASONS = ["none", "set", "returned", "InitValue", "SafeValue", "last"]
 # Who did something: uid and pid are the kernel's word, name and person (for whom) the program's
 # claims; owsd itself has serial 0
@@ -171,7 +172,7 @@ Giver = collections.namedtuple("Giver", "who joined_ns period_ms commands refuse
 
 # How the alarms of a signal stand: occurrences of the device's alarm since owsd started, whether it
 # stands, whether the item is read as an input for want of an alarm search; limit alarms in words;
-# whether the device's alarm cannot be armed; None, or the Shelf of a limit alarm that is shelved
+# whether the device's alarm cannot be armed, read or reset; None, or the Shelf of a limit alarm that is shelved
 AlarmState = collections.namedtuple("AlarmState", "occurrences stands polled limits limit_state "
                                     "limit_kind unarmed shelf")
 Shelf = collections.namedtuple("Shelf", "since_ns until_ns who why")

@@ -41,7 +41,8 @@ static bool add_row(struct table *table, const struct when *now, const struct ow
 	const char *right = value_text(alarm, true, info->decimals, after);
 	char by[WHO_LINE] = "-";
 
-	if (alarm->event != OWS_ALARM_RAISED && alarm->event != OWS_ALARM_RETURNED)
+	if (alarm->event != OWS_ALARM_RAISED && alarm->event != OWS_ALARM_RETURNED &&
+	    alarm->event != OWS_ALARM_FAILED)
 		who_line(&alarm->who, by);
 	return table_add(table,
 	                 (const char *const[]){when_iso(now, alarm->occurred_ns, time), info->name,

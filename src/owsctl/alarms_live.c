@@ -13,6 +13,7 @@
 #include "src/show/text.h"
 #include "src/show/who.h"
 #include "src/signal/error.h"
+#include "src/signal/unarmed.h"
 #include "src/text/distance.h"
 
 struct live {
@@ -37,8 +38,13 @@ static const struct table_column columns[] = {
 static void add_row(struct live *live, const struct present *alarm)
 {
 	char value[128], words[READING_WORDS], span[WHEN_TEXT] = "-";
-	const char *state = alarm->unarmed ? "cannot be armed" : alarm->state;
+	const char *state = alarm->state;
+	char cannot[32];
 
+	if (alarm->unarmed) {
+		snprintf(cannot, sizeof(cannot), "cannot be %s", unarmed_verb(alarm->unarmed));
+		state = cannot;
+	}
 	reading_round(live->reading, alarm->decimals);
 	reading_show(live->reading, value, sizeof(value));
 	if (alarm->since_ns)

@@ -85,8 +85,9 @@ struct ows_attrs { /* 80 bytes, 20 words */
 #define OWS_ATTR_ALARM_POLLED 0x10 /* alarm item read as an ordinary input: no alarm search there */
 #define OWS_ATTR_ALARM_STANDS 0x20 /* the device's alarm stands */
 #define OWS_ATTR_LIMITS       0x40 /* it has limit alarms */
-#define OWS_ATTR_ALARM_UNARMED 0x80 /* the device's alarm cannot be armed */
-#define OWS_ATTR_ALARM_POR     0x100 /* that is for its PorAlarm; else for SetAlarm */
+#define OWS_ATTR_ALARM_UNARMED 0x80 /* the device's alarm does not come */
+#define OWS_ATTR_ALARM_WHY     0x700 /* that is for this enum ows_unarmed, less 1 */
+#define OWS_ATTR_ALARM_WHY_SHIFT 8
 
 struct ows_slot { /* 128 bytes */
 	struct ows_sample sample;

@@ -171,7 +171,8 @@ const char *journal_value(const struct journal_entry *entry, int decimals,
 bool journal_is_deed(const struct journal_entry *entry)
 {
 	return entry->is_command ||
-	       (entry->alarm.event != OWS_ALARM_RAISED && entry->alarm.event != OWS_ALARM_RETURNED);
+	       (entry->alarm.event != OWS_ALARM_RAISED &&
+	        entry->alarm.event != OWS_ALARM_RETURNED && entry->alarm.event != OWS_ALARM_FAILED);
 }
 
 const struct ows_by *journal_by(const struct journal_entry *entry)

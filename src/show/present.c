@@ -6,6 +6,7 @@
 #include "src/show/present.h"
 #include "src/show/who.h"
 #include "src/signal/error.h"
+#include "src/signal/unarmed.h"
 
 /* When the present alarm of a signal was raised, as far as the journal goes back; else 0. */
 static int64_t raised(struct ows *h, int signal, uint8_t kind)
@@ -28,25 +29,27 @@ static int64_t raised(struct ows *h, int signal, uint8_t kind)
 const char *present_unarmed(const struct ows_alarm_state *state, const struct reading *reading,
                             char words[ERROR_WORDS])
 {
-	const char *key = state->unarmed == 2 ? "PorAlarm" : "SetAlarm";
+	const char *verb = unarmed_verb(state->unarmed), *key = unarmed_key(state->unarmed);
+	bool reads = state->unarmed == OWS_UNARMED_LATCH || state->unarmed == OWS_UNARMED_POR_READ;
 	int error = reading_good(reading) ? reading->value.err : 0;
 
 	switch (-error) {
 	case 0:
-		snprintf(words, ERROR_WORDS, "cannot be armed");
+		snprintf(words, ERROR_WORDS, "cannot be %s: %s", verb, key);
 		break;
 	case EACCES:
-		snprintf(words, ERROR_WORDS, "cannot be armed: %s cannot be written", key);
+		snprintf(words, ERROR_WORDS, "cannot be %s: %s cannot be %s", verb, key,
+		         reads ? "read" : "written");
 		break;
 	case EBADRQC:
-		snprintf(words, ERROR_WORDS, "cannot be armed: %s", error_text(error));
+		snprintf(words, ERROR_WORDS, "cannot be %s: %s", verb, error_text(error));
 		break;
 	case EUCLEAN:
-		snprintf(words, ERROR_WORDS, "cannot be armed: %s is still set after 0 was written",
-		         key);
+		snprintf(words, ERROR_WORDS, "cannot be %s: %s is still set after 0 was written",
+		         verb, key);
 		break;
 	default:
-		snprintf(words, ERROR_WORDS, "cannot be armed: %s: %s", key, error_text(error));
+		snprintf(words, ERROR_WORDS, "cannot be %s: %s: %s", verb, key, error_text(error));
 	}
 	return words;
 }
@@ -91,7 +94,7 @@ static void look_at_device(struct present alarm, const struct ows_alarm_state *s
 		return;
 	alarm.state = present_unarmed(state, reading, unarmed);
 	alarm.since_ns = 0;
-	alarm.unarmed = true;
+	alarm.unarmed = state->unarmed;
 	add(ctx, &alarm);
 }
 

@@ -16,7 +16,8 @@ struct present {
 	const char *name, *kind, *state;
 	int64_t since_ns; /* 0: not known */
 	uint32_t occurrences;
-	bool device, polled, unarmed;
+	bool device, polled;
+	uint8_t unarmed;                       /* enum ows_unarmed */
 	const struct ows_alarm_state *shelved; /* NULL: it is not shelved */
 };
 

@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "src/show/standing.h"
+#include "src/signal/unarmed.h"
 
 struct ows_alarm_state standing_of(struct ows *h, int id)
 {
@@ -33,8 +34,12 @@ bool standing_wants_eyes(const struct ows_alarm_state *state)
 const char *standing_text(const struct ows_alarm_state *state, char words[STANDING_WORDS])
 {
 	const char *kind = ows_alarm_kind_text(state->limit_kind), *end = "", *mark = "! ";
-	const char *device = state->unarmed ? "! cannot be armed" : state->stands ? "! device" : "";
+	char device[32] = "";
 
+	if (state->unarmed)
+		snprintf(device, sizeof(device), "! cannot be %s", unarmed_verb(state->unarmed));
+	else if (state->stands)
+		snprintf(device, sizeof(device), "! device");
 	if (state->limit_state == OWS_LIMIT_ACKNOWLEDGED) {
 		mark = "";
 		end = ", acknowledged";
@@ -67,11 +72,15 @@ static void add(struct json *json, const char *kind, const char *state, bool dev
 
 void standing_json(struct json *json, const struct ows_alarm_state *state)
 {
+	char cannot[32];
+
 	json_array(json, "alarms");
 	if (state->stands)
 		add(json, ows_alarm_kind_text(OWS_ALARM_DEVICE), "stands", true);
-	if (state->unarmed)
-		add(json, ows_alarm_kind_text(OWS_ALARM_DEVICE), "cannot be armed", true);
+	if (state->unarmed) {
+		snprintf(cannot, sizeof(cannot), "cannot be %s", unarmed_verb(state->unarmed));
+		add(json, ows_alarm_kind_text(OWS_ALARM_DEVICE), cannot, true);
+	}
 	if (state->limit_state != OWS_LIMIT_NORMAL)
 		add(json, ows_alarm_kind_text(state->limit_kind),
 		    ows_limit_state_text(state->limit_state), false);

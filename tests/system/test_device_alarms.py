@@ -138,7 +138,8 @@ def transactions(scene, daemon, name):
 
 def one_restart(scene, daemon, why):
     """What is seen of one restart whose por stands: for seconds, and nothing more of it after."""
-    said = "the alarm cannot be armed: " + why
+    key = "PorAlarm" if why.startswith("por") else "SetAlarm"
+    said = "the alarm cannot be armed: " + (why if why.startswith(key) else f"{key}: {why}")
     until(lambda: said in daemon.log(), 20, daemon.log)
     # by the machine, or in its turn; a write that was on its way before is one more
     owsdtest.settled(lambda: transactions(scene, daemon, "lamp"))
@@ -146,13 +147,13 @@ def one_restart(scene, daemon, why):
     assert 1 <= transactions(scene, daemon, "lamp") <= 2, "its outputs are written once"
     assert daemon.log().count("the device has restarted") == 1, daemon.log()
     assert daemon.log().count(said) == 1, daemon.log()
-    assert len(history(scene, daemon)) == 1, history(scene, daemon)
+    told = [(a["alarm"], a["event"]) for a in history(scene, daemon)]
+    assert told.count(("device", "failed")) == 1 and len(told) == 2, told
     assert counter(scene, daemon, "power_on_resets") == 1
     assert scene.get(daemon, "buttons") is not None, "its value is good"
     listed = scene.owsctl(daemon, "list").stdout
     assert "! cannot be armed" in listed, listed
     alarms = scene.owsctl(daemon, "alarms").stdout
-    key = "PorAlarm" if why.startswith("por") else "SetAlarm"
     assert f"\nbuttons: cannot be armed: {key} " in alarms and "IO input" not in alarms, alarms
     assert max(map(len, alarms.splitlines())) <= 80, alarms
     got = json.loads(scene.owsctl(daemon, "--json", "get", "buttons").stdout)
@@ -191,6 +192,27 @@ def test_a_restart_whose_setalarm_or_por_is_refused_is_one_restart_until_that_he
             until(lambda: counter(scene, daemon, "power_on_resets") == 2, 20, "the next is one more")
             until(lambda: server[SWITCH + "/por"] == "0", 20, "and is ended")
             assert daemon.stop() == 0
+
+
+def test_a_mistyped_resetlatch_is_named_and_is_written_ever_rarer(scene):
+    board = {**BOARD, SWITCH + "/por": "0", SWITCH + "/latch.BYTE": "8"}
+    with peer.Peer(board) as server:
+        server.alarms = {SWITCH[1:]}
+        text = buttons_and_lamp(server.target).replace("latch.BYTE=0", "latch.BYT=0")
+        daemon = scene.owsd(text)
+        said = "the alarm cannot be reset: ResetLatch: latch.BYT cannot be written: "
+        until(lambda: said in daemon.log(), 20, daemon.log)
+        assert "alarm, latch.BYTE is 8" in daemon.log(), "the alarm is in the log without -v"
+        assert "! cannot be reset" in scene.owsctl(daemon, "list").stdout
+        alarms = scene.owsctl(daemon, "alarms").stdout
+        assert "\nbuttons: cannot be reset: ResetLatch: " in alarms, alarms
+        failed = [a for a in history(scene, daemon) if a["event"] == "failed"]
+        assert [a["remark"].startswith("cannot be reset: ResetLatch: ") for a in failed] == [True], failed
+        assert scene.get(daemon, "buttons") == "255", "its value is good, and is read"
+        server.values[SWITCH + "/latch.BYT"] = b"0"
+        until(lambda: "the alarm can be reset again" in daemon.log(), 70, daemon.log)
+        assert daemon.log().count(said) == 1, daemon.log()
+        assert "cannot be" not in scene.owsctl(daemon, "list").stdout
 
 
 if __name__ == "__main__":

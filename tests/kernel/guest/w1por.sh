@@ -38,7 +38,7 @@ owsd=$!
 does "the output has its InitValue" within $within_s reads relays 5
 does "the restart before owsd's start is seen" within $within_s said "the device has restarted"
 does "its alarm cannot be armed, and the log says why" within $within_s \
-	said "the alarm cannot be armed: set_alarm cannot be written: "
+	said "the alarm cannot be armed: SetAlarm: set_alarm cannot be written: "
 sed 's/^/# /' /tmp/log/owsd
 does "the chip has the InitValue" within $within_s reads pins 248
 before=$(writes)

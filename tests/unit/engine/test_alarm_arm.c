@@ -67,9 +67,14 @@ static unsigned count(const char *line)
 	return n;
 }
 
+/* Restarts in the journal. */
 static unsigned journal(void)
 {
-	return s.image.header->alarm_head;
+	unsigned n = 0;
+
+	for (uint32_t k = 0; k < s.image.header->alarm_head; k++)
+		n += s.image.alarms[k].kind == OWS_ALARM_POR;
+	return n;
 }
 
 static bool unarmed(unsigned record)

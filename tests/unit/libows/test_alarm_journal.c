@@ -237,7 +237,7 @@ static void test_every_kind_and_event_has_a_word(void)
 {
 	for (int i = OWS_ALARM_DEVICE; i <= OWS_ALARM_BAD; i++)
 		TEST_ASSERT_NOT_EQUAL(0, strcmp("none", ows_alarm_kind_text((uint8_t)i)));
-	for (int i = OWS_ALARM_RAISED; i <= OWS_ALARM_ACKNOWLEDGED; i++)
+	for (int i = OWS_ALARM_RAISED; i <= OWS_ALARM_FAILED; i++)
 		TEST_ASSERT_NOT_EQUAL(0, strcmp("unknown", ows_alarm_event_text((uint8_t)i)));
 	TEST_ASSERT_EQUAL_STRING("none", ows_alarm_kind_text(0));
 	TEST_ASSERT_EQUAL_STRING("none", ows_alarm_kind_text(255));

@@ -81,15 +81,19 @@ static void test_why_an_alarm_cannot_be_armed_names_the_key_and_stands_below_the
 {
 	static const struct {
 		int error;
-		uint32_t flags;
+		enum ows_unarmed unarmed;
 		const char *why;
 	} rows[] = {
-		{-EACCES, 0, "cannot be armed: SetAlarm cannot be written"},
-		{-EACCES, OWS_ATTR_ALARM_POR, "cannot be armed: PorAlarm cannot be written"},
-		{-EUCLEAN, OWS_ATTR_ALARM_POR,
+		{-EACCES, OWS_UNARMED_SET, "cannot be armed: SetAlarm cannot be written"},
+		{-EACCES, OWS_UNARMED_POR, "cannot be armed: PorAlarm cannot be written"},
+		{-EUCLEAN, OWS_UNARMED_POR,
 	         "cannot be armed: PorAlarm is still set after 0 was written"},
-		{-EBADRQC, 0, "cannot be armed: SetAlarm is not defined, or has no '='"},
-		{-EBADMSG, 0, "cannot be armed: SetAlarm: wrong checksum"},
+		{-EBADRQC, OWS_UNARMED_SET,
+	         "cannot be armed: SetAlarm is not defined, or has no '='"},
+		{-EBADMSG, OWS_UNARMED_SET, "cannot be armed: SetAlarm: wrong checksum"},
+		{-EACCES, OWS_UNARMED_LATCH, "cannot be read: LatchAlarm cannot be read"},
+		{-EACCES, OWS_UNARMED_POR_READ, "cannot be read: PorAlarm cannot be read"},
+		{-ENOENT, OWS_UNARMED_RESET, "cannot be reset: ResetLatch: no such property"},
 	};
 	char line[128], *end;
 
@@ -99,7 +103,9 @@ static void test_why_an_alarm_cannot_be_armed_names_the_key_and_stands_below_the
 		                            .quality = OWS_Q_GOOD,
 		                            .count = 1,
 		                            .err = rows[i].error};
-		struct ows_attrs attrs = {.flags = OWS_ATTR_ALARM_UNARMED | rows[i].flags};
+		struct ows_attrs attrs = {.flags = OWS_ATTR_ALARM_UNARMED |
+		                                   (rows[i].unarmed - 1)
+		                                           << OWS_ATTR_ALARM_WHY_SHIFT};
 
 		image_publish(&in.image, DOOR, &sample, &attrs, NULL);
 		image_news(&in.image);

@@ -38,7 +38,10 @@ static void test_each_state_has_its_words_and_its_mark(void)
 	         true},
 		{{.item = 1, .stands = 1}, "! device", true},
 		{{.item = 1, .polled = 1}, "-", false},
-		{{.item = 1, .unarmed = 1}, "! cannot be armed", true},
+		{{.item = 1, .unarmed = OWS_UNARMED_SET}, "! cannot be armed", true},
+		{{.item = 1, .unarmed = OWS_UNARMED_LATCH}, "! cannot be read", true},
+		{{.item = 1, .unarmed = OWS_UNARMED_RESET}, "! cannot be reset", true},
+		{{.item = 1, .unarmed = OWS_UNARMED_POR_READ}, "! cannot be read", true},
 		{{.item = 1,
 	          .unarmed = 1,
 	          .stands = 1,
@@ -72,7 +75,7 @@ static void test_no_words_are_cut(void)
 
 	for (unsigned kind = 0; kind < 256; kind++)
 		for (unsigned state = 0; state < 256; state++) {
-			struct ows_alarm_state odd = {.unarmed = 1,
+			struct ows_alarm_state odd = {.unarmed = OWS_UNARMED_RESET,
 			                              .limit_state = (uint8_t)state,
 			                              .limit_kind = (uint8_t)kind};
 
@@ -94,6 +97,7 @@ static void test_whatever_changes_the_words_of_an_alarm_is_a_change_of_its_row(v
 		{0},
 		{.stands = 1},
 		{.unarmed = 1},
+		{.unarmed = OWS_UNARMED_RESET},
 		{.unarmed = 1, .limit_state = OWS_LIMIT_UNACKNOWLEDGED},
 		{.limit_state = OWS_LIMIT_UNACKNOWLEDGED, .limit_kind = OWS_ALARM_H},
 		{.limit_state = OWS_LIMIT_UNACKNOWLEDGED, .limit_kind = OWS_ALARM_HH},

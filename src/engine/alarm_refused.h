@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: MIT */
+/* Requests of the alarm machine that fail: counted, told, and asked again later. */
+#ifndef ENGINE_ALARM_REFUSED_H
+#define ENGINE_ALARM_REFUSED_H
+
+#include "src/engine/state.h"
+
+/* Why the item is shown not to come, as enum ows_unarmed; 0: it is not. */
+uint8_t alarm_shown(const struct signal *s);
+/* Is that of arming, not of a visit (the reads of PorAlarm and LatchAlarm, ResetLatch)? */
+bool alarm_is_arming(uint8_t unarmed);
+/*
+ * Show that what is asked for property fails with err: in the image, and if that is new in the log
+ * and the journal; why: " cannot be written: ".
+ */
+void alarm_show(struct engine *e, struct alarm_item *item, enum ows_unarmed unarmed, int err,
+                const char *property, const char *why);
+void alarm_hide(struct engine *e, struct alarm_item *item);
+
+/* Is the error that of the whole device? Then the quality says so, and not the alarm. */
+bool alarm_of_device(int err);
+/* A request of a visit failed, an item error: the back-off counts as that of a read. */
+void alarm_refused(struct lane *lane, struct alarm_item *item, enum ows_unarmed unarmed, int err,
+                   int64_t now_ns);
+/* It succeeded; unarmed may be 0: nothing. */
+void alarm_granted(struct engine *e, struct alarm_item *item, uint8_t unarmed);
+/* A visit begins anew, without the failures so far. */
+void alarm_visit_anew(struct engine *e, struct alarm_item *item);
+/* Which request the state makes, as enum ows_unarmed; 0: none of these. */
+uint8_t alarm_asks(enum alarm_state state);
+
+#endif
