@@ -257,7 +257,9 @@ static void test_ten_thousand_signals_are_found_in_the_steps_of_a_sort(void)
 		TEST_ASSERT_TRUE(force_find(&left, &many[i], &c, text, sizeof(text)));
 		TEST_ASSERT_EQUAL_INT64(i, c.value);
 	}
-	/* a search through all compares 5000 times for each signal, a sort and its search 40 times */
+	/*
+	 * a search through all compares 5000 times for each signal, a sort and its search 40 times
+	 */
 	TEST_ASSERT_GREATER_THAN(10 * MANY, compared);
 	TEST_ASSERT_LESS_THAN(100 * MANY, compared);
 	force_close(&left);
