@@ -53,8 +53,14 @@ class Terminal:
                 self.text += os.read(self.master, 65536).decode(errors="replace")
         return found
 
+    def interrupt(self):
+        """Ctrl-C ends what runs in front. To owsd, the SIGHUP of a window that closes is a reload."""
+        self.paste("\x03")
+        self.paste("echo en''ded\n")
+        self.shows(r"\r\nended\r\n")
+
     def close(self):
-        """The terminal is closed, as by its window: what runs in it ends."""
+        """The terminal is closed, as by its window."""
         os.close(self.master)
         os.kill(self.pid, signal.SIGHUP)
         os.waitpid(self.pid, 0)
@@ -87,7 +93,10 @@ def test_the_blocks_of_use_it_work_when_they_are_pasted(scene):
         finally:
             second.close()
     finally:
-        first.close()
+        try:
+            first.interrupt()
+        finally:
+            first.close()
 
 
 if __name__ == "__main__":
