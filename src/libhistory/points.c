@@ -8,7 +8,7 @@
 #include "src/history/schema.h"
 #include "src/history/sql.h"
 #include "src/libhistory/open.h"
-#include "src/libhistory/signal.h"
+#include "src/libhistory/steps.h"
 #include "src/libows/ows.h"
 
 #define STEPS 512

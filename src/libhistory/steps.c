@@ -9,7 +9,7 @@
 #include "src/history/schema.h"
 #include "src/history/sql.h"
 #include "src/libhistory/open.h"
-#include "src/libhistory/signal.h"
+#include "src/libhistory/steps.h"
 #include "src/signal/value.h"
 
 _Static_assert((int)OWS_HISTORY_STOPPED == (int)HISTORY_STOPPED &&

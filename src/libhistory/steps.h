@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Rows and gaps of a signal, as its steps. */
-#ifndef LIBHISTORY_SIGNAL_H
-#define LIBHISTORY_SIGNAL_H
+#ifndef LIBHISTORY_STEPS_H
+#define LIBHISTORY_STEPS_H
 
 #include "src/libhistory/handle.h"
 
