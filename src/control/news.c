@@ -43,8 +43,10 @@ void news_due(struct control *c, unsigned place)
 
 void news_ring(struct control *c, const uint32_t *word)
 {
-	if (word)
-		__atomic_store_n(&c->news.word, word, __ATOMIC_RELEASE);
+	if (word) {
+		__atomic_store_n(&c->news.word, word, __ATOMIC_RELAXED);
+		news_due(c, NEWS_IMAGE);
+	}
 	bell_ring(c->news.bell);
 }
 
@@ -76,20 +78,16 @@ static void ring_place(struct control_place *p)
 	__atomic_store_n(&p->news_state, NEWS_IDLE, __ATOMIC_RELEASE);
 }
 
-/* An image that a reload has unmapped meanwhile is an error to the kernel, and no harm. */
-static void wake_image(struct control *c)
+static void take_due(struct control *c)
 {
-	const uint32_t *word = __atomic_exchange_n(&c->news.word, NULL, __ATOMIC_ACQUIRE);
-
-	if (word)
-		segment_wake(word, INT_MAX);
+	bell_clear(c->news.bell);
+	for (unsigned i = 0; i < NEWS_WORDS; i++)
+		c->news.taken[i] |= __atomic_exchange_n(&c->news.due[i], 0, __ATOMIC_ACQUIRE);
 }
 
 static bool is_due(const struct control *c, unsigned i)
 {
-	if (i == NEWS_IMAGE)
-		return __atomic_load_n(&c->news.word, __ATOMIC_ACQUIRE) != NULL;
-	return __atomic_load_n(&c->news.due[i / 32], __ATOMIC_ACQUIRE) >> i % 32 & 1;
+	return c->news.taken[i / 32] >> i % 32 & 1;
 }
 
 static void ring_one(struct control *c, unsigned i)
@@ -98,12 +96,12 @@ static void ring_one(struct control *c, unsigned i)
 	bool was_slow = pace->rest_until_ns != 0;
 	int64_t begun_ns = ows_now(), took_ns;
 
-	if (i == NEWS_IMAGE) {
-		wake_image(c);
-	} else {
-		__atomic_fetch_and(&c->news.due[i / 32], ~(1u << i % 32), __ATOMIC_ACQ_REL);
+	c->news.taken[i / 32] &= ~(1u << i % 32);
+	/* an image that a reload has unmapped meanwhile is an error to the kernel, and no harm */
+	if (i == NEWS_IMAGE)
+		segment_wake(__atomic_load_n(&c->news.word, __ATOMIC_RELAXED), INT_MAX);
+	else
 		ring_place(&c->places[i]);
-	}
 	took_ns = ows_now() - begun_ns;
 	if (was_slow)
 		c->news.slow--;
@@ -118,11 +116,12 @@ static void ring_one(struct control *c, unsigned i)
  * Ring all that are not slow, then at most one that is and has rested; whoever rings meanwhile is
  * served before the next slow one. Returns how long nothing is due.
  */
-static int64_t ring_due(struct control *c)
+int64_t news_turn(struct control *c)
 {
 	int64_t now_ns = ows_now(), next_ns = INT64_MAX;
 	unsigned slow = NEWS_PACES;
 
+	take_due(c);
 	for (unsigned i = 0; i < NEWS_PACES; i++) {
 		const struct news_pace *pace = &c->news.paces[i];
 
@@ -151,8 +150,7 @@ static void *run(void *arg)
 
 	while (!__atomic_load_n(&c->news.stop, __ATOMIC_ACQUIRE)) {
 		poll(&bell, 1, left_ns < 0 ? -1 : (int)((left_ns + NS_PER_MS - 1) / NS_PER_MS));
-		bell_clear(c->news.bell);
-		left_ns = ring_due(c);
+		left_ns = news_turn(c);
 	}
 	return NULL;
 }

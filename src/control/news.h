@@ -14,6 +14,8 @@ int news_open(struct control *c);
 void news_close(struct control *c);
 int news_start(struct control *c);
 void news_stop(struct control *c);
+/* What the thread does when its bell has rung: how long nothing is due then; -1: until it rings. */
+int64_t news_turn(struct control *c);
 /* Any thread: the place is to be rung; news_ring() has to follow. */
 void news_due(struct control *c, unsigned place);
 /* Any thread, never blocks; word: of the image, whose sleepers are to be woken too, or NULL. */

@@ -101,6 +101,7 @@ struct control_place {
 /* The places, and the sleepers of the image. */
 #define NEWS_IMAGE OWS_GIVERS
 #define NEWS_PACES (OWS_GIVERS + 1)
+#define NEWS_WORDS ((NEWS_PACES + 31) / 32)
 
 struct control {
 	pthread_mutex_t lock; /* places, but for what belongs to the engine's thread; config */
@@ -144,9 +145,11 @@ struct control {
 		bool running;
 		uint32_t stop;
 		int bell;
-		uint32_t due[OWS_GIVERS / 32];
-		const uint32_t *word; /* of an image, that has to be woken; else NULL */
-		unsigned slow;        /* of the thread, and so paces */
+		uint32_t due[NEWS_WORDS]; /* a bit for each place and for the image */
+		const uint32_t *word;     /* of the image, on which programs sleep */
+		/* of the thread */
+		uint32_t taken[NEWS_WORDS]; /* what was due and is not rung yet */
+		unsigned slow;
 		struct news_pace {
 			int64_t rest_until_ns; /* 0: it is not slow */
 		} paces[NEWS_PACES];

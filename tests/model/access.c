@@ -200,7 +200,7 @@ int segment_wake(const uint32_t *word, int how_many)
 
 static struct {
 	uint32_t *rings, *heard;
-} bells[2];
+} bells[3];
 
 void access_bell(enum access_bells bell, uint32_t *rings, uint32_t *heard)
 {
@@ -210,17 +210,19 @@ void access_bell(enum access_bells bell, uint32_t *rings, uint32_t *heard)
 
 static bool is_bell(int fd)
 {
-	return fd == ACCESS_BELL || fd == ACCESS_NEWS;
+	return fd >= ACCESS_BELL && fd <= ACCESS_ORDERING;
 }
 
 static uint32_t rings_of(int fd)
 {
-	return (uint32_t)access_load(bells[fd - ACCESS_BELL].rings, 4, __ATOMIC_RELAXED,
+	return (uint32_t)access_load(bells[fd - ACCESS_BELL].rings, 4,
+	                             fd == ACCESS_ORDERING ? __ATOMIC_ACQUIRE : __ATOMIC_RELAXED,
 	                             ACCESS_SITE);
 }
 
 ssize_t __real_write(int fd, const void *from, size_t size);
 ssize_t __wrap_write(int fd, const void *from, size_t size);
+ssize_t __wrap_send(int fd, const void *from, size_t size, int flags);
 ssize_t __wrap_read(int fd, void *to, size_t size);
 int __wrap_ppoll(struct pollfd *polled, nfds_t n, const struct timespec *limit,
                  const sigset_t *mask);
@@ -234,9 +236,16 @@ ssize_t __wrap_write(int fd, const void *from, size_t size)
 	if (!is_bell(fd))
 		return __real_write(fd, from, size);
 	rings = bells[fd - ACCESS_BELL].rings;
-	access_rmw(rings, 4, ACCESS_ADD, 1, __ATOMIC_RELAXED, ACCESS_SITE);
+	access_rmw(rings, 4, ACCESS_ADD, 1,
+	           fd == ACCESS_ORDERING ? __ATOMIC_RELEASE : __ATOMIC_RELAXED, ACCESS_SITE);
 	segment_wake(rings, INT_MAX);
 	return (ssize_t)size;
+}
+
+ssize_t __wrap_send(int fd, const void *from, size_t size, int flags)
+{
+	(void)flags;
+	return __wrap_write(fd, from, size);
 }
 
 ssize_t __wrap_read(int fd, void *to, size_t size)

@@ -35,10 +35,11 @@ bool access_cas(volatile void *at, size_t size, uint64_t *expected, uint64_t val
 void access_fence(int order, struct site *site);
 
 /*
- * Descriptors of which the model is the kernel: eventfds and pipes that wake. write() rings; epoll
- * waits for the first, ppoll() for the second until read().
+ * Descriptors of which the model is the kernel: eventfds and sockets that wake. write() and send()
+ * ring; epoll waits for the first, ppoll() for the others until read(). The last one orders, as
+ * eventfds do, what stands before a ring and after a read; no order of the others is relied on.
  */
-enum access_bells { ACCESS_BELL = 1000, ACCESS_NEWS };
+enum access_bells { ACCESS_BELL = 1000, ACCESS_NEWS, ACCESS_ORDERING };
 /* For setup; rings counts how often it rang, heard is what the sleeper knows of that. */
 void access_bell(enum access_bells bell, uint32_t *rings, uint32_t *heard);
 

@@ -24,7 +24,7 @@ hammer-arm64:
 # The same sources, with each access to shared memory a step of the model: within a minute
 MODEL     := $(wildcard tests/model/*.c)
 MODEL_CODE := src/shm/image.c src/shm/entries.c src/shm/reader.c src/shm/giver.c src/host/bells.c \
-             src/control/control.c src/libows/alive.c src/libows/changes.c src/libows/get.c \
+             src/control/control.c src/control/news.c src/libows/alive.c src/libows/changes.c src/libows/get.c \
              src/libows/set.c src/libows/give.c src/libows/command.c src/libows/wait.c \
              src/libows/news.c src/libows/alarm.c src/libows/origin.c
 # What runs as a thread of the model, beside that; all else here is the model itself
@@ -34,7 +34,7 @@ $(B)/model/%.o: %.c tests/model/access.h $(B)/with/cc
 	$(call compile,$(if $(filter $<,$(MODEL_RUN) $(MODEL_CODE)),-include tests/model/access.h))
 
 $(B)/model/model: $(patsubst %.c,$(B)/model/%.o,$(MODEL) $(MODEL_CODE)) $(B)/core.a $(B)/with/ld
-	$(call link,-Wl$(comma)--wrap=write -Wl$(comma)--wrap=read -Wl$(comma)--wrap=ppoll \
+	$(call link,-Wl$(comma)--wrap=write -Wl$(comma)--wrap=send -Wl$(comma)--wrap=read -Wl$(comma)--wrap=ppoll \
 	    -Wl$(comma)--wrap=syscall -Wl$(comma)--wrap=ows_now -Wl$(comma)--wrap=nanosleep)
 
 model: all $(B)/model/model

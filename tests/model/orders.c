@@ -6,7 +6,9 @@
 #include "src/host/engine_thread.c"
 
 #include <math.h>
+#include <poll.h>
 
+#include "src/control/news.h"
 #include "src/control/private.h"
 #include "src/engine/state.h"
 #include "src/libows/handle.h"
@@ -31,7 +33,7 @@ static struct engine engine;
 static struct serving serving;
 static struct host host;
 static struct control control;
-static uint32_t rings, news_rings, message;
+static uint32_t rings, news_rings, due_rings, message;
 
 /* What the threads found out; put aside and back with them. */
 static struct {
@@ -40,8 +42,9 @@ static struct {
 	bool text_got;
 	int err[GIVERS]; /* of the programs' calls */
 	uint32_t acknowledged, message, shelf;
-	uint32_t heard, heard_news; /* of the bells, by owsd and by a giver */
-	int64_t now_ns;             /* the clock; it goes on when somebody naps */
+	/* of the bells, by the engine's thread, by a giver, by the thread of news */
+	uint32_t heard, heard_news, heard_due;
+	int64_t now_ns; /* the clock; it goes on when somebody naps */
 } found;
 
 int64_t __wrap_ows_now(void);
@@ -156,9 +159,10 @@ static void setup(void)
 	serving.memory.image.header = &header;
 	host.now = &serving;
 	host.bells = (struct bells){.own = ACCESS_BELL, .awake = 1};
-	rings = news_rings = message = 0;
+	rings = news_rings = due_rings = message = 0;
 	access_bell(ACCESS_BELL, &rings, &found.heard);
 	access_bell(ACCESS_NEWS, &news_rings, &found.heard_news);
+	access_bell(ACCESS_ORDERING, &due_rings, &found.heard_due);
 	explore_track("rings", &rings, 4);
 }
 
@@ -531,33 +535,62 @@ static void message_taken(void)
 		explore_fail("asleep on message %u of 2", found.message);
 }
 
-/* --- News for a giver ------------------------------------------------------------------------- */
+/* --- News for a giver, and for a reader -------------------------------------------------------- */
+
+static uint32_t last_message;
 
 static void setup_news(void)
 {
 	setup();
+	last_message = 1; /* with two the giver makes ten million states */
 	explore_track("message", &message, 4);
 	explore_track("news", &header.news, 4);
 	explore_track("waits", &header_of(0)->waits, 4);
 	explore_track("pipe", &news_rings, 4);
+	explore_track("due rings", &due_rings, 4);
 	handles[0].join.news = ACCESS_NEWS;
 	memset(&control, 0, sizeof(control));
 	control.engine.memories[0] = givers[0];
 	control.engine.end = 1;
 	control.places[0].news = ACCESS_NEWS;
+	news_begin(&control.places[0]);
+	control.news.bell = ACCESS_ORDERING;
+	explore_track("due", &control.news.due[0], 4);
+	explore_track("due image", &control.news.due[NEWS_IMAGE / 32], 4);
+	explore_keep(&control.news.taken, sizeof(control.news.taken));
+	explore_keep(&control.places[0].news_state, sizeof(control.places[0].news_state));
 	host.control = &control;
+}
+
+static void setup_news_read(void)
+{
+	setup_news();
+	last_message = 2;
+	handles[0].join.news = -1;
 }
 
 static void engine_publishes(void)
 {
-	for (uint32_t n = 1; n <= 2; n++) {
+	for (uint32_t n = 1; n <= last_message; n++) {
 		word_set(&message, n);
 		announce(&host);
 		explore_forget(n);
 	}
 }
 
-static void giver_waits_for_news(void)
+static void thread_rings(void)
+{
+	struct pollfd bell = {.fd = ACCESS_ORDERING, .events = POLLIN};
+	const struct timespec long_ns = {.tv_sec = 1};
+
+	for (;;) {
+		ppoll(&bell, 1, &long_ns, NULL);
+		news_turn(&control);
+		explore_forget(found.heard_due);
+	}
+}
+
+static void program_waits_for_news(void)
 {
 	uint32_t news = 0;
 
@@ -567,6 +600,12 @@ static void giver_waits_for_news(void)
 			explore_fail("woken by news %u, found message %u", news, found.message);
 		explore_forget(news);
 	}
+}
+
+static void last_message_taken(void)
+{
+	if (found.message != last_message)
+		explore_fail("asleep on message %u of %u", found.message, last_message);
 }
 
 /* clang-format off */
@@ -585,8 +624,10 @@ const struct scenario command_scenarios[] = {
 	 .end = shelved},
 	{"a thread of owsd wakes the engine's", setup_own, 2, {engine_own, worker},
 	 .end = message_taken},
-	{"a giver waits for news", setup_news, 2, {engine_publishes, giver_waits_for_news},
-	 .end = message_taken},
+	{"a giver waits for news", setup_news, 3,
+	 {engine_publishes, program_waits_for_news, thread_rings}, .end = last_message_taken},
+	{"a reader waits for news", setup_news_read, 3,
+	 {engine_publishes, program_waits_for_news, thread_rings}, .end = last_message_taken},
 	{NULL},
 };
 /* clang-format on */
