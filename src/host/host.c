@@ -79,7 +79,7 @@ static int start_rest(struct host *h, char *why, size_t why_size)
 	int err = control_start(h->control, &h->now->memory.layout);
 
 	if (err)
-		snprintf(why, why_size, "cannot start the thread of the control socket: %s",
+		snprintf(why, why_size, "cannot start the threads of the control socket: %s",
 		         strerror(-err));
 	else
 		err = host_start_workers(h->now, why, why_size);

@@ -72,8 +72,8 @@ def one_after_another(scene, kind):
 
 def test_each_thread_in_turn_that_cannot_be_made_at_start_is_refused_with_a_reason(scene):
     ends = one_after_another(scene, "thread")
-    # the engine, the control socket, two targets, the server, the lamps
-    assert len(ends) == 6, ends
+    # the engine, the control socket and its news, two targets, the server, the lamps
+    assert len(ends) == 7, ends
     for _, up, log in ends:
         assert not up and "Resource temporarily unavailable" in log, log
         assert "thread" in log or "serve" in log, log
