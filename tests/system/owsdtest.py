@@ -39,8 +39,9 @@ BUILD = pathlib.Path(os.environ.get("OWSD_BUILD", SOURCE / "build"))
 OWSD = BUILD / "owsd"
 OWSCTL = BUILD / "owsctl"
 NOP, READ, WRITE, DIRALL = 1, 2, 3, 7
-# What a busy machine, a sanitizer and other tests beside may make of the seconds that a wait names
+# The longest that a busy machine, a sanitizer and other tests beside may make of the seconds of a wait
 PATIENCE = 90
+QUIET_PATIENCE = 20
 _serial = itertools.count(1)
 _ports = []  # names that keep the ports for us, until we end
 
@@ -82,18 +83,26 @@ def need(program):
     assert program.exists(), f"{program} is not built"
 
 
+def patience(seconds):
+    """What those seconds are at the load of now: QUIET_PATIENCE at least, and more in proportion to
+    what waits for each processor. A sanitizer's code is slow."""
+    load = os.getloadavg()[0] / (os.cpu_count() or 1)
+    slow = 2 if BUILD.name in ("asan", "tsan") else 1
+    return max(seconds, min(PATIENCE, QUIET_PATIENCE * slow * max(1, load)))
+
+
 def until(condition, seconds, what="", step=0.02):
     """Wait until condition() is true and return its value; fail after so many seconds, but not
-    before PATIENCE. what is said then: a text, or a function that makes it."""
-    seconds = max(seconds, PATIENCE)
-    deadline = time.monotonic() + seconds
+    before patience() is over. what is said then: a text, or a function that makes it."""
+    begun = time.monotonic()
     while True:
-        late = time.monotonic() >= deadline
+        passed = time.monotonic() - begun
+        late = passed >= seconds and passed >= patience(seconds)
         value = condition()
         if value:
             return value
         if late:
-            raise Late(f"not within {seconds:g} s: {what() if callable(what) else what or condition}")
+            raise Late(f"not within {passed:.0f} s: {what() if callable(what) else what or condition}")
         time.sleep(step)
 
 
@@ -106,6 +115,22 @@ def settled(look, times=20, step=0.05):
         return seen[-times:] == seen[-1:] * times
     until(same, PATIENCE, lambda: f"it settles: {seen[-times:]}", step)
     return seen[-1]
+
+
+def worked(instance, seconds):
+    """Wait until the engine of this instance (a name, or an open ows.Ows) has beaten for so long:
+    what it has to do in that time is done, however busy the machine is."""
+    sys.path.insert(0, str(SOURCE / "src/libows"))
+    import ows
+    with ows.Ows(instance) if isinstance(instance, str) else contextlib.nullcontext(instance) as signals:
+        def beat():
+            with contextlib.suppress(BlockingIOError):  # it was being written
+                last[0] = signals._slot(0)[0][1]  # record 0 is the engine's heart
+            return last[0]
+        last = [0]
+        until(beat, 10, "the engine's heart beats")
+        begun = beat()
+        until(lambda: beat() - begun >= seconds * 1e9, seconds + 10, "the engine works on")
 
 
 def open_files(process):
@@ -225,20 +250,17 @@ class Program:
     def thaw(self):
         self.signal(signal.SIGCONT)
 
-    def wait(self, seconds=PATIENCE):
-        """The exit status; fails if it does not end in time, for which it has PATIENCE."""
-        seconds = max(seconds, PATIENCE)
-        try:
-            return self.process.wait(seconds)
-        except subprocess.TimeoutExpired:
-            raise Late(f"{self.command[0]} did not end within {seconds:g} s") from None
+    def wait(self, seconds=QUIET_PATIENCE):
+        """The exit status; fails if it does not end in time."""
+        until(lambda: not self.running(), seconds, f"{self.command[0]} ends", step=0.005)
+        return self.process.returncode
 
     def kill(self):
         """SIGKILL; returns when it is gone."""
         self.process.kill()
         return self.wait()
 
-    def stop(self, seconds=PATIENCE):
+    def stop(self, seconds=QUIET_PATIENCE):
         """SIGTERM (owserver: SIGKILL); returns the exit status."""
         self.thaw()
         self.signal(self.last_signal)
@@ -320,9 +342,10 @@ class Owsd(Program):
                                  *options],
                          {"NOTIFY_SOCKET": address, **(env or {})})
 
-    def ready(self, seconds=PATIENCE):
-        """Wait until it says READY=1 to the service manager, no longer than the seconds."""
-        deadline = time.monotonic() + seconds
+    def ready(self, seconds=None):
+        """Wait until it says READY=1 to the service manager, no longer than the seconds; without
+        them as long as until() does."""
+        begun = time.monotonic()
         self.notify.settimeout(0.05)
         while True:
             try:
@@ -332,8 +355,9 @@ class Owsd(Program):
                 pass
             if not self.running():
                 raise AssertionError(f"owsd ended with status {self.process.returncode}")
-            if time.monotonic() > deadline:
-                raise Late(f"owsd not ready within {seconds:g} s")
+            passed = time.monotonic() - begun
+            if passed > (patience(0) if seconds is None else seconds):
+                raise Late(f"owsd not ready within {passed:.0f} s")
 
 
 class Scene:

@@ -5,7 +5,6 @@
 import json
 import subprocess
 import sys
-import time
 
 import owsdtest
 import peer
@@ -143,7 +142,7 @@ def one_restart(scene, daemon, why):
     until(lambda: said in daemon.log(), 20, daemon.log)
     # by the machine, or in its turn; a write that was on its way before is one more
     owsdtest.settled(lambda: transactions(scene, daemon, "lamp"))
-    time.sleep(6)
+    owsdtest.worked(daemon.name, 6)
     assert 1 <= transactions(scene, daemon, "lamp") <= 2, "its outputs are written once"
     assert daemon.log().count("the device has restarted") == 1, daemon.log()
     assert daemon.log().count(said) == 1, daemon.log()

@@ -116,7 +116,8 @@ class Plant:
         expected = sorted(expected)
         owsdtest.until(lambda: len(self.server.writes) >= len(expected), 30,
                        lambda: f"{what}: {self.server.writes}")
-        time.sleep(3)  # longer than owsd waits for a program to come back
+        # longer than owsd waits for a program to come back
+        owsdtest.worked(self.daemon.name, 3)
         assert sorted(self.server.writes) == expected, (what, self.server.writes)
 
 

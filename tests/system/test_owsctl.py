@@ -5,6 +5,7 @@
 import fcntl
 import json
 import os
+import pathlib
 import pty
 import re
 import select
@@ -13,7 +14,6 @@ import struct
 import subprocess
 import sys
 import termios
-import time
 
 import owsdtest
 import peer
@@ -114,7 +114,8 @@ def test_a_command_that_the_output_does_not_follow_is_shown(scene):
 def test_wait_sees_the_temperature_rise(scene):
     server, daemon, room, _ = house(scene)
     waiting = owsctl(scene, daemon, "wait", "room", ">", "25", "-t", "80")
-    time.sleep(0.2)
+    scene.until(lambda: f"{daemon.name}.image" in pathlib.Path(f"/proc/{waiting.pid}/maps").read_text(),
+                10, "it has the image")
     assert waiting.poll() is None
     server.write(room + "/temperature", 25.5)
     assert waiting.wait(owsdtest.PATIENCE) == 0

@@ -5,7 +5,6 @@
 import errno
 import os
 import subprocess
-import time
 
 import owsdtest
 import peer
@@ -275,7 +274,8 @@ def test_a_server_that_accepts_and_closes_or_never_speaks_is_not_up(scene):
             bus.ok("down")
             bus.fails(f"read {T}", errno.ENOTCONN)
             server.mode = "dead"
-            time.sleep(0.5)
+            before = server.connections
+            owsdtest.until(lambda: server.connections > before, 10, "it tries again")
             bus.fails(f"read {T}", errno.ENOTCONN)
             server.down()
             server.mode = "normal"

@@ -322,6 +322,13 @@ def test_what_is_no_regular_file_is_not_waited_for(scene):
     until(lambda: get(scene, daemon, "cellar") == "12", 10, "the file is taken")
 
 
+def pending(daemon, number):
+    """Is a signal of this number still to be taken?"""
+    with open(f"/proc/{daemon.pid}/status", encoding="ascii", errors="replace") as status:
+        bits = next(line.split()[1] for line in status if line.startswith("ShdPnd:"))
+    return int(bits, 16) >> (number - 1) & 1
+
+
 def test_a_reload_that_has_to_wait_reads_the_file_once(scene):
     daemon, target = start(scene)
     way = owsdtest.segment(daemon.name, "image")
@@ -334,7 +341,7 @@ def test_a_reload_that_has_to_wait_reads_the_file_once(scene):
         until(lambda: "no program sees the values" in daemon.log(), 10)
         daemon.config.write_text(text)
         daemon.signal(signal.SIGHUP)
-        time.sleep(0.5)
+        until(lambda: not pending(daemon, signal.SIGHUP), 10, "it has the second SIGHUP")
         assert "unknown key Nonsense" not in daemon.log(), daemon.log()
     finally:
         os.rmdir(way)

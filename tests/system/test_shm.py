@@ -120,10 +120,11 @@ def test_after_an_orderly_end_all_can_be_looked_at_and_nothing_set(scene):
 
 def test_a_removed_image_is_told(scene):
     daemon, _ = start(scene)
-    os.unlink(owsdtest.segment(daemon.name, "image"))
-    scene.until(lambda: "restart owsd" in daemon.log(), 10, "it says what to do")
-    owsdtest.logged(daemon, f"{owsdtest.segment(daemon.name, 'image')} was removed")
-    time.sleep(1.5)
+    with ows.Ows(daemon.name) as signals:
+        os.unlink(owsdtest.segment(daemon.name, "image"))
+        scene.until(lambda: "restart owsd" in daemon.log(), 10, "it says what to do")
+        owsdtest.logged(daemon, f"{owsdtest.segment(daemon.name, 'image')} was removed")
+        owsdtest.worked(signals, 1.5)
     assert daemon.log().count("was removed") == 1
     assert daemon.stop() == 0
 
@@ -227,7 +228,7 @@ def test_of_two_owsd_of_one_instance_the_one_whose_lock_was_removed_ends(scene):
     scene.until(lambda: scene.get(second, "room") == "21", 10, "the other goes on")
     # thawed, the first one may have put its own image there before it saw the lock
     with opened(scene, second.name, control=True) as signals:
-        time.sleep(2.5)
+        owsdtest.worked(signals, 2.5)
         signals.set("relays", 9)
         scene.until(lambda: signals.get("back").value == 9, 10, "and takes commands")
         assert not signals.stale()

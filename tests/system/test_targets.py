@@ -249,7 +249,8 @@ def test_a_liar_that_stands_first_does_not_keep_a_device_of_the_second_wire(scen
         assert (relay, b"3") in true.writes and (relay, b"3") not in liar.writes
         before = targets(scene, daemon)[true.target]["moves"]
         for _ in range(20):  # and there it stays
-            time.sleep(0.1)
+            seen = len(true.requests)
+            until(lambda: len(true.requests) > seen, 10, "it reads on")
             assert served(scene, daemon, "room", true.target) == 21.5
         assert targets(scene, daemon)[true.target]["moves"] == before
 
