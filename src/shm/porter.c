@@ -179,7 +179,9 @@ static bool take_order(struct porter *p, unsigned lane)
 	message_lay_out(&m, (struct iovec){bytes, sizeof(bytes)});
 	m.header.msg_control = &control;
 	m.header.msg_controllen = sizeof(control);
-	n = recvmsg(p->lanes[lane], &m.header, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
+	do
+		n = recvmsg(p->lanes[lane], &m.header, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
+	while (n < 0 && errno == EINTR);
 	if (n < (ssize_t)sizeof(m.head))
 		return false;
 	c = CMSG_FIRSTHDR(&m.header);
