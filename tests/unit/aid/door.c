@@ -33,7 +33,6 @@ static void make_layout(struct door *door, uint32_t generation, uint32_t start_i
 	TEST_ASSERT_EQUAL(0, giver_layout_make(&door->layout, &plan));
 }
 
-/* Make the memory of a giver; a lie may be in it. */
 /* In the door's thread: what Unity counts is of the test's thread alone. */
 static void must(bool held)
 {
@@ -41,6 +40,7 @@ static void must(bool held)
 		abort();
 }
 
+/* Make the memory of a giver; a lie may be in it. */
 static void make_memory(struct door *door, struct door_giver *giver, uint32_t serial)
 {
 	size_t size = door->layout.size;
@@ -215,12 +215,16 @@ void door_open(struct door *door, const char *instance, uint32_t generation, uin
 void door_close(struct door *door)
 {
 	const uint64_t one = 1;
+	bool woken;
+	int err;
 
 	pthread_mutex_lock(&door->lock);
 	door->stop = true;
 	pthread_mutex_unlock(&door->lock);
-	TEST_ASSERT_EQUAL(sizeof(one), write(door->wake, &one, sizeof(one)));
-	pthread_join(door->thread, NULL);
+	woken = write(door->wake, &one, sizeof(one)) == sizeof(one);
+	err = woken ? 0 : errno;
+	if (woken)
+		err = pthread_join(door->thread, NULL);
 	close(door->listener);
 	close(door->wake);
 	for (unsigned i = 0; i < door->count; i++) {
@@ -235,6 +239,8 @@ void door_close(struct door *door)
 	unlinkat(door->place.fd, door->file, 0);
 	place_close(&door->place);
 	giver_layout_free(&door->layout);
+	TEST_ASSERT_TRUE_MESSAGE(woken, strerror(err));
+	TEST_ASSERT_EQUAL_INT_MESSAGE(0, err, strerror(err));
 }
 
 void door_reload(struct door *door, uint32_t generation, uint32_t start_id, const uint8_t *types,

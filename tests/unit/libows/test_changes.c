@@ -7,6 +7,7 @@
 #include "unity.h"
 
 #include "src/shm/futex.h"
+#include "tests/unit/aid/asleep.h"
 #include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/instance.h"
 
@@ -181,13 +182,11 @@ static void test_the_time_is_over_when_nothing_changes(void)
 
 static void *change_later(void *ctx)
 {
-	struct timespec pause = {.tv_nsec = 20000000};
-
 	(void)ctx;
-	nanosleep(&pause, NULL);
+	until_asleep(NULL);
 	image_news(&in.image); /* news that are no change wake nobody for long */
 	segment_wake(&in.image.header->news, 1000);
-	nanosleep(&pause, NULL);
+	until_asleep(NULL);
 	put(E, 1);
 	segment_wake(&in.image.header->news, 1000);
 	return NULL;

@@ -9,6 +9,7 @@
 
 #include "unity.h"
 
+#include "tests/unit/aid/asleep.h"
 #include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/instance.h"
 
@@ -265,10 +266,8 @@ static void test_who_waits_on_a_dead_owsd_wakes_at_his_time(void)
 
 static void *replace_later(void *arg)
 {
-	const struct timespec pause = {.tv_nsec = 20000000};
-
 	(void)arg;
-	nanosleep(&pause, NULL);
+	until_asleep(NULL);
 	start_second();
 	return NULL;
 }

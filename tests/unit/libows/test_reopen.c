@@ -13,6 +13,7 @@
 #include "unity.h"
 
 #include "src/shm/futex.h"
+#include "tests/unit/aid/asleep.h"
 #include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/instance.h"
 
@@ -268,9 +269,7 @@ static void test_wait_returns_for_news_time_and_retirement(void)
 
 static void *publish_later(void *arg)
 {
-	struct timespec pause = {.tv_nsec = 20000000};
-
-	nanosleep(&pause, NULL);
+	until_asleep(NULL);
 	if (arg != NULL)
 		image_state(&in.image, OWS_STATE_RETIRED);
 	else

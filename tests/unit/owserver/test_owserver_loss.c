@@ -11,6 +11,7 @@
 #include "unity.h"
 
 #include "hal/bus/worker.h"
+#include "tests/unit/aid/asleep.h"
 #include "tests/unit/aid/owserver_scene.h"
 
 void setUp(void)
@@ -184,8 +185,7 @@ static void test_a_worker_that_sleeps_notices_that_the_server_goes(void)
 	                                       why, sizeof(why)));
 	TEST_ASSERT_EQUAL_INT(0, worker_start(worker));
 	up = worker_says(worker, BUS_UP);
-	/* most likely it sleeps then */
-	usleep(50000);
+	until_asleep("bus-under-test");
 	stop_peer();
 	down = worker_says(worker, BUS_DOWN);
 	TEST_ASSERT_EQUAL_INT(0, worker_stop(worker, PATIENCE));

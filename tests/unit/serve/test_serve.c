@@ -103,6 +103,8 @@ void setUp(void)
 	                            .ring = no_ring};
 	char name[24], why[128];
 
+	serve = NULL;
+	fd = -1;
 	snprintf(name, sizeof(name), "serve-%d", (int)getpid());
 	instance_start(&in, name, signals, 3);
 	instance_lives_on(&in);
@@ -122,7 +124,8 @@ void setUp(void)
 
 void tearDown(void)
 {
-	close(fd);
+	if (fd >= 0)
+		close(fd);
 	serve_stop(serve);
 	serve_destroy(serve);
 	rmdir(folder);
@@ -154,13 +157,23 @@ static int32_t answer(int sock)
 	return reply.type;
 }
 
+/* The server takes requests in turn: who is answered now came after all that was asked before. */
+static void until_it_has_seen_all(void)
+{
+	int sock = connect_to_it();
+
+	ask(sock, FRAME_NOP, NULL);
+	TEST_ASSERT_EQUAL_INT(0, answer(sock));
+	close(sock);
+}
+
 /* But for keep-alives, of which there is one when this takes a second. */
 static bool is_silent(int sock)
 {
 	uint8_t head[FRAME_HEADER];
 	ssize_t n;
 
-	usleep(50000);
+	until_it_has_seen_all();
 	while ((n = recv(sock, head, sizeof(head), MSG_DONTWAIT | MSG_PEEK)) > 0) {
 		n = recv(sock, head, sizeof(head), MSG_WAITALL);
 		frame_get_header(head, &reply);
@@ -335,6 +348,7 @@ static void test_who_hangs_up_wants_no_answer(void)
 	g = next_guest();
 	TEST_ASSERT_EQUAL_UINT32(0, __atomic_load_n(&g->unwanted, __ATOMIC_RELAXED));
 	close(fd);
+	fd = -1; /* tearDown() closes no descriptor that another thread has made of this number */
 	for (int i = 0; i < 60000 && !__atomic_load_n(&g->unwanted, __ATOMIC_RELAXED); i++)
 		usleep(1000);
 	TEST_ASSERT_EQUAL_UINT32(1, __atomic_load_n(&g->unwanted, __ATOMIC_RELAXED));
@@ -398,7 +412,7 @@ static void test_the_room_of_a_look_for_buses_is_kept_until_it_is_back(void)
 		if (i < 3)
 			others[i] = next_guest();
 	}
-	usleep(50000);
+	until_it_has_seen_all();
 	TEST_ASSERT_NULL(port->take(port->ctx));
 	port->released(port->ctx, g);
 	give(next_guest(), "/28.551DDF030000/id\n");
@@ -514,7 +528,7 @@ static void test_directories_wait_for_each_other_when_all_rooms_are_taken(void)
 		if (i < 4)
 			g[i] = next_guest();
 	}
-	usleep(50000);
+	until_it_has_seen_all();
 	TEST_ASSERT_NULL(port->take(port->ctx));
 	/* one of those who wait goes, the other is served all the same */
 	close(socks[5]);

@@ -17,6 +17,7 @@
 #include "src/shm/futex.h"
 #include "src/shm/lock.h"
 #include "src/shm/segment.h"
+#include "tests/unit/aid/asleep.h"
 #include "tests/unit/aid/folder.h"
 
 #define SIZE 8192
@@ -263,9 +264,7 @@ static void test_a_wait_ends_in_time(void)
 /* More than 32 bits of nanoseconds, and of seconds if the halves were taken for each other. */
 static void *wake_later(void *arg)
 {
-	struct timespec pause = {.tv_nsec = 60000000};
-
-	nanosleep(&pause, NULL);
+	until_asleep(NULL);
 	__atomic_store_n((uint32_t *)arg, 1, __ATOMIC_RELEASE);
 	segment_wake(arg, 1);
 	return NULL;
