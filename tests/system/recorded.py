@@ -53,6 +53,11 @@ def set_relays(scene, daemon, value):
     assert done.returncode == 0, done
 
 
+def recorded(scene, name, value, directory=None):
+    """Wait until that is the last good value of the signal that is on the disk."""
+    until(lambda: Past(scene, directory).good(name)[-1:] == [value], 20, f"{name} {value} is recorded")
+
+
 class Past:
     """What the history has: of each signal (time, value or None, quality or reason); events."""
 

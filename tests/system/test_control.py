@@ -292,10 +292,15 @@ def test_of_another_pid_namespace_the_user_counts_and_the_process_is_unknown(sce
     done = scene._run(["unshare", "--pid", "--fork", "true"], 20)
     if done.returncode:
         owsdtest.skip("no pid namespaces here")
-    text = "door, err, fds = hello(path)\nprint(err, set(fds, 2, 8, 1), flush=True)\ntime.sleep(3)"
+    goes_on = scene.file("goes on", "")
+    text = ("door, err, fds = hello(path)\nprint(err, set(fds, 2, 8, 1), flush=True)\n"
+            f"while os.path.exists('{goes_on}'):\n    time.sleep(0.05)")  # pace
     inside = [*private.as_user("plc"), PY, "-c", CLIENT + text, door(name)]
     giver = scene.start(["unshare", "--pid", "--fork", "--kill-child", *inside])
     owsdtest.logged(giver, "0 0")
+    until(lambda: ctl(scene, "reader", name, "get", "relays").stdout.strip() == "8", 20)
+    assert connected(scene, name) == 1
+    os.unlink(goes_on)
     assert giver.wait() == 0
     until(lambda: connected(scene, name) == 0, 20)
 
@@ -340,10 +345,10 @@ libc.pwrite.argtypes = [ctypes.c_int, ctypes.c_void_p, ctypes.c_size_t, ctypes.c
 def connect():
     door, err, fds = hello(path)
     threading.Thread(target=lambda: libc.pwrite(fds[0], at, 64, 512), daemon=True).start()
+    os.read(faults, 32)  # it waits for the page
     return door, err
 stays = connect()
 leaves = connect()
-time.sleep(0.5)
 leaves[0].close()
 print("holds", stays[1], leaves[1], flush=True)
 time.sleep(600)

@@ -152,6 +152,18 @@ def push(scene, daemon, *options, prefix=(), env=None):
                         scene.path / "spool", *options], {**DIRECT, **(env or {})})
 
 
+def tells(daemon, pattern):
+    """Wait until whoever has the service manager of this owsd says something like that to it."""
+    said = []
+
+    def told():
+        with contextlib.suppress(BlockingIOError):
+            said.append(daemon.notify.recv(4096).decode())
+        return re.search(pattern, "\n".join(said))
+
+    until(told, 20, lambda: f"the status: {said}")
+
+
 def spooled(scene, kind="lines"):
     """All points in the files of the spool, the oldest file first."""
     points = []
@@ -186,8 +198,7 @@ def test_each_change_arrives_with_its_time_and_quality_and_what_is_bad_without_a
         arrives(server, "title", "DS18B20")
         for value in (1, 2, 7):
             set_relays(scene, daemon, value)
-            time.sleep(0.1)
-        arrives(server, "relays", "7")
+            arrives(server, "relays", str(value))
         until(lambda: "quality=8i" in str(server.points.get("absent")), 20, "the device is absent")
         taken = time.time_ns()
         assert face.stop() == 0
@@ -432,7 +443,7 @@ def test_until_the_clock_is_known_nothing_is_sent_and_then_each_value_with_its_t
         begun = time.time_ns()
         set_relays(scene, daemon, 4)
         ended = time.time_ns()
-        time.sleep(1)  # longer than Every
+        time.sleep(1)  # longer than Every: it sends nothing
         assert not server.requests and not spooled(scene)
         daemon.config.write_text(text(scene, server.url))
         face.signal(signal.SIGHUP)
@@ -443,9 +454,9 @@ def test_until_the_clock_is_known_nothing_is_sent_and_then_each_value_with_its_t
         assert face.stop() == 0
         waiting = len(server.requests)
         daemon.config.write_text(text(scene, server.url, ClockWait=86400))
-        face = push(scene, daemon)
-        logged(face, "pushing to")
-        time.sleep(0.5)
+        daemon.notify.setblocking(False)
+        face = push(scene, daemon, env={"NOTIFY_SOCKET": daemon.notify.getsockname()})
+        tells(daemon, r"STATUS=.* [1-9]\d* in memory")
         assert face.stop() == 0
         assert "in memory are lost: the time is not known yet" in face.log(), face.log()
         assert len(server.requests) == waiting and not spooled(scene)
@@ -456,17 +467,8 @@ def test_its_status_and_its_command_line(scene):
         daemon = scene.owsd(text(scene, server.url))
         daemon.notify.setblocking(False)
         face = push(scene, daemon, env={"NOTIFY_SOCKET": daemon.notify.getsockname()})
-        said = []
-
-        def status():
-            try:
-                said.append(daemon.notify.recv(4096).decode())
-            except BlockingIOError:
-                pass
-            return re.search(r"STATUS=pushing; [1-9]\d* values sent, \d+ in memory, 0 batches wait, "
-                             r"0 refused, 0 kB and 0 values dropped", "\n".join(said))
-
-        until(status, 20, lambda: f"the status: {said}")
+        tells(daemon, r"STATUS=pushing; [1-9]\d* values sent, \d+ in memory, 0 batches wait, "
+                      r"0 refused, 0 kB and 0 values dropped")
         other = push(scene, daemon)
         logged(other, "another owsd-influx writes there")
         logged(other, "configuration")
@@ -526,9 +528,8 @@ def test_the_genuine_victoriametrics_has_what_owsctl_said(scene):
     for value in (1, 2, 9):
         set_relays(scene, daemon, value)
         said.append((time.time() * 1000, float(scene.get(daemon, "relays"))))
-        time.sleep(0.2)
-    until(lambda: [v for _, v in exported("value", "relays")[0]][-1:] == [9], 60,
-          lambda: f"the last one arrives: {exported('value', 'relays')}")
+        until(lambda: [v for _, v in exported("value", "relays")[0]][-1:] == [value], 60,
+              lambda: f"{value} arrives: {exported('value', 'relays')}")
     points, series = exported("value", "relays")
     assert [v for _, v in sorted(points)] == [v for _, v in said], (points, said)
     for (when, _), (by, _) in zip(sorted(points), said):

@@ -19,6 +19,7 @@ import time
 import faulty
 import owsdtest
 from owsdtest import BUILD, place, raw, skip, until
+from recorded import recorded
 
 WEB = BUILD / "owsd-web"
 SENSOR, RELAY = "/28.A0B1C2000001", "/29.A0B1C2000004"
@@ -426,7 +427,7 @@ def test_trends_come_from_the_recorder(scene):
     until(lambda: "recording " in recorder.log(), 20, "it records")
     for value in (5, 9, 7):
         set_relays(scene, daemon, value)
-        time.sleep(0.1)
+        recorded(scene, "relays", str(value), history)
 
     def trend(name="relays", **more):
         now = int(time.time() * 1000)
