@@ -95,7 +95,7 @@ static unsigned below(unsigned n)
 
 static void look(void)
 {
-	usleep(LOOK_US);
+	usleep(LOOK_US); /* pace */
 	reader_look();
 	client_step();
 }

@@ -71,7 +71,7 @@ int daemon_end(void)
 			owsd = -1;
 			return status;
 		}
-		usleep(100000);
+		usleep(100000); /* pace */
 	}
 	return -1;
 }

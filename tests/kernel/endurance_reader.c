@@ -35,7 +35,7 @@ static struct ows *open_as(enum ows_mode mode)
 	for (int i = 0; i < 600 && err; i++) {
 		err = ows_open("OWS", mode, &h);
 		if (err)
-			usleep(100000);
+			usleep(100000); /* pace */
 	}
 	return err ? NULL : h;
 }
@@ -156,7 +156,7 @@ void reader_set_relays(unsigned pins)
 
 	while (err == -ESTALE && ows_now() < until) {
 		if (ows_reopen(control))
-			usleep(10000);
+			usleep(10000); /* pace */
 		err = ows_set(control, output, pins, NULL);
 	}
 	if (err)

@@ -172,6 +172,27 @@ def check_contributing_has_a_row_for_each_helper_of_the_tests(tree):
             yield page, tree.line_of(page, f"`{name}`"), f"there is no {name}; take the row out"
 
 
+# --- Sleeps -----------------------------------------------------------------------------------------
+
+SLEEP = {"c": re.compile(r"\b(?:u|nano)?sleep\([^)]"), "python": re.compile(r"\btime\.sleep\([^)]"),
+         "sh": re.compile(r"(?:^|[;&|({]|\b(?:do|then|else))\s*u?sleep [0-9]")}
+
+
+def check_each_sleep_of_a_test_says_what_it_stands_for(tree):
+    """On its line: a comment, the shortest of which is `pace`, for one of a loop that looks. A
+    bench measures what is after a while."""
+    for files, kind in ((tree.ending(".c"), "c"),
+                        ({*tree.ending(".py"), *tree.scripts("python")}, "python"),
+                        ({*tree.ending(".sh"), *tree.scripts("sh", "bash")}, "sh")):
+        for file in files:
+            if not file.startswith("tests/") or file.startswith(("tests/bench/", "tests/kernel/guest/bench")):
+                continue
+            for n, line in enumerate(tree.text(file).split("\n"), 1):
+                found = SLEEP[kind].search(line)
+                if found and not re.search(r"/\*|//|#", line[found.start():]):
+                    yield file, n, "a bare sleep; wait for the thing itself, or say behind it what it stands for"
+
+
 # --- Syntax -----------------------------------------------------------------------------------------
 
 def check_python_is_python_and_no_test_hides_another(tree):

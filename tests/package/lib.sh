@@ -26,7 +26,7 @@ within() {
 	shift
 	until "$@"; do
 		[ "$(date +%s)" -lt $deadline ] || return 1
-		sleep 0.2
+		sleep 0.2 # pace
 	done
 }
 

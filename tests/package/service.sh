@@ -11,7 +11,7 @@ export LC_ALL=C
 finish() {
 	[ $failed = 0 ] || journalctl -b -o short-monotonic --no-pager -n 80
 	echo "@@RIG-EXIT $1"
-	sleep 1
+	sleep 1 # the line leaves the console
 	systemctl poweroff --force --force
 }
 trap 'finish 1' INT TERM

@@ -35,7 +35,7 @@ static int64_t now(void)
 
 static void nap(void)
 {
-	nanosleep(&(struct timespec){.tv_nsec = 200000}, NULL);
+	nanosleep(&(struct timespec){.tv_nsec = 200000}, NULL); /* pace */
 }
 
 static bool take(struct bus_answer *answer)

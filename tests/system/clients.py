@@ -317,7 +317,7 @@ class Owhttpd(Client):
         """The body, which begins with name; None when nobody listens. owhttpd closes a connection a
         little later than it ends, and then now and then another one, or a wrong page comes: so
         there is a pause before each request, and it may be made again."""
-        time.sleep(0.02)
+        time.sleep(0.02)  # pause
         try:
             with socket.create_connection(("127.0.0.1", self.port), timeout=20) as s:
                 s.sendall(f"GET {path} HTTP/1.0\r\nHost: localhost\r\n\r\n".encode())

@@ -103,7 +103,7 @@ def until(condition, seconds, what="", step=0.02):
             return value
         if late:
             raise Late(f"not within {passed:.0f} s: {what() if callable(what) else what or condition}")
-        time.sleep(step)
+        time.sleep(step)  # pace
 
 
 def settled(look, times=20, step=0.05):

@@ -249,7 +249,7 @@ class Peer:
             try:
                 if not s.recv(1, socket.MSG_PEEK):
                     raise Gone
-                time.sleep(every)
+                time.sleep(every)  # a peer that is slow
             except socket.timeout:
                 pass
             if stop.is_set():

@@ -42,7 +42,7 @@ def set(fds, record, value, stamp):
             taken, _, err = struct.unpack_from("<IIi", map, slot + 48)
             if taken == stamp:
                 return err
-            time.sleep(0.001)
+            time.sleep(0.001)  # pace
     return None
 path = sys.argv[1]
 """
@@ -191,7 +191,7 @@ def test_a_stranger_is_answered_and_keeps_nobody_out(scene):
     good(scene, name)
     crowd = program(scene, "stranger", name, "doors = [hello(path) for _ in range(500)]\n"
                                              "print(sorted({d[1] for d in doors}), flush=True)\n"
-                                             "time.sleep(60)")
+                                             "time.sleep(60)")  # until it is killed
     owsdtest.logged(crowd, "[-13]")
     assert ctl(scene, "plc", name, "set", "-w", "20", "relays", "4").returncode == 0
     until(lambda: connected(scene, name) == 0, 20)
@@ -222,7 +222,7 @@ def test_a_stopped_program_holds_up_neither_others_nor_a_reload(scene):
     name = daemon.name
     good(scene, name)
     stopped = program(scene, "plc", name, "all = [hello(path) for _ in range(20)]\nprint('in', flush=True)\n"
-                                          "time.sleep(600)")
+                                          "time.sleep(600)")  # until it is killed
     owsdtest.logged(stopped, "in")
     stopped.freeze()
     for i in range(5):
@@ -242,7 +242,7 @@ def test_a_program_that_dies_is_lost_though_its_child_has_all_it_had(scene):
     goes_on = scene.file("goes on", "")
     parent = program(scene, "plc", name, "door, err, fds = hello(path)\nset(fds, 2, 3, 1)\n"
                                          f"child = os.fork()\nwhile not child and os.path.exists('{goes_on}'):\n"
-                                         "    time.sleep(0.05)\n"
+                                         "    time.sleep(0.05)  # pace\n"
                                          "print('forked', child, flush=True)\ntime.sleep(60 if child else 0)")
     owsdtest.logged(parent, "forked")
     child = int(parent.log().split()[1])
@@ -278,7 +278,7 @@ def test_a_hole_in_a_memory_harms_its_giver_alone(scene):
                                         "libc.fallocate.argtypes = [ctypes.c_int] * 2 + [ctypes.c_long] * 2\n"
                                         "print(libc.fallocate(fds[0], 3, 0, size), flush=True)\n"
                                         "while True:\n    os.write(fds[1], struct.pack('<Q', 1))\n"
-                                        "    time.sleep(0.01)")
+                                        "    time.sleep(0.01)  # pace")
     owsdtest.logged(giver, "0")
     assert ctl(scene, "plc", name, "set", "-w", "20", "relays", "7").returncode == 0
     good(scene, name)
@@ -319,9 +319,9 @@ while len(kept) < 200:
     for fd in fds:
         os.close(fd)
 while any(os.fstat(file).st_blocks for file, _ in kept):
-    time.sleep(0.01)
+    time.sleep(0.01)  # pace
 print("all are empty", flush=True)
-time.sleep(60)
+time.sleep(60)  # until it is killed
 """)
     owsdtest.logged(keeper, "all are empty")
 
@@ -351,7 +351,7 @@ stays = connect()
 leaves = connect()
 leaves[0].close()
 print("holds", stays[1], leaves[1], flush=True)
-time.sleep(600)
+time.sleep(600)  # until it is killed
 """
 
 

@@ -27,10 +27,10 @@ h = ows.Ows({name!r}, control=True)
 h.beat(600000)
 h.set("relays", 5)
 while h.get("relays").value != 5:
-    time.sleep(0.01)
+    time.sleep(0.01)  # pace
 print("controls", flush=True)
 while True:
-    time.sleep(0.05)
+    time.sleep(0.05)  # pace
     try:
         if h.stale():
             h.reopen()
@@ -59,7 +59,7 @@ threading.Thread(target=lambda: libc.read(fds[2], at, 1), daemon=True).start()
 print("holds", flush=True)
 while True:
     memory[144:148] = struct.pack("<I", 1)
-    time.sleep(0.001)
+    time.sleep(0.001)  # pace
 """
 
 

@@ -204,7 +204,7 @@ def test_rubbish_in_a_givers_memory_harms_nobody(scene):
                 n = min(rng.choice((1, 4, 64, 4096)), len(m) - at)
                 m[at:at + n] = rng.randbytes(n)
                 ring()
-                time.sleep(0.005)
+                time.sleep(0.005)  # rubbish comes at this pace
         assert daemon.running()
         # what rubbish can still command is what its type can hold
         for path, data in server.writes:
@@ -278,7 +278,7 @@ def opened():
         try:
             return ows.Ows("T", control=True)
         except OSError:
-            time.sleep(0.05)
+            time.sleep(0.05)  # pace
 
 with opened() as s:
     is_set = False
@@ -293,7 +293,7 @@ with opened() as s:
                 s.reopen()
             except OSError:
                 pass
-        time.sleep(0.1)
+        time.sleep(0.1)  # pace
 """)
     script = scene.file("script", """
         mount -t tmpfs -o size=4m tmpfs /dev/shm || exit 77

@@ -70,7 +70,7 @@ def life(scene, daemon, config):
     config.write_text(more(scene))
     daemon.signal(signal.SIGHUP)
     for _ in range(4):
-        time.sleep(0.1)
+        time.sleep(0.1)  # in all this time
         true_or_bad(scene, daemon)
 
 
@@ -137,7 +137,7 @@ def start_and_end(scene, kind, before):
         return False
     for _ in range(5):
         true_or_bad(scene, daemon)
-        time.sleep(0.05)
+        time.sleep(0.05)  # in all this time
     daemon.signal(signal.SIGTERM)
     assert daemon.wait(20) == 0, (daemon.wait(), daemon.log())
     return True

@@ -50,7 +50,7 @@ def test_after_a_suspend_no_value_of_before_is_good(scene):
     until(lambda: room(scene, daemon, environment)["good"], 20, "good at first")
     assert faulty.ctl(scene, daemon, environment, "set", "relays", "5").returncode == 0
     for hours in range(1, 8):
-        time.sleep(random.random())
+        time.sleep(random.random())  # at any moment
         clock.jump(boot=HOUR)
         seen = []
 
@@ -170,7 +170,7 @@ def test_reloads_in_heaps_end_with_the_last_file(scene):
         config.with_suffix(".new").write_text(faulty.house(scene, more=n % 2 == 1))
         config.with_suffix(".new").rename(config)
         daemon.signal(signal.SIGHUP)
-        time.sleep(random.random() / 50)
+        time.sleep(random.random() / 50)  # at any moment
     until(lambda: scene.get(daemon, "hall") == "19.5", 20, "the table of the last file")
     fds, reloads = settled(lambda: (len(open_files(daemon)), daemon.log().count("reload:")))
     daemon.signal(signal.SIGHUP)

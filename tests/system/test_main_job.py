@@ -166,7 +166,7 @@ h = ows.Ows({daemon.name!r}, control=True)
 h.beat(2000)
 h.set("high", 77)
 while True:
-    time.sleep(0.1)
+    time.sleep(0.1)  # pace
     try:
         h.beat(2000)
     except ows.Stale:
@@ -199,7 +199,7 @@ h = ows.Ows({daemon.name!r}, control=True)
 while True:
     h.beat(300)
     h.set("high", 70)
-    time.sleep(0.1)
+    time.sleep(0.1)  # pace
 """])
     until(lambda: server.read(path + "/temphigh") == "70", 10, "it controls")
     program.freeze()

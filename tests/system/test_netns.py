@@ -178,7 +178,7 @@ except OSError:
 half = socket.create_connection(({V4[0]!r}, {PORT}))
 half.sendall(served.request(served.READ, {ROOM!r})[:30])
 print('both', flush=True)
-time.sleep(600)
+time.sleep(600)  # until it is killed
 """)
         until(lambda: "both" in two.log(), 30)
         until(lambda: faulty.counters(scene, daemon)["served_connections"] == 2, 10)
@@ -203,7 +203,7 @@ for byte in served.request(served.READ, '/x' * 1000):
     except OSError:
         print('dropped', flush=True)
         break
-    time.sleep(0.25)
+    time.sleep(0.25)  # a client that is slow
 """)
         assert slow.wait(90) == 0 and "dropped" in slow.log(), slow.log()
         until(lambda: clients(scene, daemon) == 0, 10)

@@ -30,17 +30,17 @@ for output in sys.argv[4:]:
 while any(s.get(o).applied == 0 for o in sys.argv[4:]):
     if beats:
         s.beat(int(beats * 1000))
-    time.sleep(0.05)
+    time.sleep(0.05)  # pace
 print("set", flush=True)
 while fate != "once":
-    time.sleep(0.1)
+    time.sleep(0.1)  # pace
     if told and fate == "crash":
         signal.signal(signal.SIGSEGV, signal.SIG_DFL)
         os.kill(os.getpid(), signal.SIGSEGV)
     if told and fate == "fork":
         if os.fork() == 0:
             print("child", os.getpid(), flush=True)
-            time.sleep(600)
+            time.sleep(600)  # until it is killed
         os._exit(1)
     try:
         if beats:
@@ -64,7 +64,7 @@ s = ows.Ows(sys.argv[1], control=True)
 s.beat(500)
 print("beats", flush=True)
 while True:
-    time.sleep(0.1)
+    time.sleep(0.1)  # pace
     try:
         s.beat(500)
     except ows.Stale:

@@ -14,7 +14,6 @@ import struct
 import subprocess
 import tempfile
 import threading
-import time
 
 import owsdtest
 from owsdtest import SOURCE, until
@@ -306,7 +305,7 @@ def test_a_pin_that_is_set_drives_the_relay(scene):
     wire(scene, daemon, 1)
     hal = Hal(scene, daemon, "heater")
     hal.hear("ready")
-    time.sleep(0.3)
+    owsdtest.worked(daemon.name, 0.3)
     assert hal.pin("heater") == 1
     until(lambda: scene.get(daemon, "heater") == "1", 10, "it stays on")
     wire(scene, daemon, 1)

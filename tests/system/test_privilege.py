@@ -264,7 +264,7 @@ fcntl.lockf(fd, fcntl.LOCK_EX)
 # its flags are its own: owsd's writes do not block
 fcntl.fcntl(news, fcntl.F_SETFL, 0)
 fcntl.fcntl(bell, fcntl.F_SETFL, 0)
-time.sleep(1)
+time.sleep(1)  # holds its locks for so long
 """
 
 
@@ -340,7 +340,7 @@ while True:
         except OSError:
             pass
     print(s.place, s.get("room").good, flush=True)
-    time.sleep(0.05)
+    time.sleep(0.05)  # pace
 """
 
 

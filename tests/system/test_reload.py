@@ -295,7 +295,7 @@ def test_a_file_that_changes_while_it_is_being_reloaded_is_read_again(scene):
     with ows.Ows(daemon.name) as signals:
         for turn in range(20):
             change(scene, daemon, rio(target, ROOM, *many))
-            time.sleep(0.004 * turn)
+            time.sleep(0.004 * turn)  # at any moment of the reload
             last = item(f"last{turn}", SENSOR + "/temperature")
             change(scene, daemon, rio(target, ROOM, last))
 

@@ -89,9 +89,9 @@ class Terminal:
                     try:
                         self.text += os.read(self.master, 65536).decode(errors="replace")
                     except OSError:
-                        time.sleep(0.02)
+                        time.sleep(0.02)  # pace
                 elif self.master is None:
-                    time.sleep(0.02)
+                    time.sleep(0.02)  # pace
                 assert time.monotonic() < deadline, f"still there: {self.group()}"
             # what they wrote last may still be in the terminal
             while self.master is not None and select.select([self.master], [], [], 0)[0]:

@@ -92,7 +92,7 @@ def test_a_client_that_hangs_up_ends_its_reading_of_a_large_memory(scene):
     before = errors()
     with server.connect() as client:
         client.sendall(served.request(READ, "/uncached/37.000000000001/memory", size=32704))
-        time.sleep(1)
+        time.sleep(1)  # it does not end by itself
         assert errors() == before
     until(lambda: errors() == before + 1, 20, "the reading has ended")
 

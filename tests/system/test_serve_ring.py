@@ -67,7 +67,7 @@ def lost_on_all(scene, make):
         until(lambda: not is_good(scene, daemon, "room"), 40, "the device is gone")
     # and nobody gives it back to the other
     for _ in range(20):
-        time.sleep(0.1)
+        time.sleep(0.1)  # nobody does
         for daemon, _ in pair:
             assert not is_good(scene, daemon, "room")
     return pair

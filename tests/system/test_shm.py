@@ -306,7 +306,7 @@ def test_rubbish_in_the_memory_of_a_giver_harms_nothing(scene):
             data = rng.randbytes(min(rng.choice([4, 4, 64, 1024]), size - at))
             giver.memory.memory[at:at + len(data)] = data
             giver.door.ring()
-            time.sleep(0.002)
+            time.sleep(0.002)  # rubbish comes at this pace
         scene.until(signals.alive, 10, "its heart beats")
         giver.door.close()
 

@@ -154,7 +154,7 @@ class Watch(threading.Thread):
             here = (value.value, names[value.target]) if value.good else None
             if self.seen[-1:] != [here]:
                 self.seen.append(here)
-            time.sleep(0.001)
+            time.sleep(0.001)  # pace
 
     def has(self, value, target):
         until(lambda: self.seen[-1:] == [(value, target)], 60, lambda: f"{value}: {self.seen}")

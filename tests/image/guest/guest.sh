@@ -20,7 +20,7 @@ logs() {
 finish() {
 	logs
 	echo "@@RIG-EXIT $failed"
-	sleep 1
+	sleep 1 # the line leaves the console
 	systemctl poweroff --force --force
 }
 # Nothing is written out before
@@ -28,7 +28,7 @@ cut() {
 	logs
 	[ $failed = 0 ] || finish
 	echo '@@RIG-CUT'
-	sleep 600
+	sleep 600 # until the power is cut
 }
 restart() {
 	logs
@@ -36,7 +36,7 @@ restart() {
 	trap - INT TERM
 	echo '@@RIG-RESTART'
 	systemctl reboot
-	sleep 600
+	sleep 600 # until the power is cut
 }
 trap 'failed=1; finish' INT TERM
 

@@ -187,7 +187,7 @@ same "and its directions, by one transfer with all registers to them" "0x00 0xff
 	"$(i2ctransfer -y $n w1@0x20 0x00 r22 | cut -d ' ' -f 1-2)"
 same "nobody answers at another address" 1 "$(i2cget -y $n 0x21 0x00 >/dev/null 2>&1; echo $?)"
 i2ctransfer -y $n w1@0x44 0xfd
-usleep 20000
+usleep 20000 # the chip measures
 raw=$(i2ctransfer -y $n r6@0x44)
 same "i2ctransfer reads the SHT4x with its checksums" "0x61 0x47 0x8a 0x5e 0x35 0x3b" "$raw"
 same "which is the temperature that owsd reads" "$temperature" \

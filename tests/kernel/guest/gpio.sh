@@ -61,7 +61,7 @@ blinks() {
 	local seen=
 	for i in $(seq 60); do
 		seen="$seen $(line $1)"
-		usleep 50000
+		usleep 50000 # pace
 	done
 	case $seen in *"out hi"*) ;; *) return 1 ;; esac
 	case $seen in *"out lo"*) ;; *) return 1 ;; esac

@@ -45,7 +45,7 @@ within() {
 	shift
 	until "$@" >/dev/null 2>&1; do
 		[ "$(date +%s)" -le $end ] || return 1
-		usleep 100000
+		usleep 100000 # pace
 	done
 }
 

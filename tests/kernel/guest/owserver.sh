@@ -61,7 +61,6 @@ sed 's/ .*//' /rig/writes.txt | grep '^/' | owdump $PORT read >/tmp/theirs.after
 kill $server
 wait $server 2>/dev/null
 unplug
-sleep 1
 same "owserver takes every write" "" "$(grep -v 'ret=0$' /tmp/theirs.writes)"
 
 plug house.sim

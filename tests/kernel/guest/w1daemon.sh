@@ -167,7 +167,7 @@ owsd -v -c /rig/w1pair.rio >/tmp/log/pair 2>&1 &
 owsd=$!
 does "a DS2406 with an alarm is read as an input" within $back_within reads pair 0
 does "that it has none is said" within $told_within grep -q "no alarm search" /tmp/log/pair
-sleep 2
+sleep 2 # it is not said again
 same "once" 1 "$(grep -c "no alarm search: alarm items are read as ordinary inputs" /tmp/log/pair)"
 kill $owsd
 wait $owsd

@@ -52,5 +52,5 @@ static bool one_is_asleep(const char *name)
 void until_asleep(const char *name)
 {
 	for (int ms = 0; ms < PATIENCE_MS && !one_is_asleep(name); ms++)
-		usleep(1000);
+		usleep(1000); /* pace */
 }

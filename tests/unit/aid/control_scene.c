@@ -152,7 +152,7 @@ static void pause_ms(int64_t *left_ms, const char *what)
 	const struct timespec ms = {.tv_nsec = 1000000};
 
 	TEST_ASSERT_TRUE_MESSAGE((*left_ms)-- > 0, what);
-	nanosleep(&ms, NULL);
+	nanosleep(&ms, NULL); /* pace */
 }
 
 void control_reload(void)

@@ -300,7 +300,7 @@ void door_wait_gone(struct door *door, unsigned i)
 	bool gone = false;
 
 	for (int n = 0; !gone && n < PATIENCE_MS; n++) {
-		nanosleep(&pause, NULL);
+		nanosleep(&pause, NULL); /* pace */
 		pthread_mutex_lock(&door->lock);
 		gone = giver->gone;
 		pthread_mutex_unlock(&door->lock);

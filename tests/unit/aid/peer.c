@@ -101,7 +101,7 @@ static void send_all(int fd, const uint8_t *bytes, size_t n, size_t piece)
 		if (send(fd, bytes + at, part, MSG_NOSIGNAL) < 0)
 			return;
 		if (piece < n)
-			usleep(300);
+			usleep(300); /* a peer that is slow */
 	}
 }
 
@@ -154,7 +154,7 @@ static int act(const struct peer *peer, int fd, char letter, uint8_t *answer, si
 		return 0;
 	case 'D':
 		send_all(fd, answer, len, len);
-		usleep(2000);
+		usleep(2000); /* so late it comes again */
 		break;
 	case 'x':
 		return 0;
@@ -235,7 +235,7 @@ static void serve(struct peer *peer, int fd)
 			letter = 'a';
 			if (request.type == FRAME_READ && *peer->plan == 'z') {
 				peer->plan++;
-				usleep(1500000);
+				usleep(1500000); /* a peer that is slow */
 			}
 		} else {
 			letter = *peer->plan ? *peer->plan++ : 'a';

@@ -44,7 +44,7 @@ static int64_t boottime(void)
 
 static void nap(void)
 {
-	nanosleep(&(struct timespec){.tv_nsec = MS}, NULL);
+	nanosleep(&(struct timespec){.tv_nsec = MS}, NULL); /* pace */
 }
 
 static void wait_in_bell(int64_t length)

@@ -68,7 +68,7 @@ static void test_a_place_is_free_again_when_its_giver_has_left(void)
 	TEST_ASSERT_EQUAL_UINT(1000, control_left());
 	/* the last memories are emptied a moment later */
 	for (int ms = 0; descriptors() != before && ms < CONTROL_SCENE_MS; ms++)
-		nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
+		nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL); /* pace */
 	TEST_ASSERT_EQUAL_UINT(before, descriptors());
 }
 
@@ -190,7 +190,7 @@ static void test_a_memory_is_emptied_though_its_user_keeps_the_file(void)
 	TEST_ASSERT_GREATER_THAN(0, st.st_blocks);
 	control_leave(&client);
 	while (fstat(kept, &st) == 0 && st.st_blocks && left_ms-- > 0)
-		nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
+		nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL); /* pace */
 	TEST_ASSERT_EQUAL(0, st.st_blocks);
 	close(kept);
 }

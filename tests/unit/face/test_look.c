@@ -87,16 +87,16 @@ void tearDown(void)
 		instance_end(&in);
 }
 
-/* Look until something has happened, five seconds at most; returns what. */
+/* Look until something has happened, a minute at most; returns what. */
 static const char *looked(void)
 {
 	static char words[sizeof(happened)];
 	const struct timespec pause = {.tv_nsec = 1000000};
 
-	for (int i = 0; i < 5000 && !*happened; i++) {
+	for (int i = 0; i < 60000 && !*happened; i++) {
 		look(&face, ows_now());
 		if (!*happened)
-			nanosleep(&pause, NULL);
+			nanosleep(&pause, NULL); /* pace */
 	}
 	memcpy(words, happened, sizeof(words));
 	*happened = '\0';

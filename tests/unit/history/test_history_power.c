@@ -68,7 +68,7 @@ static void cut(void)
 		fclose(log);
 }
 
-/* Until the log has so many bytes; ten seconds at most. */
+/* Until the log has so many bytes; a minute at most. */
 static void wait_for(unsigned bytes)
 {
 	struct timespec pause = {0, 200000};
@@ -76,10 +76,10 @@ static void wait_for(unsigned bytes)
 	struct stat log;
 
 	snprintf(name, sizeof(name), "%s/history.sqlite-wal", past.directory);
-	for (int i = 0; i < 50000; i++) {
+	for (int i = 0; i < 300000; i++) {
 		if (stat(name, &log) == 0 && log.st_size >= bytes)
 			return;
-		nanosleep(&pause, NULL);
+		nanosleep(&pause, NULL); /* pace */
 	}
 }
 

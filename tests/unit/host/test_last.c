@@ -75,7 +75,7 @@ static void await(const struct engine_last *seam, uint32_t ticket)
 	int64_t until = ows_now() + PATIENCE;
 
 	while (!reached(seam, ticket) && ows_now() < until)
-		usleep(1000);
+		usleep(1000); /* pace */
 	TEST_ASSERT_TRUE(reached(seam, ticket));
 }
 
@@ -194,7 +194,7 @@ static void test_a_directory_that_cannot_be_written_is_an_error_until_it_can(voi
 	TEST_ASSERT_EQUAL_INT(0, last_start(last));
 	ticket = seam->put(seam->ctx, 0, 1, NULL, 0);
 	while (!seam->error(seam->ctx) && ows_now() < until)
-		usleep(1000);
+		usleep(1000); /* pace */
 	TEST_ASSERT_LESS_THAN_INT(0, seam->error(seam->ctx));
 	TEST_ASSERT_FALSE(reached(seam, ticket));
 	TEST_ASSERT_GREATER_THAN_UINT64(0, last_failures(last));

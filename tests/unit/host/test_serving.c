@@ -31,8 +31,8 @@ void setUp(void)
 	workers[0] = make("late:up=1;down=1");
 	workers[1] = make("late:");
 	TEST_ASSERT_EQUAL_INT(0, worker_start(workers[0]));
-	for (int i = 0; i < 20000 && worker_dropped(workers[0]) == 0; i++)
-		nanosleep(&nap, NULL);
+	for (int i = 0; i < 60000 && worker_dropped(workers[0]) == 0; i++)
+		nanosleep(&nap, NULL); /* pace */
 	TEST_ASSERT_EQUAL_INT(0, worker_stop(workers[0], INT64_C(60000000000)));
 	TEST_ASSERT_GREATER_THAN_UINT64(0, worker_dropped(workers[0]));
 	before = (struct serving){.workers = workers, .worker_count = 2};

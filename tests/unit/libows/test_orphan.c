@@ -94,10 +94,10 @@ static int reopen(void)
 	const struct timespec pause = {.tv_nsec = 1000000};
 	int err = -ENOENT;
 
-	for (int i = 0; err == -ENOENT && i < 1000; i++) {
+	for (int i = 0; err == -ENOENT && i < 60000; i++) {
 		err = ows_reopen(h);
 		if (err)
-			nanosleep(&pause, NULL);
+			nanosleep(&pause, NULL); /* pace */
 	}
 	return err;
 }
@@ -247,7 +247,7 @@ static void test_who_waits_on_an_owsd_that_was_stopped_and_goes_on_is_served(voi
 	do {
 		instance_beat(&first, ows_now(), 1);
 		got = ows_wait(h, &news, 0);
-		nanosleep(&pause, NULL);
+		nanosleep(&pause, NULL); /* pace */
 	} while (got == -ESTALE && ows_now() < deadline);
 	TEST_ASSERT_EQUAL(1, got);
 }

@@ -506,7 +506,7 @@ static void *write_on(void *arg)
 
 		image_publish(&in.image, DEEP, &sample, &attrs, NULL);
 		if (n % 64 == 0)
-			nanosleep(&(struct timespec){.tv_nsec = 20000}, NULL);
+			nanosleep(&(struct timespec){.tv_nsec = 20000}, NULL); /* lets readers in */
 	}
 	return arg;
 }

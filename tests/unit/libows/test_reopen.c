@@ -51,10 +51,10 @@ static int reopen(struct ows *handle)
 	const struct timespec pause = {.tv_nsec = 1000000};
 	int err = -ENOENT;
 
-	for (int i = 0; err == -ENOENT && i < 1000; i++) {
+	for (int i = 0; err == -ENOENT && i < 60000; i++) {
 		err = ows_reopen(handle);
 		if (err)
-			nanosleep(&pause, NULL);
+			nanosleep(&pause, NULL); /* pace */
 	}
 	return err;
 }

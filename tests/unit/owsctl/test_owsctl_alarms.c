@@ -276,8 +276,8 @@ static void *take(void *arg)
 {
 	unsigned before = *(unsigned *)arg;
 
-	for (int i = 0; i < 5000; i++) {
-		nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
+	for (int i = 0; i < 60000; i++) {
+		nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL); /* pace */
 		if (instance_givers(&in) == before ||
 		    !instance_slot(&in, before, ROOM)->acknowledged)
 			continue;

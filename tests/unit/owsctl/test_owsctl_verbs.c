@@ -242,7 +242,7 @@ static void *confirm(void *arg)
 		image_publish(&in.image, 2, &sample, &attrs, NULL);
 		image_news(&in.image);
 		segment_wake(&in.image.header->news, 1000);
-		nanosleep(&pause, NULL);
+		nanosleep(&pause, NULL); /* pace */
 	}
 	return NULL;
 }

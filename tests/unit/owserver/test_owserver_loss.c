@@ -166,7 +166,8 @@ static bool worker_says(struct worker *worker, enum bus_news news)
 {
 	struct worker_message message;
 
-	for (int64_t until = host_now(&host) + PATIENCE; host_now(&host) < until; usleep(1000))
+	for (int64_t until = host_now(&host) + PATIENCE; host_now(&host) < until;
+	     usleep(1000)) /* pace */
 		while (worker_next(worker, &message))
 			if (message.is_event && message.event.news == news)
 				return true;

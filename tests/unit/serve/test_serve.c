@@ -190,7 +190,7 @@ static struct engine_guest *next_guest(void)
 	for (int i = 0; i < 60000 && !g; i++) {
 		g = port->take(port->ctx);
 		if (!g)
-			usleep(1000);
+			usleep(1000); /* pace */
 	}
 	TEST_ASSERT_NOT_NULL(g);
 	return g;
@@ -218,7 +218,7 @@ static uint64_t counted(const char *name)
 static void wait_for(const char *name, uint64_t value)
 {
 	for (int i = 0; i < 60000 && counted(name) != value; i++)
-		usleep(1000);
+		usleep(1000); /* pace */
 	TEST_ASSERT_EQUAL_UINT64(value, counted(name));
 }
 
@@ -350,7 +350,7 @@ static void test_who_hangs_up_wants_no_answer(void)
 	close(fd);
 	fd = -1; /* tearDown() closes no descriptor that another thread has made of this number */
 	for (int i = 0; i < 60000 && !__atomic_load_n(&g->unwanted, __ATOMIC_RELAXED); i++)
-		usleep(1000);
+		usleep(1000); /* pace */
 	TEST_ASSERT_EQUAL_UINT32(1, __atomic_load_n(&g->unwanted, __ATOMIC_RELAXED));
 	g->answer = (struct bus_answer){.err = -ECANCELED};
 	port->answered(port->ctx, g);
@@ -455,7 +455,7 @@ static uint32_t stamp_of(uint32_t record)
 		if (instance_givers(&in) > 0)
 			found = word_get(&instance_slot(&in, 0, record)->stamp);
 		if (!found)
-			usleep(1000);
+			usleep(1000); /* pace */
 	}
 	TEST_ASSERT_NOT_EQUAL_UINT32(0, found);
 	giver_taken(instance_giver(&in, 0), record, found, 0);

@@ -92,7 +92,7 @@ static void pause_ns(int64_t ns)
 {
 	struct timespec ts = {.tv_sec = ns / S, .tv_nsec = ns % S};
 
-	nanosleep(&ts, NULL);
+	nanosleep(&ts, NULL); /* any moment */
 }
 
 /* --- The writer ------------------------------------------------------------------------------- */

@@ -142,7 +142,7 @@ static void pause_ns(long ns)
 {
 	struct timespec ts = {.tv_nsec = ns};
 
-	nanosleep(&ts, NULL);
+	nanosleep(&ts, NULL); /* any moment */
 }
 
 /* What readers find of a writer that is no more; returns the newest sample's number. */
