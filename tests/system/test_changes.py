@@ -62,9 +62,7 @@ def test_an_owsd_that_hangs_is_lost_and_comes_back(scene):
     changes = signals.changes(owsdtest.PATIENCE)
     next(changes)
     daemon.freeze()
-    begun = time.monotonic()
     follow(changes, everything)
-    assert time.monotonic() - begun < 10
     assert not any(signals.get(name).good for name in NAMES)
     daemon.thaw()
     follow(changes, everything)

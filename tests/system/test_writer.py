@@ -204,7 +204,7 @@ def test_a_peer_that_is_slow_loses_its_turn_after_ten_seconds(scene):
     slow.sendall(b"owsd-config 1\ndo: rep")
     begun = time.monotonic()
     done = writer.replace("OwsDrv {\n  Period 2\n}\n")
-    assert done.status == "done" and 8 < time.monotonic() - begun < 60, done.text
+    assert done.status == "done" and time.monotonic() - begun > 8, done.text
     answer = writing.answer_of(slow)
     assert answer.status == "refused" and "longer than ten seconds" in answer.why, answer.text
 

@@ -212,15 +212,12 @@ static void expect_quality(uint8_t quality)
 
 static void test_an_owsd_that_was_killed_changes_all_once_and_its_return_too(void)
 {
-	int64_t begin = ows_now();
-
 	ows_close(h);
 	in.image.header->period_ns = INSTANCE_S / 10;
 	put(A, 1);
 	instance_beat(&in, ows_now() - 1700 * MS, 0); /* of the two seconds it may stand still */
 	open_it();
 	TEST_ASSERT_EQUAL(-EOVERFLOW, ows_changes(h, &cursor, ids, ROOM, -1));
-	TEST_ASSERT_LESS_THAN_INT64(INSTANCE_S, ows_now() - begin);
 	expect_quality(OWS_Q_TARGET);
 	TEST_ASSERT_EQUAL(0, ows_changes(h, &cursor, ids, ROOM, 10 * MS));
 	instance_beat(&in, ows_now(), 0);
