@@ -13,6 +13,7 @@
 #include "src/engine/scaling.h"
 #include "src/engine/schedule.h"
 #include "src/engine/state.h"
+#include "src/libows/ows.h"
 #include "src/signal/value.h"
 
 /* A program that lives needs a cycle or two to learn that there is another owsd. */
@@ -216,7 +217,8 @@ static uint32_t await(struct engine *e, const struct force_left *left, uint32_t 
 	e->givers[at] = (struct known_giver){
 		.is = GIVER_AWAITED,
 		.as.who = was.who,
-		.period_ms = was.period_ms,
+		/* owsd before 0.10 knew no maximum */
+		.period_ms = was.period_ms < OWS_BEAT_MOST_MS ? was.period_ms : OWS_BEAT_MOST_MS,
 		.heard_ns = engine_awake_ns(e),
 		.joined_ns = e->time.now_ns,
 	};

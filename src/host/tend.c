@@ -12,6 +12,7 @@
 #include "src/host/tend.h"
 #include "src/libows/ows.h"
 #include "src/shm/hint.h"
+#include "src/shm/porter.h"
 #include "src/shm/segment.h"
 
 /* How often owsd tries what a reload could not finish. */
@@ -67,9 +68,33 @@ void host_finish_reload(struct host *h)
 		log_notice(h->log, "the rest of the reload is done");
 }
 
+/* While there is none, threads of owsd do what peers can make slow. */
+static void tend_porter(struct host *h, int64_t now_ns)
+{
+	switch (porter_tend(h->porter, now_ns)) {
+	case PORTER_ENDED:
+		log_err(h->log, "the process for connections, owsd-porter, was killed: owsd starts "
+		                "it again; until then programs that connect can delay owsd");
+		return;
+	case PORTER_FAILED:
+		log_err(h->log, "the process for connections cannot be started: owsd tries again, "
+		                "each minute at last");
+		return;
+	case PORTER_IS_BACK:
+		log_notice(h->log, "the process for connections runs again (process %d)",
+		           porter_process(h->porter));
+		return;
+	case PORTER_GOES_ON:
+		return;
+	}
+}
+
 void host_tend(struct host *h)
 {
 	int64_t now_ns = ows_now();
+
+	if (h->porter)
+		tend_porter(h, now_ns);
 
 	if ((h->unshown || h->unstarted) && now_ns >= h->finish_ns)
 		host_finish_reload(h);

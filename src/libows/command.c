@@ -59,6 +59,8 @@ int ows_beat(struct ows *h, uint32_t period_ms)
 		return err;
 	if (period_ms == 0)
 		return -EINVAL;
+	if (period_ms > OWS_BEAT_MOST_MS)
+		return -ERANGE;
 	word_set(&header->period_ms, period_ms);
 	__atomic_fetch_add(&header->beat, 1, __ATOMIC_RELEASE);
 	if (h->period_ms == period_ms)

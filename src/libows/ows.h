@@ -205,12 +205,16 @@ struct ows_command {
  */
 int ows_command(struct ows *h, int id, struct ows_command *command);
 
+/* The longest promise of ows_beat(), in milliseconds: an hour. SafeDelay can leave more time. */
+#define OWS_BEAT_MOST_MS 3600000
+
 /*
  * Report that this program lives, and promise the next call within period_ms. When the time is over
  * without it, the outputs that this program set last go to their SafeValue. No system call, but one
  * when period_ms is another than before. The commands in force of a program that beats outlive a
  * restart of owsd, if the program is back, by ows_reopen(), within two seconds of the start, or
- * within period_ms if that is longer. Errors as ows_set(); -EINVAL: period_ms is 0.
+ * within period_ms if that is longer. Errors as ows_set(); -EINVAL: period_ms is 0;
+ * -ERANGE: it is more than OWS_BEAT_MOST_MS.
  */
 int ows_beat(struct ows *h, uint32_t period_ms);
 

@@ -118,6 +118,7 @@ PERSONS, NAME_SIZE, TEXT_SIZE = 16, 32, 64
 # The connection
 HELLO = struct.Struct("<IHHI4x16s32s64x")
 HELLO_COMMAND = 1
+BEAT_MOST_MS = 3600000  # the longest that beat() promises
 Welcome = collections.namedtuple("Welcome", "magic major minor err generation start_id serial size "
                                  "token")
 WELCOME = struct.Struct("<IHHiIIII4x16s16x")
@@ -1225,8 +1226,8 @@ class Ows:
         """Say that this program lives and will say so again within period_ms; if it does not, the
         outputs it set last go to their SafeValue."""
         self._ready_to_beat()
-        if period_ms <= 0:
-            raise ValueError("a period is more than 0 milliseconds")
+        if not 0 < period_ms <= BEAT_MOST_MS:
+            raise ValueError(f"a beat is promised within 1 to {BEAT_MOST_MS} milliseconds, an hour")
         new, self.period_ms = self.period_ms != period_ms, period_ms
         self._store_beat()
         if new:

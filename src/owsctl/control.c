@@ -75,6 +75,8 @@ static int do_beat(struct control *control, char *rest)
 		control->why = "beat takes a number of milliseconds";
 		return -EINVAL;
 	}
+	if (period_ms > OWS_BEAT_MOST_MS)
+		control->why = "the longest beat is 3600000 milliseconds, an hour";
 	return ows_beat(control->h, period_ms);
 }
 
@@ -162,7 +164,7 @@ static bool answer(const struct control *control)
 		why = "this is no value for it";
 	else if (control->err == -EOPNOTSUPP)
 		why = "it has no limit alarms";
-	else if (control->err == -ERANGE)
+	else if (!control->why && control->err == -ERANGE)
 		why = "it is too long or out of range";
 	if (control->err)
 		printf("error %s\n", why);

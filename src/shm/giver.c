@@ -286,6 +286,8 @@ void giver_beat(const struct giver_memory *memory, struct giver_beat *beat)
 
 	beat->beat = __atomic_load_n(&h->beat, __ATOMIC_ACQUIRE);
 	beat->period_ms = word_get(&h->period_ms);
+	if (beat->period_ms > OWS_BEAT_MOST_MS)
+		beat->period_ms = OWS_BEAT_MOST_MS;
 	beat->goodbye = word_get(&h->goodbye) != 0;
 }
 

@@ -35,6 +35,12 @@
 #define LOOK_MS 20
 #define GIVEN_NS NS_PER_S
 #define END_NS NS_PER_S
+/* At the end of owsd the porter leaves that time to its children; those that hang are killed. */
+#define LAST_CHILDREN_NS (NS_PER_S / 4)
+/* A porter that is started again has to be ready by then, or it is killed: see porter_tend(). */
+#define READY_NS (2 * NS_PER_S)
+#define PAUSE_LEAST_NS NS_PER_S
+#define PAUSE_MOST_NS (60 * NS_PER_S)
 #define DRAINS 512 /* a socket holds fewer messages */
 
 struct order_head {
@@ -45,6 +51,7 @@ struct order_head {
 struct shared {
 	uint32_t given[PORTER_LANES]; /* owsd has closed its own copies up to this order */
 	uint32_t carried[PORTER_SLOTS];
+	uint32_t ready; /* the process that has closed what is not its own */
 };
 
 struct porter {
@@ -52,8 +59,11 @@ struct porter {
 	int lanes[PORTER_LANES];
 	uint32_t sequence[PORTER_LANES];
 	uint32_t asked[PORTER_SLOTS];
-	pid_t pid;
-	uint32_t gone;
+	pid_t pid;     /* 0: there is none */
+	uint32_t gone; /* the lanes lead to nobody */
+	/* The supervisor's, of the one that is started again. */
+	int next[PORTER_LANES]; /* what becomes lanes when it is ready */
+	int64_t begun_ns, again_ns, pause_ns;
 };
 
 union attached {
@@ -203,6 +213,10 @@ static void be_child(struct porter *p, unsigned lane)
 {
 	int most = lane == PORTER_IN ? 1 : BATCH;
 
+	/* a late child must not say of an order of the next porter that it is carried out */
+	prctl(PR_SET_PDEATHSIG, SIGKILL);
+	if (getppid() != p->pid)
+		_exit(0);
 	while (most-- > 0 && take_order(p, lane))
 		;
 	_exit(0);
@@ -287,21 +301,51 @@ static bool porter_round(struct porter *p, struct children *children)
 	return any;
 }
 
+static bool is_lane(const struct porter *p, int fd)
+{
+	bool is = false;
+
+	for (unsigned i = 0; i < PORTER_LANES; i++)
+		is |= p->lanes[i] == fd;
+	return is;
+}
+
 /*
  * Those of owsd, its output among them, are not to stay open for a child that hangs. /dev/null
  * takes the place of the first three: what a library writes there must not reach a peer's file.
  */
 static void close_others(const struct porter *p)
 {
-	int end = p->lanes[0], null = open("/dev/null", O_RDWR | O_CLOEXEC);
+	int null = open("/dev/null", O_RDWR | O_CLOEXEC), last = STDERR_FILENO;
+	long most;
 
-	for (unsigned i = 1; i < PORTER_LANES; i++)
-		end = p->lanes[i] < end ? p->lanes[i] : end;
-	for (int fd = 0; fd < end; fd++)
-		if (fd > STDERR_FILENO || dup2(null, fd) < 0)
+	for (int fd = 0; fd <= STDERR_FILENO; fd++)
+		dup2(null, fd);
+	for (unsigned i = 0; i < PORTER_LANES; i++)
+		last = p->lanes[i] > last ? p->lanes[i] : last;
+	for (int fd = STDERR_FILENO + 1; fd < last; fd++)
+		if (!is_lane(p, fd))
 			close(fd);
-	if (null > end)
-		close(null);
+	if (syscall(SYS_close_range, last + 1, ~0U, 0) == 0)
+		return;
+	most = sysconf(_SC_OPEN_MAX); /* before Linux 5.9 */
+	for (int fd = last + 1; fd < most; fd++)
+		close(fd);
+}
+
+static void leave_children(struct children *children)
+{
+	int64_t left_ns = LAST_CHILDREN_NS;
+	unsigned n = 1;
+
+	while (n && left_ns > 0) {
+		n = 0;
+		for (unsigned i = 0; i < PORTER_LANES; i++)
+			n += count_children(&children[i]);
+		if (n)
+			pause_ns(NS_PER_MS);
+		left_ns -= NS_PER_MS;
+	}
 }
 
 static void be_porter(struct porter *p)
@@ -309,13 +353,16 @@ static void be_porter(struct porter *p)
 	struct children children[PORTER_LANES] = {0};
 	sigset_t all;
 
-	close_others(p);
 	sigfillset(&all);
 	sigprocmask(SIG_SETMASK, &all, NULL);
 	signal(SIGCHLD, SIG_DFL);
 	prctl(PR_SET_NAME, "owsd-porter");
+	close_others(p);
+	p->pid = getpid();
+	__atomic_store_n(&p->shared->ready, (uint32_t)p->pid, __ATOMIC_RELEASE);
 	while (porter_round(p, children))
 		;
+	leave_children(children);
 	_exit(0);
 }
 
@@ -343,37 +390,51 @@ static int open_lanes(int *ours, int *theirs)
 	return 0;
 }
 
-int porter_start(struct porter **porter)
+/* Fork a porter; ours: the ends for owsd. */
+static int fork_porter(struct porter *p, int *ours)
 {
-	struct porter *p = calloc(1, sizeof(*p));
-	int ours[PORTER_LANES], theirs[PORTER_LANES], err;
+	int theirs[PORTER_LANES], err = open_lanes(ours, theirs);
 
-	if (!p)
-		return -ENOMEM;
-	err = open_lanes(ours, theirs);
-	p->shared = mmap(NULL, sizeof(*p->shared), PROT_READ | PROT_WRITE,
-	                 MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-	if (p->shared == MAP_FAILED)
-		err = -ENOMEM;
 	p->pid = err ? -1 : fork();
-	if (!err && p->pid < 0)
-		err = -errno;
 	if (p->pid == 0) {
-		close_lanes(ours);
+		/* a copy, in which nothing but the lanes is used */
 		memcpy(p->lanes, theirs, sizeof(theirs));
 		be_porter(p);
 	}
+	if (p->pid < 0) {
+		err = err ? err : -errno;
+		p->pid = 0;
+		close_lanes(ours);
+	}
 	close_lanes(theirs);
+	return err;
+}
+
+int porter_start(struct porter **porter)
+{
+	struct porter *p = calloc(1, sizeof(*p));
+	int err = -ENOMEM;
+
+	if (!p)
+		return err;
+	p->pause_ns = PAUSE_LEAST_NS;
+	p->shared = mmap(NULL, sizeof(*p->shared), PROT_READ | PROT_WRITE,
+	                 MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+	if (p->shared != MAP_FAILED)
+		err = fork_porter(p, p->lanes);
 	if (!err) {
-		memcpy(p->lanes, ours, sizeof(ours));
 		*porter = p;
 		return 0;
 	}
-	close_lanes(ours);
 	if (p->shared != MAP_FAILED)
 		munmap(p->shared, sizeof(*p->shared));
 	free(p);
 	return err;
+}
+
+static bool is_starting(const struct porter *p)
+{
+	return p->pid && p->gone;
 }
 
 void porter_end(struct porter *p)
@@ -383,13 +444,79 @@ void porter_end(struct porter *p)
 	if (!p)
 		return;
 	close_lanes(p->lanes);
-	while (waitpid(p->pid, NULL, WNOHANG) == 0 && left_ns > 0) {
+	if (is_starting(p))
+		close_lanes(p->next);
+	while (p->pid && waitpid(p->pid, NULL, WNOHANG) == 0 && left_ns > 0) {
 		pause_ns(NS_PER_MS);
 		left_ns -= NS_PER_MS;
 	}
 	munmap(p->shared, sizeof(*p->shared));
 	free(p);
 }
+
+/* --- It is killed, and started again ---------------------------------------------------------- */
+
+static void wait_longer(struct porter *p, int64_t now_ns)
+{
+	if (now_ns - p->begun_ns > PAUSE_MOST_NS)
+		p->pause_ns = PAUSE_LEAST_NS;
+	p->again_ns = now_ns + p->pause_ns;
+	p->pause_ns = p->pause_ns < PAUSE_MOST_NS / 2 ? 2 * p->pause_ns : PAUSE_MOST_NS;
+}
+
+static enum porter_event start_again(struct porter *p, int64_t now_ns)
+{
+	p->begun_ns = now_ns;
+	if (fork_porter(p, p->next) == 0)
+		return PORTER_GOES_ON;
+	wait_longer(p, now_ns);
+	return PORTER_FAILED;
+}
+
+/* Each lane keeps its number here, so no thread that uses it notices. */
+static void take_lanes(struct porter *p)
+{
+	/* what the last one had it let go of when it ended */
+	for (unsigned i = 0; i < PORTER_SLOTS; i++)
+		__atomic_store_n(&p->shared->carried[i],
+		                 __atomic_load_n(&p->asked[i], __ATOMIC_RELAXED), __ATOMIC_RELEASE);
+	for (unsigned i = 0; i < PORTER_LANES; i++)
+		dup3(p->next[i], p->lanes[i], O_CLOEXEC);
+	close_lanes(p->next);
+	__atomic_store_n(&p->gone, 0, __ATOMIC_RELEASE);
+}
+
+enum porter_event porter_tend(struct porter *p, int64_t now_ns)
+{
+	bool starting = is_starting(p);
+
+	if (p->pid && waitpid(p->pid, NULL, WNOHANG) != 0) {
+		if (starting)
+			close_lanes(p->next);
+		p->pid = 0;
+		__atomic_store_n(&p->gone, 1, __ATOMIC_RELAXED);
+		wait_longer(p, now_ns);
+		return starting ? PORTER_FAILED : PORTER_ENDED;
+	}
+	if (!p->pid)
+		return now_ns < p->again_ns ? PORTER_GOES_ON : start_again(p, now_ns);
+	if (!starting)
+		return PORTER_GOES_ON;
+	if (__atomic_load_n(&p->shared->ready, __ATOMIC_ACQUIRE) == (uint32_t)p->pid) {
+		take_lanes(p);
+		return PORTER_IS_BACK;
+	}
+	if (now_ns - p->begun_ns > READY_NS)
+		kill(p->pid, SIGKILL);
+	return PORTER_GOES_ON;
+}
+
+int porter_process(const struct porter *p)
+{
+	return (int)p->pid;
+}
+
+/* --- Orders ----------------------------------------------------------------------------------- */
 
 static void let_go(const struct porter_order *order)
 {
@@ -405,43 +532,50 @@ static int carry_here(const struct porter_order *order)
 	return 0;
 }
 
+/* Returns what it was asked before. */
+static uint32_t ask(struct porter *p, uint32_t slot, uint32_t sequence)
+{
+	return slot < PORTER_SLOTS
+	               ? __atomic_exchange_n(&p->asked[slot], sequence, __ATOMIC_RELAXED)
+	               : 0;
+}
+
 int porter_give(struct porter *p, enum porter_lane lane, const struct porter_order *order)
 {
 	union attached control = {0};
 	struct message m;
-	uint32_t sequence;
+	uint32_t sequence, asked;
 
 	if (!p)
 		return carry_here(order);
-	sequence = p->sequence[lane] + 1;
+	sequence = ++p->sequence[lane];
+	/* at once: when the porter is killed, what it was asked counts as carried out */
+	asked = ask(p, order->slot, sequence);
 
 	m.head = (struct order_head){sequence, order->what, order->slot};
 	message_lay_out(&m, order->bytes);
 	attach(&m.header, &control, order->fds, order->count);
 	if (sendmsg(p->lanes[lane], &m.header, MSG_DONTWAIT | MSG_NOSIGNAL) < 0) {
 		/* descriptors that are on their way are limited, as the room in the socket is */
-		if (errno != EPIPE && errno != ECONNRESET && errno != ENOTCONN)
+		if (errno != EPIPE && errno != ECONNRESET && errno != ENOTCONN) {
+			ask(p, order->slot, asked);
 			return -EAGAIN;
-		__atomic_store_n(&p->gone, 1, __ATOMIC_RELAXED);
+		}
+		if (order->slot < PORTER_SLOTS)
+			__atomic_store_n(&p->shared->carried[order->slot], sequence,
+			                 __ATOMIC_RELEASE);
 		return carry_here(order);
 	}
-	if (order->slot < PORTER_SLOTS)
-		p->asked[order->slot] = sequence;
 	let_go(order);
-	p->sequence[lane] = sequence;
 	__atomic_store_n(&p->shared->given[lane], sequence, __ATOMIC_RELEASE);
 	return 0;
 }
 
-bool porter_is_gone(const struct porter *p)
-{
-	return __atomic_load_n(&p->gone, __ATOMIC_RELAXED);
-}
-
 bool porter_carried(const struct porter *p, uint32_t slot)
 {
-	return !p || porter_is_gone(p) ||
-	       __atomic_load_n(&p->shared->carried[slot], __ATOMIC_ACQUIRE) == p->asked[slot];
+	return !p || __atomic_load_n(&p->gone, __ATOMIC_RELAXED) ||
+	       (int32_t)(__atomic_load_n(&p->shared->carried[slot], __ATOMIC_ACQUIRE) -
+	                 __atomic_load_n(&p->asked[slot], __ATOMIC_RELAXED)) >= 0;
 }
 
 /* --- Connections ------------------------------------------------------------------------------ */

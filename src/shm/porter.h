@@ -59,13 +59,27 @@ void porter_end(struct porter *porter);
 /*
  * Give an order away: 0, and its descriptors are closed here, but those to keep. -EAGAIN:
  * the porter has too much to do, and nothing has happened. Never blocks. Without a porter (NULL,
- * or it was killed) the caller's thread does it.
+ * or it was killed and no other is ready yet) the caller's thread does it.
  */
 int porter_give(struct porter *porter, enum porter_lane lane, const struct porter_order *order);
 /* Was the last order of that slot carried out, up to letting go? */
 bool porter_carried(const struct porter *porter, uint32_t slot);
-/* Was the porter killed? */
-bool porter_is_gone(const struct porter *porter);
+
+enum porter_event {
+	PORTER_GOES_ON,
+	PORTER_ENDED, /* somebody killed it: until another is ready the caller's threads do it all */
+	PORTER_IS_BACK, /* another is ready */
+	PORTER_FAILED,  /* another could not be started, or ended before it was ready */
+};
+/*
+ * Start a porter that was killed again: after a second, later after twice as long each time, up to a
+ * minute. For one thread, at least each second. The new porter begins with copies of all that
+ * owsd has open, some of which may be slow to close: so it gets the lanes only when it is done with
+ * that, and is killed if it takes two seconds. Never blocks.
+ */
+enum porter_event porter_tend(struct porter *porter, int64_t now_ns);
+/* The process, for the log; 0: there is none. */
+int porter_process(const struct porter *porter);
 
 /*
  * Receive what fits of the first message, or of the stream up to the next descriptors, without

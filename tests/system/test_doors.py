@@ -155,6 +155,37 @@ def test_the_same_at_the_sockets_of_the_served_protocol(scene):
         unharmed(scene, daemon, plc)
 
 
+def porter_of(daemon):
+    """The process that carries out what peers make slow; None: there is none."""
+    pid = daemon.pid
+    for child in open(f"/proc/{pid}/task/{pid}/children").read().split():
+        try:
+            if open(f"/proc/{child}/comm").read().strip() == "owsd-porter":
+                return int(child)
+        except OSError:
+            pass  # it has just ended
+    return None
+
+
+def test_a_porter_that_is_killed_comes_back_and_defends_as_before(scene):
+    for env in kernels():
+        daemon = plant(scene, env)
+        plc = controller(scene, daemon)
+        until(lambda: porter_of(daemon), 10, "the porter")
+        for times in (1, 2):
+            killed = porter_of(daemon)
+            os.kill(killed, signal.SIGKILL)
+            until(lambda: daemon.log().count("owsd-porter, was killed") == times, 20, daemon.log)
+            # until it is back owsd does its work
+            lasts(lambda: join(scene, daemon), "joining without a porter")
+            until(lambda: daemon.log().count("runs again") == times, 20, daemon.log)
+            assert porter_of(daemon) not in (None, killed), daemon.log()
+        path = door(daemon.name)
+        held = [attack(scene, "reader", "linger", path, 0), attack(scene, "stranger", "stranger", path)]
+        assert env is None or all(held), held
+        unharmed(scene, daemon, plc)
+
+
 def test_a_reader_that_never_comes_to_read_its_news_holds_up_nobody(scene):
     if os.uname().machine != "x86_64":
         owsdtest.skip("the number of userfaultfd is that of x86-64")

@@ -155,7 +155,8 @@ def test_control_answers_each_line_and_acknowledges_only_what_has_limits(scene):
     answers = {"pump=1": "ok", "pump=on": "ok", "pump=maybe": "error this is no value for it",
                "pumpe=1": "error there is no such name",
                "freezer=1": "error the signal is an input (Writable is off in the configuration)",
-               "beat soon": "error beat takes a number of milliseconds",
+               "beat soon": "error beat takes a number of milliseconds", "beat 3600000": "ok",
+               "beat 3600001": "error the longest beat is 3600000 milliseconds, an hour",
                "ack freezer": "ok", "ack pump": "error it has no limit alarms",
                "shelve pump 5": "error it has no limit alarms", "quit": "ok"}
     with Plant(scene, "31") as plant:

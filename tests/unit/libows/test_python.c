@@ -222,7 +222,10 @@ static void test_c_finds_what_python_set(void)
 	struct giver_beat beat;
 
 	expect("s = ows.Ows(name, control=True, name=\"plc\")\n"
-	       "s.beat(700)\ns.beat(700)\n"
+	       "for wrong in (0, 3600001):\n"
+	       "    try: s.beat(wrong); print(\"taken\")\n"
+	       "    except ValueError: pass\n"
+	       "s.beat(3600000)\ns.beat(700)\n"
 	       "print(s.set(\"relay\", True), s.set(\"relay\", 0), s.set(\"count\", 4294967295))\n"
 	       "s.for_person(\"anna\")\n"
 	       "print(s.set(\"deep\", -2**63), s.set(\"label\", \"north\"))\n"
@@ -248,7 +251,7 @@ static void test_c_finds_what_python_set(void)
 	TEST_ASSERT_EQUAL(5, giver_text(instance_giver(&in, 0), LABEL, text));
 	TEST_ASSERT_EQUAL_STRING("north", text);
 	giver_beat(instance_giver(&in, 0), &beat);
-	TEST_ASSERT_EQUAL(2, beat.beat);
+	TEST_ASSERT_EQUAL(2, beat.beat); /* and none that is refused */
 	TEST_ASSERT_EQUAL(700, beat.period_ms);
 	TEST_ASSERT_FALSE_MESSAGE(beat.goodbye, "it ended without close()");
 	TEST_ASSERT_GREATER_THAN(0, door_rings(in.door, 0));

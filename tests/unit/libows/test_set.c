@@ -270,12 +270,17 @@ static void test_a_beat_and_its_promise_reach_the_engine(void)
 	struct giver_beat beat;
 
 	TEST_ASSERT_EQUAL(-EINVAL, ows_beat(h, 0));
+	TEST_ASSERT_EQUAL(-ERANGE, ows_beat(h, OWS_BEAT_MOST_MS + 1));
+	TEST_ASSERT_EQUAL(0, ows_beat(h, OWS_BEAT_MOST_MS));
+	giver_beat(instance_giver(&in, 0), &beat);
+	TEST_ASSERT_EQUAL(OWS_BEAT_MOST_MS, beat.period_ms);
+	TEST_ASSERT_EQUAL(1, door_rings(in.door, 0));
 	TEST_ASSERT_EQUAL(0, ows_beat(h, 500));
 	TEST_ASSERT_EQUAL(1, door_rings(in.door, 0));
 	TEST_ASSERT_EQUAL(0, ows_beat(h, 500));
 	TEST_ASSERT_EQUAL(0, door_rings(in.door, 0));
 	giver_beat(instance_giver(&in, 0), &beat);
-	TEST_ASSERT_EQUAL(2, beat.beat);
+	TEST_ASSERT_EQUAL(3, beat.beat);
 	TEST_ASSERT_EQUAL(500, beat.period_ms);
 	TEST_ASSERT_FALSE(beat.goodbye);
 }
