@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Devices found, seen, lost and restarted. */
 #include <errno.h>
+#include <stdio.h>
 
 #include "hal/chips/family.h"
 #include "hal/native/branches.h"
@@ -9,10 +10,35 @@
 #include "hal/native/sensors.h"
 #include "hal/native/state.h"
 
+/* More than the time between two searches of all wires. A plug is seldom moved so often. */
+#define RETURN_NS (60 * NATIVE_S)
+#define RETURNS 3
+
 void presence_seen(struct device *device, int64_t now)
 {
 	device->ok_ns = now;
 	device->missed = 0;
+}
+
+/* A device that is found here and there in turn, round after round, is two with one id. */
+static void look_for_twin(struct native *native, struct device *device, unsigned n, int64_t now)
+{
+	char id[ROM_TEXT_MAX], here[40], there[40], text[BUS_EVENT_TEXT];
+	bool back = device->before == n && device->moved_ns && now - device->moved_ns < RETURN_NS;
+
+	device->returns = (uint8_t)(!back ? 0 : device->returns + (device->returns < RETURNS + 1));
+	device->before = device->channel;
+	device->moved_ns = now;
+	if (device->returns != RETURNS)
+		return;
+	rom_print(device->rom, ROM_F_I, id);
+	branches_name(native, n, here, sizeof(here));
+	branches_name(native, device->channel, there, sizeof(there));
+	snprintf(
+		text, sizeof(text),
+		"%s answers on %s and on %s: of two chips with one id only one is served at a time",
+		id, here, there);
+	native_event(native, BUS_NOTE, device->rom, 0, text);
 }
 
 void presence_found(struct native *native, const uint8_t rom[8], unsigned n, int64_t now)
@@ -20,6 +46,8 @@ void presence_found(struct native *native, const uint8_t rom[8], unsigned n, int
 	struct device *device = device_find(&native->table, rom);
 	bool known = device && device->present && device->channel == n;
 
+	if (device && device->present && device->channel != n)
+		look_for_twin(native, device, n, now);
 	if (!known) {
 		device = device_add(&native->table, rom, sensors_family(&native->sensors, rom), n);
 		if (!device) {
@@ -46,6 +74,7 @@ void presence_lost(struct native *native, struct device *device)
 	if (!device->present)
 		return;
 	device->present = false;
+	device->moved_ns = 0;
 	family_forget(device);
 	native_count(native, COUNT_LOST);
 	native_event(native, BUS_LOST, device->rom, 0, "");

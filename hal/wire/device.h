@@ -35,6 +35,9 @@ struct device {
 	const struct family *family;
 	uint8_t rom[8];
 	uint8_t channel;
+	uint8_t before;   /* the channel on which it answered until it did on this one */
+	uint8_t returns;  /* so often in a row it was soon back on that */
+	int64_t moved_ns; /* when it answered on another channel */
 	bool present;
 	bool settled;     /* was read or written since it came or restarted */
 	bool locked;      /* a job of several transactions is at work with it */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Tests of devices, wires and chips that are lost and come back. */
 #include <errno.h>
+#include <string.h>
 
 #include "unity.h"
 
@@ -64,6 +65,51 @@ static void test_the_background_search_sees_devices_come_and_go(void)
 	wire_add(0, "DS2401", 3);
 	host_run(&host, bus, host.now + 15 * HOST_S);
 	TEST_ASSERT_EQUAL_UINT(3, host_events(&host, BUS_FOUND));
+}
+
+static unsigned count_twins(const char **text)
+{
+	unsigned n = 0;
+
+	for (unsigned i = 0; i < host.events; i++)
+		if (host.event[i].news == BUS_NOTE && strstr(host.event[i].text, " answers on ")) {
+			*text = host.event[i].text;
+			n++;
+		}
+	return n;
+}
+
+static void test_an_id_on_two_wires_is_reported_once(void)
+{
+	const char *text = "";
+
+	wire_init(&host, 2, 1);
+	wire_add(0, "DS2401", 1);
+	wire_add(1, "DS2401", 1);
+	start();
+	host_run(&host, bus, host.now + 60 * HOST_S);
+	TEST_ASSERT_EQUAL_UINT(1, count_twins(&text));
+	TEST_ASSERT_EQUAL_STRING("01.01005DDF0300 answers on bus.0 and on bus.1: of two chips with "
+	                         "one id only one is served at a time",
+	                         text);
+}
+
+static void test_a_device_that_is_moved_and_moved_back_is_no_twin(void)
+{
+	const char *text = "";
+
+	wire_init(&host, 2, 1);
+	struct sim_slave *here = wire_add(0, "DS2401", 1), *there = wire_add(1, "DS2401", 1);
+
+	sim_wire_plug(&wire_net.wire[1], there, false, wire_time());
+	start();
+	for (int i = 0; i < 4; i++) {
+		host_run(&host, bus, host.now + 90 * HOST_S);
+		sim_wire_plug(&wire_net.wire[0], here, i % 2, wire_time());
+		sim_wire_plug(&wire_net.wire[1], there, !(i % 2), wire_time());
+	}
+	host_run(&host, bus, host.now + 30 * HOST_S);
+	TEST_ASSERT_EQUAL_UINT(0, count_twins(&text));
 }
 
 static void test_the_ladder_is_climbed_until_the_chip_answers(void)
@@ -153,6 +199,8 @@ int main(void)
 	RUN_TEST(test_a_short_is_told_and_gone_again);
 	RUN_TEST(test_a_device_that_leaves_is_lost_and_found_again);
 	RUN_TEST(test_the_background_search_sees_devices_come_and_go);
+	RUN_TEST(test_an_id_on_two_wires_is_reported_once);
+	RUN_TEST(test_a_device_that_is_moved_and_moved_back_is_no_twin);
 	RUN_TEST(test_the_ladder_is_climbed_until_the_chip_answers);
 	RUN_TEST(test_a_wire_without_rungs_is_tried_again_and_then_opened_anew);
 	RUN_TEST(test_a_suspended_bus_lets_go_and_comes_back);
