@@ -7,9 +7,11 @@
 
 #include "hal/chips/find.h"
 #include "hal/owfs/path.h"
+#include "src/config/buses.h"
 #include "src/config/check.h"
 #include "src/config/config.h"
 #include "src/config/options.h"
+#include "src/config/own.h"
 #include "src/config/property.h"
 #include "src/signal/quantity.h"
 
@@ -207,4 +209,15 @@ void config_check_items(const struct config *config, struct config_report *repor
 void config_check_item(const struct config *config, const char *name, struct config_report *report)
 {
 	check_items(config, name, report);
+}
+
+int config_check(struct config *config, struct config_report *report)
+{
+	int err = config_check_own(config, report);
+
+	if (err)
+		return err;
+	config_check_buses(config, report);
+	config_check_items(config, report);
+	return 0;
 }

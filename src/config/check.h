@@ -7,6 +7,13 @@ struct config;
 struct config_report;
 
 /*
+ * Check a whole configuration that was parsed: what owsd --check, the writer and the page report
+ * alike, but for what only the backends know (target_check_config() of src/host). Targets that lead
+ * back to this owsd, as config_check_own(); warnings of Bus blocks and of items. 0 or -EINVAL.
+ */
+int config_check(struct config *config, struct config_report *report);
+
+/*
  * Warn of what can hardly be meant: ids that cannot exist, the kernel's spelling of ids, properties
  * that the family has not, commands to what cannot be written, texts for numbers. Each warning has
  * the remedy. Another server may know more than owsd, so nothing of it is an error.

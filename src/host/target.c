@@ -8,6 +8,7 @@
 #include "hal/bus/bus.h"
 #include "hal/gpio/line.h"
 #include "src/config/buses.h"
+#include "src/config/check.h"
 #include "src/config/report.h"
 #include "src/host/target.h"
 #include "src/libows/ows.h"
@@ -37,14 +38,18 @@ static void no_event(void *ctx, const struct bus_event *event)
 static const struct bus_env env = {
 	.now = target_now, .wait = no_wait, .answer = no_answer, .event = no_event};
 
-int target_check(const char *target, char *why, size_t why_size)
+static int check_target(const struct config *config, const struct config_target *target,
+                        struct config_report *report)
 {
+	struct place place = {target->line ? config->file : NULL, target->line, target->column};
+	char why[256] = "";
 	struct bus *bus = NULL;
-	int err = bus_create(target, &env, &bus, why, why_size);
+	int err = bus_create(target->text, &env, &bus, why, sizeof(why));
 
-	if (err && !*why)
-		snprintf(why, why_size, "%s", strerror(-err));
-	if (!err)
+	if (err)
+		report_error(report, place, "target \"%s\": %s", target->text,
+		             *why ? why : strerror(-err));
+	else
 		bus_destroy(bus);
 	return err;
 }
@@ -105,7 +110,7 @@ static int check_line(const struct config *config, const char *key, const char *
 	return err;
 }
 
-int target_check_options(const struct config *config, struct config_report *report)
+static int check_options(const struct config *config, struct config_report *report)
 {
 	int err = check_line(config, "AlarmLine", config->alarm_line, report);
 	int other = check_line(config, "HeartbeatLine", config->heartbeat_line, report);
@@ -122,4 +127,15 @@ int target_check_options(const struct config *config, struct config_report *repo
 		err = err ? err : other;
 	}
 	return err;
+}
+
+int target_check_config(struct config *config, struct config_report *report)
+{
+	int err = 0;
+
+	for (unsigned i = 0; !err && i < config->target_count; i++)
+		err = check_target(config, &config->targets[i], report);
+	if (!err)
+		err = check_options(config, report);
+	return err ? err : config_check(config, report);
 }

@@ -7,9 +7,7 @@
 #include "src/board/look.h"
 #include "src/board/report.h"
 #include "src/config/buses.h"
-#include "src/config/check.h"
 #include "src/config/load.h"
-#include "src/config/own.h"
 #include "src/config/print.h"
 #include "src/config/report.h"
 #include "src/host/host.h"
@@ -82,18 +80,6 @@ static void report_line(void *ctx, bool is_error, const char *message)
 		snprintf(told->why, told->why_size, "%s", message);
 }
 
-static int check_target(const struct config *config, const struct config_target *target,
-                        struct config_report *report)
-{
-	struct place place = {target->line ? config->file : NULL, target->line, target->column};
-	char why[256];
-	int err = target_check(target->text, why, sizeof(why));
-
-	if (err)
-		report_error(report, place, "target \"%s\": %s", target->text, why);
-	return err;
-}
-
 static bool has_file(const struct arguments *a)
 {
 	return access(a->file, F_OK) == 0 || errno != ENOENT;
@@ -121,15 +107,9 @@ static int load(const struct arguments *a, struct told *told, struct config **co
 	if (!err && a->listen_count)
 		err = config_set_listens(*config, a->listens, a->listen_count, &report);
 	if (!err)
-		err = config_check_own(*config, &report);
-	for (unsigned i = 0; !err && i < (*config)->target_count; i++)
-		err = check_target(*config, &(*config)->targets[i], &report);
-	if (!err)
-		err = target_check_options(*config, &report);
+		err = target_check_config(*config, &report);
 	if (!err) {
 		config_hash_files(*config);
-		config_check_buses(*config, &report);
-		config_check_items(*config, &report);
 		return 0;
 	}
 	config_free(*config);

@@ -6,9 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/config/buses.h"
+#include "src/config/check.h"
 #include "src/config/load.h"
-#include "src/config/own.h"
 #include "src/signal/utf8.h"
 #include "src/web/draft.h"
 #include "src/web/draft_edit.h"
@@ -34,9 +33,7 @@ int draft_check(const char *file, const char *text, size_t len, struct problems 
 	int err = config_parse(file, text, len, &report, &config);
 
 	if (!err)
-		err = config_check_own(config, &report);
-	if (!err)
-		config_check_buses(config, &report);
+		err = config_check(config, &report);
 	config_free(config);
 	*rio = NULL;
 	if (err == -ENOMEM)

@@ -10,6 +10,7 @@ import threading
 import owsdtest
 from owsdtest import place, raw, until
 from test_web import ROOM, SENSOR, Page, both
+from test_writer import alone as writer_alone
 
 MARKED = {"Content_Type": "application/json", "X_Owsd": "1"}
 LARGE = 1536 * 1024
@@ -132,6 +133,37 @@ def test_problems_stand_at_their_items_and_keys(scene):
                     "check")
     assert unknown["valid"] and not unknown["problems"][0]["error"], unknown
     assert unknown["problems"][0]["key"] == "Unitt"
+
+
+DOUBTFUL = {
+    "the kernel's spelling of an id": 'Path "/28-000000000001/temperature"',
+    "an id that cannot exist": 'Path "/28.0000000000ZZ/temperature"',
+    "a property that the family has not": 'Path "/28.000000000001/temprature"',
+    "a command to what cannot be written": 'Path "/28.000000000001/temperature" IO output',
+    "a text for a number": 'Path "/28.000000000001/temperature" Type string',
+    "a wrong property of an alarm": 'Path "/29.000000000002/PIO.BYTE" Alarm on PorAlarm "por" LatchAlarm "latsch.BYTE"',
+    "nothing": 'Path "/28.000000000001/temperature"',
+}
+
+
+def test_the_page_the_writer_and_owsd_check_find_the_same(scene):
+    _, page = editor(scene)
+    writer = writer_alone(scene, "OwsDrv {\n}\n")
+    for what, item in DOUBTFUL.items():
+        item = f'Item {{ Name a {item} {"" if "Type" in item else "Type double "}}}'
+        text = f'OwsDrv {{\n  TargetName "null:"\n  Bus {{ Target "localhost:4399" }}\n  {item}\n}}\n'
+        file = scene.file("doubtful.rio", text)
+        done = scene.owsd_once("--check", "-c", file)
+        assert done.returncode == 0, (what, done)
+        said = [(int(line), int(column or 0), words) for line, column, words in
+                re.findall(r"^.*doubtful.rio:(\d+)(?::(\d+))?: warning: (.*)$", done.stderr, re.M)]
+        assert (len(said) > 1) == (what != "nothing"), (what, done.stderr)
+        shown = [(p["line"], p["column"], p["text"]) for p in draft(page, text, "check")["problems"]]
+        assert shown == said, (what, shown, said)
+        answer = writer.replace(text)
+        assert answer.status == "done", (what, answer.text)
+        assert answer.problems == [f"W {line} {column} {words}" for line, column, words in said], \
+            (what, answer.text, said)
 
 
 def test_an_edit_that_cannot_be_is_refused_with_the_reason(scene):

@@ -76,8 +76,9 @@ def ask(path, data):
 ACTIVATE = """
 import os, socket, sys
 door = socket.socket(socket.AF_UNIX)
-door.bind(sys.argv[1])
+door.bind(sys.argv[1] + ".new")
 door.listen(4)
+os.rename(sys.argv[1] + ".new", sys.argv[1])  # where it is found it listens
 os.dup2(door.fileno(), 3)
 os.set_inheritable(3, True)
 os.environ.update(LISTEN_PID=str(os.getpid()), LISTEN_FDS="1")
