@@ -19,6 +19,7 @@ import importlib
 import json
 import os
 import pathlib
+import re
 import shutil
 import socket
 import subprocess
@@ -299,6 +300,60 @@ class AioOwnet(Client):
         self._ask(self.proxy.write, path, value)
 
 
+class Asyncowfs(Client):
+    """asyncowfs of MoaT, which EVOK of Unipi uses: one connection, and answers of at most 9,999
+    bytes."""
+
+    can = frozenset(("number",))
+
+    def __init__(self, scene, server):
+        super().__init__(scene, server)
+        if sys.version_info < (3, 11):
+            owsdtest.skip("asyncowfs is pinned with anyio for Python 3.11")
+        self.module, self.errors = python_client("asyncowfs"), python_client("asyncowfs.error")
+        self.events, messages = python_client("asyncowfs.event"), python_client("asyncowfs.protocol")
+        for message in (messages.AttrGetMsg, messages.AttrSetMsg, messages.DirMsg):
+            message.timeout = owsdtest.PATIENCE
+        # it asks for everything uncached, and what is that of owserver's mock is chance
+        messages.OWFlag.uncached = 0
+
+    def _ask(self, call):
+        async def ask():
+            async with self.module.OWFS(initial_scan=False) as ow:
+                return await call(await ow.add_server(self.server.host, self.server.port))
+        try:
+            return asyncio.run(ask())
+        except* self.errors.OWFSReplyError as group:
+            error = group
+            while isinstance(error, BaseExceptionGroup):
+                error = error.exceptions[0]
+        raise Refused(-abs(error.err), repr(error))
+
+    def dir(self, path):
+        below = "" if path == "/" else path
+        names = self._ask(lambda server: server.dir(*path.strip("/").split("/")))
+        # it asks for ids with their checksum
+        return _names(f"{below}/" + re.sub(r"^(..\..{12})\...$", r"\1", name) for name in names)
+
+    def read(self, path):
+        return self._ask(lambda server: server.attr_get(*path.strip("/").split("/")))
+
+    def write(self, path, value):
+        self._ask(lambda server: server.attr_set(*path.strip("/").split("/"), value=value))
+
+    def locate(self):
+        """All devices, and what of each its fields of /structure name, as EVOK's scan does it."""
+        async def scan(server):
+            await server.scan_now(polling=False)
+            found = {}
+            for device in server.service._devices.values():
+                if device.bus is not None:
+                    found[device.id] = (await device.get_type(),
+                                        sorted("/".join(field) for field in device.fields))
+            return found
+        return self._ask(scan)
+
+
 # --- The daemons ----------------------------------------------------------------------------------
 class Owhttpd(Client):
     """owhttpd as a client of the server: its pages of plain text. It tells of no failed write."""
@@ -442,4 +497,4 @@ class Owsctl(Client):
         self._run("write", path, value.decode())
 
 
-ALL = (Shell, Libownet, Pyownet, PyownetPersistent, AioOwnet, Owhttpd, Owfs, Owsctl)
+ALL = (Shell, Libownet, Pyownet, PyownetPersistent, AioOwnet, Asyncowfs, Owhttpd, Owfs, Owsctl)

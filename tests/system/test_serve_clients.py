@@ -262,5 +262,15 @@ for _which in served.STARTS:
     for _kind in clients.ALL:
         globals()[f"test_{_kind.__name__}_of_{_which}".lower()] = case(_kind, _which)
 
+
+def test_asyncowfs_locates_the_same_devices_with_the_same_fields(scene):
+    """EVOK's scan: an entry of /structure that it cannot walk costs it all devices after."""
+    found = [clients.Asyncowfs(scene, served.start(scene, which)).locate() for which in served.STARTS]
+    assert len(found[0]) == len(DEVICES), found[0]
+    assert found[0] == found[1], "\n".join(f"{name}: {found[0].get(name)} {found[1].get(name)}"
+                                            for name in sorted({*found[0], *found[1]})
+                                            if found[0].get(name) != found[1].get(name))
+
+
 if __name__ == "__main__":
     owsdtest.main(at_once=8)
