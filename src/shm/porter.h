@@ -67,13 +67,13 @@ bool porter_carried(const struct porter *porter, uint32_t slot);
 
 enum porter_event {
 	PORTER_GOES_ON,
-	PORTER_ENDED, /* somebody killed it: until another is ready the caller's threads do it all */
+	PORTER_ENDED, /* somebody killed it: the caller's threads do it all until PORTER_IS_BACK */
 	PORTER_IS_BACK, /* another is ready */
 	PORTER_FAILED,  /* another could not be started, or ended before it was ready */
 };
 /*
- * Start a porter that was killed again: after a second, later after twice as long each time, up to a
- * minute. For one thread, at least each second. The new porter begins with copies of all that
+ * Start a porter that was killed again: after a second, later after twice as long each time, up to
+ * a minute. For one thread, at least each second. The new porter begins with copies of all that
  * owsd has open, some of which may be slow to close: so it gets the lanes only when it is done with
  * that, and is killed if it takes two seconds. Never blocks.
  */

@@ -535,7 +535,7 @@ static void message_taken(void)
 		explore_fail("asleep on message %u of 2", found.message);
 }
 
-/* --- News for a giver, and for a reader -------------------------------------------------------- */
+/* --- News for a giver, and for a reader ------------------------------------------------------ */
 
 static uint32_t last_message;
 

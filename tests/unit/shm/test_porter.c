@@ -34,7 +34,7 @@ void tearDown(void)
 
 static void pause_ms(long ms)
 {
-	nanosleep(&(struct timespec){.tv_nsec = ms * NS_PER_MS}, NULL);
+	nanosleep(&(struct timespec){.tv_nsec = ms * NS_PER_MS}, NULL); /* the pace of a loop */
 }
 
 /* The time of the porter goes on by so much in each round, until it reports something. */
