@@ -3,6 +3,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include "unity.h"
 
@@ -11,6 +14,8 @@
 
 /* Of a memory that has more bytes its pages are read. */
 #define WHOLE_MAX 512
+/* More than a bus needs. */
+#define KEPT (32 * 1024 * 1024)
 
 struct trouble trouble;
 struct sim_slave *visited;
@@ -97,6 +102,11 @@ void visit_change(struct sim_slave *slave, bool again, bool turned)
 
 void visit_begin(const struct visit *visit)
 {
+	/* What the bus of one visit had is for the next: the kernel would clear it each time */
+#ifdef __GLIBC__
+	mallopt(M_TRIM_THRESHOLD, KEPT);
+	mallopt(M_MMAP_THRESHOLD, KEPT);
+#endif
 	native_begin();
 	wire_init(&host, 1, 1);
 	wire_net.trouble = &trouble;
