@@ -33,8 +33,8 @@ struct visit {
 /*
  * The chips that are visited, by groups: X(name of its tests, chip, is it fed by the wire?). A new
  * simulated chip is one line here, and all tests of visits have it; each family has one at least. A
- * group is a program (visit_group.h), which also has what is written; those of VISIT_CHIPS have
- * three, test_native_truth.c and its like. VISIT_CHIPS has thermometers and switches.
+ * group is a program (visit_group.h), which also has what is written. VISIT_CHIPS has thermometers
+ * and switches.
  */
 /* clang-format off */
 #define VISIT_CHIPS(X) \

@@ -2,7 +2,8 @@
 /*
  * The visits of a group of chips, as a program: of each chip of the list (visit.h) every property
  * is read with each trouble of the wire and each loss of power, and what `writes` has of the chip
- * is written. The rows of `writes` end with {0}. A chip that has no row there has nothing to write.
+ * is written. The rows of `writes` end with {0}. A chip that has no row there has nothing to write;
+ * one that is fed by the wire has those with .parasite.
  *
  *	VISIT_GROUP(VISIT_MEMORIES)
  *
@@ -34,7 +35,7 @@
 	} \
 	static void test_what_is_told_to_be_written_is_in_the_##name(void) \
 	{ \
-		visit_writes(chip, writes); \
+		visit_writes(chip, parasite, writes); \
 	}
 #define VISIT_NAME(name, chip, parasite) chip,
 #define VISIT_GROUP(chips) \

@@ -183,11 +183,11 @@ static void look(const struct visit *visit)
 	visit_each(visit, one);
 }
 
-void visit_writes(const char *chip, const struct visit *visits)
+void visit_writes(const char *chip, bool parasite, const struct visit *visits)
 {
 	false_writes = 0;
 	for (; visits->chip; visits++)
-		if (strcmp(visits->chip, chip) == 0)
+		if (strcmp(visits->chip, chip) == 0 && visits->parasite == parasite)
 			look(visits);
 	TEST_ASSERT_EQUAL_UINT_MESSAGE(0, false_writes, chip);
 }

@@ -5,7 +5,7 @@
 
 #include "tests/unit/aid/visit.h"
 
-/* Those of the visits, which end with one without a chip, that are of this one. */
-void visit_writes(const char *chip, const struct visit *visits);
+/* Those of the visits, which end with one without a chip, that are of this one so fed. */
+void visit_writes(const char *chip, bool parasite, const struct visit *visits);
 
 #endif
