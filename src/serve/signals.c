@@ -186,9 +186,14 @@ int signals_read(struct signals *signals, const char *name, int64_t now_ns, char
 	return value.type == OWS_STRING ? (int)value.len : (int)strlen(text);
 }
 
-/* Ignore blanks and the end of the line, which a shell adds to a number. */
+/*
+ * Ignore the end of the string, which some clients send along, and of a number blanks and the end of
+ * the line, which a shell adds.
+ */
 static int take_text(const char *text, size_t len, bool is_string, char out[VALUE_STRING_MAX + 1])
 {
+	while (len && text[len - 1] == '\0')
+		len--;
 	if (memchr(text, '\0', len))
 		return -EINVAL;
 	while (!is_string && len && strchr(" \t\r\n", text[len - 1]))

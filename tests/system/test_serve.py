@@ -259,13 +259,17 @@ def test_outputs_are_commanded_as_signals_and_by_their_paths(scene):
     daemon, port = house(scene)
     relay = "/29.000000000001/PIO.1"
     for path, text, state in (("/signals/pump", b"1", "1"), (relay, b"0", "0"),
-                              ("/signals/pump", b"on\n", "1"), (relay, b"0\n", "0")):
+                              ("/signals/pump", b"on\n", "1"), (relay, b"0\n", "0"),
+                              # owjs and SmartHomeNG end each text with a NUL
+                              ("/signals/pump", b"on\0", "1"), (relay, b"0\0", "0"),
+                              ("/signals/pump", b" 1\r\n\0", "1")):
         assert ask(port, WRITE, path, text)[:1] == (0,), path
         # the answer comes when the bus has it
         assert scene.owsctl(daemon, "get", "pump").stdout == state + "\n"
         assert value(ask(port, READ, "/uncached" + relay)) == state
     assert ask(port, WRITE, "/signals/boiler", b"1")[0] == -95
     assert ask(port, WRITE, "/signals/pump", b"many")[0] == -22
+    assert ask(port, WRITE, "/signals/pump", b"0\0001")[0] == -22
     assert ask(port, WRITE, "/signals/pump", b"7")[0] == -34
     assert ask(port, WRITE, "/signals/nobody", b"7")[0] == -1
 
