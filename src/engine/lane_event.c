@@ -46,9 +46,11 @@ static void report_cached(const struct lane *lane, int64_t cache_ns)
 static void down_event(struct lane *lane, int err, const char *text, int64_t now_ns)
 {
 	struct engine *e = lane->engine;
+	bool quiet = engine_group(e, lane)->state.quiet && err == lane->state.down_err;
 
-	log_at(e->log, engine_group(e, lane)->state.quiet ? LOG_LEVEL_DEBUG : LOG_LEVEL_WARNING,
-	       "%s: %s: %s", lane->port->target, lane->state.up ? "from up to down" : "down",
+	lane->state.down_err = err;
+	log_at(e->log, quiet ? LOG_LEVEL_DEBUG : LOG_LEVEL_WARNING, "%s: %s: %s",
+	       lane->port->target, lane->state.up ? "from up to down" : "down",
 	       *text ? text : strerror(-err));
 	lane->state.up = false;
 	lane->counters.target_failures++;

@@ -4,17 +4,35 @@
  * the ways of the groups, moves devices to the groups that serve them, and sends out for those that
  * are nowhere.
  */
-#include "src/engine/routing.h"
+#include <stdio.h>
+
 #include "src/engine/due.h"
 #include "src/engine/lane_state.h"
 #include "src/engine/move.h"
 #include "src/engine/place.h"
 #include "src/engine/publish.h"
 #include "src/engine/route.h"
+#include "src/engine/routing.h"
 #include "src/engine/state.h"
 #include "src/text/log.h"
 
 /* --- Groups: which way is open --------------------------------------------------------------- */
+
+/* All ways have failed: each has said why, once. From now on one line is for all. */
+static void report_round(struct engine *e, struct group *g, int64_t now_ns)
+{
+	uint64_t times = log_rate(&g->state.rounds, now_ns);
+	char ways[200] = "", others[LOG_OTHERS];
+	size_t len = 0;
+
+	g->state.quiet = true;
+	for (unsigned w = 0; times && w < g->state.bar.count && len < sizeof(ways); w++)
+		len += (size_t)snprintf(ways + len, sizeof(ways) - len, "%s%s", w ? " | " : "",
+		                        e->lanes[g->first + w].port->target);
+	if (times)
+		log_warning(e->log, "%s: nothing found; owsd looks again, each %d s at last%s",
+		            ways, (int)(ROUTE_DWELL_MAX_NS / NS_PER_S), log_others(times, others));
+}
 
 static void leave_way(struct engine *e, struct group *g, const struct route_step *step,
                       int64_t now_ns)
@@ -23,10 +41,10 @@ static void leave_way(struct engine *e, struct group *g, const struct route_step
 	struct lane *to = &e->lanes[g->first + step->way];
 
 	route_bar_took(&g->state.bar, g->ways, step, now_ns);
-	if (g->state.bar.failures <= g->state.bar.count)
+	if (g->state.bar.failures < g->state.bar.count)
 		g->state.quiet = false;
-	else if (g->state.bar.failures % g->state.bar.count == 1)
-		g->state.quiet = !log_rate(&g->state.rounds, now_ns);
+	else if (g->state.bar.failures % g->state.bar.count == 0)
+		report_round(e, g, now_ns);
 	from->state.open = from->state.up = from->state.was_up = false;
 	*engine_way(e, from) = (struct route_way){.released = false};
 	engine_move_lane(e, from, to, step->why, now_ns);

@@ -102,6 +102,7 @@ struct lane_state {
 	bool open; /* the lane is the one way of its group that is open */
 	/* lane_event.c; heard_ns: lane_answer.c too */
 	bool reported_up; /* the last report of the bus was BUS_UP */
+	int down_err; /* of its last BUS_DOWN; the log of a way that is tried again has a new one */
 	int64_t heard_ns; /* last answer or event of the bus */
 };
 
@@ -215,7 +216,7 @@ struct known_giver {
 /* Which way of a group is open; a reload carries it over. */
 struct group_state {
 	struct route_bar bar;
-	bool quiet; /* all ways have failed in turn, again: the log has that now and then only */
+	bool quiet; /* all ways have failed in turn, again: one line for all, now and then */
 	struct log_rate rounds;
 };
 

@@ -271,6 +271,11 @@ def auto_finds(scene):
     daemon = scene.owsd(table("null:", {"room": room + "/temperature"}), "-t", "auto")
     for what in ("localhost:4304: down", "i2c:auto: down", "w1: down", "no 1-Wire master"):
         until(lambda: what in daemon.log(), 20, what)
+    # each reason once; what follows is one line for all ways
+    until(lambda: daemon.log().count("nothing found; owsd looks again") == 2, 60, daemon.log)
+    lines = daemon.log().splitlines()
+    assert sum(": down: " in line for line in lines) == 3, lines
+    assert sum(": the target is down" in line for line in lines) == 2, lines
     assert scene.get(daemon, "room") is None
     again = scene.owserver(mock=["28"], port=4304)
     again.write(room + "/temperature", 19.25)
