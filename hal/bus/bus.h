@@ -205,6 +205,7 @@ struct bus_ops {
 	unsigned depth;      /* requests it takes before an answer; at least 1 */
 	bool testing;        /* answers without devices: a user is not offered it */
 	bool searches;       /* sends BUS_FOUND and BUS_LOST by itself */
+	bool brief; /* a device that keeps failing costs the others no more than a good one */
 
 	/*
 	 * Allocate everything the bus will need; never touch hardware or network, never block.

@@ -73,7 +73,7 @@ struct family {
 	uint8_t area_count, how_count;
 };
 
-#define FAMILY_DOUBT_NS (60 * INT64_C(1000000000))
+#define FAMILY_DOUBT_NS INT64_C(1000000000)
 
 /* What the chip is called; NULL: it has not said that yet. */
 const char *family_type(const struct device *device);

@@ -231,9 +231,13 @@ int thermometer_prepare(struct txn *txn, unsigned resolution)
 	default:
 		thermometer_of(device)->resolution = 0;
 		err = thermometer_settings(txn, scratchpad);
-		thermometer_of(device)->ignores = !err &&
-		                                  thermometer_of(device)->resolution != resolution;
-		return err;
+		if (err || thermometer_of(device)->resolution == resolution)
+			return err;
+		/* It took another one before: this write was lost. */
+		if (thermometer_of(device)->resolution != thermometer_of(device)->stored)
+			return -EBADMSG;
+		thermometer_of(device)->ignores = true;
+		return 0;
 	}
 }
 

@@ -56,6 +56,19 @@ static void give(struct native *native, struct job *job, struct bus_answer *answ
 	native->bus.env->answer(native->bus.env->ctx, answer);
 }
 
+/* Of a request that asked the chip: does it fail again and again? */
+static void note_failure(struct job *job, int err)
+{
+	struct device *device = job->txn.device;
+
+	if (!device || job->kind != JOB_PROPERTY || job->property->offline)
+		return;
+	if (!err)
+		device->failures = 0;
+	else if ((err == -EBADMSG || err == -EIO) && device->failures < UINT8_MAX)
+		device->failures++;
+}
+
 void job_answer(struct native *native, struct job *job, int err)
 {
 	struct bus_answer answer = {.id = job->req->id,
@@ -64,6 +77,7 @@ void job_answer(struct native *native, struct job *job, int err)
 	                            .measured_ns = native_now(native)};
 
 	job_unlock(native, job);
+	note_failure(job, err);
 	if (native->master->ops->simulated)
 		answer.detail |= BUS_DETAIL_SIMULATED;
 	if (!err && job->req->op == BUS_WRITE)

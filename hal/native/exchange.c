@@ -206,7 +206,7 @@ static void forget_doubtful(struct device *device, int64_t now)
 
 /*
  * Which chip it is, where the family code does not tell: known before anything is asked of it.
- * -ENOENT: such a chip has no such property.
+ * -ENOENT: such a chip has no such property. -EIO: a fault of the chip may be why it has none.
  */
 static int identify(struct job *job)
 {
@@ -220,7 +220,9 @@ static int identify(struct job *job)
 
 	forget_doubtful(device, txn_now(txn));
 	if (family->kind(device))
-		return family_has(device, job->property) ? 0 : -ENOENT;
+		return family_has(device, job->property) ? 0
+		       : family_doubts(device)           ? -EIO
+		                                         : -ENOENT;
 	int err = family->identify(txn);
 
 	if (err)

@@ -317,7 +317,7 @@ static bool read_next(struct native *native, int64_t now, int64_t *next)
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
 		struct job *job = &native->jobs[i];
 
-		if (is_ready(native, job, now, next, &n) && job_goes_first(job, best)) {
+		if (is_ready(native, job, now, next, &n) && job_goes_first(native, job, best)) {
 			best = job;
 			best_n = n;
 		}

@@ -71,6 +71,8 @@ void job_look(struct native *native, struct job *job, int64_t now)
 		return;
 	}
 	bool lost = job->path.device.len && away(native, job->txn.device);
+	job->soon = job->txn.device && job->txn.device->failures &&
+	            job->txn.device->failures <= NATIVE_DOUBTS;
 	switch ((enum job_kind)job->kind) {
 	case JOB_NONE:
 		return;
@@ -191,10 +193,13 @@ bool job_ready(const struct native *native, const struct job *job, int64_t now, 
 	return true;
 }
 
-bool job_goes_first(const struct job *a, const struct job *b)
+/* Of what goes soon every other one: the others have half of the steps. */
+bool job_goes_first(const struct native *native, const struct job *a, const struct job *b)
 {
 	if (!b || a->req->prio != b->req->prio)
 		return !b || a->req->prio < b->req->prio;
+	if (a->soon != b->soon && !native->soon_ran)
+		return a->soon;
 	return (int32_t)(a->order - b->order) < 0;
 }
 

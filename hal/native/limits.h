@@ -9,6 +9,8 @@
 #define NATIVE_CHANNELS 64 /* links of a master */
 #define NATIVE_COUPLERS 16 /* whose branches are channels behind those */
 #define NATIVE_ALL (NATIVE_CHANNELS + 2 * NATIVE_COUPLERS)
+/* Requests in a row that a device may fail before it is taken to be broken. */
+#define NATIVE_DOUBTS 3
 #define NATIVE_S INT64_C(1000000000)
 
 #endif

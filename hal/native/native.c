@@ -263,7 +263,7 @@ static struct job *pick(struct native *native, int64_t now, int64_t *next, struc
 			all = job;
 		if (!job->req || !job_ready(native, job, now, next))
 			continue;
-		if (job_goes_first(job, best))
+		if (job_goes_first(native, job, best))
 			best = job;
 		if (!schedule_reads(job) &&
 		    (!*other || (int32_t)(job->order - (*other)->order) < 0))
@@ -314,6 +314,7 @@ static void run(struct native *native, struct job *job, int64_t now)
 {
 	bool reads = schedule_reads(job);
 
+	native->soon_ran = job->soon;
 	native->schedule.doing = reads ? SCHEDULE_READ : SCHEDULE_OTHER;
 	if (reads)
 		together_step(native, job, now);

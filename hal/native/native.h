@@ -66,7 +66,7 @@ const struct bus_counter *native_counters(struct bus *bus, size_t *n);
 	.depth = NATIVE_DEPTH, .searches = true, .destroy = native_destroy, \
 	.option = native_option, .submit = native_submit, .suspend = native_suspend, \
 	.there = native_there, .counters = native_counters
-#define NATIVE_BUS_SLOTS NATIVE_BUS_SLOTS_BUT_STEP, .step = native_step
+#define NATIVE_BUS_SLOTS NATIVE_BUS_SLOTS_BUT_STEP, .step = native_step, .brief = true
 /* For such a step. The master while the bus is up, else NULL. */
 struct link_master *native_master(struct bus *bus);
 /* Of a bus that is up: search all channels now, and let the master grow. */

@@ -98,6 +98,19 @@ static void give_up_reading(struct native *native, struct job *job, int err)
 	job_answer(native, job, err);
 }
 
+/*
+ * Is it tried again? A device that has failed request after request, which each tried it again,
+ * gets one try of each: so it takes no more of the wire than one that answers.
+ */
+static bool is_tried_again(struct job *job, unsigned tries)
+{
+	const struct device *device = job->txn.device;
+
+	if (device && device->failures > NATIVE_DOUBTS)
+		tries = 1;
+	return ++job->tries < tries;
+}
+
 void job_failed(struct native *native, struct job *job, int err)
 {
 	if (job->failures < UINT8_MAX)
@@ -110,7 +123,12 @@ void job_failed(struct native *native, struct job *job, int err)
 	case -EBADMSG:
 		native_count(native, COUNT_CHECKSUMS);
 		native->channel[job->txn.channel].checksums++;
-		if (++job->tries < TRIES_CHECKSUM) {
+		/* No answer at all: is it away? The looks for it are enough to tell. */
+		if (job->txn.silent && job->txn.device && !job->verified) {
+			job_missing(native, job, err);
+			return;
+		}
+		if (is_tried_again(job, TRIES_CHECKSUM)) {
 			begin_again(native, job);
 			return;
 		}
@@ -139,7 +157,7 @@ void job_failed(struct native *native, struct job *job, int err)
 		job_again(native, job);
 		return;
 	case -EIO:
-		if (++job->tries < TRIES_DEVICE)
+		if (is_tried_again(job, TRIES_DEVICE))
 			job_again(native, job);
 		else if (job->txn.blank && job->txn.device && !job->verified)
 			job_missing(native, job, err);

@@ -58,6 +58,7 @@ void presence_found(struct native *native, const uint8_t rom[8], unsigned n, int
 		family_forget(device);
 		device->present = true;
 		device->settled = false;
+		device->failures = 0;
 		native->channel[n].power_asked = false;
 		native_count(native, COUNT_FOUND);
 		native_event(native, BUS_FOUND, rom, 0, "");

@@ -96,6 +96,7 @@ struct job {
 	uint8_t again;              /* enum job_again */
 	uint8_t prove;              /* enum job_prove */
 	bool offered;               /* somebody or something can answer it */
+	bool soon;                  /* its device failed lately: it goes ahead of its rank */
 	bool alone;                 /* its next transaction is made with no others (together.h) */
 	bool sought;                /* LOCATE: the look under way has not decided it yet */
 	uint8_t first;              /* enum job_first */
@@ -253,6 +254,7 @@ struct native {
 	bool failed; /* suspended: it failed with what is to be seen of it at that time */
 	uint64_t failed_mark;
 	struct job *jobs; /* NATIVE_DEPTH */
+	bool soon_ran;    /* the last step was that of a job that goes soon */
 	struct job *all;  /* the JOB_CONVERT that waits longest; it may be over */
 	uint32_t order;   /* of the next job */
 	char where[NATIVE_WHERE_MAX];

@@ -113,7 +113,7 @@ static struct job *next_reading(struct native *native, const struct group *group
 		    !fits(native, group, job->txn.device->channel) ||
 		    !job_ready(native, job, now, &next))
 			continue;
-		if (job_goes_first(job, best))
+		if (job_goes_first(native, job, best))
 			best = job;
 	}
 	return best;

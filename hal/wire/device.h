@@ -41,6 +41,7 @@ struct device {
 	bool present;
 	bool settled;     /* was read or written since it came or restarted */
 	bool locked;      /* a job of several transactions is at work with it */
+	uint8_t failures; /* requests in a row that it failed */
 	uint8_t missed;   /* full searches in a row that did not see it */
 	uint32_t seen;    /* number of the last full search that saw it */
 	uint32_t changes; /* grows when what is cached of it is void */

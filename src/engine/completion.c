@@ -61,6 +61,26 @@ static bool gives_nothing(const struct engine *e, const struct signal *failed)
 	return true;
 }
 
+/*
+ * How many failures the signal forgives: none where its bus has looked for the device, and lost it.
+ */
+static unsigned retries_of(const struct engine *e, const struct signal *s, int err)
+{
+	bool lost = err == -ENODEV && s->device != TABLE_NO_DEVICE &&
+	            e->table.devices[s->device].absent;
+
+	return lost ? 0 : e->config->max_retries;
+}
+
+/* A fault of a device may end at any time, which is to be seen soon, if asking costs little. */
+static int64_t back_off(const struct lane *lane, uint8_t quality, int64_t wait_ns)
+{
+	bool ends = quality != OWS_Q_NO_PROPERTY && quality != OWS_Q_TYPE &&
+	            quality != OWS_Q_ACCESS;
+
+	return lane->port->brief && ends && wait_ns > RETRY_FIRST_NS ? RETRY_FIRST_NS : wait_ns;
+}
+
 /* An item error of a read; returns the back-off, 0: its next turn. */
 static int64_t fail_read(struct engine *e, struct lane *lane, struct signal *s, int err)
 {
@@ -70,7 +90,7 @@ static int64_t fail_read(struct engine *e, struct lane *lane, struct signal *s, 
 	lane->counters.item_errors++;
 	engine_facts_failed(e, s);
 	s->sample.err = err;
-	if (!retry_fail(&s->read.retry, e->config->max_retries, &wait_ns))
+	if (!retry_fail(&s->read.retry, retries_of(e, s, err), &wait_ns))
 		return 0;
 	if (err == -ENODEV)
 		mark_absent(e, lane, s);
@@ -80,7 +100,7 @@ static int64_t fail_read(struct engine *e, struct lane *lane, struct signal *s, 
 		s->sample.quality = quality;
 		report_failed(e, s, "", err, quality);
 	}
-	return wait_ns;
+	return back_off(lane, quality, wait_ns);
 }
 
 /* Of a write. It says nothing of a value that is read. */
@@ -100,7 +120,7 @@ static int64_t fail_write(struct engine *e, struct lane *lane, struct signal *s,
 		report_failed(e, s, "cannot be written: ", err, quality);
 	if (!signal_reads(s))
 		s->sample.quality = quality;
-	return wait_ns;
+	return back_off(lane, quality, wait_ns);
 }
 
 /* A good reading proves that the device is there; that a write was taken only claims it. */

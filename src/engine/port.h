@@ -11,6 +11,7 @@ struct engine_port {
 	const char *target; /* for the log; lives as long as the engine */
 	unsigned depth;     /* requests it takes before an answer */
 	bool searches;      /* its list of /alarm can be kept to families: "/alarm/29,12" */
+	bool brief;         /* bus_ops.brief: what fails can be asked again soon */
 	/* 0 or -EAGAIN; never blocks. The request is lent until its answer. */
 	int (*submit)(void *ctx, struct bus_req *req);
 	void *ctx;

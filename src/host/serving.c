@@ -77,6 +77,7 @@ static int make_workers(struct serving *s, const struct serving_setup *setup, ch
 			.target = s->config->targets[i].text,
 			.depth = bus_depth(worker_bus(s->workers[i])),
 			.searches = worker_bus(s->workers[i])->ops->searches,
+			.brief = worker_bus(s->workers[i])->ops->brief,
 			.submit = submit,
 			.ctx = s->workers[i],
 			.group = s->config->targets[i].group,

@@ -235,6 +235,7 @@ void plant_begin(struct plant *p, const char *scenario, const char *rio)
 	p->port = (struct engine_port){.target = "plant",
 	                               .depth = bus_depth(p->bus),
 	                               .searches = p->bus->ops->searches,
+	                               .brief = p->bus->ops->brief,
 	                               .submit = submit,
 	                               .ctx = p};
 	setup = (struct engine_setup){.config = p->config,
