@@ -21,6 +21,7 @@
 
 #define LOOKS 3
 #define TRIES 3
+#define FAULTY_RESETS 100 /* until one that answers wrong is tried again */
 
 static struct link *under(const struct trunk *trunk)
 {
@@ -124,7 +125,8 @@ static int try_off(struct coupler *coupler)
 
 /*
  * Both branches off; one that never answers is gone, and what is behind it too. If it is behind
- * another, that one may be what does not answer.
+ * another, that one may be what does not answer. One that answers wrong may have a branch on: those
+ * behind it hear what others are told, and answer to none but their own ids.
  */
 static int switch_off(struct coupler *coupler)
 {
@@ -133,9 +135,9 @@ static int switch_off(struct coupler *coupler)
 
 	for (int try = 0; try < TRIES && (done == 0 || done == -EBADMSG); try++)
 		done = try_off(coupler);
-	if (done < 0)
+	if (done < 0 && done != -EBADMSG)
 		return done;
-	coupler->unsure = !done && coupler->parent;
+	coupler->unsure = done < 0 ? FAULTY_RESETS : !done && coupler->parent;
 	if (trunk->on && trunk->on->coupler == coupler)
 		trunk->on = coupler->parent;
 	return 0;
@@ -170,7 +172,7 @@ static int make_sure(struct trunk *trunk, const struct branch *branch)
 	int err = 0;
 
 	for (; coupler && !err; coupler = coupler->next)
-		if (coupler->unsure && coupler->parent == branch)
+		if (coupler->unsure && coupler->parent == branch && !--coupler->unsure)
 			err = switch_off(coupler);
 	return err;
 }

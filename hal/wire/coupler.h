@@ -54,7 +54,11 @@ struct coupler {
 	struct coupler *next;  /* of the trunk */
 	struct coupler_seen *seen;
 	uint8_t rom[8];
-	bool unsure; /* somebody else may have left one of its branches on */
+	/*
+	 * One of its branches may be on: it is switched off ahead of the n-th reset of its wire
+	 * from now on; 0: none is. Of one that answers wrong n is large, as the others go on.
+	 */
+	uint8_t unsure;
 };
 
 /* Can a wire with this link have branches? It has to read between two writes. */

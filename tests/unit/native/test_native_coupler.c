@@ -7,6 +7,7 @@
 #include "unity.h"
 
 #include "hal/sim/branch.h"
+#include "hal/sim/families.h"
 #include "tests/unit/aid/native_scene.h"
 
 static struct sim_slave *coupler, *inner, *trunk, *on_main, *on_aux, *deep, *relay;
@@ -276,6 +277,70 @@ static void test_a_master_that_was_away_still_has_the_branches(void)
 	TEST_ASSERT_EQUAL_UINT(0, host_events(&host, BUS_LOST));
 }
 
+static void answer_wrong(struct sim_slave *slave, int64_t t)
+{
+	static const uint8_t wrong[] = {0x31, 0x9c};
+
+	(void)t;
+	sim_send(slave, wrong, sizeof(wrong));
+}
+
+static void break_it(struct sim_slave *slave)
+{
+	static const struct sim_function functions[] = {
+		{.code = 0x5A, .takes = 1, .start = answer_wrong},
+		{.code = 0x66, .start = answer_wrong},
+		{.code = 0xCC, .takes = 1, .start = answer_wrong},
+		{.code = 0x33, .takes = 1, .start = answer_wrong},
+		{0},
+	};
+	static struct sim_family broken;
+
+	broken = sim_ds2409;
+	broken.functions = functions;
+	slave->family = &broken;
+}
+
+/* Each of its answers is wrong, from the start or from some moment on: the others go on. */
+static void test_a_fault_of_a_coupler_is_that_of_what_is_behind_it(void)
+{
+	for (unsigned late = 0; late < 2; late++) {
+		native_end();
+		native_begin();
+		plant();
+		struct sim_slave *beside = wire_add(0, "DS2409", 9),
+				 *on_beside = wire_add(0, "DS18B20", 10);
+		sim_branch_put(on_beside, beside, SIM_MAIN);
+		wire_set(on_beside, "temperature", 50);
+		if (!late)
+			break_it(coupler);
+		start();
+		expect(true, of(trunk, "temperature"), "          10");
+		expect(true, of(on_beside, "temperature"), "          50");
+		if (late)
+			expect(true, of(deep, "temperature"), "          40");
+		break_it(coupler);
+		for (unsigned i = 0; i < 5; i++) {
+			TEST_ASSERT_TRUE(result(BUS_READ, of(on_aux, "temperature"), NULL) < 0);
+			/* A branch that was on may stay so: then it is part of the wire. */
+			if (result(BUS_READ, of(on_main, "temperature"), NULL) == 0) {
+				TEST_ASSERT_TRUE(late);
+				expect(true, of(on_main, "temperature"), "          20");
+			}
+			expect(true, of(trunk, "temperature"), "          10");
+			expect(true, of(on_beside, "temperature"), "          50");
+			TEST_ASSERT_TRUE(has_line(list(true, "/"), name_of(trunk)));
+		}
+		TEST_ASSERT_EQUAL_UINT(1, host_events(&host, BUS_UP));
+		TEST_ASSERT_EQUAL_UINT(0, host_events(&host, BUS_DOWN));
+		coupler->family = &sim_ds2409;
+		host_run(&host, bus, host.now + 20 * HOST_S);
+		expect(true, of(on_main, "temperature"), "          20");
+		expect(true, of(deep, "temperature"), "          40");
+		expect(true, of(on_aux, "temperature"), "          30");
+	}
+}
+
 static void test_a_coupler_takes_what_is_behind_it_along(void)
 {
 	begin();
@@ -363,6 +428,7 @@ int main(void)
 	RUN_TEST(test_a_short_branch_is_not_switched_on);
 	RUN_TEST(test_a_branch_that_becomes_short_while_it_is_on_loses_no_device);
 	RUN_TEST(test_a_master_that_was_away_still_has_the_branches);
+	RUN_TEST(test_a_fault_of_a_coupler_is_that_of_what_is_behind_it);
 	RUN_TEST(test_a_coupler_takes_what_is_behind_it_along);
 	RUN_TEST(test_events_outlive_the_switching_of_the_bus);
 	RUN_TEST(test_the_properties_of_a_coupler);
