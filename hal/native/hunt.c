@@ -27,6 +27,7 @@
 #define AGAIN_NS (NATIVE_S / 2)
 #define MISSED_MAX 2
 #define TRIES 3
+#define TRIES_PASS 8  /* of a search for one device; a search of many goes on from there */
 #define FULL_EVERY 16 /* alarm searches in a row: one looks for ids that are not known, too */
 
 bool hunt_initial(const struct native *native)
@@ -154,6 +155,13 @@ static void pass(struct native *native, unsigned n, int64_t now)
 		master_good(native, n);
 		told_short(native, n, false);
 	}
+	if (found == -EBADMSG && !only_whole(channel->link) && ++channel->spoiled < TRIES_PASS) {
+		native_count(native, COUNT_CHECKSUMS);
+		channel->search_ns = now;
+		channel->dirty = true; /* who was not seen is not lost for that */
+		return;
+	}
+	channel->spoiled = 0;
 	if (found > 0) {
 		if (!wake(native, n, channel->search.rom))
 			presence_found(native, channel->search.rom, n, now);
@@ -162,7 +170,7 @@ static void pass(struct native *native, unsigned n, int64_t now)
 			end_round(native, n, true, now);
 		return;
 	}
-	channel->dirty = found < 0;
+	channel->dirty |= found < 0;
 	if (found == -EBADMSG)
 		native_count(native, COUNT_CHECKSUMS);
 	if (found == -ECOMM) {
@@ -291,7 +299,12 @@ void hunt_scan(struct native *native, struct job *job, int64_t now)
 		job->heard = true;
 		master_good(native, job->channel);
 	}
+	if (found == -EBADMSG && !only_whole(channel->link) && ++job->tries < TRIES_PASS) {
+		native_count(native, COUNT_CHECKSUMS);
+		return;
+	}
 	if (found > 0) {
+		job->tries = 0;
 		presence_found(native, job->search.rom, job->channel, now);
 		struct device *device = device_find(&native->table, job->search.rom);
 		int err = device ? listing_add_device(native, job, device) : 0;

@@ -189,6 +189,7 @@ struct channel {
 	uint32_t asleep_round; /* the last that found a bridge without id (DS28E18); 0: none */
 	int64_t round_ns;      /* when it began */
 	bool searching, dirty;
+	uint8_t spoiled; /* passes in a row that a checksum ended */
 	struct search search;
 	struct touch touch;
 	struct first first;

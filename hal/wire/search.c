@@ -82,7 +82,7 @@ int search_next(struct search *search, struct link *link)
 		if (bits < 0)
 			return bits;
 		if ((bits & 3) == 3) {
-			search->last = true;
+			search->last = position == 1;
 			return position == 1 ? 0 : -EBADMSG;
 		}
 		bool taken = bits >> 2 & 1;

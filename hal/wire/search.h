@@ -30,7 +30,7 @@ struct search {
 void search_begin(struct search *search, bool alarm, uint8_t family);
 /*
  * 1 and the device in search->rom; 0 when there is no further one; -EBADMSG the id's checksum is
- * wrong or devices left in the middle (begin again); or the link's error.
+ * wrong or devices left in the middle (the next call tries the same again); or the link's error.
  */
 int search_next(struct search *search, struct link *link);
 /*

@@ -33,6 +33,12 @@ static const char *alarms(const struct scan_device *device)
 	return family->alarms ? "yes" : "no";
 }
 
+/* Is it a value of another chip with the same family code? */
+static bool is_of_another(const struct scan_device *device, unsigned i)
+{
+	return device->value[i].err == -ENOENT && device->identity[0];
+}
+
 /* Write the values as "temperature12=21.5 ...". */
 static void show_values(const struct scan_device *device, char *out, size_t size)
 {
@@ -46,8 +52,7 @@ static void show_values(const struct scan_device *device, char *out, size_t size
 
 		if (!name || used >= size)
 			break;
-		/* of another chip with the same family code */
-		if (value->err == -ENOENT && device->identity[0])
+		if (is_of_another(device, i))
 			continue;
 		n = snprintf(out + used, size - used, "%s%s=%s%s%s", used ? " " : "", name,
 		             value->err ? "(" : "",
@@ -96,6 +101,8 @@ static void print_values(struct json *json, const struct scan_device *device)
 
 		if (!name)
 			break;
+		if (is_of_another(device, i))
+			continue;
 		if (value->err)
 			json_null(json, name);
 		else if (target_is_number(value->text, strlen(value->text)))
@@ -179,6 +186,10 @@ static int find_devices(struct target *target, struct scan *scan)
 		return ctl_fail("%s: more than 512 couplers", target->name);
 	if (err && err != -ENOMEM)
 		return ctl_fail("%s: %s", target->name, error_text(err));
+	if (scan->disturbed)
+		ctl_fail("%s: each search was disturbed (%s): what it knew before is listed, "
+		         "and devices may be missing",
+		         target->name, error_text(-EBADMSG));
 	if (!err)
 		err = scan_read(target, scan->device, scan->count, false);
 	if (err == -ENOMEM)

@@ -99,6 +99,15 @@ static bool choose_alias(const struct scan_names *names, const struct scan_devic
 	return false;
 }
 
+static bool has_several(const struct scan_device *device)
+{
+	unsigned n = 0;
+
+	for (unsigned i = 0; i < SCAN_PROPERTIES; i++)
+		n += device->kind->property[i].name && device->value[i].err != -ENOENT;
+	return n > 1;
+}
+
 /*
  * The name of a signal: of the device's alias, with the property's word where it has several; else
  * the word with the first number that is free.
@@ -106,7 +115,7 @@ static bool choose_alias(const struct scan_names *names, const struct scan_devic
 static const char *choose(struct scan_names *names, const struct scan_device *device,
                           const struct scan_property *property)
 {
-	bool several = device->kind->property[1].name;
+	bool several = has_several(device);
 	char name[SIGNAL_NAME_MAX + SCAN_ALIAS];
 
 	if (!choose_alias(names, device, several ? property->word : NULL, name, sizeof(name))) {

@@ -51,6 +51,7 @@ struct scan_device {
 struct scan {
 	struct scan_device *device; /* sorted by path */
 	unsigned count;
+	bool disturbed; /* each search had a wrong checksum: the list is what was known before */
 };
 
 #endif

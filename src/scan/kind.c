@@ -10,8 +10,11 @@
 #define MEASURED 10
 
 static const struct scan_kind kinds[] = {
-	{"10", {{"temperature", "temperature", OWS_DOUBLE, .per_factor = MEASURED}}},
-	{"22 28 3B 42", {{"temperature12", "temperature", OWS_DOUBLE, .per_factor = MEASURED}}},
+	{"10 54", {{"temperature", "temperature", OWS_DOUBLE, .per_factor = MEASURED}}},
+	{"22 28 42", {{"temperature12", "temperature", OWS_DOUBLE, .per_factor = MEASURED}}},
+	{"3B",
+         {{"temperature12", "temperature", OWS_DOUBLE, .per_factor = MEASURED},
+          {"thermocouple", "thermocouple", OWS_DOUBLE, .per_factor = MEASURED}}},
 	{"01 09 14 23 2D 31 43", {{"present", "present", OWS_BOOL}}},
 	{"05", {{"sensed", "contact", OWS_BOOL}, {"PIO", "switch", OWS_BOOL, .output = true}}},
 	{"12 29 3A",

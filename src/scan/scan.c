@@ -16,6 +16,7 @@
 #define BUSES_MAX 256
 #define COUPLER 0x1f /* DS2409 */
 #define COUPLERS_MAX 512
+#define SEARCHES 3
 
 /* The requests for a device besides those for the properties of its kind. */
 enum { ASK_TYPE, ASK_ALIAS, ASK_IDENTITY, ASK_PROPERTIES, ASKS = ASK_PROPERTIES + SCAN_PROPERTIES };
@@ -132,10 +133,21 @@ static int find_behind(struct target *target, struct scan *scan, char *text)
 	return err;
 }
 
+/* A search that is disturbed again and again is no reason to show nothing. */
+static int list_all(struct target *target, struct scan *scan, char *text)
+{
+	int err = -EBADMSG;
+
+	for (unsigned try = 0; try < SEARCHES && err == -EBADMSG; try++)
+		err = list(target, "/", true, text);
+	scan->disturbed = err == -EBADMSG;
+	return scan->disturbed ? list(target, "/", false, text) : err;
+}
+
 static int find(struct target *target, struct scan *scan, char *text)
 {
 	unsigned kept = 0;
-	int err = list(target, "/", true, text);
+	int err = list_all(target, scan, text);
 
 	if (!err)
 		err = take_list(scan, text);

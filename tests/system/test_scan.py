@@ -244,6 +244,8 @@ DS2450 20.00000000000F volt.A 1.5
 DS2502 09.000000000010
 DS2720 31.000000000011
 DS28EC20 43.000000000012
+MAX31888 54.000000000013 temperature 23
+MAX31850 3B.000000000014 temperature 24 thermocouple 900
 """
 
 
@@ -258,6 +260,9 @@ def test_every_family_has_its_place_in_the_configuration_of_a_scan(scene):
                                 ("1D", "counter_a", "dword"), ("20", "volt_a", "double"),
                                 ("29", "inputs", "byte"), ("26", "humidity", "double")):
         assert named[family].startswith(start) and rows[named[family]]["type"] == kind, named
+    paths = {row["path"] for row in rows.values()}
+    assert {"/54.000000000013/temperature", "/3B.000000000014/thermocouple"} <= paths
+    assert "/3B.000000000003/thermocouple" not in paths
     assert rows["counter_a1"]["value"] == 7 and rows["present1"]["value"] is True
 
 
