@@ -319,8 +319,6 @@ static int write_step(struct txn *txn, const struct area *area, struct unit unit
 	case LOOK:
 	case WRITE:
 		txn_void(txn);
-		if (!area->verify)
-			txn->device->shadow_known = false;
 		if (txn_driven(txn)) {
 			visit->step = CHECK;
 			err = txn_driver_write(txn, area, unit.at, visit->want, unit.n);

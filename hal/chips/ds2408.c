@@ -24,15 +24,6 @@ static void saw_control(struct txn *txn, uint8_t value)
 	txn->device->power = value & CONTROL_VCC ? POWER_EXTERNAL : POWER_PARASITE;
 }
 
-static void saw_output(struct txn *txn, uint8_t value)
-{
-	struct device *device = txn->device;
-
-	txn->restarted |= device->shadow_known && device->shadow != value;
-	device->shadow = value;
-	device->shadow_known = true;
-}
-
 static int read_control(struct txn *txn)
 {
 	uint8_t value;
@@ -49,8 +40,6 @@ static int read_control(struct txn *txn)
  */
 static int saw_registers(struct txn *txn, unsigned at, uint8_t *value, unsigned n)
 {
-	if (at <= DS2408_OUTPUT && at + n > DS2408_OUTPUT)
-		saw_output(txn, value[DS2408_OUTPUT - at]);
 	if (at <= DS2408_CONTROL && at + n > DS2408_CONTROL)
 		saw_control(txn, value[DS2408_CONTROL - at]);
 	else if (value[0] == 0xff)
@@ -101,7 +90,6 @@ int ds2408_put(struct txn *txn, const uint8_t *bytes, unsigned n)
 	uint8_t command[] = {WRITE_OUTPUT, 0, 0}, answer[2];
 	int err = 0;
 
-	txn->device->shadow_known = false;
 	for (unsigned i = 0; i < n; i++) {
 		command[1] = bytes[i];
 		command[2] = (uint8_t)~bytes[i];
@@ -132,7 +120,6 @@ static int store_output(struct txn *txn, const struct area *area, unsigned at, c
 static int saw_latch(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
 {
 	(void)at, (void)n;
-	saw_output(txn, bytes[0]);
 	return bytes[0] == 0xff && txn_driven(txn) ? read_control(txn) : 0;
 }
 

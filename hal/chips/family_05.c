@@ -96,7 +96,7 @@ static const struct property_how how[] = {
 
 static const struct property properties[] = {
 	PROPERTY("PIO", YESNO, STABLE, BOTH, FIELD(OUTPUT, .bits = 1, .inverted = true),
-                 .how = WAY_PIO),
+                 .holds = true, .how = WAY_PIO),
 	PROPERTY("sensed", YESNO, VOLATILE, READ, FIELD(PIN), .how = WAY_PIN),
 };
 

@@ -35,17 +35,6 @@ static int channel_info(struct txn *txn, uint8_t control, uint8_t *info)
 	return err;
 }
 
-static int saw_info(struct txn *txn, unsigned at, uint8_t *info, unsigned n)
-{
-	struct device *device = txn->device;
-
-	(void)at, (void)n;
-	txn->restarted |= device->shadow_known && device->shadow != (*info & 3);
-	device->shadow = *info & 3;
-	device->shadow_known = true;
-	return 0;
-}
-
 static int load_info(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,
                      unsigned n)
 {
@@ -56,9 +45,8 @@ static int load_info(struct txn *txn, const struct area *area, unsigned at, uint
 static int write_latch(struct txn *txn)
 {
 	uint8_t info;
-	int err = channel_info(txn, ACCESS_READ_A | ACCESS_RESET_LATCHES, &info);
 
-	return err ? err : saw_info(txn, 0, &info, 1);
+	return channel_info(txn, ACCESS_READ_A | ACCESS_RESET_LATCHES, &info);
 }
 
 /* The supply is no setting. */
@@ -76,7 +64,7 @@ static const struct area memory = {
 	.address_bytes = 2,
 	.read = 0xf0,
 };
-static const struct area info = {.name = "info", .size = 1, .load = load_info, .saw = saw_info};
+static const struct area info = {.name = "info", .size = 1, .load = load_info};
 static const struct area status = {
 	.name = "status",
 	.at = 7,
@@ -138,7 +126,7 @@ static const struct property_how how[] = {
 
 static const struct property properties[] = {
 	PROPERTY("PIO", BITS, STABLE, BOTH, AGGREGATE(2, LETTERS), FIELD(INFO, .inverted = true),
-                 .how = WAY_PIO),
+                 .holds = true, .how = WAY_PIO),
 	PROPERTY("T8A", DIRECTORY, STATIC, NONE, .kinds = KIND(0)),
 	NOT_THERE("T8A/volt", FLOAT, VOLATILE, ELEMENTS(8, NUMBERS), .kinds = KIND(0)),
 	PROPERTY_DIR("TAI8570"),

@@ -34,28 +34,17 @@ static void saw_control(struct txn *txn, uint8_t value)
 	txn->device->power = value >> BIT_POWER & 1 ? POWER_EXTERNAL : POWER_PARASITE;
 }
 
-static void saw_output(struct txn *txn, uint8_t value)
-{
-	struct device *device = txn->device;
-
-	txn->restarted |= device->shadow_known && device->shadow != (value & PINS);
-	device->shadow = value & PINS;
-	device->shadow_known = true;
-}
-
 static int saw_registers(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
 {
 	(void)at, (void)n;
-	saw_output(txn, bytes[AT_OUTPUT]);
 	saw_control(txn, bytes[AT_CONTROL]);
 	return 0;
 }
 
 static int saw_latch(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
 {
-	(void)at, (void)n;
+	(void)txn, (void)at, (void)n;
 	bytes[0] &= PINS;
-	saw_output(txn, bytes[0]);
 	return 0;
 }
 
@@ -226,7 +215,7 @@ static const struct property_how how[] = {
 
 static const struct property properties[] = {
 	SWITCHES("PIO", STABLE, BOTH, FIELD(REGISTERS, .at = AT_OUTPUT, .inverted = true),
-                 .how = WAY_PIO),
+                 .holds = true, .how = WAY_PIO),
 	SWITCHES("latch", VOLATILE, BOTH, FIELD(REGISTERS, .at = AT_ACTIVITY), .flag = true,
                  .how = WAY_LATCH),
 	PROPERTY("memory", BINARY, VOLATILE, BOTH, .size = 550, FIELD(MEMORY), .how = WAY_MEMORY),

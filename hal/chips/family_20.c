@@ -324,7 +324,7 @@ static const struct property properties[] = {
 	PROPERTY("CO2/ppm", UNSIGNED, VOLATILE, READ, .how = WAY_CO2_PPM),
 	PROPERTY("CO2/status", FLOAT, VOLATILE, READ, .how = WAY_CO2_STATUS),
 	PROPERTY("PIO", YESNO, STABLE, BOTH, ELEMENTS(4, LETTERS), .arg = ENDS_POWER_ON,
-                 .how = WAY_PIO),
+                 .holds = true, .how = WAY_PIO),
 	PROPERTY_DIR("alarm"),
 	FLAG("alarm/high", VOLATILE, 5),
 	FLAG("alarm/low", VOLATILE, 4),

@@ -83,7 +83,8 @@ static const struct property_how how[] = {
 static const struct property properties[] = {
 	LCD_PROPERTIES,
 	PROPERTY("PIO", BITS, STABLE, BOTH, AGGREGATE(8, NUMBERS),
-                 FIELD(REGISTERS, .at = DS2408_OUTPUT, .inverted = true), .how = WAY_PIO),
+                 FIELD(REGISTERS, .at = DS2408_OUTPUT, .inverted = true), .holds = true,
+                 .how = WAY_PIO),
 	PROPERTY("latch", BITS, VOLATILE, BOTH, AGGREGATE(8, NUMBERS),
                  FIELD(REGISTERS, .at = DS2408_ACTIVITY), .flag = true, .how = WAY_LATCH),
 	PROPERTY("out_of_testmode", YESNO, VOLATILE, WRITE, .how = WAY_TEST_MODE),

@@ -28,23 +28,10 @@ static int store(struct txn *txn, const struct area *area, unsigned at, const ui
 	return err == -EOPNOTSUPP ? txn_command(txn, whole, sizeof(whole)) : err;
 }
 
-/* The wiper goes to its end when the power was away. */
-static int saw_position(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
-{
-	struct device *device = txn->device;
-
-	(void)at, (void)n;
-	txn->restarted |= device->shadow_known && device->shadow != bytes[1];
-	device->shadow = bytes[1];
-	device->shadow_known = true;
-	return 0;
-}
-
 /* A byte that is not written comes first: the control register, or what the chip can do. */
 #define REGISTER .size = 2, .block = 2, .row = 2, .store = store
 
-static const struct area position = {
-	.name = "position", REGISTER, .read = 0xf0, .write = 0x0f, .saw = saw_position};
+static const struct area position = {.name = "position", REGISTER, .read = 0xf0, .write = 0x0f};
 static const struct area control = {.name = "control", REGISTER, .read = 0xaa, .write = 0x55};
 
 enum { POSITION = 1, CONTROL };
@@ -52,7 +39,7 @@ static const struct area *const areas[] = {[POSITION] = &position, [CONTROL] = &
 
 static const struct property properties[] = {
 	PROPERTY("chargepump", YESNO, STABLE, BOTH, FIELD(CONTROL, .at = 1, .shift = 6, .bits = 1)),
-	PROPERTY("wiper", UNSIGNED, STABLE, BOTH, FIELD(POSITION, .at = 1)),
+	PROPERTY("wiper", UNSIGNED, STABLE, BOTH, FIELD(POSITION, .at = 1), .holds = true),
 };
 
 const struct family family_2c = {.code = 0x2c,

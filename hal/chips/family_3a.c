@@ -15,7 +15,7 @@ static const struct property_how how[] = {
 };
 
 static const struct property properties[] = {
-	PIO_BITS("PIO", BOTH, PIO_READ(STATUS, PIO_OUTPUTS, true), .how = WAY_PIO),
+	PIO_BITS("PIO", BOTH, PIO_READ(STATUS, PIO_OUTPUTS, true), .holds = true, .how = WAY_PIO),
 	PROPERTY("piostate", UNSIGNED, VOLATILE, BOTH, .hidden = true, .digits = 3,
                  PIO_READ(STATUS, PIO_STATE, false), .how = WAY_STATE),
 	PIO_BITS("sensed", READ, PIO_READ(STATUS, PIO_PINS, false)),

@@ -16,7 +16,7 @@ static const struct property_how how[] = {THERMOMETER_WAYS, [WAY_PIO] = {PIO_SET
 static const struct property properties[] = {
 	PIO_BITS("PIO", BOTH, PIO_READ(STATUS, PIO_PINS, true), .how = WAY_PIO),
 	THERMOMETER_TEMPERATURE("fasttemp", 9),
-	PIO_BITS("latch", BOTH, PIO_READ(STATUS, PIO_OUTPUTS, true), .how = WAY_PIO),
+	PIO_BITS("latch", BOTH, PIO_READ(STATUS, PIO_OUTPUTS, true), .holds = true, .how = WAY_PIO),
 	THERMOMETER_LATEST,
 	PROPERTY("piostate", UNSIGNED, VOLATILE, READ, .hidden = true,
                  PIO_READ(STATUS, PIO_STATE, false)),

@@ -40,18 +40,12 @@ static const struct area leaf_min[] = {HOBBY_SETTING("leaf minimum", 2, 0x27, 0x
 static const struct area hub_config = HOBBY_SETTING("hub config", 1, 0x61, 0x60);
 static const struct area shorted = HOBBY_VALUE("shorted", 1, 0x23);
 
-/* The hub forgets at a restart which branches were on. */
 static int saw_branches(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
 {
-	struct device *device = txn->device;
-
-	(void)at, (void)n;
+	(void)txn, (void)at, (void)n;
 	if (bytes[0] == 0xff)
 		return -EIO;
 	bytes[0] &= 0x0f;
-	txn->restarted |= device->shadow_known && device->shadow != bytes[0];
-	device->shadow = bytes[0];
-	device->shadow_known = true;
 	return 0;
 }
 
@@ -283,7 +277,7 @@ static const struct property properties[] = {
 	VALUE("barometer/temperature", TEMPERATURE, BAROMETER, TEMPERATURE, 0.1),
 	FOLDER("hub", HUB),
 	PROPERTY("hub/branch", BITS, STABLE, BOTH, AGGREGATE(4, NUMBERS), OF(HUB),
-	         FIELD(BRANCHES), .how = WAY_BRANCH),
+	         FIELD(BRANCHES), .holds = true, .how = WAY_BRANCH),
 	PROPERTY("hub/config", UNSIGNED, VOLATILE, BOTH, .hidden = true, FIELD(HUB_CONFIG),
 	         .how = WAY_HUB),
 	PROPERTY("hub/short", BITS, STABLE, READ, AGGREGATE(4, NUMBERS), OF(HUB), FIELD(SHORTED),

@@ -8,17 +8,6 @@
 #define READ_PIO 0xf5
 #define CONFIRMED 0xaa
 
-int pio_saw(struct txn *txn, unsigned at, uint8_t *latches, unsigned n)
-{
-	struct device *device = txn->device;
-
-	(void)at, (void)n;
-	txn->restarted |= device->shadow_known && device->shadow != (latches[0] & 3);
-	device->shadow = latches[0] & 3;
-	device->shadow_known = true;
-	return 0;
-}
-
 /*
  * A byte's halves are each other's complement, which two bits turned over get past. It is sent as
  * long as the master reads: two that follow each other have to be the same.
@@ -50,13 +39,7 @@ static int load_status(struct txn *txn, const struct area *area, unsigned at, ui
 	return status < 0 ? status : 0;
 }
 
-static int saw_status(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
-{
-	return pio_saw(txn, at, bytes + PIO_OUTPUTS, n);
-}
-
-const struct area pio_status = {
-	.name = "status", .size = 3, .block = 3, .load = load_status, .saw = saw_status};
+const struct area pio_status = {.name = "status", .size = 3, .block = 3, .load = load_status};
 
 int pio_load(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, unsigned n)
 {

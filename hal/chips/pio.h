@@ -13,12 +13,11 @@ extern const struct area pio_status;
 int pio_load(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, unsigned n);
 int pio_store(struct txn *txn, const struct area *area, unsigned at, const uint8_t *bytes,
               unsigned n);
-int pio_saw(struct txn *txn, unsigned at, uint8_t *latches, unsigned n);
 bool pio_is_written(struct txn *txn, const uint8_t *have, const uint8_t *want, unsigned n);
 
 #define PIO_LATCHES(command) \
 	.name = "latches", .size = 1, .row = 1, .hidden = true, .write = (command), \
-	.load = pio_load, .store = pio_store, .saw = pio_saw, .is_written = pio_is_written
+	.load = pio_load, .store = pio_store, .is_written = pio_is_written
 #define PIO_BITS(text, access_, ...) \
 	PROPERTY(text, BITS, VOLATILE, access_, AGGREGATE(2, LETTERS), __VA_ARGS__)
 /* area_: which of the family's areas pio_status is. */

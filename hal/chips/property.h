@@ -54,7 +54,8 @@ struct property {
 	uint8_t how;  /* which of the family's oddities; 0: none */
 	bool hidden;  /* not listed */
 	bool offline; /* its functions use no wire */
-	bool flag; /* tells why a chip alarms: a visit of the alarm machine reads all such once */
+	bool flag;  /* tells why a chip alarms: a visit of the alarm machine reads all such once */
+	bool holds; /* reads as it was written, until somebody else writes or power is lost */
 	bool negative;   /* unsigned, and a write may be below zero all the same */
 	uint8_t convert; /* 9 to 12, CONVERT_TEMPRES, or 0 */
 	struct {

@@ -51,7 +51,7 @@ struct device {
 	uint8_t power;        /* enum device_power */
 	const char *identity; /* what readings have shown that it is; NULL: nothing so far */
 
-	/* Switches: the output byte that was last written and verified. */
+	/* An LCD's pins: the byte that was last written and verified. */
 	uint8_t shadow;
 	bool shadow_known;
 
