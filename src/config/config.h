@@ -54,8 +54,10 @@ struct config_item {
 	bool readable, writable; /* start values of _ReadEnable and _WriteEnable */
 	bool fresh;              /* Uncached, by flag or by path */
 	bool has_init, has_safe, has_safe_delay;
-	bool starts_last; /* Start "last"; outputs only */
-	bool confirm;     /* pages ask a person once more before a set */
+	bool starts_last;     /* Start "last"; outputs only */
+	bool confirm;         /* pages ask a person once more before a set */
+	int64_t read_back_ns; /* outputs: how often what was written is read again; 0: never */
+	bool restores;        /* and written again if it reads otherwise */
 	int64_t safe_delay_ns;
 	int64_t init_value, safe_value;    /* numbers, as in src/signal/value.h */
 	const char *init_text, *safe_text; /* as written; for strings the value itself */

@@ -9,12 +9,16 @@
 #include "src/config/build.h"
 #include "src/config/item.h"
 #include "src/config/limits.h"
+#include "src/config/property.h"
 #include "src/config/recorder.h"
 #include "src/config/scaling.h"
 #include "src/signal/attribute.h"
 #include "src/signal/family.h"
 #include "src/signal/quantity.h"
 #include "src/signal/value.h"
+
+/* How often a switch is read back: it costs a busy wire little. */
+#define READ_BACK_NS (10 * INT64_C(1000000000))
 
 #define IO_TYPE_KNOWN (IO_TYPE_CODE | IO_TYPE_INPUT | IO_TYPE_OUTPUT | IO_TYPE_UNCACHED)
 
@@ -226,6 +230,29 @@ static void build_start(struct build *build, const struct option_value *values,
 		               "Confirm does nothing: nobody sets this input");
 }
 
+/* What of an output reads as it was written is read back, and the file says how often. */
+static void build_read_back(struct build *build, const struct option_value *values,
+                            struct config_item *item)
+{
+	const struct option_value *every = &values[OPT_READ_BACK], *restore = &values[OPT_RESTORE];
+	struct path_property property = property_look(item->path);
+	const char *fault = !item->output                           ? "this is an input"
+	                    : item->type == OWS_STRING              ? "this is a text"
+	                    : !property.readable || !property.exact ? "it does not read as written"
+	                                                            : NULL;
+
+	if (!fault)
+		item->read_back_ns = every->given     ? (int64_t)(every->number * 1e9 + 0.5)
+		                     : property.holds ? READ_BACK_NS
+		                                      : 0;
+	else if (every->given && every->number > 0)
+		report_warning(build->report, every->node->at, "ReadBack does nothing: %s", fault);
+	item->restores = restore->number != 0;
+	if (item->restores && !item->read_back_ns)
+		report_warning(build->report, restore->node->at,
+		               "Restore does nothing: the item is not read back (ReadBack)");
+}
+
 static void build_values(struct build *build, const struct option_value *values, bool known,
                          struct config_item *item)
 {
@@ -339,6 +366,7 @@ void item_build(struct build *build, const struct rio_node *block, struct config
 	known = build_type(build, block, values, item);
 	build_flags(build, values, &path, item);
 	build_values(build, values, known, item);
+	build_read_back(build, values, item);
 	scaling_build(build, values, known, item);
 	if (known)
 		warn_of_decimals(build, block, values, item);

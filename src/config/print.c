@@ -242,6 +242,10 @@ static void put_item(FILE *out, const struct config_item *item, bool all)
 		put_text(out, 4, OPT_START, "last");
 	if (item->confirm)
 		put_flag(out, 4, OPT_CONFIRM, true);
+	if (item->output)
+		put_seconds(out, 4, OPT_READ_BACK, item->read_back_ns);
+	if (item->restores)
+		put_flag(out, 4, OPT_RESTORE, true);
 	put_word(out, 4, OPT_PER_FACTOR, "%u", (unsigned)item->per_factor);
 	put_seconds(out, 4, OPT_STALE_AFTER, item->stale_after_ns);
 	put_flag(out, 4, OPT_ALARM, item->alarm);

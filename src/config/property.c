@@ -49,6 +49,9 @@ static void take_access(const struct property *property, struct path_property *f
 		return;
 	found->readable = property->access & ACCESS_READ;
 	found->writable = property->access & ACCESS_WRITE;
+	found->holds = property->holds;
+	found->exact = property->type == PROPERTY_YESNO || property->type == PROPERTY_BITS ||
+	               property->type == PROPERTY_UNSIGNED || property->type == PROPERTY_INTEGER;
 }
 
 /* Does an element of an array have that name: BYTE, ALL, its number or its letter? */
@@ -68,7 +71,8 @@ static bool is_element(const struct property *property, const char *name)
 
 struct path_property property_look(const char *path)
 {
-	struct path_property found = {.there = true, .readable = true, .writable = true};
+	struct path_property found = {
+		.there = true, .readable = true, .writable = true, .exact = true};
 	char name[PATH_LEN_MAX + 1], *dot;
 	const struct property *property;
 	const struct family *family;

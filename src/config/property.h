@@ -11,6 +11,8 @@ struct path_property {
 	const char *type;            /* of the family, as "DS18B20"; NULL: not known */
 	bool there;                  /* true too where nobody can know */
 	bool readable, writable;     /* true too where nobody can know */
+	bool holds;                  /* what is written reads the same (hal/chips/property.h) */
+	bool exact;                  /* a whole number, or on and off; true too likewise */
 	char nearest[PROPERTY_NAME]; /* not there: what was probably meant, or "" */
 };
 

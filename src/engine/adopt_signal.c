@@ -57,6 +57,11 @@ bool signal_adopt(struct signal *s, const struct signal *was)
 		adopt_text(s->command_text, was->command_text);
 		adopt_text(s->written_text, was->written_text);
 	}
+	if (s->command.differs && before->read_back_ns && !item->read_back_ns) {
+		s->command.differs = s->command.doubted = false;
+		s->sample.quality = OWS_Q_LAST_USABLE;
+	}
+	s->restore = was->restore;
 	s->scaling = was->scaling;
 	if (item->type != OWS_STRING)
 		signal_rescale(s, was);

@@ -31,7 +31,7 @@ static bool ask_read(struct lane *lane, struct slot *slot, uint32_t row, int64_t
 	slot->req = (struct bus_req){
 		.op = BUS_READ,
 		.prio = BUS_INPUT,
-		.fresh = s->item->fresh,
+		.fresh = s->item->fresh || s->command.doubted || !signal_reads(s),
 		.path = s->item->path,
 		.number = !signal_is_string(s) && !trace_is_on(e->log),
 		.len = sizeof(slot->data),

@@ -11,6 +11,7 @@
 #include "src/engine/guard.h"
 #include "src/engine/in_force.h"
 #include "src/engine/place.h"
+#include "src/engine/read_back.h"
 #include "src/engine/retry.h"
 #include "src/engine/scaling.h"
 #include "src/engine/schedule.h"
@@ -54,7 +55,7 @@ static bool gives_nothing(const struct engine *e, const struct signal *failed)
 	for (uint32_t i = 0; i < d->count; i++) {
 		const struct signal *s = &e->table.signals[e->table.device_rows[d->first + i]];
 
-		if (s->lane == failed->lane && signal_reads(s) &&
+		if (s->lane == failed->lane && signal_is_read(s) &&
 		    s->read.retry.failures <= e->config->max_retries)
 			return false;
 	}
@@ -130,7 +131,8 @@ static void request_succeeded(struct engine *e, struct lane *lane, struct signal
 	struct device *d = s->device == TABLE_NO_DEVICE ? NULL : &e->table.devices[s->device];
 
 	if (!ows_good(s->sample.quality) && s->sample.quality != OWS_Q_INITIAL &&
-	    s->sample.quality != OWS_Q_LAST_USABLE && ows_good(quality))
+	    s->sample.quality != OWS_Q_LAST_USABLE && s->sample.quality != OWS_Q_DIFFERS &&
+	    ows_good(quality))
 		log_info(e->log, "%s (%s): good again", s->item->name, s->item->path);
 	s->sample.quality = quality;
 	s->sample.err = 0;
@@ -209,23 +211,11 @@ static int take_read_value(struct lane *lane, struct signal *s, const struct slo
 	return err;
 }
 
-/* An output that changes though nothing was written may be that of a device that has restarted. */
-static void compare_written(struct lane *lane, struct signal *s)
-{
-	bool agrees;
-
-	if (!s->item->output || !s->command.confirmed || s->writing || signal_is_string(s))
-		return;
-	agrees = signal_reads_as_written(s);
-	if (s->command.agrees && !agrees)
-		alarm_output_differs(&lane->alarm, s->device);
-	s->command.agrees = agrees;
-}
-
 int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
                         const struct slot *slot, const struct bus_answer *answer, int64_t now_ns,
                         int64_t *wait_ns)
 {
+	int64_t value = s->sample.value, raw = s->attrs.raw;
 	uint8_t quality = OWS_Q_GOOD;
 	int err = take_read_value(lane, s, slot, answer, &quality, now_ns);
 
@@ -233,11 +223,15 @@ int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
 	switch (failure_of(err)) {
 	case FAILURE_NONE:
 		lane->counters.reads++;
+		retry_clear(&s->read.retry);
+		if (!engine_compare(e, lane, s, slot, &quality)) {
+			s->sample.value = value;
+			s->attrs.raw = raw;
+			break;
+		}
 		signal_update(s, e->time.period, time_of_reading(e, slot, answer, now_ns), now_ns);
 		s->sample.detail = answer->detail;
-		retry_clear(&s->read.retry);
 		request_succeeded(e, lane, s, quality, true);
-		compare_written(lane, s);
 		break;
 	case FAILURE_ITEM:
 		*wait_ns = fail_read(e, lane, s, err);
@@ -260,16 +254,30 @@ static uint64_t reads_apart(struct engine *e, struct lane *lane, const struct si
 	return s->item->per_factor;
 }
 
+/* After a good reading. */
+static void read_next(struct engine *e, struct lane *lane, struct signal *s,
+                      const struct slot *slot)
+{
+	if (s->command.doubted)
+		engine_read_now(e, s);
+	else if (signal_reads(s))
+		engine_read_at(e, s, slot->begun + reads_apart(e, lane, s));
+	else
+		engine_read_at(e, s, engine_read_back_at(e, s));
+}
+
 void engine_read_done(struct engine *e, struct lane *lane, const struct slot *slot,
                       const struct bus_answer *answer, int64_t now_ns)
 {
 	struct signal *s = &e->table.signals[slot->row];
 	int64_t wait_ns;
 
-	if (!signal_reads(s)) /* disabled meanwhile */
+	if (!signal_is_read(s)) { /* disabled meanwhile, or there is a new command */
+		engine_read_at(e, s, engine_read_back_at(e, s));
 		return;
+	}
 	if (engine_take_reading(e, lane, s, slot, answer, now_ns, &wait_ns) == 0)
-		engine_read_at(e, s, slot->begun + reads_apart(e, lane, s));
+		read_next(e, lane, s, slot);
 	else
 		engine_read_at(e, s, e->time.period + (wait_ns ? engine_periods(e, wait_ns) : 1));
 }
@@ -292,9 +300,9 @@ static void write_succeeded(struct engine *e, struct lane *lane, const struct sl
 	if (s->command.retry.failures > e->config->max_retries && signal_reads(s))
 		log_info(e->log, "%s (%s): written again", s->item->name, s->item->path);
 	/* first, for a device that comes back forgets what was written, but for this */
-	request_succeeded(e, lane, s, OWS_Q_GOOD, false);
+	request_succeeded(e, lane, s, s->command.differs ? OWS_Q_DIFFERS : OWS_Q_GOOD, false);
 	s->command.confirmed = true;
-	s->command.agrees = false;
+	s->command.agrees = s->command.doubted = false;
 	s->command.written = slot->value;
 	s->sample.detail = answer->detail;
 	if (signal_is_string(s)) {
@@ -311,6 +319,10 @@ static void write_succeeded(struct engine *e, struct lane *lane, const struct sl
 	engine_settle_earlier(e, s, slot);
 	engine_settle(e, s);
 	engine_write_check(e, s);
+	if (s->command.differs)
+		engine_read_now(e, s);
+	else if (!signal_reads(s))
+		engine_read_at(e, s, engine_read_back_at(e, s));
 }
 
 void engine_write_done(struct engine *e, struct lane *lane, const struct slot *slot,
@@ -319,6 +331,7 @@ void engine_write_done(struct engine *e, struct lane *lane, const struct slot *s
 	struct signal *s = &e->table.signals[slot->row];
 	int64_t wait_ns;
 
+	s->command.ended_ns = now_ns;
 	if (answer->err) {
 		s->command.confirmed = false;
 		s->command.one_shot |= slot->one_shot;

@@ -121,6 +121,7 @@ static void take_enables(struct engine *e, struct signal *s, const struct giver_
 		engine_read_now(e, s);
 	} else if (!signal_reads(s) && read_before) {
 		engine_read_never(e, s);
+		engine_read_now(e, s); /* it may be read back */
 		if (!s->item->output)
 			s->sample.quality = OWS_Q_DISABLED;
 	}

@@ -78,18 +78,21 @@ void signal_written(struct signal *s, int64_t value)
 
 	raw_of(s, value, &raw);
 	s->scaling.filter.begun = false;
-	s->attrs.raw = s->scaling.written = value_of_double(raw);
+	s->scaling.written = value_of_double(raw);
+	if (s->command.differs)
+		return;
+	s->attrs.raw = s->scaling.written;
 	s->sample.value = value;
 }
 
-bool signal_reads_as_written(struct signal *s)
+bool signal_reads_as_written(struct signal *s, uint8_t *quality)
 {
 	if (!is_scaled(s))
 		return s->sample.value == s->command.written;
 	if (s->attrs.raw != s->scaling.written)
 		return false;
 	s->sample.value = s->command.written;
-	s->sample.quality = OWS_Q_GOOD;
+	*quality = OWS_Q_GOOD;
 	return true;
 }
 
@@ -123,5 +126,5 @@ void signal_rescale(struct signal *s, const struct signal *was)
 	if (raw_of(s, s->command.value, &raw) || value_of_double(raw) != s->scaling.written)
 		s->command.confirmed = false;
 	else if (s->item->output && s->command.confirmed && is_judged(s->sample.quality))
-		signal_reads_as_written(s);
+		signal_reads_as_written(s, &s->sample.quality);
 }

@@ -22,13 +22,13 @@ void signal_take_raw(struct signal *s, int64_t raw, int64_t measured_ns, uint8_t
 bool signal_accepts(const struct signal *s, int64_t value);
 /* What is written for a value that the signal accepts; returns the length. */
 uint32_t signal_write_text(const struct signal *s, int64_t value, char text[VALUE_TEXT_MAX]);
-/* The value was written: the sample has it. */
+/* The value was written: the sample has it, unless it is doubted that the device has. */
 void signal_written(struct signal *s, int64_t value);
 /*
  * Has the output that was read the raw value that was written last? Then its value is that of the
- * command, though no raw value may give exactly that.
+ * command and good, though no raw value may give exactly that.
  */
-bool signal_reads_as_written(struct signal *s);
+bool signal_reads_as_written(struct signal *s, uint8_t *quality);
 
 /* A reload has copied s from was, and may have given it another scale. */
 void signal_rescale(struct signal *s, const struct signal *was);

@@ -4,12 +4,13 @@
 #include "hal/bus/time.h"
 #include "src/engine/due.h"
 #include "src/engine/publish.h"
+#include "src/engine/read_back.h"
 #include "src/engine/retry.h"
 #include "src/engine/state.h"
 
 void engine_read_now(struct engine *e, struct signal *s)
 {
-	if (s->reading || !signal_reads(s))
+	if (s->reading || !signal_is_read(s))
 		return;
 	due_wheel_cancel(&e->wheel, engine_row(s) * 2);
 	due_set_add(&engine_lane(e, s)->inputs, engine_row(s));
@@ -17,7 +18,7 @@ void engine_read_now(struct engine *e, struct signal *s)
 
 void engine_read_at(struct engine *e, struct signal *s, uint64_t period)
 {
-	if (!signal_reads(s))
+	if (!signal_reads(s) && !s->item->read_back_ns)
 		return;
 	if (period <= e->time.period) {
 		engine_read_now(e, s);
@@ -62,8 +63,10 @@ static void row_ready(void *ctx, uint32_t entry)
 
 	if (entry % 2)
 		engine_write_check(e, s);
-	else
+	else if (signal_is_read(s))
 		engine_read_now(e, s);
+	else
+		engine_read_at(e, s, engine_read_back_at(e, s));
 }
 
 static void time_ready(void *ctx, uint32_t row)

@@ -268,6 +268,12 @@ bool signal_settled(const struct signal *s)
 	       !signal_changed(s);
 }
 
+bool signal_is_read(const struct signal *s)
+{
+	/* what was never written, or is to be written, need not be compared */
+	return signal_reads(s) || (s->item->read_back_ns && s->sample.count && !signal_changed(s));
+}
+
 int64_t signal_stale_at(const struct signal *s)
 {
 	int64_t since = s->sample.measured_ns ? s->sample.measured_ns : s->read.known_ns;

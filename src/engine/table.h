@@ -48,6 +48,8 @@ struct signal_command {
 	bool given;     /* there is something to write: by a program, or InitValue */
 	bool confirmed; /* written is what the bus has */
 	bool agrees;    /* it was read back as it was written */
+	bool differs;   /* it reads otherwise than it was written */
+	bool doubted;   /* it did so once: it is read again, past the cache */
 	bool one_shot;  /* write once more, changed or not */
 	bool forced;    /* a write in doubt ended late: the present value goes out again */
 	bool awaited;   /* of before the start: not written until its giver comes back */
@@ -55,12 +57,19 @@ struct signal_command {
 	bool storing;   /* that waits until the value is on the disk (Start "last") */
 	int err;        /* of the last write, until one succeeds or writing is disabled */
 	int64_t value, written;
+	int64_t ended_ns;       /* of the last write: what was asked before says nothing of it */
 	enum ows_reason reason; /* how it came into force */
 	uint32_t giver;         /* an index of engine.givers, GIVER_NOBODY: nobody answers for it */
 	uint32_t stamp;         /* as its giver counts; 0: owsd gave the command */
 	uint32_t ticket; /* Start "last": what engine_last.stored() reaches when it is stored */
 	uint32_t len, written_len; /* strings: of command_text, written_text */
 	struct retry retry;
+};
+
+/* When a command that the device lost is written again. */
+struct signal_restore {
+	int64_t not_before_ns;
+	uint8_t doublings;
 };
 
 /* What the journal of commands has last of the signal. */
@@ -119,6 +128,7 @@ struct signal {
 	struct ows_attrs attrs;
 	struct signal_reading read;
 	struct signal_command command;
+	struct signal_restore restore;
 	struct signal_journal journal;
 	struct signal_limit limit;
 	struct signal_scaling scaling;
@@ -195,6 +205,9 @@ static inline bool signal_writes(const struct signal *s)
 bool signal_changed(const struct signal *s);
 /* Is the command in force what the bus has? */
 bool signal_settled(const struct signal *s);
+
+/* Is it to be read: in the cycle, or to see whether what was written holds? */
+bool signal_is_read(const struct signal *s);
 
 /* When its value becomes older than StaleAfter; INT64_MAX: never. */
 int64_t signal_stale_at(const struct signal *s);

@@ -101,10 +101,15 @@ const char *ows_limit_state_text(uint8_t state)
 const char *ows_alarm_kind_text(uint8_t kind)
 {
 	static const char *const texts[] = {
-		[OWS_ALARM_DEVICE] = "device", [OWS_ALARM_POR] = "power-on reset",
-		[OWS_ALARM_HH] = "high high",  [OWS_ALARM_H] = "high",
-		[OWS_ALARM_L] = "low",         [OWS_ALARM_LL] = "low low",
-		[OWS_ALARM_STALE] = "stale",   [OWS_ALARM_BAD] = "bad",
+		[OWS_ALARM_DEVICE] = "device",
+		[OWS_ALARM_POR] = "power-on reset",
+		[OWS_ALARM_HH] = "high high",
+		[OWS_ALARM_H] = "high",
+		[OWS_ALARM_L] = "low",
+		[OWS_ALARM_LL] = "low low",
+		[OWS_ALARM_STALE] = "stale",
+		[OWS_ALARM_BAD] = "bad",
+		[OWS_ALARM_DIFFERS] = "not as commanded",
 	};
 
 	return kind < sizeof(texts) / sizeof(texts[0]) && texts[kind] ? texts[kind] : "none";

@@ -189,6 +189,7 @@ const char *ows_quality_text(uint8_t quality)
 		{OWS_Q_STALE, "stale"},
 		{OWS_Q_TARGET, "target down"},
 		{OWS_Q_SHORT, "wire short"},
+		{OWS_Q_DIFFERS, "not as commanded"},
 		{OWS_Q_INITIAL, "initial"},
 		{OWS_Q_LAST_USABLE, "last usable value"},
 		{OWS_Q_RANGE, "out of range"},

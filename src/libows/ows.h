@@ -67,6 +67,7 @@ enum ows_quality {
 	OWS_Q_STALE = 0x14,       /* older than StaleAfter */
 	OWS_Q_TARGET = 0x18,      /* target down or timed out; owsd dead */
 	OWS_Q_SHORT = 0x19,       /* the wire is short */
+	OWS_Q_DIFFERS = 0x1c,     /* an output reads otherwise than it was written */
 	OWS_Q_INITIAL = 0x20,     /* never read or written */
 	OWS_Q_LAST_USABLE = 0x44, /* moved to another target, which has not answered yet */
 	OWS_Q_DISABLED = 0x44,    /* disabled by _ReadEnable: likewise the last usable value */
@@ -470,6 +471,7 @@ enum ows_alarm_kind {
 	OWS_ALARM_LL,         /* below LimitLL */
 	OWS_ALARM_STALE,
 	OWS_ALARM_BAD,
+	OWS_ALARM_DIFFERS,    /* the output reads (after) otherwise than it was written (before) */
 };
 enum ows_alarm_event {
 	OWS_ALARM_RAISED = 1,

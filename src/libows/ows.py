@@ -149,7 +149,7 @@ class Value(collections.namedtuple("Value", "value type quality detail target er
 
 
 ALARM_KINDS = ["none", "device", "power-on reset", "high high", "high", "low", "low low", "stale",
-               "bad"]
+               "bad", "not as commanded"]
 LIMIT_STATES = ["normal", "unacknowledged", "acknowledged", "returned to normal unacknowledged"]
 ALARM_EVENTS = ["unknown", "raised", "returned", "acknowledged", "shelved", "unshelved",
                 "failed"]

@@ -18,6 +18,7 @@ static const struct {
 	{OWS_Q_STALE, "the value is too old: the bus is overloaded, or the device fails"},
 	{OWS_Q_TARGET, "the target is down: look at its cable and its service"},
 	{OWS_Q_SHORT, "data line and ground touch each other: look for the short circuit"},
+	{OWS_Q_DIFFERS, "the device lost its command: look at its supply; Restore writes it again"},
 	{OWS_Q_INITIAL, "nothing was read yet"},
 	{OWS_Q_LAST_USABLE, "it is not read now: its target moves, or _ReadEnable is off"},
 	{OWS_Q_RANGE, "the value is beyond Min or Max: look at the sensor"},

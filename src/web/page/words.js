@@ -29,6 +29,9 @@ const QUALITIES = new Map([
 		+ "by itself, and the signals come back."]],
 	[0x19, ["wire short", "The data line of the wire is held at ground.",
 		"Look for a short between data and ground; unplug branches until the wire lives again."]],
+	[0x1c, ["not as commanded", "The output reads otherwise than it was written.",
+		"Did the device lose its supply, or did another program switch it? Set it again; Restore in "
+		+ "the configuration does it by itself."]],
 	[0x20, ["initial", "Never read or written.",
 		"An input has its first value soon. Set an output, or give it an InitValue."]],
 	[0x44, ["last usable value", "Reading is disabled, or another target has not answered yet.",

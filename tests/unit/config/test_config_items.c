@@ -301,6 +301,36 @@ static void test_a_forgotten_brace_is_named(void)
 		said, "unknown key Item in Item is ignored; is a '}' missing before line 4?\n"));
 }
 
+static int64_t read_back_of(const char *path, const char *rest)
+{
+	char text[200];
+
+	snprintf(text, sizeof(text), "Name x Path \"%s\" IO output %s", path, rest);
+	parse_item(text);
+	return config->items[0].read_back_ns / 1000000;
+}
+
+static void test_an_output_that_reads_as_written_is_read_back(void)
+{
+	TEST_ASSERT_EQUAL_INT64(10000, read_back_of("/29.000000000001/PIO.0", "Type bool"));
+	TEST_ASSERT_EQUAL_INT64(10000, read_back_of("/3A.000000000001/PIO.BYTE", "Type byte"));
+	TEST_ASSERT_EQUAL_INT64(500,
+	                        read_back_of("/29.000000000001/PIO.0", "Type bool ReadBack 0.5"));
+	TEST_ASSERT_EQUAL_INT64(0, read_back_of("/29.000000000001/PIO.0", "Type bool ReadBack 0"));
+	/* its pin may be held by others; a latch that is cleared by a write; written only; who knows */
+	TEST_ASSERT_EQUAL_INT64(0, read_back_of("/42.000000000001/PIO.A", "Type bool"));
+	TEST_ASSERT_EQUAL_INT64(0, read_back_of("/29.000000000001/latch.BYTE", "Type byte"));
+	TEST_ASSERT_EQUAL_INT64(0, read_back_of("/lamp/PIO.A", "Type bool"));
+	TEST_ASSERT_EQUAL_INT64(5000, read_back_of("/lamp/PIO.A", "Type bool ReadBack 5"));
+	TEST_ASSERT_EQUAL_STRING("", said);
+	TEST_ASSERT_EQUAL_INT64(
+		0, read_back_of("/28.000000000001/temphigh", "Type double ReadBack 5"));
+	TEST_ASSERT_NOT_NULL(strstr(said, "ReadBack does nothing: it does not read as written"));
+	parse_item("Name x Path a/b Type bool ReadBack 5 Restore on");
+	TEST_ASSERT_NOT_NULL(strstr(said, "ReadBack does nothing: this is an input"));
+	TEST_ASSERT_NOT_NULL(strstr(said, "Restore does nothing: the item is not read back"));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -315,5 +345,6 @@ int main(void)
 	RUN_TEST(test_a_start_value_longer_than_a_string_is_an_error);
 	RUN_TEST(test_a_part_of_an_alarm_that_is_not_understood_is_an_error);
 	RUN_TEST(test_a_forgotten_brace_is_named);
+	RUN_TEST(test_an_output_that_reads_as_written_is_read_back);
 	return UNITY_END();
 }

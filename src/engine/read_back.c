@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: MIT */
+/* Compares what an output reads with what was written, and tells where they differ. */
+#include <stdio.h>
+#include <string.h>
+
+#include "hal/bus/time.h"
+#include "src/engine/alarm_item.h"
+#include "src/engine/read_back.h"
+#include "src/engine/scaling.h"
+#include "src/engine/schedule.h"
+#include "src/engine/state.h"
+#include "src/shm/entries.h"
+#include "src/signal/value.h"
+
+/* Between two writes of a command that does not hold; doubled up to the longest. */
+#define RESTORE_FIRST_NS (5 * NS_PER_S)
+#define RESTORE_DOUBLINGS 4
+/* So long after the last one the device counts as well again. */
+#define RESTORE_WELL_NS (60 * NS_PER_S)
+
+static void enter(struct engine *e, const struct signal *s, enum ows_alarm_event event,
+                  uint8_t quality)
+{
+	struct ows_journal_entry entry = {
+		.record = s->record,
+		.occurred_ns = e->time.now_ns,
+		.kind = OWS_ALARM_DIFFERS,
+		.event = (uint8_t)event,
+		.quality = quality,
+		.before = s->command.written,
+		.after = s->sample.value,
+		.flags = OWS_JOURNAL_BEFORE | OWS_JOURNAL_AFTER,
+	};
+
+	image_alarm(e->image, &entry);
+	e->published = true;
+}
+
+static void begin_difference(struct engine *e, struct signal *s)
+{
+	char reads[VALUE_TEXT_MAX], written[VALUE_TEXT_MAX];
+
+	value_to_text(s->item->type, s->sample.value, reads);
+	value_to_text(s->item->type, s->command.written, written);
+	log_warning(e->log, "%s (%s): not as commanded: it reads %s, and %s was written",
+	            s->item->name, s->item->path, reads, written);
+	enter(e, s, OWS_ALARM_RAISED, OWS_Q_DIFFERS);
+}
+
+static void end_difference(struct engine *e, struct signal *s, uint8_t quality)
+{
+	log_notice(e->log, "%s (%s): as commanded again", s->item->name, s->item->path);
+	enter(e, s, OWS_ALARM_RETURNED, quality);
+}
+
+void engine_restore(struct engine *e, struct signal *s)
+{
+	struct signal_restore *r = &s->restore;
+
+	if (!s->item->restores || !s->command.differs || !signal_writes(s) ||
+	    e->time.now_ns < r->not_before_ns)
+		return;
+	r->not_before_ns = e->time.now_ns + (RESTORE_FIRST_NS << r->doublings);
+	r->doublings += r->doublings < RESTORE_DOUBLINGS;
+	log_notice(e->log, "%s (%s): the command is written again", s->item->name, s->item->path);
+	s->command.confirmed = false;
+	engine_write_check(e, s);
+}
+
+static void judge(struct engine *e, struct signal *s, bool agrees, uint8_t *quality)
+{
+	bool differed = s->command.differs;
+
+	s->command.differs = !agrees;
+	if (agrees) {
+		if (differed)
+			end_difference(e, s, *quality);
+		if (e->time.now_ns > s->restore.not_before_ns + RESTORE_WELL_NS)
+			s->restore.doublings = 0;
+		return;
+	}
+	*quality = OWS_Q_DIFFERS;
+	if (!differed)
+		begin_difference(e, s);
+	engine_restore(e, s);
+}
+
+bool engine_compare(struct engine *e, struct lane *lane, struct signal *s, const struct slot *slot,
+                    uint8_t *quality)
+{
+	struct signal_command *c = &s->command;
+	/* one that comes back is written anew */
+	bool absent = s->device != TABLE_NO_DEVICE && e->table.devices[s->device].absent;
+	bool agrees;
+
+	if (!s->item->output || signal_is_string(s))
+		return true;
+	if (!c->confirmed || s->writing || signal_changed(s) || absent ||
+	    slot->begun_ns < c->ended_ns) {
+		c->differs &= c->confirmed || signal_changed(s);
+		if (c->differs)
+			*quality = OWS_Q_DIFFERS;
+		return true;
+	}
+	agrees = signal_reads_as_written(s, quality);
+	/* it may come from a cache, or be a disturbed reading of a chip without a checksum */
+	if (s->item->read_back_ns && !agrees && !c->differs && !c->doubted) {
+		c->doubted = true;
+		return false;
+	}
+	c->doubted = false;
+	if (c->agrees && !agrees)
+		alarm_output_differs(&lane->alarm, s->device);
+	c->agrees = agrees;
+	if (s->item->read_back_ns)
+		judge(e, s, agrees, quality);
+	return true;
+}
+
+uint64_t engine_read_back_at(const struct engine *e, const struct signal *s)
+{
+	int64_t wait_ns = s->item->read_back_ns, restore_ns = s->restore.not_before_ns;
+
+	if (s->command.differs && s->item->restores && restore_ns - e->time.now_ns < wait_ns)
+		wait_ns = restore_ns - e->time.now_ns;
+	return e->time.period + (wait_ns > 0 ? engine_periods(e, wait_ns) : 1);
+}

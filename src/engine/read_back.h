@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: MIT */
+/* Does an output still have what was written? (docs/semantics.md, section 3, "Read back") */
+#ifndef ENGINE_READ_BACK_H
+#define ENGINE_READ_BACK_H
+
+#include "hal/bus/bus.h"
+
+struct engine;
+struct lane;
+struct signal;
+struct slot;
+
+/*
+ * An output was read, and the sample has the value; *quality becomes OWS_Q_DIFFERS if that is not
+ * what was written. False: it differs for the first time, and the next reading decides.
+ */
+bool engine_compare(struct engine *e, struct lane *lane, struct signal *s, const struct slot *slot,
+                    uint8_t *quality);
+/* Write a command again that the device lost, if it was not done just now; else later. */
+void engine_restore(struct engine *e, struct signal *s);
+/* When the output that nobody reads in the cycle is read back next, as a period. */
+uint64_t engine_read_back_at(const struct engine *e, const struct signal *s);
+
+#endif

@@ -1,0 +1,325 @@
+/* SPDX-License-Identifier: MIT */
+/* Outputs that are read back: where they do not have their command, that is seen, and told once. */
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "unity.h"
+
+#include "src/text/log.h"
+#include "tests/unit/aid/scene.h"
+
+static struct scene s;
+static FILE *out;
+
+#define PIO "/29.B89115000000/PIO.BYTE"
+#define OUT 1
+
+static struct config_item *an_output(void)
+{
+	struct config_item *item = scene_output(&s, "out", PIO, OWS_BYTE);
+
+	item->read_back_ns = 10 * SCENE_S;
+	scene_put(&s, PIO, "0", 0);
+	return item;
+}
+
+static void begin(void)
+{
+	scene_start(&s);
+	scene_up(&s);
+	scene_set(&s, OUT, 255);
+	scene_run(&s, SCENE_S);
+	scene_clear_trace(&s);
+}
+
+void setUp(void)
+{
+	scene_init(&s);
+	s.log = log_create(LOG_LEVEL_INFO);
+	out = tmpfile();
+	TEST_ASSERT_NOT_NULL(out);
+}
+void tearDown(void)
+{
+	struct log *log = s.log;
+
+	scene_end(&s);
+	log_destroy(log);
+	fclose(out);
+}
+
+/* How many lines of the log have the text. */
+static unsigned logged(const char *text)
+{
+	char line[512];
+	unsigned n = 0;
+
+	log_drain(s.log, fileno(out), 0);
+	rewind(out);
+	while (fgets(line, sizeof(line), out))
+		n += strstr(line, text) != NULL;
+	return n;
+}
+
+static void shows(uint8_t quality, int value)
+{
+	TEST_ASSERT_EQUAL_HEX8(quality, scene_sample(&s, OUT).quality);
+	TEST_ASSERT_EQUAL_INT(value, (int)scene_number(&s, OUT));
+	TEST_ASSERT_EQUAL_INT64(255, scene_attrs(&s, OUT).commanded);
+}
+
+static unsigned entered(enum ows_alarm_event event)
+{
+	unsigned n = 0;
+
+	for (unsigned k = 0; k < s.image.header->alarm_head && k < OWS_JOURNAL; k++)
+		n += s.image.alarms[k].kind == OWS_ALARM_DIFFERS &&
+		     s.image.alarms[k].event == event;
+	return n;
+}
+
+static void test_an_output_is_read_back_past_the_cache_at_its_own_pace(void)
+{
+	an_output();
+	begin();
+	scene_run(&s, 60 * SCENE_S);
+	TEST_ASSERT_EQUAL_UINT(6, s.reads);
+	TEST_ASSERT_EQUAL_UINT(0, s.writes);
+	TEST_ASSERT_EQUAL_STRING_LEN("r " PIO "\n", s.trace, strlen("r " PIO "\n"));
+	shows(OWS_Q_GOOD, 255);
+	TEST_ASSERT_LESS_THAN_INT64_MESSAGE(11 * SCENE_S,
+	                                    s.now_ns - scene_sample(&s, OUT).measured_ns,
+	                                    "its age is that of the last look");
+}
+
+static void test_without_a_command_nothing_is_read(void)
+{
+	an_output();
+	scene_start(&s);
+	scene_up(&s);
+	scene_run(&s, 60 * SCENE_S);
+	TEST_ASSERT_EQUAL_UINT(0, s.reads);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_INITIAL, scene_sample(&s, OUT).quality);
+}
+
+static void test_a_command_that_is_lost_is_told_once_and_not_written(void)
+{
+	an_output();
+	begin();
+	scene_put(&s, PIO, "0", 0);
+	scene_run(&s, 60 * SCENE_S);
+	shows(OWS_Q_DIFFERS, 0);
+	TEST_ASSERT_EQUAL_UINT(0, s.writes);
+	TEST_ASSERT_EQUAL_UINT(1, logged("not as commanded: it reads 0, and 255 was written"));
+	TEST_ASSERT_EQUAL_UINT(1, entered(OWS_ALARM_RAISED));
+	TEST_ASSERT_EQUAL_INT64(255, s.image.alarms[0].before);
+	TEST_ASSERT_EQUAL_INT64(0, s.image.alarms[0].after);
+	TEST_ASSERT_EQUAL_UINT(0, entered(OWS_ALARM_RETURNED));
+	scene_put(&s, PIO, "255", 0);
+	scene_run(&s, 11 * SCENE_S);
+	shows(OWS_Q_GOOD, 255);
+	TEST_ASSERT_EQUAL_UINT(1, logged("as commanded again"));
+	TEST_ASSERT_EQUAL_UINT(1, entered(OWS_ALARM_RETURNED));
+}
+
+static void forget_once(struct scene *scene, const char *path)
+{
+	static unsigned reads;
+
+	(void)path;
+	if (++reads == 2)
+		scene_put(scene, PIO, "255", 0);
+}
+
+static void test_one_reading_that_differs_decides_nothing(void)
+{
+	an_output();
+	begin();
+	scene_put(&s, PIO, "0", 0);
+	s.on_read = forget_once;
+	scene_run(&s, 30 * SCENE_S);
+	shows(OWS_Q_GOOD, 255);
+	TEST_ASSERT_EQUAL_UINT(0, logged("not as commanded"));
+	TEST_ASSERT_EQUAL_UINT(0, entered(OWS_ALARM_RAISED));
+}
+
+static void test_a_new_command_is_no_difference(void)
+{
+	an_output();
+	s.bus[0].depth = 4;
+	s.bus[0].slow = PIO;
+	s.bus[0].slow_ns = 300 * SCENE_MS; /* writes and readings overtake each other */
+	begin();
+	for (int i = 0; i < 400; i++) {
+		scene_set(&s, OUT, i % 2 ? 255 : 1);
+		scene_run(&s, (100 + 7 * (i % 61)) * SCENE_MS);
+		TEST_ASSERT_NOT_EQUAL_HEX8(OWS_Q_DIFFERS, scene_sample(&s, OUT).quality);
+	}
+	TEST_ASSERT_EQUAL_UINT(0, entered(OWS_ALARM_RAISED));
+}
+
+static void test_the_value_of_a_cache_is_asked_for_again(void)
+{
+	struct config_item *item = an_output();
+
+	item->readable = true;
+	item->per_factor = 10;
+	begin();
+	scene_run(&s, 5500 * SCENE_MS);
+	TEST_ASSERT_EQUAL_STRING_LEN("R " PIO "\n", s.trace, strlen("R " PIO "\n"));
+	scene_put(&s, PIO, "0", 0);
+	scene_clear_trace(&s);
+	scene_run(&s, 1500 * SCENE_MS);
+	TEST_ASSERT_EQUAL_STRING_LEN("R " PIO "\nr " PIO "\n", s.trace,
+	                             strlen("R " PIO "\nr " PIO "\n"));
+	shows(OWS_Q_DIFFERS, 0);
+}
+
+static void test_a_device_that_is_gone_is_absent_and_gets_its_command_again(void)
+{
+	an_output();
+	begin();
+	scene_put(&s, PIO, NULL, -ENODEV);
+	scene_run(&s, 20 * SCENE_S);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_NO_DEVICE, scene_sample(&s, OUT).quality);
+	scene_put(&s, PIO, "0", 0);
+	scene_run(&s, 60 * SCENE_S);
+	TEST_ASSERT_EQUAL_STRING("255", scene_at(&s, PIO));
+	shows(OWS_Q_GOOD, 255);
+	TEST_ASSERT_EQUAL_UINT(0, entered(OWS_ALARM_RAISED));
+}
+
+static void test_a_write_that_fails_is_not_hidden_by_a_reading(void)
+{
+	an_output();
+	begin();
+	scene_refuse_writes(&s, PIO, -EIO);
+	scene_set(&s, OUT, 1);
+	scene_run(&s, 60 * SCENE_S);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_DEVICE, scene_sample(&s, OUT).quality);
+	scene_refuse_writes(&s, PIO, 0);
+	scene_run(&s, 70 * SCENE_S);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, OUT).quality);
+}
+
+static void test_a_new_command_ends_the_difference_when_the_device_has_it(void)
+{
+	an_output();
+	begin();
+	scene_put(&s, PIO, "0", 0);
+	scene_run(&s, 11 * SCENE_S);
+	shows(OWS_Q_DIFFERS, 0);
+	scene_set(&s, OUT, 255); /* the same is no change */
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_UINT(0, s.writes);
+	scene_set(&s, OUT, 3);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, OUT).quality);
+	TEST_ASSERT_EQUAL_UINT(1, entered(OWS_ALARM_RETURNED));
+	scene_put(&s, PIO, "0", 0);
+	scene_run(&s, 11 * SCENE_S);
+	scene_slot(&s, OUT)->one_shot++; /* so it is written again by hand */
+	scene_ring(&s, OUT);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_STRING("3", scene_at(&s, PIO));
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, OUT).quality);
+}
+
+static void test_restore_writes_the_command_again(void)
+{
+	an_output()->restores = true;
+	begin();
+	scene_put(&s, PIO, "0", 0);
+	scene_run(&s, 11 * SCENE_S);
+	TEST_ASSERT_EQUAL_STRING("255", scene_at(&s, PIO));
+	TEST_ASSERT_EQUAL_UINT(1, s.writes);
+	shows(OWS_Q_GOOD, 255);
+	TEST_ASSERT_EQUAL_UINT(1, logged("the command is written again"));
+	TEST_ASSERT_EQUAL_UINT(1, entered(OWS_ALARM_RAISED));
+	TEST_ASSERT_EQUAL_UINT(1, entered(OWS_ALARM_RETURNED));
+}
+
+static void lose_it(struct scene *scene, const char *path)
+{
+	scene_put(scene, path, "0", 0);
+}
+
+static void test_restore_does_not_hammer_a_device_that_keeps_nothing(void)
+{
+	an_output()->restores = true;
+	begin();
+	s.on_read = lose_it;
+	scene_run(&s, 600 * SCENE_S);
+	shows(OWS_Q_DIFFERS, 0);
+	TEST_ASSERT_LESS_THAN_UINT(13, s.writes);
+	TEST_ASSERT_GREATER_THAN_UINT(5, s.writes);
+	TEST_ASSERT_EQUAL_UINT(1, logged("not as commanded"));
+	TEST_ASSERT_EQUAL_UINT(1, entered(OWS_ALARM_RAISED));
+}
+
+static void test_restore_writes_nothing_where_writing_is_disabled(void)
+{
+	an_output()->restores = true;
+	begin();
+	scene_enable_writes(&s, OUT, false);
+	scene_put(&s, PIO, "0", 0);
+	scene_run(&s, 30 * SCENE_S);
+	shows(OWS_Q_DIFFERS, 0);
+	TEST_ASSERT_EQUAL_UINT(0, s.writes);
+}
+
+static void test_a_limit_alarm_has_it_as_bad(void)
+{
+	struct config_item *item = an_output();
+
+	item->limits.any = item->limits.has[CONFIG_LIMIT_HH] = true;
+	item->limits.limit[CONFIG_LIMIT_HH] = 256;
+	begin();
+	TEST_ASSERT_EQUAL_UINT8(OWS_LIMIT_NORMAL, scene_attrs(&s, OUT).limit_state);
+	scene_put(&s, PIO, "0", 0);
+	scene_run(&s, 11 * SCENE_S);
+	TEST_ASSERT_EQUAL_UINT8(OWS_LIMIT_UNACKNOWLEDGED, scene_attrs(&s, OUT).limit_state);
+	TEST_ASSERT_EQUAL_UINT8(OWS_ALARM_BAD, scene_attrs(&s, OUT).limit_condition);
+}
+
+static void without_read_back(struct config *config)
+{
+	config->items[0].read_back_ns = 0;
+}
+
+static void test_a_reload_carries_the_difference_over(void)
+{
+	an_output();
+	begin();
+	scene_put(&s, PIO, "0", 0);
+	scene_run(&s, 11 * SCENE_S);
+	scene_reload(&s, NULL);
+	scene_run(&s, 30 * SCENE_S);
+	shows(OWS_Q_DIFFERS, 0);
+	TEST_ASSERT_EQUAL_UINT(1, logged("not as commanded"));
+	scene_reload(&s, without_read_back);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_LAST_USABLE, scene_sample(&s, OUT).quality);
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_an_output_is_read_back_past_the_cache_at_its_own_pace);
+	RUN_TEST(test_without_a_command_nothing_is_read);
+	RUN_TEST(test_a_command_that_is_lost_is_told_once_and_not_written);
+	RUN_TEST(test_one_reading_that_differs_decides_nothing);
+	RUN_TEST(test_a_new_command_is_no_difference);
+	RUN_TEST(test_the_value_of_a_cache_is_asked_for_again);
+	RUN_TEST(test_a_device_that_is_gone_is_absent_and_gets_its_command_again);
+	RUN_TEST(test_a_write_that_fails_is_not_hidden_by_a_reading);
+	RUN_TEST(test_a_new_command_ends_the_difference_when_the_device_has_it);
+	RUN_TEST(test_restore_writes_the_command_again);
+	RUN_TEST(test_restore_does_not_hammer_a_device_that_keeps_nothing);
+	RUN_TEST(test_restore_writes_nothing_where_writing_is_disabled);
+	RUN_TEST(test_a_limit_alarm_has_it_as_bad);
+	RUN_TEST(test_a_reload_carries_the_difference_over);
+	return UNITY_END();
+}
