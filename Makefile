@@ -153,6 +153,12 @@ LIBMICROHTTPD ?= $(shell printf '\043include <stdint.h>\n\043include <microhttpd
 LIBMICROHTTPD := $(LIBMICROHTTPD)
 HTTPD    := $(filter 1,$(LIBMICROHTTPD))
 
+# owsd-mqtt, where libmosquitto is there for this compiler; LIBMOSQUITTO=0 leaves it out
+LIBMOSQUITTO ?= $(shell printf '\043include <stdint.h>\n\043include <mosquitto.h>\nint main(void) { return mosquitto_lib_init(); }\n' | \
+              $(CC) $(CPPFLAGS) $(CFLAGS) $(EXTRA_CFLAGS) $(LDFLAGS) -x c -o /dev/null - -lmosquitto 2>/dev/null && echo 1)
+LIBMOSQUITTO := $(LIBMOSQUITTO)
+MOSQUITTO := $(filter 1,$(LIBMOSQUITTO))
+
 comma    := ,
 
 # With what is compiled and linked: a file for each, written when that has changed, and never else.
@@ -163,7 +169,7 @@ with_cxx := $(CXX): $(call version_of,$(CXX)): $(ALL_CXXFLAGS)
 with_ld  := $(CC): $(ALL_LDFLAGS) $(LIBS)
 with_libraries := libi2c $(if $(filter 1,$(LIBI2C)),yes,no) libgpiod $(or $(filter 1 2,$(LIBGPIOD)),no) \
     libsqlite3 $(if $(SQLITE),yes,no owsd-recorder left-out) libcurl $(if $(CURL),yes,no owsd-influx left-out) \
-    libmicrohttpd $(if $(HTTPD),yes,no owsd-web left-out)
+    libmicrohttpd $(if $(HTTPD),yes,no owsd-web left-out) libmosquitto $(if $(MOSQUITTO),yes,no owsd-mqtt left-out)
 compiler := $(firstword $(filter-out ccache,$(CC)))
 WITH     := $(patsubst %,$(B)/with/%,cc cxx ld libraries)
 same      = $(and $(findstring x$(1)x,x$(2)x),$(findstring x$(2)x,x$(1)x))
@@ -198,6 +204,8 @@ SOURCES  := $(wildcard src/*/*.c hal/*/*.c hal/*/*/*.c)
 # Of owsd-web: what calls libmicrohttpd; its main(), and what must be in no other program
 WEB_MAIN := src/web/owsd_web.c src/web/no_tls.c
 WEB_HTTP := $(WEB_MAIN) $(patsubst %,src/web/%.c,api command devices draft events guard http lists past save stored stream)
+# Of owsd-mqtt: what calls libmosquitto, and its main()
+MQTT_ALL := $(patsubst %,src/mqtt/%.c,owsd_mqtt mqtt broker advice)
 # The consumers' library
 LIBOWS   := $(wildcard src/libows/*.c)
 # And the one that reads history
@@ -225,13 +233,15 @@ BENCH_AID := $(filter-out $(BENCH),$(wildcard tests/bench/*.c)) tests/unit/aid/p
 
 CORE     := $(filter-out src/owsd/owsd.c src/owsctl/owsctl.c src/recorder/recorder.c src/influx/influx.c \
             src/writer/owsd_config.c $(if $(SQLITE),src/libhistory/none.c,$(SQLITE_ALL)) \
-            $(if $(CURL),,src/influx/post.c) $(if $(HTTPD),$(WEB_MAIN),$(WEB_HTTP)),$(SOURCES))
+            $(if $(CURL),,src/influx/post.c) $(if $(HTTPD),$(WEB_MAIN),$(WEB_HTTP)) \
+            $(if $(MOSQUITTO),src/mqtt/owsd_mqtt.c,$(MQTT_ALL)),$(SOURCES))
 obj       = $(patsubst %.c,$(B)/%.o,$(1))
 UNIT     := $(patsubst %.c,$(B)/unit/%,$(notdir $(UNIT_SRC))) $(B)/unit/test_endurance
 BENCHES  := $(patsubst tests/bench/%.c,$(B)/bench/%,$(BENCH))
 SAMPLES  := $(patsubst docs/examples/%.c,$(B)/examples/%,$(filter-out $(if $(SQLITE),,%/past.c),$(filter %.c,$(EXAMPLES)))) \
             $(patsubst docs/examples/%.cpp,$(B)/examples/%,$(filter %.cpp,$(EXAMPLES)))
-FACES    := owsd-config $(if $(SQLITE),owsd-recorder) $(if $(CURL),owsd-influx) $(if $(HTTPD),owsd-web)
+FACES    := owsd-config $(if $(SQLITE),owsd-recorder) $(if $(CURL),owsd-influx) $(if $(HTTPD),owsd-web) \
+            $(if $(MOSQUITTO),owsd-mqtt)
 PROGRAMS := $(B)/owsd $(B)/owsctl $(FACES:%=$(B)/%)
 LIBRARIES := libows $(if $(SQLITE),libows-history)
 LIBRARY  := $(foreach l,$(LIBRARIES),$(B)/$(l).so.$(VERSION) $(B)/$(l).a $(B)/$(l).pc)
@@ -268,6 +278,8 @@ $(B)/owsd-recorder: $(B)/src/recorder/recorder.o
 $(B)/owsd-config: $(B)/src/writer/owsd_config.o
 $(B)/owsd-influx: $(B)/src/influx/influx.o
 $(B)/owsd-influx: LIBS += -lcurl
+$(B)/owsd-mqtt: $(B)/src/mqtt/owsd_mqtt.o
+$(B)/owsd-mqtt: LIBS += -lmosquitto
 $(B)/owsd-web: $(call obj,$(WEB_MAIN))
 $(B)/owsd-web: LIBS += -lmicrohttpd -Wl,--export-dynamic-symbol=_gnutls_global_init_skip
 

@@ -157,6 +157,25 @@ struct config_web {
 	bool has_proxy, write, configure;
 };
 
+/* A way to a broker. */
+#define CONFIG_MQTT_WAYS 8
+struct config_mqtt_way {
+	const char *host; /* a name or an address, without brackets */
+	uint16_t port;
+	bool tls;
+};
+/* The Mqtt block, for owsd-mqtt; with the defaults where the file has none. */
+struct config_mqtt {
+	bool given;
+	const char *broker; /* as written */
+	struct config_mqtt_way ways[CONFIG_MQTT_WAYS];
+	unsigned way_count;
+	const char *user, *password_file, *ca_file, *cert_file, *key_file; /* NULL: none */
+	const char *node; /* NULL: the program's own */
+	const char *topic, *profile, *discovery;
+	bool mqtt5, write;
+};
+
 /* A user or a group of ControlAllow. */
 struct config_who {
 	bool group;
@@ -188,6 +207,7 @@ struct config {
 	struct config_recorder recorder;
 	struct config_influx influx;
 	struct config_web web;
+	struct config_mqtt mqtt;
 };
 
 /* Receives the errors and warnings; a message is a whole line ("house.rio:12:26: error: ..."). */

@@ -34,7 +34,10 @@ struct rio_node *edit_item(const struct rio *rio, const char *name)
 static const struct {
 	enum option option;
 	enum option_place place;
-} single[] = {{OPT_RECORDER, PLACE_RECORDER}, {OPT_INFLUX, PLACE_INFLUX}, {OPT_WEB, PLACE_WEB}};
+} single[] = {{OPT_RECORDER, PLACE_RECORDER},
+              {OPT_INFLUX, PLACE_INFLUX},
+              {OPT_WEB, PLACE_WEB},
+              {OPT_MQTT, PLACE_MQTT}};
 #define SINGLES (sizeof(single) / sizeof(single[0]))
 
 /* The number of such a block; SINGLES: it is none. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The blocks of a configuration by the names that edits have for them: an item's own name;
- * "OwsDrv"; and, where no item is called so, "Recorder", "Influx", "Web", and "Bus:TARGET".
+ * "OwsDrv"; and, where no item is called so, "Recorder", "Influx", "Web", "Mqtt", and "Bus:TARGET".
  */
 #ifndef CONFIG_EDIT_BLOCK_H
 #define CONFIG_EDIT_BLOCK_H

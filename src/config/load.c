@@ -11,6 +11,7 @@
 #include "src/config/influx.h"
 #include "src/config/item.h"
 #include "src/config/load.h"
+#include "src/config/mqtt.h"
 #include "src/config/recorder.h"
 #include "src/config/rio_file.h"
 #include "src/config/serve.h"
@@ -169,6 +170,7 @@ static void build_config(struct build *build, const struct rio *rio, const char 
 	buses_build(build, driver);
 	recorder_build(build, values[OPT_RECORDER].node);
 	influx_build(build, values[OPT_INFLUX].node);
+	mqtt_build(build, values[OPT_MQTT].node);
 	web_build(build, values[OPT_WEB].node);
 	build_items(build, driver, &values[OPT_ITEM_COUNT]);
 	allow_build(build, driver);

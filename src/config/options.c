@@ -52,6 +52,8 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
                         .help = "options of owsd-influx, which pushes values to a server"},
 	[OPT_WEB] = {"Web", PLACE_DRIVER, OPTION_BLOCK,
                      .help = "options of owsd-web, which shows the signals in a browser"},
+	[OPT_MQTT] = {"Mqtt", PLACE_DRIVER, OPTION_BLOCK,
+                      .help = "options of owsd-mqtt, which publishes the signals to a broker"},
 	[OPT_ITEM] = {"Item", PLACE_DRIVER, OPTION_BLOCK, true, .help = "one signal"},
 
 	[OPT_NAME] = {"Name", PLACE_ITEM, OPTION_TEXT, .help = "name of the signal"},
@@ -195,9 +197,33 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
                            .help = "user or address of the reverse proxy that names the person"},
 	[OPT_WEB_FILES] = {"Files", PLACE_WEB, OPTION_TEXT,
                            .help = "where the files of the page are"},
+	[OPT_MQTT_BROKER] = {"Broker", PLACE_MQTT, OPTION_TEXT, .preset = "mqtt://localhost",
+                             .help = "ways to a broker, with | between them; the first that works"},
+	[OPT_MQTT_USER] = {"User", PLACE_MQTT, OPTION_TEXT, .help = "name towards the broker"},
+	[OPT_MQTT_PASSWORD_FILE] = {"PasswordFile", PLACE_MQTT, OPTION_TEXT,
+                                    .help = "file with the password, or name of a credential"},
+	[OPT_MQTT_CA_FILE] = {"CaFile", PLACE_MQTT, OPTION_TEXT,
+                              .help = "certificates that vouch for the broker, likewise"},
+	[OPT_MQTT_CERT_FILE] = {"CertFile", PLACE_MQTT, OPTION_TEXT,
+                                .help = "certificate towards the broker, likewise"},
+	[OPT_MQTT_KEY_FILE] = {"KeyFile", PLACE_MQTT, OPTION_TEXT,
+                               .help = "key of that certificate, likewise"},
+	[OPT_MQTT_PROTOCOL] = {"Protocol", PLACE_MQTT, OPTION_TEXT, .preset = "5",
+                               .help = "version of MQTT to begin with: 5 or 3.1.1"},
+	[OPT_MQTT_NODE] = {"Node", PLACE_MQTT, OPTION_TEXT,
+                           .help = "name of this machine and instance in topics"},
+	[OPT_MQTT_TOPIC] = {"Topic", PLACE_MQTT, OPTION_TEXT, .preset = "owsd",
+                            .help = "what all topics begin with"},
+	[OPT_MQTT_PROFILE] = {"Profile", PLACE_MQTT, OPTION_TEXT, .preset = "homeassistant",
+                              .help = "for whom it is published: homeassistant or plain"},
+	[OPT_MQTT_DISCOVERY] = {"Discovery", PLACE_MQTT, OPTION_TEXT, .preset = "homeassistant",
+                                .help = "where Home Assistant looks for devices"},
+	[OPT_MQTT_WRITE] = {"Write", PLACE_MQTT, OPTION_FLAG, .preset = "off",
+                            .help = "take commands from the broker"},
 };
 
-static const char *const place_names[] = {"OwsDrv", "Item", "Bus", "Recorder", "Influx", "Web"};
+static const char *const place_names[] = {"OwsDrv", "Item", "Bus", "Recorder",
+                                          "Influx", "Web",  "Mqtt"};
 
 int option_find(enum option_place place, const char *key)
 {

@@ -166,6 +166,26 @@ static void put_influx(FILE *out, const struct config_influx *influx)
 	fputs("  }\n", out);
 }
 
+static void put_mqtt(FILE *out, const struct config_mqtt *mqtt)
+{
+	if (!mqtt->given)
+		return;
+	fprintf(out, "  %s {\n", option_table[OPT_MQTT].key);
+	put_text(out, 4, OPT_MQTT_BROKER, mqtt->broker);
+	put_text_if_given(out, OPT_MQTT_USER, mqtt->user);
+	put_text_if_given(out, OPT_MQTT_PASSWORD_FILE, mqtt->password_file);
+	put_text_if_given(out, OPT_MQTT_CA_FILE, mqtt->ca_file);
+	put_text_if_given(out, OPT_MQTT_CERT_FILE, mqtt->cert_file);
+	put_text_if_given(out, OPT_MQTT_KEY_FILE, mqtt->key_file);
+	put_text(out, 4, OPT_MQTT_PROTOCOL, mqtt->mqtt5 ? "5" : "3.1.1");
+	put_text_if_given(out, OPT_MQTT_NODE, mqtt->node);
+	put_text(out, 4, OPT_MQTT_TOPIC, mqtt->topic);
+	put_text(out, 4, OPT_MQTT_PROFILE, mqtt->profile);
+	put_text(out, 4, OPT_MQTT_DISCOVERY, mqtt->discovery);
+	put_flag(out, 4, OPT_MQTT_WRITE, mqtt->write);
+	fputs("  }\n", out);
+}
+
 static void put_web(FILE *out, const struct config_web *web)
 {
 	if (!web->given)
@@ -286,6 +306,7 @@ void config_print(const struct config *config, FILE *out)
 	put_recorder(out, &config->recorder);
 	put_influx(out, &config->influx);
 	put_web(out, &config->web);
+	put_mqtt(out, &config->mqtt);
 	put_word(out, 2, OPT_ITEM_COUNT, "%u", config->item_count);
 	for (unsigned i = 0; i < config->item_count; i++)
 		put_item(out, &config->items[i], false);

@@ -20,10 +20,10 @@ static struct pushing *own(struct face *face)
 void sending_read_token(struct face *face)
 {
 	struct pushing *p = own(face);
-	char why[TOKEN_PATH + 128];
+	char why[SECRET_PATH + 128];
 
-	if (token_read(*p->options.token_file ? p->options.token_file : NULL, p->token, why,
-	               sizeof(why)))
+	if (secret_read(*p->options.token_file ? p->options.token_file : NULL, p->token, why,
+	                sizeof(why)))
 		log_err(face->log, "without a token: %s", why);
 }
 

@@ -8,13 +8,13 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "src/face/secret.h"
 #include "src/face/wall_clock.h"
 #include "src/influx/options.h"
 #include "src/influx/part.h"
 #include "src/influx/pending.h"
 #include "src/influx/points.h"
 #include "src/influx/spool.h"
-#include "src/influx/token.h"
 #include "src/text/log.h"
 
 struct face;
@@ -36,7 +36,7 @@ struct pushing {
 	struct pending pending;
 	struct spool spool;
 	struct post *post;
-	char token[TOKEN_SIZE], batch[BATCH_BYTES];
+	char token[SECRET_SIZE], batch[BATCH_BYTES];
 	size_t batch_len; /* of what is sent or has to be sent next; 0: nothing */
 	struct part part; /* of the batch: what is sent now */
 	bool spooled;     /* it is the oldest file of the spool, too */

@@ -173,7 +173,7 @@ void model_json(struct json *json, const struct rio *rio)
 	json_object(json, "blocks");
 	for (const struct rio_node *node = driver->first; node; node = node->next)
 		if ((is_block(node, OPT_RECORDER) || is_block(node, OPT_INFLUX) ||
-		     is_block(node, OPT_WEB)) &&
+		     is_block(node, OPT_WEB) || is_block(node, OPT_MQTT)) &&
 		    is_first(driver, node))
 			put_keys(json, node->key, node, OPT_ITEM, OPT_ITEM);
 	json_object_end(json);
@@ -204,6 +204,7 @@ void model_keys(struct json *json)
 	static const char *const places[] = {
 		[PLACE_DRIVER] = "driver",     [PLACE_ITEM] = "item",     [PLACE_BUS] = "bus",
 		[PLACE_RECORDER] = "recorder", [PLACE_INFLUX] = "influx", [PLACE_WEB] = "web",
+		[PLACE_MQTT] = "mqtt",
 	};
 	static const char *const kinds[] = {
 		[OPTION_TEXT] = "text",     [OPTION_COUNT] = "count", [OPTION_SECONDS] = "seconds",

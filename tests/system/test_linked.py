@@ -47,6 +47,14 @@ def test_the_programs_link_libi2c_and_libgpiod(scene):
             assert bool(calls) == has, f"{program} links {name} and calls {calls}"
 
 
+def test_owsd_mqtt_alone_links_libmosquitto(scene):
+    has = found()["libmosquitto"] == "yes"
+    assert (BUILD / "owsd-mqtt").exists() == has, found()
+    for name in ("owsd", "owsctl", *(["owsd-mqtt"] if has else [])):
+        links = any(n.startswith("libmosquitto") for n in needed(BUILD / name))
+        assert links == (name == "owsd-mqtt"), f"{name}: {needed(BUILD / name)}"
+
+
 def test_one_face_alone_links_a_library_of_the_network(scene):
     has = found()["libcurl"] == "yes"
     assert (BUILD / "owsd-influx").exists() == has, found()

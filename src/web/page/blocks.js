@@ -6,7 +6,7 @@ import {Field, Form, edits, setter} from "./form.js";
 import {problemsOf} from "./problems.js";
 
 const SINGLE = [["OwsDrv", "driver", "Driver"], ["Recorder", "recorder", "Recorder"],
-	["Influx", "influx", "Influx"], ["Web", "web", "Web"]];
+	["Influx", "influx", "Influx"], ["Web", "web", "Web"], ["Mqtt", "mqtt", "Mqtt"]];
 // Keys without a field here: of the driver, and of Web what only the machine itself may change
 const ELSEWHERE = ["TargetName", "ItemCount", "Version", "Files"];
 

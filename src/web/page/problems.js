@@ -4,7 +4,7 @@ import {el} from "./dom.js";
 import {draft} from "./draft.js";
 
 const SHOWN = 50;
-const PLACES = {OwsDrv: "driver", Recorder: "recorder", Influx: "influx", Web: "web"};
+const PLACES = {OwsDrv: "driver", Recorder: "recorder", Influx: "influx", Web: "web", Mqtt: "mqtt"};
 const OWN = ["ItemCount", "Version", "Files"]; // keys that have no field
 const BUS = "Bus:";                   // the name of a block Bus is this and its target
 

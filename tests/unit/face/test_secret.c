@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Tests of the file that has the token. */
+/* Tests of files with tokens, passwords and keys. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,10 +9,10 @@
 
 #include "unity.h"
 
-#include "src/influx/token.h"
+#include "src/face/secret.h"
 #include "tests/unit/aid/folder.h"
 
-static char path[300], token[TOKEN_SIZE], why[400];
+static char path[300], token[SECRET_SIZE], why[400];
 
 void setUp(void)
 {
@@ -33,7 +33,7 @@ static int read_text(const char *text, mode_t mode)
 	fputs(text, file);
 	fclose(file);
 	TEST_ASSERT_EQUAL_INT(0, chmod(path, mode));
-	return token_read(path, token, why, sizeof(why));
+	return secret_read(path, token, why, sizeof(why));
 }
 
 static void test_a_token_stands_in_a_line_of_a_file_that_is_ours_alone(void)
@@ -42,13 +42,13 @@ static void test_a_token_stands_in_a_line_of_a_file_that_is_ours_alone(void)
 	TEST_ASSERT_EQUAL_STRING("user:pass==", token);
 	TEST_ASSERT_EQUAL_INT(0, read_text("abc", 0400));
 	TEST_ASSERT_EQUAL_STRING("abc", token);
-	TEST_ASSERT_EQUAL_INT(0, token_read(NULL, token, why, sizeof(why)));
+	TEST_ASSERT_EQUAL_INT(0, secret_read(NULL, token, why, sizeof(why)));
 	TEST_ASSERT_EQUAL_STRING("", token);
 }
 
 static void test_a_file_that_others_may_read_or_that_has_no_token_is_refused(void)
 {
-	char longest[TOKEN_SIZE + 1];
+	char longest[SECRET_SIZE + 1];
 
 	TEST_ASSERT_EQUAL_INT(-EPERM, read_text("abc\n", 0640));
 	TEST_ASSERT_NOT_NULL(strstr(why, "others may read it: chmod 600"));
@@ -60,23 +60,40 @@ static void test_a_file_that_others_may_read_or_that_has_no_token_is_refused(voi
 	TEST_ASSERT_EQUAL_INT(-EINVAL, read_text("a\x01"
 	                                         "b\n",
 	                                         0600));
-	memset(longest, 'a', TOKEN_SIZE);
-	longest[TOKEN_SIZE] = '\0';
+	memset(longest, 'a', SECRET_SIZE);
+	longest[SECRET_SIZE] = '\0';
 	TEST_ASSERT_EQUAL_INT(-EINVAL, read_text(longest, 0600));
 	TEST_ASSERT_EQUAL_STRING("", token);
 	unlink(path);
-	TEST_ASSERT_EQUAL_INT(-ENOENT, token_read(path, token, why, sizeof(why)));
-	TEST_ASSERT_EQUAL_INT(-EINVAL, token_read(folder_place()->path, token, why, sizeof(why)));
+	TEST_ASSERT_EQUAL_INT(-ENOENT, secret_read(path, token, why, sizeof(why)));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, secret_read(folder_place()->path, token, why, sizeof(why)));
 }
 
 static void test_a_name_is_that_of_a_credential_of_the_service(void)
 {
-	TEST_ASSERT_EQUAL_INT(-ENOENT, token_read("token", token, why, sizeof(why)));
+	TEST_ASSERT_EQUAL_INT(-ENOENT, secret_read("token", token, why, sizeof(why)));
 	TEST_ASSERT_NOT_NULL(strstr(why, "LoadCredential="));
 	setenv("CREDENTIALS_DIRECTORY", folder_place()->path, 1);
 	read_text("abc\n", 0440);
-	TEST_ASSERT_EQUAL_INT(0, token_read("token", token, why, sizeof(why)));
+	TEST_ASSERT_EQUAL_INT(0, secret_read("token", token, why, sizeof(why)));
 	TEST_ASSERT_EQUAL_STRING("abc", token);
+}
+
+static void test_a_key_has_to_be_ours_alone_and_a_certificate_has_not(void)
+{
+	char found[SECRET_PATH];
+
+	read_text("abc\n", 0644);
+	TEST_ASSERT_EQUAL_INT(-EPERM, secret_file(path, true, found, why, sizeof(why)));
+	TEST_ASSERT_NOT_NULL(strstr(why, "others may read it: chmod 600"));
+	TEST_ASSERT_EQUAL_INT(0, secret_file(path, false, found, why, sizeof(why)));
+	TEST_ASSERT_EQUAL_STRING(path, found);
+	TEST_ASSERT_EQUAL_INT(0, chmod(path, 0600));
+	TEST_ASSERT_EQUAL_INT(0, secret_file(path, true, found, why, sizeof(why)));
+	TEST_ASSERT_EQUAL_INT(-ENOENT, secret_file("/no/key", false, found, why, sizeof(why)));
+	setenv("CREDENTIALS_DIRECTORY", folder_place()->path, 1);
+	TEST_ASSERT_EQUAL_INT(0, secret_file("token", true, found, why, sizeof(why)));
+	TEST_ASSERT_EQUAL_STRING(path, found);
 }
 
 int main(void)
@@ -85,5 +102,6 @@ int main(void)
 	RUN_TEST(test_a_token_stands_in_a_line_of_a_file_that_is_ours_alone);
 	RUN_TEST(test_a_file_that_others_may_read_or_that_has_no_token_is_refused);
 	RUN_TEST(test_a_name_is_that_of_a_credential_of_the_service);
+	RUN_TEST(test_a_key_has_to_be_ours_alone_and_a_certificate_has_not);
 	return UNITY_END();
 }

@@ -1,0 +1,206 @@
+/* SPDX-License-Identifier: MIT */
+/* The Mqtt block: the ways to a broker, what owsd-mqtt shows there, and what it takes. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/config/build.h"
+#include "src/config/mqtt.h"
+
+#define TEXT_MAX 255
+#define NAME_MAX_BYTES 63
+#define LETTERS "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.-"
+#define PORT 1883
+#define PORT_TLS 8883
+#define BLANK " \t"
+
+static const char *check_file(const char *name)
+{
+	if (strlen(name) <= TEXT_MAX &&
+	    (name[0] == '/' || (strspn(name, LETTERS) == strlen(name) && name[0] != '.')))
+		return NULL;
+	return "expected a path from the root, or the name of a credential";
+}
+
+static const char *check_name(const char *name)
+{
+	return strspn(name, LETTERS) == strlen(name) && strlen(name) <= NAME_MAX_BYTES
+	               ? NULL
+	               : "expected letters, digits, '-', '_' and '.', at most 63";
+}
+
+/* Names with slashes between them. */
+static const char *check_topic(const char *topic)
+{
+	size_t len = strlen(topic);
+
+	return strspn(topic, LETTERS "/") == len && len <= NAME_MAX_BYTES && topic[0] != '/' &&
+	                       topic[len - 1] != '/' && !strstr(topic, "//")
+	               ? NULL
+	               : "expected letters, digits, '-', '_', '.' and '/' between them, at most 63";
+}
+
+static const char *check_profile(const char *profile)
+{
+	return !strcmp(profile, "homeassistant") || !strcmp(profile, "plain")
+	               ? NULL
+	               : "expected homeassistant or plain";
+}
+
+static const char *check_protocol(const char *protocol)
+{
+	return !strcmp(protocol, "5") || !strcmp(protocol, "3.1.1") ? NULL : "expected 5 or 3.1.1";
+}
+
+static const char *check_user(const char *user)
+{
+	return strlen(user) <= TEXT_MAX ? NULL : "expected at most 255 bytes";
+}
+
+/* The text of a key that is given and not empty, checked; else what comes last. */
+static const char *take(struct build *build, const struct option_value *values, enum option option,
+                        const char *(*check)(const char *), const char *otherwise)
+{
+	const struct option_value *value = &values[option];
+	const char *why;
+
+	if (!value->given || !*value->text)
+		return otherwise;
+	why = check(value->text);
+	if (why)
+		report_error(build->report, value->node->value_at, "%s \"%s\": %s",
+		             option_table[option].key, value->text, why);
+	return build_keep(build, value->text, strlen(value->text));
+}
+
+/* ":8883", or nothing. */
+static bool take_port(const char *text, size_t len, uint16_t *port)
+{
+	unsigned long number;
+	char *end;
+
+	if (!len)
+		return true;
+	if (text[0] != ':' || len < 2 || len > 6 || text[1] < '0' || text[1] > '9')
+		return false;
+	number = strtoul(text + 1, &end, 10);
+	*port = (uint16_t)number;
+	return end == text + len && number > 0 && number <= UINT16_MAX;
+}
+
+static const char *take_way(struct build *build, const char *text, size_t len,
+                            struct config_mqtt_way *way)
+{
+	static const char wrong[] = "expected mqtt://HOST:PORT or mqtts://HOST:PORT";
+	size_t scheme = len > 7 && !strncmp(text, "mqtt://", 7)    ? 7
+	                : len > 8 && !strncmp(text, "mqtts://", 8) ? 8
+	                                                           : 0;
+	bool bracket = scheme && text[scheme] == '[';
+	const char *host = text + scheme + bracket;
+	size_t host_len = strcspn(host, bracket ? "]" : ":/| \t@?#"), after;
+
+	if (scheme && memchr(text, '@', len))
+		return "no password stands in it: User and PasswordFile are keys of their own";
+	after = scheme + host_len + 2u * bracket;
+	if (!scheme || !host_len || after > len ||
+	    strspn(host, bracket ? "0123456789abcdefABCDEF:.%" : LETTERS) < host_len)
+		return wrong;
+	way->tls = scheme == 8;
+	way->port = way->tls ? PORT_TLS : PORT;
+	if (!take_port(text + after, len - after, &way->port))
+		return wrong;
+	way->host = build_keep(build, host, host_len);
+	return NULL;
+}
+
+static void take_ways(struct build *build, const struct rio_node *node, struct config_mqtt *mqtt)
+{
+	const char *text = mqtt->broker;
+
+	for (bool more = true; more;) {
+		size_t len = strcspn(text, "|"), skip;
+		const char *next = text + len, *why = NULL;
+
+		more = *next == '|';
+		skip = strspn(text, BLANK);
+		text += skip < len ? skip : len;
+		len = (size_t)(next - text);
+		while (len && strchr(BLANK, text[len - 1]))
+			len--;
+		if (mqtt->way_count == CONFIG_MQTT_WAYS)
+			why = "more than 8 ways";
+		else
+			why = take_way(build, text, len, &mqtt->ways[mqtt->way_count]);
+		/* there may be a password in it */
+		if (why && memchr(text, '@', len))
+			report_error(build->report, node->value_at, "Broker: %s", why);
+		else if (why)
+			report_error(build->report, node->value_at, "Broker \"%.*s\": %s", (int)len,
+			             text, why);
+		if (why)
+			return;
+		mqtt->way_count++;
+		text = next + more;
+	}
+}
+
+static bool is_local(const char *host)
+{
+	return !strcmp(host, "localhost") || !strncmp(host, "127.", 4) || !strcmp(host, "::1");
+}
+
+/* Keys that need each other. */
+static void check_together(struct build *build, const struct rio_node *block,
+                           const struct config_mqtt *mqtt)
+{
+	bool tls = false;
+
+	for (unsigned i = 0; i < mqtt->way_count; i++)
+		tls = tls || mqtt->ways[i].tls;
+	if (mqtt->password_file && !mqtt->user)
+		report_error(build->report, block->at, "PasswordFile without User");
+	if (!mqtt->cert_file != !mqtt->key_file)
+		report_error(build->report, block->at, "%s: CertFile and KeyFile belong together",
+		             mqtt->cert_file ? "CertFile without KeyFile"
+		                             : "KeyFile without CertFile");
+	if ((mqtt->ca_file || mqtt->cert_file) && !tls && mqtt->way_count)
+		report_warning(build->report, block->at,
+		               "no way of Broker is mqtts://: the certificates are not used");
+	for (unsigned i = 0; mqtt->password_file && i < mqtt->way_count; i++)
+		if (!mqtt->ways[i].tls && !is_local(mqtt->ways[i].host))
+			report_warning(build->report, block->at,
+			               "the password goes to %s in the clear: mqtts:// hides it",
+			               mqtt->ways[i].host);
+}
+
+void mqtt_build(struct build *build, const struct rio_node *block)
+{
+	static const struct rio_node none;
+	struct config_mqtt *mqtt = &build->box->config.mqtt;
+	struct option_value values[OPTION_COUNT_ALL];
+	const struct rio_node *broker;
+
+	options_read(block ? block : &none, PLACE_MQTT, values, build->report);
+	mqtt->given = block != NULL;
+	broker = values[OPT_MQTT_BROKER].node ? values[OPT_MQTT_BROKER].node : block;
+	mqtt->broker = take(build, values, OPT_MQTT_BROKER, check_user,
+	                    option_table[OPT_MQTT_BROKER].preset);
+	take_ways(build, broker, mqtt);
+	mqtt->user = take(build, values, OPT_MQTT_USER, check_user, NULL);
+	mqtt->password_file = take(build, values, OPT_MQTT_PASSWORD_FILE, check_file, NULL);
+	mqtt->ca_file = take(build, values, OPT_MQTT_CA_FILE, check_file, NULL);
+	mqtt->cert_file = take(build, values, OPT_MQTT_CERT_FILE, check_file, NULL);
+	mqtt->key_file = take(build, values, OPT_MQTT_KEY_FILE, check_file, NULL);
+	mqtt->mqtt5 = !strcmp(take(build, values, OPT_MQTT_PROTOCOL, check_protocol,
+	                           option_table[OPT_MQTT_PROTOCOL].preset),
+	                      "5");
+	mqtt->node = take(build, values, OPT_MQTT_NODE, check_name, NULL);
+	mqtt->topic = take(build, values, OPT_MQTT_TOPIC, check_topic,
+	                   option_table[OPT_MQTT_TOPIC].preset);
+	mqtt->profile = take(build, values, OPT_MQTT_PROFILE, check_profile,
+	                     option_table[OPT_MQTT_PROFILE].preset);
+	mqtt->discovery = take(build, values, OPT_MQTT_DISCOVERY, check_topic,
+	                       option_table[OPT_MQTT_DISCOVERY].preset);
+	mqtt->write = values[OPT_MQTT_WRITE].number != 0;
+	if (block)
+		check_together(build, block, mqtt);
+}

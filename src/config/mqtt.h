@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: MIT */
+/* The Mqtt block, of which owsd-mqtt takes its options. owsd checks it, and does not use it. */
+#ifndef CONFIG_MQTT_H
+#define CONFIG_MQTT_H
+
+struct build;
+struct rio_node;
+
+/* The block, or the defaults if it is NULL. */
+void mqtt_build(struct build *build, const struct rio_node *block);
+
+#endif

@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: MIT */
+/* Finds and reads secrets, and refuses those that others may have read. */
+#include <errno.h>
+#include <fcntl.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "src/face/secret.h"
+
+#define BLANK " \t\r\n"
+
+static int refuse(int err, const char *path, const char *reason, char *why, size_t size)
+{
+	snprintf(why, size, "%s: %s", path, reason);
+	return err;
+}
+
+/* Cut what stands around the token, and look at its letters. */
+static bool trim(char *text)
+{
+	size_t begin = strspn(text, BLANK), len = strcspn(text + begin, BLANK);
+
+	memmove(text, text + begin, len);
+	if (!len || text[begin + len + strspn(text + begin + len, BLANK)])
+		return false;
+	text[len] = '\0';
+	for (const char *c = text; *c; c++)
+		if (*c < ' ' || *c == 127)
+			return false;
+	return true;
+}
+
+/* What it names: a path, or a credential, which the service manager keeps from others. */
+static int locate(const char *name, char path[SECRET_PATH], char *why, size_t size)
+{
+	const char *directory = getenv("CREDENTIALS_DIRECTORY");
+	bool credential = name[0] != '/';
+
+	if (credential && !directory)
+		return refuse(-ENOENT, name,
+		              "the service has no credentials: LoadCredential= in its unit", why,
+		              size);
+	if (snprintf(path, SECRET_PATH, "%s%s%s", credential ? directory : "",
+	             credential ? "/" : "", name) >= SECRET_PATH)
+		return refuse(-ENAMETOOLONG, name, strerror(ENAMETOOLONG), why, size);
+	return 0;
+}
+
+/* Open it, if it is a file that nobody else may read. Returns a descriptor. */
+static int open_own(const char *name, char path[SECRET_PATH], char *why, size_t size)
+{
+	int err = locate(name, path, why, size), fd;
+	struct stat st;
+
+	if (err)
+		return err;
+	fd = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
+	if (fd < 0) {
+		err = -errno;
+		return refuse(err, path, strerror(-err), why, size);
+	}
+	if (fstat(fd, &st) < 0 || !S_ISREG(st.st_mode))
+		err = refuse(-EINVAL, path, "is no file", why, size);
+	else if (name[0] == '/' && (st.st_mode & 077))
+		err = refuse(-EPERM, path, "others may read it: chmod 600", why, size);
+	if (err)
+		close(fd);
+	return err ? err : fd;
+}
+
+int secret_file(const char *name, bool own, char path[SECRET_PATH], char *why, size_t size)
+{
+	int fd, err;
+
+	if (own) {
+		fd = open_own(name, path, why, size);
+		if (fd >= 0)
+			close(fd);
+		return fd < 0 ? fd : 0;
+	}
+	err = locate(name, path, why, size);
+	if (!err && access(path, R_OK)) {
+		err = -errno;
+		refuse(err, path, strerror(-err), why, size);
+	}
+	return err;
+}
+
+int secret_read(const char *name, char token[SECRET_SIZE], char *why, size_t size)
+{
+	char path[SECRET_PATH];
+	ssize_t n;
+	int fd;
+
+	token[0] = '\0';
+	if (!name)
+		return 0;
+	fd = open_own(name, path, why, size);
+	if (fd < 0)
+		return fd;
+	n = read(fd, token, SECRET_SIZE - 1);
+	close(fd);
+	token[n > 0 ? n : 0] = '\0';
+	if (n < 0)
+		return refuse(-errno, path, strerror(errno), why, size);
+	if (n == SECRET_SIZE - 1 || !trim(token)) {
+		token[0] = '\0';
+		return refuse(-EINVAL, path, "expected one token in one line", why, size);
+	}
+	return 0;
+}

@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: MIT */
+/* A token, password or key of a face, which stands in a file of its own. */
+#ifndef FACE_SECRET_H
+#define FACE_SECRET_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#define SECRET_SIZE 1024
+#define SECRET_PATH 512
+
+/*
+ * Read the file: a path, or the name of a credential that systemd has put into
+ * CREDENTIALS_DIRECTORY; NULL: none, token is "". Blanks and line ends around the token are left
+ * out. Returns 0, or a negative errno, with the reason in why: others may read the file; it is no
+ * file; it is empty, or longer than a token. Blocking.
+ */
+int secret_read(const char *name, char token[SECRET_SIZE], char *why, size_t size);
+/*
+ * The path of such a file, for a library that reads it itself. own: nobody else may read it. Errors
+ * as secret_read().
+ */
+int secret_file(const char *name, bool own, char path[SECRET_PATH], char *why, size_t size);
+
+#endif

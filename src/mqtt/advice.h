@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: MIT */
+/* Why a broker is lost, in words, and what a person can do about it. Pure functions. */
+#ifndef MQTT_ADVICE_H
+#define MQTT_ADVICE_H
+
+#include <stdbool.h>
+
+/* The broker does not speak this version of MQTT. */
+#define ADVICE_PROTOCOL 0x84
+
+/* The code of a CONNACK; old: of MQTT 3.1.1; as one of MQTT 5. */
+int advice_connack(int code, bool old);
+/*
+ * code: a reason of MQTT 5 from 128 on, else an error of libmosquitto; err: errno beside it; tls:
+ * what the TLS library said.
+ */
+const char *advice_words(int code, int err, const char *tls);
+/* "" if nothing helps but waiting. */
+const char *advice_remedy(int code, int err);
+/* The part of a line of libmosquitto's log that a person can read. */
+const char *advice_tls(const char *line);
+
+#endif

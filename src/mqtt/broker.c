@@ -1,0 +1,527 @@
+/* SPDX-License-Identifier: MIT */
+/* A client of libmosquitto for each attempt: made, driven, ended; and what its callbacks note. */
+#include <arpa/inet.h>
+#include <errno.h>
+#include <mosquitto.h>
+#include <mqtt_protocol.h>
+#include <poll.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/random.h>
+#include <sys/socket.h>
+
+#include "hal/bus/time.h"
+#include "src/face/loop.h"
+#include "src/face/secret.h"
+#include "src/mqtt/advice.h"
+#include "src/mqtt/broker.h"
+#include "src/mqtt/stream.h"
+#include "src/signal/utf8.h"
+
+#define KEEPALIVE_S 30
+#define ANSWER_NS (15 * NS_PER_S) /* for TCP, TLS and CONNACK together */
+#define STEP_NS (2 * NS_PER_S)
+#define STEP_MOST_NS (60 * NS_PER_S)
+#define TEND_NS (5 * NS_PER_S)
+#define IN_FLIGHT_MOST 100
+#define READS 64 /* packets at a time */
+#define END_NS (2 * NS_PER_S)
+#define CA_PATH "/etc/ssl/certs"
+
+const char *broker_name(const struct broker *b, char text[BROKER_WORDS + 64])
+{
+	const struct mqtt_way *way = &b->options->ways[b->way];
+	bool v6 = strchr(way->host, ':');
+
+	snprintf(text, BROKER_WORDS + 64, "mqtt%s://%s%s%s:%u", way->tls ? "s" : "", v6 ? "[" : "",
+	         way->host, v6 ? "]" : "", (unsigned)way->port);
+	return text;
+}
+
+/* --- Callbacks ------------------------------------------------------------------------------- */
+
+static void on_connect(struct mosquitto *client, void *ctx, int code, int flags,
+                       const mosquitto_property *properties)
+{
+	struct broker *b = ctx;
+
+	(void)client;
+	(void)flags;
+	(void)properties;
+	if (code) {
+		b->ended = true;
+		b->end_code = advice_connack(code, !b->options->mqtt5 || b->old_protocol);
+		return;
+	}
+	b->state = BROKER_CONNECTED;
+}
+
+static void on_disconnect(struct mosquitto *client, void *ctx, int code,
+                          const mosquitto_property *properties)
+{
+	struct broker *b = ctx;
+
+	(void)client;
+	(void)properties;
+	if (!b->ended)
+		b->end_code = code;
+	b->ended = true;
+}
+
+static void on_publish(struct mosquitto *client, void *ctx, int mid, int reason,
+                       const mosquitto_property *properties)
+{
+	struct broker *b = ctx;
+	char name[BROKER_WORDS + 64];
+
+	(void)client;
+	(void)mid;
+	(void)properties;
+	b->in_flight -= b->in_flight > 0;
+	if (reason < 128) {
+		b->acknowledged++;
+		return;
+	}
+	b->refusals++;
+	if (!b->refused_said)
+		log_err(b->face->log,
+		        "%.100s refuses what is published: %s; its access list has to let us write "
+		        "%.60s/# and the topics of discovery",
+		        broker_name(b, name), mosquitto_reason_string(reason), b->options->prefix);
+	b->refused_said = true;
+}
+
+static void on_subscribe(struct mosquitto *client, void *ctx, int mid, int count,
+                         const int *granted, const mosquitto_property *properties)
+{
+	struct broker *b = ctx;
+	char name[BROKER_WORDS + 64];
+
+	(void)client;
+	(void)mid;
+	(void)properties;
+	if (!count || granted[0] < 128)
+		return;
+	b->refusals++;
+	log_err(b->face->log,
+	        "%.100s refuses a subscription: no commands come; its access list has to let us "
+	        "read %.60s/+/set",
+	        broker_name(b, name), b->options->prefix);
+}
+
+/* The user property "person" of MQTT 5, if it can stand in a journal: a claim. */
+static void take_person(const mosquitto_property *properties, char person[BROKER_PERSON])
+{
+	const mosquitto_property *at;
+	char *name, *value;
+
+	at = mosquitto_property_read_string_pair(properties, MQTT_PROP_USER_PROPERTY, &name, &value,
+	                                         false);
+	while (at) {
+		const char *text = value;
+		size_t len = strlen(value);
+		bool fits = !strcmp(name, "person") && len && len < BROKER_PERSON;
+
+		while (fits && len) {
+			int32_t c = utf8_next(&text, &len);
+
+			fits = c > ' ' && !utf8_disturbs(c);
+		}
+		if (fits)
+			snprintf(person, BROKER_PERSON, "%s", value);
+		free(name);
+		free(value);
+		at = mosquitto_property_read_string_pair(at, MQTT_PROP_USER_PROPERTY, &name, &value,
+		                                         true);
+	}
+}
+
+static void on_message(struct mosquitto *client, void *ctx, const struct mosquitto_message *got,
+                       const mosquitto_property *properties)
+{
+	struct broker *b = ctx;
+	struct broker_message message = {
+		.topic = got->topic,
+		/* libmosquitto puts a NUL behind it */
+		.text = got->payload ? got->payload : "",
+		.len = got->payloadlen > 0 ? (size_t)got->payloadlen : 0,
+		.retained = got->retain,
+	};
+
+	(void)client;
+	take_person(properties, message.person);
+	b->ops->message(b->ctx, &message);
+}
+
+static void on_log(struct mosquitto *client, void *ctx, int level, const char *text)
+{
+	struct broker *b = ctx;
+
+	(void)client;
+	if (level == MOSQ_LOG_ERR && !*b->tls_words)
+		snprintf(b->tls_words, sizeof(b->tls_words), "%s", advice_tls(text));
+	log_at(b->face->log, LOG_LEVEL_TRACE, "libmosquitto: %s", text);
+}
+
+static void forget_trouble(struct broker *b)
+{
+	b->trouble[0] = '\0';
+	memset(b->said, 0, sizeof(b->said));
+}
+
+/* --- An attempt ------------------------------------------------------------------------------ */
+
+static void watch(struct broker *b)
+{
+	int fd = b->client ? mosquitto_socket(b->client) : -1;
+	short events = POLLIN;
+
+	if (b->fd >= 0)
+		face_ignore(b->face, b->fd);
+	b->fd = fd;
+	if (fd < 0)
+		return;
+	/* until TCP has connected libmosquitto does not ask for it with TLS */
+	if (!b->tcp || mosquitto_want_write(b->client))
+		events |= POLLOUT;
+	if (face_watch(b->face, fd, events))
+		b->fd = -1;
+}
+
+static void drop(struct broker *b)
+{
+	if (b->fd >= 0)
+		face_ignore(b->face, b->fd);
+	b->fd = -1;
+	if (b->client)
+		mosquitto_destroy(b->client);
+	b->client = NULL;
+	b->in_flight = 0;
+}
+
+/* A random part of the step: a thousand clients of a broker that restarts do not come together. */
+static int64_t pause_of(int64_t step_ns)
+{
+	uint64_t random = 0;
+
+	if (getrandom(&random, sizeof(random), GRND_NONBLOCK) < 0)
+		random = (uint64_t)ows_now();
+	return step_ns / 8 + (int64_t)(random % (uint64_t)step_ns);
+}
+
+/*
+ * The next attempt: of the same way by IPv4 alone, which returns true; of the next way; or of the
+ * first after a pause.
+ */
+static bool choose(struct broker *b, bool was_connected, int64_t now_ns)
+{
+	const struct mqtt_way *way = &b->options->ways[b->way];
+	struct in_addr v4;
+
+	b->next_ns = now_ns;
+	b->state = BROKER_WAITING;
+	if (!was_connected && !b->tcp && !b->v4 && !strchr(way->host, ':') &&
+	    inet_pton(AF_INET, way->host, &v4) != 1) {
+		b->v4 = true;
+		return true;
+	}
+	b->v4 = false;
+	b->way++;
+	if (!was_connected && b->way < b->options->way_count)
+		return false;
+	b->way = 0;
+	b->next_ns = now_ns + pause_of(b->step_ns);
+	b->step_ns = 2 * b->step_ns < STEP_MOST_NS ? 2 * b->step_ns : STEP_MOST_NS;
+	return false;
+}
+
+/* For each way it is logged once, and once more when the reason is another. */
+static void fail(struct broker *b, const char *why, const char *remedy, int64_t now_ns)
+{
+	bool was_connected = b->state == BROKER_CONNECTED;
+	char name[BROKER_WORDS + 64], words[BROKER_WORDS];
+	unsigned way = b->way;
+	uint64_t print;
+
+	snprintf(words, sizeof(words), "%.80s %s: %.90s%s%.60s", broker_name(b, name),
+	         was_connected ? "is lost" : "cannot be reached", why, *remedy ? "; " : "", remedy);
+	drop(b);
+	if (choose(b, was_connected, now_ns))
+		return;
+	b->failures++;
+	print = stream_hash(words, strlen(words), 0);
+	if (print != b->said[way])
+		log_warning(b->face->log, "%s", words);
+	b->said[way] = print;
+	memcpy(b->trouble, words, sizeof(words));
+}
+
+static bool set_password(struct broker *b, char *why, size_t size)
+{
+	char password[SECRET_SIZE];
+	int err;
+
+	if (!*b->options->user)
+		return true;
+	if (secret_read(*b->options->password_file ? b->options->password_file : NULL, password,
+	                why, size))
+		return false;
+	err = mosquitto_username_pw_set(b->client, b->options->user, *password ? password : NULL);
+	explicit_bzero(password, sizeof(password));
+	snprintf(why, size, "%s", mosquitto_strerror(err));
+	return !err;
+}
+
+static bool set_tls(struct broker *b, char *why, size_t size)
+{
+	const struct mqtt_options *o = b->options;
+	char ca[SECRET_PATH], cert[SECRET_PATH], key[SECRET_PATH];
+	int err;
+
+	if (!o->ways[b->way].tls)
+		return true;
+	if ((*o->ca_file && secret_file(o->ca_file, false, ca, why, size)) ||
+	    (*o->cert_file && secret_file(o->cert_file, false, cert, why, size)) ||
+	    (*o->key_file && secret_file(o->key_file, true, key, why, size)))
+		return false;
+	err = mosquitto_tls_set(b->client, *o->ca_file ? ca : NULL, *o->ca_file ? NULL : CA_PATH,
+	                        *o->cert_file ? cert : NULL, *o->key_file ? key : NULL, NULL);
+	snprintf(why, size, "TLS: %s", mosquitto_strerror(err));
+	return !err;
+}
+
+static bool make_client(struct broker *b, char *why, size_t size)
+{
+	bool mqtt5 = b->options->mqtt5 && !b->old_protocol;
+	char id[160], topic[OPTION_SIZE];
+	const char *will = b->ops->will(b->ctx, topic);
+
+	snprintf(id, sizeof(id), "owsd-%s", b->options->node);
+	b->client = mosquitto_new(id, true, b);
+	if (!b->client) {
+		snprintf(why, size, "no memory");
+		return false;
+	}
+	mosquitto_connect_v5_callback_set(b->client, on_connect);
+	mosquitto_disconnect_v5_callback_set(b->client, on_disconnect);
+	mosquitto_publish_v5_callback_set(b->client, on_publish);
+	mosquitto_subscribe_v5_callback_set(b->client, on_subscribe);
+	mosquitto_message_v5_callback_set(b->client, on_message);
+	mosquitto_log_callback_set(b->client, on_log);
+	mosquitto_int_option(b->client, MOSQ_OPT_PROTOCOL_VERSION,
+	                     mqtt5 ? MQTT_PROTOCOL_V5 : MQTT_PROTOCOL_V311);
+	mosquitto_int_option(b->client, MOSQ_OPT_TCP_NODELAY, 1);
+	mosquitto_will_set(b->client, topic, (int)strlen(will), will, 1, true);
+	return set_password(b, why, size) && set_tls(b, why, size);
+}
+
+static void attempt(struct broker *b, int64_t now_ns)
+{
+	const struct mqtt_way *way = &b->options->ways[b->way];
+	char why[SECRET_PATH + 128];
+	int err;
+
+	b->state = BROKER_CONNECTING;
+	b->ended = b->tcp = false;
+	b->tls_words[0] = '\0';
+	b->begun_ns = now_ns;
+	if (!make_client(b, why, sizeof(why))) {
+		b->tcp = true; /* no other address helps */
+		fail(b, why, "", now_ns);
+		return;
+	}
+	errno = 0;
+	err = mosquitto_connect_bind_async(b->client, way->host, way->port, KEEPALIVE_S,
+	                                   b->v4 ? "0.0.0.0" : NULL);
+	if (err) {
+		const char *words = advice_words(err, errno, b->tls_words);
+
+		fail(b, words, advice_remedy(err, errno), ows_now());
+		return;
+	}
+	watch(b);
+}
+
+/* It is over, or libmosquitto says so. */
+static void finish(struct broker *b, int code, int err, int64_t now_ns)
+{
+	if (b->ended)
+		code = b->end_code;
+	if (code == ADVICE_PROTOCOL && b->options->mqtt5 && !b->old_protocol) {
+		log_notice(b->face->log, "the broker has no MQTT 5: going on with 3.1.1");
+		b->old_protocol = true;
+		drop(b);
+		b->state = BROKER_WAITING;
+		b->next_ns = now_ns;
+		return;
+	}
+	fail(b, advice_words(code, err, b->tls_words), advice_remedy(code, err), now_ns);
+}
+
+static void connected(struct broker *b, int64_t now_ns)
+{
+	char name[BROKER_WORDS + 64];
+
+	b->begun_ns = now_ns;
+	b->connects++;
+	b->refused_said = false;
+	forget_trouble(b);
+	log_notice(b->face->log, "connected to %.100s by MQTT %s", broker_name(b, name),
+	           b->options->mqtt5 && !b->old_protocol ? "5" : "3.1.1");
+	b->ops->connected(b->ctx);
+}
+
+/* --- Its work -------------------------------------------------------------------------------- */
+
+static int read_all(struct broker *b)
+{
+	int code = 0;
+
+	b->drained = false;
+	for (int i = 0; !code && !b->ended && !b->drained && i < READS; i++) {
+		/* a TLS library may hold more than the socket shows */
+		errno = 0;
+		code = mosquitto_loop_read(b->client, 1);
+		b->drained = errno == EAGAIN;
+	}
+	return code;
+}
+
+static void work(struct broker *b, short ready, int64_t now_ns)
+{
+	bool was_connected = b->state == BROKER_CONNECTED;
+	int code = 0, err = 0;
+	socklen_t size = sizeof(err);
+
+	if (!b->tcp && (ready & (POLLERR | POLLHUP))) {
+		getsockopt(b->fd, SOL_SOCKET, SO_ERROR, &err, &size);
+		finish(b, MOSQ_ERR_ERRNO, err ? err : ECONNREFUSED, now_ns);
+		return;
+	}
+	if (ready & POLLOUT)
+		b->tcp = true;
+	if (mosquitto_want_write(b->client) || (ready & POLLOUT))
+		code = mosquitto_loop_write(b->client, 1);
+	if (!code && b->tcp)
+		code = read_all(b);
+	if (!code)
+		code = mosquitto_loop_misc(b->client);
+	err = errno;
+	if (!code && !b->ended && !was_connected && b->state == BROKER_CONNECTED)
+		connected(b, now_ns);
+	if (b->state == BROKER_CONNECTED && now_ns - b->begun_ns > STEP_MOST_NS)
+		b->step_ns = STEP_NS;
+	if (code || b->ended)
+		finish(b, code, err, now_ns);
+	else if (b->state == BROKER_CONNECTING && now_ns - b->begun_ns > ANSWER_NS)
+		finish(b, MOSQ_ERR_ERRNO, ETIMEDOUT, now_ns);
+	else
+		watch(b);
+}
+
+bool broker_ready(struct broker *b, int fd, short ready, int64_t now_ns)
+{
+	if (fd != b->fd || fd < 0)
+		return false;
+	work(b, ready, now_ns);
+	return true;
+}
+
+void broker_tick(struct broker *b, int64_t now_ns)
+{
+	if (b->state == BROKER_WAITING && now_ns >= b->next_ns)
+		attempt(b, now_ns);
+	else if (b->client)
+		work(b, 0, now_ns);
+}
+
+int64_t broker_next(const struct broker *b, int64_t now_ns)
+{
+	switch (b->state) {
+	case BROKER_OFF:
+		return INT64_MAX;
+	case BROKER_WAITING:
+		return b->next_ns;
+	case BROKER_CONNECTING:
+		return b->begun_ns + ANSWER_NS + 1 > now_ns + NS_PER_S
+		               ? now_ns + NS_PER_S
+		               : b->begun_ns + ANSWER_NS + 1;
+	case BROKER_CONNECTED:
+		return b->drained ? now_ns + TEND_NS : now_ns;
+	}
+	return INT64_MAX;
+}
+
+void broker_begin(struct broker *b, int64_t now_ns)
+{
+	b->client = NULL;
+	b->fd = -1;
+	b->way = 0;
+	b->v4 = b->old_protocol = false;
+	b->step_ns = STEP_NS;
+	b->next_ns = now_ns;
+	b->state = BROKER_WAITING;
+	forget_trouble(b);
+	b->drained = true;
+}
+
+void broker_hurry(struct broker *b, int64_t now_ns)
+{
+	if (b->state != BROKER_WAITING)
+		return;
+	b->next_ns = now_ns;
+	b->step_ns = STEP_NS;
+	forget_trouble(b);
+}
+
+void broker_end(struct broker *b)
+{
+	int64_t until_ns = ows_now() + END_NS;
+
+	if (b->state == BROKER_CONNECTED && !b->ended) {
+		while (b->in_flight && !b->ended && ows_now() < until_ns)
+			if (mosquitto_loop(b->client, 50, 1))
+				break;
+		if (!b->ended)
+			mosquitto_disconnect(b->client);
+		/* it ends the connection when the goodbye is out */
+		while (!b->ended && ows_now() < until_ns)
+			if (mosquitto_loop(b->client, 50, 1))
+				break;
+	}
+	drop(b);
+	b->state = BROKER_OFF;
+}
+
+bool broker_put(void *ctx, const char *topic, const char *text, size_t len, bool retain)
+{
+	struct broker *b = ctx;
+	int err;
+
+	if (b->state != BROKER_CONNECTED || b->ended || b->in_flight >= IN_FLIGHT_MOST)
+		return false;
+	err = mosquitto_publish_v5(b->client, NULL, topic, (int)len, text, 1, retain, NULL);
+	if (!err) {
+		b->in_flight++;
+		return true;
+	}
+	if (err == MOSQ_ERR_NO_CONN || err == MOSQ_ERR_CONN_LOST || err == MOSQ_ERR_NOMEM)
+		return false;
+	/* it would never be taken, and must not stand in the way of the others */
+	b->refusals++;
+	if (!b->refused_said)
+		log_err(b->face->log, "%.150s cannot be published: %s", topic,
+		        mosquitto_strerror(err));
+	b->refused_said = true;
+	return true;
+}
+
+void broker_subscribe(struct broker *b, const char *topic)
+{
+	bool mqtt5 = b->options->mqtt5 && !b->old_protocol;
+
+	if (b->client)
+		mosquitto_subscribe_v5(b->client, NULL, topic, 1,
+		                       mqtt5 ? MQTT_SUB_OPT_RETAIN_AS_PUBLISHED : 0, NULL);
+}

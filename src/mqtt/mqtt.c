@@ -1,0 +1,276 @@
+/* SPDX-License-Identifier: MIT */
+/* What owsd-mqtt does with the news of owsd and of the broker, at its ticks and at its end. */
+#include "src/mqtt/mqtt.h"
+
+#include <errno.h>
+#include <mosquitto.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "hal/bus/time.h"
+#include "src/face/look.h"
+#include "src/face/loop.h"
+
+/* Of changes of a signal that come closer together the newest is published */
+#define PACE_NS (50 * NS_PER_MS)
+/* A clock that nobody sets is believed so long after the boot */
+#define CLOCK_WAIT_NS (600 * NS_PER_S)
+
+static const struct profile *const profiles[] = {&profile_homeassistant, &profile_plain};
+
+static struct mqtt *own(struct face *face)
+{
+	return face->own;
+}
+
+/* --- What the broker asks -------------------------------------------------------------------- */
+
+static void on_connected(void *ctx)
+{
+	struct mqtt *m = ctx;
+	char topic[TOPIC_SIZE];
+
+	m->stream.profile->listen(&m->stream, topic);
+	if (*topic)
+		broker_subscribe(&m->broker, topic);
+	stream_begin(&m->stream);
+}
+
+static void on_message(void *ctx, const struct broker_message *message)
+{
+	struct mqtt *m = ctx;
+
+	if (m->stream.profile->heard(&m->stream, message->topic, message->text, message->len))
+		stream_announce(&m->stream);
+}
+
+/* The profile's state "offline", caught on its way. */
+struct caught {
+	char *topic;
+	char text[32];
+};
+
+static bool catch (void *ctx, const char *topic, const char *text, size_t len, bool retain)
+{
+	struct caught *caught = ctx;
+
+	(void)retain;
+	snprintf(caught->topic, OPTION_SIZE, "%s", topic);
+	snprintf(caught->text, sizeof(caught->text), "%.*s", (int)len, text);
+	return true;
+}
+
+static const char *will(void *ctx, char topic[OPTION_SIZE])
+{
+	struct mqtt *m = ctx;
+	static struct caught caught;
+	struct outlet outlet = m->stream.outlet;
+
+	caught.topic = topic;
+	m->stream.outlet = (struct outlet){.put = catch, .ctx = &caught};
+	m->stream.profile->state(&m->stream, false);
+	m->stream.outlet = outlet;
+	return caught.text;
+}
+
+static const struct broker_ops broker_ops = {
+	.connected = on_connected,
+	.message = on_message,
+	.will = will,
+};
+
+/* --- Beginning and end of what the file says ------------------------------------------------- */
+
+static void begin(struct face *face, int64_t now_ns)
+{
+	struct mqtt *m = own(face);
+
+	m->stream.profile = profiles[0];
+	for (size_t i = 0; i < sizeof(profiles) / sizeof(profiles[0]); i++)
+		if (!strcmp(profiles[i]->name, m->options.profile))
+			m->stream.profile = profiles[i];
+	m->stream.prefix = m->options.prefix;
+	m->stream.node = m->options.node;
+	m->stream.discovery = m->options.discovery;
+	m->stream.write = m->options.write;
+	m->stream.outlet = (struct outlet){.put = broker_put, .ctx = &m->broker};
+	m->broker.face = face;
+	m->broker.options = &m->options;
+	m->broker.ops = &broker_ops;
+	m->broker.ctx = m;
+	broker_begin(&m->broker, now_ns);
+}
+
+static void end(struct face *face)
+{
+	struct mqtt *m = own(face);
+
+	if (m->broker.state == BROKER_CONNECTED)
+		m->stream.profile->state(&m->stream, false);
+	broker_end(&m->broker);
+}
+
+static void make_rows(struct face *face)
+{
+	struct mqtt *m = own(face);
+
+	if (stream_make(&m->stream, face->ows, face->arguments->instance))
+		log_err(face->log, "nothing is published: no memory for %d signals",
+		        ows_count(face->ows));
+}
+
+/* The file may say something else than before. */
+static void renew(struct face *face, int64_t now_ns)
+{
+	struct mqtt *m = own(face);
+	struct mqtt_options options;
+
+	mqtt_options_take(&options, face);
+	if (memcmp(&options, &m->options, sizeof(options)) != 0) {
+		end(face);
+		m->options = options;
+		begin(face, now_ns);
+	} else {
+		broker_hurry(&m->broker, now_ns);
+	}
+	if (face->live)
+		make_rows(face);
+}
+
+/* Publish what waits. Between two images no row can be looked at. */
+static void pump(struct face *face)
+{
+	struct mqtt *m = own(face);
+
+	if (m->broker.state == BROKER_CONNECTED && (!face->live || look_is_current(face)))
+		stream_pump(&m->stream);
+}
+
+static void look_at_clock(struct face *face, int64_t now_ns)
+{
+	struct mqtt *m = own(face);
+
+	wall_clock_look(&m->clock, now_ns);
+	m->stream.clock_set = m->clock.trusted || now_ns >= CLOCK_WAIT_NS;
+}
+
+static void show_status(struct face *face)
+{
+	struct mqtt *m = own(face);
+	char name[BROKER_WORDS + 64];
+	const struct broker *b = &m->broker;
+
+	face_status(face, "%s%.150s; %llu published, %llu refused, %llu times connected",
+	            b->state == BROKER_CONNECTED
+	                    ? face->live ? "publishing to " : "waiting for owsd, at "
+	            : *b->trouble ? ""
+	                          : "connecting to ",
+	            *b->trouble ? b->trouble : broker_name(b, name),
+	            (unsigned long long)b->acknowledged, (unsigned long long)b->refusals,
+	            (unsigned long long)b->connects);
+}
+
+static void go_on(struct face *face, int64_t now_ns)
+{
+	struct mqtt *m = own(face);
+
+	pump(face);
+	face->tick_ns = broker_next(&m->broker, now_ns);
+}
+
+/* --- The face -------------------------------------------------------------------------------- */
+
+int mqtt_open(struct face *face)
+{
+	struct mqtt *m = own(face);
+	int64_t now_ns = ows_now();
+
+	signal(SIGPIPE, SIG_IGN);
+	/* nothing else bounds how long the look-up of a name may take */
+	setenv("RES_OPTIONS", "timeout:2 attempts:1", 0);
+	m->broker.fd = -1;
+	if (stream_open(&m->stream) || mosquitto_lib_init()) {
+		face_complain(face->ops->program, "libmosquitto cannot be used: no memory");
+		return -ENOMEM;
+	}
+	wall_clock_open(&m->clock);
+	if (m->clock.fd >= 0)
+		face_watch(face, m->clock.fd, POLLIN);
+	look_at_clock(face, now_ns);
+	face->pace_ns = PACE_NS;
+	face->tick_ns = now_ns;
+	mqtt_options_take(&m->options, face);
+	begin(face, now_ns);
+	return 0;
+}
+
+void mqtt_close(struct face *face)
+{
+	struct mqtt *m = own(face);
+
+	end(face);
+	stream_close(&m->stream);
+	wall_clock_close(&m->clock);
+	mosquitto_lib_cleanup();
+}
+
+void mqtt_tick(struct face *face, int64_t now_ns)
+{
+	struct mqtt *m = own(face);
+
+	look_at_clock(face, now_ns);
+	broker_tick(&m->broker, now_ns);
+	go_on(face, now_ns);
+	show_status(face);
+}
+
+void mqtt_changes(struct face *face, const int *signals, int n)
+{
+	struct mqtt *m = own(face);
+
+	stream_changes(&m->stream, signals, n);
+	go_on(face, ows_now());
+}
+
+void mqtt_event(struct face *face, const struct face_event *event)
+{
+	struct mqtt *m = own(face);
+	int64_t now_ns = ows_now();
+
+	switch (event->news) {
+	case FACE_FOUND:
+	case FACE_RELOADED:
+		renew(face, now_ns);
+		stream_live(&m->stream, true);
+		break;
+	case FACE_FILE:
+		renew(face, now_ns);
+		break;
+	case FACE_LOST:
+		stream_live(&m->stream, false);
+		log_warning(face->log, "owsd is lost: no value is good");
+		break;
+	case FACE_ALARM:
+		if (m->broker.state == BROKER_CONNECTED)
+			m->stream.profile->alarm(&m->stream, event->alarm);
+		break;
+	case FACE_OVERRUN:
+	case FACE_COMMAND:
+	case FACE_ENTRIES_LOST:
+		break;
+	case FACE_DESCRIPTOR:
+		if (event->fd == m->clock.fd) {
+			face_ignore(face, event->fd);
+			wall_clock_rearm(&m->clock);
+			if (m->clock.fd >= 0)
+				face_watch(face, m->clock.fd, POLLIN);
+			look_at_clock(face, now_ns);
+		} else {
+			broker_ready(&m->broker, event->fd, event->ready, now_ns);
+		}
+		break;
+	}
+	go_on(face, now_ns);
+}

@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * owsd-mqtt: the stream of an instance's signals, a broker, and the commands that come from it.
+ *
+ * Room src/mqtt: the program owsd-mqtt: publishes signals to an MQTT broker, and takes commands
+ * from it. Uses src/face, src/show, src/config, src/libows, src/signal, hal/bus.
+ */
+#ifndef MQTT_MQTT_H
+#define MQTT_MQTT_H
+
+#include "src/face/face.h"
+#include "src/face/wall_clock.h"
+#include "src/mqtt/broker.h"
+#include "src/mqtt/stream.h"
+
+struct mqtt {
+	struct mqtt_options options;
+	struct stream stream;
+	struct broker broker;
+	struct wall_clock clock;
+};
+
+int mqtt_open(struct face *face);
+void mqtt_changes(struct face *face, const int *signals, int n);
+void mqtt_event(struct face *face, const struct face_event *event);
+void mqtt_tick(struct face *face, int64_t now_ns);
+void mqtt_close(struct face *face);
+
+#endif

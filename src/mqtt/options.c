@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: MIT */
+/* What the Mqtt block says, as owsd-mqtt keeps it. */
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "src/face/face.h"
+#include "src/mqtt/options.h"
+
+static void copy(char *to, size_t size, const char *text)
+{
+	snprintf(to, size, "%s", text ? text : "");
+}
+
+/* "pi7", "pi7-HOUSE": a host's own name, with what a topic's level may have. */
+static void name_node(struct mqtt_options *options, const struct face *face)
+{
+	const char *instance = face->arguments->instance;
+	char host[64] = "";
+
+	if (face->config->mqtt.node) {
+		copy(options->node, sizeof(options->node), face->config->mqtt.node);
+		return;
+	}
+	if (gethostname(host, sizeof(host) - 1) || !*host || *host == '.')
+		copy(host, sizeof(host), "owsd");
+	host[strcspn(host, ".")] = '\0';
+	snprintf(options->node, sizeof(options->node), "%s%s%.60s", host,
+	         strcmp(instance, "OWS") != 0 ? "-" : "",
+	         strcmp(instance, "OWS") != 0 ? instance : "");
+	for (char *c = options->node; *c; c++)
+		if (!isalnum((unsigned char)*c) && !strchr("-_.", *c))
+			*c = '_';
+}
+
+void mqtt_options_take(struct mqtt_options *options, const struct face *face)
+{
+	const struct config_mqtt *mqtt = &face->config->mqtt;
+
+	memset(options, 0, sizeof(*options));
+	for (unsigned i = 0; i < mqtt->way_count; i++) {
+		copy(options->ways[i].host, OPTION_SIZE, mqtt->ways[i].host);
+		options->ways[i].port = mqtt->ways[i].port;
+		options->ways[i].tls = mqtt->ways[i].tls;
+	}
+	options->way_count = mqtt->way_count;
+	copy(options->user, OPTION_SIZE, mqtt->user);
+	copy(options->password_file, OPTION_SIZE, mqtt->password_file);
+	copy(options->ca_file, OPTION_SIZE, mqtt->ca_file);
+	copy(options->cert_file, OPTION_SIZE, mqtt->cert_file);
+	copy(options->key_file, OPTION_SIZE, mqtt->key_file);
+	name_node(options, face);
+	snprintf(options->prefix, sizeof(options->prefix), "%s/%s", mqtt->topic, options->node);
+	copy(options->discovery, sizeof(options->discovery), mqtt->discovery);
+	copy(options->profile, sizeof(options->profile), mqtt->profile);
+	options->mqtt5 = mqtt->mqtt5;
+	options->write = mqtt->write;
+}

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: MIT */
+/* What the Mqtt block says, kept over the time in which the file is read again. */
+#ifndef MQTT_OPTIONS_H
+#define MQTT_OPTIONS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "src/config/config.h"
+
+#define OPTION_SIZE 256
+
+struct mqtt_way {
+	char host[OPTION_SIZE];
+	uint16_t port;
+	bool tls;
+};
+/* All zero but for what is set: two can be compared as memory. */
+struct mqtt_options {
+	struct mqtt_way ways[CONFIG_MQTT_WAYS];
+	unsigned way_count;
+	char user[OPTION_SIZE], password_file[OPTION_SIZE]; /* "": none */
+	char ca_file[OPTION_SIZE], cert_file[OPTION_SIZE], key_file[OPTION_SIZE];
+	char node[128], prefix[OPTION_SIZE], discovery[64], profile[32];
+	bool mqtt5, write;
+};
+
+struct face;
+/* Node: without the key the name of this machine; beside OWS also that of the instance. */
+void mqtt_options_take(struct mqtt_options *options, const struct face *face);
+
+#endif

@@ -1,0 +1,248 @@
+/* SPDX-License-Identifier: MIT */
+/* Values, whether chips are there, and alarms, as messages of JSON. */
+#include <errno.h>
+#include <string.h>
+#include <time.h>
+
+#include "hal/bus/time.h"
+#include "src/face/moment.h"
+#include "src/mqtt/plain.h"
+#include "src/show/when.h"
+#include "src/signal/value.h"
+
+#define REPEAT_MOST_NS (300 * NS_PER_S)
+
+int64_t plain_repeat_ns(const struct ows_info *info)
+{
+	int64_t ns = info->stale_after_ns / 2;
+
+	return ns < REPEAT_MOST_NS ? ns : REPEAT_MOST_NS;
+}
+
+bool plain_is_key(const struct ows_info *info)
+{
+	const char *path = strrchr(info->path, '/');
+
+	return (!strncmp(info->device, "01.", 3) || !strncmp(info->device, "81.", 3)) && path &&
+	       !strcmp(path, "/present");
+}
+
+bool plain_state(struct stream *s, bool online)
+{
+	char topic[TOPIC_SIZE];
+
+	snprintf(topic, sizeof(topic), "%s/" TOPIC_STATE, s->prefix);
+	return stream_put_text(s, topic, online ? "online" : "offline", true);
+}
+
+/* --- Values ---------------------------------------------------------------------------------- */
+
+static void put_number(struct json *json, const struct ows_value *v, const char *text)
+{
+	switch ((enum ows_type)v->type) {
+	case OWS_STRING:
+		json_string(json, "v", text);
+		return;
+	case OWS_BOOL:
+		json_bool(json, "v", v->integer != 0);
+		return;
+	case OWS_BYTE:
+	case OWS_SHORT:
+	case OWS_LONG:
+	case OWS_WORD:
+	case OWS_DWORD:
+	case OWS_LARGE:
+		json_int(json, "v", v->integer);
+		return;
+	case OWS_FLOAT:
+	case OWS_DOUBLE:
+		json_number(json, "v", text);
+		return;
+	}
+	json_null(json, "v");
+}
+
+/* A bad value has no number. owsd lost: no value is good. */
+static void put_value(struct json *json, const struct stream *s, const struct ows_value *v,
+                      const char *text)
+{
+	uint8_t quality = v->quality;
+	struct when now = when_now();
+
+	json_object(json, NULL);
+	if (ows_good(quality))
+		put_number(json, v, text);
+	else
+		json_null(json, "v");
+	json_bool(json, "good", ows_good(quality));
+	json_uint(json, "q", quality);
+	if (!ows_good(quality))
+		json_string(json, "why", s->live ? ows_quality_text(quality) : "owsd is not there");
+	if (s->clock_set)
+		json_int(json, "t", (moment_of(v, now.boot) + now.wall - now.boot) / NS_PER_MS);
+	else
+		json_null(json, "t");
+	json_object_end(json);
+}
+
+/* Whether the chip of the row is there: one of its signals that answers is enough. */
+static bool say_chip(struct stream *s, struct row *row, uint8_t quality)
+{
+	bool away = quality == OWS_Q_NO_DEVICE || quality == OWS_Q_TARGET || quality == OWS_Q_SHORT,
+	     online;
+	struct chip *chip;
+
+	if (row->chip < 0)
+		return true;
+	chip = &s->chips[row->chip];
+	chip->away += away - row->away;
+	row->away = away;
+	online = s->live && chip->away < chip->rows;
+	if (online && !chip->seen && quality != OWS_Q_INITIAL) {
+		/* a chip that was never there is announced when it comes */
+		chip->seen = true;
+		stream_announce(s);
+	}
+	if (chip->said && online == chip->online)
+		return true;
+	if (!stream_put_text(s, chip->topic, online ? "online" : "offline", true))
+		return false;
+	chip->said = true;
+	chip->online = online;
+	return true;
+}
+
+/* A key came: its ROM id, for those who are there now. */
+static bool say_key(struct stream *s, struct row *row, const struct ows_value *v)
+{
+	bool is_on = ows_good(v->quality) && v->integer != 0;
+	char topic[TOPIC_SIZE];
+
+	if (is_on && !row->was_on && row->said) {
+		snprintf(topic, sizeof(topic), "%s/tag", row->topic);
+		if (!stream_put_text(s, topic, row->info.device, false))
+			return false;
+	}
+	row->was_on = is_on;
+	return true;
+}
+
+/* The limit alarm, if it is another than was said. */
+static bool say_limit(struct stream *s, struct row *row)
+{
+	struct ows_alarm_state state;
+	char topic[TOPIC_SIZE];
+	struct json json;
+	uint32_t print;
+	int err;
+
+	if (!row->alarms || !s->live)
+		return true;
+	err = ows_alarm_state(s->h, row->id, &state);
+	print = 1u + state.limit_state + (state.limit_kind << 4) + (state.shelved << 12);
+	if (err || print == row->alarm_print)
+		return true;
+	stream_message(s, &json);
+	json_object(&json, NULL);
+	json_bool(&json, "active",
+	          state.limit_state == OWS_LIMIT_UNACKNOWLEDGED ||
+	                  state.limit_state == OWS_LIMIT_ACKNOWLEDGED);
+	json_string(&json, "state", ows_limit_state_text(state.limit_state));
+	json_string(&json, "kind", state.limit_kind ? ows_alarm_kind_text(state.limit_kind) : NULL);
+	json_bool(&json, "shelved", state.shelved);
+	json_object_end(&json);
+	snprintf(topic, sizeof(topic), "%s/alarm", row->topic);
+	if (!stream_put(s, topic, true))
+		return false;
+	row->alarm_print = print;
+	return true;
+}
+
+bool plain_value(struct stream *s, struct row *row)
+{
+	struct ows_value v = {.quality = OWS_Q_TARGET};
+	char text[VALUE_STRING_MAX + 1] = "";
+	int64_t now_ns = ows_now(), repeat_ns = 0;
+	struct json json;
+	uint64_t print;
+
+	if (s->live) {
+		int err = ows_get_signal_text(s->h, (int)(row - s->rows), now_ns, &v, text,
+		                              sizeof(text));
+
+		if (err && err != -ENOSPC && err != -ESTALE)
+			v.quality = OWS_Q_TARGET;
+		repeat_ns = plain_repeat_ns(&row->info);
+	}
+	if (!say_chip(s, row, v.quality) || !say_limit(s, row))
+		return false;
+	if (s->live && plain_is_key(&row->info) && !say_key(s, row, &v))
+		return false;
+	print = ows_good(v.quality) ? stream_hash(text, strlen(text), v.quality) : v.quality;
+	if (row->said && print == row->print &&
+	    !(repeat_ns && ows_good(v.quality) && now_ns - row->said_ns >= repeat_ns))
+		return true;
+	stream_message(s, &json);
+	put_value(&json, s, &v, text);
+	if (!stream_put(s, row->topic, true))
+		return false;
+	row->said = true;
+	row->print = print;
+	row->said_ns = now_ns;
+	return true;
+}
+
+/* --- The rest -------------------------------------------------------------------------------- */
+
+void plain_alarm(struct stream *s, const struct ows_alarm *alarm)
+{
+	struct when now = when_now();
+	char topic[TOPIC_SIZE];
+	struct json json;
+
+	if (alarm->signal < 0 || alarm->signal >= s->count ||
+	    alarm->event == OWS_ALARM_ACKNOWLEDGED || alarm->event == OWS_ALARM_UNSHELVED)
+		return;
+	stream_message(s, &json);
+	json_object(&json, NULL);
+	json_string(&json, "event_type", ows_alarm_event_text(alarm->event));
+	json_string(&json, "kind", ows_alarm_kind_text(alarm->kind));
+	json_string(&json, "text", alarm->text);
+	json_int(&json, "t", (alarm->occurred_ns + now.wall - now.boot) / NS_PER_MS);
+	json_object_end(&json);
+	snprintf(topic, sizeof(topic), "%s/event", s->rows[alarm->signal].topic);
+	stream_put(s, topic, false);
+}
+
+bool plain_birth(struct stream *s, int number, bool *more)
+{
+	(void)s;
+	(void)number;
+	*more = false;
+	return true;
+}
+
+void plain_listen(const struct stream *s, char topic[TOPIC_SIZE])
+{
+	(void)s;
+	topic[0] = '\0';
+}
+
+bool plain_heard(const struct stream *s, const char *topic, const char *text, size_t len)
+{
+	(void)s;
+	(void)topic;
+	(void)text;
+	(void)len;
+	return false;
+}
+
+const struct profile profile_plain = {
+	.name = "plain",
+	.birth = plain_birth,
+	.value = plain_value,
+	.state = plain_state,
+	.alarm = plain_alarm,
+	.listen = plain_listen,
+	.heard = plain_heard,
+};

@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The stream: the signals of an instance as rows, which of them have news, and what was published
+ * of each. A profile says how a row becomes a message, an outlet takes messages. There is no queue
+ * of messages: a row that waits has the newest value when it goes.
+ */
+#ifndef MQTT_STREAM_H
+#define MQTT_STREAM_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "src/libows/ows.h"
+#include "src/mqtt/topics.h"
+#include "src/show/json.h"
+
+/* What takes messages. retain: the broker keeps it for those who come later. */
+struct outlet {
+	/* False: not now; what was not taken comes again. */
+	bool (*put)(void *ctx, const char *topic, const char *text, size_t len, bool retain);
+	void *ctx;
+};
+
+struct row {
+	struct ows_info info; /* its texts count while the image of stream_make() does */
+	char *topic;
+	int id;   /* of ows_find() */
+	int chip; /* its chip; -1: none */
+	bool queued, away, alarms;
+	bool said;             /* once at least since the birth */
+	uint64_t print;        /* a hash of what was said */
+	int64_t said_ns;       /* when */
+	uint32_t alarm_print;  /* of its limit alarm; 0: not said */
+	uint64_t alarms_count; /* events */
+	bool was_on;           /* of a key: it was there */
+};
+/* A device of the wire. */
+struct chip {
+	const char *id, *family; /* as of the rows' info */
+	char *topic;             /* whether it is there */
+	int rows, away;          /* signals, and those that cannot reach it */
+	bool seen;               /* it was there once, since owsd-mqtt has started */
+	bool said, online;       /* what was said */
+};
+
+struct profile;
+struct stream {
+	const struct profile *profile;
+	struct outlet outlet;
+	const char *prefix, *node, *discovery; /* TOPIC/NODE; the texts belong to the caller */
+	bool write;
+	struct ows *h;
+	const char *instance;
+	struct row *rows;
+	int count;
+	struct chip *chips;
+	int chip_count;
+	int *queue, queue_at, queue_len; /* rows with news, the oldest first */
+	char **gone;                     /* topics that nobody writes any more */
+	int gone_count;
+	bool live;      /* owsd is there: else no value is good */
+	int birth;      /* the next message of the birth; -1: all is said */
+	bool online;    /* it was said that the node is there */
+	char *health;   /* as it was said last */
+	bool clock_set; /* wall-clock times can be believed */
+	FILE *out;      /* makes a message in text */
+	char *text;
+	size_t len;
+	uint64_t published;
+};
+
+/*
+ * A profile: how the stream looks at the broker. Each function puts messages; false: the outlet
+ * does not take one now, and the call comes again.
+ */
+struct profile {
+	const char *name; /* as the key Profile has it */
+	/* A part of what says what there is, by its number. *more: there are further ones. */
+	bool (*birth)(struct stream *s, int number, bool *more);
+	/* The value and quality of a row. */
+	bool (*value)(struct stream *s, struct row *row);
+	/* The node is there, or not; the latter is the will too. */
+	bool (*state)(struct stream *s, bool online);
+	/* An entry of the journal of alarms; one that is not taken is lost. */
+	void (*alarm)(struct stream *s, const struct ows_alarm *alarm);
+	/* A topic to listen to besides those of commands; "": none. */
+	void (*listen)(const struct stream *s, char topic[TOPIC_SIZE]);
+	/* What came there. True: the birth has to be said again. */
+	bool (*heard)(const struct stream *s, const char *topic, const char *text, size_t len);
+};
+extern const struct profile profile_plain, profile_homeassistant;
+
+/* 0 or -ENOMEM. */
+int stream_open(struct stream *s);
+void stream_close(struct stream *s);
+/*
+ * The signals of h, in place of those before; topics of signals that are no more are emptied. All
+ * is to be said. Allocates. 0 or -ENOMEM: there are no rows.
+ */
+int stream_make(struct stream *s, struct ows *h, const char *instance);
+/* Signals have news, as in face_ops.changes. */
+void stream_changes(struct stream *s, const int *signals, int n);
+/* All is to be said, as to a broker that knows nothing. */
+void stream_begin(struct stream *s);
+/* What there is is to be said again. */
+void stream_announce(struct stream *s);
+/* owsd is there, or not. */
+void stream_live(struct stream *s, bool live);
+/* Put what waits, as much as the outlet takes. True: nothing waits. */
+bool stream_pump(struct stream *s);
+
+/* For profiles: begin a message, put it. */
+void stream_message(struct stream *s, struct json *json);
+bool stream_put(struct stream *s, const char *topic, bool retain);
+bool stream_put_text(struct stream *s, const char *topic, const char *text, bool retain);
+uint64_t stream_hash(const char *text, size_t len, uint64_t seed);
+
+#endif

@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: MIT */
+/* The topics of a node: TOPIC/NODE/SIGNAL and what stands beside and below it. Pure functions. */
+#ifndef MQTT_TOPICS_H
+#define MQTT_TOPICS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#define TOPIC_SIZE 512
+#define TOPIC_NAME 192 /* the name of a signal, with what is escaped in it */
+
+/* Levels beside the signals; a signal of such a name has its first letter as %XX. */
+#define TOPIC_STATE "state"
+#define TOPIC_HEALTH "health"
+#define TOPIC_CHIP "chip"
+
+/* The level of a signal: '+', '#', '/' and '%' as %XX. name: at most 63 bytes. */
+void topic_escape(const char *name, char level[TOPIC_NAME]);
+/*
+ * Is topic that of a command, PREFIX/LEVEL/set? Then name gets the signal that LEVEL means. prefix
+ * is TOPIC/NODE. False also for a level that topic_escape() would not write.
+ */
+bool topic_is_command(const char *prefix, const char *topic, char name[TOPIC_NAME]);
+/* The text with '_' for all but letters, digits, '-' and '_', as Home Assistant takes ids. */
+void topic_id(const char *text, char *id, size_t size);
+
+#endif

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: MIT
+"""A house with an owsd, a genuine mosquitto on loopback, somebody who listens to all of it, and
+owsd-mqtt.
+
+    house = House(scene, RELAY)
+    house.arrives("room", lambda m: m["v"] == 21.5)
+"""
+
+import json
+import shutil
+import subprocess
+
+import owsdtest
+from owsdtest import BUILD, free_port, raw, until
+
+MQTT = BUILD / "owsd-mqtt"
+SENSOR, SWITCH = "28.A0B1C2000001", "29.A0B1C2000004"
+
+
+def program(name):
+    """A program of mosquitto's; else the case is skipped."""
+    path = shutil.which(name, path="/usr/sbin:/usr/bin:/usr/local/sbin:/usr/local/bin")
+    if not path:
+        owsdtest.skip(f"no {name} here (packages mosquitto, mosquitto-clients)")
+    return path
+
+
+def item(name, path, kind="double", io="input", **more):
+    return dict(Name=name, Path=path, Type=raw(kind), IO=raw(io), **more)
+
+
+ROOM = item("room", f"/{SENSOR}/temperature")
+RELAY = item("relay", f"/{SWITCH}/PIO.0", "bool", "output")
+ABSENT = item("absent", "/28.FFFFFFFFFFFF/temperature")
+
+
+class Broker:
+    def __init__(self, scene, port=None, lines=("allow_anonymous true",)):
+        self.scene, self.port = scene, port or free_port()
+        self.config = scene.file(f"mosquitto-{self.port}.conf", "\n".join(
+            [f"listener {self.port} 127.0.0.1", "persistence false", "user root", *lines, ""]))
+        self.start()
+
+    def start(self):
+        self.process = self.scene.start([program("mosquitto"), "-v", "-c", self.config])
+        until(lambda: " running" in self.process.log(), 20, lambda: self.process.log())
+
+    @property
+    def url(self):
+        return f"mqtt://127.0.0.1:{self.port}"
+
+
+class Listener:
+    """All that the broker hands out from now on, and what it has kept."""
+
+    def __init__(self, scene, port, topic="#", arguments=()):
+        command = [program("stdbuf"), "-oL", program("mosquitto_sub"), "-d", "-p", str(port), "-q", "1", "-t", topic, "-F", "=%r\t%t\t%p",
+                   *arguments]
+        self.process = scene.start(command)
+        until(lambda: "Subscribed" in self.process.log(), 20, "it listens")
+
+    def all(self, topic=None):
+        """[(retained, topic, text)] in the order of their coming."""
+        lines = [line[1:].split("\t", 2) for line in self.process.log().splitlines() if line[:1] == "="]
+        return [(r == "1", t, p) for r, t, p in lines if topic in (None, t)]
+
+    def last(self, topic):
+        found = self.all(topic)
+        return found[-1][2] if found else None
+
+
+class House:
+    def __init__(self, scene, *items, lines=("allow_anonymous true",), wire="", owsd=True, env=None, **keys):
+        owsdtest.need(MQTT)
+        self.scene = scene
+        self.broker = Broker(scene, lines=lines)
+        self.listener = Listener(scene, self.broker.port)
+        self.wire = scene.file("house.sim", "chip DS2482-100 0x18\n"
+                               f"DS18B20 {SENSOR} temperature 21.5\nDS2408 {SWITCH}\n{wire}")
+        self.keys = {"Broker": self.broker.url, "Node": "pi7", **keys}
+        self.daemon = scene.owsd(self.text(*(items or (ROOM, RELAY, ABSENT))))
+        self.face = self.start(env)
+
+    def text(self, *items, **more):
+        keys = {**self.keys, **more}
+        block = " ".join(f"{k} {v}" if isinstance(v, raw) else f'{k} "{v}"' for k, v in keys.items())
+        return owsdtest.rio(f"sim:{self.wire}", items, Period=0.05, Timeout=3, Mqtt=raw("{ " + block + " }"))
+
+    def start(self, env=None):
+        return self.scene.start([MQTT, "-n", self.daemon.name, "-c", self.daemon.config, "-v"], env)
+
+    def last(self, name):
+        """What was published last of a signal; None: nothing, or it was emptied."""
+        text = self.listener.last(f"owsd/pi7/{name}")
+        return json.loads(text) if text else None
+
+    def arrives(self, name, fits):
+        return until(lambda: self.last(name) and fits(self.last(name)) and self.last(name), 20,
+                     lambda: f"{name} arrives: {self.listener.all(f'owsd/pi7/{name}')}")
+
+    def says(self, topic, text):
+        until(lambda: self.listener.last(topic) == text, 20,
+              lambda: f"{topic} is {text!r}: {self.listener.all(topic)}")
+
+    def kept(self, topic="#"):
+        """{topic: text} of what the broker hands out to who comes now."""
+        end = f"end/{id(self)}"
+        command = [program("mosquitto_sub"), "-p", str(self.broker.port), "-t", topic, "-t", end,
+                   "-F", "%t\t%p", "-W", "2", "--retained-only"]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=owsdtest.PATIENCE)
+        return dict(line.split("\t", 1) for line in done.stdout.splitlines())
+
+    def set(self, name, value):
+        done = self.scene.owsctl(self.daemon, "set", "-w", "20", name, value)
+        assert done.returncode == 0, done

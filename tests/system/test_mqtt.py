@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""owsd-mqtt beside a real owsd and a real mosquitto: what stands at the broker is what there is, and
+what is bad has no number."""
+
+import signal
+import time
+
+import owsdtest
+from mqtthouse import ABSENT, ROOM, SENSOR, Broker, House, Listener, item
+from owsdtest import logged, until
+
+STATE = "owsd/pi7/state"
+
+
+def test_values_stand_at_the_broker_with_quality_and_time_and_a_bad_one_without_a_number(scene):
+    house = House(scene)
+    room = house.arrives("room", lambda m: m["good"])
+    assert room == {"v": 21.5, "good": True, "q": 192, "t": room["t"]}, room
+    assert room["t"] is None or abs(room["t"] / 1000 - time.time()) < 60, room
+    absent = house.arrives("absent", lambda m: m["q"] == 8)
+    assert (absent["v"], absent["good"], absent["why"]) == (None, False, "device absent"), absent
+    house.says(STATE, "online")
+    house.says(f"owsd/pi7/chip/{SENSOR}", "online")
+    house.says("owsd/pi7/chip/28.FFFFFFFFFFFF", "offline")
+    for value in (True, False, True):
+        house.set("relay", int(value))
+        house.arrives("relay", lambda m, v=value: m["v"] is v and m["good"])
+    kept = house.kept("owsd/#")
+    assert '"v":21.5' in kept["owsd/pi7/room"] and kept[STATE] == "online", kept
+    # the state comes after what it is about
+    topics = [t for _, t, _ in house.listener.all()]
+    assert topics.index(STATE) > topics.index("owsd/pi7/room"), topics
+
+
+def test_nothing_is_published_while_nothing_changes(scene):
+    house = House(scene, ROOM)
+    house.arrives("room", lambda m: m["good"])
+    house.says(STATE, "online")
+    # the counter of updates shows that it was measured meanwhile
+    before = house.listener.all("owsd/pi7/room")
+    count = scene.owsctl(house.daemon, "--json", "get", "room").stdout
+    until(lambda: scene.owsctl(house.daemon, "--json", "get", "room").stdout.split('"count":')[1].split(",")[0] !=
+          count.split('"count":')[1].split(",")[0], 20, "it is measured again")
+    assert house.listener.all("owsd/pi7/room") == before
+
+
+def test_a_killed_owsd_mqtt_leaves_its_will_and_an_ended_one_says_so(scene):
+    house = House(scene)
+    house.says(STATE, "online")
+    house.face.kill()
+    house.says(STATE, "offline")
+    house.face = house.start()
+    house.says(STATE, "online")
+    begun = time.monotonic()
+    assert house.face.stop() == 0
+    assert time.monotonic() - begun < 5
+    house.says(STATE, "offline")
+    assert "will" not in house.face.log()
+
+
+def test_a_lost_owsd_takes_all_values_back_until_it_is_there_again(scene):
+    house = House(scene)
+    house.arrives("room", lambda m: m["good"])
+    house.daemon.kill()
+    house.says(STATE, "offline")
+    room = house.arrives("room", lambda m: not m["good"])
+    assert room["v"] is None and room["why"] == "owsd is not there", room
+    house.says(f"owsd/pi7/chip/{SENSOR}", "offline")
+    scene.owsd(house.daemon.config, name=house.daemon.name)
+    house.arrives("room", lambda m: m["good"])
+    house.says(STATE, "online")
+    house.says(f"owsd/pi7/chip/{SENSOR}", "online")
+
+
+def test_a_broker_that_comes_late_or_forgets_all_gets_all(scene):
+    house = House(scene)
+    house.arrives("room", lambda m: m["good"])
+    house.broker.process.stop()
+    logged(house.face, "is lost")
+    house.set("relay", 1)
+    # nothing was kept, and the listener is a new one too
+    house.broker.start()
+    house.listener = Listener(scene, house.broker.port)
+    house.arrives("room", lambda m: m["good"])
+    house.arrives("relay", lambda m: m["v"] is True)
+    house.says(STATE, "online")
+    assert house.face.log().count("is lost") == 1, house.face.log()
+    # who hears nothing of the broker may not be ended by it
+    house.broker.process.freeze()
+    begun = time.monotonic()
+    assert house.face.stop() == 0
+    assert time.monotonic() - begun < 5
+    house.broker.process.thaw()
+    house.says(STATE, "offline")
+
+
+def test_a_reload_moves_renamed_signals_and_empties_what_is_no_more(scene):
+    house = House(scene, ROOM, ABSENT)
+    house.arrives("room", lambda m: m["good"])
+    house.daemon.config.write_text(house.text({**ROOM, "Name": "cellar"}, item("state", ROOM["Path"])))
+    house.daemon.signal(signal.SIGHUP)
+    house.arrives("cellar", lambda m: m["v"] == 21.5)
+    # a name that is one of ours
+    house.arrives("%73tate", lambda m: m["v"] == 21.5)
+    house.says("owsd/pi7/room", "")
+    house.says("owsd/pi7/absent", "")
+    kept = house.kept("owsd/#")
+    assert "owsd/pi7/room" not in kept and kept[STATE] == "online", kept
+
+
+def test_another_topic_or_broker_of_the_file_is_taken_at_once(scene):
+    house = House(scene, ROOM)
+    house.says(STATE, "online")
+    other = Broker(scene)
+    listener = Listener(scene, other.port)
+    house.daemon.config.write_text(house.text(ROOM, Broker=other.url, Topic="site/ows"))
+    house.face.signal(signal.SIGHUP)
+    until(lambda: listener.last("site/ows/pi7/state") == "online", 20, lambda: listener.all())
+    until(lambda: '"v":21.5' in listener.last("site/ows/pi7/room"), 20, lambda: listener.all())
+    house.says(STATE, "offline")
+
+
+if __name__ == "__main__":
+    owsdtest.main(at_once=4)

@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: MIT */
+/* Tests of what is published of the signals, when, and in which order. */
+#include <stdio.h>
+#include <string.h>
+
+#include "unity.h"
+
+#include "src/mqtt/stream.h"
+#include "tests/unit/aid/instance.h"
+
+#define S INSTANCE_S
+
+static const struct instance_signal signals[] = {
+	{"room", "/28.1/temperature", OWS_DOUBLE, false, 4 * S, "28.000000000001"},
+	{"title", "/29.1/type", OWS_STRING, false, 0, "29.000000000001"},
+};
+enum { ROOM, TITLE, COUNT };
+
+static struct instance in;
+static struct ows *ows;
+static struct stream s;
+static char said[4096]; /* "topic text\n" of each message */
+static int room;        /* how many messages the outlet takes */
+
+static bool put(void *ctx, const char *topic, const char *text, size_t len, bool retain)
+{
+	size_t at = strlen(said);
+
+	(void)ctx;
+	if (!room)
+		return false;
+	room--;
+	snprintf(said + at, sizeof(said) - at, "%s%s %.*s\n", topic, retain ? "" : " (once)",
+	         (int)len, text);
+	return true;
+}
+
+void setUp(void)
+{
+	instance_start(&in, "mqtt", signals, COUNT);
+	instance_lives_on(&in);
+	TEST_ASSERT_EQUAL_INT(0, ows_open(in.name, OWS_READ, &ows));
+	s = (struct stream){
+		.profile = &profile_plain, .outlet.put = put, .prefix = "o/pi", .node = "pi"};
+	room = 100;
+	said[0] = '\0';
+	TEST_ASSERT_EQUAL_INT(0, stream_open(&s));
+	TEST_ASSERT_EQUAL_INT(0, stream_make(&s, ows, in.name));
+	stream_live(&s, true);
+}
+
+void tearDown(void)
+{
+	stream_close(&s);
+	ows_close(ows);
+	instance_end(&in);
+}
+
+static const char *pump(void)
+{
+	said[0] = '\0';
+	stream_pump(&s);
+	return said;
+}
+
+static void test_the_birth_has_all_and_the_state_is_last(void)
+{
+	instance_put_double(&in, ROOM + 1, 21.5, ows_now());
+	instance_put_text(&in, TITLE + 1, "a\"b", ows_now());
+	TEST_ASSERT_EQUAL_STRING(
+		"o/pi/chip/28.000000000001 online\n"
+		"o/pi/room {\"v\":21.5,\"good\":true,\"q\":192,\"t\":null}\n"
+		"o/pi/chip/29.000000000001 online\n"
+		"o/pi/title {\"v\":\"a\\\"b\",\"good\":true,\"q\":192,\"t\":null}\n"
+		"o/pi/state online\n",
+		pump());
+	TEST_ASSERT_EQUAL_STRING("", pump());
+}
+
+static void test_the_time_is_there_when_the_clock_is_right(void)
+{
+	s.clock_set = true;
+	instance_put_double(&in, ROOM + 1, 21.5, ows_now());
+	TEST_ASSERT_NOT_NULL(strstr(pump(), "\"t\":1"));
+}
+
+static void test_the_same_value_is_said_again_after_half_of_its_time_alone(void)
+{
+	int signal = ROOM;
+
+	instance_put_double(&in, ROOM + 1, 21.5, ows_now());
+	pump();
+	instance_put_double(&in, ROOM + 1, 21.5, ows_now());
+	stream_changes(&s, &signal, 1);
+	TEST_ASSERT_EQUAL_STRING("", pump());
+	s.rows[ROOM].said_ns -= 2 * S;
+	stream_changes(&s, &signal, 1);
+	TEST_ASSERT_NOT_NULL(strstr(pump(), "o/pi/room {\"v\":21.5"));
+	instance_put_double(&in, ROOM + 1, 22, ows_now());
+	stream_changes(&s, &signal, 1);
+	TEST_ASSERT_NOT_NULL(strstr(pump(), "o/pi/room {\"v\":22"));
+}
+
+static void test_a_bad_value_has_no_number(void)
+{
+	instance_put_double(&in, ROOM + 1, 85, ows_now() - 10 * S);
+	pump();
+	TEST_ASSERT_NOT_NULL(
+		strstr(said, "o/pi/room {\"v\":null,\"good\":false,\"q\":20,\"why\":\""));
+	TEST_ASSERT_NULL(strstr(said, "85"));
+}
+
+static void test_what_has_no_room_comes_later_with_its_newest_value_and_nothing_twice(void)
+{
+	int signal = ROOM;
+
+	instance_put_double(&in, ROOM + 1, 1, ows_now());
+	instance_put_text(&in, TITLE + 1, "x", ows_now());
+	room = 1;
+	TEST_ASSERT_EQUAL_STRING("o/pi/chip/28.000000000001 online\n", pump());
+	for (int i = 2; i < 50; i++) {
+		instance_put_double(&in, ROOM + 1, i, ows_now());
+		stream_changes(&s, &signal, 1);
+		TEST_ASSERT_EQUAL_STRING("", pump());
+	}
+	room = 100;
+	pump();
+	TEST_ASSERT_NOT_NULL(strstr(said, "o/pi/room {\"v\":49,"));
+	TEST_ASSERT_NULL(strstr(said, "\"v\":48"));
+	TEST_ASSERT_NULL(strstr(said, "28.000000000001"));
+	TEST_ASSERT_NOT_NULL(strstr(said, "o/pi/title {\"v\":\"x\""));
+}
+
+static void test_an_owsd_that_is_lost_takes_all_back(void)
+{
+	instance_put_double(&in, ROOM + 1, 1, ows_now());
+	pump();
+	stream_live(&s, false);
+	TEST_ASSERT_EQUAL_STRING("o/pi/state offline\n"
+	                         "o/pi/chip/28.000000000001 offline\n"
+	                         "o/pi/room {\"v\":null,\"good\":false,\"q\":24,"
+	                         "\"why\":\"owsd is not there\",\"t\":null}\n"
+	                         "o/pi/chip/29.000000000001 offline\n"
+	                         "o/pi/title {\"v\":null,\"good\":false,\"q\":24,"
+	                         "\"why\":\"owsd is not there\",\"t\":null}\n",
+	                         pump());
+	stream_live(&s, true);
+	TEST_ASSERT_NOT_NULL(strstr(pump(), "o/pi/room {\"v\":1,"));
+	TEST_ASSERT_NOT_NULL(strstr(said, "o/pi/state online\n"));
+}
+
+static void test_a_new_table_empties_the_topics_of_those_that_are_gone(void)
+{
+	static const struct instance_signal less[] = {
+		{"title", "/29.1/type", OWS_STRING, false, 0, "29.000000000001"}};
+
+	pump();
+	instance_reload(&in, less, 1);
+	TEST_ASSERT_EQUAL_INT(0, ows_reopen(ows));
+	TEST_ASSERT_EQUAL_INT(0, stream_make(&s, ows, in.name));
+	pump();
+	TEST_ASSERT_EQUAL_STRING_LEN("o/pi/room \n", said, 11);
+	TEST_ASSERT_NOT_NULL(strstr(said, "o/pi/title {"));
+}
+
+static void test_an_alarm_is_an_event_for_those_who_are_there(void)
+{
+	struct ows_alarm alarm = {
+		.signal = ROOM, .kind = OWS_ALARM_DEVICE, .event = OWS_ALARM_RAISED, .text = "3"};
+
+	pump();
+	said[0] = '\0';
+	s.profile->alarm(&s, &alarm);
+	TEST_ASSERT_EQUAL_STRING_LEN(
+		"o/pi/room/event (once) {\"event_type\":\"raised\",\"kind\":", said, 49);
+	alarm.signal = COUNT;
+	said[0] = '\0';
+	s.profile->alarm(&s, &alarm);
+	TEST_ASSERT_EQUAL_STRING("", said);
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_the_birth_has_all_and_the_state_is_last);
+	RUN_TEST(test_the_time_is_there_when_the_clock_is_right);
+	RUN_TEST(test_the_same_value_is_said_again_after_half_of_its_time_alone);
+	RUN_TEST(test_a_bad_value_has_no_number);
+	RUN_TEST(test_what_has_no_room_comes_later_with_its_newest_value_and_nothing_twice);
+	RUN_TEST(test_an_owsd_that_is_lost_takes_all_back);
+	RUN_TEST(test_a_new_table_empties_the_topics_of_those_that_are_gone);
+	RUN_TEST(test_an_alarm_is_an_event_for_those_who_are_there);
+	return UNITY_END();
+}
