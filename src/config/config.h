@@ -76,7 +76,8 @@ struct config_item {
 	double filter_s, deadband; /* 0: none */
 	const char *record_text;   /* as written; NULL: as the Recorder block says */
 	struct config_record record;
-	int line; /* of Item */
+	const char *device_class; /* "light", "door"; NULL: not given */
+	int line;                 /* of Item */
 };
 /* Does the item take sets? An input with Writable off never does, whatever its _WriteEnable. */
 static inline bool config_item_takes_sets(const struct config_item *item)

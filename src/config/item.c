@@ -9,6 +9,7 @@
 #include "src/config/build.h"
 #include "src/config/item.h"
 #include "src/config/limits.h"
+#include "src/config/mqtt.h"
 #include "src/config/property.h"
 #include "src/config/recorder.h"
 #include "src/config/scaling.h"
@@ -373,6 +374,7 @@ void item_build(struct build *build, const struct rio_node *block, struct config
 	build_alarm(build, block, values, &path, item);
 	limits_build(build, values, item);
 	record_build(build, &values[OPT_RECORD], known, item);
+	class_build(build, &values[OPT_CLASS], item);
 }
 
 struct named {

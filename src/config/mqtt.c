@@ -12,6 +12,7 @@
 #define PORT 1883
 #define PORT_TLS 8883
 #define BLANK " \t"
+#define CLASS_MAX 31u
 
 static const char *check_file(const char *name)
 {
@@ -203,4 +204,18 @@ void mqtt_build(struct build *build, const struct rio_node *block)
 	mqtt->write = values[OPT_MQTT_WRITE].number != 0;
 	if (block)
 		check_together(build, block, mqtt);
+}
+
+void class_build(struct build *build, const struct option_value *value, struct config_item *item)
+{
+	const char *text = value->text;
+	size_t len = strlen(text);
+
+	if (!value->given || !len)
+		return;
+	if (len > CLASS_MAX || strspn(text, "abcdefghijklmnopqrstuvwxyz0123456789_") != len)
+		report_error(build->report, value->node->value_at,
+		             "Class \"%s\": expected light, cover, or a device class such as door",
+		             text);
+	item->device_class = build_keep(build, text, len);
 }

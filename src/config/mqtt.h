@@ -4,9 +4,13 @@
 #define CONFIG_MQTT_H
 
 struct build;
+struct config_item;
+struct option_value;
 struct rio_node;
 
 /* The block, or the defaults if it is NULL. */
 void mqtt_build(struct build *build, const struct rio_node *block);
+/* The key Class of an item. */
+void class_build(struct build *build, const struct option_value *value, struct config_item *item);
 
 #endif

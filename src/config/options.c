@@ -136,6 +136,9 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
 		{"Record", PLACE_ITEM, OPTION_TEXT,
                  .help = "when owsd-recorder keeps a value: change, deadband, interval, off"},
 
+	[OPT_CLASS] = {"Class", PLACE_ITEM, OPTION_TEXT,
+                       .help = "what it is to Home Assistant: light, cover, or a device class"},
+
 	[OPT_BUS_TARGET] = {"Target", PLACE_BUS, OPTION_TEXT, .help = "the target it is for"},
 	[OPT_BUS_POWER_LINE] = {"PowerLine", PLACE_BUS, OPTION_TEXT,
                                 .help = "GPIO line that switches the supply of the wire"},

@@ -96,6 +96,7 @@ enum option {
 	OPT_DEADBAND,
 	OPT_CALIBRATED,
 	OPT_RECORD,
+	OPT_CLASS,
 	/* of a Bus block */
 	OPT_BUS_TARGET,
 	OPT_BUS_POWER_LINE,

@@ -276,6 +276,7 @@ static void put_item(FILE *out, const struct config_item *item, bool all)
 	put_limits(out, &item->limits);
 	put_scaling(out, item);
 	put_text_if_given(out, OPT_RECORD, item->record_text);
+	put_text_if_given(out, OPT_CLASS, item->device_class);
 	fputs("  }\n", out);
 }
 

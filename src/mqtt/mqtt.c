@@ -12,11 +12,15 @@
 #include "hal/bus/time.h"
 #include "src/face/look.h"
 #include "src/face/loop.h"
+#include "src/mqtt/health.h"
 
 /* Of changes of a signal that come closer together the newest is published */
 #define PACE_NS (50 * NS_PER_MS)
 /* A clock that nobody sets is believed so long after the boot */
 #define CLOCK_WAIT_NS (600 * NS_PER_S)
+#define HEALTH_NS (5 * NS_PER_S)
+/* Between two births that somebody asks for: who asks all the time gets no more */
+#define ANNOUNCE_NS (10 * NS_PER_S)
 
 static const struct profile *const profiles[] = {&profile_homeassistant, &profile_plain};
 
@@ -35,6 +39,7 @@ static void on_connected(void *ctx)
 	m->stream.profile->listen(&m->stream, topic);
 	if (*topic)
 		broker_subscribe(&m->broker, topic);
+	m->health_ns = 0;
 	stream_begin(&m->stream);
 }
 
@@ -43,7 +48,7 @@ static void on_message(void *ctx, const struct broker_message *message)
 	struct mqtt *m = ctx;
 
 	if (m->stream.profile->heard(&m->stream, message->topic, message->text, message->len))
-		stream_announce(&m->stream);
+		m->asked = true;
 }
 
 /* The profile's state "offline", caught on its way. */
@@ -81,6 +86,17 @@ static const struct broker_ops broker_ops = {
 	.will = will,
 };
 
+/* struct stream.class_of */
+static const char *class_of(void *ctx, const char *name)
+{
+	const struct config *config = ((struct face *)ctx)->config;
+
+	for (unsigned i = 0; i < config->item_count; i++)
+		if (!strcmp(config->items[i].name, name))
+			return config->items[i].device_class ? config->items[i].device_class : "";
+	return "";
+}
+
 /* --- Beginning and end of what the file says ------------------------------------------------- */
 
 static void begin(struct face *face, int64_t now_ns)
@@ -96,6 +112,8 @@ static void begin(struct face *face, int64_t now_ns)
 	m->stream.discovery = m->options.discovery;
 	m->stream.write = m->options.write;
 	m->stream.outlet = (struct outlet){.put = broker_put, .ctx = &m->broker};
+	m->stream.class_of = class_of;
+	m->stream.class_ctx = face;
 	m->broker.face = face;
 	m->broker.options = &m->options;
 	m->broker.ops = &broker_ops;
@@ -140,12 +158,22 @@ static void renew(struct face *face, int64_t now_ns)
 }
 
 /* Publish what waits. Between two images no row can be looked at. */
-static void pump(struct face *face)
+static void pump(struct face *face, int64_t now_ns)
 {
 	struct mqtt *m = own(face);
 
-	if (m->broker.state == BROKER_CONNECTED && (!face->live || look_is_current(face)))
-		stream_pump(&m->stream);
+	if (m->broker.state != BROKER_CONNECTED || (face->live && !look_is_current(face)))
+		return;
+	if (m->asked && now_ns - m->announced_ns >= ANNOUNCE_NS) {
+		stream_announce(&m->stream);
+		m->announced_ns = now_ns;
+		m->asked = false;
+	}
+	if (stream_pump(&m->stream) && face->live && now_ns >= m->health_ns &&
+	    health_say(&m->stream, &(struct health){.trouble = "",
+	                                            .connects = m->broker.connects,
+	                                            .refused_messages = m->broker.refusals}))
+		m->health_ns = now_ns + HEALTH_NS;
 }
 
 static void look_at_clock(struct face *face, int64_t now_ns)
@@ -176,7 +204,7 @@ static void go_on(struct face *face, int64_t now_ns)
 {
 	struct mqtt *m = own(face);
 
-	pump(face);
+	pump(face, now_ns);
 	face->tick_ns = broker_next(&m->broker, now_ns);
 }
 

@@ -18,6 +18,9 @@ struct mqtt {
 	struct stream stream;
 	struct broker broker;
 	struct wall_clock clock;
+	int64_t health_ns;    /* when to look at it again */
+	int64_t announced_ns; /* when somebody asked for the birth last */
+	bool asked;           /* again, too soon after that */
 };
 
 int mqtt_open(struct face *face);

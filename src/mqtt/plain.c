@@ -98,10 +98,10 @@ static bool say_chip(struct stream *s, struct row *row, uint8_t quality)
 	chip->away += away - row->away;
 	row->away = away;
 	online = s->live && chip->away < chip->rows;
-	if (online && !chip->seen && quality != OWS_Q_INITIAL) {
-		/* a chip that was never there is announced when it comes */
+	/* a chip that was never there is announced when it comes; of an output nobody knows */
+	if (online && !chip->seen && (quality != OWS_Q_INITIAL || row->info.output)) {
 		chip->seen = true;
-		stream_announce(s);
+		s->birth = 0;
 	}
 	if (chip->said && online == chip->online)
 		return true;
@@ -115,15 +115,18 @@ static bool say_chip(struct stream *s, struct row *row, uint8_t quality)
 /* A key came: its ROM id, for those who are there now. */
 static bool say_key(struct stream *s, struct row *row, const struct ows_value *v)
 {
-	bool is_on = ows_good(v->quality) && v->integer != 0;
+	bool here = ows_good(v->quality) && v->integer != 0;
 	char topic[TOPIC_SIZE];
 
-	if (is_on && !row->was_on && row->said) {
+	/* one that was there before we looked did not come */
+	if (!ows_good(v->quality) && v->quality != OWS_Q_NO_DEVICE)
+		return true;
+	if (here && row->key_away) {
 		snprintf(topic, sizeof(topic), "%s/tag", row->topic);
 		if (!stream_put_text(s, topic, row->info.device, false))
 			return false;
 	}
-	row->was_on = is_on;
+	row->key_away = !here;
 	return true;
 }
 

@@ -204,6 +204,9 @@ void stream_changes(struct stream *s, const int *signals, int n)
 
 void stream_announce(struct stream *s)
 {
+	for (int i = 0; i < s->chip_count; i++)
+		s->chips[i].announced = false;
+	s->announced = false;
 	s->birth = 0;
 }
 
@@ -231,10 +234,15 @@ void stream_live(struct stream *s, bool live)
 	stream_changes(s, NULL, 0);
 }
 
+/* Who has the last value in mind unlearns it, and who comes later finds nothing. */
 static bool pump_gone(struct stream *s)
 {
+	static const char none[] = "{\"v\":null,\"good\":false,\"q\":4,\"why\":\"not configured\"}";
+
 	while (s->gone_count) {
-		if (!stream_put_text(s, s->gone[s->gone_count - 1], "", true))
+		const char *topic = s->gone[s->gone_count - 1];
+
+		if (!stream_put_text(s, topic, none, true) || !stream_put_text(s, topic, "", true))
 			return false;
 		free(s->gone[--s->gone_count]);
 	}
@@ -256,11 +264,21 @@ static bool pump_rows(struct stream *s)
 	return true;
 }
 
-/* The births of devices go before their values, and values before "the node is there". */
-bool stream_pump(struct stream *s)
+static bool pump_birth(struct stream *s)
 {
 	bool more = true;
 
+	while (s->live && s->birth >= 0) {
+		if (!s->profile->birth(s, s->birth, &more))
+			return false;
+		s->birth = more ? s->birth + 1 : -1;
+	}
+	return true;
+}
+
+/* The births of devices go before their values, and values before "the node is there". */
+bool stream_pump(struct stream *s)
+{
 	if (!pump_gone(s))
 		return false;
 	if (!s->live && s->online) {
@@ -268,12 +286,8 @@ bool stream_pump(struct stream *s)
 			return false;
 		s->online = false;
 	}
-	while (s->live && s->birth >= 0) {
-		if (!s->profile->birth(s, s->birth, &more))
-			return false;
-		s->birth = more ? s->birth + 1 : -1;
-	}
-	if (!pump_rows(s))
+	/* a value may show that a chip is there, which has to be announced then */
+	if (!pump_birth(s) || !pump_rows(s) || !pump_birth(s))
 		return false;
 	if (s->live && !s->online) {
 		if (!s->profile->state(s, true))

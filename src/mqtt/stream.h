@@ -27,12 +27,11 @@ struct row {
 	int id;   /* of ows_find() */
 	int chip; /* its chip; -1: none */
 	bool queued, away, alarms;
-	bool said;             /* once at least since the birth */
-	uint64_t print;        /* a hash of what was said */
-	int64_t said_ns;       /* when */
-	uint32_t alarm_print;  /* of its limit alarm; 0: not said */
-	uint64_t alarms_count; /* events */
-	bool was_on;           /* of a key: it was there */
+	bool said;            /* once at least since the birth */
+	uint64_t print;       /* a hash of what was said */
+	int64_t said_ns;      /* when */
+	uint32_t alarm_print; /* of its limit alarm; 0: not said */
+	bool key_away;        /* of a key: it was looked for, and not there */
 };
 /* A device of the wire. */
 struct chip {
@@ -40,6 +39,7 @@ struct chip {
 	char *topic;             /* whether it is there */
 	int rows, away;          /* signals, and those that cannot reach it */
 	bool seen;               /* it was there once, since owsd-mqtt has started */
+	bool announced;          /* by the birth */
 	bool said, online;       /* what was said */
 };
 
@@ -51,6 +51,9 @@ struct stream {
 	bool write;
 	struct ows *h;
 	const char *instance;
+	/* The key Class of a signal; "": none */
+	const char *(*class_of)(void *ctx, const char *name);
+	void *class_ctx;
 	struct row *rows;
 	int count;
 	struct chip *chips;
@@ -60,6 +63,7 @@ struct stream {
 	int gone_count;
 	bool live;      /* owsd is there: else no value is good */
 	int birth;      /* the next message of the birth; -1: all is said */
+	bool announced; /* the node itself, by the birth */
 	bool online;    /* it was said that the node is there */
 	char *health;   /* as it was said last */
 	bool clock_set; /* wall-clock times can be believed */

@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: MIT */
+/* How owsd, its targets and the broker do, as one retained message; and as entities of a device. */
+#ifndef MQTT_HEALTH_H
+#define MQTT_HEALTH_H
+
+#include "src/mqtt/stream.h"
+
+struct health {
+	const char *trouble; /* of the broker or of commands, with the remedy; "": none */
+	uint64_t connects, refused_messages, commands, refused_commands;
+};
+/* Publish it if it is another than before. False: the outlet does not take it now. */
+bool health_say(struct stream *s, const struct health *health);
+/* Components of Home Assistant's discovery. */
+void health_entities_json(struct json *json, const struct stream *s, const char *owner);
+
+#endif

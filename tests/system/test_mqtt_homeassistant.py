@@ -1,0 +1,133 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""What owsd-mqtt says to Home Assistant: a device for each chip, by its id, and one of the node."""
+
+import json
+import signal
+import subprocess
+
+import owsdtest
+from mqtthouse import ABSENT, RELAY, ROOM, SENSOR, SWITCH, House, item, program
+from owsdtest import raw, until
+
+KEY = "01.213DDC8770E9"
+CHIP = "homeassistant/device/owsd_28_A0B1C2000001/config"
+PORTS = "homeassistant/device/owsd_29_A0B1C2000004/config"
+NODE = "homeassistant/device/owsd_pi7/config"
+# Keys of Home Assistant's schemas, as abbreviations of homeassistant/components/mqtt/abbreviations.py
+ALLOWED = {"p", "uniq_id", "name", "stat_t", "val_tpl", "dev_cla", "unit_of_meas", "stat_cla", "exp_aft",
+           "sug_dsp_prc", "json_attr_t", "json_attr_tpl", "cmd_t", "pl_on", "pl_off", "min", "max", "step",
+           "mode", "stat_val_tpl", "on_cmd_type", "bri_cmd_t", "bri_stat_t", "bri_val_tpl", "bri_scl",
+           "pl_open", "pl_cls", "pl_stop", "set_pos_t", "pos_t", "pos_tpl", "pos_clsd", "pos_open", "avty",
+           "evt_typ", "t", "ent_cat"}
+
+
+def device(house, topic):
+    text = until(lambda: house.listener.last(topic), 20, f"{topic} is announced")
+    message = json.loads(text)
+    for id_, component in message["cmps"].items():
+        assert set(component) <= ALLOWED, (id_, set(component) - ALLOWED)
+        assert component.get("uniq_id", id_) == id_
+    return message
+
+
+def publish(house, topic, text, *options):
+    subprocess.run([program("mosquitto_pub"), "-p", str(house.broker.port), "-q", "1", "-t", topic, "-m", text,
+                    *options], check=True, timeout=owsdtest.PATIENCE)
+
+
+def test_each_chip_that_was_there_is_a_device_by_its_id_behind_the_node(scene):
+    house = House(scene, {**ROOM, "StaleAfter": 10, "LimitH": 30, "Decimals": 1}, RELAY, ABSENT)
+    message = device(house, CHIP)
+    assert message["dev"] == {"ids": [SENSOR], "name": "room", "mdl": "DS18B20", "via_device": "owsd_pi7"}, message
+    assert message["o"]["name"] == "owsd"
+    assert [a["t"] for a in message["avty"]] == ["owsd/pi7/state", f"owsd/pi7/chip/{SENSOR}"]
+    assert message["avty_mode"] == "all" and message["qos"] == 1
+    room = message["cmps"]["owsd_28_A0B1C2000001_temperature"]
+    assert room["p"] == "sensor" and room["name"] is None and room["stat_t"] == "owsd/pi7/room"
+    assert (room["dev_cla"], room["unit_of_meas"], room["stat_cla"]) == ("temperature", "°C", "measurement"), room
+    assert room["sug_dsp_prc"] == 1 and room["exp_aft"] == 20, room
+    assert room["val_tpl"] == "{{ value_json.v if value_json.good else None }}"
+    alarm = message["cmps"]["owsd_28_A0B1C2000001_temperature_alarm"]
+    assert (alarm["p"], alarm["dev_cla"], alarm["stat_t"]) == ("binary_sensor", "problem", "owsd/pi7/room/alarm")
+    node = device(house, NODE)
+    assert node["dev"]["ids"] == ["owsd_pi7"] and [a["t"] for a in node["avty"]] == ["owsd/pi7/state"]
+    assert {c["stat_t"] for c in node["cmps"].values()} == {"owsd/pi7/health"}
+    health = house.arrives("health", lambda m: m["down"] == 0)
+    assert health["signals"] == 3 and [t["state"] for t in health["targets"]] == ["up"], health
+    # without Write an output is only shown; who was never there is not announced
+    relay = device(house, PORTS)["cmps"]["owsd_29_A0B1C2000004_PIO_0"]
+    assert relay["p"] == "binary_sensor" and "cmd_t" not in relay, relay
+    house.arrives("absent", lambda m: m["q"] == 8)
+    assert "homeassistant/device/owsd_28_FFFFFFFFFFFF/config" not in house.kept("homeassistant/#")
+
+
+def test_outputs_are_what_their_class_says_once_writing_is_on(scene):
+    def out(number, kind, **more):
+        return item(f"o{number}", f"/{SWITCH}/PIO.{number}", kind, "output", **more)
+    house = House(scene, out(0, "bool"), out(1, "bool", Class="light"), out(2, "bool", Class="cover"),
+                  item("all", f"/{SWITCH}/PIO.BYTE", "byte", "output", Max=100),
+                  item("door", f"/{SWITCH}/sensed.4", "bool", Class="door"),
+                  item("kind", f"/{SWITCH}/type", "string"), Write=raw("on"))
+    found = device(house, PORTS)
+    parts = {c["stat_t"].rsplit("/", 1)[1]: c for c in found["cmps"].values()}
+    assert {n: c["p"] for n, c in parts.items()} == {
+        "o0": "switch", "o1": "light", "o2": "cover", "all": "number", "door": "binary_sensor",
+        "kind": "sensor"}, parts
+    assert found["dev"]["name"] == f"DS2408 {SWITCH}" and parts["o0"]["name"] == "o0"
+    assert all(parts[n]["cmd_t"] == f"owsd/pi7/{n}/set" for n in ("o0", "o1", "o2", "all"))
+    assert (parts["all"]["min"], parts["all"]["max"], parts["all"]["step"]) == (0, 100, 1)
+    assert parts["door"]["dev_cla"] == "door" and "dev_cla" not in parts["o1"]
+    assert parts["o2"]["pl_stop"] is None
+
+
+def test_all_is_announced_again_when_home_assistant_starts_and_no_more_often(scene):
+    house = House(scene, ROOM)
+    device(house, CHIP)
+    house.says("owsd/pi7/state", "online")
+    before = len(house.listener.all(CHIP))
+    publish(house, "homeassistant/status", "offline")
+    publish(house, "homeassistant/status", "online")
+    until(lambda: len(house.listener.all(CHIP)) > before, 20, "it is announced again")
+    for _ in range(20):
+        publish(house, "homeassistant/status", "online")
+    assert len(house.listener.all(CHIP)) <= before + 2, house.listener.all(CHIP)
+
+
+def test_a_rename_keeps_the_entity_and_moves_its_topic(scene):
+    house = House(scene, ROOM)
+    first = device(house, CHIP)
+    house.daemon.config.write_text(house.text({**ROOM, "Name": "cellar"}))
+    house.daemon.signal(signal.SIGHUP)
+    house.arrives("cellar", lambda m: m["v"] == 21.5)
+    until(lambda: "owsd/pi7/cellar" in house.listener.last(CHIP), 20, "it is announced again")
+    second = device(house, CHIP)
+    assert list(first["cmps"]) == list(second["cmps"]) and first["dev"]["ids"] == second["dev"]["ids"]
+    # the last thing that the old topic said is no number
+    said = [p for _, t, p in house.listener.all("owsd/pi7/room")]
+    assert said[-1] == "" and json.loads(said[-2])["v"] is None, said
+
+
+def test_a_key_is_a_tag_each_time_it_comes(scene):
+    house = House(scene, item("key", f"/{KEY}/present", "bool"), ROOM,
+                  wire=f"DS2401 {KEY} as key\nat 3s every 5s unplug key for 2s\n")
+    message = device(house, "homeassistant/device/owsd_01_213DDC8770E9/config")
+    tags = [c for c in message["cmps"].values() if c["p"] == "tag"]
+    assert tags == [{"p": "tag", "t": "owsd/pi7/key/tag"}], message
+    # it was there at the start, and that is no coming
+    assert not house.listener.all("owsd/pi7/key/tag")
+    until(lambda: house.last("key") and not house.last("key")["v"], 20, "it is away")
+    house.says("owsd/pi7/key/tag", KEY)
+
+
+def test_another_place_of_discovery_and_none(scene):
+    house = House(scene, ROOM, Discovery="ha/found")
+    device(house, CHIP.replace("homeassistant", "ha/found"))
+    house.daemon.config.write_text(house.text(ROOM, Profile="plain", Topic="plain"))
+    house.face.signal(signal.SIGHUP)
+    until(lambda: house.listener.last("plain/pi7/state") == "online", 20, "the profile is another")
+    assert not [t for _, t, _ in house.listener.all() if t.startswith("homeassistant")]
+
+
+if __name__ == "__main__":
+    owsdtest.main(at_once=4)
