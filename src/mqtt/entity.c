@@ -99,8 +99,7 @@ static void put_double(struct json *json, const char *key, double number)
 	json_number(json, key, text);
 }
 
-/* The least and the greatest value: of the configuration, else of the type. */
-static void range_of(const struct ows_info *info, double *least, double *most)
+void entity_range(const struct ows_info *info, double *least, double *most)
 {
 	static const double lows[] = {[OWS_SHORT] = -32768,
 	                              [OWS_LONG] = -2147483648.0,
@@ -220,7 +219,7 @@ static void put_number(struct json *json, const struct row *row)
 {
 	double least, most;
 
-	range_of(&row->info, &least, &most);
+	entity_range(&row->info, &least, &most);
 	put_topic(json, "cmd_t", row, "/set");
 	put_double(json, "min", least);
 	put_double(json, "max", most);
@@ -241,7 +240,7 @@ static void put_light(struct json *json, const struct row *row)
 		put_commands(json, row, "pl_on", "on", "pl_off", "off");
 		return;
 	}
-	range_of(&row->info, &least, &most);
+	entity_range(&row->info, &least, &most);
 	put_commands(json, row, "pl_on", "on", "pl_off", "off");
 	json_string(json, "on_cmd_type", "brightness");
 	put_topic(json, "bri_cmd_t", row, "/set");
@@ -259,7 +258,7 @@ static void put_cover(struct json *json, const struct stream *s, const struct ro
 	json_null(json, "pl_stop");
 	if (row->info.type == OWS_BOOL)
 		return;
-	range_of(&row->info, &least, &most);
+	entity_range(&row->info, &least, &most);
 	put_topic(json, "set_pos_t", row, "/set");
 	put_topic(json, "pos_t", row, "");
 	json_string(json, "pos_tpl", kinds[ENTITY_SENSOR].template);

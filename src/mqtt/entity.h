@@ -20,6 +20,9 @@ enum entity_kind {
 /* class: of the item; write: commands are taken. Pure. */
 enum entity_kind entity_kind(const struct ows_info *info, const char *class, bool write);
 
+/* The least and the greatest value: of the configuration, else of the type. Not of strings. */
+void entity_range(const struct ows_info *info, double *least, double *most);
+
 /*
  * Write the components of a row: the signal itself, its limit alarm, its events, its key. owner
  * begins the unique ids; alone: the device has no other signal, and gives its name.

@@ -39,6 +39,10 @@ static void on_connected(void *ctx)
 	m->stream.profile->listen(&m->stream, topic);
 	if (*topic)
 		broker_subscribe(&m->broker, topic);
+	if (m->options.write) {
+		snprintf(topic, sizeof(topic), "%s/+/set", m->options.prefix);
+		broker_subscribe(&m->broker, topic);
+	}
 	m->health_ns = 0;
 	stream_begin(&m->stream);
 }
@@ -46,7 +50,13 @@ static void on_connected(void *ctx)
 static void on_message(void *ctx, const struct broker_message *message)
 {
 	struct mqtt *m = ctx;
+	char name[TOPIC_NAME], place[OPTION_SIZE + 8];
 
+	if (m->options.write && topic_is_command(m->options.prefix, message->topic, name)) {
+		snprintf(place, sizeof(place), "mqtt:%s", m->options.ways[m->broker.way].host);
+		commands_take(&m->commands, name, message, place, ows_now());
+		return;
+	}
 	if (m->stream.profile->heard(&m->stream, message->topic, message->text, message->len))
 		m->asked = true;
 }
@@ -118,6 +128,9 @@ static void begin(struct face *face, int64_t now_ns)
 	m->broker.options = &m->options;
 	m->broker.ops = &broker_ops;
 	m->broker.ctx = m;
+	m->commands.log = face->log;
+	m->commands.instance = face->arguments->instance;
+	m->commands.program = face->ops->program;
 	broker_begin(&m->broker, now_ns);
 }
 
@@ -128,6 +141,7 @@ static void end(struct face *face)
 	if (m->broker.state == BROKER_CONNECTED)
 		m->stream.profile->state(&m->stream, false);
 	broker_end(&m->broker);
+	commands_close(&m->commands);
 }
 
 static void make_rows(struct face *face)
@@ -170,7 +184,9 @@ static void pump(struct face *face, int64_t now_ns)
 		m->asked = false;
 	}
 	if (stream_pump(&m->stream) && face->live && now_ns >= m->health_ns &&
-	    health_say(&m->stream, &(struct health){.trouble = "",
+	    health_say(&m->stream, &(struct health){.trouble = m->commands.trouble,
+	                                            .commands = m->commands.taken,
+	                                            .refused_commands = m->commands.refused,
 	                                            .connects = m->broker.connects,
 	                                            .refused_messages = m->broker.refusals}))
 		m->health_ns = now_ns + HEALTH_NS;

@@ -3,7 +3,7 @@
  * owsd-mqtt: the stream of an instance's signals, a broker, and the commands that come from it.
  *
  * Room src/mqtt: the program owsd-mqtt: publishes signals to an MQTT broker, and takes commands
- * from it. Uses src/face, src/show, src/config, src/libows, src/signal, hal/bus.
+ * from it. Uses src/face, src/show, src/config, src/text, src/libows, src/signal, hal/bus.
  */
 #ifndef MQTT_MQTT_H
 #define MQTT_MQTT_H
@@ -11,12 +11,14 @@
 #include "src/face/face.h"
 #include "src/face/wall_clock.h"
 #include "src/mqtt/broker.h"
+#include "src/mqtt/commands.h"
 #include "src/mqtt/stream.h"
 
 struct mqtt {
 	struct mqtt_options options;
 	struct stream stream;
 	struct broker broker;
+	struct commands commands;
 	struct wall_clock clock;
 	int64_t health_ns;    /* when to look at it again */
 	int64_t announced_ns; /* when somebody asked for the birth last */

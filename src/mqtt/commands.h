@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Commands that came from the broker: who may publish there is the broker's to say, what owsd-mqtt
+ * may set is owsd's. What is wrong with a command is a line of the log, and nothing else happens.
+ */
+#ifndef MQTT_COMMANDS_H
+#define MQTT_COMMANDS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "src/mqtt/broker.h"
+#include "src/text/log.h"
+
+struct ows;
+
+#define COMMANDS_A_SECOND 50
+#define COMMANDS_BURST 100
+#define COMMANDS_TEXT 1024 /* bytes of a value */
+
+struct commands {
+	struct log *log;
+	const char *instance, *program;
+	struct ows *h;                 /* NULL: not connected */
+	int64_t open_ns;               /* when it may be tried again */
+	int64_t counted_ns, credit_ns; /* what may come at once */
+	struct log_rate log_rate;
+	uint64_t taken, refused;
+	char trouble[BROKER_WORDS]; /* the last refusal, and what to do */
+};
+
+/*
+ * The command of a message at a topic of the signal name. place: for whom, if the message does not
+ * say it. Waits for owsd when it connects, two seconds at most, once a second.
+ */
+void commands_take(struct commands *c, const char *name, const struct broker_message *message,
+                   const char *place, int64_t now_ns);
+void commands_close(struct commands *c);
+
+#endif

@@ -1,0 +1,140 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Commands from the broker: those that may come have their effect and their name in the journal, and
+of all others nothing is left but a line of the log."""
+
+import subprocess
+
+import owsdtest
+from mqtthouse import RELAY, ROOM, SWITCH, House, item, program
+from owsdtest import logged, raw, until
+
+DIAL = item("dial", f"/{SWITCH}/PIO.BYTE", "byte", "output", Max=200)
+ON = {"Write": raw("on")}
+
+
+def publish(house, topic, text, *options, status=0):
+    done = subprocess.run([program("mosquitto_pub"), "-p", str(house.broker.port), "-q", "1", "-t", topic,
+                           *(["-m", text] if isinstance(text, str) and text else ["-s"] if text else ["-n"]),
+                           *options], input=None if isinstance(text, str) else text, timeout=owsdtest.PATIENCE,
+                          capture_output=True)
+    assert done.returncode == status, done
+
+
+def command(house, name, text, *options):
+    publish(house, f"owsd/pi7/{name}/set", text, *options)
+
+
+def journal(house):
+    done = house.scene.owsctl(house.daemon, "--json", "journal")
+    assert done.returncode == 0, done
+    return done.stdout
+
+
+def ready(scene, *items, **keys):
+    house = House(scene, *(items or (ROOM, RELAY)), **{**ON, **keys})
+    house.says("owsd/pi7/state", "online")
+    until(lambda: "owsd/pi7/+/set (QoS 1)" in house.broker.process.log(), 20, "it listens to commands")
+    return house
+
+
+def test_a_command_sets_the_output_and_the_journal_has_for_whom(scene):
+    house = ready(scene, ROOM, RELAY, DIAL)
+    for text, value in (("on", True), ("off", False), ("1", True), ("false", False)):
+        command(house, "relay", text)
+        house.arrives("relay", lambda m, v=value: m["v"] is v and m["good"])
+    command(house, "relay", "on", "-V", "5", "-D", "publish", "user-property", "person", "anna")
+    house.arrives("relay", lambda m: m["v"] is True)
+    until(lambda: '"anna"' in journal(house), 20, lambda: journal(house))
+    assert '"mqtt:127.0.0.1"' in journal(house) and '"owsd-mqtt"' in journal(house), journal(house)
+    command(house, "dial", "17")
+    house.arrives("dial", lambda m: m["v"] == 17)
+    # of a number: all of it, or nothing
+    command(house, "dial", "on")
+    house.arrives("dial", lambda m: m["v"] == 200)
+    command(house, "dial", "off")
+    house.arrives("dial", lambda m: m["v"] == 0)
+    # a person that cannot stand in a journal is none
+    command(house, "relay", "off", "-V", "5", "-D", "publish", "user-property", "person", "a b\u202e")
+    house.arrives("relay", lambda m: m["v"] is False)
+    assert "a b" not in journal(house)
+
+
+def test_without_write_nobody_listens_to_commands(scene):
+    house = House(scene, ROOM, RELAY)
+    house.says("owsd/pi7/state", "online")
+    house.set("relay", 0)
+    command(house, "relay", "on")
+    # what is published after it has come shows that it has come too
+    house.set("relay", 1)
+    house.arrives("relay", lambda m: m["v"] is True)
+    assert "owsd-mqtt" not in journal(house) and "/set (QoS" not in house.broker.process.log()
+
+
+def test_what_is_no_command_is_a_line_of_the_log_and_nothing_else(scene):
+    house = ready(scene, ROOM, RELAY, DIAL)
+    house.set("relay", 0)
+    house.set("dial", 7)
+    house.arrives("dial", lambda m: m["v"] == 7)
+    cases = [("relay", "2"), ("relay", "toggle"), ("dial", "201"), ("dial", "1.5"),
+             ("dial", "nan"), ("dial", '{"v":1}'), ("room", "20"), ("nobody", "1"), ("relay_WriteEnable", "1"),
+             ("_DGNRESET", "1"), ("dial", "9" * 2000), ("dial", b"1\0002"), ("dial", b"\xff\xfe"), ("relay", "")]
+    for name, text in cases:
+        command(house, name, text)
+    health = house.arrives("health", lambda m: m["commands"] + m["commands_refused"] == len(cases))
+    assert health["commands"] == 0, health
+    assert "it is empty" in health["trouble"], health
+    # the log has the first, and the others in few lines
+    assert "command to relay refused: it is no value" in house.face.log(), house.face.log()
+    assert scene.get(house.daemon, "dial") == "7" and "owsd-mqtt" not in journal(house)
+    assert "relay_WriteEnable" not in scene.owsctl(house.daemon, "journal").stdout
+    command(house, "dial", "8")
+    house.arrives("dial", lambda m: m["v"] == 8)
+
+
+def test_a_retained_command_of_last_week_and_one_of_now_are_refused(scene):
+    house = House(scene, ROOM, RELAY)
+    house.set("relay", 0)
+    house.face.stop()
+    command(house, "relay", "on", "-r")
+    house.daemon.config.write_text(house.text(ROOM, RELAY, **ON))
+    house.face = house.start()
+    logged(house.face, "command to relay refused: it is retained")
+    command(house, "relay", "on", "-r")
+    until(lambda: (house.last("health") or {}).get("commands_refused", 0) >= 2, 20,
+          lambda: house.last("health"))
+    assert scene.get(house.daemon, "relay") == "0" and "owsd-mqtt" not in journal(house)
+
+
+def test_a_flood_is_cut_and_logged_in_a_few_lines(scene):
+    house = ready(scene, ROOM, DIAL)
+    lines = "".join(f"{n % 200}\n" for n in range(5000))
+    subprocess.run([program("mosquitto_pub"), "-p", str(house.broker.port), "-q", "0", "-t",
+                    "owsd/pi7/dial/set", "-l"], input=lines, text=True, check=True, timeout=owsdtest.PATIENCE)
+    logged(house.face, "more than 50 commands in a second")
+    until(lambda: (house.last("health") or {}).get("commands_refused", 0) > 1000, 30,
+          lambda: house.last("health"))
+    assert house.face.running() and len(house.face.log().splitlines()) < 400, len(house.face.log().splitlines())
+    command(house, "dial", "11")
+    until(lambda: scene.get(house.daemon, "dial") == "11", 20, "commands are taken again")
+
+
+def test_commands_go_on_after_a_reload_and_a_restart_of_owsd(scene):
+    house = ready(scene)
+    command(house, "relay", "on")
+    house.arrives("relay", lambda m: m["v"] is True)
+    house.daemon.stop()
+    house.says("owsd/pi7/state", "offline")
+    command(house, "relay", "off")
+    logged(house.face, "owsd does not answer")
+    house.daemon = scene.owsd(house.daemon.config, name=house.daemon.name)
+    house.says("owsd/pi7/state", "online")
+
+    def off():
+        command(house, "relay", "off")
+        return (house.last("relay") or {}).get("v") is False
+    until(off, 20, "the relay is off", step=0.3)
+
+
+if __name__ == "__main__":
+    owsdtest.main(at_once=4)
