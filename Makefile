@@ -244,13 +244,14 @@ FACES    := owsd-config $(if $(SQLITE),owsd-recorder) $(if $(CURL),owsd-influx) 
             $(if $(MOSQUITTO),owsd-mqtt)
 PROGRAMS := $(B)/owsd $(B)/owsctl $(FACES:%=$(B)/%)
 LIBRARIES := libows $(if $(SQLITE),libows-history)
+PYTHON_MADE := $(if $(PYTHON),$(B)/python/ows.py $(LIBRARIES:%=$(B)/python/%.so.$(SOMAJOR)))
 LIBRARY  := $(foreach l,$(LIBRARIES),$(B)/$(l).so.$(VERSION) $(B)/$(l).a $(B)/$(l).pc)
 
 .PHONY: all unit soak system test run bench install uninstall install-service uninstall-service \
         deb test-package test-service test-fresh dist test-dist clean \
         examples unit-programs benches system-programs diagrams compare properties-page check check-all \
         touched FORCE
-all: $(PROGRAMS) $(LIBRARY) $(B)/core.a $(B)/with/libraries
+all: $(PROGRAMS) $(LIBRARY) $(PYTHON_MADE) $(B)/core.a $(B)/with/libraries
 
 # Two makes may do this at once
 $(WITH): $(B)/with/%:
@@ -325,6 +326,23 @@ $(LIBRARIES:%=$(B)/%.a): $(B)/%.a:
 	$(Q)$(OBJCOPY) --wildcard --keep-global-symbol='$($*_EXPORTS)' $(B)/libows/$*-one.o
 	$(Q)$(AR) rcs $@ $(B)/libows/$*-one.o
 
+# What Python loads: ows.py, and its libraries beside it. One that this machine's Python cannot load (of
+# a sanitizer, of another processor) is compiled again, for this machine
+HOSTCC   ?= cc
+$(B)/python/ows.py: src/libows/ows.py
+	@mkdir -p $(@D)
+	@ln -sf $(abspath $<) $@
+$(LIBRARIES:%=$(B)/python/%.so.$(SOMAJOR)): $(B)/python/%.so.$(SOMAJOR): $(B)/%.so.$(VERSION)
+	@mkdir -p $(@D)
+	@ln -sf ../$(@F) $@
+	$(if $(filter libows,$*),@! command -v python3 >/dev/null || $(call python_loads,$@) || $(call for_python,$@) || \
+	    echo 'make: $(HOSTCC) makes no libows for python3: ows.py in $(@D) will not work' >&2)
+
+python_loads = python3 -c 'import ctypes; ctypes.CDLL("$(abspath $(1))")' 2>/dev/null
+for_python   = { rm $(1) && $(HOSTCC) -std=c17 -O1 $(CPP_COMMON) -shared -fPIC -ffunction-sections \
+    -Wl,--gc-sections,-z,defs -Wl,--version-script,$(B)/libows/libows.map -o $(1) $(LIBOWS) \
+    $(wildcard src/shm/*.c src/signal/*.c) -lm -pthread; }
+
 # PREFIX may differ from one call to the next, and two makes may do this at once
 libows_SAYS := Signals of owsd, the 1-Wire daemon, in shared memory
 libows-history_SAYS := What the signals of owsd, the 1-Wire daemon, were, as its recorder kept it
@@ -368,6 +386,8 @@ $(B)/tests/unit/%.o: tests/unit/%.c $(UNITY)/unity.h $(B)/with/cc
 $(foreach t,$(UNIT_SRC),$(eval $(B)/unit/$(basename $(notdir $(t))): $(call obj,$(t))))
 $(filter-out %/test_endurance,$(UNIT)): $(B)/unit/unity.o $(call obj,$(UNIT_AID)) $(B)/core.a $(B)/with/ld
 	$(call link)
+
+$(patsubst %,$(B)/unit/test_%,python recorded recorded_later): | $(PYTHON_MADE)
 
 $(B)/unit/endurance/%.o: tests/endurance/%.c $(UNITY)/unity.h $(B)/with/cc
 	$(call compile,$(UNITY_FLAGS))

@@ -38,6 +38,8 @@ SOURCE = pathlib.Path(os.environ.get("OWSD_SOURCE", pathlib.Path(__file__).resol
 BUILD = pathlib.Path(os.environ.get("OWSD_BUILD", SOURCE / "build"))
 OWSD = BUILD / "owsd"
 OWSCTL = BUILD / "owsctl"
+PYTHON = BUILD / "python"  # for PYTHONPATH; `import ows` after this module finds it
+sys.path.insert(0, str(PYTHON))
 NOP, READ, WRITE, DIRALL = 1, 2, 3, 7
 # The longest that a busy machine, a sanitizer and other tests beside may make of the seconds of a wait
 PATIENCE = 90

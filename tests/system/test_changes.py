@@ -3,14 +3,12 @@
 """Changes of a running owsd: each is given, so are stale values, its loss, its return, a reload."""
 
 import signal
-import sys
 import time
 
 import owsdtest
 from owsdtest import raw, until
 
-sys.path.insert(0, str(owsdtest.SOURCE / "src/libows"))
-import ows  # noqa: E402
+import ows  # of owsdtest.PYTHON
 
 ITEMS = [dict(Name="room", Path="/28.A0B1C2000001/temperature", Type=raw("double"), IO=raw("input")),
          dict(Name="relays", Path="/29.A0B1C2000004/PIO.BYTE", Type=raw("byte"), IO=raw("output")),

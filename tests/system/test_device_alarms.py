@@ -86,7 +86,7 @@ def test_reading_the_alarm_flag_clears_it_for_this_reader_and_for_no_other(scene
                 .stdout.strip() for _ in range(4)]
 
     def python():
-        done = subprocess.run([sys.executable, "-c", PYTHON, owsdtest.SOURCE / "src/libows", daemon.name],
+        done = subprocess.run([sys.executable, "-c", PYTHON, owsdtest.PYTHON, daemon.name],
                               capture_output=True, text=True, check=True, timeout=60)
         return done.stdout.split()
 

@@ -124,7 +124,7 @@ class Stage:
                 "SERVED": str(self.port), "HOME": str(self.path), "USER": "user", "LANG": "C.UTF-8",
                 "OWSD_SOURCE": str(SOURCE), "OWSD_BUILD": str(owsdtest.BUILD),
                 "OWSD_BOARDS": str(SOURCE / "board/boards"), "TMPDIR": str(self.path),
-                "LD_LIBRARY_PATH": str(owsdtest.BUILD), "PYTHONPATH": str(SOURCE / "src/libows"), "PYTHONDONTWRITEBYTECODE": "1",
+                "LD_LIBRARY_PATH": str(owsdtest.BUILD), "PYTHONPATH": str(owsdtest.PYTHON), "PYTHONDONTWRITEBYTECODE": "1",
                 **{k: v for k, v in os.environ.items() if "SAN_OPTIONS" in k or k in ("EXTRA_CFLAGS", "OWS_DIR")}}
 
     def own(self, text):

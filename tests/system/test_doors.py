@@ -89,7 +89,6 @@ def attack(scene, who, what, path, number=0):
 
 def controller(scene, daemon):
     """A program that commands and promises to beat for ten minutes."""
-    reached(owsdtest.SOURCE / "src/libows/ows.py")
     program = scene.start([*private.as_user("plc"), PY, "-c",
                            CONTROLLER.format(path=str(programs()), name=daemon.name)])
     owsdtest.logged(program, "controls")

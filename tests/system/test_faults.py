@@ -5,12 +5,14 @@
 import json
 import os
 import random
-import sys
 import time
 
+import byhand
 import owsdtest
 import peer
 from owsdtest import open_files, raw, settled, until
+
+import ows  # of owsdtest.PYTHON
 
 ROOM = "/28.AABBCCDDEE00/temperature"
 HALL = "/28.AABBCCDDEE01/temperature"
@@ -189,21 +191,15 @@ def good_or_disabled(scene, daemon):
 
 
 def test_rubbish_in_a_givers_memory_harms_nobody(scene):
-    sys.path.insert(0, str(owsdtest.SOURCE / "src/libows"))
-    import ows
     seed = random.randrange(1 << 32)
     print("seed", seed)
     rng = random.Random(seed)
     with lying_peer() as server:
         daemon = scene.owsd(house(server))
         until(lambda: good(scene, daemon), 5)
-        with ows.Ows(daemon.name, control=True) as giver:
-            m, ring = giver.memory.memory, giver.door.ring
+        with byhand.Giver(daemon.name) as giver:
             for _ in range(200):
-                at = rng.randrange(len(m))
-                n = min(rng.choice((1, 4, 64, 4096)), len(m) - at)
-                m[at:at + n] = rng.randbytes(n)
-                ring()
+                giver.scribble(rng)
                 time.sleep(0.005)  # rubbish comes at this pace
         assert daemon.running()
         # what rubbish can still command is what its type can hold
@@ -233,8 +229,6 @@ def test_a_period_longer_than_the_watchdogs_time_starves_no_watchdog(scene):
 
 
 def test_readers_of_a_killed_owsd_see_whole_samples_that_grow_old(scene):
-    sys.path.insert(0, str(owsdtest.SOURCE / "src/libows"))
-    import ows
     with lying_peer() as server:
         daemon = scene.owsd(house(server).replace("Period                  0.05",
                                                   "Period                  0.001"))
@@ -334,7 +328,7 @@ with opened() as s:
         echo "again: 5"
     """)
     done = scene._run(["unshare", "-rm", "env", f"owsd={owsdtest.OWSD}", f"owsctl={owsdtest.OWSCTL}",
-                       f"PYTHONPATH={owsdtest.SOURCE / 'src/libows'}",
+                       f"PYTHONPATH={owsdtest.PYTHON}",
                        "sh", script, file, giver], 200)
     if done.returncode == 77 or done.stderr.startswith("unshare"):
         owsdtest.skip("no user namespaces: " + done.stderr.strip())

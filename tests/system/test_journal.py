@@ -6,14 +6,12 @@ import json
 import os
 import pwd
 import signal
-import sys
 
 import owsdtest
 import peer
 from owsdtest import until
 
-sys.path.insert(0, str(owsdtest.SOURCE / "src/libows"))
-import ows  # noqa: E402
+import ows  # of owsdtest.PYTHON
 
 FREEZER = "/28.000000000004/temperature9"
 PUMP = "/29.000000000001/PIO.0"

@@ -160,7 +160,7 @@ def test_what_a_living_program_commanded_outlives_owsd_by_name_type_and_path(sce
     daemon = scene.owsd(config(("high", "/temphigh"), ("low", "/templow")), name=name)
     program = scene.start(["python3", "-c", f"""
 import sys, time
-sys.path.insert(0, {str(owsdtest.SOURCE / "src/libows")!r})
+sys.path.insert(0, {str(owsdtest.PYTHON)!r})
 import ows
 h = ows.Ows({daemon.name!r}, control=True)
 h.beat(2000)
@@ -193,7 +193,7 @@ def test_an_output_goes_to_its_safe_value_when_its_program_stops_beating(scene):
              SafeValue="11")], Period=0.05))
     program = scene.start(["python3", "-c", f"""
 import sys, time
-sys.path.insert(0, {str(owsdtest.SOURCE / "src/libows")!r})
+sys.path.insert(0, {str(owsdtest.PYTHON)!r})
 import ows
 h = ows.Ows({daemon.name!r}, control=True)
 while True:

@@ -92,7 +92,7 @@ class Plant:
         self.environment = {"OWS_STATE_DIR": str(scene.path / "state")}
         self.daemon = scene.owsd(self.config, env=self.environment)
         self.giver = scene.start([sys.executable, "-c", GIVER, self.daemon.name, str(beats), fate,
-                                  *NAMES], {"PYTHONPATH": str(owsdtest.SOURCE / "src/libows")})
+                                  *NAMES], {"PYTHONPATH": str(owsdtest.PYTHON)})
         owsdtest.until(lambda: "set" in self.giver.log(), 20, self.giver.log)
         owsdtest.until(lambda: all(server[path] == "1" for path in ALL), 20, "all are on")
         if fate == "once":
@@ -175,7 +175,7 @@ def test_a_program_that_connects_after_one_that_ended_does_not_bring_its_command
         with peer.Peer(values()) as server:
             plant = Plant(scene, server, 5.0, "once")
             follower = scene.start([sys.executable, "-c", FOLLOWER, plant.daemon.name],
-                                   {"PYTHONPATH": str(owsdtest.SOURCE / "src/libows")})
+                                   {"PYTHONPATH": str(owsdtest.PYTHON)})
             owsdtest.until(lambda: "beats" in follower.log(), 20, follower.log)
             plant.again(ended)
             plant.writes(ENDED, ended)

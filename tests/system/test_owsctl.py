@@ -12,14 +12,12 @@ import select
 import signal
 import struct
 import subprocess
-import sys
 import termios
 
 import owsdtest
 import peer
 
-sys.path.insert(0, str(owsdtest.SOURCE / "src/libows"))
-import ows  # noqa: E402
+import ows  # of owsdtest.PYTHON
 
 
 def house(scene, **driver):

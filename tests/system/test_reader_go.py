@@ -8,13 +8,11 @@ import re
 import shutil
 import signal
 import subprocess
-import sys
 
 import owsdtest
 from owsdtest import raw
 
-sys.path.insert(0, str(owsdtest.SOURCE / "src/libows"))
-import ows  # noqa: E402
+import ows  # of owsdtest.PYTHON
 
 EXAMPLES = owsdtest.SOURCE / "docs/examples"
 SENSOR, COUNTER, SWITCH = "/28.A0B1C2000001", "/1D.A0B1C2000002", "/29.A0B1C2000003"

@@ -406,7 +406,7 @@ except OSError as e:
 """.replace("{without}", "len(sys.argv) > 1"))
     has_numpy = scene._run(["python3", "-c", "import numpy"], 30).returncode == 0
     for arguments in ((), ("without",)):
-        done = scene._run(["env", f"LD_LIBRARY_PATH={BUILD}", f"PYTHONPATH={SOURCE}/src/libows",
+        done = scene._run(["env", f"PYTHONPATH={owsdtest.PYTHON}",
                            "PYTHONDONTWRITEBYTECODE=1", "python3", code, *arguments], 30)
         assert done.returncode == 0 and not done.stderr, done
         lines = done.stdout.splitlines()

@@ -4,14 +4,12 @@
 
 import os
 import signal
-import sys
 import time
 
 import owsdtest
 from owsdtest import raw, until
 
-sys.path.insert(0, str(owsdtest.SOURCE / "src/libows"))
-import ows  # noqa: E402
+import ows  # of owsdtest.PYTHON
 
 SENSOR, OTHER, RELAY = "/28.A0B1C2000001", "/28.A0B1C2000002", "/29.A0B1C2000004"
 
@@ -65,7 +63,7 @@ def sound(signals, name):
     all of them bad, which is no fault of a reload."""
     now = ows.now_ns()
     value = signals.get(name, now)
-    return value, value.good or not signals._beats(now)
+    return value, value.good or signals.beat_age(now) > 2
 
 
 def start(scene, target=None, *items):

@@ -5,13 +5,11 @@
 import json
 import re
 import signal
-import sys
 
 import owsdtest
 from owsdtest import SOURCE
 
-sys.path.insert(0, str(SOURCE / "src/libows"))
-import ows  # noqa: E402
+import ows  # of owsdtest.PYTHON
 
 EXAMPLE = SOURCE / "docs/examples/engineering.rio"
 CHIPS = """i2c speed 400

@@ -8,15 +8,15 @@ import os
 import random
 import shutil
 import signal
-import subprocess
 import sys
 import time
 
+import byhand
 import faulty
 import owsdtest
 
-sys.path.insert(0, str(owsdtest.SOURCE / "src/libows"))
-import ows  # noqa: E402
+import ows  # of owsdtest.PYTHON
+
 
 def start(scene):
     """owsd on an owserver whose devices keep what is written to them; its configuration too."""
@@ -248,41 +248,20 @@ def test_a_killed_owsds_memory_takes_no_sets_when_the_next_one_is_there(scene):
             pass
 
 
-def with_descriptor(name):
-    """A giver, and the descriptor of its memory, which libraries close."""
-    kept = []
-
-    class Kept(ows.Memory):
-        def __init__(self, fd, welcome):
-            kept.append(os.dup(fd))
-            super().__init__(fd, welcome)
-    before, ows.Memory = ows.Memory, Kept
-    try:
-        return ows.Ows(name, control=True), kept[0]
-    finally:
-        ows.Memory = before
-
-
 def test_a_giver_cannot_truncate_its_memory_and_a_hole_in_it_harms_itself_alone(scene):
     daemon, _ = start(scene)
     other = scene.start([owsdtest.BUILD / "examples/control", "room", "relays", "30", "0",
                          daemon.name])
-    with ows.Ows(daemon.name) as signals:
+    with ows.Ows(daemon.name) as signals, byhand.Giver(daemon.name) as giver:
         scene.until(lambda: signals.get("back").value == 1, 10, "the controller heats")
-        giver, memory = with_descriptor(daemon.name)
         for size in (0, 256, 1 << 20):
             try:
-                os.ftruncate(memory, size)
+                os.ftruncate(giver.fd, size)
                 raise AssertionError("its size changed")
             except PermissionError:
                 pass
-        giver.memory.memory.madvise(mmap.MADV_REMOVE)
-        try:
-            giver.set("relays", 77)
-            raise AssertionError("a memory of zeros took a set")
-        except OSError:
-            pass
-        os.close(memory)
+        giver.memory.madvise(mmap.MADV_REMOVE)
+        giver.ring()
         with ows.Ows(daemon.name, control=True) as again:
             stamp = again.set("relays", 77)
             scene.until(lambda: again.get("relays").applied == stamp or
@@ -299,16 +278,11 @@ def test_rubbish_in_the_memory_of_a_giver_harms_nothing(scene):
     daemon, config = start(scene)
     with ows.Ows(daemon.name) as signals:
         scene.until(lambda: good(signals, "room"), 10, "room is good")
-        giver = ows.Ows(daemon.name, control=True)
-        size = giver.memory.size
-        for _ in range(400):
-            at = rng.randrange(0, size, 4)
-            data = rng.randbytes(min(rng.choice([4, 4, 64, 1024]), size - at))
-            giver.memory.memory[at:at + len(data)] = data
-            giver.door.ring()
-            time.sleep(0.002)  # rubbish comes at this pace
-        scene.until(signals.alive, 10, "its heart beats")
-        giver.door.close()
+        with byhand.Giver(daemon.name) as giver:
+            for _ in range(400):
+                giver.scribble(rng)
+                time.sleep(0.002)  # rubbish comes at this pace
+            scene.until(signals.alive, 10, "its heart beats")
 
         def sane():
             try:
@@ -355,15 +329,14 @@ def test_an_input_is_not_written_by_any_way(scene):
                     raise AssertionError(name)
                 except PermissionError:
                     pass
-        with opened(scene, daemon.name, control=True) as control:
-            control.table[1] = (*control.table[1][:3], False)
+        with opened(scene, daemon.name) as signals, byhand.Giver(daemon.name) as giver:
             refused = faulty.counters(scene, daemon)["refused_commands"]
-            for name, value in (("low_WE", 1), ("low", 99), ("low_WOS", 1)):
-                control.set(name, value)
+            on, off = 2, 1
+            giver.command(1, {byhand.WRITE_ENABLE: 4 + on, byhand.STAMP: 1, byhand.ONE_SHOT: 1}, 99)
             scene.until(lambda: faulty.counters(scene, daemon)["refused_commands"] > refused, 10)
-            control.set("low_WE", 0)
-            then = control.get("_TRANSACTIONS").value + 5
-            scene.until(lambda: control.get("_TRANSACTIONS").value > then, 10, "five more requests")
+            giver.command(1, {byhand.WRITE_ENABLE: 8 + off})
+            then = signals.get("_TRANSACTIONS").value + 5
+            scene.until(lambda: signals.get("_TRANSACTIONS").value > then, 10, "five more requests")
         assert server.read(sensor + "/templow").strip() == "21"
 
     scene.until(lambda: scene.get(daemon, "low") == "21", 10, "is 21")
@@ -381,10 +354,9 @@ def test_an_input_is_not_written_by_any_way(scene):
 
 def test_a_bell_rung_without_end_does_not_stop_the_inputs(scene):
     daemon, _ = start(scene)
-    code = ("import ows, sys\ns = ows.Ows(sys.argv[1], control=True)\n"
-            "while True: s._ring()")
+    code = "import byhand, sys\ngiver = byhand.Giver(sys.argv[1])\nwhile True: giver.ring()"
     scene.start([sys.executable, "-c", code, daemon.name],
-                {"PYTHONPATH": str(owsdtest.SOURCE / "src/libows")})
+                {"PYTHONPATH": str(owsdtest.SOURCE / "tests/system")})
     with ows.Ows(daemon.name) as signals:
         scene.until(lambda: good(signals, "room"), 10, "room is good")
         before = signals.get("room").count
@@ -401,39 +373,6 @@ def test_the_reader_example_prints_every_signal(scene):
     for name in ("room", "relays", "back"):
         assert name in done.stdout, done.stdout
     assert "21" in done.stdout and "good" in done.stdout
-
-
-def test_ows_py_is_a_program_too(scene):
-    daemon, _ = start(scene)
-    program = [sys.executable, owsdtest.SOURCE / "src/libows/ows.py", "-n", daemon.name]
-
-    def run(*arguments):
-        return subprocess.run([str(p) for p in program] + list(arguments), text=True,
-                              timeout=owsdtest.PATIENCE, capture_output=True)
-    scene.until(lambda: run("room").stdout.startswith("room\t21.0\tgood\t"), 10, "room is good")
-    assert len(run().stdout.splitlines()) == 3
-    assert run("relays", "4").returncode == 0
-    scene.until(lambda: run("back").stdout.startswith("back\t4\t"), 10, "is 4")
-    assert run("nobody").returncode == 1
-    assert run("relays", "400").returncode == 1
-    assert run("-x").returncode == 2
-
-
-def test_ows_py_tells_text_from_numbers(scene):
-    daemon = scene.owsd(owsdtest.rio("null:", [
-        dict(Name="relay", Path="/29.000000000002/PIO.BYTE", Type="byte", IO="output"),
-        dict(Name="text", Path="/29.000000000002/text", Type="string", IO="output")]))
-    with ows.Ows(daemon.name, control=True) as signals:
-        for name, value in (("relay", "1"), ("relay", None), ("relay", b"1"), (None, 1),
-                            ("relay_WE", "0"), ("text", 1), ("text", b"x"), ("text", None)):
-            try:
-                signals.set(name, value)
-            except TypeError:
-                continue
-            raise AssertionError(f"{name!r} took {value!r}")
-        assert signals.set("relay", True) == 1
-        assert signals.set("relay", 2.0) == 2
-        assert signals.set("text", "x") == 3
 
 
 def test_the_image_and_what_a_restart_needs_stay_in_the_place(scene):

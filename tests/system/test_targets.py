@@ -7,7 +7,6 @@ import json
 import os
 import signal
 import socket
-import sys
 import threading
 import time
 
@@ -15,8 +14,7 @@ import owsdtest
 import peer
 from owsdtest import raw, until
 
-sys.path.insert(0, str(owsdtest.SOURCE / "src/libows"))
-import ows  # noqa: E402
+import ows  # of owsdtest.PYTHON
 
 GOOD = 0xC0
 ONE, TWO, BOTH = "/28.A0B1C2000001", "/28.A0B1C2000002", "/28.A0B1C2000003"

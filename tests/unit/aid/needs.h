@@ -3,7 +3,11 @@
 #ifndef TESTS_UNIT_AID_NEEDS_H
 #define TESTS_UNIT_AID_NEEDS_H
 
+#include <stdio.h>
+
 /* The test that runs ends here where there is no python3. */
 void needs_python3(void);
+/* Start python3 with "import ows, sys" and code without a '. sys.argv[1] is the argument. */
+FILE *needs_python3_run(const char *code, const char *argument);
 
 #endif

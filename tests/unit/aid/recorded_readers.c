@@ -238,10 +238,9 @@ void check_all(struct ows *h)
 	check_targets(h);
 }
 
-const char *output_of(const char *command)
+static const char *output_until_its_end(FILE *pipe)
 {
 	static char output[8192];
-	FILE *pipe = popen(command, "r");
 	size_t n;
 
 	TEST_ASSERT_NOT_NULL(pipe);
@@ -251,15 +250,12 @@ const char *output_of(const char *command)
 	return output;
 }
 
+const char *output_of(const char *command)
+{
+	return output_until_its_end(popen(command, "r"));
+}
+
 const char *python(const char *code)
 {
-	char command[4096];
-
-	needs_python3();
-	snprintf(
-		command, sizeof(command),
-		"PYTHONDONTWRITEBYTECODE=1 PYTHONIOENCODING=utf-8 PYTHONPATH=src/libows python3 -c '"
-		"import ows, sys\n%s' %s 2>&1",
-		code, instance);
-	return output_of(command);
+	return output_until_its_end(needs_python3_run(code, instance));
 }

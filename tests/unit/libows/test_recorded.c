@@ -104,7 +104,7 @@ static void test_python_reads_a_recorded_image(void)
 		"0 never 1001000000000 False True device raised 192 1,0,0,1 0\n"
 		"1 room.temperature 1002000000000 30.5 None high high acknowledged 192  0\n"
 		"0 byte 1002000000000 255 set 192 4 3 1000 777 hmi Jana\n"
-		"0 False False True returned to normal unacknowledged high high False\n"
+		"0 False False True returned to normal unacknowledged high high None\n"
 		"1003000000000 2003000000000 sensor is being moved Jana\n"
 		"Info(name=\"long\", path=\"/1D.000000000001/a\", type=4, output=False, fresh=True,"
 		" alarm=False, per_factor=4, stale_after_ns=2000000000, unit=None,"
