@@ -252,6 +252,21 @@ def check_shellcheck_finds_nothing(tree):
                     yield file, int(line), text
 
 
+def check_the_page_of_a_library_names_all_that_its_header_has(tree):
+    """Functions, and the names of enumerations."""
+    headers = {f.rpartition("/")[2]: f for f in tree.files if re.fullmatch(r"src/\w+/\w+\.h", f)}
+    for page in (f for f in tree.files if re.fullmatch(r"docs/[^/]+\.3", f)):
+        text = tree.text(page)
+        for header in (n for n in re.findall(r"#include <(\w+\.h)>", text) if n in headers):
+            bare = TOKEN.sub("", tree.text(headers[header]))
+            names = re.findall(r"\b(\w+)\(", bare) + [
+                name for body in re.findall(r"enum \w+ \{(.*?)\}", bare, re.S)
+                for name in re.findall(r"(\w+)\s*(?:=[^,]*)?(?:,|$)", body.strip())]
+            for name in names:
+                if not re.search(rf"\b{name}\b", text):
+                    yield page, 1, f"{header} has {name}: say what it is"
+
+
 def check_manual_pages_are_well_formed(tree):
     if not shutil.which("mandoc"):
         raise Skip("mandoc is not installed (sh board/install-deps lint)")

@@ -40,6 +40,8 @@ CLEAN = {
     "src/b/b.h": f"/* {MIT} */\n/* Room src/b: second things. Uses nothing. */\n#ifndef SRC_B_B_H\n"
                  "#define SRC_B_B_H\n\nint b(void);\n\n#endif\n",
     "src/b/b.c": f'{HEAD}#include "src/b/b.h"\n\nint b(void)\n{{\n\treturn 1;\n}}\n',
+    "docs/a.3": f'.\\" {MIT}\n.TH A 3 "" "a" "Library functions"\n.SH NAME\na \\- first things\n'
+                ".SH SYNOPSIS\n.B #include <a.h>\n.PP\n.B int a(void);\n",
     "src/engine/e.c": f"/* {MIT} */\n/* Room src/engine: the engine. Uses nothing. */\n\n"
                       "int e(void);\n\nint e(void)\n{\n\treturn 0;\n}\n",
 }
@@ -66,6 +68,10 @@ FAULTS = [
     ("tests/unit/b/x.c", HEAD, r"tests/unit/b/x.c:1: make unit would not find it"),
     ("docs/syntax.py", f"# {MIT}\nx = = 1\n", r"docs/syntax.py:2: .*python3 cannot read it"),
     ("docs/two.py", f"# {MIT}\ndef f(): pass\ndef f(): pass\n", r"docs/two.py:3: f stands here twice"),
+    ("src/b/c.h", f"/* {MIT} */\n#ifndef SRC_B_C_H\n#define SRC_B_C_H\nenum c {{\n\tONE, /* THREE */\n\tTWO = 2,\n}};\n"
+                  "int c(void);\n#endif\n", None),
+    ("docs/c.3", f'.\\" {MIT}\n.TH C 3 "" "c" "Library functions"\n.SH NAME\nc \\- more\n.SH SYNOPSIS\n'
+                 ".B #include <c.h>\n.SH CODES\nc() returns ONE.\n", r"docs/c.3:1: c.h has TWO: say what it is"),
     ("docs/bad.json", "{\n1}\n", r"docs/bad.json:2: .*make it JSON"),
     ("docs/bad.svg", "<svg>\n<g>\n</svg>\n", r"docs/bad.svg:3: .*make it XML"),
     ("docs/bad.sh", f"#!/bin/sh\n# {MIT}\nif true; then\n", r"docs/bad.sh:\d+: .*sh cannot read it"),
