@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The table of all backends of this build, and the backend that a target names. */
+/* Finds the backend that a target names. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
@@ -7,13 +7,6 @@
 
 #include "hal/bus/backends.h"
 #include "hal/bus/bus.h"
-
-const struct bus_ops *const bus_backends[] = {
-#define BACKEND(name) &name##_bus,
-#include "hal/bus/schemes.h"
-#undef BACKEND
-	NULL,
-};
 
 static const struct bus_ops *backend_of(const char *word, size_t len)
 {

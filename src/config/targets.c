@@ -19,7 +19,7 @@
 const char *const config_auto_ways[CONFIG_AUTO_WAYS] = {DEFAULT_TARGET, "i2c:auto", "w1"};
 
 /* Schemes and bare words that are no host; the scheme of an owserver may be left out. */
-static const char *const schemes[] = {"i2c", "w1", "sim", "gpio", "null", "late", NULL};
+static const char *const schemes[] = {"i2c", "w1", "sim", "gpio", "null", NULL};
 
 static bool is_scheme(const char *text, size_t len)
 {

@@ -316,7 +316,7 @@ static void happen(void)
 static void begin(void)
 {
 	static struct config_item items[HEAP_SIGNALS];
-	static struct config_target targets[] = {{.text = "null:"}, {.text = "late:"}};
+	static struct config_target targets[] = {{.text = "null:"}, {.text = "w1"}};
 	static const struct config config = {
 		.targets = targets, .target_count = 2, .items = items, .item_count = HEAP_SIGNALS};
 	struct serve_setup setup = {.config = &config,

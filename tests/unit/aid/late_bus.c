@@ -5,6 +5,8 @@
  * `late:` and options, joined by ';': seed, late (longest delay in milliseconds), twice and never
  * (percent of the requests), up and down (milliseconds that the target is there and away).
  * A path below /never, /twice or /late (a second) is treated so whatever the options are.
+ *
+ * It is in the table of backends of all programs that are linked with this file.
  */
 #include <assert.h>
 #include <errno.h>
@@ -14,6 +16,8 @@
 
 #include "hal/bus/bus.h"
 #include "hal/bus/time.h"
+
+static const struct bus_ops late_bus;
 
 #define LATE_DEPTH 16
 #define LATE_ECHOES 64
@@ -262,7 +266,7 @@ static int late_there(struct bus *bus)
 	return ((struct late_bus *)bus)->up;
 }
 
-const struct bus_ops late_bus = {
+static const struct bus_ops late_bus = {
 	.scheme = "late",
 	.summary = "the null bus with answers late, out of order, twice and never",
 	.testing = true,
@@ -273,4 +277,12 @@ const struct bus_ops late_bus = {
 	.step = late_step,
 	.suspend = late_suspend,
 	.there = late_there,
+};
+
+const struct bus_ops *const bus_backends[] = {
+#define BACKEND(name) &name##_bus,
+#include "hal/bus/schemes.h"
+#undef BACKEND
+	&late_bus,
+	NULL,
 };
