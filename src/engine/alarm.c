@@ -79,17 +79,17 @@ static uint32_t facts_before(struct alarm_machine *m, struct lane *lane, int64_t
 	case ALARM_BYPASS:
 		return bypass_facts(m, lane, now_ns);
 	case ALARM_POR_READ:
-		known = alarm_por_known(m, i);
+		known = alarm_known(m, i, ALARM_POR_WAS_READ);
 		return defined_fact(i->strings.por, i->strings.por) | (known ? FACT_KNOWN : 0) |
 		       (known && known->por_set ? FACT_NON_ZERO : 0);
 	case ALARM_SET:
 		return defined_fact(i->strings.set, i->strings.set_value) |
-		       (alarm_set_known(m, i) ? FACT_KNOWN : 0);
+		       (alarm_known(m, i, ALARM_WAS_SET) ? FACT_KNOWN : 0);
 	case ALARM_POR_RESET:
 		return defined_fact(i->strings.por, i->strings.por) |
-		       (alarm_por_reset_known(m, i) ? FACT_KNOWN : 0);
+		       (alarm_known(m, i, ALARM_POR_WAS_RESET) ? FACT_KNOWN : 0);
 	case ALARM_LATCH:
-		known = alarm_latch_known(m, i);
+		known = alarm_known(m, i, ALARM_LATCH_WAS_READ);
 		return defined_fact(i->strings.latch, i->strings.latch) | (known ? FACT_KNOWN : 0) |
 		       (known && known->latch_set ? FACT_NON_ZERO : 0);
 	case ALARM_SENSED:
@@ -97,7 +97,7 @@ static uint32_t facts_before(struct alarm_machine *m, struct lane *lane, int64_t
 		return sensed_facts(e, i);
 	case ALARM_LATCH_RESET:
 		return defined_fact(i->strings.reset, i->strings.reset_value) |
-		       (alarm_reset_known(m, i) ? FACT_KNOWN : 0);
+		       (alarm_known(m, i, ALARM_LATCH_WAS_RESET) ? FACT_KNOWN : 0);
 	case ALARM_SET_WAIT: /* entered from ALARM_INIT_WRITE_WAIT: look for the next output */
 		return alarm_next_init(e, m) >= 0 ? 0 : FACT_DONE;
 	case NOT_USED:
@@ -149,7 +149,7 @@ bool alarm_run(struct alarm_machine *m, struct lane *lane, struct alarm_request 
 		if (m->state == ALARM_LATCH && facts & FACT_KNOWN) {
 			/* the value that another item of the device has read */
 			struct alarm_item *i = alarm_current(m);
-			const struct alarm_item *known = alarm_latch_known(m, i);
+			const struct alarm_item *known = alarm_known(m, i, ALARM_LATCH_WAS_READ);
 
 			i->latch_set = known->latch_set;
 			memcpy(i->occurrence.latch_text, known->occurrence.latch_text,
@@ -191,7 +191,7 @@ static int take_latch(struct alarm_machine *m, struct alarm_item *i,
 
 	if (set < 0)
 		return set;
-	i->latch_cycle = m->list.cycle;
+	i->cycle_of[ALARM_LATCH_WAS_READ] = m->list.cycle;
 	i->latch_set = set;
 	alarm_trim(i->occurrence.latch_text, sizeof(i->occurrence.latch_text), data, answer->len);
 	return 0;
@@ -242,7 +242,7 @@ static uint32_t facts_after(struct alarm_machine *m, struct lane *lane, const st
 		if (err)
 			break;
 		alarm_granted(e, i, OWS_UNARMED_POR_READ);
-		i->por_cycle = m->list.cycle;
+		i->cycle_of[ALARM_POR_WAS_READ] = m->list.cycle;
 		i->por_set = set;
 		if (set)
 			alarm_por_set(m, lane, i, now_ns);
@@ -254,11 +254,11 @@ static uint32_t facts_after(struct alarm_machine *m, struct lane *lane, const st
 			alarm_set_failed(lane, i, err, now_ns);
 			return FACT_FAILED;
 		} else {
-			i->set_cycle = m->list.cycle;
+			i->cycle_of[ALARM_WAS_SET] = m->list.cycle;
 			i->arming.wanted = false;
-			if (alarm_init_known(m, i) || alarm_next_init(e, m) < 0)
+			if (alarm_known(m, i, ALARM_INIT_WAS_WRITTEN) || alarm_next_init(e, m) < 0)
 				return FACT_DONE;
-			i->init_cycle = m->list.cycle;
+			i->cycle_of[ALARM_INIT_WAS_WRITTEN] = m->list.cycle;
 			return 0; /* the first output is asked for from here */
 		}
 	case ALARM_INIT_WRITE_WAIT:
@@ -288,7 +288,7 @@ static uint32_t facts_after(struct alarm_machine *m, struct lane *lane, const st
 		return err ? FACT_FAILED : FACT_DONE;
 	case ALARM_LATCH_RESET_WAIT:
 		if (!err) {
-			i->reset_cycle = m->list.cycle;
+			i->cycle_of[ALARM_LATCH_WAS_RESET] = m->list.cycle;
 			alarm_granted(e, i, OWS_UNARMED_RESET);
 			engine_alarm_ended(e, i);
 		}
@@ -341,7 +341,7 @@ static uint32_t por_proven(struct alarm_machine *m, struct lane *lane,
 		alarm_por_failed(lane, i, set < 0 ? set : -EUCLEAN, now_ns);
 		return FACT_FAILED;
 	}
-	i->por_reset_cycle = m->list.cycle;
+	i->cycle_of[ALARM_POR_WAS_RESET] = m->list.cycle;
 	alarm_por_clear(m, lane->engine, i);
 	return FACT_DONE;
 }
@@ -365,7 +365,7 @@ void alarm_answered(struct alarm_machine *m, struct lane *lane, const struct slo
 		struct alarm_item *other = m->items[m->collecting];
 
 		/* what cannot be read now is asked for again by its own item */
-		other->collect_cycle = m->list.cycle;
+		other->cycle_of[ALARM_WAS_COLLECTED] = m->list.cycle;
 		take_latch(m, other, answer, (const char *)slot->data);
 		m->collecting = alarm_to_collect(m, alarm_current(m));
 		if (m->collecting < 0)

@@ -158,8 +158,7 @@ void alarm_take_item(struct alarm_machine *m, struct alarm_item *item, int64_t n
 	item->arming.not_before_ns = 0;
 	retry_clear(&item->visit.retry); /* what is shown stays until it succeeds */
 	item->visit.not_before_ns = 0;
-	item->por_cycle = item->latch_cycle = item->set_cycle = item->init_cycle = 0;
-	item->por_reset_cycle = item->reset_cycle = item->collect_cycle = 0;
+	memset(item->cycle_of, 0, sizeof(item->cycle_of));
 	m->named = false;
 	if (m->state != NOT_USED || m->list.polls)
 		return;

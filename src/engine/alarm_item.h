@@ -26,6 +26,18 @@ struct alarm_strings {
 	const char *reset, *reset_value; /* sLatchRes, sLatchResVal: into reset_text */
 };
 
+/* What the machine does for an item, and not twice in a cycle for one device. */
+enum alarm_deed {
+	ALARM_POR_WAS_READ,
+	ALARM_POR_WAS_RESET,
+	ALARM_LATCH_WAS_READ,
+	ALARM_LATCH_WAS_RESET,
+	ALARM_WAS_SET,
+	ALARM_INIT_WAS_WRITTEN,
+	ALARM_WAS_COLLECTED,
+	ALARM_DEEDS
+};
+
 /* An occurrence, from the latch that was read; a reload carries it over. */
 struct alarm_occurrence {
 	bool stands;      /* its latch was not reset yet */
@@ -64,9 +76,7 @@ struct alarm_item {
 	struct alarm_restart restart;
 	struct alarm_arming arming;
 	struct alarm_visit visit;
-	/* what was done for it in the cycle of that number; 0: never */
-	uint32_t por_cycle, latch_cycle, set_cycle, init_cycle, por_reset_cycle, reset_cycle;
-	uint32_t collect_cycle;
+	uint32_t cycle_of[ALARM_DEEDS]; /* the last cycle in which that was done for it; 0: none */
 	bool por_set, latch_set;
 };
 

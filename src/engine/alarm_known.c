@@ -15,67 +15,41 @@ struct alarm_item *alarm_current(struct alarm_machine *m)
 	return m->position < 0 ? NULL : m->items[m->position];
 }
 
-/* The same device in the same cycle: what was done there need not be done again. */
 static bool same_text(const char *a, const char *b)
 {
 	return a && b && strcmp(a, b) == 0;
 }
 
-const struct alarm_item *alarm_por_known(const struct alarm_machine *m, const struct alarm_item *i)
+static bool same_deed(const struct alarm_strings *a, const struct alarm_strings *b,
+                      enum alarm_deed deed)
 {
-	for (uint32_t k = 0; k < m->count; k++)
-		if (m->items[k]->device == i->device && m->items[k]->por_cycle == m->list.cycle &&
-		    same_text(m->items[k]->strings.por, i->strings.por))
-			return m->items[k];
-	return NULL;
+	switch (deed) {
+	case ALARM_POR_WAS_READ:
+	case ALARM_POR_WAS_RESET:
+		return same_text(a->por, b->por);
+	case ALARM_LATCH_WAS_READ:
+		return same_text(a->latch, b->latch);
+	case ALARM_LATCH_WAS_RESET:
+		return same_text(a->reset, b->reset) && same_text(a->reset_value, b->reset_value);
+	case ALARM_WAS_SET:
+		return same_text(a->set, b->set) && same_text(a->set_value, b->set_value);
+	case ALARM_INIT_WAS_WRITTEN:
+	case ALARM_WAS_COLLECTED:
+	case ALARM_DEEDS:
+		break;
+	}
+	return true;
 }
 
-const struct alarm_item *alarm_latch_known(const struct alarm_machine *m,
-                                           const struct alarm_item *i)
-{
-	for (uint32_t k = 0; k < m->count; k++)
-		if (m->items[k]->device == i->device && m->items[k]->latch_cycle == m->list.cycle &&
-		    same_text(m->items[k]->strings.latch, i->strings.latch))
-			return m->items[k];
-	return NULL;
-}
-
-bool alarm_set_known(const struct alarm_machine *m, const struct alarm_item *i)
-{
-	for (uint32_t k = 0; k < m->count; k++)
-		if (m->items[k]->device == i->device && m->items[k]->set_cycle == m->list.cycle &&
-		    same_text(m->items[k]->strings.set, i->strings.set) &&
-		    same_text(m->items[k]->strings.set_value, i->strings.set_value))
-			return true;
-	return false;
-}
-
-bool alarm_por_reset_known(const struct alarm_machine *m, const struct alarm_item *i)
+const struct alarm_item *alarm_known(const struct alarm_machine *m, const struct alarm_item *i,
+                                     enum alarm_deed deed)
 {
 	for (uint32_t k = 0; k < m->count; k++)
 		if (m->items[k]->device == i->device &&
-		    m->items[k]->por_reset_cycle == m->list.cycle &&
-		    same_text(m->items[k]->strings.por, i->strings.por))
-			return true;
-	return false;
-}
-
-bool alarm_init_known(const struct alarm_machine *m, const struct alarm_item *i)
-{
-	for (uint32_t k = 0; k < m->count; k++)
-		if (m->items[k]->device == i->device && m->items[k]->init_cycle == m->list.cycle)
-			return true;
-	return false;
-}
-
-bool alarm_reset_known(const struct alarm_machine *m, const struct alarm_item *i)
-{
-	for (uint32_t k = 0; k < m->count; k++)
-		if (m->items[k]->device == i->device && m->items[k]->reset_cycle == m->list.cycle &&
-		    same_text(m->items[k]->strings.reset, i->strings.reset) &&
-		    same_text(m->items[k]->strings.reset_value, i->strings.reset_value))
-			return true;
-	return false;
+		    m->items[k]->cycle_of[deed] == m->list.cycle &&
+		    same_deed(&m->items[k]->strings, &i->strings, deed))
+			return m->items[k];
+	return NULL;
 }
 
 /* The next item of the device whose latch was not read in this cycle, -1: none. */
@@ -86,7 +60,8 @@ int64_t alarm_to_collect(const struct alarm_machine *m, const struct alarm_item 
 
 		if (other != i && other->device == i->device && other->strings.latch &&
 		    *other->strings.latch && !same_text(other->strings.latch, i->strings.latch) &&
-		    other->collect_cycle != m->list.cycle && !alarm_latch_known(m, other))
+		    other->cycle_of[ALARM_WAS_COLLECTED] != m->list.cycle &&
+		    !alarm_known(m, other, ALARM_LATCH_WAS_READ))
 			return k;
 	}
 	return -1;

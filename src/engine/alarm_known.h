@@ -12,15 +12,9 @@ struct signal *alarm_signal(struct engine *e, const struct alarm_item *item);
 /* The item at iAlarmPos, NULL: none. */
 struct alarm_item *alarm_current(struct alarm_machine *m);
 
-/* The item of the same device that has read the same por, the same latch; NULL: none yet. */
-const struct alarm_item *alarm_por_known(const struct alarm_machine *m, const struct alarm_item *i);
-const struct alarm_item *alarm_latch_known(const struct alarm_machine *m,
-                                           const struct alarm_item *i);
-/* Was the same written for the device? */
-bool alarm_set_known(const struct alarm_machine *m, const struct alarm_item *i);
-bool alarm_por_reset_known(const struct alarm_machine *m, const struct alarm_item *i);
-bool alarm_init_known(const struct alarm_machine *m, const struct alarm_item *i);
-bool alarm_reset_known(const struct alarm_machine *m, const struct alarm_item *i);
+/* The item of the same device for which the same was done in this cycle; NULL: none. */
+const struct alarm_item *alarm_known(const struct alarm_machine *m, const struct alarm_item *i,
+                                     enum alarm_deed deed);
 
 /* The next item of the device whose latch was not read in this cycle, -1: none. */
 int64_t alarm_to_collect(const struct alarm_machine *m, const struct alarm_item *i);
