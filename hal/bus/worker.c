@@ -39,6 +39,7 @@ struct worker {
 	struct bus_req **order;
 	struct ring messages;
 	struct worker_message *message;
+	bool lent; /* worker_next() returned a message, which is still in its cell */
 	struct bus_counter stalls, dropped;
 
 	int wake_fd;
@@ -106,9 +107,14 @@ static int env_wait(void *ctx, int fd, short events, int64_t until_ns)
 	return -ECANCELED;
 }
 
-static void put_message(struct worker *worker, const struct worker_message *message)
+/* The cell of the next message, which is put when it is filled. */
+static struct worker_message *cell(struct worker *worker)
 {
-	worker->message[ring_put_at(&worker->messages)] = *message;
+	return &worker->message[ring_put_at(&worker->messages)];
+}
+
+static void put_message(struct worker *worker)
+{
 	ring_did_put(&worker->messages);
 	if (worker->bell)
 		worker->bell(worker->bell_ctx);
@@ -131,25 +137,28 @@ static bool wait_for_room(struct worker *worker, uint32_t full, unsigned naps)
 static void env_answer(void *ctx, const struct bus_answer *answer)
 {
 	struct worker *worker = ctx;
-	struct worker_message message = {.is_event = false, .answer = *answer};
 
 	while (!wait_for_room(worker, worker->messages.size, EVENT_NAPS))
 		if (is_stopping(worker))
 			return;
-	put_message(worker, &message);
+	cell(worker)->is_event = false;
+	cell(worker)->answer = *answer;
+	put_message(worker);
 }
 
 /* Events leave room for an answer to each request that the bus can hold. */
 static void env_event(void *ctx, const struct bus_event *event)
 {
 	struct worker *worker = ctx;
-	struct worker_message message = {.is_event = true, .event = *event};
 	uint32_t full = worker->messages.size - bus_depth(worker->bus);
 
-	if (wait_for_room(worker, full, EVENT_NAPS))
-		put_message(worker, &message);
-	else
+	if (!wait_for_room(worker, full, EVENT_NAPS)) {
 		bus_count(&worker->dropped, 1);
+		return;
+	}
+	cell(worker)->is_event = true;
+	cell(worker)->event = *event;
+	put_message(worker);
 }
 
 static void take_orders(struct worker *worker)
@@ -316,13 +325,12 @@ void worker_suspend(struct worker *worker, bool yes)
 	bell_ring(worker->wake_fd);
 }
 
-bool worker_next(struct worker *worker, struct worker_message *message)
+const struct worker_message *worker_next(struct worker *worker)
 {
-	if (!ring_used(&worker->messages))
-		return false;
-	*message = worker->message[ring_take_at(&worker->messages)];
-	ring_did_take(&worker->messages);
-	return true;
+	if (worker->lent)
+		ring_did_take(&worker->messages);
+	worker->lent = ring_used(&worker->messages) > 0;
+	return worker->lent ? &worker->message[ring_take_at(&worker->messages)] : NULL;
 }
 
 int worker_stop(struct worker *worker, int64_t timeout_ns)

@@ -42,8 +42,8 @@ int worker_submit(struct worker *worker, struct bus_req *req);
  * in the kernel carries it out when it comes back.
  */
 void worker_suspend(struct worker *worker, bool yes);
-/* Engine thread only: the next message, false when there is none. */
-bool worker_next(struct worker *worker, struct worker_message *message);
+/* Engine thread only: the next message, valid until the next call; NULL when there is none. */
+const struct worker_message *worker_next(struct worker *worker);
 
 /*
  * Ask the thread to end: its waits return -ECANCELED. Returns 0 when it ended within timeout_ns,

@@ -46,7 +46,7 @@ void host_ring(void *ctx)
 /* True: there may be more. */
 static bool take_messages(struct serving *now, int64_t now_ns)
 {
-	struct worker_message message;
+	const struct worker_message *message;
 	bool more = false;
 
 	for (unsigned i = 0; i < now->worker_count; i++) {
@@ -59,12 +59,13 @@ static bool take_messages(struct serving *now, int64_t now_ns)
 				more = true;
 				break;
 			}
-			if (!worker_next(now->workers[i], &message))
+			message = worker_next(now->workers[i]);
+			if (!message)
 				break;
-			if (message.is_event)
-				engine_event(now->engine, i, &message.event, now_ns);
+			if (message->is_event)
+				engine_event(now->engine, i, &message->event, now_ns);
 			else
-				engine_answer(now->engine, i, &message.answer, now_ns);
+				engine_answer(now->engine, i, &message->answer, now_ns);
 		}
 	}
 	return more;

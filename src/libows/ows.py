@@ -685,8 +685,8 @@ class Ows:
     def beat(self, period_ms: int) -> None:
         """Say that this program lives and will say so again within period_ms; if it does not, the
         outputs it set last go to their SafeValue."""
-        if not 0 < period_ms < 2**32:
-            raise ValueError("a period is more than 0 milliseconds")
+        if not 0 < period_ms <= 3600000:
+            raise ValueError("a period is 1 to 3600000 milliseconds")
         err = _lib.ows_beat(self._handle(), period_ms)
         if err:
             _fail(err)

@@ -40,15 +40,15 @@ static void nap(void)
 
 static bool take(struct bus_answer *answer)
 {
-	struct worker_message message;
+	const struct worker_message *message;
 
-	while (worker_next(worker, &message)) {
-		if (!message.is_event) {
-			*answer = message.answer;
+	while ((message = worker_next(worker))) {
+		if (!message->is_event) {
+			*answer = message->answer;
 			return true;
 		}
 		if (n_news < sizeof(news) / sizeof(news[0]))
-			news[n_news++] = message.event;
+			news[n_news++] = message->event;
 	}
 	return false;
 }

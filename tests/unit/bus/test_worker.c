@@ -86,16 +86,16 @@ static void bell(void *ctx)
 
 static void take(void)
 {
-	struct worker_message message;
+	const struct worker_message *message;
 
-	while (worker_next(worker, &message)) {
-		if (message.is_event) {
-			news[n_events++ % sizeof(news)] = message.event.news;
+	while ((message = worker_next(worker))) {
+		if (message->is_event) {
+			news[n_events++ % sizeof(news)] = message->event.news;
 			continue;
 		}
-		TEST_ASSERT_LESS_THAN_UINT32(REQUESTS, message.answer.id);
-		answers[message.answer.id]++;
-		last[message.answer.id] = message.answer;
+		TEST_ASSERT_LESS_THAN_UINT32(REQUESTS, message->answer.id);
+		answers[message->answer.id]++;
+		last[message->answer.id] = message->answer;
 		n_answers++;
 	}
 }

@@ -164,12 +164,12 @@ static void test_an_idle_bus_has_nothing_to_do_until_its_server_closes(void)
 
 static bool worker_says(struct worker *worker, enum bus_news news)
 {
-	struct worker_message message;
+	const struct worker_message *message;
 
 	for (int64_t until = host_now(&host) + PATIENCE; host_now(&host) < until;
 	     usleep(1000)) /* pace */
-		while (worker_next(worker, &message))
-			if (message.is_event && message.event.news == news)
+		while ((message = worker_next(worker)))
+			if (message->is_event && message->event.news == news)
 				return true;
 	return false;
 }

@@ -104,12 +104,12 @@ static void ask(unsigned n, const char *path)
 
 static void take(unsigned n)
 {
-	struct worker_message message;
+	const struct worker_message *message;
 
-	while (worker_next(worker[n], &message)) {
-		if (message.is_event)
+	while ((message = worker_next(worker[n]))) {
+		if (message->is_event)
 			continue;
-		answer[n] = message.answer;
+		answer[n] = message->answer;
 		answers[n]++;
 	}
 }
