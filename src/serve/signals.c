@@ -187,8 +187,8 @@ int signals_read(struct signals *signals, const char *name, int64_t now_ns, char
 }
 
 /*
- * Ignore the end of the string, which some clients send along, and of a number blanks and the end of
- * the line, which a shell adds.
+ * Ignore the end of the string, which some clients send along, and of a number blanks and the end
+ * of the line, which a shell adds.
  */
 static int take_text(const char *text, size_t len, bool is_string, char out[VALUE_STRING_MAX + 1])
 {
