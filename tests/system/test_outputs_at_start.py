@@ -165,7 +165,8 @@ def test_the_command_of_a_living_program_that_beats_stays_in_force_and_initvalue
             plant = Plant(scene, server, beats=5.0)
             plant.again(ended)
             plant.writes([(path, b"1") for path in ALL], ended)
-            assert "reopened" in plant.giver.log() and plant.giver.running()
+            owsdtest.logged(plant.giver, "reopened")
+            assert plant.giver.running()
             plant.giver.stop()
             assert plant.daemon.stop() == 0
 
@@ -179,7 +180,8 @@ def test_a_program_that_connects_after_one_that_ended_does_not_bring_its_command
             owsdtest.until(lambda: "beats" in follower.log(), 20, follower.log)
             plant.again(ended)
             plant.writes(ENDED, ended)
-            assert "reopened" in follower.log() and follower.running()
+            owsdtest.logged(follower, "reopened")
+            assert follower.running()
             follower.stop()
             assert plant.daemon.stop() == 0
 
@@ -192,18 +194,27 @@ def test_a_living_program_that_never_beats_counts_as_one_that_ended(scene):
         assert plant.giver.running()
 
 
+def loses(scene, ended, fate, beats):
+    """False: owsd was away for about as long as the program has promised to beat again."""
+    with peer.Peer(values()) as server:
+        plant = Plant(scene, server, beats=beats)
+        before, begun = plant.daemon, time.monotonic()
+        getattr(plant.giver, fate)()
+        plant.again(ended)
+        early = list(server.writes)
+        in_time = time.monotonic() - begun < beats - 3
+        if in_time:
+            assert "SafeValue" not in before.log(), before.log()
+            assert not early, (fate, "before the promise is over", early)
+            plant.writes(LOST, f"{ended}, {fate}")
+        plant.giver.kill()
+        assert plant.daemon.stop() == 0
+        return in_time
+
+
 def test_of_a_program_that_beat_and_hangs_or_is_dead_safevalue_is_written_else_initvalue(scene):
     for ended, fate in zip(ENDS, ("freeze", "kill")):
-        with peer.Peer(values()) as server:
-            plant = Plant(scene, server, beats=8.0)
-            before = plant.daemon
-            getattr(plant.giver, fate)()
-            plant.again(ended)
-            assert "SafeValue" not in before.log(), "the machine is too slow for this"
-            assert not server.writes, (fate, "before the promise is over", server.writes)
-            plant.writes(LOST, f"{ended}, {fate}")
-            plant.giver.kill()
-            assert plant.daemon.stop() == 0
+        assert any(loses(scene, ended, fate, beats) for beats in (8.0, 25.0, 80.0)), "too slow a machine"
 
 
 def test_a_child_that_holds_the_socket_open_does_not_come_back_for_its_parent(scene):
@@ -221,7 +232,7 @@ def test_a_child_that_holds_the_socket_open_does_not_come_back_for_its_parent(sc
 def test_safevalue_that_stands_stays_over_a_restart(scene):
     for ended in ENDS:
         with peer.Peer(values()) as server:
-            plant = Plant(scene, server, beats=2.0)
+            plant = Plant(scene, server, beats=5.0)
             plant.giver.kill()
             owsdtest.logged(plant.daemon, "to SafeValue")
             plant.again(ended)
@@ -238,7 +249,7 @@ def test_a_superseded_command_does_not_come_back_with_its_giver(scene):
             plant.again(ended)
             plant.writes([(INIT, b"0"), (BOTH, b"0"), (LAST, b"0"), (LAST_SAFE, b"0")],
                          "the last word was owsctl's, which ended")
-            assert "reopened" in plant.giver.log()
+            owsdtest.logged(plant.giver, "reopened")
             plant.giver.stop()
             assert plant.daemon.stop() == 0
 
@@ -371,14 +382,15 @@ def test_a_reload_leaves_every_command_in_force_and_writes_nothing(scene):
 
 def test_a_reload_under_a_program_that_beats_leaves_its_commands_in_force(scene):
     with peer.Peer(values()) as server:
-        plant = Plant(scene, server, 2.0)
+        plant = Plant(scene, server, 5.0)
         server.requests.clear()
         with open(plant.config, "a", encoding="ascii") as file:
             file.write("\n# another text\n")
         plant.daemon.signal(1)
         owsdtest.logged(plant.daemon, "reload: 6 signals, 6 of them go on")
         plant.writes([], "nothing")
-        assert "SafeValue" not in plant.daemon.log() and "reopened" in plant.giver.log()
+        owsdtest.logged(plant.giver, "reopened")
+        assert "SafeValue" not in plant.daemon.log()
         plant.giver.stop()
 
 
