@@ -57,6 +57,7 @@ struct config_item {
 	bool starts_last;     /* Start "last"; outputs only */
 	bool confirm;         /* pages ask a person once more before a set */
 	int64_t read_back_ns; /* outputs: how often what was written is read again; 0: never */
+	bool has_por;         /* its device has a power-on flag, which is read too */
 	bool restores;        /* and written again if it reads otherwise */
 	int64_t safe_delay_ns;
 	int64_t init_value, safe_value;    /* numbers, as in src/signal/value.h */

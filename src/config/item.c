@@ -231,6 +231,18 @@ static void build_start(struct build *build, const struct option_value *values,
 		               "Confirm does nothing: nobody sets this input");
 }
 
+static bool has_por(const struct config_item *item)
+{
+	char path[PATH_LEN_MAX + 8];
+	struct path_property property;
+
+	if (!item->device)
+		return false;
+	snprintf(path, sizeof(path), "/%s/por", item->device);
+	property = property_look(path);
+	return property.type && property.there && property.readable;
+}
+
 /* What of an output reads as it was written is read back, and the file says how often. */
 static void build_read_back(struct build *build, const struct option_value *values,
                             struct config_item *item)
@@ -248,6 +260,7 @@ static void build_read_back(struct build *build, const struct option_value *valu
 		                                      : 0;
 	else if (every->given && every->number > 0)
 		report_warning(build->report, every->node->at, "ReadBack does nothing: %s", fault);
+	item->has_por = item->read_back_ns && has_por(item);
 	item->restores = restore->number != 0;
 	if (item->restores && !item->read_back_ns)
 		report_warning(build->report, restore->node->at,

@@ -11,6 +11,7 @@
 #include "src/engine/intake.h"
 #include "src/engine/place.h"
 #include "src/engine/publish.h"
+#include "src/engine/restart.h"
 #include "src/engine/scaling.h"
 #include "src/engine/schedule.h"
 #include "src/engine/slots.h"
@@ -155,7 +156,8 @@ static bool ask_next(struct lane *lane, struct slot *slot, int64_t now_ns)
 
 	if (check >= 0)
 		return types_ask(lane, slot, (uint32_t)check, now_ns);
-	if (ask_alarm(lane, slot, now_ns) || engine_probe_ask(lane, slot, now_ns))
+	if (ask_alarm(lane, slot, now_ns) || engine_probe_ask(lane, slot, now_ns) ||
+	    engine_restart_ask(lane, slot, now_ns))
 		return true;
 	output = lane->lent.writes || alarm_holds(&lane->alarm) ? -1 : due_set_next(&lane->outputs);
 	input = due_set_next(&lane->inputs);

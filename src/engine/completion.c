@@ -303,6 +303,8 @@ static void write_succeeded(struct engine *e, struct lane *lane, const struct sl
 	request_succeeded(e, lane, s, s->command.differs ? OWS_Q_DIFFERS : OWS_Q_GOOD, false);
 	s->command.confirmed = true;
 	s->command.agrees = s->command.doubted = false;
+	if (s->device != TABLE_NO_DEVICE && e->table.devices[s->device].por == POR_SET)
+		e->table.devices[s->device].por = POR_UNKNOWN; /* somebody may clear it */
 	s->command.written = slot->value;
 	s->sample.detail = answer->detail;
 	if (signal_is_string(s)) {

@@ -11,6 +11,7 @@ void engine_device_back(struct lane *lane, struct device *device)
 	struct engine *e = lane->engine;
 
 	device->absent = false;
+	device->por = POR_UNKNOWN;
 	lane->counters.device_returns++;
 	for (uint32_t i = 0; i < device->count; i++) {
 		struct signal *s = &e->table.signals[e->table.device_rows[device->first + i]];

@@ -31,6 +31,7 @@ static void disown_slot(struct lane *lane, struct slot *slot)
 		break;
 	case FOR_STRUCTURE:
 	case FOR_PROBE:
+	case FOR_RESTART:
 	case FOR_GUEST:
 		return;
 	}
@@ -44,7 +45,7 @@ void lane_disown(struct lane *lane, bool all)
 
 		if (!slot->lent || slot->given_up || slot->moved ||
 		    slot->purpose == FOR_STRUCTURE || slot->purpose == FOR_PROBE ||
-		    slot->purpose == FOR_GUEST)
+		    slot->purpose == FOR_RESTART || slot->purpose == FOR_GUEST)
 			continue;
 		if (all || (slot->row != TABLE_NO_ROW &&
 		            lane->engine->table.signals[slot->row].lane != lane->index))

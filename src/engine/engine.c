@@ -141,7 +141,8 @@ static bool waits_for_period(const struct lane *lane)
 	if (lane->guests.first || (lane->lent.count && lane->lent.unshown))
 		return true;
 	return lane->state.up && !lane->lent.count &&
-	       (lane->inputs.count || lane->outputs.count || lane->checks.count);
+	       (lane->inputs.count || lane->outputs.count || lane->checks.count ||
+	        lane->restarts.count);
 }
 
 int64_t engine_step(struct engine *e, int64_t now_ns)

@@ -11,6 +11,7 @@
 #include "src/engine/lane_state.h"
 #include "src/engine/place.h"
 #include "src/engine/publish.h"
+#include "src/engine/restart.h"
 #include "src/engine/retry.h"
 #include "src/engine/slots.h"
 #include "src/engine/state.h"
@@ -38,6 +39,9 @@ static void complete_request(struct lane *lane, struct slot *slot, const struct 
 		break;
 	case FOR_PROBE:
 		engine_probe_done(e, lane, slot, answer, now_ns);
+		break;
+	case FOR_RESTART:
+		engine_restart_done(lane, slot, answer);
 		break;
 	case FOR_READ:
 		s = &e->table.signals[slot->row];

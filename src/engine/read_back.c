@@ -6,6 +6,7 @@
 #include "hal/bus/time.h"
 #include "src/engine/alarm_item.h"
 #include "src/engine/read_back.h"
+#include "src/engine/restart.h"
 #include "src/engine/scaling.h"
 #include "src/engine/schedule.h"
 #include "src/engine/state.h"
@@ -95,14 +96,16 @@ bool engine_compare(struct engine *e, struct lane *lane, struct signal *s, const
 
 	if (!s->item->output || signal_is_string(s))
 		return true;
-	if (!c->confirmed || s->writing || signal_changed(s) || absent ||
-	    slot->begun_ns < c->ended_ns) {
-		c->differs &= c->confirmed || signal_changed(s);
-		if (c->differs)
-			*quality = OWS_Q_DIFFERS;
+	if (!c->confirmed || s->writing) {
+		c->differs &= s->writing || signal_changed(s);
+		*quality = c->differs ? OWS_Q_DIFFERS : *quality;
 		return true;
 	}
 	agrees = signal_reads_as_written(s, quality);
+	if (!agrees && (signal_changed(s) || absent || slot->begun_ns < c->ended_ns)) {
+		*quality = c->differs ? OWS_Q_DIFFERS : *quality;
+		return true;
+	}
 	/* it may come from a cache, or be a disturbed reading of a chip without a checksum */
 	if (s->item->read_back_ns && !agrees && !c->differs && !c->doubted) {
 		c->doubted = true;
@@ -112,16 +115,9 @@ bool engine_compare(struct engine *e, struct lane *lane, struct signal *s, const
 	if (c->agrees && !agrees)
 		alarm_output_differs(&lane->alarm, s->device);
 	c->agrees = agrees;
-	if (s->item->read_back_ns)
+	if (s->item->read_back_ns) {
+		engine_restart_look(lane, s, agrees);
 		judge(e, s, agrees, quality);
+	}
 	return true;
-}
-
-uint64_t engine_read_back_at(const struct engine *e, const struct signal *s)
-{
-	int64_t wait_ns = s->item->read_back_ns, restore_ns = s->restore.not_before_ns;
-
-	if (s->command.differs && s->item->restores && restore_ns - e->time.now_ns < wait_ns)
-		wait_ns = restore_ns - e->time.now_ns;
-	return e->time.period + (wait_ns > 0 ? engine_periods(e, wait_ns) : 1);
 }

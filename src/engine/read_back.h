@@ -18,7 +18,5 @@ bool engine_compare(struct engine *e, struct lane *lane, struct signal *s, const
                     uint8_t *quality);
 /* Write a command again that the device lost, if it was not done just now; else later. */
 void engine_restore(struct engine *e, struct signal *s);
-/* When the output that nobody reads in the cycle is read back next, as a period. */
-uint64_t engine_read_back_at(const struct engine *e, const struct signal *s);
 
 #endif

@@ -4,7 +4,6 @@
 #include "hal/bus/time.h"
 #include "src/engine/due.h"
 #include "src/engine/publish.h"
-#include "src/engine/read_back.h"
 #include "src/engine/retry.h"
 #include "src/engine/state.h"
 
@@ -54,6 +53,15 @@ void engine_write_check(struct engine *e, struct signal *s)
 	} else if (!s->writing && !e->wheel.wait[row * 2 + 1].waits) {
 		due_set_add(outputs, row);
 	}
+}
+
+uint64_t engine_read_back_at(const struct engine *e, const struct signal *s)
+{
+	int64_t wait_ns = s->item->read_back_ns, restore_ns = s->restore.not_before_ns;
+
+	if (s->command.differs && s->item->restores && restore_ns - e->time.now_ns < wait_ns)
+		wait_ns = restore_ns - e->time.now_ns;
+	return e->time.period + (wait_ns > 0 ? engine_periods(e, wait_ns) : 1);
 }
 
 static void row_ready(void *ctx, uint32_t entry)

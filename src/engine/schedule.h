@@ -8,6 +8,8 @@
 void engine_read_now(struct engine *e, struct signal *s);
 void engine_read_at(struct engine *e, struct signal *s, uint64_t period);
 void engine_read_never(struct engine *e, struct signal *s);
+/* When an output that is not read in the cycle is read back next, as a period. */
+uint64_t engine_read_back_at(const struct engine *e, const struct signal *s);
 void engine_write_at(struct engine *e, struct signal *s, uint64_t period);
 /* Put the row among those to be written, or take it away, by signal_changed(). */
 void engine_write_check(struct engine *e, struct signal *s);

@@ -34,7 +34,7 @@ struct engine_guests;
 
 /* --- A request ------------------------------------------------------------------------------- */
 
-enum purpose { FOR_READ, FOR_WRITE, FOR_STRUCTURE, FOR_ALARM, FOR_PROBE, FOR_GUEST };
+enum purpose { FOR_READ, FOR_WRITE, FOR_STRUCTURE, FOR_ALARM, FOR_PROBE, FOR_RESTART, FOR_GUEST };
 
 /*
  * A request and its room. Its id is slot | turn << 16, so that a late answer does not fit a new
@@ -56,8 +56,9 @@ struct slot {
 
 	/* whoever asks: ask.c, guests.c */
 	enum purpose purpose;
-	uint32_t row;  /* of the table, of structure.checks (FOR_STRUCTURE), a device (FOR_PROBE) */
-	int64_t value; /* of a write */
+	/* of the table, of structure.checks (FOR_STRUCTURE), a device (FOR_PROBE, FOR_RESTART) */
+	uint32_t row;
+	int64_t value;              /* of a write */
 	uint32_t stamp;             /* of the command written, 0: owsd's */
 	uint32_t giver, serial;     /* whose it is */
 	bool one_shot;              /* the write was that of _WriteOneShot */
@@ -136,6 +137,8 @@ struct lane {
 	uint32_t writes_in_row; /* since the last read was begun */
 	/* lane.c, intake.c */
 	uint32_t writers; /* rows whose writing is enabled */
+	/* restart.c */
+	struct due_set restarts; /* devices whose power-on flag is to be read */
 	/* types.c */
 	struct due_set checks; /* of the engine's structure: to be asked here */
 

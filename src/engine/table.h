@@ -145,12 +145,16 @@ struct device_facts {
 	int64_t ok_ns; /* last good answer; 0: none */
 };
 
+/* Its power-on flag, as it was read while its outputs were as written. */
+enum device_por { POR_UNKNOWN, POR_CLEAR, POR_SET };
+
 struct device {
 	uint8_t rom[8];
 	bool has_rom;              /* false: an alias */
 	bool absent;               /* a signal of it went bad with "no such device" */
 	uint32_t first, count;     /* rows in table.device_rows */
 	struct device_facts facts; /* device_facts.c */
+	enum device_por por; /* restart.c; void when it was away, or is written: completion.c */
 
 	/* where it is served, and looked for (place.c, routing.c) */
 	unsigned group;

@@ -96,13 +96,26 @@ def marked_and_left_alone(scene, way):
 
 def restored(scene, way):
     daemon, _ = plant(scene, way, Restore=raw("on"))
-    for name, (_, _, value) in COMMANDS.items():
+    for name in "relays", "lamp":
         until(lambda: len(history(scene, daemon, name)) >= 2, 60, f"{name} was lost and is back")
-        until(lambda: scene.get(daemon, name) == str(value), 10, name)
+        until(lambda: scene.get(daemon, name) == str(COMMANDS[name][2]), 10, name)
         assert [e["event"] for e in history(scene, daemon, name)][:2] == ["raised", "returned"]
     for text in ("not as commanded", "the command is written again", "as commanded again"):
         until(lambda: len(history(scene, daemon, "lamp")) == 2 * lines(daemon, "lamp", text), 20,
               daemon.log)
+
+
+def told_by_its_flag(scene, way):
+    """The relays have a power-on flag, which is cleared; the lamp's chip has none."""
+    daemon, server = plant(scene, way)
+    write(server, "/29.000000000001/por", b"0")
+    assert scene.owsctl(daemon, "set", "relays_WOS", 1).returncode == 0
+    looks(scene, daemon, "relays", 5)
+    until(lambda: row(scene, daemon, "lamp")["quality"] == "not as commanded", 60, "the restart")
+    until(lambda: scene.get(daemon, "relays") == "255", 10, "the relays are on again")
+    looks(scene, daemon, "lamp")
+    assert row(scene, daemon, "lamp")["quality"] == "not as commanded"
+    assert "written again" not in daemon.log()
 
 
 def test_a_board_that_lost_its_supply_is_marked_on_the_own_bus(scene):
@@ -119,6 +132,14 @@ def test_restore_writes_it_again_on_the_own_bus(scene):
 
 def test_restore_writes_it_again_through_an_owserver(scene):
     restored(scene, "owserver")
+
+
+def test_a_restart_that_a_flag_shows_is_mended_on_the_own_bus(scene):
+    told_by_its_flag(scene, "direct")
+
+
+def test_a_restart_that_a_flag_shows_is_mended_through_an_owserver(scene):
+    told_by_its_flag(scene, "owserver")
 
 
 def test_a_board_that_is_unplugged_is_absent_and_not_another(scene):

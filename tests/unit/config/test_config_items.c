@@ -317,7 +317,7 @@ static void test_an_output_that_reads_as_written_is_read_back(void)
 	TEST_ASSERT_EQUAL_INT64(500,
 	                        read_back_of("/29.000000000001/PIO.0", "Type bool ReadBack 0.5"));
 	TEST_ASSERT_EQUAL_INT64(0, read_back_of("/29.000000000001/PIO.0", "Type bool ReadBack 0"));
-	/* its pin may be held by others; a write clears the latch; written only; who knows */
+	/* its pin may be held by others; it is cleared by a write; nobody knows the chip */
 	TEST_ASSERT_EQUAL_INT64(0, read_back_of("/42.000000000001/PIO.A", "Type bool"));
 	TEST_ASSERT_EQUAL_INT64(0, read_back_of("/29.000000000001/latch.BYTE", "Type byte"));
 	TEST_ASSERT_EQUAL_INT64(0, read_back_of("/lamp/PIO.A", "Type bool"));

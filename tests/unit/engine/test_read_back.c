@@ -14,6 +14,7 @@ static struct scene s;
 static FILE *out;
 
 #define PIO "/29.B89115000000/PIO.BYTE"
+#define POR "/29.B89115000000/por"
 #define OUT 1
 
 static struct config_item *an_output(void)
@@ -304,6 +305,89 @@ static void test_a_reload_carries_the_difference_over(void)
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_LAST_USABLE, scene_sample(&s, OUT).quality);
 }
 
+/* --- Restarts -------------------------------------------------------------------------------- */
+
+static void a_board(const char *por)
+{
+	an_output()->has_por = true;
+	scene_put(&s, POR, por, 0);
+	begin();
+	scene_run(&s, 25 * SCENE_S);
+	scene_clear_trace(&s);
+}
+
+static void it_restarts(void)
+{
+	scene_put(&s, POR, "1", 0);
+	scene_put(&s, PIO, "0", 0);
+	scene_run(&s, 25 * SCENE_S);
+}
+
+static unsigned restarts(void)
+{
+	unsigned n = 0;
+
+	for (unsigned k = 0; k < s.image.header->alarm_head && k < OWS_JOURNAL; k++)
+		n += s.image.alarms[k].kind == OWS_ALARM_POR;
+	return n;
+}
+
+static void test_a_device_that_tells_of_its_restart_gets_its_command_again(void)
+{
+	a_board("0");
+	it_restarts();
+	TEST_ASSERT_EQUAL_STRING("255", scene_at(&s, PIO));
+	TEST_ASSERT_EQUAL_UINT(1, s.writes);
+	shows(OWS_Q_GOOD, 255);
+	TEST_ASSERT_EQUAL_UINT(1, restarts());
+	TEST_ASSERT_EQUAL_UINT(1, logged("the device has restarted"));
+	TEST_ASSERT_EQUAL_UINT64(1, scene_counter_of(&s, 0, "power_on_resets"));
+}
+
+static void test_a_flag_that_nobody_cleared_tells_nothing(void)
+{
+	a_board("1");
+	it_restarts();
+	shows(OWS_Q_DIFFERS, 0);
+	TEST_ASSERT_EQUAL_UINT(0, s.writes);
+	TEST_ASSERT_EQUAL_UINT(0, restarts());
+	scene_put(&s, POR, "0", 0); /* cleared, and written by hand */
+	scene_slot(&s, OUT)->one_shot++;
+	scene_ring(&s, OUT);
+	scene_run(&s, 25 * SCENE_S);
+	shows(OWS_Q_GOOD, 255);
+	it_restarts();
+	shows(OWS_Q_GOOD, 255);
+	TEST_ASSERT_EQUAL_UINT(1, restarts());
+}
+
+static void test_what_somebody_else_switched_is_no_restart(void)
+{
+	a_board("0");
+	scene_put(&s, PIO, "0", 0);
+	scene_run(&s, 60 * SCENE_S);
+	shows(OWS_Q_DIFFERS, 0);
+	TEST_ASSERT_EQUAL_UINT(0, s.writes);
+	TEST_ASSERT_EQUAL_UINT(0, restarts());
+}
+
+static void test_a_flag_that_cannot_be_read_tells_nothing(void)
+{
+	a_board("0");
+	scene_put(&s, PIO, "0", 0);
+	scene_put(&s, POR, NULL, -EIO);
+	scene_run(&s, 60 * SCENE_S);
+	shows(OWS_Q_DIFFERS, 0);
+	TEST_ASSERT_EQUAL_UINT(0, s.writes);
+}
+
+static void test_the_flag_is_read_once_and_not_again(void)
+{
+	a_board("0");
+	scene_run(&s, 60 * SCENE_S);
+	TEST_ASSERT_NULL(strstr(s.trace, POR));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -321,5 +405,10 @@ int main(void)
 	RUN_TEST(test_restore_writes_nothing_where_writing_is_disabled);
 	RUN_TEST(test_a_limit_alarm_has_it_as_bad);
 	RUN_TEST(test_a_reload_carries_the_difference_over);
+	RUN_TEST(test_a_device_that_tells_of_its_restart_gets_its_command_again);
+	RUN_TEST(test_a_flag_that_nobody_cleared_tells_nothing);
+	RUN_TEST(test_what_somebody_else_switched_is_no_restart);
+	RUN_TEST(test_a_flag_that_cannot_be_read_tells_nothing);
+	RUN_TEST(test_the_flag_is_read_once_and_not_again);
 	return UNITY_END();
 }

@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Restarts of devices that no alarm item watches: a power-on flag that was clear and is set proves
+ * one, and then the outputs of the device are written again. One that nobody has cleared says
+ * nothing, and owsd does not clear it.
+ */
+#include <stdio.h>
+#include <string.h>
+
+#include "hal/owfs/path.h"
+#include "src/engine/alarm_item.h"
+#include "src/engine/alarm_text.h"
+#include "src/engine/due.h"
+#include "src/engine/restart.h"
+#include "src/engine/schedule.h"
+#include "src/engine/slots.h"
+#include "src/engine/state.h"
+#include "src/shm/entries.h"
+#include "src/text/log.h"
+
+static bool is_watched(const struct alarm_machine *m, uint32_t device)
+{
+	for (uint32_t k = 0; k < m->count; k++)
+		if (m->items[k]->device == device && m->items[k]->strings.por &&
+		    *m->items[k]->strings.por)
+			return true;
+	return false;
+}
+
+void engine_restart_look(struct lane *lane, const struct signal *s, bool agrees)
+{
+	enum device_por por;
+
+	if (!s->item->has_por || s->device == TABLE_NO_DEVICE)
+		return;
+	por = lane->engine->table.devices[s->device].por;
+	if (por == (agrees ? POR_UNKNOWN : POR_CLEAR) && !is_watched(&lane->alarm, s->device))
+		due_set_add(&lane->restarts, s->device);
+}
+
+bool engine_restart_ask(struct lane *lane, struct slot *slot, int64_t now_ns)
+{
+	const struct table *table = &lane->engine->table;
+	int64_t device = due_set_next(&lane->restarts);
+	const struct signal *s;
+	struct path path;
+
+	if (device < 0)
+		return false;
+	s = &table->signals[table->device_rows[table->devices[device].first]];
+	if (s->lane != lane->index || path_split(s->item->path, strlen(s->item->path), &path)) {
+		due_set_take(&lane->restarts, (uint32_t)device);
+		return false;
+	}
+	snprintf(slot->path, sizeof(slot->path), "%.*s/por",
+	         (int)(path.device.text + path.device.len - s->item->path), s->item->path);
+	slot->purpose = FOR_RESTART;
+	slot->row = (uint32_t)device;
+	slot->req = (struct bus_req){.op = BUS_READ,
+	                             .prio = BUS_INPUT,
+	                             .fresh = true,
+	                             .path = slot->path,
+	                             .len = sizeof(slot->data)};
+	if (!slot_lend(lane, slot, now_ns))
+		return false;
+	due_set_take(&lane->restarts, (uint32_t)device);
+	return true;
+}
+
+static void write_again(struct lane *lane, const struct device *d)
+{
+	struct engine *e = lane->engine;
+	struct ows_journal_entry entry = {
+		.occurred_ns = e->time.now_ns,
+		.kind = OWS_ALARM_POR,
+		.event = OWS_ALARM_RAISED,
+	};
+	bool entered = false;
+
+	lane->counters.power_on_resets++;
+	for (uint32_t k = 0; k < d->count; k++) {
+		struct signal *s = &e->table.signals[e->table.device_rows[d->first + k]];
+
+		if (s->lane != lane->index || !s->item->output)
+			continue;
+		s->command.confirmed = false;
+		engine_write_check(e, s);
+		if (entered)
+			continue;
+		entered = true;
+		entry.record = s->record;
+		entry.quality = s->sample.quality;
+		image_alarm(e->image, &entry);
+		e->published = true;
+		log_notice(e->log, "%s (%s): the device has restarted", s->item->name,
+		           s->item->path);
+	}
+}
+
+void engine_restart_done(struct lane *lane, const struct slot *slot,
+                         const struct bus_answer *answer)
+{
+	struct device *d = &lane->engine->table.devices[slot->row];
+	bool was_clear = d->por == POR_CLEAR;
+	int set = answer->err ? answer->err : alarm_non_zero((const char *)slot->data, answer->len);
+
+	if (set < 0)
+		return;
+	d->por = set ? POR_SET : POR_CLEAR;
+	if (set && was_clear)
+		write_again(lane, d);
+}
