@@ -86,6 +86,27 @@ static bool is_for_a_row(const struct slot *slot)
 	       (slot->purpose == FOR_ALARM && slot->row != TABLE_NO_ROW);
 }
 
+/*
+ * A reading that was given up may be newer than what the signal has: a slow machine gets its values
+ * late, not never.
+ */
+static void take_late_reading(struct lane *lane, const struct slot *slot,
+                              const struct bus_answer *answer, int64_t now_ns)
+{
+	struct engine *e = lane->engine;
+	struct signal *s;
+	int64_t wait_ns;
+
+	if (answer->err || slot->purpose != FOR_READ || slot->moved || !lane->state.open)
+		return;
+	s = &e->table.signals[slot->row];
+	if (!signal_reads(s) ||
+	    (answer->measured_ns && answer->measured_ns <= s->sample.measured_ns))
+		return;
+	engine_take_reading(e, lane, s, slot, answer, now_ns, &wait_ns);
+	engine_publish(e, s);
+}
+
 void lane_answer(struct lane *lane, const struct bus_answer *answer, int64_t now_ns)
 {
 	struct slot *slot = slot_of_id(lane, answer->id);
@@ -105,6 +126,7 @@ void lane_answer(struct lane *lane, const struct bus_answer *answer, int64_t now
 		complete_request(lane, slot, answer, now_ns);
 	} else {
 		lane->counters.late_answers += slot->given_up;
+		take_late_reading(lane, slot, answer, now_ns);
 		if (!slot->given_up && slot->purpose == FOR_WRITE)
 			lane->lent.writes--;
 		if (slot->purpose == FOR_GUEST)

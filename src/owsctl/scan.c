@@ -33,12 +33,6 @@ static const char *alarms(const struct scan_device *device)
 	return family->alarms ? "yes" : "no";
 }
 
-/* Is it a value of another chip with the same family code? */
-static bool is_of_another(const struct scan_device *device, unsigned i)
-{
-	return device->value[i].err == -ENOENT && device->identity[0];
-}
-
 /* Write the values as "temperature12=21.5 ...". */
 static void show_values(const struct scan_device *device, char *out, size_t size)
 {
@@ -52,7 +46,8 @@ static void show_values(const struct scan_device *device, char *out, size_t size
 
 		if (!name || used >= size)
 			break;
-		if (is_of_another(device, i))
+		/* of another chip with the same family code */
+		if (value->err == -ENOENT && device->identity[0])
 			continue;
 		n = snprintf(out + used, size - used, "%s%s=%s%s%s", used ? " " : "", name,
 		             value->err ? "(" : "",
@@ -101,8 +96,6 @@ static void print_values(struct json *json, const struct scan_device *device)
 
 		if (!name)
 			break;
-		if (is_of_another(device, i))
-			continue;
 		if (value->err)
 			json_null(json, name);
 		else if (target_is_number(value->text, strlen(value->text)))

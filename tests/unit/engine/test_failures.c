@@ -334,6 +334,22 @@ static void test_a_bus_that_never_answers_is_given_up_and_its_signals_go_bad(voi
 	TEST_ASSERT_EQUAL_UINT64(1, scene_counter(&s, "late_answers"));
 }
 
+/* Timeout is 20 s, and each answer takes 25: the values come late, and as old as they are. */
+static void test_a_slow_target_gives_its_values_late_and_not_never(void)
+{
+	s.bus[0].slow = T1;
+	s.bus[0].slow_ns = 25 * SCENE_S;
+	s.bus[0].depth = 8;
+	two_thermometers();
+	for (unsigned i = 0; i < 8; i++) {
+		scene_run(&s, 30 * SCENE_S);
+		TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
+		TEST_ASSERT_EQUAL_DOUBLE(21.5, scene_number(&s, 1));
+		TEST_ASSERT_GREATER_THAN_UINT32(i, scene_sample(&s, 1).count);
+	}
+	TEST_ASSERT_GREATER_THAN_UINT64(7, scene_counter(&s, "late_answers"));
+}
+
 static void test_one_request_without_answer_spoils_only_its_signal_on_a_bus_that_lives(void)
 {
 	s.bus[0].depth = 4;
@@ -459,6 +475,7 @@ int main(void)
 	RUN_TEST(test_an_answer_that_is_no_number_is_an_item_error);
 	RUN_TEST(test_a_value_outside_the_type_is_held_at_the_limit_and_says_so);
 	RUN_TEST(test_85_degrees_out_of_nothing_is_never_published);
+	RUN_TEST(test_a_slow_target_gives_its_values_late_and_not_never);
 	RUN_TEST(test_a_bus_that_never_answers_is_given_up_and_its_signals_go_bad);
 	RUN_TEST(test_one_request_without_answer_spoils_only_its_signal_on_a_bus_that_lives);
 	RUN_TEST(test_a_bus_that_only_talks_and_keeps_all_it_was_given_is_stuck_too);
