@@ -5,7 +5,9 @@
  * of the MAX31889, which is the same chip with I2C. All that goes over the wire has a CRC16.
  *
  * A result stands in a FIFO. It is the one that was asked for if the FIFO holds one and no more:
- * what was read is no longer there, and a restart leaves none.
+ * what was read is no longer there, and a restart leaves none. The count stands at 07h by the map
+ * of the MAX31889, at 04h by a driver that quotes the MAX31888's: there the former has the place of
+ * the next result. In a FIFO that was emptied before, both are 1 after one conversion.
  */
 #include <errno.h>
 
@@ -16,7 +18,7 @@
 enum { CONVERT = 0x44, READ = 0x33, WRITE = 0xcc };
 enum { FIFO_CONFIGURATION = 0x0a, LIMITS_AT = 0x10, FLUSH = 0x10 };
 /* Of what is read from register 0 on; the FIFO's register does not move on. */
-enum { RESULTS = 7, FIFO = 8, ALL = 10 };
+enum { PLACE = 4, RESULTS = 7, FIFO = 8, ALL = 10 };
 
 #define CONVERT_NS INT64_C(18000000)
 #define PER_DEGREE 200
@@ -25,7 +27,7 @@ enum { RESULTS = 7, FIFO = 8, ALL = 10 };
 #define HIGHEST 150
 
 struct visit {
-	bool started, flush;
+	bool started, flush, flushed;
 	int64_t done_ns; /* when the conversion ends */
 };
 
@@ -81,6 +83,7 @@ static int read_temperature(struct txn *txn)
 	if (visit->flush) {
 		err = flush(txn);
 		visit->flush = visit->started = false;
+		visit->flushed = !err;
 		return err ? err : TXN_MORE;
 	}
 	if (!visit->started) {
@@ -92,7 +95,7 @@ static int read_temperature(struct txn *txn)
 	err = read_registers(txn, 0, bytes, sizeof(bytes));
 	if (err)
 		return err;
-	if (bytes[RESULTS] != 1) {
+	if (bytes[RESULTS] != 1 && !(visit->flushed && bytes[PLACE] == 1)) {
 		/* left behind, or lost: once more with an empty FIFO */
 		visit->flush = txn->phase++ == 0;
 		return visit->flush ? TXN_MORE : -EBADMSG;

@@ -6,6 +6,7 @@
  * after Convert T have been read. What an empty FIFO gives is not stated: here the last result.
  * The conditional search and the GPIO pins are not simulated.
  */
+#include <errno.h>
 #include <string.h>
 
 #include "hal/bus/time.h"
@@ -38,6 +39,7 @@ enum { DEPTH = 32 };
 struct max31888 {
 	uint8_t reg[256];
 	uint16_t fifo[DEPTH];
+	bool early;  /* the count of results stands where the write pointer is else */
 	bool second; /* the low byte of the result is the next to be read */
 };
 
@@ -56,7 +58,7 @@ static void power_on(struct sim_slave *slave, int64_t t)
 	struct max31888 *s = state(slave);
 
 	(void)t;
-	memset(s, 0, sizeof(*s));
+	*s = (struct max31888){.early = s->early};
 	s->reg[ALARM_HIGH] = 0x7F;
 	s->reg[ALARM_HIGH + 1] = 0xFF;
 	s->reg[ALARM_LOW] = 0x80;
@@ -110,7 +112,9 @@ static uint8_t read_byte(struct max31888 *s, unsigned at)
 		return take(s);
 	if (at == STATUS)
 		s->reg[STATUS] = 0;
-	return byte;
+	if (s->early && at == WRITE_POINTER)
+		return s->reg[RESULTS];
+	return s->early && at == RESULTS ? 0 : byte;
 }
 
 /* Command, register, and the count of bytes less one. */
@@ -189,6 +193,16 @@ static bool bit(struct sim_slave *slave, int64_t t)
 	return true;
 }
 
+static int option(struct sim_slave *slave, const char *name, double value)
+{
+	if (strcmp(name, "count") != 0)
+		return -ENOENT;
+	if (value != WRITE_POINTER && value != RESULTS)
+		return -ERANGE;
+	state(slave)->early = value == WRITE_POINTER;
+	return 0;
+}
+
 static const struct sim_function functions[] = {
 	{.code = 0x44, .start = confirm, .next = checksum_was_read},
 	{.code = 0x82, .start = confirm, .next = reset_was_confirmed}, /* Soft Reset */
@@ -206,7 +220,7 @@ static const struct sim_input max30207_inputs[] = {
 	{ \
 		.name = (part), .code = 0x54, .starves = true, \
 		.state_size = sizeof(struct max31888), .functions = functions, .inputs = (input), \
-		.power_on = power_on, .worked = worked, .bit = bit \
+		.power_on = power_on, .worked = worked, .bit = bit, .option = option \
 	}
 
 const struct sim_family sim_max31888 = THERMOMETER("MAX31888", max31888_inputs);

@@ -62,6 +62,17 @@ static void test_it_measures_with_200_steps_a_degree(void)
 	begin("MAX31888", false);
 }
 
+/* Two maps were published. */
+static void test_the_count_of_results_may_stand_in_another_register(void)
+{
+	begin("MAX31888", false);
+	TEST_ASSERT_EQUAL_INT(0, chip->family->option(chip, "count", 4));
+	for (unsigned i = 0; i < 40; i++) {
+		wire_set(chip, "temperature", 20 + i);
+		expect_temperature(20 + i);
+	}
+}
+
 static void test_a_measurement_takes_little_more_than_the_chip(void)
 {
 	int64_t before;
@@ -99,11 +110,14 @@ static void test_what_the_fifo_held_before_is_not_taken(void)
 static unsigned wrong, again;
 static uint32_t slots;
 
+static double count; /* where the count of results stands */
+
 static void once(struct trouble what, bool parasite)
 {
 	const struct bus_answer *answer;
 
 	begin("MAX31888", parasite);
+	TEST_ASSERT_EQUAL_INT(0, chip->family->option(chip, "count", count));
 	measure();
 	wire_set(chip, "temperature", 60);
 	host_run(&host, bus, host.now + HOST_S);
@@ -120,7 +134,10 @@ static void once(struct trouble what, bool parasite)
 
 static void test_no_trouble_gives_a_false_value(void)
 {
-	for (unsigned parasite = 0; parasite < 2; parasite++) {
+	for (unsigned i = 0; i < 3; i++) {
+		bool parasite = i == 1;
+
+		count = i == 2 ? 4 : 7;
 		wrong = again = 0;
 		slots = UINT32_MAX;
 		once((struct trouble){.kind = TROUBLE_NONE}, parasite);
@@ -147,6 +164,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_it_measures_with_200_steps_a_degree);
+	RUN_TEST(test_the_count_of_results_may_stand_in_another_register);
 	RUN_TEST(test_a_measurement_takes_little_more_than_the_chip);
 	RUN_TEST(test_limits_are_read);
 	RUN_TEST(test_what_the_fifo_held_before_is_not_taken);
