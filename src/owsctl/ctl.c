@@ -311,7 +311,7 @@ int ctl_unknown(struct ows *h, const char *name)
 		                name, rest + 2, (int)(rest - name), name);
 	if (names_nearest(h, name, nearest))
 		return ctl_fail("there is no %s; did you mean %s?", ctl_word(name), nearest);
-	return ctl_fail("there is no %s", ctl_word(name));
+	return ctl_fail("there is no %s: owsctl list shows the names", ctl_word(name));
 }
 
 bool ctl_reader_gone(void)

@@ -50,7 +50,7 @@ const char *reading_quality(const struct reading *reading, char words[READING_WO
 	snprintf(words, READING_WORDS, "%s%s",
 	         reading_filled(reading) ? ows_quality_text(reading->value.quality)
 	                                 : error_text(reading->err),
-	         reading->value.detail & OWS_DETAIL_SIMULATED ? ", simulated" : "");
+	         reading->value.detail & OWS_DETAIL_SIMULATED ? " (sim)" : "");
 	return words;
 }
 

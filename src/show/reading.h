@@ -34,7 +34,7 @@ bool reading_good(const struct reading *reading);
 bool reading_filled(const struct reading *reading);
 
 #define READING_WORDS 320
-/* "good", "device absent", "good, simulated". Returns words. */
+/* "good", "device absent", "good (sim)". Returns words. */
 const char *reading_quality(const struct reading *reading, char words[READING_WORDS]);
 /* Why the value is not good, for a person. Returns words. */
 const char *reading_why(const struct reading *reading, char words[READING_WORDS]);

@@ -181,7 +181,7 @@ def do_console(stage, text):
 def like(expected, said):
     """Numbers, times, users and ... stand for anything; nothing expected: the page does not show it."""
     expected, said = (re.sub(r"\d{4}-\d\d-\d\dT[\d:.+-]+", "TIME", re.sub(r"\(user \w+\)", "(user)", text))
-                      for text in (expected, said.replace(", simulated", "")))
+                      for text in (expected, said.replace(" (sim)", "")))
     pattern = re.escape(re.sub(r"-?\d+(\.\d+)?[smhd]?\b", "\0", expected.strip()))
     pattern = pattern.replace("\0", r"-?[\d.]+[smhd]?").replace(re.escape("..."), "(?s:.*)")
     pattern = re.sub(r"(\\ |\\\n|\n)+", r"\\s+", pattern)

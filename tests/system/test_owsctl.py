@@ -99,10 +99,10 @@ def test_a_command_that_the_output_does_not_follow_is_shown(scene):
     assert scene.owsctl(daemon, "set", "-w", "60", "relay_WE", "off").returncode == 0
     assert scene.owsctl(daemon, "set", "relay", "off").returncode == 0
     scene.until(lambda: row() == (True, False), 10, row)
-    assert "good, simulated; commanded 0 " in line(), line()
+    assert "good (sim); commanded 0 " in line(), line()
     assert server.read(relay + "/PIO") == "1"
     terminal = Terminal(daemon, 24, 120, "watch", "relay")
-    terminal.until(lambda s: len(s) == 3 and "good, simulated; commanded 0 " in s[2], "the command")
+    terminal.until(lambda s: len(s) == 3 and "good (sim); commanded 0 " in s[2], "the command")
     os.write(terminal.fd, b"q")
     assert terminal.end() == (0, True)
     assert scene.owsctl(daemon, "set", "-w", "60", "relay_WE", "on").returncode == 0
@@ -139,15 +139,15 @@ def test_watch_prints_changes_and_follows_a_killed_owsd(scene):
     server, daemon, room, _ = house(scene)
     watch = owsctl(scene, daemon, "watch", "room")
     lines, said = Lines(watch.stdout), Lines(watch.stderr)
-    lines.until(r"^\S+ room 21.5 good, simulated$")
+    lines.until(r"^\S+ room 21.5 good \(sim\)$")
     server.write(room + "/temperature", 22.5)
-    lines.until(r"^\S+ room 22.5 good, simulated$")
+    lines.until(r"^\S+ room 22.5 good \(sim\)$")
     daemon.kill()
     said.until("is not running: last heartbeat")
-    lines.until(r"^\S+ room 22.5 target down, simulated$")
+    lines.until(r"^\S+ room 22.5 target down \(sim\)$")
     scene.owsd(daemon.config, name=daemon.name)
     said.until("was started again")
-    lines.until(r"target down.*\n(.*\n)*\S+ room 22.5 good, simulated$", 20)
+    lines.until(r"target down.*\n(.*\n)*\S+ room 22.5 good \(sim\)$", 20)
     watch.terminate()
     assert watch.wait(owsdtest.PATIENCE) == 0
 
@@ -387,11 +387,11 @@ def test_the_live_table_marks_an_alarm_without_colour(scene):
     scene.until(lambda: "! high" in scene.owsctl(daemon, "list").stdout, 15, "the alarm stands")
     terminal = Terminal(daemon, 24, 80, "watch")
     terminal.until(lambda s: len(s) == 4 and "2 signals, 0 not good, 1 in alarm" in s[0]
-                   and re.match(r"boiler +31 +\u00b0C +good, simulated +! high +", s[2])
-                   and re.match(r"outside +4 +\u00b0C +good, simulated +- +", s[3])
+                   and re.match(r"boiler +31 +\u00b0C +good \(sim\) +! high +", s[2])
+                   and re.match(r"outside +4 +\u00b0C +good \(sim\) +- +", s[3])
                    and "/28.00000000000" in s[2], "the mark")
     assert scene.owsctl(daemon, "alarms", "ack", "-a").returncode == 0
-    terminal.until(lambda s: re.match(r"boiler +31 +\u00b0C +good, simulated +high, ack", s[2]), "acknowledged")
+    terminal.until(lambda s: re.match(r"boiler +31 +\u00b0C +good \(sim\) +high, ack", s[2]), "acknowledged")
     os.write(terminal.fd, b"q")
     assert terminal.end() == (0, True)
 
