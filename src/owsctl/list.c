@@ -108,8 +108,8 @@ int verb_list(struct ctl *ctl, int argc, char **argv)
 		ok = print_table(h, &rows, &reading);
 	if (!ok)
 		status = ctl_fail("no memory");
-	else if (rows.count == 0 && patterns > 0)
-		status = ctl_fail("no signal matches");
+	else
+		status = rows_check(&rows, argv + optind, patterns);
 	rows_free(&rows);
 	ows_close(h);
 	return status;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/owsctl/ctl.h"
 #include "src/owsctl/rows.h"
 #include "src/show/names.h"
 
@@ -54,6 +55,24 @@ int rows_collect(struct ows *h, char *const *patterns, int pattern_count, bool d
 	if (err)
 		rows_free(rows);
 	return err;
+}
+
+static bool matches_some(const struct rows *rows, char *const *pattern)
+{
+	for (int i = 0; i < rows->count; i++)
+		if (names_match(rows->row[i].name, pattern, 1))
+			return true;
+	return false;
+}
+
+int rows_check(const struct rows *rows, char *const *patterns, int pattern_count)
+{
+	int status = 0;
+
+	for (int i = 0; i < pattern_count; i++)
+		if (!matches_some(rows, patterns + i))
+			status = ctl_fail("no signal matches %s", ctl_word(patterns[i]));
+	return rows->count ? 0 : status;
 }
 
 void rows_free(struct rows *rows)

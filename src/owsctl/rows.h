@@ -59,4 +59,10 @@ bool rows_have_units(const struct rows *rows);
 /* name, output, path, alarms and the like as members of a JSON object. */
 void row_json(struct json *json, struct ows *h, const struct row *row, int64_t now_ns);
 
+/*
+ * Report each pattern that no row matches. Returns CTL_FAILED if there are patterns and no row at
+ * all, else 0.
+ */
+int rows_check(const struct rows *rows, char *const *patterns, int pattern_count);
+
 #endif

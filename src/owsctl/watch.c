@@ -143,9 +143,10 @@ static int begin(struct watch *watch, bool screen)
 	ows_daemon(watch->h, ows_now(), &daemon);
 	if (watch_collect(watch, &daemon) < 0)
 		return ctl_fail("no memory");
-	if (watch->rows.count == 0 && watch->pattern_count > 0) {
+	status = rows_check(&watch->rows, watch->patterns, watch->pattern_count);
+	if (status) {
 		watch_free(watch);
-		return ctl_fail("no signal matches");
+		return status;
 	}
 	terminal_catch_signals();
 	status = screen ? watch_screen(watch) : watch_lines(watch);
@@ -162,11 +163,19 @@ static bool parse_count(const char *text, int64_t *count)
 	return end != text && !*end && !errno && *count > 0;
 }
 
+/* A terminal that knows no escape sequences gets lines, as a pipe does. */
+static bool has_screen(void)
+{
+	const char *term = getenv("TERM");
+
+	return isatty(STDOUT_FILENO) && (!term || strcmp(term, "dumb") != 0);
+}
+
 int verb_watch(struct ctl *ctl, int argc, char **argv)
 {
 	static struct reading reading;
 	struct watch watch = {.ctl = ctl, .left = -1, .end_ns = INT64_MAX, .reading = &reading};
-	bool screen = isatty(STDOUT_FILENO);
+	bool screen = has_screen();
 	int64_t limit_ns = -1;
 	int c, status;
 

@@ -206,12 +206,13 @@ def test_nothing_is_set_at_an_owsd_that_was_just_killed(scene):
 class Terminal:
     """owsctl on a terminal of our own; screen() is its present picture, line by line."""
 
-    def __init__(self, daemon, lines, columns, *arguments):
+    def __init__(self, daemon, lines, columns, *arguments, term="xterm"):
         go, begin = os.pipe()
         self.pid, self.fd = pty.fork()
         if self.pid == 0:
             os.read(go, 1)  # not before the terminal has been looked at
-            os.execv(owsdtest.OWSCTL, [str(owsdtest.OWSCTL), "-n", daemon.name, *arguments])
+            os.execve(owsdtest.OWSCTL, [str(owsdtest.OWSCTL), "-n", daemon.name, *arguments],
+                      dict(os.environ, TERM=term))
         self.before = termios.tcgetattr(self.fd)
         self.output = b""
         self.resize(lines, columns)
@@ -424,6 +425,13 @@ def test_a_terminal_is_given_back_on_sigterm(scene):
     terminal.until(lambda s: len(s) > 3, "a picture")
     os.kill(terminal.pid, signal.SIGTERM)
     assert terminal.end() == (0, True)
+
+
+def test_a_dumb_terminal_gets_lines(scene):
+    _, daemon, _, _ = house(scene)
+    terminal = Terminal(daemon, 10, 60, "watch", "-c", "1", term="dumb")
+    assert terminal.end()[0] == 0
+    assert re.search(rb" room 21.5 good", terminal.output) and b"\x1b" not in terminal.output, terminal.output
 
 
 def test_no_byte_of_a_binary_property_is_lost_on_the_way(scene):

@@ -130,11 +130,11 @@ static void test_a_word_that_no_signal_matches_is_refused(void)
 	} wrong[] = {
 		{"alarms histroy", "owsctl: there is no histroy; did you mean alarms history?\n"},
 		{"alarms akc", "owsctl: there is no akc; did you mean alarms ack?\n"},
-		{"alarms bogus", "owsctl: there is no bogus\n"},
+		{"alarms bogus", "owsctl: there is no bogus: owsctl list shows the names\n"},
 		{"alarms room", "owsctl: there is no room; did you mean room1?\n"},
 		{"alarms room1 zzz*", "owsctl: no signal matches zzz*\n"},
 		{"alarms history boilr", "owsctl: there is no boilr; did you mean boiler?\n"},
-		{"alarms history nothing --json", "owsctl: there is no nothing\n"},
+		{"alarms history nothing --json", "owsctl: there is no nothing: owsctl list shows the names\n"},
 	};
 
 	for (size_t i = 0; i < sizeof(wrong) / sizeof(wrong[0]); i++) {

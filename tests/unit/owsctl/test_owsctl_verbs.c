@@ -128,7 +128,11 @@ static void test_list_shows_what_matches(void)
 	holds(out, "relay    1    good");
 	TEST_ASSERT_NULL(strstr(out, "count"));
 	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_list, "list x*"));
-	holds(err, "no signal matches");
+	holds(err, "no signal matches x*");
+	/* one that matches nothing beside one that does is no failure, and is named */
+	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_list, "list r* nosuch"));
+	holds(out, "relay    1    good");
+	TEST_ASSERT_EQUAL_STRING("owsctl: no signal matches nosuch\n", err);
 }
 
 static void test_list_shows_driver_signals_when_asked(void)
