@@ -134,7 +134,8 @@ static void test_a_word_that_no_signal_matches_is_refused(void)
 		{"alarms room", "owsctl: there is no room; did you mean room1?\n"},
 		{"alarms room1 zzz*", "owsctl: no signal matches zzz*\n"},
 		{"alarms history boilr", "owsctl: there is no boilr; did you mean boiler?\n"},
-		{"alarms history nothing --json", "owsctl: there is no nothing: owsctl list shows the names\n"},
+		{"alarms history nothing --json",
+	         "owsctl: there is no nothing: owsctl list shows the names\n"},
 	};
 
 	for (size_t i = 0; i < sizeof(wrong) / sizeof(wrong[0]); i++) {
