@@ -553,7 +553,7 @@ install: all
 	$(if $(D),,-@ldconfig 2>/dev/null || true)
 
 uninstall:
-	rm -f $(addprefix $(D)$(PREFIX)/sbin/,owsd owsd-recorder owsd-config owsd-influx owsd-web) $(D)$(PREFIX)/bin/owsctl \
+	rm -f $(addprefix $(D)$(PREFIX)/sbin/,owsd owsd-recorder owsd-config owsd-influx owsd-web owsd-mqtt) $(D)$(PREFIX)/bin/owsctl \
 	    $(foreach l,$(LIBRARIES),$(foreach s,so.$(VERSION) so.$(SOMAJOR) so a,$(D)$(LIBDIR)/$(l).$(s)) \
 	    $(D)$(LIBDIR)/pkgconfig/$(l).pc) \
 	    $(D)$(PREFIX)/include/ows.h $(D)$(PREFIX)/include/ows_history.h $(D)$(PREFIX)/include/ows_layout.h
@@ -565,7 +565,7 @@ uninstall:
 # The unit names the owsd of PREFIX; what has to be done once is said
 SERVICE   := systemd/system/owsd@.service systemd/system/owsd.service sysusers.d/owsd.conf \
              tmpfiles.d/owsd.conf modules-load.d/owsd.conf udev/rules.d/60-owsd.rules \
-             $(foreach f,owsd-recorder owsd-influx,systemd/system/$f@.service systemd/system/$f.service \
+             $(foreach f,owsd-recorder owsd-influx owsd-mqtt,systemd/system/$f@.service systemd/system/$f.service \
              sysusers.d/$f.conf) \
              $(foreach f,owsd-config owsd-web,systemd/system/$f@.service systemd/system/$f@.socket \
              sysusers.d/$f.conf) tmpfiles.d/owsd-config.conf
@@ -598,7 +598,7 @@ install-service:
 	[ -e $(D)/etc/owsd/OWS.rio ] || install -m 644 board/debian/OWS.rio $(D)/etc/owsd/OWS.rio
 	@echo 'now: systemd-sysusers; systemd-tmpfiles --create; modprobe i2c-dev; udevadm trigger;'
 	@echo '     systemctl daemon-reload; systemctl enable --now owsd      (its configuration: /etc/owsd/OWS.rio)'
-	@echo '     and for the history: systemctl enable --now owsd-recorder; for a database: owsd-influx'
+	@echo '     and for the history: systemctl enable --now owsd-recorder; for a database: owsd-influx; for a broker: owsd-mqtt'
 	@echo '     and for the page: systemctl enable --now owsd-web@OWS.socket'
 
 uninstall-service:

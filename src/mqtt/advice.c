@@ -22,7 +22,7 @@ static const struct {
 	{0x8a, "the broker has banned us", "look at its log"},
 	{0x8b, "the broker ends", ""},
 	{0x8d, "the broker did not hear from us in time", ""},
-	{0x8e, "another client has our id", "give one of the two another Node"},
+	{ADVICE_TAKEN_OVER, "another client has our id", "give one of the two another Node"},
 	{0x95, "the broker calls a message too large",
          "raise its limit (mosquitto: max_packet_size)"},
 	{0x97, "the broker calls it too much", "raise its quota"},

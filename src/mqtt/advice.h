@@ -7,6 +7,8 @@
 
 /* The broker does not speak this version of MQTT. */
 #define ADVICE_PROTOCOL 0x84
+/* Another client took our place */
+#define ADVICE_TAKEN_OVER 0x8e
 
 /* The code of a CONNACK; old: of MQTT 3.1.1; as one of MQTT 5. */
 int advice_connack(int code, bool old);

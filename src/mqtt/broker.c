@@ -27,6 +27,7 @@
 #define IN_FLIGHT_MOST 100
 #define READS 64 /* packets at a time */
 #define END_NS (2 * NS_PER_S)
+#define BRIEF_MOST 3 /* connections that were closed soon, one after the other */
 #define CA_PATH "/etc/ssl/certs"
 
 const char *broker_name(const struct broker *b, char text[BROKER_WORDS + 64])
@@ -356,6 +357,13 @@ static void finish(struct broker *b, int code, int err, int64_t now_ns)
 		b->next_ns = now_ns;
 		return;
 	}
+	/* mosquitto does not say that it closes the older one of two with the same id */
+	if (b->state != BROKER_CONNECTED || now_ns - b->begun_ns > STEP_MOST_NS)
+		b->brief = 0;
+	else if (code == MOSQ_ERR_CONN_LOST && b->brief < BRIEF_MOST)
+		b->brief++;
+	if (b->brief == BRIEF_MOST)
+		code = ADVICE_TAKEN_OVER;
 	fail(b, advice_words(code, err, b->tls_words), advice_remedy(code, err), now_ns);
 }
 

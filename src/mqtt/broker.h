@@ -58,6 +58,7 @@ struct broker {
 	bool drained;       /* nothing is to be read any more */
 	int end_code;       /* why */
 	bool refused_said;  /* that the broker refuses what is published */
+	unsigned brief;     /* connections in a row that did not last */
 	unsigned in_flight; /* put, and not taken by the broker */
 	int64_t begun_ns, next_ns, step_ns;
 	char tls_words[BROKER_WORDS];    /* the last error that libmosquitto logged */

@@ -25,14 +25,14 @@ as_user() { user=$1 && shift && setpriv --reuid "$user" --regid nogroup --init-g
 refused() { ! "$@"; }
 
 # The libraries first, so that what is compared is ours
-libraries=$(for p in owsd_*.deb owsd-influx_*.deb owsd-web_*.deb owsd-cockpit_*.deb; do dpkg-deb -f "$p" Depends; done |
+libraries=$(for p in owsd_*.deb owsd-influx_*.deb owsd-mqtt_*.deb owsd-web_*.deb owsd-cockpit_*.deb; do dpkg-deb -f "$p" Depends; done |
 	tr ',' '\n' | sed -n 's/^ *\(lib[a-z0-9.+-]*\|cockpit-bridge\).*/\1/p' | grep -v '^libows\|^libc6$' | sort -u | tr '\n' ' ')
 does "what it needs is in the system's archive ($libraries)" \
 	sh -c "apt-get -q update && $apt install $libraries"
 everything >/tmp/before
 
 does 'the packages are installed' $apt install ./libows1_*.deb ./libows-history1_*.deb ./libows-dev_*.deb \
-	./python3-ows_*.deb ./owsd_*.deb ./owsd-recorder_*.deb ./owsd-influx_*.deb ./owsd-web_*.deb ./owsd-cockpit_*.deb
+	./python3-ows_*.deb ./owsd_*.deb ./owsd-recorder_*.deb ./owsd-influx_*.deb ./owsd-mqtt_*.deb ./owsd-web_*.deb ./owsd-cockpit_*.deb
 version=$(dpkg-query -W -f '${Version}' owsd)
 same 'their user is in the groups that it needs' 'gpio i2c owsd owsd-control' \
 	"$(id -nG owsd | tr ' ' '\n' | sort | tr '\n' ' ' | sed 's/ $//')"
@@ -80,6 +80,8 @@ does 'it runs' pushes
 does 'and pushes nothing, as no server is named' grep -q 'no Influx block: nothing is pushed' /tmp/influx
 same 'owsd-config has a user of its own, who may read' 'owsd owsd-config' \
 	"$(id -nG owsd-config | tr ' ' '\n' | sort | tr '\n' ' ' | sed 's/ $//')"
+same 'owsd-mqtt has a user of its own, who may look' owsd "$(id -nG owsd-mqtt | tr ' ' '\n' | grep -x owsd)"
+does 'and is off until somebody enables it' refused test -L /etc/systemd/system/owsd-mqtt.service.wants/owsd-mqtt@OWS.service
 does 'the page may not write the configuration' refused sh -c 'id -nG owsd-web | grep -q -w owsd-config'
 for u in service socket; do
 	does "its $u is there" test -e /usr/lib/systemd/system/owsd-config@.$u
@@ -121,7 +123,7 @@ does 'a configuration that was deleted stays deleted' test ! -e /etc/owsd/OWS.ri
 cp /tmp/OWS.rio /etc/owsd/OWS.rio
 cp /tmp/OWS.rio /etc/owsd/HOUSE.rio
 service owsd restart
-does 'all are purged' $apt purge owsd owsd-recorder owsd-influx owsd-web owsd-cockpit libows1 libows-history1 libows-dev python3-ows
+does 'all are purged' $apt purge owsd owsd-recorder owsd-influx owsd-mqtt owsd-web owsd-cockpit libows1 libows-history1 libows-dev python3-ows
 does 'nothing runs' refused pgrep -x owsd
 same 'no segment and no history stays' '' "$(find /run/owsd /var/lib/owsd /var/lib/owsd-recorder /var/lib/owsd-influx 2>/dev/null)"
 does 'what its owner has made does' test -e /etc/owsd/HOUSE.rio

@@ -27,7 +27,7 @@ SERVED = os.environ.get("SERVED", "")
 SIMULATED = f"sim:{STAGE}/stage.sim"
 HARDWARE = re.compile(r"^(i2c:(auto|/dev/i2c-\d(:0x[0-9a-f]{2}(\.\d)?)?)|w1(:.*)?|auto|gpio:.*)$")
 OURS = set(re.findall(r"^Package: (\S+)$", (SOURCE / "board/debian/control").read_text(), re.M))
-DEBIAN = {"owserver", "ow-shell", "libgpiod-dev", "i2c-tools", "linuxcnc-uspace",
+DEBIAN = {"owserver", "ow-shell", "mosquitto", "libgpiod-dev", "i2c-tools", "linuxcnc-uspace",
           "linuxcnc-uspace-dev"} | OURS
 UNIT = r"(owsd(-firstboot|-recorder|-influx|-mqtt|@\w+|-(recorder|influx|mqtt)@\w+|-(web|config)@\w+(\.socket|\.service)?)?|owserver(\.socket|\.service)?)"
 GROUPS = "(i2c|gpio|owsd|owsd-control|owsd-config)"

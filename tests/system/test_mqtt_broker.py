@@ -1,0 +1,182 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""The ways of owsd-mqtt to a broker: passwords, TLS, certificates, access lists, brokers that are away
+or old; what is wrong stands in the log with its remedy."""
+
+import socket
+import subprocess
+import threading
+
+import owsdtest
+from mqtthouse import ROOM, Broker, House, Listener, program
+from owsdtest import free_port, logged, raw, until
+
+STATE = "owsd/pi7/state"
+
+
+def openssl(scene, *arguments):
+    subprocess.run([program("openssl"), *map(str, arguments)], cwd=scene.path, check=True, capture_output=True,
+                   timeout=owsdtest.PATIENCE)
+
+
+def certificates(scene):
+    """ca.pem, and broker and client with keys that it signed."""
+    openssl(scene, "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-keyout", "ca.key", "-out", "ca.pem",
+            "-days", "2", "-subj", "/CN=test-ca")
+    for name, subject in (("broker", "/CN=localhost"), ("client", "/CN=pi7")):
+        openssl(scene, "req", "-newkey", "rsa:2048", "-nodes", "-keyout", f"{name}.key", "-out", f"{name}.csr",
+                "-subj", subject)
+        extra = scene.file(f"{name}.ext", "subjectAltName=DNS:localhost\n")
+        openssl(scene, "x509", "-req", "-in", f"{name}.csr", "-CA", "ca.pem", "-CAkey", "ca.key",
+                "-CAcreateserial", "-out", f"{name}.pem", "-days", "2", "-extfile", extra)
+    (scene.path / "client.key").chmod(0o600)
+
+
+def passwords(scene):
+    path = scene.file("passwords", "pi7:secret\nlooker:looker\n")
+    path.chmod(0o600)
+    subprocess.run([program("mosquitto_passwd"), "-U", path], check=True, timeout=owsdtest.PATIENCE)
+    return path
+
+
+def secret(scene, text, mode=0o600):
+    path = scene.path / "password"
+    path.write_text(text)
+    path.chmod(mode)
+    return path
+
+
+class LockedHouse(House):
+    """Its broker wants passwords; the listener has one."""
+
+    def __init__(self, scene, lines, **keys):
+        listen, self.listen = Listener.__init__, None
+        try:
+            Listener.__init__ = lambda s, sc, port: listen(s, sc, port, arguments=("-u", "looker", "-P", "looker"))
+            super().__init__(scene, ROOM, lines=lines, **keys)
+        finally:
+            Listener.__init__ = listen
+
+
+def test_a_password_stands_in_a_file_that_is_ours_alone_or_in_a_credential(scene):
+    lines = ("allow_anonymous false", f"password_file {passwords(scene)}")
+    path = secret(scene, "secret\n", 0o644)
+    house = LockedHouse(scene, lines, User="pi7", PasswordFile=path)
+    logged(house.face, "others may read it: chmod 600")
+    path.chmod(0o600)
+    house.says(STATE, "online")
+    house.face.stop()
+    path.write_text("wrong\n")
+    house.face = house.start()
+    logged(house.face, "the broker does not let us in; User and PasswordFile, or its access list")
+    path.write_text("secret\n")
+    house.says(STATE, "online")
+    house.face.stop()
+    house.daemon.config.write_text(house.text(ROOM, PasswordFile="password"))
+    house.face = house.start({"CREDENTIALS_DIRECTORY": str(scene.path)})
+    house.says(STATE, "online")
+    assert "secret" not in house.face.log()
+
+
+def test_tls_takes_the_broker_that_the_ca_vouches_for_and_shows_our_certificate(scene):
+    certificates(scene)
+    port = free_port()
+    lines = ("allow_anonymous true", f"listener {port} 127.0.0.1", f"cafile {scene.path}/ca.pem",
+             f"certfile {scene.path}/broker.pem", f"keyfile {scene.path}/broker.key",
+             "require_certificate true", "allow_anonymous true")
+    house = House(scene, ROOM, lines=lines, Broker=f"mqtts://localhost:{port}", CaFile=scene.path / "ca.pem",
+                  CertFile=scene.path / "client.pem", KeyFile=scene.path / "client.key")
+    house.says(STATE, "online")
+    house.arrives("room", lambda m: m["good"])
+    logged(house.face, f"connected to mqtts://localhost:{port} by MQTT 5")
+    house.face.stop()
+    # a key that others may read
+    (scene.path / "client.key").chmod(0o644)
+    house.face = house.start()
+    logged(house.face, "others may read it: chmod 600")
+    house.face.stop()
+    (scene.path / "client.key").chmod(0o600)
+    # a broker that nobody vouches for
+    house.daemon.config.write_text(house.text(ROOM, CaFile=scene.path / "client.pem"))
+    house.face = house.start()
+    logged(house.face, "certificate verify failed; look at CaFile, and the name in Broker")
+    house.face.stop()
+    # another name than the certificate's
+    house.daemon.config.write_text(house.text(ROOM, Broker=f"mqtts://127.0.0.1:{port}"))
+    house.face = house.start()
+    logged(house.face, "look at CaFile, and the name in Broker")
+    assert "connected" not in house.face.log(), house.face.log()
+
+
+def test_the_first_way_that_works_is_taken_and_by_the_address_that_works(scene):
+    house = House(scene, ROOM)
+    house.says(STATE, "online")
+    dead = free_port()
+    # the broker has no IPv6, which localhost is first where it has both
+    house.daemon.config.write_text(house.text(
+        ROOM, Broker=f"mqtt://127.0.0.1:{dead} | mqtt://localhost:{house.broker.port}"))
+    house.face.signal(1)
+    logged(house.face, f"connected to mqtt://localhost:{house.broker.port} by MQTT 5")
+    assert f"mqtt://127.0.0.1:{dead} cannot be reached: Connection refused; does a broker run there?" in house.face.log()
+    other = Broker(scene, dead)
+    # what works is kept; when it is lost the first is tried first
+    house.broker.process.stop()
+    until(lambda: f"connected to mqtt://127.0.0.1:{dead}" in house.face.log(), 60, lambda: house.face.log())
+    assert other.process.running()
+
+
+def test_an_access_list_that_lets_nothing_through_is_named(scene):
+    acl = scene.file("acl", "topic read #\n")
+    house = House(scene, ROOM, lines=("allow_anonymous true", f"acl_file {acl}"), Write=raw("on"))
+    logged(house.face, "refuses what is published")
+    assert "its access list has to let us write owsd/pi7/#" in house.face.log(), house.face.log()
+    assert house.face.log().count("refuses what") == 1
+
+
+def test_a_broker_without_mqtt_5_gets_3_1_1(scene):
+    port, levels = free_port(), []
+
+    def serve(listener):
+        while True:
+            try:
+                connection = listener.accept()[0]
+            except OSError:
+                return
+            with connection:
+                head = connection.recv(4096)
+                levels.append(head[8] if len(head) > 8 else None)
+                if levels[-1] == 4:
+                    connection.sendall(b"\x20\x02\x00\x00")
+                    connection.recv(4096)
+                    connection.recv(4096)
+                else:
+                    connection.sendall(b"\x20\x03\x00\x84\x00")
+    listener = socket.create_server(("127.0.0.1", port))
+    threading.Thread(target=serve, args=(listener,), daemon=True).start()
+    house = House(scene, ROOM, Broker=f"mqtt://127.0.0.1:{port}")
+    logged(house.face, f"connected to mqtt://127.0.0.1:{port} by MQTT 3.1.1")
+    assert levels[:2] == [5, 4], levels
+    listener.close()
+
+
+def test_two_with_one_node_are_told_so_and_do_not_flood_the_broker(scene):
+    house = House(scene, ROOM)
+    house.says(STATE, "online")
+    house.start()
+    logged(house.face, "another client has our id; give one of the two another Node")
+
+
+def test_a_listener_that_says_nothing_is_given_up(scene):
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        port = silent.getsockname()[1]
+        house = House(scene, ROOM)
+        house.says(STATE, "online")
+        house.daemon.config.write_text(house.text(
+            ROOM, Broker=f"mqtt://127.0.0.1:{port} | {house.broker.url}"))
+        house.face.signal(1)
+        logged(house.face, f"mqtt://127.0.0.1:{port} cannot be reached")
+        until(lambda: house.face.log().count("connected to") == 2, 30, lambda: house.face.log())
+
+
+if __name__ == "__main__":
+    owsdtest.main(at_once=4)
