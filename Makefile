@@ -205,7 +205,7 @@ SOURCES  := $(wildcard src/*/*.c hal/*/*.c hal/*/*/*.c)
 WEB_MAIN := src/web/owsd_web.c src/web/no_tls.c
 WEB_HTTP := $(WEB_MAIN) $(patsubst %,src/web/%.c,api command devices draft events guard http lists past save stored stream)
 # Of owsd-mqtt: what calls libmosquitto, and its main()
-MQTT_ALL := $(patsubst %,src/mqtt/%.c,owsd_mqtt mqtt broker advice)
+MQTT_ALL := $(patsubst %,src/mqtt/%.c,owsd_mqtt mqtt broker client advice)
 # The consumers' library
 LIBOWS   := $(wildcard src/libows/*.c)
 # And the one that reads history

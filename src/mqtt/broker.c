@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A client of libmosquitto for each attempt: made, driven, ended; and what its callbacks note. */
+/* The ways to a broker in turn: attempts, what ends them, and what a connection carries. */
 #include <arpa/inet.h>
 #include <errno.h>
 #include <mosquitto.h>
@@ -16,8 +16,8 @@
 #include "src/face/secret.h"
 #include "src/mqtt/advice.h"
 #include "src/mqtt/broker.h"
+#include "src/mqtt/client.h"
 #include "src/mqtt/stream.h"
-#include "src/signal/utf8.h"
 
 #define KEEPALIVE_S 30
 #define ANSWER_NS (15 * NS_PER_S) /* for TCP, TLS and CONNACK together */
@@ -28,142 +28,6 @@
 #define READS 64 /* packets at a time */
 #define END_NS (2 * NS_PER_S)
 #define BRIEF_MOST 3 /* connections that were closed soon, one after the other */
-#define CA_PATH "/etc/ssl/certs"
-
-const char *broker_name(const struct broker *b, char text[BROKER_WORDS + 64])
-{
-	const struct mqtt_way *way = &b->options->ways[b->way];
-	bool v6 = strchr(way->host, ':');
-
-	snprintf(text, BROKER_WORDS + 64, "mqtt%s://%s%s%s:%u", way->tls ? "s" : "", v6 ? "[" : "",
-	         way->host, v6 ? "]" : "", (unsigned)way->port);
-	return text;
-}
-
-/* --- Callbacks ------------------------------------------------------------------------------- */
-
-static void on_connect(struct mosquitto *client, void *ctx, int code, int flags,
-                       const mosquitto_property *properties)
-{
-	struct broker *b = ctx;
-
-	(void)client;
-	(void)flags;
-	(void)properties;
-	if (code) {
-		b->ended = true;
-		b->end_code = advice_connack(code, !b->options->mqtt5 || b->old_protocol);
-		return;
-	}
-	b->state = BROKER_CONNECTED;
-}
-
-static void on_disconnect(struct mosquitto *client, void *ctx, int code,
-                          const mosquitto_property *properties)
-{
-	struct broker *b = ctx;
-
-	(void)client;
-	(void)properties;
-	if (!b->ended)
-		b->end_code = code;
-	b->ended = true;
-}
-
-static void on_publish(struct mosquitto *client, void *ctx, int mid, int reason,
-                       const mosquitto_property *properties)
-{
-	struct broker *b = ctx;
-	char name[BROKER_WORDS + 64];
-
-	(void)client;
-	(void)mid;
-	(void)properties;
-	b->in_flight -= b->in_flight > 0;
-	if (reason < 128) {
-		b->acknowledged++;
-		return;
-	}
-	b->refusals++;
-	if (!b->refused_said)
-		log_err(b->face->log,
-		        "%.100s refuses what is published: %s; its access list has to let us write "
-		        "%.60s/# and the topics of discovery",
-		        broker_name(b, name), mosquitto_reason_string(reason), b->options->prefix);
-	b->refused_said = true;
-}
-
-static void on_subscribe(struct mosquitto *client, void *ctx, int mid, int count,
-                         const int *granted, const mosquitto_property *properties)
-{
-	struct broker *b = ctx;
-	char name[BROKER_WORDS + 64];
-
-	(void)client;
-	(void)mid;
-	(void)properties;
-	if (!count || granted[0] < 128)
-		return;
-	b->refusals++;
-	log_err(b->face->log,
-	        "%.100s refuses a subscription: no commands come; its access list has to let us "
-	        "read %.60s/+/set",
-	        broker_name(b, name), b->options->prefix);
-}
-
-/* The user property "person" of MQTT 5, if it can stand in a journal: a claim. */
-static void take_person(const mosquitto_property *properties, char person[BROKER_PERSON])
-{
-	const mosquitto_property *at;
-	char *name, *value;
-
-	at = mosquitto_property_read_string_pair(properties, MQTT_PROP_USER_PROPERTY, &name, &value,
-	                                         false);
-	while (at) {
-		const char *text = value;
-		size_t len = strlen(value);
-		bool fits = !strcmp(name, "person") && len && len < BROKER_PERSON;
-
-		while (fits && len) {
-			int32_t c = utf8_next(&text, &len);
-
-			fits = c > ' ' && !utf8_disturbs(c);
-		}
-		if (fits)
-			snprintf(person, BROKER_PERSON, "%s", value);
-		free(name);
-		free(value);
-		at = mosquitto_property_read_string_pair(at, MQTT_PROP_USER_PROPERTY, &name, &value,
-		                                         true);
-	}
-}
-
-static void on_message(struct mosquitto *client, void *ctx, const struct mosquitto_message *got,
-                       const mosquitto_property *properties)
-{
-	struct broker *b = ctx;
-	struct broker_message message = {
-		.topic = got->topic,
-		/* libmosquitto puts a NUL behind it */
-		.text = got->payload ? got->payload : "",
-		.len = got->payloadlen > 0 ? (size_t)got->payloadlen : 0,
-		.retained = got->retain,
-	};
-
-	(void)client;
-	take_person(properties, message.person);
-	b->ops->message(b->ctx, &message);
-}
-
-static void on_log(struct mosquitto *client, void *ctx, int level, const char *text)
-{
-	struct broker *b = ctx;
-
-	(void)client;
-	if (level == MOSQ_LOG_ERR && !*b->tls_words)
-		snprintf(b->tls_words, sizeof(b->tls_words), "%s", advice_tls(text));
-	log_at(b->face->log, LOG_LEVEL_TRACE, "libmosquitto: %s", text);
-}
 
 static void forget_trouble(struct broker *b)
 {
@@ -241,11 +105,12 @@ static bool choose(struct broker *b, bool was_connected, int64_t now_ns)
 static void fail(struct broker *b, const char *why, const char *remedy, int64_t now_ns)
 {
 	bool was_connected = b->state == BROKER_CONNECTED;
-	char name[BROKER_WORDS + 64], words[BROKER_WORDS];
+	char name[MQTT_WAY_NAME], words[BROKER_WORDS];
 	unsigned way = b->way;
 	uint64_t print;
 
-	snprintf(words, sizeof(words), "%.80s %s: %.90s%s%.60s", broker_name(b, name),
+	snprintf(words, sizeof(words), "%.80s %s: %.90s%s%.60s",
+	         mqtt_way_name(&b->options->ways[b->way], name),
 	         was_connected ? "is lost" : "cannot be reached", why, *remedy ? "; " : "", remedy);
 	drop(b);
 	if (choose(b, was_connected, now_ns))
@@ -258,65 +123,6 @@ static void fail(struct broker *b, const char *why, const char *remedy, int64_t 
 	memcpy(b->trouble, words, sizeof(words));
 }
 
-static bool set_password(struct broker *b, char *why, size_t size)
-{
-	char password[SECRET_SIZE];
-	int err;
-
-	if (!*b->options->user)
-		return true;
-	if (secret_read(*b->options->password_file ? b->options->password_file : NULL, password,
-	                why, size))
-		return false;
-	err = mosquitto_username_pw_set(b->client, b->options->user, *password ? password : NULL);
-	explicit_bzero(password, sizeof(password));
-	snprintf(why, size, "%s", mosquitto_strerror(err));
-	return !err;
-}
-
-static bool set_tls(struct broker *b, char *why, size_t size)
-{
-	const struct mqtt_options *o = b->options;
-	char ca[SECRET_PATH], cert[SECRET_PATH], key[SECRET_PATH];
-	int err;
-
-	if (!o->ways[b->way].tls)
-		return true;
-	if ((*o->ca_file && secret_file(o->ca_file, false, ca, why, size)) ||
-	    (*o->cert_file && secret_file(o->cert_file, false, cert, why, size)) ||
-	    (*o->key_file && secret_file(o->key_file, true, key, why, size)))
-		return false;
-	err = mosquitto_tls_set(b->client, *o->ca_file ? ca : NULL, *o->ca_file ? NULL : CA_PATH,
-	                        *o->cert_file ? cert : NULL, *o->key_file ? key : NULL, NULL);
-	snprintf(why, size, "TLS: %s", mosquitto_strerror(err));
-	return !err;
-}
-
-static bool make_client(struct broker *b, char *why, size_t size)
-{
-	bool mqtt5 = b->options->mqtt5 && !b->old_protocol;
-	char id[160], topic[OPTION_SIZE];
-	const char *will = b->ops->will(b->ctx, topic);
-
-	snprintf(id, sizeof(id), "owsd-%s", b->options->node);
-	b->client = mosquitto_new(id, true, b);
-	if (!b->client) {
-		snprintf(why, size, "no memory");
-		return false;
-	}
-	mosquitto_connect_v5_callback_set(b->client, on_connect);
-	mosquitto_disconnect_v5_callback_set(b->client, on_disconnect);
-	mosquitto_publish_v5_callback_set(b->client, on_publish);
-	mosquitto_subscribe_v5_callback_set(b->client, on_subscribe);
-	mosquitto_message_v5_callback_set(b->client, on_message);
-	mosquitto_log_callback_set(b->client, on_log);
-	mosquitto_int_option(b->client, MOSQ_OPT_PROTOCOL_VERSION,
-	                     mqtt5 ? MQTT_PROTOCOL_V5 : MQTT_PROTOCOL_V311);
-	mosquitto_int_option(b->client, MOSQ_OPT_TCP_NODELAY, 1);
-	mosquitto_will_set(b->client, topic, (int)strlen(will), will, 1, true);
-	return set_password(b, why, size) && set_tls(b, why, size);
-}
-
 static void attempt(struct broker *b, int64_t now_ns)
 {
 	const struct mqtt_way *way = &b->options->ways[b->way];
@@ -327,7 +133,7 @@ static void attempt(struct broker *b, int64_t now_ns)
 	b->ended = b->tcp = false;
 	b->tls_words[0] = '\0';
 	b->begun_ns = now_ns;
-	if (!make_client(b, why, sizeof(why))) {
+	if (!client_make(b, why, sizeof(why))) {
 		b->tcp = true; /* no other address helps */
 		fail(b, why, "", now_ns);
 		return;
@@ -369,13 +175,14 @@ static void finish(struct broker *b, int code, int err, int64_t now_ns)
 
 static void connected(struct broker *b, int64_t now_ns)
 {
-	char name[BROKER_WORDS + 64];
+	char name[MQTT_WAY_NAME];
 
 	b->begun_ns = now_ns;
 	b->connects++;
 	b->refused_said = false;
 	forget_trouble(b);
-	log_notice(b->face->log, "connected to %.100s by MQTT %s", broker_name(b, name),
+	log_notice(b->face->log, "connected to %.100s by MQTT %s",
+	           mqtt_way_name(&b->options->ways[b->way], name),
 	           b->options->mqtt5 && !b->old_protocol ? "5" : "3.1.1");
 	b->ops->connected(b->ctx);
 }

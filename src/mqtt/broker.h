@@ -12,60 +12,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "src/mqtt/options.h"
-
-#define BROKER_WORDS 256
-#define BROKER_PERSON 32 /* as ows_for() takes it */
-
-struct face;
-struct mosquitto;
-
-/* What came on a topic that was subscribed to. */
-struct broker_message {
-	const char *topic, *text; /* NUL-terminated behind len bytes */
-	size_t len;
-	bool retained;              /* the broker has kept it */
-	char person[BROKER_PERSON]; /* who is said to have sent it; "": nobody is */
-};
-
-struct broker_ops {
-	void (*connected)(void *ctx);
-	void (*message)(void *ctx, const struct broker_message *message);
-	/* The topic and text of the will. */
-	const char *(*will)(void *ctx, char topic[OPTION_SIZE]);
-};
-
-enum broker_state {
-	BROKER_OFF,
-	BROKER_WAITING,
-	BROKER_CONNECTING,
-	BROKER_CONNECTED,
-};
-
-struct broker {
-	struct face *face;
-	const struct mqtt_options *options;
-	const struct broker_ops *ops;
-	void *ctx;
-	struct mosquitto *client;
-	enum broker_state state;
-	int fd; /* that the face waits for; -1: none */
-	unsigned way;
-	bool v4;            /* the way is tried at its IPv4 address alone */
-	bool tcp;           /* it has a connection, so far without a word of MQTT */
-	bool old_protocol;  /* MQTT 3.1.1 in place of 5, as the broker wants it */
-	bool ended;         /* libmosquitto has ended it */
-	bool drained;       /* nothing is to be read any more */
-	int end_code;       /* why */
-	bool refused_said;  /* that the broker refuses what is published */
-	unsigned brief;     /* connections in a row that did not last */
-	unsigned in_flight; /* put, and not taken by the broker */
-	int64_t begun_ns, next_ns, step_ns;
-	char tls_words[BROKER_WORDS];    /* the last error that libmosquitto logged */
-	char trouble[BROKER_WORDS];      /* what is wrong now, and its remedy; "": nothing */
-	uint64_t said[CONFIG_MQTT_WAYS]; /* a hash of what was logged of each way */
-	uint64_t connects, failures, acknowledged, refusals;
-};
+#include "src/mqtt/client.h"
 
 /* options and what ops needs stay until broker_end(). Begins to connect. */
 void broker_begin(struct broker *b, int64_t now_ns);
@@ -83,7 +30,5 @@ void broker_hurry(struct broker *b, int64_t now_ns);
 bool broker_put(void *ctx, const char *topic, const char *text, size_t len, bool retain);
 /* QoS 1. A refusal is logged when it comes. */
 void broker_subscribe(struct broker *b, const char *topic);
-/* "mqtt://localhost:1883" */
-const char *broker_name(const struct broker *b, char text[BROKER_WORDS + 64]);
 
 #endif

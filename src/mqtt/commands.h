@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "src/mqtt/broker.h"
+#include "src/mqtt/client.h"
 #include "src/text/log.h"
 
 struct ows;

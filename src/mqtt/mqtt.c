@@ -203,7 +203,7 @@ static void look_at_clock(struct face *face, int64_t now_ns)
 static void show_status(struct face *face)
 {
 	struct mqtt *m = own(face);
-	char name[BROKER_WORDS + 64];
+	char name[MQTT_WAY_NAME];
 	const struct broker *b = &m->broker;
 
 	face_status(face, "%s%.150s; %llu published, %llu refused, %llu times connected",
@@ -211,7 +211,7 @@ static void show_status(struct face *face)
 	                    ? face->live ? "publishing to " : "waiting for owsd, at "
 	            : *b->trouble ? ""
 	                          : "connecting to ",
-	            *b->trouble ? b->trouble : broker_name(b, name),
+	            *b->trouble ? b->trouble : mqtt_way_name(&m->options.ways[b->way], name),
 	            (unsigned long long)b->acknowledged, (unsigned long long)b->refusals,
 	            (unsigned long long)b->connects);
 }

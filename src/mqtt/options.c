@@ -57,3 +57,12 @@ void mqtt_options_take(struct mqtt_options *options, const struct face *face)
 	options->mqtt5 = mqtt->mqtt5;
 	options->write = mqtt->write;
 }
+
+const char *mqtt_way_name(const struct mqtt_way *way, char text[MQTT_WAY_NAME])
+{
+	bool v6 = strchr(way->host, ':');
+
+	snprintf(text, MQTT_WAY_NAME, "mqtt%s://%s%s%s:%u", way->tls ? "s" : "", v6 ? "[" : "",
+	         way->host, v6 ? "]" : "", (unsigned)way->port);
+	return text;
+}

@@ -25,6 +25,10 @@ struct mqtt_options {
 	bool mqtt5, write;
 };
 
+#define MQTT_WAY_NAME (OPTION_SIZE + 24)
+/* "mqtt://localhost:1883". Returns text. */
+const char *mqtt_way_name(const struct mqtt_way *way, char text[MQTT_WAY_NAME]);
+
 struct face;
 /* Node: without the key the name of this machine; beside OWS also that of the instance. */
 void mqtt_options_take(struct mqtt_options *options, const struct face *face);

@@ -1,0 +1,202 @@
+/* SPDX-License-Identifier: MIT */
+/* Makes a client of libmosquitto, with its secrets, its will and what its callbacks note. */
+#include <mosquitto.h>
+#include <mqtt_protocol.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/face/face.h"
+#include "src/face/secret.h"
+#include "src/mqtt/advice.h"
+#include "src/mqtt/client.h"
+#include "src/signal/utf8.h"
+
+#define CA_PATH "/etc/ssl/certs"
+
+/* --- Callbacks ------------------------------------------------------------------------------- */
+
+static void on_connect(struct mosquitto *client, void *ctx, int code, int flags,
+                       const mosquitto_property *properties)
+{
+	struct broker *b = ctx;
+
+	(void)client;
+	(void)flags;
+	(void)properties;
+	if (code) {
+		b->ended = true;
+		b->end_code = advice_connack(code, !b->options->mqtt5 || b->old_protocol);
+		return;
+	}
+	b->state = BROKER_CONNECTED;
+}
+
+static void on_disconnect(struct mosquitto *client, void *ctx, int code,
+                          const mosquitto_property *properties)
+{
+	struct broker *b = ctx;
+
+	(void)client;
+	(void)properties;
+	if (!b->ended)
+		b->end_code = code;
+	b->ended = true;
+}
+
+static void on_publish(struct mosquitto *client, void *ctx, int mid, int reason,
+                       const mosquitto_property *properties)
+{
+	struct broker *b = ctx;
+	char name[MQTT_WAY_NAME];
+
+	(void)client;
+	(void)mid;
+	(void)properties;
+	b->in_flight -= b->in_flight > 0;
+	if (reason < 128) {
+		b->acknowledged++;
+		return;
+	}
+	b->refusals++;
+	if (!b->refused_said)
+		log_err(b->face->log,
+		        "%.100s refuses what is published: %s; its access list has to let us write "
+		        "%.60s/# and the topics of discovery",
+		        mqtt_way_name(&b->options->ways[b->way], name),
+		        mosquitto_reason_string(reason), b->options->prefix);
+	b->refused_said = true;
+}
+
+static void on_subscribe(struct mosquitto *client, void *ctx, int mid, int count,
+                         const int *granted, const mosquitto_property *properties)
+{
+	struct broker *b = ctx;
+	char name[MQTT_WAY_NAME];
+
+	(void)client;
+	(void)mid;
+	(void)properties;
+	if (!count || granted[0] < 128)
+		return;
+	b->refusals++;
+	log_err(b->face->log,
+	        "%.100s refuses a subscription: no commands come; its access list has to let us "
+	        "read %.60s/+/set",
+	        mqtt_way_name(&b->options->ways[b->way], name), b->options->prefix);
+}
+
+/* The user property "person" of MQTT 5, if it can stand in a journal: a claim. */
+static void take_person(const mosquitto_property *properties, char person[BROKER_PERSON])
+{
+	const mosquitto_property *at;
+	char *name, *value;
+
+	at = mosquitto_property_read_string_pair(properties, MQTT_PROP_USER_PROPERTY, &name, &value,
+	                                         false);
+	while (at) {
+		const char *text = value;
+		size_t len = strlen(value);
+		bool fits = !strcmp(name, "person") && len && len < BROKER_PERSON;
+
+		while (fits && len) {
+			int32_t c = utf8_next(&text, &len);
+
+			fits = c > ' ' && !utf8_disturbs(c);
+		}
+		if (fits)
+			snprintf(person, BROKER_PERSON, "%s", value);
+		free(name);
+		free(value);
+		at = mosquitto_property_read_string_pair(at, MQTT_PROP_USER_PROPERTY, &name, &value,
+		                                         true);
+	}
+}
+
+static void on_message(struct mosquitto *client, void *ctx, const struct mosquitto_message *got,
+                       const mosquitto_property *properties)
+{
+	struct broker *b = ctx;
+	struct broker_message message = {
+		.topic = got->topic,
+		/* libmosquitto puts a NUL behind it */
+		.text = got->payload ? got->payload : "",
+		.len = got->payloadlen > 0 ? (size_t)got->payloadlen : 0,
+		.retained = got->retain,
+	};
+
+	(void)client;
+	take_person(properties, message.person);
+	b->ops->message(b->ctx, &message);
+}
+
+static void on_log(struct mosquitto *client, void *ctx, int level, const char *text)
+{
+	struct broker *b = ctx;
+
+	(void)client;
+	if (level == MOSQ_LOG_ERR && !*b->tls_words)
+		snprintf(b->tls_words, sizeof(b->tls_words), "%s", advice_tls(text));
+	log_at(b->face->log, LOG_LEVEL_TRACE, "libmosquitto: %s", text);
+}
+
+/* --- A new client ---------------------------------------------------------------------------- */
+
+static bool set_password(struct broker *b, char *why, size_t size)
+{
+	char password[SECRET_SIZE];
+	int err;
+
+	if (!*b->options->user)
+		return true;
+	if (secret_read(*b->options->password_file ? b->options->password_file : NULL, password,
+	                why, size))
+		return false;
+	err = mosquitto_username_pw_set(b->client, b->options->user, *password ? password : NULL);
+	explicit_bzero(password, sizeof(password));
+	snprintf(why, size, "%s", mosquitto_strerror(err));
+	return !err;
+}
+
+static bool set_tls(struct broker *b, char *why, size_t size)
+{
+	const struct mqtt_options *o = b->options;
+	char ca[SECRET_PATH], cert[SECRET_PATH], key[SECRET_PATH];
+	int err;
+
+	if (!o->ways[b->way].tls)
+		return true;
+	if ((*o->ca_file && secret_file(o->ca_file, false, ca, why, size)) ||
+	    (*o->cert_file && secret_file(o->cert_file, false, cert, why, size)) ||
+	    (*o->key_file && secret_file(o->key_file, true, key, why, size)))
+		return false;
+	err = mosquitto_tls_set(b->client, *o->ca_file ? ca : NULL, *o->ca_file ? NULL : CA_PATH,
+	                        *o->cert_file ? cert : NULL, *o->key_file ? key : NULL, NULL);
+	snprintf(why, size, "TLS: %s", mosquitto_strerror(err));
+	return !err;
+}
+
+bool client_make(struct broker *b, char *why, size_t size)
+{
+	bool mqtt5 = b->options->mqtt5 && !b->old_protocol;
+	char id[160], topic[OPTION_SIZE];
+	const char *will = b->ops->will(b->ctx, topic);
+
+	snprintf(id, sizeof(id), "owsd-%s", b->options->node);
+	b->client = mosquitto_new(id, true, b);
+	if (!b->client) {
+		snprintf(why, size, "no memory");
+		return false;
+	}
+	mosquitto_connect_v5_callback_set(b->client, on_connect);
+	mosquitto_disconnect_v5_callback_set(b->client, on_disconnect);
+	mosquitto_publish_v5_callback_set(b->client, on_publish);
+	mosquitto_subscribe_v5_callback_set(b->client, on_subscribe);
+	mosquitto_message_v5_callback_set(b->client, on_message);
+	mosquitto_log_callback_set(b->client, on_log);
+	mosquitto_int_option(b->client, MOSQ_OPT_PROTOCOL_VERSION,
+	                     mqtt5 ? MQTT_PROTOCOL_V5 : MQTT_PROTOCOL_V311);
+	mosquitto_int_option(b->client, MOSQ_OPT_TCP_NODELAY, 1);
+	mosquitto_will_set(b->client, topic, (int)strlen(will), will, 1, true);
+	return set_password(b, why, size) && set_tls(b, why, size);
+}

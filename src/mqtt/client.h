@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: MIT */
+/* The state of a connection to a broker, and a client of libmosquitto that writes into it. */
+#ifndef MQTT_CLIENT_H
+#define MQTT_CLIENT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "src/mqtt/options.h"
+
+#define BROKER_WORDS 256
+#define BROKER_PERSON 32 /* as ows_for() takes it */
+
+struct face;
+struct mosquitto;
+
+/* What came on a topic that was subscribed to. */
+struct broker_message {
+	const char *topic, *text; /* NUL-terminated behind len bytes */
+	size_t len;
+	bool retained;              /* the broker has kept it */
+	char person[BROKER_PERSON]; /* who is said to have sent it; "": nobody is */
+};
+
+struct broker_ops {
+	void (*connected)(void *ctx);
+	void (*message)(void *ctx, const struct broker_message *message);
+	/* The topic and text of the will. */
+	const char *(*will)(void *ctx, char topic[OPTION_SIZE]);
+};
+
+enum broker_state {
+	BROKER_OFF,
+	BROKER_WAITING,
+	BROKER_CONNECTING,
+	BROKER_CONNECTED,
+};
+
+struct broker {
+	struct face *face;
+	const struct mqtt_options *options;
+	const struct broker_ops *ops;
+	void *ctx;
+	struct mosquitto *client;
+	enum broker_state state;
+	int fd; /* that the face waits for; -1: none */
+	unsigned way;
+	bool v4;            /* the way is tried at its IPv4 address alone */
+	bool tcp;           /* it has a connection, so far without a word of MQTT */
+	bool old_protocol;  /* MQTT 3.1.1 in place of 5, as the broker wants it */
+	bool ended;         /* libmosquitto has ended it */
+	bool drained;       /* nothing is to be read any more */
+	int end_code;       /* why */
+	bool refused_said;  /* that the broker refuses what is published */
+	unsigned brief;     /* connections in a row that did not last */
+	unsigned in_flight; /* put, and not taken by the broker */
+	int64_t begun_ns, next_ns, step_ns;
+	char tls_words[BROKER_WORDS];    /* the last error that libmosquitto logged */
+	char trouble[BROKER_WORDS];      /* what is wrong now, and its remedy; "": nothing */
+	uint64_t said[CONFIG_MQTT_WAYS]; /* a hash of what was logged of each way */
+	uint64_t connects, failures, acknowledged, refusals;
+};
+
+/*
+ * Make b->client for the present way: not connected, with callbacks that write into b. Reads the
+ * files of secrets. False, with the reason in why; b->client is to be destroyed then, too.
+ */
+bool client_make(struct broker *b, char *why, size_t size);
+
+#endif
