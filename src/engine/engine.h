@@ -15,8 +15,8 @@
  *   moves                move, lane_state (a target goes up and fails)
  *   alarm and guests     alarm (the machine), guests
  *   givers               givers (they join, beat and leave)
- *   reading and writing  completion, read_back, restart, device_back, intake, in_force, place,
- *                        doubt, types
+ *   reading and writing  completion, device_back, intake, in_force, place, doubt, types
+ *   reading back         read_back, restart
  *   alarm items          alarm_ask, alarm_arm, alarm_list, alarm_effect, alarm_refused, alarm_known
  *   schedule, publish    schedule, publish, origin, limits, counters, device_facts
  *   slots                lane, slots, disown, group, trace, shelf, alarm_item

@@ -158,6 +158,7 @@ static void test_what_was_read_before_a_restart_or_a_loss_serves_nobody_after_it
 	begin("DS2408");
 	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, of(chip, "PIO.BYTE"), "255"));
 	expect(false, of(chip, "PIO.0"), "1");
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, of(chip, "por"), "0"));
 	sim_slave_brownout(chip, wire_time());
 	/* The read that finds the restart is not kept. */
 	(void)result(BUS_READ, of(chip, "sensed.BYTE"), NULL);
