@@ -122,14 +122,11 @@ def settled(look, times=20, step=0.05):
 def worked(instance, seconds):
     """Wait until the engine of this instance (a name, or an open ows.Ows) has beaten for so long:
     what it has to do in that time is done, however busy the machine is."""
-    sys.path.insert(0, str(SOURCE / "src/libows"))
     import ows
     with ows.Ows(instance) if isinstance(instance, str) else contextlib.nullcontext(instance) as signals:
         def beat():
-            with contextlib.suppress(BlockingIOError):  # it was being written
-                last[0] = signals._slot(0)[0][1]  # record 0 is the engine's heart
-            return last[0]
-        last = [0]
+            now = ows.now_ns()
+            return now - signals.beat_age(now) * 1e9
         until(beat, 10, "the engine's heart beats")
         begun = beat()
         until(lambda: beat() - begun >= seconds * 1e9, seconds + 10, "the engine works on")
