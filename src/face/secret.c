@@ -19,17 +19,19 @@ static int refuse(int err, const char *path, const char *reason, char *why, size
 	return err;
 }
 
-/* Cut what stands around the token, and look at its letters. */
+/* Cut what stands around the token, and look at its letters: a password may have blanks in it. */
 static bool trim(char *text)
 {
-	size_t begin = strspn(text, BLANK), len = strcspn(text + begin, BLANK);
+	size_t begin = strspn(text, BLANK), len = strlen(text + begin);
 
+	while (len && strchr(BLANK, text[begin + len - 1]))
+		len--;
 	memmove(text, text + begin, len);
-	if (!len || text[begin + len + strspn(text + begin + len, BLANK)])
-		return false;
 	text[len] = '\0';
+	if (!len)
+		return false;
 	for (const char *c = text; *c; c++)
-		if (*c < ' ' || *c == 127)
+		if ((unsigned char)*c < ' ' || *c == 127)
 			return false;
 	return true;
 }

@@ -40,6 +40,8 @@ static void test_a_token_stands_in_a_line_of_a_file_that_is_ours_alone(void)
 {
 	TEST_ASSERT_EQUAL_INT(0, read_text(" user:pass==\r\n", 0600));
 	TEST_ASSERT_EQUAL_STRING("user:pass==", token);
+	TEST_ASSERT_EQUAL_INT(0, read_text("a b \xc3\xa4\n", 0600));
+	TEST_ASSERT_EQUAL_STRING("a b \xc3\xa4", token);
 	TEST_ASSERT_EQUAL_INT(0, read_text("abc", 0400));
 	TEST_ASSERT_EQUAL_STRING("abc", token);
 	TEST_ASSERT_EQUAL_INT(0, secret_read(NULL, token, why, sizeof(why)));
@@ -55,7 +57,7 @@ static void test_a_file_that_others_may_read_or_that_has_no_token_is_refused(voi
 	TEST_ASSERT_EQUAL_STRING("", token);
 	TEST_ASSERT_EQUAL_INT(-EINVAL, read_text("", 0600));
 	TEST_ASSERT_EQUAL_INT(-EINVAL, read_text("\n \n", 0600));
-	TEST_ASSERT_EQUAL_INT(-EINVAL, read_text("a b\n", 0600));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, read_text("a\tb\n", 0600));
 	TEST_ASSERT_EQUAL_INT(-EINVAL, read_text("a\nX-Header: b\n", 0600));
 	TEST_ASSERT_EQUAL_INT(-EINVAL, read_text("a\x01"
 	                                         "b\n",
