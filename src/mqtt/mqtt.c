@@ -148,7 +148,7 @@ static void make_rows(struct face *face)
 {
 	struct mqtt *m = own(face);
 
-	if (stream_make(&m->stream, face->ows, face->arguments->instance))
+	if (stream_make(&m->stream, face->ows))
 		log_err(face->log, "nothing is published: no memory for %d signals",
 		        ows_count(face->ows));
 }

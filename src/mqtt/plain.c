@@ -62,6 +62,15 @@ static void put_number(struct json *json, const struct ows_value *v, const char 
 	json_null(json, "v");
 }
 
+/* A time of a clock that nobody has set is none. */
+static void put_time(struct json *json, const struct stream *s, int64_t wall_ns)
+{
+	if (s->clock_set)
+		json_int(json, "t", wall_ns / NS_PER_MS);
+	else
+		json_null(json, "t");
+}
+
 /* A bad value has no number. owsd lost: no value is good. */
 static void put_value(struct json *json, const struct stream *s, const struct ows_value *v,
                       const char *text)
@@ -78,10 +87,7 @@ static void put_value(struct json *json, const struct stream *s, const struct ow
 	json_uint(json, "q", quality);
 	if (!ows_good(quality))
 		json_string(json, "why", s->live ? ows_quality_text(quality) : "owsd is not there");
-	if (s->clock_set)
-		json_int(json, "t", (moment_of(v, now.boot) + now.wall - now.boot) / NS_PER_MS);
-	else
-		json_null(json, "t");
+	put_time(json, s, moment_of(v, now.boot) + now.wall - now.boot);
 	json_object_end(json);
 }
 
@@ -137,13 +143,11 @@ static bool say_limit(struct stream *s, struct row *row)
 	char topic[TOPIC_SIZE];
 	struct json json;
 	uint32_t print;
-	int err;
 
-	if (!row->alarms || !s->live)
+	if (!row->alarms || !s->live || ows_alarm_state(s->h, row->id, &state))
 		return true;
-	err = ows_alarm_state(s->h, row->id, &state);
 	print = 1u + state.limit_state + (state.limit_kind << 4) + (state.shelved << 12);
-	if (err || print == row->alarm_print)
+	if (print == row->alarm_print)
 		return true;
 	stream_message(s, &json);
 	json_object(&json, NULL);
@@ -211,7 +215,7 @@ void plain_alarm(struct stream *s, const struct ows_alarm *alarm)
 	json_string(&json, "event_type", ows_alarm_event_text(alarm->event));
 	json_string(&json, "kind", ows_alarm_kind_text(alarm->kind));
 	json_string(&json, "text", alarm->text);
-	json_int(&json, "t", (alarm->occurred_ns + now.wall - now.boot) / NS_PER_MS);
+	put_time(&json, s, alarm->occurred_ns + now.wall - now.boot);
 	json_object_end(&json);
 	snprintf(topic, sizeof(topic), "%s/event", s->rows[alarm->signal].topic);
 	stream_put(s, topic, false);

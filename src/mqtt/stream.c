@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "src/mqtt/stream.h"
-#include "src/show/names.h"
 
 uint64_t stream_hash(const char *text, size_t len, uint64_t seed)
 {
@@ -131,20 +130,51 @@ static bool make_row(struct stream *s, int signal, int *last)
 	return true;
 }
 
+/* The row of a topic; *at: where it may be found, and the next one then. NULL: there is none. */
+static const struct row *row_of(const struct stream *s, const char *topic, int *at)
+{
+	for (int k = 0; k < s->count; k++) {
+		const struct row *row = &s->rows[(*at + k) % s->count];
+
+		if (!strcmp(row->topic, topic)) {
+			*at = (int)(row - s->rows) + 1;
+			return row;
+		}
+	}
+	return NULL;
+}
+
+/* A topic that nobody writes any more, besides those that no broker has been told of yet. */
+static void add_gone(struct stream *s, const char *topic, const char *level)
+{
+	char *text;
+
+	if (asprintf(&text, "%s%s", topic, level) < 0)
+		return;
+	for (int i = 0; i < s->gone_count; i++)
+		if (!strcmp(s->gone[i], text)) {
+			free(text);
+			return;
+		}
+	s->gone[s->gone_count++] = text;
+}
+
 /* What was said of rows that the new table has not; and of chips, which rows know to be seen. */
 static void take_over(struct stream *s, struct stream *old)
 {
-	char name[TOPIC_NAME], set[TOPIC_SIZE];
-	struct ows_info info;
+	size_t room = (size_t)s->gone_count + 2 * (size_t)old->count;
+	char **gone = room ? realloc(s->gone, room * sizeof(*gone)) : NULL;
+	int at = 0;
 
-	s->gone = old->count ? calloc((size_t)old->count, sizeof(*s->gone)) : NULL;
-	for (int i = 0; s->gone && i < old->count; i++) {
-		snprintf(set, sizeof(set), "%s/set", old->rows[i].topic);
-		if (!topic_is_command(s->prefix, set, name) ||
-		    names_info(s->h, s->instance, name, &info))
-			continue;
-		s->gone[s->gone_count++] = old->rows[i].topic;
-		old->rows[i].topic = NULL;
+	if (gone)
+		s->gone = gone;
+	for (int i = 0; gone && i < old->count; i++) {
+		const struct row *was = &old->rows[i], *row = row_of(s, was->topic, &at);
+
+		if (!row)
+			add_gone(s, was->topic, "");
+		if (was->alarms && (!row || !row->alarms))
+			add_gone(s, was->topic, "/alarm");
 	}
 	for (int i = 0; i < old->chip_count; i++)
 		for (int k = 0; k < s->chip_count; k++)
@@ -152,7 +182,7 @@ static void take_over(struct stream *s, struct stream *old)
 				s->chips[k].seen = old->chips[i].seen;
 }
 
-int stream_make(struct stream *s, struct ows *h, const char *instance)
+int stream_make(struct stream *s, struct ows *h)
 {
 	int count = ows_count(h), last = -1;
 	struct stream old = {.rows = s->rows,
@@ -163,9 +193,7 @@ int stream_make(struct stream *s, struct ows *h, const char *instance)
 	size_t room = count > 0 ? (size_t)count : 1;
 	bool made;
 
-	free_gone(s);
 	s->h = h;
-	s->instance = instance;
 	s->chip_count = s->queue_at = s->queue_len = 0;
 	s->rows = calloc(room, sizeof(*s->rows));
 	s->chips = calloc(room, sizeof(*s->chips));

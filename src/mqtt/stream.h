@@ -50,7 +50,6 @@ struct stream {
 	const char *prefix, *node, *discovery; /* TOPIC/NODE; the texts belong to the caller */
 	bool write;
 	struct ows *h;
-	const char *instance;
 	/* The key Class of a signal; "": none */
 	const char *(*class_of)(void *ctx, const char *name);
 	void *class_ctx;
@@ -101,7 +100,7 @@ void stream_close(struct stream *s);
  * The signals of h, in place of those before; topics of signals that are no more are emptied. All
  * is to be said. Allocates. 0 or -ENOMEM: there are no rows.
  */
-int stream_make(struct stream *s, struct ows *h, const char *instance);
+int stream_make(struct stream *s, struct ows *h);
 /* Signals have news, as in face_ops.changes. */
 void stream_changes(struct stream *s, const int *signals, int n);
 /* All is to be said, as to a broker that knows nothing. */

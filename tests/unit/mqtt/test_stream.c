@@ -45,7 +45,7 @@ void setUp(void)
 	room = 100;
 	said[0] = '\0';
 	TEST_ASSERT_EQUAL_INT(0, stream_open(&s));
-	TEST_ASSERT_EQUAL_INT(0, stream_make(&s, ows, in.name));
+	TEST_ASSERT_EQUAL_INT(0, stream_make(&s, ows));
 	stream_live(&s, true);
 }
 
@@ -157,11 +157,37 @@ static void test_a_new_table_empties_the_topics_of_those_that_are_gone(void)
 	pump();
 	instance_reload(&in, less, 1);
 	TEST_ASSERT_EQUAL_INT(0, ows_reopen(ows));
-	TEST_ASSERT_EQUAL_INT(0, stream_make(&s, ows, in.name));
+	TEST_ASSERT_EQUAL_INT(0, stream_make(&s, ows));
 	pump();
 	TEST_ASSERT_EQUAL_STRING_LEN("o/pi/room {\"v\":null,", said, 20);
 	TEST_ASSERT_NOT_NULL(strstr(said, "}\no/pi/room \n"));
 	TEST_ASSERT_NOT_NULL(strstr(said, "o/pi/title {"));
+}
+
+static void test_each_topic_of_those_that_are_gone_is_emptied_at_the_next_broker(void)
+{
+	static const struct instance_signal one[] = {{"title", "/29.1/type", OWS_STRING, false, 0,
+	                                              "29.000000000001"}},
+					    none[] = {{"new", "/28.2/temperature", OWS_DOUBLE,
+	                                               false, 0, "28.000000000002"}};
+
+	pump();
+	s.rows[ROOM].alarms = true;
+	room = 0;
+	instance_reload(&in, one, 1);
+	TEST_ASSERT_EQUAL_INT(0, ows_reopen(ows));
+	TEST_ASSERT_EQUAL_INT(0, stream_make(&s, ows));
+	pump();
+	instance_reload(&in, none, 1);
+	TEST_ASSERT_EQUAL_INT(0, ows_reopen(ows));
+	TEST_ASSERT_EQUAL_INT(0, stream_make(&s, ows));
+	room = 100;
+	pump();
+	TEST_ASSERT_NOT_NULL(strstr(said, "}\no/pi/room \n"));
+	TEST_ASSERT_NOT_NULL(strstr(said, "}\no/pi/room/alarm \n"));
+	TEST_ASSERT_NOT_NULL(strstr(said, "}\no/pi/title \n"));
+	TEST_ASSERT_NULL(strstr(said, "o/pi/title/alarm"));
+	TEST_ASSERT_NULL(strstr(said, "o/pi/new \n"));
 }
 
 static void test_an_alarm_is_an_event_for_those_who_are_there(void)
@@ -172,8 +198,13 @@ static void test_an_alarm_is_an_event_for_those_who_are_there(void)
 	pump();
 	said[0] = '\0';
 	s.profile->alarm(&s, &alarm);
+	TEST_ASSERT_NOT_NULL(strstr(said, "\"t\":null}"));
 	TEST_ASSERT_EQUAL_STRING_LEN(
 		"o/pi/room/event (once) {\"event_type\":\"raised\",\"kind\":", said, 49);
+	s.clock_set = true;
+	said[0] = '\0';
+	s.profile->alarm(&s, &alarm);
+	TEST_ASSERT_NOT_NULL(strstr(said, "\"t\":1"));
 	alarm.signal = COUNT;
 	said[0] = '\0';
 	s.profile->alarm(&s, &alarm);
@@ -190,6 +221,7 @@ int main(void)
 	RUN_TEST(test_what_has_no_room_comes_later_with_its_newest_value_and_nothing_twice);
 	RUN_TEST(test_an_owsd_that_is_lost_takes_all_back);
 	RUN_TEST(test_a_new_table_empties_the_topics_of_those_that_are_gone);
+	RUN_TEST(test_each_topic_of_those_that_are_gone_is_emptied_at_the_next_broker);
 	RUN_TEST(test_an_alarm_is_an_event_for_those_who_are_there);
 	return UNITY_END();
 }
