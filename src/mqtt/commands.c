@@ -63,27 +63,34 @@ static int connect_owsd(struct commands *c, int64_t now_ns)
 	err = ows_open_as(c->instance, OWS_CONTROL, c->program, &c->h);
 	if (err)
 		c->h = NULL;
-	c->open_ns = now_ns + OPEN_NS;
+	/* to wait for one that hangs takes longer than the pause */
+	c->open_ns = ows_now() + OPEN_NS;
 	return err == -ENOENT ? -ESTALE : err;
 }
 
-static int set_number(struct ows *h, int id, const struct ows_info *info, const char *text)
+static int set_number(struct commands *c, int id, const struct ows_info *info, const char *text)
 {
+	const struct stream *s = c->stream;
 	enum ows_type type = (enum ows_type)info->type;
 	double least, most;
 	int64_t value;
 	int err;
 
-	/* of lights and covers with a number: all of it, or nothing */
 	if (type != OWS_BOOL && (!strcmp(text, "on") || !strcmp(text, "off"))) {
+		enum entity_kind kind = entity_kind(info, s->class_of(s->class_ctx, info->name),
+		                                    true);
+
+		/* all of it, or nothing; another number has no such words */
+		if (kind != ENTITY_LIGHT && kind != ENTITY_COVER)
+			return -EINVAL;
 		entity_range(info, &least, &most);
-		return ows_set(h, id, text[1] == 'n' ? most : least, NULL);
+		return ows_set(c->h, id, text[1] == 'n' ? most : least, NULL);
 	}
 	err = value_parse(type, text, &value);
 	if (err)
 		return err;
-	return value_is_float(type) ? ows_set(h, id, value_number(type, value), NULL)
-	                            : ows_set_integer(h, id, value, NULL);
+	return value_is_float(type) ? ows_set(c->h, id, value_number(type, value), NULL)
+	                            : ows_set_integer(c->h, id, value, NULL);
 }
 
 static int set(struct commands *c, const char *name, const char *text, const char *person)
@@ -98,7 +105,7 @@ static int set(struct commands *c, const char *name, const char *text, const cha
 	if (err)
 		return err;
 	return info.type == OWS_STRING ? ows_set_text(c->h, id, text, NULL)
-	                               : set_number(c->h, id, &info, text);
+	                               : set_number(c, id, &info, text);
 }
 
 /* Is there credit for one more? It grows with time, up to that of a burst. */
@@ -137,6 +144,8 @@ void commands_take(struct commands *c, const char *name, const struct broker_mes
 
 	if (!why)
 		why = fault_of(message);
+	if (!why && !c->stream->live)
+		why = why_not(-ESTALE, words);
 	if (why) {
 		refuse(c, name, why, now_ns);
 		return;
@@ -151,13 +160,16 @@ void commands_take(struct commands *c, const char *name, const struct broker_mes
 		err = ows_reopen(c->h);
 		err = err ? -ESTALE : set(c, name, message->text, person);
 	}
-	if (err == -ESTALE)
+	if (err == -ESTALE && c->h) {
 		commands_close(c);
+		c->open_ns = ows_now() + OPEN_NS;
+	}
 	if (err) {
 		refuse(c, name, why_not(err, words), now_ns);
 		return;
 	}
 	c->taken++;
+	c->trouble[0] = '\0';
 	log_info(c->log, "%s set to %.60s for %s", name, message->text, person);
 }
 

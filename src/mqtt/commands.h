@@ -13,6 +13,7 @@
 #include "src/text/log.h"
 
 struct ows;
+struct stream;
 
 #define COMMANDS_A_SECOND 50
 #define COMMANDS_BURST 100
@@ -21,6 +22,7 @@ struct ows;
 struct commands {
 	struct log *log;
 	const char *instance, *program;
+	const struct stream *stream;   /* whether owsd is there, and classes of signals */
 	struct ows *h;                 /* NULL: not connected */
 	int64_t open_ns;               /* when it may be tried again */
 	int64_t counted_ns, credit_ns; /* what may come at once */

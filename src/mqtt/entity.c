@@ -81,12 +81,13 @@ static const char *class_of(const struct stream *s, const struct ows_info *info)
 enum entity_kind entity_kind(const struct ows_info *info, const char *class, bool write)
 {
 	bool text = info->type == OWS_STRING;
+	bool words = info->type == OWS_BOOL || (!text && !isnan(info->min) && !isnan(info->max));
 
 	if (!write || !info->output)
 		return info->type == OWS_BOOL ? ENTITY_BINARY : ENTITY_SENSOR;
-	if (!text && !strcmp(class, "light"))
+	if (words && !strcmp(class, "light"))
 		return ENTITY_LIGHT;
-	if (!text && !strcmp(class, "cover"))
+	if (words && !strcmp(class, "cover"))
 		return ENTITY_COVER;
 	return text ? ENTITY_TEXT : info->type == OWS_BOOL ? ENTITY_SWITCH : ENTITY_NUMBER;
 }
@@ -191,7 +192,8 @@ static void put_topic(struct json *json, const char *key, const struct row *row,
 	json_string(json, key, topic);
 }
 
-static void put_sensor(struct json *json, const struct row *row, enum entity_kind kind)
+static void put_sensor(struct json *json, const struct row *row, enum entity_kind kind,
+                       const char *class)
 {
 	const struct ows_info *info = &row->info;
 	int64_t expire_ns = info->stale_after_ns + plain_repeat_ns(info) + MARGIN_NS;
@@ -201,7 +203,9 @@ static void put_sensor(struct json *json, const struct row *row, enum entity_kin
 	if (kind != ENTITY_SENSOR || info->type == OWS_STRING)
 		return;
 	json_string(json, "stat_cla",
-	            strstr(property_of(info), "counter") ? "total_increasing" : "measurement");
+	            strstr(property_of(info), "counter") || !strcmp(class, "energy")
+	                    ? "total_increasing"
+	                    : "measurement");
 	if (info->decimals >= 0)
 		json_int(json, "sug_dsp_prc", info->decimals);
 }
@@ -292,7 +296,7 @@ static void put_signal(struct json *json, const struct stream *s, const struct r
 	switch (kind) {
 	case ENTITY_SENSOR:
 	case ENTITY_BINARY:
-		put_sensor(json, row, kind);
+		put_sensor(json, row, kind, class);
 		break;
 	case ENTITY_SWITCH:
 		put_commands(json, row, "pl_on", "on", "pl_off", "off");

@@ -17,7 +17,10 @@ enum entity_kind {
 	ENTITY_COVER,
 	ENTITY_TEXT,
 };
-/* class: of the item; write: commands are taken. Pure. */
+/*
+ * class: of the item; write: commands are taken. A number is a light or a cover when Min and Max say
+ * what "on" and "off" are. Pure.
+ */
 enum entity_kind entity_kind(const struct ows_info *info, const char *class, bool write);
 
 /* The least and the greatest value: of the configuration, else of the type. Not of strings. */

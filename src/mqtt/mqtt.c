@@ -131,6 +131,7 @@ static void begin(struct face *face, int64_t now_ns)
 	m->commands.log = face->log;
 	m->commands.instance = face->arguments->instance;
 	m->commands.program = face->ops->program;
+	m->commands.stream = &m->stream;
 	broker_begin(&m->broker, now_ns);
 }
 

@@ -10,6 +10,7 @@ from mqtthouse import RELAY, ROOM, SWITCH, House, item, program
 from owsdtest import logged, raw, until
 
 DIAL = item("dial", f"/{SWITCH}/PIO.BYTE", "byte", "output", Max=200)
+LAMP = {**DIAL, "Min": 0, "Class": "light"}
 ON = {"Write": raw("on")}
 
 
@@ -39,7 +40,7 @@ def ready(scene, *items, **keys):
 
 
 def test_a_command_sets_the_output_and_the_journal_has_for_whom(scene):
-    house = ready(scene, ROOM, RELAY, DIAL)
+    house = ready(scene, ROOM, RELAY, LAMP)
     for text, value in (("on", True), ("off", False), ("1", True), ("false", False)):
         command(house, "relay", text)
         house.arrives("relay", lambda m, v=value: m["v"] is v and m["good"])
@@ -49,7 +50,7 @@ def test_a_command_sets_the_output_and_the_journal_has_for_whom(scene):
     assert '"mqtt:127.0.0.1"' in journal(house) and '"owsd-mqtt"' in journal(house), journal(house)
     command(house, "dial", "17")
     house.arrives("dial", lambda m: m["v"] == 17)
-    # of a number: all of it, or nothing
+    # of a light with Min and Max: all of it, or nothing
     command(house, "dial", "on")
     house.arrives("dial", lambda m: m["v"] == 200)
     command(house, "dial", "off")
@@ -76,7 +77,7 @@ def test_what_is_no_command_is_a_line_of_the_log_and_nothing_else(scene):
     house.set("relay", 0)
     house.set("dial", 7)
     house.arrives("dial", lambda m: m["v"] == 7)
-    cases = [("relay", "2"), ("relay", "toggle"), ("dial", "201"), ("dial", "1.5"),
+    cases = [("relay", "2"), ("relay", "toggle"), ("dial", "201"), ("dial", "1.5"), ("dial", "on"), ("dial", "off"),
              ("dial", "nan"), ("dial", '{"v":1}'), ("room", "20"), ("nobody", "1"), ("relay_WriteEnable", "1"),
              ("_DGNRESET", "1"), ("dial", "9" * 2000), ("dial", b"1\0002"), ("dial", b"\xff\xfe"), ("relay", "")]
     for name, text in cases:
@@ -90,6 +91,7 @@ def test_what_is_no_command_is_a_line_of_the_log_and_nothing_else(scene):
     assert "relay_WriteEnable" not in scene.owsctl(house.daemon, "journal").stdout
     command(house, "dial", "8")
     house.arrives("dial", lambda m: m["v"] == 8)
+    house.arrives("health", lambda m: m["commands"] == 1 and m["trouble"] == "")
 
 
 def test_a_retained_command_of_last_week_and_one_of_now_are_refused(scene):

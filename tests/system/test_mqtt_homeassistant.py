@@ -66,7 +66,8 @@ def test_outputs_are_what_their_class_says_once_writing_is_on(scene):
     def out(number, kind, **more):
         return item(f"o{number}", f"/{SWITCH}/PIO.{number}", kind, "output", **more)
     house = House(scene, out(0, "bool"), out(1, "bool", Class="light"), out(2, "bool", Class="cover"),
-                  item("all", f"/{SWITCH}/PIO.BYTE", "byte", "output", Max=100),
+                  item("all", f"/{SWITCH}/PIO.BYTE", "byte", "output", Max=100, Class="light"),
+                  item("meter", f"/{SENSOR}/temperature", Class="energy"),
                   item("door", f"/{SWITCH}/sensed.4", "bool", Class="door"),
                   item("kind", f"/{SWITCH}/type", "string"), Write=raw("on"))
     found = device(house, PORTS)
@@ -79,6 +80,8 @@ def test_outputs_are_what_their_class_says_once_writing_is_on(scene):
     assert (parts["all"]["min"], parts["all"]["max"], parts["all"]["step"]) == (0, 100, 1)
     assert parts["door"]["dev_cla"] == "door" and "dev_cla" not in parts["o1"]
     assert parts["o2"]["pl_stop"] is None
+    # of energy Home Assistant takes no measurement
+    assert [c["stat_cla"] for c in device(house, CHIP)["cmps"].values()] == ["total_increasing"]
 
 
 def test_all_is_announced_again_when_home_assistant_starts_and_no_more_often(scene):
