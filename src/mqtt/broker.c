@@ -233,6 +233,8 @@ static void work(struct broker *b, short ready, int64_t now_ns)
 		finish(b, MOSQ_ERR_ERRNO, ETIMEDOUT, now_ns);
 	else
 		watch(b);
+	if (b->state == BROKER_CONNECTED && !b->drained)
+		b->tend_ns = now_ns;
 }
 
 bool broker_ready(struct broker *b, int fd, short ready, int64_t now_ns)
@@ -245,13 +247,15 @@ bool broker_ready(struct broker *b, int fd, short ready, int64_t now_ns)
 
 void broker_tick(struct broker *b, int64_t now_ns)
 {
+	/* news that come all the time must not put it off */
+	b->tend_ns = now_ns + (b->state == BROKER_CONNECTED ? TEND_NS : NS_PER_S);
 	if (b->state == BROKER_WAITING && now_ns >= b->next_ns)
 		attempt(b, now_ns);
 	else if (b->client)
 		work(b, 0, now_ns);
 }
 
-int64_t broker_next(const struct broker *b, int64_t now_ns)
+int64_t broker_next(const struct broker *b)
 {
 	switch (b->state) {
 	case BROKER_OFF:
@@ -259,11 +263,8 @@ int64_t broker_next(const struct broker *b, int64_t now_ns)
 	case BROKER_WAITING:
 		return b->next_ns;
 	case BROKER_CONNECTING:
-		return b->begun_ns + ANSWER_NS + 1 > now_ns + NS_PER_S
-		               ? now_ns + NS_PER_S
-		               : b->begun_ns + ANSWER_NS + 1;
 	case BROKER_CONNECTED:
-		return b->drained ? now_ns + TEND_NS : now_ns;
+		return b->tend_ns;
 	}
 	return INT64_MAX;
 }
@@ -290,18 +291,28 @@ void broker_hurry(struct broker *b, int64_t now_ns)
 	forget_trouble(b);
 }
 
+/* Has the broker acknowledged all? */
+static bool drain(struct broker *b, int64_t until_ns)
+{
+	while (b->in_flight && !b->ended && ows_now() < until_ns)
+		if (mosquitto_loop(b->client, 50, 1))
+			break;
+	return !b->in_flight && !b->ended;
+}
+
 void broker_end(struct broker *b)
 {
 	int64_t until_ns = ows_now() + END_NS;
+	char topic[OPTION_SIZE];
+	const char *text;
 
-	if (b->state == BROKER_CONNECTED && !b->ended) {
-		while (b->in_flight && !b->ended && ows_now() < until_ns)
-			if (mosquitto_loop(b->client, 50, 1))
-				break;
-		if (!b->ended)
+	if (b->state == BROKER_CONNECTED && drain(b, until_ns)) {
+		text = b->ops->will(b->ctx, topic);
+		/* the goodbye would take the will back */
+		if (broker_put(b, topic, text, strlen(text), true) && drain(b, until_ns))
 			mosquitto_disconnect(b->client);
 		/* it ends the connection when the goodbye is out */
-		while (!b->ended && ows_now() < until_ns)
+		while (!b->in_flight && !b->ended && ows_now() < until_ns)
 			if (mosquitto_loop(b->client, 50, 1))
 				break;
 	}

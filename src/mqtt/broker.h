@@ -16,13 +16,16 @@
 
 /* options and what ops needs stay until broker_end(). Begins to connect. */
 void broker_begin(struct broker *b, int64_t now_ns);
-/* Say goodbye, after what was put has gone: two seconds at most. */
+/*
+ * Put what the will says, after what was put has gone, and say goodbye: two seconds at most. What the
+ * broker does not acknowledge until then the will says.
+ */
 void broker_end(struct broker *b);
 /* fd is ready, as poll(2) has it. True: it was the broker's. */
 bool broker_ready(struct broker *b, int fd, short ready, int64_t now_ns);
 void broker_tick(struct broker *b, int64_t now_ns);
 /* When to tick at the latest. */
-int64_t broker_next(const struct broker *b, int64_t now_ns);
+int64_t broker_next(const struct broker *b);
 /* Try again at once, if it is not connected. */
 void broker_hurry(struct broker *b, int64_t now_ns);
 

@@ -56,6 +56,7 @@ struct broker {
 	unsigned brief;     /* connections in a row that did not last */
 	unsigned in_flight; /* put, and not taken by the broker */
 	int64_t begun_ns, next_ns, step_ns;
+	int64_t tend_ns;                 /* when broker_tick() is due, once there is a client */
 	char tls_words[BROKER_WORDS];    /* the last error that libmosquitto logged */
 	char trouble[BROKER_WORDS];      /* what is wrong now, and its remedy; "": nothing */
 	uint64_t said[CONFIG_MQTT_WAYS]; /* a hash of what was logged of each way */

@@ -139,8 +139,6 @@ static void end(struct face *face)
 {
 	struct mqtt *m = own(face);
 
-	if (m->broker.state == BROKER_CONNECTED)
-		m->stream.profile->state(&m->stream, false);
 	broker_end(&m->broker);
 	commands_close(&m->commands);
 }
@@ -222,7 +220,7 @@ static void go_on(struct face *face, int64_t now_ns)
 	struct mqtt *m = own(face);
 
 	pump(face, now_ns);
-	face->tick_ns = broker_next(&m->broker, now_ns);
+	face->tick_ns = broker_next(&m->broker);
 }
 
 /* --- The face -------------------------------------------------------------------------------- */

@@ -166,6 +166,37 @@ def test_two_with_one_node_are_told_so_and_do_not_flood_the_broker(scene):
     logged(house.face, "another client has our id; give one of the two another Node")
 
 
+def test_a_plant_that_is_read_all_the_time_keeps_the_connection(scene):
+    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as notify:
+        address = str(scene.path / "notify")
+        notify.bind(address)
+        notify.settimeout(20)
+        house = House(scene, ROOM, env={"NOTIFY_SOCKET": address})
+        house.arrives("room", lambda m: m["good"])
+        # its status is of a tick, in which libmosquitto keeps the connection too
+        until(lambda: b"STATUS=publishing to" in notify.recv(4096), 20, "it ticks")
+
+
+def test_a_broker_that_acknowledges_nothing_keeps_the_will(scene):
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        said = bytearray()
+
+        def serve():
+            with listener.accept()[0] as connection:
+                connection.recv(4096)
+                connection.sendall(b"\x20\x03\x00\x00\x00")
+                while data := connection.recv(65536):
+                    said.extend(data)
+        server = threading.Thread(target=serve, daemon=True)
+        server.start()
+        house = House(scene, ROOM, Broker=f"mqtt://127.0.0.1:{listener.getsockname()[1]}")
+        until(lambda: b"owsd/pi7/room" in said, 20, lambda: bytes(said))
+        assert house.face.stop() == 0
+        server.join(20)
+        # a DISCONNECT would stand behind the last text
+        assert not server.is_alive() and 0xE0 not in said[-4:], bytes(said[-40:])
+
+
 def test_a_listener_that_says_nothing_is_given_up(scene):
     with socket.create_server(("127.0.0.1", 0)) as silent:
         port = silent.getsockname()[1]
