@@ -95,9 +95,13 @@ static int set_number(struct commands *c, int id, const struct ows_info *info, c
 
 static int set(struct commands *c, const char *name, const char *text, const char *person)
 {
+	struct ows_daemon daemon;
 	struct ows_info info;
 	int id, err;
 
+	/* names and types may be others since a reload */
+	if (ows_daemon(c->h, ows_now(), &daemon) == -ESTALE)
+		return -ESTALE;
 	if (!names_info(c->h, c->instance, name, &info))
 		return -ENOENT;
 	id = ows_find(c->h, name);

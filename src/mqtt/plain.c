@@ -91,11 +91,14 @@ static void put_value(struct json *json, const struct stream *s, const struct ow
 	json_object_end(json);
 }
 
-/* Whether the chip of the row is there: one of its signals that answers is enough. */
+/*
+ * Whether the chip of the row is there: one of its signals that answers is enough. What was never
+ * read or written does not count against one that cannot reach it.
+ */
 static bool say_chip(struct stream *s, struct row *row, uint8_t quality)
 {
 	bool away = quality == OWS_Q_NO_DEVICE || quality == OWS_Q_TARGET || quality == OWS_Q_SHORT,
-	     online;
+	     blank = quality == OWS_Q_INITIAL, online;
 	struct chip *chip;
 
 	if (row->chip < 0)
@@ -103,7 +106,9 @@ static bool say_chip(struct stream *s, struct row *row, uint8_t quality)
 	chip = &s->chips[row->chip];
 	chip->away += away - row->away;
 	row->away = away;
-	online = s->live && chip->away < chip->rows;
+	chip->blank += blank - row->blank;
+	row->blank = blank;
+	online = s->live && (!chip->away || chip->away + chip->blank < chip->rows);
 	/* a chip that was never there is announced when it comes; of an output nobody knows */
 	if (online && !chip->seen && (quality != OWS_Q_INITIAL || row->info.output)) {
 		chip->seen = true;

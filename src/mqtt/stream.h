@@ -26,7 +26,7 @@ struct row {
 	char *topic;
 	int id;   /* of ows_find() */
 	int chip; /* its chip; -1: none */
-	bool queued, away, alarms;
+	bool queued, away, blank, alarms;
 	bool said;            /* once at least since the birth */
 	uint64_t print;       /* a hash of what was said */
 	int64_t said_ns;      /* when */
@@ -37,10 +37,11 @@ struct row {
 struct chip {
 	const char *id, *family; /* as of the rows' info */
 	char *topic;             /* whether it is there */
-	int rows, away;          /* signals, and those that cannot reach it */
-	bool seen;               /* it was there once, since owsd-mqtt has started */
-	bool announced;          /* by the birth */
-	bool said, online;       /* what was said */
+	int rows, away,
+		blank;     /* signals, those that cannot reach it, those never read or written */
+	bool seen;         /* it was there once, since owsd-mqtt has started */
+	bool announced;    /* by the birth */
+	bool said, online; /* what was said */
 };
 
 struct profile;

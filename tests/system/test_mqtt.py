@@ -59,6 +59,16 @@ def test_a_killed_owsd_mqtt_leaves_its_will_and_an_ended_one_says_so(scene):
     assert "will" not in house.face.log()
 
 
+def test_a_chip_that_is_away_is_offline_though_nobody_knows_of_an_output_of_it(scene):
+    gone = "29.FFFFFFFFFFFF"
+    house = House(scene, ROOM, item("away", f"/{gone}/sensed.0", "bool"),
+                  item("never", f"/{gone}/PIO.0", "bool", "output"))
+    house.arrives("away", lambda m: m["q"] == 8)
+    house.arrives("never", lambda m: m["q"] == 32)
+    house.says(f"owsd/pi7/chip/{gone}", "offline")
+    house.says(f"owsd/pi7/chip/{SENSOR}", "online")
+
+
 def test_a_lost_owsd_takes_all_values_back_until_it_is_there_again(scene):
     house = House(scene)
     house.arrives("room", lambda m: m["good"])

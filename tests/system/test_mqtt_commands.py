@@ -3,6 +3,7 @@
 """Commands from the broker: those that may come have their effect and their name in the journal, and
 of all others nothing is left but a line of the log."""
 
+import signal
 import subprocess
 
 import owsdtest
@@ -136,6 +137,17 @@ def test_commands_go_on_after_a_reload_and_a_restart_of_owsd(scene):
         command(house, "relay", "off")
         return (house.last("relay") or {}).get("v") is False
     until(off, 20, "the relay is off", step=0.3)
+
+
+def test_the_first_command_to_a_name_that_a_reload_brought_is_taken(scene):
+    house = ready(scene)
+    command(house, "relay", "on")
+    house.arrives("relay", lambda m: m["v"] is True)
+    house.daemon.config.write_text(house.text(ROOM, {**RELAY, "Name": "pump"}))
+    house.daemon.signal(signal.SIGHUP)
+    house.arrives("pump", lambda m: m["q"] == 32)
+    command(house, "pump", "off")
+    house.arrives("pump", lambda m: m["v"] is False)
 
 
 if __name__ == "__main__":
