@@ -258,7 +258,7 @@ static uint64_t reads_apart(struct engine *e, struct lane *lane, const struct si
 static void read_next(struct engine *e, struct lane *lane, struct signal *s,
                       const struct slot *slot)
 {
-	if (s->command.doubted)
+	if (s->command.doubted || slot->begun_ns < s->command.ended_ns)
 		engine_read_now(e, s);
 	else if (signal_reads(s))
 		engine_read_at(e, s, slot->begun + reads_apart(e, lane, s));

@@ -12,7 +12,8 @@ struct slot;
 
 /*
  * An output was read, and the sample has the value; *quality becomes OWS_Q_DIFFERS if that is not
- * what was written. False: it differs for the first time, and the next reading decides.
+ * what was written. False: it differs for the first time, or is older than the last write, and the
+ * next reading decides.
  */
 bool engine_compare(struct engine *e, struct lane *lane, struct signal *s, const struct slot *slot,
                     uint8_t *quality);

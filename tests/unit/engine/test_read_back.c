@@ -161,6 +161,50 @@ static void test_a_new_command_is_no_difference(void)
 	TEST_ASSERT_EQUAL_UINT(0, entered(OWS_ALARM_RAISED));
 }
 
+static void answer_the_old_one(struct scene *scene, const char *path)
+{
+	scene_put(scene, path, "255", 0);
+	scene->on_read = NULL;
+}
+
+static void give_the_new_one(struct scene_bus *bus, const struct bus_req *req)
+{
+	/* the reading that was begun before the write is over */
+	if (req->op == BUS_READ && !bus->scene->on_read)
+		scene_put(bus->scene, PIO, "1", 0);
+}
+
+static void test_a_reading_that_a_write_overtook_is_not_published(void)
+{
+	struct config_item *item = an_output();
+
+	item->readable = true;
+	item->per_factor = 10;
+	s.bus[0].depth = 2;
+	s.bus[0].slow = PIO;
+	s.bus[0].slow_ns = SCENE_MS;
+	begin();
+	s.bus[0].slow_ns = 200 * SCENE_MS;
+	while (s.reads == 0 || s.bus[0].pending_count == 0)
+		scene_run(&s, SCENE_MS);
+	s.bus[0].slow_ns = SCENE_MS;
+	s.on_read = answer_the_old_one;
+	s.on_done = give_the_new_one;
+	scene_clear_trace(&s);
+	scene_set(&s, OUT, 1);
+	for (int i = 0; i < 400; i++) {
+		scene_run(&s, SCENE_MS);
+		if (i > 20) {
+			TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, OUT).quality);
+			TEST_ASSERT_EQUAL_INT(1, (int)scene_number(&s, OUT));
+		}
+	}
+	TEST_ASSERT_NULL_MESSAGE(s.on_read, "the old one came");
+	TEST_ASSERT_EQUAL_STRING_LEN_MESSAGE("W " PIO "=1\nR " PIO "\n", s.trace,
+	                                     strlen("W " PIO "=1\nR " PIO "\n"),
+	                                     "and it is read again");
+}
+
 static void test_the_value_of_a_cache_is_asked_for_again(void)
 {
 	struct config_item *item = an_output();
@@ -396,6 +440,7 @@ int main(void)
 	RUN_TEST(test_a_command_that_is_lost_is_told_once_and_not_written);
 	RUN_TEST(test_one_reading_that_differs_decides_nothing);
 	RUN_TEST(test_a_new_command_is_no_difference);
+	RUN_TEST(test_a_reading_that_a_write_overtook_is_not_published);
 	RUN_TEST(test_the_value_of_a_cache_is_asked_for_again);
 	RUN_TEST(test_a_device_that_is_gone_is_absent_and_gets_its_command_again);
 	RUN_TEST(test_a_write_that_fails_is_not_hidden_by_a_reading);
