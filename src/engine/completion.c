@@ -229,6 +229,7 @@ int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
 			s->attrs.raw = raw;
 			break;
 		}
+		s->read.begun_ns = slot->begun_ns;
 		signal_update(s, e->time.period, time_of_reading(e, slot, answer, now_ns), now_ns);
 		s->sample.detail = answer->detail;
 		request_succeeded(e, lane, s, quality, true);

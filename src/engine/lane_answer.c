@@ -88,7 +88,7 @@ static bool is_for_a_row(const struct slot *slot)
 
 /*
  * A reading that was given up may be newer than what the signal has: a slow machine gets its values
- * late, not never.
+ * late, not never. Its bus may have stamped it when it came: what was asked for later is newer.
  */
 static void take_late_reading(struct lane *lane, const struct slot *slot,
                               const struct bus_answer *answer, int64_t now_ns)
@@ -100,7 +100,7 @@ static void take_late_reading(struct lane *lane, const struct slot *slot,
 	if (answer->err || slot->purpose != FOR_READ || slot->moved || !lane->state.open)
 		return;
 	s = &e->table.signals[slot->row];
-	if (!signal_reads(s) ||
+	if (!signal_reads(s) || s->lane != lane->index || slot->begun_ns < s->read.begun_ns ||
 	    (answer->measured_ns && answer->measured_ns <= s->sample.measured_ns))
 		return;
 	engine_take_reading(e, lane, s, slot, answer, now_ns, &wait_ns);

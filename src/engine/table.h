@@ -35,6 +35,7 @@
 struct signal_reading {
 	int64_t known_ns; /* since when the signal is in the table */
 	int64_t updated_ns;
+	int64_t begun_ns; /* of the reading that gave the last value */
 	struct retry retry;
 	struct guard guard;
 	/* quality and error as they stood when the target was lost, if held */

@@ -350,6 +350,36 @@ static void test_a_slow_target_gives_its_values_late_and_not_never(void)
 	TEST_ASSERT_GREATER_THAN_UINT64(7, scene_counter(&s, "late_answers"));
 }
 
+static const struct bus_req *slow_one;
+
+static void give_the_slow_one_the_old_value(struct scene_bus *bus, const struct bus_req *req)
+{
+	if (strcmp(req->path, T1))
+		return;
+	scene_put(bus->scene, T1, req == slow_one ? "21.5" : "30", 0);
+	if (req == slow_one)
+		slow_one = NULL;
+}
+
+static void test_a_late_value_does_not_replace_one_that_was_asked_for_later(void)
+{
+	s.bus[0].slow = T1;
+	s.bus[0].slow_ns = 25 * SCENE_S;
+	s.bus[0].depth = 8;
+	two_thermometers();
+	for (unsigned i = 0; i < s.bus[0].pending_count; i++)
+		if (strcmp(s.bus[0].pending[i].req->path, T1) == 0)
+			slow_one = s.bus[0].pending[i].req;
+	s.bus[0].slow_ns = SCENE_MS;
+	s.on_done = give_the_slow_one_the_old_value;
+	scene_run(&s, 23 * SCENE_S);
+	for (unsigned i = 0; i < 5000; i++) {
+		TEST_ASSERT_EQUAL_DOUBLE(30, scene_number(&s, 1));
+		scene_run(&s, SCENE_MS);
+	}
+	TEST_ASSERT_EQUAL_UINT64(1, scene_counter(&s, "late_answers"));
+}
+
 static void test_one_request_without_answer_spoils_only_its_signal_on_a_bus_that_lives(void)
 {
 	s.bus[0].depth = 4;
@@ -477,6 +507,7 @@ int main(void)
 	RUN_TEST(test_85_degrees_out_of_nothing_is_never_published);
 	RUN_TEST(test_a_slow_target_gives_its_values_late_and_not_never);
 	RUN_TEST(test_a_bus_that_never_answers_is_given_up_and_its_signals_go_bad);
+	RUN_TEST(test_a_late_value_does_not_replace_one_that_was_asked_for_later);
 	RUN_TEST(test_one_request_without_answer_spoils_only_its_signal_on_a_bus_that_lives);
 	RUN_TEST(test_a_bus_that_only_talks_and_keeps_all_it_was_given_is_stuck_too);
 	RUN_TEST(test_a_timeout_shorter_than_the_period_is_kept);

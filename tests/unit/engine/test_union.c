@@ -91,6 +91,31 @@ static void test_a_device_that_is_plugged_to_another_wire_is_found_there(void)
 	scene_expect(&s, 1, OWS_Q_GOOD, 0);
 }
 
+/* Begun with the target that had the device, given up, and answered after another one serves it. */
+static void test_a_late_value_does_not_fetch_a_device_back(void)
+{
+	scene_input(&s, "t1", T1, OWS_DOUBLE);
+	scene_input(&s, "t2", T2, OWS_DOUBLE);
+	scene_put_on(&s, 0, T1, "21.5", 0);
+	scene_put_on(&s, 0, T2, "1", 0);
+	scene_put_on(&s, 1, T1, "23", 0);
+	s.bus[0].depth = 4;
+	two_wires_up(&s);
+	scene_run(&s, SCENE_S);
+	scene_expect(&s, 1, OWS_Q_GOOD, 0);
+	s.bus[0].slow = T1;
+	s.bus[0].slow_ns = 25 * SCENE_S;
+	scene_run(&s, 22 * SCENE_S); /* Timeout is 20 s */
+	scene_tell(&s, 1, BUS_FOUND, D1);
+	scene_tell(&s, 0, BUS_LOST, D1);
+	scene_run(&s, SCENE_S);
+	scene_expect(&s, 1, OWS_Q_GOOD, 1);
+	run_watching(1, 5 * SCENE_S, 0);
+	TEST_ASSERT_EQUAL_UINT64(1, scene_counter_of(&s, 0, "late_answers"));
+	scene_expect(&s, 1, OWS_Q_GOOD, 1);
+	TEST_ASSERT_EQUAL_DOUBLE(23, scene_number(&s, 1));
+}
+
 static void test_between_two_wires_the_last_value_is_usable_and_not_good(void)
 {
 	scene_input(&s, "t1", T1, OWS_DOUBLE);
@@ -341,6 +366,7 @@ int main(void)
 	RUN_TEST(test_the_first_of_two_that_have_a_device_serves_it);
 	RUN_TEST(test_a_device_is_not_given_up_before_its_retries_are_over);
 	RUN_TEST(test_a_device_that_is_plugged_to_another_wire_is_found_there);
+	RUN_TEST(test_a_late_value_does_not_fetch_a_device_back);
 	RUN_TEST(test_between_two_wires_the_last_value_is_usable_and_not_good);
 	RUN_TEST(test_an_answer_that_comes_after_the_move_is_not_believed);
 	RUN_TEST(test_what_a_later_target_loses_is_asked_of_an_earlier_one_in_the_next_period);
