@@ -73,7 +73,10 @@ static unsigned retries_of(const struct engine *e, const struct signal *s, int e
 	return lost ? 0 : e->config->max_retries;
 }
 
-/* A fault of a device may end at any time, which is to be seen soon, if asking costs little. */
+/*
+ * Of a read: a fault of a device may end at any time, which is to be seen soon, if asking costs
+ * little. A write has its full back-off: a memory may wear with each.
+ */
 static int64_t back_off(const struct lane *lane, uint8_t quality, int64_t wait_ns)
 {
 	bool ends = quality != OWS_Q_NO_PROPERTY && quality != OWS_Q_TYPE &&
@@ -121,7 +124,7 @@ static int64_t fail_write(struct engine *e, struct lane *lane, struct signal *s,
 		report_failed(e, s, "cannot be written: ", err, quality);
 	if (!signal_reads(s))
 		s->sample.quality = quality;
-	return back_off(lane, quality, wait_ns);
+	return wait_ns;
 }
 
 /* A good reading proves that the device is there; that a write was taken only claims it. */

@@ -49,6 +49,7 @@ struct scene_bus {
 	uint8_t detail;            /* sent with its answers */
 	struct bus_answer besides; /* retries, supply, identity and wire_us of its answers */
 	bool searches;             /* the bus searches for devices */
+	bool brief;                /* what fails is asked again soon */
 	bool holds;                /* the bus has hardware, which it can give back */
 	int64_t latency_ns;        /* the time of each answer; 1 ms unless set */
 	const char *slow;          /* answers for this path take slow_ns */

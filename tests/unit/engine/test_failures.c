@@ -380,6 +380,25 @@ static void test_a_late_value_does_not_replace_one_that_was_asked_for_later(void
 	TEST_ASSERT_EQUAL_UINT64(1, scene_counter(&s, "late_answers"));
 }
 
+/* A memory wears with each write, and a chip that refuses one may have carried it out. */
+static void test_a_write_that_fails_is_not_tried_each_second_where_a_reading_is(void)
+{
+	s.bus[0].brief = true;
+	s.no_trace = true;
+	scene_output(&s, "out", PIO, OWS_BYTE);
+	scene_put(&s, PIO, "0", 0);
+	scene_refuse_writes(&s, PIO, -EIO);
+	two_thermometers();
+	scene_put(&s, T1, "", -EIO);
+	scene_set(&s, 1, 1);
+	scene_run(&s, 600 * SCENE_S);
+	TEST_ASSERT_LESS_THAN_UINT(25, s.writes);
+	TEST_ASSERT_GREATER_THAN_UINT(10, s.writes);
+	scene_put(&s, T1, "30", 0);
+	scene_run(&s, 1200 * SCENE_MS);
+	TEST_ASSERT_EQUAL_DOUBLE(30, scene_number(&s, 2));
+}
+
 static void test_one_request_without_answer_spoils_only_its_signal_on_a_bus_that_lives(void)
 {
 	s.bus[0].depth = 4;
@@ -508,6 +527,7 @@ int main(void)
 	RUN_TEST(test_a_slow_target_gives_its_values_late_and_not_never);
 	RUN_TEST(test_a_bus_that_never_answers_is_given_up_and_its_signals_go_bad);
 	RUN_TEST(test_a_late_value_does_not_replace_one_that_was_asked_for_later);
+	RUN_TEST(test_a_write_that_fails_is_not_tried_each_second_where_a_reading_is);
 	RUN_TEST(test_one_request_without_answer_spoils_only_its_signal_on_a_bus_that_lives);
 	RUN_TEST(test_a_bus_that_only_talks_and_keeps_all_it_was_given_is_stuck_too);
 	RUN_TEST(test_a_timeout_shorter_than_the_period_is_kept);
