@@ -135,8 +135,10 @@ static int switch_off(struct coupler *coupler)
 
 	for (int try = 0; try < TRIES && (done == 0 || done == -EBADMSG); try++)
 		done = try_off(coupler);
-	if (done < 0 && done != -EBADMSG)
+	if (done < 0 && done != -EBADMSG) {
+		coupler->unsure = 1;
 		return done;
+	}
 	coupler->unsure = done < 0 ? FAULTY_RESETS : !done && coupler->parent;
 	if (trunk->on && trunk->on->coupler == coupler)
 		trunk->on = coupler->parent;

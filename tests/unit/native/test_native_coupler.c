@@ -8,6 +8,7 @@
 
 #include "hal/sim/branch.h"
 #include "hal/sim/families.h"
+#include "hal/wire/coupler.h"
 #include "tests/unit/aid/native_scene.h"
 
 static struct sim_slave *coupler, *inner, *trunk, *on_main, *on_aux, *deep, *relay;
@@ -224,6 +225,56 @@ static void test_a_branch_that_another_program_left_on_is_switched_off(void)
 	TEST_ASSERT_FALSE(has_line(list(true, "/"), "/28.05005DDF0300"));
 }
 
+/* A wire with a coupler alone, that has no error of its own. */
+static int bare_error;
+static unsigned bare_offs;
+static uint8_t bare_last;
+
+static int bare_reset(struct link *link)
+{
+	(void)link;
+	return bare_error ? bare_error : 1;
+}
+
+static int bare_write(struct link *link, const uint8_t *bytes, size_t n, enum link_after after)
+{
+	(void)link;
+	(void)after;
+	bare_last = bytes[n - 1];
+	bare_offs += bare_last == 0x66;
+	return 0;
+}
+
+static int bare_read(struct link *link, uint8_t *bytes, size_t n)
+{
+	(void)link;
+	memset(bytes, bare_last == 0x66 ? 0x66 : 0, n);
+	return 0;
+}
+
+static void test_a_coupler_that_a_short_kept_from_being_told_is_told_after_it(void)
+{
+	static const struct link_ops ops = {
+		.name = "bare", .reset = bare_reset, .write = bare_write, .read = bare_read};
+	static const uint8_t rom[8] = {COUPLER_FAMILY};
+	struct link bare = {.ops = &ops};
+	struct trunk on_bare = {0};
+	struct coupler_seen seen = {0};
+	struct coupler only;
+	struct link *link = &on_bare.relay.link;
+
+	bare_offs = 0;
+	trunk_set(&on_bare, &bare);
+	coupler_add(&on_bare, NULL, &only, rom, &seen);
+	bare_error = -ECOMM;
+	for (unsigned i = 0; i < 3; i++)
+		TEST_ASSERT_EQUAL_INT(-ECOMM, link->ops->reset(link));
+	bare_error = 0;
+	for (unsigned i = 0; i < 3; i++)
+		TEST_ASSERT_EQUAL_INT(1, link->ops->reset(link));
+	TEST_ASSERT_EQUAL_UINT(1, bare_offs);
+}
+
 static void test_a_short_branch_is_not_switched_on(void)
 {
 	begin();
@@ -425,6 +476,7 @@ int main(void)
 	RUN_TEST(test_an_alarm_behind_a_branch_is_listed_with_its_way);
 	RUN_TEST(test_nothing_is_on_while_nobody_asks);
 	RUN_TEST(test_a_branch_that_another_program_left_on_is_switched_off);
+	RUN_TEST(test_a_coupler_that_a_short_kept_from_being_told_is_told_after_it);
 	RUN_TEST(test_a_short_branch_is_not_switched_on);
 	RUN_TEST(test_a_branch_that_becomes_short_while_it_is_on_loses_no_device);
 	RUN_TEST(test_a_master_that_was_away_still_has_the_branches);
