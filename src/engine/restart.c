@@ -12,6 +12,7 @@
 #include "src/engine/alarm_text.h"
 #include "src/engine/due.h"
 #include "src/engine/restart.h"
+#include "src/engine/retry.h"
 #include "src/engine/schedule.h"
 #include "src/engine/slots.h"
 #include "src/engine/state.h"
@@ -29,12 +30,14 @@ static bool is_watched(const struct alarm_machine *m, uint32_t device)
 
 void engine_restart_look(struct lane *lane, const struct signal *s, bool agrees)
 {
-	enum device_por por;
+	const struct device *d;
 
 	if (!s->item->has_por || s->device == TABLE_NO_DEVICE)
 		return;
-	por = lane->engine->table.devices[s->device].por;
-	if (por == (agrees ? POR_UNKNOWN : POR_CLEAR) && !is_watched(&lane->alarm, s->device))
+	d = &lane->engine->table.devices[s->device];
+	if (agrees && lane->engine->time.now_ns < d->por_ns)
+		return;
+	if (d->por == (agrees ? POR_UNKNOWN : POR_CLEAR) && !is_watched(&lane->alarm, s->device))
 		due_set_add(&lane->restarts, s->device);
 }
 
@@ -104,8 +107,10 @@ void engine_restart_done(struct lane *lane, const struct slot *slot,
 	bool was_clear = d->por == POR_CLEAR;
 	int set = answer->err ? answer->err : alarm_non_zero((const char *)slot->data, answer->len);
 
-	if (set < 0)
+	if (set < 0) {
+		d->por_ns = lane->engine->time.now_ns + RETRY_MAX_NS;
 		return;
+	}
 	d->por = set ? POR_SET : POR_CLEAR;
 	if (set && was_clear)
 		write_again(lane, d);

@@ -156,6 +156,7 @@ struct device {
 	uint32_t first, count;     /* rows in table.device_rows */
 	struct device_facts facts; /* device_facts.c */
 	enum device_por por; /* restart.c; void when it was away, or is written: completion.c */
+	int64_t por_ns;      /* it could not be read: while it is not known, not asked for before */
 
 	/* where it is served, and looked for (place.c, routing.c) */
 	unsigned group;

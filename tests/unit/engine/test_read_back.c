@@ -425,6 +425,27 @@ static void test_a_flag_that_cannot_be_read_tells_nothing(void)
 	TEST_ASSERT_EQUAL_UINT(0, s.writes);
 }
 
+static void test_a_flag_that_the_device_does_not_have_is_not_asked_for_each_time(void)
+{
+	unsigned asked = 0;
+
+	an_output()->has_por = true;
+	s.config.items[0].readable = true;
+	s.config.items[0].per_factor = 1;
+	scene_put(&s, POR, NULL, -ENOENT);
+	begin();
+	for (unsigned i = 0; i < 150; i++) {
+		scene_clear_trace(&s);
+		scene_run(&s, SCENE_S);
+		asked += strstr(s.trace, POR) != NULL;
+	}
+	TEST_ASSERT_LESS_THAN_UINT(4, asked);
+	scene_put(&s, POR, "0", 0); /* it was a fault */
+	scene_run(&s, 61 * SCENE_S);
+	it_restarts();
+	TEST_ASSERT_EQUAL_UINT(1, restarts());
+}
+
 static void test_the_flag_is_read_once_and_not_again(void)
 {
 	a_board("0");
@@ -454,6 +475,7 @@ int main(void)
 	RUN_TEST(test_a_flag_that_nobody_cleared_tells_nothing);
 	RUN_TEST(test_what_somebody_else_switched_is_no_restart);
 	RUN_TEST(test_a_flag_that_cannot_be_read_tells_nothing);
+	RUN_TEST(test_a_flag_that_the_device_does_not_have_is_not_asked_for_each_time);
 	RUN_TEST(test_the_flag_is_read_once_and_not_again);
 	return UNITY_END();
 }
