@@ -20,6 +20,7 @@
 #include "src/engine/origin.h"
 #include "src/engine/place.h"
 #include "src/engine/publish.h"
+#include "src/engine/read_back.h"
 #include "src/engine/schedule.h"
 #include "src/engine/shelf.h"
 #include "src/engine/state.h"
@@ -211,6 +212,8 @@ static void take_signals(struct engine *e, const struct engine *old, const struc
 			engine_origin_carry(e, s, old, plan->rows[row] + 1);
 		else
 			engine_origin_begin(e, s);
+		if (old->table.signals[plan->rows[row]].command.differs && !s->command.differs)
+			engine_compares_no_more(e, s, s->sample.quality);
 		lane->writers += signal_writes(s);
 		take_source(e, s, plan);
 		take_turn(e, s, old, plan->rows[row]);

@@ -48,10 +48,15 @@ static void begin_difference(struct engine *e, struct signal *s)
 	enter(e, s, OWS_ALARM_RAISED, OWS_Q_DIFFERS);
 }
 
-static void end_difference(struct engine *e, struct signal *s, uint8_t quality)
+static void end_difference(struct engine *e, struct signal *s, uint8_t quality, const char *why)
 {
-	log_notice(e->log, "%s (%s): as commanded again", s->item->name, s->item->path);
+	log_notice(e->log, "%s (%s): %s", s->item->name, s->item->path, why);
 	enter(e, s, OWS_ALARM_RETURNED, quality);
+}
+
+void engine_compares_no_more(struct engine *e, struct signal *s, uint8_t quality)
+{
+	end_difference(e, s, quality, "not compared with its command any more");
 }
 
 void engine_restore(struct engine *e, struct signal *s)
@@ -75,7 +80,7 @@ static void judge(struct engine *e, struct signal *s, bool agrees, uint8_t *qual
 	s->command.differs = !agrees;
 	if (agrees) {
 		if (differed)
-			end_difference(e, s, *quality);
+			end_difference(e, s, *quality, "as commanded again");
 		if (e->time.now_ns > s->restore.not_before_ns + RESTORE_WELL_NS)
 			s->restore.doublings = 0;
 		return;
@@ -99,7 +104,10 @@ bool engine_compare(struct engine *e, struct lane *lane, struct signal *s, const
 	if (slot->begun_ns < c->ended_ns) /* it proves nothing, and may be older than the write */
 		return false;
 	if (!c->confirmed || s->writing) {
-		c->differs &= s->writing || signal_changed(s);
+		if (c->differs && !s->writing && !signal_changed(s)) {
+			c->differs = false;
+			engine_compares_no_more(e, s, *quality);
+		}
 		*quality = c->differs ? OWS_Q_DIFFERS : *quality;
 		return true;
 	}

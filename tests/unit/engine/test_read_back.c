@@ -347,6 +347,31 @@ static void test_a_reload_carries_the_difference_over(void)
 	scene_reload(&s, without_read_back);
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_LAST_USABLE, scene_sample(&s, OUT).quality);
+	TEST_ASSERT_EQUAL_UINT(1, entered(OWS_ALARM_RETURNED));
+	TEST_ASSERT_EQUAL_UINT(0, logged("as commanded again"));
+}
+
+static void disable_writes(struct scene *scene, const char *path)
+{
+	(void)path;
+	if (scene_sample(scene, OUT).quality == OWS_Q_DIFFERS)
+		scene_enable_writes(scene, OUT, false);
+	scene_put(scene, PIO, "0", 0);
+}
+
+static void test_a_difference_that_is_compared_no_longer_ends_in_the_journal(void)
+{
+	struct config_item *item = an_output();
+
+	item->restores = item->readable = true;
+	item->per_factor = 1;
+	begin();
+	scene_refuse_writes(&s, PIO, -EIO); /* so the command is not confirmed any more */
+	s.on_read = disable_writes;
+	scene_run(&s, 60 * SCENE_S);
+	TEST_ASSERT_NOT_EQUAL_HEX8(OWS_Q_DIFFERS, scene_sample(&s, OUT).quality);
+	TEST_ASSERT_EQUAL_UINT(1, entered(OWS_ALARM_RAISED));
+	TEST_ASSERT_EQUAL_UINT(1, entered(OWS_ALARM_RETURNED));
 }
 
 /* --- Restarts -------------------------------------------------------------------------------- */
@@ -471,6 +496,7 @@ int main(void)
 	RUN_TEST(test_restore_writes_nothing_where_writing_is_disabled);
 	RUN_TEST(test_a_limit_alarm_has_it_as_bad);
 	RUN_TEST(test_a_reload_carries_the_difference_over);
+	RUN_TEST(test_a_difference_that_is_compared_no_longer_ends_in_the_journal);
 	RUN_TEST(test_a_device_that_tells_of_its_restart_gets_its_command_again);
 	RUN_TEST(test_a_flag_that_nobody_cleared_tells_nothing);
 	RUN_TEST(test_what_somebody_else_switched_is_no_restart);
