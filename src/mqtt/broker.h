@@ -17,8 +17,8 @@
 /* options and what ops needs stay until broker_end(). Begins to connect. */
 void broker_begin(struct broker *b, int64_t now_ns);
 /*
- * Put what the will says, after what was put has gone, and say goodbye: two seconds at most. What the
- * broker does not acknowledge until then the will says.
+ * Put what the will says, after what was put has gone, and say goodbye: two seconds at most. What
+ * the broker does not acknowledge until then the will says.
  */
 void broker_end(struct broker *b);
 /* fd is ready, as poll(2) has it. True: it was the broker's. */

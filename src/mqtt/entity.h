@@ -18,8 +18,8 @@ enum entity_kind {
 	ENTITY_TEXT,
 };
 /*
- * class: of the item; write: commands are taken. A number is a light or a cover when Min and Max say
- * what "on" and "off" are. Pure.
+ * class: of the item; write: commands are taken. A number is a light or a cover when Min and Max
+ * say what "on" and "off" are. Pure.
  */
 enum entity_kind entity_kind(const struct ows_info *info, const char *class, bool write);
 
