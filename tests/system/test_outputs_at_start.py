@@ -98,13 +98,22 @@ class Plant:
         if fate == "once":
             assert self.giver.wait() == 0
 
+    def stored(self):
+        """The file of what Start "last" applies, from when both commands stand in it."""
+        file = self.scene.path / "state" / f"{self.daemon.name}.last"
+        owsdtest.until(lambda: file.exists() and file.read_text(encoding="utf-8").count("\t1\n") == 2,
+                       20, lambda: f"{file} has both commands")
+        return file
+
     def again(self, ended):
         """owsd ends, stopped or killed, and starts: what it writes counts from here."""
+        if ended == "reboot":
+            self.stored()
         if ended == "stopped":
             assert self.daemon.stop() == 0
         else:
             self.daemon.kill()
-        if ended == "reboot":
+        if ended in ("reboot", "damaged"):
             for file in owsdtest.place().glob(f"{self.daemon.name}.*"):
                 file.unlink()
         self.server.requests.clear()
@@ -297,12 +306,10 @@ def test_a_damaged_file_of_last_commands_is_logged_and_initvalue_counts(scene):
     with peer.Peer(values()) as server:
         plant = Plant(scene, server, fate="once")
         assert plant.daemon.stop() == 0
-        file = scene.path / "state" / f"{plant.daemon.name}.last"
+        file = plant.stored()
         file.write_text(file.read_text(encoding="utf-8").replace("\t1\n", "\t0\n", 1),
                         encoding="utf-8")
-        plant.daemon = scene.owsd(plant.config, name=plant.daemon.name, env=plant.environment)
-        plant.daemon.kill()
-        plant.again("reboot")
+        plant.again("damaged")
         plant.writes([(INIT, b"0"), (BOTH, b"0")], "damaged")
         owsdtest.logged(plant.daemon, "the file is damaged")
 
