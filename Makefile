@@ -411,7 +411,7 @@ unit: $(if $(ROOMS),,all replays) $(UNIT_RUN)
 
 # For UNIT_WITHOUT. These compute for minutes, with one thread, and what they say of chips they say
 # with any compiler
-LONG_UNITS := test_native_coupler_truth test_native_noise test_route_soak test_visit_%
+LONG_UNITS := test_route_soak test_visit_%
 # In these rooms nothing starts a thread, unless a test of them does itself
 ONE_THREAD_ROOMS := chips config ds2482 engine native sim signal
 ONE_THREAD_UNITS = $(notdir $(basename $(shell grep -L -E '<pthread\.h>|/(control_scene|door|peer)\.h"|_thread\.h"' \

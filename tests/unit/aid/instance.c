@@ -104,7 +104,7 @@ void instance_start(struct instance *in, const char *name, const struct instance
 	int64_t now = ows_now();
 
 	instance_make(in, name, 1, now, signals, count);
-	instance_beat(in, now, 0);
+	instance_lives_on(in);
 	instance_show(in);
 }
 
@@ -199,6 +199,11 @@ void instance_lives_on(struct instance *in)
 {
 	in->image.header->period_ns = INSTANCE_PATIENCE / 3;
 	instance_beat(in, ows_now(), 0);
+}
+
+void instance_dies_soon(struct instance *in)
+{
+	in->image.header->period_ns = INSTANCE_S / 10;
 }
 
 static struct ows_sample good(int64_t measured_ns)

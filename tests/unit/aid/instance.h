@@ -58,11 +58,13 @@ unsigned instance_givers(struct instance *in);
 
 void instance_beat(struct instance *in, int64_t now_ns, uint32_t period);
 /*
- * For tests on the real clock: a busy machine may hold up a test for longer than a heart may stand
- * still. A reader that opens the instance from now on waits for INSTANCE_PATIENCE.
+ * A busy machine may hold up a test for longer than a heart may stand still: a reader that opens
+ * the instance waits for INSTANCE_PATIENCE. It beats now, and does so from instance_start() on.
  */
 #define INSTANCE_PATIENCE (45 * INSTANCE_S)
 void instance_lives_on(struct instance *in);
+/* For tests on a clock of their own: a reader that opens it from now on waits for two seconds. */
+void instance_dies_soon(struct instance *in);
 /* Publish a good value that was measured then. */
 void instance_put(struct instance *in, uint32_t record, int64_t value, int64_t measured_ns);
 void instance_put_double(struct instance *in, uint32_t record, double value, int64_t measured_ns);

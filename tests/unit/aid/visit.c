@@ -10,6 +10,7 @@
 #include "unity.h"
 
 #include "hal/chips/find.h"
+#include "hal/sim/branch.h"
 #include "tests/unit/aid/visit.h"
 
 /* Of a memory that has more bytes its pages are read. */
@@ -19,6 +20,7 @@
 
 struct trouble trouble;
 struct sim_slave *visited;
+bool visit_behind;
 
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
@@ -100,6 +102,18 @@ void visit_change(struct sim_slave *slave, bool again, bool turned)
 		memory[i] = (uint8_t)(i * 7 + (again ? 0x35 : 0x91));
 }
 
+/* The aux branch of a coupler on the main branch of another; a chip of its kind is on another. */
+static void hide(const char *chip)
+{
+	struct sim_slave *outer = wire_add(0, "DS2409", 2), *inner = wire_add(0, "DS2409", 3);
+	struct sim_slave *other = wire_add(0, chip, 4);
+
+	sim_branch_put(inner, outer, SIM_MAIN);
+	sim_branch_put(visited, inner, SIM_AUX);
+	sim_branch_put(other, outer, SIM_AUX);
+	visit_change(other, false, true);
+}
+
 void visit_begin(const struct visit *visit)
 {
 	/* What the bus of one visit had is for the next: the kernel would clear it each time */
@@ -114,6 +128,8 @@ void visit_begin(const struct visit *visit)
 	visited = wire_add(0, visit->chip, 1);
 	visited->parasite = visit->parasite;
 	visit_change(visited, false, visit->turned);
+	if (visit_behind)
+		hide(visit->chip);
 	if (visit->turned && strcmp(visit->chip, "DS2405") == 0)
 		visited->family->selected(visited, true, wire_time());
 	start();
@@ -134,6 +150,8 @@ uint32_t visit_go(const struct visit *visit, const struct trouble *what)
 	trouble.kind = what->kind;
 	trouble.at = what->at;
 	trouble.mask = what->mask;
+	trouble.probability = what->probability;
+	trouble.random = what->random;
 	uint32_t id = ask(visit->write ? BUS_WRITE : BUS_READ, BUS_INPUT, true,
 	                  of(visited, visit->property), visit->write);
 	answer_to(id);
@@ -187,6 +205,18 @@ unsigned visit_each(const struct visit *visit,
 		try(visit, (struct trouble){.kind = TROUBLE_FALSE, .at = at}, one);
 	}
 	return n;
+}
+
+void visit_in_noise(const struct visit *visit, unsigned times, double probability,
+                    void (*one)(const struct visit *visit, const struct trouble *what))
+{
+	for (unsigned i = 0; i < times; i++)
+		try(visit,
+		    (struct trouble){.kind = TROUBLE_NOISE,
+		                     .probability = probability,
+		                     .random = i + 1,
+		                     .at = i},
+		    one);
 }
 
 /* Is the property read by the same function, or of the same area, as one before it? */

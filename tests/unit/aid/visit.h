@@ -141,6 +141,8 @@ struct visit {
 
 extern struct trouble trouble;
 extern struct sim_slave *visited;
+/* The visited chip is behind two couplers, and another of its kind on another branch. */
+extern bool visit_behind;
 
 /* Set up the chip as described above; the bus is up, and nothing goes wrong. */
 void visit_begin(const struct visit *visit);
@@ -151,6 +153,9 @@ void visit_change(struct sim_slave *slave, bool again, bool turned);
 uint32_t visit_go(const struct visit *visit, const struct trouble *what);
 /* Call one() with each trouble that can happen to the visit. Returns how many there were. */
 unsigned visit_each(const struct visit *visit,
+                    void (*one)(const struct visit *visit, const struct trouble *what));
+/* Call one() so many times with noise, in which this share of the slots is turned over. */
+void visit_in_noise(const struct visit *visit, unsigned times, double probability,
                     void (*one)(const struct visit *visit, const struct trouble *what));
 /*
  * Call one() with a visit that reads each property of the chip in turn; of properties that are read

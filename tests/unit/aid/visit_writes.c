@@ -181,6 +181,7 @@ static void look(const struct visit *visit)
 		changes |= !mask[i] && before[i] != truth[i];
 	TEST_ASSERT_TRUE_MESSAGE(changes, visit->property);
 	visit_each(visit, one);
+	visit_in_noise(visit, 21 / visit_stride(), 0.005, one);
 }
 
 void visit_writes(const char *chip, bool parasite, const struct visit *visits)

@@ -76,7 +76,6 @@ void setUp(void)
 static void start(void)
 {
 	instance_start(&in, "face_look", before, 2);
-	instance_lives_on(&in);
 	named.instance = in.name;
 }
 

@@ -38,6 +38,7 @@ static void publish(const struct ows_attrs *a, int64_t measured_ns)
 void setUp(void)
 {
 	instance_start(&in, "attribute", signals, 2);
+	instance_dies_soon(&in);
 	now = in.start_ns + 10 * INSTANCE_S;
 	instance_beat(&in, now, 100);
 	publish(&attrs, now - INSTANCE_S);

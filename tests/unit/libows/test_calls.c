@@ -26,7 +26,6 @@ static int room, valve, label, age;
 void setUp(void)
 {
 	instance_start(&in, "calls", signals, 3);
-	instance_lives_on(&in);
 	instance_put_double(&in, 1, 21.5, ows_now());
 	TEST_ASSERT_EQUAL(0, ows_open(in.name, OWS_CONTROL, &h));
 	room = ows_find(h, "room");

@@ -39,7 +39,6 @@ static void open_it(void)
 void setUp(void)
 {
 	instance_start(&in, "changes", signals, COUNT);
-	instance_lives_on(&in);
 	open_it();
 }
 
@@ -213,7 +212,7 @@ static void expect_quality(uint8_t quality)
 static void test_an_owsd_that_was_killed_changes_all_once_and_its_return_too(void)
 {
 	ows_close(h);
-	in.image.header->period_ns = INSTANCE_S / 10;
+	instance_dies_soon(&in);
 	put(A, 1);
 	instance_beat(&in, ows_now() - 1700 * MS, 0); /* of the two seconds it may stand still */
 	open_it();

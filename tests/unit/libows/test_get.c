@@ -27,6 +27,7 @@ static int64_t now;
 void setUp(void)
 {
 	instance_start(&in, "get", signals, COUNT);
+	instance_dies_soon(&in);
 	now = in.start_ns + INSTANCE_S;
 	instance_beat(&in, now, 100);
 	TEST_ASSERT_EQUAL(0, ows_open(in.name, OWS_READ, &h));

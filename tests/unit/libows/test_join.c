@@ -26,7 +26,6 @@ static struct instance in;
 void setUp(void)
 {
 	instance_start(&in, "join", signals, COUNT);
-	instance_lives_on(&in);
 }
 
 void tearDown(void)

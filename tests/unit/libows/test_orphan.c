@@ -39,6 +39,7 @@ static void kill_first(int64_t ago_ns)
 void setUp(void)
 {
 	instance_start(&first, "orphan", signals, COUNT);
+	instance_dies_soon(&first);
 	shown = false;
 	TEST_ASSERT_EQUAL(0, ows_open(first.name, OWS_CONTROL, &h));
 	room = ows_find(h, "room");

@@ -35,7 +35,6 @@ static struct ows *h;
 void setUp(void)
 {
 	instance_start(&in, "reopen", before, 3);
-	instance_lives_on(&in);
 	TEST_ASSERT_EQUAL(0, ows_open(in.name, OWS_CONTROL, &h));
 }
 

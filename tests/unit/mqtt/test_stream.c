@@ -38,7 +38,6 @@ static bool put(void *ctx, const char *topic, const char *text, size_t len, bool
 void setUp(void)
 {
 	instance_start(&in, "mqtt", signals, COUNT);
-	instance_lives_on(&in);
 	TEST_ASSERT_EQUAL_INT(0, ows_open(in.name, OWS_READ, &ows));
 	s = (struct stream){
 		.profile = &profile_plain, .outlet.put = put, .prefix = "o/pi", .node = "pi"};

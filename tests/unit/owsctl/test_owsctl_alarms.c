@@ -29,7 +29,6 @@ static struct instance in;
 void setUp(void)
 {
 	instance_start(&in, "alarms", signals, 4);
-	instance_lives_on(&in);
 	caught_begin(in.name);
 }
 

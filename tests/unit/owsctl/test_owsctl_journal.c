@@ -27,7 +27,6 @@ static struct instance in;
 void setUp(void)
 {
 	instance_start(&in, "ctljournal", signals, 3);
-	instance_lives_on(&in);
 	caught_begin(in.name);
 }
 

@@ -32,7 +32,6 @@ void setUp(void)
 	int64_t now = ows_now();
 
 	instance_start(&in, "verbs", signals, COUNT);
-	instance_lives_on(&in);
 	instance_put_double(&in, 1, 21.5, now);
 	instance_put(&in, 2, 1, now);
 	instance_put(&in, 3, INT64_C(9007199254740993), now);

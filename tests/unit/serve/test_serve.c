@@ -107,7 +107,6 @@ void setUp(void)
 	fd = -1;
 	snprintf(name, sizeof(name), "serve-%d", (int)getpid());
 	instance_start(&in, name, signals, 3);
-	instance_lives_on(&in);
 	show_output(2, 0);
 	show_output(3, 0);
 	strcpy(folder, "/tmp/owsd-serve-XXXXXX");

@@ -33,6 +33,7 @@ static int done;
 void setUp(void)
 {
 	instance_start(&in, "torn", signals, 2);
+	instance_dies_soon(&in);
 	done = 0;
 }
 
