@@ -208,18 +208,20 @@ static bool take_order(struct porter *p, unsigned lane)
 	return true;
 }
 
-/* All that it has received it lets go when it ends: then the kernel waits for no connection. */
+/*
+ * All that it has received it lets go when it ends: then the kernel waits for no connection. Its
+ * status: 0 if there was an order.
+ */
 static void be_child(struct porter *p, unsigned lane)
 {
-	int most = lane == PORTER_IN ? 1 : BATCH;
+	int most = lane == PORTER_IN ? 1 : BATCH, taken = 0;
 
 	/* a late child must not say of an order of the next porter that it is carried out */
 	prctl(PR_SET_PDEATHSIG, SIGKILL);
-	if (getppid() != p->pid)
-		_exit(0);
-	while (most-- > 0 && take_order(p, lane))
-		;
-	_exit(0);
+	if (getppid() == p->pid)
+		while (taken < most && take_order(p, lane))
+			taken++;
+	_exit(!taken);
 }
 
 /* --- The porter ------------------------------------------------------------------------------- */
@@ -240,8 +242,8 @@ static unsigned count_children(struct children *of)
 	return n;
 }
 
-/* True: it has ended. */
-static bool wait_for(pid_t pid)
+/* True: it has ended; *status: as of waitpid(). */
+static bool wait_for(pid_t pid, int *status)
 {
 	const struct timespec most = {.tv_nsec = CHILD_NS};
 	sigset_t set;
@@ -249,31 +251,35 @@ static bool wait_for(pid_t pid)
 	sigemptyset(&set);
 	sigaddset(&set, SIGCHLD);
 	for (;;) {
-		if (waitpid(pid, NULL, WNOHANG) != 0)
+		if (waitpid(pid, status, WNOHANG) != 0)
 			return true;
 		/* another child may have ended: then look again */
 		if (sigtimedwait(&set, NULL, &most) < 0 && errno != EINTR)
-			return waitpid(pid, NULL, WNOHANG) != 0;
+			return waitpid(pid, status, WNOHANG) != 0;
 	}
 }
 
-static void start_child(struct porter *p, unsigned lane, struct children *of)
+/* False: no order was carried out. */
+static bool start_child(struct porter *p, unsigned lane, struct children *of)
 {
 	pid_t pid = fork();
+	bool ended;
+	int status = 0;
 
 	if (pid == 0)
 		be_child(p, lane);
-	if (pid < 0) {
-		pause_ns(LOOK_MS * NS_PER_MS); /* too many processes: the orders wait */
-		return;
+	ended = pid < 0 || wait_for(pid, &status);
+	/* too many processes, no memory, a child that is killed: the orders wait */
+	if (pid < 0 || status) {
+		pause_ns(LOOK_MS * NS_PER_MS);
+		return false;
 	}
-	if (wait_for(pid))
-		return;
-	for (unsigned i = 0; i < CHILDREN; i++)
+	for (unsigned i = 0; !ended && i < CHILDREN; i++)
 		if (of->pids[i] <= 0) {
 			of->pids[i] = pid;
-			return;
+			break;
 		}
+	return true;
 }
 
 static bool porter_round(struct porter *p, struct children *children)
@@ -290,12 +296,13 @@ static bool porter_round(struct porter *p, struct children *children)
 	}
 	poll(fds, PORTER_LANES, hang ? LOOK_MS : -1);
 	for (unsigned i = 0; i < PORTER_LANES; i++) {
-		/* at the end of owsd what waits for hanging children goes with the porter */
-		if (fds[i].revents & POLLHUP &&
+		/* at the end of owsd what no child carries out goes with the porter */
+		bool over = fds[i].revents & POLLHUP;
+		if (over &&
 		    (!fds[i].events || recv(p->lanes[i], &byte, 1, MSG_PEEK | MSG_DONTWAIT) <= 0))
 			p->lanes[i] = -1;
-		else if (fds[i].revents & POLLIN)
-			start_child(p, i, &children[i]);
+		else if (fds[i].revents & POLLIN && !start_child(p, i, &children[i]) && over)
+			p->lanes[i] = -1;
 		any |= p->lanes[i] >= 0;
 	}
 	return any;
@@ -375,6 +382,14 @@ static void close_lanes(int *lanes)
 			close(lanes[i]);
 }
 
+/* Whoever may have a copy of them, the porter learns that owsd has ended. */
+static void end_lanes(int *lanes)
+{
+	for (unsigned i = 0; i < PORTER_LANES; i++)
+		shutdown(lanes[i], SHUT_RDWR);
+	close_lanes(lanes);
+}
+
 static int open_lanes(int *ours, int *theirs)
 {
 	for (unsigned i = 0; i < PORTER_LANES; i++)
@@ -443,9 +458,9 @@ void porter_end(struct porter *p)
 
 	if (!p)
 		return;
-	close_lanes(p->lanes);
+	end_lanes(p->lanes);
 	if (is_starting(p))
-		close_lanes(p->next);
+		end_lanes(p->next);
 	while (p->pid && waitpid(p->pid, NULL, WNOHANG) == 0 && left_ns > 0) {
 		pause_ns(NS_PER_MS);
 		left_ns -= NS_PER_MS;

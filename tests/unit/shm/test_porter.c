@@ -177,6 +177,21 @@ static void the_new_one_has_nothing_open_that_it_does_not_need(void)
 	close(pair[1]);
 }
 
+static void it_ends_with_owsd_whoever_has_a_copy_of_its_lanes(void)
+{
+	pid_t ours = porter_process(porter), other = fork();
+
+	if (other == 0) {
+		pause();
+		_exit(0);
+	}
+	porter_end(porter);
+	porter = NULL;
+	kill(other, SIGKILL);
+	waitpid(other, NULL, 0);
+	TEST_ASSERT_EQUAL_MESSAGE(-1, waitpid(ours, NULL, WNOHANG), "porter_end() has not had it");
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -186,5 +201,6 @@ int main(void)
 	RUN_TEST(one_that_is_killed_again_and_again_is_started_less_and_less_often);
 	RUN_TEST(one_that_does_not_get_ready_is_killed);
 	RUN_TEST(the_new_one_has_nothing_open_that_it_does_not_need);
+	RUN_TEST(it_ends_with_owsd_whoever_has_a_copy_of_its_lanes);
 	return UNITY_END();
 }
