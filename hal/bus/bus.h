@@ -64,7 +64,8 @@ struct bus_req {
 	bool fresh;          /* read past every cache */
 	bool number;         /* READ: where the answer is a number, its text is not needed */
 	int64_t deadline_ns; /* not begun by then: answered -ETIME without effect.
-	                        Begun: finished or failed by then, never undone */
+	                        Begun: finished or failed by then, never undone. A READ may be
+	                        as much later as the host kept the bus from its work */
 	const char *path;    /* "/28.551DDF030000/temperature12", without /uncached; immutable */
 	uint32_t len;        /* WRITE: bytes in data; READ and DIR: room in data */
 	uint32_t offset; /* WRITE: of data in the value. Bytes beyond the value's end are ignored.

@@ -30,6 +30,10 @@
 #define STABLE_NS (300 * NATIVE_S)
 #define PRESENCE_NS (2 * NATIVE_S)
 #define REST_NS (NATIVE_S / 2) /* after an error */
+/* What a step may take of its own: the wire's slots and all between them. */
+#define STEP_SLOTS 4
+#define LATE_LEAST_NS (20 * TXN_MS)
+#define LATE_MOST_NS (60 * NATIVE_S)
 
 static const char *const count_names[COUNTS] = {
 	[COUNT_RETRIES] = "retries",
@@ -150,6 +154,7 @@ int native_submit(struct bus *bus, struct bus_req *req)
 		memset(job, 0, sizeof(*job));
 		job->req = req;
 		job->order = native->order++;
+		job->late_ns = native->late_ns;
 		job->bus = -1;
 		native->lent++;
 		tally_begin(native, job);
@@ -224,6 +229,25 @@ void native_look(struct bus *bus, int64_t now)
 		native->grow_ns = now;
 }
 
+/*
+ * The time in which the host kept the thread from the processor does not count for a reading that
+ * has begun: what was measured is late then, and not lost.
+ */
+static int64_t deadline_of(const struct native *native, const struct job *job)
+{
+	int64_t late = native->late_ns - job->late_ns;
+
+	if (!job->begun || job->req->op != BUS_READ || is_looked_for(job))
+		return job->req->deadline_ns;
+	return job->req->deadline_ns + (late < LATE_MOST_NS ? late : LATE_MOST_NS);
+}
+
+static void note_late(struct native *native, int64_t since_ns, int64_t now)
+{
+	if (since_ns && now - since_ns > LATE_LEAST_NS)
+		native->late_ns += now - since_ns;
+}
+
 static void expire(struct native *native, int64_t now, int64_t *next)
 {
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
@@ -231,15 +255,16 @@ static void expire(struct native *native, int64_t now, int64_t *next)
 
 		if (!job->req)
 			continue;
+		int64_t deadline = deadline_of(native, job);
 		if (bus_req_unwanted(job->req))
 			job_answer(native, job, -ECANCELED);
-		else if (job->req->deadline_ns <= now)
+		else if (deadline <= now)
 			job_answer(native, job,
 			           is_looked_for(job) ? locate_expired(native, job)
 			           : job->begun       ? -EINPROGRESS
 			                              : -ETIME);
-		else if (job->req->deadline_ns < *next)
-			*next = job->req->deadline_ns;
+		else if (deadline < *next)
+			*next = deadline;
 	}
 }
 
@@ -383,8 +408,9 @@ static int64_t step(struct native *native, int64_t now)
 int64_t native_step(struct bus *bus, int64_t now)
 {
 	struct native *native = (struct native *)bus;
-	int64_t next;
+	int64_t next, due = native->due_ns;
 
+	native->due_ns = 0;
 	if (bus->suspended) {
 		refuse_all(native);
 		return INT64_MAX;
@@ -396,10 +422,16 @@ int64_t native_step(struct bus *bus, int64_t now)
 		return next;
 	}
 	int64_t began = native_now(native);
+	uint64_t wire_ns = native->wire_ns;
+	note_late(native, due, began);
 	native->schedule.doing = SCHEDULE_FREE;
 	next = step(native, now);
-	schedule_took(&native->schedule, began, native_now(native));
+	int64_t ended = native_now(native);
+	schedule_took(&native->schedule, began, ended);
 	if (native->up)
 		cost_take(native);
+	if (native->wire_ns != wire_ns)
+		note_late(native, began + STEP_SLOTS * (int64_t)(native->wire_ns - wire_ns), ended);
+	native->due_ns = next > ended ? next : ended;
 	return next;
 }

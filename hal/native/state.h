@@ -117,6 +117,7 @@ struct job {
 	int64_t since_ns;
 	uint64_t wire_ns;  /* slots of its own transactions (cost.h) */
 	int64_t locate_ns; /* LOCATE: since then */
+	int64_t late_ns;   /* native's, when the request came */
 	const struct property *property;
 	int extension;
 	int64_t ready_ns;    /* CONVERTING */
@@ -257,6 +258,8 @@ struct native {
 	struct job *jobs; /* NATIVE_DEPTH */
 	bool soon_ran;    /* the last step was that of a job that goes soon */
 	struct job *all;  /* the JOB_CONVERT that waits longest; it may be over */
+	int64_t due_ns;   /* the next step; 0: there was none */
+	int64_t late_ns;  /* so long the host has kept the thread from the processor in all */
 	uint32_t order;   /* of the next job */
 	char where[NATIVE_WHERE_MAX];
 	struct bus_counter counters[COUNTS];
