@@ -13,12 +13,14 @@
 #include "src/config/options.h"
 #include "src/config/own.h"
 #include "src/config/property.h"
+#include "src/config/shared.h"
 #include "src/signal/quantity.h"
 
 struct check {
 	struct config_report *report;
 	const struct config_item *item;
 	struct place place;
+	int64_t period_ns;
 	bool tables; /* a Bus names a file of sensors: devices may have more properties */
 };
 
@@ -159,6 +161,27 @@ static void check_direction(const struct check *check)
 		               item->name, strrchr(item->path, '/') + 1);
 }
 
+/* Would its value be stale between two readings? */
+static void check_age(const struct check *check)
+{
+	const struct config_item *item = check->item;
+	bool by_alarm = item->alarm && item->per_factor == 1;
+	int64_t every_ns = by_alarm ? CONFIG_ALARM_READ_NS : item->per_factor * check->period_ns;
+	double every = (double)every_ns / 1e9, age = (double)item->stale_after_ns / 1e9;
+	int64_t often = item->stale_after_ns / 2 / check->period_ns;
+
+	if (!item->readable || !item->stale_after_ns || item->stale_after_ns >= every_ns)
+		return;
+	report_warning(check->report, check->place,
+	               "\"%s\" is stale for %g s of each %g s, in which it is read once%s: write "
+	               "StaleAfter %g or more, or PerFactor %lld",
+	               item->name, every - age, every, by_alarm ? " unless its alarm comes" : "",
+	               every * 1.5,
+	               (long long)(often > 2  ? often
+	                           : by_alarm ? 2
+	                                      : 1));
+}
+
 static void check_item(const struct check *check)
 {
 	const struct config_item *item = check->item;
@@ -176,6 +199,7 @@ static void check_item(const struct check *check)
 			check->report, check->place,
 			"\"%s\" is a number, and a string shows it as text: write Type double",
 			item->name);
+	check_age(check);
 	if (!item->alarm)
 		return;
 	check_alarm(check, OPT_LATCH_ALARM, item->latch_alarm, &path, false);
@@ -187,7 +211,7 @@ static void check_item(const struct check *check)
 /* name NULL: all items. */
 static void check_items(const struct config *config, const char *name, struct config_report *report)
 {
-	struct check check = {.report = report};
+	struct check check = {.report = report, .period_ns = config->period_ns};
 
 	for (unsigned i = 0; i < config->bus_count; i++)
 		for (unsigned k = 0; k < config->buses[i].option_count; k++)
@@ -199,6 +223,7 @@ static void check_items(const struct config *config, const char *name, struct co
 		if (!name || !strcmp(check.item->name, name))
 			check_item(&check);
 	}
+	shared_check(config, name, report);
 }
 
 void config_check_items(const struct config *config, struct config_report *report)

@@ -86,6 +86,9 @@ static inline bool config_item_takes_sets(const struct config_item *item)
 	return item->output || item->writable;
 }
 
+/* How often an alarm item without PerFactor is read though no alarm came. */
+#define CONFIG_ALARM_READ_NS (60 * INT64_C(1000000000))
+
 enum config_relation {
 	CONFIG_FIRST,
 	CONFIG_COMMA, /* another wire */

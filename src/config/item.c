@@ -249,17 +249,20 @@ static void build_read_back(struct build *build, const struct option_value *valu
 {
 	const struct option_value *every = &values[OPT_READ_BACK], *restore = &values[OPT_RESTORE];
 	struct path_property property = property_look(item->path);
-	const char *fault = !item->output                           ? "this is an input"
-	                    : item->type == OWS_STRING              ? "this is a text"
-	                    : !property.readable || !property.exact ? "it does not read as written"
-	                                                            : NULL;
+	bool reads = property.readable && property.exact && (!property.type || property.holds);
+	const char *fault = !item->output              ? "this is an input"
+	                    : item->type == OWS_STRING ? "this is a text"
+	                    : !reads                   ? "it need not read as it was written"
+	                                               : NULL;
 
 	if (!fault)
 		item->read_back_ns = every->given     ? (int64_t)(every->number * 1e9 + 0.5)
 		                     : property.holds ? READ_BACK_NS
 		                                      : 0;
 	else if (every->given && every->number > 0)
-		report_warning(build->report, every->node->at, "ReadBack does nothing: %s", fault);
+		report_warning(build->report, every->node->at, "ReadBack does nothing: %s%s%s",
+		               fault, reads || !*property.held ? "" : "; write the Path of ",
+		               reads ? "" : property.held);
 	item->has_por = item->read_back_ns && has_por(item);
 	item->restores = restore->number != 0;
 	if (item->restores && !item->read_back_ns)

@@ -43,10 +43,27 @@ static void find_nearest(const struct family *family, const char *name, const ch
 	}
 }
 
-static void take_access(const struct property *property, struct path_property *found)
+/* The property that shows what a write of this one leaves: it, or one with the same way to write. */
+static const struct property *holder(const struct family *family, const struct property *property)
 {
+	const struct property *other = NULL;
+
+	if (property->holds || !property->how)
+		return property->holds ? property : NULL;
+	while ((other = family_next(family, NULL, other)) &&
+	       (!other->holds || other->how != property->how))
+		;
+	return other;
+}
+
+static void take_access(const struct family *family, const struct property *property,
+                        struct path_property *found)
+{
+	const struct property *held = property ? holder(family, property) : NULL;
+
 	if (!property)
 		return;
+	snprintf(found->held, sizeof(found->held), "%s", held ? held->name : "");
 	found->readable = property->access & ACCESS_READ;
 	found->writable = property->access & ACCESS_WRITE;
 	found->holds = property->holds;
@@ -91,7 +108,7 @@ struct path_property property_look(const char *path)
 	property = family_property(family, NULL, name, strlen(name));
 	if (!property && dot)
 		property = family_property(family, NULL, name, (size_t)(dot - name));
-	take_access(property, &found);
+	take_access(family, property, &found);
 	if (property && dot && property->name[dot - name] == '\0' &&
 	    !is_element(property, dot + 1)) {
 		found.there = false;

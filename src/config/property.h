@@ -13,6 +13,7 @@ struct path_property {
 	bool readable, writable;     /* true too where nobody can know */
 	bool holds;                  /* what is written reads the same (hal/chips/property.h) */
 	bool exact;                  /* a whole number, or on and off; true too likewise */
+	char held[PROPERTY_NAME];    /* its name, or of the one that shows what it sets; "": none */
 	char nearest[PROPERTY_NAME]; /* not there: what was probably meant, or "" */
 };
 

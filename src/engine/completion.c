@@ -20,9 +20,6 @@
 #include "src/signal/value.h"
 #include "src/text/log.h"
 
-/* How often an alarm item without PerFactor is read though no alarm came. */
-#define ALARM_ITEM_NS (60 * NS_PER_S)
-
 /* "no such property: check its spelling", "device error: wrong checksum"; what says all, once. */
 static void report_failed(struct engine *e, const struct signal *s, const char *what, int err,
                           uint8_t quality)
@@ -254,7 +251,7 @@ static uint64_t reads_apart(struct engine *e, struct lane *lane, const struct si
 {
 	if (s->item->alarm && alarm_serves(&lane->alarm) && s->item->per_factor == 1 &&
 	    !(s->attrs.flags & OWS_ATTR_ALARM_UNARMED))
-		return engine_periods(e, ALARM_ITEM_NS);
+		return engine_periods(e, CONFIG_ALARM_READ_NS);
 	return s->item->per_factor;
 }
 

@@ -63,6 +63,16 @@ static void test_what_cannot_be_meant_is_named_with_its_remedy(void)
 	         AT ": LatchAlarm: a DS2408 has no latch.BYT; did you mean latch.BYTE?\n" AT
 	            ": PorAlarm: a DS2408 has no porr; did you mean por?\n" AT
 	            ": ResetLatch: sensed.BYTE cannot be written, so the alarm cannot be served\n"},
+		{"Name x Path /29.B89115000000/sensed.BYTE Type byte Alarm on LatchAlarm latch.BYTE "
+	         "PorAlarm por SetAlarm \"set_alarm=133333333\" StaleAfter 20",
+	         AT " is stale for 40 s of each 60 s, in which it is read once unless its alarm "
+	            "comes: write StaleAfter 90 or more, or PerFactor 100\n"},
+		{"Name x Path /28.551DDF030000/temperature Type double PerFactor 300 StaleAfter 20",
+	         AT " is stale for 10 s of each 30 s, in which it is read once: write StaleAfter "
+	            "45 or more, or PerFactor 100\n"},
+		{"Name x Path /28.551DDF030000/temperature Type double PerFactor 2 StaleAfter 0.1",
+	         AT " is stale for 0.1 s of each 0.2 s, in which it is read once: write StaleAfter "
+	            "0.3 or more, or PerFactor 1\n"},
 	};
 
 	expect_warnings(cases, COUNT(cases), check);
@@ -82,9 +92,58 @@ static void test_what_may_be_meant_is_not_mentioned(void)
 	         ""},
 		{"Name x Path /statistics/errors/CRC8_errors Type double", ""},
 		{"Name x Path /gpio/17 Type bool IO output", ""},
+		{"Name x Path /28.551DDF030000/temperature Type double StaleAfter 0.1", ""},
+		{"Name x Path /29.B89115000000/sensed.BYTE Type byte Alarm on LatchAlarm latch.BYTE "
+	         "PorAlarm por SetAlarm \"set_alarm=133333333\" StaleAfter 20 PerFactor 50",
+	         ""},
+		{"Name x Path /29.B89115000000/PIO.3 Type bool IO output PerFactor 300 StaleAfter 1",
+	         ""},
 	};
 
 	expect_warnings(cases, COUNT(cases), check);
+}
+
+static int check_pair(const char *keys)
+{
+	char text[600];
+	int err;
+
+	snprintf(text, sizeof(text),
+	         "Item {\nName a IO output Type byte %.*s }\nItem {\nName b IO "
+	         "output Type byte %s }",
+	         (int)strcspn(keys, ";"), keys, strchr(keys, ';') + 1);
+	err = parse_driver(text);
+	if (!err)
+		config_check_items(config, &report);
+	return err;
+}
+
+static void test_two_outputs_of_the_same_bits_of_which_one_is_restored_are_named(void)
+{
+#define FIGHT \
+	"f:4: warning: \"b\" and \"a\" in line 2 set the same bits, and Restore on undoes what the " \
+	"other commands: write Restore off, or keep one of them\n"
+#define ALIAS "ReadBack 5 Path /lamp/PIO.A"
+	static const struct line cases[] = {
+		{"Path /29.B89115000000/PIO.BYTE Restore on;Path /29.B89115000000/PIO.3", FIGHT},
+		{"Path /29.B89115000000/PIO.3;Path /bus.0/29b89115000000/PIO.BYTE Restore on",
+	         FIGHT},
+		{"Path /29.B89115000000/PIO.3 Restore on;Path /29.B89115000000/PIO.3", FIGHT},
+		{"Path /29.B89115000000/PIO.ALL;Path /29.B89115000000/PIO.3 Restore on", FIGHT},
+		{"Path /42.B89115000000/latch.A Restore on;Path /42.B89115000000/PIO.A", FIGHT},
+		{"Path /05.B89115000000/PIO Restore on;Path /05.B89115000000/PIO", FIGHT},
+		{ALIAS " Restore on;Path /lamp/PIO.BYTE", FIGHT},
+		{"Path /29.B89115000000/PIO.BYTE;Path /29.B89115000000/PIO.3", ""},
+		{"Path /29.B89115000000/PIO.2 Restore on;Path /29.B89115000000/PIO.3 Restore on",
+	         ""},
+		{"Path /29.B89115000000/PIO.3 Restore on;Path /29.000000000001/PIO.3 Restore on",
+	         ""},
+		{"Path /29.B89115000000/PIO.3 Restore on;Path /29.B89115000000/latch.BYTE", ""},
+		{"Path /42.B89115000000/latch.A Restore on;Path /42.B89115000000/PIO.B", ""},
+		{ALIAS " Restore on;Path /lamp/latch.A", ""},
+	};
+
+	expect_warnings(cases, COUNT(cases), check_pair);
 }
 
 /* A table of a family that this check contradicts would be found here. */
@@ -117,6 +176,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_what_cannot_be_meant_is_named_with_its_remedy);
 	RUN_TEST(test_what_may_be_meant_is_not_mentioned);
+	RUN_TEST(test_two_outputs_of_the_same_bits_of_which_one_is_restored_are_named);
 	RUN_TEST(test_no_property_of_any_family_in_its_own_direction_is_complained_of);
 	return UNITY_END();
 }

@@ -325,7 +325,18 @@ static void test_an_output_that_reads_as_written_is_read_back(void)
 	TEST_ASSERT_EQUAL_STRING("", said);
 	TEST_ASSERT_EQUAL_INT64(
 		0, read_back_of("/28.000000000001/temphigh", "Type double ReadBack 5"));
-	TEST_ASSERT_NOT_NULL(strstr(said, "ReadBack does nothing: it does not read as written"));
+	TEST_ASSERT_NOT_NULL(
+		strstr(said, "ReadBack does nothing: it need not read as it was written\n"));
+	/* the pin is no proof, however often it is asked for; what holds is named */
+	TEST_ASSERT_EQUAL_INT64(
+		0, read_back_of("/42.000000000001/PIO.A", "Type bool ReadBack 1 Restore on"));
+	TEST_ASSERT_NOT_NULL(strstr(
+		said,
+		"ReadBack does nothing: it need not read as it was written; write the Path of latch\n"));
+	TEST_ASSERT_NOT_NULL(strstr(said, "Restore does nothing: the item is not read back"));
+	TEST_ASSERT_EQUAL_INT64(
+		0, read_back_of("/29.000000000001/latch.BYTE", "Type byte ReadBack 1"));
+	TEST_ASSERT_NOT_NULL(strstr(said, "ReadBack does nothing"));
 	parse_item("Name x Path a/b Type bool ReadBack 5 Restore on");
 	TEST_ASSERT_NOT_NULL(strstr(said, "ReadBack does nothing: this is an input"));
 	TEST_ASSERT_NOT_NULL(strstr(said, "Restore does nothing: the item is not read back"));

@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: MIT */
+/* Finds outputs that set the same bits of a device while Restore writes one of them again. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "hal/owfs/path.h"
+#include "src/config/property.h"
+#include "src/config/report.h"
+#include "src/config/shared.h"
+#include "src/config/tag.h"
+
+/* So many outputs of one register are compared with each other; a chip has no more switches. */
+#define PARTNERS 64
+
+struct output {
+	uint64_t where; /* a hash of the device and of what holds the command */
+	const struct config_item *item;
+	const char *element; /* "3", "A", "BYTE"; "": all of it */
+};
+
+static uint64_t add(uint64_t hash, const void *bytes, size_t len)
+{
+	for (size_t i = 0; i < len; i++)
+		hash = tag_add(hash, ((const unsigned char *)bytes)[i]);
+	return hash;
+}
+
+static bool locate(const struct config_item *item, struct output *output)
+{
+	struct path_property property = property_look(item->path);
+	const char *dot = strrchr(item->path, '.');
+	const char *held = property.held;
+	struct path path;
+	size_t len;
+
+	if (!item->output || path_split(item->path, strlen(item->path), &path) || !path.device.len)
+		return false;
+	if (dot && dot < path.property.text)
+		dot = NULL;
+	len = dot ? (size_t)(dot - path.property.text) : path.property.len;
+	output->item = item;
+	output->element = dot ? dot + 1 : "";
+	output->where = path.has_rom ? add(TAG_BEGIN, path.rom, ROM_LEN)
+	                             : add(TAG_BEGIN, path.device.text, path.device.len);
+	output->where = *held ? add(output->where, held, strlen(held))
+	                      : add(output->where, path.property.text, len);
+	return true;
+}
+
+static int compare(const void *a, const void *b)
+{
+	const struct output *x = a, *y = b;
+
+	if (x->where != y->where)
+		return x->where < y->where ? -1 : 1;
+	return (x->item > y->item) - (x->item < y->item);
+}
+
+static bool is_whole(const char *element)
+{
+	return !*element || !strcmp(element, "BYTE") || !strcmp(element, "ALL");
+}
+
+static bool fight(const struct output *a, const struct output *b)
+{
+	if (!(a->item->restores && a->item->read_back_ns) &&
+	    !(b->item->restores && b->item->read_back_ns))
+		return false;
+	return is_whole(a->element) || is_whole(b->element) || !strcmp(a->element, b->element);
+}
+
+/* The nearest output before n that fights with it; NULL: none. */
+static const struct config_item *opponent(const struct output *outputs, unsigned n)
+{
+	for (unsigned i = n; i > 0 && n - i < PARTNERS; i--) {
+		if (outputs[i - 1].where != outputs[n].where)
+			break;
+		if (fight(&outputs[i - 1], &outputs[n]))
+			return outputs[i - 1].item;
+	}
+	return NULL;
+}
+
+void shared_check(const struct config *config, const char *name, struct config_report *report)
+{
+	struct output *outputs = calloc(config->item_count + 1, sizeof(*outputs));
+	unsigned count = 0;
+
+	for (unsigned i = 0; outputs && i < config->item_count; i++)
+		count += locate(&config->items[i], &outputs[count]);
+	if (outputs)
+		qsort(outputs, count, sizeof(*outputs), compare);
+	for (unsigned i = 0; i < count; i++) {
+		const struct config_item *item = outputs[i].item, *other = opponent(outputs, i);
+
+		if (!other || (name && strcmp(item->name, name) && strcmp(other->name, name)))
+			continue;
+		report_warning(report, (struct place){config->file, item->line, 0},
+		               "\"%s\" and \"%s\" in line %d set the same bits, and Restore on "
+		               "undoes what the other commands: write Restore off, or keep one of "
+		               "them",
+		               item->name, other->name, other->line);
+	}
+	free(outputs);
+}
