@@ -92,6 +92,14 @@ static int make_adapter(void *ctx, unsigned number, const struct bus_env *env,
 	return ds2482_i2c_master.create(where, env, master, why, sizeof(why));
 }
 
+/* The kernel calls its adapters i2c-N; a path that misses the dash waits for ever. */
+static bool misses_dash(const char *path)
+{
+	const char *name = strrchr(path, '/') + 1;
+
+	return !strncmp(name, "i2c", 3) && name[3] >= '0' && name[3] <= '9';
+}
+
 static int i2c_master_create(const char *where, const struct bus_env *env,
                              struct link_master **master, char *why, size_t why_size)
 {
@@ -111,6 +119,12 @@ static int i2c_master_create(const char *where, const struct bus_env *env,
 	if (path[0] != '/') {
 		snprintf(why, why_size, "\"%s\": expected auto, or an adapter as /dev/i2c-1",
 		         where);
+		free(path);
+		return -EINVAL;
+	}
+	if (misses_dash(path)) {
+		snprintf(why, why_size, "no adapter is called \"%s\": write %.*s-%s", path,
+		         (int)(strrchr(path, '/') + 4 - path), path, strrchr(path, '/') + 4);
 		free(path);
 		return -EINVAL;
 	}

@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "hal/bus/backends.h"
 #include "hal/bus/bus.h"
@@ -138,4 +139,43 @@ int target_check_config(struct config *config, struct config_report *report)
 	if (!err)
 		err = check_options(config, report);
 	return err ? err : config_check(config, report);
+}
+
+/* How a target names what it is on: the path is root and the text after the scheme. */
+static const struct way {
+	const char *scheme, *begin, *root, *remedy;
+} ways[] = {
+	{"i2c:", "/", "", "ls /dev/i2c-* lists the adapters, owsd --board names what is missing"},
+	{"gpio:", "/", "", "gpiodetect lists the chips"},
+	{"gpio:", "gpiochip", "/dev/", "gpiodetect lists the chips"},
+	{"w1:", "w1_bus_master", "/sys/bus/w1/devices/",
+         "ls /sys/bus/w1/devices lists the masters"},
+	{"w1:netlink/", "w1_bus_master", "/sys/bus/w1/devices/",
+         "ls /sys/bus/w1/devices lists the masters"},
+	{"owserver:", "/", "", "the other owsd makes the socket when it runs"},
+};
+
+static void look_for(const struct config *config, const struct config_target *target,
+                     const struct way *way, struct config_report *report)
+{
+	const char *where = target->text + strlen(way->scheme);
+	char path[300];
+
+	if (strncmp(target->text, way->scheme, strlen(way->scheme)) != 0 ||
+	    strncmp(where, way->begin, strlen(way->begin)) != 0)
+		return;
+	snprintf(path, sizeof(path), "%s%.*s", way->root, (int)strcspn(where, ":"), where);
+	if (access(path, F_OK) && errno == ENOENT)
+		report_warning(report,
+		               (struct place){target->line ? config->file : NULL, target->line,
+		                              target->column},
+		               "target \"%s\": %s is not on this machine: %s", target->text, path,
+		               way->remedy);
+}
+
+void target_look(const struct config *config, struct config_report *report)
+{
+	for (unsigned i = 0; i < config->target_count; i++)
+		for (unsigned k = 0; k < sizeof(ways) / sizeof(ways[0]); k++)
+			look_for(config, &config->targets[i], &ways[k], report);
 }

@@ -21,4 +21,10 @@ int target_options(struct bus *bus, const struct config *config, const char *tar
  */
 int target_check_config(struct config *config, struct config_report *report);
 
+/*
+ * Warn of targets whose device, socket or master is not on this machine now: owsd would wait for
+ * it. For who checks a file where it is used.
+ */
+void target_look(const struct config *config, struct config_report *report);
+
 #endif

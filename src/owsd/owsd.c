@@ -108,6 +108,8 @@ static int load(const struct arguments *a, struct told *told, struct config **co
 		err = config_set_listens(*config, a->listens, a->listen_count, &report);
 	if (!err)
 		err = target_check_config(*config, &report);
+	if (!err && a->check)
+		target_look(*config, &report);
 	if (!err) {
 		config_hash_files(*config);
 		return 0;

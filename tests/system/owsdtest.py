@@ -93,6 +93,11 @@ def patience(seconds):
     return max(seconds, min(PATIENCE, QUIET_PATIENCE * slow * max(1, load)))
 
 
+def but_of_here(text):
+    """What owsd --check reports, without the lines about what this machine has not."""
+    return "".join(line for line in text.splitlines(True) if " is not on this machine: " not in line)
+
+
 def until(condition, seconds, what="", step=0.02):
     """Wait until condition() is true and return its value; fail after so many seconds, but not
     before patience() is over. what is said then: a text, or a function that makes it."""

@@ -176,6 +176,7 @@ def test_what_cannot_be_a_target_is_refused_by_check_and_start(scene):
         "localhost:0": "the port '0'", "localhost: 26000": "the port ' 26000'",
         "foo:bar": "'foo'", "owserver:w1:99999": "the port '99999'", "null:x": "null:",
         "sim:nowhere.sim": "nowhere.sim", "sim:": "file", "i2c:": "adapter",
+        "i2c:/dev/i2c1": "write /dev/i2c-1", "i2c:/dev/i2c1:0x18": "write /dev/i2c-1",
     }
     for target, reason in wrong.items():
         path = scene.file("wrong.rio", owsdtest.rio(target, [ITEM]))
@@ -189,6 +190,20 @@ def test_what_cannot_be_a_target_is_refused_by_check_and_start(scene):
     done = scene.owsd_once("--check", "-c", path, "-t", "127.0.0.1:70000")
     assert done.returncode == 2 and done.stderr.startswith("error: target"), done
     assert scene.owsd_once("--check", "-c", path).returncode == 0
+
+
+def test_a_device_that_is_not_here_is_a_warning_of_the_check(scene):
+    there = scene.file("i2c-199", "")
+    for target, path in (("i2c:/dev/i2c-199", "/dev/i2c-199"), ("i2c:/dev/i2c-199:0x18.2", "/dev/i2c-199"),
+                         ("gpio:gpiochip99", "/dev/gpiochip99"), ("gpio:/dev/gpiochip99", "/dev/gpiochip99"),
+                         ("w1:w1_bus_master99", "/sys/bus/w1/devices/w1_bus_master99"),
+                         ("w1:netlink/w1_bus_master99", "/sys/bus/w1/devices/w1_bus_master99"),
+                         (f"owserver:{scene.path}/none", f"{scene.path}/none"),
+                         (f"i2c:{there}:0x18", None), ("gpio:pinctrl-bcm2711", None), ("i2c:auto", None),
+                         ("localhost", None), (f"owserver:{there}", None)):
+        done = scene.owsd_once("--check", "-c", scene.file("away.rio", owsdtest.rio(target, [ITEM])))
+        warning = f'3:27: warning: target "{target}": {path} is not on this machine: ' if path else ""
+        assert done.returncode == 0 and warning in done.stderr and bool(path) == bool(done.stderr), done
 
 
 def test_a_start_without_a_configuration_says_how_to_come_to_one(scene):
