@@ -69,16 +69,23 @@ static void add(void *ctx, const struct present *alarm)
 	json_object_end(&live->json);
 }
 
+static void print_line(const char *line)
+{
+	char clean[512];
+
+	text_clean(line, strlen(line), sizeof(clean), clean, sizeof(clean));
+	puts(clean);
+}
+
 static void print_shelved(const struct live *live, const char *name,
                           const struct ows_alarm_state *state)
 {
-	char until[WHEN_TEXT], who[WHO_LINE], line[512], clean[512];
+	char until[WHEN_TEXT], who[WHO_LINE], line[512];
 
 	snprintf(line, sizeof(line), "%s: shelved until %s by %s%s%s", name,
 	         when_iso(&live->now, state->until_ns, until), who_line(&state->who, who),
 	         *state->why ? ": " : "", state->why);
-	text_clean(line, strlen(line), sizeof(clean), clean, sizeof(clean));
-	puts(clean);
+	print_line(line);
 }
 
 /* Print the reasons below the table, which they would make too wide. */
@@ -86,7 +93,7 @@ static void print_reasons(struct live *live, const struct rows *rows, char *cons
                           int pattern_count)
 {
 	struct ows_alarm_state state;
-	char words[ERROR_WORDS];
+	char words[ERROR_WORDS], line[512];
 
 	for (int i = 0; i < rows->count; i++) {
 		state = (struct ows_alarm_state){0};
@@ -98,8 +105,9 @@ static void print_reasons(struct live *live, const struct rows *rows, char *cons
 		if (!state.unarmed)
 			continue;
 		reading_get(live->h, rows->row[i].id, live->now.boot, live->reading);
-		printf("%s: %s\n", rows->row[i].name,
-		       present_unarmed(&state, live->reading, words));
+		snprintf(line, sizeof(line), "%s: %s", rows->row[i].name,
+		         present_unarmed(&state, live->reading, words));
+		print_line(line);
 	}
 }
 

@@ -5,12 +5,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/running.h"
 #include "src/owsctl/verbs.h"
 #include "src/service/standard.h"
 #include "src/shm/segment.h"
+#include "src/show/text.h"
 #include "src/text/distance.h"
 #include "src/text/refused.h"
 
@@ -244,6 +246,8 @@ int main(int argc, char **argv)
 	char why[1024];
 	int c;
 
+	/* a file or a program gets the bytes as they are, whatever the locale is */
+	text_only_ascii(isatty(STDOUT_FILENO) && text_locale_is_ascii());
 	/* a write to a pipe without reader fails with EPIPE */
 	signal(SIGPIPE, SIG_IGN);
 	c = standard_open();

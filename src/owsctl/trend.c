@@ -19,6 +19,7 @@
 #include "src/owsctl/verbs.h"
 #include "src/show/digits.h"
 #include "src/show/json.h"
+#include "src/show/text.h"
 #include "src/show/when.h"
 #include "src/signal/value.h"
 #include "src/text/influx.h"
@@ -60,12 +61,13 @@ static void print_picture(const struct trend *t, const struct ows_history_signal
                           const struct ows_history_point *points, int width)
 {
 	static char picture[PLOT_TEXT];
-	char from[WHEN_TEXT], until[WHEN_TEXT];
+	char from[WHEN_TEXT], until[WHEN_TEXT], row[3 * PLOT_WIDTH_MAX + 1], name[256], unit[64];
 	double low, high;
 	int line = 0;
 
-	printf("%s%s%s%s\n", known->name, *known->unit ? " (" : "", known->unit,
-	       *known->unit ? ")" : "");
+	text_clean(known->name, strlen(known->name), sizeof(name), name, sizeof(name));
+	text_clean(known->unit, strlen(known->unit), sizeof(unit), unit, sizeof(unit));
+	printf("%s%s%s%s\n", name, *unit ? " (" : "", unit, *unit ? ")" : "");
 	if (!plot_draw(points, width, HEIGHT, &low, &high, picture)) {
 		puts("  no good value in that time");
 		return;
@@ -77,7 +79,8 @@ static void print_picture(const struct trend *t, const struct ows_history_signal
 			printf("%*.*g ", MARGIN - 1, 6, line == 0 ? high : low);
 		else
 			printf("%*s", MARGIN, "");
-		printf("%.*s\n", (int)len, at);
+		text_clean(at, len, PLOT_WIDTH_MAX, row, sizeof(row));
+		puts(row);
 		at += len + 1;
 	}
 	printf("%*s%.16s%*s%.16s\n", MARGIN, "", iso(t, points[0].from_ns, from),

@@ -11,6 +11,7 @@
 #include "src/owsctl/terminal.h"
 #include "src/owsctl/verbs.h"
 #include "src/owsctl/watch_screen.h"
+#include "src/show/text.h"
 
 #define SHORTEST_SLEEP (10 * NS_PER_MS)
 
@@ -57,7 +58,7 @@ static void print_event(struct watch *watch, enum watch_event event)
 static void print_change(struct watch *watch, const struct row *row, const struct when *now)
 {
 	const struct reading *reading = watch->reading;
-	char text[WHEN_TEXT], words[READING_WORDS], alarm[STANDING_WORDS];
+	char text[WHEN_TEXT], words[READING_WORDS], alarm[STANDING_WORDS], name[256];
 	struct json json;
 
 	json_open(&json, stdout);
@@ -70,7 +71,8 @@ static void print_change(struct watch *watch, const struct row *row, const struc
 		json_end(&json);
 		return;
 	}
-	printf("%s %s ", when_iso(now, now->boot, text), row->name);
+	text_clean(row->name, strlen(row->name), sizeof(name), name, sizeof(name));
+	printf("%s %s ", when_iso(now, now->boot, text), name);
 	if (reading_filled(reading) && reading->value.type == OWS_STRING)
 		json_bytes(&json, NULL, reading->text, reading->len);
 	else
