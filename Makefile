@@ -545,8 +545,9 @@ install: all
 	    install -m 644 docs/examples/$$h/* $$d; done
 	install -m 644 $(PYTHON) $(D)$(DATADIR)
 	install -m 644 $(wildcard board/boards/*.board) $(D)$(DATADIR)/boards
-	@set -e; for m in $(MAN); do d=$(D)$(MANDIR)/man$${m##*.}; install -d $$d; \
-	    install -m 644 $$m $$d; done
+	@set -e; day=$$(sh board/make-deb --day); dd=$$(LC_ALL=C date -u -d "$$day" '+%B %-d, %Y'); \
+	for m in $(MAN); do d=$(D)$(MANDIR)/man$${m##*.}; install -d $$d; install -m 644 $$m $$d; \
+	    sed -e "s/^\(\.TH [^ ]* [0-9]\) \"\"/\1 \"$$day\"/" -e "s/^\.Dd.*/.Dd $$dd/" $$m >$$d/$${m##*/}; done
 	install -d $(D)$(BASHDIR) $(D)$(ZSHDIR)
 	install -m 644 board/completion/owsctl.bash $(D)$(BASHDIR)/owsctl
 	install -m 644 board/completion/_owsctl $(D)$(ZSHDIR)/_owsctl

@@ -25,6 +25,16 @@ if [ -e "$OWSD_BUILD/owsd-web" ]; then
 	[ ! -e "$OWSD_SOURCE/src/web/page/index.html" ] || [ -s "$root/opt/owsd/share/owsd/web/index.html" ]
 fi
 
+# Every manual page has the day of the news, and no other is in the source
+day=$(sh "$OWSD_SOURCE/board/make-deb" --day)
+dd=$(LC_ALL=C date -u -d "$day" '+%B %-d, %Y')
+for page in "$root"/opt/owsd/share/man/man*/*; do
+	grep -q "^\.TH [^ ]* [0-9] \"$day\" \|^\.Dd $dd\$" "$page" || { echo "no day $day: $page"; exit 1; }
+	head -n 1 "$page" | grep -q SPDX
+done
+[ "$(SOURCE_DATE_EPOCH=86400 sh "$OWSD_SOURCE/board/make-deb" --day)" = 1970-01-02 ] ||
+	! grep -q '^## .*not yet' "$OWSD_SOURCE/NEWS.md" || { echo "the day is not that of the epoch"; exit 1; }
+
 # Cockpit gets the same files; its own library stands in index.html alone
 page=$root/opt/owsd/share/cockpit/owsd
 python3 -c 'import json, sys; json.load(open(sys.argv[1]))' "$page/manifest.json"
