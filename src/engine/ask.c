@@ -20,6 +20,17 @@
 #include "src/engine/types.h"
 #include "src/signal/value.h"
 
+/* Past the caches: also what is compared with its command, each ReadBack and while it differs. */
+static bool reads_fresh(const struct signal *s, int64_t now_ns)
+{
+	const struct signal_command *c = &s->command;
+	int64_t looked_ns = c->looked_ns > c->ended_ns ? c->looked_ns : c->ended_ns;
+
+	return s->item->fresh || c->doubted || !signal_reads(s) ||
+	       (s->item->read_back_ns &&
+	        (c->differs || now_ns - looked_ns >= s->item->read_back_ns));
+}
+
 static bool ask_read(struct lane *lane, struct slot *slot, uint32_t row, int64_t now_ns)
 {
 	struct engine *e = lane->engine;
@@ -32,7 +43,7 @@ static bool ask_read(struct lane *lane, struct slot *slot, uint32_t row, int64_t
 	slot->req = (struct bus_req){
 		.op = BUS_READ,
 		.prio = BUS_INPUT,
-		.fresh = s->item->fresh || s->command.doubted || !signal_reads(s),
+		.fresh = reads_fresh(s, now_ns),
 		.path = s->item->path,
 		.number = !signal_is_string(s) && !trace_is_on(e->log),
 		.len = sizeof(slot->data),
@@ -42,6 +53,8 @@ static bool ask_read(struct lane *lane, struct slot *slot, uint32_t row, int64_t
 	due_set_take(&lane->inputs, row);
 	guest_passed(lane);
 	lane->writes_in_row = 0;
+	if (slot->req.fresh)
+		s->command.looked_ns = now_ns;
 	s->reading = true;
 	signal_begin(s, e->time.period);
 	return true;

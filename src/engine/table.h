@@ -59,6 +59,7 @@ struct signal_command {
 	int err;        /* of the last write, until one succeeds or writing is disabled */
 	int64_t value, written;
 	int64_t ended_ns;       /* of the last write: what was asked before says nothing of it */
+	int64_t looked_ns;      /* it was asked for past the caches last */
 	enum ows_reason reason; /* how it came into force */
 	uint32_t giver;         /* an index of engine.givers, GIVER_NOBODY: nobody answers for it */
 	uint32_t stamp;         /* as its giver counts; 0: owsd gave the command */

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Outputs that lose their command, as the supply of their board fails: over owsd's own bus, and
-through an owserver, which is another owsd."""
+"""Outputs that lose their command, as the supply of their board fails or another program switches
+them: over owsd's own bus, through an owserver which is another owsd, and through the genuine one,
+which has the same wire behind a serial port (serial.c)."""
 
 import json
 import sys
+import time
 
 import owsdtest
 from owsdtest import raw, until
@@ -15,7 +17,8 @@ i2c speed 400
 chip DS2482-100 0x18
 DS2408 29.000000000001 as relays
 DS2413 3A.000000000001 as pair
-at 15s every 30s brownout relays
+"""
+FAILING = """at 15s every 30s brownout relays
 at 15s every 30s brownout pair
 button unplug unplug pair
 """
@@ -24,17 +27,28 @@ COMMANDS = {"relays": ("/29.000000000001/PIO.BYTE", "byte", 255),
             "lamp": ("/3A.000000000001/PIO.A", "bool", 1)}
 
 
-def plant(scene, way, **options):
+def genuine(scene, wire):
+    serial = scene.start([owsdtest.BUILD / "system/serial", wire])
+    until(lambda: serial.log().endswith("\n"), 10, "the serial port")
+    program = scene.owserver(options=[f"--passive={serial.log().strip()}"])
+    until(lambda: len(program.devices()) == 2, 30, "owserver has the devices")
+    return served.Server(program, program.host, program.port, True)
+
+
+def plant(scene, way, wire=WIRE + FAILING, **options):
     """The daemon whose outputs are looked at, and the server that has the wire."""
     items = [dict(Name=name, Path=path, Type=raw(kind), IO=raw("output"), ReadBack=raw("0.3"),
                   **options) for name, (path, kind, _) in COMMANDS.items()]
-    wire = f"sim:{scene.file('wire.sim', WIRE)}"
-    if way == "direct":
-        server = served.owsd_of(scene, wire, items=items, Period=raw("0.05"))
+    wire = scene.file("wire.sim", wire)
+    if way == "genuine":
+        server = genuine(scene, wire)
+        daemon = scene.owsd(owsdtest.rio(server.target, items, Period=raw("0.05")))
+    elif way == "direct":
+        server = served.owsd_of(scene, f"sim:{wire}", items=items, Period=raw("0.05"))
         daemon = server.program
         daemon.ready()
     else:
-        server = served.owsd_of(scene, wire, items=[])
+        server = served.owsd_of(scene, f"sim:{wire}", items=[])
         daemon = scene.owsd(owsdtest.rio(f"localhost:{server.port}", items, Period=raw("0.05")))
     for name, (_, _, value) in COMMANDS.items():
         until(lambda: scene.owsctl(daemon, "set", "-w", 5, name, value).returncode == 0, 20, name)
@@ -72,8 +86,8 @@ def lines(daemon, name, text):
     return sum(text in line and f" {name} (" in f" {line}" for line in daemon.log().splitlines())
 
 
-def marked_and_left_alone(scene, way):
-    daemon, _ = plant(scene, way)
+def marked_and_left_alone(scene, way, **options):
+    daemon, _ = plant(scene, way, **options)
     looks(scene, daemon, "lamp", 2)
     assert not history(scene, daemon, "lamp"), "the command just given is no difference"
     written = writes(scene, daemon)
@@ -118,12 +132,32 @@ def told_by_its_flag(scene, way):
     assert "written again" not in daemon.log()
 
 
+def switched_by_another(scene, way, **options):
+    """Behind owsd's back, at the server: no cache on the way hides it."""
+    daemon, server = plant(scene, way, WIRE, **options)
+    looks(scene, daemon, "lamp")
+    begun = time.monotonic()
+    write(server, COMMANDS["lamp"][0], b"0")
+    until(lambda: row(scene, daemon, "lamp")["quality"] == "not as commanded", 60, "it is seen")
+    assert time.monotonic() - begun < owsdtest.patience(3)
+    assert row(scene, daemon, "lamp")["value"] == 0
+    until(lambda: lines(daemon, "lamp", "not as commanded"), 10, "the log has it")
+    write(server, COMMANDS["lamp"][0], b"1")
+    until(lambda: scene.get(daemon, "lamp") == "1", 60, "and its end")
+    assert [e["event"] for e in history(scene, daemon, "lamp")] == ["raised", "returned"]
+    assert all(scene.get(daemon, name) == str(COMMANDS[name][2]) for name in ("relays", "relay"))
+
+
 def test_a_board_that_lost_its_supply_is_marked_on_the_own_bus(scene):
     marked_and_left_alone(scene, "direct")
 
 
 def test_a_board_that_lost_its_supply_is_marked_through_an_owserver(scene):
     marked_and_left_alone(scene, "owserver")
+
+
+def test_a_board_that_lost_its_supply_is_marked_through_the_genuine_owserver(scene):
+    marked_and_left_alone(scene, "genuine")
 
 
 def test_restore_writes_it_again_on_the_own_bus(scene):
@@ -134,12 +168,32 @@ def test_restore_writes_it_again_through_an_owserver(scene):
     restored(scene, "owserver")
 
 
+def test_restore_writes_it_again_through_the_genuine_owserver(scene):
+    restored(scene, "genuine")
+
+
 def test_a_restart_that_a_flag_shows_is_mended_on_the_own_bus(scene):
     told_by_its_flag(scene, "direct")
 
 
 def test_a_restart_that_a_flag_shows_is_mended_through_an_owserver(scene):
     told_by_its_flag(scene, "owserver")
+
+
+def test_a_restart_that_a_flag_shows_is_mended_through_the_genuine_owserver(scene):
+    told_by_its_flag(scene, "genuine")
+
+
+def test_what_another_program_switches_is_marked(scene):
+    for way in "owserver", "genuine":
+        with owsdtest.Scene() as own:
+            switched_by_another(own, way)
+
+
+def test_what_is_read_in_the_cycle_too_is_marked_though_a_cache_has_the_command(scene):
+    for way in "direct", "owserver", "genuine":
+        with owsdtest.Scene() as own:
+            marked_and_left_alone(own, way, Readable=raw("on"))
 
 
 def test_a_board_that_is_unplugged_is_absent_and_not_another(scene):

@@ -222,6 +222,31 @@ static void test_the_value_of_a_cache_is_asked_for_again(void)
 	shows(OWS_Q_DIFFERS, 0);
 }
 
+/* A server whose cache keeps what was written, while the device has lost it. */
+static void keep_what_was_written(struct scene_bus *bus, const struct bus_req *req)
+{
+	if (req->op == BUS_READ)
+		scene_put(bus->scene, PIO, req->fresh ? "0" : "255", 0);
+}
+
+static void test_no_cache_hides_it_where_the_output_is_read_in_the_cycle_too(void)
+{
+	an_output()->readable = true;
+	begin();
+	scene_run(&s, 8 * SCENE_S);
+	TEST_ASSERT_NULL_MESSAGE(strstr(s.trace, "r " PIO), "the cycle takes what the cache has");
+	s.on_done = keep_what_was_written;
+	scene_run(&s, 3 * SCENE_S);
+	shows(OWS_Q_DIFFERS, 0);
+	s.no_trace = true;
+	for (int i = 0; i < 300; i++) {
+		scene_run(&s, 100 * SCENE_MS);
+		shows(OWS_Q_DIFFERS, 0);
+	}
+	TEST_ASSERT_EQUAL_UINT(1, entered(OWS_ALARM_RAISED));
+	TEST_ASSERT_EQUAL_UINT(0, entered(OWS_ALARM_RETURNED));
+}
+
 static void test_a_device_that_is_gone_is_absent_and_gets_its_command_again(void)
 {
 	an_output();
@@ -488,6 +513,7 @@ int main(void)
 	RUN_TEST(test_a_new_command_is_no_difference);
 	RUN_TEST(test_a_reading_that_a_write_overtook_is_not_published);
 	RUN_TEST(test_the_value_of_a_cache_is_asked_for_again);
+	RUN_TEST(test_no_cache_hides_it_where_the_output_is_read_in_the_cycle_too);
 	RUN_TEST(test_a_device_that_is_gone_is_absent_and_gets_its_command_again);
 	RUN_TEST(test_a_write_that_fails_is_not_hidden_by_a_reading);
 	RUN_TEST(test_a_new_command_ends_the_difference_when_the_device_has_it);
