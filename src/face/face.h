@@ -17,6 +17,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
 
 #include "src/config/config.h"
 #include "src/face/arguments.h"
@@ -67,6 +68,8 @@ struct face_ops {
 	void (*event)(struct face *face, const struct face_event *event);
 	/* At face->tick_ns or soon after; has to move tick_ns on. Also while owsd is lost. */
 	void (*tick)(struct face *face, int64_t now_ns);
+	/* Lines of the report (report.h) besides those of all faces. NULL: none. */
+	void (*report)(struct face *face, FILE *out);
 	/* After the loop. */
 	void (*close)(struct face *face);
 };
@@ -96,6 +99,10 @@ struct face {
 	short wanted[FACE_DESCRIPTORS];
 	unsigned fd_count;
 	int64_t fed_ns;
+
+	/* of report.c alone */
+	char report[256]; /* its file; "": none */
+	int64_t report_ns;
 
 	/* of look.c alone */
 	struct ows_cursor cursor;

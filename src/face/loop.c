@@ -14,6 +14,7 @@
 #include "src/face/load.h"
 #include "src/face/look.h"
 #include "src/face/loop.h"
+#include "src/face/report.h"
 #include "src/service/journal.h"
 #include "src/service/standard.h"
 #include "src/service/unix_signals.h"
@@ -49,6 +50,7 @@ void face_status(struct face *face, const char *format, ...)
 	if (strcmp(text, face->status) == 0)
 		return;
 	memcpy(face->status, text, sizeof(text));
+	face->report_ns = 0;
 	notify_status(&face->notify, "%s", text);
 }
 
@@ -77,6 +79,8 @@ static void wait_and_take(struct face *face, struct unix_signals *signals, int64
 	int64_t until = earlier(face->tick_ns, look_next(face, now_ns)), left;
 	struct timespec t;
 
+	if (*face->report)
+		until = earlier(until, face->report_ns);
 	if (face->notify.watchdog_ns)
 		until = earlier(until, face->fed_ns + face->notify.watchdog_ns / 4);
 	left = until > now_ns ? until - now_ns : 0;
@@ -111,6 +115,7 @@ static void loop(struct face *face, struct unix_signals *signals, int prefix)
 		if (now_ns >= face->tick_ns)
 			face->ops->tick(face, now_ns);
 		feed(face, now_ns);
+		report_write(face, now_ns);
 		log_drain(face->log, STDERR_FILENO, prefix);
 		wait_and_take(face, signals, ows_now());
 	}
@@ -132,8 +137,10 @@ static int run(struct face *face, struct unix_signals *signals)
 		log_notice(face->log, "%s %s: instance %s, configuration %s", face->ops->program,
 		           OWSD_VERSION, face->arguments->instance, face->arguments->file);
 		notify_send(&face->notify, NOTIFY_READY);
+		report_open(face);
 		loop(face, signals, prefix);
 		notify_send(&face->notify, NOTIFY_STOPPING);
+		report_remove(face);
 		face->ops->close(face);
 	}
 	log_finish(face->log, STDERR_FILENO, prefix);

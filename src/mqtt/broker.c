@@ -121,6 +121,7 @@ static void fail(struct broker *b, const char *why, const char *remedy, int64_t 
 		log_warning(b->face->log, "%s", words);
 	b->said[way] = print;
 	memcpy(b->trouble, words, sizeof(words));
+	memcpy(b->last, words, sizeof(words));
 }
 
 static void attempt(struct broker *b, int64_t now_ns)
@@ -330,6 +331,7 @@ bool broker_put(void *ctx, const char *topic, const char *text, size_t len, bool
 	err = mosquitto_publish_v5(b->client, NULL, topic, (int)len, text, 1, retain, NULL);
 	if (!err) {
 		b->in_flight++;
+		b->published++;
 		return true;
 	}
 	if (err == MOSQ_ERR_NO_CONN || err == MOSQ_ERR_CONN_LOST || err == MOSQ_ERR_NOMEM)

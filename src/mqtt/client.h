@@ -59,8 +59,9 @@ struct broker {
 	int64_t tend_ns;                 /* when broker_tick() is due, once there is a client */
 	char tls_words[BROKER_WORDS];    /* the last error that libmosquitto logged */
 	char trouble[BROKER_WORDS];      /* what is wrong now, and its remedy; "": nothing */
+	char last[BROKER_WORDS];         /* the same, kept after its end */
 	uint64_t said[CONFIG_MQTT_WAYS]; /* a hash of what was logged of each way */
-	uint64_t connects, failures, acknowledged, refusals;
+	uint64_t connects, failures, published, acknowledged, refusals;
 };
 
 /*

@@ -215,6 +215,33 @@ static void show_status(struct face *face)
 	            (unsigned long long)b->connects);
 }
 
+void mqtt_report(struct face *face, FILE *out)
+{
+	struct mqtt *m = own(face);
+	const struct broker *b = &m->broker;
+	const struct {
+		const char *name;
+		uint64_t value;
+	} counters[] = {
+		{"messages_published", b->published},
+		{"messages_acknowledged", b->acknowledged},
+		{"messages_refused", b->refusals},
+		{"messages_under_way", b->in_flight},
+		{"connects", b->connects},
+		{"connects_failed", b->failures},
+		{"commands_taken", m->commands.taken},
+		{"commands_refused", m->commands.refused},
+	};
+
+	if (b->state == BROKER_CONNECTED)
+		fprintf(out, "since %lld\n", (long long)b->begun_ns);
+	if (*m->commands.trouble || *b->last)
+		fprintf(out, "trouble %s\n", *m->commands.trouble ? m->commands.trouble : b->last);
+	for (size_t i = 0; i < sizeof(counters) / sizeof(counters[0]); i++)
+		fprintf(out, "count %s %llu\n", counters[i].name,
+		        (unsigned long long)counters[i].value);
+}
+
 static void go_on(struct face *face, int64_t now_ns)
 {
 	struct mqtt *m = own(face);

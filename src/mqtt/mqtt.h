@@ -29,6 +29,7 @@ int mqtt_open(struct face *face);
 void mqtt_changes(struct face *face, const int *signals, int n);
 void mqtt_event(struct face *face, const struct face_event *event);
 void mqtt_tick(struct face *face, int64_t now_ns);
+void mqtt_report(struct face *face, FILE *out);
 void mqtt_close(struct face *face);
 
 #endif

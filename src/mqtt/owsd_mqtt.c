@@ -19,6 +19,7 @@ int main(int argc, char **argv)
 		.changes = mqtt_changes,
 		.event = mqtt_event,
 		.tick = mqtt_tick,
+		.report = mqtt_report,
 		.close = mqtt_close,
 	};
 

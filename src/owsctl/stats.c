@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * owsctl stats: prints owsd's state, its targets, counters and devices, or the last ones of an owsd
- * that ended.
+ * that ended; and what its faces report.
  */
 #include <errno.h>
 #include <getopt.h>
@@ -11,6 +11,7 @@
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/table.h"
 #include "src/owsctl/verbs.h"
+#include "src/show/faces.h"
 #include "src/show/stats.h"
 #include "src/show/when.h"
 
@@ -80,6 +81,29 @@ static void print_devices(struct ows *h, const struct ows_daemon *daemon, int64_
 	table_free(&table);
 }
 
+static void print_faces(const char *instance, const struct when *now)
+{
+	struct faces_one faces[FACES_MOST];
+	unsigned count = faces_read(instance, faces);
+	char text[WHEN_TEXT];
+
+	for (unsigned i = 0; i < count; i++) {
+		const struct faces_one *face = &faces[i];
+
+		printf("\n%s, pid %ld: %s\n", face->program, face->pid, face->status);
+		if (faces_silent(face, now->boot))
+			printf("%11s %s, %s ago\n", "silent", "its last report is below",
+			       when_span(now->boot - face->beat_ns, text));
+		if (face->since_ns)
+			printf("%11s %s\n", "connected", when_iso(now, face->since_ns, text));
+		if (*face->trouble)
+			printf("%11s %s\n", "last error", face->trouble);
+		for (unsigned k = 0; k < face->count; k++)
+			printf("%12" PRIu64 "  %s\n", face->counters[k].value,
+			       face->counters[k].name);
+	}
+}
+
 static void print_text(const struct ctl *ctl, struct ows *h, const struct ows_daemon *daemon,
                        const struct when *now)
 {
@@ -114,6 +138,7 @@ static void print_text(const struct ctl *ctl, struct ows *h, const struct ows_da
 		       own ? "" : target.name);
 	}
 	print_devices(h, daemon, now->boot);
+	print_faces(ctl->instance, now);
 }
 
 int verb_stats(struct ctl *ctl, int argc, char **argv)

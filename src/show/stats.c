@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "src/show/faces.h"
 #include "src/show/stats.h"
 
 const char *stats_daemon_state(const struct ows_daemon *daemon)
@@ -149,5 +150,6 @@ void stats_json(struct json *json, const char *instance, struct ows *h,
 		json_object_end(json);
 	}
 	json_array_end(json);
+	faces_json(json, "faces", instance, now);
 	json_object_end(json);
 }

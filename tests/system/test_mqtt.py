@@ -3,12 +3,14 @@
 """owsd-mqtt beside a real owsd and a real mosquitto: what stands at the broker is what there is, and
 what is bad has no number."""
 
+import json
 import signal
+import subprocess
 import time
 
 import owsdtest
-from mqtthouse import ABSENT, ROOM, SENSOR, Broker, House, Listener, item
-from owsdtest import logged, until
+from mqtthouse import ABSENT, RELAY, ROOM, SENSOR, Broker, House, Listener, item, program
+from owsdtest import logged, raw, until
 
 STATE = "owsd/pi7/state"
 
@@ -129,6 +131,38 @@ def test_another_topic_or_broker_of_the_file_is_taken_at_once(scene):
     until(lambda: listener.last("site/ows/pi7/state") == "online", 20, lambda: listener.all())
     until(lambda: '"v":21.5' in listener.last("site/ows/pi7/room"), 20, lambda: listener.all())
     house.says(STATE, "offline")
+
+
+def test_stats_show_the_broker_the_counters_and_what_was_wrong_last(scene):
+    house = House(scene, ROOM, RELAY, Write=raw("on"))
+
+    def face():
+        done = scene.owsctl(house.daemon, "--json", "stats")
+        assert done.returncode == 0, done
+        return (json.loads(done.stdout)["faces"] or [None])[0]
+
+    def becomes(fits):
+        return until(lambda: face() and fits(face()) and face(), 30, lambda: f"stats: {face()}", step=0.2)
+    found = becomes(lambda f: f["counters"]["messages_acknowledged"] > 2)
+    assert found["program"] == "owsd-mqtt" and found["pid"] == house.face.pid and found["alive"], found
+    assert house.broker.url in found["status"] and found["connected"] and not found["trouble"], found
+    assert found["counters"]["connects"] == 1 and not found["counters"]["messages_refused"], found
+    subprocess.run([program("mosquitto_pub"), "-p", str(house.broker.port), "-t", "owsd/pi7/relay/set", "-m", "7"],
+                   check=True, timeout=owsdtest.PATIENCE)
+    found = becomes(lambda f: f["counters"]["commands_refused"] == 1)
+    assert "command to relay refused: it is no value" in found["trouble"], found
+    house.broker.process.stop()
+    found = becomes(lambda f: not f["connected"])
+    house.broker.start()
+    becomes(lambda f: f["connected"] and f["counters"]["connects"] == 2)
+    text = scene.owsctl(house.daemon, "stats").stdout
+    assert f"owsd-mqtt, pid {house.face.pid}: publishing to" in text and "2  connects\n" in text, text
+    # one that hangs or was killed is seen; one that ended has left nothing
+    house.face.freeze()
+    becomes(lambda f: not f["alive"])
+    assert "silent" in scene.owsctl(house.daemon, "stats").stdout
+    house.face.thaw()
+    assert house.face.stop() == 0 and face() is None
 
 
 if __name__ == "__main__":

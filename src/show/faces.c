@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: MIT */
+/* Reads the reports of faces. */
+#include "src/show/faces.h"
+
+#include <glob.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "hal/bus/time.h"
+#include "src/text/printable.h"
+
+#define SILENT_NS (20 * NS_PER_S)
+
+/* What stands after a word at the beginning of a line; NULL: it begins otherwise. */
+static const char *after(const char *line, const char *word)
+{
+	size_t len = strlen(word);
+
+	return strncmp(line, word, len) == 0 ? line + len : NULL;
+}
+
+static void take_line(struct faces_one *face, const char *line)
+{
+	struct faces_counter *counter = &face->counters[face->count];
+	const char *rest;
+
+	if ((rest = after(line, "status ")))
+		snprintf(face->status, sizeof(face->status), "%.255s", rest);
+	else if ((rest = after(line, "trouble ")))
+		snprintf(face->trouble, sizeof(face->trouble), "%.255s", rest);
+	else if ((rest = after(line, "pid ")))
+		face->pid = strtol(rest, NULL, 10);
+	else if ((rest = after(line, "beat ")))
+		face->beat_ns = strtoll(rest, NULL, 10);
+	else if ((rest = after(line, "since ")))
+		face->since_ns = strtoll(rest, NULL, 10);
+	else if (face->count < FACES_COUNTERS &&
+	         sscanf(line, "count %31s %" SCNu64, counter->name, &counter->value) == 2)
+		face->count++;
+}
+
+/* False: it cannot be read, or is no report. */
+static bool read_one(const char *path, const char *program, struct faces_one *face)
+{
+	FILE *in = fopen(path, "re");
+	char line[512];
+
+	if (!in)
+		return false;
+	*face = (struct faces_one){0};
+	snprintf(face->program, sizeof(face->program), "%.*s", (int)strcspn(program, "/"), program);
+	while (fgets(line, sizeof(line), in)) {
+		line[strcspn(line, "\n")] = '\0';
+		line[printable(line, strlen(line))] = '\0';
+		take_line(face, line);
+	}
+	fclose(in);
+	return face->beat_ns != 0;
+}
+
+unsigned faces_read(const char *instance, struct faces_one faces[FACES_MOST])
+{
+	const char *all = getenv("OWS_DIR");
+	bool own = all && *all == '/';
+	char pattern[512];
+	unsigned count = 0;
+	glob_t found;
+
+	if (own)
+		snprintf(pattern, sizeof(pattern), "%s/%s.owsd-*[!w]", all, instance);
+	else
+		snprintf(pattern, sizeof(pattern), "/run/owsd-*/%s/status", instance);
+	if (glob(pattern, 0, NULL, &found))
+		return 0;
+	for (size_t i = 0; i < found.gl_pathc && count < FACES_MOST; i++) {
+		const char *path = found.gl_pathv[i], *end = strrchr(path, '.');
+
+		count += read_one(path, own && end ? end + 1 : path + strlen("/run/"),
+		                  &faces[count]);
+	}
+	globfree(&found);
+	return count;
+}
+
+bool faces_silent(const struct faces_one *face, int64_t now_ns)
+{
+	return now_ns - face->beat_ns > SILENT_NS;
+}
+
+void faces_json(struct json *json, const char *key, const char *instance, const struct when *now)
+{
+	struct faces_one faces[FACES_MOST];
+	unsigned count = faces_read(instance, faces);
+	char text[WHEN_TEXT];
+
+	json_array(json, key);
+	for (unsigned i = 0; i < count; i++) {
+		const struct faces_one *face = &faces[i];
+
+		json_object(json, NULL);
+		json_string(json, "program", face->program);
+		json_int(json, "pid", face->pid);
+		json_bool(json, "alive", !faces_silent(face, now->boot));
+		json_seconds(json, "age", now->boot - face->beat_ns);
+		json_string(json, "status", face->status);
+		json_string(json, "connected",
+		            face->since_ns ? when_iso(now, face->since_ns, text) : NULL);
+		json_string(json, "trouble", *face->trouble ? face->trouble : NULL);
+		json_object(json, "counters");
+		for (unsigned k = 0; k < face->count; k++)
+			json_uint(json, face->counters[k].name, face->counters[k].value);
+		json_object_end(json);
+		json_object_end(json);
+	}
+	json_array_end(json);
+}
