@@ -28,6 +28,8 @@
 #define READS 64 /* packets at a time */
 #define END_NS (2 * NS_PER_S)
 #define BRIEF_MOST 3 /* connections that were closed soon, one after the other */
+/* The step of one whose place another client takes each time, and how long it must last then */
+#define TAKEN_NS (120 * NS_PER_S)
 
 static void forget_trouble(struct broker *b)
 {
@@ -124,6 +126,12 @@ static void fail(struct broker *b, const char *why, const char *remedy, int64_t 
 	memcpy(b->last, words, sizeof(words));
 }
 
+/* How long a connection has to last until it counts as a good one */
+static int64_t good_ns(const struct broker *b)
+{
+	return b->brief == BRIEF_MOST ? TAKEN_NS : STEP_MOST_NS;
+}
+
 static void attempt(struct broker *b, int64_t now_ns)
 {
 	const struct mqtt_way *way = &b->options->ways[b->way];
@@ -165,17 +173,20 @@ static void finish(struct broker *b, int code, int err, int64_t now_ns)
 		return;
 	}
 	/* mosquitto does not say that it closes the older one of two with the same id */
-	if (b->state != BROKER_CONNECTED || now_ns - b->begun_ns > STEP_MOST_NS)
+	if (b->state != BROKER_CONNECTED || now_ns - b->begun_ns > good_ns(b))
 		b->brief = 0;
 	else if (code == MOSQ_ERR_CONN_LOST && b->brief < BRIEF_MOST)
 		b->brief++;
-	if (b->brief == BRIEF_MOST)
+	if (b->brief == BRIEF_MOST) {
 		code = ADVICE_TAKEN_OVER;
+		b->step_ns = TAKEN_NS;
+	}
 	fail(b, advice_words(code, err, b->tls_words), advice_remedy(code, err), now_ns);
 }
 
 static void connected(struct broker *b, int64_t now_ns)
 {
+	bool mqtt5 = b->options->mqtt5 && !b->old_protocol;
 	char name[MQTT_WAY_NAME];
 
 	b->begun_ns = now_ns;
@@ -183,8 +194,12 @@ static void connected(struct broker *b, int64_t now_ns)
 	b->refused_said = false;
 	forget_trouble(b);
 	log_notice(b->face->log, "connected to %.100s by MQTT %s",
-	           mqtt_way_name(&b->options->ways[b->way], name),
-	           b->options->mqtt5 && !b->old_protocol ? "5" : "3.1.1");
+	           mqtt_way_name(&b->options->ways[b->way], name), mqtt5 ? "5" : "3.1.1");
+	if (!mqtt5 && b->options->write)
+		log_warning(
+			b->face->log,
+			"MQTT 3.1.1 does not show that a command which comes is retained: it is "
+			"carried out; publish commands without retain");
 	b->ops->connected(b->ctx);
 }
 
@@ -226,7 +241,7 @@ static void work(struct broker *b, short ready, int64_t now_ns)
 	err = errno;
 	if (!code && !b->ended && !was_connected && b->state == BROKER_CONNECTED)
 		connected(b, now_ns);
-	if (b->state == BROKER_CONNECTED && now_ns - b->begun_ns > STEP_MOST_NS)
+	if (b->state == BROKER_CONNECTED && now_ns - b->begun_ns > good_ns(b))
 		b->step_ns = STEP_NS;
 	if (code || b->ended)
 		finish(b, code, err, now_ns);
@@ -345,11 +360,18 @@ bool broker_put(void *ctx, const char *topic, const char *text, size_t len, bool
 	return true;
 }
 
-void broker_subscribe(struct broker *b, const char *topic)
+void broker_subscribe(struct broker *b, const char *topic, int qos)
 {
 	bool mqtt5 = b->options->mqtt5 && !b->old_protocol;
 
 	if (b->client)
-		mosquitto_subscribe_v5(b->client, NULL, topic, 1,
-		                       mqtt5 ? MQTT_SUB_OPT_RETAIN_AS_PUBLISHED : 0, NULL);
+		mosquitto_subscribe_v5(
+			b->client, NULL, topic, qos,
+			mqtt5 ? MQTT_SUB_OPT_RETAIN_AS_PUBLISHED | MQTT_SUB_OPT_NO_LOCAL : 0, NULL);
+}
+
+void broker_unsubscribe(struct broker *b, const char *topic)
+{
+	if (b->client)
+		mosquitto_unsubscribe(b->client, NULL, topic);
 }

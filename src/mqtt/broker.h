@@ -31,7 +31,8 @@ void broker_hurry(struct broker *b, int64_t now_ns);
 
 /* struct outlet: QoS 1. */
 bool broker_put(void *ctx, const char *topic, const char *text, size_t len, bool retain);
-/* QoS 1. A refusal is logged when it comes. */
-void broker_subscribe(struct broker *b, const char *topic);
+/* A refusal is logged when it comes. What we publish there ourselves does not come, by MQTT 5. */
+void broker_subscribe(struct broker *b, const char *topic, int qos);
+void broker_unsubscribe(struct broker *b, const char *topic);
 
 #endif

@@ -81,8 +81,8 @@ static void on_subscribe(struct mosquitto *client, void *ctx, int mid, int count
 		return;
 	b->refusals++;
 	log_err(b->face->log,
-	        "%.100s refuses a subscription: no commands come; its access list has to let us "
-	        "read %.60s/+/set",
+	        "%.100s refuses a subscription; its access list has to let us read %.60s/# and "
+	        "the topics of discovery",
 	        mqtt_way_name(&b->options->ways[b->way], name), b->options->prefix);
 }
 

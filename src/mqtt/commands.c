@@ -17,7 +17,8 @@
 
 static void refuse(struct commands *c, const char *name, const char *why, int64_t now_ns)
 {
-	uint64_t count = log_rate(&c->log_rate, now_ns);
+	uint64_t print = stream_hash(name, strlen(name), stream_hash(why, strlen(why), 0));
+	uint64_t count = log_rate(&c->log_rates[print % COMMANDS_RATES], now_ns);
 	char others[LOG_OTHERS];
 
 	c->refused++;

@@ -18,6 +18,7 @@ struct stream;
 #define COMMANDS_A_SECOND 50
 #define COMMANDS_BURST 100
 #define COMMANDS_TEXT 1024 /* bytes of a value */
+#define COMMANDS_RATES 64
 
 struct commands {
 	struct log *log;
@@ -26,7 +27,8 @@ struct commands {
 	struct ows *h;                 /* NULL: not connected */
 	int64_t open_ns;               /* when it may be tried again */
 	int64_t counted_ns, credit_ns; /* what may come at once */
-	struct log_rate log_rate;
+	/* a rate of each reason and name, by a hash: one that floods keeps no other silent */
+	struct log_rate log_rates[COMMANDS_RATES];
 	uint64_t taken, refused;
 	char trouble[BROKER_WORDS]; /* the last refusal, and what to do */
 };

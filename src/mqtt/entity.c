@@ -53,24 +53,13 @@ static const struct {
 	{"ppm", "carbon_dioxide"},
 };
 
-/* The property: what stands behind the device in the path. */
-static const char *property_of(const struct ows_info *info)
+static const char *class_of(const struct row *row)
 {
-	const char *device = *info->device ? strstr(info->path, info->device) : NULL;
-	const char *property = device ? device + strlen(info->device) : info->path;
+	const struct ows_info *info = &row->info;
 
-	property += *property == '/';
-	return *property ? property : info->name;
-}
-
-static const char *class_of(const struct stream *s, const struct ows_info *info)
-{
-	const char *class = s->class_of ? s->class_of(s->class_ctx, info->name) : "";
-	const char *property = property_of(info);
-
-	if (*class)
-		return class;
-	if (!strcmp(info->unit, "%") && strstr(property, "humidity"))
+	if (*row->class)
+		return row->class;
+	if (!strcmp(info->unit, "%") && strstr(row->property, "humidity"))
 		return "humidity";
 	for (size_t i = 0; i < sizeof(classes) / sizeof(classes[0]); i++)
 		if (!strcmp(classes[i].unit, info->unit))
@@ -203,7 +192,7 @@ static void put_sensor(struct json *json, const struct row *row, enum entity_kin
 	if (kind != ENTITY_SENSOR || info->type == OWS_STRING)
 		return;
 	json_string(json, "stat_cla",
-	            strstr(property_of(info), "counter") || !strcmp(class, "energy")
+	            strstr(row->property, "counter") || !strcmp(class, "energy")
 	                    ? "total_increasing"
 	                    : "measurement");
 	if (info->decimals >= 0)
@@ -276,7 +265,7 @@ static void put_signal(struct json *json, const struct stream *s, const struct r
                        const char *id, const char *name)
 {
 	const struct ows_info *info = &row->info;
-	const char *class = class_of(s, info);
+	const char *class = class_of(row);
 	enum entity_kind kind = entity_kind(info, class, s->write);
 	bool position = kind == ENTITY_COVER && info->type != OWS_BOOL;
 
@@ -328,13 +317,10 @@ void entity_json(struct json *json, const struct stream *s, const struct row *ro
 	const struct ows_info *info = &row->info;
 	const char *name = *info->description ? info->description : info->name;
 	char id[2 * ENTITY_ID], property[ENTITY_ID], title[256];
-	bool twice = false;
 
-	topic_id(property_of(info), property, sizeof(property));
-	for (const struct row *other = s->rows; other < row && !twice; other++)
-		twice = other->chip == row->chip && !strcmp(other->info.path, info->path);
+	topic_id(row->property, property, sizeof(property));
 	snprintf(id, sizeof(id), "owsd_%.60s_%.100s", owner, property);
-	if (twice) {
+	if (row->twice) {
 		topic_id(info->name, property, sizeof(property));
 		snprintf(id + strlen(id), sizeof(id) - strlen(id), "_%.64s", property);
 	}
@@ -359,7 +345,7 @@ void entity_json(struct json *json, const struct stream *s, const struct row *ro
 		json_array_end(json);
 		json_object_end(json);
 	}
-	if (plain_is_key(info)) {
+	if (plain_is_key(row)) {
 		snprintf(title, sizeof(title), "%s_tag", id);
 		json_object(json, title);
 		json_string(json, "p", "tag");

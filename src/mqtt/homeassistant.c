@@ -9,30 +9,27 @@
 #include "src/mqtt/health.h"
 #include "src/mqtt/plain.h"
 
-/* The components of all rows of a chip; -1: of those without one. */
-static void put_rows(struct json *json, const struct stream *s, int chip, const char *owner)
+/* The components of all rows of a chip; NULL: of those without one. */
+static void put_rows(struct json *json, const struct stream *s, const struct chip *chip,
+                     const char *owner)
 {
-	bool alone = chip >= 0 && s->chips[chip].rows == 1;
+	int first = chip ? chip->first : 0;
+	bool alone = chip && chip->rows == 1;
 
-	for (int i = 0; i < s->count; i++)
-		if (s->rows[i].chip == chip)
-			entity_json(json, s, &s->rows[i], owner, alone);
+	for (int i = first; i < s->count && s->by_chip[i]->chip == s->by_chip[first]->chip; i++)
+		if (chip || s->by_chip[i]->chip < 0)
+			entity_json(json, s, s->by_chip[i], owner, alone);
 }
 
 /* A chip with one signal has the name of that. */
-static void name_chip(const struct stream *s, int number, char *name, size_t size)
+static void name_chip(const struct stream *s, const struct chip *chip, char *name, size_t size)
 {
-	const struct chip *chip = &s->chips[number];
+	const struct ows_info *info = &s->by_chip[chip->first]->info;
 
-	for (int i = 0; chip->rows == 1 && i < s->count; i++)
-		if (s->rows[i].chip == number) {
-			const struct ows_info *info = &s->rows[i].info;
-
-			snprintf(name, size, "%s",
-			         *info->description ? info->description : info->name);
-			return;
-		}
-	snprintf(name, size, "%s %s", *chip->family ? chip->family : "1-Wire", chip->id);
+	if (chip->rows == 1)
+		snprintf(name, size, "%s", *info->description ? info->description : info->name);
+	else
+		snprintf(name, size, "%s %s", *chip->family ? chip->family : "1-Wire", chip->id);
 }
 
 static bool say_device(struct stream *s, int number)
@@ -42,7 +39,7 @@ static bool say_device(struct stream *s, int number)
 	struct json json;
 
 	if (chip)
-		name_chip(s, number, name, sizeof(name));
+		name_chip(s, chip, name, sizeof(name));
 	else
 		snprintf(name, sizeof(name), "owsd %s", s->node);
 	topic_id(chip ? chip->id : s->node, owner, sizeof(owner));
@@ -52,7 +49,7 @@ static bool say_device(struct stream *s, int number)
 	entity_available_json(&json, s, chip);
 	json_int(&json, "qos", 1);
 	json_object(&json, "cmps");
-	put_rows(&json, s, number, owner);
+	put_rows(&json, s, chip, owner);
 	if (!chip)
 		health_entities_json(&json, s, owner);
 	json_object_end(&json);
@@ -87,6 +84,26 @@ static bool heard(const struct stream *s, const char *topic, const char *text, s
 	return !strcmp(topic, status) && len == 6 && !memcmp(text, "online", 6);
 }
 
+static void births(const struct stream *s, char topic[TOPIC_SIZE])
+{
+	snprintf(topic, TOPIC_SIZE, "%s/device/+/config", s->discovery);
+}
+
+/* The device of a chip that was behind this node, and of which there is no signal any more */
+static bool outlived(const struct stream *s, const char *topic, const char *text)
+{
+	char behind[TOPIC_SIZE], id[ENTITY_ID], start[TOPIC_SIZE];
+	size_t len = (size_t)snprintf(start, sizeof(start), "%s/device/owsd_", s->discovery);
+
+	snprintf(behind, sizeof(behind), "\"via_device\":\"owsd_%s\"", s->node);
+	if (strncmp(topic, start, len) != 0 || !strstr(text, behind))
+		return false;
+	/* "28_A0B1C2000001/config" */
+	snprintf(id, sizeof(id), "%.*s", (int)strcspn(topic + len, "/"), topic + len);
+	id[strcspn(id, "_")] = '.';
+	return !stream_chip(s, id);
+}
+
 const struct profile profile_homeassistant = {
 	.name = "homeassistant",
 	.birth = birth,
@@ -95,4 +112,6 @@ const struct profile profile_homeassistant = {
 	.alarm = plain_alarm,
 	.listen = listen,
 	.heard = heard,
+	.births = births,
+	.outlived = outlived,
 };

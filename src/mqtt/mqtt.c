@@ -19,6 +19,8 @@
 /* A clock that nobody sets is believed so long after the boot */
 #define CLOCK_WAIT_NS (600 * NS_PER_S)
 #define HEALTH_NS (5 * NS_PER_S)
+/* So long the broker may take to send what it keeps of us */
+#define SWEEP_NS (10 * NS_PER_S)
 /* Between two births that somebody asks for: who asks all the time gets no more */
 #define ANNOUNCE_NS (10 * NS_PER_S)
 
@@ -38,12 +40,13 @@ static void on_connected(void *ctx)
 
 	m->stream.profile->listen(&m->stream, topic);
 	if (*topic)
-		broker_subscribe(&m->broker, topic);
+		broker_subscribe(&m->broker, topic, 1);
 	if (m->options.write) {
 		snprintf(topic, sizeof(topic), "%s/+/set", m->options.prefix);
-		broker_subscribe(&m->broker, topic);
+		broker_subscribe(&m->broker, topic, 1);
 	}
-	m->health_ns = 0;
+	m->health_ns = m->sweep_ns = 0;
+	m->sweep = true;
 	stream_begin(&m->stream);
 }
 
@@ -57,6 +60,8 @@ static void on_message(void *ctx, const struct broker_message *message)
 		commands_take(&m->commands, name, message, place, ows_now());
 		return;
 	}
+	if (message->retained && m->sweep_ns)
+		stream_kept(&m->stream, message->topic, message->text);
 	if (m->stream.profile->heard(&m->stream, message->topic, message->text, message->len))
 		m->asked = true;
 }
@@ -99,11 +104,17 @@ static const struct broker_ops broker_ops = {
 /* struct stream.class_of */
 static const char *class_of(void *ctx, const char *name)
 {
+	static unsigned at; /* of the item after the last one: mostly they come in their order */
 	const struct config *config = ((struct face *)ctx)->config;
 
-	for (unsigned i = 0; i < config->item_count; i++)
-		if (!strcmp(config->items[i].name, name))
-			return config->items[i].device_class ? config->items[i].device_class : "";
+	for (unsigned k = 0; k < config->item_count; k++) {
+		const struct config_item *item = &config->items[(at + k) % config->item_count];
+
+		if (strcmp(item->name, name) != 0)
+			continue;
+		at += k + 1;
+		return item->device_class ? item->device_class : "";
+	}
 	return "";
 }
 
@@ -147,6 +158,7 @@ static void make_rows(struct face *face)
 {
 	struct mqtt *m = own(face);
 
+	m->sweep = true;
 	if (stream_make(&m->stream, face->ows))
 		log_err(face->log, "nothing is published: no memory for %d signals",
 		        ows_count(face->ows));
@@ -170,6 +182,28 @@ static void renew(struct face *face, int64_t now_ns)
 		make_rows(face);
 }
 
+/*
+ * Ask the broker what it keeps of this node, for a while, so that topics and devices that are no
+ * more can be emptied: who published them may have been a run of long ago.
+ */
+static void sweep(struct mqtt *m, int64_t now_ns)
+{
+	bool begins = m->sweep;
+	char topic[TOPIC_SIZE] = "x";
+
+	if (!begins && (!m->sweep_ns || now_ns < m->sweep_ns))
+		return;
+	for (int i = 0; *topic; i++) {
+		stream_places(&m->stream, i, topic);
+		if (*topic && begins)
+			broker_subscribe(&m->broker, topic, 0);
+		else if (*topic)
+			broker_unsubscribe(&m->broker, topic);
+	}
+	m->sweep = false;
+	m->sweep_ns = begins ? now_ns + SWEEP_NS : 0;
+}
+
 /* Publish what waits. Between two images no row can be looked at. */
 static void pump(struct face *face, int64_t now_ns)
 {
@@ -177,6 +211,8 @@ static void pump(struct face *face, int64_t now_ns)
 
 	if (m->broker.state != BROKER_CONNECTED || (face->live && !look_is_current(face)))
 		return;
+	if (face->live && m->stream.count)
+		sweep(m, now_ns);
 	if (m->asked && now_ns - m->announced_ns >= ANNOUNCE_NS) {
 		stream_announce(&m->stream);
 		m->announced_ns = now_ns;

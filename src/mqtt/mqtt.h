@@ -3,7 +3,8 @@
  * owsd-mqtt: the stream of an instance's signals, a broker, and the commands that come from it.
  *
  * Room src/mqtt: the program owsd-mqtt: publishes signals to an MQTT broker, and takes commands
- * from it. Uses src/face, src/show, src/config, src/text, src/libows, src/signal, hal/bus.
+ * from it. Uses src/face, src/show, src/config, src/text, src/libows, src/signal, hal/owfs,
+ * hal/bus.
  */
 #ifndef MQTT_MQTT_H
 #define MQTT_MQTT_H
@@ -23,6 +24,8 @@ struct mqtt {
 	int64_t health_ns;    /* when to look at it again */
 	int64_t announced_ns; /* when somebody asked for the birth last */
 	bool asked;           /* again, too soon after that */
+	bool sweep;           /* the broker has to be asked what it keeps of us */
+	int64_t sweep_ns;     /* it is being asked until then; 0: not */
 };
 
 int mqtt_open(struct face *face);

@@ -19,11 +19,11 @@ int64_t plain_repeat_ns(const struct ows_info *info)
 	return ns < REPEAT_MOST_NS ? ns : REPEAT_MOST_NS;
 }
 
-bool plain_is_key(const struct ows_info *info)
+bool plain_is_key(const struct row *row)
 {
-	const char *path = strrchr(info->path, '/');
+	const char *path = strrchr(row->info.path, '/');
 
-	return (!strncmp(info->device, "01.", 3) || !strncmp(info->device, "81.", 3)) && path &&
+	return (!strncmp(row->chip_id, "01.", 3) || !strncmp(row->chip_id, "81.", 3)) && path &&
 	       !strcmp(path, "/present");
 }
 
@@ -134,7 +134,7 @@ static bool say_key(struct stream *s, struct row *row, const struct ows_value *v
 		return true;
 	if (here && row->key_away) {
 		snprintf(topic, sizeof(topic), "%s/tag", row->topic);
-		if (!stream_put_text(s, topic, row->info.device, false))
+		if (!stream_put_text(s, topic, row->chip_id, false))
 			return false;
 	}
 	row->key_away = !here;
@@ -188,7 +188,7 @@ bool plain_value(struct stream *s, struct row *row)
 	}
 	if (!say_chip(s, row, v.quality) || !say_limit(s, row))
 		return false;
-	if (s->live && plain_is_key(&row->info) && !say_key(s, row, &v))
+	if (s->live && plain_is_key(row) && !say_key(s, row, &v))
 		return false;
 	print = ows_good(v.quality) ? stream_hash(text, strlen(text), v.quality) : v.quality;
 	if (row->said && print == row->print &&
@@ -212,8 +212,7 @@ void plain_alarm(struct stream *s, const struct ows_alarm *alarm)
 	char topic[TOPIC_SIZE];
 	struct json json;
 
-	if (alarm->signal < 0 || alarm->signal >= s->count ||
-	    alarm->event == OWS_ALARM_ACKNOWLEDGED || alarm->event == OWS_ALARM_UNSHELVED)
+	if (alarm->signal < 0 || alarm->signal >= s->count)
 		return;
 	stream_message(s, &json);
 	json_object(&json, NULL);
@@ -249,6 +248,14 @@ bool plain_heard(const struct stream *s, const char *topic, const char *text, si
 	return false;
 }
 
+static bool plain_outlived(const struct stream *s, const char *topic, const char *text)
+{
+	(void)s;
+	(void)topic;
+	(void)text;
+	return false;
+}
+
 const struct profile profile_plain = {
 	.name = "plain",
 	.birth = plain_birth,
@@ -257,4 +264,6 @@ const struct profile profile_plain = {
 	.alarm = plain_alarm,
 	.listen = plain_listen,
 	.heard = plain_heard,
+	.births = plain_listen,
+	.outlived = plain_outlived,
 };

@@ -8,7 +8,7 @@
 /* How often a value that stays the same is said again, ns; 0: never. From StaleAfter. */
 int64_t plain_repeat_ns(const struct ows_info *info);
 /* Is it a key that touches the wire: "/01.7A3B4C5D6E7F/present"? */
-bool plain_is_key(const struct ows_info *info);
+bool plain_is_key(const struct row *row);
 
 bool plain_birth(struct stream *s, int number, bool *more);
 bool plain_value(struct stream *s, struct row *row);

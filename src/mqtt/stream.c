@@ -57,6 +57,9 @@ static void free_rows(struct stream *s)
 	free(s->rows);
 	free(s->chips);
 	free(s->queue);
+	free(s->by_topic);
+	free(s->by_chip);
+	s->by_topic = s->by_chip = NULL;
 	s->rows = NULL;
 	s->chips = NULL;
 	s->queue = NULL;
@@ -69,7 +72,7 @@ static void free_gone(struct stream *s)
 		free(s->gone[i]);
 	free(s->gone);
 	s->gone = NULL;
-	s->gone_count = 0;
+	s->gone_count = s->gone_room = 0;
 }
 
 void stream_close(struct stream *s)
@@ -85,31 +88,37 @@ void stream_close(struct stream *s)
 	s->text = NULL;
 }
 
-/* The chip of a ROM id; a new one at the end. -1: no memory. */
-static int chip_of(struct stream *s, const struct ows_info *info, int last)
+static const char *property_of(const struct ows_info *info)
 {
-	struct chip *chip;
+	const char *device = *info->device ? strstr(info->path, info->device) : NULL;
+	const char *property = device ? device + strlen(info->device) : info->path;
 
-	/* signals of a chip mostly stand together */
-	if (last >= 0 && !strcmp(s->chips[last].id, info->device))
-		return last;
-	for (int i = 0; i < s->chip_count; i++)
-		if (!strcmp(s->chips[i].id, info->device))
-			return i;
-	chip = &s->chips[s->chip_count];
-	*chip = (struct chip){.id = info->device, .family = info->family};
-	if (asprintf(&chip->topic, "%s/" TOPIC_CHIP "/%s", s->prefix, info->device) < 0) {
-		chip->topic = NULL;
-		return -1;
-	}
-	return s->chip_count++;
+	property += *property == '/';
+	return *property ? property : info->name;
 }
 
-static bool make_row(struct stream *s, int signal, int *last)
+/* By chip, then by property: rows that have both in common stand together, in their order. */
+static int by_chip(const void *a, const void *b)
+{
+	const struct row *x = *(struct row *const *)a, *y = *(struct row *const *)b;
+	int order = strcmp(x->chip_id, y->chip_id);
+
+	if (!order)
+		order = strcmp(x->property, y->property);
+	return order ? order : (x > y) - (x < y);
+}
+
+static int by_topic(const void *a, const void *b)
+{
+	return strcmp((*(struct row *const *)a)->topic, (*(struct row *const *)b)->topic);
+}
+
+static bool make_row(struct stream *s, int signal)
 {
 	struct row *row = &s->rows[signal];
 	struct ows_alarm_state state = {0};
 	char level[TOPIC_NAME];
+	uint8_t rom[ROM_LEN];
 
 	row->chip = -1;
 	if (ows_info(s->h, signal, &row->info))
@@ -119,77 +128,65 @@ static bool make_row(struct stream *s, int signal, int *last)
 		row->topic = NULL;
 		return false;
 	}
+	row->property = property_of(&row->info);
 	row->id = ows_find(s->h, row->info.name);
 	row->alarms = row->id >= 0 && !ows_alarm_state(s->h, row->id, &state) && state.limits;
-	if (*row->info.device) {
-		row->chip = *last = chip_of(s, &row->info, *last);
-		if (row->chip < 0)
-			return false;
+	row->class = s->class_of ? s->class_of(s->class_ctx, row->info.name) : "";
+	if (!rom_parse(row->info.device, strlen(row->info.device), rom))
+		rom_print(rom, ROM_F_I, row->chip_id);
+	s->by_topic[signal] = s->by_chip[signal] = row;
+	return true;
+}
+
+static bool make_chips(struct stream *s)
+{
+	const struct row *last = NULL;
+
+	for (int i = 0; i < s->count; last = s->by_chip[i++]) {
+		struct row *row = s->by_chip[i];
+		bool same = last && !strcmp(last->chip_id, row->chip_id);
+		struct chip *chip = &s->chips[s->chip_count];
+
+		row->twice = same && !strcmp(last->property, row->property);
+		if (!*row->chip_id)
+			continue;
+		if (!same) {
+			*chip = (struct chip){
+				.id = row->chip_id, .family = row->info.family, .first = i};
+			if (asprintf(&chip->topic, "%s/" TOPIC_CHIP "/%s", s->prefix,
+			             row->chip_id) < 0) {
+				chip->topic = NULL;
+				return false;
+			}
+			s->chip_count++;
+		}
+		row->chip = s->chip_count - 1;
 		s->chips[row->chip].rows++;
 	}
 	return true;
 }
 
-/* The row of a topic; *at: where it may be found, and the next one then. NULL: there is none. */
-static const struct row *row_of(const struct stream *s, const char *topic, int *at)
+struct chip *stream_chip(const struct stream *s, const char *id)
 {
-	for (int k = 0; k < s->count; k++) {
-		const struct row *row = &s->rows[(*at + k) % s->count];
+	int low = 0, high = s->chip_count;
 
-		if (!strcmp(row->topic, topic)) {
-			*at = (int)(row - s->rows) + 1;
-			return row;
-		}
+	while (low < high) {
+		int middle = (low + high) / 2, order = strcmp(id, s->chips[middle].id);
+
+		if (!order)
+			return &s->chips[middle];
+		if (order < 0)
+			high = middle;
+		else
+			low = middle + 1;
 	}
 	return NULL;
 }
 
-/* A topic that nobody writes any more, besides those that no broker has been told of yet. */
-static void add_gone(struct stream *s, const char *topic, const char *level)
-{
-	char *text;
-
-	if (asprintf(&text, "%s%s", topic, level) < 0)
-		return;
-	for (int i = 0; i < s->gone_count; i++)
-		if (!strcmp(s->gone[i], text)) {
-			free(text);
-			return;
-		}
-	s->gone[s->gone_count++] = text;
-}
-
-/* What was said of rows that the new table has not; and of chips, which rows know to be seen. */
-static void take_over(struct stream *s, struct stream *old)
-{
-	size_t room = (size_t)s->gone_count + 2 * (size_t)old->count;
-	char **gone = room ? realloc(s->gone, room * sizeof(*gone)) : NULL;
-	int at = 0;
-
-	if (gone)
-		s->gone = gone;
-	for (int i = 0; gone && i < old->count; i++) {
-		const struct row *was = &old->rows[i], *row = row_of(s, was->topic, &at);
-
-		if (!row)
-			add_gone(s, was->topic, "");
-		if (was->alarms && (!row || !row->alarms))
-			add_gone(s, was->topic, "/alarm");
-	}
-	for (int i = 0; i < old->chip_count; i++)
-		for (int k = 0; k < s->chip_count; k++)
-			if (!strcmp(old->chips[i].topic, s->chips[k].topic))
-				s->chips[k].seen = old->chips[i].seen;
-}
-
 int stream_make(struct stream *s, struct ows *h)
 {
-	int count = ows_count(h), last = -1;
-	struct stream old = {.rows = s->rows,
-	                     .count = s->count,
-	                     .chips = s->chips,
-	                     .chip_count = s->chip_count,
-	                     .queue = s->queue};
+	int count = ows_count(h);
+	struct stream old = *s;
 	size_t room = count > 0 ? (size_t)count : 1;
 	bool made;
 
@@ -198,17 +195,82 @@ int stream_make(struct stream *s, struct ows *h)
 	s->rows = calloc(room, sizeof(*s->rows));
 	s->chips = calloc(room, sizeof(*s->chips));
 	s->queue = calloc(room, sizeof(*s->queue));
-	s->count = s->rows && s->chips && s->queue ? count : 0;
-	made = s->count == count;
+	s->by_topic = calloc(room, sizeof(struct row *));
+	s->by_chip = calloc(room, sizeof(struct row *));
+	made = s->rows && s->chips && s->queue && s->by_topic && s->by_chip;
+	s->count = made ? count : 0;
 	for (int i = 0; made && i < count; i++)
-		made = make_row(s, i, &last);
-	if (made)
-		take_over(s, &old);
-	else
+		made = make_row(s, i);
+	if (made) {
+		qsort(s->by_topic, (size_t)count, sizeof(struct row *), by_topic);
+		qsort(s->by_chip, (size_t)count, sizeof(struct row *), by_chip);
+		made = make_chips(s);
+	}
+	for (int i = 0; made && i < old.chip_count; i++) {
+		struct chip *chip = stream_chip(s, old.chips[i].id);
+
+		if (chip)
+			chip->seen = old.chips[i].seen;
+	}
+	if (!made)
 		free_rows(s);
 	free_rows(&old);
 	stream_begin(s);
 	return made ? 0 : -ENOMEM;
+}
+
+/* --- What the broker keeps of what is no more ------------------------------------------------ */
+
+void stream_places(const struct stream *s, int number, char topic[TOPIC_SIZE])
+{
+	static const char *const below[] = {"+", "+/alarm", TOPIC_CHIP "/+"};
+	const int count = sizeof(below) / sizeof(below[0]);
+
+	topic[0] = '\0';
+	if (number < count)
+		snprintf(topic, TOPIC_SIZE, "%s/%s", s->prefix, below[number]);
+	else if (number == count)
+		s->profile->births(s, topic);
+}
+
+/* Does nobody write a topic below the prefix any more? */
+static bool is_gone(const struct stream *s, const char *topic, size_t prefix_len)
+{
+	const char *level = topic + prefix_len + 1, *below = strchr(level, '/');
+	char text[TOPIC_SIZE];
+	struct row key = {.topic = text}, *wanted = &key, **found;
+
+	if (below && !strncmp(level, TOPIC_CHIP "/", strlen(TOPIC_CHIP) + 1))
+		return !stream_chip(s, below + 1);
+	if (below && strcmp(below, "/alarm") != 0)
+		return false;
+	if (!below && (!strcmp(level, TOPIC_STATE) || !strcmp(level, TOPIC_HEALTH)))
+		return false;
+	snprintf(text, sizeof(text), "%.*s", below ? (int)(below - topic) : (int)strlen(topic),
+	         topic);
+	found = s->count ? bsearch(&wanted, s->by_topic, (size_t)s->count, sizeof(wanted), by_topic)
+	                 : NULL;
+	return !found || (below && !(*found)->alarms);
+}
+
+void stream_kept(struct stream *s, const char *topic, const char *text)
+{
+	size_t len = strlen(s->prefix);
+	bool ours = !strncmp(topic, s->prefix, len) && topic[len] == '/';
+	char **more;
+
+	if (!s->live || !*text ||
+	    !(ours ? is_gone(s, topic, len) : s->profile->outlived(s, topic, text)))
+		return;
+	if (s->gone_count == s->gone_room) {
+		more = realloc(s->gone, (size_t)(s->gone_room + 64) * sizeof(*more));
+		if (!more)
+			return;
+		s->gone = more;
+		s->gone_room += 64;
+	}
+	s->gone[s->gone_count] = strdup(topic);
+	s->gone_count += s->gone[s->gone_count] != NULL;
 }
 
 /* --- What has news --------------------------------------------------------------------------- */
@@ -240,6 +302,7 @@ void stream_announce(struct stream *s)
 
 void stream_begin(struct stream *s)
 {
+	free_gone(s);
 	for (int i = 0; i < s->count; i++) {
 		s->rows[i].said = false;
 		s->rows[i].alarm_print = 0;
@@ -269,8 +332,12 @@ static bool pump_gone(struct stream *s)
 
 	while (s->gone_count) {
 		const char *topic = s->gone[s->gone_count - 1];
+		size_t len = strlen(s->prefix);
+		bool value = !strncmp(topic, s->prefix, len) && topic[len] == '/' &&
+		             !strchr(topic + len + 1, '/');
 
-		if (!stream_put_text(s, topic, none, true) || !stream_put_text(s, topic, "", true))
+		if ((value && !stream_put_text(s, topic, none, true)) ||
+		    !stream_put_text(s, topic, "", true))
 			return false;
 		free(s->gone[--s->gone_count]);
 	}

@@ -10,6 +10,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "hal/owfs/path.h"
 #include "src/libows/ows.h"
 #include "src/mqtt/topics.h"
 #include "src/show/json.h"
@@ -22,11 +23,15 @@ struct outlet {
 };
 
 struct row {
-	struct ows_info info; /* its texts count while the image of stream_make() does */
+	struct ows_info info;       /* its texts count while the image of stream_make() does */
+	char chip_id[ROM_TEXT_MAX]; /* "": none; else in the one form that a chip has here */
+	const char *property;       /* what stands after the device in the path */
+	const char *class;          /* the key Class; "": none */
 	char *topic;
 	int id;   /* of ows_find() */
 	int chip; /* its chip; -1: none */
 	bool queued, away, blank, alarms;
+	bool twice;           /* another row before it has its chip and property */
 	bool said;            /* once at least since the birth */
 	uint64_t print;       /* a hash of what was said */
 	int64_t said_ns;      /* when */
@@ -35,7 +40,8 @@ struct row {
 };
 /* A device of the wire. */
 struct chip {
-	const char *id, *family; /* as of the rows' info */
+	const char *id, *family; /* as of its rows */
+	int first;               /* its rows are s->by_chip[first] and those after it */
 	char *topic;             /* whether it is there */
 	int rows, away,
 		blank;     /* signals, those that cannot reach it, those never read or written */
@@ -51,16 +57,17 @@ struct stream {
 	const char *prefix, *node, *discovery; /* TOPIC/NODE; the texts belong to the caller */
 	bool write;
 	struct ows *h;
-	/* The key Class of a signal; "": none */
+	/* The key Class of a signal; "": none. The text counts until the next stream_make(). */
 	const char *(*class_of)(void *ctx, const char *name);
 	void *class_ctx;
 	struct row *rows;
 	int count;
+	struct row **by_topic, **by_chip; /* all rows; those without a chip are first */
 	struct chip *chips;
 	int chip_count;
 	int *queue, queue_at, queue_len; /* rows with news, the oldest first */
 	char **gone;                     /* topics that nobody writes any more */
-	int gone_count;
+	int gone_count, gone_room;
 	bool live;      /* owsd is there: else no value is good */
 	int birth;      /* the next message of the birth; -1: all is said */
 	bool announced; /* the node itself, by the birth */
@@ -91,6 +98,10 @@ struct profile {
 	void (*listen)(const struct stream *s, char topic[TOPIC_SIZE]);
 	/* What came there. True: the birth has to be said again. */
 	bool (*heard)(const struct stream *s, const char *topic, const char *text, size_t len);
+	/* Where retained births of ours may stand; "": nowhere. */
+	void (*births)(const struct stream *s, char topic[TOPIC_SIZE]);
+	/* One of these is of this node, and what it was about is no more. */
+	bool (*outlived)(const struct stream *s, const char *topic, const char *text);
 };
 extern const struct profile profile_plain, profile_homeassistant;
 
@@ -98,10 +109,16 @@ extern const struct profile profile_plain, profile_homeassistant;
 int stream_open(struct stream *s);
 void stream_close(struct stream *s);
 /*
- * The signals of h, in place of those before; topics of signals that are no more are emptied. All
- * is to be said. Allocates. 0 or -ENOMEM: there are no rows.
+ * The signals of h, in place of those before. All is to be said. Allocates. 0 or -ENOMEM: there are
+ * no rows.
  */
 int stream_make(struct stream *s, struct ows *h);
+/* The chip of an id in the one form; NULL: no signal names it. */
+struct chip *stream_chip(const struct stream *s, const char *id);
+/* The topics where the broker may keep what is no more; "" after the last. */
+void stream_places(const struct stream *s, int number, char topic[TOPIC_SIZE]);
+/* A retained message that came there: it is emptied if nobody writes the topic any more. */
+void stream_kept(struct stream *s, const char *topic, const char *text);
 /* Signals have news, as in face_ops.changes. */
 void stream_changes(struct stream *s, const int *signals, int n);
 /* All is to be said, as to a broker that knows nothing. */

@@ -121,6 +121,15 @@ def test_a_reload_moves_renamed_signals_and_empties_what_is_no_more(scene):
     assert "owsd/pi7/room" not in kept and kept[STATE] == "online", kept
 
 
+def test_what_a_person_does_with_an_alarm_is_an_event(scene):
+    house = House(scene, {**ROOM, "LimitH": 20}, RELAY)
+    house.says(STATE, "online")
+    until(lambda: json.loads(house.listener.last("owsd/pi7/room/alarm") or "{}").get("active"), 20, "it is an alarm")
+    assert scene.owsctl(house.daemon, "alarms", "ack", "room").returncode == 0
+    until(lambda: '"event_type":"acknowledged"' in (house.listener.last("owsd/pi7/room/event") or ""), 20,
+          lambda: house.listener.all("owsd/pi7/room/event"))
+
+
 def test_another_topic_or_broker_of_the_file_is_taken_at_once(scene):
     house = House(scene, ROOM)
     house.says(STATE, "online")

@@ -153,8 +153,9 @@ def test_a_broker_without_mqtt_5_gets_3_1_1(scene):
                     connection.sendall(b"\x20\x03\x00\x84\x00")
     listener = socket.create_server(("127.0.0.1", port))
     threading.Thread(target=serve, args=(listener,), daemon=True).start()
-    house = House(scene, ROOM, Broker=f"mqtt://127.0.0.1:{port}")
+    house = House(scene, ROOM, Broker=f"mqtt://127.0.0.1:{port}", Write=raw("on"))
     logged(house.face, f"connected to mqtt://127.0.0.1:{port} by MQTT 3.1.1")
+    logged(house.face, "publish commands without retain")
     assert levels[:2] == [5, 4], levels
     listener.close()
 

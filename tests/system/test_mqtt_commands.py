@@ -120,6 +120,9 @@ def test_a_flood_is_cut_and_logged_in_a_few_lines(scene):
     assert house.face.running() and len(house.face.log().splitlines()) < 400, len(house.face.log().splitlines())
     command(house, "dial", "11")
     until(lambda: scene.get(house.daemon, "dial") == "11", 20, "commands are taken again")
+    # what is wrong with another one is not hidden by them
+    command(house, "nobody", "1")
+    logged(house.face, "command to nobody refused: there is no such signal")
 
 
 def test_commands_go_on_after_a_reload_and_a_restart_of_owsd(scene):

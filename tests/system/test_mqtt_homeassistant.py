@@ -111,6 +111,41 @@ def test_a_rename_keeps_the_entity_and_moves_its_topic(scene):
     assert said[-1] == "" and json.loads(said[-2])["v"] is None, said
 
 
+def test_what_went_while_owsd_mqtt_was_down_is_emptied_and_nothing_of_others(scene):
+    house = House(scene, {**ROOM, "LimitH": 30}, RELAY, item("type", f"/{SENSOR}/type", "string"))
+    device(house, PORTS)
+    house.says("owsd/pi7/state", "online")
+    house.says("owsd/pi7/relay", house.listener.last("owsd/pi7/relay"))
+    others = {"homeassistant/device/owsd_28_A0B1C2000003/config": '{"dev":{"via_device":"owsd_pi70"}}',
+              "homeassistant/device/lamp/config": '{"dev":{"ids":["lamp"]}}', "owsd/pi70/room": "1",
+              "owsd/pi7/room/note": "1"}
+    for topic, text in others.items():
+        publish(house, topic, text, "-r")
+    house.face.stop()
+    house.daemon.config.write_text(house.text({**ROOM, "Name": "cellar"}, item("type", f"/{SENSOR}/type", "string")))
+    house.daemon.signal(signal.SIGHUP)
+    until(lambda: scene.get(house.daemon, "cellar"), 20, "owsd has reloaded")
+    house.face = house.start()
+    gone = {"owsd/pi7/room", "owsd/pi7/room/alarm", "owsd/pi7/relay", f"owsd/pi7/chip/{SWITCH}", PORTS}
+    until(lambda: not gone & set(house.kept()), 30, lambda: gone & set(house.kept()), step=0.5)
+    kept = house.kept()
+    assert {t: kept.get(t) for t in others} == others, kept
+    assert {CHIP, NODE, "owsd/pi7/cellar", "owsd/pi7/type", f"owsd/pi7/chip/{SENSOR}", "owsd/pi7/health"} <= set(kept), kept
+    assert kept["owsd/pi7/state"] == "online", kept
+
+
+def test_a_chip_that_is_written_in_two_ways_is_one_device(scene):
+    house = House(scene, ROOM, item("coarse", f"/{SENSOR.replace('.', '').lower()}/temperature9"),
+                  item("again", f"/uncached/{SENSOR}/temperature"))
+    house.says("owsd/pi7/state", "online")
+    message = device(house, CHIP)
+    assert message["dev"]["ids"] == [SENSOR] and len(message["cmps"]) == 3, message
+    assert {c["stat_t"] for c in message["cmps"].values()} == {f"owsd/pi7/{n}" for n in ("room", "coarse", "again")}
+    kept = house.kept()
+    assert {t for t in kept if t.startswith("homeassistant/")} == {CHIP, NODE}, kept
+    assert [t for t in kept if "/chip/" in t] == [f"owsd/pi7/chip/{SENSOR}"], kept
+
+
 def test_a_key_is_a_tag_each_time_it_comes(scene):
     house = House(scene, item("key", f"/{KEY}/present", "bool"), ROOM,
                   wire=f"DS2401 {KEY} as key\nat 3s every 5s unplug key for 2s\n")

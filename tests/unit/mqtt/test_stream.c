@@ -148,45 +148,64 @@ static void test_an_owsd_that_is_lost_takes_all_back(void)
 	TEST_ASSERT_NOT_NULL(strstr(said, "o/pi/state online\n"));
 }
 
-static void test_a_new_table_empties_the_topics_of_those_that_are_gone(void)
+static void test_what_the_broker_keeps_is_emptied_if_nobody_writes_it_any_more(void)
 {
-	static const struct instance_signal less[] = {
-		{"title", "/29.1/type", OWS_STRING, false, 0, "29.000000000001"}};
+	static const struct instance_signal other[] = {
+		{"new", "/28.000000000001/temperature", OWS_DOUBLE, false, 0, "28000000000001"}};
+	static const char *const ours[] = {"o/pi/new",       "o/pi/new/set",
+	                                   "o/pi/room/note", "o/pi/state",
+	                                   "o/pi/health",    "o/pi/chip/28.000000000001",
+	                                   "o/pi2/room",     "o/pi"};
+	char topic[TOPIC_SIZE];
 
 	pump();
-	instance_reload(&in, less, 1);
+	instance_reload(&in, other, 1);
 	TEST_ASSERT_EQUAL_INT(0, ows_reopen(ows));
 	TEST_ASSERT_EQUAL_INT(0, stream_make(&s, ows));
+	pump();
+	for (size_t i = 0; i < sizeof(ours) / sizeof(ours[0]); i++)
+		stream_kept(&s, ours[i], "x");
+	stream_kept(&s, "o/pi/room", "");
+	TEST_ASSERT_EQUAL_STRING("", pump());
+	stream_kept(&s, "o/pi/room", "x");
 	pump();
 	TEST_ASSERT_EQUAL_STRING_LEN("o/pi/room {\"v\":null,", said, 20);
 	TEST_ASSERT_NOT_NULL(strstr(said, "}\no/pi/room \n"));
-	TEST_ASSERT_NOT_NULL(strstr(said, "o/pi/title {"));
+	stream_kept(&s, "o/pi/chip/29.000000000001", "online");
+	TEST_ASSERT_EQUAL_STRING("o/pi/chip/29.000000000001 \n", pump());
+	stream_kept(&s, "o/pi/new/alarm", "x");
+	TEST_ASSERT_EQUAL_STRING("o/pi/new/alarm \n", pump());
+	/* nothing is known of what there is while owsd is away */
+	stream_live(&s, false);
+	pump();
+	stream_kept(&s, "o/pi/room", "x");
+	TEST_ASSERT_EQUAL_STRING("", pump());
+	for (int i = 0; i < 3; i++)
+		stream_places(&s, i, topic);
+	TEST_ASSERT_EQUAL_STRING("o/pi/chip/+", topic);
+	stream_places(&s, 3, topic);
+	TEST_ASSERT_EQUAL_STRING("", topic);
 }
 
-static void test_each_topic_of_those_that_are_gone_is_emptied_at_the_next_broker(void)
+static void test_signals_of_one_property_are_told_apart_and_a_chip_has_one_form(void)
 {
-	static const struct instance_signal one[] = {{"title", "/29.1/type", OWS_STRING, false, 0,
-	                                              "29.000000000001"}},
-					    none[] = {{"new", "/28.2/temperature", OWS_DOUBLE,
-	                                               false, 0, "28.000000000002"}};
+	static const struct instance_signal two[] = {
+		{"b", "/28.000000000001/x", OWS_DOUBLE, false, 0, "28.000000000001"},
+		{"none", "/settings/x", OWS_DOUBLE, false, 0, ""},
+		{"a", "/28000000000001/x", OWS_DOUBLE, false, 0, "28000000000001"},
+		{"c", "/28000000000001/y", OWS_DOUBLE, false, 0, "28000000000001"}};
 
-	pump();
-	s.rows[ROOM].alarms = true;
-	room = 0;
-	instance_reload(&in, one, 1);
+	instance_reload(&in, two, 4);
 	TEST_ASSERT_EQUAL_INT(0, ows_reopen(ows));
 	TEST_ASSERT_EQUAL_INT(0, stream_make(&s, ows));
-	pump();
-	instance_reload(&in, none, 1);
-	TEST_ASSERT_EQUAL_INT(0, ows_reopen(ows));
-	TEST_ASSERT_EQUAL_INT(0, stream_make(&s, ows));
-	room = 100;
-	pump();
-	TEST_ASSERT_NOT_NULL(strstr(said, "}\no/pi/room \n"));
-	TEST_ASSERT_NOT_NULL(strstr(said, "}\no/pi/room/alarm \n"));
-	TEST_ASSERT_NOT_NULL(strstr(said, "}\no/pi/title \n"));
-	TEST_ASSERT_NULL(strstr(said, "o/pi/title/alarm"));
-	TEST_ASSERT_NULL(strstr(said, "o/pi/new \n"));
+	TEST_ASSERT_EQUAL_INT(1, s.chip_count);
+	TEST_ASSERT_EQUAL_INT(3, s.chips[0].rows);
+	TEST_ASSERT_EQUAL_PTR(&s.rows[0], s.by_chip[s.chips[0].first]);
+	TEST_ASSERT_EQUAL_INT(-1, s.rows[1].chip);
+	TEST_ASSERT_FALSE(s.rows[0].twice);
+	TEST_ASSERT_FALSE(s.rows[1].twice);
+	TEST_ASSERT_TRUE(s.rows[2].twice);
+	TEST_ASSERT_FALSE(s.rows[3].twice);
 }
 
 static void test_an_alarm_is_an_event_for_those_who_are_there(void)
@@ -219,8 +238,8 @@ int main(void)
 	RUN_TEST(test_a_bad_value_has_no_number);
 	RUN_TEST(test_what_has_no_room_comes_later_with_its_newest_value_and_nothing_twice);
 	RUN_TEST(test_an_owsd_that_is_lost_takes_all_back);
-	RUN_TEST(test_a_new_table_empties_the_topics_of_those_that_are_gone);
-	RUN_TEST(test_each_topic_of_those_that_are_gone_is_emptied_at_the_next_broker);
+	RUN_TEST(test_what_the_broker_keeps_is_emptied_if_nobody_writes_it_any_more);
+	RUN_TEST(test_signals_of_one_property_are_told_apart_and_a_chip_has_one_form);
 	RUN_TEST(test_an_alarm_is_an_event_for_those_who_are_there);
 	return UNITY_END();
 }
