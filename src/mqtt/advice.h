@@ -14,7 +14,7 @@
 int advice_connack(int code, bool old);
 /*
  * code: a reason of MQTT 5 from 128 on, else an error of libmosquitto; err: errno beside it; tls:
- * what the TLS library said.
+ * what the TLS library reported.
  */
 const char *advice_words(int code, int err, const char *tls);
 /* "" if nothing helps but waiting. */

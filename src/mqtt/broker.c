@@ -34,7 +34,7 @@
 static void forget_trouble(struct broker *b)
 {
 	b->trouble[0] = '\0';
-	memset(b->said, 0, sizeof(b->said));
+	memset(b->logged, 0, sizeof(b->logged));
 }
 
 /* --- An attempt ------------------------------------------------------------------------------ */
@@ -119,9 +119,9 @@ static void fail(struct broker *b, const char *why, const char *remedy, int64_t 
 		return;
 	b->failures++;
 	print = stream_hash(words, strlen(words), 0);
-	if (print != b->said[way])
+	if (print != b->logged[way])
 		log_warning(b->face->log, "%s", words);
-	b->said[way] = print;
+	b->logged[way] = print;
 	memcpy(b->trouble, words, sizeof(words));
 	memcpy(b->last, words, sizeof(words));
 }
@@ -159,7 +159,7 @@ static void attempt(struct broker *b, int64_t now_ns)
 	watch(b);
 }
 
-/* It is over, or libmosquitto says so. */
+/* It is over, or libmosquitto reports that. */
 static void finish(struct broker *b, int code, int err, int64_t now_ns)
 {
 	if (b->ended)
@@ -172,7 +172,7 @@ static void finish(struct broker *b, int code, int err, int64_t now_ns)
 		b->next_ns = now_ns;
 		return;
 	}
-	/* mosquitto does not say that it closes the older one of two with the same id */
+	/* mosquitto gives no reason when it closes the older one of two with the same id */
 	if (b->state != BROKER_CONNECTED || now_ns - b->begun_ns > good_ns(b))
 		b->brief = 0;
 	else if (code == MOSQ_ERR_CONN_LOST && b->brief < BRIEF_MOST)
@@ -191,7 +191,7 @@ static void connected(struct broker *b, int64_t now_ns)
 
 	b->begun_ns = now_ns;
 	b->connects++;
-	b->refused_said = false;
+	b->refusal_logged = false;
 	forget_trouble(b);
 	log_notice(b->face->log, "connected to %.100s by MQTT %s",
 	           mqtt_way_name(&b->options->ways[b->way], name), mqtt5 ? "5" : "3.1.1");
@@ -353,10 +353,10 @@ bool broker_put(void *ctx, const char *topic, const char *text, size_t len, bool
 		return false;
 	/* it would never be taken, and must not stand in the way of the others */
 	b->refusals++;
-	if (!b->refused_said)
+	if (!b->refusal_logged)
 		log_err(b->face->log, "%.150s cannot be published: %s", topic,
 		        mosquitto_strerror(err));
-	b->refused_said = true;
+	b->refusal_logged = true;
 	return true;
 }
 

@@ -17,8 +17,8 @@
 /* options and what ops needs stay until broker_end(). Begins to connect. */
 void broker_begin(struct broker *b, int64_t now_ns);
 /*
- * Put what the will says, after what was put has gone, and say goodbye: two seconds at most. What
- * the broker does not acknowledge until then the will says.
+ * Put the text of the will, after what was put has gone, and disconnect: two seconds at most. If
+ * the broker does not acknowledge that until then, it publishes the will.
  */
 void broker_end(struct broker *b);
 /* fd is ready, as poll(2) has it. True: it was the broker's. */

@@ -59,13 +59,13 @@ static void on_publish(struct mosquitto *client, void *ctx, int mid, int reason,
 		return;
 	}
 	b->refusals++;
-	if (!b->refused_said)
+	if (!b->refusal_logged)
 		log_err(b->face->log,
 		        "%.100s refuses what is published: %s; its access list has to let us write "
 		        "%.60s/# and the topics of discovery",
 		        mqtt_way_name(&b->options->ways[b->way], name),
 		        mosquitto_reason_string(reason), b->options->prefix);
-	b->refused_said = true;
+	b->refusal_logged = true;
 }
 
 static void on_subscribe(struct mosquitto *client, void *ctx, int mid, int count,

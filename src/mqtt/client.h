@@ -20,7 +20,7 @@ struct broker_message {
 	const char *topic, *text; /* NUL-terminated behind len bytes */
 	size_t len;
 	bool retained;              /* the broker has kept it */
-	char person[BROKER_PERSON]; /* who is said to have sent it; "": nobody is */
+	char person[BROKER_PERSON]; /* who sent it, as it claims; "": nothing is claimed */
 };
 
 struct broker_ops {
@@ -46,21 +46,21 @@ struct broker {
 	enum broker_state state;
 	int fd; /* that the face waits for; -1: none */
 	unsigned way;
-	bool v4;            /* the way is tried at its IPv4 address alone */
-	bool tcp;           /* it has a connection, so far without a word of MQTT */
-	bool old_protocol;  /* MQTT 3.1.1 in place of 5, as the broker wants it */
-	bool ended;         /* libmosquitto has ended it */
-	bool drained;       /* nothing is to be read any more */
-	int end_code;       /* why */
-	bool refused_said;  /* that the broker refuses what is published */
-	unsigned brief;     /* connections in a row that did not last */
-	unsigned in_flight; /* put, and not taken by the broker */
+	bool v4;             /* the way is tried at its IPv4 address alone */
+	bool tcp;            /* it has a connection, so far without a word of MQTT */
+	bool old_protocol;   /* MQTT 3.1.1 in place of 5, as the broker wants it */
+	bool ended;          /* libmosquitto has ended it */
+	bool drained;        /* nothing is to be read any more */
+	int end_code;        /* why */
+	bool refusal_logged; /* that the broker refuses what is published */
+	unsigned brief;      /* connections in a row that did not last */
+	unsigned in_flight;  /* put, and not taken by the broker */
 	int64_t begun_ns, next_ns, step_ns;
-	int64_t tend_ns;                 /* when broker_tick() is due, once there is a client */
-	char tls_words[BROKER_WORDS];    /* the last error that libmosquitto logged */
-	char trouble[BROKER_WORDS];      /* what is wrong now, and its remedy; "": nothing */
-	char last[BROKER_WORDS];         /* the same, kept after its end */
-	uint64_t said[CONFIG_MQTT_WAYS]; /* a hash of what was logged of each way */
+	int64_t tend_ns;                   /* when broker_tick() is due, once there is a client */
+	char tls_words[BROKER_WORDS];      /* the last error that libmosquitto logged */
+	char trouble[BROKER_WORDS];        /* what is wrong now, and its remedy; "": nothing */
+	char last[BROKER_WORDS];           /* the same, kept after its end */
+	uint64_t logged[CONFIG_MQTT_WAYS]; /* a hash of what was logged of each way */
 	uint64_t connects, failures, published, acknowledged, refusals;
 };
 

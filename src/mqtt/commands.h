@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Commands that came from the broker: who may publish there is the broker's to say, what owsd-mqtt
- * may set is owsd's. What is wrong with a command is a line of the log, and nothing else happens.
+ * Commands that came from the broker: the broker decides who may publish there, owsd what owsd-mqtt
+ * may set. What is wrong with a command is a line of the log, and nothing else happens.
  */
 #ifndef MQTT_COMMANDS_H
 #define MQTT_COMMANDS_H
@@ -35,7 +35,7 @@ struct commands {
 
 /*
  * The command of a message at a topic of the signal name. place: for whom, if the message does not
- * say it. Waits for owsd when it connects, two seconds at most, once a second.
+ * name one. Waits for owsd when it connects, two seconds at most, once a second.
  */
 void commands_take(struct commands *c, const char *name, const struct broker_message *message,
                    const char *place, int64_t now_ns);

@@ -19,7 +19,7 @@ enum entity_kind {
 };
 /*
  * class: of the item; write: commands are taken. A number is a light or a cover when Min and Max
- * say what "on" and "off" are. Pure.
+ * give what "on" and "off" are. Pure.
  */
 enum entity_kind entity_kind(const struct ows_info *info, const char *class, bool write);
 
@@ -35,7 +35,7 @@ void entity_json(struct json *json, const struct stream *s, const struct row *ro
 /* The device of a message: the node, or a chip, which is behind the node. */
 void entity_device_json(struct json *json, const struct stream *s, const struct chip *chip,
                         const char *name);
-/* The member avty: topics that all have to say online. */
+/* The member avty: topics that all have to be online. */
 void entity_available_json(struct json *json, const struct stream *s, const struct chip *chip);
 
 #endif

@@ -39,7 +39,7 @@ static uint64_t count_errors(struct stream *s)
 	return errors;
 }
 
-bool health_say(struct stream *s, const struct health *health)
+bool health_publish(struct stream *s, const struct health *health)
 {
 	char topic[TOPIC_SIZE];
 	struct json json;

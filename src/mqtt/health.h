@@ -10,7 +10,7 @@ struct health {
 	uint64_t connects, refused_messages, commands, refused_commands;
 };
 /* Publish it if it is another than before. False: the outlet does not take it now. */
-bool health_say(struct stream *s, const struct health *health);
+bool health_publish(struct stream *s, const struct health *health);
 /* Components of Home Assistant's discovery. */
 void health_entities_json(struct json *json, const struct stream *s, const char *owner);
 

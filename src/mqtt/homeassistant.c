@@ -3,6 +3,8 @@
  * The profile "homeassistant": plain, and a birth that has Home Assistant make a device of each
  * chip, by its ROM id, and one of the node.
  */
+#include <ctype.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "src/mqtt/entity.h"
@@ -32,17 +34,23 @@ static void name_chip(const struct stream *s, const struct chip *chip, char *nam
 		snprintf(name, size, "%s %s", *chip->family ? chip->family : "1-Wire", chip->id);
 }
 
-static bool say_device(struct stream *s, int number)
+static void device_topic(const struct stream *s, const struct chip *chip, char owner[ENTITY_ID],
+                         char topic[TOPIC_SIZE])
 {
-	struct chip *chip = number >= 0 ? &s->chips[number] : NULL;
-	char name[256], topic[TOPIC_SIZE], owner[ENTITY_ID];
+	topic_id(chip ? chip->id : s->node, owner, ENTITY_ID);
+	snprintf(topic, TOPIC_SIZE, "%s/device/owsd_%s/config", s->discovery, owner);
+}
+
+static void make_device(struct stream *s, struct chip *chip, char topic[TOPIC_SIZE])
+{
+	char name[256], owner[ENTITY_ID];
 	struct json json;
 
+	device_topic(s, chip, owner, topic);
 	if (chip)
 		name_chip(s, chip, name, sizeof(name));
 	else
 		snprintf(name, sizeof(name), "owsd %s", s->node);
-	topic_id(chip ? chip->id : s->node, owner, sizeof(owner));
 	stream_message(s, &json);
 	json_object(&json, NULL);
 	entity_device_json(&json, s, chip, name);
@@ -54,18 +62,19 @@ static bool say_device(struct stream *s, int number)
 		health_entities_json(&json, s, owner);
 	json_object_end(&json);
 	json_object_end(&json);
-	snprintf(topic, sizeof(topic), "%s/device/owsd_%s/config", s->discovery, owner);
-	return stream_put(s, topic, true);
 }
 
 static bool birth(struct stream *s, int number, bool *more)
 {
-	bool *announced = number ? &s->chips[number - 1].announced : &s->announced;
+	struct chip *chip = number ? &s->chips[number - 1] : NULL;
+	bool *announced = chip ? &chip->announced : &s->announced;
+	char topic[TOPIC_SIZE];
 
 	*more = number < s->chip_count;
-	if (*announced || (number && !s->chips[number - 1].seen))
+	if (*announced || (chip && !chip->seen))
 		return true;
-	if (!say_device(s, number - 1))
+	make_device(s, chip, topic);
+	if (!stream_put(s, topic, true))
 		return false;
 	*announced = true;
 	return true;
@@ -89,19 +98,69 @@ static void births(const struct stream *s, char topic[TOPIC_SIZE])
 	snprintf(topic, TOPIC_SIZE, "%s/device/+/config", s->discovery);
 }
 
-/* The device of a chip that was behind this node, and of which there is no signal any more */
-static bool outlived(const struct stream *s, const char *topic, const char *text)
+/*
+ * Components of an old birth that the present one, in s->text, has not: each with its platform
+ * alone, by which Home Assistant removes it. The caller frees them; NULL: there are none.
+ */
+static char *removed(const struct stream *s, const char *old)
 {
-	char behind[TOPIC_SIZE], id[ENTITY_ID], start[TOPIC_SIZE];
-	size_t len = (size_t)snprintf(start, sizeof(start), "%s/device/owsd_", s->discovery);
+	static const char mark[] = "\":{\"p\":\"";
+	char part[2 * ENTITY_ID + 64], *parts = NULL, *more;
 
-	snprintf(behind, sizeof(behind), "\"via_device\":\"owsd_%s\"", s->node);
-	if (strncmp(topic, start, len) != 0 || !strstr(text, behind))
-		return false;
-	/* "28_A0B1C2000001/config" */
-	snprintf(id, sizeof(id), "%.*s", (int)strcspn(topic + len, "/"), topic + len);
-	id[strcspn(id, "_")] = '.';
-	return !stream_chip(s, id);
+	for (const char *at = old; (at = strstr(at, mark)); at += strlen(mark)) {
+		const char *id = at, *platform = at + strlen(mark);
+
+		while (id > old && (isalnum((unsigned char)id[-1]) || strchr("_-", id[-1])))
+			id--;
+		snprintf(part, sizeof(part), "\"%.*s%s%.*s\"", (int)(at - id), id, mark,
+		         (int)strspn(platform, "abcdefghijklmnopqrstuvwxyz_"), platform);
+		if (memmem(s->text, s->len, part, strlen(part)))
+			continue;
+		if (asprintf(&more, "%s%s%s}", parts ? parts : "", parts ? "," : "", part) < 0)
+			break;
+		free(parts);
+		parts = more;
+	}
+	return parts;
+}
+
+static const char *outlived(struct stream *s, const char *topic, const char *text)
+{
+	char behind[TOPIC_SIZE], id[ENTITY_ID], present[TOPIC_SIZE], *parts;
+	struct chip *chip = NULL;
+	struct json json;
+
+	device_topic(s, NULL, id, present);
+	if (strcmp(topic, present) != 0) {
+		size_t len = (size_t)snprintf(id, sizeof(id), "%s/device/owsd_", s->discovery);
+
+		snprintf(behind, sizeof(behind), "\"via_device\":\"owsd_%s\"", s->node);
+		if (strncmp(topic, id, len) != 0 || !strstr(text, behind))
+			return NULL;
+		/* "28_A0B1C2000001/config" */
+		snprintf(id, sizeof(id), "%.*s", (int)strcspn(topic + len, "/"), topic + len);
+		id[strcspn(id, "_")] = '.';
+		chip = stream_chip(s, id);
+		if (!chip)
+			return "";
+	}
+	make_device(s, chip, present);
+	if (fflush(s->out))
+		return NULL;
+	parts = removed(s, text);
+	if (!parts)
+		return NULL;
+	stream_message(s, &json);
+	json_object(&json, NULL);
+	entity_device_json(&json, s, chip, chip ? chip->id : s->node);
+	json_key(&json, "cmps");
+	fprintf(s->out, "{%s}", parts);
+	json_object_end(&json);
+	free(parts);
+	/* what there is follows */
+	*(chip ? &chip->announced : &s->announced) = false;
+	s->birth = 0;
+	return fflush(s->out) ? NULL : s->text;
 }
 
 const struct profile profile_homeassistant = {

@@ -38,9 +38,10 @@ static void on_connected(void *ctx)
 	struct mqtt *m = ctx;
 	char topic[TOPIC_SIZE];
 
-	m->stream.profile->listen(&m->stream, topic);
-	if (*topic)
+	if (m->stream.profile->listen) {
+		m->stream.profile->listen(&m->stream, topic);
 		broker_subscribe(&m->broker, topic, 1);
+	}
 	if (m->options.write) {
 		snprintf(topic, sizeof(topic), "%s/+/set", m->options.prefix);
 		broker_subscribe(&m->broker, topic, 1);
@@ -62,7 +63,8 @@ static void on_message(void *ctx, const struct broker_message *message)
 	}
 	if (message->retained && m->sweep_ns)
 		stream_kept(&m->stream, message->topic, message->text);
-	if (m->stream.profile->heard(&m->stream, message->topic, message->text, message->len))
+	if (m->stream.profile->heard &&
+	    m->stream.profile->heard(&m->stream, message->topic, message->text, message->len))
 		m->asked = true;
 }
 
@@ -118,7 +120,7 @@ static const char *class_of(void *ctx, const char *name)
 	return "";
 }
 
-/* --- Beginning and end of what the file says ------------------------------------------------- */
+/* --- Beginning and end of a configuration ---------------------------------------------------- */
 
 static void begin(struct face *face, int64_t now_ns)
 {
@@ -164,7 +166,7 @@ static void make_rows(struct face *face)
 		        ows_count(face->ows));
 }
 
-/* The file may say something else than before. */
+/* The file may be another than before. */
 static void renew(struct face *face, int64_t now_ns)
 {
 	struct mqtt *m = own(face);
@@ -184,7 +186,7 @@ static void renew(struct face *face, int64_t now_ns)
 
 /*
  * Ask the broker what it keeps of this node, for a while, so that topics and devices that are no
- * more can be emptied: who published them may have been a run of long ago.
+ * more can be emptied: an earlier run may have published them.
  */
 static void sweep(struct mqtt *m, int64_t now_ns)
 {
@@ -219,11 +221,11 @@ static void pump(struct face *face, int64_t now_ns)
 		m->asked = false;
 	}
 	if (stream_pump(&m->stream) && face->live && now_ns >= m->health_ns &&
-	    health_say(&m->stream, &(struct health){.trouble = m->commands.trouble,
-	                                            .commands = m->commands.taken,
-	                                            .refused_commands = m->commands.refused,
-	                                            .connects = m->broker.connects,
-	                                            .refused_messages = m->broker.refusals}))
+	    health_publish(&m->stream, &(struct health){.trouble = m->commands.trouble,
+	                                                .commands = m->commands.taken,
+	                                                .refused_commands = m->commands.refused,
+	                                                .connects = m->broker.connects,
+	                                                .refused_messages = m->broker.refusals}))
 		m->health_ns = now_ns + HEALTH_NS;
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What the Mqtt block says, as owsd-mqtt keeps it. */
+/* What stands in the Mqtt block, as owsd-mqtt keeps it. */
 #include <ctype.h>
 #include <stdio.h>
 #include <string.h>

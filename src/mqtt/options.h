@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What the Mqtt block says, kept over the time in which the file is read again. */
+/* What stands in the Mqtt block, kept over the time in which the file is read again. */
 #ifndef MQTT_OPTIONS_H
 #define MQTT_OPTIONS_H
 

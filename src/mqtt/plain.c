@@ -95,7 +95,7 @@ static void put_value(struct json *json, const struct stream *s, const struct ow
  * Whether the chip of the row is there: one of its signals that answers is enough. What was never
  * read or written does not count against one that cannot reach it.
  */
-static bool say_chip(struct stream *s, struct row *row, uint8_t quality)
+static bool publish_chip(struct stream *s, struct row *row, uint8_t quality)
 {
 	bool away = quality == OWS_Q_NO_DEVICE || quality == OWS_Q_TARGET || quality == OWS_Q_SHORT,
 	     blank = quality == OWS_Q_INITIAL, online;
@@ -112,19 +112,19 @@ static bool say_chip(struct stream *s, struct row *row, uint8_t quality)
 	/* a chip that was never there is announced when it comes; of an output nobody knows */
 	if (online && !chip->seen && (quality != OWS_Q_INITIAL || row->info.output)) {
 		chip->seen = true;
-		s->birth = 0;
+		s->birth = s->profile->birth ? 0 : -1;
 	}
-	if (chip->said && online == chip->online)
+	if (chip->published && online == chip->online)
 		return true;
 	if (!stream_put_text(s, chip->topic, online ? "online" : "offline", true))
 		return false;
-	chip->said = true;
+	chip->published = true;
 	chip->online = online;
 	return true;
 }
 
 /* A key came: its ROM id, for those who are there now. */
-static bool say_key(struct stream *s, struct row *row, const struct ows_value *v)
+static bool publish_key(struct stream *s, struct row *row, const struct ows_value *v)
 {
 	bool here = ows_good(v->quality) && v->integer != 0;
 	char topic[TOPIC_SIZE];
@@ -141,8 +141,8 @@ static bool say_key(struct stream *s, struct row *row, const struct ows_value *v
 	return true;
 }
 
-/* The limit alarm, if it is another than was said. */
-static bool say_limit(struct stream *s, struct row *row)
+/* The limit alarm, if it is another than was published. */
+static bool publish_limit(struct stream *s, struct row *row)
 {
 	struct ows_alarm_state state;
 	char topic[TOPIC_SIZE];
@@ -186,21 +186,21 @@ bool plain_value(struct stream *s, struct row *row)
 			v.quality = OWS_Q_TARGET;
 		repeat_ns = plain_repeat_ns(&row->info);
 	}
-	if (!say_chip(s, row, v.quality) || !say_limit(s, row))
+	if (!publish_chip(s, row, v.quality) || !publish_limit(s, row))
 		return false;
-	if (s->live && plain_is_key(row) && !say_key(s, row, &v))
+	if (s->live && plain_is_key(row) && !publish_key(s, row, &v))
 		return false;
 	print = ows_good(v.quality) ? stream_hash(text, strlen(text), v.quality) : v.quality;
-	if (row->said && print == row->print &&
-	    !(repeat_ns && ows_good(v.quality) && now_ns - row->said_ns >= repeat_ns))
+	if (row->published && print == row->print &&
+	    !(repeat_ns && ows_good(v.quality) && now_ns - row->published_ns >= repeat_ns))
 		return true;
 	stream_message(s, &json);
 	put_value(&json, s, &v, text);
 	if (!stream_put(s, row->topic, true))
 		return false;
-	row->said = true;
+	row->published = true;
 	row->print = print;
-	row->said_ns = now_ns;
+	row->published_ns = now_ns;
 	return true;
 }
 
@@ -225,45 +225,9 @@ void plain_alarm(struct stream *s, const struct ows_alarm *alarm)
 	stream_put(s, topic, false);
 }
 
-bool plain_birth(struct stream *s, int number, bool *more)
-{
-	(void)s;
-	(void)number;
-	*more = false;
-	return true;
-}
-
-void plain_listen(const struct stream *s, char topic[TOPIC_SIZE])
-{
-	(void)s;
-	topic[0] = '\0';
-}
-
-bool plain_heard(const struct stream *s, const char *topic, const char *text, size_t len)
-{
-	(void)s;
-	(void)topic;
-	(void)text;
-	(void)len;
-	return false;
-}
-
-static bool plain_outlived(const struct stream *s, const char *topic, const char *text)
-{
-	(void)s;
-	(void)topic;
-	(void)text;
-	return false;
-}
-
 const struct profile profile_plain = {
 	.name = "plain",
-	.birth = plain_birth,
 	.value = plain_value,
 	.state = plain_state,
 	.alarm = plain_alarm,
-	.listen = plain_listen,
-	.heard = plain_heard,
-	.births = plain_listen,
-	.outlived = plain_outlived,
 };

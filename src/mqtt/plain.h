@@ -5,16 +5,13 @@
 
 #include "src/mqtt/stream.h"
 
-/* How often a value that stays the same is said again, ns; 0: never. From StaleAfter. */
+/* How often a value that stays the same is published again, ns; 0: never. From StaleAfter. */
 int64_t plain_repeat_ns(const struct ows_info *info);
 /* Is it a key that touches the wire: "/01.7A3B4C5D6E7F/present"? */
 bool plain_is_key(const struct row *row);
 
-bool plain_birth(struct stream *s, int number, bool *more);
 bool plain_value(struct stream *s, struct row *row);
 bool plain_state(struct stream *s, bool online);
 void plain_alarm(struct stream *s, const struct ows_alarm *alarm);
-void plain_listen(const struct stream *s, char topic[TOPIC_SIZE]);
-bool plain_heard(const struct stream *s, const char *topic, const char *text, size_t len);
 
 #endif

@@ -32,11 +32,8 @@ bool stream_put(struct stream *s, const char *topic, bool retain)
 
 bool stream_put_text(struct stream *s, const char *topic, const char *text, bool retain)
 {
-	bool taken = s->outlet.put(s->outlet.ctx, topic, text ? text : s->text,
-	                           text ? strlen(text) : s->len, retain);
-
-	s->published += taken;
-	return taken;
+	return s->outlet.put(s->outlet.ctx, topic, text ? text : s->text,
+	                     text ? strlen(text) : s->len, retain);
 }
 
 /* --- The rows -------------------------------------------------------------------------------- */
@@ -68,8 +65,10 @@ static void free_rows(struct stream *s)
 
 static void free_gone(struct stream *s)
 {
-	for (int i = 0; i < s->gone_count; i++)
-		free(s->gone[i]);
+	for (int i = 0; i < s->gone_count; i++) {
+		free(s->gone[i].topic);
+		free(s->gone[i].text);
+	}
 	free(s->gone);
 	s->gone = NULL;
 	s->gone_count = s->gone_room = 0;
@@ -229,7 +228,7 @@ void stream_places(const struct stream *s, int number, char topic[TOPIC_SIZE])
 	topic[0] = '\0';
 	if (number < count)
 		snprintf(topic, TOPIC_SIZE, "%s/%s", s->prefix, below[number]);
-	else if (number == count)
+	else if (number == count && s->profile->births)
 		s->profile->births(s, topic);
 }
 
@@ -256,11 +255,15 @@ static bool is_gone(const struct stream *s, const char *topic, size_t prefix_len
 void stream_kept(struct stream *s, const char *topic, const char *text)
 {
 	size_t len = strlen(s->prefix);
-	bool ours = !strncmp(topic, s->prefix, len) && topic[len] == '/';
-	char **more;
+	struct gone *more, gone;
 
-	if (!s->live || !*text ||
-	    !(ours ? is_gone(s, topic, len) : s->profile->outlived(s, topic, text)))
+	if (!s->live || !*text)
+		return;
+	if (!strncmp(topic, s->prefix, len) && topic[len] == '/')
+		text = is_gone(s, topic, len) ? "" : NULL;
+	else
+		text = s->profile->outlived ? s->profile->outlived(s, topic, text) : NULL;
+	if (!text)
 		return;
 	if (s->gone_count == s->gone_room) {
 		more = realloc(s->gone, (size_t)(s->gone_room + 64) * sizeof(*more));
@@ -269,8 +272,14 @@ void stream_kept(struct stream *s, const char *topic, const char *text)
 		s->gone = more;
 		s->gone_room += 64;
 	}
-	s->gone[s->gone_count] = strdup(topic);
-	s->gone_count += s->gone[s->gone_count] != NULL;
+	gone = (struct gone){.topic = strdup(topic),
+	                     .text = *text ? strndup(text, s->len) : strdup("")};
+	if (gone.topic && gone.text) {
+		s->gone[s->gone_count++] = gone;
+	} else {
+		free(gone.topic);
+		free(gone.text);
+	}
 }
 
 /* --- What has news --------------------------------------------------------------------------- */
@@ -297,18 +306,18 @@ void stream_announce(struct stream *s)
 	for (int i = 0; i < s->chip_count; i++)
 		s->chips[i].announced = false;
 	s->announced = false;
-	s->birth = 0;
+	s->birth = s->profile->birth ? 0 : -1;
 }
 
 void stream_begin(struct stream *s)
 {
 	free_gone(s);
 	for (int i = 0; i < s->count; i++) {
-		s->rows[i].said = false;
+		s->rows[i].published = false;
 		s->rows[i].alarm_print = 0;
 	}
 	for (int i = 0; i < s->chip_count; i++)
-		s->chips[i].said = false;
+		s->chips[i].published = false;
 	free(s->health);
 	s->health = NULL;
 	s->online = !s->live;
@@ -331,22 +340,25 @@ static bool pump_gone(struct stream *s)
 	static const char none[] = "{\"v\":null,\"good\":false,\"q\":4,\"why\":\"not configured\"}";
 
 	while (s->gone_count) {
-		const char *topic = s->gone[s->gone_count - 1];
+		struct gone *last = &s->gone[s->gone_count - 1];
+		const char *topic = last->topic;
 		size_t len = strlen(s->prefix);
 		bool value = !strncmp(topic, s->prefix, len) && topic[len] == '/' &&
 		             !strchr(topic + len + 1, '/');
 
 		if ((value && !stream_put_text(s, topic, none, true)) ||
-		    !stream_put_text(s, topic, "", true))
+		    !stream_put_text(s, topic, last->text, true))
 			return false;
-		free(s->gone[--s->gone_count]);
+		free(last->topic);
+		free(last->text);
+		s->gone_count--;
 	}
 	return true;
 }
 
 static bool pump_rows(struct stream *s)
 {
-	/* a row that gets news while it is said waits for the next call */
+	/* a row that gets news while it is published waits for the next call */
 	for (int left = s->queue_len; left; left--) {
 		struct row *row = &s->rows[s->queue[s->queue_at]];
 

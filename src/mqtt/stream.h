@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The stream: the signals of an instance as rows, which of them have news, and what was published
- * of each. A profile says how a row becomes a message, an outlet takes messages. There is no queue
- * of messages: a row that waits has the newest value when it goes.
+ * of each. A profile decides how a row becomes a message, an outlet takes messages. There is no
+ * queue of messages: a row that waits has the newest value when it goes.
  */
 #ifndef MQTT_STREAM_H
 #define MQTT_STREAM_H
@@ -32,10 +32,10 @@ struct row {
 	int chip; /* its chip; -1: none */
 	bool queued, away, blank, alarms;
 	bool twice;           /* another row before it has its chip and property */
-	bool said;            /* once at least since the birth */
-	uint64_t print;       /* a hash of what was said */
-	int64_t said_ns;      /* when */
-	uint32_t alarm_print; /* of its limit alarm; 0: not said */
+	bool published;       /* once at least since the birth */
+	uint64_t print;       /* a hash of what was published */
+	int64_t published_ns; /* when */
+	uint32_t alarm_print; /* of its limit alarm; 0: not published */
 	bool key_away;        /* of a key: it was looked for, and not there */
 };
 /* A device of the wire. */
@@ -44,10 +44,14 @@ struct chip {
 	int first;               /* its rows are s->by_chip[first] and those after it */
 	char *topic;             /* whether it is there */
 	int rows, away,
-		blank;     /* signals, those that cannot reach it, those never read or written */
-	bool seen;         /* it was there once, since owsd-mqtt has started */
-	bool announced;    /* by the birth */
-	bool said, online; /* what was said */
+		blank;  /* signals, those that cannot reach it, those never read or written */
+	bool seen;      /* it was there once, since owsd-mqtt has started */
+	bool announced; /* by the birth */
+	bool published, online; /* what was published */
+};
+
+struct gone {
+	char *topic, *text; /* text: what is to be published there once */
 };
 
 struct profile;
@@ -66,18 +70,17 @@ struct stream {
 	struct chip *chips;
 	int chip_count;
 	int *queue, queue_at, queue_len; /* rows with news, the oldest first */
-	char **gone;                     /* topics that nobody writes any more */
+	struct gone *gone;               /* topics of which something is no more */
 	int gone_count, gone_room;
 	bool live;      /* owsd is there: else no value is good */
-	int birth;      /* the next message of the birth; -1: all is said */
+	int birth;      /* the next message of the birth; -1: all is published */
 	bool announced; /* the node itself, by the birth */
-	bool online;    /* it was said that the node is there */
-	char *health;   /* as it was said last */
+	bool online;    /* it was published that the node is there */
+	char *health;   /* as it was published last */
 	bool clock_set; /* wall-clock times can be believed */
 	FILE *out;      /* makes a message in text */
 	char *text;
 	size_t len;
-	uint64_t published;
 };
 
 /*
@@ -86,7 +89,10 @@ struct stream {
  */
 struct profile {
 	const char *name; /* as the key Profile has it */
-	/* A part of what says what there is, by its number. *more: there are further ones. */
+	/*
+	 * A part of what announces what there is, by its number. *more: there are further ones.
+	 * NULL, as all functions below that have to do with births: nothing is announced.
+	 */
 	bool (*birth)(struct stream *s, int number, bool *more);
 	/* The value and quality of a row. */
 	bool (*value)(struct stream *s, struct row *row);
@@ -94,14 +100,18 @@ struct profile {
 	bool (*state)(struct stream *s, bool online);
 	/* An entry of the journal of alarms; one that is not taken is lost. */
 	void (*alarm)(struct stream *s, const struct ows_alarm *alarm);
-	/* A topic to listen to besides those of commands; "": none. */
+	/* A topic to listen to besides those of commands. */
 	void (*listen)(const struct stream *s, char topic[TOPIC_SIZE]);
-	/* What came there. True: the birth has to be said again. */
+	/* What came there. True: the birth has to be published again. */
 	bool (*heard)(const struct stream *s, const char *topic, const char *text, size_t len);
-	/* Where retained births of ours may stand; "": nowhere. */
+	/* Where retained births of ours may stand. */
 	void (*births)(const struct stream *s, char topic[TOPIC_SIZE]);
-	/* One of these is of this node, and what it was about is no more. */
-	bool (*outlived)(const struct stream *s, const char *topic, const char *text);
+	/*
+	 * What has to be published there because something of one of these is no more: "" if
+	 * nothing of it is left, else s->text, and the birth follows. NULL: nothing, or it is not
+	 * of this node.
+	 */
+	const char *(*outlived)(struct stream *s, const char *topic, const char *text);
 };
 extern const struct profile profile_plain, profile_homeassistant;
 
@@ -109,8 +119,8 @@ extern const struct profile profile_plain, profile_homeassistant;
 int stream_open(struct stream *s);
 void stream_close(struct stream *s);
 /*
- * The signals of h, in place of those before. All is to be said. Allocates. 0 or -ENOMEM: there are
- * no rows.
+ * The signals of h, in place of those before. All is to be published. Allocates. 0 or -ENOMEM:
+ * there are no rows.
  */
 int stream_make(struct stream *s, struct ows *h);
 /* The chip of an id in the one form; NULL: no signal names it. */
@@ -121,9 +131,9 @@ void stream_places(const struct stream *s, int number, char topic[TOPIC_SIZE]);
 void stream_kept(struct stream *s, const char *topic, const char *text);
 /* Signals have news, as in face_ops.changes. */
 void stream_changes(struct stream *s, const int *signals, int n);
-/* All is to be said, as to a broker that knows nothing. */
+/* All is to be published, as to a broker that knows nothing. */
 void stream_begin(struct stream *s);
-/* What there is is to be said again. */
+/* What there is is to be announced again. */
 void stream_announce(struct stream *s);
 /* owsd is there, or not. */
 void stream_live(struct stream *s, bool live);

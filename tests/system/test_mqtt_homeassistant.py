@@ -107,6 +107,7 @@ def test_a_rename_keeps_the_entity_and_moves_its_topic(scene):
     second = device(house, CHIP)
     assert list(first["cmps"]) == list(second["cmps"]) and first["dev"]["ids"] == second["dev"]["ids"]
     # the last thing that the old topic said is no number
+    house.says("owsd/pi7/room", "")
     said = [p for _, t, p in house.listener.all("owsd/pi7/room")]
     assert said[-1] == "" and json.loads(said[-2])["v"] is None, said
 
@@ -132,6 +133,24 @@ def test_what_went_while_owsd_mqtt_was_down_is_emptied_and_nothing_of_others(sce
     assert {t: kept.get(t) for t in others} == others, kept
     assert {CHIP, NODE, "owsd/pi7/cellar", "owsd/pi7/type", f"owsd/pi7/chip/{SENSOR}", "owsd/pi7/health"} <= set(kept), kept
     assert kept["owsd/pi7/state"] == "online", kept
+
+
+def test_an_entity_that_is_no_more_is_removed_and_its_device_stays(scene):
+    lamp = item("lamp", f"/{SWITCH}/PIO.1", "bool", "output")
+    house = House(scene, ROOM, RELAY, lamp, Write=raw("on"))
+    device(house, PORTS)
+    house.says("owsd/pi7/state", "online")
+    house.daemon.config.write_text(house.text(ROOM, RELAY, Write=raw("off")))
+    house.daemon.signal(signal.SIGHUP)
+
+    def removal():
+        return [json.loads(p)["cmps"] for _, t, p in house.listener.all(PORTS) if p and len(p) < 400]
+    until(removal, 30, lambda: house.listener.all(PORTS))
+    # Home Assistant takes a platform alone for the end; a switch that becomes a sensor is another entity
+    assert removal()[0] == {"owsd_29_A0B1C2000004_PIO_0": {"p": "switch"}, "owsd_29_A0B1C2000004_PIO_1": {"p": "switch"}}
+    until(lambda: {c["p"] for c in device(house, PORTS)["cmps"].values()} == {"binary_sensor"}, 20,
+          lambda: device(house, PORTS))
+    assert len(device(house, PORTS)["cmps"]) == 1
 
 
 def test_a_chip_that_is_written_in_two_ways_is_one_device(scene):

@@ -92,7 +92,7 @@ static void test_the_same_value_is_said_again_after_half_of_its_time_alone(void)
 	instance_put_double(&in, ROOM + 1, 21.5, ows_now());
 	stream_changes(&s, &signal, 1);
 	TEST_ASSERT_EQUAL_STRING("", pump());
-	s.rows[ROOM].said_ns -= 2 * S;
+	s.rows[ROOM].published_ns -= 2 * S;
 	stream_changes(&s, &signal, 1);
 	TEST_ASSERT_NOT_NULL(strstr(pump(), "o/pi/room {\"v\":21.5"));
 	instance_put_double(&in, ROOM + 1, 22, ows_now());
