@@ -22,8 +22,8 @@ int ds2438_read_latest(struct txn *txn);
 	[(first) + 4] = {.write = ds2438_write_page}
 enum { DS2438_WAY_COUNT = 5 };
 
-#define DS2438_MEASURED(text, kind, what, first) \
-	PROPERTY(text, kind, VOLATILE, READ, .arg = (what), .how = (first))
+#define DS2438_MEASURED(text, kind, what, first, ...) \
+	PROPERTY(text, kind, VOLATILE, READ, .arg = (what), .how = (first), __VA_ARGS__)
 #define DS2438_LATEST(first) \
 	PROPERTY("latesttemp", TEMPERATURE, VOLATILE, READ, .how = (first) + 1)
 #define DS2438_FLAG(text, bit, first) \

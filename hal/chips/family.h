@@ -26,6 +26,22 @@ enum family_proof {
 	PROOF_NONE_READ, /* nothing is read of it but its id: a search shows that it is there */
 };
 
+/* What owserver's directories say of the families in them. */
+enum {
+	FLAG_RESUME = 0x0001,
+	FLAG_ALARM = 0x0002,
+	FLAG_OVERDRIVE = 0x0004,
+	FLAG_CHAIN = 0x2000,
+	FLAG_VOLT = 0x4000,
+	FLAG_TEMPERATURE = 0x8000,
+};
+
+/* What most people want of a device: a property, and a word for the name of its signal. */
+struct family_scan {
+	const char *name, *word; /* "temperature12", "temperature" */
+};
+#define FAMILY_SCANS 4
+
 struct family {
 	uint8_t code;
 	uint8_t proof;    /* enum family_proof */
@@ -33,7 +49,10 @@ struct family {
 	bool fixed;       /* ... but its resolution cannot be changed */
 	bool alarms;      /* answers the conditional search */
 	bool is_virtual;  /* no chip: a table of /statistics and the like */
-	const char *type; /* "DS18B20" */
+	uint16_t flags;   /* FLAG_ */
+	const char *type; /* "DS18B20", the usual chip of this code */
+	const struct family_scan
+		*scan; /* FAMILY_SCANS at most, then one without a name; NULL: none */
 	/*
 	 * Some families hold several chips. Which of them is it? 1 and up; 0 it is not known: then
 	 * requests may be for properties of any, and a list has what all of them have.
@@ -96,6 +115,14 @@ extern const struct family family_common;
 #include "hal/chips/families.h"
 #undef FAMILY
 
+#define SCAN(...) \
+	.scan = (const struct family_scan[]) \
+	{ \
+		__VA_ARGS__, \
+		{ \
+			NULL, NULL \
+		} \
+	}
 #define PROPERTIES(table) .properties = (table), .count = sizeof(table) / sizeof((table)[0])
 #define AREAS(list) .areas = (list), .area_count = sizeof(list) / sizeof((list)[0])
 #define HOW(list) .how = (list), .how_count = sizeof(list) / sizeof((list)[0])

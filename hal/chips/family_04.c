@@ -252,6 +252,7 @@ const struct family family_04 = {
 	.proof = PROOF_PRESENCE,
 	.alarms = true,
 	.type = "DS2404",
+	.flags = FLAG_ALARM,
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

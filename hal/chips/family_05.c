@@ -105,6 +105,8 @@ const struct family family_05 = {
 	.proof = PROOF_PRESENCE,
 	.alarms = true,
 	.type = "DS2405",
+	.flags = FLAG_ALARM,
+	SCAN({"sensed", "contact"}, {"PIO", "switch"}),
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

@@ -7,7 +7,7 @@
 
 enum { MEMORY = 1, PAGE = 32 };
 
-#define MEMORY_FAMILY(code_, part, pages) \
+#define MEMORY_FAMILY(code_, part, pages, flags_) \
 	static const struct area memory_##code_ = { \
 		.name = "memory", \
 		.size = (pages)*PAGE, \
@@ -27,10 +27,11 @@ enum { MEMORY = 1, PAGE = 32 };
 	const struct family family_##code_ = {.code = 0x##code_, \
 	                                      .proof = PROOF_PRESENCE, \
 	                                      .type = (part), \
+	                                      .flags = (flags_), \
 	                                      AREAS(areas_##code_), \
 	                                      PROPERTIES(properties_##code_)};
 
-MEMORY_FAMILY(06, "DS1993", 16)
-MEMORY_FAMILY(08, "DS1992", 4)
-MEMORY_FAMILY(0a, "DS1995", 64)
-MEMORY_FAMILY(0c, "DS1996", 256)
+MEMORY_FAMILY(06, "DS1993", 16, 0)
+MEMORY_FAMILY(08, "DS1992", 4, 0)
+MEMORY_FAMILY(0a, "DS1995", 64, FLAG_OVERDRIVE)
+MEMORY_FAMILY(0c, "DS1996", 256, FLAG_OVERDRIVE)

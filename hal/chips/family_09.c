@@ -26,5 +26,6 @@ static const struct property properties[] = {
 const struct family family_09 = {.code = 0x09,
                                  .proof = PROOF_PRESENCE,
                                  .type = "DS2502",
+                                 SCAN({"present", "present"}),
                                  AREAS(areas),
                                  PROPERTIES(properties)};

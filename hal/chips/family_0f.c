@@ -25,10 +25,12 @@ static const struct property properties[] = {
 const struct family family_0f = {.code = 0x0f,
                                  .proof = PROOF_CHECKSUM,
                                  .type = "DS2506",
+                                 .flags = FLAG_OVERDRIVE,
                                  AREAS(areas),
                                  PROPERTIES(properties)};
 const struct family family_8f = {.code = 0x8f,
                                  .proof = PROOF_CHECKSUM,
                                  .type = "DS1986U",
+                                 .flags = FLAG_OVERDRIVE,
                                  AREAS(areas),
                                  PROPERTIES(properties)};

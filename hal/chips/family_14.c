@@ -45,5 +45,6 @@ static const struct property properties[] = {
 const struct family family_14 = {.code = 0x14,
                                  .proof = PROOF_PRESENCE,
                                  .type = "DS2430A",
+                                 SCAN({"present", "present"}),
                                  AREAS(areas),
                                  PROPERTIES(properties)};

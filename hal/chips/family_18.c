@@ -58,6 +58,7 @@ static const struct property properties[] = {
 const struct family family_18 = {.code = 0x18,
                                  .proof = PROOF_PRESENCE,
                                  .type = "DS1963S",
+                                 .flags = FLAG_RESUME | FLAG_OVERDRIVE,
                                  AREAS(areas),
                                  HOW(how),
                                  PROPERTIES(properties)};

@@ -33,6 +33,7 @@ static const struct property properties[] = {
 const struct family family_1a = {.code = 0x1a,
                                  .proof = PROOF_PRESENCE,
                                  .type = "DS1963L",
+                                 .flags = FLAG_OVERDRIVE,
                                  AREAS(areas),
                                  HOW(how),
                                  PROPERTIES(properties)};

@@ -233,6 +233,7 @@ const struct family family_1c = {
 	.proof = PROOF_PRESENCE,
 	.alarms = true,
 	.type = "DS28E04",
+	.flags = FLAG_RESUME | FLAG_ALARM | FLAG_OVERDRIVE,
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

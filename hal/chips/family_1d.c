@@ -53,9 +53,10 @@ static const struct property_how how[] = {
 	[WAY_PAGE_COUNT] = {.read = counter_read_page},
 };
 
+#define BITS32 MEASURES(0, UINT32_MAX, 0, "")
 static const struct property properties[] = {
-	COUNTERS("counter", COUNTS, 2, LETTERS, EXTERNAL_A, .hidden = false),
-	COUNTERS("counters", COUNTS, 2, LETTERS, EXTERNAL_A, .hidden = true),
+	COUNTERS("counter", COUNTS, 2, LETTERS, EXTERNAL_A, BITS32),
+	COUNTERS("counters", COUNTS, 2, LETTERS, EXTERNAL_A, BITS32, .hidden = true),
 	AREA_MEMORY(MEMORY, 512),
 	PROPERTY("mincount", UNSIGNED, VOLATILE, BOTH, .how = WAY_MINIMUM),
 	PROPERTY_DIR("pages"),
@@ -67,6 +68,8 @@ const struct family family_1d = {
 	.code = 0x1d,
 	.proof = PROOF_PRESENCE,
 	.type = "DS2423",
+	.flags = FLAG_OVERDRIVE,
+	SCAN({"counter.A", "counter_a"}, {"counter.B", "counter_b"}),
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

@@ -12,7 +12,7 @@ static const struct area *const areas[] = {[PAGES] = &ds2438_pages};
 enum { WAYS = 1 };
 static const struct property_how how[] = {DS2438_WAYS(WAYS)};
 
-#define MEASURED(text, kind, what) DS2438_MEASURED(text, kind, what, WAYS)
+#define MEASURED(text, kind, what) DS2438_MEASURED(text, kind, what, WAYS, .hidden = false)
 #define FLAG(text, bit) DS2438_FLAG(text, bit, WAYS)
 #define TIME(text, kind, life_, where) DS2438_TIME(text, kind, life_, where, WAYS)
 
@@ -41,6 +41,7 @@ const struct family family_1e = {
 	.code = 0x1e,
 	.proof = PROOF_PRESENCE,
 	.type = "DS2437",
+	.flags = FLAG_VOLT | FLAG_TEMPERATURE,
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

@@ -302,8 +302,12 @@ static const struct property_how how[] = {
 	[WAY_CO2_SUPPLY] = {.read = read_co2_supply},
 };
 
-#define VOLT(text, args, how_) \
-	PROPERTY(text, FLOAT, VOLATILE, READ, AGGREGATE(4, LETTERS), .arg = (args), .how = (how_))
+#define VOLT(text, args, how_, ...) \
+	PROPERTY(text, FLOAT, VOLATILE, READ, AGGREGATE(4, LETTERS), .arg = (args), .how = (how_), \
+	         __VA_ARGS__)
+/* 16 bits of the range */
+#define FULL MEASURES(0, 5.12, 5, "V")
+#define HALF MEASURES(0, 2.56, 5, "V")
 /* Of the channel's second control byte. */
 #define FLAG(text, life_, shift_) \
 	PROPERTY(text, YESNO, life_, BOTH, ELEMENTS(4, LETTERS), .arg = ENDS_POWER_ON, \
@@ -315,10 +319,10 @@ static const struct property_how how[] = {
 
 static const struct property properties[] = {
 	PROPERTY_DIR("8bit"),
-	VOLT("8bit/latestvolt", EIGHT_BIT, WAY_LATEST),
-	VOLT("8bit/latestvolt2", EIGHT_BIT | HALF_RANGE, WAY_LATEST),
-	VOLT("8bit/volt", EIGHT_BIT, WAY_VOLT),
-	VOLT("8bit/volt2", EIGHT_BIT | HALF_RANGE, WAY_VOLT),
+	VOLT("8bit/latestvolt", EIGHT_BIT, WAY_LATEST, .hidden = false),
+	VOLT("8bit/latestvolt2", EIGHT_BIT | HALF_RANGE, WAY_LATEST, .hidden = false),
+	VOLT("8bit/volt", EIGHT_BIT, WAY_VOLT, .hidden = false),
+	VOLT("8bit/volt2", EIGHT_BIT | HALF_RANGE, WAY_VOLT, .hidden = false),
 	PROPERTY_DIR("CO2"),
 	PROPERTY("CO2/Vdd", YESNO, VOLATILE, READ, .how = WAY_CO2_SUPPLY),
 	PROPERTY("CO2/ppm", UNSIGNED, VOLATILE, READ, .how = WAY_CO2_PPM),
@@ -328,8 +332,8 @@ static const struct property properties[] = {
 	PROPERTY_DIR("alarm"),
 	FLAG("alarm/high", VOLATILE, 5),
 	FLAG("alarm/low", VOLATILE, 4),
-	VOLT("latestvolt", 0, WAY_LATEST),
-	VOLT("latestvolt2", HALF_RANGE, WAY_LATEST),
+	VOLT("latestvolt", 0, WAY_LATEST, FULL),
+	VOLT("latestvolt2", HALF_RANGE, WAY_LATEST, HALF),
 	AREA_MEMORY(MEMORY, 32),
 	PROPERTY_DIR("pages"),
 	AREA_PAGES(MEMORY, 4, 8),
@@ -343,8 +347,8 @@ static const struct property properties[] = {
 	LIMIT("set_alarm/volt2low", 0, 0.01),
 	LIMIT("set_alarm/volthigh", 1, 0.02),
 	LIMIT("set_alarm/voltlow", 0, 0.02),
-	VOLT("volt", 0, WAY_VOLT),
-	VOLT("volt2", HALF_RANGE, WAY_VOLT),
+	VOLT("volt", 0, WAY_VOLT, FULL),
+	VOLT("volt2", HALF_RANGE, WAY_VOLT, HALF),
 };
 
 const struct family family_20 = {
@@ -352,6 +356,9 @@ const struct family family_20 = {
 	.proof = PROOF_CHECKSUM,
 	.alarms = true,
 	.type = "DS2450",
+	.flags = FLAG_ALARM | FLAG_OVERDRIVE | FLAG_VOLT,
+	SCAN({"volt.A", "volt_a"}, {"volt.B", "volt_b"}, {"volt.C", "volt_c"},
+             {"volt.D", "volt_d"}),
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

@@ -148,7 +148,9 @@ static const struct property properties[] = {
 	BIT("set_alarm/temphigh", BOTH, DS1921_CONTROL, 1, .how = WAY_FIELD),
 	BIT("set_alarm/templow", BOTH, DS1921_CONTROL, 2, .how = WAY_FIELD),
 	PROPERTY("set_alarm/trigger", YESNO, VOLATILE, NONE, .how = 0),
-	PROPERTY("temperature", TEMPERATURE, VOLATILE, READ, .how = WAY_TEMPERATURE),
+	/* G: -40 to +85 within 1.3, 0.5; H and Z 0.125 */
+	PROPERTY("temperature", TEMPERATURE, VOLATILE, READ, MEASURES(-42, 87, 3, DEGREES_C),
+                 .how = WAY_TEMPERATURE),
 	TIMES_BEYOND("undertemp", DS1921_LOW_TIMES, DS1921_LOW),
 };
 
@@ -157,6 +159,7 @@ const struct family family_21 = {
 	.proof = PROOF_PRESENCE,
 	.alarms = true,
 	.type = "DS1921",
+	.flags = FLAG_ALARM | FLAG_OVERDRIVE | FLAG_TEMPERATURE,
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

@@ -11,6 +11,8 @@ const struct family family_22 = {
 	.code = 0x22,
 	.proof = PROOF_PRESENCE,
 	.type = "DS1822",
+	.flags = FLAG_ALARM | FLAG_TEMPERATURE,
+	SCAN({"temperature12", "temperature"}),
 	THERMOMETER_FAMILY,
 	AREAS(areas),
 	HOW(how),

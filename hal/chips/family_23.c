@@ -27,5 +27,7 @@ static const struct property properties[] = {
 const struct family family_23 = {.code = 0x23,
                                  .proof = PROOF_PRESENCE,
                                  .type = "DS2433",
+                                 .flags = FLAG_OVERDRIVE,
+                                 SCAN({"present", "present"}),
                                  AREAS(areas),
                                  PROPERTIES(properties)};

@@ -8,6 +8,7 @@
  * else is asked of a chip, and reads them.
  */
 #include <errno.h>
+#include <math.h>
 #include <string.h>
 
 #include "hal/chips/ds2438.h"
@@ -59,7 +60,7 @@ static int write_offset(struct txn *txn)
 	return err < 0 ? err : TXN_MORE;
 }
 
-#define MEASURED(text, kind, what) DS2438_MEASURED(text, kind, what, WAYS)
+#define MEASURED(text, kind, what, ...) DS2438_MEASURED(text, kind, what, WAYS, __VA_ARGS__)
 #define FLAG(text, bit) DS2438_FLAG(text, bit, WAYS)
 #define TIME(text, kind, life_, where) DS2438_TIME(text, kind, life_, where, WAYS)
 
@@ -106,11 +107,13 @@ static const struct property properties[] = {
 	PROPERTY_DIR("B1-R1-A"),
 	DS2438_SETTING("B1-R1-A/gain", PRESSURE, B1_GAIN),
 	DS2438_SETTING("B1-R1-A/offset", PRESSURE, B1_OFFSET),
-	PROPERTY("B1-R1-A/pressure", PRESSURE, VOLATILE, READ, .how = WAY_PRESSURE),
+	/* absolute, of any sensor: gain and offset are settings */
+	PROPERTY("B1-R1-A/pressure", PRESSURE, VOLATILE, READ, MEASURES(0, HUGE_VAL, 2, "mbar"),
+                 .how = WAY_PRESSURE),
 	FLAG("CA", 1),
 	PROPERTY("DATANAB", DIRECTORY, STATIC, NONE, .kinds = DATANAB_BOARD),
 	PROPERTY("DATANAB/humidity", FLOAT, VOLATILE, READ, .arg = DATANAB, .kinds = DATANAB_BOARD,
-                 .how = WAY_HUMIDITY),
+                 MEASURES(-10, 110, 2, "%"), .how = WAY_HUMIDITY),
 	PROPERTY("DATANAB/reset", YESNO, STABLE, WRITE, .kinds = DATANAB_BOARD,
                  .how = WAY_RESET_DATANAB),
 	FLAG("EE", 2),
@@ -126,11 +129,12 @@ static const struct property properties[] = {
 	PROPERTY_DIR("MultiSensor"),
 	PROPERTY("MultiSensor/type", ASCII, STABLE, READ, .size = 12, .how = WAY_SENSOR_TYPE),
 	PROPERTY_DIR("S3-R1-A"),
-	DS2438_LIGHT("S3-R1-A/current", 0),
+	DS2438_LIGHT("S3-R1-A/current", 0, .hidden = false),
 	DS2438_SETTING("S3-R1-A/gain", FLOAT, S3_GAIN),
-	DS2438_LIGHT("S3-R1-A/illuminance", 1),
-	MEASURED("VAD", FLOAT, DS2438_VAD),
-	MEASURED("VDD", FLOAT, DS2438_VDD),
+	DS2438_LIGHT("S3-R1-A/illuminance", 1, MEASURES(0, HUGE_VAL, 1, "lx")),
+	/* 10 bits of 10 mV; on a VDD of 2.4 V at least the chip runs: a 0 is what a restart left */
+	MEASURED("VAD", FLOAT, DS2438_VAD, MEASURES(0, 10.23, 2, "V")),
+	MEASURED("VDD", FLOAT, DS2438_VDD, MEASURES(2, 10.23, 2, "V")),
 	OTHER("alert_high", YESNO, VOLATILE, BOTH, .arg = TMP1826_ALERT_HIGH, .how = WAY_ALERT),
 	OTHER("alert_low", YESNO, VOLATILE, BOTH, .arg = TMP1826_ALERT_LOW, .how = WAY_ALERT),
 	TIME("date", DATE, VOLATILE, 8),
@@ -148,14 +152,17 @@ static const struct property properties[] = {
 	PROPERTY_DIR("pages"),
 	DS2438_PAGES(WAYS),
 	OTHER("power", YESNO, VOLATILE, READ, .how = WAY_POWER),
+	/* -55 to +125 within 2, 0.03125; a TMP1826 up to 150 */
 	PROPERTY("temperature", TEMPERATURE, VOLATILE, READ, .arg = DS2438_TEMPERATURE,
-                 .kinds = KIND(IS_DS2438) | KIND(IS_TMP1826), .how = WAY_TEMPERATURE),
+                 MEASURES(-58, 151, 5, DEGREES_C), .kinds = KIND(IS_DS2438) | KIND(IS_TMP1826),
+                 .how = WAY_TEMPERATURE),
 	OTHER("temphigh", TEMPERATURE, STABLE, BOTH, .arg = TMP1826_HIGH, .how = WAY_LIMIT),
 	OTHER("templow", TEMPERATURE, STABLE, BOTH, .arg = TMP1826_LOW, .how = WAY_LIMIT),
 	OTHER("tempoffset", TEMPGAP, STABLE, BOTH, .arg = TMP1826_OFFSET, .how = WAY_LIMIT),
 	OTHER("tempres", UNSIGNED, STABLE, READ, .how = WAY_FORMAT),
 	TIME("udate", UNSIGNED, SECOND, 8),
-	MEASURED("vis", FLOAT, DS2438_VIS),
+	/* 10 bits and sign of 0.2441 mV */
+	MEASURED("vis", FLOAT, DS2438_VIS, MEASURES(-0.25, 0.25, 5, "V")),
 };
 
 /* The alerts of a TMP1826 stay: reading has cleared them in the chip, and nobody has seen them. */
@@ -174,6 +181,9 @@ const struct family family_26 = {
 	.code = 0x26,
 	.proof = PROOF_PRESENCE,
 	.type = "DS2438",
+	.flags = FLAG_VOLT | FLAG_TEMPERATURE,
+	SCAN({"temperature", "temperature"}, {"humidity", "humidity"}, {"VDD", "vdd"},
+             {"VAD", "vad"}),
 	.kind = tmp1826_kind,
 	.types = types,
 	.identify = tmp1826_identify,
@@ -190,6 +200,7 @@ const struct family family_a6 = {
 	.code = 0xa6,
 	.proof = PROOF_PRESENCE,
 	.type = "DS2438",
+	.flags = FLAG_VOLT | FLAG_TEMPERATURE,
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

@@ -13,7 +13,7 @@ static const struct property_how how[] = {
 };
 static const struct property properties[] = {
 	THERMOMETER_ERRATA,
-	THERMOMETER_TEMPERATURE("fasttemp", 9),
+	THERMOMETER_TEMPERATURE("fasttemp", 9, 1),
 	IDENTITY_ROW(WAY_IDENTITY, .convert = CONVERT_TEMPRES),
 	THERMOMETER_LATEST,
 	THERMOMETER_POWER,
@@ -25,6 +25,8 @@ const struct family family_28 = {
 	.code = 0x28,
 	.proof = PROOF_PRESENCE,
 	.type = "DS18B20",
+	.flags = FLAG_ALARM | FLAG_TEMPERATURE,
+	SCAN({"temperature12", "temperature"}),
 	.name = clone_name,
 	THERMOMETER_FAMILY,
 	AREAS(areas),

@@ -100,6 +100,8 @@ const struct family family_29 = {
 	.proof = PROOF_PRESENCE,
 	.alarms = true,
 	.type = "DS2408",
+	.flags = FLAG_RESUME | FLAG_ALARM | FLAG_OVERDRIVE,
+	SCAN({"sensed.BYTE", "inputs"}, {"PIO.BYTE", "outputs"}),
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

@@ -28,5 +28,7 @@ static const struct property properties[] = {
 const struct family family_2d = {.code = 0x2d,
                                  .proof = PROOF_PRESENCE,
                                  .type = "DS2431",
+                                 .flags = FLAG_RESUME | FLAG_OVERDRIVE,
+                                 SCAN({"present", "present"}),
                                  AREAS(areas),
                                  PROPERTIES(properties)};

@@ -130,7 +130,7 @@ static const struct property properties[] = {
                  FIELD(EEPROM, .at = 0x20)),
 	SETTING("pmod", 5),
 	PROPERTY("refresh", YESNO, STABLE, WRITE, .how = WAY_REFRESH),
-	GAUGE_TEMPERATURE(0x18),
+	GAUGE_TEMPERATURE(0x18, .hidden = false),
 	PROPERTY("timer", FLOAT, VOLATILE, BOTH,
                  FIELD(TIMER, .bytes = 2, .big_endian = true, .unit = .015625)),
 	GAUGE_COUPLES(0x18, 1),

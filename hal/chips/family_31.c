@@ -56,6 +56,7 @@ const struct family family_31 = {
 	.code = 0x31,
 	.proof = PROOF_PRESENCE,
 	.type = "DS2720",
+	SCAN({"present", "present"}),
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

@@ -39,7 +39,7 @@ static const struct property properties[] = {
 	GAUGE_BESIDE_PIO("por", STABLE, SPECIAL, 7),
 	STATUS("rnaop", 4),
 	GAUGE_BIT("sensed", VOLATILE, READ, BYTES, 0x08, 6),
-	GAUGE_TEMPERATURE(0x18),
+	GAUGE_TEMPERATURE(0x18, .hidden = false),
 	GAUGE_COUPLES(0x18, 0),
 	SETTING("uben", 1),
 	SETTING("uven", 3),
@@ -54,6 +54,7 @@ static const struct property properties[] = {
 const struct family family_35 = {.code = 0x35,
                                  .proof = PROOF_PRESENCE,
                                  .type = "DS2755",
+                                 .flags = FLAG_ALARM,
                                  AREAS(areas),
                                  HOW(how),
                                  PROPERTIES(properties)};

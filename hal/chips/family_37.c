@@ -137,6 +137,7 @@ static const struct property properties[] = {
 const struct family family_37 = {.code = 0x37,
                                  .proof = PROOF_PRESENCE,
                                  .type = "DS1977",
+                                 .flags = FLAG_RESUME | FLAG_OVERDRIVE,
                                  AREAS(areas),
                                  HOW(how),
                                  PROPERTIES(properties)};

@@ -25,6 +25,8 @@ const struct family family_3a = {
 	.code = 0x3a,
 	.proof = PROOF_CHECKSUM,
 	.type = "DS2413",
+	.flags = FLAG_RESUME | FLAG_OVERDRIVE,
+	SCAN({"sensed.BYTE", "inputs"}, {"PIO.BYTE", "outputs"}),
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

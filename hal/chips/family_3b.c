@@ -330,9 +330,9 @@ static const struct property_how how[] = {
 	[WAY_IDENTITY] = {.read = read_identity},
 };
 
-#define TEMPERATURE(text, resolution, which) \
+#define TEMPERATURE(text, resolution, which, decimals) \
 	PROPERTY(text, TEMPERATURE, VOLATILE, READ, .convert = (resolution), .kinds = (which), \
-	         .how = WAY_OWN)
+	         THERMOMETER_MEASURES(decimals), .how = WAY_OWN)
 #define FAULT(text, byte, bit) \
 	PROPERTY(text, YESNO, VOLATILE, READ, .arg = (byte) << 8 | (bit), \
 	         .convert = CONVERT_TEMPRES, .kinds = KIND(MAX31850), .how = WAY_FAULT)
@@ -341,12 +341,12 @@ static const struct property_how how[] = {
 	         FIELD(OWN, .at = (where), .is_signed = true), .how = WAY_OWN_LIMIT)
 
 static const struct property properties[] = {
-	TEMPERATURE("fasttemp", 9, KIND(DS1825)),
+	TEMPERATURE("fasttemp", 9, KIND(DS1825), 1),
 	FAULT("fault", 0, FAULT_ANY),
 	PROPERTY("flagfield", UNSIGNED, VOLATILE, READ, .hidden = true, .how = WAY_FLAGS),
 	FAULT("ground_short", 2, 2),
 	IDENTITY_ROW(WAY_IDENTITY, .kinds = 0),
-	TEMPERATURE("latesttemp", 0, 0),
+	TEMPERATURE("latesttemp", 0, 0, 4),
 	PROPERTY("memory", BINARY, VOLATILE, BOTH, .size = 128, .kinds = KIND(MAX31826),
                  FIELD(MEMORY)),
 	FAULT("open_circuit", 2, 1),
@@ -356,16 +356,18 @@ static const struct property properties[] = {
 	PROPERTY("power", YESNO, VOLATILE, READ, .how = WAY_OWN_POWER),
 	PROPERTY("prog_addr", UNSIGNED, STABLE, READ, .how = WAY_ADDRESS),
 	THERMOMETER_SCRATCHPAD,
-	TEMPERATURE("temperature", CONVERT_TEMPRES, 0),
-	TEMPERATURE("temperature10", 10, KIND(DS1825)),
-	TEMPERATURE("temperature11", 11, KIND(DS1825)),
-	TEMPERATURE("temperature12", 12, 0),
-	TEMPERATURE("temperature9", 9, KIND(DS1825)),
+	TEMPERATURE("temperature", CONVERT_TEMPRES, 0, 4),
+	TEMPERATURE("temperature10", 10, KIND(DS1825), 2),
+	TEMPERATURE("temperature11", 11, KIND(DS1825), 3),
+	TEMPERATURE("temperature12", 12, 0, 4),
+	TEMPERATURE("temperature9", 9, KIND(DS1825), 1),
 	LIMIT("temphigh", SP_HIGH),
 	LIMIT("templow", SP_LOW),
 	PROPERTY("tempres", UNSIGNED, STABLE, BOTH, .how = WAY_OWN_TEMPRES),
+	/* 14 bits of 0.25, of which none below absolute zero */
 	PROPERTY("thermocouple", TEMPERATURE, VOLATILE, READ, .convert = CONVERT_TEMPRES,
-                 .kinds = KIND(MAX31850), .how = WAY_THERMOCOUPLE),
+                 .kinds = KIND(MAX31850), MEASURES(-273.15, 2047.75, 2, DEGREES_C),
+                 .how = WAY_THERMOCOUPLE),
 	FAULT("vdd_short", 2, 4),
 };
 
@@ -375,6 +377,8 @@ const struct family family_3b = {
 	.code = 0x3b,
 	.proof = PROOF_CHECKSUM,
 	.type = "DS1825",
+	.flags = FLAG_ALARM | FLAG_TEMPERATURE,
+	SCAN({"temperature12", "temperature"}, {"thermocouple", "thermocouple"}),
 	.kind = kind_of,
 	.tell = identify,
 	.types = types,

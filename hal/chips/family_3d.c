@@ -35,7 +35,7 @@ static const struct property properties[] = {
 	FLAG("porf", 1),
 	FLAG("sef", 5),
 	GAUGE_BIT("sensed", VOLATILE, READ, BYTES, 0x15, 0),
-	GAUGE_TEMPERATURE(0x0a),
+	GAUGE_TEMPERATURE(0x0a, .hidden = false),
 	GAUGE_COUPLES(0x0a, 1),
 	SETTING("uven", 6),
 	FLAG("uvf", 2),

@@ -46,7 +46,9 @@ static const struct property properties[] = {
 	PROPERTY("clock/date", DATE, SECOND, BOTH, .how = WAY_DATE),
 	BIT("clock/running", STABLE, BOTH, DS1922_OSCILLATOR, 0, WAY_FIELD),
 	PROPERTY("clock/udate", UNSIGNED, SECOND, BOTH, .how = WAY_UDATE),
-	PROPERTY("humidity", FLOAT, VOLATILE, READ, .how = WAY_NOW, .arg = DS1922_LOG_DATA),
+	/* 0 to 100 %RH within 5, and as much again for its ageing in wet air */
+	PROPERTY("humidity", FLOAT, VOLATILE, READ, MEASURES(-10, 110, 2, "%"), .how = WAY_NOW,
+                 .arg = DS1922_LOG_DATA),
 	OWN("log/elements", UNSIGNED, READ, .how = WAY_ELEMENTS),
 	SAMPLES_OF("log/humidity", FLOAT, WAY_LOG, DS1922_LOG_DATA),
 	SAMPLES_OF("log/temperature", TEMPERATURE, WAY_LOG, DS1922_LOG_TEMP),
@@ -64,8 +66,9 @@ static const struct property properties[] = {
 	PROPERTY_DIR("pages"),
 	PROPERTY("pages/page", BINARY, VOLATILE, BOTH, ELEMENTS(DS1922_PAGES, NUMBERS),
                  .size = DS1922_PAGE, .how = WAY_PAGE, FIELD(MEMORY)),
-	PROPERTY("temperature", TEMPERATURE, VOLATILE, READ, .how = WAY_NOW,
-                 .arg = DS1922_LOG_TEMP),
+	/* L: -40 to +85, T to +125, E to +140, within 2; 0.0625 */
+	PROPERTY("temperature", TEMPERATURE, VOLATILE, READ, MEASURES(-42, 142, 4, DEGREES_C),
+                 .how = WAY_NOW, .arg = DS1922_LOG_TEMP),
 };
 
 const struct family family_41 = {
@@ -73,6 +76,7 @@ const struct family family_41 = {
 	.proof = PROOF_CHECKSUM,
 	.alarms = true,
 	.type = "DS1923",
+	.flags = FLAG_RESUME | FLAG_ALARM | FLAG_OVERDRIVE | FLAG_TEMPERATURE,
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

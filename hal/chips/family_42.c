@@ -15,7 +15,7 @@ static const struct property_how how[] = {THERMOMETER_WAYS, [WAY_PIO] = {PIO_SET
 
 static const struct property properties[] = {
 	PIO_BITS("PIO", BOTH, PIO_READ(STATUS, PIO_PINS, true), .how = WAY_PIO),
-	THERMOMETER_TEMPERATURE("fasttemp", 9),
+	THERMOMETER_TEMPERATURE("fasttemp", 9, 1),
 	PIO_BITS("latch", BOTH, PIO_READ(STATUS, PIO_OUTPUTS, true), .holds = true, .how = WAY_PIO),
 	THERMOMETER_LATEST,
 	PROPERTY("piostate", UNSIGNED, VOLATILE, READ, .hidden = true,
@@ -29,6 +29,8 @@ const struct family family_42 = {
 	.code = 0x42,
 	.proof = PROOF_PRESENCE,
 	.type = "DS28EA00",
+	.flags = FLAG_ALARM | FLAG_CHAIN | FLAG_TEMPERATURE,
+	SCAN({"temperature12", "temperature"}),
 	THERMOMETER_FAMILY,
 	AREAS(areas),
 	HOW(how),

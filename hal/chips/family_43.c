@@ -30,5 +30,7 @@ static const struct property properties[] = {
 const struct family family_43 = {.code = 0x43,
                                  .proof = PROOF_CHECKSUM,
                                  .type = "DS28EC20",
+                                 .flags = FLAG_RESUME | FLAG_OVERDRIVE,
+                                 SCAN({"present", "present"}),
                                  AREAS(areas),
                                  PROPERTIES(properties)};

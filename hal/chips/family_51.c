@@ -29,7 +29,7 @@ static const struct property properties[] = {
 	GAUGE_BIT("pmod", STABLE, READ, BYTES, 0x01, 5),
 	GAUGE_BESIDE_PIO("por", STABLE, SPECIAL, 0),
 	GAUGE_BIT("sensed", VOLATILE, READ, BYTES, 0x08, 6),
-	GAUGE_TEMPERATURE(0x18),
+	GAUGE_TEMPERATURE(0x18, .hidden = false),
 	GAUGE_COUPLES(0x18, 0),
 	/* the status register has it from the EEPROM */
 	GAUGE_BIT("uven", STABLE, BOTH, EEPROM, 0x31, 3),

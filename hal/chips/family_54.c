@@ -140,6 +140,7 @@ const struct family family_54 = {
 	.code = 0x54,
 	.proof = PROOF_CHECKSUM,
 	.type = "MAX31888",
+	SCAN({"temperature", "temperature"}),
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

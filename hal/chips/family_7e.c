@@ -244,6 +244,7 @@ const struct family family_7e = {
 	.proof = PROOF_CHECKSUM,
 	.alarms = true,
 	.type = "EDS",
+	.flags = FLAG_ALARM | FLAG_TEMPERATURE,
 	.kind = eds_kind_of,
 	.tell = eds_identify,
 	.types = types,

@@ -54,6 +54,7 @@ const struct family family_dd = {
 	.code = 0xdd,
 	.proof = PROOF_PRESENCE,
 	.type = "Example_slave",
+	.flags = FLAG_ALARM,
 	HOW(how),
 	PROPERTIES(properties),
 };

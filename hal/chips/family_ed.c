@@ -169,6 +169,7 @@ const struct family family_ed = {
 	.code = 0xed,
 	.proof = PROOF_PRESENCE,
 	.type = "InfernoEmbedded",
+	.flags = FLAG_RESUME,
 	.kind = inferno_kind,
 	.tell = inferno_identify,
 	.types = types,

@@ -442,6 +442,7 @@ const struct family family_fc = {
 	.code = 0xfc,
 	.proof = PROOF_PRESENCE,
 	.type = "BAE",
+	.flags = FLAG_RESUME | FLAG_ALARM,
 	.kind = bae_kind,
 	.tell = bae_identify,
 	.types = types,

@@ -208,6 +208,7 @@ const struct family family_fe = {
 	.code = 0xfe,
 	.proof = PROOF_CHECKSUM,
 	.type = "IBLSS",
+	.flags = FLAG_TEMPERATURE,
 	HOW(how),
 	PROPERTIES(properties),
 };

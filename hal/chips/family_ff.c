@@ -324,6 +324,7 @@ const struct family family_ff = {
 	.code = 0xff,
 	.proof = PROOF_PRESENCE,
 	.type = "LCD",
+	.flags = FLAG_ALARM,
 	.forget = forget,
 	AREAS(areas),
 	HOW(how),

@@ -77,10 +77,10 @@ int gauge_couple_high(struct txn *txn);
 	PROPERTY("volt", FLOAT, VOLATILE, READ, \
 	         FIELD(WORDS, .at = 0x0c, .bytes = 2, .big_endian = true, .is_signed = true, \
 	               .shift = 5, .unit = (unit_)))
-#define GAUGE_TEMPERATURE(where) \
+#define GAUGE_TEMPERATURE(where, ...) \
 	PROPERTY("temperature", TEMPERATURE, VOLATILE, READ, \
 	         FIELD(WORDS, .at = (where), .bytes = 2, .big_endian = true, .is_signed = true, \
-	               .shift = 5, .unit = .125))
+	               .shift = 5, .unit = .125), __VA_ARGS__)
 /* The accumulated current: 6.25 uVh. */
 #define GAUGE_CHARGE(text, resistor) \
 	PROPERTY(text, FLOAT, VOLATILE, BOTH, \

@@ -69,6 +69,18 @@ struct property {
 	uint32_t kinds;     /* KIND() of those of the family's chips that have it; 0: all have it */
 	int32_t arg;        /* for functions that serve several properties */
 	struct field field; /* what it is; .area 0: it has functions */
+	/*
+	 * Of a measurement, the range that the chip measures by its data sheet, widened by the
+	 * error that the data sheet allows at its ends: a chip at 125 degrees may rightly report
+	 * 127. Where a result is computed from a register, the range that the register holds. Both
+	 * 0: nothing is known.
+	 */
+	struct {
+		double least, most;
+		char unit[6]; /* UTF-8; "": a plain number */
+		int8_t decimals;
+		bool starves; /* a thermometer that reports 85 or 127.94 when it lacks power */
+	} measures;
 };
 
 /* For property.kinds: a chip that family.kind calls n. No chip is of KIND(0). */
@@ -111,6 +123,8 @@ int property_text(struct txn *txn, const char *text);
 /* clang-format on */
 /* FIELD(REGISTERS, .at = 3, .shift = 2) in a row of a table of properties. */
 #define FIELD(...) .field = {.area = __VA_ARGS__}
+#define MEASURES(least, most, decimals, unit) .measures = {least, most, unit, decimals, false}
+#define DEGREES_C "\u00b0C"
 /* The same in a property_how, of what is written. */
 #define SET(...) .set = {.area = __VA_ARGS__}
 /* The rows of a table that nearly every memory has: "memory", and below "pages" its pages. */

@@ -36,11 +36,13 @@ enum {
 	[WAY_RESET_DATANAB] = {.write = sensor_reset_datanab}
 /* clang-format on */
 
+/* Sensors of 0 to 100 %RH within 5, and as much again for their ageing in wet air */
 #define DS2438_HUMIDITY(text, which) \
-	PROPERTY(text, FLOAT, VOLATILE, READ, .arg = (which), .how = WAY_HUMIDITY)
+	PROPERTY(text, FLOAT, VOLATILE, READ, .arg = (which), MEASURES(-10, 110, 2, "%"), \
+	         .how = WAY_HUMIDITY)
 #define DS2438_SETTING(text, kind, which) \
 	PROPERTY(text, kind, STABLE, BOTH, .arg = (which), .how = WAY_SETTING)
-#define DS2438_LIGHT(text, lux) \
-	PROPERTY(text, FLOAT, VOLATILE, READ, .arg = (lux), .how = WAY_LIGHT)
+#define DS2438_LIGHT(text, lux, ...) \
+	PROPERTY(text, FLOAT, VOLATILE, READ, .arg = (lux), .how = WAY_LIGHT, __VA_ARGS__)
 
 #endif

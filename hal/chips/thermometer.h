@@ -77,8 +77,11 @@ enum {
 	[WAY_TRIM_VALID] = {.read = thermometer_read_trim_valid}
 /* clang-format on */
 
-#define THERMOMETER_TEMPERATURE(text, resolution) \
-	PROPERTY(text, TEMPERATURE, VOLATILE, READ, .convert = (resolution), .how = WAY_TEMPERATURE)
+/* -55 to +125, at the ends within 2 degrees, a DS1822 within 3; 9 to 12 bits, 0.5 to 0.0625 */
+#define THERMOMETER_MEASURES(decimals) .measures = {-58, 128, DEGREES_C, decimals, true}
+#define THERMOMETER_TEMPERATURE(text, resolution, decimals) \
+	PROPERTY(text, TEMPERATURE, VOLATILE, READ, .convert = (resolution), \
+	         THERMOMETER_MEASURES(decimals), .how = WAY_TEMPERATURE)
 #define THERMOMETER_LIMIT(text, where) \
 	PROPERTY(text, TEMPERATURE, STABLE, BOTH, \
 	         FIELD(SCRATCHPAD, .at = (where), .is_signed = true), .how = WAY_LIMIT)
@@ -93,23 +96,23 @@ enum {
 		PROPERTY("errata/trim", UNSIGNED, VOLATILE, BOTH, .how = WAY_TRIM), \
 		PROPERTY("errata/trimblanket", YESNO, VOLATILE, BOTH, .how = WAY_TRIM_BLANKET), \
 		PROPERTY("errata/trimvalid", YESNO, VOLATILE, READ, .how = WAY_TRIM_VALID)
-#define THERMOMETER_LATEST THERMOMETER_TEMPERATURE("latesttemp", 0)
+#define THERMOMETER_LATEST THERMOMETER_TEMPERATURE("latesttemp", 0, 4)
 #define THERMOMETER_POWER PROPERTY("power", YESNO, VOLATILE, READ, .how = WAY_POWER)
 #define THERMOMETER_SCRATCHPAD \
 	PROPERTY("scratchpad", BINARY, VOLATILE, READ, .size = 9, FIELD(SCRATCHPAD))
 #define THERMOMETER_TEMPRES PROPERTY("tempres", UNSIGNED, STABLE, BOTH, .how = WAY_TEMPRES)
 /* At each resolution, the limits, and the resolution of the EEPROM. */
 #define THERMOMETER_TEMPERATURES \
-	THERMOMETER_TEMPERATURE("temperature", CONVERT_TEMPRES), \
-		THERMOMETER_TEMPERATURE("temperature10", 10), \
-		THERMOMETER_TEMPERATURE("temperature11", 11), \
-		THERMOMETER_TEMPERATURE("temperature12", 12), \
-		THERMOMETER_TEMPERATURE("temperature9", 9), \
+	THERMOMETER_TEMPERATURE("temperature", CONVERT_TEMPRES, 4), \
+		THERMOMETER_TEMPERATURE("temperature10", 10, 2), \
+		THERMOMETER_TEMPERATURE("temperature11", 11, 3), \
+		THERMOMETER_TEMPERATURE("temperature12", 12, 4), \
+		THERMOMETER_TEMPERATURE("temperature9", 9, 1), \
 		THERMOMETER_LIMIT("temphigh", SP_HIGH), THERMOMETER_LIMIT("templow", SP_LOW), \
 		THERMOMETER_TEMPRES
 /* DS18B20 and DS1822 */
 #define THERMOMETER_PROPERTIES \
-	THERMOMETER_ERRATA, THERMOMETER_TEMPERATURE("fasttemp", 9), THERMOMETER_LATEST, \
+	THERMOMETER_ERRATA, THERMOMETER_TEMPERATURE("fasttemp", 9, 1), THERMOMETER_LATEST, \
 		THERMOMETER_POWER, THERMOMETER_SCRATCHPAD, THERMOMETER_TEMPERATURES
 #define THERMOMETER_FAMILY .thermometer = true, .alarms = true, .forget = thermometer_forget
 

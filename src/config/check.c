@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/chips/facts.h"
 #include "hal/chips/find.h"
 #include "hal/owfs/path.h"
 #include "src/config/buses.h"
@@ -14,7 +15,6 @@
 #include "src/config/own.h"
 #include "src/config/property.h"
 #include "src/config/shared.h"
-#include "src/signal/quantity.h"
 
 struct check {
 	struct config_report *report;

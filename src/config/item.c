@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/chips/facts.h"
 #include "hal/owfs/path.h"
 #include "src/config/build.h"
 #include "src/config/item.h"
@@ -14,8 +15,6 @@
 #include "src/config/recorder.h"
 #include "src/config/scaling.h"
 #include "src/signal/attribute.h"
-#include "src/signal/family.h"
-#include "src/signal/quantity.h"
 #include "src/signal/value.h"
 
 /* How often a switch is read back: it costs a busy wire little. */

@@ -24,7 +24,7 @@
  *   pure functions       route, adoption, limit, guard, retry, alarm_fsm, alarm_text
  *
  * Room src/engine: the table of signals, lanes, alarms; no input or output. Uses src/config,
- * src/text, src/libows, src/shm, src/signal, hal/owfs, hal/bus.
+ * src/text, src/libows, src/shm, src/signal, hal/chips, hal/owfs, hal/bus.
  */
 #ifndef ENGINE_H
 #define ENGINE_H

@@ -2,7 +2,7 @@
 /*
  * Readings that mean a power fault: a thermometer that lost its supply answers 85 (its power-on
  * scratchpad), one whose conversion starved 127.94. On every bus they must not pass as good. Which
- * properties are such a thermometer's stands in signal/quantity.c.
+ * properties are such a thermometer's stands in hal/chips (property.measures).
  */
 #ifndef ENGINE_GUARD_H
 #define ENGINE_GUARD_H

@@ -6,6 +6,7 @@
 #ifndef ENGINE_TABLE_H
 #define ENGINE_TABLE_H
 
+#include "hal/chips/facts.h"
 #include "src/config/config.h"
 #include "src/engine/guard.h"
 #include "src/engine/limit.h"
@@ -13,7 +14,6 @@
 #include "src/shm/force.h"
 #include "src/shm/image.h"
 #include "src/signal/filter.h"
-#include "src/signal/quantity.h"
 #include "src/signal/value.h"
 #include "src/text/log.h"
 

@@ -16,6 +16,7 @@
 #include "src/owsctl/scan_rio.h"
 #include "src/owsctl/table.h"
 #include "src/owsctl/verbs.h"
+#include "src/scan/kind.h"
 #include "src/scan/scan.h"
 #include "src/show/json.h"
 
@@ -36,20 +37,18 @@ static const char *alarms(const struct scan_device *device)
 /* Write the values as "temperature12=21.5 ...". */
 static void show_values(const struct scan_device *device, char *out, size_t size)
 {
+	struct scan_property property;
 	size_t used = 0;
 
 	out[0] = '\0';
-	for (unsigned i = 0; device->kind && i < SCAN_PROPERTIES; i++) {
-		const char *name = device->kind->property[i].name;
+	for (unsigned i = 0; used < size && scan_property(device->family, i, &property); i++) {
 		const struct scan_value *value = &device->value[i];
 		int n;
 
-		if (!name || used >= size)
-			break;
 		/* of another chip with the same family code */
 		if (value->err == -ENOENT && device->identity[0])
 			continue;
-		n = snprintf(out + used, size - used, "%s%s=%s%s%s", used ? " " : "", name,
+		n = snprintf(out + used, size - used, "%s%s=%s%s%s", used ? " " : "", property.name,
 		             value->err ? "(" : "",
 		             value->err ? error_text(value->err) : value->text,
 		             value->err ? ")" : "");
@@ -89,13 +88,13 @@ static bool print_table(const struct scan *scan)
 
 static void print_values(struct json *json, const struct scan_device *device)
 {
-	json_object(json, "values");
-	for (unsigned i = 0; device->kind && i < SCAN_PROPERTIES; i++) {
-		const char *name = device->kind->property[i].name;
-		const struct scan_value *value = &device->value[i];
+	struct scan_property property;
 
-		if (!name)
-			break;
+	json_object(json, "values");
+	for (unsigned i = 0; scan_property(device->family, i, &property); i++) {
+		const struct scan_value *value = &device->value[i];
+		const char *name = property.name;
+
 		if (value->err)
 			json_null(json, name);
 		else if (target_is_number(value->text, strlen(value->text)))

@@ -10,6 +10,7 @@
 #include "src/config/rio_write.h"
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/scan_item.h"
+#include "src/scan/kind.h"
 #include "src/signal/error.h"
 #include "src/signal/value.h"
 
@@ -101,10 +102,11 @@ static bool choose_alias(const struct scan_names *names, const struct scan_devic
 
 static bool has_several(const struct scan_device *device)
 {
+	struct scan_property property;
 	unsigned n = 0;
 
-	for (unsigned i = 0; i < SCAN_PROPERTIES; i++)
-		n += device->kind->property[i].name && device->value[i].err != -ENOENT;
+	for (unsigned i = 0; scan_property(device->family, i, &property); i++)
+		n += device->value[i].err != -ENOENT;
 	return n > 1;
 }
 
@@ -129,9 +131,9 @@ static const char *choose(struct scan_names *names, const struct scan_device *de
 	return names->name[names->count - 1];
 }
 
-static void make_item(struct scan_names *names, const struct scan_device *device, unsigned i)
+static void make_item(struct scan_names *names, const struct scan_device *device,
+                      const struct scan_property *property, const struct scan_value *value)
 {
-	const struct scan_property *property = &device->kind->property[i];
 	const char *name = choose(names, device, property);
 	bool named = strncmp(name, device->alias, strlen(device->alias)) == 0;
 	char *described = named ? NULL : rio_quote(device->alias);
@@ -141,8 +143,7 @@ static void make_item(struct scan_names *names, const struct scan_device *device
 		snprintf(rate, sizeof(rate), "  PerFactor               %u\n",
 		         property->per_factor);
 	if (property->output)
-		snprintf(init, sizeof(init), "  InitValue               \"%s\"\n",
-		         device->value[i].text);
+		snprintf(init, sizeof(init), "  InitValue               \"%s\"\n", value->text);
 	fprintf(names->items,
 	        "%s# %s%s%s%s%s\n"
 	        "Item {\n"
@@ -164,13 +165,12 @@ static void make_item(struct scan_names *names, const struct scan_device *device
 }
 
 /* Does the property get an item? Prints the reason where the answer is a surprise. */
-static bool wanted(const struct scan_device *device, unsigned i, bool inputs_only)
+static bool wanted(const struct scan_device *device, const struct scan_property *property,
+                   const struct scan_value *value, bool inputs_only)
 {
-	const struct scan_property *property = &device->kind->property[i];
-	const struct scan_value *value = &device->value[i];
 	int64_t number;
 
-	if (!property->name || (property->output && inputs_only) || value->err == -ENOENT)
+	if ((property->output && inputs_only) || value->err == -ENOENT)
 		return false;
 	if (!property->output)
 		return true;
@@ -183,9 +183,11 @@ static bool wanted(const struct scan_device *device, unsigned i, bool inputs_onl
 
 void scan_make_items(struct scan_names *names, const struct scan_device *device, bool inputs_only)
 {
-	for (unsigned i = 0; device->kind && i < SCAN_PROPERTIES; i++)
-		if (wanted(device, i, inputs_only))
-			make_item(names, device, i);
+	struct scan_property property;
+
+	for (unsigned i = 0; scan_property(device->family, i, &property); i++)
+		if (wanted(device, &property, &device->value[i], inputs_only))
+			make_item(names, device, &property, &device->value[i]);
 }
 
 int scan_add_items(struct rio **rio, struct scan_names *names)

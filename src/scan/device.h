@@ -3,7 +3,7 @@
  * The devices that a scan finds, and the properties and values of each.
  *
  * Room src/scan: a target opened without an engine: its devices, and what they have. Uses src/show,
- * hal/owfs, hal/bus.
+ * hal/chips, hal/owfs, hal/bus.
  */
 #ifndef SCAN_DEVICE_H
 #define SCAN_DEVICE_H
@@ -11,9 +11,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "hal/chips/family.h"
 #include "src/libows/ows.h"
 
-/* What most people want of a device of some families. */
+/* What most people want of a device. */
 struct scan_property {
 	const char *name; /* "temperature12" */
 	const char *word; /* for the name of its signal: "temperature" */
@@ -22,11 +23,7 @@ struct scan_property {
 	unsigned per_factor; /* 0: owsd's default */
 };
 
-#define SCAN_PROPERTIES 4
-struct scan_kind {
-	const char *families;                           /* "22 28" */
-	struct scan_property property[SCAN_PROPERTIES]; /* name NULL after the last */
-};
+#define SCAN_PROPERTIES FAMILY_SCANS
 
 struct scan_value {
 	int err;
@@ -44,7 +41,6 @@ struct scan_device {
 	char type[SCAN_TYPE];         /* "": the target does not report it */
 	char alias[SCAN_ALIAS];       /* "": no alias */
 	char identity[SCAN_IDENTITY]; /* "DS18B20 clone, family B1"; "": the target has none */
-	const struct scan_kind *kind; /* NULL: owsd does not know the family */
 	struct scan_value value[SCAN_PROPERTIES];
 };
 

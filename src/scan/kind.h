@@ -3,13 +3,10 @@
 #ifndef SCAN_KIND_H
 #define SCAN_KIND_H
 
-#include <stdbool.h>
-#include <stdint.h>
+#include "src/scan/device.h"
 
-struct scan_kind;
-
-/* The kind of a family, or NULL. */
-const struct scan_kind *scan_kind_of(uint8_t family);
+/* The i-th of the family; false: it has no more. */
+bool scan_property(uint8_t family, unsigned i, struct scan_property *property);
 /* Does its code not decide which chip it is? Then devices have the property "identity". */
 bool scan_has_identity(uint8_t family);
 

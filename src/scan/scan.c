@@ -62,7 +62,6 @@ static bool device_of(const char *line, struct scan_device *device)
 	int n = snprintf(device->path, sizeof(device->path), "/%.*s%s", way, path.device.text, rom);
 	if (n < 0 || (size_t)n >= sizeof(device->path))
 		return false;
-	device->kind = scan_kind_of(device->family);
 	return true;
 }
 
@@ -185,15 +184,22 @@ static void locate(struct target *target, struct scan *scan, char *text)
 	}
 }
 
-static const char *property_of(const struct scan_device *device, unsigned ask)
+/* NULL: not asked. *output: see scan_property. */
+static const char *property_of(const struct scan_device *device, unsigned ask, bool *output)
 {
+	struct scan_property property;
+
+	*output = false;
 	if (ask == ASK_TYPE)
 		return "type";
 	if (ask == ASK_ALIAS)
 		return "alias";
 	if (ask == ASK_IDENTITY)
 		return scan_has_identity(device->family) ? "identity" : NULL;
-	return device->kind ? device->kind->property[ask - ASK_PROPERTIES].name : NULL;
+	if (!scan_property(device->family, ask - ASK_PROPERTIES, &property))
+		return NULL;
+	*output = property.output;
+	return property.name;
 }
 
 /* The type was asked for before it was known which chip it is. */
@@ -232,6 +238,7 @@ int scan_read(struct target *target, struct scan_device *devices, unsigned devic
 	struct question *questions = calloc(room + 1, sizeof(*questions));
 	struct ask *asks = calloc(room + 1, sizeof(*asks));
 	unsigned count = 0;
+	bool output;
 
 	if (!questions || !asks) {
 		free(questions);
@@ -240,26 +247,24 @@ int scan_read(struct target *target, struct scan_device *devices, unsigned devic
 	}
 	for (unsigned i = 0; i < room; i++) {
 		struct scan_device *device = &devices[i / ASKS];
-		const char *name = property_of(device, i % ASKS);
+		const char *name = property_of(device, i % ASKS, &output);
 		struct question *question = &questions[count];
 
 		if (!name)
 			continue;
 		snprintf(question->path, sizeof(question->path), "%s/%s", device->path, name);
-		asks[count++].req = (struct bus_req){
-			.op = BUS_READ,
-			.prio = BUS_GUEST,
-			.path = question->path,
-			.fresh = i % ASKS >= ASK_PROPERTIES &&
-		                 (fresh ||
-		                  device->kind->property[i % ASKS - ASK_PROPERTIES].output),
-			.data = (uint8_t *)question->text,
-			.len = sizeof(question->text)};
+		asks[count++].req = (struct bus_req){.op = BUS_READ,
+		                                     .prio = BUS_GUEST,
+		                                     .path = question->path,
+		                                     .fresh = output ||
+		                                              (fresh && i % ASKS >= ASK_PROPERTIES),
+		                                     .data = (uint8_t *)question->text,
+		                                     .len = sizeof(question->text)};
 	}
 	target_ask(target, asks, count);
 	count = 0;
 	for (unsigned i = 0; i < room; i++)
-		if (property_of(&devices[i / ASKS], i % ASKS)) {
+		if (property_of(&devices[i / ASKS], i % ASKS, &output)) {
 			take_answer(&devices[i / ASKS], i % ASKS, &asks[count],
 			            questions[count].text);
 			count++;

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "hal/chips/find.h"
 #include "hal/owfs/frame.h"
 #include "src/serve/directory.h"
 
@@ -12,42 +13,6 @@ static const char *const in_root[] = {"uncached",   "settings",  "system",
                                       "statistics", "structure", "simultaneous",
                                       "alarm",      "signals",   NULL};
 #define IN_UNCACHED 1 /* the entries from here on are in /uncached too */
-
-/* The flags that owserver reports with a list for each family in it. */
-enum {
-	FLAG_RESUME = 0x0001,
-	FLAG_ALARM = 0x0002,
-	FLAG_OVERDRIVE = 0x0004,
-	FLAG_CHAIN = 0x2000,
-	FLAG_VOLT = 0x4000,
-	FLAG_TEMPERATURE = 0x8000,
-};
-static const struct {
-	uint16_t flags;
-	uint8_t families[20];
-} family_flags[] = {
-	{FLAG_RESUME, {0x18, 0x1c, 0x29, 0x2c, 0x2d, 0x37, 0x3a, 0x41, 0x43, 0xed, 0xfc}},
-	{FLAG_ALARM,
-         {0x04, 0x05, 0x10, 0x12, 0x1c, 0x20, 0x21, 0x22, 0x28, 0x29, 0x2c, 0x35, 0x3b, 0x41, 0x42,
-          0x7e, 0xdd, 0xfc, 0xff}},
-	{FLAG_OVERDRIVE,
-         {0x0a, 0x0c, 0x0f, 0x18, 0x1a, 0x1c, 0x1d, 0x20, 0x21, 0x23, 0x29, 0x2c, 0x2d, 0x37, 0x3a,
-          0x41, 0x43, 0x8f}},
-	{FLAG_CHAIN, {0x42}},
-	{FLAG_VOLT, {0x1e, 0x20, 0x26, 0xa6}},
-	{FLAG_TEMPERATURE,
-         {0x10, 0x1e, 0x21, 0x22, 0x26, 0x28, 0x3b, 0x41, 0x42, 0x7e, 0xa6, 0xfe}},
-};
-
-static uint32_t flags_of(uint8_t family)
-{
-	uint32_t flags = 0;
-
-	for (size_t i = 0; i < sizeof(family_flags) / sizeof(family_flags[0]); i++)
-		if (memchr(family_flags[i].families, family, sizeof(family_flags[i].families)))
-			flags |= family_flags[i].flags;
-	return flags;
-}
 
 void directory_begin(struct directory *directory)
 {
@@ -220,7 +185,7 @@ static size_t as_asked(struct directory *directory, const struct directory_form 
 
 	if (!form->node->devices || rom_parse(*name, len, rom))
 		return len;
-	directory->flags |= flags_of(rom[0]);
+	directory->flags |= family_of(rom[0])->flags;
 	*name = text;
 	return (size_t)rom_print(rom, format > ROM_FIC ? ROM_F_I : (enum rom_format)format, text);
 }

@@ -4,7 +4,7 @@
  * signed integer for the other number types; strings have none. All functions use the C locale and
  * allocate nothing.
  *
- * Room src/signal: types, values and attributes of signals. Uses hal/owfs.
+ * Room src/signal: types, values and attributes of signals. Uses no other.
  */
 #ifndef SIGNAL_VALUE_H
 #define SIGNAL_VALUE_H

@@ -11,6 +11,7 @@
 #include "hal/bus/time.h"
 #include "hal/owfs/path.h"
 #include "src/libows/open.h"
+#include "src/scan/kind.h"
 #include "src/scan/scan.h"
 #include "src/scan/target.h"
 #include "src/show/json.h"
@@ -54,23 +55,21 @@ static void put_signals(struct json *json, const struct ows *h, const uint8_t ro
 
 static void put_properties(struct json *json, const struct scan_device *device)
 {
+	struct scan_property property;
 	char words[ERROR_WORDS];
 
 	json_array(json, "properties");
-	for (unsigned i = 0; device->kind && i < SCAN_PROPERTIES; i++) {
-		const struct scan_property *property = &device->kind->property[i];
+	for (unsigned i = 0; scan_property(device->family, i, &property); i++) {
 		const struct scan_value *value = &device->value[i];
 
-		if (!property->name)
-			break;
 		/* of another chip with the same family code */
 		if (value->err == -ENOENT && device->identity[0])
 			continue;
 		json_object(json, NULL);
-		json_string(json, "name", property->name);
-		json_string(json, "word", property->word);
-		json_string(json, "type", value_type_name(property->type));
-		json_bool(json, "output", property->output);
+		json_string(json, "name", property.name);
+		json_string(json, "word", property.word);
+		json_string(json, "type", value_type_name(property.type));
+		json_bool(json, "output", property.output);
 		json_string(json, "value", value->err ? NULL : value->text);
 		json_string(json, "why", value->err ? error_words(value->err, words) : NULL);
 		json_object_end(json);

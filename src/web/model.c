@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/chips/facts.h"
 #include "hal/owfs/path.h"
 #include "src/config/edit_block.h"
 #include "src/config/item.h"
-#include "src/signal/family.h"
 #include "src/signal/value.h"
 #include "src/web/model.h"
 

@@ -5,7 +5,7 @@
  *
  * Room src/web: the program owsd-web: the page of an instance, its signals as JSON and as events.
  * Uses src/face, src/scan, src/show, src/config, src/board, src/text, src/libows, src/libhistory,
- * src/service, src/shm, src/signal, hal/owfs, hal/bus.
+ * src/service, src/shm, src/signal, hal/chips, hal/owfs, hal/bus.
  */
 #ifndef WEB_WEB_H
 #define WEB_WEB_H

@@ -101,32 +101,57 @@ static const struct property *find(const struct family *family, const char *name
 
 static void test_what_a_scan_reads_is_there_in_our_own_families(void)
 {
+	struct scan_property property;
 	unsigned properties = 0;
 
 	for (unsigned n = 0; family_nth(n); n++) {
 		const struct family *family = family_nth(n);
-		const struct scan_kind *kind = scan_kind_of(family->code);
+		unsigned count = 0;
 
-		for (unsigned i = 0; kind && i < SCAN_PROPERTIES && kind->property[i].name; i++) {
-			const struct property *property = find(family, kind->property[i].name);
-
-			TEST_ASSERT_NOT_NULL_MESSAGE(property, kind->property[i].name);
-			if (kind->property[i].output)
-				TEST_ASSERT_NOT_NULL(property_writer(family, property));
-			properties++;
+		for (const struct family_scan *s = family->scan; s && s->name; s++, count++) {
+			TEST_ASSERT_TRUE_MESSAGE(scan_property(family->code, count, &property),
+			                         s->name);
+			if (property.output)
+				TEST_ASSERT_NOT_NULL(
+					property_writer(family, find(family, s->name)));
 		}
+		TEST_ASSERT_LESS_OR_EQUAL_UINT_MESSAGE(SCAN_PROPERTIES, count, family->type);
+		TEST_ASSERT_FALSE(scan_property(family->code, count, &property));
+		properties += count;
 	}
 	TEST_ASSERT_GREATER_THAN_UINT(20, properties);
 }
 
-static void test_an_identity_is_asked_for_where_our_families_have_one(void)
+static void check_signal(uint8_t code, const char *name, enum ows_type type, bool output,
+                         unsigned per_factor)
 {
-	for (int code = 1; code < 256; code++) {
-		const struct family *family = family_of((uint8_t)code);
+	struct scan_property property;
+	unsigned i = 0;
 
-		TEST_ASSERT_EQUAL_INT(family_property(family, NULL, "identity", 8) != NULL,
-		                      scan_has_identity((uint8_t)code));
-	}
+	while (scan_property(code, i, &property) && strcmp(property.name, name) != 0)
+		i++;
+	TEST_ASSERT_EQUAL_STRING(name, property.name);
+	TEST_ASSERT_EQUAL_INT_MESSAGE(type, property.type, name);
+	TEST_ASSERT_EQUAL_MESSAGE(output, property.output, name);
+	TEST_ASSERT_EQUAL_UINT_MESSAGE(per_factor, property.per_factor, name);
+}
+
+static void test_the_type_of_a_signal_is_that_of_the_property(void)
+{
+	check_signal(0x28, "temperature12", OWS_DOUBLE, false, 10);
+	check_signal(0x26, "VDD", OWS_DOUBLE, false, 10);
+	check_signal(0x01, "present", OWS_BOOL, false, 0);
+	check_signal(0x05, "PIO", OWS_BOOL, true, 0);
+	check_signal(0x3a, "sensed.BYTE", OWS_BYTE, false, 0);
+	check_signal(0x3a, "PIO.BYTE", OWS_BYTE, true, 0);
+	check_signal(0x1d, "counter.B", OWS_DWORD, false, 0);
+}
+
+static void test_an_identity_is_asked_for_where_the_code_does_not_tell(void)
+{
+	TEST_ASSERT_TRUE(scan_has_identity(0x28));
+	TEST_ASSERT_FALSE(scan_has_identity(0x10));
+	TEST_ASSERT_FALSE(scan_has_identity(0xfa));
 }
 
 int main(void)
@@ -137,6 +162,7 @@ int main(void)
 	RUN_TEST(test_numbers_are_those_that_json_has);
 	RUN_TEST(test_uncached_is_taken_from_the_path);
 	RUN_TEST(test_what_a_scan_reads_is_there_in_our_own_families);
-	RUN_TEST(test_an_identity_is_asked_for_where_our_families_have_one);
+	RUN_TEST(test_the_type_of_a_signal_is_that_of_the_property);
+	RUN_TEST(test_an_identity_is_asked_for_where_the_code_does_not_tell);
 	return UNITY_END();
 }

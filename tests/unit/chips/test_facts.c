@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* Tests of the ranges that properties of the chip families can have. */
+/* What the tables of the families say of a path: names, ranges, units and decimals. */
 #include <math.h>
 #include <stdio.h>
 
 #include "unity.h"
 
-#include "src/signal/quantity.h"
+#include "hal/chips/facts.h"
+#include "hal/chips/find.h"
 
 void setUp(void)
 {
@@ -150,6 +151,17 @@ static void test_the_decimals_hold_one_step_of_the_chip(void)
 	TEST_ASSERT_EQUAL_INT(2, of("/cellar/humidity").decimals);
 }
 
+static void test_a_family_is_called_as_its_usual_chip(void)
+{
+	TEST_ASSERT_EQUAL_STRING("DS18B20", family_name(0x28));
+	TEST_ASSERT_EQUAL_STRING("EDS", family_name(0x7e));
+	TEST_ASSERT_EQUAL_STRING("DS28E17", family_name(0x19));
+	TEST_ASSERT_NULL(family_name(0));
+	TEST_ASSERT_NULL(family_name(0xfa));
+	for (unsigned n = 0; family_nth(n); n++)
+		TEST_ASSERT_NOT_NULL(family_name(family_nth(n)->code));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -157,5 +169,6 @@ int main(void)
 	RUN_TEST(test_the_range_is_the_chips_own);
 	RUN_TEST(test_an_alias_excludes_only_what_nothing_can_measure);
 	RUN_TEST(test_the_decimals_hold_one_step_of_the_chip);
+	RUN_TEST(test_a_family_is_called_as_its_usual_chip);
 	return UNITY_END();
 }

@@ -1,18 +1,23 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The values that a measured property of a chip family can have, by data sheet: the range that the
- * chip can measure, unit and decimals of its results, and whether a power fault looks like a value.
+ * What the tables of the families say to programs that show or judge values: what a chip is called,
+ * and the quantity that a property measures.
  */
-#ifndef SIGNAL_QUANTITY_H
-#define SIGNAL_QUANTITY_H
+#ifndef HAL_CHIPS_FACTS_H
+#define HAL_CHIPS_FACTS_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
+/* "DS18B20"; NULL: not known. Other chips may have the same code: it is the usual one. */
+const char *family_name(uint8_t code);
+
+/* The row of property.measures. */
 struct quantity {
 	double least, most; /* a number outside is never a true measurement */
 	int decimals;       /* of its resolution */
 	bool starves;       /* a thermometer that reports 85 or 127.94 when it lacks power */
-	const char *unit;   /* "" for a plain number; UTF-8 */
+	const char *unit;   /* "" for a plain number; UTF-8; lives as long as the program */
 };
 
 /*
