@@ -22,13 +22,6 @@ enum { READ_POWER = 0xB4 };
 /* A clone's busy slots begin as late as this. */
 #define LATE_NS NS_PER_MS
 
-/*
- * What genuine chips took at 12 bits in the catalogue's measurements: each chip its own time within
- * these, each conversion up to one hundredth more.
- */
-#define SPREAD_MS 590
-#define SPREAD_MORE_MS 19
-
 /* tWR of the EEPROM, all data sheets: 10 ms at most. */
 #define COPY_NS (10 * NS_PER_MS)
 
@@ -49,38 +42,11 @@ static unsigned resolution(const struct sim_slave *slave)
 	return is_s20(slave) || s->fixed ? 12 : 9u + (s->scratchpad[4] >> 5 & 3);
 }
 
-/* xorshift64*: a seed gives the same numbers everywhere. */
-static unsigned random_below(struct sim_thermometer *s, unsigned most)
-{
-	uint64_t x = s->random;
-
-	x ^= x >> 12;
-	x ^= x << 25;
-	x ^= x >> 27;
-	s->random = x;
-	return (unsigned)((x * 2685821657736338717u) >> 40) % most;
-}
-
-static int64_t spread_time(struct sim_slave *slave)
-{
-	struct sim_thermometer *s = state(slave);
-	unsigned sum = 0;
-
-	for (unsigned i = 1; i < 7; i++)
-		sum = sum * 31 + slave->rom[i];
-	if (!s->random)
-		s->random = sum + 1;
-	int64_t full = (SPREAD_MS + sum % (SPREAD_MORE_MS + 1)) * NS_PER_MS;
-	full += full / 100000 * random_below(s, 1000);
-	return full >> (12 - resolution(slave));
-}
-
 /* The time of a conversion at the present resolution, in ns. */
 static int64_t sim_thermometer_conversion(struct sim_slave *slave)
 {
 	const struct sim_thermometer *s = slave->state;
-	if (s->spread)
-		return spread_time(slave);
+
 	/* tCONV: 93.75, 187.5, 375, 750 ms at most. */
 	int64_t full = s->clone ? s->clone->ms[resolution(slave) - 9] * NS_PER_MS
 	                        : (750 * NS_PER_MS) >> (12 - resolution(slave));
@@ -322,8 +288,6 @@ static int option(struct sim_slave *slave, const char *name, double value)
 		if (whole < 1 || whole > 200)
 			return -ERANGE;
 		s->percent = (int)whole;
-	} else if (strcmp(name, "spread") == 0 && !is_s20(slave)) {
-		s->spread = whole != 0;
 	} else if (strcmp(name, "recall") == 0) {
 		s->no_recall = whole == 0;
 	} else if (strcmp(name, "upset") == 0) {

@@ -33,11 +33,9 @@ struct sim_thermometer {
 	bool fixed;                    /* a clone: stays at 12 bits, whatever is written */
 	int percent;                   /* of the conversion time by the data sheet; 0 means 100 */
 	bool alarm, copying;
-	bool once;       /* a Convert T while it converts is ignored; else it begins anew */
-	bool spread;     /* conversions take 590 to 615 ms at 12 bits, as those of genuine chips */
-	uint64_t random; /* ... how long the next one does */
-	bool upset;      /* while it converts, the temperature in the scratchpad is not the last */
-	bool no_recall;  /* a clone: does not know Recall E2 */
+	bool once;      /* a Convert T while it converts is ignored; else it begins anew */
+	bool upset;     /* while it converts, the temperature in the scratchpad is not the last */
+	bool no_recall; /* a clone: does not know Recall E2 */
 };
 
 /* MAX31826, with its memory, and MAX31850. */
