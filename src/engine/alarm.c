@@ -245,7 +245,7 @@ static uint32_t facts_after(struct alarm_machine *m, struct lane *lane, const st
 		i->cycle_of[ALARM_POR_WAS_READ] = m->list.cycle;
 		i->por_set = set;
 		if (set)
-			alarm_por_set(m, lane, i, now_ns);
+			alarm_por_set(m, lane, i);
 		else
 			alarm_por_clear(m, e, i);
 		return FACT_DONE | (set ? FACT_NON_ZERO : 0);

@@ -69,11 +69,12 @@ static void count_unarmed(struct lane *lane, struct alarm_item *i, int err, cons
 
 /* --- Restarts -------------------------------------------------------------------------------- */
 
-void alarm_por_set(struct alarm_machine *m, struct lane *lane, struct alarm_item *i, int64_t now_ns)
+void alarm_por_set(struct alarm_machine *m, struct lane *lane, struct alarm_item *i)
 {
 	if (i->restart.known && !i->restart.differs)
 		return;
-	engine_power_on_reset(lane->engine, lane, i, now_ns);
+	engine_power_on_reset(lane, &lane->engine->table.devices[i->device],
+	                      &lane->engine->table.signals[i->row]);
 	for (uint32_t k = 0; k < m->count; k++) {
 		struct alarm_item *other = m->items[k];
 

@@ -11,8 +11,7 @@
 bool alarm_takes_part(const struct alarm_item *item, int64_t now_ns);
 
 /* por was read: not 0, which is a restart if none is known; 0, or 0 was written and read back. */
-void alarm_por_set(struct alarm_machine *m, struct lane *lane, struct alarm_item *item,
-                   int64_t now_ns);
+void alarm_por_set(struct alarm_machine *m, struct lane *lane, struct alarm_item *item);
 void alarm_por_clear(struct alarm_machine *m, struct engine *e, const struct alarm_item *item);
 
 /* Why a restart is not over: SetAlarm was refused, is not defined; por was refused or stays set. */

@@ -78,17 +78,17 @@ void engine_alarm_rests(struct engine *e, struct alarm_item *item, int64_t now_n
 	e->published = true;
 }
 
-void engine_power_on_reset(struct engine *e, struct lane *lane, const struct alarm_item *item,
-                           int64_t now_ns)
+void engine_power_on_reset(struct lane *lane, const struct device *d, const struct signal *shown)
 {
-	const struct device *d = &e->table.devices[item->device];
-	struct ows_journal_entry entry = alarm_entry(&e->table.signals[item->row], OWS_ALARM_POR,
-	                                             OWS_ALARM_RAISED, now_ns);
+	struct engine *e = lane->engine;
+	struct ows_journal_entry entry = alarm_entry(shown, OWS_ALARM_POR, OWS_ALARM_RAISED,
+	                                             e->time.now_ns);
 
 	image_alarm(e->image, &entry);
 	e->published = true;
 	lane->counters.power_on_resets++;
-	log_notice(e->log, "%s: the device has restarted", item->strings.path);
+	log_notice(e->log, "%s (%s): the device has restarted", shown->item->name,
+	           shown->item->path);
 	for (uint32_t k = 0; k < d->count; k++) {
 		struct signal *s = &e->table.signals[e->table.device_rows[d->first + k]];
 

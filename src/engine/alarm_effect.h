@@ -12,9 +12,11 @@ void engine_alarm_raised(struct engine *e, struct lane *lane, struct alarm_item 
 void engine_alarm_ended(struct engine *e, struct alarm_item *item);
 /* Its latch was read 0, or its device is not listed: the journal has the return. */
 void engine_alarm_rests(struct engine *e, struct alarm_item *item, int64_t now_ns);
-/* The device's por was read non-zero: its outputs are not what was written. */
-void engine_power_on_reset(struct engine *e, struct lane *lane, const struct alarm_item *item,
-                           int64_t now_ns);
+/*
+ * The device's por was read non-zero: its outputs are not what was written. The journal and the log
+ * show it of one of its signals.
+ */
+void engine_power_on_reset(struct lane *lane, const struct device *d, const struct signal *shown);
 /* The bus has no alarm search: the items are ordinary inputs. */
 void engine_alarm_polls(struct engine *e, struct alarm_machine *m);
 

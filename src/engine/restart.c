@@ -8,16 +8,14 @@
 #include <string.h>
 
 #include "hal/owfs/path.h"
+#include "src/engine/alarm_effect.h"
 #include "src/engine/alarm_item.h"
 #include "src/engine/alarm_text.h"
 #include "src/engine/due.h"
 #include "src/engine/restart.h"
 #include "src/engine/retry.h"
-#include "src/engine/schedule.h"
 #include "src/engine/slots.h"
 #include "src/engine/state.h"
-#include "src/shm/entries.h"
-#include "src/text/log.h"
 
 static bool is_watched(const struct alarm_machine *m, uint32_t device)
 {
@@ -70,36 +68,6 @@ bool engine_restart_ask(struct lane *lane, struct slot *slot, int64_t now_ns)
 	return true;
 }
 
-static void write_again(struct lane *lane, const struct device *d)
-{
-	struct engine *e = lane->engine;
-	struct ows_journal_entry entry = {
-		.occurred_ns = e->time.now_ns,
-		.kind = OWS_ALARM_POR,
-		.event = OWS_ALARM_RAISED,
-	};
-	bool entered = false;
-
-	lane->counters.power_on_resets++;
-	for (uint32_t k = 0; k < d->count; k++) {
-		struct signal *s = &e->table.signals[e->table.device_rows[d->first + k]];
-
-		if (s->lane != lane->index || !s->item->output)
-			continue;
-		s->command.confirmed = false;
-		engine_write_check(e, s);
-		if (entered)
-			continue;
-		entered = true;
-		entry.record = s->record;
-		entry.quality = s->sample.quality;
-		image_alarm(e->image, &entry);
-		e->published = true;
-		log_notice(e->log, "%s (%s): the device has restarted", s->item->name,
-		           s->item->path);
-	}
-}
-
 void engine_restart_done(struct lane *lane, const struct slot *slot,
                          const struct bus_answer *answer)
 {
@@ -112,6 +80,13 @@ void engine_restart_done(struct lane *lane, const struct slot *slot,
 		return;
 	}
 	d->por = set ? POR_SET : POR_CLEAR;
-	if (set && was_clear)
-		write_again(lane, d);
+	for (uint32_t k = 0; set && was_clear && k < d->count; k++) {
+		const struct table *table = &lane->engine->table;
+		const struct signal *s = &table->signals[table->device_rows[d->first + k]];
+
+		if (s->lane == lane->index && s->item->output) {
+			engine_power_on_reset(lane, d, s);
+			return;
+		}
+	}
 }
