@@ -8,8 +8,8 @@
 #include "src/config/build.h"
 #include "src/config/buses.h"
 #include "src/config/relative.h"
-#include "src/config/tag.h"
 #include "src/config/targets.h"
+#include "src/signal/hash.h"
 
 static void keep_option(struct build *build, struct config_bus *bus, enum option option,
                         const struct option_value *value)
@@ -93,10 +93,10 @@ static uint64_t hash_of(const char *file)
 	/* whoever has made it a pipe meanwhile does not hold a reload */
 	int fd = open(file, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
 	FILE *in = fd < 0 ? NULL : fdopen(fd, "r");
-	uint64_t hash = TAG_BEGIN;
+	uint64_t hash = HASH_BEGIN;
 
 	for (int i = 0, c; in && i < FILE_MAX && (c = getc(in)) != EOF; i++)
-		hash = tag_add(hash, (unsigned char)c);
+		hash = hash_text(hash, &(char){(char)c}, 1);
 	if (in)
 		fclose(in);
 	else if (fd >= 0)

@@ -19,6 +19,7 @@
 #include "src/shm/owner.h"
 #include "src/shm/porter.h"
 #include "src/shm/shelves.h"
+#include "src/signal/hash.h"
 
 #define BOOT_ID "/proc/sys/kernel/random/boot_id"
 
@@ -142,7 +143,7 @@ static uint64_t boot_number(void)
 	int c;
 
 	while (file && (c = fgetc(file)) != EOF)
-		number = (number ^ (uint64_t)c) * UINT64_C(0x100000001b3);
+		number = hash_text(number, &(char){(char)c}, 1);
 	if (file)
 		fclose(file);
 	return number;

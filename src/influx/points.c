@@ -8,6 +8,7 @@
 #include "hal/bus/time.h"
 #include "src/face/moment.h"
 #include "src/influx/points.h"
+#include "src/signal/hash.h"
 #include "src/text/influx.h"
 
 #define FIELDS (INFLUX_FIELDS + 16) /* and the quality */
@@ -34,10 +35,8 @@ void points_fields(const struct ows_value *v, const char *text, char *fields, si
 
 static uint64_t hash_of(const char *text)
 {
-	uint64_t hash = 0xcbf29ce484222325; /* FNV-1a */
+	uint64_t hash = hash_text(HASH_BEGIN, text, strlen(text));
 
-	for (; *text; text++)
-		hash = (hash ^ (uint8_t)*text) * 0x100000001b3;
 	return hash ? hash : 1;
 }
 

@@ -18,6 +18,7 @@
 #include "src/mqtt/broker.h"
 #include "src/mqtt/client.h"
 #include "src/mqtt/stream.h"
+#include "src/signal/hash.h"
 
 #define KEEPALIVE_S 30
 #define ANSWER_NS (15 * NS_PER_S) /* for TCP, TLS and CONNACK together */
@@ -118,7 +119,7 @@ static void fail(struct broker *b, const char *why, const char *remedy, int64_t 
 	if (choose(b, was_connected, now_ns))
 		return;
 	b->failures++;
-	print = stream_hash(words, strlen(words), 0);
+	print = hash_text(HASH_BEGIN, words, strlen(words));
 	if (print != b->logged[way])
 		log_warning(b->face->log, "%s", words);
 	b->logged[way] = print;

@@ -10,6 +10,7 @@
 #include "src/mqtt/entity.h"
 #include "src/show/names.h"
 #include "src/signal/error.h"
+#include "src/signal/hash.h"
 #include "src/signal/value.h"
 
 #define OPEN_NS NS_PER_S
@@ -17,7 +18,7 @@
 
 static void refuse(struct commands *c, const char *name, const char *why, int64_t now_ns)
 {
-	uint64_t print = stream_hash(name, strlen(name), stream_hash(why, strlen(why), 0));
+	uint64_t print = hash_text(hash_text(HASH_BEGIN, why, strlen(why)), name, strlen(name));
 	uint64_t count = log_rate(&c->log_rates[print % COMMANDS_RATES], now_ns);
 	char others[LOG_OTHERS];
 

@@ -8,6 +8,7 @@
 #include "src/face/moment.h"
 #include "src/mqtt/plain.h"
 #include "src/show/when.h"
+#include "src/signal/hash.h"
 #include "src/signal/value.h"
 
 #define REPEAT_MOST_NS (300 * NS_PER_S)
@@ -190,7 +191,8 @@ bool plain_value(struct stream *s, struct row *row)
 		return false;
 	if (s->live && plain_is_key(row) && !publish_key(s, row, &v))
 		return false;
-	print = ows_good(v.quality) ? stream_hash(text, strlen(text), v.quality) : v.quality;
+	print = ows_good(v.quality) ? hash_text(HASH_BEGIN ^ v.quality, text, strlen(text))
+	                            : v.quality;
 	if (row->published && print == row->print &&
 	    !(repeat_ns && ows_good(v.quality) && now_ns - row->published_ns >= repeat_ns))
 		return true;

@@ -6,15 +6,6 @@
 
 #include "src/mqtt/stream.h"
 
-uint64_t stream_hash(const char *text, size_t len, uint64_t seed)
-{
-	uint64_t number = 0xcbf29ce484222325u ^ seed;
-
-	for (size_t i = 0; i < len; i++)
-		number = (number ^ (unsigned char)text[i]) * 0x100000001b3u;
-	return number;
-}
-
 /* --- Messages -------------------------------------------------------------------------------- */
 
 void stream_message(struct stream *s, struct json *json)

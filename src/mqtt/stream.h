@@ -144,6 +144,5 @@ bool stream_pump(struct stream *s);
 void stream_message(struct stream *s, struct json *json);
 bool stream_put(struct stream *s, const char *topic, bool retain);
 bool stream_put_text(struct stream *s, const char *topic, const char *text, bool retain);
-uint64_t stream_hash(const char *text, size_t len, uint64_t seed);
 
 #endif

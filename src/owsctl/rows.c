@@ -8,6 +8,7 @@
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/rows.h"
 #include "src/show/names.h"
+#include "src/signal/hash.h"
 
 static int add(struct ows *h, struct rows *rows, const char *name, int signal,
                const struct ows_info *info)
@@ -132,20 +133,11 @@ bool rows_have_alarms(struct ows *h, const struct rows *rows)
 	return false;
 }
 
-static uint64_t hash(const char *text, size_t len)
-{
-	uint64_t h = UINT64_C(0xcbf29ce484222325);
-
-	for (size_t i = 0; i < len; i++)
-		h = (h ^ (unsigned char)text[i]) * UINT64_C(0x100000001b3);
-	return h;
-}
-
 bool row_changed(struct row *row, const struct reading *reading)
 {
 	uint8_t quality = reading_filled(reading) ? reading->value.quality : 0;
 	int32_t err = reading_filled(reading) ? reading->value.err : reading->err;
-	uint64_t text_hash = hash(reading->text, reading->len);
+	uint64_t text_hash = hash_text(HASH_BEGIN, reading->text, reading->len);
 	bool changed = !row->seen || row->quality != quality || row->err != err ||
 	               row->text_hash != text_hash || row->stands != row->alarms.stands ||
 	               row->unarmed != row->alarms.unarmed ||

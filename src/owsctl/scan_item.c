@@ -12,6 +12,7 @@
 #include "src/owsctl/scan_item.h"
 #include "src/scan/kind.h"
 #include "src/signal/error.h"
+#include "src/signal/hash.h"
 #include "src/signal/value.h"
 
 bool scan_names_init(struct scan_names *names, size_t room)
@@ -38,12 +39,9 @@ void scan_names_free(struct scan_names *names)
 /* The name's place in the hash table, or the free place for it. Half of the places stay free. */
 static unsigned *find(const struct scan_names *names, const char *name)
 {
-	uint32_t hash = 2166136261u; /* FNV-1a */
-	unsigned at;
+	unsigned at = (unsigned)hash_text(HASH_BEGIN, name, strlen(name)) & (names->places - 1);
 
-	for (const char *p = name; *p; p++)
-		hash = (hash ^ (unsigned char)*p) * 16777619u;
-	for (at = hash & (names->places - 1); names->place[at]; at = (at + 1) & (names->places - 1))
+	for (; names->place[at]; at = (at + 1) & (names->places - 1))
 		if (!strcmp(names->name[names->place[at] - 1], name))
 			break;
 	return &names->place[at];

@@ -69,12 +69,3 @@ int64_t rule_next_turn(const struct config_record *rule, int64_t wall_ns)
 		return INT64_MAX;
 	return (slot_of(rule, wall_ns) + 1) * rule->interval_ns;
 }
-
-int64_t rule_hash(const char *text, uint32_t len)
-{
-	uint64_t hash = 0xcbf29ce484222325; /* FNV-1a */
-
-	for (uint32_t i = 0; i < len; i++)
-		hash = (hash ^ (uint8_t)text[i]) * 0x100000001b3;
-	return (int64_t)hash;
-}

@@ -37,7 +37,4 @@ bool rule_interval(const struct rule_kept *kept, const struct rule_sample *sampl
 /* The wall-clock time of the next turn; INT64_MAX without an interval. */
 int64_t rule_next_turn(const struct config_record *rule, int64_t wall_ns);
 
-/* A string's text as the integer of a sample. */
-int64_t rule_hash(const char *text, uint32_t len);
-
 #endif

@@ -8,6 +8,7 @@
 #include "src/config/recorder.h"
 #include "src/face/moment.h"
 #include "src/recorder/series.h"
+#include "src/signal/hash.h"
 
 #define TEXT_MAX 1025 /* of a string signal, with NUL */
 
@@ -179,7 +180,7 @@ static bool get(struct ows *ows, int signal, int64_t now_ns, struct ows_value *v
 	                               .integer = v->integer,
 	                               .measured_ns = v->measured_ns};
 	if (v->type == OWS_STRING)
-		sample->integer = rule_hash(text, (uint32_t)strlen(text));
+		sample->integer = (int64_t)hash_text(HASH_BEGIN, text, strlen(text));
 	return true;
 }
 

@@ -7,6 +7,7 @@
 #include "hal/chips/find.h"
 #include "hal/owfs/frame.h"
 #include "src/serve/directory.h"
+#include "src/signal/hash.h"
 
 /* The entries of the root beside devices and buses, in the order of owserver. */
 static const char *const in_root[] = {"uncached",   "settings",  "system",
@@ -26,22 +27,13 @@ uint8_t *directory_room(struct directory *directory, uint32_t *room)
 	return (uint8_t *)directory->raw + directory->len;
 }
 
-static uint32_t hash(const char *name, size_t len)
-{
-	uint32_t h = 2166136261u;
-
-	for (size_t i = 0; i < len; i++)
-		h = (h ^ (uint8_t)name[i]) * 16777619u;
-	return h ^ h >> 15;
-}
-
 /*
  * True: the directory had the name. The first target's names are added when a second one answers.
  */
 static bool seen(struct directory *directory, uint32_t at, size_t len)
 {
 	const char *name = directory->raw + at;
-	uint32_t h = hash(name, len);
+	uint32_t h = (uint32_t)hash_text(HASH_BEGIN, name, len);
 
 	for (unsigned i = 0; i < 64; i++) {
 		uint32_t *slot = &directory->seen[(h + i) % DIRECTORY_SEEN];

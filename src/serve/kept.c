@@ -8,6 +8,7 @@
 #include "hal/chips/format.h"
 #include "src/serve/kept.h"
 #include "src/shm/reader.h"
+#include "src/signal/hash.h"
 #include "src/signal/value.h"
 
 #define VOLATILE_NS (2 * NS_PER_S)
@@ -35,15 +36,6 @@ struct kept {
 	int64_t written_ns[WRITTEN + 1];
 };
 
-static uint32_t hash(const char *text, size_t len)
-{
-	uint32_t h = 2166136261u;
-
-	for (size_t i = 0; i < len; i++)
-		h = (h ^ (uint8_t)text[i]) * 16777619u;
-	return h ^ h >> 15;
-}
-
 /* Parse a path. True: it names a part of the targets, and no bus. */
 static bool canonical(const char *path, struct node *node)
 {
@@ -58,7 +50,7 @@ static void index_item(struct kept *kept, uint32_t item)
 
 	if (!canonical(kept->config->items[item].path, &node))
 		return;
-	at = hash(node.path, strlen(node.path));
+	at = hash_text(HASH_BEGIN, node.path, strlen(node.path));
 	while (kept->index[at % kept->index_size])
 		at++;
 	kept->index[at % kept->index_size] = item + 1;
@@ -92,7 +84,7 @@ void kept_destroy(struct kept *kept)
 
 int kept_signal(const struct kept *kept, const char *path, bool output)
 {
-	uint32_t at = hash(path, strlen(path)), slot;
+	uint32_t at = hash_text(HASH_BEGIN, path, strlen(path)), slot;
 	struct node node;
 
 	while ((slot = kept->index[at % kept->index_size]) != 0) {
@@ -111,8 +103,10 @@ int kept_signal(const struct kept *kept, const char *path, bool output)
 
 static int64_t *written(struct kept *kept, const struct node *node)
 {
-	return &kept->written_ns[node->has_rom ? hash(node->path, node->device_len) % WRITTEN
-	                                       : WRITTEN];
+	return &kept->written_ns[node->has_rom
+	                                 ? hash_text(HASH_BEGIN, node->path, node->device_len) %
+	                                           WRITTEN
+	                                 : WRITTEN];
 }
 
 /* Does the signal hold the property's value unchanged? */
@@ -159,7 +153,7 @@ static int find_signal(struct kept *kept, const struct image *image, const struc
 
 static struct entry *set_of(struct kept *kept, const char *path, size_t len)
 {
-	return &kept->entries[hash(path, len) % SETS * WAYS];
+	return &kept->entries[hash_text(HASH_BEGIN, path, len) % SETS * WAYS];
 }
 
 static bool is(const struct entry *entry, const char *path, size_t len)

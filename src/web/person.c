@@ -9,6 +9,7 @@
 #include "src/config/config.h"
 #include "src/shm/owner.h"
 #include "src/shm/peer.h"
+#include "src/signal/hash.h"
 #include "src/signal/utf8.h"
 #include "src/web/person.h"
 
@@ -53,16 +54,6 @@ static bool is_name(const char *name)
 			return false;
 	}
 	return true;
-}
-
-/* FNV-1a of 64 bits. */
-static uint64_t number_of(const char *text)
-{
-	uint64_t number = 0xcbf29ce484222325u;
-
-	for (; *text; text++)
-		number = (number ^ (unsigned char)*text) * 0x100000001b3u;
-	return number;
 }
 
 static void name_user(uid_t uid, char person[PERSON])
@@ -135,7 +126,7 @@ uint64_t person_number(int fd, const struct config_web *options, const char *nam
 	}
 	if (proxy && is_name(named))
 		snprintf(words, sizeof(words), "%s", named);
-	return number_of(words);
+	return hash_text(HASH_BEGIN, words, strlen(words));
 }
 
 /* What the proxy says. */
