@@ -7,7 +7,7 @@
 #include "src/config/property.h"
 #include "src/config/report.h"
 #include "src/config/shared.h"
-#include "src/config/tag.h"
+#include "src/signal/hash.h"
 
 /* So many outputs of one register are compared with each other; a chip has no more switches. */
 #define PARTNERS 64
@@ -17,13 +17,6 @@ struct output {
 	const struct config_item *item;
 	const char *element; /* "3", "A", "BYTE"; "": all of it */
 };
-
-static uint64_t add(uint64_t hash, const void *bytes, size_t len)
-{
-	for (size_t i = 0; i < len; i++)
-		hash = tag_add(hash, ((const unsigned char *)bytes)[i]);
-	return hash;
-}
 
 static bool locate(const struct config_item *item, struct output *output)
 {
@@ -40,10 +33,10 @@ static bool locate(const struct config_item *item, struct output *output)
 	len = dot ? (size_t)(dot - path.property.text) : path.property.len;
 	output->item = item;
 	output->element = dot ? dot + 1 : "";
-	output->where = path.has_rom ? add(TAG_BEGIN, path.rom, ROM_LEN)
-	                             : add(TAG_BEGIN, path.device.text, path.device.len);
-	output->where = *held ? add(output->where, held, strlen(held))
-	                      : add(output->where, path.property.text, len);
+	output->where = path.has_rom ? hash_text(HASH_BEGIN, (const char *)path.rom, ROM_LEN)
+	                             : hash_text(HASH_BEGIN, path.device.text, path.device.len);
+	output->where = *held ? hash_text(output->where, held, strlen(held))
+	                      : hash_text(output->where, path.property.text, len);
 	return true;
 }
 
