@@ -193,12 +193,12 @@ bool job_ready(const struct native *native, const struct job *job, int64_t now, 
 	return true;
 }
 
-/* Of what goes soon every other one: the others have half of the steps. */
+/* Of what goes soon every other one: the others have half of the steps. Many go at once. */
 bool job_goes_first(const struct native *native, const struct job *a, const struct job *b)
 {
 	if (!b || a->req->prio != b->req->prio)
 		return !b || a->req->prio < b->req->prio;
-	if (a->soon != b->soon && !native->soon_ran)
+	if (a->soon != b->soon && (!native->soon_ran || native->soon >= NATIVE_MANY))
 		return a->soon;
 	return (int32_t)(a->order - b->order) < 0;
 }

@@ -11,6 +11,8 @@
 #define NATIVE_ALL (NATIVE_CHANNELS + 2 * NATIVE_COUPLERS)
 /* Requests in a row that a device may fail before it is taken to be broken. */
 #define NATIVE_DOUBTS 3
+/* Of so many such requests at a time it is not one device that fails now and then. */
+#define NATIVE_MANY 4
 #define NATIVE_S INT64_C(1000000000)
 
 #endif

@@ -272,6 +272,7 @@ static void expire(struct native *native, int64_t now, int64_t *next)
 static struct job *pick(struct native *native, int64_t now, int64_t *next, struct job **other)
 {
 	struct job *best = NULL, *all = NULL;
+	unsigned soon = 0;
 
 	native->locate.waits = native->locate.urgent = false;
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
@@ -283,6 +284,7 @@ static struct job *pick(struct native *native, int64_t now, int64_t *next, struc
 			native->locate.waits = true;
 			native->locate.urgent |= job->req->prio <= BUS_OUTPUT;
 		}
+		soon += job->req && job->soon;
 		if (job->req && job->kind == JOB_CONVERT &&
 		    (!all || (int32_t)(job->order - all->order) < 0))
 			all = job;
@@ -295,6 +297,7 @@ static struct job *pick(struct native *native, int64_t now, int64_t *next, struc
 			*other = job;
 	}
 	native->all = all;
+	native->soon = soon;
 	return best;
 }
 

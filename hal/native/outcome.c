@@ -100,13 +100,14 @@ static void give_up_reading(struct native *native, struct job *job, int err)
 
 /*
  * Is it tried again? A device that has failed request after request, which each tried it again,
- * gets one try of each: so it takes no more of the wire than one that answers.
+ * gets one try of each: so it takes no more of the wire than one that answers. So does each while
+ * many fail at once.
  */
-static bool is_tried_again(struct job *job, unsigned tries)
+static bool is_tried_again(const struct native *native, struct job *job, unsigned tries)
 {
 	const struct device *device = job->txn.device;
 
-	if (device && device->failures > NATIVE_DOUBTS)
+	if (device && (device->failures > NATIVE_DOUBTS || native->soon >= NATIVE_MANY))
 		tries = 1;
 	return ++job->tries < tries;
 }
@@ -128,7 +129,7 @@ void job_failed(struct native *native, struct job *job, int err)
 			job_missing(native, job, err);
 			return;
 		}
-		if (is_tried_again(job, TRIES_CHECKSUM)) {
+		if (is_tried_again(native, job, TRIES_CHECKSUM)) {
 			begin_again(native, job);
 			return;
 		}
@@ -157,7 +158,7 @@ void job_failed(struct native *native, struct job *job, int err)
 		job_again(native, job);
 		return;
 	case -EIO:
-		if (is_tried_again(job, TRIES_DEVICE))
+		if (is_tried_again(native, job, TRIES_DEVICE))
 			job_again(native, job);
 		else if (job->txn.blank && job->txn.device && !job->verified)
 			job_missing(native, job, err);

@@ -257,6 +257,7 @@ struct native {
 	uint64_t failed_mark;
 	struct job *jobs; /* NATIVE_DEPTH */
 	bool soon_ran;    /* the last step was that of a job that goes soon */
+	unsigned soon;    /* such jobs, as of the last step */
 	struct job *all;  /* the JOB_CONVERT that waits longest; it may be over */
 	int64_t due_ns;   /* the next step; 0: there was none */
 	int64_t late_ns;  /* so long the host has kept the thread from the processor in all */
