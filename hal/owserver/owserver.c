@@ -18,6 +18,7 @@
 #include "hal/owfs/path.h"
 #include "hal/owserver/cache.h"
 #include "hal/owserver/listing.h"
+#include "hal/owserver/proof.h"
 #include "hal/owserver/simulated.h"
 #include "hal/owserver/status.h"
 #include "hal/owserver/talk.h"
@@ -391,7 +392,10 @@ static int do_read(struct owserver *server, struct bus_req *req, uint32_t *len)
 		return -EPROTO;
 	}
 	*len = (uint32_t)reply->payload;
-	return 0;
+	if (!proof_is_needed(req->path))
+		return 0;
+	err = present(server, req, true);
+	return err == 1 ? -ENODEV : err;
 }
 
 static int do_write(struct owserver *server, struct bus_req *req, uint32_t *len)

@@ -38,6 +38,7 @@ are answered properly in all modes but accept_close and dead.
   accept_close   closes each connection at once                dead       accepts, never says a word
 
 Devices are the first components of the paths; `alarms` is the set of those that /alarm lists.
+Those in `pulled` are away, and read all the same, as owserver reads ones where other devices are.
 Paths in `readonly` refuse writing, and `refusals` maps a path to the code it is answered with.
 """
 
@@ -72,7 +73,7 @@ class Peer:
         self.values = {p: _bytes(v) for p, v in (values or {}).items()}
         # not one of the kernel's choice: it might give that to a client while we are down
         self.host, self.port = host, port or owsdtest.free_port()
-        self.alarms, self.readonly, self.refusals = set(), set(), {}
+        self.alarms, self.pulled, self.readonly, self.refusals = set(), set(), set(), {}
         self.plan, self.ways = collections.deque(), {}
         self.requests, self.connections = [], 0
         self._mode = "normal"
@@ -279,7 +280,7 @@ class Peer:
             else:
                 self.values[path], size = r.data, len(r.data)
         elif r.kind == PRESENT:
-            if not any(p.startswith(device + "/") for p in self.values):
+            if device in self.pulled or not any(p.startswith(device + "/") for p in self.values):
                 code = -1
             else:
                 data = b"\x28" + bytes(7)
