@@ -74,7 +74,7 @@ void alarm_por_set(struct alarm_machine *m, struct lane *lane, struct alarm_item
 	if (i->restart.known && !i->restart.differs)
 		return;
 	engine_power_on_reset(lane, &lane->engine->table.devices[i->device],
-	                      &lane->engine->table.signals[i->row]);
+	                      &lane->engine->table.signals[i->row], i->restart.seen);
 	for (uint32_t k = 0; k < m->count; k++) {
 		struct alarm_item *other = m->items[k];
 
@@ -84,7 +84,7 @@ void alarm_por_set(struct alarm_machine *m, struct lane *lane, struct alarm_item
 			retry_clear(&other->arming.retry);
 			other->arming.not_before_ns = 0;
 		}
-		other->restart.known = true;
+		other->restart.seen = other->restart.known = true;
 		other->restart.differs = false;
 	}
 }
@@ -94,7 +94,10 @@ void alarm_por_clear(struct alarm_machine *m, struct engine *e, const struct ala
 	for (uint32_t k = 0; k < m->count; k++) {
 		struct alarm_item *other = m->items[k];
 
-		if (!same_por(other, i) || !other->restart.known)
+		if (!same_por(other, i))
+			continue;
+		other->restart.seen = true;
+		if (!other->restart.known)
 			continue;
 		other->restart.known = other->restart.differs = false;
 		if (!other->arming.wanted)

@@ -78,7 +78,8 @@ void engine_alarm_rests(struct engine *e, struct alarm_item *item, int64_t now_n
 	e->published = true;
 }
 
-void engine_power_on_reset(struct lane *lane, const struct device *d, const struct signal *shown)
+void engine_power_on_reset(struct lane *lane, const struct device *d, const struct signal *shown,
+                           bool seen)
 {
 	struct engine *e = lane->engine;
 	struct ows_journal_entry entry = alarm_entry(shown, OWS_ALARM_POR, OWS_ALARM_RAISED,
@@ -87,8 +88,10 @@ void engine_power_on_reset(struct lane *lane, const struct device *d, const stru
 	image_alarm(e->image, &entry);
 	e->published = true;
 	lane->counters.power_on_resets++;
-	log_notice(e->log, "%s (%s): the device has restarted", shown->item->name,
-	           shown->item->path);
+	/* each board of a plant that is switched on has, and so it is no news at the start */
+	log_at(e->log, seen ? LOG_LEVEL_NOTICE : LOG_LEVEL_INFO,
+	       "%s (%s): the device has restarted%s", shown->item->name, shown->item->path,
+	       seen ? "" : " before owsd looked at it first");
 	for (uint32_t k = 0; k < d->count; k++) {
 		struct signal *s = &e->table.signals[e->table.device_rows[d->first + k]];
 

@@ -14,9 +14,10 @@ void engine_alarm_ended(struct engine *e, struct alarm_item *item);
 void engine_alarm_rests(struct engine *e, struct alarm_item *item, int64_t now_ns);
 /*
  * The device's por was read non-zero: its outputs are not what was written. The journal and the log
- * show it of one of its signals.
+ * show it of one of its signals. seen: it was read before, so it is news.
  */
-void engine_power_on_reset(struct lane *lane, const struct device *d, const struct signal *shown);
+void engine_power_on_reset(struct lane *lane, const struct device *d, const struct signal *shown,
+                           bool seen);
 /* The bus has no alarm search: the items are ordinary inputs. */
 void engine_alarm_polls(struct engine *e, struct alarm_machine *m);
 

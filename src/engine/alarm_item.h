@@ -49,7 +49,8 @@ struct alarm_occurrence {
 
 /* A restart of the device, by its por; a reload carries it over. */
 struct alarm_restart {
-	bool known;   /* por was not 0, and not 0 since */
+	bool seen;  /* owsd has looked at the device: a list was without it, or its por was read */
+	bool known; /* por was not 0, and not 0 since */
 	bool differs; /* since then an output changed by itself: the device has restarted again */
 };
 

@@ -78,8 +78,10 @@ void alarm_take_list(struct alarm_machine *m, struct lane *lane, const char *lis
 		list = end + 1;
 	}
 	for (uint32_t k = 0; k < m->count; k++)
-		if (!m->items[k]->listed)
+		if (!m->items[k]->listed) {
+			m->items[k]->restart.seen = true;
 			engine_alarm_rests(lane->engine, m->items[k], now_ns);
+		}
 }
 
 void alarm_list_failed(struct alarm_machine *m, struct lane *lane, int err, int64_t now_ns)

@@ -85,7 +85,7 @@ void engine_restart_done(struct lane *lane, const struct slot *slot,
 		const struct signal *s = &table->signals[table->device_rows[d->first + k]];
 
 		if (s->lane == lane->index && s->item->output) {
-			engine_power_on_reset(lane, d, s);
+			engine_power_on_reset(lane, d, s, true);
 			return;
 		}
 	}

@@ -165,7 +165,7 @@ def test_a_restart_without_setalarm_is_one_restart(scene):
     checked = scene.owsd_once("--check", "-c", file)
     assert checked.returncode == 0, checked
     assert "cannot be armed after a restart of its device: SetAlarm is not defined" in checked.stderr
-    one_restart(scene, scene.owsd(file), "SetAlarm is not defined")
+    one_restart(scene, scene.owsd(file, "-v"), "SetAlarm is not defined")
 
 
 BOARD = {SWITCH + "/" + name: value for name, value in (
@@ -179,7 +179,7 @@ def test_a_restart_whose_setalarm_or_por_is_refused_is_one_restart_until_that_he
         with peer.Peer(BOARD) as server:
             server.alarms = {SWITCH[1:]}
             server.readonly = {f"{way}{SWITCH}/{refused}" for way in ("", "/uncached")}
-            daemon = scene.owsd(buttons_and_lamp(server.target))
+            daemon = scene.owsd(buttons_and_lamp(server.target), "-v")
             one_restart(scene, daemon, why)
             writes = [path for path, _ in server.writes if path.endswith("PIO.0")]
             assert 1 <= len(writes) <= 2, server.writes

@@ -281,6 +281,44 @@ static unsigned logged(FILE *out, const char *text)
 	return n;
 }
 
+/* A plant that is switched on with owsd has restarted too, and that is no news. */
+static void test_a_restart_before_owsd_began_is_for_the_verbose_log_alone(void)
+{
+	static const struct {
+		enum log_level level;
+		const char *por;
+		unsigned before;
+	} cases[] = {
+		{LOG_LEVEL_NOTICE, "1", 0},
+		{LOG_LEVEL_INFO, "1", 1},
+		{LOG_LEVEL_INFO, "0", 0},
+	};
+
+	for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+		FILE *out = tmpfile();
+		struct log *log = log_create(cases[i].level);
+
+		s.log = log;
+		figure_3_3(&s);
+		relays();
+		alarm_device(&s, "0", cases[i].por);
+		alarm_begin(&s);
+		scene_run(&s, SCENE_S);
+		TEST_ASSERT_EQUAL_UINT(*cases[i].por - '0', journal());
+		TEST_ASSERT_EQUAL_STRING("0", scene_at(&s, D "/por"));
+		TEST_ASSERT_EQUAL_UINT(cases[i].before, logged(out, "has restarted before owsd"));
+		lose_power();
+		scene_run(&s, SCENE_S);
+		TEST_ASSERT_EQUAL_UINT(*cases[i].por - '0' + 1, journal());
+		TEST_ASSERT_EQUAL_UINT(1, logged(out, "the device has restarted\n"));
+		fclose(out);
+		scene_end(&s);
+		log_destroy(log);
+		setUp();
+	}
+	board(no_set_alarm());
+}
+
 static void test_a_device_that_is_back_is_not_said_to_be_armed_while_it_is_not(void)
 {
 	FILE *out = tmpfile();
@@ -524,6 +562,7 @@ int main(void)
 	RUN_TEST(test_a_por_that_somebody_else_cleared_ends_it_at_once);
 	RUN_TEST(test_a_list_that_misses_the_device_is_no_restart);
 	RUN_TEST(test_a_device_that_was_lost_and_is_back_has_restarted_again);
+	RUN_TEST(test_a_restart_before_owsd_began_is_for_the_verbose_log_alone);
 	RUN_TEST(test_a_device_that_is_back_is_not_said_to_be_armed_while_it_is_not);
 	RUN_TEST(test_an_output_that_changed_by_itself_tells_of_another_restart);
 	RUN_TEST(test_an_output_that_never_is_what_was_written_tells_of_none);
