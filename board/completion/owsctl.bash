@@ -30,7 +30,7 @@ _owsctl() {
 			mapfile -t COMPREPLY < <(compgen -f -- "$cur")
 			return
 			;;
-		2) words='list show add set unset remove move' ;;
+		2) words='list show add set rename unset remove move' ;;
 		3) words=$(owsctl config "${COMP_WORDS[at + 1]}" list 2>/dev/null |
 			awk 'seen { print $1 } /^NAME / { seen = 1 }') ;;
 		esac

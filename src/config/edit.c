@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Changes of a configuration file, key by key; all the rest of it stays byte for byte. */
 #include <errno.h>
+#include <fnmatch.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -160,6 +161,72 @@ static int check_once(const char *const *settings, unsigned count, struct config
 	return 0;
 }
 
+static bool is_allow(const struct rio_node *node)
+{
+	return node->kind != RIO_BLOCK && !strcmp(node->key, option_table[OPT_CONTROL_ALLOW].key);
+}
+
+/* The pattern of a ControlAllow, which is its first word. */
+static size_t pattern_of(const struct rio_node *node, const char **at)
+{
+	*at = node->value + strspn(node->value, " \t");
+	return strcspn(*at, " \t");
+}
+
+/* Put the new name of an item where a ControlAllow has the old one. */
+static int follow_name(struct rio **rio, const char *from, const char *to)
+{
+	const struct rio_node *driver = edit_driver(*rio), *node = driver ? driver->first : NULL;
+	size_t from_len = strlen(from), len;
+	const char *at;
+
+	for (; node; node = node->next) {
+		char *text = NULL, *quoted;
+		int err;
+
+		if (!is_allow(node))
+			continue;
+		len = pattern_of(node, &at);
+		if (len != from_len || memcmp(at, from, len))
+			continue;
+		if (asprintf(&text, "%s%s", to, at + len) < 0)
+			return -ENOMEM;
+		quoted = rio_quote(text);
+		err = quoted ? rio_replace(rio, node, quoted) : -ENOMEM;
+		rio_quote_free(quoted);
+		free(text);
+		/* the nodes are new: look again for others */
+		return err || !strcmp(from, to) ? err : follow_name(rio, from, to);
+	}
+	return 0;
+}
+
+/* Warn of patterns that give rights to one of the names. */
+static void warn_of_patterns(const struct rio *rio, const char *from, const char *to,
+                             struct config_report *report)
+{
+	const struct rio_node *driver = edit_driver(rio), *node = driver ? driver->first : NULL;
+	char pattern[RIO_VALUE_MAX + 1];
+	const char *at;
+
+	for (; node; node = node->next) {
+		size_t len;
+		bool fits;
+
+		if (!is_allow(node))
+			continue;
+		len = pattern_of(node, &at);
+		memcpy(pattern, at, len);
+		pattern[len] = '\0';
+		fits = fnmatch(pattern, to, 0) == 0;
+		if (strcmp(pattern, to) && (fnmatch(pattern, from, 0) == 0) != fits)
+			report_warning(report, command_line,
+			               "ControlAllow \"%s\" fits %s and not %s: look who may set "
+			               "it now",
+			               node->value, fits ? to : from, fits ? from : to);
+	}
+}
+
 int edit_set(struct rio **rio, const char *name, const char *const *settings, unsigned count,
              struct config_report *report)
 {
@@ -189,11 +256,35 @@ int edit_set(struct rio **rio, const char *name, const char *const *settings, un
 		if (!err)
 			err = apply(rio, block, option, value);
 		/* the item has its new name from here on */
-		if (!err && option == OPT_NAME)
+		if (!err && option == OPT_NAME) {
+			err = follow_name(rio, current, value);
+			if (!err)
+				warn_of_patterns(*rio, current, value, report);
 			snprintf(current, sizeof(current), "%s", value);
+		}
 		if (!err && option == OPT_BUS_TARGET)
 			snprintf(current, sizeof(current), EDIT_BUS "%s", value);
 		free(setting);
+	}
+	return err;
+}
+
+int edit_rename(struct rio **rio, const char *name, const char *to, struct config_report *report)
+{
+	const char *setting;
+	char *text = NULL;
+	int err = -EINVAL;
+
+	if (!edit_item(*rio, name)) {
+		report_error(report, command_line, "there is no item \"%s\"", name);
+	} else if (edit_item(*rio, to)) {
+		report_error(report, command_line, "there is an item \"%s\" already", to);
+	} else if (asprintf(&text, "%s=%s", option_table[OPT_NAME].key, to) >= 0) {
+		setting = text;
+		err = edit_set(rio, name, &setting, 1, report);
+		free(text);
+	} else {
+		err = -ENOMEM;
 	}
 	return err;
 }

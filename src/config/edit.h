@@ -20,6 +20,11 @@ int edit_add(struct rio **rio, const char *name, const char *path, const char *c
  */
 int edit_set(struct rio **rio, const char *name, const char *const *settings, unsigned count,
              struct config_report *report);
+/*
+ * Give an item another name, as edit_set() with Name=TO does. What names it elsewhere follows: a
+ * ControlAllow of that one signal. Warns of patterns that fit only one of the two names.
+ */
+int edit_rename(struct rio **rio, const char *name, const char *to, struct config_report *report);
 /* Remove keys, so that they are not defined. */
 int edit_unset(struct rio **rio, const char *name, const char *const *keys, unsigned count,
                struct config_report *report);

@@ -247,7 +247,7 @@ int rio_add(struct rio **rio, struct rio_node *block, const char *lines)
 }
 
 /* A value that stands at its key without a blank, as =5 may, gets one. */
-static int replace_value(struct rio **rio, const struct rio_node *node, const char *value)
+int rio_replace(struct rio **rio, const struct rio_node *node, const char *value)
 {
 	struct grow out = grow_make();
 	int err;
@@ -268,7 +268,7 @@ int rio_set(struct rio **rio, struct rio_node *block, const char *key, const cha
 	int err;
 
 	if (node)
-		return replace_value(rio, node, value);
+		return rio_replace(rio, node, value);
 	for (node = block->first; node; node = node->next)
 		if (node->kind != RIO_BLOCK)
 			after = node;

@@ -22,6 +22,8 @@ void rio_quote_free(char *quoted);
  * strings first.
  */
 int rio_set(struct rio **rio, struct rio_node *block, const char *key, const char *value);
+/* Put another value in the place of a key's: the same. */
+int rio_replace(struct rio **rio, const struct rio_node *node, const char *value);
 /* Add lines after the block's last child: `Key Value`, or a whole block. Indents every line. */
 int rio_add(struct rio **rio, struct rio_node *block, const char *lines);
 /* Take a node out, with its lines if nothing else stands on them. */

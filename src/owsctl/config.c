@@ -14,7 +14,9 @@
 #include "src/config/replace.h"
 #include "src/config/rio_file.h"
 #include "src/owsctl/config_list.h"
+#include "src/owsctl/running.h"
 #include "src/owsctl/verbs.h"
+#include "src/shm/segment.h"
 
 /* Warnings are the business of owsd --check, unless the file is edited. */
 static void print_errors(void *ctx, bool is_error, const char *message)
@@ -138,6 +140,19 @@ static const char *const *words_of(char **argv)
 	return (const char *const *)(void *)argv;
 }
 
+/* A running owsd does not notice the change by itself. */
+static void hint(const char *file)
+{
+	char name[SEGMENT_NAME_MAX + 1];
+	bool usual;
+
+	if (!instance_of_file(file, name))
+		return;
+	usual = !strcmp(name, "OWS");
+	fprintf(stderr, "owsctl: owsd %s runs with this file: owsctl %s%s%sreload has it loaded\n",
+	        name, usual ? "" : "-n ", usual ? "" : name, usual ? "" : " ");
+}
+
 static int change(const char *file, const char *action, char **words, unsigned count)
 {
 	struct config_report report = {.line = print_report};
@@ -155,15 +170,19 @@ static int change(const char *file, const char *action, char **words, unsigned c
 		err = edit_add(&rio, words[0], words[1], words_of(words + 2), count - 2, &report);
 	else if (!err && !strcmp(action, "set"))
 		err = edit_set(&rio, words[0], words_of(words + 1), count - 1, &report);
+	else if (!err && !strcmp(action, "rename"))
+		err = edit_rename(&rio, words[0], words[1], &report);
 	else if (!err && !strcmp(action, "unset"))
 		err = edit_unset(&rio, words[0], words_of(words + 1), count - 1, &report);
 	else
 		for (unsigned i = 0; i < count && !err; i++)
 			err = edit_remove(&rio, words[i], &report);
 	if (!err)
-		err = edit_commit(rio, file, words[0], &report);
+		err = edit_commit(rio, file, words[!strcmp(action, "rename")], &report);
 	rio_free(rio);
 	replace_unlock(file, lock);
+	if (!err)
+		hint(file);
 	if (err == -EFBIG && !report.errors)
 		return ctl_fail("%s would be longer than %u bytes", file, RIO_FILE_MAX);
 	return status_of(err);
@@ -188,6 +207,7 @@ int verb_config(struct ctl *ctl, int argc, char **argv)
 		{"show", "", 0},
 		{"add", " NAME PATH [KEY=VALUE]...", 2},
 		{"set", " NAME KEY=VALUE...", 2},
+		{"rename", " NAME NEW", 2},
 		{"unset", " NAME KEY...", 2},
 		{"remove", " NAME...", 1},
 		{"move", " NAME --before OTHER | --after OTHER", 3},
@@ -205,8 +225,9 @@ int verb_config(struct ctl *ctl, int argc, char **argv)
 		}
 	file = argv[optind];
 	if (argc - optind < 2)
-		return ctl_usage(ctl,
-		                 "expected a file and list, show, add, set, unset, remove or move");
+		return ctl_usage(
+			ctl,
+			"expected a file and list, show, add, set, rename, unset, remove or move");
 	action = argv[optind + 1];
 	words = argc - optind - 2;
 	for (size_t i = 0; i < sizeof(actions) / sizeof(actions[0]); i++) {
@@ -214,7 +235,7 @@ int verb_config(struct ctl *ctl, int argc, char **argv)
 			continue;
 		if (!actions[i].least)
 			return list_with(ctl, file, argc - optind - 1, argv + optind + 1);
-		if (words < actions[i].least ||
+		if (words < actions[i].least || (!strcmp(action, "rename") && words > 2) ||
 		    (!strcmp(action, "move") &&
 		     (words != 3 || (strcmp(argv[optind + 3], "--before") != 0 &&
 		                     strcmp(argv[optind + 3], "--after") != 0))))

@@ -75,6 +75,7 @@ static const struct option *longs_of(const char *options)
 		{"all", no_argument, NULL, 'a'},
 		{"rio", no_argument, NULL, 'r'},
 		{"alias", required_argument, NULL, 'L'},
+		{"bits", no_argument, NULL, 'B'},
 		{"merge", required_argument, NULL, 'M'},
 		{"replace", required_argument, NULL, 'R'},
 		{"as", required_argument, NULL, 'A'},

@@ -76,18 +76,19 @@ static const struct verb verbs[] = {
          .example = "instances"},
 	{"remove", "NAME...", "remove the files of an instance that has ended", verb_remove,
          .example = "remove demo-sim"},
-	{"config", "FILE list | show | add | set | unset | remove | move ...",
+	{"config", "FILE list | show | add | set | rename | unset | remove | move ...",
          "look at a configuration and edit it", verb_config,
          .options =
                  "  list [PATTERN...]                     a table of the items\n"
                  "  show NAME...                          items with all their fields\n"
                  "  add NAME PATH [KEY=VALUE]...          a new item; makes the file if need be\n"
                  "  set NAME KEY=VALUE...                 change; the NAME OwsDrv is the driver\n"
+                 "  rename NAME NEW                       and what names it in the file\n"
                  "  unset NAME KEY...                     take keys out\n"
                  "  remove NAME...                        remove items\n"
                  "  move NAME --before | --after OTHER    change the order\n"
                  "  owsctl reload has owsd load the file again\n",
-         .example = "config plant.rio set temperature1 Name=kitchen"},
+         .example = "config plant.rio rename temperature1 kitchen"},
 	{"reload", "[-w SECONDS]", "have owsd load its configuration again, and wait for that",
          verb_reload, .options = "  -w SECONDS  how long that may take\n", .example = "reload"},
 	{"dir", "[-t TARGET] [-w SECONDS] [PATH]", "list a directory of a target", verb_dir,
@@ -121,7 +122,7 @@ static const struct verb verbs[] = {
                  "  stop, status, download DEVICE\n",
          .example = "mission download /41.551DDF030000", .opens = true, .writes = true},
 	{"scan",
-         "[-t TARGET] [-w SECONDS] [--alias FILE] [--rio [-i] [--merge FILE [--replace OLD=NEW]...]]",
+         "[-t TARGET] [-w SECONDS] [--alias FILE] [--rio [-i] [--bits] [--merge FILE [--replace OLD=NEW]...]]",
          "list the devices, or print a configuration for them", verb_scan,
          .options =
                  "  -t TARGET   localhost:4304, i2c:/dev/i2c-1, w1, ...; default: the owsd that\n"
@@ -130,6 +131,7 @@ static const struct verb verbs[] = {
                  "  --alias FILE       names from an alias file of OWFS\n"
                  "  --rio              print a configuration for what is there\n"
                  "  -i                 with --rio: inputs only, nothing is written\n"
+                 "  --bits             with --rio: a signal for each switch, not one for all\n"
                  "  --merge FILE       add to that file what it has not; its names stay\n"
                  "  --replace OLD=NEW  with --merge: NEW takes the place of the device OLD\n",
          .example = "-t i2c:/dev/i2c-1 scan --rio >plant.rio", .opens = true, .finds = true},

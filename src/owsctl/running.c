@@ -4,6 +4,7 @@
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "src/libows/open.h"
@@ -121,10 +122,21 @@ bool instance_runs(const struct shm_place *place, const char *name, int *pid)
 	return instance_is_up(info.state);
 }
 
-unsigned instances_running(char *name, char *names, size_t size)
+/* Where an owsd has its configuration if its command line names none. */
+#define CONFIG_DIR "/etc/owsd"
+
+static bool is_same_file(const char *a, const char *b)
+{
+	struct stat x, y;
+
+	return *a && !stat(a, &x) && !stat(b, &y) && x.st_dev == y.st_dev && x.st_ino == y.st_ino;
+}
+
+/* file NULL: whatever configuration they have. */
+static unsigned running(const char *file, char *name, char *names, size_t size)
 {
 	char paths[PLACES][PLACE_PATH];
-	int places = place_list(paths), pid;
+	int places = place_list(paths);
 	unsigned count = 0;
 	size_t used = 0;
 
@@ -137,7 +149,14 @@ unsigned instances_running(char *name, char *names, size_t size)
 		if (remains_list(&place, &remains) != 0)
 			remains.count = 0;
 		for (unsigned k = 0; k < remains.count; k++) {
-			if (!instance_runs(&place, remains.name[k], &pid))
+			struct instance_info info;
+
+			instance_look(&place, remains.name[k], ows_now(), &info);
+			if (!info.config[0])
+				snprintf(info.config, sizeof(info.config), CONFIG_DIR "/%s.rio",
+				         remains.name[k]);
+			if (!instance_is_up(info.state) ||
+			    (file && !is_same_file(info.config, file)))
 				continue;
 			snprintf(name, SEGMENT_NAME_MAX + 1, "%s", remains.name[k]);
 			if (used < size)
@@ -149,4 +168,14 @@ unsigned instances_running(char *name, char *names, size_t size)
 		place_close(&place);
 	}
 	return count;
+}
+
+unsigned instances_running(char *name, char *names, size_t size)
+{
+	return running(NULL, name, names, size);
+}
+
+bool instance_of_file(const char *file, char *name)
+{
+	return running(file, name, NULL, 0) > 0;
 }

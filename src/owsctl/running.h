@@ -33,5 +33,7 @@ bool instance_runs(const struct shm_place *place, const char *name, int *pid);
  * all, with commas between.
  */
 unsigned instances_running(char *name, char *names, size_t size);
+/* Does one run that has this configuration file? name has SEGMENT_NAME_MAX + 1 bytes. */
+bool instance_of_file(const char *file, char *name);
 
 #endif

@@ -139,17 +139,17 @@ static void print_json(const struct scan *scan)
 /* Print the configuration: a new one, or the given file with the devices added. */
 static int print_rio(const struct ctl *ctl, const struct target *target,
                      const struct served *served, const struct scan *scan, struct scan_merge *merge,
-                     bool inputs_only)
+                     struct scan_choice choice)
 {
 	if (merge->file)
-		return scan_merge(merge, scan, inputs_only);
+		return scan_merge(merge, scan, choice);
 	if (served->target[0] && served->cut)
 		return ctl_fail(
 			"the targets of owsd %s are too many to name them all: name them with "
 			"-t TARGET",
 			ctl->instance);
-	return served->target[0] ? scan_rio(scan, served->targets, true, inputs_only)
-	                         : scan_rio(scan, target->name, false, inputs_only);
+	return served->target[0] ? scan_rio(scan, served->targets, true, choice)
+	                         : scan_rio(scan, target->name, false, choice);
 }
 
 static int show(const struct ctl *ctl, const struct scan *scan)
@@ -190,7 +190,7 @@ static int find_devices(struct target *target, struct scan *scan)
 }
 
 static int look(struct ctl *ctl, int64_t timeout_ns, const char *aliases, bool rio,
-                bool inputs_only, struct scan_merge *merge)
+                struct scan_choice choice, struct scan_merge *merge)
 {
 	struct target target;
 	struct served served;
@@ -205,7 +205,7 @@ static int look(struct ctl *ctl, int64_t timeout_ns, const char *aliases, bool r
 	if (!status && aliases)
 		status = scan_aliases(aliases, &scan);
 	if (!status && (scan.count || !rio))
-		status = rio ? print_rio(ctl, &target, &served, &scan, merge, inputs_only)
+		status = rio ? print_rio(ctl, &target, &served, &scan, merge, choice)
 		             : show(ctl, &scan);
 	if (!status && !scan.count) {
 		status = ctl_nothing(
@@ -222,17 +222,20 @@ static int look(struct ctl *ctl, int64_t timeout_ns, const char *aliases, bool r
 int verb_scan(struct ctl *ctl, int argc, char **argv)
 {
 	int64_t timeout_ns = OPEN_TIMEOUT_NS;
-	bool rio = false, inputs_only = false;
+	bool rio = false;
+	struct scan_choice choice = {0};
 	struct scan_merge merge = {0};
 	const char *aliases = NULL;
 	int c, status = CTL_DONE;
 
 	ctl_options();
-	while ((c = target_option(ctl, argc, argv, "riL:M:R:", &timeout_ns)) != -1) {
+	while ((c = target_option(ctl, argc, argv, "riBL:M:R:", &timeout_ns)) != -1) {
 		if (c == 'r')
 			rio = true;
 		else if (c == 'i')
-			inputs_only = true;
+			choice.inputs_only = true;
+		else if (c == 'B')
+			choice.bits = true;
 		else if (c == 'L')
 			aliases = optarg;
 		else if (c == 'M' && !merge.file)
@@ -249,8 +252,10 @@ int verb_scan(struct ctl *ctl, int argc, char **argv)
 	}
 	if (optind < argc)
 		return ctl_usage(ctl, "%s: scan looks at all of a target", argv[optind]);
-	if (rio ? ctl->json : inputs_only)
-		return ctl_usage(ctl, rio ? "--rio prints no JSON" : "-i goes with --rio");
+	if (rio ? ctl->json : choice.inputs_only || choice.bits)
+		return ctl_usage(ctl, rio           ? "--rio prints no JSON"
+		                      : choice.bits ? "--bits goes with --rio"
+		                                    : "-i goes with --rio");
 	if (merge.file && !rio)
 		return ctl_usage(ctl, "--merge goes with --rio: it makes a configuration");
 	if (merge.pair_count && !merge.file)
@@ -259,7 +264,7 @@ int verb_scan(struct ctl *ctl, int argc, char **argv)
 	if (merge.file)
 		status = scan_merge_open(&merge);
 	if (!status)
-		status = look(ctl, timeout_ns, aliases, rio, inputs_only, &merge);
+		status = look(ctl, timeout_ns, aliases, rio, choice, &merge);
 	if (status && rio)
 		warn_of_empty_file();
 	scan_merge_close(&merge);

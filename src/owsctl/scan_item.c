@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/chips/find.h"
 #include "src/config/config.h"
 #include "src/config/load.h"
 #include "src/config/rio_write.h"
@@ -113,12 +114,13 @@ static bool has_several(const struct scan_device *device)
  * the word with the first number that is free.
  */
 static const char *choose(struct scan_names *names, const struct scan_device *device,
-                          const struct scan_property *property)
+                          const struct scan_property *property, const char *element)
 {
-	bool several = has_several(device);
-	char name[SIGNAL_NAME_MAX + SCAN_ALIAS];
+	bool several = *element || has_several(device);
+	char name[SIGNAL_NAME_MAX + SCAN_ALIAS], word[48];
 
-	if (!choose_alias(names, device, several ? property->word : NULL, name, sizeof(name))) {
+	snprintf(word, sizeof(word), "%s%s", property->word, element);
+	if (!choose_alias(names, device, several ? word : NULL, name, sizeof(name))) {
 		unsigned *last = last_of(names, property->word);
 
 		do
@@ -129,10 +131,11 @@ static const char *choose(struct scan_names *names, const struct scan_device *de
 	return names->name[names->count - 1];
 }
 
+/* element: what the name of a bit ends in where the device has an alias. */
 static void make_item(struct scan_names *names, const struct scan_device *device,
-                      const struct scan_property *property, const struct scan_value *value)
+                      const struct scan_property *property, const char *value, const char *element)
 {
-	const char *name = choose(names, device, property);
+	const char *name = choose(names, device, property, element);
 	bool named = strncmp(name, device->alias, strlen(device->alias)) == 0;
 	char *described = named ? NULL : rio_quote(device->alias);
 	char rate[48] = "", init[128] = "";
@@ -141,7 +144,7 @@ static void make_item(struct scan_names *names, const struct scan_device *device
 		snprintf(rate, sizeof(rate), "  PerFactor               %u\n",
 		         property->per_factor);
 	if (property->output)
-		snprintf(init, sizeof(init), "  InitValue               \"%s\"\n", value->text);
+		snprintf(init, sizeof(init), "  InitValue               \"%s\"\n", value);
 	fprintf(names->items,
 	        "%s# %s%s%s%s%s\n"
 	        "Item {\n"
@@ -179,13 +182,43 @@ static bool wanted(const struct scan_device *device, const struct scan_property 
 	return false;
 }
 
-void scan_make_items(struct scan_names *names, const struct scan_device *device, bool inputs_only)
+/* The bits of a property as PIO.BYTE, of which scan_property() gives "inputs" and "outputs". */
+static bool make_bits(struct scan_names *names, const struct scan_device *device,
+                      const struct scan_property *whole, const char *value)
+{
+	const char *dot = strchr(whole->name, '.');
+	const struct property *array;
+	char name[PROPERTY_NAME_ROOM], element[12];
+	unsigned long bits = strtoul(value, NULL, 10);
+
+	if (whole->type != OWS_BYTE || !dot)
+		return false;
+	array = family_property(family_of(device->family), NULL, whole->name,
+	                        (size_t)(dot - whole->name));
+	for (unsigned k = 0; array && k < array->array.count && k < SCAN_BITS; k++) {
+		bool letters = array->array.index == INDEX_LETTERS;
+		struct scan_property bit = {.name = name,
+		                            .word = whole->output ? "output" : "input",
+		                            .type = OWS_BOOL,
+		                            .output = whole->output};
+
+		snprintf(element, sizeof(element), "%c", (char)((letters ? 'A' : '0') + (int)k));
+		snprintf(name, sizeof(name), "%.*s.%s", (int)(dot - whole->name), whole->name,
+		         element);
+		make_item(names, device, &bit, bits >> k & 1 ? "1" : "0", element);
+	}
+	return array != NULL;
+}
+
+void scan_make_items(struct scan_names *names, const struct scan_device *device,
+                     struct scan_choice choice)
 {
 	struct scan_property property;
 
 	for (unsigned i = 0; scan_property(device->family, i, &property); i++)
-		if (wanted(device, &property, &device->value[i], inputs_only))
-			make_item(names, device, &property, &device->value[i]);
+		if (wanted(device, &property, &device->value[i], choice.inputs_only) &&
+		    !(choice.bits && make_bits(names, device, &property, device->value[i].text)))
+			make_item(names, device, &property, device->value[i].text, "");
 }
 
 int scan_add_items(struct rio **rio, struct scan_names *names)

@@ -10,6 +10,15 @@
 #include "src/signal/attribute.h"
 
 #define SCAN_WORDS 32
+#define SCAN_BITS 8 /* of a byte, at most */
+/* Of a device: its properties, each bit an item. */
+#define SCAN_ITEMS (SCAN_PROPERTIES * SCAN_BITS)
+
+/* What is made of the devices. */
+struct scan_choice {
+	bool inputs_only;
+	bool bits; /* an item for each switch of a chip, and not one for all */
+};
 
 /* The names in use, so that no name is given twice, and the items that were made. */
 struct scan_names {
@@ -33,10 +42,11 @@ void scan_names_free(struct scan_names *names);
 void scan_names_add(struct scan_names *names, const char *name);
 
 /*
- * Make an item for each property of the device's kind; without outputs if inputs_only. An output
+ * Make an item for each property of the device's kind, as was chosen. An output
  * that cannot be read gets no item, and owsctl prints that.
  */
-void scan_make_items(struct scan_names *names, const struct scan_device *device, bool inputs_only);
+void scan_make_items(struct scan_names *names, const struct scan_device *device,
+                     struct scan_choice choice);
 /* Add all items that were made at the end of the configuration, once. 0 or a negative errno. */
 int scan_add_items(struct rio **rio, struct scan_names *names);
 

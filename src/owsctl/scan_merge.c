@@ -143,7 +143,7 @@ static bool collect(struct work *work)
 	work->known = calloc((size_t)count + 1, sizeof(*work->known));
 	work->found = calloc((size_t)work->scan->count + 1, sizeof(*work->found));
 	if (!work->item || !work->known || !work->found ||
-	    !scan_names_init(&work->names, count + (size_t)work->scan->count * SCAN_PROPERTIES))
+	    !scan_names_init(&work->names, count + (size_t)work->scan->count * SCAN_ITEMS))
 		return false;
 	for (unsigned i = 0; i < work->scan->count; i++) {
 		const char *text = work->scan->device[i].path;
@@ -316,12 +316,12 @@ static int replace_device(struct work *work, unsigned known)
 	return err;
 }
 
-static void make_items(struct work *work, unsigned i, bool inputs_only)
+static void make_items(struct work *work, unsigned i, struct scan_choice choice)
 {
 	const struct scan_device *device = &work->scan->device[i];
 	unsigned first = work->names.count, n;
 
-	scan_make_items(&work->names, device, inputs_only);
+	scan_make_items(&work->names, device, choice);
 	n = work->names.count - first;
 	if (!n)
 		ctl_fail("new: %s (%s): no signal is made for it", device->path + 1, device->type);
@@ -331,7 +331,7 @@ static void make_items(struct work *work, unsigned i, bool inputs_only)
 		         device->type);
 }
 
-static int change(struct work *work, bool inputs_only)
+static int change(struct work *work, struct scan_choice choice)
 {
 	unsigned named = work->names.count;
 	int err = 0;
@@ -341,19 +341,19 @@ static int change(struct work *work, bool inputs_only)
 			err = replace_device(work, i);
 	for (unsigned i = 0; i < work->scan->count && !err; i++)
 		if (work->found[i].fate == MERGE_NEW)
-			make_items(work, i, inputs_only);
+			make_items(work, i, choice);
 	if (!err)
 		err = scan_add_items(&work->merge->rio, &work->names);
 	return err || work->names.count == named ? err : edit_count(&work->merge->rio);
 }
 
-int scan_merge(struct scan_merge *merge, const struct scan *scan, bool inputs_only)
+int scan_merge(struct scan_merge *merge, const struct scan *scan, struct scan_choice choice)
 {
 	struct work work = {.merge = merge, .scan = scan};
 	int err = 0, status = collect(&work) ? decide(&work) : ctl_fail("no memory");
 
 	if (!status) {
-		err = change(&work, inputs_only);
+		err = change(&work, choice);
 		if (err)
 			status = ctl_fail("%s: %s", merge->file, strerror(-err));
 	}

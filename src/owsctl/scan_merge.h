@@ -4,6 +4,7 @@
 #define OWSCTL_SCAN_MERGE_H
 
 #include "src/config/rio.h"
+#include "src/owsctl/scan_item.h"
 #include "src/scan/device.h"
 
 #define SCAN_PAIRS 64
@@ -22,7 +23,7 @@ int scan_merge_open(struct scan_merge *merge);
  * and at its end items for new devices. What is new, missing and replaced goes to stderr. CTL_DONE;
  * or the status, after printing why, and then stdout got nothing.
  */
-int scan_merge(struct scan_merge *merge, const struct scan *scan, bool inputs_only);
+int scan_merge(struct scan_merge *merge, const struct scan *scan, struct scan_choice choice);
 void scan_merge_close(struct scan_merge *merge);
 
 #endif

@@ -16,20 +16,20 @@ static struct rio_node *driver_of(struct rio *rio)
 }
 
 static int fill(struct rio **rio, struct scan_names *names, const struct scan *scan,
-                const char *target, bool inputs_only)
+                const char *target, struct scan_choice choice)
 {
 	char *quoted = rio_quote(target);
 	int err = quoted ? rio_set(rio, driver_of(*rio), "TargetName", quoted) : -ENOMEM;
 
 	rio_quote_free(quoted);
 	for (unsigned i = 0; i < scan->count; i++)
-		scan_make_items(names, &scan->device[i], inputs_only);
+		scan_make_items(names, &scan->device[i], choice);
 	if (!err)
 		err = scan_add_items(rio, names);
 	return err;
 }
 
-int scan_rio(const struct scan *scan, const char *target, bool several, bool inputs_only)
+int scan_rio(const struct scan *scan, const char *target, bool several, struct scan_choice choice)
 {
 	struct config_report silent = {0};
 	struct scan_names names;
@@ -39,11 +39,11 @@ int scan_rio(const struct scan *scan, const char *target, bool several, bool inp
 	/* several targets are written as in TargetName, so the name of a single one has neither */
 	if (!several && strpbrk(target, ",|"))
 		return ctl_fail("%s cannot be a TargetName: it holds \",\" or \"|\"", target);
-	err = scan_names_init(&names, (size_t)scan->count * SCAN_PROPERTIES) ? 0 : -ENOMEM;
+	err = scan_names_init(&names, (size_t)scan->count * SCAN_ITEMS) ? 0 : -ENOMEM;
 	if (!err)
 		err = rio_parse("scan", edit_empty, strlen(edit_empty), &silent, &rio);
 	if (!err)
-		err = fill(&rio, &names, scan, target, inputs_only);
+		err = fill(&rio, &names, scan, target, choice);
 	if (err)
 		status = ctl_fail("%s", err == -ENOMEM ? "no memory" : strerror(-err));
 	else if (!names.count)

@@ -5,12 +5,13 @@
 
 #include <stdbool.h>
 
+#include "src/owsctl/scan_item.h"
+
 struct scan;
 
 /*
- * Print a configuration with that TargetName, which may be several targets; without outputs if
- * inputs_only. CTL_DONE, or CTL_FAILED after printing why; then stdout got nothing.
+ * Print a configuration with that TargetName, which may be several targets. CTL_DONE, or CTL_FAILED after printing why; then stdout got nothing.
  */
-int scan_rio(const struct scan *scan, const char *target, bool several, bool inputs_only);
+int scan_rio(const struct scan *scan, const char *target, bool several, struct scan_choice choice);
 
 #endif

@@ -228,6 +228,30 @@ def test_what_is_no_regular_file_is_refused_at_once(scene):
             assert f"{file}: error: is a {kind}: only a regular file is read\n" in done.stderr, (words, done)
 
 
+def test_an_edit_of_the_file_of_a_running_owsd_says_how_it_is_loaded(scene):
+    file = scene.file("house.rio", owsdtest.rio("null:", [ITEM]))
+    other = scene.file("other.rio", owsdtest.rio("null:", [ITEM]))
+
+    def said(path, *words):
+        done = scene.owsctl(None, "config", path, *words)
+        assert done.returncode == 0, done
+        return done.stderr
+    assert said(file, "set", "x", "Unit=bar") == "", "nobody runs"
+    daemon = scene.owsd(file)
+    hint = f"owsctl: owsd {daemon.name} runs with this file: owsctl -n {daemon.name} reload has it loaded\n"
+    assert said(file, "rename", "x", "kitchen") == hint
+    assert said(file, "unset", "kitchen", "Unit") == hint
+    assert said(other, "rename", "x", "kitchen") == ""
+    assert said(file, "list") == ""
+    assert scene.owsctl(daemon, "reload").returncode == 0
+    assert "kitchen" in scene.owsctl(daemon, "list").stdout
+    for words in (("rename", "kitchen"), ("rename", "kitchen", "a", "b"), ("rename", "kitchen", "a b"),
+                  ("rename", "kitchen", "kitchen"), ("rename", "none", "a")):
+        before = file.read_bytes()
+        done = scene.owsctl(None, "config", file, *words)
+        assert done.returncode == 2 and done.stderr and file.read_bytes() == before, done
+
+
 def test_a_list_takes_json_behind_it(scene):
     file = scene.file("list.rio", owsdtest.rio("localhost", [ITEM]))
     before, behind = (scene._run([owsdtest.OWSCTL, *words], 20) for words in

@@ -266,6 +266,25 @@ def test_every_family_has_its_place_in_the_configuration_of_a_scan(scene):
     assert rows["counter_a1"]["value"] == 7 and rows["present1"]["value"] is True
 
 
+def test_each_switch_gets_its_signal_if_it_is_asked_for(scene):
+    wire = sim(scene, EVERY_FAMILY)
+    rows = runs(scene, ctl(scene, wire, "scan", "--rio", "--bits").stdout)
+    paths = {row["path"] for row in rows.values() if row["path"][1:3] in ("12", "29", "3A")}
+    assert paths == {f"/{device}/{name}.{element}" for name in ("PIO", "sensed") for device, elements in (
+        ("12.000000000007", "AB"), ("29.000000000008", "01234567"), ("3A.000000000009", "AB"))
+        for element in elements}, paths
+    assert {row["type"] for row in rows.values() if row["path"][1:] in paths} <= {"bool"}
+    assert rows["input12"]["io"] == "input" and rows["output12"]["io"] == "output"
+    names = scene.file("aliases", "29.000000000008 = board\n")
+    rows = runs(scene, ctl(scene, wire, "scan", "--alias", names, "--rio", "--bits").stdout)
+    assert rows["board_output3"]["path"] == "/29.000000000008/PIO.3", rows
+    assert rows["board_input7"]["path"] == "/29.000000000008/sensed.7", rows
+    inputs = ctl(scene, wire, "scan", "--rio", "--bits", "-i").stdout
+    assert '"output"' not in inputs and "sensed.7" in inputs
+    done = ctl(scene, wire, "scan", "--bits", status=2)
+    assert "--bits goes with --rio" in done.stderr, done
+
+
 def test_the_configuration_of_a_scan_runs_on_owserver_and_changes_no_output(scene):
     server = scene.owserver(mock=["28", "26"], tester=["29"])
     path = next(d for d in server.devices() if d.startswith("/29")) + "/PIO.BYTE"
@@ -273,6 +292,9 @@ def test_the_configuration_of_a_scan_runs_on_owserver_and_changes_no_output(scen
     assert before != "0"
     rows = runs(scene, ctl(scene, server.target, "scan", "--rio").stdout)
     assert str(rows["outputs1"]["value"]) == before == server.read(path)
+    bits = runs(scene, ctl(scene, server.target, "scan", "--rio", "--bits").stdout)
+    assert before == server.read(path) and "outputs1" not in bits
+    assert sum(bits[f"output{k + 1}"]["value"] << k for k in range(8)) == int(before), bits
     inputs = ctl(scene, server.target, "scan", "--rio", "-i").stdout
     assert '"output"' not in inputs and "inputs1" in inputs
 

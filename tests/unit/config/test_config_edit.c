@@ -525,6 +525,58 @@ static void test_a_device_with_more_items_than_any_has_is_not_replaced(void)
 	TEST_ASSERT_NULL(strstr(rio->text, "28.67C6697351FF"));
 }
 
+static void test_a_rename_takes_along_what_names_the_item(void)
+{
+	static const char before[] =
+		"# the plant\n"
+		"OwsDrv {\n"
+		"  ControlAllow \"heat user:root\" # of the boiler\n"
+		"  ControlAllow \"heat* user:root\"\n"
+		"  ControlAllow \"pump group:root\"\n"
+		"  Item { # first\n"
+		"    Name heat\n"
+		"    Path /05.000000000001/PIO Type bool IO output # relay\n"
+		"    LimitH 0.5\n"
+		"  }\n"
+		"  Item { Name pump Path /05.000000000002/PIO Type bool IO output }\n"
+		"  ControlAllow \"heat group:root\"\n"
+		"}\n";
+	static const char after[] =
+		"# the plant\n"
+		"OwsDrv {\n"
+		"  ControlAllow \"boiler user:root\" # of the boiler\n"
+		"  ControlAllow \"heat* user:root\"\n"
+		"  ControlAllow \"pump group:root\"\n"
+		"  Item { # first\n"
+		"    Name boiler\n"
+		"    Path /05.000000000001/PIO Type bool IO output # relay\n"
+		"    LimitH 0.5\n"
+		"  }\n"
+		"  Item { Name pump Path /05.000000000002/PIO Type bool IO output }\n"
+		"  ControlAllow \"boiler group:root\"\n"
+		"}\n";
+
+	parse(before);
+	TEST_ASSERT_EQUAL_INT(0, edit_rename(&rio, "heat", "boiler", &report));
+	TEST_ASSERT_EQUAL_STRING(after, rio->text);
+	TEST_ASSERT_EQUAL_STRING(
+		"warning: ControlAllow \"heat* user:root\" fits heat and not boiler: "
+		"look who may set it now\n",
+		said);
+	TEST_ASSERT_EQUAL_INT(-EINVAL, edit_rename(&rio, "boiler", "pump", &report));
+	TEST_ASSERT_NOT_NULL(strstr(said, "there is an item \"pump\" already"));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, edit_rename(&rio, "heat", "x", &report));
+	TEST_ASSERT_NOT_NULL(strstr(said, "there is no item \"heat\""));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, edit_rename(&rio, "boiler", "OwsDrv", &report));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, edit_rename(&rio, "OwsDrv", "x", &report));
+	TEST_ASSERT_EQUAL_STRING(after, rio->text);
+	/* set with Name is the same, as the page uses it; a name within another stays */
+	said_begin();
+	TEST_ASSERT_EQUAL_INT(0, set("boiler", "Name=boile"));
+	TEST_ASSERT_EQUAL_INT(0, set("boile", "Name=heat"));
+	TEST_ASSERT_EQUAL_STRING(before, rio->text);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -550,5 +602,6 @@ int main(void)
 	RUN_TEST(test_a_replacement_that_cannot_be_meant_is_refused);
 	RUN_TEST(test_a_device_with_more_items_than_any_has_is_not_replaced);
 	RUN_TEST(test_the_words_of_the_dialog_lead_to_the_keys);
+	RUN_TEST(test_a_rename_takes_along_what_names_the_item);
 	return UNITY_END();
 }
