@@ -558,7 +558,10 @@ uint32_t ows_alarm_count(struct ows *h);
  */
 int ows_alarm(struct ows *h, uint32_t number, struct ows_alarm *alarm);
 
-/* The journal of commands since owsd started, likewise. */
+/*
+ * The journal of commands since owsd started, likewise. Of one program's to one signal it has at
+ * most one in each second; `more` of the next entry counts the others.
+ */
 struct ows_commanded {
 	int signal;        /* as in ows_info() */
 	int64_t taken_ns;
