@@ -43,7 +43,7 @@ static void find_nearest(const struct family *family, const char *name, const ch
 	}
 }
 
-/* The property that shows what a write of this one leaves: it, or one with the same way to write. */
+/* The property that shows what a write of this one leaves: it, or one that is written the same. */
 static const struct property *holder(const struct family *family, const struct property *property)
 {
 	const struct property *other = NULL;

@@ -10,7 +10,8 @@
 struct scan;
 
 /*
- * Print a configuration with that TargetName, which may be several targets. CTL_DONE, or CTL_FAILED after printing why; then stdout got nothing.
+ * Print a configuration with that TargetName, which may be several targets. CTL_DONE, or CTL_FAILED
+ * after printing why; then stdout got nothing.
  */
 int scan_rio(const struct scan *scan, const char *target, bool several, struct scan_choice choice);
 
