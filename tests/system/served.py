@@ -140,6 +140,14 @@ def owserver(scene, *options, families=FAMILIES):
     return Server(program, program.host, program.port, True)
 
 
+def owserver_of(scene, wire):
+    """The genuine owserver with the wire of that scenario, behind a serial port (serial.c)."""
+    serial = scene.start([owsdtest.BUILD / "system/serial", wire])
+    owsdtest.until(lambda: serial.log().endswith("\n"), 10, "the serial port")
+    program = scene.owserver(options=[f"--passive={serial.log().strip()}"])
+    return Server(program, program.host, program.port, True)
+
+
 def owsd_of(scene, target, *options, items=SIGNALS, **driver):
     """owsd -l on any target, as soon as it answers."""
     for _attempt in range(5):

@@ -27,21 +27,14 @@ COMMANDS = {"relays": ("/29.000000000001/PIO.BYTE", "byte", 255),
             "lamp": ("/3A.000000000001/PIO.A", "bool", 1)}
 
 
-def genuine(scene, wire):
-    serial = scene.start([owsdtest.BUILD / "system/serial", wire])
-    until(lambda: serial.log().endswith("\n"), 10, "the serial port")
-    program = scene.owserver(options=[f"--passive={serial.log().strip()}"])
-    until(lambda: len(program.devices()) == 2, 30, "owserver has the devices")
-    return served.Server(program, program.host, program.port, True)
-
-
 def plant(scene, way, wire=WIRE + FAILING, **options):
     """The daemon whose outputs are looked at, and the server that has the wire."""
     items = [dict(Name=name, Path=path, Type=raw(kind), IO=raw("output"), ReadBack=raw("0.3"),
                   **options) for name, (path, kind, _) in COMMANDS.items()]
     wire = scene.file("wire.sim", wire)
     if way == "genuine":
-        server = genuine(scene, wire)
+        server = served.owserver_of(scene, wire)
+        until(lambda: server.has(("/29.000000000001", "/3A.000000000001")), 30, "the devices")
         daemon = scene.owsd(owsdtest.rio(server.target, items, Period=raw("0.05")))
     elif way == "direct":
         server = served.owsd_of(scene, f"sim:{wire}", items=items, Period=raw("0.05"))
