@@ -10,6 +10,8 @@
 #include "src/signal/value.h"
 
 #define GOOD_OR_NONE " if value_json.good else None }}"
+/* Of a brightness and a position Home Assistant takes no None: they stay, the state is unknown */
+#define NUMBER_OR_NOTHING "{{ value_json.v if value_json.good else '' }}"
 #define MARGIN_NS (5 * NS_PER_S)
 #define TEXT_MOST 255 /* of a state */
 
@@ -125,8 +127,9 @@ static void put_availables(struct json *json, const struct stream *s, const stru
 	if (chip)
 		put_available(json, chip->topic, NULL);
 	if (value_topic)
-		put_available(json, value_topic,
-		              "{{ 'online' if value_json.good else 'offline' }}");
+		put_available(
+			json, value_topic,
+			"{{ 'online' if value_json.good or value_json.q == 32 else 'offline' }}");
 	json_array_end(json);
 }
 
@@ -238,7 +241,7 @@ static void put_light(struct json *json, const struct row *row)
 	json_string(json, "on_cmd_type", "brightness");
 	put_topic(json, "bri_cmd_t", row, "/set");
 	put_topic(json, "bri_stat_t", row, "");
-	json_string(json, "bri_val_tpl", kinds[ENTITY_SENSOR].template);
+	json_string(json, "bri_val_tpl", NUMBER_OR_NOTHING);
 	put_double(json, "bri_scl", most);
 }
 
@@ -254,11 +257,30 @@ static void put_cover(struct json *json, const struct stream *s, const struct ro
 	entity_range(&row->info, &least, &most);
 	put_topic(json, "set_pos_t", row, "/set");
 	put_topic(json, "pos_t", row, "");
-	json_string(json, "pos_tpl", kinds[ENTITY_SENSOR].template);
+	json_string(json, "pos_tpl", NUMBER_OR_NOTHING);
 	put_double(json, "pos_clsd", least);
 	put_double(json, "pos_open", most);
-	/* a position cannot be unknown */
+	/* it keeps a position that is bad; but one that nobody has set yet can be set */
 	put_availables(json, s, row->chip >= 0 ? &s->chips[row->chip] : NULL, row->topic);
+}
+
+/* A light or cover that is a number is off or closed at its least value. */
+static void put_state_template(struct json *json, const struct row *row, enum entity_kind kind)
+{
+	const char *key = kind == ENTITY_LIGHT ? "stat_val_tpl" : "val_tpl";
+	bool string = kind == ENTITY_SENSOR && row->info.type == OWS_STRING;
+	double least, most;
+	char text[128];
+
+	if ((kind != ENTITY_LIGHT && kind != ENTITY_COVER) || row->info.type == OWS_BOOL) {
+		json_string(json, key, kinds[string ? ENTITY_TEXT : kind].template);
+		return;
+	}
+	entity_range(&row->info, &least, &most);
+	snprintf(text, sizeof(text), "{{ ('%s' if value_json.v > %.9g else '%s')" GOOD_OR_NONE,
+	         kind == ENTITY_LIGHT ? "on" : "open", least,
+	         kind == ENTITY_LIGHT ? "off" : "closed");
+	json_string(json, key, text);
 }
 
 static void put_signal(struct json *json, const struct stream *s, const struct row *row,
@@ -267,16 +289,10 @@ static void put_signal(struct json *json, const struct stream *s, const struct r
 	const struct ows_info *info = &row->info;
 	const char *class = class_of(row);
 	enum entity_kind kind = entity_kind(info, class, s->write);
-	bool position = kind == ENTITY_COVER && info->type != OWS_BOOL;
 
 	begin(json, id, "", kinds[kind].platform, name);
-	if (!position)
-		put_topic(json, "stat_t", row, "");
-	if (!position)
-		json_string(json, kind == ENTITY_LIGHT ? "stat_val_tpl" : "val_tpl",
-		            kind == ENTITY_SENSOR && info->type == OWS_STRING
-		                    ? kinds[ENTITY_TEXT].template
-		                    : kinds[kind].template);
+	put_topic(json, "stat_t", row, "");
+	put_state_template(json, row, kind);
 	if (*class && strcmp(class, "light") != 0 && strcmp(class, "cover") != 0 &&
 	    kind != ENTITY_LIGHT && kind != ENTITY_TEXT)
 		json_string(json, "dev_cla", class);

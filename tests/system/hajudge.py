@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: MIT
+"""The genuine Home Assistant, headless, at the broker of a house of mqtthouse.py.
+
+    judge = HomeAssistant(scene, house.broker.port)
+    judge.shows("sensor.room", "21.5")
+    judge.act("switch.turn_on", "switch.relay")
+
+It publishes each second what it has: its states, and of which device each is.
+"""
+
+import fcntl
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+import mqtthouse
+import owsdtest
+from owsdtest import until
+
+WANTED = pathlib.Path(__file__).resolve().parent / "hajudge.txt"
+INSTALL_SECONDS = 1500
+READY_SECONDS = 300
+# Of each entity, with nothing in it that makes a list or a number of it
+LOOK = "{% for s in states %}{{ s.entity_id }}={{ s.state }}={{ device_id(s.entity_id) }}=" \
+       "{{ state_attr(s.entity_id, 'quality') }}={{ state_attr(s.entity_id, 'event_type') }};{% endfor %}"
+CONFIGURATION = """
+homeassistant: {{name: judge, latitude: 50, longitude: 14, elevation: 200, unit_system: metric,
+                 time_zone: UTC, country: CZ}}
+http: {{server_host: 127.0.0.1, server_port: {port}}}
+logger: {{default: warning}}
+automation:
+- alias: look
+  triggers: {{trigger: time_pattern, seconds: "/1"}}
+  actions: {{action: mqtt.publish, data: {{topic: judge/states, payload: "{look}"}}}}
+- alias: act
+  mode: queued
+  triggers: {{trigger: mqtt, topic: judge/act}}
+  actions:
+    action: "{{{{ trigger.payload_json.action }}}}"
+    target: {{entity_id: "{{{{ trigger.payload_json.entity }}}}"}}
+    data: "{{{{ trigger.payload_json.data }}}}"
+- alias: tag
+  mode: queued
+  triggers: {{trigger: event, event_type: tag_scanned}}
+  actions: {{action: mqtt.publish, data: {{topic: judge/tag,
+             payload: "tag {{{{ trigger.event.data.tag_id }}}}"}}}}
+"""
+
+
+def _base():
+    """A Python that this Home Assistant runs on."""
+    homes = sorted(pathlib.Path.home().glob(".pyenv/versions/3.13.*/bin/python3"))
+    for path in (sys.executable, shutil.which("python3.13"), *map(str, homes)):
+        if path and subprocess.run([path, "-c", "import sys; sys.exit(sys.version_info[:2] != (3, 13))"],
+                                   check=False, capture_output=True).returncode == 0:
+            return path
+    return owsdtest.skip("Home Assistant 2025.4 wants Python 3.13")
+
+
+def python():
+    """The Python that has it, out of the user's cache or, once and for some minutes, from the package index."""
+    base = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "owsd"
+    try:
+        base.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        base = owsdtest.BUILD
+    place = base / "homeassistant"
+    with open(base / "homeassistant.lock", "w", encoding="ascii") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not (place / WANTED.name).exists() or (place / WANTED.name).read_text() != WANTED.read_text():
+            _install(place)
+    return place / "bin/python"
+
+
+def _install(place):
+    base = _base()
+    shutil.rmtree(place, ignore_errors=True)
+    pip = [f"{place}/bin/python", "-m", "pip", "--quiet", "--disable-pip-version-check", "--retries", "1",
+           "--timeout", "30", "install"]
+    core = next(line for line in WANTED.read_text().splitlines() if line.startswith("homeassistant=="))
+    for command in ([base, "-m", "venv", str(place)], [*pip, "--no-deps", core], [*pip, "-r", str(WANTED)]):
+        # it has a list of the versions that it was tried with
+        if known := list(place.glob("lib/python3.*/site-packages/homeassistant/package_constraints.txt")):
+            command += ["-c", str(known[0])]
+        try:
+            done = subprocess.run(command, capture_output=True, text=True, timeout=INSTALL_SECONDS,
+                                  check=False)
+            last = ((done.stderr or done.stdout).strip().splitlines() or [""])[-1]
+        except subprocess.TimeoutExpired:
+            done, last = None, "it takes too long"
+        if not done or done.returncode:
+            shutil.rmtree(place, ignore_errors=True)
+            owsdtest.skip(f"not cached and cannot be had: Home Assistant: {last}")
+    shutil.copy(WANTED, place)
+
+
+class HomeAssistant:
+    def __init__(self, scene, port):
+        self.broker_port, where = port, scene.path / "homeassistant"
+        (where / ".storage").mkdir(parents=True)
+        (where / "configuration.yaml").write_text(CONFIGURATION.format(port=owsdtest.free_port(), look=LOOK))
+        entry = {"created_at": "2025-01-01T00:00:00+00:00", "modified_at": "2025-01-01T00:00:00+00:00",
+                 "data": {"broker": "127.0.0.1", "port": port},
+                 "options": {"discovery": True, "discovery_prefix": "homeassistant"},
+                 "disabled_by": None, "discovery_keys": {}, "domain": "mqtt", "entry_id": "judge",
+                 "minor_version": 2, "pref_disable_new_entities": False, "pref_disable_polling": False,
+                 "source": "user", "subentries": [], "title": "judge", "unique_id": None, "version": 1}
+        (where / ".storage/core.config_entries").write_text(json.dumps(
+            {"version": 1, "minor_version": 5, "key": "core.config_entries", "data": {"entries": [entry]}}))
+        self.listener = mqtthouse.Listener(scene, port, "judge/#")
+        self.process = scene.start([python(), "-m", "homeassistant", "-c", where, "--skip-pip"], {"HOME": str(where), "PYTHONPATH": ""})
+        until(self.states, READY_SECONDS, lambda: f"Home Assistant is ready: {self.process.log()[-3000:]}", step=0.2)
+
+    def states(self):
+        """{entity: (state, device, quality, event)}"""
+        text = self.listener.last("judge/states") or ""
+        return {name: tuple(rest) for name, *rest in (e.split("=") for e in text.split(";") if e.strip())}
+
+    def state(self, entity):
+        return self.states().get(entity, (None,))[0]
+
+    def shows(self, entity, state, seconds=30):
+        until(lambda: self.state(entity) == state, seconds,
+              lambda: f"{entity} is {state}: {self.states()}\n{self.complaints()}", step=0.1)
+
+    def act(self, action, entity, **data):
+        text = json.dumps({"action": action, "entity": entity, "data": data})
+        subprocess.run([mqtthouse.program("mosquitto_pub"), "-p", str(self.broker_port), "-q", "1", "-t", "judge/act",
+                        "-m", text], check=True, timeout=owsdtest.PATIENCE)
+
+    def complaints(self):
+        """What its log has of MQTT, and of what came by it."""
+        plain = re.sub(r"\x1b\[[0-9;]*m", "", self.process.log())
+        return [line for line in plain.splitlines()
+                if re.search(r" (WARNING|ERROR|CRITICAL) ", line) and re.search(r"mqtt|owsd|template", line)]
