@@ -213,6 +213,8 @@ LIBHISTORY := $(filter-out src/libhistory/none.c,$(wildcard src/libhistory/*.c))
 # What calls SQLite; and what stands in its place
 SQLITE_ALL := $(LIBHISTORY) $(patsubst %,src/history/%.c,file keep schema sql store writer) \
             $(wildcard src/recorder/*.c)
+# What makes of owsd the program owsd-sim
+SIM_TABLE := hal/sim/table.c
 # Programs to start from, and configurations
 EXAMPLES := $(wildcard docs/examples/*.c docs/examples/*.cpp docs/examples/*.py docs/examples/*.go \
             docs/examples/*.rio docs/examples/*.rs docs/examples/*.table)
@@ -228,11 +230,11 @@ UNIT_SRC := $(filter-out $(if $(SQLITE),,%_past.c $(wildcard $(patsubst %,tests/
 UNIT_AID := $(wildcard tests/unit/aid/*.c)
 ENDURANCE := $(wildcard tests/endurance/*.c)
 BENCH    := $(wildcard tests/bench/bench_*.c)
-BENCH_AID := $(filter-out $(BENCH),$(wildcard tests/bench/*.c)) tests/unit/aid/plant.c tests/unit/aid/plant_net.c tests/unit/aid/giving.c
+BENCH_AID := $(filter-out $(BENCH),$(wildcard tests/bench/*.c)) $(SIM_TABLE) tests/unit/aid/plant.c tests/unit/aid/plant_net.c tests/unit/aid/giving.c
 # ---------------------------------------------------------------------------------------------
 
 CORE     := $(filter-out src/owsd/owsd.c src/owsctl/owsctl.c src/recorder/recorder.c src/influx/influx.c \
-            src/writer/owsd_config.c $(if $(SQLITE),src/libhistory/none.c,$(SQLITE_ALL)) \
+            src/writer/owsd_config.c $(SIM_TABLE) $(if $(SQLITE),src/libhistory/none.c,$(SQLITE_ALL)) \
             $(if $(CURL),,src/influx/post.c) $(if $(HTTPD),$(WEB_MAIN),$(WEB_HTTP)) \
             $(if $(MOSQUITTO),src/mqtt/owsd_mqtt.c,$(MQTT_ALL)),$(SOURCES))
 obj       = $(patsubst %.c,$(B)/%.o,$(1))
@@ -242,7 +244,9 @@ SAMPLES  := $(patsubst docs/examples/%.c,$(B)/examples/%,$(filter-out $(if $(SQL
             $(patsubst docs/examples/%.cpp,$(B)/examples/%,$(filter %.cpp,$(EXAMPLES)))
 FACES    := owsd-config $(if $(SQLITE),owsd-recorder) $(if $(CURL),owsd-influx) $(if $(HTTPD),owsd-web) \
             $(if $(MOSQUITTO),owsd-mqtt)
-PROGRAMS := $(B)/owsd $(B)/owsctl $(FACES:%=$(B)/%)
+# Those that open targets, each again as NAME-sim: the same with the scheme sim
+WITH_SIM := owsd-sim owsd-config-sim owsctl-sim
+PROGRAMS := $(B)/owsd $(B)/owsctl $(FACES:%=$(B)/%) $(WITH_SIM:%=$(B)/%)
 LIBRARIES := libows $(if $(SQLITE),libows-history)
 PYTHON_MADE := $(if $(PYTHON),$(B)/python/ows.py $(LIBRARIES:%=$(B)/python/%.so.$(SOMAJOR)))
 LIBRARY  := $(foreach l,$(LIBRARIES),$(B)/$(l).so.$(VERSION) $(B)/$(l).a $(B)/$(l).pc)
@@ -273,10 +277,11 @@ $(B)/core.a: $(call obj,$(CORE))
 
 $(PROGRAMS): $(B)/core.a $(B)/with/ld
 	$(call link)
-$(B)/owsd: $(B)/src/owsd/owsd.o
-$(B)/owsctl: $(B)/src/owsctl/owsctl.o
+$(WITH_SIM:%=$(B)/%): $(call obj,$(SIM_TABLE))
+$(B)/owsd $(B)/owsd-sim: $(B)/src/owsd/owsd.o
+$(B)/owsctl $(B)/owsctl-sim: $(B)/src/owsctl/owsctl.o
 $(B)/owsd-recorder: $(B)/src/recorder/recorder.o
-$(B)/owsd-config: $(B)/src/writer/owsd_config.o
+$(B)/owsd-config $(B)/owsd-config-sim: $(B)/src/writer/owsd_config.o
 $(B)/owsd-influx: $(B)/src/influx/influx.o
 $(B)/owsd-influx: LIBS += -lcurl
 $(B)/owsd-mqtt: $(B)/src/mqtt/owsd_mqtt.o
@@ -525,7 +530,7 @@ COCKPIT := $(D)$(PREFIX)/share/cockpit/owsd
 install: all
 	install -d $(D)$(PREFIX)/bin $(D)$(PREFIX)/sbin $(D)$(PREFIX)/include $(D)$(LIBDIR)/pkgconfig \
 	    $(D)$(DATADIR)/examples $(D)$(DATADIR)/boards
-	install -m 755 $(B)/owsd $(FACES:%=$(B)/%) $(D)$(PREFIX)/sbin
+	install -m 755 $(B)/owsd $(FACES:%=$(B)/%) $(patsubst %,$(B)/%,$(filter owsd%,$(WITH_SIM))) $(D)$(PREFIX)/sbin
 	@set -e; for f in $(PAGE); do d=$(D)$(DATADIR)/web/$$(dirname $$f); install -d $$d; \
 	    install -m 644 src/web/page/$$f $$d; done
 	@set -e; for f in $(PAGE); do d=$(COCKPIT)/$$(dirname $$f); install -d $$d; \
@@ -533,7 +538,7 @@ install: all
 	sed 's,^<script type="module" async,<script src="../base1/cockpit.js"></script>\n&,' \
 	    src/web/page/index.html >$(COCKPIT)/index.html
 	install -m 644 board/cockpit/manifest.json $(COCKPIT)
-	install -m 755 $(B)/owsctl $(D)$(PREFIX)/bin/owsctl
+	install -m 755 $(B)/owsctl $(B)/owsctl-sim $(D)$(PREFIX)/bin
 	@set -e; for l in $(LIBRARIES); do so=$$l.so.$(VERSION); \
 	    install -m 644 $(B)/$$so $(B)/$$l.a $(D)$(LIBDIR); \
 	    ln -sf $$so $(D)$(LIBDIR)/$$l.so.$(SOMAJOR); ln -sf $$so $(D)$(LIBDIR)/$$l.so; \
@@ -554,7 +559,8 @@ install: all
 	$(if $(D),,-@ldconfig 2>/dev/null || true)
 
 uninstall:
-	rm -f $(addprefix $(D)$(PREFIX)/sbin/,owsd owsd-recorder owsd-config owsd-influx owsd-web owsd-mqtt) $(D)$(PREFIX)/bin/owsctl \
+	rm -f $(addprefix $(D)$(PREFIX)/sbin/,owsd owsd-recorder owsd-config owsd-influx owsd-web owsd-mqtt owsd-sim owsd-config-sim) \
+	    $(D)$(PREFIX)/bin/owsctl $(D)$(PREFIX)/bin/owsctl-sim \
 	    $(foreach l,$(LIBRARIES),$(foreach s,so.$(VERSION) so.$(SOMAJOR) so a,$(D)$(LIBDIR)/$(l).$(s)) \
 	    $(D)$(LIBDIR)/pkgconfig/$(l).pc) \
 	    $(D)$(PREFIX)/include/ows.h $(D)$(PREFIX)/include/ows_history.h $(D)$(PREFIX)/include/ows_layout.h

@@ -38,7 +38,7 @@ def record(folder):
     rio = re.sub(r"(?<=LimitH) +\d+", " 50", rio)  # the boiler is too hot at once
     (folder / "house.rio").write_text(rio)
     os.environ["OWS_DIR"] = str(folder / "place")
-    owsd = subprocess.Popen([BUILD / "owsd", "-n", name, "-c", "house.rio"], cwd=folder,
+    owsd = subprocess.Popen([BUILD / "owsd-sim", "-n", name, "-c", "house.rio"], cwd=folder,
                             stderr=subprocess.DEVNULL)
     ctl = [BUILD / "owsctl", "-n", name]
     try:

@@ -97,6 +97,12 @@ int bus_create(const char *target, const struct bus_env *env, struct bus **bus, 
 		snprintf(why, why_size, "auto stands for several targets: name one of them");
 		return -EINVAL;
 	}
+	if (!ops && word_len == 3 && memcmp(target, "sim", word_len) == 0) {
+		snprintf(why, why_size,
+		         "simulated devices: this target needs owsd-sim in place of owsd "
+		         "(and owsctl-sim, owsd-config-sim)");
+		return -EPROTONOSUPPORT;
+	}
 	if (!ops && !(colon && is_host_and_port(target, colon)) &&
 	    is_others_adapter(target, word_len, why, why_size))
 		return -EINVAL;

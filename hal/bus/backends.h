@@ -9,8 +9,8 @@
  * Find the backend of a target ("owserver:localhost:4304", "null:") and create the bus. Bare
  * `host`, `host:port` and `[v6]:port` mean owserver, and so does an empty target (localhost). A
  * word that is a scheme means the scheme, with or without a colon. Returns as bus_ops.create;
- * -EPROTONOSUPPORT when no backend of this build has the scheme (why names the schemes of this
- * build). why is the end of a message that names the target before.
+ * -EPROTONOSUPPORT when no backend of this program has the scheme (why names its schemes, or for
+ * sim the program that has it). why is the end of a message that names the target before.
  */
 int bus_create(const char *target, const struct bus_env *env, struct bus **bus, char *why,
                size_t why_size);

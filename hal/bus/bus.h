@@ -279,7 +279,7 @@ struct bus {
 	int64_t look_ns; /* suspended: when to look for the target again */
 };
 
-/* All backends of this build, NULL at the end. */
+/* The backends of this program, NULL at the end. */
 extern const struct bus_ops *const bus_backends[];
 #define BACKEND(name) extern const struct bus_ops name##_bus;
 #include "hal/bus/schemes.h"

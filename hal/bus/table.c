@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The table of all backends. Alone in this file, so that a program can be linked with another. */
+/* The table of the backends. Alone in this file: owsd-sim is linked with that of hal/sim. */
 #include "hal/bus/bus.h"
 
 const struct bus_ops *const bus_backends[] = {

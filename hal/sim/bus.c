@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Scheme "sim": the native bus over simulated devices. */
+#include "hal/sim/bus.h"
 #include "hal/native/native.h"
 #include "hal/sim/master.h"
 

@@ -6,8 +6,8 @@
  * now is ns on any clock that never goes back; the simulation starts with the first call. What
  * lies between two calls is jumped over.
  *
- * Room hal/sim: a simulated I2C adapter, DS2482 and wires. Uses hal/ds2482, hal/native, hal/wire,
- * hal/owfs, hal/bus.
+ * Room hal/sim: a simulated I2C adapter, DS2482 and wires, in owsd-sim alone. Uses hal/ds2482,
+ * hal/native, hal/wire, hal/owfs, hal/bus.
  */
 #ifndef HAL_SIM_NET_H
 #define HAL_SIM_NET_H

@@ -209,7 +209,7 @@ static pid_t start_owsd(const char *self, const char *folder, const char *instan
 	char program[512], file[64];
 	pid_t pid;
 
-	snprintf(program, sizeof(program), "%.*s/../owsd", slash ? (int)(slash - self) : 1,
+	snprintf(program, sizeof(program), "%.*s/../owsd-sim", slash ? (int)(slash - self) : 1,
 	         slash ? self : ".");
 	snprintf(file, sizeof(file), "%s/bench.rio", folder);
 	pid = fork();

@@ -291,7 +291,7 @@ int main(int argc, char **argv)
 
 	(void)argc;
 	bench_place();
-	snprintf(program, sizeof(program), "%.*s/../owsd", slash ? (int)(slash - argv[0]) : 1,
+	snprintf(program, sizeof(program), "%.*s/../owsd-sim", slash ? (int)(slash - argv[0]) : 1,
 	         slash ? argv[0] : ".");
 	snprintf(scenario, sizeof(scenario), "/tmp/owsd-bench-XXXXXX");
 	fd = mkstemp(scenario);

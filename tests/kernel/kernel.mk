@@ -89,14 +89,14 @@ $(GPIOD_2)/usr/include/gpiod.h: board/fetch-debs
 	@sh board/fetch-debs -x trixie arm64 $(GPIOD_2) libgpiod-dev libgpiod3
 	@touch $@
 
-# In build/arm64 only: owsd with the other library in place of the archive's
+# In build/arm64 only: owsd-sim with the other library in place of the archive's
 $(B)/gpiod-2/library.o: hal/gpio/library_v2.c $(B)/with/cc
 	@mkdir -p $(@D)
 	$(call show,CC)
 	$(Q)$(CC) -isystem $(GPIOD_2)/usr/include $(ALL_CFLAGS) -UOWSD_LIBGPIOD -DOWSD_LIBGPIOD=2 -MMD -MP -c -o $@ $<
-$(B)/gpiod-2/owsd: $(B)/src/owsd/owsd.o $(B)/gpiod-2/library.o $(B)/core.a $(B)/with/ld
+$(B)/gpiod-2/owsd: $(B)/src/owsd/owsd.o $(call obj,$(SIM_TABLE)) $(B)/gpiod-2/library.o $(B)/core.a $(B)/with/ld
 	$(call link,-L$(GPIOD_2)/$(GPIOD_LIB))
-$(B)/owsd-gpiod-1: $(B)/owsd
+$(B)/owsd-gpiod-1: $(B)/owsd-sim
 	@ln -f $< $@
 $(B)/owsd-gpiod-2: $(B)/gpiod-2/owsd
 	@ln -f $< $@

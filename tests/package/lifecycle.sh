@@ -25,14 +25,14 @@ as_user() { user=$1 && shift && setpriv --reuid "$user" --regid nogroup --init-g
 refused() { ! "$@"; }
 
 # The libraries first, so that what is compared is ours
-libraries=$(for p in owsd_*.deb owsd-influx_*.deb owsd-mqtt_*.deb owsd-web_*.deb owsd-cockpit_*.deb; do dpkg-deb -f "$p" Depends; done |
+libraries=$(for p in owsd_*.deb owsd-sim_*.deb owsd-influx_*.deb owsd-mqtt_*.deb owsd-web_*.deb owsd-cockpit_*.deb; do dpkg-deb -f "$p" Depends; done |
 	tr ',' '\n' | sed -n 's/^ *\(lib[a-z0-9.+-]*\|cockpit-bridge\).*/\1/p' | grep -v '^libows\|^libc6$' | sort -u | tr '\n' ' ')
 does "what it needs is in the system's archive ($libraries)" \
 	sh -c "apt-get -q update && $apt install $libraries"
 everything >/tmp/before
 
 does 'the packages are installed' $apt install ./libows1_*.deb ./libows-history1_*.deb ./libows-dev_*.deb \
-	./python3-ows_*.deb ./owsd_*.deb ./owsd-recorder_*.deb ./owsd-influx_*.deb ./owsd-mqtt_*.deb ./owsd-web_*.deb ./owsd-cockpit_*.deb
+	./python3-ows_*.deb ./owsd_*.deb ./owsd-sim_*.deb ./owsd-recorder_*.deb ./owsd-influx_*.deb ./owsd-mqtt_*.deb ./owsd-web_*.deb ./owsd-cockpit_*.deb
 version=$(dpkg-query -W -f '${Version}' owsd)
 same 'their user is in the groups that it needs' 'gpio i2c owsd owsd-control' \
 	"$(id -nG owsd | tr ' ' '\n' | sort | tr '\n' ' ' | sed 's/ $//')"
@@ -44,8 +44,13 @@ does 'that owsd takes' owsd --check
 does 'and serves at once' within 90 service owsd status
 does 'a service for systemd is enabled' test -L /etc/systemd/system/owsd.service.wants/owsd@OWS.service
 
-cp /usr/share/doc/owsd/examples/house.sim /usr/share/doc/owsd/examples/house.rio /etc/owsd
-mv /etc/owsd/house.rio /etc/owsd/OWS.rio
+# The devices: a simulated house behind the served protocol
+house=/usr/share/doc/owsd-sim/examples/house
+does 'owsd itself has no simulator' refused owsd --check -c $house.rio
+mkdir /tmp/sim
+OWS_DIR=/tmp/sim owsd-sim -n SIM -t sim:$house.sim -l 127.0.0.1:4304 >/tmp/sim/log 2>&1 &
+simulator=$!
+sed 's/sim:house.sim/localhost:4304/' $house.rio >/etc/owsd/OWS.rio
 cp /etc/owsd/OWS.rio /tmp/OWS.rio
 does 'a restart takes another configuration' service owsd restart
 does 'with values' within 90 owsctl get boiler
@@ -123,10 +128,11 @@ does 'a configuration that was deleted stays deleted' test ! -e /etc/owsd/OWS.ri
 cp /tmp/OWS.rio /etc/owsd/OWS.rio
 cp /tmp/OWS.rio /etc/owsd/HOUSE.rio
 service owsd restart
-does 'all are purged' $apt purge owsd owsd-recorder owsd-influx owsd-mqtt owsd-web owsd-cockpit libows1 libows-history1 libows-dev python3-ows
+does 'all are purged' $apt purge owsd owsd-sim owsd-recorder owsd-influx owsd-mqtt owsd-web owsd-cockpit libows1 libows-history1 libows-dev python3-ows
 does 'nothing runs' refused pgrep -x owsd
 same 'no segment and no history stays' '' "$(find /run/owsd /var/lib/owsd /var/lib/owsd-recorder /var/lib/owsd-influx 2>/dev/null)"
 does 'what its owner has made does' test -e /etc/owsd/HOUSE.rio
 rm -r /etc/owsd
+kill $simulator
 everything >/tmp/after
 same 'nothing else stays' '' "$(diff /tmp/before /tmp/after)"

@@ -110,7 +110,8 @@ class Server:
             name = serial.stdout.readline().strip()
             self.start("owserver", f"--passive={name}", "-p", where, "--foreground")
         else:
-            self.start(owsdtest.OWSD, "-t", target or f"sim:{scenario}", "-l", where, "-n", f"c{self.port}")
+            target = target or f"sim:{scenario}"
+            self.start(owsdtest.with_sim(owsdtest.OWSD, target), "-t", target, "-l", where, "-n", f"c{self.port}")
 
     def start(self, *command, stdout=None):
         program = subprocess.Popen([str(c) for c in command], stdin=subprocess.DEVNULL,

@@ -85,6 +85,15 @@ def need(program):
     assert program.exists(), f"{program} is not built"
 
 
+def with_sim(program, *words, cwd="."):
+    """The program for these arguments: the one that is packaged, or where they, or a file that they
+    name, have a simulated target, its like that has simulated devices (owsd-sim for owsd)."""
+    def simulated(word):
+        file = pathlib.Path(cwd, str(word))
+        return "sim:" in str(word) or len(file.name) < 256 and file.is_file() and b"sim:" in file.read_bytes()
+    return program.with_name(program.name + "-sim") if any(map(simulated, words)) else program
+
+
 def patience(seconds):
     """What those seconds are at the load of now: QUIET_PATIENCE at least, and more in proportion to
     what waits for each processor. A sanitizer's code is slow."""
@@ -342,7 +351,9 @@ class Owsd(Program):
         address = str(scene.path / f"n{next(_serial)}")
         self.notify.bind(address)
         os.chmod(address, 0o777)  # owsd may run as another user
-        super().__init__(scene, [*prefix, OWSD, "-n", name, *(["-c", config] if config else []),
+        program = with_sim(OWSD, config or "", *options, cwd=scene.path)
+        need(program)
+        super().__init__(scene, [*prefix, program, "-n", name, *(["-c", config] if config else []),
                                  *options],
                          {"NOTIFY_SOCKET": address, **(env or {})})
 
@@ -435,7 +446,6 @@ class Scene:
     def owsd(self, config, *options, name=None, env=None, ready=True, prefix=()):
         """Start owsd with the text (or the path) of a configuration, None: without -c; ready unless
         said otherwise. prefix: a program that becomes owsd, with its arguments."""
-        need(OWSD)
         name = name or self.name()
         if isinstance(config, str):
             config = self.file(f"{name}-{next(_serial)}.rio", config)
@@ -444,14 +454,16 @@ class Scene:
 
     def owsd_once(self, *arguments, seconds=20):
         """Run owsd to its end (--check, -V, a faulty file): returncode, stdout, stderr."""
-        need(OWSD)
-        return self._run([OWSD, *arguments], seconds)
+        program = with_sim(OWSD, *arguments, cwd=self.path)
+        need(program)
+        return self._run([program, *arguments], seconds)
 
     def owsctl(self, daemon, *arguments, seconds=20):
         """Run owsctl on an owsd (or an instance name, or None): returncode, stdout, stderr."""
-        need(OWSCTL)
+        program = with_sim(OWSCTL, *arguments, cwd=self.path)
+        need(program)
         name = daemon.name if isinstance(daemon, Owsd) else daemon
-        return self._run([OWSCTL, *(["-n", name] if name else []), *arguments], seconds)
+        return self._run([program, *(["-n", name] if name else []), *arguments], seconds)
 
     def _run(self, command, seconds):
         return subprocess.run([str(c) for c in command], cwd=self.path, text=True,

@@ -69,6 +69,12 @@ def place(argument):
     return re.sub(r"^(localhost|127\.0\.0\.1):4304$", f"127.0.0.1:{SERVED}", argument)
 
 
+def with_sim(program, arguments):
+    """The wire of the stage is simulated. But what a page gives a simulated target says so itself."""
+    said = any("sim:" in a for a in arguments)
+    return BUILD / (pathlib.Path(sys.argv[0]).name if said else program + "-sim")
+
+
 def owsctl(arguments):
     words = [place(a) for a in arguments]
     if "-n" in words:
@@ -81,26 +87,27 @@ def owsctl(arguments):
     if "wait" in words and "-t" in words[words.index("wait"):]:
         last = len(words) - 1 - words[::-1].index("-t")
         words[last + 1] = str(min(60, int(words[last + 1])))
-    run([BUILD / "owsctl", *words])
+    run([with_sim("owsctl", arguments), *words])
 
 
 def owsd(arguments):
     import owsdtest  # only here: the other programs are to start quickly
     words = [place(a) for a in arguments]
+    program = with_sim("owsd", arguments)
     if any(w.startswith("--board") for w in words):
-        run([BUILD / "owsd", *words, "--root", STAGE / "root"])
+        run([program, *words, "--root", STAGE / "root"])
     for option in ("-n", "-l"):
         for at in (i + 1 for i, w in enumerate(words) if w == option):
             words[at] = NAME + "d" if option == "-n" else f"127.0.0.1:{owsdtest.free_port()}"
     if "-c" not in words and not {"-t", "-l"} <= set(words):
         words += ["-c", str(STAGE / "root/etc/owsd/OWS.rio")]
     if {"--check", "-V", "--version", "-h", "--help"} & set(words):
-        run([BUILD / "owsd", *words])
+        run([program, *words])
     if "-t" not in words:
         words += ["-t", SIMULATED]
     if "-n" not in words:
         words += ["-n", NAME + "d"]
-    sys.exit(until_ready([str(BUILD / "owsd"), *words], owsdtest.PATIENCE))
+    sys.exit(until_ready([str(program), *words], owsdtest.PATIENCE))
 
 
 def face(program):
@@ -230,7 +237,7 @@ def man(arguments):
         fail(f"no page {page}")
 
 
-RUN = {"owsctl": owsctl, "owsd": owsd, "owsd-recorder": face("owsd-recorder"),
+RUN = {"owsctl": owsctl, "owsctl-sim": owsctl, "owsd": owsd, "owsd-sim": owsd, "owsd-recorder": face("owsd-recorder"),
        "owsd-influx": face("owsd-influx"), "owsd-mqtt": face("owsd-mqtt"),
        "owsd-config": face("owsd-config"), "owsd-web": owsd_web, "sudo": sudo, "make": make, "apt": apt, "apt-get": apt,
        "pkg-config": pkg_config, "jq": jq, "man": man, "cc": compiler("gcc"), "c++": compiler("g++")}

@@ -8,7 +8,7 @@ import signal
 import subprocess
 
 import owsdtest
-from owsdtest import OWSD, SOURCE
+from owsdtest import SOURCE
 
 SHIPPED = SOURCE / "docs/examples/sensors.table"
 CHIPS = """i2c speed 400
@@ -71,8 +71,7 @@ def test_a_table_that_was_edited_is_read_again_by_a_reload(scene):
 def test_an_error_of_the_table_is_reported_with_its_file_and_line(scene):
     table, rio = configuration(scene, "at 19.0000000000E1 nothing 0x44\n")
     line = len(SHIPPED.read_text().split("\n"))
-    done = subprocess.run([OWSD, "--check", "-c", rio], capture_output=True, text=True, timeout=20,
-                          check=False)
+    done = scene.owsd_once("--check", "-c", rio)
     assert done.returncode != 0, done
     assert "bridges.rio:4:" in done.stderr and "Sensors: " in done.stderr, done.stderr
     assert f"sensors.table:{line}: no sensor nothing stands above" in done.stderr, (table, done)
@@ -87,8 +86,7 @@ def test_a_table_that_is_a_pipe_is_refused_and_not_waited_for(scene):
     daemon.signal(signal.SIGHUP)
     owsdtest.logged(daemon, "sensors.table: not a regular file")
     owsdtest.logged(daemon, "all goes on as before")
-    done = subprocess.run([OWSD, "--check", "-c", rio], capture_output=True, text=True, timeout=20,
-                          check=False)
+    done = scene.owsd_once("--check", "-c", rio)
     assert done.returncode == 2 and "not a regular file" in done.stderr, done
     daemon.stop()
 

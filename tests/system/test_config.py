@@ -169,13 +169,23 @@ def test_a_link_to_nowhere_is_named(scene):
 
 
 
+def test_a_simulated_target_without_the_simulator_names_the_program_that_has_it(scene):
+    for target in ("sim:house.sim", "sim", "sim:", "sim:1.sim", "null:, sim:/1.sim:0x18"):
+        path = scene.file("house.rio", owsdtest.rio(target, [ITEM]))
+        for words in ([owsdtest.OWSD, "--check", "-c", path], [owsdtest.OWSD, "-n", scene.name(), "-c", path],
+                      [owsdtest.OWSD, "--check", "-t", target, "-l", "4304"],
+                      [owsdtest.OWSCTL, "-t", target.split()[-1], "scan"]):
+            done = scene._run(words, 20)
+            assert done.returncode == 2 and "this target needs owsd-sim" in done.stderr, (words, done)
+
+
 def test_what_cannot_be_a_target_is_refused_by_check_and_start(scene):
     wrong = {
         ":": "HOST", "::1": "brackets", "[::1": "HOST", "127.0.0.1:70000": "the port '70000'",
         "127.0.0.1:26000x": "the port '26000x'", "127.0.0.1:": "the port ''",
         "localhost:0": "the port '0'", "localhost: 26000": "the port ' 26000'",
         "foo:bar": "'foo'", "owserver:w1:99999": "the port '99999'", "null:x": "null:",
-        "sim:nowhere.sim": "nowhere.sim", "sim:": "file", "i2c:": "adapter",
+        "sim:nowhere.sim": "nowhere.sim: ", "sim:": "file", "i2c:": "adapter",
         "i2c:/dev/i2c1": "write /dev/i2c-1", "i2c:/dev/i2c1:0x18": "write /dev/i2c-1",
     }
     for target, reason in wrong.items():

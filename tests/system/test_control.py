@@ -167,10 +167,10 @@ def test_faults_of_ControlAllow_are_said(scene):
                          ("relays user:", "expected user:NAME or group:NAME"),
                          ("", "expected a pattern of signal names")):
         config = scene.file("house.rio", allow(scene, entry))
-        done = scene._run([owsdtest.OWSD, "--check", "-c", config], 20)
+        done = scene.owsd_once("--check", "-c", config)
         assert done.returncode == 2 and fault in done.stderr and "house.rio:2:" in done.stderr, done
     config = scene.file("house.rio", allow(scene, "relays user:nobody-of-that-name group:64712"))
-    done = scene._run([owsdtest.OWSD, "--check", "-c", config], 20)
+    done = scene.owsd_once("--check", "-c", config)
     assert done.returncode == 0, done
     assert "warning" in done.stderr and "no user nobody-of-that-name here" in done.stderr, done
     assert 'ControlAllow "relays user:nobody-of-that-name group:64712"' in " ".join(done.stdout.split()), done
@@ -179,7 +179,7 @@ def test_faults_of_ControlAllow_are_said(scene):
 
 def test_a_pattern_of_ControlAllow_that_fits_no_signal_gets_a_warning(scene):
     config = scene.file("house.rio", allow(scene, "realys user:0", "rel[ user:0", "r?lay* user:0"))
-    done = scene._run([owsdtest.OWSD, "--check", "-c", config], 20)
+    done = scene.owsd_once("--check", "-c", config)
     assert done.returncode == 0 and "house.rio:2:" in done.stderr, done
     assert "no signal fits the pattern realys" in done.stderr, done
     assert "no signal fits the pattern rel[" in done.stderr, done

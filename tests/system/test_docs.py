@@ -63,7 +63,7 @@ class Stage:
         for name in ("docs", "board", "tests", "src", "hal", "Makefile"):
             (self.path / name).symlink_to(SOURCE / name)
         (self.path / "build").mkdir()
-        for name in ("owsd", "owsctl"):
+        for name in ("owsd", "owsd-sim", "owsctl", "owsctl-sim"):
             (self.path / "build" / name).symlink_to(HERE / "standin.py")
         (self.path / "build/libows.a").symlink_to(owsdtest.BUILD / "libows.a")
         for name in ("stage.sim", "stage.rio"):
@@ -305,7 +305,7 @@ def check_inline(stage, code, written):
     program, *words = code.split()
     if program == "sudo" and words:
         program, *words = words
-    if program in ("owsd", "owsctl") and words:
+    if program in ("owsd", "owsd-sim", "owsctl", "owsctl-sim") and words:
         check_usage(program, words)
     elif program in (*standin.LOOKED_AT, "make", "apt", "apt-get") and \
             len(words) > (program != "make") and \
@@ -317,7 +317,7 @@ def check_inline(stage, code, written):
 def check_usage(program, words):
     """Placeholders may stand for values, as in `owsctl set NAME VALUE`: so the help is asked."""
     verb = [w for before, w in zip(["", *words], words) if re.match(r"[a-z]+$", w) and
-            before not in ("-n", "-t")][:1] if program == "owsctl" else []
+            before not in ("-n", "-t")][:1] if program.startswith("owsctl") else []
     helps = [subprocess.run([owsdtest.BUILD / program, *v, "--help"], capture_output=True, text=True,
                             check=False) for v in ([], verb)]
     assert all(h.returncode == 0 for h in helps), helps[-1].stderr

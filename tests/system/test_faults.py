@@ -327,7 +327,8 @@ with opened() as s:
         reads_5
         echo "again: 5"
     """)
-    done = scene._run(["unshare", "-rm", "env", f"owsd={owsdtest.OWSD}", f"owsctl={owsdtest.OWSCTL}",
+    done = scene._run(["unshare", "-rm", "env", f"owsd={owsdtest.with_sim(owsdtest.OWSD, file)}",
+                       f"owsctl={owsdtest.OWSCTL}",
                        f"PYTHONPATH={owsdtest.PYTHON}",
                        "sh", script, file, giver], 200)
     if done.returncode == 77 or done.stderr.startswith("unshare"):

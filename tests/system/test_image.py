@@ -3,13 +3,14 @@
 """The image stages in a root directory of our own making, and the scan of the first start."""
 
 import os
-import pathlib
 import shutil
 import stat
 import subprocess
 
 import owsdtest
 
+# The owsd of the first start scans a simulated wire
+REAL = {"owsd": owsdtest.BUILD / "owsd-sim", "owsctl": owsdtest.BUILD / "owsctl-sim"}
 IMAGE = owsdtest.SOURCE / "board" / "image"
 PACKAGED = (owsdtest.SOURCE / "board" / "debian" / "OWS.rio").read_text()
 ROUTINE = "dtparam=audio=on\n#dtparam=i2c_arm=on\n\n[pi5]\ndtoverlay=nospi10\n"
@@ -175,15 +176,15 @@ class First:
         self.file.write_text(PACKAGED)
         self.packaged.write_text(PACKAGED)
         self.wire(devices)
-        for program in (owsdtest.OWSD, owsdtest.OWSCTL):
-            self.real(program)
+        for name in REAL:
+            self.real(name)
 
     def wire(self, devices):
         self.net.write_text("chip DS2482-100 0x18\n" + devices)
 
-    def real(self, program):
-        (self.tools / program.name).unlink(missing_ok=True)
-        (self.tools / program.name).symlink_to(program)
+    def real(self, name):
+        (self.tools / name).unlink(missing_ok=True)
+        (self.tools / name).symlink_to(REAL.get(name) or shutil.which(name))
 
     def tool(self, name, text):
         (self.tools / name).unlink(missing_ok=True)
@@ -237,7 +238,7 @@ def test_a_file_that_comes_while_the_scan_goes_on_stays(scene):
     """As an installer that is about its work at the first start, too, puts it there."""
     for name, change in (("put", "echo '# mine' >"), ("removed", "rm ")):
         first = First(scene, name=name)
-        first.tool("owsctl", f"{change}'{first.file}'; exec '{owsdtest.OWSCTL}' \"$@\"")
+        first.tool("owsctl", f"{change}'{first.file}'; exec '{REAL['owsctl']}' \"$@\"")
         ran = first.run()
         assert ran.returncode == 0 and "stays" in ran.stderr and first.done(), ran
         if name == "put":
@@ -264,8 +265,7 @@ def test_a_power_cut_leaves_the_old_file_whole(scene):
         first.tool(name, at)
         assert first.run().returncode == -9
         assert first.file.read_text() == PACKAGED and not first.done(), name
-        first.real(pathlib.Path(dict(owsd=owsdtest.OWSD, owsctl=owsdtest.OWSCTL).get(name)
-                                or shutil.which(name)))
+        first.real(name)
         assert first.run().returncode == 0 and first.done(), name
         assert "28.000000000002" in first.file.read_text() and first.left() == ["OWS.rio"], name
 
@@ -273,12 +273,12 @@ def test_a_power_cut_leaves_the_old_file_whole(scene):
 def test_a_full_disk_leaves_the_old_file_and_is_said(scene):
     first = First(scene)
     # half of a scan, as a disk that is full keeps it
-    first.tool("owsctl", f"'{owsdtest.OWSCTL}' \"$@\" | head -c 300")
+    first.tool("owsctl", f"'{REAL['owsctl']}' \"$@\" | head -c 300")
     ran = first.run()
     assert ran.returncode == 1 and "could not be written whole" in ran.stderr, ran
     assert first.file.read_text() == PACKAGED and not first.done()
     assert first.left() == ["OWS.rio"]
-    first.tool("owsctl", f"exec '{owsdtest.OWSCTL}' \"$@\" >/dev/full")
+    first.tool("owsctl", f"exec '{REAL['owsctl']}' \"$@\" >/dev/full")
     ran = first.run()
     assert ran.returncode == 0 and "cannot write" in ran.stderr, ran
     assert first.file.read_text() == PACKAGED and first.left() == ["OWS.rio"]

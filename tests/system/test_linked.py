@@ -37,6 +37,17 @@ def found():
     return dict(zip(words[::2], words[1::2]))
 
 
+def test_the_programs_have_no_line_of_the_simulator_but_those_that_are_named_so(_scene):
+    def defined(*files):
+        return {words[-1] for words in map(str.split, output("nm", "--defined-only", *files).splitlines())
+                if len(words) == 3 and words[1] in "TDRBVW"}
+    simulator = defined(*(BUILD / "hal/sim").rglob("*.o")) - defined(BUILD / "hal/bus/table.o")
+    assert "sim_bus" in simulator and simulator & defined(BUILD / "owsd-sim") > {"sim_bus", "sim_master"}
+    for program in [BUILD / "owsctl", BUILD / "owsd", *BUILD.glob("owsd-*")]:
+        if not program.name.endswith("-sim") and "gpiod" not in program.name:
+            assert not simulator & defined(program), (program, sorted(simulator & defined(program)))
+
+
 def test_the_programs_link_libi2c_and_libgpiod(scene):
     said = found()
     for name, (soname, prefix) in LIBRARIES.items():
@@ -187,7 +198,7 @@ def test_every_test_of_a_file_is_run_by_unity(scene):
         text = file.read_text()
         # a table of tests may be built by a macro: those files count themselves
         functions = set(re.findall(r"^(?:static )?void (test_\w+)\(void\)", text, re.M))
-        run = set(re.findall(r"RUN_TEST\((test_\w+)\)", text))
+        run = set(re.findall(r"RUN_TEST\(\s*(test_\w+)\)", text))
         assert functions - run == set(), f"{file.name}: {functions - run} never run"
         assert "UNITY_BEGIN" in text and "UNITY_END" in text, file.name
 

@@ -181,7 +181,8 @@ def test_reloads_in_heaps_end_with_the_last_file(scene):
 
 def start_without(scene, closed, name):
     config = scene.file("house.rio", faulty.house(scene))
-    return scene.start(["sh", "-c", f'exec "$@" {closed}', "sh", owsdtest.OWSD, "-v", "-v", "-n", name,
+    return scene.start(["sh", "-c", f'exec "$@" {closed}', "sh",
+                        owsdtest.with_sim(owsdtest.OWSD, config), "-v", "-v", "-n", name,
                         "-c", config])
 
 

@@ -30,8 +30,8 @@ def programs():
     """Programs where every user reaches them."""
     if not PROGRAMS.exists():
         PROGRAMS.mkdir(mode=0o755)
-        for program in (owsdtest.OWSD, owsdtest.OWSCTL, owsdtest.PYTHON / "ows.py",
-                        owsdtest.PYTHON / "libows.so.1"):
+        for program in (owsdtest.OWSD, owsdtest.with_sim(owsdtest.OWSD, "sim:"), owsdtest.OWSCTL,
+                        owsdtest.PYTHON / "ows.py", owsdtest.PYTHON / "libows.so.1"):
             shutil.copy(program, PROGRAMS)
     return PROGRAMS
 
@@ -198,7 +198,7 @@ def refused_place(scene, who, why, environment):
     config = scene.file("house.rio", faulty.house(scene))
     os.chmod(scene.path, 0o777)
     os.chmod(config, 0o644)
-    for words in (["owsd", "-n", "X", "-c", str(config)], ["owsctl", "-n", "X", "list"],
+    for words in (["owsd-sim", "-n", "X", "-c", str(config)], ["owsctl", "-n", "X", "list"],
                   ["owsctl", "instances"]):
         done = scene._run([*at_home(who, **environment), programs() / words[0], *words[1:]], 30)
         assert done.returncode == 1 and why in done.stderr, (words, done)
@@ -313,14 +313,14 @@ def test_another_users_owsd_of_that_name_is_refused_and_harms_nothing(scene):
     daemon = daemon_of(scene)
     good(scene, daemon.name)
     for who in ("stranger", "plc"):
-        done = as_user(scene, who, programs() / "owsd", "-n", daemon.name, "-c", daemon.config)
+        done = as_user(scene, who, programs() / "owsd-sim", "-n", daemon.name, "-c", daemon.config)
         assert done.returncode == 1 and "rm " not in done.stderr, done
         assert (f"instance {daemon.name} belongs to user owsd ({private.OWSD}): run owsd as that user, "
                 "or name another instance with -n") in done.stderr, done
     good(scene, daemon.name)
     # in his own place he may have one of the same name, which nobody else sees
     home = folder_of("stranger", private.room() / "home")
-    mine = scene.start([*at_home("stranger", XDG_RUNTIME_DIR=home), programs() / "owsd", "-n", daemon.name,
+    mine = scene.start([*at_home("stranger", XDG_RUNTIME_DIR=home), programs() / "owsd-sim", "-n", daemon.name,
                         "-c", daemon.config])
     own = [*at_home("stranger", XDG_RUNTIME_DIR=home), programs() / "owsctl", "-n", daemon.name]
     until(lambda: scene._run([*own, "get", "room"], 30).returncode == 0, 20, "it serves him")
@@ -357,7 +357,7 @@ def test_a_user_sees_the_nearest_owsd_of_a_name_that_lives(scene):
     good(scene, service.name)
     home = folder_of("plc", private.room() / "nearest")
     as_plc = at_home("plc", XDG_RUNTIME_DIR=home, PYTHONPATH=programs())
-    command = [*as_plc, programs() / "owsd", "-n", service.name, "-c", service.config]
+    command = [*as_plc, programs() / "owsd-sim", "-n", service.name, "-c", service.config]
     own = scene.start(command)
 
     def served_by(daemon):
@@ -396,7 +396,7 @@ def test_a_strangers_failed_start_leaves_nothing_that_stops_owsd(scene):
     os.chmod(config, 0o644)
     with socket.create_server(("127.0.0.1", 0)) as taken:
         where = folder_of("stranger", private.room() / "runtime")
-        done = scene._run([*at_home("stranger", XDG_RUNTIME_DIR=where), programs() / "owsd", "-n", name,
+        done = scene._run([*at_home("stranger", XDG_RUNTIME_DIR=where), programs() / "owsd-sim", "-n", name,
                            "-c", config, "-l", str(taken.getsockname()[1])], 30)
     assert done.returncode == 1 and "cannot listen" in done.stderr, done
     assert faulty.leftovers(name) == [] and list((where / "owsd").iterdir()) == []

@@ -18,7 +18,7 @@ import urllib.request
 import owsdtest
 
 RUN = owsdtest.SOURCE / "board/demo/run"
-RECORDER = owsdtest.BUILD / "owsd-recorder"
+PROGRAMS = [owsdtest.BUILD / name for name in ("owsd-sim", "owsctl", "owsctl-sim", "owsd-recorder")]
 
 
 def asked(url, **command):
@@ -32,7 +32,7 @@ class Terminal:
     """board/demo/run on a terminal of its own."""
 
     def __init__(self, scene, *arguments, name=None, build=owsdtest.BUILD, cwd=None):
-        for program in (owsdtest.OWSD, owsdtest.OWSCTL, RECORDER):
+        for program in PROGRAMS:
             owsdtest.need(program)
         self.name = name or scene.name()
         self.port = owsdtest.free_port()
@@ -143,7 +143,7 @@ def test_it_shows_values_and_ctrl_c_leaves_nothing_behind(scene):
 def test_the_commands_that_it_names_work_as_typed_and_are_named_again_at_its_end(scene):
     checkout = scene.path / "checkout"
     (checkout / "out").mkdir(parents=True)
-    for program in (owsdtest.OWSD, owsdtest.OWSCTL, RECORDER):
+    for program in PROGRAMS:
         (checkout / "out" / program.name).symlink_to(program)
     for build, begins in ((checkout / "out", "out/owsctl "), (owsdtest.BUILD, f"{owsdtest.OWSCTL.absolute()} ")):
         terminal = shown(scene, build=build, cwd=checkout)

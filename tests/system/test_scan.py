@@ -400,7 +400,7 @@ def test_what_is_wrong_is_said_with_its_status(scene):
             (("-t", "sim:/nowhere.sim", "scan"), 2, "/nowhere.sim"),
             (("-t", "i2c:/dev/i2c-nowhere", "scan"), 1, "/dev/i2c-nowhere"),
             (("-t", "none:", "dir"), 2, "unknown kind of target"),
-            (("-t", "none:", "dir"), 2, "sim:, and HOST, HOST:PORT"),
+            (("-t", "none:", "dir"), 2, "gpio:, and HOST, HOST:PORT"),
             (("-t", target, "list"), 2, "-t TARGET is for dir"),
             (("-t", target, "read"), 2, "read what?"),
             (("-t", target, "read", "/" + "x" * 300), 1, "longer than 255"),
@@ -448,7 +448,7 @@ def test_devices_that_make_no_signal_make_no_configuration(scene):
 def test_a_scan_that_fails_says_that_its_file_is_empty(scene):
     for target, status in ((sim(scene, ""), 4), (f"127.0.0.1:{owsdtest.free_port()}", 1)):
         with open(scene.path / "plant.rio", "w", encoding="utf-8") as out:
-            done = subprocess.run([owsdtest.OWSCTL, "-t", target, "scan", "--rio"], stdout=out,
+            done = subprocess.run([owsdtest.with_sim(owsdtest.OWSCTL, target), "-t", target, "scan", "--rio"], stdout=out,
                                   stderr=subprocess.PIPE, text=True, check=False,
                                   timeout=owsdtest.PATIENCE)
         assert done.returncode == status and "output goes to is empty" in done.stderr, done
@@ -487,8 +487,8 @@ def test_a_merge_changes_nothing_where_nothing_changed(scene):
         text = plant(scene).replace("\n", end)
         file = scene.path / "plant.rio"
         file.write_bytes(text.encode())
-        done = subprocess.run([owsdtest.OWSCTL, "-t", sim(scene, BEFORE), "scan", "--rio", "--merge",
-                               file], capture_output=True, check=False, timeout=owsdtest.PATIENCE)
+        done = subprocess.run([owsdtest.with_sim(owsdtest.OWSCTL, "sim:"), "-t", sim(scene, BEFORE), "scan",
+                               "--rio", "--merge", file], capture_output=True, check=False, timeout=owsdtest.PATIENCE)
         assert (done.returncode, done.stderr) == (0, b""), done
         assert done.stdout == text.encode()
 
@@ -562,7 +562,7 @@ def test_what_cannot_be_merged_is_refused_and_nothing_is_printed(scene):
     assert done.stdout == "" and "no device is there" in done.stderr, done
     for redirect in (">", ">>"):
         done = subprocess.run(["/bin/sh", "-c", f'"$0" -t {target} scan --rio --merge x.rio {redirect} x.rio',
-                               owsdtest.OWSCTL], cwd=scene.path, capture_output=True, text=True,
+                               owsdtest.with_sim(owsdtest.OWSCTL, target)], cwd=scene.path, capture_output=True, text=True,
                               check=False, timeout=owsdtest.PATIENCE)
         assert done.returncode == 1 and "x.rio is where the output goes" in done.stderr, done
 

@@ -75,8 +75,8 @@ def test_an_invalid_text_is_not_written_and_its_problems_have_their_places(scene
 
 
 def test_files_that_a_text_names_are_looked_for_as_owsd_does(scene):
-    writer = alone(scene, "OwsDrv {\n}\n")
     target = f"sim:{scene.file('few.sim', 'chip DS2482-100 0x18' + chr(10))}"
+    writer = alone(scene, f'OwsDrv {{\n  TargetName "{target}"\n}}\n')
     text = (f'OwsDrv {{\n  TargetName "{target}"\n  Bus {{\n    Target "{target}"\n'
             f'    Sensors "{writer.file.parent}/mine.table"\n  }}\n}}\n')
     answer = writer.replace(text)

@@ -50,7 +50,7 @@ class Service:
         self.daemon.config.symlink_to(self.file)
         self.socket = scene.path / f"config{mode:o}"
         self.program = programs() / "owsd-config"
-        shutil.copy(writing.PROGRAM, self.program)
+        shutil.copy(owsdtest.with_sim(writing.PROGRAM, self.file), self.program)
         filtered = sandbox.command(UNIT)
         shutil.copy(filtered[0], programs())
         filtered[0] = str(programs() / "sandbox")

@@ -85,8 +85,9 @@ def serve(scene, daemon, port=None):
 
 def configured(scene, daemon):
     """owsd-web, and owsd-config for it."""
-    owsdtest.need(BUILD / "owsd-config")
-    writer = scene.start([BUILD / "owsd-config", "-n", daemon.name, "-c", daemon.config])
+    program = owsdtest.with_sim(BUILD / "owsd-config", daemon.config, cwd=scene.path)
+    owsdtest.need(program)
+    writer = scene.start([program, "-n", daemon.name, "-c", daemon.config])
     until(lambda: owsdtest.segment(daemon.name, "config").exists() or not writer.running(), 20,
           writer.log)
     return serve(scene, daemon)

@@ -94,7 +94,8 @@ def activated(path, *command):
 class Writer(owsdtest.Program):
     def __init__(self, scene, file, name, *options, prefix=(), env=None):
         self.file, self.name, self.socket = file, name, owsdtest.segment(name, "config")
-        super().__init__(scene, [*prefix, PROGRAM, "-n", name, "-c", file, *options], env)
+        program = owsdtest.with_sim(PROGRAM, file)
+        super().__init__(scene, [*prefix, program, "-n", name, "-c", file, *options], env)
         owsdtest.until(self.listens, 20, self.log)
 
     def listens(self):

@@ -75,7 +75,7 @@ bind 0x18
 does "the kernel finds every part" within $back_within all_found $parts
 search_no_more
 
-owsd -v -c /rig/w1.rio >/tmp/log/owsd 2>&1 &
+owsd-sim -v -c /rig/w1.rio >/tmp/log/owsd 2>&1 &
 owsd=$!
 does "a thermometer is read" within $back_within reads warm 21
 # A search of the kernel's while it converts ends the strong pull-up: 6.1 leaves it the wire

@@ -6,7 +6,7 @@
  * (percent of the requests), up and down (milliseconds that the target is there and away).
  * A path below /never, /twice or /late (a second) is treated so whatever the options are.
  *
- * It is in the table of backends of all programs that are linked with this file.
+ * It is in the table of backends of all programs that are linked with this file, and so is sim.
  */
 #include <assert.h>
 #include <errno.h>
@@ -16,6 +16,7 @@
 
 #include "hal/bus/bus.h"
 #include "hal/bus/time.h"
+#include "hal/sim/bus.h"
 
 static const struct bus_ops late_bus;
 
@@ -283,6 +284,7 @@ const struct bus_ops *const bus_backends[] = {
 #define BACKEND(name) &name##_bus,
 #include "hal/bus/schemes.h"
 #undef BACKEND
+	&sim_bus,
 	&late_bus,
 	NULL,
 };
