@@ -362,7 +362,7 @@ void entity_json(struct json *json, const struct stream *s, const struct row *ro
 		json_object_end(json);
 	}
 	if (plain_is_key(row)) {
-		snprintf(title, sizeof(title), "%s_tag", id);
+		snprintf(title, sizeof(title), "%.200s_tag", id);
 		json_object(json, title);
 		json_string(json, "p", "tag");
 		put_topic(json, "t", row, "/tag");
