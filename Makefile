@@ -466,7 +466,8 @@ test:
 	@case "$$MAKEFLAGS" in *-j*) jobs= ;; *) jobs=-j$$(nproc) ;; esac; \
 	$(MAKE) --no-print-directory $$jobs all && \
 	if [ -n '$(TESTS)' ]; then $(MAKE) --no-print-directory $$jobs system; \
-	else TESTS="$$(python3 tests/check --tests test)" sh tests/both $(MAKE) --no-print-directory $$jobs; fi
+	else $(MAKE) --no-print-directory $$jobs examples unit-programs system-programs && \
+	    TESTS="$$(python3 tests/check --tests test)" sh tests/both $(MAKE) --no-print-directory $$jobs; fi
 
 # A compiler is enough for the simulation
 run:

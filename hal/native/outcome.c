@@ -100,14 +100,16 @@ static void give_up_reading(struct native *native, struct job *job, int err)
 
 /*
  * Is it tried again? A device that has failed request after request, which each tried it again,
- * gets one try of each: so it takes no more of the wire than one that answers. So does each while
- * many fail at once.
+ * gets one try of each: so it takes no more of the wire than one that answers. While many fail at
+ * once, so does one that has failed, unless it is to be written.
  */
 static bool is_tried_again(const struct native *native, struct job *job, unsigned tries)
 {
 	const struct device *device = job->txn.device;
 
-	if (device && (device->failures > NATIVE_DOUBTS || native->soon >= NATIVE_MANY))
+	if (device &&
+	    (device->failures > NATIVE_DOUBTS ||
+	     (native->soon >= NATIVE_MANY && device->failures && job->req->prio > BUS_OUTPUT)))
 		tries = 1;
 	return ++job->tries < tries;
 }

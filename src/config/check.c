@@ -167,16 +167,15 @@ static void check_age(const struct check *check)
 	const struct config_item *item = check->item;
 	bool by_alarm = item->alarm && item->per_factor == 1;
 	int64_t every_ns = by_alarm ? CONFIG_ALARM_READ_NS : item->per_factor * check->period_ns;
-	double every = (double)every_ns / 1e9, age = (double)item->stale_after_ns / 1e9;
 	int64_t often = item->stale_after_ns / 2 / check->period_ns;
 
-	if (!item->readable || !item->stale_after_ns || item->stale_after_ns >= every_ns)
+	if (!item->readable || !item->stale_after_ns || item->stale_after_ns > every_ns)
 		return;
 	report_warning(check->report, check->place,
-	               "\"%s\" is stale for %g s of each %g s, in which it is read once%s: write "
-	               "StaleAfter %g or more, or PerFactor %lld",
-	               item->name, every - age, every, by_alarm ? " unless its alarm comes" : "",
-	               every * 1.5,
+	               "\"%s\" is stale before it is read again, each %g s%s: write StaleAfter %g "
+	               "or more, or PerFactor %lld",
+	               item->name, (double)every_ns / 1e9,
+	               by_alarm ? " unless its alarm comes" : "", (double)every_ns / 1e9 * 1.5,
 	               (long long)(often > 2  ? often
 	                           : by_alarm ? 2
 	                                      : 1));

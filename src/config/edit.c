@@ -166,6 +166,8 @@ static bool is_allow(const struct rio_node *node)
 	return node->kind != RIO_BLOCK && !strcmp(node->key, option_table[OPT_CONTROL_ALLOW].key);
 }
 
+#define PATTERN "*?[\\" /* what makes a pattern of a name, for fnmatch() */
+
 /* The pattern of a ControlAllow, which is its first word. */
 static size_t pattern_of(const struct rio_node *node, const char **at)
 {
@@ -173,13 +175,20 @@ static size_t pattern_of(const struct rio_node *node, const char **at)
 	return strcspn(*at, " \t");
 }
 
-/* Put the new name of an item where a ControlAllow has the old one. */
+static bool is_followed(const char *from, const char *to)
+{
+	return !strpbrk(from, PATTERN) && !strpbrk(to, PATTERN);
+}
+
+/* Put the new name of an item where a ControlAllow has the old one, unless one of them is a pattern. */
 static int follow_name(struct rio **rio, const char *from, const char *to)
 {
 	const struct rio_node *driver = edit_driver(*rio), *node = driver ? driver->first : NULL;
 	size_t from_len = strlen(from), len;
 	const char *at;
 
+	if (!is_followed(from, to))
+		return 0;
 	for (; node; node = node->next) {
 		char *text = NULL, *quoted;
 		int err;
@@ -201,7 +210,7 @@ static int follow_name(struct rio **rio, const char *from, const char *to)
 	return 0;
 }
 
-/* Warn of patterns that give rights to one of the names. */
+/* Warn of patterns that give rights to one of the names, and do not follow it. */
 static void warn_of_patterns(const struct rio *rio, const char *from, const char *to,
                              struct config_report *report)
 {
@@ -219,7 +228,8 @@ static void warn_of_patterns(const struct rio *rio, const char *from, const char
 		memcpy(pattern, at, len);
 		pattern[len] = '\0';
 		fits = fnmatch(pattern, to, 0) == 0;
-		if (strcmp(pattern, to) && (fnmatch(pattern, from, 0) == 0) != fits)
+		if ((strcmp(pattern, from) || !is_followed(from, to)) &&
+		    (fnmatch(pattern, from, 0) == 0) != fits)
 			report_warning(report, command_line,
 			               "ControlAllow \"%s\" fits %s and not %s: look who may set "
 			               "it now",
@@ -257,9 +267,8 @@ int edit_set(struct rio **rio, const char *name, const char *const *settings, un
 			err = apply(rio, block, option, value);
 		/* the item has its new name from here on */
 		if (!err && option == OPT_NAME) {
+			warn_of_patterns(*rio, current, value, report);
 			err = follow_name(rio, current, value);
-			if (!err)
-				warn_of_patterns(*rio, current, value, report);
 			snprintf(current, sizeof(current), "%s", value);
 		}
 		if (!err && option == OPT_BUS_TARGET)

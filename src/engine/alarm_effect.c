@@ -95,7 +95,7 @@ void engine_power_on_reset(struct lane *lane, const struct device *d, const stru
 	for (uint32_t k = 0; k < d->count; k++) {
 		struct signal *s = &e->table.signals[e->table.device_rows[d->first + k]];
 
-		if (s->lane != lane->index)
+		if (s->lane != lane->index || !s->item->output)
 			continue;
 		s->command.confirmed = false;
 		engine_write_check(e, s);

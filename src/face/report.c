@@ -35,7 +35,8 @@ void report_write(struct face *face, int64_t now_ns)
 		return;
 	face->report_ns = now_ns + REPORT_NS;
 	snprintf(fresh, sizeof(fresh), "%s.new", face->report);
-	fd = open(fresh, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0640);
+	unlink(fresh);
+	fd = open(fresh, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0640);
 	out = fd < 0 ? NULL : fdopen(fd, "w");
 	if (!out) {
 		if (fd >= 0)

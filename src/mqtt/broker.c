@@ -29,8 +29,10 @@
 #define READS 64 /* packets at a time */
 #define END_NS (2 * NS_PER_S)
 #define BRIEF_MOST 3 /* connections that were closed soon, one after the other */
-/* The step of one whose place another client takes each time, and how long it must last then */
+/* The step of one whose place another client takes each time; it has to last longer than a pause */
 #define TAKEN_NS (120 * NS_PER_S)
+#define TAKEN_GOOD_NS (150 * NS_PER_S)
+#define SETTLED_NS (8 * NS_PER_S)
 
 static void forget_trouble(struct broker *b)
 {
@@ -130,7 +132,13 @@ static void fail(struct broker *b, const char *why, const char *remedy, int64_t 
 /* How long a connection has to last until it counts as a good one */
 static int64_t good_ns(const struct broker *b)
 {
-	return b->brief == BRIEF_MOST ? TAKEN_NS : STEP_MOST_NS;
+	return b->brief == BRIEF_MOST ? TAKEN_GOOD_NS : STEP_MOST_NS;
+}
+
+bool broker_is_settled(const struct broker *b, int64_t now_ns)
+{
+	return b->state == BROKER_CONNECTED &&
+	       now_ns - b->begun_ns > (b->brief == BRIEF_MOST ? TAKEN_GOOD_NS : SETTLED_NS);
 }
 
 static void attempt(struct broker *b, int64_t now_ns)

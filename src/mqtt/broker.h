@@ -26,6 +26,11 @@ bool broker_ready(struct broker *b, int fd, short ready, int64_t now_ns);
 void broker_tick(struct broker *b, int64_t now_ns);
 /* When to tick at the latest. */
 int64_t broker_next(const struct broker *b);
+/*
+ * Has the connection lasted so long that no other client of the same node takes it again and again?
+ * What the broker keeps of the node is not ours alone before.
+ */
+bool broker_is_settled(const struct broker *b, int64_t now_ns);
 /* Try again at once, if it is not connected. */
 void broker_hurry(struct broker *b, int64_t now_ns);
 

@@ -130,7 +130,7 @@ static bool may_come(struct commands *c, int64_t now_ns)
 /* What is wrong with the message itself; NULL: nothing. */
 static const char *fault_of(const struct broker_message *message)
 {
-	if (message->retained)
+	if (message->retained && message->len)
 		return "it is retained, so nobody knows of when it is: publish it without retain";
 	if (message->len > COMMANDS_TEXT)
 		return "it is longer than 1024 bytes";

@@ -98,6 +98,10 @@ static void births(const struct stream *s, char topic[TOPIC_SIZE])
 	snprintf(topic, TOPIC_SIZE, "%s/device/+/config", s->discovery);
 }
 
+/* Of what a text of the broker names no more is removed at a time; the next look takes the rest. */
+#define REMOVED_MOST 1000
+#define BIRTH_MOST 4000000
+
 /*
  * Components of an old birth that the present one, in s->text, has not: each with its platform
  * alone, by which Home Assistant removes it. The caller frees them; NULL: there are none.
@@ -105,9 +109,14 @@ static void births(const struct stream *s, char topic[TOPIC_SIZE])
 static char *removed(const struct stream *s, const char *old)
 {
 	static const char mark[] = "\":{\"p\":\"";
-	char part[2 * ENTITY_ID + 64], *parts = NULL, *more;
+	char part[2 * ENTITY_ID + 64], *parts = NULL;
+	size_t len, count = 0;
+	FILE *out = open_memstream(&parts, &len);
 
-	for (const char *at = old; (at = strstr(at, mark)); at += strlen(mark)) {
+	if (!out)
+		return NULL;
+	for (const char *at = old; count < REMOVED_MOST && (at = strstr(at, mark));
+	     at += strlen(mark)) {
 		const char *id = at, *platform = at + strlen(mark);
 
 		while (id > old && (isalnum((unsigned char)id[-1]) || strchr("_-", id[-1])))
@@ -116,20 +125,23 @@ static char *removed(const struct stream *s, const char *old)
 		         (int)strspn(platform, "abcdefghijklmnopqrstuvwxyz_"), platform);
 		if (memmem(s->text, s->len, part, strlen(part)))
 			continue;
-		if (asprintf(&more, "%s%s%s}", parts ? parts : "", parts ? "," : "", part) < 0)
-			break;
+		fprintf(out, "%s%s}", count++ ? "," : "", part);
+	}
+	if (fclose(out) || !count) {
 		free(parts);
-		parts = more;
+		return NULL;
 	}
 	return parts;
 }
 
 static const char *outlived(struct stream *s, const char *topic, const char *text)
 {
-	char behind[TOPIC_SIZE], id[ENTITY_ID], present[TOPIC_SIZE], *parts;
+	char behind[TOPIC_SIZE], id[ENTITY_ID], present[TOPIC_SIZE], *parts, *mark;
 	struct chip *chip = NULL;
 	struct json json;
 
+	if (strnlen(text, BIRTH_MOST) == BIRTH_MOST)
+		return NULL;
 	device_topic(s, NULL, id, present);
 	if (strcmp(topic, present) != 0) {
 		size_t len = (size_t)snprintf(id, sizeof(id), "%s/device/owsd_", s->discovery);
@@ -139,10 +151,15 @@ static const char *outlived(struct stream *s, const char *topic, const char *tex
 			return NULL;
 		/* "28_A0B1C2000001/config" */
 		snprintf(id, sizeof(id), "%.*s", (int)strcspn(topic + len, "/"), topic + len);
-		id[strcspn(id, "_")] = '.';
-		chip = stream_chip(s, id);
+		mark = strchr(id, '_');
+		chip = NULL;
+		if (mark) {
+			*mark = '.';
+			chip = stream_chip(s, id);
+		}
 		if (!chip)
 			return "";
+		chip->seen = true; /* it is published, so it was there */
 	}
 	make_device(s, chip, present);
 	if (fflush(s->out))

@@ -61,7 +61,7 @@ static void on_message(void *ctx, const struct broker_message *message)
 		commands_take(&m->commands, name, message, place, ows_now());
 		return;
 	}
-	if (message->retained && m->sweep_ns)
+	if (message->retained && m->sweep_ns && look_is_current(m->broker.face))
 		stream_kept(&m->stream, message->topic, message->text);
 	if (m->stream.profile->heard &&
 	    m->stream.profile->heard(&m->stream, message->topic, message->text, message->len))
@@ -172,6 +172,7 @@ static void renew(struct face *face, int64_t now_ns)
 	struct mqtt *m = own(face);
 	struct mqtt_options options;
 
+	m->sweep_ns = 0; /* the rows may be those of an image that is gone */
 	mqtt_options_take(&options, face);
 	if (memcmp(&options, &m->options, sizeof(options)) != 0) {
 		end(face);
@@ -193,7 +194,7 @@ static void sweep(struct mqtt *m, int64_t now_ns)
 	bool begins = m->sweep;
 	char topic[TOPIC_SIZE] = "x";
 
-	if (!begins && (!m->sweep_ns || now_ns < m->sweep_ns))
+	if (begins ? !broker_is_settled(&m->broker, now_ns) : !m->sweep_ns || now_ns < m->sweep_ns)
 		return;
 	for (int i = 0; *topic; i++) {
 		stream_places(&m->stream, i, topic);

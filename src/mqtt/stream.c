@@ -248,7 +248,7 @@ void stream_kept(struct stream *s, const char *topic, const char *text)
 	size_t len = strlen(s->prefix);
 	struct gone *more, gone;
 
-	if (!s->live || !*text)
+	if (!s->live || !s->count || !*text)
 		return;
 	if (!strncmp(topic, s->prefix, len) && topic[len] == '/')
 		text = is_gone(s, topic, len) ? "" : NULL;

@@ -48,8 +48,8 @@ static void say_command(struct ows *h, const char *name, int id, const struct re
 		return;
 	ctl_flush_lines();
 	value_to_text(type, value, text);
-	fprintf(stderr, "owsctl: %s: commanded %s, and the device does not have it yet\n", name,
-	        text);
+	fprintf(stderr, "owsctl: %s: commanded %s, and the device does not have it%s\n", name, text,
+	        reading->value.quality == OWS_Q_DIFFERS ? "" : " yet");
 }
 
 static int get_one(const struct ctl *ctl, struct ows *h, const char *name, struct reading *reading)

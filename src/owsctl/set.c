@@ -149,7 +149,7 @@ static int send(struct ows *h, struct order *order)
 	return ctl_fail("%s: %s", order->name, error_text(err));
 }
 
-/* Has the bus, or for the enables the engine, taken what was set? */
+/* Has the bus, or for the enables the engine, taken what was set, and does it read so? */
 static bool confirmed(struct ows *h, struct order *order, struct reading *reading)
 {
 	if (order->confirmed || is_edge(order->attribute))
@@ -157,7 +157,8 @@ static bool confirmed(struct ows *h, struct order *order, struct reading *readin
 	if (reading_get(h, order->id, ows_now(), reading) != 0)
 		return false;
 	if (order->attribute == ATTR_VALUE)
-		order->confirmed = (int32_t)(reading->value.applied - order->stamp) >= 0;
+		order->confirmed = (int32_t)(reading->value.applied - order->stamp) >= 0 &&
+		                   reading->value.quality != OWS_Q_DIFFERS;
 	else
 		order->confirmed = (reading->value.integer != 0) == (order->value != 0);
 	return order->confirmed;
@@ -252,6 +253,11 @@ static void print_why(struct ows *h, const struct order *order, const char *seco
 		return;
 	else if (order->attribute == ATTR_VALUE && write_disabled(h, order))
 		ctl_fail("%s was not confirmed: writing is disabled (%s_WriteEnable is 0)",
+		         order->name, order->name);
+	else if (reading_get(h, order->id, ows_now(), reading) == 0 &&
+	         reading->value.quality == OWS_Q_DIFFERS)
+		ctl_fail("%s was not confirmed: the device does not have what was commanded: set "
+		         "%s_WriteOneShot to 1 and it is written again",
 		         order->name, order->name);
 	else if (reading_get(h, order->id, ows_now(), reading) != 0 || !reading_good(reading) ||
 	         reading->value.err)

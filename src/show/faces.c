@@ -2,16 +2,20 @@
 /* Reads the reports of faces. */
 #include "src/show/faces.h"
 
+#include <fcntl.h>
 #include <glob.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "hal/bus/time.h"
 #include "src/text/printable.h"
 
 #define SILENT_NS (20 * NS_PER_S)
+#define LINES_MOST 64
 
 /* What stands after a word at the beginning of a line; NULL: it begins otherwise. */
 static const char *after(const char *line, const char *word)
@@ -19,6 +23,13 @@ static const char *after(const char *line, const char *word)
 	size_t len = strlen(word);
 
 	return strncmp(line, word, len) == 0 ? line + len : NULL;
+}
+
+static int64_t positive(const char *text)
+{
+	long long n = strtoll(text, NULL, 10);
+
+	return n > 0 ? n : 0;
 }
 
 static void take_line(struct faces_one *face, const char *line)
@@ -31,11 +42,11 @@ static void take_line(struct faces_one *face, const char *line)
 	else if ((rest = after(line, "trouble ")))
 		snprintf(face->trouble, sizeof(face->trouble), "%.255s", rest);
 	else if ((rest = after(line, "pid ")))
-		face->pid = strtol(rest, NULL, 10);
+		face->pid = (long)(positive(rest) & INT32_MAX);
 	else if ((rest = after(line, "beat ")))
-		face->beat_ns = strtoll(rest, NULL, 10);
+		face->beat_ns = positive(rest);
 	else if ((rest = after(line, "since ")))
-		face->since_ns = strtoll(rest, NULL, 10);
+		face->since_ns = positive(rest);
 	else if (face->count < FACES_COUNTERS &&
 	         sscanf(line, "count %31s %" SCNu64, counter->name, &counter->value) == 2)
 		face->count++;
@@ -44,20 +55,27 @@ static void take_line(struct faces_one *face, const char *line)
 /* False: it cannot be read, or is no report. */
 static bool read_one(const char *path, const char *program, struct faces_one *face)
 {
-	FILE *in = fopen(path, "re");
+	/* a face may have been taken over, and its reader has more rights */
+	int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOFOLLOW | O_NOCTTY | O_CLOEXEC);
+	struct stat st;
+	FILE *in = fd >= 0 && !fstat(fd, &st) && S_ISREG(st.st_mode) ? fdopen(fd, "r") : NULL;
 	char line[512];
 
-	if (!in)
+	if (!in) {
+		if (fd >= 0)
+			close(fd);
 		return false;
+	}
 	*face = (struct faces_one){0};
 	snprintf(face->program, sizeof(face->program), "%.*s", (int)strcspn(program, "/"), program);
-	while (fgets(line, sizeof(line), in)) {
+	face->program[printable(face->program, strlen(face->program))] = '\0';
+	for (unsigned i = 0; i < LINES_MOST && fgets(line, sizeof(line), in); i++) {
 		line[strcspn(line, "\n")] = '\0';
 		line[printable(line, strlen(line))] = '\0';
 		take_line(face, line);
 	}
 	fclose(in);
-	return face->beat_ns != 0;
+	return face->beat_ns > 0;
 }
 
 unsigned faces_read(const char *instance, struct faces_one faces[FACES_MOST])

@@ -95,6 +95,9 @@ def marked_and_left_alone(scene, way, **options):
         assert (entry["event"], entry["before"], entry["after"]) == ("raised", value, 0), entry
         until(lambda: lines(daemon, name, "not as commanded"), 10, "the log has it")
         assert lines(daemon, name, "not as commanded") == 1, daemon.log()
+    # the same command again is no change
+    again = scene.owsctl(daemon, "set", "-w", "2", "lamp", 1)
+    assert again.returncode == 1 and "lamp_WriteOneShot" in again.stderr, again
     assert writes(scene, daemon) == written, "nothing was written"
     assert scene.owsctl(daemon, "set", "lamp_WOS", 1).returncode == 0
     until(lambda: scene.get(daemon, "lamp") == "1", 10, "written again by hand")

@@ -65,14 +65,15 @@ static void test_what_cannot_be_meant_is_named_with_its_remedy(void)
 	            ": ResetLatch: sensed.BYTE cannot be written, so the alarm cannot be served\n"},
 		{"Name x Path /29.B89115000000/sensed.BYTE Type byte Alarm on LatchAlarm latch.BYTE "
 	         "PorAlarm por SetAlarm \"set_alarm=133333333\" StaleAfter 20",
-	         AT " is stale for 40 s of each 60 s, in which it is read once unless its alarm "
-	            "comes: write StaleAfter 90 or more, or PerFactor 100\n"},
+	         AT " is stale before it is read again, each 60 s unless its alarm comes: write "
+	            "StaleAfter 90 or more, or PerFactor 100\n"},
 		{"Name x Path /28.551DDF030000/temperature Type double PerFactor 300 StaleAfter 20",
-	         AT " is stale for 10 s of each 30 s, in which it is read once: write StaleAfter "
-	            "45 or more, or PerFactor 100\n"},
-		{"Name x Path /28.551DDF030000/temperature Type double PerFactor 2 StaleAfter 0.1",
-	         AT " is stale for 0.1 s of each 0.2 s, in which it is read once: write StaleAfter "
-	            "0.3 or more, or PerFactor 1\n"},
+	         AT " is stale before it is read again, each 30 s: write StaleAfter 45 or more, or "
+	            "PerFactor 100\n"},
+		{"Name x Path /28.551DDF030000/temperature Type double PerFactor 2 StaleAfter 0.2",
+	         AT
+	         " is stale before it is read again, each 0.2 s: write StaleAfter 0.3 or more, or "
+	         "PerFactor 1\n"},
 	};
 
 	expect_warnings(cases, COUNT(cases), check);

@@ -577,6 +577,22 @@ static void test_a_rename_takes_along_what_names_the_item(void)
 	TEST_ASSERT_EQUAL_STRING(before, rio->text);
 }
 
+static void test_a_rename_warns_of_each_right_that_it_changes(void)
+{
+	parse("OwsDrv {\n"
+	      "  ControlAllow \"boiler user:root\"\n"
+	      "  ControlAllow \"heat user:root\"\n"
+	      "  Item { Name heat Path /05.000000000001/PIO Type bool IO output }\n"
+	      "}\n");
+	TEST_ASSERT_EQUAL_INT(0, edit_rename(&rio, "heat", "boiler", &report));
+	TEST_ASSERT_NOT_NULL(strstr(said, "\"boiler user:root\" fits boiler and not heat"));
+	/* a name that is a pattern would give the right to others, or to nobody */
+	said_begin();
+	TEST_ASSERT_EQUAL_INT(0, edit_rename(&rio, "boiler", "boiler[1]", &report));
+	TEST_ASSERT_NOT_NULL(strstr(said, "\"boiler user:root\" fits boiler and not boiler[1]"));
+	TEST_ASSERT_NOT_NULL(strstr(rio->text, "ControlAllow \"boiler user:root\""));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -603,5 +619,6 @@ int main(void)
 	RUN_TEST(test_a_device_with_more_items_than_any_has_is_not_replaced);
 	RUN_TEST(test_the_words_of_the_dialog_lead_to_the_keys);
 	RUN_TEST(test_a_rename_takes_along_what_names_the_item);
+	RUN_TEST(test_a_rename_warns_of_each_right_that_it_changes);
 	return UNITY_END();
 }

@@ -111,12 +111,12 @@ static int64_t most(const int64_t *ns, unsigned n)
 	return most;
 }
 
-/* Half of a wire that sends what is wrong: 100 readings beside those of the other half. */
+/* Half of a wire that sends what is wrong: 150 readings beside those of the other half. */
 static int64_t notice_within(const struct fault *fault, unsigned khz)
 {
 	if (fault->faulty == 1 || strcmp(fault->what, "corrupt") != 0)
 		return SOON_NS;
-	return khz == 400 ? 4 * PLANT_S : 13 * PLANT_S / 2;
+	return khz == 400 ? 11 * PLANT_S / 2 : 7 * PLANT_S;
 }
 
 static void run(const struct fault *fault, unsigned khz)
@@ -150,7 +150,7 @@ static void run(const struct fault *fault, unsigned khz)
 	TEST_ASSERT_LESS_THAN_INT64_MESSAGE(notice_within(fault, khz), notice, text);
 	/* Half of a wire that comes back waits for the conversions of the other half, too. */
 	TEST_ASSERT_LESS_THAN_INT64_MESSAGE(fault->faulty > 1 ? 4 * PLANT_S : SOON_NS, over, text);
-	TEST_ASSERT_LESS_THAN_INT64_MESSAGE(5 * PLANT_S, oldest, text);
+	TEST_ASSERT_LESS_THAN_INT64_MESSAGE(6 * PLANT_S, oldest, text);
 }
 
 static const struct fault faults[] = {
