@@ -168,17 +168,19 @@ static void check_age(const struct check *check)
 	bool by_alarm = item->alarm && item->per_factor == 1;
 	int64_t every_ns = by_alarm ? CONFIG_ALARM_READ_NS : item->per_factor * check->period_ns;
 	int64_t often = item->stale_after_ns / 2 / check->period_ns;
+	char factor[40] = "";
 
 	if (!item->readable || !item->stale_after_ns || item->stale_after_ns > every_ns)
 		return;
+	often = often > 2 ? often : by_alarm ? 2 : 1;
+	if (by_alarm || often < item->per_factor)
+		snprintf(factor, sizeof(factor), ", or PerFactor %lld", (long long)often);
 	report_warning(check->report, check->place,
 	               "\"%s\" is stale before it is read again, each %g s%s: write StaleAfter %g "
-	               "or more, or PerFactor %lld",
+	               "or more%s",
 	               item->name, (double)every_ns / 1e9,
 	               by_alarm ? " unless its alarm comes" : "", (double)every_ns / 1e9 * 1.5,
-	               (long long)(often > 2  ? often
-	                           : by_alarm ? 2
-	                                      : 1));
+	               factor);
 }
 
 static void check_item(const struct check *check)

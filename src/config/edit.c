@@ -180,7 +180,7 @@ static bool is_followed(const char *from, const char *to)
 	return !strpbrk(from, PATTERN) && !strpbrk(to, PATTERN);
 }
 
-/* Put the new name of an item where a ControlAllow has the old one, unless one of them is a pattern. */
+/* Put the new name of an item where a ControlAllow has the old one, unless one is a pattern. */
 static int follow_name(struct rio **rio, const char *from, const char *to)
 {
 	const struct rio_node *driver = edit_driver(*rio), *node = driver ? driver->first : NULL;

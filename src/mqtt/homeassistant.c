@@ -174,9 +174,6 @@ static const char *outlived(struct stream *s, const char *topic, const char *tex
 	fprintf(s->out, "{%s}", parts);
 	json_object_end(&json);
 	free(parts);
-	/* what there is follows */
-	*(chip ? &chip->announced : &s->announced) = false;
-	s->birth = 0;
 	return fflush(s->out) ? NULL : s->text;
 }
 

@@ -194,7 +194,7 @@ static void sweep(struct mqtt *m, int64_t now_ns)
 	bool begins = m->sweep;
 	char topic[TOPIC_SIZE] = "x";
 
-	if (begins ? !broker_is_settled(&m->broker, now_ns) : !m->sweep_ns || now_ns < m->sweep_ns)
+	if (!begins && (!m->sweep_ns || now_ns < m->sweep_ns))
 		return;
 	for (int i = 0; *topic; i++) {
 		stream_places(&m->stream, i, topic);
@@ -221,6 +221,7 @@ static void pump(struct face *face, int64_t now_ns)
 		m->announced_ns = now_ns;
 		m->asked = false;
 	}
+	m->stream.settled = broker_is_settled(&m->broker, now_ns);
 	if (stream_pump(&m->stream) && face->live && now_ns >= m->health_ns &&
 	    health_publish(&m->stream, &(struct health){.trouble = m->commands.trouble,
 	                                                .commands = m->commands.taken,

@@ -330,7 +330,7 @@ static bool pump_gone(struct stream *s)
 {
 	static const char none[] = "{\"v\":null,\"good\":false,\"q\":4,\"why\":\"not configured\"}";
 
-	while (s->gone_count) {
+	while (s->settled && s->gone_count) {
 		struct gone *last = &s->gone[s->gone_count - 1];
 		const char *topic = last->topic;
 		size_t len = strlen(s->prefix);
@@ -340,6 +340,9 @@ static bool pump_gone(struct stream *s)
 		if ((value && !stream_put_text(s, topic, none, true)) ||
 		    !stream_put_text(s, topic, last->text, true))
 			return false;
+		/* it names what is gone alone: what there is follows */
+		if (*last->text)
+			stream_announce(s);
 		free(last->topic);
 		free(last->text);
 		s->gone_count--;

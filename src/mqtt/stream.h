@@ -72,6 +72,7 @@ struct stream {
 	int *queue, queue_at, queue_len; /* rows with news, the oldest first */
 	struct gone *gone;               /* topics of which something is no more */
 	int gone_count, gone_room;
+	bool settled;   /* what the broker keeps of the node is ours alone, and can be emptied */
 	bool live;      /* owsd is there: else no value is good */
 	int birth;      /* the next message of the birth; -1: all is published */
 	bool announced; /* the node itself, by the birth */

@@ -89,8 +89,8 @@ def with_sim(program, *words, cwd="."):
     """The program for these arguments: the one that is packaged, or where they, or a file that they
     name, have a simulated target, its like that has simulated devices (owsd-sim for owsd)."""
     def simulated(word):
-        file = pathlib.Path(cwd, str(word))
-        return "sim:" in str(word) or len(file.name) < 256 and file.is_file() and b"sim:" in file.read_bytes()
+        file = os.path.join(cwd, str(word))
+        return "sim:" in str(word) or os.path.isfile(file) and b"sim:" in pathlib.Path(file).read_bytes()
     return program.with_name(program.name + "-sim") if any(map(simulated, words)) else program
 
 

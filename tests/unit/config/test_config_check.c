@@ -93,7 +93,7 @@ static void test_what_may_be_meant_is_not_mentioned(void)
 	         ""},
 		{"Name x Path /statistics/errors/CRC8_errors Type double", ""},
 		{"Name x Path /gpio/17 Type bool IO output", ""},
-		{"Name x Path /28.551DDF030000/temperature Type double StaleAfter 0.1", ""},
+		{"Name x Path /28.551DDF030000/temperature Type double StaleAfter 0.15", ""},
 		{"Name x Path /29.B89115000000/sensed.BYTE Type byte Alarm on LatchAlarm latch.BYTE "
 	         "PorAlarm por SetAlarm \"set_alarm=133333333\" StaleAfter 20 PerFactor 50",
 	         ""},

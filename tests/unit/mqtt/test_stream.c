@@ -46,6 +46,7 @@ void setUp(void)
 	TEST_ASSERT_EQUAL_INT(0, stream_open(&s));
 	TEST_ASSERT_EQUAL_INT(0, stream_make(&s, ows));
 	stream_live(&s, true);
+	s.settled = true;
 }
 
 void tearDown(void)
