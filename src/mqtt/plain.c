@@ -7,6 +7,7 @@
 #include "hal/bus/time.h"
 #include "src/face/moment.h"
 #include "src/mqtt/plain.h"
+#include "src/show/reading.h"
 #include "src/show/when.h"
 #include "src/signal/hash.h"
 #include "src/signal/value.h"
@@ -38,31 +39,6 @@ bool plain_state(struct stream *s, bool online)
 
 /* --- Values ---------------------------------------------------------------------------------- */
 
-static void put_number(struct json *json, const struct ows_value *v, const char *text)
-{
-	switch ((enum ows_type)v->type) {
-	case OWS_STRING:
-		json_string(json, "v", text);
-		return;
-	case OWS_BOOL:
-		json_bool(json, "v", v->integer != 0);
-		return;
-	case OWS_BYTE:
-	case OWS_SHORT:
-	case OWS_LONG:
-	case OWS_WORD:
-	case OWS_DWORD:
-	case OWS_LARGE:
-		json_int(json, "v", v->integer);
-		return;
-	case OWS_FLOAT:
-	case OWS_DOUBLE:
-		json_number(json, "v", text);
-		return;
-	}
-	json_null(json, "v");
-}
-
 /* A time of a clock that nobody has set is none. */
 static void put_time(struct json *json, const struct stream *s, int64_t wall_ns)
 {
@@ -81,7 +57,7 @@ static void put_value(struct json *json, const struct stream *s, const struct ow
 
 	json_object(json, NULL);
 	if (ows_good(quality))
-		put_number(json, v, text);
+		reading_json_number(json, "v", v, text);
 	else
 		json_null(json, "v");
 	json_bool(json, "good", ows_good(quality));

@@ -95,14 +95,15 @@ void reading_show(const struct reading *reading, char *out, size_t size)
 	}
 }
 
-static void json_value(struct json *json, const struct reading *reading)
+void reading_json_number(struct json *json, const char *key, const struct ows_value *value,
+                         const char *text)
 {
-	switch ((enum ows_type)reading->value.type) {
+	switch ((enum ows_type)value->type) {
 	case OWS_STRING:
-		json_text(json, reading->text, reading->len);
+		json_string(json, key, text);
 		return;
 	case OWS_BOOL:
-		json_bool(json, "value", reading->value.integer != 0);
+		json_bool(json, key, value->integer != 0);
 		return;
 	case OWS_BYTE:
 	case OWS_SHORT:
@@ -110,14 +111,14 @@ static void json_value(struct json *json, const struct reading *reading)
 	case OWS_WORD:
 	case OWS_DWORD:
 	case OWS_LARGE:
-		json_int(json, "value", reading->value.integer);
+		json_int(json, key, value->integer);
 		return;
 	case OWS_FLOAT:
 	case OWS_DOUBLE:
-		json_number(json, "value", reading->text);
+		json_number(json, key, text);
 		return;
 	}
-	json_null(json, "value");
+	json_null(json, key);
 }
 
 static void json_when(struct json *json, const char *key, const struct when *now, int64_t ns)
@@ -139,7 +140,10 @@ void reading_json(struct json *json, struct ows *h, const struct reading *readin
 		json_string(json, "error", error_text(reading->err));
 		return;
 	}
-	json_value(json, reading);
+	if (reading->value.type == OWS_STRING)
+		json_text(json, reading->text, reading->len);
+	else
+		reading_json_number(json, "value", &reading->value, reading->text);
 	json_string(json, "type", value_type_name((enum ows_type)value->type));
 	json_bool(json, "good", reading_good(reading));
 	json_string(json, "quality", ows_quality_text(value->quality));

@@ -41,6 +41,9 @@ const char *reading_why(const struct reading *reading, char words[READING_WORDS]
 /* The text of the value for a line or a table: strings quoted, cut to size. */
 void reading_show(const struct reading *reading, char *out, size_t size);
 
+/* A member with the value, of whose number this is the text; a string has to be clean. */
+void reading_json_number(struct json *json, const char *key, const struct ows_value *value,
+                         const char *text);
 /* The members of a JSON object: value, quality and all that belongs to it. */
 void reading_json(struct json *json, struct ows *h, const struct reading *reading,
                   const struct when *now);
