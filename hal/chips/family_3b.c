@@ -375,7 +375,7 @@ static const char *const types[] = {NULL, "DS1825", "MAX31826", "MAX31850", "MAX
 
 const struct family family_3b = {
 	.code = 0x3b,
-	.proof = PROOF_CHECKSUM,
+	.proof = PROOF_PRESENCE,
 	.type = "DS1825",
 	.flags = FLAG_ALARM | FLAG_TEMPERATURE,
 	SCAN({"temperature12", "temperature"}, {"thermocouple", "thermocouple"}),

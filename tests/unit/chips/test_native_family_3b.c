@@ -200,6 +200,22 @@ static void test_the_memory_of_a_max31826_is_read_by_page_and_whole(void)
 	TEST_ASSERT_EQUAL_INT(-ENOENT, result(BUS_READ, of(slave, "pages/page.16"), NULL));
 }
 
+/* The memory has no checksum, so that ones are also what is heard of nobody. */
+static void test_what_is_erased_in_a_max31826_is_read_as_ones(void)
+{
+	unsigned id;
+
+	plug("MAX31826");
+	memset(part->memory, 0xff, MEMORY - PAGE);
+	memset(part->memory + MEMORY - PAGE, 0, PAGE);
+	id = ask(BUS_READ, BUS_INPUT, true, of(slave, "memory"), NULL);
+	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+	TEST_ASSERT_EQUAL_MEMORY(part->memory, data[id], MEMORY);
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_READ, of(slave, "pages/page.0"), NULL));
+	sim_wire_plug(&wire_net.wire[0], slave, false, wire_time());
+	TEST_ASSERT_LESS_THAN_INT(0, result(BUS_READ, of(slave, "pages/page.0"), NULL));
+}
+
 static void test_a_write_to_a_max31826_keeps_the_rest_of_the_page_and_copies_what_is_new(void)
 {
 	uint8_t want[MEMORY];
@@ -407,6 +423,7 @@ int main(void)
 	RUN_TEST(test_limits_of_one_below_zero_make_no_max31826_of_a_ds1825);
 	RUN_TEST(test_a_max31826_measures_as_its_table_says);
 	RUN_TEST(test_the_memory_of_a_max31826_is_read_by_page_and_whole);
+	RUN_TEST(test_what_is_erased_in_a_max31826_is_read_as_ones);
 	RUN_TEST(test_a_write_to_a_max31826_keeps_the_rest_of_the_page_and_copies_what_is_new);
 	RUN_TEST(test_a_part_of_a_max31826_is_written_anywhere);
 	RUN_TEST(test_a_locked_max31826_refuses_and_a_garbled_scratchpad_is_not_copied);

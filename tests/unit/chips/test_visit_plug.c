@@ -138,12 +138,25 @@ static void test_each_family_says_what_proves_its_answers(void)
 		                         family->type);
 }
 
+/* Of such a one erased bytes are an answer. */
+static void test_a_checksum_proves_no_family_with_bytes_that_have_none(void)
+{
+	const struct family *family;
+
+	for (unsigned n = 0; (family = family_nth(n)); n++)
+		for (unsigned i = 1; family->proof == PROOF_CHECKSUM && i < family->area_count; i++)
+			TEST_ASSERT_TRUE_MESSAGE(family->areas[i]->check != AREA_UNCHECKED ||
+			                                 family->areas[i]->load,
+			                         family->type);
+}
+
 #define RUN(name, chip, parasite) RUN_TEST(test_a_##name##_that_is_away_has_no_value);
 
 int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_each_family_says_what_proves_its_answers);
+	RUN_TEST(test_a_checksum_proves_no_family_with_bytes_that_have_none);
 	VISIT_ALL(RUN)
 	return UNITY_END();
 }
