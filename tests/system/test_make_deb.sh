@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# make deb ARCH=...: the build of another architecture is not given the caller's compiler or flags
+# make deb ARCH=...: the build of another architecture is given all libraries that it needs, and not
+# the caller's compiler or flags
 set -eu
 
 command -v dpkg-deb >/dev/null || { echo "not a Debian system"; exit 77; }
@@ -11,10 +12,14 @@ tree=$PWD/tree
 	find tests src \( -name '*.mk' -o -name LICENSE \) -exec cp --parents '{}' "$tree" ';')
 mkdir tree/hal tree/docs
 # Nothing is installed, and the clean system is this one that says what it was given
-printf '#!/bin/sh\n' >tree/board/install-deps
+mv tree/board/install-deps bin
+cat >tree/board/install-deps <<END
+[ "\$1" != --list ] || exec sh '$PWD/bin/install-deps' "\$@"
+END
 cat >bin/mmdebstrap <<END
 #!/bin/sh
 env >'$PWD/environment'
+echo "\$@" | tr ' ,=' '\n' >'$PWD/packages'
 exit 1
 END
 chmod +x bin/mmdebstrap
@@ -30,3 +35,6 @@ if grep -E '^(CC|CXX|CFLAGS|LDFLAGS|LIBGPIOD|B|MAKEFLAGS|MFLAGS|MAKEOVERRIDES)='
 	echo "the build is given the above"
 	exit 1
 fi
+for name in $(sed -n 's/^ \(lib[^ ,]*-dev\).*/\1/p' "$OWSD_SOURCE/board/debian/control"); do
+	grep -qx "$name:$other" packages || { cat packages; echo "$name is not in the system"; exit 1; }
+done
