@@ -167,7 +167,7 @@ static void take_source(struct engine *e, struct signal *s, const struct adoptio
 	s->sample.target = (uint8_t)s->lane;
 	if (lane == (int)s->lane)
 		return;
-	s->command.confirmed = false;
+	signal_forget_written(s);
 	s->read.held = false;
 	if (s->sample.quality & 0xc0) {
 		s->sample.quality = OWS_Q_LAST_USABLE;

@@ -95,9 +95,9 @@ void engine_power_on_reset(struct lane *lane, const struct device *d, const stru
 	for (uint32_t k = 0; k < d->count; k++) {
 		struct signal *s = &e->table.signals[e->table.device_rows[d->first + k]];
 
-		if (s->lane != lane->index || !s->item->output)
+		if (s->lane != lane->index)
 			continue;
-		s->command.confirmed = false;
+		signal_forget_written(s);
 		engine_write_check(e, s);
 	}
 }

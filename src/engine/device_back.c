@@ -22,7 +22,7 @@ void engine_device_back(struct lane *lane, struct device *device)
 		retry_clear(&s->command.retry);
 		due_wheel_cancel(&e->wheel, engine_row(s) * 2 + 1);
 		alarm_rearm(&lane->alarm, e, s->device);
-		s->command.confirmed = false;
+		signal_forget_written(s);
 		engine_read_now(e, s);
 		engine_write_check(e, s);
 	}

@@ -47,7 +47,7 @@ static void move_signal(struct engine *e, struct signal *s, struct lane *to)
 	retry_clear(&s->read.retry);
 	retry_clear(&s->command.retry);
 	s->command.err = 0;
-	s->command.confirmed = false;
+	signal_forget_written(s);
 	s->attrs.flags &= ~(uint32_t)OWS_ATTR_ALARM_POLLED;
 	s->sample.target = (uint8_t)to->index;
 	degrade_signal(s);

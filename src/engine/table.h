@@ -208,6 +208,14 @@ static inline bool signal_writes(const struct signal *s)
 {
 	return s->attrs.flags & OWS_ATTR_WRITE_ENABLE;
 }
+/*
+ * The device may have lost what was written to it: an output's command goes out again. A set of an
+ * input was an event: nobody undoes what became of it since.
+ */
+static inline void signal_forget_written(struct signal *s)
+{
+	s->command.confirmed &= !s->item->output;
+}
 /* Does its commanded value have to go out? */
 bool signal_changed(const struct signal *s);
 /* Is the command in force what the bus has? */

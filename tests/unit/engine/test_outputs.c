@@ -146,6 +146,36 @@ static void test_outputs_of_a_device_that_was_lost_and_found_are_written_again(v
 	TEST_ASSERT_EQUAL_UINT(2, s.writes);
 }
 
+/* A set of an input is not kept: by then somebody may have changed it at the device. */
+static void test_what_was_written_to_an_input_is_not_written_again_when_its_device_returns(void)
+{
+	scene_input(&s, "setpoint", PIO, OWS_BYTE)->writable = true;
+	scene_output(&s, "out", PIO_A, OWS_BOOL);
+	scene_put(&s, PIO, "0", 0);
+	scene_put(&s, PIO_A, "0", 0);
+	scene_start(&s);
+	scene_up(&s);
+	scene_set(&s, 1, 3);
+	scene_set(&s, 2, 1);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_UINT(2, s.writes);
+	scene_put(&s, PIO, NULL, -ENODEV);
+	scene_run(&s, 2 * SCENE_S);
+	scene_expect(&s, 1, OWS_Q_NO_DEVICE, 0);
+	scene_put(&s, PIO, "8", 0);
+	scene_run(&s, 10 * SCENE_S);
+	TEST_ASSERT_EQUAL_INT64(8, scene_sample(&s, 1).value);
+	TEST_ASSERT_EQUAL_UINT(3, s.writes);
+	/* but what could not be written to it is */
+	scene_put(&s, PIO, NULL, -ENODEV);
+	scene_run(&s, 2 * SCENE_S);
+	scene_set(&s, 1, 4);
+	scene_run(&s, SCENE_S);
+	scene_put(&s, PIO, "8", 0);
+	scene_run(&s, 10 * SCENE_S);
+	TEST_ASSERT_EQUAL_STRING("4", scene_at(&s, PIO));
+}
+
 static void test_a_place_left_in_order_passes_no_outputs_on_to_who_takes_it_next(void)
 {
 	struct config_item *item = scene_output(&s, "out", PIO, OWS_BYTE);
@@ -199,6 +229,7 @@ int main(void)
 	RUN_TEST(test_a_one_shot_comes_in_its_turn_though_inputs_are_always_due);
 	RUN_TEST(test_the_write_that_finds_the_device_again_is_not_repeated);
 	RUN_TEST(test_outputs_of_a_device_that_was_lost_and_found_are_written_again);
+	RUN_TEST(test_what_was_written_to_an_input_is_not_written_again_when_its_device_returns);
 	RUN_TEST(test_a_place_left_in_order_passes_no_outputs_on_to_who_takes_it_next);
 	RUN_TEST(test_an_output_in_doubt_is_not_good_when_its_target_returns);
 	return UNITY_END();

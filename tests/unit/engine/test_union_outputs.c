@@ -45,6 +45,21 @@ static void test_an_output_is_written_again_where_its_device_is_now(void)
 	TEST_ASSERT_EQUAL_STRING("1: W " PIO "=5\n1: W " PIO "=6\n", s.trace);
 }
 
+static void test_an_input_is_not_written_again_where_its_device_is_now(void)
+{
+	scene_input(&s, "pio", PIO, OWS_BYTE)->writable = true;
+	scene_put_on(&s, 0, PIO, "0", 0);
+	two_wires_up(&s);
+	scene_set(&s, 1, 5);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_UINT(1, s.writes);
+	scene_plug(&s, D3, 1);
+	scene_tell(&s, 0, BUS_LOST, D3);
+	scene_run(&s, SCENE_S);
+	scene_expect(&s, 1, OWS_Q_GOOD, 1);
+	TEST_ASSERT_EQUAL_UINT(0, s.bus[1].writes);
+}
+
 static void test_a_safe_value_follows_the_device(void)
 {
 	struct config_item *pio = scene_output(&s, "pio", PIO, OWS_BYTE);
@@ -174,6 +189,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_an_output_is_written_again_where_its_device_is_now);
+	RUN_TEST(test_an_input_is_not_written_again_where_its_device_is_now);
 	RUN_TEST(test_a_safe_value_follows_the_device);
 	RUN_TEST(test_a_write_in_doubt_holds_the_other_target_back_and_is_made_good);
 	RUN_TEST(test_a_write_in_flight_during_a_move_is_made_good_in_its_turn);
