@@ -158,7 +158,7 @@ static void pass(struct native *native, unsigned n, int64_t now)
 	if (found == -EBADMSG && !only_whole(channel->link) && ++channel->spoiled < TRIES_PASS) {
 		native_count(native, COUNT_CHECKSUMS);
 		channel->search_ns = now;
-		channel->dirty = true; /* who was not seen is not lost for that */
+		channel->dirty = true; /* other bits may have been wrong, and hidden a branch */
 		return;
 	}
 	channel->spoiled = 0;
