@@ -6,6 +6,7 @@
 
 #include "src/engine/adopt.h"
 #include "src/engine/adopt_signal.h"
+#include "src/engine/alarm_effect.h"
 #include "src/engine/alarm_item.h"
 #include "src/engine/alarm_refused.h"
 #include "src/engine/counters.h"
@@ -246,7 +247,7 @@ static void take_alarm(struct engine *e, struct alarm_item *item, const struct e
 
 	alarm_take_item(&lane->alarm, item, e->time.now_ns);
 	if (lane->alarm.list.polls)
-		s->attrs.flags |= OWS_ATTR_ALARM_POLLED;
+		engine_alarm_polled(e, item);
 	if (before != ADOPT_NEW && old->alarm_count)
 		was = bsearch(&before, old->alarm_items, old->alarm_count, sizeof(*was),
 		              compare_rows);

@@ -20,7 +20,7 @@ static uint32_t flags_of(const struct signal *s, const struct signal *was)
 	                      OWS_ATTR_IN_WORK | OWS_ATTR_ALARM_POLLED | OWS_ATTR_ALARM_UNARMED |
 	                      OWS_ATTR_ALARM_WHY;
 	const struct config_item *item = s->item, *before = was->item;
-	uint32_t flags = was->attrs.flags & ~anew;
+	uint32_t flags = was->attrs.flags & ~anew & ~(item->alarm ? 0u : OWS_ATTR_ALARM_STANDS);
 
 	flags |= flag_of(s, was, OWS_ATTR_READ_ENABLE, item->readable, before->readable);
 	if (config_item_takes_sets(item))

@@ -290,7 +290,7 @@ static uint32_t facts_after(struct alarm_machine *m, struct lane *lane, const st
 		if (!err) {
 			i->cycle_of[ALARM_LATCH_WAS_RESET] = m->list.cycle;
 			alarm_granted(e, i, OWS_UNARMED_RESET);
-			engine_alarm_ended(e, i);
+			i->occurrence.stands = false;
 		}
 		break;
 	case NOT_USED:

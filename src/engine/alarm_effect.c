@@ -54,23 +54,17 @@ void engine_alarm_raised(struct engine *e, struct lane *lane, struct alarm_item 
 	engine_publish(e, s);
 }
 
-void engine_alarm_ended(struct engine *e, struct alarm_item *item)
-{
-	struct signal *s = &e->table.signals[item->row];
-
-	if (!item->occurrence.stands)
-		return;
-	item->occurrence.stands = false;
-	s->attrs.flags &= ~(uint32_t)OWS_ATTR_ALARM_STANDS;
-	engine_publish(e, s);
-}
-
 void engine_alarm_rests(struct engine *e, struct alarm_item *item, int64_t now_ns)
 {
-	struct ows_journal_entry entry = alarm_entry(&e->table.signals[item->row], OWS_ALARM_DEVICE,
-	                                             OWS_ALARM_RETURNED, now_ns);
+	struct signal *s = &e->table.signals[item->row];
+	struct ows_journal_entry entry = alarm_entry(s, OWS_ALARM_DEVICE, OWS_ALARM_RETURNED,
+	                                             now_ns);
 
-	engine_alarm_ended(e, item);
+	item->occurrence.stands = false;
+	if (s->attrs.flags & OWS_ATTR_ALARM_STANDS) {
+		s->attrs.flags &= ~(uint32_t)OWS_ATTR_ALARM_STANDS;
+		engine_publish(e, s);
+	}
 	if (!item->occurrence.entered)
 		return;
 	item->occurrence.entered = 0;
@@ -102,12 +96,21 @@ void engine_power_on_reset(struct lane *lane, const struct device *d, const stru
 	}
 }
 
+void engine_alarm_polled(struct engine *e, struct alarm_item *item)
+{
+	struct signal *s = &e->table.signals[item->row];
+
+	item->occurrence.stands = false;
+	s->attrs.flags &= ~(uint32_t)OWS_ATTR_ALARM_STANDS;
+	s->attrs.flags |= OWS_ATTR_ALARM_POLLED;
+}
+
 void engine_alarm_polls(struct engine *e, struct alarm_machine *m)
 {
 	for (uint32_t k = 0; k < m->count; k++) {
 		struct signal *s = &e->table.signals[m->items[k]->row];
 
-		s->attrs.flags |= OWS_ATTR_ALARM_POLLED;
+		engine_alarm_polled(e, m->items[k]);
 		engine_read_at(e, s, e->time.period + 1);
 		engine_publish(e, s);
 	}

@@ -8,9 +8,7 @@
 /* The latch of the item was read and is not 0. */
 void engine_alarm_raised(struct engine *e, struct lane *lane, struct alarm_item *item,
                          int64_t now_ns);
-/* Its latch was reset. */
-void engine_alarm_ended(struct engine *e, struct alarm_item *item);
-/* Its latch was read 0, or its device is not listed: the journal has the return. */
+/* Its latch was read 0, or its device is not listed: it stands no more, the journal has the return. */
 void engine_alarm_rests(struct engine *e, struct alarm_item *item, int64_t now_ns);
 /*
  * The device's por was read non-zero: its outputs are not what was written. The journal and the log
@@ -18,7 +16,9 @@ void engine_alarm_rests(struct engine *e, struct alarm_item *item, int64_t now_n
  */
 void engine_power_on_reset(struct lane *lane, const struct device *d, const struct signal *shown,
                            bool seen);
-/* The bus has no alarm search: the items are ordinary inputs. */
+/* Its bus has no alarm search: no look will tell that its alarm returned. */
+void engine_alarm_polled(struct engine *e, struct alarm_item *item);
+/* The same of all items: they are ordinary inputs. */
 void engine_alarm_polls(struct engine *e, struct alarm_machine *m);
 
 #endif

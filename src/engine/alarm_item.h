@@ -40,7 +40,7 @@ enum alarm_deed {
 
 /* An occurrence, from the latch that was read; a reload carries it over. */
 struct alarm_occurrence {
-	bool stands;      /* its latch was not reset yet */
+	bool stands;      /* its latch was not reset yet; shown is one that may be set again too */
 	uint32_t entered; /* channels that the journal has, and no return of them yet */
 	uint32_t journal; /* number of the entry that waits for the value after */
 	bool wants_after;

@@ -6,6 +6,7 @@
  */
 #include <errno.h>
 
+#include "src/engine/alarm_effect.h"
 #include "src/engine/alarm_item.h"
 #include "src/engine/alarm_known.h"
 #include "src/engine/disown.h"
@@ -80,7 +81,7 @@ static void move_alarms(struct engine *e, struct lane *from, struct lane *to, ui
 			from->lent.alarm->moved = true;
 		alarm_take_item(&to->alarm, item, now_ns);
 		if (to->alarm.list.polls)
-			alarm_signal(e, item)->attrs.flags |= OWS_ATTR_ALARM_POLLED;
+			engine_alarm_polled(e, item);
 	}
 }
 

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* A reload in the engine: alarms and their journal. */
+#include <errno.h>
+
 #include "unity.h"
 
 #include "tests/unit/aid/alarm_scene.h"
@@ -85,11 +87,29 @@ static void test_the_journal_of_a_signal_that_is_gone_goes_with_it(void)
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
 }
 
+static void without_alarm(struct config *config)
+{
+	config->items->alarm = false;
+}
+
+static void test_an_alarm_that_stands_does_so_until_the_item_has_none(void)
+{
+	alarm_house();
+	scene_refuse_writes(&s, "/alarm" D "/latch.BYTE", -EIO);
+	scene_put(&s, D "/latch.BYTE", "1", 0);
+	scene_run(&s, SCENE_S);
+	scene_reload(&s, NULL);
+	TEST_ASSERT_BITS_HIGH(OWS_ATTR_ALARM_STANDS, scene_attrs(&s, 1).flags);
+	scene_reload(&s, without_alarm);
+	TEST_ASSERT_BITS_LOW(OWS_ATTR_ALARM_STANDS, scene_attrs(&s, 1).flags);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_alarms_go_on_and_the_journal_with_them);
 	RUN_TEST(test_a_list_of_alarms_on_its_way_comes_over);
 	RUN_TEST(test_the_journal_of_a_signal_that_is_gone_goes_with_it);
+	RUN_TEST(test_an_alarm_that_stands_does_so_until_the_item_has_none);
 	return UNITY_END();
 }

@@ -130,9 +130,15 @@ static void test_occurrences_without_a_rest_between_are_counted_and_entered_once
 	scene_run(&s, 10 * SCENE_S);
 	TEST_ASSERT_GREATER_THAN_UINT32(10, scene_attrs(&s, 1).alarms);
 	TEST_ASSERT_EQUAL_UINT(1, journal());
+	/* at each moment: reset, or read and not yet reset */
+	for (unsigned i = 0; i < 100; i++) {
+		TEST_ASSERT_BITS_HIGH(OWS_ATTR_ALARM_STANDS, scene_attrs(&s, 1).flags);
+		scene_run(&s, 7 * SCENE_MS);
+	}
 	latch_stuck = false;
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_EQUAL_UINT(2, journal());
+	TEST_ASSERT_BITS_LOW(OWS_ATTR_ALARM_STANDS, scene_attrs(&s, 1).flags);
 	TEST_ASSERT_EQUAL_UINT8(OWS_ALARM_RETURNED, s.image.alarms[1].event);
 	scene_put(&s, D "/latch.BYTE", "8", 0);
 	scene_run(&s, SCENE_S);

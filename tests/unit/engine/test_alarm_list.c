@@ -69,6 +69,24 @@ static void test_a_bus_without_alarm_search_is_asked_again_when_it_comes_back(vo
 	TEST_ASSERT_EQUAL_UINT32(1, scene_attrs(&s, 1).alarms);
 }
 
+static void test_an_alarm_stands_no_more_where_no_look_can_tell_its_return(void)
+{
+	figure_3_3(&s);
+	alarm_device(&s, "0", "0");
+	alarm_begin(&s);
+	scene_refuse_writes(&s, "/alarm" D "/latch.BYTE", -EIO);
+	scene_put(&s, D "/latch.BYTE", "1", 0);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_BITS_HIGH(OWS_ATTR_ALARM_STANDS, scene_attrs(&s, 1).flags);
+	scene_down(&s, -ECONNRESET);
+	s.on_read = NULL;
+	scene_put(&s, "/alarm", NULL, -EOPNOTSUPP);
+	scene_up(&s);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_BITS_HIGH(OWS_ATTR_ALARM_POLLED, scene_attrs(&s, 1).flags);
+	TEST_ASSERT_BITS_LOW(OWS_ATTR_ALARM_STANDS, scene_attrs(&s, 1).flags);
+}
+
 static void test_a_bus_that_searches_is_asked_for_the_families_of_the_items_only(void)
 {
 	s.bus[0].searches = s.trace_lists = true;
@@ -161,6 +179,7 @@ int main(void)
 	RUN_TEST(test_without_an_alarm_only_the_list_is_read);
 	RUN_TEST(test_a_bus_without_alarm_search_has_its_items_read_as_inputs);
 	RUN_TEST(test_a_bus_without_alarm_search_is_asked_again_when_it_comes_back);
+	RUN_TEST(test_an_alarm_stands_no_more_where_no_look_can_tell_its_return);
 	RUN_TEST(test_a_bus_that_searches_is_asked_for_the_families_of_the_items_only);
 	RUN_TEST(test_a_list_that_fails_is_asked_for_ever_more_rarely);
 	RUN_TEST(test_a_list_that_finds_the_wire_short_has_its_items_read_at_once);
