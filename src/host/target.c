@@ -3,7 +3,8 @@
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
 
 #include "hal/bus/backends.h"
 #include "hal/bus/bus.h"
@@ -141,41 +142,100 @@ int target_check_config(struct config *config, struct config_report *report)
 	return err ? err : config_check(config, report);
 }
 
+#define I2C_MAJOR 89 /* Linux Documentation/admin-guide/devices.txt */
+
+static bool is_adapter(const struct stat *file)
+{
+	return S_ISCHR(file->st_mode) && major(file->st_rdev) == I2C_MAJOR;
+}
+
+static bool is_socket(const struct stat *file)
+{
+	return S_ISSOCK(file->st_mode);
+}
+
 /* How a target names what it is on: the path is root and the text after the scheme. */
 static const struct way {
 	const char *scheme, *begin, *root, *remedy;
+	bool (*fits)(const struct stat *file);
+	const char *what; /* that does not fit */
 } ways[] = {
-	{"i2c:", "/", "", "ls /dev/i2c-* lists the adapters, owsd --board names what is missing"},
-	{"gpio:", "/", "", "gpiodetect lists the chips"},
-	{"gpio:", "gpiochip", "/dev/", "gpiodetect lists the chips"},
-	{"w1:", "w1_bus_master", "/sys/bus/w1/devices/",
-         "ls /sys/bus/w1/devices lists the masters"},
+	{"i2c:", "/", "", "ls /dev/i2c-* lists the adapters, owsd --board names what is missing",
+         is_adapter, "no I2C adapter: ls /dev/i2c-* lists them"},
+	{"w1:", "w1_bus_master", "/sys/bus/w1/devices/", "ls /sys/bus/w1/devices lists the masters",
+         NULL, NULL},
 	{"w1:netlink/", "w1_bus_master", "/sys/bus/w1/devices/",
-         "ls /sys/bus/w1/devices lists the masters"},
-	{"owserver:", "/", "", "the other owsd makes the socket when it runs"},
+         "ls /sys/bus/w1/devices lists the masters", NULL, NULL},
+	{"owserver:", "/", "", "the other owsd makes the socket when it runs", is_socket,
+         "no socket"},
 };
 
-static void look_for(const struct config *config, const struct config_target *target,
-                     const struct way *way, struct config_report *report)
+static void look_for(const struct config_target *target, struct place place, const struct way *way,
+                     struct config_report *report)
 {
 	const char *where = target->text + strlen(way->scheme);
 	char path[300];
+	struct stat file;
 
 	if (strncmp(target->text, way->scheme, strlen(way->scheme)) != 0 ||
 	    strncmp(where, way->begin, strlen(way->begin)) != 0)
 		return;
 	snprintf(path, sizeof(path), "%s%.*s", way->root, (int)strcspn(where, ":"), where);
-	if (access(path, F_OK) && errno == ENOENT)
-		report_warning(report,
-		               (struct place){target->line ? config->file : NULL, target->line,
-		                              target->column},
-		               "target \"%s\": %s is not on this machine: %s", target->text, path,
-		               way->remedy);
+	if (stat(path, &file) == 0) {
+		if (way->fits && !way->fits(&file))
+			report_error(report, place, "target \"%s\": %s is %s", target->text, path,
+			             way->what);
+	} else if (errno == ENOENT) {
+		report_warning(report, place, "target \"%s\": %s is not on this machine: %s",
+		               target->text, path, way->remedy);
+	}
 }
 
-void target_look(const struct config *config, struct config_report *report)
+/* A chip has a label too, which only the chips themselves know. what: what names it. */
+static void look_for_chip(const char *what, const char *name, struct place place,
+                          struct config_report *report)
 {
-	for (unsigned i = 0; i < config->target_count; i++)
+	struct gpio_chip *chip;
+	char why[160];
+	int err = gpio_open(name, &chip, why, sizeof(why));
+
+	gpio_close(chip);
+	if (err == -ENOTTY)
+		report_error(report, place, "%s: %s", what, why);
+	else if (err == -ENODEV)
+		report_warning(report, place,
+		               "%s: %s is not on this machine: gpiodetect lists the chips", what,
+		               name);
+}
+
+static void look_for_line(const struct config *config, const char *key, const char *text,
+                          struct config_report *report)
+{
+	struct gpio_spec spec;
+	char why[160];
+
+	if (text && gpio_spec_parse(text, &spec, why, sizeof(why)) == 0)
+		look_for_chip(key, spec.chip, (struct place){config->file, 0, 0}, report);
+}
+
+int target_look(const struct config *config, struct config_report *report)
+{
+	static const char gpio[] = "gpio:";
+	unsigned errors = report->errors;
+
+	for (unsigned i = 0; i < config->target_count; i++) {
+		const struct config_target *target = &config->targets[i];
+		struct place place = {target->line ? config->file : NULL, target->line,
+		                      target->column};
+		char what[300];
+
+		snprintf(what, sizeof(what), "target \"%s\"", target->text);
+		if (strncmp(target->text, gpio, strlen(gpio)) == 0)
+			look_for_chip(what, target->text + strlen(gpio), place, report);
 		for (unsigned k = 0; k < sizeof(ways) / sizeof(ways[0]); k++)
-			look_for(config, &config->targets[i], &ways[k], report);
+			look_for(target, place, &ways[k], report);
+	}
+	look_for_line(config, "AlarmLine", config->alarm_line, report);
+	look_for_line(config, "HeartbeatLine", config->heartbeat_line, report);
+	return report->errors == errors ? 0 : -EINVAL;
 }

@@ -22,9 +22,10 @@ int target_options(struct bus *bus, const struct config *config, const char *tar
 int target_check_config(struct config *config, struct config_report *report);
 
 /*
- * Warn of targets whose device, socket or master is not on this machine now: owsd would wait for
- * it. For who checks a file where it is used.
+ * Warn of targets and GPIO lines whose device, socket or master is not on this machine now: owsd
+ * would wait for it. What is there and can never be it is an error. Opens GPIO chips alone. For who
+ * checks a file where it is used. 0 or -EINVAL.
  */
-void target_look(const struct config *config, struct config_report *report);
+int target_look(const struct config *config, struct config_report *report);
 
 #endif

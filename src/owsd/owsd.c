@@ -109,7 +109,7 @@ static int load(const struct arguments *a, struct told *told, struct config **co
 	if (!err)
 		err = target_check_config(*config, &report);
 	if (!err && a->check)
-		target_look(*config, &report);
+		err = target_look(*config, &report);
 	if (!err) {
 		config_hash_files(*config);
 		return 0;
@@ -303,10 +303,19 @@ static int run(const struct arguments *a, struct config *config, struct instance
 	return ours ? EXIT_SUCCESS : EXIT_RUN;
 }
 
-static void explain_no_file(const struct arguments *a)
+/* What is proposed works: a target that would be refused is reported instead. */
+static void explain_no_file(const struct arguments *a, struct told *told)
 {
-	complain("-c FILE names another; owsctl -t %s scan --rio makes one",
-	         a->target_count ? a->targets[0] : "auto");
+	const char *target = a->target_count ? a->targets[0] : "auto";
+	struct arguments devices = *a;
+	struct config *config;
+
+	devices.needs_no_file = true;
+	if (load(&devices, told, &config))
+		return;
+	config_free(config);
+	complain("-c FILE names another; owsctl%s -t %.*s scan --rio makes one",
+	         strncmp(target, "sim:", 4) == 0 ? "-sim" : "", (int)strcspn(target, ",|"), target);
 	complain("to serve the devices without a configuration, give %s",
 	         a->target_count   ? "-l PORT too"
 	         : a->listen_count ? "-t TARGET too"
@@ -355,7 +364,7 @@ int main(int argc, char **argv)
 	                  !has_file(&a);
 	if (load(&a, &told, &config)) {
 		if (a.file == a.default_file && !a.needs_no_file && !has_file(&a))
-			explain_no_file(&a);
+			explain_no_file(&a, &told);
 		return EXIT_USAGE;
 	}
 	if (a.check) {

@@ -8,7 +8,9 @@ import json
 import os
 import pathlib
 import platform
+import re
 import signal
+import socket
 import struct
 import subprocess
 import time
@@ -203,17 +205,52 @@ def test_what_cannot_be_a_target_is_refused_by_check_and_start(scene):
 
 
 def test_a_device_that_is_not_here_is_a_warning_of_the_check(scene):
-    there = scene.file("i2c-199", "")
+    nobody = str(scene.path / "nobody")
+    socket.socket(socket.AF_UNIX).bind(nobody)
     for target, path in (("i2c:/dev/i2c-199", "/dev/i2c-199"), ("i2c:/dev/i2c-199:0x18.2", "/dev/i2c-199"),
-                         ("gpio:gpiochip99", "/dev/gpiochip99"), ("gpio:/dev/gpiochip99", "/dev/gpiochip99"),
+                         ("gpio:gpiochip99", "gpiochip99"), ("gpio:/dev/gpiochip99", "/dev/gpiochip99"),
                          ("w1:w1_bus_master99", "/sys/bus/w1/devices/w1_bus_master99"),
                          ("w1:netlink/w1_bus_master99", "/sys/bus/w1/devices/w1_bus_master99"),
                          (f"owserver:{scene.path}/none", f"{scene.path}/none"),
-                         (f"i2c:{there}:0x18", None), ("gpio:pinctrl-bcm2711", None), ("i2c:auto", None),
-                         ("localhost", None), (f"owserver:{there}", None)):
+                         ("gpio:pinctrl-nix", "pinctrl-nix"), ("i2c:auto", None),
+                         ("localhost", None), (f"owserver:{nobody}", None)):
         done = scene.owsd_once("--check", "-c", scene.file("away.rio", owsdtest.rio(target, [ITEM])))
         warning = f'3:27: warning: target "{target}": {path} is not on this machine: ' if path else ""
         assert done.returncode == 0 and warning in done.stderr and bool(path) == bool(done.stderr), done
+
+
+def test_what_is_here_and_can_never_be_the_target_is_an_error_of_the_check(scene):
+    file = scene.file("file", "")
+    for target, reason in (("i2c:/dev/null", "/dev/null is no I2C adapter"),
+                           (f"i2c:{file}:0x18", f"{file} is no I2C adapter"),
+                           (f"i2c:{scene.path}", f"{scene.path} is no I2C adapter"),
+                           ("gpio:/dev/null", "/dev/null is not a GPIO chip"),
+                           ("owserver:/dev/null", "/dev/null is no socket"),
+                           (f"owserver:{file}", f"{file} is no socket")):
+        done = scene.owsd_once("--check", "-c", scene.file("never.rio", owsdtest.rio(target, [ITEM])))
+        assert done.returncode == 2 and not done.stdout, (target, done)
+        assert f'3:27: error: target "{target}": {reason}' in done.stderr, (target, done)
+    for key in ("AlarmLine", "HeartbeatLine"):
+        for chip, reason in (("/dev/null", "error: {}: /dev/null is not a GPIO chip"),
+                             ("nix", "warning: {}: nix is not on this machine: ")):
+            text = owsdtest.rio("localhost", [ITEM], **{key: f"{chip}/4"})
+            done = scene.owsd_once("--check", "-c", scene.file("line.rio", text))
+            assert reason.format(key) in done.stderr, (key, chip, done)
+
+
+def test_a_start_without_a_configuration_proposes_what_works(scene):
+    house = owsdtest.SOURCE / "board/demo/house.sim"
+    for program in ("owsd", "owsd-sim"):
+        for target in (f"sim:{house}", "w1", "localhost:1,w1", "foo:bar", "sim:/none"):
+            done = scene._run([owsdtest.BUILD / program, "-n", scene.name(), "-t", target], 20)
+            assert done.returncode == 2, (program, target, done)
+            proposed = re.search(r"; (owsctl\S*) -t (\S+) scan --rio makes one", done.stderr)
+            refused = target == "foo:bar" or target.startswith("sim:") and \
+                (program == "owsd" or target == "sim:/none")
+            assert ("\nerror: target " in done.stderr) == refused != bool(proposed), (program, target, done)
+            if proposed:
+                again = scene._run([owsdtest.BUILD / proposed[1], "-t", proposed[2], "scan", "--rio"], 20)
+                assert "target" not in again.stderr, again
 
 
 def test_a_start_without_a_configuration_says_how_to_come_to_one(scene):
