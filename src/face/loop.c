@@ -153,8 +153,11 @@ int face_main(const struct face_ops *ops, int argc, char **argv)
 {
 	struct face_arguments arguments;
 	struct unix_signals signals;
-	struct face face = {
-		.ops = ops, .arguments = &arguments, .tick_ns = INT64_MAX, .notify.fd = -1};
+	struct face face = {.ops = ops,
+	                    .arguments = &arguments,
+	                    .tick_ns = INT64_MAX,
+	                    .notify.fd = -1,
+	                    .status = "starting"};
 	int status = standard_open();
 
 	if (status) {

@@ -53,9 +53,16 @@ static void run(struct web *web)
 {
 	int64_t now_ns = ows_now(), begin = cpu_ns();
 
+	/* changes may come so often that there is no tick between them */
+	if (now_ns >= web->alive_ns) {
+		web->alive_ns = now_ns + EVENTS_ALIVE_S * NS_PER_S / 5;
+		stream_wake_all(web);
+	}
 	if (pace_send(&web->pace, now_ns, web->recent.newest))
 		stream_wake_all(web);
 	http_run(web);
+	face_status(web->face, "%u streams, %d signals%s", web->stream_count, web->recent.count,
+	            web->face->live ? "" : ", owsd does not run");
 	pace_spent(&web->pace, cpu_ns() - begin);
 	now_ns = ows_now();
 	web->face->tick_ns = earlier(earlier(now_ns + TICK_NS, pace_due(&web->pace)),
@@ -320,13 +327,7 @@ static void tick(struct face *face, int64_t now_ns)
 
 	if (now_ns >= doors_next(&web->doors))
 		doors_take(&web->doors, now_ns);
-	if (now_ns >= web->alive_ns) {
-		web->alive_ns = now_ns + EVENTS_ALIVE_S * NS_PER_S / 5;
-		stream_wake_all(web);
-	}
 	run(web);
-	face_status(face, "%u streams, %d signals%s", web->stream_count, web->recent.count,
-	            face->live ? "" : ", owsd does not run");
 }
 
 static void end_jobs(struct jobs *jobs)

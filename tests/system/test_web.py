@@ -759,6 +759,21 @@ def test_a_second_owsd_web_is_refused_and_a_stale_socket_is_not(scene):
     assert again.program.stop() == 0 and not again.socket.exists()
 
 
+def test_its_report_has_a_status_from_the_first_on(scene):
+    if not WEB.exists():
+        skip("owsd-web is not built: there is no libmicrohttpd")
+    daemon = scene.owsd(text(scene))
+    report, seen = place() / f"{daemon.name}.owsd-web", set()
+    scene.start([WEB, "-n", daemon.name, "-c", daemon.config])
+
+    def settled():
+        with contextlib.suppress(FileNotFoundError):
+            seen.add(next(line for line in report.read_text().splitlines() if line.startswith("status")))
+        return any("streams" in line for line in seen)
+    until(settled, 20, lambda: seen, step=0.001)
+    assert "status " not in seen, seen
+
+
 def test_a_socket_of_the_service_manager_is_taken(scene):
     if not WEB.exists():
         skip("owsd-web is not built: there is no libmicrohttpd")
