@@ -556,6 +556,7 @@ install: all
 	    sed -e "s/^\(\.TH [^ ]* [0-9]\) \"\"/\1 \"$$day\"/" -e "s/^\.Dd.*/.Dd $$dd/" $$m >$$d/$${m##*/}; done
 	install -d $(D)$(BASHDIR) $(D)$(ZSHDIR)
 	install -m 644 board/completion/owsctl.bash $(D)$(BASHDIR)/owsctl
+	ln -sf owsctl $(D)$(BASHDIR)/owsctl-sim
 	install -m 644 board/completion/_owsctl $(D)$(ZSHDIR)/_owsctl
 	$(if $(D),,-@ldconfig 2>/dev/null || true)
 
@@ -566,7 +567,7 @@ uninstall:
 	    $(D)$(LIBDIR)/pkgconfig/$(l).pc) \
 	    $(D)$(PREFIX)/include/ows.h $(D)$(PREFIX)/include/ows_history.h $(D)$(PREFIX)/include/ows_layout.h
 	rm -f $(foreach m,$(MAN),$(D)$(MANDIR)/man$(patsubst .%,%,$(suffix $(m)))/$(notdir $(m)))
-	rm -f $(D)$(BASHDIR)/owsctl $(D)$(ZSHDIR)/_owsctl
+	rm -f $(D)$(BASHDIR)/owsctl $(D)$(BASHDIR)/owsctl-sim $(D)$(ZSHDIR)/_owsctl
 	rm -rf $(D)$(DATADIR) $(COCKPIT)
 
 # The service, where systemd and udev look: below PREFIX they do in /usr and /usr/local, else in /etc.

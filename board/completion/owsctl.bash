@@ -42,4 +42,4 @@ _owsctl() {
 	fi
 	mapfile -t COMPREPLY < <(compgen -W "$words" -- "$cur")
 }
-complete -F _owsctl owsctl
+complete -F _owsctl owsctl owsctl-sim

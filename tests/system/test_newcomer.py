@@ -189,11 +189,16 @@ def test_bash_completes_verbs_signals_and_instances(scene):
                             (["config", "wire.s"], ["wire.sim"]), (["config", "x", "mo"], ["move"]),
                             (["stats", ""], [])):
         assert sorted(completed(scene, place, *words)) == sorted(expected), words
+    known = subprocess.run(["bash", "-c", f". {owsdtest.SOURCE}/board/completion/owsctl.bash; complete -p owsctl-sim"],
+                           capture_output=True, text=True, check=False, timeout=60)
+    assert known.stdout == "complete -F _owsctl owsctl-sim\n", known
 
 
 def test_zsh_completes_the_same(scene):
     if not shutil.which("zsh"):
         owsdtest.skip("zsh is not installed")
+    first = (owsdtest.SOURCE / "board/completion/_owsctl").read_text().splitlines()[0]
+    assert first.split() == ["#compdef", "owsctl", "owsctl-sim"]
     _, place = alone(scene)
     for typed, expected in (("wa", {"watch", "wait"}), ("get ro", {"room"})):
         script = (f"compadd() {{ print -l -- ${{@:#--}} }}; words=(owsctl {typed}); CURRENT=$#words; "
