@@ -279,6 +279,10 @@ def test_a_terminal_gets_utf8_by_its_locale_and_a_pipe_always(scene):
                 os.write(terminal.fd, b"q")
             terminal.end()
             assert terminal.output.isascii() == (locale == "C"), terminal.output
+        for words in (("metrics",), ("--json", "list")):
+            terminal = Terminal(daemon, 24, 120, *words, locale=locale)
+            terminal.end()
+            assert "k\u00fcche".encode() in terminal.output, terminal.output
         done = subprocess.run([owsdtest.OWSCTL, "-n", daemon.name, "list"], capture_output=True, check=True,
                               env=dict(os.environ, LC_ALL=locale), timeout=owsdtest.PATIENCE)
         assert "k\u00fcche".encode() in done.stdout, done
