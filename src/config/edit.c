@@ -244,7 +244,7 @@ int edit_set(struct rio **rio, const char *name, const char *const *settings, un
 	int err = check_once(settings, count, report);
 
 	if (strlen(name) >= sizeof(current)) {
-		report_error(report, command_line, "there is no item \"%s\"", name);
+		edit_no_item(*rio, name, report);
 		return -EINVAL;
 	}
 	memcpy(current, name, strlen(name) + 1);
@@ -285,7 +285,9 @@ int edit_rename(struct rio **rio, const char *name, const char *to, struct confi
 	int err = -EINVAL;
 
 	if (!edit_item(*rio, name)) {
-		report_error(report, command_line, "there is no item \"%s\"", name);
+		edit_no_item(*rio, name, report);
+	} else if (!strcmp(name, to)) {
+		report_error(report, command_line, "\"%s\" is the name that it has", name);
 	} else if (edit_item(*rio, to)) {
 		report_error(report, command_line, "there is an item \"%s\" already", to);
 	} else if (asprintf(&text, "%s=%s", option_table[OPT_NAME].key, to) >= 0) {
@@ -400,7 +402,7 @@ static struct rio_node *find_item_or_report(const struct rio *rio, const char *n
 	struct rio_node *item = edit_item(rio, name);
 
 	if (!item)
-		report_error(report, command_line, "there is no item \"%s\"", name);
+		edit_no_item(rio, name, report);
 	return item;
 }
 

@@ -8,6 +8,7 @@
 #include "src/config/edit_block.h"
 #include "src/config/rio_write.h"
 #include "src/config/targets.h"
+#include "src/text/distance.h"
 
 struct rio_node *edit_driver(const struct rio *rio)
 {
@@ -69,6 +70,24 @@ static struct rio_node *find_bus(const struct rio_node *driver, const char *targ
 	return NULL;
 }
 
+void edit_no_item(const struct rio *rio, const char *name, struct config_report *report)
+{
+	const struct rio_node *driver = edit_driver(rio);
+	const struct rio_node *item = driver ? rio_child(driver, option_table[OPT_ITEM].key) : NULL;
+	unsigned best = text_too_far(name);
+	const char *nearest = NULL;
+
+	for (; item; item = rio_next(item)) {
+		const struct rio_node *own = rio_child(item, option_table[OPT_NAME].key);
+
+		if (own && text_nearer(name, own->value, &best))
+			nearest = own->value;
+	}
+	report_error(report, (struct place){0}, "there is no item \"%s\"%s%s%s", name,
+	             nearest ? "; did you mean \"" : "", nearest ? nearest : "",
+	             nearest ? "\"?" : "");
+}
+
 struct rio_node *edit_block(const struct rio *rio, const char *name, enum option_place *place,
                             struct config_report *report)
 {
@@ -93,7 +112,7 @@ struct rio_node *edit_block(const struct rio *rio, const char *name, enum option
 	if (!block && target)
 		report_error(report, (struct place){0}, "there is no Bus for \"%s\"", target);
 	else if (!block)
-		report_error(report, (struct place){0}, "there is no item \"%s\"", name);
+		edit_no_item(rio, name, report);
 	return block;
 }
 

@@ -14,6 +14,8 @@
 /* The driver's block, and an item; NULL: there is none. */
 struct rio_node *edit_driver(const struct rio *rio);
 struct rio_node *edit_item(const struct rio *rio, const char *name);
+/* Report that there is no such item, with the one whose name is next to it. */
+void edit_no_item(const struct rio *rio, const char *name, struct config_report *report);
 /* The block of that name, with its kind in *place; NULL after reporting that there is none. */
 struct rio_node *edit_block(const struct rio *rio, const char *name, enum option_place *place,
                             struct config_report *report);

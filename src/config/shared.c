@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Finds outputs that set the same bits of a device while Restore writes one of them again. */
+/* Finds items that set the same bits of a device while Restore writes one of them again. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,7 +26,8 @@ static bool locate(const struct config_item *item, struct output *output)
 	struct path path;
 	size_t len;
 
-	if (!item->output || path_split(item->path, strlen(item->path), &path) || !path.device.len)
+	if (!config_item_takes_sets(item) || path_split(item->path, strlen(item->path), &path) ||
+	    !path.device.len)
 		return false;
 	if (dot && dot < path.property.text)
 		dot = NULL;

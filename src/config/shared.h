@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Outputs that write the same register of a device. */
+/* Items that write the same register of a device. */
 #ifndef CONFIG_SHARED_H
 #define CONFIG_SHARED_H
 
@@ -7,8 +7,8 @@ struct config;
 struct config_report;
 
 /*
- * Warn of two outputs that set the same bits while one is written again by Restore: that undoes
- * the command of the other. name: only pairs with that item; NULL: all.
+ * Warn of two items, outputs or inputs with Writable, that set the same bits while one is written
+ * again by Restore: that undoes the command of the other. name: only pairs with that item; NULL: all.
  */
 void shared_check(const struct config *config, const char *name, struct config_report *report);
 

@@ -17,6 +17,7 @@
 #include "src/owsctl/running.h"
 #include "src/owsctl/verbs.h"
 #include "src/shm/segment.h"
+#include "src/text/distance.h"
 
 /* Warnings are the business of owsd --check, unless the file is edited. */
 static void print_errors(void *ctx, bool is_error, const char *message)
@@ -49,14 +50,18 @@ static int show(const struct config *config, char *const *names, int count)
 	int status = count ? CTL_DONE : ctl_fail("show which item? config FILE list has them");
 
 	for (int k = 0; k < count; k++) {
-		unsigned i = 0;
+		unsigned best = text_too_far(names[k]), i = 0;
+		const char *nearest = NULL;
 
-		while (i < config->item_count && strcmp(config->items[i].name, names[k]) != 0)
-			i++;
+		for (; i < config->item_count && strcmp(config->items[i].name, names[k]) != 0; i++)
+			if (text_nearer(names[k], config->items[i].name, &best))
+				nearest = config->items[i].name;
 		if (i < config->item_count)
 			config_print_item(&config->items[i], stdout);
 		else
-			status = ctl_fail("there is no item \"%s\"", names[k]);
+			status = ctl_fail("there is no item \"%s\"%s%s%s", names[k],
+			                  nearest ? "; did you mean \"" : "",
+			                  nearest ? nearest : "", nearest ? "\"?" : "");
 	}
 	return status;
 }

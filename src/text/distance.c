@@ -45,3 +45,12 @@ unsigned text_too_far(const char *word)
 
 	return (unsigned)(len < 3 ? 2 : len / 3 + 1);
 }
+
+bool text_nearer(const char *word, const char *candidate, unsigned *best)
+{
+	unsigned distance = text_distance(word, candidate);
+	bool nearer = distance < *best;
+
+	*best = nearer ? distance : *best;
+	return nearer;
+}

@@ -3,6 +3,8 @@
 #ifndef TEXT_DISTANCE_H
 #define TEXT_DISTANCE_H
 
+#include <stdbool.h>
+
 /*
  * The least number of insertions, deletions, replacements and swaps of neighbours between two
  * words, of each its first TEXT_DISTANCE_MAX letters; case does not count.
@@ -15,5 +17,7 @@ unsigned text_distance(const char *a, const char *b);
  * was meant is less.
  */
 unsigned text_too_far(const char *word);
+/* Is it nearer to word than *best, which begins as text_too_far(word)? Then *best is its distance. */
+bool text_nearer(const char *word, const char *candidate, unsigned *best);
 
 #endif

@@ -349,6 +349,21 @@ def test_a_property_that_the_family_has_not_is_refused_with_the_one_that_was_mea
         assert done.returncode == 0 and said in done.stderr and bool(said) == bool(done.stderr), done
 
 
+def test_a_mistyped_item_has_the_nearest_one(scene):
+    file = scene.file("a.rio", owsdtest.rio("localhost", [dict(ITEM, Name=name) for name in ("kitchen", "hall")]))
+    before = file.read_text()
+    for words in (("set", "kitchn", "Unit=C"), ("unset", "kitchn", "Unit"), ("rename", "kitchn", "x"),
+                  ("remove", "kitchn"), ("show", "kitchn"), ("move", "kitchn", "--after", "hall"),
+                  ("move", "hall", "--after", "kitchn")):
+        done = scene.owsctl(None, "config", file, *words)
+        assert 'there is no item "kitchn"; did you mean "kitchen"?\n' in done.stderr, done
+        done = scene.owsctl(None, "config", file, *(word.replace("kitchn", "cellar") for word in words))
+        assert done.stderr.endswith('there is no item "cellar"\n'), done
+    done = scene.owsctl(None, "config", file, "rename", "hall", "hall")
+    assert done.returncode == 2 and '"hall" is the name that it has' in done.stderr, done
+    assert file.read_text() == before
+
+
 def test_an_item_is_moved_and_nothing_else_changes(scene):
     items = {name: f"  # about {name}\n  Item {{\n    Name \"{name}\"   # mine\n"
                    f"    Path \"/28.000000000001/temperature\"\n    Type double\n  }}\n" for name in "abc"}

@@ -106,13 +106,14 @@ static void test_what_may_be_meant_is_not_mentioned(void)
 
 static int check_pair(const char *keys)
 {
+	const char *second = strchr(keys, ';') + 1;
 	char text[600];
 	int err;
 
 	snprintf(text, sizeof(text),
-	         "Item {\nName a IO output Type byte %.*s }\nItem {\nName b IO "
-	         "output Type byte %s }",
-	         (int)strcspn(keys, ";"), keys, strchr(keys, ';') + 1);
+	         "Item {\nName a Type byte %s%.*s }\nItem {\nName b Type byte %s%s }",
+	         strncmp(keys, "IO", 2) ? "IO output " : "", (int)strcspn(keys, ";"), keys,
+	         strncmp(second, "IO", 2) ? "IO output " : "", second);
 	err = parse_driver(text);
 	if (!err)
 		config_check_items(config, &report);
@@ -134,6 +135,14 @@ static void test_two_outputs_of_the_same_bits_of_which_one_is_restored_are_named
 		{"Path /42.B89115000000/latch.A Restore on;Path /42.B89115000000/PIO.A", FIGHT},
 		{"Path /05.B89115000000/PIO Restore on;Path /05.B89115000000/PIO", FIGHT},
 		{ALIAS " Restore on;Path /lamp/PIO.BYTE", FIGHT},
+		{"Path /29.B89115000000/PIO.BYTE Restore on;IO input Writable on Path "
+	         "/29.B89115000000/PIO.3",
+	         FIGHT},
+		{"IO input Writable on Path /29.B89115000000/PIO.3;Path /29.B89115000000/PIO.BYTE "
+	         "Restore on",
+	         FIGHT},
+		{"Path /29.B89115000000/PIO.BYTE Restore on;IO input Path /29.B89115000000/PIO.3",
+	         ""},
 		{"Path /29.B89115000000/PIO.BYTE;Path /29.B89115000000/PIO.3", ""},
 		{"Path /29.B89115000000/PIO.2 Restore on;Path /29.B89115000000/PIO.3 Restore on",
 	         ""},
