@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "src/owsctl/ctl.h"
+#include "src/owsctl/remote.h"
 #include "src/owsctl/running.h"
 #include "src/owsctl/verbs.h"
 #include "src/service/standard.h"
@@ -146,7 +147,8 @@ static void usage(FILE *out)
 	for (size_t i = 0; i < VERBS; i++)
 		fprintf(out, "  %-9s %s\n", verbs[i].name, verbs[i].brief);
 	fputs("owsctl help VERB shows what a verb takes; before the verb there may be:\n"
-	      "  -n NAME    instance; default: OWS_NAME of the environment, else OWS\n"
+	      "  -n NAME    instance; default: OWS_NAME of the environment, else OWS;\n"
+	      "             NAME@HOST: the same verb on another machine, over ssh\n"
 	      "  -t TARGET  what dir, read, write, mission and scan open\n"
 	      "  --json     print JSON\n"
 	      "  -V -h      print the version; this help\n"
@@ -301,6 +303,8 @@ int main(int argc, char **argv)
 			"-t TARGET is for dir, read, write, mission and scan; %s looks at a "
 			"running owsd",
 			ctl.verb->name);
+	if (strchr(ctl.instance, '@') && ctl.verb->run != verb_help)
+		return ctl_flush(remote_run(&ctl, argc - optind, argv + optind));
 	if (ctl.verb->finds)
 		find_instance(&ctl, argc - optind, argv + optind);
 	return ctl_flush(ctl.verb->run(&ctl, argc - optind, argv + optind));

@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: MIT */
+/* The same verb on another machine. */
+#ifndef OWSCTL_REMOTE_H
+#define OWSCTL_REMOTE_H
+
+#include "src/owsctl/ctl.h"
+
+/*
+ * Become ssh, which runs the verb with argv, its name first, on the HOST of ctl->instance, which is
+ * NAME@HOST. Returns only where ssh cannot be started or HOST is none: the status, after printing
+ * why.
+ */
+int remote_run(const struct ctl *ctl, int argc, char **argv);
+
+#endif
