@@ -157,8 +157,6 @@ static void check_together(struct build *build, const struct rio_node *block,
 
 	for (unsigned i = 0; i < mqtt->way_count; i++)
 		tls = tls || mqtt->ways[i].tls;
-	if (mqtt->password_file && !mqtt->user)
-		report_error(build->report, block->at, "PasswordFile without User");
 	if (!mqtt->cert_file != !mqtt->key_file)
 		report_error(build->report, block->at, "%s: CertFile and KeyFile belong together",
 		             mqtt->cert_file ? "CertFile without KeyFile"

@@ -45,12 +45,14 @@ void mqtt_options_take(struct mqtt_options *options, const struct face *face)
 		options->ways[i].tls = mqtt->ways[i].tls;
 	}
 	options->way_count = mqtt->way_count;
-	copy(options->user, OPTION_SIZE, mqtt->user);
 	copy(options->password_file, OPTION_SIZE, mqtt->password_file);
 	copy(options->ca_file, OPTION_SIZE, mqtt->ca_file);
 	copy(options->cert_file, OPTION_SIZE, mqtt->cert_file);
 	copy(options->key_file, OPTION_SIZE, mqtt->key_file);
 	name_node(options, face);
+	/* so a thousand machines have one and the same file */
+	copy(options->user, OPTION_SIZE,
+	     !mqtt->user && mqtt->password_file ? options->node : mqtt->user);
 	snprintf(options->prefix, sizeof(options->prefix), "%s/%s", mqtt->topic, options->node);
 	copy(options->discovery, sizeof(options->discovery), mqtt->discovery);
 	copy(options->profile, sizeof(options->profile), mqtt->profile);

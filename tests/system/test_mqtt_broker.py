@@ -76,6 +76,13 @@ def test_a_password_stands_in_a_file_that_is_ours_alone_or_in_a_credential(scene
     house.face = house.start({"CREDENTIALS_DIRECTORY": str(scene.path)})
     house.says(STATE, "online")
     assert "secret" not in house.face.log()
+    # without a name the node's is taken
+    house.face.stop()
+    del house.keys["User"]
+    house.daemon.config.write_text(house.text(ROOM))
+    house.says(STATE, "offline")
+    house.face = house.start()
+    house.says(STATE, "online")
 
 
 def test_tls_takes_the_broker_that_the_ca_vouches_for_and_shows_our_certificate(scene):

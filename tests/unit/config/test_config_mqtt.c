@@ -104,7 +104,6 @@ static void test_what_cannot_be_is_an_error_at_its_place(void)
 		{"Mqtt { PasswordFile \"../p\" User u }",
 	         "f:2:21: error: PasswordFile \"../p\": expected a path from the root, or the name "
 	         "of a credential\n"},
-		{"Mqtt { PasswordFile pw }", "f:2:1: error: PasswordFile without User\n"},
 		{"Mqtt { Broker \"mqtts://a\" KeyFile k }",
 	         "f:2:1: error: KeyFile without CertFile: CertFile and KeyFile belong together\n"},
 		{"Mqtt { Protocol 4 }", "f:2:17: error: Protocol \"4\": expected 5 or 3.1.1\n"},
@@ -131,6 +130,7 @@ static void test_a_password_in_the_clear_and_idle_certificates_are_warnings(void
 		{"Mqtt { CaFile \"/ca\" }", "f:2:1: warning: no way of Broker is mqtts://: the "
 	                                    "certificates are not used\n"},
 		{"Mqtt { User u PasswordFile p }", ""},
+		{"Mqtt { PasswordFile p }", ""},
 	};
 
 	expect_warnings(blocks, COUNT(blocks), parse_driver);
