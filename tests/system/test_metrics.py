@@ -4,6 +4,7 @@
 OpenMetrics of Prometheus' Python client and, where it is installed, promtool."""
 
 import json
+import re
 import shutil
 import subprocess
 
@@ -104,6 +105,36 @@ def test_promtool_has_nothing_to_say_about_the_text_for_prometheus(scene):
     done = subprocess.run(["promtool", "check", "metrics"], input=text, text=True, capture_output=True,
                           timeout=owsdtest.PATIENCE, check=False)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", ""), done
+
+
+def test_each_metric_and_label_of_the_dashboard_is_printed(scene):
+    dashboard = json.loads((owsdtest.SOURCE / "board/fleet/grafana.json").read_text())
+    queries = [target["expr"] for panel in dashboard["panels"] for target in panel["targets"]]
+    variables = dashboard["templating"]["list"]
+    queries += [variable["query"] for variable in variables]
+    assert len(queries) > 12, queries
+    daemon = plant(scene)
+    samples = [sample for family in families(scene, daemon).values() for sample in family.samples]
+    printed = {sample.name for sample in samples}
+    # job and instance are the labels of whoever scrapes
+    labels = {label for sample in samples for label in sample.labels} | {"job", "instance"}
+    named = set().union(*(re.findall(r"\bows_\w+", query) for query in queries))
+    assert len(named) > 8 and named <= printed, named - printed
+    used = set().union(*(re.findall(r"(\w+)=~?\"", query) for query in queries))
+    used |= {label for query in queries for label in re.findall(r"label_values\(.*, (\w+)\)", query)}
+    used |= set(re.findall(r"{{(\w+)}}", json.dumps(dashboard)))
+    assert used <= labels, used - labels
+    known = {variable["name"] for variable in variables} | {"__rate_interval"}
+    assert set(re.findall(r"\${?(\w+)", json.dumps([queries, dashboard["panels"]]))) <= known
+    ids = [panel["id"] for panel in dashboard["panels"]]
+    assert len(ids) == len(set(ids))
+    if promtool := shutil.which("promtool"):
+        rules = scene.file("rules.yml", json.dumps({"groups": [{"name": "dashboard", "rules": [
+            {"record": f"q{i}", "expr": re.sub(r"\$__rate_interval", "5m", panel_target["expr"])}
+            for i, panel_target in enumerate(t for p in dashboard["panels"] for t in p["targets"])]}]}))
+        done = subprocess.run([promtool, "check", "rules", rules], capture_output=True, text=True, check=False,
+                              timeout=owsdtest.PATIENCE)
+        assert done.returncode == 0, done
 
 
 if __name__ == "__main__":
