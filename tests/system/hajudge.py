@@ -99,10 +99,16 @@ def _install(place):
 
 
 class HomeAssistant:
-    def __init__(self, scene, port):
+    def __init__(self, scene, port, blueprint=None, **inputs):
+        """With a blueprint: its automation has these inputs."""
         self.broker_port, where = port, scene.path / "homeassistant"
         (where / ".storage").mkdir(parents=True)
-        (where / "configuration.yaml").write_text(CONFIGURATION.format(port=owsdtest.free_port(), look=LOOK))
+        text = CONFIGURATION.format(port=owsdtest.free_port(), look=LOOK)
+        if blueprint:
+            (where / "blueprints/automation").mkdir(parents=True)
+            shutil.copy(blueprint, where / "blueprints/automation")
+            text += "- " + json.dumps({"alias": "blueprint", "use_blueprint": {"path": blueprint.name, "input": inputs}}) + "\n"
+        (where / "configuration.yaml").write_text(text)
         entry = {"created_at": "2025-01-01T00:00:00+00:00", "modified_at": "2025-01-01T00:00:00+00:00",
                  "data": {"broker": "127.0.0.1", "port": port},
                  "options": {"discovery": True, "discovery_prefix": "homeassistant"},
@@ -136,4 +142,4 @@ class HomeAssistant:
         """What its log has of MQTT, and of what came by it."""
         plain = re.sub(r"\x1b\[[0-9;]*m", "", self.process.log())
         return [line for line in plain.splitlines()
-                if re.search(r" (WARNING|ERROR|CRITICAL) ", line) and re.search(r"mqtt|owsd|template", line)]
+                if re.search(r" (WARNING|ERROR|CRITICAL) ", line) and re.search(r"mqtt|owsd|template|blueprint", line)]

@@ -120,5 +120,23 @@ def test_what_is_lost_is_unavailable_within_its_time(scene):
     assert not judge.complaints(), "\n".join(judge.complaints())
 
 
+def test_the_blueprint_tells_of_alarms_and_of_what_is_lost(scene):
+    wire = f"DS18B20 {ATTIC} as attic temperature 18.25\nat 5s every 60s unplug attic for 40s\n"
+    house = House(scene, {**ROOM, "LimitH": 20}, RELAY, item("attic", f"/{ATTIC}/temperature"), wire=wire)
+    told = {"action": "mqtt.publish", "data": {"topic": "judge/told", "payload": "{{ what }}"}}
+    judge = HomeAssistant(scene, house.broker.port, owsdtest.SOURCE / "board/fleet/homeassistant.yaml",
+                          actions=[told], patience={"seconds": 2})
+
+    def tells(text, seconds=60):
+        until(lambda: text in [t for _, _, t in judge.listener.all("judge/told")], seconds,
+              lambda: f"{text}: {judge.listener.all('judge/told')}\n{judge.complaints()}")
+    tells("room at pi7: high")
+    tells(f"{ATTIC} at pi7 is lost", 120)
+    house.face.kill()
+    tells("pi7 is lost")
+    assert not [t for _, _, t in judge.listener.all("judge/told") if t.startswith(SENSOR) or "relay" in t]
+    assert not judge.complaints(), "\n".join(judge.complaints())
+
+
 if __name__ == "__main__":
     owsdtest.main(at_once=2)
