@@ -44,6 +44,8 @@ LOOKED_AT = {
     "raspi-config": ["", "nonint do_i2c 0"],
     "modprobe": ["i2c-dev", "ds2482", "w1-gpio", "w1_therm"],
     "udevadm": ["trigger", "control --reload"],
+    "hostnamectl": [r"hostname pi-[0-9a-f]{8}"],
+    "ansible-playbook": [r"-i inventory site\.yml( --check --diff| --limit \w+| -e owsd_state=latest)?"],
     "reboot": [""],
     "i2cdetect": [r"-y \d"],
     "gpiodetect": [""], "gpioinfo": [""], "lsusb": [""],

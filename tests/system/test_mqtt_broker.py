@@ -3,6 +3,7 @@
 """The ways of owsd-mqtt to a broker: passwords, TLS, certificates, access lists, brokers that are away
 or old; what is wrong stands in the log with its remedy."""
 
+import re
 import socket
 import subprocess
 import threading
@@ -83,6 +84,22 @@ def test_a_password_stands_in_a_file_that_is_ours_alone_or_in_a_credential(scene
     house.says(STATE, "offline")
     house.face = house.start()
     house.says(STATE, "online")
+
+
+def test_the_access_list_of_the_fleet_lets_a_node_write_its_own_alone(scene):
+    page = (owsdtest.SOURCE / "docs/fleet.md").read_text()
+    acl = scene.file("acl", re.search(r"^```text\n(pattern .*?)```", page, re.M | re.S)[1] + "user looker\ntopic read #\n")
+    acl.chmod(0o600)
+    lines = ("allow_anonymous false", f"password_file {passwords(scene)}", f"acl_file {acl}")
+    house = LockedHouse(scene, lines, PasswordFile=secret(scene, "secret\n"), Write=raw("on"))
+    house.says(STATE, "online")
+    house.arrives("room", lambda m: m["good"])
+    for topic in ("owsd/pi8/state", "owsd/pi7/other"):
+        subprocess.run([program("mosquitto_pub"), "-p", str(house.broker.port), "-u", "pi7", "-P", "secret", "-q", "1",
+                        "-t", topic, "-m", "forged"], check=True, timeout=owsdtest.PATIENCE)
+    house.says("owsd/pi7/other", "forged")
+    assert not house.listener.all("owsd/pi8/state")
+    assert "refuses" not in house.face.log(), house.face.log()
 
 
 def test_tls_takes_the_broker_that_the_ca_vouches_for_and_shows_our_certificate(scene):
