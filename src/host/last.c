@@ -10,30 +10,21 @@
 #include "src/host/last_file.h"
 #include "src/host/own_thread.h"
 #include "src/libows/ows.h"
+#include "src/shm/force.h"
 #include "src/shm/futex.h"
-#include "src/shm/word.h"
+#include "src/signal/value.h"
 
 #define STACK (128 * 1024)
 #define APART_NS NS_PER_S
-#define NO_ENTRY UINT32_MAX
-
-/* What the engine puts; seq is odd while it does. */
-struct last_cell {
-	uint32_t seq, ticket, known;
-	uint32_t len;
-	int64_t value;
-	char *text;
-};
-
 struct last {
 	struct engine_last seam;
 	struct last_setup setup;
 	char where[LAST_WHERE];
-	struct last_cell *cells;
-	struct last_entry *entries; /* the thread's copy, of the same signals */
-	uint32_t count;
-	uint32_t *entry_of; /* of each row; NO_ENTRY */
-	char *texts;
+	struct force_signal *signals; /* with Start "last" */
+	uint32_t *row_of;             /* in put and copy, of each row of the table */
+	struct force put;             /* by the engine; the stamp of a command is its ticket */
+	struct force copy;            /* the thread's, as it goes to the disk */
+	size_t size;                  /* of each of them */
 	/* shared with the thread */
 	uint32_t tickets; /* given; futex word */
 	uint32_t stored;
@@ -49,23 +40,21 @@ struct last {
 static uint32_t put(void *ctx, uint32_t row, int64_t value, const char *text, uint32_t len)
 {
 	struct last *l = ctx;
-	struct last_cell *c = &l->cells[l->entry_of[row]];
+	struct force_command c;
+	char now[VALUE_STRING_MAX];
 
-	if (c->known && c->len == len &&
-	    (c->text ? memcmp(c->text, text, len) == 0 : c->value == value))
-		return c->ticket;
-	c->ticket = l->tickets + 1 ? l->tickets + 1 : 1;
-	__atomic_store_n(&c->seq, c->seq + 1, __ATOMIC_RELAXED);
-	word_fence(__ATOMIC_RELEASE);
-	words_store(&c->value, &value, 2);
-	word_set(&c->len, len);
-	if (c->text)
-		words_store(c->text, text, (len + 3) / 4);
-	word_set(&c->known, 1);
-	__atomic_store_n(&c->seq, c->seq + 1, __ATOMIC_RELEASE);
-	__atomic_store_n(&l->tickets, c->ticket, __ATOMIC_RELEASE);
+	force_get(&l->put, l->row_of[row], &c, now);
+	if (c.given && c.len == len && (text ? memcmp(now, text, len) == 0 : c.value == value))
+		return c.stamp;
+	c = (struct force_command){.value = value,
+	                           .len = len,
+	                           .stamp = l->tickets + 1 ? l->tickets + 1 : 1,
+	                           .given = true,
+	                           .giver = FORCE_NOBODY};
+	force_put(&l->put, l->row_of[row], &c, text);
+	__atomic_store_n(&l->tickets, c.stamp, __ATOMIC_RELEASE);
 	segment_wake(&l->tickets, 1);
-	return c->ticket;
+	return c.stamp;
 }
 
 static uint32_t stored(void *ctx)
@@ -81,42 +70,33 @@ static int error(void *ctx)
 static bool find(void *ctx, uint32_t row, int64_t *value, char *text, size_t room, uint32_t *len)
 {
 	const struct last *l = ctx;
-	const struct last_cell *c = &l->cells[l->entry_of[row]];
+	struct force_command c;
+	char kept[VALUE_STRING_MAX];
 
-	if (!c->known || c->len > room)
+	force_get(&l->put, l->row_of[row], &c, kept);
+	if (!c.given || c.len > room)
 		return false;
-	*value = c->value;
-	*len = c->len;
-	if (c->text)
-		memcpy(text, c->text, c->len);
+	*value = c.value;
+	*len = c.len;
+	memcpy(text, kept, c.len);
 	return true;
 }
 
 /* --- The thread ------------------------------------------------------------------------------- */
 
-static void copy_cell(const struct last_cell *c, struct last_entry *e)
-{
-	uint32_t seq;
-
-	do {
-		seq = __atomic_load_n(&c->seq, __ATOMIC_ACQUIRE);
-		words_load(&e->value, &c->value, 2);
-		e->len = word_get(&c->len);
-		e->known = word_get(&c->known);
-		if (e->text)
-			words_load(e->text, c->text, VALUE_STRING_MAX / 4);
-		word_fence(__ATOMIC_ACQUIRE);
-	} while (seq & 1 || __atomic_load_n(&c->seq, __ATOMIC_RELAXED) != seq);
-}
-
 static int store(struct last *l)
 {
 	int directory = last_directory(l->where), err = directory < 0 ? directory : 0;
 
-	for (uint32_t i = 0; i < l->count; i++)
-		copy_cell(&l->cells[i], &l->entries[i]);
+	for (uint32_t row = 0; row < l->put.row_count; row++) {
+		struct force_command c;
+		char text[VALUE_STRING_MAX];
+
+		force_get(&l->put, row, &c, text);
+		force_put(&l->copy, row, &c, text);
+	}
 	if (!err)
-		err = last_write(directory, l->setup.instance, l->entries, l->count);
+		err = last_write(directory, l->setup.instance, l->copy.base, l->size);
 	if (directory >= 0)
 		close(directory);
 	return err;
@@ -169,67 +149,81 @@ static void *store_main(void *ctx)
 
 /* --- Made and ended --------------------------------------------------------------------------- */
 
-static int make_cells(struct last *l, const struct config *config)
+static int make_rows(struct last *l, const struct config *config)
 {
-	uint32_t strings = 0, n = 0;
-	char *text;
+	struct force_plan plan = {.text_cap = VALUE_STRING_MAX, .stored = true};
+	char *memory;
 
-	for (unsigned i = 0; i < config->item_count; i++) {
-		l->count += config->items[i].starts_last;
-		strings += config->items[i].starts_last && config->items[i].type == OWS_STRING;
-	}
-	l->entry_of = calloc((size_t)config->item_count + 1, sizeof(*l->entry_of));
-	l->cells = calloc((size_t)l->count + 1, sizeof(*l->cells));
-	l->entries = calloc((size_t)l->count + 1, sizeof(*l->entries));
-	l->texts = text = calloc((size_t)2 * strings + 1, VALUE_STRING_MAX);
-	if (!l->entry_of || !l->cells || !l->entries || !l->texts)
+	l->signals = calloc((size_t)config->item_count + 1, sizeof(*l->signals));
+	l->row_of = calloc((size_t)config->item_count + 1, sizeof(*l->row_of));
+	if (!l->signals || !l->row_of)
 		return -ENOMEM;
 	for (unsigned i = 0; i < config->item_count; i++) {
-		l->entry_of[i] = config->items[i].starts_last ? n : NO_ENTRY;
-		if (!config->items[i].starts_last)
+		const struct config_item *item = &config->items[i];
+
+		if (!item->starts_last)
 			continue;
-		l->entries[n].item = &config->items[i];
-		if (config->items[i].type == OWS_STRING) {
-			l->entries[n].text = text;
-			l->cells[n].text = text + VALUE_STRING_MAX;
-			text += 2 * VALUE_STRING_MAX;
-		}
-		n++;
+		l->row_of[i] = plan.signal_count;
+		l->signals[plan.signal_count++] = (struct force_signal){item->name, item->path,
+		                                                        (uint8_t)item->type};
 	}
+	plan.signals = l->signals;
+	l->size = force_size(&plan);
+	memory = l->size ? calloc(1, 2 * l->size + LAST_CHECK) : NULL;
+	if (!memory)
+		return -ENOMEM;
+	force_build(&plan, memory, &l->put);
+	force_build(&plan, memory + l->size, &l->copy);
 	return 0;
+}
+
+static int take_left(struct last *l, const char *data, size_t size)
+{
+	struct force_left left;
+	int err = force_open(data, size, 0, &left);
+
+	for (uint32_t row = 0; !err && row < l->put.row_count; row++) {
+		struct force_command c;
+		char text[VALUE_STRING_MAX];
+
+		if (!force_find(&left, &l->signals[row], &c, text, sizeof(text)) || !c.given)
+			continue;
+		c.stamp = 0; /* it is on the disk */
+		force_put(&l->put, row, &c, text);
+	}
+	force_close(&left);
+	return err;
 }
 
 static void read_file(struct last *l)
 {
 	int directory = last_directory(l->where), err = directory < 0 ? directory : 0;
+	char *data = NULL;
+	size_t size;
 
 	if (!err)
-		err = last_read(directory, l->setup.instance, l->entries, l->count);
+		err = last_read(directory, l->setup.instance, &data, &size);
+	if (!err && data)
+		err = take_left(l, data, size);
 	if (err)
 		log_warning(l->setup.log,
 		            "outputs with Start \"last\" begin with InitValue: %s/%s.last: %s",
 		            l->where, l->setup.instance,
-		            err == -EBADMSG ? "the file is damaged" : strerror(-err));
+		            err == -EBADMSG || err == -EPROTO || err == -ESTALE
+		                    ? "the file is damaged"
+		                    : strerror(-err));
+	free(data);
 	if (directory >= 0)
 		close(directory);
-	for (uint32_t i = 0; i < l->count; i++) {
-		struct last_cell *c = &l->cells[i];
-
-		c->known = l->entries[i].known;
-		c->value = l->entries[i].value;
-		c->len = l->entries[i].len;
-		if (c->text)
-			memcpy(c->text, l->entries[i].text, c->len);
-	}
 }
 
 int last_make(const struct last_setup *setup, struct last **last)
 {
 	struct last *l = calloc(1, sizeof(*l));
-	int err = l ? make_cells(l, setup->config) : -ENOMEM;
+	int err = l ? make_rows(l, setup->config) : -ENOMEM;
 
 	*last = NULL;
-	if (err || !l->count) {
+	if (err || !l->put.row_count) {
 		last_free(l);
 		return err;
 	}
@@ -272,9 +266,8 @@ void last_free(struct last *l)
 {
 	if (!l)
 		return;
-	free(l->entry_of);
-	free(l->cells);
-	free(l->entries);
-	free(l->texts);
+	free(l->signals);
+	free(l->row_of);
+	free(l->put.base);
 	free(l);
 }

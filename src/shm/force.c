@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* NAME.force as one owsd writes it and the next one reads it: layout, slots, checks, search. */
+/* NAME.force and NAME.last, as one owsd writes them and the next reads them. */
 #include <assert.h>
 #include <errno.h>
 #include <stdlib.h>
@@ -10,7 +10,7 @@
 #include "src/shm/word.h"
 
 #define FORCE_MAGIC 0x4653574fu /* "OWSF" */
-#define FORCE_VERSION 1
+#define FORCE_VERSION 2
 #define FORCE_MAX 0x7fffffffu
 #define FORCE_ROWS_MAX 0x100000u
 #define GIVEN 0x01u
@@ -22,7 +22,8 @@ struct force_header { /* 64 bytes */
 	uint64_t boot;
 	uint32_t size, row_count, text_cap;
 	uint32_t row_off, giver_off, text_off, pool_off;
-	uint32_t spare[4];
+	uint32_t giver_count;
+	uint32_t spare[3];
 	uint32_t check; /* of the words before */
 };
 struct row_slot { /* 40 bytes */
@@ -75,7 +76,7 @@ static void find_areas(const struct force_plan *plan, struct force_areas *a)
 	}
 	a->row = sizeof(struct force_header);
 	a->giver = a->row + (uint64_t)plan->signal_count * sizeof(struct force_row);
-	a->text = a->giver + FORCE_GIVERS * sizeof(struct giver_row);
+	a->text = a->giver + (plan->stored ? 0 : FORCE_GIVERS) * sizeof(struct giver_row);
 	a->pool = a->text + texts * plan->text_cap;
 	a->end = (a->pool + pool + 7) & ~(uint64_t)7;
 }
@@ -92,6 +93,12 @@ static struct force_row *row_at(const struct force *force, uint32_t row)
 {
 	assert(row < force->row_count);
 	return (struct force_row *)(void *)(force->base + force->row_off) + row;
+}
+
+static struct giver_row *giver_at(const struct force *force, uint32_t index)
+{
+	assert(index < force->giver_count);
+	return (struct giver_row *)(void *)(force->base + force->giver_off) + index;
 }
 
 static uint32_t add_string(char *base, uint64_t *pool, const char *text, uint32_t *check)
@@ -119,6 +126,7 @@ void force_build(const struct force_plan *plan, void *memory, struct force *forc
 	                        .row_off = (uint32_t)a.row,
 	                        .row_count = plan->signal_count,
 	                        .giver_off = (uint32_t)a.giver,
+	                        .giver_count = plan->stored ? 0 : FORCE_GIVERS,
 	                        .text_cap = plan->text_cap};
 	for (uint32_t i = 0; i < plan->signal_count; i++) {
 		const struct force_signal *s = &plan->signals[i];
@@ -133,11 +141,8 @@ void force_build(const struct force_plan *plan, void *memory, struct force *forc
 		r->text_off = (uint32_t)text;
 		text += 2 * (uint64_t)plan->text_cap;
 	}
-	for (uint32_t i = 0; i < FORCE_GIVERS; i++) {
-		struct giver_row *g = (struct giver_row *)(void *)(force->base + a.giver) + i;
-
-		g->slot[0].check = CHECK_OF(&g->slot[0]);
-	}
+	for (uint32_t i = 0; i < force->giver_count; i++)
+		giver_at(force, i)->slot[0].check = CHECK_OF(&giver_at(force, i)->slot[0]);
 	*h = (struct force_header){.magic = FORCE_MAGIC,
 	                           .version = FORCE_VERSION,
 	                           .boot = plan->boot,
@@ -147,14 +152,9 @@ void force_build(const struct force_plan *plan, void *memory, struct force *forc
 	                           .row_off = (uint32_t)a.row,
 	                           .giver_off = (uint32_t)a.giver,
 	                           .text_off = (uint32_t)a.text,
-	                           .pool_off = (uint32_t)a.pool};
+	                           .pool_off = (uint32_t)a.pool,
+	                           .giver_count = force->giver_count};
 	h->check = CHECK_OF(h);
-}
-
-static struct giver_row *giver_at(const struct force *force, uint32_t index)
-{
-	assert(index < FORCE_GIVERS);
-	return (struct giver_row *)(void *)(force->base + force->giver_off) + index;
 }
 
 void force_giver(struct force *force, uint32_t index, const struct force_giver *giver)
@@ -169,36 +169,75 @@ void force_giver(struct force *force, uint32_t index, const struct force_giver *
 	word_fence(__ATOMIC_RELEASE); /* the next writes into the slot that was whole until now */
 }
 
+static const struct giver_slot *newest_giver(const struct force *force, uint32_t index)
+{
+	const struct giver_row *g = giver_at(force, index);
+
+	return &g->slot[g->seq & 1];
+}
+
+static char *text_at(const struct force *force, const struct force_row *r, uint32_t seq)
+{
+	return force->base + r->text_off + (seq & 1) * force->text_cap;
+}
+
 void force_put(struct force *force, uint32_t row, const struct force_command *command,
                const char *text)
 {
 	struct force_row *r = row_at(force, row);
 	uint32_t next = r->seq + 1;
-	struct row_slot *slot = &r->slot[next & 1];
-	const struct giver_row *g = NULL;
-
-	if (command->giver < FORCE_GIVERS)
-		g = giver_at(force, command->giver);
-	*slot = (struct row_slot){
+	struct row_slot slot = {
 		.value = command->value,
 		.stamp = command->stamp,
 		.flags = (command->given ? GIVEN : 0) | (command->safe ? SAFE : 0),
 		.giver = command->giver,
-		.serial = g ? g->slot[g->seq & 1].giver.who.serial : 0,
 	};
+
+	if (command->giver < force->giver_count)
+		slot.serial = newest_giver(force, command->giver)->giver.who.serial;
 	if (text && r->text_off) {
+		char *to = text_at(force, r, next);
+
 		assert(command->len <= force->text_cap);
-		memcpy(force->base + r->text_off + (next & 1) * force->text_cap, text,
-		       command->len);
-		slot->len = command->len;
-		slot->text_check = ows_check_bytes(text, command->len);
+		for (uint32_t i = 0; i < command->len; i++)
+			__atomic_store_n(&to[i], text[i], WORD_STORE);
+		slot.len = command->len;
+		slot.text_check = ows_check_bytes(text, command->len);
 	}
-	slot->check = CHECK_OF(slot);
+	slot.check = CHECK_OF(&slot);
+	words_store(&r->slot[next & 1], &slot, sizeof(slot) / 4);
 	__atomic_store_n(&r->seq, next, __ATOMIC_RELEASE);
 	word_fence(__ATOMIC_RELEASE); /* the next writes into the slot that was whole until now */
 }
 
 /* --- Reading ---------------------------------------------------------------------------------- */
+
+void force_get(const struct force *force, uint32_t row, struct force_command *command, char *text)
+{
+	const struct force_row *r = row_at(force, row);
+	struct row_slot slot;
+	uint32_t seq;
+
+	do {
+		seq = __atomic_load_n(&r->seq, __ATOMIC_ACQUIRE);
+		words_load(&slot, &r->slot[seq & 1], sizeof(slot) / 4);
+		for (uint32_t i = 0; text && i < slot.len && i < force->text_cap; i++)
+			text[i] = __atomic_load_n(&text_at(force, r, seq)[i], WORD_LOAD);
+		word_fence(__ATOMIC_ACQUIRE);
+	} while (word_get(&r->seq) != seq);
+	*command = (struct force_command){
+		.value = slot.value,
+		.len = slot.len,
+		.stamp = slot.stamp,
+		.given = slot.flags & GIVEN,
+		.safe = slot.flags & SAFE,
+		.giver = slot.giver,
+	};
+	/* its entry is another's by now: nobody would come back for the command */
+	if (slot.giver >= force->giver_count || !slot.serial ||
+	    newest_giver(force, slot.giver)->giver.who.serial != slot.serial)
+		command->giver = FORCE_NOBODY;
+}
 
 struct force_key {
 	const char *name, *path;
@@ -215,25 +254,6 @@ static int compare_keys(const void *a, const void *b)
 	return order ? order : (x->type > y->type) - (x->type < y->type);
 }
 
-static const struct force_row *left_row(const struct force_left *left, uint32_t row)
-{
-	return (const struct force_row *)(const void *)(left->base + left->row_off) + row;
-}
-
-static const struct giver_slot *left_giver(const struct force_left *left, uint32_t index)
-{
-	const struct giver_row *g = (const struct giver_row *)(const void *)(left->base +
-	                                                                     left->giver_off) +
-	                            index;
-
-	return &g->slot[g->seq & 1];
-}
-
-static const char *left_text(const struct force_left *left, const struct force_row *r)
-{
-	return left->base + r->text_off + (r->seq & 1) * left->text_cap;
-}
-
 /* A string between off and end that is ended, and whole; NULL: it is not. */
 static const char *left_string(const char *base, uint32_t off, uint32_t pool, uint32_t end,
                                uint32_t check)
@@ -247,15 +267,15 @@ static const char *left_string(const char *base, uint32_t off, uint32_t pool, ui
 	return len < end - off && ows_check_bytes(text, len) == check ? text : NULL;
 }
 
-static bool row_whole(const struct force_left *left, const struct force_header *h, uint32_t row,
+static bool row_whole(const struct force *force, const struct force_header *h, uint32_t row,
                       struct force_key *key)
 {
-	const struct force_row *r = left_row(left, row);
+	const struct force_row *r = row_at(force, row);
 	const struct row_slot *slot = &r->slot[r->seq & 1];
 
 	*key = (struct force_key){
-		.name = left_string(left->base, r->name_off, h->pool_off, h->size, r->name_check),
-		.path = left_string(left->base, r->path_off, h->pool_off, h->size, r->path_check),
+		.name = left_string(force->base, r->name_off, h->pool_off, h->size, r->name_check),
+		.path = left_string(force->base, r->path_off, h->pool_off, h->size, r->path_check),
 		.type = r->type,
 		.row = row,
 	};
@@ -264,29 +284,26 @@ static bool row_whole(const struct force_left *left, const struct force_header *
 	if (r->type != OWS_STRING)
 		return r->text_off == 0 && slot->len == 0;
 	return r->text_off >= h->text_off && r->text_off <= h->pool_off &&
-	       2 * (uint64_t)left->text_cap <= h->pool_off - r->text_off &&
-	       slot->len <= left->text_cap &&
+	       2 * (uint64_t)force->text_cap <= h->pool_off - r->text_off &&
+	       slot->len <= force->text_cap &&
 	       (!(slot->flags & GIVEN) ||
-	        ows_check_bytes(left_text(left, r), slot->len) == slot->text_check);
+	        ows_check_bytes(text_at(force, r, r->seq), slot->len) == slot->text_check);
 }
 
 static bool header_whole(const struct force_header *h, size_t size)
 {
 	return h->check == CHECK_OF(h) && h->size == size && h->row_count <= FORCE_ROWS_MAX &&
-	       h->row_off == sizeof(*h) &&
+	       h->giver_count <= FORCE_GIVERS && h->row_off == sizeof(*h) &&
 	       h->giver_off == h->row_off + (uint64_t)h->row_count * sizeof(struct force_row) &&
-	       h->text_off == h->giver_off + FORCE_GIVERS * sizeof(struct giver_row) &&
+	       h->text_off == h->giver_off + h->giver_count * sizeof(struct giver_row) &&
 	       h->text_off <= size && h->pool_off >= h->text_off && h->pool_off <= size;
 }
 
-static bool givers_whole(const struct force_left *left)
+static bool givers_whole(const struct force *force)
 {
-	for (uint32_t i = 0; i < FORCE_GIVERS; i++) {
-		const struct giver_slot *slot = left_giver(left, i);
-
-		if (slot->check != CHECK_OF(slot))
+	for (uint32_t i = 0; i < force->giver_count; i++)
+		if (newest_giver(force, i)->check != CHECK_OF(newest_giver(force, i)))
 			return false;
-	}
 	return true;
 }
 
@@ -301,22 +318,23 @@ int force_open(const void *memory, size_t size, uint64_t boot, struct force_left
 		return -EPROTO;
 	if (h->boot != boot)
 		return -ESTALE;
-	*left = (struct force_left){.base = memory,
-	                            .row_off = h->row_off,
-	                            .row_count = h->row_count,
-	                            .giver_off = h->giver_off,
-	                            .text_cap = h->text_cap};
+	left->force = (struct force){.base = (char *)(uintptr_t)memory,
+	                             .row_off = h->row_off,
+	                             .row_count = h->row_count,
+	                             .giver_off = h->giver_off,
+	                             .giver_count = h->giver_count,
+	                             .text_cap = h->text_cap};
 	left->keys = malloc(((size_t)h->row_count + 1) * sizeof(*left->keys));
 	if (!left->keys)
 		return -ENOMEM;
-	whole = givers_whole(left);
-	for (uint32_t row = 0; whole && row < left->row_count; row++)
-		whole = row_whole(left, h, row, &left->keys[row]);
+	whole = givers_whole(&left->force);
+	for (uint32_t row = 0; whole && row < h->row_count; row++)
+		whole = row_whole(&left->force, h, row, &left->keys[row]);
 	if (!whole) {
 		force_close(left);
 		return -EPROTO;
 	}
-	qsort(left->keys, left->row_count, sizeof(*left->keys), compare_keys);
+	qsort(left->keys, h->row_count, sizeof(*left->keys), compare_keys);
 	return 0;
 }
 
@@ -332,38 +350,24 @@ bool force_find(const struct force_left *left, const struct force_signal *signal
 	const struct force_key wanted = {signal->name, signal->path, signal->type, 0};
 	const struct force_key *key = NULL;
 	const struct force_row *r;
-	const struct row_slot *slot;
 
-	if (left->row_count)
-		key = bsearch(&wanted, left->keys, left->row_count, sizeof(*key), compare_keys);
+	if (left->force.row_count)
+		key = bsearch(&wanted, left->keys, left->force.row_count, sizeof(*key),
+		              compare_keys);
 	if (!key)
 		return false;
-	r = left_row(left, key->row);
-	slot = &r->slot[r->seq & 1];
-	if (slot->len > room)
+	r = row_at(&left->force, key->row);
+	if (r->slot[r->seq & 1].len > room)
 		return false;
-	*command = (struct force_command){
-		.value = slot->value,
-		.len = slot->len,
-		.stamp = slot->stamp,
-		.given = slot->flags & GIVEN,
-		.safe = slot->flags & SAFE,
-		.giver = slot->giver,
-	};
-	/* its entry is another's by now: nobody would come back for the command */
-	if (slot->giver < FORCE_GIVERS &&
-	    (!slot->serial || left_giver(left, slot->giver)->giver.who.serial != slot->serial))
-		command->giver = FORCE_NOBODY;
-	if (slot->len)
-		memcpy(text, left_text(left, r), slot->len);
+	force_get(&left->force, key->row, command, text);
 	return true;
 }
 
 bool force_find_giver(const struct force_left *left, uint32_t index, struct force_giver *giver)
 {
-	if (index >= FORCE_GIVERS)
+	if (index >= left->force.giver_count)
 		return false;
-	*giver = left_giver(left, index)->giver;
+	*giver = newest_giver(&left->force, index)->giver;
 	giver->who.name[OWS_NAME - 1] = giver->who.person[OWS_NAME - 1] = '\0';
 	return giver->who.serial != 0;
 }

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * NAME.force: which commands are in force, as owsd has to know it again after it was killed. The
- * engine writes into a mapping, each entry in two slots, so that a kill leaves one whole; the next
- * owsd reads what was left, once and before it runs. No system calls. One thread.
+ * What was commanded, for the next owsd. NAME.force: which commands are in force, over a kill; the
+ * engine writes into a mapping, each entry in two slots, so that a kill leaves one whole. NAME.last
+ * is its stored part, the commands of outputs with Start "last", over a power cut; the host writes
+ * all of it to the disk. The next owsd reads what was left, once and before it runs. No system
+ * calls. One thread puts; any may get.
  */
 #ifndef SHM_FORCE_H
 #define SHM_FORCE_H
@@ -20,11 +22,12 @@ struct force_plan {
 	const struct force_signal *signals;
 	uint32_t signal_count;
 	uint16_t text_cap; /* of every string signal, a multiple of 4 */
-	uint64_t boot;     /* names this boot of the machine */
+	uint64_t boot;     /* names this boot of the machine; 0: what is stored outlasts it */
+	bool stored;       /* without givers: none of them outlasts a boot */
 };
 struct force {
 	char *base;
-	uint32_t row_off, row_count, giver_off, text_cap;
+	uint32_t row_off, row_count, giver_off, giver_count, text_cap;
 };
 
 /* Bytes that the plan needs; 0 if that is more than 2 GiB. */
@@ -55,10 +58,12 @@ void force_giver(struct force *force, uint32_t index, const struct force_giver *
 void force_put(struct force *force, uint32_t row, const struct force_command *command,
                const char *text);
 
+/* The newest command of a row; text has room for text_cap bytes, NULL for a number. */
+void force_get(const struct force *force, uint32_t row, struct force_command *command, char *text);
+
 /* What an owsd before left. */
 struct force_left {
-	const char *base;
-	uint32_t row_off, row_count, giver_off, text_cap;
+	struct force force;     /* only to be read */
 	struct force_key *keys; /* sorted; allocated */
 };
 /*

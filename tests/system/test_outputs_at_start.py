@@ -6,6 +6,7 @@ peer has all writes."""
 
 import os
 import signal
+import struct
 import sys
 import time
 
@@ -78,6 +79,18 @@ while True:
 """
 
 
+def commands(data):
+    """What the rows of a file of last commands say, None for a row without a command: the layout of
+    src/shm/force.c."""
+    found = []
+    for row in range(struct.unpack_from("<I", data, 20)[0]):
+        at = 64 + 112 * row
+        slot = at + 32 + 40 * (struct.unpack_from("<I", data, at)[0] & 1)
+        value, _, _, _, flags = struct.unpack_from("<qIIII", data, slot)
+        found.append(value if flags & 1 else None)
+    return found
+
+
 class Plant:
     """A peer, an owsd on it and the giver of a command that is in force."""
 
@@ -101,8 +114,8 @@ class Plant:
     def stored(self):
         """The file of what Start "last" applies, from when both commands stand in it."""
         file = self.scene.path / "state" / f"{self.daemon.name}.last"
-        owsdtest.until(lambda: file.exists() and file.read_text(encoding="utf-8").count("\t1\n") == 2,
-                       20, lambda: f"{file} has both commands")
+        owsdtest.until(lambda: file.exists() and commands(file.read_bytes()) == [1, 1], 20,
+                       lambda: f"{file} has both commands")
         return file
 
     def again(self, ended):
@@ -307,8 +320,10 @@ def test_a_damaged_file_of_last_commands_is_logged_and_initvalue_counts(scene):
         plant = Plant(scene, server, fate="once")
         assert plant.daemon.stop() == 0
         file = plant.stored()
-        file.write_text(file.read_text(encoding="utf-8").replace("\t1\n", "\t0\n", 1),
-                        encoding="utf-8")
+        data = bytearray(file.read_bytes())
+        at = data.index(struct.pack("<q", 1), 64)  # of the first command
+        data[at] = 0
+        file.write_bytes(data)
         plant.again("damaged")
         plant.writes([(INIT, b"0"), (BOTH, b"0")], "damaged")
         owsdtest.logged(plant.daemon, "the file is damaged")

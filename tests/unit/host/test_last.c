@@ -224,7 +224,7 @@ static void test_a_directory_that_others_may_write_into_is_refused(void)
 /* Each byte in turn is another; and the file ends anywhere. */
 static void test_a_damaged_file_is_nothing(void)
 {
-	char text[512], damaged[512], found_text[VALUE_STRING_MAX];
+	char text[4096], damaged[4096], found_text[VALUE_STRING_MAX];
 	FILE *f;
 	size_t n;
 
