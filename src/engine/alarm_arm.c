@@ -9,7 +9,6 @@
 #include "src/engine/alarm_arm.h"
 #include "src/engine/alarm_effect.h"
 #include "src/engine/alarm_item.h"
-#include "src/engine/alarm_known.h"
 #include "src/engine/alarm_refused.h"
 #include "src/engine/alarm_text.h"
 #include "src/engine/publish.h"

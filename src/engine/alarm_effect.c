@@ -10,6 +10,16 @@
 #include "src/shm/entries.h"
 #include "src/text/log.h"
 
+struct signal *alarm_signal(struct engine *e, const struct alarm_item *item)
+{
+	return &e->table.signals[item->row];
+}
+
+struct alarm_item *alarm_current(struct alarm_machine *m)
+{
+	return m->position < 0 ? NULL : m->items[m->position];
+}
+
 static struct ows_journal_entry alarm_entry(const struct signal *s, enum ows_alarm_kind kind,
                                             enum ows_alarm_event event, int64_t now_ns)
 {

@@ -5,6 +5,10 @@
 
 #include "src/engine/state.h"
 
+struct signal *alarm_signal(struct engine *e, const struct alarm_item *item);
+/* The item at iAlarmPos, NULL: none. */
+struct alarm_item *alarm_current(struct alarm_machine *m);
+
 /* The latch of the item was read and is not 0. */
 void engine_alarm_raised(struct engine *e, struct lane *lane, struct alarm_item *item,
                          int64_t now_ns);

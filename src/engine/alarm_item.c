@@ -37,14 +37,13 @@ static void alarm_split(const struct config_item *item, struct alarm_strings *s)
 {
 	struct path path;
 
-	*s = (struct alarm_strings){.has_sensed = false};
+	*s = (struct alarm_strings){0};
 	if (!path_split(item->path, strlen(item->path), &path) && path.device.len) {
 		int len = (int)(path.device.text + path.device.len - item->path);
 
 		snprintf(s->path, sizeof(s->path), "%.*s", len, item->path);
 		snprintf(s->sensed, sizeof(s->sensed), "%.*s", (int)path.property.len,
 		         path.property.len ? path.property.text : "");
-		s->has_sensed = path.property.len > 0;
 	}
 	s->por = item->por_alarm;
 	s->latch = item->latch_alarm;

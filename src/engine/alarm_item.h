@@ -19,12 +19,19 @@
 struct alarm_strings {
 	char path[ALARM_TEXT];   /* sPath: "/29.066418000000" */
 	char sensed[ALARM_TEXT]; /* sSensed */
-	bool has_sensed;         /* false: the item is not read, sSensed counts as empty */
 	const char *por, *latch; /* sAlarmPor, sLatch: the item's own */
 	char set_text[ALARM_TEXT], reset_text[ALARM_TEXT];
 	const char *set, *set_value;     /* sSet, sSetVal: into set_text */
 	const char *reset, *reset_value; /* sLatchRes, sLatchResVal: into reset_text */
 };
+
+/* The string at that offset in the strings. */
+static inline const char *alarm_string(const struct alarm_strings *s, size_t at)
+{
+	const void *member = (const char *)s + at;
+
+	return member == s->sensed ? s->sensed : *(const char *const *)member;
+}
 
 /* What the machine does for an item, and not twice in a cycle for one device. */
 enum alarm_deed {
@@ -35,6 +42,7 @@ enum alarm_deed {
 	ALARM_WAS_SET,
 	ALARM_INIT_WAS_WRITTEN,
 	ALARM_WAS_COLLECTED,
+	ALARM_VALUE_WAS_READ, /* never kept: it is read for each item */
 	ALARM_DEEDS
 };
 
@@ -78,7 +86,7 @@ struct alarm_item {
 	struct alarm_arming arming;
 	struct alarm_visit visit;
 	uint32_t cycle_of[ALARM_DEEDS]; /* the last cycle in which that was done for it; 0: none */
-	bool por_set, latch_set;
+	bool set[ALARM_DEEDS];          /* of a deed that reads a flag: what it read */
 };
 
 /* What the machine wants to be asked. */

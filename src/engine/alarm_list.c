@@ -6,7 +6,6 @@
 #include "hal/bus/time.h"
 #include "hal/owfs/path.h"
 #include "src/engine/alarm_effect.h"
-#include "src/engine/alarm_known.h"
 #include "src/engine/alarm_list.h"
 #include "src/engine/publish.h"
 #include "src/engine/schedule.h"

@@ -6,7 +6,7 @@
 #include <errno.h>
 #include <stdio.h>
 
-#include "src/engine/alarm_known.h"
+#include "src/engine/alarm_effect.h"
 #include "src/engine/alarm_refused.h"
 #include "src/engine/publish.h"
 #include "src/engine/retry.h"
@@ -79,23 +79,6 @@ void alarm_hide(struct engine *e, struct alarm_item *i)
 
 /* --- Requests of a visit --------------------------------------------------------------------- */
 
-uint8_t alarm_asks(enum alarm_state state)
-{
-	switch (state) {
-	case ALARM_POR_READ:
-	case ALARM_POR_READ_WAIT:
-		return OWS_UNARMED_POR_READ;
-	case ALARM_LATCH:
-	case ALARM_LATCH_WAIT:
-		return OWS_UNARMED_LATCH;
-	case ALARM_LATCH_RESET:
-	case ALARM_LATCH_RESET_WAIT:
-		return OWS_UNARMED_RESET;
-	default:
-		return 0;
-	}
-}
-
 void alarm_visit_anew(struct engine *e, struct alarm_item *i)
 {
 	uint8_t shown = alarm_shown(alarm_signal(e, i));
@@ -111,10 +94,9 @@ bool alarm_of_device(int err)
 }
 
 void alarm_refused(struct lane *lane, struct alarm_item *i, enum ows_unarmed unarmed, int err,
-                   int64_t now_ns)
+                   const char *property, const char *why, int64_t now_ns)
 {
 	struct engine *e = lane->engine;
-	bool reset = unarmed == OWS_UNARMED_RESET;
 	int64_t wait_ns;
 
 	if (!alarm_of_device(err))
@@ -126,11 +108,7 @@ void alarm_refused(struct lane *lane, struct alarm_item *i, enum ows_unarmed una
 		return;
 	i->visit.not_before_ns = now_ns + wait_ns;
 	if (!alarm_of_device(err))
-		alarm_show(e, i, unarmed, err,
-		           reset                          ? i->strings.reset
-		           : unarmed == OWS_UNARMED_LATCH ? i->strings.latch
-		                                          : i->strings.por,
-		           reset ? " cannot be written: " : " cannot be read: ");
+		alarm_show(e, i, unarmed, err, property, why);
 }
 
 void alarm_granted(struct engine *e, struct alarm_item *i, uint8_t unarmed)

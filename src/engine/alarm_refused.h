@@ -19,14 +19,12 @@ void alarm_hide(struct engine *e, struct alarm_item *item);
 
 /* Is the error that of the whole device? Then the quality says so, and not the alarm. */
 bool alarm_of_device(int err);
-/* A request of a visit failed, an item error: the back-off counts as that of a read. */
+/* A request of a visit failed, an item error: the back-off counts as that of a read. See above. */
 void alarm_refused(struct lane *lane, struct alarm_item *item, enum ows_unarmed unarmed, int err,
-                   int64_t now_ns);
+                   const char *property, const char *why, int64_t now_ns);
 /* It succeeded; unarmed may be 0: nothing. */
 void alarm_granted(struct engine *e, struct alarm_item *item, uint8_t unarmed);
 /* A visit begins anew, without the failures so far. */
 void alarm_visit_anew(struct engine *e, struct alarm_item *item);
-/* Which request the state makes, as enum ows_unarmed; 0: none of these. */
-uint8_t alarm_asks(enum alarm_state state);
 
 #endif

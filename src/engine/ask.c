@@ -101,10 +101,7 @@ static bool ask_write(struct lane *lane, struct slot *slot, uint32_t row, int64_
 		memcpy(slot->data, s->command_text, s->command.len);
 		slot->req.len = s->command.len;
 	} else {
-		char text[VALUE_TEXT_MAX];
-
-		slot->req.len = signal_write_text(s, s->command.value, text);
-		memcpy(slot->data, text, slot->req.len);
+		slot->req.len = signal_write_text(s, s->command.value, (char *)slot->data);
 	}
 	if (!slot_lend(lane, slot, now_ns))
 		return false;

@@ -13,11 +13,11 @@
  *   events and answers   lane_event, lane_answer (record what happened), ask (chooses what is next)
  *   routing              routing (acts on the facts: opens ways, moves devices)
  *   moves                move, lane_state (a target goes up and fails)
- *   alarm and guests     alarm (the machine), guests
+ *   alarm and guests     alarm (the machine), alarm_step, guests
  *   givers               givers (they join, beat and leave)
  *   reading and writing  completion, device_back, intake, in_force, place, doubt, types
  *   reading back         read_back, restart
- *   alarm items          alarm_ask, alarm_arm, alarm_list, alarm_effect, alarm_refused, alarm_known
+ *   alarm items          alarm_arm, alarm_list, alarm_effect, alarm_refused
  *   schedule, publish    schedule, publish, origin, limits, counters, device_facts
  *   slots                lane, slots, disown, group, trace, shelf, alarm_item
  *   table                table, scaling, structure, due

@@ -8,7 +8,6 @@
 
 #include "src/engine/alarm_effect.h"
 #include "src/engine/alarm_item.h"
-#include "src/engine/alarm_known.h"
 #include "src/engine/disown.h"
 #include "src/engine/doubt.h"
 #include "src/engine/due.h"
