@@ -2,12 +2,8 @@
 /* The Influx block: where values are pushed, how often, and where they wait. */
 #include <string.h>
 
-#include "src/config/build.h"
 #include "src/config/influx.h"
-
-#define TEXT_MAX 255
-#define MEASUREMENT_MAX 63
-#define LETTERS "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.-"
+#include "src/config/text_key.h"
 
 /* Why it cannot be one; NULL: it can. */
 static const char *check_url(const char *url)
@@ -17,7 +13,7 @@ static const char *check_url(const char *url)
 	                                                      : NULL;
 	const char *precision;
 
-	if (!host || !strcspn(host, "/?#") || strlen(url) > TEXT_MAX)
+	if (!host || !strcspn(host, "/?#") || strlen(url) > TEXT_KEY_MAX)
 		return "expected http://HOST:PORT/PATH or https://..., at most 255 bytes";
 	for (const char *c = url; *c; c++)
 		if (*c <= ' ' || *c >= 127)
@@ -30,48 +26,6 @@ static const char *check_url(const char *url)
 	return NULL;
 }
 
-static const char *check_path(const char *path)
-{
-	return path[0] == '/' && strlen(path) <= TEXT_MAX
-	               ? NULL
-	               : "expected a path from the root, at most 255 bytes";
-}
-
-static const char *check_token_file(const char *name)
-{
-	if (name[0] == '/')
-		return check_path(name);
-	return strspn(name, LETTERS) == strlen(name) && name[0] != '.' && strlen(name) <= TEXT_MAX
-	               ? NULL
-	               : "expected a path from the root, or the name of a credential";
-}
-
-static const char *check_measurement(const char *name)
-{
-	return strspn(name, LETTERS) == strlen(name) && strlen(name) <= MEASUREMENT_MAX
-	               ? NULL
-	               : "expected letters, digits, '-', '_' and '.', at most 63";
-}
-
-/* The text of a key that is given and not empty, checked; else what comes last. */
-static const char *take(struct build *build, const struct option_value *values, enum option option,
-                        const char *(*check)(const char *), const char *otherwise)
-{
-	const struct option_value *value = &values[option];
-	const char *why;
-
-	if (!value->given || !*value->text)
-		return otherwise;
-	why = check(value->text);
-	if (why && strpbrk(value->text, "@?")) /* there may be a password in it */
-		report_error(build->report, value->node->value_at, "%s: %s",
-		             option_table[option].key, why);
-	else if (why)
-		report_error(build->report, value->node->value_at, "%s \"%s\": %s",
-		             option_table[option].key, value->text, why);
-	return build_keep(build, value->text, strlen(value->text));
-}
-
 void influx_build(struct build *build, const struct rio_node *block)
 {
 	static const struct rio_node none;
@@ -80,15 +34,14 @@ void influx_build(struct build *build, const struct rio_node *block)
 
 	options_read(block ? block : &none, PLACE_INFLUX, values, build->report);
 	influx->given = block != NULL;
-	influx->url = take(build, values, OPT_INFLUX_URL, check_url, NULL);
+	influx->url = text_key(build, values, OPT_INFLUX_URL, check_url);
 	if (block && !influx->url)
 		report_error(build->report, block->at,
 		             "Influx without Url: give it the server, as "
 		             "Url \"http://127.0.0.1:8428/write\"");
-	influx->token_file = take(build, values, OPT_INFLUX_TOKEN_FILE, check_token_file, NULL);
-	influx->measurement = take(build, values, OPT_INFLUX_MEASUREMENT, check_measurement,
-	                           option_table[OPT_INFLUX_MEASUREMENT].preset);
-	influx->spool = take(build, values, OPT_INFLUX_SPOOL, check_path, NULL);
+	influx->token_file = text_key(build, values, OPT_INFLUX_TOKEN_FILE, text_is_file);
+	influx->measurement = text_key(build, values, OPT_INFLUX_MEASUREMENT, text_is_name);
+	influx->spool = text_key(build, values, OPT_INFLUX_SPOOL, text_is_path);
 	influx->spool_mb = (unsigned)values[OPT_INFLUX_SPOOL_SIZE].number;
 	influx->every_ns = (int64_t)(values[OPT_INFLUX_EVERY].number * 1e9 + 0.5);
 	influx->clock_wait_ns = (int64_t)(values[OPT_INFLUX_CLOCK_WAIT].number * 1e9 + 0.5);

@@ -16,6 +16,7 @@
 #include "src/config/rio_file.h"
 #include "src/config/serve.h"
 #include "src/config/targets.h"
+#include "src/config/text_key.h"
 #include "src/config/web.h"
 #include "src/signal/value.h"
 
@@ -57,12 +58,6 @@ static const struct rio_node *find_driver(const struct rio *rio, const char *fil
 	return driver;
 }
 
-static const char *build_line(struct build *build, const struct option_value *value)
-{
-	return value->given && *value->text ? build_keep(build, value->text, strlen(value->text))
-	                                    : NULL;
-}
-
 static void build_driver(struct build *build, const struct option_value *values)
 {
 	struct config *config = &build->box->config;
@@ -95,8 +90,8 @@ static void build_driver(struct build *build, const struct option_value *values)
 	     value_number(OWS_DOUBLE, version) != 1))
 		report_warning(build->report, values[OPT_VERSION].node->value_at,
 		               "Version %s: only 1.00 is known", values[OPT_VERSION].text);
-	config->alarm_line = build_line(build, &values[OPT_ALARM_LINE]);
-	config->heartbeat_line = build_line(build, &values[OPT_HEARTBEAT_LINE]);
+	config->alarm_line = text_key(build, values, OPT_ALARM_LINE, NULL);
+	config->heartbeat_line = text_key(build, values, OPT_HEARTBEAT_LINE, NULL);
 	serve_build(build, values);
 	if (target->given)
 		targets_add(build, target->text, target->node->value_at);

@@ -3,39 +3,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/config/build.h"
 #include "src/config/mqtt.h"
+#include "src/config/text_key.h"
 
-#define TEXT_MAX 255
-#define NAME_MAX_BYTES 63
-#define LETTERS "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.-"
 #define PORT 1883
 #define PORT_TLS 8883
 #define BLANK " \t"
 #define CLASS_MAX 31u
-
-static const char *check_file(const char *name)
-{
-	if (strlen(name) <= TEXT_MAX &&
-	    (name[0] == '/' || (strspn(name, LETTERS) == strlen(name) && name[0] != '.')))
-		return NULL;
-	return "expected a path from the root, or the name of a credential";
-}
-
-static const char *check_name(const char *name)
-{
-	return strspn(name, LETTERS) == strlen(name) && strlen(name) <= NAME_MAX_BYTES
-	               ? NULL
-	               : "expected letters, digits, '-', '_' and '.', at most 63";
-}
 
 /* Names with slashes between them. */
 static const char *check_topic(const char *topic)
 {
 	size_t len = strlen(topic);
 
-	return strspn(topic, LETTERS "/") == len && len <= NAME_MAX_BYTES && topic[0] != '/' &&
-	                       topic[len - 1] != '/' && !strstr(topic, "//")
+	return strspn(topic, TEXT_KEY_LETTERS "/") == len && len <= TEXT_KEY_NAME &&
+	                       topic[0] != '/' && topic[len - 1] != '/' && !strstr(topic, "//")
 	               ? NULL
 	               : "expected letters, digits, '-', '_', '.' and '/' between them, at most 63";
 }
@@ -50,27 +32,6 @@ static const char *check_profile(const char *profile)
 static const char *check_protocol(const char *protocol)
 {
 	return !strcmp(protocol, "5") || !strcmp(protocol, "3.1.1") ? NULL : "expected 5 or 3.1.1";
-}
-
-static const char *check_user(const char *user)
-{
-	return strlen(user) <= TEXT_MAX ? NULL : "expected at most 255 bytes";
-}
-
-/* The text of a key that is given and not empty, checked; else what comes last. */
-static const char *take(struct build *build, const struct option_value *values, enum option option,
-                        const char *(*check)(const char *), const char *otherwise)
-{
-	const struct option_value *value = &values[option];
-	const char *why;
-
-	if (!value->given || !*value->text)
-		return otherwise;
-	why = check(value->text);
-	if (why)
-		report_error(build->report, value->node->value_at, "%s \"%s\": %s",
-		             option_table[option].key, value->text, why);
-	return build_keep(build, value->text, strlen(value->text));
 }
 
 /* ":8883", or nothing. */
@@ -103,7 +64,7 @@ static const char *take_way(struct build *build, const char *text, size_t len,
 		return "no password stands in it: User and PasswordFile are keys of their own";
 	after = scheme + host_len + 2u * bracket;
 	if (!scheme || !host_len || after > len ||
-	    strspn(host, bracket ? "0123456789abcdefABCDEF:.%" : LETTERS) < host_len)
+	    strspn(host, bracket ? "0123456789abcdefABCDEF:.%" : TEXT_KEY_LETTERS) < host_len)
 		return wrong;
 	way->tls = scheme == 8;
 	way->port = way->tls ? PORT_TLS : PORT;
@@ -132,7 +93,7 @@ static void take_ways(struct build *build, const struct rio_node *node, struct c
 		else
 			why = take_way(build, text, len, &mqtt->ways[mqtt->way_count]);
 		/* there may be a password in it */
-		if (why && memchr(text, '@', len))
+		if (why && strcspn(text, "@?") < len)
 			report_error(build->report, node->value_at, "Broker: %s", why);
 		else if (why)
 			report_error(build->report, node->value_at, "Broker \"%.*s\": %s", (int)len,
@@ -181,24 +142,18 @@ void mqtt_build(struct build *build, const struct rio_node *block)
 	options_read(block ? block : &none, PLACE_MQTT, values, build->report);
 	mqtt->given = block != NULL;
 	broker = values[OPT_MQTT_BROKER].node ? values[OPT_MQTT_BROKER].node : block;
-	mqtt->broker = take(build, values, OPT_MQTT_BROKER, check_user,
-	                    option_table[OPT_MQTT_BROKER].preset);
+	mqtt->broker = text_key(build, values, OPT_MQTT_BROKER, text_is_short);
 	take_ways(build, broker, mqtt);
-	mqtt->user = take(build, values, OPT_MQTT_USER, check_user, NULL);
-	mqtt->password_file = take(build, values, OPT_MQTT_PASSWORD_FILE, check_file, NULL);
-	mqtt->ca_file = take(build, values, OPT_MQTT_CA_FILE, check_file, NULL);
-	mqtt->cert_file = take(build, values, OPT_MQTT_CERT_FILE, check_file, NULL);
-	mqtt->key_file = take(build, values, OPT_MQTT_KEY_FILE, check_file, NULL);
-	mqtt->mqtt5 = !strcmp(take(build, values, OPT_MQTT_PROTOCOL, check_protocol,
-	                           option_table[OPT_MQTT_PROTOCOL].preset),
-	                      "5");
-	mqtt->node = take(build, values, OPT_MQTT_NODE, check_name, NULL);
-	mqtt->topic = take(build, values, OPT_MQTT_TOPIC, check_topic,
-	                   option_table[OPT_MQTT_TOPIC].preset);
-	mqtt->profile = take(build, values, OPT_MQTT_PROFILE, check_profile,
-	                     option_table[OPT_MQTT_PROFILE].preset);
-	mqtt->discovery = take(build, values, OPT_MQTT_DISCOVERY, check_topic,
-	                       option_table[OPT_MQTT_DISCOVERY].preset);
+	mqtt->user = text_key(build, values, OPT_MQTT_USER, text_is_short);
+	mqtt->password_file = text_key(build, values, OPT_MQTT_PASSWORD_FILE, text_is_file);
+	mqtt->ca_file = text_key(build, values, OPT_MQTT_CA_FILE, text_is_file);
+	mqtt->cert_file = text_key(build, values, OPT_MQTT_CERT_FILE, text_is_file);
+	mqtt->key_file = text_key(build, values, OPT_MQTT_KEY_FILE, text_is_file);
+	mqtt->mqtt5 = !strcmp(text_key(build, values, OPT_MQTT_PROTOCOL, check_protocol), "5");
+	mqtt->node = text_key(build, values, OPT_MQTT_NODE, text_is_name);
+	mqtt->topic = text_key(build, values, OPT_MQTT_TOPIC, check_topic);
+	mqtt->profile = text_key(build, values, OPT_MQTT_PROFILE, check_profile);
+	mqtt->discovery = text_key(build, values, OPT_MQTT_DISCOVERY, check_topic);
 	mqtt->write = values[OPT_MQTT_WRITE].number != 0;
 	if (block)
 		check_together(build, block, mqtt);

@@ -5,13 +5,12 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "src/config/build.h"
 #include "src/config/recorder.h"
+#include "src/config/text_key.h"
 #include "src/signal/value.h"
 
 #define BLANK " \t"
 #define DAY 86400.0
-#define DIRECTORY_MAX 255
 #define EXPECTED "expected change, deadband NUMBER, interval SECONDS, raw, or off alone"
 
 /* A word of a part, NUL-terminated; "" if there is none, or if it is too long to be one. */
@@ -134,18 +133,6 @@ static bool take_record(struct build *build, const struct option_value *value,
 	return false;
 }
 
-static void take_directory(struct build *build, const struct option_value *value,
-                           struct config_recorder *recorder)
-{
-	if (!value->given || !*value->text)
-		return;
-	if (value->text[0] != '/' || strlen(value->text) > DIRECTORY_MAX)
-		report_error(build->report, value->node->value_at,
-		             "Directory \"%s\": expected a path from the root, at most %d bytes",
-		             value->text, DIRECTORY_MAX);
-	recorder->directory = build_keep(build, value->text, strlen(value->text));
-}
-
 void recorder_build(struct build *build, const struct rio_node *block)
 {
 	static const struct rio_node none;
@@ -156,7 +143,7 @@ void recorder_build(struct build *build, const struct rio_node *block)
 
 	options_read(block ? block : &none, PLACE_RECORDER, values, build->report);
 	recorder->given = block != NULL;
-	take_directory(build, &values[OPT_RECORDER_DIRECTORY], recorder);
+	recorder->directory = text_key(build, values, OPT_RECORDER_DIRECTORY, text_is_path);
 	recorder->keep_days = (unsigned)values[OPT_RECORDER_KEEP].number;
 	recorder->keep_minutes = (unsigned)values[OPT_RECORDER_KEEP_MINUTES].number;
 	recorder->keep_hours = (unsigned)values[OPT_RECORDER_KEEP_HOURS].number;

@@ -86,6 +86,8 @@ static void test_what_is_printed_is_what_was_read(void)
 
 static void test_what_cannot_be_is_an_error_at_its_place(void)
 {
+#define L64 "0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef"
+#define LONG L64 L64 L64 L64
 #define WAY "expected mqtt://HOST:PORT or mqtts://HOST:PORT\n"
 	static const struct line blocks[] = {
 		{"Mqtt { Broker \"localhost:1883\" }",
@@ -101,9 +103,17 @@ static void test_what_cannot_be_is_an_error_at_its_place(void)
 		{"Mqtt { Broker \"mqtt://u:secret@a\" }",
 	         "f:2:15: error: Broker: no password stands in it: User and PasswordFile are keys "
 	         "of their own\n"},
+		{"Mqtt { Broker \"mqtt://a?password=secret\" }", "f:2:15: error: Broker: " WAY},
 		{"Mqtt { PasswordFile \"../p\" User u }",
 	         "f:2:21: error: PasswordFile \"../p\": expected a path from the root, or the name "
 	         "of a credential\n"},
+		{"Mqtt { PasswordFile \"secret?\" User u }",
+	         "f:2:21: error: PasswordFile: expected a path from the root, or the name of a "
+	         "credential\n"},
+		{"Mqtt { Broker \"mqtt://u:secret@" LONG "\" }",
+	         "f:2:15: error: Broker: expected at most 255 bytes\n"
+	         "f:2:15: error: Broker: no password stands in it: User and PasswordFile are keys "
+	         "of their own\n"},
 		{"Mqtt { Broker \"mqtts://a\" KeyFile k }",
 	         "f:2:1: error: KeyFile without CertFile: CertFile and KeyFile belong together\n"},
 		{"Mqtt { Protocol 4 }", "f:2:17: error: Protocol \"4\": expected 5 or 3.1.1\n"},
