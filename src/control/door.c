@@ -281,7 +281,7 @@ static bool may_join(const struct control *c, const struct control_place *p,
 static void take_hello(struct control *c, struct control_place *p)
 {
 	struct ows_hello hello;
-	ptrdiff_t n = porter_receive(p->fd, &hello, sizeof(hello), false);
+	ptrdiff_t n = peer_receive(p->fd, &hello, sizeof(hello), false);
 
 	if (n == -EAGAIN || n == -EINTR)
 		return;

@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "src/control/socket.h"
-#include "src/shm/porter.h"
+#include "src/shm/peer.h"
 
 #define BACKLOG 1024 /* the kernel's net.core.somaxconn may be less */
 
@@ -39,7 +39,7 @@ int socket_listen(int directory, const char *name, bool for_all, ino_t *inode)
 	fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
 	if (fd < 0)
 		return -errno;
-	porter_refuse_descriptors(fd);
+	peer_refuse_descriptors(fd);
 	err = bind(fd, (struct sockaddr *)&to, sizeof(to)) < 0 ? -errno : 0;
 	if (!err)
 		err = socket_open_for(directory, name, for_all);

@@ -10,6 +10,7 @@
 #include "hal/owfs/frame.h"
 #include "src/serve/client.h"
 #include "src/serve/directory.h"
+#include "src/shm/peer.h"
 #include "src/shm/porter.h"
 
 #define FIRST_READ AREA_ANSWER
@@ -362,7 +363,7 @@ static ssize_t receive_bytes(const struct client *c, uint8_t *bytes, size_t room
 	ssize_t n;
 
 	if (!c->network)
-		return porter_receive(c->fd, bytes, room, true);
+		return peer_receive(c->fd, bytes, room, true);
 	n = recv(c->fd, bytes, room, MSG_DONTWAIT);
 	return n < 0 ? -errno : n;
 }

@@ -16,7 +16,7 @@
 #include "src/serve/client.h"
 #include "src/serve/listener.h"
 #include "src/shm/owner.h"
-#include "src/shm/porter.h"
+#include "src/shm/peer.h"
 #include "src/shm/segment.h"
 
 /* Connections that wait for a place; the kernel's net.core.somaxconn may be less. */
@@ -178,7 +178,7 @@ static int bind_local(struct serve *s, const union address *to, const char *grou
 	fd = socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
 	if (fd < 0)
 		return -errno;
-	porter_refuse_descriptors(fd);
+	peer_refuse_descriptors(fd);
 	mask = umask(0177);
 	err = bind(fd, &to->any, sizeof(to->local)) < 0 ? -errno : 0;
 	umask(mask);

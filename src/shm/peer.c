@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Who is at the other end of a connection, by the kernel's word. */
+/* Asks the kernel who is at the other end of a connection, and receives without descriptors. */
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
@@ -13,6 +13,9 @@
 /* Younger than the headers of some machines that build owsd. */
 #ifndef SO_PEERGROUPS
 #define SO_PEERGROUPS 59
+#endif
+#ifndef SO_PASSRIGHTS
+#define SO_PASSRIGHTS 83
 #endif
 #ifndef SO_PEERPIDFD
 #define SO_PEERPIDFD 77
@@ -101,4 +104,28 @@ int peer_death(int connection, const struct peer *peer)
 		return fd;
 	close(fd);
 	return -ESRCH;
+}
+
+void peer_refuse_descriptors(int listener)
+{
+	int none = 0;
+
+	setsockopt(listener, SOL_SOCKET, SO_PASSRIGHTS, &none, sizeof(none));
+}
+
+ptrdiff_t peer_receive(int connection, void *bytes, size_t room, bool take)
+{
+	struct iovec part = {bytes, room};
+	struct msghdr message = {.msg_iov = &part, .msg_iovlen = 1};
+	/* a look closes no descriptor, since the message stays; without room for them it says so */
+	ssize_t n = recvmsg(connection, &message, MSG_PEEK | MSG_DONTWAIT | MSG_TRUNC);
+
+	if (n < 0)
+		return -errno;
+	if (message.msg_flags & MSG_CTRUNC)
+		return -EBADMSG;
+	if (take && n > 0 &&
+	    recv(connection, bytes, (size_t)n < room ? (size_t)n : room, MSG_DONTWAIT) < 0)
+		return -errno;
+	return n;
 }

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* Who is at the other end of a connection, by the kernel's word. */
+/* Who is at the other end of a connection, by the kernel's word; what it sends, taken with care. */
 #ifndef SHM_PEER_H
 #define SHM_PEER_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <sys/types.h>
 
 struct peer {
@@ -28,5 +29,14 @@ bool peer_in_group(const struct peer *peer, gid_t group);
  * another negative errno: the kernel gives none, or the process is unknown.
  */
 int peer_death(int connection, const struct peer *peer);
+
+/*
+ * Receive what fits of the first message, or of the stream up to the next descriptors, without
+ * closing any: a message with descriptors stays where it is. As recv() with MSG_DONTWAIT; -EBADMSG:
+ * there are descriptors. take: what was received leaves the socket.
+ */
+ptrdiff_t peer_receive(int connection, void *bytes, size_t room, bool take);
+/* Ask the kernel to refuse descriptors on connections to that socket (from Linux 6.16 on). */
+void peer_refuse_descriptors(int listener);
 
 #endif

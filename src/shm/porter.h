@@ -11,44 +11,8 @@
 #define SHM_PORTER_H
 
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <sys/uio.h>
 
-/* Each has children of its own, and is used by one thread at a time. */
-enum porter_lane {
-	PORTER_AWAY,   /* connections that end */
-	PORTER_IN,     /* welcomes */
-	PORTER_SERVED, /* clients of the served protocol that end */
-	PORTER_MEMORY, /* what givers had */
-	PORTER_NEWS,   /* sleepers of an image, pipes of givers */
-	PORTER_LANES,
-};
-
-#define PORTER_FDS 64
-#define PORTER_BYTES 320
-#define PORTER_SLOTS 128
-#define PORTER_NO_SLOT UINT32_MAX
-
-enum porter_what {
-	PORTER_SEND = 1, /* the bytes over fds[0], with copies of the other descriptors */
-	/* shut fds[0] down, and receive what lies there unless it hurts */
-	PORTER_HANG_UP = 2,
-	/* wake all that sleep on the news of the image fds[0] */
-	PORTER_WAKE = 8,
-	/* free the pages of the file fds[0] */
-	PORTER_EMPTY = 16,
-	PORTER_EACH = 4 /* that with each descriptor, as all are connections */
-};
-
-struct porter_order {
-	unsigned what;  /* bits of enum porter_what; in any case the child lets all go */
-	unsigned count; /* of descriptors, from 1 */
-	uint64_t keep;  /* bits of the descriptors that stay open here too */
-	uint32_t slot;  /* for porter_carried(); PORTER_NO_SLOT: none */
-	int fds[PORTER_FDS];
-	struct iovec bytes; /* at most PORTER_BYTES */
-};
+#include "src/shm/porter_order.h"
 
 struct porter;
 
@@ -80,14 +44,5 @@ enum porter_event {
 enum porter_event porter_tend(struct porter *porter, int64_t now_ns);
 /* The process, for the log; 0: there is none. */
 int porter_process(const struct porter *porter);
-
-/*
- * Receive what fits of the first message, or of the stream up to the next descriptors, without
- * closing any: a message with descriptors stays where it is. As recv() with MSG_DONTWAIT; -EBADMSG:
- * there are descriptors. take: what was received leaves the socket.
- */
-ptrdiff_t porter_receive(int connection, void *bytes, size_t room, bool take);
-/* Ask the kernel to refuse descriptors on connections to that socket (from Linux 6.16 on). */
-void porter_refuse_descriptors(int listener);
 
 #endif
