@@ -16,7 +16,7 @@ Names, attributes ("room1_Age") and the meaning of every field are those of libo
 value takes no system call and no lock. An Ows object belongs to one thread at a time, and after a
 fork only the parent commands. Times whose name ends in _ns are nanoseconds of CLOCK_BOOTTIME.
 
-What was is read by History, which needs libows-history(3).
+What was is read by history() and History, which need libows-history(3).
 
 From a shell:  python3 -m ows [-n INSTANCE] [NAME [VALUE]]
 """
@@ -730,6 +730,13 @@ class Recorded(NamedTuple):
     decimals: int
 
 
+def _frame(columns: Any) -> Any:
+    import pandas  # pylint: disable=import-outside-toplevel
+    rows = columns._asdict()
+    index = pandas.to_datetime(rows.pop(columns._fields[0]), unit="ns", utc=True)
+    return pandas.DataFrame(rows, index=pandas.DatetimeIndex(index, name="time"))
+
+
 class Records(NamedTuple):
     """Columns."""
     time_ns: Sequence[int]
@@ -740,6 +747,10 @@ class Records(NamedTuple):
     quality: Sequence[int]
     reason: Sequence[int]
     trusted: Sequence[bool]
+
+    def frame(self) -> Any:
+        """A DataFrame of pandas, by time (UTC)."""
+        return _frame(self)
 
 
 class Points(NamedTuple):
@@ -757,6 +768,10 @@ class Points(NamedTuple):
     worst: Sequence[int]
     gap: Sequence[bool]
     trusted: Sequence[bool]
+
+    def frame(self) -> Any:
+        """A DataFrame of pandas, by the begin of each stretch (UTC)."""
+        return _frame(self)
 
 
 class Event(NamedTuple):
@@ -927,6 +942,19 @@ class History:
                     name=self._signal(event.signal).name if event.signal >= 0 else None,
                     value=value if command or event.has_after else None,
                     before=before if event.has_before else None)
+
+
+def history(name: str, since: float = 86400.0, until: float = 0.0, n: int = 0, *,
+            instance: str = "OWS", directory: Any = None) -> Any:
+    """What a signal had from so many seconds ago until so many: Records, or, with n, Points.
+
+        print(ows.history("room1").value)
+        ows.history("room1", since=365 * 86400, n=500).frame().plot(y=["min", "mean", "max"])
+    """
+    now = time.time_ns()
+    begin, end = (max(0, now - int(ago * 10**9)) for ago in (since, until))
+    with History(instance, directory) as past:
+        return past.points(name, begin, end, n) if n else past.records(name, begin, end)
 
 
 def main(arguments: list[str]) -> int:

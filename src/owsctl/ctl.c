@@ -81,6 +81,7 @@ static const struct option *longs_of(const char *options)
 		{"as", required_argument, NULL, 'A'},
 		{"follow", no_argument, NULL, 'f'},
 		{"since", required_argument, NULL, 's'},
+		{"until", required_argument, NULL, 'u'},
 		{"csv", no_argument, NULL, 'C'},
 		{"sqlite", required_argument, NULL, 'S'},
 		{"parquet", required_argument, NULL, 'P'},

@@ -66,8 +66,16 @@ static const struct verb verbs[] = {
                     "  -s SPAN   since when (--since), as 2h, 7d\n"
                     "  -d DIR    where owsd-recorder keeps the history (--directory)\n",
          .example = "journal -s 1d boiler", .finds = true},
-	{"trend", "[-s SPAN] [-d DIR] [--csv | --influx | --sqlite FILE | --parquet FILE] NAME...",
-         "draw what signals had, from the history of owsd-recorder", verb_trend},
+	{"trend",
+         "[-s TIME] [-u TIME] [-d DIR] [--csv | --influx | --sqlite FILE | --parquet FILE] "
+         "NAME...",
+         "draw what signals had, from the history of owsd-recorder", verb_trend,
+         .options = "  -s TIME         from when (--since): 24h, 7d ago, or 2026-11-26T14:30\n"
+                    "  -u TIME         until when (--until), likewise; else until now\n"
+                    "  -d DIR          where owsd-recorder keeps the history (--directory)\n"
+                    "  --csv --influx  each record in a line; --json too\n"
+                    "  --sqlite FILE   a table in a new file; --parquet FILE, with pyarrow\n",
+         .example = "trend -s 7d room1"},
 	{"stats", "", "owsd itself, its targets and counters", verb_stats, .example = "stats",
          .finds = true},
 	{"metrics", "[-p] [PATTERN...]", "values, quality, targets and counters as OpenMetrics",

@@ -24,7 +24,8 @@
 #include "src/signal/value.h"
 #include "src/text/influx.h"
 
-#define SINCE (24 * 3600 * NS_PER_S)
+#define SINCE "24h"
+#define WANTED "-%c %s: expected a time such as 24h or 7d (ago), or 2026-11-26T14:30"
 #define HEIGHT 8
 #define WIDTH 64 /* where there is no terminal */
 #define WIDTH_LEAST 20
@@ -34,7 +35,7 @@ struct trend {
 	struct ctl *ctl;
 	struct ows_history *h;
 	struct when now;
-	int64_t from_ns; /* wall clock */
+	int64_t from_ns, until_ns; /* wall clock */
 	bool csv, influx;
 	struct table_file table;
 	unsigned left_out; /* good values that a line of InfluxDB cannot have */
@@ -97,7 +98,7 @@ static int draw(struct trend *t, const char *name)
 		return ctl_fail("no memory");
 	got = past_signal(t->h, name, &known);
 	if (got >= 0)
-		got = ows_history_points(t->h, got, t->from_ns, t->now.wall, points, 2 * width);
+		got = ows_history_points(t->h, got, t->from_ns, t->until_ns, points, 2 * width);
 	if (got >= 0)
 		print_picture(t, &known, points, width);
 	free(points);
@@ -177,7 +178,7 @@ static int print_items(struct trend *t, const char *name, const char *series)
 {
 	struct progress progress = progress_begin(name, ows_now());
 	struct ows_history_item item;
-	int got = ows_history_read(t->h, ows_history_find(t->h, name), t->from_ns, t->now.wall);
+	int got = ows_history_read(t->h, ows_history_find(t->h, name), t->from_ns, t->until_ns);
 
 	while (!got && (got = ows_history_next(t->h, &item, 1)) == 1) {
 		if (t->table.to)
@@ -189,7 +190,7 @@ static int print_items(struct trend *t, const char *name, const char *series)
 		else
 			print_csv(t, name, &item);
 		progress_show(&progress, ows_now(), item.time_ns - t->from_ns,
-		              t->now.wall - t->from_ns);
+		              t->until_ns - t->from_ns);
 		if (t->table.to && table_file_broken(&t->table))
 			break;
 		got = 0;
@@ -273,12 +274,13 @@ static int show_all(struct trend *t, char **names, int count)
 int verb_trend(struct ctl *ctl, int argc, char **argv)
 {
 	struct trend t = {.ctl = ctl, .now = when_now()};
-	int64_t since_ns = SINCE;
 	const char *directory = NULL, *sqlite = NULL, *parquet = NULL;
 	int c, status;
 
+	when_moment(&t.now, SINCE, &t.from_ns);
+	t.until_ns = t.now.wall;
 	ctl_options();
-	while ((c = ctl_option(ctl, argc, argv, "s:d:CIS:P:")) != -1) {
+	while ((c = ctl_option(ctl, argc, argv, "s:u:d:CIS:P:")) != -1) {
 		if (c == 'C')
 			t.csv = true;
 		else if (c == 'I')
@@ -289,20 +291,21 @@ int verb_trend(struct ctl *ctl, int argc, char **argv)
 			parquet = optarg;
 		else if (c == 'd')
 			directory = optarg;
-		else if (c != 's')
+		else if (c != 's' && c != 'u')
 			return CTL_USAGE;
-		else if (!when_parse(optarg, &since_ns))
-			return ctl_usage(ctl, WHEN_WANTED, optarg);
+		else if (!when_moment(&t.now, optarg, c == 's' ? &t.from_ns : &t.until_ns))
+			return ctl_usage(ctl, WANTED, c, optarg);
 	}
 	if (optind == argc)
 		return ctl_usage(ctl, "expected the name of a signal");
+	if (t.from_ns >= t.until_ns)
+		return ctl_usage(ctl, "the time has to begin before it ends");
 	if (t.csv + t.influx + ctl->json + !!sqlite + !!parquet > 1)
 		return ctl_usage(ctl, "--csv, --influx, --json, --sqlite and --parquet exclude "
 		                      "each other");
 	status = past_open(ctl, directory, &t.h);
 	if (status)
 		return status;
-	t.from_ns = t.now.wall - since_ns;
 	if (sqlite || parquet)
 		status = table_file_begin(&t.table, sqlite ? "sqlite" : "parquet",
 		                          sqlite ? sqlite : parquet);

@@ -69,9 +69,32 @@ bool when_parse(const char *text, int64_t *ns)
 		if (strcmp(end, units[i].word) != 0)
 			continue;
 		number *= units[i].seconds;
-		if (!(number > 0) || number > 366 * 86400.0)
+		if (!(number > 0) || number > 36600 * 86400.0)
 			return false;
 		*ns = (int64_t)(number * 1e9);
+		return true;
+	}
+	return false;
+}
+
+bool when_moment(const struct when *now, const char *text, int64_t *wall_ns)
+{
+	static const char *const forms[] = {"%Y-%m-%d", "%Y-%m-%dT%H:%M", "%Y-%m-%dT%H:%M:%S",
+	                                    "%Y-%m-%d %H:%M", "%Y-%m-%d %H:%M:%S"};
+	int64_t span_ns;
+
+	if (when_parse(text, &span_ns)) {
+		*wall_ns = now->wall > span_ns ? now->wall - span_ns : 0;
+		return true;
+	}
+	for (size_t i = 0; i < sizeof(forms) / sizeof(forms[0]); i++) {
+		struct tm local = {.tm_isdst = -1};
+		const char *end = strptime(text, forms[i], &local);
+		time_t seconds = end && !*end ? mktime(&local) : -1;
+
+		if (seconds < 0)
+			continue;
+		*wall_ns = (int64_t)seconds * NS_PER_S;
 		return true;
 	}
 	return false;

@@ -4,6 +4,7 @@
 
 import contextlib
 import csv
+import datetime
 import json
 import os
 import re
@@ -204,7 +205,17 @@ def test_trend_draws_and_lists_what_was_recorded(scene):
             for p in points[3:]]
     assert [p.split()[1] for p in points[:3]] == ["value=1", "value=2", "value=9"] and all(room)
     assert len(room) == 1, points
-    for words in (("nothing",), ("title",), ("-s", "soon", "relays"), ()):
+    # a part of it: up to the second value, and from there on
+    times = [r["time"] for r in records if r.get("quality") == "good"]
+    whole = datetime.datetime.fromisoformat(times[0]).astimezone().replace(microsecond=0)
+    begin, end = (format(whole + datetime.timedelta(seconds=n), "%Y-%m-%dT%H:%M:%S") for n in (-60, 0))
+    for span, some in ((("-s", begin, "-u", end), False), (("-s", end, "--until", "0.001"), True)):
+        listed = scene.owsctl(daemon, "--json", *trend[:3], *span, "relays")
+        assert listed.returncode == 0, listed
+        part = [r["value"] for r in json.loads(listed.stdout)[0]["records"] if r.get("quality") == "good"]
+        assert part == ([1, 2, 9] if some else []), (span, listed)
+    for words in (("nothing",), ("title",), ("-s", "soon", "relays"), (), ("-u", "2m", "relays"),
+                  ("-u", "then", "relays")):
         done = scene.owsctl(daemon, *trend, *words)
         assert done.returncode in (1, 2) and done.stderr.startswith("owsctl: "), done
 
@@ -390,6 +401,17 @@ with ows.History(directory={str(scene.path / "history")!r}) as h:
         print(good.min(), good.max(), good.size == sum(i is not None for i in r.integer))
         none = h.records("title", 5, 6)
         print(none.value.shape, none.value.dtype.name)
+        try:
+            import pandas
+        except ImportError:
+            pass
+        else:
+            frame = r.frame()
+            print(*frame.dtypes.index, frame.value.max(), frame.index.tz, p.frame().index.name)
+    kept = ows.history("relays", 3600, directory={str(scene.path / "history")!r})
+    print([i for i in kept.integer if i is not None][-2:], list(kept.time_ns) == list(r.time_ns))
+    drawn = ows.history("relays", 3600, n=7, directory={str(scene.path / "history")!r})
+    print(len(drawn.mean), max(x for x in drawn.max if x == x))
     for call in (lambda: h.info("none"), lambda: h.points("room", 5, 5, 1)):
         try:
             call()
@@ -404,7 +426,8 @@ try:
 except OSError as e:
     print(e.strerror)
 """.replace("{without}", "len(sys.argv) > 1"))
-    has_numpy = scene._run(["python3", "-c", "import numpy"], 30).returncode == 0
+    has_numpy, has_pandas = (scene._run(["python3", "-c", f"import {module}"], 60).returncode == 0
+                             for module in ("numpy", "pandas"))
     for arguments in ((), ("without",)):
         done = scene._run(["env", f"PYTHONPATH={owsdtest.PYTHON}",
                            "PYTHONDONTWRITEBYTECODE=1", "python3", code, *arguments], 30)
@@ -416,16 +439,20 @@ except OSError as e:
         assert lines[3] == "['DS18B20']", done
         assert lines[4] == "[('relays', 1, 'owsctl'), ('relays', 9, 'owsctl')]", done
         assert lines[5] == "True", done
+        rest = lines[7:]
         if has_numpy and not arguments:
             assert lines[6:10] == [
                 "ndarray",
                 "int64 float64 object object bool uint8 uint8 bool int64 int64 float64 float64 "
                 "float64 float64 int64 int64 uint32 uint8 uint8 bool bool",
                 "1.0 9.0 True", "(0,) float64"], done
+            rest = lines[10:]
         else:
             assert lines[6] == "list", done
-        assert lines[10 if has_numpy and not arguments else 7:] == [
-            "KeyError", "OSError", "the history is closed", "No such file or directory"], done
+        if has_pandas and not arguments:
+            assert rest.pop(0) == ("value integer text known quality reason trusted 9.0 UTC time"), done
+        assert rest == ["[1, 9] True", "7 9.0", "KeyError", "OSError", "the history is closed",
+                        "No such file or directory"], done
 
 
 def test_under_the_units_filter_it_does_all_that_it_does(scene):

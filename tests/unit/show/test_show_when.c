@@ -76,6 +76,41 @@ static void test_spans_are_short(void)
 	TEST_ASSERT_EQUAL_STRING("106751d", when_span(INT64_MAX, text));
 }
 
+static void test_a_moment_is_so_long_ago_or_a_local_time(void)
+{
+	static const struct {
+		const char *text;
+		int64_t seconds;
+	} good[] = {
+		{"90", 1699999910},         {"1.5m", 1699999910},
+		{"24h", 1699913600},        {"7d", 1699395200},
+		{"3660d", 1383776000},      {"36500d", 0}, /* not before 1970 */
+		{"2023-11-14", 1699920000}, {"2023-11-14T22:13", 1700000000 - 20},
+		{"1970-01-01", 0},          {"2023-11-14T22:13:20", 1700000000},
+		{"1999-12-31", 946598400},  {"2023-11-14 22:13:20", 1700000000},
+	};
+	static const char *const bad[] = {"",     "soon",
+	                                  "-5",   "0",
+	                                  "5w",   "2023-11",
+	                                  "7dd",  "1960-01-01",
+	                                  "1e9d", "2023-13-01",
+	                                  "nan",  "2023-11-14T",
+	                                  "inf",  "2023-11-14T22:13:20Z+1"};
+	struct when now = {.boot = 10 * SECOND, .wall = 1700000000 * SECOND};
+	int64_t ns;
+
+	zone("UTC0");
+	for (size_t i = 0; i < sizeof(good) / sizeof(good[0]); i++) {
+		TEST_ASSERT_TRUE_MESSAGE(when_moment(&now, good[i].text, &ns), good[i].text);
+		TEST_ASSERT_EQUAL_INT64_MESSAGE(good[i].seconds * SECOND, ns, good[i].text);
+	}
+	for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++)
+		TEST_ASSERT_FALSE_MESSAGE(when_moment(&now, bad[i], &ns), bad[i]);
+	zone("XXX3");
+	TEST_ASSERT_TRUE(when_moment(&now, "2023-11-14T19:13:20", &ns));
+	TEST_ASSERT_EQUAL_INT64(1700000000 * SECOND, ns);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -84,5 +119,6 @@ int main(void)
 	RUN_TEST(test_a_time_that_cannot_be_is_a_question_mark);
 	RUN_TEST(test_now_is_one_moment_on_both_clocks);
 	RUN_TEST(test_spans_are_short);
+	RUN_TEST(test_a_moment_is_so_long_ago_or_a_local_time);
 	return UNITY_END();
 }
