@@ -121,9 +121,10 @@ static int check(sqlite3 *db)
 		return -EPROTONOSUPPORT;
 	/*
 	 * Each commit is synced: a power cut costs what came after it, and a card that is pulled is
-	 * noticed before memory forgets. ext4 writes as much without it, a little later.
+	 * noticed before memory forgets. ext4 writes as much without it, a little later. extra: the
+	 * journal of the first step into WAL mode is gone for good, or it would undo all after it.
 	 */
-	err = sql_exec(db, "pragma journal_mode = wal; pragma synchronous = full;"
+	err = sql_exec(db, "pragma synchronous = extra; pragma journal_mode = wal;"
 	                   "pragma temp_store = memory; pragma journal_size_limit = 4194304");
 	return err || version == HISTORY_SCHEMA ? err : migrate(db, version);
 }

@@ -10,6 +10,7 @@
 #include "src/history/keep.h"
 #include "src/history/record.h"
 #include "src/history/rolling.h"
+#include "src/history/statements.h"
 
 /* A signal, by its name; its number is that of the file, 0: not looked up. */
 struct history_key {
@@ -32,14 +33,12 @@ struct history_row {
 	uint8_t reason; /* of a gap */
 };
 
-enum store_statement { STORE_STATEMENTS = 24 };
-
 struct history_store {
 	struct history_file file;
 	struct history_keep keep;
 	int64_t boot;
 	/* The rest is the store's own. */
-	sqlite3_stmt *statements[STORE_STATEMENTS];
+	sqlite3_stmt *statements[S_COUNT];
 	bool stale;          /* what is below has to be read from the file */
 	int64_t start, base; /* of this run in the file; start 0: not begun */
 	int64_t last_id, seen_us;
