@@ -229,8 +229,8 @@ MAN      := $(wildcard docs/*.[1-8])
 UNIT_SRC := $(filter-out $(if $(SQLITE),,%_past.c $(wildcard $(patsubst %,tests/unit/%/*.c,history libhistory recorder))),$(wildcard tests/unit/*/test_*.c))
 UNIT_AID := $(wildcard tests/unit/aid/*.c)
 ENDURANCE := $(wildcard tests/endurance/*.c)
-BENCH    := $(wildcard tests/bench/bench_*.c)
-BENCH_AID := $(filter-out $(BENCH),$(wildcard tests/bench/*.c)) $(SIM_TABLE) tests/unit/aid/plant.c tests/unit/aid/plant_net.c tests/unit/aid/giving.c
+BENCH    := $(filter-out $(if $(SQLITE),,%/bench_history.c %/bench_recorder.c),$(wildcard tests/bench/bench_*.c))
+BENCH_AID := $(filter-out tests/bench/bench_%,$(wildcard tests/bench/*.c)) $(SIM_TABLE) tests/unit/aid/plant.c tests/unit/aid/plant_net.c tests/unit/aid/giving.c
 # ---------------------------------------------------------------------------------------------
 
 CORE     := $(filter-out src/owsd/owsd.c src/owsctl/owsctl.c src/recorder/recorder.c src/influx/influx.c \

@@ -74,7 +74,8 @@ static int put_aside(struct history_file *file, const char *path)
 	rename(from, to);
 	snprintf(text, sizeof(text), "%s is damaged: it is put aside as %s, and another is begun",
 	         path, name);
-	file->say(file->ctx, text);
+	if (file->say)
+		file->say(file->ctx, text);
 	return 0;
 }
 

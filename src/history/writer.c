@@ -51,12 +51,6 @@ struct history_writer {
 	uint64_t dropped;
 };
 
-static void nobody(void *ctx, const char *text)
-{
-	(void)ctx;
-	(void)text;
-}
-
 int history_writer_open(const struct history_options *options, int64_t now_ns, int64_t offset_ns,
                         bool trusted, struct history_writer **writer)
 {
@@ -77,9 +71,7 @@ int history_writer_open(const struct history_options *options, int64_t now_ns, i
 		return -ENOMEM;
 	}
 	w->store = (struct history_store){
-		.file = {.directory = w->directory,
-	                 .say = options->say ? options->say : nobody,
-	                 .ctx = options->ctx},
+		.file = {.directory = w->directory, .say = options->say, .ctx = options->ctx},
 		.keep = options->keep,
 		.boot = options->boot,
 	};

@@ -67,6 +67,8 @@ static const char *advice(int err)
 		       "another is begun when there is a directory";
 	case -EAGAIN:
 		return "; another program has history.sqlite locked";
+	case -EACCES:
+		return "; it, or a file in it, is of another user: chown it";
 	case -EPROTONOSUPPORT:
 		return ": history.sqlite is of a newer owsd-recorder; install that, or move the "
 		       "file away";

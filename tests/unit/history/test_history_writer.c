@@ -367,6 +367,45 @@ static void test_a_disk_that_takes_no_more_gets_all_once_it_does(void)
 	TEST_ASSERT_TRUE(past_ask(&past, "select count(*) from minute") >= 6);
 }
 
+/* As a history that root's recorder has made, for the recorder of the service. */
+static void test_a_file_of_another_owner_stays_his_and_gets_all_once_it_is_ours(void)
+{
+	char above[400];
+	struct stat st;
+
+	if (geteuid() != 0)
+		TEST_IGNORE_MESSAGE("needs root");
+	past_begin(&past, 0, PAST_NOON, true);
+	past_room(&past, PAST_S, 1);
+	past_end(&past, 2 * PAST_S);
+	for (char *at = past.directory; (at = strchr(at + 1, '/')) != NULL;) {
+		snprintf(above, sizeof(above), "%.*s", (int)(at - past.directory), past.directory);
+		chmod(above, 0755);
+	}
+	TEST_ASSERT_EQUAL_INT(0, chown(past.directory, 65534, (gid_t)-1));
+	TEST_ASSERT_EQUAL_INT(0, seteuid(65534));
+	past_begin(&past, 3 * PAST_S, PAST_NOON, true);
+	for (int second = 4; second < 200; second++) {
+		past_room(&past, second * PAST_S, second);
+		history_writer_tick(past.writer, second * PAST_S);
+	}
+	TEST_ASSERT_EQUAL_INT(0, seteuid(0));
+	TEST_ASSERT_EQUAL_INT(-EACCES, state().error);
+	TEST_ASSERT_EQUAL_STRING("", past.said);
+	TEST_ASSERT_EQUAL_INT(0, stat(file(""), &st));
+	TEST_ASSERT_EQUAL_INT(0, st.st_uid);
+	TEST_ASSERT_EQUAL_INT(0, chown(file(""), 65534, (gid_t)-1));
+	TEST_ASSERT_EQUAL_INT(0, chown(file("-wal"), 65534, (gid_t)-1));
+	TEST_ASSERT_EQUAL_INT(0, chown(file("-shm"), 65534, (gid_t)-1));
+	TEST_ASSERT_EQUAL_INT(0, seteuid(65534));
+	past_end(&past, 200 * PAST_S);
+	TEST_ASSERT_EQUAL_INT(0, seteuid(0));
+	/* the first value, the end of it, those that waited, and the end */
+	TEST_ASSERT_EQUAL_INT(1 + 1 + 196 + 1, count_of(PAST_ROOM));
+	expect(2, 4 * PAST_S, 4);
+	expect(197, 199 * PAST_S, 199);
+}
+
 static void test_a_file_that_another_program_has_locked_gets_all_later(void)
 {
 	sqlite3 *db;
@@ -584,6 +623,7 @@ int main(void)
 	RUN_TEST(test_without_a_directory_it_goes_on_in_memory_and_catches_up);
 	RUN_TEST(test_a_memory_that_is_full_becomes_a_gap_after_which_all_is_known);
 	RUN_TEST(test_a_disk_that_takes_no_more_gets_all_once_it_does);
+	RUN_TEST(test_a_file_of_another_owner_stays_his_and_gets_all_once_it_is_ours);
 	RUN_TEST(test_a_file_that_another_program_has_locked_gets_all_later);
 	RUN_TEST(test_a_reader_that_takes_minutes_holds_nothing_up);
 	RUN_TEST(test_a_second_writer_of_a_directory_is_refused);

@@ -1,0 +1,374 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What keeping readings costs a disk: the recorder's own writer, plain SQLite with a commit a
+ * second, and rrdtool with the archives of collectd, all with the same readings of thermometers
+ * each second, 15 of 100 of which are another value. A day in hurried time; of the slow ones a part
+ * of it, reckoned up, and of none the first half minute. Bytes are those that an ext4 on a loop
+ * device writes to it; what nobody syncs is written each half minute, as the kernel does. Needs
+ * root, for the loop device.
+ *     bench_recorder [DIRECTORY]   on a file system that nothing else writes, in place of the loop
+ */
+#include <fcntl.h>
+#include <sched.h>
+#include <sqlite3.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mount.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "src/history/writer.h"
+#include "src/signal/value.h"
+#include "tests/bench/aid.h"
+#include "tests/bench/readings.h"
+
+#define S INT64_C(1000000000)
+#define CHANGE 0.15
+#define DATE (20000 * 86400 * S)
+#define RRD_DATE 1700000000
+#define KERNEL 30 /* seconds after which it writes what is dirty */
+
+static char disk[PLACE_PATH + 64];
+
+static void want(bool good, const char *what)
+{
+	if (good)
+		return;
+	fprintf(stderr, "bench_recorder: %s failed\n", what);
+	exit(1);
+}
+
+/* --- The disk --------------------------------------------------------------------------------- */
+
+static double sectors_written(void)
+{
+	unsigned long long fields[7] = {0};
+	char path[64];
+	struct stat st;
+	FILE *file;
+
+	want(stat(disk, &st) == 0, disk);
+	snprintf(path, sizeof(path), "/sys/dev/block/%u:%u/stat", major(st.st_dev),
+	         minor(st.st_dev));
+	file = fopen(path, "r");
+	want(file && fscanf(file, "%llu %llu %llu %llu %llu %llu %llu", &fields[0], &fields[1],
+	                    &fields[2], &fields[3], &fields[4], &fields[5], &fields[6]) == 7,
+	     path);
+	fclose(file);
+	return (double)fields[6];
+}
+
+static void sync_disk(void)
+{
+	int fd = open(disk, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+
+	want(fd >= 0 && syncfs(fd) == 0, "syncfs");
+	close(fd);
+}
+
+/* False: not here. It goes with this process's mounts. */
+static bool make_disk(void)
+{
+	char command[4 * sizeof(disk)];
+	const char *place = bench_place()->path;
+
+	snprintf(disk, sizeof(disk), "%s/disk", place);
+	if (unshare(CLONE_NEWNS) || mount("none", "/", NULL, MS_REC | MS_PRIVATE, NULL) ||
+	    mkdir(disk, 0700))
+		return false;
+	snprintf(command, sizeof(command),
+	         "truncate -s 4G %s/image && mkfs.ext4 -q -F %s/image && mount -o loop %s/image %s",
+	         place, place, place, disk);
+	return system(command) == 0;
+}
+
+static double bytes_in(const char *folder)
+{
+	char command[2 * sizeof(disk)];
+	double kb = 0;
+	FILE *du;
+
+	snprintf(command, sizeof(command), "du -sk %s", folder);
+	du = popen(command, "r");
+	want(du && fscanf(du, "%lf", &kb) == 1, command);
+	pclose(du);
+	return kb * 1024;
+}
+
+/* --- Who keeps them --------------------------------------------------------------------------- */
+
+struct keeper {
+	const char *name;
+	void (*begin)(unsigned count, const char *folder);
+	void (*value)(unsigned i, int64_t second, double value);
+	void (*second)(int64_t second);
+	void (*end)(int64_t second);
+	bool each; /* it takes each reading, and not those alone that are other ones */
+};
+
+static struct history_writer *writer;
+
+static void owsd_begin(unsigned count, const char *folder)
+{
+	const struct history_options options = {
+		.directory = folder, .boot = 1, .keep = {.days = 90, .minutes = 730}};
+	struct history_signal *signals = calloc(count, sizeof(*signals));
+	char(*names)[16] = calloc(count, sizeof(*names));
+
+	want(signals && names, "memory");
+	for (unsigned i = 0; i < count; i++) {
+		snprintf(names[i], sizeof(names[i]), "t%u", i);
+		signals[i] = (struct history_signal){names[i], "°C", OWS_DOUBLE, 0, 4};
+	}
+	want(!history_writer_open(&options, 0, DATE, true, &writer) &&
+	             !history_writer_signals(writer, signals, count, 0),
+	     "the writer");
+	history_writer_begin(writer, 0);
+	free(signals);
+	free(names);
+}
+
+static void owsd_value(unsigned i, int64_t second, double value)
+{
+	history_writer_value(writer, i, second * S, OWS_Q_GOOD, value_of_double(value), NULL, 0);
+}
+
+static void owsd_second(int64_t second)
+{
+	want(history_writer_tick(writer, second * S) == 0, "a commit");
+}
+
+static void owsd_end(int64_t second)
+{
+	want(history_writer_close(writer, second * S) == 0, "the last commit");
+}
+
+static sqlite3 *db;
+static sqlite3_stmt *insert;
+
+static void plain_begin(unsigned count, const char *folder)
+{
+	char path[sizeof(disk) + 64];
+
+	(void)count;
+	snprintf(path, sizeof(path), "%s/plain.sqlite", folder);
+	want(sqlite3_open(path, &db) == SQLITE_OK &&
+	             !sqlite3_exec(db,
+	                           "create table value (time integer, signal integer, value real)",
+	                           NULL, NULL, NULL) &&
+	             !sqlite3_prepare_v2(db, "insert into value values (?, ?, ?)", -1, &insert,
+	                                 NULL) &&
+	             !sqlite3_exec(db, "begin", NULL, NULL, NULL),
+	     path);
+}
+
+static void plain_value(unsigned i, int64_t second, double value)
+{
+	sqlite3_bind_int64(insert, 1, second);
+	sqlite3_bind_int64(insert, 2, i);
+	sqlite3_bind_double(insert, 3, value);
+	want(sqlite3_step(insert) == SQLITE_DONE && !sqlite3_reset(insert), "an insert");
+}
+
+static void plain_second(int64_t second)
+{
+	(void)second;
+	want(!sqlite3_exec(db, "commit; begin", NULL, NULL, NULL), "a commit");
+}
+
+static void plain_end(int64_t second)
+{
+	(void)second;
+	sqlite3_finalize(insert);
+	sqlite3_exec(db, "commit", NULL, NULL, NULL);
+	sqlite3_close(db);
+}
+
+static FILE *rrd_to, *rrd_from;
+static unsigned rrd_asked;
+
+static void rrd_answers(void)
+{
+	char line[256];
+
+	fflush(rrd_to);
+	while (rrd_asked) {
+		want(fgets(line, sizeof(line), rrd_from) && strncmp(line, "ERROR", 5) != 0,
+		     "rrdtool");
+		rrd_asked -= strncmp(line, "OK", 2) == 0;
+	}
+}
+
+/* What collectd makes of an interval of a second: 1200 rows of an hour to a year, of three sorts */
+static void rrd_begin(unsigned count, const char *folder)
+{
+	static const char *const sorts[] = {"AVERAGE", "MIN", "MAX"};
+	static const int spans[] = {3, 72, 504, 2232, 26352};
+	int to[2], from[2];
+
+	want(pipe(to) == 0 && pipe(from) == 0, "a pipe");
+	if (fork() == 0) {
+		dup2(to[0], STDIN_FILENO);
+		dup2(from[1], STDOUT_FILENO);
+		close(to[1]);
+		close(from[0]);
+		want(chdir(folder) == 0, folder);
+		execlp("rrdtool", "rrdtool", "-", NULL);
+		_exit(1);
+	}
+	close(to[0]);
+	close(from[1]);
+	rrd_to = fdopen(to[1], "w");
+	rrd_from = fdopen(from[0], "r");
+	want(rrd_to && rrd_from, "a pipe");
+	for (unsigned i = 0; i < count; i++) {
+		fprintf(rrd_to, "create t%u.rrd --start %d --step 1 DS:value:GAUGE:2:U:U", i,
+		        RRD_DATE);
+		for (int k = 0; k < 15; k++)
+			fprintf(rrd_to, " RRA:%s:0.1:%d:1200", sorts[k % 3], spans[k / 3]);
+		fputc('\n', rrd_to);
+		rrd_asked++;
+		rrd_answers();
+	}
+}
+
+static void rrd_value(unsigned i, int64_t second, double value)
+{
+	fprintf(rrd_to, "update t%u.rrd %lld:%g\n", i, (long long)(RRD_DATE + second), value);
+	if (++rrd_asked == 100)
+		rrd_answers();
+}
+
+static void rrd_second(int64_t second)
+{
+	(void)second;
+	rrd_answers();
+}
+
+static void rrd_end(int64_t second)
+{
+	(void)second;
+	fputs("quit\n", rrd_to);
+	fclose(rrd_to);
+	fclose(rrd_from);
+	wait(NULL);
+}
+
+static const struct keeper keepers[] = {
+	{"owsd", owsd_begin, owsd_value, owsd_second, owsd_end, false},
+	{"sqlite", plain_begin, plain_value, plain_second, plain_end, false},
+	{"rrdtool", rrd_begin, rrd_value, rrd_second, rrd_end, true},
+};
+
+/* --- Measuring -------------------------------------------------------------------------------- */
+
+static double cpu_s(void)
+{
+	struct rusage own, children;
+
+	getrusage(RUSAGE_SELF, &own);
+	getrusage(RUSAGE_CHILDREN, &children);
+	return (double)(own.ru_utime.tv_sec + own.ru_stime.tv_sec + children.ru_utime.tv_sec +
+	                children.ru_stime.tv_sec) +
+	       (double)(own.ru_utime.tv_usec + own.ru_stime.tv_usec + children.ru_utime.tv_usec +
+	                children.ru_stime.tv_usec) /
+	               1e6;
+}
+
+static double most_kb(int who)
+{
+	struct rusage used;
+
+	getrusage(who, &used);
+	return (double)used.ru_maxrss;
+}
+
+static void report(unsigned count, const struct keeper *keeper, const char *what, double value,
+                   const char *unit)
+{
+	char name[64];
+
+	snprintf(name, sizeof(name), "recorder.%u.%s.%s", count, keeper->name, what);
+	bench_line(name, value, unit);
+}
+
+/* In a process of its own, whose processor time and memory count. */
+static void measure(unsigned count, const struct keeper *keeper, int64_t seconds)
+{
+	struct readings readings = readings_begin(count, CHANGE);
+	double before = 0, bytes, kept = 0, cpu = 0, used = most_kb(RUSAGE_SELF);
+	double day = 86400 / (double)(seconds - KERNEL);
+	char folder[sizeof(disk) + 32];
+
+	snprintf(folder, sizeof(folder), "%s/%s%u", disk, keeper->name, count);
+	want(mkdir(folder, 0700) == 0, folder);
+	keeper->begin(count, folder);
+	for (int64_t now = 1; now <= seconds; now++) {
+		for (unsigned i = 0; i < count; i++)
+			if (readings_next(&readings, i) || keeper->each || now == 1)
+				keeper->value(i, now, readings.values[i]);
+		keeper->second(now);
+		if (now % KERNEL == 0)
+			sync_disk();
+		if (now == KERNEL) {
+			before = sectors_written();
+			kept = bytes_in(folder);
+			cpu = cpu_s();
+		}
+	}
+	keeper->end(seconds);
+	sync_disk();
+	bytes = (sectors_written() - before) * 512;
+	report(count, keeper, "written_a_day", bytes * day / 1e6, "MB");
+	report(count, keeper, "growth_a_day", (bytes_in(folder) - kept) * day / 1e6, "MB");
+	if (keeper->each)
+		report(count, keeper, "file", kept / 1e6, "MB");
+	report(count, keeper, "cpu", (cpu_s() - cpu) * 1e6 * day / 86400, "us/s");
+	report(count, keeper, "memory",
+	       keeper->each ? most_kb(RUSAGE_CHILDREN) : most_kb(RUSAGE_SELF) - used, "kB");
+	readings_end(&readings);
+}
+
+int main(int argc, char **argv)
+{
+	static const struct {
+		unsigned count;
+		int64_t seconds[sizeof(keepers) / sizeof(keepers[0])];
+	} sizes[] = {{50, {86400, 3600, 1800}}, {10000, {630, 90, 0}}};
+
+	if (argc > 1) {
+		snprintf(disk, sizeof(disk), "%s", argv[1]);
+	} else if (!make_disk()) {
+		bench_note("recorder: no loop device with ext4 here; as root, with mkfs.ext4");
+		return 0;
+	}
+	for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++) {
+		for (size_t k = 0; k < sizeof(keepers) / sizeof(keepers[0]); k++) {
+			int status = 0;
+			pid_t child;
+
+			/* rrdtool makes 1.5 GB of files for so many, and is slow */
+			if (!sizes[i].seconds[k])
+				continue;
+			if (keepers[k].each && system("command -v rrdtool >/dev/null")) {
+				bench_note("recorder: rrdtool is not installed");
+				continue;
+			}
+			fflush(stdout);
+			child = fork();
+			if (child == 0) {
+				measure(sizes[i].count, &keepers[k], sizes[i].seconds[k]);
+				fflush(stdout);
+				_exit(0);
+			}
+			want(child > 0 && waitpid(child, &status, 0) == child && status == 0,
+			     keepers[k].name);
+		}
+	}
+	umount2(argc > 1 ? "" : disk, MNT_DETACH);
+	return 0;
+}
