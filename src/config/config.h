@@ -164,6 +164,13 @@ struct config_web {
 
 /* A way to a broker. */
 #define CONFIG_MQTT_WAYS 8
+/* The profiles. src/mqtt has a table of each, profile_NAME. */
+#define MQTT_PROFILES(EACH) \
+	EACH(homeassistant) \
+	EACH(plain) \
+	EACH(homie5) \
+	EACH(wirenboard)
+#define MQTT_PROFILE_WORD(name) " " #name
 struct config_mqtt_way {
 	const char *host; /* a name or an address, without brackets */
 	uint16_t port;

@@ -10,6 +10,7 @@
 #define PORT_TLS 8883
 #define BLANK " \t"
 #define CLASS_MAX 31u
+#define PROFILE_TEXT(name) #name,
 
 /* Names with slashes between them. */
 static const char *check_topic(const char *topic)
@@ -24,9 +25,12 @@ static const char *check_topic(const char *topic)
 
 static const char *check_profile(const char *profile)
 {
-	return !strcmp(profile, "homeassistant") || !strcmp(profile, "plain")
-	               ? NULL
-	               : "expected homeassistant or plain";
+	static const char *const words[] = {MQTT_PROFILES(PROFILE_TEXT)};
+
+	for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++)
+		if (!strcmp(profile, words[i]))
+			return NULL;
+	return "expected one of" MQTT_PROFILES(MQTT_PROFILE_WORD);
 }
 
 static const char *check_protocol(const char *protocol)

@@ -218,7 +218,7 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
 	[OPT_MQTT_TOPIC] = {"Topic", PLACE_MQTT, OPTION_TEXT, .preset = "owsd",
                             .help = "what all topics begin with"},
 	[OPT_MQTT_PROFILE] = {"Profile", PLACE_MQTT, OPTION_TEXT, .preset = "homeassistant",
-                              .help = "for whom it is published: homeassistant or plain"},
+                              .help = "for whom it is published:" MQTT_PROFILES(MQTT_PROFILE_WORD)},
 	[OPT_MQTT_DISCOVERY] = {"Discovery", PLACE_MQTT, OPTION_TEXT, .preset = "homeassistant",
                                 .help = "where Home Assistant looks for devices"},
 	[OPT_MQTT_WRITE] = {"Write", PLACE_MQTT, OPTION_FLAG, .preset = "off",

@@ -70,14 +70,19 @@ static void drop(struct broker *b)
 	b->in_flight = 0;
 }
 
-/* A random part of the step: a thousand clients of a broker that restarts do not come together. */
-static int64_t pause_of(int64_t step_ns)
+static uint64_t random_of(uint64_t most)
 {
 	uint64_t random = 0;
 
 	if (getrandom(&random, sizeof(random), GRND_NONBLOCK) < 0)
 		random = (uint64_t)ows_now();
-	return step_ns / 8 + (int64_t)(random % (uint64_t)step_ns);
+	return random % most;
+}
+
+/* A random part of the step: a thousand clients of a broker that restarts do not come together. */
+static int64_t pause_of(int64_t step_ns)
+{
+	return step_ns / 8 + (int64_t)random_of((uint64_t)step_ns);
 }
 
 /*
@@ -114,7 +119,7 @@ static void fail(struct broker *b, const char *why, const char *remedy, int64_t 
 	unsigned way = b->way;
 	uint64_t print;
 
-	snprintf(words, sizeof(words), "%.80s %s: %.90s%s%.60s",
+	snprintf(words, sizeof(words), "%.80s %s: %.90s%s%.50s",
 	         mqtt_way_name(&b->options->ways[b->way], name),
 	         was_connected ? "is lost" : "cannot be reached", why, *remedy ? "; " : "", remedy);
 	drop(b);
@@ -127,6 +132,27 @@ static void fail(struct broker *b, const char *why, const char *remedy, int64_t 
 	b->logged[way] = print;
 	memcpy(b->trouble, words, sizeof(words));
 	memcpy(b->last, words, sizeof(words));
+}
+
+static const char *taken_words(const struct broker *b, char words[BROKER_WORDS])
+{
+	snprintf(words, BROKER_WORDS, "another client with the id " CLIENT_ID " took its place",
+	         b->options->node);
+	return words;
+}
+
+void broker_taken(struct broker *b)
+{
+	char name[MQTT_WAY_NAME], words[BROKER_WORDS];
+
+	if (b->brief == BRIEF_MOST)
+		return;
+	snprintf(b->last, sizeof(b->last), "%.80s was lost: %.90s; %.50s",
+	         mqtt_way_name(&b->options->ways[b->way], name), taken_words(b, words),
+	         advice_remedy(ADVICE_TAKEN_OVER, 0));
+	log_warning(b->face->log, "%s", b->last);
+	b->brief = BRIEF_MOST;
+	b->step_ns = TAKEN_NS;
 }
 
 /* How long a connection has to last until it counts as a good one */
@@ -171,6 +197,9 @@ static void attempt(struct broker *b, int64_t now_ns)
 /* It is over, or libmosquitto reports that. */
 static void finish(struct broker *b, int code, int err, int64_t now_ns)
 {
+	char taken[BROKER_WORDS];
+	const char *words;
+
 	if (b->ended)
 		code = b->end_code;
 	if (code == ADVICE_PROTOCOL && b->options->mqtt5 && !b->old_protocol) {
@@ -184,13 +213,17 @@ static void finish(struct broker *b, int code, int err, int64_t now_ns)
 	/* mosquitto gives no reason when it closes the older one of two with the same id */
 	if (b->state != BROKER_CONNECTED || now_ns - b->begun_ns > good_ns(b))
 		b->brief = 0;
-	else if (code == MOSQ_ERR_CONN_LOST && b->brief < BRIEF_MOST)
+	else if ((code == MOSQ_ERR_CONN_LOST || code == MOSQ_ERR_ERRNO || code == MOSQ_ERR_TLS) &&
+	         b->brief < BRIEF_MOST)
 		b->brief++;
 	if (b->brief == BRIEF_MOST) {
 		code = ADVICE_TAKEN_OVER;
 		b->step_ns = TAKEN_NS;
 	}
-	fail(b, advice_words(code, err, b->tls_words), advice_remedy(code, err), now_ns);
+	words = advice_words(code, err, b->tls_words);
+	if (code == ADVICE_TAKEN_OVER)
+		words = taken_words(b, taken);
+	fail(b, words, advice_remedy(code, err), now_ns);
 }
 
 static void connected(struct broker *b, int64_t now_ns)
@@ -200,6 +233,8 @@ static void connected(struct broker *b, int64_t now_ns)
 
 	b->begun_ns = now_ns;
 	b->connects++;
+	b->again = b->known & 1u << b->way;
+	b->known |= 1u << b->way;
 	b->refusal_logged = false;
 	forget_trouble(b);
 	log_notice(b->face->log, "connected to %.100s by MQTT %s",
@@ -298,13 +333,16 @@ void broker_begin(struct broker *b, int64_t now_ns)
 {
 	b->client = NULL;
 	b->fd = -1;
-	b->way = 0;
+	b->way = b->known = 0;
 	b->v4 = b->old_protocol = false;
 	b->step_ns = STEP_NS;
 	b->next_ns = now_ns;
 	b->state = BROKER_WAITING;
 	forget_trouble(b);
 	b->drained = true;
+	if (!*b->session)
+		snprintf(b->session, sizeof(b->session), "%016llx",
+		         (unsigned long long)random_of(UINT64_MAX));
 }
 
 void broker_hurry(struct broker *b, int64_t now_ns)
@@ -332,7 +370,7 @@ void broker_end(struct broker *b)
 	const char *text;
 
 	if (b->state == BROKER_CONNECTED && drain(b, until_ns)) {
-		text = b->ops->will(b->ctx, topic);
+		text = b->ops->will(b->ctx, true, topic);
 		/* the goodbye would take the will back */
 		if (broker_put(b, topic, text, strlen(text), true) && drain(b, until_ns))
 			mosquitto_disconnect(b->client);
@@ -352,7 +390,8 @@ bool broker_put(void *ctx, const char *topic, const char *text, size_t len, bool
 
 	if (b->state != BROKER_CONNECTED || b->ended || b->in_flight >= IN_FLIGHT_MOST)
 		return false;
-	err = mosquitto_publish_v5(b->client, NULL, topic, (int)len, text, 1, retain, NULL);
+	err = mosquitto_publish_v5(b->client, NULL, topic, (int)len, text, b->options->profile->qos,
+	                           retain, NULL);
 	if (!err) {
 		b->in_flight++;
 		b->published++;
@@ -369,18 +408,25 @@ bool broker_put(void *ctx, const char *topic, const char *text, size_t len, bool
 	return true;
 }
 
-void broker_subscribe(struct broker *b, const char *topic, int qos)
+static int subscribe_options(const struct broker *b)
 {
 	bool mqtt5 = b->options->mqtt5 && !b->old_protocol;
 
-	if (b->client)
-		mosquitto_subscribe_v5(
-			b->client, NULL, topic, qos,
-			mqtt5 ? MQTT_SUB_OPT_RETAIN_AS_PUBLISHED | MQTT_SUB_OPT_NO_LOCAL : 0, NULL);
+	return mqtt5 ? MQTT_SUB_OPT_RETAIN_AS_PUBLISHED | MQTT_SUB_OPT_NO_LOCAL : 0;
 }
 
-void broker_unsubscribe(struct broker *b, const char *topic)
+void broker_subscribe(struct broker *b, const char *topic)
 {
 	if (b->client)
-		mosquitto_unsubscribe(b->client, NULL, topic);
+		mosquitto_subscribe_v5(b->client, NULL, topic, b->options->profile->qos,
+		                       subscribe_options(b), NULL);
+}
+
+void broker_look(struct broker *b, char *const *topics, int count, bool begin)
+{
+	if (b->client && begin)
+		mosquitto_subscribe_multiple(b->client, NULL, count, topics, 0,
+		                             subscribe_options(b), NULL);
+	else if (b->client)
+		mosquitto_unsubscribe_multiple(b->client, NULL, count, topics, NULL);
 }

@@ -31,13 +31,21 @@ int64_t broker_next(const struct broker *b);
  * What the broker keeps of the node is not ours alone before.
  */
 bool broker_is_settled(const struct broker *b, int64_t now_ns);
+/*
+ * The will of another process came that had our id meanwhile: two of one node throw each other out.
+ */
+void broker_taken(struct broker *b);
 /* Try again at once, if it is not connected. */
 void broker_hurry(struct broker *b, int64_t now_ns);
 
-/* struct outlet: QoS 1. */
+/* struct outlet, with the QoS of the profile. */
 bool broker_put(void *ctx, const char *topic, const char *text, size_t len, bool retain);
 /* A refusal is logged when it comes. What we publish there ourselves does not come, by MQTT 5. */
-void broker_subscribe(struct broker *b, const char *topic, int qos);
-void broker_unsubscribe(struct broker *b, const char *topic);
+void broker_subscribe(struct broker *b, const char *topic);
+/*
+ * The same for several at once, QoS 0, or their end. Only a refusal of the first is logged: whether
+ * there is something at the others nobody knows.
+ */
+void broker_look(struct broker *b, char *const *topics, int count, bool begin);
 
 #endif

@@ -12,6 +12,7 @@
 #include "src/mqtt/client.h"
 #include "src/signal/utf8.h"
 
+#define SESSION "session"
 #define CA_PATH "/etc/ssl/certs"
 
 /* --- Callbacks ------------------------------------------------------------------------------- */
@@ -86,8 +87,9 @@ static void on_subscribe(struct mosquitto *client, void *ctx, int mid, int count
 	        mqtt_way_name(&b->options->ways[b->way], name), b->options->prefix);
 }
 
-/* The user property "person" of MQTT 5, if it can stand in a journal: a claim. */
-static void take_person(const mosquitto_property *properties, char person[BROKER_PERSON])
+/* A user property of MQTT 5, if it can stand in a journal: a claim. */
+static void take_property(const mosquitto_property *properties, const char *key, char *text,
+                          size_t size)
 {
 	const mosquitto_property *at;
 	char *name, *value;
@@ -95,17 +97,17 @@ static void take_person(const mosquitto_property *properties, char person[BROKER
 	at = mosquitto_property_read_string_pair(properties, MQTT_PROP_USER_PROPERTY, &name, &value,
 	                                         false);
 	while (at) {
-		const char *text = value;
+		const char *rest = value;
 		size_t len = strlen(value);
-		bool fits = !strcmp(name, "person") && len && len < BROKER_PERSON;
+		bool fits = !strcmp(name, key) && len && len < size;
 
 		while (fits && len) {
-			int32_t c = utf8_next(&text, &len);
+			int32_t c = utf8_next(&rest, &len);
 
 			fits = c > ' ' && !utf8_disturbs(c);
 		}
 		if (fits)
-			snprintf(person, BROKER_PERSON, "%s", value);
+			snprintf(text, size, "%s", value);
 		free(name);
 		free(value);
 		at = mosquitto_property_read_string_pair(at, MQTT_PROP_USER_PROPERTY, &name, &value,
@@ -126,7 +128,8 @@ static void on_message(struct mosquitto *client, void *ctx, const struct mosquit
 	};
 
 	(void)client;
-	take_person(properties, message.person);
+	take_property(properties, "person", message.person, BROKER_PERSON);
+	take_property(properties, SESSION, message.session, BROKER_SESSION);
 	b->ops->message(b->ctx, &message);
 }
 
@@ -176,13 +179,28 @@ static bool set_tls(struct broker *b, char *why, size_t size)
 	return !err;
 }
 
+static bool set_will(struct broker *b, bool mqtt5)
+{
+	char topic[OPTION_SIZE];
+	const char *will = b->ops->will(b->ctx, false, topic);
+	mosquitto_property *session = NULL;
+
+	if (mqtt5 && mosquitto_property_add_string_pair(&session, MQTT_PROP_USER_PROPERTY, SESSION,
+	                                                b->session))
+		return false;
+	if (!mosquitto_will_set_v5(b->client, topic, (int)strlen(will), will,
+	                           b->options->profile->qos, true, session))
+		return true;
+	mosquitto_property_free_all(&session);
+	return false;
+}
+
 bool client_make(struct broker *b, char *why, size_t size)
 {
 	bool mqtt5 = b->options->mqtt5 && !b->old_protocol;
-	char id[160], topic[OPTION_SIZE];
-	const char *will = b->ops->will(b->ctx, topic);
+	char id[160];
 
-	snprintf(id, sizeof(id), "owsd-%s", b->options->node);
+	snprintf(id, sizeof(id), CLIENT_ID, b->options->node);
 	b->client = mosquitto_new(id, true, b);
 	if (!b->client) {
 		snprintf(why, size, "no memory");
@@ -197,6 +215,9 @@ bool client_make(struct broker *b, char *why, size_t size)
 	mosquitto_int_option(b->client, MOSQ_OPT_PROTOCOL_VERSION,
 	                     mqtt5 ? MQTT_PROTOCOL_V5 : MQTT_PROTOCOL_V311);
 	mosquitto_int_option(b->client, MOSQ_OPT_TCP_NODELAY, 1);
-	mosquitto_will_set(b->client, topic, (int)strlen(will), will, 1, true);
+	if (!set_will(b, mqtt5)) {
+		snprintf(why, size, "no memory");
+		return false;
+	}
 	return set_password(b, why, size) && set_tls(b, why, size);
 }

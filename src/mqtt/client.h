@@ -10,6 +10,9 @@
 #include "src/mqtt/options.h"
 
 #define BROKER_WORDS 256
+#define BROKER_SESSION 20
+#define CLIENT_ID "owsd-%s"
+#define BROKER_PLACES 24 /* that broker_look() takes */
 #define BROKER_PERSON 32 /* as ows_for() takes it */
 
 struct face;
@@ -19,15 +22,16 @@ struct mosquitto;
 struct broker_message {
 	const char *topic, *text; /* NUL-terminated behind len bytes */
 	size_t len;
-	bool retained;              /* the broker has kept it */
-	char person[BROKER_PERSON]; /* who sent it, as it claims; "": nothing is claimed */
+	bool retained;                /* the broker has kept it */
+	char person[BROKER_PERSON];   /* who sent it, as it claims; "": nothing is claimed */
+	char session[BROKER_SESSION]; /* of a will of owsd-mqtt: of which process; "": it is none */
 };
 
 struct broker_ops {
 	void (*connected)(void *ctx);
 	void (*message)(void *ctx, const struct broker_message *message);
-	/* The topic and text of the will. */
-	const char *(*will)(void *ctx, char topic[OPTION_SIZE]);
+	/* The topic and text of the will; ending: of what is published at the end. */
+	const char *(*will)(void *ctx, bool ending, char topic[OPTION_SIZE]);
 };
 
 enum broker_state {
@@ -57,6 +61,9 @@ struct broker {
 	unsigned in_flight;  /* put, and not taken by the broker */
 	int64_t begun_ns, next_ns, step_ns;
 	int64_t tend_ns;                   /* when broker_tick() is due, once there is a client */
+	unsigned known;                    /* ways that it was connected by, as bits */
+	bool again;                        /* by this one before */
+	char session[BROKER_SESSION];      /* of this process alone; stands in its will */
 	char tls_words[BROKER_WORDS];      /* the last error that libmosquitto logged */
 	char trouble[BROKER_WORDS];        /* what is wrong now, and its remedy; "": nothing */
 	char last[BROKER_WORDS];           /* the same, kept after its end */

@@ -141,8 +141,8 @@ static const char *fault_of(const struct broker_message *message)
 	return NULL;
 }
 
-void commands_take(struct commands *c, const char *name, const struct broker_message *message,
-                   const char *place, int64_t now_ns)
+void commands_take(struct commands *c, const char *name, bool known,
+                   const struct broker_message *message, const char *place, int64_t now_ns)
 {
 	const char *why = !may_come(c, now_ns) ? "more than 50 commands in a second" : NULL;
 	char person[BROKER_PERSON], words[ERROR_WORDS];
@@ -152,6 +152,8 @@ void commands_take(struct commands *c, const char *name, const struct broker_mes
 		why = fault_of(message);
 	if (!why && !c->stream->live)
 		why = why_not(-ESTALE, words);
+	if (!why && !known)
+		why = why_not(-ENOENT, words);
 	if (why) {
 		refuse(c, name, why, now_ns);
 		return;

@@ -34,11 +34,12 @@ struct commands {
 };
 
 /*
- * The command of a message at a topic of the signal name. place: for whom, if the message does not
- * name one. Waits for owsd when it connects, two seconds at most, once a second.
+ * The command of a message for the signal name; known: it is one of those that are published.
+ * place: for whom, if the message does not name one. Waits for owsd when it connects, two seconds
+ * at most, once a second.
  */
-void commands_take(struct commands *c, const char *name, const struct broker_message *message,
-                   const char *place, int64_t now_ns);
+void commands_take(struct commands *c, const char *name, bool known,
+                   const struct broker_message *message, const char *place, int64_t now_ns);
 void commands_close(struct commands *c);
 
 #endif

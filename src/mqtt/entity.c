@@ -188,7 +188,7 @@ static void put_sensor(struct json *json, const struct row *row, enum entity_kin
                        const char *class)
 {
 	const struct ows_info *info = &row->info;
-	int64_t expire_ns = info->stale_after_ns + plain_repeat_ns(info) + MARGIN_NS;
+	int64_t expire_ns = info->stale_after_ns + stream_repeat_ns(info) + MARGIN_NS;
 
 	if (info->stale_after_ns)
 		json_int(json, "exp_aft", expire_ns / NS_PER_S);

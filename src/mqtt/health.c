@@ -41,7 +41,6 @@ static uint64_t count_errors(struct stream *s)
 
 bool health_publish(struct stream *s, const struct health *health)
 {
-	char topic[TOPIC_SIZE];
 	struct json json;
 
 	stream_message(s, &json);
@@ -60,8 +59,7 @@ bool health_publish(struct stream *s, const struct health *health)
 		return false;
 	if (s->health && !strncmp(s->health, s->text, s->len) && !s->health[s->len])
 		return true;
-	snprintf(topic, sizeof(topic), "%s/" TOPIC_HEALTH, s->prefix);
-	if (!stream_put(s, topic, true))
+	if (!stream_put_below(s, TOPIC_HEALTH, NULL))
 		return false;
 	free(s->health);
 	s->health = strndup(s->text, s->len);

@@ -134,25 +134,39 @@ static char *removed(const struct stream *s, const char *old)
 	return parts;
 }
 
+/* The id of the topic of a birth is of a chip behind this node, or of the node: *node then. */
+static bool is_ours(const struct stream *s, const char *topic, const char *text, char id[ENTITY_ID],
+                    bool *node)
+{
+	char behind[TOPIC_SIZE], present[TOPIC_SIZE];
+	size_t len;
+
+	device_topic(s, NULL, id, present);
+	*node = !strcmp(topic, present);
+	if (*node)
+		return true;
+	len = (size_t)snprintf(id, ENTITY_ID, "%s/device/owsd_", s->discovery);
+	snprintf(behind, sizeof(behind), "\"via_device\":\"owsd_%s\"", s->node);
+	if (strncmp(topic, id, len) != 0 || !strstr(text, behind))
+		return false;
+	/* "28_A0B1C2000001/config" */
+	snprintf(id, ENTITY_ID, "%.*s", (int)strcspn(topic + len, "/"), topic + len);
+	return true;
+}
+
 static const char *outlived(struct stream *s, const char *topic, const char *text)
 {
-	char behind[TOPIC_SIZE], id[ENTITY_ID], present[TOPIC_SIZE], *parts, *mark;
+	char id[ENTITY_ID], present[TOPIC_SIZE], *parts, *mark;
 	struct chip *chip = NULL;
 	struct json json;
+	bool node;
 
-	if (strnlen(text, BIRTH_MOST) == BIRTH_MOST)
+	if (strnlen(text, BIRTH_MOST) == BIRTH_MOST || !is_ours(s, topic, text, id, &node))
 		return NULL;
-	device_topic(s, NULL, id, present);
-	if (strcmp(topic, present) != 0) {
-		size_t len = (size_t)snprintf(id, sizeof(id), "%s/device/owsd_", s->discovery);
-
-		snprintf(behind, sizeof(behind), "\"via_device\":\"owsd_%s\"", s->node);
-		if (strncmp(topic, id, len) != 0 || !strstr(text, behind))
-			return NULL;
-		/* "28_A0B1C2000001/config" */
-		snprintf(id, sizeof(id), "%.*s", (int)strcspn(topic + len, "/"), topic + len);
+	if (s->profile != &profile_homeassistant)
+		return "";
+	if (!node) {
 		mark = strchr(id, '_');
-		chip = NULL;
 		if (mark) {
 			*mark = '.';
 			chip = stream_chip(s, id);
@@ -178,13 +192,6 @@ static const char *outlived(struct stream *s, const char *topic, const char *tex
 }
 
 const struct profile profile_homeassistant = {
-	.name = "homeassistant",
-	.birth = birth,
-	.value = plain_value,
-	.state = plain_state,
-	.alarm = plain_alarm,
-	.listen = listen,
-	.heard = heard,
-	.births = births,
-	.outlived = outlived,
+	PLAIN,          .name = "homeassistant", .birth = birth,       .listen = listen,
+	.heard = heard, .births = births,        .outlived = outlived,
 };

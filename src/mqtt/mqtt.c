@@ -24,8 +24,6 @@
 /* Between two births that somebody asks for: who asks all the time gets no more */
 #define ANNOUNCE_NS (10 * NS_PER_S)
 
-static const struct profile *const profiles[] = {&profile_homeassistant, &profile_plain};
-
 static struct mqtt *own(struct face *face)
 {
 	return face->own;
@@ -33,42 +31,7 @@ static struct mqtt *own(struct face *face)
 
 /* --- What the broker asks -------------------------------------------------------------------- */
 
-static void on_connected(void *ctx)
-{
-	struct mqtt *m = ctx;
-	char topic[TOPIC_SIZE];
-
-	if (m->stream.profile->listen) {
-		m->stream.profile->listen(&m->stream, topic);
-		broker_subscribe(&m->broker, topic, 1);
-	}
-	if (m->options.write) {
-		snprintf(topic, sizeof(topic), "%s/+/set", m->options.prefix);
-		broker_subscribe(&m->broker, topic, 1);
-	}
-	m->health_ns = m->sweep_ns = 0;
-	m->sweep = true;
-	stream_begin(&m->stream);
-}
-
-static void on_message(void *ctx, const struct broker_message *message)
-{
-	struct mqtt *m = ctx;
-	char name[TOPIC_NAME], place[OPTION_SIZE + 8];
-
-	if (m->options.write && topic_is_command(m->options.prefix, message->topic, name)) {
-		snprintf(place, sizeof(place), "mqtt:%s", m->options.ways[m->broker.way].host);
-		commands_take(&m->commands, name, message, place, ows_now());
-		return;
-	}
-	if (message->retained && m->sweep_ns && look_is_current(m->broker.face))
-		stream_kept(&m->stream, message->topic, message->text);
-	if (m->stream.profile->heard &&
-	    m->stream.profile->heard(&m->stream, message->topic, message->text, message->len))
-		m->asked = true;
-}
-
-/* The profile's state "offline", caught on its way. */
+/* The profile's word for a node that is lost or ended, caught on its way. */
 struct caught {
 	char *topic;
 	char text[32];
@@ -84,7 +47,7 @@ static bool catch (void *ctx, const char *topic, const char *text, size_t len, b
 	return true;
 }
 
-static const char *will(void *ctx, char topic[OPTION_SIZE])
+static const char *will(void *ctx, bool ending, char topic[OPTION_SIZE])
 {
 	struct mqtt *m = ctx;
 	static struct caught caught;
@@ -92,9 +55,53 @@ static const char *will(void *ctx, char topic[OPTION_SIZE])
 
 	caught.topic = topic;
 	m->stream.outlet = (struct outlet){.put = catch, .ctx = &caught};
-	m->stream.profile->state(&m->stream, false);
+	m->stream.profile->state(&m->stream, ending ? STREAM_ENDED : STREAM_LOST);
 	m->stream.outlet = outlet;
 	return caught.text;
+}
+
+static void on_connected(void *ctx)
+{
+	struct mqtt *m = ctx;
+	char topic[TOPIC_SIZE];
+
+	if (m->stream.profile->listen) {
+		m->stream.profile->listen(&m->stream, topic);
+		broker_subscribe(&m->broker, topic);
+	}
+	if (m->options.write) {
+		snprintf(topic, sizeof(topic), "%.300s/%s", m->options.prefix,
+		         m->options.profile->commands);
+		broker_subscribe(&m->broker, topic);
+	}
+	m->health_ns = m->sweep_ns = 0;
+	m->sweep = true;
+	stream_begin(&m->stream);
+}
+
+static void on_message(void *ctx, const struct broker_message *message)
+{
+	struct mqtt *m = ctx;
+	char name[TOPIC_SIZE], place[OPTION_SIZE + 8];
+	const struct row *row;
+
+	if (m->options.write && stream_command(&m->stream, message->topic, &row, name)) {
+		snprintf(place, sizeof(place), "mqtt:%s", m->options.ways[m->broker.way].host);
+		commands_take(&m->commands, name, row, message, place, ows_now());
+		return;
+	}
+	/* that of the first connection may be of a run of yesterday */
+	if (message->retained && *message->session && m->broker.again &&
+	    strcmp(message->session, m->broker.session) != 0) {
+		will(m, false, place);
+		if (!strcmp(message->topic, place))
+			broker_taken(&m->broker);
+	}
+	if (message->retained && m->sweep_ns && look_is_current(m->broker.face))
+		stream_kept(&m->stream, message->topic, message->text);
+	if (m->stream.profile->heard &&
+	    m->stream.profile->heard(&m->stream, message->topic, message->text, message->len))
+		m->asked = true;
 }
 
 static const struct broker_ops broker_ops = {
@@ -126,11 +133,9 @@ static void begin(struct face *face, int64_t now_ns)
 {
 	struct mqtt *m = own(face);
 
-	m->stream.profile = profiles[0];
-	for (size_t i = 0; i < sizeof(profiles) / sizeof(profiles[0]); i++)
-		if (!strcmp(profiles[i]->name, m->options.profile))
-			m->stream.profile = profiles[i];
+	m->stream.profile = m->options.profile;
 	m->stream.prefix = m->options.prefix;
+	m->stream.topic = m->options.topic;
 	m->stream.node = m->options.node;
 	m->stream.discovery = m->options.discovery;
 	m->stream.write = m->options.write;
@@ -192,17 +197,18 @@ static void renew(struct face *face, int64_t now_ns)
 static void sweep(struct mqtt *m, int64_t now_ns)
 {
 	bool begins = m->sweep;
-	char topic[TOPIC_SIZE] = "x";
+	char topics[BROKER_PLACES][TOPIC_SIZE], *all[BROKER_PLACES];
+	int count = 0;
 
 	if (!begins && (!m->sweep_ns || now_ns < m->sweep_ns))
 		return;
-	for (int i = 0; *topic; i++) {
-		stream_places(&m->stream, i, topic);
-		if (*topic && begins)
-			broker_subscribe(&m->broker, topic, 0);
-		else if (*topic)
-			broker_unsubscribe(&m->broker, topic);
+	for (; count < BROKER_PLACES; count++) {
+		stream_places(&m->stream, count, topics[count]);
+		if (!*topics[count])
+			break;
+		all[count] = topics[count];
 	}
+	broker_look(&m->broker, all, count, begins);
 	m->sweep = false;
 	m->sweep_ns = begins ? now_ns + SWEEP_NS : 0;
 }
@@ -222,7 +228,8 @@ static void pump(struct face *face, int64_t now_ns)
 		m->asked = false;
 	}
 	m->stream.settled = broker_is_settled(&m->broker, now_ns);
-	if (stream_pump(&m->stream) && face->live && now_ns >= m->health_ns &&
+	if (stream_pump(&m->stream) && face->live && m->stream.profile->health &&
+	    now_ns >= m->health_ns &&
 	    health_publish(&m->stream, &(struct health){.trouble = m->commands.trouble,
 	                                                .commands = m->commands.taken,
 	                                                .refused_commands = m->commands.refused,
@@ -363,7 +370,7 @@ void mqtt_event(struct face *face, const struct face_event *event)
 		log_warning(face->log, "owsd is lost: no value is good");
 		break;
 	case FACE_ALARM:
-		if (m->broker.state == BROKER_CONNECTED)
+		if (m->broker.state == BROKER_CONNECTED && m->stream.profile->alarm)
 			m->stream.profile->alarm(&m->stream, event->alarm);
 		break;
 	case FACE_OVERRUN:

@@ -53,9 +53,10 @@ void mqtt_options_take(struct mqtt_options *options, const struct face *face)
 	/* so a thousand machines have one and the same file */
 	copy(options->user, OPTION_SIZE,
 	     !mqtt->user && mqtt->password_file ? options->node : mqtt->user);
-	snprintf(options->prefix, sizeof(options->prefix), "%s/%s", mqtt->topic, options->node);
+	copy(options->topic, sizeof(options->topic), mqtt->topic);
+	options->profile = profile_of(mqtt->profile);
+	profile_prefix(options->profile, options->topic, options->node, options->prefix);
 	copy(options->discovery, sizeof(options->discovery), mqtt->discovery);
-	copy(options->profile, sizeof(options->profile), mqtt->profile);
 	options->mqtt5 = mqtt->mqtt5;
 	options->write = mqtt->write;
 }

@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "src/config/config.h"
+#include "src/mqtt/stream.h"
 
 #define OPTION_SIZE 256
 
@@ -21,7 +22,8 @@ struct mqtt_options {
 	unsigned way_count;
 	char user[OPTION_SIZE], password_file[OPTION_SIZE]; /* "": none */
 	char ca_file[OPTION_SIZE], cert_file[OPTION_SIZE], key_file[OPTION_SIZE];
-	char node[128], prefix[OPTION_SIZE], discovery[64], profile[32];
+	char node[128], topic[64], prefix[TOPIC_SIZE], discovery[64];
+	const struct profile *profile;
 	bool mqtt5, write;
 };
 

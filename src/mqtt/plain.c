@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* Values, whether chips are there, and alarms, as messages of JSON. */
-#include <errno.h>
 #include <string.h>
 #include <time.h>
 
@@ -9,17 +8,6 @@
 #include "src/mqtt/plain.h"
 #include "src/show/reading.h"
 #include "src/show/when.h"
-#include "src/signal/hash.h"
-#include "src/signal/value.h"
-
-#define REPEAT_MOST_NS (300 * NS_PER_S)
-
-int64_t plain_repeat_ns(const struct ows_info *info)
-{
-	int64_t ns = info->stale_after_ns / 2;
-
-	return ns < REPEAT_MOST_NS ? ns : REPEAT_MOST_NS;
-}
 
 bool plain_is_key(const struct row *row)
 {
@@ -29,12 +17,29 @@ bool plain_is_key(const struct row *row)
 	       !strcmp(path, "/present");
 }
 
-bool plain_state(struct stream *s, bool online)
+void plain_topic(const struct stream *s, const struct row *row, char topic[TOPIC_SIZE])
 {
-	char topic[TOPIC_SIZE];
+	snprintf(topic, TOPIC_SIZE, "%s/%s", s->prefix, row->level);
+}
 
-	snprintf(topic, sizeof(topic), "%s/" TOPIC_STATE, s->prefix);
-	return stream_put_text(s, topic, online ? "online" : "offline", true);
+bool plain_state(struct stream *s, enum stream_node node)
+{
+	return stream_put_below(s, TOPIC_STATE, node == STREAM_THERE ? "online" : "offline");
+}
+
+bool plain_writes(const struct stream *s, const char *topic, const char *below)
+{
+	const char *level = strchr(below, '/');
+	const struct row *row;
+
+	if (level && !strncmp(below, TOPIC_CHIP "/", strlen(TOPIC_CHIP) + 1))
+		return stream_chip(s, level + 1);
+	if (level && strcmp(level, "/alarm") != 0)
+		return true;
+	if (!level && (!strcmp(below, TOPIC_STATE) || !strcmp(below, TOPIC_HEALTH)))
+		return true;
+	row = stream_row(s, topic, level ? (size_t)(level - topic) : strlen(topic));
+	return row && (!level || row->alarms);
 }
 
 /* --- Values ---------------------------------------------------------------------------------- */
@@ -149,37 +154,19 @@ static bool publish_limit(struct stream *s, struct row *row)
 
 bool plain_value(struct stream *s, struct row *row)
 {
-	struct ows_value v = {.quality = OWS_Q_TARGET};
-	char text[VALUE_STRING_MAX + 1] = "";
-	int64_t now_ns = ows_now(), repeat_ns = 0;
+	struct news news;
+	bool due = stream_read(s, row, &news);
 	struct json json;
-	uint64_t print;
 
-	if (s->live) {
-		int err = ows_get_signal_text(s->h, (int)(row - s->rows), now_ns, &v, text,
-		                              sizeof(text));
-
-		if (err && err != -ENOSPC && err != -ESTALE)
-			v.quality = OWS_Q_TARGET;
-		repeat_ns = plain_repeat_ns(&row->info);
-	}
-	if (!publish_chip(s, row, v.quality) || !publish_limit(s, row))
+	if (!publish_chip(s, row, news.v.quality) || !publish_limit(s, row))
 		return false;
-	if (s->live && plain_is_key(row) && !publish_key(s, row, &v))
+	if (s->live && plain_is_key(row) && !publish_key(s, row, &news.v))
 		return false;
-	print = ows_good(v.quality) ? hash_text(HASH_BEGIN ^ v.quality, text, strlen(text))
-	                            : v.quality;
-	if (row->published && print == row->print &&
-	    !(repeat_ns && ows_good(v.quality) && now_ns - row->published_ns >= repeat_ns))
+	if (!due)
 		return true;
 	stream_message(s, &json);
-	put_value(&json, s, &v, text);
-	if (!stream_put(s, row->topic, true))
-		return false;
-	row->published = true;
-	row->print = print;
-	row->published_ns = now_ns;
-	return true;
+	put_value(&json, s, &news.v, news.text);
+	return stream_put(s, row->topic, true) && stream_published(row, &news);
 }
 
 /* --- The rest -------------------------------------------------------------------------------- */
@@ -203,9 +190,9 @@ void plain_alarm(struct stream *s, const struct ows_alarm *alarm)
 	stream_put(s, topic, false);
 }
 
+const char *const plain_below[] = {"+", "+/alarm", TOPIC_CHIP "/+", NULL};
+
 const struct profile profile_plain = {
+	PLAIN,
 	.name = "plain",
-	.value = plain_value,
-	.state = plain_state,
-	.alarm = plain_alarm,
 };

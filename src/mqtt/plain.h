@@ -5,13 +5,21 @@
 
 #include "src/mqtt/stream.h"
 
-/* How often a value that stays the same is published again, ns; 0: never. From StaleAfter. */
-int64_t plain_repeat_ns(const struct ows_info *info);
 /* Is it a key that touches the wire: "/01.7A3B4C5D6E7F/present"? */
 bool plain_is_key(const struct row *row);
 
+extern const char *const plain_below[];
+void plain_topic(const struct stream *s, const struct row *row, char topic[TOPIC_SIZE]);
+bool plain_writes(const struct stream *s, const char *topic, const char *below);
 bool plain_value(struct stream *s, struct row *row);
-bool plain_state(struct stream *s, bool online);
+bool plain_state(struct stream *s, enum stream_node node);
 void plain_alarm(struct stream *s, const struct ows_alarm *alarm);
+
+/* What the profiles that are built on it have of it. */
+#define PLAIN \
+	.qos = 1, .health = true, .commands = "+/set", .below = plain_below, \
+	.none = "{\"v\":null,\"good\":false,\"q\":4,\"why\":\"not configured\"}", \
+	.writes = plain_writes, .topic = plain_topic, .value = plain_value, .state = plain_state, \
+	.alarm = plain_alarm
 
 #endif

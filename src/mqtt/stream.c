@@ -1,10 +1,42 @@
 /* SPDX-License-Identifier: MIT */
 /* The rows of an instance, and which of them have to be published. */
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "src/mqtt/stream.h"
+#include "src/signal/hash.h"
+#include "src/signal/utf8.h"
+
+#define PROFILE_TABLE(name) &profile_##name,
+#define REPEAT_MOST_NS (300 * NS_PER_S)
+
+static const struct profile *const profiles[] = {MQTT_PROFILES(PROFILE_TABLE)};
+#define PROFILES (sizeof(profiles) / sizeof(profiles[0]))
+
+const struct profile *profile_of(const char *name)
+{
+	size_t i = PROFILES - 1;
+
+	while (i && strcmp(profiles[i]->name, name) != 0)
+		i--;
+	return profiles[i];
+}
+
+void profile_prefix(const struct profile *profile, const char *topic, const char *node,
+                    char prefix[TOPIC_SIZE])
+{
+	char id[TOPIC_SIZE / 2];
+
+	if (profile->root) {
+		topic_slug(node, profile->dash, id, sizeof(id));
+		snprintf(prefix, TOPIC_SIZE, "%s%s", profile->root, id);
+	} else {
+		snprintf(prefix, TOPIC_SIZE, "%s/%s", topic, node);
+	}
+}
 
 /* --- Messages -------------------------------------------------------------------------------- */
 
@@ -27,6 +59,76 @@ bool stream_put_text(struct stream *s, const char *topic, const char *text, bool
 	                     text ? strlen(text) : s->len, retain);
 }
 
+bool stream_put_below(struct stream *s, const char *below, const char *text)
+{
+	char topic[TOPIC_SIZE];
+
+	snprintf(topic, sizeof(topic), "%.300s/%.200s", s->prefix, below);
+	return text ? stream_put_text(s, topic, text, true) : stream_put(s, topic, true);
+}
+
+/* --- The value of a row ---------------------------------------------------------------------- */
+
+int64_t stream_repeat_ns(const struct ows_info *info)
+{
+	int64_t ns = info->stale_after_ns / 2;
+
+	return ns < REPEAT_MOST_NS ? ns : REPEAT_MOST_NS;
+}
+
+bool stream_read(struct stream *s, struct row *row, struct news *news)
+{
+	int64_t repeat_ns = 0;
+	struct ows_value *v = &news->v;
+
+	news->now_ns = ows_now();
+	news->text[0] = '\0';
+	*v = (struct ows_value){.quality = OWS_Q_TARGET};
+	if (s->live) {
+		int err = ows_get_signal_text(s->h, (int)(row - s->rows), news->now_ns, v,
+		                              news->text, sizeof(news->text));
+
+		if (err && err != -ENOSPC && err != -ESTALE)
+			v->quality = OWS_Q_TARGET;
+		repeat_ns = stream_repeat_ns(&row->info);
+	}
+	news->good = ows_good(v->quality);
+	news->print = news->good
+	                      ? hash_text(HASH_BEGIN ^ v->quality, news->text, strlen(news->text))
+	                      : v->quality;
+	return !row->published || news->print != row->print ||
+	       (repeat_ns && news->good && news->now_ns - row->published_ns >= repeat_ns);
+}
+
+bool stream_published(struct row *row, const struct news *news)
+{
+	row->published = true;
+	row->good = news->good;
+	row->print = news->print;
+	row->published_ns = news->now_ns;
+	return true;
+}
+
+void stream_value(struct stream *s, const struct news *news, const char *yes, const char *no)
+{
+	const char *text = news->text, *at;
+	size_t len = strlen(text);
+
+	rewind(s->out);
+	if (news->v.type == OWS_BOOL) {
+		fputs(news->v.integer ? yes : no, s->out);
+		return;
+	}
+	while (len) {
+		at = text;
+		if (utf8_next(&text, &len) < 0)
+			fputs("\xef\xbf\xbd", s->out);
+		/* the conventions have no sign but '-' in a number: "1e+20" */
+		else if (news->v.type == OWS_STRING || *at != '+')
+			fwrite(at, 1, (size_t)(text - at), s->out);
+	}
+}
+
 /* --- The rows -------------------------------------------------------------------------------- */
 
 int stream_open(struct stream *s)
@@ -36,10 +138,17 @@ int stream_open(struct stream *s)
 	return s->out ? 0 : -ENOMEM;
 }
 
+static void free_row(struct row *row)
+{
+	free(row->name);
+	free(row->level);
+	free(row->topic);
+}
+
 static void free_rows(struct stream *s)
 {
 	for (int i = 0; i < s->count; i++)
-		free(s->rows[i].topic);
+		free_row(&s->rows[i]);
 	for (int i = 0; i < s->chip_count; i++)
 		free(s->chips[i].topic);
 	free(s->rows);
@@ -103,21 +212,30 @@ static int by_topic(const void *a, const void *b)
 	return strcmp((*(struct row *const *)a)->topic, (*(struct row *const *)b)->topic);
 }
 
+static int by_level(const void *a, const void *b)
+{
+	return strcmp((*(struct row *const *)a)->level, (*(struct row *const *)b)->level);
+}
+
 static bool make_row(struct stream *s, int signal)
 {
 	struct row *row = &s->rows[signal];
 	struct ows_alarm_state state = {0};
 	char level[TOPIC_NAME];
+	char dash = s->profile->dash;
 	uint8_t rom[ROM_LEN];
 
 	row->chip = -1;
 	if (ows_info(s->h, signal, &row->info))
 		return false;
-	topic_escape(row->info.name, level);
-	if (asprintf(&row->topic, "%s/%s", s->prefix, level) < 0) {
-		row->topic = NULL;
+	if (dash)
+		topic_slug(row->info.name, dash, level, sizeof(level));
+	else
+		topic_escape(row->info.name, level);
+	row->name = strdup(row->info.name);
+	row->level = strdup(level);
+	if (!row->name || !row->level)
 		return false;
-	}
 	row->property = property_of(&row->info);
 	row->id = ows_find(s->h, row->info.name);
 	row->alarms = row->id >= 0 && !ows_alarm_state(s->h, row->id, &state) && state.limits;
@@ -125,6 +243,41 @@ static bool make_row(struct stream *s, int signal)
 	if (!rom_parse(row->info.device, strlen(row->info.device), rom))
 		rom_print(rom, ROM_F_I, row->chip_id);
 	s->by_topic[signal] = s->by_chip[signal] = row;
+	return true;
+}
+
+/* Rows whose names have the same slug get a hash of the name behind it, and all their topics. */
+static bool make_topics(struct stream *s)
+{
+	char topic[TOPIC_SIZE], dash = s->profile->dash;
+	bool same = false, next;
+
+	qsort(s->by_topic, (size_t)s->count, sizeof(struct row *), by_level);
+	for (int i = 0; dash && i < s->count; i++, same = next) {
+		struct row *row = s->by_topic[i];
+
+		next = i + 1 < s->count && !by_level(&s->by_topic[i], &s->by_topic[i + 1]);
+		/* a name that is its own slug keeps it */
+		row->twin = (same || next) && strcmp(row->name, row->level) != 0;
+	}
+	for (int i = 0; i < s->count; i++) {
+		struct row *row = &s->rows[i];
+
+		if (row->twin) {
+			snprintf(topic, sizeof(topic), "%s%c%c%016llx", row->level, dash, dash,
+			         (unsigned long long)hash_text(HASH_BEGIN, row->name,
+			                                       strlen(row->name)));
+			free(row->level);
+			row->level = strdup(topic);
+		}
+		if (!row->level)
+			return false;
+		s->profile->topic(s, row, topic);
+		row->topic = strdup(topic);
+		if (!row->topic)
+			return false;
+	}
+	qsort(s->by_topic, (size_t)s->count, sizeof(struct row *), by_topic);
 	return true;
 }
 
@@ -192,9 +345,8 @@ int stream_make(struct stream *s, struct ows *h)
 	for (int i = 0; made && i < count; i++)
 		made = make_row(s, i);
 	if (made) {
-		qsort(s->by_topic, (size_t)count, sizeof(struct row *), by_topic);
 		qsort(s->by_chip, (size_t)count, sizeof(struct row *), by_chip);
-		made = make_chips(s);
+		made = make_topics(s) && make_chips(s);
 	}
 	for (int i = 0; made && i < old.chip_count; i++) {
 		struct chip *chip = stream_chip(s, old.chips[i].id);
@@ -213,47 +365,91 @@ int stream_make(struct stream *s, struct ows *h)
 
 void stream_places(const struct stream *s, int number, char topic[TOPIC_SIZE])
 {
-	static const char *const below[] = {"+", "+/alarm", TOPIC_CHIP "/+"};
-	const int count = sizeof(below) / sizeof(below[0]);
+	const char *const *last = NULL;
 
 	topic[0] = '\0';
-	if (number < count)
-		snprintf(topic, TOPIC_SIZE, "%s/%s", s->prefix, below[number]);
-	else if (number == count && s->profile->births)
-		s->profile->births(s, topic);
+	for (size_t i = 0; i <= PROFILES; i++) {
+		/* our own first: the others' may be refused */
+		const struct profile *p = i ? profiles[i - 1] : s->profile;
+		/* profiles that are built on one another have the same */
+		bool again = i && (p->below == s->profile->below || p->below == last);
+		char prefix[TOPIC_SIZE];
+
+		last = p->below;
+		profile_prefix(p, s->topic, s->node, prefix);
+		for (const char *const *below = p->below; below && *below && !again; below++)
+			if (!number--) {
+				snprintf(topic, TOPIC_SIZE, "%.300s/%s", prefix, *below);
+				return;
+			}
+		if (p->births && (!i || p != s->profile) && !number--) {
+			p->births(s, topic);
+			return;
+		}
+	}
 }
 
-/* Does nobody write a topic below the prefix any more? */
-static bool is_gone(const struct stream *s, const char *topic, size_t prefix_len)
+static const char *behind(const char *topic, const char *prefix)
 {
-	const char *level = topic + prefix_len + 1, *below = strchr(level, '/');
+	size_t len = strlen(prefix);
+
+	return !strncmp(topic, prefix, len) && topic[len] == '/' ? topic + len + 1 : NULL;
+}
+
+const struct row *stream_row(const struct stream *s, const char *topic, size_t len)
+{
 	char text[TOPIC_SIZE];
 	struct row key = {.topic = text}, *wanted = &key, **found;
 
-	if (below && !strncmp(level, TOPIC_CHIP "/", strlen(TOPIC_CHIP) + 1))
-		return !stream_chip(s, below + 1);
-	if (below && strcmp(below, "/alarm") != 0)
-		return false;
-	if (!below && (!strcmp(level, TOPIC_STATE) || !strcmp(level, TOPIC_HEALTH)))
-		return false;
-	snprintf(text, sizeof(text), "%.*s", below ? (int)(below - topic) : (int)strlen(topic),
-	         topic);
+	snprintf(text, sizeof(text), "%.*s", (int)len, topic);
 	found = s->count ? bsearch(&wanted, s->by_topic, (size_t)s->count, sizeof(wanted), by_topic)
 	                 : NULL;
-	return !found || (below && !(*found)->alarms);
+	return found ? *found : NULL;
+}
+
+bool stream_command(const struct stream *s, const char *topic, const struct row **row,
+                    char name[TOPIC_SIZE])
+{
+	const char *below = behind(topic, s->prefix), *last = below ? strrchr(below, '/') : NULL;
+
+	if (!last || strcmp(last, strrchr(s->profile->commands, '/')) != 0)
+		return false;
+	*row = stream_row(s, topic, (size_t)(last - topic));
+	if (*row)
+		snprintf(name, TOPIC_SIZE, "%s", (*row)->name);
+	else
+		snprintf(name, TOPIC_SIZE, "%.*s", (int)(last - below), below);
+	return true;
+}
+
+/* What is to be published at a topic that is not below the prefix; NULL: nothing. */
+static const char *outlived(struct stream *s, const char *topic, const char *text)
+{
+	for (size_t i = 0; i < PROFILES; i++) {
+		const struct profile *p = profiles[i];
+		const char *put = p->outlived ? p->outlived(s, topic, text) : NULL;
+		char prefix[TOPIC_SIZE];
+
+		if (put)
+			return put;
+		profile_prefix(p, s->topic, s->node, prefix);
+		if (p->below && behind(topic, prefix))
+			return "";
+	}
+	return NULL;
 }
 
 void stream_kept(struct stream *s, const char *topic, const char *text)
 {
-	size_t len = strlen(s->prefix);
+	const char *below = behind(topic, s->prefix);
 	struct gone *more, gone;
 
 	if (!s->live || !s->count || !*text)
 		return;
-	if (!strncmp(topic, s->prefix, len) && topic[len] == '/')
-		text = is_gone(s, topic, len) ? "" : NULL;
+	if (below)
+		text = s->profile->writes(s, topic, below) ? NULL : "";
 	else
-		text = s->profile->outlived ? s->profile->outlived(s, topic, text) : NULL;
+		text = outlived(s, topic, text);
 	if (!text)
 		return;
 	if (s->gone_count == s->gone_room) {
@@ -328,16 +524,12 @@ void stream_live(struct stream *s, bool live)
 /* Who has the last value in mind unlearns it, and who comes later finds nothing. */
 static bool pump_gone(struct stream *s)
 {
-	static const char none[] = "{\"v\":null,\"good\":false,\"q\":4,\"why\":\"not configured\"}";
-
 	while (s->settled && s->gone_count) {
 		struct gone *last = &s->gone[s->gone_count - 1];
-		const char *topic = last->topic;
-		size_t len = strlen(s->prefix);
-		bool value = !strncmp(topic, s->prefix, len) && topic[len] == '/' &&
-		             !strchr(topic + len + 1, '/');
+		const char *topic = last->topic, *below = behind(topic, s->prefix);
+		bool value = s->profile->none && below && !strchr(below, '/');
 
-		if ((value && !stream_put_text(s, topic, none, true)) ||
+		if ((value && !stream_put_text(s, topic, s->profile->none, true)) ||
 		    !stream_put_text(s, topic, last->text, true))
 			return false;
 		/* it names what is gone alone: what there is follows */
@@ -383,7 +575,7 @@ bool stream_pump(struct stream *s)
 	if (!pump_gone(s))
 		return false;
 	if (!s->live && s->online) {
-		if (!s->profile->state(s, false))
+		if (!s->profile->state(s, STREAM_LOST))
 			return false;
 		s->online = false;
 	}
@@ -391,7 +583,7 @@ bool stream_pump(struct stream *s)
 	if (!pump_birth(s) || !pump_rows(s) || !pump_birth(s))
 		return false;
 	if (s->live && !s->online) {
-		if (!s->profile->state(s, true))
+		if (!s->profile->state(s, STREAM_THERE))
 			return false;
 		s->online = true;
 	}

@@ -11,9 +11,11 @@
 #include <stdio.h>
 
 #include "hal/owfs/path.h"
+#include "src/config/config.h"
 #include "src/libows/ows.h"
 #include "src/mqtt/topics.h"
 #include "src/show/json.h"
+#include "src/signal/value.h"
 
 /* What takes messages. retain: the broker keeps it for those who come later. */
 struct outlet {
@@ -27,12 +29,16 @@ struct row {
 	char chip_id[ROM_TEXT_MAX]; /* "": none; else in the one form that a chip has here */
 	const char *property;       /* what stands after the device in the path */
 	const char *class;          /* the key Class; "": none */
-	char *topic;
-	int id;   /* of ows_find() */
-	int chip; /* its chip; -1: none */
+	char *name;                 /* a copy, which counts longer than info */
+	char *level;                /* what stands for it in topics */
+	char *topic;                /* of its value */
+	int id;                     /* of ows_find() */
+	int chip;                   /* its chip; -1: none */
 	bool queued, away, blank, alarms;
+	bool twin;            /* another name has the same slug */
 	bool twice;           /* another row before it has its chip and property */
 	bool published;       /* once at least since the birth */
+	bool good;            /* what was published */
 	uint64_t print;       /* a hash of what was published */
 	int64_t published_ns; /* when */
 	uint32_t alarm_print; /* of its limit alarm; 0: not published */
@@ -54,11 +60,28 @@ struct gone {
 	char *topic, *text; /* text: what is to be published there once */
 };
 
+/* The value of a row, as it is now. */
+struct news {
+	struct ows_value v;
+	bool good;
+	char text[VALUE_STRING_MAX + 1];
+	uint64_t print;
+	int64_t now_ns;
+};
+
+/* How the node is. */
+enum stream_node {
+	STREAM_THERE,
+	STREAM_LOST, /* owsd is; as the will owsd-mqtt */
+	STREAM_ENDED,
+};
+
 struct profile;
 struct stream {
 	const struct profile *profile;
 	struct outlet outlet;
-	const char *prefix, *node, *discovery; /* TOPIC/NODE; the texts belong to the caller */
+	/* What all topics begin with; the keys. The texts belong to the caller. */
+	const char *prefix, *topic, *node, *discovery;
 	bool write;
 	struct ows *h;
 	/* The key Class of a signal; "": none. The text counts until the next stream_make(). */
@@ -79,7 +102,9 @@ struct stream {
 	bool online;    /* it was published that the node is there */
 	char *health;   /* as it was published last */
 	bool clock_set; /* wall-clock times can be believed */
-	FILE *out;      /* makes a message in text */
+	uint64_t described;  /* by homie5: a hash of the description, */
+	int64_t description; /* and its version */
+	FILE *out;           /* makes a message in text */
 	char *text;
 	size_t len;
 };
@@ -90,6 +115,17 @@ struct stream {
  */
 struct profile {
 	const char *name; /* as the key Profile has it */
+	const char *root; /* stands before the id of the node; NULL: the keys Topic and Node do */
+	char dash;        /* what topic_slug() puts into ids; 0: topic_escape() makes them */
+	uint8_t qos;
+	bool health;          /* it publishes the message of health */
+	const char *none;     /* what is published last at the topic of a signal that is no more */
+	const char *commands; /* below the prefix, with wildcards; the last level has none */
+	const char *const *below; /* where retained messages may stand, likewise; NULL at the end */
+	/* Is the topic, which ends with below, one of what there is now? */
+	bool (*writes)(const struct stream *s, const char *topic, const char *below);
+	/* The topic of a row's value. */
+	void (*topic)(const struct stream *s, const struct row *row, char topic[TOPIC_SIZE]);
 	/*
 	 * A part of what announces what there is, by its number. *more: there are further ones.
 	 * NULL, as all functions below that have to do with births: nothing is announced.
@@ -97,9 +133,8 @@ struct profile {
 	bool (*birth)(struct stream *s, int number, bool *more);
 	/* The value and quality of a row. */
 	bool (*value)(struct stream *s, struct row *row);
-	/* The node is there, or not; the latter is the will too. */
-	bool (*state)(struct stream *s, bool online);
-	/* An entry of the journal of alarms; one that is not taken is lost. */
+	bool (*state)(struct stream *s, enum stream_node node);
+	/* An entry of the journal of alarms; one that is not taken is lost. NULL: it shows none. */
 	void (*alarm)(struct stream *s, const struct ows_alarm *alarm);
 	/* A topic to listen to besides those of commands. */
 	void (*listen)(const struct stream *s, char topic[TOPIC_SIZE]);
@@ -109,12 +144,20 @@ struct profile {
 	void (*births)(const struct stream *s, char topic[TOPIC_SIZE]);
 	/*
 	 * What has to be published there because something of one of these is no more: "" if
-	 * nothing of it is left, else s->text, and the birth follows. NULL: nothing, or it is not
-	 * of this node.
+	 * nothing of it is left, as of all when s has another profile; else s->text, and the birth
+	 * follows. NULL: nothing, or it is not of this node.
 	 */
 	const char *(*outlived)(struct stream *s, const char *topic, const char *text);
 };
-extern const struct profile profile_plain, profile_homeassistant;
+#define PROFILE_EXTERN(name) extern const struct profile profile_##name;
+MQTT_PROFILES(PROFILE_EXTERN)
+#undef PROFILE_EXTERN
+
+/* The profile of a name of MQTT_PROFILES. */
+const struct profile *profile_of(const char *name);
+/* What all its topics begin with: TOPIC/NODE, or its root and the id of the node. */
+void profile_prefix(const struct profile *profile, const char *topic, const char *node,
+                    char prefix[TOPIC_SIZE]);
 
 /* 0 or -ENOMEM. */
 int stream_open(struct stream *s);
@@ -126,7 +169,14 @@ void stream_close(struct stream *s);
 int stream_make(struct stream *s, struct ows *h);
 /* The chip of an id in the one form; NULL: no signal names it. */
 struct chip *stream_chip(const struct stream *s, const char *id);
-/* The topics where the broker may keep what is no more; "" after the last. */
+/* The row whose value the first len bytes of topic are for; NULL: none. */
+const struct row *stream_row(const struct stream *s, const char *topic, size_t len);
+/* Is topic that of a command? *row is whose, or NULL; name gets what to call it. */
+bool stream_command(const struct stream *s, const char *topic, const struct row **row,
+                    char name[TOPIC_SIZE]);
+/*
+ * The topics where the broker may keep what is no more, of other profiles too; "" after the last.
+ */
 void stream_places(const struct stream *s, int number, char topic[TOPIC_SIZE]);
 /* A retained message that came there: it is emptied if nobody writes the topic any more. */
 void stream_kept(struct stream *s, const char *topic, const char *text);
@@ -145,5 +195,14 @@ bool stream_pump(struct stream *s);
 void stream_message(struct stream *s, struct json *json);
 bool stream_put(struct stream *s, const char *topic, bool retain);
 bool stream_put_text(struct stream *s, const char *topic, const char *text, bool retain);
+/* The same at a topic below the prefix, retained; text NULL: the message that was begun. */
+bool stream_put_below(struct stream *s, const char *below, const char *text);
+/* Begin a message that is the value alone; yes, no: of a bool. */
+void stream_value(struct stream *s, const struct news *news, const char *yes, const char *no);
+/* How often a value that stays the same is published again, ns; 0: never. From StaleAfter. */
+int64_t stream_repeat_ns(const struct ows_info *info);
+/* What a row's value is. True: it has to be published, and stream_published() is due then. */
+bool stream_read(struct stream *s, struct row *row, struct news *news);
+bool stream_published(struct row *row, const struct news *news); /* Returns true. */
 
 #endif

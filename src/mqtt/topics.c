@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Names of signals as levels of topics, and back. */
+/* Names of signals as levels of topics. */
 #include <ctype.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -26,32 +27,16 @@ void topic_escape(const char *name, char level[TOPIC_NAME])
 	level[len] = '\0';
 }
 
-static int digit(char c)
+void topic_slug(const char *text, char dash, char *id, size_t size)
 {
-	return c >= '0' && c <= '9' ? c - '0' : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
-}
+	size_t len = 0;
 
-bool topic_is_command(const char *prefix, const char *topic, char name[TOPIC_NAME])
-{
-	size_t prefix_len = strlen(prefix), level_len, len = 0;
-	char again[TOPIC_NAME];
-	const char *level = topic + prefix_len + 1;
-
-	if (strncmp(topic, prefix, prefix_len) != 0 || topic[prefix_len] != '/')
-		return false;
-	level_len = strcspn(level, "/");
-	if (!level_len || level_len >= TOPIC_NAME || strcmp(level + level_len, "/set") != 0)
-		return false;
-	for (size_t i = 0; i < level_len; i++) {
-		int high = level[i] == '%' && i + 2 < level_len ? digit(level[i + 1]) : -1;
-		int low = high >= 0 ? digit(level[i + 2]) : -1;
-
-		name[len++] = low >= 0 ? (char)(high * 16 + low) : level[i];
-		i += low >= 0 ? 2 : 0;
-	}
-	name[len] = '\0';
-	topic_escape(name, again);
-	return strlen(again) == level_len && !strncmp(again, level, level_len);
+	for (; *text && len + 1 < size; text++)
+		if (isalnum((unsigned char)*text))
+			id[len++] = (char)tolower((unsigned char)*text);
+		else if (!len || id[len - 1] != dash)
+			id[len++] = dash;
+	id[len] = '\0';
 }
 
 void topic_id(const char *text, char *id, size_t size)

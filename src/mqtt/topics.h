@@ -3,7 +3,6 @@
 #ifndef MQTT_TOPICS_H
 #define MQTT_TOPICS_H
 
-#include <stdbool.h>
 #include <stddef.h>
 
 #define TOPIC_SIZE 512
@@ -17,10 +16,10 @@
 /* The level of a signal: '+', '#', '/' and '%' as %XX. name: at most 63 bytes. */
 void topic_escape(const char *name, char level[TOPIC_NAME]);
 /*
- * Is topic that of a command, PREFIX/LEVEL/set? Then name gets the signal that LEVEL means. prefix
- * is TOPIC/NODE. False also for a level that topic_escape() would not write.
+ * The text in lower case, with one dash for each run of what is no letter or digit of ASCII: what
+ * the conventions let stand in an id. Other texts may have the same.
  */
-bool topic_is_command(const char *prefix, const char *topic, char name[TOPIC_NAME]);
+void topic_slug(const char *text, char dash, char *id, size_t size);
 /* The text with '_' for all but letters, digits, '-' and '_', as Home Assistant takes ids. */
 void topic_id(const char *text, char *id, size_t size);
 

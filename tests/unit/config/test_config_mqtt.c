@@ -124,8 +124,9 @@ static void test_what_cannot_be_is_an_error_at_its_place(void)
 	         "'-', '_', '.' and '/' between them, at most 63\n"},
 		{"Mqtt { Topic \"/a\" }", "f:2:14: error: Topic \"/a\": expected letters, digits, "
 	                                  "'-', '_', '.' and '/' between them, at most 63\n"},
-		{"Mqtt { Profile sparkplug }",
-	         "f:2:16: error: Profile \"sparkplug\": expected homeassistant or plain\n"},
+		{"Mqtt { Profile homie4 }",
+	         "f:2:16: error: Profile \"homie4\": expected one of homeassistant plain homie5 "
+	         "wirenboard\n"},
 		{"Mqtt { Write maybe }", "f:2:14: error: Write \"maybe\": expected on or off\n"},
 	};
 

@@ -35,16 +35,26 @@ static bool put(void *ctx, const char *topic, const char *text, size_t len, bool
 	return true;
 }
 
+static char prefix[TOPIC_SIZE];
+
+/* As to a broker that knows nothing, with another profile. */
+static void take_profile(const struct profile *profile)
+{
+	profile_prefix(profile, "o", "pi", prefix);
+	s.profile = profile;
+	TEST_ASSERT_EQUAL_INT(0, stream_make(&s, ows));
+}
+
 void setUp(void)
 {
 	instance_start(&in, "mqtt", signals, COUNT);
 	TEST_ASSERT_EQUAL_INT(0, ows_open(in.name, OWS_READ, &ows));
 	s = (struct stream){
-		.profile = &profile_plain, .outlet.put = put, .prefix = "o/pi", .node = "pi"};
+		.outlet.put = put, .prefix = prefix, .topic = "o", .node = "pi", .discovery = "ha"};
 	room = 100;
 	said[0] = '\0';
 	TEST_ASSERT_EQUAL_INT(0, stream_open(&s));
-	TEST_ASSERT_EQUAL_INT(0, stream_make(&s, ows));
+	take_profile(&profile_plain);
 	stream_live(&s, true);
 	s.settled = true;
 }
@@ -157,7 +167,6 @@ static void test_what_the_broker_keeps_is_emptied_if_nobody_writes_it_any_more(v
 	                                   "o/pi/room/note", "o/pi/state",
 	                                   "o/pi/health",    "o/pi/chip/28.000000000001",
 	                                   "o/pi2/room",     "o/pi"};
-	char topic[TOPIC_SIZE];
 
 	pump();
 	instance_reload(&in, other, 1);
@@ -181,11 +190,177 @@ static void test_what_the_broker_keeps_is_emptied_if_nobody_writes_it_any_more(v
 	pump();
 	stream_kept(&s, "o/pi/room", "x");
 	TEST_ASSERT_EQUAL_STRING("", pump());
-	for (int i = 0; i < 3; i++)
+}
+
+/* All places, one a line. */
+static const char *places(void)
+{
+	char topic[TOPIC_SIZE] = "x";
+
+	said[0] = '\0';
+	for (int i = 0; *topic; i++) {
 		stream_places(&s, i, topic);
-	TEST_ASSERT_EQUAL_STRING("o/pi/chip/+", topic);
-	stream_places(&s, 3, topic);
-	TEST_ASSERT_EQUAL_STRING("", topic);
+		snprintf(said + strlen(said), sizeof(said) - strlen(said), "%s\n", topic);
+	}
+	return said;
+}
+
+static void test_the_topics_of_all_profiles_are_looked_at_our_own_first(void)
+{
+	TEST_ASSERT_EQUAL_STRING(
+		"o/pi/+\no/pi/+/alarm\no/pi/chip/+\nha/device/+/config\n"
+		"homie/5/owsd-pi/+\nhomie/5/owsd-pi/+/+\n"
+		"/devices/owsd_pi/meta\n/devices/owsd_pi/meta/error\n/devices/owsd_pi/controls/+\n"
+		"/devices/owsd_pi/controls/+/meta\n/devices/owsd_pi/controls/+/meta/error\n\n",
+		places());
+	take_profile(&profile_homie5);
+	TEST_ASSERT_EQUAL_STRING(
+		"homie/5/owsd-pi/+\nhomie/5/owsd-pi/+/+\n"
+		"o/pi/+\no/pi/+/alarm\no/pi/chip/+\nha/device/+/config\n"
+		"/devices/owsd_pi/meta\n/devices/owsd_pi/meta/error\n/devices/owsd_pi/controls/+\n"
+		"/devices/owsd_pi/controls/+/meta\n/devices/owsd_pi/controls/+/meta/error\n\n",
+		places());
+}
+
+static void test_what_another_profile_has_left_is_emptied_if_it_is_of_this_node(void)
+{
+	static const char *const theirs[] = {"o/pi2/room", "ha/device/owsd_x/config",
+	                                     "homie/5/pi/$state"};
+	static const char *const left[] = {"o/pi/room", "o/pi/state",
+	                                   "/devices/owsd_pi/controls/room"};
+
+	take_profile(&profile_homie5);
+	pump();
+	for (size_t i = 0; i < sizeof(theirs) / sizeof(theirs[0]); i++)
+		stream_kept(&s, theirs[i], "{\"dev\":{\"via_device\":\"owsd_pi2\"}}");
+	TEST_ASSERT_EQUAL_STRING("", pump());
+	for (size_t i = 0; i < sizeof(left) / sizeof(left[0]); i++) {
+		char line[TOPIC_SIZE];
+
+		stream_kept(&s, left[i], "x");
+		snprintf(line, sizeof(line), "%s \n", left[i]);
+		TEST_ASSERT_EQUAL_STRING(line, pump());
+	}
+	/* of a chip that is still there, too */
+	stream_kept(&s, "ha/device/owsd_28_000000000001/config",
+	            "{\"dev\":{\"via_device\":\"owsd_pi\"}}");
+	TEST_ASSERT_EQUAL_STRING("ha/device/owsd_28_000000000001/config \n", pump());
+}
+
+static void test_homie_has_no_value_that_is_bad_and_an_alert_instead(void)
+{
+	int signal = ROOM;
+
+	take_profile(&profile_homie5);
+	instance_put_double(&in, ROOM + 1, 1e20, ows_now());
+	instance_put_text(&in, TITLE + 1, "", ows_now());
+	pump();
+	TEST_ASSERT_EQUAL_STRING_LEN("homie/5/owsd-pi/$state init\n"
+	                             "homie/5/owsd-pi/$description {\"homie\":\"5.0\",",
+	                             said, 72);
+	TEST_ASSERT_NOT_NULL(strstr(said, "/28-000000000001/room 1e20\n"
+	                                  "homie/5/owsd-pi/$alert/room \n"));
+	TEST_ASSERT_NOT_NULL(strstr(said, "/29-000000000001/title "));
+	TEST_ASSERT_EQUAL_STRING("homie/5/owsd-pi/$state ready\n",
+	                         strstr(said, "homie/5/owsd-pi/$state r"));
+	instance_put_double(&in, ROOM + 1, 85, ows_now() - 10 * S);
+	stream_changes(&s, &signal, 1);
+	TEST_ASSERT_EQUAL_STRING("homie/5/owsd-pi/28-000000000001/room \n"
+	                         "homie/5/owsd-pi/$alert/room room: stale\n",
+	                         pump());
+	instance_put_double(&in, ROOM + 1, 21, ows_now());
+	stream_changes(&s, &signal, 1);
+	TEST_ASSERT_EQUAL_STRING("homie/5/owsd-pi/28-000000000001/room 21\n"
+	                         "homie/5/owsd-pi/$alert/room \n",
+	                         pump());
+}
+
+static void test_another_description_has_a_higher_version_and_the_same_the_same(void)
+{
+	static const struct instance_signal other[] = {
+		{"new", "/28.000000000001/temperature", OWS_DOUBLE, false, 0, "28000000000001"}};
+	int64_t first;
+
+	take_profile(&profile_homie5);
+	pump();
+	first = s.description;
+	stream_begin(&s);
+	pump();
+	TEST_ASSERT_EQUAL_INT64(first, s.description);
+	/* though the clock goes back */
+	s.description = first += 1000;
+	instance_reload(&in, other, 1);
+	TEST_ASSERT_EQUAL_INT(0, ows_reopen(ows));
+	TEST_ASSERT_EQUAL_INT(0, stream_make(&s, ows));
+	pump();
+	TEST_ASSERT_EQUAL_INT64(first + 1, s.description);
+}
+
+static void test_wirenboard_keeps_the_last_value_and_never_without_its_error(void)
+{
+	int signal = ROOM;
+
+	take_profile(&profile_wirenboard);
+	instance_put_double(&in, ROOM + 1, 20, ows_now());
+	pump();
+	TEST_ASSERT_EQUAL_STRING_LEN("/devices/owsd_pi/meta {\"driver\":\"owsd\"", said, 38);
+	TEST_ASSERT_NOT_NULL(strstr(said, "/devices/owsd_pi/controls/title/meta/error r\n"));
+	instance_put_double(&in, ROOM + 1, 85, ows_now() - 10 * S);
+	stream_changes(&s, &signal, 1);
+	TEST_ASSERT_EQUAL_STRING("/devices/owsd_pi/controls/room/meta/error rp\n", pump());
+	instance_put_double(&in, ROOM + 1, 21, ows_now());
+	stream_changes(&s, &signal, 1);
+	TEST_ASSERT_EQUAL_STRING("/devices/owsd_pi/controls/room 21\n"
+	                         "/devices/owsd_pi/controls/room/meta/error \n"
+	                         "/devices/owsd_pi/controls/room 21\n",
+	                         pump());
+	instance_put_double(&in, ROOM + 1, 22, ows_now());
+	stream_changes(&s, &signal, 1);
+	TEST_ASSERT_EQUAL_STRING("/devices/owsd_pi/controls/room 22\n", pump());
+	stream_kept(&s, "/devices/owsd_pi/controls/room/meta", "x");
+	stream_kept(&s, "/devices/owsd_pi/controls/old/meta", "x");
+	TEST_ASSERT_EQUAL_STRING("/devices/owsd_pi/controls/old/meta \n", pump());
+}
+
+static void test_names_of_one_slug_have_ids_of_their_own_and_commands_find_them(void)
+{
+	static const struct instance_signal names[] = {
+		{"pump_1", "/28.000000000001/a", OWS_DOUBLE, false, 0, "28.000000000001"},
+		{"Pump-1", "/28.000000000001/b", OWS_DOUBLE, false, 0, "28.000000000001"},
+		{"pump-1", "/28.000000000001/c", OWS_DOUBLE, false, 0, "28.000000000001"},
+		{"Meta", "/28.000000000001/d", OWS_DOUBLE, false, 0, "28.000000000001"}};
+	static const struct profile *const profiles[] = {&profile_homie5, &profile_wirenboard,
+	                                                 &profile_plain};
+	char topic[TOPIC_SIZE + 8], name[TOPIC_SIZE];
+	const struct row *row;
+
+	instance_reload(&in, names, 4);
+	TEST_ASSERT_EQUAL_INT(0, ows_reopen(ows));
+	for (size_t p = 0; p < 3; p++) {
+		const char *last = strrchr(profiles[p]->commands, '/');
+
+		take_profile(profiles[p]);
+		for (int i = 0; i < 4; i++) {
+			TEST_ASSERT_EQUAL_PTR(&s.rows[i], stream_row(&s, s.rows[i].topic,
+			                                             strlen(s.rows[i].topic)));
+			snprintf(topic, sizeof(topic), "%s%s", s.rows[i].topic, last);
+			TEST_ASSERT_TRUE(stream_command(&s, topic, &row, name));
+			TEST_ASSERT_EQUAL_PTR(&s.rows[i], row);
+			TEST_ASSERT_EQUAL_STRING(names[i].name, name);
+			/* it is published, so it is no leftover */
+			stream_kept(&s, s.rows[i].topic, "x");
+		}
+		TEST_ASSERT_EQUAL_INT(0, s.gone_count);
+		TEST_ASSERT_FALSE(stream_command(&s, s.rows[0].topic, &row, name));
+		snprintf(topic, sizeof(topic), "%s/nobody%s", s.prefix, last);
+		TEST_ASSERT_TRUE(stream_command(&s, topic, &row, name));
+		TEST_ASSERT_NULL(row);
+		TEST_ASSERT_EQUAL_STRING("nobody", name);
+	}
+	take_profile(&profile_homie5);
+	TEST_ASSERT_EQUAL_STRING("pump-1", s.rows[2].level);
+	TEST_ASSERT_EQUAL_STRING("meta", s.rows[3].level);
+	TEST_ASSERT_EQUAL_STRING_LEN("pump-1--", s.rows[0].level, 8);
 }
 
 static void test_signals_of_one_property_are_told_apart_and_a_chip_has_one_form(void)
@@ -242,5 +417,11 @@ int main(void)
 	RUN_TEST(test_what_the_broker_keeps_is_emptied_if_nobody_writes_it_any_more);
 	RUN_TEST(test_signals_of_one_property_are_told_apart_and_a_chip_has_one_form);
 	RUN_TEST(test_an_alarm_is_an_event_for_those_who_are_there);
+	RUN_TEST(test_the_topics_of_all_profiles_are_looked_at_our_own_first);
+	RUN_TEST(test_what_another_profile_has_left_is_emptied_if_it_is_of_this_node);
+	RUN_TEST(test_homie_has_no_value_that_is_bad_and_an_alert_instead);
+	RUN_TEST(test_another_description_has_a_higher_version_and_the_same_the_same);
+	RUN_TEST(test_wirenboard_keeps_the_last_value_and_never_without_its_error);
+	RUN_TEST(test_names_of_one_slug_have_ids_of_their_own_and_commands_find_them);
 	return UNITY_END();
 }

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* Tests of topics. */
-#include <stdio.h>
 #include <string.h>
 
 #include "unity.h"
@@ -38,33 +37,23 @@ static void test_a_name_is_a_level_and_what_a_level_cannot_have_is_escaped(void)
 
 static void test_the_longest_name_has_room_whatever_is_in_it(void)
 {
-	char name[64], back[TOPIC_NAME], topic[TOPIC_SIZE];
+	char name[64];
 
 	memset(name, '+', 63);
 	name[63] = '\0';
 	TEST_ASSERT_EQUAL_UINT(3 * 63, strlen(level(name)));
-	snprintf(topic, sizeof(topic), "owsd/pi7/%s/set", level(name));
-	TEST_ASSERT_TRUE(topic_is_command("owsd/pi7", topic, back));
-	TEST_ASSERT_EQUAL_STRING(name, back);
 }
 
-static void test_a_command_is_that_of_one_signal(void)
+static void test_a_slug_has_what_the_conventions_take(void)
 {
-	char name[TOPIC_NAME];
+	char id[10];
 
-	TEST_ASSERT_TRUE(topic_is_command("owsd/pi7", "owsd/pi7/a%2Bb/set", name));
-	TEST_ASSERT_EQUAL_STRING("a+b", name);
-	TEST_ASSERT_TRUE(topic_is_command("owsd/pi7", "owsd/pi7/%73tate/set", name));
-	TEST_ASSERT_EQUAL_STRING("state", name);
-	static const char *const others[] = {
-		"owsd/pi7/a",       "owsd/pi7/a/get",    "owsd/pi7//set",     "owsd/pi7/set",
-		"owsd/pi8/a/set",   "owsd/pi7/a/b/set",  "owsd/pi7/a/set/",   "owsd/pi7",
-		"owsd/pi7/%61/set", "owsd/pi7/%2b/set",  "owsd/pi7/%2/set",   "owsd/pi7/state/set",
-		"owsd/pi7a/set",    "owsd/pi7/%00a/set", "owsd/pi7/chip/set", "",
-	};
-
-	for (size_t i = 0; i < sizeof(others) / sizeof(others[0]); i++)
-		TEST_ASSERT_FALSE_MESSAGE(topic_is_command("owsd/pi7", others[i], name), others[i]);
+	topic_slug("T_Kitchen 1.2", '-', id, sizeof(id));
+	TEST_ASSERT_EQUAL_STRING("t-kitchen", id);
+	topic_slug("a--b+\xc3\xa4", '_', id, sizeof(id));
+	TEST_ASSERT_EQUAL_STRING("a_b_", id);
+	topic_slug("_", '-', id, sizeof(id));
+	TEST_ASSERT_EQUAL_STRING("-", id);
 }
 
 static void test_an_id_has_what_home_assistant_takes(void)
@@ -80,7 +69,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_a_name_is_a_level_and_what_a_level_cannot_have_is_escaped);
 	RUN_TEST(test_the_longest_name_has_room_whatever_is_in_it);
-	RUN_TEST(test_a_command_is_that_of_one_signal);
+	RUN_TEST(test_a_slug_has_what_the_conventions_take);
 	RUN_TEST(test_an_id_has_what_home_assistant_takes);
 	return UNITY_END();
 }

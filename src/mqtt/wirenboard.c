@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The profile "wirenboard": the node is a device of the conventions of Wiren Board, each signal a
+ * control of it. At the topic of a bad value the last good one stays, so its error is all that
+ * tells them apart.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "src/mqtt/entity.h"
+#include "src/mqtt/stream.h"
+#include "src/signal/value.h"
+
+#define META "meta"
+#define ERROR "meta/error"
+
+static void topic_of(const struct stream *s, const struct row *row, char topic[TOPIC_SIZE])
+{
+	snprintf(topic, TOPIC_SIZE, "%s/controls/%s", s->prefix, row->level);
+}
+
+static bool put_below_row(struct stream *s, const struct row *row, const char *below,
+                          const char *text)
+{
+	char topic[TOPIC_SIZE];
+
+	snprintf(topic, sizeof(topic), "%s/%s", row->topic, below);
+	return text ? stream_put_text(s, topic, text, true) : stream_put(s, topic, true);
+}
+
+/* --- What there is --------------------------------------------------------------------------- */
+
+/* Units that the conventions write in ASCII. */
+static const char *unit_of(const struct row *row)
+{
+	static const struct {
+		const char *ours, *theirs;
+	} units[] = {
+		{"\xc2\xb0"
+	         "C",
+	         "deg C"},
+		{"\xc2\xb0", "deg"},
+		{"\xce\xa9", "Ohm"},
+		{"m\xce\xa9", "mOhm"},
+		{"m\xc2\xb3", "m^3"},
+		{"m\xc2\xb3/h", "m^3/h"},
+	};
+	const char *unit = row->info.unit;
+
+	for (size_t i = 0; i < sizeof(units) / sizeof(units[0]); i++)
+		if (!strcmp(units[i].ours, unit))
+			return units[i].theirs;
+	if (!strcmp(unit, "%") && strstr(row->property, "humidity"))
+		return "%, RH";
+	for (const char *c = unit; *c; c++)
+		if ((unsigned char)*c > 126)
+			return "";
+	return unit;
+}
+
+static void put_title(struct json *json, const char *title)
+{
+	json_object(json, "title");
+	json_string(json, "en", title);
+	json_object_end(json);
+}
+
+static void put_number(struct json *json, const char *key, double number)
+{
+	char text[VALUE_TEXT_MAX];
+
+	if (isnan(number))
+		return;
+	value_to_text(OWS_DOUBLE, value_of_double(number), text);
+	json_number(json, key, text);
+}
+
+static bool put_control(struct stream *s, const struct row *row)
+{
+	const struct ows_info *info = &row->info;
+	bool number = info->type != OWS_BOOL && info->type != OWS_STRING;
+	struct json json;
+
+	stream_message(s, &json);
+	json_object(&json, NULL);
+	json_string(&json, "type",
+	            info->type == OWS_BOOL     ? "switch"
+	            : info->type == OWS_STRING ? "text"
+	                                       : "value");
+	if (number && *unit_of(row))
+		json_string(&json, "units", unit_of(row));
+	if (number) {
+		put_number(&json, "min", info->min);
+		put_number(&json, "max", info->max);
+		put_number(&json, "precision",
+		           !value_is_float((enum ows_type)info->type) ? 1
+		           : info->decimals >= 0                      ? pow(10, -info->decimals)
+		                                                      : NAN);
+	}
+	json_int(&json, "order", row - s->rows + 1);
+	json_bool(&json, "readonly", !s->write || !info->output);
+	put_title(&json, *info->description ? info->description : info->name);
+	json_object_end(&json);
+	return put_below_row(s, row, META, NULL);
+}
+
+static bool put_device(struct stream *s)
+{
+	char title[ENTITY_ID + 8];
+	struct json json;
+
+	snprintf(title, sizeof(title), "owsd %s", s->node);
+	stream_message(s, &json);
+	json_object(&json, NULL);
+	json_string(&json, "driver", "owsd");
+	put_title(&json, title);
+	json_object_end(&json);
+	return stream_put_below(s, META, NULL);
+}
+
+static bool birth(struct stream *s, int number, bool *more)
+{
+	*more = number < s->count && !s->announced;
+	if (!s->announced && !(number ? put_control(s, &s->rows[number - 1]) : put_device(s)))
+		return false;
+	s->announced = s->announced || !*more;
+	return true;
+}
+
+/* --- Values and states ----------------------------------------------------------------------- */
+
+/* Not read; not written as commanded; not read in time. */
+static const char *error_of(uint8_t quality)
+{
+	return quality == OWS_Q_DIFFERS ? "rw" : quality == OWS_Q_STALE ? "rp" : "r";
+}
+
+static bool put_value(struct stream *s, const struct row *row, const struct news *news)
+{
+	stream_value(s, news, "1", "0");
+	return stream_put(s, row->topic, true);
+}
+
+static bool value(struct stream *s, struct row *row)
+{
+	struct news news;
+
+	if (!stream_read(s, row, &news))
+		return true;
+	if (!news.good)
+		return put_below_row(s, row, ERROR, error_of(news.v.quality)) &&
+		       stream_published(row, &news);
+	/*
+	 * The conventions have the error removed before the value comes, and the old value would
+	 * count for that time. So the value comes before that, too.
+	 */
+	if (!put_value(s, row, &news) ||
+	    ((!row->published || !row->good) &&
+	     (!put_below_row(s, row, ERROR, "") || !put_value(s, row, &news))))
+		return false;
+	return stream_published(row, &news);
+}
+
+static bool state(struct stream *s, enum stream_node node)
+{
+	return stream_put_below(s, ERROR, node == STREAM_THERE ? "" : "r");
+}
+
+static bool writes(const struct stream *s, const char *topic, const char *below)
+{
+	const char *level = strchr(below, '/'), *end = level ? strchr(level + 1, '/') : NULL;
+
+	if (!strcmp(below, META) || !strcmp(below, ERROR))
+		return true;
+	return stream_row(s, topic, end ? (size_t)(end - topic) : strlen(topic));
+}
+
+static const char *const places[] = {
+	META, ERROR, "controls/+", "controls/+/" META, "controls/+/" ERROR, NULL};
+
+const struct profile profile_wirenboard = {
+	.name = "wirenboard",
+	.root = "/devices/owsd_",
+	.dash = '_',
+	.qos = 1,
+	.commands = "controls/+/on",
+	.below = places,
+	.writes = writes,
+	.topic = topic_of,
+	.birth = birth,
+	.value = value,
+	.state = state,
+};
