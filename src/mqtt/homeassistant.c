@@ -163,7 +163,7 @@ static const char *outlived(struct stream *s, const char *topic, const char *tex
 
 	if (strnlen(text, BIRTH_MOST) == BIRTH_MOST || !is_ours(s, topic, text, id, &node))
 		return NULL;
-	if (s->profile != &profile_homeassistant)
+	if (s->profile->outlived != outlived)
 		return "";
 	if (!node) {
 		mark = strchr(id, '_');

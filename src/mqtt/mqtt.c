@@ -13,6 +13,7 @@
 #include "src/face/look.h"
 #include "src/face/loop.h"
 #include "src/mqtt/health.h"
+#include "src/mqtt/profiles.h"
 
 /* Of changes of a signal that come closer together the newest is published */
 #define PACE_NS (50 * NS_PER_MS)
@@ -98,7 +99,7 @@ static void on_message(void *ctx, const struct broker_message *message)
 			broker_taken(&m->broker);
 	}
 	if (message->retained && m->sweep_ns && look_is_current(m->broker.face))
-		stream_kept(&m->stream, message->topic, message->text);
+		profiles_kept(&m->stream, message->topic, message->text);
 	if (m->stream.profile->heard &&
 	    m->stream.profile->heard(&m->stream, message->topic, message->text, message->len))
 		m->asked = true;
@@ -203,7 +204,7 @@ static void sweep(struct mqtt *m, int64_t now_ns)
 	if (!begins && (!m->sweep_ns || now_ns < m->sweep_ns))
 		return;
 	for (; count < BROKER_PLACES; count++) {
-		stream_places(&m->stream, count, topics[count]);
+		profiles_place(&m->stream, count, topics[count]);
 		if (!*topics[count])
 			break;
 		all[count] = topics[count];

@@ -7,6 +7,7 @@
 
 #include "src/face/face.h"
 #include "src/mqtt/options.h"
+#include "src/mqtt/profiles.h"
 
 static void copy(char *to, size_t size, const char *text)
 {
@@ -54,8 +55,8 @@ void mqtt_options_take(struct mqtt_options *options, const struct face *face)
 	copy(options->user, OPTION_SIZE,
 	     !mqtt->user && mqtt->password_file ? options->node : mqtt->user);
 	copy(options->topic, sizeof(options->topic), mqtt->topic);
-	options->profile = profile_of(mqtt->profile);
-	profile_prefix(options->profile, options->topic, options->node, options->prefix);
+	options->profile = profiles_find(mqtt->profile);
+	profiles_prefix(options->profile, options->topic, options->node, options->prefix);
 	copy(options->discovery, sizeof(options->discovery), mqtt->discovery);
 	options->mqtt5 = mqtt->mqtt5;
 	options->write = mqtt->write;

@@ -10,33 +10,7 @@
 #include "src/signal/hash.h"
 #include "src/signal/utf8.h"
 
-#define PROFILE_TABLE(name) &profile_##name,
 #define REPEAT_MOST_NS (300 * NS_PER_S)
-
-static const struct profile *const profiles[] = {MQTT_PROFILES(PROFILE_TABLE)};
-#define PROFILES (sizeof(profiles) / sizeof(profiles[0]))
-
-const struct profile *profile_of(const char *name)
-{
-	size_t i = PROFILES - 1;
-
-	while (i && strcmp(profiles[i]->name, name) != 0)
-		i--;
-	return profiles[i];
-}
-
-void profile_prefix(const struct profile *profile, const char *topic, const char *node,
-                    char prefix[TOPIC_SIZE])
-{
-	char id[TOPIC_SIZE / 2];
-
-	if (profile->root) {
-		topic_slug(node, profile->dash, id, sizeof(id));
-		snprintf(prefix, TOPIC_SIZE, "%s%s", profile->root, id);
-	} else {
-		snprintf(prefix, TOPIC_SIZE, "%s/%s", topic, node);
-	}
-}
 
 /* --- Messages -------------------------------------------------------------------------------- */
 
@@ -361,35 +335,9 @@ int stream_make(struct stream *s, struct ows *h)
 	return made ? 0 : -ENOMEM;
 }
 
-/* --- What the broker keeps of what is no more ------------------------------------------------ */
+/* --- Topics ---------------------------------------------------------------------------------- */
 
-void stream_places(const struct stream *s, int number, char topic[TOPIC_SIZE])
-{
-	const char *const *last = NULL;
-
-	topic[0] = '\0';
-	for (size_t i = 0; i <= PROFILES; i++) {
-		/* our own first: the others' may be refused */
-		const struct profile *p = i ? profiles[i - 1] : s->profile;
-		/* profiles that are built on one another have the same */
-		bool again = i && (p->below == s->profile->below || p->below == last);
-		char prefix[TOPIC_SIZE];
-
-		last = p->below;
-		profile_prefix(p, s->topic, s->node, prefix);
-		for (const char *const *below = p->below; below && *below && !again; below++)
-			if (!number--) {
-				snprintf(topic, TOPIC_SIZE, "%.300s/%s", prefix, *below);
-				return;
-			}
-		if (p->births && (!i || p != s->profile) && !number--) {
-			p->births(s, topic);
-			return;
-		}
-	}
-}
-
-static const char *behind(const char *topic, const char *prefix)
+const char *stream_below(const char *topic, const char *prefix)
 {
 	size_t len = strlen(prefix);
 
@@ -410,7 +358,8 @@ const struct row *stream_row(const struct stream *s, const char *topic, size_t l
 bool stream_command(const struct stream *s, const char *topic, const struct row **row,
                     char name[TOPIC_SIZE])
 {
-	const char *below = behind(topic, s->prefix), *last = below ? strrchr(below, '/') : NULL;
+	const char *below = stream_below(topic, s->prefix),
+		   *last = below ? strrchr(below, '/') : NULL;
 
 	if (!last || strcmp(last, strrchr(s->profile->commands, '/')) != 0)
 		return false;
@@ -422,36 +371,10 @@ bool stream_command(const struct stream *s, const char *topic, const struct row 
 	return true;
 }
 
-/* What is to be published at a topic that is not below the prefix; NULL: nothing. */
-static const char *outlived(struct stream *s, const char *topic, const char *text)
+void stream_gone(struct stream *s, const char *topic, const char *text)
 {
-	for (size_t i = 0; i < PROFILES; i++) {
-		const struct profile *p = profiles[i];
-		const char *put = p->outlived ? p->outlived(s, topic, text) : NULL;
-		char prefix[TOPIC_SIZE];
-
-		if (put)
-			return put;
-		profile_prefix(p, s->topic, s->node, prefix);
-		if (p->below && behind(topic, prefix))
-			return "";
-	}
-	return NULL;
-}
-
-void stream_kept(struct stream *s, const char *topic, const char *text)
-{
-	const char *below = behind(topic, s->prefix);
 	struct gone *more, gone;
 
-	if (!s->live || !s->count || !*text)
-		return;
-	if (below)
-		text = s->profile->writes(s, topic, below) ? NULL : "";
-	else
-		text = outlived(s, topic, text);
-	if (!text)
-		return;
 	if (s->gone_count == s->gone_room) {
 		more = realloc(s->gone, (size_t)(s->gone_room + 64) * sizeof(*more));
 		if (!more)
@@ -526,7 +449,7 @@ static bool pump_gone(struct stream *s)
 {
 	while (s->settled && s->gone_count) {
 		struct gone *last = &s->gone[s->gone_count - 1];
-		const char *topic = last->topic, *below = behind(topic, s->prefix);
+		const char *topic = last->topic, *below = stream_below(topic, s->prefix);
 		bool value = s->profile->none && below && !strchr(below, '/');
 
 		if ((value && !stream_put_text(s, topic, s->profile->none, true)) ||

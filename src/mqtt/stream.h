@@ -11,7 +11,6 @@
 #include <stdio.h>
 
 #include "hal/owfs/path.h"
-#include "src/config/config.h"
 #include "src/libows/ows.h"
 #include "src/mqtt/topics.h"
 #include "src/show/json.h"
@@ -149,16 +148,6 @@ struct profile {
 	 */
 	const char *(*outlived)(struct stream *s, const char *topic, const char *text);
 };
-#define PROFILE_EXTERN(name) extern const struct profile profile_##name;
-MQTT_PROFILES(PROFILE_EXTERN)
-#undef PROFILE_EXTERN
-
-/* The profile of a name of MQTT_PROFILES. */
-const struct profile *profile_of(const char *name);
-/* What all its topics begin with: TOPIC/NODE, or its root and the id of the node. */
-void profile_prefix(const struct profile *profile, const char *topic, const char *node,
-                    char prefix[TOPIC_SIZE]);
-
 /* 0 or -ENOMEM. */
 int stream_open(struct stream *s);
 void stream_close(struct stream *s);
@@ -174,12 +163,10 @@ const struct row *stream_row(const struct stream *s, const char *topic, size_t l
 /* Is topic that of a command? *row is whose, or NULL; name gets what to call it. */
 bool stream_command(const struct stream *s, const char *topic, const struct row **row,
                     char name[TOPIC_SIZE]);
-/*
- * The topics where the broker may keep what is no more, of other profiles too; "" after the last.
- */
-void stream_places(const struct stream *s, int number, char topic[TOPIC_SIZE]);
-/* A retained message that came there: it is emptied if nobody writes the topic any more. */
-void stream_kept(struct stream *s, const char *topic, const char *text);
+/* What follows prefix and a slash in topic; NULL: it begins otherwise. */
+const char *stream_below(const char *topic, const char *prefix);
+/* The text is to be published once, retained, at a topic of what is no more. It is copied. */
+void stream_gone(struct stream *s, const char *topic, const char *text);
 /* Signals have news, as in face_ops.changes. */
 void stream_changes(struct stream *s, const int *signals, int n);
 /* All is to be published, as to a broker that knows nothing. */

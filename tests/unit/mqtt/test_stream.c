@@ -5,7 +5,7 @@
 
 #include "unity.h"
 
-#include "src/mqtt/stream.h"
+#include "src/mqtt/profiles.h"
 #include "tests/unit/aid/instance.h"
 
 #define S INSTANCE_S
@@ -40,7 +40,7 @@ static char prefix[TOPIC_SIZE];
 /* As to a broker that knows nothing, with another profile. */
 static void take_profile(const struct profile *profile)
 {
-	profile_prefix(profile, "o", "pi", prefix);
+	profiles_prefix(profile, "o", "pi", prefix);
 	s.profile = profile;
 	TEST_ASSERT_EQUAL_INT(0, stream_make(&s, ows));
 }
@@ -174,21 +174,21 @@ static void test_what_the_broker_keeps_is_emptied_if_nobody_writes_it_any_more(v
 	TEST_ASSERT_EQUAL_INT(0, stream_make(&s, ows));
 	pump();
 	for (size_t i = 0; i < sizeof(ours) / sizeof(ours[0]); i++)
-		stream_kept(&s, ours[i], "x");
-	stream_kept(&s, "o/pi/room", "");
+		profiles_kept(&s, ours[i], "x");
+	profiles_kept(&s, "o/pi/room", "");
 	TEST_ASSERT_EQUAL_STRING("", pump());
-	stream_kept(&s, "o/pi/room", "x");
+	profiles_kept(&s, "o/pi/room", "x");
 	pump();
 	TEST_ASSERT_EQUAL_STRING_LEN("o/pi/room {\"v\":null,", said, 20);
 	TEST_ASSERT_NOT_NULL(strstr(said, "}\no/pi/room \n"));
-	stream_kept(&s, "o/pi/chip/29.000000000001", "online");
+	profiles_kept(&s, "o/pi/chip/29.000000000001", "online");
 	TEST_ASSERT_EQUAL_STRING("o/pi/chip/29.000000000001 \n", pump());
-	stream_kept(&s, "o/pi/new/alarm", "x");
+	profiles_kept(&s, "o/pi/new/alarm", "x");
 	TEST_ASSERT_EQUAL_STRING("o/pi/new/alarm \n", pump());
 	/* nothing is known of what there is while owsd is away */
 	stream_live(&s, false);
 	pump();
-	stream_kept(&s, "o/pi/room", "x");
+	profiles_kept(&s, "o/pi/room", "x");
 	TEST_ASSERT_EQUAL_STRING("", pump());
 }
 
@@ -199,7 +199,7 @@ static const char *places(void)
 
 	said[0] = '\0';
 	for (int i = 0; *topic; i++) {
-		stream_places(&s, i, topic);
+		profiles_place(&s, i, topic);
 		snprintf(said + strlen(said), sizeof(said) - strlen(said), "%s\n", topic);
 	}
 	return said;
@@ -232,18 +232,18 @@ static void test_what_another_profile_has_left_is_emptied_if_it_is_of_this_node(
 	take_profile(&profile_homie5);
 	pump();
 	for (size_t i = 0; i < sizeof(theirs) / sizeof(theirs[0]); i++)
-		stream_kept(&s, theirs[i], "{\"dev\":{\"via_device\":\"owsd_pi2\"}}");
+		profiles_kept(&s, theirs[i], "{\"dev\":{\"via_device\":\"owsd_pi2\"}}");
 	TEST_ASSERT_EQUAL_STRING("", pump());
 	for (size_t i = 0; i < sizeof(left) / sizeof(left[0]); i++) {
 		char line[TOPIC_SIZE];
 
-		stream_kept(&s, left[i], "x");
+		profiles_kept(&s, left[i], "x");
 		snprintf(line, sizeof(line), "%s \n", left[i]);
 		TEST_ASSERT_EQUAL_STRING(line, pump());
 	}
 	/* of a chip that is still there, too */
-	stream_kept(&s, "ha/device/owsd_28_000000000001/config",
-	            "{\"dev\":{\"via_device\":\"owsd_pi\"}}");
+	profiles_kept(&s, "ha/device/owsd_28_000000000001/config",
+	              "{\"dev\":{\"via_device\":\"owsd_pi\"}}");
 	TEST_ASSERT_EQUAL_STRING("ha/device/owsd_28_000000000001/config \n", pump());
 }
 
@@ -317,8 +317,8 @@ static void test_wirenboard_keeps_the_last_value_and_never_without_its_error(voi
 	instance_put_double(&in, ROOM + 1, 22, ows_now());
 	stream_changes(&s, &signal, 1);
 	TEST_ASSERT_EQUAL_STRING("/devices/owsd_pi/controls/room 22\n", pump());
-	stream_kept(&s, "/devices/owsd_pi/controls/room/meta", "x");
-	stream_kept(&s, "/devices/owsd_pi/controls/old/meta", "x");
+	profiles_kept(&s, "/devices/owsd_pi/controls/room/meta", "x");
+	profiles_kept(&s, "/devices/owsd_pi/controls/old/meta", "x");
 	TEST_ASSERT_EQUAL_STRING("/devices/owsd_pi/controls/old/meta \n", pump());
 }
 
@@ -348,7 +348,7 @@ static void test_names_of_one_slug_have_ids_of_their_own_and_commands_find_them(
 			TEST_ASSERT_EQUAL_PTR(&s.rows[i], row);
 			TEST_ASSERT_EQUAL_STRING(names[i].name, name);
 			/* it is published, so it is no leftover */
-			stream_kept(&s, s.rows[i].topic, "x");
+			profiles_kept(&s, s.rows[i].topic, "x");
 		}
 		TEST_ASSERT_EQUAL_INT(0, s.gone_count);
 		TEST_ASSERT_FALSE(stream_command(&s, s.rows[0].topic, &row, name));

@@ -1,0 +1,81 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""What a genuine controller of Homie 5 (ebus-sdk) makes of owsd-mqtt: it finds the device, follows its
+values, sees when one is bad, and its commands move outputs."""
+
+import fcntl
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+
+import owsdtest
+from mqtthouse import RELAY, ROOM, SENSOR, House, item
+from owsdtest import raw, until
+
+WANTED = ["ebus-sdk==0.27.0", "ebus-mqtt-client==0.8.0", "paho-mqtt==2.1.0"]
+INSTALL_SECONDS = 300
+# A line for each thing that it notices; it carries out the lines that come
+CONTROLLER = """
+import sys
+from ebus_sdk.homie import Controller
+c = Controller(mqtt_cfg={"host": "127.0.0.1", "port": int(sys.argv[1])}, homie_domain="homie")
+c.set_on_property_changed_callback(lambda device, node, name, value, *_: print(f"{node}/{name}={value};", flush=True))
+c.set_on_device_discovered_callback(lambda device: print(f"found {device.device_id};", flush=True))
+c.start_discovery()
+for line in sys.stdin:
+    device, node, name, value = line.split()
+    have = c.get_device(device).get_node_properties(node)[name]
+    print(f"{name} {have['datatype']} {have['settable']};", flush=True)
+    c.set_property(device, node, name, value)
+"""
+
+
+def python():
+    """The Python that has the controller, out of the user's cache or, once, from the package index."""
+    base = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "owsd"
+    try:
+        base.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        base = owsdtest.BUILD
+    place, mark = base / "homie", "\n".join(WANTED)
+    with open(base / "homie.lock", "w", encoding="ascii") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not (place / "wanted").exists() or (place / "wanted").read_text() != mark:
+            shutil.rmtree(place, ignore_errors=True)
+            for command in ([sys.executable, "-m", "venv", place],
+                            [place / "bin/python", "-m", "pip", "-q", "--retries", "1", "install", *WANTED]):
+                done = subprocess.run(command, capture_output=True, text=True, timeout=INSTALL_SECONDS, check=False)
+                if done.returncode:
+                    shutil.rmtree(place, ignore_errors=True)
+                    owsdtest.skip(f"not cached and cannot be had: ebus-sdk: {done.stderr.strip()[-200:]}")
+            (place / "wanted").write_text(mark)
+    return place / "bin/python"
+
+
+def test_it_finds_the_device_follows_it_and_commands_it(scene):
+    program = python()
+    house = House(scene, ROOM, RELAY, item("pull", "/simulator/unplug", "bool", "output"), Profile="homie5",
+                  wire=f"button unplug unplug {SENSOR}\n", Write=raw("on"))
+    orders = scene.path / "orders"
+    os.mkfifo(orders)
+    judge = scene.start(["sh", "-c", 'exec "$0" -c "$1" "$2" < "$3"', program, CONTROLLER, str(house.broker.port),
+                         orders])
+
+    def notices(*lines):
+        until(lambda: set(lines) <= set(judge.log().split(";\n")), 30, lambda: f"{lines}: {judge.log()}")
+    with open(orders, "w", encoding="ascii") as order:
+        notices("found owsd-pi7", "28-a0b1c2000001/room=21.5")
+        house.set("pull", 1)
+        notices("28-a0b1c2000001/room=", "$alert/room=room: device absent")
+        house.set("pull", 0)
+        until(lambda: judge.log().split("=room: device absent;")[-1].count("room=21.5;"), 30, judge.log)
+        order.write("owsd-pi7 29-a0b1c2000004 relay true\n")
+        order.flush()
+        notices("relay boolean True", "29-a0b1c2000004/relay=true")
+        assert scene.get(house.daemon, "relay") == "1"
+
+
+if __name__ == "__main__":
+    owsdtest.main()
