@@ -183,6 +183,8 @@ static void renew(struct face *face, int64_t now_ns)
 	if (memcmp(&options, &m->options, sizeof(options)) != 0) {
 		end(face);
 		m->options = options;
+		if (!face->live)
+			stream_clear(&m->stream);
 		begin(face, now_ns);
 	} else {
 		broker_hurry(&m->broker, now_ns);

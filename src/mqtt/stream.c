@@ -119,7 +119,7 @@ static void free_row(struct row *row)
 	free(row->topic);
 }
 
-static void free_rows(struct stream *s)
+void stream_clear(struct stream *s)
 {
 	for (int i = 0; i < s->count; i++)
 		free_row(&s->rows[i]);
@@ -150,7 +150,7 @@ static void free_gone(struct stream *s)
 
 void stream_close(struct stream *s)
 {
-	free_rows(s);
+	stream_clear(s);
 	free_gone(s);
 	free(s->health);
 	s->health = NULL;
@@ -329,8 +329,8 @@ int stream_make(struct stream *s, struct ows *h)
 			chip->seen = old.chips[i].seen;
 	}
 	if (!made)
-		free_rows(s);
-	free_rows(&old);
+		stream_clear(s);
+	stream_clear(&old);
 	stream_begin(s);
 	return made ? 0 : -ENOMEM;
 }

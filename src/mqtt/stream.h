@@ -156,6 +156,8 @@ void stream_close(struct stream *s);
  * there are no rows.
  */
 int stream_make(struct stream *s, struct ows *h);
+/* There are no signals, until stream_make(): their topics are not of the present profile. */
+void stream_clear(struct stream *s);
 /* The chip of an id in the one form; NULL: no signal names it. */
 struct chip *stream_chip(const struct stream *s, const char *id);
 /* The row whose value the first len bytes of topic are for; NULL: none. */

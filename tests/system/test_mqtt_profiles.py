@@ -280,5 +280,18 @@ def test_another_profile_empties_what_the_one_before_has_left_and_nothing_of_oth
     assert strangers.items() <= house.kept().items(), house.kept()
 
 
+def test_a_profile_that_comes_while_owsd_is_lost_publishes_nothing_at_topics_of_the_one_before(scene):
+    house = House(scene, ROOM, Profile="plain")
+    house.arrives("room", lambda m: m["good"])
+    house.daemon.kill()
+    house.says("owsd/pi7/state", "offline")
+    house.daemon.config.write_text(house.text(ROOM, Profile="wirenboard"))
+    house.face.signal(signal.SIGHUP)
+    house.says(WirenBoard.state, WirenBoard.lost)
+    house.daemon = scene.owsd(house.daemon.config, name=house.daemon.name)
+    WirenBoard.shows_good(house, "room", "21.5")
+    assert not [t for _, t, _ in house.listener.all() if t.startswith("owsd/pi7/room/")], house.listener.all()
+
+
 if __name__ == "__main__":
     owsdtest.main(at_once=4)
