@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "hal/chips/facts.h"
 #include "hal/chips/find.h"
 #include "hal/owfs/path.h"
@@ -21,6 +22,7 @@ struct check {
 	const struct config_item *item;
 	struct place place;
 	int64_t period_ns;
+	bool caches; /* all targets are owsd's own buses, whose values have the age of the chip's */
 	bool tables; /* a Bus names a file of sensors: devices may have more properties */
 };
 
@@ -161,20 +163,35 @@ static void check_direction(const struct check *check)
 		               item->name, strrchr(item->path, '/') + 1);
 }
 
+/* So long owsd's own buses give a value again that was measured (docs/semantics.md 6). */
+static int64_t cached_ns(const struct check *check)
+{
+	uint8_t life = property_look(check->item->path).life;
+
+	if (!check->caches || check->item->fresh)
+		return 0;
+	return life == LIFE_VOLATILE ? 2 * NS_PER_S : life == LIFE_SECOND ? NS_PER_S : 0;
+}
+
 /* Would its value be stale between two readings? */
 static void check_age(const struct check *check)
 {
 	const struct config_item *item = check->item;
 	bool by_alarm = item->alarm && item->per_factor == 1;
 	int64_t every_ns = by_alarm ? CONFIG_ALARM_READ_NS : item->per_factor * check->period_ns;
-	int64_t often = item->stale_after_ns / 2 / check->period_ns;
-	char factor[40] = "";
+	int64_t often = item->stale_after_ns / 2 / check->period_ns, due_ns = every_ns;
+	char factor[64] = "";
 
+	if (!by_alarm)
+		every_ns *= cached_ns(check) / every_ns + 1;
 	if (!item->readable || !item->stale_after_ns || item->stale_after_ns > every_ns)
 		return;
 	often = often > 2 ? often : by_alarm ? 2 : 1;
-	if (by_alarm || often < item->per_factor)
-		snprintf(factor, sizeof(factor), ", or PerFactor %lld", (long long)often);
+	if (item->stale_after_ns > due_ns)
+		snprintf(factor, sizeof(factor), ", or Uncached on");
+	else if (by_alarm || often < item->per_factor)
+		snprintf(factor, sizeof(factor), ", or PerFactor %lld%s", (long long)often,
+		         every_ns > due_ns ? " and Uncached on" : "");
 	report_warning(check->report, check->place,
 	               "\"%s\" is stale before it is read again, each %g s%s: write StaleAfter %g "
 	               "or more%s",
@@ -212,8 +229,12 @@ static void check_item(const struct check *check)
 /* name NULL: all items. */
 static void check_items(const struct config *config, const char *name, struct config_report *report)
 {
-	struct check check = {.report = report, .period_ns = config->period_ns};
+	struct check check = {.report = report, .period_ns = config->period_ns, .caches = true};
 
+	for (unsigned i = 0; i < config->target_count; i++)
+		check.caches &= !strncmp(config->targets[i].text, "i2c:", 4) ||
+		                !strncmp(config->targets[i].text, "sim:", 4) ||
+		                !strncmp(config->targets[i].text, "w1:netlink", 10);
 	for (unsigned i = 0; i < config->bus_count; i++)
 		for (unsigned k = 0; k < config->buses[i].option_count; k++)
 			check.tables |= !strcmp(config->buses[i].options[k].key,

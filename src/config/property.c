@@ -67,6 +67,7 @@ static void take_access(const struct family *family, const struct property *prop
 	found->readable = property->access & ACCESS_READ;
 	found->writable = property->access & ACCESS_WRITE;
 	found->holds = property->holds;
+	found->life = property->life;
 	found->exact = property->type == PROPERTY_YESNO || property->type == PROPERTY_BITS ||
 	               property->type == PROPERTY_UNSIGNED || property->type == PROPERTY_INTEGER;
 }

@@ -4,6 +4,7 @@
 #define CONFIG_PROPERTY_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 #define PROPERTY_NAME 64
 
@@ -12,6 +13,7 @@ struct path_property {
 	bool there;                  /* true too where nobody can know */
 	bool readable, writable;     /* true too where nobody can know */
 	bool holds;                  /* what is written reads the same (hal/chips/property.h) */
+	uint8_t life;                /* enum property_life; 0: not known */
 	bool exact;                  /* a whole number, or on and off; true too likewise */
 	char held[PROPERTY_NAME];    /* its name, or of the one that shows what it sets; "": none */
 	char nearest[PROPERTY_NAME]; /* not there: what was probably meant, or "" */

@@ -79,6 +79,43 @@ static void test_what_cannot_be_meant_is_named_with_its_remedy(void)
 	expect_warnings(cases, COUNT(cases), check);
 }
 
+static int check_on_own_bus(const char *keys)
+{
+	char text[600];
+	int err;
+
+	snprintf(text, sizeof(text), "TargetName i2c:auto Item {\n%s }", keys);
+	err = parse_driver(text);
+	if (!err)
+		config_check_items(config, &report);
+	return err;
+}
+
+/* Of an own bus the age is that of the measurement, which its cache gives again for 2 s. */
+static void test_the_age_that_a_cache_leaves_is_reckoned_with(void)
+{
+#define T "Name x Path /28.551DDF030000/temperature Type double "
+#define RELAY "Name x Path /29.B89115000000/PIO.3 Type bool IO output Readable on PerFactor 300 "
+	static const struct line own[] = {
+		{T "PerFactor 10 StaleAfter 1.5",
+	         AT " is stale before it is read again, each 3 s: write StaleAfter 4.5 or more, or "
+	            "Uncached on\n"},
+		{T "PerFactor 10 StaleAfter 0.5",
+	         AT " is stale before it is read again, each 3 s: write StaleAfter 4.5 or more, or "
+	            "PerFactor 1 and Uncached on\n"},
+		{T "PerFactor 10 StaleAfter 1.5 Uncached on", ""},
+		{T "PerFactor 10 StaleAfter 3.5", ""},
+		{T "PerFactor 30 StaleAfter 3.5", ""},
+		{RELAY "ReadBack 10 StaleAfter 20",
+	         AT " is stale before it is read again, each 30 s: write StaleAfter 45 or more, or "
+	            "PerFactor 100\n"},
+	};
+	static const struct line other[] = {{T "PerFactor 10 StaleAfter 1.5", ""}};
+
+	expect_warnings(own, COUNT(own), check_on_own_bus);
+	expect_warnings(other, COUNT(other), check);
+}
+
 static void test_what_may_be_meant_is_not_mentioned(void)
 {
 	static const struct line cases[] = {
@@ -185,6 +222,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_what_cannot_be_meant_is_named_with_its_remedy);
+	RUN_TEST(test_the_age_that_a_cache_leaves_is_reckoned_with);
 	RUN_TEST(test_what_may_be_meant_is_not_mentioned);
 	RUN_TEST(test_two_outputs_of_the_same_bits_of_which_one_is_restored_are_named);
 	RUN_TEST(test_no_property_of_any_family_in_its_own_direction_is_complained_of);
