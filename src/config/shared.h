@@ -8,7 +8,8 @@ struct config_report;
 
 /*
  * Warn of two items, outputs or inputs with Writable, that set the same bits while one is written
- * again by Restore: that undoes the command of the other. name: only pairs with that item; NULL: all.
+ * again by Restore: that undoes the command of the other.
+ * name: only pairs with that item; NULL: all.
  */
 void shared_check(const struct config *config, const char *name, struct config_report *report);
 

@@ -12,7 +12,7 @@ struct alarm_item *alarm_current(struct alarm_machine *m);
 /* The latch of the item was read and is not 0. */
 void engine_alarm_raised(struct engine *e, struct lane *lane, struct alarm_item *item,
                          int64_t now_ns);
-/* Its latch was read 0, or its device is not listed: it stands no more, the journal has the return. */
+/* Its latch was read 0, or its device is not listed: the journal has the return. */
 void engine_alarm_rests(struct engine *e, struct alarm_item *item, int64_t now_ns);
 /*
  * The device's por was read non-zero: its outputs are not what was written. The journal and the log

@@ -17,7 +17,7 @@ unsigned text_distance(const char *a, const char *b);
  * was meant is less.
  */
 unsigned text_too_far(const char *word);
-/* Is it nearer to word than *best, which begins as text_too_far(word)? Then *best is its distance. */
+/* Is it nearer than *best, which begins as text_too_far(word)? Then *best is its distance. */
 bool text_nearer(const char *word, const char *candidate, unsigned *best);
 
 #endif
