@@ -148,7 +148,7 @@ static uint32_t take_latch_reset(const struct alarm_answer *a)
 		return fail(a, a->answer->err);
 	did(a, ALARM_LATCH_WAS_RESET);
 	alarm_granted(a->lane->engine, a->item, OWS_UNARMED_RESET);
-	engine_alarm_ended(a->lane->engine, a->item);
+	a->item->occurrence.stands = false;
 	return FACT_DONE;
 }
 
