@@ -106,16 +106,12 @@ static bool walk(struct ows *h, char *const *patterns, int count, struct table *
 static bool print_table(struct ows *h, char *const *patterns, int count)
 {
 	struct table table;
-	char line[2048];
 	bool ok;
 
 	table_init(&table, columns, sizeof(columns) / sizeof(columns[0]));
 	ok = walk(h, patterns, count, &table, NULL);
-	table_fit(&table, 0);
-	for (int i = -1; ok && i < (int)table.rows; i++) {
-		table_line(&table, i, line, sizeof(line));
-		puts(line);
-	}
+	if (ok)
+		table_print(&table, true);
 	table_free(&table);
 	return ok;
 }

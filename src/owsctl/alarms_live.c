@@ -118,7 +118,6 @@ static bool show(struct ows *h, const struct rows *rows, bool json, char *const 
 	static struct reading reading;
 	struct table table;
 	struct live live = {.h = h, .now = when_now(), .reading = &reading, .ok = true};
-	char line[2048];
 
 	table_init(&table, columns, COLUMNS);
 	if (json) {
@@ -134,13 +133,10 @@ static bool show(struct ows *h, const struct rows *rows, bool json, char *const 
 		json_array_end(&live.json);
 		json_end(&live.json);
 	}
-	table_fit(&table, 0);
-	for (int i = -1; !json && live.ok && i < (int)table.rows; i++) {
-		table_line(&table, i, line, sizeof(line));
-		puts(line);
-	}
-	if (!json && live.ok)
+	if (!json && live.ok) {
+		table_print(&table, true);
 		print_reasons(&live, rows, patterns, pattern_count);
+	}
 	table_free(&table);
 	return live.ok;
 }

@@ -116,7 +116,6 @@ static bool add_row(struct table *table, const struct config_item *item)
 static bool print_table(const struct config *config, char *const *patterns, int count)
 {
 	struct table table;
-	char line[8192];
 	bool ok = true;
 
 	print_driver(config);
@@ -126,21 +125,10 @@ static bool print_table(const struct config *config, char *const *patterns, int 
 	for (unsigned i = 0; ok && i < config->item_count; i++)
 		if (names_match(config->items[i].name, patterns, count))
 			ok = add_row(&table, &config->items[i]);
-	table_fit(&table, 0);
-	for (int i = -1; ok && i < (int)table.rows; i++) {
-		table_line(&table, i, line, sizeof(line));
-		puts(line);
-	}
+	if (ok)
+		table_print(&table, true);
 	table_free(&table);
 	return ok;
-}
-
-static void json_double(struct json *json, const char *key, double number)
-{
-	char text[VALUE_TEXT_MAX];
-
-	value_to_text(OWS_DOUBLE, value_of_double(number), text);
-	json_number(json, key, text);
 }
 
 static void limits_json(struct json *json, const struct config_limits *limits)

@@ -179,6 +179,15 @@ bool ctl_seconds(const char *text, int64_t *ns)
 	return true;
 }
 
+bool ctl_count(const char *text, int64_t least, int64_t most, int64_t *count)
+{
+	char *end;
+
+	errno = 0;
+	*count = strtoll(text, &end, 10);
+	return end != text && !*end && !errno && *count >= least && *count <= most;
+}
+
 /* Print what is wrong with the places where instances are; CTL_DONE: nothing is. */
 static int check_places(int err)
 {

@@ -72,6 +72,8 @@ const char *ctl_word(const char *word);
 
 /* Parse a number of seconds, at most a year; false: the text is none. */
 bool ctl_seconds(const char *text, int64_t *ns);
+/* Parse a whole number from least to most; false: the text is none. */
+bool ctl_count(const char *text, int64_t least, int64_t most, int64_t *count);
 
 /* Open the instance; CTL_DONE, or CTL_FAILED after printing why. */
 int ctl_open(const struct ctl *ctl, enum ows_mode mode, struct ows **h);

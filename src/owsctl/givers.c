@@ -88,17 +88,6 @@ static bool next_output(struct who *who, int *signal, struct ows_info *info,
 	return false;
 }
 
-static void print_table(struct table *table)
-{
-	char line[4096];
-
-	table_fit(table, 0);
-	for (int row = -1; row < (int)table->rows; row++) {
-		table_line(table, row, line, sizeof(line));
-		puts(line);
-	}
-}
-
 static int print_text(struct who *who)
 {
 	struct table givers, outputs;
@@ -114,9 +103,9 @@ static int print_text(struct who *who)
 			add_giver(who, &givers, &giver);
 	while (next_output(who, &signal, &info, &origin))
 		add_origin(who, &outputs, info.name, &origin);
-	print_table(&givers);
+	table_print(&givers, true);
 	putchar('\n');
-	print_table(&outputs);
+	table_print(&outputs, true);
 	table_free(&givers);
 	table_free(&outputs);
 	return who->full ? ctl_fail("no memory") : CTL_DONE;

@@ -116,7 +116,6 @@ static bool show(const struct found *found, bool as_json)
 	struct when now = when_now();
 	struct table table;
 	struct json json;
-	char line[2048];
 	bool ok = true;
 
 	table_init(&table, columns, sizeof(columns) / sizeof(columns[0]));
@@ -136,11 +135,8 @@ static bool show(const struct found *found, bool as_json)
 		json_array_end(&json);
 		json_end(&json);
 	}
-	table_fit(&table, 0);
-	for (int i = -1; ok && table.rows && i < (int)table.rows; i++) {
-		table_line(&table, i, line, sizeof(line));
-		puts(line);
-	}
+	if (ok && table.rows)
+		table_print(&table, true);
 	table_free(&table);
 	return ok;
 }

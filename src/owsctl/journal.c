@@ -21,7 +21,6 @@
 #include "src/show/names.h"
 
 #define SLICE (500 * NS_PER_MS) /* a dead owsd sends no wake-up */
-#define LINE 2048
 #define SINCE (7 * 86400 * NS_PER_S)
 #define MOST 1000 /* from memory and disk together, without -c */
 #define RINGS 512 /* entries that owsd keeps */
@@ -43,16 +42,12 @@ struct journal {
 static bool print_rows(struct journal *j, unsigned from, bool titled)
 {
 	struct when now = when_now();
-	char line[LINE];
 	bool ok = true;
 
 	for (unsigned i = from; ok && i < j->entries.count; i++)
 		ok = journal_row(&j->table, &now, &j->entries.entry[i]);
-	table_fit(&j->table, 0);
-	for (int i = titled ? -1 : 0; ok && i < (int)j->table.rows; i++) {
-		table_line(&j->table, i, line, sizeof(line));
-		puts(line);
-	}
+	if (ok)
+		table_print(&j->table, titled);
 	/* later rows stand below these */
 	memcpy(j->table.least, j->table.width, sizeof(j->table.least));
 	table_clear(&j->table);
@@ -219,15 +214,6 @@ static int open_both(struct journal *j, const char *directory)
 	return j->h ? CTL_DONE : ctl_open(j->ctl, OWS_READ, &j->h);
 }
 
-static bool parse_count(const char *text, int64_t *count)
-{
-	char *end;
-
-	errno = 0;
-	*count = strtoll(text, &end, 10);
-	return end != text && !*end && !errno && *count >= 0 && *count <= COUNT_MAX;
-}
-
 int verb_journal(struct ctl *ctl, int argc, char **argv)
 {
 	struct journal j = {.ctl = ctl, .most = -1, .since_ns = SINCE};
@@ -241,7 +227,7 @@ int verb_journal(struct ctl *ctl, int argc, char **argv)
 			j.follows = true;
 			break;
 		case 'c':
-			if (!parse_count(optarg, &j.most))
+			if (!ctl_count(optarg, 0, COUNT_MAX, &j.most))
 				return ctl_usage(ctl, "-c wants a number of entries, not %s",
 				                 ctl_word(optarg));
 			break;

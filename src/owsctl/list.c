@@ -41,7 +41,6 @@ static bool add_row(struct table *table, struct ows *h, const struct row *row,
 static bool print_table(struct ows *h, struct rows *rows, struct reading *reading)
 {
 	struct table table;
-	char line[2048];
 	bool ok = true;
 
 	table_init(&table, columns, sizeof(columns) / sizeof(columns[0]));
@@ -52,11 +51,8 @@ static bool print_table(struct ows *h, struct rows *rows, struct reading *readin
 		reading_round(reading, row_decimals(&rows->row[i]));
 		ok = add_row(&table, h, &rows->row[i], reading);
 	}
-	table_fit(&table, 0);
-	for (int i = -1; ok && i < rows->count; i++) {
-		table_line(&table, i, line, sizeof(line));
-		puts(line);
-	}
+	if (ok)
+		table_print(&table, true);
 	table_free(&table);
 	return ok;
 }

@@ -59,7 +59,7 @@ static void show_values(const struct scan_device *device, char *out, size_t size
 static bool print_table(const struct scan *scan)
 {
 	struct table table;
-	char line[2048], family[4], bus[40], values[400];
+	char family[4], bus[40], values[400];
 	bool ok = true;
 
 	table_init(&table, columns, sizeof(columns) / sizeof(columns[0]));
@@ -77,11 +77,8 @@ static bool print_table(const struct scan *scan)
 		                                             device->alias[0] ? device->alias : "-",
 		                                             bus, alarm ? alarm : "-", values});
 	}
-	table_fit(&table, 0);
-	for (int i = -1; ok && i < (int)scan->count; i++) {
-		table_line(&table, i, line, sizeof(line));
-		puts(line);
-	}
+	if (ok)
+		table_print(&table, true);
 	table_free(&table);
 	return ok;
 }

@@ -66,17 +66,15 @@ static void print_devices(struct ows *h, const struct ows_daemon *daemon, int64_
 {
 	struct ows_device device;
 	struct table table;
-	char line[512];
 	int err;
 
 	table_init(&table, device_columns, DEVICE_COLUMNS);
 	for (int i = 0; (err = ows_device(h, i, &device)) != -ENOENT; i++)
 		if (!err && !add_device(&table, &device, now_ns - daemon->start_ns, now_ns))
 			break;
-	table_fit(&table, 0);
-	for (int row = -1; table.rows && row < (int)table.rows; row++) {
-		table_line(&table, row, line, sizeof(line));
-		printf("%s%s\n", row < 0 ? "\n" : "", line);
+	if (table.rows) {
+		putchar('\n');
+		table_print(&table, true);
 	}
 	table_free(&table);
 }

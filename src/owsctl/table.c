@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A table of text cells: collected, fitted into the terminal, printed line by line. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -218,4 +219,15 @@ size_t table_line(const struct table *table, int row, char *line, size_t size)
 	}
 	line[end] = '\0';
 	return end;
+}
+
+void table_print(struct table *table, bool titled)
+{
+	char line[8192];
+
+	table_fit(table, 0);
+	for (int row = titled ? -1 : 0; row < (int)table->rows; row++) {
+		table_line(table, row, line, sizeof(line));
+		puts(line);
+	}
 }

@@ -43,5 +43,7 @@ void table_fit(struct table *table, unsigned columns);
  * bytes; it is cut to size.
  */
 size_t table_line(const struct table *table, int row, char *line, size_t size);
+/* Print all rows on stdout, as wide as they are; titled: below the titles. */
+void table_print(struct table *table, bool titled);
 
 #endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* owsctl watch: follows signals over changes and restarts, as lines or as a live table. */
-#include <errno.h>
 #include <getopt.h>
 #include <stdlib.h>
 #include <string.h>
@@ -156,15 +155,6 @@ static int begin(struct watch *watch, bool screen)
 	return status;
 }
 
-static bool parse_count(const char *text, int64_t *count)
-{
-	char *end;
-
-	errno = 0;
-	*count = strtoll(text, &end, 10);
-	return end != text && !*end && !errno && *count > 0;
-}
-
 /* A terminal that knows no escape sequences gets lines, as a pipe does. */
 static bool has_screen(void)
 {
@@ -191,7 +181,7 @@ int verb_watch(struct ctl *ctl, int argc, char **argv)
 			screen = false;
 			break;
 		case 'c':
-			if (!parse_count(optarg, &watch.left))
+			if (!ctl_count(optarg, 1, INT64_MAX, &watch.left))
 				return ctl_usage(ctl, "-c wants a number above 0, not %s",
 				                 ctl_word(optarg));
 			break;

@@ -6,6 +6,7 @@
 #include "hal/bus/time.h"
 #include "src/show/json.h"
 #include "src/signal/utf8.h"
+#include "src/signal/value.h"
 
 void json_open(struct json *json, FILE *out)
 {
@@ -189,4 +190,12 @@ void json_number(struct json *json, const char *key, const char *text)
 {
 	begin(json, key);
 	fputs(is_number(text) ? text : "null", json->out);
+}
+
+void json_double(struct json *json, const char *key, double number)
+{
+	char text[VALUE_TEXT_MAX];
+
+	value_to_text(OWS_DOUBLE, value_of_double(number), text);
+	json_number(json, key, text);
 }

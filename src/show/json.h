@@ -36,5 +36,6 @@ void json_null(struct json *json, const char *key);
 void json_seconds(struct json *json, const char *key, int64_t ns);
 /* A number that is already text; null if JSON has no such number (nan, inf). */
 void json_number(struct json *json, const char *key, const char *text);
+void json_double(struct json *json, const char *key, double number); /* null for a NaN */
 
 #endif

@@ -60,14 +60,6 @@ static void put_age(struct json *json, const char *key, const struct look *look)
 		json_null(json, key);
 }
 
-static void put_double(struct json *json, const char *key, double number)
-{
-	char text[VALUE_TEXT_MAX];
-
-	value_to_text(OWS_DOUBLE, value_of_double(number), text);
-	json_number(json, key, text); /* null if it is NaN: not set */
-}
-
 static void put_text(struct json *json, const char *key, const char *text)
 {
 	json_string(json, key, *text ? text : NULL);
@@ -98,10 +90,10 @@ static void put_limits(struct json *json, const struct ows_info *info)
 		return;
 	}
 	json_object(json, "limits");
-	put_double(json, "hh", info->limit_hh);
-	put_double(json, "h", info->limit_h);
-	put_double(json, "l", info->limit_l);
-	put_double(json, "ll", info->limit_ll);
+	json_double(json, "hh", info->limit_hh);
+	json_double(json, "h", info->limit_h);
+	json_double(json, "l", info->limit_l);
+	json_double(json, "ll", info->limit_ll);
 	json_object_end(json);
 }
 
@@ -159,8 +151,8 @@ void show_signal(struct json *json, const struct show *show, int signal)
 	put_text(json, "family", info.family);
 	put_text(json, "device", info.device);
 	put_text(json, "calibrated", info.calibrated);
-	put_double(json, "min", info.min);
-	put_double(json, "max", info.max);
+	json_double(json, "min", info.min);
+	json_double(json, "max", info.max);
 	put_limits(json, &info);
 	put_all(json, show, &look);
 	put_text(json, "alarm", show_alarm(show, signal, words));
