@@ -90,11 +90,11 @@ bool when_moment(const struct when *now, const char *text, int64_t *wall_ns)
 	for (size_t i = 0; i < sizeof(forms) / sizeof(forms[0]); i++) {
 		struct tm local = {.tm_isdst = -1};
 		const char *end = strptime(text, forms[i], &local);
-		time_t seconds = end && !*end ? mktime(&local) : -1;
+		int64_t seconds = end && !*end ? mktime(&local) : -1;
 
-		if (seconds < 0)
+		if (seconds < 0 || seconds > INT64_MAX / NS_PER_S)
 			continue;
-		*wall_ns = (int64_t)seconds * NS_PER_S;
+		*wall_ns = seconds * NS_PER_S;
 		return true;
 	}
 	return false;

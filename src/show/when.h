@@ -26,7 +26,7 @@ const char *when_span(int64_t ns, char text[WHEN_TEXT]);
 bool when_parse(const char *text, int64_t *ns);
 /*
  * Parse a moment as wall clock: a span before now, or a local time "2026-11-26", "2026-11-26T14:30"
- * or "2026-11-26 14:30:15". Never before 1970. False: it is none.
+ * or "2026-11-26 14:30:15". Never before 1970, nor after 2262. False: it is none.
  */
 bool when_moment(const struct when *now, const char *text, int64_t *wall_ns);
 
