@@ -246,14 +246,15 @@ static void take_alarm(struct engine *e, struct alarm_item *item, const struct e
 	bool visits, arms;
 
 	alarm_take_item(&lane->alarm, item, e->time.now_ns);
-	if (lane->alarm.list.polls)
-		engine_alarm_polled(e, item);
 	if (before != ADOPT_NEW && old->alarm_count)
 		was = bsearch(&before, old->alarm_items, old->alarm_count, sizeof(*was),
 		              compare_rows);
+	if (was)
+		item->occurrence = was->occurrence;
+	if (lane->alarm.list.polls)
+		engine_alarm_polled(e, item);
 	if (!was)
 		return;
-	item->occurrence = was->occurrence;
 	before_item = old->table.signals[before].item;
 	visits = same_text(s->item->por_alarm, before_item->por_alarm) &&
 	         same_text(s->item->latch_alarm, before_item->latch_alarm) &&
