@@ -19,7 +19,10 @@ void alarm_hide(struct engine *e, struct alarm_item *item);
 
 /* Is the error that of the whole device? Then the quality says so, and not the alarm. */
 bool alarm_of_device(int err);
-/* A request of a visit failed, an item error: the back-off counts as that of a read. See above. */
+/*
+ * A request of a visit failed, an item error: the back-off counts as that of a read. property and
+ * why as of alarm_show().
+ */
 void alarm_refused(struct lane *lane, struct alarm_item *item, enum ows_unarmed unarmed, int err,
                    const char *property, const char *why, int64_t now_ns);
 /* It succeeded; unarmed may be 0: nothing. */
