@@ -64,10 +64,12 @@ static int open_label(const char *label, struct gpio_chip **chip, char *why, siz
 		refused |= failed == -EACCES || failed == -EPERM;
 		if (failed)
 			continue;
-		if (strcmp(gpio_api()->label(*chip), label) == 0)
+		if (strcmp(gpio_api()->label(*chip), label) == 0) {
 			err = 0;
-		else
+		} else {
 			gpio_api()->close(*chip);
+			*chip = NULL;
+		}
 	}
 	if (dir)
 		closedir(dir);
