@@ -159,6 +159,15 @@ LIBMOSQUITTO ?= $(shell printf '\043include <stdint.h>\n\043include <mosquitto.h
 LIBMOSQUITTO := $(LIBMOSQUITTO)
 MOSQUITTO := $(filter 1,$(LIBMOSQUITTO))
 
+# The profile sparkplug of owsd-mqtt, where libprotobuf-c and its compiler are; LIBPROTOBUFC=0 leaves it out
+PROTOC_C ?= $(firstword $(shell command -v protoc-c protoc))
+LIBPROTOBUFC ?= $(and $(PROTOC_C),$(shell printf '\043include <stdint.h>\n\043include <protobuf-c/protobuf-c.h>\nint main(void) { return !protobuf_c_version_number(); }\n' | \
+              $(CC) $(CPPFLAGS) $(CFLAGS) $(EXTRA_CFLAGS) $(LDFLAGS) -x c -o /dev/null - -lprotobuf-c 2>/dev/null && echo 1))
+LIBPROTOBUFC := $(LIBPROTOBUFC)
+PROTOBUFC := $(filter 1,$(LIBPROTOBUFC))
+PROTO    := $(if $(PROTOBUFC),$(B)/proto/sparkplug.pb-c)
+PROTO_FLAGS := $(if $(PROTOBUFC),-isystem $(B)/proto -DOWSD_PROTOBUFC)
+
 comma    := ,
 
 # With what is compiled and linked: a file for each, written when that has changed, and never else.
@@ -169,7 +178,8 @@ with_cxx := $(CXX): $(call version_of,$(CXX)): $(ALL_CXXFLAGS)
 with_ld  := $(CC): $(ALL_LDFLAGS) $(LIBS)
 with_libraries := libi2c $(if $(filter 1,$(LIBI2C)),yes,no) libgpiod $(or $(filter 1 2,$(LIBGPIOD)),no) \
     libsqlite3 $(if $(SQLITE),yes,no owsd-recorder left-out) libcurl $(if $(CURL),yes,no owsd-influx left-out) \
-    libmicrohttpd $(if $(HTTPD),yes,no owsd-web left-out) libmosquitto $(if $(MOSQUITTO),yes,no owsd-mqtt left-out)
+    libmicrohttpd $(if $(HTTPD),yes,no owsd-web left-out) libmosquitto $(if $(MOSQUITTO),yes,no owsd-mqtt left-out) \
+    libprotobuf-c $(if $(PROTOBUFC),yes,no)
 compiler := $(firstword $(filter-out ccache,$(CC)))
 WITH     := $(patsubst %,$(B)/with/%,cc cxx ld libraries)
 same      = $(and $(findstring x$(1)x,x$(2)x),$(findstring x$(2)x,x$(1)x))
@@ -226,7 +236,7 @@ PAGE     := $(patsubst src/web/page/%,%,$(foreach e,html css js svg png webmanif
             $(wildcard src/web/page/*.$(e) src/web/page/*/*.$(e))))
 MAN      := $(wildcard docs/*.[1-8])
 # Tests
-UNIT_SRC := $(filter-out $(if $(SQLITE),,%_past.c $(wildcard $(patsubst %,tests/unit/%/*.c,history libhistory recorder))),$(wildcard tests/unit/*/test_*.c))
+UNIT_SRC := $(filter-out $(if $(PROTOBUFC),,%/test_sparkplug.c) $(if $(SQLITE),,%_past.c $(wildcard $(patsubst %,tests/unit/%/*.c,history libhistory recorder))),$(wildcard tests/unit/*/test_*.c))
 UNIT_AID := $(wildcard tests/unit/aid/*.c)
 ENDURANCE := $(wildcard tests/endurance/*.c)
 BENCH    := $(filter-out $(if $(SQLITE),,%/bench_history.c %/bench_recorder.c),$(wildcard tests/bench/bench_*.c))
@@ -236,7 +246,8 @@ BENCH_AID := $(filter-out tests/bench/bench_%,$(wildcard tests/bench/*.c)) $(SIM
 CORE     := $(filter-out src/owsd/owsd.c src/owsctl/owsctl.c src/recorder/recorder.c src/influx/influx.c \
             src/writer/owsd_config.c $(SIM_TABLE) $(if $(SQLITE),src/libhistory/none.c,$(SQLITE_ALL)) \
             $(if $(CURL),,src/influx/post.c) $(if $(HTTPD),$(WEB_MAIN),$(WEB_HTTP)) \
-            $(if $(MOSQUITTO),src/mqtt/owsd_mqtt.c,$(MQTT_ALL)),$(SOURCES))
+            $(if $(MOSQUITTO),src/mqtt/owsd_mqtt.c,$(MQTT_ALL)) \
+            $(if $(PROTOBUFC),,src/mqtt/sparkplug.c),$(SOURCES))
 obj       = $(patsubst %.c,$(B)/%.o,$(1))
 UNIT     := $(patsubst %.c,$(B)/unit/%,$(notdir $(UNIT_SRC))) $(B)/unit/test_endurance
 BENCHES  := $(patsubst tests/bench/%.c,$(B)/bench/%,$(BENCH))
@@ -269,11 +280,24 @@ $(B)/%.o: %.c $(B)/with/cc
 	$(call compile,$(PIC))
 
 # Everything but main(): what the programs and the unit tests link
-$(B)/core.a: $(call obj,$(CORE))
+$(B)/core.a: $(call obj,$(CORE)) $(PROTO:%=%.o)
 	@mkdir -p $(@D)
 	@rm -f $@
 	$(call show,AR)
 	$(Q)$(AR) rcs $@ $^
+
+# What is made of the .proto file; which files know of it
+$(B)/proto/%.pb-c.c $(B)/proto/%.pb-c.h: src/mqtt/%.proto
+	@mkdir -p $(@D)
+	$(call show,PROTO)
+	$(Q)$(PROTOC_C) -Isrc/mqtt --c_out=$(@D) $<
+$(B)/proto/%.o: $(B)/proto/%.c $(B)/with/cc
+	$(call compile,-w)
+WITH_PROTO := $(call obj,$(patsubst %,src/%.c,config/mqtt mqtt/profiles mqtt/sparkplug))
+$(WITH_PROTO): PIC := $(PROTO_FLAGS)
+$(B)/tests/unit/config/test_config_mqtt.o: UNITY_FLAGS += $(PROTO_FLAGS)
+$(WITH_PROTO) $(B)/tests/unit/config/test_config_mqtt.o: $(B)/with/libraries
+$(B)/src/mqtt/sparkplug.o: $(PROTO:%=%.h)
 
 $(PROGRAMS): $(B)/core.a $(B)/with/ld
 	$(call link)
@@ -285,7 +309,7 @@ $(B)/owsd-config $(B)/owsd-config-sim: $(B)/src/writer/owsd_config.o
 $(B)/owsd-influx: $(B)/src/influx/influx.o
 $(B)/owsd-influx: LIBS += -lcurl
 $(B)/owsd-mqtt: $(B)/src/mqtt/owsd_mqtt.o
-$(B)/owsd-mqtt: LIBS += -lmosquitto
+$(B)/owsd-mqtt: LIBS += -lmosquitto $(if $(PROTOBUFC),-lprotobuf-c)
 $(B)/owsd-web: $(call obj,$(WEB_MAIN))
 $(B)/owsd-web: LIBS += -lmicrohttpd -Wl,--export-dynamic-symbol=_gnutls_global_init_skip
 
@@ -389,6 +413,7 @@ $(B)/tests/unit/%.o: tests/unit/%.c $(UNITY)/unity.h $(B)/with/cc
 	$(call compile,$(UNITY_FLAGS))
 
 $(foreach t,$(UNIT_SRC),$(eval $(B)/unit/$(basename $(notdir $(t))): $(call obj,$(t))))
+$(B)/unit/test_sparkplug $(B)/unit/test_stream: LIBS += $(PROTOBUFC:1=-lprotobuf-c)
 $(filter-out %/test_endurance,$(UNIT)): $(B)/unit/unity.o $(call obj,$(UNIT_AID)) $(B)/core.a $(B)/with/ld
 	$(call link)
 

@@ -168,6 +168,7 @@ struct config_web {
 #define MQTT_PROFILES(EACH) \
 	EACH(homeassistant) \
 	EACH(plain) \
+	EACH(sparkplug) \
 	EACH(homie5) \
 	EACH(wirenboard)
 #define MQTT_PROFILE_WORD(name) " " #name

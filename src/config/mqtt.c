@@ -27,6 +27,10 @@ static const char *check_profile(const char *profile)
 {
 	static const char *const words[] = {MQTT_PROFILES(PROFILE_TEXT)};
 
+#ifndef OWSD_PROTOBUFC
+	if (!strcmp(profile, "sparkplug"))
+		return "owsd was built without libprotobuf-c";
+#endif
 	for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++)
 		if (!strcmp(profile, words[i]))
 			return NULL;
@@ -122,6 +126,9 @@ static void check_together(struct build *build, const struct rio_node *block,
 
 	for (unsigned i = 0; i < mqtt->way_count; i++)
 		tls = tls || mqtt->ways[i].tls;
+	if (!strcmp(mqtt->profile, "sparkplug") && strchr(mqtt->topic, '/'))
+		report_error(build->report, block->at,
+		             "Topic \"%s\": the group of Sparkplug has no '/'", mqtt->topic);
 	if (!mqtt->cert_file != !mqtt->key_file)
 		report_error(build->report, block->at, "%s: CertFile and KeyFile belong together",
 		             mqtt->cert_file ? "CertFile without KeyFile"

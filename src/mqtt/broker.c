@@ -228,7 +228,7 @@ static void finish(struct broker *b, int code, int err, int64_t now_ns)
 
 static void connected(struct broker *b, int64_t now_ns)
 {
-	bool mqtt5 = b->options->mqtt5 && !b->old_protocol;
+	bool mqtt5 = client_mqtt5(b);
 	char name[MQTT_WAY_NAME];
 
 	b->begun_ns = now_ns;
@@ -274,8 +274,10 @@ static void work(struct broker *b, short ready, int64_t now_ns)
 		finish(b, MOSQ_ERR_ERRNO, err ? err : ECONNREFUSED, now_ns);
 		return;
 	}
-	if (ready & POLLOUT)
+	if (ready & POLLOUT) {
+		b->sent += !b->tcp;
 		b->tcp = true;
+	}
 	if (mosquitto_want_write(b->client) || (ready & POLLOUT))
 		code = mosquitto_loop_write(b->client, 1);
 	if (!code && b->tcp)
@@ -363,40 +365,20 @@ static bool drain(struct broker *b, int64_t until_ns)
 	return !b->in_flight && !b->ended;
 }
 
-void broker_end(struct broker *b)
+static bool publish(struct broker *b, const char *topic, const char *text, size_t len, int qos,
+                    bool retain)
 {
-	int64_t until_ns = ows_now() + END_NS;
-	char topic[OPTION_SIZE];
-	const char *text;
-
-	if (b->state == BROKER_CONNECTED && drain(b, until_ns)) {
-		text = b->ops->will(b->ctx, true, topic);
-		/* the goodbye would take the will back */
-		if (broker_put(b, topic, text, strlen(text), true) && drain(b, until_ns))
-			mosquitto_disconnect(b->client);
-		/* it ends the connection when the goodbye is out */
-		while (!b->in_flight && !b->ended && ows_now() < until_ns)
-			if (mosquitto_loop(b->client, 50, 1))
-				break;
-	}
-	drop(b);
-	b->state = BROKER_OFF;
-}
-
-bool broker_put(void *ctx, const char *topic, const char *text, size_t len, bool retain)
-{
-	struct broker *b = ctx;
 	int err;
 
 	if (b->state != BROKER_CONNECTED || b->ended || b->in_flight >= IN_FLIGHT_MOST)
 		return false;
-	err = mosquitto_publish_v5(b->client, NULL, topic, (int)len, text, b->options->profile->qos,
-	                           retain, NULL);
+	b->in_flight++; /* of QoS 0 it may have gone when that returns */
+	err = mosquitto_publish_v5(b->client, NULL, topic, (int)len, text, qos, retain, NULL);
 	if (!err) {
-		b->in_flight++;
 		b->published++;
 		return true;
 	}
+	b->in_flight--;
 	if (err == MOSQ_ERR_NO_CONN || err == MOSQ_ERR_CONN_LOST || err == MOSQ_ERR_NOMEM)
 		return false;
 	/* it would never be taken, and must not stand in the way of the others */
@@ -408,17 +390,49 @@ bool broker_put(void *ctx, const char *topic, const char *text, size_t len, bool
 	return true;
 }
 
+bool broker_put(void *ctx, const char *topic, const char *text, size_t len, bool retain)
+{
+	struct broker *b = ctx;
+
+	return publish(b, topic, text, len, b->options->profile->qos, retain);
+}
+
+static bool put_last(void *ctx, const char *topic, const char *text, size_t len, bool retain)
+{
+	return publish(ctx, topic, text, len, client_sure_qos(ctx), retain);
+}
+
+void broker_end(struct broker *b)
+{
+	bool with_will = b->options->profile->session && client_mqtt5(b);
+	int64_t until_ns = ows_now() + END_NS;
+
+	if (b->state == BROKER_CONNECTED && drain(b, until_ns)) {
+		/* the goodbye would take the will back */
+		if (b->ops->will(b->ctx, true, &(struct outlet){.put = put_last, .ctx = b}) &&
+		    drain(b, until_ns))
+			mosquitto_disconnect_v5(b->client,
+			                        with_will ? MQTT_RC_DISCONNECT_WITH_WILL_MSG
+			                                  : MQTT_RC_NORMAL_DISCONNECTION,
+			                        NULL);
+		/* it ends the connection when the goodbye is out */
+		while (!b->in_flight && !b->ended && ows_now() < until_ns)
+			if (mosquitto_loop(b->client, 50, 1))
+				break;
+	}
+	drop(b);
+	b->state = BROKER_OFF;
+}
+
 static int subscribe_options(const struct broker *b)
 {
-	bool mqtt5 = b->options->mqtt5 && !b->old_protocol;
-
-	return mqtt5 ? MQTT_SUB_OPT_RETAIN_AS_PUBLISHED | MQTT_SUB_OPT_NO_LOCAL : 0;
+	return client_mqtt5(b) ? MQTT_SUB_OPT_RETAIN_AS_PUBLISHED | MQTT_SUB_OPT_NO_LOCAL : 0;
 }
 
 void broker_subscribe(struct broker *b, const char *topic)
 {
 	if (b->client)
-		mosquitto_subscribe_v5(b->client, NULL, topic, b->options->profile->qos,
+		mosquitto_subscribe_v5(b->client, NULL, topic, client_sure_qos(b),
 		                       subscribe_options(b), NULL);
 }
 

@@ -17,8 +17,8 @@
 /* options and what ops needs stay until broker_end(). Begins to connect. */
 void broker_begin(struct broker *b, int64_t now_ns);
 /*
- * Put the text of the will, after what was put has gone, and disconnect: two seconds at most. If
- * the broker does not acknowledge that until then, it publishes the will.
+ * Put the profile's word for the end, after what was put has gone, and disconnect: two seconds at
+ * most. If the broker does not acknowledge that until then, it publishes the will.
  */
 void broker_end(struct broker *b);
 /* fd is ready, as poll(2) has it. True: it was the broker's. */
@@ -38,7 +38,7 @@ void broker_taken(struct broker *b);
 /* Try again at once, if it is not connected. */
 void broker_hurry(struct broker *b, int64_t now_ns);
 
-/* struct outlet, with the QoS of the profile. */
+/* struct outlet. */
 bool broker_put(void *ctx, const char *topic, const char *text, size_t len, bool retain);
 /* A refusal is logged when it comes. What we publish there ourselves does not come, by MQTT 5. */
 void broker_subscribe(struct broker *b, const char *topic);

@@ -10,10 +10,21 @@
 #include "src/face/secret.h"
 #include "src/mqtt/advice.h"
 #include "src/mqtt/client.h"
+#include "src/mqtt/stream.h"
 #include "src/signal/utf8.h"
 
 #define SESSION "session"
 #define CA_PATH "/etc/ssl/certs"
+
+bool client_mqtt5(const struct broker *b)
+{
+	return b->options->mqtt5 && !b->old_protocol;
+}
+
+int client_sure_qos(const struct broker *b)
+{
+	return b->options->profile->qos ? b->options->profile->qos : 1;
+}
 
 /* --- Callbacks ------------------------------------------------------------------------------- */
 
@@ -27,7 +38,7 @@ static void on_connect(struct mosquitto *client, void *ctx, int code, int flags,
 	(void)properties;
 	if (code) {
 		b->ended = true;
-		b->end_code = advice_connack(code, !b->options->mqtt5 || b->old_protocol);
+		b->end_code = advice_connack(code, !client_mqtt5(b));
 		return;
 	}
 	b->state = BROKER_CONNECTED;
@@ -78,7 +89,8 @@ static void on_subscribe(struct mosquitto *client, void *ctx, int mid, int count
 	(void)client;
 	(void)mid;
 	(void)properties;
-	if (!count || granted[0] < 128)
+	/* of several the first is our own, if there is one; the other profiles' may be refused */
+	if (!count || granted[0] < 128 || (count > 1 && !b->options->profile->below))
 		return;
 	b->refusals++;
 	log_err(b->face->log,
@@ -179,17 +191,17 @@ static bool set_tls(struct broker *b, char *why, size_t size)
 	return !err;
 }
 
-static bool set_will(struct broker *b, bool mqtt5)
+/* struct outlet. MQTT 5: it says of which process it is. */
+static bool set_will(void *ctx, const char *topic, const char *text, size_t len, bool retain)
 {
-	char topic[OPTION_SIZE];
-	const char *will = b->ops->will(b->ctx, false, topic);
+	struct broker *b = ctx;
 	mosquitto_property *session = NULL;
 
-	if (mqtt5 && mosquitto_property_add_string_pair(&session, MQTT_PROP_USER_PROPERTY, SESSION,
-	                                                b->session))
+	if (client_mqtt5(b) && mosquitto_property_add_string_pair(&session, MQTT_PROP_USER_PROPERTY,
+	                                                          SESSION, b->session))
 		return false;
-	if (!mosquitto_will_set_v5(b->client, topic, (int)strlen(will), will,
-	                           b->options->profile->qos, true, session))
+	if (!mosquitto_will_set_v5(b->client, topic, (int)len, text, client_sure_qos(b), retain,
+	                           session))
 		return true;
 	mosquitto_property_free_all(&session);
 	return false;
@@ -197,7 +209,6 @@ static bool set_will(struct broker *b, bool mqtt5)
 
 bool client_make(struct broker *b, char *why, size_t size)
 {
-	bool mqtt5 = b->options->mqtt5 && !b->old_protocol;
 	char id[160];
 
 	snprintf(id, sizeof(id), CLIENT_ID, b->options->node);
@@ -213,9 +224,9 @@ bool client_make(struct broker *b, char *why, size_t size)
 	mosquitto_message_v5_callback_set(b->client, on_message);
 	mosquitto_log_callback_set(b->client, on_log);
 	mosquitto_int_option(b->client, MOSQ_OPT_PROTOCOL_VERSION,
-	                     mqtt5 ? MQTT_PROTOCOL_V5 : MQTT_PROTOCOL_V311);
+	                     client_mqtt5(b) ? MQTT_PROTOCOL_V5 : MQTT_PROTOCOL_V311);
 	mosquitto_int_option(b->client, MOSQ_OPT_TCP_NODELAY, 1);
-	if (!set_will(b, mqtt5)) {
+	if (!b->ops->will(b->ctx, false, &(struct outlet){.put = set_will, .ctx = b})) {
 		snprintf(why, size, "no memory");
 		return false;
 	}

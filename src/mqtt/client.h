@@ -16,6 +16,7 @@
 #define BROKER_PERSON 32 /* as ows_for() takes it */
 
 struct face;
+struct outlet;
 struct mosquitto;
 
 /* What came on a topic that was subscribed to. */
@@ -23,6 +24,7 @@ struct broker_message {
 	const char *topic, *text; /* NUL-terminated behind len bytes */
 	size_t len;
 	bool retained;                /* the broker has kept it */
+	const char *fault;            /* what is wrong with it as a command; NULL: not known */
 	char person[BROKER_PERSON];   /* who sent it, as it claims; "": nothing is claimed */
 	char session[BROKER_SESSION]; /* of a will of owsd-mqtt: of which process; "": it is none */
 };
@@ -30,8 +32,8 @@ struct broker_message {
 struct broker_ops {
 	void (*connected)(void *ctx);
 	void (*message)(void *ctx, const struct broker_message *message);
-	/* The topic and text of the will; ending: of what is published at the end. */
-	const char *(*will)(void *ctx, bool ending, char topic[OPTION_SIZE]);
+	/* Have the will put; ending: what is published at the end. False: it was not taken. */
+	bool (*will)(void *ctx, bool ending, const struct outlet *outlet);
 };
 
 enum broker_state {
@@ -57,6 +59,7 @@ struct broker {
 	bool drained;        /* nothing is to be read any more */
 	int end_code;        /* why */
 	bool refusal_logged; /* that the broker refuses what is published */
+	unsigned sent;       /* CONNECTs */
 	unsigned brief;      /* connections in a row that did not last */
 	unsigned in_flight;  /* put, and not taken by the broker */
 	int64_t begun_ns, next_ns, step_ns;
@@ -76,5 +79,9 @@ struct broker {
  * files of secrets. False, with the reason in why; b->client is to be destroyed then, too.
  */
 bool client_make(struct broker *b, char *why, size_t size);
+/* MQTT 5, else 3.1.1. */
+bool client_mqtt5(const struct broker *b);
+/* The QoS of what has to come: the will and commands. */
+int client_sure_qos(const struct broker *b);
 
 #endif

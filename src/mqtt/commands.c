@@ -149,7 +149,7 @@ void commands_take(struct commands *c, const char *name, bool known,
 	int err;
 
 	if (!why)
-		why = fault_of(message);
+		why = message->fault ? message->fault : fault_of(message);
 	if (!why && !c->stream->live)
 		why = why_not(-ESTALE, words);
 	if (!why && !known)

@@ -198,8 +198,10 @@ static bool value(struct stream *s, struct row *row)
 
 static bool state(struct stream *s, enum stream_node node)
 {
-	static const char *const words[] = {
-		[STREAM_THERE] = "ready", [STREAM_LOST] = "lost", [STREAM_ENDED] = "disconnected"};
+	static const char *const words[] = {[STREAM_THERE] = "ready",
+	                                    [STREAM_LOST] = "lost",
+	                                    [STREAM_KILLED] = "lost",
+	                                    [STREAM_ENDED] = "disconnected"};
 
 	return stream_put_below(s, STATE, words[node]);
 }

@@ -24,6 +24,8 @@
 #define SWEEP_NS (10 * NS_PER_S)
 /* Between two births that somebody asks for: who asks all the time gets no more */
 #define ANNOUNCE_NS (10 * NS_PER_S)
+/* The same where each birth that does not come makes a host ask again */
+#define REBIRTH_NS NS_PER_S
 
 static struct mqtt *own(struct face *face)
 {
@@ -32,33 +34,19 @@ static struct mqtt *own(struct face *face)
 
 /* --- What the broker asks -------------------------------------------------------------------- */
 
-/* The profile's word for a node that is lost or ended, caught on its way. */
-struct caught {
-	char *topic;
-	char text[32];
-};
-
-static bool catch (void *ctx, const char *topic, const char *text, size_t len, bool retain)
-{
-	struct caught *caught = ctx;
-
-	(void)retain;
-	snprintf(caught->topic, OPTION_SIZE, "%s", topic);
-	snprintf(caught->text, sizeof(caught->text), "%.*s", (int)len, text);
-	return true;
-}
-
-static const char *will(void *ctx, bool ending, char topic[OPTION_SIZE])
+static bool will(void *ctx, bool ending, const struct outlet *to)
 {
 	struct mqtt *m = ctx;
-	static struct caught caught;
-	struct outlet outlet = m->stream.outlet;
+	struct stream *s = &m->stream;
+	struct outlet outlet = s->outlet;
+	bool put;
 
-	caught.topic = topic;
-	m->stream.outlet = (struct outlet){.put = catch, .ctx = &caught};
-	m->stream.profile->state(&m->stream, ending ? STREAM_ENDED : STREAM_LOST);
-	m->stream.outlet = outlet;
-	return caught.text;
+	if (m->broker.state != BROKER_CONNECTED)
+		s->bdseq = (uint8_t)m->broker.sent; /* before this one */
+	s->outlet = *to;
+	put = s->profile->state(s, ending ? STREAM_ENDED : STREAM_KILLED);
+	s->outlet = outlet;
+	return put;
 }
 
 static void on_connected(void *ctx)
@@ -71,8 +59,11 @@ static void on_connected(void *ctx)
 		broker_subscribe(&m->broker, topic);
 	}
 	if (m->options.write) {
-		snprintf(topic, sizeof(topic), "%.300s/%s", m->options.prefix,
-		         m->options.profile->commands);
+		if (m->stream.profile->listen_write)
+			m->stream.profile->listen_write(&m->stream, topic);
+		else
+			snprintf(topic, sizeof(topic), "%.300s/%s", m->options.prefix,
+			         m->options.profile->commands);
 		broker_subscribe(&m->broker, topic);
 	}
 	m->health_ns = m->sweep_ns = 0;
@@ -80,28 +71,78 @@ static void on_connected(void *ctx)
 	stream_begin(&m->stream);
 }
 
+static void command(struct mqtt *m, const char *name, bool known,
+                    const struct broker_message *message)
+{
+	char place[OPTION_SIZE + 8];
+
+	snprintf(place, sizeof(place), "mqtt:%s", m->options.ways[m->broker.way].host);
+	commands_take(&m->commands, name, known, message, place, ows_now());
+}
+
+/* A message that has commands, and who takes them. */
+struct several {
+	struct mqtt *m;
+	const struct broker_message *message;
+};
+
+static void take(void *ctx, const char *name, const char *text, const char *fault)
+{
+	const struct several *several = ctx;
+	struct broker_message one = *several->message;
+
+	one.text = text;
+	one.len = strlen(text);
+	one.fault = several->m->options.write ? fault : "Write is off in the block Mqtt";
+	command(several->m, name, true, &one);
+}
+
+static void on_commands(struct mqtt *m, const struct broker_message *message)
+{
+	struct several several = {.m = m, .message = message};
+
+	if (!look_is_current(m->broker.face))
+		take(&several, m->options.node, "", "owsd is away, or reloads: try again");
+	else if (m->stream.profile->take(&m->stream, message->topic, message->text, message->len,
+	                                 take, &several))
+		m->asked = m->asked || !message->retained;
+}
+
+/* struct outlet: true if it is the topic of ctx. */
+static bool is_topic(void *ctx, const char *topic, const char *text, size_t len, bool retain)
+{
+	(void)text;
+	(void)len;
+	(void)retain;
+	return !strcmp(topic, ctx);
+}
+
 static void on_message(void *ctx, const struct broker_message *message)
 {
 	struct mqtt *m = ctx;
-	char name[TOPIC_SIZE], place[OPTION_SIZE + 8];
+	const struct profile *profile = m->stream.profile;
+	char name[TOPIC_SIZE];
 	const struct row *row;
 
-	if (m->options.write && stream_command(&m->stream, message->topic, &row, name)) {
-		snprintf(place, sizeof(place), "mqtt:%s", m->options.ways[m->broker.way].host);
-		commands_take(&m->commands, name, row, message, place, ows_now());
+	if (profile->take && stream_below(message->topic, m->stream.prefix)) {
+		on_commands(m, message);
 		return;
 	}
+	if (m->options.write && profile->commands &&
+	    stream_command(&m->stream, message->topic, &row, name)) {
+		command(m, name, row, message);
+		return;
+	}
+	snprintf(name, sizeof(name), "%s", message->topic);
 	/* that of the first connection may be of a run of yesterday */
 	if (message->retained && *message->session && m->broker.again &&
-	    strcmp(message->session, m->broker.session) != 0) {
-		will(m, false, place);
-		if (!strcmp(message->topic, place))
-			broker_taken(&m->broker);
-	}
+	    strcmp(message->session, m->broker.session) != 0 &&
+	    will(m, false, &(struct outlet){.put = is_topic, .ctx = name}))
+		broker_taken(&m->broker);
 	if (message->retained && m->sweep_ns && look_is_current(m->broker.face))
 		profiles_kept(&m->stream, message->topic, message->text);
-	if (m->stream.profile->heard &&
-	    m->stream.profile->heard(&m->stream, message->topic, message->text, message->len))
+	if (profile->heard &&
+	    profile->heard(&m->stream, message->topic, message->text, message->len))
 		m->asked = true;
 }
 
@@ -216,20 +257,29 @@ static void sweep(struct mqtt *m, int64_t now_ns)
 	m->sweep_ns = begins ? now_ns + SWEEP_NS : 0;
 }
 
+static int64_t announce_ns(const struct mqtt *m)
+{
+	return m->announced_ns + (m->stream.profile->session ? REBIRTH_NS : ANNOUNCE_NS);
+}
+
 /* Publish what waits. Between two images no row can be looked at. */
 static void pump(struct face *face, int64_t now_ns)
 {
 	struct mqtt *m = own(face);
+	bool session = m->stream.profile->session;
 
 	if (m->broker.state != BROKER_CONNECTED || (face->live && !look_is_current(face)))
 		return;
 	if (face->live && m->stream.count)
 		sweep(m, now_ns);
-	if (m->asked && now_ns - m->announced_ns >= ANNOUNCE_NS) {
+	if (m->asked && (face->live || !session) && now_ns >= announce_ns(m)) {
 		stream_announce(&m->stream);
 		m->announced_ns = now_ns;
 		m->asked = false;
 	}
+	/* who asks for a birth gets nothing else before, but that owsd is lost */
+	if (m->asked && session && face->live)
+		return;
 	m->stream.settled = broker_is_settled(&m->broker, now_ns);
 	if (stream_pump(&m->stream) && face->live && m->stream.profile->health &&
 	    now_ns >= m->health_ns &&
@@ -245,8 +295,13 @@ static void look_at_clock(struct face *face, int64_t now_ns)
 {
 	struct mqtt *m = own(face);
 
+	bool before = m->stream.clock_set;
+
 	wall_clock_look(&m->clock, now_ns);
 	m->stream.clock_set = m->clock.trusted || now_ns >= CLOCK_WAIT_NS;
+	/* where a message has to have a time it had a wrong one */
+	if (m->stream.clock_set && !before && m->stream.live && m->stream.profile->session)
+		stream_announce(&m->stream);
 }
 
 static void show_status(struct face *face)
@@ -298,6 +353,8 @@ static void go_on(struct face *face, int64_t now_ns)
 
 	pump(face, now_ns);
 	face->tick_ns = broker_next(&m->broker);
+	if (m->asked && announce_ns(m) > now_ns && announce_ns(m) < face->tick_ns)
+		face->tick_ns = announce_ns(m);
 }
 
 /* --- The face -------------------------------------------------------------------------------- */

@@ -74,28 +74,46 @@ static void put_value(struct json *json, const struct stream *s, const struct ow
 }
 
 /*
- * Whether the chip of the row is there: one of its signals that answers is enough. What was never
- * read or written does not count against one that cannot reach it.
+ * One of its signals that answers is enough. What was never read or written does not count against
+ * one that cannot reach it.
  */
-static bool publish_chip(struct stream *s, struct row *row, uint8_t quality)
+bool plain_chip_online(const struct stream *s, const struct chip *chip)
+{
+	return s->live && (!chip->away || chip->away + chip->blank < chip->rows);
+}
+
+bool plain_chip_look(struct stream *s, struct row *row, uint8_t quality)
 {
 	bool away = quality == OWS_Q_NO_DEVICE || quality == OWS_Q_TARGET || quality == OWS_Q_SHORT,
-	     blank = quality == OWS_Q_INITIAL, online;
+	     blank = quality == OWS_Q_INITIAL;
 	struct chip *chip;
 
 	if (row->chip < 0)
-		return true;
+		return false;
 	chip = &s->chips[row->chip];
 	chip->away += away - row->away;
 	row->away = away;
 	chip->blank += blank - row->blank;
 	row->blank = blank;
-	online = s->live && (!chip->away || chip->away + chip->blank < chip->rows);
 	/* a chip that was never there is announced when it comes; of an output nobody knows */
-	if (online && !chip->seen && (quality != OWS_Q_INITIAL || row->info.output)) {
-		chip->seen = true;
-		s->birth = s->profile->birth ? 0 : -1;
-	}
+	if (!plain_chip_online(s, chip) || chip->seen ||
+	    (quality == OWS_Q_INITIAL && !row->info.output))
+		return false;
+	chip->seen = true;
+	return true;
+}
+
+static bool publish_chip(struct stream *s, struct row *row, uint8_t quality)
+{
+	struct chip *chip;
+	bool online;
+
+	if (plain_chip_look(s, row, quality) && s->profile->birth)
+		s->birth = 0;
+	if (row->chip < 0)
+		return true;
+	chip = &s->chips[row->chip];
+	online = plain_chip_online(s, chip);
 	if (chip->published && online == chip->online)
 		return true;
 	if (!stream_put_text(s, chip->topic, online ? "online" : "offline", true))

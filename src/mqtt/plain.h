@@ -11,6 +11,10 @@ bool plain_is_key(const struct row *row);
 extern const char *const plain_below[];
 void plain_topic(const struct stream *s, const struct row *row, char topic[TOPIC_SIZE]);
 bool plain_writes(const struct stream *s, const char *topic, const char *below);
+/* Count the quality of a row for its chip. True: the first that shows that the chip is there. */
+bool plain_chip_look(struct stream *s, struct row *row, uint8_t quality);
+/* Is the chip there, by all that was counted? */
+bool plain_chip_online(const struct stream *s, const struct chip *chip);
 bool plain_value(struct stream *s, struct row *row);
 bool plain_state(struct stream *s, enum stream_node node);
 void plain_alarm(struct stream *s, const struct ows_alarm *alarm);

@@ -5,6 +5,9 @@
 
 #include "src/mqtt/profiles.h"
 
+#ifndef OWSD_PROTOBUFC
+#define profile_sparkplug profile_plain /* the configuration refuses its name */
+#endif
 #define PROFILE_TABLE(name) &profile_##name,
 
 static const struct profile *const profiles[] = {MQTT_PROFILES(PROFILE_TABLE)};
@@ -24,7 +27,9 @@ void profiles_prefix(const struct profile *profile, const char *topic, const cha
 {
 	char id[TOPIC_SIZE / 2];
 
-	if (profile->root) {
+	if (profile->root && !profile->dash) {
+		snprintf(prefix, TOPIC_SIZE, "%s%s", profile->root, topic);
+	} else if (profile->root) {
 		topic_slug(node, profile->dash, id, sizeof(id));
 		snprintf(prefix, TOPIC_SIZE, "%s%s", profile->root, id);
 	} else {
@@ -81,7 +86,7 @@ void profiles_kept(struct stream *s, const char *topic, const char *text)
 
 	if (!s->live || !s->count || !*text)
 		return;
-	if (below)
+	if (below && s->profile->below)
 		text = s->profile->writes(s, topic, below) ? NULL : "";
 	else
 		text = outlived(s, topic, text);

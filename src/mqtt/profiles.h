@@ -12,7 +12,7 @@ MQTT_PROFILES(PROFILE_EXTERN)
 
 /* The profile of a name of MQTT_PROFILES. */
 const struct profile *profiles_find(const char *name);
-/* What all its topics begin with: TOPIC/NODE, or its root and the id of the node. */
+/* What all its topics begin with: TOPIC/NODE, or its root and the id of the node, or TOPIC. */
 void profiles_prefix(const struct profile *profile, const char *topic, const char *node,
                      char prefix[TOPIC_SIZE]);
 

@@ -130,6 +130,8 @@ void stream_clear(struct stream *s)
 	free(s->queue);
 	free(s->by_topic);
 	free(s->by_chip);
+	free(s->parts);
+	s->parts = NULL;
 	s->by_topic = s->by_chip = NULL;
 	s->rows = NULL;
 	s->chips = NULL;
@@ -314,7 +316,8 @@ int stream_make(struct stream *s, struct ows *h)
 	s->queue = calloc(room, sizeof(*s->queue));
 	s->by_topic = calloc(room, sizeof(struct row *));
 	s->by_chip = calloc(room, sizeof(struct row *));
-	made = s->rows && s->chips && s->queue && s->by_topic && s->by_chip;
+	s->parts = calloc(room + 2, sizeof(*s->parts));
+	made = s->rows && s->parts && s->chips && s->queue && s->by_topic && s->by_chip;
 	s->count = made ? count : 0;
 	for (int i = 0; made && i < count; i++)
 		made = make_row(s, i);

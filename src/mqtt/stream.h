@@ -68,11 +68,18 @@ struct news {
 	int64_t now_ns;
 };
 
+/* A metric in the text of a message. */
+struct part {
+	uint64_t time;
+	long at, len;
+};
+
 /* How the node is. */
 enum stream_node {
 	STREAM_THERE,
-	STREAM_LOST, /* owsd is; as the will owsd-mqtt */
-	STREAM_ENDED,
+	STREAM_LOST,   /* owsd is */
+	STREAM_KILLED, /* owsd-mqtt was: its will */
+	STREAM_ENDED,  /* it ends */
 };
 
 struct profile;
@@ -103,10 +110,17 @@ struct stream {
 	bool clock_set; /* wall-clock times can be believed */
 	uint64_t described;  /* by homie5: a hash of the description, */
 	int64_t description; /* and its version */
-	FILE *out;           /* makes a message in text */
+	/* Of sessions: the number of the CONNECT with the will, of the next message */
+	uint8_t bdseq, seq;
+	struct part *parts; /* room for two more than rows */
+	int part_count;
+	FILE *out; /* makes a message in text */
 	char *text;
 	size_t len;
 };
+
+/* A command: the signal, its value, what is wrong with it, else NULL. */
+typedef void stream_take(void *ctx, const char *name, const char *text, const char *fault);
 
 /*
  * A profile: how the stream looks at the broker. Each function puts messages; false: the outlet
@@ -114,13 +128,21 @@ struct stream {
  */
 struct profile {
 	const char *name; /* as the key Profile has it */
-	const char *root; /* stands before the id of the node; NULL: the keys Topic and Node do */
-	char dash;        /* what topic_slug() puts into ids; 0: topic_escape() makes them */
-	uint8_t qos;
-	bool health;          /* it publishes the message of health */
-	const char *none;     /* what is published last at the topic of a signal that is no more */
-	const char *commands; /* below the prefix, with wildcards; the last level has none */
-	const char *const *below; /* where retained messages may stand, likewise; NULL at the end */
+	/*
+	 * Stands before the id of the node, or, without dash, before the key Topic. NULL: all
+	 * begins with the keys Topic and Node.
+	 */
+	const char *root;
+	char dash;   /* what topic_slug() puts into ids; 0: topic_escape() makes them */
+	uint8_t qos; /* of messages; wills and commands have 1 at least */
+	bool health; /* it publishes the message of health */
+	/* A birth begins a session, with numbers and right times, and nothing else goes before */
+	bool session;
+	const char *none; /* what is published last at the topic of a signal that is no more */
+	/* Below the prefix, with wildcards; the last level has none. NULL: listen_write, take */
+	const char *commands;
+	/* Where retained messages may stand, likewise; NULL at the end, or in its place: nowhere */
+	const char *const *below;
 	/* Is the topic, which ends with below, one of what there is now? */
 	bool (*writes)(const struct stream *s, const char *topic, const char *below);
 	/* The topic of a row's value. */
@@ -137,6 +159,11 @@ struct profile {
 	void (*alarm)(struct stream *s, const struct ows_alarm *alarm);
 	/* A topic to listen to besides those of commands. */
 	void (*listen)(const struct stream *s, char topic[TOPIC_SIZE]);
+	/* The topics of commands, */
+	void (*listen_write)(const struct stream *s, char topic[TOPIC_SIZE]);
+	/* and the commands of a message there or at that of listen. True: as of heard. */
+	bool (*take)(struct stream *s, const char *topic, const char *text, size_t len,
+	             stream_take *take, void *ctx);
 	/* What came there. True: the birth has to be published again. */
 	bool (*heard)(const struct stream *s, const char *topic, const char *text, size_t len);
 	/* Where retained births of ours may stand. */

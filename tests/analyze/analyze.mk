@@ -35,8 +35,8 @@ sanitize:
 # what is preloaded have flags of their own
 SYNTAX := $(sort $(CORE) $(wildcard $(foreach p,owsd/owsd owsctl/owsctl recorder/recorder writer/owsd_config,\
           src/$p.c) $(filter-out tests/model/%,$(wildcard docs/examples/*.c tests/*/*.c tests/unit/*/*.c))))
-SYNTAX_FLAGS := $(UNITY_FLAGS) -Isrc/libows -Isrc/libhistory -fsyntax-only
-syntax: $(UNITY)/unity.h
+SYNTAX_FLAGS := $(UNITY_FLAGS) -Isrc/libows -Isrc/libhistory $(PROTO_FLAGS) -fsyntax-only
+syntax: $(UNITY)/unity.h $(PROTO:%=%.h)
 	@printf '%s\n' $(SYNTAX) | xargs -P $$(nproc) -n 16 $(CC) $(ALL_CFLAGS) $(SYNTAX_FLAGS)
 	@$(if $(filter -m32,$(EXTRA_CFLAGS)),,$(CXX) $(ALL_CXXFLAGS) $(SYNTAX_FLAGS) $(filter %.cpp,$(EXAMPLES)))
 	@echo '$(words $(SYNTAX)) passed, 0 failed'
@@ -75,10 +75,10 @@ format:
 
 # gcc -fanalyzer, clang-tidy and cppcheck, a quarter of an hour; TOOLS and FILES narrow
 # it. What was clean and has not changed is not read again; OWSD_ANALYZE_ALL=1 reads all
-analyze:
+analyze: $(PROTO:%=%.h)
 	@sh board/install-deps build analyze $(if $(OR_SKIP),|| true)
 	@python3 tests/analyze/run $(if $(OR_SKIP),--or-skip) $(TOOLS:%=--tool %) $(FILES:%=--file %) \
-	    -- $(CC) $(ALL_CFLAGS)
+	    -- $(CC) $(ALL_CFLAGS) $(PROTO_FLAGS)
 
 # Which lines and branches of src and hal the unit and system tests reach (COVER=unit: those alone),
 # some minutes. What is killed, as some tests do with owsd, has counted nothing. The libraries are

@@ -184,20 +184,19 @@ class Libownet(Client):
 
 
 # --- Python ---------------------------------------------------------------------------------------
-def python_client(name):
+def python_client(name, wanted=HERE / "requirements.txt", folder="clients"):
     """A package of requirements.txt, out of the user's cache or, once, from the package index."""
     base = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "owsd"
     try:
         base.mkdir(parents=True, exist_ok=True)
     except OSError:
         base = owsdtest.BUILD
-    wanted = HERE / "requirements.txt"
     text = wanted.read_text()
-    packages = base / f"python{sys.version_info.major}.{sys.version_info.minor}-clients"
+    packages = base / f"python{sys.version_info.major}.{sys.version_info.minor}-{folder}"
     with open(base / "python-clients.lock", "w", encoding="ascii") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        if not (packages / "requirements.txt").exists() or \
-                (packages / "requirements.txt").read_text() != text:
+        if not (packages / wanted.name).exists() or \
+                (packages / wanted.name).read_text() != text:
             _install(wanted, packages)
     if str(packages) not in sys.path:
         sys.path.insert(0, str(packages))
@@ -210,7 +209,7 @@ def _install(wanted, packages):
         for command in ([sys.executable, "-m", "venv", where],
                         [f"{where}/bin/python", "-m", "pip", "--quiet", "--disable-pip-version-check",
                          "--retries", "1", "--timeout", "10", "install", "--require-hashes",
-                         "--only-binary", ":all:", "--target", str(fresh), "-r", str(wanted)]):
+                         "--no-deps", "--only-binary", ":all:", "--target", str(fresh), "-r", str(wanted)]):
             done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
             if done.returncode:
                 shutil.rmtree(fresh)

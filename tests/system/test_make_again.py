@@ -70,7 +70,8 @@ class Tree:
                 for name in names:
                     file = pathlib.Path(folder, name)
                     is_named = file.stem in words if top == "tests" else str(file.relative_to(SOURCE)) in named
-                    if name in sources[:1] or name in MORE or is_named and file.suffix in (".c", ".h"):
+                    if name in sources[:1] or name in MORE or is_named and file.suffix in (".c", ".h") or \
+                            file.suffix == ".proto":
                         self._copy(file)
         (self.path / "unity").mkdir()
         for name in ("unity.c", "unity.h"):

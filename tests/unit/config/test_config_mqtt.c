@@ -125,8 +125,15 @@ static void test_what_cannot_be_is_an_error_at_its_place(void)
 		{"Mqtt { Topic \"/a\" }", "f:2:14: error: Topic \"/a\": expected letters, digits, "
 	                                  "'-', '_', '.' and '/' between them, at most 63\n"},
 		{"Mqtt { Profile homie4 }",
-	         "f:2:16: error: Profile \"homie4\": expected one of homeassistant plain homie5 "
-	         "wirenboard\n"},
+	         "f:2:16: error: Profile \"homie4\": expected one of homeassistant plain "
+	         "sparkplug homie5 wirenboard\n"},
+#ifdef OWSD_PROTOBUFC
+		{"Mqtt { Profile sparkplug Topic a/b }",
+	         "f:2:1: error: Topic \"a/b\": the group of Sparkplug has no '/'\n"},
+#else
+		{"Mqtt { Profile sparkplug }",
+	         "f:2:16: error: Profile \"sparkplug\": owsd was built without libprotobuf-c\n"},
+#endif
 		{"Mqtt { Write maybe }", "f:2:14: error: Write \"maybe\": expected on or off\n"},
 	};
 
