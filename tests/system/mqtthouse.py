@@ -70,11 +70,11 @@ class Listener:
 
 
 class House:
-    def __init__(self, scene, *items, lines=("allow_anonymous true",), wire="", owsd=True, env=None, **keys):
+    def __init__(self, scene, *items, lines=("allow_anonymous true",), wire="", owsd=True, env=None, listen=(), **keys):
         owsdtest.need(MQTT)
         self.scene = scene
         self.broker = Broker(scene, lines=lines)
-        self.listener = Listener(scene, self.broker.port)
+        self.listener = Listener(scene, self.broker.port, arguments=listen)
         self.wire = scene.file("house.sim", "chip DS2482-100 0x18\n"
                                f"DS18B20 {SENSOR} temperature 21.5\nDS2408 {SWITCH}\n{wire}")
         self.keys = {"Broker": self.broker.url, "Node": "pi7", **keys}

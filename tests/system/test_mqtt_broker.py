@@ -47,22 +47,15 @@ def secret(scene, text, mode=0o600):
     return path
 
 
-class LockedHouse(House):
+def locked_house(scene, lines, **keys):
     """Its broker wants passwords; the listener has one."""
-
-    def __init__(self, scene, lines, **keys):
-        listen, self.listen = Listener.__init__, None
-        try:
-            Listener.__init__ = lambda s, sc, port: listen(s, sc, port, arguments=("-u", "looker", "-P", "looker"))
-            super().__init__(scene, ROOM, lines=lines, **keys)
-        finally:
-            Listener.__init__ = listen
+    return House(scene, ROOM, lines=lines, listen=("-u", "looker", "-P", "looker"), **keys)
 
 
 def test_a_password_stands_in_a_file_that_is_ours_alone_or_in_a_credential(scene):
     lines = ("allow_anonymous false", f"password_file {passwords(scene)}")
     path = secret(scene, "secret\n", 0o644)
-    house = LockedHouse(scene, lines, User="pi7", PasswordFile=path)
+    house = locked_house(scene, lines, User="pi7", PasswordFile=path)
     logged(house.face, "others may read it: chmod 600")
     path.chmod(0o600)
     house.says(STATE, "online")
@@ -91,7 +84,7 @@ def test_the_access_list_of_the_fleet_lets_a_node_write_its_own_alone(scene):
     acl = scene.file("acl", re.search(r"^```text\n(pattern .*?)```", page, re.M | re.S)[1] + "user looker\ntopic read #\n")
     acl.chmod(0o600)
     lines = ("allow_anonymous false", f"password_file {passwords(scene)}", f"acl_file {acl}")
-    house = LockedHouse(scene, lines, PasswordFile=secret(scene, "secret\n"), Write=raw("on"))
+    house = locked_house(scene, lines, PasswordFile=secret(scene, "secret\n"), Write=raw("on"))
     house.says(STATE, "online")
     house.arrives("room", lambda m: m["good"])
     for topic in ("owsd/pi8/state", "owsd/pi7/other"):
