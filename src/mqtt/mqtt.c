@@ -140,7 +140,7 @@ static void on_message(void *ctx, const struct broker_message *message)
 	    will(m, false, &(struct outlet){.put = is_topic, .ctx = name}))
 		broker_taken(&m->broker);
 	if (message->retained && m->sweep_ns && look_is_current(m->broker.face))
-		profiles_kept(&m->stream, message->topic, message->text);
+		profiles_kept(&m->stream, message->topic, message->len ? message->text : NULL);
 	if (profile->heard &&
 	    profile->heard(&m->stream, message->topic, message->text, message->len))
 		m->asked = true;

@@ -37,6 +37,20 @@ void profiles_prefix(const struct profile *profile, const char *topic, const cha
 	}
 }
 
+/*
+ * Are the topics that another profile gives this node its own? Pi and pi have one slug, so they are
+ * taken for those of pi.
+ */
+static bool is_own(const struct profile *profile, const struct stream *s)
+{
+	char id[TOPIC_SIZE / 2];
+
+	if (!profile->dash)
+		return true;
+	topic_slug(s->node, profile->dash, id, sizeof(id));
+	return profile == s->profile || !strcmp(id, s->node);
+}
+
 void profiles_place(const struct stream *s, int number, char topic[TOPIC_SIZE])
 {
 	const char *const *last = NULL;
@@ -46,7 +60,8 @@ void profiles_place(const struct stream *s, int number, char topic[TOPIC_SIZE])
 		/* our own first: the others' may be refused */
 		const struct profile *p = i ? profiles[i - 1] : s->profile;
 		/* profiles that are built on one another have the same */
-		bool again = i && (p->below == s->profile->below || p->below == last);
+		bool again = i &&
+		             (p->below == s->profile->below || p->below == last || !is_own(p, s));
 		char prefix[TOPIC_SIZE];
 
 		last = p->below;
@@ -74,7 +89,7 @@ static const char *outlived(struct stream *s, const char *topic, const char *tex
 		if (put)
 			return put;
 		profiles_prefix(p, s->topic, s->node, prefix);
-		if (p->below && stream_below(topic, prefix))
+		if (p->below && is_own(p, s) && stream_below(topic, prefix))
 			return "";
 	}
 	return NULL;
@@ -84,7 +99,7 @@ void profiles_kept(struct stream *s, const char *topic, const char *text)
 {
 	const char *below = stream_below(topic, s->prefix);
 
-	if (!s->live || !s->count || !*text)
+	if (!s->live || !s->count || !text)
 		return;
 	if (below && s->profile->below)
 		text = s->profile->writes(s, topic, below) ? NULL : "";

@@ -175,7 +175,7 @@ static void test_what_the_broker_keeps_is_emptied_if_nobody_writes_it_any_more(v
 	pump();
 	for (size_t i = 0; i < sizeof(ours) / sizeof(ours[0]); i++)
 		profiles_kept(&s, ours[i], "x");
-	profiles_kept(&s, "o/pi/room", "");
+	profiles_kept(&s, "o/pi/room", NULL);
 	TEST_ASSERT_EQUAL_STRING("", pump());
 	profiles_kept(&s, "o/pi/room", "x");
 	pump();
@@ -245,6 +245,20 @@ static void test_what_another_profile_has_left_is_emptied_if_it_is_of_this_node(
 	profiles_kept(&s, "ha/device/owsd_28_000000000001/config",
 	              "{\"dev\":{\"via_device\":\"owsd_pi\"}}");
 	TEST_ASSERT_EQUAL_STRING("ha/device/owsd_28_000000000001/config \n", pump());
+}
+
+static void test_a_node_with_the_slug_of_another_empties_nothing_of_it(void)
+{
+	const char *left = "/devices/owsd_pi/controls/room";
+
+	s.node = "Pi";
+	TEST_ASSERT_NULL(strstr(places(), "owsd"));
+	pump();
+	profiles_kept(&s, left, "x");
+	TEST_ASSERT_EQUAL_STRING("", pump());
+	/* what the present profile publishes there is its own in any case */
+	take_profile(&profile_wirenboard);
+	TEST_ASSERT_NOT_NULL(strstr(places(), "/devices/owsd_pi/controls/+\n"));
 }
 
 static void test_homie_has_no_value_that_is_bad_and_an_alert_instead(void)
@@ -419,6 +433,7 @@ int main(void)
 	RUN_TEST(test_an_alarm_is_an_event_for_those_who_are_there);
 	RUN_TEST(test_the_topics_of_all_profiles_are_looked_at_our_own_first);
 	RUN_TEST(test_what_another_profile_has_left_is_emptied_if_it_is_of_this_node);
+	RUN_TEST(test_a_node_with_the_slug_of_another_empties_nothing_of_it);
 	RUN_TEST(test_homie_has_no_value_that_is_bad_and_an_alert_instead);
 	RUN_TEST(test_another_description_has_a_higher_version_and_the_same_the_same);
 	RUN_TEST(test_wirenboard_keeps_the_last_value_and_never_without_its_error);
