@@ -30,9 +30,9 @@ use std::time::Duration;
 
 const CYCLE: Duration = Duration::from_millis(20);
 
-// --- The giver ----------------------------------------------------------------------------------
+// --- The controller ----------------------------------------------------------------------------------
 
-struct Giver {
+struct Controller {
     place: PathBuf,
     instance: String,
     image: Image,
@@ -63,13 +63,13 @@ fn join(
     Ok((image, socket, welcome, memory))
 }
 
-impl Giver {
-    fn open(instance: &str, period_ms: u32) -> Result<Giver> {
+impl Controller {
+    fn open(instance: &str, period_ms: u32) -> Result<Controller> {
         let mut reason = error(ENOENT);
         for place in places() {
             match join(&place, instance, &[0; 16]) {
                 Ok((image, socket, mut welcome, memory)) => {
-                    let giver = Giver {
+                    let controller = Controller {
                         place,
                         instance: instance.to_string(),
                         image,
@@ -82,8 +82,8 @@ impl Giver {
                         period_ms,
                         looked_ns: 0,
                     };
-                    giver.promise();
-                    return Ok(giver);
+                    controller.promise();
+                    return Ok(controller);
                 }
                 Err(e) => reason = e,
             }
@@ -241,12 +241,12 @@ struct Command {
     told: String,
 }
 
-fn take_line(giver: &mut Giver, commands: &mut Vec<Command>, line: &str) {
+fn take_line(controller: &mut Controller, commands: &mut Vec<Command>, line: &str) {
     let Some((name, text)) = line.split_once('=') else {
         println!("{line}: no NAME=VALUE");
         return;
     };
-    match giver.set(name, text) {
+    match controller.set(name, text) {
         Ok(stamp) => {
             commands.retain(|command| command.name != name);
             let (name, text) = (name.to_string(), text.to_string());
@@ -256,9 +256,9 @@ fn take_line(giver: &mut Giver, commands: &mut Vec<Command>, line: &str) {
     }
 }
 
-fn tell(giver: &Giver, commands: &mut [Command]) {
+fn tell(controller: &Controller, commands: &mut [Command]) {
     for command in commands {
-        let fate = giver.fate(&command.name, command.stamp);
+        let fate = controller.fate(&command.name, command.stamp);
         if fate != command.told {
             println!("{}={}: {fate}", command.name, command.text);
             command.told = fate;
@@ -266,11 +266,11 @@ fn tell(giver: &Giver, commands: &mut [Command]) {
     }
 }
 
-fn follow(giver: &mut Giver, commands: &mut [Command], away: &mut bool) {
-    if !giver.is_stale() {
+fn follow(controller: &mut Controller, commands: &mut [Command], away: &mut bool) {
+    if !controller.is_stale() {
         return;
     }
-    match giver.reopen() {
+    match controller.reopen() {
         Ok(restarted) => {
             println!("# {}", if restarted { "another owsd" } else { "reloaded" });
             commands.iter_mut().for_each(|command| command.told.clear());
@@ -288,7 +288,7 @@ fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().collect();
     let instance = arguments.get(1).map_or("OWS", String::as_str);
     let period_ms = arguments.get(2).map_or(1000, |text| text.parse().expect("milliseconds"));
-    let mut giver = Giver::open(instance, period_ms)?;
+    let mut controller = Controller::open(instance, period_ms)?;
     println!("# connected");
     let (to, from) = mpsc::channel();
     std::thread::spawn(move || {
@@ -296,20 +296,20 @@ fn main() -> Result<()> {
     });
     let (mut commands, mut away) = (Vec::new(), false);
     loop {
-        follow(&mut giver, &mut commands, &mut away);
-        giver.beat();
+        follow(&mut controller, &mut commands, &mut away);
+        controller.beat();
         match from.try_recv() {
             Ok(line) if line == "quit" => break,
-            Ok(line) => take_line(&mut giver, &mut commands, &line),
+            Ok(line) => take_line(&mut controller, &mut commands, &line),
             Err(TryRecvError::Empty) => (),
             Err(TryRecvError::Disconnected) => break,
         }
         if !away {
-            tell(&giver, &mut commands);
+            tell(&controller, &mut commands);
         }
         std::thread::sleep(CYCLE);
     }
-    giver.goodbye();
+    controller.goodbye();
     println!("# goodbye");
     Ok(())
 }

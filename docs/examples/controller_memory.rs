@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-//! The control socket, and the memory that a giver gets over it.
+//! The control socket, and the memory that a controller gets over it.
 
 use crate::calls::*;
 use crate::image::*;
@@ -95,7 +95,7 @@ pub fn receive(socket: &OwnedFd, milliseconds: i32) -> Result<Welcome> {
     }
 }
 
-// --- The giver's memory -------------------------------------------------------------------------
+// --- The controller's memory -------------------------------------------------------------------------
 
 pub struct Memory {
     pub map: Map,

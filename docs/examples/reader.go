@@ -37,7 +37,7 @@ const (
 	pool
 	texts
 	origins
-	givers
+	controllers
 	shelves
 	alarms
 	commands
@@ -46,7 +46,7 @@ const (
 )
 
 var entrySize = [kinds]uint32{records: 320, infos: 192, names: 8, targets: 128, counters: 64,
-	pool: 1, texts: 1, origins: 104, givers: 120, shelves: 184, alarms: 200, commands: 200, changes: 8}
+	pool: 1, texts: 1, origins: 104, controllers: 120, shelves: 184, alarms: 200, commands: 200, changes: 8}
 
 const (
 	imageMagic, headerSize            = 0x4953574f, 256

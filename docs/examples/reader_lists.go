@@ -46,7 +46,7 @@ func (m *image) printJournal(kind int, head uint32) {
 	}
 }
 
-// The entries that are in use: of origins, givers and shelves the word behind seq says so.
+// The entries that are in use: of origins, controllers and shelves the word behind seq says so.
 func (m *image) each(kind int, print func(i uint32, e []byte)) {
 	for i := uint32(0); i < m.areas[kind].count; i++ {
 		if e, ok := m.entry(kind, i); ok && u32(e, 4) != 0 {
@@ -65,8 +65,8 @@ func (m *image) list(what string) bool {
 		m.printJournal(alarms, m.word(alarmHeadOff))
 	case "commands":
 		m.printJournal(commands, m.word(commandHeadOff))
-	case "givers":
-		m.each(givers, func(i uint32, e []byte) {
+	case "controllers":
+		m.each(controllers, func(i uint32, e []byte) {
 			fmt.Println(i, u32(e, 4), u32(e, 96), u32(e, 100), u32(e, 104), who(e, 16))
 		})
 	case "origins":

@@ -23,12 +23,12 @@ int ask_begin(struct control *c, struct control_place *p, const struct ows_hello
 {
 	unsigned waiting = 0;
 
-	for (unsigned i = 0; i < OWS_GIVERS; i++)
+	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
 		waiting += ask_waits(&c->places[i]);
 	if (waiting >= CONTROL_ASKERS)
 		return -ENOSPC;
 	p->who = (struct ows_who){.uid = p->peer.uid, .pid = p->peer.pid};
-	giver_clean_name(p->who.name, hello->name);
+	controller_clean_name(p->who.name, hello->name);
 	p->until_ns = c->now_ns + CONTROL_ASK_NS;
 	__atomic_store_n(&p->state, CONTROL_ASKING, __ATOMIC_RELEASE);
 	bell_ring(c->asked);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Programs that ask for a reload: they wait at a place of the room, and are no givers. */
+/* Programs that ask for a reload: they wait at a place of the room, and are no controllers. */
 #ifndef CONTROL_ASK_H
 #define CONTROL_ASK_H
 

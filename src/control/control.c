@@ -26,7 +26,7 @@
 #define STACK_SIZE (128 * 1024)
 #define EVENTS 64
 /* What stands in epoll's data; below it, a place * 2 + 1 if its process ended. */
-#define LISTENER (2 * OWS_GIVERS)
+#define LISTENER (2 * OWS_CONTROLLERS)
 #define WAKE (LISTENER + 1)
 
 static const char *const counter_names[CONTROL_COUNTER_COUNT] = {
@@ -83,7 +83,7 @@ int control_create(const struct control_setup *setup, struct control **control, 
 	c->ring = setup->ring;
 	c->ring_ctx = setup->ring_ctx;
 	c->epoll = c->wake = c->asked = c->listener = c->news.bell = -1;
-	c->engine.at = OWS_GIVERS;
+	c->engine.at = OWS_CONTROLLERS;
 	pthread_mutex_init(&c->lock, NULL);
 	for (int i = 0; i < CONTROL_COUNTER_COUNT; i++)
 		c->counters[i].name = counter_names[i];
@@ -147,7 +147,7 @@ static void *run(void *arg)
 	return NULL;
 }
 
-int control_start(struct control *c, const struct giver_layout *layout)
+int control_start(struct control *c, const struct controller_layout *layout)
 {
 	int err;
 
@@ -180,11 +180,11 @@ void control_stop(struct control *c)
 		c->running = false;
 	}
 	news_stop(c);
-	for (unsigned i = 0; i < OWS_GIVERS; i++) {
+	for (unsigned i = 0; i < OWS_CONTROLLERS; i++) {
 		struct control_place *p = &c->places[i];
 
 		if (p->now.memory.base)
-			giver_state(&p->now.memory, OWS_STATE_STOPPED);
+			controller_state(&p->now.memory, OWS_STATE_STOPPED);
 		if (__atomic_load_n(&p->state, __ATOMIC_ACQUIRE) != CONTROL_FREE)
 			part_with(c, &p->fd);
 	}
@@ -200,7 +200,7 @@ void control_destroy(struct control *c)
 	if (!c)
 		return;
 	control_stop(c);
-	for (unsigned i = 0; i < OWS_GIVERS; i++)
+	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
 		if (__atomic_load_n(&c->places[i].state, __ATOMIC_ACQUIRE) != CONTROL_FREE)
 			door_release(c, &c->places[i]);
 	held_forget(c);
@@ -241,7 +241,7 @@ bool control_next(struct control *c, struct control_turn *turn)
 		c->engine.seen = turns;
 		c->engine.at = 0;
 	}
-	while (c->engine.at < OWS_GIVERS) {
+	while (c->engine.at < OWS_CONTROLLERS) {
 		unsigned place = c->engine.at++;
 		struct control_place *p = &c->places[place];
 		uint32_t state = CONTROL_JOINING;
@@ -262,7 +262,8 @@ bool control_next(struct control *c, struct control_turn *turn)
 
 void control_done(struct control *c, const struct control_turn *turn)
 {
-	c->engine.memories[turn->place] = turn->joins ? turn->memory : (struct giver_memory){0};
+	c->engine.memories[turn->place] = turn->joins ? turn->memory
+	                                              : (struct controller_memory){0};
 	if (turn->joins && c->engine.end <= turn->place)
 		c->engine.end = turn->place + 1;
 	while (c->engine.end && !c->engine.memories[c->engine.end - 1].base)
@@ -277,9 +278,9 @@ void control_news(struct control *c, const uint32_t *word)
 	/* news are counted before the look who waits; who waits says so before it looks for news */
 	word_fence(__ATOMIC_SEQ_CST);
 	for (unsigned i = 0; i < c->engine.end; i++) {
-		const struct giver_memory *memory = &c->engine.memories[i];
+		const struct controller_memory *memory = &c->engine.memories[i];
 
-		if (memory->base && giver_waits(memory))
+		if (memory->base && controller_waits(memory))
 			news_due(c, i);
 	}
 	news_ring(c, word);
@@ -287,9 +288,9 @@ void control_news(struct control *c, const uint32_t *word)
 
 void control_end(struct control *c)
 {
-	for (unsigned i = 0; i < OWS_GIVERS; i++)
+	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
 		if (c->engine.memories[i].base)
-			giver_state(&c->engine.memories[i], OWS_STATE_STOPPED);
+			controller_state(&c->engine.memories[i], OWS_STATE_STOPPED);
 }
 
 /* --- A reload --------------------------------------------------------------------------------- */
@@ -309,7 +310,7 @@ bool control_asked(struct control *c)
 	bool asked = false;
 
 	bell_clear(c->asked);
-	for (unsigned i = 0; i < OWS_GIVERS; i++)
+	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
 		asked |= is(&c->places[i], CONTROL_ASKING);
 	return asked;
 }
@@ -317,7 +318,7 @@ bool control_asked(struct control *c)
 void control_take_askers(struct control *c)
 {
 	pthread_mutex_lock(&c->lock);
-	for (unsigned i = 0; i < OWS_GIVERS; i++) {
+	for (unsigned i = 0; i < OWS_CONTROLLERS; i++) {
 		struct control_place *p = &c->places[i];
 
 		if (!is(p, CONTROL_ASKING))
@@ -332,7 +333,7 @@ void control_take_askers(struct control *c)
 void control_answer(struct control *c, int err, const char *why)
 {
 	pthread_mutex_lock(&c->lock);
-	for (unsigned i = 0; i < OWS_GIVERS; i++) {
+	for (unsigned i = 0; i < OWS_CONTROLLERS; i++) {
 		struct control_place *p = &c->places[i];
 
 		if (!is(p, CONTROL_ASKED))
@@ -343,31 +344,31 @@ void control_answer(struct control *c, int err, const char *why)
 	pthread_mutex_unlock(&c->lock);
 }
 
-static void prepare(struct control *c, struct control_place *p, const struct giver_layout *layout,
-                    const struct rights *rights)
+static void prepare(struct control *c, struct control_place *p,
+                    const struct controller_layout *layout, const struct rights *rights)
 {
 	size_t has = 0, bytes;
 	int err = -ENOSPC;
 
-	for (unsigned i = 0; i < OWS_GIVERS; i++)
+	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
 		if (c->places[i].peer.uid == p->peer.uid)
 			has += c->places[i].next.size;
 	if (!p->peer.uid || ((!has || has + layout->size <= CONTROL_MEMORY) &&
 	                     held_of(c, p->peer.uid, &bytes) < CONTROL_HELD && !held_full(c)))
 		err = grant_make(&p->next, layout, rights, p);
 	if (err)
-		log_warning(c->log, "no memory for giver %s (process %d) after the reload: %s",
+		log_warning(c->log, "no memory for controller %s (process %d) after the reload: %s",
 		            p->who.name, (int)p->who.pid, strerror(-err));
 }
 
 void control_prepare(struct control *c, const struct config *config,
-                     const struct giver_layout *layout)
+                     const struct controller_layout *layout)
 {
 	pthread_mutex_lock(&c->lock);
 	rights_find(&c->rights, config);
 	c->config = config;
 	c->layout = layout;
-	for (unsigned i = 0; i < OWS_GIVERS; i++) {
+	for (unsigned i = 0; i < OWS_CONTROLLERS; i++) {
 		struct control_place *p = &c->places[i];
 		uint32_t state = __atomic_load_n(&p->state, __ATOMIC_ACQUIRE);
 
@@ -378,7 +379,7 @@ void control_prepare(struct control *c, const struct config *config,
 
 bool control_prepared(struct control *c, unsigned *place, struct control_turn *turn)
 {
-	while (*place < OWS_GIVERS) {
+	while (*place < OWS_CONTROLLERS) {
 		unsigned i = (*place)++;
 		const struct control_grant *next = &c->places[i].next;
 
@@ -409,7 +410,7 @@ static void take_next(struct control *c, struct control_place *p)
 
 void control_reloaded(struct control *c)
 {
-	for (unsigned i = 0; i < OWS_GIVERS; i++)
+	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
 		take_next(c, &c->places[i]);
 	socket_open_for(c->directory, c->name, is_for_all(c));
 	pthread_mutex_unlock(&c->lock);
@@ -419,7 +420,7 @@ void control_reloaded(struct control *c)
 void control_replaced(struct control *c)
 {
 	pthread_mutex_lock(&c->lock);
-	for (unsigned i = 0; i < OWS_GIVERS; i++) {
+	for (unsigned i = 0; i < OWS_CONTROLLERS; i++) {
 		if (is(&c->places[i], CONTROL_IN))
 			news_due(c, i);
 	}

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The control room: programs that want to command connect to NAME.control and become givers. Its
- * thread accepts them, looks at their credentials and rights, and makes each a memory of its own;
- * the engine's thread takes them from here. Nothing that comes over the socket is believed.
+ * The control room: programs that want to command connect to NAME.control and become controllers.
+ * Its thread accepts them, looks at their credentials and rights, and makes each a memory of its
+ * own; the engine's thread takes them from here. Nothing that comes over the socket is believed.
  *
  * Room src/control: the control socket: connections, credentials, rights. Uses src/config,
  * src/text, src/libows, src/shm, hal/bus.
@@ -14,7 +14,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "src/shm/giver.h"
+#include "src/shm/controller.h"
 
 struct bus_counter;
 struct config;
@@ -31,13 +31,13 @@ struct control_setup {
 	void (*ring)(void *ctx); /* wakes the engine's thread, which then calls control_next() */
 	void *ring_ctx;
 };
-/* Make room for all givers, and the socket. 0, or a negative errno with the reason in why. */
+/* Make room for all controllers, and the socket. 0, or a negative errno with the reason in why. */
 int control_create(const struct control_setup *setup, struct control **control, char *why,
                    size_t why_size);
 /* Start the thread; layout: of the memories. 0 or a negative errno. */
-int control_start(struct control *control, const struct giver_layout *layout);
+int control_start(struct control *control, const struct controller_layout *layout);
 /*
- * End the thread, hang up on all givers and stop their memories, which stay mapped until
+ * End the thread, hang up on all controllers and stop their memories, which stay mapped until
  * control_destroy(): a thread of the engine may end later. NULL: does nothing; so may both be
  * called again.
  */
@@ -47,22 +47,22 @@ const struct bus_counter *control_counters(const struct control *control, size_t
 
 /* --- For the engine's thread: these neither block nor allocate ------------------------------- */
 
-/* A giver that joins or leaves; which it has is valid until control_done() of its leaving. */
+/* A controller that joins or leaves; which it has is valid until control_done() of its leaving. */
 struct control_turn {
 	unsigned place;
 	bool joins; /* else it leaves */
-	struct giver_memory memory;
+	struct controller_memory memory;
 	const uint32_t *rights; /* a bit for each record that it may command */
 	struct ows_who who;
 	uint8_t token[16];
 	int bell; /* eventfd; for edge-triggered epoll: nobody reads it */
 };
-/* The next giver that joins or leaves; the caller calls control_done() before the next. */
+/* The next controller that joins or leaves; the caller calls control_done() before the next. */
 bool control_next(struct control *control, struct control_turn *turn);
 void control_done(struct control *control, const struct control_turn *turn);
 /*
- * Have the news rung of the givers that wait for it, and the sleepers of an image woken, by another
- * thread; word: of the image, which counts its news; NULL: none.
+ * Have the news rung of the controllers that wait for it, and the sleepers of an image woken, by
+ * another thread; word: of the image, which counts its news; NULL: none.
  */
 void control_news(struct control *control, const uint32_t *word);
 /* The engine ends: refuse all sets from here on. What was set before, the next step finds. */
@@ -82,22 +82,23 @@ void control_take_askers(struct control *control);
 void control_answer(struct control *control, int err, const char *why);
 
 /*
- * Make the memories and rights of another configuration for all givers. Nobody joins or leaves
+ * Make the memories and rights of another configuration for all controllers. Nobody joins or leaves
  * until control_reloaded(), which the caller has to call.
  */
 void control_prepare(struct control *control, const struct config *config,
-                     const struct giver_layout *layout);
+                     const struct controller_layout *layout);
 /*
- * The engine's thread, after control_next() had no more and before it adopts: the next giver at or
- * after *place that has joined, with its new memory and rights; *place is then the one after it. A
- * giver for whom there was no room is not among them, and owsd hangs up on it.
+ * The engine's thread, after control_next() had no more and before it adopts: the next controller
+ * at or after *place that has joined, with its new memory and rights; *place is then the one after
+ * it. A controller for whom there was no room is not among them, and owsd hangs up on it.
  */
 bool control_prepared(struct control *control, unsigned *place, struct control_turn *turn);
-/* The engine has adopted and uses the memories of before no more: send the givers the new ones. */
+/* The engine has adopted and uses the memories of before no more: send the controllers the new
+ * ones. */
 void control_reloaded(struct control *control);
 /*
- * The new image is in place, and the old one is retired: ring the news of all givers. They said in
- * the memory of before that they wait.
+ * The new image is in place, and the old one is retired: ring the news of all controllers. They
+ * said in the memory of before that they wait.
  */
 void control_replaced(struct control *control);
 

@@ -143,7 +143,7 @@ void door_drop(struct control *c, struct control_place *p, enum control_counter 
 	count(c, why);
 	p->leaves = true;
 	if (p->now.memory.base)
-		giver_state(&p->now.memory, OWS_STATE_STOPPED);
+		controller_state(&p->now.memory, OWS_STATE_STOPPED);
 	hang_up(c, p);
 	if (state_of(p) == CONTROL_HALF || ask_waits(p) ||
 	    __atomic_compare_exchange_n(&p->state, &joining, CONTROL_LEFT, false, __ATOMIC_ACQ_REL,
@@ -176,13 +176,13 @@ size_t door_memory(struct control *c, uid_t uid)
 	size_t sum;
 
 	held_of(c, uid, &sum);
-	for (unsigned i = 0; i < OWS_GIVERS; i++)
+	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
 		if (c->places[i].peer.uid == uid)
 			sum += c->places[i].now.size;
 	return sum;
 }
 
-/* One giver of a user has a memory of any size. */
+/* One controller of a user has a memory of any size. */
 static bool has_room(struct control *c, const struct control_place *p)
 {
 	size_t has = door_memory(c, p->peer.uid);
@@ -231,7 +231,7 @@ static int identify(struct control *c, struct control_place *p, const struct ows
 
 	p->commands = hello->flags & OWS_HELLO_COMMAND;
 	p->who = (struct ows_who){.uid = p->peer.uid, .pid = p->peer.pid};
-	giver_clean_name(p->who.name, hello->name);
+	controller_clean_name(p->who.name, hello->name);
 	memcpy(p->token, hello->token, sizeof(p->token));
 	if (memcmp(p->token, none, sizeof(none)) == 0 &&
 	    getrandom(p->token, sizeof(p->token), 0) != (ssize_t)sizeof(p->token))
@@ -257,7 +257,7 @@ static void join(struct control *c, struct control_place *p, const struct ows_he
 		return;
 	}
 	count(c, CONTROL_joined);
-	log_info(c->log, "giver %s (process %d, user %u) may command %u signals", p->who.name,
+	log_info(c->log, "controller %s (process %d, user %u) may command %u signals", p->who.name,
 	         (int)p->who.pid, (unsigned)p->who.uid, p->now.allowed);
 	enter(p, CONTROL_JOINING);
 	let_engine_look(c);
@@ -335,8 +335,8 @@ void door_event(struct control *c, struct control_place *p)
 static unsigned most_places(const struct control *c, const struct peer *peer)
 {
 	if (!peer->uid || peer->uid == c->rights.own)
-		return OWS_GIVERS;
-	return OWS_GIVERS -
+		return OWS_CONTROLLERS;
+	return OWS_CONTROLLERS -
 	       (rights_set_any(&c->rights, peer) ? CONTROL_KEPT : CONTROL_KEPT_FROM_READERS);
 }
 
@@ -347,7 +347,7 @@ static struct control_place *find_place(struct control *c, const struct peer *pe
 	size_t bytes;
 	unsigned of_user = 0, taken = 0, held = held_of(c, peer->uid, &bytes);
 
-	for (unsigned i = 0; i < OWS_GIVERS; i++) {
+	for (unsigned i = 0; i < OWS_CONTROLLERS; i++) {
 		struct control_place *p = &c->places[i];
 
 		if (state_of(p) == CONTROL_FREE) {
@@ -511,7 +511,7 @@ int64_t door_look(struct control *c)
 
 	c->later = false;
 	held_look(c);
-	for (unsigned i = 0; i < OWS_GIVERS; i++) {
+	for (unsigned i = 0; i < OWS_CONTROLLERS; i++) {
 		struct control_place *p = &c->places[i];
 
 		look(c, p);

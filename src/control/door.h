@@ -16,9 +16,9 @@ void door_died(struct control *c, struct control_place *p);
  * the time of the next deadline.
  */
 int64_t door_look(struct control *c);
-/* The giver has to leave: there was no room for it at a reload. */
+/* The controller has to leave: there was no room for it at a reload. */
 void door_drop(struct control *c, struct control_place *p, enum control_counter why);
-/* How many bytes of memory the user's givers have, of this generation. */
+/* How many bytes of memory the user's controllers have, of this generation. */
 size_t door_memory(struct control *c, uid_t uid);
 /* Close and free everything of a place. */
 void door_release(struct control *c, struct control_place *p);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What a giver gets of a generation: its memory and its rights. */
+/* What a controller gets of a generation: its memory and its rights. */
 #include <errno.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -10,10 +10,10 @@
 static void show_rights(const struct control_grant *grant)
 {
 	for (uint32_t i = 0; i < grant->memory.layout->slot_count; i++)
-		giver_allow(&grant->memory, i, grant->rights[i / 32] >> i % 32 & 1);
+		controller_allow(&grant->memory, i, grant->rights[i / 32] >> i % 32 & 1);
 }
 
-int grant_make(struct control_grant *grant, const struct giver_layout *layout,
+int grant_make(struct control_grant *grant, const struct controller_layout *layout,
                const struct rights *rights, const struct control_place *place)
 {
 	*grant = (struct control_grant){
@@ -36,9 +36,9 @@ int grant_make(struct control_grant *grant, const struct giver_layout *layout,
 	}
 	if (place->commands)
 		grant->allowed = rights_fill(rights, &place->peer, grant->rights);
-	giver_build(&grant->memory, place->who.serial);
+	controller_build(&grant->memory, place->who.serial);
 	show_rights(grant);
-	giver_state(&grant->memory, OWS_STATE_LIVE);
+	controller_state(&grant->memory, OWS_STATE_LIVE);
 	return 0;
 }
 

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* What a giver gets of a generation: its memory and its rights. */
+/* What a controller gets of a generation: its memory and its rights. */
 #ifndef CONTROL_GRANT_H
 #define CONTROL_GRANT_H
 
 #include "src/control/private.h"
 
-/* For the giver with that serial. 0 or a negative errno. */
-int grant_make(struct control_grant *grant, const struct giver_layout *layout,
+/* For the controller with that serial. 0 or a negative errno. */
+int grant_make(struct control_grant *grant, const struct controller_layout *layout,
                const struct rights *rights, const struct control_place *place);
 /* An empty grant stays as it is. */
 void grant_free(struct control_grant *grant);

@@ -11,7 +11,7 @@
 
 /* Connections without end do not make owsd look more often. */
 #define LOOK_NS (5 * NS_PER_MS)
-/* A giver that has just been sent the next memory still reads in the last one. */
+/* A controller that has just been sent the next memory still reads in the last one. */
 #define AFTER_RELOAD_NS (2 * NS_PER_S)
 /* A memory that takes longer is locked by somebody; then those of its user wait for it. */
 #define LOCKED_NS (NS_PER_S / 2)
@@ -61,7 +61,7 @@ void held_look(struct control *c)
 
 bool held_full(const struct control *c)
 {
-	return c->held_count + 2 * OWS_GIVERS > CONTROL_HELD_ALL;
+	return c->held_count + 2 * OWS_CONTROLLERS > CONTROL_HELD_ALL;
 }
 
 void held_free(struct control *c, uid_t uid, struct control_grant *grant, bool reload)

@@ -66,7 +66,7 @@ bool news_end(struct control_place *p)
 
 /* --- The thread ------------------------------------------------------------------------------- */
 
-/* A socket whose room is full rings already; without a reader the giver is about to leave. */
+/* A socket whose room is full rings already; without a reader the controller is about to leave. */
 static void ring_place(struct control_place *p)
 {
 	uint32_t idle = NEWS_IDLE;

@@ -8,7 +8,7 @@
 #include "hal/bus/bus.h"
 #include "src/control/often.h"
 #include "src/control/rights.h"
-#include "src/shm/giver.h"
+#include "src/shm/controller.h"
 #include "src/shm/peer.h"
 #include "src/shm/porter.h"
 #include "src/text/log.h"
@@ -61,9 +61,9 @@ enum control_state {
 	CONTROL_UNREAD, /* left, but for descriptors that lie unread in its socket */
 };
 
-/* What a giver gets of a generation. */
+/* What a controller gets of a generation. */
 struct control_grant {
-	struct giver_memory memory;
+	struct controller_memory memory;
 	size_t size;
 	uint32_t *rights;
 	uint32_t allowed; /* how many signals */
@@ -71,7 +71,7 @@ struct control_grant {
 	int own;          /* owsd's own descriptor of it; -1 */
 };
 
-/* A memory whose giver has left, or got another at a reload. */
+/* A memory whose controller has left, or got another at a reload. */
 struct control_held {
 	int own;
 	uid_t uid;
@@ -99,14 +99,14 @@ struct control_place {
 };
 
 /* The places, and the sleepers of the image. */
-#define NEWS_IMAGE OWS_GIVERS
-#define NEWS_PACES (OWS_GIVERS + 1)
+#define NEWS_IMAGE OWS_CONTROLLERS
+#define NEWS_PACES (OWS_CONTROLLERS + 1)
 #define NEWS_WORDS ((NEWS_PACES + 31) / 32)
 
 struct control {
 	pthread_mutex_t lock; /* places, but for what belongs to the engine's thread; config */
 	const struct config *config;
-	const struct giver_layout *layout;
+	const struct controller_layout *layout;
 	struct rights rights;
 	int directory;
 	char name[48]; /* of the socket in it */
@@ -128,7 +128,7 @@ struct control {
 	bool accepts;
 	int64_t now_ns, accept_ns; /* accept_ns: not sooner */
 	uint32_t serial;
-	struct control_place places[OWS_GIVERS];
+	struct control_place places[OWS_CONTROLLERS];
 	struct control_held held[CONTROL_HELD_ALL];
 	unsigned held_count;
 	struct often often;
@@ -137,9 +137,9 @@ struct control {
 	struct {
 		uint32_t seen;
 		unsigned at;
-		unsigned end;                             /* no memory stands at or after it */
-		struct giver_memory memories[OWS_GIVERS]; /* of those that have joined */
-	} engine;                                         /* of the engine's thread */
+		unsigned end; /* no memory stands at or after it */
+		struct controller_memory memories[OWS_CONTROLLERS]; /* of those that have joined */
+	} engine;                                                   /* of the engine's thread */
 	struct {
 		pthread_t thread;
 		bool running;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The memory of a giver: made by owsd, sealed, mapped by both. */
+/* The memory of a controller: made by owsd, sealed, mapped by both. */
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -16,10 +16,10 @@
 
 static int create(void)
 {
-	int fd = memfd_create("owsd-giver", MFD_CLOEXEC | MFD_ALLOW_SEALING | MFD_NOEXEC_SEAL);
+	int fd = memfd_create("owsd-controller", MFD_CLOEXEC | MFD_ALLOW_SEALING | MFD_NOEXEC_SEAL);
 
 	if (fd < 0 && errno == EINVAL)
-		fd = memfd_create("owsd-giver", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+		fd = memfd_create("owsd-controller", MFD_CLOEXEC | MFD_ALLOW_SEALING);
 	return fd < 0 ? -errno : fd;
 }
 

@@ -61,7 +61,7 @@ bool welcome_unread(struct control *c, const struct control_place *p)
 
 void welcome_send(struct control *c, struct control_place *p)
 {
-	const struct giver_layout *layout = p->now.memory.layout;
+	const struct controller_layout *layout = p->now.memory.layout;
 	struct ows_welcome welcome = {
 		.magic = OWS_WELCOME_MAGIC,
 		.major = OWS_LAYOUT_MAJOR,

@@ -13,11 +13,11 @@ void welcome_report(struct control *c, const struct peer *peer, int err);
  */
 int welcome_end(struct control *c, const int *fds, unsigned count, int err, bool keep);
 /*
- * Send the giver its memory, and the first time the bell and the news; or later, when the giver has
- * read what was sent before.
+ * Send the controller its memory, and the first time the bell and the news; or later, when the
+ * controller has read what was sent before.
  */
 void welcome_send(struct control *c, struct control_place *p);
-/* Is there something that the giver has not read, or that the porter has not sent? */
+/* Is there something that the controller has not read, or that the porter has not sent? */
 bool welcome_unread(struct control *c, const struct control_place *p);
 
 #endif

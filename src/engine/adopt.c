@@ -9,12 +9,12 @@
 #include "src/engine/alarm_effect.h"
 #include "src/engine/alarm_item.h"
 #include "src/engine/alarm_refused.h"
+#include "src/engine/controllers.h"
 #include "src/engine/counters.h"
 #include "src/engine/device_facts.h"
 #include "src/engine/disown.h"
 #include "src/engine/doubt.h"
 #include "src/engine/due.h"
-#include "src/engine/givers.h"
 #include "src/engine/guests.h"
 #include "src/engine/in_force.h"
 #include "src/engine/lane.h"
@@ -289,8 +289,8 @@ static void take_alarms(struct engine *e, const struct engine *old, const struct
 void engine_adopt(struct engine *e, struct engine *old, const struct adoption *plan, int64_t now_ns)
 {
 	/* from here on a program's set fails there, so nothing is lost between the two */
-	engine_givers_retire(old, e, now_ns);
-	engine_givers_adopt(e, old, plan->rows);
+	engine_controllers_retire(old, e, now_ns);
+	engine_controllers_adopt(e, old, plan->rows);
 	for (unsigned i = 0; i < old->lane_count; i++) {
 		lane_keep_reads(&old->lanes[i]);
 		lane_disown(&old->lanes[i], true);

@@ -92,9 +92,10 @@ static bool ask_write(struct lane *lane, struct slot *slot, uint32_t row, int64_
 	slot->row = row;
 	slot->value = s->command.value;
 	slot->stamp = s->command.stamp;
-	slot->giver = s->command.giver;
-	slot->serial = s->command.giver < OWS_GIVERS ? e->givers[s->command.giver].as.who.serial
-	                                             : 0;
+	slot->controller = s->command.controller;
+	slot->serial = s->command.controller < OWS_CONTROLLERS
+	                       ? e->controllers[s->command.controller].as.who.serial
+	                       : 0;
 	slot->one_shot = s->command.one_shot;
 	slot->req = (struct bus_req){.op = BUS_WRITE, .prio = BUS_OUTPUT, .path = s->item->path};
 	if (signal_is_string(s)) {

@@ -7,11 +7,11 @@
 #include "hal/bus/time.h"
 #include "src/engine/alarm_item.h"
 #include "src/engine/ask.h"
+#include "src/engine/controllers.h"
 #include "src/engine/counters.h"
 #include "src/engine/device_facts.h"
 #include "src/engine/due.h"
 #include "src/engine/engine.h"
-#include "src/engine/givers.h"
 #include "src/engine/group.h"
 #include "src/engine/guests.h"
 #include "src/engine/in_force.h"
@@ -160,7 +160,7 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 		for (unsigned i = 0; i < e->lane_count; i++)
 			if (e->lanes[i].lent.count)
 				lane_show_reads(&e->lanes[i]);
-		engine_look_givers(e);
+		engine_look_controllers(e);
 		engine_publish_counters(e);
 		engine_publish_devices(e);
 		engine_publish_driver(e, now_ns);
@@ -170,7 +170,7 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 	groups = engine_route_groups(e, now_ns);
 	if (groups < next)
 		next = groups;
-	soon = !e->givers_quiet;
+	soon = !e->controllers_quiet;
 	soon |= engine_route(e, now_ns);
 	for (unsigned i = 0; i < e->lane_count; i++) {
 		int64_t timeout, alarm;

@@ -14,7 +14,7 @@
  *   routing              routing (acts on the facts: opens ways, moves devices)
  *   moves                move, lane_state (a target goes up and fails)
  *   alarm and guests     alarm (the machine), alarm_step, guests
- *   givers               givers (they join, beat and leave)
+ *   controllers               controllers (they join, beat and leave)
  *   reading and writing  completion, device_back, intake, in_force, place, doubt, types
  *   reading back         read_back, restart
  *   alarm items          alarm_arm, alarm_list, alarm_effect, alarm_refused

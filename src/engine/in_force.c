@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Which command is in force: by a giver, or by owsd itself, which puts InitValue, SafeValue and
- * what was stored last (section 3 of docs/semantics.md, "A command is in force").
+ * Which command is in force: by a controller, or by owsd itself, which puts InitValue, SafeValue
+ * and what was stored last (section 3 of docs/semantics.md, "A command is in force").
  */
 #include <string.h>
 
@@ -23,19 +23,19 @@ static const struct ows_who owsd_itself;
 
 /* --- What the next owsd has to know ----------------------------------------------------------- */
 
-void engine_remember_giver(struct engine *e, uint32_t giver)
+void engine_remember_controller(struct engine *e, uint32_t controller)
 {
-	const struct known_giver *g = &e->givers[giver];
-	struct force_giver entry = {0};
+	const struct known_controller *g = &e->controllers[controller];
+	struct force_controller entry = {0};
 
 	if (!e->force)
 		return;
-	if (g->is != GIVER_FREE) {
+	if (g->is != CONTROLLER_FREE) {
 		entry.who = g->as.who;
 		memcpy(entry.token, g->as.token, sizeof(entry.token));
 		entry.period_ms = g->period_ms;
 	}
-	force_giver(e->force, giver, &entry);
+	force_controller(e->force, controller, &entry);
 }
 
 void engine_remember(struct engine *e, const struct signal *s)
@@ -49,7 +49,7 @@ void engine_remember(struct engine *e, const struct signal *s)
 		.stamp = c->stamp,
 		.given = given,
 		.safe = c->reason == OWS_REASON_SAFE,
-		.giver = given ? c->giver : FORCE_NOBODY,
+		.controller = given ? c->controller : FORCE_NOBODY,
 	};
 
 	if (e->force)
@@ -57,15 +57,15 @@ void engine_remember(struct engine *e, const struct signal *s)
 		          signal_is_string(s) ? s->command_text : NULL);
 }
 
-static void answer_for(struct engine *e, struct signal *s, uint32_t giver)
+static void answer_for(struct engine *e, struct signal *s, uint32_t controller)
 {
-	if (s->command.giver != GIVER_NOBODY)
-		e->givers[s->command.giver].rows--;
-	s->command.giver = giver;
-	if (giver == GIVER_NOBODY)
+	if (s->command.controller != CONTROLLER_NOBODY)
+		e->controllers[s->command.controller].rows--;
+	s->command.controller = controller;
+	if (controller == CONTROLLER_NOBODY)
 		return;
-	e->givers[giver].rows++;
-	e->givers[giver].lose_ns = 0; /* the time of this row may be over first */
+	e->controllers[controller].rows++;
+	e->controllers[controller].lose_ns = 0; /* the time of this row may be over first */
 }
 
 /* --- A new command ---------------------------------------------------------------------------- */
@@ -95,19 +95,19 @@ static void store_last(struct engine *e, struct signal *s)
 		                                 s->command.len);
 }
 
-void engine_command(struct engine *e, struct signal *s, uint32_t giver,
-                    const struct giver_command *command, const char *text, uint32_t len)
+void engine_command(struct engine *e, struct signal *s, uint32_t controller,
+                    const struct controller_command *command, const char *text, uint32_t len)
 {
 	struct origin_before before = origin_before(s, command->value, text, len);
-	const struct known_giver *g = &e->givers[giver];
+	const struct known_controller *g = &e->controllers[controller];
 	struct ows_who who = g->as.who;
 
 	put_value(s, command->value, text, len);
 	s->command.stamp = command->stamp;
 	s->command.reason = OWS_REASON_SET;
-	answer_for(e, s, giver);
+	answer_for(e, s, controller);
 	if (command->person)
-		giver_person(&g->as.memory, command->person, who.person);
+		controller_person(&g->as.memory, command->person, who.person);
 	engine_origin(e, s, OWS_REASON_SET, &who, &before);
 	store_last(e, s);
 	engine_remember(e, s);
@@ -115,11 +115,11 @@ void engine_command(struct engine *e, struct signal *s, uint32_t giver,
 
 void engine_hear(struct engine *e, uint32_t place)
 {
-	struct known_giver *g = &e->givers[place];
-	struct giver_beat beat;
+	struct known_controller *g = &e->controllers[place];
+	struct controller_beat beat;
 	bool changes;
 
-	giver_beat(&g->as.memory, &beat);
+	controller_beat(&g->as.memory, &beat);
 	if (beat.goodbye)
 		beat.period_ms = 0;
 	else if (beat.beat == g->beat)
@@ -132,7 +132,7 @@ void engine_hear(struct engine *e, uint32_t place)
 	g->beat = beat.beat;
 	g->period_ms = beat.period_ms;
 	if (changes)
-		engine_remember_giver(e, place);
+		engine_remember_controller(e, place);
 }
 
 /* A command of owsd itself. who: because of whom. */
@@ -140,12 +140,12 @@ static void put_own(struct engine *e, struct signal *s, enum ows_reason reason,
                     const struct ows_who *who, int64_t value, const char *text, uint32_t len)
 {
 	struct origin_before before = origin_before(s, value, text, len);
-	struct ows_who because = *who; /* who may be of a giver that is forgotten below */
+	struct ows_who because = *who; /* who may be of a controller that is forgotten below */
 
 	put_value(s, value, text, len);
 	s->command.stamp = 0;
 	s->command.reason = reason;
-	answer_for(e, s, GIVER_NOBODY);
+	answer_for(e, s, CONTROLLER_NOBODY);
 	engine_origin(e, s, reason, &because, &before);
 	e->counters.safe_outputs += reason == OWS_REASON_SAFE;
 	store_last(e, s); /* the owsd before may have been killed before it had stored it */
@@ -164,7 +164,7 @@ static void put_nothing(struct engine *e, struct signal *s)
 	s->command.given = s->command.awaited = s->command.said = false;
 	s->command.stamp = 0;
 	s->command.reason = OWS_REASON_NONE;
-	answer_for(e, s, GIVER_NOBODY);
+	answer_for(e, s, CONTROLLER_NOBODY);
 	engine_origin(e, s, OWS_REASON_NONE, &owsd_itself, &before);
 }
 
@@ -193,37 +193,37 @@ static void put_configured(struct engine *e, struct signal *s, const struct forc
 /* --- A start ---------------------------------------------------------------------------------- */
 
 /*
- * The index at which a giver of before is awaited; GIVER_NOBODY: it promised no beat, or ended in
- * order, or there is no room.
+ * The index at which a controller of before is awaited; CONTROLLER_NOBODY: it promised no beat, or
+ * ended in order, or there is no room.
  */
 static uint32_t await(struct engine *e, const struct force_left *left, uint32_t index)
 {
-	struct force_giver was;
-	uint32_t at = GIVER_NOBODY;
+	struct force_controller was;
+	uint32_t at = CONTROLLER_NOBODY;
 
-	if (!force_find_giver(left, index, &was) || !was.period_ms || was.goodbye)
-		return GIVER_NOBODY;
-	for (uint32_t i = OWS_GIVERS; i < ENGINE_GIVERS; i++) {
-		const struct known_giver *g = &e->givers[i];
+	if (!force_find_controller(left, index, &was) || !was.period_ms || was.goodbye)
+		return CONTROLLER_NOBODY;
+	for (uint32_t i = OWS_CONTROLLERS; i < ENGINE_CONTROLLERS; i++) {
+		const struct known_controller *g = &e->controllers[i];
 
-		if (g->is == GIVER_FREE && at == GIVER_NOBODY)
+		if (g->is == CONTROLLER_FREE && at == CONTROLLER_NOBODY)
 			at = i;
-		if (g->is == GIVER_AWAITED && g->as.who.serial == was.who.serial &&
+		if (g->is == CONTROLLER_AWAITED && g->as.who.serial == was.who.serial &&
 		    memcmp(g->as.token, was.token, sizeof(was.token)) == 0)
 			return i;
 	}
-	if (at == GIVER_NOBODY)
+	if (at == CONTROLLER_NOBODY)
 		return at;
-	e->givers[at] = (struct known_giver){
-		.is = GIVER_AWAITED,
+	e->controllers[at] = (struct known_controller){
+		.is = CONTROLLER_AWAITED,
 		.as.who = was.who,
 		/* owsd before 0.10 knew no maximum */
 		.period_ms = was.period_ms < OWS_BEAT_MOST_MS ? was.period_ms : OWS_BEAT_MOST_MS,
 		.heard_ns = engine_awake_ns(e),
 		.joined_ns = e->time.now_ns,
 	};
-	memcpy(e->givers[at].as.token, was.token, sizeof(was.token));
-	engine_remember_giver(e, at);
+	memcpy(e->controllers[at].as.token, was.token, sizeof(was.token));
+	engine_remember_controller(e, at);
 	return at;
 }
 
@@ -233,24 +233,24 @@ static void resume_signal(struct engine *e, struct signal *s, const struct force
 	const struct force_signal key = {s->item->name, s->item->path, (uint8_t)s->item->type};
 	char text[TABLE_TEXT_CAP];
 	struct force_command was = {0};
-	uint32_t giver = GIVER_NOBODY;
+	uint32_t controller = CONTROLLER_NOBODY;
 	bool found = left && config_item_takes_sets(s->item) &&
 	             force_find(left, &key, &was, text, sizeof(text)) && was.given &&
 	             (signal_is_string(s) || signal_accepts(s, was.value));
 
-	if (found && !was.safe && was.giver < FORCE_GIVERS) {
-		if (!awaited[was.giver])
-			awaited[was.giver] = await(e, left, was.giver) + 1;
-		giver = awaited[was.giver] - 1;
+	if (found && !was.safe && was.controller < FORCE_CONTROLLERS) {
+		if (!awaited[was.controller])
+			awaited[was.controller] = await(e, left, was.controller) + 1;
+		controller = awaited[was.controller] - 1;
 	}
 	if (found && was.safe && s->item->has_safe) {
 		put_safe(e, s, &owsd_itself);
-	} else if (giver != GIVER_NOBODY) {
+	} else if (controller != CONTROLLER_NOBODY) {
 		put_value(s, was.value, text, was.len);
 		s->command.awaited = true;
 		s->command.stamp = was.stamp;
 		s->command.reason = OWS_REASON_SET;
-		answer_for(e, s, giver);
+		answer_for(e, s, controller);
 	} else {
 		put_configured(e, s, found ? &was : NULL, text);
 	}
@@ -260,30 +260,31 @@ static void resume_signal(struct engine *e, struct signal *s, const struct force
 
 void engine_resume(struct engine *e, const struct force_left *left)
 {
-	/* where each giver of before is awaited, + 1 */
-	uint32_t awaited[FORCE_GIVERS] = {0};
+	/* where each controller of before is awaited, + 1 */
+	uint32_t awaited[FORCE_CONTROLLERS] = {0};
 
 	for (uint32_t row = 0; row < e->table.count; row++)
 		resume_signal(e, &e->table.signals[row], left, awaited);
 }
 
-/* --- A giver is lost, or comes back ----------------------------------------------------------- */
+/* --- A controller is lost, or comes back
+ * ----------------------------------------------------------- */
 
-/* Until then the commands of this giver's output stay, though it is not heard. */
-static int64_t patience_end(const struct known_giver *g, const struct config_item *item)
+/* Until then the commands of this controller's output stay, though it is not heard. */
+static int64_t patience_end(const struct known_controller *g, const struct config_item *item)
 {
 	int64_t promised_ns = g->period_ms * NS_PER_MS;
 	int64_t delay_ns = item->has_safe_delay ? item->safe_delay_ns : -1;
 
 	switch (g->is) {
-	case GIVER_AWAITED:
+	case CONTROLLER_AWAITED:
 		return g->heard_ns + (promised_ns < COME_BACK_NS ? COME_BACK_NS : promised_ns);
-	case GIVER_HUNG_UP:
+	case CONTROLLER_HUNG_UP:
 		if (delay_ns >= 0)
 			return g->left_ns + delay_ns - 1;
 		return g->heard_ns + promised_ns;
-	case GIVER_CONNECTED:
-	case GIVER_FREE:
+	case CONTROLLER_CONNECTED:
+	case CONTROLLER_FREE:
 		break;
 	}
 	return g->heard_ns + (delay_ns > promised_ns ? delay_ns : promised_ns);
@@ -299,15 +300,15 @@ static void give_up(struct engine *e, struct signal *s, const struct ows_who *wh
 	else if (s->command.awaited)
 		put_configured(e, s, &left, s->command_text);
 	else
-		answer_for(e, s, GIVER_NOBODY);
+		answer_for(e, s, CONTROLLER_NOBODY);
 	engine_remember(e, s);
 	engine_write_check(e, s);
 	engine_publish(e, s);
 }
 
-unsigned engine_lose(struct engine *e, uint32_t giver, int64_t awake_ns, int64_t *next)
+unsigned engine_lose(struct engine *e, uint32_t controller, int64_t awake_ns, int64_t *next)
 {
-	const struct known_giver *g = &e->givers[giver];
+	const struct known_controller *g = &e->controllers[controller];
 	unsigned safe = 0;
 
 	*next = INT64_MAX;
@@ -315,7 +316,7 @@ unsigned engine_lose(struct engine *e, uint32_t giver, int64_t awake_ns, int64_t
 		struct signal *s = &e->table.signals[row];
 		int64_t end_ns;
 
-		if (s->command.giver != giver)
+		if (s->command.controller != controller)
 			continue;
 		end_ns = patience_end(g, s->item);
 		if (awake_ns > end_ns) {
@@ -328,28 +329,28 @@ unsigned engine_lose(struct engine *e, uint32_t giver, int64_t awake_ns, int64_t
 	return safe;
 }
 
-void engine_let_go(struct engine *e, uint32_t giver)
+void engine_let_go(struct engine *e, uint32_t controller)
 {
-	const struct known_giver *g = &e->givers[giver];
+	const struct known_controller *g = &e->controllers[controller];
 
 	for (uint32_t row = 0; row < e->table.count && g->rows; row++) {
 		struct signal *s = &e->table.signals[row];
 
-		if (s->command.giver != giver)
+		if (s->command.controller != controller)
 			continue;
-		answer_for(e, s, GIVER_NOBODY);
+		answer_for(e, s, CONTROLLER_NOBODY);
 		engine_remember(e, s);
 	}
 }
 
 void engine_hand_over(struct engine *e, uint32_t from, uint32_t to)
 {
-	const struct known_giver *g = &e->givers[from];
+	const struct known_controller *g = &e->controllers[from];
 
 	for (uint32_t row = 0; row < e->table.count && g->rows; row++) {
 		struct signal *s = &e->table.signals[row];
 
-		if (s->command.giver != from)
+		if (s->command.controller != from)
 			continue;
 		answer_for(e, s, to);
 		engine_remember(e, s);
@@ -358,17 +359,17 @@ void engine_hand_over(struct engine *e, uint32_t from, uint32_t to)
 
 void engine_come_back(struct engine *e, uint32_t to)
 {
-	const struct known_giver *g = &e->givers[to];
+	const struct known_controller *g = &e->controllers[to];
 	struct origin_before before = {.given = true, .changes = true};
 
 	for (uint32_t row = 0; row < e->table.count; row++) {
 		struct signal *s = &e->table.signals[row];
 
-		if (s->command.giver != to)
+		if (s->command.controller != to)
 			continue;
-		giver_taken(&g->as.memory, s->record, s->command.stamp, 0);
+		controller_taken(&g->as.memory, s->record, s->command.stamp, 0);
 		if (s->command.said)
-			giver_applied(&g->as.memory, s->record, s->command.stamp);
+			controller_applied(&g->as.memory, s->record, s->command.stamp);
 		before.value = s->command.value;
 		s->command.reason = OWS_REASON_RETURNED;
 		engine_origin(e, s, OWS_REASON_RETURNED, &g->as.who, &before);
@@ -384,17 +385,17 @@ void engine_come_back(struct engine *e, uint32_t to)
 
 /* --- Confirmed -------------------------------------------------------------------------------- */
 
-static void say_applied(struct engine *e, struct signal *s, uint32_t giver, uint32_t serial,
+static void say_applied(struct engine *e, struct signal *s, uint32_t controller, uint32_t serial,
                         uint32_t stamp)
 {
-	const struct known_giver *g;
+	const struct known_controller *g;
 
 	s->sample.confirmed++;
-	if (!stamp || giver >= OWS_GIVERS)
+	if (!stamp || controller >= OWS_CONTROLLERS)
 		return;
-	g = &e->givers[giver];
-	if (g->is == GIVER_CONNECTED && g->as.who.serial == serial)
-		giver_applied(&g->as.memory, s->record, stamp);
+	g = &e->controllers[controller];
+	if (g->is == CONTROLLER_CONNECTED && g->as.who.serial == serial)
+		controller_applied(&g->as.memory, s->record, stamp);
 }
 
 void engine_settle(struct engine *e, struct signal *s)
@@ -411,7 +412,9 @@ void engine_settle(struct engine *e, struct signal *s)
 	e->storing -= c->storing;
 	c->storing = false;
 	c->said = true;
-	say_applied(e, s, c->giver, c->giver < OWS_GIVERS ? e->givers[c->giver].as.who.serial : 0,
+	say_applied(e, s, c->controller,
+	            c->controller < OWS_CONTROLLERS ? e->controllers[c->controller].as.who.serial
+	                                            : 0,
 	            c->stamp);
 }
 
@@ -419,7 +422,7 @@ void engine_settle_earlier(struct engine *e, struct signal *s, const struct slot
 {
 	/* what stands on the disk in the end is the later one */
 	if (slot->stamp && slot->stamp != s->command.stamp && !s->item->starts_last)
-		say_applied(e, s, slot->giver, slot->serial, slot->stamp);
+		say_applied(e, s, slot->controller, slot->serial, slot->stamp);
 }
 
 void engine_look_stored(struct engine *e)
@@ -449,14 +452,14 @@ void engine_look_stored(struct engine *e)
 
 void engine_in_force_adopted(struct engine *e)
 {
-	for (uint32_t i = 0; i < ENGINE_GIVERS; i++)
-		engine_remember_giver(e, i);
+	for (uint32_t i = 0; i < ENGINE_CONTROLLERS; i++)
+		engine_remember_controller(e, i);
 	e->storing = 0;
 	for (uint32_t row = 0; row < e->table.count; row++) {
 		struct signal *s = &e->table.signals[row];
 
-		if (s->command.giver != GIVER_NOBODY)
-			e->givers[s->command.giver].rows++;
+		if (s->command.controller != CONTROLLER_NOBODY)
+			e->controllers[s->command.controller].rows++;
 		s->command.storing = false;
 		if (s->command.given && !s->command.awaited)
 			store_last(e, s);

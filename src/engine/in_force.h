@@ -14,17 +14,17 @@ struct force_left;
 void engine_resume(struct engine *e, const struct force_left *left);
 
 /*
- * A giver's command, checked, becomes the one in force. The text of a string stands in text, else
- * NULL. person: for whom.
+ * A controller's command, checked, becomes the one in force. The text of a string stands in text,
+ * else NULL. person: for whom.
  */
-void engine_command(struct engine *e, struct signal *s, uint32_t giver,
-                    const struct giver_command *command, const char *text, uint32_t len);
+void engine_command(struct engine *e, struct signal *s, uint32_t controller,
+                    const struct controller_command *command, const char *text, uint32_t len);
 /*
- * Take the beat of a connected giver, and what it promised: before its commands, so that the next
- * owsd knows it with them. A promise begins with a beat.
+ * Take the beat of a connected controller, and what it promised: before its commands, so that the
+ * next owsd knows it with them. A promise begins with a beat.
  */
 void engine_hear(struct engine *e, uint32_t place);
-/* If the bus has the command in force, and the disk if it has to: its giver gets to know. */
+/* If the bus has the command in force, and the disk if it has to: its controller gets to know. */
 void engine_settle(struct engine *e, struct signal *s);
 /* A write has ended well whose command is no more the one in force. */
 void engine_settle_earlier(struct engine *e, struct signal *s, const struct slot *slot);
@@ -32,22 +32,24 @@ void engine_settle_earlier(struct engine *e, struct signal *s, const struct slot
 void engine_look_stored(struct engine *e);
 
 /*
- * The giver of this index is lost: its outputs whose time is over go to SafeValue. Returns how many
- * went; *next gets when the next one's time is over, INT64_MAX: all are done. Both are awake time.
+ * The controller of this index is lost: its outputs whose time is over go to SafeValue. Returns how
+ * many went; *next gets when the next one's time is over, INT64_MAX: all are done. Both are awake
+ * time.
  */
-unsigned engine_lose(struct engine *e, uint32_t giver, int64_t awake_ns, int64_t *next);
+unsigned engine_lose(struct engine *e, uint32_t controller, int64_t awake_ns, int64_t *next);
 /* Its commands stay in force, and nobody answers for them. */
-void engine_let_go(struct engine *e, uint32_t giver);
-/* All rows of a giver go to another index. */
+void engine_let_go(struct engine *e, uint32_t controller);
+/* All rows of a controller go to another index. */
 void engine_hand_over(struct engine *e, uint32_t from, uint32_t to);
-/* The giver came back, and got its rows at to: their commands are in force again. */
+/* The controller came back, and got its rows at to: their commands are in force again. */
 void engine_come_back(struct engine *e, uint32_t to);
 
-/* A reload, after the rows and the givers were adopted: who answers for which row; stored anew. */
+/* A reload, after the rows and the controllers were adopted: who answers for which row; stored
+ * anew. */
 void engine_in_force_adopted(struct engine *e);
 
 /* For the owsd after this one. */
 void engine_remember(struct engine *e, const struct signal *s);
-void engine_remember_giver(struct engine *e, uint32_t giver);
+void engine_remember_controller(struct engine *e, uint32_t controller);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The engine looks into the memories of givers, checks what they commanded, and takes it. */
+/* The engine looks into the memories of controllers, checks what they commanded, and takes it. */
 #include <errno.h>
 #include <string.h>
 
@@ -15,19 +15,19 @@
 #include "src/signal/value.h"
 #include "src/text/log.h"
 
-/* A giver that needs longer to store a text has none to store. */
+/* A controller that needs longer to store a text has none to store. */
 #define BUSY_NS NS_PER_S
 /*
- * Givers that mark slots without end cost this many looks a second together. Each giver has a
- * budget of its own, so that it keeps no other waiting.
+ * Controllers that mark slots without end cost this many looks a second together. Each controller
+ * has a budget of its own, so that it keeps no other waiting.
  */
 #define LOOKS_PER_S 100000u
 #define LOOKS_LEAST 5000u
 #define LOOKS_SPAN_NS NS_PER_S
 #define DEFER_NS (10 * NS_PER_MS)
 
-static void refuse_command(struct engine *e, struct known_giver *g, const struct signal *s, int err,
-                           int64_t now_ns)
+static void refuse_command(struct engine *e, struct known_controller *g, const struct signal *s,
+                           int err, int64_t now_ns)
 {
 	char others[LOG_OTHERS];
 	uint64_t n = log_rate(&e->refused, now_ns);
@@ -45,17 +45,17 @@ static void refuse_command(struct engine *e, struct known_giver *g, const struct
 		            log_others(n, others));
 }
 
-static bool may_command(const struct known_giver *g, uint32_t record)
+static bool may_command(const struct known_controller *g, uint32_t record)
 {
 	return !g->as.rights || g->as.rights[record / 32] >> record % 32 & 1;
 }
 
 /*
- * Returns the length, -EBUSY: the giver may be just storing it, look again; -EBADMSG.
+ * Returns the length, -EBUSY: the controller may be just storing it, look again; -EBADMSG.
  */
-static int take_text(struct known_giver *g, uint32_t record, char *text, int64_t now_ns)
+static int take_text(struct known_controller *g, uint32_t record, char *text, int64_t now_ns)
 {
-	int len = giver_text(&g->as.memory, record, text);
+	int len = controller_text(&g->as.memory, record, text);
 
 	if (len >= 0 || (g->busy == record && now_ns - g->busy_ns > BUSY_NS)) {
 		if (g->busy == record)
@@ -69,10 +69,10 @@ static int take_text(struct known_giver *g, uint32_t record, char *text, int64_t
 	return g->busy == record ? -EBUSY : len;
 }
 
-static void take_command(struct engine *e, uint32_t giver, struct signal *s,
-                         const struct giver_command *c, int64_t now_ns)
+static void take_command(struct engine *e, uint32_t controller, struct signal *s,
+                         const struct controller_command *c, int64_t now_ns)
 {
-	struct known_giver *g = &e->givers[giver];
+	struct known_controller *g = &e->controllers[controller];
 	char text[TABLE_TEXT_CAP + 1];
 	int err = 0, len = 0;
 
@@ -92,13 +92,14 @@ static void take_command(struct engine *e, uint32_t giver, struct signal *s,
 		refuse_command(e, g, s, err, now_ns);
 	} else {
 		/* a promise may have come along with it: a kill finds both, or none */
-		engine_hear(e, giver);
-		engine_command(e, s, giver, c, signal_is_string(s) ? text : NULL, (uint32_t)len);
+		engine_hear(e, controller);
+		engine_command(e, s, controller, c, signal_is_string(s) ? text : NULL,
+		               (uint32_t)len);
 		g->commands++;
 		e->counters.commands++;
 	}
 	/* after the origin: who sees it finds whose command is in force */
-	giver_taken(&g->as.memory, s->record, c->stamp, err);
+	controller_taken(&g->as.memory, s->record, c->stamp, err);
 }
 
 static void take_enable(struct signal *s, uint8_t commanded, uint32_t flag)
@@ -109,7 +110,7 @@ static void take_enable(struct signal *s, uint8_t commanded, uint32_t flag)
 		s->attrs.flags &= ~flag;
 }
 
-static void take_enables(struct engine *e, struct signal *s, const struct giver_command *c)
+static void take_enables(struct engine *e, struct signal *s, const struct controller_command *c)
 {
 	bool read_before = signal_reads(s), write_before = signal_writes(s);
 
@@ -135,24 +136,24 @@ static void take_enables(struct engine *e, struct signal *s, const struct giver_
 	}
 }
 
-static struct ows_who who_of(const struct known_giver *g, uint32_t person)
+static struct ows_who who_of(const struct known_controller *g, uint32_t person)
 {
 	struct ows_who who = g->as.who;
 
 	if (person)
-		giver_person(&g->as.memory, person, who.person);
+		controller_person(&g->as.memory, person, who.person);
 	return who;
 }
 
-static void look_at_signal(struct engine *e, uint32_t giver, struct signal *s, int64_t now_ns)
+static void look_at_signal(struct engine *e, uint32_t controller, struct signal *s, int64_t now_ns)
 {
-	struct known_giver *g = &e->givers[giver];
-	struct giver_command c;
+	struct known_controller *g = &e->controllers[controller];
+	struct controller_command c;
 	struct ows_who who;
 
-	giver_load(&g->as.memory, s->record, &c);
+	controller_load(&g->as.memory, s->record, &c);
 	if (c.fresh)
-		take_command(e, giver, s, &c, now_ns);
+		take_command(e, controller, s, &c, now_ns);
 	else if (g->busy == s->record)
 		g->busy = 0;
 	if (!may_command(g, s->record))
@@ -173,19 +174,19 @@ static void look_at_signal(struct engine *e, uint32_t giver, struct signal *s, i
 
 void engine_intake_signal(struct engine *e, struct signal *s, int64_t now_ns)
 {
-	uint32_t giver = s->command.giver;
+	uint32_t controller = s->command.controller;
 
-	if (giver < OWS_GIVERS && e->givers[giver].is == GIVER_CONNECTED)
-		look_at_signal(e, giver, s, now_ns);
+	if (controller < OWS_CONTROLLERS && e->controllers[controller].is == CONTROLLER_CONNECTED)
+		look_at_signal(e, controller, s, now_ns);
 }
 
-static void take_driver_reset(struct engine *e, const struct known_giver *g, int64_t now_ns)
+static void take_driver_reset(struct engine *e, const struct known_controller *g, int64_t now_ns)
 {
-	struct giver_command c;
+	struct controller_command c;
 	char others[LOG_OTHERS];
 	uint64_t n;
 
-	giver_load(&g->as.memory, 0, &c);
+	controller_load(&g->as.memory, 0, &c);
 	if (!c.dgn_reset || !may_command(g, 0))
 		return;
 	e->driver.transactions = 0;
@@ -199,26 +200,26 @@ static void take_driver_reset(struct engine *e, const struct known_giver *g, int
 		log_info(e->log, "diagnostics of all signals reset%s", log_others(n, others));
 }
 
-static void look_at_record(struct engine *e, uint32_t giver, uint32_t record, int64_t now_ns)
+static void look_at_record(struct engine *e, uint32_t controller, uint32_t record, int64_t now_ns)
 {
 	struct signal *s;
 
 	if (record == 0) {
-		take_driver_reset(e, &e->givers[giver], now_ns);
+		take_driver_reset(e, &e->controllers[controller], now_ns);
 	} else if (record <= e->table.count) {
 		s = &e->table.signals[record - 1];
-		look_at_signal(e, giver, s, now_ns);
+		look_at_signal(e, controller, s, now_ns);
 		engine_publish(e, s);
 	}
 }
 
-static void look_at_shelf(struct engine *e, struct known_giver *g)
+static void look_at_shelf(struct engine *e, struct known_controller *g)
 {
-	struct giver_shelf shelf;
+	struct controller_shelf shelf;
 	struct ows_who who;
 	int err;
 
-	if (!giver_shelf(&g->as.memory, &shelf))
+	if (!controller_shelf(&g->as.memory, &shelf))
 		return;
 	who = who_of(g, shelf.person);
 	if (!shelf.record || shelf.record > e->table.count) {
@@ -231,43 +232,43 @@ static void look_at_shelf(struct engine *e, struct known_giver *g)
 		err = engine_shelve(e, s, shelf.seconds, &who, shelf.why);
 		engine_publish(e, s);
 	}
-	giver_shelf_done(&g->as.memory, shelf.count, err);
+	controller_shelf_done(&g->as.memory, shelf.count, err);
 }
 
 /* Look at the marked slots from one on, at most so many. False: there are more. */
-static bool look_at_marked(struct engine *e, uint32_t giver, uint32_t *from, uint32_t *looks,
+static bool look_at_marked(struct engine *e, uint32_t controller, uint32_t *from, uint32_t *looks,
                            int64_t now_ns)
 {
 	while (*looks) {
 		uint32_t cost;
-		int record = giver_next_dirty(&e->givers[giver].as.memory, *from);
+		int record = controller_next_dirty(&e->controllers[controller].as.memory, *from);
 
 		if (record < 0)
 			return true;
 		/* the driver's slot may reset all rows */
 		cost = record ? 1 : 1 + e->table.count;
-		look_at_record(e, giver, (uint32_t)record, now_ns);
+		look_at_record(e, controller, (uint32_t)record, now_ns);
 		*from = (uint32_t)record + 1;
 		*looks -= cost < *looks ? cost : *looks;
 	}
 	return false;
 }
 
-void engine_intake(struct engine *e, uint32_t giver, int64_t now_ns)
+void engine_intake(struct engine *e, uint32_t controller, int64_t now_ns)
 {
-	struct known_giver *g = &e->givers[giver];
+	struct known_controller *g = &e->controllers[controller];
 	uint32_t all = UINT32_MAX, from = 0;
 
-	engine_hear(e, giver);
+	engine_hear(e, controller);
 	if (g->busy)
-		look_at_record(e, giver, g->busy, now_ns);
-	giver_marked(&g->as.memory);
-	look_at_marked(e, giver, &from, &all, now_ns);
+		look_at_record(e, controller, g->busy, now_ns);
+	controller_marked(&g->as.memory);
+	look_at_marked(e, controller, &from, &all, now_ns);
 	look_at_shelf(e, g);
 }
 
 /* A look that was not needed yet is kept, up to two for each slot and some. */
-static void refill_looks(struct engine *e, struct known_giver *g, int64_t now_ns)
+static void refill_looks(struct engine *e, struct known_controller *g, int64_t now_ns)
 {
 	uint64_t most = 2 * (uint64_t)e->table.count + LOOKS_LEAST;
 	uint64_t rate = LOOKS_PER_S / (e->greedy ? e->greedy : 1);
@@ -284,37 +285,37 @@ static void refill_looks(struct engine *e, struct known_giver *g, int64_t now_ns
  * Look once round: the first slots, marked again and again, do not keep the last ones waiting.
  * Returns whether nothing is left. That it is asked at all costs some looks too.
  */
-static bool look_round(struct engine *e, uint32_t giver, int64_t now_ns)
+static bool look_round(struct engine *e, uint32_t controller, int64_t now_ns)
 {
-	struct known_giver *g = &e->givers[giver];
+	struct known_controller *g = &e->controllers[controller];
 	uint32_t begin = g->look_from, cost = 1 + g->as.memory.layout->dirty_words / 64;
 
 	if (g->looks <= cost)
 		return false;
 	g->looks -= cost;
-	giver_marked(&g->as.memory);
+	controller_marked(&g->as.memory);
 	look_at_shelf(e, g);
-	if (!look_at_marked(e, giver, &g->look_from, &g->looks, now_ns))
+	if (!look_at_marked(e, controller, &g->look_from, &g->looks, now_ns))
 		return false;
 	g->look_from = 0;
-	if (begin && !look_at_marked(e, giver, &g->look_from, &g->looks, now_ns))
+	if (begin && !look_at_marked(e, controller, &g->look_from, &g->looks, now_ns))
 		return false;
 	g->look_from = 0;
 	return true;
 }
 
-static void look_at_giver(struct engine *e, uint32_t giver, int64_t now_ns)
+static void look_at_controller(struct engine *e, uint32_t controller, int64_t now_ns)
 {
-	struct known_giver *g = &e->givers[giver];
+	struct known_controller *g = &e->controllers[controller];
 
-	e->givers_quiet = false;
+	e->controllers_quiet = false;
 	if (g->more) {
 		g->more = false;
 		e->greedy--;
 	}
-	engine_hear(e, giver);
+	engine_hear(e, controller);
 	refill_looks(e, g, now_ns);
-	if (look_round(e, giver, now_ns))
+	if (look_round(e, controller, now_ns))
 		return;
 	e->counters.deferred_commands++;
 	g->more = true;
@@ -327,14 +328,14 @@ int64_t engine_intake_limited(struct engine *e, int64_t now_ns)
 	int64_t next = INT64_MAX;
 
 	for (uint32_t i = 0; i < e->place_end; i++) {
-		struct known_giver *g = &e->givers[i];
+		struct known_controller *g = &e->controllers[i];
 
-		if (g->is != GIVER_CONNECTED)
+		if (g->is != CONTROLLER_CONNECTED)
 			continue;
 		if (g->busy)
 			look_at_record(e, i, g->busy, now_ns);
-		if (g->more ? now_ns >= g->defer_ns : giver_is_marked(&g->as.memory))
-			look_at_giver(e, i, now_ns);
+		if (g->more ? now_ns >= g->defer_ns : controller_is_marked(&g->as.memory))
+			look_at_controller(e, i, now_ns);
 		if (g->more && g->defer_ns < next)
 			next = g->defer_ns;
 	}

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT */
-/* The memories of givers: what they have commanded there. */
+/* The memories of controllers: what they have commanded there. */
 #ifndef ENGINE_INTAKE_H
 #define ENGINE_INTAKE_H
 
 #include "src/engine/state.h"
 
-/* Look at all that a connected giver has marked. */
-void engine_intake(struct engine *e, uint32_t giver, int64_t now_ns);
+/* Look at all that a connected controller has marked. */
+void engine_intake(struct engine *e, uint32_t controller, int64_t now_ns);
 /*
- * The same of all givers, with as many looks as each of them may cost; the rest is left for a later
- * step. Returns when that is due, INT64_MAX: nothing is left.
+ * The same of all controllers, with as many looks as each of them may cost; the rest is left for a
+ * later step. Returns when that is due, INT64_MAX: nothing is left.
  */
 int64_t engine_intake_limited(struct engine *e, int64_t now_ns);
-/* Look at the signal in the memory of the giver whose command is in force. */
+/* Look at the signal in the memory of the controller whose command is in force. */
 void engine_intake_signal(struct engine *e, struct signal *s, int64_t now_ns);
 
 #endif

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* A giver as it joins the engine. */
+/* A controller as it joins the engine. */
 #ifndef ENGINE_JOINING_H
 #define ENGINE_JOINING_H
 
-#include "src/shm/giver.h"
+#include "src/shm/controller.h"
 
-/* What the control room knows of a giver; copied. */
-struct engine_giver {
-	struct giver_memory memory; /* built and LIVE, of the engine's generation */
-	struct ows_who who;         /* serial, uid, pid, name (cleaned); person is empty */
+/* What the control room knows of a controller; copied. */
+struct engine_controller {
+	struct controller_memory memory; /* built and LIVE, of the engine's generation */
+	struct ows_who who;              /* serial, uid, pid, name (cleaned); person is empty */
 	uint8_t token[16]; /* of its welcome: that of the hello, if it had one, else a new one */
 	/* bit r: it may command record r (bit 0: reset the driver); NULL: all. Lives as long as
 	   memory */

@@ -7,9 +7,9 @@
 #include "src/engine/state.h"
 #include "src/shm/entries.h"
 
-/* A giver that commands a signal without end for one person has one entry a second. */
+/* A controller that commands a signal without end for one person has one entry a second. */
 #define APART_NS NS_PER_S
-/* Givers that command a signal in turn have so many entries at once, then one a second. */
+/* Controllers that command a signal in turn have so many entries at once, then one a second. */
 #define AT_ONCE 8
 
 static bool same_text(const struct signal *s, const char *text, uint32_t len)
@@ -53,7 +53,7 @@ static void enter_command(struct engine *e, const struct signal *s, enum ows_rea
 	e->published = true;
 }
 
-/* The last of the giver before that was not entered: it was in force until now. */
+/* The last of the controller before that was not entered: it was in force until now. */
 static void enter_rest(struct engine *e, struct signal *s, const struct origin_before *before)
 {
 	const struct ows_origin_entry *was = &e->image->origins[s->record];
@@ -72,7 +72,7 @@ static void enter_rest(struct engine *e, struct signal *s, const struct origin_b
 	s->journal.more = 0;
 }
 
-/* May givers enter one more of this signal? What owsd does itself is always entered. */
+/* May controllers enter one more of this signal? What owsd does itself is always entered. */
 static bool has_room(struct signal *s, int64_t now_ns)
 {
 	int64_t from_ns = s->journal.until_ns > now_ns ? s->journal.until_ns : now_ns;

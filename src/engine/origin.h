@@ -13,7 +13,7 @@ struct origin_before {
 };
 struct origin_before origin_before(const struct signal *s, int64_t value, const char *text,
                                    uint32_t len);
-/* The command in force of s is new: of this giver, for this reason. */
+/* The command in force of s is new: of this controller, for this reason. */
 void engine_origin(struct engine *e, struct signal *s, enum ows_reason reason,
                    const struct ows_who *who, const struct origin_before *before);
 /* A reload: the origin of what was command record was before. */

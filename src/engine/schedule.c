@@ -86,7 +86,7 @@ static void time_ready(void *ctx, uint32_t row)
 
 /* So late nobody ran: the machine was suspended, or owsd stopped. */
 #define GAP_NS (2 * NS_PER_S)
-/* So late nobody looked, and perhaps no giver could beat. */
+/* So late nobody looked, and perhaps no controller could beat. */
 #define PAUSE_NS (100 * NS_PER_MS)
 
 /* The period that has begun last at that time. */

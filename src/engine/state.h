@@ -15,8 +15,8 @@
 #include "src/engine/route.h"
 #include "src/engine/structure.h"
 #include "src/engine/table.h"
+#include "src/shm/controller.h"
 #include "src/shm/force.h"
-#include "src/shm/giver.h"
 #include "src/shm/image.h"
 #include "src/text/log.h"
 
@@ -58,13 +58,13 @@ struct slot {
 	enum purpose purpose;
 	/* of the table, of structure.checks (FOR_STRUCTURE), a device (FOR_PROBE, FOR_RESTART) */
 	uint32_t row;
-	int64_t value;              /* of a write */
-	uint32_t stamp;             /* of the command written, 0: owsd's */
-	uint32_t giver, serial;     /* whose it is */
-	bool one_shot;              /* the write was that of _WriteOneShot */
-	bool pressing;              /* a guest that goes as an input */
-	bool shown;                 /* a reading: the image has it that it is in work */
-	struct engine_guest *guest; /* owns path and data of the request */
+	int64_t value;               /* of a write */
+	uint32_t stamp;              /* of the command written, 0: owsd's */
+	uint32_t controller, serial; /* whose it is */
+	bool one_shot;               /* the write was that of _WriteOneShot */
+	bool pressing;               /* a guest that goes as an input */
+	bool shown;                  /* a reading: the image has it that it is in work */
+	struct engine_guest *guest;  /* owns path and data of the request */
 	uint8_t data[LANE_DATA];
 	char path[LANE_PATH]; /* of req: what is lent stands for itself, also over a reload */
 };
@@ -172,23 +172,23 @@ struct lane {
 	X(periods) \
 	X(late_periods) /* boundaries that were more than a period late */ \
 	X(steps) \
-	X(commands)          /* values taken from givers */ \
+	X(commands)          /* values taken from controllers */ \
 	X(refused_commands)  /* values no program should have put there */ \
 	X(deferred_commands) /* marks of commands that came too fast were left for 10 ms */ \
-	X(lost_givers)       /* givers that stopped beating */ \
+	X(lost_controllers)  /* controllers that stopped beating */ \
 	X(safe_outputs)      /* outputs put to SafeValue */ \
 	X(reloads)           /* changed configurations that were taken over */
 
-/* What the engine knows of a giver; its index is its place, or behind the places. */
-struct known_giver {
-	/* givers.c */
-	enum giver_is {
-		GIVER_FREE,
-		GIVER_CONNECTED,
-		GIVER_HUNG_UP, /* it promised a beat, and said no goodbye */
-		GIVER_AWAITED, /* it commanded before owsd's start */
+/* What the engine knows of a controller; its index is its place, or behind the places. */
+struct known_controller {
+	/* controllers.c */
+	enum controller_is {
+		CONTROLLER_FREE,
+		CONTROLLER_CONNECTED,
+		CONTROLLER_HUNG_UP, /* it promised a beat, and said no goodbye */
+		CONTROLLER_AWAITED, /* it commanded before owsd's start */
 	} is;
-	struct engine_giver as; /* with a memory only while it is connected */
+	struct engine_controller as; /* with a memory only while it is connected */
 	bool late, may_set;
 	uint32_t shown; /* commands and refused that the image has */
 	int64_t joined_ns;
@@ -214,7 +214,7 @@ struct known_giver {
 	uint32_t busy; /* record; 0: none */
 	int64_t busy_ns;
 };
-#define ENGINE_GIVERS FORCE_GIVERS
+#define ENGINE_CONTROLLERS FORCE_CONTROLLERS
 
 /* Which way of a group is open; a reload carries it over. */
 struct group_state {
@@ -309,17 +309,18 @@ struct engine {
 	/* publish.c, limits.c, alarm_effect.c */
 	bool published;
 
-	/* givers.c, in_force.c, intake.c: the places of givers, and behind them whom it awaits */
-	struct known_giver givers[ENGINE_GIVERS];
-	unsigned place_end; /* one past the last place that somebody has; givers.c */
+	/* controllers.c, in_force.c, intake.c: the places of controllers, and behind them whom it
+	 * awaits */
+	struct known_controller controllers[ENGINE_CONTROLLERS];
+	unsigned place_end; /* one past the last place that somebody has; controllers.c */
 	/* intake.c */
-	unsigned greedy; /* givers whose looks are used up */
+	unsigned greedy; /* controllers whose looks are used up */
 	/*
-	 * engine_look_givers() has nothing to do: no giver has promised a beat, no text of one is
-	 * half written, and none that has gone is awaited. That function sets it; the functions
-	 * that change a giver clear it.
+	 * engine_look_controllers() has nothing to do: no controller has promised a beat, no text
+	 * of one is half written, and none that has gone is awaited. That function sets it; the
+	 * functions that change a controller clear it.
 	 */
-	bool givers_quiet;
+	bool controllers_quiet;
 	struct log_rate refused, resets;
 	/* in_force.c: what was last seen of engine_last, and how many rows wait for it */
 	uint32_t stored;

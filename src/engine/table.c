@@ -128,7 +128,7 @@ static void init_signal(struct signal *s, const struct config_item *item, uint32
 	                 (item->writable ? OWS_ATTR_WRITE_ENABLE : 0) |
 	                 (item->limits.any ? OWS_ATTR_LIMITS : 0);
 	s->measured = item->type != OWS_STRING && quantity_of(item->path, &s->quantity);
-	s->command.giver = GIVER_NOBODY;
+	s->command.controller = CONTROLLER_NOBODY;
 	if (!item->has_init)
 		return;
 	s->sample.value = item->init_value;

@@ -22,8 +22,8 @@
 
 #define TABLE_NO_DEVICE UINT32_MAX
 
-/* The giver of a command that nobody answers for; NAME.force says the same. */
-#define GIVER_NOBODY FORCE_NOBODY
+/* The controller of a command that nobody answers for; NAME.force says the same. */
+#define CONTROLLER_NOBODY FORCE_NOBODY
 
 /*
  * A reload carries over what stands in sample, attrs and in the structures of a signal that have a
@@ -53,16 +53,18 @@ struct signal_command {
 	bool doubted;   /* it did so once: it is read again, past the cache */
 	bool one_shot;  /* write once more, changed or not */
 	bool forced;    /* a write in doubt ended late: the present value goes out again */
-	bool awaited;   /* of before the start: not written until its giver comes back */
-	bool said;      /* confirmed on the bus, and its giver knows */
+	bool awaited;   /* of before the start: not written until its controller comes back */
+	bool said;      /* confirmed on the bus, and its controller knows */
 	bool storing;   /* that waits until the value is on the disk (Start "last") */
 	int err;        /* of the last write, until one succeeds or writing is disabled */
 	int64_t value, written;
 	int64_t ended_ns;       /* of the last write: what was asked before says nothing of it */
 	int64_t looked_ns;      /* it was asked for past the caches last */
 	enum ows_reason reason; /* how it came into force */
-	uint32_t giver;         /* an index of engine.givers, GIVER_NOBODY: nobody answers for it */
-	uint32_t stamp;         /* as its giver counts; 0: owsd gave the command */
+	uint32_t
+		/* an index of engine.controllers, CONTROLLER_NOBODY: nobody answers for it */
+		controller;
+	uint32_t stamp;  /* as its controller counts; 0: owsd gave the command */
 	uint32_t ticket; /* Start "last": what engine_last.stored() reaches when it is stored */
 	uint32_t len, written_len; /* strings: of command_text, written_text */
 	struct retry retry;
@@ -78,7 +80,7 @@ struct signal_restore {
 struct signal_journal {
 	int64_t entered_ns;
 	int64_t until_ns; /* until then the room for entries is used up, one second for each */
-	uint32_t serial, reason; /* of the giver of the last entry */
+	uint32_t serial, reason; /* of the controller of the last entry */
 	uint32_t more;           /* commands since that were not entered */
 };
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What the engine's thread sleeps on: one bell for the threads of owsd and one for each giver. */
+/* What the engine's thread sleeps on: one bell for the threads of owsd and one for each
+ * controller. */
 #include <errno.h>
 #include <poll.h>
 #include <sys/epoll.h>
@@ -17,7 +18,7 @@
 #ifndef SYS_epoll_pwait2
 #define SYS_epoll_pwait2 441
 #endif
-#define OWN OWS_GIVERS
+#define OWN OWS_CONTROLLERS
 #define EVENTS 32
 
 /* Edge-triggered: each write wakes once, and nobody needs to read. */
@@ -31,8 +32,8 @@ static int watch(const struct bells *bells, int fd, uint32_t data)
 int bells_open(struct bells *bells)
 {
 	*bells = (struct bells){.own = -1, .awake = 1};
-	for (unsigned i = 0; i < OWS_GIVERS; i++)
-		bells->givers[i].fd = -1;
+	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
+		bells->controllers[i].fd = -1;
 	bells->epoll = epoll_create1(EPOLL_CLOEXEC);
 	if (bells->epoll >= 0)
 		bells->own = bell_open();
@@ -59,27 +60,27 @@ void bells_ring(struct bells *bells)
 
 void bells_add(struct bells *bells, unsigned place, int fd)
 {
-	bells->givers[place].fd = fd;
-	bells->givers[place].rings = 0;
-	bells->givers[place].muted = watch(bells, fd, place) != 0;
-	bells->muted += bells->givers[place].muted;
+	bells->controllers[place].fd = fd;
+	bells->controllers[place].rings = 0;
+	bells->controllers[place].muted = watch(bells, fd, place) != 0;
+	bells->muted += bells->controllers[place].muted;
 }
 
 static void leave_out(struct bells *bells, unsigned place)
 {
-	epoll_ctl(bells->epoll, EPOLL_CTL_DEL, bells->givers[place].fd, NULL);
+	epoll_ctl(bells->epoll, EPOLL_CTL_DEL, bells->controllers[place].fd, NULL);
 }
 
 void bells_remove(struct bells *bells, unsigned place)
 {
-	if (bells->givers[place].fd < 0)
+	if (bells->controllers[place].fd < 0)
 		return;
-	if (bells->givers[place].muted)
+	if (bells->controllers[place].muted)
 		bells->muted--;
 	else
 		leave_out(bells, place);
-	bells->givers[place].fd = -1;
-	bells->givers[place].muted = false;
+	bells->controllers[place].fd = -1;
+	bells->controllers[place].muted = false;
 }
 
 void bells_look(struct bells *bells)
@@ -122,10 +123,10 @@ static void count_ring(struct bells *bells, unsigned place)
 	unsigned most = bells->all < BELLS_ALL ? BELLS_MAX : BELLS_SHARE;
 
 	bells->all++;
-	if (bells->givers[place].fd < 0 || ++bells->givers[place].rings < most)
+	if (bells->controllers[place].fd < 0 || ++bells->controllers[place].rings < most)
 		return;
 	leave_out(bells, place);
-	bells->givers[place].muted = true;
+	bells->controllers[place].muted = true;
 	bells->muted++;
 	bells->mutes++;
 }
@@ -134,10 +135,10 @@ static void count_again(struct bells *bells, int64_t now_ns)
 {
 	bells->since_ns = now_ns;
 	bells->all = 0;
-	for (unsigned i = 0; i < OWS_GIVERS; i++) {
-		bells->givers[i].rings = 0;
-		if (bells->givers[i].muted && watch(bells, bells->givers[i].fd, i) == 0) {
-			bells->givers[i].muted = false;
+	for (unsigned i = 0; i < OWS_CONTROLLERS; i++) {
+		bells->controllers[i].rings = 0;
+		if (bells->controllers[i].muted && watch(bells, bells->controllers[i].fd, i) == 0) {
+			bells->controllers[i].muted = false;
 			bells->muted--;
 		}
 	}
@@ -157,6 +158,6 @@ void bells_sleep(struct bells *bells, int64_t until_ns)
 		return;
 	n = wait_for(bells->epoll, events, until_ns - now_ns);
 	for (int i = 0; i < n; i++)
-		if (events[i].data.u32 < OWS_GIVERS)
+		if (events[i].data.u32 < OWS_CONTROLLERS)
 			count_ring(bells, events[i].data.u32);
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the engine's thread sleeps on: one bell for the threads of owsd and one for each giver. A
- * giver's bell that rings too often is left out for a while; what the giver has marked is looked at
- * whenever the engine is awake.
+ * What the engine's thread sleeps on: one bell for the threads of owsd and one for each controller.
+ * A controller's bell that rings too often is left out for a while; what the controller has marked
+ * is looked at whenever the engine is awake.
  */
 #ifndef HOST_BELLS_H
 #define HOST_BELLS_H
@@ -12,7 +12,7 @@
 
 #include "src/shm/layout.h"
 
-/* A giver's bell may ring so often in that time; less often when all together ring a lot. */
+/* A controller's bell may ring so often in that time; less often when all together ring a lot. */
 #define BELLS_NS (100 * INT64_C(1000000))
 #define BELLS_MAX 256
 #define BELLS_ALL 1024
@@ -28,7 +28,7 @@ struct bells {
 		int fd; /* -1: none */
 		unsigned rings;
 		bool muted;
-	} givers[OWS_GIVERS];
+	} controllers[OWS_CONTROLLERS];
 	uint64_t mutes; /* how often a bell was left out */
 };
 
@@ -45,7 +45,7 @@ void bells_remove(struct bells *bells, unsigned place);
 void bells_look(struct bells *bells);
 /*
  * Going to sleep: a ring after this wakes bells_sleep(). Returns whether there was one since
- * bells_look(). The caller looks at what givers have marked between this and bells_sleep().
+ * bells_look(). The caller looks at what controllers have marked between this and bells_sleep().
  */
 bool bells_close_eyes(struct bells *bells);
 /* Sleep until then or the next ring. */

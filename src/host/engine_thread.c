@@ -12,7 +12,7 @@
 #include "hal/bus/time.h"
 #include "hal/bus/worker.h"
 #include "src/control/control.h"
-#include "src/engine/givers.h"
+#include "src/engine/controllers.h"
 #include "src/host/engine_thread.h"
 #include "src/host/last.h"
 #include "src/host/private.h"
@@ -101,25 +101,26 @@ static void publish_counters(struct host *h)
 	publish_list(h, list, n, index);
 }
 
-/* --- Givers ----------------------------------------------------------------------------------- */
+/* --- Controllers
+ * ----------------------------------------------------------------------------------- */
 
 static void join(struct engine *e, const struct control_turn *turn, int64_t now_ns)
 {
-	struct engine_giver giver = {
+	struct engine_controller controller = {
 		.memory = turn->memory,
 		.who = turn->who,
 		.rights = turn->rights,
 	};
 
-	memcpy(giver.token, turn->token, sizeof(giver.token));
-	engine_giver_join(e, turn->place, &giver, now_ns);
+	memcpy(controller.token, turn->token, sizeof(controller.token));
+	engine_controller_join(e, turn->place, &controller, now_ns);
 }
 
 /* Programs that connect and hang up without end do not keep the engine from its work. */
-#define TURNS (2 * OWS_GIVERS)
+#define TURNS (2 * OWS_CONTROLLERS)
 
 /* Those that have connected, and those that hung up or are dead. True: there may be more. */
-static bool take_givers(struct host *h, int64_t now_ns)
+static bool take_controllers(struct host *h, int64_t now_ns)
 {
 	struct control_turn turn;
 
@@ -131,7 +132,7 @@ static bool take_givers(struct host *h, int64_t now_ns)
 			join(h->now->engine, &turn, now_ns);
 		} else {
 			bells_remove(&h->bells, turn.place);
-			engine_giver_left(h->now->engine, turn.place, now_ns);
+			engine_controller_left(h->now->engine, turn.place, now_ns);
 		}
 		control_done(h->control, &turn);
 	}
@@ -139,12 +140,12 @@ static bool take_givers(struct host *h, int64_t now_ns)
 }
 
 /* All that have joined the engine before join the next, with their new memories. */
-static void hand_over_givers(struct host *h, struct engine *next, int64_t now_ns)
+static void hand_over_controllers(struct host *h, struct engine *next, int64_t now_ns)
 {
 	struct control_turn turn;
 	unsigned place = 0;
 
-	take_givers(h, now_ns);
+	take_controllers(h, now_ns);
 	while (control_prepared(h->control, &place, &turn))
 		join(next, &turn, now_ns);
 }
@@ -158,7 +159,7 @@ static void take_next(struct host *h, int64_t now_ns)
 	struct engine *ended = __atomic_load_n(&h->ended, __ATOMIC_ACQUIRE);
 
 	if (next) {
-		hand_over_givers(h, next->engine, now_ns);
+		hand_over_controllers(h, next->engine, now_ns);
 		engine_adopt(next->engine, h->now->engine, h->plan, now_ns);
 		serving_keep_counts(next, h->now, h->plan->ports);
 		image_awake(&next->memory.image, true);
@@ -179,7 +180,7 @@ static void sleep_until(struct host *h, int64_t until_ns)
 
 	image_awake(image, false);
 	rung = bells_close_eyes(&h->bells);
-	if (!rung && !engine_givers_marked(h->now->engine))
+	if (!rung && !engine_controllers_marked(h->now->engine))
 		bells_sleep(&h->bells, until_ns);
 	image_awake(image, true);
 	bells_open_eyes(&h->bells);
@@ -207,7 +208,7 @@ static void *engine_main(void *ctx)
 		if (__atomic_load_n(&h->stop, __ATOMIC_ACQUIRE))
 			break;
 		more = take_messages(h->now, now_ns);
-		more |= take_givers(h, now_ns);
+		more |= take_controllers(h, now_ns);
 		next_ns = engine_step(h->now->engine, now_ns);
 		if (now_ns - counted_ns >= h->now->config->period_ns) {
 			counted_ns = now_ns;

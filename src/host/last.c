@@ -50,7 +50,7 @@ static uint32_t put(void *ctx, uint32_t row, int64_t value, const char *text, ui
 	                           .len = len,
 	                           .stamp = l->tickets + 1 ? l->tickets + 1 : 1,
 	                           .given = true,
-	                           .giver = FORCE_NOBODY};
+	                           .controller = FORCE_NOBODY};
 	force_put(&l->put, l->row_of[row], &c, text);
 	__atomic_store_n(&l->tickets, c.stamp, __ATOMIC_RELEASE);
 	segment_wake(&l->tickets, 1);

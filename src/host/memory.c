@@ -181,7 +181,7 @@ static int make_layout(struct memory *m)
 {
 	const struct config *config = m->config;
 	uint8_t *types = calloc((size_t)config->item_count + 1, 1);
-	const struct giver_plan plan = {
+	const struct controller_plan plan = {
 		.types = types,
 		.signal_count = config->item_count,
 		.text_cap = TABLE_TEXT_CAP,
@@ -194,7 +194,7 @@ static int make_layout(struct memory *m)
 		return -ENOMEM;
 	for (unsigned i = 0; i < config->item_count; i++)
 		types[i] = (uint8_t)config->items[i].type;
-	err = giver_layout_make(&m->layout, &plan);
+	err = controller_layout_make(&m->layout, &plan);
 	free(types);
 	return err;
 }
@@ -395,5 +395,5 @@ void memory_end(struct memory *m)
 	memory_resumed(m);
 	segment_close(&m->image_segment);
 	segment_close(&m->force_segment);
-	giver_layout_free(&m->layout);
+	controller_layout_free(&m->layout);
 }

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The files of an instance that belong to a configuration: the image for the consumers, NAME.force
- * for the next owsd; and the layout of the givers' memories. Blocking: file-system calls.
+ * for the next owsd; and the layout of the controllers' memories. Blocking: file-system calls.
  */
 #ifndef HOST_MEMORY_H
 #define HOST_MEMORY_H
 
 #include "src/config/config.h"
+#include "src/shm/controller.h"
 #include "src/shm/force.h"
-#include "src/shm/giver.h"
 #include "src/shm/image.h"
 #include "src/shm/segment.h"
 #include "src/text/log.h"
@@ -24,7 +24,7 @@ struct memory {
 	struct image image;
 	struct segment force_segment;
 	struct force force;
-	struct giver_layout layout;
+	struct controller_layout layout;
 	/* until memory_resumed(): what the owsd before has left */
 	struct segment left_segment;
 	struct force_left left;

@@ -52,7 +52,7 @@ int command_ring(struct ows *h)
 
 int ows_beat(struct ows *h, uint32_t period_ms)
 {
-	struct ows_giver_header *header = give_header(&h->give);
+	struct ows_controller_header *header = give_header(&h->give);
 	int err = command_ready(h);
 
 	if (err)

@@ -18,14 +18,14 @@ static bool area_inside(const struct give *give, uint32_t off, uint32_t count, u
 
 static int check_memory(const struct ows_welcome *welcome, struct give *give)
 {
-	struct ows_giver_header h = {0};
+	struct ows_controller_header h = {0};
 
 	words_load(&h, give->base, sizeof(h) / 4);
-	if (h.magic != OWS_GIVER_MAGIC || h.major != OWS_LAYOUT_MAJOR || h.size != give->size ||
-	    h.generation != welcome->generation || h.start_id != welcome->start_id ||
-	    h.slot_size < sizeof(struct ows_command_slot) || h.slot_size % 8 != 0 ||
-	    h.slot_count == 0 || h.text_cap > 0xffff || h.text_cap % 4 != 0 ||
-	    h.dirty_words != h.slot_count / 32 + (h.slot_count % 32 != 0))
+	if (h.magic != OWS_CONTROLLER_MAGIC || h.major != OWS_LAYOUT_MAJOR ||
+	    h.size != give->size || h.generation != welcome->generation ||
+	    h.start_id != welcome->start_id || h.slot_size < sizeof(struct ows_command_slot) ||
+	    h.slot_size % 8 != 0 || h.slot_count == 0 || h.text_cap > 0xffff ||
+	    h.text_cap % 4 != 0 || h.dirty_words != h.slot_count / 32 + (h.slot_count % 32 != 0))
 		return -EPROTO;
 	if (!area_inside(give, h.slot_off, h.slot_count, h.slot_size) ||
 	    !area_inside(give, h.dirty_off, h.dirty_words, 4) ||
@@ -58,7 +58,8 @@ int give_map(int fd, const struct ows_welcome *welcome, struct give *give)
 	*give = (struct give){0};
 	/* Without these seals an access could raise SIGBUS */
 	if (seals < 0 || (seals & SEALS) != SEALS || fstat(fd, &st) < 0 ||
-	    st.st_size != (off_t)welcome->size || welcome->size < sizeof(struct ows_giver_header))
+	    st.st_size != (off_t)welcome->size ||
+	    welcome->size < sizeof(struct ows_controller_header))
 		return -EPROTO;
 	base = mmap(NULL, welcome->size, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
 	if (base == MAP_FAILED)

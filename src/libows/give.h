@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The memory in which a program commands (layout.h, "the memory of one giver"): mapped and checked
- * once. Only this program and owsd have it; a forked child that writes rubbish leads the parent to
- * no other place.
+ * The memory in which a program commands (layout.h, "the memory of one controller"): mapped and
+ * checked once. Only this program and owsd have it; a forked child that writes rubbish leads the
+ * parent to no other place.
  */
 #ifndef LIBOWS_GIVE_H
 #define LIBOWS_GIVE_H
@@ -30,7 +30,7 @@ void give_store_text(struct ows_command_text *to, const char *text, size_t len);
 /* Store a text and fill it up with NUL to size, a multiple of 4. */
 void give_store_name(char *to, const char *text, size_t size);
 
-static inline struct ows_giver_header *give_header(const struct give *give)
+static inline struct ows_controller_header *give_header(const struct give *give)
 {
 	return (void *)give->base;
 }

@@ -72,10 +72,10 @@ struct ows {
 	bool orphan; /* owsd is dead, and a name leads to another file; checked once a second */
 	int64_t looked_ns;
 
-	/* The giver: of OWS_CONTROL, and of OWS_READ after ows_fd() */
+	/* The controller: of OWS_CONTROL, and of OWS_READ after ows_fd() */
 	struct join join;
 	struct give give, next;     /* next: taken, but its image is not mapped yet */
-	uint32_t *mine;             /* 1; in a forked child 0. NULL: no giver */
+	uint32_t *mine;             /* 1; in a forked child 0. NULL: no controller */
 	uint32_t stamp;             /* of the last command */
 	uint32_t period_ms;         /* promised; 0: none */
 	uint32_t person;            /* as in a slot */

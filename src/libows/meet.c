@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * How a handle becomes a giver, and gets the memory that belongs to the present image: after a
+ * How a handle becomes a controller, and gets the memory that belongs to the present image: after a
  * reload by the same connection, after a restart by another one with the token of before.
  */
 #include <errno.h>
@@ -100,7 +100,7 @@ int meet(struct ows *h, const struct ows_map *map, int64_t until_ns)
 
 void meet_take(struct ows *h)
 {
-	struct ows_giver_header *header;
+	struct ows_controller_header *header;
 
 	if (h->next.base == NULL)
 		return;
@@ -113,7 +113,7 @@ void meet_take(struct ows *h)
 		h->person = 0; /* cannot be: the places are those of before, or all are free */
 	if (h->period_ms == 0)
 		return;
-	/* A giver that comes back beats at once, so that its commands stay in force */
+	/* A controller that comes back beats at once, so that its commands stay in force */
 	header = give_header(&h->give);
 	word_set(&header->period_ms, h->period_ms);
 	__atomic_fetch_add(&header->beat, 1, __ATOMIC_RELEASE);

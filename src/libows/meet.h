@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * How a handle becomes a giver, and gets the memory that belongs to the present image: it connects,
- * takes what owsd hands it, and connects again after a restart.
+ * How a handle becomes a controller, and gets the memory that belongs to the present image: it
+ * connects, takes what owsd hands it, and connects again after a restart.
  */
 #ifndef LIBOWS_MEET_H
 #define LIBOWS_MEET_H

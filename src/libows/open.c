@@ -30,7 +30,7 @@ static void take_map(struct ows *h, const struct ows_map *map)
 	                                                                        : DEAD_LEAST_NS;
 }
 
-/* Become a giver of the image that is there, which may be replaced meanwhile. */
+/* Become a controller of the image that is there, which may be replaced meanwhile. */
 static int open_joined(struct ows *h)
 {
 	const struct timespec nap = {.tv_nsec = 10 * NS_PER_MS};

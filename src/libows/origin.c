@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Who commands: the connected givers, and the origin of each signal's command. */
+/* Who commands: the connected controllers, and the origin of each signal's command. */
 #include <errno.h>
 
 #include "src/libows/alive.h"
@@ -29,25 +29,25 @@ int ows_origin(struct ows *h, int id, struct ows_origin *origin)
 	return handle_state(h);
 }
 
-int ows_giver(struct ows *h, int index, struct ows_giver *giver)
+int ows_controller(struct ows *h, int index, struct ows_controller *controller)
 {
-	struct ows_giver_entry e;
+	struct ows_controller_entry e;
 
-	*giver = (struct ows_giver){0};
-	if (index < 0 || (uint32_t)index >= map_count(&h->map, OWS_AREA_GIVERS))
+	*controller = (struct ows_controller){0};
+	if (index < 0 || (uint32_t)index >= map_count(&h->map, OWS_AREA_CONTROLLERS))
 		return -ENOENT;
-	if (!reader_entry(map_entry(&h->map, OWS_AREA_GIVERS, (uint32_t)index), &e, sizeof(e)))
+	if (!reader_entry(map_entry(&h->map, OWS_AREA_CONTROLLERS, (uint32_t)index), &e, sizeof(e)))
 		return -EIO;
-	if (!(e.flags & OWS_GIVER_CONNECTED))
+	if (!(e.flags & OWS_CONTROLLER_CONNECTED))
 		return 0;
-	*giver = (struct ows_giver){
+	*controller = (struct ows_controller){
 		.who = by_of(&e.who),
 		.joined_ns = e.joined_ns,
 		.period_ms = e.period_ms,
 		.commands = e.commands,
 		.refused = e.refused,
-		.may_set = (e.flags & OWS_GIVER_MAY_SET) != 0,
-		.late = (e.flags & OWS_GIVER_LATE) != 0,
+		.may_set = (e.flags & OWS_CONTROLLER_MAY_SET) != 0,
+		.late = (e.flags & OWS_CONTROLLER_LATE) != 0,
 	};
 	return 0;
 }

@@ -263,7 +263,7 @@ struct ows_origin {
 int ows_origin(struct ows *h, int id, struct ows_origin *origin);
 
 /* A program that is connected to owsd. */
-struct ows_giver {
+struct ows_controller {
 	struct ows_by who;   /* serial 0: nobody has this place */
 	int64_t joined_ns;
 	uint32_t period_ms;  /* promised longest time between two beats; 0: promised none */
@@ -274,7 +274,7 @@ struct ows_giver {
 	uint64_t spare[4]; /* 0: room for later members */
 };
 /* Who has that place, counted from 0. -ENOENT: past the last place; -EIO as ows_origin(). */
-int ows_giver(struct ows *h, int index, struct ows_giver *giver);
+int ows_controller(struct ows *h, int index, struct ows_controller *controller);
 
 /* Where a program stands in the changes of its handle. All zero to begin; libows writes it. */
 struct ows_cursor {
@@ -317,8 +317,8 @@ int ows_fd(struct ows *h);
 
 /*
  * Map the present image after -ESTALE, and get the memory for commands that belongs to it; after a
- * restart it connects again, as the same giver, and beats if it had promised to. Ids stay right.
- * System calls, allocates; waits for owsd's answer, 20 ms at most.
+ * restart it connects again, as the same controller, and beats if it had promised to. Ids stay
+ * right. System calls, allocates; waits for owsd's answer, 20 ms at most.
  * -ENOENT: they do not exist yet, try again in the next cycle (the old image stays readable);
  * -EPERM as ows_set(); all errors of ows_open(). An owsd that was killed cannot report its end: its
  * values turn bad by themselves, and when the next owsd has started, all calls return -ESTALE.

@@ -87,7 +87,7 @@ except OSError as e:
     raise ImportError(f"ows.py needs the library libows.so.1, package libows1: {e}") from None
 _declare(_lib, "ows_", "open_as:sisp reopen:h find:hs get:hiqp get_text:hiqpsu wait:hpq fd:h "
          "changes:hppiq set:hidp set_integer:hiqp set_text:hisp beat:hu for:hs count:h info:hip "
-         "origin:hip giver:hip daemon:hqp target:hip device:hip alarm:hup alarm_state:hip "
+         "origin:hip controller:hip daemon:hqp target:hip device:hip alarm:hup alarm_state:hip "
          "acknowledge:hi shelve:hius command_entry:hup")
 _declare(_lib, "ows_", "close:h", None)
 _declare(_lib, "ows_", "now:", ctypes.c_int64)
@@ -116,7 +116,7 @@ _By: Any = _structure("uint32 serial uid; int32 pid; char name[32] person[32]")
 _Value = _structure("double number; int64 integer measured_ns tried_ns age_ns; int32 err; "
                     "uint32 count applied len; uint8 type quality detail target")
 _Origin = _structure("by who; int64 taken_ns; uint8 reason; bool own; uint64 spare[4]")
-_Giver = _structure("by who; int64 joined_ns; uint32 period_ms commands refused; "
+_Controller = _structure("by who; int64 joined_ns; uint32 period_ms commands refused; "
                     "bool may_set late; uint64 spare[4]")
 _Cursor = _structure("uint32 number start_id generation flags; int64 looked_ns")
 _Info = _structure("char_p name path; uint8 type; bool output fresh alarm; uint32 per_factor; "
@@ -223,7 +223,7 @@ class Origin(NamedTuple):
     own: bool
 
 
-class Giver(NamedTuple):
+class Controller(NamedTuple):
     """A connected program."""
     who: By
     joined_ns: int
@@ -579,11 +579,11 @@ class Ows:
             yield _row(Device, found, **texts, power=POWERS[found.power],
                        target=found.target if found.target >= 0 else None)
 
-    def givers(self) -> Iterator[Giver]:
+    def controllers(self) -> Iterator[Controller]:
         """The programs that are connected to owsd."""
-        for _, found in self._each(_lib.ows_giver, _Giver):
+        for _, found in self._each(_lib.ows_controller, _Controller):
             if found.who.serial:
-                yield _row(Giver, found)
+                yield _row(Controller, found)
 
     # --- Waiting --------------------------------------------------------------------------------
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* For whom a program commands: the names of persons in the giver's memory. */
+/* For whom a program commands: the names of persons in the controller's memory. */
 #include <errno.h>
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* For whom a program commands: the names of persons in the giver's memory. */
+/* For whom a program commands: the names of persons in the controller's memory. */
 #ifndef LIBOWS_PERSON_H
 #define LIBOWS_PERSON_H
 

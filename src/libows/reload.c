@@ -38,7 +38,7 @@ static int take(int connection, char *why, size_t size)
 		return errno == EAGAIN || errno == EINTR ? -EAGAIN : -ENOTCONN;
 	if (n == 0)
 		return -ENOTCONN;
-	/* An owsd that knows nothing of this flag makes the program a giver */
+	/* An owsd that knows nothing of this flag makes the program a controller */
 	if (n < (ssize_t)sizeof(*welcome) || welcome->magic != OWS_WELCOME_MAGIC ||
 	    welcome->size != 0 || welcome->err > 0 || welcome->err < -ERRNO_MAX)
 		return -EPROTO;

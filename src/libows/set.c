@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Sets outputs and attributes: the checks, the slot of the giver's memory, the bell. */
+/* Sets outputs and attributes: the checks, the slot of the controller's memory, the bell. */
 #include <errno.h>
 #include <string.h>
 

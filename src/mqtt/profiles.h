@@ -20,7 +20,8 @@ void profiles_prefix(const struct profile *profile, const char *topic, const cha
  * The topics where the broker may keep what is no more, of other profiles too; "" after the last.
  */
 void profiles_place(const struct stream *s, int number, char topic[TOPIC_SIZE]);
-/* A retained message that came there, NULL if empty: nobody writes the topic any more, so empty it. */
+/* A retained message that came there, NULL if empty: nobody writes the topic any more, so empty
+ * it. */
 void profiles_kept(struct stream *s, const char *topic, const char *text);
 
 #endif

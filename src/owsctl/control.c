@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * owsctl control: a giver whose program speaks to it by standard input, for languages that cannot
- * receive descriptors. One line, one answer.
+ * owsctl control: a controller whose program speaks to it by standard input, for languages that
+ * cannot receive descriptors. One line, one answer.
  */
 #include <errno.h>
 #include <getopt.h>

@@ -16,7 +16,7 @@
 #include "src/shm/reader.h"
 #include "src/signal/value.h"
 
-#define NAME "owserver protocol" /* of the giver that the clients of the protocol are */
+#define NAME "owserver protocol" /* of the controller that the clients of the protocol are */
 /* owsd's own control room answers at once, if it is not busy. */
 #define MEET_NS (20 * INT64_C(1000000))
 
@@ -225,7 +225,7 @@ static int not_yet(int err)
 	return err == -EAGAIN || err == -ETIMEDOUT || err == -ENOENT ? -EBUSY : err;
 }
 
-/* Become a giver, at the first write: when owsd starts its control room is not open yet. */
+/* Become a controller, at the first write: when owsd starts its control room is not open yet. */
 static int join(struct ows *h)
 {
 	int err = h->give.base ? 0 : meet(h, &h->map, ows_now() + MEET_NS);
@@ -236,8 +236,8 @@ static int join(struct ows *h)
 }
 
 /*
- * All clients are one giver, with one command for each signal: that of another client may only be
- * replaced when owsd knows whose it was.
+ * All clients are one controller, with one command for each signal: that of another client may only
+ * be replaced when owsd knows whose it was.
  */
 static int become(struct ows *h, const struct ows_id *id, const char *person)
 {

@@ -11,7 +11,7 @@
 
 _Static_assert(sizeof(struct ows_journal_entry) <= 4 * WORDS_MAX &&
                        sizeof(struct ows_origin_entry) <= 4 * WORDS_MAX &&
-                       sizeof(struct ows_giver_entry) <= 4 * WORDS_MAX &&
+                       sizeof(struct ows_controller_entry) <= 4 * WORDS_MAX &&
                        sizeof(struct ows_shelf_entry) <= 4 * WORDS_MAX &&
                        sizeof(struct ows_device_entry) <= 4 * WORDS_MAX,
                "the log's entry is the largest");
@@ -36,10 +36,10 @@ void image_origin(struct image *image, uint32_t record, const struct ows_origin_
 	write_entry(&image->origins[record], entry, sizeof(*entry));
 }
 
-void image_giver(struct image *image, uint32_t place, const struct ows_giver_entry *entry)
+void image_controller(struct image *image, uint32_t place, const struct ows_controller_entry *entry)
 {
-	assert(place < OWS_GIVERS);
-	write_entry(&image->givers[place], entry, sizeof(*entry));
+	assert(place < OWS_CONTROLLERS);
+	write_entry(&image->controllers[place], entry, sizeof(*entry));
 }
 
 void image_shelf(struct image *image, uint32_t place, const struct ows_shelf_entry *entry)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The entries of the image that change as a whole, writer's side: origins, givers, shelves,
+ * The entries of the image that change as a whole, writer's side: origins, controllers, shelves,
  * devices, the log, and the journals of alarms and of commands. Sequence and check words are set
  * here. No system calls. One thread.
  */
@@ -11,8 +11,9 @@
 
 /* The origin of the command in force for a record. */
 void image_origin(struct image *image, uint32_t record, const struct ows_origin_entry *entry);
-/* The giver of a place below OWS_GIVERS. */
-void image_giver(struct image *image, uint32_t place, const struct ows_giver_entry *entry);
+/* The controller of a place below OWS_CONTROLLERS. */
+void image_controller(struct image *image, uint32_t place,
+                      const struct ows_controller_entry *entry);
 /* The shelved alarm of a place below OWS_SHELVES. */
 void image_shelf(struct image *image, uint32_t place, const struct ows_shelf_entry *entry);
 

@@ -21,15 +21,15 @@ struct force_header { /* 64 bytes */
 	uint32_t magic, version;
 	uint64_t boot;
 	uint32_t size, row_count, text_cap;
-	uint32_t row_off, giver_off, text_off, pool_off;
-	uint32_t giver_count;
+	uint32_t row_off, controller_off, text_off, pool_off;
+	uint32_t controller_count;
 	uint32_t spare[3];
 	uint32_t check; /* of the words before */
 };
 struct row_slot { /* 40 bytes */
 	int64_t value;
 	uint32_t len, text_check; /* strings */
-	uint32_t stamp, flags, giver, serial;
+	uint32_t stamp, flags, controller, serial;
 	uint32_t spare;
 	uint32_t check; /* of the words before */
 };
@@ -43,19 +43,19 @@ struct force_row { /* 112 bytes */
 	uint32_t spare;
 	struct row_slot slot[2];
 };
-struct giver_slot { /* 112 bytes */
-	struct force_giver giver;
+struct controller_slot { /* 112 bytes */
+	struct force_controller controller;
 	uint32_t spare;
 	uint32_t check;
 };
-struct giver_row { /* 232 bytes */
+struct controller_row { /* 232 bytes */
 	uint32_t seq, spare;
-	struct giver_slot slot[2];
+	struct controller_slot slot[2];
 };
 _Static_assert(sizeof(struct force_header) == 64, "laid out by hand");
 _Static_assert(sizeof(struct row_slot) == 40, "laid out by hand");
 _Static_assert(sizeof(struct force_row) == 112, "laid out by hand");
-_Static_assert(sizeof(struct giver_slot) == 112, "laid out by hand");
+_Static_assert(sizeof(struct controller_slot) == 112, "laid out by hand");
 
 #define CHECK_OF(record) \
 	ows_check((const uint32_t *)(const void *)(record), sizeof(*(record)) / 4 - 1)
@@ -63,7 +63,7 @@ _Static_assert(sizeof(struct giver_slot) == 112, "laid out by hand");
 /* --- Writing ---------------------------------------------------------------------------------- */
 
 struct force_areas {
-	uint64_t row, giver, text, pool, end;
+	uint64_t row, controller, text, pool, end;
 };
 
 static void find_areas(const struct force_plan *plan, struct force_areas *a)
@@ -75,8 +75,9 @@ static void find_areas(const struct force_plan *plan, struct force_areas *a)
 		texts += plan->signals[i].type == OWS_STRING ? 2 : 0;
 	}
 	a->row = sizeof(struct force_header);
-	a->giver = a->row + (uint64_t)plan->signal_count * sizeof(struct force_row);
-	a->text = a->giver + (plan->stored ? 0 : FORCE_GIVERS) * sizeof(struct giver_row);
+	a->controller = a->row + (uint64_t)plan->signal_count * sizeof(struct force_row);
+	a->text = a->controller +
+	          (plan->stored ? 0 : FORCE_CONTROLLERS) * sizeof(struct controller_row);
 	a->pool = a->text + texts * plan->text_cap;
 	a->end = (a->pool + pool + 7) & ~(uint64_t)7;
 }
@@ -95,10 +96,10 @@ static struct force_row *row_at(const struct force *force, uint32_t row)
 	return (struct force_row *)(void *)(force->base + force->row_off) + row;
 }
 
-static struct giver_row *giver_at(const struct force *force, uint32_t index)
+static struct controller_row *controller_at(const struct force *force, uint32_t index)
 {
-	assert(index < force->giver_count);
-	return (struct giver_row *)(void *)(force->base + force->giver_off) + index;
+	assert(index < force->controller_count);
+	return (struct controller_row *)(void *)(force->base + force->controller_off) + index;
 }
 
 static uint32_t add_string(char *base, uint64_t *pool, const char *text, uint32_t *check)
@@ -125,8 +126,8 @@ void force_build(const struct force_plan *plan, void *memory, struct force *forc
 	*force = (struct force){.base = memory,
 	                        .row_off = (uint32_t)a.row,
 	                        .row_count = plan->signal_count,
-	                        .giver_off = (uint32_t)a.giver,
-	                        .giver_count = plan->stored ? 0 : FORCE_GIVERS,
+	                        .controller_off = (uint32_t)a.controller,
+	                        .controller_count = plan->stored ? 0 : FORCE_CONTROLLERS,
 	                        .text_cap = plan->text_cap};
 	for (uint32_t i = 0; i < plan->signal_count; i++) {
 		const struct force_signal *s = &plan->signals[i];
@@ -141,8 +142,9 @@ void force_build(const struct force_plan *plan, void *memory, struct force *forc
 		r->text_off = (uint32_t)text;
 		text += 2 * (uint64_t)plan->text_cap;
 	}
-	for (uint32_t i = 0; i < force->giver_count; i++)
-		giver_at(force, i)->slot[0].check = CHECK_OF(&giver_at(force, i)->slot[0]);
+	for (uint32_t i = 0; i < force->controller_count; i++)
+		controller_at(force, i)->slot[0].check = CHECK_OF(
+			&controller_at(force, i)->slot[0]);
 	*h = (struct force_header){.magic = FORCE_MAGIC,
 	                           .version = FORCE_VERSION,
 	                           .boot = plan->boot,
@@ -150,28 +152,29 @@ void force_build(const struct force_plan *plan, void *memory, struct force *forc
 	                           .row_count = plan->signal_count,
 	                           .text_cap = plan->text_cap,
 	                           .row_off = (uint32_t)a.row,
-	                           .giver_off = (uint32_t)a.giver,
+	                           .controller_off = (uint32_t)a.controller,
 	                           .text_off = (uint32_t)a.text,
 	                           .pool_off = (uint32_t)a.pool,
-	                           .giver_count = force->giver_count};
+	                           .controller_count = force->controller_count};
 	h->check = CHECK_OF(h);
 }
 
-void force_giver(struct force *force, uint32_t index, const struct force_giver *giver)
+void force_controller(struct force *force, uint32_t index,
+                      const struct force_controller *controller)
 {
-	struct giver_row *g = giver_at(force, index);
+	struct controller_row *g = controller_at(force, index);
 	uint32_t next = g->seq + 1;
-	struct giver_slot *slot = &g->slot[next & 1];
+	struct controller_slot *slot = &g->slot[next & 1];
 
-	slot->giver = *giver;
+	slot->controller = *controller;
 	slot->check = CHECK_OF(slot);
 	__atomic_store_n(&g->seq, next, __ATOMIC_RELEASE);
 	word_fence(__ATOMIC_RELEASE); /* the next writes into the slot that was whole until now */
 }
 
-static const struct giver_slot *newest_giver(const struct force *force, uint32_t index)
+static const struct controller_slot *newest_controller(const struct force *force, uint32_t index)
 {
-	const struct giver_row *g = giver_at(force, index);
+	const struct controller_row *g = controller_at(force, index);
 
 	return &g->slot[g->seq & 1];
 }
@@ -190,11 +193,11 @@ void force_put(struct force *force, uint32_t row, const struct force_command *co
 		.value = command->value,
 		.stamp = command->stamp,
 		.flags = (command->given ? GIVEN : 0) | (command->safe ? SAFE : 0),
-		.giver = command->giver,
+		.controller = command->controller,
 	};
 
-	if (command->giver < force->giver_count)
-		slot.serial = newest_giver(force, command->giver)->giver.who.serial;
+	if (command->controller < force->controller_count)
+		slot.serial = newest_controller(force, command->controller)->controller.who.serial;
 	if (text && r->text_off) {
 		char *to = text_at(force, r, next);
 
@@ -231,12 +234,12 @@ void force_get(const struct force *force, uint32_t row, struct force_command *co
 		.stamp = slot.stamp,
 		.given = slot.flags & GIVEN,
 		.safe = slot.flags & SAFE,
-		.giver = slot.giver,
+		.controller = slot.controller,
 	};
 	/* its entry is another's by now: nobody would come back for the command */
-	if (slot.giver >= force->giver_count || !slot.serial ||
-	    newest_giver(force, slot.giver)->giver.who.serial != slot.serial)
-		command->giver = FORCE_NOBODY;
+	if (slot.controller >= force->controller_count || !slot.serial ||
+	    newest_controller(force, slot.controller)->controller.who.serial != slot.serial)
+		command->controller = FORCE_NOBODY;
 }
 
 struct force_key {
@@ -279,7 +282,8 @@ static bool row_whole(const struct force *force, const struct force_header *h, u
 		.type = r->type,
 		.row = row,
 	};
-	if (!key->name || !key->path || slot->check != CHECK_OF(slot) || slot->giver > FORCE_NOBODY)
+	if (!key->name || !key->path || slot->check != CHECK_OF(slot) ||
+	    slot->controller > FORCE_NOBODY)
 		return false;
 	if (r->type != OWS_STRING)
 		return r->text_off == 0 && slot->len == 0;
@@ -293,16 +297,18 @@ static bool row_whole(const struct force *force, const struct force_header *h, u
 static bool header_whole(const struct force_header *h, size_t size)
 {
 	return h->check == CHECK_OF(h) && h->size == size && h->row_count <= FORCE_ROWS_MAX &&
-	       h->giver_count <= FORCE_GIVERS && h->row_off == sizeof(*h) &&
-	       h->giver_off == h->row_off + (uint64_t)h->row_count * sizeof(struct force_row) &&
-	       h->text_off == h->giver_off + h->giver_count * sizeof(struct giver_row) &&
+	       h->controller_count <= FORCE_CONTROLLERS && h->row_off == sizeof(*h) &&
+	       h->controller_off ==
+	               h->row_off + (uint64_t)h->row_count * sizeof(struct force_row) &&
+	       h->text_off ==
+	               h->controller_off + h->controller_count * sizeof(struct controller_row) &&
 	       h->text_off <= size && h->pool_off >= h->text_off && h->pool_off <= size;
 }
 
-static bool givers_whole(const struct force *force)
+static bool controllers_whole(const struct force *force)
 {
-	for (uint32_t i = 0; i < force->giver_count; i++)
-		if (newest_giver(force, i)->check != CHECK_OF(newest_giver(force, i)))
+	for (uint32_t i = 0; i < force->controller_count; i++)
+		if (newest_controller(force, i)->check != CHECK_OF(newest_controller(force, i)))
 			return false;
 	return true;
 }
@@ -321,13 +327,13 @@ int force_open(const void *memory, size_t size, uint64_t boot, struct force_left
 	left->force = (struct force){.base = (char *)(uintptr_t)memory,
 	                             .row_off = h->row_off,
 	                             .row_count = h->row_count,
-	                             .giver_off = h->giver_off,
-	                             .giver_count = h->giver_count,
+	                             .controller_off = h->controller_off,
+	                             .controller_count = h->controller_count,
 	                             .text_cap = h->text_cap};
 	left->keys = malloc(((size_t)h->row_count + 1) * sizeof(*left->keys));
 	if (!left->keys)
 		return -ENOMEM;
-	whole = givers_whole(&left->force);
+	whole = controllers_whole(&left->force);
 	for (uint32_t row = 0; whole && row < h->row_count; row++)
 		whole = row_whole(&left->force, h, row, &left->keys[row]);
 	if (!whole) {
@@ -363,11 +369,12 @@ bool force_find(const struct force_left *left, const struct force_signal *signal
 	return true;
 }
 
-bool force_find_giver(const struct force_left *left, uint32_t index, struct force_giver *giver)
+bool force_find_controller(const struct force_left *left, uint32_t index,
+                           struct force_controller *controller)
 {
-	if (index >= left->force.giver_count)
+	if (index >= left->force.controller_count)
 		return false;
-	*giver = newest_giver(&left->force, index)->giver;
-	giver->who.name[OWS_NAME - 1] = giver->who.person[OWS_NAME - 1] = '\0';
-	return giver->who.serial != 0;
+	*controller = newest_controller(&left->force, index)->controller;
+	controller->who.name[OWS_NAME - 1] = controller->who.person[OWS_NAME - 1] = '\0';
+	return controller->who.serial != 0;
 }

@@ -23,11 +23,11 @@ struct force_plan {
 	uint32_t signal_count;
 	uint16_t text_cap; /* of every string signal, a multiple of 4 */
 	uint64_t boot;     /* names this boot of the machine; 0: what is stored outlasts it */
-	bool stored;       /* without givers: none of them outlasts a boot */
+	bool stored;       /* without controllers: none of them outlasts a boot */
 };
 struct force {
 	char *base;
-	uint32_t row_off, row_count, giver_off, giver_count, text_cap;
+	uint32_t row_off, row_count, controller_off, controller_count, text_cap;
 };
 
 /* Bytes that the plan needs; 0 if that is more than 2 GiB. */
@@ -35,10 +35,10 @@ size_t force_size(const struct force_plan *plan);
 /* Lay out zeroed memory, aligned to 8: no command is in force. */
 void force_build(const struct force_plan *plan, void *memory, struct force *force);
 
-#define FORCE_GIVERS 256
-#define FORCE_NOBODY FORCE_GIVERS
+#define FORCE_CONTROLLERS 256
+#define FORCE_NOBODY FORCE_CONTROLLERS
 
-struct force_giver {
+struct force_controller {
 	struct ows_who who;
 	uint8_t token[16];
 	uint32_t period_ms; /* promised; 0: none */
@@ -48,12 +48,13 @@ struct force_command {
 	int64_t value;
 	uint32_t len; /* strings: bytes of text */
 	uint32_t stamp;
-	bool given;     /* false: no program's command is in force */
-	bool safe;      /* SafeValue is */
-	uint32_t giver; /* an index, FORCE_NOBODY: nobody would come back for it */
+	bool given;          /* false: no program's command is in force */
+	bool safe;           /* SafeValue is */
+	uint32_t controller; /* an index, FORCE_NOBODY: nobody would come back for it */
 };
 /* who.serial 0: the index is free. */
-void force_giver(struct force *force, uint32_t index, const struct force_giver *giver);
+void force_controller(struct force *force, uint32_t index,
+                      const struct force_controller *controller);
 /* text: of strings, else NULL. */
 void force_put(struct force *force, uint32_t row, const struct force_command *command,
                const char *text);
@@ -79,7 +80,8 @@ void force_close(struct force_left *left);
  */
 bool force_find(const struct force_left *left, const struct force_signal *signal,
                 struct force_command *command, char *text, size_t room);
-/* Returns whether the giver of this index was known. */
-bool force_find_giver(const struct force_left *left, uint32_t index, struct force_giver *giver);
+/* Returns whether the controller of this index was known. */
+bool force_find_controller(const struct force_left *left, uint32_t index,
+                           struct force_controller *controller);
 
 #endif

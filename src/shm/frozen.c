@@ -102,14 +102,14 @@ AT(ows_origin_entry, taken_ns, 8, 8);
 AT(ows_origin_entry, who, 16, 80);
 AT(ows_origin_entry, check, 100, 4);
 
-AT(ows_giver_entry, seq, 0, 4);
-AT(ows_giver_entry, flags, 4, 4);
-AT(ows_giver_entry, joined_ns, 8, 8);
-AT(ows_giver_entry, who, 16, 80);
-AT(ows_giver_entry, period_ms, 96, 4);
-AT(ows_giver_entry, commands, 100, 4);
-AT(ows_giver_entry, refused, 104, 4);
-AT(ows_giver_entry, check, 116, 4);
+AT(ows_controller_entry, seq, 0, 4);
+AT(ows_controller_entry, flags, 4, 4);
+AT(ows_controller_entry, joined_ns, 8, 8);
+AT(ows_controller_entry, who, 16, 80);
+AT(ows_controller_entry, period_ms, 96, 4);
+AT(ows_controller_entry, commands, 100, 4);
+AT(ows_controller_entry, refused, 104, 4);
+AT(ows_controller_entry, check, 116, 4);
 
 AT(ows_shelf_entry, seq, 0, 4);
 AT(ows_shelf_entry, record, 4, 4);
@@ -206,29 +206,29 @@ AT(ows_command_shelf, why, 16, 64);
 AT(ows_command_shelf, done, 80, 4);
 AT(ows_command_shelf, err, 84, 4);
 
-AT(ows_giver_header, magic, 0, 4);
-AT(ows_giver_header, major, 4, 2);
-AT(ows_giver_header, minor, 6, 2);
-AT(ows_giver_header, size, 8, 4);
-AT(ows_giver_header, generation, 12, 4);
-AT(ows_giver_header, start_id, 16, 4);
-AT(ows_giver_header, serial, 20, 4);
-AT(ows_giver_header, slot_off, 24, 4);
-AT(ows_giver_header, slot_size, 28, 4);
-AT(ows_giver_header, slot_count, 32, 4);
-AT(ows_giver_header, text_off, 36, 4);
-AT(ows_giver_header, text_cap, 40, 4);
-AT(ows_giver_header, place_off, 44, 4);
-AT(ows_giver_header, dirty_off, 48, 4);
-AT(ows_giver_header, dirty_words, 52, 4);
-AT(ows_giver_header, person_off, 56, 4);
-AT(ows_giver_header, shelf_off, 60, 4);
-AT(ows_giver_header, state, 64, 4);
-AT(ows_giver_header, marked, 128, 4);
-AT(ows_giver_header, beat, 132, 4);
-AT(ows_giver_header, period_ms, 136, 4);
-AT(ows_giver_header, goodbye, 140, 4);
-AT(ows_giver_header, waits, 144, 4);
+AT(ows_controller_header, magic, 0, 4);
+AT(ows_controller_header, major, 4, 2);
+AT(ows_controller_header, minor, 6, 2);
+AT(ows_controller_header, size, 8, 4);
+AT(ows_controller_header, generation, 12, 4);
+AT(ows_controller_header, start_id, 16, 4);
+AT(ows_controller_header, serial, 20, 4);
+AT(ows_controller_header, slot_off, 24, 4);
+AT(ows_controller_header, slot_size, 28, 4);
+AT(ows_controller_header, slot_count, 32, 4);
+AT(ows_controller_header, text_off, 36, 4);
+AT(ows_controller_header, text_cap, 40, 4);
+AT(ows_controller_header, place_off, 44, 4);
+AT(ows_controller_header, dirty_off, 48, 4);
+AT(ows_controller_header, dirty_words, 52, 4);
+AT(ows_controller_header, person_off, 56, 4);
+AT(ows_controller_header, shelf_off, 60, 4);
+AT(ows_controller_header, state, 64, 4);
+AT(ows_controller_header, marked, 128, 4);
+AT(ows_controller_header, beat, 132, 4);
+AT(ows_controller_header, period_ms, 136, 4);
+AT(ows_controller_header, goodbye, 140, 4);
+AT(ows_controller_header, waits, 144, 4);
 
 AT(ows_hello, magic, 0, 4);
 AT(ows_hello, major, 4, 2);
@@ -248,10 +248,10 @@ AT(ows_welcome, size, 24, 4);
 AT(ows_welcome, token, 32, 16);
 
 _Static_assert(OWS_LAYOUT_MAJOR == 2, "these are the numbers of major version 2");
-_Static_assert(OWS_JOURNAL == 256 && OWS_GIVERS == 128 && OWS_SHELVES == 64, "published");
+_Static_assert(OWS_JOURNAL == 256 && OWS_CONTROLLERS == 128 && OWS_SHELVES == 64, "published");
 _Static_assert(OWS_PERSONS == 16 && OWS_NAME == 32, "published");
 _Static_assert(OWS_TEXT == 64, "published");
-_Static_assert(OWS_IMAGE_MAGIC == 0x4953574f && OWS_GIVER_MAGIC == 0x4753574f &&
+_Static_assert(OWS_IMAGE_MAGIC == 0x4953574f && OWS_CONTROLLER_MAGIC == 0x4753574f &&
                        OWS_HELLO_MAGIC == 0x4853574f && OWS_WELCOME_MAGIC == 0x5753574f,
                "published");
 _Static_assert(OWS_STATE_BUILDING == 0 && OWS_STATE_LIVE == 1 && OWS_STATE_RETIRED == 2 &&
@@ -259,7 +259,7 @@ _Static_assert(OWS_STATE_BUILDING == 0 && OWS_STATE_LIVE == 1 && OWS_STATE_RETIR
                "published");
 _Static_assert(OWS_AREA_RECORDS == 1 && OWS_AREA_INFOS == 2 && OWS_AREA_NAMES == 3 &&
                        OWS_AREA_TARGETS == 4 && OWS_AREA_COUNTERS == 5 && OWS_AREA_POOL == 6 &&
-                       OWS_AREA_TEXTS == 7 && OWS_AREA_ORIGINS == 8 && OWS_AREA_GIVERS == 9 &&
+                       OWS_AREA_TEXTS == 7 && OWS_AREA_ORIGINS == 8 && OWS_AREA_CONTROLLERS == 9 &&
                        OWS_AREA_SHELVES == 10 && OWS_AREA_ALARMS == 11 && OWS_AREA_COMMANDS == 12 &&
                        OWS_AREA_CHANGES == 13 && OWS_AREA_DEVICES == 14 && OWS_AREA_LOG == 15,
                "published");

@@ -68,7 +68,7 @@ struct image {
 	struct ows_target_entry *targets;
 	struct ows_counter_entry *counters;
 	struct ows_origin_entry *origins;
-	struct ows_giver_entry *givers;              /* OWS_GIVERS */
+	struct ows_controller_entry *controllers;    /* OWS_CONTROLLERS */
 	struct ows_shelf_entry *shelves;             /* OWS_SHELVES */
 	struct ows_journal_entry *alarms, *commands; /* OWS_JOURNAL each: the journals */
 	struct ows_change_entry *changes;
@@ -97,8 +97,9 @@ void image_counter(struct image *image, uint32_t counter, uint64_t total);
 /* Count the news word up; the caller wakes sleepers (segment_wake) when it has published enough. */
 void image_news(struct image *image);
 /*
- * Whether the engine looks for commands before it sleeps. Sequentially consistent: a giver that
- * saw the old word and rang no bell had marked its command before; the look that follows finds it.
+ * Whether the engine looks for commands before it sleeps. Sequentially consistent: a controller
+ * that saw the old word and rang no bell had marked its command before; the look that follows finds
+ * it.
  */
 void image_awake(struct image *image, bool awake);
 /* Set the state of the image; counts the news word up too. */

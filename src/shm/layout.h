@@ -3,7 +3,8 @@
  * The published layout of an instance, in the directory of owsd (docs/shared-memory.md):
  *
  *     NAME.image     one file: only owsd writes it, consumers map it read-only
- *     NAME.control   a socket: a program connects and becomes a giver. owsd hands each giver a
+ *     NAME.control   a socket: a program connects and becomes a controller. owsd hands each
+ *     controller a
  *                    memory of its own, sealed, in which it commands; owsd believes nothing it
  *                    finds there
  *
@@ -13,7 +14,7 @@
  *
  * History
  *   2.0  a directory of areas; metadata, raw values, origins of commands, changes, shelved alarms,
- *        a journal of commands; commands in a memory for each giver; devices; the log. 1.x had
+ *        a journal of commands; commands in a memory for each controller; devices; the log. 1.x had
  *        two segments in /dev/shm
  */
 #ifndef OWS_LAYOUT_H
@@ -28,7 +29,7 @@
 #define OWS_LAYOUT_MINOR 0
 
 #define OWS_IMAGE_MAGIC   0x4953574fu /* "OWSI" */
-#define OWS_GIVER_MAGIC   0x4753574fu /* "OWSG" */
+#define OWS_CONTROLLER_MAGIC   0x4753574fu /* "OWSG" */
 #define OWS_HELLO_MAGIC   0x4853574fu /* "OWSH" */
 #define OWS_WELCOME_MAGIC 0x5753574fu /* "OWSW" */
 
@@ -55,7 +56,7 @@ struct ows_sample { /* 48 bytes, 12 words */
 	uint32_t check;      /* ows_check() of the eleven words before */
 };
 #define OWS_SAMPLE_PENDING 0x01 /* commanded, not yet confirmed */
-#define OWS_SAMPLE_SAFE    0x02 /* the output was put to SafeValue: its giver is lost */
+#define OWS_SAMPLE_SAFE    0x02 /* the output was put to SafeValue: its controller is lost */
 
 /* What the attributes are made of; period numbers count from 0 at owsd's start and wrap. */
 struct ows_attrs { /* 80 bytes, 20 words */
@@ -174,7 +175,7 @@ struct ows_counter_entry { /* 64 bytes */
 	uint32_t low, high; /* of the 64-bit total; for display: they may be of different moments */
 };
 
-/* A giver, as owsd knows it: uid and pid are the kernel's word, the two names are claims. */
+/* A controller, as owsd knows it: uid and pid are the kernel's word, the two names are claims. */
 #define OWS_NAME 32 /* NUL-terminated, filled up with NUL */
 struct ows_who { /* 80 bytes */
 	uint32_t serial; /* each connection has another, from 1; 0: owsd itself */
@@ -186,9 +187,9 @@ struct ows_who { /* 80 bytes */
 };
 
 /*
- * Entries that change as a whole: origins, givers, shelves, journals, devices, log. Writer: seq + 1
- * (odd); release fence; the rest; seq + 1 (release). Reader: copy as long as seq is odd or changed;
- * 64 times at most. An owsd that was killed leaves at most one entry odd for good. check:
+ * Entries that change as a whole: origins, controllers, shelves, journals, devices, log. Writer:
+ * seq + 1 (odd); release fence; the rest; seq + 1 (release). Reader: copy as long as seq is odd or
+ * changed; 64 times at most. An owsd that was killed leaves at most one entry odd for good. check:
  * ows_check() of the words between seq and check.
  */
 
@@ -202,10 +203,10 @@ struct ows_origin_entry { /* 104 bytes */
 	uint32_t check;
 };
 
-/* A connected giver. */
-struct ows_giver_entry { /* 120 bytes */
+/* A connected controller. */
+struct ows_controller_entry { /* 120 bytes */
 	uint32_t seq;
-	uint32_t flags;      /* OWS_GIVER_ bits; 0: the entry is free */
+	uint32_t flags;      /* OWS_CONTROLLER_ bits; 0: the entry is free */
 	int64_t joined_ns;
 	struct ows_who who;
 	uint32_t period_ms;  /* promised longest time between two beats; 0: promised none */
@@ -214,10 +215,10 @@ struct ows_giver_entry { /* 120 bytes */
 	uint32_t spare[2];
 	uint32_t check;
 };
-#define OWS_GIVERS 128
-#define OWS_GIVER_CONNECTED 0x01
-#define OWS_GIVER_MAY_SET   0x02 /* ControlAllow lets it command some signal */
-#define OWS_GIVER_LATE      0x04 /* its beat is over time */
+#define OWS_CONTROLLERS 128
+#define OWS_CONTROLLER_CONNECTED 0x01
+#define OWS_CONTROLLER_MAY_SET   0x02 /* ControlAllow lets it command some signal */
+#define OWS_CONTROLLER_LATE      0x04 /* its beat is over time */
 
 /* A shelved limit alarm. */
 #define OWS_SHELVES 64
@@ -321,7 +322,7 @@ enum ows_area {
 	OWS_AREA_POOL = 6,     /* strings, each ended by NUL, and so the last byte */
 	OWS_AREA_TEXTS = 7,    /* of string signals */
 	OWS_AREA_ORIGINS = 8,
-	OWS_AREA_GIVERS = 9,
+	OWS_AREA_CONTROLLERS = 9,
 	OWS_AREA_SHELVES = 10,
 	OWS_AREA_ALARMS = 11,   /* journal of alarms */
 	OWS_AREA_COMMANDS = 12, /* journal of commands */
@@ -357,13 +358,14 @@ struct ows_image_header { /* 256 bytes: four lines of 64 */
 	uint32_t spare2[15];
 };
 
-/* --- Commands: the memory of one giver --- */
+/* --- Commands: the memory of one controller --- */
 
-/* A giver's commands for one record; slot i belongs to record i. Slot 0: driver _DGNRESET. */
+/* A controller's commands for one record; slot i belongs to record i. Slot 0: driver _DGNRESET. */
 struct ows_command_slot { /* 64 bytes */
-	/* The giver writes: */
+	/* The controller writes: */
 	uint64_t value;        /* as ows_sample.value */
-	uint32_t stamp;        /* the giver counts its commands from 1; release, after the value */
+	/* the controller counts its commands from 1; release, after the value */
+	uint32_t stamp;
 	uint32_t person;       /* index + 1 in the persons; 0: for itself */
 	uint32_t read_enable;  /* 0 not commanded; else 4 * count + 1 off, + 2 on */
 	uint32_t write_enable; /* likewise */
@@ -371,14 +373,15 @@ struct ows_command_slot { /* 64 bytes */
 	uint32_t dgn_reset;    /* counts edges of _DGNRESET */
 	uint32_t acknowledged; /* counts acknowledgements of the limit alarm */
 	uint32_t spare0[3];
-	/* owsd writes, for this giver to read: */
+	/* owsd writes, for this controller to read: */
 	uint32_t taken;        /* stamp of the last command that owsd looked at */
 	uint32_t applied;      /* stamp of the last command confirmed on the bus */
 	int32_t err;           /* 0, or why the command of stamp taken was refused */
-	uint32_t allowed;      /* 1: this giver may command the signal */
+	uint32_t allowed;      /* 1: this controller may command the signal */
 };
 
-/* Strings: texts are whole if the check word is right; the giver stores them before the stamp. */
+/* Strings: texts are whole if the check word is right; the controller stores them before the
+ * stamp. */
 struct ows_command_text { /* 8 bytes, then text_cap bytes */
 	uint32_t len;
 	uint32_t check; /* ows_check_bytes() */
@@ -386,7 +389,7 @@ struct ows_command_text { /* 8 bytes, then text_cap bytes */
 
 /* Shelving of limit alarms: one request at a time. */
 struct ows_command_shelf { /* 96 bytes */
-	uint32_t count;   /* the giver: +1 (release) after the rest */
+	uint32_t count;   /* the controller: +1 (release) after the rest */
 	uint32_t record;
 	uint32_t seconds; /* 0: unshelve */
 	uint32_t person;  /* as in a slot */
@@ -397,7 +400,7 @@ struct ows_command_shelf { /* 96 bytes */
 };
 
 #define OWS_PERSONS 16
-struct ows_giver_header { /* 256 bytes */
+struct ows_controller_header { /* 256 bytes */
 	/* constant; owsd keeps a copy of its own and never reads these again */
 	uint32_t magic;
 	uint16_t major, minor;
@@ -415,11 +418,11 @@ struct ows_giver_header { /* 256 bytes */
 	uint32_t state;  /* enum ows_state: RETIRED: ows_reopen() gets the next memory */
 	uint32_t spare1[15];
 
-	/* the giver writes: */
+	/* the controller writes: */
 	uint32_t marked;    /* not 0: some dirty bit may be set; stored after the bits */
 	uint32_t beat;      /* counts */
 	uint32_t period_ms; /* promised longest time between two beats; 0: none */
-	uint32_t goodbye;   /* 1: the giver ends in order; its commands stay in force */
+	uint32_t goodbye;   /* 1: the controller ends in order; its commands stay in force */
 	uint32_t waits;     /* 1: write into the pipe of news at the next one */
 	uint32_t spare2[11];
 
@@ -431,19 +434,20 @@ struct ows_giver_header { /* 256 bytes */
  * one welcome. With err 0 three descriptors come along: the memory (a memfd sealed against
  * shrinking, growing and further seals), the bell (an eventfd) and the news (the end of a pipe that
  * is read). After a reload owsd sends another welcome, with the memory of the new generation alone.
- * The connection lasts as long as the giver.
+ * The connection lasts as long as the controller.
  *
- * A hello with OWS_HELLO_RELOAD makes no giver: it asks owsd to load its configuration again, which
- * root, owsd's user and the group owsd-config may. owsd answers with one welcome of size 0, without
- * descriptors, when it serves the configuration (err 0; its generation) or has refused it; in the
- * same message the reason follows in words, OWS_WHY bytes at most, without NUL. Then owsd hangs up.
+ * A hello with OWS_HELLO_RELOAD makes no controller: it asks owsd to load its configuration again,
+ * which root, owsd's user and the group owsd-config may. owsd answers with one welcome of size 0,
+ * without descriptors, when it serves the configuration (err 0; its generation) or has refused it;
+ * in the same message the reason follows in words, OWS_WHY bytes at most, without NUL. Then owsd
+ * hangs up.
  */
 struct ows_hello { /* 128 bytes */
 	uint32_t magic;
 	uint16_t major, minor;
 	uint32_t flags;      /* OWS_HELLO_ bits */
 	uint32_t spare0;
-	uint8_t token[16];   /* of the welcome before, when the giver comes back; else 0 */
+	uint8_t token[16];   /* of the welcome before, when the controller comes back; else 0 */
 	char name[OWS_NAME]; /* of the program, as it shall be shown */
 	uint32_t spare[16];
 };
@@ -458,7 +462,7 @@ struct ows_welcome { /* 64 bytes */
 	uint32_t serial;
 	uint32_t size;       /* of the memory; 0: the answer to a program that asked for a reload */
 	uint32_t spare0;
-	uint8_t token[16];   /* secret: who has it comes back as this giver */
+	uint8_t token[16];   /* secret: who has it comes back as this controller */
 	uint32_t spare[4];
 };
 #define OWS_WHY 240
@@ -507,7 +511,7 @@ OWS_STATIC_ASSERT(sizeof(struct ows_target_entry) == 128);
 OWS_STATIC_ASSERT(sizeof(struct ows_counter_entry) == 64);
 OWS_STATIC_ASSERT(sizeof(struct ows_who) == 80);
 OWS_STATIC_ASSERT(sizeof(struct ows_origin_entry) == 104);
-OWS_STATIC_ASSERT(sizeof(struct ows_giver_entry) == 120);
+OWS_STATIC_ASSERT(sizeof(struct ows_controller_entry) == 120);
 OWS_STATIC_ASSERT(sizeof(struct ows_shelf_entry) == 184);
 OWS_STATIC_ASSERT(sizeof(struct ows_device_entry) == 128);
 OWS_STATIC_ASSERT(sizeof(struct ows_log_entry) == 280);
@@ -520,9 +524,9 @@ OWS_STATIC_ASSERT(offsetof(struct ows_image_header, awake) == 192);
 OWS_STATIC_ASSERT(sizeof(struct ows_command_slot) == 64);
 OWS_STATIC_ASSERT(sizeof(struct ows_command_text) == 8);
 OWS_STATIC_ASSERT(sizeof(struct ows_command_shelf) == 96);
-OWS_STATIC_ASSERT(sizeof(struct ows_giver_header) == 256);
-OWS_STATIC_ASSERT(offsetof(struct ows_giver_header, state) == 64);
-OWS_STATIC_ASSERT(offsetof(struct ows_giver_header, marked) == 128);
+OWS_STATIC_ASSERT(sizeof(struct ows_controller_header) == 256);
+OWS_STATIC_ASSERT(offsetof(struct ows_controller_header, state) == 64);
+OWS_STATIC_ASSERT(offsetof(struct ows_controller_header, marked) == 128);
 OWS_STATIC_ASSERT(sizeof(struct ows_hello) == 128);
 OWS_STATIC_ASSERT(sizeof(struct ows_welcome) == 64);
 

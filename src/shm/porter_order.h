@@ -11,8 +11,8 @@ enum porter_lane {
 	PORTER_AWAY,   /* connections that end */
 	PORTER_IN,     /* welcomes */
 	PORTER_SERVED, /* clients of the served protocol that end */
-	PORTER_MEMORY, /* what givers had */
-	PORTER_NEWS,   /* sleepers of an image, pipes of givers */
+	PORTER_MEMORY, /* what controllers had */
+	PORTER_NEWS,   /* sleepers of an image, pipes of controllers */
 	PORTER_LANES,
 };
 

@@ -56,8 +56,8 @@ static inline bool reader_slot(const struct ows_record *record, struct ows_slot 
 }
 
 /*
- * Copy an entry of size bytes that changes as a whole: of the origins, givers, shelves, journals.
- * False: owsd died while it wrote this entry.
+ * Copy an entry of size bytes that changes as a whole: of the origins, controllers, shelves,
+ * journals. False: owsd died while it wrote this entry.
  */
 static inline bool reader_entry(const void *from, void *entry, size_t size)
 {

@@ -29,7 +29,7 @@ static struct {
 	struct segment segment;
 	struct image image;
 	struct config config;
-	struct giver_layout layout;
+	struct controller_layout layout;
 	struct control *control;
 	double values[MANY_MOST];
 	int64_t base_ms;
@@ -150,18 +150,18 @@ static void ring(void *ctx)
 
 static bool open_control(const uint8_t *types)
 {
-	const struct giver_plan plan = {.types = types,
-	                                .signal_count = many.count,
-	                                .text_cap = 64,
-	                                .generation = 1,
-	                                .start_id = 1};
+	const struct controller_plan plan = {.types = types,
+	                                     .signal_count = many.count,
+	                                     .text_cap = 64,
+	                                     .generation = 1,
+	                                     .start_id = 1};
 	struct control_setup setup = {.config = &many.config,
 	                              .directory = bench_place()->fd,
 	                              .instance = many.name,
 	                              .ring = ring};
 	char why[200];
 
-	if (giver_layout_make(&many.layout, &plan) ||
+	if (controller_layout_make(&many.layout, &plan) ||
 	    control_create(&setup, &many.control, why, sizeof(why)))
 		return false;
 	return control_start(many.control, &many.layout) == 0;
@@ -230,7 +230,7 @@ void many_close(void)
 	__atomic_store_n(&many.stop, true, __ATOMIC_RELAXED);
 	pthread_join(many.thread, NULL);
 	control_destroy(many.control);
-	giver_layout_free(&many.layout);
+	controller_layout_free(&many.layout);
 	segment_remove(bench_place(), many.name, SEGMENT_IMAGE);
 	segment_close(&many.segment);
 	sem_destroy(&many.bell);

@@ -14,7 +14,7 @@
 static void free_generation(struct generation *g)
 {
 	engine_destroy(g->engine);
-	giver_layout_free(&g->layout);
+	controller_layout_free(&g->layout);
 	config_free(g->config);
 	free(g->image_memory);
 	free(g);

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "src/engine/givers.h"
+#include "src/engine/controllers.h"
 #include "tests/endurance/program.h"
 #include "tests/endurance/world.h"
 #include "tests/unit/aid/giving.h"
@@ -19,14 +19,16 @@ static uint32_t serials;
 
 static void join(struct generation *g, unsigned i)
 {
-	struct engine_giver giver = {.who = {.uid = 1, .pid = 42}, .token = {(uint8_t)(i + 1)}};
+	struct engine_controller controller = {.who = {.uid = 1, .pid = 42},
+	                                       .token = {(uint8_t)(i + 1)}};
 
 	/* the serial stays over a reload */
-	giver.who.serial = before[i].memory.base ? giving_header(&before[i])->serial : ++serials;
-	snprintf(giver.who.name, sizeof(giver.who.name), "program%u", i);
-	giving_make(&programs[i], &g->layout, giver.who.serial);
-	giver.memory = programs[i].memory;
-	engine_giver_join(g->engine, i, &giver, station.now);
+	controller.who.serial = before[i].memory.base ? giving_header(&before[i])->serial
+	                                              : ++serials;
+	snprintf(controller.who.name, sizeof(controller.who.name), "program%u", i);
+	giving_make(&programs[i], &g->layout, controller.who.serial);
+	controller.memory = programs[i].memory;
+	engine_controller_join(g->engine, i, &controller, station.now);
 }
 
 void program_begin(void)
@@ -91,7 +93,7 @@ void program_dies(void)
 	giving_beat(&programs[BEATING], BEAT_MS);
 	station_run(station.now + FIELD_S);
 	if (!hangs) {
-		engine_giver_left(station.now_serving->engine, BEATING, station.now);
+		engine_controller_left(station.now_serving->engine, BEATING, station.now);
 		giving_free(&programs[BEATING]);
 	}
 	station_run(station.now + 2 * BEAT_MS / 1000 * FIELD_S);

@@ -11,7 +11,7 @@
 #include "src/config/config.h"
 #include "src/engine/adopt.h"
 #include "src/engine/engine.h"
-#include "src/shm/giver.h"
+#include "src/shm/controller.h"
 #include "tests/endurance/fiber.h"
 #include "tests/endurance/part.h"
 
@@ -54,7 +54,7 @@ struct generation {
 	struct station_bus *bus[STATION_PARTS];
 	unsigned port_count;
 	struct image image;
-	struct giver_layout layout;
+	struct controller_layout layout;
 	void *image_memory;
 	struct station_bus *ending[STATION_PARTS]; /* when it is over: buses that did not stay */
 	unsigned ending_count;

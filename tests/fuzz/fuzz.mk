@@ -19,7 +19,7 @@ REPLAYS      := $(FUZZ_TARGETS:%=$(B)/fuzz/replay_%)
 # What a target needs beside core.a, the functions of which it takes the place (__wrap_...), and
 # where its dictionary comes from: the words in quotes of these files
 FUZZ_WITH_owserver := fuzz/bus_host.o
-FUZZ_WITH_giver    := tests/unit/aid/giving.o $(patsubst %.c,%.o,$(wildcard tests/unit/aid/scene*.c))
+FUZZ_WITH_controller    := tests/unit/aid/giving.o $(patsubst %.c,%.o,$(wildcard tests/unit/aid/scene*.c))
 FUZZ_WITH_image    := fuzz/heap_instance.o fuzz/heap_map.o fuzz/heap_give.o
 FUZZ_WITH_serve    := fuzz/heap_instance.o fuzz/heap_map.o fuzz/heap_give.o
 FUZZ_WITH_w1       := fuzz/bus_host.o fuzz/sysfs.o

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The control socket, from both ends. The first byte says which: even, hostile programs connect to
- * the control room, and say, send and close what they like, while givers come and go and owsd
+ * the control room, and say, send and close what they like, while controllers come and go and owsd
  * reloads; odd, an owsd that sends any bytes and any descriptors welcomes libows. Nothing is read
  * or written outside of the memories, and no descriptor is left over.
  */
@@ -24,11 +24,11 @@
 
 static struct fuzz fuzz;
 static struct control *room;
-static struct giver_layout layouts[2];
+static struct controller_layout layouts[2];
 static unsigned generation;
 static int64_t now_ns;
 static int clients[CLIENTS]; /* -1: not connected */
-static unsigned inside;      /* givers that the engine has */
+static unsigned inside;      /* controllers that the engine has */
 
 static struct config_item items[SIGNALS];
 static struct config config = {.items = items, .item_count = SIGNALS};
@@ -58,20 +58,20 @@ static void ring(void *ctx)
 	(void)ctx;
 }
 
-static const struct giver_layout *make_layout(void)
+static const struct controller_layout *make_layout(void)
 {
 	static uint8_t types[SIGNALS];
-	const struct giver_plan plan = {.types = types,
-	                                .signal_count = SIGNALS,
-	                                .text_cap = 64,
-	                                .generation = generation + 1,
-	                                .start_id = generation + 1};
-	struct giver_layout *layout = &layouts[++generation % 2];
+	const struct controller_plan plan = {.types = types,
+	                                     .signal_count = SIGNALS,
+	                                     .text_cap = 64,
+	                                     .generation = generation + 1,
+	                                     .start_id = generation + 1};
+	struct controller_layout *layout = &layouts[++generation % 2];
 
 	for (unsigned i = 0; i < SIGNALS; i++)
 		types[i] = i % 7 ? OWS_BYTE : OWS_STRING;
-	giver_layout_free(layout);
-	TEST_ASSERT_EQUAL_INT(0, giver_layout_make(layout, &plan));
+	controller_layout_free(layout);
+	TEST_ASSERT_EQUAL_INT(0, controller_layout_make(layout, &plan));
 	return layout;
 }
 
@@ -90,28 +90,28 @@ static void turn_room(void)
 }
 
 /* Look at a memory as the engine does. */
-static void look_at(const struct giver_memory *memory)
+static void look_at(const struct controller_memory *memory)
 {
 	char text[65], name[OWS_NAME];
-	struct giver_command command;
-	struct giver_shelf shelf;
-	struct giver_beat beat;
+	struct controller_command command;
+	struct controller_shelf shelf;
+	struct controller_beat beat;
 	int from = 0;
 
-	giver_marked(memory);
-	for (int i = 0; i < 8 && (from = giver_next_dirty(memory, (uint32_t)from)) >= 0; i++) {
-		giver_load(memory, (uint32_t)from, &command);
+	controller_marked(memory);
+	for (int i = 0; i < 8 && (from = controller_next_dirty(memory, (uint32_t)from)) >= 0; i++) {
+		controller_load(memory, (uint32_t)from, &command);
 		TEST_ASSERT_TRUE(command.person <= OWS_PERSONS);
-		giver_person(memory, command.person, name);
+		controller_person(memory, command.person, name);
 		TEST_ASSERT_NOT_NULL(memchr(name, '\0', sizeof(name)));
-		if (memory->layout->places[from] != GIVER_NO_TEXT)
-			TEST_ASSERT_TRUE(giver_text(memory, (uint32_t)from, text) <= 64);
-		giver_taken(memory, (uint32_t)from, command.stamp, 0);
+		if (memory->layout->places[from] != CONTROLLER_NO_TEXT)
+			TEST_ASSERT_TRUE(controller_text(memory, (uint32_t)from, text) <= 64);
+		controller_taken(memory, (uint32_t)from, command.stamp, 0);
 	}
-	giver_shelf(memory, &shelf);
+	controller_shelf(memory, &shelf);
 	TEST_ASSERT_TRUE(shelf.record <= SIGNALS);
-	giver_shelf_done(memory, shelf.count, 0);
-	giver_beat(memory, &beat);
+	controller_shelf_done(memory, shelf.count, 0);
+	controller_beat(memory, &beat);
 }
 
 static void turn_engine(unsigned most)
@@ -127,7 +127,7 @@ static void turn_engine(unsigned most)
 		inside += turn.joins ? 1u : -1u;
 		control_done(room, &turn);
 	}
-	for (unsigned i = 0; i < OWS_GIVERS; i++)
+	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
 		if (room->engine.memories[i].base)
 			look_at(&room->engine.memories[i]);
 }
@@ -140,7 +140,7 @@ static void reload(void)
 	control_asked(room);
 	control_take_askers(room);
 	control_prepare(room, &config, make_layout());
-	turn_engine(OWS_GIVERS + 1);
+	turn_engine(OWS_CONTROLLERS + 1);
 	for (; control_prepared(room, &place, &turn); prepared++)
 		TEST_ASSERT_EQUAL_PTR(&layouts[generation % 2], turn.memory.layout);
 	TEST_ASSERT_TRUE(prepared <= inside);
@@ -152,7 +152,7 @@ static void check_room(void)
 {
 	unsigned connections = 0;
 
-	for (unsigned i = 0; i < OWS_GIVERS; i++)
+	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
 		connections += room->places[i].state != CONTROL_FREE;
 	TEST_ASSERT_EQUAL_UINT(connections,
 	                       (unsigned)bus_counted(&room->counters[CONTROL_connections]));
@@ -226,7 +226,7 @@ static void say_hello(int to, uint8_t how)
 	send_with(to, &hello, sizeof(hello), fds, how & 2 ? 2 : 0);
 }
 
-/* A giver writes anything anywhere. */
+/* A controller writes anything anywhere. */
 static void scribble(int memory, size_t size)
 {
 	char *base = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, memory, 0);
@@ -353,15 +353,15 @@ static void crowd(void)
 		close_client(&clients[i]);
 	for (int i = 0; i < 3; i++) {
 		turn_room();
-		turn_engine(OWS_GIVERS);
+		turn_engine(OWS_CONTROLLERS);
 	}
 	turn_room();
 	TEST_ASSERT_EQUAL_UINT(0, inside);
 	TEST_ASSERT_EQUAL_UINT64(0, bus_counted(&room->counters[CONTROL_connections]));
 	control_stop(room);
 	control_destroy(room);
-	giver_layout_free(&layouts[0]);
-	giver_layout_free(&layouts[1]);
+	controller_layout_free(&layouts[0]);
+	controller_layout_free(&layouts[1]);
 }
 
 /* --- A hostile owsd -------------------------------------------------------------------------- */
@@ -369,20 +369,20 @@ static void crowd(void)
 static int make_memory(uint8_t how, size_t size)
 {
 	int fd = memfd_create("fuzz", MFD_CLOEXEC | MFD_ALLOW_SEALING);
-	struct ows_giver_header h = {.magic = OWS_GIVER_MAGIC,
-	                             .major = OWS_LAYOUT_MAJOR,
-	                             .size = (uint32_t)size,
-	                             .slot_off = 256,
-	                             .slot_size = 64,
-	                             .slot_count = 3,
-	                             .text_off = 1280,
-	                             .text_cap = 64,
-	                             .place_off = 512,
-	                             .dirty_off = 528,
-	                             .dirty_words = 1,
-	                             .person_off = 576,
-	                             .shelf_off = 1152,
-	                             .state = OWS_STATE_LIVE};
+	struct ows_controller_header h = {.magic = OWS_CONTROLLER_MAGIC,
+	                                  .major = OWS_LAYOUT_MAJOR,
+	                                  .size = (uint32_t)size,
+	                                  .slot_off = 256,
+	                                  .slot_size = 64,
+	                                  .slot_count = 3,
+	                                  .text_off = 1280,
+	                                  .text_cap = 64,
+	                                  .place_off = 512,
+	                                  .dirty_off = 528,
+	                                  .dirty_words = 1,
+	                                  .person_off = 576,
+	                                  .shelf_off = 1152,
+	                                  .state = OWS_STATE_LIVE};
 
 	TEST_ASSERT_TRUE(fd >= 0);
 	overlay(&h, sizeof(h));

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * libows on an image and a giver's memory that are damaged: before they are opened, and while they
- * are mapped. The input
+ * libows on an image and a controller's memory that are damaged: before they are opened, and while
+ * they are mapped. The input
  * is a list of patches and of calls. Nothing is read or written outside of the segments, and every
  * text ends.
  */
@@ -18,8 +18,8 @@
 static struct fuzz fuzz;
 static struct ows *h;
 static int64_t now_ns;
-static char *image, *giver;
-static size_t image_size_now, giver_size_now;
+static char *image, *controller;
+static size_t image_size_now, controller_size_now;
 
 size_t fuzz_memory(size_t n)
 {
@@ -100,8 +100,8 @@ static void keep_ends(void)
 
 static void damage(uint8_t what)
 {
-	char *base = what & 8 ? giver : image;
-	size_t size = what & 8 ? giver_size_now : image_size_now;
+	char *base = what & 8 ? controller : image;
+	size_t size = what & 8 ? controller_size_now : image_size_now;
 
 	if (what & 0x10)
 		patch(base, size);
@@ -132,7 +132,7 @@ static void look_around(void)
 	struct ows_daemon daemon;
 	struct ows_commanded command;
 	struct ows_alarm alarm;
-	struct ows_giver somebody;
+	struct ows_controller somebody;
 	struct ows_info info;
 	int count = ows_count(h);
 
@@ -165,7 +165,7 @@ static void look_around(void)
 		TEST_ASSERT_NOT_NULL(memchr(command.who.name, '\0', sizeof(command.who.name)));
 	}
 	for (int i = 0; i < 200; i++)
-		if (ows_giver(h, i, &somebody) == 0)
+		if (ows_controller(h, i, &somebody) == 0)
 			ended(somebody.who.name), ended(somebody.who.person);
 	ended(ows_served(h));
 	ows_daemon(h, now_ns, &daemon);
@@ -256,13 +256,13 @@ void fuzz_one(const uint8_t *bytes, size_t n)
 	h = NULL;
 	now_ns = HEAP_START;
 	image_size_now = heap.image_size;
-	giver_size_now = heap.giver_size;
+	controller_size_now = heap.controller_size;
 	if (mode & 2)
 		image_size_now = 256 + fuzz_word(&fuzz) % (heap.image_size - 255);
 	image = copy(heap.image_memory, image_size_now);
-	giver = copy(heap.giver_memory, giver_size_now);
+	controller = copy(heap.controller_memory, controller_size_now);
 	heap_image_file = (struct heap_file){image, image_size_now};
-	heap_giver_file = (struct heap_file){giver, giver_size_now};
+	heap_controller_file = (struct heap_file){controller, controller_size_now};
 	/* it says of itself what the file is */
 	((struct ows_image_header *)(void *)image)->size = (uint32_t)image_size_now;
 	for (int i = 0; i < (before & 7); i++)
@@ -275,5 +275,5 @@ void fuzz_one(const uint8_t *bytes, size_t n)
 		ows_close(h);
 	}
 	free(image);
-	free(giver);
+	free(controller);
 }

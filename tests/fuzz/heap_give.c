@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * libows' give.c and meet.c with the heap in the place of a sealed memory: a connection is always
- * there, and each welcome brings the memory that stands in heap_giver_file.
+ * there, and each welcome brings the memory that stands in heap_controller_file.
  */
 #include "tests/fuzz/heap_instance.h"
 
@@ -14,8 +14,8 @@
 #include "src/libows/join.h"
 #include "src/shm/place.h"
 
-struct heap_file heap_giver_file;
-enum { GIVER_FD = 1002 };
+struct heap_file heap_controller_file;
+enum { CONTROLLER_FD = 1002 };
 
 void join_none(struct join *join)
 {
@@ -34,9 +34,9 @@ int join_begin(struct join *join, int directory, const char *file, const char *p
 	(void)file;
 	(void)program;
 	(void)flags;
-	if (!heap_giver_file.base)
+	if (!heap_controller_file.base)
 		return -ENOENT;
-	join->connection = GIVER_FD;
+	join->connection = CONTROLLER_FD;
 	join->new = true;
 	return 0;
 }
@@ -54,9 +54,9 @@ int join_receive(struct join *join, int64_t until_ns, struct ows_welcome *welcom
 		.generation = heap.layout.generation,
 		.start_id = heap.layout.start_id,
 		.serial = 1,
-		.size = (uint32_t)heap_giver_file.size,
+		.size = (uint32_t)heap_controller_file.size,
 	};
-	*memory = GIVER_FD;
+	*memory = CONTROLLER_FD;
 	return 0;
 }
 
@@ -70,14 +70,14 @@ bool join_await(int connection, int64_t until_ns)
 
 static int heap_stat(struct stat *st)
 {
-	*st = (struct stat){.st_size = (off_t)heap_giver_file.size};
+	*st = (struct stat){.st_size = (off_t)heap_controller_file.size};
 	return 0;
 }
 
 #define fcntl(fd, what) ((void)(fd), F_SEAL_SEAL | F_SEAL_SHRINK | F_SEAL_GROW)
 #define fstat(fd, st) ((void)(fd), heap_stat(st))
 #define close(fd) ((void)(fd))
-#define mmap(at, size, prot, flags, fd, off) ((void *)heap_giver_file.base)
+#define mmap(at, size, prot, flags, fd, off) ((void *)heap_controller_file.base)
 #define munmap(at, size) ((void)(at))
 #include "src/libows/give.c"
 #undef mmap

@@ -17,7 +17,7 @@ const struct heap_signal heap_signals[HEAP_SIGNALS] = {
 };
 static const bool is_output[HEAP_SIGNALS] = {false, true, false, true, true, false};
 struct heap_instance heap;
-static char *image_then, *giver_then;
+static char *image_then, *controller_then;
 
 static char *zeroed(size_t size)
 {
@@ -72,12 +72,12 @@ static void make(void)
 	                           .start_ns = HEAP_START,
 	                           .period_ns = 100000000};
 	uint8_t types[HEAP_SIGNALS];
-	struct giver_plan plan = {.types = types,
-	                          .signal_count = HEAP_SIGNALS,
-	                          .text_cap = HEAP_TEXT,
-	                          .generation = 1,
-	                          .start_id = 7};
-	struct giver_memory giver = {.layout = &heap.layout};
+	struct controller_plan plan = {.types = types,
+	                               .signal_count = HEAP_SIGNALS,
+	                               .text_cap = HEAP_TEXT,
+	                               .generation = 1,
+	                               .start_id = 7};
+	struct controller_memory controller = {.layout = &heap.layout};
 	const struct ows_who who = {.serial = 1, .pid = 1, .name = "plc", .person = "Anna"};
 	struct ows_journal_entry command = {.record = 2, .kind = OWS_REASON_SET, .who = who};
 	struct ows_shelf_entry shelf = {.record = 1, .who = who, .why = "moved"};
@@ -97,16 +97,16 @@ static void make(void)
 			.text_cap = heap_signals[i].type == OWS_STRING ? HEAP_TEXT : 0};
 	}
 	heap.image_size = image_size(&image);
-	TEST_ASSERT_EQUAL_INT(0, giver_layout_make(&heap.layout, &plan));
-	heap.giver_size = heap.layout.size;
+	TEST_ASSERT_EQUAL_INT(0, controller_layout_make(&heap.layout, &plan));
+	heap.controller_size = heap.layout.size;
 	heap.image_memory = zeroed(heap.image_size);
-	heap.giver_memory = giver.base = zeroed(heap.giver_size);
+	heap.controller_memory = controller.base = zeroed(heap.controller_size);
 	image_build(&image, heap.image_memory, &heap.image);
-	giver_build(&giver, 1);
+	controller_build(&controller, 1);
 	for (unsigned i = 0; i <= HEAP_SIGNALS; i++)
-		giver_allow(&giver, i, true);
+		controller_allow(&controller, i, true);
 	image_state(&heap.image, OWS_STATE_LIVE);
-	giver_state(&giver, OWS_STATE_LIVE);
+	controller_state(&controller, OWS_STATE_LIVE);
 	heap_beat(HEAP_START);
 	for (unsigned i = 0; i < HEAP_SIGNALS; i++)
 		heap_put(i + 1,
@@ -120,7 +120,8 @@ static void make(void)
 	for (unsigned i = 0; i < 2; i++)
 		image_target(&heap.image, i, 1, i);
 	image_then = memcpy(zeroed(heap.image_size), heap.image_memory, heap.image_size);
-	giver_then = memcpy(zeroed(heap.giver_size), heap.giver_memory, heap.giver_size);
+	controller_then = memcpy(zeroed(heap.controller_size), heap.controller_memory,
+	                         heap.controller_size);
 }
 
 void heap_instance_reset(void)
@@ -129,7 +130,7 @@ void heap_instance_reset(void)
 	if (!image_then)
 		make();
 	memcpy(heap.image_memory, image_then, heap.image_size);
-	memcpy(heap.giver_memory, giver_then, heap.giver_size);
+	memcpy(heap.controller_memory, controller_then, heap.controller_size);
 	heap_image_file = (struct heap_file){heap.image_memory, heap.image_size};
-	heap_giver_file = (struct heap_file){heap.giver_memory, heap.giver_size};
+	heap_controller_file = (struct heap_file){heap.controller_memory, heap.controller_size};
 }

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * An instance of owsd whose image lies on the heap, and the memory of its giver, each exactly as
- * long as it says; and libows' way to both: ows_open() maps what stands in the files here, whatever
- * the name.
+ * An instance of owsd whose image lies on the heap, and the memory of its controller, each exactly
+ * as long as it says; and libows' way to both: ows_open() maps what stands in the files here,
+ * whatever the name.
  */
 #ifndef TESTS_FUZZ_HEAP_INSTANCE_H
 #define TESTS_FUZZ_HEAP_INSTANCE_H
 
-#include "src/shm/giver.h"
+#include "src/shm/controller.h"
 #include "src/shm/image.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -16,7 +16,7 @@ struct heap_file {
 	char *base;
 	size_t size;
 };
-extern struct heap_file heap_image_file, heap_giver_file;
+extern struct heap_file heap_image_file, heap_controller_file;
 
 #define HEAP_TEXT 64
 #define HEAP_START (INT64_C(1000) * 1000000000)
@@ -30,9 +30,9 @@ extern const struct heap_signal {
 
 struct heap_instance {
 	struct image image;
-	struct giver_layout layout;
-	char *image_memory, *giver_memory;
-	size_t image_size, giver_size;
+	struct controller_layout layout;
+	char *image_memory, *controller_memory;
+	size_t image_size, controller_size;
 };
 extern struct heap_instance heap;
 

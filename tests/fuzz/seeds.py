@@ -135,7 +135,7 @@ def serve():
         ask(GET, "/settings/return_codes/text.210") + ask(0xb, 0) + drain)
 
 
-def giver():
+def controller():
     def number(item, value):
         return bytes([item << 4 | 1]) + struct.pack("<qB", value, 0)
 
@@ -148,20 +148,20 @@ def giver():
     def overlay(off, content):
         return b"\0" + struct.pack("<IB", off, len(content)) + content
     step, second = b"\x16", b"\x26"
-    put("giver", "numbers", b"\0" + number(2, 9) + step + number(2, 256) + number(3, 1) + step +
+    put("controller", "numbers", b"\0" + number(2, 9) + step + number(2, 256) + number(3, 1) + step +
         real(6, 21) + number(6, 0x7ff8 << 48) + number(8, -40000) + second + number(9, 1 << 33) +
         second)
-    put("giver", "texts", b"\1" + text(4, b"boiler") + step + text(4, b"", 1) + step +
+    put("controller", "texts", b"\1" + text(4, b"boiler") + step + text(4, b"", 1) + step +
         text(5, b"a\0b", 3) + second + text(4, b"longer", 1) + second + second)
-    put("giver", "flags", b"\0" + b"\x03\x01" + number(1, 5) + b"\x13\x08" + second + b"\x23\x10" +
+    put("controller", "flags", b"\0" + b"\x03\x01" + number(1, 5) + b"\x13\x08" + second + b"\x23\x10" +
         b"\x03\x62" + second + b"\xa3\x20" + second)
-    put("giver", "beats", b"\0" + b"\x0c\5" + b"\x21" + struct.pack("<qB", 3, 1) + second +
+    put("controller", "beats", b"\0" + b"\x0c\5" + b"\x21" + struct.pack("<qB", 3, 1) + second +
         b"\x0c\5" + second + second + b"\x04\0" + second)
-    put("giver", "header", b"\0" + overlay(0, b"\xff" * 64) + step + overlay(240, b"\xff" * 64) +
+    put("controller", "header", b"\0" + overlay(0, b"\xff" * 64) + step + overlay(240, b"\xff" * 64) +
         second + b"\x07\3why\1\x3c\0\0\0" + second)
-    put("giver", "bus", b"\4" + number(2, 7) + b"\x25\1" + second + b"\x25\4" + number(2, 8) +
+    put("controller", "bus", b"\4" + number(2, 7) + b"\x25\1" + second + b"\x25\4" + number(2, 8) +
         second + b"\x0f" + number(3, 1) + b"\x17" + second)
-    put("giver", "again", b"\1" + number(2, 7) + text(4, b"x") + step + b"\x0c" + step + b"\x14" + step)
+    put("controller", "again", b"\1" + number(2, 7) + text(4, b"x") + step + b"\x0c" + step + b"\x14" + step)
 
 
 def control():
@@ -386,6 +386,6 @@ def web():
 
 
 if __name__ == "__main__":
-    for target in (rio, owserver, serve, giver, control, image, w1, netlink, scenario, owsctl,
+    for target in (rio, owserver, serve, controller, control, image, w1, netlink, scenario, owsctl,
                    values, web, writer):
         target()

@@ -71,7 +71,7 @@ static const struct {
 	{"image_awake", "seq_cst fence to acq_rel", "the fence of bells_close_eyes() does it too"},
 	{"image_awake", "seq_cst fence taken away", "the fence of bells_close_eyes() does it too"},
 	{"news_due", "release to relaxed", "the fence of control_news() stands before it"},
-	{"giver_state", "seq_cst without release", "the fence behind it does it too"},
+	{"controller_state", "seq_cst without release", "the fence behind it does it too"},
 	{"ows_acknowledge", "release to relaxed", "the mark after it does it too"},
 	{"look", "acquire to relaxed", "handle_state() loads it again"},
 	{"ows_shelve", "acquire to relaxed", "no store comes before a load here"},

@@ -23,7 +23,7 @@ hammer-arm64:
 
 # The same sources, with each access to shared memory a step of the model: within a minute
 MODEL     := $(wildcard tests/model/*.c)
-MODEL_CODE := src/shm/image.c src/shm/entries.c src/shm/reader.c src/shm/giver.c src/host/bells.c \
+MODEL_CODE := src/shm/image.c src/shm/entries.c src/shm/reader.c src/shm/controller.c src/host/bells.c \
              src/control/control.c src/control/news.c src/libows/alive.c src/libows/changes.c src/libows/get.c \
              src/libows/set.c src/libows/give.c src/libows/command.c src/libows/wait.c \
              src/libows/news.c src/libows/alarm.c src/libows/origin.c

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Givers command, owsd takes: the code of src/libows/set.c and command.c, of src/shm/giver.c, and
- * the sleep of src/host/engine_thread.c and bells.c.
+ * Controllers command, owsd takes: the code of src/libows/set.c and command.c, of
+ * src/shm/controller.c, and the sleep of src/host/engine_thread.c and bells.c.
  */
 #include "src/host/engine_thread.c"
 
@@ -18,12 +18,12 @@
 #define STRING 2
 #define RECORDS 3
 #define TEXT 8
-#define GIVERS 2
+#define CONTROLLERS 2
 
-static _Alignas(64) char memories[GIVERS][4096], next_memory[4096];
-static struct giver_layout layout;
-static struct giver_memory givers[GIVERS], next;
-static struct ows handles[GIVERS];
+static _Alignas(64) char memories[CONTROLLERS][4096], next_memory[4096];
+static struct controller_layout layout;
+static struct controller_memory controllers[CONTROLLERS], next;
+static struct ows handles[CONTROLLERS];
 static struct ows_memory attributes[1];
 static struct ows_id ids[2];
 static struct ows_record records[RECORDS];
@@ -37,12 +37,12 @@ static uint32_t rings, news_rings, due_rings, message;
 
 /* What the threads found out; put aside and back with them. */
 static struct {
-	struct giver_command got[GIVERS]; /* by owsd, last */
+	struct controller_command got[CONTROLLERS]; /* by owsd, last */
 	char text[TEXT + 1];
 	bool text_got;
-	int err[GIVERS]; /* of the programs' calls */
+	int err[CONTROLLERS]; /* of the programs' calls */
 	uint32_t acknowledged, message, shelf;
-	/* of the bells, by the engine's thread, by a giver, by the thread of news */
+	/* of the bells, by the engine's thread, by a controller, by the thread of news */
 	uint32_t heard, heard_news, heard_due;
 	int64_t now_ns; /* the clock; it goes on when somebody naps */
 } found;
@@ -75,9 +75,9 @@ static const char *text_of(unsigned n)
 	return n == 0 ? "1111" : "222";
 }
 
-static struct ows_giver_header *header_of(unsigned giver)
+static struct ows_controller_header *header_of(unsigned controller)
 {
-	return (void *)memories[giver];
+	return (void *)memories[controller];
 }
 
 static struct ows_command_slot *slot_of(char *memory, uint32_t record)
@@ -88,20 +88,21 @@ static struct ows_command_slot *slot_of(char *memory, uint32_t record)
 static void make_layout(void)
 {
 	static const uint8_t types[] = {OWS_LARGE, OWS_STRING};
-	static const struct giver_plan plan = {.types = types, .signal_count = 2, .text_cap = TEXT};
+	static const struct controller_plan plan = {
+		.types = types, .signal_count = 2, .text_cap = TEXT};
 
-	if (!layout.size && (giver_layout_make(&layout, &plan) || layout.size > 4096))
+	if (!layout.size && (controller_layout_make(&layout, &plan) || layout.size > 4096))
 		abort();
 }
 
-static void make_memory(char *where, struct giver_memory *made, uint32_t serial)
+static void make_memory(char *where, struct controller_memory *made, uint32_t serial)
 {
 	memset(where, 0, 4096);
-	*made = (struct giver_memory){where, &layout};
-	giver_build(made, serial);
-	giver_allow(made, NUMBER, true);
-	giver_allow(made, STRING, true);
-	giver_state(made, OWS_STATE_LIVE);
+	*made = (struct controller_memory){where, &layout};
+	controller_build(made, serial);
+	controller_allow(made, NUMBER, true);
+	controller_allow(made, STRING, true);
+	controller_state(made, OWS_STATE_LIVE);
 }
 
 static void make_handle(unsigned i)
@@ -148,11 +149,11 @@ static void setup(void)
 	ids[0] = (struct ows_id){.record = NUMBER, .attribute = ATTR_VALUE};
 	ids[1] = (struct ows_id){.record = STRING, .attribute = ATTR_VALUE};
 	memset(&engine, 0, sizeof(engine));
-	for (unsigned i = 0; i < GIVERS; i++) {
-		make_memory(memories[i], &givers[i], i + 1);
+	for (unsigned i = 0; i < CONTROLLERS; i++) {
+		make_memory(memories[i], &controllers[i], i + 1);
 		make_handle(i);
-		engine.givers[i].is = GIVER_CONNECTED;
-		engine.givers[i].as.memory = givers[i];
+		engine.controllers[i].is = CONTROLLER_CONNECTED;
+		engine.controllers[i].as.memory = controllers[i];
 		engine.place_end = i + 1;
 	}
 	serving.engine = &engine;
@@ -166,10 +167,11 @@ static void setup(void)
 	explore_track("rings", &rings, 4);
 }
 
-static void track_marks(unsigned giver)
+static void track_marks(unsigned controller)
 {
-	explore_track(giver ? "dirty 1" : "dirty", give_dirty(&handles[giver].give, 0), 4);
-	explore_track(giver ? "marked 1" : "marked", &header_of(giver)->marked, 4);
+	explore_track(controller ? "dirty 1" : "dirty", give_dirty(&handles[controller].give, 0),
+	              4);
+	explore_track(controller ? "marked 1" : "marked", &header_of(controller)->marked, 4);
 }
 
 static void setup_number(void)
@@ -184,7 +186,7 @@ static void setup_number(void)
 	track_marks(0);
 }
 
-static void setup_givers(void)
+static void setup_controllers(void)
 {
 	setup();
 	explore_track("awake", &header.awake, 4);
@@ -206,31 +208,32 @@ static void setup_text(void)
 	track_marks(0);
 }
 
-/* --- Givers ----------------------------------------------------------------------------------- */
+/* --- Controllers
+ * ----------------------------------------------------------------------------------- */
 
-static void set_number(unsigned giver, unsigned n)
+static void set_number(unsigned controller, unsigned n)
 {
-	found.err[giver] = ows_set_integer(&handles[giver], 0, number_of(n), NULL);
+	found.err[controller] = ows_set_integer(&handles[controller], 0, number_of(n), NULL);
 }
 
-static void giver_0(void)
+static void controller_0(void)
 {
 	set_number(0, 0);
 }
 
-static void giver_1(void)
+static void controller_1(void)
 {
 	set_number(1, 0);
 }
 
-static void giver_twice(void)
+static void controller_twice(void)
 {
 	set_number(0, 0);
 	explore_forget(1);
 	set_number(0, 1);
 }
 
-static void giver_texts(void)
+static void controller_texts(void)
 {
 	found.err[0] = ows_set_text(&handles[0], 1, text_of(0), NULL);
 	explore_forget(1);
@@ -244,19 +247,19 @@ static void nobody(void)
 /* --- owsd ------------------------------------------------------------------------------------- */
 
 /* As a look of src/engine/intake.c: the mark, the slots, their contents. */
-static bool is_marked(unsigned giver, uint32_t record)
+static bool is_marked(unsigned controller, uint32_t record)
 {
-	giver_marked(&givers[giver]);
-	return giver_next_dirty(&givers[giver], 0) == (int)record;
+	controller_marked(&controllers[controller]);
+	return controller_next_dirty(&controllers[controller], 0) == (int)record;
 }
 
-static void look_at_number(unsigned giver)
+static void look_at_number(unsigned controller)
 {
-	struct giver_command *got = &found.got[giver];
+	struct controller_command *got = &found.got[controller];
 
-	if (!is_marked(giver, NUMBER))
+	if (!is_marked(controller, NUMBER))
 		return;
-	giver_load(&givers[giver], NUMBER, got);
+	controller_load(&controllers[controller], NUMBER, got);
 	if (got->value != 0 && got->value != number_of(0) && got->value != number_of(1))
 		explore_fail("value %#llx, which nobody set", (unsigned long long)got->value);
 	if (got->stamp > 0 && got->value < number_of(got->stamp - 1))
@@ -270,7 +273,7 @@ static void look_at_one(void)
 
 static void look_at_both(void)
 {
-	for (unsigned i = 0; i < GIVERS; i++) {
+	for (unsigned i = 0; i < CONTROLLERS; i++) {
 		found.got[i].fresh |= is_marked(i, NUMBER);
 		explore_forget(i);
 	}
@@ -282,8 +285,8 @@ static void look_at_text(void)
 
 	if (!is_marked(0, STRING))
 		return;
-	giver_load(&givers[0], STRING, &found.got[0]);
-	len = giver_text(&givers[0], STRING, found.text);
+	controller_load(&controllers[0], STRING, &found.got[0]);
+	len = controller_text(&controllers[0], STRING, found.text);
 	found.text_got = len >= 0;
 	if (len < 0)
 		memset(found.text, 0, sizeof(found.text));
@@ -334,9 +337,9 @@ static void number_taken(void)
 
 static void both_taken(void)
 {
-	for (unsigned i = 0; i < GIVERS; i++)
+	for (unsigned i = 0; i < CONTROLLERS; i++)
 		if (found.err[i] || !found.got[i].fresh)
-			explore_fail("owsd sleeps on the set of giver %u", i);
+			explore_fail("owsd sleeps on the set of controller %u", i);
 }
 
 static void text_taken(void)
@@ -365,15 +368,15 @@ static void reload(void)
 {
 	static const uint32_t rows[] = {NUMBER - 1, STRING - 1};
 
-	giver_state(&givers[0], OWS_STATE_RETIRED);
+	controller_state(&controllers[0], OWS_STATE_RETIRED);
 	look_at_one();
 	if (found.got[0].stamp)
-		giver_taken(&givers[0], NUMBER, found.got[0].stamp, 0);
+		controller_taken(&controllers[0], NUMBER, found.got[0].stamp, 0);
 	explore_forget(0);
-	giver_copy(&next, &givers[0], rows);
+	controller_copy(&next, &controllers[0], rows);
 }
 
-/* If the giver was told that all is well, owsd has taken it, and the next memory has it. */
+/* If the controller was told that all is well, owsd has taken it, and the next memory has it. */
 static void carried(void)
 {
 	const struct ows_command_slot *slot = slot_of(next_memory, NUMBER);
@@ -403,7 +406,7 @@ static void setup_acknowledgement(void)
 	explore_keep(slot->spare0, sizeof(slot->spare0));
 }
 
-static void giver_acknowledges(void)
+static void controller_acknowledges(void)
 {
 	handles[0].person = 3;
 	ows_acknowledge(&handles[0], 0);
@@ -411,11 +414,11 @@ static void giver_acknowledges(void)
 
 static void look_for_acknowledgement(void)
 {
-	struct giver_command c;
+	struct controller_command c;
 
 	if (!is_marked(0, NUMBER))
 		return;
-	giver_load(&givers[0], NUMBER, &c);
+	controller_load(&controllers[0], NUMBER, &c);
 	found.acknowledged += c.acknowledged;
 }
 
@@ -437,7 +440,7 @@ static void setup_beat(void)
 	explore_track("period", &header_of(0)->period_ms, 4);
 }
 
-static void giver_beats(void)
+static void controller_beats(void)
 {
 	if (ows_beat(&handles[0], 500))
 		explore_fail("a beat failed");
@@ -445,9 +448,9 @@ static void giver_beats(void)
 
 static void hear_beat(void)
 {
-	struct giver_beat beat;
+	struct controller_beat beat;
 
-	giver_beat(&givers[0], &beat);
+	controller_beat(&controllers[0], &beat);
 	if (beat.beat != 0 && beat.period_ms != 500)
 		explore_fail("a beat before its promise");
 }
@@ -467,7 +470,7 @@ static void setup_shelf(void)
 	explore_track("err", &shelf->err, 4);
 }
 
-static void giver_shelves(void)
+static void controller_shelves(void)
 {
 	int err = ows_shelve(&handles[0], 0, 60, "why");
 
@@ -477,15 +480,15 @@ static void giver_shelves(void)
 
 static void look_at_shelf(void)
 {
-	struct giver_shelf shelf;
+	struct controller_shelf shelf;
 
-	giver_marked(&givers[0]);
-	if (!giver_shelf(&givers[0], &shelf))
+	controller_marked(&controllers[0]);
+	if (!controller_shelf(&controllers[0], &shelf))
 		return;
 	if (shelf.seconds != 60 || strcmp(shelf.why, "why") != 0)
 		explore_fail("a request before its words");
 	found.shelf = shelf.count;
-	giver_shelf_done(&givers[0], shelf.count, -ENOSPC);
+	controller_shelf_done(&controllers[0], shelf.count, -ENOSPC);
 }
 
 static void engine_shelves(void)
@@ -535,14 +538,15 @@ static void message_taken(void)
 		explore_fail("asleep on message %u of 2", found.message);
 }
 
-/* --- News for a giver, and for a reader ------------------------------------------------------ */
+/* --- News for a controller, and for a reader
+ * ------------------------------------------------------ */
 
 static uint32_t last_message;
 
 static void setup_news(void)
 {
 	setup();
-	last_message = 1; /* with two the giver makes ten million states */
+	last_message = 1; /* with two the controller makes ten million states */
 	explore_track("message", &message, 4);
 	explore_track("news", &header.news, 4);
 	explore_track("waits", &header_of(0)->waits, 4);
@@ -550,7 +554,7 @@ static void setup_news(void)
 	explore_track("due rings", &due_rings, 4);
 	handles[0].join.news = ACCESS_NEWS;
 	memset(&control, 0, sizeof(control));
-	control.engine.memories[0] = givers[0];
+	control.engine.memories[0] = controllers[0];
 	control.engine.end = 1;
 	control.places[0].news = ACCESS_NEWS;
 	news_begin(&control.places[0]);
@@ -610,21 +614,21 @@ static void last_message_taken(void)
 
 /* clang-format off */
 const struct scenario command_scenarios[] = {
-	{"a giver sets twice, owsd sleeps between", setup_number, 2, {engine_one, giver_twice},
+	{"a controller sets twice, owsd sleeps between", setup_number, 2, {engine_one, controller_twice},
 	 .end = number_taken},
-	{"two givers set", setup_givers, 3, {engine_both, giver_0, giver_1}, .end = both_taken},
-	{"a giver killed while it sets", setup_number, 2, {engine_one, giver_twice},
+	{"two controllers set", setup_controllers, 3, {engine_both, controller_0, controller_1}, .end = both_taken},
+	{"a controller killed while it sets", setup_number, 2, {engine_one, controller_twice},
 	 {NULL, nobody}, NULL},
-	{"a giver sets a text twice", setup_text, 2, {engine_text, giver_texts}, .end = text_taken},
-	{"a set while owsd reloads", setup_reload, 2, {reload, giver_0}, .end = carried},
-	{"an acknowledgement", setup_acknowledgement, 2, {engine_acknowledged, giver_acknowledges},
+	{"a controller sets a text twice", setup_text, 2, {engine_text, controller_texts}, .end = text_taken},
+	{"a set while owsd reloads", setup_reload, 2, {reload, controller_0}, .end = carried},
+	{"an acknowledgement", setup_acknowledgement, 2, {engine_acknowledged, controller_acknowledges},
 	 .end = acknowledged_once},
-	{"a beat and its promise", setup_beat, 2, {hear_beat, giver_beats}, .end = NULL},
-	{"a request to shelve, and its answer", setup_shelf, 2, {engine_shelves, giver_shelves},
+	{"a beat and its promise", setup_beat, 2, {hear_beat, controller_beats}, .end = NULL},
+	{"a request to shelve, and its answer", setup_shelf, 2, {engine_shelves, controller_shelves},
 	 .end = shelved},
 	{"a thread of owsd wakes the engine's", setup_own, 2, {engine_own, worker},
 	 .end = message_taken},
-	{"a giver waits for news", setup_news, 3,
+	{"a controller waits for news", setup_news, 3,
 	 {engine_publishes, program_waits_for_news, thread_rings}, .end = last_message_taken},
 	{"a reader waits for news", setup_news_read, 3,
 	 {engine_publishes, program_waits_for_news, thread_rings}, .end = last_message_taken},

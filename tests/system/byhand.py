@@ -14,7 +14,7 @@ SLOT_OFF, DIRTY_OFF, MARKED = 24, 48, 128
 STAMP, WRITE_ENABLE, ONE_SHOT = 2, 5, 6
 
 
-class Giver:
+class Controller:
     def __init__(self, name):
         self.door = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self.door.connect(str(owsdtest.segment(name, "control")))

@@ -103,11 +103,11 @@ def test_a_reload_takes_rights_away_and_gives_them(scene):
     asks = ("door, err, fds = hello(path)\nprint(err, set(fds, 2, 5, 1), flush=True)\n"
             "welcome, fds2, _, _ = socket.recv_fds(door, 64, 3)\n"
             "fds[0] = fds2[0]\nprint(len(fds2), set(fds, 2, 6, 2), flush=True)\n")
-    giver = program(scene, "plc", name, asks)
-    owsdtest.logged(giver, "0 0")
+    controller = program(scene, "plc", name, asks)
+    owsdtest.logged(controller, "0 0")
     daemon.config.write_text(allow(scene, "relays user:stranger"))
     daemon.signal(signal.SIGHUP)
-    owsdtest.logged(giver, "1 -13")
+    owsdtest.logged(controller, "1 -13")
     said = program(scene, "stranger", name, "door, err, fds = hello(path)\nprint(err, set(fds, 2, 7, 1))")
     assert said.wait() == 0 and said.log().strip() == "0 0", said.log()
 
@@ -255,32 +255,32 @@ def test_a_program_that_dies_is_lost_though_its_child_has_all_it_had(scene):
 
 
 def test_what_is_handed_on_carries_the_rights_of_who_connected(scene):
-    """A memory is as good as a key: whoever has its descriptor commands, and who does it is the giver."""
+    """A memory is as good as a key: whoever has its descriptor commands, and who does it is the controller."""
     name = daemon_of(scene).name
     good(scene, name)
-    giver = program(scene, "plc", name, "door, err, fds = hello(path)\n"
+    controller = program(scene, "plc", name, "door, err, fds = hello(path)\n"
                                         "if os.fork() == 0:\n    print(set(fds, 2, 9, 1), flush=True)\n"
                                         "    os._exit(0)\nos.wait()\nprint('done', flush=True)\ntime.sleep(60)")
-    owsdtest.logged(giver, "done")
-    assert giver.log().split() == ["0", "done"]
+    owsdtest.logged(controller, "done")
+    assert controller.log().split() == ["0", "done"]
     until(lambda: ctl(scene, "reader", name, "get", "relays").stdout.strip() == "9", 20)
-    assert f"{giver.pid}" in ctl(scene, "reader", name, "who").stdout
+    assert f"{controller.pid}" in ctl(scene, "reader", name, "who").stdout
 
 
-def test_a_hole_in_a_memory_harms_its_giver_alone(scene):
+def test_a_hole_in_a_memory_harms_its_controller_alone(scene):
     name = daemon_of(scene).name
     good(scene, name)
-    giver = program(scene, "plc", name, "import ctypes\ndoor, err, fds = hello(path)\nset(fds, 2, 1, 1)\n"
+    controller = program(scene, "plc", name, "import ctypes\ndoor, err, fds = hello(path)\nset(fds, 2, 1, 1)\n"
                                         "size = os.fstat(fds[0]).st_size\n"
                                         "libc = ctypes.CDLL(None, use_errno=True)\n"
                                         "libc.fallocate.argtypes = [ctypes.c_int] * 2 + [ctypes.c_long] * 2\n"
                                         "print(libc.fallocate(fds[0], 3, 0, size), flush=True)\n"
                                         "while True:\n    os.write(fds[1], struct.pack('<Q', 1))\n"
                                         "    time.sleep(0.01)  # pace")
-    owsdtest.logged(giver, "0")
+    owsdtest.logged(controller, "0")
     assert ctl(scene, "plc", name, "set", "-w", "20", "relays", "7").returncode == 0
     good(scene, name)
-    giver.kill()
+    controller.kill()
     until(lambda: connected(scene, name) == 0, 20)
 
 
@@ -294,12 +294,12 @@ def test_of_another_pid_namespace_the_user_counts_and_the_process_is_unknown(sce
     text = ("door, err, fds = hello(path)\nprint(err, set(fds, 2, 8, 1), flush=True)\n"
             f"while os.path.exists('{goes_on}'):\n    time.sleep(0.05)")  # pace
     inside = [*private.as_user("plc"), PY, "-c", CLIENT + text, door(name)]
-    giver = scene.start(["unshare", "--pid", "--fork", "--kill-child", *inside])
-    owsdtest.logged(giver, "0 0")
+    controller = scene.start(["unshare", "--pid", "--fork", "--kill-child", *inside])
+    owsdtest.logged(controller, "0 0")
     until(lambda: ctl(scene, "reader", name, "get", "relays").stdout.strip() == "8", 20)
     assert connected(scene, name) == 1
     os.unlink(goes_on)
-    assert giver.wait() == 0
+    assert controller.wait() == 0
     until(lambda: connected(scene, name) == 0, 20)
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """The control program in Rust, which was written from docs/shared-memory.md alone, commands as any
-other giver: its commands outlive a reload and a restart of owsd, and its death leaves SafeValue."""
+other controller: its commands outlive a reload and a restart of owsd, and its death leaves SafeValue."""
 
 import json
 import os
@@ -73,7 +73,7 @@ def who(scene, daemon):
     """The programs that are connected; why the command for relays is in force, and whose it is."""
     there = json.loads(scene.owsctl(daemon, "--json", "who", "relays").stdout)
     [output] = there["outputs"]
-    return ([giver["by"]["program"] for giver in there["givers"]], output["reason"],
+    return ([controller["by"]["program"] for controller in there["controllers"]], output["reason"],
             output["by"] and output["by"]["program"])
 
 

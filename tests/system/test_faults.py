@@ -190,16 +190,16 @@ def good_or_disabled(scene, daemon):
                for name, quality in zip(("room", "hall"), qualities(scene, daemon)))
 
 
-def test_rubbish_in_a_givers_memory_harms_nobody(scene):
+def test_rubbish_in_a_controllers_memory_harms_nobody(scene):
     seed = random.randrange(1 << 32)
     print("seed", seed)
     rng = random.Random(seed)
     with lying_peer() as server:
         daemon = scene.owsd(house(server))
         until(lambda: good(scene, daemon), 5)
-        with byhand.Giver(daemon.name) as giver:
+        with byhand.Controller(daemon.name) as controller:
             for _ in range(200):
-                giver.scribble(rng)
+                controller.scribble(rng)
                 time.sleep(0.005)  # rubbish comes at this pace
         assert daemon.running()
         # what rubbish can still command is what its type can hold
@@ -263,7 +263,7 @@ def test_a_file_system_that_fills_up_between_two_starts_loses_no_command_of_a_li
     file = scene.file("house.rio", owsdtest.rio(f"sim:{wire}", [
         dict(Name="relays", Path="/29.A0B1C2000004/PIO.BYTE", Type=raw("byte"), IO=raw("output")),
     ]))
-    giver = scene.file("giver.py", """
+    controller = scene.file("controller.py", """
 import time
 import ows
 
@@ -292,7 +292,7 @@ with opened() as s:
     script = scene.file("script", """
         mount -t tmpfs -o size=4m tmpfs /dev/shm || exit 77
         export OWS_DIR=/dev/shm/owsd
-        trap 'kill -9 $pid $giver 2>/dev/null' EXIT
+        trap 'kill -9 $pid $controller 2>/dev/null' EXIT
         trap 'exit 1' TERM
         start() {
             "$owsd" -n T -c "$1" >>log 2>&1 &
@@ -308,7 +308,7 @@ with opened() as s:
         }
         start "$1"
         python3 "$2" &
-        giver=$!
+        controller=$!
         reads_5
         kill -9 $pid
         wait $pid
@@ -330,7 +330,7 @@ with opened() as s:
     done = scene._run(["unshare", "-rm", "env", f"owsd={owsdtest.with_sim(owsdtest.OWSD, file)}",
                        f"owsctl={owsdtest.OWSCTL}",
                        f"PYTHONPATH={owsdtest.PYTHON}",
-                       "sh", script, file, giver], 200)
+                       "sh", script, file, controller], 200)
     if done.returncode == 77 or done.stderr.startswith("unshare"):
         owsdtest.skip("no user namespaces: " + done.stderr.strip())
     assert done.stdout == "full: status 1\n/dev/shm/owsd is full\nagain: 5\n", done

@@ -17,13 +17,13 @@ NAMES = "plain", "init", "safe", "both", "last", "last_safe"
 ALL = PLAIN, INIT, SAFE, BOTH, LAST, LAST_SAFE = [f"/29.00000000000{n}/PIO.0" for n in range(1, 7)]
 # Sets each output once, and beats when it promised to, until its fate: "once": it ends in order;
 # "stay": it lives; at a SIGUSR1 "crash": it dumps core; "fork": it dies, and its child lives on
-GIVER = """
+CONTROLLER = """
 import os, signal, sys, time
 import ows
 name, beats, fate = sys.argv[1], float(sys.argv[2]), sys.argv[3]
 told = []
 signal.signal(signal.SIGUSR1, lambda *_: told.append(1))
-s = ows.Ows(name, control=True, name="giver")
+s = ows.Ows(name, control=True, name="controller")
 if beats:
     s.beat(int(beats * 1000))
 for output in sys.argv[4:]:
@@ -92,7 +92,7 @@ def commands(data):
 
 
 class Plant:
-    """A peer, an owsd on it and the giver of a command that is in force."""
+    """A peer, an owsd on it and the controller of a command that is in force."""
 
     def __init__(self, scene, server, beats=0.0, fate="stay", **keys):
         self.scene, self.server = scene, server
@@ -104,12 +104,12 @@ class Plant:
         self.config = scene.file("plant.rio", owsdtest.rio(server.target, items, Period=0.02))
         self.environment = {"OWS_STATE_DIR": str(scene.path / "state")}
         self.daemon = scene.owsd(self.config, env=self.environment)
-        self.giver = scene.start([sys.executable, "-c", GIVER, self.daemon.name, str(beats), fate,
+        self.controller = scene.start([sys.executable, "-c", CONTROLLER, self.daemon.name, str(beats), fate,
                                   *NAMES], {"PYTHONPATH": str(owsdtest.PYTHON)})
-        owsdtest.until(lambda: "set" in self.giver.log(), 20, self.giver.log)
+        owsdtest.until(lambda: "set" in self.controller.log(), 20, self.controller.log)
         owsdtest.until(lambda: all(server[path] == "1" for path in ALL), 20, "all are on")
         if fate == "once":
-            assert self.giver.wait() == 0
+            assert self.controller.wait() == 0
 
     def stored(self):
         """The file of what Start "last" applies, from when both commands stand in it."""
@@ -146,7 +146,7 @@ class Plant:
 ENDS = "stopped", "killed"
 # Nobody comes back: InitValue once, else nothing; what was last
 ENDED = [(INIT, b"0"), (BOTH, b"0"), (LAST, b"1"), (LAST_SAFE, b"1")]
-# The giver is lost over a restart: `init` has no SafeValue, `plain` has nothing
+# The controller is lost over a restart: `init` has no SafeValue, `plain` has nothing
 LOST = [(INIT, b"0"), (SAFE, b"1"), (BOTH, b"1"), (LAST, b"1"), (LAST_SAFE, b"1")]
 
 
@@ -187,9 +187,9 @@ def test_the_command_of_a_living_program_that_beats_stays_in_force_and_initvalue
             plant = Plant(scene, server, beats=5.0)
             plant.again(ended)
             plant.writes([(path, b"1") for path in ALL], ended)
-            owsdtest.logged(plant.giver, "reopened")
-            assert plant.giver.running()
-            plant.giver.stop()
+            owsdtest.logged(plant.controller, "reopened")
+            assert plant.controller.running()
+            plant.controller.stop()
             assert plant.daemon.stop() == 0
 
 
@@ -213,7 +213,7 @@ def test_a_living_program_that_never_beats_counts_as_one_that_ended(scene):
         plant = Plant(scene, server)
         plant.again("stopped")
         plant.writes(ENDED, "it may set again, and does not")
-        assert plant.giver.running()
+        assert plant.controller.running()
 
 
 def loses(scene, ended, fate, beats):
@@ -221,7 +221,7 @@ def loses(scene, ended, fate, beats):
     with peer.Peer(values()) as server:
         plant = Plant(scene, server, beats=beats)
         before, begun = plant.daemon, time.monotonic()
-        getattr(plant.giver, fate)()
+        getattr(plant.controller, fate)()
         plant.again(ended)
         early = list(server.writes)
         in_time = time.monotonic() - begun < beats - 3
@@ -229,7 +229,7 @@ def loses(scene, ended, fate, beats):
             assert "SafeValue" not in before.log(), before.log()
             assert not early, (fate, "before the promise is over", early)
             plant.writes(LOST, f"{ended}, {fate}")
-        plant.giver.kill()
+        plant.controller.kill()
         assert plant.daemon.stop() == 0
         return in_time
 
@@ -243,11 +243,11 @@ def test_a_child_that_holds_the_socket_open_does_not_come_back_for_its_parent(sc
     for ended in ENDS:
         with peer.Peer(values()) as server:
             plant = Plant(scene, server, 8.0, "fork")
-            plant.giver.signal(signal.SIGUSR1)
-            assert plant.giver.wait() == 1
+            plant.controller.signal(signal.SIGUSR1)
+            assert plant.controller.wait() == 1
             plant.again(ended)
             plant.writes(LOST, ended)
-            end_child(plant.giver)
+            end_child(plant.controller)
             assert plant.daemon.stop() == 0
 
 
@@ -255,14 +255,14 @@ def test_safevalue_that_stands_stays_over_a_restart(scene):
     for ended in ENDS:
         with peer.Peer(values()) as server:
             plant = Plant(scene, server, beats=5.0)
-            plant.giver.kill()
+            plant.controller.kill()
             owsdtest.logged(plant.daemon, "to SafeValue")
             plant.again(ended)
             plant.writes(LOST, ended)
             assert plant.daemon.stop() == 0
 
 
-def test_a_superseded_command_does_not_come_back_with_its_giver(scene):
+def test_a_superseded_command_does_not_come_back_with_its_controller(scene):
     for ended in ENDS:
         with peer.Peer(values()) as server:
             plant = Plant(scene, server, beats=5.0)
@@ -271,8 +271,8 @@ def test_a_superseded_command_does_not_come_back_with_its_giver(scene):
             plant.again(ended)
             plant.writes([(INIT, b"0"), (BOTH, b"0"), (LAST, b"0"), (LAST_SAFE, b"0")],
                          "the last word was owsctl's, which ended")
-            owsdtest.logged(plant.giver, "reopened")
-            plant.giver.stop()
+            owsdtest.logged(plant.controller, "reopened")
+            plant.controller.stop()
             assert plant.daemon.stop() == 0
 
 
@@ -310,7 +310,7 @@ def test_a_damaged_memory_of_commands_is_logged_and_nothing_of_it_is_in_force(sc
 def test_after_a_reboot_an_output_has_initvalue_or_what_was_stored_last(scene):
     with peer.Peer(values()) as server:
         plant = Plant(scene, server, beats=5.0)
-        plant.giver.kill()
+        plant.controller.kill()
         plant.again("reboot")
         plant.writes(ENDED, "reboot")
 
@@ -347,8 +347,8 @@ def test_what_cannot_be_stored_is_written_and_never_applied(scene):
 
 # --- owsd runs -------------------------------------------------------------------------------------
 
-def end_child(giver):
-    for line in giver.log().splitlines():
+def end_child(controller):
+    for line in controller.log().splitlines():
         if line.startswith("child "):
             os.kill(int(line.split()[1]), signal.SIGKILL)
 
@@ -363,14 +363,14 @@ def test_a_program_that_dies_in_any_way_leaves_safevalue_when_its_time_is_over(s
             plant = Plant(scene, server, 2.0, fate)
             text = scene.owsctl(plant.daemon, "set", "-w", "10", "plain", "1")
             assert text.returncode == 0, text
-            lose(plant.giver)
+            lose(plant.controller)
             owsdtest.logged(plant.daemon, "3 outputs go to SafeValue")
             for name in NAMES:
                 whose = scene.owsctl(plant.daemon, "who", name).stdout
                 assert ("SafeValue" in whose) == (name in ("safe", "both", "last_safe")), whose
-                assert name == "plain" or "giver" in whose, whose
-            end_child(plant.giver)
-            plant.giver.thaw() if what == "hang" else None
+                assert name == "plain" or "controller" in whose, whose
+            end_child(plant.controller)
+            plant.controller.thaw() if what == "hang" else None
             assert plant.daemon.stop() == 0
 
 
@@ -378,7 +378,7 @@ def test_a_program_that_never_beat_leaves_its_outputs_as_they_are_however_it_end
     with peer.Peer(values()) as server:
         plant = Plant(scene, server)
         server.requests.clear()
-        plant.giver.kill()
+        plant.controller.kill()
         plant.writes([], "killed")
         assert "SafeValue" not in plant.daemon.log()
 
@@ -386,7 +386,7 @@ def test_a_program_that_never_beat_leaves_its_outputs_as_they_are_however_it_end
 def test_with_safe_delay_0_safevalue_follows_a_death_at_once(scene):
     with peer.Peer(values()) as server:
         plant = Plant(scene, server, 300.0, SafeDelay=owsdtest.raw("0"))
-        plant.giver.kill()
+        plant.controller.kill()
         owsdtest.logged(plant.daemon, "3 outputs go to SafeValue")
 
 
@@ -411,9 +411,9 @@ def test_a_reload_under_a_program_that_beats_leaves_its_commands_in_force(scene)
         plant.daemon.signal(1)
         owsdtest.logged(plant.daemon, "reload: 6 signals, 6 of them go on")
         plant.writes([], "nothing")
-        owsdtest.logged(plant.giver, "reopened")
+        owsdtest.logged(plant.controller, "reopened")
         assert "SafeValue" not in plant.daemon.log()
-        plant.giver.stop()
+        plant.controller.stop()
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ import ows  # of owsdtest.PYTHON
 HEADERS = [SOURCE / "src/libows/ows.h", SOURCE / "src/libhistory/ows_history.h"]
 # Structures of the headers that ows.py reads
 STRUCTURES = {"ows_by": ows._By, "ows_value": ows._Value, "ows_origin": ows._Origin,
-              "ows_giver": ows._Giver, "ows_cursor": ows._Cursor, "ows_info": ows._Info,
+              "ows_controller": ows._Controller, "ows_cursor": ows._Cursor, "ows_info": ows._Info,
               "ows_daemon": ows._Daemon, "ows_target": ows._Target, "ows_device": ows._Device,
               "ows_alarm": ows._Alarm, "ows_alarm_state": ows._AlarmState,
               "ows_commanded": ows._Commanded, "ows_history_signal": ows._Signal,

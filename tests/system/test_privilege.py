@@ -281,7 +281,7 @@ def test_whoever_may_set_outputs_can_do_no_more_than_that(scene):
             assert done.returncode in (0, 3), done
             assert done.returncode == 3 or done.stdout.strip() == "21.5", done
             assert daemon.running(), daemon.log()
-            # another giver is not kept waiting
+            # another controller is not kept waiting
             done = ctl(scene, "plc", daemon.name, "set", "relays", "9")
             assert done.returncode == 0, done
         assert hostile.returncode == 0

@@ -181,7 +181,7 @@ def test_consumers_of_a_removed_image_follow_the_owsd_after_a_kill(scene):
             scene.until(lambda: good(signals, "room"), 10, "room is good")
             scene.until(lambda: watch.log().count("was started again") > seen, 10, "owsctl is led on")
             lines = reader.log().count("\n")
-            scene.until(lambda: [g for g in signals.givers() if g.who.name == "control" and
+            scene.until(lambda: [g for g in signals.controllers() if g.who.name == "control" and
                                  g.commands > 3], 10, "the controller's sets arrive")
             scene.until(lambda: [line for line in reader.log()[lines:].splitlines()
                                  if line.startswith("room") and " good," in line], 10,
@@ -248,20 +248,20 @@ def test_a_killed_owsds_memory_takes_no_sets_when_the_next_one_is_there(scene):
             pass
 
 
-def test_a_giver_cannot_truncate_its_memory_and_a_hole_in_it_harms_itself_alone(scene):
+def test_a_controller_cannot_truncate_its_memory_and_a_hole_in_it_harms_itself_alone(scene):
     daemon, _ = start(scene)
     other = scene.start([owsdtest.BUILD / "examples/control", "room", "relays", "30", "0",
                          daemon.name])
-    with ows.Ows(daemon.name) as signals, byhand.Giver(daemon.name) as giver:
+    with ows.Ows(daemon.name) as signals, byhand.Controller(daemon.name) as controller:
         scene.until(lambda: signals.get("back").value == 1, 10, "the controller heats")
         for size in (0, 256, 1 << 20):
             try:
-                os.ftruncate(giver.fd, size)
+                os.ftruncate(controller.fd, size)
                 raise AssertionError("its size changed")
             except PermissionError:
                 pass
-        giver.memory.madvise(mmap.MADV_REMOVE)
-        giver.ring()
+        controller.memory.madvise(mmap.MADV_REMOVE)
+        controller.ring()
         with ows.Ows(daemon.name, control=True) as again:
             stamp = again.set("relays", 77)
             scene.until(lambda: again.get("relays").applied == stamp or
@@ -271,16 +271,16 @@ def test_a_giver_cannot_truncate_its_memory_and_a_hole_in_it_harms_itself_alone(
         assert daemon.running() and other.running()
 
 
-def test_rubbish_in_the_memory_of_a_giver_harms_nothing(scene):
+def test_rubbish_in_the_memory_of_a_controller_harms_nothing(scene):
     seed = int(os.environ.get("SEED", time.time_ns() & 0xFFFFFF))
     print("seed", seed)
     rng = random.Random(seed)
     daemon, config = start(scene)
     with ows.Ows(daemon.name) as signals:
         scene.until(lambda: good(signals, "room"), 10, "room is good")
-        with byhand.Giver(daemon.name) as giver:
+        with byhand.Controller(daemon.name) as controller:
             for _ in range(400):
-                giver.scribble(rng)
+                controller.scribble(rng)
                 time.sleep(0.002)  # rubbish comes at this pace
             scene.until(signals.alive, 10, "its heart beats")
 
@@ -295,7 +295,7 @@ def test_rubbish_in_the_memory_of_a_giver_harms_nothing(scene):
                     return True
             except OSError:
                 return False
-        scene.until(sane, 10, "another giver's sets are taken")
+        scene.until(sane, 10, "another controller's sets are taken")
         scene.until(lambda: signals.get("back").value == 3, 10, "is 3")
         daemon.restore()
         scene.until(lambda: good(signals, "room") and signals.get("room").value == 21, 20,
@@ -329,12 +329,12 @@ def test_an_input_is_not_written_by_any_way(scene):
                     raise AssertionError(name)
                 except PermissionError:
                     pass
-        with opened(scene, daemon.name) as signals, byhand.Giver(daemon.name) as giver:
+        with opened(scene, daemon.name) as signals, byhand.Controller(daemon.name) as controller:
             refused = faulty.counters(scene, daemon)["refused_commands"]
             on, off = 2, 1
-            giver.command(1, {byhand.WRITE_ENABLE: 4 + on, byhand.STAMP: 1, byhand.ONE_SHOT: 1}, 99)
+            controller.command(1, {byhand.WRITE_ENABLE: 4 + on, byhand.STAMP: 1, byhand.ONE_SHOT: 1}, 99)
             scene.until(lambda: faulty.counters(scene, daemon)["refused_commands"] > refused, 10)
-            giver.command(1, {byhand.WRITE_ENABLE: 8 + off})
+            controller.command(1, {byhand.WRITE_ENABLE: 8 + off})
             then = signals.get("_TRANSACTIONS").value + 5
             scene.until(lambda: signals.get("_TRANSACTIONS").value > then, 10, "five more requests")
         assert server.read(sensor + "/templow").strip() == "21"
@@ -352,7 +352,7 @@ def test_an_input_is_not_written_by_any_way(scene):
 
 def test_a_bell_rung_without_end_does_not_stop_the_inputs(scene):
     daemon, _ = start(scene)
-    code = "import byhand, sys\ngiver = byhand.Giver(sys.argv[1])\nwhile True: giver.ring()"
+    code = "import byhand, sys\ncontroller = byhand.Controller(sys.argv[1])\nwhile True: controller.ring()"
     scene.start([sys.executable, "-c", code, daemon.name],
                 {"PYTHONPATH": str(owsdtest.SOURCE / "tests/system")})
     with ows.Ows(daemon.name) as signals:

@@ -92,7 +92,7 @@ function shelvedWords(alarm) {
 	const until = msOf(alarm.until);
 	const far = until - store.now() > DAY_MS ? dateAndClock(until) : clock(until);
 	return el("span", {class: "description"}, `until ${far}`,
-		alarm.by ? `, by ${giver(alarm.by)}` : null, alarm.why ? `: ${alarm.why}` : null);
+		alarm.by ? `, by ${controller(alarm.by)}` : null, alarm.why ? `: ${alarm.why}` : null);
 }
 
 function actions(alarm) {
@@ -134,7 +134,7 @@ async function shelve(alarm) {
 
 // --- Who did what ---------------------------------------------------------------------------
 
-function giver(by) {
+function controller(by) {
 	if (!by)
 		return "";
 	if (typeof by === "string")
@@ -150,7 +150,7 @@ function drawPast() {
 		el("span", {class: "name"}, entry.name ?? ""),
 		[entry.alarm, entry.event].filter(Boolean).join(", "),
 		numberOf(entry.name, entry.value),
-		giver(entry.by) || "owsd",
+		controller(entry.by) || "owsd",
 		[entry.more ? `${entry.more} more before` : "", entry.remark].filter(Boolean).join("; "),
 	]);
 	past.replaceChildren(table("Who did what, newest first", [["Time", "time"], "Signal", "Event",

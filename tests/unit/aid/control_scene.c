@@ -27,7 +27,7 @@ struct control *control_room;
 struct config control_config;
 
 static struct config_item items[3];
-static struct giver_layout layouts[2];
+static struct controller_layout layouts[2];
 static unsigned layout_at;
 static char directory[64];
 static int directory_fd = -1;
@@ -35,8 +35,9 @@ static sem_t bell;
 static pthread_t engine;
 static struct porter *porter;
 static bool engine_ends, reloads, rings_news;
-static struct control_turn turns[OWS_GIVERS];
-static uint32_t serials[OWS_GIVERS]; /* of the givers that are inside: the test looks at them */
+static struct control_turn turns[OWS_CONTROLLERS];
+static uint32_t
+	serials[OWS_CONTROLLERS]; /* of the controllers that are inside: the test looks at them */
 static uint32_t joined, left;
 
 static void ring(void *ctx)
@@ -89,15 +90,15 @@ static void *run(void *arg)
 static void make_layout(unsigned generation)
 {
 	const uint8_t types[] = {OWS_BOOL, OWS_DOUBLE, OWS_STRING};
-	const struct giver_plan plan = {.types = types,
-	                                .signal_count = 3,
-	                                .text_cap = 64,
-	                                .generation = generation,
-	                                .start_id = 100 + generation};
+	const struct controller_plan plan = {.types = types,
+	                                     .signal_count = 3,
+	                                     .text_cap = 64,
+	                                     .generation = generation,
+	                                     .start_id = 100 + generation};
 
 	layout_at = generation % 2;
-	giver_layout_free(&layouts[layout_at]);
-	TEST_ASSERT_EQUAL(0, giver_layout_make(&layouts[layout_at], &plan));
+	controller_layout_free(&layouts[layout_at]);
+	TEST_ASSERT_EQUAL(0, controller_layout_make(&layouts[layout_at], &plan));
 }
 
 void control_open(void)
@@ -139,8 +140,8 @@ void control_close(void)
 	control_destroy(control_room);
 	control_room = NULL;
 	porter_end(porter);
-	giver_layout_free(&layouts[0]);
-	giver_layout_free(&layouts[1]);
+	controller_layout_free(&layouts[0]);
+	controller_layout_free(&layouts[1]);
 	close(directory_fd);
 	rmdir(directory);
 	sem_destroy(&bell);
@@ -195,10 +196,10 @@ unsigned control_inside(void)
 
 const struct control_turn *control_turn_of(uint32_t serial)
 {
-	for (unsigned i = 0; i < OWS_GIVERS; i++)
+	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
 		if (__atomic_load_n(&serials[i], __ATOMIC_ACQUIRE) == serial)
 			return &turns[i];
-	TEST_FAIL_MESSAGE("no giver with that serial");
+	TEST_FAIL_MESSAGE("no controller with that serial");
 	return NULL;
 }
 

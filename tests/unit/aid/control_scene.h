@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A control room with three signals and a thread that takes joining and leaving givers as the
+ * A control room with three signals and a thread that takes joining and leaving controllers as the
  * engine's does; and the programs that connect to it.
  */
 #ifndef TESTS_UNIT_AID_CONTROL_SCENE_H
@@ -26,12 +26,12 @@ void control_close(void);
 /* The whole of a reload, with the same configuration but for what the test has changed. */
 void control_reload(void);
 
-/* The engine's thread rings the news of the givers that wait for it. */
+/* The engine's thread rings the news of the controllers that wait for it. */
 void control_ring_news(void);
 
-/* How many givers the engine's thread has now, and how often one joined or left. */
+/* How many controllers the engine's thread has now, and how often one joined or left. */
 unsigned control_joined(void), control_left(void), control_inside(void);
-/* The turn in which the giver with that serial joined, or its memory of a reload. */
+/* The turn in which the controller with that serial joined, or its memory of a reload. */
 const struct control_turn *control_turn_of(uint32_t serial);
 uint64_t control_count(const char *name);
 void control_wait_count(const char *name, uint64_t count);

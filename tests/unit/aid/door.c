@@ -22,7 +22,7 @@
 static void make_layout(struct door *door, uint32_t generation, uint32_t start_id,
                         const uint8_t *types, uint32_t count, uint16_t text_cap)
 {
-	const struct giver_plan plan = {
+	const struct controller_plan plan = {
 		.types = types,
 		.signal_count = count,
 		.text_cap = text_cap,
@@ -30,7 +30,7 @@ static void make_layout(struct door *door, uint32_t generation, uint32_t start_i
 		.start_id = start_id,
 	};
 
-	TEST_ASSERT_EQUAL(0, giver_layout_make(&door->layout, &plan));
+	TEST_ASSERT_EQUAL(0, controller_layout_make(&door->layout, &plan));
 }
 
 /* In the door's thread: what Unity counts is of the test's thread alone. */
@@ -40,23 +40,24 @@ static void must(bool held)
 		abort();
 }
 
-/* Make the memory of a giver; a lie may be in it. */
-static void make_memory(struct door *door, struct door_giver *giver, uint32_t serial)
+/* Make the memory of a controller; a lie may be in it. */
+static void make_memory(struct door *door, struct door_controller *controller, uint32_t serial)
 {
 	size_t size = door->layout.size;
-	struct ows_giver_header *header;
+	struct ows_controller_header *header;
 	int fd = memfd_create("door", MFD_CLOEXEC | MFD_ALLOW_SEALING);
 
 	must(fd >= 0);
 	must(ftruncate(fd, (off_t)size) == 0);
 	header = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
 	must(header != MAP_FAILED);
-	giver->memory_fd = fd;
-	giver->memory = (struct giver_memory){.base = (char *)header, .layout = &door->layout};
-	giver_build(&giver->memory, serial);
+	controller->memory_fd = fd;
+	controller->memory = (struct controller_memory){.base = (char *)header,
+	                                                .layout = &door->layout};
+	controller_build(&controller->memory, serial);
 	for (uint32_t i = 0; i < door->layout.slot_count; i++)
-		giver_allow(&giver->memory, i, true);
-	giver_state(&giver->memory, OWS_STATE_LIVE);
+		controller_allow(&controller->memory, i, true);
+	controller_state(&controller->memory, OWS_STATE_LIVE);
 	if (door->lie == DOOR_OTHER_MEMORY)
 		header->magic = OWS_IMAGE_MAGIC;
 	if (door->lie == DOOR_OUTSIDE)
@@ -89,15 +90,15 @@ static size_t fill_welcome(const struct door *door, uint32_t serial, struct ows_
 	return door->lie == DOOR_SHORT ? sizeof(*welcome) / 2 : sizeof(*welcome);
 }
 
-static void send_welcome(const struct door *door, const struct door_giver *giver, uint32_t serial,
-                         unsigned fd_count)
+static void send_welcome(const struct door *door, const struct door_controller *controller,
+                         uint32_t serial, unsigned fd_count)
 {
 	union {
 		struct cmsghdr header;
 		char room[CMSG_SPACE(8 * sizeof(int))];
 	} control = {0};
-	int fds[8] = {giver->memory_fd, giver->bell, giver->news, giver->bell,
-	              giver->bell,      giver->bell, giver->bell, giver->bell};
+	int fds[8] = {controller->memory_fd, controller->bell, controller->news, controller->bell,
+	              controller->bell,      controller->bell, controller->bell, controller->bell};
 	struct ows_welcome welcome;
 	struct iovec data = {.iov_base = &welcome, .iov_len = fill_welcome(door, serial, &welcome)};
 	struct msghdr message = {.msg_iov = &data, .msg_iovlen = 1};
@@ -112,7 +113,7 @@ static void send_welcome(const struct door *door, const struct door_giver *giver
 		};
 		memcpy(CMSG_DATA(&control.header), fds, fd_count * sizeof(int));
 	}
-	sendmsg(giver->connection, &message, MSG_NOSIGNAL);
+	sendmsg(controller->connection, &message, MSG_NOSIGNAL);
 }
 
 static unsigned fds_of(enum door_lie lie)
@@ -130,44 +131,44 @@ static unsigned fds_of(enum door_lie lie)
 	}
 }
 
-static void hang_up(struct door_giver *giver)
+static void hang_up(struct door_controller *controller)
 {
-	if (giver->gone)
+	if (controller->gone)
 		return;
-	giver->gone = true;
-	close(giver->connection);
+	controller->gone = true;
+	close(controller->connection);
 }
 
 static void welcome_one(struct door *door)
 {
 	struct pollfd hello = {.fd = accept4(door->listener, NULL, NULL, SOCK_CLOEXEC),
 	                       .events = POLLIN};
-	struct door_giver *giver = &door->givers[door->count];
+	struct door_controller *controller = &door->controllers[door->count];
 
 	if (hello.fd < 0)
 		return;
-	if (door->count == DOOR_GIVERS || poll(&hello, 1, PATIENCE_MS) != 1) {
+	if (door->count == DOOR_CONTROLLERS || poll(&hello, 1, PATIENCE_MS) != 1) {
 		close(hello.fd);
 		return;
 	}
-	*giver = (struct door_giver){
+	*controller = (struct door_controller){
 		.connection = hello.fd,
 		.bell = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC),
 		.news = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC),
 	};
-	recv(hello.fd, &giver->hello, sizeof(giver->hello), 0);
-	make_memory(door, giver, door->count + 1);
+	recv(hello.fd, &controller->hello, sizeof(controller->hello), 0);
+	make_memory(door, controller, door->count + 1);
 	door->count++;
 	if (door->lie == DOOR_HANGS_UP)
-		hang_up(giver);
+		hang_up(controller);
 	else if (door->lie != DOOR_SILENT)
-		send_welcome(door, giver, door->count, fds_of(door->lie));
+		send_welcome(door, controller, door->count, fds_of(door->lie));
 }
 
 static void *keep_door(void *arg)
 {
 	struct door *door = arg;
-	struct pollfd fds[DOOR_GIVERS + 2];
+	struct pollfd fds[DOOR_CONTROLLERS + 2];
 
 	pthread_mutex_lock(&door->lock);
 	while (!door->stop) {
@@ -177,7 +178,8 @@ static void *keep_door(void *arg)
 		fds[1] = (struct pollfd){.fd = door->wake, .events = POLLIN};
 		for (unsigned i = 0; i < door->count; i++)
 			fds[n++] = (struct pollfd){
-				.fd = door->givers[i].gone ? -1 : door->givers[i].connection,
+				.fd = door->controllers[i].gone ? -1
+			                                        : door->controllers[i].connection,
 				.events = POLLIN,
 			};
 		pthread_mutex_unlock(&door->lock);
@@ -185,7 +187,7 @@ static void *keep_door(void *arg)
 		pthread_mutex_lock(&door->lock);
 		for (unsigned i = 2; i < n; i++)
 			if (fds[i].revents && !door->stop)
-				hang_up(&door->givers[i - 2]);
+				hang_up(&door->controllers[i - 2]);
 		if (fds[0].revents && !door->stop)
 			welcome_one(door);
 	}
@@ -207,7 +209,7 @@ void door_open(struct door *door, const char *instance, uint32_t generation, uin
 	         door->file);
 	door->listener = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
 	TEST_ASSERT_EQUAL(0, bind(door->listener, (struct sockaddr *)&to, sizeof(to)));
-	TEST_ASSERT_EQUAL(0, listen(door->listener, DOOR_GIVERS));
+	TEST_ASSERT_EQUAL(0, listen(door->listener, DOOR_CONTROLLERS));
 	door->wake = eventfd(0, EFD_CLOEXEC);
 	TEST_ASSERT_EQUAL(0, pthread_create(&door->thread, NULL, keep_door, door));
 }
@@ -228,17 +230,17 @@ void door_close(struct door *door)
 	close(door->listener);
 	close(door->wake);
 	for (unsigned i = 0; i < door->count; i++) {
-		struct door_giver *giver = &door->givers[i];
+		struct door_controller *controller = &door->controllers[i];
 
-		hang_up(giver);
-		munmap(giver->memory.base, door->layout.size);
-		close(giver->memory_fd);
-		close(giver->bell);
-		close(giver->news);
+		hang_up(controller);
+		munmap(controller->memory.base, door->layout.size);
+		close(controller->memory_fd);
+		close(controller->bell);
+		close(controller->news);
 	}
 	unlinkat(door->place.fd, door->file, 0);
 	place_close(&door->place);
-	giver_layout_free(&door->layout);
+	controller_layout_free(&door->layout);
 	TEST_ASSERT_TRUE_MESSAGE(woken, strerror(err));
 	TEST_ASSERT_EQUAL_INT_MESSAGE(0, err, strerror(err));
 }
@@ -246,25 +248,25 @@ void door_close(struct door *door)
 void door_reload(struct door *door, uint32_t generation, uint32_t start_id, const uint8_t *types,
                  uint32_t count, uint16_t text_cap, const uint32_t *rows)
 {
-	struct giver_layout before;
+	struct controller_layout before;
 
 	pthread_mutex_lock(&door->lock);
 	before = door->layout;
 	make_layout(door, generation, start_id, types, count, text_cap);
 	for (unsigned i = 0; i < door->count; i++) {
-		struct door_giver *giver = &door->givers[i];
-		struct giver_memory old = giver->memory;
+		struct door_controller *controller = &door->controllers[i];
+		struct controller_memory old = controller->memory;
 
 		old.layout = &before;
-		giver_state(&old, OWS_STATE_RETIRED);
-		close(giver->memory_fd);
-		make_memory(door, giver, i + 1);
-		giver_copy(&giver->memory, &old, rows);
+		controller_state(&old, OWS_STATE_RETIRED);
+		close(controller->memory_fd);
+		make_memory(door, controller, i + 1);
+		controller_copy(&controller->memory, &old, rows);
 		munmap(old.base, before.size);
-		if (!giver->gone)
-			send_welcome(door, giver, i + 1, 1);
+		if (!controller->gone)
+			send_welcome(door, controller, i + 1, 1);
 	}
-	giver_layout_free(&before);
+	controller_layout_free(&before);
 	pthread_mutex_unlock(&door->lock);
 }
 
@@ -275,12 +277,12 @@ void door_lie(struct door *door, enum door_lie lie)
 	pthread_mutex_unlock(&door->lock);
 }
 
-struct door_giver *door_giver(struct door *door, unsigned i)
+struct door_controller *door_controller(struct door *door, unsigned i)
 {
 	pthread_mutex_lock(&door->lock);
 	TEST_ASSERT_LESS_THAN_MESSAGE(door->count, i, "nobody came so far");
 	pthread_mutex_unlock(&door->lock);
-	return &door->givers[i];
+	return &door->controllers[i];
 }
 
 unsigned door_count(struct door *door)
@@ -295,22 +297,22 @@ unsigned door_count(struct door *door)
 
 void door_wait_gone(struct door *door, unsigned i)
 {
-	struct door_giver *giver = door_giver(door, i);
+	struct door_controller *controller = door_controller(door, i);
 	const struct timespec pause = {.tv_nsec = 1000000};
 	bool gone = false;
 
 	for (int n = 0; !gone && n < PATIENCE_MS; n++) {
 		nanosleep(&pause, NULL); /* pace */
 		pthread_mutex_lock(&door->lock);
-		gone = giver->gone;
+		gone = controller->gone;
 		pthread_mutex_unlock(&door->lock);
 	}
-	TEST_ASSERT_TRUE_MESSAGE(gone, "the giver did not hang up");
+	TEST_ASSERT_TRUE_MESSAGE(gone, "the controller did not hang up");
 }
 
 uint64_t door_rings(struct door *door, unsigned i)
 {
 	uint64_t rings = 0;
 
-	return read(door_giver(door, i)->bell, &rings, sizeof(rings)) < 0 ? 0 : rings;
+	return read(door_controller(door, i)->bell, &rings, sizeof(rings)) < 0 ? 0 : rings;
 }

@@ -8,10 +8,10 @@
 
 #include <pthread.h>
 
-#include "src/shm/giver.h"
+#include "src/shm/controller.h"
 #include "src/shm/place.h"
 
-#define DOOR_GIVERS 40
+#define DOOR_CONTROLLERS 40
 
 enum door_lie {
 	DOOR_HONEST,
@@ -33,14 +33,14 @@ enum door_lie {
 	DOOR_LIES          /* how many there are */
 };
 
-struct door_giver {
+struct door_controller {
 	int connection, memory_fd, bell, news;
 	bool gone; /* hung up */
 	struct ows_hello hello;
-	struct giver_memory memory;
+	struct controller_memory memory;
 };
 
-/* The thread and the test share it: lie, givers and count are looked at with the lock held. */
+/* The thread and the test share it: lie, controllers and count are looked at with the lock held. */
 struct door {
 	struct shm_place place;
 	char file[64];
@@ -49,8 +49,8 @@ struct door {
 	enum door_lie lie;
 	pthread_t thread;
 	pthread_mutex_t lock;
-	struct giver_layout layout;
-	struct door_giver givers[DOOR_GIVERS];
+	struct controller_layout layout;
+	struct door_controller controllers[DOOR_CONTROLLERS];
 	unsigned count; /* of all that were ever welcomed */
 };
 
@@ -64,12 +64,12 @@ void door_reload(struct door *door, uint32_t generation, uint32_t start_id, cons
                  uint32_t count, uint16_t text_cap, const uint32_t *rows);
 /* Lie to whoever connects from now on. */
 void door_lie(struct door *door, enum door_lie lie);
-/* Giver i of those who were ever welcomed. */
-struct door_giver *door_giver(struct door *door, unsigned i);
+/* Controller i of those who were ever welcomed. */
+struct door_controller *door_controller(struct door *door, unsigned i);
 unsigned door_count(struct door *door);
-/* Wait until the giver has hung up. */
+/* Wait until the controller has hung up. */
 void door_wait_gone(struct door *door, unsigned i);
-/* How often the giver rang since the last call. */
+/* How often the controller rang since the last call. */
 uint64_t door_rings(struct door *door, unsigned i);
 
 #endif

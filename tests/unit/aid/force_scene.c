@@ -88,19 +88,19 @@ const struct row nothing = {NOTHING, NOTHING, NOTHING, NOTHING, NOTHING, NOTHING
 const struct row command = {NEXT, NEXT, NEXT, NEXT, NEXT, NEXT, NEXT, NEXT};
 /* Nobody comes back: InitValue once, else nothing; last. */
 const struct row ended = {NOTHING, INIT, NOTHING, INIT, NEXT, NEXT, NEXT, NEXT};
-/* The giver is lost over a restart. */
+/* The controller is lost over a restart. */
 const struct row lost = {NOTHING, INIT, SAFE, SAFE, NEXT, NEXT, SAFE, SAFE};
-/* The giver is lost while owsd runs. */
+/* The controller is lost while owsd runs. */
 const struct row lost_running = {NOTHING, NOTHING, SAFE, SAFE, NOTHING, NOTHING, SAFE, SAFE};
 
-/* A giver at place 1 with token 2 has set all. */
-void giver_set_all(bool beats)
+/* A controller at place 1 with token 2 has set all. */
+void controller_set_all(bool beats)
 {
 	start_outputs();
 	scene_clear_trace(&s);
 	scene_join(&s, 1, 2);
 	if (beats)
-		giving_beat(&s.givers[1], BEAT_MS);
+		giving_beat(&s.controllers[1], BEAT_MS);
 	set_all(1, NEXT);
 	expect_outputs(command);
 	scene_clear_trace(&s);
@@ -113,18 +113,18 @@ void restart_owsd(void)
 	scene_up(&s);
 }
 
-/* The giver connects again by its token, and beats, as ows_reopen() does. */
+/* The controller connects again by its token, and beats, as ows_reopen() does. */
 void come_back(void)
 {
-	s.givers[1].stamp = 100; /* its stamps go on */
+	s.controllers[1].stamp = 100; /* its stamps go on */
 	scene_join(&s, 1, 2);
-	giving_beat(&s.givers[1], BEAT_MS);
+	giving_beat(&s.controllers[1], BEAT_MS);
 }
 
 void beat_on(int64_t ns)
 {
 	for (int64_t t = 0; t < ns; t += 100 * SCENE_MS) {
-		giving_beat(&s.givers[1], BEAT_MS);
+		giving_beat(&s.controllers[1], BEAT_MS);
 		scene_run(&s, 100 * SCENE_MS);
 	}
 }

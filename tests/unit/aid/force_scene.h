@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * A scene for tests of the command in force: one output of each kind, all of one device, and a
- * giver that has set all of them.
+ * controller that has set all of them.
  */
 #ifndef TESTS_UNIT_AID_FORCE_SCENE_H
 #define TESTS_UNIT_AID_FORCE_SCENE_H
@@ -15,7 +15,7 @@ extern struct scene s;
 #define BEAT_MS 500
 #define INIT 10
 #define SAFE 20
-#define NEXT 30 /* what the giver set */
+#define NEXT 30 /* what the controller set */
 #define OTHER 40
 
 /* What an output of a kind has to have in the end; NOTHING: owsd writes nothing to it. */
@@ -33,11 +33,11 @@ void set_all(unsigned place, int64_t value);
 void expect_outputs(struct row row);
 extern const struct row nothing, command, ended, lost, lost_running;
 
-/* A giver at place 1 with token 2 has set all; it promises a beat or not. */
-void giver_set_all(bool beats);
+/* A controller at place 1 with token 2 has set all; it promises a beat or not. */
+void controller_set_all(bool beats);
 /* owsd is killed, or ends in order: for the next one that is the same. */
 void restart_owsd(void);
-/* The giver connects again by its token, and beats, as ows_reopen() does. */
+/* The controller connects again by its token, and beats, as ows_reopen() does. */
 void come_back(void);
 void beat_on(int64_t ns);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A giver by hand: what it stores in its memory. */
+/* A controller by hand: what it stores in its memory. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,30 +7,30 @@
 
 #define TEXT_CAP 1024
 
-void giving_layout(struct giver_layout *layout, const uint8_t *types, uint32_t count)
+void giving_layout(struct controller_layout *layout, const uint8_t *types, uint32_t count)
 {
-	const struct giver_plan plan = {.types = types,
-	                                .signal_count = count,
-	                                .text_cap = TEXT_CAP,
-	                                .generation = 1,
-	                                .start_id = 7};
+	const struct controller_plan plan = {.types = types,
+	                                     .signal_count = count,
+	                                     .text_cap = TEXT_CAP,
+	                                     .generation = 1,
+	                                     .start_id = 7};
 
-	if (giver_layout_make(layout, &plan))
+	if (controller_layout_make(layout, &plan))
 		abort();
 }
 
-void giving_make(struct giving *g, const struct giver_layout *layout, uint32_t serial)
+void giving_make(struct giving *g, const struct controller_layout *layout, uint32_t serial)
 {
 	size_t room = ((size_t)layout->size + 63) / 64 * 64;
 
-	g->memory = (struct giver_memory){aligned_alloc(64, room), layout};
+	g->memory = (struct controller_memory){aligned_alloc(64, room), layout};
 	if (!g->memory.base)
 		abort();
 	memset(g->memory.base, 0, room);
-	giver_build(&g->memory, serial);
+	controller_build(&g->memory, serial);
 	for (uint32_t i = 0; i < layout->slot_count; i++)
-		giver_allow(&g->memory, i, true);
-	giver_state(&g->memory, OWS_STATE_LIVE);
+		controller_allow(&g->memory, i, true);
+	controller_state(&g->memory, OWS_STATE_LIVE);
 }
 
 void giving_free(struct giving *g)
@@ -39,7 +39,7 @@ void giving_free(struct giving *g)
 	g->memory.base = NULL;
 }
 
-struct ows_giver_header *giving_header(struct giving *g)
+struct ows_controller_header *giving_header(struct giving *g)
 {
 	return (void *)g->memory.base;
 }
@@ -52,7 +52,7 @@ struct ows_command_slot *giving_slot(struct giving *g, uint32_t record)
 
 struct ows_command_text *giving_text(struct giving *g, uint32_t record)
 {
-	const struct giver_layout *l = g->memory.layout;
+	const struct controller_layout *l = g->memory.layout;
 
 	return (void *)(g->memory.base + l->text_off +
 	                (size_t)l->places[record] *

@@ -1,22 +1,22 @@
 /* SPDX-License-Identifier: MIT */
-/* A giver by hand: a memory on the heap, in which a test commands as libows does, or worse. */
+/* A controller by hand: a memory on the heap, in which a test commands as libows does, or worse. */
 #ifndef TESTS_UNIT_AID_GIVING_H
 #define TESTS_UNIT_AID_GIVING_H
 
-#include "src/shm/giver.h"
+#include "src/shm/controller.h"
 
 struct giving {
-	struct giver_memory memory; /* base NULL: not made */
-	uint32_t stamp;             /* of the last command */
+	struct controller_memory memory; /* base NULL: not made */
+	uint32_t stamp;                  /* of the last command */
 };
 
 /* The layout of a configuration of that many signals. */
-void giving_layout(struct giver_layout *layout, const uint8_t *types, uint32_t count);
+void giving_layout(struct controller_layout *layout, const uint8_t *types, uint32_t count);
 /* Make a memory that is live. The stamps go on from before. */
-void giving_make(struct giving *g, const struct giver_layout *layout, uint32_t serial);
+void giving_make(struct giving *g, const struct controller_layout *layout, uint32_t serial);
 void giving_free(struct giving *g);
 
-struct ows_giver_header *giving_header(struct giving *g);
+struct ows_controller_header *giving_header(struct giving *g);
 struct ows_command_slot *giving_slot(struct giving *g, uint32_t record);
 struct ows_command_text *giving_text(struct giving *g, uint32_t record);
 struct ows_command_shelf *giving_shelf(struct giving *g);

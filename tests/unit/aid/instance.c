@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* An instance of owsd without owsd: makes and fills its image, and welcomes givers. */
+/* An instance of owsd without owsd: makes and fills its image, and welcomes controllers. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -160,28 +160,28 @@ void instance_end(struct instance *in)
 	segment_remove(folder_place(), in->name, SEGMENT_IMAGE);
 }
 
-struct giver_memory *instance_giver(struct instance *in, unsigned i)
+struct controller_memory *instance_controller(struct instance *in, unsigned i)
 {
-	return &door_giver(in->door, i)->memory;
+	return &door_controller(in->door, i)->memory;
 }
 
-struct giver_command instance_command(struct instance *in, unsigned i, uint32_t record)
+struct controller_command instance_command(struct instance *in, unsigned i, uint32_t record)
 {
-	struct giver_command command;
+	struct controller_command command;
 
-	giver_load(instance_giver(in, i), record, &command);
+	controller_load(instance_controller(in, i), record, &command);
 	return command;
 }
 
 struct ows_command_slot *instance_slot(struct instance *in, unsigned i, uint32_t record)
 {
-	struct giver_memory *memory = instance_giver(in, i);
+	struct controller_memory *memory = instance_controller(in, i);
 
 	return (struct ows_command_slot *)(void *)(memory->base + memory->layout->slot_off) +
 	       record;
 }
 
-unsigned instance_givers(struct instance *in)
+unsigned instance_controllers(struct instance *in)
 {
 	return door_count(in->door);
 }

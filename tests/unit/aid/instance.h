@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * An instance of owsd without owsd: makes the image under a name of this process and fills it by
- * the writer's functions as the engine does, and welcomes givers (door.h).
+ * the writer's functions as the engine does, and welcomes controllers (door.h).
  */
 #ifndef TESTS_UNIT_AID_INSTANCE_H
 #define TESTS_UNIT_AID_INSTANCE_H
@@ -42,19 +42,19 @@ void instance_start(struct instance *in, const char *name, const struct instance
                     uint32_t count);
 /* Retire the image, make and show that of the next generation, and hand out its memories. */
 void instance_reload(struct instance *in, const struct instance_signal *signals, uint32_t count);
-/* Hang up on all givers, as an owsd that is killed; the image stays. */
+/* Hang up on all controllers, as an owsd that is killed; the image stays. */
 void instance_kill(struct instance *in);
 /* Free the memory; the name of the image stays or is removed. */
 void instance_leave(struct instance *in);
 void instance_end(struct instance *in);
 
-/* The memory of giver i of those who ever came, and its command for a record as found. */
-struct giver_memory *instance_giver(struct instance *in, unsigned i);
-struct giver_command instance_command(struct instance *in, unsigned i, uint32_t record);
-/* Its slot itself, of which no look of the engine's side changes what the giver wrote. */
+/* The memory of controller i of those who ever came, and its command for a record as found. */
+struct controller_memory *instance_controller(struct instance *in, unsigned i);
+struct controller_command instance_command(struct instance *in, unsigned i, uint32_t record);
+/* Its slot itself, of which no look of the engine's side changes what the controller wrote. */
 struct ows_command_slot *instance_slot(struct instance *in, unsigned i, uint32_t record);
-/* How many givers ever came. */
-unsigned instance_givers(struct instance *in);
+/* How many controllers ever came. */
+unsigned instance_controllers(struct instance *in);
 
 void instance_beat(struct instance *in, int64_t now_ns, uint32_t period);
 /*

@@ -7,8 +7,8 @@
 
 #include "hal/bus/backends.h"
 #include "src/config/load.h"
+#include "src/engine/controllers.h"
 #include "src/engine/counters.h"
-#include "src/engine/givers.h"
 #include "src/engine/table.h"
 #include "src/signal/value.h"
 #include "tests/unit/aid/plant.h"
@@ -216,7 +216,7 @@ static void make_memory(struct plant *p)
 	memset(p->image_memory, 0, image_room);
 	image_build(&plan, p->image_memory, &p->image);
 	giving_layout(&p->layout, types, c->item_count);
-	giving_make(&p->giver, &p->layout, 1);
+	giving_make(&p->controller, &p->layout, 1);
 	free(rows);
 	free(types);
 }
@@ -245,9 +245,10 @@ void plant_begin(struct plant *p, const char *scenario, const char *rio)
 	                              .start_ns = p->now};
 	if (engine_create(&setup, &p->engine))
 		broken("no memory");
-	engine_giver_join(p->engine, 0,
-	                  &(struct engine_giver){.memory = p->giver.memory, .who.serial = 1},
-	                  p->now);
+	engine_controller_join(
+		p->engine, 0,
+		&(struct engine_controller){.memory = p->controller.memory, .who.serial = 1},
+		p->now);
 	sim_net_start(p->net, p->now);
 	p->engine_ns = p->now;
 }
@@ -256,8 +257,8 @@ void plant_end(struct plant *p)
 {
 	bus_destroy(p->bus);
 	engine_destroy(p->engine);
-	giving_free(&p->giver);
-	giver_layout_free(&p->layout);
+	giving_free(&p->controller);
+	controller_layout_free(&p->layout);
 	config_free(p->config);
 	free(p->image_memory);
 	memset(p, 0, sizeof(*p));
@@ -279,7 +280,7 @@ double plant_number(const struct plant *p, unsigned record)
 
 void plant_set(struct plant *p, unsigned record, int64_t value)
 {
-	giving_set(&p->giver, record, value);
+	giving_set(&p->controller, record, value);
 	p->engine_ns = p->now;
 }
 

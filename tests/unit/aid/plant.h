@@ -40,8 +40,8 @@ struct plant {
 	struct engine *engine;
 	struct engine_port port;
 	struct image image;
-	struct giver_layout layout;
-	struct giving giver; /* the program that commands */
+	struct controller_layout layout;
+	struct giving controller; /* the program that commands */
 	void *image_memory;
 	int64_t engine_ns; /* when the engine wants to run */
 	uint64_t engine_steps;

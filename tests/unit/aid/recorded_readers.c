@@ -103,16 +103,17 @@ static void check_entries(struct ows *h)
 {
 	const struct ows_map *map = &h->map;
 	const struct ows_change_entry *change;
-	struct ows_giver_entry giver;
+	struct ows_controller_entry controller;
 	struct ows_origin_entry origin;
 	struct ows_shelf_entry shelf;
 	struct ows_journal_entry command;
 
-	TEST_ASSERT_EQUAL(OWS_GIVERS, map_count(map, OWS_AREA_GIVERS));
-	TEST_ASSERT_TRUE(reader_entry(map_entry(map, OWS_AREA_GIVERS, 1), &giver, sizeof(giver)));
-	TEST_ASSERT_EQUAL(777, giver.who.pid);
-	TEST_ASSERT_EQUAL(12, giver.commands);
-	TEST_ASSERT_EQUAL_HEX32(ows_check(&giver.flags, 28), giver.check);
+	TEST_ASSERT_EQUAL(OWS_CONTROLLERS, map_count(map, OWS_AREA_CONTROLLERS));
+	TEST_ASSERT_TRUE(reader_entry(map_entry(map, OWS_AREA_CONTROLLERS, 1), &controller,
+	                              sizeof(controller)));
+	TEST_ASSERT_EQUAL(777, controller.who.pid);
+	TEST_ASSERT_EQUAL(12, controller.commands);
+	TEST_ASSERT_EQUAL_HEX32(ows_check(&controller.flags, 28), controller.check);
 	TEST_ASSERT_TRUE(
 		reader_entry(map_entry(map, OWS_AREA_ORIGINS, BYTE_), &origin, sizeof(origin)));
 	TEST_ASSERT_EQUAL(OWS_REASON_SET, origin.reason);

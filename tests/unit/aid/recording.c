@@ -163,13 +163,14 @@ static void put_alarms(void)
 	image_alarm(&image, &limit);
 }
 
-/* What a giver leaves: itself, a command of its own and its origin, and an alarm it shelved. */
-static void put_giver(void)
+/* What a controller leaves: itself, a command of its own and its origin, and an alarm it
+ * shelved. */
+static void put_controller(void)
 {
 	const struct ows_who who = {
 		.serial = 3, .uid = 1000, .pid = 777, .name = "hmi", .person = "Jana"};
-	struct ows_giver_entry giver = {
-		.flags = OWS_GIVER_CONNECTED | OWS_GIVER_MAY_SET,
+	struct ows_controller_entry controller = {
+		.flags = OWS_CONTROLLER_CONNECTED | OWS_CONTROLLER_MAY_SET,
 		.joined_ns = 1001 * S,
 		.who = who,
 		.period_ms = 500,
@@ -197,7 +198,7 @@ static void put_giver(void)
 		.why = "sensor is being moved",
 	};
 
-	image_giver(&image, 1, &giver);
+	image_controller(&image, 1, &controller);
 	image_origin(&image, BYTE_, &origin);
 	image_command(&image, &command);
 	image_shelf(&image, 0, &shelf);
@@ -220,7 +221,7 @@ void make_image(void)
 	}
 	put(DOUBLE_, value_of_double(-21.0625), OWS_Q_GOOD, NULL);
 	put_alarms();
-	put_giver();
+	put_controller();
 	image_target(&image, 0, 2, 4);
 	image_target(&image, 1, 1, 5);
 	image_moves(&image, 1, 6);

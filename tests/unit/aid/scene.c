@@ -132,7 +132,7 @@ static struct scene_memory {
 	void *image, *force_memory;
 	size_t force_size;
 	struct force *force;
-	struct giver_layout *layout;
+	struct controller_layout *layout;
 } take_memory(const struct scene *s)
 {
 	return (struct scene_memory){s->image_memory, s->force_memory, s->force_size, s->force,
@@ -145,7 +145,7 @@ static void free_memory(struct scene_memory *m)
 	free(m->force_memory);
 	free(m->force);
 	if (m->layout)
-		giver_layout_free(m->layout);
+		controller_layout_free(m->layout);
 	free(m->layout);
 }
 
@@ -218,8 +218,8 @@ static void start_again(struct scene *s, bool machine)
 	struct force_left left;
 
 	engine_destroy(s->engine);
-	for (unsigned i = 0; i < SCENE_GIVERS; i++)
-		giving_free(&s->givers[i]);
+	for (unsigned i = 0; i < SCENE_CONTROLLERS; i++)
+		giving_free(&s->controllers[i]);
 	for (unsigned i = 0; i < s->bus_count; i++)
 		s->bus[i].pending_count = 0;
 	TEST_ASSERT_EQUAL_INT(0, force_open(before.force_memory, before.force_size, 0, &left));
@@ -247,14 +247,14 @@ static bool stays(const struct config *config, const struct scene_bus *bus)
 	return false;
 }
 
-/* Each giver that is connected gets a memory of the new engine. */
+/* Each controller that is connected gets a memory of the new engine. */
 static void join_anew(struct scene *s, struct giving *before)
 {
-	for (unsigned i = 0; i < SCENE_GIVERS; i++) {
-		before[i] = s->givers[i];
+	for (unsigned i = 0; i < SCENE_CONTROLLERS; i++) {
+		before[i] = s->controllers[i];
 		if (!before[i].memory.base)
 			continue;
-		s->givers[i].memory.base = NULL;
+		s->controllers[i].memory.base = NULL;
 		if (i != 1 || !s->dropped)
 			scene_join_again(s, i);
 	}
@@ -266,7 +266,7 @@ void scene_reload(struct scene *s, void (*change)(struct config *))
 	struct scene_memory memory = take_memory(s);
 	struct engine *engine = s->engine;
 	const struct config *config = before ? &before->config : &s->config;
-	struct giving givers[SCENE_GIVERS];
+	struct giving controllers[SCENE_CONTROLLERS];
 	struct adoption plan;
 
 	part->config = *config;
@@ -277,11 +277,11 @@ void scene_reload(struct scene *s, void (*change)(struct config *))
 	if (change)
 		change(&part->config);
 	s->engine = make_engine(s, &part->config, part->ports, &part->image, NULL);
-	join_anew(s, givers);
+	join_anew(s, controllers);
 	TEST_ASSERT_EQUAL_INT(0, adoption_plan(&plan, &part->config, config));
 	engine_adopt(s->engine, engine, &plan, s->now_ns);
-	for (unsigned i = 0; i < SCENE_GIVERS; i++)
-		giving_free(&givers[i]);
+	for (unsigned i = 0; i < SCENE_CONTROLLERS; i++)
+		giving_free(&controllers[i]);
 	for (unsigned i = 0; i < s->bus_count; i++)
 		if (s->bus[i].port < config->target_count && !stays(&part->config, &s->bus[i]))
 			s->bus[i].pending_count = 0; /* the reload ended these requests */
@@ -307,8 +307,8 @@ void scene_end(struct scene *s)
 	struct scene_memory memory = take_memory(s);
 
 	engine_destroy(s->engine);
-	for (unsigned i = 0; i < SCENE_GIVERS; i++)
-		giving_free(&s->givers[i]);
+	for (unsigned i = 0; i < SCENE_CONTROLLERS; i++)
+		giving_free(&s->controllers[i]);
 	free_memory(&memory);
 	free(s->part);
 	s->part = NULL;

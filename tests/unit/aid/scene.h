@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A scene for engine tests: an engine with its image and its givers on the heap, buses that are
- * scripted, and a clock that only moves when the test says so. Everything that goes to a bus is
+ * A scene for engine tests: an engine with its image and its controllers on the heap, buses that
+ * are scripted, and a clock that only moves when the test says so. Everything that goes to a bus is
  * written down in a trace that a reader can follow.
  *
  * Most tests have one bus, and speak of it as the scene. Several are made by scene_bus(): each is a
@@ -11,8 +11,8 @@
 #define TESTS_UNIT_AID_SCENE_H
 
 #include "src/config/config.h"
+#include "src/engine/controllers.h"
 #include "src/engine/engine.h"
-#include "src/engine/givers.h"
 #include "src/engine/last.h"
 #include "src/shm/force.h"
 #include "src/shm/image.h"
@@ -24,7 +24,7 @@
 #define SCENE_DEPTH 8
 #define SCENE_BUSES 4
 #define SCENE_NOWHERE 99
-#define SCENE_GIVERS 4
+#define SCENE_CONTROLLERS 4
 
 /* A property on a wire. */
 struct scene_property {
@@ -113,15 +113,15 @@ struct scene {
 	struct image image;
 	void *image_memory, *force_memory;
 	size_t force_size;
-	struct force *force;                /* of the engine, on the heap */
-	struct giver_layout *layout;        /* of the givers, on the heap */
-	struct giving givers[SCENE_GIVERS]; /* by their places */
-	uint32_t tokens[SCENE_GIVERS];
+	struct force *force;                          /* of the engine, on the heap */
+	struct controller_layout *layout;             /* of the controllers, on the heap */
+	struct giving controllers[SCENE_CONTROLLERS]; /* by their places */
+	uint32_t tokens[SCENE_CONTROLLERS];
 	uint32_t serials;
-	uint32_t rights[SCENE_GIVERS][SCENE_ITEMS / 32 + 1];
+	uint32_t rights[SCENE_CONTROLLERS][SCENE_ITEMS / 32 + 1];
 	bool limited; /* scene_allow() was called: rights count */
 	bool dropped; /* at a reload there is no room for the memory of place 1 */
-	uint32_t uid; /* of givers that join; 1000 unless set */
+	uint32_t uid; /* of controllers that join; 1000 unless set */
 	struct scene_disk disk;
 	int64_t now_ns;
 
@@ -170,8 +170,8 @@ void scene_start(struct scene *scene);
  */
 void scene_reload(struct scene *scene, void (*change)(struct config *));
 /*
- * Start another owsd with the same configuration, after this one was killed. No giver is connected,
- * the target is down, and the trace is empty. Not after scene_reload().
+ * Start another owsd with the same configuration, after this one was killed. No controller is
+ * connected, the target is down, and the trace is empty. Not after scene_reload().
  */
 void scene_restart(struct scene *scene);
 /* The same after the machine has started: only the disk is left. */
@@ -192,8 +192,8 @@ void scene_clear_trace(struct scene *scene);
 void scene_end(struct scene *scene);
 
 /*
- * The giver at place 0 is there from scene_start() on; it promises no beat. record: 1 is the first
- * item.
+ * The controller at place 0 is there from scene_start() on; it promises no beat. record: 1 is the
+ * first item.
  */
 void scene_set(struct scene *scene, unsigned record, int64_t value);
 void scene_set_text(struct scene *scene, unsigned record, const char *text);
@@ -202,19 +202,21 @@ void scene_ring(struct scene *scene, unsigned record);
 /* Set _ReadEnable and _WriteEnable. */
 void scene_enable_reads(struct scene *scene, unsigned record, bool on);
 void scene_enable_writes(struct scene *scene, unsigned record, bool on);
-/* The stamp of the last command that was applied, as this giver gets to know it. */
+/* The stamp of the last command that was applied, as this controller gets to know it. */
 uint32_t scene_applied(struct scene *scene, unsigned record);
 
-/* A giver takes a place; with the token of one that was there before it comes back as that one. */
+/* A controller takes a place; with the token of one that was there before it comes back as that
+ * one. */
 void scene_join(struct scene *scene, unsigned place, uint32_t token);
-/* Before scene_join(): the giver of this place may command this record, and those named so far. */
+/* Before scene_join(): the controller of this place may command this record, and those named so
+ * far. */
 void scene_allow(struct scene *scene, unsigned place, unsigned record);
-/* The giver of the place hangs up, or is dead: with its last command taken. */
+/* The controller of the place hangs up, or is dead: with its last command taken. */
 void scene_leave(struct scene *scene, unsigned place);
 /* The same with a goodbye. */
 void scene_goodbye(struct scene *scene, unsigned place);
 void scene_set_by(struct scene *scene, unsigned place, unsigned record, int64_t value);
-/* Let time pass in which the givers of the first n places beat. */
+/* Let time pass in which the controllers of the first n places beat. */
 void scene_beat(struct scene *scene, unsigned n, uint32_t period_ms, int64_t ns);
 
 struct ows_origin_entry scene_origin(struct scene *scene, unsigned record);

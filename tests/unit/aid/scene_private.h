@@ -11,7 +11,8 @@ bool scene_has_device(struct scene *scene, unsigned wire, const char *path);
 
 /* The disk of Start "last". */
 const struct engine_last *scene_disk(struct scene *scene);
-/* The giver of the place joins the scene's engine with a new memory; the old one stays as it is. */
+/* The controller of the place joins the scene's engine with a new memory; the old one stays as it
+ * is. */
 void scene_join_again(struct scene *scene, unsigned place);
 
 /* The submit of an engine's port; ctx is the bus. */

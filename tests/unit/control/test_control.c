@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Programs connect to the control room: hellos of every shape, what a giver gets, how it ends. */
+/* Programs connect to the control room: hellos of every shape, what a controller gets, how it
+ * ends. */
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
@@ -101,10 +102,10 @@ static void test_who_says_nothing_in_time_is_hung_up_on(void)
 	close(fd);
 }
 
-static void test_a_giver_gets_a_sealed_memory_a_bell_and_news(void)
+static void test_a_controller_gets_a_sealed_memory_a_bell_and_news(void)
 {
 	struct control_client client;
-	const struct ows_giver_header *h;
+	const struct ows_controller_header *h;
 	struct pollfd news;
 
 	TEST_ASSERT_EQUAL(0, control_join(&client, OWS_HELLO_COMMAND, "plc\n"));
@@ -114,7 +115,7 @@ static void test_a_giver_gets_a_sealed_memory_a_bell_and_news(void)
 	TEST_ASSERT_EQUAL_UINT(101, client.welcome.start_id);
 	TEST_ASSERT_EQUAL(SEALS, fcntl(client.fds[0], F_GET_SEALS) & (SEALS | F_SEAL_WRITE));
 	h = (const void *)client.memory;
-	TEST_ASSERT_EQUAL_HEX32(OWS_GIVER_MAGIC, h->magic);
+	TEST_ASSERT_EQUAL_HEX32(OWS_CONTROLLER_MAGIC, h->magic);
 	TEST_ASSERT_EQUAL_UINT(client.welcome.size, h->size);
 	TEST_ASSERT_EQUAL_UINT(client.welcome.serial, h->serial);
 	TEST_ASSERT_EQUAL_UINT(OWS_STATE_LIVE, h->state);
@@ -127,16 +128,16 @@ static void test_a_giver_gets_a_sealed_memory_a_bell_and_news(void)
 	news = (struct pollfd){.fd = client.fds[2], .events = POLLIN};
 	control_ring_news();
 	TEST_ASSERT_EQUAL(0, poll(&news, 1, 0));
-	((struct ows_giver_header *)(void *)client.memory)->waits = 1;
+	((struct ows_controller_header *)(void *)client.memory)->waits = 1;
 	control_ring_news();
 	TEST_ASSERT_EQUAL(1, poll(&news, 1, CONTROL_SCENE_MS));
 	control_leave(&client);
 }
 
-static void test_two_givers_share_nothing(void)
+static void test_two_controllers_share_nothing(void)
 {
 	struct control_client a, b;
-	struct ows_giver_header *ha, *hb;
+	struct ows_controller_header *ha, *hb;
 
 	TEST_ASSERT_EQUAL(0, control_join(&a, OWS_HELLO_COMMAND, "a"));
 	TEST_ASSERT_EQUAL(0, control_join(&b, OWS_HELLO_COMMAND, "b"));
@@ -145,7 +146,7 @@ static void test_two_givers_share_nothing(void)
 	TEST_ASSERT_TRUE(a.welcome.serial != b.welcome.serial);
 	TEST_ASSERT_TRUE(memcmp(a.welcome.token, b.welcome.token, 16) != 0);
 	memset(a.memory, 0xff, a.welcome.size);
-	TEST_ASSERT_EQUAL_HEX32(OWS_GIVER_MAGIC, hb->magic);
+	TEST_ASSERT_EQUAL_HEX32(OWS_CONTROLLER_MAGIC, hb->magic);
 	TEST_ASSERT_EQUAL_UINT(0, hb->marked);
 	TEST_ASSERT_EQUAL_HEX32(0xffffffff, ha->magic);
 	control_leave(&a);
@@ -169,7 +170,7 @@ static void test_a_token_comes_back_as_it_was_presented(void)
 	close(fd);
 }
 
-static void test_the_memory_can_be_neither_cut_nor_sealed_and_a_hole_harms_only_its_giver(void)
+static void test_the_memory_can_be_neither_cut_nor_sealed_and_a_hole_harms_only_its_controller(void)
 {
 	struct control_client a, b;
 	const struct control_turn *turn;
@@ -183,10 +184,10 @@ static void test_the_memory_can_be_neither_cut_nor_sealed_and_a_hole_harms_only_
 	TEST_ASSERT_EQUAL(0, fallocate(a.fds[0], FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, 0,
 	                               (off_t)a.welcome.size));
 	/* owsd reads zeros there, and answers in it */
-	TEST_ASSERT_EQUAL(-1, giver_next_dirty(&turn->memory, 0));
-	giver_taken(&turn->memory, 1, 7, 0);
-	TEST_ASSERT_EQUAL_HEX32(OWS_GIVER_MAGIC,
-	                        ((struct ows_giver_header *)(void *)b.memory)->magic);
+	TEST_ASSERT_EQUAL(-1, controller_next_dirty(&turn->memory, 0));
+	controller_taken(&turn->memory, 1, 7, 0);
+	TEST_ASSERT_EQUAL_HEX32(OWS_CONTROLLER_MAGIC,
+	                        ((struct ows_controller_header *)(void *)b.memory)->magic);
 	control_leave(&a);
 	control_wait_count("control_connections", 1);
 	TEST_ASSERT_EQUAL_UINT(1, control_count("control_hung_up"));
@@ -194,10 +195,10 @@ static void test_the_memory_can_be_neither_cut_nor_sealed_and_a_hole_harms_only_
 	control_leave(&b);
 }
 
-static void test_a_giver_that_closes_leaves_and_finds_its_memory_dead(void)
+static void test_a_controller_that_closes_leaves_and_finds_its_memory_dead(void)
 {
 	struct control_client client;
-	struct ows_giver_header *h;
+	struct ows_controller_header *h;
 
 	TEST_ASSERT_EQUAL(0, control_join(&client, OWS_HELLO_COMMAND, "x"));
 	h = (void *)client.memory;
@@ -291,7 +292,7 @@ static void end_program(pid_t pid)
 	TEST_ASSERT_EQUAL(pid, waitpid(pid, &status, 0));
 }
 
-static void test_a_giver_that_is_killed_is_lost(void)
+static void test_a_controller_that_is_killed_is_lost(void)
 {
 	int told[2];
 	pid_t pid = start_program(told, false);
@@ -305,7 +306,7 @@ static void test_a_giver_that_is_killed_is_lost(void)
 	close(told[1]);
 }
 
-static void test_a_giver_that_is_killed_is_lost_though_its_child_holds_the_socket(void)
+static void test_a_controller_that_is_killed_is_lost_though_its_child_holds_the_socket(void)
 {
 	int told[2];
 	pid_t pid = start_program(told, true);
@@ -318,7 +319,7 @@ static void test_a_giver_that_is_killed_is_lost_though_its_child_holds_the_socke
 	close(told[0]);
 }
 
-static void test_of_a_process_that_ended_before_its_hello_nobody_becomes_a_giver(void)
+static void test_of_a_process_that_ended_before_its_hello_nobody_becomes_a_controller(void)
 {
 	struct ows_hello hello = control_hello(OWS_HELLO_COMMAND, "late");
 	int pair[2], status, fd, fds[3];
@@ -360,7 +361,7 @@ static void test_of_a_process_that_ended_before_its_hello_nobody_becomes_a_giver
 	close(pair[1]);
 }
 
-static void test_a_stopped_giver_keeps_nobody_waiting(void)
+static void test_a_stopped_controller_keeps_nobody_waiting(void)
 {
 	struct control_client client;
 	int told[2];
@@ -432,17 +433,18 @@ int main(void)
 	RUN_TEST(test_a_hello_of_another_kind_or_version_is_refused);
 	RUN_TEST(test_a_later_minor_version_with_flags_that_are_not_known_is_welcome);
 	RUN_TEST(test_who_says_nothing_in_time_is_hung_up_on);
-	RUN_TEST(test_a_giver_gets_a_sealed_memory_a_bell_and_news);
-	RUN_TEST(test_two_givers_share_nothing);
+	RUN_TEST(test_a_controller_gets_a_sealed_memory_a_bell_and_news);
+	RUN_TEST(test_two_controllers_share_nothing);
 	RUN_TEST(test_a_token_comes_back_as_it_was_presented);
-	RUN_TEST(test_the_memory_can_be_neither_cut_nor_sealed_and_a_hole_harms_only_its_giver);
-	RUN_TEST(test_a_giver_that_closes_leaves_and_finds_its_memory_dead);
+	RUN_TEST(
+		test_the_memory_can_be_neither_cut_nor_sealed_and_a_hole_harms_only_its_controller);
+	RUN_TEST(test_a_controller_that_closes_leaves_and_finds_its_memory_dead);
 	RUN_TEST(test_a_second_message_ends_the_connection);
 	RUN_TEST(test_a_second_message_right_behind_the_hello_ends_the_connection);
-	RUN_TEST(test_a_giver_that_is_killed_is_lost);
-	RUN_TEST(test_a_giver_that_is_killed_is_lost_though_its_child_holds_the_socket);
-	RUN_TEST(test_of_a_process_that_ended_before_its_hello_nobody_becomes_a_giver);
-	RUN_TEST(test_a_stopped_giver_keeps_nobody_waiting);
+	RUN_TEST(test_a_controller_that_is_killed_is_lost);
+	RUN_TEST(test_a_controller_that_is_killed_is_lost_though_its_child_holds_the_socket);
+	RUN_TEST(test_of_a_process_that_ended_before_its_hello_nobody_becomes_a_controller);
+	RUN_TEST(test_a_stopped_controller_keeps_nobody_waiting);
 	RUN_TEST(test_a_reload_sends_a_new_memory_over_the_same_connection);
 	RUN_TEST(test_who_reads_late_gets_the_last_welcome_after_the_first_it_did_not_read);
 	return UNITY_END();

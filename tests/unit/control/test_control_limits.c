@@ -19,7 +19,7 @@
 
 #define SOMEBODY 54321
 
-static struct control_client clients[OWS_GIVERS];
+static struct control_client clients[OWS_CONTROLLERS];
 #define USERS 5
 static struct config_who users[USERS] = {{.id = SOMEBODY},
                                          {.id = SOMEBODY + 1},
@@ -53,7 +53,7 @@ static unsigned descriptors(void)
 	return count;
 }
 
-static void test_a_place_is_free_again_when_its_giver_has_left(void)
+static void test_a_place_is_free_again_when_its_controller_has_left(void)
 {
 	struct control_client client;
 	unsigned before = descriptors();
@@ -72,22 +72,22 @@ static void test_a_place_is_free_again_when_its_giver_has_left(void)
 	TEST_ASSERT_EQUAL_UINT(before, descriptors());
 }
 
-static void test_no_more_givers_join_than_there_are_places(void)
+static void test_no_more_controllers_join_than_there_are_places(void)
 {
 	struct control_client more;
 
 	if (getuid())
 		TEST_IGNORE_MESSAGE("only root may have all places");
-	for (unsigned i = 0; i < OWS_GIVERS; i++)
+	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
 		TEST_ASSERT_EQUAL(0, control_join(&clients[i], OWS_HELLO_COMMAND, "many"));
 	TEST_ASSERT_EQUAL(-ENOSPC, control_join(&more, OWS_HELLO_COMMAND, "more"));
 	control_leave(&more);
 	control_reload();
-	TEST_ASSERT_EQUAL_UINT(OWS_GIVERS, control_inside());
+	TEST_ASSERT_EQUAL_UINT(OWS_CONTROLLERS, control_inside());
 	control_leave(&clients[0]);
-	control_wait_count("control_connections", OWS_GIVERS - 1);
+	control_wait_count("control_connections", OWS_CONTROLLERS - 1);
 	TEST_ASSERT_EQUAL(0, control_join(&clients[0], OWS_HELLO_COMMAND, "again"));
-	for (unsigned i = 0; i < OWS_GIVERS; i++)
+	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
 		control_leave(&clients[i]);
 	control_wait_count("control_connections", 0);
 	TEST_ASSERT_EQUAL_UINT(1, control_count("control_refused_limits"));
@@ -165,7 +165,7 @@ static void test_many_users_leave_root_a_place(void)
 			_exit(crowd(users[i].id, false, hold[0]));
 		}
 	}
-	control_wait_count("control_refused_limits", USERS * 50 - (OWS_GIVERS - 8));
+	control_wait_count("control_refused_limits", USERS * 50 - (OWS_CONTROLLERS - 8));
 	TEST_ASSERT_EQUAL(0, control_join(&client, OWS_HELLO_COMMAND, "root"));
 	control_leave(&client);
 	close(hold[1]);
@@ -224,7 +224,7 @@ static void test_a_thousand_programs_at_once_each_get_an_answer(void)
 			if (got[k] >= 0)
 				close(got[k]);
 	}
-	TEST_ASSERT_EQUAL_UINT(getuid() ? 32 : OWS_GIVERS, welcome);
+	TEST_ASSERT_EQUAL_UINT(getuid() ? 32 : OWS_CONTROLLERS, welcome);
 	TEST_ASSERT_EQUAL_UINT(1000, welcome + refused);
 	for (unsigned i = 0; i < 1000; i++)
 		close(fds[i]);
@@ -261,8 +261,8 @@ int main(void)
 {
 	signal(SIGPIPE, SIG_IGN);
 	UNITY_BEGIN();
-	RUN_TEST(test_a_place_is_free_again_when_its_giver_has_left);
-	RUN_TEST(test_no_more_givers_join_than_there_are_places);
+	RUN_TEST(test_a_place_is_free_again_when_its_controller_has_left);
+	RUN_TEST(test_no_more_controllers_join_than_there_are_places);
 	RUN_TEST(test_a_user_has_32_places_at_most);
 	RUN_TEST(test_connections_that_say_nothing_count_too);
 	RUN_TEST(test_many_users_leave_root_a_place);

@@ -116,7 +116,7 @@ static void test_ControlAllow_names_who_may_command_the_signals_of_a_pattern(voi
 	}
 }
 
-static void test_the_rights_of_a_giver_are_a_bit_for_each_record(void)
+static void test_the_rights_of_a_controller_are_a_bit_for_each_record(void)
 {
 	struct rights rights = of(&with, true);
 	struct peer peer = peer_of(PLC, 1), group = peer_of(STRANGER, CONTROLLERS);
@@ -188,7 +188,7 @@ static void test_the_other_groups_of_a_process_count(void)
 }
 
 /* The rights are those of the process that connected: a memory that is handed on carries them. */
-static void test_the_memory_shows_what_its_giver_may_command(void)
+static void test_the_memory_shows_what_its_controller_may_command(void)
 {
 	struct control_client client;
 	const struct ows_command_slot *slots;
@@ -198,13 +198,13 @@ static void test_the_memory_shows_what_its_giver_may_command(void)
 	control_open();
 	TEST_ASSERT_EQUAL(0, control_join(&client, OWS_HELLO_COMMAND, "own"));
 	slots = (const void *)(client.memory +
-	                       ((struct ows_giver_header *)(void *)client.memory)->slot_off);
+	                       ((struct ows_controller_header *)(void *)client.memory)->slot_off);
 	for (int i = 0; i < 4; i++)
 		TEST_ASSERT_EQUAL_UINT(1, slots[i].allowed);
 	control_leave(&client);
 	TEST_ASSERT_EQUAL(0, control_join(&client, 0, "own, for news"));
 	slots = (const void *)(client.memory +
-	                       ((struct ows_giver_header *)(void *)client.memory)->slot_off);
+	                       ((struct ows_controller_header *)(void *)client.memory)->slot_off);
 	for (int i = 0; i < 4; i++)
 		TEST_ASSERT_EQUAL_UINT(0, slots[i].allowed);
 	TEST_ASSERT_EQUAL_HEX32(0, control_turn_of(client.welcome.serial)->rights[0]);
@@ -217,11 +217,11 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_without_ControlAllow_the_group_decides);
 	RUN_TEST(test_ControlAllow_names_who_may_command_the_signals_of_a_pattern);
-	RUN_TEST(test_the_rights_of_a_giver_are_a_bit_for_each_record);
+	RUN_TEST(test_the_rights_of_a_controller_are_a_bit_for_each_record);
 	RUN_TEST(test_readers_may_hear_of_news_and_command_nothing);
 	RUN_TEST(test_a_reload_is_for_root_for_owsds_user_and_for_a_group_of_its_own);
 	RUN_TEST(test_a_stranger_is_refused_and_takes_no_place);
 	RUN_TEST(test_the_other_groups_of_a_process_count);
-	RUN_TEST(test_the_memory_shows_what_its_giver_may_command);
+	RUN_TEST(test_the_memory_shows_what_its_controller_may_command);
 	return UNITY_END();
 }

@@ -96,20 +96,20 @@ static void test_a_program_that_sets_a_thousand_times_a_second_is_never_made_to_
 	TEST_ASSERT_EQUAL_UINT64(0, scene_counter(&s, "deferred_commands"));
 }
 
-static void test_a_giver_that_marks_without_end_keeps_no_other_waiting(void)
+static void test_a_controller_that_marks_without_end_keeps_no_other_waiting(void)
 {
 	one_of_each();
 	scene_join(&s, 1, 2);
 	for (int i = 0; i < 20000; i++) {
-		giving_mark(&s.givers[1], 0);
-		giving_mark(&s.givers[1], 1);
+		giving_mark(&s.controllers[1], 0);
+		giving_mark(&s.controllers[1], 1);
 		engine_step(s.engine, s.now_ns);
 	}
 	TEST_ASSERT_GREATER_THAN_UINT64(0, scene_counter(&s, "deferred_commands"));
-	giving_mark(&s.givers[1], 0);
-	TEST_ASSERT_FALSE(engine_givers_marked(s.engine)); /* the engine may sleep */
+	giving_mark(&s.controllers[1], 0);
+	TEST_ASSERT_FALSE(engine_controllers_marked(s.engine)); /* the engine may sleep */
 	scene_set(&s, 2, 9);
-	TEST_ASSERT_TRUE(engine_givers_marked(s.engine));
+	TEST_ASSERT_TRUE(engine_controllers_marked(s.engine));
 	engine_step(s.engine, s.now_ns);
 	TEST_ASSERT_EQUAL_UINT32(1, scene_slot(&s, 2)->taken);
 }
@@ -121,8 +121,8 @@ static void test_the_word_of_marks_alone_stored_without_end_is_left_for_later_to
 	one_of_each();
 	scene_join(&s, 1, 2);
 	for (int i = 0; i < 20000; i++) {
-		giving_header(&s.givers[1])->marked = 1;
-		awake += engine_givers_marked(s.engine);
+		giving_header(&s.controllers[1])->marked = 1;
+		awake += engine_controllers_marked(s.engine);
 		engine_step(s.engine, s.now_ns);
 	}
 	TEST_ASSERT_LESS_THAN_UINT(6000, awake);
@@ -135,35 +135,36 @@ static void test_shelving_without_end_is_left_for_later_too(void)
 	one_of_each();
 	scene_join(&s, 1, 2);
 	for (int i = 0; i < 20000; i++) {
-		giving_shelf(&s.givers[1])->count++;
-		giving_shelf(&s.givers[1])->record = (uint32_t)i * 7919;
-		giving_header(&s.givers[1])->marked = 1;
+		giving_shelf(&s.controllers[1])->count++;
+		giving_shelf(&s.controllers[1])->record = (uint32_t)i * 7919;
+		giving_header(&s.controllers[1])->marked = 1;
 		engine_step(s.engine, s.now_ns);
-		looked += giving_shelf(&s.givers[1])->done == giving_shelf(&s.givers[1])->count;
+		looked += giving_shelf(&s.controllers[1])->done ==
+		          giving_shelf(&s.controllers[1])->count;
 	}
 	TEST_ASSERT_LESS_THAN_UINT(6000, looked);
 }
 
-static void test_a_memory_full_of_rubbish_harms_no_other_giver(void)
+static void test_a_memory_full_of_rubbish_harms_no_other_controller(void)
 {
 	uint32_t *words;
 
 	one_of_each();
 	scene_allow(&s, 1, 1); /* the output is not its */
 	scene_join(&s, 1, 2);
-	words = (void *)s.givers[1].memory.base;
+	words = (void *)s.controllers[1].memory.base;
 	srand(1);
 	for (int round = 0; round < 300; round++) {
 		for (uint32_t i = 0; i < s.layout->size / 4; i++)
 			words[i] = (uint32_t)rand() << 16 ^ (uint32_t)rand();
-		giving_header(&s.givers[1])->marked = 1;
+		giving_header(&s.controllers[1])->marked = 1;
 		scene_set(&s, 2, round & 255);
 		scene_run(&s, 20 * SCENE_MS);
 		TEST_ASSERT_EQUAL_INT(round & 255, atoi(scene_at(&s, PIO)));
 		TEST_ASSERT_EQUAL_UINT32(scene_slot(&s, 2)->stamp, scene_applied(&s, 2));
 	}
 	scene_leave(&s, 1);
-	TEST_ASSERT_EQUAL_STRING("giver0", scene_origin(&s, 2).who.name);
+	TEST_ASSERT_EQUAL_STRING("controller0", scene_origin(&s, 2).who.name);
 }
 
 int main(void)
@@ -172,9 +173,9 @@ int main(void)
 	RUN_TEST(test_an_input_that_the_file_does_not_make_writable_is_never_written);
 	RUN_TEST(test_marks_without_end_are_left_for_later_and_keep_no_set_waiting);
 	RUN_TEST(test_a_program_that_sets_a_thousand_times_a_second_is_never_made_to_wait);
-	RUN_TEST(test_a_giver_that_marks_without_end_keeps_no_other_waiting);
+	RUN_TEST(test_a_controller_that_marks_without_end_keeps_no_other_waiting);
 	RUN_TEST(test_the_word_of_marks_alone_stored_without_end_is_left_for_later_too);
 	RUN_TEST(test_shelving_without_end_is_left_for_later_too);
-	RUN_TEST(test_a_memory_full_of_rubbish_harms_no_other_giver);
+	RUN_TEST(test_a_memory_full_of_rubbish_harms_no_other_controller);
 	return UNITY_END();
 }

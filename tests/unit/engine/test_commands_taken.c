@@ -36,7 +36,7 @@ static void one_of_each(void)
 	scene_clear_trace(&s);
 }
 
-static void test_a_value_that_the_type_cannot_hold_is_refused_and_its_giver_gets_to_know(void)
+static void test_a_value_that_the_type_cannot_hold_is_refused_and_its_controller_gets_to_know(void)
 {
 	one_of_each();
 	scene_set(&s, 2, 256);
@@ -81,7 +81,7 @@ static void test_a_text_that_is_being_written_is_taken_when_it_is_whole(void)
 
 	a_text();
 	scene_set_text(&s, 1, "boiler");
-	text = giving_text(&s.givers[0], 1);
+	text = giving_text(&s.controllers[0], 1);
 	text->check++;
 	scene_run(&s, 500 * SCENE_MS);
 	TEST_ASSERT_EQUAL_UINT(0, s.writes);
@@ -95,7 +95,7 @@ static void test_a_text_that_is_not_whole_after_a_second_is_refused(void)
 {
 	a_text();
 	scene_set_text(&s, 1, "boiler");
-	giving_text(&s.givers[0], 1)->check++;
+	giving_text(&s.controllers[0], 1)->check++;
 	scene_run(&s, 2 * SCENE_S);
 	TEST_ASSERT_EQUAL_INT32(-EBADMSG, scene_slot(&s, 1)->err);
 	TEST_ASSERT_EQUAL_UINT32(1, scene_slot(&s, 1)->taken);
@@ -110,7 +110,7 @@ static void test_a_text_that_is_longer_than_its_room_is_refused(void)
 {
 	a_text();
 	scene_set_text(&s, 1, "boiler");
-	giving_text(&s.givers[0], 1)->len = 0xfffffff0u;
+	giving_text(&s.controllers[0], 1)->len = 0xfffffff0u;
 	scene_run(&s, 2 * SCENE_S);
 	TEST_ASSERT_EQUAL_INT32(-EBADMSG, scene_slot(&s, 1)->err);
 	TEST_ASSERT_EQUAL_UINT(0, s.writes);
@@ -228,7 +228,7 @@ static void test_the_driver_reset_clears_its_counters_and_every_signal(void)
 	TEST_ASSERT_LESS_THAN(5, scene_attrs(&s, 0).transactions);
 }
 
-static void test_a_giver_that_stops_beating_leaves_its_outputs_safe(void)
+static void test_a_controller_that_stops_beating_leaves_its_outputs_safe(void)
 {
 	struct config_item *item = scene_output(&s, "out", PIO, OWS_BYTE);
 
@@ -241,7 +241,7 @@ static void test_a_giver_that_stops_beating_leaves_its_outputs_safe(void)
 	scene_up(&s);
 	scene_join(&s, 3, 7);
 	for (int i = 0; i < 20; i++) {
-		giving_beat(&s.givers[3], 500);
+		giving_beat(&s.controllers[3], 500);
 		scene_set_by(&s, 3, 1, i);
 		scene_set_by(&s, 3, 2, i);
 		scene_run(&s, 200 * SCENE_MS);
@@ -251,7 +251,7 @@ static void test_a_giver_that_stops_beating_leaves_its_outputs_safe(void)
 	TEST_ASSERT_EQUAL_STRING("128", scene_at(&s, PIO));
 	TEST_ASSERT_EQUAL_STRING("19", scene_at(&s, PIO2));
 	TEST_ASSERT_BITS_HIGH(OWS_SAMPLE_SAFE, scene_sample(&s, 1).flags);
-	TEST_ASSERT_EQUAL_UINT64(1, scene_counter(&s, "lost_givers"));
+	TEST_ASSERT_EQUAL_UINT64(1, scene_counter(&s, "lost_controllers"));
 	TEST_ASSERT_EQUAL_UINT64(1, scene_counter(&s, "safe_outputs"));
 	/* the next command counts again */
 	scene_set(&s, 1, 7);
@@ -260,7 +260,7 @@ static void test_a_giver_that_stops_beating_leaves_its_outputs_safe(void)
 	TEST_ASSERT_BITS_LOW(OWS_SAMPLE_SAFE, scene_sample(&s, 1).flags);
 }
 
-static void test_a_giver_that_says_goodbye_leaves_its_outputs_as_they_are(void)
+static void test_a_controller_that_says_goodbye_leaves_its_outputs_as_they_are(void)
 {
 	struct config_item *item = scene_output(&s, "out", PIO, OWS_BYTE);
 
@@ -269,7 +269,7 @@ static void test_a_giver_that_says_goodbye_leaves_its_outputs_as_they_are(void)
 	scene_put(&s, PIO, "0", 0);
 	scene_start(&s);
 	scene_up(&s);
-	giving_beat(&s.givers[0], 500);
+	giving_beat(&s.controllers[0], 500);
 	scene_set(&s, 1, 3);
 	scene_run(&s, 200 * SCENE_MS);
 	scene_goodbye(&s, 0);
@@ -296,7 +296,7 @@ static void test_a_memory_of_zeros_commands_nothing(void)
 	scene_run(&s, 300 * SCENE_MS);
 	TEST_ASSERT_EQUAL_STRING("3", scene_at(&s, PIO));
 	scene_clear_trace(&s);
-	memset(s.givers[0].memory.base, 0, s.layout->size);
+	memset(s.controllers[0].memory.base, 0, s.layout->size);
 	scene_ring(&s, 0);
 	scene_ring(&s, 2);
 	scene_run(&s, SCENE_S);
@@ -308,7 +308,7 @@ static void test_a_memory_of_zeros_commands_nothing(void)
 	TEST_ASSERT_GREATER_THAN_UINT64(0, scene_attrs(&s, 2).transactions);
 }
 
-static void test_between_givers_the_last_command_taken_is_in_force(void)
+static void test_between_controllers_the_last_command_taken_is_in_force(void)
 {
 	one_of_each();
 	scene_join(&s, 1, 2);
@@ -318,30 +318,30 @@ static void test_between_givers_the_last_command_taken_is_in_force(void)
 	scene_run(&s, 100 * SCENE_MS);
 	TEST_ASSERT_EQUAL_STRING("4", scene_at(&s, PIO));
 	TEST_ASSERT_EQUAL_UINT32(1, scene_applied(&s, 2));
-	TEST_ASSERT_EQUAL_UINT32(1, giving_slot(&s.givers[1], 2)->applied);
+	TEST_ASSERT_EQUAL_UINT32(1, giving_slot(&s.controllers[1], 2)->applied);
 	/* the first one's look at other things does not bring its command back */
 	scene_slot(&s, 2)->dgn_reset++;
 	scene_ring(&s, 2);
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_EQUAL_STRING("4", scene_at(&s, PIO));
-	TEST_ASSERT_EQUAL_STRING("giver1", scene_origin(&s, 2).who.name);
+	TEST_ASSERT_EQUAL_STRING("controller1", scene_origin(&s, 2).who.name);
 }
 
-static void test_a_signal_that_the_giver_may_not_command_is_refused(void)
+static void test_a_signal_that_the_controller_may_not_command_is_refused(void)
 {
 	one_of_each();
 	scene_allow(&s, 1, 1);
 	scene_join(&s, 1, 2);
-	giving_enable(&giving_slot(&s.givers[1], 2)->write_enable, false);
-	giving_slot(&s.givers[1], 2)->one_shot++;
+	giving_enable(&giving_slot(&s.controllers[1], 2)->write_enable, false);
+	giving_slot(&s.controllers[1], 2)->one_shot++;
 	scene_set_by(&s, 1, 2, 4);
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_EQUAL_UINT(0, s.writes);
-	TEST_ASSERT_EQUAL_INT32(-EACCES, giving_slot(&s.givers[1], 2)->err);
+	TEST_ASSERT_EQUAL_INT32(-EACCES, giving_slot(&s.controllers[1], 2)->err);
 	TEST_ASSERT_BITS_HIGH(OWS_ATTR_WRITE_ENABLE, scene_attrs(&s, 2).flags);
 	TEST_ASSERT_EQUAL_UINT64(1, scene_counter(&s, "refused_commands"));
-	giving_slot(&s.givers[1], 0)->dgn_reset++;
-	giving_mark(&s.givers[1], 0);
+	giving_slot(&s.controllers[1], 0)->dgn_reset++;
+	giving_mark(&s.controllers[1], 0);
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_GREATER_THAN_UINT64(15, scene_attrs(&s, 1).transactions);
 }
@@ -411,7 +411,7 @@ static void test_transactions_count_requests_that_ended(void)
 int main(void)
 {
 	UNITY_BEGIN();
-	RUN_TEST(test_a_value_that_the_type_cannot_hold_is_refused_and_its_giver_gets_to_know);
+	RUN_TEST(test_a_value_that_the_type_cannot_hold_is_refused_and_its_controller_gets_to_know);
 	RUN_TEST(test_not_a_number_is_refused);
 	RUN_TEST(test_a_text_that_is_being_written_is_taken_when_it_is_whole);
 	RUN_TEST(test_a_text_that_is_not_whole_after_a_second_is_refused);
@@ -423,12 +423,12 @@ int main(void)
 	RUN_TEST(test_one_shot_writes_once_changed_or_not_enabled_or_not);
 	RUN_TEST(test_diagnostics_are_reset_and_the_value_stays);
 	RUN_TEST(test_the_driver_reset_clears_its_counters_and_every_signal);
-	RUN_TEST(test_a_giver_that_stops_beating_leaves_its_outputs_safe);
-	RUN_TEST(test_a_giver_that_says_goodbye_leaves_its_outputs_as_they_are);
+	RUN_TEST(test_a_controller_that_stops_beating_leaves_its_outputs_safe);
+	RUN_TEST(test_a_controller_that_says_goodbye_leaves_its_outputs_as_they_are);
 	RUN_TEST(test_what_is_set_just_before_the_end_is_taken);
 	RUN_TEST(test_a_memory_of_zeros_commands_nothing);
-	RUN_TEST(test_between_givers_the_last_command_taken_is_in_force);
-	RUN_TEST(test_a_signal_that_the_giver_may_not_command_is_refused);
+	RUN_TEST(test_between_controllers_the_last_command_taken_is_in_force);
+	RUN_TEST(test_a_signal_that_the_controller_may_not_command_is_refused);
 	RUN_TEST(test_per_count_and_pend_count_are_counted_in_periods);
 	RUN_TEST(test_age_and_period_are_of_the_updates_though_the_measurement_is_old);
 	RUN_TEST(test_transactions_count_requests_that_ended);

@@ -21,7 +21,7 @@ void tearDown(void)
 
 static void test_over_a_reload_the_command_stays_in_force(void)
 {
-	giver_set_all(false);
+	controller_set_all(false);
 	scene_reload(&s, NULL);
 	scene_run(&s, 5 * SCENE_S);
 	expect_outputs(nothing);
@@ -30,9 +30,9 @@ static void test_over_a_reload_the_command_stays_in_force(void)
 	expect_outputs(command);
 }
 
-static void test_over_a_reload_a_giver_that_beats_goes_on_answering_for_its_outputs(void)
+static void test_over_a_reload_a_controller_that_beats_goes_on_answering_for_its_outputs(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	scene_reload(&s, NULL);
 	beat_on(5 * SCENE_S);
 	expect_outputs(nothing);
@@ -40,18 +40,18 @@ static void test_over_a_reload_a_giver_that_beats_goes_on_answering_for_its_outp
 	expect_outputs(lost_running);
 }
 
-static void test_over_a_reload_a_giver_that_hung_up_goes_on_being_awaited(void)
+static void test_over_a_reload_a_controller_that_hung_up_goes_on_being_awaited(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	scene_leave(&s, 1);
 	scene_reload(&s, NULL);
 	scene_run(&s, 5 * SCENE_S);
 	expect_outputs(lost_running);
 }
 
-static void test_a_giver_without_room_for_its_memory_at_a_reload_is_lost(void)
+static void test_a_controller_without_room_for_its_memory_at_a_reload_is_lost(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	s.dropped = true;
 	scene_reload(&s, NULL);
 	scene_run(&s, 5 * SCENE_S);
@@ -62,7 +62,7 @@ static void test_a_giver_without_room_for_its_memory_at_a_reload_is_lost(void)
 
 static void test_after_a_reboot_outputs_have_initvalue_or_what_was_stored_last(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	scene_reboot(&s);
 	scene_up(&s);
 	scene_run(&s, 10 * SCENE_S);
@@ -72,9 +72,9 @@ static void test_after_a_reboot_outputs_have_initvalue_or_what_was_stored_last(v
 	TEST_ASSERT_EQUAL_UINT(OWS_REASON_NONE, scene_origin(&s, 1).reason);
 }
 
-static void test_after_a_reboot_a_giver_brings_nothing_back(void)
+static void test_after_a_reboot_a_controller_brings_nothing_back(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	scene_reboot(&s);
 	scene_up(&s);
 	come_back();
@@ -99,7 +99,7 @@ static void test_without_anything_stored_start_last_has_initvalue(void)
 
 static void test_safevalue_becomes_last(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	scene_run(&s, 5 * SCENE_S);
 	scene_reboot(&s);
 	scene_up(&s);
@@ -109,48 +109,48 @@ static void test_safevalue_becomes_last(void)
 
 /* --- owsd runs -------------------------------------------------------------------------------- */
 
-static void test_a_giver_that_dies_and_never_beat_leaves_its_outputs_as_they_are(void)
+static void test_a_controller_that_dies_and_never_beat_leaves_its_outputs_as_they_are(void)
 {
-	giver_set_all(false);
+	controller_set_all(false);
 	scene_leave(&s, 1);
 	scene_run(&s, 20 * SCENE_S);
 	expect_outputs(nothing);
 }
 
-static void test_a_giver_that_says_goodbye_leaves_its_outputs_as_they_are(void)
+static void test_a_controller_that_says_goodbye_leaves_its_outputs_as_they_are(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	scene_goodbye(&s, 1);
 	scene_run(&s, 20 * SCENE_S);
 	expect_outputs(nothing);
 }
 
-static void test_a_giver_that_hangs_leaves_safevalue_when_its_time_is_over(void)
+static void test_a_controller_that_hangs_leaves_safevalue_when_its_time_is_over(void)
 {
-	giver_set_all(true); /* 200 ms ago */
+	controller_set_all(true); /* 200 ms ago */
 	scene_run(&s, 200 * SCENE_MS);
 	expect_outputs(nothing);
 	scene_run(&s, 500 * SCENE_MS);
 	expect_outputs(lost_running);
-	TEST_ASSERT_BITS_HIGH(OWS_GIVER_LATE, s.image.givers[1].flags);
-	TEST_ASSERT_EQUAL_UINT64(1, scene_counter(&s, "lost_givers"));
+	TEST_ASSERT_BITS_HIGH(OWS_CONTROLLER_LATE, s.image.controllers[1].flags);
+	TEST_ASSERT_EQUAL_UINT64(1, scene_counter(&s, "lost_controllers"));
 }
 
 /* Its child holds the socket open, or not: the control room says that it left. */
-static void test_a_giver_that_dies_without_goodbye_is_awaited_for_its_promised_time(void)
+static void test_a_controller_that_dies_without_goodbye_is_awaited_for_its_promised_time(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	scene_leave(&s, 1);
 	scene_run(&s, 200 * SCENE_MS);
 	expect_outputs(nothing);
 	scene_run(&s, 500 * SCENE_MS);
 	expect_outputs(lost_running);
-	TEST_ASSERT_EQUAL_UINT64(1, scene_counter(&s, "lost_givers"));
+	TEST_ASSERT_EQUAL_UINT64(1, scene_counter(&s, "lost_controllers"));
 }
 
-static void test_a_giver_that_hung_up_and_is_back_in_time_goes_on(void)
+static void test_a_controller_that_hung_up_and_is_back_in_time_goes_on(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	scene_leave(&s, 1);
 	scene_run(&s, 200 * SCENE_MS);
 	come_back();
@@ -160,14 +160,14 @@ static void test_a_giver_that_hung_up_and_is_back_in_time_goes_on(void)
 	expect_outputs(lost_running);
 }
 
-static void test_a_giver_that_connects_anew_before_its_end_is_seen_goes_on(void)
+static void test_a_controller_that_connects_anew_before_its_end_is_seen_goes_on(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	scene_join(&s, 2, 2);
-	giving_beat(&s.givers[2], BEAT_MS);
+	giving_beat(&s.controllers[2], BEAT_MS);
 	scene_leave(&s, 1);
 	for (int i = 0; i < 50; i++) {
-		giving_beat(&s.givers[2], BEAT_MS);
+		giving_beat(&s.controllers[2], BEAT_MS);
 		scene_run(&s, 100 * SCENE_MS);
 	}
 	expect_outputs(nothing);
@@ -185,7 +185,7 @@ static void delay_all(int64_t ns)
 
 static void test_with_safe_delay_0_a_hang_up_leaves_safevalue_at_once(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	delay_all(0);
 	scene_leave(&s, 1);
 	scene_run(&s, 20 * SCENE_MS);
@@ -194,7 +194,7 @@ static void test_with_safe_delay_0_a_hang_up_leaves_safevalue_at_once(void)
 
 static void test_with_safe_delay_0_a_missed_beat_is_still_waited_for(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	delay_all(0);
 	scene_run(&s, 200 * SCENE_MS);
 	expect_outputs(nothing);
@@ -204,16 +204,16 @@ static void test_with_safe_delay_0_a_missed_beat_is_still_waited_for(void)
 
 static void test_with_safe_delay_0_a_goodbye_changes_nothing(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	delay_all(0);
 	scene_goodbye(&s, 1);
 	scene_run(&s, 5 * SCENE_S);
 	expect_outputs(nothing);
 }
 
-static void test_a_longer_safe_delay_keeps_the_outputs_of_a_giver_that_hangs(void)
+static void test_a_longer_safe_delay_keeps_the_outputs_of_a_controller_that_hangs(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	delay_all(3 * SCENE_S);
 	scene_run(&s, 2500 * SCENE_MS);
 	expect_outputs(nothing);
@@ -221,9 +221,9 @@ static void test_a_longer_safe_delay_keeps_the_outputs_of_a_giver_that_hangs(voi
 	expect_outputs(lost_running);
 }
 
-static void test_a_giver_that_beats_again_within_safe_delay_keeps_its_outputs(void)
+static void test_a_controller_that_beats_again_within_safe_delay_keeps_its_outputs(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	delay_all(3 * SCENE_S);
 	scene_run(&s, 2 * SCENE_S);
 	beat_on(5 * SCENE_S);
@@ -239,7 +239,7 @@ static void test_a_giver_that_beats_again_within_safe_delay_keeps_its_outputs(vo
 
 static void test_a_device_that_lost_its_power_gets_the_command_again(void)
 {
-	giver_set_all(false);
+	controller_set_all(false);
 	scene_tell(&s, 0, BUS_POR, "/29.000000000001");
 	scene_run(&s, SCENE_S);
 	expect_outputs(command);
@@ -247,7 +247,7 @@ static void test_a_device_that_lost_its_power_gets_the_command_again(void)
 
 static void test_a_device_that_lost_its_power_gets_safevalue_if_that_is_in_force(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	scene_run(&s, 5 * SCENE_S);
 	scene_clear_trace(&s);
 	scene_tell(&s, 0, BUS_POR, "/29.000000000001");
@@ -255,9 +255,9 @@ static void test_a_device_that_lost_its_power_gets_safevalue_if_that_is_in_force
 	expect_outputs((struct row){NEXT, NEXT, SAFE, SAFE, NEXT, NEXT, SAFE, SAFE});
 }
 
-static void test_a_device_that_lost_its_power_gets_nothing_while_its_giver_is_awaited(void)
+static void test_a_device_that_lost_its_power_gets_nothing_while_its_controller_is_awaited(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	restart_owsd();
 	scene_tell(&s, 0, BUS_POR, "/29.000000000001");
 	scene_run(&s, SCENE_S);
@@ -268,26 +268,26 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_over_a_reload_the_command_stays_in_force);
-	RUN_TEST(test_over_a_reload_a_giver_that_beats_goes_on_answering_for_its_outputs);
-	RUN_TEST(test_over_a_reload_a_giver_that_hung_up_goes_on_being_awaited);
-	RUN_TEST(test_a_giver_without_room_for_its_memory_at_a_reload_is_lost);
+	RUN_TEST(test_over_a_reload_a_controller_that_beats_goes_on_answering_for_its_outputs);
+	RUN_TEST(test_over_a_reload_a_controller_that_hung_up_goes_on_being_awaited);
+	RUN_TEST(test_a_controller_without_room_for_its_memory_at_a_reload_is_lost);
 	RUN_TEST(test_after_a_reboot_outputs_have_initvalue_or_what_was_stored_last);
-	RUN_TEST(test_after_a_reboot_a_giver_brings_nothing_back);
+	RUN_TEST(test_after_a_reboot_a_controller_brings_nothing_back);
 	RUN_TEST(test_without_anything_stored_start_last_has_initvalue);
 	RUN_TEST(test_safevalue_becomes_last);
-	RUN_TEST(test_a_giver_that_dies_and_never_beat_leaves_its_outputs_as_they_are);
-	RUN_TEST(test_a_giver_that_says_goodbye_leaves_its_outputs_as_they_are);
-	RUN_TEST(test_a_giver_that_hangs_leaves_safevalue_when_its_time_is_over);
-	RUN_TEST(test_a_giver_that_dies_without_goodbye_is_awaited_for_its_promised_time);
-	RUN_TEST(test_a_giver_that_hung_up_and_is_back_in_time_goes_on);
-	RUN_TEST(test_a_giver_that_connects_anew_before_its_end_is_seen_goes_on);
+	RUN_TEST(test_a_controller_that_dies_and_never_beat_leaves_its_outputs_as_they_are);
+	RUN_TEST(test_a_controller_that_says_goodbye_leaves_its_outputs_as_they_are);
+	RUN_TEST(test_a_controller_that_hangs_leaves_safevalue_when_its_time_is_over);
+	RUN_TEST(test_a_controller_that_dies_without_goodbye_is_awaited_for_its_promised_time);
+	RUN_TEST(test_a_controller_that_hung_up_and_is_back_in_time_goes_on);
+	RUN_TEST(test_a_controller_that_connects_anew_before_its_end_is_seen_goes_on);
 	RUN_TEST(test_with_safe_delay_0_a_hang_up_leaves_safevalue_at_once);
 	RUN_TEST(test_with_safe_delay_0_a_missed_beat_is_still_waited_for);
 	RUN_TEST(test_with_safe_delay_0_a_goodbye_changes_nothing);
-	RUN_TEST(test_a_longer_safe_delay_keeps_the_outputs_of_a_giver_that_hangs);
-	RUN_TEST(test_a_giver_that_beats_again_within_safe_delay_keeps_its_outputs);
+	RUN_TEST(test_a_longer_safe_delay_keeps_the_outputs_of_a_controller_that_hangs);
+	RUN_TEST(test_a_controller_that_beats_again_within_safe_delay_keeps_its_outputs);
 	RUN_TEST(test_a_device_that_lost_its_power_gets_the_command_again);
 	RUN_TEST(test_a_device_that_lost_its_power_gets_safevalue_if_that_is_in_force);
-	RUN_TEST(test_a_device_that_lost_its_power_gets_nothing_while_its_giver_is_awaited);
+	RUN_TEST(test_a_device_that_lost_its_power_gets_nothing_while_its_controller_is_awaited);
 	return UNITY_END();
 }

@@ -21,9 +21,9 @@ void tearDown(void)
 
 /* --- A restart -------------------------------------------------------------------------------- */
 
-static void test_a_giver_that_comes_back_in_time_has_its_commands_in_force(void)
+static void test_a_controller_that_comes_back_in_time_has_its_commands_in_force(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	restart_owsd();
 	scene_run(&s, 1900 * SCENE_MS);
 	expect_outputs(nothing); /* InitValue is withheld */
@@ -31,15 +31,16 @@ static void test_a_giver_that_comes_back_in_time_has_its_commands_in_force(void)
 	beat_on(10 * SCENE_S);
 	expect_outputs(command);
 	TEST_ASSERT_EQUAL_UINT(OWS_REASON_RETURNED, scene_origin(&s, 1).reason);
-	TEST_ASSERT_EQUAL_STRING("giver1", scene_origin(&s, 1).who.name);
+	TEST_ASSERT_EQUAL_STRING("controller1", scene_origin(&s, 1).who.name);
 }
 
-/* owsd looks at a slot just before it writes: what came since it heard the giver counts too. */
+/* owsd looks at a slot just before it writes: what came since it heard the controller counts
+ * too. */
 static void test_a_promise_that_comes_along_with_a_command_is_known_with_it(void)
 {
-	giver_set_all(false);
-	giving_beat(&s.givers[1], BEAT_MS);
-	giving_set(&s.givers[1], 1, OTHER);
+	controller_set_all(false);
+	giving_beat(&s.controllers[1], BEAT_MS);
+	giving_set(&s.controllers[1], 1, OTHER);
 	engine_intake_signal(s.engine, &s.engine->table.signals[0], s.now_ns);
 	restart_owsd();
 	come_back();
@@ -47,9 +48,9 @@ static void test_a_promise_that_comes_along_with_a_command_is_known_with_it(void
 	expect_outputs((struct row){OTHER, NEXT, NEXT, NEXT, NEXT, NEXT, NEXT, NEXT});
 }
 
-static void test_a_giver_that_came_back_answers_for_its_outputs_again(void)
+static void test_a_controller_that_came_back_answers_for_its_outputs_again(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	restart_owsd();
 	come_back();
 	beat_on(SCENE_S);
@@ -58,9 +59,9 @@ static void test_a_giver_that_came_back_answers_for_its_outputs_again(void)
 	expect_outputs(lost_running);
 }
 
-static void test_a_giver_that_came_back_and_never_beats_is_lost(void)
+static void test_a_controller_that_came_back_and_never_beats_is_lost(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	restart_owsd();
 	scene_join(&s, 1, 2);
 	scene_run(&s, 200 * SCENE_MS);
@@ -70,17 +71,17 @@ static void test_a_giver_that_came_back_and_never_beats_is_lost(void)
 	expect_outputs(lost_running);
 }
 
-static void test_a_giver_that_came_back_gets_to_know_that_its_command_is_applied(void)
+static void test_a_controller_that_came_back_gets_to_know_that_its_command_is_applied(void)
 {
 	uint32_t stamp;
 
-	giver_set_all(true);
-	stamp = giving_slot(&s.givers[1], 1)->stamp;
+	controller_set_all(true);
+	stamp = giving_slot(&s.controllers[1], 1)->stamp;
 	restart_owsd();
 	come_back();
 	beat_on(SCENE_S);
-	TEST_ASSERT_EQUAL_UINT32(stamp, giving_slot(&s.givers[1], 1)->taken);
-	TEST_ASSERT_EQUAL_UINT32(stamp, giving_slot(&s.givers[1], 1)->applied);
+	TEST_ASSERT_EQUAL_UINT32(stamp, giving_slot(&s.controllers[1], 1)->taken);
+	TEST_ASSERT_EQUAL_UINT32(stamp, giving_slot(&s.controllers[1], 1)->applied);
 }
 
 static void test_a_promise_is_known_as_soon_as_the_command_is_written(void)
@@ -88,7 +89,7 @@ static void test_a_promise_is_known_as_soon_as_the_command_is_written(void)
 	start_outputs();
 	scene_clear_trace(&s);
 	scene_join(&s, 1, 2);
-	giving_beat(&s.givers[1], BEAT_MS);
+	giving_beat(&s.controllers[1], BEAT_MS);
 	for (unsigned i = 1; i <= OUTPUTS; i++)
 		scene_set_by(&s, 1, i, NEXT);
 	scene_run(&s, 20 * SCENE_MS); /* less than a period */
@@ -104,7 +105,7 @@ static void test_a_longer_promise_is_waited_for(void)
 {
 	start_outputs();
 	scene_join(&s, 1, 2);
-	giving_beat(&s.givers[1], 5000);
+	giving_beat(&s.controllers[1], 5000);
 	set_all(1, NEXT);
 	restart_owsd();
 	scene_run(&s, 4900 * SCENE_MS);
@@ -113,12 +114,13 @@ static void test_a_longer_promise_is_waited_for(void)
 	expect_outputs(lost);
 }
 
-/* libows refuses it; a program may write it all the same, and so did a giver of an older owsd. */
+/* libows refuses it; a program may write it all the same, and so did a controller of an older
+ * owsd. */
 static void test_a_promise_of_more_than_an_hour_is_one_of_an_hour(void)
 {
 	start_outputs();
 	scene_join(&s, 1, 2);
-	giving_beat(&s.givers[1], UINT32_MAX);
+	giving_beat(&s.controllers[1], UINT32_MAX);
 	set_all(1, NEXT);
 	restart_owsd();
 	scene_run(&s, 3599 * SCENE_S);
@@ -127,9 +129,9 @@ static void test_a_promise_of_more_than_an_hour_is_one_of_an_hour(void)
 	expect_outputs(lost);
 }
 
-static void test_a_giver_that_said_goodbye_does_not_come_back(void)
+static void test_a_controller_that_said_goodbye_does_not_come_back(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	scene_goodbye(&s, 1);
 	scene_run(&s, 5 * SCENE_S);
 	expect_outputs(nothing);
@@ -141,27 +143,27 @@ static void test_a_giver_that_said_goodbye_does_not_come_back(void)
 	expect_outputs(ended);
 }
 
-static void test_of_a_giver_that_never_beat_no_command_comes_back(void)
+static void test_of_a_controller_that_never_beat_no_command_comes_back(void)
 {
-	giver_set_all(false);
+	controller_set_all(false);
 	restart_owsd();
 	come_back();
 	beat_on(10 * SCENE_S);
 	expect_outputs(ended);
 }
 
-static void test_a_giver_that_is_dead_or_hangs_over_a_restart_leaves_safevalue(void)
+static void test_a_controller_that_is_dead_or_hangs_over_a_restart_leaves_safevalue(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	restart_owsd();
 	scene_run(&s, 1900 * SCENE_MS);
 	expect_outputs(nothing);
 	scene_run(&s, 10 * SCENE_S);
 	expect_outputs(lost);
-	TEST_ASSERT_EQUAL_UINT64(1, scene_counter(&s, "lost_givers"));
+	TEST_ASSERT_EQUAL_UINT64(1, scene_counter(&s, "lost_controllers"));
 	TEST_ASSERT_TRUE(scene_sample(&s, 3).flags & OWS_SAMPLE_SAFE);
 	TEST_ASSERT_EQUAL_UINT(OWS_REASON_SAFE, scene_origin(&s, 3).reason);
-	TEST_ASSERT_EQUAL_STRING("giver1", scene_origin(&s, 3).who.name);
+	TEST_ASSERT_EQUAL_STRING("controller1", scene_origin(&s, 3).who.name);
 	/* too late */
 	come_back();
 	scene_clear_trace(&s);
@@ -169,9 +171,9 @@ static void test_a_giver_that_is_dead_or_hangs_over_a_restart_leaves_safevalue(v
 	expect_outputs(nothing);
 }
 
-static void test_another_program_at_the_place_of_an_awaited_giver_is_not_that_giver(void)
+static void test_another_program_at_the_place_of_an_awaited_controller_is_not_that_controller(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	restart_owsd();
 	scene_join(&s, 1, 3);
 	beat_on(10 * SCENE_S);
@@ -180,7 +182,7 @@ static void test_another_program_at_the_place_of_an_awaited_giver_is_not_that_gi
 
 static void test_the_token_of_another_user_brings_nothing_back(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	restart_owsd();
 	s.uid = 1001;
 	come_back();
@@ -190,7 +192,7 @@ static void test_the_token_of_another_user_brings_nothing_back(void)
 
 static void test_safevalue_stays_in_force_over_restarts_until_somebody_sets(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	scene_run(&s, 5 * SCENE_S); /* it hangs */
 	expect_outputs(lost_running);
 	for (int i = 0; i < 2; i++) {
@@ -206,9 +208,9 @@ static void test_safevalue_stays_in_force_over_restarts_until_somebody_sets(void
 	expect_outputs((struct row){NOTHING, INIT, NOTHING, INIT, OTHER, OTHER, OTHER, OTHER});
 }
 
-static void test_a_restart_while_the_giver_is_awaited_awaits_it_again(void)
+static void test_a_restart_while_the_controller_is_awaited_awaits_it_again(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	restart_owsd();
 	scene_run(&s, SCENE_S);
 	restart_owsd();
@@ -219,9 +221,9 @@ static void test_a_restart_while_the_giver_is_awaited_awaits_it_again(void)
 	expect_outputs(command);
 }
 
-static void test_a_reload_while_the_giver_is_awaited_goes_on_awaiting_it(void)
+static void test_a_reload_while_the_controller_is_awaited_goes_on_awaiting_it(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	restart_owsd();
 	scene_run(&s, 500 * SCENE_MS);
 	scene_reload(&s, NULL);
@@ -232,9 +234,9 @@ static void test_a_reload_while_the_giver_is_awaited_goes_on_awaiting_it(void)
 	expect_outputs(command);
 }
 
-static void test_a_set_while_the_giver_is_awaited_counts_at_once(void)
+static void test_a_set_while_the_controller_is_awaited_counts_at_once(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	restart_owsd();
 	scene_join(&s, 0, 1);
 	set_all(0, OTHER);
@@ -246,7 +248,7 @@ static void test_a_set_while_the_giver_is_awaited_counts_at_once(void)
 
 static void test_a_one_shot_does_not_write_what_is_not_in_force(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	restart_owsd();
 	scene_join(&s, 0, 1);
 	scene_slot(&s, 2)->one_shot++;
@@ -255,7 +257,7 @@ static void test_a_one_shot_does_not_write_what_is_not_in_force(void)
 	expect_outputs(nothing);
 }
 
-static void test_a_text_is_withheld_and_comes_back_with_its_giver(void)
+static void test_a_text_is_withheld_and_comes_back_with_its_controller(void)
 {
 	struct config_item *item = scene_output(&s, "alias", "/28.551DDF030000/alias", OWS_STRING);
 
@@ -265,8 +267,8 @@ static void test_a_text_is_withheld_and_comes_back_with_its_giver(void)
 	scene_start(&s);
 	scene_up(&s);
 	scene_join(&s, 1, 2);
-	giving_beat(&s.givers[1], BEAT_MS);
-	giving_set_text(&s.givers[1], 1, "boiler");
+	giving_beat(&s.controllers[1], BEAT_MS);
+	giving_set_text(&s.controllers[1], 1, "boiler");
 	beat_on(SCENE_S);
 	restart_owsd();
 	scene_run(&s, SCENE_S);
@@ -282,9 +284,9 @@ static void test_a_text_is_withheld_and_comes_back_with_its_giver(void)
 
 /* --- Superseded commands ---------------------------------------------------------------------- */
 
-static void test_a_superseded_command_does_not_come_back_with_its_giver(void)
+static void test_a_superseded_command_does_not_come_back_with_its_controller(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	set_all(0, OTHER); /* by one who never beat */
 	scene_clear_trace(&s);
 	restart_owsd();
@@ -293,9 +295,9 @@ static void test_a_superseded_command_does_not_come_back_with_its_giver(void)
 	expect_outputs((struct row){NOTHING, INIT, NOTHING, INIT, OTHER, OTHER, OTHER, OTHER});
 }
 
-static void test_a_superseded_giver_that_dies_leaves_the_outputs_as_they_are(void)
+static void test_a_superseded_controller_that_dies_leaves_the_outputs_as_they_are(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	set_all(0, OTHER);
 	scene_clear_trace(&s);
 	scene_leave(&s, 1);
@@ -303,24 +305,24 @@ static void test_a_superseded_giver_that_dies_leaves_the_outputs_as_they_are(voi
 	expect_outputs(nothing);
 }
 
-static void test_of_two_givers_that_beat_the_one_in_force_comes_back(void)
+static void test_of_two_controllers_that_beat_the_one_in_force_comes_back(void)
 {
-	giver_set_all(true);
-	giving_beat(&s.givers[0], BEAT_MS);
+	controller_set_all(true);
+	giving_beat(&s.controllers[0], BEAT_MS);
 	set_all(0, OTHER);
 	restart_owsd();
 	come_back(); /* the superseded one */
 	beat_on(SCENE_S);
 	expect_outputs(nothing);
 	scene_join(&s, 0, 1);
-	giving_beat(&s.givers[0], BEAT_MS);
+	giving_beat(&s.controllers[0], BEAT_MS);
 	scene_run(&s, 200 * SCENE_MS);
 	expect_outputs((struct row){OTHER, OTHER, OTHER, OTHER, OTHER, OTHER, OTHER, OTHER});
 }
 
-static void test_safevalue_is_not_undone_by_the_giver_that_was_lost(void)
+static void test_safevalue_is_not_undone_by_the_controller_that_was_lost(void)
 {
-	giver_set_all(true);
+	controller_set_all(true);
 	scene_run(&s, 5 * SCENE_S);
 	expect_outputs(lost_running);
 	scene_clear_trace(&s);
@@ -337,28 +339,28 @@ static void test_safevalue_is_not_undone_by_the_giver_that_was_lost(void)
 int main(void)
 {
 	UNITY_BEGIN();
-	RUN_TEST(test_a_giver_that_comes_back_in_time_has_its_commands_in_force);
+	RUN_TEST(test_a_controller_that_comes_back_in_time_has_its_commands_in_force);
 	RUN_TEST(test_a_promise_that_comes_along_with_a_command_is_known_with_it);
-	RUN_TEST(test_a_giver_that_came_back_answers_for_its_outputs_again);
-	RUN_TEST(test_a_giver_that_came_back_and_never_beats_is_lost);
-	RUN_TEST(test_a_giver_that_came_back_gets_to_know_that_its_command_is_applied);
+	RUN_TEST(test_a_controller_that_came_back_answers_for_its_outputs_again);
+	RUN_TEST(test_a_controller_that_came_back_and_never_beats_is_lost);
+	RUN_TEST(test_a_controller_that_came_back_gets_to_know_that_its_command_is_applied);
 	RUN_TEST(test_a_promise_is_known_as_soon_as_the_command_is_written);
 	RUN_TEST(test_a_longer_promise_is_waited_for);
 	RUN_TEST(test_a_promise_of_more_than_an_hour_is_one_of_an_hour);
-	RUN_TEST(test_a_giver_that_said_goodbye_does_not_come_back);
-	RUN_TEST(test_of_a_giver_that_never_beat_no_command_comes_back);
-	RUN_TEST(test_a_giver_that_is_dead_or_hangs_over_a_restart_leaves_safevalue);
-	RUN_TEST(test_another_program_at_the_place_of_an_awaited_giver_is_not_that_giver);
+	RUN_TEST(test_a_controller_that_said_goodbye_does_not_come_back);
+	RUN_TEST(test_of_a_controller_that_never_beat_no_command_comes_back);
+	RUN_TEST(test_a_controller_that_is_dead_or_hangs_over_a_restart_leaves_safevalue);
+	RUN_TEST(test_another_program_at_the_place_of_an_awaited_controller_is_not_that_controller);
 	RUN_TEST(test_the_token_of_another_user_brings_nothing_back);
 	RUN_TEST(test_safevalue_stays_in_force_over_restarts_until_somebody_sets);
-	RUN_TEST(test_a_restart_while_the_giver_is_awaited_awaits_it_again);
-	RUN_TEST(test_a_reload_while_the_giver_is_awaited_goes_on_awaiting_it);
-	RUN_TEST(test_a_set_while_the_giver_is_awaited_counts_at_once);
+	RUN_TEST(test_a_restart_while_the_controller_is_awaited_awaits_it_again);
+	RUN_TEST(test_a_reload_while_the_controller_is_awaited_goes_on_awaiting_it);
+	RUN_TEST(test_a_set_while_the_controller_is_awaited_counts_at_once);
 	RUN_TEST(test_a_one_shot_does_not_write_what_is_not_in_force);
-	RUN_TEST(test_a_text_is_withheld_and_comes_back_with_its_giver);
-	RUN_TEST(test_a_superseded_command_does_not_come_back_with_its_giver);
-	RUN_TEST(test_a_superseded_giver_that_dies_leaves_the_outputs_as_they_are);
-	RUN_TEST(test_of_two_givers_that_beat_the_one_in_force_comes_back);
-	RUN_TEST(test_safevalue_is_not_undone_by_the_giver_that_was_lost);
+	RUN_TEST(test_a_text_is_withheld_and_comes_back_with_its_controller);
+	RUN_TEST(test_a_superseded_command_does_not_come_back_with_its_controller);
+	RUN_TEST(test_a_superseded_controller_that_dies_leaves_the_outputs_as_they_are);
+	RUN_TEST(test_of_two_controllers_that_beat_the_one_in_force_comes_back);
+	RUN_TEST(test_safevalue_is_not_undone_by_the_controller_that_was_lost);
 	return UNITY_END();
 }

@@ -67,13 +67,13 @@ static void test_initvalue_is_owsd_s_own(void)
 	TEST_ASSERT_EQUAL_INT64(3, entry(0)->after);
 }
 
-static void test_a_command_has_its_giver_and_its_time(void)
+static void test_a_command_has_its_controller_and_its_time(void)
 {
 	int64_t now_ns = s.now_ns;
 
 	set(0, 1, 5);
 	TEST_ASSERT_EQUAL_UINT(OWS_REASON_SET, scene_origin(&s, 1).reason);
-	TEST_ASSERT_EQUAL_STRING("giver0", scene_origin(&s, 1).who.name);
+	TEST_ASSERT_EQUAL_STRING("controller0", scene_origin(&s, 1).who.name);
 	TEST_ASSERT_EQUAL_UINT32(1000, scene_origin(&s, 1).who.uid);
 	TEST_ASSERT_EQUAL_INT32(100, scene_origin(&s, 1).who.pid);
 	TEST_ASSERT_EQUAL_INT64(now_ns, scene_origin(&s, 1).taken_ns);
@@ -81,7 +81,7 @@ static void test_a_command_has_its_giver_and_its_time(void)
 
 static void test_a_command_for_a_person_has_that_person(void)
 {
-	giving_name_person(&s.givers[0], 2, "anna");
+	giving_name_person(&s.controllers[0], 2, "anna");
 	scene_slot(&s, 1)->person = 3;
 	set(0, 1, 5);
 	TEST_ASSERT_EQUAL_STRING("anna", scene_origin(&s, 1).who.person);
@@ -94,12 +94,12 @@ static void test_a_command_for_a_person_has_that_person(void)
 	TEST_ASSERT_EQUAL_STRING("", scene_origin(&s, 1).who.person);
 }
 
-static void test_another_person_of_the_same_giver_is_an_entry_at_once(void)
+static void test_another_person_of_the_same_controller_is_an_entry_at_once(void)
 {
 	uint32_t before;
 
-	giving_name_person(&s.givers[0], 0, "anna");
-	giving_name_person(&s.givers[0], 1, "berta");
+	giving_name_person(&s.controllers[0], 0, "anna");
+	giving_name_person(&s.controllers[0], 1, "berta");
 	scene_slot(&s, 1)->person = 1;
 	set(0, 1, 5);
 	set(0, 1, 6);
@@ -141,7 +141,7 @@ static void test_the_same_value_again_is_no_entry(void)
 	TEST_ASSERT_EQUAL_UINT32(before, entered());
 }
 
-static void test_a_giver_that_commands_without_end_has_an_entry_a_second(void)
+static void test_a_controller_that_commands_without_end_has_an_entry_a_second(void)
 {
 	uint32_t before = entered();
 
@@ -152,7 +152,7 @@ static void test_a_giver_that_commands_without_end_has_an_entry_a_second(void)
 	TEST_ASSERT_EQUAL_UINT32(0, entry(9)->more);
 }
 
-static void test_another_giver_is_an_entry_at_once_and_what_was_before_it_is_not_lost(void)
+static void test_another_controller_is_an_entry_at_once_and_what_was_before_it_is_not_lost(void)
 {
 	uint32_t before;
 
@@ -163,15 +163,15 @@ static void test_another_giver_is_an_entry_at_once_and_what_was_before_it_is_not
 	before = entered();
 	set(1, 1, 8);
 	TEST_ASSERT_EQUAL_UINT32(before + 2, entered());
-	TEST_ASSERT_EQUAL_STRING("giver0", entry(1)->who.name);
+	TEST_ASSERT_EQUAL_STRING("controller0", entry(1)->who.name);
 	TEST_ASSERT_EQUAL_INT64(7, entry(1)->after);
 	TEST_ASSERT_EQUAL_UINT32(1, entry(1)->more);
-	TEST_ASSERT_EQUAL_STRING("giver1", entry(0)->who.name);
+	TEST_ASSERT_EQUAL_STRING("controller1", entry(0)->who.name);
 	TEST_ASSERT_EQUAL_INT64(8, entry(0)->after);
 	TEST_ASSERT_EQUAL_UINT32(0, entry(0)->more);
 }
 
-static void test_givers_that_fight_over_an_output_do_not_flush_the_journal(void)
+static void test_controllers_that_fight_over_an_output_do_not_flush_the_journal(void)
 {
 	uint32_t before = entered(), all = 0;
 
@@ -189,13 +189,13 @@ static void test_givers_that_fight_over_an_output_do_not_flush_the_journal(void)
 	TEST_ASSERT_EQUAL_UINT32(2, entry(0)->record);
 }
 
-static void test_safevalue_names_the_giver_that_is_lost(void)
+static void test_safevalue_names_the_controller_that_is_lost(void)
 {
-	giving_beat(&s.givers[0], 500);
+	giving_beat(&s.controllers[0], 500);
 	set(0, 2, 9);
 	scene_run(&s, 5 * SCENE_S);
 	TEST_ASSERT_EQUAL_UINT(OWS_REASON_SAFE, scene_origin(&s, 2).reason);
-	TEST_ASSERT_EQUAL_STRING("giver0", scene_origin(&s, 2).who.name);
+	TEST_ASSERT_EQUAL_STRING("controller0", scene_origin(&s, 2).who.name);
 	TEST_ASSERT_EQUAL_UINT(OWS_REASON_SAFE, entry(0)->kind);
 	TEST_ASSERT_EQUAL_INT64(4, entry(0)->after);
 	TEST_ASSERT_EQUAL_INT64(9, entry(0)->before);
@@ -209,7 +209,7 @@ static void test_origins_and_journal_go_on_over_a_reload(void)
 	before = entered();
 	scene_reload(&s, NULL);
 	TEST_ASSERT_EQUAL_UINT(OWS_REASON_SET, scene_origin(&s, 1).reason);
-	TEST_ASSERT_EQUAL_STRING("giver0", scene_origin(&s, 1).who.name);
+	TEST_ASSERT_EQUAL_STRING("controller0", scene_origin(&s, 1).who.name);
 	TEST_ASSERT_EQUAL_UINT(OWS_REASON_INIT, scene_origin(&s, 2).reason);
 	TEST_ASSERT_EQUAL_UINT32(before, entered());
 	set(0, 1, 5);
@@ -243,32 +243,32 @@ static void test_a_refused_command_changes_neither(void)
 	before = entered();
 	set(0, 1, 999);
 	TEST_ASSERT_EQUAL_UINT32(before, entered());
-	TEST_ASSERT_EQUAL_UINT32(1, s.image.givers[0].refused);
-	TEST_ASSERT_EQUAL_UINT32(1, s.image.givers[0].commands);
+	TEST_ASSERT_EQUAL_UINT32(1, s.image.controllers[0].refused);
+	TEST_ASSERT_EQUAL_UINT32(1, s.image.controllers[0].commands);
 }
 
 static void test_the_image_shows_who_is_connected(void)
 {
-	const struct ows_giver_entry *g = &s.image.givers[2];
+	const struct ows_controller_entry *g = &s.image.controllers[2];
 
 	TEST_ASSERT_EQUAL_HEX32(0, g->flags);
 	scene_allow(&s, 2, 1);
 	scene_join(&s, 2, 5);
-	TEST_ASSERT_EQUAL_HEX32(OWS_GIVER_CONNECTED | OWS_GIVER_MAY_SET, g->flags);
-	TEST_ASSERT_EQUAL_STRING("giver2", g->who.name);
-	giving_beat(&s.givers[2], 500);
+	TEST_ASSERT_EQUAL_HEX32(OWS_CONTROLLER_CONNECTED | OWS_CONTROLLER_MAY_SET, g->flags);
+	TEST_ASSERT_EQUAL_STRING("controller2", g->who.name);
+	giving_beat(&s.controllers[2], 500);
 	scene_run(&s, 200 * SCENE_MS);
 	TEST_ASSERT_EQUAL_UINT32(500, g->period_ms);
 	scene_run(&s, SCENE_S);
-	TEST_ASSERT_BITS_HIGH(OWS_GIVER_LATE, g->flags);
-	giving_beat(&s.givers[2], 500);
+	TEST_ASSERT_BITS_HIGH(OWS_CONTROLLER_LATE, g->flags);
+	giving_beat(&s.controllers[2], 500);
 	scene_run(&s, 200 * SCENE_MS);
-	TEST_ASSERT_BITS_LOW(OWS_GIVER_LATE, g->flags);
+	TEST_ASSERT_BITS_LOW(OWS_CONTROLLER_LATE, g->flags);
 	scene_leave(&s, 2);
 	TEST_ASSERT_EQUAL_HEX32(0, g->flags);
 	memset(s.rights[2], 0, sizeof(s.rights[2]));
 	scene_join(&s, 2, 5);
-	TEST_ASSERT_EQUAL_HEX32(OWS_GIVER_CONNECTED, g->flags);
+	TEST_ASSERT_EQUAL_HEX32(OWS_CONTROLLER_CONNECTED, g->flags);
 }
 
 static void a_new_output(struct config *config)
@@ -334,15 +334,15 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_an_output_that_nobody_commanded_has_no_origin);
 	RUN_TEST(test_initvalue_is_owsd_s_own);
-	RUN_TEST(test_a_command_has_its_giver_and_its_time);
+	RUN_TEST(test_a_command_has_its_controller_and_its_time);
 	RUN_TEST(test_a_command_for_a_person_has_that_person);
-	RUN_TEST(test_another_person_of_the_same_giver_is_an_entry_at_once);
+	RUN_TEST(test_another_person_of_the_same_controller_is_an_entry_at_once);
 	RUN_TEST(test_the_journal_has_the_values_before_and_after);
 	RUN_TEST(test_the_same_value_again_is_no_entry);
-	RUN_TEST(test_a_giver_that_commands_without_end_has_an_entry_a_second);
-	RUN_TEST(test_another_giver_is_an_entry_at_once_and_what_was_before_it_is_not_lost);
-	RUN_TEST(test_givers_that_fight_over_an_output_do_not_flush_the_journal);
-	RUN_TEST(test_safevalue_names_the_giver_that_is_lost);
+	RUN_TEST(test_a_controller_that_commands_without_end_has_an_entry_a_second);
+	RUN_TEST(test_another_controller_is_an_entry_at_once_and_what_was_before_it_is_not_lost);
+	RUN_TEST(test_controllers_that_fight_over_an_output_do_not_flush_the_journal);
+	RUN_TEST(test_safevalue_names_the_controller_that_is_lost);
 	RUN_TEST(test_origins_and_journal_go_on_over_a_reload);
 	RUN_TEST(test_over_a_reload_the_journal_gets_no_command_that_was_not_in_force);
 	RUN_TEST(test_a_refused_command_changes_neither);

@@ -185,15 +185,15 @@ static void test_a_place_left_in_order_passes_no_outputs_on_to_who_takes_it_next
 	scene_put(&s, PIO, "0", 0);
 	scene_start(&s);
 	scene_up(&s);
-	giving_beat(&s.givers[0], 500);
+	giving_beat(&s.controllers[0], 500);
 	scene_set(&s, 1, 3);
 	scene_run(&s, 300 * SCENE_MS);
 	scene_goodbye(&s, 0);
 	scene_run(&s, 300 * SCENE_MS);
 	scene_join(&s, 0, 2);
-	giving_beat(&s.givers[0], 500);
+	giving_beat(&s.controllers[0], 500);
 	scene_run(&s, 5 * SCENE_S);
-	TEST_ASSERT_EQUAL_UINT64(1, scene_counter(&s, "lost_givers"));
+	TEST_ASSERT_EQUAL_UINT64(1, scene_counter(&s, "lost_controllers"));
 	TEST_ASSERT_EQUAL_UINT64(0, scene_counter(&s, "safe_outputs"));
 	TEST_ASSERT_EQUAL_STRING("3", scene_at(&s, PIO));
 }

@@ -147,7 +147,7 @@ static void test_a_value_is_stale_in_its_period(void)
 }
 
 /* A beat rings nobody: owsd looks for it in each period as long as one is promised. */
-static void test_a_giver_that_stops_beating_is_lost_in_its_period(void)
+static void test_a_controller_that_stops_beating_is_lost_in_its_period(void)
 {
 	struct config_item *item = scene_output(&s, "pump", PIO, OWS_BYTE);
 	int64_t last;
@@ -156,11 +156,11 @@ static void test_a_giver_that_stops_beating_is_lost_in_its_period(void)
 	item->safe_value = 20;
 	start();
 	scene_join(&s, 1, 2);
-	giving_beat(&s.givers[1], 300);
+	giving_beat(&s.controllers[1], 300);
 	scene_set_by(&s, 1, 1, 30);
 	for (unsigned i = 0; i < 40; i++) {
 		scene_run(&s, 250 * SCENE_MS);
-		giving_beat(&s.givers[1], 300);
+		giving_beat(&s.controllers[1], 300);
 	}
 	TEST_ASSERT_EQUAL_STRING("30", scene_at(&s, PIO));
 	last = s.now_ns;
@@ -192,7 +192,7 @@ int main(void)
 	RUN_TEST(test_an_answer_counts_the_periods_that_were_slept_through);
 	RUN_TEST(test_a_command_waits_for_no_period);
 	RUN_TEST(test_a_value_is_stale_in_its_period);
-	RUN_TEST(test_a_giver_that_stops_beating_is_lost_in_its_period);
+	RUN_TEST(test_a_controller_that_stops_beating_is_lost_in_its_period);
 	RUN_TEST(test_periods_that_nobody_ran_are_late);
 	return UNITY_END();
 }

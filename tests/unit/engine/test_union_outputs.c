@@ -68,7 +68,7 @@ static void test_a_safe_value_follows_the_device(void)
 	pio->safe_value = 9;
 	scene_put_on(&s, 0, PIO, "0", 0);
 	two_wires_up(&s);
-	giving_beat(&s.givers[0], 1000);
+	giving_beat(&s.controllers[0], 1000);
 	scene_run(&s, 100 * SCENE_MS);
 	scene_set(&s, 1, 5);
 	scene_run(&s, 500 * SCENE_MS);

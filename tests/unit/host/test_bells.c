@@ -85,7 +85,7 @@ static void test_no_ring_of_another_thread_is_lost(void)
 	pthread_join(thread, NULL);
 }
 
-static void test_each_ring_of_a_giver_wakes_once_and_nobody_reads_it(void)
+static void test_each_ring_of_a_controller_wakes_once_and_nobody_reads_it(void)
 {
 	bells_add(&bells, 3, bell);
 	for (int i = 0; i < 10; i++) {
@@ -95,14 +95,14 @@ static void test_each_ring_of_a_giver_wakes_once_and_nobody_reads_it(void)
 	TEST_ASSERT_GREATER_OR_EQUAL_INT64(20 * NS_PER_MS, nap(20 * NS_PER_MS));
 }
 
-static void test_a_ring_before_a_giver_joined_wakes(void)
+static void test_a_ring_before_a_controller_joined_wakes(void)
 {
 	ring();
 	bells_add(&bells, 0, bell);
 	TEST_ASSERT_LESS_THAN_INT64(LONG_NS, nap(LONG_NS));
 }
 
-static void test_a_giver_that_left_wakes_nobody(void)
+static void test_a_controller_that_left_wakes_nobody(void)
 {
 	bells_add(&bells, 127, bell);
 	bells_remove(&bells, 127);
@@ -140,9 +140,9 @@ int main(void)
 	RUN_TEST(test_a_sleep_ends_at_its_time);
 	RUN_TEST(test_a_ring_before_the_sleep_is_not_lost);
 	RUN_TEST(test_no_ring_of_another_thread_is_lost);
-	RUN_TEST(test_each_ring_of_a_giver_wakes_once_and_nobody_reads_it);
-	RUN_TEST(test_a_ring_before_a_giver_joined_wakes);
-	RUN_TEST(test_a_giver_that_left_wakes_nobody);
+	RUN_TEST(test_each_ring_of_a_controller_wakes_once_and_nobody_reads_it);
+	RUN_TEST(test_a_ring_before_a_controller_joined_wakes);
+	RUN_TEST(test_a_controller_that_left_wakes_nobody);
 	RUN_TEST(test_a_bell_that_rings_without_end_is_left_out_for_a_while);
 	return UNITY_END();
 }

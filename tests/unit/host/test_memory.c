@@ -139,7 +139,7 @@ static void test_the_next_owsd_finds_which_command_is_in_force(void)
 	TEST_ASSERT_FALSE(memory.has_left);
 	force_put(&memory.force, 0,
 	          &(struct force_command){
-			  .value = 5, .stamp = 3, .given = true, .giver = FORCE_NOBODY},
+			  .value = 5, .stamp = 3, .given = true, .controller = FORCE_NOBODY},
 	          NULL);
 	TEST_ASSERT_EQUAL_INT(0, memory_show(&memory, NULL, why, sizeof(why)));
 	memory_end(&memory);

@@ -80,12 +80,12 @@ static void test_owsd_itself_has_no_alarms(void)
 
 static void test_an_acknowledgement_reaches_the_engines_side(void)
 {
-	struct giver_command command;
+	struct controller_command command;
 
 	TEST_ASSERT_EQUAL(0, ows_acknowledge(h, ows_find(h, "door")));
-	TEST_ASSERT_TRUE(giver_marked(instance_giver(&in, 0)));
-	TEST_ASSERT_EQUAL(DOOR, giver_next_dirty(instance_giver(&in, 0), 0));
-	TEST_ASSERT_EQUAL(-1, giver_next_dirty(instance_giver(&in, 0), 0));
+	TEST_ASSERT_TRUE(controller_marked(instance_controller(&in, 0)));
+	TEST_ASSERT_EQUAL(DOOR, controller_next_dirty(instance_controller(&in, 0), 0));
+	TEST_ASSERT_EQUAL(-1, controller_next_dirty(instance_controller(&in, 0), 0));
 	command = instance_command(&in, 0, DOOR);
 	TEST_ASSERT_TRUE(command.acknowledged);
 	TEST_ASSERT_EQUAL(0, command.stamp);
@@ -110,7 +110,7 @@ static void test_what_came_too_late_is_said(void)
 
 	publish(ROOM, &(struct ows_attrs){.flags = OWS_ATTR_LIMITS});
 	image_state(&in.image, OWS_STATE_RETIRED);
-	giver_state(instance_giver(&in, 0), OWS_STATE_RETIRED);
+	controller_state(instance_controller(&in, 0), OWS_STATE_RETIRED);
 	TEST_ASSERT_EQUAL(-ESTALE, ows_acknowledge(h, ows_find(h, "door")));
 	TEST_ASSERT_EQUAL(-ESTALE, ows_alarm_state(h, ows_find(h, "room1"), &state));
 	TEST_ASSERT_TRUE(state.limits);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Tests of becoming a giver: what libows believes of a welcome, and what becomes of descriptors. */
+/* Tests of becoming a controller: what libows believes of a welcome, and what becomes of
+ * descriptors. */
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -102,11 +103,11 @@ static void test_no_descriptor_is_left_behind(void)
 		if (ows_open(in.name, OWS_CONTROL, &h) == 0)
 			opened++;
 		ows_close(h);
-		door_wait_gone(in.door, instance_givers(&in) - 1);
+		door_wait_gone(in.door, instance_controllers(&in) - 1);
 	}
 	TEST_ASSERT_EQUAL(1, opened);
 	/* the door itself keeps three for each that it has welcomed */
-	TEST_ASSERT_EQUAL(before + 3 * (instance_givers(&in) - 1), descriptors());
+	TEST_ASSERT_EQUAL(before + 3 * (instance_controllers(&in) - 1), descriptors());
 }
 
 #define LOOKED_AT 256
@@ -174,7 +175,7 @@ static void test_a_forked_child_takes_no_news_from_its_parent(void)
 	poll_fd.fd = ows_fd(h);
 	TEST_ASSERT_GREATER_OR_EQUAL(0, poll_fd.fd);
 	ows_wait(h, &news, 0);
-	TEST_ASSERT_EQUAL(sizeof(one), write(door_giver(in.door, 0)->news, &one, sizeof(one)));
+	TEST_ASSERT_EQUAL(sizeof(one), write(door_controller(in.door, 0)->news, &one, sizeof(one)));
 	child = fork();
 	if (child == 0)
 		_exit(ows_wait(h, &news, 1000000) == 0 ? 0 : 1);

@@ -172,7 +172,7 @@ static void test_python_computes_attributes_as_c_does(void)
 	expect(code, expected);
 }
 
-static struct giver_command load(uint32_t slot)
+static struct controller_command load(uint32_t slot)
 {
 	return instance_command(&in, 0, slot);
 }
@@ -185,8 +185,8 @@ static struct ows_command_slot *slot_at(uint32_t record)
 static void test_c_finds_what_python_set(void)
 {
 	char text[INSTANCE_TEXT + 1], person[OWS_NAME];
-	struct giver_command relay;
-	struct giver_beat beat;
+	struct controller_command relay;
+	struct controller_beat beat;
 
 	expect("s = ows.Ows(name, control=True, name=\"plc\")\n"
 	       "for wrong in (0, 3600001):\n"
@@ -201,7 +201,7 @@ static void test_c_finds_what_python_set(void)
 	       "s.set(\"_DGNRESET\", 1)\n"
 	       "sys.stdout.flush(); import os; os._exit(0)",
 	       "1 2 3\n4 5\n");
-	TEST_ASSERT_EQUAL_STRING("plc", door_giver(in.door, 0)->hello.name);
+	TEST_ASSERT_EQUAL_STRING("plc", door_controller(in.door, 0)->hello.name);
 	TEST_ASSERT_EQUAL(2, slot_at(RELAY)->one_shot);
 	TEST_ASSERT_EQUAL(1, slot_at(0)->dgn_reset);
 	relay = load(RELAY);
@@ -213,30 +213,30 @@ static void test_c_finds_what_python_set(void)
 	TEST_ASSERT_EQUAL(0, load(NUMBER).person);
 	TEST_ASSERT_EQUAL_INT64(INT64_MIN, load(DEEP).value);
 	TEST_ASSERT_EQUAL(1, load(DEEP).person);
-	giver_person(instance_giver(&in, 0), 1, person);
+	controller_person(instance_controller(&in, 0), 1, person);
 	TEST_ASSERT_EQUAL_STRING("anna", person);
-	TEST_ASSERT_EQUAL(5, giver_text(instance_giver(&in, 0), LABEL, text));
+	TEST_ASSERT_EQUAL(5, controller_text(instance_controller(&in, 0), LABEL, text));
 	TEST_ASSERT_EQUAL_STRING("north", text);
-	giver_beat(instance_giver(&in, 0), &beat);
+	controller_beat(instance_controller(&in, 0), &beat);
 	TEST_ASSERT_EQUAL(2, beat.beat); /* and none that is refused */
 	TEST_ASSERT_EQUAL(700, beat.period_ms);
 	TEST_ASSERT_FALSE_MESSAGE(beat.goodbye, "it ended without close()");
 	TEST_ASSERT_GREATER_THAN(0, door_rings(in.door, 0));
-	TEST_ASSERT_TRUE(giver_marked(instance_giver(&in, 0)));
+	TEST_ASSERT_TRUE(controller_marked(instance_controller(&in, 0)));
 	for (int i = 0; i <= LABEL + 1; i++)
 		if (i != ROOM)
-			TEST_ASSERT_EQUAL(i, giver_next_dirty(instance_giver(&in, 0), 0));
-	TEST_ASSERT_EQUAL(-1, giver_next_dirty(instance_giver(&in, 0), 0));
+			TEST_ASSERT_EQUAL(i, controller_next_dirty(instance_controller(&in, 0), 0));
+	TEST_ASSERT_EQUAL(-1, controller_next_dirty(instance_controller(&in, 0), 0));
 }
 
 static void test_python_says_goodbye(void)
 {
-	struct giver_beat beat;
+	struct controller_beat beat;
 
 	expect("with ows.Ows(name, control=True) as s: s.beat(500)", "");
-	giver_beat(instance_giver(&in, 0), &beat);
+	controller_beat(instance_controller(&in, 0), &beat);
 	TEST_ASSERT_TRUE(beat.goodbye);
-	TEST_ASSERT_EQUAL_STRING("-c", door_giver(in.door, 0)->hello.name);
+	TEST_ASSERT_EQUAL_STRING("-c", door_controller(in.door, 0)->hello.name);
 }
 
 static void test_python_commands_nothing_after_a_fork(void)
@@ -261,8 +261,8 @@ static void test_python_sees_what_owsd_took_and_who_commands(void)
 	const struct ows_who other = {
 		.serial = 7, .uid = 1001, .pid = 4712, .name = "hmi", .person = "anna"};
 	struct ows_origin_entry origin = {.reason = OWS_REASON_SET, .taken_ns = 5, .who = who};
-	struct ows_giver_entry giver = {
-		.flags = OWS_GIVER_CONNECTED | OWS_GIVER_LATE,
+	struct ows_controller_entry controller = {
+		.flags = OWS_CONTROLLER_CONNECTED | OWS_CONTROLLER_LATE,
 		.joined_ns = 6,
 		.who = other,
 		.period_ms = 300,
@@ -274,10 +274,10 @@ static void test_python_sees_what_owsd_took_and_who_commands(void)
 	origin.reason = OWS_REASON_SAFE;
 	origin.who = other;
 	image_origin(&in.image, NUMBER, &origin);
-	image_giver(&in.image, 3, &giver);
+	image_controller(&in.image, 3, &controller);
 	expect("s = ows.Ows(name, control=True)\n"
 	       "for n in (\"relay\", \"count\", \"deep\"): print(*s.origin(n))\n"
-	       "print(*[tuple(g) for g in s.givers()])\n",
+	       "print(*[tuple(g) for g in s.controllers()])\n",
 	       "By(serial=1, uid=1000, pid=4711, name='plc', person='') 5 set True\n"
 	       "By(serial=7, uid=1001, pid=4712, name='hmi', person='anna') 5 SafeValue False\n"
 	       "By(serial=0, uid=0, pid=0, name='', person='') 0 none False\n"
@@ -343,7 +343,7 @@ static void test_python_refuses_what_c_refuses(void)
 	       "label ValueError\nrelay: a bool cannot hold 2\n"
 	       "PermissionError ValueError ValueError\n");
 	TEST_ASSERT_EQUAL(0, load(RELAY).stamp);
-	TEST_ASSERT_EQUAL(-1, giver_next_dirty(instance_giver(&in, 0), 0));
+	TEST_ASSERT_EQUAL(-1, controller_next_dirty(instance_controller(&in, 0), 0));
 }
 
 static void test_python_finds_its_way_over_a_reload(void)

@@ -92,7 +92,7 @@ static void test_ids_stay_right_over_a_reload(void)
 
 static void test_a_command_goes_to_the_same_signal_after_a_reload(void)
 {
-	struct giver_beat beat;
+	struct controller_beat beat;
 	uint32_t stamp;
 
 	TEST_ASSERT_EQUAL(0, ows_beat(h, 1000));
@@ -107,10 +107,10 @@ static void test_a_command_goes_to_the_same_signal_after_a_reload(void)
 	TEST_ASSERT_EQUAL(2, stamp);
 	TEST_ASSERT_EQUAL_INT64(0, instance_command(&in, 0, 2).value);
 	TEST_ASSERT_EQUAL(1, instance_command(&in, 0, 2).person);
-	giver_beat(instance_giver(&in, 0), &beat);
+	controller_beat(instance_controller(&in, 0), &beat);
 	TEST_ASSERT_EQUAL(1000, beat.period_ms);
 	TEST_ASSERT_EQUAL(2, beat.beat);
-	TEST_ASSERT_EQUAL_MESSAGE(1, instance_givers(&in), "it stays the same giver");
+	TEST_ASSERT_EQUAL_MESSAGE(1, instance_controllers(&in), "it stays the same controller");
 }
 
 static void test_of_several_reloads_the_last_counts(void)
@@ -135,20 +135,20 @@ static void restart(void)
 	instance_show(&in);
 }
 
-static void test_after_a_restart_the_giver_comes_back_with_its_token_and_beats(void)
+static void test_after_a_restart_the_controller_comes_back_with_its_token_and_beats(void)
 {
-	struct giver_beat beat;
+	struct controller_beat beat;
 	uint32_t stamp;
 
-	TEST_ASSERT_EACH_EQUAL_UINT8(0, door_giver(in.door, 0)->hello.token, 16);
+	TEST_ASSERT_EACH_EQUAL_UINT8(0, door_controller(in.door, 0)->hello.token, 16);
 	TEST_ASSERT_EQUAL(0, ows_beat(h, 1500));
 	TEST_ASSERT_EQUAL(0, ows_for(h, "anna"));
 	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "b"), 1, NULL));
 	restart();
 	TEST_ASSERT_EQUAL(-ESTALE, ows_set(h, ows_find(h, "b"), 1, NULL));
 	TEST_ASSERT_EQUAL(0, reopen(h));
-	TEST_ASSERT_EQUAL_STRING("token 1", (char *)door_giver(in.door, 0)->hello.token);
-	giver_beat(instance_giver(&in, 0), &beat);
+	TEST_ASSERT_EQUAL_STRING("token 1", (char *)door_controller(in.door, 0)->hello.token);
+	controller_beat(instance_controller(&in, 0), &beat);
 	TEST_ASSERT_EQUAL(1500, beat.period_ms);
 	TEST_ASSERT_EQUAL(1, beat.beat);
 	TEST_ASSERT_EQUAL_MESSAGE(0, instance_command(&in, 0, 2).stamp, "it sets nothing itself");
@@ -157,13 +157,13 @@ static void test_after_a_restart_the_giver_comes_back_with_its_token_and_beats(v
 	TEST_ASSERT_EQUAL(1, instance_command(&in, 0, 2).person);
 }
 
-static void test_a_giver_that_never_beat_comes_back_without_a_beat(void)
+static void test_a_controller_that_never_beat_comes_back_without_a_beat(void)
 {
-	struct giver_beat beat;
+	struct controller_beat beat;
 
 	restart();
 	TEST_ASSERT_EQUAL(0, reopen(h));
-	giver_beat(instance_giver(&in, 0), &beat);
+	controller_beat(instance_controller(&in, 0), &beat);
 	TEST_ASSERT_EQUAL(0, beat.period_ms);
 	TEST_ASSERT_EQUAL(0, beat.beat);
 	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "b"), 1, NULL));
@@ -198,11 +198,11 @@ static void test_a_reader_that_asks_for_a_descriptor_is_woken_by_it(void)
 	TEST_ASSERT_EQUAL(1, ows_wait(reader, &seen, 0));
 	news = (struct pollfd){.fd = ows_fd(reader), .events = POLLIN};
 	TEST_ASSERT_GREATER_OR_EQUAL(0, news.fd);
-	TEST_ASSERT_EQUAL(0, door_giver(in.door, 1)->hello.flags);
+	TEST_ASSERT_EQUAL(0, door_controller(in.door, 1)->hello.flags);
 	TEST_ASSERT_EQUAL(0, poll(&news, 1, 0));
-	TEST_ASSERT_TRUE(giver_waits(instance_giver(&in, 1)));
+	TEST_ASSERT_TRUE(controller_waits(instance_controller(&in, 1)));
 	image_news(&in.image);
-	TEST_ASSERT_EQUAL(8, write(door_giver(in.door, 1)->news, &one, sizeof(one)));
+	TEST_ASSERT_EQUAL(8, write(door_controller(in.door, 1)->news, &one, sizeof(one)));
 	TEST_ASSERT_EQUAL(1, poll(&news, 1, 60000));
 	TEST_ASSERT_EQUAL(news.fd, ows_fd(reader));
 	TEST_ASSERT_EQUAL(0, poll(&news, 1, 0));
@@ -221,7 +221,7 @@ static void test_a_connected_sleeper_wakes_by_its_descriptor(void)
 
 	TEST_ASSERT_EQUAL(1, ows_wait(h, &seen, 0));
 	image_news(&in.image);
-	TEST_ASSERT_EQUAL(8, write(door_giver(in.door, 0)->news, &one, sizeof(one)));
+	TEST_ASSERT_EQUAL(8, write(door_controller(in.door, 0)->news, &one, sizeof(one)));
 	TEST_ASSERT_EQUAL(1, ows_wait(h, &seen, 60 * INSTANCE_S));
 	TEST_ASSERT_EQUAL(0, ows_wait(h, &seen, 1000000));
 	/* owsd has hung up, and the descriptor with it: the image still counts */
@@ -340,7 +340,7 @@ static void test_open_refuses_what_is_not_ours(void)
 	REFUSED_AREA(TEXTS, count, 64);
 	REFUSED_AREA(ORIGINS, count, 1);
 	REFUSED_AREA(CHANGES, count, 1000);
-	REFUSED_AREA(GIVERS, kind, OWS_AREA_SHELVES);
+	REFUSED_AREA(CONTROLLERS, kind, OWS_AREA_SHELVES);
 #undef REFUSED_AREA
 #undef REFUSED
 }
@@ -386,8 +386,8 @@ int main(void)
 	RUN_TEST(test_ids_stay_right_over_a_reload);
 	RUN_TEST(test_a_command_goes_to_the_same_signal_after_a_reload);
 	RUN_TEST(test_of_several_reloads_the_last_counts);
-	RUN_TEST(test_after_a_restart_the_giver_comes_back_with_its_token_and_beats);
-	RUN_TEST(test_a_giver_that_never_beat_comes_back_without_a_beat);
+	RUN_TEST(test_after_a_restart_the_controller_comes_back_with_its_token_and_beats);
+	RUN_TEST(test_a_controller_that_never_beat_comes_back_without_a_beat);
 	RUN_TEST(test_while_nobody_listens_the_old_image_stays_readable);
 	RUN_TEST(test_a_reader_that_asks_for_a_descriptor_is_woken_by_it);
 	RUN_TEST(test_a_connected_sleeper_wakes_by_its_descriptor);

@@ -40,7 +40,7 @@ void tearDown(void)
 	instance_end(&in);
 }
 
-static struct giver_command load(uint32_t slot)
+static struct controller_command load(uint32_t slot)
 {
 	return instance_command(&in, 0, slot);
 }
@@ -50,14 +50,14 @@ static struct ows_command_slot *slot_at(uint32_t record)
 	return instance_slot(&in, 0, record);
 }
 
-static struct ows_giver_header *header(void)
+static struct ows_controller_header *header(void)
 {
-	return (struct ows_giver_header *)(void *)instance_giver(&in, 0)->base;
+	return (struct ows_controller_header *)(void *)instance_controller(&in, 0)->base;
 }
 
 static int next_dirty(void)
 {
-	return giver_next_dirty(instance_giver(&in, 0), 0);
+	return controller_next_dirty(instance_controller(&in, 0), 0);
 }
 
 static void test_a_set_reaches_the_engine_with_stamp_mark_and_bell(void)
@@ -68,7 +68,7 @@ static void test_a_set_reaches_the_engine_with_stamp_mark_and_bell(void)
 	TEST_ASSERT_EQUAL(1, stamp);
 	TEST_ASSERT_EQUAL_INT64(value_of_double(0.25), load(VALVE).value);
 	TEST_ASSERT_EQUAL(1, load(VALVE).stamp);
-	TEST_ASSERT_TRUE(giver_marked(instance_giver(&in, 0)));
+	TEST_ASSERT_TRUE(controller_marked(instance_controller(&in, 0)));
 	TEST_ASSERT_EQUAL(VALVE, next_dirty());
 	TEST_ASSERT_EQUAL(-1, next_dirty());
 	TEST_ASSERT_EQUAL(1, door_rings(in.door, 0));
@@ -78,7 +78,7 @@ static void test_an_engine_that_is_awake_needs_no_bell(void)
 {
 	image_awake(&in.image, true);
 	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "valve"), 0.25, NULL));
-	TEST_ASSERT_TRUE(giver_marked(instance_giver(&in, 0)));
+	TEST_ASSERT_TRUE(controller_marked(instance_controller(&in, 0)));
 	TEST_ASSERT_EQUAL(0, door_rings(in.door, 0));
 	image_awake(&in.image, false);
 	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "valve"), 0.5, NULL));
@@ -111,8 +111,8 @@ static void test_what_owsd_took_and_confirmed_is_this_handles_own(void)
 	TEST_ASSERT_EQUAL(0, ows_set(h, valve, 1, &stamp));
 	TEST_ASSERT_EQUAL(0, ows_command(h, valve, &command));
 	TEST_ASSERT_EQUAL(0, command.taken);
-	giver_taken(instance_giver(&in, 0), VALVE, stamp, 0);
-	giver_applied(instance_giver(&in, 0), VALVE, stamp);
+	controller_taken(instance_controller(&in, 0), VALVE, stamp, 0);
+	controller_applied(instance_controller(&in, 0), VALVE, stamp);
 	TEST_ASSERT_EQUAL(0, ows_command(h, valve, &command));
 	TEST_ASSERT_EQUAL(stamp, command.taken);
 	TEST_ASSERT_EQUAL(stamp, command.applied);
@@ -122,7 +122,7 @@ static void test_what_owsd_took_and_confirmed_is_this_handles_own(void)
 	TEST_ASSERT_EQUAL(0, ows_get(other, ows_find(other, "valve"), ows_now(), &v));
 	TEST_ASSERT_EQUAL(0, v.applied);
 	TEST_ASSERT_EQUAL(0, ows_set(h, valve, 2, &stamp));
-	giver_taken(instance_giver(&in, 0), VALVE, stamp, -ERANGE);
+	controller_taken(instance_controller(&in, 0), VALVE, stamp, -ERANGE);
 	TEST_ASSERT_EQUAL(0, ows_command(h, valve, &command));
 	TEST_ASSERT_EQUAL(-ERANGE, command.refused);
 	ows_close(other);
@@ -194,7 +194,7 @@ static void test_a_reader_may_not_set(void)
 
 static void test_enables_are_commanded_by_name(void)
 {
-	struct giver_command c;
+	struct controller_command c;
 
 	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "heat_RE"), 1, NULL));
 	TEST_ASSERT_EQUAL(0, ows_set_integer(h, ows_find(h, "heat_WriteEnable"), 0, NULL));
@@ -245,16 +245,16 @@ static void test_a_text_arrives_with_its_check_word(void)
 	int id = ows_find(h, "text");
 
 	TEST_ASSERT_EQUAL(0, ows_set_text(h, id, "on the hill", NULL));
-	TEST_ASSERT_EQUAL(11, giver_text(instance_giver(&in, 0), TEXT, text));
+	TEST_ASSERT_EQUAL(11, controller_text(instance_controller(&in, 0), TEXT, text));
 	TEST_ASSERT_EQUAL_STRING("on the hill", text);
 	memset(longest, 'x', sizeof(longest));
 	longest[INSTANCE_TEXT + 1] = '\0';
 	TEST_ASSERT_EQUAL(-ERANGE, ows_set_text(h, id, longest, NULL));
 	longest[INSTANCE_TEXT] = '\0';
 	TEST_ASSERT_EQUAL(0, ows_set_text(h, id, longest, NULL));
-	TEST_ASSERT_EQUAL(INSTANCE_TEXT, giver_text(instance_giver(&in, 0), TEXT, text));
+	TEST_ASSERT_EQUAL(INSTANCE_TEXT, controller_text(instance_controller(&in, 0), TEXT, text));
 	TEST_ASSERT_EQUAL(0, ows_set_text(h, id, "", NULL));
-	TEST_ASSERT_EQUAL(0, giver_text(instance_giver(&in, 0), TEXT, text));
+	TEST_ASSERT_EQUAL(0, controller_text(instance_controller(&in, 0), TEXT, text));
 }
 
 static void test_text_sets_a_number_too(void)
@@ -267,19 +267,19 @@ static void test_text_sets_a_number_too(void)
 
 static void test_a_beat_and_its_promise_reach_the_engine(void)
 {
-	struct giver_beat beat;
+	struct controller_beat beat;
 
 	TEST_ASSERT_EQUAL(-EINVAL, ows_beat(h, 0));
 	TEST_ASSERT_EQUAL(-ERANGE, ows_beat(h, OWS_BEAT_MOST_MS + 1));
 	TEST_ASSERT_EQUAL(0, ows_beat(h, OWS_BEAT_MOST_MS));
-	giver_beat(instance_giver(&in, 0), &beat);
+	controller_beat(instance_controller(&in, 0), &beat);
 	TEST_ASSERT_EQUAL(OWS_BEAT_MOST_MS, beat.period_ms);
 	TEST_ASSERT_EQUAL(1, door_rings(in.door, 0));
 	TEST_ASSERT_EQUAL(0, ows_beat(h, 500));
 	TEST_ASSERT_EQUAL(1, door_rings(in.door, 0));
 	TEST_ASSERT_EQUAL(0, ows_beat(h, 500));
 	TEST_ASSERT_EQUAL(0, door_rings(in.door, 0));
-	giver_beat(instance_giver(&in, 0), &beat);
+	controller_beat(instance_controller(&in, 0), &beat);
 	TEST_ASSERT_EQUAL(3, beat.beat);
 	TEST_ASSERT_EQUAL(500, beat.period_ms);
 	TEST_ASSERT_FALSE(beat.goodbye);
@@ -287,15 +287,15 @@ static void test_a_beat_and_its_promise_reach_the_engine(void)
 
 static void test_closing_says_goodbye_and_hangs_up(void)
 {
-	struct giver_beat beat;
+	struct controller_beat beat;
 	struct ows *other;
 
 	TEST_ASSERT_EQUAL(0, ows_open(in.name, OWS_CONTROL, &other));
 	ows_close(other);
 	door_wait_gone(in.door, 1);
-	giver_beat(instance_giver(&in, 1), &beat);
+	controller_beat(instance_controller(&in, 1), &beat);
 	TEST_ASSERT_TRUE(beat.goodbye);
-	giver_beat(instance_giver(&in, 0), &beat);
+	controller_beat(instance_controller(&in, 0), &beat);
 	TEST_ASSERT_FALSE(beat.goodbye);
 }
 
@@ -336,20 +336,20 @@ static void expect_void(void)
 
 static void test_a_retired_memory_takes_no_sets(void)
 {
-	giver_state(instance_giver(&in, 0), OWS_STATE_RETIRED);
+	controller_state(instance_controller(&in, 0), OWS_STATE_RETIRED);
 	expect_void();
 }
 
 static void test_the_memory_of_a_stopped_owsd_takes_no_sets(void)
 {
-	giver_state(instance_giver(&in, 0), OWS_STATE_STOPPED);
+	controller_state(instance_controller(&in, 0), OWS_STATE_STOPPED);
 	expect_void();
 }
 
 /* owsd gives the pages of a memory back when it ends. */
 static void test_an_emptied_memory_takes_no_sets(void)
 {
-	memset(instance_giver(&in, 0)->base, 0, in.door->layout.size);
+	memset(instance_controller(&in, 0)->base, 0, in.door->layout.size);
 	expect_void();
 }
 
@@ -382,7 +382,7 @@ static int look_as_child(void)
 
 static void test_a_forked_child_commands_nothing_in_its_parents_name(void)
 {
-	struct giver_beat beat;
+	struct controller_beat beat;
 	pid_t child = fork();
 	int status;
 
@@ -390,7 +390,7 @@ static void test_a_forked_child_commands_nothing_in_its_parents_name(void)
 		_exit(look_as_child());
 	TEST_ASSERT_EQUAL(child, waitpid(child, &status, 0));
 	TEST_ASSERT_EQUAL(0, status);
-	giver_beat(instance_giver(&in, 0), &beat);
+	controller_beat(instance_controller(&in, 0), &beat);
 	TEST_ASSERT_FALSE(beat.goodbye);
 	TEST_ASSERT_EQUAL(0, beat.beat);
 	TEST_ASSERT_EQUAL(0, load(HEAT).stamp);
@@ -402,12 +402,12 @@ static void test_owsd_is_told_the_name_of_the_program(void)
 {
 	struct ows *other;
 
-	TEST_ASSERT_EQUAL_STRING("test_set", door_giver(in.door, 0)->hello.name);
-	TEST_ASSERT_EQUAL(OWS_HELLO_COMMAND, door_giver(in.door, 0)->hello.flags);
+	TEST_ASSERT_EQUAL_STRING("test_set", door_controller(in.door, 0)->hello.name);
+	TEST_ASSERT_EQUAL(OWS_HELLO_COMMAND, door_controller(in.door, 0)->hello.flags);
 	TEST_ASSERT_EQUAL(0, ows_open_as(in.name, OWS_CONTROL,
 	                                 "a name that is longer than thirty-one bytes", &other));
 	TEST_ASSERT_EQUAL_STRING("a name that is longer than thir",
-	                         door_giver(in.door, 1)->hello.name);
+	                         door_controller(in.door, 1)->hello.name);
 	ows_close(other);
 }
 
@@ -419,7 +419,7 @@ static void expect_person(const char *expected)
 	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "heat"), 1, NULL));
 	person = load(HEAT).person;
 	if (person)
-		giver_person(instance_giver(&in, 0), person, name);
+		controller_person(instance_controller(&in, 0), person, name);
 	TEST_ASSERT_EQUAL_STRING(expected, name);
 }
 
@@ -462,22 +462,22 @@ static void test_a_person_is_replaced_only_when_owsd_has_looked(void)
 		char there[OWS_NAME];
 
 		snprintf(name, sizeof(name), "person %d", i);
-		giver_person(instance_giver(&in, 0), slot_at(records[i])->person, there);
+		controller_person(instance_controller(&in, 0), slot_at(records[i])->person, there);
 		TEST_ASSERT_EQUAL_STRING(name, there);
 	}
 }
 
 static void *shelve_as_owsd(void *arg)
 {
-	struct giver_memory *memory = arg;
-	struct giver_shelf shelf;
+	struct controller_memory *memory = arg;
+	struct controller_shelf shelf;
 
-	while (!giver_shelf(memory, &shelf))
+	while (!controller_shelf(memory, &shelf))
 		sched_yield();
 	if (shelf.record != VALVE || shelf.seconds != 60 || strcmp(shelf.why, "repair") != 0)
-		giver_shelf_done(memory, shelf.count, -EBADMSG);
+		controller_shelf_done(memory, shelf.count, -EBADMSG);
 	else
-		giver_shelf_done(memory, shelf.count, -ENOSPC);
+		controller_shelf_done(memory, shelf.count, -ENOSPC);
 	return NULL;
 }
 
@@ -485,7 +485,8 @@ static void test_shelving_waits_for_owsds_answer(void)
 {
 	pthread_t thread;
 
-	TEST_ASSERT_EQUAL(0, pthread_create(&thread, NULL, shelve_as_owsd, instance_giver(&in, 0)));
+	TEST_ASSERT_EQUAL(
+		0, pthread_create(&thread, NULL, shelve_as_owsd, instance_controller(&in, 0)));
 	TEST_ASSERT_EQUAL(-ENOSPC, ows_shelve(h, ows_find(h, "valve"), 60, "repair"));
 	pthread_join(thread, NULL);
 	TEST_ASSERT_EQUAL(1, door_rings(in.door, 0));
@@ -510,11 +511,11 @@ struct waker {
 
 static bool look(struct waker *w)
 {
-	struct giver_memory *memory = instance_giver(&in, 0);
+	struct controller_memory *memory = instance_controller(&in, 0);
 
-	if (!giver_marked(memory))
+	if (!controller_marked(memory))
 		return false;
-	while (giver_next_dirty(memory, 0) >= 0)
+	while (controller_next_dirty(memory, 0) >= 0)
 		__atomic_fetch_add(&w->wakes, 1, __ATOMIC_RELEASE);
 	return true;
 }
@@ -523,7 +524,7 @@ static bool look(struct waker *w)
 static void *engine(void *arg)
 {
 	struct waker *w = arg;
-	struct pollfd bell = {.fd = door_giver(in.door, 0)->bell, .events = POLLIN};
+	struct pollfd bell = {.fd = door_controller(in.door, 0)->bell, .events = POLLIN};
 
 	while (!__atomic_load_n(&w->stop, __ATOMIC_ACQUIRE)) {
 		image_awake(&in.image, true);

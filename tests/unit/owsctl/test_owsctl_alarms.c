@@ -278,7 +278,7 @@ static void *take(void *arg)
 
 	for (int i = 0; i < 60000; i++) {
 		nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL); /* pace */
-		if (instance_givers(&in) == before ||
+		if (instance_controllers(&in) == before ||
 		    !instance_slot(&in, before, ROOM)->acknowledged)
 			continue;
 		publish(ROOM, 31.5, OWS_ATTR_LIMITS, OWS_LIMIT_ACKNOWLEDGED, OWS_ALARM_H);
@@ -290,7 +290,7 @@ static void *take(void *arg)
 
 static void acknowledges(const char *words)
 {
-	unsigned before = instance_givers(&in);
+	unsigned before = instance_controllers(&in);
 	pthread_t thread;
 
 	publish(ROOM, 31.5, OWS_ATTR_LIMITS, OWS_LIMIT_UNACKNOWLEDGED, OWS_ALARM_H);
@@ -306,7 +306,7 @@ static uint32_t acknowledged(uint32_t record)
 {
 	uint32_t count = 0;
 
-	for (unsigned i = 0; i < instance_givers(&in); i++)
+	for (unsigned i = 0; i < instance_controllers(&in); i++)
 		count += instance_slot(&in, i, record)->acknowledged;
 	return count;
 }

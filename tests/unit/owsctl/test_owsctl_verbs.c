@@ -146,7 +146,7 @@ static void test_list_shows_driver_signals_when_asked(void)
 /* What the owsctl that ran last commanded. */
 static struct ows_command_slot *commanded(uint32_t record)
 {
-	return instance_slot(&in, instance_givers(&in) - 1, record);
+	return instance_slot(&in, instance_controllers(&in) - 1, record);
 }
 
 static void test_set_commands_outputs(void)
@@ -159,7 +159,9 @@ static void test_set_commands_outputs(void)
 	TEST_ASSERT_EQUAL(2, commanded(5)->stamp);
 	TEST_ASSERT_EQUAL_INT64(0, commanded(2)->value);
 	TEST_ASSERT_EQUAL_INT64(200, commanded(5)->value);
-	TEST_ASSERT_EQUAL(5, giver_text(instance_giver(&in, instance_givers(&in) - 1), 4, text));
+	TEST_ASSERT_EQUAL(
+		5,
+		controller_text(instance_controller(&in, instance_controllers(&in) - 1), 4, text));
 	TEST_ASSERT_EQUAL_STRING("hello", text);
 }
 
@@ -197,7 +199,7 @@ static void test_set_makes_an_edge_each_time(void)
 	for (uint32_t i = 1; i <= 3; i++) {
 		TEST_ASSERT_EQUAL(CTL_DONE, run(verb_set, "set relay_WOS 1"));
 		TEST_ASSERT_EQUAL_UINT32(1, commanded(2)->one_shot);
-		TEST_ASSERT_EQUAL(i, instance_givers(&in));
+		TEST_ASSERT_EQUAL(i, instance_controllers(&in));
 	}
 	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_set, "set relay_WOS 0"));
 	TEST_ASSERT_EQUAL_UINT32(0, commanded(2)->one_shot);
@@ -233,14 +235,17 @@ static void *confirm(void *arg)
 	while (!__atomic_load_n(&ended, __ATOMIC_ACQUIRE)) {
 		struct ows_attrs attrs = {.flags = OWS_ATTR_WRITE_ENABLE};
 		struct ows_sample sample = {.measured_ns = ows_now(), .quality = OWS_Q_GOOD};
-		unsigned givers = instance_givers(&in);
+		unsigned controllers = instance_controllers(&in);
 
-		if (givers > 0) {
-			struct giver_command command = instance_command(&in, givers - 1, 2);
+		if (controllers > 0) {
+			struct controller_command command = instance_command(&in, controllers - 1,
+			                                                     2);
 
 			sample.value = command.value;
-			giver_taken(instance_giver(&in, givers - 1), 2, command.stamp, 0);
-			giver_applied(instance_giver(&in, givers - 1), 2, command.stamp);
+			controller_taken(instance_controller(&in, controllers - 1), 2,
+			                 command.stamp, 0);
+			controller_applied(instance_controller(&in, controllers - 1), 2,
+			                   command.stamp);
 		}
 		image_publish(&in.image, 2, &sample, &attrs, NULL);
 		image_news(&in.image);

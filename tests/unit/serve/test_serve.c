@@ -85,7 +85,7 @@ static void show_output(uint32_t record, uint32_t applied)
 	struct ows_attrs attrs = {.flags = OWS_ATTR_WRITE_ENABLE};
 
 	if (applied)
-		giver_applied(instance_giver(&in, 0), record, applied);
+		controller_applied(instance_controller(&in, 0), record, applied);
 	image_publish(&in.image, record, &sample, &attrs, NULL);
 	image_news(&in.image);
 }
@@ -451,13 +451,13 @@ static uint32_t stamp_of(uint32_t record)
 	uint32_t found = 0;
 
 	for (int i = 0; i < 60000 && !found; i++) {
-		if (instance_givers(&in) > 0)
+		if (instance_controllers(&in) > 0)
 			found = word_get(&instance_slot(&in, 0, record)->stamp);
 		if (!found)
 			usleep(1000); /* pace */
 	}
 	TEST_ASSERT_NOT_EQUAL_UINT32(0, found);
-	giver_taken(instance_giver(&in, 0), record, found, 0);
+	controller_taken(instance_controller(&in, 0), record, found, 0);
 	return found;
 }
 

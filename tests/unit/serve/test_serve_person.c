@@ -69,14 +69,14 @@ static void stands_for(const char *person)
 	struct ows_command_slot *slot = instance_slot(&in, 0, RELAY);
 	char text[OWS_NAME] = "";
 
-	giver_person(instance_giver(&in, 0), word_get(&slot->person), text);
+	controller_person(instance_controller(&in, 0), word_get(&slot->person), text);
 	TEST_ASSERT_EQUAL_STRING(person, text);
 }
 
 static void take(void)
 {
-	giver_taken(instance_giver(&in, 0), RELAY, word_get(&instance_slot(&in, 0, RELAY)->stamp),
-	            0);
+	controller_taken(instance_controller(&in, 0), RELAY,
+	                 word_get(&instance_slot(&in, 0, RELAY)->stamp), 0);
 }
 
 static void test_each_command_stands_for_the_client_that_gave_it(void)

@@ -39,10 +39,10 @@ void tearDown(void)
 	free(memory);
 }
 
-static struct force_giver program(uint32_t serial)
+static struct force_controller program(uint32_t serial)
 {
-	struct force_giver g = {.who = {.serial = serial, .uid = 1000, .pid = 42, .name = "plc"},
-	                        .period_ms = 500};
+	struct force_controller g = {
+		.who = {.serial = serial, .uid = 1000, .pid = 42, .name = "plc"}, .period_ms = 500};
 
 	memset(g.token, (int)serial, sizeof(g.token));
 	return g;
@@ -67,28 +67,28 @@ static void expect_nothing_in_force(const struct force_left *left)
 static void test_at_first_no_command_is_in_force(void)
 {
 	struct force_left left;
-	struct force_giver g;
+	struct force_controller g;
 
 	TEST_ASSERT_EQUAL_INT(0, force_open(memory, size, BOOT, &left));
 	expect_nothing_in_force(&left);
-	for (uint32_t i = 0; i < FORCE_GIVERS; i++)
-		TEST_ASSERT_FALSE(force_find_giver(&left, i, &g));
+	for (uint32_t i = 0; i < FORCE_CONTROLLERS; i++)
+		TEST_ASSERT_FALSE(force_find_controller(&left, i, &g));
 	force_close(&left);
 }
 
 static void test_what_was_put_is_found_by_name_path_and_type(void)
 {
 	const struct force_command number = {
-		.value = 5, .stamp = 9, .given = true, .safe = true, .giver = 3};
-	const struct force_command string = {.len = 6, .given = true, .giver = FORCE_NOBODY};
+		.value = 5, .stamp = 9, .given = true, .safe = true, .controller = 3};
+	const struct force_command string = {.len = 6, .given = true, .controller = FORCE_NOBODY};
 	const struct force_signal other_type = {"valve", "/29.000000000001/PIO.0", OWS_BYTE};
-	const struct force_giver giver = program(77);
-	struct force_giver found;
+	const struct force_controller controller = program(77);
+	struct force_controller found;
 	struct force_command c;
 	struct force_left left;
 	char text[TEXT_CAP];
 
-	force_giver(&force, 3, &giver);
+	force_controller(&force, 3, &controller);
 	force_put(&force, 0, &number, NULL);
 	force_put(&force, 2, &string, "boiler");
 	TEST_ASSERT_EQUAL_INT(0, force_open(memory, size, BOOT, &left));
@@ -96,9 +96,9 @@ static void test_what_was_put_is_found_by_name_path_and_type(void)
 	TEST_ASSERT_TRUE(c.given && c.safe);
 	TEST_ASSERT_EQUAL_INT64(5, c.value);
 	TEST_ASSERT_EQUAL_UINT32(9, c.stamp);
-	TEST_ASSERT_EQUAL_UINT32(3, c.giver);
-	TEST_ASSERT_TRUE(force_find_giver(&left, 3, &found));
-	TEST_ASSERT_EQUAL_MEMORY(&giver, &found, sizeof(found));
+	TEST_ASSERT_EQUAL_UINT32(3, c.controller);
+	TEST_ASSERT_TRUE(force_find_controller(&left, 3, &found));
+	TEST_ASSERT_EQUAL_MEMORY(&controller, &found, sizeof(found));
 	TEST_ASSERT_TRUE(find(&left, 2, &c, text));
 	TEST_ASSERT_EQUAL_UINT32(6, c.len);
 	TEST_ASSERT_EQUAL_MEMORY("boiler", text, 6);
@@ -108,22 +108,22 @@ static void test_what_was_put_is_found_by_name_path_and_type(void)
 	force_close(&left);
 }
 
-static void test_a_command_does_not_fall_to_the_next_giver_of_the_index(void)
+static void test_a_command_does_not_fall_to_the_next_controller_of_the_index(void)
 {
-	const struct force_command command = {.value = 1, .given = true, .giver = 3};
-	struct force_giver giver = program(77);
+	const struct force_command command = {.value = 1, .given = true, .controller = 3};
+	struct force_controller controller = program(77);
 	struct force_command c;
 	struct force_left left;
 	char text[TEXT_CAP];
 
-	force_giver(&force, 3, &giver);
+	force_controller(&force, 3, &controller);
 	force_put(&force, 0, &command, NULL);
-	giver = program(78);
-	force_giver(&force, 3, &giver);
+	controller = program(78);
+	force_controller(&force, 3, &controller);
 	TEST_ASSERT_EQUAL_INT(0, force_open(memory, size, BOOT, &left));
 	TEST_ASSERT_TRUE(find(&left, 0, &c, text));
 	TEST_ASSERT_TRUE(c.given);
-	TEST_ASSERT_EQUAL_UINT32(FORCE_NOBODY, c.giver);
+	TEST_ASSERT_EQUAL_UINT32(FORCE_NOBODY, c.controller);
 	force_close(&left);
 }
 
@@ -133,7 +133,7 @@ static void test_a_command_does_not_fall_to_the_next_giver_of_the_index(void)
  */
 static void test_a_kill_at_any_moment_leaves_the_old_or_the_new_command(void)
 {
-	struct force_command c = {.value = 1, .len = 3, .given = true, .giver = FORCE_NOBODY};
+	struct force_command c = {.value = 1, .len = 3, .given = true, .controller = FORCE_NOBODY};
 	char *before = malloc(size), *half = malloc(size);
 	struct force_left left;
 	char text[TEXT_CAP];
@@ -180,12 +180,12 @@ static void test_a_file_of_another_size_or_kind_is_refused(void)
 /* Flip bits in copies on the heap, where a sanitizer sees each step outside. */
 static void test_a_damaged_file_is_refused_or_changes_nothing(void)
 {
-	const struct force_command number = {.value = 5, .given = true, .giver = 3};
-	const struct force_command string = {.len = 6, .given = true, .giver = FORCE_NOBODY};
-	const struct force_giver giver = program(77);
+	const struct force_command number = {.value = 5, .given = true, .controller = 3};
+	const struct force_command string = {.len = 6, .given = true, .controller = FORCE_NOBODY};
+	const struct force_controller controller = program(77);
 	unsigned refused = 0;
 
-	force_giver(&force, 3, &giver);
+	force_controller(&force, 3, &controller);
 	force_put(&force, 1, &number, NULL);
 	force_put(&force, 2, &string, "boiler");
 	srand(1);
@@ -193,7 +193,7 @@ static void test_a_damaged_file_is_refused_or_changes_nothing(void)
 		char *copy = malloc(size), text[TEXT_CAP];
 		struct force_left left;
 		struct force_command c;
-		struct force_giver g;
+		struct force_controller g;
 
 		memcpy(copy, memory, size);
 		for (int n = 0; n <= round % 3; n++) {
@@ -207,8 +207,8 @@ static void test_a_damaged_file_is_refused_or_changes_nothing(void)
 			for (unsigned i = 0; i < SIGNALS; i++)
 				if (find(&left, i, &c, text) && c.given && i == 1)
 					TEST_ASSERT_EQUAL_INT64(5, c.value);
-			for (uint32_t i = 0; i < FORCE_GIVERS; i++)
-				force_find_giver(&left, i, &g);
+			for (uint32_t i = 0; i < FORCE_CONTROLLERS; i++)
+				force_find_controller(&left, i, &g);
 			force_close(&left);
 		}
 		free(copy);
@@ -236,7 +236,7 @@ static void test_ten_thousand_signals_are_found_in_the_steps_of_a_sort(void)
 	struct force_signal *many = calloc(MANY, sizeof(*many));
 	char(*names)[32] = calloc(MANY, sizeof(*names));
 	struct force_plan big = {many, MANY, TEXT_CAP, BOOT};
-	struct force_command c = {.given = true, .giver = FORCE_NOBODY};
+	struct force_command c = {.given = true, .controller = FORCE_NOBODY};
 	struct force_left left;
 	struct force of;
 	char text[TEXT_CAP], *file;
@@ -273,7 +273,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_at_first_no_command_is_in_force);
 	RUN_TEST(test_what_was_put_is_found_by_name_path_and_type);
-	RUN_TEST(test_a_command_does_not_fall_to_the_next_giver_of_the_index);
+	RUN_TEST(test_a_command_does_not_fall_to_the_next_controller_of_the_index);
 	RUN_TEST(test_a_kill_at_any_moment_leaves_the_old_or_the_new_command);
 	RUN_TEST(test_what_another_boot_left_is_not_in_force);
 	RUN_TEST(test_a_file_of_another_size_or_kind_is_refused);

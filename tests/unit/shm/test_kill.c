@@ -131,7 +131,7 @@ static void publish_in_place(struct image *image, uint32_t n)
 static void remember(struct memory *memory, uint32_t n)
 {
 	const struct force_command command = {
-		.value = n, .stamp = n, .given = true, .giver = FORCE_NOBODY};
+		.value = n, .stamp = n, .given = true, .controller = FORCE_NOBODY};
 
 	force_put(&memory->force, OUTPUT - 1, &command, NULL);
 	__atomic_store_n(&force->remembered, n, __ATOMIC_SEQ_CST);
@@ -170,8 +170,10 @@ static void write_until_killed(void (*publish)(struct image *image, uint32_t n))
 	publish_all(&memory.image, n);
 	/* as an engine: the new file has what is in force before it takes the old one's place */
 	force_put(&memory.force, OUTPUT - 1,
-	          &(struct force_command){
-			  .value = command, .stamp = command, .given = true, .giver = FORCE_NOBODY},
+	          &(struct force_command){.value = command,
+	                                  .stamp = command,
+	                                  .given = true,
+	                                  .controller = FORCE_NOBODY},
 	          NULL);
 	if (memory_show(&memory, NULL, why, sizeof(why)))
 		_exit(2);

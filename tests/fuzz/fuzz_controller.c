@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The memory of a giver as a hostile program writes it, between the steps of an engine: any bytes
- * anywhere, and commands as they should be with anything in them. The engine goes on, writes to the
- * bus what is of the type, and publishes whole samples; the memory of another giver stays as it is.
- * At the end what is left goes over a reload, or to the owsd after a kill.
+ * The memory of a controller as a hostile program writes it, between the steps of an engine: any
+ * bytes anywhere, and commands as they should be with anything in them. The engine goes on, writes
+ * to the bus what is of the type, and publishes whole samples; the memory of another controller
+ * stays as it is. At the end what is left goes over a reload, or to the owsd after a kill.
  */
 #include <errno.h>
 #include <string.h>
@@ -16,7 +16,7 @@
 
 static struct fuzz fuzz;
 static struct scene scene;
-static const struct giver_layout *layout;
+static const struct controller_layout *layout;
 static int64_t time_left;
 
 static const struct {
@@ -99,7 +99,7 @@ static void run(int64_t ns)
 
 static void put_text(uint32_t record)
 {
-	struct ows_command_text *text = giving_text(&scene.givers[0], record);
+	struct ows_command_text *text = giving_text(&scene.controllers[0], record);
 	uint32_t cap = layout->text_cap;
 	uint8_t how = fuzz_byte(&fuzz);
 	size_t n;
@@ -148,7 +148,7 @@ static void flags(uint8_t what)
 
 static void shelve(void)
 {
-	struct ows_command_shelf *shelf = giving_shelf(&scene.givers[0]);
+	struct ows_command_shelf *shelf = giving_shelf(&scene.controllers[0]);
 	size_t n;
 	const uint8_t *why = fuzz_bytes(&fuzz, OWS_TEXT, &n);
 
@@ -157,13 +157,13 @@ static void shelve(void)
 	shelf->record = fuzz_byte(&fuzz) % (ITEMS + 2);
 	shelf->seconds = fuzz_word(&fuzz);
 	shelf->count++;
-	giving_header(&scene.givers[0])->marked = 1;
+	giving_header(&scene.controllers[0])->marked = 1;
 }
 
 static void overlay(void)
 {
 	uint32_t off = fuzz_word(&fuzz) % layout->size;
-	char *base = scene.givers[0].memory.base;
+	char *base = scene.controllers[0].memory.base;
 	size_t n;
 	const uint8_t *bytes = fuzz_bytes(&fuzz, 255, &n);
 
@@ -174,13 +174,13 @@ static void overlay(void)
 	/* all of it would be too much of what is not looked at */
 	if (off % 3 == 0)
 		memset(base + layout->dirty_off, 0xff, 4 * (size_t)layout->dirty_words);
-	giving_header(&scene.givers[0])->marked = 1;
+	giving_header(&scene.controllers[0])->marked = 1;
 }
 
-/* The giver promises, beats, or says goodbye; or goes, and comes back. */
+/* The controller promises, beats, or says goodbye; or goes, and comes back. */
 static void live(uint8_t what)
 {
-	struct ows_giver_header *h = giving_header(&scene.givers[0]);
+	struct ows_controller_header *h = giving_header(&scene.controllers[0]);
 
 	h->beat += what >> 3 & 1;
 	h->period_ms = what & 0x80 ? fuzz_word(&fuzz) : 100;
@@ -256,17 +256,17 @@ static void begin(void)
 	}
 	scene_start(&scene);
 	scene_join(&scene, 1, 9);
-	layout = scene.givers[0].memory.layout;
+	layout = scene.controllers[0].memory.layout;
 	scene_up(&scene);
 	time_left = 12 * SCENE_S;
 }
 
-/* The other giver did nothing, and nothing was done to it. */
+/* The other controller did nothing, and nothing was done to it. */
 static void check_other(void)
 {
-	TEST_ASSERT_EQUAL_HEX32(OWS_GIVER_MAGIC, giving_header(&scene.givers[1])->magic);
+	TEST_ASSERT_EQUAL_HEX32(OWS_CONTROLLER_MAGIC, giving_header(&scene.controllers[1])->magic);
 	for (uint32_t i = 0; i <= ITEMS; i++) {
-		const struct ows_command_slot *slot = giving_slot(&scene.givers[1], i);
+		const struct ows_command_slot *slot = giving_slot(&scene.controllers[1], i);
 
 		TEST_ASSERT_EQUAL_UINT32(0, slot->stamp | slot->taken | slot->applied);
 		TEST_ASSERT_EQUAL_INT(0, slot->err);
@@ -288,7 +288,7 @@ void fuzz_one(const uint8_t *bytes, size_t n)
 		scene_reload(&scene, NULL);
 	else
 		scene_restart(&scene);
-	layout = scene.givers[0].memory.layout;
+	layout = scene.controllers[0].memory.layout;
 	check_image();
 	run(500 * SCENE_MS);
 	scene_end(&scene);

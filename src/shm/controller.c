@@ -1,38 +1,39 @@
 /* SPDX-License-Identifier: MIT */
-/* The memory of a giver as owsd lays it out, reads it, and answers in it. */
+/* The memory of a controller as owsd lays it out, reads it, and answers in it. */
 #include <assert.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "src/libows/ows.h"
-#include "src/shm/giver.h"
+#include "src/shm/controller.h"
 #include "src/shm/word.h"
 
-#define GIVER_MAX 0x7fffffffu
+#define CONTROLLER_MAX 0x7fffffffu
 
 static uint64_t align64(uint64_t offset)
 {
 	return (offset + 63) & ~(uint64_t)63;
 }
 
-int giver_layout_make(struct giver_layout *layout, const struct giver_plan *plan)
+int controller_layout_make(struct controller_layout *layout, const struct controller_plan *plan)
 {
 	uint64_t slots = (uint64_t)plan->signal_count + 1, words = (slots + 31) / 32;
 	uint64_t dirty, place, person, shelf, text, end;
 	uint32_t texts = 0;
 
 	assert(plan->text_cap % 4 == 0);
-	*layout = (struct giver_layout){0};
+	*layout = (struct controller_layout){0};
 	for (uint32_t i = 0; i < plan->signal_count; i++)
 		texts += plan->types[i] == OWS_STRING;
-	dirty = align64(sizeof(struct ows_giver_header) + slots * sizeof(struct ows_command_slot));
+	dirty = align64(sizeof(struct ows_controller_header) +
+	                slots * sizeof(struct ows_command_slot));
 	place = align64(dirty + 4 * words);
 	person = align64(place + 4 * slots);
 	shelf = align64(person + (uint64_t)OWS_PERSONS * OWS_NAME);
 	text = align64(shelf + sizeof(struct ows_command_shelf));
 	end = align64(text + (uint64_t)texts * (sizeof(struct ows_command_text) + plan->text_cap));
-	if (end > GIVER_MAX)
+	if (end > CONTROLLER_MAX)
 		return -EFBIG;
 	layout->places = malloc(slots * sizeof(*layout->places));
 	if (!layout->places)
@@ -40,7 +41,7 @@ int giver_layout_make(struct giver_layout *layout, const struct giver_plan *plan
 	layout->size = (uint32_t)end;
 	layout->generation = plan->generation;
 	layout->start_id = plan->start_id;
-	layout->slot_off = sizeof(struct ows_giver_header);
+	layout->slot_off = sizeof(struct ows_controller_header);
 	layout->slot_count = (uint32_t)slots;
 	layout->text_off = (uint32_t)text;
 	layout->text_cap = plan->text_cap;
@@ -49,57 +50,57 @@ int giver_layout_make(struct giver_layout *layout, const struct giver_plan *plan
 	layout->dirty_words = (uint32_t)words;
 	layout->person_off = (uint32_t)person;
 	layout->shelf_off = (uint32_t)shelf;
-	layout->places[0] = GIVER_NO_TEXT;
+	layout->places[0] = CONTROLLER_NO_TEXT;
 	texts = 0;
 	for (uint32_t i = 0; i < plan->signal_count; i++)
-		layout->places[i + 1] = plan->types[i] == OWS_STRING ? texts++ : GIVER_NO_TEXT;
+		layout->places[i + 1] = plan->types[i] == OWS_STRING ? texts++ : CONTROLLER_NO_TEXT;
 	return 0;
 }
 
-void giver_layout_free(struct giver_layout *layout)
+void controller_layout_free(struct controller_layout *layout)
 {
 	free(layout->places);
-	*layout = (struct giver_layout){0};
+	*layout = (struct controller_layout){0};
 }
 
-static struct ows_giver_header *header_of(const struct giver_memory *memory)
+static struct ows_controller_header *header_of(const struct controller_memory *memory)
 {
 	return (void *)memory->base;
 }
 
-static struct ows_command_slot *slot_at(const struct giver_memory *memory, uint32_t record)
+static struct ows_command_slot *slot_at(const struct controller_memory *memory, uint32_t record)
 {
 	assert(record < memory->layout->slot_count);
 	return (void *)(memory->base + memory->layout->slot_off +
 	                (size_t)record * sizeof(struct ows_command_slot));
 }
 
-static struct ows_command_text *text_at(const struct giver_memory *memory, uint32_t record)
+static struct ows_command_text *text_at(const struct controller_memory *memory, uint32_t record)
 {
-	const struct giver_layout *l = memory->layout;
+	const struct controller_layout *l = memory->layout;
 
-	assert(record < l->slot_count && l->places[record] != GIVER_NO_TEXT);
+	assert(record < l->slot_count && l->places[record] != CONTROLLER_NO_TEXT);
 	return (void *)(memory->base + l->text_off +
 	                (size_t)l->places[record] *
 	                        (sizeof(struct ows_command_text) + l->text_cap));
 }
 
-static char *person_at(const struct giver_memory *memory, uint32_t index)
+static char *person_at(const struct controller_memory *memory, uint32_t index)
 {
 	return memory->base + memory->layout->person_off + (size_t)index * OWS_NAME;
 }
 
-static struct ows_command_shelf *shelf_of(const struct giver_memory *memory)
+static struct ows_command_shelf *shelf_of(const struct controller_memory *memory)
 {
 	return (void *)(memory->base + memory->layout->shelf_off);
 }
 
-void giver_build(const struct giver_memory *memory, uint32_t serial)
+void controller_build(const struct controller_memory *memory, uint32_t serial)
 {
-	const struct giver_layout *l = memory->layout;
+	const struct controller_layout *l = memory->layout;
 
-	*header_of(memory) = (struct ows_giver_header){
-		.magic = OWS_GIVER_MAGIC,
+	*header_of(memory) = (struct ows_controller_header){
+		.magic = OWS_CONTROLLER_MAGIC,
 		.major = OWS_LAYOUT_MAJOR,
 		.minor = OWS_LAYOUT_MINOR,
 		.size = l->size,
@@ -121,12 +122,12 @@ void giver_build(const struct giver_memory *memory, uint32_t serial)
 	memcpy(memory->base + l->place_off, l->places, l->slot_count * sizeof(*l->places));
 }
 
-void giver_allow(const struct giver_memory *memory, uint32_t record, bool allowed)
+void controller_allow(const struct controller_memory *memory, uint32_t record, bool allowed)
 {
 	word_set(&slot_at(memory, record)->allowed, allowed);
 }
 
-void giver_state(const struct giver_memory *memory, enum ows_state state)
+void controller_state(const struct controller_memory *memory, enum ows_state state)
 {
 	__atomic_store_n(&header_of(memory)->state, (uint32_t)state, __ATOMIC_SEQ_CST);
 	word_fence(__ATOMIC_SEQ_CST);
@@ -166,13 +167,15 @@ static uint8_t enable_of(uint32_t now, uint32_t seen)
 	return is_edge(now, seen) && (now & 3) != 3 ? now & 3 : 0;
 }
 
-void giver_load(const struct giver_memory *memory, uint32_t record, struct giver_command *command)
+void controller_load(const struct controller_memory *memory, uint32_t record,
+                     struct controller_command *command)
 {
 	struct ows_command_slot *s = slot_at(memory, record);
 	uint32_t enables, counts, acknowledged;
 	struct edges now;
 
-	/* The giver stores the value before the stamp: the value read here is at least as new. */
+	/* The controller stores the value before the stamp: the value read here is at least as
+	 * new. */
 	command->stamp = __atomic_load_n(&s->stamp, __ATOMIC_ACQUIRE);
 	command->value = (int64_t)__atomic_load_n((shm_double_word *)&s->value, __ATOMIC_RELAXED);
 	command->fresh = command->stamp != 0 && command->stamp != word_get(&s->taken);
@@ -191,7 +194,7 @@ void giver_load(const struct giver_memory *memory, uint32_t record, struct giver
 	store_seen(s, &now);
 }
 
-int giver_text(const struct giver_memory *memory, uint32_t record, char *text)
+int controller_text(const struct controller_memory *memory, uint32_t record, char *text)
 {
 	const struct ows_command_text *t = text_at(memory, record);
 	const char *from = (const char *)(t + 1);
@@ -220,12 +223,12 @@ static void clean(char *to, const char *from, size_t size)
 	memset(to + n, 0, size - n);
 }
 
-void giver_clean_name(char name[OWS_NAME], const char *from)
+void controller_clean_name(char name[OWS_NAME], const char *from)
 {
 	clean(name, from, OWS_NAME);
 }
 
-void giver_person(const struct giver_memory *memory, uint32_t person, char name[OWS_NAME])
+void controller_person(const struct controller_memory *memory, uint32_t person, char name[OWS_NAME])
 {
 	char copy[OWS_NAME] = "";
 
@@ -235,20 +238,20 @@ void giver_person(const struct giver_memory *memory, uint32_t person, char name[
 	clean(name, copy, OWS_NAME);
 }
 
-bool giver_is_marked(const struct giver_memory *memory)
+bool controller_is_marked(const struct controller_memory *memory)
 {
 	return word_get(&header_of(memory)->marked) != 0;
 }
 
-bool giver_marked(const struct giver_memory *memory)
+bool controller_marked(const struct controller_memory *memory)
 {
-	return giver_is_marked(memory) &&
+	return controller_is_marked(memory) &&
 	       __atomic_exchange_n(&header_of(memory)->marked, 0, __ATOMIC_ACQUIRE) != 0;
 }
 
-int giver_next_dirty(const struct giver_memory *memory, uint32_t from)
+int controller_next_dirty(const struct controller_memory *memory, uint32_t from)
 {
-	const struct giver_layout *l = memory->layout;
+	const struct controller_layout *l = memory->layout;
 	uint32_t *words = (void *)(memory->base + l->dirty_off);
 
 	for (uint32_t w = from / 32; w < l->dirty_words; w++) {
@@ -267,7 +270,8 @@ int giver_next_dirty(const struct giver_memory *memory, uint32_t from)
 	return -1;
 }
 
-void giver_taken(const struct giver_memory *memory, uint32_t record, uint32_t stamp, int err)
+void controller_taken(const struct controller_memory *memory, uint32_t record, uint32_t stamp,
+                      int err)
 {
 	struct ows_command_slot *s = slot_at(memory, record);
 
@@ -275,14 +279,14 @@ void giver_taken(const struct giver_memory *memory, uint32_t record, uint32_t st
 	__atomic_store_n(&s->taken, stamp, __ATOMIC_RELEASE);
 }
 
-void giver_applied(const struct giver_memory *memory, uint32_t record, uint32_t stamp)
+void controller_applied(const struct controller_memory *memory, uint32_t record, uint32_t stamp)
 {
 	__atomic_store_n(&slot_at(memory, record)->applied, stamp, __ATOMIC_RELEASE);
 }
 
-void giver_beat(const struct giver_memory *memory, struct giver_beat *beat)
+void controller_beat(const struct controller_memory *memory, struct controller_beat *beat)
 {
-	const struct ows_giver_header *h = header_of(memory);
+	const struct ows_controller_header *h = header_of(memory);
 
 	beat->beat = __atomic_load_n(&h->beat, __ATOMIC_ACQUIRE);
 	beat->period_ms = word_get(&h->period_ms);
@@ -291,7 +295,7 @@ void giver_beat(const struct giver_memory *memory, struct giver_beat *beat)
 	beat->goodbye = word_get(&h->goodbye) != 0;
 }
 
-bool giver_waits(const struct giver_memory *memory)
+bool controller_waits(const struct controller_memory *memory)
 {
 	uint32_t *waits = &header_of(memory)->waits;
 
@@ -300,7 +304,7 @@ bool giver_waits(const struct giver_memory *memory)
 
 /* --- Shelving --------------------------------------------------------------------------------- */
 
-bool giver_shelf(const struct giver_memory *memory, struct giver_shelf *shelf)
+bool controller_shelf(const struct controller_memory *memory, struct controller_shelf *shelf)
 {
 	const struct ows_command_shelf *from = shelf_of(memory);
 	char why[OWS_TEXT];
@@ -318,7 +322,7 @@ bool giver_shelf(const struct giver_memory *memory, struct giver_shelf *shelf)
 	return shelf->count != 0 && shelf->count != word_get(&from->done);
 }
 
-void giver_shelf_done(const struct giver_memory *memory, uint32_t count, int err)
+void controller_shelf_done(const struct controller_memory *memory, uint32_t count, int err)
 {
 	struct ows_command_shelf *s = shelf_of(memory);
 
@@ -328,8 +332,8 @@ void giver_shelf_done(const struct giver_memory *memory, uint32_t count, int err
 
 /* --- A reload --------------------------------------------------------------------------------- */
 
-static void copy_text(const struct giver_memory *to, uint32_t record,
-                      const struct giver_memory *from, uint32_t was)
+static void copy_text(const struct controller_memory *to, uint32_t record,
+                      const struct controller_memory *from, uint32_t was)
 {
 	const struct ows_command_text *f = text_at(from, was);
 	struct ows_command_text *t = text_at(to, record);
@@ -339,9 +343,9 @@ static void copy_text(const struct giver_memory *to, uint32_t record,
 	words_load(t, f, (sizeof(*t) + cap) / 4);
 }
 
-/* What the giver did after the last look is over: its call has returned -ESTALE. */
-static void copy_slot(const struct giver_memory *to, uint32_t record,
-                      const struct giver_memory *from, uint32_t was)
+/* What the controller did after the last look is over: its call has returned -ESTALE. */
+static void copy_slot(const struct controller_memory *to, uint32_t record,
+                      const struct controller_memory *from, uint32_t was)
 {
 	struct ows_command_slot *f = slot_at(from, was), *t = slot_at(to, record), copy;
 	struct edges seen;
@@ -360,16 +364,16 @@ static void copy_slot(const struct giver_memory *to, uint32_t record,
 	t->taken = copy.stamp;
 	load_edges(t, &seen);
 	store_seen(t, &seen);
-	if (to->layout->places[record] != GIVER_NO_TEXT &&
-	    from->layout->places[was] != GIVER_NO_TEXT)
+	if (to->layout->places[record] != CONTROLLER_NO_TEXT &&
+	    from->layout->places[was] != CONTROLLER_NO_TEXT)
 		copy_text(to, record, from, was);
 }
 
-void giver_copy(const struct giver_memory *to, const struct giver_memory *from,
-                const uint32_t *rows)
+void controller_copy(const struct controller_memory *to, const struct controller_memory *from,
+                     const uint32_t *rows)
 {
-	struct ows_giver_header *t = header_of(to);
-	const struct ows_giver_header *f = header_of(from);
+	struct ows_controller_header *t = header_of(to);
+	const struct ows_controller_header *f = header_of(from);
 	struct ows_command_shelf *shelf = shelf_of(to);
 
 	copy_slot(to, 0, from, 0);

@@ -13,7 +13,7 @@
 #include "src/show/who.h"
 
 /* clang-format off */
-static const struct table_column giver_columns[] = {
+static const struct table_column controller_columns[] = {
 	{"PROGRAM"}, {"USER"}, {"SINCE", .right = true}, {"BEAT", .right = true},
 	{"COMMANDS", .right = true}, {"REFUSED", .right = true}, {"STATE"},
 };
@@ -32,29 +32,31 @@ struct who {
 	bool full; /* no memory */
 };
 
-static const char *giver_state(const struct ows_giver *giver)
+static const char *controller_state(const struct ows_controller *controller)
 {
-	if (giver->late)
+	if (controller->late)
 		return "late";
-	return giver->may_set ? "" : "reads";
+	return controller->may_set ? "" : "reads";
 }
 
-static void add_giver(struct who *who, struct table *table, const struct ows_giver *giver)
+static void add_controller(struct who *who, struct table *table,
+                           const struct ows_controller *controller)
 {
 	char program[WHO_TEXT], user[WHO_TEXT], since[WHEN_TEXT], beat[32], commands[16],
 		refused[16];
 
-	snprintf(commands, sizeof(commands), "%" PRIu32, giver->commands);
-	snprintf(refused, sizeof(refused), "%" PRIu32, giver->refused);
-	if (giver->period_ms)
-		snprintf(beat, sizeof(beat), "%gs", giver->period_ms / 1e3);
+	snprintf(commands, sizeof(commands), "%" PRIu32, controller->commands);
+	snprintf(refused, sizeof(refused), "%" PRIu32, controller->refused);
+	if (controller->period_ms)
+		snprintf(beat, sizeof(beat), "%gs", controller->period_ms / 1e3);
 	else
 		snprintf(beat, sizeof(beat), "-");
 	who->full |= !table_add(
-		table, (const char *const[]){who_program(&giver->who, program),
-	                                     who_user(&giver->who, user),
-	                                     when_span(who->now.boot - giver->joined_ns, since),
-	                                     beat, commands, refused, giver_state(giver)});
+		table,
+		(const char *const[]){who_program(&controller->who, program),
+	                              who_user(&controller->who, user),
+	                              when_span(who->now.boot - controller->joined_ns, since), beat,
+	                              commands, refused, controller_state(controller)});
 }
 
 static void add_origin(struct who *who, struct table *table, const char *name,
@@ -90,42 +92,43 @@ static bool next_output(struct who *who, int *signal, struct ows_info *info,
 
 static int print_text(struct who *who)
 {
-	struct table givers, outputs;
+	struct table controllers, outputs;
 	struct ows_origin origin;
-	struct ows_giver giver;
+	struct ows_controller controller;
 	struct ows_info info;
 	int signal = 0;
 
-	table_init(&givers, giver_columns, COLUMNS(giver_columns));
+	table_init(&controllers, controller_columns, COLUMNS(controller_columns));
 	table_init(&outputs, origin_columns, COLUMNS(origin_columns));
-	for (int i = 0; ows_giver(who->h, i, &giver) == 0; i++)
-		if (giver.who.serial)
-			add_giver(who, &givers, &giver);
+	for (int i = 0; ows_controller(who->h, i, &controller) == 0; i++)
+		if (controller.who.serial)
+			add_controller(who, &controllers, &controller);
 	while (next_output(who, &signal, &info, &origin))
 		add_origin(who, &outputs, info.name, &origin);
-	table_print(&givers, true);
+	table_print(&controllers, true);
 	putchar('\n');
 	table_print(&outputs, true);
-	table_free(&givers);
+	table_free(&controllers);
 	table_free(&outputs);
 	return who->full ? ctl_fail("no memory") : CTL_DONE;
 }
 
-static void giver_json(const struct who *who, struct json *json, const struct ows_giver *giver)
+static void controller_json(const struct who *who, struct json *json,
+                            const struct ows_controller *controller)
 {
 	char text[WHEN_TEXT];
 
 	json_object(json, NULL);
-	who_json(json, &giver->who);
-	json_string(json, "since", when_iso(&who->now, giver->joined_ns, text));
-	if (giver->period_ms)
-		json_seconds(json, "beat", giver->period_ms * INT64_C(1000000));
+	who_json(json, &controller->who);
+	json_string(json, "since", when_iso(&who->now, controller->joined_ns, text));
+	if (controller->period_ms)
+		json_seconds(json, "beat", controller->period_ms * INT64_C(1000000));
 	else
 		json_null(json, "beat");
-	json_bool(json, "may_set", giver->may_set);
-	json_bool(json, "late", giver->late);
-	json_uint(json, "commands", giver->commands);
-	json_uint(json, "refused", giver->refused);
+	json_bool(json, "may_set", controller->may_set);
+	json_bool(json, "late", controller->late);
+	json_uint(json, "commands", controller->commands);
+	json_uint(json, "refused", controller->refused);
 	json_object_end(json);
 }
 
@@ -146,17 +149,17 @@ static void origin_json(const struct who *who, struct json *json, const char *na
 static void print_json(struct who *who)
 {
 	struct ows_origin origin;
-	struct ows_giver giver;
+	struct ows_controller controller;
 	struct ows_info info;
 	struct json json;
 	int signal = 0;
 
 	json_open(&json, stdout);
 	json_object(&json, NULL);
-	json_array(&json, "givers");
-	for (int i = 0; ows_giver(who->h, i, &giver) == 0; i++)
-		if (giver.who.serial)
-			giver_json(who, &json, &giver);
+	json_array(&json, "controllers");
+	for (int i = 0; ows_controller(who->h, i, &controller) == 0; i++)
+		if (controller.who.serial)
+			controller_json(who, &json, &controller);
 	json_array_end(&json);
 	json_array(&json, "outputs");
 	while (next_output(who, &signal, &info, &origin))

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The givers of a scene, and the disk of Start "last". */
+/* The controllers of a scene, and the disk of Start "last". */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
@@ -16,62 +16,62 @@ void scene_allow(struct scene *s, unsigned place, unsigned record)
 
 void scene_join_again(struct scene *s, unsigned place)
 {
-	struct engine_giver giver = {
+	struct engine_controller controller = {
 		.who = {.serial = s->tokens[place] ? s->tokens[place] : 1000 + place,
 	                .uid = s->uid,
 	                .pid = 100 + (int32_t)place},
 		.rights = s->limited ? s->rights[place] : NULL,
 	};
 
-	snprintf(giver.who.name, sizeof(giver.who.name), "giver%u", place);
-	memcpy(giver.token, &s->tokens[place], sizeof(s->tokens[place]));
-	giving_make(&s->givers[place], s->layout, giver.who.serial);
-	giver.memory = s->givers[place].memory;
-	engine_giver_join(s->engine, place, &giver, s->now_ns);
+	snprintf(controller.who.name, sizeof(controller.who.name), "controller%u", place);
+	memcpy(controller.token, &s->tokens[place], sizeof(s->tokens[place]));
+	giving_make(&s->controllers[place], s->layout, controller.who.serial);
+	controller.memory = s->controllers[place].memory;
+	engine_controller_join(s->engine, place, &controller, s->now_ns);
 }
 
 void scene_join(struct scene *s, unsigned place, uint32_t token)
 {
-	TEST_ASSERT_NULL(s->givers[place].memory.base);
+	TEST_ASSERT_NULL(s->controllers[place].memory.base);
 	s->tokens[place] = token;
 	scene_join_again(s, place);
 }
 
 void scene_leave(struct scene *s, unsigned place)
 {
-	engine_giver_left(s->engine, place, s->now_ns);
-	giving_free(&s->givers[place]);
+	engine_controller_left(s->engine, place, s->now_ns);
+	giving_free(&s->controllers[place]);
 }
 
 void scene_goodbye(struct scene *s, unsigned place)
 {
-	giving_header(&s->givers[place])->goodbye = 1;
+	giving_header(&s->controllers[place])->goodbye = 1;
 	scene_leave(s, place);
 }
 
 struct ows_command_slot *scene_slot(struct scene *s, unsigned record)
 {
-	return giving_slot(&s->givers[0], record);
+	return giving_slot(&s->controllers[0], record);
 }
 
 void scene_ring(struct scene *s, unsigned record)
 {
-	giving_mark(&s->givers[0], record);
+	giving_mark(&s->controllers[0], record);
 }
 
 void scene_set(struct scene *s, unsigned record, int64_t value)
 {
-	giving_set(&s->givers[0], record, value);
+	giving_set(&s->controllers[0], record, value);
 }
 
 void scene_set_by(struct scene *s, unsigned place, unsigned record, int64_t value)
 {
-	giving_set(&s->givers[place], record, value);
+	giving_set(&s->controllers[place], record, value);
 }
 
 void scene_set_text(struct scene *s, unsigned record, const char *text)
 {
-	giving_set_text(&s->givers[0], record, text);
+	giving_set_text(&s->controllers[0], record, text);
 }
 
 void scene_enable_reads(struct scene *s, unsigned record, bool on)
@@ -95,7 +95,7 @@ void scene_beat(struct scene *s, unsigned n, uint32_t period_ms, int64_t ns)
 {
 	for (int64_t t = 0; t < ns; t += 100 * SCENE_MS) {
 		for (unsigned i = 0; i < n; i++)
-			giving_beat(&s->givers[i], period_ms);
+			giving_beat(&s->controllers[i], period_ms);
 		scene_run(s, 100 * SCENE_MS);
 	}
 }

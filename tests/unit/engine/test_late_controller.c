@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Who is late: a giver that sets but does not beat is, and nobody is for the time in which nobody
- * ran (a suspend, a guest that was paused).
+ * Who is late: a controller that sets but does not beat is, and nobody is for the time in which
+ * nobody ran (a suspend, a guest that was paused).
  */
 #include <stdlib.h>
 #include <string.h>
@@ -28,7 +28,7 @@ void setUp(void)
 	scene_up(&s);
 	scene_run(&s, SCENE_S);
 	scene_join(&s, 1, 2);
-	giving_beat(&s.givers[1], BEAT_MS);
+	giving_beat(&s.controllers[1], BEAT_MS);
 	scene_set_by(&s, 1, 1, 30);
 	scene_run(&s, 200 * SCENE_MS);
 	TEST_ASSERT_EQUAL_STRING("30", scene_at(&s, PIO));
@@ -42,12 +42,12 @@ void tearDown(void)
 static void beat_on(int64_t ns)
 {
 	for (int64_t t = 0; t < ns; t += 100 * SCENE_MS) {
-		giving_beat(&s.givers[1], BEAT_MS);
+		giving_beat(&s.controllers[1], BEAT_MS);
 		scene_run(&s, 100 * SCENE_MS);
 	}
 }
 
-/* The giver is connected and beats, and its command was never replaced. */
+/* The controller is connected and beats, and its command was never replaced. */
 static void expect_its_command(void)
 {
 	beat_on(5 * SCENE_S);
@@ -55,7 +55,7 @@ static void expect_its_command(void)
 	TEST_ASSERT_EQUAL_UINT64(0, scene_counter(&s, "safe_outputs"));
 }
 
-static void test_what_a_giver_sets_that_is_late_goes_to_safevalue_too(void)
+static void test_what_a_controller_sets_that_is_late_goes_to_safevalue_too(void)
 {
 	scene_run(&s, 5 * SCENE_S);
 	TEST_ASSERT_EQUAL_STRING("20", scene_at(&s, PIO));
@@ -65,12 +65,12 @@ static void test_what_a_giver_sets_that_is_late_goes_to_safevalue_too(void)
 	TEST_ASSERT_EQUAL_UINT64(2, scene_counter(&s, "safe_outputs"));
 }
 
-static void test_time_in_which_nobody_ran_makes_no_giver_late(void)
+static void test_time_in_which_nobody_ran_makes_no_controller_late(void)
 {
 	s.now_ns += 100 * SCENE_S;
 	scene_run(&s, 200 * SCENE_MS);
 	expect_its_command();
-	TEST_ASSERT_EQUAL_UINT64(0, scene_counter(&s, "lost_givers"));
+	TEST_ASSERT_EQUAL_UINT64(0, scene_counter(&s, "lost_controllers"));
 }
 
 static void test_neither_does_a_time_that_is_hardly_longer_than_its_promise(void)
@@ -80,31 +80,31 @@ static void test_neither_does_a_time_that_is_hardly_longer_than_its_promise(void
 	expect_its_command();
 }
 
-static void test_after_such_a_time_a_giver_that_hangs_is_late(void)
+static void test_after_such_a_time_a_controller_that_hangs_is_late(void)
 {
 	s.now_ns += 100 * SCENE_S;
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_EQUAL_STRING("20", scene_at(&s, PIO));
 }
 
-static void test_such_a_time_does_not_end_the_wait_for_a_giver_of_before_the_start(void)
+static void test_such_a_time_does_not_end_the_wait_for_a_controller_of_before_the_start(void)
 {
 	scene_restart(&s);
 	scene_up(&s);
 	scene_run(&s, 500 * SCENE_MS);
 	s.now_ns += 100 * SCENE_S;
 	scene_run(&s, 500 * SCENE_MS);
-	s.givers[1].stamp = 100;
+	s.controllers[1].stamp = 100;
 	scene_join(&s, 1, 2);
 	expect_its_command();
 }
 
-static void test_such_a_time_does_not_end_the_wait_for_a_giver_that_hung_up(void)
+static void test_such_a_time_does_not_end_the_wait_for_a_controller_that_hung_up(void)
 {
 	s.now_ns += 100 * SCENE_S; /* the hang-up is the first that owsd sees */
 	scene_leave(&s, 1);
 	scene_run(&s, 200 * SCENE_MS);
-	s.givers[1].stamp = 100;
+	s.controllers[1].stamp = 100;
 	scene_join(&s, 1, 2);
 	expect_its_command();
 }
@@ -112,11 +112,11 @@ static void test_such_a_time_does_not_end_the_wait_for_a_giver_that_hung_up(void
 int main(void)
 {
 	UNITY_BEGIN();
-	RUN_TEST(test_what_a_giver_sets_that_is_late_goes_to_safevalue_too);
-	RUN_TEST(test_time_in_which_nobody_ran_makes_no_giver_late);
+	RUN_TEST(test_what_a_controller_sets_that_is_late_goes_to_safevalue_too);
+	RUN_TEST(test_time_in_which_nobody_ran_makes_no_controller_late);
 	RUN_TEST(test_neither_does_a_time_that_is_hardly_longer_than_its_promise);
-	RUN_TEST(test_after_such_a_time_a_giver_that_hangs_is_late);
-	RUN_TEST(test_such_a_time_does_not_end_the_wait_for_a_giver_of_before_the_start);
-	RUN_TEST(test_such_a_time_does_not_end_the_wait_for_a_giver_that_hung_up);
+	RUN_TEST(test_after_such_a_time_a_controller_that_hangs_is_late);
+	RUN_TEST(test_such_a_time_does_not_end_the_wait_for_a_controller_of_before_the_start);
+	RUN_TEST(test_such_a_time_does_not_end_the_wait_for_a_controller_that_hung_up);
 	return UNITY_END();
 }
