@@ -101,7 +101,8 @@ int area_ask_driver(struct txn *txn, const struct area *const *areas, unsigned c
 }
 
 /* A driver gives an area as it is. */
-static int load(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, unsigned n)
+static int area_load(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,
+                     unsigned n)
 {
 	return area->load && !txn_driven(txn) ? area->load(txn, area, at, bytes, n)
 	                                      : area_fetch(txn, area, at, bytes, n);
@@ -111,11 +112,11 @@ static int load(struct txn *txn, const struct area *area, unsigned at, uint8_t *
  * To visit->have; TXN_MORE until enough looks agree. So long as nothing but ones is read, perhaps
  * nobody hears: of a chip that is there the last look is made again.
  */
-static int look(struct txn *txn, const struct area *area, unsigned at, unsigned n)
+static int area_look(struct txn *txn, const struct area *area, unsigned at, unsigned n)
 {
 	struct area_visit *visit = &txn->area;
 	uint8_t again[AREA_UNIT];
-	int err = load(txn, area, at, again, n);
+	int err = area_load(txn, area, at, again, n);
 
 	if (err)
 		return err;
@@ -165,7 +166,7 @@ int area_read(struct txn *txn, const struct area *area, unsigned at, uint8_t *by
 	}
 	if (!area->parts || !txn_driven(txn))
 		whole_blocks(area, &from, &len);
-	err = look(txn, area, from, len);
+	err = area_look(txn, area, from, len);
 	if (err)
 		return err;
 	if (!txn->blank || txn->asked)
@@ -295,7 +296,7 @@ static int check_unit(struct txn *txn, const struct area *area, struct unit unit
 {
 	struct area_visit *visit = &txn->area;
 	uint8_t in[AREA_UNIT];
-	int err = load(txn, area, unit.at, in, unit.n);
+	int err = area_load(txn, area, unit.at, in, unit.n);
 
 	txn->silent = false;
 	if (!err && area->saw)
@@ -369,7 +370,7 @@ static int prepare(struct txn *txn, const struct area *area, struct unit unit, u
 		visit->step = WRITE;
 		return write_step(txn, area, unit);
 	}
-	err = look(txn, area, unit.at, unit.n);
+	err = area_look(txn, area, unit.at, unit.n);
 	txn->silent = false;
 	if (err)
 		return err;

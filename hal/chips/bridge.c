@@ -101,7 +101,7 @@ static bool checksum_fits(const struct sensor_step *step, const uint8_t *bytes)
 }
 
 /* A register: until three looks in a row are the same. 0 when they are. */
-static int look(struct txn *txn, const struct sensor *sensor, const struct sensor_step *step)
+static int bridge_look(struct txn *txn, const struct sensor *sensor, const struct sensor_step *step)
 {
 	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t in[SENSOR_AT_ONCE];
@@ -132,7 +132,7 @@ static int compute(const struct sensor *sensor, const struct sensor_step *step)
 }
 
 /* One step; TXN_MORE: it used the wire, or has to be waited for. */
-static int step(struct txn *txn, const struct sensor *sensor)
+static int bridge_step(struct txn *txn, const struct sensor *sensor)
 {
 	struct visit *visit = txn_own(txn, struct visit);
 	const struct sensor_step *step =
@@ -144,7 +144,7 @@ static int step(struct txn *txn, const struct sensor *sensor)
 		err = write_bytes(txn, sensor, step->first, step->count, NULL, 0);
 		break;
 	case SENSOR_EXCHANGE:
-		err = look(txn, sensor, step);
+		err = bridge_look(txn, sensor, step);
 		break;
 	case SENSOR_READ:
 		err = exchange(txn, &(struct i2c_transfer){.address = sensor->place->address,
@@ -194,7 +194,7 @@ static void share(struct txn *txn, const struct sensor *sensor)
 		          n - at < SHARED ? n - at : SHARED, visit->begun_ns);
 }
 
-static int measure(struct txn *txn, const struct sensor *sensor)
+static int bridge_measure(struct txn *txn, const struct sensor *sensor)
 {
 	struct visit *visit = txn_own(txn, struct visit);
 	int err = 0;
@@ -207,7 +207,7 @@ static int measure(struct txn *txn, const struct sensor *sensor)
 		memset(sensor->place->bytes, 0, sizeof(sensor->place->bytes));
 	}
 	while (!err && visit->step < sensor->kind->steps)
-		err = step(txn, sensor);
+		err = bridge_step(txn, sensor);
 	if (err)
 		return err;
 	share(txn, sensor);
@@ -246,7 +246,7 @@ static int result(const struct sensor *sensor, double *number)
 static int read_value(struct txn *txn)
 {
 	struct sensor sensor = sensor_of(txn);
-	int err = measure(txn, &sensor);
+	int err = bridge_measure(txn, &sensor);
 
 	return err ? err : result(&sensor, &txn->number[0]);
 }
@@ -268,7 +268,7 @@ static int write_value(struct txn *txn)
 		visit->written = !err;
 		return err ? err : TXN_MORE;
 	}
-	err = measure(txn, &sensor);
+	err = bridge_measure(txn, &sensor);
 	if (!err)
 		err = result(&sensor, &have);
 	if (err)
@@ -289,7 +289,7 @@ static struct property *row_named(const struct sensor_bridge *bridge, const char
 	return NULL;
 }
 
-static int add_row(struct sensor_bridge *bridge, const struct property *row)
+static int bridge_add_row(struct sensor_bridge *bridge, const struct property *row)
 {
 	struct property *rows;
 
@@ -318,7 +318,7 @@ static int add_value(struct sensor_bridge *bridge, const struct sensor_value *va
 	int n = snprintf(row.name, sizeof(row.name), "%s%s%s", prefix, *prefix ? "/" : "",
 	                 value->name);
 
-	return n < 0 || n >= (int)sizeof(row.name) ? -ENAMETOOLONG : add_row(bridge, &row);
+	return n < 0 || n >= (int)sizeof(row.name) ? -ENAMETOOLONG : bridge_add_row(bridge, &row);
 }
 
 int bridge_place(const struct sensor_table *table, struct sensor_bridge *bridge, unsigned kind,
@@ -336,7 +336,7 @@ int bridge_place(const struct sensor_table *table, struct sensor_bridge *bridge,
 	places[bridge->count] = (struct sensor_place){.kind = kind, .address = address};
 	if (*prefix) {
 		snprintf(directory.name, sizeof(directory.name), "%s", prefix);
-		err = add_row(bridge, &directory);
+		err = bridge_add_row(bridge, &directory);
 	}
 	for (unsigned i = 0; !err && i < of->values; i++)
 		err = add_value(bridge, &table->values[of->first_value + i],

@@ -9,7 +9,8 @@
 #define READ_COUNTER 0xa5
 
 /* From the page's last byte on: that byte, 32 bits of counter, 32 others, and the CRC16. */
-static int load(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, unsigned n)
+static int counter_load(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,
+                        unsigned n)
 {
 	unsigned address = at / area->block * 32 + 31;
 	uint8_t command[] = {READ_COUNTER, (uint8_t)address, (uint8_t)(address >> 8)}, in[9];
@@ -22,7 +23,7 @@ static int load(struct txn *txn, const struct area *area, unsigned at, uint8_t *
 	return err;
 }
 
-const struct area counter_area = {.name = "counters", .size = 64, .block = 4, .load = load};
+const struct area counter_area = {.name = "counters", .size = 64, .block = 4, .load = counter_load};
 
 int counter_read_page(struct txn *txn)
 {

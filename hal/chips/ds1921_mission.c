@@ -20,7 +20,7 @@ struct visit {
 };
 
 /* The first page of the registers as it is now. */
-static int look(struct txn *txn, uint8_t page[DS1921_PAGE])
+static int ds1921_mission_look(struct txn *txn, uint8_t page[DS1921_PAGE])
 {
 	return area_fetch(txn, &ds1921_registers, 0, page, DS1921_PAGE);
 }
@@ -42,7 +42,7 @@ int ds1921_read_temperature(struct txn *txn)
 	if (!version)
 		return -EIO;
 	if (txn->phase == 0) {
-		err = look(txn, visit->page);
+		err = ds1921_mission_look(txn, visit->page);
 		if (!err)
 			err = refuse_mission(visit);
 		txn->phase = 1;
@@ -53,7 +53,7 @@ int ds1921_read_temperature(struct txn *txn)
 		txn->phase = 2;
 		return err ? err : txn_wait(txn, version->convert_ms * TXN_MS);
 	}
-	err = look(txn, page);
+	err = ds1921_mission_look(txn, page);
 	if (err)
 		return err;
 	if (memcmp(page + DS1921_DEVICE_SAMPLES, visit->page + DS1921_DEVICE_SAMPLES, 3) == 0 ||
@@ -75,7 +75,7 @@ static int change(struct txn *txn, unsigned at, unsigned n, uint32_t mask, uint3
 	if (txn->phase)
 		return logger_write(txn, &chip, &visit->write, DS1921_REGISTERS + at, visit->bytes,
 		                    n);
-	err = look(txn, visit->page);
+	err = ds1921_mission_look(txn, visit->page);
 	if (err)
 		return err;
 	for (unsigned i = 0; i < n; i++, mask >>= 8, value >>= 8)
@@ -135,7 +135,7 @@ static int clear_flags(struct txn *txn, uint8_t keep, uint8_t wanted)
 
 	switch (txn->phase) {
 	case 0:
-		err = look(txn, visit->page);
+		err = ds1921_mission_look(txn, visit->page);
 		if (err || (visit->page[DS1921_STATUS] & DS1921_CLEARED & ~keep) == 0)
 			return err ? err : wanted & ~visit->page[DS1921_STATUS] ? -EIO : 0;
 		visit->bytes[0] = keep;
@@ -149,7 +149,7 @@ static int clear_flags(struct txn *txn, uint8_t keep, uint8_t wanted)
 		txn->phase = 2;
 		return TXN_MORE;
 	default:
-		err = look(txn, page);
+		err = ds1921_mission_look(txn, page);
 		if (err)
 			return err;
 		return page[DS1921_STATUS] & DS1921_CLEARED & ~keep || wanted & ~page[DS1921_STATUS]
@@ -201,7 +201,7 @@ enum {
 	MUST_RUN = 64
 };
 
-static int put(struct txn *txn, unsigned at, unsigned n)
+static int ds1921_mission_put(struct txn *txn, unsigned at, unsigned n)
 {
 	struct visit *visit = txn_own(txn, struct visit);
 	int err = logger_write(txn, &chip, &visit->write, DS1921_REGISTERS + at, visit->bytes, n);
@@ -241,7 +241,7 @@ static int clear(struct txn *txn)
 		txn->phase = IS_CLEAR;
 		return err ? err : txn_wait(txn, TXN_MS);
 	}
-	err = look(txn, visit->page);
+	err = ds1921_mission_look(txn, visit->page);
 	txn->phase = SET_CLOCK;
 	if (err)
 		return err;
@@ -251,10 +251,10 @@ static int clear(struct txn *txn)
 	               : -EBADMSG;
 }
 
-static int begin(struct txn *txn, unsigned wanted)
+static int ds1921_mission_begin(struct txn *txn, unsigned wanted)
 {
 	struct visit *visit = txn_own(txn, struct visit);
-	int err = look(txn, visit->page);
+	int err = ds1921_mission_look(txn, visit->page);
 
 	if (err)
 		return err;
@@ -281,7 +281,7 @@ static int start_mission(struct txn *txn, unsigned wanted)
 	visit->bytes[0] = visit->want;
 	if (!(wanted & STARTS))
 		return 0;
-	return put(txn, DS1921_RATE, 1);
+	return ds1921_mission_put(txn, DS1921_RATE, 1);
 }
 
 /* Did it start? Only a cleared memory and an enabled mission let it. */
@@ -289,7 +289,7 @@ static int is_started(struct txn *txn, unsigned wanted)
 {
 	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t page[DS1921_PAGE];
-	int err = look(txn, page);
+	int err = ds1921_mission_look(txn, page);
 
 	if (err)
 		return err;
@@ -314,7 +314,7 @@ static int set_clock(struct txn *txn, unsigned wanted, double seconds)
 			return err;
 		put_clock(visit, seconds);
 	}
-	return put(txn, DS1921_CLOCK, DS1921_CLOCK_ALARM);
+	return ds1921_mission_put(txn, DS1921_CLOCK, DS1921_CLOCK_ALARM);
 }
 
 static int run_clock(struct txn *txn, unsigned wanted)
@@ -327,7 +327,7 @@ static int run_clock(struct txn *txn, unsigned wanted)
 		return TXN_MORE;
 	}
 	visit->bytes[0] = control;
-	return put(txn, DS1921_CONTROL, 1);
+	return ds1921_mission_put(txn, DS1921_CONTROL, 1);
 }
 
 static int do_steps(struct txn *txn, unsigned wanted, double seconds)
@@ -336,9 +336,9 @@ static int do_steps(struct txn *txn, unsigned wanted, double seconds)
 
 	switch ((enum step)txn->phase) {
 	case LOOK:
-		return begin(txn, wanted);
+		return ds1921_mission_begin(txn, wanted);
 	case STOP:
-		return put(txn, DS1921_STATUS, 1);
+		return ds1921_mission_put(txn, DS1921_STATUS, 1);
 	case ALLOW_CLEAR:
 	case CLEAR:
 	case IS_CLEAR:
@@ -350,7 +350,7 @@ static int do_steps(struct txn *txn, unsigned wanted, double seconds)
 	case SET_DELAY:
 		memset(visit->bytes, 0, 2);
 		if (wanted & EASY)
-			return put(txn, DS1921_DELAY, 2);
+			return ds1921_mission_put(txn, DS1921_DELAY, 2);
 		txn->phase = START;
 		return TXN_MORE;
 	case START:
@@ -409,7 +409,7 @@ int ds1921_write_running(struct txn *txn)
 	if (txn->number[0] == 0)
 		return stop_mission(txn);
 	if (txn->phase == LOOK) {
-		int err = begin(txn, STARTS);
+		int err = ds1921_mission_begin(txn, STARTS);
 
 		visit->want = visit->page[DS1921_RATE];
 		return err == TXN_MORE && !visit->want ? -EINVAL : err;

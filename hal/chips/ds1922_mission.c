@@ -23,7 +23,7 @@ struct visit {
 	uint8_t before[3], config;
 };
 
-static int look(struct txn *txn, unsigned where, uint8_t page[DS1922_PAGE])
+static int ds1922_mission_look(struct txn *txn, unsigned where, uint8_t page[DS1922_PAGE])
 {
 	return ds1922_load(txn, &ds1922_memory, where, page, DS1922_PAGE);
 }
@@ -32,7 +32,7 @@ static int look(struct txn *txn, unsigned where, uint8_t page[DS1922_PAGE])
 static int look_for_mission(struct txn *txn)
 {
 	struct visit *visit = txn_own(txn, struct visit);
-	int err = look(txn, DS1922_CLOCK, visit->page);
+	int err = ds1922_mission_look(txn, DS1922_CLOCK, visit->page);
 
 	if (err)
 		return err;
@@ -70,7 +70,7 @@ int ds1922_read_now(struct txn *txn)
 			err = -EIO;
 		return err ? err : TXN_MORE;
 	case 1:
-		err = look(txn, DS1922_SAMPLES, page);
+		err = ds1922_mission_look(txn, DS1922_SAMPLES, page);
 		if (err)
 			return err;
 		memcpy(visit->before, page + (DS1922_DEVICE_SAMPLES - DS1922_SAMPLES), 3);
@@ -84,13 +84,13 @@ int ds1922_read_now(struct txn *txn)
 		err = txn_command(txn, convert, sizeof(convert));
 		return err ? err : txn_wait(txn, CONVERT_NS);
 	case 3:
-		err = look(txn, DS1922_SAMPLES, page);
+		err = ds1922_mission_look(txn, DS1922_SAMPLES, page);
 		if (!err &&
 		    memcmp(visit->before, page + (DS1922_DEVICE_SAMPLES - DS1922_SAMPLES), 3) == 0)
 			err = -EBADMSG;
 		return err ? err : TXN_MORE;
 	default:
-		err = look(txn, DS1922_CLOCK, page);
+		err = ds1922_mission_look(txn, DS1922_CLOCK, page);
 		return err ? err : take_latest(txn, visit->config, page);
 	}
 }
@@ -152,7 +152,7 @@ enum step {
 };
 enum { SETS_CLOCK = 1, RUNS_CLOCK = 2, SETS_RATE = 4, STARTS = 8 };
 
-static int put(struct txn *txn, unsigned at, unsigned n)
+static int ds1922_mission_put(struct txn *txn, unsigned at, unsigned n)
 {
 	struct visit *visit = txn_own(txn, struct visit);
 	int err = logger_write(txn, &chip, &visit->write, at, visit->bytes, n);
@@ -164,7 +164,7 @@ static int put(struct txn *txn, unsigned at, unsigned n)
 }
 
 /* A command, its password, and a byte that starts it. */
-static int command(struct txn *txn, uint8_t code)
+static int ds1922_mission_command(struct txn *txn, uint8_t code)
 {
 	uint8_t bytes[2 + LOGGER_PASSWORD] = {code};
 
@@ -181,7 +181,7 @@ static int command(struct txn *txn, uint8_t code)
 static int has_flag(struct txn *txn, uint8_t flag)
 {
 	uint8_t page[DS1922_PAGE];
-	int err = look(txn, DS1922_CLOCK, page);
+	int err = ds1922_mission_look(txn, DS1922_CLOCK, page);
 
 	if (err)
 		return err;
@@ -207,7 +207,7 @@ static int set_clock(struct txn *txn, unsigned wanted)
 			return err;
 		logger_bcd(seconds, visit->bytes, &weekday);
 	}
-	return put(txn, DS1922_CLOCK, LOGGER_TIME);
+	return ds1922_mission_put(txn, DS1922_CLOCK, LOGGER_TIME);
 }
 
 /* In seconds as far as they can be counted, then in minutes. */
@@ -223,7 +223,7 @@ static int set_oscillator(struct txn *txn, unsigned wanted)
 		                 (txn->number[0] <= DS1922_RATE_MOST ? DS1922_FAST : 0));
 	visit->bytes[0] = byte;
 	if (byte != visit->page[DS1922_OSCILLATOR - DS1922_CLOCK])
-		return put(txn, DS1922_OSCILLATOR, 1);
+		return ds1922_mission_put(txn, DS1922_OSCILLATOR, 1);
 	txn->phase++;
 	return TXN_MORE;
 }
@@ -237,7 +237,7 @@ static int set_rate(struct txn *txn, unsigned wanted)
 	if (wanted & SETS_RATE) {
 		visit->bytes[0] = (uint8_t)rate;
 		visit->bytes[1] = (uint8_t)(rate >> 8);
-		return put(txn, DS1922_RATE, 2);
+		return ds1922_mission_put(txn, DS1922_RATE, 2);
 	}
 	txn->phase = wanted & STARTS ? SET_MISSION : DONE;
 	return TXN_MORE;
@@ -253,7 +253,7 @@ static int set_mission(struct txn *txn)
 	                            (ds1922_has_data(visit->config)
 	                                     ? DS1922_LOG_DATA | DS1922_DATA_WIDE
 	                                     : 0));
-	return put(txn, DS1922_MISSION, 1);
+	return ds1922_mission_put(txn, DS1922_MISSION, 1);
 }
 
 static int do_steps(struct txn *txn, unsigned wanted)
@@ -276,11 +276,11 @@ static int do_steps(struct txn *txn, unsigned wanted)
 	case SET_MISSION:
 		return set_mission(txn);
 	case CLEAR:
-		return command(txn, CLEAR_MEMORY);
+		return ds1922_mission_command(txn, CLEAR_MEMORY);
 	case IS_CLEAR:
 		return has_flag(txn, DS1922_MEMCLR);
 	case START:
-		return command(txn, START_MISSION);
+		return ds1922_mission_command(txn, START_MISSION);
 	case IS_STARTED:
 		return has_flag(txn, DS1922_MIP);
 	case DONE:
@@ -314,7 +314,7 @@ static int stop_mission(struct txn *txn)
 	int err;
 
 	if (txn->phase == 0)
-		return command(txn, STOP_MISSION);
+		return ds1922_mission_command(txn, STOP_MISSION);
 	err = look_for_mission(txn);
 	return err == -EBUSY ? -EIO : err;
 }
@@ -331,7 +331,7 @@ int ds1922_write_running(struct txn *txn)
 	if (txn->phase > LOOK)
 		return do_steps(txn, STARTS);
 	if (!visit->before[0]) {
-		err = look(txn, DS1922_SAMPLES, page);
+		err = ds1922_mission_look(txn, DS1922_SAMPLES, page);
 		if (err)
 			return err;
 		visit->config = page[DS1922_CONFIG - DS1922_SAMPLES];

@@ -36,7 +36,7 @@ static const struct area pages = {.name = "pages", .size = 64};
 
 enum step { BEGIN, SET_MARK, FIND_MARK, TAKE };
 
-static int read_scratchpad(struct txn *txn, unsigned page, uint8_t in[9])
+static int ds2438_read_scratchpad(struct txn *txn, unsigned page, uint8_t in[9])
 {
 	uint8_t command[] = {READ_SCRATCHPAD, (uint8_t)page};
 	bool blank = txn->blank;
@@ -48,16 +48,16 @@ static int read_scratchpad(struct txn *txn, unsigned page, uint8_t in[9])
 	return err;
 }
 
-static int recall(struct txn *txn, unsigned page, uint8_t in[9])
+static int ds2438_recall(struct txn *txn, unsigned page, uint8_t in[9])
 {
 	uint8_t command[] = {RECALL, (uint8_t)page};
 	int err = txn_command(txn, command, sizeof(command));
 
-	return err ? err : read_scratchpad(txn, page, in);
+	return err ? err : ds2438_read_scratchpad(txn, page, in);
 }
 
 /* And read back. Of page 0 only the configuration is taken. */
-static int write_scratchpad(struct txn *txn, unsigned page, const uint8_t *bytes, unsigned n)
+static int ds2438_write_scratchpad(struct txn *txn, unsigned page, const uint8_t *bytes, unsigned n)
 {
 	uint8_t command[10] = {WRITE_SCRATCHPAD, (uint8_t)page}, in[9];
 	int err;
@@ -65,7 +65,7 @@ static int write_scratchpad(struct txn *txn, unsigned page, const uint8_t *bytes
 	memcpy(command + 2, bytes, n);
 	err = txn_command(txn, command, 2 + n);
 	if (!err)
-		err = read_scratchpad(txn, page, in);
+		err = ds2438_read_scratchpad(txn, page, in);
 	if (err)
 		return err;
 	if (page == 0 ? ((in[0] ^ bytes[0]) & CONFIGURATION) || (in[0] & BUSY)
@@ -80,13 +80,13 @@ static bool is_mark(struct txn *txn, unsigned page, uint8_t byte)
 }
 
 /* Behind the mark. */
-static int take(struct txn *txn, unsigned page, uint8_t bytes[8])
+static int ds2438_take(struct txn *txn, unsigned page, uint8_t bytes[8])
 {
 	uint8_t in[9], again[9], *note = &ds2438_of(txn)->first[page];
-	int err = recall(txn, page, in);
+	int err = ds2438_recall(txn, page, in);
 
 	if (!err)
-		err = read_scratchpad(txn, page, again);
+		err = ds2438_read_scratchpad(txn, page, again);
 	if (!err && memcmp(in, again, sizeof(in)) != 0)
 		err = -EBADMSG;
 	if (!err && page == 0 && ((in[0] & BUSY) || ((in[0] ^ *note) & CONFIGURATION)))
@@ -118,7 +118,7 @@ int ds2438_read(struct txn *txn, unsigned page, uint8_t bytes[8])
 	switch ((enum step)ds2438_visit(txn)->step) {
 	case BEGIN:
 		if (page == 0 && !*note) {
-			err = recall(txn, page, in);
+			err = ds2438_recall(txn, page, in);
 			if (err)
 				return err;
 			*note = KNOWN | (in[0] & CONFIGURATION);
@@ -129,11 +129,11 @@ int ds2438_read(struct txn *txn, unsigned page, uint8_t bytes[8])
 	case SET_MARK:
 		ds2438_visit(txn)->mark = page ? (uint8_t) ~*note
 		                               : (uint8_t)((*note & CONFIGURATION) ^ DS2438_AD);
-		err = write_scratchpad(txn, page, &ds2438_visit(txn)->mark, 1);
+		err = ds2438_write_scratchpad(txn, page, &ds2438_visit(txn)->mark, 1);
 		ds2438_visit(txn)->step = TAKE;
 		return err ? err : TXN_MORE;
 	case FIND_MARK:
-		err = read_scratchpad(txn, page, in);
+		err = ds2438_read_scratchpad(txn, page, in);
 		if (!err && (!is_mark(txn, page, in[0]) || (in[0] & BUSY)))
 			err = -EBADMSG;
 		ds2438_visit(txn)->step = TAKE;
@@ -141,7 +141,7 @@ int ds2438_read(struct txn *txn, unsigned page, uint8_t bytes[8])
 	case TAKE:
 		break;
 	}
-	err = take(txn, page, bytes);
+	err = ds2438_take(txn, page, bytes);
 	if (err < 0)
 		*note = 0;
 	return err;
@@ -160,7 +160,7 @@ int ds2438_select(struct txn *txn, uint8_t select)
 		return err ? err : TXN_MORE;
 	}
 	configuration = (uint8_t)((configuration & CONFIGURATION & ~DS2438_AD) | select);
-	return write_scratchpad(txn, 0, &configuration, 1);
+	return ds2438_write_scratchpad(txn, 0, &configuration, 1);
 }
 
 /* What is selected is a mark, too, where the memory selects the other. */
@@ -196,7 +196,7 @@ int ds2438_mark(struct txn *txn)
 		return TXN_MORE;
 	}
 	visit->marking = false;
-	return write_scratchpad(txn, MARKED_PAGE, &visit->proof_mark, 1);
+	return ds2438_write_scratchpad(txn, MARKED_PAGE, &visit->proof_mark, 1);
 }
 
 int ds2438_is_marked(struct txn *txn)
@@ -205,7 +205,7 @@ int ds2438_is_marked(struct txn *txn)
 
 	if (txn_driven(txn))
 		return 0;
-	int err = read_scratchpad(txn, MARKED_PAGE, in);
+	int err = ds2438_read_scratchpad(txn, MARKED_PAGE, in);
 
 	return err ? err : in[0] == ds2438_visit(txn)->proof_mark ? 0 : -EBADMSG;
 }
@@ -252,7 +252,7 @@ static int write_page(struct txn *txn, unsigned page, const uint8_t *bytes, unsi
 		return txn_driver_write(txn, &pages, page * 8, bytes, n);
 	switch (*step) {
 	case 0:
-		err = write_scratchpad(txn, page, bytes, n);
+		err = ds2438_write_scratchpad(txn, page, bytes, n);
 		*step = 1;
 		return err ? err : TXN_MORE;
 	case 1:

@@ -16,7 +16,7 @@ enum { BAD_CRC = 0x01 }; /* status; the others: nobody took the address */
 #define SLOTS(bytes) (40 + 2 * (bytes))
 
 /* Read slots are 1 while it is busy; a 0 stands before the answer. */
-static int await(struct txn *txn, unsigned slots)
+static int ds28e17_await(struct txn *txn, unsigned slots)
 {
 	int bit = 1;
 
@@ -44,7 +44,7 @@ int ds28e17_exchange(struct txn *txn, const struct i2c_transfer *transfer)
 	command[len++] = (uint8_t)(crc >> 8);
 	err = txn_command(txn, command, len);
 	if (!err)
-		err = await(txn, SLOTS(n + m));
+		err = ds28e17_await(txn, SLOTS(n + m));
 	/* That the command was right is a zero. */
 	if (!err)
 		err = m ? txn_read(txn, answer, status + m) : txn_read_slots(txn, answer, status);

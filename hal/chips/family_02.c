@@ -12,7 +12,8 @@
 #define IDENTIFIER_BYTES 8
 
 /* To read the data begins with the identifier; no password follows it. */
-static int load(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, unsigned n)
+static int family_02_load(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,
+                          unsigned n)
 {
 	uint8_t where = (uint8_t)(at / IDENTIFIER_BYTES * SUBKEY_BYTES + DATA_AT);
 	const uint8_t command[] = {READ_SUBKEY, where, (uint8_t)~where};
@@ -28,7 +29,7 @@ static const struct area identifiers = {
 	.name = "identifiers",
 	.size = 3 * IDENTIFIER_BYTES,
 	.block = IDENTIFIER_BYTES,
-	.load = load,
+	.load = family_02_load,
 };
 
 enum { IDENTIFIERS = 1 };

@@ -41,7 +41,7 @@ struct visit {
 	uint8_t bytes[PAGE];
 };
 
-static int command(struct txn *txn, uint8_t code, int64_t ns)
+static int family_1b_command(struct txn *txn, uint8_t code, int64_t ns)
 {
 	int err;
 
@@ -82,7 +82,8 @@ static const struct area memory = {
 	.name = "pages", .size = PAGES_OF_CHIP * PAGE, .block = PAGE, .load = load_page};
 
 /* And read back. */
-static int write_scratchpad(struct txn *txn, unsigned at, const uint8_t *bytes, unsigned n)
+static int family_1b_write_scratchpad(struct txn *txn, unsigned at, const uint8_t *bytes,
+                                      unsigned n)
 {
 	uint8_t out[2 + PAGE] = {WRITE_SCRATCHPAD, (uint8_t)at}, in[PAGE];
 	int err;
@@ -108,7 +109,7 @@ static int leave_mark(struct txn *txn)
 	visit->mark = (uint8_t)~visit->mark;
 	visit->marked = true;
 	visit->step = 0;
-	err = write_scratchpad(txn, MARK_AT, &visit->mark, 1);
+	err = family_1b_write_scratchpad(txn, MARK_AT, &visit->mark, 1);
 	return err ? err : TXN_MORE;
 }
 
@@ -124,7 +125,7 @@ static int find_mark(struct txn *txn)
 enum step { FIRST, SECOND, TAKE, SET_MARK, LOOK };
 
 /* A restart empties the registers: a zero is measured again between a mark and a look at it. */
-static int measure(struct txn *txn, uint8_t code, unsigned at, int *value)
+static int family_1b_measure(struct txn *txn, uint8_t code, unsigned at, int *value)
 {
 	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t bytes[2];
@@ -137,10 +138,10 @@ static int measure(struct txn *txn, uint8_t code, unsigned at, int *value)
 			return 0;
 		}
 		visit->step = SECOND;
-		return command(txn, code, CONVERT_NS);
+		return family_1b_command(txn, code, CONVERT_NS);
 	case SECOND:
 		visit->step = TAKE;
-		return command(txn, code, CONVERT_NS);
+		return family_1b_command(txn, code, CONVERT_NS);
 	case TAKE:
 		break;
 	case SET_MARK:
@@ -162,7 +163,7 @@ static int measure(struct txn *txn, uint8_t code, unsigned at, int *value)
 
 static int read_temperature(struct txn *txn)
 {
-	int value = 0, err = measure(txn, 0xd2, CELSIUS, &value);
+	int value = 0, err = family_1b_measure(txn, 0xd2, CELSIUS, &value);
 
 	txn->number[0] = value / 256.0;
 	return err;
@@ -171,7 +172,7 @@ static int read_temperature(struct txn *txn)
 /* The chip runs on it: it is never 0. */
 static int read_volts(struct txn *txn)
 {
-	int value = 0, err = measure(txn, 0xb4, VOLTS, &value);
+	int value = 0, err = family_1b_measure(txn, 0xb4, VOLTS, &value);
 
 	txn->number[0] = value * 0.01;
 	return err || value ? err : -EIO;
@@ -204,7 +205,7 @@ static int write_increment(struct txn *txn)
 		want[1] = (uint8_t)(want[1] + (++want[0] == 0));
 		visit->step = 1;
 		if (memcmp(now, want, 2) != 0)
-			return command(txn, 0xb5, COPY_NS);
+			return family_1b_command(txn, 0xb5, COPY_NS);
 	}
 	if (memcmp(now, want, 2) != 0)
 		return -EIO;
@@ -220,7 +221,7 @@ static int write_reset(struct txn *txn)
 	if (txn->number[0] == 0)
 		return 0;
 	if (txn->phase++ == 0)
-		return command(txn, 0xb8, COPY_NS);
+		return family_1b_command(txn, 0xb8, COPY_NS);
 	err = read_count(txn, now);
 	return err ? err : now[0] || now[1] ? -EIO : 0;
 }
@@ -237,7 +238,7 @@ static int prepare(struct txn *txn, uint8_t want[PAGE])
 	if (err)
 		return err;
 	memcpy(want + txn->at, txn->data, txn->len);
-	return write_scratchpad(txn, page * PAGE, want, pages[page].size);
+	return family_1b_write_scratchpad(txn, page * PAGE, want, pages[page].size);
 }
 
 static int check_lock(struct txn *txn)
@@ -260,13 +261,13 @@ static int write_page(struct txn *txn)
 		err = prepare(txn, want);
 		break;
 	case 1:
-		err = page == 0 ? command(txn, UNLOCK, COPY_NS) : 0;
+		err = page == 0 ? family_1b_command(txn, UNLOCK, COPY_NS) : 0;
 		break;
 	case 2:
-		err = command(txn, pages[page].copy, COPY_NS);
+		err = family_1b_command(txn, pages[page].copy, COPY_NS);
 		break;
 	case 3:
-		err = page == 0 ? command(txn, LOCK, COPY_NS) : 0;
+		err = page == 0 ? family_1b_command(txn, LOCK, COPY_NS) : 0;
 		break;
 	case 4:
 		err = page == 0 ? check_lock(txn) : 0;

@@ -55,7 +55,7 @@ static int read_event(struct txn *txn)
 }
 
 /* The chip confirms a command by its code. */
-static int command(struct txn *txn, uint8_t code)
+static int family_1f_command(struct txn *txn, uint8_t code)
 {
 	uint8_t answer;
 	int err = txn_command(txn, &code, 1);
@@ -68,7 +68,7 @@ static int command(struct txn *txn, uint8_t code)
 static int all_off(struct txn *txn)
 {
 	struct coupler_seen *seen = txn->device->own;
-	int err = command(txn, ALL_LINES_OFF);
+	int err = family_1f_command(txn, ALL_LINES_OFF);
 
 	if (!err)
 		seen->events = seen->flags = 0;
@@ -93,7 +93,7 @@ static int write_discharge(struct txn *txn)
 		return 0;
 	if (txn->phase)
 		return all_off(txn);
-	int err = command(txn, DISCHARGE_LINES);
+	int err = family_1f_command(txn, DISCHARGE_LINES);
 	if (err)
 		return err;
 	txn->phase = 1;

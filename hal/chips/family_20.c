@@ -139,7 +139,7 @@ static int look_at_settings(struct txn *txn)
 	return TXN_MORE;
 }
 
-static int convert(struct txn *txn)
+static int family_20_convert(struct txn *txn)
 {
 	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t bytes[16], which[8];
@@ -182,7 +182,7 @@ static int read_volt(struct txn *txn)
 			return 0;
 		visit->begun_ns = txn_now(txn);
 	}
-	err = convert(txn);
+	err = family_20_convert(txn);
 	if (!err)
 		txn_share(txn, what, 0, txn->number, 4 * sizeof(txn->number[0]), visit->begun_ns);
 	if (!err)

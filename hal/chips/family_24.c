@@ -41,14 +41,14 @@ static const struct area clock_area = {
 	.is_written = steady_clock_is_written,
 };
 
-static int put(struct txn *txn, uint8_t bits, uint8_t mask)
+static int family_24_put(struct txn *txn, uint8_t bits, uint8_t mask)
 {
 	return area_write(txn, &control, 0, &bits, &mask, 1);
 }
 
 static int write_running(struct txn *txn)
 {
-	return put(txn, txn->number[0] != 0 ? OSCILLATOR : 0, OSCILLATOR);
+	return family_24_put(txn, txn->number[0] != 0 ? OSCILLATOR : 0, OSCILLATOR);
 }
 
 static const int32_t seconds[] = {1, 4, 32, 64, 2048, 4096, 65536, 131072};
@@ -71,10 +71,10 @@ static int write_time(struct txn *txn)
 	if (txn->number[0] < 0)
 		return -EINVAL;
 	if (txn->number[0] < 1)
-		return put(txn, 0, INTERRUPT);
+		return family_24_put(txn, 0, INTERRUPT);
 	while (n < 7 && txn->number[0] > seconds[n])
 		n++;
-	return put(txn, (uint8_t)(INTERRUPT | n << 4), INTERRUPT | INTERVAL);
+	return family_24_put(txn, (uint8_t)(INTERRUPT | n << 4), INTERRUPT | INTERVAL);
 }
 
 enum { CONTROL = 1, CLOCK };

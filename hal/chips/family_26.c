@@ -166,7 +166,7 @@ static const struct property properties[] = {
 };
 
 /* The alerts of a TMP1826 stay: reading has cleared them in the chip, and nobody has seen them. */
-static void forget(struct device *device)
+static void family_26_forget(struct device *device)
 {
 	struct tmp1826 *chip = device->own;
 	uint8_t alerts = chip->alerts;
@@ -187,7 +187,7 @@ const struct family family_26 = {
 	.kind = tmp1826_kind,
 	.types = types,
 	.identify = tmp1826_identify,
-	.forget = forget,
+	.forget = family_26_forget,
 	.doubted = KIND(IS_NEITHER),
 	.plain = KIND(IS_DS2438),
 	AREAS(areas),

@@ -19,7 +19,7 @@ static const struct area timer = {
 	.is_written = gauge_is_counted,
 };
 
-static int command(struct txn *txn, uint8_t code)
+static int family_2e_command(struct txn *txn, uint8_t code)
 {
 	txn_void(txn);
 	return txn_command(txn, &code, 1);
@@ -33,7 +33,7 @@ static int write_charge(struct txn *txn)
 	int err;
 
 	if (txn->phase == 0) {
-		err = command(txn, on ? 0xb5 : 0xbe);
+		err = family_2e_command(txn, on ? 0xb5 : 0xbe);
 		if (err)
 			return err;
 		txn->phase = 1;
@@ -58,7 +58,7 @@ static int refresh(struct txn *txn, unsigned first)
 		return TXN_MORE;
 	}
 	if (txn->phase == first + 1) {
-		err = command(txn, 0x63);
+		err = family_2e_command(txn, 0x63);
 		if (err)
 			return err;
 		txn->phase++;

@@ -25,7 +25,8 @@ struct visit {
  * use the wire in between: another reset ends what the chip sends. Where the pull-up cannot be held
  * so long, as there is none (w1), it is left to luck, and the checksum tells.
  */
-static int begin(struct txn *txn, const struct area *area, unsigned at, uint8_t command[3])
+static int family_37_begin(struct txn *txn, const struct area *area, unsigned at,
+                           uint8_t command[3])
 {
 	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t bytes[3 + PASSWORD_BYTES] = {READ_WITH_PASSWORD, (uint8_t)(area->at + at),
@@ -41,10 +42,11 @@ static int begin(struct txn *txn, const struct area *area, unsigned at, uint8_t 
 }
 
 /* The checksum is at the end of the page. */
-static int load(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, unsigned n)
+static int family_37_load(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,
+                          unsigned n)
 {
 	uint8_t command[3], page[PAGE];
-	int err = begin(txn, area, at, command);
+	int err = family_37_begin(txn, area, at, command);
 
 	if (!err)
 		err = txn_read_crc16(txn, command, sizeof(command), page, PAGE - at % PAGE);
@@ -65,7 +67,7 @@ static const struct area memory = {
 	.password = PASSWORD_BYTES,
 	.strong = true,
 	.copy_ns = 10 * TXN_MS,
-	.load = load,
+	.load = family_37_load,
 };
 
 /* The byte that switches the passwords on has no checksum. */
@@ -73,7 +75,7 @@ static int load_control(struct txn *txn, const struct area *area, unsigned at, u
                         unsigned n)
 {
 	uint8_t command[3];
-	int err = begin(txn, area, at, command);
+	int err = family_37_begin(txn, area, at, command);
 
 	if (!err)
 		err = txn_read(txn, bytes, n);

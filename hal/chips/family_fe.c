@@ -94,7 +94,7 @@ static int now(struct txn *txn, uint8_t bytes[PAGE])
 }
 
 /* The busy flag proves that the command was taken. */
-static int convert(struct txn *txn, uint8_t bytes[PAGE])
+static int family_fe_convert(struct txn *txn, uint8_t bytes[PAGE])
 {
 	static const uint8_t command = 0xb4;
 	int64_t *begun = txn_own(txn, int64_t);
@@ -137,7 +137,7 @@ static double value(const uint8_t *bytes)
 static int read_measured(struct txn *txn)
 {
 	uint8_t bytes[PAGE];
-	int err = convert(txn, bytes);
+	int err = family_fe_convert(txn, bytes);
 
 	if (!err)
 		txn->number[0] = value(bytes + txn->property->arg);

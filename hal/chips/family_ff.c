@@ -43,7 +43,7 @@ struct lcd {
 	uint8_t doubted;  /* so many tries to read a byte are refused */
 };
 
-static int send(struct txn *txn, uint8_t code, const uint8_t *bytes, unsigned n)
+static int family_ff_send(struct txn *txn, uint8_t code, const uint8_t *bytes, unsigned n)
 {
 	uint8_t command[1 + 1 + LCD_PAD] = {code};
 
@@ -54,7 +54,7 @@ static int send(struct txn *txn, uint8_t code, const uint8_t *bytes, unsigned n)
 
 static int read_pad(struct txn *txn, uint8_t bytes[LCD_PAD])
 {
-	int err = send(txn, READ_PAD, NULL, 0);
+	int err = family_ff_send(txn, READ_PAD, NULL, 0);
 
 	return err ? err : txn_read(txn, bytes, LCD_PAD);
 }
@@ -78,7 +78,7 @@ static int fetch(struct txn *txn, uint8_t code, const uint8_t *setup, unsigned s
 		err = lcd_swart_fill(txn, fill, sizeof(fill));
 		return err ? err : TXN_MORE;
 	case 1:
-		err = send(txn, code, NULL, 0);
+		err = family_ff_send(txn, code, NULL, 0);
 		return err ? err : txn_wait(txn, SOON_NS);
 	}
 	err = read_pad(txn, in);
@@ -169,7 +169,7 @@ static int write_byte(struct txn *txn)
 
 	if (txn->number[0] > 0xff)
 		return -EINVAL;
-	return send(txn, (uint8_t)(txn->property->arg - 1), &byte, 1);
+	return family_ff_send(txn, (uint8_t)(txn->property->arg - 1), &byte, 1);
 }
 
 /* 1: the pin is low. */
@@ -201,7 +201,7 @@ static int write_pins(struct txn *txn)
 	if (txn->phase < 2) {
 		txn->phase++;
 		txn->device->shadow_known = false;
-		err = send(txn, WRITE_PINS, &byte, 1);
+		err = family_ff_send(txn, WRITE_PINS, &byte, 1);
 		return err ? err : TXN_MORE;
 	}
 	err = read_pins(txn);
@@ -248,7 +248,7 @@ static int read_counts(struct txn *txn)
 	case 1:
 		pad->step = 2;
 		lcd->pending = true;
-		err = send(txn, READ_COUNTERS, NULL, 0);
+		err = family_ff_send(txn, READ_COUNTERS, NULL, 0);
 		return err ? err : txn_wait(txn, SOON_NS);
 	}
 	err = read_pad(txn, in);
@@ -282,7 +282,7 @@ static int write_sum(struct txn *txn)
 }
 
 /* The sums last. */
-static void forget(struct device *device)
+static void family_ff_forget(struct device *device)
 {
 	((struct lcd *)device->own)->pending = false;
 }
@@ -325,7 +325,7 @@ const struct family family_ff = {
 	.proof = PROOF_PRESENCE,
 	.type = "LCD",
 	.flags = FLAG_ALARM,
-	.forget = forget,
+	.forget = family_ff_forget,
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

@@ -76,7 +76,7 @@ int extension_print(const struct property *property, int extension, char text[8]
 	return snprintf(text, 8, ".%d", extension_element(extension));
 }
 
-static int put(const char *from, int len, char *text, size_t room)
+static int format_put(const char *from, int len, char *text, size_t room)
 {
 	if (len < 0 || (size_t)len > room)
 		return -EMSGSIZE;
@@ -92,7 +92,8 @@ static int format_date(double seconds, char *text, size_t room)
 
 	if (!localtime_r(&when, &tm))
 		return -EIO;
-	return put(out, (int)strftime(out, sizeof(out), "%a %b %e %H:%M:%S %Y", &tm), text, room);
+	return format_put(out, (int)strftime(out, sizeof(out), "%a %b %e %H:%M:%S %Y", &tm), text,
+	                  room);
 }
 
 int format_number(uint8_t type, double number, char *text, size_t room)
@@ -102,21 +103,23 @@ int format_number(uint8_t type, double number, char *text, size_t room)
 	switch ((enum property_type)type) {
 	case PROPERTY_YESNO:
 	case PROPERTY_BITS:
-		return put(number != 0 ? "1" : "0", 1, text, room);
+		return format_put(number != 0 ? "1" : "0", 1, text, room);
 	case PROPERTY_UNSIGNED:
 		if (number >= 0)
-			return put(out, snprintf(out, sizeof(out), "%12lu", (unsigned long)number),
-			           text, room);
+			return format_put(
+				out, snprintf(out, sizeof(out), "%12lu", (unsigned long)number),
+				text, room);
 		/* fallthrough */
 	case PROPERTY_INTEGER:
-		return put(out, snprintf(out, sizeof(out), "%12ld", (long)number), text, room);
+		return format_put(out, snprintf(out, sizeof(out), "%12ld", (long)number), text,
+		                  room);
 	case PROPERTY_DATE:
 		return format_date(number, text, room);
 	case PROPERTY_FLOAT:
 	case PROPERTY_TEMPGAP:
 	case PROPERTY_PRESSURE:
 	case PROPERTY_TEMPERATURE:
-		return put(out, snprintf(out, sizeof(out), "%12G", number), text, room);
+		return format_put(out, snprintf(out, sizeof(out), "%12G", number), text, room);
 	case PROPERTY_DIRECTORY:
 	case PROPERTY_ASCII:
 	case PROPERTY_BINARY:

@@ -41,7 +41,7 @@ struct parser {
 
 static int sum(struct parser *p);
 
-static int fail(struct parser *p, const char *what)
+static int formula_fail(struct parser *p, const char *what)
 {
 	snprintf(p->why, p->why_size, "%s at \"%.24s\"", what, p->at);
 	return -EINVAL;
@@ -53,7 +53,7 @@ static void skip(struct parser *p)
 		p->at++;
 }
 
-static bool take(struct parser *p, char c)
+static bool formula_take(struct parser *p, char c)
 {
 	skip(p);
 	if (*p->at != c)
@@ -62,7 +62,7 @@ static bool take(struct parser *p, char c)
 	return true;
 }
 
-static int add(struct parser *p, uint8_t code, double number, int change)
+static int formula_add(struct parser *p, uint8_t code, double number, int change)
 {
 	struct formula_pool *pool = p->pool;
 
@@ -77,7 +77,7 @@ static int add(struct parser *p, uint8_t code, double number, int change)
 	}
 	pool->ops[pool->count++] = (struct formula_op){.code = code, .number = number};
 	p->depth = (unsigned)((int)p->depth + change);
-	return p->depth > FORMULA_DEPTH ? fail(p, "a formula that is too deep") : 0;
+	return p->depth > FORMULA_DEPTH ? formula_fail(p, "a formula that is too deep") : 0;
 }
 
 /* Letters, digits and _ from p->at on; their length. */
@@ -88,7 +88,7 @@ static size_t word(const struct parser *p)
 	return n < FORMULA_NAME ? n : 0;
 }
 
-static bool is(const char *word, size_t n, const char *text)
+static bool formula_is(const char *word, size_t n, const char *text)
 {
 	return strlen(text) == n && memcmp(word, text, n) == 0;
 }
@@ -102,7 +102,7 @@ static uint8_t field_code(const char *name, size_t n)
 	if (name[0] != 'u' && name[0] != 's')
 		return 0;
 	for (unsigned i = 0; i < 4; i++)
-		if (is(name + 1, n - 1 - (little ? 2 : 0), sizes[i]))
+		if (formula_is(name + 1, n - 1 - (little ? 2 : 0), sizes[i]))
 			return (uint8_t)(FIELD_0 + i + 1 + (name[0] == 's' ? FIELD_SIGNED : 0) +
 			                 (little ? FIELD_LITTLE : 0));
 	return 0;
@@ -114,30 +114,31 @@ static int field(struct parser *p, uint8_t code)
 	char *end;
 	unsigned long at;
 
-	if (!take(p, '('))
-		return fail(p, "expected (");
+	if (!formula_take(p, '('))
+		return formula_fail(p, "expected (");
 	skip(p);
 	at = strtoul(p->at, &end, 0);
 	if (end == p->at || *p->at == '-')
-		return fail(p, "expected the number of a byte");
+		return formula_fail(p, "expected the number of a byte");
 	p->at = end;
 	if (at > p->scope->bytes || bytes > p->scope->bytes - at)
-		return fail(p, "bytes that are not read before");
-	return take(p, ')') ? add(p, code, (double)at, 1) : fail(p, "expected )");
+		return formula_fail(p, "bytes that are not read before");
+	return formula_take(p, ')') ? formula_add(p, code, (double)at, 1)
+	                            : formula_fail(p, "expected )");
 }
 
 /* A function of n formulas. */
 static int call(struct parser *p, enum code code, unsigned n)
 {
-	int err = take(p, '(') ? 0 : fail(p, "expected (");
+	int err = formula_take(p, '(') ? 0 : formula_fail(p, "expected (");
 
 	for (unsigned i = 0; !err && i < n; i++) {
-		err = i && !take(p, ',') ? fail(p, "expected ,") : 0;
+		err = i && !formula_take(p, ',') ? formula_fail(p, "expected ,") : 0;
 		err = err ? err : sum(p);
 	}
-	if (!err && !take(p, ')'))
-		err = fail(p, "expected )");
-	return err ? err : add(p, (uint8_t)code, 0, 1 - (int)n);
+	if (!err && !formula_take(p, ')'))
+		err = formula_fail(p, "expected )");
+	return err ? err : formula_add(p, (uint8_t)code, 0, 1 - (int)n);
 }
 
 static int named(struct parser *p)
@@ -155,25 +156,25 @@ static int named(struct parser *p)
 	uint8_t code;
 
 	for (unsigned i = 0; n && i < p->scope->name_count; i++) {
-		if (is(name, n, p->scope->names[i])) {
+		if (formula_is(name, n, p->scope->names[i])) {
 			p->at += n;
-			return add(p, NAME, i, 1);
+			return formula_add(p, NAME, i, 1);
 		}
 	}
 	if (!n)
-		return fail(p, "expected a number, a field or a name");
+		return formula_fail(p, "expected a number, a field or a name");
 	code = field_code(name, n);
 	if (code) {
 		p->at += n;
 		return field(p, code);
 	}
 	for (unsigned i = 0; i < sizeof(functions) / sizeof(functions[0]); i++) {
-		if (is(name, n, functions[i].name)) {
+		if (formula_is(name, n, functions[i].name)) {
 			p->at += n;
 			return call(p, functions[i].code, functions[i].n);
 		}
 	}
-	return fail(p, "no such name");
+	return formula_fail(p, "no such name");
 }
 
 static int primary(struct parser *p)
@@ -186,24 +187,24 @@ static int primary(struct parser *p)
 		double number = strtod(p->at, &end);
 
 		if (end == p->at || !isfinite(number))
-			return fail(p, "expected a number");
+			return formula_fail(p, "expected a number");
 		p->at = end;
-		return add(p, NUMBER, number, 1);
+		return formula_add(p, NUMBER, number, 1);
 	}
 	if (*p->at == '$') {
 		if (!p->scope->set)
-			return fail(p, "$ stands for what is written, only in set");
+			return formula_fail(p, "$ stands for what is written, only in set");
 		p->at++;
-		return add(p, SET, 0, 1);
+		return formula_add(p, SET, 0, 1);
 	}
-	if (!take(p, '('))
+	if (!formula_take(p, '('))
 		return named(p);
 	if (p->nested == FORMULA_DEPTH)
-		return fail(p, "too many parentheses");
+		return formula_fail(p, "too many parentheses");
 	p->nested++;
 	err = sum(p);
 	p->nested--;
-	return err ? err : take(p, ')') ? 0 : fail(p, "expected )");
+	return err ? err : formula_take(p, ')') ? 0 : formula_fail(p, "expected )");
 }
 
 static int unary(struct parser *p)
@@ -211,10 +212,10 @@ static int unary(struct parser *p)
 	bool negative = false;
 	int err;
 
-	while (take(p, '-'))
+	while (formula_take(p, '-'))
 		negative = !negative;
 	err = primary(p);
-	return err || !negative ? err : add(p, NEGATE, 0, 0);
+	return err || !negative ? err : formula_add(p, NEGATE, 0, 0);
 }
 
 /* It says the same whatever is read or written. */
@@ -234,7 +235,9 @@ static int product(struct parser *p)
 	int err = unary(p);
 
 	while (!err) {
-		enum code code = take(p, '*') ? MULTIPLY : take(p, '/') ? DIVIDE : NUMBER;
+		enum code code = formula_take(p, '*')   ? MULTIPLY
+		                 : formula_take(p, '/') ? DIVIDE
+		                                        : NUMBER;
 
 		if (code == NUMBER)
 			break;
@@ -243,8 +246,8 @@ static int product(struct parser *p)
 		divisor.count = p->pool->count - divisor.first;
 		if (!err && code == DIVIDE && is_constant(p->pool, divisor) &&
 		    formula_value(p->pool, divisor, &(struct formula_input){0}) == 0)
-			err = fail(p, "a division by 0");
-		err = err ? err : add(p, (uint8_t)code, 0, -1);
+			err = formula_fail(p, "a division by 0");
+		err = err ? err : formula_add(p, (uint8_t)code, 0, -1);
 	}
 	return err;
 }
@@ -254,12 +257,14 @@ static int sum(struct parser *p)
 	int err = product(p);
 
 	while (!err) {
-		enum code code = take(p, '+') ? ADD : take(p, '-') ? SUBTRACT : NUMBER;
+		enum code code = formula_take(p, '+')   ? ADD
+		                 : formula_take(p, '-') ? SUBTRACT
+		                                        : NUMBER;
 
 		if (code == NUMBER)
 			break;
 		err = product(p);
-		err = err ? err : add(p, (uint8_t)code, 0, -1);
+		err = err ? err : formula_add(p, (uint8_t)code, 0, -1);
 	}
 	return err;
 }
@@ -277,7 +282,7 @@ int formula_parse(struct formula_pool *pool, const struct formula_scope *scope, 
 	skip(&p);
 	if (!err && is_constant(pool, *formula) &&
 	    !isfinite(formula_value(pool, *formula, &(struct formula_input){0})))
-		err = fail(&p, "a formula that is never a number, before");
+		err = formula_fail(&p, "a formula that is never a number, before");
 	*text = p.at;
 	return err;
 }

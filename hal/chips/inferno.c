@@ -106,8 +106,8 @@ static int command(struct txn *txn, uint8_t code, const uint8_t *args, unsigned 
 }
 
 /* The n bytes of the answer after `skip`, to asked->seen; TXN_MORE until enough looks agree. */
-static int ask(struct txn *txn, uint8_t code, const uint8_t *args, unsigned args_n, unsigned skip,
-               unsigned n)
+static int inferno_ask(struct txn *txn, uint8_t code, const uint8_t *args, unsigned args_n,
+                       unsigned skip, unsigned n)
 {
 	struct asked *asked = txn_own(txn, struct asked);
 	uint8_t in[PORTS * CHANNELS];
@@ -125,7 +125,7 @@ static int ask(struct txn *txn, uint8_t code, const uint8_t *args, unsigned args
 }
 
 /* 0: it is known how many ports and channels there are of it. */
-static int count(struct txn *txn, unsigned which)
+static int inferno_count(struct txn *txn, unsigned which)
 {
 	const struct asked *asked = txn_own(txn, struct asked);
 	uint8_t *counts = of(txn)->counts[which];
@@ -133,7 +133,7 @@ static int count(struct txn *txn, unsigned which)
 
 	if (err || counts[0])
 		return err;
-	err = ask(txn, (uint8_t)(COUNT_SWITCHES + which), NULL, 0, 0, 2);
+	err = inferno_ask(txn, (uint8_t)(COUNT_SWITCHES + which), NULL, 0, 0, 2);
 	if (err)
 		return err;
 	if (!asked->seen[0] || asked->seen[1] > CHANNELS)
@@ -167,11 +167,11 @@ int inferno_read_count(struct txn *txn)
 	if (err)
 		return err;
 	if (inferno_kind(txn->device) == INFERNO_LIGHTS) {
-		err = ask(txn, 0x02, &none, 0, 0, 1);
+		err = inferno_ask(txn, 0x02, &none, 0, 0, 1);
 		txn->number[0] = asked->seen[0];
 		return err;
 	}
-	err = count(txn, counted(txn));
+	err = inferno_count(txn, counted(txn));
 	txn->number[0] = of(txn)->counts[counted(txn)][port_of(txn)];
 	return err;
 }
@@ -202,7 +202,7 @@ int inferno_read_port(struct txn *txn)
 	const struct asked *asked = txn_own(txn, struct asked);
 	const uint8_t port = (uint8_t)port_of(txn);
 	uint32_t bits = 0;
-	int err = count(txn, counted(txn));
+	int err = inferno_count(txn, counted(txn));
 
 	if (err)
 		return err;
@@ -218,7 +218,7 @@ int inferno_read_port(struct txn *txn)
 		txn->measured_ns = of(txn)->fetched_ns;
 		return put_bits(txn, of(txn)->activated[port], n);
 	case INFERNO_LED:
-		err = ask(txn, codes[INFERNO_LED], &port, 1, 0, bytes);
+		err = inferno_ask(txn, codes[INFERNO_LED], &port, 1, 0, bytes);
 		for (unsigned i = 0; i < bytes && !err; i++)
 			bits |= (uint32_t)asked->seen[i] << 8 * i;
 		return err ? err : put_bits(txn, bits, n);
@@ -227,7 +227,7 @@ int inferno_read_port(struct txn *txn)
 	case INFERNO_TIMEOUT:
 		break;
 	}
-	err = ask(txn, codes[what_of(txn)], NULL, 0, port * n, n);
+	err = inferno_ask(txn, codes[what_of(txn)], NULL, 0, port * n, n);
 	return err ? err : put_list(txn, asked->seen, n);
 }
 
@@ -267,7 +267,7 @@ int inferno_write_port(struct txn *txn)
 	static const uint8_t codes[] = {0, 0x07, 0x0b, 0x09, 0x0a};
 	struct asked *asked = txn_own(txn, struct asked);
 	uint32_t most = what_of(txn) == INFERNO_LED ? 1 : 255;
-	int value, err = count(txn, counted(txn));
+	int value, err = inferno_count(txn, counted(txn));
 
 	if (err)
 		return err;
@@ -290,7 +290,7 @@ int inferno_write_port(struct txn *txn)
 /* "port,channel,type" */
 int inferno_set_type(struct txn *txn)
 {
-	int err = count(txn, INFERNO_SWITCH);
+	int err = inferno_count(txn, INFERNO_SWITCH);
 
 	if (err)
 		return err;
@@ -310,7 +310,7 @@ int inferno_refresh(struct txn *txn)
 {
 	struct inferno *inferno = of(txn);
 	uint8_t bytes[PORTS * 4];
-	int err = count(txn, INFERNO_SWITCH);
+	int err = inferno_count(txn, INFERNO_SWITCH);
 
 	if (err || txn->number[0] == 0)
 		return err;
@@ -338,7 +338,7 @@ int inferno_read_light(struct txn *txn)
 	int err = inferno_identify(txn);
 
 	if (!err)
-		err = ask(txn, GET_LIGHT, &channel, 1, 0, 7);
+		err = inferno_ask(txn, GET_LIGHT, &channel, 1, 0, 7);
 	if (err)
 		return err;
 	snprintf(text, sizeof(text), "%3d,%3d,%3d,%3d,%8d", in[0], in[1], in[2], in[3],
@@ -418,7 +418,7 @@ int inferno_read_size(struct txn *txn)
 	int err = inferno_identify(txn);
 
 	if (!err)
-		err = ask(txn, BOOTLOADER_SIZE, NULL, 0, 0, 4);
+		err = inferno_ask(txn, BOOTLOADER_SIZE, NULL, 0, 0, 4);
 	txn->number[0] = area_le32(asked->seen);
 	return err;
 }
@@ -430,7 +430,7 @@ int inferno_read_range(struct txn *txn)
 	int err = inferno_identify(txn);
 
 	if (!err)
-		err = ask(txn, RANGE, NULL, 0, 0, 8);
+		err = inferno_ask(txn, RANGE, NULL, 0, 0, 8);
 	if (err)
 		return err;
 	snprintf(text, sizeof(text), "0x%08x,0x%08x", area_le32(asked->seen),

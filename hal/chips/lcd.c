@@ -38,7 +38,7 @@ struct steps {
 	uint16_t step[STEPS_MAX];
 };
 
-static void add(struct steps *steps, unsigned step)
+static void lcd_add(struct steps *steps, unsigned step)
 {
 	if (steps->n < STEPS_MAX)
 		steps->step[steps->n++] = (uint16_t)step;
@@ -47,24 +47,24 @@ static void add(struct steps *steps, unsigned step)
 static void add_initialisation(struct steps *steps, int board)
 {
 	if (board == LCD_M) {
-		add(steps, EIGHT_BITS | RESET);
-		add(steps, EIGHT_BITS_TWO_LINES);
-		add(steps, DISPLAY | 7);
-		add(steps, ENTRY_RIGHT);
+		lcd_add(steps, EIGHT_BITS | RESET);
+		lcd_add(steps, EIGHT_BITS_TWO_LINES);
+		lcd_add(steps, DISPLAY | 7);
+		lcd_add(steps, ENTRY_RIGHT);
 		return;
 	}
 	for (int i = 0; i < 3; i++)
-		add(steps, EIGHT_BITS | NIBBLE | RESET);
-	add(steps, FOUR_BITS_TWO_LINES | NIBBLE);
-	add(steps, FOUR_BITS_TWO_LINES);
-	add(steps, DISPLAY | 4);
-	add(steps, ENTRY_RIGHT);
+		lcd_add(steps, EIGHT_BITS | NIBBLE | RESET);
+	lcd_add(steps, FOUR_BITS_TWO_LINES | NIBBLE);
+	lcd_add(steps, FOUR_BITS_TWO_LINES);
+	lcd_add(steps, DISPLAY | 4);
+	lcd_add(steps, ENTRY_RIGHT);
 }
 
 static void add_text(struct steps *steps, const uint8_t *text, size_t len)
 {
 	for (size_t i = 0; i < len; i++)
-		add(steps, DATA | text[i]);
+		lcd_add(steps, DATA | text[i]);
 }
 
 /* "\x02\x04text", "2,4:text" or "4:text", which is the first line's: bytes used, or -EINVAL. */
@@ -105,7 +105,7 @@ static int add_glyph(struct steps *steps, const struct txn *txn, bool hex)
 
 	if (txn->len != (hex ? 16 : 8))
 		return -EINVAL;
-	add(steps, GLYPH | (unsigned)txn->element << 3);
+	lcd_add(steps, GLYPH | (unsigned)txn->element << 3);
 	for (int i = 0; i < 8; i++) {
 		unsigned line = txn->data[i];
 
@@ -115,16 +115,16 @@ static int add_glyph(struct steps *steps, const struct txn *txn, bool hex)
 			if (end != digits + 2)
 				return -EINVAL;
 		}
-		add(steps, DATA | line);
+		lcd_add(steps, DATA | line);
 	}
 	return 0;
 }
 
 static void add_clear(struct steps *steps, int board)
 {
-	add(steps, CLEAR | SLOW);
+	lcd_add(steps, CLEAR | SLOW);
 	if (board == LCD_M)
-		add(steps, HOME | SLOW);
+		lcd_add(steps, HOME | SLOW);
 }
 
 static int plan(struct steps *steps, const struct txn *txn, int board, bool initialise)
@@ -142,16 +142,16 @@ static int plan(struct steps *steps, const struct txn *txn, int board, bool init
 		return 0;
 	case LCD_HOME:
 		if (txn->number[0] != 0)
-			add(steps, HOME | SLOW);
+			lcd_add(steps, HOME | SLOW);
 		return 0;
 	case LCD_ON_OFF:
-		add(steps, DISPLAY | ((unsigned)txn->number[0] & 7));
+		lcd_add(steps, DISPLAY | ((unsigned)txn->number[0] & 7));
 		return 0;
 	case LCD_SCREEN_YX:
 		used = take_position(txn->data, txn->len, &position);
 		if (used < 0)
 			return used;
-		add(steps, POSITION | position);
+		lcd_add(steps, POSITION | position);
 		break;
 	case LCD_MESSAGE:
 		add_clear(steps, board);

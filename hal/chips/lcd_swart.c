@@ -43,7 +43,7 @@ int lcd_swart_switch(struct txn *txn)
 	return err ? err : ++txn->phase < SENT ? txn_wait(txn, CLEAR_NS) : 0;
 }
 
-static int send(struct txn *txn, uint8_t command, int64_t ns)
+static int lcd_swart_send(struct txn *txn, uint8_t command, int64_t ns)
 {
 	int err = txn_command(txn, &command, 1);
 
@@ -69,7 +69,7 @@ static int print(struct txn *txn, unsigned row, const char *line)
 		shown->filled = true;
 		return err ? err : TXN_MORE;
 	}
-	err = send(txn, PRINT, PRINT_NS);
+	err = lcd_swart_send(txn, PRINT, PRINT_NS);
 	if (++shown->printed == SENT) {
 		shown->filled = shown->printed = 0;
 		shown->chunk++;
@@ -119,7 +119,7 @@ int lcd_swart_screen(struct txn *txn)
 		return -EINVAL;
 	if (shown->cleared < SENT) {
 		shown->cleared++;
-		return send(txn, CLEAR, CLEAR_NS);
+		return lcd_swart_send(txn, CLEAR, CLEAR_NS);
 	}
 	if (shown->row == rows || !line_of(txn, shown->row, line))
 		return 0;

@@ -26,8 +26,8 @@ static int to_scratchpad(struct txn *txn, unsigned at, const uint8_t *bytes, uns
 }
 
 /* Address, E/S and the bytes to the end of the page, with their CRC16: are they those? */
-static int look(struct txn *txn, struct logger_write *write, unsigned at, const uint8_t *bytes,
-                unsigned n)
+static int logger_look(struct txn *txn, struct logger_write *write, unsigned at,
+                       const uint8_t *bytes, unsigned n)
 {
 	static const uint8_t command = READ_SCRATCHPAD;
 	uint8_t in[3 + PAGE];
@@ -44,8 +44,8 @@ static int look(struct txn *txn, struct logger_write *write, unsigned at, const 
 	return 0;
 }
 
-static int copy(struct txn *txn, const struct logger_chip *chip, const struct logger_write *write,
-                unsigned at)
+static int logger_copy(struct txn *txn, const struct logger_chip *chip,
+                       const struct logger_write *write, unsigned at)
 {
 	uint8_t command[4 + LOGGER_PASSWORD] = {chip->copy, (uint8_t)at, (uint8_t)(at >> 8),
 	                                        write->ending};
@@ -69,12 +69,12 @@ static int next(struct txn *txn, const struct logger_chip *chip, struct logger_w
 		break;
 	case LOOK:
 	case CONFIRM:
-		err = look(txn, write, at, bytes, n);
+		err = logger_look(txn, write, at, bytes, n);
 		if (!err && (write->ending & ~ENDING) != (step == LOOK ? 0 : COPIED))
 			err = -EBADMSG;
 		break;
 	case COPY:
-		err = copy(txn, chip, write, at);
+		err = logger_copy(txn, chip, write, at);
 		break;
 	}
 	if (err < 0)

@@ -39,7 +39,7 @@ static bool is_set(const uint32_t *bits, unsigned at)
 
 /* --- Steps ----------------------------------------------------------------------------------- */
 
-static struct sensor_step *step(struct sensor_reader *r, enum sensor_step_kind kind)
+static struct sensor_step *sensor_table_step(struct sensor_reader *r, enum sensor_step_kind kind)
 {
 	struct sensor_table *table = r->table;
 	struct sensor_step *step = grow(&table->steps, &table->step_count, sizeof(*step));
@@ -96,7 +96,7 @@ static int bytes_read(struct sensor_reader *r, struct sensor_step *to, bool lone
 
 static int read_write(struct sensor_reader *r)
 {
-	struct sensor_step *to = step(r, SENSOR_WRITE);
+	struct sensor_step *to = sensor_table_step(r, SENSOR_WRITE);
 	unsigned first = 0, count = 0;
 	int err = to ? written(r, false, &first, &count) : -ENOMEM;
 
@@ -115,14 +115,14 @@ static int read_write(struct sensor_reader *r)
 
 static int read_read(struct sensor_reader *r)
 {
-	struct sensor_step *to = step(r, SENSOR_READ);
+	struct sensor_step *to = sensor_table_step(r, SENSOR_READ);
 
 	return to ? bytes_read(r, to, true) : -ENOMEM;
 }
 
 static int read_wait(struct sensor_reader *r)
 {
-	struct sensor_step *to = step(r, SENSOR_WAIT);
+	struct sensor_step *to = sensor_table_step(r, SENSOR_WAIT);
 	double number;
 	char *end;
 
@@ -145,7 +145,7 @@ static int read_wait(struct sensor_reader *r)
 
 static int read_crc8(struct sensor_reader *r)
 {
-	struct sensor_step *to = step(r, SENSOR_CRC8);
+	struct sensor_step *to = sensor_table_step(r, SENSOR_CRC8);
 	unsigned at, n, polynomial = 0x31, start = 0xff;
 	int err = to ? reader_whole(r, 0, SENSOR_BYTES - 1, &at) : -ENOMEM;
 
@@ -181,7 +181,7 @@ static int read_check(struct sensor_reader *r)
 		err = reader_equals(r);
 	if (!err)
 		err = reader_formula(r, false, &b);
-	to = err ? NULL : step(r, SENSOR_SAME);
+	to = err ? NULL : sensor_table_step(r, SENSOR_SAME);
 	if (!to)
 		return err ? err : -ENOMEM;
 	to->a = a;
@@ -192,7 +192,7 @@ static int read_check(struct sensor_reader *r)
 static int read_let(struct sensor_reader *r)
 {
 	struct sensor_kind *kind = reader_kind(r);
-	struct sensor_step *to = step(r, SENSOR_LET);
+	struct sensor_step *to = sensor_table_step(r, SENSOR_LET);
 	char text[FORMULA_NAME];
 	int err = to ? reader_name(r, text) : -ENOMEM;
 

@@ -27,7 +27,7 @@ int64_t thermometer_convert_ns(const struct device *device)
 }
 
 /* What it may have begun before goes on, if it ignores this; it ends when it is not busy now. */
-static void send(struct thermometer *chip, int64_t now, int64_t longest)
+static void thermometer_proof_send(struct thermometer *chip, int64_t now, int64_t longest)
 {
 	if (now >= chip->busy_ns)
 		chip->least_ns = now + longest;
@@ -39,7 +39,7 @@ static void send(struct thermometer *chip, int64_t now, int64_t longest)
 
 void thermometer_told(struct device *device, int64_t now, int64_t longest)
 {
-	send(device->own, now, longest);
+	thermometer_proof_send(device->own, now, longest);
 	thermometer_of(device)->tried = true;
 }
 
@@ -62,7 +62,7 @@ void thermometer_converts(struct device *device, int64_t now, int64_t longest, b
 	chip->proves = chip->converted_ns && chip->raw_ns >= chip->converted_ns && !chip->tried;
 	if (chip->converted_ns)
 		chip->earlier_ns = ended_ns(device);
-	send(chip, now, longest);
+	thermometer_proof_send(chip, now, longest);
 	chip->converted_ns = now + longest;
 	chip->longest_ns = longest;
 	chip->early_ns = 0;

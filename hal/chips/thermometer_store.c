@@ -123,7 +123,7 @@ static int want(struct txn *txn, const uint8_t scratchpad[9])
 	return TXN_MORE;
 }
 
-static int look(struct txn *txn)
+static int thermometer_store_look(struct txn *txn)
 {
 	struct visit *visit = visit_of(txn);
 	int err = thermometer_settings(txn, visit->scratchpad);
@@ -160,7 +160,7 @@ static int recall_first(struct txn *txn)
 	return want(txn, scratchpad);
 }
 
-static int write(struct txn *txn)
+static int thermometer_store_write(struct txn *txn)
 {
 	int err = thermometer_rest(txn);
 
@@ -225,7 +225,7 @@ static int restore(struct txn *txn)
 	return err;
 }
 
-static int check(struct txn *txn)
+static int thermometer_store_check(struct txn *txn)
 {
 	uint8_t scratchpad[9];
 	int err;
@@ -249,11 +249,11 @@ static int store(struct txn *txn)
 {
 	switch (txn->phase) {
 	case LOOK:
-		return look(txn);
+		return thermometer_store_look(txn);
 	case RECALL_FIRST:
 		return recall_first(txn);
 	case WRITE:
-		return write(txn);
+		return thermometer_store_write(txn);
 	case VERIFY:
 		return verify(txn);
 	case PROBE:
@@ -264,7 +264,7 @@ static int store(struct txn *txn)
 	case RESTORED:
 		return restore(txn);
 	default:
-		return check(txn);
+		return thermometer_store_check(txn);
 	}
 }
 

@@ -22,7 +22,8 @@
 #define BLOCK 8
 #define BEHIND 2 /* bytes that are read after a block: longer than tREADIDLE */
 
-static int load(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, unsigned n)
+static int tmp1826_memory_load(struct txn *txn, const struct area *area, unsigned at,
+                               uint8_t *bytes, unsigned n)
 {
 	static const uint8_t command = READ_EEPROM;
 	const uint8_t where[] = {0, (uint8_t)at};
@@ -56,5 +57,5 @@ const struct area tmp1826_memory = {
 	.key = 0xa5,
 	.strong = true,
 	.copy_ns = PROGRAM_NS,
-	.load = load,
+	.load = tmp1826_memory_load,
 };

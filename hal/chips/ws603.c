@@ -37,7 +37,7 @@ static uint8_t sum(const uint8_t *bytes, unsigned n)
 }
 
 /* And read back. */
-static int put(struct txn *txn, uint8_t at, const uint8_t *bytes, unsigned n)
+static int ws603_put(struct txn *txn, uint8_t at, const uint8_t *bytes, unsigned n)
 {
 	uint8_t command[2 + 16] = {memory.write, at}, in[16];
 	int err;
@@ -53,18 +53,18 @@ static int put(struct txn *txn, uint8_t at, const uint8_t *bytes, unsigned n)
 }
 
 /* The command's n bytes, their sum, and an end that follows from the first. */
-static int give(struct txn *txn, const uint8_t *bytes, unsigned n)
+static int ws603_give(struct txn *txn, const uint8_t *bytes, unsigned n)
 {
 	uint8_t command[8];
 
 	memcpy(command, bytes, n);
 	command[n] = sum(bytes, n);
 	command[n + 1] = (uint8_t)(bytes[0] << 4 | 0x0e);
-	return put(txn, COMMAND, command, n + 2);
+	return ws603_put(txn, COMMAND, command, n + 2);
 }
 
 /* The five bytes that the station answers; several calls. */
-static int ask(struct txn *txn, uint8_t what, uint8_t bytes[5])
+static int ws603_ask(struct txn *txn, uint8_t what, uint8_t bytes[5])
 {
 	static const uint8_t nothing[ANSWER - COMMAND + ANSWER_BYTES] = {0};
 	struct visit *visit = txn_own(txn, struct visit);
@@ -73,11 +73,11 @@ static int ask(struct txn *txn, uint8_t what, uint8_t bytes[5])
 
 	switch ((enum step)visit->step) {
 	case CLEAR:
-		err = put(txn, COMMAND, nothing, sizeof(nothing));
+		err = ws603_put(txn, COMMAND, nothing, sizeof(nothing));
 		visit->step = ASK;
 		return err ? err : TXN_MORE;
 	case ASK:
-		err = give(txn, &what, 1);
+		err = ws603_give(txn, &what, 1);
 		visit->step = TAKE;
 		visit->tries = 0;
 		return err ? err : txn_wait(txn, WAIT_NS);
@@ -97,7 +97,7 @@ static int ask(struct txn *txn, uint8_t what, uint8_t bytes[5])
 int ws603_read_byte(struct txn *txn)
 {
 	uint8_t bytes[5] = {0};
-	int err = ask(txn, txn->property->arg & 0xff, bytes);
+	int err = ws603_ask(txn, txn->property->arg & 0xff, bytes);
 
 	if (!err)
 		txn->number[0] = bytes[txn->property->arg >> 8 & 0xff];
@@ -107,7 +107,7 @@ int ws603_read_byte(struct txn *txn)
 int ws603_read_bytes(struct txn *txn)
 {
 	uint8_t bytes[5];
-	int err = ask(txn, txn->property->arg & 0xff, bytes);
+	int err = ws603_ask(txn, txn->property->arg & 0xff, bytes);
 
 	if (err)
 		return err;
@@ -121,7 +121,7 @@ int ws603_read_wind(struct txn *txn)
 {
 	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t bytes[5] = {0};
-	int err = ask(txn, visit->calibrated ? WS603_DATA : WS603_PARAMETERS, bytes);
+	int err = ws603_ask(txn, visit->calibrated ? WS603_DATA : WS603_PARAMETERS, bytes);
 
 	if (err)
 		return err;
@@ -140,7 +140,7 @@ int ws603_write_byte(struct txn *txn)
 {
 	const uint8_t bytes[] = {(uint8_t)(txn->property->arg >> 16), (uint8_t)txn->number[0]};
 
-	return txn->number[0] > 255 ? -EINVAL : give(txn, bytes, sizeof(bytes));
+	return txn->number[0] > 255 ? -EINVAL : ws603_give(txn, bytes, sizeof(bytes));
 }
 
 int ws603_write_lights(struct txn *txn)
@@ -152,5 +152,5 @@ int ws603_write_lights(struct txn *txn)
 			return -EINVAL;
 		bytes[1 + i] = (uint8_t)txn->number[i];
 	}
-	return give(txn, bytes, sizeof(bytes));
+	return ws603_give(txn, bytes, sizeof(bytes));
 }

@@ -84,7 +84,7 @@ static int set_address(struct i2c_dev *dev, uint8_t address)
 	return 0;
 }
 
-static void count(struct i2c_dev *dev, unsigned bytes)
+static void i2c_dev_count(struct i2c_dev *dev, unsigned bytes)
 {
 	dev->adapter.transfers++;
 	dev->adapter.syscalls++;
@@ -98,7 +98,7 @@ static int write_byte(struct i2c_adapter *base, uint8_t address, uint8_t command
 
 	if (err)
 		return err;
-	count(dev, 2);
+	i2c_dev_count(dev, 2);
 	return i2c_smbus_write_byte(dev->fd, command) < 0 ? plain(errno, true) : 0;
 }
 
@@ -109,7 +109,7 @@ static int write_byte_data(struct i2c_adapter *base, uint8_t address, uint8_t co
 
 	if (err)
 		return err;
-	count(dev, 3);
+	i2c_dev_count(dev, 3);
 	return i2c_smbus_write_byte_data(dev->fd, command, data) < 0 ? plain(errno, false) : 0;
 }
 
@@ -120,7 +120,7 @@ static int read_byte(struct i2c_adapter *base, uint8_t address)
 
 	if (byte)
 		return byte;
-	count(dev, 2);
+	i2c_dev_count(dev, 2);
 	byte = i2c_smbus_read_byte(dev->fd);
 	return byte < 0 ? plain(errno, true) : byte;
 }

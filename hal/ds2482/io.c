@@ -87,7 +87,7 @@ int ds2482_write_read(struct ds2482_chip *chip, uint8_t command, uint8_t paramet
  * or the clock is too coarse to show them, the number of bytes is no measure of time: then all
  * waits are timed.
  */
-static int measure(struct ds2482_chip *chip)
+static int io_measure(struct ds2482_chip *chip)
 {
 	struct ds2482_master *master = chip->master;
 	struct i2c_adapter *adapter = master->adapter;
@@ -137,7 +137,7 @@ void ds2482_was_early(struct ds2482_chip *chip)
 	if (master->byte_ns >= LEAST_NS)
 		return;
 	if (ds2482_now(master) < master->measured_ns + (SOON_NS << master->measured_again) ||
-	    measure(chip))
+	    io_measure(chip))
 		master->byte_ns = 0;
 	if (master->measured_again < SOON_DOUBLINGS)
 		master->measured_again++;
@@ -216,7 +216,7 @@ int ds2482_learn(struct ds2482_chip *chip)
 	chip->master->measured_again = 0;
 	chip->master->visit_ns = 0;
 	if (!err)
-		err = measure(chip);
+		err = io_measure(chip);
 	return err ? err : measure_messages(chip);
 }
 

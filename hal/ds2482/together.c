@@ -37,7 +37,7 @@ static struct ds2482_link *self(struct link *link)
 	return (struct ds2482_link *)link;
 }
 
-static void end(struct course *course, int err)
+static void together_end(struct course *course, int err)
 {
 	course->visit->err = err;
 	course->visit->ended_ns = ds2482_now(course->link->chip->master);
@@ -56,7 +56,7 @@ static int message(const struct ds2482_chip *chip, uint16_t flags, uint8_t *data
 	return adapter->ops->transfer(adapter, chip->address, &one, 1);
 }
 
-static int command(const struct ds2482_chip *chip, uint8_t code)
+static int together_command(const struct ds2482_chip *chip, uint8_t code)
 {
 	return message(chip, 0, &code, 1);
 }
@@ -75,7 +75,7 @@ static void works(struct course *course, enum step next, int64_t max_ns, unsigne
 	course->step = next;
 }
 
-static int begin(struct course *course)
+static int together_begin(struct course *course)
 {
 	struct ds2482_link *link = course->link;
 	int err = ds2482_claimed(link->chip) ? ds2482_select(link) : -ENXIO;
@@ -83,7 +83,7 @@ static int begin(struct course *course)
 	if (!err)
 		err = ds2482_wait_until(link->chip->master, link->chip->free_at);
 	if (!err)
-		err = command(link->chip, DS2482_RESET);
+		err = together_command(link->chip, DS2482_RESET);
 	if (err)
 		return err;
 	ds2482_began(link->chip);
@@ -111,7 +111,7 @@ static int write_next(struct course *course)
 static int read_next(struct course *course)
 {
 	struct ds2482_link *link = course->link;
-	int err = command(link->chip, DS2482_READ);
+	int err = together_command(link->chip, DS2482_READ);
 
 	/* the register is read after the pointer and two addresses */
 	if (!err)
@@ -161,7 +161,7 @@ static int fetch(struct course *course)
 	link->chip->free_at = 0;
 	link->cost.wire_ns += 8u * (visit->out_n + visit->in_n) *
 	                      (uint64_t)ds2482_slot_ns[link->speed];
-	end(course, 0);
+	together_end(course, 0);
 	return 0;
 }
 
@@ -171,7 +171,7 @@ static void go_on(struct course *course)
 
 	switch (course->step) {
 	case STEP_BEGIN:
-		err = begin(course);
+		err = together_begin(course);
 		break;
 	case STEP_PRESENCE:
 		err = look_for_presence(course);
@@ -189,7 +189,7 @@ static void go_on(struct course *course)
 		break;
 	}
 	if (err)
-		end(course, err);
+		together_end(course, err);
 }
 
 /* NULL: all are done. */
@@ -223,7 +223,7 @@ static void end_others(struct course *courses, unsigned n, const struct course *
 	for (unsigned i = 0; i < n; i++)
 		if (courses[i].step != STEP_DONE &&
 		    courses[i].link->chip->master == failed->link->chip->master)
-			end(&courses[i], failed->visit->err);
+			together_end(&courses[i], failed->visit->err);
 }
 
 static bool is_of_adapter(int err)
@@ -250,7 +250,7 @@ void ds2482_together(struct link_visit *visits, unsigned n)
 		int64_t begun_ns = ds2482_now(master);
 
 		if (err)
-			end(course, err);
+			together_end(course, err);
 		else
 			go_on(course);
 		course->busy_ns += ds2482_now(master) - begun_ns;

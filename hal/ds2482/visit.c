@@ -67,7 +67,7 @@ static void in(struct train *train, uint8_t *bytes, unsigned n)
 }
 
 /* Transfer what was gathered. */
-static int send(struct train *train)
+static int visit_send(struct train *train)
 {
 	struct ds2482_chip *chip = train->chip;
 	struct i2c_adapter *adapter = chip->master->adapter;
@@ -98,7 +98,7 @@ static int make_room(struct train *train, unsigned messages)
 
 	if (train->count + messages <= room && (train->any || !train->read_last))
 		return 0;
-	return train->count ? send(train) : 0;
+	return train->count ? visit_send(train) : 0;
 }
 
 /* Let the time of an operation pass, unless the next message takes longer anyway. */
@@ -125,7 +125,7 @@ static int reset(struct train *train)
 	return 0;
 }
 
-static int write(struct train *train, uint8_t byte)
+static int visit_write(struct train *train, uint8_t byte)
 {
 	int err = make_room(train, 2);
 
@@ -138,7 +138,7 @@ static int write(struct train *train, uint8_t byte)
 
 static int read(struct train *train, uint8_t *byte)
 {
-	int err = train->reads == READS ? send(train) : make_room(train, 3);
+	int err = train->reads == READS ? visit_send(train) : make_room(train, 3);
 
 	if (err)
 		return err;
@@ -151,7 +151,7 @@ static int read(struct train *train, uint8_t *byte)
 }
 
 /* Was the chip idle, is it still set up, and who answered the reset? */
-static int look(struct train *train)
+static int visit_look(struct train *train)
 {
 	uint8_t status;
 	int err = make_room(train, 2);
@@ -160,7 +160,7 @@ static int look(struct train *train)
 		return err;
 	out(train, DS2482_READ_POINTER, DS2482_AT_STATUS);
 	in(train, &status, 1);
-	err = send(train);
+	err = visit_send(train);
 	if (err)
 		return err;
 	if (status & DS2482_1WB)
@@ -172,18 +172,18 @@ static int look(struct train *train)
 	return status & DS2482_PPD ? 0 : -EHOSTDOWN;
 }
 
-static int run(struct train *train, const struct link_visit *visit)
+static int visit_run(struct train *train, const struct link_visit *visit)
 {
 	bool few = train->slow || visit->in_n <= FEW_READS;
 	int err = reset(train);
 
 	for (unsigned i = 0; !err && i < visit->out_n; i++)
-		err = write(train, visit->out[i]);
+		err = visit_write(train, visit->out[i]);
 	if (!err && !few)
-		err = send(train);
+		err = visit_send(train);
 	for (unsigned i = 0; !err && i < visit->in_n; i++)
 		err = read(train, &visit->in[i]);
-	return err ? err : look(train);
+	return err ? err : visit_look(train);
 }
 
 /* The adapter is open: ds2482_visits() has looked. */
@@ -201,7 +201,7 @@ void ds2482_visit(struct link_visit *visit)
 	train.slow = is_slow(chip);
 	train.wait = ds2482_reading_on(chip, 8 * ds2482_slot_max_ns[0], TO_COMMAND);
 	if (!err)
-		err = run(&train, visit);
+		err = visit_run(&train, visit);
 	if (!err)
 		chip->free_at = 0;
 	else

@@ -166,7 +166,7 @@ static int line_of(const struct gpio_bus *gpio, const char *path, int *line)
 	return *line < 0 ? -ENOENT : 0;
 }
 
-static int list(const struct gpio_bus *gpio, int line, struct bus_req *req, uint32_t *used)
+static int gpio_list(const struct gpio_bus *gpio, int line, struct bus_req *req, uint32_t *used)
 {
 	if (line >= 0)
 		return -ENOTDIR;
@@ -254,7 +254,7 @@ static void exec(struct bus *bus, struct bus_req *req, struct bus_answer *answer
 	if (answer->err || req->op == BUS_PROBE)
 		return;
 	if (req->op == BUS_DIR) {
-		answer->err = list(gpio, line, req, &answer->len);
+		answer->err = gpio_list(gpio, line, req, &answer->len);
 		return;
 	}
 	answer->err = access_line(gpio, line, req, answer, why, sizeof(why));

@@ -142,7 +142,7 @@ static int set(struct gpio_line *line, bool value)
 	return gpiod_line_set_value(line->line, value) ? failed() : 0;
 }
 
-static int get(struct gpio_line *line)
+static int library_v1_get(struct gpio_line *line)
 {
 	int value;
 
@@ -197,7 +197,7 @@ static const struct gpio_api library = {
 	.info = info,
 	.request = request,
 	.set = set,
-	.get = get,
+	.get = library_v1_get,
 	.edge = edge,
 	.fd = fd,
 	.release = release,

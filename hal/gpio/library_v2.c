@@ -120,9 +120,9 @@ static int settle(struct gpiod_line_settings *to, const struct gpio_setup *setup
 	return err;
 }
 
-static struct gpiod_line_request *ask(struct gpio_chip *chip, unsigned offset,
-                                      const struct gpio_setup *setup, const char *consumer,
-                                      bool edges)
+static struct gpiod_line_request *library_v2_ask(struct gpio_chip *chip, unsigned offset,
+                                                 const struct gpio_setup *setup,
+                                                 const char *consumer, bool edges)
 {
 	struct gpiod_line_settings *settings = gpiod_line_settings_new();
 	struct gpiod_line_config *lines_config = gpiod_line_config_new();
@@ -163,11 +163,11 @@ static int request(struct gpio_chip *chip, unsigned offset, const struct gpio_se
 	if (!line)
 		return -ENOMEM;
 	line->offset = offset;
-	line->request = ask(chip, offset, setup, consumer, edges);
+	line->request = library_v2_ask(chip, offset, setup, consumer, edges);
 	/* A line without an interrupt can still be read: request it without edges. */
 	if (!line->request && edges && errno != EBUSY && errno != EPERM && errno != ENODEV) {
 		edges = false;
-		line->request = ask(chip, offset, setup, consumer, false);
+		line->request = library_v2_ask(chip, offset, setup, consumer, false);
 	}
 	if (line->request && edges)
 		line->edges = gpiod_edge_event_buffer_new(1);
@@ -190,7 +190,7 @@ static int set(struct gpio_line *line, bool value)
 	               : 0;
 }
 
-static int get(struct gpio_line *line)
+static int library_v2_get(struct gpio_line *line)
 {
 	errno = 0;
 	switch (gpiod_line_request_get_value(line->request, line->offset)) {

@@ -39,7 +39,7 @@ static uint8_t supply_of(const struct native *native, const struct device *devic
 	return BUS_SUPPLY_UNKNOWN;
 }
 
-static void give(struct native *native, struct job *job, struct bus_answer *answer)
+static void answer_give(struct native *native, struct job *job, struct bus_answer *answer)
 {
 	const struct device *device = job->txn.device;
 	uint64_t us = job->wire_ns / 1000;
@@ -101,7 +101,7 @@ void job_answer(struct native *native, struct job *job, int err)
 	/* Behind an empty list nothing follows. */
 	if (job->req->prio == BUS_ALARM && (job->req->op != BUS_DIR || job->out))
 		native->follow_ns = native_now(native) + FOLLOW_NS;
-	give(native, job, &answer);
+	answer_give(native, job, &answer);
 }
 
 void job_answer_cached(struct native *native, struct job *job, const struct cache_entry *entry)
@@ -131,7 +131,7 @@ void job_answer_cached(struct native *native, struct job *job, const struct cach
 	}
 	native->cache.hit_bytes += answer.len;
 	native_count(native, COUNT_CACHE_HITS);
-	give(native, job, &answer);
+	answer_give(native, job, &answer);
 }
 
 bool job_answer_own(struct native *native, struct job *job)
@@ -144,7 +144,7 @@ bool job_answer_own(struct native *native, struct job *job)
 		return false;
 	if (native->master->ops->simulated)
 		answer.detail |= BUS_DETAIL_SIMULATED;
-	give(native, job, &answer);
+	answer_give(native, job, &answer);
 	return true;
 }
 

@@ -31,8 +31,8 @@ static struct cache_entry *set_of(struct cache *cache, const struct device *devi
 	return cache->entries + (key ^ key >> 8) % SETS * WAYS;
 }
 
-static bool is(const struct cache_entry *entry, const struct device *device,
-               const struct property *property, int extension)
+static bool cache_is(const struct cache_entry *entry, const struct device *device,
+                     const struct property *property, int extension)
 {
 	return entry->device == device && entry->property == property &&
 	       entry->extension == extension;
@@ -45,7 +45,7 @@ const struct cache_entry *cache_find(struct cache *cache, const struct device *d
 
 	cache->tries++;
 	for (int way = 0; way < WAYS; way++, entry++) {
-		if (!is(entry, device, property, extension))
+		if (!cache_is(entry, device, property, extension))
 			continue;
 		if (entry->changes != device->changes || now >= entry->until_ns) {
 			cache->expired++;
@@ -63,7 +63,7 @@ struct cache_entry *cache_add(struct cache *cache, const struct device *device,
 	struct cache_entry *set = set_of(cache, device, property, extension), *best = set;
 
 	for (int way = 0; way < WAYS; way++) {
-		if (is(&set[way], device, property, extension)) {
+		if (cache_is(&set[way], device, property, extension)) {
 			best = &set[way];
 			break;
 		}
@@ -73,7 +73,7 @@ struct cache_entry *cache_add(struct cache *cache, const struct device *device,
 	assert(device);
 	cache->added++;
 	cache->held += !best->device;
-	cache->deleted += best->device && !is(best, device, property, extension);
+	cache->deleted += best->device && !cache_is(best, device, property, extension);
 	best->device = device;
 	best->property = property;
 	best->extension = extension;

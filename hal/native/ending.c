@@ -65,7 +65,7 @@ static void ended(struct native *native, unsigned n, int64_t now)
 	}
 }
 
-static void ask(struct native *native, unsigned n)
+static void ending_ask(struct native *native, unsigned n)
 {
 	struct link *link = native->channel[n].link;
 	struct ending *ending = &native->channel[n].ending;
@@ -112,7 +112,7 @@ bool ending_step(struct native *native, int64_t now, int64_t *next)
 		if (!ending->asks)
 			continue;
 		if (ending->next_ns <= now) {
-			ask(native, n);
+			ending_ask(native, n);
 			return true;
 		}
 		*next = ending->next_ns < *next ? ending->next_ns : *next;

@@ -95,7 +95,7 @@ static void know_supply(struct native *native, unsigned n, enum device_power pow
 }
 
 /* What goes wrong here is seen to by the search, and by the conversions after it. */
-static void convert(struct native *native, unsigned n)
+static void first_convert(struct native *native, unsigned n)
 {
 	struct channel *channel = &native->channel[n];
 	struct path path;
@@ -345,7 +345,7 @@ static void attach_all(struct native *native, int64_t now)
 }
 
 /* A device that was found meanwhile was not asked for its supply. */
-static bool end(struct native *native, int64_t now)
+static bool first_end(struct native *native, int64_t now)
 {
 	take_new(native, now);
 	attach_all(native, now);
@@ -368,12 +368,12 @@ static bool end(struct native *native, int64_t now)
 bool first_step(struct native *native, int64_t now, int64_t *next)
 {
 	if (!hunt_initial(native))
-		return native->first_left && end(native, now);
+		return native->first_left && first_end(native, now);
 	for (unsigned n = 0; n < native->channels; n++) {
 		if (!may_convert(native, n, now) || !has_thermometer(native, n) ||
 		    !is_asked(native, n))
 			continue;
-		convert(native, n);
+		first_convert(native, n);
 		return true;
 	}
 	return read_next(native, now, next);

@@ -175,7 +175,7 @@ static bool is_held(const struct native *native, unsigned n, int64_t now, int64_
 }
 
 /* A channel to look at, the next in turn; false: there is none now. */
-static bool begin(struct native *native, int64_t now, int64_t *next)
+static bool locate_begin(struct native *native, int64_t now, int64_t *next)
 {
 	struct locate *locate = &native->locate;
 
@@ -196,7 +196,7 @@ static bool begin(struct native *native, int64_t now, int64_t *next)
 }
 
 /* heard: the channel is not short. */
-static void end(struct native *native, bool heard)
+static void locate_end(struct native *native, bool heard)
 {
 	struct locate *locate = &native->locate;
 
@@ -229,18 +229,18 @@ static void failed(struct native *native, int err)
 	if (err == -ECOMM) {
 		native_count(native, COUNT_SHORTS);
 		native->channel[locate->channel].shorts++;
-		end(native, false);
+		locate_end(native, false);
 	} else if (err == -EBADMSG) {
 		native_count(native, COUNT_CHECKSUMS);
 		if (locate->tries >= TRIES)
-			end(native, true);
+			locate_end(native, true);
 	} else if (master_recover(native, locate->channel, err) && locate->tries >= TRIES_LINK) {
 		give_up(native, -EIO);
 	}
 }
 
 /* One search, for all that are not decided yet. True: it found one. */
-static bool look(struct native *native, int64_t now)
+static bool locate_look(struct native *native, int64_t now)
 {
 	struct locate *locate = &native->locate;
 	const uint8_t *roms[NATIVE_DEPTH];
@@ -257,7 +257,7 @@ static bool look(struct native *native, int64_t now)
 		roms[n++] = job->path.rom;
 	}
 	if (!n) {
-		end(native, true);
+		locate_end(native, true);
 		return false;
 	}
 	native_count(native, COUNT_TRANSACTIONS);
@@ -277,7 +277,7 @@ static bool look(struct native *native, int64_t now)
 		left += is_waiting(jobs[i]) && jobs[i]->sought;
 	}
 	if (!left)
-		end(native, true);
+		locate_end(native, true);
 	return there;
 }
 
@@ -315,9 +315,9 @@ bool locate_step(struct native *native, int64_t now, bool idle, int64_t *next)
 	}
 	/* Between two searches others have had the wire. */
 	if (locate->looking ? is_held(native, locate->channel, now, next)
-	                    : !begin(native, now, next))
+	                    : !locate_begin(native, now, next))
 		return false;
-	bool found = look(native, now);
+	bool found = locate_look(native, now);
 	locate->took_ns = native_now(native) - now;
 	/* A whole wire that comes back is not to wait. */
 	if (!found) {

@@ -338,7 +338,7 @@ static bool rest(struct native *native, int64_t now, int64_t *next)
 	return false;
 }
 
-static void run(struct native *native, struct job *job, int64_t now)
+static void native_run(struct native *native, struct job *job, int64_t now)
 {
 	bool reads = schedule_reads(job);
 
@@ -370,12 +370,12 @@ static int64_t step(struct native *native, int64_t now)
 	if (follows(native, job, now))
 		return native->follow_ns;
 	if (job && job->req->prio <= BUS_OUTPUT) {
-		run(native, job, now);
+		native_run(native, job, now);
 		return now;
 	}
 	if (job && native->touched) {
 		native->touched = false;
-		run(native, job, now);
+		native_run(native, job, now);
 		return now;
 	}
 	struct job *owed = native->schedule.owes == OWES_ANY ? job : other;
@@ -383,7 +383,7 @@ static int64_t step(struct native *native, int64_t now)
 		/* A thermometer's new request becomes due by that, without the wire */
 		if (owed->state != JOB_QUEUED || !schedule_asks(owed))
 			native->schedule.owes = OWES_NOTHING;
-		run(native, owed, now);
+		native_run(native, owed, now);
 		return now;
 	}
 	if (!hunt_initial(native) &&
@@ -400,7 +400,7 @@ static int64_t step(struct native *native, int64_t now)
 	if (!hunt_initial(native) && locate_step(native, now, !job, &next))
 		return now;
 	if (job) {
-		run(native, job, now);
+		native_run(native, job, now);
 		return now;
 	}
 	if (ending_step(native, now, &next) || rest(native, now, &next))

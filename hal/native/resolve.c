@@ -108,7 +108,7 @@ static struct device *device_named(struct native *native, struct path_slice name
 }
 
 /* "1F.x/main/1F.y/aux/28.z": bus becomes the channel of the last branch. */
-static int follow(struct native *native, struct path_slice way, int *bus)
+static int resolve_follow(struct native *native, struct path_slice way, int *bus)
 {
 	struct path_slice name = take_word(&way);
 
@@ -163,7 +163,7 @@ static int resolve_device(struct native *native, struct job *job)
 		memcpy(path->rom, device->rom, sizeof(path->rom));
 		path->has_rom = true;
 	}
-	if (follow(native, path->device, &job->bus))
+	if (resolve_follow(native, path->device, &job->bus))
 		return -ENODEV;
 	device = device_find(&native->table, path->rom);
 	if (!device) {

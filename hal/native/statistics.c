@@ -21,7 +21,7 @@ static enum tally_kind kind_of(const struct job *job)
 	return TALLY_DIRECTORY;
 }
 
-static void enter(struct tally *tally)
+static void statistics_enter(struct tally *tally)
 {
 	tally->calls++;
 	tally->now++;
@@ -33,8 +33,8 @@ static void enter(struct tally *tally)
 void tally_begin(struct native *native, struct job *job)
 {
 	job->since_ns = native_now(native);
-	enter(&native->tally[kind_of(job)]);
-	enter(&native->tally[TALLY_OVERALL]);
+	statistics_enter(&native->tally[kind_of(job)]);
+	statistics_enter(&native->tally[TALLY_OVERALL]);
 }
 
 static void count_entries(struct tally *tally, const struct job *job, size_t len)

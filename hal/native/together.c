@@ -22,7 +22,7 @@ struct group {
 	uint8_t out[LINK_TOGETHER][TXN_SELECT + 1], in[LINK_TOGETHER][SCRATCHPAD_SIZE];
 };
 
-static void add(const struct native *native, struct group *group, struct job *job)
+static void together_add(const struct native *native, struct group *group, struct job *job)
 {
 	unsigned i = group->n++;
 	bool starts = job->state == JOB_DUE;
@@ -42,12 +42,12 @@ static void add(const struct native *native, struct group *group, struct job *jo
 }
 
 /* A group with this job. false: there is none. */
-static bool begin(const struct native *native, struct group *group, struct job *job)
+static bool together_begin(const struct native *native, struct group *group, struct job *job)
 {
 	group->n = 0;
 	if (!native_abreast(native, job->txn.device->channel) || job->alone)
 		return false;
-	add(native, group, job);
+	together_add(native, group, job);
 	return true;
 }
 
@@ -127,10 +127,10 @@ static void gather(struct native *native, struct group *group, int64_t now)
 	for (unsigned n = 0; n < native->channels && n < NATIVE_CHANNELS; n++) {
 		job = fits(native, group, n) ? convert_next_in_turn(native, n, now) : NULL;
 		if (job && !job->alone)
-			add(native, group, job);
+			together_add(native, group, job);
 	}
 	while ((job = next_reading(native, group, now)))
-		add(native, group, job);
+		together_add(native, group, job);
 }
 
 static void step(struct native *native, struct job *job, int64_t now)
@@ -147,7 +147,8 @@ void together_step(struct native *native, struct job *job, int64_t now)
 	struct group group;
 	bool reads = false;
 
-	if ((job->state != JOB_DUE && !reads_scratchpad(job)) || !begin(native, &group, job)) {
+	if ((job->state != JOB_DUE && !reads_scratchpad(job)) ||
+	    !together_begin(native, &group, job)) {
 		step(native, job, now);
 		return;
 	}

@@ -134,7 +134,7 @@ static void end_family(struct native *native, unsigned n, int64_t now)
 	end_round(native, n, now);
 }
 
-static int begin(struct native *native, unsigned n, int64_t now)
+static int touch_begin(struct native *native, unsigned n, int64_t now)
 {
 	struct touch *touch = &native->channel[n].touch;
 	bool alarm = touch->family == FAMILIES;
@@ -181,7 +181,7 @@ static void failed(struct native *native, unsigned n, int err, int64_t now)
 static void pass(struct native *native, unsigned n, int64_t now)
 {
 	struct touch *touch = &native->channel[n].touch;
-	int err = begin(native, n, now);
+	int err = touch_begin(native, n, now);
 
 	now = native_now(native);
 	if (err < 0) {

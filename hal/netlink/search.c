@@ -148,7 +148,7 @@ static void look_later(struct walk *walk, const uint8_t path[8], unsigned i, uns
 }
 
 /* One request: along a guess that begins with prefix. 0, what found returned, or an error. */
-static int look(struct walk *walk, const struct prefix *prefix)
+static int search_look(struct walk *walk, const struct prefix *prefix)
 {
 	unsigned own;
 	const uint8_t *known = guess(walk, prefix, &own);
@@ -196,7 +196,7 @@ static int search_alarms(struct w1_netlink_link *link, uint8_t family, link_foun
 	while (walk.prefixes && !err) {
 		struct prefix next = walk.prefix[--walk.prefixes];
 
-		err = look(&walk, &next);
+		err = search_look(&walk, &next);
 	}
 	return err;
 }
@@ -225,7 +225,7 @@ static int found_one(void *ctx, const uint8_t rom[8])
 	return 0;
 }
 
-static void forget(struct w1_netlink *netlink, uint8_t channel)
+static void search_forget(struct w1_netlink *netlink, uint8_t channel)
 {
 	unsigned kept = 0;
 
@@ -246,7 +246,7 @@ int w1_netlink_search(struct link *base, bool alarm, uint8_t family, link_found 
 
 	if (alarm)
 		return search_alarms(link, family, found, ctx);
-	forget(link->netlink, all.channel);
+	search_forget(link->netlink, all.channel);
 	struct w1_request request;
 	w1_request_begin(&request, link->number);
 	request.found = found_one;

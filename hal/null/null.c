@@ -53,7 +53,7 @@ static void null_destroy(struct bus *bus)
 	free(bus);
 }
 
-static int list(struct bus_req *req, uint32_t *used)
+static int null_list(struct bus_req *req, uint32_t *used)
 {
 	size_t base = req->path[1] ? strlen(req->path) : 0;
 	const char *last = "";
@@ -81,7 +81,7 @@ static void null_exec(struct bus *bus, struct bus_req *req, struct bus_answer *a
 	answer->measured_ns = bus->env->now(bus->env->ctx);
 	answer->err = req->op != BUS_DIR ? -ENODEV : /* no alarm search: that is allowed */
 	                      strcmp(req->path, "/alarm") == 0 ? -EOPNOTSUPP
-	                                                       : list(req, &answer->len);
+	                                                       : null_list(req, &answer->len);
 	for (unsigned i = 0; req->op != BUS_DIR && i < PROPERTIES; i++) {
 		struct property *p = &((struct null_bus *)bus)->property[i];
 

@@ -74,7 +74,7 @@ static int find_id(struct listing *listing, struct talk *talk, const char *alias
 	return 0;
 }
 
-static int put(struct bus_req *req, uint32_t *used, const char *text, size_t len)
+static int listing_put(struct bus_req *req, uint32_t *used, const char *text, size_t len)
 {
 	if (len > req->len - *used)
 		return -EMSGSIZE;
@@ -99,15 +99,15 @@ static int put_entry(struct listing *listing, struct talk *talk, struct bus_req 
 	if (err == 0) {
 		const char *rest = path.last.text + path.last.len;
 
-		err = put(req, used, entry, (size_t)(path.last.text - entry));
+		err = listing_put(req, used, entry, (size_t)(path.last.text - entry));
 		if (!err)
-			err = put(req, used, id, strlen(id));
+			err = listing_put(req, used, id, strlen(id));
 		if (!err)
-			err = put(req, used, rest, (size_t)(entry + len - rest));
+			err = listing_put(req, used, rest, (size_t)(entry + len - rest));
 	} else {
-		err = put(req, used, entry, len);
+		err = listing_put(req, used, entry, len);
 	}
-	return err ? err : put(req, used, "\n", 1);
+	return err ? err : listing_put(req, used, "\n", 1);
 }
 
 int listing_read(struct listing *listing, struct talk *talk, struct bus_req *req, uint32_t *used)

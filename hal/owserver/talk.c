@@ -24,7 +24,7 @@ static int64_t now(const struct talk *talk)
 	return talk->connection.env->now(talk->connection.env->ctx);
 }
 
-static int fail(struct talk *talk, int err, const char *reason)
+static int talk_fail(struct talk *talk, int err, const char *reason)
 {
 	snprintf(talk->trouble, sizeof(talk->trouble), "%.60s: %.48s", talk->connection.peer,
 	         reason);
@@ -37,15 +37,15 @@ static int fail(struct talk *talk, int err, const char *reason)
 static int fail_socket(struct talk *talk, int err)
 {
 	if (err == -ECANCELED)
-		return fail(talk, -EINPROGRESS, "shutting down");
-	return fail(talk, -ECONNRESET, strerror(-err));
+		return talk_fail(talk, -EINPROGRESS, "shutting down");
+	return talk_fail(talk, -ECONNRESET, strerror(-err));
 }
 
 static int time_is_over(struct talk *talk)
 {
 	bus_count(&talk->counter[TALK_TIMEOUTS], 1);
-	return talk->heard ? fail(talk, -EINPROGRESS, "no whole answer in time")
-	                   : fail(talk, -ETIMEDOUT, "no sign of life in time");
+	return talk->heard ? talk_fail(talk, -EINPROGRESS, "no whole answer in time")
+	                   : talk_fail(talk, -ETIMEDOUT, "no sign of life in time");
 }
 
 static int make_request(struct talk *talk, const struct talk_request *request)
@@ -89,7 +89,7 @@ int talk_send(struct talk *talk, const struct talk_request *request, int64_t unt
 static int whole(struct talk *talk, size_t left_over)
 {
 	if (left_over)
-		return fail(talk, -EPROTO, "garbage after the answer");
+		return talk_fail(talk, -EPROTO, "garbage after the answer");
 	if (!(talk->reader.header.flags & FRAME_PERSIST)) {
 		bus_count(&talk->counter[TALK_REFUSED], 1);
 		connection_close(&talk->connection);
@@ -135,7 +135,7 @@ int talk_receive(struct talk *talk, int64_t until_ns)
 		if (n < 0)
 			return fail_socket(talk, n);
 		if (n == 0)
-			return fail(talk, -ECONNRESET, "closed by the server");
+			return talk_fail(talk, -ECONNRESET, "closed by the server");
 		talk->heard = true;
 		bus_count(&talk->counter[TALK_BYTES_IN], (uint64_t)n);
 		while (at < (size_t)n) {
@@ -147,12 +147,12 @@ int talk_receive(struct talk *talk, int64_t until_ns)
 				return whole(talk, (size_t)n - at);
 			if (state == FRAME_ALIVE && is_flood(talk)) {
 				bus_count(&talk->counter[TALK_FLOODS], 1);
-				return fail(talk, -EPROTO, "keep-alives without end");
+				return talk_fail(talk, -EPROTO, "keep-alives without end");
 			}
 			if (state == -EMSGSIZE)
-				return fail(talk, -EPROTO, "an answer longer than asked for");
+				return talk_fail(talk, -EPROTO, "an answer longer than asked for");
 			else if (state < 0)
-				return fail(talk, -EPROTO, "this is not an owserver");
+				return talk_fail(talk, -EPROTO, "this is not an owserver");
 		}
 	} while (now(talk) < until_ns);
 	return -EAGAIN;

@@ -18,7 +18,7 @@ static int64_t bits(const struct sim_adapter *adapter, unsigned n)
 	return NS_PER_S * n / adapter->net->hz;
 }
 
-static void begin(struct clock *clock, struct sim_adapter *adapter)
+static void adapter_begin(struct clock *clock, struct sim_adapter *adapter)
 {
 	int64_t now = adapter->env->now(adapter->env->ctx);
 
@@ -48,7 +48,7 @@ static int message(struct clock *clock, uint8_t address, const struct i2c_messag
 }
 
 /* Send the STOP, and wait until the transaction's time is over. */
-static int end(struct clock *clock, int err)
+static int adapter_end(struct clock *clock, int err)
 {
 	struct sim_adapter *adapter = clock->adapter;
 	int waited;
@@ -85,10 +85,10 @@ static int transact(struct i2c_adapter *base, uint8_t address, struct i2c_messag
 	struct clock clock;
 	int err = 0;
 
-	begin(&clock, adapter);
+	adapter_begin(&clock, adapter);
 	for (size_t i = 0; !err && i < n; i++)
 		err = message(&clock, address, &messages[i]);
-	return end(&clock, err);
+	return adapter_end(&clock, err);
 }
 
 static int transfer(struct i2c_adapter *base, uint8_t address, struct i2c_message *messages,

@@ -25,7 +25,7 @@ static bool is_name(const char *text)
 	return true;
 }
 
-static struct sim_button *find(struct sim_net *net, const char *name, size_t len)
+static struct sim_button *button_find(struct sim_net *net, const char *name, size_t len)
 {
 	for (unsigned i = 0; i < net->buttons; i++) {
 		struct sim_button *button = &net->button[i];
@@ -55,7 +55,7 @@ void button_parse(struct sim_net *net, struct words *words)
 		           words->word, SIM_BUTTON_NAME - 1);
 		return;
 	}
-	if (find(net, words->word, strlen(words->word))) {
+	if (button_find(net, words->word, strlen(words->word))) {
 		words_fail(words, "there is a button \"%s\" already", words->word);
 		return;
 	}
@@ -73,7 +73,7 @@ void button_parse(struct sim_net *net, struct words *words)
 	net->buttons++;
 }
 
-static int list(const struct sim_net *net, struct bus_req *req, struct bus_answer *answer)
+static int button_list(const struct sim_net *net, struct bus_req *req, struct bus_answer *answer)
 {
 	for (unsigned i = 0; i < net->buttons; i++) {
 		char line[sizeof("/" DIRECTORY "/\n") + SIM_BUTTON_NAME];
@@ -92,7 +92,7 @@ static int answer_directory(const struct sim_net *net, struct bus_req *req,
 {
 	switch ((enum bus_op)req->op) {
 	case BUS_DIR:
-		return list(net, req, answer);
+		return button_list(net, req, answer);
 	case BUS_PROBE:
 		return 0;
 	case BUS_READ:
@@ -153,7 +153,7 @@ bool button_answer(struct sim_net *net, struct bus_req *req, int64_t now, struct
 		answer->err = answer_directory(net, req, answer);
 		return true;
 	}
-	button = find(net, path.property.text, path.property.len);
+	button = button_find(net, path.property.text, path.property.len);
 	if (!button) {
 		answer->err = -ENOENT;
 		return true;

@@ -233,7 +233,7 @@ void sim_chip_run(struct sim_chip *chip, int64_t t)
 		finish(chip);
 }
 
-static void begin(struct sim_chip *chip, uint8_t op, unsigned slots, uint8_t data, int64_t t)
+static void chip_begin(struct sim_chip *chip, uint8_t op, unsigned slots, uint8_t data, int64_t t)
 {
 	struct sim_timing timing = sim_chip_timing(chip);
 	int64_t takes = slots * timing.slot_ns;
@@ -288,12 +288,12 @@ static bool take_command(struct sim_chip *chip, uint8_t command, int64_t t)
 	case WIRE_RESET:
 		if (busy(chip))
 			return false;
-		begin(chip, WIRE_RESET, 1, 0, t);
+		chip_begin(chip, WIRE_RESET, 1, 0, t);
 		return true;
 	case WIRE_READ:
 		if (busy(chip))
 			return false;
-		begin(chip, WIRE_READ, 8, 0xFF, t);
+		chip_begin(chip, WIRE_READ, 8, 0xFF, t);
 		return true;
 	}
 	return false;
@@ -376,13 +376,13 @@ static bool take_parameter(struct sim_chip *chip, uint8_t byte, int64_t t)
 	case CHANNEL_SELECT:
 		return adjustable(chip) ? adjust_port(chip, byte) : select_channel(chip, byte, t);
 	case WIRE_BIT:
-		begin(chip, WIRE_BIT, 1, byte, t);
+		chip_begin(chip, WIRE_BIT, 1, byte, t);
 		return true;
 	case WIRE_WRITE:
-		begin(chip, WIRE_WRITE, 8, byte, t);
+		chip_begin(chip, WIRE_WRITE, 8, byte, t);
 		return true;
 	case WIRE_TRIPLET:
-		begin(chip, WIRE_TRIPLET, 3, byte, t);
+		chip_begin(chip, WIRE_TRIPLET, 3, byte, t);
 		return true;
 	}
 	return false;

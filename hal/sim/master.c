@@ -96,7 +96,7 @@ struct sim_net *sim_master_net(struct link_master *master)
 	return &((struct simulation *)driver->source.ctx)->net;
 }
 
-static bool own(struct link_master *master, struct bus_req *req, struct bus_answer *answer)
+static bool master_own(struct link_master *master, struct bus_req *req, struct bus_answer *answer)
 {
 	return button_answer(sim_master_net(master), req, master->env->now(master->env->ctx),
 	                     answer);
@@ -112,7 +112,7 @@ const struct link_master_ops sim_master = {
 	.channels = ds2482_channels,
 	.channel = ds2482_channel,
 	.cost = ds2482_cost,
-	.own = own,
+	.own = master_own,
 	.destroy = ds2482_destroy,
 	.simulated = true,
 };

@@ -5,7 +5,7 @@
  */
 #include "hal/sim/pins.h"
 
-static struct sim_pins *state(struct sim_slave *slave)
+static struct sim_pins *pins_state(struct sim_slave *slave)
 {
 	return sim_state(slave, sim_pins);
 }
@@ -42,14 +42,14 @@ static bool jumped(const struct sim_slave *slave, unsigned input, int64_t from, 
 
 void sim_pins_start(struct sim_slave *slave, unsigned first, unsigned count, int64_t t)
 {
-	*state(slave) = (struct sim_pins){
+	*pins_state(slave) = (struct sim_pins){
 		.latch = (uint8_t)((1u << count) - 1), .first = first, .count = count, .seen = t};
-	state(slave)->level = levels(slave, t);
+	pins_state(slave)->level = levels(slave, t);
 }
 
 void sim_pins_follow(struct sim_slave *slave, int64_t t)
 {
-	struct sim_pins *pins = state(slave);
+	struct sim_pins *pins = pins_state(slave);
 	uint8_t level = levels(slave, t);
 
 	pins->activity |= level ^ pins->level;
@@ -66,7 +66,7 @@ void sim_pins_follow(struct sim_slave *slave, int64_t t)
 
 void sim_pins_write(struct sim_slave *slave, uint8_t latch, int64_t t)
 {
-	state(slave)->latch = latch;
+	pins_state(slave)->latch = latch;
 	sim_pins_follow(slave, t);
 }
 
@@ -88,7 +88,7 @@ void sim_pins_take(struct sim_slave *slave, int64_t t)
 		sim_end(slave);
 		return;
 	}
-	sim_pins_write(slave, slave->taken[0] & ((1u << state(slave)->count) - 1) & 0xFF, t);
+	sim_pins_write(slave, slave->taken[0] & ((1u << pins_state(slave)->count) - 1) & 0xFF, t);
 	sim_send_byte(slave, 0xAA);
 }
 

@@ -90,7 +90,7 @@ void sim_receive(struct sim_slave *slave)
 }
 
 /* Add data to the next checksum. */
-static void check(struct sim_slave *slave, const uint8_t *data, size_t n)
+static void slave_check(struct sim_slave *slave, const uint8_t *data, size_t n)
 {
 	slave->crc = slave->family->crc8 ? sim_crc8((uint8_t)slave->crc, data, n)
 	                                 : sim_crc16(slave->crc, data, n);
@@ -100,7 +100,7 @@ void sim_send(struct sim_slave *slave, const uint8_t *data, size_t n)
 {
 	assert(n > 0 && n <= SIM_MAX_SEND);
 	memcpy(slave->send, data, n);
-	check(slave, data, n);
+	slave_check(slave, data, n);
 	slave->mode = SIM_SEND;
 	slave->send_at = 0;
 	slave->send_count = (uint16_t)n;
@@ -130,7 +130,7 @@ void sim_send_checked(struct sim_slave *slave, const uint8_t *data, size_t n)
 	assert(n + 2 <= sizeof(out));
 	if (n)
 		memcpy(out, data, n);
-	check(slave, data, n);
+	slave_check(slave, data, n);
 	if (slave->family->crc8) {
 		out[n++] = (uint8_t)slave->crc;
 	} else {
@@ -401,7 +401,7 @@ static void begin_function(struct sim_slave *slave, uint8_t code, int64_t t)
 	slave->function = function;
 	slave->got = 0;
 	slave->crc = 0;
-	check(slave, &code, 1);
+	slave_check(slave, &code, 1);
 	if (!function->takes && function->start)
 		function->start(slave, t);
 }
@@ -414,7 +414,7 @@ static void function_byte(struct sim_slave *slave, uint8_t byte, int64_t t)
 		begin_function(slave, byte, t);
 		return;
 	}
-	check(slave, &byte, 1);
+	slave_check(slave, &byte, 1);
 	if (slave->got < function->takes) {
 		slave->taken[slave->got++] = byte;
 		if (slave->got < function->takes)

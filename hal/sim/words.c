@@ -191,7 +191,7 @@ static int64_t period(struct words *words)
 	return ns;
 }
 
-static void check(struct words *words, const struct sim_input *input, double value)
+static void words_check(struct words *words, const struct sim_input *input, double value)
 {
 	bool bounded = input->least < input->most;
 
@@ -225,7 +225,7 @@ static void steps(struct words *words, const struct sim_input *input, struct sim
 			words_fail(words, "steps begin at 0 and go up in time");
 			return;
 		}
-		check(words, input, step->value);
+		words_check(words, input, step->value);
 		curve->steps++;
 	}
 	if (curve->steps == 0) {
@@ -272,11 +272,11 @@ struct sim_curve words_curve(struct words *words, const struct sim_input *input)
 		return curve;
 	}
 	curve.a = words_number(words, "a value", -1e9, 1e9);
-	check(words, input, curve.a);
+	words_check(words, input, curve.a);
 	if (curve.shape != SIM_CONSTANT) {
 		curve.b = words_number(words, "a value", -1e9, 1e9);
-		check(words, input, curve.shape == SIM_SINE ? curve.a - curve.b : curve.b);
-		check(words, input, curve.shape == SIM_SINE ? curve.a + curve.b : curve.b);
+		words_check(words, input, curve.shape == SIM_SINE ? curve.a - curve.b : curve.b);
+		words_check(words, input, curve.shape == SIM_SINE ? curve.a + curve.b : curve.b);
 		curve.span_ns = period(words);
 	}
 	return curve;

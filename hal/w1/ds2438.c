@@ -37,7 +37,7 @@ static int write_configuration(struct w1_slave *slave, unsigned at, const uint8_
 }
 
 /* The attributes' names are the quantities', but for the case. */
-static int convert(struct w1_slave *slave, const char *what)
+static int ds2438_convert(struct w1_slave *slave, const char *what)
 {
 	static const char *const files[] = {"temperature", "vad", "vdd"};
 
@@ -78,6 +78,6 @@ const struct w1_driver w1_ds2438[] = {
          .files = {"page0"},
          W1_PARTS(parts),
          W1_PROPERTIES(properties),
-         .convert = convert},
+         .convert = ds2438_convert},
 	{.family = 0},
 };

@@ -89,7 +89,7 @@ static int write_area(struct link *link, const uint8_t rom[8], const struct area
 	return part && part->write ? part->write(slave, at, bytes, n) : -EOPNOTSUPP;
 }
 
-static int convert(struct link *base, const uint8_t *rom, const char *what)
+static int link_convert(struct link *base, const uint8_t *rom, const char *what)
 {
 	struct w1_link *link = self(base);
 
@@ -214,5 +214,5 @@ const struct link_ops w1_link_ops = {
 	.offers = offers,
 	.area_read = read_area,
 	.area_write = write_area,
-	.convert = convert,
+	.convert = link_convert,
 };

@@ -157,7 +157,8 @@ static int read_now(struct w1_slave *slave, bool due, uint8_t scratchpad[9])
  * A conversion that is still to be read is not for who asks for settings alone. What the chip
  * measured last, where that is not known yet, it measures now.
  */
-static int read_scratchpad(struct w1_slave *slave, unsigned at, uint8_t *bytes, unsigned n)
+static int thermometer_read_scratchpad(struct w1_slave *slave, unsigned at, uint8_t *bytes,
+                                       unsigned n)
 {
 	bool is_setting = at >= SP_HIGH && at + n <= SP_5;
 	uint8_t scratchpad[9];
@@ -168,7 +169,7 @@ static int read_scratchpad(struct w1_slave *slave, unsigned at, uint8_t *bytes, 
 	return err;
 }
 
-static int put(struct w1_slave *slave, const char *file, const char *text)
+static int thermometer_put(struct w1_slave *slave, const char *file, const char *text)
 {
 	return w1_slave_write(slave, file, 0, text, strlen(text));
 }
@@ -185,13 +186,13 @@ static int write_settings(struct w1_slave *slave, unsigned at, const uint8_t *by
 		return err ? err : -EOPNOTSUPP;
 	if (now[SP_HIGH] != bytes[0] || now[SP_LOW] != bytes[1]) {
 		snprintf(text, sizeof(text), "%d %d\n", (int8_t)bytes[1], (int8_t)bytes[0]);
-		err = settings ? put(slave, "alarms", text) : -EOPNOTSUPP;
+		err = settings ? thermometer_put(slave, "alarms", text) : -EOPNOTSUPP;
 	}
 	if (err || n < 3 || ((now[SP_CONFIG] ^ bytes[2]) & 0x60) == 0)
 		return err;
 	snprintf(text, sizeof(text), "%d\n", 9 + (bytes[2] >> 5 & 3));
 	bool own = w1_slave_has(slave, "resolution");
-	err = put(slave, own ? "resolution" : "w1_slave", text);
+	err = thermometer_put(slave, own ? "resolution" : "w1_slave", text);
 	slave->known &= own;
 	/* Whoever may not change it reads at the resolution that the chip has. */
 	return err == -EACCES || err == -EPERM ? 0 : err;
@@ -201,7 +202,7 @@ static int write_settings(struct w1_slave *slave, unsigned at, const uint8_t *by
 static int save(struct w1_slave *slave, unsigned at, const uint8_t *bytes, unsigned n)
 {
 	(void)at, (void)bytes, (void)n;
-	return put(slave, "eeprom_cmd", "save\n");
+	return thermometer_put(slave, "eeprom_cmd", "save\n");
 }
 
 /* All ones: nobody is fed by the wire. */
@@ -215,7 +216,7 @@ static int read_supply(struct w1_slave *slave, unsigned at, uint8_t *bytes, unsi
 	return err;
 }
 
-static int convert(struct w1_slave *slave, const char *what)
+static int thermometer_convert(struct w1_slave *slave, const char *what)
 {
 	(void)what;
 	slave->due = true;
@@ -292,7 +293,7 @@ static int is_in_alarm(struct w1_slave *slave)
 }
 
 static const struct w1_part parts[] = {
-	{.area = "scratchpad", .read = read_scratchpad, .write = write_settings},
+	{.area = "scratchpad", .read = thermometer_read_scratchpad, .write = write_settings},
 	{.area = "eeprom", .write = save},
 	{.area = "supply", .read = read_supply},
 };
@@ -324,7 +325,7 @@ static const struct w1_property properties[] = {
 /* clang-format off */
 #define DRIVER(code) \
 	{.family = (code), .files = {"w1_slave", "temperature"}, W1_PARTS(parts), \
-	 W1_PROPERTIES(properties), .convert = convert, .alarm = is_in_alarm}
+	 W1_PROPERTIES(properties), .convert = thermometer_convert, .alarm = is_in_alarm}
 /* clang-format on */
 const struct w1_driver w1_thermometers[] = {
 	DRIVER(0x10), DRIVER(0x22), DRIVER(0x28), DRIVER(0x3b), DRIVER(0x42), {.family = 0},

@@ -8,8 +8,8 @@
 
 #define UEVENTS_NS (NS_PER_S / 4)
 
-static int create(const char *where, const struct bus_env *env, struct bus **bus, char *why,
-                  size_t why_size)
+static int w1_create(const char *where, const struct bus_env *env, struct bus **bus, char *why,
+                     size_t why_size)
 {
 	return native_create(&w1_sysfs_bus, &w1_master, where, env, bus, why, why_size);
 }
@@ -24,7 +24,7 @@ static void take_uevents(struct bus *bus, struct w1_master *master, int64_t now)
 		native_look(bus, now);
 }
 
-static int64_t step(struct bus *bus, int64_t now)
+static int64_t w1_step(struct bus *bus, int64_t now)
 {
 	struct w1_master *master = (struct w1_master *)native_master(bus);
 
@@ -39,7 +39,7 @@ static int64_t step(struct bus *bus, int64_t now)
 const struct bus_ops w1_sysfs_bus = {
 	.scheme = "w1",
 	.summary = "1-Wire devices of the kernel's drivers (sysfs)",
-	.create = create,
-	.step = step,
+	.create = w1_create,
+	.step = w1_step,
 	NATIVE_BUS_SLOTS_BUT_STEP,
 };

@@ -41,15 +41,15 @@ static bool leads_to(const struct branch *which, const struct branch *branch)
 	return branch == which;
 }
 
-static int enter(struct branch *branch);
+static int coupler_enter(struct branch *branch);
 
 /* Reset on the wire that the coupler is on, and what it is to do. -EHOSTDOWN: nobody is there. */
-static int command(const struct coupler *coupler, const uint8_t *bytes, size_t n, uint8_t *answer,
-                   size_t answer_n)
+static int coupler_command(const struct coupler *coupler, const uint8_t *bytes, size_t n,
+                           uint8_t *answer, size_t answer_n)
 {
 	struct link *link = under(coupler->trunk);
 	uint8_t out[11] = {MATCH_ROM};
-	int present = coupler->parent ? enter(coupler->parent) : link->ops->reset(link);
+	int present = coupler->parent ? coupler_enter(coupler->parent) : link->ops->reset(link);
 
 	if (present <= 0)
 		return present ? present : -EHOSTDOWN;
@@ -60,7 +60,7 @@ static int command(const struct coupler *coupler, const uint8_t *bytes, size_t n
 }
 
 /* 1: somebody is there, 0: nobody is. -EHOSTDOWN: a coupler does not answer. */
-static int enter(struct branch *branch)
+static int coupler_enter(struct branch *branch)
 {
 	struct trunk *trunk = branch->coupler->trunk;
 	uint8_t code = branch->number == COUPLER_MAIN ? SMART_ON_MAIN : SMART_ON_AUX, answer[2];
@@ -68,7 +68,8 @@ static int enter(struct branch *branch)
 
 	if (!leads_to(branch, trunk->on))
 		trunk->on = branch;
-	int err = command(branch->coupler, smart_on, sizeof(smart_on), answer, sizeof(answer));
+	int err = coupler_command(branch->coupler, smart_on, sizeof(smart_on), answer,
+	                          sizeof(answer));
 	if (err)
 		return err;
 	if (answer[0] == SILENT && answer[1] == SILENT)
@@ -86,7 +87,7 @@ static int look(struct coupler *coupler, uint8_t *info)
 	int err = 0;
 
 	for (int looks = 0; looks < LOOKS; looks++) {
-		err = command(coupler, status, sizeof(status), answer, sizeof(answer));
+		err = coupler_command(coupler, status, sizeof(status), answer, sizeof(answer));
 		if (!err && answer[0] != answer[1])
 			err = -EBADMSG;
 		if (err || answer[0] != SILENT)
@@ -115,7 +116,7 @@ static int try_off(struct coupler *coupler)
 	int err = look(coupler, &info);
 
 	if (!err)
-		err = command(coupler, &off, 1, &answer, 1);
+		err = coupler_command(coupler, &off, 1, &answer, 1);
 	if (err)
 		return err == -EHOSTDOWN ? 0 : err;
 	if (answer == ALL_LINES_OFF)
@@ -180,7 +181,7 @@ static int make_sure(struct trunk *trunk, const struct branch *branch)
 }
 
 /* The branch and those that it is behind, from the outermost on: is one of them short? */
-static int check(struct branch *branch)
+static int coupler_check(struct branch *branch)
 {
 	struct trunk *trunk = branch->coupler->trunk;
 	uint8_t info = 0;
@@ -198,7 +199,7 @@ static int check(struct branch *branch)
 			return -ECOMM;
 		if (next == branch)
 			break;
-		err = enter(next);
+		err = coupler_enter(next);
 		if (err < 0)
 			return err;
 	}
@@ -227,11 +228,11 @@ static int branch_reset(struct link *link)
 	int err = leave(trunk, branch);
 
 	if (!err)
-		err = check(branch);
+		err = coupler_check(branch);
 	if (!err)
 		err = make_sure(trunk, branch);
 	if (!err)
-		err = enter(branch);
+		err = coupler_enter(branch);
 	return err == -EHOSTDOWN ? -EBADMSG : err;
 }
 

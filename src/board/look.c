@@ -260,8 +260,8 @@ static void report_masters(const struct scene *scene)
 }
 
 /* Find the base board and the HAT; the data of a named board decide which of both it is. */
-static int find(struct scene *scene, const struct board_data *data, unsigned count, const char *id,
-                char *why, size_t why_size)
+static int look_find(struct scene *scene, const struct board_data *data, unsigned count,
+                     const char *id, char *why, size_t why_size)
 {
 	const struct board_data *named = id ? board_data_id(data, count, id) : NULL;
 	size_t used;
@@ -305,7 +305,7 @@ int board_look(const char *root, const char *folder, const char *id, struct boar
 	board_text(root, "/proc/device-tree/hat/product", product, sizeof(product));
 	scene.board = board_data_model(data, (unsigned)count, model);
 	scene.hat = board_data_hat(data, (unsigned)count, vendor, product);
-	err = find(&scene, data, (unsigned)count, id, why, why_size);
+	err = look_find(&scene, data, (unsigned)count, id, why, why_size);
 	if (!err) {
 		base = scene.board;
 		name_board(&scene, model);

@@ -99,8 +99,8 @@ static bool change_bits(enum option option, const char *value, unsigned long *bi
 	return true;
 }
 
-static int put_value(struct rio **rio, struct rio_node *block, enum option option,
-                     const char *value)
+static int edit_put_value(struct rio **rio, struct rio_node *block, enum option option,
+                          const char *value)
 {
 	const char *key = option_table[option].key;
 	const struct rio_node *old = rio_child(block, key);
@@ -126,10 +126,10 @@ static int apply(struct rio **rio, struct rio_node *block, enum option option, c
 		bits = strtoul(io_type->value, &end, 0);
 		if (!*end && change_bits(option, value, &bits)) {
 			snprintf(text, sizeof(text), "0x%04lX", bits);
-			return put_value(rio, block, OPT_IO_TYPE, text);
+			return edit_put_value(rio, block, OPT_IO_TYPE, text);
 		}
 	}
-	return put_value(rio, block, option, value);
+	return edit_put_value(rio, block, option, value);
 }
 
 /* Refuse the name of the driver for an item: it would hide the driver's own keys. */
@@ -332,7 +332,7 @@ int edit_count(struct rio **rio)
 	for (const struct rio_node *node = driver->first; node; node = node->next)
 		items += node->kind == RIO_BLOCK && !strcmp(node->key, option_table[OPT_ITEM].key);
 	snprintf(text, sizeof(text), "%u", items);
-	return put_value(rio, driver, OPT_ITEM_COUNT, text);
+	return edit_put_value(rio, driver, OPT_ITEM_COUNT, text);
 }
 
 /* Are the types of the file written as bits? Then those of a new item are. */

@@ -30,8 +30,8 @@ static bool has_device(const struct rio_node *item, const uint8_t rom[ROM_LEN],
 }
 
 /* The first item with that device, and its path; NULL: there is none. */
-static struct rio_node *find(const struct rio *rio, const uint8_t rom[ROM_LEN],
-                             struct item_path *in)
+static struct rio_node *edit_device_find(const struct rio *rio, const uint8_t rom[ROM_LEN],
+                                         struct item_path *in)
 {
 	struct rio_node *driver = edit_driver(rio);
 	struct rio_node *item = driver ? rio_child(driver, option_table[OPT_ITEM].key) : NULL;
@@ -46,7 +46,7 @@ static bool are_too_many(const struct rio *rio, const uint8_t rom[ROM_LEN])
 	struct item_path in;
 	unsigned count = 0;
 
-	for (struct rio_node *item = find(rio, rom, &in); item; item = rio_next(item))
+	for (struct rio_node *item = edit_device_find(rio, rom, &in); item; item = rio_next(item))
 		count += has_device(item, rom, &in);
 	return count > EDIT_REPLACE_MAX;
 }
@@ -98,7 +98,7 @@ int edit_replace(struct rio **rio, const uint8_t before[ROM_LEN], const uint8_t 
                  const char *location, struct config_report *report)
 {
 	struct item_path in, taken;
-	struct rio_node *item = find(*rio, before, &in);
+	struct rio_node *item = edit_device_find(*rio, before, &in);
 	char old[ROM_TEXT_MAX], new[ROM_TEXT_MAX];
 	int err = -EINVAL;
 
@@ -106,7 +106,7 @@ int edit_replace(struct rio **rio, const uint8_t before[ROM_LEN], const uint8_t 
 	rom_print(after, ROM_F_I, new);
 	if (!item)
 		report_error(report, (struct place){0}, "no item has the device %s", old);
-	else if (find(*rio, after, &taken))
+	else if (edit_device_find(*rio, after, &taken))
 		report_error(report, (struct place){0}, "the device %s has items already", new);
 	else if (before[0] != after[0])
 		report_error(report, (struct place){0},
@@ -118,6 +118,6 @@ int edit_replace(struct rio **rio, const uint8_t before[ROM_LEN], const uint8_t 
 	else
 		do
 			err = replace_in(rio, item, &in, after, location, report);
-		while (!err && (item = find(*rio, before, &in)));
+		while (!err && (item = edit_device_find(*rio, before, &in)));
 	return err;
 }

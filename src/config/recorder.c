@@ -34,7 +34,7 @@ static bool parse_positive(const char *text, double most, double *number)
 	return *number > 0 && *number <= most;
 }
 
-static int refuse(char *why, size_t size, const char *reason)
+static int recorder_refuse(char *why, size_t size, const char *reason)
 {
 	snprintf(why, size, "%s", reason);
 	return -EINVAL;
@@ -76,7 +76,7 @@ static int take_part(const char *part, struct config_record *record, char *why, 
 	part = take_word(part, word, sizeof(word));
 	part = take_word(part, number, sizeof(number));
 	if (part[strspn(part, BLANK)])
-		return refuse(why, size, EXPECTED);
+		return recorder_refuse(why, size, EXPECTED);
 	if (!strcmp(word, "off"))
 		return take_flag(word, number, &record->off, why, size);
 	if (!strcmp(word, "change"))
@@ -87,7 +87,7 @@ static int take_part(const char *part, struct config_record *record, char *why, 
 		return take_number(word, number, record->deadband > 0, HUGE_VAL, &record->deadband,
 		                   why, size);
 	if (strcmp(word, "interval") != 0)
-		return refuse(why, size, EXPECTED);
+		return recorder_refuse(why, size, EXPECTED);
 	err = take_number(word, number, record->interval_ns > 0, DAY, &seconds, why, size);
 	record->interval_ns = (int64_t)(seconds * 1e9 + 0.5);
 	return err;
@@ -100,7 +100,7 @@ int record_parse(const char *text, struct config_record *record, char *why, size
 
 	*record = (struct config_record){0};
 	if (strlen(text) > RECORD_TEXT_MAX)
-		return refuse(why, size, EXPECTED);
+		return recorder_refuse(why, size, EXPECTED);
 	for (;;) {
 		size_t len = strcspn(text, ",");
 
@@ -113,9 +113,9 @@ int record_parse(const char *text, struct config_record *record, char *why, size
 	}
 	occasion = record->change || record->deadband > 0 || record->interval_ns > 0;
 	if (record->off && (occasion || record->raw))
-		return refuse(why, size, "off stands alone");
+		return recorder_refuse(why, size, "off stands alone");
 	if (record->change && record->deadband > 0)
-		return refuse(why, size, "change and deadband exclude each other");
+		return recorder_refuse(why, size, "change and deadband exclude each other");
 	if (!record->off && !occasion)
 		record->change = true; /* "raw" alone */
 	return 0;

@@ -89,8 +89,8 @@ static int mode_of_new_file(int fd)
 	return fchmod(fd, 0666 & ~mask) ? -errno : 0;
 }
 
-static int fill(int fd, const struct stat *old, int (*give)(int fd, const struct stat *old),
-                const char *text, size_t len)
+static int replace_fill(int fd, const struct stat *old, int (*give)(int fd, const struct stat *old),
+                        const char *text, size_t len)
 {
 	int err = old ? give(fd, old) : mode_of_new_file(fd);
 
@@ -133,7 +133,7 @@ static int write_beside(struct replacement *replacement, const struct stat *old,
 	fd = mkostemp(replacement->temporary, O_CLOEXEC);
 	if (fd < 0)
 		return -errno;
-	err = fill(fd, old, give, text, len);
+	err = replace_fill(fd, old, give, text, len);
 	if (close(fd) && !err)
 		err = -errno;
 	if (err)

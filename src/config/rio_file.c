@@ -71,7 +71,7 @@ static const char *kind_of(mode_t mode)
 }
 
 /* Refuse all but regular files: a pipe may have no writer, and a device any number of bytes. */
-static int check(const struct stat *st, struct place place, struct config_report *report)
+static int rio_file_check(const struct stat *st, struct place place, struct config_report *report)
 {
 	if (!S_ISREG(st->st_mode)) {
 		report_error(report, place, "is a %s: only a regular file is read",
@@ -105,14 +105,15 @@ static int open_file(const char *file, struct config_report *report)
 	/* check before opening, which has an effect on some devices */
 	if (stat(file, &st) < 0)
 		return cannot_read(report, place, -errno);
-	err = check(&st, place, report);
+	err = rio_file_check(&st, place, report);
 	if (err)
 		return err;
 	fd = open(file, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
 	if (fd < 0)
 		return cannot_read(report, place, -errno);
 	/* check again, since another file may have taken its place */
-	err = fstat(fd, &st) < 0 ? cannot_read(report, place, -errno) : check(&st, place, report);
+	err = fstat(fd, &st) < 0 ? cannot_read(report, place, -errno)
+	                         : rio_file_check(&st, place, report);
 	if (err)
 		close(fd);
 	return err ? err : fd;

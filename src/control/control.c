@@ -42,7 +42,7 @@ static bool is_for_all(const struct control *c)
 	       c->config->allow_count;
 }
 
-static int add(struct control *c, int fd, uint32_t data)
+static int control_add(struct control *c, int fd, uint32_t data)
 {
 	struct epoll_event event = {.events = EPOLLIN | EPOLLET, .data.u32 = data};
 
@@ -63,8 +63,8 @@ static int open_all(struct control *c)
 		return c->listener;
 	err = news_open(c);
 	if (!err)
-		err = add(c, c->listener, LISTENER);
-	return err ? err : add(c, c->wake, WAKE);
+		err = control_add(c, c->listener, LISTENER);
+	return err ? err : control_add(c, c->wake, WAKE);
 }
 
 int control_create(const struct control_setup *setup, struct control **control, char *why,
@@ -126,7 +126,7 @@ static int wait_ms(const struct control *c, int64_t next_ns)
 	return left <= 0 ? 0 : (int)(left / NS_PER_MS) + 1;
 }
 
-static void *run(void *arg)
+static void *control_run(void *arg)
 {
 	struct epoll_event events[EVENTS];
 	struct control *c = arg;
@@ -153,7 +153,7 @@ int control_start(struct control *c, const struct controller_layout *layout)
 
 	c->layout = layout;
 	c->now_ns = ows_now();
-	err = thread_start(&c->thread, "owsd-control", STACK_SIZE, run, c);
+	err = thread_start(&c->thread, "owsd-control", STACK_SIZE, control_run, c);
 	c->running = !err;
 	return err ? err : news_start(c);
 }
@@ -300,7 +300,7 @@ int control_asked_bell(const struct control *c)
 	return c->asked;
 }
 
-static bool is(const struct control_place *p, enum control_state state)
+static bool control_is(const struct control_place *p, enum control_state state)
 {
 	return __atomic_load_n(&p->state, __ATOMIC_ACQUIRE) == (uint32_t)state;
 }
@@ -311,7 +311,7 @@ bool control_asked(struct control *c)
 
 	bell_clear(c->asked);
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
-		asked |= is(&c->places[i], CONTROL_ASKING);
+		asked |= control_is(&c->places[i], CONTROL_ASKING);
 	return asked;
 }
 
@@ -321,7 +321,7 @@ void control_take_askers(struct control *c)
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++) {
 		struct control_place *p = &c->places[i];
 
-		if (!is(p, CONTROL_ASKING))
+		if (!control_is(p, CONTROL_ASKING))
 			continue;
 		__atomic_store_n(&p->state, CONTROL_ASKED, __ATOMIC_RELEASE);
 		log_notice(c->log, "reload: asked for by %s (process %d, user %u)", p->who.name,
@@ -336,7 +336,7 @@ void control_answer(struct control *c, int err, const char *why)
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++) {
 		struct control_place *p = &c->places[i];
 
-		if (!is(p, CONTROL_ASKED))
+		if (!control_is(p, CONTROL_ASKED))
 			continue;
 		ask_answer(c, p, err, why);
 		door_drop(c, p, CONTROL_asked);
@@ -421,7 +421,7 @@ void control_replaced(struct control *c)
 {
 	pthread_mutex_lock(&c->lock);
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++) {
-		if (is(&c->places[i], CONTROL_IN))
+		if (control_is(&c->places[i], CONTROL_IN))
 			news_due(c, i);
 	}
 	news_ring(c, NULL);

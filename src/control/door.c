@@ -80,7 +80,7 @@ static bool let_go(struct control *c, struct control_place *p, bool with_connect
 	return true;
 }
 
-static void enter(struct control_place *p, enum control_state state)
+static void door_enter(struct control_place *p, enum control_state state)
 {
 	__atomic_store_n(&p->state, state, __ATOMIC_RELEASE);
 }
@@ -109,14 +109,14 @@ void door_release(struct control *c, struct control_place *p)
 	 */
 	unread = p->sent && welcome_unread(c, p);
 	if (p->connected && p->fd >= 0) {
-		enter(p, CONTROL_LEFT);
+		door_enter(p, CONTROL_LEFT);
 	} else if (!let_go(c, p, !unread)) {
-		enter(p, CONTROL_LEFT);
+		door_enter(p, CONTROL_LEFT);
 	} else if (unread) {
-		enter(p, CONTROL_UNREAD);
+		door_enter(p, CONTROL_UNREAD);
 	} else {
 		bus_count(&c->counters[CONTROL_connections], (uint64_t)-1);
-		enter(p, CONTROL_FREE);
+		door_enter(p, CONTROL_FREE);
 	}
 }
 
@@ -130,7 +130,7 @@ static void let_engine_look(struct control *c)
 
 static void leave(struct control *c, struct control_place *p)
 {
-	enter(p, CONTROL_LEAVING);
+	door_enter(p, CONTROL_LEAVING);
 	let_engine_look(c);
 }
 
@@ -162,7 +162,8 @@ void door_died(struct control *c, struct control_place *p)
 		door_drop(c, p, CONTROL_died);
 }
 
-static void refuse(struct control *c, struct control_place *p, int err, enum control_counter why)
+static void door_refuse(struct control *c, struct control_place *p, int err,
+                        enum control_counter why)
 {
 	welcome_report(c, &p->peer, err);
 	p->refused = err;
@@ -190,7 +191,7 @@ static bool has_room(struct control *c, const struct control_place *p)
 	return !p->peer.uid || !has || has + c->layout->size <= CONTROL_MEMORY;
 }
 
-static int watch(struct control *c, const struct control_place *p, int fd, uint32_t what)
+static int door_watch(struct control *c, const struct control_place *p, int fd, uint32_t what)
 {
 	struct epoll_event event = {.events = EPOLLIN | EPOLLOUT | EPOLLRDHUP | EPOLLET};
 
@@ -207,7 +208,7 @@ static int open_descriptors(struct control *c, struct control_place *p)
 	p->death = peer_death(p->fd, &p->peer);
 	if (p->death == -ESRCH)
 		return -ESRCH;
-	if (p->death >= 0 && watch(c, p, p->death, 1))
+	if (p->death >= 0 && door_watch(c, p, p->death, 1))
 		return -errno;
 	p->bell = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
 	/*
@@ -253,22 +254,22 @@ static void join(struct control *c, struct control_place *p, const struct ows_he
 	if (!err)
 		err = grant_make(&p->now, c->layout, &c->rights, p);
 	if (err) {
-		refuse(c, p, err, CONTROL_refused_errors);
+		door_refuse(c, p, err, CONTROL_refused_errors);
 		return;
 	}
 	count(c, CONTROL_joined);
 	log_info(c->log, "controller %s (process %d, user %u) may command %u signals", p->who.name,
 	         (int)p->who.pid, (unsigned)p->who.uid, p->now.allowed);
-	enter(p, CONTROL_JOINING);
+	door_enter(p, CONTROL_JOINING);
 	let_engine_look(c);
 }
 
-static void ask(struct control *c, struct control_place *p, const struct ows_hello *hello)
+static void door_ask(struct control *c, struct control_place *p, const struct ows_hello *hello)
 {
 	if (!rights_reload(&c->rights, &p->peer))
-		refuse(c, p, -EACCES, CONTROL_refused_rights);
+		door_refuse(c, p, -EACCES, CONTROL_refused_rights);
 	else if (ask_begin(c, p, hello))
-		refuse(c, p, -ENOSPC, CONTROL_refused_limits);
+		door_refuse(c, p, -ENOSPC, CONTROL_refused_limits);
 }
 
 static bool may_join(const struct control *c, const struct control_place *p,
@@ -289,13 +290,13 @@ static void take_hello(struct control *c, struct control_place *p)
 		door_drop(c, p, CONTROL_hung_up);
 	else if (n != (ssize_t)sizeof(hello) || hello.magic != OWS_HELLO_MAGIC ||
 	         hello.major != OWS_LAYOUT_MAJOR)
-		refuse(c, p, -EPROTO, CONTROL_refused_protocol);
+		door_refuse(c, p, -EPROTO, CONTROL_refused_protocol);
 	else if (hello.flags & OWS_HELLO_RELOAD)
-		ask(c, p, &hello);
+		door_ask(c, p, &hello);
 	else if (!may_join(c, p, &hello))
-		refuse(c, p, -EACCES, CONTROL_refused_rights);
+		door_refuse(c, p, -EACCES, CONTROL_refused_rights);
 	else if (!has_room(c, p))
-		refuse(c, p, -ENOSPC, CONTROL_refused_limits);
+		door_refuse(c, p, -ENOSPC, CONTROL_refused_limits);
 	else
 		join(c, p, &hello);
 }
@@ -406,10 +407,10 @@ static void meet(struct control *c, int fd)
 		                                       .connected = true,
 		                                       .who.uid = peer.uid,
 		                                       .until_ns = c->now_ns + CONTROL_HELLO_NS});
-		err = watch(c, p, fd, 0);
+		err = door_watch(c, p, fd, 0);
 	}
 	if (!err) {
-		enter(p, CONTROL_HALF);
+		door_enter(p, CONTROL_HALF);
 		count(c, CONTROL_connections);
 		return;
 	}
@@ -481,7 +482,7 @@ static void look(struct control *c, struct control_place *p)
 	switch (state_of(p)) {
 	case CONTROL_HALF:
 		if (c->now_ns >= p->until_ns)
-			refuse(c, p, -ETIMEDOUT, CONTROL_refused_protocol);
+			door_refuse(c, p, -ETIMEDOUT, CONTROL_refused_protocol);
 		break;
 	case CONTROL_ASKING:
 	case CONTROL_ASKED:

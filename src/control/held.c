@@ -17,7 +17,7 @@
 #define LOCKED_NS (NS_PER_S / 2)
 
 /* Returns porter_give(). */
-static int give(struct control *c, const struct control_held *held, bool empty)
+static int held_give(struct control *c, const struct control_held *held, bool empty)
 {
 	const struct porter_order order = {.what = empty ? PORTER_EMPTY : 0,
 	                                   .count = 1,
@@ -41,7 +41,7 @@ static void look(struct control *c, struct control_held *held)
 {
 	if (held->asked_ns || c->now_ns < held->until_ns || user_has_locked(c, held->uid))
 		return;
-	if (give(c, held, true) == 0)
+	if (held_give(c, held, true) == 0)
 		held->asked_ns = c->now_ns;
 }
 
@@ -54,7 +54,7 @@ void held_look(struct control *c)
 		look(c, &c->held[i]);
 		/* where its pages come back, they are the user's who touches them */
 		if (c->held[i].asked_ns && sealed_is_empty(c->held[i].own) &&
-		    give(c, &c->held[i], false) == 0)
+		    held_give(c, &c->held[i], false) == 0)
 			c->held[i] = c->held[--c->held_count];
 	}
 }
@@ -96,5 +96,5 @@ void held_forget(struct control *c)
 {
 	/* what the porter has no time for ends with this process */
 	while (c->held_count)
-		give(c, &c->held[--c->held_count], false);
+		held_give(c, &c->held[--c->held_count], false);
 }

@@ -142,7 +142,7 @@ int64_t news_turn(struct control *c)
 	return 0;
 }
 
-static void *run(void *arg)
+static void *news_run(void *arg)
 {
 	struct control *c = arg;
 	struct pollfd bell = {.fd = c->news.bell, .events = POLLIN};
@@ -157,7 +157,7 @@ static void *run(void *arg)
 
 int news_start(struct control *c)
 {
-	int err = thread_start(&c->news.thread, "owsd-news", STACK_SIZE, run, c);
+	int err = thread_start(&c->news.thread, "owsd-news", STACK_SIZE, news_run, c);
 
 	c->news.running = !err;
 	return err;

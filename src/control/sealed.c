@@ -14,7 +14,7 @@
 #define MFD_NOEXEC_SEAL 0x0008U
 #endif
 
-static int create(void)
+static int sealed_create(void)
 {
 	int fd = memfd_create("owsd-controller", MFD_CLOEXEC | MFD_ALLOW_SEALING | MFD_NOEXEC_SEAL);
 
@@ -71,7 +71,7 @@ static int open_both(int fd, int *own)
 
 int sealed_make(size_t size, char **base, int *own)
 {
-	int fd = create(), err, theirs;
+	int fd = sealed_create(), err, theirs;
 
 	if (fd < 0)
 		return fd;

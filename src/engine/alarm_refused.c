@@ -28,7 +28,7 @@ bool alarm_is_arming(uint8_t unarmed)
 	return unarmed == OWS_UNARMED_SET || unarmed == OWS_UNARMED_POR;
 }
 
-static void enter(struct engine *e, const struct signal *s, uint8_t unarmed, int err)
+static void alarm_refused_enter(struct engine *e, const struct signal *s, uint8_t unarmed, int err)
 {
 	struct ows_journal_entry entry = {
 		.record = s->record,
@@ -62,7 +62,7 @@ void alarm_show(struct engine *e, struct alarm_item *i, enum ows_unarmed unarmed
 		            s->item->path, unarmed_verb(unarmed),
 		            missing ? "" : unarmed_key(unarmed), missing ? "" : ": ", property, why,
 		            missing ? "" : error_text(err));
-		enter(e, s, unarmed, err);
+		alarm_refused_enter(e, s, unarmed, err);
 		engine_read_now(e, s);
 	}
 	engine_publish(e, s);

@@ -30,7 +30,7 @@ static void did(const struct alarm_answer *a, enum alarm_deed deed)
 	a->item->cycle_of[deed] = a->m->list.cycle;
 }
 
-static uint32_t fail(const struct alarm_answer *a, int err)
+static uint32_t alarm_step_fail(const struct alarm_answer *a, int err)
 {
 	const struct alarm_step *step = alarm_step(a->m->state);
 
@@ -50,7 +50,7 @@ static uint32_t take_por(const struct alarm_answer *a)
 
 	a->item->asks_por = false;
 	if (set < 0)
-		return fail(a, set);
+		return alarm_step_fail(a, set);
 	alarm_granted(e, a->item, OWS_UNARMED_POR_READ);
 	did(a, ALARM_POR_WAS_READ);
 	a->item->set[ALARM_POR_WAS_READ] = set;
@@ -113,7 +113,7 @@ static uint32_t take_latch(const struct alarm_answer *a)
 	int err = alarm_take_latch(a);
 
 	if (err)
-		return fail(a, err);
+		return alarm_step_fail(a, err);
 	alarm_granted(a->lane->engine, a->item, OWS_UNARMED_LATCH);
 	return alarm_show_latch(a->lane, a->item, a->now_ns);
 }
@@ -145,7 +145,7 @@ static uint32_t take_value(const struct alarm_answer *a)
 static uint32_t take_latch_reset(const struct alarm_answer *a)
 {
 	if (a->answer->err)
-		return fail(a, a->answer->err);
+		return alarm_step_fail(a, a->answer->err);
 	did(a, ALARM_LATCH_WAS_RESET);
 	alarm_granted(a->lane->engine, a->item, OWS_UNARMED_RESET);
 	a->item->occurrence.stands = false;

@@ -58,7 +58,7 @@ static void lose(struct engine *e, uint32_t controller, int64_t awake_ns)
 	            safe, safe == 1 ? " goes" : "s go");
 }
 
-static void forget(struct engine *e, uint32_t controller)
+static void controllers_forget(struct engine *e, uint32_t controller)
 {
 	e->controllers[controller] = (struct known_controller){0};
 	engine_remember_controller(e, controller);
@@ -89,7 +89,7 @@ static void look_at_absent(struct engine *e, uint32_t index, int64_t awake_ns)
 		lose(e, index, awake_ns);
 	if (g->rows)
 		return;
-	forget(e, index);
+	controllers_forget(e, index);
 }
 
 void engine_look_controllers(struct engine *e)
@@ -161,7 +161,7 @@ static void come_back(struct engine *e, uint32_t place, uint32_t former)
 	         g->as.who.name, (int)g->as.who.pid, plural(g->rows), g->rows,
 	         g->rows == 1 ? " is" : "s are");
 	if (former >= OWS_CONTROLLERS)
-		forget(e, former);
+		controllers_forget(e, former);
 }
 
 void engine_controller_join(struct engine *e, unsigned place,
@@ -228,7 +228,7 @@ static void hang_up(struct engine *e, uint32_t place, int64_t awake_ns)
 	engine_remember_controller(e, to);
 	engine_hand_over(e, place, to);
 	if (!e->controllers[to].rows)
-		forget(e, to);
+		controllers_forget(e, to);
 }
 
 void engine_controller_left(struct engine *e, unsigned place, int64_t now_ns)
@@ -248,7 +248,7 @@ void engine_controller_left(struct engine *e, unsigned place, int64_t now_ns)
 		hang_up(e, place, engine_awake_ns(e));
 	else
 		engine_let_go(e, place);
-	forget(e, place);
+	controllers_forget(e, place);
 	while (e->place_end && e->controllers[e->place_end - 1].is != CONTROLLER_CONNECTED)
 		e->place_end--;
 	show_controller(e, place);

@@ -28,7 +28,7 @@
 #include "src/text/log.h"
 
 /* All rows begin: what was in force comes back, and the image is filled. */
-static void begin(struct engine *e, const struct engine_setup *setup)
+static void engine_begin(struct engine *e, const struct engine_setup *setup)
 {
 	for (uint32_t row = 0; row < e->table.count; row++) {
 		e->table.signals[row].read.known_ns = setup->start_ns;
@@ -94,7 +94,7 @@ int engine_create(const struct engine_setup *setup, struct engine **engine)
 		engine_destroy(e);
 		return err;
 	}
-	begin(e, setup);
+	engine_begin(e, setup);
 	*engine = e;
 	return 0;
 }

@@ -70,7 +70,7 @@ static void answer_for(struct engine *e, struct signal *s, uint32_t controller)
 
 /* --- A new command ---------------------------------------------------------------------------- */
 
-static void put_value(struct signal *s, int64_t value, const char *text, uint32_t len)
+static void in_force_put_value(struct signal *s, int64_t value, const char *text, uint32_t len)
 {
 	s->command.given = true;
 	s->command.awaited = s->command.said = false;
@@ -102,7 +102,7 @@ void engine_command(struct engine *e, struct signal *s, uint32_t controller,
 	const struct known_controller *g = &e->controllers[controller];
 	struct ows_who who = g->as.who;
 
-	put_value(s, command->value, text, len);
+	in_force_put_value(s, command->value, text, len);
 	s->command.stamp = command->stamp;
 	s->command.reason = OWS_REASON_SET;
 	answer_for(e, s, controller);
@@ -142,7 +142,7 @@ static void put_own(struct engine *e, struct signal *s, enum ows_reason reason,
 	struct origin_before before = origin_before(s, value, text, len);
 	struct ows_who because = *who; /* who may be of a controller that is forgotten below */
 
-	put_value(s, value, text, len);
+	in_force_put_value(s, value, text, len);
 	s->command.stamp = 0;
 	s->command.reason = reason;
 	answer_for(e, s, CONTROLLER_NOBODY);
@@ -196,7 +196,7 @@ static void put_configured(struct engine *e, struct signal *s, const struct forc
  * The index at which a controller of before is awaited; CONTROLLER_NOBODY: it promised no beat, or
  * ended in order, or there is no room.
  */
-static uint32_t await(struct engine *e, const struct force_left *left, uint32_t index)
+static uint32_t in_force_await(struct engine *e, const struct force_left *left, uint32_t index)
 {
 	struct force_controller was;
 	uint32_t at = CONTROLLER_NOBODY;
@@ -240,13 +240,13 @@ static void resume_signal(struct engine *e, struct signal *s, const struct force
 
 	if (found && !was.safe && was.controller < FORCE_CONTROLLERS) {
 		if (!awaited[was.controller])
-			awaited[was.controller] = await(e, left, was.controller) + 1;
+			awaited[was.controller] = in_force_await(e, left, was.controller) + 1;
 		controller = awaited[was.controller] - 1;
 	}
 	if (found && was.safe && s->item->has_safe) {
 		put_safe(e, s, &owsd_itself);
 	} else if (controller != CONTROLLER_NOBODY) {
-		put_value(s, was.value, text, was.len);
+		in_force_put_value(s, was.value, text, was.len);
 		s->command.awaited = true;
 		s->command.stamp = was.stamp;
 		s->command.reason = OWS_REASON_SET;

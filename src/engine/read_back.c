@@ -19,8 +19,8 @@
 /* So long after the last one the device counts as well again. */
 #define RESTORE_WELL_NS (60 * NS_PER_S)
 
-static void enter(struct engine *e, const struct signal *s, enum ows_alarm_event event,
-                  uint8_t quality)
+static void read_back_enter(struct engine *e, const struct signal *s, enum ows_alarm_event event,
+                            uint8_t quality)
 {
 	struct ows_journal_entry entry = {
 		.record = s->record,
@@ -45,13 +45,13 @@ static void begin_difference(struct engine *e, struct signal *s)
 	value_to_text(s->item->type, s->command.written, written);
 	log_warning(e->log, "%s (%s): not as commanded: it reads %s, and %s was written",
 	            s->item->name, s->item->path, reads, written);
-	enter(e, s, OWS_ALARM_RAISED, OWS_Q_DIFFERS);
+	read_back_enter(e, s, OWS_ALARM_RAISED, OWS_Q_DIFFERS);
 }
 
 static void end_difference(struct engine *e, struct signal *s, uint8_t quality, const char *why)
 {
 	log_notice(e->log, "%s (%s): %s", s->item->name, s->item->path, why);
-	enter(e, s, OWS_ALARM_RETURNED, quality);
+	read_back_enter(e, s, OWS_ALARM_RETURNED, quality);
 }
 
 void engine_compares_no_more(struct engine *e, struct signal *s, uint8_t quality)

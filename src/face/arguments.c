@@ -51,8 +51,8 @@ static int finish_output(const char *program)
 	return FACE_EXIT_RUN;
 }
 
-static int refuse(int option, const struct option *words, const struct face_option *own,
-                  char *const *argv, const char *program)
+static int arguments_refuse(int option, const struct option *words, const struct face_option *own,
+                            char *const *argv, const char *program)
 {
 	char why[1024];
 
@@ -62,7 +62,7 @@ static int refuse(int option, const struct option *words, const struct face_opti
 	return FACE_EXIT_USAGE;
 }
 
-static int check(struct face_arguments *a)
+static int arguments_check(struct face_arguments *a)
 {
 	size_t len = strlen(a->instance);
 
@@ -114,7 +114,7 @@ int face_arguments_parse(const char *program, const struct face_option *own, int
 			usage(stdout, program, own);
 			return finish_output(program);
 		} else {
-			return refuse(option, words, own, argv, program);
+			return arguments_refuse(option, words, own, argv, program);
 		}
 	}
 	if (optind < argc) {
@@ -122,5 +122,5 @@ int face_arguments_parse(const char *program, const struct face_option *own, int
 		              argv[optind]);
 		return FACE_EXIT_USAGE;
 	}
-	return check(a);
+	return arguments_check(a);
 }

@@ -90,7 +90,7 @@ static uint32_t first_kept(uint32_t count)
 }
 
 /* The image is another one, or the heart of owsd beats again. */
-static void find(struct face *face, const struct ows_daemon *daemon)
+static void look_find(struct face *face, const struct ows_daemon *daemon)
 {
 	bool same_owsd = daemon->start_ns == face->start_ns;
 	bool reloaded = face->live && same_owsd;
@@ -123,7 +123,7 @@ static void look_at_all(struct face *face, int64_t now_ns)
 		return;
 	}
 	if (!face->live || face->fresh) {
-		find(face, &daemon);
+		look_find(face, &daemon);
 	} else {
 		tell(face, FACE_OVERRUN);
 		face->ops->changes(face, NULL, 0);

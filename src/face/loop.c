@@ -126,7 +126,7 @@ static void loop(struct face *face, struct unix_signals *signals, int prefix)
 	           signals->end == SIGTERM ? "SIGTERM" : "SIGINT");
 }
 
-static int run(struct face *face, struct unix_signals *signals)
+static int loop_run(struct face *face, struct unix_signals *signals)
 {
 	int prefix = journal_is_stderr(), err;
 
@@ -178,7 +178,7 @@ int face_main(const struct face_ops *ops, int argc, char **argv)
 		              face.log ? strerror(-status) : "no memory for the log");
 		status = FACE_EXIT_RUN;
 	} else {
-		status = run(&face, &signals);
+		status = loop_run(&face, &signals);
 		close(signals.fd);
 	}
 	log_destroy(face.log);

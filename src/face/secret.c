@@ -13,7 +13,7 @@
 
 #define BLANK " \t\r\n"
 
-static int refuse(int err, const char *path, const char *reason, char *why, size_t size)
+static int secret_refuse(int err, const char *path, const char *reason, char *why, size_t size)
 {
 	snprintf(why, size, "%s: %s", path, reason);
 	return err;
@@ -43,12 +43,12 @@ static int locate(const char *name, char path[SECRET_PATH], char *why, size_t si
 	bool credential = name[0] != '/';
 
 	if (credential && !directory)
-		return refuse(-ENOENT, name,
-		              "the service has no credentials: LoadCredential= in its unit", why,
-		              size);
+		return secret_refuse(-ENOENT, name,
+		                     "the service has no credentials: LoadCredential= in its unit",
+		                     why, size);
 	if (snprintf(path, SECRET_PATH, "%s%s%s", credential ? directory : "",
 	             credential ? "/" : "", name) >= SECRET_PATH)
-		return refuse(-ENAMETOOLONG, name, strerror(ENAMETOOLONG), why, size);
+		return secret_refuse(-ENAMETOOLONG, name, strerror(ENAMETOOLONG), why, size);
 	return 0;
 }
 
@@ -63,12 +63,12 @@ static int open_own(const char *name, char path[SECRET_PATH], char *why, size_t 
 	fd = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
 	if (fd < 0) {
 		err = -errno;
-		return refuse(err, path, strerror(-err), why, size);
+		return secret_refuse(err, path, strerror(-err), why, size);
 	}
 	if (fstat(fd, &st) < 0 || !S_ISREG(st.st_mode))
-		err = refuse(-EINVAL, path, "is no file", why, size);
+		err = secret_refuse(-EINVAL, path, "is no file", why, size);
 	else if (name[0] == '/' && (st.st_mode & 077))
-		err = refuse(-EPERM, path, "others may read it: chmod 600", why, size);
+		err = secret_refuse(-EPERM, path, "others may read it: chmod 600", why, size);
 	if (err)
 		close(fd);
 	return err ? err : fd;
@@ -87,7 +87,7 @@ int secret_file(const char *name, bool own, char path[SECRET_PATH], char *why, s
 	err = locate(name, path, why, size);
 	if (!err && access(path, R_OK)) {
 		err = -errno;
-		refuse(err, path, strerror(-err), why, size);
+		secret_refuse(err, path, strerror(-err), why, size);
 	}
 	return err;
 }
@@ -108,10 +108,10 @@ int secret_read(const char *name, char token[SECRET_SIZE], char *why, size_t siz
 	close(fd);
 	token[n > 0 ? n : 0] = '\0';
 	if (n < 0)
-		return refuse(-errno, path, strerror(errno), why, size);
+		return secret_refuse(-errno, path, strerror(errno), why, size);
 	if (n == SECRET_SIZE - 1 || !trim(token)) {
 		token[0] = '\0';
-		return refuse(-EINVAL, path, "expected one token in one line", why, size);
+		return secret_refuse(-EINVAL, path, "expected one token in one line", why, size);
 	}
 	return 0;
 }

@@ -104,7 +104,7 @@ static int migrate(sqlite3 *db, int64_t version)
 _Static_assert(HISTORY_APPLICATION == 1870099300 && HISTORY_SCHEMA == 1,
                "migrate() says these in words");
 
-static int check(sqlite3 *db)
+static int schema_check(sqlite3 *db)
 {
 	int64_t version = 0, application = 0, tables = 0;
 	int err = sql_ask(db, "pragma user_version", &version);
@@ -139,7 +139,7 @@ int schema_open(const char *path, sqlite3 **db)
 		sqlite3_busy_timeout(*db, BUSY_MS);
 		/* readers that cannot write there need the two files beside it */
 		sqlite3_file_control(*db, "main", SQLITE_FCNTL_PERSIST_WAL, &keep);
-		err = check(*db);
+		err = schema_check(*db);
 	}
 	if (err) {
 		sqlite3_close(*db);

@@ -12,7 +12,7 @@
 
 #define SEEN_US (10 * MINUTE_US) /* so often the file says that the recorder looks */
 
-static int run(struct history_store *store, enum statement which)
+static int store_run(struct history_store *store, enum statement which)
 {
 	sqlite3_reset(store->statements[which]);
 	return sql_next(store->statements[which]);
@@ -79,7 +79,7 @@ int store_ready(struct history_store *store)
 }
 
 /* After an error nothing of the last commit is in the file, and little is known of it. */
-static void fail(struct history_store *store, struct store_batch *batch, int err)
+static void store_fail(struct history_store *store, struct store_batch *batch, int err)
 {
 	for (uint32_t i = 0; i < batch->key_count; i++)
 		batch->keys[i].number = 0;
@@ -87,7 +87,7 @@ static void fail(struct history_store *store, struct store_batch *batch, int err
 	store->gap_us = -1;
 	if (!store->file.db)
 		return;
-	run(store, S_ROLLBACK);
+	store_run(store, S_ROLLBACK);
 	if (err == -ENOSPC || err == -EAGAIN || err == -ENOMEM)
 		return;
 	close_file(store);
@@ -264,8 +264,8 @@ static int64_t next_id(const struct history_store *store, int64_t us)
 	return id > store->last_id ? id : store->last_id + 1;
 }
 
-static int put_value(struct history_store *store, struct history_key *key,
-                     const struct history_row *row)
+static int store_put_value(struct history_store *store, struct history_key *key,
+                           const struct history_row *row)
 {
 	struct rollup_state state = state_of(row->type, row->value, row->quality);
 	sqlite3_stmt *to = store->statements[S_VALUE];
@@ -357,7 +357,7 @@ static int put_row(struct history_store *store, struct store_batch *batch,
 		return err;
 	switch ((enum history_row_kind)row->kind) {
 	case ROW_VALUE:
-		return put_value(store, key, row);
+		return store_put_value(store, key, row);
 	case ROW_GAP:
 		return put_gap(store, key, row);
 	case ROW_EVENT:
@@ -398,7 +398,7 @@ int store_commit(struct history_store *store, struct store_batch *batch)
 	bool begun = false;
 
 	if (!err) {
-		err = run(store, S_BEGIN);
+		err = store_run(store, S_BEGIN);
 		begun = !err;
 	}
 	if (!err && store->stale)
@@ -416,9 +416,9 @@ int store_commit(struct history_store *store, struct store_batch *batch)
 		err = keep_delete(&store->keep, store->file.db, store->file.directory,
 		                  store->last_id);
 	if (!err && begun)
-		err = run(store, S_COMMIT);
+		err = store_run(store, S_COMMIT);
 	if (err)
-		fail(store, batch, err);
+		store_fail(store, batch, err);
 	else
 		store->commits++, store->rows += batch->count;
 	return err;

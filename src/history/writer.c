@@ -169,7 +169,7 @@ static void drop_half(struct history_writer *w)
 }
 
 /* Texts and events count too. The row's memory belongs to the writer now. */
-static void add(struct history_writer *w, struct history_row row)
+static void writer_add(struct history_writer *w, struct history_row row)
 {
 	size_t bytes = row.text ? strlen(row.text) + 1 : row.event ? sizeof(*row.event) : 0;
 
@@ -219,7 +219,7 @@ static int make_room(struct history_writer *w, uint32_t count)
 	return keys && kept ? 0 : -ENOMEM;
 }
 
-static void forget(struct history_writer *w, uint32_t key, int64_t us, uint8_t reason)
+static void writer_forget(struct history_writer *w, uint32_t key, int64_t us, uint8_t reason)
 {
 	struct kept *kept = &w->kept[key];
 
@@ -227,7 +227,8 @@ static void forget(struct history_writer *w, uint32_t key, int64_t us, uint8_t r
 		us = kept->us;
 	kept->us = us;
 	kept->known = false;
-	add(w, (struct history_row){.kind = ROW_GAP, .us = us, .key = key, .reason = reason});
+	writer_add(w,
+	           (struct history_row){.kind = ROW_GAP, .us = us, .key = key, .reason = reason});
 }
 
 int history_writer_signals(struct history_writer *w, const struct history_signal *signals,
@@ -257,7 +258,7 @@ int history_writer_signals(struct history_writer *w, const struct history_signal
 	}
 	for (uint32_t i = 0; !err && i < w->key_count; i++)
 		if (!there[i] && w->kept[i].known)
-			forget(w, i, now_ns / NS_PER_US, HISTORY_NOT_ASKED);
+			writer_forget(w, i, now_ns / NS_PER_US, HISTORY_NOT_ASKED);
 	free(there);
 	if (err) {
 		free(table);
@@ -285,11 +286,11 @@ static void gap_of_all(struct history_writer *w, int64_t from_us, int64_t until_
 	if (until_us < from_us)
 		until_us = from_us;
 	forget_all(w, from_us);
-	add(w, (struct history_row){.kind = ROW_GAP,
-	                            .us = from_us,
-	                            .value = until_us,
-	                            .key = ALL,
-	                            .reason = reason});
+	writer_add(w, (struct history_row){.kind = ROW_GAP,
+	                                   .us = from_us,
+	                                   .value = until_us,
+	                                   .key = ALL,
+	                                   .reason = reason});
 }
 
 void history_writer_gap(struct history_writer *w, int64_t from_ns, int64_t until_ns,
@@ -307,7 +308,7 @@ void history_writer_forget(struct history_writer *w, uint32_t signal, int64_t fr
                            enum history_reason reason)
 {
 	if (signal < w->count)
-		forget(w, w->table[signal], from_ns / NS_PER_US, (uint8_t)reason);
+		writer_forget(w, w->table[signal], from_ns / NS_PER_US, (uint8_t)reason);
 }
 
 static void add_value(struct history_writer *w, uint32_t key, int64_t us)
@@ -315,15 +316,15 @@ static void add_value(struct history_writer *w, uint32_t key, int64_t us)
 	struct kept *kept = &w->kept[key];
 
 	kept->row_us = us;
-	add(w, (struct history_row){
-		       .kind = ROW_VALUE,
-		       .us = us,
-		       .value = kept->value,
-		       .text = kept->text ? strdup(kept->text) : NULL,
-		       .key = key,
-		       .type = kept->type,
-		       .quality = kept->quality,
-	       });
+	writer_add(w, (struct history_row){
+			      .kind = ROW_VALUE,
+			      .us = us,
+			      .value = kept->value,
+			      .text = kept->text ? strdup(kept->text) : NULL,
+			      .key = key,
+			      .type = kept->type,
+			      .quality = kept->quality,
+		      });
 }
 
 void history_writer_value(struct history_writer *w, uint32_t signal, int64_t measured_ns,
@@ -356,10 +357,10 @@ void history_writer_event(struct history_writer *w, const struct history_event *
 	if (!copy)
 		return;
 	*copy = *event;
-	add(w, (struct history_row){.kind = ROW_EVENT,
-	                            .us = event->time_ns / NS_PER_US,
-	                            .event = copy,
-	                            .key = w->table[event->signal]});
+	writer_add(w, (struct history_row){.kind = ROW_EVENT,
+	                                   .us = event->time_ns / NS_PER_US,
+	                                   .event = copy,
+	                                   .key = w->table[event->signal]});
 }
 
 void history_writer_clock(struct history_writer *w, int64_t now_ns, int64_t offset_ns, bool trusted)
@@ -368,7 +369,8 @@ void history_writer_clock(struct history_writer *w, int64_t now_ns, int64_t offs
 		return;
 	w->offset_us = offset_ns / NS_PER_US;
 	w->trusted = trusted;
-	add(w, (struct history_row){.kind = ROW_CLOCK, .us = now_ns / NS_PER_US, .key = ALL});
+	writer_add(w,
+	           (struct history_row){.kind = ROW_CLOCK, .us = now_ns / NS_PER_US, .key = ALL});
 }
 
 /*

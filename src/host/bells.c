@@ -22,7 +22,7 @@
 #define EVENTS 32
 
 /* Edge-triggered: each write wakes once, and nobody needs to read. */
-static int watch(const struct bells *bells, int fd, uint32_t data)
+static int bells_watch(const struct bells *bells, int fd, uint32_t data)
 {
 	struct epoll_event event = {.events = EPOLLIN | EPOLLET, .data.u32 = data};
 
@@ -37,7 +37,7 @@ int bells_open(struct bells *bells)
 	bells->epoll = epoll_create1(EPOLL_CLOEXEC);
 	if (bells->epoll >= 0)
 		bells->own = bell_open();
-	return bells->own < 0 ? -errno : watch(bells, bells->own, OWN);
+	return bells->own < 0 ? -errno : bells_watch(bells, bells->own, OWN);
 }
 
 void bells_close(struct bells *bells)
@@ -62,7 +62,7 @@ void bells_add(struct bells *bells, unsigned place, int fd)
 {
 	bells->controllers[place].fd = fd;
 	bells->controllers[place].rings = 0;
-	bells->controllers[place].muted = watch(bells, fd, place) != 0;
+	bells->controllers[place].muted = bells_watch(bells, fd, place) != 0;
 	bells->muted += bells->controllers[place].muted;
 }
 
@@ -137,7 +137,8 @@ static void count_again(struct bells *bells, int64_t now_ns)
 	bells->all = 0;
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++) {
 		bells->controllers[i].rings = 0;
-		if (bells->controllers[i].muted && watch(bells, bells->controllers[i].fd, i) == 0) {
+		if (bells->controllers[i].muted &&
+		    bells_watch(bells, bells->controllers[i].fd, i) == 0) {
 			bells->controllers[i].muted = false;
 			bells->muted--;
 		}

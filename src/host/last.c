@@ -37,7 +37,7 @@ struct last {
 
 /* --- The engine's side ------------------------------------------------------------------------ */
 
-static uint32_t put(void *ctx, uint32_t row, int64_t value, const char *text, uint32_t len)
+static uint32_t last_put(void *ctx, uint32_t row, int64_t value, const char *text, uint32_t len)
 {
 	struct last *l = ctx;
 	struct force_command c;
@@ -67,7 +67,8 @@ static int error(void *ctx)
 	return __atomic_load_n(&((struct last *)ctx)->error, __ATOMIC_RELAXED);
 }
 
-static bool find(void *ctx, uint32_t row, int64_t *value, char *text, size_t room, uint32_t *len)
+static bool last_find(void *ctx, uint32_t row, int64_t *value, char *text, size_t room,
+                      uint32_t *len)
 {
 	const struct last *l = ctx;
 	struct force_command c;
@@ -228,7 +229,7 @@ int last_make(const struct last_setup *setup, struct last **last)
 		return err;
 	}
 	l->setup = *setup;
-	l->seam = (struct engine_last){l, put, stored, error, find};
+	l->seam = (struct engine_last){l, last_put, stored, error, last_find};
 	read_file(l);
 	*last = l;
 	return 0;

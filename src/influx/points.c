@@ -40,8 +40,8 @@ static uint64_t hash_of(const char *text)
 	return hash ? hash : 1;
 }
 
-static void send(struct point_row *row, struct pending *pending, int64_t time_ns,
-                 const char *fields, int64_t now_ns)
+static void points_send(struct point_row *row, struct pending *pending, int64_t time_ns,
+                        const char *fields, int64_t now_ns)
 {
 	uint64_t hash = hash_of(fields);
 
@@ -55,7 +55,8 @@ static void send(struct point_row *row, struct pending *pending, int64_t time_ns
 }
 
 /* The fields and the time of the newest value. False: the next look at the changes says why. */
-static bool get(struct ows *ows, int signal, int64_t now_ns, char fields[FIELDS], int64_t *time_ns)
+static bool points_get(struct ows *ows, int signal, int64_t now_ns, char fields[FIELDS],
+                       int64_t *time_ns)
 {
 	char text[TEXT] = "";
 	struct ows_value v;
@@ -81,7 +82,7 @@ static void send_all(struct points *points, struct pending *pending, uint8_t qua
 		struct point_row *row = &points->rows[i];
 
 		if (row->series && row->fields && row->fields != hash_of(fields))
-			send(row, pending, now_ns, fields, now_ns);
+			points_send(row, pending, now_ns, fields, now_ns);
 	}
 }
 
@@ -150,9 +151,9 @@ void points_changes(struct points *points, struct ows *ows, struct pending *pend
 		if (signal < 0 || signal >= points->count)
 			continue;
 		row = &points->rows[signal];
-		if (row->series && get(ows, signal, now_ns, fields, &time_ns) &&
+		if (row->series && points_get(ows, signal, now_ns, fields, &time_ns) &&
 		    hash_of(fields) != row->fields)
-			send(row, pending, time_ns, fields, now_ns);
+			points_send(row, pending, time_ns, fields, now_ns);
 	}
 }
 
@@ -165,11 +166,11 @@ void points_repeat(struct points *points, struct ows *ows, struct pending *pendi
 		struct point_row *row = &points->rows[i];
 
 		if (!row->series || now_ns - row->sent_ns < POINTS_REPEAT_NS ||
-		    !get(ows, i, now_ns, fields, &time_ns))
+		    !points_get(ows, i, now_ns, fields, &time_ns))
 			continue;
 		if (hash_of(fields) == row->fields && time_ns < now_ns - REPEATED_NS)
 			time_ns = now_ns - REPEATED_NS;
-		send(row, pending, time_ns, fields, now_ns);
+		points_send(row, pending, time_ns, fields, now_ns);
 	}
 }
 

@@ -17,12 +17,12 @@
 #define PACE_NS (20 * NS_PER_MS)
 #define TICK_NS NS_PER_S
 
-static struct pushing *own(struct face *face)
+static struct pushing *pushing_own(struct face *face)
 {
 	return face->own;
 }
 
-static void watch(void *ctx, int fd, short events)
+static void pushing_watch(void *ctx, int fd, short events)
 {
 	face_ignore(ctx, fd);
 	if (events && face_watch(ctx, fd, events))
@@ -31,7 +31,7 @@ static void watch(void *ctx, int fd, short events)
 
 static void open_spool(struct face *face)
 {
-	struct pushing *p = own(face);
+	struct pushing *p = pushing_own(face);
 	int err = spool_open(&p->spool, p->options.spool, (uint64_t)p->options.spool_mb * 1000000,
 	                     &spool_disk_system);
 
@@ -42,9 +42,9 @@ static void open_spool(struct face *face)
 		           p->options.spool);
 }
 
-static void begin(struct face *face, int64_t now_ns)
+static void pushing_begin(struct face *face, int64_t now_ns)
 {
-	struct pushing *p = own(face);
+	struct pushing *p = pushing_own(face);
 
 	p->on = true;
 	p->trouble = PUSH_WELL;
@@ -57,9 +57,9 @@ static void begin(struct face *face, int64_t now_ns)
 }
 
 /* What is under way and in memory goes to the spool, if its time is known. */
-static void end(struct face *face)
+static void pushing_end(struct face *face)
 {
-	struct pushing *p = own(face);
+	struct pushing *p = pushing_own(face);
 
 	post_cancel(p->post);
 	if (p->spooled)
@@ -81,7 +81,7 @@ static void end(struct face *face)
 
 static void make_rows(struct face *face)
 {
-	struct pushing *p = own(face);
+	struct pushing *p = pushing_own(face);
 
 	if (!p->on || !face->live) {
 		points_free(&p->points);
@@ -99,17 +99,17 @@ static void make_rows(struct face *face)
 /* The file may say something else than before, or have no block any more. */
 static void renew(struct face *face, int64_t now_ns)
 {
-	struct pushing *p = own(face);
+	struct pushing *p = pushing_own(face);
 	struct push_options options;
 
 	if (push_options_take(&options, face)) {
 		log_err(face->log, "the path of the spool is too long: it stays %s",
 		        p->options.spool);
 	} else if (!push_options_same(&options, &p->options)) {
-		end(face);
+		pushing_end(face);
 		p->options = options;
 		if (*options.url)
-			begin(face, now_ns);
+			pushing_begin(face, now_ns);
 	} else if (p->on) {
 		sending_read_token(face);
 		p->next_ns = now_ns;
@@ -122,11 +122,11 @@ static void renew(struct face *face, int64_t now_ns)
 
 int pushing_open(struct face *face)
 {
-	struct pushing *p = own(face);
+	struct pushing *p = pushing_own(face);
 	int64_t now_ns = ows_now();
 
 	p->spool.dir = -1;
-	p->post = post_open(watch, face);
+	p->post = post_open(pushing_watch, face);
 	if (!p->post) {
 		face_complain(face->ops->program, "libcurl cannot be used: no memory");
 		return -ENOMEM;
@@ -142,9 +142,9 @@ int pushing_open(struct face *face)
 
 void pushing_close(struct face *face)
 {
-	struct pushing *p = own(face);
+	struct pushing *p = pushing_own(face);
 
-	end(face);
+	pushing_end(face);
 	if (p->pending.lines)
 		log_err(face->log, "%u values in memory are lost%s", p->pending.lines,
 		        p->believed ? "" : ": the time is not known yet");
@@ -157,7 +157,7 @@ void pushing_close(struct face *face)
 /* Whether lines can have wall-clock times. */
 static void look_at_clock(struct face *face, int64_t now_ns)
 {
-	struct pushing *p = own(face);
+	struct pushing *p = pushing_own(face);
 
 	wall_clock_look(&p->clock, now_ns);
 	if (p->believed || !p->on)
@@ -172,7 +172,7 @@ static void look_at_clock(struct face *face, int64_t now_ns)
 
 static void report_dropped(struct face *face)
 {
-	struct pushing *p = own(face);
+	struct pushing *p = pushing_own(face);
 
 	if (p->spool.dropped != p->lost_bytes)
 		log_warning(face->log, "the spool is full: the oldest batches are dropped, %llu kB",
@@ -186,7 +186,7 @@ static void report_dropped(struct face *face)
 
 static void show_status(struct face *face)
 {
-	struct pushing *p = own(face);
+	struct pushing *p = pushing_own(face);
 	const char *state = !p->on                      ? "no Influx block: off"
 	                    : !p->believed              ? "waiting for the time"
 	                    : p->trouble == PUSH_AWAY   ? "the server is lost"
@@ -207,7 +207,7 @@ static void show_status(struct face *face)
 /* fd is ready; -1: none, but something may be due. */
 static void go_on(struct face *face, int fd, short ready)
 {
-	struct pushing *p = own(face);
+	struct pushing *p = pushing_own(face);
 	int64_t now_ns = ows_now();
 	struct post_result result;
 
@@ -223,7 +223,7 @@ static void go_on(struct face *face, int fd, short ready)
 
 void pushing_tick(struct face *face, int64_t now_ns)
 {
-	struct pushing *p = own(face);
+	struct pushing *p = pushing_own(face);
 
 	look_at_clock(face, now_ns);
 	if (p->on && p->spool.dir < 0)
@@ -237,7 +237,7 @@ void pushing_tick(struct face *face, int64_t now_ns)
 
 void pushing_changes(struct face *face, const int *signals, int n)
 {
-	struct pushing *p = own(face);
+	struct pushing *p = pushing_own(face);
 
 	if (p->on)
 		points_changes(&p->points, face->ows, &p->pending, signals, n, ows_now());
@@ -245,7 +245,7 @@ void pushing_changes(struct face *face, const int *signals, int n)
 
 void pushing_event(struct face *face, const struct face_event *event)
 {
-	struct pushing *p = own(face);
+	struct pushing *p = pushing_own(face);
 	int64_t now_ns = ows_now();
 
 	switch (event->news) {

@@ -12,14 +12,14 @@
 #define STEP_MOST_NS (60 * NS_PER_S)
 #define UNREAD_NS (10 * NS_PER_S)
 
-static struct pushing *own(struct face *face)
+static struct pushing *sending_own(struct face *face)
 {
 	return face->own;
 }
 
 void sending_read_token(struct face *face)
 {
-	struct pushing *p = own(face);
+	struct pushing *p = sending_own(face);
 	char why[SECRET_PATH + 128];
 
 	if (secret_read(*p->options.token_file ? p->options.token_file : NULL, p->token, why,
@@ -30,7 +30,7 @@ void sending_read_token(struct face *face)
 /* Once when it begins, once when it is over. */
 void sending_report_disk(struct face *face, int err)
 {
-	struct pushing *p = own(face);
+	struct pushing *p = sending_own(face);
 
 	if (err && err != p->disk_err)
 		log_err(face->log, "%s cannot be written: %s%s; what waits is in memory alone",
@@ -46,7 +46,7 @@ void sending_report_disk(struct face *face, int err)
 /* A batch of the memory into the spool. False: it stays in memory. */
 bool sending_put_away(struct face *face)
 {
-	struct pushing *p = own(face);
+	struct pushing *p = sending_own(face);
 	int err;
 
 	err = spool_put(&p->spool, p->batch, p->batch_len);
@@ -82,9 +82,9 @@ static const char *advice(long status)
 }
 
 /* Once when it is lost, once more when the reason is of another kind. */
-static void fail(struct face *face, const struct post_result *result, int64_t now_ns)
+static void sending_fail(struct face *face, const struct post_result *result, int64_t now_ns)
 {
-	struct pushing *p = own(face);
+	struct pushing *p = sending_own(face);
 	enum push_trouble trouble = PUSH_AWAY;
 
 	if (result->status >= 300 && result->status < 500 && result->status != 408 &&
@@ -111,7 +111,7 @@ static void fail(struct face *face, const struct post_result *result, int64_t no
 /* The server has understood what it got. */
 static void answered(struct face *face)
 {
-	struct pushing *p = own(face);
+	struct pushing *p = sending_own(face);
 
 	if (p->trouble != PUSH_WELL)
 		log_notice(face->log, "%.100s is back; %zu batches wait", p->options.url,
@@ -133,7 +133,7 @@ static void part_over(struct pushing *p)
 
 static void arrived(struct face *face)
 {
-	struct pushing *p = own(face);
+	struct pushing *p = sending_own(face);
 
 	answered(face);
 	p->refused = false;
@@ -144,7 +144,7 @@ static void arrived(struct face *face)
 /* The server does not want these lines: others may be better. */
 static void refused(struct face *face, const struct post_result *result)
 {
-	struct pushing *p = own(face);
+	struct pushing *p = sending_own(face);
 
 	answered(face);
 	if (!p->refused)
@@ -164,7 +164,7 @@ static void refused(struct face *face, const struct post_result *result)
 /* The same lines in smaller parts; a line that is too large alone is refused. */
 static void too_large(struct face *face, const struct post_result *result)
 {
-	struct pushing *p = own(face);
+	struct pushing *p = sending_own(face);
 
 	if (!part_halve(&p->part, p->batch)) {
 		refused(face, result);
@@ -185,14 +185,14 @@ void sending_finished(struct face *face, const struct post_result *result, int64
 	else if (result->status == 400 || result->status == 422)
 		refused(face, result);
 	else
-		fail(face, result, now_ns);
+		sending_fail(face, result, now_ns);
 }
 
 /* The oldest file as the batch. One that cannot be read is left out. */
 static void take_spooled(struct face *face, int64_t now_ns)
 {
 	char name[SPOOL_NAME], others[LOG_OTHERS];
-	struct pushing *p = own(face);
+	struct pushing *p = sending_own(face);
 	int64_t len = spool_read(&p->spool, p->batch, sizeof(p->batch));
 	uint64_t unread;
 	bool later;
@@ -220,7 +220,7 @@ static void take_spooled(struct face *face, int64_t now_ns)
 /* Make a batch and send one, if it is time to. */
 void sending_advance(struct face *face, int64_t now_ns)
 {
-	struct pushing *p = own(face);
+	struct pushing *p = sending_own(face);
 	bool due = p->pending.lines && (now_ns >= p->cut_ns || pending_is_full(&p->pending));
 
 	if (!p->on || !p->believed || post_is_busy(p->post))
@@ -244,5 +244,5 @@ void sending_advance(struct face *face, int64_t now_ns)
 		sending_read_token(face);
 	part_next(&p->part, p->batch, p->batch_len);
 	if (post_begin(p->post, p->options.url, p->token, p->batch + p->part.at, p->part.len))
-		fail(face, &(struct post_result){.words = "no memory"}, now_ns);
+		sending_fail(face, &(struct post_result){.words = "no memory"}, now_ns);
 }

@@ -113,7 +113,7 @@ static int by_number(const void *a, const void *b)
 	return (left->number > right->number) - (left->number < right->number);
 }
 
-static int look(struct spool *spool)
+static int spool_look(struct spool *spool)
 {
 	int fd = openat(spool->dir, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC), err = 0;
 	DIR *dir = fd < 0 ? NULL : fdopendir(fd);
@@ -147,7 +147,7 @@ int spool_open(struct spool *spool, const char *path, uint64_t limit, const stru
 	if (flock(spool->dir, LOCK_EX | LOCK_NB) < 0)
 		err = errno == EWOULDBLOCK ? -EBUSY : -errno;
 	else
-		err = look(spool);
+		err = spool_look(spool);
 	if (err)
 		spool_close(spool);
 	return err;

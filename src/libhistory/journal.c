@@ -58,15 +58,15 @@ static void put_text(char *to, size_t size, sqlite3_stmt *from, int column)
 	to[len] = '\0';
 }
 
-static void put_value(sqlite3_stmt *from, int column, uint8_t type, double *number,
-                      int64_t *integer)
+static void journal_put_value(sqlite3_stmt *from, int column, uint8_t type, double *number,
+                              int64_t *integer)
 {
 	*number = sqlite3_column_double(from, column);
 	if (!value_is_float((enum ows_type)type))
 		*integer = sqlite3_column_int64(from, column);
 }
 
-static int32_t find(const struct ows_history *h, int64_t number)
+static int32_t journal_find(const struct ows_history *h, int64_t number)
 {
 	for (int i = 0; i < h->signal_count; i++)
 		if (h->signals[i].number == number)
@@ -74,8 +74,8 @@ static int32_t find(const struct ows_history *h, int64_t number)
 	return -1;
 }
 
-static void convert(const struct ows_history *h, const struct session *session, sqlite3_stmt *from,
-                    struct ows_history_event *to)
+static void journal_convert(const struct ows_history *h, const struct session *session,
+                            sqlite3_stmt *from, struct ows_history_event *to)
 {
 	bool alarm, has_value = sqlite3_column_type(from, VALUE) != SQLITE_NULL;
 	int64_t id = sqlite3_column_int64(from, TIME);
@@ -83,7 +83,7 @@ static void convert(const struct ows_history *h, const struct session *session, 
 	*to = (struct ows_history_event){
 		.time_ns = (id + session->date) * NS_PER_US,
 		.boot_ns = (id - session->base) * NS_PER_US,
-		.signal = find(h, sqlite3_column_int64(from, SIGNAL)),
+		.signal = journal_find(h, sqlite3_column_int64(from, SIGNAL)),
 		.kind = (uint8_t)sqlite3_column_int(from, KIND),
 		.reason = (uint8_t)sqlite3_column_int(from, REASON),
 		.type = (uint8_t)sqlite3_column_int(from, TYPE),
@@ -102,10 +102,10 @@ static void convert(const struct ows_history *h, const struct session *session, 
 		to->reason = 0;
 		to->has_before = sqlite3_column_type(from, BEFORE) != SQLITE_NULL;
 		to->has_after = has_value;
-		put_value(from, BEFORE, to->type, &to->before, &to->before_integer);
+		journal_put_value(from, BEFORE, to->type, &to->before, &to->before_integer);
 	}
 	if (to->type != OWS_STRING)
-		put_value(from, VALUE, to->type, &to->number, &to->integer);
+		journal_put_value(from, VALUE, to->type, &to->number, &to->integer);
 	put_text(to->text, sizeof(to->text), from, TEXT);
 	to->who.serial = (uint32_t)sqlite3_column_int64(from, SERIAL);
 	to->who.uid = (uint32_t)sqlite3_column_int64(from, UID);
@@ -121,7 +121,7 @@ static bool is_wanted(const struct ows_history *h, const struct ows_history_even
 	       event->time_ns / NS_PER_US < h->list.until_us;
 }
 
-static void take(struct ows_history *h, const struct ows_history_event *event)
+static void journal_take(struct ows_history *h, const struct ows_history_event *event)
 {
 	if (is_wanted(h, event))
 		h->list.ready[h->list.count++] = *event;
@@ -134,7 +134,7 @@ static int64_t less(int64_t us, int64_t date)
 }
 
 /* More of the run that is read, or of the next one. 1; 0: the end. */
-static int fill(struct ows_history *h)
+static int journal_fill(struct ows_history *h)
 {
 	const int room = (int)(sizeof(h->list.ready) / sizeof(h->list.ready[0]));
 	sqlite3_stmt *from = h->statements[H_EVENTS];
@@ -147,15 +147,16 @@ static int fill(struct ows_history *h)
 			return 0;
 		session = &h->sessions[++h->list.session];
 		h->list.next = session->start;
-		take(h, &(struct ows_history_event){
-				.time_ns = (session->start + session->date) * NS_PER_US,
-				.boot_ns = (session->start - session->base) * NS_PER_US,
-				.signal = -1,
-				.kind = OWS_HISTORY_BEGIN,
-				.reason = session->reason ? session->reason : OWS_HISTORY_LOST,
-				.trusted = session->trusted,
-				.this_boot = session->boot == h->boot,
-			});
+		journal_take(h,
+		             &(struct ows_history_event){
+				     .time_ns = (session->start + session->date) * NS_PER_US,
+				     .boot_ns = (session->start - session->base) * NS_PER_US,
+				     .signal = -1,
+				     .kind = OWS_HISTORY_BEGIN,
+				     .reason = session->reason ? session->reason : OWS_HISTORY_LOST,
+				     .trusted = session->trusted,
+				     .this_boot = session->boot == h->boot,
+			     });
 	}
 	session = &h->sessions[h->list.session];
 	sql_bind(from, "iiii", h->list.next, session->end, less(h->list.from_us, session->date),
@@ -164,8 +165,8 @@ static int fill(struct ows_history *h)
 	while (h->list.count < room && (got = sql_next(from)) == 1) {
 		struct ows_history_event event;
 
-		convert(h, session, from, &event);
-		take(h, &event);
+		journal_convert(h, session, from, &event);
+		journal_take(h, &event);
 		if (h->list.count == room)
 			h->list.next = sqlite3_column_int64(from, ID) + 1;
 	}
@@ -178,7 +179,7 @@ int ows_history_next_event(struct ows_history *h, struct ows_history_event *even
 	int got = h->list.on ? 1 : -EINVAL;
 
 	while (got == 1 && h->list.given == h->list.count)
-		got = fill(h);
+		got = journal_fill(h);
 	if (got != 1)
 		return got;
 	*event = h->list.ready[h->list.given++];

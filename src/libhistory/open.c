@@ -129,7 +129,7 @@ static int open_file(struct ows_history *h)
  * --- What it has -------------------------------------------------------------------------------
  */
 
-static void forget(struct ows_history *h)
+static void open_forget(struct ows_history *h)
 {
 	for (int i = h->read.given; i < h->read.count; i++)
 		free(h->read.ready[i].text);
@@ -240,7 +240,7 @@ static int read_places(struct ows_history *h)
 }
 
 /* All at one moment of the file. */
-static int look(struct ows_history *h)
+static int open_look(struct ows_history *h)
 {
 	int err = sql_exec(h->db, "begin");
 
@@ -288,7 +288,7 @@ int ows_history_open(const char *instance, const char *directory, struct ows_his
 	if (!err)
 		err = open_file(h);
 	if (!err)
-		err = look(h);
+		err = open_look(h);
 	if (err) {
 		ows_history_close(h);
 		return err;
@@ -301,7 +301,7 @@ void ows_history_close(struct ows_history *h)
 {
 	if (!h)
 		return;
-	forget(h);
+	open_forget(h);
 	close_file(h);
 	free(h);
 }
@@ -311,14 +311,14 @@ int ows_history_refresh(struct ows_history *h)
 	struct stat seen;
 	int err = 0;
 
-	forget(h);
+	open_forget(h);
 	/* another one may be there now: the one before was damaged, or deleted */
 	if (!h->db || stat(h->path, &seen) < 0 || seen.st_dev != h->device ||
 	    seen.st_ino != h->inode) {
 		close_file(h);
 		err = open_file(h);
 	}
-	return err ? err : look(h);
+	return err ? err : open_look(h);
 }
 
 int ows_history_span(struct ows_history *h, int64_t *from_ns, int64_t *until_ns)

@@ -59,7 +59,7 @@ int ows_history_find(struct ows_history *h, const char *name)
 /*
  * Columns: id, value, quality, reason of a gap. What a signal had before its type changed counts.
  */
-static int take(sqlite3_stmt *from, const struct known_signal *signal, struct step *step)
+static int steps_take(sqlite3_stmt *from, const struct known_signal *signal, struct step *step)
 {
 	bool whole = !value_is_float((enum ows_type)signal->type) && signal->type != OWS_STRING;
 	const char *text;
@@ -103,14 +103,14 @@ int handle_held(struct ows_history *h, const struct known_signal *signal, int64_
 	sql_bind(gap, "ii", id, (int64_t)signal->number);
 	got = sql_next(gap);
 	if (got == 1)
-		got = take(gap, signal, &unknown);
+		got = steps_take(gap, signal, &unknown);
 	sqlite3_reset(gap);
 	if (got < 0)
 		return got;
 	sql_bind(raw, "iii", id, id - LOOK_BACK_US, (int64_t)signal->number);
 	got = sql_next(raw);
 	if (got == 1) {
-		got = take(raw, signal, step);
+		got = steps_take(raw, signal, step);
 		got = got < 0 ? got : 1;
 	}
 	sqlite3_reset(raw);
@@ -131,7 +131,7 @@ int handle_steps(struct ows_history *h, const struct known_signal *signal, int64
 
 	sql_bind(from, "iiii", first, end, (int64_t)signal->number, (int64_t)room);
 	while (count < room && (got = sql_next(from)) == 1) {
-		int err = take(from, signal, &steps[count]);
+		int err = steps_take(from, signal, &steps[count]);
 
 		if (err) {
 			got = err;
@@ -196,7 +196,7 @@ static int next_session(struct ows_history *h)
 }
 
 /* More steps, or the next run: 1; 0: the end. */
-static int fill(struct ows_history *h)
+static int steps_fill(struct ows_history *h)
 {
 	const struct session *session;
 	int64_t first, end;
@@ -228,7 +228,8 @@ static int fill(struct ows_history *h)
 	return 1;
 }
 
-static void convert(struct ows_history *h, const struct step *step, struct ows_history_item *item)
+static void steps_convert(struct ows_history *h, const struct step *step,
+                          struct ows_history_item *item)
 {
 	/* what held at the begin may be of a run before */
 	int i = h->read.session;
@@ -259,7 +260,7 @@ static int next_item(struct ows_history *h, struct ows_history_item *item)
 	int got;
 
 	for (;;) {
-		got = fill(h);
+		got = steps_fill(h);
 		if (got != 1)
 			break;
 		step = &h->read.ready[h->read.given++];
@@ -267,7 +268,7 @@ static int next_item(struct ows_history *h, struct ows_history_item *item)
 		if (!step->known && !h->read.holds)
 			continue;
 		h->read.holds = step->known;
-		convert(h, step, item);
+		steps_convert(h, step, item);
 		return 1;
 	}
 	/* nobody has said what came then */
@@ -278,11 +279,11 @@ static int next_item(struct ows_history *h, struct ows_history_item *item)
 		if (h->end + last->date >= h->read.until_us - 1)
 			return 0;
 		h->read.session = h->session_count - 1;
-		convert(h,
-		        &(struct step){.id = h->end + 1,
-		                       .number = NAN,
-		                       .type = h->signals[h->read.signal].type},
-		        item);
+		steps_convert(h,
+		              &(struct step){.id = h->end + 1,
+		                             .number = NAN,
+		                             .type = h->signals[h->read.signal].type},
+		              item);
 		return 1;
 	}
 	return got;

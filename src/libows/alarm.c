@@ -15,7 +15,7 @@ uint32_t ows_alarm_count(struct ows *h)
 	return __atomic_load_n(&h->map.image->alarm_head, __ATOMIC_ACQUIRE);
 }
 
-static void fill(uint8_t type, int64_t value, double *number, int64_t *integer)
+static void alarm_fill(uint8_t type, int64_t value, double *number, int64_t *integer)
 {
 	*number = value_number((enum ows_type)type, value);
 	*integer = value_is_float((enum ows_type)type) ? 0 : value;
@@ -44,9 +44,9 @@ int ows_alarm(struct ows *h, uint32_t number, struct ows_alarm *alarm)
 		.who = by_of(&e.who),
 	};
 	if (alarm->has_before)
-		fill(alarm->type, e.before, &alarm->before, &alarm->before_integer);
+		alarm_fill(alarm->type, e.before, &alarm->before, &alarm->before_integer);
 	if (alarm->has_after)
-		fill(alarm->type, e.after, &alarm->after, &alarm->after_integer);
+		alarm_fill(alarm->type, e.after, &alarm->after, &alarm->after_integer);
 	memcpy(alarm->text, e.text, sizeof(alarm->text) - 1);
 	return 0;
 }

@@ -102,7 +102,8 @@ static int copy_changes(struct ows *h, struct ows_cursor *cursor, int *signals, 
 }
 
 /* Returns as ows_changes(), but 0 while nothing changed. */
-static int look(struct ows *h, struct ows_cursor *cursor, int *signals, int n, int64_t now_ns)
+static int changes_look(struct ows *h, struct ows_cursor *cursor, int *signals, int n,
+                        int64_t now_ns)
 {
 	bool alive = handle_alive(h, now_ns);
 	uint32_t state = __atomic_load_n(&h->map.image->state, __ATOMIC_ACQUIRE);
@@ -160,7 +161,7 @@ int ows_changes(struct ows *h, struct ows_cursor *cursor, int *signals, int n, i
 		return -ENOMEM;
 	for (;; now_ns = ows_now()) {
 		uint32_t seen = __atomic_load_n(news, __ATOMIC_ACQUIRE);
-		int got = look(h, cursor, signals, n, now_ns), err;
+		int got = changes_look(h, cursor, signals, n, now_ns), err;
 		int64_t left;
 
 		if (got == -ESTALE)

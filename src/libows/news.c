@@ -15,7 +15,7 @@
 #define JOIN_NS (2 * NS_PER_S) /* the longest wait of ows_fd() for owsd's welcome */
 
 /* Is something to be read? Returns 1, 0, or a negative errno; also 0 when owsd has hung up. */
-static int await(int fd, int64_t left_ns, bool *gone)
+static int news_await(int fd, int64_t left_ns, bool *gone)
 {
 	struct timespec t = {.tv_sec = (time_t)(left_ns / NS_PER_S), .tv_nsec = left_ns % NS_PER_S};
 	struct pollfd poll_fd = {.fd = fd, .events = POLLIN};
@@ -41,7 +41,7 @@ void news_arm(struct ows *h)
 
 	if (!has_descriptor(h))
 		return;
-	while (await(h->join.news, 0, &gone) == 1)
+	while (news_await(h->join.news, 0, &gone) == 1)
 		if (read(h->join.news, room, sizeof(room)) <= 0)
 			break;
 	word_set(&give_header(&h->give)->waits, 1);
@@ -59,7 +59,7 @@ int news_sleep(struct ows *h, uint32_t seen, int64_t left_ns)
 	news_arm(h);
 	if (word_get(word) != seen)
 		return 0;
-	n = has_descriptor(h) ? await(h->join.news, left_ns, &gone) : 0;
+	n = has_descriptor(h) ? news_await(h->join.news, left_ns, &gone) : 0;
 	errno = saved;
 	if (!has_descriptor(h) || gone)
 		return segment_wait(word, seen, left_ns);

@@ -32,7 +32,7 @@ static uint32_t in_use(const struct give *give)
 }
 
 /* The place of a person, -1: of none. */
-static int find(const struct give *give, const char name[OWS_NAME])
+static int person_find(const struct give *give, const char name[OWS_NAME])
 {
 	for (uint32_t i = 0; i < OWS_PERSONS; i++)
 		if (memcmp(give_person(give, i), name, OWS_NAME) == 0)
@@ -44,7 +44,7 @@ static int find(const struct give *give, const char name[OWS_NAME])
 static int next_place(struct ows *h)
 {
 	static const char nobody[OWS_NAME];
-	int place = find(&h->give, nobody);
+	int place = person_find(&h->give, nobody);
 	uint32_t used;
 
 	if (place >= 0)
@@ -68,7 +68,7 @@ int person_enter(struct ows *h)
 	h->person = 0;
 	if (h->person_name[0] == '\0')
 		return 0;
-	place = find(&h->give, h->person_name);
+	place = person_find(&h->give, h->person_name);
 	if (place < 0) {
 		place = next_place(h);
 		if (place < 0)

@@ -16,7 +16,7 @@ struct answer {
 	char words[OWS_WHY];
 };
 
-static void show(const char *words, size_t len, char *why, size_t size)
+static void reload_show(const char *words, size_t len, char *why, size_t size)
 {
 	size_t n = len < size ? len : size - 1;
 
@@ -26,7 +26,7 @@ static void show(const char *words, size_t len, char *why, size_t size)
 }
 
 /* Receive the answer; -EAGAIN: none is there yet. */
-static int take(int connection, char *why, size_t size)
+static int reload_take(int connection, char *why, size_t size)
 {
 	struct answer answer = {0};
 	const struct ows_welcome *welcome = &answer.welcome;
@@ -43,12 +43,12 @@ static int take(int connection, char *why, size_t size)
 	    welcome->size != 0 || welcome->err > 0 || welcome->err < -ERRNO_MAX)
 		return -EPROTO;
 	if (welcome->err && why && size)
-		show(answer.words, (size_t)n - sizeof(*welcome), why, size);
+		reload_show(answer.words, (size_t)n - sizeof(*welcome), why, size);
 	return welcome->err;
 }
 
 /* -ENOENT: no owsd runs there. */
-static int ask(const char *path, const char *instance, struct join *join)
+static int reload_ask(const char *path, const char *instance, struct join *join)
 {
 	char name[SEGMENT_FILE];
 	struct shm_place place;
@@ -70,7 +70,7 @@ static int ask_first(const char *instance, struct join *join)
 	if (count < 0)
 		return count;
 	for (int i = 0; i < count; i++) {
-		int err = ask(places[i], instance, join);
+		int err = reload_ask(places[i], instance, join);
 
 		if (!err)
 			return 0;
@@ -105,7 +105,7 @@ int ows_reload(const char *instance, int64_t timeout_ns, char *why, size_t size)
 	err = ask_first(instance, &join);
 	if (!err)
 		do
-			err = take(join.connection, why, size);
+			err = reload_take(join.connection, why, size);
 		while (err == -EAGAIN && join_await(join.connection, until_ns));
 	join_end(&join);
 	errno = saved;

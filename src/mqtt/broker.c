@@ -42,7 +42,7 @@ static void forget_trouble(struct broker *b)
 
 /* --- An attempt ------------------------------------------------------------------------------ */
 
-static void watch(struct broker *b)
+static void broker_watch(struct broker *b)
 {
 	int fd = b->client ? mosquitto_socket(b->client) : -1;
 	short events = POLLIN;
@@ -112,7 +112,7 @@ static bool choose(struct broker *b, bool was_connected, int64_t now_ns)
 }
 
 /* For each way it is logged once, and once more when the reason is another. */
-static void fail(struct broker *b, const char *why, const char *remedy, int64_t now_ns)
+static void broker_fail(struct broker *b, const char *why, const char *remedy, int64_t now_ns)
 {
 	bool was_connected = b->state == BROKER_CONNECTED;
 	char name[MQTT_WAY_NAME], words[BROKER_WORDS];
@@ -179,7 +179,7 @@ static void attempt(struct broker *b, int64_t now_ns)
 	b->begun_ns = now_ns;
 	if (!client_make(b, why, sizeof(why))) {
 		b->tcp = true; /* no other address helps */
-		fail(b, why, "", now_ns);
+		broker_fail(b, why, "", now_ns);
 		return;
 	}
 	errno = 0;
@@ -188,10 +188,10 @@ static void attempt(struct broker *b, int64_t now_ns)
 	if (err) {
 		const char *words = advice_words(err, errno, b->tls_words);
 
-		fail(b, words, advice_remedy(err, errno), ows_now());
+		broker_fail(b, words, advice_remedy(err, errno), ows_now());
 		return;
 	}
-	watch(b);
+	broker_watch(b);
 }
 
 /* It is over, or libmosquitto reports that. */
@@ -223,7 +223,7 @@ static void finish(struct broker *b, int code, int err, int64_t now_ns)
 	words = advice_words(code, err, b->tls_words);
 	if (code == ADVICE_TAKEN_OVER)
 		words = taken_words(b, taken);
-	fail(b, words, advice_remedy(code, err), now_ns);
+	broker_fail(b, words, advice_remedy(code, err), now_ns);
 }
 
 static void connected(struct broker *b, int64_t now_ns)
@@ -294,7 +294,7 @@ static void work(struct broker *b, short ready, int64_t now_ns)
 	else if (b->state == BROKER_CONNECTING && now_ns - b->begun_ns > ANSWER_NS)
 		finish(b, MOSQ_ERR_ERRNO, ETIMEDOUT, now_ns);
 	else
-		watch(b);
+		broker_watch(b);
 	if (b->state == BROKER_CONNECTED && !b->drained)
 		b->tend_ns = now_ns;
 }

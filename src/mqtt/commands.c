@@ -16,7 +16,7 @@
 #define OPEN_NS NS_PER_S
 #define COST_NS (NS_PER_S / COMMANDS_A_SECOND)
 
-static void refuse(struct commands *c, const char *name, const char *why, int64_t now_ns)
+static void commands_refuse(struct commands *c, const char *name, const char *why, int64_t now_ns)
 {
 	uint64_t print = hash_text(hash_text(HASH_BEGIN, why, strlen(why)), name, strlen(name));
 	uint64_t count = log_rate(&c->log_rates[print % COMMANDS_RATES], now_ns);
@@ -155,7 +155,7 @@ void commands_take(struct commands *c, const char *name, bool known,
 	if (!why && !known)
 		why = why_not(-ENOENT, words);
 	if (why) {
-		refuse(c, name, why, now_ns);
+		commands_refuse(c, name, why, now_ns);
 		return;
 	}
 	snprintf(person, sizeof(person), "%.*s", BROKER_PERSON - 1,
@@ -173,7 +173,7 @@ void commands_take(struct commands *c, const char *name, bool known,
 		c->open_ns = ows_now() + OPEN_NS;
 	}
 	if (err) {
-		refuse(c, name, why_not(err, words), now_ns);
+		commands_refuse(c, name, why_not(err, words), now_ns);
 		return;
 	}
 	c->taken++;

@@ -164,8 +164,8 @@ void entity_device_json(struct json *json, const struct stream *s, const struct 
 
 /* --- Parts of a component -------------------------------------------------------------------- */
 
-static void begin(struct json *json, const char *id, const char *suffix, const char *platform,
-                  const char *name)
+static void entity_begin(struct json *json, const char *id, const char *suffix,
+                         const char *platform, const char *name)
 {
 	char text[2 * ENTITY_ID];
 
@@ -290,7 +290,7 @@ static void put_signal(struct json *json, const struct stream *s, const struct r
 	const char *class = class_of(row);
 	enum entity_kind kind = entity_kind(info, class, s->write);
 
-	begin(json, id, "", kinds[kind].platform, name);
+	entity_begin(json, id, "", kinds[kind].platform, name);
 	put_topic(json, "stat_t", row, "");
 	put_state_template(json, row, kind);
 	if (*class && strcmp(class, "light") != 0 && strcmp(class, "cover") != 0 &&
@@ -343,7 +343,7 @@ void entity_json(struct json *json, const struct stream *s, const struct row *ro
 	put_signal(json, s, row, id, alone ? NULL : name);
 	if (row->alarms) {
 		snprintf(title, sizeof(title), "%.200s alarm", alone ? "Limit" : name);
-		begin(json, id, "_alarm", "binary_sensor", title);
+		entity_begin(json, id, "_alarm", "binary_sensor", title);
 		json_string(json, "dev_cla", "problem");
 		put_topic(json, "stat_t", row, "/alarm");
 		json_string(json, "val_tpl", "{{ 'ON' if value_json.active else 'OFF' }}");
@@ -352,7 +352,7 @@ void entity_json(struct json *json, const struct stream *s, const struct row *ro
 	}
 	if (info->alarm) {
 		snprintf(title, sizeof(title), "%.200s event", alone ? "Device" : name);
-		begin(json, id, "_event", "event", title);
+		entity_begin(json, id, "_event", "event", title);
 		json_string(json, "dev_cla", "button");
 		put_topic(json, "stat_t", row, "/event");
 		json_array(json, "evt_typ");

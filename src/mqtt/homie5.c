@@ -196,7 +196,7 @@ static bool value(struct stream *s, struct row *row)
 	return stream_published(row, &news);
 }
 
-static bool state(struct stream *s, enum stream_node node)
+static bool homie5_state(struct stream *s, enum stream_node node)
 {
 	static const char *const words[] = {[STREAM_THERE] = "ready",
 	                                    [STREAM_LOST] = "lost",
@@ -231,5 +231,5 @@ const struct profile profile_homie5 = {
 	.topic = topic_of,
 	.birth = birth,
 	.value = value,
-	.state = state,
+	.state = homie5_state,
 };

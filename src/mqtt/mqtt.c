@@ -27,7 +27,7 @@
 /* The same where each birth that does not come makes a host ask again */
 #define REBIRTH_NS NS_PER_S
 
-static struct mqtt *own(struct face *face)
+static struct mqtt *mqtt_own(struct face *face)
 {
 	return face->own;
 }
@@ -71,8 +71,8 @@ static void on_connected(void *ctx)
 	stream_begin(&m->stream);
 }
 
-static void command(struct mqtt *m, const char *name, bool known,
-                    const struct broker_message *message)
+static void mqtt_command(struct mqtt *m, const char *name, bool known,
+                         const struct broker_message *message)
 {
 	char place[OPTION_SIZE + 8];
 
@@ -86,7 +86,7 @@ struct several {
 	const struct broker_message *message;
 };
 
-static void take(void *ctx, const char *name, const char *text, const char *fault)
+static void mqtt_take(void *ctx, const char *name, const char *text, const char *fault)
 {
 	const struct several *several = ctx;
 	struct broker_message one = *several->message;
@@ -94,7 +94,7 @@ static void take(void *ctx, const char *name, const char *text, const char *faul
 	one.text = text;
 	one.len = strlen(text);
 	one.fault = several->m->options.write ? fault : "Write is off in the block Mqtt";
-	command(several->m, name, true, &one);
+	mqtt_command(several->m, name, true, &one);
 }
 
 static void on_commands(struct mqtt *m, const struct broker_message *message)
@@ -102,9 +102,9 @@ static void on_commands(struct mqtt *m, const struct broker_message *message)
 	struct several several = {.m = m, .message = message};
 
 	if (!look_is_current(m->broker.face))
-		take(&several, m->options.node, "", "owsd is away, or reloads: try again");
+		mqtt_take(&several, m->options.node, "", "owsd is away, or reloads: try again");
 	else if (m->stream.profile->take(&m->stream, message->topic, message->text, message->len,
-	                                 take, &several))
+	                                 mqtt_take, &several))
 		m->asked = m->asked || !message->retained;
 }
 
@@ -130,7 +130,7 @@ static void on_message(void *ctx, const struct broker_message *message)
 	}
 	if (m->options.write && profile->commands &&
 	    stream_command(&m->stream, message->topic, &row, name)) {
-		command(m, name, row, message);
+		mqtt_command(m, name, row, message);
 		return;
 	}
 	snprintf(name, sizeof(name), "%s", message->topic);
@@ -171,9 +171,9 @@ static const char *class_of(void *ctx, const char *name)
 
 /* --- Beginning and end of a configuration ---------------------------------------------------- */
 
-static void begin(struct face *face, int64_t now_ns)
+static void mqtt_begin(struct face *face, int64_t now_ns)
 {
-	struct mqtt *m = own(face);
+	struct mqtt *m = mqtt_own(face);
 
 	m->stream.profile = m->options.profile;
 	m->stream.prefix = m->options.prefix;
@@ -195,9 +195,9 @@ static void begin(struct face *face, int64_t now_ns)
 	broker_begin(&m->broker, now_ns);
 }
 
-static void end(struct face *face)
+static void mqtt_end(struct face *face)
 {
-	struct mqtt *m = own(face);
+	struct mqtt *m = mqtt_own(face);
 
 	broker_end(&m->broker);
 	commands_close(&m->commands);
@@ -205,7 +205,7 @@ static void end(struct face *face)
 
 static void make_rows(struct face *face)
 {
-	struct mqtt *m = own(face);
+	struct mqtt *m = mqtt_own(face);
 
 	m->sweep = true;
 	if (stream_make(&m->stream, face->ows))
@@ -216,17 +216,17 @@ static void make_rows(struct face *face)
 /* The file may be another than before. */
 static void renew(struct face *face, int64_t now_ns)
 {
-	struct mqtt *m = own(face);
+	struct mqtt *m = mqtt_own(face);
 	struct mqtt_options options;
 
 	m->sweep_ns = 0; /* the rows may be those of an image that is gone */
 	mqtt_options_take(&options, face);
 	if (memcmp(&options, &m->options, sizeof(options)) != 0) {
-		end(face);
+		mqtt_end(face);
 		m->options = options;
 		if (!face->live)
 			stream_clear(&m->stream);
-		begin(face, now_ns);
+		mqtt_begin(face, now_ns);
 	} else {
 		broker_hurry(&m->broker, now_ns);
 	}
@@ -265,7 +265,7 @@ static int64_t announce_ns(const struct mqtt *m)
 /* Publish what waits. Between two images no row can be looked at. */
 static void pump(struct face *face, int64_t now_ns)
 {
-	struct mqtt *m = own(face);
+	struct mqtt *m = mqtt_own(face);
 	bool session = m->stream.profile->session;
 
 	if (m->broker.state != BROKER_CONNECTED || (face->live && !look_is_current(face)))
@@ -293,7 +293,7 @@ static void pump(struct face *face, int64_t now_ns)
 
 static void look_at_clock(struct face *face, int64_t now_ns)
 {
-	struct mqtt *m = own(face);
+	struct mqtt *m = mqtt_own(face);
 
 	bool before = m->stream.clock_set;
 
@@ -306,7 +306,7 @@ static void look_at_clock(struct face *face, int64_t now_ns)
 
 static void show_status(struct face *face)
 {
-	struct mqtt *m = own(face);
+	struct mqtt *m = mqtt_own(face);
 	char name[MQTT_WAY_NAME];
 	const struct broker *b = &m->broker;
 
@@ -322,7 +322,7 @@ static void show_status(struct face *face)
 
 void mqtt_report(struct face *face, FILE *out)
 {
-	struct mqtt *m = own(face);
+	struct mqtt *m = mqtt_own(face);
 	const struct broker *b = &m->broker;
 	const struct {
 		const char *name;
@@ -349,7 +349,7 @@ void mqtt_report(struct face *face, FILE *out)
 
 static void go_on(struct face *face, int64_t now_ns)
 {
-	struct mqtt *m = own(face);
+	struct mqtt *m = mqtt_own(face);
 
 	pump(face, now_ns);
 	face->tick_ns = broker_next(&m->broker);
@@ -361,7 +361,7 @@ static void go_on(struct face *face, int64_t now_ns)
 
 int mqtt_open(struct face *face)
 {
-	struct mqtt *m = own(face);
+	struct mqtt *m = mqtt_own(face);
 	int64_t now_ns = ows_now();
 
 	signal(SIGPIPE, SIG_IGN);
@@ -379,15 +379,15 @@ int mqtt_open(struct face *face)
 	face->pace_ns = PACE_NS;
 	face->tick_ns = now_ns;
 	mqtt_options_take(&m->options, face);
-	begin(face, now_ns);
+	mqtt_begin(face, now_ns);
 	return 0;
 }
 
 void mqtt_close(struct face *face)
 {
-	struct mqtt *m = own(face);
+	struct mqtt *m = mqtt_own(face);
 
-	end(face);
+	mqtt_end(face);
 	stream_close(&m->stream);
 	wall_clock_close(&m->clock);
 	mosquitto_lib_cleanup();
@@ -395,7 +395,7 @@ void mqtt_close(struct face *face)
 
 void mqtt_tick(struct face *face, int64_t now_ns)
 {
-	struct mqtt *m = own(face);
+	struct mqtt *m = mqtt_own(face);
 
 	look_at_clock(face, now_ns);
 	broker_tick(&m->broker, now_ns);
@@ -405,7 +405,7 @@ void mqtt_tick(struct face *face, int64_t now_ns)
 
 void mqtt_changes(struct face *face, const int *signals, int n)
 {
-	struct mqtt *m = own(face);
+	struct mqtt *m = mqtt_own(face);
 
 	stream_changes(&m->stream, signals, n);
 	go_on(face, ows_now());
@@ -413,7 +413,7 @@ void mqtt_changes(struct face *face, const int *signals, int n)
 
 void mqtt_event(struct face *face, const struct face_event *event)
 {
-	struct mqtt *m = own(face);
+	struct mqtt *m = mqtt_own(face);
 	int64_t now_ns = ows_now();
 
 	switch (event->news) {

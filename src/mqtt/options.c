@@ -9,7 +9,7 @@
 #include "src/mqtt/options.h"
 #include "src/mqtt/profiles.h"
 
-static void copy(char *to, size_t size, const char *text)
+static void options_copy(char *to, size_t size, const char *text)
 {
 	snprintf(to, size, "%s", text ? text : "");
 }
@@ -21,11 +21,11 @@ static void name_node(struct mqtt_options *options, const struct face *face)
 	char host[64] = "";
 
 	if (face->config->mqtt.node) {
-		copy(options->node, sizeof(options->node), face->config->mqtt.node);
+		options_copy(options->node, sizeof(options->node), face->config->mqtt.node);
 		return;
 	}
 	if (gethostname(host, sizeof(host) - 1) || !*host || *host == '.')
-		copy(host, sizeof(host), "owsd");
+		options_copy(host, sizeof(host), "owsd");
 	host[strcspn(host, ".")] = '\0';
 	snprintf(options->node, sizeof(options->node), "%s%s%.60s", host,
 	         strcmp(instance, "OWS") != 0 ? "-" : "",
@@ -41,23 +41,23 @@ void mqtt_options_take(struct mqtt_options *options, const struct face *face)
 
 	memset(options, 0, sizeof(*options));
 	for (unsigned i = 0; i < mqtt->way_count; i++) {
-		copy(options->ways[i].host, OPTION_SIZE, mqtt->ways[i].host);
+		options_copy(options->ways[i].host, OPTION_SIZE, mqtt->ways[i].host);
 		options->ways[i].port = mqtt->ways[i].port;
 		options->ways[i].tls = mqtt->ways[i].tls;
 	}
 	options->way_count = mqtt->way_count;
-	copy(options->password_file, OPTION_SIZE, mqtt->password_file);
-	copy(options->ca_file, OPTION_SIZE, mqtt->ca_file);
-	copy(options->cert_file, OPTION_SIZE, mqtt->cert_file);
-	copy(options->key_file, OPTION_SIZE, mqtt->key_file);
+	options_copy(options->password_file, OPTION_SIZE, mqtt->password_file);
+	options_copy(options->ca_file, OPTION_SIZE, mqtt->ca_file);
+	options_copy(options->cert_file, OPTION_SIZE, mqtt->cert_file);
+	options_copy(options->key_file, OPTION_SIZE, mqtt->key_file);
 	name_node(options, face);
 	/* so a thousand machines have one and the same file */
-	copy(options->user, OPTION_SIZE,
-	     !mqtt->user && mqtt->password_file ? options->node : mqtt->user);
-	copy(options->topic, sizeof(options->topic), mqtt->topic);
+	options_copy(options->user, OPTION_SIZE,
+	             !mqtt->user && mqtt->password_file ? options->node : mqtt->user);
+	options_copy(options->topic, sizeof(options->topic), mqtt->topic);
 	options->profile = profiles_find(mqtt->profile);
 	profiles_prefix(options->profile, options->topic, options->node, options->prefix);
-	copy(options->discovery, sizeof(options->discovery), mqtt->discovery);
+	options_copy(options->discovery, sizeof(options->discovery), mqtt->discovery);
 	options->mqtt5 = mqtt->mqtt5;
 	options->write = mqtt->write;
 }

@@ -54,8 +54,8 @@ static void put_time(struct json *json, const struct stream *s, int64_t wall_ns)
 }
 
 /* A bad value has no number. owsd lost: no value is good. */
-static void put_value(struct json *json, const struct stream *s, const struct ows_value *v,
-                      const char *text)
+static void plain_put_value(struct json *json, const struct stream *s, const struct ows_value *v,
+                            const char *text)
 {
 	uint8_t quality = v->quality;
 	struct when now = when_now();
@@ -183,7 +183,7 @@ bool plain_value(struct stream *s, struct row *row)
 	if (!due)
 		return true;
 	stream_message(s, &json);
-	put_value(&json, s, &news.v, news.text);
+	plain_put_value(&json, s, &news.v, news.text);
 	return stream_put(s, row->topic, true) && stream_published(row, &news);
 }
 

@@ -107,7 +107,7 @@ static uint64_t ms_of(int64_t wall_ns)
 	return wall_ns > 0 ? (uint64_t)(wall_ns / NS_PER_MS) : 0;
 }
 
-static void begin(struct stream *s)
+static void sparkplug_begin(struct stream *s)
 {
 	Spb__Payload part = SPB__PAYLOAD__INIT;
 
@@ -118,7 +118,7 @@ static void begin(struct stream *s)
 	pack(s, &part);
 }
 
-static bool put(struct stream *s, const char *topic)
+static bool sparkplug_put(struct stream *s, const char *topic)
 {
 	return !fflush(s->out) && s->outlet.put(s->outlet.ctx, topic, s->text, s->len, false);
 }
@@ -136,7 +136,7 @@ static bool put_numbered(struct stream *s, const char *verb, const struct chip *
 	pack(s, &part);
 	snprintf(topic, sizeof(topic), "%s/%s%s/%s%s%s", s->prefix, chip ? "D" : "N", verb, s->node,
 	         chip ? "/" : "", chip ? chip->id : "");
-	if (!put(s, topic))
+	if (!sparkplug_put(s, topic))
 		return false;
 	s->seq++;
 	return true;
@@ -382,7 +382,7 @@ static bool birth_of_node(struct stream *s)
 		plain_chip_look(s, &s->rows[i], news.v.quality);
 	}
 	s->seq = 0;
-	begin(s);
+	sparkplug_begin(s);
 	put_bdseq(s, first_alias(s) - 1);
 	put_rebirth(s);
 	put_rows(s, NULL, false);
@@ -400,7 +400,7 @@ static bool birth(struct stream *s, int number, bool *more)
 	chip = &s->chips[number - 1];
 	if (chip->announced || !chip->seen || !plain_chip_online(s, chip))
 		return true;
-	begin(s);
+	sparkplug_begin(s);
 	put_rows(s, chip, false);
 	chip->announced = put_numbered(s, "BIRTH", chip);
 	return chip->announced;
@@ -422,7 +422,7 @@ static bool value(struct stream *s, struct row *row)
 		return true;
 	}
 	if (is_new(row, &news)) {
-		begin(s);
+		sparkplug_begin(s);
 		if (put_rows(s, chip, true) && !put_numbered(s, "DATA", chip)) {
 			for (int i = 0; i < s->count; i++)
 				if (s->rows[i].chip == row->chip && s->rows[i].queued)
@@ -432,22 +432,22 @@ static bool value(struct stream *s, struct row *row)
 	}
 	if (!chip || plain_chip_online(s, chip))
 		return true;
-	begin(s);
+	sparkplug_begin(s);
 	chip->announced = !put_numbered(s, "DEATH", chip);
 	return !chip->announced;
 }
 
 /* That owsd is lost the values say, and deaths of devices. */
-static bool state(struct stream *s, enum stream_node node)
+static bool sparkplug_state(struct stream *s, enum stream_node node)
 {
 	char topic[TOPIC_SIZE];
 
 	if (node == STREAM_THERE || node == STREAM_LOST)
 		return true;
-	begin(s);
+	sparkplug_begin(s);
 	put_bdseq(s, 0);
 	snprintf(topic, sizeof(topic), "%s/NDEATH/%s", s->prefix, s->node);
-	return put(s, topic);
+	return sparkplug_put(s, topic);
 }
 
 /* --- Commands -------------------------------------------------------------------------------- */
@@ -518,8 +518,8 @@ static const struct row *row_of(const struct stream *s, const Spb__Metric *metri
 	return NULL;
 }
 
-static void command(const struct stream *s, const Spb__Metric *metric, int chip, stream_take *take,
-                    void *ctx)
+static void sparkplug_command(const struct stream *s, const Spb__Metric *metric, int chip,
+                              stream_take *take, void *ctx)
 {
 	const struct row *row = row_of(s, metric, chip);
 	char buffer[VALUE_TEXT_MAX];
@@ -564,11 +564,11 @@ static bool take_all(struct stream *s, const char *topic, const char *text, size
 			again = again || (metric->value_case == SPB__METRIC__VALUE_BOOLEAN_VALUE &&
 			                  metric->boolean_value);
 		else
-			command(s, metric,
-			        chip     ? (int)(chip - s->chips)
-			        : device ? s->chip_count /* none has that */
-			                 : -1,
-			        take, ctx);
+			sparkplug_command(s, metric,
+			                  chip     ? (int)(chip - s->chips)
+			                  : device ? s->chip_count /* none has that */
+			                           : -1,
+			                  take, ctx);
 	}
 	spb__payload__free_unpacked(payload, NULL);
 	return again;
@@ -581,7 +581,7 @@ const struct profile profile_sparkplug = {
 	.topic = plain_topic,
 	.birth = birth,
 	.value = value,
-	.state = state,
+	.state = sparkplug_state,
 	.listen = listen,
 	.listen_write = listen_write,
 	.take = take_all,

@@ -135,7 +135,7 @@ static const char *error_of(uint8_t quality)
 	return quality == OWS_Q_DIFFERS ? "rw" : quality == OWS_Q_STALE ? "rp" : "r";
 }
 
-static bool put_value(struct stream *s, const struct row *row, const struct news *news)
+static bool wirenboard_put_value(struct stream *s, const struct row *row, const struct news *news)
 {
 	stream_value(s, news, "1", "0");
 	return stream_put(s, row->topic, true);
@@ -154,14 +154,14 @@ static bool value(struct stream *s, struct row *row)
 	 * The conventions have the error removed before the value comes, and the old value would
 	 * count for that time. So the value comes before that, too.
 	 */
-	if (!put_value(s, row, &news) ||
+	if (!wirenboard_put_value(s, row, &news) ||
 	    ((!row->published || !row->good) &&
-	     (!put_below_row(s, row, ERROR, "") || !put_value(s, row, &news))))
+	     (!put_below_row(s, row, ERROR, "") || !wirenboard_put_value(s, row, &news))))
 		return false;
 	return stream_published(row, &news);
 }
 
-static bool state(struct stream *s, enum stream_node node)
+static bool wirenboard_state(struct stream *s, enum stream_node node)
 {
 	return stream_put_below(s, ERROR, node == STREAM_THERE ? "" : "r");
 }
@@ -189,5 +189,5 @@ const struct profile profile_wirenboard = {
 	.topic = topic_of,
 	.birth = birth,
 	.value = value,
-	.state = state,
+	.state = wirenboard_state,
 };

@@ -24,7 +24,7 @@ static bool unacknowledged(struct ows *h, int id)
 }
 
 /* The id of an alarm to acknowledge; -1 after printing why there is none. */
-static int find(struct ows *h, const char *name)
+static int alarms_ack_find(struct ows *h, const char *name)
 {
 	struct ows_alarm_state state = {0};
 	int id = ows_find(h, name);
@@ -79,7 +79,7 @@ static int acknowledge_names(struct ows *h, int count, char **names)
 	int status = CTL_DONE;
 
 	for (int i = 0; i < count; i++)
-		if (find(h, names[i]) < 0)
+		if (alarms_ack_find(h, names[i]) < 0)
 			status = CTL_FAILED;
 	for (int i = 0; status == CTL_DONE && i < count; i++)
 		status = acknowledge(h, names[i], ows_find(h, names[i]));

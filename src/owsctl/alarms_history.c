@@ -33,8 +33,8 @@ static const char *value_text(const struct ows_alarm *alarm, bool after, int dec
 	return text;
 }
 
-static bool add_row(struct table *table, const struct when *now, const struct ows_info *info,
-                    const struct ows_alarm *alarm)
+static bool alarms_history_add_row(struct table *table, const struct when *now,
+                                   const struct ows_info *info, const struct ows_alarm *alarm)
 {
 	char before[VALUE_TEXT_MAX], after[VALUE_TEXT_MAX], time[WHEN_TEXT];
 	const char *left = value_text(alarm, false, info->decimals, before);
@@ -96,7 +96,7 @@ static bool walk(struct ows *h, char *const *patterns, int count, struct table *
 		    !names_match(info.name, patterns, count))
 			continue;
 		if (table)
-			ok = add_row(table, &now, &info, &alarm);
+			ok = alarms_history_add_row(table, &now, &info, &alarm);
 		else
 			add_json(json, &now, number, info.name, &alarm);
 	}
@@ -116,7 +116,7 @@ static bool print_table(struct ows *h, char *const *patterns, int count)
 	return ok;
 }
 
-static void print_json(struct ows *h, char *const *patterns, int count)
+static void alarms_history_print_json(struct ows *h, char *const *patterns, int count)
 {
 	struct json json;
 
@@ -142,7 +142,7 @@ int alarms_history(struct ctl *ctl, int argc, char **argv)
 	if (!alarms_known(h, argv + optind, argc - optind))
 		status = CTL_FAILED;
 	else if (ctl->json)
-		print_json(h, argv + optind, argc - optind);
+		alarms_history_print_json(h, argv + optind, argc - optind);
 	else if (!print_table(h, argv + optind, argc - optind))
 		status = ctl_fail("no memory");
 	ows_close(h);

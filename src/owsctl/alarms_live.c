@@ -35,7 +35,7 @@ static const struct table_column columns[] = {
 };
 #define COLUMNS (sizeof(columns) / sizeof(columns[0]))
 
-static void add_row(struct live *live, const struct present *alarm)
+static void alarms_live_add_row(struct live *live, const struct present *alarm)
 {
 	char value[128], words[READING_WORDS], span[WHEN_TEXT] = "-";
 	const char *state = alarm->state;
@@ -55,12 +55,12 @@ static void add_row(struct live *live, const struct present *alarm)
 		live->ok = false;
 }
 
-static void add(void *ctx, const struct present *alarm)
+static void alarms_live_add(void *ctx, const struct present *alarm)
 {
 	struct live *live = ctx;
 
 	if (live->table) {
-		add_row(live, alarm);
+		alarms_live_add_row(live, alarm);
 		return;
 	}
 	json_object(&live->json, NULL);
@@ -112,8 +112,8 @@ static void print_reasons(struct live *live, const struct rows *rows, char *cons
 }
 
 /* rows: all signals of the table, in its order. */
-static bool show(struct ows *h, const struct rows *rows, bool json, char *const *patterns,
-                 int pattern_count)
+static bool alarms_live_show(struct ows *h, const struct rows *rows, bool json,
+                             char *const *patterns, int pattern_count)
 {
 	static struct reading reading;
 	struct table table;
@@ -128,7 +128,8 @@ static bool show(struct ows *h, const struct rows *rows, bool json, char *const 
 	}
 	for (int i = 0; live.ok && i < rows->count; i++)
 		if (names_match(rows->row[i].name, patterns, pattern_count))
-			present_each(h, i, rows->row[i].id, live.now.boot, &reading, add, &live);
+			present_each(h, i, rows->row[i].id, live.now.boot, &reading,
+			             alarms_live_add, &live);
 	if (json) {
 		json_array_end(&live.json);
 		json_end(&live.json);
@@ -203,7 +204,7 @@ int alarms_live(struct ctl *ctl, int argc, char **argv)
 	ctl_alive(ctl, h, ows_now());
 	if (!alarms_known(h, argv + optind, argc - optind))
 		status = CTL_FAILED;
-	else if (!show(h, &rows, ctl->json, argv + optind, argc - optind))
+	else if (!alarms_live_show(h, &rows, ctl->json, argv + optind, argc - optind))
 		status = ctl_fail("no memory");
 	rows_free(&rows);
 	ows_close(h);

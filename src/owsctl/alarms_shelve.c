@@ -9,7 +9,7 @@
 #include "src/owsctl/ctl.h"
 #include "src/show/when.h"
 
-static int fail(const char *name, bool shelve, int err)
+static int alarms_shelve_fail(const char *name, bool shelve, int err)
 {
 	const char *verb = shelve ? "shelve" : "unshelve";
 
@@ -45,7 +45,7 @@ static int request(struct ctl *ctl, int count, char **names, uint32_t seconds, c
 		id = ows_find(h, names[i]);
 		err = ows_shelve(h, id, seconds, why);
 		if (err)
-			status = fail(names[i], seconds > 0, err);
+			status = alarms_shelve_fail(names[i], seconds > 0, err);
 	}
 	ows_close(h);
 	return status;

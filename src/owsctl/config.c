@@ -45,7 +45,7 @@ static int status_of(int err)
 }
 
 /* Each item that is named, with all its fields. */
-static int show(const struct config *config, char *const *names, int count)
+static int config_show(const struct config *config, char *const *names, int count)
 {
 	int status = count ? CTL_DONE : ctl_fail("show which item? config FILE list has them");
 
@@ -75,7 +75,7 @@ static int list(struct ctl *ctl, const char *file, bool whole, char *const *patt
 
 	if (err)
 		return err == -ENOMEM ? CTL_FAILED : status_of(err);
-	status = whole && !ctl->json ? show(config, patterns, count)
+	status = whole && !ctl->json ? config_show(config, patterns, count)
 	                             : config_list(config, patterns, count, ctl->json);
 	config_free(config);
 	return status;

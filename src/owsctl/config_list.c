@@ -85,7 +85,7 @@ static void print_driver(const struct config *config)
 	       seconds(config->period_ns));
 }
 
-static bool add_row(struct table *table, const struct config_item *item)
+static bool config_list_add_row(struct table *table, const struct config_item *item)
 {
 	char per_factor[16], stale[32] = "-", limits[LIMITS_TEXT];
 
@@ -124,7 +124,7 @@ static bool print_table(const struct config *config, char *const *patterns, int 
 		table.absent[LIMITS] = true;
 	for (unsigned i = 0; ok && i < config->item_count; i++)
 		if (names_match(config->items[i].name, patterns, count))
-			ok = add_row(&table, &config->items[i]);
+			ok = config_list_add_row(&table, &config->items[i]);
 	if (ok)
 		table_print(&table, true);
 	table_free(&table);
@@ -207,7 +207,7 @@ static void item_json(struct json *json, const struct config_item *item)
 	json_object_end(json);
 }
 
-static void print_json(const struct config *config, char *const *patterns, int count)
+static void config_list_print_json(const struct config *config, char *const *patterns, int count)
 {
 	static const char *const relations[] = {
 		[CONFIG_FIRST] = "first",
@@ -250,7 +250,7 @@ int config_list(const struct config *config, char *const *patterns, int count, b
 	if (!some)
 		return ctl_fail("no item matches");
 	if (json)
-		print_json(config, patterns, count);
+		config_list_print_json(config, patterns, count);
 	else if (!print_table(config, patterns, count))
 		return ctl_fail("no memory");
 	return CTL_DONE;

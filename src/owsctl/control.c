@@ -49,7 +49,7 @@ static bool parse_number(const char *word, unsigned long most, uint32_t *number)
 	return true;
 }
 
-static int find(struct control *control, const char *name)
+static int control_find(struct control *control, const char *name)
 {
 	int id = ows_find(control->h, name);
 
@@ -63,7 +63,7 @@ static int do_set(struct control *control, char *equals)
 	int id;
 
 	*equals = '\0';
-	id = find(control, control->line);
+	id = control_find(control, control->line);
 	return id < 0 ? id : ows_set_text(control->h, id, equals + 1, NULL);
 }
 
@@ -88,7 +88,7 @@ static int do_for(struct control *control, char *rest)
 static int do_ack(struct control *control, char *rest)
 {
 	struct ows_alarm_state state = {0};
-	int id = find(control, rest);
+	int id = control_find(control, rest);
 	int err = id < 0 ? id : ows_alarm_state(control->h, id, &state);
 
 	if (err)
@@ -100,7 +100,7 @@ static int do_shelve(struct control *control, char *rest)
 {
 	char *name = next_word(&rest);
 	uint32_t seconds;
-	int id = find(control, name);
+	int id = control_find(control, name);
 
 	if (id < 0)
 		return id;
@@ -199,7 +199,7 @@ static bool read_line(struct control *control)
 }
 
 /* Returns whether the program said goodbye. */
-static bool follow(struct control *control, char *copy)
+static bool control_follow(struct control *control, char *copy)
 {
 	while (read_line(control)) {
 		if (!control->err) {
@@ -232,7 +232,7 @@ int verb_control(struct ctl *ctl, int argc, char **argv)
 	status = ctl_open_as(ctl, OWS_CONTROL, name, &control.h);
 	if (status)
 		return status;
-	if (!follow(&control, copy))
+	if (!control_follow(&control, copy))
 		return CTL_DONE; /* Not closed: owsd takes the end for a loss, not for a goodbye */
 	ows_close(control.h);
 	puts("ok");

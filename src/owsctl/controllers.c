@@ -146,7 +146,7 @@ static void origin_json(const struct who *who, struct json *json, const char *na
 	json_object_end(json);
 }
 
-static void print_json(struct who *who)
+static void controllers_print_json(struct who *who)
 {
 	struct ows_origin origin;
 	struct ows_controller controller;
@@ -185,7 +185,7 @@ int verb_who(struct ctl *ctl, int argc, char **argv)
 	who.now = when_now();
 	ctl_alive(ctl, who.h, who.now.boot);
 	if (ctl->json)
-		print_json(&who);
+		controllers_print_json(&who);
 	else
 		status = print_text(&who);
 	ows_close(who.h);

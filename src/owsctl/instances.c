@@ -27,7 +27,8 @@ static const struct table_column columns[] = {
 #define PLACE_COLUMN 6
 /* clang-format on */
 
-static bool add_row(struct table *table, const struct instance_info *info, const struct when *now)
+static bool instances_add_row(struct table *table, const struct instance_info *info,
+                              const struct when *now)
 {
 	char pid[16] = "-", signals[16] = "-", span[WHEN_TEXT] = "-";
 
@@ -110,7 +111,7 @@ static int open_places(struct found *found)
 	return status;
 }
 
-static bool show(const struct found *found, bool as_json)
+static bool instances_show(const struct found *found, bool as_json)
 {
 	struct instance_info info;
 	struct when now = when_now();
@@ -129,7 +130,7 @@ static bool show(const struct found *found, bool as_json)
 			if (as_json)
 				add_json(&json, &info, &now);
 			else
-				ok = add_row(&table, &info, &now);
+				ok = instances_add_row(&table, &info, &now);
 		}
 	if (as_json) {
 		json_array_end(&json);
@@ -154,7 +155,7 @@ int verb_instances(struct ctl *ctl, int argc, char **argv)
 	status = open_places(&found);
 	if (status == CTL_DONE && !found.remains[0].count && !found.remains[1].count)
 		ctl_fail("no owsd has run here");
-	if (!show(&found, ctl->json))
+	if (!instances_show(&found, ctl->json))
 		status = ctl_fail("no memory");
 	close_places(&found);
 	return status;
@@ -179,7 +180,7 @@ static int remove_one(const struct found *found, const char *name, unsigned *fil
 	return err;
 }
 
-static int refuse(const char *name, int err, int pid)
+static int instances_refuse(const char *name, int err, int pid)
 {
 	switch (-err) {
 	case EBUSY:
@@ -227,7 +228,7 @@ int verb_remove(struct ctl *ctl, int argc, char **argv)
 		int pid = 0, err = remove_one(&found, name, &files, &pid);
 
 		if (err)
-			status = refuse(name, err, pid);
+			status = instances_refuse(name, err, pid);
 		else if (!ctl->json)
 			printf("removed %s: %u file%s\n", name, files, files == 1 ? "" : "s");
 		if (ctl->json) {

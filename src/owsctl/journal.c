@@ -55,7 +55,7 @@ static bool print_rows(struct journal *j, unsigned from, bool titled)
 }
 
 /* One document; while it follows, a line for each entry. */
-static void print_json(struct journal *j, unsigned from)
+static void journal_print_json(struct journal *j, unsigned from)
 {
 	struct when now = when_now();
 	struct json json;
@@ -78,7 +78,7 @@ static bool print_from(struct journal *j, unsigned from, bool titled)
 {
 	if (!j->ctl->json)
 		return print_rows(j, from, titled);
-	print_json(j, from);
+	journal_print_json(j, from);
 	return true;
 }
 
@@ -133,7 +133,7 @@ static int print_both(struct journal *j)
 }
 
 /* A start of owsd begins its journals anew; a reload goes on with them. */
-static bool follow(struct journal *j)
+static bool journal_follow(struct journal *j)
 {
 	struct ows_daemon daemon = {0}, before;
 	uint32_t news = 0;
@@ -183,7 +183,7 @@ static bool patterns_known(struct journal *j)
 	return known;
 }
 
-static int show(struct journal *j)
+static int journal_show(struct journal *j)
 {
 	int status;
 
@@ -195,7 +195,7 @@ static int show(struct journal *j)
 	status = print_both(j);
 	ows_history_close(j->history);
 	j->history = NULL;
-	if (j->follows && !follow(j))
+	if (j->follows && !journal_follow(j))
 		status = ctl_fail("no memory");
 	table_free(&j->table);
 	journal_free(&j->entries);
@@ -246,7 +246,7 @@ int verb_journal(struct ctl *ctl, int argc, char **argv)
 	j.pattern_count = argc - optind;
 	status = open_both(&j, directory);
 	if (!status)
-		status = show(&j);
+		status = journal_show(&j);
 	ows_history_close(j.history);
 	ows_close(j.h);
 	return status;

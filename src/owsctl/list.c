@@ -16,8 +16,8 @@ static const struct table_column columns[] = {
 /* clang-format on */
 enum { UNIT = 2, ALARM = 4 };
 
-static bool add_row(struct table *table, struct ows *h, const struct row *row,
-                    const struct reading *reading)
+static bool list_add_row(struct table *table, struct ows *h, const struct row *row,
+                         const struct reading *reading)
 {
 	char value[128], words[READING_WORDS], alarm[STANDING_WORDS], span[WHEN_TEXT] = "-";
 	struct ows_target target = {.name = "-"};
@@ -49,7 +49,7 @@ static bool print_table(struct ows *h, struct rows *rows, struct reading *readin
 	for (int i = 0; ok && i < rows->count; i++) {
 		row_read(h, &rows->row[i], ows_now(), reading);
 		reading_round(reading, row_decimals(&rows->row[i]));
-		ok = add_row(&table, h, &rows->row[i], reading);
+		ok = list_add_row(&table, h, &rows->row[i], reading);
 	}
 	if (ok)
 		table_print(&table, true);
@@ -57,7 +57,7 @@ static bool print_table(struct ows *h, struct rows *rows, struct reading *readin
 	return ok;
 }
 
-static void print_json(struct ows *h, struct rows *rows, struct reading *reading)
+static void list_print_json(struct ows *h, struct rows *rows, struct reading *reading)
 {
 	struct when now = when_now();
 	struct json json;
@@ -99,7 +99,7 @@ int verb_list(struct ctl *ctl, int argc, char **argv)
 	}
 	ctl_alive(ctl, h, ows_now());
 	if (ctl->json)
-		print_json(h, &rows, &reading);
+		list_print_json(h, &rows, &reading);
 	else
 		ok = print_table(h, &rows, &reading);
 	if (!ok)

@@ -12,7 +12,7 @@ static bool same(const uint8_t a[ROM_LEN], const uint8_t b[ROM_LEN])
 	return memcmp(a, b, ROM_LEN) == 0;
 }
 
-static int find(const struct merge_device *list, unsigned count, const uint8_t rom[ROM_LEN])
+static int merge_find(const struct merge_device *list, unsigned count, const uint8_t rom[ROM_LEN])
 {
 	for (unsigned i = 0; i < count; i++)
 		if (same(list[i].rom, rom))
@@ -24,8 +24,8 @@ static enum merge_fault replace(struct merge_device *known, unsigned known_count
                                 struct merge_device *found, unsigned found_count,
                                 const struct merge_pair *pair)
 {
-	int old = find(known, known_count, pair->old_rom);
-	int new = find(found, found_count, pair->new_rom);
+	int old = merge_find(known, known_count, pair->old_rom);
+	int new = merge_find(found, found_count, pair->new_rom);
 
 	if (old < 0)
 		return MERGE_OLD_UNKNOWN;
@@ -45,8 +45,8 @@ static enum merge_fault replace(struct merge_device *known, unsigned known_count
 	return MERGE_RIGHT;
 }
 
-static unsigned count(const struct merge_device *list, unsigned n, uint8_t family,
-                      enum merge_fate fate)
+static unsigned merge_count(const struct merge_device *list, unsigned n, uint8_t family,
+                            enum merge_fate fate)
 {
 	unsigned sum = 0;
 
@@ -61,10 +61,10 @@ static void pair_up(struct merge_device *known, unsigned known_count, struct mer
 {
 	for (unsigned i = 0; i < known_count; i++) {
 		uint8_t family = known[i].rom[0];
-		unsigned missing = count(known, known_count, family, MERGE_MISSING);
+		unsigned missing = merge_count(known, known_count, family, MERGE_MISSING);
 
 		if (known[i].fate != MERGE_MISSING ||
-		    missing != count(found, found_count, family, MERGE_NEW))
+		    missing != merge_count(found, found_count, family, MERGE_NEW))
 			continue;
 		known[i].pairs = missing;
 		for (unsigned k = 0; k < found_count; k++)
@@ -78,14 +78,14 @@ enum merge_fault merge_decide(struct merge_device *known, unsigned known_count,
                               const struct merge_pair *pairs, unsigned pair_count, unsigned *wrong)
 {
 	for (unsigned i = 0; i < known_count; i++) {
-		bool there = find(found, found_count, known[i].rom) >= 0;
+		bool there = merge_find(found, found_count, known[i].rom) >= 0;
 
 		known[i].fate = there ? MERGE_STAYS : MERGE_MISSING;
 		known[i].other = -1;
 		known[i].pairs = 0;
 	}
 	for (unsigned i = 0; i < found_count; i++) {
-		bool there = find(known, known_count, found[i].rom) >= 0;
+		bool there = merge_find(known, known_count, found[i].rom) >= 0;
 
 		found[i].fate = there ? MERGE_STAYS : MERGE_NEW;
 		found[i].other = -1;

@@ -19,7 +19,7 @@ struct status {
 	bool has_begin;
 };
 
-static int look(struct mission *mission, struct status *status)
+static int mission_look(struct mission *mission, struct status *status)
 {
 	const struct {
 		const char *property;
@@ -44,7 +44,7 @@ static int look(struct mission *mission, struct status *status)
 	return CTL_DONE;
 }
 
-static void print_json(const struct status *status)
+static void mission_print_json(const struct status *status)
 {
 	char begin[MISSION_TIME], clock[MISSION_TIME];
 	struct json json;
@@ -69,10 +69,10 @@ static int print_status(const struct ctl *ctl, struct mission *mission)
 	char begin[MISSION_TIME] = "-", clock[MISSION_TIME];
 	struct status status = {0};
 
-	if (look(mission, &status))
+	if (mission_look(mission, &status))
 		return CTL_FAILED;
 	if (ctl->json) {
-		print_json(&status);
+		mission_print_json(&status);
 		return CTL_DONE;
 	}
 	if (status.has_begin)

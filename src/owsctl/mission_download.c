@@ -132,7 +132,7 @@ static int print_all(const struct ctl *ctl, struct download *download)
 }
 
 /* How many samples, from when on, of what. */
-static int look(struct download *download)
+static int mission_download_look(struct download *download)
 {
 	struct mission *mission = download->mission;
 	double elements, samples = 0, running = 0, logs = 0;
@@ -180,7 +180,7 @@ int mission_download(const struct ctl *ctl, struct mission *mission)
 	int status;
 
 	download = (struct download){.mission = mission};
-	status = look(&download);
+	status = mission_download_look(&download);
 	if (status)
 		return status;
 	json_open(&download.json, stdout);

@@ -26,8 +26,8 @@ static void print_text(size_t len)
 	}
 }
 
-static void print_json(struct json *json, const char *path, const struct bus_answer *answer,
-                       size_t len)
+static void read_print_json(struct json *json, const char *path, const struct bus_answer *answer,
+                            size_t len)
 {
 	json_object(json, NULL);
 	json_string(json, "path", path);
@@ -66,7 +66,7 @@ static int read_one(const struct ctl *ctl, struct json *json, struct target *tar
 	if (!err)
 		len = target_unpad(text, ask.answer.len);
 	if (ctl->json)
-		print_json(json, given, &ask.answer, len);
+		read_print_json(json, given, &ask.answer, len);
 	else if (!err)
 		print_text(len);
 	if (!err)

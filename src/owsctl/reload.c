@@ -10,7 +10,7 @@
 
 #define WAIT_NS (30 * NS_PER_S)
 
-static int fail(const char *name, int err)
+static int reload_fail(const char *name, int err)
 {
 	switch (-err) {
 	case ENOENT:
@@ -56,5 +56,5 @@ int verb_reload(struct ctl *ctl, int argc, char **argv)
 	if (err && *why)
 		return ctl_fail("owsd refuses the configuration, and all goes on as before: %s",
 		                why);
-	return err ? fail(ctl->instance, err) : CTL_DONE;
+	return err ? reload_fail(ctl->instance, err) : CTL_DONE;
 }

@@ -10,8 +10,8 @@
 #include "src/show/names.h"
 #include "src/signal/hash.h"
 
-static int add(struct ows *h, struct rows *rows, const char *name, int signal,
-               const struct ows_info *info)
+static int rows_add(struct ows *h, struct rows *rows, const char *name, int signal,
+                    const struct ows_info *info)
 {
 	struct row *row = &rows->row[rows->count];
 
@@ -45,13 +45,13 @@ int rows_collect(struct ows *h, char *const *patterns, int pattern_count, bool d
 		const struct attribute_def *def = &attribute_table[i];
 
 		if (def->driver && def->readable && names_match(def->name, patterns, pattern_count))
-			err = add(h, rows, def->name, -1, NULL);
+			err = rows_add(h, rows, def->name, -1, NULL);
 	}
 	for (int i = 0; err == 0 && i < count; i++) {
 		struct ows_info info;
 
 		if (ows_info(h, i, &info) == 0 && names_match(info.name, patterns, pattern_count))
-			err = add(h, rows, info.name, i, &info);
+			err = rows_add(h, rows, info.name, i, &info);
 	}
 	if (err)
 		rows_free(rows);

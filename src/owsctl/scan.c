@@ -102,7 +102,7 @@ static void print_values(struct json *json, const struct scan_device *device)
 	json_object_end(json);
 }
 
-static void print_json(const struct scan *scan)
+static void scan_print_json(const struct scan *scan)
 {
 	struct json json;
 
@@ -149,10 +149,10 @@ static int print_rio(const struct ctl *ctl, const struct target *target,
 	                         : scan_rio(scan, target->name, false, choice);
 }
 
-static int show(const struct ctl *ctl, const struct scan *scan)
+static int scan_show(const struct ctl *ctl, const struct scan *scan)
 {
 	if (ctl->json)
-		print_json(scan);
+		scan_print_json(scan);
 	else if (scan->count && !print_table(scan))
 		return ctl_fail("no memory");
 	return CTL_DONE;
@@ -186,8 +186,8 @@ static int find_devices(struct target *target, struct scan *scan)
 	return err ? ctl_fail("%s does not answer any more", target->name) : CTL_DONE;
 }
 
-static int look(struct ctl *ctl, int64_t timeout_ns, const char *aliases, bool rio,
-                struct scan_choice choice, struct scan_merge *merge)
+static int scan_look(struct ctl *ctl, int64_t timeout_ns, const char *aliases, bool rio,
+                     struct scan_choice choice, struct scan_merge *merge)
 {
 	struct target target;
 	struct served served;
@@ -203,7 +203,7 @@ static int look(struct ctl *ctl, int64_t timeout_ns, const char *aliases, bool r
 		status = scan_aliases(aliases, &scan);
 	if (!status && (scan.count || !rio))
 		status = rio ? print_rio(ctl, &target, &served, &scan, merge, choice)
-		             : show(ctl, &scan);
+		             : scan_show(ctl, &scan);
 	if (!status && !scan.count) {
 		status = ctl_nothing(
 			"%s answers, but no device is there: look at the wires and the "
@@ -261,7 +261,7 @@ int verb_scan(struct ctl *ctl, int argc, char **argv)
 	if (merge.file)
 		status = scan_merge_open(&merge);
 	if (!status)
-		status = look(ctl, timeout_ns, aliases, rio, choice, &merge);
+		status = scan_look(ctl, timeout_ns, aliases, rio, choice, &merge);
 	if (status && rio)
 		warn_of_empty_file();
 	scan_merge_close(&merge);

@@ -30,7 +30,7 @@ static bool name_devices(struct scan *scan, const uint8_t rom[ROM_LEN], const ch
 }
 
 /* One line as owserver takes it: an id with or without a slash, blanks or '=', and the name. */
-static void take(const char *file, unsigned number, char *line, struct scan *scan)
+static void scan_alias_take(const char *file, unsigned number, char *line, struct scan *scan)
 {
 	uint8_t rom[ROM_LEN];
 	char *id = line + strspn(line, " \t/"), *name;
@@ -59,7 +59,7 @@ int scan_aliases(const char *file, struct scan *scan)
 	if (!stream)
 		return ctl_fail("%s: %s", file, strerror(errno));
 	for (unsigned number = 1; getline(&line, &room, stream) >= 0; number++)
-		take(file, number, line, scan);
+		scan_alias_take(file, number, line, scan);
 	err = ferror(stream) ? errno : 0;
 	free(line);
 	fclose(stream);

@@ -38,7 +38,7 @@ void scan_names_free(struct scan_names *names)
 }
 
 /* The name's place in the hash table, or the free place for it. Half of the places stay free. */
-static unsigned *find(const struct scan_names *names, const char *name)
+static unsigned *scan_item_find(const struct scan_names *names, const char *name)
 {
 	unsigned at = (unsigned)hash_text(HASH_BEGIN, name, strlen(name)) & (names->places - 1);
 
@@ -56,7 +56,7 @@ void scan_names_add(struct scan_names *names, const char *name)
 	if (names->count == names->room)
 		return;
 	memcpy(to, name, strnlen(name, SIGNAL_NAME_MAX)); /* the other bytes are 0 */
-	place = find(names, to);
+	place = scan_item_find(names, to);
 	names->count++;
 	if (!*place)
 		*place = names->count;
@@ -64,7 +64,7 @@ void scan_names_add(struct scan_names *names, const char *name)
 
 static bool is_free(const struct scan_names *names, const char *name)
 {
-	return !*find(names, name) && !signal_name_fault(name);
+	return !*scan_item_find(names, name) && !signal_name_fault(name);
 }
 
 /* The last number given for the word: the search for a free number goes on from there. */
@@ -234,7 +234,7 @@ struct refusal {
 	int status;
 };
 
-static void refuse(void *ctx, bool is_error, const char *message)
+static void scan_item_refuse(void *ctx, bool is_error, const char *message)
 {
 	struct refusal *refusal = ctx;
 
@@ -245,7 +245,7 @@ static void refuse(void *ctx, bool is_error, const char *message)
 int scan_check(const struct rio *rio, const char *what)
 {
 	struct refusal refusal = {.what = what};
-	struct config_report report = {.line = refuse, .ctx = &refusal};
+	struct config_report report = {.line = scan_item_refuse, .ctx = &refusal};
 	struct config *config;
 	int err = config_parse("what was found", rio->text, rio->len, &report, &config);
 

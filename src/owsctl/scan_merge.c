@@ -213,7 +213,7 @@ static bool parse_pair(struct work *work, const char *text, struct merge_pair *p
 	return false;
 }
 
-static int refuse(const char *pair, enum merge_fault fault)
+static int scan_merge_refuse(const char *pair, enum merge_fault fault)
 {
 	static const char *const reasons[] = {
 		[MERGE_OLD_UNKNOWN] = "no item of the file has this device",
@@ -238,7 +238,7 @@ static int decide(struct work *work)
 			return CTL_USAGE;
 	fault = merge_decide(work->known, work->known_count, work->found, work->scan->count,
 	                     work->pair, merge->pair_count, &wrong);
-	return fault == MERGE_RIGHT ? CTL_DONE : refuse(merge->pair[wrong], fault);
+	return fault == MERGE_RIGHT ? CTL_DONE : scan_merge_refuse(merge->pair[wrong], fault);
 }
 
 /* "room1, room2 and 3 more": the signals of a device of the file. */

@@ -15,8 +15,8 @@ static struct rio_node *driver_of(struct rio *rio)
 	return rio_child(&rio->root, "OwsDrv");
 }
 
-static int fill(struct rio **rio, struct scan_names *names, const struct scan *scan,
-                const char *target, struct scan_choice choice)
+static int scan_rio_fill(struct rio **rio, struct scan_names *names, const struct scan *scan,
+                         const char *target, struct scan_choice choice)
 {
 	char *quoted = rio_quote(target);
 	int err = quoted ? rio_set(rio, driver_of(*rio), "TargetName", quoted) : -ENOMEM;
@@ -43,7 +43,7 @@ int scan_rio(const struct scan *scan, const char *target, bool several, struct s
 	if (!err)
 		err = rio_parse("scan", edit_empty, strlen(edit_empty), &silent, &rio);
 	if (!err)
-		err = fill(&rio, &names, scan, target, choice);
+		err = scan_rio_fill(&rio, &names, scan, target, choice);
 	if (err)
 		status = ctl_fail("%s", err == -ENOMEM ? "no memory" : strerror(-err));
 	else if (!names.count)

@@ -59,7 +59,7 @@ static bool find_own(const struct ctl *ctl, const struct ows *h, struct served *
 	return false;
 }
 
-static int refuse(const struct ctl *ctl, const struct served *served)
+static int served_refuse(const struct ctl *ctl, const struct served *served)
 {
 	if (served->own)
 		return ctl_fail(
@@ -99,7 +99,7 @@ int served_find(const struct ctl *ctl, struct served *served)
 	if (ctl->named && !served->runs)
 		return ctl_fail("owsd %s is not running", ctl->instance);
 	if (ctl->named && (!served->target[0] || (served->own && ctl->verb->writes)))
-		return refuse(ctl, served);
+		return served_refuse(ctl, served);
 	/* as where owsd serves nothing */
 	if (served->own && ctl->verb->writes)
 		served->target[0] = '\0';

@@ -95,7 +95,7 @@ static int prepare(const struct ctl *ctl, struct ows *h, struct order *order)
 	return CTL_DONE;
 }
 
-static int put(struct ows *h, struct order *order)
+static int set_put(struct ows *h, struct order *order)
 {
 	if (order->type == OWS_STRING)
 		return ows_set_text(h, order->id, order->text, &order->stamp);
@@ -118,16 +118,16 @@ static int refuse_access(const struct order *order)
 	                order->name);
 }
 
-static int send(struct ows *h, struct order *order)
+static int set_send(struct ows *h, struct order *order)
 {
 	struct ows_daemon daemon = {0};
-	int err = put(h, order);
+	int err = set_put(h, order);
 
 	/* owsd has just moved to new memory: set the value there */
 	for (int i = 0; err == -ESTALE && i < 10; i++) {
 		ctl_nap();
 		if (ows_reopen(h) == 0)
-			err = put(h, order);
+			err = set_put(h, order);
 	}
 	switch (-err) {
 	case 0:
@@ -173,8 +173,8 @@ static bool all_confirmed(struct ows *h, struct order *orders, int count, struct
 	return all;
 }
 
-static int await(struct ows *h, struct order *orders, int count, int64_t limit_ns,
-                 struct reading *reading)
+static int set_await(struct ows *h, struct order *orders, int count, int64_t limit_ns,
+                     struct reading *reading)
 {
 	const int64_t slice = 100 * NS_PER_MS;
 	int64_t end = ows_now() + limit_ns;
@@ -267,7 +267,7 @@ static void print_why(struct ows *h, const struct order *order, const char *seco
 		         seconds);
 }
 
-static void print_json(const struct order *orders, int count, bool waited)
+static void set_print_json(const struct order *orders, int count, bool waited)
 {
 	struct json json;
 
@@ -313,17 +313,17 @@ static int set_all(struct ctl *ctl, struct ows *h, struct order *orders, int cou
 	if (status == CTL_DONE)
 		status = refuse_twice(orders, count);
 	for (int i = 0; i < count && status == CTL_DONE; i++)
-		status = send(h, &orders[i]);
+		status = set_send(h, &orders[i]);
 	if (status)
 		return status;
-	if (seconds && await(h, orders, count, limit_ns, &reading) != CTL_DONE) {
+	if (seconds && set_await(h, orders, count, limit_ns, &reading) != CTL_DONE) {
 		status = CTL_FAILED;
 		for (int i = 0; i < count; i++)
 			if (!confirmed(h, &orders[i], &reading))
 				print_why(h, &orders[i], seconds, &reading);
 	}
 	if (ctl->json)
-		print_json(orders, count, seconds);
+		set_print_json(orders, count, seconds);
 	return status;
 }
 

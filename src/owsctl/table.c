@@ -133,7 +133,7 @@ static int fraction_of(const char *cell)
 }
 
 /* Find the width of a column, and the width of its longest fraction. */
-static void measure(struct table *table, unsigned i)
+static void table_measure(struct table *table, unsigned i)
 {
 	unsigned whole = 0, other = text_columns(table->columns[i].title);
 
@@ -160,7 +160,7 @@ void table_fit(struct table *table, unsigned columns)
 
 	for (unsigned k = 0; k < table->count; k++) {
 		table->shown[k] = !table->absent[k];
-		measure(table, k);
+		table_measure(table, k);
 	}
 	if (columns == 0)
 		return;

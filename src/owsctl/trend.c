@@ -137,7 +137,7 @@ static void print_csv(const struct trend *t, const char *name, const struct ows_
 	putchar('\n');
 }
 
-static void print_json(struct trend *t, const struct ows_history_item *item)
+static void trend_print_json(struct trend *t, const struct ows_history_item *item)
 {
 	char when[WHEN_TEXT], text[VALUE_TEXT_MAX];
 
@@ -184,7 +184,7 @@ static int print_items(struct trend *t, const char *name, const char *series)
 		if (t->table.to)
 			table_file_put(&t->table, name, &item);
 		else if (t->ctl->json)
-			print_json(t, &item);
+			trend_print_json(t, &item);
 		else if (t->influx)
 			print_influx(t, series, &item);
 		else
@@ -200,7 +200,7 @@ static int print_items(struct trend *t, const char *name, const char *series)
 }
 
 /* A value that is not good has no number here: it could be believed. */
-static int list(struct trend *t, const char *name, const struct ows_history_signal *known)
+static int trend_list(struct trend *t, const char *name, const struct ows_history_signal *known)
 {
 	char series[INFLUX_SERIES];
 	int err;
@@ -228,7 +228,7 @@ static bool lists(const struct trend *t)
 	return t->csv || t->influx || t->ctl->json || t->table.to;
 }
 
-static int show(struct trend *t, const char *name)
+static int trend_show(struct trend *t, const char *name)
 {
 	struct ows_history_signal known = {.name = "", .unit = ""};
 	int signal = past_signal(t->h, name, &known);
@@ -238,7 +238,7 @@ static int show(struct trend *t, const char *name)
 	if (signal < 0)
 		return past_fail(ctl_word(name), signal);
 	if (lists(t))
-		return list(t, name, &known);
+		return trend_list(t, name, &known);
 	if (known.type == OWS_STRING)
 		return ctl_fail("%s is a text: --csv, --influx and --json have it", name);
 	return draw(t, name);
@@ -254,7 +254,7 @@ static int show_all(struct trend *t, char **names, int count)
 	if (t->ctl->json)
 		json_array(&t->json, NULL);
 	for (int i = 0; i < count; i++) {
-		int one = show(t, names[i]);
+		int one = trend_show(t, names[i]);
 
 		status = one ? one : status;
 		if (i + 1 < count && !lists(t))

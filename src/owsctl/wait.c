@@ -80,7 +80,7 @@ static int print_end(struct ctl *ctl, struct waiting *waiting, bool it_came)
 	return it_came ? CTL_DONE : ctl_fail("%s: the time is over", waiting->name);
 }
 
-static int begin(struct ctl *ctl, struct waiting *waiting, const char *value)
+static int wait_begin(struct ctl *ctl, struct waiting *waiting, const char *value)
 {
 	enum attribute attribute;
 	struct ows_info info;
@@ -156,7 +156,7 @@ int verb_wait(struct ctl *ctl, int argc, char **argv)
 	status = ctl_open(ctl, OWS_READ, &waiting.h);
 	if (status)
 		return status;
-	status = begin(ctl, &waiting, value);
+	status = wait_begin(ctl, &waiting, value);
 	if (status == CTL_DONE)
 		status = print_end(ctl, &waiting, sleep_until_it_came(&waiting, limit_ns));
 	ows_close(waiting.h);

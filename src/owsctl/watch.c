@@ -136,7 +136,7 @@ static int watch_lines(struct watch *watch)
 	}
 }
 
-static int begin(struct watch *watch, bool screen)
+static int watch_begin(struct watch *watch, bool screen)
 {
 	struct ows_daemon daemon = {0};
 	int status;
@@ -201,7 +201,7 @@ int verb_watch(struct ctl *ctl, int argc, char **argv)
 		return status;
 	if (limit_ns >= 0)
 		watch.end_ns = ows_now() + limit_ns;
-	status = begin(&watch, screen && !ctl->json);
+	status = watch_begin(&watch, screen && !ctl->json);
 	ows_close(watch.h);
 	return status;
 }

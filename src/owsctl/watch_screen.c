@@ -140,7 +140,7 @@ static void put_head(FILE *out, struct screen *screen)
 	put_line(out, screen, daemon.alive ? "" : "\033[7m", text);
 }
 
-static bool add_row(struct watch *watch, struct table *table, const struct row *row)
+static bool watch_screen_add_row(struct watch *watch, struct table *table, const struct row *row)
 {
 	const struct reading *reading = watch->reading;
 	char value[64], words[READING_WORDS], alarm[STANDING_WORDS], span[WHEN_TEXT] = "-";
@@ -257,7 +257,7 @@ static bool survey(struct screen *screen, struct table *table)
 	return sorted && order;
 }
 
-static bool fill(struct screen *screen, struct table *table, const char **styles)
+static bool watch_screen_fill(struct screen *screen, struct table *table, const char **styles)
 {
 	struct watch *watch = screen->watch;
 	int shown = room(screen);
@@ -269,7 +269,7 @@ static bool fill(struct screen *screen, struct table *table, const char **styles
 		row_read(watch->h, row, now, watch->reading);
 		reading_round(watch->reading, row_decimals(row));
 		styles[i - screen->top] = style_of(row, watch->reading);
-		if (!add_row(watch, table, row))
+		if (!watch_screen_add_row(watch, table, row))
 			return false;
 	}
 	return true;
@@ -331,7 +331,7 @@ static int draw(struct screen *screen)
 	if (out && styles && survey(screen, &table)) {
 		keep_top_in_range(screen);
 		put_head(out, screen);
-		if (fill(screen, &table, styles)) {
+		if (watch_screen_fill(screen, &table, styles)) {
 			put_rows(out, screen, &table, styles);
 			err = 0;
 		}
@@ -452,7 +452,7 @@ static void on_event(struct screen *screen, enum watch_event event)
 	}
 }
 
-static int run(struct screen *screen)
+static int watch_screen_run(struct screen *screen)
 {
 	int64_t drawn = 0;
 	uint32_t news = 0;
@@ -498,7 +498,7 @@ int watch_screen(struct watch *watch)
 	int err;
 
 	terminal_open();
-	err = run(&screen);
+	err = watch_screen_run(&screen);
 	terminal_close();
 	screen.lines = 0;
 	forget_lines(&screen);

@@ -47,7 +47,7 @@ void watch_free(struct watch *watch)
 }
 
 /* Wait for changes, and look for a new owsd when the present one is gone. 0 or -ENOMEM. */
-static int follow(struct watch *watch, int64_t timeout_ns)
+static int watch_sleep_follow(struct watch *watch, int64_t timeout_ns)
 {
 	int n = ows_changes(watch->h, &watch->cursor, watch->changed, WATCH_BATCH, timeout_ns);
 
@@ -83,7 +83,7 @@ int watch_sleep(struct watch *watch, int64_t least_ns, int64_t timeout_ns)
 	if (timeout_ns > watch->end_ns - now)
 		timeout_ns = watch->end_ns - now;
 	watch->changed_count = 0;
-	if (timeout_ns > 0 && follow(watch, timeout_ns) != 0)
+	if (timeout_ns > 0 && watch_sleep_follow(watch, timeout_ns) != 0)
 		return -ENOMEM;
 	pause_until(now + least_ns);
 	err = ows_daemon(watch->h, ows_now(), &daemon);

@@ -91,7 +91,7 @@ static void version(void)
 }
 
 /* getopt would print the argument as it stands, and that may steer the terminal. */
-static int refuse(int option, char *const *argv)
+static int arguments_refuse(int option, char *const *argv)
 {
 	char why[1024];
 
@@ -175,7 +175,7 @@ static int take_option(struct arguments *a, int option, char *const *argv)
 		usage(stdout);
 		return finish_output();
 	default:
-		return refuse(option, argv);
+		return arguments_refuse(option, argv);
 	}
 }
 

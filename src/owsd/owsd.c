@@ -95,7 +95,7 @@ static int read_file(const struct arguments *a, struct config_report *report,
 	return config_parse("no file", empty, sizeof(empty) - 1, report, config);
 }
 
-static int load(const struct arguments *a, struct told *told, struct config **config)
+static int owsd_load(const struct arguments *a, struct told *told, struct config **config)
 {
 	struct config_report report = {.line = report_line, .ctx = told};
 	int err = read_file(a, &report, config);
@@ -178,7 +178,7 @@ static int reload_file(struct host *host, const struct arguments *a, struct log 
 {
 	struct told told = {.log = log, .why = why, .why_size = why_size};
 	struct config *config;
-	int err = load(a, &told, &config);
+	int err = owsd_load(a, &told, &config);
 
 	if (err) {
 		log_err(log, "reload: %s is refused: all goes on as before", a->file);
@@ -257,8 +257,8 @@ static bool supervise(struct host *host, const struct arguments *a, struct insta
 	return true;
 }
 
-static int run(const struct arguments *a, struct config *config, struct instance *instance,
-               struct log *log, struct porter *porter, struct unix_signals *signals)
+static int owsd_run(const struct arguments *a, struct config *config, struct instance *instance,
+                    struct log *log, struct porter *porter, struct unix_signals *signals)
 {
 	struct host_setup setup = {
 		.config = config,
@@ -311,7 +311,7 @@ static void explain_no_file(const struct arguments *a, struct told *told)
 	struct config *config;
 
 	devices.needs_no_file = true;
-	if (load(&devices, told, &config))
+	if (owsd_load(&devices, told, &config))
 		return;
 	config_free(config);
 	complain("-c FILE names another; owsctl%s -t %.*s scan --rio makes one",
@@ -362,7 +362,7 @@ int main(int argc, char **argv)
 	/* decided once: when the file is removed later, a reload reports it as missing */
 	a.needs_no_file = a.file == a.default_file && a.target_count && a.listen_count &&
 	                  !has_file(&a);
-	if (load(&a, &told, &config)) {
+	if (owsd_load(&a, &told, &config)) {
 		if (a.file == a.default_file && !a.needs_no_file && !has_file(&a))
 			explain_no_file(&a, &told);
 		return EXIT_USAGE;
@@ -393,7 +393,7 @@ int main(int argc, char **argv)
 		complain("%s", why);
 		return EXIT_RUN;
 	}
-	status = run(&a, config, &instance, log, porter, &signals);
+	status = owsd_run(&a, config, &instance, log, porter, &signals);
 	porter_end(porter);
 	instance_leave(&instance);
 	log_destroy(log);

@@ -80,8 +80,8 @@ static void add_raw(struct table *table, struct row *row, struct ows *ows,
 		.name = name, .unit = "", .type = OWS_DOUBLE, .decimals = -1};
 }
 
-static void fill(struct series *rows, struct table *table, struct ows *ows,
-                 const struct config *config, const struct named *sorted)
+static void series_fill(struct series *rows, struct table *table, struct ows *ows,
+                        const struct config *config, const struct named *sorted)
 {
 	struct ows_info info;
 
@@ -137,7 +137,7 @@ int series_make(struct series *rows, struct ows *ows, const struct config *confi
 	if (rows->rows && sorted && table.signals && table.names) {
 		rows->count = (int)count;
 		rows->generation = generation_of(ows, now_ns);
-		fill(rows, &table, ows, config, sorted);
+		series_fill(rows, &table, ows, config, sorted);
 		err = history_writer_signals(writer, table.signals, table.count, now_ns);
 	}
 	for (int i = 0; !err && i < rows->count; i++)
@@ -166,8 +166,8 @@ static int64_t time_of(const struct series *rows, const struct ows_value *v, int
 }
 
 /* The newest value of a row. False: it cannot be had, and the next look at the changes says why. */
-static bool get(struct ows *ows, int signal, int64_t now_ns, struct ows_value *v, char *text,
-                struct rule_sample *sample)
+static bool series_get(struct ows *ows, int signal, int64_t now_ns, struct ows_value *v, char *text,
+                       struct rule_sample *sample)
 {
 	text[0] = '\0';
 	if (ows_get_signal(ows, signal, now_ns, v))
@@ -238,15 +238,16 @@ static void miss(struct series *rows, struct row *row, int signal, struct histor
 	rows->missed++;
 }
 
-static void take(struct series *rows, int signal, struct ows *ows, struct history_writer *writer,
-                 bool turned, int64_t unseen_ns, int64_t now_ns)
+static void series_take(struct series *rows, int signal, struct ows *ows,
+                        struct history_writer *writer, bool turned, int64_t unseen_ns,
+                        int64_t now_ns)
 {
 	struct row *row = &rows->rows[signal];
 	struct rule_sample sample;
 	char text[TEXT_MAX];
 	struct ows_value v;
 
-	if (row->rule.off || !get(ows, signal, now_ns, &v, text, &sample))
+	if (row->rule.off || !series_get(ows, signal, now_ns, &v, text, &sample))
 		return;
 	if (is_missed(row, &v, turned, unseen_ns, now_ns))
 		miss(rows, row, signal, writer, unseen_ns);
@@ -267,7 +268,7 @@ void series_changes(struct series *rows, struct ows *ows, struct history_writer 
 		int signal = signals ? signals[i] : i;
 
 		if (signal >= 0 && signal < rows->count)
-			take(rows, signal, ows, writer, false, unseen_ns, now_ns);
+			series_take(rows, signal, ows, writer, false, unseen_ns, now_ns);
 	}
 }
 
@@ -281,7 +282,7 @@ int64_t series_turn(struct series *rows, struct ows *ows, struct history_writer 
 		int64_t turn;
 
 		if (rule_turn(&row->rule, &row->kept, wall_ns))
-			take(rows, i, ows, writer, true, unseen_ns, now_ns);
+			series_take(rows, i, ows, writer, true, unseen_ns, now_ns);
 		turn = rule_next_turn(&row->rule, wall_ns);
 		next = turn < next ? turn : next;
 	}

@@ -34,7 +34,7 @@ static int by_path(const void *a, const void *b)
 }
 
 /* List path into text (LISTING_MAX + 1 bytes). Returns the error. */
-static int list(struct target *target, const char *path, bool fresh, char *text)
+static int scan_list(struct target *target, const char *path, bool fresh, char *text)
 {
 	struct ask ask = {.req = {.op = BUS_DIR,
 	                          .prio = BUS_GUEST,
@@ -125,7 +125,7 @@ static int find_behind(struct target *target, struct scan *scan, char *text)
 			return -E2BIG;
 		for (unsigned n = 0; n < 2 && !err; n++) {
 			snprintf(path, sizeof(path), "%s/%s", scan->device[i].path, branches[n]);
-			if (list(target, path, true, text) == 0)
+			if (scan_list(target, path, true, text) == 0)
 				err = take_list(scan, text);
 		}
 	}
@@ -138,9 +138,9 @@ static int list_all(struct target *target, struct scan *scan, char *text)
 	int err = -EBADMSG;
 
 	for (unsigned try = 0; try < SEARCHES && err == -EBADMSG; try++)
-		err = list(target, "/", true, text);
+		err = scan_list(target, "/", true, text);
 	scan->disturbed = err == -EBADMSG;
-	return scan->disturbed ? list(target, "/", false, text) : err;
+	return scan->disturbed ? scan_list(target, "/", false, text) : err;
 }
 
 static int find(struct target *target, struct scan *scan, char *text)
@@ -169,7 +169,7 @@ static void locate(struct target *target, struct scan *scan, char *text)
 
 	for (unsigned bus = 0; scan->count && bus < BUSES_MAX; bus++) {
 		snprintf(path, sizeof(path), "/bus.%u", bus);
-		if (list(target, path, false, text))
+		if (scan_list(target, path, false, text))
 			return;
 		for (char *line = strtok_r(text, "\n", &rest); line;
 		     line = strtok_r(NULL, "\n", &rest)) {

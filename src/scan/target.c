@@ -68,7 +68,7 @@ static void take_event(void *ctx, const struct bus_event *event)
 }
 
 /* Step the bus, and sleep until it wants more, but not past until_ns. */
-static void step(struct target *target, int64_t until_ns)
+static void target_step(struct target *target, int64_t until_ns)
 {
 	unsigned answered = target->answered;
 	bool known = target->up || target->down;
@@ -104,7 +104,7 @@ int target_connect(struct target *target, char *why, size_t why_size)
 		return err;
 	}
 	while (!target->up && !target->down && boottime(NULL) < until_ns)
-		step(target, until_ns);
+		target_step(target, until_ns);
 	if (target->up)
 		return 0;
 	snprintf(why, why_size, "cannot open %s: %s", target->name,
@@ -155,7 +155,7 @@ void target_ask(struct target *target, struct ask *asks, unsigned count)
 				break;
 			given++;
 		}
-		step(target, until);
+		target_step(target, until);
 		if (target->progress && count > 1)
 			target->progress(target);
 		if (target->answered != answered)

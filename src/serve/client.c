@@ -369,7 +369,7 @@ static ssize_t receive_bytes(const struct client *c, uint8_t *bytes, size_t room
 }
 
 /* Receive what is there, up to the end of the present request. False: the client has left. */
-static bool receive(struct serve *s, struct client *c)
+static bool client_receive(struct serve *s, struct client *c)
 {
 	size_t room = (c->need > FIRST_READ ? c->need : FIRST_READ) - c->have;
 	ssize_t n;
@@ -403,7 +403,7 @@ static bool read_request(struct serve *s, struct client *c)
 	state = request_parse(c->area, c->have, &c->request, &c->length);
 	if (state == 0 && c->readable) {
 		c->need = c->length;
-		if (!receive(s, c)) {
+		if (!client_receive(s, c)) {
 			client_close(s, c);
 			return false;
 		}
@@ -447,7 +447,7 @@ bool client_turn(struct serve *s, struct client *c)
 
 /* --- Time limits ------------------------------------------------------------------------------ */
 
-static void look(struct serve *s, struct client *c)
+static void client_look(struct serve *s, struct client *c)
 {
 	if (s->now_ns < limit_of(c))
 		return;
@@ -477,7 +477,7 @@ void clients_look(struct serve *s)
 
 		if (c->state == CLIENT_APPLYING && s->now_ns + APPLY_LOOK_NS < next)
 			next = s->now_ns + APPLY_LOOK_NS;
-		look(s, c);
+		client_look(s, c);
 		if (limit_of(c) < next)
 			next = limit_of(c);
 	}

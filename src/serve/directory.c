@@ -146,7 +146,7 @@ void directory_add_once(struct directory *directory, const char *name)
 
 /* --- The answer ------------------------------------------------------------------------------- */
 
-static bool put(struct directory *directory, const void *bytes, size_t len)
+static bool directory_put(struct directory *directory, const void *bytes, size_t len)
 {
 	if (len > DIRECTORY_OUT - directory->out_len)
 		return false;
@@ -165,7 +165,7 @@ static bool put_header(struct directory *directory, const struct directory_form 
 	uint8_t bytes[FRAME_HEADER];
 
 	frame_put_header(bytes, &h);
-	return put(directory, bytes, sizeof(bytes));
+	return directory_put(directory, bytes, sizeof(bytes));
 }
 
 /* Write a device's name in the format that the client wants, and other names unchanged. */
@@ -194,9 +194,11 @@ static bool put_entry(struct directory *directory, const struct directory_form *
 	size = (uint32_t)(root + form->prefix_len + 1 + len + slash);
 	if (form->frames && !put_header(directory, form, size + 1, size, 0))
 		return false;
-	return put(directory, "/", root) && put(directory, form->prefix, form->prefix_len) &&
-	       put(directory, "/", 1) && put(directory, name, len) && put(directory, "/", slash) &&
-	       put(directory, form->frames ? "" : ",", 1);
+	return directory_put(directory, "/", root) &&
+	       directory_put(directory, form->prefix, form->prefix_len) &&
+	       directory_put(directory, "/", 1) && directory_put(directory, name, len) &&
+	       directory_put(directory, "/", slash) &&
+	       directory_put(directory, form->frames ? "" : ",", 1);
 }
 
 /* Keep room for the header of a DIRALL, which states the length of the names. */
@@ -205,7 +207,7 @@ static bool begin(struct directory *directory, const struct directory_form *form
 	return form->frames || put_header(directory, form, 0, 0, 0);
 }
 
-static bool end(struct directory *directory, const struct directory_form *form)
+static bool directory_end(struct directory *directory, const struct directory_form *form)
 {
 	uint32_t len = directory->out_len, payload = len - FRAME_HEADER;
 	bool ok;
@@ -234,7 +236,7 @@ int directory_form(struct directory *directory, const struct directory_form *for
 		ok = put_entry(directory, form, name, (size_t)(stop - name));
 		at += (uint32_t)(stop - name) + 1;
 	}
-	return ok && end(directory, form) ? 0 : -EMSGSIZE;
+	return ok && directory_end(directory, form) ? 0 : -EMSGSIZE;
 }
 
 void directory_add_rest(struct directory *directory, const struct node *node,

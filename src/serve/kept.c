@@ -156,7 +156,7 @@ static struct entry *set_of(struct kept *kept, const char *path, size_t len)
 	return &kept->entries[hash_text(HASH_BEGIN, path, len) % SETS * WAYS];
 }
 
-static bool is(const struct entry *entry, const char *path, size_t len)
+static bool kept_is(const struct entry *entry, const char *path, size_t len)
 {
 	return entry->until_ns && entry->path_len == len && memcmp(entry->path, path, len) == 0;
 }
@@ -174,7 +174,7 @@ int kept_find(struct kept *kept, const struct image *image, const struct node *n
 	if (n >= 0)
 		return n;
 	for (int way = 0; way < WAYS; way++, entry++) {
-		if (!is(entry, node->path, len))
+		if (!kept_is(entry, node->path, len))
 			continue;
 		if (now_ns >= entry->until_ns || entry->len > room)
 			return -ENOENT;
@@ -197,7 +197,7 @@ void kept_add(struct kept *kept, const struct node *node, int64_t measured_ns, c
 		return;
 	best = set = set_of(kept, node->path, path_len);
 	for (int way = 0; way < WAYS; way++) {
-		if (is(&set[way], node->path, path_len)) {
+		if (kept_is(&set[way], node->path, path_len)) {
 			best = &set[way];
 			break;
 		}

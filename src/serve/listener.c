@@ -31,7 +31,7 @@ union address {
 	struct sockaddr_un local;
 };
 
-static socklen_t fill(const struct listen_address *from, union address *to)
+static socklen_t listener_fill(const struct listen_address *from, union address *to)
 {
 	memset(to, 0, sizeof(*to));
 	if (from->is_v6) {
@@ -46,7 +46,7 @@ static socklen_t fill(const struct listen_address *from, union address *to)
 	return sizeof(to->v4);
 }
 
-static int add(struct serve *s, int fd, struct listener as)
+static int listener_add(struct serve *s, int fd, struct listener as)
 {
 	struct epoll_event event = {.events = EPOLLIN | EPOLLET};
 
@@ -104,7 +104,7 @@ static int is_v6_only(const struct config_serve *config, const struct listen_add
 static int open_network(struct serve *s, const struct listen_address *address)
 {
 	union address to;
-	socklen_t len = fill(address, &to);
+	socklen_t len = listener_fill(address, &to);
 	int fd = socket(to.any.sa_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0), one = 1;
 	int only = is_v6_only(&s->config->serve, address), err;
 
@@ -120,7 +120,7 @@ static int open_network(struct serve *s, const struct listen_address *address)
 	if (err == -EADDRNOTAVAIL && !listen_is_loopback(address))
 		err = bind_later(s, fd, address, &to, len);
 	if (!err)
-		err = add(s, fd, (struct listener){.network = true});
+		err = listener_add(s, fd, (struct listener){.network = true});
 	if (err)
 		close(fd);
 	return err;
@@ -185,7 +185,7 @@ static int bind_local(struct serve *s, const union address *to, const char *grou
 	if (!err)
 		err = give_rights(to->local.sun_path, group);
 	if (!err)
-		err = add(s, fd, (struct listener){.own = own});
+		err = listener_add(s, fd, (struct listener){.own = own});
 	if (err)
 		close(fd);
 	return err;

@@ -14,7 +14,7 @@
 #include "hal/owfs/path.h"
 #include "src/serve/node.h"
 
-static bool is(const char *text, size_t len, const char *word)
+static bool node_is(const char *text, size_t len, const char *word)
 {
 	return strlen(word) == len && memcmp(text, word, len) == 0;
 }
@@ -58,7 +58,7 @@ static void take_code(struct node *node, const char *name, size_t len)
 		return;
 	name += 6;
 	len -= 6;
-	node->code = is(name, len, "ALL") ? -1 : 0;
+	node->code = node_is(name, len, "ALL") ? -1 : 0;
 	for (size_t i = 0; i < len && node->code >= 0; i++) {
 		if (name[i] < '0' || name[i] > '9' || len > 3)
 			return;
@@ -249,7 +249,7 @@ static const char *const virtual_subdirectories[] = {
 static bool is_named(const char *const *names, const char *name, size_t len)
 {
 	for (; *names; names++)
-		if (is(name, len, *names))
+		if (node_is(name, len, *names))
 			return true;
 	return false;
 }

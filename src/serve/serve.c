@@ -217,7 +217,7 @@ static void take_next(struct serve *s)
 	__atomic_store_n(&s->next, NULL, __ATOMIC_RELEASE);
 }
 
-static void *run(void *arg)
+static void *serve_run(void *arg)
 {
 	struct epoll_event events[EVENTS];
 	struct serve *s = arg;
@@ -275,7 +275,7 @@ int serve_start(struct serve *s, const struct image *image)
 	unlock(s->areas, (size_t)SERVER_CLIENTS * AREA_SIZE);
 	unlock(s->directories, SERVER_DIRECTORIES * sizeof(*s->directories));
 	unlock(s->clients, SERVER_CLIENTS * sizeof(*s->clients));
-	err = thread_start(&s->thread, "owsd-serve", STACK_SIZE, run, s);
+	err = thread_start(&s->thread, "owsd-serve", STACK_SIZE, serve_run, s);
 	s->running = !err;
 	return err;
 }

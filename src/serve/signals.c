@@ -53,7 +53,7 @@ static void make_room(struct signals *signals)
 }
 
 /* Open the new image after a reload; until the reload is done the old image is the right one. */
-static void follow(struct signals *signals)
+static void signals_follow(struct signals *signals)
 {
 	if (handle_state(signals->h) && ows_reopen(signals->h) == 0)
 		make_room(signals);
@@ -96,7 +96,7 @@ static int look_up(struct signals *signals, const char *name, struct ows_id *id)
 	struct ows *h = signals->h;
 	int record;
 
-	follow(signals);
+	signals_follow(signals);
 	record = attribute_lookup(h->instance, name, find_name, &h->map, &id->attribute);
 	if (record < 0)
 		return -ENOENT;
@@ -311,7 +311,7 @@ int signals_applied(struct signals *signals, const char *name, struct signals_co
 	uint32_t applied;
 	struct ows_id id;
 
-	follow(signals);
+	signals_follow(signals);
 	if (h->map.image->generation != command->generation) {
 		if (look_up(signals, name, &id) || id.attribute != ATTR_VALUE)
 			return -ENOENT;

@@ -60,7 +60,7 @@ static const char *name_of(const struct serve *s, const struct node *node)
 }
 
 /* Command an output of the table. The control program commands the same output. */
-static int give(struct serve *s, struct client *c, const char *name)
+static int work_write_give(struct serve *s, struct client *c, const char *name)
 {
 	const char *text = (const char *)c->request.data;
 	uint32_t len = c->request.data_len;
@@ -87,7 +87,7 @@ static int apply(struct serve *s, struct client *c)
 	int err = name ? 0 : -ENOENT;
 
 	if (!err && c->waits) {
-		err = give(s, c, name);
+		err = work_write_give(s, c, name);
 		c->waits = err == -EBUSY;
 		if (c->waits)
 			return -EAGAIN;
@@ -109,7 +109,7 @@ static void applying(struct serve *s, struct client *c)
 	}
 }
 
-static void command(struct serve *s, struct client *c)
+static void work_write_command(struct serve *s, struct client *c)
 {
 	c->waits = true;
 	client_enter(s, c, CLIENT_APPLYING);
@@ -125,7 +125,7 @@ static bool is_allowed(const struct serve *s, const struct client *c, const char
 	return (name && !signal) || person_may(s->config, c->fd, c->network, signal);
 }
 
-static void refuse(struct serve *s, struct client *c)
+static void work_write_refuse(struct serve *s, struct client *c)
 {
 	count(s, COUNT_refused_writes, 1);
 	answer_error(s, c, -EROFS);
@@ -137,7 +137,7 @@ void work_write(struct serve *s, struct client *c)
 	const char *name;
 
 	if (s->config->serve.read_only || c->own) {
-		refuse(s, c);
+		work_write_refuse(s, c);
 		return;
 	}
 	c->request.data_len = (uint32_t)c->request.size;
@@ -148,11 +148,11 @@ void work_write(struct serve *s, struct client *c)
 	} else {
 		name = name_of(s, node);
 		if (!is_allowed(s, c, name))
-			refuse(s, c);
+			work_write_refuse(s, c);
 		else if (name && c->request.offset)
 			answer_error(s, c, -EINVAL);
 		else if (name)
-			command(s, c);
+			work_write_command(s, c);
 		else if (!work_ask_type(s, c))
 			work_write_target(s, c);
 	}

@@ -89,8 +89,8 @@ void image_carry_log(struct image *image, const struct image *before)
 }
 
 /* Enter an entry into a journal, whose head is a word of the header. */
-static uint32_t enter(const struct image *image, struct ows_journal_entry *journal, uint32_t *head,
-                      const struct ows_journal_entry *entry)
+static uint32_t entries_enter(const struct image *image, struct ows_journal_entry *journal,
+                              uint32_t *head, const struct ows_journal_entry *entry)
 {
 	struct ows_journal_entry whole = *entry;
 	uint32_t number = word_get(head);
@@ -104,7 +104,7 @@ static uint32_t enter(const struct image *image, struct ows_journal_entry *journ
 
 uint32_t image_alarm(struct image *image, const struct ows_journal_entry *entry)
 {
-	return enter(image, image->alarms, &image->header->alarm_head, entry);
+	return entries_enter(image, image->alarms, &image->header->alarm_head, entry);
 }
 
 void image_alarm_after(struct image *image, uint32_t number, int64_t after)
@@ -120,7 +120,7 @@ void image_alarm_after(struct image *image, uint32_t number, int64_t after)
 
 uint32_t image_command(struct image *image, const struct ows_journal_entry *entry)
 {
-	return enter(image, image->commands, &image->header->command_head, entry);
+	return entries_enter(image, image->commands, &image->header->command_head, entry);
 }
 
 static void carry(struct ows_journal_entry *to, const struct ows_journal_entry *from, uint32_t head,

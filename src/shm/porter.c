@@ -203,7 +203,7 @@ static int carry_here(const struct porter_order *order)
 }
 
 /* Returns what it was asked before. */
-static uint32_t ask(struct porter *p, uint32_t slot, uint32_t sequence)
+static uint32_t porter_ask(struct porter *p, uint32_t slot, uint32_t sequence)
 {
 	return slot < PORTER_SLOTS
 	               ? __atomic_exchange_n(&p->asked[slot], sequence, __ATOMIC_RELAXED)
@@ -220,7 +220,7 @@ int porter_give(struct porter *p, enum porter_lane lane, const struct porter_ord
 		return carry_here(order);
 	sequence = ++p->sequence[lane];
 	/* at once: when the porter is killed, what it was asked counts as carried out */
-	asked = ask(p, order->slot, sequence);
+	asked = porter_ask(p, order->slot, sequence);
 
 	m.head = (struct porter_head){sequence, order->what, order->slot};
 	porter_lay_out(&m, order->bytes);
@@ -228,7 +228,7 @@ int porter_give(struct porter *p, enum porter_lane lane, const struct porter_ord
 	if (sendmsg(p->lanes[lane], &m.header, MSG_DONTWAIT | MSG_NOSIGNAL) < 0) {
 		/* descriptors that are on their way are limited, as the room in the socket is */
 		if (errno != EPIPE && errno != ECONNRESET && errno != ENOTCONN) {
-			ask(p, order->slot, asked);
+			porter_ask(p, order->slot, asked);
 			return -EAGAIN;
 		}
 		if (order->slot < PORTER_SLOTS)

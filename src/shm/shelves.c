@@ -20,8 +20,8 @@ static bool inside(const struct earlier *from, uint64_t off, uint64_t count, uin
 }
 
 /* Find the area of this kind; least: the bytes of our entry. */
-static bool find(const struct earlier *from, enum ows_area kind, size_t least,
-                 struct ows_area_entry *area)
+static bool shelves_find(const struct earlier *from, enum ows_area kind, size_t least,
+                         struct ows_area_entry *area)
 {
 	const struct ows_image_header *h = (const void *)from->base;
 
@@ -42,9 +42,10 @@ static bool open_earlier(struct earlier *from)
 	return from->size >= sizeof(*h) && h->magic == OWS_IMAGE_MAGIC &&
 	       h->major == OWS_LAYOUT_MAJOR &&
 	       inside(from, h->area_off, h->area_count, sizeof(struct ows_area_entry)) &&
-	       find(from, OWS_AREA_INFOS, sizeof(struct ows_info_entry), &from->infos) &&
-	       find(from, OWS_AREA_POOL, 1, &from->pool) &&
-	       find(from, OWS_AREA_SHELVES, sizeof(struct ows_shelf_entry), &from->shelves) &&
+	       shelves_find(from, OWS_AREA_INFOS, sizeof(struct ows_info_entry), &from->infos) &&
+	       shelves_find(from, OWS_AREA_POOL, 1, &from->pool) &&
+	       shelves_find(from, OWS_AREA_SHELVES, sizeof(struct ows_shelf_entry),
+	                    &from->shelves) &&
 	       from->base[from->pool.off + from->pool.count - 1] == '\0';
 }
 

@@ -56,8 +56,8 @@ static bool is_wanted(struct ows *h, struct journal_entry *entry, char *const *p
 }
 
 /* Append the entries of one journal from *next on. */
-static bool look(struct ows *h, journal_get *get, uint32_t head, uint32_t *next,
-                 char *const *patterns, int count, struct journal_entries *entries)
+static bool journal_entry_look(struct ows *h, journal_get *get, uint32_t head, uint32_t *next,
+                               char *const *patterns, int count, struct journal_entries *entries)
 {
 	uint32_t number = first_kept(h, get, head, entries->begun ? next : NULL);
 	struct journal_entry *more;
@@ -99,10 +99,10 @@ static int by_time(const void *a, const void *b)
 bool journal_look(struct ows *h, char *const *patterns, int count, struct journal_entries *entries)
 {
 	entries->count = 0;
-	if (!look(h, get_alarm, ows_alarm_count(h), &entries->next_alarm, patterns, count,
-	          entries) ||
-	    !look(h, get_command, ows_command_count(h), &entries->next_command, patterns, count,
-	          entries))
+	if (!journal_entry_look(h, get_alarm, ows_alarm_count(h), &entries->next_alarm, patterns,
+	                        count, entries) ||
+	    !journal_entry_look(h, get_command, ows_command_count(h), &entries->next_command,
+	                        patterns, count, entries))
 		return false;
 	entries->begun = true;
 	qsort(entries->entry, entries->count, sizeof(*entries->entry), by_time);

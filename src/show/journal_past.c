@@ -34,8 +34,9 @@ static struct ows_by by_of(const struct ows_history_who *who)
 	return by;
 }
 
-static struct journal_entry convert(const struct reading *r, const struct ows_history_event *event,
-                                    const struct ows_history_signal *signal)
+static struct journal_entry journal_past_convert(const struct reading *r,
+                                                 const struct ows_history_event *event,
+                                                 const struct ows_history_signal *signal)
 {
 	const struct when *now = r->now;
 	struct journal_entry entry = {
@@ -105,7 +106,7 @@ static struct journal_entry *place(struct reading *r)
 	return &to->entry[to->count++];
 }
 
-static int take(struct reading *r, const struct ows_history_event *event)
+static int journal_past_take(struct reading *r, const struct ows_history_event *event)
 {
 	struct ows_history_signal signal = {.name = "?", .unit = "", .decimals = -1};
 	struct journal_entry *entry;
@@ -117,7 +118,7 @@ static int take(struct reading *r, const struct ows_history_event *event)
 	entry = place(r);
 	if (!entry)
 		return -ENOMEM;
-	*entry = convert(r, event, &signal);
+	*entry = journal_past_convert(r, event, &signal);
 	r->number++;
 	return 0;
 }
@@ -130,7 +131,7 @@ static int read_between(struct reading *r, int64_t from_ns, int64_t until_ns)
 	int got = 0;
 
 	while (!err && (got = ows_history_next_event(r->history, &event)) == 1)
-		err = take(r, &event);
+		err = journal_past_take(r, &event);
 	return err ? err : got;
 }
 

@@ -41,7 +41,7 @@ static void put_string(FILE *out, const char *text, size_t len)
 	putc('"', out);
 }
 
-static void begin(struct json *json, const char *key)
+static void json_begin(struct json *json, const char *key)
 {
 	if (json->inner)
 		putc(',', json->out);
@@ -54,13 +54,13 @@ static void begin(struct json *json, const char *key)
 
 void json_key(struct json *json, const char *key)
 {
-	begin(json, key);
+	json_begin(json, key);
 	json->inner = false;
 }
 
 void json_object(struct json *json, const char *key)
 {
-	begin(json, key);
+	json_begin(json, key);
 	putc('{', json->out);
 	json->inner = false;
 }
@@ -73,7 +73,7 @@ void json_object_end(struct json *json)
 
 void json_array(struct json *json, const char *key)
 {
-	begin(json, key);
+	json_begin(json, key);
 	putc('[', json->out);
 	json->inner = false;
 }
@@ -94,7 +94,7 @@ void json_string(struct json *json, const char *key, const char *text)
 
 void json_bytes(struct json *json, const char *key, const char *text, size_t len)
 {
-	begin(json, key);
+	json_begin(json, key);
 	put_string(json->out, text, len);
 }
 
@@ -111,7 +111,7 @@ void json_text(struct json *json, const char *text, size_t len)
 	json_bytes(json, "value", text, len);
 	if (is_utf8(text, len))
 		return;
-	begin(json, "hex");
+	json_begin(json, "hex");
 	putc('"', json->out);
 	for (size_t i = 0; i < len; i++)
 		fprintf(json->out, "%02x", (unsigned char)text[i]);
@@ -120,25 +120,25 @@ void json_text(struct json *json, const char *text, size_t len)
 
 void json_int(struct json *json, const char *key, int64_t number)
 {
-	begin(json, key);
+	json_begin(json, key);
 	fprintf(json->out, "%" PRId64, number);
 }
 
 void json_uint(struct json *json, const char *key, uint64_t number)
 {
-	begin(json, key);
+	json_begin(json, key);
 	fprintf(json->out, "%" PRIu64, number);
 }
 
 void json_bool(struct json *json, const char *key, bool value)
 {
-	begin(json, key);
+	json_begin(json, key);
 	fputs(value ? "true" : "false", json->out);
 }
 
 void json_null(struct json *json, const char *key)
 {
-	begin(json, key);
+	json_begin(json, key);
 	fputs("null", json->out);
 }
 
@@ -146,7 +146,7 @@ void json_seconds(struct json *json, const char *key, int64_t ns)
 {
 	int64_t ms = ns / NS_PER_MS;
 
-	begin(json, key);
+	json_begin(json, key);
 	if (ms < 0)
 		putc('-', json->out);
 	fprintf(json->out, "%" PRIu64 ".%03u", (uint64_t)imaxabs(ms / 1000),
@@ -188,7 +188,7 @@ static bool is_number(const char *at)
 
 void json_number(struct json *json, const char *key, const char *text)
 {
-	begin(json, key);
+	json_begin(json, key);
 	fputs(is_number(text) ? text : "null", json->out);
 }
 

@@ -61,7 +61,7 @@ const char *standing_text(const struct ows_alarm_state *state, char words[STANDI
 	return words;
 }
 
-static void add(struct json *json, const char *kind, const char *state, bool device)
+static void standing_add(struct json *json, const char *kind, const char *state, bool device)
 {
 	json_object(json, NULL);
 	json_string(json, "alarm", kind);
@@ -76,14 +76,14 @@ void standing_json(struct json *json, const struct ows_alarm_state *state)
 
 	json_array(json, "alarms");
 	if (state->stands)
-		add(json, ows_alarm_kind_text(OWS_ALARM_DEVICE), "stands", true);
+		standing_add(json, ows_alarm_kind_text(OWS_ALARM_DEVICE), "stands", true);
 	if (state->unarmed) {
 		snprintf(cannot, sizeof(cannot), "cannot be %s", unarmed_verb(state->unarmed));
-		add(json, ows_alarm_kind_text(OWS_ALARM_DEVICE), cannot, true);
+		standing_add(json, ows_alarm_kind_text(OWS_ALARM_DEVICE), cannot, true);
 	}
 	if (state->limit_state != OWS_LIMIT_NORMAL)
-		add(json, ows_alarm_kind_text(state->limit_kind),
-		    ows_limit_state_text(state->limit_state), false);
+		standing_add(json, ows_alarm_kind_text(state->limit_kind),
+		             ows_limit_state_text(state->limit_state), false);
 	json_array_end(json);
 	json_bool(json, "shelved", state->shelved);
 }

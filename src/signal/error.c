@@ -49,7 +49,7 @@ static const struct {
 };
 #define ERRORS (sizeof(errors) / sizeof(errors[0]))
 
-static size_t find(int err)
+static size_t error_find(int err)
 {
 	size_t i = 0;
 
@@ -60,14 +60,14 @@ static size_t find(int err)
 
 const char *error_text(int err)
 {
-	size_t i = find(err);
+	size_t i = error_find(err);
 
 	return i < ERRORS ? errors[i].text : strerror(-err);
 }
 
 const char *error_remedy(int err)
 {
-	size_t i = find(err);
+	size_t i = error_find(err);
 
 	return i < ERRORS ? errors[i].remedy : "";
 }

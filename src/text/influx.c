@@ -13,7 +13,7 @@ static bool is_control(char c)
 }
 
 /* last: the last byte of the room. Returns the end, or NULL: no room. */
-static char *put(char *at, const char *last, const char *text)
+static char *influx_put(char *at, const char *last, const char *text)
 {
 	size_t len = strlen(text);
 
@@ -35,13 +35,13 @@ static char *put_tag(char *at, const char *last, const char *key, const char *te
 {
 	if (!is_tag(text))
 		return at;
-	at = put(at, last, key);
+	at = influx_put(at, last, key);
 	for (; at && *text; text++) {
 		const char one[] = {*text, '\0'};
 
 		if (strchr(",= ", *text))
-			at = put(at, last, "\\");
-		at = put(at, last, one);
+			at = influx_put(at, last, "\\");
+		at = influx_put(at, last, one);
 	}
 	return at;
 }
@@ -50,7 +50,7 @@ bool influx_series(const char *measurement, const char *instance, const char *si
                    const char *unit, char series[INFLUX_SERIES])
 {
 	const char *last = &series[INFLUX_SERIES - 1];
-	char *at = put(series, last, measurement);
+	char *at = influx_put(series, last, measurement);
 
 	at = put_tag(at, last, ",instance=", instance);
 	at = put_tag(at, last, ",signal=", signal);

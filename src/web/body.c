@@ -22,7 +22,7 @@ static void skip(struct text *t)
 		t->at++;
 }
 
-static bool take(struct text *t, char c)
+static bool body_take(struct text *t, char c)
 {
 	skip(t);
 	if (t->at == t->end || *t->at != c)
@@ -133,7 +133,7 @@ static int take_string(struct text *t, const char **text)
 	char *to;
 	int err = 0;
 
-	if (!take(t, '"'))
+	if (!body_take(t, '"'))
 		return -EINVAL;
 	*text = to = t->at;
 	while (!err && t->at < t->end && *t->at != '"') {
@@ -228,7 +228,7 @@ static int take_member(struct text *t, struct body *body)
 	err = take_string(t, &member->key);
 	if (err)
 		return err;
-	if (body_find(body, member->key) || !take(t, ':'))
+	if (body_find(body, member->key) || !body_take(t, ':'))
 		return -EINVAL;
 	err = take_value(t, member);
 	if (!err)
@@ -242,13 +242,13 @@ int body_parse(char *text, size_t len, struct body *body)
 	int err = 0;
 
 	body->count = 0;
-	if (!len || !take(&t, '{'))
+	if (!len || !body_take(&t, '{'))
 		return -EINVAL;
-	if (!take(&t, '}')) {
+	if (!body_take(&t, '}')) {
 		do
 			err = take_member(&t, body);
-		while (!err && take(&t, ','));
-		if (err || !take(&t, '}'))
+		while (!err && body_take(&t, ','));
+		if (err || !body_take(&t, '}'))
 			return err ? err : -EINVAL;
 	}
 	skip(&t);

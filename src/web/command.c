@@ -29,7 +29,7 @@ struct order {
 	struct ows_info info;
 };
 
-static void answer(struct order *order, const char *result)
+static void command_answer(struct order *order, const char *result)
 {
 	FILE *out = open_memstream(&order->job.text, &order->job.len);
 	struct json json;
@@ -46,7 +46,7 @@ static void answer(struct order *order, const char *result)
 	fclose(out);
 }
 
-static void refuse(struct order *order, int err)
+static void command_refuse(struct order *order, int err)
 {
 	const struct body_member *value = body_find(&order->body, "value");
 	const char *name = body_string(&order->body, "name");
@@ -91,7 +91,7 @@ static void refuse(struct order *order, int err)
 }
 
 /* Connect, and find the signal. False after answering. */
-static bool begin(struct order *order)
+static bool command_begin(struct order *order)
 {
 	const char *name = body_string(&order->body, "name");
 	int err;
@@ -113,13 +113,13 @@ static bool begin(struct order *order)
 		err = order->id < 0 ? order->id : 0;
 	}
 	if (err)
-		refuse(order, err);
+		command_refuse(order, err);
 	return !err;
 }
 
 /* --- Values ---------------------------------------------------------------------------------- */
 
-static int put(struct order *order, uint32_t *stamp)
+static int command_put(struct order *order, uint32_t *stamp)
 {
 	const struct body_member *value = body_find(&order->body, "value");
 	enum ows_type type = (enum ows_type)order->info.type;
@@ -146,8 +146,8 @@ static void run_set(struct job *job)
 	uint32_t stamp = 0, news = 0;
 	int err;
 
-	if (begin(order)) {
-		err = put(order, &stamp);
+	if (command_begin(order)) {
+		err = command_put(order, &stamp);
 		while (!err && ows_now() < until_ns) {
 			err = ows_command(order->h, order->id, &command);
 			if (err || (int32_t)(command.applied - stamp) >= 0)
@@ -158,10 +158,10 @@ static void run_set(struct job *job)
 				ows_wait(order->h, &news, 50 * NS_PER_MS);
 		}
 		if (err)
-			refuse(order, err);
+			command_refuse(order, err);
 		else
-			answer(order,
-			       (int32_t)(command.applied - stamp) >= 0 ? "taken" : "pending");
+			command_answer(order, (int32_t)(command.applied - stamp) >= 0 ? "taken"
+			                                                              : "pending");
 	}
 	ows_close(order->h);
 }
@@ -208,7 +208,7 @@ static void run_alarm(struct job *job)
 	const char *why = body_string(&order->body, "why"), *what = deed(&order->body);
 	int err;
 
-	if (begin(order)) {
+	if (command_begin(order)) {
 		if (*what == 'a')
 			err = acknowledge(order);
 		else
@@ -217,9 +217,9 @@ static void run_alarm(struct job *job)
 			                              : (uint32_t)strtoul(seconds->text, NULL, 10),
 			                 *why ? why : NULL);
 		if (err)
-			refuse(order, err);
+			command_refuse(order, err);
 		else
-			answer(order, "taken");
+			command_answer(order, "taken");
 	}
 	ows_close(order->h);
 }
@@ -245,8 +245,8 @@ static bool may(struct request *request, struct order *order, int *result)
 	return false;
 }
 
-static int give(struct request *request, void (*run)(struct job *job),
-                const char *(*wrong)(const struct body *body))
+static int command_give(struct request *request, void (*run)(struct job *job),
+                        const char *(*wrong)(const struct body *body))
 {
 	struct order *order = (struct order *)http_job(request, sizeof(*order), run);
 	int result = MHD_NO;
@@ -294,10 +294,10 @@ static const char *wrong_alarm(const struct body *body)
 
 int command_set(struct request *request)
 {
-	return give(request, run_set, wrong_set);
+	return command_give(request, run_set, wrong_set);
 }
 
 int command_alarm(struct request *request)
 {
-	return give(request, run_alarm, wrong_alarm);
+	return command_give(request, run_alarm, wrong_alarm);
 }

@@ -100,7 +100,7 @@ static void put_device(struct json *json, const struct ows *h, const struct scan
 	json_object_end(json);
 }
 
-static void answer(struct devices *devices)
+static void devices_answer(struct devices *devices)
 {
 	FILE *out = open_memstream(&devices->job.text, &devices->job.len);
 	struct json json;
@@ -231,7 +231,7 @@ static void scan(struct devices *devices)
 		return;
 	}
 	read_all(devices);
-	answer(devices);
+	devices_answer(devices);
 }
 
 /* NAME.sock, else what the configuration serves. False after answering. */
@@ -256,7 +256,7 @@ static bool find_target(struct devices *devices)
 	return false;
 }
 
-static void run(struct job *job)
+static void devices_run(struct job *job)
 {
 	struct devices *devices = (struct devices *)job;
 
@@ -299,7 +299,7 @@ int devices_get(struct request *request)
 	if (!person_may_do(http_descriptor(request), &web->face->config->web, PERSON_CONFIGURE,
 	                   http_header(request, "X-Remote-User"), person, &why))
 		return http_error(request, 403, "%s", why);
-	devices = (struct devices *)http_job(request, sizeof(*devices), run);
+	devices = (struct devices *)http_job(request, sizeof(*devices), devices_run);
 	if (!devices)
 		return MHD_NO;
 	snprintf(devices->instance, sizeof(devices->instance), "%s",

@@ -39,7 +39,7 @@ int doors_open(struct doors *doors)
 }
 
 /* Numbers of epoll: a door, or after the doors a visitor. */
-static int watch(struct doors *doors, int fd, unsigned number, uint32_t how)
+static int doors_watch(struct doors *doors, int fd, unsigned number, uint32_t how)
 {
 	struct epoll_event event = {.events = EPOLLIN | how, .data.u32 = number};
 
@@ -47,9 +47,9 @@ static int watch(struct doors *doors, int fd, unsigned number, uint32_t how)
 }
 
 /* Takes fd in any case. */
-static int add(struct doors *doors, int fd)
+static int doors_add(struct doors *doors, int fd)
 {
-	int err = doors->count == DOORS ? -ENOSPC : watch(doors, fd, doors->count, 0);
+	int err = doors->count == DOORS ? -ENOSPC : doors_watch(doors, fd, doors->count, 0);
 
 	if (err)
 		close(fd);
@@ -63,7 +63,7 @@ int doors_inherit(struct doors *doors)
 	int fds[DOORS], count = inherited_sockets(fds, DOORS);
 
 	for (int i = 0; i < count; i++) {
-		int err = add(doors, fds[i]);
+		int err = doors_add(doors, fds[i]);
 
 		if (err)
 			return err;
@@ -87,7 +87,7 @@ static int listen_at(struct doors *doors, int fd, const struct sockaddr *address
 	    listen(fd, BACKLOG))
 		err = -errno;
 	if (!err)
-		return add(doors, fd);
+		return doors_add(doors, fd);
 	close(fd);
 	return err;
 }
@@ -141,7 +141,7 @@ static void let_go(struct doors *doors, struct visitor *visitor, bool inside)
 }
 
 /* An answer that needs no reading of the request. A visitor who does not take it goes without. */
-static void refuse(int fd, int status, const char *why)
+static void doors_refuse(int fd, int status, const char *why)
 {
 	char body[160], text[320];
 	int len = snprintf(body, sizeof(body), "{\"error\":\"%s\"}\n", why);
@@ -205,7 +205,7 @@ static void look_at(struct doors *doors, struct visitor *visitor, bool gone)
 	if (status == 200) {
 		admit(doors, visitor);
 	} else if (status) {
-		refuse(visitor->fd, status, why);
+		doors_refuse(visitor->fd, status, why);
 		let_go(doors, visitor, false);
 	} else if (gone) {
 		let_go(doors, visitor, false);
@@ -218,13 +218,13 @@ static void welcome(struct doors *doors, const struct visitor *new, int64_t now_
 
 	if (doors->visitor_count + doors->count_inside(doors->ctx) >= DOORS_CONNECTIONS ||
 	    waiting_of(doors, &new->address) >= DOORS_PER_PEER) {
-		refuse(new->fd, 503, "too many connections: try again later");
+		doors_refuse(new->fd, 503, "too many connections: try again later");
 		close(new->fd);
 		return;
 	}
 	while (doors->visitors[i].used)
 		i++;
-	if (watch(doors, new->fd, DOORS + i, EPOLLET | EPOLLRDHUP)) {
+	if (doors_watch(doors, new->fd, DOORS + i, EPOLLET | EPOLLRDHUP)) {
 		close(new->fd);
 		return;
 	}
@@ -273,7 +273,7 @@ static void end_late(struct doors *doors, int64_t now_ns)
 
 		if (!visitor->used || visitor->until_ns > now_ns)
 			continue;
-		refuse(visitor->fd, 408, "the request took longer than 30 seconds");
+		doors_refuse(visitor->fd, 408, "the request took longer than 30 seconds");
 		let_go(doors, visitor, false);
 	}
 }
@@ -297,7 +297,7 @@ void doors_take(struct doors *doors, int64_t now_ns)
 	if (doors->paused_ns && now_ns >= doors->paused_ns) {
 		doors->paused_ns = 0;
 		for (unsigned i = 0; i < doors->count; i++)
-			watch(doors, doors->fds[i], i, 0);
+			doors_watch(doors, doors->fds[i], i, 0);
 	}
 }
 

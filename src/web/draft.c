@@ -41,7 +41,8 @@ int draft_check(const char *file, const char *text, size_t len, struct problems 
 	return rio_parse(file, text, len, &silent, rio) == -ENOMEM ? -ENOMEM : err;
 }
 
-static void answer(struct job *job, const struct rio *rio, int err, const struct problems *problems)
+static void draft_answer(struct job *job, const struct rio *rio, int err,
+                         const struct problems *problems)
 {
 	FILE *out = open_memstream(&job->text, &job->len);
 	struct json json;
@@ -61,7 +62,7 @@ static void answer(struct job *job, const struct rio *rio, int err, const struct
 }
 
 /* An edit whose result is wrong where the text before was right. */
-static void refuse(struct job *job, const struct problems *problems, const struct rio *rio)
+static void draft_refuse(struct job *job, const struct problems *problems, const struct rio *rio)
 {
 	FILE *out = open_memstream(&job->text, &job->len);
 	struct json json;
@@ -117,9 +118,9 @@ static void check(struct job *job, const struct rio *edited, const struct body *
 	else if (rio->len > DRAFT_MAX)
 		job_error(job, 422, "the text would be longer than 1 MiB");
 	else if (err && !checks && is_better(body_string(body, "text"), errors_of(problems)))
-		refuse(job, problems, rio);
+		draft_refuse(job, problems, rio);
 	else
-		answer(job, rio, err, problems);
+		draft_answer(job, rio, err, problems);
 	if (problems)
 		problems_free(problems);
 	free(problems);
@@ -151,7 +152,7 @@ static void edit(struct job *job, struct rio **rio, const struct body *body,
 		          err == -EFBIG ? "the text would be longer than 1 MiB" : "no memory");
 }
 
-static void run(struct job *job)
+static void draft_run(struct job *job)
 {
 	struct problems *problems = calloc(1, sizeof(*problems));
 	struct config_report report = problems_report(problems);
@@ -187,5 +188,5 @@ int draft_post(struct request *request)
 	if (request->posted.dropped)
 		return http_error(request, 503, DRAFT_BUSY);
 	return http_defer(request, http_worker(request->web, &request->web->drafts),
-	                  http_job(request, sizeof(struct job), run));
+	                  http_job(request, sizeof(struct job), draft_run));
 }

@@ -19,7 +19,7 @@ struct order {
 	const struct body *body;
 };
 
-static int add(struct rio **rio, const struct order *order, struct config_report *report)
+static int draft_edit_add(struct rio **rio, const struct order *order, struct config_report *report)
 {
 	return edit_add(rio, order->name, body_string(order->body, "path"), order->keys,
 	                order->count, report);
@@ -117,7 +117,7 @@ static const struct edit {
 	bool keyed; /* with at least one of "keys" */
 } edits[] = {
 	{.name = "check", .run = leave},
-	{.name = "add", .run = add, .named = true},
+	{.name = "add", .run = draft_edit_add, .named = true},
 	{.name = "set", .run = set, .named = true, .keyed = true},
 	{.name = "rename", .run = set, .named = true, .keyed = true},
 	{.name = "unset", .run = unset, .named = true, .keyed = true},
@@ -132,7 +132,7 @@ static const struct edit {
 };
 #define EDITS (sizeof(edits) / sizeof(edits[0]))
 
-static int refuse(struct config_report *report, const char *what)
+static int draft_edit_refuse(struct config_report *report, const char *what)
 {
 	report_error(report, (struct place){0}, "%s", what);
 	return -EINVAL;
@@ -153,23 +153,23 @@ static int split(struct order *order, const char *keys, struct config_report *re
 		if (!*at)
 			continue;
 		if (order->count == DRAFT_SETTINGS)
-			return refuse(report, "too many keys for one edit");
+			return draft_edit_refuse(report, "too many keys for one edit");
 		order->keys[order->count++] = at;
 	}
 	return 0;
 }
 
-static int run(struct rio **rio, const struct edit *edit, struct order *order,
-               struct config_report *report)
+static int draft_edit_run(struct rio **rio, const struct edit *edit, struct order *order,
+                          struct config_report *report)
 {
 	int err = split(order, body_string(order->body, "keys"), report);
 
 	if (err)
 		return err;
 	if (edit->named && !*order->name)
-		return refuse(report, "expected \"name\"");
+		return draft_edit_refuse(report, "expected \"name\"");
 	if (edit->keyed && !order->count)
-		return refuse(report, "expected \"keys\": KEY=VALUE, one in each line");
+		return draft_edit_refuse(report, "expected \"keys\": KEY=VALUE, one in each line");
 	return edit->run(rio, order, report);
 }
 
@@ -184,15 +184,15 @@ int draft_edit(struct rio **rio, const struct body *body, struct config_report *
 	while (i < EDITS && strcmp(edits[i].name, what) != 0)
 		i++;
 	if (i == EDITS)
-		return refuse(report, "expected \"do\": what to do with the text");
+		return draft_edit_refuse(report, "expected \"do\": what to do with the text");
 	if (edits[i].bus) {
 		if (!*target)
-			return refuse(report, "expected \"target\"");
+			return draft_edit_refuse(report, "expected \"target\"");
 		if (asprintf(&bus, EDIT_BUS "%s", target) < 0)
 			return -ENOMEM;
 		order.name = bus;
 	}
-	err = run(rio, &edits[i], &order, report);
+	err = draft_edit_run(rio, &edits[i], &order, report);
 	free(order.lines);
 	free(bus);
 	return err;

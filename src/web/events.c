@@ -24,7 +24,7 @@ static void put_id(const struct position *at, FILE *out)
 	fprintf(out, "id: %" PRIu32 ":%" PRIu64 "\n", at->generation, at->seen);
 }
 
-static void begin(FILE *out, const char *event, struct json *json)
+static void events_begin(FILE *out, const char *event, struct json *json)
 {
 	fprintf(out, "event: %s\ndata: ", event);
 	json_open(json, out);
@@ -43,7 +43,7 @@ static void put_found(struct stream *stream, FILE *out)
 	stream->begun = true;
 	stream->told_lost = false;
 	put_id(&stream->position, out);
-	begin(out, "found", &json);
+	events_begin(out, "found", &json);
 	json_uint(&json, "generation", web->generation);
 	json_object_end(&json);
 	fputs("\n\n", out);
@@ -54,7 +54,7 @@ static void put_lost(struct stream *stream, FILE *out)
 	struct json json;
 
 	stream->told_lost = true;
-	begin(out, "lost", &json);
+	events_begin(out, "lost", &json);
 	json_string(&json, "why", "owsd does not run: no value is known until it is started");
 	json_object_end(&json);
 	fputs("\n\n", out);
@@ -66,7 +66,7 @@ static void put_missed(struct stream *stream, FILE *out)
 	struct json json;
 
 	stream->alarms_seen = stream->web->alarms_lost;
-	begin(out, "missed", &json);
+	events_begin(out, "missed", &json);
 	json_object_end(&json);
 	fputs("\n\n", out);
 }
@@ -101,7 +101,7 @@ static void make_piece(const struct web *web, struct position *at, FILE *out)
 	struct json json = {.out = out};
 
 	if (!at->within) {
-		begin(out, "values", &json);
+		events_begin(out, "values", &json);
 		fputs(",\"v\":[", out);
 	}
 	json = (struct json){.out = out, .inner = at->some};
@@ -178,7 +178,7 @@ static bool put_next(struct stream *stream, FILE *out)
 	return true;
 }
 
-static enum stream_more fill(struct stream *stream, FILE *out)
+static enum stream_more events_fill(struct stream *stream, FILE *out)
 {
 	int64_t now_ns = ows_now();
 
@@ -215,7 +215,7 @@ static bool take_id(const char *id, struct stream *stream)
 int events_answer(struct request *request)
 {
 	const struct web *web = request->web;
-	struct stream stream = {.fill = fill};
+	struct stream stream = {.fill = events_fill};
 
 	stream.written_ns = ows_now() - EVENTS_ALIVE_S * NS_PER_S;
 	/* a browser that comes back by itself has the header, and still asks for after */

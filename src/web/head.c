@@ -38,7 +38,7 @@ bool head_large(const char *path)
 	return false;
 }
 
-static int refuse(int status, const char *reason, const char **why)
+static int head_refuse(int status, const char *reason, const char **why)
 {
 	*why = reason;
 	return status;
@@ -55,7 +55,7 @@ static bool is_token(struct part part)
 	return part.len > 0;
 }
 
-static bool is(struct part part, const char *word)
+static bool head_is(struct part part, const char *word)
 {
 	return part.len == strlen(word) && strncasecmp(part.at, word, part.len) == 0;
 }
@@ -93,21 +93,22 @@ static int check_request(struct part line, struct seen *seen, const char **why)
 	const char *end = line.at + line.len, *target = memchr(line.at, ' ', line.len), *version;
 
 	if (!target || !is_token((struct part){line.at, (size_t)(target - line.at)}))
-		return refuse(400, "the request line is wrong", why);
-	seen->get = is((struct part){line.at, (size_t)(target - line.at)}, "GET");
+		return head_refuse(400, "the request line is wrong", why);
+	seen->get = head_is((struct part){line.at, (size_t)(target - line.at)}, "GET");
 	target++;
 	version = memchr(target, ' ', (size_t)(end - target));
 	if (!version || *target != '/')
-		return refuse(400, "the request line is wrong", why);
+		return head_refuse(400, "the request line is wrong", why);
 	for (const char *at = target; at < version; at++)
 		if (!strncmp(at, "%00", 3) || *at <= ' ' || *at == '\\' ||
 		    (unsigned char)*at >= 0x7f)
-			return refuse(400, "the path has letters that have to be escaped", why);
+			return head_refuse(400, "the path has letters that have to be escaped",
+			                   why);
 	seen->large = is_large((struct part){target, (size_t)(version - target)});
 	version++;
 	if (end - version != 8 || memcmp(version, "HTTP/1.", 7) != 0 ||
 	    (version[7] != '0' && version[7] != '1'))
-		return refuse(505, "expected HTTP/1.1", why);
+		return head_refuse(505, "expected HTTP/1.1", why);
 	return 200;
 }
 
@@ -116,15 +117,15 @@ static int check_length(struct part value, struct seen *seen, const char **why)
 	seen->length = 0;
 	for (size_t i = 0; i < value.len; i++) {
 		if (!isdigit((unsigned char)value.at[i]))
-			return refuse(400, "Content-Length is no number", why);
+			return head_refuse(400, "Content-Length is no number", why);
 		seen->length = seen->length * 10 + (size_t)(value.at[i] - '0');
 		if (seen->length > (seen->large ? BODY_LARGE : BODY_MAX))
-			return refuse(413,
-			              seen->large ? "the body is longer than 1.5 MiB"
-			                          : "the body is longer than 8192 bytes",
-			              why);
+			return head_refuse(413,
+			                   seen->large ? "the body is longer than 1.5 MiB"
+			                               : "the body is longer than 8192 bytes",
+			                   why);
 	}
-	return value.len ? 200 : refuse(400, "Content-Length is no number", why);
+	return value.len ? 200 : head_refuse(400, "Content-Length is no number", why);
 }
 
 /* Name: value; a line that begins with a blank would go on with the one before it. */
@@ -134,7 +135,7 @@ static int check_header(struct part line, struct seen *seen, const char **why)
 	struct part name = {line.at, colon ? (size_t)(colon - line.at) : 0}, value;
 
 	if (!is_token(name))
-		return refuse(400, "a header is wrong: expected Name: value in one line", why);
+		return head_refuse(400, "a header is wrong: expected Name: value in one line", why);
 	value = (struct part){colon + 1, line.len - name.len - 1};
 	while (value.len && (*value.at == ' ' || *value.at == '\t')) {
 		value.at++;
@@ -142,20 +143,20 @@ static int check_header(struct part line, struct seen *seen, const char **why)
 	}
 	while (value.len && (value.at[value.len - 1] == ' ' || value.at[value.len - 1] == '\t'))
 		value.len--;
-	if (is(name, "Transfer-Encoding"))
-		return refuse(501, "Transfer-Encoding is not taken: send Content-Length", why);
+	if (head_is(name, "Transfer-Encoding"))
+		return head_refuse(501, "Transfer-Encoding is not taken: send Content-Length", why);
 	for (size_t i = 0; i < ONCE; i++)
-		if (is(name, once[i]) && seen->times[i]++)
-			return refuse(400, "a header stands twice", why);
-	return is(name, once[CONTENT_LENGTH]) ? check_length(value, seen, why) : 200;
+		if (head_is(name, once[i]) && seen->times[i]++)
+			return head_refuse(400, "a header stands twice", why);
+	return head_is(name, once[CONTENT_LENGTH]) ? check_length(value, seen, why) : 200;
 }
 
 static int check_end(const struct seen *seen, const char **why)
 {
 	if (!seen->times[HOST])
-		return refuse(400, "the header Host is missing", why);
+		return head_refuse(400, "the header Host is missing", why);
 	if (seen->get && seen->length)
-		return refuse(400, "GET takes no body", why);
+		return head_refuse(400, "GET takes no body", why);
 	return 200;
 }
 
@@ -171,15 +172,16 @@ int head_check(const char *bytes, size_t len, const char **why)
 		int status;
 
 		if (got == -2)
-			return refuse(400, "a line has a control character, or ends without CR",
-			              why);
+			return head_refuse(
+				400, "a line has a control character, or ends without CR", why);
 		if (got < 0)
 			return len < HEAD_MAX
 			               ? 0
-			               : refuse(431, "the head is longer than 8192 bytes", why);
+			               : head_refuse(431, "the head is longer than 8192 bytes",
+			                             why);
 		at += line.len + 2;
 		if (at > HEAD_MAX)
-			return refuse(431, "the head is longer than 8192 bytes", why);
+			return head_refuse(431, "the head is longer than 8192 bytes", why);
 		if (number && !line.len)
 			return check_end(&seen, why);
 		status = number ? check_header(line, &seen, why) : check_request(line, &seen, why);

@@ -24,7 +24,7 @@ struct jobs {
 	bool ended;
 };
 
-static void put(struct queue *queue, struct job *job)
+static void jobs_put(struct queue *queue, struct job *job)
 {
 	job->next = NULL;
 	*queue->last = job;
@@ -58,7 +58,7 @@ static bool put_fairly(struct queue *queue, struct job *job, uint64_t turn)
 	return true;
 }
 
-static struct job *get(struct queue *queue)
+static struct job *jobs_get(struct queue *queue)
 {
 	struct job *job = queue->first;
 
@@ -78,7 +78,7 @@ static void *work(void *ctx)
 
 	pthread_mutex_lock(&jobs->lock);
 	while (!jobs->ended) {
-		job = get(&jobs->wait);
+		job = jobs_get(&jobs->wait);
 		if (!job) {
 			pthread_cond_wait(&jobs->woken, &jobs->lock);
 			continue;
@@ -87,11 +87,11 @@ static void *work(void *ctx)
 		pthread_mutex_unlock(&jobs->lock);
 		job->run(job);
 		pthread_mutex_lock(&jobs->lock);
-		put(&jobs->done, job);
+		jobs_put(&jobs->done, job);
 		bell_ring(jobs->bell);
 	}
-	while ((job = get(&jobs->wait)))
-		put(&jobs->done, job);
+	while ((job = jobs_get(&jobs->wait)))
+		jobs_put(&jobs->done, job);
 	pthread_mutex_unlock(&jobs->lock);
 	return NULL;
 }
@@ -130,7 +130,7 @@ struct job *jobs_take(struct jobs *jobs)
 	struct job *job;
 
 	pthread_mutex_lock(&jobs->lock);
-	job = get(&jobs->done);
+	job = jobs_get(&jobs->done);
 	pthread_mutex_unlock(&jobs->lock);
 	return job;
 }

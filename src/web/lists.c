@@ -18,8 +18,8 @@ struct listing {
 };
 
 /* False after answering: there is nothing to show. */
-static bool begin(struct request *request, struct listing *list, FILE **out, char **text,
-                  size_t *len, int *result)
+static bool lists_begin(struct request *request, struct listing *list, FILE **out, char **text,
+                        size_t *len, int *result)
 {
 	const struct web *web = request->web;
 
@@ -38,7 +38,7 @@ static bool begin(struct request *request, struct listing *list, FILE **out, cha
 	return *out != NULL;
 }
 
-static void add(void *ctx, const struct present *alarm)
+static void lists_add(void *ctx, const struct present *alarm)
 {
 	struct listing *list = ctx;
 
@@ -59,14 +59,14 @@ int lists_alarms(struct request *request)
 	FILE *out;
 	int result;
 
-	if (!begin(request, &list, &out, &text, &len, &result))
+	if (!lists_begin(request, &list, &out, &text, &len, &result))
 		return result;
 	json_object(&list.json, NULL);
 	json_array(&list.json, "alarms");
 	for (int i = 0; i < web->recent.count; i++)
 		if (web->ids[i] >= 0)
-			present_each(web->face->ows, i, web->ids[i], list.now.boot, &reading, add,
-			             &list);
+			present_each(web->face->ows, i, web->ids[i], list.now.boot, &reading,
+			             lists_add, &list);
 	json_array_end(&list.json);
 	json_object_end(&list.json);
 	json_end(&list.json);
@@ -84,7 +84,7 @@ int lists_stats(struct request *request)
 	FILE *out;
 	int result;
 
-	if (!begin(request, &list, &out, &text, &len, &result))
+	if (!lists_begin(request, &list, &out, &text, &len, &result))
 		return result;
 	ows_daemon(web->face->ows, list.now.boot, &daemon);
 	stats_json(&list.json, web->face->arguments->instance, web->face->ows, &daemon, &list.now);

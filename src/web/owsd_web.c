@@ -27,7 +27,7 @@
 #define ENDING_NS (300 * NS_PER_MS) /* slow clients keep no end waiting for longer */
 #define MIX 0x9e3779b97f4a7c15u
 
-static struct web *own(struct face *face)
+static struct web *owsd_web_own(struct face *face)
 {
 	return face->own;
 }
@@ -49,7 +49,7 @@ static int64_t cpu_ns(void)
  * Something may have happened: changes go out that are due, libmicrohttpd has its turn, and says
  * when it wants the next.
  */
-static void run(struct web *web)
+static void owsd_web_run(struct web *web)
 {
 	int64_t now_ns = ows_now(), begin = cpu_ns();
 
@@ -237,7 +237,7 @@ static uint64_t mark_of(struct ows *h, int signal, int64_t now_ns)
 
 static void changes(struct face *face, const int *signals, int n)
 {
-	struct web *web = own(face);
+	struct web *web = owsd_web_own(face);
 	int64_t now_ns = ows_now();
 	uint64_t before = web->recent.newest;
 
@@ -247,7 +247,7 @@ static void changes(struct face *face, const int *signals, int n)
 		recent_change(&web->recent, signal, mark_of(face->ows, signal, now_ns), now_ns);
 	}
 	web->pace.waits |= web->recent.newest != before;
-	run(web);
+	owsd_web_run(web);
 }
 
 /* To look a name up takes long where there are many. */
@@ -263,7 +263,7 @@ static int id_of(struct ows *h, int signal)
 }
 
 /* The table of signals is new. */
-static void find(struct web *web)
+static void owsd_web_find(struct web *web)
 {
 	struct ows_daemon daemon = {0};
 	int count = ows_count(web->face->ows);
@@ -284,12 +284,12 @@ static void find(struct web *web)
 
 static void event(struct face *face, const struct face_event *event)
 {
-	struct web *web = own(face);
+	struct web *web = owsd_web_own(face);
 
 	switch (event->news) {
 	case FACE_FOUND:
 	case FACE_RELOADED:
-		find(web);
+		owsd_web_find(web);
 		break;
 	case FACE_ALARM:
 		events_alarm(web, event->alarm);
@@ -314,20 +314,20 @@ static void event(struct face *face, const struct face_event *event)
 		}
 		if (event->fd == web->doors.epoll)
 			doors_take(&web->doors, ows_now());
-		run(web);
+		owsd_web_run(web);
 		return;
 	}
 	stream_wake_all(web);
-	run(web);
+	owsd_web_run(web);
 }
 
 static void tick(struct face *face, int64_t now_ns)
 {
-	struct web *web = own(face);
+	struct web *web = owsd_web_own(face);
 
 	if (now_ns >= doors_next(&web->doors))
 		doors_take(&web->doors, now_ns);
-	run(web);
+	owsd_web_run(web);
 }
 
 static void end_jobs(struct jobs *jobs)
@@ -353,7 +353,7 @@ static void end_streams(struct web *web)
 
 static void close_web(struct face *face)
 {
-	struct web *web = own(face);
+	struct web *web = owsd_web_own(face);
 
 	web->ends = true;
 	end_jobs(web->past);

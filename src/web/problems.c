@@ -86,7 +86,7 @@ static void name_block(struct json *json, const struct rio_node *block)
 	json_string(json, "block", is_bus ? text : is_item ? NULL : block ? block->key : NULL);
 }
 
-static void show(struct json *json, const struct problem *problem, const struct rio *rio)
+static void problems_show(struct json *json, const struct problem *problem, const struct rio *rio)
 {
 	size_t offset = rio && problem->line ? offset_of(rio, problem->line, problem->column) : 0;
 	const struct rio_node *driver = NULL, *block = NULL, *key = NULL;
@@ -113,6 +113,6 @@ void problems_json(struct json *json, const struct problems *problems, const str
 {
 	json_array(json, "problems");
 	for (unsigned i = 0; i < problems->count; i++)
-		show(json, &problems->list[i], rio);
+		problems_show(json, &problems->list[i], rio);
 	json_array_end(json);
 }

@@ -81,7 +81,7 @@ static void answer_with(struct save *save, const struct writer_answer *answer, c
 	fclose(out);
 }
 
-static void ask(struct save *save, const struct writer_order *order)
+static void save_ask(struct save *save, const struct writer_order *order)
 {
 	struct writer_answer *answer = calloc(1, sizeof(*answer));
 	char words[WRITER_WORDS], error[ERROR_WORDS];
@@ -130,7 +130,7 @@ static bool moves_files(const struct save *save, const char *text)
 	return moves;
 }
 
-static void run(struct job *job)
+static void save_run(struct job *job)
 {
 	struct save *save = (struct save *)job;
 	struct writer_order order = {.instance = save->instance, .person = save->person};
@@ -155,11 +155,11 @@ static void run(struct job *job)
 	} else {
 		order.base = base->text;
 		order.text = save->restore ? NULL : text->text;
-		ask(save, &order);
+		save_ask(save, &order);
 	}
 }
 
-static int give(struct request *request, bool restore)
+static int save_give(struct request *request, bool restore)
 {
 	struct web *web = request->web;
 	char person[PERSON], words[GUARD_WORDS];
@@ -170,7 +170,7 @@ static int give(struct request *request, bool restore)
 		return http_error(request, status, "%s", words);
 	if (request->posted.dropped)
 		return http_error(request, 503, DRAFT_BUSY);
-	save = (struct save *)http_job(request, sizeof(*save), run);
+	save = (struct save *)http_job(request, sizeof(*save), save_run);
 	if (!save)
 		return MHD_NO;
 	save->restore = restore;
@@ -183,10 +183,10 @@ static int give(struct request *request, bool restore)
 
 int save_post(struct request *request)
 {
-	return give(request, false);
+	return save_give(request, false);
 }
 
 int save_restore(struct request *request)
 {
-	return give(request, true);
+	return save_give(request, true);
 }

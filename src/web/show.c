@@ -37,7 +37,7 @@ static void look_at(const struct show *show, int signal, struct look *look)
 /* Beyond it a browser would round. */
 #define NUMBER_MOST ((INT64_C(1) << 53) - 1)
 
-static void put_value(struct json *json, const char *key, const struct look *look)
+static void show_put_value(struct json *json, const char *key, const struct look *look)
 {
 	enum ows_type type = (enum ows_type)look->value.type;
 
@@ -112,7 +112,7 @@ const char *show_alarm(const struct show *show, int signal, char words[SHOW_ALAR
 
 static void put_all(struct json *json, const struct show *show, const struct look *look)
 {
-	put_value(json, "value", look);
+	show_put_value(json, "value", look);
 	put_quality(json, show, look);
 	put_age(json, "age", look);
 	json_bool(json, "simulated", look->value.detail & OWS_DETAIL_SIMULATED);
@@ -166,7 +166,7 @@ void show_row(struct json *json, const struct show *show, int signal)
 	look_at(show, signal, &look);
 	json_array(json, NULL);
 	json_int(json, NULL, signal);
-	put_value(json, NULL, &look);
+	show_put_value(json, NULL, &look);
 	json_int(json, NULL, look.code);
 	json_bool(json, NULL, look.good);
 	put_age(json, NULL, &look);

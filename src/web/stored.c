@@ -56,7 +56,8 @@ static void put_backup(struct json *json, const char *file)
 	json_object_end(json);
 }
 
-static void answer(struct stored *stored, const char *text, size_t len, const struct rio *rio)
+static void stored_answer(struct stored *stored, const char *text, size_t len,
+                          const struct rio *rio)
 {
 	FILE *out = open_memstream(&stored->job.text, &stored->job.len);
 	char tag[TAG_TEXT], remedy[WRITER_WORDS];
@@ -83,7 +84,7 @@ static void answer(struct stored *stored, const char *text, size_t len, const st
 	fclose(out);
 }
 
-static void run(struct job *job)
+static void stored_run(struct job *job)
 {
 	struct stored *stored = (struct stored *)job;
 	struct problems *problems = calloc(1, sizeof(*problems));
@@ -105,7 +106,7 @@ static void run(struct job *job)
 		job_error(job, 500, "%s: no memory for its blocks", stored->file);
 	else {
 		judge(stored, text, len);
-		answer(stored, text, len, rio);
+		stored_answer(stored, text, len, rio);
 	}
 	if (problems)
 		problems_free(problems);
@@ -117,7 +118,7 @@ static void run(struct job *job)
 int stored_get(struct request *request)
 {
 	const struct face *face = request->web->face;
-	struct stored *stored = (struct stored *)http_job(request, sizeof(*stored), run);
+	struct stored *stored = (struct stored *)http_job(request, sizeof(*stored), stored_run);
 	char person[PERSON];
 	const char *why;
 

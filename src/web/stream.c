@@ -49,7 +49,7 @@ static ssize_t pull(void *cls, uint64_t position, char *buffer, size_t most)
 	return (ssize_t)n;
 }
 
-static void forget(void *cls)
+static void stream_forget(void *cls)
 {
 	struct stream *stream = cls;
 	struct web *web = stream->web;
@@ -82,9 +82,10 @@ int stream_answer(struct request *request, const char *type, const struct stream
 		stream->next->before = stream;
 	web->streams = stream;
 	web->stream_count++;
-	response = MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, BLOCK, pull, stream, forget);
+	response = MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, BLOCK, pull, stream,
+	                                             stream_forget);
 	if (!response)
-		forget(stream);
+		stream_forget(stream);
 	else
 		MHD_add_response_header(response, "Content-Type", type);
 	return http_answer(request, 200, response);

@@ -220,7 +220,7 @@ void writer_remedy(const char *instance, char text[WRITER_WORDS])
 	         instance);
 }
 
-static int await(int fd, short events, int64_t until_ns)
+static int writer_await(int fd, short events, int64_t until_ns)
 {
 	struct pollfd poll_fd = {.fd = fd, .events = events};
 	int64_t left_ns = until_ns - ows_now();
@@ -242,7 +242,7 @@ static int send_all(int fd, const char *bytes, size_t len, int64_t until_ns)
 			bytes += n;
 			len -= (size_t)n;
 		} else if (errno == EAGAIN || errno == EINTR) {
-			err = await(fd, POLLOUT, until_ns);
+			err = writer_await(fd, POLLOUT, until_ns);
 		} else {
 			return errno == EPIPE || errno == ECONNRESET ? 0 : -errno;
 		}
@@ -263,7 +263,7 @@ static int receive_all(int fd, char *text, size_t size, size_t *len, int64_t unt
 		if (n > 0)
 			*len += (size_t)n;
 		else if (errno == EAGAIN || errno == EINTR)
-			err = await(fd, POLLIN, until_ns);
+			err = writer_await(fd, POLLIN, until_ns);
 		else
 			err = -errno;
 	}

@@ -139,7 +139,7 @@ static void serve(struct writer *writer, int listener, bool may_leave, struct un
 	}
 }
 
-static int run(const struct face_arguments *a, struct unix_signals *signals)
+static int owsd_config_run(const struct face_arguments *a, struct unix_signals *signals)
 {
 	struct writer writer = {.file = a->file, .instance = a->instance};
 	int prefix = journal_is_stderr(), listener;
@@ -197,5 +197,5 @@ int main(int argc, char **argv)
 		face_complain(PROGRAM, "cannot take signals: %s", strerror(-status));
 		return FACE_EXIT_RUN;
 	}
-	return run(&a, &signals);
+	return owsd_config_run(&a, &signals);
 }

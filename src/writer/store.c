@@ -31,7 +31,7 @@ static void say_unreadable(void *ctx, bool is_error, int line, int column, const
 }
 
 /* One that is not there has no text. Otherwise a negative errno is in the answer. */
-static int load(const char *file, struct stored *stored, struct answer *answer)
+static int store_load(const char *file, struct stored *stored, struct answer *answer)
 {
 	struct config_report report = {.problem = say_unreadable, .ctx = answer};
 	char words[ANSWER_WHY];
@@ -52,7 +52,7 @@ static int load(const char *file, struct stored *stored, struct answer *answer)
 	return 0;
 }
 
-static void forget(struct stored *stored)
+static void store_forget(struct stored *stored)
 {
 	free(stored->text);
 	stored->text = NULL;
@@ -160,9 +160,9 @@ static void keep(const char *backup, const struct stored *present, struct answer
 {
 	struct stored before;
 
-	if (load(backup, &before, answer) == 0 && before.text)
+	if (store_load(backup, &before, answer) == 0 && before.text)
 		show_backup(backup, before.tag, answer);
-	forget(&before);
+	store_forget(&before);
 	show_tag(answer, present->tag);
 }
 
@@ -209,9 +209,9 @@ void store_replace(const char *file, const struct order *order, const char *text
 
 	if (fd < 0)
 		return;
-	if (load(file, &present, answer) == 0 && is_base(&present, order, answer))
+	if (store_load(file, &present, answer) == 0 && is_base(&present, order, answer))
 		exchange(file, backup, true, &present, text, order->length, answer);
-	forget(&present);
+	store_forget(&present);
 	replace_unlock(file, fd);
 }
 
@@ -223,8 +223,8 @@ void store_restore(const char *file, const struct order *order, struct answer *a
 
 	if (fd < 0)
 		return;
-	if (load(file, &present, answer) || !is_base(&present, order, answer) ||
-	    load(backup, &before, answer))
+	if (store_load(file, &present, answer) || !is_base(&present, order, answer) ||
+	    store_load(backup, &before, answer))
 		goto out;
 	if (before.text)
 		exchange(file, backup, false, &present, before.text, before.len, answer);
@@ -232,7 +232,7 @@ void store_restore(const char *file, const struct order *order, struct answer *a
 		answer_say(answer, ANSWER_REFUSED, "there is no %s: nothing was saved before",
 		           backup);
 out:
-	forget(&present);
-	forget(&before);
+	store_forget(&present);
+	store_forget(&before);
 	replace_unlock(file, fd);
 }

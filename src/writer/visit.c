@@ -21,7 +21,7 @@
 #define RELOAD_NS (30 * NS_PER_S)
 
 /* Sleep until the connection is ready for events; false: the time is over. */
-static bool await(int fd, short events, int64_t until_ns)
+static bool visit_await(int fd, short events, int64_t until_ns)
 {
 	struct pollfd poll_fd = {.fd = fd, .events = events};
 	int64_t left_ns = until_ns - ows_now();
@@ -30,12 +30,12 @@ static bool await(int fd, short events, int64_t until_ns)
 }
 
 /* How many bytes came; 0: the peer sends no more; -ETIMEDOUT or another negative errno. */
-static ssize_t receive(int fd, char *to, size_t room, int64_t until_ns)
+static ssize_t visit_receive(int fd, char *to, size_t room, int64_t until_ns)
 {
 	ssize_t n;
 
 	while ((n = recv(fd, to, room, 0)) < 0 && (errno == EAGAIN || errno == EINTR))
-		if (!await(fd, POLLIN, until_ns))
+		if (!visit_await(fd, POLLIN, until_ns))
 			return -ETIMEDOUT;
 	return n < 0 ? -errno : n;
 }
@@ -47,7 +47,7 @@ static void send_all(int fd, const char *text, size_t len, int64_t until_ns)
 
 		if (n < 0 && errno != EAGAIN && errno != EINTR)
 			return;
-		if (n < 0 && !await(fd, POLLOUT, until_ns))
+		if (n < 0 && !visit_await(fd, POLLOUT, until_ns))
 			return;
 		if (n > 0) {
 			text += n;
@@ -63,7 +63,7 @@ static void drain(int fd)
 	char bytes[4096];
 
 	shutdown(fd, SHUT_WR);
-	while (ows_now() < until_ns && receive(fd, bytes, sizeof(bytes), until_ns) > 0)
+	while (ows_now() < until_ns && visit_receive(fd, bytes, sizeof(bytes), until_ns) > 0)
 		;
 }
 
@@ -89,7 +89,7 @@ static char *receive_body(int fd, const struct order *order, const char *begin, 
 	}
 	memcpy(body, begin, used);
 	while (used < order->length) {
-		ssize_t n = receive(fd, body + used, order->length - used, until_ns);
+		ssize_t n = visit_receive(fd, body + used, order->length - used, until_ns);
 
 		if (n <= 0) {
 			say_lost(n, answer);
@@ -116,7 +116,7 @@ static char *receive_request(int fd, struct order *order, struct answer *answer)
 	int len = 0;
 
 	while (!len) {
-		ssize_t n = receive(fd, head + used, sizeof(head) - used, until_ns);
+		ssize_t n = visit_receive(fd, head + used, sizeof(head) - used, until_ns);
 
 		if (n <= 0) {
 			say_lost(n, answer);

@@ -39,7 +39,7 @@ struct bae {
 	int64_t started; /* the clock was 0 */
 };
 
-static struct bae *state(struct sim_slave *slave)
+static struct bae *bae_state(struct sim_slave *slave)
 {
 	return sim_state(slave, bae);
 }
@@ -52,7 +52,7 @@ static bool is_911(const struct sim_slave *slave)
 /* NULL: there is nothing at this address. */
 static uint8_t *cell(struct sim_slave *slave, unsigned at)
 {
-	struct bae *s = state(slave);
+	struct bae *s = bae_state(slave);
 	unsigned eeprom = is_911(slave) ? EEPROM_911 : EEPROM_910;
 	unsigned pages = is_911(slave) ? PAGES_911 : PAGES_910;
 	unsigned registers = is_911(slave) ? REGISTERS_911 : 0;
@@ -66,19 +66,19 @@ static uint8_t *cell(struct sim_slave *slave, unsigned at)
 
 static bool is_eeprom(struct sim_slave *slave, const uint8_t *to)
 {
-	const struct bae *s = state(slave);
+	const struct bae *s = bae_state(slave);
 
 	return to >= s->eeprom && to < s->eeprom + sizeof(s->eeprom);
 }
 
-static void create(struct sim_slave *slave)
+static void bae_create(struct sim_slave *slave)
 {
-	memset(state(slave)->eeprom, 0xFF, sizeof(state(slave)->eeprom));
+	memset(bae_state(slave)->eeprom, 0xFF, sizeof(bae_state(slave)->eeprom));
 }
 
-static void power_on(struct sim_slave *slave, int64_t t)
+static void bae_power_on(struct sim_slave *slave, int64_t t)
 {
-	struct bae *s = state(slave);
+	struct bae *s = bae_state(slave);
 
 	memset(s->registers, 0, sizeof(s->registers));
 	memset(s->expander, 0, sizeof(s->expander));
@@ -106,9 +106,9 @@ static unsigned clock_at(const struct sim_slave *slave)
 	return is_911(slave) ? CLOCK_911 : CLOCK_910;
 }
 
-static void advance(struct sim_slave *slave, int64_t t)
+static void bae_advance(struct sim_slave *slave, int64_t t)
 {
-	struct bae *s = state(slave);
+	struct bae *s = bae_state(slave);
 	unsigned adc = (unsigned)sim_round(sim_input_at(slave, 0, t) * 1023 / 5);
 
 	put32(s->registers + clock_at(slave), (uint32_t)((t - s->started) / NS_PER_S));
@@ -155,7 +155,7 @@ static void read_block(struct sim_slave *slave, int64_t t)
 /* EEPROM can only be cleared bit by bit; erasing sets all. */
 static void write_block(struct sim_slave *slave, int64_t t)
 {
-	struct bae *s = state(slave);
+	struct bae *s = bae_state(slave);
 	unsigned at = s->taken[0] | (unsigned)s->taken[1] << 8;
 
 	for (unsigned i = 0; i < s->taken[2]; i++) {
@@ -169,7 +169,7 @@ static void write_block(struct sim_slave *slave, int64_t t)
 
 static void erase_page(struct sim_slave *slave)
 {
-	struct bae *s = state(slave);
+	struct bae *s = bae_state(slave);
 	uint8_t *page = cell(slave, s->taken[0] | (unsigned)s->taken[1] << 8);
 
 	if (page && is_eeprom(slave, page))
@@ -233,7 +233,7 @@ static void sequence(struct bae *s, bool write)
 
 static void act(struct sim_slave *slave, int64_t t)
 {
-	struct bae *s = state(slave);
+	struct bae *s = bae_state(slave);
 
 	switch (slave->function->code) {
 	case WRITE_BLOCK:
@@ -269,16 +269,16 @@ static unsigned whole(const struct sim_slave *slave, const struct bae *s)
 	return 2; /* page to erase; bytes and function of a sequence */
 }
 
-static void begin(struct sim_slave *slave, int64_t t)
+static void bae_begin(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	state(slave)->got = 0;
-	state(slave)->sent = false;
+	bae_state(slave)->got = 0;
+	bae_state(slave)->sent = false;
 }
 
-static void take(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void bae_take(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	struct bae *s = state(slave);
+	struct bae *s = bae_state(slave);
 
 	if (s->sent) {
 		if (byte == CONFIRM)
@@ -306,7 +306,7 @@ static void await_confirmation(struct sim_slave *slave, int64_t t)
 
 static void query(struct sim_slave *slave, int64_t t)
 {
-	struct bae *s = state(slave);
+	struct bae *s = bae_state(slave);
 	uint8_t out[2 + BLOCK] = {s->result, s->answers};
 
 	if (t < s->done) {
@@ -318,15 +318,15 @@ static void query(struct sim_slave *slave, int64_t t)
 }
 
 /* Registers (of the 0910 128, of the 0911 2048), EEPROM, SD card, I2C expander, text. */
-static uint8_t *memory(struct sim_slave *slave, size_t *size)
+static uint8_t *bae_memory(struct sim_slave *slave, size_t *size)
 {
 	*size = offsetof(struct bae, taken);
-	return state(slave)->registers;
+	return bae_state(slave)->registers;
 }
 
 #define WRITES(code_) \
 	{ \
-		.code = (code_), .start = begin, .byte = take, .next = await_confirmation \
+		.code = (code_), .start = bae_begin, .byte = bae_take, .next = await_confirmation \
 	}
 static const struct sim_function functions[] = {
 	{.code = VERSION, .start = version},
@@ -348,8 +348,8 @@ static const struct sim_input inputs[] = {{.name = "adc", .start = 2.5, .least =
 #define BAE(part) \
 	{ \
 		.name = (part), .code = 0xFC, .state_size = sizeof(struct bae), \
-		.functions = functions, .inputs = inputs, .create = create, .power_on = power_on, \
-		.advance = advance, .memory = memory \
+		.functions = functions, .inputs = inputs, .create = bae_create, \
+		.power_on = bae_power_on, .advance = bae_advance, .memory = bae_memory \
 	}
 
 const struct sim_family sim_bae0910 = BAE("BAE0910");

@@ -84,23 +84,23 @@ static uint32_t raw_of(double value, unsigned bits, double (*of)(double, double)
 	return (uint32_t)sim_round(least);
 }
 
-static void put16(uint8_t *at, int value)
+static void bme280_put16(uint8_t *at, int value)
 {
 	at[0] = (uint8_t)value;
 	at[1] = (uint8_t)((unsigned)value >> 8);
 }
 
-static void power_on(struct sim_sensor *sensor)
+static void bme280_power_on(struct sim_sensor *sensor)
 {
 	uint8_t *reg = sensor->reg, *h = reg + HUMIDITY_2;
 
 	memset(reg, 0, sizeof(sensor->reg));
 	for (unsigned i = 0; i < 3; i++)
-		put16(reg + CALIBRATION + 2 * i, t_digits[i]);
+		bme280_put16(reg + CALIBRATION + 2 * i, t_digits[i]);
 	for (unsigned i = 0; i < 9; i++)
-		put16(reg + CALIBRATION + 6 + 2 * i, p_digits[i]);
+		bme280_put16(reg + CALIBRATION + 6 + 2 * i, p_digits[i]);
 	reg[HUMIDITY_1] = H1;
-	put16(h, H2);
+	bme280_put16(h, H2);
 	h[2] = H3;
 	h[3] = H4 >> 4;
 	h[4] = (H4 & 15) | (H5 & 15) << 4;
@@ -125,7 +125,7 @@ static void put20(uint8_t *at, uint32_t raw)
 }
 
 /* The registers get the results now, and show the measurement until its end. */
-static void measure(struct sim_slave *slave, struct sim_sensor *sensor, int64_t t)
+static void bme280_measure(struct sim_slave *slave, struct sim_sensor *sensor, int64_t t)
 {
 	unsigned of_t = samples(sensor->reg[CTRL_MEAS] >> 5);
 	unsigned of_p = samples(sensor->reg[CTRL_MEAS] >> 2 & 7);
@@ -149,24 +149,25 @@ static void measure(struct sim_slave *slave, struct sim_sensor *sensor, int64_t 
 }
 
 /* Register, byte, register, byte. */
-static bool take(struct sim_slave *slave, struct sim_sensor *sensor, uint8_t byte, unsigned at,
-                 int64_t t)
+static bool bme280_take(struct sim_slave *slave, struct sim_sensor *sensor, uint8_t byte,
+                        unsigned at, int64_t t)
 {
 	if (at % 2 == 0)
 		sensor->pointer = byte;
 	else if (sensor->pointer == RESET && byte == RESET_WORD)
-		power_on(sensor);
+		bme280_power_on(sensor);
 	else if (sensor->pointer == CTRL_HUM || sensor->pointer == CTRL_MEAS ||
 	         sensor->pointer == CONFIG)
 		sensor->reg[sensor->pointer] = byte;
 	if (at % 2 == 1 && sensor->pointer == CTRL_MEAS && (byte & 3) && (byte & 3) <= 2 * FORCED) {
-		measure(slave, sensor, t);
+		bme280_measure(slave, sensor, t);
 		sensor->reg[CTRL_MEAS] &= 0xFC; /* it sleeps again */
 	}
 	return true;
 }
 
-static uint8_t give(struct sim_slave *slave, struct sim_sensor *sensor, unsigned at, int64_t t)
+static uint8_t bme280_give(struct sim_slave *slave, struct sim_sensor *sensor, unsigned at,
+                           int64_t t)
 {
 	uint8_t reg = sensor->pointer++;
 
@@ -178,4 +179,4 @@ static uint8_t give(struct sim_slave *slave, struct sim_sensor *sensor, unsigned
 }
 
 const struct sim_sensor_kind sim_sensor_bme280 = {
-	.name = "bme280", .power_on = power_on, .write = take, .read = give};
+	.name = "bme280", .power_on = bme280_power_on, .write = bme280_take, .read = bme280_give};

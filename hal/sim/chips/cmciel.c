@@ -39,7 +39,7 @@ static unsigned reading(const struct sim_slave *slave, int64_t t)
 	return word;
 }
 
-static void read_scratchpad(struct sim_slave *slave, int64_t t)
+static void cmciel_read_scratchpad(struct sim_slave *slave, int64_t t)
 {
 	unsigned word = reading(slave, t);
 	uint8_t out[2] = {(uint8_t)word, (uint8_t)(word >> 8)};
@@ -48,7 +48,7 @@ static void read_scratchpad(struct sim_slave *slave, int64_t t)
 }
 
 static const struct sim_function functions[] = {
-	{.code = 0xBE, .start = read_scratchpad},
+	{.code = 0xBE, .start = cmciel_read_scratchpad},
 	{.code = 0x4E, .takes = 3}, /* Write Config: its effect is not known */
 	{0},
 };

@@ -25,7 +25,7 @@ enum { READ_POWER = 0xB4 };
 /* tWR of the EEPROM, all data sheets: 10 ms at most. */
 #define COPY_NS (10 * NS_PER_MS)
 
-static struct sim_thermometer *state(struct sim_slave *slave)
+static struct sim_thermometer *ds18b20_state(struct sim_slave *slave)
 {
 	return sim_state(slave, sim_thermometer);
 }
@@ -66,9 +66,9 @@ static uint8_t config_byte(const struct sim_slave *slave, uint8_t written)
 	return (uint8_t)((written & 0x60) | 0x1F);
 }
 
-static void recall(struct sim_slave *slave)
+static void ds18b20_recall(struct sim_slave *slave)
 {
-	struct sim_thermometer *s = state(slave);
+	struct sim_thermometer *s = ds18b20_state(slave);
 
 	s->scratchpad[2] = s->eeprom[0];
 	s->scratchpad[3] = s->eeprom[1];
@@ -77,9 +77,9 @@ static void recall(struct sim_slave *slave)
 
 static const struct sim_clone *clone_of(const struct sim_family *family);
 
-static void create(struct sim_slave *slave)
+static void ds18b20_create(struct sim_slave *slave)
 {
-	struct sim_thermometer *s = state(slave);
+	struct sim_thermometer *s = ds18b20_state(slave);
 
 	s->clone = clone_of(slave->family);
 	if (s->clone) {
@@ -92,9 +92,9 @@ static void create(struct sim_slave *slave)
 	s->eeprom[2] = 0x7F;
 }
 
-static void power_on(struct sim_slave *slave, int64_t t)
+static void ds18b20_power_on(struct sim_slave *slave, int64_t t)
 {
-	struct sim_thermometer *s = state(slave);
+	struct sim_thermometer *s = ds18b20_state(slave);
 	int raw = is_s20(slave) ? 85 * 2 : 85 * 16;
 
 	if (slave->family->code == FAMILY_EA00)
@@ -104,7 +104,7 @@ static void power_on(struct sim_slave *slave, int64_t t)
 		if (s->clone->keeps && slave->power_ons > 1)
 			return;
 		memcpy(s->scratchpad, s->clone->first, 8);
-		recall(slave);
+		ds18b20_recall(slave);
 		return;
 	}
 	s->scratchpad[0] = (uint8_t)raw;
@@ -112,12 +112,12 @@ static void power_on(struct sim_slave *slave, int64_t t)
 	s->scratchpad[5] = 0xFF;
 	s->scratchpad[6] = 0x0C;
 	s->scratchpad[7] = 0x10;
-	recall(slave);
+	ds18b20_recall(slave);
 }
 
 static void set_alarm(struct sim_slave *slave, double celsius)
 {
-	struct sim_thermometer *s = state(slave);
+	struct sim_thermometer *s = ds18b20_state(slave);
 	int whole = (int)floor(celsius);
 
 	s->alarm = whole >= (int8_t)s->scratchpad[2] || whole <= (int8_t)s->scratchpad[3];
@@ -125,7 +125,7 @@ static void set_alarm(struct sim_slave *slave, double celsius)
 
 static void latch_temperature(struct sim_slave *slave, int64_t t)
 {
-	struct sim_thermometer *s = state(slave);
+	struct sim_thermometer *s = ds18b20_state(slave);
 	double celsius = sim_input_at(slave, SIM_TEMPERATURE, t);
 	int raw;
 
@@ -152,9 +152,9 @@ static void latch_temperature(struct sim_slave *slave, int64_t t)
 }
 
 /* A copy stores what the scratchpad holds when the copy ends. */
-static void worked(struct sim_slave *slave, int64_t t)
+static void ds18b20_worked(struct sim_slave *slave, int64_t t)
 {
-	struct sim_thermometer *s = state(slave);
+	struct sim_thermometer *s = ds18b20_state(slave);
 
 	if (!s->copying)
 		latch_temperature(slave, t);
@@ -165,37 +165,38 @@ static void worked(struct sim_slave *slave, int64_t t)
 /* A clone that needs a supply line, and has none. */
 static bool is_dead(struct sim_slave *slave)
 {
-	bool dead = slave->parasite && state(slave)->clone && state(slave)->clone->no_parasite;
+	bool dead = slave->parasite && ds18b20_state(slave)->clone &&
+	            ds18b20_state(slave)->clone->no_parasite;
 
 	if (dead)
 		sim_end(slave);
 	return dead;
 }
 
-static void convert(struct sim_slave *slave, int64_t t)
+static void ds18b20_convert(struct sim_slave *slave, int64_t t)
 {
 	if (is_dead(slave))
 		return;
 	/* No data sheet says what it does while it converts. */
-	if (state(slave)->once && slave->busy && !state(slave)->copying) {
+	if (ds18b20_state(slave)->once && slave->busy && !ds18b20_state(slave)->copying) {
 		sim_send_bits(slave);
 		return;
 	}
-	state(slave)->copying = false;
+	ds18b20_state(slave)->copying = false;
 	sim_work(slave, sim_thermometer_conversion(slave), t);
 }
 
-static void copy(struct sim_slave *slave, int64_t t)
+static void ds18b20_copy(struct sim_slave *slave, int64_t t)
 {
 	if (is_dead(slave))
 		return;
-	state(slave)->copying = true;
+	ds18b20_state(slave)->copying = true;
 	sim_work(slave, COPY_NS, t);
 }
 
-static bool bit(struct sim_slave *slave, int64_t t)
+static bool ds18b20_bit(struct sim_slave *slave, int64_t t)
 {
-	const struct sim_clone *clone = state(slave)->clone;
+	const struct sim_clone *clone = ds18b20_state(slave)->clone;
 
 	if (slave->function->code == READ_POWER)
 		return !slave->parasite;
@@ -213,16 +214,16 @@ static void send_bits(struct sim_slave *slave, int64_t t)
 static void recall_eeprom(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	if (state(slave)->no_recall) {
+	if (ds18b20_state(slave)->no_recall) {
 		sim_end(slave);
 		return;
 	}
-	recall(slave);
+	ds18b20_recall(slave);
 	sim_send_bits(slave);
 }
 
 /* The checksum is that of what is sent, so it is right whatever was disturbed. */
-static void read_scratchpad(struct sim_slave *slave, int64_t t)
+static void ds18b20_read_scratchpad(struct sim_slave *slave, int64_t t)
 {
 	const struct sim_thermometer *s = slave->state;
 	uint8_t bytes[8];
@@ -236,15 +237,15 @@ static void read_scratchpad(struct sim_slave *slave, int64_t t)
 	sim_send_crc8(slave, bytes, 8);
 }
 
-static void begin_write(struct sim_slave *slave, int64_t t)
+static void ds18b20_begin_write(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
 	slave->address = 2;
 }
 
-static void write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void ds18b20_write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	struct sim_thermometer *s = state(slave);
+	struct sim_thermometer *s = ds18b20_state(slave);
 	bool overwrites = s->clone && s->clone->overwrites;
 	unsigned at = slave->address++;
 
@@ -259,15 +260,15 @@ static void write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
 		sim_end(slave);
 }
 
-static bool alarm(struct sim_slave *slave, int64_t t)
+static bool ds18b20_alarm(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	return state(slave)->alarm;
+	return ds18b20_state(slave)->alarm;
 }
 
-static int option(struct sim_slave *slave, const char *name, double value)
+static int ds18b20_option(struct sim_slave *slave, const char *name, double value)
 {
-	struct sim_thermometer *s = state(slave);
+	struct sim_thermometer *s = ds18b20_state(slave);
 	int64_t whole = sim_round(value);
 
 	if (value != (double)whole)
@@ -303,9 +304,10 @@ static int option(struct sim_slave *slave, const char *name, double value)
 }
 
 #define FUNCTIONS \
-	{.code = 0x44, .start = convert}, {.code = 0xBE, .start = read_scratchpad}, \
-		{.code = 0x4E, .start = begin_write, .byte = write_scratchpad}, \
-		{.code = 0x48, .start = copy}, {.code = 0xB8, .start = recall_eeprom}, \
+	{.code = 0x44, .start = ds18b20_convert}, \
+		{.code = 0xBE, .start = ds18b20_read_scratchpad}, \
+		{.code = 0x4E, .start = ds18b20_begin_write, .byte = ds18b20_write_scratchpad}, \
+		{.code = 0x48, .start = ds18b20_copy}, {.code = 0xB8, .start = recall_eeprom}, \
 	{ \
 		.code = READ_POWER, .start = send_bits \
 	}
@@ -331,8 +333,9 @@ static const struct sim_input ea00_inputs[] = {
 #define THERMOMETER(part, family, ...) \
 	{ \
 		.name = part, .code = family, .state_size = sizeof(struct sim_thermometer), \
-		.starves = true, .create = create, .power_on = power_on, .alarm = alarm, \
-		.bit = bit, .worked = worked, .option = option, __VA_ARGS__ \
+		.starves = true, .create = ds18b20_create, .power_on = ds18b20_power_on, \
+		.alarm = ds18b20_alarm, .bit = ds18b20_bit, .worked = ds18b20_worked, \
+		.option = ds18b20_option, __VA_ARGS__ \
 	}
 #define PLAIN .inputs = inputs, .functions = functions
 

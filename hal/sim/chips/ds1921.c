@@ -50,7 +50,7 @@ struct ds1921 {
 	bool converting, was_low, was_high;
 };
 
-static struct ds1921 *state(struct sim_slave *slave)
+static struct ds1921 *ds1921_state(struct sim_slave *slave)
 {
 	return sim_state(slave, ds1921);
 }
@@ -58,10 +58,10 @@ static struct ds1921 *state(struct sim_slave *slave)
 static const struct sim_scratchpad_kind kind = {
 	.size = END, .writable = END, .page = 32, .copy_ns = 32 * COPY_NS_PER_BYTE, .to_end = true};
 
-static void create(struct sim_slave *slave)
+static void ds1921_create(struct sim_slave *slave)
 {
 	static const uint8_t new_year[SIM_TIME] = {0, 0, 0, 1, 1, 0x81, 0}; /* of 2000 */
-	struct ds1921 *s = state(slave);
+	struct ds1921 *s = ds1921_state(slave);
 
 	s->pad.kind = &kind;
 	s->clock.stopped = -1;
@@ -83,7 +83,7 @@ static uint8_t raw_temperature(struct sim_slave *slave, int64_t t)
 	return (uint8_t)(raw < 0 ? 0 : raw > most ? most : raw);
 }
 
-static void add(uint8_t *counter, unsigned n, uint32_t most)
+static void ds1921_add(uint8_t *counter, unsigned n, uint32_t most)
 {
 	uint32_t value = sim_count(counter, n);
 
@@ -109,15 +109,15 @@ static void note_time(struct ds1921 *s, unsigned first, bool beyond, bool *was)
 
 static void sample(struct sim_slave *slave, int64_t t)
 {
-	struct ds1921 *s = state(slave);
+	struct ds1921 *s = ds1921_state(slave);
 	uint8_t *memory = s->pad.memory, raw = raw_temperature(slave, t);
 	uint32_t n = sim_count(memory + SAMPLES, 3);
 
 	if (n < sizeof(s->log) || memory[CONTROL] & RO)
 		s->log[n % sizeof(s->log)] = raw;
-	add(memory + SAMPLES, 3, 0xFFFFFF);
-	add(memory + DEVICE_SAMPLES, 3, 0xFFFFFF);
-	add(memory + HISTOGRAM + raw / 4 * 2, 2, 0xFFFF);
+	ds1921_add(memory + SAMPLES, 3, 0xFFFFFF);
+	ds1921_add(memory + DEVICE_SAMPLES, 3, 0xFFFFFF);
+	ds1921_add(memory + HISTOGRAM + raw / 4 * 2, 2, 0xFFFF);
 	note_time(s, LOW_TIMES, raw <= memory[LOW], &s->was_low);
 	note_time(s, HIGH_TIMES, raw >= memory[HIGH], &s->was_high);
 	memory[STATUS] |= (raw <= memory[LOW] ? TLF : 0) | (raw >= memory[HIGH] ? THF : 0);
@@ -150,9 +150,9 @@ static void follow_alarm(struct ds1921 *s, int64_t t)
 	s->checked = t;
 }
 
-static void advance(struct sim_slave *slave, int64_t t)
+static void ds1921_advance(struct sim_slave *slave, int64_t t)
 {
-	struct ds1921 *s = state(slave);
+	struct ds1921 *s = ds1921_state(slave);
 	uint8_t *memory = s->pad.memory;
 
 	sim_clock_get(&s->clock, t, memory + CLOCK);
@@ -193,7 +193,7 @@ static void write_register(struct sim_slave *slave, unsigned at, uint8_t byte, i
 	static const uint8_t used[CONTROL + 1 - CLOCK] = {0x7F, 0x7F, 0x7F, 0x07, 0x3F,
 	                                                  0x9F, 0xFF, 0xFF, 0xFF, 0xFF,
 	                                                  0x87, 0xFF, 0xFF, 0xFF, 0xDF};
-	struct ds1921 *s = state(slave);
+	struct ds1921 *s = ds1921_state(slave);
 	uint8_t *memory = s->pad.memory;
 
 	if (at == STATUS)
@@ -211,7 +211,7 @@ static void write_register(struct sim_slave *slave, unsigned at, uint8_t byte, i
 
 static void copied(struct sim_slave *slave, int64_t t)
 {
-	struct ds1921 *s = state(slave);
+	struct ds1921 *s = ds1921_state(slave);
 	unsigned first = s->pad.target, last = (first & ~31u) + (s->pad.status & 31u);
 	bool rate = false;
 
@@ -225,9 +225,9 @@ static void copied(struct sim_slave *slave, int64_t t)
 	s->pad.status |= 0x80;
 }
 
-static void worked(struct sim_slave *slave, int64_t t)
+static void ds1921_worked(struct sim_slave *slave, int64_t t)
 {
-	struct ds1921 *s = state(slave);
+	struct ds1921 *s = ds1921_state(slave);
 
 	if (!s->converting) {
 		copied(slave, t);
@@ -235,7 +235,7 @@ static void worked(struct sim_slave *slave, int64_t t)
 	}
 	s->converting = false;
 	s->pad.memory[READOUT] = raw_temperature(slave, t);
-	add(s->pad.memory + DEVICE_SAMPLES, 3, 0xFFFFFF);
+	ds1921_add(s->pad.memory + DEVICE_SAMPLES, 3, 0xFFFFFF);
 	s->pad.memory[STATUS] |= TCB;
 	slave->conversions++;
 }
@@ -245,7 +245,7 @@ static void worked(struct sim_slave *slave, int64_t t)
 /* Any other command than Clear Memory takes its permission away. */
 static void forbid_clear(struct sim_slave *slave)
 {
-	state(slave)->pad.memory[CONTROL] &= (uint8_t)~EMCLR;
+	ds1921_state(slave)->pad.memory[CONTROL] &= (uint8_t)~EMCLR;
 }
 
 static void target(struct sim_slave *slave, int64_t t)
@@ -254,13 +254,13 @@ static void target(struct sim_slave *slave, int64_t t)
 	sim_scratchpad_target(slave, t);
 }
 
-static void read_scratchpad(struct sim_slave *slave, int64_t t)
+static void ds1921_read_scratchpad(struct sim_slave *slave, int64_t t)
 {
 	forbid_clear(slave);
 	sim_scratchpad_read(slave, t);
 }
 
-static void copy(struct sim_slave *slave, int64_t t)
+static void ds1921_copy(struct sim_slave *slave, int64_t t)
 {
 	forbid_clear(slave);
 	if (slave->busy) {
@@ -272,7 +272,7 @@ static void copy(struct sim_slave *slave, int64_t t)
 
 static uint8_t byte_at(struct sim_slave *slave, unsigned at)
 {
-	struct ds1921 *s = state(slave);
+	struct ds1921 *s = ds1921_state(slave);
 
 	if (at >= LOG && at < LOG_END)
 		return s->log[at - LOG];
@@ -310,7 +310,7 @@ static void read_checked(struct sim_slave *slave, int64_t t)
 
 static void clear(struct sim_slave *slave, int64_t t)
 {
-	uint8_t *memory = state(slave)->pad.memory;
+	uint8_t *memory = ds1921_state(slave)->pad.memory;
 
 	(void)t;
 	if (memory[CONTROL] & EMCLR && !(memory[STATUS] & MIP)) {
@@ -325,9 +325,9 @@ static void clear(struct sim_slave *slave, int64_t t)
 	sim_end(slave);
 }
 
-static void convert(struct sim_slave *slave, int64_t t)
+static void ds1921_convert(struct sim_slave *slave, int64_t t)
 {
-	struct ds1921 *s = state(slave);
+	struct ds1921 *s = ds1921_state(slave);
 
 	forbid_clear(slave);
 	if (!(s->pad.memory[STATUS] & MIP) && !slave->busy) {
@@ -340,19 +340,19 @@ static void convert(struct sim_slave *slave, int64_t t)
 
 static const struct sim_function functions[] = {
 	{.code = 0x0F, .takes = 2, .start = target, .byte = sim_scratchpad_write},
-	{.code = 0xAA, .start = read_scratchpad},
-	{.code = 0x55, .takes = 3, .start = copy},
+	{.code = 0xAA, .start = ds1921_read_scratchpad},
+	{.code = 0x55, .takes = 3, .start = ds1921_copy},
 	{.code = 0xF0, .takes = 2, .start = read_memory, .next = next_byte},
 	{.code = 0xA5, .takes = 2, .start = read_checked, .next = next_checked},
 	{.code = 0x3C, .start = clear},
-	{.code = 0x44, .start = convert},
+	{.code = 0x44, .start = ds1921_convert},
 	{0},
 };
 
 /* Of the flags those whose search is enabled; a search bit stands one lower than its flag's. */
-static bool alarm(struct sim_slave *slave, int64_t t)
+static bool ds1921_alarm(struct sim_slave *slave, int64_t t)
 {
-	const uint8_t *memory = state(slave)->pad.memory;
+	const uint8_t *memory = ds1921_state(slave)->pad.memory;
 
 	(void)t;
 	return (memory[STATUS] & memory[CONTROL] & SEARCHES) != 0;
@@ -361,15 +361,16 @@ static bool alarm(struct sim_slave *slave, int64_t t)
 static uint8_t *memory(struct sim_slave *slave, size_t *size)
 {
 	*size = CLOCK;
-	return state(slave)->pad.memory;
+	return ds1921_state(slave)->pad.memory;
 }
 
 #define PART(part, low, high) \
 	{ \
 		.name = (part), .code = 0x21, .overdrive = true, \
-		.state_size = sizeof(struct ds1921), .functions = functions, .create = create, \
-		.alarm = alarm, .bit = sim_scratchpad_bit, .worked = worked, .advance = advance, \
-		.memory = memory, .inputs = (const struct sim_input[]) \
+		.state_size = sizeof(struct ds1921), .functions = functions, \
+		.create = ds1921_create, .alarm = ds1921_alarm, .bit = sim_scratchpad_bit, \
+		.worked = ds1921_worked, .advance = ds1921_advance, .memory = memory, \
+		.inputs = (const struct sim_input[]) \
 		{ \
 			{.name = "temperature", .start = 20, .least = (low), .most = (high)}, \
 			{ \

@@ -58,7 +58,7 @@ struct ds1922 {
 	uint8_t password[9], got;
 };
 
-static struct ds1922 *state(struct sim_slave *slave)
+static struct ds1922 *ds1922_state(struct sim_slave *slave)
 {
 	return sim_state(slave, ds1922);
 }
@@ -71,11 +71,11 @@ static bool has_data(const struct sim_slave *slave)
 	return slave->family == &sim_ds1923 || slave->family == &sim_ds2422;
 }
 
-static void create(struct sim_slave *slave)
+static void ds1922_create(struct sim_slave *slave)
 {
 	static const uint8_t new_year[SIM_TIME] = {0, 0, 0, 1, 1, 0x81, 0}; /* of 2000 */
 	const struct sim_family *family = slave->family;
-	struct ds1922 *s = state(slave);
+	struct ds1922 *s = ds1922_state(slave);
 
 	s->pad.kind = &kind;
 	s->clock.stopped = -1;
@@ -112,9 +112,9 @@ static uint16_t raw_data(struct sim_slave *slave, int64_t t)
 	return has_data(slave) ? (uint16_t)(within(sim_round(volts / 5.02 * 4096), 4095) << 4) : 0;
 }
 
-static void measure(struct sim_slave *slave, int64_t t)
+static void ds1922_measure(struct sim_slave *slave, int64_t t)
 {
-	uint8_t *memory = state(slave)->pad.memory;
+	uint8_t *memory = ds1922_state(slave)->pad.memory;
 	uint32_t device = sim_count(memory + DEVICE_SAMPLES, 3);
 
 	sim_put_count(memory + LATEST, 2, raw_temperature(slave, t));
@@ -125,7 +125,8 @@ static void measure(struct sim_slave *slave, int64_t t)
 }
 
 /* Put sample n of a quantity into its part of the log, the high byte first. */
-static void put(struct ds1922 *s, unsigned part, uint32_t n, const uint8_t *latest, bool wide)
+static void ds1922_put(struct ds1922 *s, unsigned part, uint32_t n, const uint8_t *latest,
+                       bool wide)
 {
 	uint8_t *at = s->log + part + n * (wide ? 2 : 1);
 
@@ -166,7 +167,7 @@ static void check_alarms(uint8_t *memory)
 
 static void stamp(struct sim_slave *slave, int64_t t)
 {
-	struct ds1922 *s = state(slave);
+	struct ds1922 *s = ds1922_state(slave);
 	uint8_t now[SIM_TIME];
 
 	sim_clock_get(&s->clock, t, now);
@@ -176,12 +177,12 @@ static void stamp(struct sim_slave *slave, int64_t t)
 
 static void sample(struct sim_slave *slave, int64_t t)
 {
-	struct ds1922 *s = state(slave);
+	struct ds1922 *s = ds1922_state(slave);
 	uint8_t *memory = s->pad.memory, mission = memory[MISSION];
 	uint32_t n = sim_count(memory + SAMPLES, 3), room;
 	unsigned data;
 
-	measure(slave, t);
+	ds1922_measure(slave, t);
 	check_alarms(memory);
 	if (memory[STATUS] & WFTA) {
 		if (!(memory[FLAGS] & (LOW_ALARM | HIGH_ALARM)))
@@ -193,17 +194,17 @@ static void sample(struct sim_slave *slave, int64_t t)
 	room = log_parts(mission, &data);
 	if (room && (n < room || mission & RO)) {
 		if (mission & LOG_TEMP)
-			put(s, 0, n % room, memory + LATEST, mission & WIDE);
+			ds1922_put(s, 0, n % room, memory + LATEST, mission & WIDE);
 		if (mission & LOG_DATA)
-			put(s, data, n % room, memory + LATEST_DATA, mission & DATA_WIDE);
+			ds1922_put(s, data, n % room, memory + LATEST_DATA, mission & DATA_WIDE);
 	}
 	if (n < 0xFFFFFF)
 		sim_put_count(memory + SAMPLES, 3, n + 1);
 }
 
-static void advance(struct sim_slave *slave, int64_t t)
+static void ds1922_advance(struct sim_slave *slave, int64_t t)
 {
-	struct ds1922 *s = state(slave);
+	struct ds1922 *s = ds1922_state(slave);
 	uint8_t *memory = s->pad.memory, now[SIM_TIME];
 	int64_t unit = memory[OSCILLATOR] & SECONDS ? NS_PER_S : 60 * NS_PER_S;
 
@@ -242,7 +243,7 @@ static void set_clock(struct ds1922 *s, int64_t t)
 
 static void copied(struct sim_slave *slave, int64_t t)
 {
-	struct ds1922 *s = state(slave);
+	struct ds1922 *s = ds1922_state(slave);
 	unsigned first = s->pad.target, last = (first & ~31u) + (s->pad.status & 31u);
 	bool clock = false;
 
@@ -260,12 +261,12 @@ static void copied(struct sim_slave *slave, int64_t t)
 	s->pad.status |= 0x80;
 }
 
-static void worked(struct sim_slave *slave, int64_t t)
+static void ds1922_worked(struct sim_slave *slave, int64_t t)
 {
-	struct ds1922 *s = state(slave);
+	struct ds1922 *s = ds1922_state(slave);
 
 	if (s->converting)
-		measure(slave, t);
+		ds1922_measure(slave, t);
 	else
 		copied(slave, t);
 	s->converting = false;
@@ -276,7 +277,7 @@ static void worked(struct sim_slave *slave, int64_t t)
 /* A password follows, and the dummy byte of a command that has one. */
 static void begin_password(struct sim_slave *slave, int64_t t)
 {
-	struct ds1922 *s = state(slave);
+	struct ds1922 *s = ds1922_state(slave);
 
 	(void)t;
 	s->crc = slave->crc;
@@ -288,7 +289,7 @@ static void begin_password(struct sim_slave *slave, int64_t t)
 /* One more byte of it: true when it was the last and the password opens what it should. */
 static bool password(struct sim_slave *slave, uint8_t byte, unsigned n, bool reads)
 {
-	struct ds1922 *s = state(slave);
+	struct ds1922 *s = ds1922_state(slave);
 	const uint8_t *memory = s->pad.memory;
 
 	s->password[s->got++] = byte;
@@ -304,7 +305,7 @@ static bool password(struct sim_slave *slave, uint8_t byte, unsigned n, bool rea
 	return true;
 }
 
-static void copy(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void ds1922_copy(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
 	if (password(slave, byte, 8, false))
 		sim_scratchpad_copy(slave, t);
@@ -312,7 +313,7 @@ static void copy(struct sim_slave *slave, uint8_t byte, int64_t t)
 
 static uint8_t byte_at(struct sim_slave *slave, unsigned at)
 {
-	const struct ds1922 *s = state(slave);
+	const struct ds1922 *s = ds1922_state(slave);
 
 	if (at >= LOG && at < LOG_END)
 		return s->log[at - LOG];
@@ -350,7 +351,7 @@ static void read_memory(struct sim_slave *slave, uint8_t byte, int64_t t)
 
 static void clear(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	uint8_t *memory = state(slave)->pad.memory;
+	uint8_t *memory = ds1922_state(slave)->pad.memory;
 
 	(void)t;
 	if (!password(slave, byte, 9, false))
@@ -368,7 +369,7 @@ static void clear(struct sim_slave *slave, uint8_t byte, int64_t t)
 
 static void start_mission(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	struct ds1922 *s = state(slave);
+	struct ds1922 *s = ds1922_state(slave);
 	uint8_t *memory = s->pad.memory;
 
 	if (!password(slave, byte, 9, false))
@@ -386,14 +387,14 @@ static void stop_mission(struct sim_slave *slave, uint8_t byte, int64_t t)
 	(void)t;
 	if (!password(slave, byte, 9, false))
 		return;
-	state(slave)->pad.memory[STATUS] &= (uint8_t)~MIP;
+	ds1922_state(slave)->pad.memory[STATUS] &= (uint8_t)~MIP;
 	sim_end(slave);
 }
 
 /* While it converts, the memory cannot be reached. */
-static void convert(struct sim_slave *slave, int64_t t)
+static void ds1922_convert(struct sim_slave *slave, int64_t t)
 {
-	struct ds1922 *s = state(slave);
+	struct ds1922 *s = ds1922_state(slave);
 
 	if (!(s->pad.memory[STATUS] & MIP) && !slave->busy && s->pad.memory[OSCILLATOR] & EOSC &&
 	    slave->taken[0] == 0xFF) {
@@ -406,33 +407,34 @@ static void convert(struct sim_slave *slave, int64_t t)
 static const struct sim_function functions[] = {
 	{.code = 0x0F, .takes = 2, .start = sim_scratchpad_target, .byte = sim_scratchpad_write},
 	{.code = 0xAA, .start = sim_scratchpad_read},
-	{.code = 0x99, .takes = 3, .start = begin_password, .byte = copy},
+	{.code = 0x99, .takes = 3, .start = begin_password, .byte = ds1922_copy},
 	{.code = 0x69, .takes = 2, .start = begin_password, .byte = read_memory, .next = next_byte},
 	{.code = 0x96, .start = begin_password, .byte = clear},
-	{.code = 0x55, .takes = 1, .start = convert},
+	{.code = 0x55, .takes = 1, .start = ds1922_convert},
 	{.code = 0xCC, .start = begin_password, .byte = start_mission},
 	{.code = 0x33, .start = begin_password, .byte = stop_mission},
 	{0},
 };
 
-static bool alarm(struct sim_slave *slave, int64_t t)
+static bool ds1922_alarm(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	return (state(slave)->pad.memory[FLAGS] & (FLAGS_USED | BOR)) != 0;
+	return (ds1922_state(slave)->pad.memory[FLAGS] & (FLAGS_USED | BOR)) != 0;
 }
 
 static uint8_t *memory(struct sim_slave *slave, size_t *size)
 {
 	*size = CLOCK;
-	return state(slave)->pad.memory;
+	return ds1922_state(slave)->pad.memory;
 }
 
 #define PART(part, list) \
 	{ \
 		.name = (part), .code = 0x41, .overdrive = true, \
-		.state_size = sizeof(struct ds1922), .functions = functions, .create = create, \
-		.alarm = alarm, .bit = sim_scratchpad_bit, .worked = worked, .advance = advance, \
-		.memory = memory, .inputs = (list) \
+		.state_size = sizeof(struct ds1922), .functions = functions, \
+		.create = ds1922_create, .alarm = ds1922_alarm, .bit = sim_scratchpad_bit, \
+		.worked = ds1922_worked, .advance = ds1922_advance, .memory = memory, \
+		.inputs = (list) \
 	}
 
 static const struct sim_input low_inputs[] = {

@@ -26,7 +26,7 @@ static const struct sim_scratchpad_kind ds1963l = {
 static const struct sim_scratchpad_kind ds1963s = {
 	.size = END, .writable = 512, .page = 32, .copy_ns = 32000, .to_end = true};
 
-static struct ds1963 *state(struct sim_slave *slave)
+static struct ds1963 *ds1963_state(struct sim_slave *slave)
 {
 	return sim_state(slave, ds1963);
 }
@@ -36,18 +36,18 @@ static bool has_secrets(const struct sim_slave *slave)
 	return slave->family->code == 0x18;
 }
 
-static void create(struct sim_slave *slave)
+static void ds1963_create(struct sim_slave *slave)
 {
-	struct sim_scratchpad *s = &state(slave)->memory;
+	struct sim_scratchpad *s = &ds1963_state(slave)->memory;
 
 	s->kind = has_secrets(slave) ? &ds1963s : &ds1963l;
 	memset(s->memory + HIDDEN, 0xFF, COUNTERS - HIDDEN);
 }
 
-static void power_on(struct sim_slave *slave, int64_t t)
+static void ds1963_power_on(struct sim_slave *slave, int64_t t)
 {
 	sim_scratchpad_power_on(slave, t);
-	state(slave)->hide = has_secrets(slave);
+	ds1963_state(slave)->hide = has_secrets(slave);
 }
 
 /* The number of the first page with a counter. */
@@ -56,9 +56,9 @@ static unsigned first_counted(const struct sim_slave *slave)
 	return has_secrets(slave) ? 8 : 12;
 }
 
-static void worked(struct sim_slave *slave, int64_t t)
+static void ds1963_worked(struct sim_slave *slave, int64_t t)
 {
-	struct ds1963 *s = state(slave);
+	struct ds1963 *s = ds1963_state(slave);
 	unsigned page = s->memory.target / 32u;
 
 	if (!s->copying)
@@ -77,7 +77,7 @@ static void put_count(uint8_t *to, uint32_t count)
 /* Send the rest of the page, its counter, and four bytes more; then the checksum. */
 static void send_page(struct sim_slave *slave, int64_t t)
 {
-	const struct ds1963 *s = state(slave);
+	const struct ds1963 *s = ds1963_state(slave);
 	unsigned page = slave->address / 32u, n = 0;
 	uint8_t out[32 + 4 + 4];
 
@@ -100,15 +100,15 @@ static void send_page(struct sim_slave *slave, int64_t t)
 /* Compute for 1 ms; then 0 and 1 in turns. The result, in the scratchpad, is hidden. */
 static void authenticate(struct sim_slave *slave, int64_t t)
 {
-	state(slave)->hide = true;
-	state(slave)->copying = false;
+	ds1963_state(slave)->hide = true;
+	ds1963_state(slave)->copying = false;
 	slave->got = 1;
 	sim_work(slave, 1000000, t);
 }
 
 static void erase(struct sim_slave *slave, int64_t t)
 {
-	struct ds1963 *s = state(slave);
+	struct ds1963 *s = ds1963_state(slave);
 
 	s->hide = s->copying = false;
 	memset(s->memory.pad, 0xFF, sizeof(s->memory.pad));
@@ -116,18 +116,18 @@ static void erase(struct sim_slave *slave, int64_t t)
 	sim_work(slave, 32000, t);
 }
 
-static void write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void ds1963_write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	if (state(slave)->hide)
+	if (ds1963_state(slave)->hide)
 		sim_end(slave);
 	else
 		sim_scratchpad_write(slave, byte, t);
 }
 
-static void read_scratchpad(struct sim_slave *slave, int64_t t)
+static void ds1963_read_scratchpad(struct sim_slave *slave, int64_t t)
 {
 	uint8_t pad[32];
-	struct ds1963 *s = state(slave);
+	struct ds1963 *s = ds1963_state(slave);
 
 	memcpy(pad, s->memory.pad, sizeof(pad));
 	if (s->hide)
@@ -136,10 +136,10 @@ static void read_scratchpad(struct sim_slave *slave, int64_t t)
 	memcpy(s->memory.pad, pad, sizeof(pad));
 }
 
-static void copy(struct sim_slave *slave, int64_t t)
+static void ds1963_copy(struct sim_slave *slave, int64_t t)
 {
-	state(slave)->copying = true;
-	if (state(slave)->hide)
+	ds1963_state(slave)->copying = true;
+	if (ds1963_state(slave)->hide)
 		sim_end(slave);
 	else
 		sim_scratchpad_copy(slave, t);
@@ -147,23 +147,23 @@ static void copy(struct sim_slave *slave, int64_t t)
 
 static void dump(struct sim_slave *slave, int64_t t)
 {
-	struct ds1963 *s = state(slave);
+	struct ds1963 *s = ds1963_state(slave);
 
 	for (unsigned i = 0; i < PAGES - 8 && has_secrets(slave); i++)
 		put_count(s->memory.memory + COUNTERS + 4 * i, s->count[8 + i]);
 	sim_scratchpad_dump(slave, t);
 }
 
-static uint8_t *memory(struct sim_slave *slave, size_t *size)
+static uint8_t *ds1963_memory(struct sim_slave *slave, size_t *size)
 {
 	*size = 512;
-	return state(slave)->memory.memory;
+	return ds1963_state(slave)->memory.memory;
 }
 
 static const struct sim_function ds1963l_functions[] = {
-	{.code = 0x0F, .takes = 2, .start = sim_scratchpad_target, .byte = write_scratchpad},
-	{.code = 0xAA, .start = read_scratchpad},
-	{.code = 0x5A, .takes = 3, .start = copy},
+	{.code = 0x0F, .takes = 2, .start = sim_scratchpad_target, .byte = ds1963_write_scratchpad},
+	{.code = 0xAA, .start = ds1963_read_scratchpad},
+	{.code = 0x5A, .takes = 3, .start = ds1963_copy},
 	{.code = 0xF0, .takes = 2, .start = dump, .next = dump},
 	/* Read Memory and Counter */
 	{.code = 0xA5, .takes = 2, .start = send_page, .next = send_page},
@@ -171,9 +171,9 @@ static const struct sim_function ds1963l_functions[] = {
 };
 
 static const struct sim_function ds1963s_functions[] = {
-	{.code = 0x0F, .takes = 2, .start = sim_scratchpad_target, .byte = write_scratchpad},
-	{.code = 0xAA, .start = read_scratchpad},
-	{.code = 0x55, .takes = 3, .start = copy},
+	{.code = 0x0F, .takes = 2, .start = sim_scratchpad_target, .byte = ds1963_write_scratchpad},
+	{.code = 0xAA, .start = ds1963_read_scratchpad},
+	{.code = 0x55, .takes = 3, .start = ds1963_copy},
 	{.code = 0xF0, .takes = 2, .start = dump, .next = dump},
 	/* Read Authenticated Page, Erase Scratchpad */
 	{.code = 0xA5, .takes = 2, .start = send_page, .next = authenticate},
@@ -184,9 +184,9 @@ static const struct sim_function ds1963s_functions[] = {
 #define COUNTED(part, family, commands) \
 	{ \
 		.name = (part), .code = (family), .overdrive = true, .resume = (family) == 0x18, \
-		.state_size = sizeof(struct ds1963), .functions = (commands), .create = create, \
-		.power_on = power_on, .bit = sim_scratchpad_bit, .worked = worked, \
-		.memory = memory \
+		.state_size = sizeof(struct ds1963), .functions = (commands), \
+		.create = ds1963_create, .power_on = ds1963_power_on, .bit = sim_scratchpad_bit, \
+		.worked = ds1963_worked, .memory = ds1963_memory \
 	}
 
 const struct sim_family sim_ds1963l = COUNTED("DS1963L", 0x1A, ds1963l_functions);

@@ -33,20 +33,20 @@ static const struct sim_scratchpad_kind kind = {
 	.to_end = true,
 };
 
-static struct ds1977 *state(struct sim_slave *slave)
+static struct ds1977 *ds1977_state(struct sim_slave *slave)
 {
 	return sim_state(slave, ds1977);
 }
 
-static void create(struct sim_slave *slave)
+static void ds1977_create(struct sim_slave *slave)
 {
-	state(slave)->memory.kind = &kind;
+	ds1977_state(slave)->memory.kind = &kind;
 }
 
 /* Does the password that came equal the one at this address? */
 static bool equals(struct sim_slave *slave, unsigned at)
 {
-	struct ds1977 *s = state(slave);
+	struct ds1977 *s = ds1977_state(slave);
 
 	return memcmp(s->password, s->memory.memory + at, LENGTH) == 0;
 }
@@ -56,15 +56,15 @@ static bool accepted(struct sim_slave *slave)
 	if (slave->function->code == VERIFY)
 		return (slave->address == READ_PASSWORD || slave->address == FULL_PASSWORD) &&
 		       equals(slave, slave->address);
-	if (state(slave)->memory.memory[PASSWORD_CONTROL] != ENABLED)
+	if (ds1977_state(slave)->memory.memory[PASSWORD_CONTROL] != ENABLED)
 		return true;
 	return equals(slave, FULL_PASSWORD) ||
 	       (slave->function->code == READ && equals(slave, READ_PASSWORD));
 }
 
-static void begin(struct sim_slave *slave, int64_t t)
+static void ds1977_begin(struct sim_slave *slave, int64_t t)
 {
-	struct ds1977 *s = state(slave);
+	struct ds1977 *s = ds1977_state(slave);
 
 	(void)t;
 	s->count = 0;
@@ -73,7 +73,7 @@ static void begin(struct sim_slave *slave, int64_t t)
 
 static void take_password(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	struct ds1977 *s = state(slave);
+	struct ds1977 *s = ds1977_state(slave);
 
 	s->password[s->count++] = byte;
 	if (s->count < LENGTH)
@@ -91,9 +91,9 @@ static void take_password(struct sim_slave *slave, uint8_t byte, int64_t t)
 }
 
 /* Send the byte at the address; one of a password reads FFh. At the end of a page the checksum. */
-static void send(struct sim_slave *slave, int64_t t)
+static void ds1977_send(struct sim_slave *slave, int64_t t)
 {
-	struct ds1977 *s = state(slave);
+	struct ds1977 *s = ds1977_state(slave);
 	uint8_t byte = 0xFF;
 
 	(void)t;
@@ -110,12 +110,12 @@ static void send(struct sim_slave *slave, int64_t t)
 		sim_send_byte(slave, byte);
 }
 
-static void worked(struct sim_slave *slave, int64_t t)
+static void ds1977_worked(struct sim_slave *slave, int64_t t)
 {
-	if (state(slave)->copying)
+	if (ds1977_state(slave)->copying)
 		sim_scratchpad_worked(slave, t);
 	else if (slave->function && slave->function->code == READ)
-		send(slave, t);
+		ds1977_send(slave, t);
 }
 
 static void send_version(struct sim_slave *slave, int64_t t)
@@ -132,9 +132,13 @@ static void send_version(struct sim_slave *slave, int64_t t)
 static const struct sim_function functions[] = {
 	{.code = 0x0F, .takes = 2, .start = sim_scratchpad_target, .byte = sim_scratchpad_write},
 	{.code = 0xAA, .start = sim_scratchpad_read},
-	{.code = COPY, .takes = 3, .start = begin, .byte = take_password},
-	{.code = READ, .takes = 2, .start = begin, .byte = take_password, .next = send},
-	{.code = VERIFY, .takes = 2, .start = begin, .byte = take_password},
+	{.code = COPY, .takes = 3, .start = ds1977_begin, .byte = take_password},
+	{.code = READ,
+         .takes = 2,
+         .start = ds1977_begin,
+         .byte = take_password,
+         .next = ds1977_send},
+	{.code = VERIFY, .takes = 2, .start = ds1977_begin, .byte = take_password},
 	{.code = 0xCC, .takes = 2, .start = send_version},
 	{0},
 };
@@ -147,9 +151,9 @@ const struct sim_family sim_ds1977 = {
 	.starves = true,
 	.state_size = sizeof(struct ds1977),
 	.functions = functions,
-	.create = create,
+	.create = ds1977_create,
 	.power_on = sim_scratchpad_power_on,
 	.bit = sim_scratchpad_bit,
-	.worked = worked,
+	.worked = ds1977_worked,
 	.memory = sim_scratchpad_memory,
 };

@@ -30,7 +30,7 @@ static const uint8_t selector[BLOCKS][FIELD] = {
 	{0x65, 0x65, 0x4C, 0x62, 0x9B, 0x91, 0x96, 0xB3},
 };
 
-static struct ds1991 *state(struct sim_slave *slave)
+static struct ds1991 *ds1991_state(struct sim_slave *slave)
 {
 	return sim_state(slave, ds1991);
 }
@@ -40,7 +40,7 @@ static bool take_address(struct sim_slave *slave, bool scratchpad, unsigned leas
 {
 	unsigned at = slave->taken[0] % AREA;
 
-	state(slave)->count = 0;
+	ds1991_state(slave)->count = 0;
 	slave->address = slave->taken[0];
 	if ((slave->taken[0] ^ slave->taken[1]) == 0xFF && at >= least && at <= most &&
 	    (slave->taken[0] / AREA == SUBKEYS) == scratchpad)
@@ -51,7 +51,7 @@ static bool take_address(struct sim_slave *slave, bool scratchpad, unsigned leas
 
 static uint8_t *subkey(struct sim_slave *slave)
 {
-	return state(slave)->subkey[slave->taken[0] / AREA];
+	return ds1991_state(slave)->subkey[slave->taken[0] / AREA];
 }
 
 static void begin_scratchpad(struct sim_slave *slave, int64_t t)
@@ -60,21 +60,21 @@ static void begin_scratchpad(struct sim_slave *slave, int64_t t)
 	take_address(slave, true, 0, AREA - 1);
 }
 
-static void write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void ds1991_write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
 	(void)t;
-	state(slave)->scratchpad[slave->address % AREA] = byte;
+	ds1991_state(slave)->scratchpad[slave->address % AREA] = byte;
 	if (++slave->address % AREA == 0)
 		sim_end(slave);
 }
 
-static void read_scratchpad(struct sim_slave *slave, int64_t t)
+static void ds1991_read_scratchpad(struct sim_slave *slave, int64_t t)
 {
 	unsigned at = slave->taken[0] % AREA;
 
 	(void)t;
 	if (take_address(slave, true, 0, AREA - 1))
-		sim_send(slave, state(slave)->scratchpad + at, AREA - at);
+		sim_send(slave, ds1991_state(slave)->scratchpad + at, AREA - at);
 }
 
 static void begin_copy(struct sim_slave *slave, int64_t t)
@@ -84,22 +84,22 @@ static void begin_copy(struct sim_slave *slave, int64_t t)
 }
 
 /* Keep a byte that came; true: there are n. */
-static bool take(struct sim_slave *slave, uint8_t byte, unsigned n)
+static bool ds1991_take(struct sim_slave *slave, uint8_t byte, unsigned n)
 {
-	struct ds1991 *s = state(slave);
+	struct ds1991 *s = ds1991_state(slave);
 
 	s->in[s->count++] = byte;
 	return s->count == n;
 }
 
 /* After selector and password: copy the block. */
-static void copy(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void ds1991_copy(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	struct ds1991 *s = state(slave);
+	struct ds1991 *s = ds1991_state(slave);
 	unsigned block = 0;
 
 	(void)t;
-	if (!take(slave, byte, 2 * FIELD))
+	if (!ds1991_take(slave, byte, 2 * FIELD))
 		return;
 	sim_end(slave);
 	while (block < BLOCKS && memcmp(selector[block], s->in, FIELD) != 0)
@@ -113,7 +113,7 @@ static void copy(struct sim_slave *slave, uint8_t byte, int64_t t)
 		       FIELD);
 }
 
-static void receive(struct sim_slave *slave, int64_t t)
+static void ds1991_receive(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
 	sim_receive(slave);
@@ -132,10 +132,10 @@ static void send_identifier(struct sim_slave *slave, int64_t t)
 /* The identifier comes back, then a new one and a new password: the data are gone. */
 static void write_password(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	struct ds1991 *s = state(slave);
+	struct ds1991 *s = ds1991_state(slave);
 
 	(void)t;
-	if (take(slave, byte, 3 * FIELD)) {
+	if (ds1991_take(slave, byte, 3 * FIELD)) {
 		memcpy(subkey(slave), s->in + FIELD, 2 * FIELD);
 		memset(subkey(slave) + DATA, 0, AREA - DATA);
 		sim_end(slave);
@@ -146,14 +146,14 @@ static void write_password(struct sim_slave *slave, uint8_t byte, int64_t t)
 
 static void write_subkey(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	struct ds1991 *s = state(slave);
+	struct ds1991 *s = ds1991_state(slave);
 
 	(void)t;
 	if (s->count == FIELD) {
 		subkey(slave)[slave->address % AREA] = byte;
 		if (++slave->address % AREA == 0)
 			sim_end(slave);
-	} else if (take(slave, byte, FIELD) &&
+	} else if (ds1991_take(slave, byte, FIELD) &&
 	           memcmp(s->in, subkey(slave) + PASSWORD, FIELD) != 0) {
 		sim_end(slave);
 	}
@@ -162,19 +162,19 @@ static void write_subkey(struct sim_slave *slave, uint8_t byte, int64_t t)
 /* The identifier was sent: receive the password. The data were sent: ones. */
 static void next_of_read(struct sim_slave *slave, int64_t t)
 {
-	if (state(slave)->count == 0)
-		receive(slave, t);
+	if (ds1991_state(slave)->count == 0)
+		ds1991_receive(slave, t);
 }
 
 /* After the password send the data; random bytes if it is wrong. */
 static void read_subkey(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	struct ds1991 *s = state(slave);
+	struct ds1991 *s = ds1991_state(slave);
 	unsigned at = slave->address % AREA;
 	uint8_t out[AREA];
 
 	(void)t;
-	if (!take(slave, byte, FIELD))
+	if (!ds1991_take(slave, byte, FIELD))
 		return;
 	memcpy(out, subkey(slave), AREA);
 	for (unsigned i = 0; memcmp(s->in, subkey(slave) + PASSWORD, FIELD) && i < AREA; i++) {
@@ -184,26 +184,26 @@ static void read_subkey(struct sim_slave *slave, uint8_t byte, int64_t t)
 	sim_send(slave, out + at, AREA - at);
 }
 
-static uint8_t *memory(struct sim_slave *slave, size_t *size)
+static uint8_t *ds1991_memory(struct sim_slave *slave, size_t *size)
 {
 	*size = SUBKEYS * AREA;
-	return state(slave)->subkey[0];
+	return ds1991_state(slave)->subkey[0];
 }
 
 static const struct sim_function functions[] = {
-	{.code = 0x96, .takes = 2, .start = begin_scratchpad, .byte = write_scratchpad},
-	{.code = 0x69, .takes = 2, .start = read_scratchpad},
-	{.code = 0x3C, .takes = 2, .start = begin_copy, .byte = copy},
+	{.code = 0x96, .takes = 2, .start = begin_scratchpad, .byte = ds1991_write_scratchpad},
+	{.code = 0x69, .takes = 2, .start = ds1991_read_scratchpad},
+	{.code = 0x3C, .takes = 2, .start = begin_copy, .byte = ds1991_copy},
 	{.code = WRITE_PASSWORD,
          .takes = 2,
          .start = send_identifier,
          .byte = write_password,
-         .next = receive},
+         .next = ds1991_receive},
 	{.code = WRITE_SUBKEY,
          .takes = 2,
          .start = send_identifier,
          .byte = write_subkey,
-         .next = receive},
+         .next = ds1991_receive},
 	{.code = READ_SUBKEY,
          .takes = 2,
          .start = send_identifier,
@@ -215,7 +215,7 @@ static const struct sim_function functions[] = {
 #define MULTIKEY(part, family) \
 	{ \
 		.name = (part), .code = (family), .functions = functions, \
-		.state_size = sizeof(struct ds1991), .memory = memory \
+		.state_size = sizeof(struct ds1991), .memory = ds1991_memory \
 	}
 
 const struct sim_family sim_ds1991 = MULTIKEY("DS1991", 0x02);

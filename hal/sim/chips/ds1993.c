@@ -18,7 +18,7 @@ static const struct sim_scratchpad_kind ds1993 = KIND(512);
 static const struct sim_scratchpad_kind ds1995 = KIND(2048);
 static const struct sim_scratchpad_kind ds1996 = KIND(8192);
 
-static void create(struct sim_slave *slave)
+static void ds1993_create(struct sim_slave *slave)
 {
 	struct sim_scratchpad *s = sim_state(slave, sim_scratchpad);
 
@@ -43,7 +43,7 @@ static const struct sim_function functions[] = {SIM_SCRATCHPAD_FUNCTIONS(0x55), 
 #define MEMORY(part, family, fast) \
 	{ \
 		.name = (part), .code = (family), .overdrive = (fast), .functions = functions, \
-		.state_size = sizeof(struct sim_scratchpad), .create = create, \
+		.state_size = sizeof(struct sim_scratchpad), .create = ds1993_create, \
 		.power_on = sim_scratchpad_power_on, .bit = sim_scratchpad_bit, \
 		.worked = sim_scratchpad_worked, .memory = sim_scratchpad_memory \
 	}

@@ -37,17 +37,17 @@ static const struct sim_scratchpad_kind kind = {
 	.plain = true,
 };
 
-static struct ds2404 *state(struct sim_slave *slave)
+static struct ds2404 *ds2404_state(struct sim_slave *slave)
 {
 	return sim_state(slave, ds2404);
 }
 
-static void create(struct sim_slave *slave)
+static void ds2404_create(struct sim_slave *slave)
 {
-	state(slave)->memory.kind = &kind;
+	ds2404_state(slave)->memory.kind = &kind;
 }
 
-static uint64_t get(const uint8_t *from, unsigned n)
+static uint64_t ds2404_get(const uint8_t *from, unsigned n)
 {
 	uint64_t value = 0;
 
@@ -57,11 +57,12 @@ static uint64_t get(const uint8_t *from, unsigned n)
 }
 
 /* Count; the flag is set when the counter reaches its alarm. */
-static void count(struct sim_slave *slave, unsigned which, uint64_t by)
+static void ds2404_count(struct sim_slave *slave, unsigned which, uint64_t by)
 {
-	uint8_t *memory = state(slave)->memory.memory;
+	uint8_t *memory = ds2404_state(slave)->memory.memory;
 	unsigned at = counters[which].at, n = counters[which].bytes;
-	uint64_t old = get(memory + at, n), alarm = get(memory + counters[which].alarm, n);
+	uint64_t old = ds2404_get(memory + at, n),
+		 alarm = ds2404_get(memory + counters[which].alarm, n);
 
 	for (unsigned i = 0; i < n; i++)
 		memory[at + i] = (uint8_t)((old + by) >> (8 * i));
@@ -69,9 +70,9 @@ static void count(struct sim_slave *slave, unsigned which, uint64_t by)
 		memory[STATUS] |= (uint8_t)(1 << which);
 }
 
-static void advance(struct sim_slave *slave, int64_t t)
+static void ds2404_advance(struct sim_slave *slave, int64_t t)
 {
-	struct ds2404 *s = state(slave);
+	struct ds2404 *s = ds2404_state(slave);
 	uint8_t control = s->memory.memory[CONTROL];
 	int64_t span = s->part + (t - s->seen) * 256;
 
@@ -79,22 +80,22 @@ static void advance(struct sim_slave *slave, int64_t t)
 	if (!(control & OSC))
 		return;
 	s->part = span % 1000000000;
-	count(slave, 0, (uint64_t)(span / 1000000000));
+	ds2404_count(slave, 0, (uint64_t)(span / 1000000000));
 	if ((control & AUTO) || !(control & STOP))
-		count(slave, 1, (uint64_t)(span / 1000000000));
+		ds2404_count(slave, 1, (uint64_t)(span / 1000000000));
 }
 
 /* The battery keeps all but the scratchpad. */
-static void power_on(struct sim_slave *slave, int64_t t)
+static void ds2404_power_on(struct sim_slave *slave, int64_t t)
 {
 	sim_scratchpad_power_on(slave, t);
-	state(slave)->seen = t;
-	count(slave, 2, 1);
+	ds2404_state(slave)->seen = t;
+	ds2404_count(slave, 2, 1);
 }
 
-static bool alarm(struct sim_slave *slave, int64_t t)
+static bool ds2404_alarm(struct sim_slave *slave, int64_t t)
 {
-	uint8_t status = state(slave)->memory.memory[STATUS];
+	uint8_t status = ds2404_state(slave)->memory.memory[STATUS];
 
 	(void)t;
 	return status & FLAGS & ~(status >> 3);
@@ -124,9 +125,9 @@ static void protect(uint8_t *memory, const uint8_t *before)
 }
 
 /* The flags of the status register can only be read. */
-static void worked(struct sim_slave *slave, int64_t t)
+static void ds2404_worked(struct sim_slave *slave, int64_t t)
 {
-	uint8_t *memory = state(slave)->memory.memory;
+	uint8_t *memory = ds2404_state(slave)->memory.memory;
 	uint8_t before[END - STATUS];
 
 	memcpy(before, memory + STATUS, sizeof(before));
@@ -134,7 +135,7 @@ static void worked(struct sim_slave *slave, int64_t t)
 	memory[STATUS] = (uint8_t)((memory[STATUS] & ENABLES) | (before[0] & FLAGS));
 	protect(memory, before);
 	if (memory[CONTROL] != before[CONTROL - STATUS])
-		state(slave)->part = 0;
+		ds2404_state(slave)->part = 0;
 }
 
 /* To read the status register clears its flags. */
@@ -144,12 +145,12 @@ static void dump(struct sim_slave *slave, int64_t t)
 
 	sim_scratchpad_dump(slave, t);
 	if (at == STATUS)
-		state(slave)->memory.memory[STATUS] &= ENABLES;
+		ds2404_state(slave)->memory.memory[STATUS] &= ENABLES;
 }
 
-static int option(struct sim_slave *slave, const char *name, double value)
+static int ds2404_option(struct sim_slave *slave, const char *name, double value)
 {
-	uint8_t *memory = state(slave)->memory.memory;
+	uint8_t *memory = ds2404_state(slave)->memory.memory;
 
 	if (strcmp(name, "seconds") != 0)
 		return -ENOENT;
@@ -172,8 +173,9 @@ static const struct sim_function functions[] = {
 #define TIME_CHIP(part) \
 	{ \
 		.name = (part), .code = 0x04, .state_size = sizeof(struct ds2404), \
-		.functions = functions, .create = create, .power_on = power_on, .alarm = alarm, \
-		.bit = sim_scratchpad_bit, .worked = worked, .advance = advance, .option = option, \
+		.functions = functions, .create = ds2404_create, .power_on = ds2404_power_on, \
+		.alarm = ds2404_alarm, .bit = sim_scratchpad_bit, .worked = ds2404_worked, \
+		.advance = ds2404_advance, .option = ds2404_option, \
 		.memory = sim_scratchpad_memory \
 	}
 

@@ -12,7 +12,7 @@ static struct sim_pins *pins(struct sim_slave *slave)
 	return sim_state(slave, sim_pins);
 }
 
-static void power_on(struct sim_slave *slave, int64_t t)
+static void ds2405_power_on(struct sim_slave *slave, int64_t t)
 {
 	sim_pins_start(slave, 0, 1, t);
 }
@@ -30,7 +30,7 @@ static bool alarm(struct sim_slave *slave, int64_t t)
 	return !(pins(slave)->latch & 1);
 }
 
-static bool bit(struct sim_slave *slave, int64_t t)
+static bool ds2405_bit(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
 	return pins(slave)->level & 1;
@@ -43,9 +43,9 @@ const struct sim_family sim_ds2405 = {
 	.code = 0x05,
 	.state_size = sizeof(struct sim_pins),
 	.inputs = inputs,
-	.power_on = power_on,
+	.power_on = ds2405_power_on,
 	.selected = selected,
 	.alarm = alarm,
-	.bit = bit,
+	.bit = ds2405_bit,
 	.advance = sim_pins_follow,
 };

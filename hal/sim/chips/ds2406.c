@@ -20,27 +20,27 @@ struct ds2406 {
 	unsigned bytes;
 };
 
-static struct ds2406 *state(struct sim_slave *slave)
+static struct ds2406 *ds2406_state(struct sim_slave *slave)
 {
 	return sim_state(slave, ds2406);
 }
 
-static void create(struct sim_slave *slave)
+static void ds2406_create(struct sim_slave *slave)
 {
-	memset(state(slave)->memory, 0xFF, MEMORY);
-	memset(state(slave)->status, 0xFF, 5);
+	memset(ds2406_state(slave)->memory, 0xFF, MEMORY);
+	memset(ds2406_state(slave)->status, 0xFF, 5);
 }
 
-static void power_on(struct sim_slave *slave, int64_t t)
+static void ds2406_power_on(struct sim_slave *slave, int64_t t)
 {
-	state(slave)->status[7] = 0x1F;
+	ds2406_state(slave)->status[7] = 0x1F;
 	sim_pins_start(slave, 0, 2, t);
 }
 
 /* OR the selected source of the selected channels, each against the polarity. */
-static bool alarm(struct sim_slave *slave, int64_t t)
+static bool ds2406_alarm(struct sim_slave *slave, int64_t t)
 {
-	const struct ds2406 *s = state(slave);
+	const struct ds2406 *s = ds2406_state(slave);
 	const uint8_t sources[4] = {0, s->pins.activity, s->pins.latch, s->pins.level};
 	uint8_t channels = s->status[7] >> 3 & 3, source = sources[s->status[7] >> 1 & 3];
 
@@ -51,12 +51,12 @@ static bool alarm(struct sim_slave *slave, int64_t t)
 static void send_memory(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	sim_send_memory(slave, state(slave)->memory, MEMORY, MEMORY);
+	sim_send_memory(slave, ds2406_state(slave)->memory, MEMORY, MEMORY);
 }
 
 static void send_status(struct sim_slave *slave, int64_t t)
 {
-	const struct ds2406 *s = state(slave);
+	const struct ds2406 *s = ds2406_state(slave);
 	uint8_t status[STATUS];
 
 	(void)t;
@@ -71,7 +71,7 @@ static void write_status(struct sim_slave *slave, int64_t t)
 	uint8_t byte = slave->taken[2];
 
 	if (slave->address == 7) {
-		state(slave)->status[7] = byte & 0x1F;
+		ds2406_state(slave)->status[7] = byte & 0x1F;
 		sim_pins_write(slave, byte >> 5 & 3, t);
 	}
 	sim_send_checked(slave, NULL, 0);
@@ -94,7 +94,7 @@ static uint8_t info(const struct sim_slave *slave)
 
 static void begin_access(struct sim_slave *slave, int64_t t)
 {
-	struct ds2406 *s = state(slave);
+	struct ds2406 *s = ds2406_state(slave);
 	uint8_t out = info(slave);
 
 	(void)t;
@@ -129,13 +129,13 @@ static bool crc_is_due(struct sim_slave *slave)
 	static const unsigned every[4] = {0, 1, 8, 32};
 	unsigned n = every[slave->taken[0] & 3];
 
-	return ++state(slave)->bytes && n && state(slave)->bytes % n == 0;
+	return ++ds2406_state(slave)->bytes && n && ds2406_state(slave)->bytes % n == 0;
 }
 
 /* Begin the next byte of the exchange, in its direction. */
 static void next_byte(struct sim_slave *slave, int64_t t)
 {
-	struct ds2406 *s = state(slave);
+	struct ds2406 *s = ds2406_state(slave);
 	uint8_t out = sample(slave);
 
 	(void)t;
@@ -154,7 +154,7 @@ static void next_byte(struct sim_slave *slave, int64_t t)
 /* Write bit by bit; the last bit for each channel stays. */
 static void write_pins(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	struct ds2406 *s = state(slave);
+	struct ds2406 *s = ds2406_state(slave);
 	uint8_t latch = s->pins.latch;
 
 	if (channels(slave) == 1)
@@ -172,10 +172,10 @@ static void write_pins(struct sim_slave *slave, uint8_t byte, int64_t t)
 		next_byte(slave, t);
 }
 
-static uint8_t *memory(struct sim_slave *slave, size_t *size)
+static uint8_t *ds2406_memory(struct sim_slave *slave, size_t *size)
 {
 	*size = MEMORY;
-	return state(slave)->memory;
+	return ds2406_state(slave)->memory;
 }
 
 static const struct sim_function functions[] = {
@@ -194,9 +194,9 @@ const struct sim_family sim_ds2406 = {
 	.state_size = sizeof(struct ds2406),
 	.functions = functions,
 	.inputs = inputs,
-	.create = create,
-	.power_on = power_on,
-	.alarm = alarm,
+	.create = ds2406_create,
+	.power_on = ds2406_power_on,
+	.alarm = ds2406_alarm,
 	.advance = sim_pins_follow,
-	.memory = memory,
+	.memory = ds2406_memory,
 };

@@ -17,20 +17,20 @@ struct ds2408 {
 	uint8_t mask, polarity, control;
 };
 
-static struct ds2408 *state(struct sim_slave *slave)
+static struct ds2408 *ds2408_state(struct sim_slave *slave)
 {
 	return sim_state(slave, ds2408);
 }
 
-static void power_on(struct sim_slave *slave, int64_t t)
+static void ds2408_power_on(struct sim_slave *slave, int64_t t)
 {
-	*state(slave) = (struct ds2408){.control = PORL};
+	*ds2408_state(slave) = (struct ds2408){.control = PORL};
 	sim_pins_start(slave, 0, 8, t);
 }
 
 static bool alarm(struct sim_slave *slave, int64_t t)
 {
-	const struct ds2408 *s = state(slave);
+	const struct ds2408 *s = ds2408_state(slave);
 	uint8_t source = s->control & PLS ? s->pins.activity : s->pins.level;
 	uint8_t match = (uint8_t) ~(source ^ s->polarity) & s->mask;
 
@@ -45,7 +45,7 @@ static bool alarm(struct sim_slave *slave, int64_t t)
 /* Send the bytes up to the last register; then the checksum, of command and address too. */
 static void send_registers(struct sim_slave *slave, int64_t t)
 {
-	const struct ds2408 *s = state(slave);
+	const struct ds2408 *s = ds2408_state(slave);
 	uint8_t all[END];
 
 	(void)t;
@@ -65,7 +65,7 @@ static void send_registers(struct sim_slave *slave, int64_t t)
 /* Send a sample. The address counts the samples. */
 static void send_sample(struct sim_slave *slave, int64_t t)
 {
-	const struct ds2408 *s = state(slave);
+	const struct ds2408 *s = ds2408_state(slave);
 
 	(void)t;
 	if (slave->address++ % SAMPLES == SAMPLES - 1)
@@ -89,7 +89,7 @@ static void check_condition(struct sim_slave *slave, int64_t t)
 
 static void write_condition(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	struct ds2408 *s = state(slave);
+	struct ds2408 *s = ds2408_state(slave);
 
 	(void)t;
 	switch (slave->address++) {
@@ -114,7 +114,7 @@ static void confirm(struct sim_slave *slave, int64_t t)
 
 static void reset_activity(struct sim_slave *slave, int64_t t)
 {
-	state(slave)->pins.activity = 0;
+	ds2408_state(slave)->pins.activity = 0;
 	confirm(slave, t);
 }
 
@@ -143,7 +143,7 @@ const struct sim_family sim_ds2408 = {
 	.state_size = sizeof(struct ds2408),
 	.functions = functions,
 	.inputs = inputs,
-	.power_on = power_on,
+	.power_on = ds2408_power_on,
 	.alarm = alarm,
 	.advance = sim_pins_follow,
 };

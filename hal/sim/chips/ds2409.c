@@ -26,14 +26,14 @@ struct ds2409 {
 	int64_t seen;  /* the inputs were followed up to this time */
 };
 
-static struct ds2409 *state(struct sim_slave *slave)
+static struct ds2409 *ds2409_state(struct sim_slave *slave)
 {
 	return sim_state(slave, ds2409);
 }
 
-static void create(struct sim_slave *slave)
+static void ds2409_create(struct sim_slave *slave)
 {
-	slave->branches = state(slave)->branch;
+	slave->branches = ds2409_state(slave)->branch;
 	for (unsigned i = 0; i < SIM_BRANCHES; i++)
 		slave->branches[i].coupler = slave;
 }
@@ -44,9 +44,9 @@ static void all_off(struct ds2409 *s)
 		s->branch[i].on = s->branch[i].event = false;
 }
 
-static void power_on(struct sim_slave *slave, int64_t t)
+static void ds2409_power_on(struct sim_slave *slave, int64_t t)
 {
-	struct ds2409 *s = state(slave);
+	struct ds2409 *s = ds2409_state(slave);
 
 	all_off(s);
 	s->manual = s->control = s->discharging = false;
@@ -58,9 +58,9 @@ static void power_on(struct sim_slave *slave, int64_t t)
 }
 
 /* A branch that is off is watched for falling edges. */
-static void advance(struct sim_slave *slave, int64_t t)
+static void ds2409_advance(struct sim_slave *slave, int64_t t)
 {
-	struct ds2409 *s = state(slave);
+	struct ds2409 *s = ds2409_state(slave);
 
 	for (unsigned i = 0; i < SIM_BRANCHES; i++) {
 		struct sim_branch *branch = &s->branch[i];
@@ -73,10 +73,11 @@ static void advance(struct sim_slave *slave, int64_t t)
 	s->seen = t;
 }
 
-static bool alarm(struct sim_slave *slave, int64_t t)
+static bool ds2409_alarm(struct sim_slave *slave, int64_t t)
 {
-	advance(slave, t);
-	return state(slave)->branch[SIM_MAIN].event || state(slave)->branch[SIM_AUX].event;
+	ds2409_advance(slave, t);
+	return ds2409_state(slave)->branch[SIM_MAIN].event ||
+	       ds2409_state(slave)->branch[SIM_AUX].event;
 }
 
 static uint8_t info(const struct ds2409 *s)
@@ -105,7 +106,7 @@ static void end_discharge(struct ds2409 *s, int64_t t)
 
 static void status(struct sim_slave *slave, int64_t t)
 {
-	struct ds2409 *s = state(slave);
+	struct ds2409 *s = ds2409_state(slave);
 	uint8_t control = slave->taken[0], out[2];
 
 	end_discharge(s, t);
@@ -124,14 +125,14 @@ static void confirm(struct sim_slave *slave)
 
 static void all_lines_off(struct sim_slave *slave, int64_t t)
 {
-	end_discharge(state(slave), t);
-	all_off(state(slave));
+	end_discharge(ds2409_state(slave), t);
+	all_off(ds2409_state(slave));
 	confirm(slave);
 }
 
 static void discharge(struct sim_slave *slave, int64_t t)
 {
-	struct ds2409 *s = state(slave);
+	struct ds2409 *s = ds2409_state(slave);
 
 	s->branch[SIM_MAIN].on = s->branch[SIM_AUX].on = false;
 	if (!s->discharging)
@@ -148,8 +149,8 @@ static void switch_on(struct ds2409 *s, enum sim_branch_number number)
 
 static void direct_on_main(struct sim_slave *slave, int64_t t)
 {
-	end_discharge(state(slave), t);
-	switch_on(state(slave), SIM_MAIN);
+	end_discharge(ds2409_state(slave), t);
+	switch_on(ds2409_state(slave), SIM_MAIN);
 	confirm(slave);
 }
 
@@ -161,7 +162,7 @@ static enum sim_branch_number asked(const struct sim_slave *slave)
 /* The reset stimulus was sent: a reset on the output alone. A short looks like presence. */
 static void smart_on(struct sim_slave *slave, int64_t t)
 {
-	struct ds2409 *s = state(slave);
+	struct ds2409 *s = ds2409_state(slave);
 	struct sim_branch *branch = &s->branch[asked(slave)];
 	uint8_t out[2] = {0x00, slave->function->code};
 
@@ -175,7 +176,7 @@ static void smart_on(struct sim_slave *slave, int64_t t)
 static void smart_on_confirmed(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	switch_on(state(slave), asked(slave));
+	switch_on(ds2409_state(slave), asked(slave));
 }
 
 static const struct sim_function functions[] = {
@@ -198,8 +199,8 @@ const struct sim_family sim_ds2409 = {
 	.state_size = sizeof(struct ds2409),
 	.functions = functions,
 	.inputs = inputs,
-	.create = create,
-	.power_on = power_on,
-	.alarm = alarm,
-	.advance = advance,
+	.create = ds2409_create,
+	.power_on = ds2409_power_on,
+	.alarm = ds2409_alarm,
+	.advance = ds2409_advance,
 };

@@ -3,7 +3,7 @@
 #include "hal/sim/families.h"
 #include "hal/sim/pins.h"
 
-static void power_on(struct sim_slave *slave, int64_t t)
+static void ds2413_power_on(struct sim_slave *slave, int64_t t)
 {
 	sim_pins_start(slave, 0, 2, t);
 }
@@ -19,6 +19,6 @@ const struct sim_family sim_ds2413 = {
 	.state_size = sizeof(struct sim_pins),
 	.functions = functions,
 	.inputs = inputs,
-	.power_on = power_on,
+	.power_on = ds2413_power_on,
 	.advance = sim_pins_follow,
 };

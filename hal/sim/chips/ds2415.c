@@ -18,15 +18,15 @@ struct ds2415 {
 	unsigned at;        /* of the control byte and the four of the counter */
 };
 
-static struct ds2415 *state(struct sim_slave *slave)
+static struct ds2415 *ds2415_state(struct sim_slave *slave)
 {
 	return sim_state(slave, ds2415);
 }
 
 /* Both bits make the oscillator run. */
-static void advance(struct sim_slave *slave, int64_t t)
+static void ds2415_advance(struct sim_slave *slave, int64_t t)
 {
-	struct ds2415 *s = state(slave);
+	struct ds2415 *s = ds2415_state(slave);
 
 	if ((s->control & OSC) == OSC) {
 		s->part += t - s->seen;
@@ -37,9 +37,9 @@ static void advance(struct sim_slave *slave, int64_t t)
 }
 
 /* Send the control byte and the counter as it is now, again and again. */
-static void send(struct sim_slave *slave, int64_t t)
+static void ds2415_send(struct sim_slave *slave, int64_t t)
 {
-	const struct ds2415 *s = state(slave);
+	const struct ds2415 *s = ds2415_state(slave);
 	uint8_t out[5] = {s->control};
 
 	(void)t;
@@ -48,19 +48,19 @@ static void send(struct sim_slave *slave, int64_t t)
 	sim_send(slave, out, sizeof(out));
 }
 
-static void begin_write(struct sim_slave *slave, int64_t t)
+static void ds2415_begin_write(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	state(slave)->at = 0;
+	ds2415_state(slave)->at = 0;
 }
 
 /*
  * The control byte counts at once. A byte of the counter does too, where the data sheet waits for
  * the reset.
  */
-static void write(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void ds2415_write(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	struct ds2415 *s = state(slave);
+	struct ds2415 *s = ds2415_state(slave);
 	unsigned at = s->at++;
 
 	(void)t;
@@ -75,9 +75,9 @@ static void write(struct sim_slave *slave, uint8_t byte, int64_t t)
 	}
 }
 
-static int option(struct sim_slave *slave, const char *name, double value)
+static int ds2415_option(struct sim_slave *slave, const char *name, double value)
 {
-	struct ds2415 *s = state(slave);
+	struct ds2415 *s = ds2415_state(slave);
 
 	if (strcmp(name, "seconds") == 0) {
 		if (value < 0 || value > UINT32_MAX)
@@ -94,15 +94,15 @@ static int option(struct sim_slave *slave, const char *name, double value)
 }
 
 static const struct sim_function functions[] = {
-	{.code = 0x66, .start = send, .next = send}, /* Read Clock, Write Clock */
-	{.code = 0x99, .start = begin_write, .byte = write},
+	{.code = 0x66, .start = ds2415_send, .next = ds2415_send}, /* Read Clock, Write Clock */
+	{.code = 0x99, .start = ds2415_begin_write, .byte = ds2415_write},
 	{0},
 };
 
 #define CLOCK(part, family) \
 	{ \
 		.name = (part), .code = (family), .state_size = sizeof(struct ds2415), \
-		.functions = functions, .advance = advance, .option = option \
+		.functions = functions, .advance = ds2415_advance, .option = ds2415_option \
 	}
 
 const struct sim_family sim_ds2415 = CLOCK("DS2415", 0x24);

@@ -19,27 +19,27 @@ struct ds2423 {
 static const struct sim_scratchpad_kind kind = {
 	.size = 512, .writable = 512, .page = 32, .copy_ns = 32000};
 
-static struct ds2423 *state(struct sim_slave *slave)
+static struct ds2423 *ds2423_state(struct sim_slave *slave)
 {
 	return sim_state(slave, ds2423);
 }
 
-static void create(struct sim_slave *slave)
+static void ds2423_create(struct sim_slave *slave)
 {
-	state(slave)->memory.kind = &kind;
-	state(slave)->level[0] = state(slave)->level[1] = true;
+	ds2423_state(slave)->memory.kind = &kind;
+	ds2423_state(slave)->level[0] = ds2423_state(slave)->level[1] = true;
 }
 
 /* A battery keeps RAM and counters. */
-static void power_on(struct sim_slave *slave, int64_t t)
+static void ds2423_power_on(struct sim_slave *slave, int64_t t)
 {
 	sim_scratchpad_power_on(slave, t);
-	state(slave)->seen = t;
+	ds2423_state(slave)->seen = t;
 }
 
-static void advance(struct sim_slave *slave, int64_t t)
+static void ds2423_advance(struct sim_slave *slave, int64_t t)
 {
-	struct ds2423 *s = state(slave);
+	struct ds2423 *s = ds2423_state(slave);
 
 	for (unsigned i = 0; i < 2; i++) {
 		const struct sim_curve *curve = &slave->input[i];
@@ -58,7 +58,7 @@ static void advance(struct sim_slave *slave, int64_t t)
 /* Send the rest of the page, its counter, four bytes of 0, and the checksum. */
 static void send_page(struct sim_slave *slave, int64_t t)
 {
-	const struct ds2423 *s = state(slave);
+	const struct ds2423 *s = ds2423_state(slave);
 	unsigned page = slave->address / 32, n = 0;
 	uint32_t count = page < FIRST_COUNTER_PAGE ? UINT32_MAX : s->counter[page % 2];
 	uint8_t out[32 + 4 + 4] = {0};
@@ -76,7 +76,7 @@ static void send_page(struct sim_slave *slave, int64_t t)
 	sim_send_checked(slave, out, n + 4);
 }
 
-static int option(struct sim_slave *slave, const char *name, double value)
+static int ds2423_option(struct sim_slave *slave, const char *name, double value)
 {
 	unsigned counter;
 
@@ -88,7 +88,7 @@ static int option(struct sim_slave *slave, const char *name, double value)
 		return -ENOENT;
 	if (value < 0 || value > UINT32_MAX)
 		return -ERANGE;
-	state(slave)->counter[counter] = (uint32_t)value;
+	ds2423_state(slave)->counter[counter] = (uint32_t)value;
 	return 0;
 }
 
@@ -108,11 +108,11 @@ const struct sim_family sim_ds2423 = {
 	.state_size = sizeof(struct ds2423),
 	.functions = functions,
 	.inputs = inputs,
-	.create = create,
-	.power_on = power_on,
+	.create = ds2423_create,
+	.power_on = ds2423_power_on,
 	.bit = sim_scratchpad_bit,
 	.worked = sim_scratchpad_worked,
-	.advance = advance,
-	.option = option,
+	.advance = ds2423_advance,
+	.option = ds2423_option,
 	.memory = sim_scratchpad_memory,
 };

@@ -16,29 +16,29 @@ struct ds2430a {
 	bool locked, locking;
 };
 
-static struct ds2430a *state(struct sim_slave *slave)
+static struct ds2430a *ds2430a_state(struct sim_slave *slave)
 {
 	return sim_state(slave, ds2430a);
 }
 
-static void create(struct sim_slave *slave)
+static void ds2430a_create(struct sim_slave *slave)
 {
-	memset(state(slave)->memory, 0xFF, 32);
-	memset(state(slave)->application, 0xFF, 8);
+	memset(ds2430a_state(slave)->memory, 0xFF, 32);
+	memset(ds2430a_state(slave)->application, 0xFF, 8);
 }
 
-static void power_on(struct sim_slave *slave, int64_t t)
+static void ds2430a_power_on(struct sim_slave *slave, int64_t t)
 {
-	struct ds2430a *s = state(slave);
+	struct ds2430a *s = ds2430a_state(slave);
 
 	(void)t;
 	memcpy(s->scratchpad, s->memory, 32);
 	memcpy(s->register_pad, s->application, 8);
 }
 
-static void worked(struct sim_slave *slave, int64_t t)
+static void ds2430a_worked(struct sim_slave *slave, int64_t t)
 {
-	struct ds2430a *s = state(slave);
+	struct ds2430a *s = ds2430a_state(slave);
 
 	(void)t;
 	if (s->locking) {
@@ -52,18 +52,18 @@ static void worked(struct sim_slave *slave, int64_t t)
 static void send_scratchpad(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	sim_send_byte(slave, state(slave)->scratchpad[slave->address++ % 32]);
+	sim_send_byte(slave, ds2430a_state(slave)->scratchpad[slave->address++ % 32]);
 }
 
 static void read_memory(struct sim_slave *slave, int64_t t)
 {
-	memcpy(state(slave)->scratchpad, state(slave)->memory, 32);
+	memcpy(ds2430a_state(slave)->scratchpad, ds2430a_state(slave)->memory, 32);
 	send_scratchpad(slave, t);
 }
 
 static void send_application(struct sim_slave *slave, int64_t t)
 {
-	const struct ds2430a *s = state(slave);
+	const struct ds2430a *s = ds2430a_state(slave);
 	unsigned at = slave->address++ % 8;
 
 	(void)t;
@@ -73,25 +73,25 @@ static void send_application(struct sim_slave *slave, int64_t t)
 static void send_status(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	sim_send_byte(slave, state(slave)->locked ? 0xFC : 0xFF);
+	sim_send_byte(slave, ds2430a_state(slave)->locked ? 0xFC : 0xFF);
 }
 
-static void write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void ds2430a_write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
 	(void)t;
-	state(slave)->scratchpad[slave->address++ % 32] = byte;
+	ds2430a_state(slave)->scratchpad[slave->address++ % 32] = byte;
 }
 
 static void write_application(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
 	(void)t;
-	if (!state(slave)->locked)
-		state(slave)->register_pad[slave->address++ % 8] = byte;
+	if (!ds2430a_state(slave)->locked)
+		ds2430a_state(slave)->register_pad[slave->address++ % 8] = byte;
 }
 
-static void copy(struct sim_slave *slave, int64_t t)
+static void ds2430a_copy(struct sim_slave *slave, int64_t t)
 {
-	struct ds2430a *s = state(slave);
+	struct ds2430a *s = ds2430a_state(slave);
 	bool locking = slave->function->code == LOCK_APPLICATION;
 
 	if (slave->taken[0] == KEY && !(locking && s->locked)) {
@@ -101,23 +101,23 @@ static void copy(struct sim_slave *slave, int64_t t)
 	sim_end(slave);
 }
 
-static uint8_t *memory(struct sim_slave *slave, size_t *size)
+static uint8_t *ds2430a_memory(struct sim_slave *slave, size_t *size)
 {
 	*size = 32;
-	return state(slave)->memory;
+	return ds2430a_state(slave)->memory;
 }
 
 static const struct sim_function functions[] = {
 	/* Write, Read, Copy Scratchpad; Read Memory */
-	{.code = 0x0F, .takes = 1, .byte = write_scratchpad},
+	{.code = 0x0F, .takes = 1, .byte = ds2430a_write_scratchpad},
 	{.code = 0xAA, .takes = 1, .start = send_scratchpad, .next = send_scratchpad},
-	{.code = 0x55, .takes = 1, .start = copy},
+	{.code = 0x55, .takes = 1, .start = ds2430a_copy},
 	{.code = 0xF0, .takes = 1, .start = read_memory, .next = send_scratchpad},
 	/* Write and Read Application Register, Read Status Register */
 	{.code = 0x99, .takes = 1, .byte = write_application},
 	{.code = 0xC3, .takes = 1, .start = send_application, .next = send_application},
 	{.code = 0x66, .takes = 1, .start = send_status, .next = send_status},
-	{.code = LOCK_APPLICATION, .takes = 1, .start = copy},
+	{.code = LOCK_APPLICATION, .takes = 1, .start = ds2430a_copy},
 	{0},
 };
 
@@ -126,8 +126,8 @@ const struct sim_family sim_ds2430a = {
 	.code = 0x14,
 	.state_size = sizeof(struct ds2430a),
 	.functions = functions,
-	.create = create,
-	.power_on = power_on,
-	.worked = worked,
-	.memory = memory,
+	.create = ds2430a_create,
+	.power_on = ds2430a_power_on,
+	.worked = ds2430a_worked,
+	.memory = ds2430a_memory,
 };

@@ -20,7 +20,7 @@ static const struct sim_scratchpad_kind ds28ec20 = {.size = 0xA40,
                                                     .to_end = true,
                                                     .sequence = true};
 
-static void create(struct sim_slave *slave)
+static void ds2431_create(struct sim_slave *slave)
 {
 	struct sim_scratchpad *s = sim_state(slave, sim_scratchpad);
 
@@ -57,8 +57,9 @@ static const struct sim_function ds28ec20_functions[] = {
 	{ \
 		.name = (part), .code = (family), .overdrive = true, .functions = (commands), \
 		.resume = (family) != 0x23, .state_size = sizeof(struct sim_scratchpad), \
-		.create = create, .power_on = sim_scratchpad_power_on, .bit = sim_scratchpad_bit, \
-		.worked = sim_scratchpad_worked, .memory = sim_scratchpad_memory \
+		.create = ds2431_create, .power_on = sim_scratchpad_power_on, \
+		.bit = sim_scratchpad_bit, .worked = sim_scratchpad_worked, \
+		.memory = sim_scratchpad_memory \
 	}
 
 const struct sim_family sim_ds2431 = EEPROM("DS2431", 0x2D, functions);

@@ -24,14 +24,14 @@ struct ds2436 {
 	uint8_t work; /* the code of the command that runs */
 };
 
-static struct ds2436 *state(struct sim_slave *slave)
+static struct ds2436 *ds2436_state(struct sim_slave *slave)
 {
 	return sim_state(slave, ds2436);
 }
 
 static uint8_t *at(struct sim_slave *slave, unsigned address)
 {
-	return &state(slave)->registers[address - CELSIUS];
+	return &ds2436_state(slave)->registers[address - CELSIUS];
 }
 
 /* The byte of a scratchpad; NULL: there is none at this address. */
@@ -41,12 +41,12 @@ static uint8_t *scratch(struct sim_slave *slave, unsigned address)
 
 	if (page >= PAGES || address % 32 >= page_size[page])
 		return NULL;
-	return &state(slave)->scratchpad[page][address % 32];
+	return &ds2436_state(slave)->scratchpad[page][address % 32];
 }
 
-static void power_on(struct sim_slave *slave, int64_t t)
+static void ds2436_power_on(struct sim_slave *slave, int64_t t)
 {
-	struct ds2436 *s = state(slave);
+	struct ds2436 *s = ds2436_state(slave);
 
 	(void)t;
 	memset(s->stored[SRAM], 0, sizeof(s->stored[SRAM]));
@@ -57,34 +57,34 @@ static void power_on(struct sim_slave *slave, int64_t t)
 	s->work = 0;
 }
 
-static void put16(uint8_t *to, int value)
+static void ds2436_put16(uint8_t *to, int value)
 {
 	to[0] = (uint8_t)value;
 	to[1] = (uint8_t)(value >> 8);
 }
 
-static void count(struct sim_slave *slave)
+static void ds2436_count(struct sim_slave *slave)
 {
 	uint8_t *cycles = at(slave, CYCLES);
 	int n = cycles[0] | cycles[1] << 8;
 
 	if (n < 0xFFFF)
-		put16(cycles, n + 1);
+		ds2436_put16(cycles, n + 1);
 }
 
-static void worked(struct sim_slave *slave, int64_t t)
+static void ds2436_worked(struct sim_slave *slave, int64_t t)
 {
-	struct ds2436 *s = state(slave);
+	struct ds2436 *s = ds2436_state(slave);
 	int64_t volt = sim_round(sim_input_at(slave, VOLT, t) * 100);
 
 	switch (s->work) {
 	case 0xD2: /* 13 bits of 0.03125 degrees, left-aligned */
-		put16(at(slave, CELSIUS),
-		      (int)sim_round(sim_input_at(slave, TEMPERATURE, t) * 32) * 8);
+		ds2436_put16(at(slave, CELSIUS),
+		             (int)sim_round(sim_input_at(slave, TEMPERATURE, t) * 32) * 8);
 		slave->conversions++;
 		break;
 	case 0xB4: /* 10 bits of 10 mV */
-		put16(at(slave, VOLTAGE), volt < 0 ? 0 : volt > 1023 ? 1023 : (int)volt);
+		ds2436_put16(at(slave, VOLTAGE), volt < 0 ? 0 : volt > 1023 ? 1023 : (int)volt);
 		slave->conversions++;
 		break;
 	case 0x22:
@@ -100,10 +100,10 @@ static void worked(struct sim_slave *slave, int64_t t)
 		*at(slave, STATUS) &= (uint8_t)~LOCK;
 		break;
 	case 0xB8:
-		put16(at(slave, CYCLES), 0);
+		ds2436_put16(at(slave, CYCLES), 0);
 		break;
 	case 0xB5:
-		count(slave);
+		ds2436_count(slave);
 		break;
 	default:
 		break;
@@ -115,14 +115,14 @@ static void worked(struct sim_slave *slave, int64_t t)
 static void work(struct sim_slave *slave, uint8_t flag, int64_t takes, int64_t t)
 {
 	if (!slave->busy) {
-		state(slave)->work = slave->function->code;
+		ds2436_state(slave)->work = slave->function->code;
 		*at(slave, STATUS) |= flag;
 		sim_work(slave, takes, t);
 	}
 	sim_end(slave);
 }
 
-static void convert(struct sim_slave *slave, int64_t t)
+static void ds2436_convert(struct sim_slave *slave, int64_t t)
 {
 	work(slave, slave->function->code == 0xD2 ? TB : ADB, CONVERSION_NS, t);
 }
@@ -142,16 +142,16 @@ static void copy_locked(struct sim_slave *slave, int64_t t)
 
 static void copy_sram(struct sim_slave *slave, int64_t t)
 {
-	struct ds2436 *s = state(slave);
+	struct ds2436 *s = ds2436_state(slave);
 
 	(void)t;
 	memcpy(s->stored[SRAM], s->scratchpad[SRAM], page_size[SRAM]);
 	sim_end(slave);
 }
 
-static void recall(struct sim_slave *slave, int64_t t)
+static void ds2436_recall(struct sim_slave *slave, int64_t t)
 {
-	struct ds2436 *s = state(slave);
+	struct ds2436 *s = ds2436_state(slave);
 	unsigned page = slave->function->code == 0x71   ? NV1
 	                : slave->function->code == 0x77 ? NV2
 	                                                : SRAM;
@@ -162,7 +162,7 @@ static void recall(struct sim_slave *slave, int64_t t)
 }
 
 /* Where there is nothing the line stays high. */
-static void read_scratchpad(struct sim_slave *slave, int64_t t)
+static void ds2436_read_scratchpad(struct sim_slave *slave, int64_t t)
 {
 	const uint8_t *byte = scratch(slave, slave->address);
 
@@ -171,7 +171,7 @@ static void read_scratchpad(struct sim_slave *slave, int64_t t)
 	sim_send_byte(slave, byte ? *byte : 0xFF);
 }
 
-static void write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void ds2436_write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
 	uint8_t *to = scratch(slave, slave->address);
 
@@ -193,28 +193,28 @@ static void read_registers(struct sim_slave *slave, int64_t t)
 	sim_send_byte(slave, there ? *at(slave, address) : 0xFF);
 }
 
-static uint8_t *memory(struct sim_slave *slave, size_t *size)
+static uint8_t *ds2436_memory(struct sim_slave *slave, size_t *size)
 {
 	*size = 64; /* the EEPROM is recalled at power-on */
-	return state(slave)->stored[0];
+	return ds2436_state(slave)->stored[0];
 }
 
 static const struct sim_function functions[] = {
-	{.code = 0x11, .takes = 1, .start = read_scratchpad, .next = read_scratchpad},
-	{.code = 0x17, .takes = 1, .byte = write_scratchpad},
+	{.code = 0x11, .takes = 1, .start = ds2436_read_scratchpad, .next = ds2436_read_scratchpad},
+	{.code = 0x17, .takes = 1, .byte = ds2436_write_scratchpad},
 	{.code = 0x22, .start = copy_locked},
 	{.code = 0x25, .start = change},
 	{.code = 0x28, .start = copy_sram},
-	{.code = 0x71, .start = recall},
-	{.code = 0x77, .start = recall},
-	{.code = 0x7A, .start = recall},
+	{.code = 0x71, .start = ds2436_recall},
+	{.code = 0x77, .start = ds2436_recall},
+	{.code = 0x7A, .start = ds2436_recall},
 	{.code = 0x43, .start = change}, /* Lock, Unlock NV1 */
 	{.code = 0x44, .start = change},
 	{.code = 0xB2, .takes = 1, .start = read_registers, .next = read_registers},
 	{.code = 0xB8, .start = change}, /* Reset, Increment Cycle Counter */
 	{.code = 0xB5, .start = change},
-	{.code = 0xB4, .start = convert}, /* Convert V, Convert T */
-	{.code = 0xD2, .start = convert},
+	{.code = 0xB4, .start = ds2436_convert}, /* Convert V, Convert T */
+	{.code = 0xD2, .start = ds2436_convert},
 	{0},
 };
 
@@ -230,7 +230,7 @@ const struct sim_family sim_ds2436 = {
 	.state_size = sizeof(struct ds2436),
 	.functions = functions,
 	.inputs = inputs,
-	.power_on = power_on,
-	.worked = worked,
-	.memory = memory,
+	.power_on = ds2436_power_on,
+	.worked = ds2436_worked,
+	.memory = ds2436_memory,
 };

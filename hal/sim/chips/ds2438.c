@@ -28,19 +28,19 @@ struct ds2438 {
 	int64_t started; /* the elapsed time meter was 0 at started */
 };
 
-static struct ds2438 *state(struct sim_slave *slave)
+static struct ds2438 *ds2438_state(struct sim_slave *slave)
 {
 	return sim_state(slave, ds2438);
 }
 
-static void create(struct sim_slave *slave)
+static void ds2438_create(struct sim_slave *slave)
 {
-	state(slave)->memory[0][0] = IAD | CA | EE | AD;
+	ds2438_state(slave)->memory[0][0] = IAD | CA | EE | AD;
 }
 
-static void power_on(struct sim_slave *slave, int64_t t)
+static void ds2438_power_on(struct sim_slave *slave, int64_t t)
 {
-	struct ds2438 *s = state(slave);
+	struct ds2438 *s = ds2438_state(slave);
 
 	memset(s->memory[0] + 1, 0, 6);
 	memset(s->memory[1], 0, 5);
@@ -51,7 +51,7 @@ static void power_on(struct sim_slave *slave, int64_t t)
 	s->started = t;
 }
 
-static void put16(uint8_t *at, int value)
+static void ds2438_put16(uint8_t *at, int value)
 {
 	at[0] = (uint8_t)value;
 	at[1] = (uint8_t)(value >> 8);
@@ -69,28 +69,30 @@ static int within(double value, int least, int most)
  */
 static void measure_current(struct sim_slave *slave, int64_t t)
 {
-	struct ds2438 *s = state(slave);
+	struct ds2438 *s = ds2438_state(slave);
 
 	if (s->scratchpad[0][0] & IAD)
-		put16(s->memory[0] + 5,
-		      within(sim_input_at(slave, VSENS, t) / CURRENT_MV, -1023, 1023));
+		ds2438_put16(s->memory[0] + 5,
+		             within(sim_input_at(slave, VSENS, t) / CURRENT_MV, -1023, 1023));
 }
 
-static void worked(struct sim_slave *slave, int64_t t)
+static void ds2438_worked(struct sim_slave *slave, int64_t t)
 {
-	struct ds2438 *s = state(slave);
+	struct ds2438 *s = ds2438_state(slave);
 	unsigned source = s->scratchpad[0][0] & AD ? VDD : VAD;
 
 	switch (s->work) {
 	case IDLE:
 		break;
 	case TEMPERATURE_WORK: /* 13 bits of 0.03125, left-aligned */
-		put16(s->memory[0] + 1,
-		      within(sim_input_at(slave, TEMPERATURE, t) * 32, -55 * 32, 125 * 32) * 8);
+		ds2438_put16(s->memory[0] + 1,
+		             within(sim_input_at(slave, TEMPERATURE, t) * 32, -55 * 32, 125 * 32) *
+		                     8);
 		slave->conversions++;
 		break;
 	case VOLTAGE_WORK: /* 10 bits of 10 mV */
-		put16(s->memory[0] + 3, within(sim_input_at(slave, source, t) * 100, 0, 1023));
+		ds2438_put16(s->memory[0] + 3,
+		             within(sim_input_at(slave, source, t) * 100, 0, 1023));
 		slave->conversions++;
 		break;
 	case COPY_WORK:
@@ -111,9 +113,9 @@ static void worked(struct sim_slave *slave, int64_t t)
 	s->work = IDLE;
 }
 
-static void advance(struct sim_slave *slave, int64_t t)
+static void ds2438_advance(struct sim_slave *slave, int64_t t)
 {
-	struct ds2438 *s = state(slave);
+	struct ds2438 *s = ds2438_state(slave);
 	uint32_t seconds = (uint32_t)((t - s->started) / NS_PER_S);
 
 	for (unsigned i = 0; i < 4; i++)
@@ -127,26 +129,26 @@ static unsigned page_of(const struct sim_slave *slave)
 
 static void convert_temperature(struct sim_slave *slave, int64_t t)
 {
-	state(slave)->work = TEMPERATURE_WORK;
+	ds2438_state(slave)->work = TEMPERATURE_WORK;
 	sim_work(slave, WORK_NS, t);
 }
 
 static void convert_voltage(struct sim_slave *slave, int64_t t)
 {
-	state(slave)->work = VOLTAGE_WORK;
+	ds2438_state(slave)->work = VOLTAGE_WORK;
 	sim_work(slave, WORK_NS, t);
 }
 
-static void copy(struct sim_slave *slave, int64_t t)
+static void ds2438_copy(struct sim_slave *slave, int64_t t)
 {
-	state(slave)->work = COPY_WORK;
-	state(slave)->busy_page = slave->taken[0] & 7;
+	ds2438_state(slave)->work = COPY_WORK;
+	ds2438_state(slave)->busy_page = slave->taken[0] & 7;
 	sim_work(slave, WORK_NS, t);
 }
 
-static void recall(struct sim_slave *slave, int64_t t)
+static void ds2438_recall(struct sim_slave *slave, int64_t t)
 {
-	struct ds2438 *s = state(slave);
+	struct ds2438 *s = ds2438_state(slave);
 	unsigned page = page_of(slave);
 
 	if (page == 0)
@@ -155,10 +157,10 @@ static void recall(struct sim_slave *slave, int64_t t)
 	sim_send_bits(slave);
 }
 
-static void read_scratchpad(struct sim_slave *slave, int64_t t)
+static void ds2438_read_scratchpad(struct sim_slave *slave, int64_t t)
 {
 	static const uint8_t busy[] = {[IDLE] = 0, TB, ADB, NVB};
-	const struct ds2438 *s = state(slave);
+	const struct ds2438 *s = ds2438_state(slave);
 	uint8_t out[8];
 
 	(void)t;
@@ -174,14 +176,14 @@ static void begin_page(struct sim_slave *slave, int64_t t)
 	slave->address = 0;
 }
 
-static void write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void ds2438_write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
 	unsigned page = page_of(slave), at = slave->address++;
 
 	(void)t;
 	/* Of page 0 the configuration and the threshold can be written. */
 	if (page != 0 || at == 0 || at == 7)
-		state(slave)->scratchpad[page][at] = byte;
+		ds2438_state(slave)->scratchpad[page][at] = byte;
 	if (at == 7)
 		sim_end(slave);
 }
@@ -190,17 +192,17 @@ static const struct sim_function functions[] = {
 	{.code = 0x44, .start = convert_temperature},
 	{.code = 0xB4, .start = convert_voltage},
 	/* Write, Read, Copy Scratchpad; Recall Memory */
-	{.code = 0x4E, .takes = 1, .start = begin_page, .byte = write_scratchpad},
-	{.code = 0xBE, .takes = 1, .start = read_scratchpad},
-	{.code = 0x48, .takes = 1, .start = copy},
-	{.code = 0xB8, .takes = 1, .start = recall},
+	{.code = 0x4E, .takes = 1, .start = begin_page, .byte = ds2438_write_scratchpad},
+	{.code = 0xBE, .takes = 1, .start = ds2438_read_scratchpad},
+	{.code = 0x48, .takes = 1, .start = ds2438_copy},
+	{.code = 0xB8, .takes = 1, .start = ds2438_recall},
 	{0},
 };
 
-static uint8_t *memory(struct sim_slave *slave, size_t *size)
+static uint8_t *ds2438_memory(struct sim_slave *slave, size_t *size)
 {
 	*size = 64;
-	return state(slave)->memory[0];
+	return ds2438_state(slave)->memory[0];
 }
 
 static const struct sim_input inputs[] = {
@@ -214,8 +216,9 @@ static const struct sim_input inputs[] = {
 #define MONITOR(part, family) \
 	{ \
 		.name = (part), .code = (family), .state_size = sizeof(struct ds2438), \
-		.functions = functions, .inputs = inputs, .create = create, .power_on = power_on, \
-		.worked = worked, .advance = advance, .memory = memory \
+		.functions = functions, .inputs = inputs, .create = ds2438_create, \
+		.power_on = ds2438_power_on, .worked = ds2438_worked, .advance = ds2438_advance, \
+		.memory = ds2438_memory \
 	}
 
 const struct sim_family sim_ds2437 = MONITOR("DS2437", 0x1E);

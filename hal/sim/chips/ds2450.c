@@ -21,14 +21,14 @@ struct ds2450 {
 	uint8_t channels; /* under conversion */
 };
 
-static struct ds2450 *state(struct sim_slave *slave)
+static struct ds2450 *ds2450_state(struct sim_slave *slave)
 {
 	return sim_state(slave, ds2450);
 }
 
-static void power_on(struct sim_slave *slave, int64_t t)
+static void ds2450_power_on(struct sim_slave *slave, int64_t t)
 {
-	struct ds2450 *s = state(slave);
+	struct ds2450 *s = ds2450_state(slave);
 
 	(void)t;
 	memset(s, 0, sizeof(*s));
@@ -47,9 +47,9 @@ static unsigned resolution(const struct ds2450 *s, unsigned channel)
 }
 
 /* The result is left-aligned, the bits not converted are 0. */
-static void measure(struct sim_slave *slave, unsigned channel, int64_t t)
+static void ds2450_measure(struct sim_slave *slave, unsigned channel, int64_t t)
 {
-	struct ds2450 *s = state(slave);
+	struct ds2450 *s = ds2450_state(slave);
 	uint8_t *control = &s->memory[CONTROL + 2 * channel],
 		*limit = &s->memory[LIMITS + 2 * channel];
 	double range = control[1] & IR ? 5.12 : 2.56;
@@ -68,18 +68,18 @@ static void measure(struct sim_slave *slave, unsigned channel, int64_t t)
 		control[1] |= AFH;
 }
 
-static void worked(struct sim_slave *slave, int64_t t)
+static void ds2450_worked(struct sim_slave *slave, int64_t t)
 {
 	for (unsigned i = 0; i < 4; i++) {
-		if (state(slave)->channels >> i & 1)
-			measure(slave, i, t);
+		if (ds2450_state(slave)->channels >> i & 1)
+			ds2450_measure(slave, i, t);
 	}
 	slave->conversions++;
 }
 
-static bool alarm(struct sim_slave *slave, int64_t t)
+static bool ds2450_alarm(struct sim_slave *slave, int64_t t)
 {
-	const struct ds2450 *s = state(slave);
+	const struct ds2450 *s = ds2450_state(slave);
 
 	(void)t;
 	for (unsigned i = 0; i < 4; i++) {
@@ -96,13 +96,13 @@ static bool alarm(struct sim_slave *slave, int64_t t)
 static void send_memory(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	sim_send_memory(slave, state(slave)->memory, SIZE, PAGE);
+	sim_send_memory(slave, ds2450_state(slave)->memory, SIZE, PAGE);
 }
 
 /* Send the checksum, then the byte as stored; then the host may write to the next address. */
 static void write_memory(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	struct ds2450 *s = state(slave);
+	struct ds2450 *s = ds2450_state(slave);
 
 	(void)t;
 	if (slave->address >= SIZE) {
@@ -114,7 +114,7 @@ static void write_memory(struct sim_slave *slave, uint8_t byte, int64_t t)
 	sim_send_stored(slave, s->memory[slave->address]);
 }
 
-static void receive(struct sim_slave *slave, int64_t t)
+static void ds2450_receive(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
 	sim_receive(slave);
@@ -127,9 +127,9 @@ static void send_checksum(struct sim_slave *slave, int64_t t)
 }
 
 /* The conversion starts after the checksum, where a parasite needs the strong pull-up. */
-static void convert(struct sim_slave *slave, int64_t t)
+static void ds2450_convert(struct sim_slave *slave, int64_t t)
 {
-	struct ds2450 *s = state(slave);
+	struct ds2450 *s = ds2450_state(slave);
 	int64_t takes = START_NS;
 
 	s->channels = slave->taken[0] & 15;
@@ -146,8 +146,8 @@ static void convert(struct sim_slave *slave, int64_t t)
 
 static const struct sim_function functions[] = {
 	{.code = 0xAA, .takes = 2, .start = send_memory, .next = send_memory}, /* Read Memory */
-	{.code = 0x55, .takes = 2, .byte = write_memory, .next = receive},
-	{.code = 0x3C, .takes = 2, .start = send_checksum, .next = convert},
+	{.code = 0x55, .takes = 2, .byte = write_memory, .next = ds2450_receive},
+	{.code = 0x3C, .takes = 2, .start = send_checksum, .next = ds2450_convert},
 	{0},
 };
 
@@ -161,7 +161,7 @@ const struct sim_family sim_ds2450 = {
 	.state_size = sizeof(struct ds2450),
 	.functions = functions,
 	.inputs = inputs,
-	.power_on = power_on,
-	.alarm = alarm,
-	.worked = worked,
+	.power_on = ds2450_power_on,
+	.alarm = ds2450_alarm,
+	.worked = ds2450_worked,
 };

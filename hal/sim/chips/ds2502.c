@@ -15,16 +15,16 @@ struct ds2502 {
 	uint8_t memory[MEMORY], status[STATUS];
 };
 
-static struct ds2502 *state(struct sim_slave *slave)
+static struct ds2502 *ds2502_state(struct sim_slave *slave)
 {
 	return sim_state(slave, ds2502);
 }
 
 /* Status byte 7 is programmed at the factory. */
-static void create(struct sim_slave *slave)
+static void ds2502_create(struct sim_slave *slave)
 {
-	memset(state(slave), 0xFF, sizeof(struct ds2502));
-	state(slave)->status[7] = 0;
+	memset(ds2502_state(slave), 0xFF, sizeof(struct ds2502));
+	ds2502_state(slave)->status[7] = 0;
 }
 
 /* Send the CRC8 of command and address. */
@@ -37,9 +37,9 @@ static void send_checksum(struct sim_slave *slave, int64_t t)
 /*
  * Read Memory and Read Status send a checksum at the end, Read Data/Generate CRC after each page.
  */
-static void send(struct sim_slave *slave, int64_t t)
+static void ds2502_send(struct sim_slave *slave, int64_t t)
 {
-	struct ds2502 *s = state(slave);
+	struct ds2502 *s = ds2502_state(slave);
 
 	(void)t;
 	if (slave->function->code == READ_STATUS)
@@ -50,9 +50,9 @@ static void send(struct sim_slave *slave, int64_t t)
 }
 
 /* Send the checksum; the pulse would come here; send the byte as it is; the next byte follows. */
-static void write(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void ds2502_write(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	struct ds2502 *s = state(slave);
+	struct ds2502 *s = ds2502_state(slave);
 	bool is_status = slave->function->code == WRITE_STATUS;
 
 	(void)byte, (void)t;
@@ -63,32 +63,33 @@ static void write(struct sim_slave *slave, uint8_t byte, int64_t t)
 		                is_status ? s->status[slave->address] : s->memory[slave->address]);
 }
 
-static void receive(struct sim_slave *slave, int64_t t)
+static void ds2502_receive(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
 	sim_receive(slave);
 }
 
-static uint8_t *memory(struct sim_slave *slave, size_t *size)
+static uint8_t *ds2502_memory(struct sim_slave *slave, size_t *size)
 {
 	*size = sizeof(struct ds2502); /* the status bytes after the data */
-	return state(slave)->memory;
+	return ds2502_state(slave)->memory;
 }
 
 static const struct sim_function functions[] = {
-	{.code = READ_MEMORY, .takes = 2, .start = send_checksum, .next = send},
-	{.code = READ_STATUS, .takes = 2, .start = send_checksum, .next = send},
+	{.code = READ_MEMORY, .takes = 2, .start = send_checksum, .next = ds2502_send},
+	{.code = READ_STATUS, .takes = 2, .start = send_checksum, .next = ds2502_send},
 	/* Read Data/Generate 8-Bit CRC, Write Memory */
-	{.code = 0xC3, .takes = 2, .start = send_checksum, .next = send},
-	{.code = 0x0F, .takes = 2, .byte = write, .next = receive},
-	{.code = WRITE_STATUS, .takes = 2, .byte = write, .next = receive},
+	{.code = 0xC3, .takes = 2, .start = send_checksum, .next = ds2502_send},
+	{.code = 0x0F, .takes = 2, .byte = ds2502_write, .next = ds2502_receive},
+	{.code = WRITE_STATUS, .takes = 2, .byte = ds2502_write, .next = ds2502_receive},
 	{0},
 };
 
 #define EPROM(part, family) \
 	{ \
 		.name = (part), .code = (family), .crc8 = true, .functions = functions, \
-		.state_size = sizeof(struct ds2502), .create = create, .memory = memory \
+		.state_size = sizeof(struct ds2502), .create = ds2502_create, \
+		.memory = ds2502_memory \
 	}
 
 const struct sim_family sim_ds2502 = EPROM("DS2502", 0x09);

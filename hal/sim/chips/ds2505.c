@@ -18,15 +18,15 @@ struct ds2505 {
 	bool in_page; /* the redirection byte of this page was sent */
 };
 
-static struct ds2505 *state(struct sim_slave *slave)
+static struct ds2505 *ds2505_state(struct sim_slave *slave)
 {
 	return sim_state(slave, ds2505);
 }
 
 /* Write protection, bitmap and redirection bytes, all from the factory as ones. */
-static void create(struct sim_slave *slave)
+static void ds2505_create(struct sim_slave *slave)
 {
-	struct ds2505 *s = state(slave);
+	struct ds2505 *s = ds2505_state(slave);
 
 	s->size = (slave->family->code & 0x7F) == 0x0F ? 8192 : 2048;
 	s->status_size = REDIRECTION + s->size / PAGE;
@@ -34,9 +34,9 @@ static void create(struct sim_slave *slave)
 }
 
 /* Read Memory has its checksum at the end of the memory. */
-static void send(struct sim_slave *slave, int64_t t)
+static void ds2505_send(struct sim_slave *slave, int64_t t)
 {
-	struct ds2505 *s = state(slave);
+	struct ds2505 *s = ds2505_state(slave);
 
 	(void)t;
 	sim_send_memory(slave, s->bytes, s->size, s->size);
@@ -45,7 +45,7 @@ static void send(struct sim_slave *slave, int64_t t)
 /* Read Status: a checksum after each eight bytes. */
 static void send_status(struct sim_slave *slave, int64_t t)
 {
-	struct ds2505 *s = state(slave);
+	struct ds2505 *s = ds2505_state(slave);
 
 	(void)t;
 	sim_send_memory(slave, s->bytes + s->size, s->status_size, STATUS_PAGE);
@@ -54,7 +54,7 @@ static void send_status(struct sim_slave *slave, int64_t t)
 /* Extended Read Memory: redirection byte, checksum, the rest of the page, checksum, and so on. */
 static void send_page(struct sim_slave *slave, int64_t t)
 {
-	struct ds2505 *s = state(slave);
+	struct ds2505 *s = ds2505_state(slave);
 	unsigned page = slave->address / PAGE;
 
 	(void)t;
@@ -71,14 +71,14 @@ static void send_page(struct sim_slave *slave, int64_t t)
 
 static void begin_pages(struct sim_slave *slave, int64_t t)
 {
-	state(slave)->in_page = false;
+	ds2505_state(slave)->in_page = false;
 	send_page(slave, t);
 }
 
 /* Send the checksum; the pulse would come here; send the byte as it is; the next byte follows. */
-static void write(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void ds2505_write(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	struct ds2505 *s = state(slave);
+	struct ds2505 *s = ds2505_state(slave);
 	bool is_status = slave->function->code == WRITE_STATUS;
 
 	(void)byte, (void)t;
@@ -88,31 +88,32 @@ static void write(struct sim_slave *slave, uint8_t byte, int64_t t)
 		sim_send_stored(slave, s->bytes[slave->address + (is_status ? s->size : 0)]);
 }
 
-static void receive(struct sim_slave *slave, int64_t t)
+static void ds2505_receive(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
 	sim_receive(slave);
 }
 
-static uint8_t *memory(struct sim_slave *slave, size_t *size)
+static uint8_t *ds2505_memory(struct sim_slave *slave, size_t *size)
 {
-	*size = state(slave)->size + state(slave)->status_size;
-	return state(slave)->bytes;
+	*size = ds2505_state(slave)->size + ds2505_state(slave)->status_size;
+	return ds2505_state(slave)->bytes;
 }
 
 static const struct sim_function functions[] = {
-	{.code = READ_MEMORY, .takes = 2, .start = send, .next = send},
+	{.code = READ_MEMORY, .takes = 2, .start = ds2505_send, .next = ds2505_send},
 	{.code = 0xA5, .takes = 2, .start = begin_pages, .next = send_page},
 	{.code = 0xAA, .takes = 2, .start = send_status, .next = send_status},
-	{.code = 0x0F, .takes = 2, .byte = write, .next = receive},
-	{.code = WRITE_STATUS, .takes = 2, .byte = write, .next = receive},
+	{.code = 0x0F, .takes = 2, .byte = ds2505_write, .next = ds2505_receive},
+	{.code = WRITE_STATUS, .takes = 2, .byte = ds2505_write, .next = ds2505_receive},
 	{0},
 };
 
 #define EPROM(part, family, fast) \
 	{ \
 		.name = (part), .code = (family), .overdrive = (fast), .functions = functions, \
-		.state_size = sizeof(struct ds2505), .create = create, .memory = memory \
+		.state_size = sizeof(struct ds2505), .create = ds2505_create, \
+		.memory = ds2505_memory \
 	}
 
 const struct sim_family sim_ds2505 = EPROM("DS2505", 0x0B, false);

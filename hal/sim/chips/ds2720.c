@@ -23,7 +23,7 @@ struct ds2720 {
 	uint8_t copied; /* the block that is being copied */
 };
 
-static struct ds2720 *state(struct sim_slave *slave)
+static struct ds2720 *ds2720_state(struct sim_slave *slave)
 {
 	return sim_state(slave, ds2720);
 }
@@ -44,9 +44,9 @@ static unsigned block_of(unsigned address)
 	return block;
 }
 
-static void power_on(struct sim_slave *slave, int64_t t)
+static void ds2720_power_on(struct sim_slave *slave, int64_t t)
 {
-	struct ds2720 *s = state(slave);
+	struct ds2720 *s = ds2720_state(slave);
 
 	(void)t;
 	for (unsigned i = 0; i < BLOCKS; i++)
@@ -57,11 +57,11 @@ static void power_on(struct sim_slave *slave, int64_t t)
 }
 
 /* A condition sets its flag, which stays; the flags and the enables decide on the FETs. */
-static void advance(struct sim_slave *slave, int64_t t)
+static void ds2720_advance(struct sim_slave *slave, int64_t t)
 {
 	static const uint8_t flags[] = {OV, UV, DOC};
-	uint8_t *protection = &state(slave)->memory[PROTECTION];
-	uint8_t *special = &state(slave)->memory[SPECIAL];
+	uint8_t *protection = &ds2720_state(slave)->memory[PROTECTION];
+	uint8_t *special = &ds2720_state(slave)->memory[SPECIAL];
 
 	for (unsigned i = 0; i < sizeof(flags); i++)
 		if (sim_input_at(slave, i, t) >= 0.5)
@@ -77,9 +77,9 @@ static void advance(struct sim_slave *slave, int64_t t)
 		*protection |= DC;
 }
 
-static void worked(struct sim_slave *slave, int64_t t)
+static void ds2720_worked(struct sim_slave *slave, int64_t t)
 {
-	struct ds2720 *s = state(slave);
+	struct ds2720 *s = ds2720_state(slave);
 
 	(void)t;
 	memcpy(s->eeprom[s->copied], s->memory + block_at(s->copied), BLOCK);
@@ -89,12 +89,12 @@ static void worked(struct sim_slave *slave, int64_t t)
 /* Any command other than the lock itself cancels the permission to lock. */
 static void forget_lock(struct sim_slave *slave)
 {
-	state(slave)->memory[EEPROM_REGISTER] &= (uint8_t)~LOCK;
+	ds2720_state(slave)->memory[EEPROM_REGISTER] &= (uint8_t)~LOCK;
 }
 
 static void read_data(struct sim_slave *slave, int64_t t)
 {
-	struct ds2720 *s = state(slave);
+	struct ds2720 *s = ds2720_state(slave);
 
 	(void)t;
 	sim_send_memory(slave, s->memory, sizeof(s->memory), 0);
@@ -106,7 +106,7 @@ static void begin_read(struct sim_slave *slave, int64_t t)
 	read_data(slave, t);
 }
 
-static void begin_write(struct sim_slave *slave, int64_t t)
+static void ds2720_begin_write(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
 	forget_lock(slave);
@@ -117,7 +117,7 @@ static void begin_write(struct sim_slave *slave, int64_t t)
  */
 static void write_data(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	struct ds2720 *s = state(slave);
+	struct ds2720 *s = ds2720_state(slave);
 	unsigned at = slave->address++, block = block_of(at);
 	uint8_t *to = &s->memory[at % sizeof(s->memory)];
 
@@ -131,12 +131,12 @@ static void write_data(struct sim_slave *slave, uint8_t byte, int64_t t)
 		*to |= byte & LOCK;
 	if (at == SPECIAL)
 		*to = byte & (OT | PSF);
-	advance(slave, t);
+	ds2720_advance(slave, t);
 }
 
-static void copy(struct sim_slave *slave, int64_t t)
+static void ds2720_copy(struct sim_slave *slave, int64_t t)
 {
-	struct ds2720 *s = state(slave);
+	struct ds2720 *s = ds2720_state(slave);
 	unsigned block = block_of(slave->address);
 
 	forget_lock(slave);
@@ -148,9 +148,9 @@ static void copy(struct sim_slave *slave, int64_t t)
 	sim_end(slave);
 }
 
-static void recall(struct sim_slave *slave, int64_t t)
+static void ds2720_recall(struct sim_slave *slave, int64_t t)
 {
-	struct ds2720 *s = state(slave);
+	struct ds2720 *s = ds2720_state(slave);
 	unsigned block = block_of(slave->address);
 
 	(void)t;
@@ -162,7 +162,7 @@ static void recall(struct sim_slave *slave, int64_t t)
 
 static void lock(struct sim_slave *slave, int64_t t)
 {
-	uint8_t *reg = &state(slave)->memory[EEPROM_REGISTER];
+	uint8_t *reg = &ds2720_state(slave)->memory[EEPROM_REGISTER];
 	unsigned block = block_of(slave->address);
 
 	(void)t;
@@ -172,17 +172,17 @@ static void lock(struct sim_slave *slave, int64_t t)
 	sim_end(slave);
 }
 
-static uint8_t *memory(struct sim_slave *slave, size_t *size)
+static uint8_t *ds2720_memory(struct sim_slave *slave, size_t *size)
 {
-	*size = sizeof(state(slave)->eeprom); /* it is recalled at power-on */
-	return state(slave)->eeprom[0];
+	*size = sizeof(ds2720_state(slave)->eeprom); /* it is recalled at power-on */
+	return ds2720_state(slave)->eeprom[0];
 }
 
 static const struct sim_function functions[] = {
 	{.code = 0x69, .takes = 1, .start = begin_read, .next = read_data}, /* Read Data */
-	{.code = 0x6C, .takes = 1, .start = begin_write, .byte = write_data},
-	{.code = 0x48, .takes = 1, .start = copy},
-	{.code = 0xB8, .takes = 1, .start = recall},
+	{.code = 0x6C, .takes = 1, .start = ds2720_begin_write, .byte = write_data},
+	{.code = 0x48, .takes = 1, .start = ds2720_copy},
+	{.code = 0xB8, .takes = 1, .start = ds2720_recall},
 	{.code = 0x6A, .takes = 1, .start = lock},
 	{0},
 };
@@ -207,8 +207,8 @@ const struct sim_family sim_ds2720 = {
 	.state_size = sizeof(struct ds2720),
 	.functions = functions,
 	.inputs = inputs,
-	.power_on = power_on,
-	.worked = worked,
-	.advance = advance,
-	.memory = memory,
+	.power_on = ds2720_power_on,
+	.worked = ds2720_worked,
+	.advance = ds2720_advance,
+	.memory = ds2720_memory,
 };

@@ -11,21 +11,21 @@ struct ds2890 {
 	bool asked;
 };
 
-static struct ds2890 *state(struct sim_slave *slave)
+static struct ds2890 *ds2890_state(struct sim_slave *slave)
 {
 	return sim_state(slave, ds2890);
 }
 
-static void power_on(struct sim_slave *slave, int64_t t)
+static void ds2890_power_on(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	*state(slave) = (struct ds2890){.control = CONTROL};
+	*ds2890_state(slave) = (struct ds2890){.control = CONTROL};
 }
 
 /* Send control register and position, */
 static void read_position(struct sim_slave *slave, int64_t t)
 {
-	const struct ds2890 *s = state(slave);
+	const struct ds2890 *s = ds2890_state(slave);
 	const uint8_t out[2] = {s->control, s->position};
 
 	(void)t;
@@ -35,7 +35,7 @@ static void read_position(struct sim_slave *slave, int64_t t)
 /* or the features and the control register, */
 static void read_control(struct sim_slave *slave, int64_t t)
 {
-	const uint8_t out[2] = {FEATURES, state(slave)->control};
+	const uint8_t out[2] = {FEATURES, ds2890_state(slave)->control};
 
 	(void)t;
 	sim_send(slave, out, sizeof(out));
@@ -48,16 +48,16 @@ static void send_zero(struct sim_slave *slave, int64_t t)
 	sim_send_byte(slave, 0);
 }
 
-static void begin_write(struct sim_slave *slave, int64_t t)
+static void ds2890_begin_write(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	state(slave)->asked = false;
+	ds2890_state(slave)->asked = false;
 }
 
 /* Send the byte back; it takes effect when the release code follows. */
-static void write(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void ds2890_write(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	struct ds2890 *s = state(slave);
+	struct ds2890 *s = ds2890_state(slave);
 	bool is_position = slave->function->code == WRITE_POSITION;
 
 	(void)t;
@@ -75,16 +75,16 @@ static void write(struct sim_slave *slave, uint8_t byte, int64_t t)
 		*(is_position ? &s->position : &s->control) = s->fresh;
 }
 
-static void receive(struct sim_slave *slave, int64_t t)
+static void ds2890_receive(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
 	sim_receive(slave);
 }
 
 /* Move one step, not beyond the end, and send where the wiper is. */
-static void step(struct sim_slave *slave, uint8_t code)
+static void ds2890_step(struct sim_slave *slave, uint8_t code)
 {
-	struct ds2890 *s = state(slave);
+	struct ds2890 *s = ds2890_state(slave);
 
 	if (code == INCREMENT && s->position < UINT8_MAX)
 		s->position++;
@@ -96,7 +96,7 @@ static void step(struct sim_slave *slave, uint8_t code)
 static void first_step(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	step(slave, slave->function->code);
+	ds2890_step(slave, slave->function->code);
 }
 
 /* Another step needs no ROM command. */
@@ -104,18 +104,21 @@ static void another_step(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
 	(void)t;
 	if (byte == INCREMENT || byte == DECREMENT)
-		step(slave, byte);
+		ds2890_step(slave, byte);
 	else
 		sim_end(slave);
 }
 
 static const struct sim_function functions[] = {
 	{.code = 0xF0, .start = read_position, .next = send_zero},
-	{.code = WRITE_POSITION, .start = begin_write, .byte = write, .next = receive},
+	{.code = WRITE_POSITION,
+         .start = ds2890_begin_write,
+         .byte = ds2890_write,
+         .next = ds2890_receive},
 	{.code = 0xAA, .start = read_control, .next = send_zero},
-	{.code = 0x55, .start = begin_write, .byte = write, .next = receive},
-	{.code = INCREMENT, .start = first_step, .byte = another_step, .next = receive},
-	{.code = DECREMENT, .start = first_step, .byte = another_step, .next = receive},
+	{.code = 0x55, .start = ds2890_begin_write, .byte = ds2890_write, .next = ds2890_receive},
+	{.code = INCREMENT, .start = first_step, .byte = another_step, .next = ds2890_receive},
+	{.code = DECREMENT, .start = first_step, .byte = another_step, .next = ds2890_receive},
 	{0},
 };
 
@@ -126,5 +129,5 @@ const struct sim_family sim_ds2890 = {
 	.resume = true,
 	.state_size = sizeof(struct ds2890),
 	.functions = functions,
-	.power_on = power_on,
+	.power_on = ds2890_power_on,
 };

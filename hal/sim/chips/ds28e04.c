@@ -25,23 +25,23 @@ struct ds28e04 {
 static const struct sim_scratchpad_kind kind = {
 	.size = END, .writable = 0x210, .page = 32, .copy_ns = 10 * NS_PER_MS};
 
-static struct ds28e04 *state(struct sim_slave *slave)
+static struct ds28e04 *ds28e04_state(struct sim_slave *slave)
 {
 	return sim_state(slave, ds28e04);
 }
 
-static void create(struct sim_slave *slave)
+static void ds28e04_create(struct sim_slave *slave)
 {
-	struct sim_scratchpad *s = &state(slave)->memory;
+	struct sim_scratchpad *s = &ds28e04_state(slave)->memory;
 
 	s->kind = &kind;
 	memset(s->memory, 0xFF, END);
 }
 
 /* POL says what the pins are after power-on. */
-static void power_on(struct sim_slave *slave, int64_t t)
+static void ds28e04_power_on(struct sim_slave *slave, int64_t t)
 {
-	struct ds28e04 *s = state(slave);
+	struct ds28e04 *s = ds28e04_state(slave);
 	bool pol = sim_input_at(slave, PIN_POL, t) >= 0.5;
 
 	s->mask = s->polarity = 0;
@@ -52,9 +52,9 @@ static void power_on(struct sim_slave *slave, int64_t t)
 	s->memory.pins.activity = 0;
 }
 
-static bool alarm(struct sim_slave *slave, int64_t t)
+static bool ds28e04_alarm(struct sim_slave *slave, int64_t t)
 {
-	const struct ds28e04 *s = state(slave);
+	const struct ds28e04 *s = ds28e04_state(slave);
 	const struct sim_pins *pins = &s->memory.pins;
 	uint8_t source = s->control & PLS ? pins->activity : pins->level;
 	uint8_t match = (uint8_t) ~(source ^ s->polarity) & s->mask;
@@ -66,7 +66,7 @@ static bool alarm(struct sim_slave *slave, int64_t t)
 /* Send the memory and the registers, without a checksum. */
 static void dump(struct sim_slave *slave, int64_t t)
 {
-	struct ds28e04 *s = state(slave);
+	struct ds28e04 *s = ds28e04_state(slave);
 	uint8_t *memory = s->memory.memory;
 
 	memcpy(memory + 0x218, slave->rom, 8);
@@ -81,7 +81,7 @@ static void dump(struct sim_slave *slave, int64_t t)
 
 static uint8_t pin_status(struct sim_slave *slave)
 {
-	return state(slave)->memory.pins.level | 0xFC;
+	return ds28e04_state(slave)->memory.pins.level | 0xFC;
 }
 
 /* Send a sample. The address counts the samples. */
@@ -122,7 +122,7 @@ static void check_register(struct sim_slave *slave, int64_t t)
 
 static void write_register(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	struct ds28e04 *s = state(slave);
+	struct ds28e04 *s = ds28e04_state(slave);
 
 	(void)t;
 	switch (slave->address++) {
@@ -147,14 +147,14 @@ static void confirm(struct sim_slave *slave, int64_t t)
 
 static void reset_activity(struct sim_slave *slave, int64_t t)
 {
-	state(slave)->memory.pins.activity = 0;
+	ds28e04_state(slave)->memory.pins.activity = 0;
 	confirm(slave, t);
 }
 
-static uint8_t *memory(struct sim_slave *slave, size_t *size)
+static uint8_t *ds28e04_memory(struct sim_slave *slave, size_t *size)
 {
 	*size = kind.writable;
-	return state(slave)->memory.memory;
+	return ds28e04_state(slave)->memory.memory;
 }
 
 static const struct sim_function functions[] = {
@@ -181,11 +181,11 @@ const struct sim_family sim_ds28e04 = {
 	.state_size = sizeof(struct ds28e04),
 	.functions = functions,
 	.inputs = inputs,
-	.create = create,
-	.power_on = power_on,
-	.alarm = alarm,
+	.create = ds28e04_create,
+	.power_on = ds28e04_power_on,
+	.alarm = ds28e04_alarm,
 	.bit = sim_scratchpad_bit,
 	.worked = sim_scratchpad_worked,
 	.advance = sim_pins_follow,
-	.memory = memory,
+	.memory = ds28e04_memory,
 };

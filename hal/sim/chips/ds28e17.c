@@ -34,14 +34,14 @@ struct ds28e17 {
 	bool started;  /* the I2C transaction has no STOP yet */
 };
 
-static struct ds28e17 *state(struct sim_slave *slave)
+static struct ds28e17 *ds28e17_state(struct sim_slave *slave)
 {
 	return sim_state(slave, ds28e17);
 }
 
-static void power_on(struct sim_slave *slave, int64_t t)
+static void ds28e17_power_on(struct sim_slave *slave, int64_t t)
 {
-	struct ds28e17 *s = state(slave);
+	struct ds28e17 *s = ds28e17_state(slave);
 
 	(void)t;
 	sim_sensors_power_on(slave);
@@ -67,7 +67,7 @@ static bool reads(uint8_t code)
 /* Returns the status of writing; *at: the byte that was not acknowledged, from 1 on. */
 static uint8_t write_bytes(struct sim_slave *slave, uint8_t code, uint8_t *at, int64_t t)
 {
-	struct ds28e17 *s = state(slave);
+	struct ds28e17 *s = ds28e17_state(slave);
 
 	*at = 0;
 	if (!addresses(code) && !s->started)
@@ -81,7 +81,7 @@ static uint8_t write_bytes(struct sim_slave *slave, uint8_t code, uint8_t *at, i
 	return 0;
 }
 
-static void put(struct ds28e17 *s, uint8_t byte)
+static void ds28e17_put(struct ds28e17 *s, uint8_t byte)
 {
 	s->answer[s->answers++] = byte;
 }
@@ -89,33 +89,33 @@ static void put(struct ds28e17 *s, uint8_t byte)
 /* The packet is whole and its checksum right: the I2C transaction. */
 static void exchange(struct sim_slave *slave, int64_t t)
 {
-	struct ds28e17 *s = state(slave);
+	struct ds28e17 *s = ds28e17_state(slave);
 	uint8_t code = s->code, at = 0;
 	uint8_t status = writes(code) ? write_bytes(slave, code, &at, t) : 0;
 	unsigned n = code == READ_STOP ? s->length : s->data[s->length];
 
 	if (reads(code) && !status && !at && !sim_sensors_start(slave, s->address | 1, t))
 		status = NO_ADDRESS;
-	put(s, status);
+	ds28e17_put(s, status);
 	if (writes(code))
-		put(s, at);
+		ds28e17_put(s, at);
 	for (unsigned i = 0; reads(code) && i < n; i++)
-		put(s, status || at ? 0xFF : sim_sensors_read(slave, t));
+		ds28e17_put(s, status || at ? 0xFF : sim_sensors_read(slave, t));
 	s->started = !status && !at && (code == WRITE_NO_STOP || code == WRITE_ONLY);
 	if (!s->started)
 		sim_sensors_stop(slave);
 }
 
-static void worked(struct sim_slave *slave, int64_t t)
+static void ds28e17_worked(struct sim_slave *slave, int64_t t)
 {
-	struct ds28e17 *s = state(slave);
+	struct ds28e17 *s = ds28e17_state(slave);
 
 	s->answers = s->sent = 0;
-	put(s, 0);
+	ds28e17_put(s, 0);
 	if (!s->good) {
-		put(s, BAD_CRC);
+		ds28e17_put(s, BAD_CRC);
 		if (writes(s->code))
-			put(s, 0);
+			ds28e17_put(s, 0);
 	} else {
 		exchange(slave, t);
 	}
@@ -124,7 +124,7 @@ static void worked(struct sim_slave *slave, int64_t t)
 /* Send more of the answer. */
 static void send_more(struct sim_slave *slave, int64_t t)
 {
-	struct ds28e17 *s = state(slave);
+	struct ds28e17 *s = ds28e17_state(slave);
 	unsigned n = s->answers - s->sent;
 
 	(void)t;
@@ -139,7 +139,7 @@ static void send_more(struct sim_slave *slave, int64_t t)
 }
 
 /* Busy: 1. The first 0 is the last bit of a byte, and the status follows. */
-static bool bit(struct sim_slave *slave, int64_t t)
+static bool ds28e17_bit(struct sim_slave *slave, int64_t t)
 {
 	if (slave->busy)
 		return true;
@@ -148,9 +148,9 @@ static bool bit(struct sim_slave *slave, int64_t t)
 	return false;
 }
 
-static void begin(struct sim_slave *slave, int64_t t)
+static void ds28e17_begin(struct sim_slave *slave, int64_t t)
 {
-	struct ds28e17 *s = state(slave);
+	struct ds28e17 *s = ds28e17_state(slave);
 
 	(void)t;
 	s->length = slave->taken[slave->function->takes - 1];
@@ -162,7 +162,7 @@ static void begin(struct sim_slave *slave, int64_t t)
 static void packet(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
 	static const int64_t byte_ns[] = {90000, 23000, 10000};
-	struct ds28e17 *s = state(slave);
+	struct ds28e17 *s = ds28e17_state(slave);
 	uint8_t code = slave->function->code;
 	unsigned written = writes(code) ? s->length : 0;
 	unsigned whole = written + (code == WRITE_READ_STOP) + 2;
@@ -183,14 +183,14 @@ static void write_configuration(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
 	if (slave->taken[0] <= 2)
-		state(slave)->speed = slave->taken[0];
+		ds28e17_state(slave)->speed = slave->taken[0];
 	sim_end(slave);
 }
 
 static void read_configuration(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	sim_send_byte(slave, state(slave)->speed);
+	sim_send_byte(slave, ds28e17_state(slave)->speed);
 }
 
 static void revision(struct sim_slave *slave, int64_t t)
@@ -208,7 +208,7 @@ static void sleep(struct sim_slave *slave, int64_t t)
 
 #define PACKET_FUNCTION(number, bytes) \
 	{ \
-		.code = (number), .takes = (bytes), .start = begin, .byte = packet, \
+		.code = (number), .takes = (bytes), .start = ds28e17_begin, .byte = packet, \
 		.next = send_more \
 	}
 
@@ -234,8 +234,8 @@ const struct sim_family sim_ds28e17 = {
 	.state_size = sizeof(struct ds28e17),
 	.functions = functions,
 	.inputs = sim_sensor_inputs,
-	.power_on = power_on,
-	.bit = bit,
-	.worked = worked,
+	.power_on = ds28e17_power_on,
+	.bit = ds28e17_bit,
+	.worked = ds28e17_worked,
 	.option = sim_sensors_option,
 };

@@ -45,19 +45,19 @@ struct ds28e18 {
 	uint8_t configuration, gpio[2][2];
 };
 
-static struct ds28e18 *state(struct sim_slave *slave)
+static struct ds28e18 *ds28e18_state(struct sim_slave *slave)
 {
 	return sim_state(slave, ds28e18);
 }
 
-static void create(struct sim_slave *slave)
+static void ds28e18_create(struct sim_slave *slave)
 {
-	memcpy(state(slave)->rom, slave->rom, 8);
+	memcpy(ds28e18_state(slave)->rom, slave->rom, 8);
 }
 
-static void power_on(struct sim_slave *slave, int64_t t)
+static void ds28e18_power_on(struct sim_slave *slave, int64_t t)
 {
-	struct ds28e18 *s = state(slave);
+	struct ds28e18 *s = ds28e18_state(slave);
 
 	(void)t;
 	sim_sensors_power_on(slave);
@@ -83,13 +83,13 @@ static void spend_byte(struct run *run)
 {
 	static const int64_t byte_ns[] = {136000, 45000, 25000, 25000};
 
-	run->t += byte_ns[state(run->slave)->configuration & 3];
+	run->t += byte_ns[ds28e18_state(run->slave)->configuration & 3];
 }
 
 /* False: the byte was not acknowledged. */
 static bool write_bytes(struct run *run, unsigned n)
 {
-	struct ds28e18 *s = state(run->slave);
+	struct ds28e18 *s = ds28e18_state(run->slave);
 	bool taken = true;
 
 	while (n-- && taken) {
@@ -106,7 +106,7 @@ static bool write_bytes(struct run *run, unsigned n)
 
 static void read_bytes(struct run *run, unsigned n)
 {
-	struct ds28e18 *s = state(run->slave);
+	struct ds28e18 *s = ds28e18_state(run->slave);
 
 	while (n--) {
 		spend_byte(run);
@@ -145,9 +145,9 @@ static bool is_single(uint8_t command)
 }
 
 /* One command of the sequence; DONE, or the result that ends it. */
-static uint8_t step(struct run *run)
+static uint8_t ds28e18_step(struct run *run)
 {
-	struct ds28e18 *s = state(run->slave);
+	struct ds28e18 *s = ds28e18_state(run->slave);
 	uint8_t command = s->sequence[run->at++];
 	uint8_t length = run->at < run->end && !is_single(command) ? s->sequence[run->at] : 0;
 	unsigned n = bytes_of(command, length);
@@ -178,13 +178,13 @@ static uint8_t step(struct run *run)
 	return DONE;
 }
 
-static void answer(struct ds28e18 *s, uint8_t result)
+static void ds28e18_answer(struct ds28e18 *s, uint8_t result)
 {
 	s->result[0] = 1;
 	s->result[1] = result;
 }
 
-static void add(struct ds28e18 *s, uint8_t byte)
+static void ds28e18_add(struct ds28e18 *s, uint8_t byte)
 {
 	s->result[++s->result[0]] = byte;
 }
@@ -192,7 +192,7 @@ static void add(struct ds28e18 *s, uint8_t byte)
 /* The sequence runs at once, on a clock of its own. Returns how long it took. */
 static int64_t run_sequencer(struct sim_slave *slave, int64_t t)
 {
-	struct ds28e18 *s = state(slave);
+	struct ds28e18 *s = ds28e18_state(slave);
 	unsigned length = s->packet[2] >> 1 | (s->packet[3] & 3u) << 7;
 	struct run run = {.slave = slave, .at = s->packet[1] | (s->packet[2] & 1u) << 8, .t = t};
 	uint8_t result = s->empty ? POWER_ON : DONE;
@@ -201,11 +201,11 @@ static int64_t run_sequencer(struct sim_slave *slave, int64_t t)
 	if (run.end > SEQUENCE)
 		result = INVALID;
 	while (result == DONE && run.at < run.end)
-		result = step(&run);
-	answer(s, result);
+		result = ds28e18_step(&run);
+	ds28e18_answer(s, result);
 	if (result == REFUSED) { /* the place of the byte, from 1 on; 512 is 0 */
-		add(s, (uint8_t)run.at);
-		add(s, (uint8_t)(run.at >> 8 & 1));
+		ds28e18_add(s, (uint8_t)run.at);
+		ds28e18_add(s, (uint8_t)(run.at >> 8 & 1));
 		sim_sensors_stop(slave);
 	}
 	return run.t - t;
@@ -218,7 +218,7 @@ static void write_sequencer(struct ds28e18 *s)
 	unsigned at = s->packet[1] | (s->packet[2] & 1u) << 8, n = s->got - 3;
 
 	if (at + n > SEQUENCE) {
-		answer(s, INVALID);
+		ds28e18_answer(s, INVALID);
 		return;
 	}
 	memcpy(s->sequence + at, s->packet + 3, n);
@@ -231,9 +231,9 @@ static void read_sequencer(struct ds28e18 *s)
 
 	n = n ? n : 128;
 	if (at + n > SEQUENCE)
-		answer(s, INVALID);
+		ds28e18_answer(s, INVALID);
 	for (unsigned i = 0; at + n <= SEQUENCE && i < n; i++)
-		add(s, s->sequence[at + i]);
+		ds28e18_add(s, s->sequence[at + i]);
 }
 
 static void gpio(struct ds28e18 *s, bool write)
@@ -241,22 +241,22 @@ static void gpio(struct ds28e18 *s, bool write)
 	uint8_t which = s->packet[1] - 0x0B;
 
 	if (which > 1) {
-		answer(s, INVALID);
+		ds28e18_answer(s, INVALID);
 		return;
 	}
 	for (unsigned i = 0; i < 2; i++) {
 		if (write)
 			s->gpio[which][i] = s->packet[3 + i];
 		else
-			add(s, s->gpio[which][i]);
+			ds28e18_add(s, s->gpio[which][i]);
 	}
 }
 
 static void device_status(struct ds28e18 *s)
 {
-	add(s, s->restarted ? 0x02 : 0x00);
+	ds28e18_add(s, s->restarted ? 0x02 : 0x00);
 	for (unsigned i = 0; i < 3; i++)
-		add(s, 0);
+		ds28e18_add(s, 0);
 	s->restarted = false;
 }
 
@@ -285,14 +285,14 @@ static int parameters(uint8_t function)
 
 static int64_t carry_out(struct sim_slave *slave, int64_t t)
 {
-	struct ds28e18 *s = state(slave);
+	struct ds28e18 *s = ds28e18_state(slave);
 	int want = parameters(s->packet[0]);
 	int64_t takes = OPERATION_NS;
 
-	answer(s, DONE);
+	ds28e18_answer(s, DONE);
 	if (want == -2 || (want == -1 && s->got < 4) ||
 	    (want >= 0 && s->got != 1u + (unsigned)want)) {
-		answer(s, INVALID);
+		ds28e18_answer(s, INVALID);
 		return takes;
 	}
 	switch (s->packet[0]) {
@@ -309,7 +309,7 @@ static int64_t carry_out(struct sim_slave *slave, int64_t t)
 		s->configuration = s->packet[1] & 0x3F;
 		break;
 	case READ_CONFIGURATION:
-		add(s, s->configuration);
+		ds28e18_add(s, s->configuration);
 		break;
 	case WRITE_GPIO:
 		memcpy(slave->rom, s->rom, 8);
@@ -326,18 +326,18 @@ static int64_t carry_out(struct sim_slave *slave, int64_t t)
 }
 
 /* Length and packet, whose checksum the bridge sends; the release byte starts the function. */
-static void begin(struct sim_slave *slave, int64_t t)
+static void ds28e18_begin(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	state(slave)->got = 0;
-	state(slave)->checked = state(slave)->released = false;
+	ds28e18_state(slave)->got = 0;
+	ds28e18_state(slave)->checked = ds28e18_state(slave)->released = false;
 	if (slave->taken[0] == 0 || slave->taken[0] > PACKET)
 		sim_end(slave);
 }
 
 static void packet(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	struct ds28e18 *s = state(slave);
+	struct ds28e18 *s = ds28e18_state(slave);
 
 	if (s->checked && byte == RELEASE) {
 		s->released = true;
@@ -352,9 +352,9 @@ static void packet(struct sim_slave *slave, uint8_t byte, int64_t t)
 	}
 }
 
-static void worked(struct sim_slave *slave, int64_t t)
+static void ds28e18_worked(struct sim_slave *slave, int64_t t)
 {
-	struct ds28e18 *s = state(slave);
+	struct ds28e18 *s = ds28e18_state(slave);
 	uint16_t crc = sim_crc16(0, s->result, s->result[0] + 1u);
 
 	(void)t;
@@ -369,7 +369,7 @@ static void worked(struct sim_slave *slave, int64_t t)
 /* Behind the packet's checksum the release byte is due; behind the answer, nothing. */
 static void sent(struct sim_slave *slave, int64_t t)
 {
-	struct ds28e18 *s = state(slave);
+	struct ds28e18 *s = ds28e18_state(slave);
 	unsigned n = s->answers - s->sent;
 
 	(void)t;
@@ -385,7 +385,7 @@ static void sent(struct sim_slave *slave, int64_t t)
 }
 
 /* Ones while it works; then a dummy byte of ones, and length and result with their checksum. */
-static bool bit(struct sim_slave *slave, int64_t t)
+static bool ds28e18_bit(struct sim_slave *slave, int64_t t)
 {
 	if (!slave->busy)
 		sent(slave, t);
@@ -393,7 +393,7 @@ static bool bit(struct sim_slave *slave, int64_t t)
 }
 
 static const struct sim_function functions[] = {
-	{.code = 0x66, .takes = 1, .start = begin, .byte = packet, .next = sent},
+	{.code = 0x66, .takes = 1, .start = ds28e18_begin, .byte = packet, .next = sent},
 	{0},
 };
 
@@ -406,9 +406,9 @@ const struct sim_family sim_ds28e18 = {
 	.state_size = sizeof(struct ds28e18),
 	.functions = functions,
 	.inputs = sim_sensor_inputs,
-	.create = create,
-	.power_on = power_on,
-	.bit = bit,
-	.worked = worked,
+	.create = ds28e18_create,
+	.power_on = ds28e18_power_on,
+	.bit = ds28e18_bit,
+	.worked = ds28e18_worked,
 	.option = sim_sensors_option,
 };

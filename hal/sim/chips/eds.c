@@ -37,23 +37,23 @@ static const struct sim_scratchpad_kind small = {
 static const struct sim_scratchpad_kind large = {
 	.size = 0xA0, .writable = 0xA0, .page = 32, .copy_ns = COPY_NS};
 
-static struct eds *state(struct sim_slave *slave)
+static struct eds *eds_state(struct sim_slave *slave)
 {
 	return sim_state(slave, eds);
 }
 
 static uint8_t *bytes_at(struct sim_slave *slave, unsigned at)
 {
-	return state(slave)->memory.memory + at;
+	return eds_state(slave)->memory.memory + at;
 }
 
-static void put(uint8_t *to, unsigned bytes, int64_t value)
+static void eds_put(uint8_t *to, unsigned bytes, int64_t value)
 {
 	for (unsigned i = 0; i < bytes; i++)
 		to[i] = (uint8_t)((uint64_t)value >> (8 * i));
 }
 
-static int64_t get(const uint8_t *from, unsigned bytes, bool is_signed)
+static int64_t eds_get(const uint8_t *from, unsigned bytes, bool is_signed)
 {
 	uint64_t value = 0;
 
@@ -66,9 +66,9 @@ static int64_t get(const uint8_t *from, unsigned bytes, bool is_signed)
 
 static uint16_t word(struct sim_slave *slave, unsigned at)
 {
-	unsigned bytes = state(slave)->kind->alarm_bytes;
+	unsigned bytes = eds_state(slave)->kind->alarm_bytes;
 
-	return (uint16_t)get(bytes_at(slave, at), bytes, false);
+	return (uint16_t)eds_get(bytes_at(slave, at), bytes, false);
 }
 
 static double value_of(struct sim_slave *slave, const struct eds_quantity *q, int64_t t)
@@ -85,8 +85,9 @@ static unsigned beyond(struct sim_slave *slave, const struct eds_quantity *q, do
 
 	if (!q->limit_bytes)
 		return 0;
-	return (value > (double)get(bytes_at(slave, q->high), q->limit_bytes, is_signed) * unit) |
-	       (value < (double)get(bytes_at(slave, q->low), q->limit_bytes, is_signed) * unit)
+	return (value >
+	        (double)eds_get(bytes_at(slave, q->high), q->limit_bytes, is_signed) * unit) |
+	       (value < (double)eds_get(bytes_at(slave, q->low), q->limit_bytes, is_signed) * unit)
 	               << 1;
 }
 
@@ -96,9 +97,9 @@ static bool has(const struct eds_kind *kind, unsigned i)
 }
 
 /* Measure all; returns the flags of what is beyond its limits now. */
-static uint16_t measure(struct sim_slave *slave, int64_t t)
+static uint16_t eds_measure(struct sim_slave *slave, int64_t t)
 {
-	struct eds *s = state(slave);
+	struct eds *s = eds_state(slave);
 	uint16_t flags = 0;
 
 	for (unsigned i = 0; i < s->kind->quantity_count; i++) {
@@ -110,11 +111,12 @@ static uint16_t measure(struct sim_slave *slave, int64_t t)
 		value = value_of(slave, q, t);
 		s->least[i] = fmin(s->least[i], value);
 		s->most[i] = fmax(s->most[i], value);
-		put(bytes_at(slave, q->at), q->bytes, sim_round(value / q->unit));
+		eds_put(bytes_at(slave, q->at), q->bytes, sim_round(value / q->unit));
 		if (q->min)
-			put(bytes_at(slave, q->min), q->bytes, sim_round(s->least[i] / q->unit));
+			eds_put(bytes_at(slave, q->min), q->bytes,
+			        sim_round(s->least[i] / q->unit));
 		if (q->max)
-			put(bytes_at(slave, q->max), q->bytes, sim_round(s->most[i] / q->unit));
+			eds_put(bytes_at(slave, q->max), q->bytes, sim_round(s->most[i] / q->unit));
 		flags |= (uint16_t)(beyond(slave, q, value) << q->flag);
 	}
 	return flags;
@@ -123,7 +125,7 @@ static uint16_t measure(struct sim_slave *slave, int64_t t)
 /* Falling edges are counted and any change is latched. */
 static void follow_pin(struct sim_slave *slave, unsigned pin, int64_t t)
 {
-	struct eds *s = state(slave);
+	struct eds *s = eds_state(slave);
 	const struct sim_curve *curve = &slave->input[pin];
 	uint8_t mask = (uint8_t)(1 << pin), *pulses = bytes_at(slave, PULSES + 4 * pin);
 	bool pulled = *bytes_at(slave, OUTPUT) & mask;
@@ -136,14 +138,14 @@ static void follow_pin(struct sim_slave *slave, unsigned pin, int64_t t)
 	if (falls || was != is)
 		*bytes_at(slave, LATCH) |= mask;
 	if (pin < COUNTERS)
-		put(pulses, 4, get(pulses, 4, false) + (int64_t)falls);
+		eds_put(pulses, 4, eds_get(pulses, 4, false) + (int64_t)falls);
 	s->level = (uint8_t)(is ? s->level | mask : s->level & ~mask);
 }
 
 /* The pins at t; returns the flags of those whose level is asked for. */
-static uint16_t follow(struct sim_slave *slave, int64_t t)
+static uint16_t eds_follow(struct sim_slave *slave, int64_t t)
 {
-	struct eds *s = state(slave);
+	struct eds *s = eds_state(slave);
 	uint16_t flags = 0;
 
 	for (unsigned i = 0; i < PINS; i++) {
@@ -158,8 +160,8 @@ static uint16_t follow(struct sim_slave *slave, int64_t t)
 /* Relay and LED: by the alarm, or as written. */
 static void switch_outputs(struct sim_slave *slave, bool beyond_now, bool flagged)
 {
-	uint8_t function = *bytes_at(slave, state(slave)->kind->relay);
-	uint8_t *out = bytes_at(slave, state(slave)->kind->relay + 1u);
+	uint8_t function = *bytes_at(slave, eds_state(slave)->kind->relay);
+	uint8_t *out = bytes_at(slave, eds_state(slave)->kind->relay + 1u);
 
 	for (unsigned i = RELAY; i <= LED; i++) {
 		enum control control = function >> (2 * i) & 3;
@@ -172,16 +174,16 @@ static void switch_outputs(struct sim_slave *slave, bool beyond_now, bool flagge
 
 static void count_time(struct sim_slave *slave, int64_t t)
 {
-	struct eds *s = state(slave);
+	struct eds *s = eds_state(slave);
 	const struct eds_kind *kind = s->kind;
 
-	put(bytes_at(slave, kind->seconds), 4, (t - s->started) / NS_PER_S);
+	eds_put(bytes_at(slave, kind->seconds), 4, (t - s->started) / NS_PER_S);
 	if (kind->samples) {
 		int64_t delay = *bytes_at(slave, kind->delay);
 		int64_t each = (delay ? delay : 1) * NS_PER_S, n = (t - s->sampled) / each;
 		uint8_t *samples = bytes_at(slave, kind->samples);
 
-		put(samples, 4, get(samples, 4, false) + n);
+		eds_put(samples, 4, eds_get(samples, 4, false) + n);
 		s->sampled += n * each;
 	}
 	if (kind->peak) {
@@ -189,7 +191,7 @@ static void count_time(struct sim_slave *slave, int64_t t)
 
 		s->peak -= (double)(t - s->sampled) / (double)NS_PER_S * DECAY_PER_S;
 		s->peak = fmax(s->peak, level);
-		put(bytes_at(slave, kind->peak), 2, sim_round(s->peak));
+		eds_put(bytes_at(slave, kind->peak), 2, sim_round(s->peak));
 		s->sampled = t;
 	}
 }
@@ -197,20 +199,20 @@ static void count_time(struct sim_slave *slave, int64_t t)
 /* One round of the microcontroller. */
 static void work(struct sim_slave *slave, int64_t t)
 {
-	const struct eds_kind *kind = state(slave)->kind;
+	const struct eds_kind *kind = eds_state(slave)->kind;
 	uint16_t enabled = word(slave, kind->enable), flags = word(slave, kind->alarm);
-	uint16_t now = kind->digital ? follow(slave, t) : measure(slave, t);
+	uint16_t now = kind->digital ? eds_follow(slave, t) : eds_measure(slave, t);
 
 	now &= enabled;
 	flags |= now;
-	put(bytes_at(slave, kind->alarm), kind->alarm_bytes, flags);
+	eds_put(bytes_at(slave, kind->alarm), kind->alarm_bytes, flags);
 	count_time(slave, t);
 	switch_outputs(slave, now, flags);
 }
 
 void eds_advance(struct sim_slave *slave, int64_t t)
 {
-	struct eds *s = state(slave);
+	struct eds *s = eds_state(slave);
 
 	if (t / TICK_NS == s->tick)
 		return;
@@ -219,38 +221,38 @@ void eds_advance(struct sim_slave *slave, int64_t t)
 }
 
 /* Minimum and maximum begin anew. */
-static void forget(struct sim_slave *slave)
+static void eds_forget(struct sim_slave *slave)
 {
-	struct eds *s = state(slave);
+	struct eds *s = eds_state(slave);
 
 	for (unsigned i = 0; i < sizeof(s->least) / sizeof(s->least[0]); i++) {
 		s->least[i] = INFINITY;
 		s->most[i] = -INFINITY;
 	}
-	put(bytes_at(slave, s->kind->alarm), s->kind->alarm_bytes, 0);
+	eds_put(bytes_at(slave, s->kind->alarm), s->kind->alarm_bytes, 0);
 }
 
 static void clear_alarms(struct sim_slave *slave, int64_t t)
 {
-	forget(slave);
+	eds_forget(slave);
 	work(slave, t);
 	sim_end(slave);
 }
 
 void eds_create(struct sim_slave *slave)
 {
-	struct eds *s = state(slave);
+	struct eds *s = eds_state(slave);
 
 	s->kind = slave->family->kind;
 	s->memory.kind = s->kind->size == small.size ? &small : &large;
 	memset(bytes_at(slave, TAG), ' ', TAG_SIZE);
 	memcpy(bytes_at(slave, TAG), s->kind->tag, strlen(s->kind->tag));
-	put(bytes_at(slave, ID), 2, s->kind->id);
+	eds_put(bytes_at(slave, ID), 2, s->kind->id);
 }
 
 void eds_power_on(struct sim_slave *slave, int64_t t)
 {
-	struct eds *s = state(slave);
+	struct eds *s = eds_state(slave);
 
 	sim_scratchpad_power_on(slave, t);
 	memset(bytes_at(slave, ID + 2), 0, s->kind->writable - (ID + 2u));
@@ -264,7 +266,7 @@ void eds_power_on(struct sim_slave *slave, int64_t t)
 	s->started = s->sampled = s->followed = t;
 	s->tick = t / TICK_NS;
 	s->peak = 0;
-	forget(slave);
+	eds_forget(slave);
 	work(slave, t);
 }
 
@@ -275,7 +277,7 @@ static void act(struct sim_slave *slave)
 
 	for (unsigned i = 0; i < COUNTERS; i++)
 		if (*reset >> i & 1)
-			put(bytes_at(slave, PULSES + 4 * i), 4, 0);
+			eds_put(bytes_at(slave, PULSES + 4 * i), 4, 0);
 	*reset = 0;
 	*bytes_at(slave, LATCH) &= (uint8_t) ~*bytes_at(slave, LATCH_RESET);
 	*bytes_at(slave, LATCH_RESET) = 0;
@@ -285,11 +287,11 @@ static void act(struct sim_slave *slave)
 
 void eds_worked(struct sim_slave *slave, int64_t t)
 {
-	struct eds *s = state(slave);
+	struct eds *s = eds_state(slave);
 	uint8_t fixed[0xA0];
 
 	if (s->kind->digital)
-		follow(slave, t);
+		eds_follow(slave, t);
 	memcpy(fixed, s->memory.memory, s->kind->writable);
 	sim_scratchpad_worked(slave, t);
 	memcpy(s->memory.memory, fixed, s->kind->writable);
@@ -301,7 +303,7 @@ void eds_worked(struct sim_slave *slave, int64_t t)
 bool eds_alarm(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	return word(slave, state(slave)->kind->alarm) != 0;
+	return word(slave, eds_state(slave)->kind->alarm) != 0;
 }
 
 const struct sim_function eds_functions[] = {

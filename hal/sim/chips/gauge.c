@@ -15,7 +15,7 @@
 /* The elapsed time register of the DS2770: 1024 h in 65536 counts. */
 #define TICK_NS (INT64_C(56250) * NS_PER_MS)
 
-static struct gauge *state(struct sim_slave *slave)
+static struct gauge *gauge_state(struct sim_slave *slave)
 {
 	return sim_state(slave, gauge);
 }
@@ -35,7 +35,7 @@ static bool locked(const struct gauge *s, unsigned block)
 	return s->memory[s->kind->eeprom] >> block & 1;
 }
 
-static void put16(uint8_t *at, int value)
+static void gauge_put16(uint8_t *at, int value)
 {
 	at[0] = (uint8_t)(value >> 8);
 	at[1] = (uint8_t)value;
@@ -64,7 +64,7 @@ static double bias_mv(const struct gauge *s)
 /* The current between two looks is that at sixteen times between them. */
 static void accumulate(struct sim_slave *slave, int64_t t)
 {
-	struct gauge *s = state(slave);
+	struct gauge *s = gauge_state(slave);
 	const struct gauge_kind *k = s->kind;
 	double most = 32767 * ACR_UNIT, mv = bias_mv(s);
 	int64_t step = (t - s->last) / 16;
@@ -79,29 +79,29 @@ static void accumulate(struct sim_slave *slave, int64_t t)
 	if (s->accumulated < -most)
 		s->accumulated = -most;
 	s->last = t;
-	put16(s->memory + ACCUMULATED, within(s->accumulated / ACR_UNIT, -32768, 32767));
+	gauge_put16(s->memory + ACCUMULATED, within(s->accumulated / ACR_UNIT, -32768, 32767));
 }
 
-static void measure(struct sim_slave *slave, int64_t t)
+static void gauge_measure(struct sim_slave *slave, int64_t t)
 {
-	struct gauge *s = state(slave);
+	struct gauge *s = gauge_state(slave);
 	const struct gauge_kind *k = s->kind;
 	double mv = sim_input_at(slave, VIS, t) + bias_mv(s);
 
 	accumulate(slave, t);
 	if (k->fine)
-		put16(s->memory + CURRENT, within(mv / 1.5625e-3, -32768, 32767));
+		gauge_put16(s->memory + CURRENT, within(mv / 1.5625e-3, -32768, 32767));
 	else
-		put16(s->memory + CURRENT, within(mv / 15.625e-3, -4096, 4095) * 8);
+		gauge_put16(s->memory + CURRENT, within(mv / 15.625e-3, -4096, 4095) * 8);
 	if (k->average)
-		put16(s->memory + k->average,
-		      within(mv / (k->fine ? 1.5625e-3 : 15.625e-3 / 8), -32768, 32767));
+		gauge_put16(s->memory + k->average,
+		            within(mv / (k->fine ? 1.5625e-3 : 15.625e-3 / 8), -32768, 32767));
 	if (k->celsius)
-		put16(s->memory + k->celsius,
-		      within(sim_input_at(slave, TEMPERATURE, t) * 8, -1023, 1023) * 32);
+		gauge_put16(s->memory + k->celsius,
+		            within(sim_input_at(slave, TEMPERATURE, t) * 8, -1023, 1023) * 32);
 	if (k->volt > 0)
-		put16(s->memory + VOLTAGE,
-		      within(sim_input_at(slave, VOLT, t) / k->volt, 0, 1023) * 32);
+		gauge_put16(s->memory + VOLTAGE,
+		            within(sim_input_at(slave, VOLT, t) / k->volt, 0, 1023) * 32);
 }
 
 static bool on(const struct sim_slave *slave, unsigned input, int64_t t)
@@ -116,7 +116,7 @@ static bool on(const struct sim_slave *slave, unsigned input, int64_t t)
 static void protect(struct sim_slave *slave, int64_t t)
 {
 	static const uint8_t flags[] = {OV, UV, COC, DOC};
-	struct gauge *s = state(slave);
+	struct gauge *s = gauge_state(slave);
 	uint8_t *protection = s->memory;
 
 	for (unsigned i = 0; i < sizeof(flags); i++)
@@ -134,7 +134,7 @@ static void protect(struct sim_slave *slave, int64_t t)
 /* DS2770: the charge status of figure 12, and the timer. */
 static void charge(struct sim_slave *slave, int64_t t)
 {
-	struct gauge *s = state(slave);
+	struct gauge *s = gauge_state(slave);
 	bool source = on(slave, CHARGER, t);
 	uint8_t was = s->memory[STATUS] & CSTAT, status = source ? 0x80 : 0x00;
 
@@ -150,13 +150,13 @@ static void charge(struct sim_slave *slave, int64_t t)
 	if (s->full)
 		status = CSTAT;
 	s->memory[STATUS] = (uint8_t)((s->memory[STATUS] & ~CSTAT) | status);
-	put16(s->memory + 0x02, (int)((t - s->started) / TICK_NS));
+	gauge_put16(s->memory + 0x02, (int)((t - s->started) / TICK_NS));
 }
 
 /* DS2780, DS2781: flags of the capacity, and the voltage below which they sleep. */
-static void watch(struct sim_slave *slave, int64_t t)
+static void gauge_watch(struct sim_slave *slave, int64_t t)
 {
-	struct gauge *s = state(slave);
+	struct gauge *s = gauge_state(slave);
 	bool high = s->kind->add_bias && (s->memory[0x60] & UVTH);
 	uint8_t *status = &s->memory[STATUS];
 
@@ -169,16 +169,16 @@ static void watch(struct sim_slave *slave, int64_t t)
 
 void sim_gauge_advance(struct sim_slave *slave, int64_t t)
 {
-	struct gauge *s = state(slave);
+	struct gauge *s = gauge_state(slave);
 	const struct gauge_kind *k = s->kind;
 
-	measure(slave, t);
+	gauge_measure(slave, t);
 	if (slave->family->code == 0x30)
 		protect(slave, t);
 	if (slave->family->code == 0x2E)
 		charge(slave, t);
 	if (slave->family->code == 0x32 || slave->family->code == 0x3D)
-		watch(slave, t);
+		gauge_watch(slave, t);
 	if (!k->pio)
 		return;
 	s->memory[k->special] &= (uint8_t)~k->pio;
@@ -197,7 +197,7 @@ static void take_defaults(struct gauge *s, uint8_t from)
 
 static void recall_block(struct sim_slave *slave, unsigned block)
 {
-	struct gauge *s = state(slave);
+	struct gauge *s = gauge_state(slave);
 	const struct gauge_kind *k = s->kind;
 
 	memcpy(s->memory + k->block[block].at, s->eeprom[block], k->block[block].size);
@@ -210,7 +210,7 @@ static void recall_block(struct sim_slave *slave, unsigned block)
 
 void sim_gauge_power_on(struct sim_slave *slave, int64_t t)
 {
-	struct gauge *s = state(slave);
+	struct gauge *s = gauge_state(slave);
 	const struct gauge_kind *k = s->kind;
 	uint8_t locks = s->memory[k->eeprom] & 7;
 
@@ -231,7 +231,7 @@ void sim_gauge_power_on(struct sim_slave *slave, int64_t t)
 
 void sim_gauge_worked(struct sim_slave *slave, int64_t t)
 {
-	struct gauge *s = state(slave);
+	struct gauge *s = gauge_state(slave);
 
 	(void)t;
 	memcpy(s->eeprom[s->copied], s->memory + s->kind->block[s->copied].at,
@@ -242,7 +242,7 @@ void sim_gauge_worked(struct sim_slave *slave, int64_t t)
 /* Any command other than the lock itself cancels the permission to lock. */
 static void forget_lock(struct sim_slave *slave, int64_t t)
 {
-	struct gauge *s = state(slave);
+	struct gauge *s = gauge_state(slave);
 
 	(void)t;
 	if (s->kind->eeprom)
@@ -252,13 +252,13 @@ static void forget_lock(struct sim_slave *slave, int64_t t)
 static void read_data(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	sim_send_memory(slave, state(slave)->latched, 256, 0);
+	sim_send_memory(slave, gauge_state(slave)->latched, 256, 0);
 }
 
 /* The bytes of a register stay as they are while one command reads them. */
 static void begin_read(struct sim_slave *slave, int64_t t)
 {
-	struct gauge *s = state(slave);
+	struct gauge *s = gauge_state(slave);
 
 	forget_lock(slave, t);
 	memcpy(s->latched, s->memory, sizeof(s->latched));
@@ -268,7 +268,7 @@ static void begin_read(struct sim_slave *slave, int64_t t)
 /* What is written has a consequence beyond its byte. */
 static void written(struct sim_slave *slave, unsigned at, uint8_t byte, int64_t t)
 {
-	struct gauge *s = state(slave);
+	struct gauge *s = gauge_state(slave);
 
 	if (at == s->kind->special && s->kind->pio)
 		s->low = !(byte & s->kind->pio);
@@ -287,7 +287,7 @@ static void written(struct sim_slave *slave, unsigned at, uint8_t byte, int64_t 
 /* What is read-only, reserved or locked stays unchanged. */
 static void write_data(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	struct gauge *s = state(slave);
+	struct gauge *s = gauge_state(slave);
 	const struct gauge_kind *k = s->kind;
 	unsigned at = slave->address, block = block_of(k, at);
 
@@ -309,9 +309,9 @@ static void write_data(struct sim_slave *slave, uint8_t byte, int64_t t)
 	sim_gauge_advance(slave, t);
 }
 
-static void copy(struct sim_slave *slave, int64_t t)
+static void gauge_copy(struct sim_slave *slave, int64_t t)
 {
-	struct gauge *s = state(slave);
+	struct gauge *s = gauge_state(slave);
 	unsigned block = block_of(s->kind, slave->address);
 
 	forget_lock(slave, t);
@@ -323,9 +323,9 @@ static void copy(struct sim_slave *slave, int64_t t)
 	sim_end(slave);
 }
 
-static void recall(struct sim_slave *slave, int64_t t)
+static void gauge_recall(struct sim_slave *slave, int64_t t)
 {
-	unsigned block = block_of(state(slave)->kind, slave->address);
+	unsigned block = block_of(gauge_state(slave)->kind, slave->address);
 
 	forget_lock(slave, t);
 	if (block < GAUGE_BLOCKS)
@@ -336,7 +336,7 @@ static void recall(struct sim_slave *slave, int64_t t)
 
 static void lock(struct sim_slave *slave, int64_t t)
 {
-	struct gauge *s = state(slave);
+	struct gauge *s = gauge_state(slave);
 	unsigned block = block_of(s->kind, slave->address);
 
 	if (block < GAUGE_BLOCKS && (s->memory[s->kind->eeprom] & LOCK))
@@ -348,7 +348,7 @@ static void lock(struct sim_slave *slave, int64_t t)
 static void start_charge(struct sim_slave *slave, int64_t t)
 {
 	forget_lock(slave, t);
-	state(slave)->charging = true;
+	gauge_state(slave)->charging = true;
 	sim_gauge_advance(slave, t);
 	sim_end(slave);
 }
@@ -356,7 +356,7 @@ static void start_charge(struct sim_slave *slave, int64_t t)
 static void stop_charge(struct sim_slave *slave, int64_t t)
 {
 	forget_lock(slave, t);
-	state(slave)->charging = false;
+	gauge_state(slave)->charging = false;
 	sim_gauge_advance(slave, t);
 	sim_end(slave);
 }
@@ -365,21 +365,21 @@ static void stop_charge(struct sim_slave *slave, int64_t t)
 static void refresh(struct sim_slave *slave, int64_t t)
 {
 	forget_lock(slave, t);
-	take_defaults(state(slave), state(slave)->eeprom[1][1]);
+	take_defaults(gauge_state(slave), gauge_state(slave)->eeprom[1][1]);
 	sim_end(slave);
 }
 
 uint8_t *sim_gauge_memory(struct sim_slave *slave, size_t *size)
 {
-	*size = sizeof(state(slave)->eeprom); /* it is recalled at power-on */
-	return state(slave)->eeprom[0];
+	*size = sizeof(gauge_state(slave)->eeprom); /* it is recalled at power-on */
+	return gauge_state(slave)->eeprom[0];
 }
 
 #define EEPROM_FUNCTIONS \
 	{.code = 0x69, .takes = 1, .start = begin_read, .next = read_data}, /* Read Data */ \
 		{.code = 0x6C, .takes = 1, .start = forget_lock, .byte = write_data}, \
-		{.code = 0x48, .takes = 1, .start = copy}, \
-		{.code = 0xB8, .takes = 1, .start = recall}, \
+		{.code = 0x48, .takes = 1, .start = gauge_copy}, \
+		{.code = 0xB8, .takes = 1, .start = gauge_recall}, \
 	{ \
 		.code = 0x6A, .takes = 1, .start = lock \
 	}

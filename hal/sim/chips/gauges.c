@@ -139,7 +139,7 @@ static const struct gauge_kind ds2781 = {
 	.volt = 9.76e-3,
 };
 
-static void create(struct sim_slave *slave)
+static void gauges_create(struct sim_slave *slave)
 {
 	static const struct {
 		uint8_t code;
@@ -193,7 +193,7 @@ static const struct sim_input ds278x_inputs[] = {
 #define GAUGE(part, family, commands, measures) \
 	{ \
 		.name = (part), .code = (family), .state_size = sizeof(struct gauge), \
-		.functions = (commands), .inputs = (measures), .create = create, \
+		.functions = (commands), .inputs = (measures), .create = gauges_create, \
 		.power_on = sim_gauge_power_on, .worked = sim_gauge_worked, \
 		.advance = sim_gauge_advance, .memory = sim_gauge_memory \
 	}

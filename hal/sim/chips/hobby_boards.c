@@ -43,7 +43,7 @@ struct hobby {
 	uint8_t bytes[LOCATION_BYTES];
 };
 
-static struct hobby *state(const struct sim_slave *slave)
+static struct hobby *hobby_boards_state(const struct sim_slave *slave)
 {
 	return sim_state(slave, hobby);
 }
@@ -65,12 +65,12 @@ static enum kind kind_of(const struct sim_slave *slave)
 
 static int setting16(const struct sim_slave *slave, unsigned at)
 {
-	const uint8_t *from = state(slave)->settings + at;
+	const uint8_t *from = hobby_boards_state(slave)->settings + at;
 
 	return (int16_t)(from[0] | from[1] << 8);
 }
 
-static void put16(uint8_t *out, double value)
+static void hobby_boards_put16(uint8_t *out, double value)
 {
 	int64_t whole = sim_round(value);
 
@@ -83,9 +83,9 @@ static double between(double value, double least, double most)
 	return value < least ? least : value > most ? most : value;
 }
 
-static void create(struct sim_slave *slave)
+static void hobby_boards_create(struct sim_slave *slave)
 {
-	uint8_t *settings = state(slave)->settings;
+	uint8_t *settings = hobby_boards_state(slave)->settings;
 	enum kind kind = kind_of(slave);
 
 	memset(settings, 0, SETTINGS);
@@ -93,16 +93,16 @@ static void create(struct sim_slave *slave)
 	settings[POLLING] = 1;
 	memcpy(settings + LOCATION, "nowhere", sizeof("nowhere"));
 	if (kind == MOISTURE) {
-		put16(settings + LEAF_MAX, 3000);
-		put16(settings + LEAF_MIN, 500);
+		hobby_boards_put16(settings + LEAF_MAX, 3000);
+		hobby_boards_put16(settings + LEAF_MIN, 500);
 	}
 }
 
 /* The hub comes up with all channels off. */
-static void power_on(struct sim_slave *slave, int64_t t)
+static void hobby_boards_power_on(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	state(slave)->channels = 0;
+	hobby_boards_state(slave)->channels = 0;
 }
 
 static void type(const struct sim_slave *slave, uint8_t *out, int64_t t)
@@ -121,24 +121,25 @@ static void polling_available(const struct sim_slave *slave, uint8_t *out, int64
 static void reboot(struct sim_slave *slave, const uint8_t *bytes)
 {
 	(void)bytes;
-	power_on(slave, 0);
+	hobby_boards_power_on(slave, 0);
 }
 
 static void factory(struct sim_slave *slave, const uint8_t *bytes)
 {
 	(void)bytes;
-	create(slave);
+	hobby_boards_create(slave);
 }
 
 /* Half degrees. */
 static void uvi_temperature(const struct sim_slave *slave, uint8_t *out, int64_t t)
 {
-	put16(out, sim_input_at(slave, 1, t) * 2 + setting16(slave, TEMPERATURE_OFFSET));
+	hobby_boards_put16(out,
+	                   sim_input_at(slave, 1, t) * 2 + setting16(slave, TEMPERATURE_OFFSET));
 }
 
 static void uvi(const struct sim_slave *slave, uint8_t *out, int64_t t)
 {
-	int8_t offset = (int8_t)state(slave)->settings[UVI_OFFSET];
+	int8_t offset = (int8_t)hobby_boards_state(slave)->settings[UVI_OFFSET];
 
 	out[0] = (uint8_t)sim_round(between(sim_input_at(slave, 0, t) * 10 + offset, 0, 160));
 }
@@ -146,7 +147,7 @@ static void uvi(const struct sim_slave *slave, uint8_t *out, int64_t t)
 static void moisture_raw(const struct sim_slave *slave, uint8_t *out, int64_t t)
 {
 	for (unsigned i = 0; i < 4; i++)
-		put16(out + 2 * i, sim_input_at(slave, i, t));
+		hobby_boards_put16(out + 2 * i, sim_input_at(slave, i, t));
 }
 
 /* A watermark sensor reads 0 to 199, a leaf's is scaled to 0 to 99. */
@@ -157,7 +158,7 @@ static void moisture(const struct sim_slave *slave, uint8_t *out, int64_t t)
 	for (unsigned i = 0; i < 4; i++) {
 		double raw = sim_input_at(slave, i, t);
 
-		if (state(slave)->settings[LEAF] >> i & 1)
+		if (hobby_boards_state(slave)->settings[LEAF] >> i & 1)
 			raw = most > least ? between((raw - least) * LEAF_MOST / (most - least), 0,
 			                             LEAF_MOST)
 			                   : 0;
@@ -168,7 +169,7 @@ static void moisture(const struct sim_slave *slave, uint8_t *out, int64_t t)
 static void channels(const struct sim_slave *slave, uint8_t *out, int64_t t)
 {
 	(void)t;
-	out[0] = state(slave)->channels;
+	out[0] = hobby_boards_state(slave)->channels;
 }
 
 static void shorted(const struct sim_slave *slave, uint8_t *out, int64_t t)
@@ -182,7 +183,7 @@ static void shorted(const struct sim_slave *slave, uint8_t *out, int64_t t)
 /* Bits 0 to 3 are switched on, or off; one of them alone takes the others off if so set up. */
 static void switch_channels(struct sim_slave *slave, const uint8_t *bytes)
 {
-	struct hobby *s = state(slave);
+	struct hobby *s = hobby_boards_state(slave);
 	uint8_t which = bytes[0] & 15;
 
 	if (!(bytes[0] & ON))
@@ -199,28 +200,29 @@ static void temperatures(const struct sim_slave *slave, uint8_t *out, int64_t t)
 	unsigned n = kind_of(slave) == MULTITEMP ? 6 : 1;
 
 	for (unsigned i = 0; i < n; i++)
-		put16(out + 2 * i, sim_input_at(slave, i, t) * 10);
+		hobby_boards_put16(out + 2 * i, sim_input_at(slave, i, t) * 10);
 }
 
 static void pressure(const struct sim_slave *slave, uint8_t *out, int64_t t)
 {
-	put16(out, sim_input_at(slave, 1, t) / 10); /* kPa of mbar */
+	hobby_boards_put16(out, sim_input_at(slave, 1, t) / 10); /* kPa of mbar */
 }
 
 /* Of the standard atmosphere, near enough: 8.3 m a mbar. */
 static void pressure_altitude(const struct sim_slave *slave, uint8_t *out, int64_t t)
 {
-	put16(out, (1013.25 - sim_input_at(slave, 1, t)) * 8.3);
+	hobby_boards_put16(out, (1013.25 - sim_input_at(slave, 1, t)) * 8.3);
 }
 
 static void humidity_raw(const struct sim_slave *slave, uint8_t *out, int64_t t)
 {
-	put16(out, sim_input_at(slave, 1, t) * 100);
+	hobby_boards_put16(out, sim_input_at(slave, 1, t) * 100);
 }
 
 static void humidity(const struct sim_slave *slave, uint8_t *out, int64_t t)
 {
-	put16(out, sim_input_at(slave, 1, t) * 100 + setting16(slave, HUMIDITY_OFFSET));
+	hobby_boards_put16(out,
+	                   sim_input_at(slave, 1, t) * 100 + setting16(slave, HUMIDITY_OFFSET));
 }
 
 #define COMMON \
@@ -313,7 +315,7 @@ static const struct variable of_multitemp[] = {
 	{0},
 };
 
-static const struct variable *find(const struct sim_slave *slave, uint8_t code)
+static const struct variable *hobby_boards_find(const struct sim_slave *slave, uint8_t code)
 {
 	static const struct variable *const tables[] = {
 		[UVI] = of_uvi,           [MOISTURE] = of_old_moisture,
@@ -330,10 +332,10 @@ static const struct variable *find(const struct sim_slave *slave, uint8_t code)
 	return v->code ? v : NULL;
 }
 
-static void command(struct sim_slave *slave, int64_t t)
+static void hobby_boards_command(struct sim_slave *slave, int64_t t)
 {
-	struct hobby *s = state(slave);
-	const struct variable *v = find(slave, slave->function->code);
+	struct hobby *s = hobby_boards_state(slave);
+	const struct variable *v = hobby_boards_find(slave, slave->function->code);
 
 	s->variable = v;
 	slave->address = 0;
@@ -352,7 +354,7 @@ static void command(struct sim_slave *slave, int64_t t)
 
 static void argument(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	struct hobby *s = state(slave);
+	struct hobby *s = hobby_boards_state(slave);
 	const struct variable *v = s->variable;
 
 	(void)t;
@@ -366,25 +368,25 @@ static void argument(struct sim_slave *slave, uint8_t byte, int64_t t)
 	sim_end(slave);
 }
 
-static int option(struct sim_slave *slave, const char *name, double value)
+static int hobby_boards_option(struct sim_slave *slave, const char *name, double value)
 {
 	if (strcmp(name, "version") != 0)
 		return -ENOENT;
 	if (value < 0 || value > 0xFFFF)
 		return -ERANGE;
-	put16(state(slave)->settings + VERSION, value);
+	hobby_boards_put16(hobby_boards_state(slave)->settings + VERSION, value);
 	return 0;
 }
 
-static uint8_t *memory(struct sim_slave *slave, size_t *size)
+static uint8_t *hobby_boards_memory(struct sim_slave *slave, size_t *size)
 {
 	*size = SETTINGS;
-	return state(slave)->settings;
+	return hobby_boards_state(slave)->settings;
 }
 
 #define COMMAND(code_) \
 	{ \
-		.code = (code_), .start = command, .byte = argument \
+		.code = (code_), .start = hobby_boards_command, .byte = argument \
 	}
 static const struct sim_function functions[] = {
 	COMMAND(0x11), COMMAND(0x12), COMMAND(0x14), COMMAND(0x15), COMMAND(0x16), COMMAND(0x21),
@@ -431,8 +433,9 @@ static const struct sim_input multitemp_inputs[] = {TEMPERATURE("temperature.0")
 #define HB(part, family, inputs_) \
 	{ \
 		.name = (part), .code = (family), .state_size = sizeof(struct hobby), \
-		.functions = functions, .inputs = (inputs_), .create = create, \
-		.power_on = power_on, .option = option, .memory = memory \
+		.functions = functions, .inputs = (inputs_), .create = hobby_boards_create, \
+		.power_on = hobby_boards_power_on, .option = hobby_boards_option, \
+		.memory = hobby_boards_memory \
 	}
 
 const struct sim_family sim_hb_uvi_meter = HB("HB_UVI_METER", 0xEE, uvi_inputs);

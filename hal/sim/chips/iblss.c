@@ -24,19 +24,19 @@ struct iblss {
 	uint8_t covers;
 };
 
-static struct iblss *state(struct sim_slave *slave)
+static struct iblss *iblss_state(struct sim_slave *slave)
 {
 	return sim_state(slave, iblss);
 }
 
-static void power_on(struct sim_slave *slave, int64_t t)
+static void iblss_power_on(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	*state(slave) = (struct iblss){.page = {[SUBTYPE] = 0x04, [VERSION] = 0x12},
-	                               .covers = state(slave)->covers};
+	*iblss_state(slave) = (struct iblss){.page = {[SUBTYPE] = 0x04, [VERSION] = 0x12},
+	                                     .covers = iblss_state(slave)->covers};
 }
 
-static void put(uint8_t *at, double value)
+static void iblss_put(uint8_t *at, double value)
 {
 	int64_t whole = sim_round(value * 128);
 
@@ -44,34 +44,34 @@ static void put(uint8_t *at, double value)
 	at[1] = (uint8_t)whole;
 }
 
-static void advance(struct sim_slave *slave, int64_t t)
+static void iblss_advance(struct sim_slave *slave, int64_t t)
 {
-	struct iblss *s = state(slave);
+	struct iblss *s = iblss_state(slave);
 
 	if (!s->done || t < s->done)
 		return;
-	put(s->page + TEMPERATURE_AT, sim_input_at(slave, TEMPERATURE, s->done));
-	put(s->page + HUMIDITY_AT, sim_input_at(slave, HUMIDITY, s->done));
+	iblss_put(s->page + TEMPERATURE_AT, sim_input_at(slave, TEMPERATURE, s->done));
+	iblss_put(s->page + HUMIDITY_AT, sim_input_at(slave, HUMIDITY, s->done));
 	s->page[BUSY] = 0;
 	s->page[VALID] = 1;
 	s->done = 0;
 	slave->conversions++;
 }
 
-static void convert(struct sim_slave *slave, int64_t t)
+static void iblss_convert(struct sim_slave *slave, int64_t t)
 {
-	state(slave)->page[BUSY] = 1;
-	state(slave)->done = t + CONVERT_NS;
+	iblss_state(slave)->page[BUSY] = 1;
+	iblss_state(slave)->done = t + CONVERT_NS;
 	sim_end(slave);
 }
 
-static int option(struct sim_slave *slave, const char *name, double value)
+static int iblss_option(struct sim_slave *slave, const char *name, double value)
 {
 	if (strcmp(name, "command") != 0)
 		return -ENOENT;
 	if (value != 0 && value != 1 && value != 2)
 		return -ERANGE;
-	state(slave)->covers = (uint8_t)value;
+	iblss_state(slave)->covers = (uint8_t)value;
 	return 0;
 }
 
@@ -82,29 +82,29 @@ static void read_page(struct sim_slave *slave, int64_t t)
 		sim_end(slave);
 		return;
 	}
-	if (state(slave)->covers == 0)
+	if (iblss_state(slave)->covers == 0)
 		slave->crc = 0;
-	else if (state(slave)->covers == 2)
+	else if (iblss_state(slave)->covers == 2)
 		slave->crc ^= 0x5AA5;
-	sim_send_checked(slave, state(slave)->page, PAGE);
+	sim_send_checked(slave, iblss_state(slave)->page, PAGE);
 }
 
 static void set_led(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
 	if (slave->taken[0] == 0)
-		state(slave)->led = slave->taken[1];
+		iblss_state(slave)->led = slave->taken[1];
 	sim_end(slave);
 }
 
-static uint8_t *memory(struct sim_slave *slave, size_t *size)
+static uint8_t *iblss_memory(struct sim_slave *slave, size_t *size)
 {
 	*size = 1;
-	return &state(slave)->led;
+	return &iblss_state(slave)->led;
 }
 
 static const struct sim_function functions[] = {
-	{.code = 0xB4, .start = convert},
+	{.code = 0xB4, .start = iblss_convert},
 	{.code = 0xF0, .takes = 1, .start = read_page},
 	{.code = 0xA5, .takes = 2, .start = set_led},
 	{0},
@@ -122,8 +122,8 @@ const struct sim_family sim_iblss = {
 	.state_size = sizeof(struct iblss),
 	.functions = functions,
 	.inputs = inputs,
-	.power_on = power_on,
-	.advance = advance,
-	.option = option,
-	.memory = memory,
+	.power_on = iblss_power_on,
+	.advance = iblss_advance,
+	.option = iblss_option,
+	.memory = iblss_memory,
 };

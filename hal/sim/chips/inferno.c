@@ -40,7 +40,7 @@ struct command {
 	void (*answer)(struct sim_slave *slave, const uint8_t *args, int64_t t);
 };
 
-static struct inferno *state(struct sim_slave *slave)
+static struct inferno *inferno_state(struct sim_slave *slave)
 {
 	return sim_state(slave, inferno);
 }
@@ -55,7 +55,7 @@ static void ok(struct sim_slave *slave, const uint8_t *data, unsigned n)
 	sim_send(slave, out, 1 + n);
 }
 
-static void refuse(struct sim_slave *slave)
+static void inferno_refuse(struct sim_slave *slave)
 {
 	sim_send_byte(slave, 1);
 }
@@ -91,7 +91,7 @@ static void all_off(struct sim_slave *slave, const uint8_t *args, int64_t t)
 {
 	(void)args;
 	(void)t;
-	memset(state(slave)->light, 0, sizeof(state(slave)->light));
+	memset(inferno_state(slave)->light, 0, sizeof(inferno_state(slave)->light));
 	ok(slave, NULL, 0);
 }
 
@@ -104,11 +104,11 @@ static void count_lights(struct sim_slave *slave, const uint8_t *args, int64_t t
 
 static void set_light(struct sim_slave *slave, const uint8_t *args, int64_t t)
 {
-	struct light *light = state(slave)->light + args[0] % LEDS;
+	struct light *light = inferno_state(slave)->light + args[0] % LEDS;
 
 	(void)t;
 	if (args[0] >= LEDS) {
-		refuse(slave);
+		inferno_refuse(slave);
 		return;
 	}
 	memcpy(light->next, args + 1, 4);
@@ -121,10 +121,10 @@ static void get_light(struct sim_slave *slave, const uint8_t *args, int64_t t)
 	uint8_t out[8];
 
 	if (args[0] >= LEDS) {
-		refuse(slave);
+		inferno_refuse(slave);
 		return;
 	}
-	put32(out + 4, shown(state(slave)->light + args[0], out, t));
+	put32(out + 4, shown(inferno_state(slave)->light + args[0], out, t));
 	ok(slave, out, 7);
 }
 
@@ -132,7 +132,7 @@ static void commit(struct sim_slave *slave, const uint8_t *args, int64_t t)
 {
 	(void)args;
 	for (unsigned i = 0; i < LEDS; i++) {
-		struct light *light = state(slave)->light + i;
+		struct light *light = inferno_state(slave)->light + i;
 
 		if (memcmp(light->next, light->to, 4) == 0)
 			continue;
@@ -174,8 +174,8 @@ static void erase(struct sim_slave *slave, const uint8_t *args, int64_t t)
 {
 	(void)args;
 	(void)t;
-	memset(state(slave)->firmware, 0xFF, FIRMWARE);
-	state(slave)->status = SUCCESS;
+	memset(inferno_state(slave)->firmware, 0xFF, FIRMWARE);
+	inferno_state(slave)->status = SUCCESS;
 	ok(slave, NULL, 0);
 }
 
@@ -183,7 +183,7 @@ static void boot_application(struct sim_slave *slave, const uint8_t *args, int64
 {
 	(void)args;
 	(void)t;
-	state(slave)->kind = state(slave)->application;
+	inferno_state(slave)->kind = inferno_state(slave)->application;
 	ok(slave, NULL, 0);
 }
 
@@ -195,7 +195,7 @@ static uint8_t *part(struct sim_slave *slave, const uint8_t *args, unsigned *n)
 	*n = get32(args + 4);
 	if (at < START || at >= START + FIRMWARE || *n > START + FIRMWARE - at)
 		return NULL;
-	return state(slave)->firmware + (at - START);
+	return inferno_state(slave)->firmware + (at - START);
 }
 
 static void write_block(struct sim_slave *slave, const uint8_t *args, int64_t t)
@@ -204,7 +204,7 @@ static void write_block(struct sim_slave *slave, const uint8_t *args, int64_t t)
 
 	(void)t;
 	if (!part(slave, args, &n) || !n || n > BLOCK)
-		refuse(slave);
+		inferno_refuse(slave);
 	else
 		ok(slave, NULL, 0); /* the block may come: take_block */
 }
@@ -219,7 +219,7 @@ static void firmware_crc(struct sim_slave *slave, const uint8_t *args, int64_t t
 	if (from)
 		ok(slave, (const uint8_t[]){(uint8_t)crc, (uint8_t)(crc >> 8)}, 2);
 	else
-		refuse(slave);
+		inferno_refuse(slave);
 }
 
 static const struct command of_updater[] = {
@@ -244,17 +244,17 @@ static void set_switch_type(struct sim_slave *slave, const uint8_t *args, int64_
 {
 	(void)t;
 	if (args[0] >= PORTS || args[1] >= CHANNELS || args[2] > 3) {
-		refuse(slave);
+		inferno_refuse(slave);
 		return;
 	}
-	state(slave)->type[args[0]][args[1]] = args[2];
-	state(slave)->active[args[0]] &= (uint8_t) ~(1u << args[1]);
+	inferno_state(slave)->type[args[0]][args[1]] = args[2];
+	inferno_state(slave)->active[args[0]] &= (uint8_t) ~(1u << args[1]);
 	ok(slave, NULL, 0);
 }
 
 static void activated(struct sim_slave *slave, const uint8_t *args, int64_t t)
 {
-	struct inferno *s = state(slave);
+	struct inferno *s = inferno_state(slave);
 
 	(void)args;
 	(void)t;
@@ -268,11 +268,11 @@ static void activated(struct sim_slave *slave, const uint8_t *args, int64_t t)
 
 static void set_led(struct sim_slave *slave, const uint8_t *args, int64_t t)
 {
-	uint8_t *led = state(slave)->led + args[0] % PORTS;
+	uint8_t *led = inferno_state(slave)->led + args[0] % PORTS;
 
 	(void)t;
 	if (args[0] >= PORTS || args[1] >= CHANNELS) {
-		refuse(slave);
+		inferno_refuse(slave);
 		return;
 	}
 	*led = (uint8_t)((*led & ~(1u << args[1])) | (args[2] ? 1u << args[1] : 0));
@@ -283,9 +283,9 @@ static void get_led(struct sim_slave *slave, const uint8_t *args, int64_t t)
 {
 	(void)t;
 	if (args[0] < PORTS)
-		ok(slave, state(slave)->led + args[0], 1);
+		ok(slave, inferno_state(slave)->led + args[0], 1);
 	else
-		refuse(slave);
+		inferno_refuse(slave);
 }
 
 /* 09h mode, 0Ah timeout, 0Bh state; 0Ch states, 0Dh modes, 0Eh timeouts. */
@@ -295,10 +295,10 @@ static void set_relay(struct sim_slave *slave, const uint8_t *args, int64_t t)
 
 	(void)t;
 	if (args[0] || args[1] >= RELAYS) {
-		refuse(slave);
+		inferno_refuse(slave);
 		return;
 	}
-	state(slave)->relay[which[slave->function->code - 0x09]][args[1]] = args[2];
+	inferno_state(slave)->relay[which[slave->function->code - 0x09]][args[1]] = args[2];
 	ok(slave, NULL, 0);
 }
 
@@ -306,7 +306,7 @@ static void get_relays(struct sim_slave *slave, const uint8_t *args, int64_t t)
 {
 	(void)args;
 	(void)t;
-	ok(slave, state(slave)->relay[slave->function->code - 0x0C], RELAYS);
+	ok(slave, inferno_state(slave)->relay[slave->function->code - 0x0C], RELAYS);
 }
 
 static const struct command of_switches[] = {
@@ -323,17 +323,17 @@ static void boot_updater(struct sim_slave *slave, const uint8_t *args, int64_t t
 {
 	(void)args;
 	(void)t;
-	state(slave)->kind = UPDATER;
-	state(slave)->status = POWER_ON;
+	inferno_state(slave)->kind = UPDATER;
+	inferno_state(slave)->status = POWER_ON;
 	sim_end(slave);
 }
 
-static const struct command *find(struct sim_slave *slave)
+static const struct command *inferno_find(struct sim_slave *slave)
 {
 	static const struct command *const tables[] = {
 		[RGBW] = of_rgbw, [UPDATER] = of_updater, [SWITCHES] = of_switches};
 	static const struct command boot = {BOOT_UPDATER, 0, boot_updater};
-	const struct command *c = tables[state(slave)->kind];
+	const struct command *c = tables[inferno_state(slave)->kind];
 
 	if (slave->function->code == BOOT_UPDATER)
 		return &boot;
@@ -342,18 +342,18 @@ static const struct command *find(struct sim_slave *slave)
 	return c->answer ? c : NULL;
 }
 
-static void begin(struct sim_slave *slave, int64_t t)
+static void inferno_begin(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	state(slave)->got = 0;
-	if (!find(slave))
+	inferno_state(slave)->got = 0;
+	if (!inferno_find(slave))
 		sim_end(slave);
 }
 
 /* The bytes of a block and their CRC16, four bytes of which two count. */
 static void take_block(struct sim_slave *slave)
 {
-	struct inferno *s = state(slave);
+	struct inferno *s = inferno_state(slave);
 	const uint8_t *block = s->taken + WRITTEN + 1;
 	unsigned n;
 	uint8_t *to = part(slave, s->taken, &n);
@@ -368,10 +368,10 @@ static void take_block(struct sim_slave *slave)
 	sim_send_byte(slave, !good);
 }
 
-static void take(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void inferno_take(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	struct inferno *s = state(slave);
-	const struct command *c = find(slave);
+	struct inferno *s = inferno_state(slave);
+	const struct command *c = inferno_find(slave);
 	uint8_t crc;
 
 	s->taken[s->got++] = byte;
@@ -386,13 +386,13 @@ static void take(struct sim_slave *slave, uint8_t byte, int64_t t)
 	if (sim_crc8(crc, s->taken, c->args) == byte)
 		c->answer(slave, s->taken, t);
 	else
-		refuse(slave);
+		inferno_refuse(slave);
 }
 
 /* The block that a command has announced may come. */
 static void answered(struct sim_slave *slave, int64_t t)
 {
-	const struct inferno *s = state(slave);
+	const struct inferno *s = inferno_state(slave);
 
 	(void)t;
 	if (s->kind == UPDATER && slave->function->code == 0x06 && s->got == WRITTEN + 1 &&
@@ -406,24 +406,25 @@ static void identity(struct sim_slave *slave, int64_t t)
 
 	(void)t;
 	if (slave->function->code == STATUS)
-		out[0] = state(slave)->status;
+		out[0] = inferno_state(slave)->status;
 	else
-		put32(out, slave->function->code == DEVICE ? (uint32_t)state(slave)->kind : 7);
+		put32(out,
+		      slave->function->code == DEVICE ? (uint32_t)inferno_state(slave)->kind : 7);
 	sim_send(slave, out, slave->function->code == STATUS ? 8 : 4);
 }
 
-static void create(struct sim_slave *slave)
+static void inferno_create(struct sim_slave *slave)
 {
-	struct inferno *s = state(slave);
+	struct inferno *s = inferno_state(slave);
 
 	s->application = slave->family == &sim_inferno_rgbw      ? RGBW
 	                 : slave->family == &sim_inferno_updater ? UPDATER
 	                                                         : SWITCHES;
 }
 
-static void power_on(struct sim_slave *slave, int64_t t)
+static void inferno_power_on(struct sim_slave *slave, int64_t t)
 {
-	struct inferno *s = state(slave);
+	struct inferno *s = inferno_state(slave);
 
 	(void)t;
 	s->kind = s->application;
@@ -435,9 +436,9 @@ static void power_on(struct sim_slave *slave, int64_t t)
 }
 
 /* Types 0 and 2 are switches to VCC, 1 and 3 to ground; 2 and 3 are momentary, and latched. */
-static void advance(struct sim_slave *slave, int64_t t)
+static void inferno_advance(struct sim_slave *slave, int64_t t)
 {
-	struct inferno *s = state(slave);
+	struct inferno *s = inferno_state(slave);
 
 	for (unsigned i = 0; slave->family->inputs && i < PORTS * CHANNELS; i++) {
 		unsigned port = i / CHANNELS, channel = i % CHANNELS;
@@ -455,7 +456,7 @@ static void advance(struct sim_slave *slave, int64_t t)
 
 #define COMMAND(code_) \
 	{ \
-		.code = (code_), .start = begin, .byte = take, .next = answered \
+		.code = (code_), .start = inferno_begin, .byte = inferno_take, .next = answered \
 	}
 #define IDENTITY(code_) \
 	{ \
@@ -480,8 +481,8 @@ static const struct sim_input switches[] = {
 #define INFERNO(part, inputs_) \
 	{ \
 		.name = (part), .code = 0xED, .resume = true, .inputs = (inputs_), \
-		.state_size = sizeof(struct inferno), .functions = functions, .create = create, \
-		.power_on = power_on, .advance = advance \
+		.state_size = sizeof(struct inferno), .functions = functions, \
+		.create = inferno_create, .power_on = inferno_power_on, .advance = inferno_advance \
 	}
 
 const struct sim_family sim_inferno_switches = INFERNO("IE_SWITCH_MASTER", switches);

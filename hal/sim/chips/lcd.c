@@ -22,7 +22,7 @@ struct lcd {
 	uint8_t level; /* of the pins, when they were last looked at */
 };
 
-static struct lcd *state(struct sim_slave *slave)
+static struct lcd *lcd_state(struct sim_slave *slave)
 {
 	return sim_state(slave, lcd);
 }
@@ -34,17 +34,17 @@ static uint8_t pins(struct sim_slave *slave, int64_t t)
 	for (unsigned i = 0; i < PINS; i++)
 		if (sim_input_at(slave, i, t) >= 0.5)
 			level |= (uint8_t)(1u << i);
-	return level & state(slave)->output;
+	return level & lcd_state(slave)->output;
 }
 
-static void create(struct sim_slave *slave)
+static void lcd_create(struct sim_slave *slave)
 {
-	memset(state(slave)->eeprom, 0xFF, EEPROM);
+	memset(lcd_state(slave)->eeprom, 0xFF, EEPROM);
 }
 
-static void power_on(struct sim_slave *slave, int64_t t)
+static void lcd_power_on(struct sim_slave *slave, int64_t t)
 {
-	struct lcd *s = state(slave);
+	struct lcd *s = lcd_state(slave);
 
 	memset(s->display, ' ', DISPLAY);
 	memset(s->scratchpad, 0, SCRATCHPAD);
@@ -55,9 +55,9 @@ static void power_on(struct sim_slave *slave, int64_t t)
 }
 
 /* Each change from outside counts, so a button counts twice. */
-static void advance(struct sim_slave *slave, int64_t t)
+static void lcd_advance(struct sim_slave *slave, int64_t t)
 {
-	struct lcd *s = state(slave);
+	struct lcd *s = lcd_state(slave);
 	uint8_t now = pins(slave, t);
 
 	for (unsigned i = 0; i < PINS; i++)
@@ -122,7 +122,7 @@ static void print_scratchpad(struct lcd *s)
 static void command(struct sim_slave *slave, int64_t t)
 {
 	static const char version[VERSION_TEXT + 1] = "LCD 1.00 L.Swart";
-	struct lcd *s = state(slave);
+	struct lcd *s = lcd_state(slave);
 
 	(void)t;
 	switch (slave->function->code) {
@@ -166,7 +166,7 @@ static void command(struct sim_slave *slave, int64_t t)
 
 static void byte_command(struct sim_slave *slave, int64_t t)
 {
-	struct lcd *s = state(slave);
+	struct lcd *s = lcd_state(slave);
 	uint8_t byte = slave->taken[0];
 
 	if (slave->function->code == 0x10)
@@ -181,43 +181,43 @@ static void byte_command(struct sim_slave *slave, int64_t t)
 
 static void begin_copy(struct sim_slave *slave, int64_t t)
 {
-	unsigned n = state(slave)->filled;
+	unsigned n = lcd_state(slave)->filled;
 
 	sim_work(slave, (n ? n - 1 : 0) * 4 * NS_PER_MS, t);
 	sim_end(slave);
 }
 
-static void worked(struct sim_slave *slave, int64_t t)
+static void lcd_worked(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	write_eeprom(state(slave));
+	write_eeprom(lcd_state(slave));
 }
 
-static void begin_write(struct sim_slave *slave, int64_t t)
+static void lcd_begin_write(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	state(slave)->filled = 0;
+	lcd_state(slave)->filled = 0;
 }
 
-static void write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void lcd_write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	struct lcd *s = state(slave);
+	struct lcd *s = lcd_state(slave);
 
 	(void)t;
 	if (s->filled < SCRATCHPAD)
 		s->scratchpad[s->filled++] = byte;
 }
 
-static void read_scratchpad(struct sim_slave *slave, int64_t t)
+static void lcd_read_scratchpad(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	sim_send(slave, state(slave)->scratchpad, VERSION_TEXT);
+	sim_send(slave, lcd_state(slave)->scratchpad, VERSION_TEXT);
 }
 
-static uint8_t *memory(struct sim_slave *slave, size_t *size)
+static uint8_t *lcd_memory(struct sim_slave *slave, size_t *size)
 {
 	*size = EEPROM + DISPLAY + 2;
-	return state(slave)->eeprom;
+	return lcd_state(slave)->eeprom;
 }
 
 #define COMMAND(code_) \
@@ -241,8 +241,8 @@ static const struct sim_function functions[] = {
 	COMMAND(0x41),
 	COMMAND(0x48),
 	COMMAND(0x49),
-	{.code = 0x4E, .start = begin_write, .byte = write_scratchpad},
-	{.code = 0xBE, .start = read_scratchpad},
+	{.code = 0x4E, .start = lcd_begin_write, .byte = lcd_write_scratchpad},
+	{.code = 0xBE, .start = lcd_read_scratchpad},
 	{0},
 };
 
@@ -255,9 +255,9 @@ const struct sim_family sim_lcd = {
 	.state_size = sizeof(struct lcd),
 	.functions = functions,
 	.inputs = inputs,
-	.create = create,
-	.power_on = power_on,
-	.worked = worked,
-	.advance = advance,
-	.memory = memory,
+	.create = lcd_create,
+	.power_on = lcd_power_on,
+	.worked = lcd_worked,
+	.advance = lcd_advance,
+	.memory = lcd_memory,
 };

@@ -23,31 +23,31 @@ struct max31825 {
 	uint8_t address, faults;
 };
 
-static struct max31825 *state(struct sim_slave *slave)
+static struct max31825 *max31825_state(struct sim_slave *slave)
 {
 	return sim_state(slave, max31825);
 }
 
-static void power_on(struct sim_slave *slave, int64_t t)
+static void max31825_power_on(struct sim_slave *slave, int64_t t)
 {
 	static const uint8_t first[8] = {0, 0, 0, 0x60, 0x07, 0xFF, 0x90, 0xFC};
 
 	(void)t;
-	memcpy(state(slave)->scratchpad, first, 8);
-	state(slave)->faults = 0;
+	memcpy(max31825_state(slave)->scratchpad, first, 8);
+	max31825_state(slave)->faults = 0;
 }
 
-static void convert(struct sim_slave *slave, int64_t t)
+static void max31825_convert(struct sim_slave *slave, int64_t t)
 {
 	static const uint8_t ms[] = {30, 40, 70, 160};
 
-	sim_work(slave, ms[state(slave)->scratchpad[CONFIG] >> 5 & 3] * NS_PER_MS, t);
+	sim_work(slave, ms[max31825_state(slave)->scratchpad[CONFIG] >> 5 & 3] * NS_PER_MS, t);
 }
 
-static void worked(struct sim_slave *slave, int64_t t)
+static void max31825_worked(struct sim_slave *slave, int64_t t)
 {
 	static const uint8_t unused[] = {4, 3, 2, 0};
-	struct max31825 *s = state(slave);
+	struct max31825 *s = max31825_state(slave);
 	const uint8_t *pad = s->scratchpad;
 	int most = pad[CONFIG] & EXTENDED ? 145 * 16 : 2047;
 	int raw = (int)sim_round(sim_input_at(slave, 0, t) * 16);
@@ -65,9 +65,9 @@ static void worked(struct sim_slave *slave, int64_t t)
 	slave->conversions++;
 }
 
-static void read_scratchpad(struct sim_slave *slave, int64_t t)
+static void max31825_read_scratchpad(struct sim_slave *slave, int64_t t)
 {
-	struct max31825 *s = state(slave);
+	struct max31825 *s = max31825_state(slave);
 
 	(void)t;
 	s->scratchpad[2] = s->faults | s->address;
@@ -76,18 +76,18 @@ static void read_scratchpad(struct sim_slave *slave, int64_t t)
 	sim_send_crc8(slave, s->scratchpad, 8);
 }
 
-static void begin_write(struct sim_slave *slave, int64_t t)
+static void max31825_begin_write(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
 	slave->address = CONFIG;
 }
 
-static void write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void max31825_write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
 	unsigned at = slave->address++;
 
 	(void)t;
-	state(slave)->scratchpad[at] = at == CONFIG ? byte & 0xF7 : byte;
+	max31825_state(slave)->scratchpad[at] = at == CONFIG ? byte & 0xF7 : byte;
 	if (at == 7)
 		sim_end(slave);
 }
@@ -103,7 +103,7 @@ static void detect_address(struct sim_slave *slave, int64_t t)
 static void select_address(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	if ((slave->taken[0] & ADDRESS) != state(slave)->address) {
+	if ((slave->taken[0] & ADDRESS) != max31825_state(slave)->address) {
 		sim_end(slave);
 		return;
 	}
@@ -112,27 +112,27 @@ static void select_address(struct sim_slave *slave, int64_t t)
 }
 
 static const struct sim_function functions[] = {
-	{.code = 0x44, .start = convert},
-	{.code = 0xBE, .start = read_scratchpad},
-	{.code = 0x4E, .start = begin_write, .byte = write_scratchpad},
+	{.code = 0x44, .start = max31825_convert},
+	{.code = 0xBE, .start = max31825_read_scratchpad},
+	{.code = 0x4E, .start = max31825_begin_write, .byte = max31825_write_scratchpad},
 	{.code = 0x88, .start = detect_address},
 	{.code = 0x70, .takes = 1, .start = select_address},
 	{0},
 };
 
-static bool alarm(struct sim_slave *slave, int64_t t)
+static bool max31825_alarm(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	return state(slave)->faults != 0;
+	return max31825_state(slave)->faults != 0;
 }
 
-static int option(struct sim_slave *slave, const char *name, double value)
+static int max31825_option(struct sim_slave *slave, const char *name, double value)
 {
 	if (strcmp(name, "address") != 0)
 		return -ENOENT;
 	if (value < 0 || value > ADDRESS || value != floor(value))
 		return -ERANGE;
-	state(slave)->address = (uint8_t)value;
+	max31825_state(slave)->address = (uint8_t)value;
 	return 0;
 }
 
@@ -148,8 +148,8 @@ const struct sim_family sim_max31825 = {
 	.state_size = sizeof(struct max31825),
 	.inputs = inputs,
 	.functions = functions,
-	.power_on = power_on,
-	.alarm = alarm,
-	.worked = worked,
-	.option = option,
+	.power_on = max31825_power_on,
+	.alarm = max31825_alarm,
+	.worked = max31825_worked,
+	.option = max31825_option,
 };

@@ -18,7 +18,7 @@ enum { TEMPERATURE, THERMOCOUPLE, OPEN_CIRCUIT, GROUND_SHORT, VDD_SHORT }; /* in
 /* tWR of the EEPROM: 10 ms. */
 #define COPY_NS (10 * NS_PER_MS)
 
-static struct sim_max *state(struct sim_slave *slave)
+static struct sim_max *max31826_state(struct sim_slave *slave)
 {
 	return sim_state(slave, sim_max);
 }
@@ -28,26 +28,26 @@ static bool is_max31850(const struct sim_slave *slave)
 	return slave->family == &sim_max31850;
 }
 
-static void create(struct sim_slave *slave)
+static void max31826_create(struct sim_slave *slave)
 {
-	memset(state(slave)->memory, 0xFF, SIM_MAX_MEMORY);
+	memset(max31826_state(slave)->memory, 0xFF, SIM_MAX_MEMORY);
 }
 
-static void put16(uint8_t *at, int64_t raw)
+static void max31826_put16(uint8_t *at, int64_t raw)
 {
 	at[0] = (uint8_t)raw;
 	at[1] = (uint8_t)(raw >> 8);
 }
 
-static void power_on(struct sim_slave *slave, int64_t t)
+static void max31826_power_on(struct sim_slave *slave, int64_t t)
 {
-	struct sim_max *s = state(slave);
+	struct sim_max *s = max31826_state(slave);
 
 	(void)t;
 	memset(s->scratchpad, 0xFF, 8);
-	put16(s->scratchpad, is_max31850(slave) ? 0 : 85 * 16);
+	max31826_put16(s->scratchpad, is_max31850(slave) ? 0 : 85 * 16);
 	if (is_max31850(slave))
-		put16(s->scratchpad + 2, 0);
+		max31826_put16(s->scratchpad + 2, 0);
 	s->scratchpad[4] = (uint8_t)(0xF0 | s->address);
 	s->copying = false;
 }
@@ -66,18 +66,20 @@ static int64_t part_of(struct sim_slave *slave, unsigned input, double least, do
  */
 static void measure_thermocouple(struct sim_slave *slave, int64_t t)
 {
-	struct sim_max *s = state(slave);
+	struct sim_max *s = max31826_state(slave);
 	unsigned faults = 0;
 
 	for (unsigned i = 0; i < 3; i++)
 		faults |= (unsigned)(sim_input_at(slave, OPEN_CIRCUIT + i, t) >= 0.5) << i;
-	put16(s->scratchpad, part_of(slave, THERMOCOUPLE, -270, 1800, 4, t) * 4 + (faults != 0));
-	put16(s->scratchpad + 2, part_of(slave, TEMPERATURE, -55, 127.9375, 16, t) * 16 + faults);
+	max31826_put16(s->scratchpad,
+	               part_of(slave, THERMOCOUPLE, -270, 1800, 4, t) * 4 + (faults != 0));
+	max31826_put16(s->scratchpad + 2,
+	               part_of(slave, TEMPERATURE, -55, 127.9375, 16, t) * 16 + faults);
 }
 
-static void worked(struct sim_slave *slave, int64_t t)
+static void max31826_worked(struct sim_slave *slave, int64_t t)
 {
-	struct sim_max *s = state(slave);
+	struct sim_max *s = max31826_state(slave);
 
 	if (s->copying) {
 		memcpy(s->memory + s->target, s->second, SIM_MAX_PAGE);
@@ -87,18 +89,18 @@ static void worked(struct sim_slave *slave, int64_t t)
 	if (is_max31850(slave))
 		measure_thermocouple(slave, t);
 	else
-		put16(s->scratchpad, part_of(slave, TEMPERATURE, -55, 125, 16, t));
+		max31826_put16(s->scratchpad, part_of(slave, TEMPERATURE, -55, 125, 16, t));
 }
 
-static bool bit(struct sim_slave *slave, int64_t t)
+static bool max31826_bit(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
 	return slave->function->code == READ_POWER ? !slave->parasite : !slave->busy;
 }
 
-static void convert(struct sim_slave *slave, int64_t t)
+static void max31826_convert(struct sim_slave *slave, int64_t t)
 {
-	state(slave)->copying = false;
+	max31826_state(slave)->copying = false;
 	sim_work(slave, (is_max31850(slave) ? 100 : 150) * NS_PER_MS, t);
 }
 
@@ -108,10 +110,10 @@ static void read_power(struct sim_slave *slave, int64_t t)
 	sim_send_bits(slave);
 }
 
-static void read_scratchpad(struct sim_slave *slave, int64_t t)
+static void max31826_read_scratchpad(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	sim_send_crc8(slave, state(slave)->scratchpad, 8);
+	sim_send_crc8(slave, max31826_state(slave)->scratchpad, 8);
 }
 
 /* --- The memory of the MAX31826: pages of 8 bytes, by a second scratchpad --------------------- */
@@ -119,27 +121,27 @@ static void read_scratchpad(struct sim_slave *slave, int64_t t)
 static void read_memory(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	sim_send_memory(slave, state(slave)->memory, SIM_MAX_MEMORY, 0);
+	sim_send_memory(slave, max31826_state(slave)->memory, SIM_MAX_MEMORY, 0);
 }
 
 static void target(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	state(slave)->target = slave->taken[0] & (SIM_MAX_MEMORY - SIM_MAX_PAGE);
+	max31826_state(slave)->target = slave->taken[0] & (SIM_MAX_MEMORY - SIM_MAX_PAGE);
 	slave->address = 0;
 }
 
 static void write_second(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
 	(void)t;
-	state(slave)->second[slave->address++] = byte;
+	max31826_state(slave)->second[slave->address++] = byte;
 	if (slave->address == SIM_MAX_PAGE)
 		sim_end(slave);
 }
 
 static void read_second(struct sim_slave *slave, int64_t t)
 {
-	struct sim_max *s = state(slave);
+	struct sim_max *s = max31826_state(slave);
 
 	(void)t;
 	s->second[0] ^= s->garbled;
@@ -147,9 +149,9 @@ static void read_second(struct sim_slave *slave, int64_t t)
 	s->second[0] ^= s->garbled;
 }
 
-static void copy(struct sim_slave *slave, int64_t t)
+static void max31826_copy(struct sim_slave *slave, int64_t t)
 {
-	struct sim_max *s = state(slave);
+	struct sim_max *s = max31826_state(slave);
 
 	if (slave->taken[0] == KEY) {
 		s->copies++;
@@ -160,24 +162,25 @@ static void copy(struct sim_slave *slave, int64_t t)
 	sim_end(slave);
 }
 
-static int option(struct sim_slave *slave, const char *name, double value)
+static int max31826_option(struct sim_slave *slave, const char *name, double value)
 {
 	if (strcmp(name, "address") != 0)
 		return -ENOENT;
 	if (value < 0 || value > 15 || value != floor(value))
 		return -ERANGE;
-	state(slave)->address = (uint8_t)value;
+	max31826_state(slave)->address = (uint8_t)value;
 	return 0;
 }
 
-static uint8_t *memory(struct sim_slave *slave, size_t *size)
+static uint8_t *max31826_memory(struct sim_slave *slave, size_t *size)
 {
 	*size = SIM_MAX_MEMORY;
-	return state(slave)->memory;
+	return max31826_state(slave)->memory;
 }
 
 #define FUNCTIONS \
-	{.code = 0x44, .start = convert}, {.code = 0xBE, .start = read_scratchpad}, \
+	{.code = 0x44, .start = max31826_convert}, \
+		{.code = 0xBE, .start = max31826_read_scratchpad}, \
 	{ \
 		.code = READ_POWER, .start = read_power \
 	}
@@ -187,7 +190,7 @@ static const struct sim_function max31826_functions[] = {
 	/* Write, Read, Copy Scratchpad 2 */
 	{.code = 0x0F, .takes = 1, .start = target, .byte = write_second},
 	{.code = 0xAA, .takes = 1, .start = read_second},
-	{.code = 0x55, .takes = 1, .start = copy},
+	{.code = 0x55, .takes = 1, .start = max31826_copy},
 	{0},
 };
 static const struct sim_function max31850_functions[] = {FUNCTIONS, {0}};
@@ -209,11 +212,11 @@ static const struct sim_input max31850_inputs[] = {
 #define PART(part, ...) \
 	{ \
 		.name = part, .code = 0x3B, .starves = true, .state_size = sizeof(struct sim_max), \
-		.create = create, .power_on = power_on, .bit = bit, .worked = worked, \
-		.option = option, __VA_ARGS__ \
+		.create = max31826_create, .power_on = max31826_power_on, .bit = max31826_bit, \
+		.worked = max31826_worked, .option = max31826_option, __VA_ARGS__ \
 	}
 
 const struct sim_family sim_max31826 = PART("MAX31826", .functions = max31826_functions,
-                                            .inputs = max31826_inputs, .memory = memory);
+                                            .inputs = max31826_inputs, .memory = max31826_memory);
 const struct sim_family sim_max31850 = PART("MAX31850", .functions = max31850_functions,
                                             .inputs = max31850_inputs);

@@ -43,7 +43,7 @@ struct max31888 {
 	bool second; /* the low byte of the result is the next to be read */
 };
 
-static struct max31888 *state(struct sim_slave *slave)
+static struct max31888 *max31888_state(struct sim_slave *slave)
 {
 	return sim_state(slave, max31888);
 }
@@ -53,9 +53,9 @@ static int16_t word(const uint8_t *at)
 	return (int16_t)(at[0] << 8 | at[1]);
 }
 
-static void power_on(struct sim_slave *slave, int64_t t)
+static void max31888_power_on(struct sim_slave *slave, int64_t t)
 {
-	struct max31888 *s = state(slave);
+	struct max31888 *s = max31888_state(slave);
 
 	(void)t;
 	*s = (struct max31888){.early = s->early};
@@ -66,9 +66,9 @@ static void power_on(struct sim_slave *slave, int64_t t)
 	s->reg[PART] = slave->family == &sim_max30207 ? 0x30 : 0x31;
 }
 
-static void worked(struct sim_slave *slave, int64_t t)
+static void max31888_worked(struct sim_slave *slave, int64_t t)
 {
-	struct max31888 *s = state(slave);
+	struct max31888 *s = max31888_state(slave);
 	int16_t result = (int16_t)sim_round(sim_input_at(slave, 0, t) * PER_DEGREE);
 
 	slave->conversions++;
@@ -87,7 +87,7 @@ static void worked(struct sim_slave *slave, int64_t t)
 }
 
 /* The next byte of the FIFO; its register does not move on. */
-static uint8_t take(struct max31888 *s)
+static uint8_t max31888_take(struct max31888 *s)
 {
 	unsigned at = s->reg[READ_POINTER];
 
@@ -109,7 +109,7 @@ static uint8_t read_byte(struct max31888 *s, unsigned at)
 	uint8_t byte = s->reg[at & 0xFF];
 
 	if (at == FIFO)
-		return take(s);
+		return max31888_take(s);
 	if (at == STATUS)
 		s->reg[STATUS] = 0;
 	if (s->early && at == WRITE_POINTER)
@@ -120,7 +120,7 @@ static uint8_t read_byte(struct max31888 *s, unsigned at)
 /* Command, register, and the count of bytes less one. */
 static void read_registers(struct sim_slave *slave, int64_t t)
 {
-	struct max31888 *s = state(slave);
+	struct max31888 *s = max31888_state(slave);
 	unsigned at = slave->taken[0], n = slave->taken[1] + 1u;
 	uint8_t out[SIM_MAX_SEND - 2];
 
@@ -135,7 +135,7 @@ static void read_registers(struct sim_slave *slave, int64_t t)
 	sim_send_checked(slave, out, n);
 }
 
-static void begin_write(struct sim_slave *slave, int64_t t)
+static void max31888_begin_write(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
 	slave->address = slave->taken[0];
@@ -149,13 +149,13 @@ static void flush(struct max31888 *s)
 
 static void write_registers(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	struct max31888 *s = state(slave);
+	struct max31888 *s = max31888_state(slave);
 	unsigned at = slave->address++;
 
 	if (at == FIFO_CONFIGURATION && (byte & FLUSH))
 		flush(s);
 	if (at == SYSTEM && (byte & RESET))
-		power_on(slave, t);
+		max31888_power_on(slave, t);
 	if (at == SETUP && (byte & 1)) /* CONVERT_T clears itself */
 		sim_work(slave, CONVERT_NS, t);
 	if (at == FIFO_CONFIGURATION)
@@ -181,25 +181,25 @@ static void checksum_was_read(struct sim_slave *slave, int64_t t)
 
 static void reset_was_confirmed(struct sim_slave *slave, int64_t t)
 {
-	power_on(slave, t);
+	max31888_power_on(slave, t);
 	sim_end(slave);
 }
 
 /* No slot shows that it converts. */
-static bool bit(struct sim_slave *slave, int64_t t)
+static bool max31888_bit(struct sim_slave *slave, int64_t t)
 {
 	(void)slave;
 	(void)t;
 	return true;
 }
 
-static int option(struct sim_slave *slave, const char *name, double value)
+static int max31888_option(struct sim_slave *slave, const char *name, double value)
 {
 	if (strcmp(name, "count") != 0)
 		return -ENOENT;
 	if (value != WRITE_POINTER && value != RESULTS)
 		return -ERANGE;
-	state(slave)->early = value == WRITE_POINTER;
+	max31888_state(slave)->early = value == WRITE_POINTER;
 	return 0;
 }
 
@@ -207,7 +207,7 @@ static const struct sim_function functions[] = {
 	{.code = 0x44, .start = confirm, .next = checksum_was_read},
 	{.code = 0x82, .start = confirm, .next = reset_was_confirmed}, /* Soft Reset */
 	{.code = 0x33, .takes = 2, .start = read_registers},
-	{.code = 0xCC, .takes = 2, .start = begin_write, .byte = write_registers},
+	{.code = 0xCC, .takes = 2, .start = max31888_begin_write, .byte = write_registers},
 	{0},
 };
 
@@ -220,7 +220,8 @@ static const struct sim_input max30207_inputs[] = {
 	{ \
 		.name = (part), .code = 0x54, .starves = true, \
 		.state_size = sizeof(struct max31888), .functions = functions, .inputs = (input), \
-		.power_on = power_on, .worked = worked, .bit = bit, .option = option \
+		.power_on = max31888_power_on, .worked = max31888_worked, .bit = max31888_bit, \
+		.option = max31888_option \
 	}
 
 const struct sim_family sim_max31888 = THERMOMETER("MAX31888", max31888_inputs);

@@ -10,7 +10,7 @@
 enum { IODIR = 0x00, IPOL = 0x02, IOCON = 0x0A, GPIO = 0x12, OLAT = 0x14, REGISTERS = 0x16 };
 enum { SEQOP = 0x20 };
 
-static void power_on(struct sim_sensor *sensor)
+static void mcp23017_power_on(struct sim_sensor *sensor)
 {
 	memset(sensor->reg, 0, sizeof(sensor->reg));
 	sensor->reg[IODIR] = sensor->reg[IODIR + 1] = 0xFF;
@@ -24,8 +24,8 @@ static void move_on(struct sim_sensor *sensor)
 		sensor->pointer ^= 1; /* the pair's other one */
 }
 
-static bool take(struct sim_slave *slave, struct sim_sensor *sensor, uint8_t byte, unsigned at,
-                 int64_t t)
+static bool mcp23017_take(struct sim_slave *slave, struct sim_sensor *sensor, uint8_t byte,
+                          unsigned at, int64_t t)
 {
 	uint8_t to = sensor->pointer;
 
@@ -56,7 +56,8 @@ static uint8_t level(struct sim_slave *slave, const struct sim_sensor *sensor, u
 	return (uint8_t)((in & direction) | (sensor->reg[OLAT + port] & ~direction));
 }
 
-static uint8_t give(struct sim_slave *slave, struct sim_sensor *sensor, unsigned at, int64_t t)
+static uint8_t mcp23017_give(struct sim_slave *slave, struct sim_sensor *sensor, unsigned at,
+                             int64_t t)
 {
 	uint8_t from = sensor->pointer;
 
@@ -67,5 +68,7 @@ static uint8_t give(struct sim_slave *slave, struct sim_sensor *sensor, unsigned
 	return from < REGISTERS ? sensor->reg[from] : 0;
 }
 
-const struct sim_sensor_kind sim_sensor_mcp23017 = {
-	.name = "mcp23017", .power_on = power_on, .write = take, .read = give};
+const struct sim_sensor_kind sim_sensor_mcp23017 = {.name = "mcp23017",
+                                                    .power_on = mcp23017_power_on,
+                                                    .write = mcp23017_take,
+                                                    .read = mcp23017_give};

@@ -7,7 +7,7 @@
 /* E/S register: the ending offset in the lower bits, above them a flag, and these. */
 enum { OVERFLOW = 0x40, AUTHORIZED = 0x80 };
 
-static struct sim_scratchpad *state(struct sim_slave *slave)
+static struct sim_scratchpad *scratchpad_state(struct sim_slave *slave)
 {
 	return sim_state(slave, sim_scratchpad);
 }
@@ -20,7 +20,7 @@ static uint8_t partial(const struct sim_scratchpad *s)
 
 void sim_scratchpad_power_on(struct sim_slave *slave, int64_t t)
 {
-	struct sim_scratchpad *s = state(slave);
+	struct sim_scratchpad *s = scratchpad_state(slave);
 
 	(void)t;
 	memset(s->pad, 0xFF, sizeof(s->pad));
@@ -30,7 +30,7 @@ void sim_scratchpad_power_on(struct sim_slave *slave, int64_t t)
 
 void sim_scratchpad_worked(struct sim_slave *slave, int64_t t)
 {
-	struct sim_scratchpad *s = state(slave);
+	struct sim_scratchpad *s = scratchpad_state(slave);
 	unsigned page = s->kind->page, first = s->target % page, last = s->status % page;
 
 	(void)t;
@@ -48,7 +48,7 @@ void sim_scratchpad_worked(struct sim_slave *slave, int64_t t)
 bool sim_scratchpad_bit(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	if (slave->busy || state(slave)->kind->plain)
+	if (slave->busy || scratchpad_state(slave)->kind->plain)
 		return slave->busy;
 	slave->got ^= 1;
 	return slave->got & 1;
@@ -56,7 +56,7 @@ bool sim_scratchpad_bit(struct sim_slave *slave, int64_t t)
 
 void sim_scratchpad_target(struct sim_slave *slave, int64_t t)
 {
-	struct sim_scratchpad *s = state(slave);
+	struct sim_scratchpad *s = scratchpad_state(slave);
 
 	(void)t;
 	s->target = slave->address;
@@ -68,7 +68,7 @@ void sim_scratchpad_target(struct sim_slave *slave, int64_t t)
 
 void sim_scratchpad_write(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	struct sim_scratchpad *s = state(slave);
+	struct sim_scratchpad *s = scratchpad_state(slave);
 	unsigned at = slave->address++ % s->kind->page;
 
 	(void)t;
@@ -86,7 +86,7 @@ void sim_scratchpad_write(struct sim_slave *slave, uint8_t byte, int64_t t)
 /* Send target, E/S, the bytes from the target's offset to the ending one, and a checksum. */
 void sim_scratchpad_read(struct sim_slave *slave, int64_t t)
 {
-	struct sim_scratchpad *s = state(slave);
+	struct sim_scratchpad *s = scratchpad_state(slave);
 	unsigned page = s->kind->page, first = s->target % page, n = 3;
 	unsigned last = s->kind->to_end ? page - 1 : s->status % page;
 	uint8_t out[3 + 64] = {(uint8_t)s->target, (uint8_t)(s->target >> 8), s->status};
@@ -102,7 +102,7 @@ void sim_scratchpad_read(struct sim_slave *slave, int64_t t)
 
 void sim_scratchpad_copy(struct sim_slave *slave, int64_t t)
 {
-	struct sim_scratchpad *s = state(slave);
+	struct sim_scratchpad *s = scratchpad_state(slave);
 
 	if (slave->address != s->target || slave->taken[2] != s->status ||
 	    (s->status & partial(s)) || (s->kind->sequence && s->bad_sequence)) {
@@ -115,7 +115,7 @@ void sim_scratchpad_copy(struct sim_slave *slave, int64_t t)
 
 static void dump(struct sim_slave *slave, unsigned page)
 {
-	struct sim_scratchpad *s = state(slave);
+	struct sim_scratchpad *s = scratchpad_state(slave);
 
 	s->bad_sequence = true;
 	sim_send_memory(slave, s->memory, s->kind->size, page);
@@ -130,11 +130,11 @@ void sim_scratchpad_dump(struct sim_slave *slave, int64_t t)
 void sim_scratchpad_dump_pages(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	dump(slave, state(slave)->kind->page);
+	dump(slave, scratchpad_state(slave)->kind->page);
 }
 
 uint8_t *sim_scratchpad_memory(struct sim_slave *slave, size_t *size)
 {
-	*size = state(slave)->kind->size;
-	return state(slave)->memory;
+	*size = scratchpad_state(slave)->kind->size;
+	return scratchpad_state(slave)->memory;
 }

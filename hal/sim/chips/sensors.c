@@ -18,7 +18,7 @@ const struct sim_input sim_sensor_inputs[] = {
 	{0},
 };
 
-static struct sim_sensors *state(struct sim_slave *slave)
+static struct sim_sensors *sensors_state(struct sim_slave *slave)
 {
 	return sim_state(slave, sim_sensors);
 }
@@ -30,7 +30,7 @@ int sim_sensors_option(struct sim_slave *slave, const char *name, double value)
 			continue;
 		if (value < 0x08 || value > 0x77 || value != (int)value)
 			return -ERANGE;
-		state(slave)->part[i].address = (uint8_t)value;
+		sensors_state(slave)->part[i].address = (uint8_t)value;
 		return 0;
 	}
 	return -ENOENT;
@@ -38,7 +38,7 @@ int sim_sensors_option(struct sim_slave *slave, const char *name, double value)
 
 void sim_sensors_power_on(struct sim_slave *slave)
 {
-	struct sim_sensors *s = state(slave);
+	struct sim_sensors *s = sensors_state(slave);
 
 	s->selected = -1;
 	for (unsigned i = 0; i < SENSOR_PARTS; i++) {
@@ -49,7 +49,7 @@ void sim_sensors_power_on(struct sim_slave *slave)
 
 bool sim_sensors_start(struct sim_slave *slave, uint8_t address, int64_t t)
 {
-	struct sim_sensors *s = state(slave);
+	struct sim_sensors *s = sensors_state(slave);
 
 	s->selected = -1;
 	s->took = 0;
@@ -65,7 +65,7 @@ bool sim_sensors_start(struct sim_slave *slave, uint8_t address, int64_t t)
 
 bool sim_sensors_write(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	struct sim_sensors *s = state(slave);
+	struct sim_sensors *s = sensors_state(slave);
 
 	return s->selected >= 0 &&
 	       kinds[s->selected]->write(slave, &s->part[s->selected], byte, s->took++, t);
@@ -73,7 +73,7 @@ bool sim_sensors_write(struct sim_slave *slave, uint8_t byte, int64_t t)
 
 uint8_t sim_sensors_read(struct sim_slave *slave, int64_t t)
 {
-	struct sim_sensors *s = state(slave);
+	struct sim_sensors *s = sensors_state(slave);
 
 	if (s->selected < 0)
 		return 0xFF;
@@ -82,5 +82,5 @@ uint8_t sim_sensors_read(struct sim_slave *slave, int64_t t)
 
 void sim_sensors_stop(struct sim_slave *slave)
 {
-	state(slave)->selected = -1;
+	sensors_state(slave)->selected = -1;
 }

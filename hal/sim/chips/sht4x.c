@@ -23,7 +23,7 @@ static uint8_t crc(const uint8_t *bytes)
 	return sum;
 }
 
-static void put(uint8_t *out, int64_t word)
+static void sht4x_put(uint8_t *out, int64_t word)
 {
 	word = word < 0 ? 0 : word > 65535 ? 65535 : word;
 	out[0] = (uint8_t)(word >> 8);
@@ -46,7 +46,7 @@ static int64_t measures(uint8_t command)
 	}
 }
 
-static void power_on(struct sim_sensor *sensor)
+static void sht4x_power_on(struct sim_sensor *sensor)
 {
 	sensor->out_count = 0;
 	sensor->until = 0;
@@ -58,8 +58,8 @@ static bool selects(const struct sim_sensor *sensor, bool reading, int64_t t)
 	return t >= sensor->until && (!reading || sensor->out_count);
 }
 
-static bool take(struct sim_slave *slave, struct sim_sensor *sensor, uint8_t byte, unsigned at,
-                 int64_t t)
+static bool sht4x_take(struct sim_slave *slave, struct sim_sensor *sensor, uint8_t byte,
+                       unsigned at, int64_t t)
 {
 	double temperature = sim_input_at(slave, SENSOR_TEMPERATURE, t);
 	double humidity = sim_input_at(slave, SENSOR_HUMIDITY, t);
@@ -69,11 +69,11 @@ static bool take(struct sim_slave *slave, struct sim_sensor *sensor, uint8_t byt
 	if (at > 0)
 		return false;
 	if (byte == SERIAL) {
-		put(sensor->out, slave->rom[1] << 8 | slave->rom[2]);
-		put(sensor->out + 3, slave->rom[3] << 8 | slave->rom[4]);
+		sht4x_put(sensor->out, slave->rom[1] << 8 | slave->rom[2]);
+		sht4x_put(sensor->out + 3, slave->rom[3] << 8 | slave->rom[4]);
 	} else if (measures(byte)) {
-		put(sensor->out, sim_round((temperature + 45) / 175 * 65535));
-		put(sensor->out + 3, sim_round((humidity + 6) / 125 * 65535));
+		sht4x_put(sensor->out, sim_round((temperature + 45) / 175 * 65535));
+		sht4x_put(sensor->out + 3, sim_round((humidity + 6) / 125 * 65535));
 		slave->conversions++;
 	} else {
 		return byte == RESET;
@@ -83,7 +83,8 @@ static bool take(struct sim_slave *slave, struct sim_sensor *sensor, uint8_t byt
 }
 
 /* A result is read once. */
-static uint8_t give(struct sim_slave *slave, struct sim_sensor *sensor, unsigned at, int64_t t)
+static uint8_t sht4x_give(struct sim_slave *slave, struct sim_sensor *sensor, unsigned at,
+                          int64_t t)
 {
 	(void)slave;
 	(void)t;
@@ -93,8 +94,8 @@ static uint8_t give(struct sim_slave *slave, struct sim_sensor *sensor, unsigned
 
 const struct sim_sensor_kind sim_sensor_sht4x = {
 	.name = "sht4x",
-	.power_on = power_on,
+	.power_on = sht4x_power_on,
 	.selects = selects,
-	.write = take,
-	.read = give,
+	.write = sht4x_take,
+	.read = sht4x_give,
 };

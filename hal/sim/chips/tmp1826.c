@@ -29,24 +29,24 @@ enum work { CONVERSION, COPY_SETTINGS, COPY_MEMORY, FETCH };
 #define PROGRAM_NS (21 * NS_PER_MS)
 #define READ_IDLE_NS 560000 /* tREADIDLE */
 
-static struct sim_tmp1826 *state(struct sim_slave *slave)
+static struct sim_tmp1826 *tmp1826_state(struct sim_slave *slave)
 {
 	return sim_state(slave, sim_tmp1826);
 }
 
-static void create(struct sim_slave *slave)
+static void tmp1826_create(struct sim_slave *slave)
 {
 	static const uint8_t factory[SIM_TMP1826_SETTINGS] = {
 		ALWAYS | LONG | ALERT_MODE, OD_EN, 0, 0x00, 0x00, 0xF0, 0x07};
-	struct sim_tmp1826 *s = state(slave);
+	struct sim_tmp1826 *s = tmp1826_state(slave);
 
 	memcpy(s->stored, factory, sizeof(factory));
 	memset(s->memory, 0xFF, sizeof(s->memory));
 }
 
-static void power_on(struct sim_slave *slave, int64_t t)
+static void tmp1826_power_on(struct sim_slave *slave, int64_t t)
 {
-	struct sim_tmp1826 *s = state(slave);
+	struct sim_tmp1826 *s = tmp1826_state(slave);
 
 	(void)t;
 	memcpy(s->settings, s->stored, sizeof(s->settings));
@@ -63,9 +63,9 @@ static int in_128ths(const struct sim_tmp1826 *s, const uint8_t *at)
 	return s->settings[0] & TEMP_FMT ? raw : raw * 8;
 }
 
-static void measure(struct sim_slave *slave, int64_t t)
+static void tmp1826_measure(struct sim_slave *slave, int64_t t)
 {
-	struct sim_tmp1826 *s = state(slave);
+	struct sim_tmp1826 *s = tmp1826_state(slave);
 	double celsius = sim_input_at(slave, 0, t);
 	int raw;
 
@@ -89,7 +89,7 @@ static bool is_locked(const struct sim_tmp1826 *s)
 /* The block that was fetched; behind the last one are ones. */
 static void send_fetched(struct sim_slave *slave)
 {
-	struct sim_tmp1826 *s = state(slave);
+	struct sim_tmp1826 *s = tmp1826_state(slave);
 	uint8_t out[SIM_TMP1826_BLOCK + 1];
 
 	if (slave->layer != SIM_FUNCTION)
@@ -104,13 +104,13 @@ static void send_fetched(struct sim_slave *slave)
 	sim_send(slave, out, SIM_TMP1826_BLOCK + s->checked_blocks);
 }
 
-static void worked(struct sim_slave *slave, int64_t t)
+static void tmp1826_worked(struct sim_slave *slave, int64_t t)
 {
-	struct sim_tmp1826 *s = state(slave);
+	struct sim_tmp1826 *s = tmp1826_state(slave);
 
 	switch (s->work) {
 	case CONVERSION:
-		measure(slave, t);
+		tmp1826_measure(slave, t);
 		break;
 	case COPY_SETTINGS:
 		memcpy(s->stored, s->settings, sizeof(s->stored));
@@ -128,7 +128,7 @@ static void worked(struct sim_slave *slave, int64_t t)
 }
 
 /* The host has to leave the bus idle meanwhile: no data sheet promises a busy slot. */
-static bool bit(struct sim_slave *slave, int64_t t)
+static bool tmp1826_bit(struct sim_slave *slave, int64_t t)
 {
 	(void)slave;
 	(void)t;
@@ -137,13 +137,13 @@ static bool bit(struct sim_slave *slave, int64_t t)
 
 static void work(struct sim_slave *slave, enum work what, int64_t takes, int64_t t)
 {
-	state(slave)->work = what;
+	tmp1826_state(slave)->work = what;
 	sim_work(slave, takes, t);
 }
 
-static void convert(struct sim_slave *slave, int64_t t)
+static void tmp1826_convert(struct sim_slave *slave, int64_t t)
 {
-	const uint8_t config = state(slave)->settings[0];
+	const uint8_t config = tmp1826_state(slave)->settings[0];
 	int64_t takes = config & LONG ? LONG_NS : SHORT_NS;
 
 	work(slave, CONVERSION, DELAY_NS + (config & AVERAGE ? 8 * takes : takes), t);
@@ -155,9 +155,9 @@ static void copy_settings(struct sim_slave *slave, int64_t t)
 }
 
 /* Two times eight bytes, each with its checksum. */
-static void read_scratchpad(struct sim_slave *slave, int64_t t)
+static void tmp1826_read_scratchpad(struct sim_slave *slave, int64_t t)
 {
-	struct sim_tmp1826 *s = state(slave);
+	struct sim_tmp1826 *s = tmp1826_state(slave);
 	uint8_t *out = s->sent;
 
 	(void)t;
@@ -177,7 +177,7 @@ static void read_scratchpad(struct sim_slave *slave, int64_t t)
 /* The flags are cleared when the status register was read. */
 static void read_more(struct sim_slave *slave, int64_t t)
 {
-	struct sim_tmp1826 *s = state(slave);
+	struct sim_tmp1826 *s = tmp1826_state(slave);
 
 	(void)t;
 	if (slave->address == 2)
@@ -194,7 +194,7 @@ static void begin_settings(struct sim_slave *slave, int64_t t)
 
 static void write_settings(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	struct sim_tmp1826 *s = state(slave);
+	struct sim_tmp1826 *s = tmp1826_state(slave);
 	unsigned at = slave->address++;
 
 	(void)t;
@@ -216,7 +216,7 @@ static uint16_t address(const struct sim_slave *slave)
 
 static void begin_block(struct sim_slave *slave, int64_t t)
 {
-	struct sim_tmp1826 *s = state(slave);
+	struct sim_tmp1826 *s = tmp1826_state(slave);
 
 	(void)t;
 	s->target = address(slave);
@@ -230,12 +230,12 @@ static void send_block_crc(struct sim_slave *slave, unsigned n)
 {
 	uint8_t crc = sim_crc8(0, slave->taken, 2);
 
-	sim_send_byte(slave, sim_crc8(crc, state(slave)->second, n));
+	sim_send_byte(slave, sim_crc8(crc, tmp1826_state(slave)->second, n));
 }
 
 static void write_block(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	struct sim_tmp1826 *s = state(slave);
+	struct sim_tmp1826 *s = tmp1826_state(slave);
 	unsigned n = s->target >> 8 == LOCK_PAGE ? 1 : SIM_TMP1826_BLOCK;
 
 	(void)t;
@@ -246,7 +246,7 @@ static void write_block(struct sim_slave *slave, uint8_t byte, int64_t t)
 
 static void read_block(struct sim_slave *slave, int64_t t)
 {
-	struct sim_tmp1826 *s = state(slave);
+	struct sim_tmp1826 *s = tmp1826_state(slave);
 	unsigned n = s->target >> 8 == LOCK_PAGE ? 1 : SIM_TMP1826_BLOCK;
 
 	(void)t;
@@ -262,13 +262,14 @@ static void end_block(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
 	if (slave->address++ == 0)
-		send_block_crc(slave,
-		               state(slave)->target >> 8 == LOCK_PAGE ? 1 : SIM_TMP1826_BLOCK);
+		send_block_crc(slave, tmp1826_state(slave)->target >> 8 == LOCK_PAGE
+		                              ? 1
+		                              : SIM_TMP1826_BLOCK);
 }
 
 static void copy_block(struct sim_slave *slave, int64_t t)
 {
-	if (slave->taken[0] == KEY && state(slave)->target != SIM_TMP1826_NOWHERE)
+	if (slave->taken[0] == KEY && tmp1826_state(slave)->target != SIM_TMP1826_NOWHERE)
 		work(slave, COPY_MEMORY, PROGRAM_NS, t);
 	else
 		sim_end(slave);
@@ -287,10 +288,10 @@ static void read_memory(struct sim_slave *slave, int64_t t)
 }
 
 static const struct sim_function functions[] = {
-	{.code = 0x44, .start = convert},
+	{.code = 0x44, .start = tmp1826_convert},
 	/* Write, Read, Copy Scratchpad-1: temperature and settings */
 	{.code = 0x4E, .start = begin_settings, .byte = write_settings},
-	{.code = 0xBE, .start = read_scratchpad, .next = read_more},
+	{.code = 0xBE, .start = tmp1826_read_scratchpad, .next = read_more},
 	{.code = 0x48, .start = copy_settings},
 	/* Write, Read, Copy Scratchpad-2, Read EEPROM */
 	{.code = 0x0F, .takes = 2, .start = begin_block, .byte = write_block},
@@ -300,14 +301,14 @@ static const struct sim_function functions[] = {
 	{0},
 };
 
-static bool alarm(struct sim_slave *slave, int64_t t)
+static bool tmp1826_alarm(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	return (state(slave)->status & (ALERT_HIGH | ALERT_LOW)) != 0;
+	return (tmp1826_state(slave)->status & (ALERT_HIGH | ALERT_LOW)) != 0;
 }
 
 /* Which settings the EEPROM holds: "precise" is the format, "averaging" that of 8 conversions. */
-static int option(struct sim_slave *slave, const char *name, double value)
+static int tmp1826_option(struct sim_slave *slave, const char *name, double value)
 {
 	uint8_t flag = strcmp(name, "precise") == 0     ? TEMP_FMT
 	               : strcmp(name, "averaging") == 0 ? AVERAGE
@@ -317,16 +318,16 @@ static int option(struct sim_slave *slave, const char *name, double value)
 		return -ENOENT;
 	if (value != 0 && value != 1)
 		return -ERANGE;
-	state(slave)->stored[0] &= (uint8_t)~flag;
+	tmp1826_state(slave)->stored[0] &= (uint8_t)~flag;
 	if (value == 1)
-		state(slave)->stored[0] |= flag;
+		tmp1826_state(slave)->stored[0] |= flag;
 	return 0;
 }
 
 static uint8_t *memory(struct sim_slave *slave, size_t *size)
 {
 	*size = SIM_TMP1826_MEMORY;
-	return state(slave)->memory;
+	return tmp1826_state(slave)->memory;
 }
 
 static const struct sim_input inputs[] = {
@@ -338,8 +339,9 @@ static const struct sim_input inputs[] = {
 	{ \
 		.name = (part), .code = 0x26, .overdrive = true, .crc8 = true, \
 		.state_size = sizeof(struct sim_tmp1826), .inputs = inputs, \
-		.functions = functions, .create = create, .power_on = power_on, .alarm = alarm, \
-		.bit = bit, .worked = worked, .option = option, .memory = memory \
+		.functions = functions, .create = tmp1826_create, .power_on = tmp1826_power_on, \
+		.alarm = tmp1826_alarm, .bit = tmp1826_bit, .worked = tmp1826_worked, \
+		.option = tmp1826_option, .memory = memory \
 	}
 
 const struct sim_family sim_tmp1826 = PART("TMP1826");

@@ -20,7 +20,7 @@ enum {
 };
 enum { SHUT_DOWN = 1 };
 
-static void power_on(struct sim_sensor *sensor)
+static void vcnl4040_power_on(struct sim_sensor *sensor)
 {
 	memset(sensor->reg, 0, sizeof(sensor->reg));
 	sensor->reg[2 * ALS_CONF] = sensor->reg[2 * PS_CONF] = SHUT_DOWN;
@@ -33,31 +33,31 @@ static uint16_t within(double value)
 	return (uint16_t)(value < 0 ? 0 : value > 65535 ? 65535 : sim_round(value));
 }
 
-static void put(struct sim_sensor *sensor, unsigned command, uint16_t word)
+static void vcnl4040_put(struct sim_sensor *sensor, unsigned command, uint16_t word)
 {
 	sensor->reg[2 * command] = (uint8_t)word;
 	sensor->reg[2 * command + 1] = (uint8_t)(word >> 8);
 }
 
 /* What is switched on measures. 0.1 lux a step at 80 ms, and half of it at twice the time. */
-static void measure(struct sim_slave *slave, struct sim_sensor *sensor, int64_t t)
+static void vcnl4040_measure(struct sim_slave *slave, struct sim_sensor *sensor, int64_t t)
 {
 	uint8_t light = sensor->reg[2 * ALS_CONF];
 	double steps = sim_input_at(slave, SENSOR_LIGHT, t) * 10 * (1 << (light >> 6));
 
 	if (!(light & SHUT_DOWN)) {
-		put(sensor, ALS_DATA, within(steps));
-		put(sensor, WHITE_DATA, within(steps));
+		vcnl4040_put(sensor, ALS_DATA, within(steps));
+		vcnl4040_put(sensor, WHITE_DATA, within(steps));
 	}
 	if (!(sensor->reg[2 * PS_CONF] & SHUT_DOWN))
-		put(sensor, PS_DATA, within(sim_input_at(slave, SENSOR_PROXIMITY, t)));
+		vcnl4040_put(sensor, PS_DATA, within(sim_input_at(slave, SENSOR_PROXIMITY, t)));
 }
 
-static bool take(struct sim_slave *slave, struct sim_sensor *sensor, uint8_t byte, unsigned at,
-                 int64_t t)
+static bool vcnl4040_take(struct sim_slave *slave, struct sim_sensor *sensor, uint8_t byte,
+                          unsigned at, int64_t t)
 {
 	if (at == 0) {
-		measure(slave, sensor, t);
+		vcnl4040_measure(slave, sensor, t);
 		sensor->pointer = byte;
 		return byte <= LAST;
 	}
@@ -68,12 +68,15 @@ static bool take(struct sim_slave *slave, struct sim_sensor *sensor, uint8_t byt
 	return true;
 }
 
-static uint8_t give(struct sim_slave *slave, struct sim_sensor *sensor, unsigned at, int64_t t)
+static uint8_t vcnl4040_give(struct sim_slave *slave, struct sim_sensor *sensor, unsigned at,
+                             int64_t t)
 {
 	(void)slave;
 	(void)t;
 	return at < 2 && sensor->pointer <= LAST ? sensor->reg[2 * sensor->pointer + at] : 0xFF;
 }
 
-const struct sim_sensor_kind sim_sensor_vcnl4040 = {
-	.name = "vcnl4040", .power_on = power_on, .write = take, .read = give};
+const struct sim_sensor_kind sim_sensor_vcnl4040 = {.name = "vcnl4040",
+                                                    .power_on = vcnl4040_power_on,
+                                                    .write = vcnl4040_take,
+                                                    .read = vcnl4040_give};
