@@ -106,7 +106,7 @@ def test_the_role_makes_a_machine_and_its_second_run_changes_nothing(scene):
     machine = Machine(scene)
     try:
         secret = {"face": "mqtt", "name": "mqtt-password", "content": "it's {secret}"}
-        variables = dict(owsd_rio=machine.rio("room"), owsd_commanders=["stranger"], owsd_readers=["setter"],
+        variables = dict(owsd_rio=machine.rio("room"), owsd_controllers=["stranger"], owsd_readers=["setter"],
                          owsd_credentials=[secret])
         status, text, changed = machine.run(**variables)
         assert status == 0 and changed, text
