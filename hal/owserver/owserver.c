@@ -32,8 +32,8 @@
 #define GREETING_NS (5000 * NS_PER_MS)
 #define SLICE_NS (50 * NS_PER_MS)
 #define NAMES_NS (5000 * NS_PER_MS) /* owserver answers requests on a busy wire one after another */
-/* For the next connection when the server closed an idle one. */
-#define REOPEN_NS (1000 * NS_PER_MS)
+/* For the next connection and its greeting when the server closed an idle one. */
+#define REOPEN_NS (2000 * NS_PER_MS)
 #define READ_MAX 65536
 
 static_assert(BUS_TOKEN == FRAME_TOKEN_SIZE && BUS_TOKENS_MAX == FRAME_TOKENS_SENT,
@@ -216,23 +216,23 @@ static void go_on_greeting(struct owserver *server)
 		out_of_time(server);
 }
 
-/* If a server closed an idle connection, connect again to learn whether the server is there. */
+/*
+ * If a server closed an idle connection, connect again and ask a NOP, to learn whether the server
+ * is there: the kernel may make a connection to a server that goes at that moment, and lose it
+ * without a word.
+ */
 static void look_at_idle(struct owserver *server)
 {
+	const struct talk_request nop = {.type = FRAME_NOP};
 	struct talk *talk = &server->talk;
-	int err = 0;
+	int err;
 
 	if (!connection_is_open(&talk->connection) || !connection_is_stale(&talk->connection))
 		return;
-	bus_count(&server->counter[TALK_STALE], 1);
-	err = connection_open(&talk->connection, now_of(server) + REOPEN_NS);
-	if (err == -ECANCELED)
-		return;
-	if (err) {
-		go_down(server, err == -ETIMEDOUT ? err : -ECONNRESET, talk->connection.trouble);
-		return;
-	}
-	bus_count(&server->counter[TALK_CONNECTIONS], 1);
+	talk->heard = false;
+	err = talk_exchange(talk, &nop, now_of(server) + REOPEN_NS);
+	if (err && err != -EINPROGRESS)
+		go_down(server, as_loss(err), talk->trouble);
 }
 
 static int64_t owserver_step(struct bus *bus, int64_t now)

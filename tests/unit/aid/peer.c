@@ -354,10 +354,16 @@ void peer_restart(struct peer *peer, const char *plan)
 	begin(peer);
 }
 
-void peer_stop(struct peer *peer)
+void peer_leave(struct peer *peer)
 {
 	__atomic_store_n(&peer->stopping, 1, __ATOMIC_SEQ_CST);
 	pthread_join(peer->thread, NULL);
+}
+
+void peer_stop(struct peer *peer)
+{
+	if (!is_stopping(peer))
+		peer_leave(peer);
 	close(peer->listen_fd);
 	if (peer->family == AF_UNIX)
 		unlink(peer->path_of_socket);

@@ -39,6 +39,8 @@ struct peer {
 /* family AF_INET, AF_INET6 or AF_UNIX; plan has to stay. Fails the test when there is no port. */
 void peer_start(struct peer *peer, int family, const char *plan);
 void peer_stop(struct peer *peer);
+/* Close the connection and serve no more, but go on listening until peer_stop(). */
+void peer_leave(struct peer *peer);
 /* Free the port of a stopped peer. */
 void peer_end(struct peer *peer);
 /* Start again on the same port after peer_stop(). */

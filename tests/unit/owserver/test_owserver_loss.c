@@ -138,6 +138,16 @@ static void test_a_server_that_goes_while_idle_is_noticed(void)
 	TEST_ASSERT_EQUAL_INT(-ENOTCONN, read_temperature());
 }
 
+/* Nobody serves the connection: such a one the kernel makes, too, while a server goes. */
+static void test_a_server_that_closes_and_then_only_listens_is_noticed(void)
+{
+	serve("");
+	TEST_ASSERT_EQUAL_INT(0, read_temperature());
+	peer_leave(&peer);
+	goes_down_with(-ETIMEDOUT, peer.target);
+	TEST_ASSERT_EQUAL_INT(-ENOTCONN, read_temperature());
+}
+
 static void test_an_idle_bus_has_nothing_to_do_until_its_server_closes(void)
 {
 	struct pollfd watched = {.events = POLLIN};
@@ -287,6 +297,7 @@ int main(void)
 	RUN_TEST(test_a_reset_is_a_loss);
 	RUN_TEST(test_a_target_that_is_not_there_is_tried_for_ever_and_told_once);
 	RUN_TEST(test_a_server_that_goes_while_idle_is_noticed);
+	RUN_TEST(test_a_server_that_closes_and_then_only_listens_is_noticed);
 	RUN_TEST(test_an_idle_bus_has_nothing_to_do_until_its_server_closes);
 	RUN_TEST(test_a_worker_that_sleeps_notices_that_the_server_goes);
 	RUN_TEST(test_an_unknown_name_says_so);
