@@ -6,7 +6,9 @@
 #include "hal/chips/thermometer.h"
 #include "hal/native/broadcast.h"
 #include "hal/native/first.h"
+#include "hal/native/first_asked.h"
 #include "hal/native/first_wire.h"
+#include "hal/native/guess.h"
 #include "hal/native/hunt.h"
 #include "hal/native/job.h"
 #include "hal/native/job_txn.h"
@@ -20,29 +22,6 @@
 #define READ_SCRATCHPAD 0xbe
 #define SCRATCHPAD_SIZE 9
 #define TRIES 2
-
-/* Is it certain without the chip's help which chip it is? */
-static bool is_plain(const struct family *family)
-{
-	return family && family->thermometer && !family->kind && !family->identify;
-}
-
-/* Does a request that was not looked at ask for the temperature of a device that its id names? */
-static bool names_one(const struct native *native, const struct job *job, struct path *path)
-{
-	if (!job->req || job->state != JOB_NEW || job->req->op != BUS_READ ||
-	    job->req->prio <= BUS_OUTPUT ||
-	    path_split(job->req->path, strlen(job->req->path), path) || !path->has_rom ||
-	    path->last.len != path->device.len || path->alarm)
-		return false;
-	const struct family *family = sensors_family(&native->sensors, path->rom);
-
-	if (!is_plain(family))
-		return false;
-	const struct property *property = family_property(family, NULL, path->property.text,
-	                                                  path->property.len);
-	return property && property->convert;
-}
 
 static bool is_on(const struct path *path, unsigned n)
 {
@@ -59,7 +38,7 @@ static bool are_served(const struct native *native, unsigned n)
 		if (!job->req || job->first != FIRST_TAKES_PART)
 			continue;
 		if (job->state != JOB_NEW ? job->txn.device && job->txn.device->channel == n
-		                          : names_one(native, job, &path) && is_on(&path, n))
+		                          : first_names(native, job, &path) && is_on(&path, n))
 			return false;
 	}
 	return true;
@@ -71,8 +50,7 @@ static bool may_convert(const struct native *native, unsigned n, int64_t now)
 	const struct channel *channel = &native->channel[n];
 	const struct first *first = &channel->first;
 
-	if (channel->listed || !channel->searching || !native_abreast(native, n) ||
-	    channel->link->driven || channel->link->passive)
+	if (!first_fits(native, n) || (!channel->searching && !first->likely))
 		return false;
 	return !first->tried || (!first->refused && first->ready_ns && first->ready_ns <= now &&
 	                         are_served(native, n));
@@ -80,6 +58,8 @@ static bool may_convert(const struct native *native, unsigned n, int64_t now)
 
 static bool has_thermometer(const struct native *native, unsigned n)
 {
+	if (native->channel[n].first.likely)
+		return true;
 	for (unsigned i = 0; i < native->table.count; i++)
 		if (native_thermometer(&native->table.devices[i], n) &&
 		    native->table.devices[i].seen == native->channel[n].round)
@@ -111,7 +91,7 @@ static void first_convert(struct native *native, unsigned n)
 	channel->first.ready_ns = channel->simultaneous_ns[SIMULTANEOUS_TEMPERATURE];
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++)
 		if (native->jobs[i].first != FIRST_LEFT &&
-		    names_one(native, &native->jobs[i], &path) && is_on(&path, n))
+		    first_names(native, &native->jobs[i], &path) && is_on(&path, n))
 			native->jobs[i].first = FIRST_TAKES_PART;
 }
 
@@ -121,7 +101,7 @@ static bool is_asked(const struct native *native, unsigned n)
 
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++)
 		if (native->jobs[i].first != FIRST_LEFT &&
-		    names_one(native, &native->jobs[i], &path) && is_on(&path, n))
+		    first_names(native, &native->jobs[i], &path) && is_on(&path, n))
 			return true;
 	return false;
 }
@@ -150,7 +130,7 @@ static void take_new(struct native *native, int64_t now)
 
 		if (needs_no_wire(job, &path))
 			job_look(native, job, now);
-		else if (native->first_left && !job->first && names_one(native, job, &path))
+		else if (native->first_left && !job->first && first_names(native, job, &path))
 			job->first = job->req->fresh || path.uncached || native->uncached
 			                     ? FIRST_NO
 			                     : FIRST_TAKES_PART;
@@ -208,7 +188,9 @@ static void read_unknown(struct native *native, struct job *job, unsigned n, int
 		err = thermometer_saw(&txn, 0, in, sizeof(in));
 	if (err) {
 		if (txn.silent || ++job->tries == TRIES) {
-			job->first = FIRST_LEFT;
+			/* It was another one that begins so: the search may still find it. */
+			job->first = job->likely ? FIRST_TAKES_PART : FIRST_LEFT;
+			job->likely &= ~(UINT64_C(1) << n);
 			job->tries = 0;
 		}
 		return;
@@ -245,12 +227,14 @@ static bool is_ready(struct native *native, struct job *job, int64_t now, int64_
 	*n = 0;
 	/* The only wire is the one on which an id that nobody knows may be. */
 	bool only = native_next(native, 1) == NATIVE_ALL;
-	if (!names_one(native, job, &path))
+	if (!first_names(native, job, &path))
 		return false;
 	const struct device *device = device_find(&native->table, path.rom);
 	bool known = device && device->present;
 	if (known)
 		*n = device->channel;
+	else if (job->likely)
+		*n = (unsigned)__builtin_ctzll(job->likely);
 	else if (!only)
 		return false;
 	int64_t ready_ns = native->channel[*n].first.ready_ns;
@@ -294,7 +278,8 @@ static bool others_wait(const struct native *native, bool *urgent)
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
 		const struct job *job = &native->jobs[i];
 
-		if (!job->req || job->first || names_one(native, job, &path))
+		if (!job->req || job->first || first_names(native, job, &path) ||
+		    first_asks(native, job))
 			continue;
 		wait = true;
 		*urgent |= job->req->prio <= BUS_OUTPUT;
@@ -376,5 +361,5 @@ bool first_step(struct native *native, int64_t now, int64_t *next)
 		first_convert(native, n);
 		return true;
 	}
-	return read_next(native, now, next);
+	return read_next(native, now, next) || guess_step(native, now);
 }

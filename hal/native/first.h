@@ -5,14 +5,15 @@
  * A search takes 23 ms for each device, and a conversion 750 ms for all. So as soon as one
  * thermometer is found on a wire, and some are asked for, all on the wire are asked for their
  * supply, and told to convert; the search goes on meanwhile. When that is over, those that were
- * asked for before are read, and all convert again for those that asked later. On the only wire of
- * a bus that concerns ids that the search has not come to yet, too: a scratchpad after Match ROM
- * with the right checksum proves that the chip is there.
+ * asked for before are read, and all convert again for those that asked later. That concerns ids
+ * that the search has not come to yet, too, on the only wire of a bus, or on the one that a short
+ * search tells (guess.h): a scratchpad after Match ROM with the right checksum proves that the chip
+ * is there.
  *
  * Not where a chip's scratchpad has to tell first what it is (family code 3B), on branches of
  * couplers, with drivers in place of a wire, on wires with a parasitic thermometer, nor while an
- * alarm or an output waits for the end of the search. Requests of other kinds wait for that as
- * ever: then search and readings take turns.
+ * alarm or an output waits for the end of the search. What names a device by an id alone does not
+ * wait for that (first_asked.h). For others search and readings take turns.
  *
  * The supply is asked for once more when the search has ended: a device that came meanwhile was
  * not asked.

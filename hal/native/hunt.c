@@ -227,15 +227,6 @@ struct lone {
 	unsigned n;
 };
 
-static bool same_bits(const uint8_t a[8], const uint8_t b[8], unsigned bits)
-{
-	unsigned bytes = bits / 8;
-
-	if (memcmp(a, b, bytes) != 0)
-		return false;
-	return bits % 8 == 0 || ((a[bytes] ^ b[bytes]) & ((1 << bits % 8) - 1)) == 0;
-}
-
 static bool lone(void *ctx, const uint8_t prefix[8], unsigned bits, uint8_t rom[8])
 {
 	const struct lone *lone = ctx;
@@ -245,7 +236,7 @@ static bool lone(void *ctx, const uint8_t prefix[8], unsigned bits, uint8_t rom[
 		const struct device *device = &lone->native->table.devices[i];
 
 		if (!device->present || device->channel != lone->n || !device->family->alarms ||
-		    !same_bits(device->rom, prefix, bits))
+		    !search_same(device->rom, prefix, bits))
 			continue;
 		if (only)
 			return false;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "hal/native/answer.h"
+#include "hal/native/hunt.h"
 #include "hal/native/limits.h"
 #include "hal/native/locate.h"
 #include "hal/native/master.h"
@@ -28,7 +29,11 @@ static int not_found(const struct native *native)
 static void missing_end(struct native *native, struct job *job)
 {
 	presence_lost(native, job->txn.device);
-	job_answer(native, job, not_found(native));
+	/* After the adapter was lost it may have been plugged in elsewhere. */
+	if (hunt_initial(native) && job->req->op != BUS_WRITE)
+		locate_wait(native, job, native_now(native));
+	else
+		job_answer(native, job, not_found(native));
 }
 
 void locate_missing(struct native *native, struct job *job, int64_t now)
@@ -93,6 +98,12 @@ static bool lacks_any(const struct native *native, const struct job *job)
 	return false;
 }
 
+/* It is nowhere. Before all is searched it may be behind a coupler that nobody knows. */
+static bool is_decided(const struct native *native, const struct job *job)
+{
+	return !hunt_initial(native) && !lacks_any(native, job);
+}
+
 /* Every channel that it could be on has been looked at, or was found to be short. */
 static void answer_away(struct native *native, struct job *job)
 {
@@ -116,7 +127,7 @@ void locate_wait(struct native *native, struct job *job, int64_t now)
 	job->state = JOB_LOCATE;
 	job->sought = job->heard = false;
 	job->locate_ns = now;
-	if (!lacks_any(native, job))
+	if (is_decided(native, job))
 		answer_away(native, job);
 }
 
@@ -141,7 +152,7 @@ static void let_go(struct native *native)
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
 		struct job *job = &native->jobs[i];
 
-		if (is_waiting(job) && !(found && is_found(native, job)) && !lacks_any(native, job))
+		if (is_waiting(job) && !(found && is_found(native, job)) && is_decided(native, job))
 			answer_away(native, job);
 	}
 }

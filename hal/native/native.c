@@ -12,6 +12,7 @@
 #include "hal/native/cost.h"
 #include "hal/native/ending.h"
 #include "hal/native/first.h"
+#include "hal/native/first_asked.h"
 #include "hal/native/hunt.h"
 #include "hal/native/job.h"
 #include "hal/native/limits.h"
@@ -268,16 +269,22 @@ static void expire(struct native *native, int64_t now, int64_t *next)
 	}
 }
 
-/* *other: of those that read no thermometer the one that waits longest, whatever its rank. */
+/*
+ * *other: of those that read no thermometer the one that waits longest, whatever its rank. Before
+ * all wires were searched, of those that need not wait for that.
+ */
 static struct job *pick(struct native *native, int64_t now, int64_t *next, struct job **other)
 {
 	struct job *best = NULL, *all = NULL;
+	bool initial = hunt_initial(native);
 	unsigned soon = 0;
 
 	native->locate.waits = native->locate.urgent = false;
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
 		struct job *job = &native->jobs[i];
 
+		if (initial && !first_asks(native, job))
+			continue;
 		if (job->req && job->state == JOB_NEW)
 			job_look(native, job, now);
 		if (job->req && job->state == JOB_LOCATE && !job->verified) {
@@ -350,6 +357,26 @@ static void native_run(struct native *native, struct job *job, int64_t now)
 		job_step(native, job, now);
 }
 
+/*
+ * Before all wires were searched: outputs first, then others and the search in turn. Each device is
+ * looked for when it is asked for.
+ */
+static bool ask_early(struct native *native, int64_t now, int64_t *next)
+{
+	struct job *other = NULL, *job = pick(native, now, next, &other);
+
+	if (native->locate.urgent && locate_step(native, now, false, next))
+		return true;
+	bool urgent = job && job->req->prio <= BUS_OUTPUT;
+	if (!urgent && (native->early = !native->early))
+		return false;
+	if (!urgent && native->locate.waits && locate_step(native, now, false, next))
+		return true;
+	if (job)
+		native_run(native, job, now);
+	return job;
+}
+
 static int64_t step(struct native *native, int64_t now)
 {
 	int64_t next = INT64_MAX;
@@ -359,6 +386,8 @@ static int64_t step(struct native *native, int64_t now)
 	if (!native->up)
 		return now;
 	expire(native, now, &next);
+	if (hunt_initial(native) && ask_early(native, now, &next))
+		return now;
 	if (first_step(native, now, &next))
 		return now;
 	struct job *job = hunt_initial(native) ? NULL : pick(native, now, &next, &other);

@@ -8,6 +8,8 @@
  *   hunt.c     searches: background, directories, alarms
  *   locate.c   devices that requests name and nobody knows
  *   first.c    first values, before the first search has ended
+ *   first_asked.c  ... for which requests
+ *   guess.c    ... on which of several wires
  *   first_wire.c  ... of devices that are found meanwhile
  *   touch.c    keys that touch a wire
  *   exchange.c properties read and written

@@ -100,6 +100,7 @@ struct job {
 	bool alone;                 /* its next transaction is made with no others (together.h) */
 	bool sought;                /* LOCATE: the look under way has not decided it yet */
 	uint8_t first;              /* enum job_first */
+	uint64_t likely;            /* ... wires on which some id begins as its own (guess.h) */
 	bool waits;                 /* PREPARE: until another job has read its resolution */
 	bool rests;                 /* PREPARE: until the chip does not convert */
 	unsigned element;           /* of a separate array, when all of it is asked for */
@@ -154,6 +155,8 @@ struct touch {
 
 /* Of a wire: the conversions that begin before its first search has ended (first.h). */
 struct first {
+	bool guessing, guessed; /* the search for what is asked for (guess.h): begun, at its end */
+	bool likely;            /* ... it met one */
 	bool tried;
 	bool refused;     /* the last start of them failed: there are no more */
 	int64_t ready_ns; /* 0: there are none */
@@ -194,6 +197,7 @@ struct channel {
 	struct search search;
 	struct touch touch;
 	struct first first;
+	struct search guess; /* first.guessing */
 	struct ending ending;
 	uint64_t errors, shorts, checksums, transactions;
 };
@@ -257,6 +261,7 @@ struct native {
 	uint64_t failed_mark;
 	struct job *jobs; /* NATIVE_DEPTH */
 	bool soon_ran;    /* the last step was that of a job that goes soon */
+	bool early;       /* the search had its turn, a request is next; before all were searched */
 	unsigned soon;    /* such jobs, as of the last step */
 	struct job *all;  /* the JOB_CONVERT that waits longest; it may be over */
 	int64_t due_ns;   /* the next step; 0: there was none */

@@ -110,7 +110,7 @@ int search_next(struct search *search, struct link *link)
 	return 1;
 }
 
-static bool same_start(const uint8_t a[8], const uint8_t b[8], unsigned bits)
+bool search_same(const uint8_t a[8], const uint8_t b[8], unsigned bits)
 {
 	unsigned bytes = bits / 8;
 
@@ -125,7 +125,7 @@ static void exclude(const uint8_t *const roms[], bool away[], unsigned n, unsign
 {
 	for (unsigned i = 0; i < n; i++)
 		if (!away[i] && bits >> rom_bit(roms[i], position) & 1)
-			away[i] = same_start(roms[i], roms[0], position - 1);
+			away[i] = search_same(roms[i], roms[0], position - 1);
 }
 
 int search_among(struct link *link, const uint8_t *const roms[], bool away[], unsigned n)

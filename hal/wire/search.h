@@ -27,6 +27,8 @@ struct search {
 	void *ctx;
 };
 
+/* Are the first bits of two ids the same? */
+bool search_same(const uint8_t a[8], const uint8_t b[8], unsigned bits);
 void search_begin(struct search *search, bool alarm, uint8_t family);
 /*
  * 1 and the device in search->rom; 0 when there is no further one; -EBADMSG the id's checksum is

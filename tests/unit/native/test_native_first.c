@@ -28,12 +28,13 @@ static char path[MOST][64];
 static uint8_t data[MOST][64];
 static int64_t begun_ns, asked_ns[MOST], took_ns[MOST], measured_ns[MOST];
 static int err_of[MOST];
-static unsigned answers;
+static unsigned answers, answer_order[MOST];
+static bool spread; /* ids differ in all bits, as those of a real delivery do */
 
 static void take(void *ctx, const struct bus_answer *answer)
 {
 	(void)ctx;
-	answers++;
+	answer_order[answer->id] = answers++;
 	err_of[answer->id] = answer->err;
 	took_ns[answer->id] = host.now - begun_ns;
 	measured_ns[answer->id] = answer->measured_ns;
@@ -47,10 +48,18 @@ static void event(const char *text)
 	                              why);
 }
 
+static void id_of(unsigned i, char text[20])
+{
+	if (spread)
+		snprintf(text, 20, "28.%08X%04X", (i + 1) * 2654435761u, i);
+	else
+		snprintf(text, 20, "28.0000000000%02X", i + 1);
+}
+
 /* So many DS18B20 on so many channels; more: lines behind them, and what they are followed by. */
 static void begin(unsigned count, unsigned channels, const char *options, const char *more)
 {
-	char name[] = "/tmp/owsd-first-XXXXXX", target[64];
+	char name[] = "/tmp/owsd-first-XXXXXX", target[64], id[20];
 	int fd = mkstemp(name);
 	FILE *file = fd < 0 ? NULL : fdopen(fd, "w");
 
@@ -60,8 +69,8 @@ static void begin(unsigned count, unsigned channels, const char *options, const 
 	for (unsigned i = 0; i < count; i++) {
 		if (channels > 1 && i % (count / channels) == 0)
 			fprintf(file, "channel %u\n", i / (count / channels));
-		fprintf(file, "DS18B20 28.0000000000%02X as t%u temperature %u%s\n", i + 1, i,
-		        i % 60 + 10, options);
+		id_of(i, id);
+		fprintf(file, "DS18B20 %s as t%u temperature %u%s\n", id, i, i % 60 + 10, options);
 	}
 	fprintf(file, "%s\n", more);
 	fclose(file);
@@ -79,6 +88,8 @@ static void begin(unsigned count, unsigned channels, const char *options, const 
 void setUp(void)
 {
 	memset(data, 0, sizeof(data));
+	memset(took_ns, 0, sizeof(took_ns));
+	spread = false;
 }
 
 void tearDown(void)
@@ -105,9 +116,10 @@ static void ask(unsigned i, enum bus_op op, enum bus_prio prio, bool fresh, cons
 
 static void ask_thermometer(unsigned i, bool fresh)
 {
-	char text[64];
+	char id[20], text[64];
 
-	snprintf(text, sizeof(text), "/28.0000000000%02X/temperature12", i + 1);
+	id_of(i, id);
+	snprintf(text, sizeof(text), "/%s/temperature12", id);
 	ask(i, BUS_READ, BUS_INPUT, fresh, text);
 }
 
@@ -258,30 +270,149 @@ static void test_an_id_that_is_not_there_is_no_device(void)
 	TEST_ASSERT_EQUAL_UINT64(30, counter("devices_found"));
 }
 
-/* An output is written as early as before, when the search has ended. */
-static void test_an_output_does_not_wait_for_readings(void)
+/* On which wire each is a search of a few bits tells, while all convert. */
+static void test_wires_are_guessed_while_they_convert(void)
 {
-	begin(40, 1, "", "DS2408 29.000000000001 as board");
-	for (unsigned i = 0; i < 40; i++)
-		ask_thermometer(i, false);
-	data[40][0] = '1';
-	ask(40, BUS_WRITE, BUS_OUTPUT, false, "/29.000000000001/PIO.0");
-	run(41);
-	check_all(40);
-	TEST_ASSERT_EQUAL_INT(0, err_of[40]);
-	TEST_ASSERT_LESS_THAN_INT64(41 * PASS_NS + 80 * HOST_MS, took_ns[40]);
+	spread = true;
+	begin(80, 8, "", "");
+	for (unsigned i = 0; i < 80; i++)
+		ask_thermometer(i, true);
+	run(80);
+	check_all(80);
+	TEST_ASSERT_LESS_THAN_INT64(CONVERT_NS + 80 * READ_NS + 4 * PASS_NS, host.now - begun_ns);
+	TEST_ASSERT_EQUAL_UINT64(8, counter("conversions"));
+	/* Each was guessed once, and few were found by the search for all. */
+	TEST_ASSERT_LESS_THAN_UINT64(90, counter("search_passes"));
+	TEST_ASSERT_EQUAL_UINT64(80, counter("devices_found"));
+	host_run(&host, bus, host.now + 20 * HOST_S);
+	TEST_ASSERT_EQUAL_UINT64(80, counter("devices_found"));
+	TEST_ASSERT_EQUAL_UINT64(0, counter("devices_lost"));
 }
 
-/* Another input waits for readings and the search by turns. */
+/* Strangers that begin as those that are asked for: the search for all finds who is where. */
+static void test_a_wrong_guess_is_put_right(void)
+{
+	char more[1400] = "";
+
+	spread = true;
+	for (unsigned i = 0; i < 16; i++) {
+		size_t used = strlen(more);
+
+		/* The first bits on the wire are those of the first byte behind the family. */
+		snprintf(more + used, sizeof(more) - used, "%sDS18B20 28.%08X%04X temperature 99\n",
+		         i ? "" : "channel 0\n", ((40 + i) * 2654435761u) ^ 0x55, 7u);
+	}
+	begin(80, 8, "", more);
+	for (unsigned i = 0; i < 80; i++)
+		ask_thermometer(i, true);
+	run(80);
+	check_all(80);
+	host_run(&host, bus, host.now + 20 * HOST_S);
+	TEST_ASSERT_EQUAL_UINT64(96, counter("devices_found"));
+	TEST_ASSERT_EQUAL_UINT64(0, counter("devices_lost"));
+}
+
+/* Outputs before inputs: the device is looked for, and nobody else is before. */
+static void test_an_output_is_written_first(void)
+{
+	static const unsigned channels[] = {1, 8};
+
+	for (unsigned k = 0; k < 2; k++) {
+		spread = k;
+		begin(40, channels[k], "", "DS2408 29.123456789ABC as board");
+		for (unsigned i = 0; i < 40; i++)
+			ask_thermometer(i, false);
+		data[40][0] = '1';
+		ask(40, BUS_WRITE, BUS_OUTPUT, false, "/29.123456789ABC/PIO.0");
+		run(1);
+		TEST_ASSERT_LESS_THAN_UINT64(4, counter("search_passes"));
+		run(41);
+		check_all(40);
+		TEST_ASSERT_EQUAL_INT(0, err_of[40]);
+		TEST_ASSERT_EQUAL_UINT(0, answer_order[40]);
+		TEST_ASSERT_LESS_THAN_INT64(2 * PASS_NS + 60 * HOST_MS, took_ns[40]);
+		tearDown();
+	}
+}
+
+/* ... and one that is not there is away only when it is behind no coupler either. */
+static void test_an_output_behind_a_coupler_waits_for_the_search(void)
+{
+	begin(10, 1, "",
+	      "DS2409 1F.000000000001 as c\nbranch c main\nDS2408 29.000000000001 as board");
+	for (unsigned i = 0; i < 10; i++)
+		ask_thermometer(i, false);
+	data[10][0] = data[11][0] = '1';
+	ask(10, BUS_WRITE, BUS_OUTPUT, false, "/29.000000000001/PIO.0");
+	ask(11, BUS_WRITE, BUS_OUTPUT, false, "/29.000000000002/PIO.0");
+	run(12);
+	check_all(10);
+	TEST_ASSERT_EQUAL_INT(0, err_of[10]);
+	TEST_ASSERT_EQUAL_INT(-ENODEV, err_of[11]);
+}
+
+/* Another input needs no search either; it and the first readings have their turns. */
 static void test_another_input_has_its_turn(void)
 {
 	begin(40, 1, "", "DS2408 29.000000000001 as board");
 	for (unsigned i = 0; i < 40; i++)
 		ask_thermometer(i, false);
 	ask(40, BUS_READ, BUS_INPUT, false, "/29.000000000001/sensed.0");
-	run(41);
+	run(1);
+	TEST_ASSERT_LESS_THAN_UINT64(4, counter("search_passes"));
+	/* It is asked for again and again. */
+	for (unsigned done = 0; done < 40;) {
+		TEST_ASSERT_LESS_THAN_UINT(500, answers);
+		if (took_ns[40])
+			ask(40, BUS_READ, BUS_INPUT, true, "/29.000000000001/sensed.0");
+		took_ns[40] = 0;
+		run(answers + 1);
+		done = 0;
+		for (unsigned k = 0; k < 40; k++)
+			done += took_ns[k] != 0;
+	}
 	check_all(40);
-	TEST_ASSERT_LESS_THAN_INT64(41 * PASS_NS + 11 * READ_NS + 80 * HOST_MS, took_ns[40]);
+	for (unsigned i = 0; i < 40; i++)
+		TEST_ASSERT_LESS_THAN_INT64(CONVERT_NS + 80 * READ_NS + 6 * PASS_NS, took_ns[i]);
+}
+
+/* After the adapter was gone all is asked at once, and who is on another wire now is not away. */
+static void test_after_the_adapter_was_lost(void)
+{
+	begin(30, 1, "",
+	      "DS2408 29.000000000001 as here\nchip DS2482-100 0x19\n"
+	      "DS2408 29.000000000001 as there unplugged");
+	for (unsigned i = 0; i < 30; i++)
+		ask_thermometer(i, false);
+	ask(30, BUS_READ, BUS_INPUT, false, "/29.000000000001/sensed.0");
+	run(31);
+	host_run(&host, bus, host.now + 10 * HOST_S);
+	for (unsigned move = 0; move < 2; move++) {
+		unsigned events = host.events;
+
+		event("remove adapter for 3s");
+		answers = 0;
+		ask_thermometer(0, true);
+		run(1);
+		if (move) {
+			event("unplug here");
+			event("plug there");
+		}
+		while (host.event[host.events - 1].news != BUS_UP || host.events == events)
+			host_run(&host, bus, host.now + 5 * HOST_MS);
+		begun_ns = host.now;
+		answers = 0;
+		memset(data, 0, sizeof(data));
+		for (unsigned i = 0; i < 30; i++)
+			ask_thermometer(i, false);
+		ask(30, BUS_READ, BUS_INPUT, false, "/29.000000000001/sensed.0");
+		run(31);
+		check_all(30);
+		TEST_ASSERT_EQUAL_INT(0, err_of[30]);
+		TEST_ASSERT_LESS_THAN_INT64(CONVERT_NS + 30 * READ_NS + 6 * PASS_NS, took_ns[29]);
+		if (!move)
+			TEST_ASSERT_EQUAL_UINT(0, answer_order[30]);
+	}
 }
 
 /* Those that the wire feeds need its strong pull-up: all is as it was. */
@@ -372,8 +503,12 @@ int main(void)
 	RUN_TEST(test_few_wait_for_the_conversion_alone);
 	RUN_TEST(test_wires_convert_while_they_are_searched);
 	RUN_TEST(test_an_id_that_is_not_there_is_no_device);
-	RUN_TEST(test_an_output_does_not_wait_for_readings);
+	RUN_TEST(test_wires_are_guessed_while_they_convert);
+	RUN_TEST(test_a_wrong_guess_is_put_right);
+	RUN_TEST(test_an_output_is_written_first);
+	RUN_TEST(test_an_output_behind_a_coupler_waits_for_the_search);
 	RUN_TEST(test_another_input_has_its_turn);
+	RUN_TEST(test_after_the_adapter_was_lost);
 	RUN_TEST(test_a_parasitic_one_is_fed);
 	RUN_TEST(test_one_that_comes_meanwhile_is_not_taken_for_one_that_converts);
 	RUN_TEST(test_a_coarse_one_converts_again);

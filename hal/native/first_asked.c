@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: MIT */
+/* Which requests are served before the first search of all wires has ended. */
+#include <string.h>
+
+#include "hal/chips/find.h"
+#include "hal/native/first_asked.h"
+#include "hal/native/sensors.h"
+
+/* Is it certain without the chip's help which chip it is? */
+static bool is_plain(const struct family *family)
+{
+	return family && family->thermometer && !family->kind && !family->identify;
+}
+
+/* Does a request name its device by an id alone, which no coupler or alias has to be known for? */
+static bool has_id(const struct job *job, struct path *path)
+{
+	return job->req && (job->req->op == BUS_READ || job->req->op == BUS_WRITE) &&
+	       !path_split(job->req->path, strlen(job->req->path), path) && path->has_rom &&
+	       path->last.len == path->device.len && !path->alarm;
+}
+
+static bool converts(const struct family *family, const struct path *path)
+{
+	const struct property *property = family_property(family, NULL, path->property.text,
+	                                                  path->property.len);
+
+	return property && property->convert;
+}
+
+bool first_names(const struct native *native, const struct job *job, struct path *path)
+{
+	if (!job->req || job->state != JOB_NEW || job->req->op != BUS_READ ||
+	    job->req->prio <= BUS_OUTPUT || !has_id(job, path))
+		return false;
+	const struct family *family = sensors_family(&native->sensors, path->rom);
+
+	return is_plain(family) && converts(family, path);
+}
+
+bool first_asks(const struct native *native, const struct job *job)
+{
+	struct path path;
+
+	if (!has_id(job, &path))
+		return false;
+	const struct family *family = sensors_family(&native->sensors, path.rom);
+
+	return family && !family->thermometer;
+}
+
+bool first_fits(const struct native *native, unsigned n)
+{
+	const struct channel *channel = &native->channel[n];
+
+	return !channel->listed && native_abreast(native, n) && !channel->link->driven &&
+	       !channel->link->passive;
+}

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: MIT */
+/* Which requests are served before the first search of all wires has ended (first.h). */
+#ifndef HAL_NATIVE_FIRST_ASKED_H
+#define HAL_NATIVE_FIRST_ASKED_H
+
+#include "hal/native/state.h"
+
+/*
+ * Does a request that was not looked at ask for the temperature of a device that its id names? *path
+ * is what it means.
+ */
+bool first_names(const struct native *native, const struct job *job, struct path *path);
+/* Does a request name by its id alone a device that is no thermometer? */
+bool first_asks(const struct native *native, const struct job *job);
+/* A wire that was not searched yet, and on which all can be told to convert. */
+bool first_fits(const struct native *native, unsigned n);
+
+#endif
