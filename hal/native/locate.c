@@ -26,14 +26,34 @@ static int not_found(const struct native *native)
 	return native->grow_told ? -ENXIO : -ENODEV;
 }
 
+/* Somebody has found its device meanwhile. */
+static bool is_found(struct native *native, struct job *job)
+{
+	struct device *device = device_find(&native->table, job->path.rom);
+
+	if (!device || !device->present || (job->bus >= 0 && device->channel != job->bus))
+		return false;
+	job->txn.device = device;
+	job->state = JOB_QUEUED;
+	return true;
+}
+
 static void missing_end(struct native *native, struct job *job)
 {
-	presence_lost(native, job->txn.device);
+	/* A search may have met it on another wire since then. */
+	bool moved = job->txn.device->channel != job->channel;
+
+	if (moved && is_found(native, job))
+		return;
+	if (!moved)
+		presence_lost(native, job->txn.device);
 	/* After the adapter was lost it may have been plugged in elsewhere. */
-	if (hunt_initial(native) && job->req->op != BUS_WRITE)
+	if (hunt_initial(native) && job->req->op != BUS_WRITE) {
+		job->verified = false;
 		locate_wait(native, job, native_now(native));
-	else
+	} else {
 		job_answer(native, job, not_found(native));
+	}
 }
 
 void locate_missing(struct native *native, struct job *job, int64_t now)
@@ -129,18 +149,6 @@ void locate_wait(struct native *native, struct job *job, int64_t now)
 	job->locate_ns = now;
 	if (is_decided(native, job))
 		answer_away(native, job);
-}
-
-/* Somebody has found its device meanwhile. */
-static bool is_found(struct native *native, struct job *job)
-{
-	struct device *device = device_find(&native->table, job->path.rom);
-
-	if (!device || !device->present || (job->bus >= 0 && device->channel != job->bus))
-		return false;
-	job->txn.device = device;
-	job->state = JOB_QUEUED;
-	return true;
 }
 
 /* The requests that need no look any more go on. */
