@@ -52,8 +52,11 @@ static bool may_convert(const struct native *native, unsigned n, int64_t now)
 
 	if (!first_fits(native, n) || (!channel->searching && !first->likely))
 		return false;
-	return !first->tried || (!first->refused && first->ready_ns && first->ready_ns <= now &&
-	                         are_served(native, n));
+	if (first->tried &&
+	    (first->refused || !first->ready_ns || first->ready_ns > now || !are_served(native, n)))
+		return false;
+	/* All hear the command, also a chip that is at work for a request that went first. */
+	return !native_held(native, n, NULL, now) && !native_at_work(native, n);
 }
 
 static bool has_thermometer(const struct native *native, unsigned n)
@@ -242,7 +245,8 @@ static bool is_ready(struct native *native, struct job *job, int64_t now, int64_
 	if (ready_ns > now && ready_ns < *next)
 		*next = ready_ns;
 	return ready_ns && ready_ns <= now && ready_ns + FRESH_NS > now && is_on(&path, *n) &&
-	       (!known || (first_took_part(native, device) && !was_read(device)));
+	       (!known || (first_took_part(native, device) && !was_read(device))) &&
+	       !native_held(native, *n, NULL, now);
 }
 
 static void read_one(struct native *native, struct job *job, unsigned n, int64_t now)

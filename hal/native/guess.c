@@ -61,11 +61,13 @@ static void note_likely(struct native *native, const uint8_t rom[8], unsigned n)
 {
 	struct path path;
 
-	native->channel[n].first.likely = true;
+	/* One that is known, and perhaps no thermometer, nobody waits for. */
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++)
 		if (first_names(native, &native->jobs[i], &path) &&
-		    memcmp(path.rom, rom, sizeof(path.rom)) == 0)
+		    memcmp(path.rom, rom, sizeof(path.rom)) == 0) {
 			native->jobs[i].likely |= UINT64_C(1) << n;
+			native->channel[n].first.likely = true;
+		}
 }
 
 /* What goes wrong here is seen to by the search. */
@@ -100,7 +102,7 @@ bool guess_step(struct native *native, int64_t now)
 		const struct first *first = &native->channel[n].first;
 
 		if (!first_fits(native, n) || first->guessed ||
-		    !native->channel[n].link->ops->triplet)
+		    !native->channel[n].link->ops->triplet || native_held(native, n, NULL, now))
 			continue;
 		/* Each wire's first, so that it converts. */
 		if (best == NATIVE_ALL ||
