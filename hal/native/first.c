@@ -270,38 +270,31 @@ static void read_one(struct native *native, struct job *job, unsigned n, int64_t
 }
 
 /*
- * Some request waits for the end of the search; urgent: it may not wait longer for that. One for a
- * temperature waits for the next conversions.
+ * Some request waits for the end of the search. One for a temperature waits for the next
+ * conversions.
  */
-static bool others_wait(const struct native *native, bool *urgent)
+static bool others_wait(const struct native *native)
 {
 	struct path path;
-	bool wait = false;
 
-	*urgent = false;
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
 		const struct job *job = &native->jobs[i];
 
-		if (!job->req || job->first || first_names(native, job, &path) ||
-		    first_asks(native, job))
-			continue;
-		wait = true;
-		*urgent |= job->req->prio <= BUS_OUTPUT;
+		if (job->req && !job->first && !first_names(native, job, &path) &&
+		    !first_asks(native, job))
+			return true;
 	}
-	return wait;
+	return false;
 }
 
 static bool read_next(struct native *native, int64_t now, int64_t *next)
 {
 	struct job *best = NULL;
 	unsigned n = 0, best_n = 0;
-	bool urgent;
 
 	take_new(native, now);
-	bool wait = others_wait(native, &urgent);
-
 	native->first_turn = !native->first_turn;
-	if (urgent || (wait && native->first_turn))
+	if (first_hurries(native) || (native->first_turn && others_wait(native)))
 		return false;
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
 		struct job *job = &native->jobs[i];
@@ -311,9 +304,10 @@ static bool read_next(struct native *native, int64_t now, int64_t *next)
 			best_n = n;
 		}
 	}
-	if (best)
-		read_one(native, best, best_n, now);
-	return best;
+	if (!best)
+		return guess_step(native, now);
+	read_one(native, best, best_n, now);
+	return true;
 }
 
 /* All searches have ended: requests for devices that were found wait for the first conversions. */
@@ -365,5 +359,5 @@ bool first_step(struct native *native, int64_t now, int64_t *next)
 		first_convert(native, n);
 		return true;
 	}
-	return read_next(native, now, next) || guess_step(native, now);
+	return read_next(native, now, next);
 }

@@ -49,6 +49,18 @@ bool first_asks(const struct native *native, const struct job *job)
 	return family && !family->thermometer;
 }
 
+bool first_hurries(const struct native *native)
+{
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
+		const struct job *job = &native->jobs[i];
+
+		if (job->req && job->req->prio <= BUS_OUTPUT &&
+		    ((job->state == JOB_LOCATE && !job->verified) || !first_asks(native, job)))
+			return true;
+	}
+	return false;
+}
+
 bool first_fits(const struct native *native, unsigned n)
 {
 	const struct channel *channel = &native->channel[n];

@@ -4,7 +4,7 @@
 
 #include "hal/native/first_asked.h"
 #include "hal/native/guess.h"
-#include "hal/native/presence.h"
+#include "hal/native/hunt.h"
 #include "hal/wire/search.h"
 
 /* It begins so long after the bus is up: those who ask at once have done so by then. */
@@ -87,7 +87,7 @@ static void guess(struct native *native, unsigned n, struct ids *ids, int64_t no
 	if (found > 0 && ids->alone)
 		note_likely(native, channel->guess.rom, n);
 	else if (found > 0)
-		presence_found(native, channel->guess.rom, n, now);
+		hunt_found(native, channel->guess.rom, n, now);
 	channel->first.guessed = found <= 0 || channel->guess.last;
 }
 

@@ -138,6 +138,12 @@ static bool wake(struct native *native, unsigned n, const uint8_t rom[8])
 	return true;
 }
 
+void hunt_found(struct native *native, const uint8_t rom[8], unsigned n, int64_t now)
+{
+	if (!wake(native, n, rom))
+		presence_found(native, rom, n, now);
+}
+
 static void pass(struct native *native, unsigned n, int64_t now)
 {
 	struct channel *channel = &native->channel[n];
@@ -163,8 +169,7 @@ static void pass(struct native *native, unsigned n, int64_t now)
 	}
 	channel->spoiled = 0;
 	if (found > 0) {
-		if (!wake(native, n, channel->search.rom))
-			presence_found(native, channel->search.rom, n, now);
+		hunt_found(native, channel->search.rom, n, now);
 		channel->search_ns = now;
 		if (channel->search.last)
 			end_round(native, n, true, now);

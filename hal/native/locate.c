@@ -48,7 +48,7 @@ static void missing_end(struct native *native, struct job *job)
 	if (!moved)
 		presence_lost(native, job->txn.device);
 	/* After the adapter was lost it may have been plugged in elsewhere. */
-	if (hunt_initial(native) && job->req->op != BUS_WRITE) {
+	if (hunt_initial(native)) {
 		job->verified = false;
 		locate_wait(native, job, native_now(native));
 	} else {
@@ -151,18 +151,22 @@ void locate_wait(struct native *native, struct job *job, int64_t now)
 		answer_away(native, job);
 }
 
-/* The requests that need no look any more go on. */
-static void let_go(struct native *native)
+/* The requests that need no look any more go on. Returns whether there are any. */
+static bool let_go(struct native *native)
 {
-	bool found = native->locate.found != native->count[COUNT_FOUND];
+	bool found = native->locate.found != native->count[COUNT_FOUND], any = false;
 
 	native->locate.found = native->count[COUNT_FOUND];
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
 		struct job *job = &native->jobs[i];
 
-		if (is_waiting(job) && !(found && is_found(native, job)) && is_decided(native, job))
+		if (!is_waiting(job))
+			continue;
+		if (!(found && is_found(native, job)) && is_decided(native, job))
 			answer_away(native, job);
+		any |= !is_waiting(job);
 	}
+	return any;
 }
 
 /* Those that wait for this channel. Returns whether there are any. */
@@ -326,7 +330,8 @@ bool locate_step(struct native *native, int64_t now, bool idle, int64_t *next)
 		return false;
 	save(locate, now);
 	/* Others may have found devices, or searched a channel as a whole. */
-	let_go(native);
+	if (let_go(native))
+		return true;
 	int64_t when = when_due(locate, now, idle && *next - now > locate->took_ns);
 	if (when > now) {
 		*next = when < *next ? when : *next;

@@ -359,7 +359,9 @@ static void native_run(struct native *native, struct job *job, int64_t now)
 
 /*
  * Before all wires were searched: outputs first, then others and the search in turn. Each device is
- * looked for when it is asked for.
+ * looked for when it is asked for. What an alarm, or an output, waits for comes before inputs: it
+ * tells which chips have restarted, so that no input reads an output that has yet to be written
+ * again.
  */
 static bool ask_early(struct native *native, int64_t now, int64_t *next)
 {
@@ -368,7 +370,7 @@ static bool ask_early(struct native *native, int64_t now, int64_t *next)
 	if (native->locate.urgent && locate_step(native, now, false, next))
 		return true;
 	bool urgent = job && job->req->prio <= BUS_OUTPUT;
-	if (!urgent && (native->early = !native->early))
+	if (!urgent && ((native->early = !native->early) || first_hurries(native)))
 		return false;
 	if (!urgent && native->locate.waits && locate_step(native, now, false, next))
 		return true;

@@ -6,6 +6,7 @@
 #include "hal/chips/thermometer.h"
 #include "hal/native/answer.h"
 #include "hal/native/cost.h"
+#include "hal/native/hunt.h"
 #include "hal/native/limits.h"
 #include "hal/native/master.h"
 #include "hal/native/outcome.h"
@@ -114,6 +115,12 @@ static bool is_tried_again(const struct native *native, struct job *job, unsigne
 	return ++job->tries < tries;
 }
 
+/* Is it where it was before the adapter was lost? Nobody has heard it since, nor searched for all. */
+static bool may_have_moved(const struct native *native, const struct device *device)
+{
+	return device && hunt_initial(native) && device->ok_ns < native->up_ns;
+}
+
 void job_failed(struct native *native, struct job *job, int err)
 {
 	if (job->failures < UINT8_MAX)
@@ -127,7 +134,8 @@ void job_failed(struct native *native, struct job *job, int err)
 		native_count(native, COUNT_CHECKSUMS);
 		native->channel[job->txn.channel].checksums++;
 		/* No answer at all: is it away? The looks for it are enough to tell. */
-		if (job->txn.silent && job->txn.device && !job->verified) {
+		if (!job->verified && ((job->txn.silent && job->txn.device) ||
+		                       may_have_moved(native, job->txn.device))) {
 			job_missing(native, job, err);
 			return;
 		}

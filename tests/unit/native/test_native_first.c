@@ -376,6 +376,69 @@ static void test_another_input_has_its_turn(void)
 		TEST_ASSERT_LESS_THAN_INT64(CONVERT_NS + 80 * READ_NS + 6 * PASS_NS, took_ns[i]);
 }
 
+/* No request waits for more than the search that meets its device. */
+static void test_the_only_device_answers_at_once(void)
+{
+	for (unsigned prio = BUS_ALARM; prio <= BUS_GUEST; prio++) {
+		begin(0, 1, "", "DS2408 29.000000000001 as board");
+		ask(0, BUS_READ, (enum bus_prio)prio, true, "/29.000000000001/sensed.0");
+		run(1);
+		TEST_ASSERT_EQUAL_INT(0, err_of[0]);
+		TEST_ASSERT_LESS_THAN_INT64(4 * PASS_NS, took_ns[0]);
+		tearDown();
+	}
+}
+
+/*
+ * The list of alarms, or an output that an alias names, waits for the search: no input goes before
+ * it, that would read an output which has yet to be written again.
+ */
+static void test_no_input_goes_before_an_alarm(void)
+{
+	begin(20, 1, "", "DS2408 29.000000000001 as board");
+	for (unsigned i = 0; i < 20; i++)
+		ask_thermometer(i, false);
+	ask(20, BUS_READ, BUS_INPUT, true, "/29.000000000001/PIO.BYTE");
+	ask(21, BUS_DIR, BUS_ALARM, true, "/alarm");
+	run(22);
+	check_all(20);
+	TEST_ASSERT_EQUAL_UINT(0, answer_order[21]);
+	TEST_ASSERT_EQUAL_INT(0, err_of[20]);
+}
+
+/* Whoever is gone is away when all are searched for, and not before; for outputs, too. */
+static void test_who_went_while_the_adapter_was_lost_is_away(void)
+{
+	static const enum bus_prio prio[] = {BUS_ALARM, BUS_INPUT};
+
+	for (unsigned k = 0; k < 2; k++) {
+		begin(10, 1, "", "DS2408 29.000000000001 as board");
+		ask(10, BUS_READ, BUS_INPUT, true, "/29.000000000001/PIO.0");
+		run(1);
+		host_run(&host, bus, host.now + 10 * HOST_S);
+		event("remove adapter for 3s");
+		ask_thermometer(0, true);
+		run(2);
+		event("unplug board");
+		unsigned events = host.events;
+		while (host.event[host.events - 1].news != BUS_UP || host.events == events)
+			host_run(&host, bus, host.now + 5 * HOST_MS);
+		begun_ns = host.now;
+		data[11][0] = data[12][0] = '1';
+		answers = 0;
+		ask(10, BUS_READ, prio[k], true, "/29.000000000001/PIO.0");
+		ask(11, BUS_WRITE, BUS_OUTPUT, false, "/29.000000000001/PIO.BYTE");
+		ask(12, BUS_WRITE, BUS_OUTPUT, false, "/29.000000000001/PIO.0");
+		run(3);
+		for (unsigned i = 10; i < 13; i++) {
+			TEST_ASSERT_EQUAL_INT(-ENODEV, err_of[i]);
+			TEST_ASSERT_LESS_THAN_INT64(2 * HOST_S, took_ns[i]);
+			TEST_ASSERT_GREATER_THAN_INT64(10 * PASS_NS, took_ns[i]);
+		}
+		tearDown();
+	}
+}
+
 /* After the adapter was gone all is asked at once, and who is on another wire now is not away. */
 static void test_after_the_adapter_was_lost(void)
 {
@@ -406,12 +469,17 @@ static void test_after_the_adapter_was_lost(void)
 		for (unsigned i = 0; i < 30; i++)
 			ask_thermometer(i, false);
 		ask(30, BUS_READ, BUS_INPUT, false, "/29.000000000001/sensed.0");
-		run(31);
+		data[31][0] = '1';
+		ask(31, BUS_WRITE, BUS_OUTPUT, false, "/29.000000000001/PIO.0");
+		run(32);
 		check_all(30);
 		TEST_ASSERT_EQUAL_INT(0, err_of[30]);
-		TEST_ASSERT_LESS_THAN_INT64(CONVERT_NS + 30 * READ_NS + 6 * PASS_NS, took_ns[29]);
-		if (!move)
-			TEST_ASSERT_EQUAL_UINT(0, answer_order[30]);
+		TEST_ASSERT_EQUAL_INT(0, err_of[31]);
+		TEST_ASSERT_LESS_THAN_INT64(CONVERT_NS + 30 * READ_NS + 8 * PASS_NS, took_ns[29]);
+		if (!move) {
+			TEST_ASSERT_EQUAL_UINT(0, answer_order[31]);
+			TEST_ASSERT_EQUAL_UINT(1, answer_order[30]);
+		}
 	}
 }
 
@@ -508,6 +576,9 @@ int main(void)
 	RUN_TEST(test_an_output_is_written_first);
 	RUN_TEST(test_an_output_behind_a_coupler_waits_for_the_search);
 	RUN_TEST(test_another_input_has_its_turn);
+	RUN_TEST(test_the_only_device_answers_at_once);
+	RUN_TEST(test_no_input_goes_before_an_alarm);
+	RUN_TEST(test_who_went_while_the_adapter_was_lost_is_away);
 	RUN_TEST(test_after_the_adapter_was_lost);
 	RUN_TEST(test_a_parasitic_one_is_fed);
 	RUN_TEST(test_one_that_comes_meanwhile_is_not_taken_for_one_that_converts);
