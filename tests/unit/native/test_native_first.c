@@ -312,6 +312,39 @@ static void test_a_wrong_guess_is_put_right(void)
 	TEST_ASSERT_EQUAL_UINT64(0, counter("devices_lost"));
 }
 
+/* A bridge that has just got power has no id: a short search that meets it wakes it. */
+static void test_a_bridge_that_is_guessed_is_woken(void)
+{
+	static const uint8_t zeros[6];
+	char name[] = "/tmp/owsd-first-XXXXXX", why[200] = "";
+	int fd = mkstemp(name);
+	FILE *file = fd < 0 ? NULL : fdopen(fd, "w");
+
+	TEST_ASSERT_NOT_NULL(file);
+	fputs("sensor any\n\twrite 0 read 1\n\tvalue light = u8(0) range 0 to 255\nat 56.123456789ABC any 0x44\n",
+	      file);
+	fclose(file);
+	spread = true;
+	begin(80, 8, "", "channel 0\nDS28E18 56.123456789ABC as bridge");
+	TEST_ASSERT_EQUAL_INT_MESSAGE(0, bus_option(bus, "Sensors", name, why, sizeof(why)), why);
+	unlink(name);
+	host.events = 0;
+	for (unsigned i = 0; i < 80; i++)
+		ask_thermometer(i, true);
+	run(80);
+	host_run(&host, bus, host.now + 20 * HOST_S);
+	check_all(80);
+	bool found = false;
+	for (unsigned i = 0; i < host.events; i++) {
+		const uint8_t *rom = host.event[i].rom;
+
+		TEST_ASSERT_FALSE(rom[0] == 0x56 && memcmp(rom + 1, zeros, sizeof(zeros)) == 0);
+		found |= rom[0] == 0x56;
+	}
+	TEST_ASSERT_TRUE(found);
+	TEST_ASSERT_EQUAL_UINT64(81, counter("devices_found"));
+}
+
 /* Outputs before inputs: the device is looked for, and nobody else is before. */
 static void test_an_output_is_written_first(void)
 {
@@ -573,6 +606,7 @@ int main(void)
 	RUN_TEST(test_an_id_that_is_not_there_is_no_device);
 	RUN_TEST(test_wires_are_guessed_while_they_convert);
 	RUN_TEST(test_a_wrong_guess_is_put_right);
+	RUN_TEST(test_a_bridge_that_is_guessed_is_woken);
 	RUN_TEST(test_an_output_is_written_first);
 	RUN_TEST(test_an_output_behind_a_coupler_waits_for_the_search);
 	RUN_TEST(test_another_input_has_its_turn);
