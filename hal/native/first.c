@@ -9,7 +9,6 @@
 #include "hal/native/first_asked.h"
 #include "hal/native/first_wire.h"
 #include "hal/native/guess.h"
-#include "hal/native/hunt.h"
 #include "hal/native/job.h"
 #include "hal/native/job_txn.h"
 #include "hal/native/presence.h"
@@ -350,7 +349,7 @@ static bool first_end(struct native *native, int64_t now)
 
 bool first_step(struct native *native, int64_t now, int64_t *next)
 {
-	if (!hunt_initial(native))
+	if (!native_initial(native))
 		return native->first_left && first_end(native, now);
 	for (unsigned n = 0; n < native->channels; n++) {
 		if (!may_convert(native, n, now) || !has_thermometer(native, n) ||

@@ -30,14 +30,6 @@
 #define TRIES_PASS 8  /* of a search for one device; a search of many goes on from there */
 #define FULL_EVERY 16 /* alarm searches in a row: one looks for ids that are not known, too */
 
-bool hunt_initial(const struct native *native)
-{
-	for (unsigned n = native_next(native, 0); n < NATIVE_ALL; n = native_next(native, n + 1))
-		if (!native->channel[n].listed)
-			return true;
-	return false;
-}
-
 /* whole: it was right to its end. */
 static void end_round(struct native *native, unsigned n, bool whole, int64_t now)
 {

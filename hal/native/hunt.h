@@ -9,7 +9,6 @@
 bool hunt_step(struct native *native, int64_t now, bool idle, int64_t *next);
 /* A search has met the id: a device is there, or a bridge that has no id yet is woken. */
 void hunt_found(struct native *native, const uint8_t rom[8], unsigned n, int64_t now);
-bool hunt_initial(const struct native *native);
 void hunt_scan(struct native *native, struct job *job, int64_t now);
 
 #endif

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "hal/native/answer.h"
-#include "hal/native/hunt.h"
 #include "hal/native/limits.h"
 #include "hal/native/locate.h"
 #include "hal/native/master.h"
@@ -48,7 +47,7 @@ static void missing_end(struct native *native, struct job *job)
 	if (!moved)
 		presence_lost(native, job->txn.device);
 	/* After the adapter was lost it may have been plugged in elsewhere. */
-	if (hunt_initial(native)) {
+	if (native_initial(native)) {
 		job->verified = false;
 		locate_wait(native, job, native_now(native));
 	} else {
@@ -121,7 +120,7 @@ static bool lacks_any(const struct native *native, const struct job *job)
 /* It is nowhere. Before all is searched it may be behind a coupler that nobody knows. */
 static bool is_decided(const struct native *native, const struct job *job)
 {
-	return !hunt_initial(native) && !lacks_any(native, job);
+	return !native_initial(native) && !lacks_any(native, job);
 }
 
 /* Every channel that it could be on has been looked at, or was found to be short. */

@@ -276,7 +276,7 @@ static void expire(struct native *native, int64_t now, int64_t *next)
 static struct job *pick(struct native *native, int64_t now, int64_t *next, struct job **other)
 {
 	struct job *best = NULL, *all = NULL;
-	bool initial = hunt_initial(native);
+	bool initial = native_initial(native);
 	unsigned soon = 0;
 
 	native->locate.waits = native->locate.urgent = false;
@@ -388,11 +388,11 @@ static int64_t step(struct native *native, int64_t now)
 	if (!native->up)
 		return now;
 	expire(native, now, &next);
-	if (hunt_initial(native) && ask_early(native, now, &next))
+	if (native_initial(native) && ask_early(native, now, &next))
 		return now;
 	if (first_step(native, now, &next))
 		return now;
-	struct job *job = hunt_initial(native) ? NULL : pick(native, now, &next, &other);
+	struct job *job = native_initial(native) ? NULL : pick(native, now, &next, &other);
 	/* Others have waited for the search: they and the first readings take turns. */
 	if (job && job->first == FIRST_TAKES_PART && other &&
 	    (native->first_turn = !native->first_turn))
@@ -417,7 +417,7 @@ static int64_t step(struct native *native, int64_t now)
 		native_run(native, owed, now);
 		return now;
 	}
-	if (!hunt_initial(native) &&
+	if (!native_initial(native) &&
 	    ((native->locate.urgent && locate_step(native, now, !job, &next)) ||
 	     touch_step(native, now, &next)))
 		return now;
@@ -428,7 +428,7 @@ static int64_t step(struct native *native, int64_t now)
 			together_step(native, in_turn, now);
 		return now;
 	}
-	if (!hunt_initial(native) && locate_step(native, now, !job, &next))
+	if (!native_initial(native) && locate_step(native, now, !job, &next))
 		return now;
 	if (job) {
 		native_run(native, job, now);

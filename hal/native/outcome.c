@@ -6,7 +6,6 @@
 #include "hal/chips/thermometer.h"
 #include "hal/native/answer.h"
 #include "hal/native/cost.h"
-#include "hal/native/hunt.h"
 #include "hal/native/limits.h"
 #include "hal/native/master.h"
 #include "hal/native/outcome.h"
@@ -115,10 +114,10 @@ static bool is_tried_again(const struct native *native, struct job *job, unsigne
 	return ++job->tries < tries;
 }
 
-/* Is it where it was before the adapter was lost? Nobody has heard it since, nor searched for all. */
+/* The adapter was lost, and nobody has heard the device since, nor searched for all. */
 static bool may_have_moved(const struct native *native, const struct device *device)
 {
-	return device && hunt_initial(native) && device->ok_ns < native->up_ns;
+	return device && native_initial(native) && device->ok_ns < native->up_ns;
 }
 
 void job_failed(struct native *native, struct job *job, int err)

@@ -43,6 +43,14 @@ unsigned native_next(const struct native *native, unsigned n)
 	return n;
 }
 
+bool native_initial(const struct native *native)
+{
+	for (unsigned n = native_next(native, 0); n < NATIVE_ALL; n = native_next(native, n + 1))
+		if (!native->channel[n].listed)
+			return true;
+	return false;
+}
+
 bool native_at_work(const struct native *native, unsigned channel)
 {
 	for (unsigned i = 0; i < native->table.count; i++)

@@ -356,6 +356,8 @@ unsigned native_next(const struct native *native, unsigned n);
 bool native_thermometer(const struct device *device, unsigned channel);
 /* The link of a channel, if it takes part in transactions at the same time (link_ops.together). */
 struct link *native_abreast(const struct native *native, unsigned channel);
+/* Has some channel not been searched yet since the bus came up? */
+bool native_initial(const struct native *native);
 /* A chip of the channel is at work, and no command for all may cut that off. */
 bool native_at_work(const struct native *native, unsigned channel);
 /* A strong pull-up is on at the chip of this channel, and not for this job. */
