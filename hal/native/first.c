@@ -232,7 +232,7 @@ static bool is_ready(struct native *native, struct job *job, int64_t now, int64_
 	if (!first_names(native, job, &path))
 		return false;
 	const struct device *device = device_find(&native->table, path.rom);
-	bool known = device && device->present;
+	bool known = device && device->present && !device->astray;
 	if (known)
 		*n = device->channel;
 	else if (job->likely)

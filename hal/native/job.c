@@ -21,7 +21,8 @@
 
 static bool away(const struct native *native, const struct device *device)
 {
-	return !device || !device->present || !native_has(native, device->channel);
+	return !device || !device->present || device->astray ||
+	       !native_has(native, device->channel);
 }
 
 static void look_read(struct native *native, struct job *job, int64_t now)

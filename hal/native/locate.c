@@ -30,7 +30,8 @@ static bool is_found(struct native *native, struct job *job)
 {
 	struct device *device = device_find(&native->table, job->path.rom);
 
-	if (!device || !device->present || (job->bus >= 0 && device->channel != job->bus))
+	if (!device || !device->present || device->astray ||
+	    (job->bus >= 0 && device->channel != job->bus))
 		return false;
 	job->txn.device = device;
 	job->state = JOB_QUEUED;
@@ -44,15 +45,16 @@ static void missing_end(struct native *native, struct job *job)
 
 	if (moved && is_found(native, job))
 		return;
-	if (!moved)
-		presence_lost(native, job->txn.device);
 	/* After the adapter was lost it may have been plugged in elsewhere. */
 	if (native_initial(native)) {
+		job->txn.device->astray |= !moved;
 		job->verified = false;
 		locate_wait(native, job, native_now(native));
-	} else {
-		job_answer(native, job, not_found(native));
+		return;
 	}
+	if (!moved)
+		presence_lost(native, job->txn.device);
+	job_answer(native, job, not_found(native));
 }
 
 void locate_missing(struct native *native, struct job *job, int64_t now)
@@ -126,10 +128,13 @@ static bool is_decided(const struct native *native, const struct job *job)
 /* Every channel that it could be on has been looked at, or was found to be short. */
 static void answer_away(struct native *native, struct job *job)
 {
+	struct device *device = device_find(&native->table, job->path.rom);
 	bool heard = job->heard;
 
 	for (unsigned n = native_next(native, 0); n < NATIVE_ALL; n = native_next(native, n + 1))
 		heard |= is_for(job, n) && is_searched(native, job, n);
+	if (heard && device && device->astray)
+		presence_lost(native, device);
 	job_answer(native, job, heard ? not_found(native) : -ECOMM);
 }
 
@@ -161,7 +166,9 @@ static bool let_go(struct native *native)
 
 		if (!is_waiting(job))
 			continue;
-		if (!(found && is_found(native, job)) && is_decided(native, job))
+		/* One that went astray may have answered somebody else where it was. */
+		bool decided = is_decided(native, job);
+		if (!((found || decided) && is_found(native, job)) && decided)
 			answer_away(native, job);
 		any |= !is_waiting(job);
 	}

@@ -468,6 +468,7 @@ static void test_who_went_while_the_adapter_was_lost_is_away(void)
 			TEST_ASSERT_LESS_THAN_INT64(2 * HOST_S, took_ns[i]);
 			TEST_ASSERT_GREATER_THAN_INT64(10 * PASS_NS, took_ns[i]);
 		}
+		TEST_ASSERT_EQUAL_UINT64(1, counter("devices_lost"));
 		tearDown();
 	}
 }
@@ -509,6 +510,8 @@ static void test_after_the_adapter_was_lost(void)
 		TEST_ASSERT_EQUAL_INT(0, err_of[30]);
 		TEST_ASSERT_EQUAL_INT(0, err_of[31]);
 		TEST_ASSERT_LESS_THAN_INT64(CONVERT_NS + 30 * READ_NS + 8 * PASS_NS, took_ns[29]);
+		/* Nor is it called lost, while nobody has looked everywhere. */
+		TEST_ASSERT_EQUAL_UINT64(0, counter("devices_lost"));
 		if (!move) {
 			TEST_ASSERT_EQUAL_UINT(0, answer_order[31]);
 			TEST_ASSERT_EQUAL_UINT(1, answer_order[30]);
