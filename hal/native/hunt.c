@@ -125,7 +125,10 @@ static bool wake(struct native *native, unsigned n, const uint8_t rom[8])
 		return false;
 	native_count(native, COUNT_TRANSACTIONS);
 	(void)txn_end(&txn, ds28e18_wake(&txn));
-	channel->dirty |= !channel->asleep_round || channel->asleep_round + 1 != channel->round;
+	if (!channel->asleep_round || channel->asleep_round + 1 != channel->round) {
+		channel->dirty = true;
+		channel->looked_ns = 0; /* whoever looked for its id looks again */
+	}
 	channel->asleep_round = channel->round;
 	return true;
 }

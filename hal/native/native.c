@@ -370,7 +370,8 @@ static bool ask_early(struct native *native, int64_t now, int64_t *next)
 	if (native->locate.urgent && locate_step(native, now, false, next))
 		return true;
 	bool urgent = job && job->req->prio <= BUS_OUTPUT;
-	if (!urgent && ((native->early = !native->early) || first_hurries(native)))
+	if (!urgent && ((native->early = !native->early) || first_hurries(native) ||
+	                follows(native, job, now)))
 		return false;
 	if (!urgent && native->locate.waits && locate_step(native, now, false, next))
 		return true;

@@ -312,10 +312,9 @@ static void test_a_wrong_guess_is_put_right(void)
 	TEST_ASSERT_EQUAL_UINT64(0, counter("devices_lost"));
 }
 
-/* A bridge that has just got power has no id: a short search that meets it wakes it. */
-static void test_a_bridge_that_is_guessed_is_woken(void)
+/* A bridge among them that has just got power: it has no id until somebody wakes it. */
+static void begin_asleep(unsigned count, unsigned channels)
 {
-	static const uint8_t zeros[6];
 	char name[] = "/tmp/owsd-first-XXXXXX", why[200] = "";
 	int fd = mkstemp(name);
 	FILE *file = fd < 0 ? NULL : fdopen(fd, "w");
@@ -325,9 +324,17 @@ static void test_a_bridge_that_is_guessed_is_woken(void)
 	      file);
 	fclose(file);
 	spread = true;
-	begin(80, 8, "", "channel 0\nDS28E18 56.123456789ABC as bridge");
+	begin(count, channels, "", "channel 0\nDS28E18 56.123456789ABC as bridge");
 	TEST_ASSERT_EQUAL_INT_MESSAGE(0, bus_option(bus, "Sensors", name, why, sizeof(why)), why);
 	unlink(name);
+}
+
+/* A short search that meets it wakes it. */
+static void test_a_bridge_that_is_guessed_is_woken(void)
+{
+	static const uint8_t zeros[6];
+
+	begin_asleep(80, 8);
 	host.events = 0;
 	for (unsigned i = 0; i < 80; i++)
 		ask_thermometer(i, true);
@@ -343,6 +350,23 @@ static void test_a_bridge_that_is_guessed_is_woken(void)
 	}
 	TEST_ASSERT_TRUE(found);
 	TEST_ASSERT_EQUAL_UINT64(81, counter("devices_found"));
+}
+
+/* Nobody hears its id before it is woken: it is looked for once more then, and is not away. */
+static void test_a_bridge_that_is_asked_for_is_woken(void)
+{
+	static const unsigned channels[] = {1, 8};
+
+	for (unsigned k = 0; k < 2; k++) {
+		begin_asleep(16, channels[k]);
+		for (unsigned i = 0; i < 16; i++)
+			ask_thermometer(i, true);
+		ask(16, BUS_READ, BUS_INPUT, true, "/56.123456789ABC/present");
+		run(17);
+		TEST_ASSERT_EQUAL_INT(0, err_of[16]);
+		check_all(16);
+		tearDown();
+	}
 }
 
 /* Outputs before inputs: the device is looked for, and nobody else is before. */
@@ -610,6 +634,7 @@ int main(void)
 	RUN_TEST(test_wires_are_guessed_while_they_convert);
 	RUN_TEST(test_a_wrong_guess_is_put_right);
 	RUN_TEST(test_a_bridge_that_is_guessed_is_woken);
+	RUN_TEST(test_a_bridge_that_is_asked_for_is_woken);
 	RUN_TEST(test_an_output_is_written_first);
 	RUN_TEST(test_an_output_behind_a_coupler_waits_for_the_search);
 	RUN_TEST(test_another_input_has_its_turn);
