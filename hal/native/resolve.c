@@ -171,7 +171,9 @@ static int resolve_device(struct native *native, struct job *job)
 		memcpy(device->rom, path->rom, sizeof(device->rom));
 		device->family = sensors_family(&native->sensors, path->rom);
 	} else if (job->bus >= 0 && device->present && device->channel != job->bus) {
-		return -ENODEV;
+		/* It may have come to this wire while the adapter was lost: it is looked for. */
+		if (!native_initial(native))
+			return -ENODEV;
 	} else {
 		job->txn.device = device;
 	}

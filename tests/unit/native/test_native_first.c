@@ -529,16 +529,24 @@ static void test_after_the_adapter_was_lost(void)
 		ask(30, BUS_READ, BUS_INPUT, false, "/29.000000000001/sensed.0");
 		data[31][0] = '1';
 		ask(31, BUS_WRITE, BUS_OUTPUT, false, "/29.000000000001/PIO.0");
-		run(32);
+		for (unsigned n = 0; n < 2; n++) {
+			char text[64];
+
+			snprintf(text, sizeof(text), "/bus.%u/29.000000000001/sensed.1", n);
+			ask(32 + n, BUS_READ, BUS_INPUT, false, text);
+		}
+		run(34);
 		check_all(30);
 		TEST_ASSERT_EQUAL_INT(0, err_of[30]);
 		TEST_ASSERT_EQUAL_INT(0, err_of[31]);
+		TEST_ASSERT_EQUAL_INT(0, err_of[32 + move]);
 		TEST_ASSERT_LESS_THAN_INT64(CONVERT_NS + 30 * READ_NS + 8 * PASS_NS, took_ns[29]);
 		/* Nor is it called lost, while nobody has looked everywhere. */
 		TEST_ASSERT_EQUAL_UINT64(0, counter("devices_lost"));
 		if (!move) {
 			TEST_ASSERT_EQUAL_UINT(0, answer_order[31]);
 			TEST_ASSERT_EQUAL_UINT(1, answer_order[30]);
+			TEST_ASSERT_EQUAL_INT(-ENODEV, err_of[33]);
 		}
 	}
 }
