@@ -131,21 +131,24 @@ void ctl_help(const struct verb *verb, FILE *out)
 	fputs("man owsctl has more\n", out);
 }
 
+static const char *long_given; /* the name of the last option, if it was a long one */
+
 int ctl_option(struct ctl *ctl, int argc, char **argv, const char *options)
 {
 	const struct option *longs = longs_of(options);
 	char all[32], why[1024];
-	int c;
+	int c, index = -1;
 
 	snprintf(all, sizeof(all), "%s:h%s%s", *options == '+' ? "+" : "",
 	         ctl->verb->opens ? "t:" : "", options + (*options == '+'));
 	opterr = 0;
-	while ((c = getopt_long(argc, argv, all, longs, NULL)) == JSON ||
+	while ((c = getopt_long(argc, argv, all, longs, &index)) == JSON ||
 	       (c == 't' && ctl->verb->opens)) {
 		if (c == JSON)
 			ctl->json = true;
 		else
 			ctl->target = optarg;
+		index = -1;
 		if (c == 't' && !*optarg) {
 			ctl_usage(ctl, CTL_NO_TARGET);
 			return '?';
@@ -160,7 +163,19 @@ int ctl_option(struct ctl *ctl, int argc, char **argv, const char *options)
 		ctl_usage(ctl, "%s", why);
 		return '?';
 	}
+	long_given = index < 0 ? NULL : longs[index].name;
 	return c;
+}
+
+bool ctl_moment(const struct ctl *ctl, int c, const struct when *now, int64_t *wall_ns)
+{
+	const char short_given[] = {(char)c, '\0'};
+	const char *why = when_moment(now, optarg, wall_ns);
+
+	if (why)
+		ctl_usage(ctl, "-%s%s %s: %s", long_given ? "-" : "",
+		          long_given ? long_given : short_given, ctl_word(optarg), why);
+	return !why;
 }
 
 const char *ctl_word(const char *word)

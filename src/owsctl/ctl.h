@@ -51,8 +51,14 @@ struct verb {
  * printed; return CTL_USAGE. After -1 the operands are argv[optind] and up. ctl_options() starts
  * again.
  */
+struct when;
 void ctl_options(void);
 int ctl_option(struct ctl *ctl, int argc, char **argv, const char *options);
+/*
+ * The moment in optarg, by when_moment(). False after printing what is wrong with it, and with the
+ * option c as the user gave it: -s or --since.
+ */
+bool ctl_moment(const struct ctl *ctl, int c, const struct when *now, int64_t *wall_ns);
 
 /* Print what a verb takes: at most a screen. */
 void ctl_help(const struct verb *verb, FILE *out);

@@ -30,7 +30,7 @@ struct journal {
 	struct ctl *ctl;
 	struct ows *h;               /* NULL: no owsd has run */
 	struct ows_history *history; /* NULL: nothing is kept on disk */
-	int64_t since_ns;
+	int64_t since_ns;            /* wall clock */
 	char *const *patterns;
 	int pattern_count;
 	int64_t most; /* of the entries that are there; -1: all */
@@ -104,9 +104,8 @@ static int look_at_both(struct journal *j)
 	bool ok;
 
 	if (j->history)
-		err = journal_past(j->history, &now, now.wall - j->since_ns, j->patterns,
-		                   j->pattern_count, most ? most + RINGS : 0, show_progress,
-		                   &progress, &past);
+		err = journal_past(j->history, &now, j->since_ns, j->patterns, j->pattern_count,
+		                   most ? most + RINGS : 0, show_progress, &progress, &past);
 	progress_end(&progress);
 	ok = (!j->h || journal_look(j->h, j->patterns, j->pattern_count, &j->entries)) &&
 	     journal_past_drop(&past, &j->entries) && journal_add(&j->entries, &past);
@@ -216,7 +215,8 @@ static int open_both(struct journal *j, const char *directory)
 
 int verb_journal(struct ctl *ctl, int argc, char **argv)
 {
-	struct journal j = {.ctl = ctl, .most = -1, .since_ns = SINCE};
+	struct when now = when_now();
+	struct journal j = {.ctl = ctl, .most = -1, .since_ns = now.wall - SINCE};
 	const char *directory = NULL;
 	int c, status;
 
@@ -232,8 +232,8 @@ int verb_journal(struct ctl *ctl, int argc, char **argv)
 				                 ctl_word(optarg));
 			break;
 		case 's':
-			if (!when_parse(optarg, &j.since_ns))
-				return ctl_usage(ctl, WHEN_WANTED, optarg);
+			if (!ctl_moment(ctl, c, &now, &j.since_ns))
+				return CTL_USAGE;
 			break;
 		case 'd':
 			directory = optarg;

@@ -59,18 +59,18 @@ static const struct verb verbs[] = {
                     "  shelve NAME TIME [REASON]             keep one quiet, for 30m, 8h or 2d\n"
                     "  unshelve NAME...                      end that\n",
          .example = "alarms ack boiler", .finds = true},
-	{"journal", "[-f] [-c COUNT] [-s SPAN] [-d DIR] [PATTERN...]",
+	{"journal", "[-f] [-c COUNT] [-s TIME] [-d DIR] [PATTERN...]",
          "who did what and when: alarms and commands, also of the history", verb_journal,
          .options = "  -f        follow what comes (--follow)\n"
                     "  -c COUNT  the last so many\n"
-                    "  -s SPAN   since when (--since), as 2h, 7d\n"
+                    "  -s TIME   since when (--since), as 2h, 7d, today\n"
                     "  -d DIR    where owsd-recorder keeps the history (--directory)\n",
          .example = "journal -s 1d boiler", .finds = true},
 	{"trend",
          "[-s TIME] [-u TIME] [-d DIR] [--csv | --influx | --sqlite FILE | --parquet FILE] "
          "NAME...",
          "draw what signals had, from the history of owsd-recorder", verb_trend,
-         .options = "  -s TIME         from when (--since): 24h, 7d ago, or 2026-11-26T14:30\n"
+         .options = "  -s TIME         from when (--since): 24h, yesterday, 2026-11-26T14:30\n"
                     "  -u TIME         until when (--until), likewise; else until now\n"
                     "  -d DIR          where owsd-recorder keeps the history (--directory)\n"
                     "  --csv --influx  each record in a line; --json too\n"

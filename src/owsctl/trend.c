@@ -25,7 +25,6 @@
 #include "src/text/influx.h"
 
 #define SINCE "24h"
-#define WANTED "-%c %s: expected a time such as 24h or 7d (ago), or 2026-11-26T14:30"
 #define HEIGHT 8
 #define WIDTH 64 /* where there is no terminal */
 #define WIDTH_LEAST 20
@@ -293,8 +292,8 @@ int verb_trend(struct ctl *ctl, int argc, char **argv)
 			directory = optarg;
 		else if (c != 's' && c != 'u')
 			return CTL_USAGE;
-		else if (!when_moment(&t.now, optarg, c == 's' ? &t.from_ns : &t.until_ns))
-			return ctl_usage(ctl, WANTED, c, optarg);
+		else if (!ctl_moment(ctl, c, &t.now, c == 's' ? &t.from_ns : &t.until_ns))
+			return CTL_USAGE;
 	}
 	if (optind == argc)
 		return ctl_usage(ctl, "expected the name of a signal");

@@ -56,46 +56,123 @@ const char *when_span(int64_t ns, char text[WHEN_TEXT])
 	return text;
 }
 
-bool when_parse(const char *text, int64_t *ns)
+/* A span at the beginning of text; returns what stands behind it, NULL: there is none. */
+static const char *take_span(const char *text, int64_t *ns)
 {
 	static const struct {
-		const char *word;
+		const char *name;
 		double seconds;
-	} units[] = {{"", 1}, {"s", 1}, {"m", 60}, {"h", 3600}, {"d", 86400}};
+	} units[] = {{"seconds", 1}, {"minutes", 60}, {"hours", 3600}, {"days", 86400}};
 	char *end;
 	double number = strtod(text, &end);
+	size_t len;
 
-	for (size_t i = 0; end != text && i < sizeof(units) / sizeof(units[0]); i++) {
-		if (strcmp(end, units[i].word) != 0)
+	if (end == text)
+		return NULL;
+	text = end + (*end == ' ' && strcmp(end, " ago") != 0);
+	len = strcspn(text, " ");
+	for (size_t i = 0; i < sizeof(units) / sizeof(units[0]); i++) {
+		if (strncmp(text, units[i].name, len) != 0)
 			continue;
 		number *= units[i].seconds;
 		if (!(number > 0) || number > 36600 * 86400.0)
-			return false;
+			return NULL;
 		*ns = (int64_t)(number * 1e9);
-		return true;
+		return text + len;
 	}
-	return false;
+	return NULL;
 }
 
-bool when_moment(const struct when *now, const char *text, int64_t *wall_ns)
+bool when_parse(const char *text, int64_t *ns)
 {
-	static const char *const forms[] = {"%Y-%m-%d", "%Y-%m-%dT%H:%M", "%Y-%m-%dT%H:%M:%S",
-	                                    "%Y-%m-%d %H:%M", "%Y-%m-%d %H:%M:%S"};
 	int64_t span_ns;
+	const char *rest = take_span(text, &span_ns);
 
-	if (when_parse(text, &span_ns)) {
+	if (!rest || *rest)
+		return false;
+	*ns = span_ns;
+	return true;
+}
+
+#define FIRST_YEAR 1970
+#define LAST_YEAR 2114 /* libows-history draws none of later ones */
+#define WANTED "expected a time such as 24h or 7d (ago), yesterday, or 2026-11-26T14:30"
+
+/* The fraction of a second at the beginning of text, as ns; text where none stands. */
+static const char *take_fraction(const char *text, int64_t *ns)
+{
+	int64_t digit = NS_PER_S / 10;
+
+	if (*text != '.' || text[1] < '0' || text[1] > '9')
+		return text;
+	for (text++; *text >= '0' && *text <= '9'; text++, digit /= 10)
+		*ns += (*text - '0') * digit;
+	return text;
+}
+
+/* Parse a time by ISO 8601. NULL, or what is wrong. */
+static const char *take_date(const char *text, int64_t *wall_ns)
+{
+	struct tm tm = {.tm_isdst = -1}, day;
+	const char *end = strptime(text, "%Y-%m-%d", &tm), *more;
+	int64_t fraction_ns = 0;
+	long east_s;
+	bool zoned = false;
+
+	if (end && (*end == 'T' || *end == ' ')) {
+		end = strptime(end + 1, "%H:%M", &tm);
+		more = end && *end == ':' ? strptime(end, ":%S", &tm) : NULL;
+		end = more ? take_fraction(more, &fraction_ns) : end;
+		if (end && (*end == 'Z' || *end == '+' || *end == '-')) {
+			end = strptime(end, "%z", &tm);
+			zoned = true;
+		}
+	}
+	if (!end || *end)
+		return WANTED;
+	/* mktime() takes the 30th of February for a day of March */
+	day = (struct tm){.tm_year = tm.tm_year, .tm_mon = tm.tm_mon, .tm_mday = tm.tm_mday};
+	timegm(&day);
+	if (day.tm_mday != tm.tm_mday)
+		return "there is no such day";
+	if (tm.tm_sec > 59)
+		return "there is no such second";
+	if (tm.tm_year + 1900 < FIRST_YEAR || tm.tm_year + 1900 > LAST_YEAR)
+		return "only the years 1970 to 2114 can be asked for";
+	east_s = tm.tm_gmtoff; /* timegm() sets it to 0 */
+	*wall_ns = (int64_t)(zoned ? timegm(&tm) - east_s : mktime(&tm)) * NS_PER_S + fraction_ns;
+	*wall_ns = *wall_ns > 0 ? *wall_ns : 0;
+	return NULL;
+}
+
+/* So many midnights ago, local time. */
+static int64_t midnight(const struct when *now, int days)
+{
+	time_t seconds = (time_t)(now->wall / NS_PER_S);
+	struct tm local = {0};
+
+	localtime_r(&seconds, &local);
+	local = (struct tm){.tm_year = local.tm_year,
+	                    .tm_mon = local.tm_mon,
+	                    .tm_mday = local.tm_mday - days,
+	                    .tm_isdst = -1};
+	return (int64_t)mktime(&local) * NS_PER_S;
+}
+
+const char *when_moment(const struct when *now, const char *text, int64_t *wall_ns)
+{
+	int64_t span_ns;
+	const char *rest = take_span(text, &span_ns);
+
+	if (rest && (!*rest || !strcmp(rest, " ago")))
 		*wall_ns = now->wall > span_ns ? now->wall - span_ns : 0;
-		return true;
-	}
-	for (size_t i = 0; i < sizeof(forms) / sizeof(forms[0]); i++) {
-		struct tm local = {.tm_isdst = -1};
-		const char *end = strptime(text, forms[i], &local);
-		int64_t seconds = end && !*end ? mktime(&local) : -1;
-
-		if (seconds < 0 || seconds > INT64_MAX / NS_PER_S)
-			continue;
-		*wall_ns = seconds * NS_PER_S;
-		return true;
-	}
-	return false;
+	else if (!strcmp(text, "now"))
+		*wall_ns = now->wall;
+	else if (!strcmp(text, "today"))
+		*wall_ns = midnight(now, 0);
+	else if (!strcmp(text, "yesterday"))
+		*wall_ns = midnight(now, 1);
+	else
+		return take_date(text, wall_ns);
+	return NULL;
 }

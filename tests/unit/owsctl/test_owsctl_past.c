@@ -37,7 +37,7 @@ static const struct history_who plc = {3, 4294967290u, 4711, "plc", "Anna"};
 static struct instance in;
 static struct history_writer *writer;
 static int64_t begun_ns;
-static char path[300], words[400];
+static char path[300], words[500];
 static int folders;
 
 /* A history that begins a minute ago; of another boot of the machine, or of this one. */
@@ -238,6 +238,11 @@ static void test_number_patterns_and_span_choose_among_both(void)
 	TEST_ASSERT_EQUAL(CTL_FAILED, journal("nothing"));
 	holds(err, "there is no nothing");
 	TEST_ASSERT_EQUAL(CTL_USAGE, journal("-s soon"));
+	holds(err, "owsctl: -s soon: expected a time");
+	TEST_ASSERT_EQUAL(CTL_USAGE, journal("--since=soon"));
+	holds(err, "owsctl: --since soon: expected a time");
+	TEST_ASSERT_EQUAL(CTL_USAGE, journal("--json -s soon"));
+	holds(err, "owsctl: -s soon: expected a time");
 	TEST_ASSERT_EQUAL(CTL_USAGE, journal("-c 1000001"));
 }
 
@@ -329,6 +334,31 @@ static void test_good_values_are_points_of_the_line_protocol(void)
 	TEST_ASSERT_EQUAL(CTL_USAGE, trend("--influx --json room1"));
 }
 
+static void test_the_times_of_a_list_can_be_asked_for(void)
+{
+	char from[40], until[40], asked[120];
+	const char *at;
+
+	value(ROOM, 1, OWS_Q_GOOD, value_of_double(1), NULL);
+	value(ROOM, 2, OWS_Q_GOOD, value_of_double(2), NULL);
+	value(ROOM, 3, OWS_Q_GOOD, value_of_double(3), NULL);
+	written();
+	TEST_ASSERT_EQUAL(CTL_DONE, trend("--csv --since 5m room1"));
+	at = strstr(out, ",\"room1\",2,") - 29;
+	snprintf(from, sizeof(from), "%.29s", at);
+	at = strstr(out, ",\"room1\",3,") - 29;
+	snprintf(until, sizeof(until), "%.29s", at);
+	snprintf(asked, sizeof(asked), "--csv -s %s -u %s room1", from, until);
+	TEST_ASSERT_EQUAL_MESSAGE(CTL_DONE, trend(asked), err);
+	/* the value that held comes first; a time has no more than milliseconds there */
+	holds(out, from);
+	TEST_ASSERT_NULL_MESSAGE(strstr(out, ",\"room1\",3,"), out);
+	TEST_ASSERT_EQUAL(CTL_USAGE, trend("--until 2026-02-30 room1"));
+	holds(err, "owsctl: --until 2026-02-30: there is no such day");
+	TEST_ASSERT_EQUAL(CTL_USAGE, trend("-u 2200-01-01 room1"));
+	holds(err, "owsctl: -u 2200-01-01: only the years 1970 to 2114");
+}
+
 static int too_early(struct ctl *ctl, int argc, char **argv)
 {
 	struct progress progress = progress_on("room1", 0, true);
@@ -377,6 +407,7 @@ int main(void)
 	RUN_TEST(test_without_owsd_the_disk_is_shown_alone);
 	RUN_TEST(test_a_damaged_file_is_named);
 	RUN_TEST(test_good_values_are_points_of_the_line_protocol);
+	RUN_TEST(test_the_times_of_a_list_can_be_asked_for);
 	RUN_TEST(test_a_bar_is_shown_from_the_second_second_on_and_taken_away);
 	return UNITY_END();
 }
