@@ -176,7 +176,7 @@ static bool patterns_known(struct journal *j)
 		if (j->h && alarms_known(j->h, &j->patterns[i], 1))
 			continue;
 		if (!j->h)
-			ctl_fail("the history has no signal %s", ctl_word(j->patterns[i]));
+			past_unknown(j->history, j->patterns[i]);
 		known = false;
 	}
 	return known;

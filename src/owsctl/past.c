@@ -1,9 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* A history is opened and closed, with words for what is wrong. */
 #include <errno.h>
+#include <stdio.h>
 #include <string.h>
 
+#include "src/config/config.h"
+#include "src/config/load.h"
 #include "src/owsctl/past.h"
+#include "src/owsctl/running.h"
+#include "src/text/distance.h"
 
 #define PLACE 512
 
@@ -15,13 +20,39 @@ static const char *advice(int err)
 	                                 : "";
 }
 
+static void ignore(void *ctx, bool is_error, const char *message)
+{
+	(void)ctx, (void)is_error, (void)message;
+}
+
+/* Where the recorder of the instance keeps it: the Directory of its configuration, or the default. */
+static int find_place(const char *instance, char place[PLACE])
+{
+	struct config_report report = {.line = ignore};
+	char file[INSTANCE_FIELD];
+	struct config *config;
+	int err = ows_history_place(instance, place, PLACE);
+
+	if (err == -EINVAL)
+		return err;
+	instance_config(instance, file);
+	if (config_load(file, &report, &config))
+		return err;
+	if (config->recorder.directory)
+		err = snprintf(place, PLACE, "%s", config->recorder.directory) < PLACE
+		              ? 0
+		              : -ENAMETOOLONG;
+	config_free(config);
+	return err;
+}
+
 int past_open(const struct ctl *ctl, const char *directory, struct ows_history **h)
 {
 	char place[PLACE];
 	int err = 0;
 
 	if (!directory) {
-		err = ows_history_place(ctl->instance, place, sizeof(place));
+		err = find_place(ctl->instance, place);
 		directory = err ? ctl->instance : place;
 	}
 	if (!err)
@@ -39,7 +70,7 @@ int past_look(const struct ctl *ctl, const char *directory, struct ows_history *
 	*h = NULL;
 	if (directory)
 		return past_open(ctl, directory, h);
-	if (ows_history_place(ctl->instance, place, sizeof(place)) != 0)
+	if (find_place(ctl->instance, place) != 0)
 		return CTL_DONE;
 	err = ows_history_open(NULL, place, h);
 	if (err && err != -ENOENT && err != -ENOTDIR)
@@ -53,6 +84,20 @@ int past_signal(struct ows_history *h, const char *name, struct ows_history_sign
 	int err = signal < 0 ? signal : ows_history_signal(h, signal, known);
 
 	return err ? err : signal;
+}
+
+int past_unknown(struct ows_history *h, const char *name)
+{
+	unsigned best = text_too_far(name);
+	struct ows_history_signal signal;
+	const char *nearest = NULL;
+
+	for (int i = 0; !ows_history_signal(h, i, &signal); i++)
+		if (text_nearer(name, signal.name, &best))
+			nearest = signal.name;
+	if (nearest)
+		return ctl_fail("the history has no signal %s; did you mean %s?", name, nearest);
+	return ctl_fail("the history has no signal %s", ctl_word(name));
 }
 
 int past_fail(const char *what, int err)

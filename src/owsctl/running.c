@@ -132,6 +132,29 @@ static bool is_same_file(const char *a, const char *b)
 	return *a && !stat(a, &x) && !stat(b, &y) && x.st_dev == y.st_dev && x.st_ino == y.st_ino;
 }
 
+static void default_config(struct instance_info *info)
+{
+	if (!info->config[0])
+		snprintf(info->config, sizeof(info->config), CONFIG_DIR "/%s.rio", info->name);
+}
+
+void instance_config(const char *name, char config[INSTANCE_FIELD])
+{
+	char paths[PLACES][PLACE_PATH];
+	int places = place_list(paths);
+	struct instance_info info = {.name = name};
+	struct shm_place place;
+
+	for (int i = 0; i < places && !info.config[0]; i++) {
+		if (place_open(paths[i], &place) != 0)
+			continue;
+		instance_look(&place, name, ows_now(), &info);
+		place_close(&place);
+	}
+	default_config(&info);
+	snprintf(config, INSTANCE_FIELD, "%s", info.config);
+}
+
 /* file NULL: whatever configuration they have. */
 static unsigned running(const char *file, char *name, char *names, size_t size)
 {
@@ -152,9 +175,7 @@ static unsigned running(const char *file, char *name, char *names, size_t size)
 			struct instance_info info;
 
 			instance_look(&place, remains.name[k], ows_now(), &info);
-			if (!info.config[0])
-				snprintf(info.config, sizeof(info.config), CONFIG_DIR "/%s.rio",
-				         remains.name[k]);
+			default_config(&info);
 			if (!instance_is_up(info.state) ||
 			    (file && !is_same_file(info.config, file)))
 				continue;

@@ -36,4 +36,10 @@ unsigned instances_running(char *name, char *names, size_t size);
 /* Does one run that has this configuration file? name has SEGMENT_NAME_MAX + 1 bytes. */
 bool instance_of_file(const char *file, char *name);
 
+/*
+ * The configuration of an instance: that of the owsd which runs, else where a service of that name
+ * has it. The file may be missing.
+ */
+void instance_config(const char *name, char config[INSTANCE_FIELD]);
+
 #endif

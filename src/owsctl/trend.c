@@ -233,7 +233,7 @@ static int trend_show(struct trend *t, const char *name)
 	int signal = past_signal(t->h, name, &known);
 
 	if (signal == -ENOENT)
-		return ctl_fail("the history has no signal %s", ctl_word(name));
+		return past_unknown(t->h, name);
 	if (signal < 0)
 		return past_fail(ctl_word(name), signal);
 	if (lists(t))

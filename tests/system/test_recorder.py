@@ -225,6 +225,25 @@ def pyarrow_here():
                           timeout=60, check=False).returncode == 0
 
 
+def test_trend_and_journal_find_the_directory_of_the_configuration(scene):
+    owsdtest.need(RECORDER)
+    kept = scene.path / "kept"
+    daemon = scene.owsd(text(scene, Directory=json.dumps(str(kept))))
+    recorder = scene.start([RECORDER, "-n", daemon.name, "-c", daemon.config])
+    until(lambda: "recording " in recorder.log(), 20, "it records")
+    set_relays(scene, daemon, 5)
+    recorded(scene, "relays", "5", kept)
+    assert recorder.stop() == 0
+    done = scene.owsctl(daemon, "trend", "--csv", "-s", "5m ago", "relays")
+    assert done.returncode == 0 and ',"relays",5,' in done.stdout, done
+    entries = json.loads(scene.owsctl(daemon, "--json", "journal", "-s", "today", "relays").stdout)
+    assert [entry["value"] for entry in entries] == [5], entries
+    daemon.kill()
+    scene.owsd(text(scene), name=daemon.name)  # that of another owsd is not asked for
+    done = scene.owsctl(daemon, "trend", "--csv", "relays")
+    assert done.returncode == 1 and str(kept) not in done.stderr, done
+
+
 def test_trend_writes_a_table_for_other_programs(scene):
     daemon = scene.owsd(text(scene))
     recorder = record(scene, daemon)

@@ -270,7 +270,9 @@ static void test_without_owsd_the_disk_is_shown_alone(void)
 	TEST_ASSERT_EQUAL(1, times("\"name\":\"pump\""));
 	TEST_ASSERT_EQUAL_STRING("", err);
 	TEST_ASSERT_EQUAL(CTL_FAILED, journal("room"));
-	holds(err, "the history has no signal room");
+	holds(err, "the history has no signal room\n");
+	TEST_ASSERT_EQUAL(CTL_FAILED, journal("bump"));
+	holds(err, "the history has no signal bump; did you mean pump?");
 	TEST_ASSERT_EQUAL(CTL_FAILED, journal("-f"));
 	holds(err, "no owsd of the name neverran has run here");
 	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_journal, "journal"));
@@ -332,6 +334,16 @@ static void test_good_values_are_points_of_the_line_protocol(void)
 	holds(err, "1 values are left out");
 	TEST_ASSERT_EQUAL(CTL_USAGE, trend("--influx --csv room1"));
 	TEST_ASSERT_EQUAL(CTL_USAGE, trend("--influx --json room1"));
+}
+
+static void test_a_name_that_the_history_has_not_is_answered_with_the_nearest(void)
+{
+	value(ROOM, 1, OWS_Q_GOOD, value_of_double(1), NULL);
+	written();
+	TEST_ASSERT_EQUAL(CTL_FAILED, trend("--csv romo1"));
+	holds(err, "the history has no signal romo1; did you mean room1?");
+	TEST_ASSERT_EQUAL(CTL_FAILED, trend("--csv elephant"));
+	holds(err, "the history has no signal elephant\n");
 }
 
 static void test_the_times_of_a_list_can_be_asked_for(void)
@@ -407,6 +419,7 @@ int main(void)
 	RUN_TEST(test_without_owsd_the_disk_is_shown_alone);
 	RUN_TEST(test_a_damaged_file_is_named);
 	RUN_TEST(test_good_values_are_points_of_the_line_protocol);
+	RUN_TEST(test_a_name_that_the_history_has_not_is_answered_with_the_nearest);
 	RUN_TEST(test_the_times_of_a_list_can_be_asked_for);
 	RUN_TEST(test_a_bar_is_shown_from_the_second_second_on_and_taken_away);
 	return UNITY_END();
