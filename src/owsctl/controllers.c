@@ -9,6 +9,7 @@
 #include "src/owsctl/verbs.h"
 #include "src/show/json.h"
 #include "src/show/names.h"
+#include "src/show/stats.h"
 #include "src/show/when.h"
 #include "src/show/who.h"
 
@@ -146,7 +147,7 @@ static void origin_json(const struct who *who, struct json *json, const char *na
 	json_object_end(json);
 }
 
-static void controllers_print_json(struct who *who)
+static void controllers_print_json(struct who *who, const char *instance)
 {
 	struct ows_origin origin;
 	struct ows_controller controller;
@@ -156,6 +157,7 @@ static void controllers_print_json(struct who *who)
 
 	json_open(&json, stdout);
 	json_object(&json, NULL);
+	stats_whose(&json, instance);
 	json_array(&json, "controllers");
 	for (int i = 0; ows_controller(who->h, i, &controller) == 0; i++)
 		if (controller.who.serial)
@@ -185,7 +187,7 @@ int verb_who(struct ctl *ctl, int argc, char **argv)
 	who.now = when_now();
 	ctl_alive(ctl, who.h, who.now.boot);
 	if (ctl->json)
-		controllers_print_json(&who);
+		controllers_print_json(&who, ctl->instance);
 	else
 		status = print_text(&who);
 	ows_close(who.h);

@@ -173,19 +173,36 @@ static const struct verb *find_verb(const char *name)
 	return NULL;
 }
 
+/* Words of other programs, and of the documents, for what a verb does. */
+/* clang-format off */
+static const struct {
+	const char *word, *verb;
+} others[] = {
+	{"ls", "list"}, {"signals", "list"}, {"names", "list"}, {"values", "list"},
+	{"dump", "list"}, {"get-all", "list"}, {"getall", "list"}, {"read-all", "list"},
+	{"put", "set"}, {"controllers", "who"}, {"givers", "who"}, {"clients", "who"},
+	{"status", "stats"}, {"state", "stats"}, {"info", "stats"}, {"counters", "stats"},
+	{"targets", "stats"}, {"monitor", "watch"}, {"top", "watch"}, {"tail", "watch"},
+	{"follow", "watch"}, {"log", "journal"}, {"events", "journal"}, {"history", "trend"},
+	{"plot", "trend"}, {"graph", "trend"}, {"export", "trend"}, {"ack", "alarms ack"},
+	{"shelve", "alarms shelve"}, {"unshelve", "alarms unshelve"}, {"ps", "instances"},
+	{"rm", "remove"}, {"edit", "config"}, {"rename", "config"}, {"add", "config"},
+	{"devices", "scan"}, {"search", "scan"}, {"find", "scan"}, {"tree", "dir"},
+};
+/* clang-format on */
+#define OTHERS (sizeof(others) / sizeof(others[0]))
+
 static int no_verb(const char *name)
 {
 	unsigned best = text_too_far(name);
 	const char *nearest = NULL;
 
-	for (size_t i = 0; i < VERBS; i++) {
-		unsigned distance = text_distance(name, verbs[i].name);
-
-		if (distance >= best)
-			continue;
-		best = distance;
-		nearest = verbs[i].name;
-	}
+	for (size_t i = 0; i < VERBS; i++)
+		if (text_nearer(name, verbs[i].name, &best))
+			nearest = verbs[i].name;
+	for (size_t i = 0; i < OTHERS; i++)
+		if (text_nearer(name, others[i].word, &best))
+			nearest = others[i].verb;
 	ctl_fail("there is no verb %s%s%s%s", ctl_word(name), nearest ? "; did you mean " : "",
 	         nearest ? nearest : "", nearest ? "?" : "");
 	fputs("owsctl --help lists the verbs\n", stderr);

@@ -24,13 +24,29 @@ static void quote(FILE *command, const char *word, size_t len)
 	putc('\'', command);
 }
 
-/* HOST or USER@HOST, and nothing that ssh or a command of its configuration takes for more. */
-static bool is_host(const char *host)
+/*
+ * HOST or USER@HOST, and nothing that ssh or a command of its configuration takes for more. Else
+ * why has the part that is wrong.
+ */
+static bool is_host(const char *host, char *why, size_t size)
 {
 	const char *at = strrchr(host, '@'), *name = at ? at + 1 : host;
+	const char *colon = strchr(name, ':'), *odd = host + strspn(host, HOST_LETTERS);
 
-	return *name && *host != '-' && *name != '-' && *host != '@' &&
-	       strspn(host, HOST_LETTERS) == strlen(host);
+	if (*host == '@' || *host == '-')
+		snprintf(why, size, "%s",
+		         *host == '@' ? "a user is missing" : "the host begins with -");
+	else if (!*name || *name == '-')
+		snprintf(why, size, "the host %s", *name ? "begins with -" : "is missing");
+	else if (*odd)
+		snprintf(why, size, "no host has \"%.1s\" in its name", odd);
+	else if (colon && !strchr(colon + 1, ':')) /* more of them: IPv6 */
+		snprintf(why, size,
+		         "%s is no host; write the port into ~/.ssh/config, for Host %.*s", name,
+		         (int)(colon - name), name);
+	else
+		return true;
+	return false;
 }
 
 int remote_run(const struct ctl *ctl, int argc, char **argv)
@@ -40,12 +56,13 @@ int remote_run(const struct ctl *ctl, int argc, char **argv)
 	bool screen = ctl->verb->run == verb_watch && isatty(STDIN_FILENO) && isatty(STDOUT_FILENO);
 	/* a loop that reads names and runs owsctl for each keeps its input */
 	const char *input = screen ? "-t" : ctl->verb->run == verb_control ? "-T" : "-n";
-	char *text = NULL;
+	char *text = NULL, why[400];
 	FILE *command;
 	bool whole;
 
-	if (!is_host(host))
-		return ctl_usage(ctl, "-n %s: expected NAME@HOST or NAME@USER@HOST", ctl->instance);
+	if (!is_host(host, why, sizeof(why)))
+		return ctl_usage(ctl, "-n %s: expected NAME@HOST or NAME@USER@HOST: %s",
+		                 ctl->instance, why);
 	command = open_memstream(&text, &size);
 	if (!command)
 		return ctl_fail("%s", strerror(errno));

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* The state of owsd, its targets, devices and counters as JSON. */
 #include <errno.h>
+#include <limits.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "src/show/faces.h"
 #include "src/show/stats.h"
@@ -94,6 +96,15 @@ static void device_json(struct json *json, struct ows *h, const struct ows_devic
 	json_object_end(json);
 }
 
+void stats_whose(struct json *json, const char *instance)
+{
+	char host[HOST_NAME_MAX + 1] = "";
+
+	gethostname(host, sizeof(host) - 1);
+	json_string(json, "instance", instance);
+	json_string(json, "host", *host ? host : NULL);
+}
+
 void stats_json(struct json *json, const char *instance, struct ows *h,
                 const struct ows_daemon *daemon, const struct when *now)
 {
@@ -106,7 +117,7 @@ void stats_json(struct json *json, const char *instance, struct ows *h,
 
 	stats_served(h, now->boot, served);
 	json_object(json, NULL);
-	json_string(json, "instance", instance);
+	stats_whose(json, instance);
 	json_object(json, "daemon");
 	json_int(json, "pid", daemon->pid);
 	json_string(json, "state", stats_daemon_state(daemon));

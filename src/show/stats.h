@@ -23,6 +23,8 @@ const char *stats_power(uint32_t power);
 /* Does the target of the device say what requests cost? Else retries and wire_us mean nothing. */
 bool stats_device_costs(const struct ows_device *device);
 /* All of it as an object. */
+/* The members "instance" and "host": which owsd, of which machine. */
+void stats_whose(struct json *json, const char *instance);
 void stats_json(struct json *json, const char *instance, struct ows *h,
                 const struct ows_daemon *daemon, const struct when *now);
 

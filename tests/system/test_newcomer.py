@@ -94,7 +94,10 @@ def test_the_help_of_each_verb_is_a_screen_with_an_example(scene):
 
 
 def test_a_mistyped_verb_has_the_nearest_one(scene):
-    for typed, meant in (("wach", "watch"), ("lsit", "list"), ("alarm", "alarms")):
+    for typed, meant in (("wach", "watch"), ("lsit", "list"), ("alarm", "alarms"), ("controllers", "who"),
+                         ("givers", "who"), ("signals", "list"), ("ls", "list"), ("status", "stats"),
+                         ("get-all", "list"), ("ack", "alarms ack"), ("history", "trend"), ("monitr", "watch"),
+                         ("sets", "set"), ("stat", "stats"), ("writes", "write")):
         done = ctl(scene, typed)
         assert done.returncode == 2 and not done.stdout, done
         assert done.stderr == (f"owsctl: there is no verb {typed}; did you mean {meant}?\n"

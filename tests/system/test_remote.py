@@ -92,6 +92,12 @@ def test_what_is_no_host_starts_no_ssh(scene):
                  "a'b", "a\nb", "ho\x1bst", "a/b"):
         done = run(scene, env, "-n", f"OWS@{host}", "list")
         assert done.returncode == 2 and "expected NAME@HOST" in done.stderr and "\x1b" not in done.stderr, (host, done)
+    for host, wrong in (("", "the host is missing"), ("user@", "the host is missing"), ("@host", "a user is missing"),
+                        ("-v", "the host begins with -"), ("user@-v", "the host begins with -"), ("a b", '" "'),
+                        ("pi7:22", "pi7:22 is no host; write the port into ~/.ssh/config, for Host pi7\n"),
+                        ("user@pi7:22", "pi7:22 is no host"), ("user@pi7:", "pi7: is no host"), ("pi/7", '"/"')):
+        done = run(scene, env, "-n", f"OWS@{host}", "list")
+        assert done.returncode == 2 and wrong in done.stderr, (host, done)
     assert run(scene, env, "-n", "OWS@pi7", "lst").returncode == 2
     assert run(scene, env, "-n", "OWS@pi7", "-t", "w1", "list").returncode == 2
     assert said(scene) is None and not (scene.path / "pwned").exists()

@@ -345,6 +345,18 @@ static void test_metrics_have_one_family_for_the_counters_of_all_targets(void)
 	TEST_ASSERT_EQUAL(CTL_USAGE, run(verb_metrics, "metrics --json"));
 }
 
+static void test_json_of_one_object_names_instance_and_machine(void)
+{
+	char host[65] = "", part[400];
+
+	gethostname(host, sizeof(host) - 1);
+	snprintf(part, sizeof(part), "{\"instance\":\"%s\",\"host\":\"%s\",", in.name, host);
+	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_stats, "stats --json"));
+	TEST_ASSERT_EQUAL_STRING_LEN(part, out, strlen(part));
+	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_who, "who --json"));
+	TEST_ASSERT_EQUAL_STRING_LEN(part, out, strlen(part));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -374,5 +386,6 @@ int main(void)
 	RUN_TEST(test_watch_refuses_a_count_that_is_none);
 	RUN_TEST(test_stats_show_owsd_targets_and_counters);
 	RUN_TEST(test_metrics_have_one_family_for_the_counters_of_all_targets);
+	RUN_TEST(test_json_of_one_object_names_instance_and_machine);
 	return UNITY_END();
 }
