@@ -43,6 +43,7 @@ static int split_setting(char *setting, enum option_place place, enum option *op
 {
 	char *equals = strchr(setting, '=');
 	const char *nearest;
+	char text[OPTION_NEAREST];
 	int found;
 
 	if (!equals) {
@@ -57,7 +58,7 @@ static int split_setting(char *setting, enum option_place place, enum option *op
 		return -EINVAL;
 	}
 	if (found < 0) {
-		nearest = option_nearest(place, setting);
+		nearest = option_nearest(place, setting, text);
 		report_error(report, command_line, "there is no key %s%s%s%s", setting,
 		             nearest ? "; is it " : "", nearest ? nearest : "", nearest ? "?" : "");
 		return -EINVAL;

@@ -2,6 +2,7 @@
 /* The table of all keys of the configuration, and how the values of a block are read by it. */
 #include <ctype.h>
 #include <float.h>
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 #include <strings.h>
@@ -250,35 +251,37 @@ static const struct {
 	{"Power-on Reset Alarm", OPT_POR_ALARM},
 };
 
-const char *option_nearest(enum option_place place, const char *key)
+const char *option_nearest(enum option_place place, const char *key, char text[OPTION_NEAREST])
 {
-	const char *nearest = NULL;
-	unsigned least = 0;
+	unsigned least = UINT_MAX;
+	size_t used = 0;
 
 	for (size_t i = 0; i < sizeof(dialog) / sizeof(dialog[0]); i++)
 		if (option_table[dialog[i].option].place == place &&
 		    !strncasecmp(key, dialog[i].words, strlen(dialog[i].words)))
 			return option_table[dialog[i].option].key;
-	for (int i = 0; i < OPTION_COUNT_ALL; i++) {
+	for (int i = 0; i < OPTION_COUNT_ALL && used < OPTION_NEAREST; i++) {
 		const char *known = option_table[i].key;
-		unsigned d;
+		unsigned distance;
 
 		if (option_table[i].place != place)
 			continue;
-		d = text_distance(key, known);
-		if (d <= 1 + strlen(known) / 4 && (!nearest || d < least)) {
-			nearest = known;
-			least = d;
-		}
+		distance = text_distance(key, known);
+		if (distance > 1 + strlen(known) / 4 || distance > least)
+			continue;
+		used = distance < least ? 0 : used;
+		used += (size_t)snprintf(text + used, OPTION_NEAREST - used, "%s%s",
+		                         used ? " or " : "", known);
+		least = distance;
 	}
-	return nearest;
+	return used ? text : NULL;
 }
 
 /*
  * The alarm key that has such a value, or such a name: the original's names of these keys are not
  * public. NULL: it is no part of an alarm.
  */
-static const char *alarm_key(const struct rio_node *node)
+static const char *alarm_key(const struct rio_node *node, char text[OPTION_NEAREST])
 {
 	const char *value = node->kind == RIO_STRING ? node->value : "";
 	bool sets = strchr(value, '=') && !strpbrk(value, " \t"),
@@ -292,23 +295,27 @@ static const char *alarm_key(const struct rio_node *node)
 		return option_table[OPT_POR_ALARM].key;
 	if (!strcasestr(node->key, "alarm"))
 		return NULL;
-	return strcasestr(node->key, "latch")          ? option_table[OPT_LATCH_ALARM].key
-	       : strcasestr(node->key, "por")          ? option_table[OPT_POR_ALARM].key
-	       : strcasestr(node->key, "set")          ? option_table[OPT_SET_ALARM].key
-	       : option_nearest(PLACE_ITEM, node->key) ? option_nearest(PLACE_ITEM, node->key)
-	                                               : option_table[OPT_ALARM].key;
+	if (strcasestr(node->key, "latch"))
+		return option_table[OPT_LATCH_ALARM].key;
+	if (strcasestr(node->key, "por"))
+		return option_table[OPT_POR_ALARM].key;
+	if (strcasestr(node->key, "set"))
+		return option_table[OPT_SET_ALARM].key;
+	return option_nearest(PLACE_ITEM, node->key, text) ? text : option_table[OPT_ALARM].key;
 }
 
 static void report_unknown(const struct rio_node *node, enum option_place place,
                            struct config_report *report)
 {
-	const char *nearest = option_nearest(place, node->key);
+	char text[OPTION_NEAREST], alarm_text[OPTION_NEAREST];
+	const char *nearest = option_nearest(place, node->key, text);
+	const char *alarm = place == PLACE_ITEM ? alarm_key(node, alarm_text) : NULL;
 
-	if (place == PLACE_ITEM && alarm_key(node))
+	if (alarm)
 		report_error(report, node->at,
 		             "unknown key %s in %s looks like part of an alarm, which would be "
 		             "off: write %s in its place",
-		             node->key, place_names[place], alarm_key(node));
+		             node->key, place_names[place], alarm);
 	else if (node->kind == RIO_BLOCK && option_find(PLACE_DRIVER, node->key) >= 0)
 		report_warning(report, node->at,
 		               "unknown key %s in %s is ignored; is a '}' missing before line %d?",

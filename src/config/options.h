@@ -161,8 +161,12 @@ extern const struct option_def option_table[OPTION_COUNT_ALL];
 
 /* The option of that key, -1 if there is none. */
 int option_find(enum option_place place, const char *key);
-/* The nearest known key of the place, NULL if none is near. */
-const char *option_nearest(enum option_place place, const char *key);
+/*
+ * Write the nearest known keys of the place, "LimitH or LimitHH" where several are as near, into
+ * text. Returns text; NULL if none is near.
+ */
+#define OPTION_NEAREST 200
+const char *option_nearest(enum option_place place, const char *key, char text[OPTION_NEAREST]);
 
 /* A key of a block as the reader found it. */
 struct option_value {

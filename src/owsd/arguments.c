@@ -13,7 +13,7 @@
 #include "src/text/printable.h"
 #include "src/text/refused.h"
 
-enum { OPT_CHECK = 256, OPT_BOARD, OPT_ROOT, OPT_RT };
+enum { OPT_CHECK = 256, OPT_STRICT, OPT_BOARD, OPT_ROOT, OPT_RT };
 
 /* the leading ':' makes getopt distinguish a missing argument from an unknown option */
 static const char letters[] = ":c:n:t:l:vVh";
@@ -23,6 +23,7 @@ static const struct option words[] = {
 	{"target", required_argument, NULL, 't'},
 	{"listen", required_argument, NULL, 'l'},
 	{"check", no_argument, NULL, OPT_CHECK},
+	{"strict", no_argument, NULL, OPT_STRICT},
 	{"board", optional_argument, NULL, OPT_BOARD},
 	{"root", required_argument, NULL, OPT_ROOT},
 	{"rt", required_argument, NULL, OPT_RT},
@@ -56,7 +57,7 @@ int finish_output(void)
 static void usage(FILE *out)
 {
 	fputs("usage: owsd [-c FILE] [-n NAME] [-t TARGET]... [-l [HOST:]PORT]...\n"
-	      "            [--check] [--board[=ID]] [--rt PRIO] [-v] [-V] [-h]\n"
+	      "            [--check [--strict]] [--board[=ID]] [--rt PRIO] [-v] [-V] [-h]\n"
 	      "  -c, --config FILE   configuration (" ARGUMENTS_DIR "/NAME.rio);\n"
 	      "                      without that file -t and -l serve the devices, no signals\n"
 	      "  -n, --name NAME     instance: signal prefix and name of the segments (OWS)\n"
@@ -64,6 +65,7 @@ static void usage(FILE *out)
 	      "  -l, --listen ADDRESS in place of Listen: serve the owserver protocol at PORT of this\n"
 	      "                      machine alone, or at HOST:PORT\n"
 	      "      --check         print the configuration as understood, start nothing\n"
+	      "      --strict        with --check: a warning counts as an error\n"
 	      "      --board[=ID]    report the board, and what is missing there for a DS2482;\n"
 	      "                      ID: a board that does not identify itself\n"
 	      "      --root DIR      with --board: look at the files below DIR\n"
@@ -155,6 +157,9 @@ static int take_option(struct arguments *a, int option, char *const *argv)
 	case OPT_CHECK:
 		a->check = true;
 		return -1;
+	case OPT_STRICT:
+		a->strict = true;
+		return -1;
 	case OPT_BOARD:
 		a->board = true;
 		a->board_id = optarg;
@@ -184,6 +189,10 @@ static int check_together(struct arguments *a)
 {
 	if (a->root && !a->board) {
 		complain("--root goes with --board");
+		return EXIT_USAGE;
+	}
+	if (a->strict && !a->check) {
+		complain("--strict goes with --check");
 		return EXIT_USAGE;
 	}
 	if (!segment_name_ok(a->instance)) {

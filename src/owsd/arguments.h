@@ -27,7 +27,7 @@ struct arguments {
 	unsigned listen_count;
 	enum log_level level;
 	int rt_priority;
-	bool check, board;
+	bool check, strict, board;
 	bool needs_no_file; /* file is absent, and what is served is named by targets and listens */
 	const char *board_id, *root;
 };

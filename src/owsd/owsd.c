@@ -110,6 +110,11 @@ static int owsd_load(const struct arguments *a, struct told *told, struct config
 		err = target_check_config(*config, &report);
 	if (!err && a->check)
 		err = target_look(*config, &report);
+	if (!err && a->strict && report.warnings) {
+		complain("--strict: %u warning%s", report.warnings,
+		         report.warnings == 1 ? "" : "s");
+		err = -EINVAL;
+	}
 	if (!err) {
 		config_hash_files(*config);
 		return 0;

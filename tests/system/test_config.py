@@ -204,6 +204,24 @@ def test_what_cannot_be_a_target_is_refused_by_check_and_start(scene):
     assert scene.owsd_once("--check", "-c", path).returncode == 0
 
 
+def test_a_strict_check_refuses_what_is_only_warned_of(scene):
+    whole = owsdtest.rio("null:", [ITEM])
+    path = scene.file("whole.rio", whole)
+    assert scene.owsd_once("--check", "--strict", "-c", path).returncode == 0
+    for wrong, reason in ((whole.replace("Item {", "item {"), "unknown key item in OwsDrv is ignored; is it Item?"),
+                          (whole.replace("Item {", "Item { LimitHi 5"),
+                           "unknown key LimitHi in Item is ignored; is it LimitHH or LimitH?")):
+        assert wrong != whole
+        path = scene.file("wrong.rio", wrong)
+        done = scene.owsd_once("--check", "-c", path)
+        assert done.returncode == 0 and reason in done.stderr, done
+        done = scene.owsd_once("--check", "--strict", "-c", path)
+        assert done.returncode == 2 and done.stdout == "" and reason in done.stderr, done
+        assert "owsd: --strict: " in done.stderr, done
+    done = scene.owsd_once("--strict", "-c", path)
+    assert done.returncode == 2 and "--strict goes with --check" in done.stderr, done
+
+
 def test_a_device_that_is_not_here_is_a_warning_of_the_check(scene):
     nobody = str(scene.path / "nobody")
     socket.socket(socket.AF_UNIX).bind(nobody)

@@ -81,12 +81,30 @@ static void test_every_key_has_a_place_a_kind_and_help(void)
 
 static void test_the_nearest_key_is_near(void)
 {
-	TEST_ASSERT_EQUAL_STRING("Timeout", option_nearest(PLACE_DRIVER, "timeout"));
-	TEST_ASSERT_EQUAL_STRING("MaxRetries", option_nearest(PLACE_DRIVER, "MaxRetrys"));
-	TEST_ASSERT_EQUAL_STRING("PerFactor", option_nearest(PLACE_ITEM, "PerFaktor"));
-	TEST_ASSERT_EQUAL_STRING("Readable", option_nearest(PLACE_ITEM, "Readible"));
-	TEST_ASSERT_NULL(option_nearest(PLACE_ITEM, "Elephant"));
-	TEST_ASSERT_NULL(option_nearest(PLACE_DRIVER, "Name"));
+	static const struct {
+		enum option_place place;
+		const char *key, *nearest;
+	} cases[] = {
+		{PLACE_DRIVER, "timeout", "Timeout"},
+		{PLACE_DRIVER, "MaxRetrys", "MaxRetries"},
+		{PLACE_ITEM, "PerFaktor", "PerFactor"},
+		{PLACE_ITEM, "Readible", "Readable"},
+		{PLACE_ITEM, "LimitHi", "LimitHH or LimitH"},
+		{PLACE_ITEM, "Limit", "LimitH or LimitL"},
+		{PLACE_ITEM, "limith", "LimitH"},
+		{PLACE_ITEM, "Elephant", NULL},
+		{PLACE_DRIVER, "Name", NULL},
+	};
+	char text[OPTION_NEAREST];
+
+	for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+		const char *nearest = option_nearest(cases[i].place, cases[i].key, text);
+
+		if (cases[i].nearest)
+			TEST_ASSERT_EQUAL_STRING(cases[i].nearest, nearest);
+		else
+			TEST_ASSERT_NULL_MESSAGE(nearest, cases[i].key);
+	}
 }
 
 static void test_the_manual_has_every_key_with_default_and_limits(void)
