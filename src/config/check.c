@@ -16,6 +16,7 @@
 #include "src/config/own.h"
 #include "src/config/property.h"
 #include "src/config/shared.h"
+#include "src/config/targets.h"
 
 struct check {
 	struct config_report *report;
@@ -232,9 +233,7 @@ static void check_items(const struct config *config, const char *name, struct co
 	struct check check = {.report = report, .period_ns = config->period_ns, .caches = true};
 
 	for (unsigned i = 0; i < config->target_count; i++)
-		check.caches &= !strncmp(config->targets[i].text, "i2c:", 4) ||
-		                !strncmp(config->targets[i].text, "sim:", 4) ||
-		                !strncmp(config->targets[i].text, "w1:netlink", 10);
+		check.caches &= target_caches(config->targets[i].text);
 	for (unsigned i = 0; i < config->bus_count; i++)
 		for (unsigned k = 0; k < config->buses[i].option_count; k++)
 			check.tables |= !strcmp(config->buses[i].options[k].key,

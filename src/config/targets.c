@@ -19,12 +19,26 @@
 const char *const config_auto_ways[CONFIG_AUTO_WAYS] = {DEFAULT_TARGET, "i2c:auto", "w1"};
 
 /* Schemes and bare words that are no host; the scheme of an owserver may be left out. */
-static const char *const schemes[] = {"i2c", "w1", "sim", "gpio", "null", NULL};
-
 static bool is_scheme(const char *text, size_t len)
 {
+	static const char *const schemes[] = {
+#define BACKEND(name) #name,
+#include "hal/bus/schemes.h"
+#undef BACKEND
+		"sim", NULL};
+
 	for (int i = 0; schemes[i]; i++)
 		if (strlen(schemes[i]) == len && !memcmp(schemes[i], text, len))
+			return true;
+	return false;
+}
+
+bool target_caches(const char *text)
+{
+	static const char *const own[] = {"i2c:", SIMULATED, "w1:netlink"};
+
+	for (size_t i = 0; i < sizeof(own) / sizeof(own[0]); i++)
+		if (!strncmp(text, own[i], strlen(own[i])))
 			return true;
 	return false;
 }

@@ -22,6 +22,8 @@ extern const char *const config_auto_ways[CONFIG_AUTO_WAYS];
 void target_canonical(const char *text, char out[TARGET_CANONICAL]);
 /* Do they mean the same target? */
 bool target_same(const char *a, const char *b);
+/* Is it a bus of owsd's own, whose values have the age of the chip's, by its cache? */
+bool target_caches(const char *text);
 /* The target with the file of sim:FILE as it is opened (relative.h); warns if place has a line. */
 const char *target_of_file(struct build *build, const char *text, struct place place);
 /* Parse "a, b | c" and append the targets. Errors are reported at place. */

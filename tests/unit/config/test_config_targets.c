@@ -11,6 +11,7 @@
 #include "src/config/buses.h"
 #include "src/config/load.h"
 #include "src/config/own.h"
+#include "src/config/targets.h"
 #include "tests/unit/aid/config_case.h"
 
 void setUp(void)
@@ -43,6 +44,36 @@ static void test_a_target_finds_its_bus_however_it_is_spelt(void)
 	TEST_ASSERT_NULL(config_bus(config, "i2c:/dev/i2c-2"));
 	TEST_ASSERT_EQUAL_STRING("gpiochip0/5", config->alarm_line);
 	TEST_ASSERT_NULL(config->heartbeat_line);
+}
+
+static void test_the_scheme_of_each_backend_is_no_host(void)
+{
+	static const char *const targets[] = {
+#define BACKEND(name) #name ":x",
+#include "hal/bus/schemes.h"
+#undef BACKEND
+		"sim:x"};
+	char text[TARGET_CANONICAL];
+
+	for (size_t i = 0; i < sizeof(targets) / sizeof(targets[0]); i++) {
+		target_canonical(targets[i], text);
+		TEST_ASSERT_EQUAL_STRING(
+			strncmp(targets[i], "owserver", 8) ? targets[i] : "owserver:x:4304", text);
+	}
+}
+
+static void test_only_buses_of_owsd_s_own_have_a_cache(void)
+{
+	static const char *const own[] = {"i2c:/dev/i2c-1", "sim:house.sim", "w1:netlink",
+	                                  "w1:netlink/w1_bus_master1"};
+	static const char *const others[] = {
+		"localhost", "owserver:i2c:4304", "w1", "i2chost:4304", "w1:w1_bus_master1",
+		"null:",     "gpio:gpiochip0"};
+
+	for (size_t i = 0; i < sizeof(own) / sizeof(own[0]); i++)
+		TEST_ASSERT_TRUE_MESSAGE(target_caches(own[i]), own[i]);
+	for (size_t i = 0; i < sizeof(others) / sizeof(others[0]); i++)
+		TEST_ASSERT_FALSE_MESSAGE(target_caches(others[i]), others[i]);
 }
 
 static void test_a_comma_separates_two_wires_and_a_bar_two_ways(void)
@@ -206,6 +237,8 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_a_target_finds_its_bus_however_it_is_spelt);
+	RUN_TEST(test_the_scheme_of_each_backend_is_no_host);
+	RUN_TEST(test_only_buses_of_owsd_s_own_have_a_cache);
 	RUN_TEST(test_a_comma_separates_two_wires_and_a_bar_two_ways);
 	RUN_TEST(test_auto_is_a_bar_of_three_ways);
 	RUN_TEST(test_a_target_that_leads_back_to_owsd_is_refused);
