@@ -18,6 +18,7 @@
 #include "src/engine/guests.h"
 #include "src/engine/in_force.h"
 #include "src/engine/lane.h"
+#include "src/engine/limits.h"
 #include "src/engine/origin.h"
 #include "src/engine/place.h"
 #include "src/engine/publish.h"
@@ -215,6 +216,8 @@ static void take_signals(struct engine *e, const struct engine *old, const struc
 			engine_origin_begin(e, s);
 		if (old->table.signals[plan->rows[row]].command.differs && !s->command.differs)
 			engine_compares_no_more(e, s, s->sample.quality);
+		if (!s->item->limits.any)
+			engine_limits_end(e, s, &old->table.signals[plan->rows[row]]);
 		lane->writers += signal_writes(s);
 		take_source(e, s, plan);
 		take_turn(e, s, old, plan->rows[row]);
@@ -235,20 +238,34 @@ static int compare_rows(const void *row, const void *item)
 	return (a > b) - (a < b);
 }
 
+static const struct alarm_item *alarm_before(const struct engine *old, uint32_t row)
+{
+	return row == ADOPT_NEW || !old->alarm_count
+	               ? NULL
+	               : bsearch(&row, old->alarm_items, old->alarm_count,
+	                         sizeof(*old->alarm_items), compare_rows);
+}
+
+/* The item has no alarm any more: what the journal has of it ends. */
+static void end_alarm(struct engine *e, uint32_t row, const struct alarm_item *was)
+{
+	struct alarm_item item = {.row = row};
+
+	item.occurrence = was->occurrence;
+	engine_alarm_rests(e, &item, e->time.now_ns);
+}
+
 static void take_alarm(struct engine *e, struct alarm_item *item, const struct engine *old,
                        const struct adoption *plan)
 {
 	struct signal *s = &e->table.signals[item->row];
 	struct lane *lane = engine_lane(e, s);
 	uint32_t before = plan->rows[item->row];
-	const struct alarm_item *was = NULL;
+	const struct alarm_item *was = alarm_before(old, before);
 	const struct config_item *before_item;
 	bool visits, arms;
 
 	alarm_take_item(&lane->alarm, item, e->time.now_ns);
-	if (before != ADOPT_NEW && old->alarm_count)
-		was = bsearch(&before, old->alarm_items, old->alarm_count, sizeof(*was),
-		              compare_rows);
 	if (was)
 		item->occurrence = was->occurrence;
 	if (lane->alarm.list.polls)
@@ -282,6 +299,12 @@ static void take_alarms(struct engine *e, const struct engine *old, const struct
 			alarm_drop_item(&e->lanes[i].alarm, &e->alarm_items[k]);
 	for (uint32_t k = 0; k < e->alarm_count; k++)
 		take_alarm(e, &e->alarm_items[k], old, plan);
+	for (uint32_t row = 0; row < e->table.count; row++) {
+		const struct alarm_item *was = alarm_before(old, plan->rows[row]);
+
+		if (was && !e->table.signals[row].item->alarm)
+			end_alarm(e, row, was);
+	}
 }
 
 /* --------------------------------------------------------------------------------------------- */

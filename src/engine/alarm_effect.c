@@ -108,11 +108,8 @@ void engine_power_on_reset(struct lane *lane, const struct device *d, const stru
 
 void engine_alarm_polled(struct engine *e, struct alarm_item *item)
 {
-	struct signal *s = &e->table.signals[item->row];
-
-	item->occurrence.stands = false;
-	s->attrs.flags &= ~(uint32_t)OWS_ATTR_ALARM_STANDS;
-	s->attrs.flags |= OWS_ATTR_ALARM_POLLED;
+	engine_alarm_rests(e, item, e->time.now_ns);
+	alarm_signal(e, item)->attrs.flags |= OWS_ATTR_ALARM_POLLED;
 }
 
 void engine_alarm_polls(struct engine *e, struct alarm_machine *m)

@@ -162,6 +162,14 @@ int64_t engine_limits(struct engine *e, struct signal *s)
 	return next;
 }
 
+void engine_limits_end(struct engine *e, const struct signal *s, const struct signal *before)
+{
+	const struct limit *alarm = &before->limit.alarm;
+
+	if (alarm->state == OWS_LIMIT_UNACKNOWLEDGED || alarm->state == OWS_LIMIT_ACKNOWLEDGED)
+		journal_limit(e, s, alarm->kind, OWS_ALARM_RETURNED);
+}
+
 void engine_limits_acknowledge(struct engine *e, struct signal *s, const struct ows_who *who)
 {
 	static const char nothing[OWS_TEXT];

@@ -10,6 +10,8 @@
  * INT64_MAX: never.
  */
 int64_t engine_limits(struct engine *e, struct signal *s);
+/* The signal has no limits any more: what the journal has of those of before ends. */
+void engine_limits_end(struct engine *e, const struct signal *s, const struct signal *before);
 void engine_limits_acknowledge(struct engine *e, struct signal *s, const struct ows_who *who);
 /*
  * Shelve the limit alarm of the signal for so many seconds; 0: unshelve it, which does nothing to

@@ -71,6 +71,8 @@ static void test_a_bus_without_alarm_search_is_asked_again_when_it_comes_back(vo
 
 static void test_an_alarm_stands_no_more_where_no_look_can_tell_its_return(void)
 {
+	uint32_t head;
+
 	figure_3_3(&s);
 	alarm_device(&s, "0", "0");
 	alarm_begin(&s);
@@ -78,6 +80,7 @@ static void test_an_alarm_stands_no_more_where_no_look_can_tell_its_return(void)
 	scene_put(&s, D "/latch.BYTE", "1", 0);
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_BITS_HIGH(OWS_ATTR_ALARM_STANDS, scene_attrs(&s, 1).flags);
+	head = s.image.header->alarm_head;
 	scene_down(&s, -ECONNRESET);
 	s.on_read = NULL;
 	scene_put(&s, "/alarm", NULL, -EOPNOTSUPP);
@@ -85,6 +88,9 @@ static void test_an_alarm_stands_no_more_where_no_look_can_tell_its_return(void)
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_BITS_HIGH(OWS_ATTR_ALARM_POLLED, scene_attrs(&s, 1).flags);
 	TEST_ASSERT_BITS_LOW(OWS_ATTR_ALARM_STANDS, scene_attrs(&s, 1).flags);
+	TEST_ASSERT_EQUAL_UINT32(head + 1, s.image.header->alarm_head);
+	TEST_ASSERT_EQUAL_UINT8(OWS_ALARM_RETURNED, s.image.alarms[head].event);
+	TEST_ASSERT_EQUAL_UINT8(OWS_ALARM_DEVICE, s.image.alarms[head].kind);
 }
 
 static void test_a_bus_that_searches_is_asked_for_the_families_of_the_items_only(void)
