@@ -44,7 +44,7 @@ static uint32_t last_put(void *ctx, uint32_t row, int64_t value, const char *tex
 	char now[VALUE_STRING_MAX];
 
 	force_get(&l->put, l->row_of[row], &c, now);
-	if (c.given && c.len == len && (text ? memcmp(now, text, len) == 0 : c.value == value))
+	if (c.given && (text ? c.len == len && memcmp(now, text, len) == 0 : c.value == value))
 		return c.stamp;
 	c = (struct force_command){.value = value,
 	                           .len = len,

@@ -14,7 +14,6 @@
 #include "src/shm/place.h"
 
 #define SERVICE_STATE "/var/lib/owsd"
-#define FILE_MAX ((size_t)64 << 20)
 #define NAME_MAX_ 64
 
 /* --- The directory ---------------------------------------------------------------------------- */
@@ -72,7 +71,7 @@ static int load_file(int directory, const char *name, char **text, size_t *size)
 		return -errno;
 	if (fstat(fd, &st) < 0)
 		err = -errno;
-	else if (!S_ISREG(st.st_mode) || (uint64_t)st.st_size > FILE_MAX)
+	else if (!S_ISREG(st.st_mode) || (uint64_t)st.st_size > LAST_MAX)
 		err = -EBADMSG;
 	*text = err ? NULL : malloc((size_t)st.st_size + 1);
 	if (!err && !*text)
@@ -132,9 +131,12 @@ static int write_all(int fd, const char *text, size_t size)
 int last_write(int directory, const char *instance, char *data, size_t size)
 {
 	char name[NAME_MAX_], fresh[NAME_MAX_ + 4];
-	uint32_t check = ows_check_bytes(data, size);
+	uint32_t check;
 	int fd, err;
 
+	if (size > LAST_MAX - LAST_CHECK)
+		return -EFBIG;
+	check = ows_check_bytes(data, size);
 	memcpy(data + size, &check, LAST_CHECK);
 	snprintf(name, sizeof(name), "%s.last", instance);
 	snprintf(fresh, sizeof(fresh), "%s.new", name);

@@ -12,13 +12,17 @@
 #define LAST_WHERE 256
 int last_directory(char path[LAST_WHERE]);
 /*
+ * The longest file, with its check; 65535 strings with the longest texts, names and paths take less.
+ */
+#define LAST_MAX ((size_t)512 << 20)
+/*
  * Read the file into allocated memory; *data gets NULL if there is none. 0 or a negative errno;
  * -EBADMSG: it is damaged.
  */
 int last_read(int directory, const char *instance, char **data, size_t *size);
 /*
  * Write the file; data has room for LAST_CHECK bytes after it. 0 or a negative errno; then the old
- * file stands.
+ * file stands. -EFBIG: longer than LAST_MAX, so that nobody would read it.
  */
 #define LAST_CHECK 4
 int last_write(int directory, const char *instance, char *data, size_t size);

@@ -10,8 +10,12 @@
 
 #include "unity.h"
 
+#include "hal/owfs/path.h"
+#include "src/config/build.h"
 #include "src/host/last.h"
+#include "src/host/last_file.h"
 #include "src/libows/ows.h"
+#include "src/shm/force.h"
 #include "src/signal/value.h"
 
 #define S 1000000000LL
@@ -256,6 +260,60 @@ static void test_a_damaged_file_is_nothing(void)
 	}
 }
 
+static void test_the_length_of_a_number_s_text_is_no_change(void)
+{
+	struct last *last = make();
+	const struct engine_last *seam = last_seam(last);
+	uint32_t ticket = seam->put(seam->ctx, 0, 1, NULL, 0);
+
+	TEST_ASSERT_EQUAL_UINT32(ticket, seam->put(seam->ctx, 0, 1, NULL, 3));
+	TEST_ASSERT_NOT_EQUAL_UINT32(ticket, seam->put(seam->ctx, 0, 0, NULL, 3));
+	ticket = seam->put(seam->ctx, 3, 0, "ab", 2);
+	TEST_ASSERT_EQUAL_UINT32(ticket, seam->put(seam->ctx, 3, 0, "ab", 2));
+	TEST_ASSERT_NOT_EQUAL_UINT32(ticket, seam->put(seam->ctx, 3, 0, "ab", 1));
+	last_free(last);
+}
+
+static void test_what_as_many_strings_as_owsd_takes_need_is_written_and_read(void)
+{
+	static struct force_signal signals[CONFIG_ITEMS_MAX];
+	static char name[256], path[PATH_LEN_MAX + 1];
+	struct force_plan plan = {.signals = signals,
+	                          .signal_count = CONFIG_ITEMS_MAX,
+	                          .text_cap = VALUE_STRING_MAX,
+	                          .stored = true};
+
+	memset(name, 'n', sizeof(name) - 1);
+	memset(path, 'p', sizeof(path) - 1);
+	for (unsigned i = 0; i < CONFIG_ITEMS_MAX; i++)
+		signals[i] = (struct force_signal){name, path, OWS_STRING};
+	TEST_ASSERT_GREATER_THAN_size_t((size_t)64 << 20, force_size(&plan));
+	TEST_ASSERT_LESS_THAN_size_t(LAST_MAX - LAST_CHECK, force_size(&plan));
+}
+
+static void test_a_file_is_written_only_if_it_is_read_again(void)
+{
+	const size_t size = (size_t)65 << 20;
+	char path[LAST_WHERE], *data = calloc(1, size + LAST_CHECK), *back;
+	int directory = last_directory(path), fd;
+	uint32_t check;
+	size_t got;
+
+	TEST_ASSERT_NOT_NULL(data);
+	TEST_ASSERT_GREATER_OR_EQUAL_INT(0, directory);
+	/* as last_write() leaves it, with holes: no disk has to take all of it */
+	check = ows_check_bytes(data, size);
+	fd = openat(directory, "T.last", O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+	TEST_ASSERT_EQUAL_INT(LAST_CHECK, pwrite(fd, &check, LAST_CHECK, (off_t)size));
+	TEST_ASSERT_EQUAL_INT(0, close(fd));
+	TEST_ASSERT_EQUAL_INT(0, last_read(directory, "T", &back, &got));
+	TEST_ASSERT_EQUAL_size_t(size, got);
+	TEST_ASSERT_EQUAL_INT(-EFBIG, last_write(directory, "T", data, LAST_MAX - LAST_CHECK + 1));
+	TEST_ASSERT_EQUAL_INT(0, close(directory));
+	free(back);
+	free(data);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -266,5 +324,8 @@ int main(void)
 	RUN_TEST(test_a_directory_that_cannot_be_written_is_an_error_until_it_can);
 	RUN_TEST(test_a_directory_that_others_may_write_into_is_refused);
 	RUN_TEST(test_a_damaged_file_is_nothing);
+	RUN_TEST(test_the_length_of_a_number_s_text_is_no_change);
+	RUN_TEST(test_what_as_many_strings_as_owsd_takes_need_is_written_and_read);
+	RUN_TEST(test_a_file_is_written_only_if_it_is_read_again);
 	return UNITY_END();
 }
