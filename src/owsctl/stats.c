@@ -102,6 +102,21 @@ static void print_faces(const char *instance, const struct when *now)
 	}
 }
 
+/* Those that are 0 come last of all: what has counted stands on the first screen. */
+static void print_counters(struct ows *h, bool zeros)
+{
+	struct ows_target target;
+	struct ows_counter counter;
+
+	for (int i = 0; ows_counter(h, i, &counter) == 0; i++) {
+		bool own = ows_target(h, counter.target, &target) != 0;
+
+		if (zeros == !counter.value)
+			printf("%12" PRIu64 "  %s%s%s\n", counter.value, counter.name,
+			       own ? "" : " of ", own ? "" : target.name);
+	}
+}
+
 static void print_text(const struct ctl *ctl, struct ows *h, const struct ows_daemon *daemon,
                        const struct when *now)
 {
@@ -109,7 +124,6 @@ static void print_text(const struct ctl *ctl, struct ows *h, const struct ows_da
 	unsigned served[STATS_TARGETS + 1];
 	bool several;
 	struct ows_target target;
-	struct ows_counter counter;
 
 	stats_served(h, now->boot, served);
 	printf("instance    %s\n", ctl->instance);
@@ -129,14 +143,11 @@ static void print_text(const struct ctl *ctl, struct ows *h, const struct ows_da
 	several = ows_target(h, 1, &target) == 0;
 	for (int i = 0; i < STATS_TARGETS && ows_target(h, i, &target) == 0; i++)
 		print_target(i, &target, several, daemon->alive, served[i]);
-	for (int i = 0; ows_counter(h, i, &counter) == 0; i++) {
-		bool own = ows_target(h, counter.target, &target) != 0;
-
-		printf("%12" PRIu64 "  %s%s%s\n", counter.value, counter.name, own ? "" : " of ",
-		       own ? "" : target.name);
-	}
+	print_counters(h, false);
 	print_devices(h, daemon, now->boot);
 	print_faces(ctl->instance, now);
+	putchar('\n');
+	print_counters(h, true);
 }
 
 int verb_stats(struct ctl *ctl, int argc, char **argv)
