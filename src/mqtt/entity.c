@@ -83,14 +83,6 @@ enum entity_kind entity_kind(const struct ows_info *info, const char *class, boo
 	return text ? ENTITY_TEXT : info->type == OWS_BOOL ? ENTITY_SWITCH : ENTITY_NUMBER;
 }
 
-static void put_double(struct json *json, const char *key, double number)
-{
-	char text[VALUE_TEXT_MAX];
-
-	value_to_text(OWS_DOUBLE, value_of_double(number), text);
-	json_number(json, key, text);
-}
-
 void entity_range(const struct ows_info *info, double *least, double *most)
 {
 	static const double lows[] = {[OWS_SHORT] = -32768,
@@ -217,13 +209,13 @@ static void put_number(struct json *json, const struct row *row)
 
 	entity_range(&row->info, &least, &most);
 	put_topic(json, "cmd_t", row, "/set");
-	put_double(json, "min", least);
-	put_double(json, "max", most);
-	put_double(json, "step",
-	           !value_is_float((enum ows_type)row->info.type) ? 1
-	           : row->info.decimals >= 0 && row->info.decimals < 3
-	                   ? pow(10, -row->info.decimals)
-	                   : 0.001);
+	json_double(json, "min", least);
+	json_double(json, "max", most);
+	json_double(json, "step",
+	            !value_is_float((enum ows_type)row->info.type) ? 1
+	            : row->info.decimals >= 0 && row->info.decimals < 3
+	                    ? pow(10, -row->info.decimals)
+	                    : 0.001);
 	json_string(json, "mode", "box");
 }
 
@@ -242,7 +234,7 @@ static void put_light(struct json *json, const struct row *row)
 	put_topic(json, "bri_cmd_t", row, "/set");
 	put_topic(json, "bri_stat_t", row, "");
 	json_string(json, "bri_val_tpl", NUMBER_OR_NOTHING);
-	put_double(json, "bri_scl", most);
+	json_double(json, "bri_scl", most);
 }
 
 /* A cover: open or closed, or a position between least and greatest value. */
@@ -258,8 +250,8 @@ static void put_cover(struct json *json, const struct stream *s, const struct ro
 	put_topic(json, "set_pos_t", row, "/set");
 	put_topic(json, "pos_t", row, "");
 	json_string(json, "pos_tpl", NUMBER_OR_NOTHING);
-	put_double(json, "pos_clsd", least);
-	put_double(json, "pos_open", most);
+	json_double(json, "pos_clsd", least);
+	json_double(json, "pos_open", most);
 	/* it keeps a position that is bad; but one that nobody has set yet can be set */
 	put_availables(json, s, row->chip >= 0 ? &s->chips[row->chip] : NULL, row->topic);
 }

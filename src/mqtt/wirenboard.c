@@ -67,12 +67,8 @@ static void put_title(struct json *json, const char *title)
 
 static void put_number(struct json *json, const char *key, double number)
 {
-	char text[VALUE_TEXT_MAX];
-
-	if (isnan(number))
-		return;
-	value_to_text(OWS_DOUBLE, value_of_double(number), text);
-	json_number(json, key, text);
+	if (!isnan(number))
+		json_double(json, key, number);
 }
 
 static bool put_control(struct stream *s, const struct row *row)

@@ -9,7 +9,6 @@
 #include "hal/bus/time.h"
 #include "src/libhistory/ows_history.h"
 #include "src/show/journal_past.h"
-#include "src/signal/value.h"
 #include "src/web/http.h"
 #include "src/web/past.h"
 
@@ -87,14 +86,6 @@ static bool open_history(struct past_job *past, struct ows_history **h)
 
 /* --- Trends ---------------------------------------------------------------------------------- */
 
-static void put_number(struct json *json, double number)
-{
-	char text[VALUE_TEXT_MAX];
-
-	value_to_text(OWS_DOUBLE, value_of_double(number), text);
-	json_number(json, NULL, text); /* null if there is none */
-}
-
 static void put_column(struct json *json, const char *key, const struct ows_history_point *points,
                        int n)
 {
@@ -105,11 +96,11 @@ static void put_column(struct json *json, const char *key, const struct ows_hist
 		if (!strcmp(key, "from"))
 			json_int(json, NULL, point->from_ns / NS_PER_MS);
 		else if (!strcmp(key, "min"))
-			put_number(json, point->min);
+			json_double(json, NULL, point->min);
 		else if (!strcmp(key, "max"))
-			put_number(json, point->max);
+			json_double(json, NULL, point->max);
 		else if (!strcmp(key, "last"))
-			put_number(json, point->last);
+			json_double(json, NULL, point->last);
 		else if (!strcmp(key, "quality"))
 			json_int(json, NULL, point->quality);
 		else
