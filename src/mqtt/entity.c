@@ -315,7 +315,8 @@ static void put_signal(struct json *json, const struct stream *s, const struct r
 	/* the reason of a bad value, and nothing that changes with each reading */
 	put_topic(json, "json_attr_t", row, "");
 	json_string(json, "json_attr_tpl",
-	            "{{ {'quality': value_json.why | default('good')} | tojson }}");
+	            "{{ {'quality': value_json.why | default('good') ~ (', simulated' if "
+	            "value_json.simulated else '')} | tojson }}");
 	json_object_end(json);
 }
 

@@ -2,7 +2,7 @@
 /*
  * The profile "homie5": the node is a device of the Homie convention 5, each chip a node of it, and
  * each signal a property. Homie has no quality: of a bad value nothing is retained, and an alert of
- * the device says why.
+ * the device says why, or that a value is simulated.
  */
 #include <math.h>
 #include <string.h>
@@ -191,7 +191,8 @@ static bool value(struct stream *s, struct row *row)
 	/* an empty text would empty the topic: it is one byte 0 */
 	put = *news.text ? stream_put(s, row->topic, true)
 	                 : s->outlet.put(s->outlet.ctx, row->topic, "", 1, true);
-	if (!put || ((!row->published || !row->good) && !put_alert(s, row, "")))
+	known = row->published && row->good && row->simulated == news.simulated;
+	if (!put || (!known && !put_alert(s, row, news.simulated ? "simulated" : "")))
 		return false;
 	return stream_published(row, &news);
 }

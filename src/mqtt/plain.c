@@ -67,6 +67,8 @@ static void plain_put_value(struct json *json, const struct stream *s, const str
 		json_null(json, "v");
 	json_bool(json, "good", ows_good(quality));
 	json_uint(json, "q", quality);
+	if (v->detail & OWS_DETAIL_SIMULATED)
+		json_bool(json, "simulated", true);
 	if (!ows_good(quality))
 		json_string(json, "why", s->live ? ows_quality_text(quality) : "owsd is not there");
 	put_time(json, s, moment_of(v, now.boot) + now.wall - now.boot);

@@ -147,8 +147,8 @@ static bool put_numbered(struct stream *s, const char *verb, const struct chip *
 struct metric {
 	Spb__Metric metric;
 	Spb__PropertySet set;
-	Spb__PropertyValue values[3], *list[3];
-	char *keys[3];
+	Spb__PropertyValue values[4], *list[4];
+	char *keys[4];
 	char name[256], unit[64];
 };
 
@@ -186,12 +186,23 @@ static Spb__PropertyValue *add_property(struct metric *m, const char *key, uint3
 	return value;
 }
 
-static void add_quality(struct metric *m, uint8_t quality)
+static void add_flag(struct metric *m, const char *key, bool flag)
+{
+	Spb__PropertyValue *value = add_property(m, key, BOOLEAN);
+
+	value->value_case = SPB__PROPERTY_VALUE__VALUE_BOOLEAN_VALUE;
+	value->boolean_value = flag;
+}
+
+static void add_quality(struct metric *m, const struct news *news)
 {
 	Spb__PropertyValue *value = add_property(m, "Quality", INT32);
+	uint8_t quality = news->v.quality;
 
 	value->value_case = SPB__PROPERTY_VALUE__VALUE_INT_VALUE;
 	value->int_value = ows_good(quality) ? GOOD : quality == OWS_Q_STALE ? STALE : BAD;
+	if (news->simulated)
+		add_flag(m, "Simulated", true);
 }
 
 static void metric_init(struct metric *m)
@@ -285,9 +296,7 @@ static void add_description(struct metric *m, const struct ows_info *info)
 	m->metric.name = m->name;
 	m->metric.has_datatype = true;
 	m->metric.datatype = datatype_of(info->type);
-	value = add_property(m, "readOnly", BOOLEAN);
-	value->value_case = SPB__PROPERTY_VALUE__VALUE_BOOLEAN_VALUE;
-	value->boolean_value = !info->output;
+	add_flag(m, "readOnly", !info->output);
 	if (!*info->unit)
 		return;
 	snprintf(m->unit, sizeof(m->unit), "%s", info->unit);
@@ -318,7 +327,7 @@ static bool put_row(struct stream *s, struct row *row, uint64_t alias, bool data
 	m.metric.alias = alias + (uint64_t)(row - s->rows);
 	m.metric.has_timestamp = true;
 	m.metric.timestamp = ms_of(moment_of(&news.v, now.boot) + now.wall - now.boot);
-	add_quality(&m, news.v.quality);
+	add_quality(&m, &news);
 	if (!data)
 		add_description(&m, &row->info);
 	m.metric.properties = &m.set;

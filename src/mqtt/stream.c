@@ -67,9 +67,10 @@ bool stream_read(struct stream *s, struct row *row, struct news *news)
 		repeat_ns = stream_repeat_ns(&row->info);
 	}
 	news->good = ows_good(v->quality);
-	news->print = news->good
-	                      ? hash_text(HASH_BEGIN ^ v->quality, news->text, strlen(news->text))
-	                      : v->quality;
+	news->simulated = v->detail & OWS_DETAIL_SIMULATED;
+	news->print = (uint64_t)news->simulated << 8 | v->quality;
+	if (news->good)
+		news->print = hash_text(HASH_BEGIN ^ news->print, news->text, strlen(news->text));
 	return !row->published || news->print != row->print ||
 	       (repeat_ns && news->good && news->now_ns - row->published_ns >= repeat_ns);
 }
@@ -78,6 +79,7 @@ bool stream_published(struct row *row, const struct news *news)
 {
 	row->published = true;
 	row->good = news->good;
+	row->simulated = news->simulated;
 	row->print = news->print;
 	row->published_ns = news->now_ns;
 	return true;

@@ -37,7 +37,7 @@ struct row {
 	bool twin;            /* another name has the same slug */
 	bool twice;           /* another row before it has its chip and property */
 	bool published;       /* once at least since the birth */
-	bool good;            /* what was published */
+	bool good, simulated; /* what was published */
 	uint64_t print;       /* a hash of what was published */
 	int64_t published_ns; /* when */
 	uint32_t alarm_print; /* of its limit alarm; 0: not published */
@@ -62,7 +62,7 @@ struct gone {
 /* The value of a row, as it is now. */
 struct news {
 	struct ows_value v;
-	bool good;
+	bool good, simulated;
 	char text[VALUE_STRING_MAX + 1];
 	uint64_t print;
 	int64_t now_ns;

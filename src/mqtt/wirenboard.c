@@ -58,10 +58,13 @@ static const char *unit_of(const struct row *row)
 	return unit;
 }
 
-static void put_title(struct json *json, const char *title)
+static void put_title(struct json *json, const char *title, bool simulated)
 {
+	char text[320];
+
+	snprintf(text, sizeof(text), "%.300s%s", title, simulated ? " (simulated)" : "");
 	json_object(json, "title");
-	json_string(json, "en", title);
+	json_string(json, "en", text);
 	json_object_end(json);
 }
 
@@ -95,7 +98,7 @@ static bool put_control(struct stream *s, const struct row *row)
 	}
 	json_int(&json, "order", row - s->rows + 1);
 	json_bool(&json, "readonly", !s->write || !info->output);
-	put_title(&json, *info->description ? info->description : info->name);
+	put_title(&json, *info->description ? info->description : info->name, row->simulated);
 	json_object_end(&json);
 	return put_below_row(s, row, META, NULL);
 }
@@ -109,7 +112,7 @@ static bool put_device(struct stream *s)
 	stream_message(s, &json);
 	json_object(&json, NULL);
 	json_string(&json, "driver", "owsd");
-	put_title(&json, title);
+	put_title(&json, title, false);
 	json_object_end(&json);
 	return stream_put_below(s, META, NULL);
 }
@@ -143,6 +146,14 @@ static bool value(struct stream *s, struct row *row)
 
 	if (!stream_read(s, row, &news))
 		return true;
+	/* the conventions have no other place for it that a person sees */
+	if (news.good && news.simulated != row->simulated) {
+		row->simulated = news.simulated;
+		if (!put_control(s, row)) {
+			row->simulated = !news.simulated;
+			return false;
+		}
+	}
 	if (!news.good)
 		return put_below_row(s, row, ERROR, error_of(news.v.quality)) &&
 		       stream_published(row, &news);

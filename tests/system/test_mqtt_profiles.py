@@ -39,7 +39,8 @@ class Homie5:
     @staticmethod
     def shows_good(house, name, text):
         house.says(Homie5.topic(name), text)
-        house.says(f"{Homie5.root}/$alert/{name}", "")
+        simulated = "" if name == "pull" else f"{name}: simulated"
+        house.says(f"{Homie5.root}/$alert/{name}", simulated)
 
 
 class WirenBoard:
@@ -137,11 +138,11 @@ def test_wirenboard_has_a_device_with_a_control_of_each_signal(scene):
     meta = {name: json.loads(kept[f"{WirenBoard.topic(name)}/meta"]) for name in ("room", "relay", "dial_1", "kind")}
     assert meta == {
         "room": {"type": "value", "units": "deg C", "precision": 0.1, "order": 1, "readonly": True,
-                 "title": {"en": "Living room"}},
+                 "title": {"en": "Living room (simulated)"}},
         "relay": {"type": "switch", "order": 2, "readonly": False, "title": {"en": "relay"}},
         "dial_1": {"type": "value", "max": 200, "precision": 1, "order": 3, "readonly": False,
                    "title": {"en": "Dial_1"}},
-        "kind": {"type": "text", "order": 4, "readonly": True, "title": {"en": "kind"}}}, meta
+        "kind": {"type": "text", "order": 4, "readonly": True, "title": {"en": "kind (simulated)"}}}, meta
     # an output that nobody has commanded has no value that anybody may believe
     assert kept[f"{WirenBoard.topic('relay')}/meta/error"] == "r" and WirenBoard.topic("relay") not in kept, kept
 

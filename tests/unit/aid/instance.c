@@ -206,12 +206,13 @@ void instance_dies_soon(struct instance *in)
 	in->image.header->period_ns = INSTANCE_S / 10;
 }
 
-static struct ows_sample good(int64_t measured_ns)
+static struct ows_sample good(const struct instance *in, int64_t measured_ns)
 {
 	return (struct ows_sample){
 		.measured_ns = measured_ns,
 		.tried_ns = measured_ns,
 		.quality = OWS_Q_GOOD,
+		.detail = in->detail,
 		.target = 1,
 		.count = 1,
 	};
@@ -219,7 +220,7 @@ static struct ows_sample good(int64_t measured_ns)
 
 void instance_put(struct instance *in, uint32_t record, int64_t value, int64_t measured_ns)
 {
-	struct ows_sample sample = good(measured_ns);
+	struct ows_sample sample = good(in, measured_ns);
 	enum ows_type type = (enum ows_type)in->image.records[record].type;
 	struct ows_attrs attrs = {.flags = OWS_ATTR_READ_ENABLE,
 	                          .raw = value_of_double(value_number(type, value))};
@@ -237,7 +238,7 @@ void instance_put_double(struct instance *in, uint32_t record, double value, int
 
 void instance_put_text(struct instance *in, uint32_t record, const char *text, int64_t measured_ns)
 {
-	struct ows_sample sample = good(measured_ns);
+	struct ows_sample sample = good(in, measured_ns);
 	struct ows_attrs attrs = {0};
 
 	sample.len = (uint32_t)strlen(text);

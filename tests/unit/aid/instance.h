@@ -31,6 +31,7 @@ struct instance {
 	struct door *door; /* from instance_show() on */
 	const struct instance_signal *signals;
 	uint32_t count;
+	uint8_t detail; /* OWS_DETAIL_ bits of what is put */
 };
 
 /* Make the image, hidden: instance_show() puts it in place, makes it live, and opens the door. */

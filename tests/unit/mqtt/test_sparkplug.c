@@ -217,6 +217,18 @@ static void test_only_the_will_and_the_end_are_the_death_of_the_node(void)
 	TEST_ASSERT_EQUAL_STRING(death, said);
 }
 
+static void test_a_simulated_value_has_a_property_that_says_so(void)
+{
+	pump();
+	change(ROOM, 22);
+	pump();
+	TEST_ASSERT_NULL(memmem(raw, raw_len, "Simulated", 9));
+	in.detail = OWS_DETAIL_SIMULATED;
+	change(ROOM, 22);
+	TEST_ASSERT_EQUAL_STRING("DDATA/pi/28.000000000001 4\n", pump());
+	TEST_ASSERT_NOT_NULL(memmem(raw, raw_len, "Simulated", 9));
+}
+
 static void test_a_text_that_is_no_utf_8_becomes_some(void)
 {
 	int signal = TITLE;
@@ -285,6 +297,7 @@ int main(void)
 	RUN_TEST(test_numbers_end_at_255_and_a_birth_begins_at_0);
 	RUN_TEST(test_what_other_profiles_have_left_is_emptied_and_nothing_else);
 	RUN_TEST(test_only_the_will_and_the_end_are_the_death_of_the_node);
+	RUN_TEST(test_a_simulated_value_has_a_property_that_says_so);
 	RUN_TEST(test_a_text_that_is_no_utf_8_becomes_some);
 	RUN_TEST(test_a_message_that_is_no_payload_is_one_fault);
 	RUN_TEST(test_a_command_is_of_its_device_and_of_its_type);

@@ -336,6 +336,41 @@ static void test_wirenboard_keeps_the_last_value_and_never_without_its_error(voi
 	TEST_ASSERT_EQUAL_STRING("/devices/owsd_pi/controls/old/meta \n", pump());
 }
 
+static void test_a_simulated_value_is_no_value_of_a_plant_in_any_profile(void)
+{
+	int signal = ROOM;
+
+	in.detail = OWS_DETAIL_SIMULATED;
+	instance_put_double(&in, ROOM + 1, 21, ows_now());
+	TEST_ASSERT_NOT_NULL(strstr(pump(), "{\"v\":21,\"good\":true,\"q\":192,"
+	                                    "\"simulated\":true,\"t\":null}\n"));
+	/* the same of a target that is there is another */
+	in.detail = 0;
+	instance_put_double(&in, ROOM + 1, 21, ows_now());
+	stream_changes(&s, &signal, 1);
+	TEST_ASSERT_EQUAL_STRING("o/pi/room {\"v\":21,\"good\":true,\"q\":192,\"t\":null}\n",
+	                         pump());
+
+	in.detail = OWS_DETAIL_SIMULATED;
+	instance_put_double(&in, ROOM + 1, 21, ows_now());
+	take_profile(&profile_homie5);
+	TEST_ASSERT_NOT_NULL(strstr(pump(), "/$alert/room room: simulated\n"));
+	in.detail = 0;
+	instance_put_double(&in, ROOM + 1, 21, ows_now());
+	stream_changes(&s, &signal, 1);
+	TEST_ASSERT_EQUAL_STRING("homie/5/owsd-pi/28-000000000001/room 21\n"
+	                         "homie/5/owsd-pi/$alert/room \n",
+	                         pump());
+
+	take_profile(&profile_wirenboard);
+	TEST_ASSERT_NULL(strstr(pump(), "simulated"));
+	in.detail = OWS_DETAIL_SIMULATED;
+	instance_put_double(&in, ROOM + 1, 22, ows_now());
+	stream_changes(&s, &signal, 1);
+	TEST_ASSERT_NOT_NULL(strstr(pump(), "{\"en\":\"room (simulated)\"}}\n"
+	                                    "/devices/owsd_pi/controls/room 22\n"));
+}
+
 static void test_names_of_one_slug_have_ids_of_their_own_and_commands_find_them(void)
 {
 	static const struct instance_signal names[] = {
@@ -437,6 +472,7 @@ int main(void)
 	RUN_TEST(test_homie_has_no_value_that_is_bad_and_an_alert_instead);
 	RUN_TEST(test_another_description_has_a_higher_version_and_the_same_the_same);
 	RUN_TEST(test_wirenboard_keeps_the_last_value_and_never_without_its_error);
+	RUN_TEST(test_a_simulated_value_is_no_value_of_a_plant_in_any_profile);
 	RUN_TEST(test_names_of_one_slug_have_ids_of_their_own_and_commands_find_them);
 	return UNITY_END();
 }
