@@ -116,8 +116,10 @@ static void put_availables(struct json *json, const struct stream *s, const stru
 	json_array(json, "avty");
 	snprintf(topic, sizeof(topic), "%s/" TOPIC_STATE, s->prefix);
 	put_available(json, topic, NULL);
+	/* one that has never answered can be commanded */
 	if (chip)
-		put_available(json, chip->topic, NULL);
+		put_available(json, chip->topic,
+		              "{{ 'offline' if value == 'offline' else 'online' }}");
 	if (value_topic)
 		put_available(
 			json, value_topic,

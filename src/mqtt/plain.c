@@ -75,19 +75,26 @@ static void plain_put_value(struct json *json, const struct stream *s, const str
 	json_object_end(json);
 }
 
-/*
- * One of its signals that answers is enough. What was never read or written does not count against
- * one that cannot reach it.
- */
-bool plain_chip_online(const struct stream *s, const struct chip *chip)
+/* One of its signals that answers is enough. */
+static enum chip_state state_of(const struct stream *s, const struct chip *chip)
 {
-	return s->live && (!chip->away || chip->away + chip->blank < chip->rows);
+	if (!s->live)
+		return CHIP_OFFLINE;
+	return chip->answers ? CHIP_ONLINE : chip->away ? CHIP_OFFLINE : CHIP_UNKNOWN;
+}
+
+bool plain_chip_there(const struct stream *s, const struct chip *chip)
+{
+	enum chip_state state = state_of(s, chip);
+
+	return state == CHIP_ONLINE || (state == CHIP_UNKNOWN && !chip->inputs);
 }
 
 bool plain_chip_look(struct stream *s, struct row *row, uint8_t quality)
 {
-	bool away = quality == OWS_Q_NO_DEVICE || quality == OWS_Q_TARGET || quality == OWS_Q_SHORT,
-	     blank = quality == OWS_Q_INITIAL;
+	bool away = quality == OWS_Q_NO_DEVICE || quality == OWS_Q_TARGET || quality == OWS_Q_SHORT;
+	/* what is less is wrong with the configuration, and says nothing of the chip */
+	bool answers = quality > OWS_Q_NO_DEVICE && quality != OWS_Q_INITIAL && !away;
 	struct chip *chip;
 
 	if (row->chip < 0)
@@ -95,11 +102,10 @@ bool plain_chip_look(struct stream *s, struct row *row, uint8_t quality)
 	chip = &s->chips[row->chip];
 	chip->away += away - row->away;
 	row->away = away;
-	chip->blank += blank - row->blank;
-	row->blank = blank;
-	/* a chip that was never there is announced when it comes; of an output nobody knows */
-	if (!plain_chip_online(s, chip) || chip->seen ||
-	    (quality == OWS_Q_INITIAL && !row->info.output))
+	chip->answers += answers - row->answers;
+	row->answers = answers;
+	/* a chip that was never there is announced when it comes */
+	if (!plain_chip_there(s, chip) || chip->seen)
 		return false;
 	chip->seen = true;
 	return true;
@@ -107,21 +113,22 @@ bool plain_chip_look(struct stream *s, struct row *row, uint8_t quality)
 
 static bool publish_chip(struct stream *s, struct row *row, uint8_t quality)
 {
+	static const char *const words[] = {"offline", "unknown", "online"};
+	enum chip_state state;
 	struct chip *chip;
-	bool online;
 
 	if (plain_chip_look(s, row, quality) && s->profile->birth)
 		s->birth = 0;
 	if (row->chip < 0)
 		return true;
 	chip = &s->chips[row->chip];
-	online = plain_chip_online(s, chip);
-	if (chip->published && online == chip->online)
+	state = state_of(s, chip);
+	if (chip->published && state == chip->state)
 		return true;
-	if (!stream_put_text(s, chip->topic, online ? "online" : "offline", true))
+	if (!stream_put_text(s, chip->topic, words[state], true))
 		return false;
 	chip->published = true;
-	chip->online = online;
+	chip->state = state;
 	return true;
 }
 

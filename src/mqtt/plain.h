@@ -13,8 +13,11 @@ void plain_topic(const struct stream *s, const struct row *row, char topic[TOPIC
 bool plain_writes(const struct stream *s, const char *topic, const char *below);
 /* Count the quality of a row for its chip. True: the first that shows that the chip is there. */
 bool plain_chip_look(struct stream *s, struct row *row, uint8_t quality);
-/* Is the chip there, by all that was counted? */
-bool plain_chip_online(const struct stream *s, const struct chip *chip);
+/*
+ * Is the chip there, by all that was counted? Of one with outputs alone only a command can show it:
+ * it counts as there until then.
+ */
+bool plain_chip_there(const struct stream *s, const struct chip *chip);
 bool plain_value(struct stream *s, struct row *row);
 bool plain_state(struct stream *s, enum stream_node node);
 void plain_alarm(struct stream *s, const struct ows_alarm *alarm);

@@ -407,7 +407,7 @@ static bool birth(struct stream *s, int number, bool *more)
 	if (!number)
 		return s->announced || birth_of_node(s);
 	chip = &s->chips[number - 1];
-	if (chip->announced || !chip->seen || !plain_chip_online(s, chip))
+	if (chip->announced || !chip->seen || !plain_chip_there(s, chip))
 		return true;
 	sparkplug_begin(s);
 	put_rows(s, chip, false);
@@ -426,7 +426,7 @@ static bool value(struct stream *s, struct row *row)
 	stream_read(s, row, &news);
 	plain_chip_look(s, row, news.v.quality);
 	if (chip && !chip->announced) {
-		if (chip->seen && plain_chip_online(s, chip))
+		if (chip->seen && plain_chip_there(s, chip))
 			s->birth = 0;
 		return true;
 	}
@@ -439,7 +439,7 @@ static bool value(struct stream *s, struct row *row)
 			return false;
 		}
 	}
-	if (!chip || plain_chip_online(s, chip))
+	if (!chip || plain_chip_there(s, chip))
 		return true;
 	sparkplug_begin(s);
 	chip->announced = !put_numbered(s, "DEATH", chip);

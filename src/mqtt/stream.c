@@ -283,6 +283,7 @@ static bool make_chips(struct stream *s)
 		}
 		row->chip = s->chip_count - 1;
 		s->chips[row->chip].rows++;
+		s->chips[row->chip].inputs += !row->info.output;
 	}
 	return true;
 }

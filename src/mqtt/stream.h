@@ -33,7 +33,7 @@ struct row {
 	char *topic;                /* of its value */
 	int id;                     /* of ows_find() */
 	int chip;                   /* its chip; -1: none */
-	bool queued, away, blank, alarms;
+	bool queued, away, answers, alarms;
 	bool twin;            /* another name has the same slug */
 	bool twice;           /* another row before it has its chip and property */
 	bool published;       /* once at least since the birth */
@@ -43,16 +43,21 @@ struct row {
 	uint32_t alarm_print; /* of its limit alarm; 0: not published */
 	bool key_away;        /* of a key: it was looked for, and not there */
 };
-/* A device of the wire. */
+/* Does a device of the wire answer? Unknown: it never has, and nothing says that it is away. */
+enum chip_state {
+	CHIP_OFFLINE,
+	CHIP_UNKNOWN,
+	CHIP_ONLINE,
+};
 struct chip {
-	const char *id, *family; /* as of its rows */
-	int first;               /* its rows are s->by_chip[first] and those after it */
-	char *topic;             /* whether it is there */
-	int rows, away,
-		blank;  /* signals, those that cannot reach it, those never read or written */
-	bool seen;      /* it was there once, since owsd-mqtt has started */
-	bool announced; /* by the birth */
-	bool published, online; /* what was published */
+	const char *id, *family;         /* as of its rows */
+	int first;                       /* its rows are s->by_chip[first] and those after it */
+	char *topic;                     /* whether it is there */
+	int rows, inputs, away, answers; /* signals; of them that cannot reach it, that do */
+	bool seen;                       /* it was there once, since owsd-mqtt has started */
+	bool announced;                  /* by the birth */
+	bool published;
+	enum chip_state state; /* what was published */
 };
 
 struct gone {

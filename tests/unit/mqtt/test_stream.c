@@ -19,7 +19,7 @@ enum { ROOM, TITLE, COUNT };
 static struct instance in;
 static struct ows *ows;
 static struct stream s;
-static char said[4096]; /* "topic text\n" of each message */
+static char said[8192]; /* "topic text\n" of each message */
 static int room;        /* how many messages the outlet takes */
 
 static bool put(void *ctx, const char *topic, const char *text, size_t len, bool retain)
@@ -139,6 +139,40 @@ static void test_what_has_no_room_comes_later_with_its_newest_value_and_nothing_
 	TEST_ASSERT_NULL(strstr(said, "\"v\":48"));
 	TEST_ASSERT_NULL(strstr(said, "28.000000000001"));
 	TEST_ASSERT_NOT_NULL(strstr(said, "o/pi/title {\"v\":\"x\""));
+}
+
+static void test_a_chip_is_unknown_until_it_has_answered(void)
+{
+	int signal = ROOM;
+
+	pump();
+	TEST_ASSERT_NOT_NULL(strstr(said, "o/pi/chip/28.000000000001 unknown\n"));
+	TEST_ASSERT_NULL(strstr(said, "001 online\n"));
+	instance_put_double(&in, ROOM + 1, 21.5, ows_now());
+	stream_changes(&s, &signal, 1);
+	TEST_ASSERT_EQUAL_STRING_LEN("o/pi/chip/28.000000000001 online\n", pump(), 33);
+}
+
+static void test_of_a_chip_with_outputs_alone_a_command_shows_whether_it_is_there(void)
+{
+	static const struct instance_signal other[] = {
+		{"relay", "/29.1/PIO.0", OWS_BOOL, true, 0, "29.000000000001"},
+		{"pump", "/3A.1/PIO.A", OWS_BOOL, true, 0, "3A.000000000001"},
+		{"level", "/3A.1/sensed.A", OWS_BOOL, false, 0, "3A000000000001"}};
+	int signal = 2;
+
+	instance_reload(&in, other, 3);
+	TEST_ASSERT_EQUAL_INT(0, ows_reopen(ows));
+	take_profile(&profile_homeassistant);
+	TEST_ASSERT_NOT_NULL(strstr(pump(), "o/pi/chip/29.000000000001 unknown\n"));
+	TEST_ASSERT_NOT_NULL(strstr(said, "ha/device/owsd_29_000000000001/config"));
+	/* the other one can be asked, and has not answered */
+	TEST_ASSERT_NOT_NULL(strstr(said, "o/pi/chip/3A.000000000001 unknown\n"));
+	TEST_ASSERT_NULL(strstr(said, "ha/device/owsd_3A_000000000001/config"));
+	instance_put(&in, 3, 1, ows_now());
+	stream_changes(&s, &signal, 1);
+	TEST_ASSERT_EQUAL_STRING_LEN("o/pi/chip/3A.000000000001 online\n", pump(), 33);
+	TEST_ASSERT_NOT_NULL(strstr(said, "ha/device/owsd_3A_000000000001/config"));
 }
 
 static void test_an_owsd_that_is_lost_takes_all_back(void)
@@ -462,6 +496,8 @@ int main(void)
 	RUN_TEST(test_the_same_value_is_said_again_after_half_of_its_time_alone);
 	RUN_TEST(test_a_bad_value_has_no_number);
 	RUN_TEST(test_what_has_no_room_comes_later_with_its_newest_value_and_nothing_twice);
+	RUN_TEST(test_a_chip_is_unknown_until_it_has_answered);
+	RUN_TEST(test_of_a_chip_with_outputs_alone_a_command_shows_whether_it_is_there);
 	RUN_TEST(test_an_owsd_that_is_lost_takes_all_back);
 	RUN_TEST(test_what_the_broker_keeps_is_emptied_if_nobody_writes_it_any_more);
 	RUN_TEST(test_signals_of_one_property_are_told_apart_and_a_chip_has_one_form);
