@@ -23,7 +23,7 @@ static const struct {
 	{0x8b, "the broker ends", ""},
 	{0x8d, "the broker did not hear from us in time", ""},
 	{ADVICE_TAKEN_OVER, "another client took its place",
-         "is owsd-mqtt of this Node running twice?"},
+         "look for a second owsd-mqtt of this Node"},
 	{0x95, "the broker calls a message too large",
          "raise its limit (mosquitto: max_packet_size)"},
 	{0x97, "the broker calls it too much", "raise its quota"},

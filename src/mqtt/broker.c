@@ -28,7 +28,7 @@
 #define IN_FLIGHT_MOST 100
 #define READS 64 /* packets at a time */
 #define END_NS (2 * NS_PER_S)
-#define BRIEF_MOST 3 /* connections that were closed soon, one after the other */
+#define BRIEF_MOST 3 /* connections that the broker closed soon, one after the other */
 /* The step of one whose place another client takes each time; it has to last longer than a pause */
 #define TAKEN_NS (120 * NS_PER_S)
 #define TAKEN_GOOD_NS (150 * NS_PER_S)
@@ -119,7 +119,7 @@ static void broker_fail(struct broker *b, const char *why, const char *remedy, i
 	unsigned way = b->way;
 	uint64_t print;
 
-	snprintf(words, sizeof(words), "%.80s %s: %.90s%s%.50s",
+	snprintf(words, sizeof(words), "%.80s %s: %.200s%s%.50s",
 	         mqtt_way_name(&b->options->ways[b->way], name),
 	         was_connected ? "is lost" : "cannot be reached", why, *remedy ? "; " : "", remedy);
 	drop(b);
@@ -134,9 +134,14 @@ static void broker_fail(struct broker *b, const char *why, const char *remedy, i
 	memcpy(b->last, words, sizeof(words));
 }
 
+/* What is proved, else what it looks like. */
 static const char *taken_words(const struct broker *b, char words[BROKER_WORDS])
 {
-	snprintf(words, BROKER_WORDS, "another client with the id " CLIENT_ID " took its place",
+	snprintf(words, BROKER_WORDS,
+	         b->taken
+	                 ? "another client took the id " CLIENT_ID
+	                 : "the broker closes each connection; has another client the id " CLIENT_ID
+	                   "?",
 	         b->options->node);
 	return words;
 }
@@ -145,14 +150,15 @@ void broker_taken(struct broker *b)
 {
 	char name[MQTT_WAY_NAME], words[BROKER_WORDS];
 
-	if (b->brief == BRIEF_MOST)
+	if (b->taken)
 		return;
-	snprintf(b->last, sizeof(b->last), "%.80s was lost: %.90s; %.50s",
+	b->taken = true;
+	b->brief = BRIEF_MOST;
+	b->step_ns = TAKEN_NS;
+	snprintf(b->last, sizeof(b->last), "%.80s was lost: %.200s; %.50s",
 	         mqtt_way_name(&b->options->ways[b->way], name), taken_words(b, words),
 	         advice_remedy(ADVICE_TAKEN_OVER, 0));
 	log_warning(b->face->log, "%s", b->last);
-	b->brief = BRIEF_MOST;
-	b->step_ns = TAKEN_NS;
 }
 
 /* How long a connection has to last until it counts as a good one */
@@ -198,7 +204,8 @@ static void attempt(struct broker *b, int64_t now_ns)
 static void finish(struct broker *b, int code, int err, int64_t now_ns)
 {
 	char taken[BROKER_WORDS];
-	const char *words;
+	const char *words, *remedy;
+	bool soon, closed;
 
 	if (b->ended)
 		code = b->end_code;
@@ -210,20 +217,23 @@ static void finish(struct broker *b, int code, int err, int64_t now_ns)
 		b->next_ns = now_ns;
 		return;
 	}
-	/* mosquitto gives no reason when it closes the older one of two with the same id */
-	if (b->state != BROKER_CONNECTED || now_ns - b->begun_ns > good_ns(b))
-		b->brief = 0;
-	else if ((code == MOSQ_ERR_CONN_LOST || code == MOSQ_ERR_ERRNO || code == MOSQ_ERR_TLS) &&
-	         b->brief < BRIEF_MOST)
-		b->brief++;
-	if (b->brief == BRIEF_MOST) {
-		code = ADVICE_TAKEN_OVER;
-		b->step_ns = TAKEN_NS;
-	}
+	/*
+	 * By MQTT 3.1.1 a broker has no word for it when it closes the older one of two with the
+	 * same id; but it closes it, and a line that breaks or a machine that restarts does not.
+	 */
+	soon = b->state == BROKER_CONNECTED && now_ns - b->begun_ns <= good_ns(b);
+	closed = code == MOSQ_ERR_CONN_LOST && !err;
+	b->taken = code == ADVICE_TAKEN_OVER || (b->taken && soon && closed);
+	b->brief = b->taken           ? BRIEF_MOST
+	           : !soon || !closed ? 0
+	                              : b->brief + (b->brief < BRIEF_MOST);
 	words = advice_words(code, err, b->tls_words);
-	if (code == ADVICE_TAKEN_OVER)
+	remedy = advice_remedy(b->taken ? ADVICE_TAKEN_OVER : code, err);
+	if (b->brief == BRIEF_MOST) {
+		b->step_ns = TAKEN_NS;
 		words = taken_words(b, taken);
-	broker_fail(b, words, advice_remedy(code, err), now_ns);
+	}
+	broker_fail(b, words, remedy, now_ns);
 }
 
 static void connected(struct broker *b, int64_t now_ns)

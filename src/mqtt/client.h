@@ -9,7 +9,7 @@
 
 #include "src/mqtt/options.h"
 
-#define BROKER_WORDS 256
+#define BROKER_WORDS 384
 #define BROKER_SESSION 20
 #define CLIENT_ID "owsd-%s"
 #define BROKER_PLACES 24 /* that broker_look() takes */
@@ -60,7 +60,8 @@ struct broker {
 	int end_code;        /* why */
 	bool refusal_logged; /* that the broker refuses what is published */
 	unsigned sent;       /* CONNECTs */
-	unsigned brief;      /* connections in a row that did not last */
+	unsigned brief;      /* connections in a row that the broker closed soon */
+	bool taken;          /* another client took the last one: proved, not guessed */
 	unsigned in_flight;  /* put, and not taken by the broker */
 	int64_t begun_ns, next_ns, step_ns;
 	int64_t tend_ns;                   /* when broker_tick() is due, once there is a client */

@@ -5,6 +5,7 @@ or old; what is wrong stands in the log with its remedy."""
 
 import re
 import socket
+import struct
 import subprocess
 import threading
 
@@ -178,14 +179,61 @@ def test_a_broker_without_mqtt_5_gets_3_1_1(scene):
 
 
 def test_two_with_one_node_are_told_so_and_do_not_flood_the_broker(scene):
-    house = House(scene, ROOM)
-    house.says(STATE, "online")
+    node = "pi7-" + "long-name-" * 5 + "end"
+    house = House(scene, ROOM, Node=node)
+    house.says(f"owsd/{node}/state", "online")
     other = house.start()
     # each of them: nobody knows in whose log a person looks
     for face in (house.face, other):
-        logged(face, f"{house.broker.url} was lost: another client with the id owsd-pi7 took its place; "
-                     "is owsd-mqtt of this Node running twice?")
+        until(lambda face=face: re.search(
+            f"{house.broker.url} (was|is) lost: another client took the id owsd-{node}; "
+            "look for a second owsd-mqtt of this Node", face.log()), 60, lambda face=face: face.log())
         assert face.log().count("is lost: The connection was lost") < 3, face.log()
+
+
+def closes(scene, how):
+    """The log of one whose broker ends each connection after a CONNACK; how: "reset" or "close"."""
+    made = []
+
+    def serve(listener):
+        while True:
+            try:
+                connection = listener.accept()[0]
+            except OSError:
+                return
+            with connection:
+                connection.recv(4096)
+                connection.sendall(b"\x20\x03\x00\x00\x00")
+                connection.recv(4096)
+                if how == "reset":
+                    connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+                else:
+                    connection.shutdown(socket.SHUT_WR)
+                    # what is unread would make a reset of it
+                    try:
+                        while connection.recv(65536):
+                            pass
+                    except OSError:
+                        pass
+            made.append(how)
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        threading.Thread(target=serve, args=(listener,), daemon=True).start()
+        house = House(scene, ROOM, Broker=f"mqtt://127.0.0.1:{listener.getsockname()[1]}")
+        until(lambda: len(made) > 2 and house.face.log().count("connected to") > 2 and
+              ("closes each" in house.face.log() or len(made) > 3), 60, lambda: house.face.log())
+        assert house.face.stop() == 0
+    return house.face.log()
+
+
+def test_a_connection_that_breaks_again_and_again_is_no_other_client(scene):
+    log = closes(scene, "reset")
+    assert "is lost: " in log and "another client" not in log, log
+
+
+def test_a_broker_that_closes_again_and_again_may_have_another_client(scene):
+    log = closes(scene, "close")
+    assert "the broker closes each connection; has another client the id owsd-pi7?" in log, log
+    assert "took the id" not in log, log
 
 
 def test_a_plant_that_is_read_all_the_time_keeps_the_connection(scene):
