@@ -6,8 +6,8 @@
 #include "hal/native/state.h"
 
 /*
- * Does a request that was not looked at ask for the temperature of a device that its id names? *path
- * is what it means.
+ * Does a request that was not looked at ask for the temperature of a device that its id names?
+ * *path is what it means.
  */
 bool first_names(const struct native *native, const struct job *job, struct path *path);
 /* Does a request name by its id alone a device that is no thermometer? */

@@ -12,7 +12,8 @@
 #define LAST_WHERE 256
 int last_directory(char path[LAST_WHERE]);
 /*
- * The longest file, with its check; 65535 strings with the longest texts, names and paths take less.
+ * The longest file, with its check; 65535 strings with the longest texts, names and paths take
+ * less.
  */
 #define LAST_MAX ((size_t)512 << 20)
 /*

@@ -25,7 +25,7 @@ static void ignore(void *ctx, bool is_error, const char *message)
 	(void)ctx, (void)is_error, (void)message;
 }
 
-/* Where the recorder of the instance keeps it: the Directory of its configuration, or the default. */
+/* Where the recorder of the instance keeps it: as Directory says, or the default. */
 static int find_place(const char *instance, char place[PLACE])
 {
 	struct config_report report = {.line = ignore};
