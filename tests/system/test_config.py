@@ -363,8 +363,9 @@ def test_a_property_that_the_family_has_not_is_refused_with_the_one_that_was_mea
                                            ("/28.000000000001/errata/die", ""), ("/kitchen/temprature", ""),
                                            ("/6F.000000000001/temprature", ""), ("/29.000000000001/PIO.ALL", ""),
                                            ("/26.000000000001/HIH4000/humidity", ""))):
-        done = scene.owsctl(None, "config", file, "add", f"z{number}", path)
-        assert done.returncode == 0 and said in done.stderr and bool(said) == bool(done.stderr), done
+        for words in (("add", f"z{number}", path), ("set", "x", f"Path={path}")):
+            done = scene.owsctl(None, "config", file, *words)
+            assert done.returncode == 0 and said in done.stderr and bool(said) == bool(done.stderr), done
 
 
 def test_a_mistyped_item_has_the_nearest_one(scene):
