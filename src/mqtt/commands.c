@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
 #include "src/libows/ows.h"
 #include "src/mqtt/commands.h"
 #include "src/mqtt/entity.h"
@@ -16,16 +15,38 @@
 #define OPEN_NS NS_PER_S
 #define COST_NS (NS_PER_S / COMMANDS_A_SECOND)
 
+void commands_tell(struct commands *c, int64_t now_ns)
+{
+	for (size_t i = 0; i < COMMANDS_CAUSES; i++) {
+		struct commands_cause *cause = &c->causes[i];
+		char others[LOG_OTHERS];
+
+		if (!cause->lines || now_ns - cause->begun_ns < COMMANDS_SPAN_NS)
+			continue;
+		if (cause->others)
+			log_warning(c->log, "%.190s%s", cause->last,
+			            log_others(cause->others, others));
+		*cause = (struct commands_cause){0};
+	}
+}
+
 static void commands_refuse(struct commands *c, const char *name, const char *why, int64_t now_ns)
 {
-	uint64_t print = hash_text(hash_text(HASH_BEGIN, why, strlen(why)), name, strlen(name));
-	uint64_t count = log_rate(&c->log_rates[print % COMMANDS_RATES], now_ns);
-	char others[LOG_OTHERS];
+	uint64_t print = hash_text(HASH_BEGIN, why, strlen(why));
+	struct commands_cause *cause = &c->causes[print % COMMANDS_CAUSES];
 
+	commands_tell(c, now_ns);
 	c->refused++;
 	snprintf(c->trouble, sizeof(c->trouble), "command to %.63s refused: %.150s", name, why);
-	if (count)
-		log_warning(c->log, "%s%s", c->trouble, log_others(count, others));
+	if (!cause->lines)
+		cause->begun_ns = now_ns;
+	if (cause->lines < COMMANDS_LINES) {
+		cause->lines++;
+		log_warning(c->log, "%s", c->trouble);
+	} else {
+		cause->others++;
+		memcpy(cause->last, c->trouble, sizeof(cause->last));
+	}
 }
 
 static const char *why_not(int err, char words[ERROR_WORDS])

@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "hal/bus/time.h"
 #include "src/mqtt/client.h"
 #include "src/text/log.h"
 
@@ -18,7 +19,17 @@ struct stream;
 #define COMMANDS_A_SECOND 50
 #define COMMANDS_BURST 100
 #define COMMANDS_TEXT 1024 /* bytes of a value */
-#define COMMANDS_RATES 64
+/* Lines of the log for each cause of refusals, in COMMANDS_SPAN_NS; the others are counted */
+#define COMMANDS_LINES 10
+#define COMMANDS_SPAN_NS (60 * NS_PER_S)
+#define COMMANDS_CAUSES 32
+
+struct commands_cause {
+	int64_t begun_ns;
+	unsigned lines; /* since then */
+	uint64_t others;
+	char last[BROKER_WORDS]; /* of the others */
+};
 
 struct commands {
 	struct log *log;
@@ -27,8 +38,7 @@ struct commands {
 	struct ows *h;                 /* NULL: not connected */
 	int64_t open_ns;               /* when it may be tried again */
 	int64_t counted_ns, credit_ns; /* what may come at once */
-	/* a rate of each reason and name, by a hash: one that floods keeps no other silent */
-	struct log_rate log_rates[COMMANDS_RATES];
+	struct commands_cause causes[COMMANDS_CAUSES]; /* by a hash of their words */
 	uint64_t taken, refused;
 	char trouble[BROKER_WORDS]; /* the last refusal, and what to do */
 };
@@ -40,6 +50,8 @@ struct commands {
  */
 void commands_take(struct commands *c, const char *name, bool known,
                    const struct broker_message *message, const char *place, int64_t now_ns);
+/* Log how many refusals had no line, for each cause whose span is over by now. */
+void commands_tell(struct commands *c, int64_t now_ns);
 void commands_close(struct commands *c);
 
 #endif

@@ -58,14 +58,13 @@ static void on_connected(void *ctx)
 		m->stream.profile->listen(&m->stream, topic);
 		broker_subscribe(&m->broker, topic);
 	}
-	if (m->options.write) {
-		if (m->stream.profile->listen_write)
-			m->stream.profile->listen_write(&m->stream, topic);
-		else
-			snprintf(topic, sizeof(topic), "%.300s/%s", m->options.prefix,
-			         m->options.profile->commands);
-		broker_subscribe(&m->broker, topic);
-	}
+	/* without Write they are refused, with a reason */
+	if (m->stream.profile->listen_write)
+		m->stream.profile->listen_write(&m->stream, topic);
+	else
+		snprintf(topic, sizeof(topic), "%.300s/%s", m->options.prefix,
+		         m->options.profile->commands);
+	broker_subscribe(&m->broker, topic);
 	m->health_ns = m->sweep_ns = 0;
 	m->sweep = true;
 	stream_begin(&m->stream);
@@ -74,10 +73,13 @@ static void on_connected(void *ctx)
 static void mqtt_command(struct mqtt *m, const char *name, bool known,
                          const struct broker_message *message)
 {
+	struct broker_message one = *message;
 	char place[OPTION_SIZE + 8];
 
+	if (!m->options.write)
+		one.fault = "Write is off in the block Mqtt: set it to on there, and reload owsd";
 	snprintf(place, sizeof(place), "mqtt:%s", m->options.ways[m->broker.way].host);
-	commands_take(&m->commands, name, known, message, place, ows_now());
+	commands_take(&m->commands, name, known, &one, place, ows_now());
 }
 
 /* A message that has commands, and who takes them. */
@@ -93,7 +95,7 @@ static void mqtt_take(void *ctx, const char *name, const char *text, const char 
 
 	one.text = text;
 	one.len = strlen(text);
-	one.fault = several->m->options.write ? fault : "Write is off in the block Mqtt";
+	one.fault = fault;
 	mqtt_command(several->m, name, true, &one);
 }
 
@@ -128,8 +130,7 @@ static void on_message(void *ctx, const struct broker_message *message)
 		on_commands(m, message);
 		return;
 	}
-	if (m->options.write && profile->commands &&
-	    stream_command(&m->stream, message->topic, &row, name)) {
+	if (profile->commands && stream_command(&m->stream, message->topic, &row, name)) {
 		mqtt_command(m, name, row, message);
 		return;
 	}
@@ -200,6 +201,7 @@ static void mqtt_end(struct face *face)
 	struct mqtt *m = mqtt_own(face);
 
 	broker_end(&m->broker);
+	commands_tell(&m->commands, INT64_MAX);
 	commands_close(&m->commands);
 }
 
@@ -398,6 +400,7 @@ void mqtt_tick(struct face *face, int64_t now_ns)
 	struct mqtt *m = mqtt_own(face);
 
 	look_at_clock(face, now_ns);
+	commands_tell(&m->commands, now_ns);
 	broker_tick(&m->broker, now_ns);
 	go_on(face, now_ns);
 	show_status(face);

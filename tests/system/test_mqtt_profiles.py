@@ -195,17 +195,25 @@ def test_commands_have_the_way_and_the_rights_of_all_commands(scene):
         house.face.stop()
 
 
+def refuses(scene, house, profile):
+    until(lambda: f"{profile.set} (QoS" in house.broker.process.log(), 20, "it listens to commands")
+    house.set("relay", 0)
+    command(house, profile, "relay", profile.on)
+    logged(house.face, "command to relay refused: Write is off in the block Mqtt")
+    assert scene.get(house.daemon, "relay") == "0"
+
+
 def test_without_write_nothing_can_be_commanded_and_says_so(scene):
     house = start(scene, Homie5)
     house.says(Homie5.topic("room"), "21.5")
     for node in json.loads(house.listener.last(f"{Homie5.root}/$description"))["nodes"].values():
         assert not any(p["settable"] for p in node["properties"].values()), node
-    assert "/set (QoS" not in house.broker.process.log()
+    refuses(scene, house, Homie5)
     house.face.stop()
     house = start(scene, WirenBoard)
     until(lambda: house.listener.last(f"{WirenBoard.topic('relay')}/meta"), 20, "it has a meta")
     assert json.loads(house.listener.last(f"{WirenBoard.topic('relay')}/meta"))["readonly"] is True
-    assert "/on (QoS" not in house.broker.process.log()
+    refuses(scene, house, WirenBoard)
 
 
 def test_a_killed_owsd_mqtt_leaves_its_will_and_an_ended_one_its_goodbye(scene):
