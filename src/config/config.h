@@ -186,6 +186,7 @@ struct config_mqtt {
 	const char *user, *password_file, *ca_file, *cert_file, *key_file; /* NULL: none */
 	const char *node; /* NULL: the program's own */
 	const char *topic, *profile, *discovery;
+	const char *primary_host; /* NULL: none */
 	bool mqtt5, write;
 };
 

@@ -129,6 +129,9 @@ static void check_together(struct build *build, const struct rio_node *block,
 	if (!strcmp(mqtt->profile, "sparkplug") && strchr(mqtt->topic, '/'))
 		report_error(build->report, block->at,
 		             "Topic \"%s\": the group of Sparkplug has no '/'", mqtt->topic);
+	if (mqtt->primary_host && strcmp(mqtt->profile, "sparkplug") != 0)
+		report_warning(build->report, block->at,
+		               "PrimaryHost is of the profile sparkplug alone: it is not used");
 	if (!mqtt->cert_file != !mqtt->key_file)
 		report_error(build->report, block->at, "%s: CertFile and KeyFile belong together",
 		             mqtt->cert_file ? "CertFile without KeyFile"
@@ -165,6 +168,7 @@ void mqtt_build(struct build *build, const struct rio_node *block)
 	mqtt->topic = text_key(build, values, OPT_MQTT_TOPIC, check_topic);
 	mqtt->profile = text_key(build, values, OPT_MQTT_PROFILE, check_profile);
 	mqtt->discovery = text_key(build, values, OPT_MQTT_DISCOVERY, check_topic);
+	mqtt->primary_host = text_key(build, values, OPT_MQTT_PRIMARY_HOST, text_is_name);
 	mqtt->write = values[OPT_MQTT_WRITE].number != 0;
 	if (block)
 		check_together(build, block, mqtt);

@@ -222,6 +222,8 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
                               .help = "for whom it is published:" MQTT_PROFILES(MQTT_PROFILE_WORD)},
 	[OPT_MQTT_DISCOVERY] = {"Discovery", PLACE_MQTT, OPTION_TEXT, .preset = "homeassistant",
                                 .help = "where Home Assistant looks for devices"},
+	[OPT_MQTT_PRIMARY_HOST] = {"PrimaryHost", PLACE_MQTT, OPTION_TEXT,
+                                   .help = "host of Sparkplug without which nothing is published"},
 	[OPT_MQTT_WRITE] = {"Write", PLACE_MQTT, OPTION_FLAG, .preset = "off",
                             .help = "take commands from the broker"},
 };

@@ -182,6 +182,7 @@ static void put_mqtt(FILE *out, const struct config_mqtt *mqtt)
 	put_text(out, 4, OPT_MQTT_TOPIC, mqtt->topic);
 	put_text(out, 4, OPT_MQTT_PROFILE, mqtt->profile);
 	put_text(out, 4, OPT_MQTT_DISCOVERY, mqtt->discovery);
+	put_text_if_given(out, OPT_MQTT_PRIMARY_HOST, mqtt->primary_host);
 	put_flag(out, 4, OPT_MQTT_WRITE, mqtt->write);
 	fputs("  }\n", out);
 }

@@ -434,6 +434,12 @@ void broker_end(struct broker *b)
 	b->state = BROKER_OFF;
 }
 
+void broker_leave(struct broker *b, int64_t now_ns)
+{
+	broker_end(b);
+	choose(b, false, now_ns);
+}
+
 static int subscribe_options(const struct broker *b)
 {
 	return client_mqtt5(b) ? MQTT_SUB_OPT_RETAIN_AS_PUBLISHED | MQTT_SUB_OPT_NO_LOCAL : 0;

@@ -85,7 +85,7 @@ static void listen(const struct stream *s, char topic[TOPIC_SIZE])
 	snprintf(topic, TOPIC_SIZE, "%s/status", s->discovery);
 }
 
-static bool heard(const struct stream *s, const char *topic, const char *text, size_t len)
+static bool heard(struct stream *s, const char *topic, const char *text, size_t len)
 {
 	char status[TOPIC_SIZE];
 

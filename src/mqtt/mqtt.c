@@ -26,6 +26,8 @@
 #define ANNOUNCE_NS (10 * NS_PER_S)
 /* The same where each birth that does not come makes a host ask again */
 #define REBIRTH_NS NS_PER_S
+/* So long the host of a session may be away until it is looked for at another broker */
+#define HOST_WAIT_NS (60 * NS_PER_S)
 
 static struct mqtt *mqtt_own(struct face *face)
 {
@@ -56,6 +58,11 @@ static void on_connected(void *ctx)
 
 	if (m->stream.profile->listen) {
 		m->stream.profile->listen(&m->stream, topic);
+		broker_subscribe(&m->broker, topic);
+	}
+	m->stream.host_there = m->stream.born = false;
+	if (m->stream.host) {
+		m->stream.profile->listen_host(&m->stream, topic);
 		broker_subscribe(&m->broker, topic);
 	}
 	/* without Write they are refused, with a reason */
@@ -181,6 +188,10 @@ static void mqtt_begin(struct face *face, int64_t now_ns)
 	m->stream.topic = m->options.topic;
 	m->stream.node = m->options.node;
 	m->stream.discovery = m->options.discovery;
+	m->stream.host = m->options.profile->listen_host && *m->options.primary_host
+	                         ? m->options.primary_host
+	                         : NULL;
+	m->stream.host_ms = 0;
 	m->stream.write = m->options.write;
 	m->stream.outlet = (struct outlet){.put = broker_put, .ctx = &m->broker};
 	m->stream.class_of = class_of;
@@ -311,12 +322,14 @@ static void show_status(struct face *face)
 	struct mqtt *m = mqtt_own(face);
 	char name[MQTT_WAY_NAME];
 	const struct broker *b = &m->broker;
+	bool waits = m->stream.host && !m->stream.host_there;
 
 	face_status(face, "%s%.150s; %llu published, %llu refused, %llu times connected",
-	            b->state == BROKER_CONNECTED
-	                    ? face->live ? "publishing to " : "waiting for owsd, at "
-	            : *b->trouble ? ""
-	                          : "connecting to ",
+	            b->state == BROKER_CONNECTED ? !face->live ? "waiting for owsd, at "
+	                                           : waits     ? "waiting for the primary host, at "
+	                                                       : "publishing to "
+	            : *b->trouble                ? ""
+	                                         : "connecting to ",
 	            *b->trouble ? b->trouble : mqtt_way_name(&m->options.ways[b->way], name),
 	            (unsigned long long)b->acknowledged, (unsigned long long)b->refusals,
 	            (unsigned long long)b->connects);
@@ -349,10 +362,30 @@ void mqtt_report(struct face *face, FILE *out)
 		        (unsigned long long)counters[i].value);
 }
 
+/*
+ * As Sparkplug has it: a session ends when its host is offline, and the next one waits for it, at
+ * each of the brokers in turn.
+ */
+static void look_at_host(struct face *face, int64_t now_ns)
+{
+	struct mqtt *m = mqtt_own(face);
+	struct broker *b = &m->broker;
+
+	if (!m->stream.host || m->stream.host_there || b->state != BROKER_CONNECTED)
+		return;
+	if (m->stream.born)
+		log_warning(face->log,
+		            "the primary host %s is offline: nothing is published until it is back",
+		            m->stream.host);
+	if (m->stream.born || (m->options.way_count > 1 && now_ns - b->begun_ns > HOST_WAIT_NS))
+		broker_leave(b, now_ns);
+}
+
 static void go_on(struct face *face, int64_t now_ns)
 {
 	struct mqtt *m = mqtt_own(face);
 
+	look_at_host(face, now_ns);
 	pump(face, now_ns);
 	face->tick_ns = broker_next(&m->broker);
 	if (m->asked && announce_ns(m) > now_ns && announce_ns(m) < face->tick_ns)

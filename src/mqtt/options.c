@@ -58,6 +58,7 @@ void mqtt_options_take(struct mqtt_options *options, const struct face *face)
 	options->profile = profiles_find(mqtt->profile);
 	profiles_prefix(options->profile, options->topic, options->node, options->prefix);
 	options_copy(options->discovery, sizeof(options->discovery), mqtt->discovery);
+	options_copy(options->primary_host, sizeof(options->primary_host), mqtt->primary_host);
 	options->mqtt5 = mqtt->mqtt5;
 	options->write = mqtt->write;
 }

@@ -3,6 +3,7 @@
  * The profile "sparkplug": an edge node of Sparkplug B 3.0. Each chip is a device, what has no chip
  * is a metric of the node.
  */
+#include <ctype.h>
 #include <inttypes.h>
 #include <sparkplug.pb-c.h>
 #include <stdlib.h>
@@ -396,6 +397,7 @@ static bool birth_of_node(struct stream *s)
 	put_rebirth(s);
 	put_rows(s, NULL, false);
 	s->announced = put_numbered(s, "BIRTH", NULL);
+	s->born = s->born || s->announced;
 	return s->announced;
 }
 
@@ -404,6 +406,8 @@ static bool birth(struct stream *s, int number, bool *more)
 	struct chip *chip;
 
 	*more = number < s->chip_count;
+	if (!number && !s->announced && s->host && !s->host_there)
+		return false;
 	if (!number)
 		return s->announced || birth_of_node(s);
 	chip = &s->chips[number - 1];
@@ -457,6 +461,46 @@ static bool sparkplug_state(struct stream *s, enum stream_node node)
 	put_bdseq(s, 0);
 	snprintf(topic, sizeof(topic), "%s/NDEATH/%s", s->prefix, s->node);
 	return sparkplug_put(s, topic);
+}
+
+/* --- The primary host ------------------------------------------------------------------------ */
+
+static void listen_host(const struct stream *s, char topic[TOPIC_SIZE])
+{
+	snprintf(topic, TOPIC_SIZE, "spBv1.0/STATE/%.64s", s->host);
+}
+
+/* The value of a member of an object without others in it; "": there is none. */
+static const char *member(const char *text, const char *key)
+{
+	const char *at = strstr(text, key), *blank = " \t\r\n";
+
+	if (!at)
+		return "";
+	at += strlen(key);
+	at += strspn(at, blank);
+	return *at == ':' ? at + 1 + strspn(at + 1, blank) : "";
+}
+
+/* {"online":true,"timestamp":1700000000000}; an older one than the last counts no more. */
+static bool heard(struct stream *s, const char *topic, const char *text, size_t len)
+{
+	const char *online = member(text, "\"online\""), *time = member(text, "\"timestamp\"");
+	bool there = !strncmp(online, "true", 4);
+	char state[TOPIC_SIZE];
+	uint64_t ms;
+
+	(void)len;
+	if (!s->host || (!there && strncmp(online, "false", 5) != 0) ||
+	    !isdigit((unsigned char)*time))
+		return false;
+	listen_host(s, state);
+	ms = strtoull(time, NULL, 10);
+	if (strcmp(topic, state) != 0 || ms < s->host_ms)
+		return false;
+	s->host_ms = ms;
+	s->host_there = there;
+	return false;
 }
 
 /* --- Commands -------------------------------------------------------------------------------- */
@@ -592,6 +636,8 @@ const struct profile profile_sparkplug = {
 	.value = value,
 	.state = sparkplug_state,
 	.listen = listen,
+	.listen_host = listen_host,
 	.listen_write = listen_write,
+	.heard = heard,
 	.take = take_all,
 };

@@ -115,7 +115,14 @@ struct stream {
 	bool clock_set; /* wall-clock times can be believed */
 	uint64_t described;  /* by homie5: a hash of the description, */
 	int64_t description; /* and its version */
-	/* Of sessions: the number of the CONNECT with the will, of the next message */
+	/*
+	 * Of sessions: the host that each waits for, NULL for none; is it there; the time of its
+	 * last word, ms; was the node born to it since the last connection?
+	 */
+	const char *host;
+	bool host_there, born;
+	uint64_t host_ms;
+	/* The number of the CONNECT with the will, of the next message */
 	uint8_t bdseq, seq;
 	struct part *parts; /* room for two more than rows */
 	int part_count;
@@ -164,13 +171,15 @@ struct profile {
 	void (*alarm)(struct stream *s, const struct ows_alarm *alarm);
 	/* A topic to listen to besides those of commands. */
 	void (*listen)(const struct stream *s, char topic[TOPIC_SIZE]);
+	/* The topic of the host, which stream.host names. NULL: it waits for none. */
+	void (*listen_host)(const struct stream *s, char topic[TOPIC_SIZE]);
 	/* The topics of commands, */
 	void (*listen_write)(const struct stream *s, char topic[TOPIC_SIZE]);
 	/* and the commands of a message there or at that of listen. True: as of heard. */
 	bool (*take)(struct stream *s, const char *topic, const char *text, size_t len,
 	             stream_take *take, void *ctx);
-	/* What came there. True: the birth has to be published again. */
-	bool (*heard)(const struct stream *s, const char *topic, const char *text, size_t len);
+	/* What came there or of the host. True: the birth has to be published again. */
+	bool (*heard)(struct stream *s, const char *topic, const char *text, size_t len);
 	/* Where retained births of ours may stand. */
 	void (*births)(const struct stream *s, char topic[TOPIC_SIZE]);
 	/*

@@ -3,6 +3,7 @@
 """owsd-mqtt as an edge node of Sparkplug B. pysparkplug reads what it publishes, and writes commands;
 a host looks at each message as the standard has it."""
 
+import json
 import pathlib
 import re
 import signal
@@ -39,7 +40,7 @@ class Host:
         lines = [line[1:].split("\t") for line in self.listener.process.log().splitlines() if line[:1] == "="]
         for qos, retained, topic, payload in lines[self.read:]:
             self.read += 1
-            if re.search("/[ND]CMD/", topic):
+            if re.search("/[ND]CMD/|/STATE/", topic):
                 continue
             where = self.codec.Topic.from_str(topic)
             assert (where.group_id, where.edge_node_id) == ("plant", "pi7"), topic
@@ -310,6 +311,43 @@ def test_what_other_profiles_have_left_is_emptied_when_this_one_comes(scene):
     house.face.signal(signal.SIGHUP)
     until(lambda: any("/NBIRTH/pi7" in t for _, t, _ in house.listener.all()), 20, lambda: house.face.log())
     until(lambda: house.kept() == strangers, 60, house.kept, step=0.5)
+
+
+def test_a_session_waits_for_its_primary_host_and_ends_with_it(scene):
+    house, host = start(scene, ROOM, RELAY, PrimaryHost="scada")
+
+    def said(online, ms, times):
+        """What comes behind it shows that it has come."""
+        until(lambda: house.face.log().count("connected to") == times and
+              "STATE/scada (QoS 1)" in house.broker.process.log().rpartition(" as owsd-pi7")[2], 20, lambda: house.broker.process.log())
+        publish(house, "spBv1.0/STATE/scada", json.dumps({"timestamp": ms, "online": online}), "-r")
+        command(house, host, "NCMD/pi7", ("none", "BOOLEAN", True))
+    refused = "command to none refused: "
+    said(False, 1000, 1)
+    said(True, 999, 1)
+    publish(house, "spBv1.0/STATE/other", '{"online":true,"timestamp":5000}', "-r")
+    until(lambda: house.face.log().count(refused) == 2, 20, lambda: house.face.log())
+    assert not host.look(), host.heard
+    said(True, 1000, 1)
+    at, node = host.hears("nbirth", None)
+    assert at == 0 and node["bdSeq"].value == 0, host.heard
+    host.hears("dbirth", SWITCH)
+    # the will of an older connection of the host comes late
+    said(False, 999, 1)
+    until(lambda: house.face.log().count(refused) == 4, 20, lambda: house.face.log())
+    house.set("relay", "1")
+    at, _ = host.hears("ddata", SWITCH, lambda m: m["relay"].value is True)
+    publish(house, "spBv1.0/STATE/scada", '{ "online" : false, "timestamp" : 1000 }', "-r")
+    at, _ = host.hears("ndeath", None, lambda m: m["bdSeq"].value == 0, at)
+    logged(house.face, "the primary host scada is offline")
+    said(False, 1001, 2)
+    until(lambda: house.face.log().count(refused) == 5, 20, lambda: house.face.log())
+    assert not [h for h in host.look()[at + 1:] if h[0] != "ndeath"], host.heard
+    said(True, 2000, 2)
+    at, node = host.hears("nbirth", None, after=at + 1)
+    assert node["bdSeq"].value == 1, node
+    _, ports = host.hears("dbirth", SWITCH, after=at)
+    assert ports["relay"].value is True, ports
 
 
 def test_a_group_has_no_slash(scene):

@@ -60,7 +60,7 @@ static void test_what_is_printed_is_what_was_read(void)
 	static const char keys[] =
 		"Mqtt { Broker \"mqtts://b:1\" User u PasswordFile \"pw\" CaFile \"/ca\" "
 		"CertFile \"/cert\" KeyFile \"key\" Protocol 3.1.1 Node pi7 Topic \"site/ows\" "
-		"Profile plain Discovery \"ha\" Write on }";
+		"Profile plain Discovery \"ha\" PrimaryHost scada Write on }";
 	char *first, *second;
 	size_t len;
 
@@ -73,6 +73,7 @@ static void test_what_is_printed_is_what_was_read(void)
 		TEST_ASSERT_EQUAL_INT(0, fclose(out));
 		TEST_ASSERT_EQUAL_STRING("pi7", config->mqtt.node);
 		TEST_ASSERT_EQUAL_STRING("site/ows", config->mqtt.topic);
+		TEST_ASSERT_EQUAL_STRING("scada", config->mqtt.primary_host);
 		TEST_ASSERT_EQUAL_STRING("key", config->mqtt.key_file);
 		TEST_ASSERT_FALSE(config->mqtt.mqtt5);
 		TEST_ASSERT_TRUE(config->mqtt.write);
@@ -140,13 +141,15 @@ static void test_what_cannot_be_is_an_error_at_its_place(void)
 	expect_errors(blocks, COUNT(blocks), parse_driver);
 }
 
-static void test_a_password_in_the_clear_and_idle_certificates_are_warnings(void)
+static void test_a_password_in_the_clear_and_idle_keys_are_warnings(void)
 {
 	static const struct line blocks[] = {
 		{"Mqtt { Broker \"mqtt://a.example\" User u PasswordFile p }",
 	         "f:2:1: warning: the password goes to a.example in the clear: mqtts:// hides it\n"},
 		{"Mqtt { CaFile \"/ca\" }", "f:2:1: warning: no way of Broker is mqtts://: the "
 	                                    "certificates are not used\n"},
+		{"Mqtt { PrimaryHost scada }", "f:2:1: warning: PrimaryHost is of the profile "
+	                                       "sparkplug alone: it is not used\n"},
 		{"Mqtt { User u PasswordFile p }", ""},
 		{"Mqtt { PasswordFile p }", ""},
 	};
@@ -162,6 +165,6 @@ int main(void)
 	RUN_TEST(test_several_ways_stand_in_their_order);
 	RUN_TEST(test_what_is_printed_is_what_was_read);
 	RUN_TEST(test_what_cannot_be_is_an_error_at_its_place);
-	RUN_TEST(test_a_password_in_the_clear_and_idle_certificates_are_warnings);
+	RUN_TEST(test_a_password_in_the_clear_and_idle_keys_are_warnings);
 	return UNITY_END();
 }
