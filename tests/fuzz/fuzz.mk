@@ -7,7 +7,7 @@
 #   first thousands are the same); FUZZ_CC is another clang; OR_SKIP=1 counts the targets as skipped
 #   where there is no libFuzzer.
 
-FUZZ_TARGETS := $(patsubst tests/fuzz/fuzz_%.c,%,$(wildcard tests/fuzz/fuzz_*.c))
+FUZZ_TARGETS := $(filter-out $(if $(PROTOBUFC),,sparkplug),$(patsubst tests/fuzz/fuzz_%.c,%,$(wildcard tests/fuzz/fuzz_*.c)))
 FUZZ         ?= $(FUZZ_TARGETS)
 FUZZ_SECONDS ?= 60
 FUZZ_JOBS    ?= $(shell nproc)
@@ -27,6 +27,8 @@ FUZZ_WITH_netlink  := fuzz/bus_host.o fuzz/sysfs.o
 FUZZ_WITH_scenario := fuzz/bus_host.o $(SIM_TABLE:%.c=%.o)
 FUZZ_WORDS_scenario := $(wildcard hal/sim/*.c hal/sim/chips/*.c)
 FUZZ_WITH_owsctl   := fuzz/heap_instance.o fuzz/heap_map.o fuzz/heap_give.o fuzz/json_valid.o
+FUZZ_WITH_sparkplug := fuzz/heap_instance.o fuzz/heap_map.o fuzz/heap_give.o
+$(B)/fuzz/sparkplug $(B)/fuzz/replay_sparkplug: LIBS += -lprotobuf-c
 # w1 and netlink have a property that is the process's number
 FUZZ_WRAP_w1       := getpid
 FUZZ_WRAP_netlink  := getpid
@@ -36,6 +38,7 @@ FUZZ_WRAP_owsctl   := getpid clock_gettime time exit ows_now segment_wait nanosl
 FUZZ_WORDS_owsctl  := src/owsctl/owsctl.c src/signal/attribute.c src/config/options.c src/owsctl/condition.c
 FUZZ_WORDS_values  := src/signal/attribute.c src/signal/value.c hal/owfs/path.c src/config/listen.c
 FUZZ_WORDS_web     := src/web/head.c src/web/body.c src/web/origin.c src/web/command.c
+FUZZ_WORDS_sparkplug := tests/fuzz/heap_instance.c src/mqtt/sparkplug.c
 FUZZ_WORDS_writer  := src/writer/order.c
 FUZZ_WORDS_rio     := src/config/options.c src/config/targets.c src/signal/value.c hal/native/native.c
 FUZZ_WORDS_serve   := src/serve/node.c src/serve/directory.c src/signal/attribute.c hal/owfs/path.c

@@ -385,7 +385,38 @@ def web():
     put("web", "six", b"\2[::1]:80\nhttp://[::1]:80\n")
 
 
+def sparkplug():
+    def field(number, value):
+        """A number, or bytes with their length, as protobuf has them."""
+        def varint(n):
+            return bytes([n]) if n < 0x80 else bytes([n & 0x7f | 0x80]) + varint(n >> 7)
+        if isinstance(value, int):
+            return varint(number << 3) + varint(value)
+        return varint(number << 3 | 2) + varint(len(value)) + value
+
+    def metric(name, datatype, *value):
+        return field(2, (field(1, name) if isinstance(name, bytes) else field(2, name)) + field(4, datatype) + b"".join(value))
+    node, chip, nobody, host = b"\0", b"\1", b"\2", b"\3"
+    head = field(1, 1700000000000)
+    put("sparkplug", "rebirth", node + head + metric(b"Node Control/Rebirth", 11, field(14, 1)))
+    put("sparkplug", "types", node + head + metric(b"count", 4, field(11, 2**64 - 7)) + metric(b"label", 12, field(15, b"x\xff")) +
+        metric(b"room", 10, b"\x69" + struct.pack("<d", 21.5)) + metric(b"warm", 9, b"\x65" + struct.pack("<f", float("nan"))))
+    put("sparkplug", "device", chip + metric(b"relay", 11, field(14, 1)) + metric(b"level", 5, field(10, 300)))
+    put("sparkplug", "alias", chip + metric(2**20 + 2, 11, field(14, 0)) + metric(2**20 + 5, 5, field(10, 7)))
+    put("sparkplug", "aliases", node + metric(2**20 + 1, 10, b"\x69" + struct.pack("<d", 1e300)) + metric(2**64 - 1, 3, field(10, 1)))
+    put("sparkplug", "null", chip + metric(b"relay", 11, field(7, 1)) + metric(b"room", 10, field(7, 1)))
+    put("sparkplug", "nobody", nobody + metric(b"relay", 11, field(14, 1)))
+    put("sparkplug", "many", node + b"\x12\0" * 101)
+    put("sparkplug", "hundred", node + b"\x12\0" * 100)
+    put("sparkplug", "more", node + metric(b"room", 10, field(9, field(1, b"Quality") + field(2, field(1, 3) + field(3, 192))),
+                                          field(99, b"?")))
+    put("sparkplug", "half", node + metric(b"room", 10)[:-3])
+    put("sparkplug", "online", host + b'{"online":true,"timestamp":1700000000000}')
+    put("sparkplug", "offline", host + b' { "timestamp" : 999 , "online" : false } ')
+    put("sparkplug", "words", host + b'{"online":"true","timestamp":-1}\0{"online":true,"timestamp":5}')
+
+
 if __name__ == "__main__":
     for target in (rio, owserver, serve, controller, control, image, w1, netlink, scenario, owsctl,
-                   values, web, writer):
+                   values, web, writer, sparkplug):
         target()
