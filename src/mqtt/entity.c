@@ -318,7 +318,7 @@ static void put_signal(struct json *json, const struct stream *s, const struct r
 	put_topic(json, "json_attr_t", row, "");
 	json_string(json, "json_attr_tpl",
 	            "{{ {'quality': value_json.why | default('good') ~ (', simulated' if "
-	            "value_json.simulated else '')} | tojson }}");
+	            "value_json.simulated | default(false) else '')} | tojson }}");
 	json_object_end(json);
 }
 

@@ -48,6 +48,8 @@ def test_each_chip_that_was_there_is_a_device_by_its_id_behind_the_node(scene):
     assert (room["dev_cla"], room["unit_of_meas"], room["stat_cla"]) == ("temperature", "°C", "measurement"), room
     assert room["sug_dsp_prc"] == 1 and room["exp_aft"] == 20, room
     assert room["val_tpl"] == "{{ value_json.v if value_json.good else None }}"
+    # what is not in each message has a default: Home Assistant logs what is undefined
+    assert "value_json.simulated | default(false)" in room["json_attr_tpl"], room
     alarm = message["cmps"]["owsd_28_A0B1C2000001_temperature_alarm"]
     assert (alarm["p"], alarm["dev_cla"], alarm["stat_t"]) == ("binary_sensor", "problem", "owsd/pi7/room/alarm")
     node = device(house, NODE)
