@@ -466,6 +466,9 @@ void mqtt_event(struct face *face, const struct face_event *event)
 		log_warning(face->log, "owsd is lost: no value is good");
 		break;
 	case FACE_ALARM:
+		/* its value need not have changed */
+		if (event->alarm->signal >= 0)
+			stream_changes(&m->stream, &event->alarm->signal, 1);
 		if (m->broker.state == BROKER_CONNECTED && m->stream.profile->alarm)
 			m->stream.profile->alarm(&m->stream, event->alarm);
 		break;

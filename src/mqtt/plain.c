@@ -150,6 +150,17 @@ static bool publish_key(struct stream *s, struct row *row, const struct ows_valu
 	return true;
 }
 
+bool plain_limit(const struct stream *s, const struct row *row, struct ows_alarm_state *state)
+{
+	return row->alarms && s->live && !ows_alarm_state(s->h, row->id, state);
+}
+
+bool plain_stands(const struct ows_alarm_state *state)
+{
+	return state->limit_state == OWS_LIMIT_UNACKNOWLEDGED ||
+	       state->limit_state == OWS_LIMIT_ACKNOWLEDGED;
+}
+
 /* The limit alarm, if it is another than was published. */
 static bool publish_limit(struct stream *s, struct row *row)
 {
@@ -158,16 +169,14 @@ static bool publish_limit(struct stream *s, struct row *row)
 	struct json json;
 	uint32_t print;
 
-	if (!row->alarms || !s->live || ows_alarm_state(s->h, row->id, &state))
+	if (!plain_limit(s, row, &state))
 		return true;
 	print = 1u + state.limit_state + (state.limit_kind << 4) + (state.shelved << 12);
 	if (print == row->alarm_print)
 		return true;
 	stream_message(s, &json);
 	json_object(&json, NULL);
-	json_bool(&json, "active",
-	          state.limit_state == OWS_LIMIT_UNACKNOWLEDGED ||
-	                  state.limit_state == OWS_LIMIT_ACKNOWLEDGED);
+	json_bool(&json, "active", plain_stands(&state));
 	json_string(&json, "state", ows_limit_state_text(state.limit_state));
 	json_string(&json, "kind", state.limit_kind ? ows_alarm_kind_text(state.limit_kind) : NULL);
 	json_bool(&json, "shelved", state.shelved);

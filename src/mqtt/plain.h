@@ -18,6 +18,10 @@ bool plain_chip_look(struct stream *s, struct row *row, uint8_t quality);
  * it counts as there until then.
  */
 bool plain_chip_there(const struct stream *s, const struct chip *chip);
+/* The limit alarm of a row. False: it has none, or owsd is away. */
+bool plain_limit(const struct stream *s, const struct row *row, struct ows_alarm_state *state);
+/* Does it stand? */
+bool plain_stands(const struct ows_alarm_state *state);
 bool plain_value(struct stream *s, struct row *row);
 bool plain_state(struct stream *s, enum stream_node node);
 void plain_alarm(struct stream *s, const struct ows_alarm *alarm);

@@ -195,14 +195,13 @@ static void add_flag(struct metric *m, const char *key, bool flag)
 	value->boolean_value = flag;
 }
 
-static void add_quality(struct metric *m, const struct news *news)
+static void add_quality(struct metric *m, uint8_t quality, bool simulated)
 {
 	Spb__PropertyValue *value = add_property(m, "Quality", INT32);
-	uint8_t quality = news->v.quality;
 
 	value->value_case = SPB__PROPERTY_VALUE__VALUE_INT_VALUE;
 	value->int_value = ows_good(quality) ? GOOD : quality == OWS_Q_STALE ? STALE : BAD;
-	if (news->simulated)
+	if (simulated)
 		add_flag(m, "Simulated", true);
 }
 
@@ -313,6 +312,57 @@ static bool is_new(const struct row *row, const struct news *news)
 	return !row->published || news->print != row->print;
 }
 
+/* Of a limit alarm, as row.alarm_print has it: one that nobody knows is null. */
+enum { LIMIT_UNKNOWN = 1, LIMIT_RESTS, LIMIT_STANDS };
+
+static uint32_t limit_of(const struct stream *s, const struct row *row)
+{
+	struct ows_alarm_state state;
+
+	if (!plain_limit(s, row, &state))
+		return LIMIT_UNKNOWN;
+	return plain_stands(&state) ? LIMIT_STANDS : LIMIT_RESTS;
+}
+
+static bool has_news(const struct stream *s, const struct row *row, const struct news *news)
+{
+	return is_new(row, news) || (row->alarms && limit_of(s, row) != row->alarm_print);
+}
+
+/* NAME/Alarm beside NAME: whether its limit alarm stands. Its alias is behind those of all rows. */
+static bool put_limit(struct stream *s, struct row *row, uint64_t alias, bool data)
+{
+	uint32_t limit = limit_of(s, row);
+	bool known = limit != LIMIT_UNKNOWN;
+	struct metric m;
+
+	if (!row->alarms || (data && limit == row->alarm_print))
+		return false;
+	metric_init(&m);
+	m.metric.has_alias = true;
+	m.metric.alias = alias + (uint64_t)(s->count + (row - s->rows));
+	m.metric.has_timestamp = true;
+	m.metric.timestamp = ms_of(when_now().wall);
+	add_quality(&m, known ? OWS_Q_GOOD : OWS_Q_TARGET, known && row->simulated);
+	if (!data) {
+		snprintf(m.name, sizeof(m.name), "%.240s/Alarm", row->info.name);
+		clean(m.name);
+		m.metric.name = m.name;
+		m.metric.has_datatype = true;
+		m.metric.datatype = BOOLEAN;
+		add_flag(&m, "readOnly", true);
+	}
+	m.metric.properties = &m.set;
+	m.metric.has_is_null = m.metric.is_null = !known;
+	if (known) {
+		m.metric.value_case = SPB__METRIC__VALUE_BOOLEAN_VALUE;
+		m.metric.boolean_value = limit == LIMIT_STANDS;
+	}
+	put_metric(s, &m.metric);
+	row->alarm_print = limit;
+	return true;
+}
+
 /* A row as it is now. data: only if it is another than was published, and by its alias alone. */
 static bool put_row(struct stream *s, struct row *row, uint64_t alias, bool data)
 {
@@ -322,19 +372,21 @@ static bool put_row(struct stream *s, struct row *row, uint64_t alias, bool data
 
 	stream_read(s, row, &news);
 	if (data && !is_new(row, &news))
-		return false;
+		return put_limit(s, row, alias, data);
 	metric_init(&m);
 	m.metric.has_alias = true;
 	m.metric.alias = alias + (uint64_t)(row - s->rows);
 	m.metric.has_timestamp = true;
 	m.metric.timestamp = ms_of(moment_of(&news.v, now.boot) + now.wall - now.boot);
-	add_quality(&m, &news);
+	add_quality(&m, news.v.quality, news.simulated);
 	if (!data)
 		add_description(&m, &row->info);
 	m.metric.properties = &m.set;
 	set_value(&m.metric, &news.v, row->info.type, news.text);
 	put_metric(s, &m.metric);
-	return stream_published(row, &news);
+	stream_published(row, &news);
+	put_limit(s, row, alias, data);
+	return true;
 }
 
 /* All rows of a chip, NULL: without one; data: those of them that wait and have changed. */
@@ -434,12 +486,14 @@ static bool value(struct stream *s, struct row *row)
 			s->birth = 0;
 		return true;
 	}
-	if (is_new(row, &news)) {
+	if (has_news(s, row, &news)) {
 		sparkplug_begin(s);
 		if (put_rows(s, chip, true) && !put_numbered(s, "DATA", chip)) {
 			for (int i = 0; i < s->count; i++)
-				if (s->rows[i].chip == row->chip && s->rows[i].queued)
+				if (s->rows[i].chip == row->chip && s->rows[i].queued) {
 					s->rows[i].published = false;
+					s->rows[i].alarm_print = 0;
+				}
 			return false;
 		}
 	}

@@ -124,7 +124,7 @@ struct stream {
 	uint64_t host_ms;
 	/* The number of the CONNECT with the will, of the next message */
 	uint8_t bdseq, seq;
-	struct part *parts; /* room for two more than rows */
+	struct part *parts; /* room for two of each row, and two more */
 	int part_count;
 	FILE *out; /* makes a message in text */
 	char *text;

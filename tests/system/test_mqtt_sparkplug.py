@@ -173,6 +173,27 @@ def test_the_births_have_all_that_is_there_and_data_has_aliases_alone(scene):
     assert not house.kept() and not [t for _, t, _ in house.listener.all() if not t.startswith("spBv1.0/plant/")]
 
 
+def test_a_limit_alarm_is_a_metric_beside_its_signal(scene):
+    house, host = start(scene, {**ROOM, "LimitH": 20}, RELAY, **ON)
+    at, born = host.hears("dbirth", SENSOR)
+    assert set(born) == {"room", "room/Alarm"} and born["room/Alarm"].datatype == host.codec.DataType.BOOLEAN, born
+    assert born["room/Alarm"].properties["readOnly"].boolean_value is True
+
+    def now():
+        known = [m["room/Alarm"] for _, d, m in host.look() if d == SENSOR and "room/Alarm" in m]
+        return known[-1].value
+    until(lambda: now() is True, 20, lambda: host.heard)
+    at = len(host.look())
+    house.daemon.config.write_text(house.text({**ROOM, "LimitH": 30}, RELAY))
+    house.daemon.signal(signal.SIGHUP)
+    host.hears("dbirth", SENSOR, after=at)
+    until(lambda: now() is False, 20, lambda: host.heard)
+    command(house, host, f"DCMD/pi7/{SENSOR}", ("room/Alarm", "BOOLEAN", True))
+    logged(house.face, "command to room/Alarm refused: the last birth has no such metric there")
+    house.daemon.stop()
+    until(lambda: now() is None, 20, lambda: host.heard)
+
+
 def test_a_sensor_that_is_pulled_is_null_and_dead_and_comes_back(scene):
     _, host = start(scene, ROOM, item("probe", f"/{PROBE}/temperature"),
                     wire=f"DS18B20 {PROBE} as probe temperature 5\nat 3s every 6s unplug probe for 3s\n")
