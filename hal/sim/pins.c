@@ -5,23 +5,18 @@
  */
 #include "hal/sim/pins.h"
 
-static struct sim_pins *pins_state(struct sim_slave *slave)
-{
-	return sim_state(slave, sim_pins);
-}
-
 static bool outside(const struct sim_slave *slave, unsigned input, int64_t t)
 {
 	return sim_input_at(slave, input, t) >= 0.5;
 }
 
-static uint8_t levels(const struct sim_slave *slave, int64_t t)
+static uint8_t levels(const struct sim_slave *slave)
 {
 	const struct sim_pins *pins = slave->state;
 	unsigned level = 0;
 
 	for (unsigned i = 0; i < pins->count; i++)
-		level |= (unsigned)outside(slave, pins->first + i, t) << i;
+		level |= (unsigned)outside(slave, pins->first + i, slave->now) << i;
 	return (uint8_t)(level & pins->latch);
 }
 
@@ -40,64 +35,68 @@ static bool jumped(const struct sim_slave *slave, unsigned input, int64_t from, 
 	return false;
 }
 
-void sim_pins_start(struct sim_slave *slave, unsigned first, unsigned count, int64_t t)
+void sim_pins_start(struct sim_slave *slave, unsigned first, unsigned count)
 {
-	*pins_state(slave) = (struct sim_pins){
-		.latch = (uint8_t)((1u << count) - 1), .first = first, .count = count, .seen = t};
-	pins_state(slave)->level = levels(slave, t);
+	struct sim_pins *s = slave->state;
+
+	*s = (struct sim_pins){.latch = (uint8_t)((1u << count) - 1),
+	                       .first = first,
+	                       .count = count,
+	                       .seen = slave->now};
+	s->level = levels(slave);
 }
 
-void sim_pins_follow(struct sim_slave *slave, int64_t t)
+void sim_pins_follow(struct sim_slave *slave)
 {
-	struct sim_pins *pins = pins_state(slave);
-	uint8_t level = levels(slave, t);
+	struct sim_pins *pins = slave->state;
+	uint8_t level = levels(slave);
 
 	pins->activity |= level ^ pins->level;
 	for (unsigned i = 0; i < pins->count; i++) {
 		uint8_t mask = (uint8_t)(1u << i);
 
 		if ((pins->latch & mask) && !(pins->activity & mask) &&
-		    jumped(slave, pins->first + i, pins->seen, t))
+		    jumped(slave, pins->first + i, pins->seen, slave->now))
 			pins->activity |= mask;
 	}
 	pins->level = level;
-	pins->seen = t;
+	pins->seen = slave->now;
 }
 
-void sim_pins_write(struct sim_slave *slave, uint8_t latch, int64_t t)
+void sim_pins_write(struct sim_slave *slave, uint8_t latch)
 {
-	pins_state(slave)->latch = latch;
-	sim_pins_follow(slave, t);
+	sim_state(slave, sim_pins)->latch = latch;
+	sim_pins_follow(slave);
 }
 
 /* Send two pins as pin A, latch A, pin B, latch B, and their complement above; or eight levels. */
-void sim_pins_send(struct sim_slave *slave, int64_t t)
+void sim_pins_send(struct sim_slave *slave)
 {
 	const struct sim_pins *pins = slave->state;
 	unsigned low = (pins->level & 1) | (pins->latch & 1) << 1 | (pins->level & 2) << 1 |
 	               (pins->latch & 2) << 2;
 
-	(void)t;
 	sim_send_byte(slave, pins->count == 8 ? pins->level : (uint8_t)(low | (~low & 15) << 4));
 }
 
 /* Take new latches and their complement, and answer AAh, */
-void sim_pins_take(struct sim_slave *slave, int64_t t)
+void sim_pins_take(struct sim_slave *slave)
 {
 	if ((slave->taken[0] ^ slave->taken[1]) != 0xFF) {
 		sim_end(slave);
 		return;
 	}
-	sim_pins_write(slave, slave->taken[0] & ((1u << pins_state(slave)->count) - 1) & 0xFF, t);
+	sim_pins_write(slave,
+	               slave->taken[0] & ((1u << sim_state(slave, sim_pins)->count) - 1) & 0xFF);
 	sim_send_byte(slave, 0xAA);
 }
 
 /* then send the pins as they are now, and receive the next two bytes. */
-void sim_pins_taken(struct sim_slave *slave, int64_t t)
+void sim_pins_taken(struct sim_slave *slave)
 {
 	if (slave->got == 2) {
 		slave->got = 3;
-		sim_pins_send(slave, t);
+		sim_pins_send(slave);
 	} else {
 		slave->got = 0;
 		sim_receive(slave);

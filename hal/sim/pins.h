@@ -17,11 +17,11 @@ struct sim_pins {
 };
 
 /* Power on: all transistors off, no activity. */
-void sim_pins_start(struct sim_slave *slave, unsigned first, unsigned count, int64_t t);
-/* Follow the inputs up to t; for struct sim_family. */
-void sim_pins_follow(struct sim_slave *slave, int64_t t);
-/* Set the latches at t. The pins were followed up to t. */
-void sim_pins_write(struct sim_slave *slave, uint8_t latch, int64_t t);
+void sim_pins_start(struct sim_slave *slave, unsigned first, unsigned count);
+/* Follow the inputs up to now; for struct sim_family. */
+void sim_pins_follow(struct sim_slave *slave);
+/* Set the latches. The pins were followed up to now. */
+void sim_pins_write(struct sim_slave *slave, uint8_t latch);
 
 /* PIO access of two pins, or Channel Access of eight: for struct sim_function. */
 #define SIM_PINS_READ(number) \
@@ -32,8 +32,8 @@ void sim_pins_write(struct sim_slave *slave, uint8_t latch, int64_t t);
 	{ \
 		.code = (number), .takes = 2, .start = sim_pins_take, .next = sim_pins_taken \
 	}
-void sim_pins_send(struct sim_slave *slave, int64_t t);
-void sim_pins_take(struct sim_slave *slave, int64_t t);
-void sim_pins_taken(struct sim_slave *slave, int64_t t);
+void sim_pins_send(struct sim_slave *slave);
+void sim_pins_take(struct sim_slave *slave);
+void sim_pins_taken(struct sim_slave *slave);
 
 #endif

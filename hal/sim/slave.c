@@ -78,6 +78,11 @@ int sim_slave_input(const struct sim_slave *slave, const char *name)
 	return -1;
 }
 
+double sim_input_now(const struct sim_slave *slave, unsigned input)
+{
+	return sim_input_at(slave, input, slave->now);
+}
+
 double sim_input_at(const struct sim_slave *slave, unsigned input, int64_t t)
 {
 	return sim_curve_at(&slave->input[input], t);
@@ -172,11 +177,11 @@ void sim_send_stored(struct sim_slave *slave, uint8_t stored)
 	slave->crc = slave->family->crc8 ? slave->address & 0xFF : slave->address;
 }
 
-void sim_work(struct sim_slave *slave, int64_t takes, int64_t t)
+void sim_work(struct sim_slave *slave, int64_t takes)
 {
 	slave->busy = true;
-	slave->since = t;
-	slave->until = t + takes;
+	slave->since = slave->now;
+	slave->until = slave->now + takes;
 	sim_send_bits(slave);
 }
 
@@ -184,23 +189,27 @@ void sim_slave_advance(struct sim_slave *slave, int64_t t)
 {
 	bool fed = !slave->parasite || slave->strong || !slave->family->starves;
 
+	slave->now = t;
 	if (slave->busy && !fed && t > slave->since + STRONG_WITHIN_NS)
 		sim_slave_power_on(slave, t);
 	if (slave->busy && t >= slave->until) {
 		slave->busy = false;
-		slave->family->worked(slave, slave->until);
+		slave->now = slave->until;
+		slave->family->worked(slave);
+		slave->now = t;
 	}
 	if (slave->family->advance)
-		slave->family->advance(slave, t);
+		slave->family->advance(slave);
 }
 
 void sim_slave_power_on(struct sim_slave *slave, int64_t t)
 {
+	slave->now = t;
 	slave->power_ons++;
 	slave->layer = SIM_ROM_IDLE;
 	slave->overdrive = slave->resumable = slave->busy = false;
 	if (slave->family->power_on)
-		slave->family->power_on(slave, t);
+		slave->family->power_on(slave);
 }
 
 void sim_slave_brownout(struct sim_slave *slave, int64_t t)
@@ -263,7 +272,7 @@ static void begin_rom(struct sim_slave *slave, enum sim_layer layer)
 	slave->rom_bit = slave->search_phase = 0;
 }
 
-static void rom_command(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void rom_command(struct sim_slave *slave, uint8_t byte)
 {
 	const struct sim_family *family = slave->family;
 	bool resumable = slave->resumable;
@@ -285,7 +294,7 @@ static void rom_command(struct sim_slave *slave, uint8_t byte, int64_t t)
 		begin_rom(slave, SIM_ROM_SEARCH);
 		break;
 	case ROM_CONDITIONAL:
-		if (family->alarm && family->alarm(slave, t))
+		if (family->alarm && family->alarm(slave))
 			begin_rom(slave, SIM_ROM_SEARCH);
 		break;
 	case ROM_SKIP:
@@ -325,12 +334,12 @@ static bool rom_step(struct sim_slave *slave, bool agreed)
 	return ++slave->rom_bit == 64;
 }
 
-static void selected(struct sim_slave *slave, bool match, int64_t t)
+static void selected(struct sim_slave *slave, bool match)
 {
 	slave->resumable = slave->family->resume;
 	function_layer(slave);
 	if (slave->family->selected)
-		slave->family->selected(slave, match, t);
+		slave->family->selected(slave, match);
 }
 
 static bool next_sent_bit(struct sim_slave *slave)
@@ -361,14 +370,14 @@ bool sim_slave_output(struct sim_slave *slave, int64_t t)
 		case SIM_SEND:
 			return next_sent_bit(slave);
 		case SIM_BITS:
-			return slave->family->bit ? slave->family->bit(slave, t) : !slave->busy;
+			return slave->family->bit ? slave->family->bit(slave) : !slave->busy;
 		}
 		break;
 	}
 	return true;
 }
 
-static void sent_bit(struct sim_slave *slave, int64_t t)
+static void sent_bit(struct sim_slave *slave)
 {
 	if (slave->corrupt_bit >= 0)
 		slave->corrupt_bit--;
@@ -378,7 +387,7 @@ static void sent_bit(struct sim_slave *slave, int64_t t)
 	if (++slave->send_at < slave->send_count)
 		return;
 	if (slave->function->next)
-		slave->function->next(slave, t);
+		slave->function->next(slave);
 	if (slave->mode == SIM_SEND && slave->send_at >= slave->send_count)
 		sim_end(slave);
 }
@@ -388,7 +397,7 @@ static bool is_function(const struct sim_function *function)
 	return function->code || function->start || function->byte;
 }
 
-static void begin_function(struct sim_slave *slave, uint8_t code, int64_t t)
+static void begin_function(struct sim_slave *slave, uint8_t code)
 {
 	const struct sim_function *function = slave->family->functions;
 
@@ -403,15 +412,15 @@ static void begin_function(struct sim_slave *slave, uint8_t code, int64_t t)
 	slave->crc = 0;
 	slave_check(slave, &code, 1);
 	if (!function->takes && function->start)
-		function->start(slave, t);
+		function->start(slave);
 }
 
-static void function_byte(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void function_byte(struct sim_slave *slave, uint8_t byte)
 {
 	const struct sim_function *function = slave->function;
 
 	if (!function) {
-		begin_function(slave, byte, t);
+		begin_function(slave, byte);
 		return;
 	}
 	slave_check(slave, &byte, 1);
@@ -422,15 +431,15 @@ static void function_byte(struct sim_slave *slave, uint8_t byte, int64_t t)
 		slave->address = (uint16_t)(slave->taken[0] |
 		                            (function->takes > 1 ? slave->taken[1] << 8 : 0));
 		if (function->start)
-			function->start(slave, t);
+			function->start(slave);
 	} else if (function->byte) {
-		function->byte(slave, byte, t);
+		function->byte(slave, byte);
 	} else {
 		sim_end(slave);
 	}
 }
 
-static void received_bit(struct sim_slave *slave, bool line, int64_t t)
+static void received_bit(struct sim_slave *slave, bool line)
 {
 	uint8_t byte = (uint8_t)(slave->shift >> 1 | (line ? 0x80 : 0));
 
@@ -439,18 +448,19 @@ static void received_bit(struct sim_slave *slave, bool line, int64_t t)
 		return;
 	slave->bits = 0;
 	if (slave->layer == SIM_ROM_COMMAND)
-		rom_command(slave, byte, t);
+		rom_command(slave, byte);
 	else
-		function_byte(slave, byte, t);
+		function_byte(slave, byte);
 }
 
 void sim_slave_slot(struct sim_slave *slave, bool line, int64_t t)
 {
+	slave->now = t;
 	switch (slave->layer) {
 	case SIM_ROM_IDLE:
 		break;
 	case SIM_ROM_COMMAND:
-		received_bit(slave, line, t);
+		received_bit(slave, line);
 		break;
 	case SIM_ROM_READ:
 		if (rom_step(slave, true))
@@ -458,22 +468,22 @@ void sim_slave_slot(struct sim_slave *slave, bool line, int64_t t)
 		break;
 	case SIM_ROM_MATCH:
 		if (rom_step(slave, line == rom_bit(slave)))
-			selected(slave, true, t);
+			selected(slave, true);
 		break;
 	case SIM_ROM_SEARCH:
 		if (++slave->search_phase < 3)
 			break;
 		slave->search_phase = 0;
 		if (rom_step(slave, line == rom_bit(slave)))
-			selected(slave, false, t);
+			selected(slave, false);
 		break;
 	case SIM_FUNCTION:
 		switch (slave->mode) {
 		case SIM_RECEIVE:
-			received_bit(slave, line, t);
+			received_bit(slave, line);
 			break;
 		case SIM_SEND:
-			sent_bit(slave, t);
+			sent_bit(slave);
 			break;
 		case SIM_BITS:
 			break;

@@ -3,7 +3,8 @@
  * A simulated 1-Wire slave: the ROM layer that all have in common, bit by bit, and the table by
  * which a family adds its functions, byte by byte.
  *
- * t is ns since the start of the simulation; it never goes back for one slave.
+ * t is ns since the start of the simulation; it never goes back for one slave. Each call with a t
+ * leaves it in slave->now, where the functions of the family read it.
  */
 #ifndef HAL_SIM_SLAVE_H
 #define HAL_SIM_SLAVE_H
@@ -39,10 +40,10 @@ struct sim_input {
 struct sim_function {
 	uint8_t code, takes; /* zeros end a table */
 	/* All optional. */
-	void (*start)(struct sim_slave *slave, int64_t t); /* the code and its bytes are there */
-	void (*byte)(struct sim_slave *slave, uint8_t byte, int64_t t); /* one more byte came */
+	void (*start)(struct sim_slave *slave);              /* the code and its bytes are there */
+	void (*byte)(struct sim_slave *slave, uint8_t byte); /* one more byte came */
 	/* The last bit was sent: send more, receive, or do nothing. */
-	void (*next)(struct sim_slave *slave, int64_t t);
+	void (*next)(struct sim_slave *slave);
 };
 
 struct sim_family {
@@ -59,16 +60,16 @@ struct sim_family {
 
 	/* All optional. */
 	void (*create)(struct sim_slave *slave); /* contents of the memories as from the factory */
-	void (*power_on)(struct sim_slave *slave, int64_t t);
+	void (*power_on)(struct sim_slave *slave);
 	/*
 	 * The slave was selected alone, by a Match ROM or at the end of a search: it is in the
 	 * function layer.
 	 */
-	void (*selected)(struct sim_slave *slave, bool match, int64_t t);
-	bool (*alarm)(struct sim_slave *slave, int64_t t); /* answers a conditional search? */
-	bool (*bit)(struct sim_slave *slave, int64_t t); /* the next one in SIM_BITS; NULL: idle? */
-	void (*worked)(struct sim_slave *slave, int64_t t);  /* the work of sim_work() has ended */
-	void (*advance)(struct sim_slave *slave, int64_t t); /* follow the inputs up to t */
+	void (*selected)(struct sim_slave *slave, bool match);
+	bool (*alarm)(struct sim_slave *slave);   /* answers a conditional search? */
+	bool (*bit)(struct sim_slave *slave);     /* the next one in SIM_BITS; NULL: idle? */
+	void (*worked)(struct sim_slave *slave);  /* the work of sim_work() has ended */
+	void (*advance)(struct sim_slave *slave); /* follow the inputs up to now */
 	/* Take a start value of the scenario. 0, -ENOENT: no such option, -ERANGE. */
 	int (*option)(struct sim_slave *slave, const char *name, double value);
 	/* The memory that a scenario may fill. */
@@ -106,6 +107,7 @@ struct sim_slave {
 	uint32_t calls;
 	int corrupt_bit; /* the bit to turn over in this call, counted down; -1: none */
 
+	int64_t now; /* t of the call under way */
 	enum sim_layer layer;
 	enum sim_mode mode;
 	bool overdrive, resumable;
@@ -143,6 +145,7 @@ void sim_slave_slot(struct sim_slave *slave, bool line, int64_t t);
 void sim_slave_strong(struct sim_slave *slave, bool on, int64_t t);
 void sim_slave_advance(struct sim_slave *slave, int64_t t);
 int sim_slave_input(const struct sim_slave *slave, const char *name);
+double sim_input_now(const struct sim_slave *slave, unsigned input);
 double sim_input_at(const struct sim_slave *slave, unsigned input, int64_t t);
 
 /* For the families. */
@@ -164,6 +167,6 @@ void sim_send_memory(struct sim_slave *slave, const uint8_t *memory, unsigned si
 /* Send the checksum, then the byte now stored at the address. The next checksum starts after it. */
 void sim_send_stored(struct sim_slave *slave, uint8_t stored);
 /* Be busy for a while: read slots are 0, worked() ends it. */
-void sim_work(struct sim_slave *slave, int64_t takes, int64_t t);
+void sim_work(struct sim_slave *slave, int64_t takes);
 
 #endif

@@ -39,11 +39,6 @@ struct bae {
 	int64_t started; /* the clock was 0 */
 };
 
-static struct bae *bae_state(struct sim_slave *slave)
-{
-	return sim_state(slave, bae);
-}
-
 static bool is_911(const struct sim_slave *slave)
 {
 	return slave->family == &sim_bae0911;
@@ -52,7 +47,7 @@ static bool is_911(const struct sim_slave *slave)
 /* NULL: there is nothing at this address. */
 static uint8_t *cell(struct sim_slave *slave, unsigned at)
 {
-	struct bae *s = bae_state(slave);
+	struct bae *s = slave->state;
 	unsigned eeprom = is_911(slave) ? EEPROM_911 : EEPROM_910;
 	unsigned pages = is_911(slave) ? PAGES_911 : PAGES_910;
 	unsigned registers = is_911(slave) ? REGISTERS_911 : 0;
@@ -66,26 +61,28 @@ static uint8_t *cell(struct sim_slave *slave, unsigned at)
 
 static bool is_eeprom(struct sim_slave *slave, const uint8_t *to)
 {
-	const struct bae *s = bae_state(slave);
+	const struct bae *s = slave->state;
 
 	return to >= s->eeprom && to < s->eeprom + sizeof(s->eeprom);
 }
 
 static void bae_create(struct sim_slave *slave)
 {
-	memset(bae_state(slave)->eeprom, 0xFF, sizeof(bae_state(slave)->eeprom));
+	struct bae *s = slave->state;
+
+	memset(s->eeprom, 0xFF, sizeof(s->eeprom));
 }
 
-static void bae_power_on(struct sim_slave *slave, int64_t t)
+static void bae_power_on(struct sim_slave *slave)
 {
-	struct bae *s = bae_state(slave);
+	struct bae *s = slave->state;
 
 	memset(s->registers, 0, sizeof(s->registers));
 	memset(s->expander, 0, sizeof(s->expander));
 	s->expander[3] = 0xFF; /* all are inputs */
 	s->result = DONE;
 	s->answers = 0;
-	s->started = t;
+	s->started = slave->now;
 	if (is_911(slave))
 		s->registers[POWER_ON_FLAGS] = 0x80;
 }
@@ -106,12 +103,12 @@ static unsigned clock_at(const struct sim_slave *slave)
 	return is_911(slave) ? CLOCK_911 : CLOCK_910;
 }
 
-static void bae_advance(struct sim_slave *slave, int64_t t)
+static void bae_advance(struct sim_slave *slave)
 {
-	struct bae *s = bae_state(slave);
-	unsigned adc = (unsigned)sim_round(sim_input_at(slave, 0, t) * 1023 / 5);
+	struct bae *s = slave->state;
+	unsigned adc = (unsigned)sim_round(sim_input_now(slave, 0) * 1023 / 5);
 
-	put32(s->registers + clock_at(slave), (uint32_t)((t - s->started) / NS_PER_S));
+	put32(s->registers + clock_at(slave), (uint32_t)((slave->now - s->started) / NS_PER_S));
 	if (is_911(slave)) {
 		s->registers[0x700] = (uint8_t)(adc >> 8); /* ADC0 */
 		s->registers[0x701] = (uint8_t)adc;
@@ -122,24 +119,21 @@ static void bae_advance(struct sim_slave *slave, int64_t t)
 	}
 }
 
-static void version(struct sim_slave *slave, int64_t t)
+static void version(struct sim_slave *slave)
 {
-	(void)t;
 	sim_send_checked(slave, (const uint8_t[]){0x02, 0x0C}, 2);
 }
 
-static void type(struct sim_slave *slave, int64_t t)
+static void type(struct sim_slave *slave)
 {
-	(void)t;
 	sim_send_checked(slave, (const uint8_t[]){is_911(slave) ? 3 : 2, 0x24}, 2);
 }
 
-static void read_block(struct sim_slave *slave, int64_t t)
+static void read_block(struct sim_slave *slave)
 {
 	unsigned at = slave->address, n = slave->taken[2];
 	uint8_t out[BLOCK];
 
-	(void)t;
 	if (!n || n > BLOCK) {
 		sim_end(slave);
 		return;
@@ -153,9 +147,9 @@ static void read_block(struct sim_slave *slave, int64_t t)
 }
 
 /* EEPROM can only be cleared bit by bit; erasing sets all. */
-static void write_block(struct sim_slave *slave, int64_t t)
+static void write_block(struct sim_slave *slave)
 {
-	struct bae *s = bae_state(slave);
+	struct bae *s = slave->state;
 	unsigned at = s->taken[0] | (unsigned)s->taken[1] << 8;
 
 	for (unsigned i = 0; i < s->taken[2]; i++) {
@@ -164,12 +158,12 @@ static void write_block(struct sim_slave *slave, int64_t t)
 		if (to)
 			*to = is_eeprom(slave, to) ? *to & s->taken[3 + i] : s->taken[3 + i];
 	}
-	s->started = t - (int64_t)get32(s->registers + clock_at(slave)) * NS_PER_S;
+	s->started = slave->now - (int64_t)get32(s->registers + clock_at(slave)) * NS_PER_S;
 }
 
 static void erase_page(struct sim_slave *slave)
 {
-	struct bae *s = bae_state(slave);
+	struct bae *s = slave->state;
 	uint8_t *page = cell(slave, s->taken[0] | (unsigned)s->taken[1] << 8);
 
 	if (page && is_eeprom(slave, page))
@@ -231,13 +225,13 @@ static void sequence(struct bae *s, bool write)
 	}
 }
 
-static void act(struct sim_slave *slave, int64_t t)
+static void act(struct sim_slave *slave)
 {
-	struct bae *s = bae_state(slave);
+	struct bae *s = slave->state;
 
 	switch (slave->function->code) {
 	case WRITE_BLOCK:
-		write_block(slave, t);
+		write_block(slave);
 		return;
 	case ERASE_PAGE:
 		erase_page(slave);
@@ -247,7 +241,7 @@ static void act(struct sim_slave *slave, int64_t t)
 	}
 	s->result = DONE;
 	s->answers = 0;
-	s->done = t + NS_PER_MS;
+	s->done = slave->now + NS_PER_MS;
 	if (slave->function->code == WRITE_RUN)
 		run(s);
 	else
@@ -269,20 +263,21 @@ static unsigned whole(const struct sim_slave *slave, const struct bae *s)
 	return 2; /* page to erase; bytes and function of a sequence */
 }
 
-static void bae_begin(struct sim_slave *slave, int64_t t)
+static void bae_begin(struct sim_slave *slave)
 {
-	(void)t;
-	bae_state(slave)->got = 0;
-	bae_state(slave)->sent = false;
+	struct bae *s = slave->state;
+
+	s->got = 0;
+	s->sent = false;
 }
 
-static void bae_take(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void bae_take(struct sim_slave *slave, uint8_t byte)
 {
-	struct bae *s = bae_state(slave);
+	struct bae *s = slave->state;
 
 	if (s->sent) {
 		if (byte == CONFIRM)
-			act(slave, t);
+			act(slave);
 		sim_end(slave);
 		return;
 	}
@@ -298,18 +293,17 @@ static void bae_take(struct sim_slave *slave, uint8_t byte, int64_t t)
 }
 
 /* The checksum is sent: the confirmation may come. */
-static void await_confirmation(struct sim_slave *slave, int64_t t)
+static void await_confirmation(struct sim_slave *slave)
 {
-	(void)t;
 	sim_receive(slave);
 }
 
-static void query(struct sim_slave *slave, int64_t t)
+static void query(struct sim_slave *slave)
 {
-	struct bae *s = bae_state(slave);
+	struct bae *s = slave->state;
 	uint8_t out[2 + BLOCK] = {s->result, s->answers};
 
-	if (t < s->done) {
+	if (slave->now < s->done) {
 		sim_send(slave, (const uint8_t[]){BUSY, 0}, 2);
 		return;
 	}
@@ -321,7 +315,7 @@ static void query(struct sim_slave *slave, int64_t t)
 static uint8_t *bae_memory(struct sim_slave *slave, size_t *size)
 {
 	*size = offsetof(struct bae, taken);
-	return bae_state(slave)->registers;
+	return sim_state(slave, bae)->registers;
 }
 
 #define WRITES(code_) \

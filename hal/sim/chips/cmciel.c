@@ -39,9 +39,9 @@ static unsigned reading(const struct sim_slave *slave, int64_t t)
 	return word;
 }
 
-static void cmciel_read_scratchpad(struct sim_slave *slave, int64_t t)
+static void cmciel_read_scratchpad(struct sim_slave *slave)
 {
-	unsigned word = reading(slave, t);
+	unsigned word = reading(slave, slave->now);
 	uint8_t out[2] = {(uint8_t)word, (uint8_t)(word >> 8)};
 
 	sim_send_crc8(slave, out, 2);

@@ -25,11 +25,6 @@ enum { READ_POWER = 0xB4 };
 /* tWR of the EEPROM, all data sheets: 10 ms at most. */
 #define COPY_NS (10 * NS_PER_MS)
 
-static struct sim_thermometer *ds18b20_state(struct sim_slave *slave)
-{
-	return sim_state(slave, sim_thermometer);
-}
-
 static bool is_s20(const struct sim_slave *slave)
 {
 	return slave->family->code == FAMILY_S20;
@@ -68,7 +63,7 @@ static uint8_t config_byte(const struct sim_slave *slave, uint8_t written)
 
 static void ds18b20_recall(struct sim_slave *slave)
 {
-	struct sim_thermometer *s = ds18b20_state(slave);
+	struct sim_thermometer *s = slave->state;
 
 	s->scratchpad[2] = s->eeprom[0];
 	s->scratchpad[3] = s->eeprom[1];
@@ -79,7 +74,7 @@ static const struct sim_clone *clone_of(const struct sim_family *family);
 
 static void ds18b20_create(struct sim_slave *slave)
 {
-	struct sim_thermometer *s = ds18b20_state(slave);
+	struct sim_thermometer *s = slave->state;
 
 	s->clone = clone_of(slave->family);
 	if (s->clone) {
@@ -92,13 +87,13 @@ static void ds18b20_create(struct sim_slave *slave)
 	s->eeprom[2] = 0x7F;
 }
 
-static void ds18b20_power_on(struct sim_slave *slave, int64_t t)
+static void ds18b20_power_on(struct sim_slave *slave)
 {
-	struct sim_thermometer *s = ds18b20_state(slave);
+	struct sim_thermometer *s = slave->state;
 	int raw = is_s20(slave) ? 85 * 2 : 85 * 16;
 
 	if (slave->family->code == FAMILY_EA00)
-		sim_pins_start(slave, SIM_PIN_A, 2, t);
+		sim_pins_start(slave, SIM_PIN_A, 2);
 	s->alarm = false;
 	if (s->clone) {
 		if (s->clone->keeps && slave->power_ons > 1)
@@ -117,16 +112,16 @@ static void ds18b20_power_on(struct sim_slave *slave, int64_t t)
 
 static void set_alarm(struct sim_slave *slave, double celsius)
 {
-	struct sim_thermometer *s = ds18b20_state(slave);
+	struct sim_thermometer *s = slave->state;
 	int whole = (int)floor(celsius);
 
 	s->alarm = whole >= (int8_t)s->scratchpad[2] || whole <= (int8_t)s->scratchpad[3];
 }
 
-static void latch_temperature(struct sim_slave *slave, int64_t t)
+static void latch_temperature(struct sim_slave *slave)
 {
-	struct sim_thermometer *s = ds18b20_state(slave);
-	double celsius = sim_input_at(slave, SIM_TEMPERATURE, t);
+	struct sim_thermometer *s = slave->state;
+	double celsius = sim_input_now(slave, SIM_TEMPERATURE);
 	int raw;
 
 	celsius = celsius < -55 ? -55 : celsius > 125 ? 125 : celsius;
@@ -152,12 +147,12 @@ static void latch_temperature(struct sim_slave *slave, int64_t t)
 }
 
 /* A copy stores what the scratchpad holds when the copy ends. */
-static void ds18b20_worked(struct sim_slave *slave, int64_t t)
+static void ds18b20_worked(struct sim_slave *slave)
 {
-	struct sim_thermometer *s = ds18b20_state(slave);
+	struct sim_thermometer *s = slave->state;
 
 	if (!s->copying)
-		latch_temperature(slave, t);
+		latch_temperature(slave);
 	else if (!s->clone || s->clone->copies == 255 || s->copies++ < s->clone->copies)
 		memcpy(s->eeprom, s->scratchpad + 2, 3);
 }
@@ -165,56 +160,57 @@ static void ds18b20_worked(struct sim_slave *slave, int64_t t)
 /* A clone that needs a supply line, and has none. */
 static bool is_dead(struct sim_slave *slave)
 {
-	bool dead = slave->parasite && ds18b20_state(slave)->clone &&
-	            ds18b20_state(slave)->clone->no_parasite;
+	struct sim_thermometer *s = slave->state;
+	bool dead = slave->parasite && s->clone && s->clone->no_parasite;
 
 	if (dead)
 		sim_end(slave);
 	return dead;
 }
 
-static void ds18b20_convert(struct sim_slave *slave, int64_t t)
+static void ds18b20_convert(struct sim_slave *slave)
 {
+	struct sim_thermometer *s = slave->state;
+
 	if (is_dead(slave))
 		return;
 	/* No data sheet says what it does while it converts. */
-	if (ds18b20_state(slave)->once && slave->busy && !ds18b20_state(slave)->copying) {
+	if (s->once && slave->busy && !s->copying) {
 		sim_send_bits(slave);
 		return;
 	}
-	ds18b20_state(slave)->copying = false;
-	sim_work(slave, sim_thermometer_conversion(slave), t);
+	s->copying = false;
+	sim_work(slave, sim_thermometer_conversion(slave));
 }
 
-static void ds18b20_copy(struct sim_slave *slave, int64_t t)
+static void ds18b20_copy(struct sim_slave *slave)
 {
 	if (is_dead(slave))
 		return;
-	ds18b20_state(slave)->copying = true;
-	sim_work(slave, COPY_NS, t);
+	sim_state(slave, sim_thermometer)->copying = true;
+	sim_work(slave, COPY_NS);
 }
 
-static bool ds18b20_bit(struct sim_slave *slave, int64_t t)
+static bool ds18b20_bit(struct sim_slave *slave)
 {
-	const struct sim_clone *clone = ds18b20_state(slave)->clone;
+	const struct sim_clone *clone = sim_state(slave, sim_thermometer)->clone;
 
 	if (slave->function->code == READ_POWER)
 		return !slave->parasite;
-	if (clone && (clone->never_polls || (clone->polls_late && t < slave->since + LATE_NS)))
+	if (clone &&
+	    (clone->never_polls || (clone->polls_late && slave->now < slave->since + LATE_NS)))
 		return true;
 	return !slave->busy;
 }
 
-static void send_bits(struct sim_slave *slave, int64_t t)
+static void send_bits(struct sim_slave *slave)
 {
-	(void)t;
 	sim_send_bits(slave);
 }
 
-static void recall_eeprom(struct sim_slave *slave, int64_t t)
+static void recall_eeprom(struct sim_slave *slave)
 {
-	(void)t;
-	if (ds18b20_state(slave)->no_recall) {
+	if (sim_state(slave, sim_thermometer)->no_recall) {
 		sim_end(slave);
 		return;
 	}
@@ -223,12 +219,11 @@ static void recall_eeprom(struct sim_slave *slave, int64_t t)
 }
 
 /* The checksum is that of what is sent, so it is right whatever was disturbed. */
-static void ds18b20_read_scratchpad(struct sim_slave *slave, int64_t t)
+static void ds18b20_read_scratchpad(struct sim_slave *slave)
 {
 	const struct sim_thermometer *s = slave->state;
 	uint8_t bytes[8];
 
-	(void)t;
 	if (is_dead(slave))
 		return;
 	memcpy(bytes, s->scratchpad, sizeof(bytes));
@@ -237,19 +232,17 @@ static void ds18b20_read_scratchpad(struct sim_slave *slave, int64_t t)
 	sim_send_crc8(slave, bytes, 8);
 }
 
-static void ds18b20_begin_write(struct sim_slave *slave, int64_t t)
+static void ds18b20_begin_write(struct sim_slave *slave)
 {
-	(void)t;
 	slave->address = 2;
 }
 
-static void ds18b20_write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void ds18b20_write_scratchpad(struct sim_slave *slave, uint8_t byte)
 {
-	struct sim_thermometer *s = ds18b20_state(slave);
+	struct sim_thermometer *s = slave->state;
 	bool overwrites = s->clone && s->clone->overwrites;
 	unsigned at = slave->address++;
 
-	(void)t;
 	if (at <= 4)
 		s->scratchpad[at] = at == 4 ? config_byte(slave, byte) : byte;
 	else
@@ -260,15 +253,14 @@ static void ds18b20_write_scratchpad(struct sim_slave *slave, uint8_t byte, int6
 		sim_end(slave);
 }
 
-static bool ds18b20_alarm(struct sim_slave *slave, int64_t t)
+static bool ds18b20_alarm(struct sim_slave *slave)
 {
-	(void)t;
-	return ds18b20_state(slave)->alarm;
+	return sim_state(slave, sim_thermometer)->alarm;
 }
 
 static int ds18b20_option(struct sim_slave *slave, const char *name, double value)
 {
-	struct sim_thermometer *s = ds18b20_state(slave);
+	struct sim_thermometer *s = slave->state;
 	int64_t whole = sim_round(value);
 
 	if (value != (double)whole)

@@ -50,18 +50,13 @@ struct ds1921 {
 	bool converting, was_low, was_high;
 };
 
-static struct ds1921 *ds1921_state(struct sim_slave *slave)
-{
-	return sim_state(slave, ds1921);
-}
-
 static const struct sim_scratchpad_kind kind = {
 	.size = END, .writable = END, .page = 32, .copy_ns = 32 * COPY_NS_PER_BYTE, .to_end = true};
 
 static void ds1921_create(struct sim_slave *slave)
 {
 	static const uint8_t new_year[SIM_TIME] = {0, 0, 0, 1, 1, 0x81, 0}; /* of 2000 */
-	struct ds1921 *s = ds1921_state(slave);
+	struct ds1921 *s = slave->state;
 
 	s->pad.kind = &kind;
 	s->clock.stopped = -1;
@@ -109,7 +104,7 @@ static void note_time(struct ds1921 *s, unsigned first, bool beyond, bool *was)
 
 static void sample(struct sim_slave *slave, int64_t t)
 {
-	struct ds1921 *s = ds1921_state(slave);
+	struct ds1921 *s = slave->state;
 	uint8_t *memory = s->pad.memory, raw = raw_temperature(slave, t);
 	uint32_t n = sim_count(memory + SAMPLES, 3);
 
@@ -150,16 +145,16 @@ static void follow_alarm(struct ds1921 *s, int64_t t)
 	s->checked = t;
 }
 
-static void ds1921_advance(struct sim_slave *slave, int64_t t)
+static void ds1921_advance(struct sim_slave *slave)
 {
-	struct ds1921 *s = ds1921_state(slave);
+	struct ds1921 *s = slave->state;
 	uint8_t *memory = s->pad.memory;
 
-	sim_clock_get(&s->clock, t, memory + CLOCK);
+	sim_clock_get(&s->clock, slave->now, memory + CLOCK);
 	if (!(memory[STATUS] & MIP))
 		return;
-	follow_alarm(s, t);
-	while (s->next <= t) {
+	follow_alarm(s, slave->now);
+	while (s->next <= slave->now) {
 		sample(slave, s->next);
 		s->next += memory[RATE] * PER_MINUTE;
 	}
@@ -188,12 +183,12 @@ static bool is_writable(unsigned at)
 	return at < CLOCK || (at <= CONTROL && at >= CLOCK) || at == DELAY || at == DELAY + 1;
 }
 
-static void write_register(struct sim_slave *slave, unsigned at, uint8_t byte, int64_t t)
+static void write_register(struct sim_slave *slave, unsigned at, uint8_t byte)
 {
 	static const uint8_t used[CONTROL + 1 - CLOCK] = {0x7F, 0x7F, 0x7F, 0x07, 0x3F,
 	                                                  0x9F, 0xFF, 0xFF, 0xFF, 0xFF,
 	                                                  0x87, 0xFF, 0xFF, 0xFF, 0xDF};
-	struct ds1921 *s = ds1921_state(slave);
+	struct ds1921 *s = slave->state;
 	uint8_t *memory = s->pad.memory;
 
 	if (at == STATUS)
@@ -204,37 +199,37 @@ static void write_register(struct sim_slave *slave, unsigned at, uint8_t byte, i
 		return;
 	memory[at] = at >= CLOCK && at <= CONTROL ? byte & used[at - CLOCK] : byte;
 	if (at >= CLOCK && at < CLOCK_ALARM)
-		sim_clock_set(&s->clock, t, memory + CLOCK);
+		sim_clock_set(&s->clock, slave->now, memory + CLOCK);
 	if (at == CONTROL)
-		sim_clock_run(&s->clock, t, !(byte & EOSC));
+		sim_clock_run(&s->clock, slave->now, !(byte & EOSC));
 }
 
-static void copied(struct sim_slave *slave, int64_t t)
+static void copied(struct sim_slave *slave)
 {
-	struct ds1921 *s = ds1921_state(slave);
+	struct ds1921 *s = slave->state;
 	unsigned first = s->pad.target, last = (first & ~31u) + (s->pad.status & 31u);
 	bool rate = false;
 
 	for (unsigned at = first; at <= last; at++) {
-		write_register(slave, at, s->pad.pad[at % 32], t);
+		write_register(slave, at, s->pad.pad[at % 32]);
 		rate |= at == RATE;
 	}
 	if (rate && s->pad.memory[RATE] && s->pad.memory[STATUS] & MEMCLR &&
 	    !(s->pad.memory[CONTROL] & (EM | EOSC)))
-		start_mission(s, t);
+		start_mission(s, slave->now);
 	s->pad.status |= 0x80;
 }
 
-static void ds1921_worked(struct sim_slave *slave, int64_t t)
+static void ds1921_worked(struct sim_slave *slave)
 {
-	struct ds1921 *s = ds1921_state(slave);
+	struct ds1921 *s = slave->state;
 
 	if (!s->converting) {
-		copied(slave, t);
+		copied(slave);
 		return;
 	}
 	s->converting = false;
-	s->pad.memory[READOUT] = raw_temperature(slave, t);
+	s->pad.memory[READOUT] = raw_temperature(slave, slave->now);
 	ds1921_add(s->pad.memory + DEVICE_SAMPLES, 3, 0xFFFFFF);
 	s->pad.memory[STATUS] |= TCB;
 	slave->conversions++;
@@ -245,74 +240,71 @@ static void ds1921_worked(struct sim_slave *slave, int64_t t)
 /* Any other command than Clear Memory takes its permission away. */
 static void forbid_clear(struct sim_slave *slave)
 {
-	ds1921_state(slave)->pad.memory[CONTROL] &= (uint8_t)~EMCLR;
+	sim_state(slave, ds1921)->pad.memory[CONTROL] &= (uint8_t)~EMCLR;
 }
 
-static void target(struct sim_slave *slave, int64_t t)
+static void target(struct sim_slave *slave)
 {
 	forbid_clear(slave);
-	sim_scratchpad_target(slave, t);
+	sim_scratchpad_target(slave);
 }
 
-static void ds1921_read_scratchpad(struct sim_slave *slave, int64_t t)
+static void ds1921_read_scratchpad(struct sim_slave *slave)
 {
 	forbid_clear(slave);
-	sim_scratchpad_read(slave, t);
+	sim_scratchpad_read(slave);
 }
 
-static void ds1921_copy(struct sim_slave *slave, int64_t t)
+static void ds1921_copy(struct sim_slave *slave)
 {
 	forbid_clear(slave);
 	if (slave->busy) {
 		sim_end(slave);
 		return;
 	}
-	sim_scratchpad_copy(slave, t);
+	sim_scratchpad_copy(slave);
 }
 
 static uint8_t byte_at(struct sim_slave *slave, unsigned at)
 {
-	struct ds1921 *s = ds1921_state(slave);
+	struct ds1921 *s = slave->state;
 
 	if (at >= LOG && at < LOG_END)
 		return s->log[at - LOG];
 	return at < TIMES_END || (at >= HISTOGRAM && at < HISTOGRAM_END) ? s->pad.memory[at] : 0;
 }
 
-static void next_byte(struct sim_slave *slave, int64_t t)
+static void next_byte(struct sim_slave *slave)
 {
-	(void)t;
 	sim_send_byte(slave, byte_at(slave, slave->address++));
 }
 
-static void next_checked(struct sim_slave *slave, int64_t t)
+static void next_checked(struct sim_slave *slave)
 {
 	uint8_t byte = byte_at(slave, slave->address++);
 
-	(void)t;
 	if (slave->address % 32 == 0)
 		sim_send_checked(slave, &byte, 1);
 	else
 		sim_send_byte(slave, byte);
 }
 
-static void read_memory(struct sim_slave *slave, int64_t t)
+static void read_memory(struct sim_slave *slave)
 {
 	forbid_clear(slave);
-	next_byte(slave, t);
+	next_byte(slave);
 }
 
-static void read_checked(struct sim_slave *slave, int64_t t)
+static void read_checked(struct sim_slave *slave)
 {
 	forbid_clear(slave);
-	next_checked(slave, t);
+	next_checked(slave);
 }
 
-static void clear(struct sim_slave *slave, int64_t t)
+static void clear(struct sim_slave *slave)
 {
-	uint8_t *memory = ds1921_state(slave)->pad.memory;
+	uint8_t *memory = sim_state(slave, ds1921)->pad.memory;
 
-	(void)t;
 	if (memory[CONTROL] & EMCLR && !(memory[STATUS] & MIP)) {
 		memory[RATE] = 0;
 		memset(memory + DELAY, 0, 2);
@@ -325,15 +317,15 @@ static void clear(struct sim_slave *slave, int64_t t)
 	sim_end(slave);
 }
 
-static void ds1921_convert(struct sim_slave *slave, int64_t t)
+static void ds1921_convert(struct sim_slave *slave)
 {
-	struct ds1921 *s = ds1921_state(slave);
+	struct ds1921 *s = slave->state;
 
 	forbid_clear(slave);
 	if (!(s->pad.memory[STATUS] & MIP) && !slave->busy) {
 		s->converting = true;
 		s->pad.memory[STATUS] &= (uint8_t)~TCB;
-		sim_work(slave, CONVERSION_NS, t);
+		sim_work(slave, CONVERSION_NS);
 	}
 	sim_end(slave);
 }
@@ -350,18 +342,17 @@ static const struct sim_function functions[] = {
 };
 
 /* Of the flags those whose search is enabled; a search bit stands one lower than its flag's. */
-static bool ds1921_alarm(struct sim_slave *slave, int64_t t)
+static bool ds1921_alarm(struct sim_slave *slave)
 {
-	const uint8_t *memory = ds1921_state(slave)->pad.memory;
+	const uint8_t *memory = sim_state(slave, ds1921)->pad.memory;
 
-	(void)t;
 	return (memory[STATUS] & memory[CONTROL] & SEARCHES) != 0;
 }
 
 static uint8_t *memory(struct sim_slave *slave, size_t *size)
 {
 	*size = CLOCK;
-	return ds1921_state(slave)->pad.memory;
+	return sim_state(slave, ds1921)->pad.memory;
 }
 
 #define PART(part, low, high) \

@@ -58,11 +58,6 @@ struct ds1922 {
 	uint8_t password[9], got;
 };
 
-static struct ds1922 *ds1922_state(struct sim_slave *slave)
-{
-	return sim_state(slave, ds1922);
-}
-
 static const struct sim_scratchpad_kind kind = {
 	.size = LOG_END, .writable = LOG_END, .page = 32, .copy_ns = 64000, .to_end = true};
 
@@ -75,7 +70,7 @@ static void ds1922_create(struct sim_slave *slave)
 {
 	static const uint8_t new_year[SIM_TIME] = {0, 0, 0, 1, 1, 0x81, 0}; /* of 2000 */
 	const struct sim_family *family = slave->family;
-	struct ds1922 *s = ds1922_state(slave);
+	struct ds1922 *s = slave->state;
 
 	s->pad.kind = &kind;
 	s->clock.stopped = -1;
@@ -114,7 +109,7 @@ static uint16_t raw_data(struct sim_slave *slave, int64_t t)
 
 static void ds1922_measure(struct sim_slave *slave, int64_t t)
 {
-	uint8_t *memory = ds1922_state(slave)->pad.memory;
+	uint8_t *memory = sim_state(slave, ds1922)->pad.memory;
 	uint32_t device = sim_count(memory + DEVICE_SAMPLES, 3);
 
 	sim_put_count(memory + LATEST, 2, raw_temperature(slave, t));
@@ -167,7 +162,7 @@ static void check_alarms(uint8_t *memory)
 
 static void stamp(struct sim_slave *slave, int64_t t)
 {
-	struct ds1922 *s = ds1922_state(slave);
+	struct ds1922 *s = slave->state;
 	uint8_t now[SIM_TIME];
 
 	sim_clock_get(&s->clock, t, now);
@@ -177,7 +172,7 @@ static void stamp(struct sim_slave *slave, int64_t t)
 
 static void sample(struct sim_slave *slave, int64_t t)
 {
-	struct ds1922 *s = ds1922_state(slave);
+	struct ds1922 *s = slave->state;
 	uint8_t *memory = s->pad.memory, mission = memory[MISSION];
 	uint32_t n = sim_count(memory + SAMPLES, 3), room;
 	unsigned data;
@@ -202,16 +197,16 @@ static void sample(struct sim_slave *slave, int64_t t)
 		sim_put_count(memory + SAMPLES, 3, n + 1);
 }
 
-static void ds1922_advance(struct sim_slave *slave, int64_t t)
+static void ds1922_advance(struct sim_slave *slave)
 {
-	struct ds1922 *s = ds1922_state(slave);
+	struct ds1922 *s = slave->state;
 	uint8_t *memory = s->pad.memory, now[SIM_TIME];
 	int64_t unit = memory[OSCILLATOR] & SECONDS ? NS_PER_S : 60 * NS_PER_S;
 
-	sim_clock_get(&s->clock, t, now);
+	sim_clock_get(&s->clock, slave->now, now);
 	memcpy(memory + CLOCK, now, 3);
 	memcpy(memory + CLOCK + 3, now + SIM_DATE, 3);
-	while (memory[STATUS] & MIP && s->next <= t) {
+	while (memory[STATUS] & MIP && s->next <= slave->now) {
 		sample(slave, s->next);
 		s->next += unit * (memory[RATE] | (memory[RATE + 1] & 0x3F) << 8);
 	}
@@ -241,9 +236,9 @@ static void set_clock(struct ds1922 *s, int64_t t)
 	sim_clock_set(&s->clock, t, bcd);
 }
 
-static void copied(struct sim_slave *slave, int64_t t)
+static void copied(struct sim_slave *slave)
 {
-	struct ds1922 *s = ds1922_state(slave);
+	struct ds1922 *s = slave->state;
 	unsigned first = s->pad.target, last = (first & ~31u) + (s->pad.status & 31u);
 	bool clock = false;
 
@@ -256,30 +251,29 @@ static void copied(struct sim_slave *slave, int64_t t)
 	s->pad.memory[OSCILLATOR] &= EOSC | SECONDS;
 	s->pad.memory[MISSION] &= 0x3F;
 	if (clock)
-		set_clock(s, t);
-	sim_clock_run(&s->clock, t, s->pad.memory[OSCILLATOR] & EOSC);
+		set_clock(s, slave->now);
+	sim_clock_run(&s->clock, slave->now, s->pad.memory[OSCILLATOR] & EOSC);
 	s->pad.status |= 0x80;
 }
 
-static void ds1922_worked(struct sim_slave *slave, int64_t t)
+static void ds1922_worked(struct sim_slave *slave)
 {
-	struct ds1922 *s = ds1922_state(slave);
+	struct ds1922 *s = slave->state;
 
 	if (s->converting)
-		ds1922_measure(slave, t);
+		ds1922_measure(slave, slave->now);
 	else
-		copied(slave, t);
+		copied(slave);
 	s->converting = false;
 }
 
 /* --- Commands -------------------------------------------------------------------------------- */
 
 /* A password follows, and the dummy byte of a command that has one. */
-static void begin_password(struct sim_slave *slave, int64_t t)
+static void begin_password(struct sim_slave *slave)
 {
-	struct ds1922 *s = ds1922_state(slave);
+	struct ds1922 *s = slave->state;
 
-	(void)t;
 	s->crc = slave->crc;
 	s->got = 0;
 	if (slave->busy)
@@ -289,7 +283,7 @@ static void begin_password(struct sim_slave *slave, int64_t t)
 /* One more byte of it: true when it was the last and the password opens what it should. */
 static bool password(struct sim_slave *slave, uint8_t byte, unsigned n, bool reads)
 {
-	struct ds1922 *s = ds1922_state(slave);
+	struct ds1922 *s = slave->state;
 	const uint8_t *memory = s->pad.memory;
 
 	s->password[s->got++] = byte;
@@ -305,15 +299,15 @@ static bool password(struct sim_slave *slave, uint8_t byte, unsigned n, bool rea
 	return true;
 }
 
-static void ds1922_copy(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void ds1922_copy(struct sim_slave *slave, uint8_t byte)
 {
 	if (password(slave, byte, 8, false))
-		sim_scratchpad_copy(slave, t);
+		sim_scratchpad_copy(slave);
 }
 
 static uint8_t byte_at(struct sim_slave *slave, unsigned at)
 {
-	const struct ds1922 *s = ds1922_state(slave);
+	const struct ds1922 *s = slave->state;
 
 	if (at >= LOG && at < LOG_END)
 		return s->log[at - LOG];
@@ -330,11 +324,10 @@ static uint8_t byte_at(struct sim_slave *slave, unsigned at)
 	return at < CALIBRATION_END ? s->pad.memory[at] : 0xFF;
 }
 
-static void next_byte(struct sim_slave *slave, int64_t t)
+static void next_byte(struct sim_slave *slave)
 {
 	uint8_t byte = byte_at(slave, slave->address++);
 
-	(void)t;
 	if (slave->address > LOG_END)
 		sim_end(slave);
 	else if (slave->address % 32 == 0)
@@ -343,17 +336,16 @@ static void next_byte(struct sim_slave *slave, int64_t t)
 		sim_send_byte(slave, byte);
 }
 
-static void read_memory(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void read_memory(struct sim_slave *slave, uint8_t byte)
 {
 	if (password(slave, byte, 8, true))
-		next_byte(slave, t);
+		next_byte(slave);
 }
 
-static void clear(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void clear(struct sim_slave *slave, uint8_t byte)
 {
-	uint8_t *memory = ds1922_state(slave)->pad.memory;
+	uint8_t *memory = sim_state(slave, ds1922)->pad.memory;
 
-	(void)t;
 	if (!password(slave, byte, 9, false))
 		return;
 	if (!(memory[STATUS] & MIP)) {
@@ -367,9 +359,9 @@ static void clear(struct sim_slave *slave, uint8_t byte, int64_t t)
 	sim_end(slave);
 }
 
-static void start_mission(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void start_mission(struct sim_slave *slave, uint8_t byte)
 {
-	struct ds1922 *s = ds1922_state(slave);
+	struct ds1922 *s = slave->state;
 	uint8_t *memory = s->pad.memory;
 
 	if (!password(slave, byte, 9, false))
@@ -377,29 +369,28 @@ static void start_mission(struct sim_slave *slave, uint8_t byte, int64_t t)
 	if (memory[STATUS] & MEMCLR && !(memory[STATUS] & MIP) && memory[OSCILLATOR] & EOSC &&
 	    sim_count(memory + RATE, 2) && memory[MISSION] & (LOG_TEMP | LOG_DATA)) {
 		memory[STATUS] = MIP | (memory[MISSION] & SUTA ? WFTA : 0);
-		s->next = t + sim_count(memory + DELAY, 3) * 60 * NS_PER_S;
+		s->next = slave->now + sim_count(memory + DELAY, 3) * 60 * NS_PER_S;
 	}
 	sim_end(slave);
 }
 
-static void stop_mission(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void stop_mission(struct sim_slave *slave, uint8_t byte)
 {
-	(void)t;
 	if (!password(slave, byte, 9, false))
 		return;
-	ds1922_state(slave)->pad.memory[STATUS] &= (uint8_t)~MIP;
+	sim_state(slave, ds1922)->pad.memory[STATUS] &= (uint8_t)~MIP;
 	sim_end(slave);
 }
 
 /* While it converts, the memory cannot be reached. */
-static void ds1922_convert(struct sim_slave *slave, int64_t t)
+static void ds1922_convert(struct sim_slave *slave)
 {
-	struct ds1922 *s = ds1922_state(slave);
+	struct ds1922 *s = slave->state;
 
 	if (!(s->pad.memory[STATUS] & MIP) && !slave->busy && s->pad.memory[OSCILLATOR] & EOSC &&
 	    slave->taken[0] == 0xFF) {
 		s->converting = true;
-		sim_work(slave, CONVERSION_NS, t);
+		sim_work(slave, CONVERSION_NS);
 	}
 	sim_end(slave);
 }
@@ -416,16 +407,15 @@ static const struct sim_function functions[] = {
 	{0},
 };
 
-static bool ds1922_alarm(struct sim_slave *slave, int64_t t)
+static bool ds1922_alarm(struct sim_slave *slave)
 {
-	(void)t;
-	return (ds1922_state(slave)->pad.memory[FLAGS] & (FLAGS_USED | BOR)) != 0;
+	return (sim_state(slave, ds1922)->pad.memory[FLAGS] & (FLAGS_USED | BOR)) != 0;
 }
 
 static uint8_t *memory(struct sim_slave *slave, size_t *size)
 {
 	*size = CLOCK;
-	return ds1922_state(slave)->pad.memory;
+	return sim_state(slave, ds1922)->pad.memory;
 }
 
 #define PART(part, list) \

@@ -26,11 +26,6 @@ static const struct sim_scratchpad_kind ds1963l = {
 static const struct sim_scratchpad_kind ds1963s = {
 	.size = END, .writable = 512, .page = 32, .copy_ns = 32000, .to_end = true};
 
-static struct ds1963 *ds1963_state(struct sim_slave *slave)
-{
-	return sim_state(slave, ds1963);
-}
-
 static bool has_secrets(const struct sim_slave *slave)
 {
 	return slave->family->code == 0x18;
@@ -38,16 +33,16 @@ static bool has_secrets(const struct sim_slave *slave)
 
 static void ds1963_create(struct sim_slave *slave)
 {
-	struct sim_scratchpad *s = &ds1963_state(slave)->memory;
+	struct sim_scratchpad *s = &sim_state(slave, ds1963)->memory;
 
 	s->kind = has_secrets(slave) ? &ds1963s : &ds1963l;
 	memset(s->memory + HIDDEN, 0xFF, COUNTERS - HIDDEN);
 }
 
-static void ds1963_power_on(struct sim_slave *slave, int64_t t)
+static void ds1963_power_on(struct sim_slave *slave)
 {
-	sim_scratchpad_power_on(slave, t);
-	ds1963_state(slave)->hide = has_secrets(slave);
+	sim_scratchpad_power_on(slave);
+	sim_state(slave, ds1963)->hide = has_secrets(slave);
 }
 
 /* The number of the first page with a counter. */
@@ -56,14 +51,14 @@ static unsigned first_counted(const struct sim_slave *slave)
 	return has_secrets(slave) ? 8 : 12;
 }
 
-static void ds1963_worked(struct sim_slave *slave, int64_t t)
+static void ds1963_worked(struct sim_slave *slave)
 {
-	struct ds1963 *s = ds1963_state(slave);
+	struct ds1963 *s = slave->state;
 	unsigned page = s->memory.target / 32u;
 
 	if (!s->copying)
 		return;
-	sim_scratchpad_worked(slave, t);
+	sim_scratchpad_worked(slave);
 	if (page >= first_counted(slave) && s->count[page] < UINT32_MAX)
 		s->count[page]++;
 }
@@ -75,13 +70,12 @@ static void put_count(uint8_t *to, uint32_t count)
 }
 
 /* Send the rest of the page, its counter, and four bytes more; then the checksum. */
-static void send_page(struct sim_slave *slave, int64_t t)
+static void send_page(struct sim_slave *slave)
 {
-	const struct ds1963 *s = ds1963_state(slave);
+	const struct ds1963 *s = slave->state;
 	unsigned page = slave->address / 32u, n = 0;
 	uint8_t out[32 + 4 + 4];
 
-	(void)t;
 	if (page >= PAGES) {
 		sim_end(slave);
 		return;
@@ -98,66 +92,70 @@ static void send_page(struct sim_slave *slave, int64_t t)
 }
 
 /* Compute for 1 ms; then 0 and 1 in turns. The result, in the scratchpad, is hidden. */
-static void authenticate(struct sim_slave *slave, int64_t t)
+static void authenticate(struct sim_slave *slave)
 {
-	ds1963_state(slave)->hide = true;
-	ds1963_state(slave)->copying = false;
+	struct ds1963 *s = slave->state;
+
+	s->hide = true;
+	s->copying = false;
 	slave->got = 1;
-	sim_work(slave, 1000000, t);
+	sim_work(slave, 1000000);
 }
 
-static void erase(struct sim_slave *slave, int64_t t)
+static void erase(struct sim_slave *slave)
 {
-	struct ds1963 *s = ds1963_state(slave);
+	struct ds1963 *s = slave->state;
 
 	s->hide = s->copying = false;
 	memset(s->memory.pad, 0xFF, sizeof(s->memory.pad));
 	slave->got = 1;
-	sim_work(slave, 32000, t);
+	sim_work(slave, 32000);
 }
 
-static void ds1963_write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void ds1963_write_scratchpad(struct sim_slave *slave, uint8_t byte)
 {
-	if (ds1963_state(slave)->hide)
+	if (sim_state(slave, ds1963)->hide)
 		sim_end(slave);
 	else
-		sim_scratchpad_write(slave, byte, t);
+		sim_scratchpad_write(slave, byte);
 }
 
-static void ds1963_read_scratchpad(struct sim_slave *slave, int64_t t)
+static void ds1963_read_scratchpad(struct sim_slave *slave)
 {
 	uint8_t pad[32];
-	struct ds1963 *s = ds1963_state(slave);
+	struct ds1963 *s = slave->state;
 
 	memcpy(pad, s->memory.pad, sizeof(pad));
 	if (s->hide)
 		memset(s->memory.pad, 0xFF, sizeof(pad));
-	sim_scratchpad_read(slave, t);
+	sim_scratchpad_read(slave);
 	memcpy(s->memory.pad, pad, sizeof(pad));
 }
 
-static void ds1963_copy(struct sim_slave *slave, int64_t t)
+static void ds1963_copy(struct sim_slave *slave)
 {
-	ds1963_state(slave)->copying = true;
-	if (ds1963_state(slave)->hide)
+	struct ds1963 *s = slave->state;
+
+	s->copying = true;
+	if (s->hide)
 		sim_end(slave);
 	else
-		sim_scratchpad_copy(slave, t);
+		sim_scratchpad_copy(slave);
 }
 
-static void dump(struct sim_slave *slave, int64_t t)
+static void dump(struct sim_slave *slave)
 {
-	struct ds1963 *s = ds1963_state(slave);
+	struct ds1963 *s = slave->state;
 
 	for (unsigned i = 0; i < PAGES - 8 && has_secrets(slave); i++)
 		put_count(s->memory.memory + COUNTERS + 4 * i, s->count[8 + i]);
-	sim_scratchpad_dump(slave, t);
+	sim_scratchpad_dump(slave);
 }
 
 static uint8_t *ds1963_memory(struct sim_slave *slave, size_t *size)
 {
 	*size = 512;
-	return ds1963_state(slave)->memory.memory;
+	return sim_state(slave, ds1963)->memory.memory;
 }
 
 static const struct sim_function ds1963l_functions[] = {

@@ -33,20 +33,15 @@ static const struct sim_scratchpad_kind kind = {
 	.to_end = true,
 };
 
-static struct ds1977 *ds1977_state(struct sim_slave *slave)
-{
-	return sim_state(slave, ds1977);
-}
-
 static void ds1977_create(struct sim_slave *slave)
 {
-	ds1977_state(slave)->memory.kind = &kind;
+	sim_state(slave, ds1977)->memory.kind = &kind;
 }
 
 /* Does the password that came equal the one at this address? */
 static bool equals(struct sim_slave *slave, unsigned at)
 {
-	struct ds1977 *s = ds1977_state(slave);
+	struct ds1977 *s = slave->state;
 
 	return memcmp(s->password, s->memory.memory + at, LENGTH) == 0;
 }
@@ -56,24 +51,23 @@ static bool accepted(struct sim_slave *slave)
 	if (slave->function->code == VERIFY)
 		return (slave->address == READ_PASSWORD || slave->address == FULL_PASSWORD) &&
 		       equals(slave, slave->address);
-	if (ds1977_state(slave)->memory.memory[PASSWORD_CONTROL] != ENABLED)
+	if (sim_state(slave, ds1977)->memory.memory[PASSWORD_CONTROL] != ENABLED)
 		return true;
 	return equals(slave, FULL_PASSWORD) ||
 	       (slave->function->code == READ && equals(slave, READ_PASSWORD));
 }
 
-static void ds1977_begin(struct sim_slave *slave, int64_t t)
+static void ds1977_begin(struct sim_slave *slave)
 {
-	struct ds1977 *s = ds1977_state(slave);
+	struct ds1977 *s = slave->state;
 
-	(void)t;
 	s->count = 0;
 	s->crc = slave->crc;
 }
 
-static void take_password(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void take_password(struct sim_slave *slave, uint8_t byte)
 {
-	struct ds1977 *s = ds1977_state(slave);
+	struct ds1977 *s = slave->state;
 
 	s->password[s->count++] = byte;
 	if (s->count < LENGTH)
@@ -83,20 +77,19 @@ static void take_password(struct sim_slave *slave, uint8_t byte, int64_t t)
 	if (!accepted(slave)) {
 		sim_end(slave);
 	} else if (s->copying) {
-		sim_scratchpad_copy(slave, t);
+		sim_scratchpad_copy(slave);
 	} else {
 		slave->got = 1;
-		sim_work(slave, READ_NS, t);
+		sim_work(slave, READ_NS);
 	}
 }
 
 /* Send the byte at the address; one of a password reads FFh. At the end of a page the checksum. */
-static void ds1977_send(struct sim_slave *slave, int64_t t)
+static void ds1977_send(struct sim_slave *slave)
 {
-	struct ds1977 *s = ds1977_state(slave);
+	struct ds1977 *s = slave->state;
 	uint8_t byte = 0xFF;
 
-	(void)t;
 	if (slave->address >= kind.size ||
 	    (slave->address % PAGE == 0 && slave->mode == SIM_SEND)) {
 		sim_end(slave);
@@ -110,19 +103,18 @@ static void ds1977_send(struct sim_slave *slave, int64_t t)
 		sim_send_byte(slave, byte);
 }
 
-static void ds1977_worked(struct sim_slave *slave, int64_t t)
+static void ds1977_worked(struct sim_slave *slave)
 {
-	if (ds1977_state(slave)->copying)
-		sim_scratchpad_worked(slave, t);
+	if (sim_state(slave, ds1977)->copying)
+		sim_scratchpad_worked(slave);
 	else if (slave->function && slave->function->code == READ)
-		ds1977_send(slave, t);
+		ds1977_send(slave);
 }
 
-static void send_version(struct sim_slave *slave, int64_t t)
+static void send_version(struct sim_slave *slave)
 {
 	static const uint8_t version[2] = {VERSION, VERSION};
 
-	(void)t;
 	if (slave->address == 0)
 		sim_send(slave, version, sizeof(version));
 	else

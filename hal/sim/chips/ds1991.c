@@ -30,17 +30,12 @@ static const uint8_t selector[BLOCKS][FIELD] = {
 	{0x65, 0x65, 0x4C, 0x62, 0x9B, 0x91, 0x96, 0xB3},
 };
 
-static struct ds1991 *ds1991_state(struct sim_slave *slave)
-{
-	return sim_state(slave, ds1991);
-}
-
 /* Take the address: two bits for the area, six in it, then its complement. false: deaf. */
 static bool take_address(struct sim_slave *slave, bool scratchpad, unsigned least, unsigned most)
 {
 	unsigned at = slave->taken[0] % AREA;
 
-	ds1991_state(slave)->count = 0;
+	sim_state(slave, ds1991)->count = 0;
 	slave->address = slave->taken[0];
 	if ((slave->taken[0] ^ slave->taken[1]) == 0xFF && at >= least && at <= most &&
 	    (slave->taken[0] / AREA == SUBKEYS) == scratchpad)
@@ -51,54 +46,49 @@ static bool take_address(struct sim_slave *slave, bool scratchpad, unsigned leas
 
 static uint8_t *subkey(struct sim_slave *slave)
 {
-	return ds1991_state(slave)->subkey[slave->taken[0] / AREA];
+	return sim_state(slave, ds1991)->subkey[slave->taken[0] / AREA];
 }
 
-static void begin_scratchpad(struct sim_slave *slave, int64_t t)
+static void begin_scratchpad(struct sim_slave *slave)
 {
-	(void)t;
 	take_address(slave, true, 0, AREA - 1);
 }
 
-static void ds1991_write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void ds1991_write_scratchpad(struct sim_slave *slave, uint8_t byte)
 {
-	(void)t;
-	ds1991_state(slave)->scratchpad[slave->address % AREA] = byte;
+	sim_state(slave, ds1991)->scratchpad[slave->address % AREA] = byte;
 	if (++slave->address % AREA == 0)
 		sim_end(slave);
 }
 
-static void ds1991_read_scratchpad(struct sim_slave *slave, int64_t t)
+static void ds1991_read_scratchpad(struct sim_slave *slave)
 {
 	unsigned at = slave->taken[0] % AREA;
 
-	(void)t;
 	if (take_address(slave, true, 0, AREA - 1))
-		sim_send(slave, ds1991_state(slave)->scratchpad + at, AREA - at);
+		sim_send(slave, sim_state(slave, ds1991)->scratchpad + at, AREA - at);
 }
 
-static void begin_copy(struct sim_slave *slave, int64_t t)
+static void begin_copy(struct sim_slave *slave)
 {
-	(void)t;
 	take_address(slave, false, 0, 0);
 }
 
 /* Keep a byte that came; true: there are n. */
 static bool ds1991_take(struct sim_slave *slave, uint8_t byte, unsigned n)
 {
-	struct ds1991 *s = ds1991_state(slave);
+	struct ds1991 *s = slave->state;
 
 	s->in[s->count++] = byte;
 	return s->count == n;
 }
 
 /* After selector and password: copy the block. */
-static void ds1991_copy(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void ds1991_copy(struct sim_slave *slave, uint8_t byte)
 {
-	struct ds1991 *s = ds1991_state(slave);
+	struct ds1991 *s = slave->state;
 	unsigned block = 0;
 
-	(void)t;
 	if (!ds1991_take(slave, byte, 2 * FIELD))
 		return;
 	sim_end(slave);
@@ -113,28 +103,25 @@ static void ds1991_copy(struct sim_slave *slave, uint8_t byte, int64_t t)
 		       FIELD);
 }
 
-static void ds1991_receive(struct sim_slave *slave, int64_t t)
+static void ds1991_receive(struct sim_slave *slave)
 {
-	(void)t;
 	sim_receive(slave);
 }
 
 /* All that needs a password begins with the identifier. */
-static void send_identifier(struct sim_slave *slave, int64_t t)
+static void send_identifier(struct sim_slave *slave)
 {
 	bool whole = slave->function->code == WRITE_PASSWORD;
 
-	(void)t;
 	if (take_address(slave, false, whole ? 0 : DATA, whole ? 0 : AREA - 1))
 		sim_send(slave, subkey(slave), FIELD);
 }
 
 /* The identifier comes back, then a new one and a new password: the data are gone. */
-static void write_password(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void write_password(struct sim_slave *slave, uint8_t byte)
 {
-	struct ds1991 *s = ds1991_state(slave);
+	struct ds1991 *s = slave->state;
 
-	(void)t;
 	if (ds1991_take(slave, byte, 3 * FIELD)) {
 		memcpy(subkey(slave), s->in + FIELD, 2 * FIELD);
 		memset(subkey(slave) + DATA, 0, AREA - DATA);
@@ -144,11 +131,10 @@ static void write_password(struct sim_slave *slave, uint8_t byte, int64_t t)
 	}
 }
 
-static void write_subkey(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void write_subkey(struct sim_slave *slave, uint8_t byte)
 {
-	struct ds1991 *s = ds1991_state(slave);
+	struct ds1991 *s = slave->state;
 
-	(void)t;
 	if (s->count == FIELD) {
 		subkey(slave)[slave->address % AREA] = byte;
 		if (++slave->address % AREA == 0)
@@ -160,20 +146,19 @@ static void write_subkey(struct sim_slave *slave, uint8_t byte, int64_t t)
 }
 
 /* The identifier was sent: receive the password. The data were sent: ones. */
-static void next_of_read(struct sim_slave *slave, int64_t t)
+static void next_of_read(struct sim_slave *slave)
 {
-	if (ds1991_state(slave)->count == 0)
-		ds1991_receive(slave, t);
+	if (sim_state(slave, ds1991)->count == 0)
+		ds1991_receive(slave);
 }
 
 /* After the password send the data; random bytes if it is wrong. */
-static void read_subkey(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void read_subkey(struct sim_slave *slave, uint8_t byte)
 {
-	struct ds1991 *s = ds1991_state(slave);
+	struct ds1991 *s = slave->state;
 	unsigned at = slave->address % AREA;
 	uint8_t out[AREA];
 
-	(void)t;
 	if (!ds1991_take(slave, byte, FIELD))
 		return;
 	memcpy(out, subkey(slave), AREA);
@@ -187,7 +172,7 @@ static void read_subkey(struct sim_slave *slave, uint8_t byte, int64_t t)
 static uint8_t *ds1991_memory(struct sim_slave *slave, size_t *size)
 {
 	*size = SUBKEYS * AREA;
-	return ds1991_state(slave)->subkey[0];
+	return sim_state(slave, ds1991)->subkey[0];
 }
 
 static const struct sim_function functions[] = {

@@ -37,14 +37,9 @@ static const struct sim_scratchpad_kind kind = {
 	.plain = true,
 };
 
-static struct ds2404 *ds2404_state(struct sim_slave *slave)
-{
-	return sim_state(slave, ds2404);
-}
-
 static void ds2404_create(struct sim_slave *slave)
 {
-	ds2404_state(slave)->memory.kind = &kind;
+	sim_state(slave, ds2404)->memory.kind = &kind;
 }
 
 static uint64_t ds2404_get(const uint8_t *from, unsigned n)
@@ -59,7 +54,7 @@ static uint64_t ds2404_get(const uint8_t *from, unsigned n)
 /* Count; the flag is set when the counter reaches its alarm. */
 static void ds2404_count(struct sim_slave *slave, unsigned which, uint64_t by)
 {
-	uint8_t *memory = ds2404_state(slave)->memory.memory;
+	uint8_t *memory = sim_state(slave, ds2404)->memory.memory;
 	unsigned at = counters[which].at, n = counters[which].bytes;
 	uint64_t old = ds2404_get(memory + at, n),
 		 alarm = ds2404_get(memory + counters[which].alarm, n);
@@ -70,13 +65,13 @@ static void ds2404_count(struct sim_slave *slave, unsigned which, uint64_t by)
 		memory[STATUS] |= (uint8_t)(1 << which);
 }
 
-static void ds2404_advance(struct sim_slave *slave, int64_t t)
+static void ds2404_advance(struct sim_slave *slave)
 {
-	struct ds2404 *s = ds2404_state(slave);
+	struct ds2404 *s = slave->state;
 	uint8_t control = s->memory.memory[CONTROL];
-	int64_t span = s->part + (t - s->seen) * 256;
+	int64_t span = s->part + (slave->now - s->seen) * 256;
 
-	s->seen = t;
+	s->seen = slave->now;
 	if (!(control & OSC))
 		return;
 	s->part = span % 1000000000;
@@ -86,18 +81,17 @@ static void ds2404_advance(struct sim_slave *slave, int64_t t)
 }
 
 /* The battery keeps all but the scratchpad. */
-static void ds2404_power_on(struct sim_slave *slave, int64_t t)
+static void ds2404_power_on(struct sim_slave *slave)
 {
-	sim_scratchpad_power_on(slave, t);
-	ds2404_state(slave)->seen = t;
+	sim_scratchpad_power_on(slave);
+	sim_state(slave, ds2404)->seen = slave->now;
 	ds2404_count(slave, 2, 1);
 }
 
-static bool ds2404_alarm(struct sim_slave *slave, int64_t t)
+static bool ds2404_alarm(struct sim_slave *slave)
 {
-	uint8_t status = ds2404_state(slave)->memory.memory[STATUS];
+	uint8_t status = sim_state(slave, ds2404)->memory.memory[STATUS];
 
-	(void)t;
 	return status & FLAGS & ~(status >> 3);
 }
 
@@ -125,32 +119,33 @@ static void protect(uint8_t *memory, const uint8_t *before)
 }
 
 /* The flags of the status register can only be read. */
-static void ds2404_worked(struct sim_slave *slave, int64_t t)
+static void ds2404_worked(struct sim_slave *slave)
 {
-	uint8_t *memory = ds2404_state(slave)->memory.memory;
+	struct ds2404 *s = slave->state;
+	uint8_t *memory = s->memory.memory;
 	uint8_t before[END - STATUS];
 
 	memcpy(before, memory + STATUS, sizeof(before));
-	sim_scratchpad_worked(slave, t);
+	sim_scratchpad_worked(slave);
 	memory[STATUS] = (uint8_t)((memory[STATUS] & ENABLES) | (before[0] & FLAGS));
 	protect(memory, before);
 	if (memory[CONTROL] != before[CONTROL - STATUS])
-		ds2404_state(slave)->part = 0;
+		s->part = 0;
 }
 
 /* To read the status register clears its flags. */
-static void dump(struct sim_slave *slave, int64_t t)
+static void dump(struct sim_slave *slave)
 {
 	unsigned at = slave->address;
 
-	sim_scratchpad_dump(slave, t);
+	sim_scratchpad_dump(slave);
 	if (at == STATUS)
-		ds2404_state(slave)->memory.memory[STATUS] &= ENABLES;
+		sim_state(slave, ds2404)->memory.memory[STATUS] &= ENABLES;
 }
 
 static int ds2404_option(struct sim_slave *slave, const char *name, double value)
 {
-	uint8_t *memory = ds2404_state(slave)->memory.memory;
+	uint8_t *memory = sim_state(slave, ds2404)->memory.memory;
 
 	if (strcmp(name, "seconds") != 0)
 		return -ENOENT;

@@ -7,33 +7,26 @@
 #include "hal/sim/families.h"
 #include "hal/sim/pins.h"
 
-static struct sim_pins *pins(struct sim_slave *slave)
+static void ds2405_power_on(struct sim_slave *slave)
 {
-	return sim_state(slave, sim_pins);
+	sim_pins_start(slave, 0, 1);
 }
 
-static void ds2405_power_on(struct sim_slave *slave, int64_t t)
-{
-	sim_pins_start(slave, 0, 1, t);
-}
-
-static void selected(struct sim_slave *slave, bool match, int64_t t)
+static void selected(struct sim_slave *slave, bool match)
 {
 	if (match)
-		sim_pins_write(slave, pins(slave)->latch ^ 1, t);
+		sim_pins_write(slave, sim_state(slave, sim_pins)->latch ^ 1);
 	sim_send_bits(slave);
 }
 
-static bool alarm(struct sim_slave *slave, int64_t t)
+static bool alarm(struct sim_slave *slave)
 {
-	(void)t;
-	return !(pins(slave)->latch & 1);
+	return !(sim_state(slave, sim_pins)->latch & 1);
 }
 
-static bool ds2405_bit(struct sim_slave *slave, int64_t t)
+static bool ds2405_bit(struct sim_slave *slave)
 {
-	(void)t;
-	return pins(slave)->level & 1;
+	return sim_state(slave, sim_pins)->level & 1;
 }
 
 static const struct sim_input inputs[] = {SIM_PIN("pin"), {0}};

@@ -20,59 +20,53 @@ struct ds2406 {
 	unsigned bytes;
 };
 
-static struct ds2406 *ds2406_state(struct sim_slave *slave)
-{
-	return sim_state(slave, ds2406);
-}
-
 static void ds2406_create(struct sim_slave *slave)
 {
-	memset(ds2406_state(slave)->memory, 0xFF, MEMORY);
-	memset(ds2406_state(slave)->status, 0xFF, 5);
+	struct ds2406 *s = slave->state;
+
+	memset(s->memory, 0xFF, MEMORY);
+	memset(s->status, 0xFF, 5);
 }
 
-static void ds2406_power_on(struct sim_slave *slave, int64_t t)
+static void ds2406_power_on(struct sim_slave *slave)
 {
-	ds2406_state(slave)->status[7] = 0x1F;
-	sim_pins_start(slave, 0, 2, t);
+	sim_state(slave, ds2406)->status[7] = 0x1F;
+	sim_pins_start(slave, 0, 2);
 }
 
 /* OR the selected source of the selected channels, each against the polarity. */
-static bool ds2406_alarm(struct sim_slave *slave, int64_t t)
+static bool ds2406_alarm(struct sim_slave *slave)
 {
-	const struct ds2406 *s = ds2406_state(slave);
+	const struct ds2406 *s = slave->state;
 	const uint8_t sources[4] = {0, s->pins.activity, s->pins.latch, s->pins.level};
 	uint8_t channels = s->status[7] >> 3 & 3, source = sources[s->status[7] >> 1 & 3];
 
-	(void)t;
 	return ((source & channels) != 0) == (s->status[7] & POLARITY);
 }
 
-static void send_memory(struct sim_slave *slave, int64_t t)
+static void send_memory(struct sim_slave *slave)
 {
-	(void)t;
-	sim_send_memory(slave, ds2406_state(slave)->memory, MEMORY, MEMORY);
+	sim_send_memory(slave, sim_state(slave, ds2406)->memory, MEMORY, MEMORY);
 }
 
-static void send_status(struct sim_slave *slave, int64_t t)
+static void send_status(struct sim_slave *slave)
 {
-	const struct ds2406 *s = ds2406_state(slave);
+	const struct ds2406 *s = slave->state;
 	uint8_t status[STATUS];
 
-	(void)t;
 	memcpy(status, s->status, sizeof(status));
 	status[7] |= (uint8_t)((s->pins.latch & 1 ? LATCH_A : 0) |
 	                       (s->pins.latch & 2 ? LATCH_B : 0) | (slave->parasite ? 0 : SUPPLY));
 	sim_send_memory(slave, status, STATUS, STATUS);
 }
 
-static void write_status(struct sim_slave *slave, int64_t t)
+static void write_status(struct sim_slave *slave)
 {
 	uint8_t byte = slave->taken[2];
 
 	if (slave->address == 7) {
-		ds2406_state(slave)->status[7] = byte & 0x1F;
-		sim_pins_write(slave, byte >> 5 & 3, t);
+		sim_state(slave, ds2406)->status[7] = byte & 0x1F;
+		sim_pins_write(slave, byte >> 5 & 3);
 	}
 	sim_send_checked(slave, NULL, 0);
 }
@@ -92,12 +86,11 @@ static uint8_t info(const struct sim_slave *slave)
 	                 (slave->parasite ? 0 : 0x80));
 }
 
-static void begin_access(struct sim_slave *slave, int64_t t)
+static void begin_access(struct sim_slave *slave)
 {
-	struct ds2406 *s = ds2406_state(slave);
+	struct ds2406 *s = slave->state;
 	uint8_t out = info(slave);
 
-	(void)t;
 	s->reading = slave->taken[0] & IM;
 	s->bytes = 0;
 	if (slave->taken[0] & ALR)
@@ -126,19 +119,19 @@ static uint8_t sample(const struct sim_slave *slave)
 /* Count one more byte of the exchange; does a checksum follow? */
 static bool crc_is_due(struct sim_slave *slave)
 {
+	struct ds2406 *s = slave->state;
 	static const unsigned every[4] = {0, 1, 8, 32};
 	unsigned n = every[slave->taken[0] & 3];
 
-	return ++ds2406_state(slave)->bytes && n && ds2406_state(slave)->bytes % n == 0;
+	return ++s->bytes && n && s->bytes % n == 0;
 }
 
 /* Begin the next byte of the exchange, in its direction. */
-static void next_byte(struct sim_slave *slave, int64_t t)
+static void next_byte(struct sim_slave *slave)
 {
-	struct ds2406 *s = ds2406_state(slave);
+	struct ds2406 *s = slave->state;
 	uint8_t out = sample(slave);
 
-	(void)t;
 	if (!s->reading) {
 		sim_receive(slave);
 		return;
@@ -152,9 +145,9 @@ static void next_byte(struct sim_slave *slave, int64_t t)
 }
 
 /* Write bit by bit; the last bit for each channel stays. */
-static void write_pins(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void write_pins(struct sim_slave *slave, uint8_t byte)
 {
-	struct ds2406 *s = ds2406_state(slave);
+	struct ds2406 *s = slave->state;
 	uint8_t latch = s->pins.latch;
 
 	if (channels(slave) == 1)
@@ -163,19 +156,19 @@ static void write_pins(struct sim_slave *slave, uint8_t byte, int64_t t)
 		latch = (uint8_t)((latch & 1) | (byte >> 7) << 1);
 	else
 		latch = byte >> 6;
-	sim_pins_write(slave, latch, t);
+	sim_pins_write(slave, latch);
 	if (slave->taken[0] & TOG)
 		s->reading = true;
 	if (crc_is_due(slave))
 		sim_send_checked(slave, NULL, 0);
 	else
-		next_byte(slave, t);
+		next_byte(slave);
 }
 
 static uint8_t *ds2406_memory(struct sim_slave *slave, size_t *size)
 {
 	*size = MEMORY;
-	return ds2406_state(slave)->memory;
+	return sim_state(slave, ds2406)->memory;
 }
 
 static const struct sim_function functions[] = {

@@ -17,24 +17,18 @@ struct ds2408 {
 	uint8_t mask, polarity, control;
 };
 
-static struct ds2408 *ds2408_state(struct sim_slave *slave)
+static void ds2408_power_on(struct sim_slave *slave)
 {
-	return sim_state(slave, ds2408);
+	*sim_state(slave, ds2408) = (struct ds2408){.control = PORL};
+	sim_pins_start(slave, 0, 8);
 }
 
-static void ds2408_power_on(struct sim_slave *slave, int64_t t)
+static bool alarm(struct sim_slave *slave)
 {
-	*ds2408_state(slave) = (struct ds2408){.control = PORL};
-	sim_pins_start(slave, 0, 8, t);
-}
-
-static bool alarm(struct sim_slave *slave, int64_t t)
-{
-	const struct ds2408 *s = ds2408_state(slave);
+	const struct ds2408 *s = slave->state;
 	uint8_t source = s->control & PLS ? s->pins.activity : s->pins.level;
 	uint8_t match = (uint8_t) ~(source ^ s->polarity) & s->mask;
 
-	(void)t;
 	if (s->control & PORL)
 		return true;
 	if (s->control & CT)
@@ -43,12 +37,11 @@ static bool alarm(struct sim_slave *slave, int64_t t)
 }
 
 /* Send the bytes up to the last register; then the checksum, of command and address too. */
-static void send_registers(struct sim_slave *slave, int64_t t)
+static void send_registers(struct sim_slave *slave)
 {
-	const struct ds2408 *s = ds2408_state(slave);
+	const struct ds2408 *s = slave->state;
 	uint8_t all[END];
 
-	(void)t;
 	memset(all, 0xFF, sizeof(all));
 	all[LOGIC] = s->pins.level;
 	all[LATCH] = s->pins.latch;
@@ -63,35 +56,32 @@ static void send_registers(struct sim_slave *slave, int64_t t)
 }
 
 /* Send a sample. The address counts the samples. */
-static void send_sample(struct sim_slave *slave, int64_t t)
+static void send_sample(struct sim_slave *slave)
 {
-	const struct ds2408 *s = ds2408_state(slave);
+	const struct ds2408 *s = slave->state;
 
-	(void)t;
 	if (slave->address++ % SAMPLES == SAMPLES - 1)
 		sim_send_checked(slave, &s->pins.level, 1);
 	else
 		sim_send_byte(slave, s->pins.level);
 }
 
-static void send_first_sample(struct sim_slave *slave, int64_t t)
+static void send_first_sample(struct sim_slave *slave)
 {
 	slave->address = 0;
-	send_sample(slave, t);
+	send_sample(slave);
 }
 
-static void check_condition(struct sim_slave *slave, int64_t t)
+static void check_condition(struct sim_slave *slave)
 {
-	(void)t;
 	if (slave->address < MASK || slave->address > CONTROL)
 		sim_end(slave);
 }
 
-static void write_condition(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void write_condition(struct sim_slave *slave, uint8_t byte)
 {
-	struct ds2408 *s = ds2408_state(slave);
+	struct ds2408 *s = slave->state;
 
-	(void)t;
 	switch (slave->address++) {
 	case MASK:
 		s->mask = byte;
@@ -106,16 +96,15 @@ static void write_condition(struct sim_slave *slave, uint8_t byte, int64_t t)
 	}
 }
 
-static void confirm(struct sim_slave *slave, int64_t t)
+static void confirm(struct sim_slave *slave)
 {
-	(void)t;
 	sim_send_byte(slave, 0xAA);
 }
 
-static void reset_activity(struct sim_slave *slave, int64_t t)
+static void reset_activity(struct sim_slave *slave)
 {
-	ds2408_state(slave)->pins.activity = 0;
-	confirm(slave, t);
+	sim_state(slave, ds2408)->pins.activity = 0;
+	confirm(slave);
 }
 
 static const struct sim_function functions[] = {

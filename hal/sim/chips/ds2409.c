@@ -26,14 +26,9 @@ struct ds2409 {
 	int64_t seen;  /* the inputs were followed up to this time */
 };
 
-static struct ds2409 *ds2409_state(struct sim_slave *slave)
-{
-	return sim_state(slave, ds2409);
-}
-
 static void ds2409_create(struct sim_slave *slave)
 {
-	slave->branches = ds2409_state(slave)->branch;
+	slave->branches = sim_state(slave, ds2409)->branch;
 	for (unsigned i = 0; i < SIM_BRANCHES; i++)
 		slave->branches[i].coupler = slave;
 }
@@ -44,40 +39,42 @@ static void all_off(struct ds2409 *s)
 		s->branch[i].on = s->branch[i].event = false;
 }
 
-static void ds2409_power_on(struct sim_slave *slave, int64_t t)
+static void ds2409_power_on(struct sim_slave *slave)
 {
-	struct ds2409 *s = ds2409_state(slave);
+	struct ds2409 *s = slave->state;
 
 	all_off(s);
 	s->manual = s->control = s->discharging = false;
-	s->seen = t;
+	s->seen = slave->now;
 	for (unsigned i = 0; i < SIM_BRANCHES; i++) {
-		s->branch[i].low = sim_input_at(slave, i, t) < 0.5;
-		sim_branch_restart(&s->branch[i], t);
+		s->branch[i].low = sim_input_now(slave, i) < 0.5;
+		sim_branch_restart(&s->branch[i], slave->now);
 	}
 }
 
 /* A branch that is off is watched for falling edges. */
-static void ds2409_advance(struct sim_slave *slave, int64_t t)
+static void ds2409_advance(struct sim_slave *slave)
 {
-	struct ds2409 *s = ds2409_state(slave);
+	struct ds2409 *s = slave->state;
 
 	for (unsigned i = 0; i < SIM_BRANCHES; i++) {
 		struct sim_branch *branch = &s->branch[i];
-		bool low = sim_input_at(slave, i, t) < 0.5;
-		bool fell = (low && !branch->low) || sim_curve_falls(&slave->input[i], s->seen, t);
+		bool low = sim_input_now(slave, i) < 0.5;
+		bool fell = (low && !branch->low) ||
+		            sim_curve_falls(&slave->input[i], s->seen, slave->now);
 
 		branch->low = low;
 		branch->event |= fell && !branch->on && !s->discharging;
 	}
-	s->seen = t;
+	s->seen = slave->now;
 }
 
-static bool ds2409_alarm(struct sim_slave *slave, int64_t t)
+static bool ds2409_alarm(struct sim_slave *slave)
 {
-	ds2409_advance(slave, t);
-	return ds2409_state(slave)->branch[SIM_MAIN].event ||
-	       ds2409_state(slave)->branch[SIM_AUX].event;
+	struct ds2409 *s = slave->state;
+
+	ds2409_advance(slave);
+	return s->branch[SIM_MAIN].event || s->branch[SIM_AUX].event;
 }
 
 static uint8_t info(const struct ds2409 *s)
@@ -104,12 +101,12 @@ static void end_discharge(struct ds2409 *s, int64_t t)
 	s->discharging = false;
 }
 
-static void status(struct sim_slave *slave, int64_t t)
+static void status(struct sim_slave *slave)
 {
-	struct ds2409 *s = ds2409_state(slave);
+	struct ds2409 *s = slave->state;
 	uint8_t control = slave->taken[0], out[2];
 
-	end_discharge(s, t);
+	end_discharge(s, slave->now);
 	if (!(control & NO_WRITE)) {
 		s->manual = control & MANUAL;
 		s->control = control & (s->manual ? DATA : AUX_OR_ON);
@@ -123,20 +120,22 @@ static void confirm(struct sim_slave *slave)
 	sim_send_byte(slave, slave->function->code);
 }
 
-static void all_lines_off(struct sim_slave *slave, int64_t t)
+static void all_lines_off(struct sim_slave *slave)
 {
-	end_discharge(ds2409_state(slave), t);
-	all_off(ds2409_state(slave));
+	struct ds2409 *s = slave->state;
+
+	end_discharge(s, slave->now);
+	all_off(s);
 	confirm(slave);
 }
 
-static void discharge(struct sim_slave *slave, int64_t t)
+static void discharge(struct sim_slave *slave)
 {
-	struct ds2409 *s = ds2409_state(slave);
+	struct ds2409 *s = slave->state;
 
 	s->branch[SIM_MAIN].on = s->branch[SIM_AUX].on = false;
 	if (!s->discharging)
-		s->since = t;
+		s->since = slave->now;
 	s->discharging = true;
 	confirm(slave);
 }
@@ -147,10 +146,12 @@ static void switch_on(struct ds2409 *s, enum sim_branch_number number)
 	s->branch[SIM_AUX].on = number == SIM_AUX;
 }
 
-static void direct_on_main(struct sim_slave *slave, int64_t t)
+static void direct_on_main(struct sim_slave *slave)
 {
-	end_discharge(ds2409_state(slave), t);
-	switch_on(ds2409_state(slave), SIM_MAIN);
+	struct ds2409 *s = slave->state;
+
+	end_discharge(s, slave->now);
+	switch_on(s, SIM_MAIN);
 	confirm(slave);
 }
 
@@ -160,23 +161,22 @@ static enum sim_branch_number asked(const struct sim_slave *slave)
 }
 
 /* The reset stimulus was sent: a reset on the output alone. A short looks like presence. */
-static void smart_on(struct sim_slave *slave, int64_t t)
+static void smart_on(struct sim_slave *slave)
 {
-	struct ds2409 *s = ds2409_state(slave);
+	struct ds2409 *s = slave->state;
 	struct sim_branch *branch = &s->branch[asked(slave)];
 	uint8_t out[2] = {0x00, slave->function->code};
 
-	end_discharge(s, t);
+	end_discharge(s, slave->now);
 	s->branch[SIM_MAIN].on = s->branch[SIM_AUX].on = false;
-	if (!branch->low && !sim_branch_reset(branch, t))
+	if (!branch->low && !sim_branch_reset(branch, slave->now))
 		out[0] = 0xFF;
 	sim_send(slave, out, 2);
 }
 
-static void smart_on_confirmed(struct sim_slave *slave, int64_t t)
+static void smart_on_confirmed(struct sim_slave *slave)
 {
-	(void)t;
-	switch_on(ds2409_state(slave), asked(slave));
+	switch_on(sim_state(slave, ds2409), asked(slave));
 }
 
 static const struct sim_function functions[] = {

@@ -3,9 +3,9 @@
 #include "hal/sim/families.h"
 #include "hal/sim/pins.h"
 
-static void ds2413_power_on(struct sim_slave *slave, int64_t t)
+static void ds2413_power_on(struct sim_slave *slave)
 {
-	sim_pins_start(slave, 0, 2, t);
+	sim_pins_start(slave, 0, 2);
 }
 
 static const struct sim_function functions[] = {SIM_PINS_READ(0xF5), SIM_PINS_WRITE(0x5A), {0}};

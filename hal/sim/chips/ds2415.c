@@ -18,52 +18,44 @@ struct ds2415 {
 	unsigned at;        /* of the control byte and the four of the counter */
 };
 
-static struct ds2415 *ds2415_state(struct sim_slave *slave)
-{
-	return sim_state(slave, ds2415);
-}
-
 /* Both bits make the oscillator run. */
-static void ds2415_advance(struct sim_slave *slave, int64_t t)
+static void ds2415_advance(struct sim_slave *slave)
 {
-	struct ds2415 *s = ds2415_state(slave);
+	struct ds2415 *s = slave->state;
 
 	if ((s->control & OSC) == OSC) {
-		s->part += t - s->seen;
+		s->part += slave->now - s->seen;
 		s->seconds += (uint32_t)(s->part / NS_PER_S);
 		s->part %= NS_PER_S;
 	}
-	s->seen = t;
+	s->seen = slave->now;
 }
 
 /* Send the control byte and the counter as it is now, again and again. */
-static void ds2415_send(struct sim_slave *slave, int64_t t)
+static void ds2415_send(struct sim_slave *slave)
 {
-	const struct ds2415 *s = ds2415_state(slave);
+	const struct ds2415 *s = slave->state;
 	uint8_t out[5] = {s->control};
 
-	(void)t;
 	for (unsigned i = 0; i < 4; i++)
 		out[1 + i] = (uint8_t)(s->seconds >> (8 * i));
 	sim_send(slave, out, sizeof(out));
 }
 
-static void ds2415_begin_write(struct sim_slave *slave, int64_t t)
+static void ds2415_begin_write(struct sim_slave *slave)
 {
-	(void)t;
-	ds2415_state(slave)->at = 0;
+	sim_state(slave, ds2415)->at = 0;
 }
 
 /*
  * The control byte counts at once. A byte of the counter does too, where the data sheet waits for
  * the reset.
  */
-static void ds2415_write(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void ds2415_write(struct sim_slave *slave, uint8_t byte)
 {
-	struct ds2415 *s = ds2415_state(slave);
+	struct ds2415 *s = slave->state;
 	unsigned at = s->at++;
 
-	(void)t;
 	if (at == 0) {
 		s->control = byte & 0xFC;
 	} else if (at <= 4) {
@@ -77,7 +69,7 @@ static void ds2415_write(struct sim_slave *slave, uint8_t byte, int64_t t)
 
 static int ds2415_option(struct sim_slave *slave, const char *name, double value)
 {
-	struct ds2415 *s = ds2415_state(slave);
+	struct ds2415 *s = slave->state;
 
 	if (strcmp(name, "seconds") == 0) {
 		if (value < 0 || value > UINT32_MAX)

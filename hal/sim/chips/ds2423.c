@@ -19,32 +19,29 @@ struct ds2423 {
 static const struct sim_scratchpad_kind kind = {
 	.size = 512, .writable = 512, .page = 32, .copy_ns = 32000};
 
-static struct ds2423 *ds2423_state(struct sim_slave *slave)
-{
-	return sim_state(slave, ds2423);
-}
-
 static void ds2423_create(struct sim_slave *slave)
 {
-	ds2423_state(slave)->memory.kind = &kind;
-	ds2423_state(slave)->level[0] = ds2423_state(slave)->level[1] = true;
+	struct ds2423 *s = slave->state;
+
+	s->memory.kind = &kind;
+	s->level[0] = s->level[1] = true;
 }
 
 /* A battery keeps RAM and counters. */
-static void ds2423_power_on(struct sim_slave *slave, int64_t t)
+static void ds2423_power_on(struct sim_slave *slave)
 {
-	sim_scratchpad_power_on(slave, t);
-	ds2423_state(slave)->seen = t;
+	sim_scratchpad_power_on(slave);
+	sim_state(slave, ds2423)->seen = slave->now;
 }
 
-static void ds2423_advance(struct sim_slave *slave, int64_t t)
+static void ds2423_advance(struct sim_slave *slave)
 {
-	struct ds2423 *s = ds2423_state(slave);
+	struct ds2423 *s = slave->state;
 
 	for (unsigned i = 0; i < 2; i++) {
 		const struct sim_curve *curve = &slave->input[i];
-		bool level = sim_curve_at(curve, t) >= 0.5;
-		uint64_t falls = sim_curve_falls(curve, s->seen, t);
+		bool level = sim_curve_at(curve, slave->now) >= 0.5;
+		uint64_t falls = sim_curve_falls(curve, s->seen, slave->now);
 
 		/* A new curve may begin low where the old one ended high. */
 		if (s->level[i] && sim_curve_at(curve, s->seen) < 0.5)
@@ -52,18 +49,17 @@ static void ds2423_advance(struct sim_slave *slave, int64_t t)
 		s->counter[i] += (uint32_t)falls;
 		s->level[i] = level;
 	}
-	s->seen = t;
+	s->seen = slave->now;
 }
 
 /* Send the rest of the page, its counter, four bytes of 0, and the checksum. */
-static void send_page(struct sim_slave *slave, int64_t t)
+static void send_page(struct sim_slave *slave)
 {
-	const struct ds2423 *s = ds2423_state(slave);
+	const struct ds2423 *s = slave->state;
 	unsigned page = slave->address / 32, n = 0;
 	uint32_t count = page < FIRST_COUNTER_PAGE ? UINT32_MAX : s->counter[page % 2];
 	uint8_t out[32 + 4 + 4] = {0};
 
-	(void)t;
 	if (page >= PAGES) {
 		sim_end(slave);
 		return;
@@ -88,7 +84,7 @@ static int ds2423_option(struct sim_slave *slave, const char *name, double value
 		return -ENOENT;
 	if (value < 0 || value > UINT32_MAX)
 		return -ERANGE;
-	ds2423_state(slave)->counter[counter] = (uint32_t)value;
+	sim_state(slave, ds2423)->counter[counter] = (uint32_t)value;
 	return 0;
 }
 

@@ -16,31 +16,26 @@ struct ds2430a {
 	bool locked, locking;
 };
 
-static struct ds2430a *ds2430a_state(struct sim_slave *slave)
-{
-	return sim_state(slave, ds2430a);
-}
-
 static void ds2430a_create(struct sim_slave *slave)
 {
-	memset(ds2430a_state(slave)->memory, 0xFF, 32);
-	memset(ds2430a_state(slave)->application, 0xFF, 8);
+	struct ds2430a *s = slave->state;
+
+	memset(s->memory, 0xFF, 32);
+	memset(s->application, 0xFF, 8);
 }
 
-static void ds2430a_power_on(struct sim_slave *slave, int64_t t)
+static void ds2430a_power_on(struct sim_slave *slave)
 {
-	struct ds2430a *s = ds2430a_state(slave);
+	struct ds2430a *s = slave->state;
 
-	(void)t;
 	memcpy(s->scratchpad, s->memory, 32);
 	memcpy(s->register_pad, s->application, 8);
 }
 
-static void ds2430a_worked(struct sim_slave *slave, int64_t t)
+static void ds2430a_worked(struct sim_slave *slave)
 {
-	struct ds2430a *s = ds2430a_state(slave);
+	struct ds2430a *s = slave->state;
 
-	(void)t;
 	if (s->locking) {
 		memcpy(s->application, s->register_pad, 8);
 		s->locked = true;
@@ -49,54 +44,53 @@ static void ds2430a_worked(struct sim_slave *slave, int64_t t)
 	}
 }
 
-static void send_scratchpad(struct sim_slave *slave, int64_t t)
+static void send_scratchpad(struct sim_slave *slave)
 {
-	(void)t;
-	sim_send_byte(slave, ds2430a_state(slave)->scratchpad[slave->address++ % 32]);
+	sim_send_byte(slave, sim_state(slave, ds2430a)->scratchpad[slave->address++ % 32]);
 }
 
-static void read_memory(struct sim_slave *slave, int64_t t)
+static void read_memory(struct sim_slave *slave)
 {
-	memcpy(ds2430a_state(slave)->scratchpad, ds2430a_state(slave)->memory, 32);
-	send_scratchpad(slave, t);
+	struct ds2430a *s = slave->state;
+
+	memcpy(s->scratchpad, s->memory, 32);
+	send_scratchpad(slave);
 }
 
-static void send_application(struct sim_slave *slave, int64_t t)
+static void send_application(struct sim_slave *slave)
 {
-	const struct ds2430a *s = ds2430a_state(slave);
+	const struct ds2430a *s = slave->state;
 	unsigned at = slave->address++ % 8;
 
-	(void)t;
 	sim_send_byte(slave, s->locked ? s->application[at] : s->register_pad[at]);
 }
 
-static void send_status(struct sim_slave *slave, int64_t t)
+static void send_status(struct sim_slave *slave)
 {
-	(void)t;
-	sim_send_byte(slave, ds2430a_state(slave)->locked ? 0xFC : 0xFF);
+	sim_send_byte(slave, sim_state(slave, ds2430a)->locked ? 0xFC : 0xFF);
 }
 
-static void ds2430a_write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void ds2430a_write_scratchpad(struct sim_slave *slave, uint8_t byte)
 {
-	(void)t;
-	ds2430a_state(slave)->scratchpad[slave->address++ % 32] = byte;
+	sim_state(slave, ds2430a)->scratchpad[slave->address++ % 32] = byte;
 }
 
-static void write_application(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void write_application(struct sim_slave *slave, uint8_t byte)
 {
-	(void)t;
-	if (!ds2430a_state(slave)->locked)
-		ds2430a_state(slave)->register_pad[slave->address++ % 8] = byte;
+	struct ds2430a *s = slave->state;
+
+	if (!s->locked)
+		s->register_pad[slave->address++ % 8] = byte;
 }
 
-static void ds2430a_copy(struct sim_slave *slave, int64_t t)
+static void ds2430a_copy(struct sim_slave *slave)
 {
-	struct ds2430a *s = ds2430a_state(slave);
+	struct ds2430a *s = slave->state;
 	bool locking = slave->function->code == LOCK_APPLICATION;
 
 	if (slave->taken[0] == KEY && !(locking && s->locked)) {
 		s->locking = locking;
-		sim_work(slave, COPY_NS, t);
+		sim_work(slave, COPY_NS);
 	}
 	sim_end(slave);
 }
@@ -104,7 +98,7 @@ static void ds2430a_copy(struct sim_slave *slave, int64_t t)
 static uint8_t *ds2430a_memory(struct sim_slave *slave, size_t *size)
 {
 	*size = 32;
-	return ds2430a_state(slave)->memory;
+	return sim_state(slave, ds2430a)->memory;
 }
 
 static const struct sim_function functions[] = {

@@ -24,14 +24,9 @@ struct ds2436 {
 	uint8_t work; /* the code of the command that runs */
 };
 
-static struct ds2436 *ds2436_state(struct sim_slave *slave)
-{
-	return sim_state(slave, ds2436);
-}
-
 static uint8_t *at(struct sim_slave *slave, unsigned address)
 {
-	return &ds2436_state(slave)->registers[address - CELSIUS];
+	return &sim_state(slave, ds2436)->registers[address - CELSIUS];
 }
 
 /* The byte of a scratchpad; NULL: there is none at this address. */
@@ -41,14 +36,13 @@ static uint8_t *scratch(struct sim_slave *slave, unsigned address)
 
 	if (page >= PAGES || address % 32 >= page_size[page])
 		return NULL;
-	return &ds2436_state(slave)->scratchpad[page][address % 32];
+	return &sim_state(slave, ds2436)->scratchpad[page][address % 32];
 }
 
-static void ds2436_power_on(struct sim_slave *slave, int64_t t)
+static void ds2436_power_on(struct sim_slave *slave)
 {
-	struct ds2436 *s = ds2436_state(slave);
+	struct ds2436 *s = slave->state;
 
-	(void)t;
 	memset(s->stored[SRAM], 0, sizeof(s->stored[SRAM]));
 	memcpy(s->scratchpad, s->stored, sizeof(s->scratchpad));
 	memset(at(slave, CELSIUS), 0, 2);
@@ -72,15 +66,15 @@ static void ds2436_count(struct sim_slave *slave)
 		ds2436_put16(cycles, n + 1);
 }
 
-static void ds2436_worked(struct sim_slave *slave, int64_t t)
+static void ds2436_worked(struct sim_slave *slave)
 {
-	struct ds2436 *s = ds2436_state(slave);
-	int64_t volt = sim_round(sim_input_at(slave, VOLT, t) * 100);
+	struct ds2436 *s = slave->state;
+	int64_t volt = sim_round(sim_input_now(slave, VOLT) * 100);
 
 	switch (s->work) {
 	case 0xD2: /* 13 bits of 0.03125 degrees, left-aligned */
 		ds2436_put16(at(slave, CELSIUS),
-		             (int)sim_round(sim_input_at(slave, TEMPERATURE, t) * 32) * 8);
+		             (int)sim_round(sim_input_now(slave, TEMPERATURE) * 32) * 8);
 		slave->conversions++;
 		break;
 	case 0xB4: /* 10 bits of 10 mV */
@@ -112,83 +106,78 @@ static void ds2436_worked(struct sim_slave *slave, int64_t t)
 	*at(slave, STATUS) &= LOCK;
 }
 
-static void work(struct sim_slave *slave, uint8_t flag, int64_t takes, int64_t t)
+static void work(struct sim_slave *slave, uint8_t flag, int64_t takes)
 {
 	if (!slave->busy) {
-		ds2436_state(slave)->work = slave->function->code;
+		sim_state(slave, ds2436)->work = slave->function->code;
 		*at(slave, STATUS) |= flag;
-		sim_work(slave, takes, t);
+		sim_work(slave, takes);
 	}
 	sim_end(slave);
 }
 
-static void ds2436_convert(struct sim_slave *slave, int64_t t)
+static void ds2436_convert(struct sim_slave *slave)
 {
-	work(slave, slave->function->code == 0xD2 ? TB : ADB, CONVERSION_NS, t);
+	work(slave, slave->function->code == 0xD2 ? TB : ADB, CONVERSION_NS);
 }
 
-static void change(struct sim_slave *slave, int64_t t)
+static void change(struct sim_slave *slave)
 {
-	work(slave, NVB, COPY_NS, t);
+	work(slave, NVB, COPY_NS);
 }
 
-static void copy_locked(struct sim_slave *slave, int64_t t)
+static void copy_locked(struct sim_slave *slave)
 {
 	if (*at(slave, STATUS) & LOCK)
 		sim_end(slave);
 	else
-		change(slave, t);
+		change(slave);
 }
 
-static void copy_sram(struct sim_slave *slave, int64_t t)
+static void copy_sram(struct sim_slave *slave)
 {
-	struct ds2436 *s = ds2436_state(slave);
+	struct ds2436 *s = slave->state;
 
-	(void)t;
 	memcpy(s->stored[SRAM], s->scratchpad[SRAM], page_size[SRAM]);
 	sim_end(slave);
 }
 
-static void ds2436_recall(struct sim_slave *slave, int64_t t)
+static void ds2436_recall(struct sim_slave *slave)
 {
-	struct ds2436 *s = ds2436_state(slave);
+	struct ds2436 *s = slave->state;
 	unsigned page = slave->function->code == 0x71   ? NV1
 	                : slave->function->code == 0x77 ? NV2
 	                                                : SRAM;
 
-	(void)t;
 	memcpy(s->scratchpad[page], s->stored[page], page_size[page]);
 	sim_end(slave);
 }
 
 /* Where there is nothing the line stays high. */
-static void ds2436_read_scratchpad(struct sim_slave *slave, int64_t t)
+static void ds2436_read_scratchpad(struct sim_slave *slave)
 {
 	const uint8_t *byte = scratch(slave, slave->address);
 
-	(void)t;
 	slave->address++;
 	sim_send_byte(slave, byte ? *byte : 0xFF);
 }
 
-static void ds2436_write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void ds2436_write_scratchpad(struct sim_slave *slave, uint8_t byte)
 {
 	uint8_t *to = scratch(slave, slave->address);
 
-	(void)t;
 	slave->address++;
 	if (to)
 		*to = byte;
 }
 
-static void read_registers(struct sim_slave *slave, int64_t t)
+static void read_registers(struct sim_slave *slave)
 {
 	unsigned address = slave->address;
 	bool there = (address >= CELSIUS && address < CELSIUS + 4) ||
 	             (address >= VOLTAGE && address < VOLTAGE + 2) ||
 	             (address >= CYCLES - 2 && address < END);
 
-	(void)t;
 	slave->address++;
 	sim_send_byte(slave, there ? *at(slave, address) : 0xFF);
 }
@@ -196,7 +185,7 @@ static void read_registers(struct sim_slave *slave, int64_t t)
 static uint8_t *ds2436_memory(struct sim_slave *slave, size_t *size)
 {
 	*size = 64; /* the EEPROM is recalled at power-on */
-	return ds2436_state(slave)->stored[0];
+	return sim_state(slave, ds2436)->stored[0];
 }
 
 static const struct sim_function functions[] = {

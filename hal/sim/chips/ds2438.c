@@ -28,19 +28,14 @@ struct ds2438 {
 	int64_t started; /* the elapsed time meter was 0 at started */
 };
 
-static struct ds2438 *ds2438_state(struct sim_slave *slave)
-{
-	return sim_state(slave, ds2438);
-}
-
 static void ds2438_create(struct sim_slave *slave)
 {
-	ds2438_state(slave)->memory[0][0] = IAD | CA | EE | AD;
+	sim_state(slave, ds2438)->memory[0][0] = IAD | CA | EE | AD;
 }
 
-static void ds2438_power_on(struct sim_slave *slave, int64_t t)
+static void ds2438_power_on(struct sim_slave *slave)
 {
-	struct ds2438 *s = ds2438_state(slave);
+	struct ds2438 *s = slave->state;
 
 	memset(s->memory[0] + 1, 0, 6);
 	memset(s->memory[1], 0, 5);
@@ -48,7 +43,7 @@ static void ds2438_power_on(struct sim_slave *slave, int64_t t)
 	memset(s->memory[2], 0, 8);
 	memcpy(s->scratchpad, s->memory, sizeof(s->memory));
 	s->work = IDLE;
-	s->started = t;
+	s->started = slave->now;
 }
 
 static void ds2438_put16(uint8_t *at, int value)
@@ -67,18 +62,18 @@ static int within(double value, int least, int most)
 /*
  * With IAD the chip measures the current 36.41 times a second; the simulation has it fresh always.
  */
-static void measure_current(struct sim_slave *slave, int64_t t)
+static void measure_current(struct sim_slave *slave)
 {
-	struct ds2438 *s = ds2438_state(slave);
+	struct ds2438 *s = slave->state;
 
 	if (s->scratchpad[0][0] & IAD)
 		ds2438_put16(s->memory[0] + 5,
-		             within(sim_input_at(slave, VSENS, t) / CURRENT_MV, -1023, 1023));
+		             within(sim_input_now(slave, VSENS) / CURRENT_MV, -1023, 1023));
 }
 
-static void ds2438_worked(struct sim_slave *slave, int64_t t)
+static void ds2438_worked(struct sim_slave *slave)
 {
-	struct ds2438 *s = ds2438_state(slave);
+	struct ds2438 *s = slave->state;
 	unsigned source = s->scratchpad[0][0] & AD ? VDD : VAD;
 
 	switch (s->work) {
@@ -86,13 +81,12 @@ static void ds2438_worked(struct sim_slave *slave, int64_t t)
 		break;
 	case TEMPERATURE_WORK: /* 13 bits of 0.03125, left-aligned */
 		ds2438_put16(s->memory[0] + 1,
-		             within(sim_input_at(slave, TEMPERATURE, t) * 32, -55 * 32, 125 * 32) *
+		             within(sim_input_now(slave, TEMPERATURE) * 32, -55 * 32, 125 * 32) *
 		                     8);
 		slave->conversions++;
 		break;
 	case VOLTAGE_WORK: /* 10 bits of 10 mV */
-		ds2438_put16(s->memory[0] + 3,
-		             within(sim_input_at(slave, source, t) * 100, 0, 1023));
+		ds2438_put16(s->memory[0] + 3, within(sim_input_now(slave, source) * 100, 0, 1023));
 		slave->conversions++;
 		break;
 	case COPY_WORK:
@@ -106,17 +100,17 @@ static void ds2438_worked(struct sim_slave *slave, int64_t t)
 			const uint8_t *b = s->memory[1];
 			uint32_t seconds = b[0] | b[1] << 8 | b[2] << 16 | (uint32_t)b[3] << 24;
 
-			s->started = t - (int64_t)seconds * NS_PER_S;
+			s->started = slave->now - (int64_t)seconds * NS_PER_S;
 		}
 		break;
 	}
 	s->work = IDLE;
 }
 
-static void ds2438_advance(struct sim_slave *slave, int64_t t)
+static void ds2438_advance(struct sim_slave *slave)
 {
-	struct ds2438 *s = ds2438_state(slave);
-	uint32_t seconds = (uint32_t)((t - s->started) / NS_PER_S);
+	struct ds2438 *s = slave->state;
+	uint32_t seconds = (uint32_t)((slave->now - s->started) / NS_PER_S);
 
 	for (unsigned i = 0; i < 4; i++)
 		s->memory[1][i] = (uint8_t)(seconds >> (8 * i));
@@ -127,63 +121,62 @@ static unsigned page_of(const struct sim_slave *slave)
 	return slave->taken[0] & 7;
 }
 
-static void convert_temperature(struct sim_slave *slave, int64_t t)
+static void convert_temperature(struct sim_slave *slave)
 {
-	ds2438_state(slave)->work = TEMPERATURE_WORK;
-	sim_work(slave, WORK_NS, t);
+	sim_state(slave, ds2438)->work = TEMPERATURE_WORK;
+	sim_work(slave, WORK_NS);
 }
 
-static void convert_voltage(struct sim_slave *slave, int64_t t)
+static void convert_voltage(struct sim_slave *slave)
 {
-	ds2438_state(slave)->work = VOLTAGE_WORK;
-	sim_work(slave, WORK_NS, t);
+	sim_state(slave, ds2438)->work = VOLTAGE_WORK;
+	sim_work(slave, WORK_NS);
 }
 
-static void ds2438_copy(struct sim_slave *slave, int64_t t)
+static void ds2438_copy(struct sim_slave *slave)
 {
-	ds2438_state(slave)->work = COPY_WORK;
-	ds2438_state(slave)->busy_page = slave->taken[0] & 7;
-	sim_work(slave, WORK_NS, t);
+	struct ds2438 *s = slave->state;
+
+	s->work = COPY_WORK;
+	s->busy_page = slave->taken[0] & 7;
+	sim_work(slave, WORK_NS);
 }
 
-static void ds2438_recall(struct sim_slave *slave, int64_t t)
+static void ds2438_recall(struct sim_slave *slave)
 {
-	struct ds2438 *s = ds2438_state(slave);
+	struct ds2438 *s = slave->state;
 	unsigned page = page_of(slave);
 
 	if (page == 0)
-		measure_current(slave, t);
+		measure_current(slave);
 	memcpy(s->scratchpad[page], s->memory[page], 8);
 	sim_send_bits(slave);
 }
 
-static void ds2438_read_scratchpad(struct sim_slave *slave, int64_t t)
+static void ds2438_read_scratchpad(struct sim_slave *slave)
 {
 	static const uint8_t busy[] = {[IDLE] = 0, TB, ADB, NVB};
-	const struct ds2438 *s = ds2438_state(slave);
+	const struct ds2438 *s = slave->state;
 	uint8_t out[8];
 
-	(void)t;
 	memcpy(out, s->scratchpad[page_of(slave)], 8);
 	if (page_of(slave) == 0)
 		out[0] = (uint8_t)((out[0] & 15) | busy[s->work]);
 	sim_send_crc8(slave, out, 8);
 }
 
-static void begin_page(struct sim_slave *slave, int64_t t)
+static void begin_page(struct sim_slave *slave)
 {
-	(void)t;
 	slave->address = 0;
 }
 
-static void ds2438_write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void ds2438_write_scratchpad(struct sim_slave *slave, uint8_t byte)
 {
 	unsigned page = page_of(slave), at = slave->address++;
 
-	(void)t;
 	/* Of page 0 the configuration and the threshold can be written. */
 	if (page != 0 || at == 0 || at == 7)
-		ds2438_state(slave)->scratchpad[page][at] = byte;
+		sim_state(slave, ds2438)->scratchpad[page][at] = byte;
 	if (at == 7)
 		sim_end(slave);
 }
@@ -202,7 +195,7 @@ static const struct sim_function functions[] = {
 static uint8_t *ds2438_memory(struct sim_slave *slave, size_t *size)
 {
 	*size = 64;
-	return ds2438_state(slave)->memory[0];
+	return sim_state(slave, ds2438)->memory[0];
 }
 
 static const struct sim_input inputs[] = {

@@ -21,16 +21,10 @@ struct ds2450 {
 	uint8_t channels; /* under conversion */
 };
 
-static struct ds2450 *ds2450_state(struct sim_slave *slave)
+static void ds2450_power_on(struct sim_slave *slave)
 {
-	return sim_state(slave, ds2450);
-}
+	struct ds2450 *s = slave->state;
 
-static void ds2450_power_on(struct sim_slave *slave, int64_t t)
-{
-	struct ds2450 *s = ds2450_state(slave);
-
-	(void)t;
 	memset(s, 0, sizeof(*s));
 	for (unsigned i = 0; i < 4; i++) {
 		s->memory[CONTROL + 2 * i] = 0x08;
@@ -47,13 +41,13 @@ static unsigned resolution(const struct ds2450 *s, unsigned channel)
 }
 
 /* The result is left-aligned, the bits not converted are 0. */
-static void ds2450_measure(struct sim_slave *slave, unsigned channel, int64_t t)
+static void ds2450_measure(struct sim_slave *slave, unsigned channel)
 {
-	struct ds2450 *s = ds2450_state(slave);
+	struct ds2450 *s = slave->state;
 	uint8_t *control = &s->memory[CONTROL + 2 * channel],
 		*limit = &s->memory[LIMITS + 2 * channel];
 	double range = control[1] & IR ? 5.12 : 2.56;
-	double part = floor(sim_input_at(slave, channel, t) / range * 65536);
+	double part = floor(sim_input_now(slave, channel) / range * 65536);
 	unsigned raw = part < 0 ? 0 : part > 65535 ? 65535 : (unsigned)part;
 
 	if ((control[0] & (OE | OC)) == OE) /* the output transistor pulls the input down */
@@ -68,20 +62,19 @@ static void ds2450_measure(struct sim_slave *slave, unsigned channel, int64_t t)
 		control[1] |= AFH;
 }
 
-static void ds2450_worked(struct sim_slave *slave, int64_t t)
+static void ds2450_worked(struct sim_slave *slave)
 {
 	for (unsigned i = 0; i < 4; i++) {
-		if (ds2450_state(slave)->channels >> i & 1)
-			ds2450_measure(slave, i, t);
+		if (sim_state(slave, ds2450)->channels >> i & 1)
+			ds2450_measure(slave, i);
 	}
 	slave->conversions++;
 }
 
-static bool ds2450_alarm(struct sim_slave *slave, int64_t t)
+static bool ds2450_alarm(struct sim_slave *slave)
 {
-	const struct ds2450 *s = ds2450_state(slave);
+	const struct ds2450 *s = slave->state;
 
-	(void)t;
 	for (unsigned i = 0; i < 4; i++) {
 		uint8_t control = s->memory[CONTROL + 2 * i + 1];
 
@@ -93,18 +86,16 @@ static bool ds2450_alarm(struct sim_slave *slave, int64_t t)
 }
 
 /* Send a page, then the checksum; the first one covers command and address too. */
-static void send_memory(struct sim_slave *slave, int64_t t)
+static void send_memory(struct sim_slave *slave)
 {
-	(void)t;
-	sim_send_memory(slave, ds2450_state(slave)->memory, SIZE, PAGE);
+	sim_send_memory(slave, sim_state(slave, ds2450)->memory, SIZE, PAGE);
 }
 
 /* Send the checksum, then the byte as stored; then the host may write to the next address. */
-static void write_memory(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void write_memory(struct sim_slave *slave, uint8_t byte)
 {
-	struct ds2450 *s = ds2450_state(slave);
+	struct ds2450 *s = slave->state;
 
-	(void)t;
 	if (slave->address >= SIZE) {
 		sim_end(slave);
 		return;
@@ -114,22 +105,20 @@ static void write_memory(struct sim_slave *slave, uint8_t byte, int64_t t)
 	sim_send_stored(slave, s->memory[slave->address]);
 }
 
-static void ds2450_receive(struct sim_slave *slave, int64_t t)
+static void ds2450_receive(struct sim_slave *slave)
 {
-	(void)t;
 	sim_receive(slave);
 }
 
-static void send_checksum(struct sim_slave *slave, int64_t t)
+static void send_checksum(struct sim_slave *slave)
 {
-	(void)t;
 	sim_send_checked(slave, NULL, 0);
 }
 
 /* The conversion starts after the checksum, where a parasite needs the strong pull-up. */
-static void ds2450_convert(struct sim_slave *slave, int64_t t)
+static void ds2450_convert(struct sim_slave *slave)
 {
-	struct ds2450 *s = ds2450_state(slave);
+	struct ds2450 *s = slave->state;
 	int64_t takes = START_NS;
 
 	s->channels = slave->taken[0] & 15;
@@ -141,7 +130,7 @@ static void ds2450_convert(struct sim_slave *slave, int64_t t)
 		if (preset == 1 || preset == 2)
 			memset(&s->memory[2 * i], preset == 1 ? 0 : 0xFF, 2);
 	}
-	sim_work(slave, takes, t);
+	sim_work(slave, takes);
 }
 
 static const struct sim_function functions[] = {

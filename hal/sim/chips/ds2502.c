@@ -15,33 +15,28 @@ struct ds2502 {
 	uint8_t memory[MEMORY], status[STATUS];
 };
 
-static struct ds2502 *ds2502_state(struct sim_slave *slave)
-{
-	return sim_state(slave, ds2502);
-}
-
 /* Status byte 7 is programmed at the factory. */
 static void ds2502_create(struct sim_slave *slave)
 {
-	memset(ds2502_state(slave), 0xFF, sizeof(struct ds2502));
-	ds2502_state(slave)->status[7] = 0;
+	struct ds2502 *s = slave->state;
+
+	memset(s, 0xFF, sizeof(struct ds2502));
+	s->status[7] = 0;
 }
 
 /* Send the CRC8 of command and address. */
-static void send_checksum(struct sim_slave *slave, int64_t t)
+static void send_checksum(struct sim_slave *slave)
 {
-	(void)t;
 	sim_send_checked(slave, NULL, 0);
 }
 
 /*
  * Read Memory and Read Status send a checksum at the end, Read Data/Generate CRC after each page.
  */
-static void ds2502_send(struct sim_slave *slave, int64_t t)
+static void ds2502_send(struct sim_slave *slave)
 {
-	struct ds2502 *s = ds2502_state(slave);
+	struct ds2502 *s = slave->state;
 
-	(void)t;
 	if (slave->function->code == READ_STATUS)
 		sim_send_memory(slave, s->status, STATUS, STATUS);
 	else
@@ -50,12 +45,12 @@ static void ds2502_send(struct sim_slave *slave, int64_t t)
 }
 
 /* Send the checksum; the pulse would come here; send the byte as it is; the next byte follows. */
-static void ds2502_write(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void ds2502_write(struct sim_slave *slave, uint8_t byte)
 {
-	struct ds2502 *s = ds2502_state(slave);
+	struct ds2502 *s = slave->state;
 	bool is_status = slave->function->code == WRITE_STATUS;
 
-	(void)byte, (void)t;
+	(void)byte;
 	if (slave->address >= (is_status ? STATUS : MEMORY))
 		sim_end(slave);
 	else
@@ -63,16 +58,15 @@ static void ds2502_write(struct sim_slave *slave, uint8_t byte, int64_t t)
 		                is_status ? s->status[slave->address] : s->memory[slave->address]);
 }
 
-static void ds2502_receive(struct sim_slave *slave, int64_t t)
+static void ds2502_receive(struct sim_slave *slave)
 {
-	(void)t;
 	sim_receive(slave);
 }
 
 static uint8_t *ds2502_memory(struct sim_slave *slave, size_t *size)
 {
 	*size = sizeof(struct ds2502); /* the status bytes after the data */
-	return ds2502_state(slave)->memory;
+	return sim_state(slave, ds2502)->memory;
 }
 
 static const struct sim_function functions[] = {

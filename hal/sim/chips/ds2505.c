@@ -18,15 +18,10 @@ struct ds2505 {
 	bool in_page; /* the redirection byte of this page was sent */
 };
 
-static struct ds2505 *ds2505_state(struct sim_slave *slave)
-{
-	return sim_state(slave, ds2505);
-}
-
 /* Write protection, bitmap and redirection bytes, all from the factory as ones. */
 static void ds2505_create(struct sim_slave *slave)
 {
-	struct ds2505 *s = ds2505_state(slave);
+	struct ds2505 *s = slave->state;
 
 	s->size = (slave->family->code & 0x7F) == 0x0F ? 8192 : 2048;
 	s->status_size = REDIRECTION + s->size / PAGE;
@@ -34,30 +29,27 @@ static void ds2505_create(struct sim_slave *slave)
 }
 
 /* Read Memory has its checksum at the end of the memory. */
-static void ds2505_send(struct sim_slave *slave, int64_t t)
+static void ds2505_send(struct sim_slave *slave)
 {
-	struct ds2505 *s = ds2505_state(slave);
+	struct ds2505 *s = slave->state;
 
-	(void)t;
 	sim_send_memory(slave, s->bytes, s->size, s->size);
 }
 
 /* Read Status: a checksum after each eight bytes. */
-static void send_status(struct sim_slave *slave, int64_t t)
+static void send_status(struct sim_slave *slave)
 {
-	struct ds2505 *s = ds2505_state(slave);
+	struct ds2505 *s = slave->state;
 
-	(void)t;
 	sim_send_memory(slave, s->bytes + s->size, s->status_size, STATUS_PAGE);
 }
 
 /* Extended Read Memory: redirection byte, checksum, the rest of the page, checksum, and so on. */
-static void send_page(struct sim_slave *slave, int64_t t)
+static void send_page(struct sim_slave *slave)
 {
-	struct ds2505 *s = ds2505_state(slave);
+	struct ds2505 *s = slave->state;
 	unsigned page = slave->address / PAGE;
 
-	(void)t;
 	if (slave->address >= s->size) {
 		sim_end(slave);
 	} else if (!s->in_page) {
@@ -69,35 +61,36 @@ static void send_page(struct sim_slave *slave, int64_t t)
 	}
 }
 
-static void begin_pages(struct sim_slave *slave, int64_t t)
+static void begin_pages(struct sim_slave *slave)
 {
-	ds2505_state(slave)->in_page = false;
-	send_page(slave, t);
+	sim_state(slave, ds2505)->in_page = false;
+	send_page(slave);
 }
 
 /* Send the checksum; the pulse would come here; send the byte as it is; the next byte follows. */
-static void ds2505_write(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void ds2505_write(struct sim_slave *slave, uint8_t byte)
 {
-	struct ds2505 *s = ds2505_state(slave);
+	struct ds2505 *s = slave->state;
 	bool is_status = slave->function->code == WRITE_STATUS;
 
-	(void)byte, (void)t;
+	(void)byte;
 	if (slave->address >= (is_status ? s->status_size : s->size))
 		sim_end(slave);
 	else
 		sim_send_stored(slave, s->bytes[slave->address + (is_status ? s->size : 0)]);
 }
 
-static void ds2505_receive(struct sim_slave *slave, int64_t t)
+static void ds2505_receive(struct sim_slave *slave)
 {
-	(void)t;
 	sim_receive(slave);
 }
 
 static uint8_t *ds2505_memory(struct sim_slave *slave, size_t *size)
 {
-	*size = ds2505_state(slave)->size + ds2505_state(slave)->status_size;
-	return ds2505_state(slave)->bytes;
+	struct ds2505 *s = slave->state;
+
+	*size = s->size + s->status_size;
+	return s->bytes;
 }
 
 static const struct sim_function functions[] = {

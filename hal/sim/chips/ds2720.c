@@ -23,11 +23,6 @@ struct ds2720 {
 	uint8_t copied; /* the block that is being copied */
 };
 
-static struct ds2720 *ds2720_state(struct sim_slave *slave)
-{
-	return sim_state(slave, ds2720);
-}
-
 /* 20h and 30h. */
 static unsigned block_at(unsigned block)
 {
@@ -44,11 +39,10 @@ static unsigned block_of(unsigned address)
 	return block;
 }
 
-static void ds2720_power_on(struct sim_slave *slave, int64_t t)
+static void ds2720_power_on(struct sim_slave *slave)
 {
-	struct ds2720 *s = ds2720_state(slave);
+	struct ds2720 *s = slave->state;
 
-	(void)t;
 	for (unsigned i = 0; i < BLOCKS; i++)
 		memcpy(s->memory + block_at(i), s->eeprom[i], BLOCK);
 	s->memory[PROTECTION] = CE | DE;
@@ -57,18 +51,19 @@ static void ds2720_power_on(struct sim_slave *slave, int64_t t)
 }
 
 /* A condition sets its flag, which stays; the flags and the enables decide on the FETs. */
-static void ds2720_advance(struct sim_slave *slave, int64_t t)
+static void ds2720_advance(struct sim_slave *slave)
 {
+	struct ds2720 *s = slave->state;
 	static const uint8_t flags[] = {OV, UV, DOC};
-	uint8_t *protection = &ds2720_state(slave)->memory[PROTECTION];
-	uint8_t *special = &ds2720_state(slave)->memory[SPECIAL];
+	uint8_t *protection = &s->memory[PROTECTION];
+	uint8_t *special = &s->memory[SPECIAL];
 
 	for (unsigned i = 0; i < sizeof(flags); i++)
-		if (sim_input_at(slave, i, t) >= 0.5)
+		if (sim_input_now(slave, i) >= 0.5)
 			*protection |= flags[i];
-	if (sim_input_at(slave, OVERTEMPERATURE, t) >= 0.5)
+	if (sim_input_now(slave, OVERTEMPERATURE) >= 0.5)
 		*special |= OT;
-	if (sim_input_at(slave, PS, t) < 0.5)
+	if (sim_input_now(slave, PS) < 0.5)
 		*special &= (uint8_t)~PSF;
 	*protection &= (uint8_t) ~(CC | DC);
 	if ((*protection & CE) && !(*protection & OV) && !(*special & OT))
@@ -77,11 +72,10 @@ static void ds2720_advance(struct sim_slave *slave, int64_t t)
 		*protection |= DC;
 }
 
-static void ds2720_worked(struct sim_slave *slave, int64_t t)
+static void ds2720_worked(struct sim_slave *slave)
 {
-	struct ds2720 *s = ds2720_state(slave);
+	struct ds2720 *s = slave->state;
 
-	(void)t;
 	memcpy(s->eeprom[s->copied], s->memory + block_at(s->copied), BLOCK);
 	s->memory[EEPROM_REGISTER] &= (uint8_t)~EEC;
 }
@@ -89,35 +83,33 @@ static void ds2720_worked(struct sim_slave *slave, int64_t t)
 /* Any command other than the lock itself cancels the permission to lock. */
 static void forget_lock(struct sim_slave *slave)
 {
-	ds2720_state(slave)->memory[EEPROM_REGISTER] &= (uint8_t)~LOCK;
+	sim_state(slave, ds2720)->memory[EEPROM_REGISTER] &= (uint8_t)~LOCK;
 }
 
-static void read_data(struct sim_slave *slave, int64_t t)
+static void read_data(struct sim_slave *slave)
 {
-	struct ds2720 *s = ds2720_state(slave);
+	struct ds2720 *s = slave->state;
 
-	(void)t;
 	sim_send_memory(slave, s->memory, sizeof(s->memory), 0);
 }
 
-static void begin_read(struct sim_slave *slave, int64_t t)
+static void begin_read(struct sim_slave *slave)
 {
 	forget_lock(slave);
-	read_data(slave, t);
+	read_data(slave);
 }
 
-static void ds2720_begin_write(struct sim_slave *slave, int64_t t)
+static void ds2720_begin_write(struct sim_slave *slave)
 {
-	(void)t;
 	forget_lock(slave);
 }
 
 /*
  * What is read-only, reserved or locked stays unchanged; a write can clear flags but not set them.
  */
-static void write_data(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void write_data(struct sim_slave *slave, uint8_t byte)
 {
-	struct ds2720 *s = ds2720_state(slave);
+	struct ds2720 *s = slave->state;
 	unsigned at = slave->address++, block = block_of(at);
 	uint8_t *to = &s->memory[at % sizeof(s->memory)];
 
@@ -131,41 +123,39 @@ static void write_data(struct sim_slave *slave, uint8_t byte, int64_t t)
 		*to |= byte & LOCK;
 	if (at == SPECIAL)
 		*to = byte & (OT | PSF);
-	ds2720_advance(slave, t);
+	ds2720_advance(slave);
 }
 
-static void ds2720_copy(struct sim_slave *slave, int64_t t)
+static void ds2720_copy(struct sim_slave *slave)
 {
-	struct ds2720 *s = ds2720_state(slave);
+	struct ds2720 *s = slave->state;
 	unsigned block = block_of(slave->address);
 
 	forget_lock(slave);
 	if (block < BLOCKS && !(s->memory[EEPROM_REGISTER] >> block & 1)) {
 		s->copied = (uint8_t)block;
 		s->memory[EEPROM_REGISTER] |= EEC;
-		sim_work(slave, COPY_NS, t);
+		sim_work(slave, COPY_NS);
 	}
 	sim_end(slave);
 }
 
-static void ds2720_recall(struct sim_slave *slave, int64_t t)
+static void ds2720_recall(struct sim_slave *slave)
 {
-	struct ds2720 *s = ds2720_state(slave);
+	struct ds2720 *s = slave->state;
 	unsigned block = block_of(slave->address);
 
-	(void)t;
 	forget_lock(slave);
 	if (block < BLOCKS)
 		memcpy(s->memory + block_at(block), s->eeprom[block], BLOCK);
 	sim_end(slave);
 }
 
-static void lock(struct sim_slave *slave, int64_t t)
+static void lock(struct sim_slave *slave)
 {
-	uint8_t *reg = &ds2720_state(slave)->memory[EEPROM_REGISTER];
+	uint8_t *reg = &sim_state(slave, ds2720)->memory[EEPROM_REGISTER];
 	unsigned block = block_of(slave->address);
 
-	(void)t;
 	if (block < BLOCKS && (*reg & LOCK))
 		*reg |= (uint8_t)(1 << block);
 	forget_lock(slave);
@@ -174,8 +164,10 @@ static void lock(struct sim_slave *slave, int64_t t)
 
 static uint8_t *ds2720_memory(struct sim_slave *slave, size_t *size)
 {
-	*size = sizeof(ds2720_state(slave)->eeprom); /* it is recalled at power-on */
-	return ds2720_state(slave)->eeprom[0];
+	struct ds2720 *s = slave->state;
+
+	*size = sizeof(s->eeprom); /* it is recalled at power-on */
+	return s->eeprom[0];
 }
 
 static const struct sim_function functions[] = {

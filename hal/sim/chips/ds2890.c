@@ -11,56 +11,45 @@ struct ds2890 {
 	bool asked;
 };
 
-static struct ds2890 *ds2890_state(struct sim_slave *slave)
+static void ds2890_power_on(struct sim_slave *slave)
 {
-	return sim_state(slave, ds2890);
-}
-
-static void ds2890_power_on(struct sim_slave *slave, int64_t t)
-{
-	(void)t;
-	*ds2890_state(slave) = (struct ds2890){.control = CONTROL};
+	*sim_state(slave, ds2890) = (struct ds2890){.control = CONTROL};
 }
 
 /* Send control register and position, */
-static void read_position(struct sim_slave *slave, int64_t t)
+static void read_position(struct sim_slave *slave)
 {
-	const struct ds2890 *s = ds2890_state(slave);
+	const struct ds2890 *s = slave->state;
 	const uint8_t out[2] = {s->control, s->position};
 
-	(void)t;
 	sim_send(slave, out, sizeof(out));
 }
 
 /* or the features and the control register, */
-static void read_control(struct sim_slave *slave, int64_t t)
+static void read_control(struct sim_slave *slave)
 {
-	const uint8_t out[2] = {FEATURES, ds2890_state(slave)->control};
+	const uint8_t out[2] = {FEATURES, sim_state(slave, ds2890)->control};
 
-	(void)t;
 	sim_send(slave, out, sizeof(out));
 }
 
 /* and zeros after them. */
-static void send_zero(struct sim_slave *slave, int64_t t)
+static void send_zero(struct sim_slave *slave)
 {
-	(void)t;
 	sim_send_byte(slave, 0);
 }
 
-static void ds2890_begin_write(struct sim_slave *slave, int64_t t)
+static void ds2890_begin_write(struct sim_slave *slave)
 {
-	(void)t;
-	ds2890_state(slave)->asked = false;
+	sim_state(slave, ds2890)->asked = false;
 }
 
 /* Send the byte back; it takes effect when the release code follows. */
-static void ds2890_write(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void ds2890_write(struct sim_slave *slave, uint8_t byte)
 {
-	struct ds2890 *s = ds2890_state(slave);
+	struct ds2890 *s = slave->state;
 	bool is_position = slave->function->code == WRITE_POSITION;
 
-	(void)t;
 	if (!s->asked) {
 		s->fresh = byte;
 		s->asked = true;
@@ -75,16 +64,15 @@ static void ds2890_write(struct sim_slave *slave, uint8_t byte, int64_t t)
 		*(is_position ? &s->position : &s->control) = s->fresh;
 }
 
-static void ds2890_receive(struct sim_slave *slave, int64_t t)
+static void ds2890_receive(struct sim_slave *slave)
 {
-	(void)t;
 	sim_receive(slave);
 }
 
 /* Move one step, not beyond the end, and send where the wiper is. */
 static void ds2890_step(struct sim_slave *slave, uint8_t code)
 {
-	struct ds2890 *s = ds2890_state(slave);
+	struct ds2890 *s = slave->state;
 
 	if (code == INCREMENT && s->position < UINT8_MAX)
 		s->position++;
@@ -93,16 +81,14 @@ static void ds2890_step(struct sim_slave *slave, uint8_t code)
 	sim_send_byte(slave, s->position);
 }
 
-static void first_step(struct sim_slave *slave, int64_t t)
+static void first_step(struct sim_slave *slave)
 {
-	(void)t;
 	ds2890_step(slave, slave->function->code);
 }
 
 /* Another step needs no ROM command. */
-static void another_step(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void another_step(struct sim_slave *slave, uint8_t byte)
 {
-	(void)t;
 	if (byte == INCREMENT || byte == DECREMENT)
 		ds2890_step(slave, byte);
 	else

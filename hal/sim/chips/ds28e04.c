@@ -25,48 +25,42 @@ struct ds28e04 {
 static const struct sim_scratchpad_kind kind = {
 	.size = END, .writable = 0x210, .page = 32, .copy_ns = 10 * NS_PER_MS};
 
-static struct ds28e04 *ds28e04_state(struct sim_slave *slave)
-{
-	return sim_state(slave, ds28e04);
-}
-
 static void ds28e04_create(struct sim_slave *slave)
 {
-	struct sim_scratchpad *s = &ds28e04_state(slave)->memory;
+	struct sim_scratchpad *s = &sim_state(slave, ds28e04)->memory;
 
 	s->kind = &kind;
 	memset(s->memory, 0xFF, END);
 }
 
 /* POL says what the pins are after power-on. */
-static void ds28e04_power_on(struct sim_slave *slave, int64_t t)
+static void ds28e04_power_on(struct sim_slave *slave)
 {
-	struct ds28e04 *s = ds28e04_state(slave);
-	bool pol = sim_input_at(slave, PIN_POL, t) >= 0.5;
+	struct ds28e04 *s = slave->state;
+	bool pol = sim_input_now(slave, PIN_POL) >= 0.5;
 
 	s->mask = s->polarity = 0;
 	s->control = (uint8_t)(PORL | (pol ? POL : 0));
-	sim_scratchpad_power_on(slave, t);
-	sim_pins_start(slave, 0, 2, t);
-	sim_pins_write(slave, pol ? 3 : 0, t);
+	sim_scratchpad_power_on(slave);
+	sim_pins_start(slave, 0, 2);
+	sim_pins_write(slave, pol ? 3 : 0);
 	s->memory.pins.activity = 0;
 }
 
-static bool ds28e04_alarm(struct sim_slave *slave, int64_t t)
+static bool ds28e04_alarm(struct sim_slave *slave)
 {
-	const struct ds28e04 *s = ds28e04_state(slave);
+	const struct ds28e04 *s = slave->state;
 	const struct sim_pins *pins = &s->memory.pins;
 	uint8_t source = s->control & PLS ? pins->activity : pins->level;
 	uint8_t match = (uint8_t) ~(source ^ s->polarity) & s->mask;
 
-	(void)t;
 	return s->control & CT ? match == s->mask && s->mask : match;
 }
 
 /* Send the memory and the registers, without a checksum. */
-static void dump(struct sim_slave *slave, int64_t t)
+static void dump(struct sim_slave *slave)
 {
-	struct ds28e04 *s = ds28e04_state(slave);
+	struct ds28e04 *s = slave->state;
 	uint8_t *memory = s->memory.memory;
 
 	memcpy(memory + 0x218, slave->rom, 8);
@@ -76,55 +70,52 @@ static void dump(struct sim_slave *slave, int64_t t)
 	memory[MASK] = s->mask;
 	memory[POLARITY] = s->polarity;
 	memory[CONTROL] = (uint8_t)(s->control | (slave->parasite ? 0 : VCCP));
-	sim_scratchpad_dump(slave, t);
+	sim_scratchpad_dump(slave);
 }
 
 static uint8_t pin_status(struct sim_slave *slave)
 {
-	return ds28e04_state(slave)->memory.pins.level | 0xFC;
+	return sim_state(slave, ds28e04)->memory.pins.level | 0xFC;
 }
 
 /* Send a sample. The address counts the samples. */
-static void send_sample(struct sim_slave *slave, int64_t t)
+static void send_sample(struct sim_slave *slave)
 {
 	uint8_t sample = pin_status(slave);
 
-	(void)t;
 	if (slave->address++ % SAMPLES == SAMPLES - 1)
 		sim_send_checked(slave, &sample, 1);
 	else
 		sim_send_byte(slave, sample);
 }
 
-static void send_first_sample(struct sim_slave *slave, int64_t t)
+static void send_first_sample(struct sim_slave *slave)
 {
 	slave->address = 0;
-	send_sample(slave, t);
+	send_sample(slave);
 }
 
 /* The latches were taken: send the pins as they are now, and receive the next two bytes. */
-static void taken(struct sim_slave *slave, int64_t t)
+static void taken(struct sim_slave *slave)
 {
 	if (slave->got == 2) {
 		slave->got = 3;
 		sim_send_byte(slave, pin_status(slave));
 	} else {
-		sim_pins_taken(slave, t);
+		sim_pins_taken(slave);
 	}
 }
 
-static void check_register(struct sim_slave *slave, int64_t t)
+static void check_register(struct sim_slave *slave)
 {
-	(void)t;
 	if (slave->address < MASK || slave->address > CONTROL)
 		sim_end(slave);
 }
 
-static void write_register(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void write_register(struct sim_slave *slave, uint8_t byte)
 {
-	struct ds28e04 *s = ds28e04_state(slave);
+	struct ds28e04 *s = slave->state;
 
-	(void)t;
 	switch (slave->address++) {
 	case MASK:
 		s->mask = byte & 3;
@@ -139,22 +130,21 @@ static void write_register(struct sim_slave *slave, uint8_t byte, int64_t t)
 	}
 }
 
-static void confirm(struct sim_slave *slave, int64_t t)
+static void confirm(struct sim_slave *slave)
 {
-	(void)t;
 	sim_send_byte(slave, 0xAA);
 }
 
-static void reset_activity(struct sim_slave *slave, int64_t t)
+static void reset_activity(struct sim_slave *slave)
 {
-	ds28e04_state(slave)->memory.pins.activity = 0;
-	confirm(slave, t);
+	sim_state(slave, ds28e04)->memory.pins.activity = 0;
+	confirm(slave);
 }
 
 static uint8_t *ds28e04_memory(struct sim_slave *slave, size_t *size)
 {
 	*size = kind.writable;
-	return ds28e04_state(slave)->memory.memory;
+	return sim_state(slave, ds28e04)->memory.memory;
 }
 
 static const struct sim_function functions[] = {

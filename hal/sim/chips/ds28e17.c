@@ -34,16 +34,10 @@ struct ds28e17 {
 	bool started;  /* the I2C transaction has no STOP yet */
 };
 
-static struct ds28e17 *ds28e17_state(struct sim_slave *slave)
+static void ds28e17_power_on(struct sim_slave *slave)
 {
-	return sim_state(slave, ds28e17);
-}
+	struct ds28e17 *s = slave->state;
 
-static void ds28e17_power_on(struct sim_slave *slave, int64_t t)
-{
-	struct ds28e17 *s = ds28e17_state(slave);
-
-	(void)t;
 	sim_sensors_power_on(slave);
 	s->speed = 1;
 	s->started = false;
@@ -65,17 +59,17 @@ static bool reads(uint8_t code)
 }
 
 /* Returns the status of writing; *at: the byte that was not acknowledged, from 1 on. */
-static uint8_t write_bytes(struct sim_slave *slave, uint8_t code, uint8_t *at, int64_t t)
+static uint8_t write_bytes(struct sim_slave *slave, uint8_t code, uint8_t *at)
 {
-	struct ds28e17 *s = ds28e17_state(slave);
+	struct ds28e17 *s = slave->state;
 
 	*at = 0;
 	if (!addresses(code) && !s->started)
 		return NO_START;
-	if (addresses(code) && !sim_sensors_start(slave, s->address & 0xFE, t))
+	if (addresses(code) && !sim_sensors_start(slave, s->address & 0xFE, slave->now))
 		return NO_ADDRESS;
 	for (unsigned i = 0; i < s->length && !*at; i++) {
-		if (!sim_sensors_write(slave, s->data[i], t))
+		if (!sim_sensors_write(slave, s->data[i], slave->now))
 			*at = (uint8_t)(i + 1);
 	}
 	return 0;
@@ -87,28 +81,28 @@ static void ds28e17_put(struct ds28e17 *s, uint8_t byte)
 }
 
 /* The packet is whole and its checksum right: the I2C transaction. */
-static void exchange(struct sim_slave *slave, int64_t t)
+static void exchange(struct sim_slave *slave)
 {
-	struct ds28e17 *s = ds28e17_state(slave);
+	struct ds28e17 *s = slave->state;
 	uint8_t code = s->code, at = 0;
-	uint8_t status = writes(code) ? write_bytes(slave, code, &at, t) : 0;
+	uint8_t status = writes(code) ? write_bytes(slave, code, &at) : 0;
 	unsigned n = code == READ_STOP ? s->length : s->data[s->length];
 
-	if (reads(code) && !status && !at && !sim_sensors_start(slave, s->address | 1, t))
+	if (reads(code) && !status && !at && !sim_sensors_start(slave, s->address | 1, slave->now))
 		status = NO_ADDRESS;
 	ds28e17_put(s, status);
 	if (writes(code))
 		ds28e17_put(s, at);
 	for (unsigned i = 0; reads(code) && i < n; i++)
-		ds28e17_put(s, status || at ? 0xFF : sim_sensors_read(slave, t));
+		ds28e17_put(s, status || at ? 0xFF : sim_sensors_read(slave, slave->now));
 	s->started = !status && !at && (code == WRITE_NO_STOP || code == WRITE_ONLY);
 	if (!s->started)
 		sim_sensors_stop(slave);
 }
 
-static void ds28e17_worked(struct sim_slave *slave, int64_t t)
+static void ds28e17_worked(struct sim_slave *slave)
 {
-	struct ds28e17 *s = ds28e17_state(slave);
+	struct ds28e17 *s = slave->state;
 
 	s->answers = s->sent = 0;
 	ds28e17_put(s, 0);
@@ -117,17 +111,16 @@ static void ds28e17_worked(struct sim_slave *slave, int64_t t)
 		if (writes(s->code))
 			ds28e17_put(s, 0);
 	} else {
-		exchange(slave, t);
+		exchange(slave);
 	}
 }
 
 /* Send more of the answer. */
-static void send_more(struct sim_slave *slave, int64_t t)
+static void send_more(struct sim_slave *slave)
 {
-	struct ds28e17 *s = ds28e17_state(slave);
+	struct ds28e17 *s = slave->state;
 	unsigned n = s->answers - s->sent;
 
-	(void)t;
 	if (n > SIM_MAX_SEND)
 		n = SIM_MAX_SEND;
 	if (n == 0) {
@@ -139,30 +132,29 @@ static void send_more(struct sim_slave *slave, int64_t t)
 }
 
 /* Busy: 1. The first 0 is the last bit of a byte, and the status follows. */
-static bool ds28e17_bit(struct sim_slave *slave, int64_t t)
+static bool ds28e17_bit(struct sim_slave *slave)
 {
 	if (slave->busy)
 		return true;
-	send_more(slave, t);
+	send_more(slave);
 	slave->bits = 7;
 	return false;
 }
 
-static void ds28e17_begin(struct sim_slave *slave, int64_t t)
+static void ds28e17_begin(struct sim_slave *slave)
 {
-	struct ds28e17 *s = ds28e17_state(slave);
+	struct ds28e17 *s = slave->state;
 
-	(void)t;
 	s->length = slave->taken[slave->function->takes - 1];
 	s->got = 0;
 	if (slave->busy)
 		sim_end(slave);
 }
 
-static void packet(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void packet(struct sim_slave *slave, uint8_t byte)
 {
 	static const int64_t byte_ns[] = {90000, 23000, 10000};
-	struct ds28e17 *s = ds28e17_state(slave);
+	struct ds28e17 *s = slave->state;
 	uint8_t code = slave->function->code;
 	unsigned written = writes(code) ? s->length : 0;
 	unsigned whole = written + (code == WRITE_READ_STOP) + 2;
@@ -176,33 +168,29 @@ static void packet(struct sim_slave *slave, uint8_t byte, int64_t t)
 	s->code = code;
 	s->address = slave->taken[0];
 	s->good = slave->crc == GOOD_CRC;
-	sim_work(slave, byte_ns[s->speed] * bytes, t);
+	sim_work(slave, byte_ns[s->speed] * bytes);
 }
 
-static void write_configuration(struct sim_slave *slave, int64_t t)
+static void write_configuration(struct sim_slave *slave)
 {
-	(void)t;
 	if (slave->taken[0] <= 2)
-		ds28e17_state(slave)->speed = slave->taken[0];
+		sim_state(slave, ds28e17)->speed = slave->taken[0];
 	sim_end(slave);
 }
 
-static void read_configuration(struct sim_slave *slave, int64_t t)
+static void read_configuration(struct sim_slave *slave)
 {
-	(void)t;
-	sim_send_byte(slave, ds28e17_state(slave)->speed);
+	sim_send_byte(slave, sim_state(slave, ds28e17)->speed);
 }
 
-static void revision(struct sim_slave *slave, int64_t t)
+static void revision(struct sim_slave *slave)
 {
-	(void)t;
 	sim_send_byte(slave, 0x10);
 }
 
 /* It sleeps until the next reset. */
-static void sleep(struct sim_slave *slave, int64_t t)
+static void sleep(struct sim_slave *slave)
 {
-	(void)t;
 	sim_end(slave);
 }
 

@@ -45,21 +45,15 @@ struct ds28e18 {
 	uint8_t configuration, gpio[2][2];
 };
 
-static struct ds28e18 *ds28e18_state(struct sim_slave *slave)
-{
-	return sim_state(slave, ds28e18);
-}
-
 static void ds28e18_create(struct sim_slave *slave)
 {
-	memcpy(ds28e18_state(slave)->rom, slave->rom, 8);
+	memcpy(sim_state(slave, ds28e18)->rom, slave->rom, 8);
 }
 
-static void ds28e18_power_on(struct sim_slave *slave, int64_t t)
+static void ds28e18_power_on(struct sim_slave *slave)
 {
-	struct ds28e18 *s = ds28e18_state(slave);
+	struct ds28e18 *s = slave->state;
 
-	(void)t;
 	sim_sensors_power_on(slave);
 	memset(slave->rom + 1, 0, 6);
 	slave->rom[7] = sim_crc8(0, slave->rom, 7);
@@ -83,13 +77,13 @@ static void spend_byte(struct run *run)
 {
 	static const int64_t byte_ns[] = {136000, 45000, 25000, 25000};
 
-	run->t += byte_ns[ds28e18_state(run->slave)->configuration & 3];
+	run->t += byte_ns[sim_state(run->slave, ds28e18)->configuration & 3];
 }
 
 /* False: the byte was not acknowledged. */
 static bool write_bytes(struct run *run, unsigned n)
 {
-	struct ds28e18 *s = ds28e18_state(run->slave);
+	struct ds28e18 *s = sim_state(run->slave, ds28e18);
 	bool taken = true;
 
 	while (n-- && taken) {
@@ -106,7 +100,7 @@ static bool write_bytes(struct run *run, unsigned n)
 
 static void read_bytes(struct run *run, unsigned n)
 {
-	struct ds28e18 *s = ds28e18_state(run->slave);
+	struct ds28e18 *s = sim_state(run->slave, ds28e18);
 
 	while (n--) {
 		spend_byte(run);
@@ -147,7 +141,7 @@ static bool is_single(uint8_t command)
 /* One command of the sequence; DONE, or the result that ends it. */
 static uint8_t ds28e18_step(struct run *run)
 {
-	struct ds28e18 *s = ds28e18_state(run->slave);
+	struct ds28e18 *s = sim_state(run->slave, ds28e18);
 	uint8_t command = s->sequence[run->at++];
 	uint8_t length = run->at < run->end && !is_single(command) ? s->sequence[run->at] : 0;
 	unsigned n = bytes_of(command, length);
@@ -190,11 +184,12 @@ static void ds28e18_add(struct ds28e18 *s, uint8_t byte)
 }
 
 /* The sequence runs at once, on a clock of its own. Returns how long it took. */
-static int64_t run_sequencer(struct sim_slave *slave, int64_t t)
+static int64_t run_sequencer(struct sim_slave *slave)
 {
-	struct ds28e18 *s = ds28e18_state(slave);
+	struct ds28e18 *s = slave->state;
 	unsigned length = s->packet[2] >> 1 | (s->packet[3] & 3u) << 7;
-	struct run run = {.slave = slave, .at = s->packet[1] | (s->packet[2] & 1u) << 8, .t = t};
+	struct run run = {
+		.slave = slave, .at = s->packet[1] | (s->packet[2] & 1u) << 8, .t = slave->now};
 	uint8_t result = s->empty ? POWER_ON : DONE;
 
 	run.end = run.at + (length ? length : SEQUENCE);
@@ -208,7 +203,7 @@ static int64_t run_sequencer(struct sim_slave *slave, int64_t t)
 		ds28e18_add(s, (uint8_t)(run.at >> 8 & 1));
 		sim_sensors_stop(slave);
 	}
-	return run.t - t;
+	return run.t - slave->now;
 }
 
 /* --- Device functions ------------------------------------------------------------------------- */
@@ -283,9 +278,9 @@ static int parameters(uint8_t function)
 	}
 }
 
-static int64_t carry_out(struct sim_slave *slave, int64_t t)
+static int64_t carry_out(struct sim_slave *slave)
 {
-	struct ds28e18 *s = ds28e18_state(slave);
+	struct ds28e18 *s = slave->state;
 	int want = parameters(s->packet[0]);
 	int64_t takes = OPERATION_NS;
 
@@ -303,7 +298,7 @@ static int64_t carry_out(struct sim_slave *slave, int64_t t)
 		read_sequencer(s);
 		break;
 	case RUN_SEQUENCER:
-		takes += run_sequencer(slave, t);
+		takes += run_sequencer(slave);
 		break;
 	case WRITE_CONFIGURATION:
 		s->configuration = s->packet[1] & 0x3F;
@@ -326,22 +321,23 @@ static int64_t carry_out(struct sim_slave *slave, int64_t t)
 }
 
 /* Length and packet, whose checksum the bridge sends; the release byte starts the function. */
-static void ds28e18_begin(struct sim_slave *slave, int64_t t)
+static void ds28e18_begin(struct sim_slave *slave)
 {
-	(void)t;
-	ds28e18_state(slave)->got = 0;
-	ds28e18_state(slave)->checked = ds28e18_state(slave)->released = false;
+	struct ds28e18 *s = slave->state;
+
+	s->got = 0;
+	s->checked = s->released = false;
 	if (slave->taken[0] == 0 || slave->taken[0] > PACKET)
 		sim_end(slave);
 }
 
-static void packet(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void packet(struct sim_slave *slave, uint8_t byte)
 {
-	struct ds28e18 *s = ds28e18_state(slave);
+	struct ds28e18 *s = slave->state;
 
 	if (s->checked && byte == RELEASE) {
 		s->released = true;
-		sim_work(slave, carry_out(slave, t), t);
+		sim_work(slave, carry_out(slave));
 	} else if (s->checked) {
 		sim_end(slave);
 	} else {
@@ -352,12 +348,11 @@ static void packet(struct sim_slave *slave, uint8_t byte, int64_t t)
 	}
 }
 
-static void ds28e18_worked(struct sim_slave *slave, int64_t t)
+static void ds28e18_worked(struct sim_slave *slave)
 {
-	struct ds28e18 *s = ds28e18_state(slave);
+	struct ds28e18 *s = slave->state;
 	uint16_t crc = sim_crc16(0, s->result, s->result[0] + 1u);
 
-	(void)t;
 	s->answer[0] = 0xFF; /* the dummy byte */
 	memcpy(s->answer + 1, s->result, s->result[0] + 1u);
 	s->answers = s->result[0] + 2u;
@@ -367,12 +362,11 @@ static void ds28e18_worked(struct sim_slave *slave, int64_t t)
 }
 
 /* Behind the packet's checksum the release byte is due; behind the answer, nothing. */
-static void sent(struct sim_slave *slave, int64_t t)
+static void sent(struct sim_slave *slave)
 {
-	struct ds28e18 *s = ds28e18_state(slave);
+	struct ds28e18 *s = slave->state;
 	unsigned n = s->answers - s->sent;
 
-	(void)t;
 	if (!s->released) {
 		sim_receive(slave);
 	} else if (n == 0) {
@@ -385,10 +379,10 @@ static void sent(struct sim_slave *slave, int64_t t)
 }
 
 /* Ones while it works; then a dummy byte of ones, and length and result with their checksum. */
-static bool ds28e18_bit(struct sim_slave *slave, int64_t t)
+static bool ds28e18_bit(struct sim_slave *slave)
 {
 	if (!slave->busy)
-		sent(slave, t);
+		sent(slave);
 	return true;
 }
 

@@ -37,14 +37,9 @@ static const struct sim_scratchpad_kind small = {
 static const struct sim_scratchpad_kind large = {
 	.size = 0xA0, .writable = 0xA0, .page = 32, .copy_ns = COPY_NS};
 
-static struct eds *eds_state(struct sim_slave *slave)
-{
-	return sim_state(slave, eds);
-}
-
 static uint8_t *bytes_at(struct sim_slave *slave, unsigned at)
 {
-	return eds_state(slave)->memory.memory + at;
+	return sim_state(slave, eds)->memory.memory + at;
 }
 
 static void eds_put(uint8_t *to, unsigned bytes, int64_t value)
@@ -66,15 +61,15 @@ static int64_t eds_get(const uint8_t *from, unsigned bytes, bool is_signed)
 
 static uint16_t word(struct sim_slave *slave, unsigned at)
 {
-	unsigned bytes = eds_state(slave)->kind->alarm_bytes;
+	unsigned bytes = sim_state(slave, eds)->kind->alarm_bytes;
 
 	return (uint16_t)eds_get(bytes_at(slave, at), bytes, false);
 }
 
-static double value_of(struct sim_slave *slave, const struct eds_quantity *q, int64_t t)
+static double value_of(struct sim_slave *slave, const struct eds_quantity *q)
 {
-	return q->derived ? q->derived(slave, t)
-	                  : sim_input_at(slave, (unsigned)sim_slave_input(slave, q->input), t);
+	return q->derived ? q->derived(slave)
+	                  : sim_input_now(slave, (unsigned)sim_slave_input(slave, q->input));
 }
 
 /* Which of the pair of flags does the value deserve? */
@@ -97,9 +92,9 @@ static bool has(const struct eds_kind *kind, unsigned i)
 }
 
 /* Measure all; returns the flags of what is beyond its limits now. */
-static uint16_t eds_measure(struct sim_slave *slave, int64_t t)
+static uint16_t eds_measure(struct sim_slave *slave)
 {
-	struct eds *s = eds_state(slave);
+	struct eds *s = slave->state;
 	uint16_t flags = 0;
 
 	for (unsigned i = 0; i < s->kind->quantity_count; i++) {
@@ -108,7 +103,7 @@ static uint16_t eds_measure(struct sim_slave *slave, int64_t t)
 
 		if (!has(s->kind, i))
 			continue;
-		value = value_of(slave, q, t);
+		value = value_of(slave, q);
 		s->least[i] = fmin(s->least[i], value);
 		s->most[i] = fmax(s->most[i], value);
 		eds_put(bytes_at(slave, q->at), q->bytes, sim_round(value / q->unit));
@@ -123,14 +118,14 @@ static uint16_t eds_measure(struct sim_slave *slave, int64_t t)
 }
 
 /* Falling edges are counted and any change is latched. */
-static void follow_pin(struct sim_slave *slave, unsigned pin, int64_t t)
+static void follow_pin(struct sim_slave *slave, unsigned pin)
 {
-	struct eds *s = eds_state(slave);
+	struct eds *s = slave->state;
 	const struct sim_curve *curve = &slave->input[pin];
 	uint8_t mask = (uint8_t)(1 << pin), *pulses = bytes_at(slave, PULSES + 4 * pin);
 	bool pulled = *bytes_at(slave, OUTPUT) & mask;
-	bool was = s->level & mask, is = !pulled && sim_curve_at(curve, t) >= 0.5;
-	uint64_t falls = pulled ? 0 : sim_curve_falls(curve, s->followed, t);
+	bool was = s->level & mask, is = !pulled && sim_curve_at(curve, slave->now) >= 0.5;
+	uint64_t falls = pulled ? 0 : sim_curve_falls(curve, s->followed, slave->now);
 
 	/* The level also falls where an output or a new curve begins. */
 	if (was && (pulled || sim_curve_at(curve, s->followed) < 0.5))
@@ -143,25 +138,26 @@ static void follow_pin(struct sim_slave *slave, unsigned pin, int64_t t)
 }
 
 /* The pins at t; returns the flags of those whose level is asked for. */
-static uint16_t eds_follow(struct sim_slave *slave, int64_t t)
+static uint16_t eds_follow(struct sim_slave *slave)
 {
-	struct eds *s = eds_state(slave);
+	struct eds *s = slave->state;
 	uint16_t flags = 0;
 
 	for (unsigned i = 0; i < PINS; i++) {
-		follow_pin(slave, i, t);
+		follow_pin(slave, i);
 		flags |= (uint16_t)((s->level >> i & 1 ? 1 : 2) << (2 * i));
 	}
 	*bytes_at(slave, INPUT) = s->level;
-	s->followed = t;
+	s->followed = slave->now;
 	return flags;
 }
 
 /* Relay and LED: by the alarm, or as written. */
 static void switch_outputs(struct sim_slave *slave, bool beyond_now, bool flagged)
 {
-	uint8_t function = *bytes_at(slave, eds_state(slave)->kind->relay);
-	uint8_t *out = bytes_at(slave, eds_state(slave)->kind->relay + 1u);
+	struct eds *s = slave->state;
+	uint8_t function = *bytes_at(slave, s->kind->relay);
+	uint8_t *out = bytes_at(slave, s->kind->relay + 1u);
 
 	for (unsigned i = RELAY; i <= LED; i++) {
 		enum control control = function >> (2 * i) & 3;
@@ -172,58 +168,58 @@ static void switch_outputs(struct sim_slave *slave, bool beyond_now, bool flagge
 	}
 }
 
-static void count_time(struct sim_slave *slave, int64_t t)
+static void count_time(struct sim_slave *slave)
 {
-	struct eds *s = eds_state(slave);
+	struct eds *s = slave->state;
 	const struct eds_kind *kind = s->kind;
 
-	eds_put(bytes_at(slave, kind->seconds), 4, (t - s->started) / NS_PER_S);
+	eds_put(bytes_at(slave, kind->seconds), 4, (slave->now - s->started) / NS_PER_S);
 	if (kind->samples) {
 		int64_t delay = *bytes_at(slave, kind->delay);
-		int64_t each = (delay ? delay : 1) * NS_PER_S, n = (t - s->sampled) / each;
+		int64_t each = (delay ? delay : 1) * NS_PER_S, n = (slave->now - s->sampled) / each;
 		uint8_t *samples = bytes_at(slave, kind->samples);
 
 		eds_put(samples, 4, eds_get(samples, 4, false) + n);
 		s->sampled += n * each;
 	}
 	if (kind->peak) {
-		double level = sim_input_at(slave, 0, t);
+		double level = sim_input_now(slave, 0);
 
-		s->peak -= (double)(t - s->sampled) / (double)NS_PER_S * DECAY_PER_S;
+		s->peak -= (double)(slave->now - s->sampled) / (double)NS_PER_S * DECAY_PER_S;
 		s->peak = fmax(s->peak, level);
 		eds_put(bytes_at(slave, kind->peak), 2, sim_round(s->peak));
-		s->sampled = t;
+		s->sampled = slave->now;
 	}
 }
 
 /* One round of the microcontroller. */
-static void work(struct sim_slave *slave, int64_t t)
+static void work(struct sim_slave *slave)
 {
-	const struct eds_kind *kind = eds_state(slave)->kind;
+	const struct eds_kind *kind = sim_state(slave, eds)->kind;
 	uint16_t enabled = word(slave, kind->enable), flags = word(slave, kind->alarm);
-	uint16_t now = kind->digital ? eds_follow(slave, t) : eds_measure(slave, t);
+	uint16_t now = kind->digital ? eds_follow(slave) : eds_measure(slave);
 
 	now &= enabled;
 	flags |= now;
 	eds_put(bytes_at(slave, kind->alarm), kind->alarm_bytes, flags);
-	count_time(slave, t);
+	count_time(slave);
 	switch_outputs(slave, now, flags);
 }
 
-void eds_advance(struct sim_slave *slave, int64_t t)
+void eds_advance(struct sim_slave *slave)
 {
-	struct eds *s = eds_state(slave);
+	struct eds *s = slave->state;
 
-	if (t / TICK_NS == s->tick)
+	if (slave->now / TICK_NS == s->tick)
 		return;
-	s->tick = t / TICK_NS;
-	work(slave, t);
+	s->tick = slave->now / TICK_NS;
+	work(slave);
 }
 
 /* Minimum and maximum begin anew. */
 static void eds_forget(struct sim_slave *slave)
 {
-	struct eds *s = eds_state(slave);
+	struct eds *s = slave->state;
 
 	for (unsigned i = 0; i < sizeof(s->least) / sizeof(s->least[0]); i++) {
 		s->least[i] = INFINITY;
@@ -232,16 +228,16 @@ static void eds_forget(struct sim_slave *slave)
 	eds_put(bytes_at(slave, s->kind->alarm), s->kind->alarm_bytes, 0);
 }
 
-static void clear_alarms(struct sim_slave *slave, int64_t t)
+static void clear_alarms(struct sim_slave *slave)
 {
 	eds_forget(slave);
-	work(slave, t);
+	work(slave);
 	sim_end(slave);
 }
 
 void eds_create(struct sim_slave *slave)
 {
-	struct eds *s = eds_state(slave);
+	struct eds *s = slave->state;
 
 	s->kind = slave->family->kind;
 	s->memory.kind = s->kind->size == small.size ? &small : &large;
@@ -250,24 +246,24 @@ void eds_create(struct sim_slave *slave)
 	eds_put(bytes_at(slave, ID), 2, s->kind->id);
 }
 
-void eds_power_on(struct sim_slave *slave, int64_t t)
+void eds_power_on(struct sim_slave *slave)
 {
-	struct eds *s = eds_state(slave);
+	struct eds *s = slave->state;
 
-	sim_scratchpad_power_on(slave, t);
+	sim_scratchpad_power_on(slave);
 	memset(bytes_at(slave, ID + 2), 0, s->kind->writable - (ID + 2u));
 	*bytes_at(slave, s->kind->relay + 1u) = 0;
 	if (s->kind->digital) {
 		*bytes_at(slave, OUTPUT_VALUE) = 0;
 		s->level = 0;
 		for (unsigned i = 0; i < PINS; i++)
-			s->level |= (uint8_t)((sim_input_at(slave, i, t) >= 0.5) << i);
+			s->level |= (uint8_t)((sim_input_now(slave, i) >= 0.5) << i);
 	}
-	s->started = s->sampled = s->followed = t;
-	s->tick = t / TICK_NS;
+	s->started = s->sampled = s->followed = slave->now;
+	s->tick = slave->now / TICK_NS;
 	s->peak = 0;
 	eds_forget(slave);
-	work(slave, t);
+	work(slave);
 }
 
 /* What the host wrote into registers that act. */
@@ -285,25 +281,24 @@ static void act(struct sim_slave *slave)
 	*bytes_at(slave, PULLDOWN) = *bytes_at(slave, PULLDOWN_VALUE);
 }
 
-void eds_worked(struct sim_slave *slave, int64_t t)
+void eds_worked(struct sim_slave *slave)
 {
-	struct eds *s = eds_state(slave);
+	struct eds *s = slave->state;
 	uint8_t fixed[0xA0];
 
 	if (s->kind->digital)
-		eds_follow(slave, t);
+		eds_follow(slave);
 	memcpy(fixed, s->memory.memory, s->kind->writable);
-	sim_scratchpad_worked(slave, t);
+	sim_scratchpad_worked(slave);
 	memcpy(s->memory.memory, fixed, s->kind->writable);
 	if (s->kind->digital)
 		act(slave);
-	work(slave, t);
+	work(slave);
 }
 
-bool eds_alarm(struct sim_slave *slave, int64_t t)
+bool eds_alarm(struct sim_slave *slave)
 {
-	(void)t;
-	return word(slave, eds_state(slave)->kind->alarm) != 0;
+	return word(slave, sim_state(slave, eds)->kind->alarm) != 0;
 }
 
 const struct sim_function eds_functions[] = {

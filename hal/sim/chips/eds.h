@@ -11,7 +11,7 @@
 /* What a kind measures: a register, its limits, and a pair of alarm flags (high, low). */
 struct eds_quantity {
 	const char *input; /* its value, unless derived */
-	double (*derived)(struct sim_slave *slave, int64_t t);
+	double (*derived)(struct sim_slave *slave);
 	double unit; /* of the register */
 	uint8_t at, bytes;
 	uint8_t high, low, limit_bytes; /* limit_bytes 0: no limits */
@@ -44,9 +44,9 @@ struct eds {
 };
 extern const struct sim_function eds_functions[];
 void eds_create(struct sim_slave *slave);
-void eds_power_on(struct sim_slave *slave, int64_t t);
-void eds_worked(struct sim_slave *slave, int64_t t);
-void eds_advance(struct sim_slave *slave, int64_t t);
-bool eds_alarm(struct sim_slave *slave, int64_t t);
+void eds_power_on(struct sim_slave *slave);
+void eds_worked(struct sim_slave *slave);
+void eds_advance(struct sim_slave *slave);
+bool eds_alarm(struct sim_slave *slave);
 
 #endif

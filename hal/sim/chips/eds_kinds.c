@@ -7,9 +7,9 @@
 
 #define COUNT(array) (sizeof(array) / sizeof((array)[0]))
 
-static double input(struct sim_slave *slave, const char *name, int64_t t)
+static double input(struct sim_slave *slave, const char *name)
 {
-	return sim_input_at(slave, (unsigned)sim_slave_input(slave, name), t);
+	return sim_input_now(slave, (unsigned)sim_slave_input(slave, name));
 }
 
 /* Magnus's formula: the pressure of water vapour over its pressure at 0 degrees, as a logarithm. */
@@ -18,43 +18,43 @@ static double magnus(double temperature)
 	return 17.62 * temperature / (243.12 + temperature);
 }
 
-static double humidity(struct sim_slave *slave, int64_t t)
+static double humidity(struct sim_slave *slave)
 {
-	return fmax(input(slave, "humidity", t), 1) / 100;
+	return fmax(input(slave, "humidity"), 1) / 100;
 }
 
-static double dew_point(struct sim_slave *slave, int64_t t)
+static double dew_point(struct sim_slave *slave)
 {
-	double gamma = log(humidity(slave, t)) + magnus(input(slave, "temperature", t));
+	double gamma = log(humidity(slave)) + magnus(input(slave, "temperature"));
 
 	return 243.12 * gamma / (17.62 - gamma);
 }
 
-static double humidex(struct sim_slave *slave, int64_t t)
+static double humidex(struct sim_slave *slave)
 {
-	double temperature = input(slave, "temperature", t);
+	double temperature = input(slave, "temperature");
 
-	return temperature + 5.0 / 9 * (6.112 * exp(magnus(temperature)) * humidity(slave, t) - 10);
+	return temperature + 5.0 / 9 * (6.112 * exp(magnus(temperature)) * humidity(slave) - 10);
 }
 
 /* Steadman's simple formula; the chip's own is not known. */
-static double heat_index(struct sim_slave *slave, int64_t t)
+static double heat_index(struct sim_slave *slave)
 {
-	double f = input(slave, "temperature", t) * 1.8 + 32;
+	double f = input(slave, "temperature") * 1.8 + 32;
 
-	f = 0.5 * (f + 61 + (f - 68) * 1.2 + humidity(slave, t) * 9.4);
+	f = 0.5 * (f + 61 + (f - 68) * 1.2 + humidity(slave) * 9.4);
 	return (f - 32) / 1.8;
 }
 
-static double inches_of_mercury(struct sim_slave *slave, int64_t t)
+static double inches_of_mercury(struct sim_slave *slave)
 {
-	return input(slave, "pressure", t) / 33.8638866667;
+	return input(slave, "pressure") / 33.8638866667;
 }
 
 /* IEC 60751: a Pt100. */
-static double resistance(struct sim_slave *slave, int64_t t)
+static double resistance(struct sim_slave *slave)
 {
-	double c = input(slave, "temperature", t);
+	double c = input(slave, "temperature");
 	double below = c < 0 ? -4.183e-12 * (c - 100) * c * c * c : 0;
 
 	return 100 * (1 + 3.9083e-3 * c - 5.775e-7 * c * c + below);

@@ -15,11 +15,6 @@
 /* The elapsed time register of the DS2770: 1024 h in 65536 counts. */
 #define TICK_NS (INT64_C(56250) * NS_PER_MS)
 
-static struct gauge *gauge_state(struct sim_slave *slave)
-{
-	return sim_state(slave, gauge);
-}
-
 static unsigned block_of(const struct gauge_kind *kind, unsigned address)
 {
 	unsigned b = 0;
@@ -62,33 +57,33 @@ static double bias_mv(const struct gauge *s)
 }
 
 /* The current between two looks is that at sixteen times between them. */
-static void accumulate(struct sim_slave *slave, int64_t t)
+static void accumulate(struct sim_slave *slave)
 {
-	struct gauge *s = gauge_state(slave);
+	struct gauge *s = slave->state;
 	const struct gauge_kind *k = s->kind;
 	double most = 32767 * ACR_UNIT, mv = bias_mv(s);
-	int64_t step = (t - s->last) / 16;
+	int64_t step = (slave->now - s->last) / 16;
 
 	if (k->accumbias)
 		mv += (int8_t)s->memory[k->accumbias] * (k->fine ? 1.5625e-3 : 15.625e-3);
 	for (unsigned i = 0; i < 16; i++)
 		mv += sim_input_at(slave, VIS, s->last + step * i + step / 2) / 16;
-	s->accumulated += mv * (double)(t - s->last);
+	s->accumulated += mv * (double)(slave->now - s->last);
 	if (s->accumulated > most)
 		s->accumulated = most;
 	if (s->accumulated < -most)
 		s->accumulated = -most;
-	s->last = t;
+	s->last = slave->now;
 	gauge_put16(s->memory + ACCUMULATED, within(s->accumulated / ACR_UNIT, -32768, 32767));
 }
 
-static void gauge_measure(struct sim_slave *slave, int64_t t)
+static void gauge_measure(struct sim_slave *slave)
 {
-	struct gauge *s = gauge_state(slave);
+	struct gauge *s = slave->state;
 	const struct gauge_kind *k = s->kind;
-	double mv = sim_input_at(slave, VIS, t) + bias_mv(s);
+	double mv = sim_input_now(slave, VIS) + bias_mv(s);
 
-	accumulate(slave, t);
+	accumulate(slave);
 	if (k->fine)
 		gauge_put16(s->memory + CURRENT, within(mv / 1.5625e-3, -32768, 32767));
 	else
@@ -98,31 +93,31 @@ static void gauge_measure(struct sim_slave *slave, int64_t t)
 		            within(mv / (k->fine ? 1.5625e-3 : 15.625e-3 / 8), -32768, 32767));
 	if (k->celsius)
 		gauge_put16(s->memory + k->celsius,
-		            within(sim_input_at(slave, TEMPERATURE, t) * 8, -1023, 1023) * 32);
+		            within(sim_input_now(slave, TEMPERATURE) * 8, -1023, 1023) * 32);
 	if (k->volt > 0)
 		gauge_put16(s->memory + VOLTAGE,
-		            within(sim_input_at(slave, VOLT, t) / k->volt, 0, 1023) * 32);
+		            within(sim_input_now(slave, VOLT) / k->volt, 0, 1023) * 32);
 }
 
-static bool on(const struct sim_slave *slave, unsigned input, int64_t t)
+static bool on(const struct sim_slave *slave, unsigned input)
 {
-	return sim_input_at(slave, input, t) >= 0.5;
+	return sim_input_now(slave, input) >= 0.5;
 }
 
 /*
  * DS2760: a condition sets its flag, which stays. CC and DC mirror their pins, which are high to
  * switch off.
  */
-static void protect(struct sim_slave *slave, int64_t t)
+static void protect(struct sim_slave *slave)
 {
 	static const uint8_t flags[] = {OV, UV, COC, DOC};
-	struct gauge *s = gauge_state(slave);
+	struct gauge *s = slave->state;
 	uint8_t *protection = s->memory;
 
 	for (unsigned i = 0; i < sizeof(flags); i++)
-		if (on(slave, FLAGS + i, t))
+		if (on(slave, FLAGS + i))
 			*protection |= flags[i];
-	if (!on(slave, FLAGS + 4, t))
+	if (!on(slave, FLAGS + 4))
 		s->memory[s->kind->special] &= 0x7F; /* PS */
 	*protection |= CC | DC;
 	if ((*protection & CE) && !(*protection & (OV | COC)))
@@ -132,16 +127,16 @@ static void protect(struct sim_slave *slave, int64_t t)
 }
 
 /* DS2770: the charge status of figure 12, and the timer. */
-static void charge(struct sim_slave *slave, int64_t t)
+static void charge(struct sim_slave *slave)
 {
-	struct gauge *s = gauge_state(slave);
-	bool source = on(slave, CHARGER, t);
+	struct gauge *s = slave->state;
+	bool source = on(slave, CHARGER);
 	uint8_t was = s->memory[STATUS] & CSTAT, status = source ? 0x80 : 0x00;
 
 	if (was == 0 && source && (s->memory[STATUS] & CINI))
 		s->charging = true;
 	s->charging = s->charging && source;
-	if (s->charging && on(slave, FULL, t)) {
+	if (s->charging && on(slave, FULL)) {
 		s->charging = false;
 		s->full = true;
 	}
@@ -150,39 +145,39 @@ static void charge(struct sim_slave *slave, int64_t t)
 	if (s->full)
 		status = CSTAT;
 	s->memory[STATUS] = (uint8_t)((s->memory[STATUS] & ~CSTAT) | status);
-	gauge_put16(s->memory + 0x02, (int)((t - s->started) / TICK_NS));
+	gauge_put16(s->memory + 0x02, (int)((slave->now - s->started) / TICK_NS));
 }
 
 /* DS2780, DS2781: flags of the capacity, and the voltage below which they sleep. */
-static void gauge_watch(struct sim_slave *slave, int64_t t)
+static void gauge_watch(struct sim_slave *slave)
 {
-	struct gauge *s = gauge_state(slave);
+	struct gauge *s = slave->state;
 	bool high = s->kind->add_bias && (s->memory[0x60] & UVTH);
 	uint8_t *status = &s->memory[STATUS];
 
 	*status &= 0x0F;
 	for (unsigned i = 0; i < 4; i++)
-		*status |= (uint8_t)(on(slave, FLAGS + i, t) << (7 - i));
-	if (sim_input_at(slave, VOLT, t) < (high ? 4.9 : 2.45))
+		*status |= (uint8_t)(on(slave, FLAGS + i) << (7 - i));
+	if (sim_input_now(slave, VOLT) < (high ? 4.9 : 2.45))
 		*status |= UVF;
 }
 
-void sim_gauge_advance(struct sim_slave *slave, int64_t t)
+void sim_gauge_advance(struct sim_slave *slave)
 {
-	struct gauge *s = gauge_state(slave);
+	struct gauge *s = slave->state;
 	const struct gauge_kind *k = s->kind;
 
-	gauge_measure(slave, t);
+	gauge_measure(slave);
 	if (slave->family->code == 0x30)
-		protect(slave, t);
+		protect(slave);
 	if (slave->family->code == 0x2E)
-		charge(slave, t);
+		charge(slave);
 	if (slave->family->code == 0x32 || slave->family->code == 0x3D)
-		gauge_watch(slave, t);
+		gauge_watch(slave);
 	if (!k->pio)
 		return;
 	s->memory[k->special] &= (uint8_t)~k->pio;
-	if (!s->low && on(slave, PIN, t))
+	if (!s->low && on(slave, PIN))
 		s->memory[k->special] |= k->pio;
 }
 
@@ -197,7 +192,7 @@ static void take_defaults(struct gauge *s, uint8_t from)
 
 static void recall_block(struct sim_slave *slave, unsigned block)
 {
-	struct gauge *s = gauge_state(slave);
+	struct gauge *s = slave->state;
 	const struct gauge_kind *k = s->kind;
 
 	memcpy(s->memory + k->block[block].at, s->eeprom[block], k->block[block].size);
@@ -208,9 +203,9 @@ static void recall_block(struct sim_slave *slave, unsigned block)
 		                         (s->memory[0x30] & (CE | DE)));
 }
 
-void sim_gauge_power_on(struct sim_slave *slave, int64_t t)
+void sim_gauge_power_on(struct sim_slave *slave)
 {
-	struct gauge *s = gauge_state(slave);
+	struct gauge *s = slave->state;
 	const struct gauge_kind *k = s->kind;
 	uint8_t locks = s->memory[k->eeprom] & 7;
 
@@ -225,50 +220,47 @@ void sim_gauge_power_on(struct sim_slave *slave, int64_t t)
 	s->low = s->charging = s->full = false;
 	if (!k->keeps)
 		s->accumulated = 0;
-	s->last = s->started = t;
-	sim_gauge_advance(slave, t);
+	s->last = s->started = slave->now;
+	sim_gauge_advance(slave);
 }
 
-void sim_gauge_worked(struct sim_slave *slave, int64_t t)
+void sim_gauge_worked(struct sim_slave *slave)
 {
-	struct gauge *s = gauge_state(slave);
+	struct gauge *s = slave->state;
 
-	(void)t;
 	memcpy(s->eeprom[s->copied], s->memory + s->kind->block[s->copied].at,
 	       s->kind->block[s->copied].size);
 	s->memory[s->kind->eeprom] &= (uint8_t)~EEC;
 }
 
 /* Any command other than the lock itself cancels the permission to lock. */
-static void forget_lock(struct sim_slave *slave, int64_t t)
+static void forget_lock(struct sim_slave *slave)
 {
-	struct gauge *s = gauge_state(slave);
+	struct gauge *s = slave->state;
 
-	(void)t;
 	if (s->kind->eeprom)
 		s->memory[s->kind->eeprom] &= (uint8_t)~LOCK;
 }
 
-static void read_data(struct sim_slave *slave, int64_t t)
+static void read_data(struct sim_slave *slave)
 {
-	(void)t;
-	sim_send_memory(slave, gauge_state(slave)->latched, 256, 0);
+	sim_send_memory(slave, sim_state(slave, gauge)->latched, 256, 0);
 }
 
 /* The bytes of a register stay as they are while one command reads them. */
-static void begin_read(struct sim_slave *slave, int64_t t)
+static void begin_read(struct sim_slave *slave)
 {
-	struct gauge *s = gauge_state(slave);
+	struct gauge *s = slave->state;
 
-	forget_lock(slave, t);
+	forget_lock(slave);
 	memcpy(s->latched, s->memory, sizeof(s->latched));
-	read_data(slave, t);
+	read_data(slave);
 }
 
 /* What is written has a consequence beyond its byte. */
-static void written(struct sim_slave *slave, unsigned at, uint8_t byte, int64_t t)
+static void written(struct sim_slave *slave, unsigned at, uint8_t byte)
 {
-	struct gauge *s = gauge_state(slave);
+	struct gauge *s = slave->state;
 
 	if (at == s->kind->special && s->kind->pio)
 		s->low = !(byte & s->kind->pio);
@@ -281,13 +273,13 @@ static void written(struct sim_slave *slave, unsigned at, uint8_t byte, int64_t 
 	if (at == STATUS)
 		s->full = false;
 	if (at == 0x02 || at == 0x03)
-		s->started = t - (s->memory[2] << 8 | s->memory[3]) * TICK_NS;
+		s->started = slave->now - (s->memory[2] << 8 | s->memory[3]) * TICK_NS;
 }
 
 /* What is read-only, reserved or locked stays unchanged. */
-static void write_data(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void write_data(struct sim_slave *slave, uint8_t byte)
 {
-	struct gauge *s = gauge_state(slave);
+	struct gauge *s = slave->state;
 	const struct gauge_kind *k = s->kind;
 	unsigned at = slave->address, block = block_of(k, at);
 
@@ -304,75 +296,79 @@ static void write_data(struct sim_slave *slave, uint8_t byte, int64_t t)
 		*to = (uint8_t)((byte & r->write) | (*to & ~r->write));
 		*to &= (uint8_t)(byte | ~r->clear);
 		*to |= byte & r->set;
-		written(slave, at, byte, t);
+		written(slave, at, byte);
 	}
-	sim_gauge_advance(slave, t);
+	sim_gauge_advance(slave);
 }
 
-static void gauge_copy(struct sim_slave *slave, int64_t t)
+static void gauge_copy(struct sim_slave *slave)
 {
-	struct gauge *s = gauge_state(slave);
+	struct gauge *s = slave->state;
 	unsigned block = block_of(s->kind, slave->address);
 
-	forget_lock(slave, t);
+	forget_lock(slave);
 	if (block < GAUGE_BLOCKS && !locked(s, block)) {
 		s->copied = (uint8_t)block;
 		s->memory[s->kind->eeprom] |= EEC;
-		sim_work(slave, COPY_NS, t);
+		sim_work(slave, COPY_NS);
 	}
 	sim_end(slave);
 }
 
-static void gauge_recall(struct sim_slave *slave, int64_t t)
+static void gauge_recall(struct sim_slave *slave)
 {
-	unsigned block = block_of(gauge_state(slave)->kind, slave->address);
+	unsigned block = block_of(sim_state(slave, gauge)->kind, slave->address);
 
-	forget_lock(slave, t);
+	forget_lock(slave);
 	if (block < GAUGE_BLOCKS)
 		recall_block(slave, block);
-	sim_gauge_advance(slave, t);
+	sim_gauge_advance(slave);
 	sim_end(slave);
 }
 
-static void lock(struct sim_slave *slave, int64_t t)
+static void lock(struct sim_slave *slave)
 {
-	struct gauge *s = gauge_state(slave);
+	struct gauge *s = slave->state;
 	unsigned block = block_of(s->kind, slave->address);
 
 	if (block < GAUGE_BLOCKS && (s->memory[s->kind->eeprom] & LOCK))
 		s->memory[s->kind->eeprom] |= (uint8_t)(1 << block);
-	forget_lock(slave, t);
+	forget_lock(slave);
 	sim_end(slave);
 }
 
-static void start_charge(struct sim_slave *slave, int64_t t)
+static void start_charge(struct sim_slave *slave)
 {
-	forget_lock(slave, t);
-	gauge_state(slave)->charging = true;
-	sim_gauge_advance(slave, t);
+	forget_lock(slave);
+	sim_state(slave, gauge)->charging = true;
+	sim_gauge_advance(slave);
 	sim_end(slave);
 }
 
-static void stop_charge(struct sim_slave *slave, int64_t t)
+static void stop_charge(struct sim_slave *slave)
 {
-	forget_lock(slave, t);
-	gauge_state(slave)->charging = false;
-	sim_gauge_advance(slave, t);
+	forget_lock(slave);
+	sim_state(slave, gauge)->charging = false;
+	sim_gauge_advance(slave);
 	sim_end(slave);
 }
 
 /* The status comes from the EEPROM itself, not from its shadow. */
-static void refresh(struct sim_slave *slave, int64_t t)
+static void refresh(struct sim_slave *slave)
 {
-	forget_lock(slave, t);
-	take_defaults(gauge_state(slave), gauge_state(slave)->eeprom[1][1]);
+	struct gauge *s = slave->state;
+
+	forget_lock(slave);
+	take_defaults(s, s->eeprom[1][1]);
 	sim_end(slave);
 }
 
 uint8_t *sim_gauge_memory(struct sim_slave *slave, size_t *size)
 {
-	*size = sizeof(gauge_state(slave)->eeprom); /* it is recalled at power-on */
-	return gauge_state(slave)->eeprom[0];
+	struct gauge *s = slave->state;
+
+	*size = sizeof(s->eeprom); /* it is recalled at power-on */
+	return s->eeprom[0];
 }
 
 #define EEPROM_FUNCTIONS \

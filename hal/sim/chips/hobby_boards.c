@@ -32,7 +32,7 @@ enum { WATERMARK_MOST = 199, LEAF_MOST = 99 };
 struct variable {
 	uint8_t code, size, at; /* at: of a setting */
 	bool writes;
-	void (*measure)(const struct sim_slave *slave, uint8_t *out, int64_t t); /* not a setting */
+	void (*measure)(const struct sim_slave *slave, uint8_t *out); /* not a setting */
 	void (*act)(struct sim_slave *slave, const uint8_t *bytes);
 };
 
@@ -42,11 +42,6 @@ struct hobby {
 	const struct variable *variable;
 	uint8_t bytes[LOCATION_BYTES];
 };
-
-static struct hobby *hobby_boards_state(const struct sim_slave *slave)
-{
-	return sim_state(slave, hobby);
-}
 
 static enum kind kind_of(const struct sim_slave *slave)
 {
@@ -65,7 +60,7 @@ static enum kind kind_of(const struct sim_slave *slave)
 
 static int setting16(const struct sim_slave *slave, unsigned at)
 {
-	const uint8_t *from = hobby_boards_state(slave)->settings + at;
+	const uint8_t *from = sim_state(slave, hobby)->settings + at;
 
 	return (int16_t)(from[0] | from[1] << 8);
 }
@@ -85,7 +80,7 @@ static double between(double value, double least, double most)
 
 static void hobby_boards_create(struct sim_slave *slave)
 {
-	uint8_t *settings = hobby_boards_state(slave)->settings;
+	uint8_t *settings = sim_state(slave, hobby)->settings;
 	enum kind kind = kind_of(slave);
 
 	memset(settings, 0, SETTINGS);
@@ -99,29 +94,26 @@ static void hobby_boards_create(struct sim_slave *slave)
 }
 
 /* The hub comes up with all channels off. */
-static void hobby_boards_power_on(struct sim_slave *slave, int64_t t)
+static void hobby_boards_power_on(struct sim_slave *slave)
 {
-	(void)t;
-	hobby_boards_state(slave)->channels = 0;
+	sim_state(slave, hobby)->channels = 0;
 }
 
-static void type(const struct sim_slave *slave, uint8_t *out, int64_t t)
+static void type(const struct sim_slave *slave, uint8_t *out)
 {
-	(void)t;
 	out[0] = (uint8_t)kind_of(slave);
 }
 
-static void polling_available(const struct sim_slave *slave, uint8_t *out, int64_t t)
+static void polling_available(const struct sim_slave *slave, uint8_t *out)
 {
 	(void)slave;
-	(void)t;
 	out[0] = 0x07;
 }
 
 static void reboot(struct sim_slave *slave, const uint8_t *bytes)
 {
 	(void)bytes;
-	hobby_boards_power_on(slave, 0);
+	hobby_boards_power_on(slave);
 }
 
 static void factory(struct sim_slave *slave, const uint8_t *bytes)
@@ -131,34 +123,33 @@ static void factory(struct sim_slave *slave, const uint8_t *bytes)
 }
 
 /* Half degrees. */
-static void uvi_temperature(const struct sim_slave *slave, uint8_t *out, int64_t t)
+static void uvi_temperature(const struct sim_slave *slave, uint8_t *out)
 {
-	hobby_boards_put16(out,
-	                   sim_input_at(slave, 1, t) * 2 + setting16(slave, TEMPERATURE_OFFSET));
+	hobby_boards_put16(out, sim_input_now(slave, 1) * 2 + setting16(slave, TEMPERATURE_OFFSET));
 }
 
-static void uvi(const struct sim_slave *slave, uint8_t *out, int64_t t)
+static void uvi(const struct sim_slave *slave, uint8_t *out)
 {
-	int8_t offset = (int8_t)hobby_boards_state(slave)->settings[UVI_OFFSET];
+	int8_t offset = (int8_t)sim_state(slave, hobby)->settings[UVI_OFFSET];
 
-	out[0] = (uint8_t)sim_round(between(sim_input_at(slave, 0, t) * 10 + offset, 0, 160));
+	out[0] = (uint8_t)sim_round(between(sim_input_now(slave, 0) * 10 + offset, 0, 160));
 }
 
-static void moisture_raw(const struct sim_slave *slave, uint8_t *out, int64_t t)
+static void moisture_raw(const struct sim_slave *slave, uint8_t *out)
 {
 	for (unsigned i = 0; i < 4; i++)
-		hobby_boards_put16(out + 2 * i, sim_input_at(slave, i, t));
+		hobby_boards_put16(out + 2 * i, sim_input_now(slave, i));
 }
 
 /* A watermark sensor reads 0 to 199, a leaf's is scaled to 0 to 99. */
-static void moisture(const struct sim_slave *slave, uint8_t *out, int64_t t)
+static void moisture(const struct sim_slave *slave, uint8_t *out)
 {
 	double least = setting16(slave, LEAF_MIN), most = setting16(slave, LEAF_MAX);
 
 	for (unsigned i = 0; i < 4; i++) {
-		double raw = sim_input_at(slave, i, t);
+		double raw = sim_input_now(slave, i);
 
-		if (hobby_boards_state(slave)->settings[LEAF] >> i & 1)
+		if (sim_state(slave, hobby)->settings[LEAF] >> i & 1)
 			raw = most > least ? between((raw - least) * LEAF_MOST / (most - least), 0,
 			                             LEAF_MOST)
 			                   : 0;
@@ -166,24 +157,23 @@ static void moisture(const struct sim_slave *slave, uint8_t *out, int64_t t)
 	}
 }
 
-static void channels(const struct sim_slave *slave, uint8_t *out, int64_t t)
+static void channels(const struct sim_slave *slave, uint8_t *out)
 {
-	(void)t;
-	out[0] = hobby_boards_state(slave)->channels;
+	out[0] = sim_state(slave, hobby)->channels;
 }
 
-static void shorted(const struct sim_slave *slave, uint8_t *out, int64_t t)
+static void shorted(const struct sim_slave *slave, uint8_t *out)
 {
 	out[0] = 0;
 	for (unsigned i = 0; i < 4; i++)
-		if (sim_input_at(slave, i, t) >= 0.5)
+		if (sim_input_now(slave, i) >= 0.5)
 			out[0] |= (uint8_t)(1u << i);
 }
 
 /* Bits 0 to 3 are switched on, or off; one of them alone takes the others off if so set up. */
 static void switch_channels(struct sim_slave *slave, const uint8_t *bytes)
 {
-	struct hobby *s = hobby_boards_state(slave);
+	struct hobby *s = slave->state;
 	uint8_t which = bytes[0] & 15;
 
 	if (!(bytes[0] & ON))
@@ -195,34 +185,33 @@ static void switch_channels(struct sim_slave *slave, const uint8_t *bytes)
 }
 
 /* Tenths of a degree, of one sensor or of six. */
-static void temperatures(const struct sim_slave *slave, uint8_t *out, int64_t t)
+static void temperatures(const struct sim_slave *slave, uint8_t *out)
 {
 	unsigned n = kind_of(slave) == MULTITEMP ? 6 : 1;
 
 	for (unsigned i = 0; i < n; i++)
-		hobby_boards_put16(out + 2 * i, sim_input_at(slave, i, t) * 10);
+		hobby_boards_put16(out + 2 * i, sim_input_now(slave, i) * 10);
 }
 
-static void pressure(const struct sim_slave *slave, uint8_t *out, int64_t t)
+static void pressure(const struct sim_slave *slave, uint8_t *out)
 {
-	hobby_boards_put16(out, sim_input_at(slave, 1, t) / 10); /* kPa of mbar */
+	hobby_boards_put16(out, sim_input_now(slave, 1) / 10); /* kPa of mbar */
 }
 
 /* Of the standard atmosphere, near enough: 8.3 m a mbar. */
-static void pressure_altitude(const struct sim_slave *slave, uint8_t *out, int64_t t)
+static void pressure_altitude(const struct sim_slave *slave, uint8_t *out)
 {
-	hobby_boards_put16(out, (1013.25 - sim_input_at(slave, 1, t)) * 8.3);
+	hobby_boards_put16(out, (1013.25 - sim_input_now(slave, 1)) * 8.3);
 }
 
-static void humidity_raw(const struct sim_slave *slave, uint8_t *out, int64_t t)
+static void humidity_raw(const struct sim_slave *slave, uint8_t *out)
 {
-	hobby_boards_put16(out, sim_input_at(slave, 1, t) * 100);
+	hobby_boards_put16(out, sim_input_now(slave, 1) * 100);
 }
 
-static void humidity(const struct sim_slave *slave, uint8_t *out, int64_t t)
+static void humidity(const struct sim_slave *slave, uint8_t *out)
 {
-	hobby_boards_put16(out,
-	                   sim_input_at(slave, 1, t) * 100 + setting16(slave, HUMIDITY_OFFSET));
+	hobby_boards_put16(out, sim_input_now(slave, 1) * 100 + setting16(slave, HUMIDITY_OFFSET));
 }
 
 #define COMMON \
@@ -332,9 +321,9 @@ static const struct variable *hobby_boards_find(const struct sim_slave *slave, u
 	return v->code ? v : NULL;
 }
 
-static void hobby_boards_command(struct sim_slave *slave, int64_t t)
+static void hobby_boards_command(struct sim_slave *slave)
 {
-	struct hobby *s = hobby_boards_state(slave);
+	struct hobby *s = slave->state;
 	const struct variable *v = hobby_boards_find(slave, slave->function->code);
 
 	s->variable = v;
@@ -345,19 +334,18 @@ static void hobby_boards_command(struct sim_slave *slave, int64_t t)
 		v->act(slave, NULL);
 		sim_end(slave);
 	} else if (v->measure) {
-		v->measure(slave, s->bytes, t);
+		v->measure(slave, s->bytes);
 		sim_send(slave, s->bytes, v->size);
 	} else if (!v->writes && !v->act) {
 		sim_send(slave, s->settings + v->at, v->size);
 	}
 }
 
-static void argument(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void argument(struct sim_slave *slave, uint8_t byte)
 {
-	struct hobby *s = hobby_boards_state(slave);
+	struct hobby *s = slave->state;
 	const struct variable *v = s->variable;
 
-	(void)t;
 	s->bytes[slave->address++] = byte;
 	if (slave->address < v->size)
 		return;
@@ -374,14 +362,14 @@ static int hobby_boards_option(struct sim_slave *slave, const char *name, double
 		return -ENOENT;
 	if (value < 0 || value > 0xFFFF)
 		return -ERANGE;
-	hobby_boards_put16(hobby_boards_state(slave)->settings + VERSION, value);
+	hobby_boards_put16(sim_state(slave, hobby)->settings + VERSION, value);
 	return 0;
 }
 
 static uint8_t *hobby_boards_memory(struct sim_slave *slave, size_t *size)
 {
 	*size = SETTINGS;
-	return hobby_boards_state(slave)->settings;
+	return sim_state(slave, hobby)->settings;
 }
 
 #define COMMAND(code_) \

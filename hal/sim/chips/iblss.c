@@ -24,16 +24,11 @@ struct iblss {
 	uint8_t covers;
 };
 
-static struct iblss *iblss_state(struct sim_slave *slave)
+static void iblss_power_on(struct sim_slave *slave)
 {
-	return sim_state(slave, iblss);
-}
+	struct iblss *s = slave->state;
 
-static void iblss_power_on(struct sim_slave *slave, int64_t t)
-{
-	(void)t;
-	*iblss_state(slave) = (struct iblss){.page = {[SUBTYPE] = 0x04, [VERSION] = 0x12},
-	                                     .covers = iblss_state(slave)->covers};
+	*s = (struct iblss){.page = {[SUBTYPE] = 0x04, [VERSION] = 0x12}, .covers = s->covers};
 }
 
 static void iblss_put(uint8_t *at, double value)
@@ -44,11 +39,11 @@ static void iblss_put(uint8_t *at, double value)
 	at[1] = (uint8_t)whole;
 }
 
-static void iblss_advance(struct sim_slave *slave, int64_t t)
+static void iblss_advance(struct sim_slave *slave)
 {
-	struct iblss *s = iblss_state(slave);
+	struct iblss *s = slave->state;
 
-	if (!s->done || t < s->done)
+	if (!s->done || slave->now < s->done)
 		return;
 	iblss_put(s->page + TEMPERATURE_AT, sim_input_at(slave, TEMPERATURE, s->done));
 	iblss_put(s->page + HUMIDITY_AT, sim_input_at(slave, HUMIDITY, s->done));
@@ -58,10 +53,12 @@ static void iblss_advance(struct sim_slave *slave, int64_t t)
 	slave->conversions++;
 }
 
-static void iblss_convert(struct sim_slave *slave, int64_t t)
+static void iblss_convert(struct sim_slave *slave)
 {
-	iblss_state(slave)->page[BUSY] = 1;
-	iblss_state(slave)->done = t + CONVERT_NS;
+	struct iblss *s = slave->state;
+
+	s->page[BUSY] = 1;
+	s->done = slave->now + CONVERT_NS;
 	sim_end(slave);
 }
 
@@ -71,36 +68,36 @@ static int iblss_option(struct sim_slave *slave, const char *name, double value)
 		return -ENOENT;
 	if (value != 0 && value != 1 && value != 2)
 		return -ERANGE;
-	iblss_state(slave)->covers = (uint8_t)value;
+	sim_state(slave, iblss)->covers = (uint8_t)value;
 	return 0;
 }
 
-static void read_page(struct sim_slave *slave, int64_t t)
+static void read_page(struct sim_slave *slave)
 {
-	(void)t;
+	struct iblss *s = slave->state;
+
 	if (slave->address) {
 		sim_end(slave);
 		return;
 	}
-	if (iblss_state(slave)->covers == 0)
+	if (s->covers == 0)
 		slave->crc = 0;
-	else if (iblss_state(slave)->covers == 2)
+	else if (s->covers == 2)
 		slave->crc ^= 0x5AA5;
-	sim_send_checked(slave, iblss_state(slave)->page, PAGE);
+	sim_send_checked(slave, s->page, PAGE);
 }
 
-static void set_led(struct sim_slave *slave, int64_t t)
+static void set_led(struct sim_slave *slave)
 {
-	(void)t;
 	if (slave->taken[0] == 0)
-		iblss_state(slave)->led = slave->taken[1];
+		sim_state(slave, iblss)->led = slave->taken[1];
 	sim_end(slave);
 }
 
 static uint8_t *iblss_memory(struct sim_slave *slave, size_t *size)
 {
 	*size = 1;
-	return &iblss_state(slave)->led;
+	return &sim_state(slave, iblss)->led;
 }
 
 static const struct sim_function functions[] = {

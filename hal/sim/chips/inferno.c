@@ -37,13 +37,8 @@ struct inferno {
 
 struct command {
 	uint8_t code, args;
-	void (*answer)(struct sim_slave *slave, const uint8_t *args, int64_t t);
+	void (*answer)(struct sim_slave *slave, const uint8_t *args);
 };
-
-static struct inferno *inferno_state(struct sim_slave *slave)
-{
-	return sim_state(slave, inferno);
-}
 
 /* 0, and n bytes. */
 static void ok(struct sim_slave *slave, const uint8_t *data, unsigned n)
@@ -87,26 +82,25 @@ static uint32_t shown(const struct light *light, uint8_t colour[4], int64_t t)
 	return left;
 }
 
-static void all_off(struct sim_slave *slave, const uint8_t *args, int64_t t)
+static void all_off(struct sim_slave *slave, const uint8_t *args)
 {
+	struct inferno *s = slave->state;
+
 	(void)args;
-	(void)t;
-	memset(inferno_state(slave)->light, 0, sizeof(inferno_state(slave)->light));
+	memset(s->light, 0, sizeof(s->light));
 	ok(slave, NULL, 0);
 }
 
-static void count_lights(struct sim_slave *slave, const uint8_t *args, int64_t t)
+static void count_lights(struct sim_slave *slave, const uint8_t *args)
 {
 	(void)args;
-	(void)t;
 	ok(slave, (const uint8_t[]){LEDS}, 1);
 }
 
-static void set_light(struct sim_slave *slave, const uint8_t *args, int64_t t)
+static void set_light(struct sim_slave *slave, const uint8_t *args)
 {
-	struct light *light = inferno_state(slave)->light + args[0] % LEDS;
+	struct light *light = sim_state(slave, inferno)->light + args[0] % LEDS;
 
-	(void)t;
 	if (args[0] >= LEDS) {
 		inferno_refuse(slave);
 		return;
@@ -116,7 +110,7 @@ static void set_light(struct sim_slave *slave, const uint8_t *args, int64_t t)
 	ok(slave, NULL, 0);
 }
 
-static void get_light(struct sim_slave *slave, const uint8_t *args, int64_t t)
+static void get_light(struct sim_slave *slave, const uint8_t *args)
 {
 	uint8_t out[8];
 
@@ -124,22 +118,22 @@ static void get_light(struct sim_slave *slave, const uint8_t *args, int64_t t)
 		inferno_refuse(slave);
 		return;
 	}
-	put32(out + 4, shown(inferno_state(slave)->light + args[0], out, t));
+	put32(out + 4, shown(sim_state(slave, inferno)->light + args[0], out, slave->now));
 	ok(slave, out, 7);
 }
 
-static void commit(struct sim_slave *slave, const uint8_t *args, int64_t t)
+static void commit(struct sim_slave *slave, const uint8_t *args)
 {
 	(void)args;
 	for (unsigned i = 0; i < LEDS; i++) {
-		struct light *light = inferno_state(slave)->light + i;
+		struct light *light = sim_state(slave, inferno)->light + i;
 
 		if (memcmp(light->next, light->to, 4) == 0)
 			continue;
-		shown(light, light->from, t);
+		shown(light, light->from, slave->now);
 		memcpy(light->to, light->next, 4);
 		light->fade_ms = light->next_ms;
-		light->since = t;
+		light->since = slave->now;
 	}
 	ok(slave, NULL, 0);
 }
@@ -149,41 +143,41 @@ static const struct command of_rgbw[] = {
 	{0x04, 1, get_light}, {0x05, 0, commit},       {0},
 };
 
-static void bootloader_size(struct sim_slave *slave, const uint8_t *args, int64_t t)
+static void bootloader_size(struct sim_slave *slave, const uint8_t *args)
 {
 	uint8_t out[4];
 
 	(void)args;
-	(void)t;
 	put32(out, START);
 	ok(slave, out, 4);
 }
 
-static void range(struct sim_slave *slave, const uint8_t *args, int64_t t)
+static void range(struct sim_slave *slave, const uint8_t *args)
 {
 	uint8_t out[8];
 
 	(void)args;
-	(void)t;
 	put32(out, START);
 	put32(out + 4, START + FIRMWARE);
 	ok(slave, out, 8);
 }
 
-static void erase(struct sim_slave *slave, const uint8_t *args, int64_t t)
+static void erase(struct sim_slave *slave, const uint8_t *args)
 {
+	struct inferno *s = slave->state;
+
 	(void)args;
-	(void)t;
-	memset(inferno_state(slave)->firmware, 0xFF, FIRMWARE);
-	inferno_state(slave)->status = SUCCESS;
+	memset(s->firmware, 0xFF, FIRMWARE);
+	s->status = SUCCESS;
 	ok(slave, NULL, 0);
 }
 
-static void boot_application(struct sim_slave *slave, const uint8_t *args, int64_t t)
+static void boot_application(struct sim_slave *slave, const uint8_t *args)
 {
+	struct inferno *s = slave->state;
+
 	(void)args;
-	(void)t;
-	inferno_state(slave)->kind = inferno_state(slave)->application;
+	s->kind = s->application;
 	ok(slave, NULL, 0);
 }
 
@@ -195,27 +189,25 @@ static uint8_t *part(struct sim_slave *slave, const uint8_t *args, unsigned *n)
 	*n = get32(args + 4);
 	if (at < START || at >= START + FIRMWARE || *n > START + FIRMWARE - at)
 		return NULL;
-	return inferno_state(slave)->firmware + (at - START);
+	return sim_state(slave, inferno)->firmware + (at - START);
 }
 
-static void write_block(struct sim_slave *slave, const uint8_t *args, int64_t t)
+static void write_block(struct sim_slave *slave, const uint8_t *args)
 {
 	unsigned n;
 
-	(void)t;
 	if (!part(slave, args, &n) || !n || n > BLOCK)
 		inferno_refuse(slave);
 	else
 		ok(slave, NULL, 0); /* the block may come: take_block */
 }
 
-static void firmware_crc(struct sim_slave *slave, const uint8_t *args, int64_t t)
+static void firmware_crc(struct sim_slave *slave, const uint8_t *args)
 {
 	unsigned n;
 	const uint8_t *from = part(slave, args, &n);
 	uint16_t crc = from ? sim_crc16(0, from, n) : 0;
 
-	(void)t;
 	if (from)
 		ok(slave, (const uint8_t[]){(uint8_t)crc, (uint8_t)(crc >> 8)}, 2);
 	else
@@ -233,31 +225,30 @@ static const struct command of_updater[] = {
 };
 
 /* Switches, LEDs (one bit a channel), relays: ports and channels. */
-static void count_ports(struct sim_slave *slave, const uint8_t *args, int64_t t)
+static void count_ports(struct sim_slave *slave, const uint8_t *args)
 {
 	(void)args;
-	(void)t;
 	ok(slave, (const uint8_t[]){slave->function->code == 0x03 ? 1 : PORTS, CHANNELS}, 2);
 }
 
-static void set_switch_type(struct sim_slave *slave, const uint8_t *args, int64_t t)
+static void set_switch_type(struct sim_slave *slave, const uint8_t *args)
 {
-	(void)t;
+	struct inferno *s = slave->state;
+
 	if (args[0] >= PORTS || args[1] >= CHANNELS || args[2] > 3) {
 		inferno_refuse(slave);
 		return;
 	}
-	inferno_state(slave)->type[args[0]][args[1]] = args[2];
-	inferno_state(slave)->active[args[0]] &= (uint8_t) ~(1u << args[1]);
+	s->type[args[0]][args[1]] = args[2];
+	s->active[args[0]] &= (uint8_t) ~(1u << args[1]);
 	ok(slave, NULL, 0);
 }
 
-static void activated(struct sim_slave *slave, const uint8_t *args, int64_t t)
+static void activated(struct sim_slave *slave, const uint8_t *args)
 {
-	struct inferno *s = inferno_state(slave);
+	struct inferno *s = slave->state;
 
 	(void)args;
-	(void)t;
 	ok(slave, s->active, PORTS);
 	for (unsigned port = 0; port < PORTS; port++)
 		for (unsigned i = 0; i < CHANNELS; i++)
@@ -266,11 +257,10 @@ static void activated(struct sim_slave *slave, const uint8_t *args, int64_t t)
 	s->status &= (uint8_t)~ACTIVATED;
 }
 
-static void set_led(struct sim_slave *slave, const uint8_t *args, int64_t t)
+static void set_led(struct sim_slave *slave, const uint8_t *args)
 {
-	uint8_t *led = inferno_state(slave)->led + args[0] % PORTS;
+	uint8_t *led = sim_state(slave, inferno)->led + args[0] % PORTS;
 
-	(void)t;
 	if (args[0] >= PORTS || args[1] >= CHANNELS) {
 		inferno_refuse(slave);
 		return;
@@ -279,34 +269,31 @@ static void set_led(struct sim_slave *slave, const uint8_t *args, int64_t t)
 	ok(slave, NULL, 0);
 }
 
-static void get_led(struct sim_slave *slave, const uint8_t *args, int64_t t)
+static void get_led(struct sim_slave *slave, const uint8_t *args)
 {
-	(void)t;
 	if (args[0] < PORTS)
-		ok(slave, inferno_state(slave)->led + args[0], 1);
+		ok(slave, sim_state(slave, inferno)->led + args[0], 1);
 	else
 		inferno_refuse(slave);
 }
 
 /* 09h mode, 0Ah timeout, 0Bh state; 0Ch states, 0Dh modes, 0Eh timeouts. */
-static void set_relay(struct sim_slave *slave, const uint8_t *args, int64_t t)
+static void set_relay(struct sim_slave *slave, const uint8_t *args)
 {
 	static const uint8_t which[] = {1, 2, 0};
 
-	(void)t;
 	if (args[0] || args[1] >= RELAYS) {
 		inferno_refuse(slave);
 		return;
 	}
-	inferno_state(slave)->relay[which[slave->function->code - 0x09]][args[1]] = args[2];
+	sim_state(slave, inferno)->relay[which[slave->function->code - 0x09]][args[1]] = args[2];
 	ok(slave, NULL, 0);
 }
 
-static void get_relays(struct sim_slave *slave, const uint8_t *args, int64_t t)
+static void get_relays(struct sim_slave *slave, const uint8_t *args)
 {
 	(void)args;
-	(void)t;
-	ok(slave, inferno_state(slave)->relay[slave->function->code - 0x0C], RELAYS);
+	ok(slave, sim_state(slave, inferno)->relay[slave->function->code - 0x0C], RELAYS);
 }
 
 static const struct command of_switches[] = {
@@ -319,12 +306,13 @@ static const struct command of_switches[] = {
 	{0x0E, 0, get_relays},  {0},
 };
 
-static void boot_updater(struct sim_slave *slave, const uint8_t *args, int64_t t)
+static void boot_updater(struct sim_slave *slave, const uint8_t *args)
 {
+	struct inferno *s = slave->state;
+
 	(void)args;
-	(void)t;
-	inferno_state(slave)->kind = UPDATER;
-	inferno_state(slave)->status = POWER_ON;
+	s->kind = UPDATER;
+	s->status = POWER_ON;
 	sim_end(slave);
 }
 
@@ -333,7 +321,7 @@ static const struct command *inferno_find(struct sim_slave *slave)
 	static const struct command *const tables[] = {
 		[RGBW] = of_rgbw, [UPDATER] = of_updater, [SWITCHES] = of_switches};
 	static const struct command boot = {BOOT_UPDATER, 0, boot_updater};
-	const struct command *c = tables[inferno_state(slave)->kind];
+	const struct command *c = tables[sim_state(slave, inferno)->kind];
 
 	if (slave->function->code == BOOT_UPDATER)
 		return &boot;
@@ -342,10 +330,9 @@ static const struct command *inferno_find(struct sim_slave *slave)
 	return c->answer ? c : NULL;
 }
 
-static void inferno_begin(struct sim_slave *slave, int64_t t)
+static void inferno_begin(struct sim_slave *slave)
 {
-	(void)t;
-	inferno_state(slave)->got = 0;
+	sim_state(slave, inferno)->got = 0;
 	if (!inferno_find(slave))
 		sim_end(slave);
 }
@@ -353,7 +340,7 @@ static void inferno_begin(struct sim_slave *slave, int64_t t)
 /* The bytes of a block and their CRC16, four bytes of which two count. */
 static void take_block(struct sim_slave *slave)
 {
-	struct inferno *s = inferno_state(slave);
+	struct inferno *s = slave->state;
 	const uint8_t *block = s->taken + WRITTEN + 1;
 	unsigned n;
 	uint8_t *to = part(slave, s->taken, &n);
@@ -368,9 +355,9 @@ static void take_block(struct sim_slave *slave)
 	sim_send_byte(slave, !good);
 }
 
-static void inferno_take(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void inferno_take(struct sim_slave *slave, uint8_t byte)
 {
-	struct inferno *s = inferno_state(slave);
+	struct inferno *s = slave->state;
 	const struct command *c = inferno_find(slave);
 	uint8_t crc;
 
@@ -384,49 +371,46 @@ static void inferno_take(struct sim_slave *slave, uint8_t byte, int64_t t)
 	crc = sim_crc8(0, slave->rom, 8);
 	crc = sim_crc8(crc, &c->code, 1);
 	if (sim_crc8(crc, s->taken, c->args) == byte)
-		c->answer(slave, s->taken, t);
+		c->answer(slave, s->taken);
 	else
 		inferno_refuse(slave);
 }
 
 /* The block that a command has announced may come. */
-static void answered(struct sim_slave *slave, int64_t t)
+static void answered(struct sim_slave *slave)
 {
-	const struct inferno *s = inferno_state(slave);
+	const struct inferno *s = slave->state;
 
-	(void)t;
 	if (s->kind == UPDATER && slave->function->code == 0x06 && s->got == WRITTEN + 1 &&
 	    slave->send[0] == 0)
 		sim_receive(slave);
 }
 
-static void identity(struct sim_slave *slave, int64_t t)
+static void identity(struct sim_slave *slave)
 {
+	struct inferno *s = slave->state;
 	uint8_t out[8] = {0};
 
-	(void)t;
 	if (slave->function->code == STATUS)
-		out[0] = inferno_state(slave)->status;
+		out[0] = s->status;
 	else
-		put32(out,
-		      slave->function->code == DEVICE ? (uint32_t)inferno_state(slave)->kind : 7);
+		put32(out, slave->function->code == DEVICE ? (uint32_t)s->kind : 7);
 	sim_send(slave, out, slave->function->code == STATUS ? 8 : 4);
 }
 
 static void inferno_create(struct sim_slave *slave)
 {
-	struct inferno *s = inferno_state(slave);
+	struct inferno *s = slave->state;
 
 	s->application = slave->family == &sim_inferno_rgbw      ? RGBW
 	                 : slave->family == &sim_inferno_updater ? UPDATER
 	                                                         : SWITCHES;
 }
 
-static void inferno_power_on(struct sim_slave *slave, int64_t t)
+static void inferno_power_on(struct sim_slave *slave)
 {
-	struct inferno *s = inferno_state(slave);
+	struct inferno *s = slave->state;
 
-	(void)t;
 	s->kind = s->application;
 	s->status = POWER_ON;
 	memset(s->light, 0, sizeof(s->light));
@@ -436,14 +420,14 @@ static void inferno_power_on(struct sim_slave *slave, int64_t t)
 }
 
 /* Types 0 and 2 are switches to VCC, 1 and 3 to ground; 2 and 3 are momentary, and latched. */
-static void inferno_advance(struct sim_slave *slave, int64_t t)
+static void inferno_advance(struct sim_slave *slave)
 {
-	struct inferno *s = inferno_state(slave);
+	struct inferno *s = slave->state;
 
 	for (unsigned i = 0; slave->family->inputs && i < PORTS * CHANNELS; i++) {
 		unsigned port = i / CHANNELS, channel = i % CHANNELS;
 		uint8_t type = s->type[port][channel], bit = (uint8_t)(1u << channel);
-		bool on = (sim_input_at(slave, i, t) >= 0.5) != (type & 1);
+		bool on = (sim_input_now(slave, i) >= 0.5) != (type & 1);
 
 		if (on && !(s->active[port] & bit))
 			s->status |= ACTIVATED;

@@ -22,43 +22,38 @@ struct lcd {
 	uint8_t level; /* of the pins, when they were last looked at */
 };
 
-static struct lcd *lcd_state(struct sim_slave *slave)
-{
-	return sim_state(slave, lcd);
-}
-
-static uint8_t pins(struct sim_slave *slave, int64_t t)
+static uint8_t pins(struct sim_slave *slave)
 {
 	uint8_t level = 0;
 
 	for (unsigned i = 0; i < PINS; i++)
-		if (sim_input_at(slave, i, t) >= 0.5)
+		if (sim_input_now(slave, i) >= 0.5)
 			level |= (uint8_t)(1u << i);
-	return level & lcd_state(slave)->output;
+	return level & sim_state(slave, lcd)->output;
 }
 
 static void lcd_create(struct sim_slave *slave)
 {
-	memset(lcd_state(slave)->eeprom, 0xFF, EEPROM);
+	memset(sim_state(slave, lcd)->eeprom, 0xFF, EEPROM);
 }
 
-static void lcd_power_on(struct sim_slave *slave, int64_t t)
+static void lcd_power_on(struct sim_slave *slave)
 {
-	struct lcd *s = lcd_state(slave);
+	struct lcd *s = slave->state;
 
 	memset(s->display, ' ', DISPLAY);
 	memset(s->scratchpad, 0, SCRATCHPAD);
 	memset(s->count, 0, sizeof(s->count));
 	s->on = s->backlight = s->cursor = s->filled = 0;
 	s->output = 0x0F;
-	s->level = pins(slave, t);
+	s->level = pins(slave);
 }
 
 /* Each change from outside counts, so a button counts twice. */
-static void lcd_advance(struct sim_slave *slave, int64_t t)
+static void lcd_advance(struct sim_slave *slave)
 {
-	struct lcd *s = lcd_state(slave);
-	uint8_t now = pins(slave, t);
+	struct lcd *s = slave->state;
+	uint8_t now = pins(slave);
 
 	for (unsigned i = 0; i < PINS; i++)
 		if ((now ^ s->level) >> i & 1)
@@ -119,12 +114,11 @@ static void print_scratchpad(struct lcd *s)
 }
 
 /* Commands without bytes of their own. */
-static void command(struct sim_slave *slave, int64_t t)
+static void command(struct sim_slave *slave)
 {
 	static const char version[VERSION_TEXT + 1] = "LCD 1.00 L.Swart";
-	struct lcd *s = lcd_state(slave);
+	struct lcd *s = slave->state;
 
-	(void)t;
 	switch (slave->function->code) {
 	case 0x03:
 	case 0x05:
@@ -164,9 +158,9 @@ static void command(struct sim_slave *slave, int64_t t)
 	sim_end(slave);
 }
 
-static void byte_command(struct sim_slave *slave, int64_t t)
+static void byte_command(struct sim_slave *slave)
 {
-	struct lcd *s = lcd_state(slave);
+	struct lcd *s = slave->state;
 	uint8_t byte = slave->taken[0];
 
 	if (slave->function->code == 0x10)
@@ -175,49 +169,45 @@ static void byte_command(struct sim_slave *slave, int64_t t)
 		print(s, byte);
 	else
 		s->output = byte & 0x0F;
-	s->level = pins(slave, t); /* what the chip does itself is no change from outside */
+	s->level = pins(slave); /* what the chip does itself is no change from outside */
 	sim_end(slave);
 }
 
-static void begin_copy(struct sim_slave *slave, int64_t t)
+static void begin_copy(struct sim_slave *slave)
 {
-	unsigned n = lcd_state(slave)->filled;
+	unsigned n = sim_state(slave, lcd)->filled;
 
-	sim_work(slave, (n ? n - 1 : 0) * 4 * NS_PER_MS, t);
+	sim_work(slave, (n ? n - 1 : 0) * 4 * NS_PER_MS);
 	sim_end(slave);
 }
 
-static void lcd_worked(struct sim_slave *slave, int64_t t)
+static void lcd_worked(struct sim_slave *slave)
 {
-	(void)t;
-	write_eeprom(lcd_state(slave));
+	write_eeprom(sim_state(slave, lcd));
 }
 
-static void lcd_begin_write(struct sim_slave *slave, int64_t t)
+static void lcd_begin_write(struct sim_slave *slave)
 {
-	(void)t;
-	lcd_state(slave)->filled = 0;
+	sim_state(slave, lcd)->filled = 0;
 }
 
-static void lcd_write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void lcd_write_scratchpad(struct sim_slave *slave, uint8_t byte)
 {
-	struct lcd *s = lcd_state(slave);
+	struct lcd *s = slave->state;
 
-	(void)t;
 	if (s->filled < SCRATCHPAD)
 		s->scratchpad[s->filled++] = byte;
 }
 
-static void lcd_read_scratchpad(struct sim_slave *slave, int64_t t)
+static void lcd_read_scratchpad(struct sim_slave *slave)
 {
-	(void)t;
-	sim_send(slave, lcd_state(slave)->scratchpad, VERSION_TEXT);
+	sim_send(slave, sim_state(slave, lcd)->scratchpad, VERSION_TEXT);
 }
 
 static uint8_t *lcd_memory(struct sim_slave *slave, size_t *size)
 {
 	*size = EEPROM + DISPLAY + 2;
-	return lcd_state(slave)->eeprom;
+	return sim_state(slave, lcd)->eeprom;
 }
 
 #define COMMAND(code_) \

@@ -23,34 +23,29 @@ struct max31825 {
 	uint8_t address, faults;
 };
 
-static struct max31825 *max31825_state(struct sim_slave *slave)
+static void max31825_power_on(struct sim_slave *slave)
 {
-	return sim_state(slave, max31825);
-}
-
-static void max31825_power_on(struct sim_slave *slave, int64_t t)
-{
+	struct max31825 *s = slave->state;
 	static const uint8_t first[8] = {0, 0, 0, 0x60, 0x07, 0xFF, 0x90, 0xFC};
 
-	(void)t;
-	memcpy(max31825_state(slave)->scratchpad, first, 8);
-	max31825_state(slave)->faults = 0;
+	memcpy(s->scratchpad, first, 8);
+	s->faults = 0;
 }
 
-static void max31825_convert(struct sim_slave *slave, int64_t t)
+static void max31825_convert(struct sim_slave *slave)
 {
 	static const uint8_t ms[] = {30, 40, 70, 160};
 
-	sim_work(slave, ms[max31825_state(slave)->scratchpad[CONFIG] >> 5 & 3] * NS_PER_MS, t);
+	sim_work(slave, ms[sim_state(slave, max31825)->scratchpad[CONFIG] >> 5 & 3] * NS_PER_MS);
 }
 
-static void max31825_worked(struct sim_slave *slave, int64_t t)
+static void max31825_worked(struct sim_slave *slave)
 {
 	static const uint8_t unused[] = {4, 3, 2, 0};
-	struct max31825 *s = max31825_state(slave);
+	struct max31825 *s = slave->state;
 	const uint8_t *pad = s->scratchpad;
 	int most = pad[CONFIG] & EXTENDED ? 145 * 16 : 2047;
-	int raw = (int)sim_round(sim_input_at(slave, 0, t) * 16);
+	int raw = (int)sim_round(sim_input_now(slave, 0) * 16);
 
 	raw = raw > most ? most : raw < -55 * 16 ? -55 * 16 : raw;
 	raw &= ~((1 << unused[pad[CONFIG] >> 5 & 3]) - 1);
@@ -65,45 +60,40 @@ static void max31825_worked(struct sim_slave *slave, int64_t t)
 	slave->conversions++;
 }
 
-static void max31825_read_scratchpad(struct sim_slave *slave, int64_t t)
+static void max31825_read_scratchpad(struct sim_slave *slave)
 {
-	struct max31825 *s = max31825_state(slave);
+	struct max31825 *s = slave->state;
 
-	(void)t;
 	s->scratchpad[2] = s->faults | s->address;
 	if (s->scratchpad[CONFIG] & INTERRUPT)
 		s->faults = 0;
 	sim_send_crc8(slave, s->scratchpad, 8);
 }
 
-static void max31825_begin_write(struct sim_slave *slave, int64_t t)
+static void max31825_begin_write(struct sim_slave *slave)
 {
-	(void)t;
 	slave->address = CONFIG;
 }
 
-static void max31825_write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void max31825_write_scratchpad(struct sim_slave *slave, uint8_t byte)
 {
 	unsigned at = slave->address++;
 
-	(void)t;
-	max31825_state(slave)->scratchpad[at] = at == CONFIG ? byte & 0xF7 : byte;
+	sim_state(slave, max31825)->scratchpad[at] = at == CONFIG ? byte & 0xF7 : byte;
 	if (at == 7)
 		sim_end(slave);
 }
 
 /* The resistors are as they were at power-on. */
-static void detect_address(struct sim_slave *slave, int64_t t)
+static void detect_address(struct sim_slave *slave)
 {
-	(void)t;
 	sim_end(slave);
 }
 
 /* Another function follows, for the chips with this location address only. */
-static void select_address(struct sim_slave *slave, int64_t t)
+static void select_address(struct sim_slave *slave)
 {
-	(void)t;
-	if ((slave->taken[0] & ADDRESS) != max31825_state(slave)->address) {
+	if ((slave->taken[0] & ADDRESS) != sim_state(slave, max31825)->address) {
 		sim_end(slave);
 		return;
 	}
@@ -120,10 +110,9 @@ static const struct sim_function functions[] = {
 	{0},
 };
 
-static bool max31825_alarm(struct sim_slave *slave, int64_t t)
+static bool max31825_alarm(struct sim_slave *slave)
 {
-	(void)t;
-	return max31825_state(slave)->faults != 0;
+	return sim_state(slave, max31825)->faults != 0;
 }
 
 static int max31825_option(struct sim_slave *slave, const char *name, double value)
@@ -132,7 +121,7 @@ static int max31825_option(struct sim_slave *slave, const char *name, double val
 		return -ENOENT;
 	if (value < 0 || value > ADDRESS || value != floor(value))
 		return -ERANGE;
-	max31825_state(slave)->address = (uint8_t)value;
+	sim_state(slave, max31825)->address = (uint8_t)value;
 	return 0;
 }
 

@@ -18,11 +18,6 @@ enum { TEMPERATURE, THERMOCOUPLE, OPEN_CIRCUIT, GROUND_SHORT, VDD_SHORT }; /* in
 /* tWR of the EEPROM: 10 ms. */
 #define COPY_NS (10 * NS_PER_MS)
 
-static struct sim_max *max31826_state(struct sim_slave *slave)
-{
-	return sim_state(slave, sim_max);
-}
-
 static bool is_max31850(const struct sim_slave *slave)
 {
 	return slave->family == &sim_max31850;
@@ -30,7 +25,7 @@ static bool is_max31850(const struct sim_slave *slave)
 
 static void max31826_create(struct sim_slave *slave)
 {
-	memset(max31826_state(slave)->memory, 0xFF, SIM_MAX_MEMORY);
+	memset(sim_state(slave, sim_max)->memory, 0xFF, SIM_MAX_MEMORY);
 }
 
 static void max31826_put16(uint8_t *at, int64_t raw)
@@ -39,11 +34,10 @@ static void max31826_put16(uint8_t *at, int64_t raw)
 	at[1] = (uint8_t)(raw >> 8);
 }
 
-static void max31826_power_on(struct sim_slave *slave, int64_t t)
+static void max31826_power_on(struct sim_slave *slave)
 {
-	struct sim_max *s = max31826_state(slave);
+	struct sim_max *s = slave->state;
 
-	(void)t;
 	memset(s->scratchpad, 0xFF, 8);
 	max31826_put16(s->scratchpad, is_max31850(slave) ? 0 : 85 * 16);
 	if (is_max31850(slave))
@@ -52,10 +46,9 @@ static void max31826_power_on(struct sim_slave *slave, int64_t t)
 	s->copying = false;
 }
 
-static int64_t part_of(struct sim_slave *slave, unsigned input, double least, double most, int in,
-                       int64_t t)
+static int64_t part_of(struct sim_slave *slave, unsigned input, double least, double most, int in)
 {
-	double celsius = sim_input_at(slave, input, t);
+	double celsius = sim_input_now(slave, input);
 
 	return sim_round((celsius < least ? least : celsius > most ? most : celsius) * in);
 }
@@ -64,22 +57,22 @@ static int64_t part_of(struct sim_slave *slave, unsigned input, double least, do
  * The thermocouple has 14 bits of 0.25 above two bits, the lower of which is the fault; the cold
  * junction has 12 bits of 0.0625 above four.
  */
-static void measure_thermocouple(struct sim_slave *slave, int64_t t)
+static void measure_thermocouple(struct sim_slave *slave)
 {
-	struct sim_max *s = max31826_state(slave);
+	struct sim_max *s = slave->state;
 	unsigned faults = 0;
 
 	for (unsigned i = 0; i < 3; i++)
-		faults |= (unsigned)(sim_input_at(slave, OPEN_CIRCUIT + i, t) >= 0.5) << i;
+		faults |= (unsigned)(sim_input_now(slave, OPEN_CIRCUIT + i) >= 0.5) << i;
 	max31826_put16(s->scratchpad,
-	               part_of(slave, THERMOCOUPLE, -270, 1800, 4, t) * 4 + (faults != 0));
+	               part_of(slave, THERMOCOUPLE, -270, 1800, 4) * 4 + (faults != 0));
 	max31826_put16(s->scratchpad + 2,
-	               part_of(slave, TEMPERATURE, -55, 127.9375, 16, t) * 16 + faults);
+	               part_of(slave, TEMPERATURE, -55, 127.9375, 16) * 16 + faults);
 }
 
-static void max31826_worked(struct sim_slave *slave, int64_t t)
+static void max31826_worked(struct sim_slave *slave)
 {
-	struct sim_max *s = max31826_state(slave);
+	struct sim_max *s = slave->state;
 
 	if (s->copying) {
 		memcpy(s->memory + s->target, s->second, SIM_MAX_PAGE);
@@ -87,77 +80,70 @@ static void max31826_worked(struct sim_slave *slave, int64_t t)
 	}
 	slave->conversions++;
 	if (is_max31850(slave))
-		measure_thermocouple(slave, t);
+		measure_thermocouple(slave);
 	else
-		max31826_put16(s->scratchpad, part_of(slave, TEMPERATURE, -55, 125, 16, t));
+		max31826_put16(s->scratchpad, part_of(slave, TEMPERATURE, -55, 125, 16));
 }
 
-static bool max31826_bit(struct sim_slave *slave, int64_t t)
+static bool max31826_bit(struct sim_slave *slave)
 {
-	(void)t;
 	return slave->function->code == READ_POWER ? !slave->parasite : !slave->busy;
 }
 
-static void max31826_convert(struct sim_slave *slave, int64_t t)
+static void max31826_convert(struct sim_slave *slave)
 {
-	max31826_state(slave)->copying = false;
-	sim_work(slave, (is_max31850(slave) ? 100 : 150) * NS_PER_MS, t);
+	sim_state(slave, sim_max)->copying = false;
+	sim_work(slave, (is_max31850(slave) ? 100 : 150) * NS_PER_MS);
 }
 
-static void read_power(struct sim_slave *slave, int64_t t)
+static void read_power(struct sim_slave *slave)
 {
-	(void)t;
 	sim_send_bits(slave);
 }
 
-static void max31826_read_scratchpad(struct sim_slave *slave, int64_t t)
+static void max31826_read_scratchpad(struct sim_slave *slave)
 {
-	(void)t;
-	sim_send_crc8(slave, max31826_state(slave)->scratchpad, 8);
+	sim_send_crc8(slave, sim_state(slave, sim_max)->scratchpad, 8);
 }
 
 /* --- The memory of the MAX31826: pages of 8 bytes, by a second scratchpad --------------------- */
 
-static void read_memory(struct sim_slave *slave, int64_t t)
+static void read_memory(struct sim_slave *slave)
 {
-	(void)t;
-	sim_send_memory(slave, max31826_state(slave)->memory, SIM_MAX_MEMORY, 0);
+	sim_send_memory(slave, sim_state(slave, sim_max)->memory, SIM_MAX_MEMORY, 0);
 }
 
-static void target(struct sim_slave *slave, int64_t t)
+static void target(struct sim_slave *slave)
 {
-	(void)t;
-	max31826_state(slave)->target = slave->taken[0] & (SIM_MAX_MEMORY - SIM_MAX_PAGE);
+	sim_state(slave, sim_max)->target = slave->taken[0] & (SIM_MAX_MEMORY - SIM_MAX_PAGE);
 	slave->address = 0;
 }
 
-static void write_second(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void write_second(struct sim_slave *slave, uint8_t byte)
 {
-	(void)t;
-	max31826_state(slave)->second[slave->address++] = byte;
+	sim_state(slave, sim_max)->second[slave->address++] = byte;
 	if (slave->address == SIM_MAX_PAGE)
 		sim_end(slave);
 }
 
-static void read_second(struct sim_slave *slave, int64_t t)
+static void read_second(struct sim_slave *slave)
 {
-	struct sim_max *s = max31826_state(slave);
+	struct sim_max *s = slave->state;
 
-	(void)t;
 	s->second[0] ^= s->garbled;
 	sim_send_crc8(slave, s->second, SIM_MAX_PAGE);
 	s->second[0] ^= s->garbled;
 }
 
-static void max31826_copy(struct sim_slave *slave, int64_t t)
+static void max31826_copy(struct sim_slave *slave)
 {
-	struct sim_max *s = max31826_state(slave);
+	struct sim_max *s = slave->state;
 
 	if (slave->taken[0] == KEY) {
 		s->copies++;
 		s->copying = true;
 		if (!s->locked)
-			sim_work(slave, COPY_NS, t);
+			sim_work(slave, COPY_NS);
 	}
 	sim_end(slave);
 }
@@ -168,14 +154,14 @@ static int max31826_option(struct sim_slave *slave, const char *name, double val
 		return -ENOENT;
 	if (value < 0 || value > 15 || value != floor(value))
 		return -ERANGE;
-	max31826_state(slave)->address = (uint8_t)value;
+	sim_state(slave, sim_max)->address = (uint8_t)value;
 	return 0;
 }
 
 static uint8_t *max31826_memory(struct sim_slave *slave, size_t *size)
 {
 	*size = SIM_MAX_MEMORY;
-	return max31826_state(slave)->memory;
+	return sim_state(slave, sim_max)->memory;
 }
 
 #define FUNCTIONS \

@@ -43,21 +43,15 @@ struct max31888 {
 	bool second; /* the low byte of the result is the next to be read */
 };
 
-static struct max31888 *max31888_state(struct sim_slave *slave)
-{
-	return sim_state(slave, max31888);
-}
-
 static int16_t word(const uint8_t *at)
 {
 	return (int16_t)(at[0] << 8 | at[1]);
 }
 
-static void max31888_power_on(struct sim_slave *slave, int64_t t)
+static void max31888_power_on(struct sim_slave *slave)
 {
-	struct max31888 *s = max31888_state(slave);
+	struct max31888 *s = slave->state;
 
-	(void)t;
 	*s = (struct max31888){.early = s->early};
 	s->reg[ALARM_HIGH] = 0x7F;
 	s->reg[ALARM_HIGH + 1] = 0xFF;
@@ -66,10 +60,10 @@ static void max31888_power_on(struct sim_slave *slave, int64_t t)
 	s->reg[PART] = slave->family == &sim_max30207 ? 0x30 : 0x31;
 }
 
-static void max31888_worked(struct sim_slave *slave, int64_t t)
+static void max31888_worked(struct sim_slave *slave)
 {
-	struct max31888 *s = max31888_state(slave);
-	int16_t result = (int16_t)sim_round(sim_input_at(slave, 0, t) * PER_DEGREE);
+	struct max31888 *s = slave->state;
+	int16_t result = (int16_t)sim_round(sim_input_now(slave, 0) * PER_DEGREE);
 
 	slave->conversions++;
 	s->reg[STATUS] |= READY;
@@ -118,13 +112,12 @@ static uint8_t read_byte(struct max31888 *s, unsigned at)
 }
 
 /* Command, register, and the count of bytes less one. */
-static void read_registers(struct sim_slave *slave, int64_t t)
+static void read_registers(struct sim_slave *slave)
 {
-	struct max31888 *s = max31888_state(slave);
+	struct max31888 *s = slave->state;
 	unsigned at = slave->taken[0], n = slave->taken[1] + 1u;
 	uint8_t out[SIM_MAX_SEND - 2];
 
-	(void)t;
 	if (n > sizeof(out))
 		n = sizeof(out);
 	s->second = false;
@@ -135,9 +128,8 @@ static void read_registers(struct sim_slave *slave, int64_t t)
 	sim_send_checked(slave, out, n);
 }
 
-static void max31888_begin_write(struct sim_slave *slave, int64_t t)
+static void max31888_begin_write(struct sim_slave *slave)
 {
-	(void)t;
 	slave->address = slave->taken[0];
 }
 
@@ -147,17 +139,17 @@ static void flush(struct max31888 *s)
 	s->reg[OVERFLOWS] = s->reg[RESULTS] = s->reg[STATUS] = 0;
 }
 
-static void write_registers(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void write_registers(struct sim_slave *slave, uint8_t byte)
 {
-	struct max31888 *s = max31888_state(slave);
+	struct max31888 *s = slave->state;
 	unsigned at = slave->address++;
 
 	if (at == FIFO_CONFIGURATION && (byte & FLUSH))
 		flush(s);
 	if (at == SYSTEM && (byte & RESET))
-		max31888_power_on(slave, t);
+		max31888_power_on(slave);
 	if (at == SETUP && (byte & 1)) /* CONVERT_T clears itself */
-		sim_work(slave, CONVERT_NS, t);
+		sim_work(slave, CONVERT_NS);
 	if (at == FIFO_CONFIGURATION)
 		s->reg[at] = byte & (uint8_t)~FLUSH;
 	else if (at == SETUP)
@@ -168,28 +160,26 @@ static void write_registers(struct sim_slave *slave, uint8_t byte, int64_t t)
 		sim_send_checked(slave, NULL, 0);
 }
 
-static void confirm(struct sim_slave *slave, int64_t t)
+static void confirm(struct sim_slave *slave)
 {
-	(void)t;
 	sim_send_checked(slave, NULL, 0);
 }
 
-static void checksum_was_read(struct sim_slave *slave, int64_t t)
+static void checksum_was_read(struct sim_slave *slave)
 {
-	sim_work(slave, CONVERT_NS, t);
+	sim_work(slave, CONVERT_NS);
 }
 
-static void reset_was_confirmed(struct sim_slave *slave, int64_t t)
+static void reset_was_confirmed(struct sim_slave *slave)
 {
-	max31888_power_on(slave, t);
+	max31888_power_on(slave);
 	sim_end(slave);
 }
 
 /* No slot shows that it converts. */
-static bool max31888_bit(struct sim_slave *slave, int64_t t)
+static bool max31888_bit(struct sim_slave *slave)
 {
 	(void)slave;
-	(void)t;
 	return true;
 }
 
@@ -199,7 +189,7 @@ static int max31888_option(struct sim_slave *slave, const char *name, double val
 		return -ENOENT;
 	if (value != WRITE_POINTER && value != RESULTS)
 		return -ERANGE;
-	max31888_state(slave)->early = value == WRITE_POINTER;
+	sim_state(slave, max31888)->early = value == WRITE_POINTER;
 	return 0;
 }
 

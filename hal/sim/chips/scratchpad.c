@@ -7,33 +7,26 @@
 /* E/S register: the ending offset in the lower bits, above them a flag, and these. */
 enum { OVERFLOW = 0x40, AUTHORIZED = 0x80 };
 
-static struct sim_scratchpad *scratchpad_state(struct sim_slave *slave)
-{
-	return sim_state(slave, sim_scratchpad);
-}
-
 /* The flag of a byte that came in part. */
 static uint8_t partial(const struct sim_scratchpad *s)
 {
 	return s->kind->page > 32 ? 0x40 : 0x20;
 }
 
-void sim_scratchpad_power_on(struct sim_slave *slave, int64_t t)
+void sim_scratchpad_power_on(struct sim_slave *slave)
 {
-	struct sim_scratchpad *s = scratchpad_state(slave);
+	struct sim_scratchpad *s = slave->state;
 
-	(void)t;
 	memset(s->pad, 0xFF, sizeof(s->pad));
 	s->target = 0;
 	s->status = (uint8_t)(partial(s) | (s->kind->page - 1));
 }
 
-void sim_scratchpad_worked(struct sim_slave *slave, int64_t t)
+void sim_scratchpad_worked(struct sim_slave *slave)
 {
-	struct sim_scratchpad *s = scratchpad_state(slave);
+	struct sim_scratchpad *s = slave->state;
 	unsigned page = s->kind->page, first = s->target % page, last = s->status % page;
 
-	(void)t;
 	if (s->kind->whole) {
 		first = 0;
 		last = page - 1;
@@ -45,20 +38,18 @@ void sim_scratchpad_worked(struct sim_slave *slave, int64_t t)
 }
 
 /* During the copy the line stays high; then 0 and 1 follow in turns, as AAh, or only 0. */
-bool sim_scratchpad_bit(struct sim_slave *slave, int64_t t)
+bool sim_scratchpad_bit(struct sim_slave *slave)
 {
-	(void)t;
-	if (slave->busy || scratchpad_state(slave)->kind->plain)
+	if (slave->busy || sim_state(slave, sim_scratchpad)->kind->plain)
 		return slave->busy;
 	slave->got ^= 1;
 	return slave->got & 1;
 }
 
-void sim_scratchpad_target(struct sim_slave *slave, int64_t t)
+void sim_scratchpad_target(struct sim_slave *slave)
 {
-	struct sim_scratchpad *s = scratchpad_state(slave);
+	struct sim_scratchpad *s = slave->state;
 
-	(void)t;
 	s->target = slave->address;
 	s->status = (uint8_t)(partial(s) | s->target % s->kind->page);
 	s->bad_sequence = false;
@@ -66,12 +57,11 @@ void sim_scratchpad_target(struct sim_slave *slave, int64_t t)
 		sim_end(slave);
 }
 
-void sim_scratchpad_write(struct sim_slave *slave, uint8_t byte, int64_t t)
+void sim_scratchpad_write(struct sim_slave *slave, uint8_t byte)
 {
-	struct sim_scratchpad *s = scratchpad_state(slave);
+	struct sim_scratchpad *s = slave->state;
 	unsigned at = slave->address++ % s->kind->page;
 
-	(void)t;
 	if (at < (s->status & (s->kind->page - 1u))) {
 		s->status |= OVERFLOW;
 		sim_end(slave);
@@ -84,14 +74,13 @@ void sim_scratchpad_write(struct sim_slave *slave, uint8_t byte, int64_t t)
 }
 
 /* Send target, E/S, the bytes from the target's offset to the ending one, and a checksum. */
-void sim_scratchpad_read(struct sim_slave *slave, int64_t t)
+void sim_scratchpad_read(struct sim_slave *slave)
 {
-	struct sim_scratchpad *s = scratchpad_state(slave);
+	struct sim_scratchpad *s = slave->state;
 	unsigned page = s->kind->page, first = s->target % page, n = 3;
 	unsigned last = s->kind->to_end ? page - 1 : s->status % page;
 	uint8_t out[3 + 64] = {(uint8_t)s->target, (uint8_t)(s->target >> 8), s->status};
 
-	(void)t;
 	for (unsigned i = first; i <= last; i++)
 		out[n++] = s->pad[i];
 	if (s->kind->plain)
@@ -100,9 +89,9 @@ void sim_scratchpad_read(struct sim_slave *slave, int64_t t)
 		sim_send_checked(slave, out, n);
 }
 
-void sim_scratchpad_copy(struct sim_slave *slave, int64_t t)
+void sim_scratchpad_copy(struct sim_slave *slave)
 {
-	struct sim_scratchpad *s = scratchpad_state(slave);
+	struct sim_scratchpad *s = slave->state;
 
 	if (slave->address != s->target || slave->taken[2] != s->status ||
 	    (s->status & partial(s)) || (s->kind->sequence && s->bad_sequence)) {
@@ -110,31 +99,31 @@ void sim_scratchpad_copy(struct sim_slave *slave, int64_t t)
 		return;
 	}
 	slave->got = 1;
-	sim_work(slave, s->kind->copy_ns, t);
+	sim_work(slave, s->kind->copy_ns);
 }
 
 static void dump(struct sim_slave *slave, unsigned page)
 {
-	struct sim_scratchpad *s = scratchpad_state(slave);
+	struct sim_scratchpad *s = slave->state;
 
 	s->bad_sequence = true;
 	sim_send_memory(slave, s->memory, s->kind->size, page);
 }
 
-void sim_scratchpad_dump(struct sim_slave *slave, int64_t t)
+void sim_scratchpad_dump(struct sim_slave *slave)
 {
-	(void)t;
 	dump(slave, 0);
 }
 
-void sim_scratchpad_dump_pages(struct sim_slave *slave, int64_t t)
+void sim_scratchpad_dump_pages(struct sim_slave *slave)
 {
-	(void)t;
-	dump(slave, scratchpad_state(slave)->kind->page);
+	dump(slave, sim_state(slave, sim_scratchpad)->kind->page);
 }
 
 uint8_t *sim_scratchpad_memory(struct sim_slave *slave, size_t *size)
 {
-	*size = scratchpad_state(slave)->kind->size;
-	return scratchpad_state(slave)->memory;
+	struct sim_scratchpad *s = slave->state;
+
+	*size = s->kind->size;
+	return s->memory;
 }

@@ -41,17 +41,17 @@ struct sim_scratchpad {
 		.code = 0xF0, .takes = 2, .start = sim_scratchpad_dump, \
 		.next = sim_scratchpad_dump \
 	}
-void sim_scratchpad_power_on(struct sim_slave *slave, int64_t t);
-bool sim_scratchpad_bit(struct sim_slave *slave, int64_t t);
-void sim_scratchpad_worked(struct sim_slave *slave, int64_t t);
+void sim_scratchpad_power_on(struct sim_slave *slave);
+bool sim_scratchpad_bit(struct sim_slave *slave);
+void sim_scratchpad_worked(struct sim_slave *slave);
 uint8_t *sim_scratchpad_memory(struct sim_slave *slave, size_t *size);
 /* For struct sim_function. */
-void sim_scratchpad_target(struct sim_slave *slave, int64_t t);
-void sim_scratchpad_write(struct sim_slave *slave, uint8_t byte, int64_t t);
-void sim_scratchpad_read(struct sim_slave *slave, int64_t t);
-void sim_scratchpad_copy(struct sim_slave *slave, int64_t t);
-void sim_scratchpad_dump(struct sim_slave *slave, int64_t t);
+void sim_scratchpad_target(struct sim_slave *slave);
+void sim_scratchpad_write(struct sim_slave *slave, uint8_t byte);
+void sim_scratchpad_read(struct sim_slave *slave);
+void sim_scratchpad_copy(struct sim_slave *slave);
+void sim_scratchpad_dump(struct sim_slave *slave);
 /* Page by page, each with its checksum. */
-void sim_scratchpad_dump_pages(struct sim_slave *slave, int64_t t);
+void sim_scratchpad_dump_pages(struct sim_slave *slave);
 
 #endif

@@ -18,11 +18,6 @@ const struct sim_input sim_sensor_inputs[] = {
 	{0},
 };
 
-static struct sim_sensors *sensors_state(struct sim_slave *slave)
-{
-	return sim_state(slave, sim_sensors);
-}
-
 int sim_sensors_option(struct sim_slave *slave, const char *name, double value)
 {
 	for (unsigned i = 0; i < SENSOR_PARTS; i++) {
@@ -30,7 +25,7 @@ int sim_sensors_option(struct sim_slave *slave, const char *name, double value)
 			continue;
 		if (value < 0x08 || value > 0x77 || value != (int)value)
 			return -ERANGE;
-		sensors_state(slave)->part[i].address = (uint8_t)value;
+		sim_state(slave, sim_sensors)->part[i].address = (uint8_t)value;
 		return 0;
 	}
 	return -ENOENT;
@@ -38,7 +33,7 @@ int sim_sensors_option(struct sim_slave *slave, const char *name, double value)
 
 void sim_sensors_power_on(struct sim_slave *slave)
 {
-	struct sim_sensors *s = sensors_state(slave);
+	struct sim_sensors *s = slave->state;
 
 	s->selected = -1;
 	for (unsigned i = 0; i < SENSOR_PARTS; i++) {
@@ -49,7 +44,7 @@ void sim_sensors_power_on(struct sim_slave *slave)
 
 bool sim_sensors_start(struct sim_slave *slave, uint8_t address, int64_t t)
 {
-	struct sim_sensors *s = sensors_state(slave);
+	struct sim_sensors *s = slave->state;
 
 	s->selected = -1;
 	s->took = 0;
@@ -65,7 +60,7 @@ bool sim_sensors_start(struct sim_slave *slave, uint8_t address, int64_t t)
 
 bool sim_sensors_write(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
-	struct sim_sensors *s = sensors_state(slave);
+	struct sim_sensors *s = slave->state;
 
 	return s->selected >= 0 &&
 	       kinds[s->selected]->write(slave, &s->part[s->selected], byte, s->took++, t);
@@ -73,7 +68,7 @@ bool sim_sensors_write(struct sim_slave *slave, uint8_t byte, int64_t t)
 
 uint8_t sim_sensors_read(struct sim_slave *slave, int64_t t)
 {
-	struct sim_sensors *s = sensors_state(slave);
+	struct sim_sensors *s = slave->state;
 
 	if (s->selected < 0)
 		return 0xFF;
@@ -82,5 +77,5 @@ uint8_t sim_sensors_read(struct sim_slave *slave, int64_t t)
 
 void sim_sensors_stop(struct sim_slave *slave)
 {
-	sensors_state(slave)->selected = -1;
+	sim_state(slave, sim_sensors)->selected = -1;
 }

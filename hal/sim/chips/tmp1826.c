@@ -29,26 +29,20 @@ enum work { CONVERSION, COPY_SETTINGS, COPY_MEMORY, FETCH };
 #define PROGRAM_NS (21 * NS_PER_MS)
 #define READ_IDLE_NS 560000 /* tREADIDLE */
 
-static struct sim_tmp1826 *tmp1826_state(struct sim_slave *slave)
-{
-	return sim_state(slave, sim_tmp1826);
-}
-
 static void tmp1826_create(struct sim_slave *slave)
 {
 	static const uint8_t factory[SIM_TMP1826_SETTINGS] = {
 		ALWAYS | LONG | ALERT_MODE, OD_EN, 0, 0x00, 0x00, 0xF0, 0x07};
-	struct sim_tmp1826 *s = tmp1826_state(slave);
+	struct sim_tmp1826 *s = slave->state;
 
 	memcpy(s->stored, factory, sizeof(factory));
 	memset(s->memory, 0xFF, sizeof(s->memory));
 }
 
-static void tmp1826_power_on(struct sim_slave *slave, int64_t t)
+static void tmp1826_power_on(struct sim_slave *slave)
 {
-	struct sim_tmp1826 *s = tmp1826_state(slave);
+	struct sim_tmp1826 *s = slave->state;
 
-	(void)t;
 	memcpy(s->settings, s->stored, sizeof(s->settings));
 	s->temperature = 0;
 	s->status = 0;
@@ -63,10 +57,10 @@ static int in_128ths(const struct sim_tmp1826 *s, const uint8_t *at)
 	return s->settings[0] & TEMP_FMT ? raw : raw * 8;
 }
 
-static void tmp1826_measure(struct sim_slave *slave, int64_t t)
+static void tmp1826_measure(struct sim_slave *slave)
 {
-	struct sim_tmp1826 *s = tmp1826_state(slave);
-	double celsius = sim_input_at(slave, 0, t);
+	struct sim_tmp1826 *s = slave->state;
+	double celsius = sim_input_now(slave, 0);
 	int raw;
 
 	celsius = celsius < -55 ? -55 : celsius > 150 ? 150 : celsius;
@@ -89,7 +83,7 @@ static bool is_locked(const struct sim_tmp1826 *s)
 /* The block that was fetched; behind the last one are ones. */
 static void send_fetched(struct sim_slave *slave)
 {
-	struct sim_tmp1826 *s = tmp1826_state(slave);
+	struct sim_tmp1826 *s = slave->state;
 	uint8_t out[SIM_TMP1826_BLOCK + 1];
 
 	if (slave->layer != SIM_FUNCTION)
@@ -104,13 +98,13 @@ static void send_fetched(struct sim_slave *slave)
 	sim_send(slave, out, SIM_TMP1826_BLOCK + s->checked_blocks);
 }
 
-static void tmp1826_worked(struct sim_slave *slave, int64_t t)
+static void tmp1826_worked(struct sim_slave *slave)
 {
-	struct sim_tmp1826 *s = tmp1826_state(slave);
+	struct sim_tmp1826 *s = slave->state;
 
 	switch (s->work) {
 	case CONVERSION:
-		tmp1826_measure(slave, t);
+		tmp1826_measure(slave);
 		break;
 	case COPY_SETTINGS:
 		memcpy(s->stored, s->settings, sizeof(s->stored));
@@ -128,39 +122,37 @@ static void tmp1826_worked(struct sim_slave *slave, int64_t t)
 }
 
 /* The host has to leave the bus idle meanwhile: no data sheet promises a busy slot. */
-static bool tmp1826_bit(struct sim_slave *slave, int64_t t)
+static bool tmp1826_bit(struct sim_slave *slave)
 {
 	(void)slave;
-	(void)t;
 	return true;
 }
 
-static void work(struct sim_slave *slave, enum work what, int64_t takes, int64_t t)
+static void work(struct sim_slave *slave, enum work what, int64_t takes)
 {
-	tmp1826_state(slave)->work = what;
-	sim_work(slave, takes, t);
+	sim_state(slave, sim_tmp1826)->work = what;
+	sim_work(slave, takes);
 }
 
-static void tmp1826_convert(struct sim_slave *slave, int64_t t)
+static void tmp1826_convert(struct sim_slave *slave)
 {
-	const uint8_t config = tmp1826_state(slave)->settings[0];
+	const uint8_t config = sim_state(slave, sim_tmp1826)->settings[0];
 	int64_t takes = config & LONG ? LONG_NS : SHORT_NS;
 
-	work(slave, CONVERSION, DELAY_NS + (config & AVERAGE ? 8 * takes : takes), t);
+	work(slave, CONVERSION, DELAY_NS + (config & AVERAGE ? 8 * takes : takes));
 }
 
-static void copy_settings(struct sim_slave *slave, int64_t t)
+static void copy_settings(struct sim_slave *slave)
 {
-	work(slave, COPY_SETTINGS, PROGRAM_NS, t);
+	work(slave, COPY_SETTINGS, PROGRAM_NS);
 }
 
 /* Two times eight bytes, each with its checksum. */
-static void tmp1826_read_scratchpad(struct sim_slave *slave, int64_t t)
+static void tmp1826_read_scratchpad(struct sim_slave *slave)
 {
-	struct sim_tmp1826 *s = tmp1826_state(slave);
+	struct sim_tmp1826 *s = slave->state;
 	uint8_t *out = s->sent;
 
-	(void)t;
 	memset(out, 0xFF, sizeof(s->sent));
 	out[0] = (uint8_t)s->temperature;
 	out[1] = (uint8_t)(s->temperature >> 8);
@@ -175,29 +167,26 @@ static void tmp1826_read_scratchpad(struct sim_slave *slave, int64_t t)
 }
 
 /* The flags are cleared when the status register was read. */
-static void read_more(struct sim_slave *slave, int64_t t)
+static void read_more(struct sim_slave *slave)
 {
-	struct sim_tmp1826 *s = tmp1826_state(slave);
+	struct sim_tmp1826 *s = slave->state;
 
-	(void)t;
 	if (slave->address == 2)
 		s->status = 0;
 	if (++slave->address < sizeof(s->sent))
 		sim_send_byte(slave, s->sent[slave->address]);
 }
 
-static void begin_settings(struct sim_slave *slave, int64_t t)
+static void begin_settings(struct sim_slave *slave)
 {
-	(void)t;
 	slave->address = 0;
 }
 
-static void write_settings(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void write_settings(struct sim_slave *slave, uint8_t byte)
 {
-	struct sim_tmp1826 *s = tmp1826_state(slave);
+	struct sim_tmp1826 *s = slave->state;
 	unsigned at = slave->address++;
 
-	(void)t;
 	s->sent[at] = byte;
 	if (at == 1)
 		byte |= OD_EN;
@@ -214,11 +203,10 @@ static uint16_t address(const struct sim_slave *slave)
 	return (uint16_t)(slave->taken[0] << 8 | slave->taken[1]);
 }
 
-static void begin_block(struct sim_slave *slave, int64_t t)
+static void begin_block(struct sim_slave *slave)
 {
-	struct sim_tmp1826 *s = tmp1826_state(slave);
+	struct sim_tmp1826 *s = slave->state;
 
-	(void)t;
 	s->target = address(slave);
 	if (s->target < SIM_TMP1826_MEMORY)
 		s->target &= (uint16_t) ~(SIM_TMP1826_BLOCK - 1);
@@ -230,26 +218,24 @@ static void send_block_crc(struct sim_slave *slave, unsigned n)
 {
 	uint8_t crc = sim_crc8(0, slave->taken, 2);
 
-	sim_send_byte(slave, sim_crc8(crc, tmp1826_state(slave)->second, n));
+	sim_send_byte(slave, sim_crc8(crc, sim_state(slave, sim_tmp1826)->second, n));
 }
 
-static void write_block(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void write_block(struct sim_slave *slave, uint8_t byte)
 {
-	struct sim_tmp1826 *s = tmp1826_state(slave);
+	struct sim_tmp1826 *s = slave->state;
 	unsigned n = s->target >> 8 == LOCK_PAGE ? 1 : SIM_TMP1826_BLOCK;
 
-	(void)t;
 	s->second[slave->address++] = byte;
 	if (slave->address == n)
 		send_block_crc(slave, n);
 }
 
-static void read_block(struct sim_slave *slave, int64_t t)
+static void read_block(struct sim_slave *slave)
 {
-	struct sim_tmp1826 *s = tmp1826_state(slave);
+	struct sim_tmp1826 *s = slave->state;
 	unsigned n = s->target >> 8 == LOCK_PAGE ? 1 : SIM_TMP1826_BLOCK;
 
-	(void)t;
 	if (address(slave) != s->target) {
 		sim_end(slave);
 		return;
@@ -258,33 +244,32 @@ static void read_block(struct sim_slave *slave, int64_t t)
 	sim_send(slave, s->second, n);
 }
 
-static void end_block(struct sim_slave *slave, int64_t t)
+static void end_block(struct sim_slave *slave)
 {
-	(void)t;
 	if (slave->address++ == 0)
-		send_block_crc(slave, tmp1826_state(slave)->target >> 8 == LOCK_PAGE
+		send_block_crc(slave, sim_state(slave, sim_tmp1826)->target >> 8 == LOCK_PAGE
 		                              ? 1
 		                              : SIM_TMP1826_BLOCK);
 }
 
-static void copy_block(struct sim_slave *slave, int64_t t)
+static void copy_block(struct sim_slave *slave)
 {
-	if (slave->taken[0] == KEY && tmp1826_state(slave)->target != SIM_TMP1826_NOWHERE)
-		work(slave, COPY_MEMORY, PROGRAM_NS, t);
+	if (slave->taken[0] == KEY && sim_state(slave, sim_tmp1826)->target != SIM_TMP1826_NOWHERE)
+		work(slave, COPY_MEMORY, PROGRAM_NS);
 	else
 		sim_end(slave);
 }
 
 /* Before each block the line has to stay high while the chip fetches it. */
-static void fetch(struct sim_slave *slave, int64_t t)
+static void fetch(struct sim_slave *slave)
 {
-	work(slave, FETCH, READ_IDLE_NS, t);
+	work(slave, FETCH, READ_IDLE_NS);
 }
 
-static void read_memory(struct sim_slave *slave, int64_t t)
+static void read_memory(struct sim_slave *slave)
 {
 	slave->address = address(slave) & (uint16_t) ~(SIM_TMP1826_BLOCK - 1);
-	fetch(slave, t);
+	fetch(slave);
 }
 
 static const struct sim_function functions[] = {
@@ -301,15 +286,15 @@ static const struct sim_function functions[] = {
 	{0},
 };
 
-static bool tmp1826_alarm(struct sim_slave *slave, int64_t t)
+static bool tmp1826_alarm(struct sim_slave *slave)
 {
-	(void)t;
-	return (tmp1826_state(slave)->status & (ALERT_HIGH | ALERT_LOW)) != 0;
+	return (sim_state(slave, sim_tmp1826)->status & (ALERT_HIGH | ALERT_LOW)) != 0;
 }
 
 /* Which settings the EEPROM holds: "precise" is the format, "averaging" that of 8 conversions. */
 static int tmp1826_option(struct sim_slave *slave, const char *name, double value)
 {
+	struct sim_tmp1826 *s = slave->state;
 	uint8_t flag = strcmp(name, "precise") == 0     ? TEMP_FMT
 	               : strcmp(name, "averaging") == 0 ? AVERAGE
 	                                                : 0;
@@ -318,16 +303,16 @@ static int tmp1826_option(struct sim_slave *slave, const char *name, double valu
 		return -ENOENT;
 	if (value != 0 && value != 1)
 		return -ERANGE;
-	tmp1826_state(slave)->stored[0] &= (uint8_t)~flag;
+	s->stored[0] &= (uint8_t)~flag;
 	if (value == 1)
-		tmp1826_state(slave)->stored[0] |= flag;
+		s->stored[0] |= flag;
 	return 0;
 }
 
 static uint8_t *memory(struct sim_slave *slave, size_t *size)
 {
 	*size = SIM_TMP1826_MEMORY;
-	return tmp1826_state(slave)->memory;
+	return sim_state(slave, sim_tmp1826)->memory;
 }
 
 static const struct sim_input inputs[] = {

@@ -130,8 +130,9 @@ void visit_begin(const struct visit *visit)
 	visit_change(visited, false, visit->turned);
 	if (visit_behind)
 		hide(visit->chip);
+	sim_slave_advance(visited, wire_time());
 	if (visit->turned && strcmp(visit->chip, "DS2405") == 0)
-		visited->family->selected(visited, true, wire_time());
+		visited->family->selected(visited, true);
 	start();
 	remember(visit);
 	visit_change(visited, true, visit->turned);

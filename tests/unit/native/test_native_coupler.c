@@ -328,11 +328,10 @@ static void test_a_master_that_was_away_still_has_the_branches(void)
 	TEST_ASSERT_EQUAL_UINT(0, host_events(&host, BUS_LOST));
 }
 
-static void answer_wrong(struct sim_slave *slave, int64_t t)
+static void answer_wrong(struct sim_slave *slave)
 {
 	static const uint8_t wrong[] = {0x31, 0x9c};
 
-	(void)t;
 	sim_send(slave, wrong, sizeof(wrong));
 }
 
