@@ -292,12 +292,6 @@ static void bae_take(struct sim_slave *slave, uint8_t byte)
 	sim_send_checked(slave, NULL, 0);
 }
 
-/* The checksum is sent: the confirmation may come. */
-static void await_confirmation(struct sim_slave *slave)
-{
-	sim_receive(slave);
-}
-
 static void query(struct sim_slave *slave)
 {
 	struct bae *s = slave->state;
@@ -318,9 +312,10 @@ static uint8_t *bae_memory(struct sim_slave *slave, size_t *size)
 	return sim_state(slave, bae)->registers;
 }
 
+/* After the checksum the confirmation may come. */
 #define WRITES(code_) \
 	{ \
-		.code = (code_), .start = bae_begin, .byte = bae_take, .next = await_confirmation \
+		.code = (code_), .start = bae_begin, .byte = bae_take, .next = sim_receive \
 	}
 static const struct sim_function functions[] = {
 	{.code = VERSION, .start = version},

@@ -6,7 +6,6 @@
  */
 #include <string.h>
 
-#include "hal/bus/time.h"
 #include "hal/sim/chips/sensor.h"
 
 enum {

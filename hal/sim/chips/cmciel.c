@@ -4,7 +4,6 @@
  * (four fail-safe contacts), mAM001 (analog input). No data sheet can be had; the facts are those
  * of OWFS's driver and manual pages.
  */
-#include "hal/bus/time.h"
 #include "hal/sim/families.h"
 
 /* Bits of a word of the mDI001, from which on there is one for each contact. */

@@ -203,11 +203,6 @@ static bool ds18b20_bit(struct sim_slave *slave)
 	return !slave->busy;
 }
 
-static void send_bits(struct sim_slave *slave)
-{
-	sim_send_bits(slave);
-}
-
 static void recall_eeprom(struct sim_slave *slave)
 {
 	if (sim_state(slave, sim_thermometer)->no_recall) {
@@ -301,7 +296,7 @@ static int ds18b20_option(struct sim_slave *slave, const char *name, double valu
 		{.code = 0x4E, .start = ds18b20_begin_write, .byte = ds18b20_write_scratchpad}, \
 		{.code = 0x48, .start = ds18b20_copy}, {.code = 0xB8, .start = recall_eeprom}, \
 	{ \
-		.code = READ_POWER, .start = send_bits \
+		.code = READ_POWER, .start = sim_send_bits \
 	}
 static const struct sim_function functions[] = {FUNCTIONS, {0}};
 static const struct sim_function ea00_functions[] = {

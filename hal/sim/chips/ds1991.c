@@ -103,11 +103,6 @@ static void ds1991_copy(struct sim_slave *slave, uint8_t byte)
 		       FIELD);
 }
 
-static void ds1991_receive(struct sim_slave *slave)
-{
-	sim_receive(slave);
-}
-
 /* All that needs a password begins with the identifier. */
 static void send_identifier(struct sim_slave *slave)
 {
@@ -149,7 +144,7 @@ static void write_subkey(struct sim_slave *slave, uint8_t byte)
 static void next_of_read(struct sim_slave *slave)
 {
 	if (sim_state(slave, ds1991)->count == 0)
-		ds1991_receive(slave);
+		sim_receive(slave);
 }
 
 /* After the password send the data; random bytes if it is wrong. */
@@ -183,12 +178,12 @@ static const struct sim_function functions[] = {
          .takes = 2,
          .start = send_identifier,
          .byte = write_password,
-         .next = ds1991_receive},
+         .next = sim_receive},
 	{.code = WRITE_SUBKEY,
          .takes = 2,
          .start = send_identifier,
          .byte = write_subkey,
-         .next = ds1991_receive},
+         .next = sim_receive},
 	{.code = READ_SUBKEY,
          .takes = 2,
          .start = send_identifier,

@@ -105,11 +105,6 @@ static void write_memory(struct sim_slave *slave, uint8_t byte)
 	sim_send_stored(slave, s->memory[slave->address]);
 }
 
-static void ds2450_receive(struct sim_slave *slave)
-{
-	sim_receive(slave);
-}
-
 static void send_checksum(struct sim_slave *slave)
 {
 	sim_send_checked(slave, NULL, 0);
@@ -135,7 +130,7 @@ static void ds2450_convert(struct sim_slave *slave)
 
 static const struct sim_function functions[] = {
 	{.code = 0xAA, .takes = 2, .start = send_memory, .next = send_memory}, /* Read Memory */
-	{.code = 0x55, .takes = 2, .byte = write_memory, .next = ds2450_receive},
+	{.code = 0x55, .takes = 2, .byte = write_memory, .next = sim_receive},
 	{.code = 0x3C, .takes = 2, .start = send_checksum, .next = ds2450_convert},
 	{0},
 };

@@ -58,11 +58,6 @@ static void ds2502_write(struct sim_slave *slave, uint8_t byte)
 		                is_status ? s->status[slave->address] : s->memory[slave->address]);
 }
 
-static void ds2502_receive(struct sim_slave *slave)
-{
-	sim_receive(slave);
-}
-
 static uint8_t *ds2502_memory(struct sim_slave *slave, size_t *size)
 {
 	*size = sizeof(struct ds2502); /* the status bytes after the data */
@@ -74,8 +69,8 @@ static const struct sim_function functions[] = {
 	{.code = READ_STATUS, .takes = 2, .start = send_checksum, .next = ds2502_send},
 	/* Read Data/Generate 8-Bit CRC, Write Memory */
 	{.code = 0xC3, .takes = 2, .start = send_checksum, .next = ds2502_send},
-	{.code = 0x0F, .takes = 2, .byte = ds2502_write, .next = ds2502_receive},
-	{.code = WRITE_STATUS, .takes = 2, .byte = ds2502_write, .next = ds2502_receive},
+	{.code = 0x0F, .takes = 2, .byte = ds2502_write, .next = sim_receive},
+	{.code = WRITE_STATUS, .takes = 2, .byte = ds2502_write, .next = sim_receive},
 	{0},
 };
 

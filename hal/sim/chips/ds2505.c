@@ -80,11 +80,6 @@ static void ds2505_write(struct sim_slave *slave, uint8_t byte)
 		sim_send_stored(slave, s->bytes[slave->address + (is_status ? s->size : 0)]);
 }
 
-static void ds2505_receive(struct sim_slave *slave)
-{
-	sim_receive(slave);
-}
-
 static uint8_t *ds2505_memory(struct sim_slave *slave, size_t *size)
 {
 	struct ds2505 *s = slave->state;
@@ -97,8 +92,8 @@ static const struct sim_function functions[] = {
 	{.code = READ_MEMORY, .takes = 2, .start = ds2505_send, .next = ds2505_send},
 	{.code = 0xA5, .takes = 2, .start = begin_pages, .next = send_page},
 	{.code = 0xAA, .takes = 2, .start = send_status, .next = send_status},
-	{.code = 0x0F, .takes = 2, .byte = ds2505_write, .next = ds2505_receive},
-	{.code = WRITE_STATUS, .takes = 2, .byte = ds2505_write, .next = ds2505_receive},
+	{.code = 0x0F, .takes = 2, .byte = ds2505_write, .next = sim_receive},
+	{.code = WRITE_STATUS, .takes = 2, .byte = ds2505_write, .next = sim_receive},
 	{0},
 };
 

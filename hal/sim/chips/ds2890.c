@@ -64,11 +64,6 @@ static void ds2890_write(struct sim_slave *slave, uint8_t byte)
 		*(is_position ? &s->position : &s->control) = s->fresh;
 }
 
-static void ds2890_receive(struct sim_slave *slave)
-{
-	sim_receive(slave);
-}
-
 /* Move one step, not beyond the end, and send where the wiper is. */
 static void ds2890_step(struct sim_slave *slave, uint8_t code)
 {
@@ -100,11 +95,11 @@ static const struct sim_function functions[] = {
 	{.code = WRITE_POSITION,
          .start = ds2890_begin_write,
          .byte = ds2890_write,
-         .next = ds2890_receive},
+         .next = sim_receive},
 	{.code = 0xAA, .start = read_control, .next = send_zero},
-	{.code = 0x55, .start = ds2890_begin_write, .byte = ds2890_write, .next = ds2890_receive},
-	{.code = INCREMENT, .start = first_step, .byte = another_step, .next = ds2890_receive},
-	{.code = DECREMENT, .start = first_step, .byte = another_step, .next = ds2890_receive},
+	{.code = 0x55, .start = ds2890_begin_write, .byte = ds2890_write, .next = sim_receive},
+	{.code = INCREMENT, .start = first_step, .byte = another_step, .next = sim_receive},
+	{.code = DECREMENT, .start = first_step, .byte = another_step, .next = sim_receive},
 	{0},
 };
 

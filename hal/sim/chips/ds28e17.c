@@ -188,12 +188,6 @@ static void revision(struct sim_slave *slave)
 	sim_send_byte(slave, 0x10);
 }
 
-/* It sleeps until the next reset. */
-static void sleep(struct sim_slave *slave)
-{
-	sim_end(slave);
-}
-
 #define PACKET_FUNCTION(number, bytes) \
 	{ \
 		.code = (number), .takes = (bytes), .start = ds28e17_begin, .byte = packet, \
@@ -210,7 +204,7 @@ static const struct sim_function functions[] = {
 	{.code = 0xD2, .takes = 1, .start = write_configuration},
 	{.code = 0xE1, .start = read_configuration},
 	{.code = 0xC4, .start = revision},
-	{.code = 0x1E, .start = sleep},
+	{.code = 0x1E, .start = sim_end}, /* It sleeps until the next reset. */
 	{0},
 };
 

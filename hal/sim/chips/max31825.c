@@ -84,12 +84,6 @@ static void max31825_write_scratchpad(struct sim_slave *slave, uint8_t byte)
 		sim_end(slave);
 }
 
-/* The resistors are as they were at power-on. */
-static void detect_address(struct sim_slave *slave)
-{
-	sim_end(slave);
-}
-
 /* Another function follows, for the chips with this location address only. */
 static void select_address(struct sim_slave *slave)
 {
@@ -105,7 +99,7 @@ static const struct sim_function functions[] = {
 	{.code = 0x44, .start = max31825_convert},
 	{.code = 0xBE, .start = max31825_read_scratchpad},
 	{.code = 0x4E, .start = max31825_begin_write, .byte = max31825_write_scratchpad},
-	{.code = 0x88, .start = detect_address},
+	{.code = 0x88, .start = sim_end}, /* The resistors are as they were at power-on. */
 	{.code = 0x70, .takes = 1, .start = select_address},
 	{0},
 };

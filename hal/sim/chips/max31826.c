@@ -96,11 +96,6 @@ static void max31826_convert(struct sim_slave *slave)
 	sim_work(slave, (is_max31850(slave) ? 100 : 150) * NS_PER_MS);
 }
 
-static void read_power(struct sim_slave *slave)
-{
-	sim_send_bits(slave);
-}
-
 static void max31826_read_scratchpad(struct sim_slave *slave)
 {
 	sim_send_crc8(slave, sim_state(slave, sim_max)->scratchpad, 8);
@@ -168,7 +163,7 @@ static uint8_t *max31826_memory(struct sim_slave *slave, size_t *size)
 	{.code = 0x44, .start = max31826_convert}, \
 		{.code = 0xBE, .start = max31826_read_scratchpad}, \
 	{ \
-		.code = READ_POWER, .start = read_power \
+		.code = READ_POWER, .start = sim_send_bits \
 	}
 static const struct sim_function max31826_functions[] = {
 	FUNCTIONS,
