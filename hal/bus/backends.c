@@ -6,7 +6,6 @@
 #include <strings.h>
 
 #include "hal/bus/backends.h"
-#include "hal/bus/bus.h"
 
 static const struct bus_ops *backend_of(const char *word, size_t len)
 {

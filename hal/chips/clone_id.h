@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What the id of a chip with the family code of the DS18B20 says of it (clone.c). */
+/* What the id of a chip with the family code of the DS18B20 says of it (family_28.c). */
 #ifndef HAL_CHIPS_CLONE_ID_H
 #define HAL_CHIPS_CLONE_ID_H
 

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* DS1921: converts, writes its registers, sets the clock, starts and stops missions. */
-#include "hal/chips/ds1921_mission.h"
 
 #include <errno.h>
 #include <string.h>
 
 #include "hal/chips/ds1921.h"
+#include "hal/chips/ds1921_mission.h"
 #include "hal/chips/family.h"
 #include "hal/chips/host_clock.h"
 #include "hal/chips/logger.h"

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* DS1922, DS1923, DS2422: converts, writes registers, sets the clock, starts and stops missions. */
-#include "hal/chips/ds1922_mission.h"
 
 #include <errno.h>
 #include <string.h>
 
 #include "hal/chips/ds1922.h"
+#include "hal/chips/ds1922_mission.h"
 #include "hal/chips/family.h"
 #include "hal/chips/host_clock.h"
 #include "hal/chips/logger.h"

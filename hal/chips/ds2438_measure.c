@@ -2,7 +2,6 @@
 /* What a DS2438 measures (data sheet 19-5099), and the proof that a zero is one. */
 #include <errno.h>
 
-#include "hal/chips/ds2438.h"
 #include "hal/chips/ds2438_measure.h"
 
 #define CURRENT_NS (28 * TXN_MS) /* 36.41 measurements a second */

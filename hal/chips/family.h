@@ -79,7 +79,7 @@ struct family {
 	uint32_t doubted;
 	/*
 	 * Of a thermometer: which chip it is by a scratchpad after a conversion; exact: of 12 bits
-	 * (clone.h). NULL: a scratchpad shows nothing of that.
+	 * (family_28.c). NULL: a scratchpad shows nothing of that.
 	 */
 	const char *(*name)(const uint8_t rom[8], const uint8_t scratchpad[9], bool exact);
 	uint32_t plain; /* KIND() of those that have the properties whose .kinds is 0; 0: all */

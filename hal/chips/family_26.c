@@ -85,11 +85,18 @@ enum {
 	WAY_FORMAT,
 	WAY_ALERT,
 };
+
+/* The chips are told apart before anything is asked of them. */
+static int read_identity(struct txn *txn)
+{
+	return property_text(txn, family_type(txn->device));
+}
+
 static const struct property_how how[] = {
 	SENSOR_WAYS,
 	DS2438_WAYS(WAYS),
 	[WAY_OFFSET] = {.read = read_offset, .write = write_offset},
-	[WAY_IDENTITY] = {.read = identity_read_type},
+	[WAY_IDENTITY] = {.read = read_identity},
 	[WAY_TEMPERATURE] = {.read = read_temperature},
 	[WAY_LIMIT] = {.read = tmp1826_read_limit, .write = tmp1826_write_limit},
 	[WAY_POWER] = {.read = tmp1826_read_power},

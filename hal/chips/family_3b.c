@@ -251,7 +251,7 @@ static int read_identity(struct txn *txn)
 
 	if (err && err != -EIO)
 		return err;
-	return identity_put(txn, err ? "unknown" : family_type(txn->device));
+	return property_text(txn, err ? "unknown" : family_type(txn->device));
 }
 
 /* arg: byte and bit; of a conversion, so it is read anew. */

@@ -9,14 +9,9 @@
 
 #include "hal/chips/property.h"
 
-/* A row of a family's table; how: its way, whose function ends with identity_put(). */
+/* A row of a family's table; how: its way, whose function ends with property_text(). */
 #define IDENTITY_ROW(way, ...) \
 	PROPERTY("identity", ASCII, STABLE, READ, .size = 48, .hidden = true, .how = (way), \
 	         __VA_ARGS__)
-
-/* The text is the answer. -EMSGSIZE. */
-int identity_put(struct txn *txn, const char *text);
-/* For a family whose chips are told apart before anything is asked of them: what it is called. */
-int identity_read_type(struct txn *txn);
 
 #endif

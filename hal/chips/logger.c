@@ -6,8 +6,6 @@
 #include <string.h>
 #include <time.h>
 
-#include "hal/wire/crc.h"
-
 #define PAGE 32
 #define COPIED 0x80 /* E/S: the scratchpad was copied */
 #define ENDING 0x1f

@@ -12,8 +12,8 @@
 #define FULL_BITS 12
 
 /*
- * As the data sheet says, but for clones of the DS18B20 (clone.c): family D2 takes 523 ms at each
- * resolution, H 101 ms for 9 bits.
+ * As the data sheet says, but for clones of the DS18B20 (family_28.c): family D2 takes 523 ms at
+ * each resolution, H 101 ms for 9 bits.
  */
 int64_t thermometer_convert_ns(const struct device *device)
 {

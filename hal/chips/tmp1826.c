@@ -15,7 +15,6 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/chips/ds2438.h"
 #include "hal/chips/tmp1826.h"
 #include "hal/owfs/path.h"
 

@@ -2,7 +2,6 @@
 /* One channel of a chip as a link. */
 #include <errno.h>
 
-#include "hal/bus/time.h"
 #include "hal/ds2482/chip.h"
 #include "hal/ds2482/detect.h"
 #include "hal/ds2482/io.h"

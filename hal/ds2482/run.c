@@ -16,7 +16,6 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
 #include "hal/ds2482/chip.h"
 #include "hal/ds2482/ends.h"
 #include "hal/ds2482/io.h"

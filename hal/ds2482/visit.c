@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* A reset, bytes written and bytes read, in as few I2C transfers as the adapter takes. */
 #include "hal/ds2482/visit.h"
+#include "hal/ds2482/select.h"
 
 #include <errno.h>
 
@@ -8,7 +9,6 @@
 #include "hal/ds2482/ends.h"
 #include "hal/ds2482/io.h"
 #include "hal/ds2482/run.h"
-#include "hal/ds2482/select.h"
 
 /* No byte is read across two transfers, and a transfer has the messages of one byte at least. */
 #define READS (DS2482_MAX_MESSAGES / 3)

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* OWFS paths and device ids: parsed, printed, split and compared. */
 #include <errno.h>
-#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 

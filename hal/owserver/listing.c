@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "hal/bus/time.h"
-#include "hal/owfs/path.h"
 #include "hal/owserver/listing.h"
 
 #define KEEP_NS (10 * NS_PER_S)

@@ -16,10 +16,9 @@
 
 #include "hal/bus/time.h"
 #include "hal/owfs/path.h"
-#include "hal/owserver/cache.h"
 #include "hal/owserver/listing.h"
 #include "hal/owserver/proof.h"
-#include "hal/owserver/simulated.h"
+#include "hal/owserver/server.h"
 #include "hal/owserver/status.h"
 #include "hal/owserver/talk.h"
 
@@ -205,9 +204,10 @@ static void go_on_greeting(struct owserver *server)
 		return;
 	}
 	if (err == 0)
-		err = simulated_ask(&server->talk, now_of(server) + NAMES_NS, &server->simulated);
+		err = server_ask_simulated(&server->talk, now_of(server) + NAMES_NS,
+		                           &server->simulated);
 	if (err == 0)
-		err = cache_ask(&server->talk, now_of(server) + NAMES_NS, &cache_ns);
+		err = server_ask_cache(&server->talk, now_of(server) + NAMES_NS, &cache_ns);
 	if (err == 0)
 		go_up(server, cache_ns);
 	else if (err != -EAGAIN)

@@ -7,8 +7,8 @@
  *   w1.c       the bus: masters and slaves that come and go
  *   master.c   the masters
  *   link.c     a master as a link; the lists of slaves, the alarms
- *   driver.c   which driver has a slave, and what it offers
- *   thermometer.c switches.c memory.c ds2438.c   the drivers: areas made of attributes
+ *   driver.c   which driver has a slave, and what it offers; the drivers of memories, the DS2438
+ *   thermometer.c switches.c   more drivers: areas made of attributes
  *   slave.c    what is remembered of a slave; its attributes
  *   tree.c     one attribute read or written, and what its errors mean
  *   uevent.c   the kernel tells that slaves and masters come and go

@@ -173,18 +173,6 @@ int txn_write(struct txn *txn, const uint8_t *bytes, size_t n)
 	return err ? err : of_link(txn, txn->link->ops->write(txn->link, bytes, n, LINK_IDLE));
 }
 
-int txn_write_strong(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns)
-{
-	enum link_after after;
-	int err = pull(txn, &after);
-
-	if (!err)
-		err = leave_done(txn);
-	if (err)
-		return err;
-	return hold(txn, of_link(txn, txn->link->ops->write(txn->link, bytes, n, after)), ns);
-}
-
 int txn_write_paused(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns)
 {
 	const struct bus_env *env = txn->link->env;

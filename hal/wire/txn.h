@@ -93,8 +93,6 @@ int txn_command_strong(struct txn *txn, const uint8_t *bytes, size_t n, int64_t 
 /* Reset and n bytes, without selecting the device. */
 int txn_raw(struct txn *txn, const uint8_t *bytes, size_t n);
 int txn_write(struct txn *txn, const uint8_t *bytes, size_t n);
-/* As txn_command_strong(). */
-int txn_write_strong(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns);
 /*
  * The same where the chip answers after it in the same transaction: it returns after ns, which are
  * a few milliseconds at the most. -EOPNOTSUPP on a link that keeps back what is written

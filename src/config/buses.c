@@ -7,7 +7,6 @@
 
 #include "src/config/build.h"
 #include "src/config/buses.h"
-#include "src/config/relative.h"
 #include "src/config/targets.h"
 #include "src/signal/hash.h"
 

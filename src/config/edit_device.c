@@ -2,7 +2,6 @@
 /* Replaces a device in the paths of its items. */
 #include <errno.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 

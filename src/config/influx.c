@@ -2,8 +2,8 @@
 /* The Influx block: where values are pushed, how often, and where they wait. */
 #include <string.h>
 
+#include "src/config/build.h"
 #include "src/config/influx.h"
-#include "src/config/text_key.h"
 
 /* Why it cannot be one; NULL: it can. */
 static const char *check_url(const char *url)
@@ -43,6 +43,6 @@ void influx_build(struct build *build, const struct rio_node *block)
 	influx->measurement = text_key(build, values, OPT_INFLUX_MEASUREMENT, text_is_name);
 	influx->spool = text_key(build, values, OPT_INFLUX_SPOOL, text_is_path);
 	influx->spool_mb = (unsigned)values[OPT_INFLUX_SPOOL_SIZE].number;
-	influx->every_ns = (int64_t)(values[OPT_INFLUX_EVERY].number * 1e9 + 0.5);
-	influx->clock_wait_ns = (int64_t)(values[OPT_INFLUX_CLOCK_WAIT].number * 1e9 + 0.5);
+	influx->every_ns = option_ns(&values[OPT_INFLUX_EVERY]);
+	influx->clock_wait_ns = option_ns(&values[OPT_INFLUX_CLOCK_WAIT]);
 }

@@ -220,7 +220,7 @@ static void build_start(struct build *build, const struct option_value *values,
 		report_error(build->report, start->node->value_at,
 		             "Start \"last\": expected an output, and this is an input");
 	item->has_safe_delay = delay->given;
-	item->safe_delay_ns = (int64_t)(delay->number * 1e9 + 0.5);
+	item->safe_delay_ns = option_ns(delay);
 	if (delay->given && !item->has_safe)
 		report_warning(build->report, delay->node->at,
 		               "SafeDelay does nothing without SafeValue");
@@ -255,7 +255,7 @@ static void build_read_back(struct build *build, const struct option_value *valu
 	                                               : NULL;
 
 	if (!fault)
-		item->read_back_ns = every->given     ? (int64_t)(every->number * 1e9 + 0.5)
+		item->read_back_ns = every->given     ? option_ns(every)
 		                     : property.holds ? READ_BACK_NS
 		                                      : 0;
 	else if (every->given && every->number > 0)
@@ -290,7 +290,7 @@ static void build_values(struct build *build, const struct option_value *values,
 		report_warning(build->report, safe->node->at,
 		               "SafeValue does nothing: this input is not Writable");
 	item->per_factor = (uint32_t)values[OPT_PER_FACTOR].number;
-	item->stale_after_ns = (int64_t)(values[OPT_STALE_AFTER].number * 1e9 + 0.5);
+	item->stale_after_ns = option_ns(&values[OPT_STALE_AFTER]);
 }
 
 static const char *keep_if_given(struct build *build, const struct option_value *value)

@@ -12,11 +12,6 @@ static const enum option limit_options[CONFIG_LIMITS] = {
 };
 static const enum option beside[] = {OPT_HYSTERESIS, OPT_ON_DELAY, OPT_OFF_DELAY};
 
-static int64_t nanoseconds(double seconds)
-{
-	return (int64_t)(seconds * 1e9 + 0.5);
-}
-
 /* Each limit has to lie above the one before it that is given. */
 static void check_order(struct build *build, const struct option_value *values)
 {
@@ -69,8 +64,8 @@ void limits_build(struct build *build, const struct option_value *values, struct
 		limits->limit[i] = limit->number;
 	}
 	limits->hysteresis = values[OPT_HYSTERESIS].number;
-	limits->on_delay_ns = nanoseconds(values[OPT_ON_DELAY].number);
-	limits->off_delay_ns = nanoseconds(values[OPT_OFF_DELAY].number);
+	limits->on_delay_ns = option_ns(&values[OPT_ON_DELAY]);
+	limits->off_delay_ns = option_ns(&values[OPT_OFF_DELAY]);
 	check_order(build, values);
 	check_hysteresis(build, values);
 	if (limits->any)

@@ -16,16 +16,10 @@
 #include "src/config/rio_file.h"
 #include "src/config/serve.h"
 #include "src/config/targets.h"
-#include "src/config/text_key.h"
 #include "src/config/web.h"
 #include "src/signal/value.h"
 
 #define DRIVER "OwsDrv"
-
-static int64_t nanoseconds(double seconds)
-{
-	return (int64_t)(seconds * 1e9 + 0.5);
-}
 
 /* The one OwsDrv block of the file; NULL after reporting what the file has instead. */
 static const struct rio_node *find_driver(const struct rio *rio, const char *file,
@@ -66,9 +60,9 @@ static void build_driver(struct build *build, const struct option_value *values)
 
 	config->max_cons_alarms = (unsigned)values[OPT_MAX_CONS_ALARMS].number;
 	config->max_retries = (unsigned)values[OPT_MAX_RETRIES].number;
-	config->timeout_ns = nanoseconds(values[OPT_TIMEOUT].number);
-	config->period_ns = nanoseconds(values[OPT_PERIOD].number);
-	config->alarm_period_ns = nanoseconds(values[OPT_ALARM_PERIOD].number);
+	config->timeout_ns = option_ns(&values[OPT_TIMEOUT]);
+	config->period_ns = option_ns(&values[OPT_PERIOD]);
+	config->alarm_period_ns = option_ns(&values[OPT_ALARM_PERIOD]);
 	if (!config->max_cons_alarms) {
 		report_warning(build->report, values[OPT_MAX_CONS_ALARMS].node->value_at,
 		               "MaxConsAlarms 0 counts as 1");

@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/config/build.h"
 #include "src/config/mqtt.h"
-#include "src/config/text_key.h"
 
 #define PORT 1883
 #define PORT_TLS 8883

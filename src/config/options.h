@@ -176,6 +176,11 @@ struct option_value {
 	const char *text;            /* "" if not given */
 	double number; /* counts, seconds, numbers, flags (0, 1), types, IO (1: output) */
 };
+/* Of seconds. */
+static inline int64_t option_ns(const struct option_value *value)
+{
+	return (int64_t)(value->number * 1e9 + 0.5);
+}
 
 /*
  * Check the keys of a block against the table and put the values into values, which has

@@ -5,8 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "src/config/build.h"
 #include "src/config/recorder.h"
-#include "src/config/text_key.h"
 #include "src/signal/value.h"
 
 #define BLANK " \t"
@@ -148,7 +148,7 @@ void recorder_build(struct build *build, const struct rio_node *block)
 	recorder->keep_minutes = (unsigned)values[OPT_RECORDER_KEEP_MINUTES].number;
 	recorder->keep_hours = (unsigned)values[OPT_RECORDER_KEEP_HOURS].number;
 	recorder->size_mb = (unsigned)values[OPT_RECORDER_SIZE].number;
-	recorder->flush_ns = (int64_t)(values[OPT_RECORDER_FLUSH].number * 1e9 + 0.5);
+	recorder->flush_ns = option_ns(&values[OPT_RECORDER_FLUSH]);
 	recorder->record.change = true;
 	if (record->given && take_record(build, record, &recorder->record))
 		text = record->text;

@@ -2,7 +2,6 @@
 /* Replaces a file in one step: a temporary file beside it is written out and renamed. */
 #include <errno.h>
 #include <fcntl.h>
-#include <limits.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The reader of .rio files: bytes become a document of nodes with their places. */
 #include <errno.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 

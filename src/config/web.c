@@ -2,8 +2,8 @@
 /* The Web block: where owsd-web serves its page, for whom, and what the page may do. */
 #include <string.h>
 
+#include "src/config/build.h"
 #include "src/config/serve.h"
-#include "src/config/text_key.h"
 #include "src/config/web.h"
 #include "src/shm/owner.h"
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Connections: who gets a place, what was sent over them, and how they end. */
 #include <errno.h>
-#include <fcntl.h>
 #include <poll.h>
 #include <string.h>
 #include <sys/epoll.h>

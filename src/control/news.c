@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* The thread that rings the news of connected programs and wakes the sleepers of the image. */
-#include <errno.h>
 #include <limits.h>
 #include <poll.h>
 #include <sys/socket.h>

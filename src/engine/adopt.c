@@ -24,7 +24,6 @@
 #include "src/engine/publish.h"
 #include "src/engine/read_back.h"
 #include "src/engine/schedule.h"
-#include "src/engine/shelf.h"
 #include "src/engine/state.h"
 #include "src/shm/entries.h"
 #include "src/shm/shelves.h"

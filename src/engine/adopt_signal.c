@@ -5,7 +5,6 @@
 #include "src/config/config.h"
 #include "src/engine/adopt_signal.h"
 #include "src/engine/scaling.h"
-#include "src/engine/table.h"
 
 /* What a program has set stays, unless the file says something else than before. */
 static uint32_t flag_of(const struct signal *s, const struct signal *was, uint32_t flag,

@@ -11,7 +11,6 @@
 #include "src/engine/alarm_refused.h"
 #include "src/engine/alarm_step.h"
 #include "src/engine/completion.h"
-#include "src/engine/state.h"
 #include "src/text/log.h"
 
 #define BYPASS_NS (20 * NS_PER_MS)

@@ -11,11 +11,7 @@
 #include "src/engine/alarm_item.h"
 #include "src/engine/alarm_refused.h"
 #include "src/engine/alarm_text.h"
-#include "src/engine/publish.h"
 #include "src/engine/retry.h"
-#include "src/engine/schedule.h"
-#include "src/engine/state.h"
-#include "src/signal/error.h"
 #include "src/text/log.h"
 
 /* Another item of the same device, or this one, with the same property for its restart. */

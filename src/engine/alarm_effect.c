@@ -6,7 +6,6 @@
 #include "src/engine/alarm_text.h"
 #include "src/engine/publish.h"
 #include "src/engine/schedule.h"
-#include "src/engine/state.h"
 #include "src/shm/entries.h"
 #include "src/text/log.h"
 

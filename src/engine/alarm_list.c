@@ -9,7 +9,6 @@
 #include "src/engine/alarm_list.h"
 #include "src/engine/publish.h"
 #include "src/engine/schedule.h"
-#include "src/engine/state.h"
 #include "src/text/log.h"
 
 #define LIST_WAIT_MAX (60 * NS_PER_S)

@@ -13,7 +13,6 @@
 #include "src/engine/publish.h"
 #include "src/engine/scaling.h"
 #include "src/engine/schedule.h"
-#include "src/engine/state.h"
 #include "src/shm/entries.h"
 #include "src/shm/layout.h"
 

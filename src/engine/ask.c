@@ -15,10 +15,8 @@
 #include "src/engine/scaling.h"
 #include "src/engine/schedule.h"
 #include "src/engine/slots.h"
-#include "src/engine/state.h"
 #include "src/engine/trace.h"
 #include "src/engine/types.h"
-#include "src/signal/value.h"
 
 /* Past the caches: also what is compared with its command, each ReadBack and while it differs. */
 static bool reads_fresh(const struct signal *s, int64_t now_ns)

@@ -3,7 +3,6 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
 #include "src/engine/alarm_item.h"
 #include "src/engine/completion.h"
 #include "src/engine/device_back.h"
@@ -15,7 +14,6 @@
 #include "src/engine/retry.h"
 #include "src/engine/scaling.h"
 #include "src/engine/schedule.h"
-#include "src/engine/state.h"
 #include "src/signal/error.h"
 #include "src/signal/value.h"
 #include "src/text/log.h"

@@ -4,7 +4,6 @@
 #include "src/engine/alarm_arm.h"
 #include "src/engine/retry.h"
 #include "src/engine/schedule.h"
-#include "src/engine/state.h"
 
 void engine_device_back(struct lane *lane, struct device *device)
 {

@@ -7,7 +7,6 @@
 
 #include "src/engine/disown.h"
 #include "src/engine/due.h"
-#include "src/engine/state.h"
 
 static void disown_slot(struct lane *lane, struct slot *slot)
 {

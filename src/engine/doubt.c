@@ -8,7 +8,6 @@
 #include "src/engine/doubt.h"
 #include "src/engine/publish.h"
 #include "src/engine/schedule.h"
-#include "src/engine/state.h"
 
 bool lane_writes_output(const struct lane *lane, const struct slot *slot)
 {

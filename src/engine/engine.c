@@ -4,7 +4,6 @@
 #include <errno.h>
 #include <stdlib.h>
 
-#include "hal/bus/time.h"
 #include "src/engine/alarm_item.h"
 #include "src/engine/ask.h"
 #include "src/engine/controllers.h"
@@ -19,13 +18,12 @@
 #include "src/engine/lane.h"
 #include "src/engine/lane_answer.h"
 #include "src/engine/lane_event.h"
+#include "src/engine/limits.h"
 #include "src/engine/place.h"
 #include "src/engine/publish.h"
 #include "src/engine/routing.h"
 #include "src/engine/schedule.h"
-#include "src/engine/shelf.h"
 #include "src/engine/state.h"
-#include "src/text/log.h"
 
 /* All rows begin: what was in force comes back, and the image is filled. */
 static void engine_begin(struct engine *e, const struct engine_setup *setup)

@@ -19,7 +19,7 @@
  *   reading back         read_back, restart
  *   alarm items          alarm_arm, alarm_list, alarm_effect, alarm_refused
  *   schedule, publish    schedule, publish, origin, limits, counters, device_facts
- *   slots                lane, slots, disown, group, trace, shelf, alarm_item
+ *   slots                lane, slots, disown, group, trace, alarm_item
  *   table                table, scaling, structure, due
  *   pure functions       route, adoption, limit, guard, retry, alarm_fsm, alarm_text
  *

@@ -14,7 +14,6 @@
 #include "src/engine/retry.h"
 #include "src/engine/schedule.h"
 #include "src/engine/slots.h"
-#include "src/engine/state.h"
 
 /* So many requests of a busy table go before a guest that waits. */
 #define GUEST_PASSED 4

@@ -12,9 +12,7 @@
 #include "src/engine/publish.h"
 #include "src/engine/scaling.h"
 #include "src/engine/schedule.h"
-#include "src/engine/state.h"
 #include "src/libows/ows.h"
-#include "src/signal/value.h"
 
 /* A program that lives needs a cycle or two to learn that there is another owsd. */
 #define COME_BACK_NS (2 * NS_PER_S)

@@ -11,8 +11,6 @@
 #include "src/engine/retry.h"
 #include "src/engine/scaling.h"
 #include "src/engine/schedule.h"
-#include "src/engine/state.h"
-#include "src/signal/value.h"
 #include "src/text/log.h"
 
 /* A controller that needs longer to store a text has none to store. */

@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* A lane is made and ended here; rows of the table come to it and leave it. */
 #include <errno.h>
-#include <stdlib.h>
 
 #include "src/engine/alarm_item.h"
 #include "src/engine/lane.h"
 #include "src/engine/slots.h"
-#include "src/engine/state.h"
 
 int lane_init(struct lane *lane, struct engine *engine, const struct engine_port *port,
               unsigned index)

@@ -14,7 +14,6 @@
 #include "src/engine/restart.h"
 #include "src/engine/retry.h"
 #include "src/engine/slots.h"
-#include "src/engine/state.h"
 #include "src/engine/trace.h"
 #include "src/engine/types.h"
 

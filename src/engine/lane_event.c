@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* What a bus reports by itself becomes facts of its lane, of its way and of devices. */
-#include <errno.h>
 #include <string.h>
 
 #include "hal/bus/time.h"
@@ -11,7 +10,6 @@
 #include "src/engine/lane_state.h"
 #include "src/engine/place.h"
 #include "src/engine/publish.h"
-#include "src/engine/state.h"
 #include "src/text/log.h"
 
 /*

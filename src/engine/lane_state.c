@@ -14,7 +14,6 @@
 #include "src/engine/publish.h"
 #include "src/engine/retry.h"
 #include "src/engine/schedule.h"
-#include "src/engine/state.h"
 #include "src/text/log.h"
 
 /* All signals of the lane are read again, and written if there is something to write. */

@@ -17,7 +17,6 @@
 #include "src/engine/publish.h"
 #include "src/engine/retry.h"
 #include "src/engine/schedule.h"
-#include "src/engine/state.h"
 #include "src/text/log.h"
 
 /* Old values are the last usable ones at best; what was bad stays so until something is read. */

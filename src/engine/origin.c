@@ -4,7 +4,6 @@
 
 #include "hal/bus/time.h"
 #include "src/engine/origin.h"
-#include "src/engine/state.h"
 #include "src/shm/entries.h"
 
 /* A controller that commands a signal without end for one person has one entry a second. */

@@ -12,7 +12,6 @@
 #include "src/engine/retry.h"
 #include "src/engine/route.h"
 #include "src/engine/slots.h"
-#include "src/engine/state.h"
 
 /* Between two looks for devices that are not there: the signals that are come first. */
 #define PROBE_APART_NS (200 * NS_PER_MS)

@@ -7,7 +7,6 @@
 
 #include "src/engine/due.h"
 #include "src/engine/limits.h"
-#include "src/engine/state.h"
 #include "src/signal/value.h"
 
 /* The attributes that say how a signal stands; the others count, or are of one moment. */

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* Compares what an output reads with what was written, and tells where they differ. */
-#include <stdio.h>
 #include <string.h>
 
 #include "hal/bus/time.h"

@@ -5,7 +5,6 @@
 #include "src/engine/due.h"
 #include "src/engine/publish.h"
 #include "src/engine/retry.h"
-#include "src/engine/state.h"
 
 void engine_read_now(struct engine *e, struct signal *s)
 {

@@ -9,7 +9,6 @@
 
 #include "src/engine/guest.h"
 #include "src/engine/slots.h"
-#include "src/engine/state.h"
 
 int slots_init(struct lane *lane)
 {

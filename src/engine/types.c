@@ -8,7 +8,6 @@
 #include "src/engine/publish.h"
 #include "src/engine/retry.h"
 #include "src/engine/slots.h"
-#include "src/engine/state.h"
 #include "src/engine/structure.h"
 #include "src/engine/types.h"
 #include "src/text/log.h"

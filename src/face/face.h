@@ -68,7 +68,7 @@ struct face_ops {
 	void (*event)(struct face *face, const struct face_event *event);
 	/* At face->tick_ns or soon after; has to move tick_ns on. Also while owsd is lost. */
 	void (*tick)(struct face *face, int64_t now_ns);
-	/* Lines of the report (report.h) besides those of all faces. NULL: none. */
+	/* Lines of the report (loop.c) besides those of all faces. NULL: none. */
 	void (*report)(struct face *face, FILE *out);
 	/* After the loop. */
 	void (*close)(struct face *face);
@@ -100,7 +100,7 @@ struct face {
 	unsigned fd_count;
 	int64_t fed_ns;
 
-	/* of report.c alone */
+	/* of loop.c alone, its report */
 	char report[256]; /* its file; "": none */
 	int64_t report_ns;
 

@@ -1,23 +1,82 @@
 /* SPDX-License-Identifier: MIT */
 /* The program of a face: its start, its loop, its end. */
 #include <errno.h>
+#include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
 #include "hal/bus/time.h"
-#include "src/face/load.h"
 #include "src/face/look.h"
 #include "src/face/loop.h"
-#include "src/face/report.h"
-#include "src/service/journal.h"
-#include "src/service/standard.h"
+#include "src/service/streams.h"
 #include "src/service/unix_signals.h"
+
+#define REPORT_NS (5 * NS_PER_S)
+
+/* --- The report ------------------------------------------------------------------------------ */
+
+/*
+ * A small file in which a face says how it does, for `owsctl stats`. It is RUNTIME_DIRECTORY/status
+ * of a service, else OWS_DIR/INSTANCE.PROGRAM; without either there is none. Lines of a word and
+ * its value: pid, beat (the boot time of the report, ns), status; what face_ops.report writes:
+ * since (a boot time), trouble, count NAME NUMBER.
+ */
+static void report_open(struct face *face)
+{
+	const char *own = getenv("RUNTIME_DIRECTORY"), *all = getenv("OWS_DIR");
+	size_t size = sizeof(face->report);
+	int len = 0;
+
+	if (own && *own == '/')
+		len = snprintf(face->report, size, "%s/status", own);
+	else if (all && *all == '/')
+		len = snprintf(face->report, size, "%s/%s.%s", all, face->arguments->instance,
+		               face->ops->program);
+	if (len >= (int)size)
+		face->report[0] = '\0';
+}
+
+/* When it is due, or the status is another. It is replaced in one step; an error is not logged. */
+static void report_write(struct face *face, int64_t now_ns)
+{
+	char fresh[sizeof(face->report) + 4];
+	FILE *out;
+	int fd;
+
+	if (!*face->report || now_ns < face->report_ns)
+		return;
+	face->report_ns = now_ns + REPORT_NS;
+	snprintf(fresh, sizeof(fresh), "%s.new", face->report);
+	unlink(fresh);
+	fd = open(fresh, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0640);
+	out = fd < 0 ? NULL : fdopen(fd, "w");
+	if (!out) {
+		if (fd >= 0)
+			close(fd);
+		return;
+	}
+	/* the umask of a service may keep the group out, which may read the signals */
+	fchmod(fd, 0640);
+	fprintf(out, "pid %ld\nbeat %lld\nstatus %s\n", (long)getpid(), (long long)now_ns,
+	        face->status);
+	if (face->ops->report)
+		face->ops->report(face, out);
+	if (fclose(out) || rename(fresh, face->report))
+		unlink(fresh);
+}
+
+static void report_remove(const struct face *face)
+{
+	if (*face->report)
+		unlink(face->report);
+}
 
 int face_watch(struct face *face, int fd, short events)
 {

@@ -2,7 +2,6 @@
 /* Finds and reads secrets, and refuses those that others may have read. */
 #include <errno.h>
 #include <fcntl.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

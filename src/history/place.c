@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The directory of an instance's history. */
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +9,7 @@
 #include <unistd.h>
 
 #include "src/history/place.h"
+#include "src/signal/hash.h"
 
 #define RECORDER "owsd-recorder"
 #define WHAT "history"
@@ -82,4 +84,19 @@ int history_make_above(const char *path)
 		*slash = '/';
 	}
 	return 0;
+}
+
+int64_t history_boot_present(void)
+{
+	char id[64];
+	int fd = open("/proc/sys/kernel/random/boot_id", O_RDONLY | O_CLOEXEC);
+	ssize_t n = fd >= 0 ? read(fd, id, sizeof(id)) : 0, len = 0;
+	uint64_t hash;
+
+	if (fd >= 0)
+		close(fd);
+	while (len < n && id[len] != '\n')
+		len++;
+	hash = hash_text(HASH_BEGIN, id, (size_t)len);
+	return (int64_t)(hash ? hash : 1);
 }

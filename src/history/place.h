@@ -4,6 +4,7 @@
 #define HISTORY_PLACE_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 #define HISTORY_PATH 256
 
@@ -24,5 +25,10 @@ int history_place_state(const char *program, const char *what, const char *insta
 int history_place_found(const char *instance, char path[HISTORY_PATH]);
 /* Make the directories above path, mode 0750, as far as they are missing. 0 or a negative errno. */
 int history_make_above(const char *path);
+
+/* The boot that this machine is in. */
+
+/* A hash of the kernel's boot id, never 0; of "" where it cannot be read. A system call. */
+int64_t history_boot_present(void);
 
 #endif

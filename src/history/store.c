@@ -5,7 +5,6 @@
 #include <errno.h>
 #include <math.h>
 
-#include "src/history/keep.h"
 #include "src/history/schema.h"
 #include "src/history/sql.h"
 #include "src/signal/value.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The engine's thread: what it does in turn, the bell that wakes it, the counters it publishes. */
 #include <errno.h>
-#include <limits.h>
 #include <sched.h>
 #include <signal.h>
 #include <stdio.h>
@@ -9,7 +8,6 @@
 #include <string.h>
 #include <sys/mman.h>
 
-#include "hal/bus/time.h"
 #include "hal/bus/worker.h"
 #include "src/control/control.h"
 #include "src/engine/controllers.h"
@@ -18,7 +16,6 @@
 #include "src/host/private.h"
 #include "src/libows/ows.h"
 #include "src/serve/serve.h"
-#include "src/shm/futex.h"
 
 #define ENGINE_STACK (128 * 1024)
 enum {

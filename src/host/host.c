@@ -8,17 +8,14 @@
 #include <string.h>
 
 #include "hal/bus/time.h"
-#include "hal/bus/worker.h"
 #include "src/config/load.h"
 #include "src/control/control.h"
-#include "src/engine/engine.h"
 #include "src/host/engine_thread.h"
 #include "src/host/host.h"
 #include "src/host/indicator.h"
 #include "src/host/last.h"
 #include "src/host/make.h"
 #include "src/host/private.h"
-#include "src/libows/ows.h"
 #include "src/serve/serve.h"
 #include "src/shm/entries.h"
 #include "src/shm/reader.h"

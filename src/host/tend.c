@@ -1,19 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /* The supervisor's upkeep: looks for the image, and finishes what a reload has left to do. */
-#include <errno.h>
 #include <string.h>
 
 #include "hal/bus/time.h"
 #include "src/control/control.h"
-#include "src/host/engine_thread.h"
 #include "src/host/last.h"
 #include "src/host/make.h"
 #include "src/host/private.h"
 #include "src/host/tend.h"
 #include "src/libows/ows.h"
-#include "src/shm/hint.h"
 #include "src/shm/porter.h"
-#include "src/shm/segment.h"
 
 /* How often owsd tries what a reload could not finish. */
 #define TEND_NS NS_PER_S

@@ -5,7 +5,6 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
-#include <sys/random.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
@@ -113,13 +112,4 @@ int spool_disk_directory(const char *path, int make)
 	if (make && mkdir(path, 0750) < 0 && errno != EEXIST)
 		return -errno;
 	return result(open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-}
-
-int spool_disk_random(void *data, size_t size)
-{
-	ssize_t n = getrandom(data, size, 0);
-
-	if (n < 0)
-		return -errno;
-	return (size_t)n == size ? 0 : -EIO;
 }

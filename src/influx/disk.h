@@ -30,7 +30,5 @@ extern const struct spool_disk spool_disk_system;
 
 /* Open a directory for the calls above; make it, mode 0750, if it is missing and make says so. */
 int spool_disk_directory(const char *path, int make);
-/* Random bytes; 0 or a negative errno. */
-int spool_disk_random(void *data, size_t size);
 
 #endif

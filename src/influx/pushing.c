@@ -2,7 +2,6 @@
 /* What owsd-influx does with the news of owsd, at its ticks and at its end. */
 #include <errno.h>
 #include <poll.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "hal/bus/time.h"
@@ -17,11 +16,6 @@
 #define PACE_NS (20 * NS_PER_MS)
 #define TICK_NS NS_PER_S
 
-static struct pushing *pushing_own(struct face *face)
-{
-	return face->own;
-}
-
 static void pushing_watch(void *ctx, int fd, short events)
 {
 	face_ignore(ctx, fd);
@@ -31,7 +25,7 @@ static void pushing_watch(void *ctx, int fd, short events)
 
 static void open_spool(struct face *face)
 {
-	struct pushing *p = pushing_own(face);
+	struct pushing *p = face->own;
 	int err = spool_open(&p->spool, p->options.spool, (uint64_t)p->options.spool_mb * 1000000,
 	                     &spool_disk_system);
 
@@ -44,7 +38,7 @@ static void open_spool(struct face *face)
 
 static void pushing_begin(struct face *face, int64_t now_ns)
 {
-	struct pushing *p = pushing_own(face);
+	struct pushing *p = face->own;
 
 	p->on = true;
 	p->trouble = PUSH_WELL;
@@ -59,7 +53,7 @@ static void pushing_begin(struct face *face, int64_t now_ns)
 /* What is under way and in memory goes to the spool, if its time is known. */
 static void pushing_end(struct face *face)
 {
-	struct pushing *p = pushing_own(face);
+	struct pushing *p = face->own;
 
 	post_cancel(p->post);
 	if (p->spooled)
@@ -81,7 +75,7 @@ static void pushing_end(struct face *face)
 
 static void make_rows(struct face *face)
 {
-	struct pushing *p = pushing_own(face);
+	struct pushing *p = face->own;
 
 	if (!p->on || !face->live) {
 		points_free(&p->points);
@@ -99,7 +93,7 @@ static void make_rows(struct face *face)
 /* The file may say something else than before, or have no block any more. */
 static void renew(struct face *face, int64_t now_ns)
 {
-	struct pushing *p = pushing_own(face);
+	struct pushing *p = face->own;
 	struct push_options options;
 
 	if (push_options_take(&options, face)) {
@@ -122,7 +116,7 @@ static void renew(struct face *face, int64_t now_ns)
 
 int pushing_open(struct face *face)
 {
-	struct pushing *p = pushing_own(face);
+	struct pushing *p = face->own;
 	int64_t now_ns = ows_now();
 
 	p->spool.dir = -1;
@@ -142,7 +136,7 @@ int pushing_open(struct face *face)
 
 void pushing_close(struct face *face)
 {
-	struct pushing *p = pushing_own(face);
+	struct pushing *p = face->own;
 
 	pushing_end(face);
 	if (p->pending.lines)
@@ -157,7 +151,7 @@ void pushing_close(struct face *face)
 /* Whether lines can have wall-clock times. */
 static void look_at_clock(struct face *face, int64_t now_ns)
 {
-	struct pushing *p = pushing_own(face);
+	struct pushing *p = face->own;
 
 	wall_clock_look(&p->clock, now_ns);
 	if (p->believed || !p->on)
@@ -172,7 +166,7 @@ static void look_at_clock(struct face *face, int64_t now_ns)
 
 static void report_dropped(struct face *face)
 {
-	struct pushing *p = pushing_own(face);
+	struct pushing *p = face->own;
 
 	if (p->spool.dropped != p->lost_bytes)
 		log_warning(face->log, "the spool is full: the oldest batches are dropped, %llu kB",
@@ -186,7 +180,7 @@ static void report_dropped(struct face *face)
 
 static void show_status(struct face *face)
 {
-	struct pushing *p = pushing_own(face);
+	struct pushing *p = face->own;
 	const char *state = !p->on                      ? "no Influx block: off"
 	                    : !p->believed              ? "waiting for the time"
 	                    : p->trouble == PUSH_AWAY   ? "the server is lost"
@@ -207,7 +201,7 @@ static void show_status(struct face *face)
 /* fd is ready; -1: none, but something may be due. */
 static void go_on(struct face *face, int fd, short ready)
 {
-	struct pushing *p = pushing_own(face);
+	struct pushing *p = face->own;
 	int64_t now_ns = ows_now();
 	struct post_result result;
 
@@ -223,7 +217,7 @@ static void go_on(struct face *face, int fd, short ready)
 
 void pushing_tick(struct face *face, int64_t now_ns)
 {
-	struct pushing *p = pushing_own(face);
+	struct pushing *p = face->own;
 
 	look_at_clock(face, now_ns);
 	if (p->on && p->spool.dir < 0)
@@ -237,7 +231,7 @@ void pushing_tick(struct face *face, int64_t now_ns)
 
 void pushing_changes(struct face *face, const int *signals, int n)
 {
-	struct pushing *p = pushing_own(face);
+	struct pushing *p = face->own;
 
 	if (p->on)
 		points_changes(&p->points, face->ows, &p->pending, signals, n, ows_now());
@@ -245,7 +239,7 @@ void pushing_changes(struct face *face, const int *signals, int n)
 
 void pushing_event(struct face *face, const struct face_event *event)
 {
-	struct pushing *p = pushing_own(face);
+	struct pushing *p = face->own;
 	int64_t now_ns = ows_now();
 
 	switch (event->news) {

@@ -1,25 +1,58 @@
 /* SPDX-License-Identifier: MIT */
 /* Makes batches, sends them, and does what the answer of the server asks for. */
 #include <errno.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "hal/bus/time.h"
+#include "src/config/config.h"
 #include "src/face/face.h"
 #include "src/influx/post.h"
 #include "src/influx/sending.h"
+
+static int choose_spool(const struct face *face, char path[HISTORY_PATH])
+{
+	const char *given = face->arguments->option ? face->arguments->option
+	                                            : face->config->influx.spool;
+
+	if (!given)
+		return history_place_state(face->ops->program, "influx", face->arguments->instance,
+		                           path);
+	return snprintf(path, HISTORY_PATH, "%s", given) < HISTORY_PATH ? 0 : -ENAMETOOLONG;
+}
+
+int push_options_take(struct push_options *options, const struct face *face)
+{
+	const struct config_influx *influx = &face->config->influx;
+
+	*options = (struct push_options){0};
+	if (!influx->given)
+		return 0;
+	options->spool_mb = influx->spool_mb;
+	options->every_ns = influx->every_ns;
+	options->clock_wait_ns = influx->clock_wait_ns;
+	snprintf(options->url, sizeof(options->url), "%s", influx->url);
+	snprintf(options->token_file, sizeof(options->token_file), "%s",
+	         influx->token_file ? influx->token_file : "");
+	snprintf(options->measurement, sizeof(options->measurement), "%s", influx->measurement);
+	return choose_spool(face, options->spool);
+}
+
+bool push_options_same(const struct push_options *a, const struct push_options *b)
+{
+	return !strcmp(a->url, b->url) && !strcmp(a->token_file, b->token_file) &&
+	       !strcmp(a->measurement, b->measurement) && !strcmp(a->spool, b->spool) &&
+	       a->spool_mb == b->spool_mb && a->every_ns == b->every_ns &&
+	       a->clock_wait_ns == b->clock_wait_ns;
+}
 
 #define STEP_NS NS_PER_S
 #define STEP_MOST_NS (60 * NS_PER_S)
 #define UNREAD_NS (10 * NS_PER_S)
 
-static struct pushing *sending_own(struct face *face)
-{
-	return face->own;
-}
-
 void sending_read_token(struct face *face)
 {
-	struct pushing *p = sending_own(face);
+	struct pushing *p = face->own;
 	char why[SECRET_PATH + 128];
 
 	if (secret_read(*p->options.token_file ? p->options.token_file : NULL, p->token, why,
@@ -30,7 +63,7 @@ void sending_read_token(struct face *face)
 /* Once when it begins, once when it is over. */
 void sending_report_disk(struct face *face, int err)
 {
-	struct pushing *p = sending_own(face);
+	struct pushing *p = face->own;
 
 	if (err && err != p->disk_err)
 		log_err(face->log, "%s cannot be written: %s%s; what waits is in memory alone",
@@ -46,7 +79,7 @@ void sending_report_disk(struct face *face, int err)
 /* A batch of the memory into the spool. False: it stays in memory. */
 bool sending_put_away(struct face *face)
 {
-	struct pushing *p = sending_own(face);
+	struct pushing *p = face->own;
 	int err;
 
 	err = spool_put(&p->spool, p->batch, p->batch_len);
@@ -84,7 +117,7 @@ static const char *advice(long status)
 /* Once when it is lost, once more when the reason is of another kind. */
 static void sending_fail(struct face *face, const struct post_result *result, int64_t now_ns)
 {
-	struct pushing *p = sending_own(face);
+	struct pushing *p = face->own;
 	enum push_trouble trouble = PUSH_AWAY;
 
 	if (result->status >= 300 && result->status < 500 && result->status != 408 &&
@@ -111,7 +144,7 @@ static void sending_fail(struct face *face, const struct post_result *result, in
 /* The server has understood what it got. */
 static void answered(struct face *face)
 {
-	struct pushing *p = sending_own(face);
+	struct pushing *p = face->own;
 
 	if (p->trouble != PUSH_WELL)
 		log_notice(face->log, "%.100s is back; %zu batches wait", p->options.url,
@@ -133,7 +166,7 @@ static void part_over(struct pushing *p)
 
 static void arrived(struct face *face)
 {
-	struct pushing *p = sending_own(face);
+	struct pushing *p = face->own;
 
 	answered(face);
 	p->refused = false;
@@ -144,7 +177,7 @@ static void arrived(struct face *face)
 /* The server does not want these lines: others may be better. */
 static void refused(struct face *face, const struct post_result *result)
 {
-	struct pushing *p = sending_own(face);
+	struct pushing *p = face->own;
 
 	answered(face);
 	if (!p->refused)
@@ -164,7 +197,7 @@ static void refused(struct face *face, const struct post_result *result)
 /* The same lines in smaller parts; a line that is too large alone is refused. */
 static void too_large(struct face *face, const struct post_result *result)
 {
-	struct pushing *p = sending_own(face);
+	struct pushing *p = face->own;
 
 	if (!part_halve(&p->part, p->batch)) {
 		refused(face, result);
@@ -192,7 +225,7 @@ void sending_finished(struct face *face, const struct post_result *result, int64
 static void take_spooled(struct face *face, int64_t now_ns)
 {
 	char name[SPOOL_NAME], others[LOG_OTHERS];
-	struct pushing *p = sending_own(face);
+	struct pushing *p = face->own;
 	int64_t len = spool_read(&p->spool, p->batch, sizeof(p->batch));
 	uint64_t unread;
 	bool later;
@@ -220,7 +253,7 @@ static void take_spooled(struct face *face, int64_t now_ns)
 /* Make a batch and send one, if it is time to. */
 void sending_advance(struct face *face, int64_t now_ns)
 {
-	struct pushing *p = sending_own(face);
+	struct pushing *p = face->own;
 	bool due = p->pending.lines && (now_ns >= p->cut_ns || pending_is_full(&p->pending));
 
 	if (!p->on || !p->believed || post_is_busy(p->post))

@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "src/history/boot.h"
+#include "src/history/place.h"
 #include "src/history/schema.h"
 #include "src/history/sql.h"
 #include "src/libhistory/open.h"

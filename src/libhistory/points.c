@@ -9,7 +9,6 @@
 #include "src/history/sql.h"
 #include "src/libhistory/open.h"
 #include "src/libhistory/steps.h"
-#include "src/libows/ows.h"
 
 #define STEPS 512
 #define PER_POINT 2                             /* roll-ups that a point needs at least */

@@ -3,8 +3,6 @@
  * Whether owsd lives, by its heartbeat. If it does not, the image may be an orphan: its name was
  * removed while nobody marked it, and the next owsd makes another.
  */
-#include <errno.h>
-
 #include "src/libows/alive.h"
 #include "src/libows/map.h"
 #include "src/shm/reader.h"

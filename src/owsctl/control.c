@@ -12,7 +12,6 @@
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/verbs.h"
 #include "src/signal/error.h"
-#include "src/text/printable.h"
 
 #define LINE_MAX 65536 /* the longest text a layout can hold, and a name */
 #define TRIES 10       /* naps until owsd counts as gone */

@@ -2,11 +2,10 @@
 /* owsctl get: values alone, or as JSON. */
 #include <errno.h>
 #include <getopt.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 #include "src/owsctl/ctl.h"
-#include "src/owsctl/meaning.h"
+#include "src/owsctl/rows.h"
 #include "src/owsctl/verbs.h"
 #include "src/show/names.h"
 #include "src/show/reading.h"

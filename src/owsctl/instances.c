@@ -5,7 +5,6 @@
  */
 #include <errno.h>
 #include <getopt.h>
-#include <limits.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -14,7 +13,6 @@
 #include "src/owsctl/running.h"
 #include "src/owsctl/table.h"
 #include "src/owsctl/verbs.h"
-#include "src/shm/lock.h"
 #include "src/shm/remains.h"
 #include "src/show/json.h"
 #include "src/show/when.h"

@@ -6,25 +6,58 @@
 #include <errno.h>
 #include <getopt.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "hal/bus/time.h"
 #include "src/owsctl/alarms_live.h"
 #include "src/owsctl/ctl.h"
-#include "src/owsctl/journal_row.h"
 #include "src/owsctl/past.h"
 #include "src/owsctl/progress.h"
+#include "src/owsctl/table.h"
 #include "src/owsctl/terminal.h"
 #include "src/owsctl/verbs.h"
+#include "src/show/journal_entry.h"
 #include "src/show/journal_past.h"
 #include "src/show/names.h"
+#include "src/show/who.h"
 
 #define SLICE (500 * NS_PER_MS) /* a dead owsd sends no wake-up */
 #define SINCE (7 * 86400 * NS_PER_S)
 #define MOST 1000 /* from memory and disk together, without -c */
 #define RINGS 512 /* entries that owsd keeps */
 #define COUNT_MAX 1000000
+
+#define JOURNAL_COLUMNS 8
+/* clang-format off */
+static const struct table_column journal_columns[JOURNAL_COLUMNS] = {
+	{"TIME"}, {"NAME"}, {"EVENT"}, {"VALUE", .right = true, .most = 40}, {"PROGRAM"}, {"USER"},
+	{"FOR"}, {"REMARK"},
+};
+/* clang-format on */
+
+/* false: no memory. */
+static bool journal_row(struct table *table, const struct when *now,
+                        const struct journal_entry *entry)
+{
+	char time[WHEN_TEXT], event[JOURNAL_EVENT], value[VALUE_TEXT_MAX], more[32] = "";
+	char program[WHO_TEXT] = "-", user[WHO_TEXT] = "-";
+	const char *shown = journal_value(entry, entry->decimals, value), *person = "", *remark;
+
+	if (journal_is_deed(entry)) {
+		who_program(journal_by(entry), program);
+		who_user(journal_by(entry), user);
+		person = journal_by(entry)->person;
+	}
+	remark = entry->is_command ? more : entry->alarm.text;
+	if (entry->is_command && entry->command.more)
+		snprintf(more, sizeof(more), "after %u more", (unsigned)entry->command.more);
+	if (entry->is_command && entry->command.type == OWS_STRING)
+		shown = entry->command.text;
+	return table_add(table,
+	                 (const char *const[]){when_iso(now, entry->when_ns, time), entry->name,
+	                                       journal_event(entry, event), shown ? shown : "-",
+	                                       program, user, *person ? person : "-", remark});
+}
 
 struct journal {
 	struct ctl *ctl;

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* owsctl mission download: the log of a logger as CSV or JSON, sample by sample. */
-#include "src/owsctl/mission_download.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "src/owsctl/mission_download.h"
 #include "src/show/json.h"
 
 #define AT_ONCE 32 /* samples that are asked for together: a page of a log */

@@ -11,7 +11,7 @@
 #include "src/owsctl/remote.h"
 #include "src/owsctl/running.h"
 #include "src/owsctl/verbs.h"
-#include "src/service/standard.h"
+#include "src/service/streams.h"
 #include "src/shm/segment.h"
 #include "src/show/text.h"
 #include "src/text/distance.h"

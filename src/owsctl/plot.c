@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A plot in braille patterns. */
 #include <math.h>
-#include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 

@@ -3,10 +3,27 @@
 #ifndef OWSCTL_ROWS_H
 #define OWSCTL_ROWS_H
 
-#include "src/owsctl/meaning.h"
+#include <stdbool.h>
+
+#include "src/libows/ows.h"
+#include "src/show/json.h"
 #include "src/show/reading.h"
 #include "src/show/standing.h"
 #include "src/signal/value.h"
+
+/* What the value of a signal means: unit, decimals, description, and the raw value beside it. */
+struct meaning {
+	char *unit, *description; /* "": none */
+	int decimals;             /* -1: not known */
+	int raw;                  /* the id of _Raw; negative: none */
+};
+
+/* All of it copied, so that it outlives ows_reopen(). False: no memory. */
+bool meaning_of(struct ows *h, const struct ows_info *info, struct meaning *meaning);
+void meaning_free(struct meaning *meaning);
+
+/* As members of a JSON object. */
+void meaning_json(struct json *json, struct ows *h, const struct meaning *meaning, int64_t now_ns);
 
 struct row {
 	int id;     /* for ows_get(); stays valid over ows_reopen() */

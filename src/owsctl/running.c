@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What is to be seen of an instance: by its lock, its image and its process. */
 #include <errno.h>
-#include <limits.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>

@@ -2,23 +2,170 @@
 /* owsctl scan: prints the devices of a target as a table, as JSON or as a configuration. */
 #include <errno.h>
 #include <getopt.h>
+#include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "hal/chips/family.h"
 #include "hal/chips/find.h"
+#include "hal/owfs/path.h"
+#include "src/board/board.h"
+#include "src/board/look.h"
+#include "src/board/report.h"
+#include "src/config/edit.h"
+#include "src/config/rio_write.h"
+#include "src/owsctl/ctl.h"
 #include "src/owsctl/open.h"
-#include "src/owsctl/scan_alias.h"
-#include "src/owsctl/scan_board.h"
+#include "src/owsctl/scan_item.h"
 #include "src/owsctl/scan_merge.h"
-#include "src/owsctl/scan_rio.h"
 #include "src/owsctl/table.h"
 #include "src/owsctl/verbs.h"
-#include "src/scan/kind.h"
+#include "src/scan/device.h"
 #include "src/scan/scan.h"
 #include "src/show/json.h"
+#include "src/show/text.h"
+
+/* --- Names of an alias file of OWFS: "28.551DDF030000 = kitchen" in each line ---------------- */
+
+/* Name each device of this id; a device behind several ways is found several times. */
+static bool name_devices(struct scan *scan, const uint8_t rom[ROM_LEN], const char *name,
+                         size_t len)
+{
+	char id[ROM_TEXT_MAX];
+	bool found = false;
+
+	rom_print(rom, ROM_F_I, id);
+	for (unsigned i = 0; i < scan->count; i++) {
+		struct scan_device *device = &scan->device[i];
+
+		if (strcmp(strrchr(device->path, '/') + 1, id) != 0)
+			continue;
+		text_clean(name, len, sizeof(device->alias), device->alias, sizeof(device->alias));
+		found = true;
+	}
+	return found;
+}
+
+/* One line as owserver takes it: an id with or without a slash, blanks or '=', and the name. */
+static void scan_alias_take(const char *file, unsigned number, char *line, struct scan *scan)
+{
+	uint8_t rom[ROM_LEN];
+	char *id = line + strspn(line, " \t/"), *name;
+	size_t len = strcspn(id, " \t=:\r\n"), end;
+
+	if (!len || *id == '#')
+		return;
+	name = id + len + strspn(id + len, " \t=:");
+	for (end = strlen(name); end && strchr(" \t\r\n", name[end - 1]);)
+		end--;
+	if (rom_parse(id, len, rom))
+		ctl_fail("%s:%u: %.*s is no id of a device", file, number, (int)len, id);
+	else if (!end)
+		ctl_fail("%s:%u: %.*s has no name here", file, number, (int)len, id);
+	else if (!name_devices(scan, rom, name, end))
+		ctl_fail("%s:%u: %.*s was not found", file, number, (int)len, id);
+}
+
+/*
+ * Give the devices that were found the names that the file has for their ids; these go before an
+ * alias that the target has. Prints the lines that name no device that was found. CTL_DONE, or
+ * CTL_FAILED after printing why the file cannot be read.
+ */
+static int scan_aliases(const char *file, struct scan *scan)
+{
+	FILE *stream = fopen(file, "re");
+	char *line = NULL;
+	size_t room = 0;
+	int err;
+
+	if (!stream)
+		return ctl_fail("%s: %s", file, strerror(errno));
+	for (unsigned number = 1; getline(&line, &room, stream) >= 0; number++)
+		scan_alias_take(file, number, line, scan);
+	err = ferror(stream) ? errno : 0;
+	free(line);
+	fclose(stream);
+	return err ? ctl_fail("%s: %s", file, strerror(err)) : CTL_DONE;
+}
+
+static struct rio_node *driver_of(struct rio *rio)
+{
+	return rio_child(&rio->root, "OwsDrv");
+}
+
+static int scan_rio_fill(struct rio **rio, struct scan_names *names, const struct scan *scan,
+                         const char *target, struct scan_choice choice)
+{
+	char *quoted = rio_quote(target);
+	int err = quoted ? rio_set(rio, driver_of(*rio), "TargetName", quoted) : -ENOMEM;
+
+	rio_quote_free(quoted);
+	for (unsigned i = 0; i < scan->count; i++)
+		scan_make_items(names, &scan->device[i], choice);
+	if (!err)
+		err = scan_add_items(rio, names);
+	return err;
+}
+
+/*
+ * Print a configuration with that TargetName, which may be several targets. CTL_DONE, or CTL_FAILED
+ * after printing why; then stdout got nothing.
+ */
+static int scan_rio(const struct scan *scan, const char *target, bool several,
+                    struct scan_choice choice)
+{
+	struct config_report silent = {0};
+	struct scan_names names;
+	struct rio *rio = NULL;
+	int err, status = CTL_DONE;
+
+	/* several targets are written as in TargetName, so the name of a single one has neither */
+	if (!several && strpbrk(target, ",|"))
+		return ctl_fail("%s cannot be a TargetName: it holds \",\" or \"|\"", target);
+	err = scan_names_init(&names, (size_t)scan->count * SCAN_ITEMS) ? 0 : -ENOMEM;
+	if (!err)
+		err = rio_parse("scan", edit_empty, strlen(edit_empty), &silent, &rio);
+	if (!err)
+		err = scan_rio_fill(&rio, &names, scan, target, choice);
+	if (err)
+		status = ctl_fail("%s", err == -ENOMEM ? "no memory" : strerror(-err));
+	else if (!names.count)
+		status = ctl_nothing(
+			"%s has %u device%s, and none that a configuration could be made "
+			"for",
+			target, scan->count, scan->count == 1 ? "" : "s");
+	else if ((status = scan_check(rio, target)) == CTL_DONE)
+		fwrite(rio->text, 1, rio->len, stdout);
+	if (rio)
+		rio_free(rio);
+	scan_names_free(&names);
+	return status;
+}
+
+static bool is_hardware(const char *target)
+{
+	return target && (!strcmp(target, "auto") || !strncmp(target, "i2c:", 4) ||
+	                  !strcmp(target, "w1") || !strncmp(target, "w1:", 3));
+}
+
+/*
+ * After a scan that found nothing: print on stderr which board this is and what is missing there.
+ * For a target that is not this machine's hardware, prints nothing.
+ */
+static void scan_board(const char *target)
+{
+	struct board_report report;
+	char folder[400], why[800];
+
+	if (!is_hardware(target))
+		return;
+	board_folder(folder, sizeof(folder));
+	if (board_look("", folder, NULL, &report, why, sizeof(why)) == 0)
+		board_print(&report, stderr);
+}
 
 static const struct table_column columns[] = {
 	{"PATH"}, {"FAMILY"}, {"TYPE"}, {"ALIAS"}, {"BUS"}, {"ALARM"}, {"VALUES"},

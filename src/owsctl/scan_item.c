@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Items of a configuration for devices that were found: their names, text and initial values. */
 #include <errno.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,7 +10,7 @@
 #include "src/config/rio_write.h"
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/scan_item.h"
-#include "src/scan/kind.h"
+#include "src/scan/scan.h"
 #include "src/signal/error.h"
 #include "src/signal/hash.h"
 #include "src/signal/value.h"

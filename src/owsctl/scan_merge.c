@@ -16,7 +16,6 @@
 #include "src/config/rio_file.h"
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/merge.h"
-#include "src/owsctl/scan_item.h"
 #include "src/owsctl/scan_merge.h"
 
 #define NAMES_TEXT 160

@@ -5,7 +5,6 @@
 #include <time.h>
 
 #include "hal/bus/time.h"
-#include "src/owsctl/ctl.h"
 #include "src/owsctl/terminal.h"
 #include "src/owsctl/watch_sleep.h"
 

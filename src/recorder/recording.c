@@ -2,7 +2,6 @@
 /* What the recorder does with the news of owsd, and with those of its disk. */
 #include <assert.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <poll.h>
 #include <stdio.h>
 #include <string.h>
@@ -11,7 +10,7 @@
 #include "hal/bus/time.h"
 #include "src/face/look.h"
 #include "src/face/loop.h"
-#include "src/history/boot.h"
+#include "src/history/place.h"
 #include "src/recorder/entries.h"
 #include "src/recorder/recording.h"
 
@@ -24,11 +23,6 @@
 #define MEMORY_BYTES (4u << 20)
 /* So much stays free on the disk, for others */
 #define SPARE_BYTES (64u << 20)
-
-static struct recording *recording_own(struct face *face)
-{
-	return face->own;
-}
 
 static void report_file(void *ctx, const char *text)
 {
@@ -82,7 +76,7 @@ static const char *advice(int err)
 /* Also says at once whether the file can be used: what it returns then is no error. */
 static int open_writer(struct face *face, int64_t now_ns, int *disk_err)
 {
-	struct recording *r = recording_own(face);
+	struct recording *r = face->own;
 	const struct config_recorder *options = &face->config->recorder;
 	struct history_options to = {
 		.directory = r->directory,
@@ -125,7 +119,7 @@ static bool is_hopeless(int err)
 
 int recording_open(struct face *face)
 {
-	struct recording *r = recording_own(face);
+	struct recording *r = face->own;
 	int64_t now_ns = ows_now();
 	int err, disk_err = 0;
 
@@ -157,7 +151,7 @@ int recording_open(struct face *face)
 /* The table of signals is new. */
 static void make_rows(struct face *face, int64_t now_ns)
 {
-	struct recording *r = recording_own(face);
+	struct recording *r = face->own;
 	int err = series_make(&r->rows, face->ows, face->config, r->writer, now_ns);
 
 	if (err) {
@@ -174,7 +168,7 @@ static void make_rows(struct face *face, int64_t now_ns)
 
 static void found(struct face *face, int64_t now_ns)
 {
-	struct recording *r = recording_own(face);
+	struct recording *r = face->own;
 
 	make_rows(face, now_ns);
 	if (!r->begun)
@@ -193,7 +187,7 @@ static void found(struct face *face, int64_t now_ns)
  */
 static void lost(struct face *face, int64_t now_ns)
 {
-	struct recording *r = recording_own(face);
+	struct recording *r = face->own;
 	struct ows_daemon daemon;
 	int64_t from_ns = face->looked_ns;
 
@@ -213,7 +207,7 @@ static void lost(struct face *face, int64_t now_ns)
 
 static void overrun(struct face *face, int64_t now_ns)
 {
-	struct recording *r = recording_own(face);
+	struct recording *r = face->own;
 
 	history_writer_gap(r->writer, face->looked_ns, now_ns, HISTORY_OVERRUN);
 	series_forget(&r->rows, now_ns);
@@ -231,7 +225,7 @@ static bool same_options(const struct config_recorder *a, const struct config_re
 /* What the file says of keeping may be new: then the writer begins anew, with a moment's gap. */
 static void take_options(struct face *face, int64_t now_ns)
 {
-	struct recording *r = recording_own(face);
+	struct recording *r = face->own;
 	char directory[HISTORY_PATH];
 	int err, disk_err = 0;
 
@@ -254,7 +248,7 @@ static void take_options(struct face *face, int64_t now_ns)
 /* SIGHUP, or owsd has reloaded its file: rules, options and perhaps the table are new. */
 static void renewed(struct face *face, int64_t now_ns)
 {
-	struct recording *r = recording_own(face);
+	struct recording *r = face->own;
 
 	take_options(face, now_ns);
 	if (!r->writer || !face->live)
@@ -279,7 +273,7 @@ static void take_entry(struct recording *r, const struct face_event *event)
 
 static void look_at_clock(struct face *face, int64_t now_ns)
 {
-	struct recording *r = recording_own(face);
+	struct recording *r = face->own;
 	int64_t before_ns = r->clock.offset_ns;
 
 	if (!wall_clock_look(&r->clock, now_ns))
@@ -292,7 +286,7 @@ static void look_at_clock(struct face *face, int64_t now_ns)
 
 void recording_event(struct face *face, const struct face_event *event)
 {
-	struct recording *r = recording_own(face);
+	struct recording *r = face->own;
 	int64_t now_ns = ows_now();
 
 	if (!r->writer && event->news != FACE_FILE && event->news != FACE_RELOADED &&
@@ -347,7 +341,7 @@ static int64_t unseen_since(int64_t looked_ns, int64_t now_ns)
 
 static void report_missed(struct face *face)
 {
-	struct recording *r = recording_own(face);
+	struct recording *r = face->own;
 
 	if (r->rows.missed)
 		log_warning(face->log,
@@ -359,7 +353,7 @@ static void report_missed(struct face *face)
 
 void recording_changes(struct face *face, const int *signals, int n)
 {
-	struct recording *r = recording_own(face);
+	struct recording *r = face->own;
 	int64_t now_ns = ows_now();
 
 	if (!r->writer)
@@ -372,7 +366,7 @@ void recording_changes(struct face *face, const int *signals, int n)
 /* Once when it begins, once when it is over. */
 static void report_disk(struct face *face, const struct history_state *state)
 {
-	struct recording *r = recording_own(face);
+	struct recording *r = face->own;
 
 	if (state->error && !r->disk_err)
 		log_err(face->log,
@@ -393,7 +387,7 @@ static void report_disk(struct face *face, const struct history_state *state)
 
 static void show_status(struct face *face, const struct history_state *state)
 {
-	struct recording *r = recording_own(face);
+	struct recording *r = face->own;
 
 	if (state->error)
 		face_status(face, "%s cannot be written: %s; %u kB in memory, %llu rows lost",
@@ -418,7 +412,7 @@ static int64_t next_tick(const struct recording *r, int64_t turn_ns, int64_t now
 
 void recording_tick(struct face *face, int64_t now_ns)
 {
-	struct recording *r = recording_own(face);
+	struct recording *r = face->own;
 	int64_t turn_ns = INT64_MAX;
 	struct history_state state;
 
@@ -444,7 +438,7 @@ void recording_tick(struct face *face, int64_t now_ns)
 
 void recording_close(struct face *face)
 {
-	struct recording *r = recording_own(face);
+	struct recording *r = face->own;
 	int err;
 
 	err = history_writer_close(r->writer, seen_until(face, ows_now()));

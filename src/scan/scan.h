@@ -22,4 +22,11 @@ int scan_read(struct target *target, struct scan_device *devices, unsigned count
 bool scan_device_of(const char *path, struct scan_device *device);
 void scan_free(struct scan *scan);
 
+/* The properties that most people want of a device, by its family. */
+
+/* The i-th of the family; false: it has no more. */
+bool scan_property(uint8_t family, unsigned i, struct scan_property *property);
+/* Does its code not decide which chip it is? Then devices have the property "identity". */
+bool scan_has_identity(uint8_t family);
+
 #endif

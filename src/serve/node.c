@@ -11,7 +11,6 @@
 #include "hal/chips/format.h"
 #include "hal/native/structure.h"
 #include "hal/native/tables.h"
-#include "hal/owfs/path.h"
 #include "src/serve/node.h"
 
 static bool node_is(const char *text, size_t len, const char *word)

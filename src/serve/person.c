@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Who a client is, by the kernel's word, and what ControlAllow lets him write. */
 #include <arpa/inet.h>
-#include <netinet/in.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>

@@ -2,7 +2,6 @@
 /* WRITE: to a device, to all targets, or as a command to the table. */
 #include <errno.h>
 
-#include "hal/owfs/frame.h"
 #include "src/serve/answer.h"
 #include "src/serve/client.h"
 #include "src/serve/person.h"

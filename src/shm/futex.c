@@ -2,7 +2,6 @@
 /* Sleep on a word of the shared memory, and wake who sleeps there. */
 
 #include <errno.h>
-#include <limits.h>
 #include <linux/futex.h>
 #include <sys/syscall.h>
 #include <time.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The faces of an instance, by the reports that they write (src/face/report.h). */
+/* The faces of an instance, by the reports that they write (src/face/loop.c). */
 #ifndef SHOW_FACES_H
 #define SHOW_FACES_H
 

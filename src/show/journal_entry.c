@@ -78,8 +78,10 @@ static bool journal_entry_look(struct ows *h, journal_get *get, uint32_t head, u
 	return true;
 }
 
-int journal_order(const struct journal_entry *a, const struct journal_entry *b)
+int journal_order(const void *one, const void *other)
 {
+	const struct journal_entry *a = one, *b = other;
+
 	if (a->this_boot != b->this_boot)
 		return a->this_boot ? 1 : -1;
 	if (a->when_ns != b->when_ns)
@@ -91,11 +93,6 @@ int journal_order(const struct journal_entry *a, const struct journal_entry *b)
 	return (int32_t)(a->number - b->number);
 }
 
-static int by_time(const void *a, const void *b)
-{
-	return journal_order(a, b);
-}
-
 bool journal_look(struct ows *h, char *const *patterns, int count, struct journal_entries *entries)
 {
 	entries->count = 0;
@@ -105,7 +102,7 @@ bool journal_look(struct ows *h, char *const *patterns, int count, struct journa
 	                        patterns, count, entries))
 		return false;
 	entries->begun = true;
-	qsort(entries->entry, entries->count, sizeof(*entries->entry), by_time);
+	qsort(entries->entry, entries->count, sizeof(*entries->entry), journal_order);
 	return true;
 }
 
@@ -122,7 +119,7 @@ bool journal_add(struct journal_entries *entries, const struct journal_entries *
 	memcpy(all + entries->count, more->entry, more->count * sizeof(*all));
 	entries->entry = all;
 	entries->count = (unsigned)count;
-	qsort(all, count, sizeof(*all), by_time);
+	qsort(all, count, sizeof(*all), journal_order);
 	return true;
 }
 

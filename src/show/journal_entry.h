@@ -38,7 +38,7 @@ bool journal_look(struct ows *h, char *const *patterns, int count, struct journa
 /* Put all of `more` among them, in the order of time. false: no memory. */
 bool journal_add(struct journal_entries *entries, const struct journal_entries *more);
 /* The order of entries, as for qsort(): earlier boots, then time; those of disk first. */
-int journal_order(const struct journal_entry *a, const struct journal_entry *b);
+int journal_order(const void *a, const void *b);
 void journal_free(struct journal_entries *entries);
 
 #define JOURNAL_EVENT 64

@@ -158,11 +158,6 @@ static int read_days(struct reading *r, int64_t from_ns)
 	return err == -ENODATA ? 0 : err;
 }
 
-static int by_time(const void *a, const void *b)
-{
-	return journal_order(a, b);
-}
-
 int journal_past(struct ows_history *history, const struct when *now, int64_t from_ns,
                  char *const *patterns, int count, unsigned most, journal_progress *progress,
                  void *ctx, struct journal_entries *past)
@@ -182,7 +177,7 @@ int journal_past(struct ows_history *history, const struct when *now, int64_t fr
 	if (err)
 		journal_free(past);
 	else if (past->count)
-		qsort(past->entry, past->count, sizeof(*past->entry), by_time);
+		qsort(past->entry, past->count, sizeof(*past->entry), journal_order);
 	return err;
 }
 

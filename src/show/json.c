@@ -20,6 +20,22 @@ void json_end(struct json *json)
 	json->inner = false;
 }
 
+bool json_start(struct json *json, char **text, size_t *len)
+{
+	*text = NULL;
+	json_open(json, open_memstream(text, len));
+	if (json->out)
+		json_object(json, NULL);
+	return json->out;
+}
+
+void json_finish(struct json *json)
+{
+	json_object_end(json);
+	json_end(json);
+	fclose(json->out);
+}
+
 static void put_string(FILE *out, const char *text, size_t len)
 {
 	putc('"', out);

@@ -16,6 +16,13 @@ struct json {
 void json_open(struct json *json, FILE *out);
 void json_end(struct json *json); /* Write the newline; the writer is as after json_open(). */
 
+/*
+ * A document in memory that is one object: open both, and end both. text is allocated, and valid
+ * with len after the end. False: no memory, and text is NULL.
+ */
+bool json_start(struct json *json, char **text, size_t *len);
+void json_finish(struct json *json);
+
 /* Of a member whose value is written as an element. */
 void json_key(struct json *json, const char *key);
 /* key NULL: an element of an array, or the document itself. */

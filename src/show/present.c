@@ -5,7 +5,6 @@
 
 #include "src/show/present.h"
 #include "src/show/who.h"
-#include "src/signal/error.h"
 #include "src/signal/unarmed.h"
 
 /* When the present alarm of a signal was raised, as far as the journal goes back; else 0. */

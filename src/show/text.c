@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* The columns that a text takes on a terminal, and the removal of what must not reach one. */
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>

@@ -2,7 +2,6 @@
 /* The names of driver signals and attributes, and how a name is looked up. */
 #include <errno.h>
 #include <stdint.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "src/signal/attribute.h"

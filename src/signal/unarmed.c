@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* The words for what of a device's alarm is refused. */
-#include <stddef.h>
 
-#include "src/libows/ows.h"
 #include "src/signal/unarmed.h"
+#include "src/libows/ows.h"
 
 static const struct {
 	const char *verb, *key;

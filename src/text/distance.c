@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The distance between two words, to say which one was probably meant. */
 #include <ctype.h>
-#include <stdbool.h>
 #include <string.h>
 
 #include "src/text/distance.h"

@@ -11,19 +11,15 @@
 #include "src/show/json.h"
 #include "src/show/metrics.h"
 #include "src/web/api.h"
-#include "src/web/command.h"
-#include "src/web/devices.h"
 #include "src/web/draft.h"
 #include "src/web/events.h"
 #include "src/web/guard.h"
 #include "src/web/head.h"
 #include "src/web/http.h"
-#include "src/web/lists.h"
 #include "src/web/past.h"
+#include "src/web/paths.h"
 #include "src/web/person.h"
-#include "src/web/save.h"
 #include "src/web/show.h"
-#include "src/web/stored.h"
 #include "src/web/stream.h"
 
 #define PIECE 20             /* signals that are written at a time */
@@ -58,17 +54,14 @@ static int answer_info(struct request *request)
 	struct ows_daemon daemon = {0};
 	bool writable;
 	int64_t now_ns = ows_now();
-	char *text = NULL;
-	size_t len = 0;
-	FILE *out = open_memstream(&text, &len);
+	char *text;
+	size_t len;
 	struct json json;
 
-	if (!out)
+	if (!json_start(&json, &text, &len))
 		return MHD_NO;
 	if (web->face->live)
 		ows_daemon(web->face->ows, now_ns, &daemon);
-	json_open(&json, out);
-	json_object(&json, NULL);
 	json_string(&json, "instance", web->face->arguments->instance);
 	json_string(&json, "version", OWSD_VERSION);
 	put_machine(&json);
@@ -87,9 +80,7 @@ static int answer_info(struct request *request)
 	json_bool(&json, "history",
 	          past_is_there(web->face->arguments->instance, web->face->config));
 	json_int(&json, "signals", web->recent.count);
-	json_object_end(&json);
-	json_end(&json);
-	fclose(out);
+	json_finish(&json);
 	return http_json(request, 200, text, len);
 }
 

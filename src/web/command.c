@@ -11,9 +11,9 @@
 #include "src/signal/error.h"
 #include "src/signal/value.h"
 #include "src/web/body.h"
-#include "src/web/command.h"
 #include "src/web/guard.h"
 #include "src/web/http.h"
+#include "src/web/paths.h"
 
 #define WAIT_NS (5 * NS_PER_S)  /* for the commands before it */
 #define CONFIRM_NS NS_PER_S     /* so long a page waits for the bus */
@@ -31,19 +31,14 @@ struct order {
 
 static void command_answer(struct order *order, const char *result)
 {
-	FILE *out = open_memstream(&order->job.text, &order->job.len);
 	struct json json;
 
-	if (!out)
+	if (!json_start(&json, &order->job.text, &order->job.len))
 		return;
 	order->job.status = 200;
-	json_open(&json, out);
-	json_object(&json, NULL);
 	json_bool(&json, "ok", true);
 	json_string(&json, "result", result);
-	json_object_end(&json);
-	json_end(&json);
-	fclose(out);
+	json_finish(&json);
 }
 
 static void command_refuse(struct order *order, int err)

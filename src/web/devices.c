@@ -11,14 +11,13 @@
 #include "hal/bus/time.h"
 #include "hal/owfs/path.h"
 #include "src/libows/open.h"
-#include "src/scan/kind.h"
 #include "src/scan/scan.h"
 #include "src/scan/target.h"
 #include "src/show/json.h"
 #include "src/signal/error.h"
 #include "src/signal/value.h"
-#include "src/web/devices.h"
 #include "src/web/http.h"
+#include "src/web/paths.h"
 #include "src/web/person.h"
 
 #define ALL_NS (30 * NS_PER_S) /* from the request to the answer */
@@ -102,22 +101,17 @@ static void put_device(struct json *json, const struct ows *h, const struct scan
 
 static void devices_answer(struct devices *devices)
 {
-	FILE *out = open_memstream(&devices->job.text, &devices->job.len);
 	struct json json;
 
-	if (!out)
+	if (!json_start(&json, &devices->job.text, &devices->job.len))
 		return;
 	devices->job.status = 200;
-	json_open(&json, out);
-	json_object(&json, NULL);
 	json_bool(&json, "whole", devices->whole);
 	json_array(&json, "devices");
 	for (unsigned i = 0; i < devices->scan.count; i++)
 		put_device(&json, devices->h, &devices->scan.device[i]);
 	json_array_end(&json);
-	json_object_end(&json);
-	json_end(&json);
-	fclose(out);
+	json_finish(&json);
 }
 
 /* --- The scan -------------------------------------------------------------------------------- */

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Listens, accepts, and lets in whoever sends a proper head in time. */
 #include <errno.h>
-#include <fcntl.h>
 #include <netinet/in.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,7 +11,7 @@
 #include <unistd.h>
 
 #include "hal/bus/time.h"
-#include "src/service/inherited.h"
+#include "src/service/streams.h"
 #include "src/web/doors.h"
 #include "src/web/head.h"
 

@@ -44,40 +44,30 @@ int draft_check(const char *file, const char *text, size_t len, struct problems 
 static void draft_answer(struct job *job, const struct rio *rio, int err,
                          const struct problems *problems)
 {
-	FILE *out = open_memstream(&job->text, &job->len);
 	struct json json;
 
-	if (!out)
+	if (!json_start(&json, &job->text, &job->len))
 		return;
 	job->status = 200;
-	json_open(&json, out);
-	json_object(&json, NULL);
 	json_bytes(&json, "text", rio->text, rio->len);
 	json_bool(&json, "valid", err == 0);
 	problems_json(&json, problems, rio);
 	model_json(&json, rio);
-	json_object_end(&json);
-	json_end(&json);
-	fclose(out);
+	json_finish(&json);
 }
 
 /* An edit whose result is wrong where the text before was right. */
 static void draft_refuse(struct job *job, const struct problems *problems, const struct rio *rio)
 {
-	FILE *out = open_memstream(&job->text, &job->len);
 	struct json json;
 	int line;
 
-	if (!out)
+	if (!json_start(&json, &job->text, &job->len))
 		return;
 	job->status = 422;
-	json_open(&json, out);
-	json_object(&json, NULL);
 	json_string(&json, "error", problems_first(problems, &line));
 	problems_json(&json, problems, rio);
-	json_object_end(&json);
-	json_end(&json);
-	fclose(out);
+	json_finish(&json);
 }
 
 static unsigned errors_of(const struct problems *problems)

@@ -243,30 +243,23 @@ void events_alarm(struct web *web, const struct ows_alarm *alarm)
 	struct ows_info info;
 	struct json json;
 	size_t len;
-	FILE *out;
 
 	if (web->alarms[at].text)
 		web->alarms_lost = web->alarms[at].cursor;
 	free(web->alarms[at].text);
 	web->alarms[at].text = NULL;
-	out = ows_info(web->face->ows, alarm->signal, &info)
-	              ? NULL
-	              : open_memstream(&web->alarms[at].text, &len);
-	if (!out) {
+	if (ows_info(web->face->ows, alarm->signal, &info) ||
+	    !json_start(&json, &web->alarms[at].text, &len)) {
 		events_miss_alarms(web);
 		return;
 	}
 	entry.name = info.name;
-	json_open(&json, out);
-	json_object(&json, NULL);
 	json_int(&json, "now", wall_ms());
 	json_int(&json, "i", alarm->signal);
 	json_string(&json, "alarm", show_alarm(&show, alarm->signal, words));
 	json_key(&json, "entry");
 	journal_json(&json, &now, &entry);
-	json_object_end(&json);
-	json_end(&json);
-	fclose(out);
+	json_finish(&json);
 	web->alarms[at].cursor = recent_next(&web->recent, show.now_ns);
 }
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The strict look at the head of a request. */
 #include <ctype.h>
-#include <stdbool.h>
 #include <string.h>
 #include <strings.h>
 

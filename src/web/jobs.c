@@ -161,7 +161,6 @@ void job_free(struct job *job)
 void job_error(struct job *job, unsigned status, const char *format, ...)
 {
 	char words[512];
-	FILE *out;
 	struct json json;
 	va_list args;
 
@@ -171,13 +170,8 @@ void job_error(struct job *job, unsigned status, const char *format, ...)
 	free(job->text);
 	job->text = NULL;
 	job->status = status;
-	out = open_memstream(&job->text, &job->len);
-	if (!out)
+	if (!json_start(&json, &job->text, &job->len))
 		return;
-	json_open(&json, out);
-	json_object(&json, NULL);
 	json_string(&json, "error", words);
-	json_object_end(&json);
-	json_end(&json);
-	fclose(out);
+	json_finish(&json);
 }

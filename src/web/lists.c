@@ -6,7 +6,7 @@
 #include "src/show/present.h"
 #include "src/show/stats.h"
 #include "src/web/http.h"
-#include "src/web/lists.h"
+#include "src/web/paths.h"
 #include "src/web/show.h"
 
 #define LINES 256 /* of the log, if owsd keeps so many */
@@ -18,8 +18,7 @@ struct listing {
 };
 
 /* False after answering: there is nothing to show. */
-static bool lists_begin(struct request *request, struct listing *list, FILE **out, char **text,
-                        size_t *len, int *result)
+static bool lists_begin(struct request *request, struct listing *list, int *result)
 {
 	const struct web *web = request->web;
 
@@ -28,14 +27,10 @@ static bool lists_begin(struct request *request, struct listing *list, FILE **ou
 		                     web->face->arguments->instance);
 		return false;
 	}
-	*out = open_memstream(text, len);
-	*result = MHD_NO;
 	list->now = when_now();
 	list->show = (struct show){
 		.h = web->face->ows, .now_ns = list->now.boot, .live = true, .ids = web->ids};
-	if (*out)
-		json_open(&list->json, *out);
-	return *out != NULL;
+	return true;
 }
 
 static void lists_add(void *ctx, const struct present *alarm)
@@ -56,21 +51,19 @@ int lists_alarms(struct request *request)
 	struct listing list;
 	char *text;
 	size_t len;
-	FILE *out;
 	int result;
 
-	if (!lists_begin(request, &list, &out, &text, &len, &result))
+	if (!lists_begin(request, &list, &result))
 		return result;
-	json_object(&list.json, NULL);
+	if (!json_start(&list.json, &text, &len))
+		return MHD_NO;
 	json_array(&list.json, "alarms");
 	for (int i = 0; i < web->recent.count; i++)
 		if (web->ids[i] >= 0)
 			present_each(web->face->ows, i, web->ids[i], list.now.boot, &reading,
 			             lists_add, &list);
 	json_array_end(&list.json);
-	json_object_end(&list.json);
-	json_end(&list.json);
-	fclose(out);
+	json_finish(&list.json);
 	return http_json(request, 200, text, len);
 }
 
@@ -84,8 +77,12 @@ int lists_stats(struct request *request)
 	FILE *out;
 	int result;
 
-	if (!lists_begin(request, &list, &out, &text, &len, &result))
+	if (!lists_begin(request, &list, &result))
 		return result;
+	out = open_memstream(&text, &len);
+	if (!out)
+		return MHD_NO;
+	json_open(&list.json, out);
 	ows_daemon(web->face->ows, list.now.boot, &daemon);
 	stats_json(&list.json, web->face->arguments->instance, web->face->ows, &daemon, &list.now);
 	json_end(&list.json);
@@ -100,20 +97,16 @@ int lists_log(struct request *request)
 	const struct web *web = request->web;
 	struct ows_log_line line;
 	uint32_t last;
-	char *text = NULL;
-	size_t len = 0;
-	FILE *out;
 	struct json json;
+	char *text;
+	size_t len;
 
 	/* also of an owsd that has ended: why it did stands there */
 	if (!web->face->ows)
 		return http_error(request, 503, "owsd %s has not run yet: start it",
 		                  web->face->arguments->instance);
-	out = open_memstream(&text, &len);
-	if (!out)
+	if (!json_start(&json, &text, &len))
 		return MHD_NO;
-	json_open(&json, out);
-	json_object(&json, NULL);
 	json_array(&json, "lines");
 	last = ows_log_last(web->face->ows);
 	for (uint32_t n = last > LINES ? last - LINES + 1 : 1; n <= last; n++) {
@@ -127,8 +120,6 @@ int lists_log(struct request *request)
 		json_object_end(&json);
 	}
 	json_array_end(&json);
-	json_object_end(&json);
-	json_end(&json);
-	fclose(out);
+	json_finish(&json);
 	return http_json(request, 200, text, len);
 }

@@ -27,11 +27,6 @@
 #define ENDING_NS (300 * NS_PER_MS) /* slow clients keep no end waiting for longer */
 #define MIX 0x9e3779b97f4a7c15u
 
-static struct web *owsd_web_own(struct face *face)
-{
-	return face->own;
-}
-
 static int64_t earlier(int64_t a, int64_t b)
 {
 	return a < b ? a : b;
@@ -237,7 +232,7 @@ static uint64_t mark_of(struct ows *h, int signal, int64_t now_ns)
 
 static void changes(struct face *face, const int *signals, int n)
 {
-	struct web *web = owsd_web_own(face);
+	struct web *web = face->own;
 	int64_t now_ns = ows_now();
 	uint64_t before = web->recent.newest;
 
@@ -284,7 +279,7 @@ static void owsd_web_find(struct web *web)
 
 static void event(struct face *face, const struct face_event *event)
 {
-	struct web *web = owsd_web_own(face);
+	struct web *web = face->own;
 
 	switch (event->news) {
 	case FACE_FOUND:
@@ -323,7 +318,7 @@ static void event(struct face *face, const struct face_event *event)
 
 static void tick(struct face *face, int64_t now_ns)
 {
-	struct web *web = owsd_web_own(face);
+	struct web *web = face->own;
 
 	if (now_ns >= doors_next(&web->doors))
 		doors_take(&web->doors, now_ns);
@@ -353,7 +348,7 @@ static void end_streams(struct web *web)
 
 static void close_web(struct face *face)
 {
-	struct web *web = owsd_web_own(face);
+	struct web *web = face->own;
 
 	web->ends = true;
 	end_jobs(web->past);

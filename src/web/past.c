@@ -113,22 +113,17 @@ static void put_trend(struct past_job *past, const struct ows_history_signal *si
                       const struct ows_history_point *points)
 {
 	static const char *const columns[] = {"from", "min", "max", "last", "quality", "gap"};
-	FILE *out = open_memstream(&past->job.text, &past->job.len);
 	struct json json;
 
-	if (!out)
+	if (!json_start(&json, &past->job.text, &past->job.len))
 		return;
 	past->job.status = 200;
-	json_open(&json, out);
-	json_object(&json, NULL);
 	json_string(&json, "name", signal->name);
 	json_string(&json, "unit", *signal->unit ? signal->unit : NULL);
 	json_int(&json, "until", points[past->n - 1].until_ns / NS_PER_MS);
 	for (size_t i = 0; i < sizeof(columns) / sizeof(columns[0]); i++)
 		put_column(&json, columns[i], points, past->n);
-	json_object_end(&json);
-	json_end(&json);
-	fclose(out);
+	json_finish(&json);
 }
 
 static int read_points(struct past_job *past, struct ows_history *h,
@@ -201,15 +196,12 @@ int past_trend(struct request *request)
 static void put_journal(struct past_job *past, const struct journal_entries *entries,
                         const struct when *now)
 {
-	FILE *out = open_memstream(&past->job.text, &past->job.len);
 	unsigned count = 0;
 	struct json json;
 
-	if (!out)
+	if (!json_start(&json, &past->job.text, &past->job.len))
 		return;
 	past->job.status = 200;
-	json_open(&json, out);
-	json_object(&json, NULL);
 	json_array(&json, "entries");
 	for (unsigned i = entries->count; i-- > 0 && count < (unsigned)past->n;) {
 		if (now->wall - (now->boot - entries->entry[i].when_ns) < past->from_ns)
@@ -218,9 +210,7 @@ static void put_journal(struct past_job *past, const struct journal_entries *ent
 		count++;
 	}
 	json_array_end(&json);
-	json_object_end(&json);
-	json_end(&json);
-	fclose(out);
+	json_finish(&json);
 }
 
 /* A history that cannot be read hides nothing of what owsd has in memory. */

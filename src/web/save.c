@@ -13,7 +13,7 @@
 #include "src/web/draft.h"
 #include "src/web/guard.h"
 #include "src/web/http.h"
-#include "src/web/save.h"
+#include "src/web/paths.h"
 #include "src/web/writer.h"
 
 #define SAVE_FILES 256 /* the configuration refuses a longer path */
@@ -64,21 +64,16 @@ static void answer_with(struct save *save, const struct writer_answer *answer, c
 		[WRITER_DONE] = 200,    [WRITER_CONFLICT] = 409, [WRITER_INVALID] = 422,
 		[WRITER_REFUSED] = 403, [WRITER_ERROR] = 500,
 	};
-	FILE *out = open_memstream(&save->job.text, &save->job.len);
 	struct json json;
 
-	if (!out)
+	if (!json_start(&json, &save->job.text, &save->job.len))
 		return;
 	save->job.status = statuses[answer->status];
-	json_open(&json, out);
-	json_object(&json, NULL);
 	if (answer->status == WRITER_DONE)
 		put_done(&json, answer);
 	else
 		put_refusal(&json, answer, text);
-	json_object_end(&json);
-	json_end(&json);
-	fclose(out);
+	json_finish(&json);
 }
 
 static void save_ask(struct save *save, const struct writer_order *order)

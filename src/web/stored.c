@@ -13,7 +13,7 @@
 #include "src/web/guard.h"
 #include "src/web/http.h"
 #include "src/web/model.h"
-#include "src/web/stored.h"
+#include "src/web/paths.h"
 #include "src/web/writer.h"
 
 #define FILE_MAX 4096
@@ -59,16 +59,13 @@ static void put_backup(struct json *json, const char *file)
 static void stored_answer(struct stored *stored, const char *text, size_t len,
                           const struct rio *rio)
 {
-	FILE *out = open_memstream(&stored->job.text, &stored->job.len);
 	char tag[TAG_TEXT], remedy[WRITER_WORDS];
 	struct json json;
 
-	if (!out)
+	if (!json_start(&json, &stored->job.text, &stored->job.len))
 		return;
 	tag_print(text, len, tag);
 	stored->job.status = 200;
-	json_open(&json, out);
-	json_object(&json, NULL);
 	json_string(&json, "file", stored->file);
 	json_string(&json, "tag", tag);
 	json_bytes(&json, "text", text, len);
@@ -79,9 +76,7 @@ static void stored_answer(struct stored *stored, const char *text, size_t len,
 	put_backup(&json, stored->file);
 	json_null(&json, "running_tag");
 	model_json(&json, rio);
-	json_object_end(&json);
-	json_end(&json);
-	fclose(out);
+	json_finish(&json);
 }
 
 static void stored_run(struct job *job)
@@ -135,18 +130,13 @@ int stored_get(struct request *request)
 
 int stored_keys(struct request *request)
 {
-	char *text = NULL;
-	size_t len = 0;
-	FILE *out = open_memstream(&text, &len);
+	char *text;
+	size_t len;
 	struct json json;
 
-	if (!out)
+	if (!json_start(&json, &text, &len))
 		return MHD_NO;
-	json_open(&json, out);
-	json_object(&json, NULL);
 	model_keys(&json);
-	json_object_end(&json);
-	json_end(&json);
-	fclose(out);
+	json_finish(&json);
 	return http_json(request, 200, text, len);
 }

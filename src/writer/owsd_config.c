@@ -13,10 +13,8 @@
 
 #include "hal/bus/time.h"
 #include "src/face/arguments.h"
-#include "src/service/inherited.h"
-#include "src/service/journal.h"
 #include "src/service/notify.h"
-#include "src/service/standard.h"
+#include "src/service/streams.h"
 #include "src/service/unix_signals.h"
 #include "src/shm/owner.h"
 #include "src/shm/place.h"

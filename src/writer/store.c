@@ -3,16 +3,41 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "src/config/config.h"
+#include "src/config/load.h"
 #include "src/config/replace.h"
 #include "src/config/rio_file.h"
-#include "src/writer/check.h"
+#include "src/host/target.h"
 #include "src/writer/store.h"
+
+static void take_problem(void *ctx, bool is_error, int line, int column, const char *text)
+{
+	answer_problem(ctx, is_error, line, column, text);
+}
+
+/*
+ * Check a text as owsd --check does, as if it stood in file: tables and simulations that it names
+ * are read. Problems go to the answer. 0 or a negative errno. Blocking.
+ */
+static int check_text(const char *file, const char *text, size_t len, struct answer *answer)
+{
+	struct config_report report = {.problem = take_problem, .ctx = answer};
+	struct config *config;
+	int err = config_parse(file, text, len, &report, &config);
+
+	if (err)
+		return err;
+	err = target_check_config(config, &report);
+	config_free(config);
+	return err;
+}
 
 /* A file as it is on disk. */
 struct stored {

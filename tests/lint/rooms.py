@@ -20,9 +20,10 @@ TABLES = r"bus_backends|\w+_bus|family_[0-9a-f]{2}|sim_families|sim_[a-z]+[0-9]\
     r"|sim_(hb|inferno)_\w+|sim_(lcd|iblss|example_slave)"
 # The words that owsd and its consumers have in common; it includes nothing
 PUBLIC = "src/libows/ows"
-# Headers whose functions stand in many files, by design: the consumers' headers, and the verbs
-# of owsctl, each in the file of its name
-MANY = {"src/libows/ows.h", "src/libhistory/ows_history.h", "src/owsctl/verbs.h"}
+# Headers whose functions stand in many files, by design: the consumers' headers, the verbs of
+# owsctl and the paths of owsd-web, each in the file of its name
+MANY = {"src/libows/ows.h", "src/libhistory/ows_history.h", "src/owsctl/verbs.h",
+        "src/web/paths.h"}
 # Lists that are included where FAMILY or BACKEND is defined: no headers of their own
 PARTS = {"hal/chips/families.h", "hal/bus/schemes.h"}
 FLAGS = ["-std=c17", "-D_GNU_SOURCE", "-D_FILE_OFFSET_BITS=64", "-I.", "-Wall", "-Wextra", "-Werror"]

@@ -10,7 +10,7 @@
 
 #include "unity.h"
 
-#include "src/history/boot.h"
+#include "src/history/place.h"
 #include "src/history/writer.h"
 #include "src/libhistory/ows_history.h"
 #include "src/signal/value.h"

@@ -8,7 +8,7 @@
 
 #include "unity.h"
 
-#include "src/history/boot.h"
+#include "src/history/place.h"
 #include "src/history/writer.h"
 #include "src/owsctl/past.h"
 #include "src/owsctl/progress.h"

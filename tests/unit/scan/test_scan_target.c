@@ -9,7 +9,7 @@
 
 #include "hal/chips/family.h"
 #include "src/scan/device.h"
-#include "src/scan/kind.h"
+#include "src/scan/scan.h"
 #include "src/scan/target.h"
 
 void setUp(void)

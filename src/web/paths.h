@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: MIT */
+/* The functions behind the paths (api.c); each answers its request, as web_function does. */
+#ifndef WEB_PATHS_H
+#define WEB_PATHS_H
+
+struct request;
+
+/* What owsd has now besides values: present alarms, targets, counters, the log. */
+int lists_alarms(struct request *request);
+int lists_stats(struct request *request);
+int lists_log(struct request *request);
+
+/* What a person may do: set outputs, acknowledge and shelve alarms. */
+int command_set(struct request *request);
+int command_alarm(struct request *request);
+
+/*
+ * GET api/devices: the devices on the buses of owsd, whether they have signals or not. With ids=
+ * those devices alone, read past the cache. One scan at a time.
+ */
+int devices_get(struct request *request);
+
+/* POST api/config/save and api/config/restore: what the writer does with the file. */
+int save_post(struct request *request);
+int save_restore(struct request *request);
+
+/* The configuration as it is on disk, and the table of its keys. */
+int stored_get(struct request *request);
+int stored_keys(struct request *request);
+
+#endif
