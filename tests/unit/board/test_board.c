@@ -9,12 +9,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "src/board/look.h"
-#include "src/board/report.h"
 #include "unity.h"
 
 #include "src/board/board.h"
 #include "src/board/data.h"
+#include "src/board/look.h"
+#include "src/board/report.h"
 
 #define DATA "board/boards"
 
