@@ -11,10 +11,10 @@
  * is there.
  *
  * Not where a chip's scratchpad has to tell first what it is (family code 3B), on branches of
- * couplers, with drivers in place of a wire, on wires with a parasitic thermometer, nor while an
- * alarm or an output waits for the end of the search. An output that names its device by an id
- * alone does not wait for that, nor do inputs else (first_asked.h). For others search and readings
- * take turns.
+ * couplers, with drivers in place of a wire, or on wires with a parasitic thermometer. Nothing is
+ * read while an alarm or an output waits for the end of the search. An output that names its device
+ * by an id alone does not wait for that, nor do inputs else (first_asked.h). For others search and
+ * readings take turns.
  *
  * The supply is asked for once more when the search has ended: a device that came meanwhile was
  * not asked.

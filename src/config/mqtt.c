@@ -129,6 +129,10 @@ static void check_together(struct build *build, const struct rio_node *block,
 	if (!strcmp(mqtt->profile, "sparkplug") && strchr(mqtt->topic, '/'))
 		report_error(build->report, block->at,
 		             "Topic \"%s\": the group of Sparkplug has no '/'", mqtt->topic);
+	if (!strcmp(mqtt->profile, "sparkplug") && !strcmp(mqtt->topic, "STATE"))
+		report_error(
+			build->report, block->at,
+			"Topic \"STATE\": Sparkplug keeps this name for hosts; take another one");
 	if (mqtt->primary_host && strcmp(mqtt->profile, "sparkplug") != 0)
 		report_warning(build->report, block->at,
 		               "PrimaryHost is of the profile sparkplug alone: it is not used");

@@ -303,7 +303,9 @@ static const char *alarm_key(const struct rio_node *node, char text[OPTION_NEARE
 		return option_table[OPT_POR_ALARM].key;
 	if (strcasestr(node->key, "set"))
 		return option_table[OPT_SET_ALARM].key;
-	return option_nearest(PLACE_ITEM, node->key, text) ? text : option_table[OPT_ALARM].key;
+	const char *near = option_nearest(PLACE_ITEM, node->key, text);
+
+	return near ? near : option_table[OPT_ALARM].key;
 }
 
 static void report_unknown(const struct rio_node *node, enum option_place place,

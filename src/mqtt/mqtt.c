@@ -61,9 +61,14 @@ static void on_connected(void *ctx)
 		broker_subscribe(&m->broker, topic);
 	}
 	m->stream.host_there = m->stream.born = false;
+	m->stream.host_ms = 0; /* the clock of the host may have been set back */
 	if (m->stream.host) {
 		m->stream.profile->listen_host(&m->stream, topic);
 		broker_subscribe(&m->broker, topic);
+		if (m->broker.connects < 2)
+			log_notice(m->broker.face->log,
+			           "nothing is published until the primary host %s is online",
+			           m->stream.host);
 	}
 	/* without Write they are refused, with a reason */
 	if (m->stream.profile->listen_write)

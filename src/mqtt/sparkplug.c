@@ -536,7 +536,10 @@ static const char *member(const char *text, const char *key)
 	return *at == ':' ? at + 1 + strspn(at + 1, blank) : "";
 }
 
-/* {"online":true,"timestamp":1700000000000}; an older one than the last counts no more. */
+/*
+ * {"online":true,"timestamp":1700000000000}. One that is older than the last of this connection
+ * does not count. "offline" ends a session, whatever comes next.
+ */
 static bool heard(struct stream *s, const char *topic, const char *text, size_t len)
 {
 	const char *online = member(text, "\"online\""), *time = member(text, "\"timestamp\"");
@@ -553,7 +556,7 @@ static bool heard(struct stream *s, const char *topic, const char *text, size_t 
 	if (strcmp(topic, state) != 0 || ms < s->host_ms)
 		return false;
 	s->host_ms = ms;
-	s->host_there = there;
+	s->host_there = there && (s->host_there || !s->born);
 	return false;
 }
 

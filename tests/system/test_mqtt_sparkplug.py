@@ -344,6 +344,7 @@ def test_a_session_waits_for_its_primary_host_and_ends_with_it(scene):
         publish(house, "spBv1.0/STATE/scada", json.dumps({"timestamp": ms, "online": online}), "-r")
         command(house, host, "NCMD/pi7", ("none", "BOOLEAN", True))
     refused = "command to none refused: "
+    logged(house.face, "nothing is published until the primary host scada is online")
     said(False, 1000, 1)
     said(True, 999, 1)
     publish(house, "spBv1.0/STATE/other", '{"online":true,"timestamp":5000}', "-r")

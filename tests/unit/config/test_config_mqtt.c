@@ -131,6 +131,9 @@ static void test_what_cannot_be_is_an_error_at_its_place(void)
 #ifdef OWSD_PROTOBUFC
 		{"Mqtt { Profile sparkplug Topic a/b }",
 	         "f:2:1: error: Topic \"a/b\": the group of Sparkplug has no '/'\n"},
+		{"Mqtt { Profile sparkplug Topic STATE }",
+	         "f:2:1: error: Topic \"STATE\": Sparkplug keeps this name for hosts; take "
+	         "another one\n"},
 #else
 		{"Mqtt { Profile sparkplug }",
 	         "f:2:16: error: Profile \"sparkplug\": owsd was built without libprotobuf-c\n"},
