@@ -96,7 +96,7 @@ def test_a_recorder_that_could_not_look_has_a_gap_where_more_than_one_change_was
     looks = boot()
     assert recorder.stop() == 0
     past = Past(scene)
-    assert past.at("relays", seen - 0.1) == "5" and past.at("room", looks) == "21.5", past.signals
+    assert past.at("relays", seen - 0.1) == "5" and past.at("room", looks - 0.1) == "21.5", past.signals
     for moment in (seen + 2.5, unseen - 2):
         assert past.at("relays", moment) is None, (moment, past.signals)
     assert past.good("relays")[-2:] == ["5", "8"], past.signals
