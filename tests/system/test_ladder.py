@@ -156,6 +156,20 @@ def test_each_system_test_is_of_a_suite(scene):
     assert tree.check("--tests", "others")[1] == "test_last.sh test_other.py"
 
 
+def test_the_rest_of_the_system_tests_runs_with_what_the_table_gives_it(scene):
+    tree = Made(scene, suite("one", "true", rung="gate", tests="main_job"),
+                suite("others", 'echo "$TESTS" >given', tests="rest"))
+    assert tree.check("others")[::2] == (["others"], 0), tree.said
+    assert (tree.path / "given").read_text().split() == ["test_last.sh", "test_other.py"]
+
+
+def test_a_suite_that_cannot_be_begun_has_failed(scene):
+    tree = Made(scene, suite("one", "true"), suite("two", "true", seconds="soon"))
+    for words in (["two"], ["one", "two"]):
+        assert tree.check(*words)[2] == 1, tree.said
+        assert "=== FAIL two" in tree.said, tree.said
+
+
 def test_the_table_asks_for_what_a_change_can_break(scene):
     """Of the table itself."""
     for file, wanted in (("hal/w1/w1.c", {"kernel"}), ("src/shm/layout.h", {"model", "kill", "tsan"}),
