@@ -208,9 +208,9 @@ $(call show,CC)
 $(Q)$(CC) $(ALL_CFLAGS) $(1) $(ALL_LDFLAGS) -MMD -MP -o $@ $(filter %.c %.a,$^) $(LIBS)
 endef
 
-# --- The rooms: each is one folder, of source and of unit tests; its main header says what it is, and
+# --- The rooms: each is a folder, of source and of unit tests; its main header says what it is, and
 # docs/design.md which others it may use
-SOURCES  := $(wildcard src/*/*.c hal/*/*.c hal/*/*/*.c)
+SOURCES  := $(wildcard src/*/*.c src/*/*/*.c hal/*/*.c hal/*/*/*.c)
 # Of owsd-web: what calls libmicrohttpd; its main(), and what must be in no other program
 WEB_MAIN := src/web/owsd_web.c src/web/no_tls.c
 WEB_HTTP := $(WEB_MAIN) $(patsubst %,src/web/%.c,api command devices draft events guard http lists past save stored stream)

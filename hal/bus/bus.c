@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/base/time.h"
 #include "hal/bus/bus.h"
-#include "hal/bus/time.h"
 
 /* How often a suspended bus checks whether its target is back. */
 #define LOOK_NS (3 * NS_PER_S)

@@ -14,11 +14,11 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "hal/base/bell.h"
+#include "hal/base/ring.h"
+#include "hal/base/thread.h"
+#include "hal/base/time.h"
 #include "hal/bus/backends.h"
-#include "hal/bus/bell.h"
-#include "hal/bus/ring.h"
-#include "hal/bus/thread.h"
-#include "hal/bus/time.h"
 #include "hal/bus/worker.h"
 
 #define STACK_SIZE (256 * 1024)

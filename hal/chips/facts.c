@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "hal/chips/bridge.h"
+#include "hal/chips/bridges/bridge.h"
 #include "hal/chips/facts.h"
 #include "hal/chips/find.h"
 #include "hal/owfs/path.h"

@@ -3,8 +3,10 @@
  * A chip family is one file that states its areas (area.h) and its properties: name, type, array,
  * access, size and life of the value as OWFS has them, and the field of an area that it is
  * (property.h). A row of that table holds no pointer: it names its area, and what no field can say
- * (functions, txn.h), by its number in the family's lists. To add a family: write the file, and
- * name it in families.h.
+ * (functions, txn.h), by its number in the family's lists. To add a family: write the file in the
+ * folder of its kind (thermometers, memories and mere ids, switches and converters, batteries,
+ * loggers and clocks, bridges, makers other than those of the standard chips), and name it in
+ * families.h.
  *
  * Room hal/chips: the chip families: areas, properties, functions; values as texts. Uses hal/wire,
  * hal/owfs.

@@ -10,7 +10,7 @@
 #include <time.h>
 
 #include "hal/chips/format.h"
-#include "hal/chips/host_clock.h"
+#include "hal/chips/loggers/host_clock.h"
 
 #define TEXT_ROOM 64 /* of a number or a date as text */
 

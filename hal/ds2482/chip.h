@@ -3,7 +3,7 @@
 #ifndef HAL_DS2482_CHIP_H
 #define HAL_DS2482_CHIP_H
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/ds2482/ds2482.h"
 
 #define DS2482_NO_PARAMETER (-1)

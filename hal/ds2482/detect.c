@@ -6,7 +6,7 @@
  */
 #include <errno.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/ds2482/codes.h"
 #include "hal/ds2482/detect.h"
 #include "hal/ds2482/ds2482.h"

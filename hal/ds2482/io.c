@@ -4,8 +4,8 @@
  */
 #include <errno.h>
 
+#include "hal/base/time.h"
 #include "hal/bus/bus.h"
-#include "hal/bus/time.h"
 #include "hal/ds2482/ds2482.h"
 #include "hal/ds2482/i2c.h"
 #include "hal/ds2482/io.h"

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/ds2482/chip.h"
 #include "hal/ds2482/detect.h"
 #include "hal/ds2482/io.h"

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/gpio/lines.h"
 
 #define AGAIN_NS (NS_PER_S / 2)

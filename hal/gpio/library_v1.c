@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The GPIO calls by libgpiod 1.6. */
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/gpio/api.h"
 
 #if defined(OWSD_LIBGPIOD) && OWSD_LIBGPIOD == 1

@@ -2,8 +2,8 @@
 /* Convert T for all thermometers of a channel, and what is known of those that were told. */
 #include <errno.h>
 
-#include "hal/chips/thermometer.h"
-#include "hal/chips/thermometer_proof.h"
+#include "hal/chips/thermometers/thermometer.h"
+#include "hal/chips/thermometers/thermometer_proof.h"
 #include "hal/native/broadcast.h"
 #include "hal/native/ending.h"
 #include "hal/native/master.h"

@@ -8,8 +8,8 @@
  */
 #include <errno.h>
 
-#include "hal/chips/thermometer.h"
-#include "hal/chips/thermometer_proof.h"
+#include "hal/chips/thermometers/thermometer.h"
+#include "hal/chips/thermometers/thermometer_proof.h"
 #include "hal/native/answer.h"
 #include "hal/native/broadcast.h"
 #include "hal/native/convert.h"

@@ -2,7 +2,7 @@
 /* When to ask whether a conversion has ended, and what follows. */
 #include <errno.h>
 
-#include "hal/chips/thermometer.h"
+#include "hal/chips/thermometers/thermometer.h"
 #include "hal/native/ending.h"
 #include "hal/native/master.h"
 #include "hal/native/state.h"

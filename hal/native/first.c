@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "hal/chips/find.h"
-#include "hal/chips/thermometer.h"
+#include "hal/chips/thermometers/thermometer.h"
 #include "hal/native/broadcast.h"
 #include "hal/native/first.h"
 #include "hal/native/first_asked.h"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* What the first conversions are to devices that are found later. */
 #include "hal/native/first_wire.h"
-#include "hal/chips/thermometer_proof.h"
-#include "hal/chips/thermometer_state.h"
+#include "hal/chips/thermometers/thermometer_proof.h"
+#include "hal/chips/thermometers/thermometer_state.h"
 
 void first_found(struct native *native, struct device *device)
 {

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "hal/chips/family.h"
-#include "hal/chips/thermometer.h"
+#include "hal/chips/thermometers/thermometer.h"
 #include "hal/native/answer.h"
 #include "hal/native/branches.h"
 #include "hal/native/first_wire.h"

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/chips/sensor_table.h"
+#include "hal/chips/bridges/sensor_table.h"
 #include "hal/native/answer.h"
 #include "hal/native/cache.h"
 #include "hal/native/convert.h"

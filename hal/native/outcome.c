@@ -3,7 +3,7 @@
 #include <errno.h>
 
 #include "hal/chips/family.h"
-#include "hal/chips/thermometer.h"
+#include "hal/chips/thermometers/thermometer.h"
 #include "hal/native/answer.h"
 #include "hal/native/cost.h"
 #include "hal/native/limits.h"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Which thermometers are asked for, what that costs, and which way is faster. */
 #include "hal/native/schedule.h"
-#include "hal/chips/thermometer_proof.h"
-#include "hal/chips/thermometer_state.h"
+#include "hal/chips/thermometers/thermometer_proof.h"
+#include "hal/chips/thermometers/thermometer_state.h"
 #include "hal/native/state.h"
 
 /*

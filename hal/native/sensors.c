@@ -8,9 +8,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "hal/chips/bridge.h"
+#include "hal/chips/bridges/bridge.h"
+#include "hal/chips/bridges/sensor_table.h"
 #include "hal/chips/find.h"
-#include "hal/chips/sensor_table.h"
 #include "hal/native/sensors.h"
 
 #define FILE_MAX 100000

@@ -3,7 +3,7 @@
 #ifndef HAL_NATIVE_SENSORS_H
 #define HAL_NATIVE_SENSORS_H
 
-#include "hal/chips/sensor.h"
+#include "hal/chips/bridges/sensor.h"
 
 /* As bus_ops.option: the file takes the place of an earlier one. */
 int sensors_read(struct sensor_table *table, const char *file, char *why, size_t why_size);

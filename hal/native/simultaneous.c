@@ -2,7 +2,7 @@
 /* Writes to /simultaneous: all chips of a kind on one channel or on all convert. */
 #include <errno.h>
 
-#include "hal/chips/ds2450.h"
+#include "hal/chips/switches/ds2450.h"
 #include "hal/native/answer.h"
 #include "hal/native/broadcast.h"
 #include "hal/native/master.h"

@@ -6,8 +6,8 @@
 #ifndef HAL_NATIVE_STATE_H
 #define HAL_NATIVE_STATE_H
 
+#include "hal/chips/bridges/sensor.h"
 #include "hal/chips/family.h"
-#include "hal/chips/sensor.h"
 #include "hal/native/cache.h"
 #include "hal/native/limits.h"
 #include "hal/owfs/path.h"

@@ -2,7 +2,7 @@
 /* Read Power Supply: of all thermometers of a channel at once, or of one. */
 #include <errno.h>
 
-#include "hal/chips/thermometer.h"
+#include "hal/chips/thermometers/thermometer.h"
 #include "hal/native/master.h"
 #include "hal/native/state.h"
 #include "hal/native/supply.h"

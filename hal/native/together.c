@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Transactions of several thermometers at the same time, each on another chip of the master. */
 #include "hal/native/together.h"
-#include "hal/chips/thermometer.h"
+#include "hal/chips/thermometers/thermometer.h"
 #include "hal/native/answer.h"
 #include "hal/native/broadcast.h"
 #include "hal/native/convert.h"

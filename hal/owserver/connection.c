@@ -12,7 +12,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/owserver/connection.h"
 
 #define DEFAULT_HOST "localhost"

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/owserver/listing.h"
 
 #define KEEP_NS (10 * NS_PER_S)

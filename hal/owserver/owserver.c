@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/owfs/path.h"
 #include "hal/owserver/listing.h"
 #include "hal/owserver/proof.h"

@@ -2,7 +2,7 @@
 /* The simulated network as an I2C adapter. */
 #include <errno.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/sim/adapter.h"
 
 /* The bits of a transaction: a START or STOP condition takes about one, a byte nine. */

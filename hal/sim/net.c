@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/sim/net.h"
 
 #define PAUSE_NS (10 * NS_PER_MS) /* a pause is at least so long */

@@ -7,7 +7,7 @@
  * lies between two calls is jumped over.
  *
  * Room hal/sim: a simulated I2C adapter, DS2482 and wires, in owsd-sim alone. Uses hal/ds2482,
- * hal/native, hal/wire, hal/owfs, hal/bus.
+ * hal/native, hal/wire, hal/owfs, hal/bus, hal/base.
  */
 #ifndef HAL_SIM_NET_H
 #define HAL_SIM_NET_H

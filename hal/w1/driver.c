@@ -10,7 +10,7 @@
 #include <strings.h>
 
 #include "hal/chips/area.h"
-#include "hal/chips/ds2438.h"
+#include "hal/chips/batteries/ds2438.h"
 #include "hal/chips/find.h"
 #include "hal/chips/format.h"
 #include "hal/w1/driver.h"

@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "hal/chips/find.h"
-#include "hal/chips/thermometer.h"
+#include "hal/chips/thermometers/thermometer.h"
 #include "hal/owfs/path.h"
 #include "hal/w1/name.h"
 #include "hal/w1/thermometer.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The bus over sysfs: a native bus that hears of masters and slaves that come later. */
 #include "hal/w1/w1.h"
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/native/native.h"
 #include "hal/w1/master.h"
 #include "hal/w1/uevent.h"

@@ -15,7 +15,7 @@
  *   name.c     28.551DDF030000 is 28-000003df1d55
  *
  * Room hal/w1: the masters of the kernel, by sysfs: areas that its drivers give. Uses hal/native,
- * hal/chips, hal/wire, hal/owfs, hal/bus.
+ * hal/chips, hal/wire, hal/owfs, hal/bus, hal/base.
  */
 #ifndef HAL_W1_W1_H
 #define HAL_W1_W1_H

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/chips/facts.h"
 #include "hal/chips/find.h"
 #include "hal/owfs/path.h"

@@ -4,7 +4,7 @@
  * document (rio.h) by config_load(). Immutable after that; all strings belong to it.
  *
  * Room src/config: the .rio file: read, checked, edited. Uses src/text, src/shm, src/signal,
- * hal/chips, hal/owfs, hal/bus.
+ * hal/chips, hal/owfs, hal/bus, hal/base.
  */
 #ifndef CONFIG_H
 #define CONFIG_H

@@ -11,7 +11,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/config/replace.h"
 #include "src/shm/owner.h"
 

@@ -3,8 +3,8 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/bus/bell.h"
-#include "hal/bus/time.h"
+#include "hal/base/bell.h"
+#include "hal/base/time.h"
 #include "src/control/ask.h"
 
 static uint32_t state_of(const struct control_place *p)

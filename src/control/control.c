@@ -7,9 +7,9 @@
 #include <sys/epoll.h>
 #include <unistd.h>
 
-#include "hal/bus/bell.h"
-#include "hal/bus/thread.h"
-#include "hal/bus/time.h"
+#include "hal/base/bell.h"
+#include "hal/base/thread.h"
+#include "hal/base/time.h"
 #include "src/config/config.h"
 #include "src/control/ask.h"
 #include "src/control/control.h"

@@ -5,7 +5,7 @@
  * own; the engine's thread takes them from here. Nothing that comes over the socket is believed.
  *
  * Room src/control: the control socket: connections, credentials, rights. Uses src/config,
- * src/text, src/libows, src/shm, hal/bus.
+ * src/text, src/libows, src/shm, hal/bus, hal/base.
  */
 #ifndef CONTROL_H
 #define CONTROL_H
@@ -70,7 +70,7 @@ void control_end(struct control *control);
 
 /* --- A reload, by the supervisor ------------------------------------------------------------- */
 
-/* A bell (hal/bus/bell.h) that rings when a program asks for a reload. */
+/* A bell (hal/base/bell.h) that rings when a program asks for a reload. */
 int control_asked_bell(const struct control *control);
 /* Does a program wait for a reload? Silences the bell. */
 bool control_asked(struct control *control);

@@ -10,7 +10,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/control/ask.h"
 #include "src/control/door.h"
 #include "src/control/grant.h"

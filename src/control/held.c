@@ -5,7 +5,7 @@
  * nowhere.
  */
 #include "src/control/held.h"
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/control/grant.h"
 #include "src/control/sealed.h"
 

@@ -5,9 +5,9 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "hal/bus/bell.h"
-#include "hal/bus/thread.h"
-#include "hal/bus/time.h"
+#include "hal/base/bell.h"
+#include "hal/base/thread.h"
+#include "hal/base/time.h"
 #include "src/control/news.h"
 #include "src/libows/ows.h"
 #include "src/shm/futex.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* How often users connect: an account for each of those that have connected last. */
 #include "src/control/often.h"
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 
 #define COST_NS (NS_PER_S / OFTEN_S)
 

@@ -5,13 +5,13 @@
 #include <errno.h>
 #include <string.h>
 
-#include "src/engine/alarm.h"
+#include "src/engine/alarm/alarm.h"
 #include "src/engine/ask.h"
+#include "src/engine/command/intake.h"
+#include "src/engine/command/restart.h"
 #include "src/engine/guests.h"
-#include "src/engine/intake.h"
-#include "src/engine/place.h"
 #include "src/engine/publish.h"
-#include "src/engine/restart.h"
+#include "src/engine/routing/place.h"
 #include "src/engine/scaling.h"
 #include "src/engine/schedule.h"
 #include "src/engine/slots.h"

@@ -3,15 +3,15 @@
 #include <errno.h>
 #include <string.h>
 
-#include "src/engine/alarm_item.h"
+#include "src/engine/alarm/alarm_item.h"
+#include "src/engine/command/in_force.h"
+#include "src/engine/command/read_back.h"
 #include "src/engine/completion.h"
 #include "src/engine/device_back.h"
 #include "src/engine/device_facts.h"
-#include "src/engine/guard.h"
-#include "src/engine/in_force.h"
-#include "src/engine/place.h"
-#include "src/engine/read_back.h"
+#include "src/engine/limits/guard.h"
 #include "src/engine/retry.h"
+#include "src/engine/routing/place.h"
 #include "src/engine/scaling.h"
 #include "src/engine/schedule.h"
 #include "src/signal/error.h"

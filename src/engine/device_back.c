@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* A device that was absent is there again, or has restarted. */
 #include "src/engine/device_back.h"
-#include "src/engine/alarm_arm.h"
+#include "src/engine/alarm/alarm_arm.h"
 #include "src/engine/retry.h"
 #include "src/engine/schedule.h"
 

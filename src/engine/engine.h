@@ -7,14 +7,16 @@
  * This room may touch src/signal, src/config/config.h, src/shm, the log, and of hal the bus
  * contract and the paths. Its files form a stack: a file uses files of its own layer and of those
  * below it, and no two files use each other. state.h has the structures that all of them work on,
- * and says which file changes what; each other header declares what its own .c defines.
+ * and says which file changes what; each other header declares what its own .c defines. alarm,
+ * limits, routing, command and reload are folders; what stands in none of them is the table and
+ * the lanes.
  *
  *   step                 engine (makes it, and takes the calls), adopt, adopt_signal (a reload)
  *   events and answers   lane_event, lane_answer (record what happened), ask (chooses what is next)
  *   routing              routing (acts on the facts: opens ways, moves devices)
  *   moves                move, lane_state (a target goes up and fails)
  *   alarm and guests     alarm (the machine), alarm_step, guests
- *   controllers               controllers (they join, beat and leave)
+ *   controllers          controllers (they join, beat and leave)
  *   reading and writing  completion, device_back, intake, in_force, place, doubt, types
  *   reading back         read_back, restart
  *   alarm items          alarm_arm, alarm_list, alarm_effect, alarm_refused
@@ -24,7 +26,7 @@
  *   pure functions       route, adoption, limit, guard, retry, alarm_fsm, alarm_text
  *
  * Room src/engine: the table of signals, lanes, alarms; no input or output. Uses src/config,
- * src/text, src/libows, src/shm, src/signal, hal/chips, hal/owfs, hal/bus.
+ * src/text, src/libows, src/shm, src/signal, hal/chips, hal/owfs, hal/bus, hal/base.
  */
 #ifndef ENGINE_H
 #define ENGINE_H

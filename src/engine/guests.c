@@ -6,7 +6,7 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/owfs/path.h"
 #include "src/engine/guest.h"
 #include "src/engine/guests.h"

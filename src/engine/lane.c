@@ -2,7 +2,7 @@
 /* A lane is made and ended here; rows of the table come to it and leave it. */
 #include <errno.h>
 
-#include "src/engine/alarm_item.h"
+#include "src/engine/alarm/alarm_item.h"
 #include "src/engine/lane.h"
 #include "src/engine/slots.h"
 

@@ -2,17 +2,17 @@
 /* The end of a request that is lent to a bus: by its answer, or because its time is over. */
 #include <errno.h>
 
-#include "src/engine/alarm.h"
+#include "src/engine/alarm/alarm.h"
+#include "src/engine/command/doubt.h"
+#include "src/engine/command/restart.h"
 #include "src/engine/completion.h"
 #include "src/engine/device_facts.h"
-#include "src/engine/doubt.h"
 #include "src/engine/guests.h"
 #include "src/engine/lane_answer.h"
 #include "src/engine/lane_state.h"
-#include "src/engine/place.h"
 #include "src/engine/publish.h"
-#include "src/engine/restart.h"
 #include "src/engine/retry.h"
+#include "src/engine/routing/place.h"
 #include "src/engine/slots.h"
 #include "src/engine/trace.h"
 #include "src/engine/types.h"

@@ -2,14 +2,14 @@
 /* What a bus reports by itself becomes facts of its lane, of its way and of devices. */
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
+#include "src/engine/command/doubt.h"
 #include "src/engine/device_back.h"
-#include "src/engine/doubt.h"
-#include "src/engine/group.h"
 #include "src/engine/lane_event.h"
 #include "src/engine/lane_state.h"
-#include "src/engine/place.h"
 #include "src/engine/publish.h"
+#include "src/engine/routing/group.h"
+#include "src/engine/routing/place.h"
 #include "src/text/log.h"
 
 /*

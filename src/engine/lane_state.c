@@ -5,14 +5,14 @@
  */
 #include <errno.h>
 
-#include "src/engine/alarm_item.h"
-#include "src/engine/alarm_list.h"
-#include "src/engine/disown.h"
-#include "src/engine/group.h"
+#include "src/engine/alarm/alarm_item.h"
+#include "src/engine/alarm/alarm_list.h"
 #include "src/engine/lane_state.h"
-#include "src/engine/place.h"
 #include "src/engine/publish.h"
 #include "src/engine/retry.h"
+#include "src/engine/routing/disown.h"
+#include "src/engine/routing/group.h"
+#include "src/engine/routing/place.h"
 #include "src/engine/schedule.h"
 #include "src/text/log.h"
 

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "src/engine/due.h"
-#include "src/engine/limits.h"
+#include "src/engine/limits/limits.h"
 #include "src/signal/value.h"
 
 /* The attributes that say how a signal stands; the others count, or are of one moment. */

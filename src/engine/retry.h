@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 
 enum failure {
 	FAILURE_NONE,

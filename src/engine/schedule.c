@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* When the rows of the table are read and written: the wheel of periods and what is due. */
 #include "src/engine/schedule.h"
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/engine/due.h"
 #include "src/engine/publish.h"
 #include "src/engine/retry.h"

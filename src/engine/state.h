@@ -6,13 +6,13 @@
 #ifndef ENGINE_STATE_H
 #define ENGINE_STATE_H
 
+#include "hal/base/time.h"
 #include "hal/bus/bus.h"
-#include "hal/bus/time.h"
-#include "src/engine/alarm_item.h"
+#include "src/engine/alarm/alarm_item.h"
+#include "src/engine/command/joining.h"
 #include "src/engine/due.h"
-#include "src/engine/joining.h"
 #include "src/engine/port.h"
-#include "src/engine/route.h"
+#include "src/engine/routing/route.h"
 #include "src/engine/structure.h"
 #include "src/engine/table.h"
 #include "src/shm/controller.h"

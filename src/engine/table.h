@@ -8,8 +8,8 @@
 
 #include "hal/chips/facts.h"
 #include "src/config/config.h"
-#include "src/engine/guard.h"
-#include "src/engine/limit.h"
+#include "src/engine/limits/guard.h"
+#include "src/engine/limits/limit.h"
 #include "src/engine/retry.h"
 #include "src/shm/force.h"
 #include "src/shm/image.h"

@@ -3,8 +3,8 @@
 #ifndef ENGINE_TRACE_H
 #define ENGINE_TRACE_H
 
+#include "hal/base/time.h"
 #include "hal/bus/bus.h"
-#include "hal/bus/time.h"
 #include "src/text/log.h"
 
 /* At most so many lines a window of requests that succeed, and as many of those that fail. */

@@ -10,7 +10,7 @@
  * than a write to a file may take.
  *
  * Room src/face: what all faces share: one loop over the changes of an instance. Uses src/config,
- * src/text, src/libows, src/service, hal/bus.
+ * src/text, src/libows, src/service, hal/base.
  */
 #ifndef FACE_FACE_H
 #define FACE_FACE_H

@@ -12,7 +12,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/face/look.h"
 #include "src/face/loop.h"
 #include "src/service/streams.h"

@@ -6,7 +6,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/face/wall_clock.h"
 
 #define STEP_NS (50 * NS_PER_MS)

@@ -8,8 +8,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "hal/bus/bell.h"
-#include "hal/bus/time.h"
+#include "hal/base/bell.h"
+#include "hal/base/time.h"
 #include "src/host/bells.h"
 #include "src/libows/ows.h"
 #include "src/shm/word.h"

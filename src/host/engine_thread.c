@@ -10,7 +10,7 @@
 
 #include "hal/bus/worker.h"
 #include "src/control/control.h"
-#include "src/engine/controllers.h"
+#include "src/engine/command/controllers.h"
 #include "src/host/engine_thread.h"
 #include "src/host/last.h"
 #include "src/host/private.h"

@@ -5,7 +5,7 @@
  *
  * Room src/host: what runs in it: threads, shared memory, targets, a reload. Uses src/serve,
  * src/control, src/engine, src/config, src/text, src/libows, src/shm, src/signal, hal/gpio,
- * hal/bus.
+ * hal/bus, hal/base.
  */
 #ifndef HOST_H
 #define HOST_H

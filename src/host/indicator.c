@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/gpio/line.h"
 #include "src/host/indicator.h"
 #include "src/host/own_thread.h"

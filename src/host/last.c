@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/host/last.h"
 #include "src/host/last_file.h"
 #include "src/host/own_thread.h"

@@ -7,7 +7,7 @@
 #define HOST_LAST_H
 
 #include "src/config/config.h"
-#include "src/engine/last.h"
+#include "src/engine/command/last.h"
 #include "src/text/log.h"
 
 struct last;

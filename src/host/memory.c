@@ -10,7 +10,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/engine/table.h"
 #include "src/host/memory.h"
 #include "src/libows/ows.h"

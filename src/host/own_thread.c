@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* A thread beside the engine's that may hang: started, asked to end, waited for with a limit. */
 #include "src/host/own_thread.h"
-#include "hal/bus/thread.h"
+#include "hal/base/thread.h"
 #include "src/libows/ows.h"
 #include "src/shm/futex.h"
 

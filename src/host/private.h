@@ -5,7 +5,7 @@
 
 #include <pthread.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/host/bells.h"
 #include "src/host/serving.h"
 

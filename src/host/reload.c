@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/control/control.h"
 #include "src/host/engine_thread.h"
 #include "src/host/indicator.h"

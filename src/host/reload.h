@@ -11,7 +11,7 @@ struct host;
 
 /* False until the image of the reload before is in place. Supervisor only. */
 bool host_may_reload(const struct host *host);
-/* A bell (hal/bus/bell.h) that rings when a program asks for a reload at the control socket. */
+/* A bell (hal/base/bell.h) that rings when a program asks for a reload at the control socket. */
 int host_asked_bell(const struct host *host);
 /* Does a program wait for a reload? Silences the bell. Supervisor only. */
 bool host_asked(struct host *host);

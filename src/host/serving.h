@@ -7,8 +7,8 @@
 #ifndef HOST_SERVING_H
 #define HOST_SERVING_H
 
-#include "src/engine/adopt.h"
 #include "src/engine/engine.h"
+#include "src/engine/reload/adopt.h"
 #include "src/host/memory.h"
 
 struct last;

@@ -2,7 +2,7 @@
 /* The supervisor's upkeep: looks for the image, and finishes what a reload has left to do. */
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/control/control.h"
 #include "src/host/last.h"
 #include "src/host/make.h"

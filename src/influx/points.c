@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/face/moment.h"
 #include "src/influx/points.h"
 #include "src/signal/hash.h"

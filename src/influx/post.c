@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/influx/post.h"
 #include "src/libows/ows.h"
 #include "src/text/printable.h"

@@ -4,7 +4,7 @@
 #include <poll.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/face/look.h"
 #include "src/face/loop.h"
 #include "src/influx/disk.h"

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/config/config.h"
 #include "src/face/face.h"
 #include "src/influx/post.h"

@@ -5,7 +5,7 @@
 
 #include <errno.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/libows/handle.h"
 
 /* The time between two looks whether the name leads to another image. */

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/libows/alive.h"
 #include "src/libows/handle.h"
 #include "src/libows/map.h"

@@ -5,7 +5,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/libows/alive.h"
 #include "src/libows/command.h"
 #include "src/libows/handle.h"

@@ -3,7 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/libows/alive.h"
 #include "src/libows/get.h"
 #include "src/libows/handle.h"

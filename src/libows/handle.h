@@ -2,7 +2,7 @@
 /*
  * The inside of a handle of libows. Not installed.
  *
- * Room src/libows: the library of the consumers. Uses src/shm, src/signal, hal/bus.
+ * Room src/libows: the library of the consumers. Uses src/shm, src/signal, hal/base.
  */
 #ifndef LIBOWS_HANDLE_H
 #define LIBOWS_HANDLE_H

@@ -2,7 +2,7 @@
 /* The clock of owsd and its consumers. */
 #include <time.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/libows/ows.h"
 
 int64_t ows_now(void)

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/libows/alive.h"
 #include "src/libows/handle.h"
 #include "src/libows/map.h"

@@ -11,7 +11,7 @@
 #include <sys/random.h>
 #include <sys/socket.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/face/loop.h"
 #include "src/face/secret.h"
 #include "src/mqtt/advice.h"

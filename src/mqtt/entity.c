@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/mqtt/entity.h"
 #include "src/mqtt/plain.h"
 #include "src/signal/value.h"

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/face/look.h"
 #include "src/face/loop.h"
 #include "src/mqtt/health.h"

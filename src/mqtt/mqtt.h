@@ -3,8 +3,8 @@
  * owsd-mqtt: the stream of an instance's signals, a broker, and the commands that come from it.
  *
  * Room src/mqtt: the program owsd-mqtt: publishes signals to an MQTT broker, and takes commands
- * from it. Uses src/face, src/show, src/config, src/text, src/libows, src/signal, hal/owfs,
- * hal/bus.
+ * from it. Uses src/show, src/face, src/config, src/text, src/libows, src/signal, hal/owfs,
+ * hal/base.
  */
 #ifndef MQTT_MQTT_H
 #define MQTT_MQTT_H

@@ -3,7 +3,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/face/moment.h"
 #include "src/mqtt/plain.h"
 #include "src/show/reading.h"

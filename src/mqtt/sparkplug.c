@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/face/moment.h"
 #include "src/mqtt/plain.h"
 #include "src/show/when.h"

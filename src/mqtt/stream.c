@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/mqtt/stream.h"
 #include "src/signal/hash.h"
 #include "src/signal/utf8.h"

@@ -9,7 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/running.h"
 #include "src/shm/place.h"

@@ -4,8 +4,8 @@
  * and returns the exit status.
  *
  * Room src/owsctl: the command-line tool, a program over libows; scan, read and write open a target
- * themselves. Uses src/scan, src/show, src/config, src/board, src/text, src/libows,
- * src/libhistory, src/service, src/shm, src/signal, hal/chips, hal/owfs, hal/bus.
+ * themselves. Uses src/scan, src/show, src/config, src/board, src/text, src/libhistory, src/libows,
+ * src/service, src/shm, src/signal, hal/chips, hal/owfs, hal/bus, hal/base.
  */
 #ifndef OWSCTL_CTL_H
 #define OWSCTL_CTL_H

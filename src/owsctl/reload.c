@@ -4,7 +4,7 @@
 #include <getopt.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/verbs.h"
 

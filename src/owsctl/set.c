@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/verbs.h"
 #include "src/show/names.h"

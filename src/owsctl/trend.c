@@ -10,7 +10,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/past.h"
 #include "src/owsctl/plot.h"

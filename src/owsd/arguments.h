@@ -3,7 +3,7 @@
  * owsd's command line, and the messages to the user who typed it.
  *
  * Room src/owsd: the program: options, start-up, supervision, reload and end. Uses src/host,
- * src/config, src/board, src/text, src/libows, src/service, src/shm, hal/gpio, hal/bus.
+ * src/config, src/board, src/text, src/libows, src/service, src/shm, hal/gpio, hal/bus, hal/base.
  */
 #ifndef OWSD_ARGUMENTS_H
 #define OWSD_ARGUMENTS_H

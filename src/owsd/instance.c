@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/libows/ows.h"
 #include "src/owsd/instance.h"
 #include "src/shm/hint.h"

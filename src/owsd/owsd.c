@@ -2,7 +2,7 @@
 /* owsd's main program: start-up, supervision, reload and end. */
 #include <errno.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/board/board.h"
 #include "src/board/look.h"
 #include "src/board/report.h"

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/face/look.h"
 #include "src/face/loop.h"
 #include "src/history/place.h"

@@ -4,7 +4,7 @@
  * becomes of the news of a face.
  *
  * Room src/recorder: the program owsd-recorder: keeps what signals had, by rules. Uses src/face,
- * src/config, src/libows, src/history, src/signal, hal/bus.
+ * src/config, src/history, src/libows, src/signal, hal/base.
  */
 #ifndef RECORDER_RECORDING_H
 #define RECORDER_RECORDING_H

@@ -3,7 +3,7 @@
  * The devices that a scan finds, and the properties and values of each.
  *
  * Room src/scan: a target opened without an engine: its devices, and what they have. Uses src/show,
- * hal/chips, hal/owfs, hal/bus.
+ * hal/chips, hal/owfs, hal/bus, hal/base.
  */
 #ifndef SCAN_DEVICE_H
 #define SCAN_DEVICE_H

@@ -6,8 +6,8 @@
 #ifndef SCAN_TARGET_H
 #define SCAN_TARGET_H
 
+#include "hal/base/time.h"
 #include "hal/bus/bus.h"
-#include "hal/bus/time.h"
 
 struct target {
 	const char *name; /* the target as given */

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include "hal/bus/bell.h"
+#include "hal/base/bell.h"
 #include "src/serve/guests.h"
 
 static struct engine_guest *take_message(void *ctx)

@@ -6,7 +6,7 @@
 #ifndef SERVE_GUESTS_H
 #define SERVE_GUESTS_H
 
-#include "hal/bus/ring.h"
+#include "hal/base/ring.h"
 #include "src/engine/guest.h"
 
 struct guests_message {

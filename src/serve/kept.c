@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/chips/format.h"
 #include "src/serve/kept.h"
 #include "src/shm/reader.h"

@@ -9,8 +9,8 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "hal/bus/thread.h"
-#include "hal/bus/time.h"
+#include "hal/base/thread.h"
+#include "hal/base/time.h"
 #include "hal/owfs/frame.h"
 #include "src/config/own.h"
 #include "src/libows/ows.h"

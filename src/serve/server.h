@@ -6,7 +6,7 @@
 #include <netinet/in.h>
 #include <pthread.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/serve/code.h"
 #include "src/serve/directory.h"
 #include "src/serve/guests.h"

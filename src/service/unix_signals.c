@@ -7,7 +7,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/service/unix_signals.h"
 
 int unix_signals_open(struct unix_signals *signals)

@@ -14,7 +14,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/shm/futex.h"
 #include "src/shm/layout.h"
 #include "src/shm/peer.h"

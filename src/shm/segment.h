@@ -3,7 +3,7 @@
  * The memory under image and commands, owsd's side: the mapped files of an instance. Blocking:
  * file-system calls only.
  *
- * Room src/shm: the segments in shared memory, the side of owsd. Uses hal/bus.
+ * Room src/shm: the segments in shared memory, the side of owsd. Uses hal/base.
  */
 #ifndef SHM_SEGMENT_H
 #define SHM_SEGMENT_H

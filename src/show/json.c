@@ -3,7 +3,7 @@
 #include <inttypes.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/show/json.h"
 #include "src/signal/utf8.h"
 #include "src/signal/value.h"

@@ -3,7 +3,7 @@
  * A value as programs show it: with its text, and in words what is wrong with it.
  *
  * Room src/show: values, alarms, journals and counters in words and as JSON, for programs that show
- * them. Uses src/text, src/libows, src/libhistory, src/signal, hal/bus.
+ * them. Uses src/text, src/libhistory, src/libows, src/signal, hal/base.
  */
 #ifndef SHOW_READING_H
 #define SHOW_READING_H

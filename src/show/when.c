@@ -5,7 +5,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/libows/ows.h"
 #include "src/show/when.h"
 

@@ -11,8 +11,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "hal/bus/bell.h"
-#include "hal/bus/time.h"
+#include "hal/base/bell.h"
+#include "hal/base/time.h"
 #include "src/text/log.h"
 #include "src/text/printable.h"
 

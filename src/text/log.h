@@ -4,7 +4,7 @@
  * but one wake; the supervisor writes them to stderr. The log counts the lines that find the ring
  * full.
  *
- * Room src/text: the log, and texts that are safe to print. Uses src/signal, hal/bus.
+ * Room src/text: the log, and texts that are safe to print. Uses src/signal, hal/base.
  */
 #ifndef TEXT_LOG_H
 #define TEXT_LOG_H
@@ -75,7 +75,7 @@ void log_show(struct log *log, log_see *see, void *ctx);
 int log_drain(struct log *log, int fd, int prefix);
 /* Write the last lines before the end; tries for at most 200 ms. */
 void log_finish(struct log *log, int fd, int prefix);
-/* A bell (hal/bus/bell.h), rung from the moment a line is put until the next log_drain(). */
+/* A bell (hal/base/bell.h), rung from the moment a line is put until the next log_drain(). */
 int log_bell(const struct log *log);
 uint64_t log_dropped(const struct log *log);
 

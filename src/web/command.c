@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/show/json.h"
 #include "src/show/names.h"
 #include "src/signal/error.h"

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/owfs/path.h"
 #include "src/libows/open.h"
 #include "src/scan/scan.h"

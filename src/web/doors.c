@@ -10,7 +10,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/service/streams.h"
 #include "src/web/doors.h"
 #include "src/web/head.h"

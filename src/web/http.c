@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/web/head.h"
 #include "src/web/http.h"
 #include "src/web/origin.h"

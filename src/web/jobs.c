@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "hal/bus/bell.h"
+#include "hal/base/bell.h"
 #include "src/show/json.h"
 #include "src/web/jobs.h"
 

@@ -34,7 +34,7 @@ struct job {
 /* On the loop: a job that nobody has, with what it holds. */
 void job_free(struct job *job);
 
-/* bell: rung when a job is done (hal/bus/bell.h). NULL: no memory, or no thread. */
+/* bell: rung when a job is done (hal/base/bell.h). NULL: no memory, or no thread. */
 struct jobs *jobs_start(int bell);
 /* False: too many wait, or too many of that peer. */
 bool jobs_give(struct jobs *jobs, struct job *job);

@@ -10,8 +10,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "hal/bus/bell.h"
-#include "hal/bus/time.h"
+#include "hal/base/bell.h"
+#include "hal/base/time.h"
 #include "src/face/loop.h"
 #include "src/shm/place.h"
 #include "src/web/api.h"

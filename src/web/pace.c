@@ -2,7 +2,7 @@
 /* When changes of values go out to the streams. */
 #include "src/web/pace.h"
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 
 #define LEAST_NS (20 * NS_PER_MS)
 #define MOST_NS (100 * NS_PER_MS)

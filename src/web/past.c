@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/libhistory/ows_history.h"
 #include "src/show/journal_past.h"
 #include "src/web/http.h"

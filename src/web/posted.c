@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/web/head.h"
 #include "src/web/posted.h"
 

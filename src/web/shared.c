@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/web/shared.h"
 
 #define VALID_NS (20 * NS_PER_MS)

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/show/standing.h"
 #include "src/show/when.h"
 #include "src/signal/error.h"

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/config/rio_file.h"
 #include "src/config/tag.h"
 #include "src/web/draft.h"

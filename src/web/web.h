@@ -4,8 +4,8 @@
  * libmicrohttpd runs.
  *
  * Room src/web: the program owsd-web: the page of an instance, its signals as JSON and as events.
- * Uses src/face, src/scan, src/show, src/config, src/board, src/text, src/libows, src/libhistory,
- * src/service, src/shm, src/signal, hal/chips, hal/owfs, hal/bus.
+ * Uses src/scan, src/show, src/face, src/config, src/board, src/text, src/libhistory, src/libows,
+ * src/service, src/shm, src/signal, hal/chips, hal/owfs, hal/base.
  */
 #ifndef WEB_WEB_H
 #define WEB_WEB_H

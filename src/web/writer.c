@@ -12,7 +12,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/shm/place.h"
 #include "src/shm/segment.h"
 #include "src/text/printable.h"

@@ -11,7 +11,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/face/arguments.h"
 #include "src/service/notify.h"
 #include "src/service/streams.h"

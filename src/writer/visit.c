@@ -7,7 +7,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/libows/ows.h"
 #include "src/shm/peer.h"
 #include "src/text/log.h"

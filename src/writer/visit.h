@@ -3,7 +3,8 @@
  * A connection to the writer: looks who is there, takes one order, answers, and hangs up.
  *
  * Room src/writer: the program owsd-config: replaces the configuration of an instance, and has owsd
- * reload. Uses src/face, src/host, src/config, src/text, src/libows, src/service, src/shm, hal/bus.
+ * reload. Uses src/face, src/host, src/config, src/text, src/libows, src/service, src/shm,
+ * hal/base.
  */
 #ifndef WRITER_VISIT_H
 #define WRITER_VISIT_H

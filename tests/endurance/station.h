@@ -9,8 +9,8 @@
 #define TESTS_ENDURANCE_STATION_H
 
 #include "src/config/config.h"
-#include "src/engine/adopt.h"
 #include "src/engine/engine.h"
+#include "src/engine/reload/adopt.h"
 #include "src/shm/controller.h"
 #include "tests/endurance/fiber.h"
 #include "tests/endurance/part.h"

@@ -35,7 +35,7 @@ FUZZ_WRAP_netlink  := getpid
 FUZZ_WRAP_owsctl   := getpid clock_gettime time exit ows_now segment_wait nanosleep \
                       ctl_reader_gone terminal_catch_signals isatty ows_open ows_open_as open_in \
                       ows_close board_look replace_file replace_lock replace_unlock rio_read bus_create
-FUZZ_WORDS_owsctl  := src/owsctl/owsctl.c src/signal/attribute.c src/config/options.c src/owsctl/condition.c
+FUZZ_WORDS_owsctl  := src/owsctl/owsctl.c src/signal/attribute.c src/config/options.c src/owsctl/watch/condition.c
 FUZZ_WORDS_values  := src/signal/attribute.c src/signal/value.c hal/owfs/path.c src/config/listen.c
 FUZZ_WORDS_web     := src/web/head.c src/web/body.c src/web/origin.c src/web/command.c
 FUZZ_WORDS_sparkplug := tests/fuzz/heap_instance.c src/mqtt/sparkplug.c

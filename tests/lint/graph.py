@@ -26,12 +26,17 @@ EXTERN = re.compile(r"^extern [^;(]*?\b(\w+)(?:\[[^\]]*\])*;|^extern [^;]*?\(\*(
 NAME = re.compile(r"(?<![\w.])(?<!->)(?<!struct )(?<!enum )(?<!union )[A-Za-z_]\w*")
 
 
+ROOMS_IN_ROOMS = {"hal/sim/chips"}
+
+
 def unit_of(path):
     return os.path.splitext(path)[0]
 
 
 def room_of(unit):
-    return os.path.dirname(unit)
+    """The folder above it that is a room: the folders of a room are its parts, except these."""
+    folder = os.path.dirname(unit)
+    return folder if folder in ROOMS_IN_ROOMS else "/".join(folder.split("/")[:2])
 
 
 class Graph:

@@ -246,7 +246,7 @@ static void nobody(void)
 
 /* --- owsd ------------------------------------------------------------------------------------- */
 
-/* As a look of src/engine/intake.c: the mark, the slots, their contents. */
+/* As a look of src/engine/command/intake.c: the mark, the slots, their contents. */
 static bool is_marked(unsigned controller, uint32_t record)
 {
 	controller_marked(&controllers[controller]);

@@ -98,7 +98,7 @@ def test_owsd_web_alone_links_a_library_for_the_network(scene):
 def test_the_tables_of_the_chip_families_stand_in_read_only_memory(scene):
     """A pointer in a row would move the whole table to memory that each process has for itself."""
     tables = 0
-    for built in (BUILD / "hal/chips").glob("*.o"):
+    for built in (BUILD / "hal/chips").rglob("*.o"):
         for kind in re.findall(r" ([a-zA-Z]) properties$", output("nm", built), re.M):
             assert kind == "r", f"{built.name}: nm says {kind} of its table"
             tables += 1

@@ -85,6 +85,7 @@ FAULTS = [
     ("src/a/loose.c", f'{HEAD}#include "a.h"\n', r"src/a/loose.c:3: a.h is no path from the top"),
     ("src/c/new.c", HEAD, r"src/c/new.c:1: docs/design.md has no room src/c"),
     ("src/engine/talk.c", f'{HEAD}#include <sys/socket.h>\n', r"src/engine/talk.c:3: <sys/socket.h> waits"),
+    ("src/engine/part/talk.c", f'{HEAD}#include <sys/socket.h>\n', r"src/engine/part/talk.c:3: <sys/socket.h> waits"),
     ("src/engine/say.c", f'{HEAD}\nint s(void)\n{{\n\treturn printf("x");\n}}\n', r"src/engine/say.c:6: printf\(\.\.\.\) is input or output"),
     ("tests/system/test_lost.py", f"# {MIT}\n", r"tests/system/test_lost.py:1: no suite runs it"),
     ("tests/suites", f"# {MIT}\n{SUITES}[odd]\nrung = none\n", r"tests/suites:9: odd stands on no rung"),

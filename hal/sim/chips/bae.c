@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/sim/families.h"
 
 enum { VERSION = 0x11, TYPE, EXTENDED, READ_BLOCK, WRITE_BLOCK, ERASE_PAGE, WRITE_RUN };

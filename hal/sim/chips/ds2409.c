@@ -5,7 +5,7 @@
  * confirmation; Smart-On of a branch that is short switches it on, and the whole wire is short
  * until the short is gone.
  */
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/sim/branch.h"
 #include "hal/sim/families.h"
 

@@ -2,7 +2,7 @@
 /* DS2430A (data sheet, "256-bit 1-Wire EEPROM"): 32 bytes, and an application register. */
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/sim/families.h"
 
 enum { KEY = 0xA5, LOCK_APPLICATION = 0x5A };

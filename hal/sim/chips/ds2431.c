@@ -2,7 +2,7 @@
 /* DS2431 (data sheet 19-4675), DS2433 (19-5268) and DS28EC20 (19-5235): EEPROM. */
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/sim/chips/scratchpad.h"
 #include "hal/sim/families.h"
 

@@ -5,7 +5,7 @@
  */
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/sim/families.h"
 
 enum { TB = 0x01, NVB = 0x02, LOCK = 0x04, ADB = 0x08 }; /* status, at 62h */

@@ -5,7 +5,7 @@
  */
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/sim/families.h"
 
 enum { PROTECTION = 0x00, EEPROM_REGISTER = 0x07, SPECIAL = 0x08 };

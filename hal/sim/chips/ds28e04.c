@@ -5,7 +5,7 @@
  */
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/sim/chips/scratchpad.h"
 #include "hal/sim/families.h"
 

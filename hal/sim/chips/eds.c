@@ -13,7 +13,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/sim/chips/eds.h"
 
 /* Tag of 30 characters, and the kind; the same in all. */

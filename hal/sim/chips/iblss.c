@@ -7,7 +7,7 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/sim/families.h"
 
 enum { TEMPERATURE, HUMIDITY }; /* inputs */

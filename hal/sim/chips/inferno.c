@@ -7,7 +7,7 @@
  */
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/sim/crc.h"
 #include "hal/sim/families.h"
 

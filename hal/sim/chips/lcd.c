@@ -6,7 +6,7 @@
  */
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/sim/families.h"
 
 enum { PINS = 4, SCRATCHPAD = 17, EEPROM = 112, DISPLAY = 128, VERSION_TEXT = 16 };

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The clock of the simulated loggers. */
 #include "hal/sim/chips/logger.h"
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 
 enum { TWELVE = 0x40, PM = 0x20, CENTURY = 0x80 };
 

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/sim/chips/thermometer.h"
 #include "hal/sim/families.h"
 

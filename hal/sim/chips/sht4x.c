@@ -5,7 +5,7 @@
  */
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/sim/chips/sensor.h"
 
 enum { SERIAL = 0x89, RESET = 0x94 };

@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/sim/chips/tmp1826.h"
 #include "hal/sim/crc.h"
 #include "hal/sim/families.h"

@@ -14,8 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/base/time.h"
 #include "hal/bus/bus.h"
-#include "hal/bus/time.h"
 #include "hal/sim/bus.h"
 
 static const struct bus_ops late_bus;

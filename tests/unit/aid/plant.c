@@ -7,7 +7,7 @@
 
 #include "hal/bus/backends.h"
 #include "src/config/load.h"
-#include "src/engine/controllers.h"
+#include "src/engine/command/controllers.h"
 #include "src/engine/counters.h"
 #include "src/engine/table.h"
 #include "src/signal/value.h"

@@ -5,8 +5,8 @@
 
 #include "unity.h"
 
-#include "src/engine/adopt.h"
 #include "src/engine/counters.h"
+#include "src/engine/reload/adopt.h"
 #include "src/engine/table.h"
 #include "src/shm/shelves.h"
 #include "tests/unit/aid/scene_private.h"

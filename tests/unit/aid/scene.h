@@ -11,9 +11,9 @@
 #define TESTS_UNIT_AID_SCENE_H
 
 #include "src/config/config.h"
-#include "src/engine/controllers.h"
+#include "src/engine/command/controllers.h"
+#include "src/engine/command/last.h"
 #include "src/engine/engine.h"
-#include "src/engine/last.h"
 #include "src/shm/force.h"
 #include "src/shm/image.h"
 #include "tests/unit/aid/giving.h"

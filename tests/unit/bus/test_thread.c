@@ -2,7 +2,7 @@
 /* What a thread beside the engine's is started with. */
 #include <signal.h>
 
-#include "hal/bus/thread.h"
+#include "hal/base/thread.h"
 #include "unity.h"
 
 struct seen {

@@ -3,7 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/chips/ds2438.h"
+#include "hal/chips/batteries/ds2438.h"
 #include "unity.h"
 
 #define RECALL 0xb8

@@ -7,7 +7,7 @@
 
 #include "unity.h"
 
-#include "hal/chips/thermocouple.h"
+#include "hal/chips/thermometers/thermocouple.h"
 #include "hal/sim/chips/gauge.h"
 #include "tests/unit/aid/one_slave.h"
 

@@ -5,7 +5,7 @@
 
 #include "unity.h"
 
-#include "hal/chips/host_clock.h"
+#include "hal/chips/loggers/host_clock.h"
 #include "tests/unit/aid/native_scene.h"
 
 static time_t host_says;

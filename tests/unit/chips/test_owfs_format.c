@@ -9,7 +9,7 @@
 #include "unity.h"
 
 #include "hal/chips/format.h"
-#include "hal/chips/thermometer.h"
+#include "hal/chips/thermometers/thermometer.h"
 #include "hal/wire/crc.h"
 
 void setUp(void)

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "hal/chips/find.h"
-#include "hal/chips/thermometer.h"
+#include "hal/chips/thermometers/thermometer.h"
 #include "hal/sim/crc.h"
 #include "tests/unit/aid/host.h"
 #include "unity.h"

@@ -9,7 +9,7 @@
 
 #include "unity.h"
 
-#include "hal/bus/bell.h"
+#include "hal/base/bell.h"
 #include "src/control/private.h"
 #include "src/libows/ows.h"
 #include "tests/unit/aid/control_scene.h"

@@ -2,7 +2,7 @@
 /* How often a user may connect. */
 #include "unity.h"
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/control/often.h"
 
 static struct often often;

@@ -5,9 +5,9 @@
 #include "unity.h"
 
 #include "src/config/buses.h"
-#include "src/engine/adopt_signal.h"
-#include "src/engine/adoption.h"
-#include "src/engine/disown.h"
+#include "src/engine/reload/adopt_signal.h"
+#include "src/engine/reload/adoption.h"
+#include "src/engine/routing/disown.h"
 
 /* A byte that is valid in every member, a bool too, and that nothing has by itself. */
 #define PATTERN 1

@@ -5,7 +5,7 @@
  */
 #include "unity.h"
 
-#include "src/engine/intake.h"
+#include "src/engine/command/intake.h"
 #include "src/engine/state.h"
 #include "tests/unit/aid/force_scene.h"
 

@@ -7,7 +7,7 @@
 
 #include "unity.h"
 
-#include "src/engine/limit.h"
+#include "src/engine/limits/limit.h"
 
 #define S INT64_C(1000000000)
 

@@ -6,7 +6,7 @@
 
 #include "unity.h"
 
-#include "src/engine/limits.h"
+#include "src/engine/limits/limits.h"
 #include "src/engine/publish.h"
 #include "src/engine/state.h"
 #include "tests/unit/aid/scene.h"

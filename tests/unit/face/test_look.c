@@ -6,7 +6,7 @@
 
 #include "unity.h"
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/face/look.h"
 #include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/instance.h"

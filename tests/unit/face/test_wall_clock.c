@@ -2,7 +2,7 @@
 /* Tests of the relation of wall clock and boot time. */
 #include "unity.h"
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/face/wall_clock.h"
 #include "src/libows/ows.h"
 

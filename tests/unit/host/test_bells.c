@@ -7,7 +7,7 @@
 
 #include "unity.h"
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/host/bells.h"
 #include "src/libows/ows.h"
 

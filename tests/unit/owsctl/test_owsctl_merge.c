@@ -5,7 +5,7 @@
 
 #include "unity.h"
 
-#include "src/owsctl/merge.h"
+#include "src/owsctl/scan/merge.h"
 
 #define MOST 8
 

@@ -6,7 +6,7 @@
 
 #include "unity.h"
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/config/recorder.h"
 #include "src/recorder/rule.h"
 

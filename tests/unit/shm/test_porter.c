@@ -11,7 +11,7 @@
 
 #include "unity.h"
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/shm/porter.h"
 
 #define TRIES 20000

@@ -4,7 +4,7 @@
 
 #include "unity.h"
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "hal/sim/crc.h"
 #include "tests/unit/aid/hand.h"
 

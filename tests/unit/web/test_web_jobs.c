@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include "hal/bus/bell.h"
+#include "hal/base/bell.h"
 #include "src/web/jobs.h"
 
 static struct jobs *jobs;

@@ -2,7 +2,7 @@
 /* Tests of when changes of values go out to the streams. */
 #include "unity.h"
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/web/pace.h"
 
 static struct pace pace;

@@ -5,7 +5,7 @@
 
 #include "unity.h"
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/web/head.h"
 #include "src/web/posted.h"
 

@@ -5,7 +5,7 @@
 
 #include "unity.h"
 
-#include "hal/bus/time.h"
+#include "hal/base/time.h"
 #include "src/web/shared.h"
 
 #define NOW_NS (1000 * NS_PER_S)

@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: MIT */
+/* What a DS2438 measures (data sheet 19-5099), and the proof that a zero is one. */
+#include <errno.h>
+
+#include "hal/chips/batteries/ds2438_measure.h"
+
+#define CURRENT_NS (28 * TXN_MS) /* 36.41 measurements a second */
+
+/* It measures from -55 to 125 degrees, and may be wrong by 3 there. */
+#define LOWEST (-58)
+#define HIGHEST 128
+
+#define CONVERSION(what, code) \
+	{ \
+		.name = (what), .command = {code}, .n = 1, .ns = 10 * TXN_MS \
+	}
+static const struct conversion convert_t = CONVERSION("temperature", 0x44);
+static const struct conversion convert_vad = CONVERSION("VAD", 0xb4);
+static const struct conversion convert_vdd = CONVERSION("VDD", 0xb4);
+
+static int measure_temperature(struct txn *txn, double *value)
+{
+	uint8_t bytes[8];
+
+	if (txn->phase == 0) {
+		txn->phase++;
+		return conversion_start(txn, &convert_t, false);
+	}
+	int err = ds2438_read(txn, 0, bytes);
+	if (err)
+		return err;
+	*value = (ds2438_word(bytes + 1) >> 3) / 32.0;
+	return *value < LOWEST || *value > HIGHEST ? -ERANGE : 0;
+}
+
+/*
+ * The scratchpad's configuration is the one in force. The memory keeps what it has, which spares
+ * its EEPROM, and the recall behind the conversion puts it in force again.
+ */
+static int measure_voltage(struct txn *txn, uint8_t select, double *value)
+{
+	uint8_t bytes[8];
+	int err;
+
+	switch (txn->phase) {
+	case 0:
+		err = ds2438_select(txn, select);
+		txn->phase += err == 0;
+		return err ? err : TXN_MORE;
+	case 1:
+		txn->phase++;
+		return conversion_start(txn, select ? &convert_vdd : &convert_vad, false);
+	default:
+		err = ds2438_read_selected(txn, select, bytes);
+		if (err)
+			return err;
+		*value = (ds2438_word(bytes + 3) & 0x3ff) / 100.0;
+		return 0;
+	}
+}
+
+/* The current's measurement is switched on for this reading where it is off. */
+static int measure_current(struct txn *txn, double *value)
+{
+	uint8_t bytes[8], *before = &ds2438_visit(txn)->before;
+	int err;
+
+	switch (txn->phase) {
+	case 0:
+		err = ds2438_configure(txn, DS2438_IAD, DS2438_IAD, before);
+		if (err)
+			return err;
+		txn->phase++;
+		return *before & DS2438_IAD ? TXN_MORE : txn_wait(txn, CURRENT_NS);
+	case 1:
+		err = ds2438_read(txn, 0, bytes);
+		if (err)
+			return err;
+		*value = ds2438_word(bytes + 5) * 0.0002441;
+		txn->phase++;
+		return TXN_MORE;
+	default:
+		return *before & DS2438_IAD ? 0 : ds2438_configure(txn, DS2438_IAD, 0, NULL);
+	}
+}
+
+static int measure_one(struct txn *txn, enum ds2438_quantity what, double *value)
+{
+	switch (what) {
+	case DS2438_TEMPERATURE:
+		return measure_temperature(txn, value);
+	case DS2438_VDD:
+		return measure_voltage(txn, DS2438_AD, value);
+	case DS2438_VAD:
+		return measure_voltage(txn, 0, value);
+	case DS2438_VIS:
+		return measure_current(txn, value);
+	case DS2438_QUANTITIES:
+		break;
+	}
+	return -EINVAL;
+}
+
+/*
+ * A restart empties the registers, and their checksum is right: a zero may be what a restart left.
+ * Of the supply it always is. A zero of another quantity is measured again between a mark that a
+ * restart destroys and a look at the mark. proof: as far as that is.
+ */
+enum proof { FIRST, MARK, AGAIN, LOOK };
+
+static int measure_and_prove(struct txn *txn, enum ds2438_quantity what, double *value)
+{
+	uint8_t *proof = &ds2438_visit(txn)->proof;
+	int err;
+
+	switch ((enum proof) * proof) {
+	case MARK:
+		err = ds2438_mark(txn);
+		if (err)
+			return err;
+		*proof = AGAIN;
+		return txn_wait(txn, what == DS2438_VIS ? CURRENT_NS : 0);
+	case LOOK:
+		return ds2438_is_marked(txn);
+	default:
+		err = measure_one(txn, what, value);
+	}
+	if (err || *value != 0)
+		return err;
+	if (what == DS2438_VDD)
+		return -EIO;
+	*proof = *proof == FIRST ? MARK : LOOK;
+	txn->phase = 0;
+	return TXN_MORE;
+}
+
+/*
+ * One that was measured for another request, as far as this one allows it, is not measured again.
+ */
+int ds2438_measure(struct txn *txn, unsigned what)
+{
+	static const char quantities[DS2438_QUANTITIES];
+	struct ds2438_visit *visit = ds2438_visit(txn);
+
+	while (visit->stage < DS2438_QUANTITIES) {
+		enum ds2438_quantity one = visit->stage;
+		double *value = &visit->value[one];
+
+		if (!(what >> one & 1) || (!visit->begun_ns && txn_shared(txn, &quantities[one], 0,
+		                                                          value, sizeof(*value)))) {
+			visit->stage++;
+			continue;
+		}
+		if (!visit->begun_ns)
+			visit->begun_ns = txn_now(txn);
+		int err = measure_and_prove(txn, one, value);
+		if (err)
+			return err;
+		txn_share(txn, &quantities[one], 0, value, sizeof(*value), visit->begun_ns);
+		if (one == DS2438_TEMPERATURE)
+			ds2438_of(txn)->temperature_ns = visit->begun_ns;
+		visit->begun_ns = 0;
+		visit->proof = FIRST;
+		txn->phase = 0;
+		visit->stage++;
+		if (what >> visit->stage)
+			return TXN_MORE;
+	}
+	return 0;
+}
+
+int ds2438_read_measured(struct txn *txn)
+{
+	int err = ds2438_measure(txn, 1u << txn->property->arg);
+
+	txn->number[0] = ds2438_visit(txn)->value[txn->property->arg];
+	return err;
+}
+
+/*
+ * A zero may be what a restart left, and of when a result is that the bus has not asked for, nobody
+ * knows: then it is measured.
+ */
+int ds2438_read_latest(struct txn *txn)
+{
+	struct ds2438_visit *visit = ds2438_visit(txn);
+	uint8_t bytes[8];
+	int err;
+
+	if (visit->measuring || !ds2438_of(txn)->temperature_ns) {
+		visit->measuring = true;
+		err = ds2438_measure(txn, 1 << DS2438_TEMPERATURE);
+		txn->number[0] = visit->value[DS2438_TEMPERATURE];
+		return err;
+	}
+	err = area_read(txn, &ds2438_pages, 0, bytes, sizeof(bytes));
+	if (err)
+		return err;
+	txn->number[0] = (ds2438_word(bytes + 1) >> 3) / 32.0;
+	txn->measured_ns = ds2438_of(txn)->temperature_ns;
+	visit->measuring = txn->number[0] == 0;
+	return visit->measuring ? TXN_MORE : 0;
+}

@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What the battery gauges with 256 addresses have in common (DS2740, DS2751, DS2755, DS2760,
+ * DS2770, DS2780, DS2781): commands, areas, rows of their tables. None of their bytes has a
+ * checksum; words come high byte first.
+ */
+#ifndef HAL_CHIPS_GAUGE_H
+#define HAL_CHIPS_GAUGE_H
+
+#include "hal/chips/family.h"
+#include "hal/chips/thermometers/thermocouple.h"
+
+/* Read Data, Write Data, Recall Data, Copy Data. */
+#define GAUGE_READ .address_bytes = 1, .read = 0x69
+#define GAUGE_WRITE(row_) GAUGE_READ, .row = (row_), .write = 0x6c
+/* Read and written by way of its shadow RAM, in blocks. */
+#define GAUGE_STORED(block_) \
+	.block = (block_), GAUGE_WRITE(block_), .recall = 0xb8, .copy = 0x48, .copy_ns = 10 * TXN_MS
+
+/* A number of two bytes that goes on counting while it is written. */
+bool gauge_is_counted(struct txn *txn, const uint8_t *have, const uint8_t *want, unsigned n);
+extern const struct area gauge_memory, gauge_words, gauge_bytes, gauge_charge, gauge_eeprom;
+/* Of DS2780 and DS2781: one block of their EEPROM. */
+extern const struct area gauge_parameters;
+
+/* What stands first in the lists of the families. */
+enum {
+	MEMORY = 1, /* as it is, the shadow of the EEPROM too; read-only */
+	WORDS,      /* the same, two by two */
+	BYTES,      /* the same, one by one */
+	CHARGE,     /* the accumulated current */
+	EEPROM,     /* in blocks of 16 bytes */
+	AFTER_GAUGE_AREAS
+};
+enum {
+	WAY_LOCK = 1,
+	WAY_COUPLE,
+	WAY_COUPLE_LOW,
+	WAY_COUPLE_HIGH,
+	WAY_BESIDE_PIO,
+	AFTER_GAUGE_WAYS
+};
+
+/* arg of a lock: the EEPROM register, and from bit 8 on the address of each block. */
+int gauge_read_lock(struct txn *txn);
+int gauge_write_lock(struct txn *txn);
+/* arg of a thermocouple: its type, the temperature's address, how fine the voltage is. */
+int gauge_read_couple(struct txn *txn);
+int gauge_couple_low(struct txn *txn);
+int gauge_couple_high(struct txn *txn);
+
+/* V across the resistor of one step of a word: of 13 bits, left-aligned, and of 16. */
+#define GAUGE_COARSE (15.625e-6 / 8)
+#define GAUGE_FINE 1.5625e-6
+/* The resistor that some of them have inside, in Ohm. */
+#define GAUGE_RESISTOR .025
+
+/* clang-format off */
+#define GAUGE_AREAS \
+	[MEMORY] = &gauge_memory, [WORDS] = &gauge_words, [BYTES] = &gauge_bytes, \
+	[CHARGE] = &gauge_charge, [EEPROM] = &gauge_eeprom
+#define GAUGE_WAYS \
+	[WAY_LOCK] = {.read = gauge_read_lock, .write = gauge_write_lock}, \
+	[WAY_COUPLE] = {.read = gauge_read_couple}, \
+	[WAY_COUPLE_LOW] = {.read = gauge_couple_low}, \
+	[WAY_COUPLE_HIGH] = {.read = gauge_couple_high}, \
+	[WAY_BESIDE_PIO] = {.write = property_refuse}
+
+#define GAUGE_LOCK(n, register_, blocks) \
+	PROPERTY("lock", YESNO, STABLE, BOTH, ELEMENTS(n, NUMBERS), \
+	         .arg = (register_) | (blocks) << 8, .how = WAY_LOCK)
+#define GAUGE_WORD(text, where, unit_) \
+	PROPERTY(text, FLOAT, VOLATILE, READ, \
+	         FIELD(WORDS, .at = (where), .bytes = 2, .big_endian = true, .is_signed = true, \
+	               .unit = (unit_)))
+#define GAUGE_VOLT(unit_) \
+	PROPERTY("volt", FLOAT, VOLATILE, READ, \
+	         FIELD(WORDS, .at = 0x0c, .bytes = 2, .big_endian = true, .is_signed = true, \
+	               .shift = 5, .unit = (unit_)))
+#define GAUGE_TEMPERATURE(where, ...) \
+	PROPERTY("temperature", TEMPERATURE, VOLATILE, READ, \
+	         FIELD(WORDS, .at = (where), .bytes = 2, .big_endian = true, .is_signed = true, \
+	               .shift = 5, .unit = .125), __VA_ARGS__)
+/* The accumulated current: 6.25 uVh. */
+#define GAUGE_CHARGE(text, resistor) \
+	PROPERTY(text, FLOAT, VOLATILE, BOTH, \
+	         FIELD(CHARGE, .bytes = 2, .big_endian = true, .is_signed = true, \
+	               .unit = 6.25e-6 / (resistor)))
+#define GAUGE_BIT(text, life_, access_, area_, where, bit) \
+	PROPERTY(text, YESNO, life_, access_, \
+	         FIELD(area_, .at = (where), .shift = (bit), .bits = 1))
+#define GAUGE_BESIDE_PIO(text, life_, area_, bit) \
+	PROPERTY(text, YESNO, life_, BOTH, FIELD(area_, .shift = (bit), .bits = 1), \
+	         .how = WAY_BESIDE_PIO)
+#define GAUGE_COUPLE(text, type_, where, fine) \
+	PROPERTY_DIR(text), \
+	PROPERTY(text "/range_high", TEMPERATURE, STATIC, READ, .offline = true, \
+	         .arg = (type_), .how = WAY_COUPLE_HIGH), \
+	PROPERTY(text "/range_low", TEMPERATURE, STATIC, READ, .offline = true, \
+	         .arg = (type_), .how = WAY_COUPLE_LOW), \
+	PROPERTY(text "/temperature", TEMPERATURE, VOLATILE, READ, \
+	         .arg = (type_) | (where) << 8 | (fine) << 16, .how = WAY_COUPLE)
+#define GAUGE_COUPLES(where, fine) \
+	GAUGE_COUPLE("typeB", TYPE_B, where, fine), GAUGE_COUPLE("typeE", TYPE_E, where, fine), \
+	GAUGE_COUPLE("typeJ", TYPE_J, where, fine), GAUGE_COUPLE("typeK", TYPE_K, where, fine), \
+	GAUGE_COUPLE("typeN", TYPE_N, where, fine), GAUGE_COUPLE("typeR", TYPE_R, where, fine), \
+	GAUGE_COUPLE("typeS", TYPE_S, where, fine), GAUGE_COUPLE("typeT", TYPE_T, where, fine)
+/* clang-format on */
+
+#endif

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: MIT */
+/* The bridges from 1-Wire to I2C, and the sensors behind them as their properties. */
+#ifndef HAL_CHIPS_BRIDGE_H
+#define HAL_CHIPS_BRIDGE_H
+
+#include "hal/chips/bridges/sensor.h"
+
+/* What a whole number or a yesno of a table can be. */
+void bridge_bounds(uint8_t type, double *least, double *most);
+/* "DS28E17"; NULL: devices with this family code are no bridges. */
+const char *bridge_type(uint8_t code);
+/*
+ * One more sensor of this kind behind the bridge; its values are properties, below the prefix if
+ * that is not empty. 0, -ENOMEM, -EEXIST: there is a property of that name, -ENAMETOOLONG.
+ */
+int bridge_place(const struct sensor_table *table, struct sensor_bridge *bridge, unsigned kind,
+                 uint8_t address, const char *prefix);
+/* The table is whole: each bridge becomes a family. 0. */
+int bridges_finish(struct sensor_table *table);
+/* NULL: the table does not name that device. */
+const struct family *bridge_family(const struct sensor_table *table, const uint8_t rom[8]);
+
+#endif

@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: MIT */
+/* DS1922, DS1923, DS2422: areas, what registers mean, clock, missions and logs. */
+#include "hal/chips/loggers/ds1922.h"
+
+#include <errno.h>
+#include <string.h>
+
+#include "hal/chips/family.h"
+#include "hal/chips/loggers/logger.h"
+
+/* Address and password, then the bytes to the end of the page with their CRC16. */
+int ds1922_load(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, unsigned n)
+{
+	unsigned where = area->at + at;
+	uint8_t command[3 + LOGGER_PASSWORD] = {area->read, (uint8_t)where, (uint8_t)(where >> 8)};
+
+	memset(command + 3, 0xff, LOGGER_PASSWORD);
+	int err = txn_command(txn, command, sizeof(command));
+	return err ? err : txn_read_crc16(txn, command, 3, bytes, n);
+}
+
+const struct area ds1922_memory = {.name = "memory",
+                                   .size = DS1922_PAGES * DS1922_PAGE,
+                                   .block = DS1922_PAGE,
+                                   .read = 0x69,
+                                   .load = ds1922_load};
+const struct area ds1922_log = {.name = "log",
+                                .at = DS1922_LOG,
+                                .size = DS1922_LOG_SIZE,
+                                .block = DS1922_PAGE,
+                                .read = 0x69,
+                                .load = ds1922_load};
+
+/* Of the configuration; -1: not known. */
+double ds1922_zero_of(uint8_t config)
+{
+	switch (config) {
+	case 0x00: /* DS2422, DS1923, DS1922L */
+	case 0x20:
+	case 0x40:
+		return 41;
+	case 0x60: /* DS1922T */
+		return 1;
+	default:
+		return -1;
+	}
+}
+
+bool ds1922_has_data(uint8_t config)
+{
+	return config == 0x00 || config == 0x20;
+}
+
+/* High and low byte; one without low byte has eight bits. */
+double ds1922_celsius(uint8_t config, uint8_t high, uint8_t low)
+{
+	return high / 2.0 - ds1922_zero_of(config) + low / 512.0;
+}
+
+/* As owserver: the sensor of the DS1923, not corrected by its calibration. */
+double ds1922_humidity(uint8_t high, uint8_t low)
+{
+	double volts = (high << 4 | low >> 4) * 5.02 / 4096;
+
+	return (volts - 0.958) / 0.0307;
+}
+
+double ds1922_interval_of(const uint8_t *page)
+{
+	unsigned rate = (page[DS1922_RATE - DS1922_CLOCK] | page[DS1922_RATE + 1 - DS1922_CLOCK]
+	                                                            << 8) &
+	                DS1922_RATE_MOST;
+
+	return page[DS1922_OSCILLATOR - DS1922_CLOCK] & DS1922_FAST ? rate : 60.0 * rate;
+}
+
+struct mission {
+	struct logger_log log;
+	uint8_t settings, config, stamp[LOGGER_TIME];
+	unsigned data; /* where samples of the second quantity begin */
+	double interval;
+};
+
+/* How the samples share the log: one quantity, both alike, or one of them wide. */
+static void divide_log(struct mission *mission)
+{
+	bool wide = mission->settings & DS1922_WIDE,
+	     data_wide = mission->settings & DS1922_DATA_WIDE;
+	bool both = (mission->settings & (DS1922_LOG_TEMP | DS1922_LOG_DATA)) ==
+	            (DS1922_LOG_TEMP | DS1922_LOG_DATA);
+
+	mission->data = 0;
+	if (!both) {
+		mission->log.room = (mission->settings & DS1922_LOG_TEMP ? wide : data_wide) ? 4096
+		                                                                             : 8192;
+		return;
+	}
+	mission->log.room = wide != data_wide ? 2560 : wide ? 2048 : 4096;
+	mission->data = wide == data_wide ? 4096 : wide ? 0x1400 : 0xa00;
+}
+
+/* Two pages, one for each call; TXN_MORE until both are read: then the phase is 2. */
+static int read_mission(struct txn *txn, struct mission *mission)
+{
+	uint8_t page[DS1922_PAGE];
+	int err;
+
+	if (txn->phase == 2)
+		return 0;
+	err = area_read(txn, &ds1922_memory, txn->phase == 0 ? DS1922_CLOCK : DS1922_SAMPLES, page,
+	                DS1922_PAGE);
+	if (err)
+		return err;
+	if (txn->phase++ == 0) {
+		mission->settings = page[DS1922_MISSION - DS1922_CLOCK];
+		mission->interval = ds1922_interval_of(page);
+		mission->log.rollover = mission->settings & DS1922_RO;
+		memcpy(mission->stamp, page + (DS1922_STAMP - DS1922_CLOCK), LOGGER_TIME);
+		divide_log(mission);
+	} else {
+		mission->log.samples = logger_count(page, 3);
+		mission->config = page[DS1922_CONFIG - DS1922_SAMPLES];
+	}
+	return TXN_MORE;
+}
+
+int ds1922_read_elements(struct txn *txn)
+{
+	struct mission *mission = txn_own(txn, struct mission);
+	int err = read_mission(txn, mission);
+
+	if (!err)
+		txn->number[0] = logger_elements(&mission->log);
+	return err;
+}
+
+/* arg: of the mission's first sample, or of an element of the log. */
+int ds1922_read_date(struct txn *txn)
+{
+	struct mission *mission = txn_own(txn, struct mission);
+	int err = read_mission(txn, mission);
+
+	if (!err)
+		err = logger_date(mission->stamp, &txn->number[0]);
+	if (!err && txn->property->arg && (uint32_t)txn->element >= logger_elements(&mission->log))
+		err = -EIO;
+	if (!err && txn->property->arg)
+		txn->number[0] += mission->interval *
+		                  logger_sample(&mission->log, (uint32_t)txn->element);
+	return err;
+}
+
+/* A sample of one quantity; arg: LOG_TEMP or LOG_DATA. */
+int ds1922_read_log(struct txn *txn)
+{
+	struct mission *mission = txn_own(txn, struct mission);
+	bool data = txn->property->arg == DS1922_LOG_DATA;
+	uint8_t bytes[2] = {0};
+	int err = read_mission(txn, mission);
+
+	if (err)
+		return err;
+	unsigned size = mission->settings & (data ? DS1922_DATA_WIDE : DS1922_WIDE) ? 2 : 1;
+	uint32_t n = (uint32_t)txn->element;
+	if (!(mission->settings & txn->property->arg) || n >= logger_elements(&mission->log) ||
+	    ds1922_zero_of(mission->config) < 0)
+		return -EIO;
+	err = area_read(txn, &ds1922_log,
+	                (data ? mission->data : 0) + size * logger_place(&mission->log, n), bytes,
+	                size);
+	if (!err)
+		txn->number[0] = data ? ds1922_humidity(bytes[0], bytes[1])
+		                      : ds1922_celsius(mission->config, bytes[0], bytes[1]);
+	return err;
+}
+
+int ds1922_read_clock(struct txn *txn)
+{
+	uint8_t bcd[LOGGER_TIME];
+	int err = area_read(txn, &ds1922_memory, DS1922_CLOCK, bcd, LOGGER_TIME);
+
+	return err ? err : logger_date(bcd, &txn->number[0]);
+}
+
+int ds1922_read_interval(struct txn *txn)
+{
+	uint8_t page[DS1922_PAGE];
+	int err = area_read(txn, &ds1922_memory, DS1922_CLOCK, page, DS1922_PAGE);
+
+	if (!err)
+		txn->number[0] = ds1922_interval_of(page);
+	return err;
+}

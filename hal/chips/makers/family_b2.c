@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: MIT */
+/* Analog input mAM001: 10,000 is 10 V or 20 mA, as its switches are set. */
+#include "hal/chips/makers/cmciel.h"
+
+static const struct area *const areas[] = {CMCIEL_AREAS};
+
+static const struct property properties[] = {
+	PROPERTY("current", FLOAT, VOLATILE, READ, FIELD(READING, .bytes = 2, .unit = 2e-6)),
+	CMCIEL_READING,
+	PROPERTY("volts", FLOAT, VOLATILE, READ, FIELD(READING, .bytes = 2, .unit = 0.001)),
+};
+
+const struct family family_b2 = {
+	.code = 0xb2,
+	.proof = PROOF_PRESENCE,
+	.type = "mAM001",
+	AREAS(areas),
+	PROPERTIES(properties),
+};

@@ -1,0 +1,341 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Boards of Hobby Boards: moisture meter, hub, barometer, hygrometer, six thermometers. No manual
+ * could be had: the commands are those of OWFS's driver, the ones that write too, which it does not
+ * send to barometer, hygrometer and thermometers.
+ */
+#include <errno.h>
+
+#include "hal/chips/field.h"
+#include "hal/chips/makers/hobby_boards.h"
+
+#define VERSION_1_80 (1 << 8 | 80) /* of a moisture meter: other commands from here on */
+#define SINGLE_CHANNEL 0x02        /* of the hub's settings */
+
+static const struct area polling = HOBBY_SETTING("polling frequency", 1, 0x14, 0x94);
+static const struct area available = HOBBY_VALUE("polling frequencies", 1, 0x15);
+static const struct area location = HOBBY_SETTING("location", 21, 0x16, 0x96);
+static const struct area config = HOBBY_SETTING("config", 1, 0x61, 0xe1);
+static const struct area temperature = HOBBY_VALUE("temperature", 2, 0x40);
+
+static const struct area pressure = HOBBY_VALUE("pressure", 2, 0x22);
+static const struct area pressure_altitude = HOBBY_VALUE("pressure altitude", 2, 0x24);
+static const struct area altitude = HOBBY_SETTING("altitude", 2, 0x26, 0xa6);
+
+static const struct area corrected = HOBBY_VALUE("humidity", 2, 0x21);
+static const struct area uncorrected = HOBBY_VALUE("raw humidity", 2, 0x22);
+static const struct area humidity_offset = HOBBY_SETTING("humidity offset", 2, 0x24, 0xa4);
+
+static const struct area temperatures = HOBBY_VALUE("temperatures", 12, 0x21);
+
+static const struct area sensors = HOBBY_VALUE("sensors", 4, 0x21);
+static const struct area raw = HOBBY_VALUE("raw", 8, 0x31);
+static const struct area leaf[] = {HOBBY_SETTING("leaf", 1, 0x23, 0x22),
+                                   HOBBY_SETTING("leaf", 1, 0x22, 0xa2)};
+static const struct area leaf_max[] = {HOBBY_SETTING("leaf maximum", 2, 0x25, 0x24),
+                                       HOBBY_SETTING("leaf maximum", 2, 0x23, 0xa3)};
+static const struct area leaf_min[] = {HOBBY_SETTING("leaf minimum", 2, 0x27, 0x26),
+                                       HOBBY_SETTING("leaf minimum", 2, 0x24, 0xa4)};
+
+static const struct area hub_config = HOBBY_SETTING("hub config", 1, 0x61, 0x60);
+static const struct area shorted = HOBBY_VALUE("shorted", 1, 0x23);
+
+static int saw_branches(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
+{
+	(void)txn, (void)at, (void)n;
+	if (bytes[0] == 0xff)
+		return -EIO;
+	bytes[0] &= 0x0f;
+	return 0;
+}
+
+/* Some are switched on, the others off. */
+static int store_branches(struct txn *txn, const struct area *area, unsigned at,
+                          const uint8_t *bytes, unsigned n)
+{
+	const uint8_t on[] = {0x21, (uint8_t)(0x10 | bytes[0])};
+	const uint8_t off[] = {0x21, (uint8_t)(~bytes[0] & 0x0f)};
+	int err = txn_command(txn, on, sizeof(on));
+
+	(void)area, (void)at, (void)n;
+	return err ? err : txn_command(txn, off, sizeof(off));
+}
+
+static const struct area branches = {
+	.name = "branches",
+	.size = 1,
+	.block = 1,
+	.read = 0x22,
+	.row = 1,
+	.store = store_branches,
+	.saw = saw_branches,
+};
+
+/* Several at once take the hub out of its mode with one alone. */
+static int write_branches(struct txn *txn)
+{
+	static const uint8_t zero = 0, single = SINGLE_CHANNEL;
+	const uint8_t on = txn->bits & 0x0f, mask = 0x0f;
+	int err = hobby_identify(txn);
+
+	if (err)
+		return err;
+	if (txn->phase == 0 && (on & (on - 1))) {
+		err = area_write(txn, &hub_config, 0, &zero, &single, 1);
+		if (err)
+			return err;
+		txn->phase = 1;
+		return TXN_MORE;
+	}
+	txn->phase = 1;
+	return area_write(txn, &branches, 0, &on, &mask, 1);
+}
+
+/* 0: the board's version is known. */
+static int learn_version(struct txn *txn)
+{
+	struct hobby *board = txn->device->own;
+	uint8_t bytes[2];
+	int err = hobby_identify(txn);
+
+	if (err || board->version)
+		return err;
+	err = area_read(txn, &hobby_version, 0, bytes, 2);
+	if (err)
+		return err;
+	board->version = (uint16_t)(bytes[0] | bytes[1] << 8);
+	if (board->version == 0 || board->version == 0xffff) {
+		board->version = 0;
+		return -EBADMSG;
+	}
+	return TXN_MORE;
+}
+
+static const struct area *of_version(const struct txn *txn, const struct area areas[2])
+{
+	return &areas[((const struct hobby *)txn->device->own)->version >= VERSION_1_80];
+}
+
+/* arg: what a set bit is turned over with: of a leaf's sensor it is 1. */
+static int read_leaf(struct txn *txn)
+{
+	uint8_t byte;
+	int err = learn_version(txn);
+
+	if (!err)
+		err = area_read(txn, of_version(txn, leaf), 0, &byte, 1);
+	if (!err)
+		txn->bits = (byte ^ (unsigned)txn->property->arg) & 0x0f;
+	return err;
+}
+
+static int write_leaf(struct txn *txn)
+{
+	const uint8_t byte = (txn->bits ^ (unsigned)txn->property->arg) & 0x0f, mask = 0x0f;
+	int err = learn_version(txn);
+
+	return err ? err : area_write(txn, of_version(txn, leaf), 0, &byte, &mask, 1);
+}
+
+static const struct area *limit(const struct txn *txn)
+{
+	return of_version(txn, txn->property->arg ? leaf_max : leaf_min);
+}
+
+static int read_limit(struct txn *txn)
+{
+	uint8_t bytes[2];
+	int err = learn_version(txn);
+
+	if (!err)
+		err = area_read(txn, limit(txn), 0, bytes, 2);
+	if (!err)
+		txn->number[0] = bytes[0] | bytes[1] << 8;
+	return err;
+}
+
+static int write_limit(struct txn *txn)
+{
+	unsigned value = txn->number[0] < 0xffff ? (unsigned)txn->number[0] : 0xffff;
+	const uint8_t bytes[] = {(uint8_t)value, (uint8_t)(value >> 8)};
+	int err = learn_version(txn);
+
+	if (err)
+		return err;
+	return value == 0xffff ? -EINVAL : area_write(txn, limit(txn), 0, bytes, NULL, 2);
+}
+
+/* Nothing shows that it was done. */
+static int write_command(struct txn *txn)
+{
+	const uint8_t command = (uint8_t)txn->property->arg;
+	int err = hobby_identify(txn);
+
+	return err || txn->number[0] == 0 ? err : txn_command(txn, &command, 1);
+}
+
+/* The other boards have no such command. */
+static int read_hub_config(struct txn *txn)
+{
+	int err = hobby_identify(txn);
+
+	if (err)
+		return err;
+	return hobby_kind(txn->device) == HOBBY_HUB ? field_read(txn) : -ENOENT;
+}
+
+static int write_hub_config(struct txn *txn)
+{
+	int err = hobby_identify(txn);
+
+	if (err)
+		return err;
+	return hobby_kind(txn->device) == HOBBY_HUB ? field_write(txn) : -ENOENT;
+}
+
+enum {
+	POLLING = AFTER_HOBBY_AREAS,
+	AVAILABLE,
+	LOCATION,
+	CONFIG,
+	TEMPERATURE,
+	PRESSURE,
+	PRESSURE_ALTITUDE,
+	ALTITUDE,
+	CORRECTED,
+	UNCORRECTED,
+	HUMIDITY_OFFSET,
+	TEMPERATURES,
+	SENSORS,
+	RAW,
+	HUB_CONFIG,
+	SHORTED,
+	BRANCHES,
+};
+static const struct area *const areas[] = {
+	HOBBY_AREAS,
+	[POLLING] = &polling,
+	[AVAILABLE] = &available,
+	[LOCATION] = &location,
+	[CONFIG] = &config,
+	[TEMPERATURE] = &temperature,
+	[PRESSURE] = &pressure,
+	[PRESSURE_ALTITUDE] = &pressure_altitude,
+	[ALTITUDE] = &altitude,
+	[CORRECTED] = &corrected,
+	[UNCORRECTED] = &uncorrected,
+	[HUMIDITY_OFFSET] = &humidity_offset,
+	[TEMPERATURES] = &temperatures,
+	[SENSORS] = &sensors,
+	[RAW] = &raw,
+	[HUB_CONFIG] = &hub_config,
+	[SHORTED] = &shorted,
+	[BRANCHES] = &branches,
+};
+
+enum { WAY_BRANCH = AFTER_HOBBY_WAYS, WAY_LEAF, WAY_LIMIT, WAY_COMMAND, WAY_HUB };
+static const struct property_how how[] = {
+	HOBBY_WAYS,
+	[WAY_BRANCH] = {.read = hobby_read, .write = write_branches},
+	[WAY_LEAF] = {.read = read_leaf, .write = write_leaf},
+	[WAY_LIMIT] = {.read = read_limit, .write = write_limit},
+	[WAY_COMMAND] = {.write = write_command},
+	[WAY_HUB] = {.read = read_hub_config, .write = write_hub_config},
+};
+
+/* clang-format off */
+#define OF(board) .kinds = KIND(HOBBY_##board)
+#define FOLDER(text, board) PROPERTY(text, DIRECTORY, STATIC, NONE, OF(board))
+/* A value of two bytes. */
+#define VALUE(text, kind, board, area_, unit_) \
+	PROPERTY(text, kind, VOLATILE, READ, OF(board), \
+	         FIELD(area_, .bytes = 2, .is_signed = true, .unit = (unit_)), \
+	         .how = WAY_HOBBY_FIELD)
+#define SETTING(text, kind, life_, board, area_, unit_) \
+	PROPERTY(text, kind, life_, BOTH, OF(board), \
+	         FIELD(area_, .bytes = 2, .is_signed = true, .unit = (unit_)), \
+	         .how = WAY_HOBBY_FIELD)
+#define BYTE(text, access_, board, area_) \
+	PROPERTY(text, UNSIGNED, STABLE, access_, OF(board), FIELD(area_), .how = WAY_HOBBY_FIELD)
+#define TEXT(text, board) \
+	PROPERTY(text, ASCII, STABLE, BOTH, OF(board), .size = 21, FIELD(LOCATION), \
+	         .how = WAY_HOBBY_TEXT)
+#define COMMAND(text, board, code_) \
+	PROPERTY(text, YESNO, STABLE, WRITE, OF(board), .arg = (code_), .how = WAY_COMMAND)
+
+static const struct property properties[] = {
+	FOLDER("barometer", BAROMETER),
+	SETTING("barometer/altitude", INTEGER, VOLATILE, BAROMETER, ALTITUDE, 1),
+	BYTE("barometer/config", BOTH, BAROMETER, CONFIG),
+	TEXT("barometer/location", BAROMETER),
+	BYTE("barometer/polling_available", READ, BAROMETER, AVAILABLE),
+	BYTE("barometer/polling_frequency", BOTH, BAROMETER, POLLING),
+	VALUE("barometer/pressure", PRESSURE, BAROMETER, PRESSURE, 10),
+	VALUE("barometer/pressure_altitude", INTEGER, BAROMETER, PRESSURE_ALTITUDE, 1),
+	COMMAND("barometer/reboot", BAROMETER, 0xf1),
+	COMMAND("barometer/reset", BAROMETER, 0xf7),
+	VALUE("barometer/temperature", TEMPERATURE, BAROMETER, TEMPERATURE, 0.1),
+	FOLDER("hub", HUB),
+	PROPERTY("hub/branch", BITS, STABLE, BOTH, AGGREGATE(4, NUMBERS), OF(HUB),
+	         FIELD(BRANCHES), .holds = true, .how = WAY_BRANCH),
+	PROPERTY("hub/config", UNSIGNED, VOLATILE, BOTH, .hidden = true, FIELD(HUB_CONFIG),
+	         .how = WAY_HUB),
+	PROPERTY("hub/short", BITS, STABLE, READ, AGGREGATE(4, NUMBERS), OF(HUB), FIELD(SHORTED),
+	         .how = WAY_HOBBY_FIELD),
+	FOLDER("humidity", HUMIDITY),
+	BYTE("humidity/config", BOTH, HUMIDITY, CONFIG),
+	VALUE("humidity/humidity_corrected", FLOAT, HUMIDITY, CORRECTED, 0.01),
+	SETTING("humidity/humidity_offset", FLOAT, VOLATILE, HUMIDITY, HUMIDITY_OFFSET, 0.01),
+	VALUE("humidity/humidity_raw", FLOAT, HUMIDITY, UNCORRECTED, 0.01),
+	TEXT("humidity/location", HUMIDITY),
+	BYTE("humidity/polling_available", READ, HUMIDITY, AVAILABLE),
+	BYTE("humidity/polling_frequency", BOTH, HUMIDITY, POLLING),
+	COMMAND("humidity/reboot", HUMIDITY, 0xf1),
+	COMMAND("humidity/reset", HUMIDITY, 0xf7),
+	VALUE("humidity/temperature", TEMPERATURE, HUMIDITY, TEMPERATURE, 0.1),
+	FOLDER("moisture", MOISTURE),
+	FOLDER("moisture/calibrate", MOISTURE),
+	PROPERTY("moisture/calibrate/max", UNSIGNED, STABLE, BOTH, OF(MOISTURE), .arg = 1,
+	         .how = WAY_LIMIT),
+	PROPERTY("moisture/calibrate/min", UNSIGNED, STABLE, BOTH, OF(MOISTURE), .arg = 0,
+	         .how = WAY_LIMIT),
+	PROPERTY("moisture/calibrate/raw", UNSIGNED, VOLATILE, READ, AGGREGATE(4, NUMBERS),
+	         OF(MOISTURE), FIELD(RAW, .bytes = 2, .stride = 2), .how = WAY_HOBBY_FIELD),
+	PROPERTY("moisture/is_leaf", BITS, VOLATILE, BOTH, AGGREGATE(4, NUMBERS), OF(MOISTURE),
+	         .arg = 0x00, .how = WAY_LEAF),
+	PROPERTY("moisture/is_moisture", BITS, STABLE, BOTH, AGGREGATE(4, NUMBERS), OF(MOISTURE),
+	         .arg = 0x0f, .how = WAY_LEAF),
+	PROPERTY("moisture/sensor", INTEGER, VOLATILE, READ, AGGREGATE(4, NUMBERS), OF(MOISTURE),
+	         FIELD(SENSORS, .stride = 1), .how = WAY_HOBBY_FIELD),
+	FOLDER("multitemp", MULTITEMP),
+	BYTE("multitemp/config", READ, MULTITEMP, CONFIG),
+	TEXT("multitemp/location", MULTITEMP),
+	BYTE("multitemp/polling_available", READ, MULTITEMP, AVAILABLE),
+	BYTE("multitemp/polling_frequency", BOTH, MULTITEMP, POLLING),
+	COMMAND("multitemp/reboot", MULTITEMP, 0xf1),
+	COMMAND("multitemp/reset", MULTITEMP, 0xf7),
+	PROPERTY("multitemp/temperature", TEMPERATURE, VOLATILE, READ, AGGREGATE(6, NUMBERS),
+	         OF(MULTITEMP),
+	         FIELD(TEMPERATURES, .bytes = 2, .stride = 2, .is_signed = true, .unit = 0.1),
+	         .how = WAY_HOBBY_FIELD),
+	PROPERTY("type", ASCII, VOLATILE, READ, .size = 32, .how = WAY_HOBBY_TYPE),
+	PROPERTY("type_number", UNSIGNED, STABLE, READ, FIELD(HOBBY_TYPE), .how = WAY_HOBBY_FIELD),
+	PROPERTY("version", ASCII, VOLATILE, READ, .size = 7, .how = WAY_HOBBY_VERSION),
+	PROPERTY("version_number", UNSIGNED, STABLE, READ, .hidden = true,
+	         FIELD(HOBBY_VERSION, .bytes = 2)),
+};
+/* clang-format on */
+
+static const char *const types[] = HOBBY_TYPES("HobbyBoards_EF");
+
+const struct family family_ef = {
+	.code = 0xef,
+	.proof = PROOF_PRESENCE,
+	.type = "HobbyBoards_EF",
+	.kind = hobby_kind,
+	.tell = hobby_identify,
+	.types = types,
+	AREAS(areas),
+	HOW(how),
+	PROPERTIES(properties),
+};

@@ -1,0 +1,332 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * LCD controller by Louis Swart: four pins with counters, EEPROM, and a display (lcd_swart.c). Its
+ * data sheet could not be had: the commands are those of OWFS's driver. All that is read goes by
+ * way of a scratchpad without a checksum.
+ */
+#include <errno.h>
+#include <string.h>
+
+#include "hal/chips/makers/lcd_swart.h"
+
+#define PINS 4
+#define ROUNDS 2
+#define BLANK_ROUNDS 5 /* where nothing but ones is read */
+#define SOON_NS (1 * TXN_MS)
+#define EEPROM_NS (17 * 4 * TXN_MS)
+#define LOOKS 3
+#define TRIES 2 /* of the bus, after a device error */
+
+enum {
+	WRITE_INSTRUCTION = 0x10,
+	READ_REGISTER,
+	WRITE_DATA,
+	READ_DATA,
+	WRITE_PINS = 0x21,
+	READ_PINS,
+	READ_COUNTERS,
+	READ_EEPROM = 0x37,
+	WRITE_EEPROM = 0x39,
+	READ_VERSION = 0x41,
+	READ_PAD = 0xbe,
+};
+
+/* What a command has put into the scratchpad, from call to call. */
+struct pad {
+	uint8_t step, round, looks;
+	uint8_t seen[LCD_PAD];
+};
+
+struct lcd {
+	double sum[PINS]; /* of all counts that were read */
+	bool pending;     /* counts may be in the scratchpad that were not read yet */
+	uint8_t doubted;  /* so many tries to read a byte are refused */
+};
+
+static int family_ff_send(struct txn *txn, uint8_t code, const uint8_t *bytes, unsigned n)
+{
+	uint8_t command[1 + 1 + LCD_PAD] = {code};
+
+	if (n)
+		memcpy(command + 1, bytes, n);
+	return txn_command(txn, command, 1 + n);
+}
+
+static int read_pad(struct txn *txn, uint8_t bytes[LCD_PAD])
+{
+	int err = family_ff_send(txn, READ_PAD, NULL, 0);
+
+	return err ? err : txn_read(txn, bytes, LCD_PAD);
+}
+
+/*
+ * What the command puts into the scratchpad, twice, ahead of which other bytes stood there: so a
+ * lost command shows. setup: what it takes from the scratchpad.
+ */
+static int fetch(struct txn *txn, uint8_t code, const uint8_t *setup, unsigned setup_n,
+                 uint8_t *bytes, unsigned n)
+{
+	struct pad *pad = txn_own(txn, struct pad);
+	uint8_t fill[LCD_PAD], in[LCD_PAD];
+	int err;
+
+	switch (pad->step++) {
+	case 0:
+		memset(fill, pad->round % 2 ? 0x5a : 0xa5, sizeof(fill));
+		if (setup_n)
+			memcpy(fill, setup, setup_n);
+		err = lcd_swart_fill(txn, fill, sizeof(fill));
+		return err ? err : TXN_MORE;
+	case 1:
+		err = family_ff_send(txn, code, NULL, 0);
+		return err ? err : txn_wait(txn, SOON_NS);
+	}
+	err = read_pad(txn, in);
+	if (err)
+		return err;
+	if (pad->round && memcmp(in, pad->seen, n) != 0)
+		return -EBADMSG;
+	memcpy(pad->seen, in, sizeof(in));
+	pad->step = 0;
+	if (++pad->round < (txn->silent ? BLANK_ROUNDS : ROUNDS))
+		return TXN_MORE;
+	memset(pad, 0, sizeof(*pad));
+	memcpy(bytes, in, n);
+	return 0;
+}
+
+static int load_eeprom(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,
+                       unsigned n)
+{
+	const uint8_t setup[] = {(uint8_t)at, LCD_PAD};
+
+	(void)area;
+	return fetch(txn, READ_EEPROM, setup, sizeof(setup), bytes, n);
+}
+
+static int store_eeprom(struct txn *txn, const struct area *area, unsigned at, const uint8_t *bytes,
+                        unsigned n)
+{
+	uint8_t pad[1 + LCD_PAD] = {(uint8_t)at};
+
+	(void)area;
+	memcpy(pad + 1, bytes, n);
+	return lcd_swart_fill(txn, pad, 1 + n);
+}
+
+static const struct area eeprom = {
+	.name = "EEPROM",
+	.size = 112,
+	.block = LCD_PAD,
+	.row = LCD_PAD,
+	.copy = WRITE_EEPROM,
+	.copy_ns = EEPROM_NS,
+	.load = load_eeprom,
+	.store = store_eeprom,
+};
+
+static int read_version(struct txn *txn)
+{
+	uint8_t bytes[LCD_PAD];
+	int err = fetch(txn, READ_VERSION, NULL, 0, bytes, LCD_PAD);
+
+	if (err)
+		return err;
+	if (txn->room < LCD_PAD)
+		return -EMSGSIZE;
+	memcpy(txn->data, bytes, LCD_PAD);
+	txn->len = LCD_PAD;
+	return 0;
+}
+
+/*
+ * arg: the command. A disturbed one may have changed the display: no second try hides that. A
+ * display that counts on with each read gives no two equal ones.
+ */
+static int read_byte(struct txn *txn)
+{
+	struct lcd *lcd = txn->device->own;
+	uint8_t byte = 0;
+	int err;
+
+	if (lcd->doubted) {
+		lcd->doubted--;
+		return -EIO;
+	}
+	err = fetch(txn, (uint8_t)txn->property->arg, NULL, 0, &byte, 1);
+	if (!err)
+		txn->number[0] = byte;
+	if (err != -EBADMSG)
+		return err;
+	lcd->doubted = TRIES - 1;
+	return -EIO;
+}
+
+/* The command beside that which reads it. Nothing shows that it was taken. */
+static int write_byte(struct txn *txn)
+{
+	const uint8_t byte = (uint8_t)txn->number[0];
+
+	if (txn->number[0] > 0xff)
+		return -EINVAL;
+	return family_ff_send(txn, (uint8_t)(txn->property->arg - 1), &byte, 1);
+}
+
+/* 1: the pin is low. */
+static int read_pins(struct txn *txn)
+{
+	uint8_t byte = 0;
+	int err = fetch(txn, READ_PINS, NULL, 0, &byte, 1);
+
+	if (!err)
+		txn->bits = ~byte & 0x0f;
+	return err;
+}
+
+/* What a pin was told, where that is known; it may be low from outside. */
+static int merge_pins(struct txn *txn)
+{
+	if (!txn->device->shadow_known)
+		return read_pins(txn);
+	txn->bits = txn->device->shadow;
+	return 0;
+}
+
+/* Twice, for a pin that is low from outside does not show that it was released. */
+static int write_pins(struct txn *txn)
+{
+	const uint8_t bits = txn->bits & 0x0f, byte = (uint8_t)(0x80 | (~bits & 0x0f));
+	int err;
+
+	if (txn->phase < 2) {
+		txn->phase++;
+		txn->device->shadow_known = false;
+		err = family_ff_send(txn, WRITE_PINS, &byte, 1);
+		return err ? err : TXN_MORE;
+	}
+	err = read_pins(txn);
+	if (err)
+		return err;
+	if (bits & ~txn->bits)
+		return -EIO;
+	txn->device->shadow = bits;
+	txn->device->shadow_known = true;
+	return 0;
+}
+
+/* The chip counts from zero on after each read: what was read goes to the sum, and once only. */
+static int add_counts(struct txn *txn, const uint8_t bytes[LCD_PAD])
+{
+	struct lcd *lcd = txn->device->own;
+
+	for (unsigned i = 0; i < PINS; i++) {
+		txn->number[i] = bytes[2 * i] | bytes[2 * i + 1] << 8;
+		if (txn->number[i] == 0xffff)
+			return -EBADMSG; /* the command was not taken */
+	}
+	for (unsigned i = 0; i < PINS; i++)
+		lcd->sum[i] += txn->number[i];
+	return 0;
+}
+
+/* The scratchpad is all ones before; what an attempt that failed left in it is read first. */
+static int read_counts(struct txn *txn)
+{
+	struct pad *pad = txn_own(txn, struct pad);
+	struct lcd *lcd = txn->device->own;
+	uint8_t ones[LCD_PAD], in[LCD_PAD];
+	int err;
+
+	if (pad->step == 0 && lcd->pending)
+		pad->step = 2;
+	switch (pad->step) {
+	case 0:
+		memset(ones, 0xff, sizeof(ones));
+		pad->step = 1;
+		err = lcd_swart_fill(txn, ones, sizeof(ones));
+		return err ? err : TXN_MORE;
+	case 1:
+		pad->step = 2;
+		lcd->pending = true;
+		err = family_ff_send(txn, READ_COUNTERS, NULL, 0);
+		return err ? err : txn_wait(txn, SOON_NS);
+	}
+	err = read_pad(txn, in);
+	if (err)
+		return err;
+	if (pad->looks && memcmp(in, pad->seen, sizeof(in)) != 0)
+		return -EBADMSG;
+	memcpy(pad->seen, in, sizeof(in));
+	if (++pad->looks < LOOKS)
+		return TXN_MORE;
+	lcd->pending = false;
+	return add_counts(txn, in);
+}
+
+static int read_sum(struct txn *txn)
+{
+	const struct lcd *lcd = txn->device->own;
+	int err = read_counts(txn);
+
+	for (unsigned i = 0; i < PINS && !err; i++)
+		txn->number[i] = lcd->sum[i];
+	return err;
+}
+
+static int write_sum(struct txn *txn)
+{
+	struct lcd *lcd = txn->device->own;
+
+	memcpy(lcd->sum, txn->number, sizeof(lcd->sum));
+	return 0;
+}
+
+/* The sums last. */
+static void family_ff_forget(struct device *device)
+{
+	((struct lcd *)device->own)->pending = false;
+}
+
+enum { EEPROM = 1 };
+static const struct area *const areas[] = {[EEPROM] = &eeprom};
+
+enum { WAY_VERSION = AFTER_LCD_SWART_WAYS, WAY_BYTE, WAY_PINS, WAY_COUNTS, WAY_SUM };
+static const struct property_how how[] = {
+	LCD_SWART_WAYS,
+	[WAY_VERSION] = {.read = read_version},
+	[WAY_BYTE] = {.read = read_byte, .write = write_byte},
+	[WAY_PINS] = {.read = read_pins, .write = write_pins, .merge = merge_pins},
+	[WAY_COUNTS] = {.read = read_counts},
+	[WAY_SUM] = {.read = read_sum, .write = write_sum},
+};
+
+/* clang-format off */
+static const struct property properties[] = {
+	LCD_SWART_SWITCH("LCDon", 0x03, 0x05),
+	LCD_SWART_SWITCH("backlight", 0x08, 0x07),
+	PROPERTY("counters", UNSIGNED, VOLATILE, READ, AGGREGATE(PINS, NUMBERS), .how = WAY_COUNTS),
+	PROPERTY("cumulative", UNSIGNED, VOLATILE, BOTH, AGGREGATE(PINS, NUMBERS), .how = WAY_SUM),
+	PROPERTY("data", UNSIGNED, VOLATILE, BOTH, .arg = READ_DATA, .how = WAY_BYTE),
+	PROPERTY("gpio", BITS, VOLATILE, BOTH, AGGREGATE(PINS, NUMBERS), .how = WAY_PINS),
+	LCD_SWART_LINE("line16", 4, 16),
+	LCD_SWART_LINE("line20", 4, 20),
+	LCD_SWART_LINE("line40", 2, 40),
+	PROPERTY("memory", BINARY, STABLE, BOTH, .size = 112, FIELD(EEPROM)),
+	PROPERTY("register", UNSIGNED, VOLATILE, BOTH, .arg = READ_REGISTER, .how = WAY_BYTE),
+	LCD_SWART_SCREEN("screen16", 16),
+	LCD_SWART_SCREEN("screen20", 20),
+	LCD_SWART_SCREEN("screen40", 40),
+	PROPERTY("version", ASCII, STABLE, READ, .size = LCD_PAD, .how = WAY_VERSION),
+};
+/* clang-format on */
+
+const struct family family_ff = {
+	.code = 0xff,
+	.proof = PROOF_PRESENCE,
+	.type = "LCD",
+	.flags = FLAG_ALARM,
+	.forget = family_ff_forget,
+	AREAS(areas),
+	HOW(how),
+	PROPERTIES(properties),
+};

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: MIT */
+/* DS2413: two switches. */
+#include "hal/chips/family.h"
+#include "hal/chips/switches/pio.h"
+
+static const struct area latches = {PIO_LATCHES(0x5a)};
+
+enum { STATUS = 1, LATCHES };
+static const struct area *const areas[] = {[STATUS] = &pio_status, [LATCHES] = &latches};
+
+enum { WAY_PIO = 1, WAY_STATE };
+static const struct property_how how[] = {
+	[WAY_PIO] = {PIO_SET(LATCHES)},
+	[WAY_STATE] = {SET(LATCHES)},
+};
+
+static const struct property properties[] = {
+	PIO_BITS("PIO", BOTH, PIO_READ(STATUS, PIO_OUTPUTS, true), .holds = true, .how = WAY_PIO),
+	PROPERTY("piostate", UNSIGNED, VOLATILE, BOTH, .hidden = true, .digits = 3,
+                 PIO_READ(STATUS, PIO_STATE, false), .how = WAY_STATE),
+	PIO_BITS("sensed", READ, PIO_READ(STATUS, PIO_PINS, false)),
+};
+
+const struct family family_3a = {
+	.code = 0x3a,
+	.proof = PROOF_CHECKSUM,
+	.type = "DS2413",
+	.flags = FLAG_RESUME | FLAG_OVERDRIVE,
+	SCAN({"sensed.BYTE", "inputs"}, {"PIO.BYTE", "outputs"}),
+	AREAS(areas),
+	HOW(how),
+	PROPERTIES(properties),
+};

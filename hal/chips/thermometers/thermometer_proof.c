@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: MIT */
+/* When the result that a thermometer holds was taken, and what proves that it is a new one. */
+#include <errno.h>
+#include <string.h>
+
+#include "hal/chips/family.h"
+#include "hal/chips/thermometers/clone_id.h"
+#include "hal/chips/thermometers/thermometer_proof.h"
+#include "hal/chips/thermometers/thermometer_state.h"
+
+#define LONGEST_NS (750 * TXN_MS)
+#define FULL_BITS 12
+
+/*
+ * As the data sheet says, but for clones of the DS18B20 (family_28.c): family D2 takes 523 ms at
+ * each resolution, H 101 ms for 9 bits.
+ */
+int64_t thermometer_convert_ns(const struct device *device)
+{
+	const struct thermometer *chip = device->own;
+
+	if (device->family->fixed || chip->resolution < 9 || chip->slow)
+		return 750 * TXN_MS;
+	if (chip->resolution == 9 && clone_has_id(device->rom))
+		return 110 * TXN_MS;
+	return 750 * TXN_MS >> (12 - chip->resolution);
+}
+
+/* What it may have begun before goes on, if it ignores this; it ends when it is not busy now. */
+static void thermometer_proof_send(struct thermometer *chip, int64_t now, int64_t longest)
+{
+	if (now >= chip->busy_ns)
+		chip->least_ns = now + longest;
+	else if (now >= chip->least_ns)
+		chip->least_ns = now;
+	if (chip->busy_ns < now + longest)
+		chip->busy_ns = now + longest;
+}
+
+void thermometer_told(struct device *device, int64_t now, int64_t longest)
+{
+	thermometer_proof_send(device->own, now, longest);
+	thermometer_of(device)->tried = true;
+}
+
+/* When its resolution was not known at the start, the reading has told it. */
+static int64_t ended_ns(const struct device *device)
+{
+	const struct thermometer *chip = device->own;
+	int64_t takes = thermometer_convert_ns(device);
+	int64_t end = chip->converted_ns -
+	              (chip->longest_ns > takes ? chip->longest_ns - takes : 0);
+
+	return chip->least_ns < end ? chip->least_ns : end;
+}
+
+/* One that has never shown that it converts does not show it to all either. */
+void thermometer_converts(struct device *device, int64_t now, int64_t longest, bool unseen)
+{
+	struct thermometer *chip = device->own;
+
+	chip->proves = chip->converted_ns && chip->raw_ns >= chip->converted_ns && !chip->tried;
+	if (chip->converted_ns)
+		chip->earlier_ns = ended_ns(device);
+	thermometer_proof_send(chip, now, longest);
+	chip->converted_ns = now + longest;
+	chip->longest_ns = longest;
+	chip->early_ns = 0;
+	chip->tried = false;
+	chip->unseen = unseen || chip->unheard >= THERMOMETER_SILENT;
+}
+
+void thermometer_doubt(struct device *device, int64_t now)
+{
+	struct thermometer *chip = device->own;
+
+	if (chip->busy_ns && chip->busy_ns < now + LONGEST_NS)
+		chip->busy_ns = now + LONGEST_NS;
+}
+
+int thermometer_rest(struct txn *txn)
+{
+	int64_t busy = thermometer_of(txn->device)->busy_ns, now = txn_now(txn);
+
+	return busy > now ? txn_wait(txn, busy - now) : 0;
+}
+
+/* The bits below the resolution, which a result at it has not. */
+static uint8_t below(unsigned resolution)
+{
+	return (uint8_t)((1 << (FULL_BITS - resolution)) - 1);
+}
+
+static bool is_adjustable(const struct device *device)
+{
+	const struct thermometer *chip = thermometer_of(device);
+
+	return !device->family->fixed && !chip->ignores && !chip->only_12 && chip->resolution;
+}
+
+bool thermometer_marks(const struct device *device)
+{
+	const struct thermometer *chip = thermometer_of(device);
+
+	return is_adjustable(device) && chip->raw_ns &&
+	       (chip->latched[0] & below(THERMOMETER_MARK) & ~below(chip->resolution));
+}
+
+/*
+ * Nothing shows that it converted, and it holds what was read last. Did it convert at fewer bits
+ * than that has, it would hold something else; at more bits it may hold what is too coarse, but for
+ * the second time at the most.
+ */
+static void compare_bits(struct txn *txn)
+{
+	struct thermometer *chip = thermometer_of(txn->device);
+	uint8_t was = chip->latched_bits;
+
+	chip->coarse = false;
+	if (!is_adjustable(txn->device))
+		return;
+	if (txn->unproven && was > chip->resolution)
+		txn->unheard = chip->latched[0] & below(chip->resolution) & ~below(was);
+	chip->coarse = txn->unproven && was && was < chip->resolution;
+	if (!txn->unheard)
+		chip->latched_bits = chip->resolution;
+}
+
+/*
+ * When the chip latched what it holds. While the strong pull-up is on, no chip can show that it
+ * converts. If it holds something else than when it was read last, and converted once since, it
+ * did. If not, this is what was proven to be its result before. Where nothing can be made to differ
+ * (thermometer_marks()), it is taken for the result of the conversion before the last.
+ */
+static int64_t latched_ns(struct txn *txn, const uint8_t scratchpad[9], int64_t now)
+{
+	struct device *device = txn->device;
+	const uint8_t holds[3] = {scratchpad[SP_LSB], scratchpad[SP_MSB], scratchpad[SP_REMAIN]};
+	bool changed = thermometer_of(device)->raw_ns &&
+	               thermometer_of(device)->raw_ns >= thermometer_of(device)->earlier_ns &&
+	               memcmp(thermometer_of(device)->latched, holds, sizeof(holds)) != 0;
+
+	memcpy(thermometer_of(device)->latched, holds, sizeof(holds));
+	txn->unproven = thermometer_of(device)->unseen && !changed;
+	compare_bits(txn);
+	int64_t when = ended_ns(device);
+	if (txn->unproven)
+		when = thermometer_marks(device) ? 0 : thermometer_of(device)->earlier_ns;
+	/* It never becomes older than it was. */
+	if (when > thermometer_of(device)->latched_ns && when < now)
+		thermometer_of(device)->latched_ns = when;
+	return thermometer_of(device)->latched_ns;
+}
+
+/*
+ * The conversion seemed to end before its longest time. It did if the chip holds another
+ * temperature than when it was read last, and that was the result of the conversion before. Byte 6
+ * is no proof in a chip that lets it be written.
+ */
+static bool is_proven(const struct device *device, const uint8_t scratchpad[9])
+{
+	const struct thermometer *chip = thermometer_of(device);
+	const uint8_t *was = chip->latched;
+
+	return chip->proves && (was[0] != scratchpad[SP_LSB] || was[1] != scratchpad[SP_MSB] ||
+	                        (device->family->fixed && was[2] != scratchpad[SP_REMAIN]));
+}
+
+int thermometer_ended(struct txn *txn, const uint8_t scratchpad[9], int64_t now)
+{
+	struct thermometer *chip = thermometer_of(txn->device);
+
+	if (chip->early_ns && chip->converted_ns > now) {
+		/* Whoever reads it meanwhile needs the proof, too. */
+		if (!is_proven(txn->device, scratchpad))
+			return txn_wait(txn, chip->converted_ns - now);
+		chip->converted_ns = chip->busy_ns = chip->least_ns = chip->early_ns;
+		chip->longest_ns = 0;
+	}
+	chip->early_ns = 0;
+	return 0;
+}
+
+int thermometer_took(struct txn *txn, const uint8_t scratchpad[9], int64_t now)
+{
+	txn->measured_ns = latched_ns(txn, scratchpad, now);
+	thermometer_of(txn->device)->raw_ns = now;
+	return txn->measured_ns > 0 || txn->property->convert ? 0 : -EIO;
+}

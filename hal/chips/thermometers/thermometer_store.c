@@ -1,0 +1,293 @@
+/* SPDX-License-Identifier: MIT */
+/* A thermometer's settings on their way to its EEPROM. */
+#include <errno.h>
+#include <string.h>
+
+#include "hal/chips/thermometers/thermometer.h"
+#include "hal/chips/thermometers/thermometer_proof.h"
+#include "hal/chips/thermometers/thermometer_store.h"
+
+#define COPY_SCRATCHPAD 0x48
+#define RECALL 0xb8
+#define COPY_NS (10 * TXN_MS)
+#define RECALLS_FIRST 2 /* that change nothing, before it is taken for the EEPROM's */
+#define PROBES 3
+
+/* What a visit keeps from call to call. */
+struct visit {
+	uint8_t scratchpad[9]; /* as it is to be */
+	uint8_t was[3];        /* limits and configuration as they stood there at first */
+	uint8_t kept[3];       /* ... and as the EEPROM has them */
+	uint8_t at, value;     /* which byte is changed, and to what */
+	uint8_t looks;         /* recalls in a row that changed nothing */
+	bool proven;           /* `kept` is the EEPROM's */
+};
+static struct visit *visit_of(struct txn *txn)
+{
+	return txn_own(txn, struct visit);
+}
+
+enum {
+	LOOK,
+	RECALL_FIRST,
+	WRITE,
+	VERIFY,
+	PROBE,
+	COPY,
+	RESTORE,
+	RESTORED,
+	RECALLS,
+	CHECK = RECALLS + 3
+};
+
+/* While the chip recalls its slots are zeros, as the data sheet says; it takes microseconds. */
+#define RECALL_BYTES 4
+
+static unsigned settings_of(const struct txn *txn)
+{
+	return txn->device->family->fixed ? 2 : 3;
+}
+
+static bool is_set(struct txn *txn, const uint8_t scratchpad[9])
+{
+	return memcmp(scratchpad + SP_HIGH, visit_of(txn)->scratchpad + SP_HIGH,
+	              settings_of(txn)) == 0;
+}
+
+/* Recall E2, its end, and what is there then. */
+static int recall_settings(struct txn *txn, uint8_t scratchpad[9])
+{
+	static const uint8_t recall = RECALL;
+	uint8_t slots = 0;
+	int err = txn_command(txn, &recall, 1);
+
+	thermometer_of(txn->device)->resolution = 0;
+	for (unsigned i = 0; !err && slots != 0xff && i < RECALL_BYTES; i++)
+		err = txn_read_slots(txn, &slots, 1);
+	if (!err && slots != 0xff)
+		err = -EBADMSG;
+	/* Ones are also what a chip gives that did not hear it. */
+	txn->silent = false;
+	return err ? err : thermometer_settings(txn, scratchpad);
+}
+
+static int copy_settings(struct txn *txn)
+{
+	static const struct area eeprom = {.name = "eeprom", .size = 3};
+	static const uint8_t copy = COPY_SCRATCHPAD;
+
+	/* A driver's word for it is all there is. */
+	if (txn_driven(txn)) {
+		txn->phase = CHECK;
+		int err = txn_driver_write(txn, &eeprom, 0, visit_of(txn)->scratchpad + SP_HIGH, 3);
+
+		return err ? err : TXN_MORE;
+	}
+	/* Without a strong pull-up it matters who feeds the chip. */
+	if (txn->link->passive && txn->device->power == POWER_UNKNOWN) {
+		int err = thermometer_ask_power(txn);
+
+		return err < 0 ? err : TXN_MORE;
+	}
+	txn->phase = RECALLS;
+	return txn_command_strong(txn, &copy, 1, COPY_NS);
+}
+
+/* The EEPROM has what is wanted. */
+static int stored(struct txn *txn)
+{
+	struct thermometer *chip = thermometer_of(txn->device);
+
+	txn_changed(txn);
+	chip->stored = chip->resolution;
+	chip->recalled = true;
+	return 0;
+}
+
+/* What the EEPROM has, but for the field; after a write that failed what it had before that. */
+static int want(struct txn *txn, const uint8_t scratchpad[9])
+{
+	struct visit *visit = visit_of(txn);
+
+	memcpy(visit->scratchpad, scratchpad, sizeof(visit->scratchpad));
+	bool failed = txn_base(txn, &thermometer_area, visit->scratchpad + SP_HIGH, 3);
+	memcpy(visit->kept, visit->scratchpad + SP_HIGH, 3);
+	visit->proven |= failed;
+	uint8_t *byte = visit->scratchpad + visit->at;
+	uint8_t value = visit->at == SP_CONFIG ? thermometer_config(*byte, visit->value)
+	                                       : visit->value;
+	if (!failed && *byte == value)
+		return visit->proven ? stored(txn) : 0;
+	*byte = value;
+	txn->phase = WRITE;
+	return TXN_MORE;
+}
+
+static int thermometer_store_look(struct txn *txn)
+{
+	struct visit *visit = visit_of(txn);
+	int err = thermometer_settings(txn, visit->scratchpad);
+
+	if (err)
+		return err;
+	memcpy(visit->was, visit->scratchpad + SP_HIGH, 3);
+	visit->looks = 0;
+	visit->proven = false;
+	txn->phase = RECALL_FIRST;
+	if (!txn_driven(txn))
+		return TXN_MORE;
+	if (!txn->device->family->fixed)
+		visit->scratchpad[SP_CONFIG] = thermometer_config(
+			visit->scratchpad[SP_CONFIG], thermometer_of(txn->device)->stored);
+	visit->proven = true;
+	return want(txn, visit->scratchpad);
+}
+
+static int recall_first(struct txn *txn)
+{
+	struct visit *visit = visit_of(txn);
+	uint8_t scratchpad[9];
+	int err = thermometer_rest(txn);
+
+	if (!err)
+		err = recall_settings(txn, scratchpad);
+	if (err)
+		return err;
+	visit->proven = memcmp(visit->was, scratchpad + SP_HIGH, settings_of(txn)) != 0;
+	if (!visit->proven && ++visit->looks < RECALLS_FIRST)
+		return TXN_MORE;
+	visit->looks = 0;
+	return want(txn, scratchpad);
+}
+
+static int thermometer_store_write(struct txn *txn)
+{
+	int err = thermometer_rest(txn);
+
+	if (!err)
+		err = thermometer_write_settings(txn, visit_of(txn)->scratchpad);
+	if (err)
+		return err;
+	txn->phase = VERIFY;
+	return TXN_MORE;
+}
+
+static int verify(struct txn *txn)
+{
+	struct visit *visit = visit_of(txn);
+	uint8_t scratchpad[9];
+
+	thermometer_of(txn->device)->resolution = 0;
+	int err = thermometer_settings(txn, scratchpad);
+	if (err)
+		return err;
+	if (!is_set(txn, scratchpad))
+		return scratchpad[SP_CONFIG] != visit->scratchpad[SP_CONFIG] ? -EINVAL : -EBADMSG;
+	if (visit->proven)
+		txn_keep(txn, &thermometer_area, visit->kept, 3);
+	txn->phase = visit->proven ? COPY : PROBE;
+	return TXN_MORE;
+}
+
+static int probe(struct txn *txn)
+{
+	struct visit *visit = visit_of(txn);
+	uint8_t scratchpad[9];
+	int err = recall_settings(txn, scratchpad);
+
+	if (err)
+		return err;
+	visit->proven = !is_set(txn, scratchpad);
+	if (visit->proven)
+		return want(txn, scratchpad);
+	if (++visit->looks >= PROBES) {
+		memcpy(visit->scratchpad + SP_HIGH, visit->was, 3);
+		txn->phase = RESTORE;
+	}
+	return TXN_MORE;
+}
+
+/* What is in force again is what the chip had. */
+static int restore(struct txn *txn)
+{
+	uint8_t scratchpad[9];
+	int err;
+
+	if (txn->phase == RESTORE) {
+		err = thermometer_write_settings(txn, visit_of(txn)->scratchpad);
+		txn->phase = RESTORED;
+		return err ? err : TXN_MORE;
+	}
+	thermometer_of(txn->device)->resolution = 0;
+	err = thermometer_settings(txn, scratchpad);
+	if (!err)
+		err = is_set(txn, scratchpad) ? -EIO : -EBADMSG;
+	return err;
+}
+
+static int thermometer_store_check(struct txn *txn)
+{
+	uint8_t scratchpad[9];
+	int err;
+
+	if (txn->phase < CHECK) {
+		err = recall_settings(txn, scratchpad);
+	} else {
+		thermometer_of(txn->device)->resolution = 0;
+		err = thermometer_settings(txn, scratchpad);
+	}
+	if (err)
+		return err;
+	if (!is_set(txn, scratchpad))
+		return -EIO;
+	if (++txn->phase < CHECK)
+		return TXN_MORE;
+	return stored(txn);
+}
+
+static int store(struct txn *txn)
+{
+	switch (txn->phase) {
+	case LOOK:
+		return thermometer_store_look(txn);
+	case RECALL_FIRST:
+		return recall_first(txn);
+	case WRITE:
+		return thermometer_store_write(txn);
+	case VERIFY:
+		return verify(txn);
+	case PROBE:
+		return probe(txn);
+	case COPY:
+		return copy_settings(txn);
+	case RESTORE:
+	case RESTORED:
+		return restore(txn);
+	default:
+		return thermometer_store_check(txn);
+	}
+}
+
+int thermometer_write_limit(struct txn *txn)
+{
+	double value = txn->number[0];
+
+	if (txn->phase)
+		return store(txn);
+	if (!(value > -128.5 && value < 127.5))
+		return -EINVAL;
+	visit_of(txn)->at = (uint8_t)txn->property->field.at;
+	visit_of(txn)->value = (uint8_t)(int)(value < 0 ? value - 0.5 : value + 0.5);
+	return store(txn);
+}
+
+int thermometer_write_tempres(struct txn *txn)
+{
+	if (txn->phase)
+		return store(txn);
+	if (!(txn->number[0] >= 9 && txn->number[0] <= 12))
+		return -EINVAL;
+	visit_of(txn)->at = SP_CONFIG;
+	visit_of(txn)->value = (uint8_t)txn->number[0];
+	return store(txn);
+}

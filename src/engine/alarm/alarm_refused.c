@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Requests of the alarm machine that fail: the signal, the log and the journal name the key and the
+ * property, and the item waits as a signal that cannot be read does.
+ */
+#include <errno.h>
+#include <stdio.h>
+
+#include "src/engine/alarm/alarm_effect.h"
+#include "src/engine/alarm/alarm_refused.h"
+#include "src/engine/publish.h"
+#include "src/engine/retry.h"
+#include "src/engine/schedule.h"
+#include "src/shm/entries.h"
+#include "src/signal/error.h"
+#include "src/signal/unarmed.h"
+#include "src/text/log.h"
+
+uint8_t alarm_shown(const struct signal *s)
+{
+	if (!(s->attrs.flags & OWS_ATTR_ALARM_UNARMED))
+		return 0;
+	return (uint8_t)(1 + ((s->attrs.flags & OWS_ATTR_ALARM_WHY) >> OWS_ATTR_ALARM_WHY_SHIFT));
+}
+
+bool alarm_is_arming(uint8_t unarmed)
+{
+	return unarmed == OWS_UNARMED_SET || unarmed == OWS_UNARMED_POR;
+}
+
+static void alarm_refused_enter(struct engine *e, const struct signal *s, uint8_t unarmed, int err)
+{
+	struct ows_journal_entry entry = {
+		.record = s->record,
+		.occurred_ns = e->time.now_ns,
+		.kind = OWS_ALARM_DEVICE,
+		.event = OWS_ALARM_FAILED,
+		.quality = s->sample.quality,
+	};
+
+	snprintf(entry.text, sizeof(entry.text), "cannot be %s: %s: %s", unarmed_verb(unarmed),
+	         unarmed_key(unarmed), error_text(err));
+	image_alarm(e->image, &entry);
+}
+
+void alarm_show(struct engine *e, struct alarm_item *i, enum ows_unarmed unarmed, int err,
+                const char *property, const char *why)
+{
+	struct signal *s = alarm_signal(e, i);
+	uint8_t before = alarm_shown(s);
+	bool missing = err == -EBADRQC;
+
+	/* one at a time: the other is shown when this one is over */
+	if (before && alarm_is_arming(before) != alarm_is_arming(unarmed))
+		return;
+	s->attrs.flags &= ~(uint32_t)OWS_ATTR_ALARM_WHY;
+	s->attrs.flags |= OWS_ATTR_ALARM_UNARMED | ((uint32_t)unarmed - 1)
+	                                                   << OWS_ATTR_ALARM_WHY_SHIFT;
+	s->alarm_err = err;
+	if (!before) {
+		log_warning(e->log, "%s (%s): the alarm cannot be %s: %s%s%s%s%s", s->item->name,
+		            s->item->path, unarmed_verb(unarmed),
+		            missing ? "" : unarmed_key(unarmed), missing ? "" : ": ", property, why,
+		            missing ? "" : error_text(err));
+		alarm_refused_enter(e, s, unarmed, err);
+		engine_read_now(e, s);
+	}
+	engine_publish(e, s);
+}
+
+void alarm_hide(struct engine *e, struct alarm_item *i)
+{
+	struct signal *s = alarm_signal(e, i);
+
+	s->attrs.flags &= ~(uint32_t)(OWS_ATTR_ALARM_UNARMED | OWS_ATTR_ALARM_WHY);
+	s->alarm_err = 0;
+	engine_publish(e, s);
+}
+
+/* --- Requests of a visit --------------------------------------------------------------------- */
+
+void alarm_visit_anew(struct engine *e, struct alarm_item *i)
+{
+	uint8_t shown = alarm_shown(alarm_signal(e, i));
+
+	i->visit = (struct alarm_visit){0};
+	if (shown && !alarm_is_arming(shown))
+		alarm_hide(e, i);
+}
+
+bool alarm_of_device(int err)
+{
+	return err == -ENODEV || err == -ECOMM;
+}
+
+void alarm_refused(struct lane *lane, struct alarm_item *i, enum ows_unarmed unarmed, int err,
+                   const char *property, const char *why, int64_t now_ns)
+{
+	struct engine *e = lane->engine;
+	int64_t wait_ns;
+
+	if (!alarm_of_device(err))
+		lane->counters.item_errors++;
+	if (i->visit.refused != unarmed)
+		alarm_visit_anew(e, i);
+	i->visit.refused = unarmed;
+	if (!retry_fail(&i->visit.retry, e->config->max_retries, &wait_ns))
+		return;
+	i->visit.not_before_ns = now_ns + wait_ns;
+	if (!alarm_of_device(err))
+		alarm_show(e, i, unarmed, err, property, why);
+}
+
+void alarm_granted(struct engine *e, struct alarm_item *i, uint8_t unarmed)
+{
+	const struct signal *s = alarm_signal(e, i);
+
+	if (!unarmed || i->visit.refused != unarmed)
+		return;
+	if (alarm_shown(s) == unarmed)
+		log_notice(e->log, "%s (%s): the alarm can be %s again", s->item->name,
+		           s->item->path, unarmed_verb(unarmed));
+	alarm_visit_anew(e, i);
+}

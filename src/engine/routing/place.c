@@ -1,0 +1,162 @@
+/* SPDX-License-Identifier: MIT */
+/* What is known of where each device is, and the looks for devices that are nowhere. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "hal/base/time.h"
+#include "hal/owfs/path.h"
+#include "src/engine/due.h"
+#include "src/engine/retry.h"
+#include "src/engine/routing/place.h"
+#include "src/engine/routing/route.h"
+#include "src/engine/slots.h"
+
+/* Between two looks for devices that are not there: the signals that are come first. */
+#define PROBE_APART_NS (200 * NS_PER_MS)
+
+int engine_places_init(struct engine *e)
+{
+	uint32_t devices = e->table.device_count;
+
+	if (e->group_count == 1)
+		return 0;
+	e->places = calloc((size_t)(devices + 1) * e->group_count, sizeof(*e->places));
+	if (!e->places || due_set_init(&e->routes, devices + 1) ||
+	    due_wheel_init(&e->route_wheel, devices + 1, 0))
+		return -ENOMEM;
+	return 0;
+}
+
+void engine_places_free(struct engine *e)
+{
+	free(e->places);
+	due_set_free(&e->routes);
+	if (e->route_wheel.wait)
+		due_wheel_free(&e->route_wheel);
+}
+
+static void know_presence(struct engine *e, uint32_t device, unsigned group,
+                          enum route_presence presence)
+{
+	struct route_place *place = engine_places(e, device) + group;
+
+	if (presence == ROUTE_PRESENT)
+		e->table.devices[device].found = true;
+	if (place->presence == presence)
+		return;
+	*place = (struct route_place){presence, e->time.now_ns};
+	due_set_add(&e->routes, device);
+}
+
+void engine_place(struct engine *e, const struct lane *lane, uint32_t device,
+                  enum route_presence presence)
+{
+	if (e->places && device != TABLE_NO_DEVICE)
+		know_presence(e, device, lane->port->group, presence);
+}
+
+static bool is_doubted(struct engine *e, uint32_t device, unsigned group)
+{
+	const struct route_place *place = engine_places(e, device) + group;
+
+	return place->presence == ROUTE_FAILING &&
+	       e->time.now_ns < place->since_ns + ROUTE_DOUBT_NS;
+}
+
+void engine_place_claimed(struct engine *e, const struct lane *lane, uint32_t device)
+{
+	if (e->places && device != TABLE_NO_DEVICE && !is_doubted(e, device, lane->port->group))
+		know_presence(e, device, lane->port->group, ROUTE_PRESENT);
+}
+
+void engine_place_found(struct engine *e, const struct lane *lane, uint32_t device)
+{
+	if (!e->places || device == TABLE_NO_DEVICE || is_doubted(e, device, lane->port->group))
+		return;
+	for (unsigned g = 0; g < e->group_count; g++)
+		if (g != lane->port->group && engine_places(e, device)[g].presence == ROUTE_PRESENT)
+			know_presence(e, device, g, ROUTE_UNKNOWN);
+	know_presence(e, device, lane->port->group, ROUTE_PRESENT);
+}
+
+void engine_places_check(struct engine *e)
+{
+	if (!e->places)
+		return;
+	for (uint32_t i = 0; i <= e->table.device_count; i++)
+		due_set_add(&e->routes, i);
+}
+
+/* The next device to be looked for on this lane goes into the slot's request; false: none. */
+static bool next_probe(struct lane *lane, struct slot *slot)
+{
+	const struct engine *e = lane->engine;
+	int64_t device = due_set_next(&lane->probes);
+	const struct device *d;
+	const char *text;
+	struct path path;
+
+	if (device < 0)
+		return false;
+	d = &e->table.devices[device];
+	text = e->table.signals[e->table.device_rows[d->first]].item->path;
+	if (path_split(text, strlen(text), &path))
+		return false;
+	snprintf(slot->path, sizeof(slot->path), "%.*s",
+	         (int)(path.device.text + path.device.len - text), text);
+	slot->purpose = FOR_PROBE;
+	slot->row = (uint32_t)device;
+	slot->req = (struct bus_req){.op = BUS_PROBE,
+	                             .prio = BUS_INPUT,
+	                             .fresh = true,
+	                             .path = slot->path,
+	                             .len = sizeof(slot->data)};
+	return true;
+}
+
+bool engine_probe_ask(struct lane *lane, struct slot *slot, int64_t now_ns)
+{
+	if (lane->probing || now_ns < lane->probe_ns || !next_probe(lane, slot))
+		return false;
+	if (!slot_lend(lane, slot, now_ns))
+		return false;
+	due_set_take(&lane->probes, slot->row);
+	lane->probing = true;
+	lane->probe_ns = now_ns + PROBE_APART_NS;
+	lane->counters.probes++;
+	return true;
+}
+
+int64_t engine_probe_wait(const struct device *d)
+{
+	return d->probe_doublings < 6 ? RETRY_FIRST_NS << d->probe_doublings : RETRY_MAX_NS;
+}
+
+void engine_probe_done(struct engine *e, struct lane *lane, const struct slot *slot,
+                       const struct bus_answer *answer, int64_t now_ns)
+{
+	struct device *d = &e->table.devices[slot->row];
+
+	lane->probing = false;
+	d->probing = false;
+	d->probe_ns = now_ns + engine_probe_wait(d);
+	if (d->probe_doublings < 6)
+		d->probe_doublings++;
+	if (!answer->err)
+		engine_place_claimed(e, lane, slot->row);
+	else if (answer->err == -ENODEV)
+		engine_place(e, lane, slot->row, ROUTE_ABSENT);
+	due_set_add(&e->routes, slot->row);
+}
+
+void engine_probes_forget(struct lane *lane)
+{
+	int64_t device;
+
+	while ((device = due_set_next(&lane->probes)) >= 0) {
+		due_set_take(&lane->probes, (uint32_t)device);
+		lane->engine->table.devices[device].probing = false;
+	}
+}

@@ -1,0 +1,212 @@
+/* SPDX-License-Identifier: MIT */
+/* owsctl alarms: the alarms that stand. */
+#include <errno.h>
+#include <getopt.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "src/owsctl/alarms/alarms_live.h"
+#include "src/owsctl/rows.h"
+#include "src/owsctl/table.h"
+#include "src/show/names.h"
+#include "src/show/present.h"
+#include "src/show/text.h"
+#include "src/show/who.h"
+#include "src/signal/error.h"
+#include "src/signal/unarmed.h"
+#include "src/text/distance.h"
+
+struct live {
+	struct ows *h;
+	struct when now;
+	struct reading *reading;
+	struct table *table; /* NULL: JSON */
+	struct json json;
+	bool ok;
+};
+
+static const struct table_column columns[] = {
+	{"NAME"},
+	{"ALARM"},
+	{"STATE"},
+	{"SINCE", .right = true},
+	{"VALUE", .right = true, .most = 40},
+	{"QUALITY"},
+};
+#define COLUMNS (sizeof(columns) / sizeof(columns[0]))
+
+static void alarms_live_add_row(struct live *live, const struct present *alarm)
+{
+	char value[128], words[READING_WORDS], span[WHEN_TEXT] = "-";
+	const char *state = alarm->state;
+	char cannot[32];
+
+	if (alarm->unarmed) {
+		snprintf(cannot, sizeof(cannot), "cannot be %s", unarmed_verb(alarm->unarmed));
+		state = cannot;
+	}
+	reading_round(live->reading, alarm->decimals);
+	reading_show(live->reading, value, sizeof(value));
+	if (alarm->since_ns)
+		when_span(live->now.boot - alarm->since_ns, span);
+	if (!table_add(live->table,
+	               (const char *const[]){alarm->name, alarm->kind, state, span, value,
+	                                     reading_quality(live->reading, words)}))
+		live->ok = false;
+}
+
+static void alarms_live_add(void *ctx, const struct present *alarm)
+{
+	struct live *live = ctx;
+
+	if (live->table) {
+		alarms_live_add_row(live, alarm);
+		return;
+	}
+	json_object(&live->json, NULL);
+	present_json(&live->json, alarm, &live->now);
+	reading_json(&live->json, live->h, live->reading, &live->now);
+	json_object_end(&live->json);
+}
+
+static void print_line(const char *line)
+{
+	char clean[512];
+
+	text_clean(line, strlen(line), sizeof(clean), clean, sizeof(clean));
+	puts(clean);
+}
+
+static void print_shelved(const struct live *live, const char *name,
+                          const struct ows_alarm_state *state)
+{
+	char until[WHEN_TEXT], who[WHO_LINE], line[512];
+
+	snprintf(line, sizeof(line), "%s: shelved until %s by %s%s%s", name,
+	         when_iso(&live->now, state->until_ns, until), who_line(&state->who, who),
+	         *state->why ? ": " : "", state->why);
+	print_line(line);
+}
+
+/* Print the reasons below the table, which they would make too wide. */
+static void print_reasons(struct live *live, const struct rows *rows, char *const *patterns,
+                          int pattern_count)
+{
+	struct ows_alarm_state state;
+	char words[ERROR_WORDS], line[512];
+
+	for (int i = 0; i < rows->count; i++) {
+		state = (struct ows_alarm_state){0};
+		if (!names_match(rows->row[i].name, patterns, pattern_count) ||
+		    ows_alarm_state(live->h, rows->row[i].id, &state) == -EAGAIN)
+			continue;
+		if (state.shelved)
+			print_shelved(live, rows->row[i].name, &state);
+		if (!state.unarmed)
+			continue;
+		reading_get(live->h, rows->row[i].id, live->now.boot, live->reading);
+		snprintf(line, sizeof(line), "%s: %s", rows->row[i].name,
+		         present_unarmed(&state, live->reading, words));
+		print_line(line);
+	}
+}
+
+/* rows: all signals of the table, in its order. */
+static bool alarms_live_show(struct ows *h, const struct rows *rows, bool json,
+                             char *const *patterns, int pattern_count)
+{
+	static struct reading reading;
+	struct table table;
+	struct live live = {.h = h, .now = when_now(), .reading = &reading, .ok = true};
+
+	table_init(&table, columns, COLUMNS);
+	if (json) {
+		json_open(&live.json, stdout);
+		json_array(&live.json, NULL);
+	} else {
+		live.table = &table;
+	}
+	for (int i = 0; live.ok && i < rows->count; i++)
+		if (names_match(rows->row[i].name, patterns, pattern_count))
+			present_each(h, i, rows->row[i].id, live.now.boot, &reading,
+			             alarms_live_add, &live);
+	if (json) {
+		json_array_end(&live.json);
+		json_end(&live.json);
+	}
+	if (!json && live.ok) {
+		table_print(&table, true);
+		print_reasons(&live, rows, patterns, pattern_count);
+	}
+	table_free(&table);
+	return live.ok;
+}
+
+/* The words that `owsctl alarms` does not take for patterns. */
+static const char *const words[] = {ALARMS_HISTORY, ALARMS_ACK, ALARMS_SHELVE, ALARMS_UNSHELVE};
+#define WORDS (sizeof(words) / sizeof(words[0]))
+
+/* The word that the pattern is but for a slip of the finger, or NULL. */
+static const char *nearest_word(const char *pattern)
+{
+	for (size_t i = 0; i < WORDS; i++)
+		if (text_distance(pattern, words[i]) <= strlen(words[i]) / 3)
+			return words[i];
+	return NULL;
+}
+
+static bool matches(struct ows *h, char *const *pattern)
+{
+	struct ows_info info;
+
+	for (int i = 0; i < ows_count(h); i++)
+		if (ows_info(h, i, &info) == 0 && names_match(info.name, pattern, 1))
+			return true;
+	return false;
+}
+
+bool alarms_known(struct ows *h, char *const *patterns, int count)
+{
+	const char *word;
+	bool known = true;
+
+	for (int i = 0; i < count; i++) {
+		if (matches(h, &patterns[i]))
+			continue;
+		known = false;
+		word = nearest_word(patterns[i]);
+		if (word)
+			ctl_fail("there is no %s; did you mean alarms %s?", patterns[i], word);
+		else if (strpbrk(patterns[i], "*?["))
+			ctl_fail("no signal matches %s", patterns[i]);
+		else
+			ctl_unknown(h, patterns[i]);
+	}
+	return known;
+}
+
+int alarms_live(struct ctl *ctl, int argc, char **argv)
+{
+	struct rows rows;
+	struct ows *h;
+	int status;
+
+	ctl_options();
+	if (ctl_option(ctl, argc, argv, "") != -1)
+		return CTL_USAGE;
+	status = ctl_open(ctl, OWS_READ, &h);
+	if (status)
+		return status;
+	if (rows_collect(h, NULL, 0, false, &rows) != 0) {
+		ows_close(h);
+		return ctl_fail("no memory");
+	}
+	ctl_alive(ctl, h, ows_now());
+	if (!alarms_known(h, argv + optind, argc - optind))
+		status = CTL_FAILED;
+	else if (!alarms_live_show(h, &rows, ctl->json, argv + optind, argc - optind))
+		status = ctl_fail("no memory");
+	rows_free(&rows);
+	ows_close(h);
+	return status;
+}

@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: MIT */
+/* The log of a logger's mission, printed. */
+#ifndef OWSCTL_MISSION_DOWNLOAD_H
+#define OWSCTL_MISSION_DOWNLOAD_H
+
+#include "src/owsctl/mission/mission_ask.h"
+
+/*
+ * The log on stdout, with its progress on the terminal of stderr. CTL_DONE, or CTL_FAILED after
+ * printing why.
+ */
+int mission_download(const struct ctl *ctl, struct mission *mission);
+
+#endif

@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: MIT */
+/* Conditions of `owsctl wait`: a comparison of a signal with a value. */
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/owsctl/watch/condition.h"
+#include "src/signal/value.h"
+
+static const char *const ops[] = {
+	[CONDITION_EQ] = "=",  [CONDITION_NE] = "!=", [CONDITION_LT] = "<",
+	[CONDITION_LE] = "<=", [CONDITION_GT] = ">",  [CONDITION_GE] = ">=",
+};
+
+int condition_op(const char *text)
+{
+	if (strcmp(text, "==") == 0)
+		return CONDITION_EQ;
+	for (int i = 0; i < (int)(sizeof(ops) / sizeof(ops[0])); i++)
+		if (strcmp(text, ops[i]) == 0)
+			return i;
+	return -1;
+}
+
+static int make_number(const char *text, struct condition *condition)
+{
+	char *end;
+
+	errno = 0;
+	condition->integer = strtoll(text, &end, 10);
+	condition->whole = errno == 0 && end != text && *end == '\0';
+	condition->number = strtod(text, &end);
+	return end == text || *end || !isfinite(condition->number) ? -EINVAL : 0;
+}
+
+int condition_make(enum ows_type type, const char *op, const char *text,
+                   struct condition *condition)
+{
+	int found = condition_op(op);
+
+	if (found < 0)
+		return -EINVAL;
+	memset(condition, 0, sizeof(*condition));
+	condition->op = (enum condition_op)found;
+	condition->text = text;
+	if (type == OWS_STRING)
+		return found > CONDITION_NE ? -EOPNOTSUPP : 0;
+	if (type == OWS_BOOL && value_parse(OWS_BOOL, text, &condition->integer) == 0) {
+		condition->whole = true;
+		condition->number = (double)condition->integer;
+		return 0;
+	}
+	return make_number(text, condition);
+}
+
+bool condition_holds(const struct condition *condition, const struct reading *reading)
+{
+	enum ows_type type = (enum ows_type)reading->value.type;
+	int order;
+
+	if (type == OWS_STRING)
+		order = reading->len != strlen(condition->text) ||
+		        memcmp(reading->text, condition->text, reading->len) != 0;
+	else if (condition->whole && !value_is_float(type))
+		order = (reading->value.integer > condition->integer) -
+		        (reading->value.integer < condition->integer);
+	else
+		order = (reading->value.number > condition->number) -
+		        (reading->value.number < condition->number);
+	switch (condition->op) {
+	case CONDITION_EQ:
+		return order == 0;
+	case CONDITION_NE:
+		return order != 0;
+	case CONDITION_LT:
+		return order < 0;
+	case CONDITION_LE:
+		return order <= 0;
+	case CONDITION_GT:
+		return order > 0;
+	case CONDITION_GE:
+		return order >= 0;
+	}
+	return false;
+}
