@@ -340,7 +340,9 @@ static int write_step(struct txn *txn, const struct area *area, struct unit unit
 		visit->step = CHECK;
 		return err;
 	case CHECK:
-		return check_unit(txn, area, unit);
+		err = check_unit(txn, area, unit);
+		/* Where the copy and this recall were lost, what is read was never copied. */
+		return !err && area->recall && ++visit->looks < AREA_LOOKS ? TXN_MORE : err;
 	}
 	return -EIO;
 }
