@@ -317,7 +317,14 @@ def test_its_page_edits_a_copy_of_the_configuration(scene):
         text = config["text"].replace('"Living room"', '"The best room"')
         saved = json.loads(asked(page + "api/config/save", text=text, base=config["tag"]))
         assert saved["reload"] == "done", saved
-        scene.until(lambda: "The best room" in asked(page + "api/signals"), 20, "the reload")
+
+        def is_shown():
+            try:
+                return "The best room" in asked(page + "api/signals")
+            except urllib.error.HTTPError as error:  # while it opens what the reload made
+                assert error.code == 503, error
+                return False
+        scene.until(is_shown, 20, "the reload")
         scene.until(lambda: scene.get(terminal.name, "living"), 20, "living is good again")
         assert demo.read_bytes() == before, "the demonstration's own file is as it was"
     finally:

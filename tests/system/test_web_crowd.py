@@ -41,11 +41,12 @@ def test_a_stream_that_missed_alarms_is_told_to_look_at_all(scene):
         set_relays(scene, daemon, 1)
         events.value(1, 1)
         last = events.id
-    shelve(page, ALARMS // 2 - 1)
+    # room for what is said twice: a slow machine shelves again what it was not told of in time
+    shelve(page, ALARMS // 2 - 4)
     with Events(page, last) as events:
-        seen = [events.next()[0] for _ in range(ALARMS - 2)]
+        seen = [events.next()[0] for _ in range(ALARMS - 8)]
         assert set(seen) <= {"alarm", "values"}, seen
-    shelve(page, 2)
+    shelve(page, 5)
     with Events(page, last) as events:
         assert events.next()[0] == "missed"
         seen = [events.next()[0] for _ in range(ALARMS)]
