@@ -19,7 +19,7 @@
 #define NS_PER_US 1000
 #define READY 256
 
-enum handle_statement { H_RAW, H_GAPS, H_STEPS, H_MINUTE, H_HOUR, H_EVENTS, H_COUNT };
+enum handle_statement { H_RAW, H_GAPS, H_STEPS, H_ALL, H_MINUTE, H_HOUR, H_EVENTS, H_COUNT };
 
 /* A run of the recorder: ids from start up to end. */
 struct session {

@@ -3,6 +3,7 @@
 #include <errno.h>
 
 #include "src/libhistory/ows_history.h"
+#include "src/libhistory/replay.h"
 
 int ows_history_place(const char *instance, char *path, size_t size)
 {
@@ -81,5 +82,23 @@ int ows_history_events(struct ows_history *h, int64_t from_ns, int64_t until_ns,
 int ows_history_next_event(struct ows_history *h, struct ows_history_event *event)
 {
 	(void)h, (void)event;
+	return -ENOSYS;
+}
+
+int64_t replay_place(const struct ows_history *h, const struct replay_point *point)
+{
+	(void)h, (void)point;
+	return -ENOSYS;
+}
+
+int64_t replay_end(const struct ows_history *h)
+{
+	(void)h;
+	return 0;
+}
+
+int replay_rows(struct ows_history *h, int64_t first, int64_t end, struct replay_row *rows, int n)
+{
+	(void)h, (void)first, (void)end, (void)rows, (void)n;
 	return -ENOSYS;
 }

@@ -25,6 +25,9 @@ static const char *const texts[H_COUNT] = {
 	[H_STEPS] = "select id, value, quality, null from raw where id >= ?1 and id < ?2"
 		    " and signal = ?3 union all select start, null, null, reason from gap"
 		    " where start >= ?1 and start < ?2 and signal in (0, ?3) order by 1 limit ?4",
+	[H_ALL] = "select id, value, quality, null, signal from raw where id >= ?1 and id < ?2"
+		  " union all select start, null, null, reason, 0 from gap where start >= ?1"
+		  " and start < ?2 and signal = 0 order by 1 limit ?3",
 	[H_MINUTE] = "select least, most, mean, last, good, known, count, quality, worst"
 		     " from minute where id = ?",
 	[H_HOUR] = "select least, most, mean, last, good, known, count, quality, worst"

@@ -56,10 +56,7 @@ int ows_history_find(struct ows_history *h, const char *name)
  * --- Steps -------------------------------------------------------------------------------------
  */
 
-/*
- * Columns: id, value, quality, reason of a gap. What a signal had before its type changed counts.
- */
-static int steps_take(sqlite3_stmt *from, const struct known_signal *signal, struct step *step)
+int steps_take(sqlite3_stmt *from, const struct known_signal *signal, struct step *step)
 {
 	bool whole = !value_is_float((enum ows_type)signal->type) && signal->type != OWS_STRING;
 	const char *text;

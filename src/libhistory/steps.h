@@ -5,6 +5,11 @@
 
 #include "src/libhistory/handle.h"
 
+/*
+ * A row with the columns id, value, quality, reason of a gap. What a signal had before its type
+ * changed counts. 0 or -ENOMEM. Free the text.
+ */
+int steps_take(sqlite3_stmt *from, const struct known_signal *signal, struct step *step);
 /* What held at an id: 1; 0: nothing is known of it. Free the text. */
 int handle_held(struct ows_history *h, const struct known_signal *signal, int64_t id,
                 struct step *step);

@@ -68,6 +68,7 @@ static void drop(struct broker *b)
 		mosquitto_destroy(b->client);
 	b->client = NULL;
 	b->in_flight = 0;
+	b->marking = false;
 }
 
 static uint64_t random_of(uint64_t most)
@@ -438,6 +439,19 @@ void broker_leave(struct broker *b, int64_t now_ns)
 {
 	broker_end(b);
 	choose(b, false, now_ns);
+}
+
+/* The end of a subscription that there is not: the cheapest that a broker has to answer. */
+bool broker_mark(struct broker *b)
+{
+	char topic[160];
+
+	if (b->state != BROKER_CONNECTED || b->ended || b->marking)
+		return false;
+	snprintf(topic, sizeof(topic), CLIENT_ID "/mark", b->options->node);
+	b->marked = false;
+	b->marking = !mosquitto_unsubscribe(b->client, &b->mark, topic);
+	return b->marking;
 }
 
 static int subscribe_options(const struct broker *b)

@@ -42,6 +42,11 @@ void broker_hurry(struct broker *b, int64_t now_ns);
 
 /* struct outlet. */
 bool broker_put(void *ctx, const char *topic, const char *text, size_t len, bool retain);
+/*
+ * When the broker answers, which sets b->marked, it has all that was put before: QoS 0 has no other
+ * proof. False: not now.
+ */
+bool broker_mark(struct broker *b);
 /* A refusal is logged when it comes. What we publish there ourselves does not come, by MQTT 5. */
 void broker_subscribe(struct broker *b, const char *topic);
 /*

@@ -99,6 +99,19 @@ static void on_subscribe(struct mosquitto *client, void *ctx, int mid, int count
 	        mqtt_way_name(&b->options->ways[b->way], name), b->options->prefix);
 }
 
+static void on_unsubscribe(struct mosquitto *client, void *ctx, int mid,
+                           const mosquitto_property *properties)
+{
+	struct broker *b = ctx;
+
+	(void)client;
+	(void)properties;
+	if (!b->marking || mid != b->mark)
+		return;
+	b->marking = false;
+	b->marked = true;
+}
+
 /* A user property of MQTT 5, if it can stand in a journal: a claim. */
 static void take_property(const mosquitto_property *properties, const char *key, char *text,
                           size_t size)
@@ -221,6 +234,7 @@ bool client_make(struct broker *b, char *why, size_t size)
 	mosquitto_disconnect_v5_callback_set(b->client, on_disconnect);
 	mosquitto_publish_v5_callback_set(b->client, on_publish);
 	mosquitto_subscribe_v5_callback_set(b->client, on_subscribe);
+	mosquitto_unsubscribe_v5_callback_set(b->client, on_unsubscribe);
 	mosquitto_message_v5_callback_set(b->client, on_message);
 	mosquitto_log_callback_set(b->client, on_log);
 	mosquitto_int_option(b->client, MOSQ_OPT_PROTOCOL_VERSION,

@@ -63,6 +63,9 @@ struct broker {
 	unsigned brief;      /* connections in a row that the broker closed soon */
 	bool taken;          /* another client took the last one: proved, not guessed */
 	unsigned in_flight;  /* put, and not taken by the broker */
+	bool marking;        /* the broker may answer the last mark yet */
+	bool marked;         /* it has */
+	int mark;            /* its number */
 	int64_t begun_ns, next_ns, step_ns;
 	int64_t tend_ns;                   /* when broker_tick() is due, once there is a client */
 	unsigned known;                    /* ways that it was connected by, as bits */

@@ -14,6 +14,7 @@
 #include "src/face/loop.h"
 #include "src/mqtt/health.h"
 #include "src/mqtt/profiles.h"
+#include "src/signal/hash.h"
 
 /* Of changes of a signal that come closer together the newest is published */
 #define PACE_NS (50 * NS_PER_MS)
@@ -56,6 +57,7 @@ static void on_connected(void *ctx)
 	struct mqtt *m = ctx;
 	char topic[TOPIC_SIZE];
 
+	past_lost(&m->past);
 	if (m->stream.profile->listen) {
 		m->stream.profile->listen(&m->stream, topic);
 		broker_subscribe(&m->broker, topic);
@@ -184,6 +186,15 @@ static const char *class_of(void *ctx, const char *name)
 
 /* --- Beginning and end of a configuration ---------------------------------------------------- */
 
+/* Of another one, or of another node there, nothing is known of what it has missed. */
+static uint64_t broker_key(const struct mqtt_options *options)
+{
+	uint64_t key = hash_text(HASH_BEGIN, options->prefix, strlen(options->prefix));
+
+	key = hash_text(key, options->node, strlen(options->node));
+	return hash_text(key, (const char *)options->ways, sizeof(options->ways));
+}
+
 static void mqtt_begin(struct face *face, int64_t now_ns)
 {
 	struct mqtt *m = mqtt_own(face);
@@ -209,6 +220,10 @@ static void mqtt_begin(struct face *face, int64_t now_ns)
 	m->commands.instance = face->arguments->instance;
 	m->commands.program = face->ops->program;
 	m->commands.stream = &m->stream;
+	m->past.face = face;
+	m->past.stream = &m->stream;
+	m->past.broker = &m->broker;
+	past_begin(&m->past, broker_key(&m->options));
 	broker_begin(&m->broker, now_ns);
 }
 
@@ -216,6 +231,7 @@ static void mqtt_end(struct face *face)
 {
 	struct mqtt *m = mqtt_own(face);
 
+	past_end(&m->past);
 	broker_end(&m->broker);
 	commands_tell(&m->commands, INT64_MAX);
 	commands_close(&m->commands);
@@ -226,6 +242,7 @@ static void make_rows(struct face *face)
 	struct mqtt *m = mqtt_own(face);
 
 	m->sweep = true;
+	past_drop(&m->past);
 	if (stream_make(&m->stream, face->ows))
 		log_err(face->log, "nothing is published: no memory for %d signals",
 		        ows_count(face->ows));
@@ -286,6 +303,8 @@ static void pump(struct face *face, int64_t now_ns)
 	struct mqtt *m = mqtt_own(face);
 	bool session = m->stream.profile->session;
 
+	if (m->broker.state != BROKER_CONNECTED)
+		past_lost(&m->past);
 	if (m->broker.state != BROKER_CONNECTED || (face->live && !look_is_current(face)))
 		return;
 	if (face->live && m->stream.count)
@@ -299,8 +318,10 @@ static void pump(struct face *face, int64_t now_ns)
 	if (m->asked && session && face->live)
 		return;
 	m->stream.settled = broker_is_settled(&m->broker, now_ns);
-	if (stream_pump(&m->stream) && face->live && m->stream.profile->health &&
-	    now_ns >= m->health_ns &&
+	if (!stream_pump(&m->stream) || !face->live)
+		return;
+	past_pump(&m->past, now_ns);
+	if (m->stream.profile->health && now_ns >= m->health_ns &&
 	    health_publish(&m->stream, &(struct health){.trouble = m->commands.trouble,
 	                                                .commands = m->commands.taken,
 	                                                .refused_commands = m->commands.refused,
@@ -352,6 +373,7 @@ void mqtt_report(struct face *face, FILE *out)
 		{"messages_acknowledged", b->acknowledged},
 		{"messages_refused", b->refusals},
 		{"messages_under_way", b->in_flight},
+		{"values_sent_again", m->past.sent},
 		{"connects", b->connects},
 		{"connects_failed", b->failures},
 		{"commands_taken", m->commands.taken},
@@ -393,6 +415,8 @@ static void go_on(struct face *face, int64_t now_ns)
 	look_at_host(face, now_ns);
 	pump(face, now_ns);
 	face->tick_ns = broker_next(&m->broker);
+	if (past_next(&m->past) < face->tick_ns)
+		face->tick_ns = past_next(&m->past);
 	if (m->asked && announce_ns(m) > now_ns && announce_ns(m) < face->tick_ns)
 		face->tick_ns = announce_ns(m);
 }

@@ -3,8 +3,8 @@
  * owsd-mqtt: the stream of an instance's signals, a broker, and the commands that come from it.
  *
  * Room src/mqtt: the program owsd-mqtt: publishes signals to an MQTT broker, and takes commands
- * from it. Uses src/show, src/face, src/config, src/text, src/libows, src/signal, hal/owfs,
- * hal/base.
+ * from it. Uses src/show, src/face, src/config, src/text, src/libhistory, src/history, src/libows,
+ * src/signal, hal/owfs, hal/base.
  */
 #ifndef MQTT_MQTT_H
 #define MQTT_MQTT_H
@@ -13,6 +13,7 @@
 #include "src/face/wall_clock.h"
 #include "src/mqtt/broker.h"
 #include "src/mqtt/commands.h"
+#include "src/mqtt/past.h"
 #include "src/mqtt/stream.h"
 
 struct mqtt {
@@ -20,6 +21,7 @@ struct mqtt {
 	struct stream stream;
 	struct broker broker;
 	struct commands commands;
+	struct past past;
 	struct wall_clock clock;
 	int64_t health_ns;    /* when to look at it again */
 	int64_t announced_ns; /* when somebody asked for the birth last */

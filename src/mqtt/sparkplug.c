@@ -377,7 +377,11 @@ static bool put_row(struct stream *s, struct row *row, uint64_t alias, bool data
 	m.metric.has_alias = true;
 	m.metric.alias = alias + (uint64_t)(row - s->rows);
 	m.metric.has_timestamp = true;
-	m.metric.timestamp = ms_of(moment_of(&news.v, now.boot) + now.wall - now.boot);
+	row->moment_ns = moment_of(&news.v, now.boot);
+	row->told = stream_print(&news.v, news.text);
+	if (!data && s->clock_set && !row->born_ns)
+		row->born_ns = row->moment_ns;
+	m.metric.timestamp = ms_of(row->moment_ns + now.wall - now.boot);
 	add_quality(&m, news.v.quality, news.simulated);
 	if (!data)
 		add_description(&m, &row->info);
@@ -502,6 +506,42 @@ static bool value(struct stream *s, struct row *row)
 	sparkplug_begin(s);
 	chip->announced = !put_numbered(s, "DEATH", chip);
 	return !chip->announced;
+}
+
+/* Births of chips that are away are followed by their deaths, as the rows then say. */
+static bool sparkplug_past(struct stream *s, const struct past_value *values, int n)
+{
+	uint64_t alias = first_alias(s);
+	int first = (int)(values->row - s->rows);
+	struct chip *chip = values->row->chip < 0 ? NULL : &s->chips[values->row->chip];
+	struct part *parts = s->parts;
+
+	if (chip && !chip->announced) {
+		sparkplug_begin(s);
+		put_rows(s, chip, false);
+		chip->announced = put_numbered(s, "BIRTH", chip);
+		if (!chip->announced)
+			return false;
+		stream_changes(s, &first, 1);
+	}
+	sparkplug_begin(s);
+	s->parts = NULL; /* they are in their order, and may be more than there are rows */
+	for (int i = 0; i < n; i++) {
+		const struct past_value *value = &values[i];
+		struct metric m;
+
+		metric_init(&m);
+		m.metric.has_alias = m.metric.has_timestamp = true;
+		m.metric.alias = alias + (uint64_t)(value->row - s->rows);
+		m.metric.timestamp = ms_of(value->wall_us * 1000);
+		m.metric.has_is_historical = m.metric.is_historical = true;
+		add_quality(&m, value->v.quality, value->row->simulated);
+		m.metric.properties = &m.set;
+		set_value(&m.metric, &value->v, value->row->info.type, value->text);
+		put_metric(s, &m.metric);
+	}
+	s->parts = parts;
+	return put_numbered(s, "DATA", chip);
 }
 
 /* That owsd is lost the values say, and deaths of devices. */
@@ -692,6 +732,7 @@ const struct profile profile_sparkplug = {
 	.birth = birth,
 	.value = value,
 	.state = sparkplug_state,
+	.past = sparkplug_past,
 	.listen = listen,
 	.listen_host = listen_host,
 	.listen_write = listen_write,

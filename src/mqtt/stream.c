@@ -75,6 +75,20 @@ bool stream_read(struct stream *s, struct row *row, struct news *news)
 	       (repeat_ns && news->good && news->now_ns - row->published_ns >= repeat_ns);
 }
 
+uint64_t stream_print(const struct ows_value *v, const char *text)
+{
+	uint64_t print = HASH_BEGIN ^ v->quality;
+
+	if (!ows_good(v->quality))
+		return print;
+	if (v->type == OWS_STRING)
+		return hash_text(print, text ? text : "", text ? strlen(text) : 0) | 1;
+	print = hash_text(print, (const char *)&v->number, sizeof(v->number));
+	return hash_text(print, (const char *)&v->integer,
+	                 v->type == OWS_FLOAT || v->type == OWS_DOUBLE ? 0 : sizeof(v->integer)) |
+	       1;
+}
+
 bool stream_published(struct row *row, const struct news *news)
 {
 	row->published = true;
@@ -431,6 +445,7 @@ void stream_begin(struct stream *s)
 	for (int i = 0; i < s->count; i++) {
 		s->rows[i].published = false;
 		s->rows[i].alarm_print = 0;
+		s->rows[i].born_ns = 0;
 	}
 	for (int i = 0; i < s->chip_count; i++)
 		s->chips[i].published = false;

@@ -42,6 +42,21 @@ struct row {
 	int64_t published_ns; /* when */
 	uint32_t alarm_print; /* of its limit alarm; 0: not published */
 	bool key_away;        /* of a key: it was looked for, and not there */
+	/*
+	 * Of a session: times of the value that was published last, of the first one since its
+	 * begin, of the last one that the broker has for certain, and of that one before the last
+	 * outage; prints of the same, and of the last one that was sent again.
+	 */
+	int64_t moment_ns, born_ns, sure_ns, past_ns;
+	uint64_t told, sure_told, past_told, past_print;
+};
+/* A value of a row at a time that is past. */
+struct past_value {
+	struct row *row;
+	int64_t wall_us; /* since 1970 */
+	struct ows_value v;
+	char *text; /* of a string */
+	int place;  /* in their order */
 };
 /* Does a device of the wire answer? Unknown: it never has, and nothing says that it is away. */
 enum chip_state {
@@ -169,6 +184,11 @@ struct profile {
 	bool (*state)(struct stream *s, enum stream_node node);
 	/* An entry of the journal of alarms; one that is not taken is lost. NULL: it shows none. */
 	void (*alarm)(struct stream *s, const struct ows_alarm *alarm);
+	/*
+	 * What values of a chip, or of what has none, were, in the order of time. The node is born.
+	 * NULL: it shows only what is.
+	 */
+	bool (*past)(struct stream *s, const struct past_value *values, int n);
 	/* A topic to listen to besides those of commands. */
 	void (*listen)(const struct stream *s, char topic[TOPIC_SIZE]);
 	/* The topic of the host, which stream.host names. NULL: it waits for none. */
@@ -233,6 +253,8 @@ void stream_value(struct stream *s, const struct news *news, const char *yes, co
 int64_t stream_repeat_ns(const struct ows_info *info);
 /* What a row's value is. True: it has to be published, and stream_published() is due then. */
 bool stream_read(struct stream *s, struct row *row, struct news *news);
+/* A hash of a value as it is shown, never 0: of one that is not good of its quality alone. */
+uint64_t stream_print(const struct ows_value *v, const char *text);
 bool stream_published(struct row *row, const struct news *news); /* Returns true. */
 
 #endif

@@ -70,9 +70,9 @@ class Listener:
 
 
 class House:
-    def __init__(self, scene, *items, lines=("allow_anonymous true",), wire="", owsd=True, env=None, listen=(), **keys):
+    def __init__(self, scene, *items, lines=("allow_anonymous true",), wire="", owsd=True, env=None, listen=(), top=None, **keys):
         owsdtest.need(MQTT)
-        self.scene = scene
+        self.scene, self.top = scene, top or {}  # keys and blocks beside Mqtt
         self.broker = Broker(scene, lines=lines)
         self.listener = Listener(scene, self.broker.port, arguments=listen)
         self.wire = scene.file("house.sim", "chip DS2482-100 0x18\n"
@@ -84,7 +84,7 @@ class House:
     def text(self, *items, **more):
         keys = {**self.keys, **more}
         block = " ".join(f"{k} {v}" if isinstance(v, raw) else f'{k} "{v}"' for k, v in keys.items())
-        return owsdtest.rio(f"sim:{self.wire}", items, Period=0.05, Timeout=3, Mqtt=raw("{ " + block + " }"))
+        return owsdtest.rio(f"sim:{self.wire}", items, Period=0.05, Timeout=3, **self.top, Mqtt=raw("{ " + block + " }"))
 
     def start(self, env=None):
         return self.scene.start([MQTT, "-n", self.daemon.name, "-c", self.daemon.config, "-v"], env)

@@ -34,6 +34,7 @@ class Host:
         self.heard = []   # (verb, device, metrics by name)
         self.births = {}  # device, None of the node: its birth
         self.seq = self.bdseq = None
+        self.metrics = []  # (where its message is in heard, device, metric): all, in their order
 
     def look(self):
         """[(verb, device, {name: metric})] of all up to now."""
@@ -46,6 +47,7 @@ class Host:
             assert (where.group_id, where.edge_node_id) == ("plant", "pi7"), topic
             verb = where.message_type.name.lower()
             assert retained == "0" and qos == ("1" if verb == "ndeath" else "0"), (topic, qos, retained)
+            self.device = where.device_id
             self.heard.append((verb, where.device_id, self.take(verb, where.device_id, bytes.fromhex(payload))))
         return self.heard
 
@@ -115,6 +117,7 @@ class Host:
         for metric, one in zip(decoded, raws):
             object.__setattr__(metric, "properties", self.properties(one))
             found[metric.name] = metric
+            self.metrics.append((len(self.heard), self.device, metric))
         return found
 
     def hears(self, verb, device, fits=lambda m: True, after=0):
@@ -127,13 +130,13 @@ class Host:
         return until(find, 20, lambda: f"{verb} {device} comes: {self.heard[after:]}")
 
 
-def start(scene, *items, wire="", **keys):
+def start(scene, *items, wire="", env=None, **keys):
     codec()
-    house = House(scene, *items, wire=wire, Profile="sparkplug", Topic="plant", **keys)
+    house = House(scene, *items, wire=wire, env=env, Profile="sparkplug", Topic="plant", **keys)
     # what came before is in the house's own listener alone, so the face starts again
     house.face.stop()
     listener = Listener(scene, house.broker.port, "spBv1.0/#", ["-F", "=%q\t%r\t%t\t%x"])
-    house.face = house.start()
+    house.face = house.start(env)
     return house, Host(listener)
 
 

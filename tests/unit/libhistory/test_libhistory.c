@@ -13,6 +13,7 @@
 #include "src/history/place.h"
 #include "src/history/writer.h"
 #include "src/libhistory/ows_history.h"
+#include "src/libhistory/replay.h"
 #include "src/signal/value.h"
 #include "tests/unit/aid/folder.h"
 
@@ -541,6 +542,42 @@ static void test_points_of_sums_are_those_of_the_values(void)
 	}
 }
 
+static void test_all_rows_come_once_in_the_order_of_recording(void)
+{
+	struct replay_point begin = {history_boot_present(), 0}, lost = begin;
+	struct replay_row rows[7];
+	int of_signal[COUNT] = {0}, gaps = 0, got;
+	int64_t first = replay_place(h, &begin), last = 0;
+
+	TEST_ASSERT_TRUE(first > 0 && replay_end(h) > first);
+	while ((got = replay_rows(h, first, replay_end(h), rows, 7)) > 0)
+		for (int i = 0; i < got; i++) {
+			TEST_ASSERT_TRUE(rows[i].at.us > last || rows[i].signal < 0);
+			TEST_ASSERT_EQUAL_INT64(begin.boot, rows[i].at.boot);
+			TEST_ASSERT_EQUAL_INT64(NOON / 1000, rows[i].wall_us - rows[i].at.us);
+			last = rows[i].at.us;
+			rows[i].at.us++;
+			first = replay_place(h, &rows[i].at);
+			gaps += rows[i].signal < 0;
+			if (rows[i].signal >= 0)
+				of_signal[rows[i].signal]++;
+			if (rows[i].signal == of("title"))
+				TEST_ASSERT_NOT_NULL(rows[i].text);
+			free(rows[i].text);
+		}
+	TEST_ASSERT_EQUAL_INT(0, got);
+	TEST_ASSERT_EQUAL_INT(END - 1 - (LOST_UNTIL - LOST_FROM), of_signal[of("room")]);
+	TEST_ASSERT_EQUAL_INT(4, of_signal[of("pump")]);
+	TEST_ASSERT_EQUAL_INT(3, of_signal[of("title")]);
+	TEST_ASSERT_EQUAL_INT(2, gaps); /* the end of the recorder, too */
+	lost.us = LOST_FROM * SECOND / 1000;
+	first = replay_place(h, &lost);
+	TEST_ASSERT_EQUAL_INT(1, replay_rows(h, first, replay_end(h), rows, 1));
+	TEST_ASSERT_EQUAL_INT(-1, rows[0].signal);
+	lost.boot++;
+	TEST_ASSERT_EQUAL_INT64(-ENOENT, replay_place(h, &lost));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -556,5 +593,6 @@ int main(void)
 	RUN_TEST(test_a_user_who_may_only_read_reads_all);
 	RUN_TEST(test_a_copy_without_its_log_is_read_too);
 	RUN_TEST(test_points_of_sums_are_those_of_the_values);
+	RUN_TEST(test_all_rows_come_once_in_the_order_of_recording);
 	return UNITY_END();
 }

@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: MIT */
+/* The rows of all signals in the order of their ids. */
+#include <errno.h>
+#include <stdlib.h>
+
+#include "src/history/sql.h"
+#include "src/libhistory/replay.h"
+#include "src/libhistory/steps.h"
+
+int64_t replay_place(const struct ows_history *h, const struct replay_point *point)
+{
+	int64_t place = -ENOENT;
+
+	for (int i = 0; i < h->session_count; i++) {
+		const struct session *session = &h->sessions[i];
+		int64_t id = point->us + session->base;
+
+		if (session->boot != point->boot || (place >= 0 && id < session->start))
+			continue;
+		place = id < session->start ? session->start : id;
+	}
+	return place;
+}
+
+int64_t replay_end(const struct ows_history *h)
+{
+	return h->end + 1;
+}
+
+static int signal_of(const struct ows_history *h, uint32_t number)
+{
+	for (int i = 0; i < h->signal_count; i++)
+		if (h->signals[i].number == number)
+			return i;
+	return -ENOENT;
+}
+
+int replay_rows(struct ows_history *h, int64_t first, int64_t end, struct replay_row *rows, int n)
+{
+	sqlite3_stmt *from = h->statements[H_ALL];
+	int count = 0, got = 0, session = 0;
+
+	sql_bind(from, "iii", first, end, (int64_t)n);
+	while (count < n && (got = sql_next(from)) == 1) {
+		struct replay_row *row = &rows[count];
+		uint32_t number = (uint32_t)sqlite3_column_int64(from, 4);
+		int signal = number ? signal_of(h, number) : -1;
+		struct step step = {0};
+
+		if (number && signal < 0)
+			continue;
+		got = steps_take(from, number ? &h->signals[signal] : &(struct known_signal){0},
+		                 &step);
+		if (got < 0)
+			break;
+		while (session + 1 < h->session_count && step.id >= h->sessions[session].end)
+			session++;
+		*row = (struct replay_row){
+			.at = {h->sessions[session].boot, step.id - h->sessions[session].base},
+			.wall_us = step.id + h->sessions[session].date,
+			.signal = signal,
+			.v = {.number = step.number,
+		              .integer = step.integer,
+		              .type = step.type,
+		              .quality = step.quality},
+			.text = step.text,
+		};
+		count++;
+	}
+	sqlite3_reset(from);
+	for (int i = 0; got < 0 && i < count; i++)
+		free(rows[i].text);
+	return got < 0 ? got : count;
+}

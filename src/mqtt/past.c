@@ -1,0 +1,521 @@
+/* SPDX-License-Identifier: MIT */
+/* Stretches of time that a broker has missed, and the batches of rows that fill them. */
+#include "src/mqtt/past.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "hal/base/time.h"
+#include "src/libhistory/ows_history.h"
+#include "src/signal/hash.h"
+
+#define NS_PER_US 1000
+#define US_PER_S INT64_C(1000000)
+/* After an outage of a broker a thousand nodes send again at once: 500 rows of each in a second */
+#define BATCH 256
+#define PACE_NS (500 * NS_PER_MS)
+#define MESSAGE_MOST 100 /* metrics */
+#define MARK_NS NS_PER_S
+#define KEEP_NS (60 * NS_PER_S)
+/* The recorder writes once in a minute, and at least each ten minutes */
+#define WAIT_NS (2 * NS_PER_S)
+#define WAIT_MOST_NS (30 * NS_PER_S)
+/* A value that was measured before a moment may reach us after it */
+#define SLACK_US (2 * US_PER_S)
+/* In the history rows of the same time are microseconds apart */
+#define SAME_NS NS_PER_MS
+#define WORTH_US (10 * US_PER_S)
+
+static struct replay_point point_of(const struct past *p, int64_t ns)
+{
+	return (struct replay_point){p->boot, ns / NS_PER_US};
+}
+
+/* --- What is kept ---------------------------------------------------------------------------- */
+
+static void complain(struct past *p, const char *what, int err)
+{
+	if (!p->logged)
+		log_warning(p->face->log,
+		            "%s: %s; after a restart of owsd-mqtt too little is sent "
+		            "again, or something twice",
+		            what, strerror(err));
+	p->logged = true;
+}
+
+static void find_path(struct past *p)
+{
+	char place[HISTORY_PATH] = "";
+	int err = history_place_state(p->face->ops->program, "mqtt", p->face->arguments->instance,
+	                              place);
+
+	if (!err)
+		err = history_make_above(place);
+	if (!err && mkdir(place, 0750) < 0 && errno != EEXIST)
+		err = -errno;
+	if (err)
+		complain(p, place, -err);
+	snprintf(p->path, sizeof(p->path), "%s%s", err ? "" : place, err ? "" : "/reached");
+}
+
+static void keep(struct past *p, int64_t now_ns)
+{
+	char part[sizeof(p->path) + 8];
+	FILE *f;
+	int bad;
+
+	p->kept_ns = now_ns;
+	if (p->there && !*p->path)
+		find_path(p);
+	if (!p->there || !*p->path)
+		return;
+	snprintf(part, sizeof(part), "%s.part", p->path);
+	f = fopen(part, "we");
+	if (!f) {
+		complain(p, part, errno);
+		return;
+	}
+	fprintf(f, "owsd-mqtt 1 %016" PRIx64 " %d\n%" PRId64 " %" PRId64 "\n", p->key, p->count,
+	        p->reached.boot, p->reached.us);
+	for (int i = 0; i < p->count; i++)
+		fprintf(f, "%" PRId64 " %" PRId64 " %" PRId64 " %" PRId64 "\n",
+		        p->windows[i].from.boot, p->windows[i].from.us, p->windows[i].until.boot,
+		        p->windows[i].until.us);
+	fputs("end\n", f);
+	bad = ferror(f);
+	if (fclose(f) || bad || rename(part, p->path) < 0)
+		complain(p, p->path, errno);
+}
+
+/* False: there is none, of another broker, or damaged. */
+static bool read_kept(struct past *p)
+{
+	FILE *f = fopen(p->path, "re");
+	struct past old = *p;
+	char end[4] = "";
+	uint64_t key;
+	bool good;
+
+	if (!f)
+		return false;
+	good = fscanf(f, "owsd-mqtt 1 %" SCNx64 " %d %" SCNd64 " %" SCNd64, &key, &old.count,
+	              &old.reached.boot, &old.reached.us) == 4 &&
+	       key == p->key && old.count >= 0 && old.count <= PAST_WINDOWS;
+	for (int i = 0; good && i < old.count; i++)
+		good = fscanf(f, "%" SCNd64 " %" SCNd64 " %" SCNd64 " %" SCNd64,
+		              &old.windows[i].from.boot, &old.windows[i].from.us,
+		              &old.windows[i].until.boot, &old.windows[i].until.us) == 4;
+	good = good && fscanf(f, " %3s", end) == 1 && !strcmp(end, "end");
+	fclose(f);
+	if (good)
+		*p = old;
+	return good;
+}
+
+/* --- The history ----------------------------------------------------------------------------- */
+
+static void close_history(struct past *p)
+{
+	ows_history_close(p->history);
+	p->history = NULL;
+}
+
+static bool open_history(struct past *p)
+{
+	int err = 0;
+
+	if (!p->history)
+		err = ows_history_open(p->face->arguments->instance,
+		                       p->face->config->recorder.directory, &p->history);
+	p->there = !err;
+	if (err && !p->logged)
+		log_notice(p->face->log,
+		           "what the broker misses is not sent again: the history of owsd-recorder "
+		           "cannot be read: %s%s",
+		           strerror(-err),
+		           err == -EACCES ? "; put the user into the group owsd" : "");
+	p->logged = p->logged || err;
+	return !err;
+}
+
+static int by_name(const void *a, const void *b)
+{
+	const struct row *x = *(const struct row *const *)a, *y = *(const struct row *const *)b;
+
+	return strcmp(x->name, y->name);
+}
+
+/* False: no memory. */
+static bool map_rows(struct past *p)
+{
+	int signals = ows_history_signals(p->history), count = p->stream->count;
+
+	free(p->by_name);
+	free(p->rows);
+	p->by_name = calloc((size_t)count + 1, sizeof(struct row *));
+	p->rows = calloc((size_t)signals + 1, sizeof(*p->rows));
+	if (!p->by_name || !p->rows)
+		return false;
+	for (int i = 0; i < count; i++)
+		p->by_name[i] = &p->stream->rows[i];
+	qsort(p->by_name, (size_t)count, sizeof(struct row *), by_name);
+	for (int i = 0; i < signals; i++)
+		p->rows[i] = -2;
+	return true;
+}
+
+/* NULL: the configuration has it no more, or with another type. */
+static struct row *row_of(struct past *p, const struct replay_row *r)
+{
+	int *index = &p->rows[r->signal];
+	struct row *row;
+
+	if (*index == -2) {
+		struct ows_history_signal signal;
+		struct row key = {0};
+		const struct row *wanted = &key, **found = NULL;
+
+		if (!ows_history_signal(p->history, r->signal, &signal)) {
+			key.name = (char *)(uintptr_t)signal.name;
+			found = bsearch(&wanted, p->by_name, (size_t)p->stream->count,
+			                sizeof(struct row *), by_name);
+		}
+		*index = found ? (int)(*found - p->stream->rows) : -1;
+	}
+	if (*index < 0)
+		return NULL;
+	row = &p->stream->rows[*index];
+	return row->info.type == r->v.type ? row : NULL;
+}
+
+/* --- A batch --------------------------------------------------------------------------------- */
+
+void past_drop(struct past *p)
+{
+	for (int i = 0; i < p->value_count; i++)
+		free(p->values[i].text);
+	free(p->values);
+	free(p->by_name);
+	free(p->rows);
+	p->values = NULL;
+	p->by_name = NULL;
+	p->rows = NULL;
+	p->value_count = p->put = 0;
+	p->read = p->marking = false;
+	for (int i = 0; i < p->stream->count; i++)
+		p->stream->rows[i].past_print = 0;
+}
+
+static void wait_more(struct past *p, int64_t now_ns)
+{
+	p->next_ns = now_ns + p->wait_ns;
+	p->wait_ns = 2 * p->wait_ns < WAIT_MOST_NS ? 2 * p->wait_ns : WAIT_MOST_NS;
+}
+
+static void end_window(struct past *p, int64_t now_ns)
+{
+	memmove(p->windows, p->windows + 1, sizeof(p->windows[0]) * (size_t)--p->count);
+	p->next_ns = now_ns;
+	p->wait_ns = WAIT_NS;
+	for (int i = 0; i < p->stream->count; i++)
+		p->stream->rows[i].past_print = 0;
+	if (!p->count) {
+		if (p->said)
+			log_notice(p->face->log,
+			           "%" PRIu64 " values that the broker had missed are sent",
+			           p->filled);
+		p->said = false;
+		p->filled = 0;
+		close_history(p);
+	}
+	keep(p, now_ns);
+}
+
+/*
+ * Of the newest outage the rows know more than its begin and end: what the broker had before. The
+ * recorder may have looked later than we did, so its time of the same value may be later.
+ */
+static bool had_before(const struct past *p, const struct row *row, const struct replay_row *r)
+{
+	int64_t ns = r->at.us * NS_PER_US;
+
+	if (p->count > 1 || r->at.boot != p->boot)
+		return false;
+	return (row->born_ns && ns > row->born_ns - NS_PER_US) ||
+	       (row->past_ns && ns <= row->past_ns + SAME_NS);
+}
+
+/* A value that holds comes again each hour. */
+static bool is_same(const struct past *p, struct row *row, const struct replay_row *r)
+{
+	uint64_t print = stream_print(&r->v, r->text),
+		 before = row->past_print || p->count > 1 ? row->past_print : row->past_told;
+
+	row->past_print = print;
+	row->past_told = 0;
+	return print == before;
+}
+
+static void add_value(struct past *p, struct row *row, struct replay_row *r)
+{
+	struct past_value *value = &p->values[p->value_count++];
+
+	*value = (struct past_value){.row = row, .wall_us = r->wall_us, .v = r->v, .text = r->text};
+	value->place = p->value_count;
+	r->text = NULL;
+}
+
+/* From then on nothing is known: no number, of no row that is there. */
+static void add_gap(struct past *p, struct replay_row *r)
+{
+	r->v = (struct ows_value){.quality = OWS_Q_STALE};
+	for (int i = 0; i < p->stream->count; i++) {
+		struct row *row = &p->stream->rows[i];
+
+		row->past_print = 0;
+		if (row->chip < 0 || p->stream->chips[row->chip].announced)
+			add_value(p, row, r);
+	}
+}
+
+static int by_chip(const void *a, const void *b)
+{
+	const struct past_value *x = a, *y = b;
+
+	return x->row->chip != y->row->chip ? x->row->chip - y->row->chip : x->place - y->place;
+}
+
+static void take_rows(struct past *p, struct replay_row *rows, int n)
+{
+	/* a gap of all is a batch of its own */
+	for (int i = 0; i < n && (!i || (rows[0].signal >= 0 && rows[i].signal >= 0)); i++) {
+		struct row *row = rows[i].signal < 0 ? NULL : row_of(p, &rows[i]);
+
+		p->next = rows[i].at;
+		p->next.us++;
+		if (rows[i].signal < 0)
+			add_gap(p, &rows[i]);
+		else if (row && !had_before(p, row, &rows[i]) && !is_same(p, row, &rows[i]))
+			add_value(p, row, &rows[i]);
+	}
+	for (int i = 0; i < n; i++)
+		free(rows[i].text);
+	qsort(p->values, (size_t)p->value_count, sizeof(*p->values), by_chip);
+	p->read = true;
+}
+
+/* The next rows of the first window; at its end it is taken away. 0 or a negative errno. */
+static int read_batch(struct past *p, int64_t now_ns)
+{
+	struct replay_row rows[BATCH];
+	struct past_window *w = &p->windows[0];
+	int most = p->stream->count > BATCH ? p->stream->count : BATCH, n = 0;
+	int64_t from, until, end;
+
+	if (!p->by_name && !(p->history ? ows_history_refresh(p->history) == 0 : open_history(p)))
+		return -ENOENT;
+	if (!p->by_name && !map_rows(p))
+		return -ENOMEM;
+	from = replay_place(p->history, &w->from);
+	until = replay_place(p->history, &w->until);
+	if (from < 0 || until < 0) {
+		/* the recorder of this boot has written nothing yet; of an older one it never will */
+		if ((from < 0 ? w->from : w->until).boot == p->boot)
+			return -EAGAIN;
+		end_window(p, now_ns);
+		return 0;
+	}
+	end = replay_end(p->history) < until ? replay_end(p->history) : until;
+	if (from < end)
+		n = replay_rows(p->history, from, end, rows, BATCH);
+	if (n < 0)
+		return n;
+	if (!n) {
+		if (end < until)
+			return -EAGAIN;
+		end_window(p, now_ns);
+		return 0;
+	}
+	p->values = calloc((size_t)most, sizeof(*p->values));
+	if (p->values)
+		take_rows(p, rows, n);
+	return p->values ? 0 : -ENOMEM;
+}
+
+static bool put_batch(struct past *p)
+{
+	while (p->put < p->value_count) {
+		const struct past_value *first = &p->values[p->put];
+		int n = 1;
+
+		while (p->put + n < p->value_count && n < MESSAGE_MOST &&
+		       first[n].row->chip == first->row->chip)
+			n++;
+		if (!p->stream->profile->past(p->stream, first, n))
+			return false;
+		p->put += n;
+	}
+	return true;
+}
+
+/* The broker has it. */
+static void end_batch(struct past *p, int64_t now_ns)
+{
+	p->windows[0].from = p->next;
+	p->sent += (uint64_t)p->value_count;
+	p->filled += (uint64_t)p->value_count;
+	p->next_ns = now_ns + (p->value_count ? PACE_NS : 0);
+	for (int i = 0; i < p->value_count; i++)
+		free(p->values[i].text);
+	free(p->values);
+	p->values = NULL;
+	if (p->value_count)
+		keep(p, now_ns);
+	p->value_count = p->put = 0;
+	p->read = false;
+	p->wait_ns = WAIT_NS;
+}
+
+/* --- Sessions -------------------------------------------------------------------------------- */
+
+void past_begin(struct past *p, uint64_t key)
+{
+	int64_t now_ns = ows_now();
+
+	p->on = p->stream->profile->past;
+	p->key = key;
+	p->boot = history_boot_present();
+	p->reached = point_of(p, now_ns);
+	p->count = 0;
+	p->lost = true;
+	p->logged = p->said = false;
+	p->wait_ns = WAIT_NS;
+	if (!p->on || !open_history(p))
+		return;
+	close_history(p);
+	find_path(p);
+	if (*p->path)
+		read_kept(p);
+}
+
+/* The broker has the birth: what it has missed before is known. */
+static void begin_session(struct past *p, int64_t now_ns)
+{
+	struct past_window *w;
+
+	if (p->count < PAST_WINDOWS) {
+		w = &p->windows[p->count++];
+		w->from = (struct replay_point){p->reached.boot, p->reached.us - SLACK_US};
+		if (w->from.boot == p->boot && w->from.us < p->born.us)
+			w->from = p->born;
+	}
+	w = &p->windows[p->count - 1];
+	w->until = p->born = p->mark;
+	if (w->from.boot != p->boot || w->until.us - w->from.us > WORTH_US) {
+		log_notice(p->face->log,
+		           "what the broker has missed is sent again, from the history");
+		p->said = true;
+	}
+	p->lost = false;
+	p->next_ns = now_ns + PACE_NS;
+	p->wait_ns = WAIT_NS;
+	p->kept_ns = 0;
+}
+
+static void mark(struct past *p, int64_t now_ns)
+{
+	bool batch = p->read && p->put == p->value_count;
+	bool news = p->lost || p->broker->published != p->mark_published;
+
+	if (p->marking || (!batch && !p->lost && (!news || now_ns - p->marked_ns < MARK_NS)))
+		return;
+	if (!broker_mark(p->broker))
+		return;
+	p->marking = true;
+	p->mark_batch = batch;
+	p->mark = point_of(p, p->lost ? now_ns : p->face->looked_ns);
+	p->mark_published = p->broker->published;
+	p->marked_ns = now_ns;
+}
+
+/* The answer to a mark: the broker has all that was published before it. */
+static void marked(struct past *p, int64_t now_ns)
+{
+	p->marking = false;
+	if (p->lost)
+		begin_session(p, now_ns);
+	p->reached = p->mark;
+	for (int i = 0; i < p->stream->count; i++) {
+		struct row *row = &p->stream->rows[i];
+
+		if (!row->published || row->published_ns > p->marked_ns)
+			continue;
+		row->sure_ns = row->moment_ns;
+		row->sure_told = row->told;
+	}
+	if (p->mark_batch)
+		end_batch(p, now_ns);
+	if (now_ns - p->kept_ns >= KEEP_NS)
+		keep(p, now_ns);
+}
+
+void past_lost(struct past *p)
+{
+	/* it may have answered, and gone at once */
+	if (p->marking && p->broker->marked)
+		marked(p, ows_now());
+	if (!p->on || (p->lost && !p->marking))
+		return;
+	for (int i = 0; !p->lost && i < p->stream->count; i++) {
+		struct row *row = &p->stream->rows[i];
+
+		row->past_ns = row->sure_ns;
+		row->past_told = row->sure_told;
+	}
+	past_drop(p);
+	if (!p->lost)
+		keep(p, ows_now());
+	p->lost = true;
+}
+
+void past_end(struct past *p)
+{
+	past_lost(p);
+	past_drop(p);
+	close_history(p);
+}
+
+void past_pump(struct past *p, int64_t now_ns)
+{
+	/* a time that is wrong does not count */
+	if (!p->on || !p->stream->live || !p->stream->announced || !p->stream->clock_set)
+		return;
+	if (p->lost && !p->marking && !open_history(p)) {
+		p->lost = false;
+		p->count = 0;
+	}
+	if (!p->there)
+		return;
+	if (p->marking && p->broker->marked)
+		marked(p, now_ns);
+	if (!p->lost && p->count && !p->read && now_ns >= p->next_ns) {
+		int err = read_batch(p, now_ns);
+
+		if (err)
+			wait_more(p, now_ns);
+		if (err)
+			past_drop(p);
+		else if (p->read && !p->value_count)
+			end_batch(p, now_ns);
+	}
+	if (!p->read || put_batch(p))
+		mark(p, now_ns);
+}
+
+int64_t past_next(const struct past *p)
+{
+	return p->on && !p->lost && p->there && p->count && !p->read ? p->next_ns : INT64_MAX;
+}
