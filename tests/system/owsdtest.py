@@ -385,10 +385,14 @@ class Scene:
         self.programs = []
         self.names = []
 
+    open = set()  # by all threads
+
     def __enter__(self):
+        self.open.add(self)
         return self
 
     def __exit__(self, kind, _value, _trace):
+        self.open.discard(self)
         for program in reversed(self.programs):
             if program.running():
                 program.thaw()
@@ -397,7 +401,8 @@ class Scene:
             try:
                 program.process.wait(20)
             except subprocess.TimeoutExpired:
-                program.kill()
+                program.process.kill()
+                program.process.wait()
         if kind is not None and not issubclass(kind, Skip):
             for program in self.programs:
                 print(f"--- {' '.join(program.command)}: status {program.process.returncode}")
@@ -491,12 +496,22 @@ def _run_case(name, case):
     return 0
 
 
+def _end(*_):
+    """At SIGTERM. Cases of other threads cannot be ended, but what they have started can."""
+    for scene in list(Scene.open):
+        for program in list(scene.programs):
+            if program.running():
+                program.process.kill()
+        shutil.rmtree(scene.path, ignore_errors=True)
+    os._exit(143)
+
+
 def main(at_once=1):
     """Run the cases of the calling script, or those named on the command line; so many at once,
     where they mostly wait."""
     module = vars(sys.modules["__main__"])
     cases = {n: f for n, f in module.items() if n.startswith("test_") and callable(f)}
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+    signal.signal(signal.SIGTERM, _end if at_once > 1 else lambda *_: sys.exit(143))
     names = sys.argv[1:] or list(cases)
     with concurrent.futures.ThreadPoolExecutor(at_once) as pool:
         ends = [pool.submit(_run_case, n, cases[n]) for n in names if at_once > 1]
