@@ -127,6 +127,7 @@ static void broker_fail(struct broker *b, const char *why, const char *remedy, i
 	if (choose(b, was_connected, now_ns))
 		return;
 	b->failures++;
+	b->vain &= ~(1u << way);
 	print = hash_text(HASH_BEGIN, words, strlen(words));
 	if (print != b->logged[way])
 		log_warning(b->face->log, "%s", words);
@@ -247,6 +248,11 @@ static void connected(struct broker *b, int64_t now_ns)
 	b->again = b->known & 1u << b->way;
 	b->known |= 1u << b->way;
 	b->refusal_logged = false;
+	if (b->vain & 1u << b->way) {
+		b->trouble[0] = '\0';
+		b->ops->connected(b->ctx);
+		return;
+	}
 	forget_trouble(b);
 	log_notice(b->face->log, "connected to %.100s by MQTT %s",
 	           mqtt_way_name(&b->options->ways[b->way], name), mqtt5 ? "5" : "3.1.1");
@@ -346,7 +352,7 @@ void broker_begin(struct broker *b, int64_t now_ns)
 {
 	b->client = NULL;
 	b->fd = -1;
-	b->way = b->known = 0;
+	b->way = b->known = b->vain = 0;
 	b->v4 = b->old_protocol = false;
 	b->step_ns = STEP_NS;
 	b->next_ns = now_ns;
@@ -435,8 +441,9 @@ void broker_end(struct broker *b)
 	b->state = BROKER_OFF;
 }
 
-void broker_leave(struct broker *b, int64_t now_ns)
+void broker_leave(struct broker *b, bool vain, int64_t now_ns)
 {
+	b->vain = vain ? b->vain | 1u << b->way : 0;
 	broker_end(b);
 	choose(b, false, now_ns);
 }

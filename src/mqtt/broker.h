@@ -21,8 +21,11 @@ void broker_begin(struct broker *b, int64_t now_ns);
  * most. If the broker does not acknowledge that until then, it publishes the will.
  */
 void broker_end(struct broker *b);
-/* The same, and then connect to the next way: what a session is for has gone. */
-void broker_leave(struct broker *b, int64_t now_ns);
+/*
+ * The same, and then connect to the next way: what a session is for is not here. vain: it never was
+ * in this connection, and the next ones to this way are not worth a line of the log.
+ */
+void broker_leave(struct broker *b, bool vain, int64_t now_ns);
 /* fd is ready, as poll(2) has it. True: it was the broker's. */
 bool broker_ready(struct broker *b, int fd, short ready, int64_t now_ns);
 void broker_tick(struct broker *b, int64_t now_ns);

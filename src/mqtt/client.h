@@ -69,6 +69,7 @@ struct broker {
 	int64_t begun_ns, next_ns, step_ns;
 	int64_t tend_ns;                   /* when broker_tick() is due, once there is a client */
 	unsigned known;                    /* ways that it was connected by, as bits */
+	unsigned vain;                     /* those whose last connection was left for nothing */
 	bool again;                        /* by this one before */
 	char session[BROKER_SESSION];      /* of this process alone; stands in its will */
 	char tls_words[BROKER_WORDS];      /* the last error that libmosquitto logged */

@@ -397,7 +397,13 @@ static void look_at_host(struct face *face, int64_t now_ns)
 {
 	struct mqtt *m = mqtt_own(face);
 	struct broker *b = &m->broker;
+	char name[MQTT_WAY_NAME];
 
+	if (m->stream.host && m->stream.host_there && b->vain) {
+		b->vain = 0;
+		log_notice(face->log, "the primary host %s is online, at %.150s", m->stream.host,
+		           mqtt_way_name(&m->options.ways[b->way], name));
+	}
 	if (!m->stream.host || m->stream.host_there || b->state != BROKER_CONNECTED)
 		return;
 	if (m->stream.born)
@@ -405,7 +411,7 @@ static void look_at_host(struct face *face, int64_t now_ns)
 		            "the primary host %s is offline: nothing is published until it is back",
 		            m->stream.host);
 	if (m->stream.born || (m->options.way_count > 1 && now_ns - b->begun_ns > HOST_WAIT_NS))
-		broker_leave(b, now_ns);
+		broker_leave(b, !m->stream.born, now_ns);
 }
 
 static void go_on(struct face *face, int64_t now_ns)

@@ -322,7 +322,7 @@ static int read_batch(struct past *p, int64_t now_ns)
 	from = replay_place(p->history, &w->from);
 	until = replay_place(p->history, &w->until);
 	if (from < 0 || until < 0) {
-		/* the recorder of this boot has written nothing yet; of an older one it never will */
+		/* that of this boot has written nothing yet; of an older one it never will */
 		if ((from < 0 ? w->from : w->until).boot == p->boot)
 			return -EAGAIN;
 		end_window(p, now_ns);

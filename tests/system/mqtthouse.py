@@ -78,6 +78,7 @@ class House:
         self.wire = scene.file("house.sim", "chip DS2482-100 0x18\n"
                                f"DS18B20 {SENSOR} temperature 21.5\nDS2408 {SWITCH}\n{wire}")
         self.keys = {"Broker": self.broker.url, "Node": "pi7", **keys}
+        self.keys["Broker"] = self.keys["Broker"].format(self.broker.url)
         self.daemon = scene.owsd(self.text(*(items or (ROOM, RELAY, ABSENT))))
         self.face = self.start(env)
 

@@ -11,8 +11,8 @@ import time
 
 import owsdtest
 from clients import python_client
-from mqtthouse import MQTT, RELAY, ROOM, SENSOR, SWITCH, House, Listener, item
-from owsdtest import logged, raw, until
+from mqtthouse import MQTT, RELAY, ROOM, SENSOR, SWITCH, Broker, House, Listener, item
+from owsdtest import free_port, logged, raw, until
 from test_mqtt_commands import journal, publish
 
 PROBE = "28.A0B1C2000009"
@@ -373,6 +373,19 @@ def test_a_session_waits_for_its_primary_host_and_ends_with_it(scene):
     assert node["bdSeq"].value == 1, node
     _, ports = host.hears("dbirth", SWITCH, after=at)
     assert ports["relay"].value is True, ports
+
+
+def test_ways_at_which_the_host_never_is_are_looked_at_in_turn_and_logged_once(scene):
+    """It takes two minutes: owsd-mqtt waits for one at each way."""
+    other = Broker(scene)
+    house = House(scene, ROOM, Profile="sparkplug", Topic="plant", PrimaryHost="scada",
+                  Broker=f"{other.url} | mqtt://127.0.0.1:{free_port()} | {{}}")
+    until(lambda: other.process.log().count(" as owsd-pi7 ") == 2, 200, lambda: house.face.log(), step=0.5)
+    until(lambda: other.process.log().count("STATE/scada (QoS 1)") == 2, 20, lambda: other.process.log())
+    assert house.face.log().count("connected to") == 2, house.face.log()
+    assert house.face.log().count("cannot be reached") == 1, house.face.log()
+    publish(house, "spBv1.0/STATE/scada", '{"online":true,"timestamp":1000}', "-r", "-p", str(other.port))
+    logged(house.face, f"the primary host scada is online, at {other.url}")
 
 
 def test_a_group_has_no_slash(scene):
