@@ -46,6 +46,8 @@ async function look() {
 	try {
 		const [alarms, journal] = await Promise.all([get("alarms"),
 			get("journal", {since: Math.round(store.now() - 7 * DAY_MS), n: ENTRIES})]);
+		if (store.unknown)
+			return; // it was lost meanwhile
 		put(fault, "");
 		drawStanding(listOf(alarms, "alarms"));
 		entries = listOf(journal, "entries").sort((a, b) => msOf(b.time) - msOf(a.time));

@@ -13,13 +13,23 @@ import * as wire from "./wire.js";
 /** A view whose modules are fetched when it is shown: most who look never edit. */
 function fetched(load) {
 	let view = null, place = null, wanted = null;
+	const fault = el("p", {class: "fault", role: "alert"});
 	return {
 		build(root) {
 			place = root;
+			place.append(fault);
 		},
 		async show(query) {
 			wanted = query;
-			const made = view ?? await load();
+			let made = view;
+			try {
+				made ??= await load();
+			} catch {
+				put(fault, "This view cannot be fetched from owsd-web. Choose it again when the "
+					+ "page is connected; if that does not help, load the page anew.");
+				return;
+			}
+			put(fault, "");
 			if (!view) {
 				view = made;
 				view.build(place);

@@ -1,9 +1,30 @@
 // SPDX-License-Identifier: MIT
-// Draws the last minutes of a signal as a small line of steps. What was not good stays a gap.
+// Keeps the last minutes of a signal, and draws them as a small line of steps. What was not good
+// stays a gap.
 import {svg} from "./dom.js";
 
 const WIDTH = 112, HEIGHT = 24, MARGIN = 2;
 const SHORTEST_MS = 30000, LONGEST_MS = 600000;
+
+const RECENT = 240;   // values of a signal that are kept
+const WATCHED = 3600; // and of one that has a trend
+const SLOT_MS = 500;  // what comes within such a time becomes one of them
+
+/** Add what a signal has at the time t, ms; v: null if that is not good. */
+export function keep(recent, t, v, code, watched) {
+	const last = recent.at(-1);
+	if (last && last.v === v && last.code === code)
+		return;
+	if (last && last.v !== null && v !== null && t < last.t + SLOT_MS) {
+		last.v = v;
+		last.low = Math.min(last.low, v);
+		last.high = Math.max(last.high, v);
+		return;
+	}
+	recent.push({t: Math.max(t, last?.t ?? 0), v, low: v, high: v, code});
+	while (recent.length > (watched ? WATCHED : RECENT))
+		recent.shift();
+}
 
 export function sparkline() {
 	return svg("svg", {class: "spark", viewBox: `0 0 ${WIDTH} ${HEIGHT}`, "aria-hidden": "true",

@@ -5,14 +5,14 @@
 import {get} from "./api.js";
 import {later} from "./dom.js";
 import {askAll} from "./early.js";
+import {keep} from "./spark.js";
 import {way} from "./way.js";
 import {UNKNOWN, qualityWords} from "./words.js";
 
 const FAILED_MS = 3000; // a connection that has failed for so long makes values unknown
 const SILENT_MS = 5000; // without an event for so long, the page asks whether the server lives
 const DEAD_MS = 35000;  // and after so long believes nothing: owsd-web sends one each 15 s
-const RECENT = 240;     // values of each signal that are kept for its sparkline
-const SLOT_MS = 500;    // what comes within such a time becomes one of them
+const APART_MS = 5000;  // two clocks that go apart by so much: one stood, or the other was set
 
 class Store extends EventTarget {
 	info = null;
@@ -27,10 +27,12 @@ class Store extends EventTarget {
 	#again = false;
 	#heard = 0;
 	#asked = 0;
+	#apart = Date.now() - performance.now();
 	#failed = 0; // timer
 	#lost = null; // why owsd is lost
 	#broken = "The page has no values yet."; // why the connection cannot be trusted
 	#details = later(() => this.#load(), 1000);
+	#retry = later(() => this.#load(), 2000);
 
 	/** The clock of the server, ms. */
 	now() {
@@ -89,7 +91,7 @@ class Store extends EventTarget {
 		const source = way.events(path, Object.keys(acts), {
 			opened: () => {
 				this.#lost = null;
-				this.#heard = Date.now();
+				this.#heard = performance.now();
 				if (complete)
 					this.#works();
 				else
@@ -103,7 +105,9 @@ class Store extends EventTarget {
 					setTimeout(() => source === this.#source && this.#connect(), 2000);
 			},
 			event: (type, text, id) => {
-				this.#heard = Date.now();
+				if (this.#slept())
+					return; // it may have waited here for hours
+				this.#heard = performance.now();
 				const data = text ? JSON.parse(text) : {};
 				data.generation ??= Number((id || after).split(":")[0]);
 				if (this.#loading)
@@ -151,10 +155,19 @@ class Store extends EventTarget {
 	}
 
 	#doubt(why) {
-		this.#heard = Date.now();
+		this.#heard = performance.now();
 		this.#broken = why;
 		this.#trust();
 		this.#connect();
+	}
+
+	/* Of two clocks one stands while the computer sleeps, and the other can be set. */
+	#slept() {
+		const apart = Date.now() - performance.now(), by = Math.abs(apart - this.#apart);
+		this.#apart = apart;
+		if (by > APART_MS)
+			this.#doubt("This computer slept, or its clock was set.");
+		return by > APART_MS;
 	}
 
 	/*
@@ -162,10 +175,10 @@ class Store extends EventTarget {
 	 * answers another request proves nothing of the stream.
 	 */
 	async #watch() {
-		const now = Date.now();
-		if (!this.#heard || now - this.#heard < SILENT_MS)
+		const now = performance.now(), heard = this.#heard;
+		if (!heard || this.#slept() || now - heard < SILENT_MS)
 			return;
-		if (now - this.#heard >= DEAD_MS) {
+		if (now - heard >= DEAD_MS) {
 			this.#doubt("Nothing came from owsd-web for half a minute.");
 			return;
 		}
@@ -179,7 +192,8 @@ class Store extends EventTarget {
 			if (this.info.since !== since)
 				this.#connect();
 		} catch (error) {
-			this.#doubt(`The page has ${error.message}.`);
+			if (heard === this.#heard)
+				this.#doubt(`The page has ${error.message}.`);
 		}
 	}
 
@@ -192,7 +206,9 @@ class Store extends EventTarget {
 		}
 		this.#loading = true;
 		try {
-			const [info, list] = await askAll();
+			const source = this.#source, [info, list] = await askAll();
+			if (source !== this.#source)
+				throw new Error("the connection broke meanwhile");
 			this.info = info;
 			this.skew = info.now - Date.now();
 			this.#works();
@@ -201,7 +217,7 @@ class Store extends EventTarget {
 				this.#after = `${list.generation}:${list.cursor}`;
 		} catch (error) {
 			this.#fail(`The page cannot get the signals: ${error.message}.`);
-			setTimeout(() => this.#load(), 2000);
+			this.#retry();
 		}
 		this.#loading = false;
 		for (const act of this.#waiting.splice(0))
@@ -244,22 +260,9 @@ class Store extends EventTarget {
 	}
 
 	#keep(signal, number, code) {
-		if (signal.type === "string")
-			return;
 		const t = number === null ? this.now() : signal.measured ?? this.now();
-		const last = signal.recent.at(-1);
-		if (last && last.v === number && last.code === code)
-			return;
-		if (last && last.v !== null && number !== null && t < last.t + SLOT_MS) {
-			last.v = number;
-			last.low = Math.min(last.low, number);
-			last.high = Math.max(last.high, number);
-			return;
-		}
-		signal.recent.push({t: Math.max(t, last?.t ?? 0), v: number, low: number, high: number,
-			code});
-		if (signal.recent.length > (signal.watched ? RECENT * 15 : RECENT))
-			signal.recent.shift();
+		if (signal.type !== "string")
+			keep(signal.recent, t, number, code, signal.watched);
 	}
 
 	#changes({now, v}) {
