@@ -62,8 +62,8 @@ def house(scene, name=None, write=False, recorder=None, room="21.5", also=""):
 
 
 @contextlib.contextmanager
-def plant(scene, write=False):
-    """owsd, owsd-web, a page that shows the signals."""
+def plant(scene, write=False, browser=browser):
+    """owsd, owsd-web, a page that shows the signals; browser: that module, or firefox."""
     with browser.open_one(scene) as page:
         daemon = house(scene, write=write)
         until(lambda: scene.get(daemon, "room") == "21.5", 15, "room is good")
