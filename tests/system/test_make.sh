@@ -86,10 +86,13 @@ fi
 # After minutes of lines the end names what failed, and only then how much
 cat >part <<'END'
 #!/bin/sh
-case $1 in
-unit) printf 'ok   build/unit/test_a\nFAIL build/unit/test_b: ended with status 139\n3 passed, 1 failed\n'; exit 1 ;;
-*) printf 'FAIL test_c.py (2, 3 s)\nok   test_d.py (1, 1 s)\n5 passed, 1 failed, 2 skipped\n' ;;
-esac
+for goal; do
+	case $goal in
+	unit) printf 'ok   build/unit/test_a\nFAIL build/unit/test_b: ended with status 139\n3 passed, 1 failed\n' ;;
+	system) printf 'FAIL test_c.py (2, 3 s)\nok   test_d.py (1, 1 s)\n5 passed, 1 failed, 2 skipped\n' ;;
+	esac
+done
+exit 1
 END
 ! sh "$OWSD_SOURCE/tests/both" sh part >log || { echo "a failure is none"; exit 1; }
 printf 'failed: build/unit/test_b: ended with status 139\nfailed: test_c.py (2, 3 s)\n8 passed, 2 failed, 2 skipped\n' >want
