@@ -2,13 +2,14 @@
 /*
  * The profile "homie5": the node is a device of the Homie convention 5, each chip a node of it, and
  * each signal a property. Homie has no quality: of a bad value nothing is retained, and an alert of
- * the device says why, or that a value is simulated.
+ * the device says why; or that a limit alarm of it stands, or that it is simulated.
  */
 #include <math.h>
 #include <string.h>
 #include <time.h>
 
 #include "src/mqtt/entity.h"
+#include "src/mqtt/plain.h"
 #include "src/mqtt/stream.h"
 #include "src/signal/hash.h"
 #include "src/signal/value.h"
@@ -163,38 +164,51 @@ static bool birth(struct stream *s, int number, bool *more)
 
 /* --- Values and states ----------------------------------------------------------------------- */
 
-static bool put_alert(struct stream *s, const struct row *row, const char *why)
+/* The one alert of a row, if it is another than was published. */
+static bool put_alert(struct stream *s, struct row *row, const struct news *news)
 {
 	char below[TOPIC_SIZE], text[256] = "";
+	struct ows_alarm_state state;
+	const char *why = "", *more = "";
+	uint32_t print;
 
-	snprintf(below, sizeof(below), ALERT "%s", row->level);
+	if (!news->good) {
+		/* the state says that owsd is lost, and an output may wait for a command */
+		if (s->live && news->v.quality != OWS_Q_INITIAL)
+			why = ows_quality_text(news->v.quality);
+	} else if (plain_limit(s, row, &state) && plain_stands(&state)) {
+		why = ows_alarm_kind_text(state.limit_kind);
+		more = " alarm";
+	} else if (news->simulated) {
+		why = "simulated";
+	}
 	if (*why)
-		snprintf(text, sizeof(text), "%s: %s", row->name, why);
-	return stream_put_below(s, below, text);
+		snprintf(text, sizeof(text), "%s: %s%s", row->name, why, more);
+	print = (uint32_t)hash_text(HASH_BEGIN, text, strlen(text)) | 1;
+	if (print == row->alarm_print)
+		return true;
+	snprintf(below, sizeof(below), ALERT "%s", row->level);
+	if (!stream_put_below(s, below, text))
+		return false;
+	row->alarm_print = print;
+	return true;
 }
 
 static bool value(struct stream *s, struct row *row)
 {
 	struct news news;
-	bool known, put;
+	bool put;
 
 	if (!stream_read(s, row, &news))
-		return true;
-	if (!news.good) {
-		/* the state says that owsd is lost, and an output may wait for a command */
-		known = !s->live || news.v.quality == OWS_Q_INITIAL;
-		return stream_put_text(s, row->topic, "", true) &&
-		       put_alert(s, row, known ? "" : ows_quality_text(news.v.quality)) &&
+		return put_alert(s, row, &news);
+	if (!news.good)
+		return stream_put_text(s, row->topic, "", true) && put_alert(s, row, &news) &&
 		       stream_published(row, &news);
-	}
 	stream_value(s, &news, "true", "false");
 	/* an empty text would empty the topic: it is one byte 0 */
 	put = *news.text ? stream_put(s, row->topic, true)
 	                 : s->outlet.put(s->outlet.ctx, row->topic, "", 1, true);
-	known = row->published && row->good && row->simulated == news.simulated;
-	if (!put || (!known && !put_alert(s, row, news.simulated ? "simulated" : "")))
-		return false;
-	return stream_published(row, &news);
+	return put && put_alert(s, row, &news) && stream_published(row, &news);
 }
 
 static bool homie5_state(struct stream *s, enum stream_node node)

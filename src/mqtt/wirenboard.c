@@ -8,11 +8,13 @@
 #include <string.h>
 
 #include "src/mqtt/entity.h"
+#include "src/mqtt/plain.h"
 #include "src/mqtt/stream.h"
 #include "src/signal/value.h"
 
 #define META "meta"
 #define ERROR "meta/error"
+#define ALARM "__alarm" /* behind the topic of a signal: no slug has two in a row */
 
 static void topic_of(const struct stream *s, const struct row *row, char topic[TOPIC_SIZE])
 {
@@ -103,6 +105,27 @@ static bool put_control(struct stream *s, const struct row *row)
 	return put_below_row(s, row, META, NULL);
 }
 
+/* A control beside that of the signal: does its limit alarm stand? */
+static bool put_alarm_control(struct stream *s, const struct row *row)
+{
+	char topic[TOPIC_SIZE], title[320];
+	struct json json;
+
+	if (!row->alarms)
+		return true;
+	snprintf(title, sizeof(title), "%.300s: alarm",
+	         *row->info.description ? row->info.description : row->info.name);
+	stream_message(s, &json);
+	json_object(&json, NULL);
+	json_string(&json, "type", "alarm");
+	json_int(&json, "order", s->count + (row - s->rows) + 1);
+	json_bool(&json, "readonly", true);
+	put_title(&json, title, false);
+	json_object_end(&json);
+	snprintf(topic, sizeof(topic), "%s" ALARM "/" META, row->topic);
+	return stream_put(s, topic, true);
+}
+
 static bool put_device(struct stream *s)
 {
 	char title[ENTITY_ID + 8];
@@ -119,8 +142,11 @@ static bool put_device(struct stream *s)
 
 static bool birth(struct stream *s, int number, bool *more)
 {
+	const struct row *row = number ? &s->rows[number - 1] : NULL;
+
 	*more = number < s->count && !s->announced;
-	if (!s->announced && !(number ? put_control(s, &s->rows[number - 1]) : put_device(s)))
+	if (!s->announced &&
+	    !(row ? put_control(s, row) && put_alarm_control(s, row) : put_device(s)))
 		return false;
 	s->announced = s->announced || !*more;
 	return true;
@@ -140,10 +166,31 @@ static bool wirenboard_put_value(struct stream *s, const struct row *row, const 
 	return stream_put(s, row->topic, true);
 }
 
+/* If it is another than was published: unknown, it rests, it stands. */
+static bool put_alarm(struct stream *s, struct row *row)
+{
+	struct ows_alarm_state state;
+	bool known = plain_limit(s, row, &state), stands = known && plain_stands(&state);
+	uint32_t print = 1u + known + stands;
+	char topic[TOPIC_SIZE], error[TOPIC_SIZE];
+
+	if (!row->alarms || print == row->alarm_print)
+		return true;
+	snprintf(topic, sizeof(topic), "%s" ALARM, row->topic);
+	snprintf(error, sizeof(error), "%s" ALARM "/" ERROR, row->topic);
+	if ((known && !stream_put_text(s, topic, stands ? "1" : "0", true)) ||
+	    !stream_put_text(s, error, known ? "" : "r", true))
+		return false;
+	row->alarm_print = print;
+	return true;
+}
+
 static bool value(struct stream *s, struct row *row)
 {
 	struct news news;
 
+	if (!put_alarm(s, row))
+		return false;
 	if (!stream_read(s, row, &news))
 		return true;
 	/* the conventions have no other place for it that a person sees */
@@ -176,10 +223,15 @@ static bool wirenboard_state(struct stream *s, enum stream_node node)
 static bool writes(const struct stream *s, const char *topic, const char *below)
 {
 	const char *level = strchr(below, '/'), *end = level ? strchr(level + 1, '/') : NULL;
+	size_t len = end ? (size_t)(end - topic) : strlen(topic), tail = strlen(ALARM);
+	const struct row *row;
 
 	if (!strcmp(below, META) || !strcmp(below, ERROR))
 		return true;
-	return stream_row(s, topic, end ? (size_t)(end - topic) : strlen(topic));
+	if (len <= tail || memcmp(topic + len - tail, ALARM, tail) != 0)
+		return stream_row(s, topic, len);
+	row = stream_row(s, topic, len - tail);
+	return row && row->alarms;
 }
 
 static const char *const places[] = {

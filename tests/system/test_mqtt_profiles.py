@@ -127,6 +127,25 @@ def test_homie5_describes_the_device_before_its_values_and_is_ready_behind_them(
     assert "(d0, q2, r1, " in house.broker.process.log() and "owsd/pi7/health" not in house.kept("owsd/#")
 
 
+def test_a_limit_alarm_stands_beside_its_signal(scene):
+    for profile, standing, resting in ((Homie5, "room: high alarm", "room: simulated"), (WirenBoard, "1", "0")):
+        topic = f"{Homie5.root}/$alert/room" if profile is Homie5 else f"{WirenBoard.topic('room')}__alarm"
+        house = start(scene, profile, {**ROOM, "LimitH": 20})
+        house.says(topic, standing)
+        house.daemon.config.write_text(house.text({**ROOM, "LimitH": 30}))
+        house.daemon.signal(signal.SIGHUP)
+        house.says(topic, resting)
+        if profile is WirenBoard:
+            meta = json.loads(house.kept(f"{topic}/#")[f"{topic}/meta"])
+            assert (meta["type"], meta["readonly"]) == ("alarm", True), meta
+            house.daemon.stop()
+            house.says(f"{topic}/meta/error", "r")
+            house.daemon.config.write_text(house.text(ROOM))
+            house.daemon = scene.owsd(house.daemon.config, name=house.daemon.name)
+            # a signal without limits has no such control, nor does one stand there from before
+            until(lambda: not house.kept(f"{topic}/#"), 60, lambda: house.kept(f"{topic}/#"), step=0.5)
+
+
 def test_wirenboard_has_a_device_with_a_control_of_each_signal(scene):
     kind = item("kind", f"/{SWITCH}/type", "string")
     house = start(scene, WirenBoard, {**ROOM, "Unit": "°C", "Decimals": 1, "Description": "Living room"}, RELAY, DIAL,
