@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Starts the page: the views, which of them is shown (the address says it), and the state of all.
-import * as about from "./about.js";
-import * as alarms from "./alarms.js";
 import {announce, el, later, mark, put} from "./dom.js";
 import * as live from "./live.js";
 import {store} from "./store.js";
-import * as trends from "./trends.js";
 import {way} from "./way.js";
 import {alarmOf, clock} from "./words.js";
-import * as wire from "./wire.js";
 
-/** A view whose modules are fetched when it is shown: most who look never edit. */
+/** A view whose modules are fetched when it is shown, so that they do not hold up the view Live. */
 function fetched(load) {
 	let view = null, place = null, wanted = null;
 	const fault = el("p", {class: "fault", role: "alert"});
@@ -44,8 +40,12 @@ function fetched(load) {
 	};
 }
 
+const LATER = [() => import("./alarms.js"), () => import("./trends.js"), () => import("./wire.js"),
+	() => import("./about.js")];
+const [alarms, trends, wire, about] = LATER.map(fetched);
 const config = fetched(() => import("./config.js"));
 const VIEWS = {live, alarms, trends, wire, config, about};
+const LATER_MS = 1000; // after the first values: then a lost connection leaves views to look at
 const $ = (id) => document.getElementById(id);
 let present = null;
 
@@ -114,6 +114,8 @@ for (const [key, view] of Object.entries(VIEWS))
 store.addEventListener("trust", trust);
 store.addEventListener("signals", renewed);
 store.addEventListener("signals", choose, {once: true});
+store.addEventListener("signals", () => setTimeout(() =>
+	LATER.forEach((load) => load().catch(() => {})), LATER_MS), {once: true});
 store.addEventListener("signals", count);
 store.addEventListener("values", later(count, 200));
 store.addEventListener("trust", count);
