@@ -39,6 +39,19 @@ static uint64_t count_errors(struct stream *s)
 	return errors;
 }
 
+void health_count(struct stream *s, int64_t numbers[HEALTH_NUMBERS])
+{
+	struct ows_target target;
+
+	memset(numbers, 0, HEALTH_NUMBERS * sizeof(*numbers));
+	for (int i = 0; i < STATS_TARGETS && !ows_target(s->h, i, &target); i++) {
+		numbers[HEALTH_DOWN] += target.state == 0;
+		numbers[HEALTH_RECONNECTS] += target.reconnects;
+	}
+	numbers[HEALTH_BAD] = stats_not_good(s->h, ows_now());
+	numbers[HEALTH_ERRORS] = (int64_t)count_errors(s);
+}
+
 bool health_publish(struct stream *s, const struct health *health)
 {
 	struct json json;

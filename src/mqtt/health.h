@@ -11,6 +11,8 @@ struct health {
 };
 /* Publish it if it is another than before. False: the outlet does not take it now. */
 bool health_publish(struct stream *s, const struct health *health);
+/* Targets that are down, signals that are not good, errors on the wire, reconnects to targets. */
+void health_count(struct stream *s, int64_t numbers[HEALTH_NUMBERS]);
 /* Components of Home Assistant's discovery. */
 void health_entities_json(struct json *json, const struct stream *s, const char *owner);
 

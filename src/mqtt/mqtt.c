@@ -297,6 +297,15 @@ static int64_t announce_ns(const struct mqtt *m)
 	return m->announced_ns + (m->stream.profile->session ? REBIRTH_NS : ANNOUNCE_NS);
 }
 
+static bool publish_health(struct mqtt *m)
+{
+	return health_publish(&m->stream, &(struct health){.trouble = m->commands.trouble,
+	                                                   .commands = m->commands.taken,
+	                                                   .refused_commands = m->commands.refused,
+	                                                   .connects = m->broker.connects,
+	                                                   .refused_messages = m->broker.refusals});
+}
+
 /* Publish what waits. Between two images no row can be looked at. */
 static void pump(struct face *face, int64_t now_ns)
 {
@@ -321,12 +330,11 @@ static void pump(struct face *face, int64_t now_ns)
 	if (!stream_pump(&m->stream) || !face->live)
 		return;
 	past_pump(&m->past, now_ns);
-	if (m->stream.profile->health && now_ns >= m->health_ns &&
-	    health_publish(&m->stream, &(struct health){.trouble = m->commands.trouble,
-	                                                .commands = m->commands.taken,
-	                                                .refused_commands = m->commands.refused,
-	                                                .connects = m->broker.connects,
-	                                                .refused_messages = m->broker.refusals}))
+	if (now_ns < m->health_ns)
+		return;
+	if (m->stream.profile->health
+	            ? publish_health(m)
+	            : !m->stream.profile->numbers || m->stream.profile->numbers(&m->stream))
 		m->health_ns = now_ns + HEALTH_NS;
 }
 

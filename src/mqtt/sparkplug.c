@@ -11,6 +11,7 @@
 
 #include "hal/base/time.h"
 #include "src/face/moment.h"
+#include "src/mqtt/health.h"
 #include "src/mqtt/plain.h"
 #include "src/show/when.h"
 #include "src/signal/utf8.h"
@@ -438,6 +439,57 @@ static void put_rebirth(struct stream *s)
 	put_metric(s, &m.metric);
 }
 
+/* Metrics of the node, with aliases behind those of all rows; data: those that have changed. */
+static bool put_health(struct stream *s, bool data)
+{
+	static const char *const names[HEALTH_NUMBERS] = {
+		[HEALTH_DOWN] = "Health/Targets Down",
+		[HEALTH_BAD] = "Health/Signals Not Good",
+		[HEALTH_ERRORS] = "Health/Errors",
+		[HEALTH_RECONNECTS] = "Health/Reconnects",
+	};
+	int64_t numbers[HEALTH_NUMBERS];
+	bool any = false;
+
+	health_count(s, numbers);
+	for (int i = 0; i < HEALTH_NUMBERS; i++) {
+		struct metric m;
+
+		if (data && numbers[i] == s->numbers[i])
+			continue;
+		metric_init(&m);
+		m.metric.has_alias = m.metric.has_timestamp = any = true;
+		m.metric.alias = first_alias(s) + (uint64_t)(2 * s->count + i);
+		m.metric.timestamp = ms_of(when_now().wall);
+		m.metric.value_case = SPB__METRIC__VALUE_LONG_VALUE;
+		m.metric.long_value = (uint64_t)numbers[i];
+		if (!data) {
+			m.metric.name = lent(names[i]);
+			m.metric.has_datatype = true;
+			m.metric.datatype = INT64;
+			add_flag(&m, "readOnly", true);
+			m.metric.properties = &m.set;
+		}
+		put_metric(s, &m.metric);
+		s->numbers[i] = numbers[i];
+	}
+	return any;
+}
+
+static bool numbers(struct stream *s)
+{
+	int64_t before[HEALTH_NUMBERS];
+
+	if (!s->announced)
+		return true;
+	memcpy(before, s->numbers, sizeof(before));
+	sparkplug_begin(s);
+	if (!put_health(s, true) || put_numbered(s, "DATA", NULL))
+		return true;
+	memcpy(s->numbers, before, sizeof(before));
+	return false;
+}
+
 static bool birth_of_node(struct stream *s)
 {
 	struct news news;
@@ -451,6 +503,7 @@ static bool birth_of_node(struct stream *s)
 	sparkplug_begin(s);
 	put_bdseq(s, first_alias(s) - 1);
 	put_rebirth(s);
+	put_health(s, false);
 	put_rows(s, NULL, false);
 	s->announced = put_numbered(s, "BIRTH", NULL);
 	s->born = s->born || s->announced;
@@ -733,6 +786,7 @@ const struct profile profile_sparkplug = {
 	.value = value,
 	.state = sparkplug_state,
 	.past = sparkplug_past,
+	.numbers = numbers,
 	.listen = listen,
 	.listen_host = listen_host,
 	.listen_write = listen_write,

@@ -333,7 +333,7 @@ int stream_make(struct stream *s, struct ows *h)
 	s->queue = calloc(room, sizeof(*s->queue));
 	s->by_topic = calloc(room, sizeof(struct row *));
 	s->by_chip = calloc(room, sizeof(struct row *));
-	s->parts = calloc(2 * room + 2, sizeof(*s->parts));
+	s->parts = calloc(2 * room + 2 + HEALTH_NUMBERS, sizeof(*s->parts));
 	made = s->rows && s->parts && s->chips && s->queue && s->by_topic && s->by_chip;
 	s->count = made ? count : 0;
 	for (int i = 0; made && i < count; i++)

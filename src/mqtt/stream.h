@@ -102,6 +102,8 @@ enum stream_node {
 	STREAM_ENDED,  /* it ends */
 };
 
+enum { HEALTH_DOWN, HEALTH_BAD, HEALTH_ERRORS, HEALTH_RECONNECTS, HEALTH_NUMBERS };
+
 struct profile;
 struct stream {
 	const struct profile *profile;
@@ -127,9 +129,10 @@ struct stream {
 	bool announced; /* the node itself, by the birth */
 	bool online;    /* it was published that the node is there */
 	char *health;   /* as it was published last */
-	bool clock_set; /* wall-clock times can be believed */
-	uint64_t described;  /* by homie5: a hash of the description, */
-	int64_t description; /* and its version */
+	int64_t numbers[HEALTH_NUMBERS]; /* the same, of a session */
+	bool clock_set;                  /* wall-clock times can be believed */
+	uint64_t described;              /* by homie5: a hash of the description, */
+	int64_t description;             /* and its version */
 	/*
 	 * Of sessions: the host that each waits for, NULL for none; is it there; the time of its
 	 * last word, ms; was the node born to it since the last connection?
@@ -139,7 +142,7 @@ struct stream {
 	uint64_t host_ms;
 	/* The number of the CONNECT with the will, of the next message */
 	uint8_t bdseq, seq;
-	struct part *parts; /* room for two of each row, and two more */
+	struct part *parts; /* room for two of each row, and for those of the node */
 	int part_count;
 	FILE *out; /* makes a message in text */
 	char *text;
@@ -182,6 +185,8 @@ struct profile {
 	/* The value and quality of a row. */
 	bool (*value)(struct stream *s, struct row *row);
 	bool (*state)(struct stream *s, enum stream_node node);
+	/* Health, as numbers, if they are others than were published. NULL: as the flag has it. */
+	bool (*numbers)(struct stream *s);
 	/* An entry of the journal of alarms; one that is not taken is lost. NULL: it shows none. */
 	void (*alarm)(struct stream *s, const struct ows_alarm *alarm);
 	/*

@@ -74,9 +74,11 @@ class Host:
             assert not message.metrics and self.births.pop(device), message
             return {}
         birth = self.births[device]
+        health = {m.alias for m in birth.metrics if m.name.startswith("Health/")}
         for metric in message.metrics:
             assert not metric.name and not metric.HasField("datatype") and metric.HasField("alias"), metric
-            self.quality(metric)
+            if metric.alias not in health:
+                self.quality(metric)
         decoded = (self.codec.NData if verb == "ndata" else self.codec.DData).decode(data, birth=birth)
         return self.named(decoded.metrics, message.metrics)
 
@@ -85,7 +87,7 @@ class Host:
         for metric in message.metrics:
             assert metric.name and metric.datatype and metric.timestamp, metric
             assert metric.HasField("alias") != (metric.name == "Node Control/Rebirth"), metric
-            if metric.name not in ("bdSeq", "Node Control/Rebirth"):
+            if metric.name not in ("bdSeq", "Node Control/Rebirth") and not metric.name.startswith("Health/"):
                 self.quality(metric)
         self.births[device] = decoded
         aliases = [m.alias for b in self.births.values() for m in b.metrics if m.alias is not None]
@@ -153,7 +155,8 @@ def test_the_births_have_all_that_is_there_and_data_has_aliases_alone(scene):
                         item("cold", f"/{PROBE}/temperature", "short"), item("kind", f"/{SENSOR}/type", "string"),
                         wire=f"DS18B20 {PROBE} temperature -5\n")
     at, node = host.hears("nbirth", None)
-    assert at == 0 and node["bdSeq"].value == 0 and len(node) == 2, node
+    assert at == 0 and node["bdSeq"].value == 0 and set(node) == {
+        "bdSeq", "Node Control/Rebirth", "Health/Targets Down", "Health/Signals Not Good", "Health/Errors", "Health/Reconnects"}, node
     types = host.codec.DataType
     _, room = host.hears("dbirth", SENSOR)
     assert room["room"].datatype == types.DOUBLE and room["room"].properties["engUnit"].string_value == "°C", room

@@ -116,6 +116,21 @@ static void test_births_go_before_data_and_nothing_goes_twice(void)
 	TEST_ASSERT_EQUAL_STRING("NDATA/pi 3\n", pump());
 }
 
+static void test_health_goes_out_when_it_changes(void)
+{
+	pump();
+	said[0] = '\0';
+	TEST_ASSERT_TRUE(s.profile->numbers(&s));
+	TEST_ASSERT_EQUAL_STRING("", said);
+	instance_put(&in, RELAY + 1, 1, ows_now());
+	room = 0;
+	TEST_ASSERT_FALSE(s.profile->numbers(&s));
+	room = 1;
+	TEST_ASSERT_TRUE(s.profile->numbers(&s));
+	TEST_ASSERT_TRUE(s.profile->numbers(&s));
+	TEST_ASSERT_EQUAL_STRING("NDATA/pi 3\n", said);
+}
+
 static void test_the_rows_of_a_chip_go_together(void)
 {
 	int both[] = {RELAY, TITLE};
@@ -292,6 +307,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_births_go_before_data_and_nothing_goes_twice);
+	RUN_TEST(test_health_goes_out_when_it_changes);
 	RUN_TEST(test_the_rows_of_a_chip_go_together);
 	RUN_TEST(test_what_is_not_taken_comes_again_with_the_number_it_had);
 	RUN_TEST(test_numbers_end_at_255_and_a_birth_begins_at_0);
