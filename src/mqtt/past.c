@@ -10,6 +10,7 @@
 
 #include "hal/base/time.h"
 #include "src/libhistory/ows_history.h"
+#include "src/show/when.h"
 #include "src/signal/hash.h"
 
 #define NS_PER_US 1000
@@ -262,7 +263,11 @@ static bool is_same(const struct past *p, struct row *row, const struct replay_r
 static void add_value(struct past *p, struct row *row, struct replay_row *r)
 {
 	struct past_value *value = &p->values[p->value_count++];
+	struct when now = when_now();
 
+	/* the recorder may not know yet that the clock was set, as we do */
+	if (r->at.boot == p->boot)
+		r->wall_us = r->at.us + (now.wall - now.boot) / NS_PER_US;
 	*value = (struct past_value){.row = row, .wall_us = r->wall_us, .v = r->v, .text = r->text};
 	value->place = p->value_count;
 	r->text = NULL;

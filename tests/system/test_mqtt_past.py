@@ -3,7 +3,9 @@
 """No lost minute: what a broker of Sparkplug misses comes from the recorder's file, after the live
 values, with the time of measurement."""
 
+import contextlib
 import json
+import sqlite3
 import time
 
 import owsdtest
@@ -26,12 +28,15 @@ class Plant:
         block = raw(f'{{ Flush {flush} Directory "{scene.path / "history"}" }}')
         self.house, self.host = start(scene, DIAL, env=self.env, top={"Recorder": block}, **keys)
         self.house.face.stop()
-        self.recorder = scene.start([RECORDER, "-n", self.house.daemon.name, "-c", self.house.daemon.config])
-        until(lambda: "recording " in self.recorder.log(), 20, lambda: self.recorder.log())
+        self.record()
         self.house.face = self.house.start(self.env)
         if "PrimaryHost" in keys:
             self.say(True)
         self.host.hears("dbirth", SWITCH, after=len(self.host.heard))
+
+    def record(self):
+        self.recorder = self.scene.start([RECORDER, "-n", self.house.daemon.name, "-c", self.house.daemon.config])
+        until(lambda: "recording " in self.recorder.log(), 20, lambda: self.recorder.log())
 
     def say(self, online):
         publish(self.house, "spBv1.0/STATE/scada", json.dumps({"timestamp": int(time.time() * 1000), "online": online}), "-r")
@@ -111,6 +116,23 @@ def test_a_face_that_is_killed_in_the_middle_goes_on_where_the_broker_was(scene)
     plant.turn(7, 8)
     plant.house.face = plant.house.start(plant.env)
     plant.turn(9)
+    plant.complete()
+
+
+def test_times_are_right_though_the_clock_was_wrong_when_they_were_recorded(scene):
+    plant = Plant(scene)
+    plant.turn(1)
+    plant.has(1)
+    plant.house.broker.process.kill()
+    plant.turn(2, 3)
+    assert plant.recorder.stop() == 0
+    with contextlib.closing(sqlite3.connect(scene.path / "history" / "history.sqlite")) as db:
+        db.execute("update session set date = date - 3600000000, trusted = 0")
+        db.commit()
+    plant.back()
+    plant.complete()
+    plant.record()
+    plant.turn(4)
     plant.complete()
 
 
