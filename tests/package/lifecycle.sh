@@ -130,7 +130,7 @@ cp /tmp/OWS.rio /etc/owsd/HOUSE.rio
 service owsd restart
 does 'all are purged' $apt purge owsd owsd-sim owsd-recorder owsd-influx owsd-mqtt owsd-web owsd-cockpit libows1 libows-history1 libows-dev python3-ows
 does 'nothing runs' refused pgrep -x owsd
-same 'no segment and no history stays' '' "$(find /run/owsd /var/lib/owsd /var/lib/owsd-recorder /var/lib/owsd-influx 2>/dev/null)"
+same 'no segment and no history stays' '' "$(find /run/owsd /var/lib/owsd /var/lib/owsd-recorder /var/lib/owsd-influx /var/lib/owsd-mqtt 2>/dev/null)"
 does 'what its owner has made does' test -e /etc/owsd/HOUSE.rio
 rm -r /etc/owsd
 kill $simulator
