@@ -28,6 +28,8 @@
 #define SLACK_US (2 * US_PER_S)
 /* In the history rows of the same time are microseconds apart */
 #define SAME_NS NS_PER_MS
+/* Of an outage that lasted longer only the end is sent again */
+#define MOST_US (30 * 86400 * US_PER_S)
 #define WORTH_US (10 * US_PER_S)
 
 static struct replay_point point_of(const struct past *p, int64_t ns)
@@ -205,6 +207,8 @@ void past_drop(struct past *p)
 	p->by_name = NULL;
 	p->rows = NULL;
 	p->value_count = p->put = 0;
+	if (p->marking)
+		p->mark_published = UINT64_MAX; /* its answer is not waited for */
 	p->read = p->marking = false;
 	for (int i = 0; i < p->stream->count; i++)
 		p->stream->rows[i].past_print = 0;
@@ -333,6 +337,8 @@ static int read_batch(struct past *p, int64_t now_ns)
 		end_window(p, now_ns);
 		return 0;
 	}
+	if (until - from > MOST_US)
+		from = until - MOST_US;
 	end = replay_end(p->history) < until ? replay_end(p->history) : until;
 	if (from < end)
 		n = replay_rows(p->history, from, end, rows, BATCH);
@@ -516,6 +522,8 @@ void past_pump(struct past *p, int64_t now_ns)
 		else if (p->read && !p->value_count)
 			end_batch(p, now_ns);
 	}
+	if (!p->lost && !p->marking && p->broker->published == p->mark_published)
+		p->reached = point_of(p, p->face->looked_ns);
 	if (!p->read || put_batch(p))
 		mark(p, now_ns);
 }

@@ -561,7 +561,10 @@ static bool value(struct stream *s, struct row *row)
 	return !chip->announced;
 }
 
-/* Births of chips that are away are followed by their deaths, as the rows then say. */
+/*
+ * A chip that is away, and was there then, is born for it; its death follows, as the rows say. Of
+ * one that was not there either nothing is to be said.
+ */
 static bool sparkplug_past(struct stream *s, const struct past_value *values, int n)
 {
 	uint64_t alias = first_alias(s);
@@ -570,6 +573,12 @@ static bool sparkplug_past(struct stream *s, const struct past_value *values, in
 	struct part *parts = s->parts;
 
 	if (chip && !chip->announced) {
+		int bad = 0;
+
+		while (bad < n && !ows_good(values[bad].v.quality))
+			bad++;
+		if (bad == n)
+			return true;
 		sparkplug_begin(s);
 		put_rows(s, chip, false);
 		chip->announced = put_numbered(s, "BIRTH", chip);

@@ -131,6 +131,33 @@ static void test_health_goes_out_when_it_changes(void)
 	TEST_ASSERT_EQUAL_STRING("NDATA/pi 3\n", said);
 }
 
+static void test_what_was_is_sent_of_a_chip_that_is_away_too(void)
+{
+	struct past_value was[] = {
+		{.row = &s.rows[ROOM], .wall_us = 1700000000000000, .v = {.quality = OWS_Q_DEVICE}},
+		{.row = &s.rows[ROOM], .wall_us = 1700000001000000, .v = {.quality = OWS_Q_GOOD}},
+	};
+
+	pump();
+	said[0] = '\0';
+	TEST_ASSERT_TRUE(s.profile->past(&s, was, 2));
+	TEST_ASSERT_EQUAL_STRING("DDATA/pi/28.000000000001 3\n", said);
+	TEST_ASSERT_NOT_NULL(memmem(raw, raw_len, "\x28\x01\x38\x01", 4)); /* of then, and null */
+	stream_live(&s, false);
+	pump();
+	said[0] = '\0';
+	TEST_ASSERT_TRUE(s.profile->past(&s, was, 1));
+	TEST_ASSERT_EQUAL_STRING("", said);
+	room = 1;
+	TEST_ASSERT_FALSE(s.profile->past(&s, was, 2));
+	room = 100;
+	TEST_ASSERT_TRUE(s.profile->past(&s, was, 2));
+	TEST_ASSERT_EQUAL_STRING("DBIRTH/pi/28.000000000001 9\n"
+	                         "DDATA/pi/28.000000000001 10\n",
+	                         said);
+	TEST_ASSERT_EQUAL_STRING("DDEATH/pi/28.000000000001 11\n", pump());
+}
+
 static void test_the_rows_of_a_chip_go_together(void)
 {
 	int both[] = {RELAY, TITLE};
@@ -308,6 +335,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_births_go_before_data_and_nothing_goes_twice);
 	RUN_TEST(test_health_goes_out_when_it_changes);
+	RUN_TEST(test_what_was_is_sent_of_a_chip_that_is_away_too);
 	RUN_TEST(test_the_rows_of_a_chip_go_together);
 	RUN_TEST(test_what_is_not_taken_comes_again_with_the_number_it_had);
 	RUN_TEST(test_numbers_end_at_255_and_a_birth_begins_at_0);
