@@ -743,7 +743,7 @@ def test_the_page_needs_little_memory(scene):
         lines = dict(line.split(":") for line in file.read().splitlines()[1:])
     own, resident = (int(lines[key].split()[0]) for key in ("Private_Dirty", "Rss"))
     assert own < 2048, lines
-    assert resident < 5000 or os.uname().machine != "x86_64", lines
+    assert resident < 5120 or os.uname().machine != "x86_64", lines
 
 
 def test_a_second_owsd_web_is_refused_and_a_stale_socket_is_not(scene):
