@@ -324,10 +324,10 @@ static int read_batch(struct past *p, int64_t now_ns)
 	int most = p->stream->count > BATCH ? p->stream->count : BATCH, n = 0;
 	int64_t from, until, end;
 
-	if (!p->by_name && !(p->history ? ows_history_refresh(p->history) == 0 : open_history(p)))
+	if ((!p->history || !p->by_name) &&
+	    (!(p->history ? ows_history_refresh(p->history) == 0 : open_history(p)) ||
+	     !map_rows(p)))
 		return -ENOENT;
-	if (!p->by_name && !map_rows(p))
-		return -ENOMEM;
 	from = replay_place(p->history, &w->from);
 	until = replay_place(p->history, &w->until);
 	if (from < 0 || until < 0) {
