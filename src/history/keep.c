@@ -99,6 +99,6 @@ int keep_delete(const struct history_keep *keep, sqlite3 *db, const char *direct
 	if (!err && minutes > 0)
 		err = cut(db, "event", minutes);
 	if (!err && hours > 0)
-		err = cut(db, "hour", hours / HOUR_US << 16);
+		err = cut(db, "hour", schema_hour(hours / HOUR_US & ~INT64_C(7), 0));
 	return err;
 }

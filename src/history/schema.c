@@ -14,16 +14,17 @@
 #define SESSION(id) \
 	"join session on session.start = " \
 	"(select max(start) from session where start <= " id ")"
-#define ROLLUP(name, us) \
-	"create table " name " (id integer primary key, least, most, mean, last," \
-	" good, known, count, quality, worst);" \
+/* real: a whole number takes a byte or two of the file, and is no integer to who divides by it */
+#define ROLLUP(name, us, number, signals) \
+	"create table " name " (id integer primary key, least real, most real, mean real," \
+	" last real, good real, known real, count, quality, worst);" \
 	"create view trend_" name " as select " ISO( \
-		"(t.id >> 16) * " us) " as time, name, least," \
-				      " most, mean, last, unit, good, known, count, q.text as quality, w.text as worst" \
-				      " from " name \
-				      " t join signal on signal.signal = t.id & 65535" \
-				      " left join quality q on q.quality = t.quality left join quality w on w.quality = t.worst" \
-				      " " SESSION("(t.id >> 16) * " us " + " us " - 1") ";"
+		number \
+		" * " us) " as time, name, least," \
+			  " most, mean, last, unit, good, known, count, q.text as quality, w.text as worst" \
+			  " from " name " t join signal on signal.signal = " signals " & 65535" \
+			  " left join quality q on q.quality = t.quality left join quality w on w.quality = t.worst" \
+			  " " SESSION(number " * " us " + " us " - 1") ";"
 
 /* Step i makes a file of version i one of version i + 1. */
 static const char *const steps[HISTORY_SCHEMA] = {
@@ -56,7 +57,8 @@ static const char *const steps[HISTORY_SCHEMA] = {
 	" before, unit, q.text as quality, event.text, program, person"
 	" from event left join signal using (signal) left join quality q"
 	" on q.quality = event.quality " SESSION("event.id") ";"
-	ROLLUP("minute", "60000000") ROLLUP("hour", "3600000000"),
+	ROLLUP("minute", "60000000", "(t.id >> 16)", "t.id")
+	ROLLUP("hour", "3600000000", SCHEMA_HOUR("t.id"), "(t.id >> 3)"),
 	/* clang-format on */
 };
 

@@ -16,8 +16,10 @@
  *     event    commands and alarms with who, and steps of the clock; time may be before id
  *     minute, hour  of each signal least, most, mean and last good value, seconds good and known,
  *              number of rows, quality at the end (null: not known) and the worst one. The id is
- *              the number of the minute or hour (of ids) times 65536, plus the signal. A minute in
- *              which nothing came has no row: the value held.
+ *              minute: its number (of ids) times 65536, plus the signal; hour: the number of eight
+ *              hours times 65536, plus the signal, times eight, plus which of them it is, so that a
+ *              year of a signal is in fewer pages. A minute in which nothing came has no row: the
+ *              value held.
  *     trend, trend_minute, trend_hour, trend_event  the same with names, ISO times and words
  */
 #ifndef HISTORY_SCHEMA_H
@@ -36,10 +38,19 @@
 #define LOOK_BACK_US (HOUR_US + 5 * MINUTE_US)
 #define REPEAT_US HOUR_US
 
-static inline int64_t schema_key(int64_t bucket, uint32_t signal)
+static inline int64_t schema_minute(int64_t minute, uint32_t signal)
 {
-	return bucket << 16 | signal;
+	return minute << 16 | signal;
 }
+static inline int64_t schema_hour(int64_t hour, uint32_t signal)
+{
+	return ((hour >> 3) << 16 | signal) << 3 | (hour & 7);
+}
+/* The number of an hour, and the id at which the hours that have rows end. */
+#define SCHEMA_HOUR(id) "((" id " >> 19 << 3) + (" id " & 7))"
+#define SCHEMA_HOURS_END \
+	"select (max(" SCHEMA_HOUR("id") ") + 1) * 3600000000 from hour" \
+					 " where id >= (select max(id) >> 19 << 19 from hour)"
 
 /*
  * Open for writing; make the tables, or bring older ones up to date. 0; -EBADMSG: damaged, or no

@@ -4,6 +4,7 @@
 
 #include <stddef.h>
 
+#include "src/history/schema.h"
 #include "src/history/sql.h"
 
 #define ROLLUP_ROW "values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"
@@ -33,7 +34,7 @@ static const char *const texts[S_COUNT] = {
 		   " (select coalesce(max(max(start), coalesce(max(seen), 0)), 0) from session))",
 	[S_OURS] = "select count(*) from session where start = ? and boot = ?",
 	[S_BEFORE] = "select base, boot from session order by start desc limit 1",
-	[S_SINCE] = "select coalesce((select ((max(id) >> 16) + 1) * 3600000000 from hour),"
+	[S_SINCE] = "select coalesce((" SCHEMA_HOURS_END "),"
 		    " (select min(start) from session), 0)",
 	[S_REPLAY] = "select id, signal, value, quality from raw where id >= ?1"
 		     " union all select start, signal, null, null from gap where start >= ?1"

@@ -28,9 +28,11 @@ static int give_rollup(void *ctx, bool hour, int64_t bucket, uint32_t signal,
 	sqlite3_stmt *to = store->statements[hour ? S_HOUR : S_MINUTE];
 	bool has = sum->has_value;
 
-	sql_bind(to, "iddddddinn", schema_key(bucket, signal), has ? sum->least : NAN,
-	         has ? sum->most : NAN, rollup_mean(sum), has ? sum->last : NAN,
-	         (double)sum->good_us / 1e6, (double)sum->known_us / 1e6, (int64_t)sum->count);
+	sql_bind(to, "iddddddinn",
+	         hour ? schema_hour(bucket, signal) : schema_minute(bucket, signal),
+	         has ? sum->least : NAN, has ? sum->most : NAN, rollup_mean(sum),
+	         has ? sum->last : NAN, (double)sum->good_us / 1e6, (double)sum->known_us / 1e6,
+	         (int64_t)sum->count);
 	if (state->known)
 		sqlite3_bind_int(to, 9, state->quality);
 	if (sum->has_quality)

@@ -220,7 +220,7 @@ static int read_places(struct ows_history *h)
 		{"select max(start) from gap where signal = 0", &gap},
 		{"select max(id) from event", &event},
 		{"select max(seen) from session", &seen},
-		{"select ((max(id) >> 16) + 1) * 3600000000 from hour", &h->hour_end},
+		{SCHEMA_HOURS_END, &h->hour_end},
 		{"select (min(id) >> 16) * 60000000 from minute", &minute},
 		{"select ((max(id) >> 16) + 1) * 60000000 from minute", &h->minute_end},
 	};

@@ -132,7 +132,9 @@ static int read_rollup(struct draw *d, bool hour, int64_t bucket, struct rollup 
 	sqlite3_stmt *from = d->h->statements[hour ? H_HOUR : H_MINUTE];
 	int got;
 
-	sql_bind(from, "i", schema_key(bucket, d->signal->number));
+	sql_bind(from, "i",
+	         hour ? schema_hour(bucket, d->signal->number)
+	              : schema_minute(bucket, d->signal->number));
 	got = sql_next(from);
 	if (got != 1)
 		return got;
@@ -200,6 +202,12 @@ static int draw_minutes(struct draw *d, int64_t first, int64_t end)
 	struct rollup sum;
 	int got = 0;
 
+	/*
+	 * The signals of a minute lie side by side: the next signal needs the pages of this one, and a
+	 * day of 50 signals fits in 8 MB. Whoever reads hours comes to no page twice, and is faster with
+	 * the default.
+	 */
+	sqlite3_exec(d->h->db, "pragma cache_size = -8000", NULL, NULL, NULL);
 	for (int64_t back = 1; got == 0 && back <= LOOK_BACK_US / MINUTE_US; back++)
 		got = read_rollup(d, false, first / MINUTE_US - back, &sum, &state);
 	for (int64_t minute = first / MINUTE_US; got >= 0 && minute * MINUTE_US < end; minute++) {

@@ -123,7 +123,7 @@ static void report_file(void)
 	bench_line("history.minutes.days",
 	           ask("select ((max(id) >> 16) - (min(id) >> 16)) / 1440.0 from minute"), "d");
 	bench_line("history.hours.days",
-	           ask("select ((max(id) >> 16) - (min(id) >> 16)) / 24.0 from hour"), "d");
+	           ask("select ((max(id) >> 19) - (min(id) >> 19)) / 3.0 from hour"), "d");
 }
 
 /* The last part of the history. Each run opens the file anew, as owsctl does. */

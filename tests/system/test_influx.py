@@ -487,7 +487,9 @@ def ask(url, seconds=20):
 
 
 def victoria_here():
-    """The genuine program of Debian; fetched once, and not installed."""
+    """The genuine program of Debian; fetched once if it is not installed."""
+    if installed := shutil.which("victoria-metrics"):
+        return installed
     program = VICTORIA / "usr/bin/victoria-metrics"
     if not program.exists():
         machine = {"x86_64": "amd64", "aarch64": "arm64"}.get(platform.machine())

@@ -101,7 +101,7 @@ def test_promtool_has_nothing_to_say_about_the_text_for_prometheus(scene):
     assert of(found["ows_value"], "room")[0].value == 21.5
     assert found["ows_reads"].type == "counter" and found["ows_reads"].samples[0].value > 0
     if not shutil.which("promtool"):
-        owsdtest.skip("promtool is not installed (Debian: prometheus)")
+        owsdtest.skip("promtool is not installed (sh board/install-deps database)")
     done = subprocess.run(["promtool", "check", "metrics"], input=text, text=True, capture_output=True,
                           timeout=owsdtest.PATIENCE, check=False)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", ""), done

@@ -232,8 +232,8 @@ static void test_a_value_that_holds_is_repeated_each_hour_and_one_of_a_gone_sign
 		TEST_ASSERT_INT64_WITHIN(62 * PAST_S, 3600 * PAST_S,
 		                         items[i].boot_ns - items[i - 1].boot_ns);
 	TEST_ASSERT_EQUAL_INT(3, count_of(PAST_TITLE));
-	TEST_ASSERT_EQUAL_INT64(3,
-	                        past_ask(&past, "select count(*) from hour where id & 65535 = 2"));
+	TEST_ASSERT_EQUAL_INT64(
+		3, past_ask(&past, "select count(*) from hour where id >> 3 & 65535 = 2"));
 }
 
 /*
@@ -262,6 +262,23 @@ static void test_values_are_kept_for_days_minutes_for_more_and_hours_for_ever(vo
 		60, 4 * 1440,
 		past_ask(&past, "select (max(id) >> 16) - (min(id) >> 16) from minute"));
 	TEST_ASSERT_INT64_WITHIN(2, 9 * 24, past_ask(&past, "select count(*) from hour"));
+	/* hours are in blocks of eight, and the view has each of them once, in its place */
+	TEST_ASSERT_EQUAL(0,
+	                  past_ask(&past, "select count(*) from hour where id >> 3 & 65535 <> 1"));
+	TEST_ASSERT_EQUAL(past_ask(&past, "select count(*) from hour"),
+	                  past_ask(&past,
+	                           "select count(distinct time) from trend_hour where name ="
+	                           " (select name from signal) and time like '%:00:00.000Z'"));
+	TEST_ASSERT_INT64_WITHIN(7200, 9 * 86400,
+	                         past_ask(&past,
+	                                  "select unixepoch(max(time)) - unixepoch(min(time))"
+	                                  " from trend_hour"));
+	/* whole seconds and values take two bytes each on the disk, and divide as numbers do */
+	TEST_ASSERT_EQUAL(12, past_ask(&past, "select count(*) from (select * from"
+	                                      " pragma_table_info('minute') union all select * from"
+	                                      " pragma_table_info('hour')) where type = 'REAL'"));
+	TEST_ASSERT_EQUAL(0, past_ask(&past, "select count(*) from trend_minute where"
+	                                     " typeof(good) <> 'real' or typeof(least) <> 'real'"));
 }
 
 static void test_a_file_that_is_too_large_loses_its_oldest_values(void)
