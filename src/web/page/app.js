@@ -9,11 +9,12 @@ import {alarmOf, clock} from "./words.js";
 /** A view whose modules are fetched when it is shown, so that they do not hold up the view Live. */
 function fetched(load) {
 	let view = null, place = null, wanted = null;
-	const fault = el("p", {class: "fault", role: "alert"});
+	const fault = el("p", {class: "fault", role: "alert"}, "This view cannot be fetched from "
+		+ "owsd-web. Choose it again when the page is connected; if that does not help, load the "
+		+ "page anew.");
 	return {
 		build(root) {
 			place = root;
-			place.append(fault);
 		},
 		async show(query) {
 			wanted = query;
@@ -21,11 +22,10 @@ function fetched(load) {
 			try {
 				made ??= await load();
 			} catch {
-				put(fault, "This view cannot be fetched from owsd-web. Choose it again when the "
-					+ "page is connected; if that does not help, load the page anew.");
+				place.append(fault);
 				return;
 			}
-			put(fault, "");
+			fault.remove();
 			if (!view) {
 				view = made;
 				view.build(place);
