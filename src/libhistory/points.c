@@ -203,9 +203,9 @@ static int draw_minutes(struct draw *d, int64_t first, int64_t end)
 	int got = 0;
 
 	/*
-	 * The signals of a minute lie side by side: the next signal needs the pages of this one, and a
-	 * day of 50 signals fits in 8 MB. Whoever reads hours comes to no page twice, and is faster with
-	 * the default.
+	 * The signals of a minute lie side by side: the next signal needs the pages of this one,
+	 * and a day of 50 signals fits in 8 MB. Whoever reads hours comes to no page twice, and is
+	 * faster with the default.
 	 */
 	sqlite3_exec(d->h->db, "pragma cache_size = -8000", NULL, NULL, NULL);
 	for (int64_t back = 1; got == 0 && back <= LOOK_BACK_US / MINUTE_US; back++)
