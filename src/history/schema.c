@@ -26,8 +26,10 @@
 			  " left join quality q on q.quality = t.quality left join quality w on w.quality = t.worst" \
 			  " " SESSION(number " * " us " + " us " - 1") ";"
 
-/* Step i makes a file of version i one of version i + 1. */
-static const char *const steps[HISTORY_SCHEMA] = {
+#define HOURS ROLLUP("hour", "3600000000", SCHEMA_HOUR("t.id"), "(t.id >> 3)")
+
+/* An empty file becomes one of this version. */
+static const char create[] =
 	/* clang-format off */
 	"create table session (start integer primary key, boot integer not null,"
 	" base integer not null, date integer not null, trusted integer not null, seen integer);"
@@ -58,8 +60,16 @@ static const char *const steps[HISTORY_SCHEMA] = {
 	" from event left join signal using (signal) left join quality q"
 	" on q.quality = event.quality " SESSION("event.id") ";"
 	ROLLUP("minute", "60000000", "(t.id >> 16)", "t.id")
-	ROLLUP("hour", "3600000000", SCHEMA_HOUR("t.id"), "(t.id >> 3)"),
-	/* clang-format on */
+	HOURS;
+/* clang-format on */
+
+/* Step i makes a file of version i one of version i + 1. */
+static const char *const steps[HISTORY_SCHEMA] = {
+	/* an hour had the id number * 65536 + signal */
+	[1] = "drop view trend_hour; alter table hour rename to hours; " HOURS
+	      "insert into hour select (((id >> 19 << 16) | (id & 65535)) << 3) | ((id >> 16) & 7), least,"
+	      " most, mean, last, good, known, count, quality, worst from hours;"
+	      "drop table hours;",
 };
 
 _Static_assert(HISTORY_CLOCK == 6 && HISTORY_COMMAND == 7, "trend_event has these numbers");
@@ -90,12 +100,14 @@ static int migrate(sqlite3 *db, int64_t version)
 {
 	int err = sql_exec(db, "begin immediate");
 
-	for (int64_t i = version; !err && i < HISTORY_SCHEMA; i++)
-		err = sql_exec(db, steps[i]);
+	if (!err && version == 0)
+		err = sql_exec(db, create);
 	if (!err && version == 0)
 		err = add_words(db);
+	for (int64_t i = version ? version : HISTORY_SCHEMA; !err && i < HISTORY_SCHEMA; i++)
+		err = sql_exec(db, steps[i]);
 	if (!err)
-		err = sql_exec(db, "pragma application_id = 1870099300; pragma user_version = 1");
+		err = sql_exec(db, "pragma application_id = 1870099300; pragma user_version = 2");
 	if (!err)
 		err = sql_exec(db, "commit");
 	if (err)
@@ -103,7 +115,7 @@ static int migrate(sqlite3 *db, int64_t version)
 	return err;
 }
 
-_Static_assert(HISTORY_APPLICATION == 1870099300 && HISTORY_SCHEMA == 1,
+_Static_assert(HISTORY_APPLICATION == 1870099300 && HISTORY_SCHEMA == 2,
                "migrate() says these in words");
 
 static int schema_check(sqlite3 *db)

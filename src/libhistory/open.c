@@ -86,7 +86,7 @@ static int try_open(struct ows_history *h, bool frozen)
 		err = sql_ask(h->db, "pragma application_id", &application);
 	if (err >= 0)
 		err = application != HISTORY_APPLICATION ? -EBADMSG
-		      : version > HISTORY_SCHEMA         ? -EPROTONOSUPPORT
+		      : version != HISTORY_SCHEMA        ? -EPROTONOSUPPORT
 		                                         : 0;
 	for (int i = 0; !err && i < H_COUNT; i++)
 		err = sql_errno(h->db,

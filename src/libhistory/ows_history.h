@@ -57,8 +57,8 @@ int ows_history_place(const char *instance, char *path, size_t size);
  * Open the history of an instance, or, if directory is not NULL, that of a directory. Free it with
  * ows_history_close(). -ENOENT: there is none; -EACCES: no permission (group owsd may read that of
  * the service); -EINVAL: no instance can have that name; -EBADMSG: the file is damaged, or of
- * another program; -EPROTONOSUPPORT: it is newer than this library; -ENOSYS: the program was built
- * without SQLite.
+ * another program; -EPROTONOSUPPORT: it is of a newer owsd, or of an older one and owsd-recorder
+ * has not run since; -ENOSYS: the program was built without SQLite.
  */
 int ows_history_open(const char *instance, const char *directory, struct ows_history **h);
 /* NULL: does nothing. */

@@ -18,6 +18,9 @@ int64_t replay_place(const struct ows_history *h, const struct replay_point *poi
 		if (session->boot != point->boot || (place >= 0 && id < session->start))
 			continue;
 		place = id < session->start ? session->start : id;
+		/* Later than the run: its last row is the gap. The next id is of the next run. */
+		if (i + 1 < h->session_count && place > session->end)
+			place = session->end - 1;
 	}
 	return place;
 }
@@ -58,6 +61,7 @@ int replay_rows(struct ows_history *h, int64_t first, int64_t end, struct replay
 		*row = (struct replay_row){
 			.at = {h->sessions[session].boot, step.id - h->sessions[session].base},
 			.wall_us = step.id + h->sessions[session].date,
+			.dated = h->sessions[session].trusted,
 			.signal = signal,
 			.v = {.number = step.number,
 		              .integer = step.integer,

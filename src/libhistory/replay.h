@@ -6,6 +6,8 @@
 #ifndef LIBHISTORY_REPLAY_H
 #define LIBHISTORY_REPLAY_H
 
+#include <stdbool.h>
+
 #include "src/libows/ows.h"
 
 struct ows_history;
@@ -18,6 +20,7 @@ struct replay_point {
 struct replay_row {
 	struct replay_point at;
 	int64_t wall_us; /* since 1970, by what is known now of the clock at that boot */
+	bool dated;      /* that clock is known to have been right */
 	int signal;      /* as of ows_history_signal(); -1: nothing is known of any from then on */
 	struct ows_value v;
 	char *text; /* of a string: of malloc(); else NULL */

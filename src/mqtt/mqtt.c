@@ -345,6 +345,7 @@ static void look_at_clock(struct face *face, int64_t now_ns)
 	bool before = m->stream.clock_set;
 
 	wall_clock_look(&m->clock, now_ns);
+	m->past.dated = m->clock.trusted;
 	m->stream.clock_set = m->clock.trusted || now_ns >= CLOCK_WAIT_NS;
 	/* where a message has to have a time it had a wrong one */
 	if (m->stream.clock_set && !before && m->stream.live && m->stream.profile->session)
@@ -427,6 +428,7 @@ static void go_on(struct face *face, int64_t now_ns)
 	struct mqtt *m = mqtt_own(face);
 
 	look_at_host(face, now_ns);
+	m->past.due = false;
 	pump(face, now_ns);
 	face->tick_ns = broker_next(&m->broker);
 	if (past_next(&m->past) < face->tick_ns)

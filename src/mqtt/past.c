@@ -4,14 +4,17 @@
 
 #include <errno.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "hal/base/time.h"
 #include "src/libhistory/ows_history.h"
 #include "src/show/when.h"
 #include "src/signal/hash.h"
+#include "src/signal/value.h"
 
 #define NS_PER_US 1000
 #define US_PER_S INT64_C(1000000)
@@ -21,6 +24,7 @@
 #define MESSAGE_MOST 100 /* metrics */
 #define MARK_NS NS_PER_S
 #define KEEP_NS (60 * NS_PER_S)
+#define BATCHES_NS (10 * NS_PER_S) /* ... while batches go out */
 /* The recorder writes once in a minute, and at least each ten minutes */
 #define WAIT_NS (2 * NS_PER_S)
 #define WAIT_MOST_NS (30 * NS_PER_S)
@@ -88,7 +92,7 @@ static void keep(struct past *p, int64_t now_ns)
 		        p->windows[i].from.boot, p->windows[i].from.us, p->windows[i].until.boot,
 		        p->windows[i].until.us);
 	fputs("end\n", f);
-	bad = ferror(f);
+	bad = fflush(f) || fsync(fileno(f)) < 0;
 	if (fclose(f) || bad || rename(part, p->path) < 0)
 		complain(p, p->path, errno);
 }
@@ -115,6 +119,10 @@ static bool read_kept(struct past *p)
 	fclose(f);
 	if (good)
 		*p = old;
+	else
+		log_notice(p->face->log,
+		           "%s is of another broker or damaged: what was missed before is not sent",
+		           p->path);
 	return good;
 }
 
@@ -196,6 +204,15 @@ static struct row *row_of(struct past *p, const struct replay_row *r)
 
 /* --- A batch --------------------------------------------------------------------------------- */
 
+/* Nothing has gone out yet of what is sent next. */
+static void begin_anew(struct past *p)
+{
+	for (int i = 0; i < p->stream->count; i++)
+		p->stream->rows[i].past_print = 0;
+	for (int i = 0; i < p->stream->chip_count; i++)
+		p->stream->chips[i].filled = false;
+}
+
 void past_drop(struct past *p)
 {
 	for (int i = 0; i < p->value_count; i++)
@@ -210,8 +227,7 @@ void past_drop(struct past *p)
 	if (p->marking)
 		p->mark_published = UINT64_MAX; /* its answer is not waited for */
 	p->read = p->marking = false;
-	for (int i = 0; i < p->stream->count; i++)
-		p->stream->rows[i].past_print = 0;
+	begin_anew(p);
 }
 
 static void wait_more(struct past *p, int64_t now_ns)
@@ -225,15 +241,19 @@ static void end_window(struct past *p, int64_t now_ns)
 	memmove(p->windows, p->windows + 1, sizeof(p->windows[0]) * (size_t)--p->count);
 	p->next_ns = now_ns;
 	p->wait_ns = WAIT_NS;
-	for (int i = 0; i < p->stream->count; i++)
-		p->stream->rows[i].past_print = 0;
+	begin_anew(p);
 	if (!p->count) {
 		if (p->said)
 			log_notice(p->face->log,
 			           "%" PRIu64 " values that the broker had missed are sent",
 			           p->filled);
+		if (p->undated)
+			log_notice(p->face->log,
+			           "%" PRIu64 " values are of a time when the clock was never set: "
+			           "they are not sent",
+			           p->undated);
 		p->said = false;
-		p->filled = 0;
+		p->filled = p->undated = 0;
 		close_history(p);
 	}
 	keep(p, now_ns);
@@ -297,6 +317,17 @@ static int by_chip(const void *a, const void *b)
 	return x->row->chip != y->row->chip ? x->row->chip - y->row->chip : x->place - y->place;
 }
 
+/* The type of a signal may have changed since the row was written; a row may be damaged. */
+static bool is_sound(const struct replay_row *r)
+{
+	if (!ows_good(r->v.quality))
+		return true;
+	if (r->v.type == OWS_STRING)
+		return r->text;
+	return value_is_float((enum ows_type)r->v.type) ||
+	       (!isnan(r->v.number) && value_holds((enum ows_type)r->v.type, r->v.integer));
+}
+
 static void take_rows(struct past *p, struct replay_row *rows, int n)
 {
 	/* a gap of all is a batch of its own */
@@ -305,9 +336,13 @@ static void take_rows(struct past *p, struct replay_row *rows, int n)
 
 		p->next = rows[i].at;
 		p->next.us++;
-		if (rows[i].signal < 0)
+		/* a boot whose clock was never set has no times */
+		if (rows[i].at.boot != p->boot && !rows[i].dated && p->dated)
+			p->undated++;
+		else if (rows[i].signal < 0)
 			add_gap(p, &rows[i]);
-		else if (row && !had_before(p, row, &rows[i]) && !is_same(p, row, &rows[i]))
+		else if (row && is_sound(&rows[i]) && !had_before(p, row, &rows[i]) &&
+		         !is_same(p, row, &rows[i]))
 			add_value(p, row, &rows[i]);
 	}
 	for (int i = 0; i < n; i++)
@@ -326,8 +361,10 @@ static int read_batch(struct past *p, int64_t now_ns)
 
 	if ((!p->history || !p->by_name) &&
 	    (!(p->history ? ows_history_refresh(p->history) == 0 : open_history(p)) ||
-	     !map_rows(p)))
+	     !map_rows(p))) {
+		p->there = true; /* it was, and may be again */
 		return -ENOENT;
+	}
 	from = replay_place(p->history, &w->from);
 	until = replay_place(p->history, &w->until);
 	if (from < 0 || until < 0) {
@@ -383,7 +420,7 @@ static void end_batch(struct past *p, int64_t now_ns)
 		free(p->values[i].text);
 	free(p->values);
 	p->values = NULL;
-	if (p->value_count)
+	if (now_ns - p->kept_ns >= BATCHES_NS)
 		keep(p, now_ns);
 	p->value_count = p->put = 0;
 	p->read = false;
@@ -408,8 +445,8 @@ void past_begin(struct past *p, uint64_t key)
 		return;
 	close_history(p);
 	find_path(p);
-	if (*p->path)
-		read_kept(p);
+	if (*p->path && !read_kept(p))
+		keep(p, now_ns);
 }
 
 /* The broker has the birth: what it has missed before is known. */
@@ -487,6 +524,9 @@ void past_lost(struct past *p)
 		row->past_told = row->sure_told;
 	}
 	past_drop(p);
+	/* Without a history there were no marks: all that was known of has gone out. */
+	if (!p->lost && !p->there)
+		p->reached = point_of(p, p->face->looked_ns);
 	if (!p->lost)
 		keep(p, ows_now());
 	p->lost = true;
@@ -526,9 +566,10 @@ void past_pump(struct past *p, int64_t now_ns)
 		p->reached = point_of(p, p->face->looked_ns);
 	if (!p->read || put_batch(p))
 		mark(p, now_ns);
+	p->due = !p->lost && p->count && !p->read;
 }
 
 int64_t past_next(const struct past *p)
 {
-	return p->on && !p->lost && p->there && p->count && !p->read ? p->next_ns : INT64_MAX;
+	return p->due ? p->next_ns : INT64_MAX;
 }

@@ -28,6 +28,8 @@ struct past {
 	bool lost;   /* the broker does not get what changes now */
 	bool logged; /* why nothing is sent again, or is not kept */
 	bool said;   /* that it goes out again */
+	bool due;    /* there is something to do at next_ns; else the next event comes first */
+	bool dated;  /* the clock of this boot is known to be right */
 	char path[HISTORY_PATH + 16];
 	uint64_t key;                             /* of what there is one order of values for */
 	int64_t boot;                             /* that this machine is in */
@@ -47,7 +49,7 @@ struct past {
 	int value_count, put;
 	bool read;                /* a batch is under way: it may have no values */
 	struct replay_point next; /* behind it */
-	uint64_t sent, filled;
+	uint64_t sent, filled, undated;
 };
 
 /* key: of another one what was kept does not count. The profile of the stream is known. */

@@ -577,7 +577,7 @@ static bool sparkplug_past(struct stream *s, const struct past_value *values, in
 
 		while (bad < n && !ows_good(values[bad].v.quality))
 			bad++;
-		if (bad == n)
+		if (bad == n && !chip->filled)
 			return true;
 		sparkplug_begin(s);
 		put_rows(s, chip, false);
@@ -585,6 +585,7 @@ static bool sparkplug_past(struct stream *s, const struct past_value *values, in
 		if (!chip->announced)
 			return false;
 		stream_changes(s, &first, 1);
+		chip->filled = true;
 	}
 	sparkplug_begin(s);
 	s->parts = NULL; /* they are in their order, and may be more than there are rows */

@@ -71,6 +71,7 @@ struct chip {
 	int rows, inputs, away, answers; /* signals; of them that cannot reach it, that do */
 	bool seen;                       /* it was there once, since owsd-mqtt has started */
 	bool announced;                  /* by the birth */
+	bool filled;                     /* what was missed has had values of it that were good */
 	bool published;
 	enum chip_state state; /* what was published */
 };

@@ -14,10 +14,11 @@
 
 static const char *advice(int err)
 {
-	return err == -ENOENT            ? "; does owsd-recorder run?"
-	       : err == -EPROTONOSUPPORT ? "; its file is of a newer owsd"
-	       : err == -ENOSYS          ? "; this owsctl was built without SQLite"
-	                                 : "";
+	return err == -ENOENT ? "; does owsd-recorder run?"
+	       : err == -EPROTONOSUPPORT
+	               ? "; its file is of another version of owsd, or owsd-recorder has not run since"
+	       : err == -ENOSYS ? "; this owsctl was built without SQLite"
+	                        : "";
 }
 
 static void ignore(void *ctx, bool is_error, const char *message)

@@ -12,6 +12,7 @@
 
 #include "unity.h"
 
+#include "src/history/schema.h"
 #include "tests/unit/aid/past.h"
 
 static struct past past;
@@ -596,7 +597,33 @@ static void test_an_older_file_is_brought_up_to_date(void)
 	put_file("", 0);
 	record_one();
 	TEST_ASSERT_EQUAL_INT(2, count_of(PAST_ROOM));
-	TEST_ASSERT_EQUAL_INT64(1, past_ask(&past, "pragma user_version"));
+	TEST_ASSERT_EQUAL_INT64(HISTORY_SCHEMA, past_ask(&past, "pragma user_version"));
+	TEST_ASSERT_EQUAL_STRING("", past.said);
+}
+
+/* Version 1 numbered the hours as it did the minutes. */
+static void test_hours_of_the_first_version_are_numbered_anew(void)
+{
+	enum { HOUR = 21, SIGNAL = 5 };
+
+	record_one();
+	sql("drop view trend_hour; drop table hour; create table hour (id integer primary key, least,"
+	    " most, mean, last, good, known, count, quality, worst);"
+	    "create view trend_hour as select * from hour;"
+	    "insert into hour values (21 << 16 | 5, 1, 3, 2.5, 3, 3600, 3600, 7, 192, 192);"
+	    "insert into hour values (22 << 16 | 5, 4, 4, 4, 4, 3600, 3600, 1, 192, 192);"
+	    "pragma user_version = 1");
+	past_begin(&past, 9 * PAST_S, PAST_NOON, true);
+	past_room(&past, 10 * PAST_S, 5);
+	TEST_ASSERT_EQUAL_INT(0, history_writer_flush(past.writer, 11 * PAST_S));
+	TEST_ASSERT_EQUAL_INT64(HISTORY_SCHEMA, past_ask(&past, "pragma user_version"));
+	TEST_ASSERT_EQUAL_INT64(2, past_ask(&past, "select count(*) from hour"));
+	TEST_ASSERT_EQUAL_INT64(schema_hour(HOUR, SIGNAL),
+	                        past_ask(&past, "select id from hour where count = 7"));
+	TEST_ASSERT_EQUAL_INT64(schema_hour(HOUR + 1, SIGNAL),
+	                        past_ask(&past, "select id from hour where least = 4"));
+	TEST_ASSERT_EQUAL_INT64(0, past_ask(&past, "select count(*) from sqlite_master"
+	                                           " where name = 'hours'"));
 	TEST_ASSERT_EQUAL_STRING("", past.said);
 }
 
@@ -649,6 +676,7 @@ int main(void)
 	RUN_TEST(test_a_file_with_damaged_pages_is_put_aside_when_it_is_met);
 	RUN_TEST(test_a_newer_file_and_one_of_another_program_are_left_alone);
 	RUN_TEST(test_an_older_file_is_brought_up_to_date);
+	RUN_TEST(test_hours_of_the_first_version_are_numbered_anew);
 	RUN_TEST(test_what_an_earlier_run_of_the_boot_has_of_the_journals_is_known);
 	return UNITY_END();
 }

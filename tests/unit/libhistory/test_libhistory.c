@@ -12,6 +12,7 @@
 
 #include "src/history/place.h"
 #include "src/history/writer.h"
+#include "src/libhistory/handle.h"
 #include "src/libhistory/ows_history.h"
 #include "src/libhistory/replay.h"
 #include "src/signal/value.h"
@@ -578,6 +579,22 @@ static void test_all_rows_come_once_in_the_order_of_recording(void)
 	TEST_ASSERT_EQUAL_INT64(-ENOENT, replay_place(h, &lost));
 }
 
+/* The boot of a run that ended long before the moment: what comes is of the next run, all of it. */
+static void test_a_moment_behind_a_run_is_not_in_the_next_one(void)
+{
+	struct session runs[] = {{.start = 100, .end = 200, .base = 90, .boot = 1},
+	                         {.start = 200, .end = 900, .base = 190, .boot = 2}};
+	struct ows_history two = {.sessions = runs, .session_count = 2};
+	const struct {
+		struct replay_point at;
+		int64_t place;
+	} cases[] = {{{1, 20}, 110},  {{1, 109}, 199},  {{1, 110}, 200},
+	             {{1, 111}, 199}, {{1, 5000}, 199}, {{2, 5000}, 5190}};
+
+	for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++)
+		TEST_ASSERT_EQUAL_INT64(cases[i].place, replay_place(&two, &cases[i].at));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -594,5 +611,6 @@ int main(void)
 	RUN_TEST(test_a_copy_without_its_log_is_read_too);
 	RUN_TEST(test_points_of_sums_are_those_of_the_values);
 	RUN_TEST(test_all_rows_come_once_in_the_order_of_recording);
+	RUN_TEST(test_a_moment_behind_a_run_is_not_in_the_next_one);
 	return UNITY_END();
 }
