@@ -232,7 +232,7 @@ EXAMPLES := $(wildcard docs/examples/*.c docs/examples/*.cpp docs/examples/*.py 
 HOSTED   := $(patsubst docs/examples/%/,%,$(wildcard docs/examples/*/))
 PYTHON   := $(wildcard src/libows/*.py)
 # What the browser gets of owsd-web, as names below src/web/page
-PAGE     := $(patsubst src/web/page/%,%,$(foreach e,html css js svg png webmanifest,\
+WEBPAGE  := $(patsubst src/web/page/%,%,$(foreach e,html css js svg png webmanifest,\
             $(wildcard src/web/page/*.$(e) src/web/page/*/*.$(e))))
 MAN      := $(wildcard docs/*.[1-8])
 # Tests
@@ -557,9 +557,9 @@ install: all
 	install -d $(D)$(PREFIX)/bin $(D)$(PREFIX)/sbin $(D)$(PREFIX)/include $(D)$(LIBDIR)/pkgconfig \
 	    $(D)$(DATADIR)/examples $(D)$(DATADIR)/boards
 	install -m 755 $(B)/owsd $(FACES:%=$(B)/%) $(patsubst %,$(B)/%,$(filter owsd%,$(WITH_SIM))) $(D)$(PREFIX)/sbin
-	@set -e; for f in $(PAGE); do d=$(D)$(DATADIR)/web/$$(dirname $$f); install -d $$d; \
+	@set -e; for f in $(WEBPAGE); do d=$(D)$(DATADIR)/web/$$(dirname $$f); install -d $$d; \
 	    install -m 644 src/web/page/$$f $$d; done
-	@set -e; for f in $(PAGE); do d=$(COCKPIT)/$$(dirname $$f); install -d $$d; \
+	@set -e; for f in $(WEBPAGE); do d=$(COCKPIT)/$$(dirname $$f); install -d $$d; \
 	    install -m 644 src/web/page/$$f $$d; done
 	sed 's,^<script type="module" async,<script src="../base1/cockpit.js"></script>\n&,' \
 	    src/web/page/index.html >$(COCKPIT)/index.html

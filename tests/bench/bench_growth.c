@@ -58,10 +58,12 @@ static bool answer(int fd)
 
 	if (recv(fd, word, sizeof(word), MSG_WAITALL) != sizeof(word))
 		return false;
-	len = ntohl(word[1]);
+	/* behind the data: a token of each server that it came through */
+	len = ntohl(word[1]) + 16 * (ntohl(word[0]) & 0xffff);
 	if (len >= 512 || (len && recv(fd, bytes, len, MSG_WAITALL) != (ssize_t)len))
 		return false;
 	bytes[len] = '\0';
+	word[0] = 0;
 	is_value = ntohl(word[2]) == READ && strncmp(bytes, "/28.", 4) == 0;
 	word[2] = is_value || ntohl(word[2]) == 1 ? 0 : htonl((uint32_t)-1);
 	word[1] = 0;

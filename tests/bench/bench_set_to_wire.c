@@ -40,12 +40,15 @@ static void *serve(void *ctx)
 		setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
 		while (recv(fd, word, sizeof(word), MSG_WAITALL) == sizeof(word)) {
 			int64_t now = bench_now();
-			uint32_t len = ntohl(word[1]), type = ntohl(word[2]);
+			uint32_t type = ntohl(word[2]);
+			/* behind the data: a token of each server that it came through */
+			uint32_t len = ntohl(word[1]) + 16 * (ntohl(word[0]) & 0xffff);
 
 			if (len > sizeof(payload) ||
 			    (len && recv(fd, payload, len, MSG_WAITALL) != (ssize_t)len))
 				break;
 			word[1] = 0;
+			word[0] = 0;
 			word[2] = type == 1 || type == WRITE ? 0 : htonl((uint32_t)-1);
 			if (send(fd, word, sizeof(word), MSG_NOSIGNAL) != sizeof(word))
 				break;
