@@ -24,14 +24,14 @@ static void print_errors(void *ctx, bool is_error, const char *message)
 {
 	(void)ctx;
 	if (is_error)
-		fprintf(stderr, "owsctl: %s\n", message);
+		ctl_tell("%s", message);
 }
 
 static void print_report(void *ctx, bool is_error, const char *message)
 {
 	(void)ctx;
 	(void)is_error;
-	fprintf(stderr, "owsctl: %s\n", message);
+	ctl_tell("%s", message);
 }
 
 /* All errors but -ENOMEM are already printed. */
@@ -91,10 +91,9 @@ static int open_document(const char *file, bool make, struct config_report *repo
 
 	*rio = NULL;
 	if (make && access(file, F_OK) && errno == ENOENT) {
-		fprintf(stderr,
-		        "owsctl: %s is new, with the target localhost:4304: config FILE set OwsDrv "
-		        "TargetName=... changes it\n",
-		        file);
+		ctl_tell("%s is new, with the target localhost:4304: config FILE set OwsDrv "
+		         "TargetName=... changes it",
+		         file);
 		return rio_parse(file, edit_empty, strlen(edit_empty), report, rio);
 	}
 	err = rio_read(file, report, &text, &len);
@@ -154,8 +153,8 @@ static void hint(const char *file)
 	if (!instance_of_file(file, name))
 		return;
 	usual = !strcmp(name, "OWS");
-	fprintf(stderr, "owsctl: owsd %s runs with this file: owsctl %s%s%sreload has it loaded\n",
-	        name, usual ? "" : "-n ", usual ? "" : name, usual ? "" : " ");
+	ctl_tell("owsd %s runs with this file: owsctl %s%s%sreload has it loaded", name,
+	         usual ? "" : "-n ", usual ? "" : name, usual ? "" : " ");
 }
 
 static int change(const char *file, const char *action, char **words, unsigned count)

@@ -29,6 +29,15 @@ __attribute__((format(printf, 1, 0))) static void print_error(const char *format
 	free(text);
 }
 
+void ctl_tell(const char *format, ...)
+{
+	va_list args;
+
+	va_start(args, format);
+	print_error(format, args);
+	va_end(args);
+}
+
 int ctl_fail(const char *format, ...)
 {
 	va_list args;

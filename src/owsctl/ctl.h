@@ -63,7 +63,8 @@ bool ctl_moment(const struct ctl *ctl, int c, const struct when *now, int64_t *w
 /* Print what a verb takes: at most a screen. */
 void ctl_help(const struct verb *verb, FILE *out);
 
-/* Print an error on stderr. */
+/* Print on stderr, after "owsctl: ", made printable: a text may have bytes from elsewhere. */
+void ctl_tell(const char *format, ...) __attribute__((format(printf, 1, 2)));
 int ctl_usage(const struct ctl *ctl, const char *format, ...) /* returns CTL_USAGE */
 	__attribute__((format(printf, 2, 3)));
 int ctl_fail(const char *format, ...) /* returns CTL_FAILED */

@@ -47,8 +47,8 @@ static void say_command(struct ows *h, const char *name, int id, const struct re
 		return;
 	ctl_flush_lines();
 	value_to_text(type, value, text);
-	fprintf(stderr, "owsctl: %s: commanded %s, and the device does not have it%s\n", name, text,
-	        reading->value.quality == OWS_Q_DIFFERS ? "" : " yet");
+	ctl_tell("%s: commanded %s, and the device does not have it%s", name, text,
+	         reading->value.quality == OWS_Q_DIFFERS ? "" : " yet");
 }
 
 static int get_one(const struct ctl *ctl, struct ows *h, const char *name, struct reading *reading)

@@ -51,8 +51,7 @@ static void print_progress(struct target *target)
 	if (now_ns - target->printed_ns < PROGRESS_NS)
 		return;
 	target->printed_ns = now_ns;
-	fprintf(stderr, "owsctl: %u of %u answers from %s\n", target->answered, target->count,
-	        target->name);
+	ctl_tell("%u of %u answers from %s", target->answered, target->count, target->name);
 }
 
 int open_target(const struct ctl *ctl, int64_t timeout_ns, struct target *target,
@@ -70,9 +69,7 @@ int open_target(const struct ctl *ctl, int64_t timeout_ns, struct target *target
 	if (!name)
 		name = served->target[0] ? served->target : OPEN_DEFAULT_TARGET;
 	if (!ctl->target && !served->target[0] && served->runs)
-		fprintf(stderr,
-		        "owsctl: asked " OPEN_DEFAULT_TARGET ": owsd %s serves no clients\n",
-		        ctl->instance);
+		ctl_tell("asked " OPEN_DEFAULT_TARGET ": owsd %s serves no clients", ctl->instance);
 	status = strcmp(name, "auto") ? open_way(target, name, why, sizeof(why))
 	                              : open_auto(target, why, sizeof(why));
 	if (strcmp(name, "auto") == 0)

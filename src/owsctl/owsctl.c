@@ -256,7 +256,7 @@ static void find_instance(struct ctl *ctl, int argc, char **argv)
 	if (ows_open(ctl->instance, OWS_READ, &h) == 0)
 		ows_close(h);
 	else if (instances_running(found, NULL, 0) == 1) {
-		fprintf(stderr, "owsctl: no %s has run here; this is %s\n", ctl->instance, found);
+		ctl_tell("no %s has run here; this is %s", ctl->instance, found);
 		ctl->instance = found;
 		ctl->named = !ctl->verb->opens;
 	}

@@ -41,7 +41,7 @@ static void print_report(void *ctx, bool is_error, const char *message)
 {
 	(void)ctx;
 	if (is_error)
-		fprintf(stderr, "owsctl: %s\n", message);
+		ctl_tell("%s", message);
 }
 
 static bool is_stdout(const char *file)
