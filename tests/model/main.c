@@ -65,7 +65,7 @@ static void run_wrong(const struct scenario *s, struct tally *tally)
 static const struct {
 	const char *function, *way, *reason;
 } spare[] = {
-	{"enter", "release to relaxed", "the fence in the entry does it too"},
+	{"entries_enter", "release to relaxed", "the fence in the entry does it too"},
 	{"ows_alarm_count", "acquire to relaxed", "the fence behind the entry does it too"},
 	{"image_awake", "seq_cst without release", "the fence behind it does it too"},
 	{"image_awake", "seq_cst fence to acq_rel", "the fence of bells_close_eyes() does it too"},
@@ -73,7 +73,7 @@ static const struct {
 	{"news_due", "release to relaxed", "the fence of control_news() stands before it"},
 	{"controller_state", "seq_cst without release", "the fence behind it does it too"},
 	{"ows_acknowledge", "release to relaxed", "the mark after it does it too"},
-	{"look", "acquire to relaxed", "handle_state() loads it again"},
+	{"changes_look", "acquire to relaxed", "handle_state() loads it again"},
 	{"ows_shelve", "acquire to relaxed", "no store comes before a load here"},
 };
 

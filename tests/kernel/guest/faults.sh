@@ -82,7 +82,7 @@ passing "chip reset" reset 0x18
 passing "stuck busy bit" stick 0x18
 sim brownout board
 sim set board pin.1 1
-does "outputs are written again after a restart of their device" within $back_within reads pins 250
+does "with Restore, outputs are written again after a restart of their device" within $back_within reads pins 250
 
 does "owsd lives" kill -0 $owsd
 same "no false value was ever good" "" "$(awk '
