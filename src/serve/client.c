@@ -427,6 +427,17 @@ static bool read_request(struct serve *s, struct client *c)
 	return state > 0;
 }
 
+bool client_again(struct serve *s, struct client *c)
+{
+	if (c->state != CLIENT_READING || c->fd < 0 || c->lent || c->have || c->queued)
+		return false;
+	if (!client_receive(s, c))
+		client_close(s, c);
+	else if (c->have)
+		client_ready(s, c);
+	return c->queued;
+}
+
 bool client_turn(struct serve *s, struct client *c)
 {
 	switch ((enum client_state)c->state) {

@@ -23,6 +23,11 @@ void client_back(struct serve *s, struct client *c);
 void client_event(struct serve *s, struct client *c, uint32_t events);
 /* The client's turn in the round: at most one request. True: c->request waits to be worked on. */
 bool client_turn(struct serve *s, struct client *c);
+/*
+ * Receive from a client whose request may be there by now, before epoll says so. True: some bytes
+ * are, and the client is in the round.
+ */
+bool client_again(struct serve *s, struct client *c);
 /* Apply the time limits of all clients; sets s->look_ns. */
 void clients_look(struct serve *s);
 /* Enter a state; its time limit counts from now. */
