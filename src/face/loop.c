@@ -15,6 +15,7 @@
 #include "hal/base/time.h"
 #include "src/face/look.h"
 #include "src/face/loop.h"
+#include "src/service/resident.h"
 #include "src/service/streams.h"
 #include "src/service/unix_signals.h"
 
@@ -197,6 +198,7 @@ static int loop_run(struct face *face, struct unix_signals *signals)
 		           OWSD_VERSION, face->arguments->instance, face->arguments->file);
 		notify_send(&face->notify, NOTIFY_READY);
 		report_open(face);
+		resident_drop_start();
 		loop(face, signals, prefix);
 		notify_send(&face->notify, NOTIFY_STOPPING);
 		report_remove(face);

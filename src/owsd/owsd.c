@@ -18,6 +18,7 @@
 #include "src/owsd/arguments.h"
 #include "src/owsd/instance.h"
 #include "src/service/notify.h"
+#include "src/service/resident.h"
 #include "src/service/streams.h"
 #include "src/service/unix_signals.h"
 #include "src/shm/porter.h"
@@ -37,6 +38,8 @@
 #define STOP_NS (2 * NS_PER_S)
 /* How often the supervisor looks for the names of its files, and at a log that is stuck */
 #define SUPERVISE_NS NS_PER_S
+/* after the start: all targets were asked for their first values, as far as they answer */
+#define SETTLED_NS (10 * NS_PER_S)
 #define AGAIN_NS (20 * NS_PER_MS) /* a reload that has to wait */
 /* From the end of a reload to the next: reloads take at most a tenth of the time */
 #define APART_LEAST_NS (200 * NS_PER_MS)
@@ -230,7 +233,7 @@ static bool supervise(struct host *host, const struct arguments *a, struct insta
                       struct unix_signals *signals)
 {
 	const int bells[] = {log_bell(log), host_asked_bell(host)};
-	int64_t fed_ns = 0, reload_ns = 0, wait_ns = SUPERVISE_NS;
+	int64_t fed_ns = 0, reload_ns = 0, wait_ns = SUPERVISE_NS, drop_ns = ows_now() + SETTLED_NS;
 	bool wanted;
 
 	if (notify->watchdog_ns && notify->watchdog_ns / 4 < wait_ns)
@@ -251,6 +254,10 @@ static bool supervise(struct host *host, const struct arguments *a, struct insta
 		            2 * host_beats_apart(host) + notify->watchdog_ns / 4) {
 			fed_ns = now_ns;
 			notify_send(notify, NOTIFY_WATCHDOG);
+		}
+		if (now_ns >= drop_ns) {
+			drop_ns = INT64_MAX;
+			resident_drop_start();
 		}
 		if (!instance_keep(instance, log))
 			return false;
