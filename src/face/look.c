@@ -66,14 +66,6 @@ static void tell(struct face *face, enum face_news news)
 	face->ops->event(face, &(struct face_event){.news = news});
 }
 
-static void lose(struct face *face)
-{
-	if (!face->live)
-		return;
-	face->live = false;
-	tell(face, FACE_LOST);
-}
-
 static void tell_lost_entries(struct face *face, uint32_t lost)
 {
 	if (lost)
@@ -81,8 +73,19 @@ static void tell_lost_entries(struct face *face, uint32_t lost)
 		                 &(struct face_event){.news = FACE_ENTRIES_LOST, .count = lost});
 }
 
-/* Entries that are not kept any more are counted; one that owsd is writing waits. */
-static void take_alarms(struct face *face)
+/* Is the value after it still to come? Not so long that entries behind it are lost. */
+static bool comes_later(const struct face *face, const struct ows_alarm *alarm, uint32_t behind)
+{
+	return alarm->kind == OWS_ALARM_DEVICE && alarm->event == OWS_ALARM_RAISED &&
+	       !alarm->has_after && alarm->type != OWS_STRING && behind < JOURNAL / 2 &&
+	       ows_now() - alarm->occurred_ns < face->after_ns;
+}
+
+/*
+ * Entries that are not kept any more are counted; one that owsd is writing waits. all: nothing more
+ * comes to them.
+ */
+static void take_alarms(struct face *face, bool all)
 {
 	uint32_t count = ows_alarm_count(face->ows), lost = 0;
 	struct ows_alarm alarm;
@@ -96,9 +99,11 @@ static void take_alarms(struct face *face)
 			lost++;
 			continue;
 		}
-		if (alarm.occurred_ns > face->alarms_after_ns)
-			face->ops->event(face,
-			                 &(struct face_event){.news = FACE_ALARM, .alarm = &alarm});
+		if (alarm.occurred_ns <= face->alarms_after_ns)
+			continue;
+		if (!all && comes_later(face, &alarm, count - face->next_alarm))
+			break;
+		face->ops->event(face, &(struct face_event){.news = FACE_ALARM, .alarm = &alarm});
 	}
 	tell_lost_entries(face, lost);
 }
@@ -122,6 +127,16 @@ static void take_commands(struct face *face)
 			                                            .command = &command});
 	}
 	tell_lost_entries(face, lost);
+}
+
+static void lose(struct face *face)
+{
+	if (!face->live)
+		return;
+	if (!face->fresh)
+		take_alarms(face, true);
+	face->live = false;
+	tell(face, FACE_LOST);
 }
 
 /* The first entry of a journal that may still be kept. */
@@ -211,6 +226,8 @@ static bool open_again(struct face *face, int64_t now_ns)
 static bool renew(struct face *face, int64_t now_ns)
 {
 	if (!face->stale) {
+		if (face->live)
+			take_alarms(face, true);
 		face->stale = true;
 		face->stale_ns = now_ns;
 		face->open_ns = 0;
@@ -266,7 +283,7 @@ void look(struct face *face, int64_t now_ns)
 		/* else more is to come, and what it is about may be older than this look */
 		if (n == 0)
 			face->looked_ns = now_ns;
-		take_alarms(face);
+		take_alarms(face, false);
 		take_commands(face);
 	}
 	/* a look that found nothing has armed the descriptor, which wakes the loop at once */

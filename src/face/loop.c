@@ -179,8 +179,8 @@ static void loop(struct face *face, struct unix_signals *signals, int prefix)
 		log_drain(face->log, STDERR_FILENO, prefix);
 		wait_and_take(face, signals, ows_now());
 	}
-	/* what changed within the face's pace, and before the end */
-	face->look_ns = 0;
+	/* what changed within the face's pace, what waits, and before the end */
+	face->look_ns = face->after_ns = 0;
 	look(face, ows_now());
 	log_notice(face->log, "%s ends: %s", face->ops->program,
 	           signals->end == SIGTERM ? "SIGTERM" : "SIGINT");

@@ -17,6 +17,8 @@
 /* Of changes of a signal that come closer together the newest is kept */
 #define PACE_NS (20 * NS_PER_MS)
 #define TICK_NS NS_PER_S
+/* Of a bus that answers slowly; no longer than most commits wait anyway */
+#define AFTER_NS (10 * NS_PER_S)
 /* Each second the loop looks: later than that it did not get to it */
 #define LATE_NS (2 * NS_PER_S)
 /* In memory while the disk takes nothing: hours of a small plant */
@@ -143,6 +145,7 @@ int recording_open(struct face *face)
 		return err;
 	}
 	face->pace_ns = PACE_NS;
+	face->after_ns = AFTER_NS;
 	face->tick_ns = now_ns;
 	log_info(face->log, "history in %s", r->directory);
 	return 0;

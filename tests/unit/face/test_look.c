@@ -8,6 +8,8 @@
 
 #include "hal/base/time.h"
 #include "src/face/look.h"
+#include "src/shm/entries.h"
+#include "src/signal/value.h"
 #include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/instance.h"
 
@@ -20,7 +22,8 @@ static const struct instance_signal after[] = {
 };
 
 static struct instance in;
-static char happened[512]; /* words, each with a blank after it */
+static char happened[512];     /* words, each with a blank after it */
+static struct ows_alarm alarm; /* the last one that came */
 
 static void note(const char *word)
 {
@@ -45,6 +48,8 @@ static void take_event(struct face *face, const struct face_event *event)
 
 	(void)face;
 	note(words[event->news]);
+	if (event->news == FACE_ALARM)
+		alarm = *event->alarm;
 }
 
 static void take_changes(struct face *face, const int *signals, int n)
@@ -269,6 +274,65 @@ static void test_more_changes_than_are_kept_are_an_overrun(void)
 	TEST_ASSERT_TRUE(face.live);
 }
 
+/* Of the device of signal a: owsd reads the value after it a moment later. */
+static uint32_t alarm_of_a(void)
+{
+	return image_alarm(&in.image, &(struct ows_journal_entry){.record = 1,
+	                                                          .kind = OWS_ALARM_DEVICE,
+	                                                          .event = OWS_ALARM_RAISED,
+	                                                          .occurred_ns = ows_now()});
+}
+
+static void test_an_alarm_waits_for_its_value_and_those_behind_it_in_their_order(void)
+{
+	uint32_t number;
+
+	start();
+	looked();
+	alarm_of_a();
+	TEST_ASSERT_EQUAL_STRING("alarm ", looked()); /* a face that says nothing of it */
+	TEST_ASSERT_FALSE(alarm.has_after);
+	face.after_ns = 3600 * NS_PER_S;
+	number = alarm_of_a();
+	image_alarm(&in.image, &(struct ows_journal_entry){.record = 2,
+	                                                   .kind = OWS_ALARM_H,
+	                                                   .event = OWS_ALARM_RAISED,
+	                                                   .occurred_ns = ows_now()});
+	looks_quiet();
+	image_alarm_after(&in.image, number, value_of_double(21.5));
+	look(&face, face.look_ns);
+	TEST_ASSERT_EQUAL_STRING("alarm alarm ", looked());
+	TEST_ASSERT_EQUAL_INT(1, alarm.signal);
+	alarm_of_a();
+	looks_quiet();
+	image_alarm_after(&in.image, number + 2, value_of_double(22.5));
+	TEST_ASSERT_EQUAL_STRING("alarm ", looked());
+	TEST_ASSERT_TRUE(alarm.has_after);
+	TEST_ASSERT_EQUAL_DOUBLE(22.5, alarm.after);
+}
+
+static void test_an_alarm_without_a_value_comes_all_the_same(void)
+{
+	start();
+	looked();
+	face.after_ns = 3600 * NS_PER_S;
+	alarm_of_a();
+	looks_quiet();
+	/* after its time */
+	face.after_ns = 1;
+	TEST_ASSERT_EQUAL_STRING("alarm ", looked());
+	face.after_ns = 3600 * NS_PER_S;
+	/* before others are lost behind it */
+	for (int i = 0; i < 130; i++)
+		alarm_of_a();
+	TEST_ASSERT_EQUAL_STRING("alarm alarm alarm ", looked());
+	/* when owsd ends */
+	image_state(&in.image, OWS_STATE_STOPPED);
+	while (face.live)
+		looked();
+	TEST_ASSERT_EQUAL_UINT32(ows_alarm_count(face.ows), face.next_alarm);
+}
+
 static void test_a_dead_image_is_no_owsd(void)
 {
 	start();
@@ -291,6 +355,8 @@ int main(void)
 	RUN_TEST(test_an_owsd_that_hangs_is_lost_and_found_when_its_heart_beats_again);
 	RUN_TEST(test_an_owsd_that_dies_between_two_looks_at_the_time_is_lost);
 	RUN_TEST(test_more_changes_than_are_kept_are_an_overrun);
+	RUN_TEST(test_an_alarm_waits_for_its_value_and_those_behind_it_in_their_order);
+	RUN_TEST(test_an_alarm_without_a_value_comes_all_the_same);
 	RUN_TEST(test_a_dead_image_is_no_owsd);
 	return UNITY_END();
 }
