@@ -26,6 +26,25 @@
 			  " left join quality q on q.quality = t.quality left join quality w on w.quality = t.worst" \
 			  " " SESSION(number " * " us " + " us " - 1") ";"
 
+/* Words for numbers */
+#define WORDS(name) \
+	"create table if not exists " name " (" name " integer primary key, text text not null);"
+
+#define EVENTS \
+	WORDS("alarm_kind") \
+	WORDS("alarm_event") \
+	WORDS("command_reason") "create view trend_event as select " ISO( \
+		"event.time") " as time," \
+			      " case event.kind when 6 then 'clock' when 7 then 'command' else 'alarm' end as kind," \
+			      " coalesce(c.text, ltrim(coalesce(k.text, '') || ' ' || a.text)) as what, name, value," \
+			      " before, unit, q.text as quality, event.text, program, person" \
+			      " from event left join signal using (signal) left join quality q" \
+			      " on q.quality = event.quality left join command_reason c" \
+			      " on event.kind = 7 and command_reason = event.reason left join alarm_kind k" \
+			      " on event.kind = 8 and alarm_kind = event.reason left join alarm_event a" \
+			      " on event.kind = 8 and alarm_event = event.event " SESSION( \
+				      "event.id") ";"
+
 #define HOURS ROLLUP("hour", "3600000000", SCHEMA_HOUR("t.id"), "(t.id >> 3)")
 
 /* An empty file becomes one of this version. */
@@ -44,8 +63,7 @@ static const char create[] =
 	" signal integer, type integer, quality integer, reason integer, event integer, value,"
 	" before, text text, serial integer, uid integer, pid integer, program text, person text);"
 	"create index event_time on event (time);"
-	"create table quality (quality integer primary key, text text not null);"
-	"create table reason (reason integer primary key, text text not null);"
+	WORDS("quality") WORDS("reason") /* of gaps */
 	/* a number that is not good could be believed */
 	"create view trend as select " ISO("raw.id") " as time, name,"
 	" case when raw.quality >= 192 then value end as value, unit, q.text as quality"
@@ -54,13 +72,8 @@ static const char create[] =
 	" union all select " ISO("gap.start") ", coalesce(name, '*'), null, unit, r.text"
 	" from gap left join signal using (signal) left join reason r on r.reason = gap.reason "
 	SESSION("gap.start") ";"
-	"create view trend_event as select " ISO("event.time") " as time,"
-	" case kind when 6 then 'clock' when 7 then 'command' else 'alarm' end as kind, name, value,"
-	" before, unit, q.text as quality, event.text, program, person"
-	" from event left join signal using (signal) left join quality q"
-	" on q.quality = event.quality " SESSION("event.id") ";"
 	ROLLUP("minute", "60000000", "(t.id >> 16)", "t.id")
-	HOURS;
+	HOURS EVENTS;
 /* clang-format on */
 
 /* Step i makes a file of version i one of version i + 1. */
@@ -70,29 +83,42 @@ static const char *const steps[HISTORY_SCHEMA] = {
 	      "insert into hour select (((id >> 19 << 16) | (id & 65535)) << 3) | ((id >> 16) & 7), least,"
 	      " most, mean, last, good, known, count, quality, worst from hours;"
 	      "drop table hours;",
+	/* of an event there was no word for what it is */
+	[2] = "drop view trend_event; " EVENTS,
 };
 
-_Static_assert(HISTORY_CLOCK == 6 && HISTORY_COMMAND == 7, "trend_event has these numbers");
+_Static_assert(HISTORY_CLOCK == 6 && HISTORY_COMMAND == 7 && HISTORY_ALARM == 8,
+               "trend_event has these numbers");
+
+static const struct {
+	const char *insert;
+	int first, end;
+	const char *(*text)(uint8_t number);
+} words[] = {
+	{"insert or ignore into quality values (?, ?)", 0, 256, ows_quality_text},
+	{"insert or ignore into reason values (?, ?)", 0, HISTORY_REASONS, history_reason_text},
+	{"insert or ignore into alarm_kind values (?, ?)", OWS_ALARM_DEVICE, OWS_ALARM_DIFFERS + 1,
+         ows_alarm_kind_text},
+	{"insert or ignore into alarm_event values (?, ?)", OWS_ALARM_RAISED, OWS_ALARM_FAILED + 1,
+         ows_alarm_event_text},
+	{"insert or ignore into command_reason values (?, ?)", OWS_REASON_NONE, OWS_REASON_LAST + 1,
+         ows_reason_text},
+};
 
 static int add_words(sqlite3 *db)
 {
-	sqlite3_stmt *statement;
-	int err = sql_errno(db, sqlite3_prepare_v2(db, "insert into quality values (?, ?)", -1,
-	                                           &statement, NULL));
+	int err = 0;
 
-	for (int i = 0; !err && i < 256; i++) {
-		sql_bind(statement, "it", (int64_t)i, ows_quality_text((uint8_t)i));
-		err = sql_next(statement);
+	for (size_t i = 0; !err && i < sizeof(words) / sizeof(words[0]); i++) {
+		sqlite3_stmt *statement;
+
+		err = sql_errno(db, sqlite3_prepare_v2(db, words[i].insert, -1, &statement, NULL));
+		for (int n = words[i].first; !err && n < words[i].end; n++) {
+			sql_bind(statement, "it", (int64_t)n, words[i].text((uint8_t)n));
+			err = sql_next(statement);
+		}
+		sqlite3_finalize(statement);
 	}
-	sqlite3_finalize(statement);
-	if (!err)
-		err = sql_errno(db, sqlite3_prepare_v2(db, "insert into reason values (?, ?)", -1,
-		                                       &statement, NULL));
-	for (int i = 0; !err && i < HISTORY_REASONS; i++) {
-		sql_bind(statement, "it", (int64_t)i, history_reason_text((uint8_t)i));
-		err = sql_next(statement);
-	}
-	sqlite3_finalize(statement);
 	return err;
 }
 
@@ -102,12 +128,12 @@ static int migrate(sqlite3 *db, int64_t version)
 
 	if (!err && version == 0)
 		err = sql_exec(db, create);
-	if (!err && version == 0)
-		err = add_words(db);
 	for (int64_t i = version ? version : HISTORY_SCHEMA; !err && i < HISTORY_SCHEMA; i++)
 		err = sql_exec(db, steps[i]);
 	if (!err)
-		err = sql_exec(db, "pragma application_id = 1870099300; pragma user_version = 2");
+		err = add_words(db);
+	if (!err)
+		err = sql_exec(db, "pragma application_id = 1870099300; pragma user_version = 3");
 	if (!err)
 		err = sql_exec(db, "commit");
 	if (err)
@@ -115,7 +141,7 @@ static int migrate(sqlite3 *db, int64_t version)
 	return err;
 }
 
-_Static_assert(HISTORY_APPLICATION == 1870099300 && HISTORY_SCHEMA == 2,
+_Static_assert(HISTORY_APPLICATION == 1870099300 && HISTORY_SCHEMA == 3,
                "migrate() says these in words");
 
 static int schema_check(sqlite3 *db)

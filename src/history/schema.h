@@ -29,7 +29,8 @@
 #include <stdint.h>
 
 #define HISTORY_FILE "history.sqlite"
-#define HISTORY_SCHEMA 2               /* user_version */
+#define HISTORY_SCHEMA 3               /* user_version */
+#define HISTORY_SCHEMA_READ 2          /* what a reader needs is the same since then */
 #define HISTORY_APPLICATION 0x6f777364 /* application_id: "owsd" */
 
 #define MINUTE_US INT64_C(60000000)

@@ -46,7 +46,7 @@ struct history_writer {
 	int64_t newest_us; /* of all rows: no gap of all begins before it */
 	int64_t floor_us;  /* the end of the last gap of all */
 	int64_t begin_us, flushed_us, retry_us, step_us, repeat_us;
-	uint32_t begun; /* as the store had it after the last commit */
+	uint32_t files; /* in which this run began, or has yet to: after the last commit */
 	int error;
 	uint64_t dropped;
 };
@@ -412,6 +412,7 @@ static int commit(struct history_writer *w, int64_t now_us, int64_t until_us)
 		.offset_us = w->offset_us,
 		.trusted = w->trusted,
 	};
+	uint32_t files;
 	int err;
 
 	sort(w);
@@ -422,9 +423,10 @@ static int commit(struct history_writer *w, int64_t now_us, int64_t until_us)
 	if (err)
 		return err;
 	remove_rows(w, batch.count);
-	if (w->begun && w->store.begun != w->begun)
+	files = w->store.begun + (w->store.begun && !w->store.start);
+	if (w->files && files != w->files)
 		repeat(w, now_us, true); /* another file, which has nothing of what was before */
-	w->begun = w->store.begun;
+	w->files = files;
 	return 0;
 }
 
@@ -457,7 +459,7 @@ int history_writer_close(struct history_writer *w, int64_t now_ns)
 
 	if (!w)
 		return 0;
-	if (w->begun || w->row_count) {
+	if (w->files || w->row_count) {
 		gap_of_all(w, now_ns / NS_PER_US, now_ns / NS_PER_US, HISTORY_STOPPED);
 		err = commit(w, now_ns / NS_PER_US, INT64_MAX);
 	}
@@ -491,5 +493,6 @@ void history_writer_state(const struct history_writer *w, struct history_state *
 		.dropped = w->dropped,
 		.rows = w->store.rows,
 		.commits = w->store.commits,
+		.files = w->files,
 	};
 }

@@ -85,9 +85,9 @@ static int try_open(struct ows_history *h, bool frozen)
 	if (err >= 0)
 		err = sql_ask(h->db, "pragma application_id", &application);
 	if (err >= 0)
-		err = application != HISTORY_APPLICATION ? -EBADMSG
-		      : version != HISTORY_SCHEMA        ? -EPROTONOSUPPORT
-		                                         : 0;
+		err = application != HISTORY_APPLICATION                          ? -EBADMSG
+		      : version < HISTORY_SCHEMA_READ || version > HISTORY_SCHEMA ? -EPROTONOSUPPORT
+		                                                                  : 0;
 	for (int i = 0; !err && i < H_COUNT; i++)
 		err = sql_errno(h->db,
 		                sqlite3_prepare_v3(h->db, texts[i], -1, SQLITE_PREPARE_PERSISTENT,

@@ -101,6 +101,7 @@ static int open_writer(struct face *face, int64_t now_ns, int *disk_err)
 	r->options.directory = NULL; /* it belongs to the configuration, which is replaced */
 	r->options.record_text = NULL;
 	r->dropped = 0;
+	r->files = 0;
 	err = history_writer_open(&to, now_ns, r->clock.offset_ns, r->clock.trusted, &r->writer);
 	if (err)
 		return err;
@@ -381,10 +382,16 @@ static void report_disk(struct face *face, const struct history_state *state)
 		log_info(face->log, "%s cannot be written yet: %s", r->directory,
 		         strerror(-state->error));
 	if (!state->error && r->disk_err) {
-		log_notice(face->log, "%s is written again; %llu rows of history were lost",
-		           r->directory, (unsigned long long)(state->dropped - r->dropped));
+		bool other = r->files && state->files != r->files;
+
+		log_notice(face->log, "%s is written again%s; %llu rows that waited were lost",
+		           r->directory,
+		           other ? ", in another file: it has nothing of the one before" : "",
+		           (unsigned long long)(state->dropped - r->dropped));
 		r->dropped = state->dropped;
 	}
+	if (!state->error)
+		r->files = state->files;
 	r->disk_err = state->error;
 }
 

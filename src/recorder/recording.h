@@ -32,6 +32,7 @@ struct recording {
 	int64_t turned_ns; /* the last look at intervals; 0: none yet */
 	int disk_err;      /* as it was logged last */
 	uint64_t dropped;  /* likewise: rows */
+	uint32_t files;    /* likewise: that were begun */
 };
 
 /* The functions of the face's table; face->own is the recording. */

@@ -276,7 +276,7 @@ def test_a_directory_that_is_deleted_is_said_and_made_anew(scene):
     shutil.rmtree(history)
     set_relays(scene, daemon, 2)
     until(lambda: "its file was deleted" in recorder.log(), 20, "the recorder says so")
-    until(lambda: "is written again" in recorder.log(), 20, "and makes it anew")
+    until(lambda: "is written again, in another file" in recorder.log(), 20, "and makes it anew")
     begun = boot()
     set_relays(scene, daemon, 3)
     until(lambda: "3" in Past(scene).good("relays"), 20, "it has looked since")

@@ -99,6 +99,53 @@ static void test_a_reader_of_sql_sees_names_units_times_and_words(void)
 	                                           " where quality = 'recorder stopped'"));
 }
 
+static void check_words(const char *kind, const char *what)
+{
+	char text[160];
+
+	snprintf(text, sizeof(text),
+	         "select count(*) from trend_event where kind = '%s' and what = '%s'", kind, what);
+	TEST_ASSERT_EQUAL_INT64_MESSAGE(1, past_ask(&past, text), text);
+}
+
+static void record_events(void)
+{
+	struct history_event event = {.kind = HISTORY_ALARM, .time_ns = 7 * PAST_S};
+
+	past_begin(&past, 5 * PAST_S, PAST_NOON, true);
+	event.reason = OWS_ALARM_DIFFERS;
+	event.event = OWS_ALARM_RAISED;
+	history_writer_event(past.writer, &event);
+	event.reason = OWS_ALARM_DEVICE;
+	event.event = OWS_ALARM_FAILED;
+	history_writer_event(past.writer, &event);
+	event.reason = 0;
+	event.event = OWS_ALARM_SHELVED;
+	history_writer_event(past.writer, &event);
+	event.kind = HISTORY_COMMAND;
+	event.reason = OWS_REASON_NONE;
+	history_writer_event(past.writer, &event);
+	event.reason = OWS_REASON_LAST;
+	history_writer_event(past.writer, &event);
+	past_end(&past, 20 * PAST_S);
+}
+
+static void check_events(void)
+{
+	check_words("alarm", "not as commanded raised");
+	check_words("alarm", "device failed");
+	check_words("alarm", "shelved");
+	check_words("command", "none");
+	check_words("command", "last");
+	TEST_ASSERT_EQUAL_INT64(5, past_ask(&past, "select count(*) from trend_event"));
+}
+
+static void test_a_reader_of_sql_sees_what_an_event_was(void)
+{
+	record_events();
+	check_events();
+}
+
 /* A hash of all values with their ids. */
 static int64_t values(void)
 {
@@ -477,20 +524,46 @@ static void test_a_second_writer_of_a_directory_is_refused(void)
 	history_writer_close(other.writer, PAST_S);
 }
 
+static uint32_t files(void)
+{
+	struct history_state state;
+
+	history_writer_state(past.writer, &state);
+	return state.files;
+}
+
 static void test_a_file_that_is_deleted_is_begun_again_with_all_that_holds(void)
 {
 	past_begin(&past, 0, PAST_NOON, true);
 	past_room(&past, PAST_S, 1);
 	past_lamp(&past, PAST_S, 1);
 	TEST_ASSERT_EQUAL_INT(0, history_writer_flush(past.writer, 2 * PAST_S));
+	TEST_ASSERT_EQUAL_UINT32(1, files());
 	TEST_ASSERT_EQUAL_INT(0, unlink(file("")));
 	past_room(&past, 3 * PAST_S, 2);
 	TEST_ASSERT_EQUAL_INT(-ENOENT, history_writer_flush(past.writer, 4 * PAST_S));
 	TEST_ASSERT_EQUAL_INT(0, history_writer_flush(past.writer, 5 * PAST_S));
+	TEST_ASSERT_EQUAL_UINT32(2, files());
 	past_end(&past, 10 * PAST_S);
 	TEST_ASSERT_TRUE(count_of(PAST_ROOM) >= 2);
 	expect(0, 3 * PAST_S, 2);
 	TEST_ASSERT_EQUAL_INT(2, count_of(PAST_LAMP));
+	expect(0, 5 * PAST_S, 1);
+}
+
+static void test_where_nothing_waits_the_new_file_has_all_that_holds_too(void)
+{
+	past_begin(&past, 0, PAST_NOON, true);
+	past_room(&past, PAST_S, 1);
+	TEST_ASSERT_EQUAL_INT(0, history_writer_flush(past.writer, 2 * PAST_S));
+	TEST_ASSERT_EQUAL_INT(0, unlink(file("")));
+	TEST_ASSERT_EQUAL_INT(-ENOENT, history_writer_flush(past.writer, 4 * PAST_S));
+	TEST_ASSERT_EQUAL_INT(0, history_writer_flush(past.writer, 5 * PAST_S));
+	TEST_ASSERT_EQUAL_UINT32(2, files());
+	TEST_ASSERT_EQUAL_INT(0, history_writer_flush(past.writer, 6 * PAST_S));
+	TEST_ASSERT_EQUAL_UINT32(2, files());
+	past_end(&past, 10 * PAST_S);
+	TEST_ASSERT_EQUAL_INT(2, count_of(PAST_ROOM));
 	expect(0, 5 * PAST_S, 1);
 }
 
@@ -627,6 +700,24 @@ static void test_hours_of_the_first_version_are_numbered_anew(void)
 	TEST_ASSERT_EQUAL_STRING("", past.said);
 }
 
+/* Version 2 had no words for events. */
+static void test_events_of_the_second_version_get_words_and_its_readers_need_none(void)
+{
+	struct ows_history *h;
+
+	record_events();
+	sql("drop view trend_event; drop table alarm_kind; drop table alarm_event;"
+	    "drop table command_reason; create view trend_event as select * from event;"
+	    "pragma user_version = 2");
+	TEST_ASSERT_EQUAL_INT(0, ows_history_open(NULL, past.directory, &h));
+	ows_history_close(h);
+	past_begin(&past, 30 * PAST_S, PAST_NOON, true);
+	past_room(&past, 31 * PAST_S, 5);
+	TEST_ASSERT_EQUAL_INT(0, history_writer_flush(past.writer, 32 * PAST_S));
+	TEST_ASSERT_EQUAL_INT64(HISTORY_SCHEMA, past_ask(&past, "pragma user_version"));
+	check_events();
+}
+
 static void test_what_an_earlier_run_of_the_boot_has_of_the_journals_is_known(void)
 {
 	struct history_event alarm = {.kind = HISTORY_ALARM,
@@ -657,6 +748,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_what_is_recorded_is_read_in_the_order_of_time);
 	RUN_TEST(test_a_reader_of_sql_sees_names_units_times_and_words);
+	RUN_TEST(test_a_reader_of_sql_sees_what_an_event_was);
 	RUN_TEST(test_a_clock_that_is_late_or_set_moves_dates_and_changes_no_value);
 	RUN_TEST(test_ids_never_go_back_whatever_the_clock_says);
 	RUN_TEST(test_a_run_that_ended_without_a_word_ends_where_it_last_looked);
@@ -672,11 +764,13 @@ int main(void)
 	RUN_TEST(test_a_reader_that_takes_minutes_holds_nothing_up);
 	RUN_TEST(test_a_second_writer_of_a_directory_is_refused);
 	RUN_TEST(test_a_file_that_is_deleted_is_begun_again_with_all_that_holds);
+	RUN_TEST(test_where_nothing_waits_the_new_file_has_all_that_holds_too);
 	RUN_TEST(test_a_damaged_file_is_put_aside_by_name_and_another_is_begun);
 	RUN_TEST(test_a_file_with_damaged_pages_is_put_aside_when_it_is_met);
 	RUN_TEST(test_a_newer_file_and_one_of_another_program_are_left_alone);
 	RUN_TEST(test_an_older_file_is_brought_up_to_date);
 	RUN_TEST(test_hours_of_the_first_version_are_numbered_anew);
+	RUN_TEST(test_events_of_the_second_version_get_words_and_its_readers_need_none);
 	RUN_TEST(test_what_an_earlier_run_of_the_boot_has_of_the_journals_is_known);
 	return UNITY_END();
 }
