@@ -79,11 +79,15 @@ int past_look(const struct ctl *ctl, const char *directory, struct ows_history *
 	return CTL_DONE;
 }
 
-int past_signal(struct ows_history *h, const char *name, struct ows_history_signal *known)
+int past_signal(struct ows_history *h, const char *instance, const char *name,
+                struct ows_history_signal *known)
 {
-	int signal = ows_history_find(h, name);
-	int err = signal < 0 ? signal : ows_history_signal(h, signal, known);
+	size_t skip = strlen(instance);
+	int signal = ows_history_find(h, name), err;
 
+	if (signal == -ENOENT && !strncmp(name, instance, skip) && !strncmp(name + skip, "__", 2))
+		signal = ows_history_find(h, name + skip + 2);
+	err = signal < 0 ? signal : ows_history_signal(h, signal, known);
 	return err ? err : signal;
 }
 

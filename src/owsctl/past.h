@@ -14,8 +14,9 @@ int past_open(const struct ctl *ctl, const char *directory, struct ows_history *
  * has to be there.
  */
 int past_look(const struct ctl *ctl, const char *directory, struct ows_history **h);
-/* A signal by its name: its index, and *known; -ENOENT. */
-int past_signal(struct ows_history *h, const char *name, struct ows_history_signal *known);
+/* A signal by its name, as it is or as INSTANCE__NAME: its index, and *known; -ENOENT. */
+int past_signal(struct ows_history *h, const char *instance, const char *name,
+                struct ows_history_signal *known);
 /* Print that it has no such signal, with the nearest name; returns CTL_FAILED. */
 int past_unknown(struct ows_history *h, const char *name);
 /* Say why something of it could not be read; returns CTL_FAILED. */

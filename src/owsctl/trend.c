@@ -87,21 +87,18 @@ static void print_picture(const struct trend *t, const struct ows_history_signal
 	       width > 33 ? width - 32 : 1, "", iso(t, points[2 * width - 1].until_ns, until));
 }
 
-static int draw(struct trend *t, const char *name)
+static int draw(struct trend *t, int signal, const struct ows_history_signal *known)
 {
-	struct ows_history_signal known = {.name = "", .unit = ""};
 	int width = columns(), got;
 	struct ows_history_point *points = calloc((size_t)width * 2, sizeof(*points));
 
 	if (!points)
 		return ctl_fail("no memory");
-	got = past_signal(t->h, name, &known);
+	got = ows_history_points(t->h, signal, t->from_ns, t->until_ns, points, 2 * width);
 	if (got >= 0)
-		got = ows_history_points(t->h, got, t->from_ns, t->until_ns, points, 2 * width);
-	if (got >= 0)
-		print_picture(t, &known, points, width);
+		print_picture(t, known, points, width);
 	free(points);
-	return got < 0 ? past_fail(name, got) : CTL_DONE;
+	return got < 0 ? past_fail(known->name, got) : CTL_DONE;
 }
 
 static void put_csv(const char *text, size_t len)
@@ -173,11 +170,11 @@ static void print_influx(struct trend *t, const char *series, const struct ows_h
 }
 
 /* Print each item of a signal. 0, or what is wrong. */
-static int print_items(struct trend *t, const char *name, const char *series)
+static int print_items(struct trend *t, int signal, const char *name, const char *series)
 {
 	struct progress progress = progress_begin(name, ows_now());
 	struct ows_history_item item;
-	int got = ows_history_read(t->h, ows_history_find(t->h, name), t->from_ns, t->until_ns);
+	int got = ows_history_read(t->h, signal, t->from_ns, t->until_ns);
 
 	while (!got && (got = ows_history_next(t->h, &item, 1)) == 1) {
 		if (t->table.to)
@@ -199,7 +196,7 @@ static int print_items(struct trend *t, const char *name, const char *series)
 }
 
 /* A value that is not good has no number here: it could be believed. */
-static int trend_list(struct trend *t, const char *name, const struct ows_history_signal *known)
+static int trend_list(struct trend *t, int signal, const struct ows_history_signal *known)
 {
 	char series[INFLUX_SERIES];
 	int err;
@@ -213,12 +210,12 @@ static int trend_list(struct trend *t, const char *name, const struct ows_histor
 		json_string(&t->json, "unit", known->unit);
 		json_array(&t->json, "records");
 	}
-	err = print_items(t, name, series);
+	err = print_items(t, signal, known->name, series);
 	if (t->ctl->json) {
 		json_array_end(&t->json);
 		json_object_end(&t->json);
 	}
-	return err < 0 ? past_fail(name, err) : CTL_DONE;
+	return err < 0 ? past_fail(known->name, err) : CTL_DONE;
 }
 
 /* Is each record printed, rather than a picture? */
@@ -230,17 +227,17 @@ static bool lists(const struct trend *t)
 static int trend_show(struct trend *t, const char *name)
 {
 	struct ows_history_signal known = {.name = "", .unit = ""};
-	int signal = past_signal(t->h, name, &known);
+	int signal = past_signal(t->h, t->ctl->instance, name, &known);
 
 	if (signal == -ENOENT)
 		return past_unknown(t->h, name);
 	if (signal < 0)
 		return past_fail(ctl_word(name), signal);
 	if (lists(t))
-		return trend_list(t, name, &known);
+		return trend_list(t, signal, &known);
 	if (known.type == OWS_STRING)
 		return ctl_fail("%s is a text: --csv, --influx and --json have it", name);
-	return draw(t, name);
+	return draw(t, signal, &known);
 }
 
 static int show_all(struct trend *t, char **names, int count)

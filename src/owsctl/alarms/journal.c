@@ -63,7 +63,8 @@ struct journal {
 	struct ctl *ctl;
 	struct ows *h;               /* NULL: no owsd has run */
 	struct ows_history *history; /* NULL: nothing is kept on disk */
-	int64_t since_ns;            /* wall clock */
+	int64_t since_ns;            /* wall clock; of the disk */
+	bool has_since;              /* of the memory, too */
 	char *const *patterns;
 	int pattern_count;
 	int64_t most; /* of the entries that are there; -1: all */
@@ -121,6 +122,18 @@ static bool print_news(struct journal *j)
 	       print_from(j, 0, false);
 }
 
+static void drop_older(struct journal_entries *entries, int64_t since_ns)
+{
+	unsigned old = 0;
+
+	while (old < entries->count && entries->entry[old].when_ns < since_ns)
+		old++;
+	entries->count -= old;
+	if (entries->count)
+		memmove(entries->entry, entries->entry + old,
+		        entries->count * sizeof(*entries->entry));
+}
+
 static void show_progress(void *ctx, int64_t done, int64_t all)
 {
 	progress_show(ctx, ows_now(), done, all);
@@ -141,7 +154,10 @@ static int look_at_both(struct journal *j)
 		                   most ? most + RINGS : 0, show_progress, &progress, &past);
 	progress_end(&progress);
 	ok = (!j->h || journal_look(j->h, j->patterns, j->pattern_count, &j->entries)) &&
-	     journal_past_drop(&past, &j->entries) && journal_add(&j->entries, &past);
+	     journal_past_drop(&past, &j->entries);
+	if (ok && j->has_since)
+		drop_older(&j->entries, now.boot - (now.wall - j->since_ns));
+	ok = ok && journal_add(&j->entries, &past);
 	journal_free(&past);
 	return ok ? err : -ENOMEM;
 }
@@ -267,6 +283,7 @@ int verb_journal(struct ctl *ctl, int argc, char **argv)
 		case 's':
 			if (!ctl_moment(ctl, c, &now, &j.since_ns))
 				return CTL_USAGE;
+			j.has_since = true;
 			break;
 		case 'd':
 			directory = optarg;

@@ -235,6 +235,10 @@ static void test_number_patterns_and_span_choose_among_both(void)
 	TEST_ASSERT_EQUAL(3, times("\"name\":\"steps\""));
 	TEST_ASSERT_EQUAL(CTL_DONE, journal("--json -s 15"));
 	TEST_ASSERT_EQUAL(1, times("\"time\""));
+	in_memory(1, begun_ns + 65 * SECOND);
+	/* those in memory, too: the first of the two is ten seconds old, the second yet to come */
+	TEST_ASSERT_EQUAL(CTL_DONE, journal("--json -s 5"));
+	TEST_ASSERT_EQUAL(1, times("\"time\""));
 	TEST_ASSERT_EQUAL(CTL_FAILED, journal("nothing"));
 	holds(err, "there is no nothing");
 	TEST_ASSERT_EQUAL(CTL_USAGE, journal("-s soon"));
@@ -346,6 +350,21 @@ static void test_a_name_that_the_history_has_not_is_answered_with_the_nearest(vo
 	holds(err, "the history has no signal elephant\n");
 }
 
+static void test_a_name_may_have_the_instance_in_front(void)
+{
+	char asked[120];
+
+	value(ROOM, 1, OWS_Q_GOOD, value_of_double(1), NULL);
+	written();
+	for (int i = 0; i < 2; i++) {
+		snprintf(asked, sizeof(asked), "%s%s__room1", i ? "" : "--csv ",
+		         caught_ctl.instance);
+		TEST_ASSERT_EQUAL_MESSAGE(CTL_DONE, trend(asked), err);
+		holds(out, i ? "room1 (°C)\n" : ",\"room1\",1,");
+	}
+	TEST_ASSERT_EQUAL(CTL_FAILED, trend("--csv other__room1"));
+}
+
 static void test_the_times_of_a_list_can_be_asked_for(void)
 {
 	char from[40], until[40], asked[120];
@@ -420,6 +439,7 @@ int main(void)
 	RUN_TEST(test_a_damaged_file_is_named);
 	RUN_TEST(test_good_values_are_points_of_the_line_protocol);
 	RUN_TEST(test_a_name_that_the_history_has_not_is_answered_with_the_nearest);
+	RUN_TEST(test_a_name_may_have_the_instance_in_front);
 	RUN_TEST(test_the_times_of_a_list_can_be_asked_for);
 	RUN_TEST(test_a_bar_is_shown_from_the_second_second_on_and_taken_away);
 	return UNITY_END();
