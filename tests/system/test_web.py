@@ -665,7 +665,7 @@ def test_heads_that_a_proxy_could_read_otherwise_are_refused(scene):
         (400, b"\x16\x03\x01\x02\x00\x01\x00"), (400, b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n"),
         (431, head + b"X: " + b"a" * 9000 + b"\r\n\r\n"), (431, b"G" * 9000), (431, head + b"X: a\r\n" * 2000),
         (405, b"DELETE /api/info HTTP/1.1\r\nHost: localhost\r\n\r\n"),
-        (405, b"HEAD / HTTP/1.1\r\nHost: localhost\r\n\r\n"),
+        (200, b"HEAD / HTTP/1.1\r\nHost: localhost\r\n\r\n"),
     ]
     for status, data in cases:
         for unix in (False, True):
@@ -678,6 +678,18 @@ def test_heads_that_a_proxy_could_read_otherwise_are_refused(scene):
     got = page.raw(post + b"Content-Length: 2\r\n\r\n{}" + inner)
     assert status_of(got) == 400 and got.count(b"HTTP/1.1 ") == 1, got
     assert page.values()["relays"] is None
+
+
+def test_head_is_answered_as_get_without_the_body(scene):
+    _, page = both(scene)
+    for path, status in (("/", 200), ("/api/info", 200), ("/none", 404), ("/api/events", 200)):
+        head = page.raw(f"HEAD {path} HTTP/1.1\r\nHost: localhost\r\n\r\n".encode())
+        assert status_of(head) == status and head.index(b"\r\n\r\n") == len(head) - 4, head
+        if path != "/api/events":
+            _, _, body = page.ask(path)
+            assert f"Content-Length: {len(body)}\r\n".encode() in head, (head, body)
+    with Events(page) as stream:
+        assert stream.until("found")
 
 
 def test_a_head_may_come_in_pieces_and_who_sends_none_holds_up_nobody(scene):
