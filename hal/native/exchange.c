@@ -6,10 +6,9 @@
 #include "hal/chips/field.h"
 #include "hal/chips/format.h"
 #include "hal/chips/how.h"
-#include "hal/chips/thermometers/thermometer.h"
 #include "hal/chips/thermometers/thermometer_proof.h"
 #include "hal/native/answer.h"
-#include "hal/native/convert.h"
+#include "hal/native/convert/convert.h"
 #include "hal/native/exchange.h"
 #include "hal/native/job_txn.h"
 #include "hal/native/listing.h"
@@ -20,10 +19,6 @@
 
 /* Transactions of one request until others of its rank have their turn. */
 #define TURN 8
-/* Conversions in a row that a chip did not make, as what it holds shows. */
-#define TRIES_UNHEARD 3
-/* What a thermometer that cannot show its conversions was proven to hold counts for that long. */
-#define PROVEN_NS (5 * NATIVE_S)
 /* A list waits for as many tries with a wrong checksum. */
 #define TRIES_TOLD 3
 
@@ -126,7 +121,7 @@ static void read_done(struct native *native, struct job *job)
 	if (job->txn.device) {
 		job->txn.device->settled |= !job->property->offline;
 		if (job->property->convert)
-			thermometer_of(job->txn.device)->unread_ns = 0;
+			thermometer_unread(job->txn.device, false);
 	}
 	if (more) {
 		queue_again(native, job);
@@ -271,84 +266,14 @@ static int run_function(struct job *job)
 	return writer(job)(txn);
 }
 
-static void hold(struct native *native, struct job *job)
-{
-	unsigned chip = job->txn.link->chip % NATIVE_CHANNELS;
-
-	if (!job->txn.strong)
-		return;
-	job->txn.strong = false;
-	native->hold_ns[chip] = job->txn.wake_ns;
-	native->holder[chip] = job;
-}
-
-/* False: at another resolution than was thought, or the chip restarted since it began. */
-static bool is_of_conversion(const struct job *job)
-{
-	const struct device *device = job->txn.device;
-
-	if (!device || !job->property->convert)
-		return true;
-	if (!convert_right(job))
-		thermometer_of(device)->converted_ns = 0;
-	return thermometer_of(device)->converted_ns != 0;
-}
-
-/* Nothing proves that the chip made its last conversion: is what was proven before too little? */
-static bool is_unproven(const struct job *job)
-{
-	const struct txn *txn = &job->txn;
-	const struct thermometer *chip = thermometer_of(txn->device);
-
-	return txn->unproven && (job->fresh || !chip->earlier_ns || chip->coarse ||
-	                         !chip->latched_ns || chip->latched_ns + PROVEN_NS < txn_now(txn));
-}
-
-/* It may be of an older conversion than was asked for: it is made once more. */
-static bool is_doubtful(struct job *job)
-{
-	const struct txn *txn = &job->txn;
-
-	if (!job->property->convert || !txn->device || !txn->device->family->thermometer)
-		return false;
-	const struct thermometer *chip = thermometer_of(txn->device);
-	bool cut = chip->least_ns < chip->converted_ns && txn->measured_ns < job->since_ns;
-
-	switch ((enum job_again)job->again) {
-	case AGAIN_NO:
-		if (is_unproven(job))
-			job->again = thermometer_marks(txn->device) ? AGAIN_MARK : AGAIN_LAST;
-		else if (cut && job->fresh)
-			job->again = AGAIN_LAST;
-		return job->again != AGAIN_NO;
-	case AGAIN_MARK:
-		/* What it shows now is to be told from the next result alone. */
-		job->again = AGAIN_MARKED;
-		return true;
-	case AGAIN_MARKED:
-		job->again = AGAIN_LAST;
-		return txn->unproven;
-	case AGAIN_LAST:
-		break;
-	}
-	return false;
-}
-
-/* A result that nothing proves, of a conversion that nobody knows: it would be stated as of now. */
-static bool has_no_time(const struct job *job)
-{
-	const struct txn *txn = &job->txn;
-
-	return job->req->op == BUS_READ && job->property->convert && txn->device &&
-	       txn->device->family->thermometer && txn->unproven && !txn->measured_ns;
-}
-
 /* The function has to be called again, and the chip is nobody else's until then. */
 static void run_again(struct native *native, struct job *job)
 {
 	if (++job->steps == TURN)
 		queue_again(native, job);
-	hold(native, job);
+	if (job->txn.strong)
+		native_hold(native, job->txn.channel, job, job->txn.wake_ns);
+	job->txn.strong = false;
 	if (job->txn.device && !job->locks) {
 		job->locks = true;
 		job->txn.device->locked = true;
@@ -500,17 +425,12 @@ void job_run_property(struct native *native, struct job *job, int64_t now)
 	}
 	job->prove = PROVE_NOT;
 	job_unlock(native, job);
-	if (txn->unheard && job->property->convert && ++job->tries >= TRIES_UNHEARD) {
-		job_answer(native, job, -EBADMSG);
-		return;
-	}
-	if (!is_of_conversion(job) || (txn->unheard && job->property->convert) ||
-	    is_doubtful(job)) {
-		job_restart(native, job);
-		return;
-	}
-	if (has_no_time(job)) {
-		job_answer(native, job, -EBADMSG);
+	int err = convert_judge(job);
+	if (err) {
+		if (err < 0)
+			job_answer(native, job, err);
+		else
+			job_restart(native, job);
 		return;
 	}
 	if (needs_merge(job)) {

@@ -4,7 +4,10 @@
 
 #include "hal/chips/find.h"
 #include "hal/chips/thermometers/thermometer.h"
-#include "hal/native/broadcast.h"
+#include "hal/chips/thermometers/thermometer_proof.h"
+#include "hal/native/convert/broadcast.h"
+#include "hal/native/convert/supply.h"
+#include "hal/native/convert/together.h"
 #include "hal/native/first.h"
 #include "hal/native/first_asked.h"
 #include "hal/native/first_wire.h"
@@ -13,8 +16,6 @@
 #include "hal/native/job_txn.h"
 #include "hal/native/presence.h"
 #include "hal/native/sensors.h"
-#include "hal/native/supply.h"
-#include "hal/native/together.h"
 #include "hal/wire/crc.h"
 
 #define FRESH_NS (5 * NATIVE_S) /* a result serves a request for so long */
@@ -30,11 +31,10 @@ static bool is_on(const struct path *path, unsigned n)
 /* Have all that waited for the conversions of a wire got their readings? */
 static bool are_served(const struct native *native, unsigned n)
 {
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
-		const struct job *job = &native->jobs[i];
+	for (const struct job *job = NULL; (job = native_job(native, job));) {
 		struct path path;
 
-		if (!job->req || job->first != FIRST_TAKES_PART)
+		if (job->first != FIRST_TAKES_PART)
 			continue;
 		if (job->state != JOB_NEW ? job->txn.device && job->txn.device->channel == n
 		                          : first_names(native, job, &path) && is_on(&path, n))
@@ -62,18 +62,10 @@ static bool has_thermometer(const struct native *native, unsigned n)
 {
 	if (native->channel[n].first.likely)
 		return true;
-	for (unsigned i = 0; i < native->table.count; i++)
-		if (native_thermometer(&native->table.devices[i], n) &&
-		    native->table.devices[i].seen == native->channel[n].round)
+	for (struct device *device = NULL; (device = native_thermometer(native, n, device));)
+		if (device->seen == native->channel[n].round)
 			return true;
 	return false;
-}
-
-static void know_supply(struct native *native, unsigned n, enum device_power power)
-{
-	for (unsigned i = 0; i < native->table.count; i++)
-		if (native_thermometer(&native->table.devices[i], n))
-			native->table.devices[i].power = power;
 }
 
 /* What goes wrong here is seen to by the search, and by the conversions after it. */
@@ -85,25 +77,23 @@ static void first_convert(struct native *native, unsigned n)
 	channel->first.tried = channel->first.refused = true;
 	if (supply_look(native, n) <= 0)
 		return;
-	know_supply(native, n, POWER_EXTERNAL);
+	supply_know(native, n, POWER_EXTERNAL);
 	if (broadcast_convert(native, n, false, FIRST_LONGEST_NS) < 0)
 		return;
 	channel->first.refused = false;
 	native->first_left = true;
 	channel->first.ready_ns = channel->simultaneous_ns[SIMULTANEOUS_TEMPERATURE];
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++)
-		if (native->jobs[i].first != FIRST_LEFT &&
-		    first_names(native, &native->jobs[i], &path) && is_on(&path, n))
-			native->jobs[i].first = FIRST_TAKES_PART;
+	for (struct job *job = NULL; (job = native_job(native, job));)
+		if (job->first != FIRST_LEFT && first_names(native, job, &path) && is_on(&path, n))
+			job->first = FIRST_TAKES_PART;
 }
 
 static bool is_asked(const struct native *native, unsigned n)
 {
 	struct path path;
 
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++)
-		if (native->jobs[i].first != FIRST_LEFT &&
-		    first_names(native, &native->jobs[i], &path) && is_on(&path, n))
+	for (const struct job *job = NULL; (job = native_job(native, job));)
+		if (job->first != FIRST_LEFT && first_names(native, job, &path) && is_on(&path, n))
 			return true;
 	return false;
 }
@@ -113,9 +103,8 @@ static bool needs_no_wire(const struct job *job, struct path *path)
 {
 	static const char name[] = "structure/";
 
-	return job->req && job->state == JOB_NEW &&
-	       !path_split(job->req->path, strlen(job->req->path), path) && !path->device.len &&
-	       path->property.len >= strlen(name) &&
+	return job->state == JOB_NEW && !path_split(job->req->path, strlen(job->req->path), path) &&
+	       !path->device.len && path->property.len >= strlen(name) &&
 	       memcmp(path->property.text, name, strlen(name)) == 0;
 }
 
@@ -127,9 +116,7 @@ static void take_new(struct native *native, int64_t now)
 {
 	struct path path;
 
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
-		struct job *job = &native->jobs[i];
-
+	for (struct job *job = NULL; (job = native_job(native, job));) {
 		if (needs_no_wire(job, &path))
 			job_look(native, job, now);
 		else if (native->first_left && !job->first && first_names(native, job, &path))
@@ -137,11 +124,6 @@ static void take_new(struct native *native, int64_t now)
 			                     ? FIRST_NO
 			                     : FIRST_TAKES_PART;
 	}
-}
-
-static bool was_read(const struct device *device)
-{
-	return thermometer_of(device)->raw_ns >= thermometer_of(device)->converted_ns;
 }
 
 /* It waits for the result of the conversion that has begun for all, and for no other. */
@@ -152,7 +134,7 @@ static void attach(struct native *native, struct job *job, struct device *device
 	job->first = FIRST_TAKES_PART;
 	job_txn(native, job);
 	job->state = JOB_CONVERTING;
-	job->ready_ns = thermometer_of(device)->converted_ns;
+	job->ready_ns = thermometer_last(device).ends_ns;
 }
 
 /*
@@ -219,7 +201,7 @@ static bool is_ready(struct native *native, struct job *job, int64_t now, int64_
 {
 	struct path path;
 
-	if (!job->req || job->first != FIRST_TAKES_PART)
+	if (job->first != FIRST_TAKES_PART)
 		return false;
 	if (job->state != JOB_NEW) {
 		*n = job->txn.device ? job->txn.device->channel : 0;
@@ -244,7 +226,8 @@ static bool is_ready(struct native *native, struct job *job, int64_t now, int64_
 	if (ready_ns > now && ready_ns < *next)
 		*next = ready_ns;
 	return ready_ns && ready_ns <= now && ready_ns + FRESH_NS > now && is_on(&path, *n) &&
-	       (!known || (first_took_part(native, device) && !was_read(device))) &&
+	       (!known ||
+	        (first_took_part(native, device) && !thermometer_last(device).was_read)) &&
 	       !native_held(native, *n, NULL, now);
 }
 
@@ -276,13 +259,9 @@ static bool others_wait(const struct native *native)
 {
 	struct path path;
 
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
-		const struct job *job = &native->jobs[i];
-
-		if (job->req && !job->first && !first_names(native, job, &path) &&
-		    !first_asks(native, job))
+	for (const struct job *job = NULL; (job = native_job(native, job));)
+		if (!job->first && !first_names(native, job, &path) && !first_asks(native, job))
 			return true;
-	}
 	return false;
 }
 
@@ -295,9 +274,7 @@ static bool read_next(struct native *native, int64_t now, int64_t *next)
 	native->first_turn = !native->first_turn;
 	if (first_hurries(native) || (native->first_turn && others_wait(native)))
 		return false;
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
-		struct job *job = &native->jobs[i];
-
+	for (struct job *job = NULL; (job = native_job(native, job));) {
 		if (is_ready(native, job, now, next, &n) && job_goes_first(native, job, best)) {
 			best = job;
 			best_n = n;
@@ -312,16 +289,14 @@ static bool read_next(struct native *native, int64_t now, int64_t *next)
 /* All searches have ended: requests for devices that were found wait for the first conversions. */
 static void attach_all(struct native *native, int64_t now)
 {
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
-		struct job *job = &native->jobs[i];
-
-		if (!job->req || job->first != FIRST_TAKES_PART || job->state != JOB_NEW)
+	for (struct job *job = NULL; (job = native_job(native, job));) {
+		if (job->first != FIRST_TAKES_PART || job->state != JOB_NEW)
 			continue;
 		job->first = FIRST_NO;
 		job_look(native, job, now);
 		struct device *device = job->req ? job->txn.device : NULL;
 		if (device && first_took_part(native, device) &&
-		    thermometer_of(device)->converted_ns + FRESH_NS > now)
+		    thermometer_last(device).ends_ns + FRESH_NS > now)
 			attach(native, job, device);
 	}
 }
@@ -339,7 +314,7 @@ static bool first_end(struct native *native, int64_t now)
 		channel->first.ready_ns = 0;
 		bool external = !native_at_work(native, n) && supply_look(native, n) > 0;
 		if (!external)
-			know_supply(native, n, POWER_UNKNOWN);
+			supply_know(native, n, POWER_UNKNOWN);
 		channel->power_asked = channel->all_external = external;
 		return true;
 	}

@@ -51,13 +51,10 @@ bool first_asks(const struct native *native, const struct job *job)
 
 bool first_hurries(const struct native *native)
 {
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
-		const struct job *job = &native->jobs[i];
-
-		if (job->req && job->req->prio <= BUS_OUTPUT &&
+	for (const struct job *job = NULL; (job = native_job(native, job));)
+		if (job->req->prio <= BUS_OUTPUT &&
 		    ((job->state == JOB_LOCATE && !job->verified) || !first_asks(native, job)))
 			return true;
-	}
 	return false;
 }
 

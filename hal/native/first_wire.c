@@ -2,7 +2,6 @@
 /* What the first conversions are to devices that are found later. */
 #include "hal/native/first_wire.h"
 #include "hal/chips/thermometers/thermometer_proof.h"
-#include "hal/chips/thermometers/thermometer_state.h"
 
 void first_found(struct native *native, struct device *device)
 {
@@ -20,7 +19,7 @@ bool first_took_part(const struct native *native, const struct device *device)
 	const struct first *first = &native->channel[device->channel].first;
 
 	return device->present && first->ready_ns &&
-	       thermometer_of(device)->converted_ns == first->ready_ns;
+	       thermometer_last(device).ends_ns == first->ready_ns;
 }
 
 void first_void(struct native *native)

@@ -27,8 +27,8 @@ static bool gather(struct native *native, struct ids *ids)
 		if (native->table.devices[i].present)
 			memcpy(ids->rom[known++], native->table.devices[i].rom, ROM_LEN);
 	ids->n = known;
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
-		if (!first_names(native, &native->jobs[i], &path) || path.bus >= 0)
+	for (struct job *job = NULL; (job = native_job(native, job));) {
+		if (!first_names(native, job, &path) || path.bus >= 0)
 			continue;
 		bool is_new = true;
 		for (unsigned k = 0; is_new && k < ids->n; k++)
@@ -62,10 +62,10 @@ static void note_likely(struct native *native, const uint8_t rom[8], unsigned n)
 	struct path path;
 
 	/* One that is known, and perhaps no thermometer, nobody waits for. */
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++)
-		if (first_names(native, &native->jobs[i], &path) &&
+	for (struct job *job = NULL; (job = native_job(native, job));)
+		if (first_names(native, job, &path) &&
 		    memcmp(path.rom, rom, sizeof(path.rom)) == 0) {
-			native->jobs[i].likely |= UINT64_C(1) << n;
+			job->likely |= UINT64_C(1) << n;
 			native->channel[n].first.likely = true;
 		}
 }

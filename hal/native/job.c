@@ -6,7 +6,8 @@
 #include "hal/chips/format.h"
 #include "hal/native/answer.h"
 #include "hal/native/cache.h"
-#include "hal/native/convert.h"
+#include "hal/native/convert/convert.h"
+#include "hal/native/convert/simultaneous.h"
 #include "hal/native/exchange.h"
 #include "hal/native/hunt.h"
 #include "hal/native/job.h"
@@ -15,7 +16,6 @@
 #include "hal/native/locate.h"
 #include "hal/native/outcome.h"
 #include "hal/native/resolve.h"
-#include "hal/native/simultaneous.h"
 #include "hal/native/state.h"
 #include "hal/native/structure.h"
 
@@ -181,12 +181,9 @@ bool job_ready(const struct native *native, const struct job *job, int64_t now, 
 			return false;
 		break;
 	}
-	if (native_has(native, channel) && native_held(native, channel, job, now)) {
-		unsigned chip = native->channel[channel].link->chip % NATIVE_CHANNELS;
-		int64_t held = native->hold_ns[chip];
+	int64_t held = native_has(native, channel) ? native_held(native, channel, job, now) : 0;
 
-		when = held > when ? held : when;
-	}
+	when = held > when ? held : when;
 	if (when > now) {
 		later(when, next);
 		return false;
@@ -262,7 +259,7 @@ void job_step(struct native *native, struct job *job, int64_t now)
 		if (job->kind == JOB_SCAN || job->kind == JOB_ALARM)
 			hunt_scan(native, job, now);
 		else if (job->kind == JOB_CONVERT)
-			convert_all(native, job, now);
+			convert_all(native, job);
 		else
 			begin_property(native, job, had_begun, now);
 		return;

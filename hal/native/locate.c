@@ -161,9 +161,7 @@ static bool let_go(struct native *native)
 	bool found = native->locate.found != native->count[COUNT_FOUND], any = false;
 
 	native->locate.found = native->count[COUNT_FOUND];
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
-		struct job *job = &native->jobs[i];
-
+	for (struct job *job = NULL; (job = native_job(native, job));) {
 		if (!is_waiting(job))
 			continue;
 		/* One that went astray may have answered somebody else where it was. */
@@ -180,8 +178,7 @@ static bool gather(struct native *native, unsigned n, int64_t now, bool begin)
 {
 	bool any = false;
 
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
-		struct job *job = &native->jobs[i];
+	for (struct job *job = NULL; (job = native_job(native, job));) {
 		bool wanted = is_waiting(job) && lacks(native, job, n) &&
 		              looked_from(native, job) <= now;
 
@@ -195,12 +192,11 @@ static bool gather(struct native *native, unsigned n, int64_t now, bool begin)
 /* A strong pull-up feeds somebody: no search may cut it. */
 static bool is_held(const struct native *native, unsigned n, int64_t now, int64_t *next)
 {
-	int64_t until = native->hold_ns[native->channel[n].link->chip % NATIVE_CHANNELS];
+	int64_t until = native_held(native, n, NULL, now);
 
-	if (!native_held(native, n, NULL, now))
-		return false;
-	*next = until < *next ? until : *next;
-	return true;
+	if (until && until < *next)
+		*next = until;
+	return until;
 }
 
 /* A channel to look at, the next in turn; false: there is none now. */
@@ -229,13 +225,10 @@ static void locate_end(struct native *native, bool heard)
 {
 	struct locate *locate = &native->locate;
 
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
-		struct job *job = &native->jobs[i];
-
+	for (struct job *job = NULL; (job = native_job(native, job));)
 		if (is_waiting(job) && looked_from(native, job) <= locate->begun_ns &&
 		    lacks(native, job, locate->channel))
 			job->heard |= heard;
-	}
 	locate->looking = false;
 	native->channel[locate->channel].looked_ns = locate->begun_ns;
 	let_go(native);
@@ -245,9 +238,9 @@ static void locate_end(struct native *native, bool heard)
 static void give_up(struct native *native, int err)
 {
 	native->locate.looking = false;
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++)
-		if (is_waiting(&native->jobs[i]) && native->jobs[i].sought)
-			job_answer(native, &native->jobs[i], err);
+	for (struct job *job = NULL; (job = native_job(native, job));)
+		if (is_waiting(job) && job->sought)
+			job_answer(native, job, err);
 }
 
 static void failed(struct native *native, int err)
@@ -277,9 +270,7 @@ static bool locate_look(struct native *native, int64_t now)
 	bool away[NATIVE_DEPTH] = {false};
 	unsigned n = 0, left = 0;
 
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
-		struct job *job = &native->jobs[i];
-
+	for (struct job *job = NULL; (job = native_job(native, job));) {
 		if (!is_waiting(job) || !job->sought)
 			continue;
 		jobs[n] = job;

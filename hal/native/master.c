@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "hal/chips/family.h"
-#include "hal/chips/thermometers/thermometer.h"
+#include "hal/chips/thermometers/thermometer_proof.h"
 #include "hal/native/answer.h"
 #include "hal/native/branches.h"
 #include "hal/native/first_wire.h"
@@ -128,12 +128,8 @@ void master_down(struct native *native, int err, const char *why)
 	native->down_err = err;
 	native->open_ns = native_now(native) + PAUSE_MIN_NS;
 	native->pause_ns = PAUSE_MIN_NS;
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
-		struct job *job = &native->jobs[i];
-
-		if (job->req)
-			job_answer(native, job, job->begun ? -ECONNRESET : -ENOTCONN);
-	}
+	for (struct job *job = NULL; (job = native_job(native, job));)
+		job_answer(native, job, job->begun ? -ECONNRESET : -ENOTCONN);
 	if (err) {
 		native_event(native, BUS_DOWN, NULL, err, why);
 		native->told = true;
@@ -146,10 +142,10 @@ static void convert_again(struct native *native)
 	first_void(native);
 	for (unsigned i = 0; i < native->table.count; i++)
 		if (native->table.devices[i].family->thermometer)
-			thermometer_of(&native->table.devices[i])->converted_ns = 0;
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++)
-		if (native->jobs[i].req && native->jobs[i].state == JOB_CONVERTING)
-			job_restart(native, &native->jobs[i]);
+			thermometer_void(&native->table.devices[i]);
+	for (struct job *job = NULL; (job = native_job(native, job));)
+		if (job->state == JOB_CONVERTING)
+			job_restart(native, job);
 }
 
 static bool reopen(struct native *native)

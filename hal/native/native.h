@@ -13,14 +13,14 @@
  *   first_wire.c  ... of devices that are found meanwhile
  *   touch.c    keys that touch a wire
  *   exchange.c properties read and written
- *   simultaneous.c  writes to /simultaneous
- *   convert.c  who converts when: one Convert T for all thermometers due on a channel, or in turn
- *   broadcast.c  Convert T for all of a channel
- *   schedule.c which of these is faster
- *   together.c thermometers on several chips of the master at the same time
- *   watch.c    ... the limits beyond which they do
- *   ending.c   when a conversion ends
- *   supply.c   which thermometers are fed by the wire
+ *   convert/   who converts when, and what a result is worth
+ *     simultaneous.c  writes to /simultaneous
+ *     convert.c    one Convert T for all thermometers due on a channel, or each in turn
+ *     broadcast.c  Convert T for all of a channel
+ *     schedule.c   which of these is faster
+ *     together.c   thermometers on several chips of the master at the same time
+ *     ending.c     when a conversion ends
+ *     supply.c     which thermometers are fed by the wire
  *   outcome.c  what follows from how a transaction ended
  *   master.c   open, lost, opened again; the recovery ladder
  *   answer.c   answers, and what the cache keeps of them

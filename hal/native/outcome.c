@@ -3,8 +3,9 @@
 #include <errno.h>
 
 #include "hal/chips/family.h"
-#include "hal/chips/thermometers/thermometer.h"
+#include "hal/chips/thermometers/thermometer_proof.h"
 #include "hal/native/answer.h"
+#include "hal/native/convert/schedule.h"
 #include "hal/native/cost.h"
 #include "hal/native/limits.h"
 #include "hal/native/master.h"
@@ -79,11 +80,10 @@ void job_missing(struct native *native, struct job *job, int err)
  */
 static void begin_again(struct native *native, struct job *job)
 {
-	const struct device *device = job->txn.device;
+	bool reads = job->state == JOB_RUN && schedule_asks(job) && job->req->op == BUS_READ;
+	int64_t ends_ns = reads ? thermometer_last(job->txn.device).ends_ns : 0;
 
-	if (job->state == JOB_RUN && job->property && job->property->convert &&
-	    job->req->op == BUS_READ && thermometer_of(device)->converted_ns &&
-	    thermometer_of(device)->converted_ns + NATIVE_S > native_now(native))
+	if (ends_ns && ends_ns + NATIVE_S > native_now(native))
 		job_reread(native, job);
 	else
 		job_again(native, job);
@@ -92,9 +92,8 @@ static void begin_again(struct native *native, struct job *job)
 /* What was converted is still there: the next request for it reads it, and converts nothing. */
 static void give_up_reading(struct native *native, struct job *job, int err)
 {
-	if (job->txn.device && job->property && job->property->convert)
-		thermometer_of(job->txn.device)->unread_ns =
-			thermometer_of(job->txn.device)->converted_ns;
+	if (schedule_asks(job))
+		thermometer_unread(job->txn.device, true);
 	job_answer(native, job, err);
 }
 
@@ -162,7 +161,7 @@ void job_failed(struct native *native, struct job *job, int err)
 			job_answer(native, job, err);
 			return;
 		}
-		thermometer_of(job->txn.device)->converted_ns = 0;
+		thermometer_void(job->txn.device);
 		job->fresh = true;
 		job_again(native, job);
 		return;

@@ -59,16 +59,40 @@ bool native_at_work(const struct native *native, unsigned channel)
 	return false;
 }
 
-bool native_held(const struct native *native, unsigned channel, const struct job *job, int64_t now)
+int64_t native_held(const struct native *native, unsigned channel, const struct job *job,
+                    int64_t now)
+{
+	unsigned chip = native->channel[channel].link->chip % NATIVE_CHANNELS;
+	bool held = native->hold_ns[chip] > now && (!job || native->holder[chip] != job);
+
+	return held ? native->hold_ns[chip] : 0;
+}
+
+void native_hold(struct native *native, unsigned channel, struct job *job, int64_t until_ns)
 {
 	unsigned chip = native->channel[channel].link->chip % NATIVE_CHANNELS;
 
-	return native->hold_ns[chip] > now && (!job || native->holder[chip] != job);
+	native->hold_ns[chip] = until_ns;
+	native->holder[chip] = job;
 }
 
-bool native_thermometer(const struct device *device, unsigned channel)
+struct job *native_job(const struct native *native, const struct job *after)
 {
-	return device->present && device->channel == channel && device->family->thermometer;
+	for (unsigned i = after ? (unsigned)(after - native->jobs) + 1 : 0; i < NATIVE_DEPTH; i++)
+		if (native->jobs[i].req)
+			return &native->jobs[i];
+	return NULL;
+}
+
+struct device *native_thermometer(const struct native *native, unsigned channel,
+                                  const struct device *after)
+{
+	struct device *device = native->table.devices, *end = device + native->table.count;
+
+	for (device = after ? device + (after - device) + 1 : device; device < end; device++)
+		if (device->present && device->channel == channel && device->family->thermometer)
+			return device;
+	return NULL;
 }
 
 struct link *native_abreast(const struct native *native, unsigned channel)

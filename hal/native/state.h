@@ -293,7 +293,7 @@ struct native {
 	struct coupler coupler[NATIVE_COUPLERS];
 	int64_t rest_ns; /* after an error: when to switch off again */
 
-	/* exchange.c, convert.c and simultaneous.c; answer.c lets go */
+	/* native_hold(); answer.c lets go */
 	int64_t hold_ns[NATIVE_CHANNELS]; /* by chip: its strong pull-up is on until then */
 	struct job *holder[NATIVE_CHANNELS];
 
@@ -353,14 +353,20 @@ void native_event(struct native *native, enum bus_news news, const uint8_t rom[8
 bool native_has(const struct native *native, unsigned channel);
 /* The first channel from n on, a wire or a branch; NATIVE_ALL: there is none. */
 unsigned native_next(const struct native *native, unsigned n);
-bool native_thermometer(const struct device *device, unsigned channel);
+/* The first request, or the next one; and so the thermometers of a channel. NULL: no more. */
+struct job *native_job(const struct native *native, const struct job *after);
+struct device *native_thermometer(const struct native *native, unsigned channel,
+                                  const struct device *after);
 /* The link of a channel, if it takes part in transactions at the same time (link_ops.together). */
 struct link *native_abreast(const struct native *native, unsigned channel);
 /* Has some channel not been searched yet since the bus came up? */
 bool native_initial(const struct native *native);
 /* A chip of the channel is at work, and no command for all may cut that off. */
 bool native_at_work(const struct native *native, unsigned channel);
-/* A strong pull-up is on at the chip of this channel, and not for this job. */
-bool native_held(const struct native *native, unsigned channel, const struct job *job, int64_t now);
+/* A strong pull-up is on at the chip of this channel until then, and not for this job. 0: none. */
+int64_t native_held(const struct native *native, unsigned channel, const struct job *job,
+                    int64_t now);
+/* ... it is on until then, for this job or (NULL) for several. */
+void native_hold(struct native *native, unsigned channel, struct job *job, int64_t until_ns);
 
 #endif

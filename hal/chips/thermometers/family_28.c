@@ -17,6 +17,7 @@
 
 #include "hal/chips/identity.h"
 #include "hal/chips/thermometers/clone_id.h"
+#include "hal/chips/thermometers/state.h"
 #include "hal/chips/thermometers/thermometer.h"
 #include "hal/chips/thermometers/thermometer_store.h"
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "hal/chips/thermometers/clone_id.h"
+#include "hal/chips/thermometers/state.h"
 #include "hal/chips/thermometers/thermometer.h"
 #include "hal/chips/thermometers/thermometer_proof.h"
 
@@ -204,6 +205,19 @@ int thermometer_write_settings(struct txn *txn, const uint8_t scratchpad[9])
 uint8_t thermometer_config(uint8_t config, unsigned resolution)
 {
 	return (uint8_t)((config & ~0x60) | (resolution - 9) << 5);
+}
+
+unsigned thermometer_bits(const struct device *device, unsigned convert)
+{
+	return convert == CONVERT_TEMPRES ? thermometer_of(device)->stored : convert;
+}
+
+bool thermometer_has_bits(const struct device *device, unsigned bits)
+{
+	const struct thermometer *chip = thermometer_of(device);
+
+	return device->family->fixed || chip->ignores || !chip->resolution || !bits ||
+	       chip->resolution == bits;
 }
 
 int thermometer_prepare(struct txn *txn, unsigned resolution)

@@ -7,7 +7,7 @@
 #define HAL_CHIPS_THERMOMETER_H
 
 #include "hal/chips/family.h"
-#include "hal/chips/thermometers/thermometer_state.h"
+#include "hal/chips/thermometers/scratchpad.h"
 #include "hal/chips/thermometers/thermometer_trim.h"
 
 #define THERMOMETER_CONVERT 0x44
@@ -32,6 +32,10 @@ int thermometer_write_settings(struct txn *txn, const uint8_t scratchpad[9]);
 int thermometer_settings(struct txn *txn, uint8_t scratchpad[9]);
 /* The configuration with another resolution. */
 uint8_t thermometer_config(uint8_t config, unsigned resolution);
+/* The resolution of property.convert; 0: it is not known yet. */
+unsigned thermometer_bits(const struct device *device, unsigned convert);
+/* Is it at that, as far as is known, or has no other? The reading will tell. */
+bool thermometer_has_bits(const struct device *device, unsigned bits);
 /* Make the chip convert at this resolution; may take several calls. */
 int thermometer_prepare(struct txn *txn, unsigned resolution);
 

@@ -5,11 +5,68 @@
 
 #include "hal/chips/family.h"
 #include "hal/chips/thermometers/clone_id.h"
+#include "hal/chips/thermometers/scratchpad.h"
+#include "hal/chips/thermometers/state.h"
 #include "hal/chips/thermometers/thermometer_proof.h"
-#include "hal/chips/thermometers/thermometer_state.h"
 
 #define LONGEST_NS (750 * TXN_MS)
 #define FULL_BITS 12
+/* What a chip that cannot show its conversions was proven to hold counts for that long. */
+#define PROVEN_NS (5000 * TXN_MS)
+
+struct thermometer_last thermometer_last(const struct device *device)
+{
+	const struct thermometer *chip = thermometer_of(device);
+
+	return (struct thermometer_last){
+		.ends_ns = chip->converted_ns,
+		.busy_ns = chip->busy_ns,
+		.missed = chip->unheard,
+		.was_read = chip->raw_ns >= chip->converted_ns,
+		.unread = chip->unread_ns == chip->converted_ns,
+		.cut = chip->least_ns < chip->converted_ns,
+		.can_prove = chip->shows && chip->proves && !chip->unseen,
+	};
+}
+
+void thermometer_showed(struct device *device, bool for_all)
+{
+	struct thermometer *chip = device->own;
+
+	chip->shows = true;
+	if (!for_all)
+		chip->unheard = 0;
+}
+
+void thermometer_missed(struct device *device)
+{
+	thermometer_of(device)->unheard++;
+}
+
+void thermometer_unread(struct device *device, bool yes)
+{
+	struct thermometer *chip = device->own;
+
+	chip->unread_ns = yes ? chip->converted_ns : 0;
+}
+
+void thermometer_seems_over(struct device *device, int64_t now)
+{
+	thermometer_of(device)->early_ns = now;
+}
+
+/* Nothing else says when the last conversion ends or ended. */
+static void set_end(struct thermometer *chip, int64_t ns, int64_t longest)
+{
+	chip->converted_ns = ns;
+	chip->longest_ns = longest;
+	chip->early_ns = 0;
+}
+
+void thermometer_void(struct device *device)
+{
+	set_end(device->own, 0, 0);
+}
 
 /*
  * As the data sheet says, but for clones of the DS18B20 (family_28.c): family D2 takes 523 ms at
@@ -63,9 +120,7 @@ void thermometer_converts(struct device *device, int64_t now, int64_t longest, b
 	if (chip->converted_ns)
 		chip->earlier_ns = ended_ns(device);
 	thermometer_proof_send(chip, now, longest);
-	chip->converted_ns = now + longest;
-	chip->longest_ns = longest;
-	chip->early_ns = 0;
+	set_end(chip, now + longest, longest);
 	chip->tried = false;
 	chip->unseen = unseen || chip->unheard >= THERMOMETER_SILENT;
 }
@@ -174,8 +229,8 @@ int thermometer_ended(struct txn *txn, const uint8_t scratchpad[9], int64_t now)
 		/* Whoever reads it meanwhile needs the proof, too. */
 		if (!is_proven(txn->device, scratchpad))
 			return txn_wait(txn, chip->converted_ns - now);
-		chip->converted_ns = chip->busy_ns = chip->least_ns = chip->early_ns;
-		chip->longest_ns = 0;
+		chip->busy_ns = chip->least_ns = chip->early_ns;
+		set_end(chip, chip->early_ns, 0);
 	}
 	chip->early_ns = 0;
 	return 0;
@@ -186,4 +241,12 @@ int thermometer_took(struct txn *txn, const uint8_t scratchpad[9], int64_t now)
 	txn->measured_ns = latched_ns(txn, scratchpad, now);
 	thermometer_of(txn->device)->raw_ns = now;
 	return txn->measured_ns > 0 || txn->property->convert ? 0 : -EIO;
+}
+
+bool thermometer_doubtful(const struct txn *txn, bool fresh)
+{
+	const struct thermometer *chip = thermometer_of(txn->device);
+
+	return txn->unproven && (fresh || !chip->earlier_ns || chip->coarse || !chip->latched_ns ||
+	                         chip->latched_ns + PROVEN_NS < txn_now(txn));
 }

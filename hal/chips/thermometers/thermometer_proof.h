@@ -13,6 +13,21 @@
 
 #include "hal/wire/txn.h"
 
+/* It did not show so many starts in a row: it cannot, as some clones, or has no supply. */
+#define THERMOMETER_SILENT 3
+
+/* What is known of its last conversion. */
+struct thermometer_last {
+	int64_t ends_ns; /* when it ends or ended; 0: none is known */
+	int64_t busy_ns; /* until then the chip may convert, whatever it heard */
+	unsigned missed; /* starts in a row that it did not show; see THERMOMETER_SILENT */
+	bool was_read;   /* a result has been read since then */
+	bool unread;     /* its result did not come over the wire whole */
+	bool cut;        /* the chip may have gone on with the one before it */
+	bool can_prove;  /* an end before the longest time could be proven */
+};
+struct thermometer_last thermometer_last(const struct device *device);
+
 /* A conversion's longest time at the device's present resolution. */
 int64_t thermometer_convert_ns(const struct device *device);
 /* Convert T was sent to it, for longest ns; whether it heard is not known. */
@@ -22,6 +37,16 @@ void thermometer_told(struct device *device, int64_t now, int64_t longest);
  * that were told, has shown that it heard.
  */
 void thermometer_converts(struct device *device, int64_t now, int64_t longest, bool unseen);
+/* It showed a start: of its own, or (for_all) one for all, and no other can have shown that. */
+void thermometer_showed(struct device *device, bool for_all);
+/* It did not show a start of its own. */
+void thermometer_missed(struct device *device);
+/* The last conversion counts no more: its wire was lost, or what it left is of no use. */
+void thermometer_void(struct device *device);
+/* The result of the last conversion did not come over the wire whole, or (false) it did. */
+void thermometer_unread(struct device *device, bool yes);
+/* The last conversion seems to have ended now: thermometer_ended() asks for the proof. */
+void thermometer_seems_over(struct device *device, int64_t now);
 /*
  * Would a conversion at THERMOMETER_MARK bits change what it holds, whatever the temperature is?
  * Then that proves that it hears Convert T, also with the strong pull-up, and the result of the
@@ -48,5 +73,10 @@ int thermometer_ended(struct txn *txn, const uint8_t scratchpad[9], int64_t now)
  * -EIO: nothing was to be converted for it, and no conversion is known that it can be of.
  */
 int thermometer_took(struct txn *txn, const uint8_t scratchpad[9], int64_t now);
+/*
+ * Nothing proves that the chip made its last conversion: is what was proven before too little? It
+ * is for a request that insists on a conversion of its own (fresh).
+ */
+bool thermometer_doubtful(const struct txn *txn, bool fresh);
 
 #endif

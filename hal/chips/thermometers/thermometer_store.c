@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/chips/thermometers/state.h"
 #include "hal/chips/thermometers/thermometer.h"
 #include "hal/chips/thermometers/thermometer_proof.h"
 #include "hal/chips/thermometers/thermometer_store.h"

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "hal/chips/find.h"
+#include "hal/chips/thermometers/state.h"
 #include "hal/chips/thermometers/thermometer.h"
 #include "hal/sim/crc.h"
 #include "tests/unit/aid/host.h"

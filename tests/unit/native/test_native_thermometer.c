@@ -3,6 +3,7 @@
 #include <errno.h>
 
 #include "hal/chips/find.h"
+#include "hal/chips/thermometers/state.h"
 #include "hal/chips/thermometers/thermometer.h"
 #include "hal/owfs/path.h"
 #include "unity.h"

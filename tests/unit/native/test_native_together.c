@@ -11,7 +11,7 @@
 
 #include "unity.h"
 
-#include "hal/native/schedule.h"
+#include "hal/native/convert/schedule.h"
 #include "hal/sim/event.h"
 #include "tests/unit/aid/host.h"
 #include "tests/unit/aid/plant.h"

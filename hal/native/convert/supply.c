@@ -3,9 +3,9 @@
 #include <errno.h>
 
 #include "hal/chips/thermometers/thermometer.h"
+#include "hal/native/convert/supply.h"
 #include "hal/native/master.h"
 #include "hal/native/state.h"
-#include "hal/native/supply.h"
 
 #define SKIP_ROM 0xcc
 #define LOOKS 3
@@ -40,6 +40,12 @@ int supply_look(struct native *native, unsigned n)
 	return external;
 }
 
+void supply_know(struct native *native, unsigned n, enum device_power power)
+{
+	for (struct device *device = NULL; (device = native_thermometer(native, n, device));)
+		device->power = power;
+}
+
 int supply_ask_all(struct native *native, struct job *job)
 {
 	struct channel *channel = &native->channel[job->txn.channel];
@@ -52,22 +58,20 @@ int supply_ask_all(struct native *native, struct job *job)
 	}
 	channel->power_asked = true;
 	channel->all_external = external;
-	for (unsigned i = 0; external && i < native->table.count; i++)
-		if (native_thermometer(&native->table.devices[i], job->txn.channel))
-			native->table.devices[i].power = POWER_EXTERNAL;
+	if (external)
+		supply_know(native, job->txn.channel, POWER_EXTERNAL);
 	return TXN_MORE;
 }
 
 bool supply_ask_one(struct native *native, unsigned n)
 {
-	for (unsigned i = 0; i < native->table.count; i++) {
-		struct device *device = &native->table.devices[i];
+	for (struct device *device = NULL; (device = native_thermometer(native, n, device));) {
 		struct txn txn = {.native = native,
 		                  .link = native->channel[n].link,
 		                  .channel = n,
 		                  .device = device};
 
-		if (!native_thermometer(device, n) || device->power != POWER_UNKNOWN)
+		if (device->power != POWER_UNKNOWN)
 			continue;
 		int bit = -EBADMSG;
 		for (int try = 0; try < TRIES && bit == -EBADMSG; try++) {

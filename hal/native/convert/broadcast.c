@@ -4,10 +4,10 @@
 
 #include "hal/chips/thermometers/thermometer.h"
 #include "hal/chips/thermometers/thermometer_proof.h"
-#include "hal/native/broadcast.h"
-#include "hal/native/ending.h"
+#include "hal/native/convert/broadcast.h"
+#include "hal/native/convert/ending.h"
+#include "hal/native/convert/schedule.h"
 #include "hal/native/master.h"
-#include "hal/native/schedule.h"
 
 #define SKIP_ROM 0xcc
 #define TRIES 3
@@ -56,15 +56,29 @@ void broadcast_told(const struct native *native, struct device *device, int64_t 
 
 static void told_all(struct native *native, unsigned n)
 {
-	for (unsigned i = 0; i < native->table.count; i++)
-		if (native_thermometer(&native->table.devices[i], n))
-			broadcast_told(native, &native->table.devices[i], native_now(native));
+	for (struct device *device = NULL; (device = native_thermometer(native, n, device));)
+		broadcast_told(native, device, native_now(native));
 }
 
-void broadcast_converts(struct native *native, struct device *device, bool unseen, int64_t now)
+/* Who waited for a conversion that this one cut off waits for this one. NULL: of all. */
+static void await(struct native *native, unsigned n, const struct device *device)
 {
-	thermometer_converts(device, now, convert_ns(native->channel[device->channel].link, device),
-	                     unseen);
+	for (struct job *job = NULL; (job = native_job(native, job));) {
+		if ((job->state != JOB_DUE && job->state != JOB_CONVERTING) ||
+		    (device ? job->txn.device != device : job->txn.channel != n))
+			continue;
+		job->state = JOB_CONVERTING;
+		job->ready_ns = thermometer_last(job->txn.device).ends_ns;
+	}
+}
+
+void broadcast_started(struct native *native, struct device *device, int64_t now)
+{
+	const struct link *link = native->channel[device->channel].link;
+
+	thermometer_showed(device, false);
+	thermometer_converts(device, now, convert_ns(link, device), false);
+	await(native, device->channel, device);
 }
 
 static void converting(struct native *native, unsigned n, bool unseen, int64_t now, int64_t longest)
@@ -75,27 +89,13 @@ static void converting(struct native *native, unsigned n, bool unseen, int64_t n
 
 	channel->due_ns = 0;
 	channel->simultaneous_ns[SIMULTANEOUS_TEMPERATURE] = now + longest;
-	for (unsigned i = 0; i < native->table.count; i++) {
-		struct device *device = &native->table.devices[i];
-
-		if (!native_thermometer(device, n))
-			continue;
+	for (struct device *device = NULL; (device = native_thermometer(native, n, device));) {
 		only = count++ ? NULL : device;
-		broadcast_converts(native, device, unseen, now);
+		thermometer_converts(device, now, convert_ns(channel->link, device), unseen);
 	}
-	/* Nobody else could have shown it. */
 	if (only && !unseen)
-		thermometer_of(only)->shows = true;
-	/* Who waited for a conversion that this one cut off waits for this one. */
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
-		struct job *job = &native->jobs[i];
-
-		if (!job->req || (job->state != JOB_DUE && job->state != JOB_CONVERTING) ||
-		    job->txn.channel != n)
-			continue;
-		job->state = JOB_CONVERTING;
-		job->ready_ns = thermometer_of(job->txn.device)->converted_ns;
-	}
+		thermometer_showed(only, true);
+	await(native, n, NULL);
 }
 
 int broadcast_convert(struct native *native, unsigned n, bool strong, int64_t longest)
@@ -119,8 +119,7 @@ int broadcast_convert(struct native *native, unsigned n, bool strong, int64_t lo
 	if (link->driven)
 		longest = 0;
 	if (strong && longest) {
-		native->hold_ns[link->chip % NATIVE_CHANNELS] = now + longest;
-		native->holder[link->chip % NATIVE_CHANNELS] = NULL;
+		native_hold(native, n, NULL, now + longest);
 		schedule_owe(&native->schedule, OWES_OTHER);
 	}
 	converting(native, n, strong && !link->driven, now, longest);

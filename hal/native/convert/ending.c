@@ -2,8 +2,8 @@
 /* When to ask whether a conversion has ended, and what follows. */
 #include <errno.h>
 
-#include "hal/chips/thermometers/thermometer.h"
-#include "hal/native/ending.h"
+#include "hal/chips/thermometers/thermometer_proof.h"
+#include "hal/native/convert/ending.h"
 #include "hal/native/master.h"
 #include "hal/native/state.h"
 
@@ -25,14 +25,10 @@ static bool is_early(const struct job *job, unsigned n, int64_t now)
 {
 	const struct device *device = job->txn.device;
 
-	if (!job->req || job->state != JOB_CONVERTING || !device || device->channel != n ||
-	    job->ready_ns <= now + AGAIN_NS || device->power != POWER_EXTERNAL)
-		return false;
 	/* What else a family makes of a conversion looks at no proof. */
-	if (!job->property || job->property->type != PROPERTY_TEMPERATURE)
-		return false;
-	const struct thermometer *chip = thermometer_of(device);
-	return chip->shows && chip->proves && !chip->unseen;
+	return job->state == JOB_CONVERTING && device && device->channel == n &&
+	       job->ready_ns > now + AGAIN_NS && device->power == POWER_EXTERNAL && job->property &&
+	       job->property->type == PROPERTY_TEMPERATURE && thermometer_last(device).can_prove;
 }
 
 void ending_begin(struct native *native, unsigned n, int64_t longest)
@@ -55,12 +51,10 @@ static void ended(struct native *native, unsigned n, int64_t now)
 	struct ending *ending = &native->channel[n].ending;
 
 	ending->took_ns = now - ending->begun_ns;
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
-		struct job *job = &native->jobs[i];
-
+	for (struct job *job = NULL; (job = native_job(native, job));) {
 		if (!is_early(job, n, now))
 			continue;
-		thermometer_of(job->txn.device)->early_ns = now;
+		thermometer_seems_over(job->txn.device, now);
 		job->ready_ns = now;
 	}
 }
@@ -86,8 +80,8 @@ static void ending_ask(struct native *native, unsigned n)
 
 static bool has_early(const struct native *native, unsigned n, int64_t now)
 {
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++)
-		if (is_early(&native->jobs[i], n, now))
+	for (const struct job *job = NULL; (job = native_job(native, job));)
+		if (is_early(job, n, now))
 			return true;
 	return false;
 }
@@ -100,10 +94,8 @@ bool ending_step(struct native *native, int64_t now, int64_t *next)
 		if (!ending->asks)
 			continue;
 		/* A question would end the strong pull-up of another channel of the chip. */
-		if (native_held(native, n, NULL, now)) {
-			const struct link *link = native->channel[n].link;
-			int64_t held = native->hold_ns[link->chip % NATIVE_CHANNELS];
-
+		int64_t held = native_held(native, n, NULL, now);
+		if (held) {
 			*next = held < *next ? held : *next;
 			continue;
 		}

@@ -4,13 +4,18 @@
 
 #include "hal/chips/switches/ds2450.h"
 #include "hal/native/answer.h"
-#include "hal/native/broadcast.h"
+#include "hal/native/convert/broadcast.h"
+#include "hal/native/convert/simultaneous.h"
 #include "hal/native/master.h"
 #include "hal/native/outcome.h"
-#include "hal/native/simultaneous.h"
 #include "hal/native/state.h"
 
 #define SKIP_ROM 0xcc
+
+static bool is_ds2450(const struct device *device, unsigned n)
+{
+	return device->channel == n && device->family == &family_20;
+}
 
 /* All DS2450 of a channel at once. Their checksum is one: they were told the same. */
 static int convert_voltage(struct native *native, unsigned n)
@@ -37,13 +42,11 @@ static int convert_voltage(struct native *native, unsigned n)
 	for (unsigned i = 0; i < native->table.count; i++) {
 		struct device *device = &native->table.devices[i];
 
-		if (device->present && device->channel == n && device->family == &family_20)
+		if (device->present && is_ds2450(device, n))
 			ds2450_of(device)->measured_ns = begun;
 	}
-	int64_t end = native_now(native) + conversion->ns;
-	channel->simultaneous_ns[SIMULTANEOUS_VOLTAGE] = end;
-	native->hold_ns[channel->link->chip % NATIVE_CHANNELS] = end;
-	native->holder[channel->link->chip % NATIVE_CHANNELS] = NULL;
+	channel->simultaneous_ns[SIMULTANEOUS_VOLTAGE] = native_now(native) + conversion->ns;
+	native_hold(native, n, NULL, channel->simultaneous_ns[SIMULTANEOUS_VOLTAGE]);
 	return 0;
 }
 
@@ -52,11 +55,7 @@ static int convert_temperature(struct native *native, unsigned n)
 {
 	bool parasitic = false, any = false;
 
-	for (unsigned i = 0; i < native->table.count; i++) {
-		const struct device *device = &native->table.devices[i];
-
-		if (!device->present || device->channel != n || !device->family->thermometer)
-			continue;
+	for (struct device *device = NULL; (device = native_thermometer(native, n, device));) {
 		any = true;
 		parasitic |= device->power != POWER_EXTERNAL;
 	}
@@ -67,14 +66,11 @@ static int convert_temperature(struct native *native, unsigned n)
 	return 0;
 }
 
-static bool has_family(const struct native *native, unsigned n, const struct family *family)
+static bool has_ds2450(const struct native *native, unsigned n)
 {
-	for (unsigned i = 0; i < native->table.count; i++) {
-		const struct device *device = &native->table.devices[i];
-
-		if (device->present && device->channel == n && device->family == family)
+	for (unsigned i = 0; i < native->table.count; i++)
+		if (native->table.devices[i].present && is_ds2450(&native->table.devices[i], n))
 			return true;
-	}
 	return false;
 }
 
@@ -84,24 +80,22 @@ static void forget_kept(struct native *native, unsigned n, bool temperature)
 	for (unsigned i = 0; i < native->table.count; i++) {
 		struct device *device = &native->table.devices[i];
 
-		if (device->channel == n &&
-		    (temperature ? device->family->thermometer : device->family == &family_20))
+		if (temperature ? device->channel == n && device->family->thermometer
+		                : is_ds2450(device, n))
 			device->changes++;
 	}
 }
 
-void convert_all(struct native *native, struct job *job, int64_t now)
+void convert_all(struct native *native, struct job *job)
 {
+	bool temperature = job->property->arg == SIMULTANEOUS_TEMPERATURE;
 	unsigned n = job->channel;
-	int err;
+	int err = temperature             ? convert_temperature(native, n)
+	          : has_ds2450(native, n) ? convert_voltage(native, n)
+	                                  : 0;
 
-	(void)now;
-	if (job->property->arg == SIMULTANEOUS_TEMPERATURE)
-		err = convert_temperature(native, n);
-	else
-		err = has_family(native, n, &family_20) ? convert_voltage(native, n) : 0;
 	job->txn.channel = n;
-	forget_kept(native, n, job->property->arg == SIMULTANEOUS_TEMPERATURE);
+	forget_kept(native, n, temperature);
 	if (err < 0 && err != -ENODEV) {
 		job->txn.link_error = err == -EBADMSG || err == -EOPNOTSUPP ? 0 : err;
 		job_failed(native, job, err);

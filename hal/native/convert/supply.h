@@ -10,6 +10,8 @@
  * another chip made it seem so; -ENODEV nobody is there, or an error of the link.
  */
 int supply_look(struct native *native, unsigned n);
+/* That of all thermometers of a channel is this. */
+void supply_know(struct native *native, unsigned n, enum device_power power);
 /*
  * Asks all thermometers of the job's channel at once, in a transaction that counts as the job's.
  * TXN_MORE: they have been asked, and the job goes on with its next transaction. Else the error

@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* What is known of a thermometer with a nine-byte scratchpad, and the bytes of that. */
-#ifndef HAL_CHIPS_THERMOMETER_STATE_H
-#define HAL_CHIPS_THERMOMETER_STATE_H
+/* What is known of a thermometer with a nine-byte scratchpad: this part alone has it. */
+#ifndef HAL_CHIPS_THERMOMETERS_STATE_H
+#define HAL_CHIPS_THERMOMETERS_STATE_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
 #include "hal/wire/device.h"
-
-/* It did not show so many starts in a row: it cannot, as some clones, or has no supply. */
-#define THERMOMETER_SILENT 3
-
-enum { SP_LSB, SP_MSB, SP_HIGH, SP_LOW, SP_CONFIG, SP_5, SP_REMAIN, SP_PER_DEGREE, SP_CRC };
 
 /* Does byte 6 of a scratchpad follow the temperature, as in the genuine chip? */
 enum thermometer_make { MAKE_UNKNOWN, MAKE_GENUINE, MAKE_CLONE };

@@ -8,8 +8,6 @@
 /* A new request of a thermometer that is there: due now, if it can be. */
 void convert_early(struct native *native, struct job *job, int64_t now);
 void convert_begin(struct native *native, struct job *job, int64_t now);
-/* Is the chip, as far as is known, at the resolution that the job asks for? */
-bool convert_right(const struct job *job);
 void convert_prepare(struct native *native, struct job *job, int64_t now);
 /*
  * Start a conversion where one is due. True: did a transaction, or *in_turn is the job whose chip
@@ -19,5 +17,10 @@ bool convert_step(struct native *native, int64_t now, int64_t *next, struct job 
 /* The job of a channel whose chip converts in turn next, now. NULL: none does. */
 struct job *convert_next_in_turn(struct native *native, unsigned n, int64_t now);
 void convert_in_turn(struct native *native, struct job *job);
+/*
+ * The job has read what its chip holds. 0: that is the result that it asked for, or no result of a
+ * conversion; TXN_MORE: it is to convert again, as that may be an older one; -EBADMSG: it gives up.
+ */
+int convert_judge(struct job *job);
 
 #endif

@@ -11,77 +11,62 @@
 #include "hal/chips/thermometers/thermometer.h"
 #include "hal/chips/thermometers/thermometer_proof.h"
 #include "hal/native/answer.h"
-#include "hal/native/broadcast.h"
-#include "hal/native/convert.h"
+#include "hal/native/convert/broadcast.h"
+#include "hal/native/convert/convert.h"
+#include "hal/native/convert/schedule.h"
+#include "hal/native/convert/supply.h"
 #include "hal/native/job_txn.h"
 #include "hal/native/limits.h"
 #include "hal/native/master.h"
 #include "hal/native/outcome.h"
-#include "hal/native/schedule.h"
 #include "hal/native/state.h"
-#include "hal/native/supply.h"
 
 #define GATHER_NS (3 * TXN_MS)
 #define GATHER_MAX_NS (3 * NATIVE_S)
 #define SIMULTANEOUS_NS (2 * NATIVE_S)
 #define SINGLE_NS (60 * NATIVE_S)
+/* Conversions in a row that a chip did not make, as what it holds shows. */
+#define TRIES_UNHEARD 3
 
 static unsigned wanted(const struct job *job)
 {
-	const struct device *device = job->txn.device;
-
-	if (job->again == AGAIN_MARK)
-		return THERMOMETER_MARK;
-	return job->property->convert == CONVERT_TEMPRES ? thermometer_of(device)->stored
-	                                                 : job->property->convert;
+	return job->again == AGAIN_MARK ? THERMOMETER_MARK
+	                                : thermometer_bits(job->txn.device, job->property->convert);
 }
 
-bool convert_right(const struct job *job)
+static bool is_right(const struct job *job)
 {
-	const struct device *device = job->txn.device;
+	return thermometer_has_bits(job->txn.device, wanted(job));
+}
 
-	/* Not known yet: most are right, and the reading will tell. */
-	return device->family->fixed || thermometer_of(device)->ignores ||
-	       !thermometer_of(device)->resolution || !wanted(job) ||
-	       thermometer_of(device)->resolution == wanted(job);
+/* The result of another job's conversion has not been read yet: the next would overwrite it. */
+static bool is_measuring(const struct native *native, const struct device *device)
+{
+	for (const struct job *job = NULL; (job = native_job(native, job));)
+		if (schedule_reads(job) && job->txn.device == device)
+			return true;
+	return false;
 }
 
 /* Another job has this device between its preparation and its reading, at its resolution. */
 static bool taken(const struct native *native, const struct job *job)
 {
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
-		const struct job *other = &native->jobs[i];
-
-		if (other != job && other->req && other->txn.device == job->txn.device &&
-		    other->property && other->property->convert && other->begun &&
-		    (other->state == JOB_DUE || other->state == JOB_CONVERTING ||
-		     other->state == JOB_RUN))
+	for (const struct job *other = NULL; (other = native_job(native, other));)
+		if (other != job && other->txn.device == job->txn.device && schedule_asks(other) &&
+		    (other->state == JOB_DUE || schedule_reads(other)))
 			return true;
-	}
 	return false;
 }
 
 /* One that came earlier waits to have the device at its resolution. */
 static bool is_overtaking(const struct native *native, const struct job *job)
 {
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
-		const struct job *other = &native->jobs[i];
-
-		if (other->req && other->state == JOB_PREPARE && (other->waits || other->rests) &&
+	for (const struct job *other = NULL; (other = native_job(native, other));)
+		if (other->state == JOB_PREPARE && (other->waits || other->rests) &&
 		    other->txn.device == job->txn.device &&
 		    (int32_t)(other->order - job->order) < 0)
 			return true;
-	}
 	return false;
-}
-
-static void become_due(struct native *native, struct job *job, int64_t now)
-{
-	struct channel *channel = &native->channel[job->txn.channel];
-
-	job->state = JOB_DUE;
-	if (!channel->due_ns)
-		channel->due_ns = now;
 }
 
 /*
@@ -90,14 +75,12 @@ static void become_due(struct native *native, struct job *job, int64_t now)
  */
 static bool is_served(const struct native *native, const struct job *job, int64_t now)
 {
-	const struct device *device = job->txn.device;
-	bool unread = thermometer_of(device)->unread_ns == thermometer_of(device)->converted_ns;
+	struct thermometer_last last = thermometer_last(job->txn.device);
 	int64_t life = property_life_ns(native, job->property);
 	int64_t cached = life < SIMULTANEOUS_NS ? life : SIMULTANEOUS_NS;
-	int64_t until = thermometer_of(device)->converted_ns + (job->fresh ? NATIVE_S : cached);
 
-	return thermometer_of(device)->converted_ns && (!job->fresh || unread) && !job->again &&
-	       until > now && convert_right(job);
+	return last.ends_ns && (!job->fresh || last.unread) && !job->again &&
+	       last.ends_ns + (job->fresh ? NATIVE_S : cached) > now && is_right(job);
 }
 
 /*
@@ -109,7 +92,7 @@ void convert_early(struct native *native, struct job *job, int64_t now)
 	const struct device *device = job->txn.device;
 
 	if (!schedule_early(native) || device->power == POWER_UNKNOWN || device->locked ||
-	    !convert_right(job) || native_held(native, device->channel, job, now) ||
+	    !is_right(job) || native_held(native, device->channel, job, now) ||
 	    is_overtaking(native, job))
 		return;
 	job->begun = true;
@@ -119,10 +102,8 @@ void convert_early(struct native *native, struct job *job, int64_t now)
 
 void convert_begin(struct native *native, struct job *job, int64_t now)
 {
-	struct device *device = job->txn.device;
-
 	if (is_served(native, job, now)) {
-		job->ready_ns = thermometer_of(device)->converted_ns;
+		job->ready_ns = thermometer_last(job->txn.device).ends_ns;
 		job->state = JOB_CONVERTING;
 		return;
 	}
@@ -145,7 +126,7 @@ static int prepare(struct native *native, struct job *job)
 	}
 	if (job->txn.phase == 0 && thermometer_forgot(device))
 		return thermometer_recall(&job->txn);
-	if (job->txn.phase == 0 && convert_right(job))
+	if (job->txn.phase == 0 && is_right(job))
 		return 0;
 	int err = thermometer_prepare(&job->txn, wanted(job));
 	if (err == 0)
@@ -155,10 +136,11 @@ static int prepare(struct native *native, struct job *job)
 
 void convert_prepare(struct native *native, struct job *job, int64_t now)
 {
+	struct channel *channel = &native->channel[job->txn.channel];
 	struct device *device = job->txn.device;
 
 	if (job->txn.phase == 0 &&
-	    ((!convert_right(job) && taken(native, job)) || is_overtaking(native, job))) {
+	    ((!is_right(job) && taken(native, job)) || is_overtaking(native, job))) {
 		/* Its turn comes when the other resolution has been read. */
 		job->txn.wake_ns = now + GATHER_NS;
 		job->waits = true;
@@ -166,10 +148,10 @@ void convert_prepare(struct native *native, struct job *job, int64_t now)
 	}
 	job->waits = false;
 	/* Others may use the chip meanwhile. */
-	job->rests = job->txn.phase == 0 && !convert_right(job) &&
-	             thermometer_of(device)->busy_ns > now;
+	int64_t busy_ns = thermometer_last(device).busy_ns;
+	job->rests = job->txn.phase == 0 && !is_right(job) && busy_ns > now;
 	if (job->rests) {
-		job->txn.wake_ns = thermometer_of(device)->busy_ns;
+		job->txn.wake_ns = busy_ns;
 		return;
 	}
 	int err = txn_end(&job->txn, prepare(native, job));
@@ -181,8 +163,11 @@ void convert_prepare(struct native *native, struct job *job, int64_t now)
 	}
 	job->locks = err == TXN_MORE && job->txn.phase;
 	device->locked = job->locks;
-	if (err == 0)
-		become_due(native, job, now);
+	if (err)
+		return;
+	job->state = JOB_DUE;
+	if (!channel->due_ns)
+		channel->due_ns = now;
 }
 
 /* All jobs that are due on the channel end with err, as if it had been theirs. */
@@ -190,10 +175,8 @@ static void fail_due(struct native *native, unsigned channel, int err)
 {
 	bool recovered = false;
 
-	for (unsigned i = 0; i < NATIVE_DEPTH && native->up; i++) {
-		struct job *job = &native->jobs[i];
-
-		if (!job->req || job->state != JOB_DUE || job->txn.channel != channel)
+	for (struct job *job = NULL; native->up && (job = native_job(native, job));) {
+		if (job->state != JOB_DUE || job->txn.channel != channel)
 			continue;
 		if (err == -ENODEV || err == -EBADMSG || err == -ECOMM || !recovered) {
 			job->txn.link_error = err == -ENODEV || err == -EBADMSG ? 0 : err;
@@ -206,41 +189,14 @@ static void fail_due(struct native *native, unsigned channel, int err)
 	}
 }
 
-/*
- * Now and then all that are due are asked one by one, so that what each holds is no older than
- * that even if it is deaf to the broadcast. It costs the wire's time while they convert.
- */
-static bool is_single_round(struct channel *channel, int64_t now)
-{
-	if (!channel->single_ns)
-		channel->single_ns = now + SINGLE_NS;
-	return now >= channel->single_ns;
-}
-
-/* The result of another job's conversion has not been read yet: the next would overwrite it. */
-static bool is_measuring(const struct native *native, const struct device *device)
-{
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
-		const struct job *job = &native->jobs[i];
-
-		if (job->req && job->txn.device == device && job->property &&
-		    job->property->convert && job->kind == JOB_PROPERTY &&
-		    (job->state == JOB_CONVERTING || job->state == JOB_RUN))
-			return true;
-	}
-	return false;
-}
-
 /* Of those that are due and free the most urgent, and of these the one that waits longest. */
 static struct job *next_due(struct native *native, unsigned n)
 {
 	struct job *first = NULL;
 
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
-		struct job *job = &native->jobs[i];
-
-		if (!job->req || job->state != JOB_DUE || job->txn.channel != n ||
-		    job->txn.device->locked || is_measuring(native, job->txn.device))
+	for (struct job *job = NULL; (job = native_job(native, job));) {
+		if (job->state != JOB_DUE || job->txn.channel != n || job->txn.device->locked ||
+		    is_measuring(native, job->txn.device))
 			continue;
 		if (!first || job->req->prio < first->req->prio ||
 		    (job->req->prio == first->req->prio &&
@@ -248,22 +204,6 @@ static struct job *next_due(struct native *native, unsigned n)
 			first = job;
 	}
 	return first;
-}
-
-/* All that wait for this chip's result. */
-static void convert_device(struct native *native, struct device *device, int64_t now)
-{
-	thermometer_of(device)->unheard = 0;
-	thermometer_of(device)->shows = true;
-	broadcast_converts(native, device, false, now);
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
-		struct job *job = &native->jobs[i];
-
-		if (!job->req || job->state != JOB_DUE || job->txn.device != device)
-			continue;
-		job->state = JOB_CONVERTING;
-		job->ready_ns = thermometer_of(device)->converted_ns;
-	}
 }
 
 /* One by one: the first that is due and free. False: there is none. */
@@ -288,20 +228,19 @@ static bool convert_one(struct native *native, unsigned n)
 		return true;
 	}
 	native_count(native, COUNT_CONVERSIONS);
-	convert_device(native, device, now);
+	broadcast_started(native, device, now);
 	return true;
 }
 
 /* What it was known to have is true until it says otherwise: noise may hide the answer, too. */
-static void ask_silent(struct native *native, struct job *job)
+static bool ask_silent(struct native *native, struct job *job)
 {
 	int bit = txn_end(&job->txn, thermometer_ask_power(&job->txn));
 
 	job_saw(native, job, bit, native_now(native));
-	if (bit < 0) {
-		thermometer_of(job->txn.device)->unheard--;
+	if (bit < 0)
 		job_failed(native, job, bit);
-	}
+	return bit >= 0;
 }
 
 /*
@@ -322,19 +261,21 @@ void convert_in_turn(struct native *native, struct job *job)
 	if (err == -EBADMSG && !job->txn.link_error) {
 		native_count(native, COUNT_CHECKSUMS);
 		native->channel[device->channel].checksums++;
-		if (++thermometer_of(device)->unheard == THERMOMETER_SILENT)
-			ask_silent(native, job);
+		if (thermometer_last(device).missed + 1 != THERMOMETER_SILENT ||
+		    ask_silent(native, job))
+			thermometer_missed(device);
 	} else if (err < 0) {
 		job_failed(native, job, err);
 	} else {
 		native_count(native, COUNT_CONVERSIONS);
-		convert_device(native, device, txn_ended(&job->txn));
+		broadcast_started(native, device, txn_ended(&job->txn));
 	}
 }
 
 /*
- * Do those that are due start one by one now? Not with the strong pull-up, nor where a driver sees
- * to it.
+ * Now and then all that are due start one by one, so that what each holds is no older than that
+ * even if it is deaf to the broadcast. It costs the wire's time while they convert. Not with the
+ * strong pull-up, nor where a driver sees to it.
  */
 static bool starts_single(struct native *native, unsigned n, const struct schedule_plan *plan,
                           int64_t now)
@@ -343,7 +284,9 @@ static bool starts_single(struct native *native, unsigned n, const struct schedu
 
 	if (plan->parasitic || channel->link->driven)
 		return false;
-	return is_single_round(channel, now);
+	if (!channel->single_ns)
+		channel->single_ns = now + SINGLE_NS;
+	return now >= channel->single_ns;
 }
 
 struct job *convert_next_in_turn(struct native *native, unsigned n, int64_t now)
@@ -365,9 +308,7 @@ bool convert_step(struct native *native, int64_t now, int64_t *next, struct job 
 	for (unsigned n = native_next(native, 0); n < NATIVE_ALL; n = native_next(native, n + 1)) {
 		struct channel *channel = &native->channel[n];
 
-		if (native_held(native, n, NULL, now))
-			continue;
-		if (!channel->due_ns)
+		if (!channel->due_ns || native_held(native, n, NULL, now))
 			continue;
 		struct schedule_plan plan = schedule_look(native, n);
 		if (!plan.due) {
@@ -404,4 +345,52 @@ bool convert_step(struct native *native, int64_t now, int64_t *next, struct job 
 		return true;
 	}
 	return false;
+}
+
+/* False: at another resolution than was thought, or the chip restarted since it began. */
+static bool is_of_conversion(const struct job *job)
+{
+	if (!is_right(job))
+		thermometer_void(job->txn.device);
+	return thermometer_last(job->txn.device).ends_ns != 0;
+}
+
+/* It may be of an older conversion than was asked for: it is made once more. */
+static bool is_doubtful(struct job *job)
+{
+	const struct txn *txn = &job->txn;
+
+	switch ((enum job_again)job->again) {
+	case AGAIN_NO:
+		if (thermometer_doubtful(txn, job->fresh))
+			job->again = thermometer_marks(txn->device) ? AGAIN_MARK : AGAIN_LAST;
+		else if (thermometer_last(txn->device).cut && txn->measured_ns < job->since_ns &&
+		         job->fresh)
+			job->again = AGAIN_LAST;
+		return job->again != AGAIN_NO;
+	case AGAIN_MARK:
+		/* What it shows now is to be told from the next result alone. */
+		job->again = AGAIN_MARKED;
+		return true;
+	case AGAIN_MARKED:
+		job->again = AGAIN_LAST;
+		return txn->unproven;
+	case AGAIN_LAST:
+		break;
+	}
+	return false;
+}
+
+int convert_judge(struct job *job)
+{
+	const struct txn *txn = &job->txn;
+
+	if (!job->property->convert || !txn->device)
+		return 0;
+	if (txn->unheard && ++job->tries >= TRIES_UNHEARD)
+		return -EBADMSG;
+	if (!is_of_conversion(job) || txn->unheard || is_doubtful(job))
+		return TXN_MORE;
+	/* Nothing proves it, and no conversion is known: it would be stated as of now. */
+	return job->req->op == BUS_READ && txn->unproven && !txn->measured_ns ? -EBADMSG : 0;
 }

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Transactions of several thermometers at the same time, each on another chip of the master. */
-#include "hal/native/together.h"
+#include "hal/native/convert/together.h"
 #include "hal/chips/thermometers/thermometer.h"
 #include "hal/native/answer.h"
-#include "hal/native/broadcast.h"
-#include "hal/native/convert.h"
+#include "hal/native/convert/broadcast.h"
+#include "hal/native/convert/convert.h"
+#include "hal/native/convert/schedule.h"
 #include "hal/native/cost.h"
 #include "hal/native/job.h"
-#include "hal/native/schedule.h"
 
 #define READ_SCRATCHPAD 0xbe
 #define SCRATCHPAD_SIZE 9
@@ -106,16 +106,11 @@ static struct job *next_reading(struct native *native, const struct group *group
 	struct job *best = NULL;
 	int64_t next = INT64_MAX;
 
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
-		struct job *job = &native->jobs[i];
-
-		if (!job->req || job->alone || !reads_scratchpad(job) ||
-		    !fits(native, group, job->txn.device->channel) ||
-		    !job_ready(native, job, now, &next))
-			continue;
-		if (job_goes_first(native, job, best))
+	for (struct job *job = NULL; (job = native_job(native, job));)
+		if (!job->alone && reads_scratchpad(job) &&
+		    fits(native, group, job->txn.device->channel) &&
+		    job_ready(native, job, now, &next) && job_goes_first(native, job, best))
 			best = job;
-	}
 	return best;
 }
 

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Which thermometers are asked for, what that costs, and which way is faster. */
-#include "hal/native/schedule.h"
+#include "hal/native/convert/schedule.h"
 #include "hal/chips/thermometers/thermometer_proof.h"
-#include "hal/chips/thermometers/thermometer_state.h"
 #include "hal/native/state.h"
 
 /*
@@ -23,7 +22,7 @@
 
 bool schedule_asks(const struct job *job)
 {
-	return job->req && job->txn.device && job->property && job->property->convert &&
+	return job->txn.device && job->property && job->property->convert &&
 	       job->kind == JOB_PROPERTY;
 }
 
@@ -34,7 +33,7 @@ static void look_at_job(struct schedule_plan *plan, const struct job *job, bool 
 
 	if (job->state != JOB_DUE && job->state != JOB_CONVERTING && job->state != JOB_RUN)
 		return;
-	plan->silent |= thermometer_of(device)->unheard >= THERMOMETER_SILENT;
+	plan->silent |= thermometer_last(device).missed >= THERMOMETER_SILENT;
 	plan->longest_ns = ns > plan->longest_ns ? ns : plan->longest_ns;
 	if (job->state != JOB_DUE) {
 		plan->reading++;
@@ -81,9 +80,7 @@ static void look_at_jobs(struct schedule_plan *plan, const struct native *native
 	unsigned coming = UINT8_MAX, urgent = BUS_GUEST;
 	struct load load = {0};
 
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
-		const struct job *job = &native->jobs[i];
-
+	for (const struct job *job = NULL; (job = native_job(native, job));) {
 		if (!schedule_asks(job))
 			continue;
 		if (job->state == JOB_DUE || job->state == JOB_CONVERTING || job->state == JOB_RUN)
@@ -110,14 +107,11 @@ struct schedule_plan schedule_look(const struct native *native, unsigned channel
 	struct schedule_plan plan = {.driven = feeds};
 
 	look_at_jobs(&plan, native, channel, feeds);
-	for (unsigned i = 0; plan.due && i < native->table.count; i++) {
-		const struct device *device = &native->table.devices[i];
-
-		if (device->channel != channel)
-			continue;
-		plan.locked |= device->locked;
-		if (!native_thermometer(device, channel))
-			continue;
+	if (!plan.due)
+		return plan;
+	plan.locked = native_at_work(native, channel);
+	for (const struct device *device = NULL;
+	     (device = native_thermometer(native, channel, device));) {
 		int64_t ns = thermometer_convert_ns(device);
 		plan.parasitic |= !feeds && device->power != POWER_EXTERNAL;
 		plan.all_ns = ns > plan.all_ns ? ns : plan.all_ns;

@@ -5,6 +5,6 @@
 
 #include "hal/native/state.h"
 
-void convert_all(struct native *native, struct job *job, int64_t now);
+void convert_all(struct native *native, struct job *job);
 
 #endif
