@@ -33,7 +33,8 @@
 #define EVENTS \
 	WORDS("alarm_kind") \
 	WORDS("alarm_event") \
-	WORDS("command_reason") "create view trend_event as select " ISO( \
+	WORDS("command_reason") \
+	"create view trend_event as select " ISO( \
 		"event.time") " as time," \
 			      " case event.kind when 6 then 'clock' when 7 then 'command' else 'alarm' end as kind," \
 			      " coalesce(c.text, ltrim(coalesce(k.text, '') || ' ' || a.text)) as what, name, value," \
