@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* The bus contract: the queue of a simple bus, suspending. */
+/* The bus contract: the queue of a simple bus, suspending, and what a write says. */
 #include <assert.h>
 #include <errno.h>
+#include <float.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -199,4 +201,45 @@ const struct bus_counter *bus_counters(struct bus *bus, size_t *n)
 {
 	*n = 0;
 	return bus->ops->counters ? bus->ops->counters(bus, n) : NULL;
+}
+
+uint32_t bus_write_text(struct bus_req *req)
+{
+	const int most = req->single ? FLT_DECIMAL_DIG : DBL_DECIMAL_DIG;
+	char *text = (char *)req->data;
+	int digits = req->single ? FLT_DIG : DBL_DIG, n;
+
+	if (!req->number)
+		return req->len;
+	/* below the normal numbers fewer digits distinguish two numbers */
+	if (fabs(req->value) < (req->single ? (double)FLT_MIN : DBL_MIN))
+		digits = 1;
+	do
+		n = snprintf(text, BUS_NUMBER_TEXT, "%.*g", digits, req->value);
+	while ((req->single ? strtof(text, NULL) != (float)req->value
+	                    : strtod(text, NULL) != req->value) &&
+	       digits++ < most);
+	return (uint32_t)n;
+}
+
+int bus_write_switch(const struct bus_req *req, bool *on)
+{
+	static const char *const words[] = {"0", "1", "off", "on", "no", "yes"};
+	const char *text = (const char *)req->data;
+	uint32_t len = req->len;
+
+	if (req->number) {
+		*on = req->value == 1;
+		return *on || req->value == 0 ? 0 : -EINVAL;
+	}
+	while (len && (text[len - 1] == '\n' || text[len - 1] == ' ' || !text[len - 1]))
+		len--;
+	for (; len && *text == ' '; text++)
+		len--;
+	for (unsigned i = 0; i < sizeof(words) / sizeof(words[0]); i++)
+		if (!req->offset && strlen(words[i]) == len && !memcmp(words[i], text, len)) {
+			*on = i & 1;
+			return 0;
+		}
+	return -EINVAL;
 }

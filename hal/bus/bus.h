@@ -57,16 +57,22 @@ enum bus_news {
  * meanwhile, and neither frees nor reuses it before the answer.
  */
 struct bus_req {
-	uint32_t id;         /* caller's, echoed in the answer */
-	uint8_t op;          /* enum bus_op */
-	uint8_t prio;        /* enum bus_prio */
-	bool fresh;          /* read past every cache */
-	bool number;         /* READ: where the answer is a number, its text is not needed */
+	uint32_t id;  /* caller's, echoed in the answer */
+	uint8_t op;   /* enum bus_op */
+	uint8_t prio; /* enum bus_prio */
+	bool fresh;   /* read past every cache */
+	/*
+	 * READ: where the answer is a number, its text is not needed. WRITE: `value` is written,
+	 * and data is room for its text.
+	 */
+	bool number;
+	bool single; /* WRITE: `value` is a float, which has a shorter text */
+	double value;
 	int64_t deadline_ns; /* not begun by then: answered -ETIME without effect.
 	                        Begun: finished or failed by then, never undone. A READ may be
 	                        as much later as the host kept the bus from its work */
 	const char *path;    /* "/28.551DDF030000/temperature12", without /uncached; immutable */
-	uint32_t len;        /* WRITE: bytes in data; READ and DIR: room in data */
+	uint32_t len;        /* WRITE: bytes in data, of a number 0; READ and DIR: room in data */
 	uint32_t offset; /* WRITE: of data in the value. Bytes beyond the value's end are ignored.
 	                    A value that is no bytes cannot be written in parts: -EINVAL */
 	uint8_t *data;
@@ -93,6 +99,7 @@ static inline bool bus_req_unwanted(const struct bus_req *req)
 	       __atomic_load_n(req->unwanted, __ATOMIC_RELAXED);
 }
 
+#define BUS_NUMBER_TEXT 32
 #define BUS_TOKEN 16
 #define BUS_TOKENS_MAX 8
 
@@ -297,6 +304,13 @@ unsigned bus_depth(const struct bus *bus);
  */
 int bus_submit(struct bus *bus, struct bus_req *req);
 int64_t bus_step(struct bus *bus, int64_t now);
+/*
+ * For a bus that takes texts: how many bytes in data a WRITE writes. A number's text is put there,
+ * BUS_NUMBER_TEXT bytes at the most: the shortest that reads back equal.
+ */
+uint32_t bus_write_text(struct bus_req *req);
+/* For one that takes 0 and 1: what a WRITE says; of texts also on, off, yes and no. 0 or -EINVAL */
+int bus_write_switch(const struct bus_req *req, bool *on);
 /*
  * true: release the hardware, and report BUS_RELEASED before returning. From then on requests are
  * answered -ENOTCONN and nothing touches the wire; bus_step() looks for the target every few

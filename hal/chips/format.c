@@ -240,13 +240,6 @@ static int parse_decimal(const char *text, double *number)
 	return end == text || *end || errno ? -EINVAL : 0;
 }
 
-static int parse_whole(const char *text, double least, double most, double *number)
-{
-	if (parse_decimal(text, number) || *number != trunc(*number))
-		return -EINVAL;
-	return *number < least || *number > most ? -EINVAL : 0;
-}
-
 size_t text_end(const char *text, size_t len)
 {
 	while (len && (isspace((unsigned char)text[len - 1]) || text[len - 1] == '\0'))
@@ -278,15 +271,41 @@ static bool digits_fit(uint32_t limits, double number)
 	return true;
 }
 
-static int parse_unsigned(const struct property *property, const char *text, double *number)
+static bool is_whole(double number, double least, double most)
 {
-	if (parse_whole(text, property->negative ? INT32_MIN : 0, UINT32_MAX, number))
-		return -EINVAL;
-	return !property->digits || digits_fit(property->digits, *number) ? 0 : -EINVAL;
+	return number == trunc(number) && number >= least && number <= most;
 }
 
-static int parse_number(const struct property *property, const char *text, size_t len,
-                        double *number)
+static bool takes(const struct property *property, int extension, double number)
+{
+	if (extension == EXTENSION_BYTE)
+		return is_whole(number, 0, ldexp(1, property->array.count) - 1);
+	switch ((enum property_type)property->type) {
+	case PROPERTY_YESNO:
+	case PROPERTY_BITS:
+		return is_whole(number, 0, 1);
+	case PROPERTY_UNSIGNED:
+		return is_whole(number, property->negative ? INT32_MIN : 0, UINT32_MAX) &&
+		       (!property->digits || digits_fit(property->digits, number));
+	case PROPERTY_INTEGER:
+		return is_whole(number, INT32_MIN, INT32_MAX);
+	case PROPERTY_FLOAT:
+	case PROPERTY_TEMPGAP:
+	case PROPERTY_PRESSURE:
+	case PROPERTY_TEMPERATURE:
+		return isfinite(number);
+	case PROPERTY_DATE:
+	case PROPERTY_DIRECTORY:
+	case PROPERTY_ASCII:
+	case PROPERTY_BINARY:
+	case PROPERTY_ALIAS:
+		break;
+	}
+	return false;
+}
+
+static int parse_number(const struct property *property, int extension, const char *text,
+                        size_t len, double *number)
 {
 	char copy[TEXT_ROOM];
 
@@ -296,40 +315,12 @@ static int parse_number(const struct property *property, const char *text, size_
 
 		return now ? host_clock(number) : -EINVAL;
 	}
-	switch ((enum property_type)property->type) {
-	case PROPERTY_YESNO:
-	case PROPERTY_BITS:
-		return parse_word(copy, number) ? parse_whole(copy, 0, 1, number) : 0;
-	case PROPERTY_DATE:
+	if (property->type == PROPERTY_DATE)
 		return parse_date(copy, number);
-	case PROPERTY_UNSIGNED:
-		return parse_unsigned(property, copy, number);
-	case PROPERTY_INTEGER:
-		return parse_whole(copy, INT32_MIN, INT32_MAX, number);
-	case PROPERTY_FLOAT:
-	case PROPERTY_TEMPGAP:
-	case PROPERTY_PRESSURE:
-	case PROPERTY_TEMPERATURE:
-		return parse_decimal(copy, number);
-	case PROPERTY_DIRECTORY:
-	case PROPERTY_ASCII:
-	case PROPERTY_BINARY:
-	case PROPERTY_ALIAS:
-		break;
-	}
-	return -EINVAL;
-}
-
-static int parse_byte(const struct property *property, const char *text, size_t len, uint32_t *bits)
-{
-	char copy[TEXT_ROOM];
-	double number;
-
-	if (!copy_trimmed(text, len, copy) ||
-	    parse_whole(copy, 0, ldexp(1, property->array.count) - 1, &number))
-		return -EINVAL;
-	*bits = (uint32_t)number;
-	return 0;
+	if ((property->type == PROPERTY_YESNO || property->type == PROPERTY_BITS) &&
+	    extension != EXTENSION_BYTE && parse_word(copy, number) == 0)
+		return 0;
+	return parse_decimal(copy, number) || !takes(property, extension, *number) ? -EINVAL : 0;
 }
 
 static void set_element(const struct property *property, int element, double number,
@@ -337,10 +328,20 @@ static void set_element(const struct property *property, int element, double num
 {
 	uint32_t bit = UINT32_C(1) << (element & 0x1f);
 
-	if (property->type == PROPERTY_BITS)
+	if (element == EXTENSION_BYTE)
+		txn->bits = (uint32_t)number;
+	else if (property->type == PROPERTY_BITS)
 		txn->bits = number != 0 ? txn->bits | bit : txn->bits & ~bit;
 	else
 		txn->number[property->array.aggregate ? extension_element(element) : 0] = number;
+}
+
+int take_number(const struct property *property, int extension, double number, struct txn *txn)
+{
+	if (!takes(property, extension, number))
+		return -EINVAL;
+	set_element(property, extension, number, txn);
+	return 0;
 }
 
 int parse_value(const struct property *property, int extension, const char *text, size_t len,
@@ -351,21 +352,18 @@ int parse_value(const struct property *property, int extension, const char *text
 	double number;
 	int err;
 
-	if (extension == EXTENSION_BYTE)
-		return parse_byte(property, text, len, &txn->bits);
 	if (extension != EXTENSION_ALL) {
-		err = parse_number(property, text, len, &number);
+		err = parse_number(property, extension, text, len, &number);
 		if (!err)
-			set_element(property, extension == EXTENSION_NONE ? 0 : extension, number,
-			            txn);
+			set_element(property, extension, number, txn);
 		return err;
 	}
 	if (!list_fits(property, text, len))
 		return -EINVAL;
-	for (unsigned i = 0; i < property->array.count; i++)
-		if (list_part(text, len, i, &part, &part_len) &&
-		    parse_number(property, part, part_len, &number) == 0)
-			set_element(property, (int)i, number, txn);
+	for (int i = 0; i < property->array.count; i++)
+		if (list_part(text, len, (unsigned)i, &part, &part_len) &&
+		    parse_number(property, i, part, part_len, &number) == 0)
+			set_element(property, i, number, txn);
 	return 0;
 }
 
@@ -395,7 +393,8 @@ bool list_fits(const struct property *property, const char *text, size_t len)
 	unsigned n = 0;
 
 	for (; list_part(text, len, n, &part, &part_len); n++)
-		if (n == property->array.count || parse_number(property, part, part_len, &number))
+		if (n == property->array.count ||
+		    parse_number(property, (int)n, part, part_len, &number))
 			return false;
 	return n == property->array.count;
 }

@@ -54,6 +54,8 @@ size_t text_end(const char *text, size_t len);
  */
 int parse_value(const struct property *property, int extension, const char *text, size_t len,
                 struct txn *txn);
+/* The same of a number, for what is one: see format_is_number(). */
+int take_number(const struct property *property, int extension, double number, struct txn *txn);
 /* Part n of a comma list; false: there is none. */
 bool list_part(const char *text, size_t len, unsigned n, const char **part, size_t *part_len);
 /* Has the list as many elements as the property, and can the property take each of them? */

@@ -183,28 +183,6 @@ static int gpio_list(const struct gpio_bus *gpio, int line, struct bus_req *req,
 	return 0;
 }
 
-static int parse_value(const struct bus_req *req, bool *value)
-{
-	static const struct {
-		const char *text;
-		bool value;
-	} words[] = {{"0", false}, {"1", true},   {"off", false},
-	             {"on", true}, {"no", false}, {"yes", true}};
-	const char *text = (const char *)req->data;
-	uint32_t len = req->len;
-
-	while (len > 0 && (text[len - 1] == '\n' || text[len - 1] == ' '))
-		len--;
-	while (len > 0 && *text == ' ')
-		text++, len--;
-	for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++)
-		if (strlen(words[i].text) == len && memcmp(words[i].text, text, len) == 0) {
-			*value = words[i].value;
-			return 0;
-		}
-	return -EINVAL;
-}
-
 static int access_line(struct gpio_bus *gpio, int line, struct bus_req *req,
                        struct bus_answer *answer, char *why, size_t why_size)
 {
@@ -226,7 +204,7 @@ static int access_line(struct gpio_bus *gpio, int line, struct bus_req *req,
 		answer->number = value;
 		return 0;
 	}
-	err = req->offset ? -EINVAL : parse_value(req, &value);
+	err = bus_write_switch(req, &value);
 	if (!err)
 		err = line_write(gpio, (unsigned)line, guest, value, why, why_size);
 	if (!err)

@@ -132,22 +132,23 @@ static void read_done(struct native *native, struct job *job)
 	job_answer(native, job, 0);
 }
 
-/* The part of the request that is for this element. */
-static int take_value(struct job *job)
+int job_take_value(struct job *job)
 {
 	struct txn *txn = &job->txn;
 	const struct property *property = job->property;
 	const char *text = (const char *)job->req->data;
-	size_t len = job->req->len;
 	size_t size = property->takes ? property->takes : property_size(property);
 	bool all = job_wants_all(job);
 
+	if (job->req->number && format_is_number(property, job->extension))
+		return take_number(property, job->extension, job->req->value, txn);
+	size_t whole = bus_write_text(job->req), len = whole;
 	if (is_text(property)) {
 		size_t skip = all ? job->element * size : 0;
 
 		if (is_name(property)) {
 			len = text_end(text, len);
-			job->taken = job->req->len - len;
+			job->taken = whole - len;
 		}
 		if (skip > len)
 			skip = len;
@@ -253,7 +254,7 @@ static int run_function(struct job *job)
 	if (needs_merge(job))
 		return merge ? merge(txn) : reader(job)(txn);
 	if (txn->phase == 0) {
-		int err = take_value(job);
+		int err = job_take_value(job);
 
 		if (err)
 			return err;

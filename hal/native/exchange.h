@@ -5,6 +5,8 @@
 
 #include "hal/native/state.h"
 
+/* Takes what is written for the present element into the transaction. 0 or -EINVAL. */
+int job_take_value(struct job *job);
 /* One transaction of it, or the answer. */
 void job_run_property(struct native *native, struct job *job, int64_t now);
 /*

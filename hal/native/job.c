@@ -3,7 +3,6 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/chips/format.h"
 #include "hal/native/answer.h"
 #include "hal/native/cache.h"
 #include "hal/native/convert/convert.h"
@@ -51,8 +50,7 @@ static void look_structure(struct native *native, struct job *job)
 /* A zero to /simultaneous/temperature is taken, and nothing converts. */
 static void look_convert(struct native *native, struct job *job)
 {
-	int err = parse_value(job->property, job->extension, (const char *)job->req->data,
-	                      job->req->len, &job->txn);
+	int err = job_take_value(job);
 
 	job->taken = job->req->len;
 	if (err || job->txn.number[0] == 0)

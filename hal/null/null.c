@@ -89,12 +89,13 @@ static void null_exec(struct bus *bus, struct bus_req *req, struct bus_answer *a
 			answer->err = req->op == BUS_PROBE ? 0 : -ENOENT;
 		if (req->op == BUS_PROBE || strcmp(req->path, p->path) != 0)
 			continue;
-		answer->err = req->op == BUS_WRITE && (req->offset || req->len > sizeof(p->text))
+		answer->err = req->op == BUS_WRITE &&
+		                              (req->offset || bus_write_text(req) > sizeof(p->text))
 		                      ? -EINVAL
 		              : req->op == BUS_READ && req->len < p->len ? -EMSGSIZE
 		                                                         : 0;
 		if (!answer->err && req->op == BUS_WRITE)
-			memcpy(p->text, req->data, p->len = req->len);
+			memcpy(p->text, req->data, p->len = bus_write_text(req));
 		else if (!answer->err)
 			memcpy(req->data, p->text, p->len);
 		answer->len = answer->err ? 0 : p->len;

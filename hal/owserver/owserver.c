@@ -405,7 +405,7 @@ static int do_write(struct owserver *server, struct bus_req *req, uint32_t *len)
 	struct talk_request request = {.type = FRAME_WRITE,
 	                               .path = req->path,
 	                               .data = req->data,
-	                               .data_len = req->len,
+	                               .data_len = bus_write_text(req),
 	                               .offset = req->offset};
 	const struct frame_header *reply = &server->talk.reader.header;
 	bool is_output = req->prio == BUS_OUTPUT || req->prio == BUS_ALARM;
@@ -416,9 +416,9 @@ static int do_write(struct owserver *server, struct bus_req *req, uint32_t *len)
 	if (reply->type < 0)
 		return refused(server, req);
 	/* a memory that ends earlier takes less, but a part of an output is another value */
-	if (reply->size < 0 || (is_output && (uint32_t)reply->size < req->len))
+	if (reply->size < 0 || (is_output && (uint32_t)reply->size < request.data_len))
 		return -EIO;
-	*len = (uint32_t)reply->size < req->len ? (uint32_t)reply->size : req->len;
+	*len = (uint32_t)reply->size < request.data_len ? (uint32_t)reply->size : request.data_len;
 	return 0;
 }
 

@@ -121,20 +121,15 @@ static int read_state(const struct sim_net *net, const struct sim_button *button
 static int press(struct sim_net *net, const struct sim_button *button, const struct bus_req *req,
                  struct bus_answer *answer)
 {
-	const uint8_t *text = req->data;
 	struct sim_event event = button->event;
-	uint32_t len = req->len;
+	bool on;
 
-	while (len && (text[len - 1] == '\n' || text[len - 1] == ' ' || !text[len - 1]))
-		len--;
-	while (len && *text == ' ')
-		text++, len--;
-	if (req->offset || len != 1 || (*text != '0' && *text != '1'))
+	if (bus_write_switch(req, &on))
 		return -EINVAL;
 	answer->len = req->len;
-	if (sim_net_lasts(net, &event) == (*text == '1'))
+	if (sim_net_lasts(net, &event) == on)
 		return 0;
-	event.on ^= *text == '0';
+	event.on ^= !on;
 	sim_net_apply(net, &event);
 	return 0;
 }

@@ -88,20 +88,14 @@ static bool ask_write(struct lane *lane, struct slot *slot, uint32_t row, int64_
 	}
 	slot->purpose = FOR_WRITE;
 	slot->row = row;
-	slot->value = s->command.value;
 	slot->stamp = s->command.stamp;
 	slot->controller = s->command.controller;
 	slot->serial = s->command.controller < OWS_CONTROLLERS
 	                       ? e->controllers[s->command.controller].as.who.serial
 	                       : 0;
 	slot->one_shot = s->command.one_shot;
-	slot->req = (struct bus_req){.op = BUS_WRITE, .prio = BUS_OUTPUT, .path = s->item->path};
-	if (signal_is_string(s)) {
-		memcpy(slot->data, s->command_text, s->command.len);
-		slot->req.len = s->command.len;
-	} else {
-		slot->req.len = signal_write_text(s, s->command.value, (char *)slot->data);
-	}
+	slot->req = (struct bus_req){.prio = BUS_OUTPUT, .path = s->item->path};
+	signal_write(slot, s, s->command.value, s->command_text, s->command.len);
 	if (!slot_lend(lane, slot, now_ns))
 		return false;
 	due_set_take(&lane->outputs, row);
@@ -121,33 +115,22 @@ static bool ask_write(struct lane *lane, struct slot *slot, uint32_t row, int64_
 static bool ask_alarm(struct lane *lane, struct slot *slot, int64_t now_ns)
 {
 	struct engine *e = lane->engine;
-	struct alarm_request *r = &lane->alarm_request;
 	struct signal *s;
 
 	/* one that was given up is still lent: the room for a list is not ours yet */
-	if (lane->lent.alarm || lane->lent.writes || !alarm_run(&lane->alarm, lane, r, now_ns))
+	if (lane->lent.alarm || lane->lent.writes)
 		return false;
 	slot->purpose = FOR_ALARM;
-	slot->row = r->row;
-	slot->req = (struct bus_req){.op = (uint8_t)r->op,
-	                             .prio = BUS_ALARM,
-	                             .fresh = true,
-	                             .path = r->path,
-	                             .len = sizeof(slot->data)};
-	if (r->op == BUS_WRITE) {
-		memcpy(slot->data, r->data, r->len);
-		slot->req.len = r->len;
-	}
 	slot->stamp = 0;
-	if (r->row != TABLE_NO_ROW)
-		slot->value = e->table.signals[r->row].item->init_value;
-	if (!slot_lend(lane, slot, now_ns))
+	slot->req = (struct bus_req){
+		.prio = BUS_ALARM, .fresh = true, .path = slot->path, .len = sizeof(slot->data)};
+	if (!alarm_run(&lane->alarm, lane, slot, now_ns) || !slot_lend(lane, slot, now_ns))
 		return false;
 	lane->lent.alarm = slot;
 	alarm_started(&lane->alarm, lane, now_ns);
-	if (r->row == TABLE_NO_ROW)
+	if (slot->row == TABLE_NO_ROW)
 		return true;
-	s = &e->table.signals[r->row];
+	s = &e->table.signals[slot->row];
 	s->alarming = true;
 	s->sample.tried_ns = now_ns;
 	signal_begin(s, e->time.period);

@@ -4,6 +4,10 @@
 #include <string.h>
 
 #include "src/engine/scaling.h"
+#include "src/engine/state.h"
+
+/* From here on a double's text has not all digits of a whole number. */
+#define LARGE_DIGITS INT64_C(1000000000000000)
 
 static bool is_scaled(const struct signal *s)
 {
@@ -63,13 +67,24 @@ bool signal_accepts(const struct signal *s, int64_t value)
 	return value_holds(s->item->type, value) && raw_of(s, value, &raw) == 0;
 }
 
-uint32_t signal_write_text(const struct signal *s, int64_t value, char text[VALUE_TEXT_MAX])
+void signal_write(struct slot *slot, const struct signal *s, int64_t value, const char *text,
+                  size_t len)
 {
-	double raw;
+	enum ows_type type = is_scaled(s) ? OWS_DOUBLE : s->item->type;
+	struct bus_req *req = &slot->req;
+	bool large = type == OWS_LARGE && (value <= -LARGE_DIGITS || value >= LARGE_DIGITS);
 
-	if (!is_scaled(s) || raw_of(s, value, &raw))
-		return (uint32_t)value_to_text(s->item->type, value, text);
-	return (uint32_t)value_to_text(OWS_DOUBLE, value_of_double(raw), text);
+	slot->value = value;
+	req->op = BUS_WRITE;
+	req->number = type != OWS_STRING && !large;
+	req->single = type == OWS_FLOAT;
+	req->value = value_number(s->item->type, value);
+	raw_of(s, value, &req->value);
+	req->len = type == OWS_STRING ? (uint32_t)len : 0;
+	if (large)
+		req->len = (uint32_t)value_to_text(type, value, (char *)slot->data);
+	else if (type == OWS_STRING)
+		memcpy(slot->data, text, len);
 }
 
 void signal_written(struct signal *s, int64_t value)

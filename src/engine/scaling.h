@@ -8,6 +8,8 @@
 
 #include "src/engine/table.h"
 
+struct slot;
+
 /* The type that a raw value is read as: that of the signal, or double where a scale makes it. */
 enum ows_type signal_raw_type(const struct signal *s);
 
@@ -20,8 +22,9 @@ void signal_take_raw(struct signal *s, int64_t raw, int64_t measured_ns, uint8_t
 
 /* May it be commanded: does it fit the type, lie in the range, and have a raw value? */
 bool signal_accepts(const struct signal *s, int64_t value);
-/* What is written for a value that the signal accepts; returns the length. */
-uint32_t signal_write_text(const struct signal *s, int64_t value, char text[VALUE_TEXT_MAX]);
+/* Have the slot's request write a value that the signal accepts; text: that of a string. */
+void signal_write(struct slot *slot, const struct signal *s, int64_t value, const char *text,
+                  size_t len);
 /* The value was written: the sample has it, unless it is doubted that the device has. */
 void signal_written(struct signal *s, int64_t value);
 /*

@@ -149,7 +149,6 @@ struct lane {
 
 	/* alarm.c and the files below it */
 	struct alarm_machine alarm;
-	struct alarm_request alarm_request; /* the next, or that of lent.alarm */
 
 	/* guests.c */
 	struct {

@@ -83,11 +83,14 @@ void trace_answer(const struct lane *lane, const struct slot *slot, const struct
 	struct engine *e = lane->engine;
 	char value[QUOTED_SIZE] = "", text[QUOTED_SIZE] = "";
 	bool is_write = slot->req.op == BUS_WRITE;
+	struct bus_req req = slot->req;
 
 	if (!may_show(e, answer->err != 0))
 		return;
+	if (req.number) /* the bus may have the request still, and put the text into its data */
+		req.data = (uint8_t *)text;
 	if (is_write)
-		quote_data(slot->req.data, slot->req.len, value);
+		quote_data(req.data, bus_write_text(&req), value);
 	if (!answer->err)
 		quote_result(slot, answer, text);
 	log_trace(e->log, "trace: %s: %s %s%s%s%s: %s, %.1f ms%s", lane->port->target,

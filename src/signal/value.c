@@ -189,21 +189,13 @@ static void decimal_print(const struct decimal *d, char text[DIGITS_MAX + 16])
 	snprintf(p + d->count, 14, "e%d", d->count ? d->point - d->count : 0);
 }
 
-static double decimal_double(const struct decimal *d)
+static double decimal_number(enum ows_type type, const struct decimal *d)
 {
 	char text[DIGITS_MAX + 16];
 
 	decimal_print(d, text);
-	return strtod(text, NULL);
-}
-
-/* Parsed as a float, not as a double first: that would round twice. */
-static float decimal_float(const struct decimal *d)
-{
-	char text[DIGITS_MAX + 16];
-
-	decimal_print(d, text);
-	return strtof(text, NULL);
+	/* a float is not parsed as a double first: that would round twice */
+	return type == OWS_FLOAT ? (double)strtof(text, NULL) : strtod(text, NULL);
 }
 
 /*
@@ -274,7 +266,7 @@ int value_from_text(enum ows_type type, const char *text, size_t len, int64_t *v
 	if (decimal_parse(text, len, &d))
 		return -EILSEQ;
 	if (value_is_float(type)) {
-		number = type == OWS_FLOAT ? (double)decimal_float(&d) : decimal_double(&d);
+		number = decimal_number(type, &d);
 		side = side_of_infinity(number);
 		*value = float_held(type, number, side);
 	} else {
@@ -390,7 +382,7 @@ int value_parse(enum ows_type type, const char *text, int64_t *value)
 	if (decimal_parse(text, len, &d))
 		return -EINVAL;
 	if (value_is_float(type)) {
-		number = type == OWS_FLOAT ? (double)decimal_float(&d) : decimal_double(&d);
+		number = decimal_number(type, &d);
 		if (isinf(number))
 			return -ERANGE;
 		*value = value_of_double(number);
@@ -429,29 +421,8 @@ static bool reads_back(enum ows_type type, const char *text, size_t len, double 
 {
 	struct decimal d;
 
-	if (decimal_parse(text, len, &d))
-		return false;
-	if (type == OWS_FLOAT)
-		return decimal_float(&d) == (float)number;
-	return decimal_double(&d) == number;
-}
-
-/* As printf's %lld: a command's way to the bus is short, and printf is long. */
-static int print_integer(int64_t value, char text[VALUE_TEXT_MAX])
-{
-	uint64_t left = value < 0 ? 0 - (uint64_t)value : (uint64_t)value;
-	char digits[20];
-	int n = 0, at = 0;
-
-	do
-		digits[n++] = (char)('0' + left % 10);
-	while (left /= 10);
-	if (value < 0)
-		text[at++] = '-';
-	while (n)
-		text[at++] = digits[--n];
-	text[at] = '\0';
-	return at;
+	return decimal_parse(text, len, &d) == 0 &&
+	       decimal_number(type, &d) == (type == OWS_FLOAT ? (double)(float)number : number);
 }
 
 int value_to_text(enum ows_type type, int64_t value, char text[VALUE_TEXT_MAX])
@@ -465,7 +436,7 @@ int value_to_text(enum ows_type type, int64_t value, char text[VALUE_TEXT_MAX])
 	if (!is_number(type))
 		return 0;
 	if (!value_is_float(type))
-		return print_integer(value, text);
+		return snprintf(text, VALUE_TEXT_MAX, "%lld", (long long)value);
 	number = double_of(value);
 	if (!isfinite(number))
 		return snprintf(text, VALUE_TEXT_MAX, "%s",

@@ -102,8 +102,7 @@ static void share_latch(struct alarm_machine *m, struct lane *lane, int64_t now_
 	alarm_show_latch(lane, i, now_ns);
 }
 
-bool alarm_run(struct alarm_machine *m, struct lane *lane, struct alarm_request *request,
-               int64_t now_ns)
+bool alarm_run(struct alarm_machine *m, struct lane *lane, struct slot *slot, int64_t now_ns)
 {
 	const struct alarm_row *row;
 
@@ -114,7 +113,7 @@ bool alarm_run(struct alarm_machine *m, struct lane *lane, struct alarm_request 
 
 		row = facts ? alarm_next(m->state, facts) : NULL;
 		if (!row)
-			return alarm_ask(m, lane, request, now_ns);
+			return alarm_ask(m, lane, slot, now_ns);
 		if (facts & FACT_KNOWN)
 			alarm_granted(lane->engine, alarm_current(m),
 			              alarm_step(m->state)->unarmed);

@@ -89,14 +89,7 @@ struct alarm_item {
 	bool set[ALARM_DEEDS];          /* of a deed that reads a flag: what it read */
 };
 
-/* What the machine wants to be asked. */
-struct alarm_request {
-	enum bus_op op;
-	char path[ALARM_TEXT * 2 + 16];
-	char data[ALARM_TEXT];
-	uint32_t len;
-	uint32_t row; /* of the table that the request counts for; TABLE_NO_ROW: none */
-};
+/* What counts for no row of the table. */
 #define TABLE_NO_ROW UINT32_MAX
 
 /* What is known of the lists of a target; a reload carries it over. */

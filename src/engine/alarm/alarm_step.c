@@ -238,75 +238,72 @@ int64_t alarm_next_init(struct engine *e, struct alarm_machine *m)
 /* --- Requests --------------------------------------------------------------------------------- */
 
 /* The step's request, or the read of what it writes. */
-static bool ask_step(struct alarm_request *r, const struct alarm_item *i,
-                     const struct alarm_step *step, enum bus_op op)
+static bool ask_step(struct slot *slot, const struct alarm_item *i, const struct alarm_step *step,
+                     enum bus_op op)
 {
 	const char *value = step->value ? alarm_string(&i->strings, step->value) : "0";
 
-	r->op = op;
-	r->row = i->row;
-	snprintf(r->path, sizeof(r->path), "%s%s/%s", step->under, i->strings.path,
+	slot->req.op = (uint8_t)op;
+	slot->row = i->row;
+	snprintf(slot->path, sizeof(slot->path), "%s%s/%s", step->under, i->strings.path,
 	         alarm_string(&i->strings, step->property));
-	r->len = (uint32_t)snprintf(r->data, sizeof(r->data), "%s", op == BUS_WRITE ? value : "");
+	if (op == BUS_WRITE)
+		slot->req.len = (uint32_t)snprintf((char *)slot->data, sizeof(slot->data), "%s",
+		                                   value);
 	return true;
 }
 
-static bool ask_init(struct engine *e, struct alarm_machine *m, struct alarm_request *r)
+static bool ask_init(struct engine *e, struct alarm_machine *m, struct slot *slot)
 {
 	int64_t row = alarm_next_init(e, m);
 	const struct signal *s = &e->table.signals[row];
 	const struct config_item *item = s->item;
 
-	r->op = BUS_WRITE;
-	r->row = (uint32_t)row;
-	snprintf(r->path, sizeof(r->path), "%s", item->path);
-	if (item->type == OWS_STRING)
-		r->len = (uint32_t)snprintf(r->data, sizeof(r->data), "%s", item->init_text);
-	else
-		r->len = signal_write_text(s, item->init_value, r->data);
+	slot->row = (uint32_t)row;
+	slot->req.path = item->path;
+	signal_write(slot, s, item->init_value, item->init_text, strlen(item->init_text));
 	return true;
 }
 
 /* The item whose SetAlarm is to be compared with the chip, if any is left. */
-static bool ask_arm(struct alarm_machine *m, struct alarm_request *r, int64_t now_ns)
+static bool ask_arm(struct alarm_machine *m, struct slot *slot, int64_t now_ns)
 {
 	if (m->arming < 0)
 		m->arming = alarm_to_arm(m, now_ns);
 	if (m->arming < 0)
 		return false;
-	ask_step(r, m->items[m->arming], alarm_step(ALARM_SET),
+	ask_step(slot, m->items[m->arming], alarm_step(ALARM_SET),
 	         m->arm_writes ? BUS_WRITE : BUS_READ);
 	return true;
 }
 
-static bool ask_list(struct alarm_machine *m, const struct lane *lane, struct alarm_request *r,
+static bool ask_list(struct alarm_machine *m, const struct lane *lane, struct slot *slot,
                      int64_t now_ns)
 {
 	m->position = -1;
-	if (ask_arm(m, r, now_ns))
+	if (ask_arm(m, slot, now_ns))
 		return true;
 	if (now_ns < m->list.next_ns)
 		return false;
 	if (!m->named)
 		alarm_name_list(m, &lane->engine->table);
-	r->op = BUS_DIR;
-	r->row = TABLE_NO_ROW;
-	memcpy(r->path, m->list_path, sizeof(m->list_path));
+	slot->req.op = BUS_DIR;
+	slot->req.path = m->list_path;
+	slot->row = TABLE_NO_ROW;
 	return true;
 }
 
-bool alarm_ask(struct alarm_machine *m, const struct lane *lane, struct alarm_request *r,
-               int64_t now_ns)
+bool alarm_ask(struct alarm_machine *m, const struct lane *lane, struct slot *slot, int64_t now_ns)
 {
 	const struct alarm_step *step = alarm_step(m->state);
 
 	if (m->collecting >= 0)
-		return ask_step(r, m->items[m->collecting], alarm_step(ALARM_LATCH), BUS_READ);
+		return ask_step(slot, m->items[m->collecting], alarm_step(ALARM_LATCH), BUS_READ);
 	if (m->proving)
-		return ask_step(r, alarm_current(m), step, BUS_READ);
+		return ask_step(slot, alarm_current(m), step, BUS_READ);
 	if (m->state == INIT)
-		return ask_list(m, lane, r, now_ns);
+		return ask_list(m, lane, slot, now_ns);
 	if (m->state == ALARM_SET_WAIT)
-		return ask_init(lane->engine, m, r);
-	return step && step->asks == m->state && ask_step(r, alarm_current(m), step, step->op);
+		return ask_init(lane->engine, m, slot);
+	return step && step->asks == m->state && ask_step(slot, alarm_current(m), step, step->op);
 }

@@ -45,8 +45,7 @@ int64_t alarm_to_collect(const struct alarm_machine *m, const struct alarm_item 
 /* The next output below the device that gets its InitValue, a row of the table, -1: none. */
 int64_t alarm_next_init(struct engine *e, struct alarm_machine *m);
 
-/* True: *request is what the present state asks; false: it asks nothing now. */
-bool alarm_ask(struct alarm_machine *m, const struct lane *lane, struct alarm_request *request,
-               int64_t now_ns);
+/* True: the slot has what the present state asks; false: it asks nothing now. */
+bool alarm_ask(struct alarm_machine *m, const struct lane *lane, struct slot *slot, int64_t now_ns);
 
 #endif

@@ -3,6 +3,7 @@
 #include "src/owsctl/mission/mission_ask.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -60,7 +61,8 @@ int mission_write(struct mission *mission, const char *property, double value)
 	int err;
 
 	ask.req.data = (uint8_t *)text;
-	ask.req.len = (uint32_t)snprintf(text, sizeof(text), "%.0f", value);
+	ask.req.number = true;
+	ask.req.value = rint(value);
 	err = path_of(mission, property, path) ? target_ask_one(&mission->target, &ask) : -ENODEV;
 	return err ? mission_failed(mission, property, err) : CTL_DONE;
 }

@@ -53,7 +53,8 @@ int scene_submit(void *ctx, struct bus_req *req)
 	} else if (req->op == BUS_WRITE) {
 		s->writes++;
 		bus->writes++;
-		snprintf(text, sizeof(text), "%.*s", (int)req->len, (const char *)req->data);
+		snprintf(text, sizeof(text), "%.*s", (int)bus_write_text(req),
+		         (const char *)req->data);
 		note(bus, 'W', req->path, text);
 	} else if (req->op == BUS_PROBE) {
 		bus->probes++;
@@ -182,9 +183,10 @@ static void deliver(struct scene_bus *bus, unsigned index)
 	if (s->on_read && req->op != BUS_WRITE)
 		s->on_read(s, req->path);
 	if (req->op == BUS_WRITE && !p->err && s->on_write)
-		s->on_write(s, req->path, (const char *)req->data, req->len);
+		s->on_write(s, req->path, (const char *)req->data, bus_write_text(req));
 	if (req->op == BUS_WRITE && !p->err)
-		snprintf(p->text, sizeof(p->text), "%.*s", (int)req->len, (const char *)req->data);
+		snprintf(p->text, sizeof(p->text), "%.*s", (int)bus_write_text(req),
+		         (const char *)req->data);
 	scene_answer_on(s, number, req->id, p->err, p->text, req);
 }
 

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* Tests of the bus contract: targets and their backends, the queue of a simple bus, suspending. */
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "unity.h"
 
 #include "hal/bus/backends.h"
+#include "src/signal/value.h"
 #include "tests/unit/aid/host.h"
 
 static struct host host;
@@ -300,6 +302,85 @@ static void test_a_simple_bus_with_a_step_tells_itself_whether_it_is_up(void)
 	TEST_ASSERT_EQUAL_UINT(0, host.events);
 }
 
+static void has_text(enum ows_type type, double number)
+{
+	uint8_t data[BUS_NUMBER_TEXT];
+	struct bus_req req = {.op = BUS_WRITE,
+	                      .number = true,
+	                      .single = type == OWS_FLOAT,
+	                      .value = number,
+	                      .data = data};
+	char text[VALUE_TEXT_MAX];
+	int64_t value = value_is_float(type) ? value_of_double(number) : (int64_t)number;
+	int n = value_to_text(type, value, text);
+
+	TEST_ASSERT_EQUAL_UINT_MESSAGE(n, bus_write_text(&req), text);
+	TEST_ASSERT_EQUAL_MEMORY_MESSAGE(text, data, (size_t)n, text);
+}
+
+static void test_the_text_of_a_written_number_is_that_of_a_signal(void)
+{
+	static const double numbers[] = {0,      -0.0,  1,       -1,     0.1,
+	                                 21.5,   1e15,  1e22,    1e-5,   1e-7,
+	                                 5e-324, 1e300, 1.0 / 3, 2e-310, 123456789.125};
+
+	for (size_t i = 0; i < sizeof(numbers) / sizeof(numbers[0]); i++) {
+		has_text(OWS_DOUBLE, numbers[i]);
+		if (isfinite((float)numbers[i]))
+			has_text(OWS_FLOAT, (double)(float)numbers[i]);
+	}
+	srandom(1);
+	for (int i = 0; i < 20000; i++) {
+		int64_t bits = (int64_t)((uint64_t)random() << 33 ^ (uint64_t)random() << 11 ^
+		                         (uint64_t)random());
+		double number = value_number(OWS_DOUBLE, bits);
+		float single;
+
+		memcpy(&single, &bits, sizeof(single));
+		if (isfinite(number))
+			has_text(OWS_DOUBLE, number);
+		if (isfinite(single))
+			has_text(OWS_FLOAT, (double)single);
+		has_text(OWS_LONG, (double)(int32_t)bits);
+		has_text(OWS_LARGE, (double)(bits % INT64_C(1000000000000000)));
+	}
+}
+
+static void test_a_switch_takes_0_and_1_and_four_words(void)
+{
+	static const struct {
+		const char *text;
+		int on; /* below 0: refused */
+	} texts[] = {{"0", 0},    {"1", 1},     {"on", 1},   {"off", 0}, {"yes", 1},
+	             {"no", 0},   {" 1 \n", 1}, {"", -1},    {"2", -1},  {"01", -1},
+	             {"1 0", -1}, {"ye", -1},   {"yes!", -1}};
+	static const struct {
+		double number;
+		int on;
+	} numbers[] = {{0, 0}, {1, 1}, {-0.0, 0}, {0.5, -1}, {2, -1}, {-1, -1}, {NAN, -1}};
+	bool on;
+
+	for (size_t i = 0; i < sizeof(texts) / sizeof(texts[0]); i++)
+		for (uint32_t nul = 0; nul < 2; nul++) {
+			struct bus_req req = {.op = BUS_WRITE,
+			                      .data = (uint8_t *)(uintptr_t)texts[i].text,
+			                      .len = (uint32_t)strlen(texts[i].text) + nul};
+
+			TEST_ASSERT_EQUAL_INT(texts[i].on < 0 ? -EINVAL : 0,
+			                      bus_write_switch(&req, &on));
+			TEST_ASSERT_TRUE(texts[i].on < 0 || texts[i].on == on);
+			req.offset = 1;
+			TEST_ASSERT_EQUAL_INT(-EINVAL, bus_write_switch(&req, &on));
+		}
+	for (size_t i = 0; i < sizeof(numbers) / sizeof(numbers[0]); i++) {
+		const struct bus_req req = {
+			.op = BUS_WRITE, .number = true, .value = numbers[i].number};
+
+		TEST_ASSERT_EQUAL_INT(numbers[i].on < 0 ? -EINVAL : 0, bus_write_switch(&req, &on));
+		TEST_ASSERT_TRUE(numbers[i].on < 0 || numbers[i].on == on);
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -321,5 +402,7 @@ int main(void)
 	RUN_TEST(test_the_queue_holds_any_mix_of_submit_and_step);
 	RUN_TEST(test_a_simple_bus_without_step_is_up_from_its_first_step_and_says_so_once);
 	RUN_TEST(test_a_simple_bus_with_a_step_tells_itself_whether_it_is_up);
+	RUN_TEST(test_the_text_of_a_written_number_is_that_of_a_signal);
+	RUN_TEST(test_a_switch_takes_0_and_1_and_four_words);
 	return UNITY_END();
 }

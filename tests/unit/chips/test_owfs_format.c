@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
@@ -106,21 +107,34 @@ struct written {
 	double number; /* NAN: refused */
 };
 
+static void judge(const struct property *property, int err, const struct txn *txn, const char *text,
+                  double number)
+{
+	TEST_ASSERT_EQUAL_INT_MESSAGE(isnan(number) ? -EINVAL : 0, err, text);
+	if (err) {
+		TEST_ASSERT_EQUAL_HEX32_MESSAGE(0x5a, txn->bits, text);
+		TEST_ASSERT_EQUAL_DOUBLE_MESSAGE(-77, txn->number[0], text);
+	} else if (property->type == PROPERTY_BITS) {
+		TEST_ASSERT_EQUAL_HEX32_MESSAGE((uint32_t)number, txn->bits, text);
+	} else {
+		TEST_ASSERT_EQUAL_DOUBLE_MESSAGE(number, txn->number[0], text);
+	}
+}
+
 static void takes(const struct property *property, int extension, const char *text, size_t len,
                   double number)
 {
 	struct txn txn = {.bits = 0x5a, .number = {-77}};
-	int err = parse_value(property, extension, text, len, &txn);
+	char *end;
+	double same = strtod(text, &end);
 
-	TEST_ASSERT_EQUAL_INT_MESSAGE(isnan(number) ? -EINVAL : 0, err, text);
-	if (err) {
-		TEST_ASSERT_EQUAL_HEX32_MESSAGE(0x5a, txn.bits, text);
-		TEST_ASSERT_EQUAL_DOUBLE_MESSAGE(-77, txn.number[0], text);
-	} else if (property->type == PROPERTY_BITS) {
-		TEST_ASSERT_EQUAL_HEX32_MESSAGE((uint32_t)number, txn.bits, text);
-	} else {
-		TEST_ASSERT_EQUAL_DOUBLE_MESSAGE(number, txn.number[0], text);
-	}
+	judge(property, parse_value(property, extension, text, len, &txn), &txn, text, number);
+	/* as a number it is no other value */
+	if (end == text || end[strspn(end, " \t\r\n")] || strlen(text) + 1 < len ||
+	    strchr(text, 'x') || !format_is_number(property, extension))
+		return;
+	txn = (struct txn){.bits = 0x5a, .number = {-77}};
+	judge(property, take_number(property, extension, same, &txn), &txn, text, number);
 }
 
 #define NO NAN

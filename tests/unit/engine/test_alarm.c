@@ -125,6 +125,38 @@ static void test_all_outputs_below_the_device_get_their_init_value_in_order(void
 	                         s.trace);
 }
 
+static char memo[601];
+static unsigned memos;
+
+static void compare_memo(struct scene *scene, const char *path, const char *data, uint32_t len)
+{
+	(void)scene;
+	if (strcmp(path, D "/memory"))
+		return;
+	TEST_ASSERT_EQUAL_UINT(sizeof(memo) - 1, len);
+	TEST_ASSERT_EQUAL_MEMORY(memo, data, len);
+	memos++;
+}
+
+static void test_a_long_text_is_written_whole_after_a_power_on_reset(void)
+{
+	struct config_item *out;
+
+	figure_3_3(&s);
+	out = scene_output(&s, "memo", D "/memory", OWS_STRING);
+	memset(memo, 'm', sizeof(memo) - 1);
+	out->has_init = true;
+	out->init_text = memo;
+	scene_put(&s, D "/memory", "", 0);
+	alarm_device(&s, "0", "0");
+	alarm_begin(&s);
+	memos = 0;
+	s.on_write = compare_memo;
+	scene_put(&s, D "/por", "1", 0);
+	scene_run(&s, 200 * SCENE_MS);
+	TEST_ASSERT_EQUAL_UINT(1, memos);
+}
+
 static void test_the_alarm_condition_is_armed_at_start_if_it_differs(void)
 {
 	figure_3_3(&s);
@@ -352,6 +384,7 @@ int main(void)
 	RUN_TEST(test_a_power_on_reset_stands_in_the_journal);
 	RUN_TEST(test_after_a_power_on_reset_everything_is_set_up_again);
 	RUN_TEST(test_all_outputs_below_the_device_get_their_init_value_in_order);
+	RUN_TEST(test_a_long_text_is_written_whole_after_a_power_on_reset);
 	RUN_TEST(test_the_alarm_condition_is_armed_at_start_if_it_differs);
 	RUN_TEST(test_numbers_are_compared_as_numbers_when_arming);
 	RUN_TEST(test_an_init_value_in_doubt_is_followed_by_the_present_value);

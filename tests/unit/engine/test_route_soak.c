@@ -152,7 +152,7 @@ static void unmute(unsigned b)
 
 		if (req->op == BUS_WRITE && d < DEVICES && strcmp(req->path, output[d]) == 0 &&
 		    done) {
-			snprintf(text, sizeof(text), "%.*s", (int)req->len,
+			snprintf(text, sizeof(text), "%.*s", (int)bus_write_text(req),
 			         (const char *)req->data);
 			for (unsigned p = 0; p < s.property_count; p++)
 				if (strcmp(s.properties[p].path, output[d]) == 0)

@@ -293,6 +293,46 @@ static void test_a_command_is_written_as_its_raw_value(void)
 	TEST_ASSERT_EQUAL_DOUBLE(50, scene_number(&s, 1));
 }
 
+static struct bus_req last_write;
+
+static void keep_the_write(struct scene_bus *bus, const struct bus_req *req)
+{
+	(void)bus;
+	if (req->op == BUS_WRITE)
+		last_write = *req;
+}
+
+static void goes_out(enum ows_type type, int64_t value, bool number, const char *text)
+{
+	struct config_item *item = scene_output(&s, "valve", WIPER, type);
+
+	scene_put(&s, WIPER, "0", 0);
+	item->scale = (struct scale){0};
+	s.on_done = keep_the_write;
+	start();
+	scene_set(&s, 1, value);
+	scene_run(&s, 200 * SCENE_MS);
+	TEST_ASSERT_EQUAL_STRING(text, scene_at(&s, WIPER));
+	TEST_ASSERT_EQUAL(number, last_write.number);
+	TEST_ASSERT_EQUAL(type == OWS_FLOAT, last_write.single);
+	if (number)
+		TEST_ASSERT_EQUAL_DOUBLE(value_number(type, value), last_write.value);
+	scene_end(&s);
+	scene_init(&s);
+}
+
+static void test_a_command_goes_to_the_bus_as_the_number_that_it_is(void)
+{
+	goes_out(OWS_BOOL, 1, true, "1");
+	goes_out(OWS_DOUBLE, value_of_double(0.1), true, "0.1");
+	goes_out(OWS_FLOAT, value_of_double((double)0.1f), true, "0.1");
+	goes_out(OWS_DWORD, UINT32_MAX, true, "4294967295");
+	goes_out(OWS_LARGE, INT64_C(-999999999999999), true, "-999999999999999");
+	/* a double would round it, or print it with an exponent */
+	goes_out(OWS_LARGE, INT64_C(1000000000000000), false, "1000000000000000");
+	goes_out(OWS_LARGE, INT64_MAX, false, "9223372036854775807");
+}
+
 static void test_a_property_of_whole_numbers_gets_the_nearest(void)
 {
 	valve();
@@ -586,6 +626,7 @@ int main(void)
 	RUN_TEST(test_the_filter_begins_anew_after_a_bad_value);
 	RUN_TEST(test_a_value_out_of_range_shows_at_once_and_is_not_filtered);
 	RUN_TEST(test_a_command_is_written_as_its_raw_value);
+	RUN_TEST(test_a_command_goes_to_the_bus_as_the_number_that_it_is);
 	RUN_TEST(test_a_property_of_whole_numbers_gets_the_nearest);
 	RUN_TEST(test_what_the_nearest_raw_value_gives_is_the_command_when_it_is_read_back);
 	RUN_TEST(test_a_command_beyond_the_range_is_refused_and_not_written);

@@ -159,6 +159,68 @@ static void test_the_end_of_a_line_or_string_behind_a_value_does_not_count(void)
 	TEST_ASSERT_EQUAL_INT(-EINVAL, result(BUS_WRITE, of(slave, "alias"), "a\rb"));
 }
 
+static void value_at(const char *path, char text[64])
+{
+	uint32_t id = ask(BUS_READ, BUS_INPUT, true, path, NULL);
+
+	snprintf(text, 64, "%d %.*s", answer_to(id)->err, (int)answer_to(id)->len,
+	         (char *)data[id]);
+}
+
+/* Is it taken? As another was before, what is read then is what was written. */
+static bool is_written_alike(const char *path, double number, double other)
+{
+	char text[64], before[64], as_text[64], as_number[64];
+	int err;
+
+	snprintf(text, sizeof(text), "%.15g", number);
+	snprintf(before, sizeof(before), "%.15g", other);
+	result(BUS_WRITE, path, before);
+	err = result(BUS_WRITE, path, text);
+	value_at(path, as_text);
+	result(BUS_WRITE, path, before);
+
+	uint32_t id = ask(BUS_WRITE, BUS_INPUT, true, path, "");
+
+	req[id].number = true;
+	req[id].value = number;
+	TEST_ASSERT_EQUAL_INT_MESSAGE(err, answer_to(id)->err, path);
+	value_at(path, as_number);
+	if (!err)
+		TEST_ASSERT_EQUAL_STRING_MESSAGE(as_text, as_number, path);
+	forget();
+	return !err;
+}
+
+static void test_a_number_is_written_as_its_text_is(void)
+{
+	static const double numbers[] = {0,   1,   2,  5,    0.5,  21.5,
+	                                 255, 256, -9, -0.0, 1e30, 4294967295.0};
+	static const struct {
+		const char *chip, *name;
+		unsigned taken; /* of the numbers */
+	} values[] = {
+		{"DS2408", "PIO.0", 3},         {"DS2408", "PIO.BYTE", 6}, {"DS2408", "PIO.ALL", 0},
+		{"DS2408", "set_alarm", 4},     {"DS18B20", "templow", 8}, {"DS18B20", "alias", 12},
+		{"DS2431", "pages/page.0", 12}, {"DS2438", "date", 0},     {"DS2438", "udate", 8},
+	};
+	const size_t n = sizeof(numbers) / sizeof(numbers[0]);
+	struct sim_slave *slaves[sizeof(values) / sizeof(values[0])];
+
+	wire_init(&host, 1, 1);
+	for (unsigned i = 0; i < sizeof(values) / sizeof(values[0]); i++)
+		slaves[i] = wire_add(0, values[i].chip, i + 1);
+	start();
+	for (unsigned i = 0; i < sizeof(values) / sizeof(values[0]); i++) {
+		unsigned taken = 0;
+
+		for (size_t k = 0; k < n; k++)
+			taken += is_written_alike(of(slaves[i], values[i].name), numbers[k],
+			                          numbers[(k + 1) % n]);
+		TEST_ASSERT_EQUAL_UINT_MESSAGE(values[i].taken, taken, values[i].name);
+	}
+}
+
 static void test_structure_states_the_properties(void)
 {
 	wire_init(&host, 1, 1);
@@ -280,6 +342,7 @@ int main(void)
 	RUN_TEST(test_errors_are_those_of_the_contract);
 	RUN_TEST(test_an_alias_names_the_device);
 	RUN_TEST(test_the_end_of_a_line_or_string_behind_a_value_does_not_count);
+	RUN_TEST(test_a_number_is_written_as_its_text_is);
 	RUN_TEST(test_structure_states_the_properties);
 	RUN_TEST(test_the_case_of_a_prefix_does_not_count);
 	RUN_TEST(test_structure_has_a_branch_as_a_file);

@@ -216,7 +216,7 @@ static void test_the_buttons_are_a_directory_of_the_target(void)
 
 static void test_what_is_neither_0_nor_1_is_refused_and_changes_nothing(void)
 {
-	static const char *const wrong[] = {"", " ", "2", "01", "yes", "1 0", "\x01"};
+	static const char *const wrong[] = {"", " ", "2", "01", "yep", "1 0", "\x01"};
 
 	target(ROOM "button s short 0x18\n");
 	for (size_t i = 0; i < sizeof(wrong) / sizeof(wrong[0]); i++)
