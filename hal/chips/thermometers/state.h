@@ -27,20 +27,21 @@ struct thermometer {
 	bool tried;           /* it may have converted since, though it did not show the start */
 	bool proves;          /* the result before the last conversion is what was read last */
 	bool unseen;          /* the chip could not show that its last conversion began */
+	bool coarse;          /* it may hold a result at fewer bits than it is to have */
+	bool recalled;        /* its EEPROM was recalled: `stored` is what stands there */
+	uint8_t latched_bits; /* the resolution that `latched` was to have; 0: not known */
+	uint8_t latched[3];   /* what tells one conversion's result from another's, when read */
 	int16_t raw;          /* last good reading, sixteenths of a degree */
-	int64_t raw_ns;       /* when; 0: none */
+	int32_t longest_ns;   /* how long after its start its last conversion ends */
+	int64_t raw_ns;       /* when `raw` was read; 0: never */
 	int64_t converted_ns; /* when its last conversion ends or ended; 0: none known */
-	int64_t longest_ns;   /* ... and how long after its start */
 	int64_t busy_ns;      /* until then it may convert, whatever it heard */
 	int64_t least_ns;     /* no conversion that it may be at work with ends earlier */
 	int64_t early_ns;     /* it seemed to end then, which is not proven; 0: it did not */
 	int64_t unread_ns;    /* the one whose result did not come over the wire whole; 0: none */
 	int64_t earlier_ns;   /* the one before the last */
-	uint8_t latched[3];   /* what tells one conversion's result from another's, when read */
-	uint8_t latched_bits; /* ... and the resolution that was to be; 0: not known */
-	bool coarse;          /* it may be a result at fewer bits than it is to have */
-	bool recalled;        /* its EEPROM was recalled: `stored` is what stands there */
-	int64_t latched_ns;   /* ... and of which conversion that was; 0: not known */
+	int64_t since_ns;     /* the first that it may have made since raw_ns; 0: none */
+	int64_t latched_ns;   /* of which conversion `latched` was; 0: not known */
 };
 _Static_assert(sizeof(struct thermometer) <= DEVICE_OWN, "no room for what is known");
 static inline struct thermometer *thermometer_of(const struct device *device)

@@ -42,7 +42,8 @@ void thermometer_forget(struct device *device)
 	                             .only_12 = chip->only_12,
 	                             .raw = chip->raw,
 	                             .busy_ns = chip->busy_ns,
-	                             .least_ns = chip->least_ns};
+	                             .least_ns = chip->least_ns,
+	                             .since_ns = chip->since_ns};
 }
 
 static int saw_config(struct txn *txn, const uint8_t scratchpad[9])

@@ -59,7 +59,7 @@ void thermometer_seems_over(struct device *device, int64_t now)
 static void set_end(struct thermometer *chip, int64_t ns, int64_t longest)
 {
 	chip->converted_ns = ns;
-	chip->longest_ns = longest;
+	chip->longest_ns = (int32_t)longest;
 	chip->early_ns = 0;
 }
 
@@ -92,6 +92,8 @@ static void thermometer_proof_send(struct thermometer *chip, int64_t now, int64_
 		chip->least_ns = now;
 	if (chip->busy_ns < now + longest)
 		chip->busy_ns = now + longest;
+	if (!chip->since_ns)
+		chip->since_ns = chip->least_ns;
 }
 
 void thermometer_told(struct device *device, int64_t now, int64_t longest)
@@ -184,27 +186,29 @@ static void compare_bits(struct txn *txn)
 /*
  * When the chip latched what it holds. While the strong pull-up is on, no chip can show that it
  * converts. If it holds something else than when it was read last, and converted once since, it
- * did. If not, this is what was proven to be its result before. Where nothing can be made to differ
- * (thermometer_marks()), it is taken for the result of the conversion before the last.
+ * did; if it converted more often, it made one of these, and may have missed all but the first. If
+ * it holds the same, this is what was proven to be its result before. Where nothing can be made to
+ * differ (thermometer_marks()), it is taken for the result of the conversion before the last.
  */
 static int64_t latched_ns(struct txn *txn, const uint8_t scratchpad[9], int64_t now)
 {
 	struct device *device = txn->device;
 	const uint8_t holds[3] = {scratchpad[SP_LSB], scratchpad[SP_MSB], scratchpad[SP_REMAIN]};
-	bool changed = thermometer_of(device)->raw_ns &&
-	               thermometer_of(device)->raw_ns >= thermometer_of(device)->earlier_ns &&
-	               memcmp(thermometer_of(device)->latched, holds, sizeof(holds)) != 0;
+	struct thermometer *chip = thermometer_of(device);
+	bool changed = chip->raw_ns && memcmp(chip->latched, holds, sizeof(holds)) != 0;
 
-	memcpy(thermometer_of(device)->latched, holds, sizeof(holds));
-	txn->unproven = thermometer_of(device)->unseen && !changed;
+	memcpy(chip->latched, holds, sizeof(holds));
+	txn->unproven = chip->unseen && !(changed && chip->since_ns == chip->least_ns);
 	compare_bits(txn);
 	int64_t when = ended_ns(device);
-	if (txn->unproven)
-		when = thermometer_marks(device) ? 0 : thermometer_of(device)->earlier_ns;
+	if (txn->unproven && thermometer_marks(device))
+		when = changed ? chip->since_ns : 0;
+	else if (txn->unproven)
+		when = chip->earlier_ns;
 	/* It never becomes older than it was. */
-	if (when > thermometer_of(device)->latched_ns && when < now)
-		thermometer_of(device)->latched_ns = when;
-	return thermometer_of(device)->latched_ns;
+	if (when > chip->latched_ns && when < now)
+		chip->latched_ns = when;
+	return chip->latched_ns;
 }
 
 /*
@@ -238,8 +242,13 @@ int thermometer_ended(struct txn *txn, const uint8_t scratchpad[9], int64_t now)
 
 int thermometer_took(struct txn *txn, const uint8_t scratchpad[9], int64_t now)
 {
+	struct thermometer *chip = thermometer_of(txn->device);
+
 	txn->measured_ns = latched_ns(txn, scratchpad, now);
-	thermometer_of(txn->device)->raw_ns = now;
+	chip->raw_ns = now;
+	/* One that it is still at work with may change what it holds. */
+	if (chip->busy_ns <= now)
+		chip->since_ns = 0;
 	return txn->measured_ns > 0 || txn->property->convert ? 0 : -EIO;
 }
 

@@ -21,6 +21,7 @@ static char paths[FLEET_MAX + 8][100];
 static uint8_t texts[FLEET_MAX + 8][4096];
 static int64_t asked[FLEET_MAX + 8];
 static int64_t due[FLEET_MAX];
+static struct bus_answer last[FLEET_MAX]; /* good ones */
 static int64_t took, renewed;
 static uint32_t awaited;
 static int error;
@@ -110,6 +111,15 @@ static bool is_near_jump(int64_t t)
 	return in < 3 * HOST_S || in > (CLIMB_S - 3) * HOST_S;
 }
 
+/* Another value, of the same moment as the one before. */
+static bool states_it_again(unsigned i, const struct bus_answer *answer)
+{
+	bool same = last[i].measured_ns == answer->measured_ns && last[i].number != answer->number;
+
+	last[i] = *answer;
+	return same;
+}
+
 static void judge(unsigned i, const struct bus_answer *answer)
 {
 	double is = temperature(i, answer->measured_ns),
@@ -117,14 +127,17 @@ static void judge(unsigned i, const struct bus_answer *answer)
 	char text[200];
 
 	fleet.failed += answer->err != 0;
-	if (answer->err || is_near_jump(host.now))
+	if (answer->err)
+		return;
+	bool again = states_it_again(i, answer);
+	if (is_near_jump(host.now))
 		return;
 	fleet.good++;
 	fleet.each[i]++;
 	fleet.older += fleet_slope <= 0 && answer->number <= temperature(i, asked[i]) - fleet.step;
 	fleet.newer += answer->number >= is + STEP;
 	if (answer->number < temperature(i, host.now) + STEP && answer->number > least &&
-	    answer->measured_ns <= host.now)
+	    answer->measured_ns <= host.now && !again)
 		return;
 	fleet.wrong++;
 	fleet.halves += answer->number * 2 == (int)(answer->number * 2);
@@ -217,6 +230,7 @@ void fleet_begin(void)
 	memset(&fleet, 0, sizeof(fleet));
 	memset(asked, 0, sizeof(asked));
 	memset(due, 0, sizeof(due));
+	memset(last, 0, sizeof(last));
 	fleet_slope = 0;
 	renewed = 0;
 }
