@@ -361,20 +361,24 @@ static void native_run(struct native *native, struct job *job, int64_t now)
  * Before all wires were searched: outputs first, then others and the search in turn. Each device is
  * looked for when it is asked for. What an alarm, or an output, waits for comes before inputs: it
  * tells which chips have restarted, so that no input reads an output that has yet to be written
- * again.
+ * again. *yields: it is the search's turn, and a request could have it as well.
  */
-static bool ask_early(struct native *native, int64_t now, int64_t *next)
+static bool ask_early(struct native *native, int64_t now, int64_t *next, bool *yields)
 {
 	struct job *other = NULL, *job = pick(native, now, next, &other);
 
 	if (native->locate.urgent && locate_step(native, now, false, next))
 		return true;
-	bool urgent = job && job->req->prio <= BUS_OUTPUT;
-	if (!urgent && ((native->early = !native->early) || first_hurries(native) ||
-	                follows(native, job, now)))
-		return false;
-	if (!urgent && native->locate.waits && locate_step(native, now, false, next))
-		return true;
+	if (!job || job->req->prio > BUS_OUTPUT) {
+		native->early = !native->early;
+		if (first_hurries(native) || follows(native, job, now))
+			return false;
+		*yields = native->early && (job || native->locate.waits);
+		if (native->early)
+			return false;
+		if (native->locate.waits && locate_step(native, now, false, next))
+			return true;
+	}
 	if (job)
 		native_run(native, job, now);
 	return job;
@@ -384,12 +388,13 @@ static int64_t step(struct native *native, int64_t now)
 {
 	int64_t next = INT64_MAX;
 	struct job *other = NULL, *in_turn = NULL;
+	bool yields = false;
 
 	master_grow(native, now, &next);
 	if (!native->up)
 		return now;
 	expire(native, now, &next);
-	if (native_initial(native) && ask_early(native, now, &next))
+	if (native_initial(native) && ask_early(native, now, &next, &yields))
 		return now;
 	if (first_step(native, now, &next))
 		return now;
@@ -437,7 +442,8 @@ static int64_t step(struct native *native, int64_t now)
 	}
 	if (ending_step(native, now, &next) || rest(native, now, &next))
 		return now;
-	return next > now ? next : now;
+	/* The search has nothing to do on a wire that is held: the request has the next turn. */
+	return next > now && !yields ? next : now;
 }
 
 int64_t native_step(struct bus *bus, int64_t now)
