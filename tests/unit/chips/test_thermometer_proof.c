@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "hal/chips/find.h"
-#include "hal/chips/thermometers/thermometer_proof.h"
 #include "hal/chips/thermometers/state.h"
+#include "hal/chips/thermometers/thermometer_proof.h"
 #include "tests/unit/aid/host.h"
 #include "unity.h"
 
