@@ -50,7 +50,7 @@ enum area_check {
 #define AREA_PASSWORD 8
 
 struct area {
-	const char *name; /* as the data sheet calls it; a link that is driven knows it by that */
+	const char *name; /* as the data sheet calls it; a driver of the kernel knows it by that */
 	uint16_t at;      /* address of its first byte */
 	uint16_t size;    /* bytes */
 	/*
@@ -117,7 +117,7 @@ static inline uint32_t area_le32(const uint8_t *bytes)
 
 /* A command after which the chip measures or computes. */
 struct conversion {
-	const char *name; /* the property that says it: a link that is driven knows it by that */
+	const char *name; /* the property that says it: a driver of the kernel knows it by that */
 	uint8_t command[3], n;
 	bool crc16; /* the chip answers with the CRC16 of the command */
 	int64_t ns;

@@ -34,7 +34,7 @@ static uint8_t supply_of(const struct native *native, const struct device *devic
 	case POWER_PARASITE:
 		return BUS_SUPPLY_PARASITE;
 	case POWER_EXTERNAL:
-		return link && link->driven ? BUS_SUPPLY_UNKNOWN : BUS_SUPPLY_EXTERNAL;
+		return link && link->driver ? BUS_SUPPLY_UNKNOWN : BUS_SUPPLY_EXTERNAL;
 	}
 	return BUS_SUPPLY_UNKNOWN;
 }

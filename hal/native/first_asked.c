@@ -62,6 +62,6 @@ bool first_fits(const struct native *native, unsigned n)
 {
 	const struct channel *channel = &native->channel[n];
 
-	return !channel->listed && native_abreast(native, n) && !channel->link->driven &&
+	return !channel->listed && native_abreast(native, n) && !channel->link->driver &&
 	       !channel->link->passive;
 }

@@ -8,6 +8,7 @@
 #include "hal/native/job_txn.h"
 #include "hal/native/limits.h"
 #include "hal/native/state.h"
+#include "hal/wire/driver.h"
 
 #define VISIT_NS (2 * TXN_MS)
 
@@ -31,15 +32,13 @@ bool job_wants_all(const struct job *job)
 	       job->property->type != PROPERTY_BITS;
 }
 
-/* On a link that is driven somebody else's driver says what can be had. */
 static bool is_offered(const struct job *job)
 {
 	const struct txn *txn = &job->txn;
 
 	return !job->property || job->property->offline || !txn->device || !txn->link ||
-	       !txn->link->driven ||
-	       txn->link->ops->offers(txn->link, txn->device->rom, job->property->name,
-	                              job_wants_all(job) ? txn->element : job->extension);
+	       driver_offers(txn->link, txn->device->rom, job->property->name,
+	                     job_wants_all(job) ? txn->element : job->extension);
 }
 
 /*

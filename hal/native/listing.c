@@ -12,6 +12,7 @@
 #include "hal/native/listing.h"
 #include "hal/native/state.h"
 #include "hal/native/structure.h"
+#include "hal/wire/driver.h"
 
 static int __attribute__((format(printf, 2, 3))) add(struct job *job, const char *format, ...)
 {
@@ -104,7 +105,7 @@ static int list_root(struct native *native, struct job *job)
 	return err ? err : listing_add_rest(native, job);
 }
 
-/* Can it be had of a device whose link is driven? */
+/* Can it be had of a device, where drivers say that? */
 static bool is_offered(struct native *native, const struct device *device,
                        const struct property *property, int extension)
 {
@@ -112,8 +113,8 @@ static bool is_offered(struct native *native, const struct device *device,
 	                            ? native->channel[device->channel].link
 	                            : NULL;
 
-	return !link || !link->driven || property->offline ||
-	       link->ops->offers(link, device->rom, property->name, extension);
+	return !link || property->offline ||
+	       driver_offers(link, device->rom, property->name, extension);
 }
 
 /* /structure shows an array by its first element, as owserver's does. */

@@ -9,8 +9,6 @@
 #include "hal/netlink/link.h"
 #include "hal/netlink/master.h"
 #include "hal/w1/master.h"
-#include "hal/w1/name.h"
-#include "hal/w1/uevent.h"
 
 static const char word[] = "netlink";
 
@@ -23,11 +21,7 @@ bool w1_is_netlink(const char *where)
 
 static bool has_master(void *ctx, uint32_t master)
 {
-	const struct w1_netlink *netlink = ctx;
-	char name[W1_MASTER_NAME_MAX];
-
-	w1_master_name(master, name);
-	return w1_exists(&netlink->sysfs->tree, name, "");
+	return w1_master_has(((const struct w1_netlink *)ctx)->sysfs, master);
 }
 
 /* Behind the word and a slash: what target w1 takes. */
@@ -39,16 +33,13 @@ static int create(const char *where, const struct bus_env *env, struct link_mast
 
 	if (!netlink)
 		return -ENOMEM;
-	struct link_master *sysfs = NULL;
-	int err = w1_master.create(*rest ? rest + 1 : rest, env, &sysfs, why, why_size);
+	int err = w1_master.create(*rest ? rest + 1 : rest, env, &netlink->sysfs, why, why_size);
 	if (err) {
 		free(netlink);
 		return err;
 	}
 	netlink->master = (struct link_master){.ops = &w1_netlink_master, .env = env};
 	netlink->talk = (struct w1_talk){.env = env, .there = has_master, .ctx = netlink, .fd = -1};
-	netlink->sysfs = (struct w1_master *)sysfs;
-	netlink->only = netlink->sysfs->only;
 	*out = &netlink->master;
 	return 0;
 }
@@ -58,7 +49,7 @@ static void destroy(struct link_master *base)
 	struct w1_netlink *netlink = (struct w1_netlink *)base;
 
 	w1_talk_close(&netlink->talk);
-	w1_master.destroy(&netlink->sysfs->master);
+	w1_master.destroy(netlink->sysfs);
 	free(netlink);
 }
 
@@ -70,10 +61,14 @@ static bool has_link(const struct w1_netlink *netlink, uint32_t number)
 	return false;
 }
 
-static void add_links(struct w1_netlink *netlink, const uint32_t *numbers, unsigned n)
+/* What the kernel has, each with a channel. Returns how many masters that are, or an error. */
+static int add_links(struct w1_netlink *netlink)
 {
-	for (unsigned i = 0; i < n && netlink->count < W1_MASTERS; i++) {
-		if (has_link(netlink, numbers[i]) || (netlink->only && numbers[i] != netlink->only))
+	uint32_t numbers[NATIVE_CHANNELS], only = w1_master_only(netlink->sysfs);
+	int n = w1_talk_masters(&netlink->talk, numbers, NATIVE_CHANNELS);
+
+	for (int i = 0; i < n && netlink->count < NATIVE_CHANNELS; i++) {
+		if (has_link(netlink, numbers[i]) || (only && numbers[i] != only))
 			continue;
 		struct w1_netlink_link *link = &netlink->links[netlink->count];
 		*link = (struct w1_netlink_link){.link = {.ops = &w1_netlink_link_ops,
@@ -86,25 +81,18 @@ static void add_links(struct w1_netlink *netlink, const uint32_t *numbers, unsig
 		w1_request_begin(&link->request, link->number);
 		netlink->count++;
 	}
+	return n;
 }
 
 /* The kernel may get more at any time. A master that goes has no devices, and keeps its channel. */
 static int grow(struct link_master *base, char *why, size_t why_size)
 {
 	struct w1_netlink *netlink = (struct w1_netlink *)base;
-	uint32_t numbers[W1_MASTERS];
 
-	(void)why;
-	(void)why_size;
-	if (netlink->refused) {
-		w1_look_for_masters(netlink->sysfs);
-	} else {
-		int n = w1_talk_masters(&netlink->talk, numbers, W1_MASTERS);
-
-		if (n > 0)
-			add_links(netlink, numbers, (unsigned)n);
-	}
-	return !netlink->only;
+	if (netlink->refused)
+		return w1_master.grow(netlink->sysfs, why, why_size);
+	add_links(netlink);
+	return !w1_master_only(netlink->sysfs);
 }
 
 /*
@@ -166,21 +154,17 @@ static int serve_sysfs(struct w1_netlink *netlink, int err)
 static int open_masters(struct link_master *base, char *why, size_t why_size)
 {
 	struct w1_netlink *netlink = (struct w1_netlink *)base;
-	uint32_t numbers[W1_MASTERS];
-	int n = w1_master.open(&netlink->sysfs->master, why, why_size);
+	int n = w1_master.open(netlink->sysfs, why, why_size);
 
 	netlink->count = netlink->seen_count = 0;
 	netlink->refused = false;
 	if (n)
 		return n;
 	/* its own search finds devices; nobody would take what the kernel says of them */
-	w1_uevents_close(&netlink->sysfs->uevents);
+	w1_master_deafen(netlink->sysfs);
 	n = has_no_slots() ? -EOPNOTSUPP : w1_talk_open(&netlink->talk);
-	if (!n) {
-		n = w1_talk_masters(&netlink->talk, numbers, W1_MASTERS);
-		if (n > 0)
-			add_links(netlink, numbers, (unsigned)n);
-	}
+	if (!n)
+		n = add_links(netlink);
 	netlink->answered |= n > 0;
 	if (netlink->count) {
 		netlink->told = false;
@@ -198,7 +182,7 @@ static void close_masters(struct link_master *base)
 	struct w1_netlink *netlink = (struct w1_netlink *)base;
 
 	w1_talk_close(&netlink->talk);
-	w1_master.close(&netlink->sysfs->master);
+	w1_master.close(netlink->sysfs);
 	netlink->count = 0;
 }
 
@@ -207,22 +191,21 @@ static int there(struct link_master *base, uint64_t *mark)
 {
 	struct w1_netlink *netlink = (struct w1_netlink *)base;
 
-	return w1_master.there(&netlink->sysfs->master, mark);
+	return w1_master.there(netlink->sysfs, mark);
 }
 
 static unsigned channels(struct link_master *base)
 {
 	struct w1_netlink *netlink = (struct w1_netlink *)base;
 
-	return netlink->refused ? w1_master.channels(&netlink->sysfs->master) : netlink->count;
+	return netlink->refused ? w1_master.channels(netlink->sysfs) : netlink->count;
 }
 
 static struct link *channel(struct link_master *base, unsigned n)
 {
 	struct w1_netlink *netlink = (struct w1_netlink *)base;
 
-	return netlink->refused ? w1_master.channel(&netlink->sysfs->master, n)
-	                        : &netlink->links[n].link;
+	return netlink->refused ? w1_master.channel(netlink->sysfs, n) : &netlink->links[n].link;
 }
 
 static void cost(const struct link_master *base, struct link_master_cost *cost)

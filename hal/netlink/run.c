@@ -7,8 +7,8 @@
 /* The master did not know the link's number: -ENODEV if none of ours is left, else -EHOSTDOWN. */
 static int gone(struct w1_netlink *netlink)
 {
-	uint32_t numbers[W1_MASTERS];
-	int n = w1_talk_masters(&netlink->talk, numbers, W1_MASTERS);
+	uint32_t numbers[NATIVE_CHANNELS];
+	int n = w1_talk_masters(&netlink->talk, numbers, NATIVE_CHANNELS);
 
 	for (int i = 0; i < n; i++)
 		for (unsigned k = 0; k < netlink->count; k++)

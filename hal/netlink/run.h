@@ -17,8 +17,9 @@
 #ifndef HAL_NETLINK_RUN_H
 #define HAL_NETLINK_RUN_H
 
+#include "hal/native/limits.h"
 #include "hal/netlink/talk.h"
-#include "hal/w1/link.h"
+#include "hal/w1/master.h"
 #include "hal/wire/device.h"
 
 struct w1_netlink;
@@ -43,12 +44,11 @@ struct w1_netlink_link {
 struct w1_netlink {
 	struct link_master master;
 	struct w1_talk talk;
-	unsigned only; /* w1_bus_masterN; 0: all */
 	unsigned count;
-	struct w1_netlink_link links[W1_MASTERS];
+	struct w1_netlink_link links[NATIVE_CHANNELS];
 	unsigned seen_count;
 	struct w1_seen seen[DEVICE_MAX];
-	struct w1_master *sysfs; /* target w1's, in case netlink is refused */
+	struct link_master *sysfs; /* target w1's, in case netlink is refused */
 	bool refused, told;
 	bool answered; /* once at least */
 };

@@ -7,7 +7,7 @@
 
 /* NULL: none. */
 const struct w1_driver *w1_driver_of(const struct w1_slave *slave);
-/* As link_ops.offers. */
+/* As driver_ops.offers. */
 bool w1_offers(struct w1_slave *slave, const char *property, int element);
 /* NULL: there is nothing that stands for it. */
 const struct w1_part *w1_part_of(const struct w1_slave *slave, const char *area);

@@ -12,6 +12,7 @@
 #include "hal/w1/driver.h"
 #include "hal/w1/link.h"
 #include "hal/w1/name.h"
+#include "hal/w1/state.h"
 
 #define MATCH_ROM 0x55
 
@@ -210,7 +211,10 @@ const struct link_ops w1_link_ops = {
 	.bit = bit,
 	.search = search,
 	.verify = verify,
-	.has_driver = has_driver,
+};
+
+const struct driver_ops w1_driver_ops = {
+	.has = has_driver,
 	.offers = offers,
 	.area_read = read_area,
 	.area_write = write_area,

@@ -1,37 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A master of the kernel's as a link that is driven: areas of slaves that have a driver, raw access
- * to those that have none.
+ * A master of the kernel's as a link with drivers: areas of slaves that have one, raw access to
+ * those that have none.
  */
 #ifndef HAL_W1_LINK_H
 #define HAL_W1_LINK_H
 
-#include "hal/native/limits.h"
-#include "hal/w1/thermometer.h"
-#include "hal/wire/link.h"
-
-#define W1_MASTERS NATIVE_CHANNELS
-
-struct w1_master;
-
-struct w1_link {
-	struct link link;
-	struct w1_master *master;
-	struct w1_bulk bulk;    /* its number */
-	struct w1_slave *slave; /* that was selected since the last reset */
-};
-
-struct w1_master {
-	struct link_master master;
-	struct w1_tree tree;
-	struct w1_slaves slaves;
-	unsigned only; /* w1_bus_masterN; 0: all */
-	unsigned count;
-	struct w1_link links[W1_MASTERS];
-	int uevents;        /* socket; -1: none */
-	int64_t uevents_ns; /* when to look at it */
-};
+#include "hal/wire/driver.h"
 
 extern const struct link_ops w1_link_ops;
+extern const struct driver_ops w1_driver_ops;
 
 #endif

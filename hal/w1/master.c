@@ -5,8 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/w1/link.h"
 #include "hal/w1/master.h"
 #include "hal/w1/name.h"
+#include "hal/w1/state.h"
 #include "hal/w1/uevent.h"
 
 static int take_where(struct w1_master *master, const char *where, char *why, size_t why_size)
@@ -60,8 +62,26 @@ static int create(const char *where, const struct bus_env *env, struct link_mast
 
 static void destroy(struct link_master *base)
 {
-	w1_uevents_close(&((struct w1_master *)base)->uevents);
+	w1_master_deafen(base);
 	free(base);
+}
+
+unsigned w1_master_only(const struct link_master *base)
+{
+	return ((const struct w1_master *)base)->only;
+}
+
+bool w1_master_has(const struct link_master *base, unsigned number)
+{
+	char name[W1_MASTER_NAME_MAX];
+
+	w1_master_name(number, name);
+	return w1_exists(&((const struct w1_master *)base)->tree, name, "");
+}
+
+void w1_master_deafen(struct link_master *base)
+{
+	w1_uevents_close(&((struct w1_master *)base)->uevents);
 }
 
 static bool has_link(const struct w1_master *master, unsigned number)
@@ -72,26 +92,31 @@ static bool has_link(const struct w1_master *master, unsigned number)
 	return false;
 }
 
-/* The kernel numbers its masters from 1 on and gives the lowest that is free. */
-void w1_look_for_masters(struct w1_master *master)
+/*
+ * The kernel numbers its masters from 1 on and gives the lowest that is free. It may get more at
+ * any time. A master that goes has no slaves, and keeps its channel.
+ */
+static int grow(struct link_master *base, char *why, size_t why_size)
 {
+	struct w1_master *master = (struct w1_master *)base;
 	unsigned first = master->only ? master->only : 1;
 	unsigned last = master->only ? master->only : W1_MASTERS;
-	char name[W1_MASTER_NAME_MAX];
 
+	(void)why;
+	(void)why_size;
 	for (unsigned n = first; n <= last && master->count < W1_MASTERS; n++) {
-		w1_master_name(n, name);
-		if (has_link(master, n) || !w1_exists(&master->tree, name, ""))
+		if (has_link(master, n) || !w1_master_has(base, n))
 			continue;
 		struct w1_link *link = &master->links[master->count];
 		*link = (struct w1_link){.link = {.ops = &w1_link_ops,
 		                                  .env = master->master.env,
 		                                  .chip = master->count,
-		                                  .driven = true},
+		                                  .driver = &w1_driver_ops},
 		                         .master = master,
 		                         .bulk = {.number = n, .channel = (uint8_t)master->count}};
 		master->count++;
 	}
+	return !master->only;
 }
 
 static int open_masters(struct link_master *base, char *why, size_t why_size)
@@ -101,7 +126,7 @@ static int open_masters(struct link_master *base, char *why, size_t why_size)
 	master->count = 0;
 	master->slaves.count = 0;
 	master->tree.told_rights = false;
-	w1_look_for_masters(master);
+	grow(base, why, why_size);
 	if (master->count) {
 		if (strcmp(master->tree.root, W1_ROOT) == 0)
 			master->uevents = w1_uevents_open();
@@ -116,23 +141,10 @@ static int open_masters(struct link_master *base, char *why, size_t why_size)
 	return -ENODEV;
 }
 
-/* The kernel may get more at any time. A master that goes has no slaves, and keeps its channel. */
-static int grow(struct link_master *base, char *why, size_t why_size)
-{
-	struct w1_master *master = (struct w1_master *)base;
-
-	(void)why;
-	(void)why_size;
-	w1_look_for_masters(master);
-	return !master->only;
-}
-
 static void close_masters(struct link_master *base)
 {
-	struct w1_master *master = (struct w1_master *)base;
-
-	master->count = 0;
-	w1_uevents_close(&master->uevents);
+	((struct w1_master *)base)->count = 0;
+	w1_master_deafen(base);
 }
 
 /* Directories say what is there without a look at any wire. */
@@ -141,13 +153,10 @@ static int there(struct link_master *base, uint64_t *mark)
 	const struct w1_master *master = (const struct w1_master *)base;
 	unsigned first = master->only ? master->only : 1;
 	unsigned last = master->only ? master->only : W1_MASTERS;
-	char name[W1_MASTER_NAME_MAX];
 
-	for (unsigned n = first; n <= last; n++) {
-		w1_master_name(n, name);
-		if (w1_exists(&master->tree, name, ""))
+	for (unsigned n = first; n <= last; n++)
+		if (w1_master_has(base, n))
 			*mark |= UINT64_C(1) << n % 64;
-	}
 	return *mark != 0;
 }
 

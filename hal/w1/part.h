@@ -8,7 +8,7 @@
 
 #include "hal/w1/slave.h"
 
-/* Bytes of an area as link_ops.area_read and area_write have them; NULL: they cannot be had. */
+/* Bytes of an area as driver_ops.area_read and area_write have them; NULL: they cannot be had. */
 struct w1_part {
 	const char *area;
 	int (*read)(struct w1_slave *slave, unsigned at, uint8_t *bytes, unsigned n);
@@ -26,7 +26,7 @@ struct w1_driver {
 	const struct w1_part *parts;
 	const struct w1_property *properties;
 	unsigned part_count, property_count;
-	/* As link_ops.convert, of one; NULL: it does not measure. */
+	/* As driver_ops.convert, of one; NULL: it does not measure. */
 	int (*convert)(struct w1_slave *slave, const char *what);
 	/* Would the conditional search find it? 1, 0, or an error. NULL: that cannot be told. */
 	int (*alarm)(struct w1_slave *slave);

@@ -4,6 +4,7 @@
 #include "hal/base/time.h"
 #include "hal/native/native.h"
 #include "hal/w1/master.h"
+#include "hal/w1/state.h"
 #include "hal/w1/uevent.h"
 
 #define UEVENTS_NS (NS_PER_S / 4)

@@ -7,6 +7,7 @@
  *   w1.c       the bus: masters and slaves that come and go
  *   master.c   the masters
  *   link.c     a master as a link; the lists of slaves, the alarms
+ *   state.h    what these two work on
  *   driver.c   which driver has a slave, and what it offers; the drivers of memories, the DS2438
  *   thermometer.c switches.c   more drivers: areas made of attributes
  *   slave.c    what is remembered of a slave; its attributes

@@ -275,7 +275,7 @@ bool trunk_fits(const struct link *link)
 {
 	const struct link_ops *ops = link->ops;
 
-	return !link->driven && !ops->search && !ops->verify && !ops->flush;
+	return !link->driver && !ops->search && !ops->verify && !ops->flush;
 }
 
 static void set_branch(const struct trunk *trunk, struct branch *branch)

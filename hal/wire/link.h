@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The link contract: a link moves bits on one 1-Wire wire; a driven one has somebody else do that.
- * A master (one chip) owns 1 to 8 links.
+ * The link contract: a link moves bits on one 1-Wire wire. A master owns its links, 1 to 8 of each
+ * chip. What the kernel's drivers do in place of a wire is a contract of its own: driver.h.
  *
  * Blocking: each call is at most one bus operation, or several at the same time, and bounded; all
  * waits go through the environment the master was created with. One thread: the native bus calls
@@ -72,7 +72,7 @@ struct link_master_cost {
 };
 
 struct link;
-struct area;
+struct driver_ops;
 /* One ROM id found by a search, family first. Return not 0 to end the search. */
 typedef int link_found(void *ctx, const uint8_t rom[8]);
 
@@ -91,17 +91,45 @@ struct link_visit {
 	int64_t ended_ns; /* env time after the last byte */
 };
 
+/*
+ * A transaction is a reset() and the calls after it. After an error of one of them nothing else is
+ * known of the wire: the next call is reset() or recover(). The errors stand above.
+ */
 struct link_ops {
 	const char *name;
-	/* 1 presence, 0 nobody there. */
+	/*
+	 * Climb this rung: the wire fails. From LINK_CHIP_RESET on conversions that are under way
+	 * on the master's links are void. What it returns, and what the caller does then:
+	 *   0            makes the transaction again; if it fails again, the next rung is next
+	 *   -ECOMM       the same: the rung is done, and the wire is short
+	 *   -EOPNOTSUPP  goes on with the next rung: this link has no such one
+	 *   -EBUSY       leaves out the rungs between, closes and opens the master: somebody else
+	 *                has the chip, and open() says who
+	 *   others       goes on with the next rung: it did not help
+	 * A link whose master is closed says -ENODEV. NULL: the link has no rungs.
+	 */
+	int (*recover)(struct link *link, enum link_rung rung);
+	/*
+	 * Ends the transaction before it. 1: somebody is there, and all chips listen for a ROM
+	 * command; 0: nobody is; or an error.
+	 */
 	int (*reset)(struct link *link);
+	/*
+	 * n bytes, each from its lowest bit on. 0, or an error, and how many were sent is not
+	 * known. Only what a chip answers later shows that it took them.
+	 */
 	int (*write)(struct link *link, const uint8_t *data, size_t n, enum link_after after);
+	/*
+	 * n bytes. 0, or an error, and data means nothing. Where no chip answers they are ones,
+	 * which is no error: the caller looks for a proof.
+	 */
 	int (*read)(struct link *link, uint8_t *data, size_t n);
-	/* One slot: 0 or 1 as read back; writing 1 is reading. */
+	/* One slot: 0 or 1 as read back, or an error; writing 1 is reading. */
 	int (*bit)(struct link *link, bool out, enum link_after after);
 	/*
-	 * Two read slots and one write slot. Returns bit 0: the id bit read, bit 1: its complement,
-	 * bit 2: the direction taken. NULL: made of bit().
+	 * Two read slots and one write slot: of the id's bit, its complement, and the direction,
+	 * which is the bit where the two differ. Returns bit 0: the id bit read, bit 1: its
+	 * complement, bit 2: the direction taken; or an error. NULL: made of bit().
 	 */
 	int (*triplet)(struct link *link, bool direction);
 	/*
@@ -134,39 +162,9 @@ struct link_ops {
 	 * ever kept.
 	 */
 	int (*flush)(struct link *link);
-	/*
-	 * Of a driven link (below); NULL in others. Chips that have no driver are offered as far as
-	 * the link takes their commands. area: hal/chips/area.h.
-	 */
-	bool (*has_driver)(struct link *link, const uint8_t rom[8]);
-	/* Can an element (enum extension) of the property be had? */
-	bool (*offers)(struct link *link, const uint8_t rom[8], const char *property, int element);
-	/*
-	 * Bytes of an area of a chip that has a driver, from byte `at` of the area on. 0 or an
-	 * error: -ENOENT nothing stands for that area, -EOPNOTSUPP or -EACCES it cannot be written.
-	 */
-	int (*area_read)(struct link *link, const uint8_t rom[8], const struct area *area,
-	                 unsigned at, uint8_t *bytes, unsigned n);
-	int (*area_write)(struct link *link, const uint8_t rom[8], const struct area *area,
-	                  unsigned at, const uint8_t *bytes, unsigned n);
-	/*
-	 * The chip measures what a property of this name says; rom NULL: all thermometers. It is
-	 * over when this returns, or when the areas that it changes are read.
-	 */
-	int (*convert)(struct link *link, const uint8_t *rom, const char *what);
-	/* -EOPNOTSUPP. */
+	/* That of the next slots: 0 or an error, -EOPNOTSUPP it has no such one. NULL: standard. */
 	int (*speed)(struct link *link, enum link_speed speed);
-	/*
-	 * Climb this rung. What the caller does then:
-	 *   0            makes the transaction again; if it fails again, the next rung is next
-	 *   -ECOMM       the same: the rung is done, and the wire is short
-	 *   -EOPNOTSUPP  goes on with the next rung: this link has no such one
-	 *   -EBUSY       leaves out the rungs between, closes and opens the master: somebody else
-	 *                has the chip, and open() says who
-	 *   others       goes on with the next rung: it did not help
-	 * A link whose master is closed says -ENODEV. NULL: the link has no rungs.
-	 */
-	int (*recover)(struct link *link, enum link_rung rung);
+	/* Optional; also while the master is closed. Touches nothing. */
 	void (*cost)(const struct link *link, struct link_cost *cost);
 };
 
@@ -176,12 +174,7 @@ struct link {
 	const struct bus_env *env;
 	/* Links with one number share a chip: a call on one ends the strong pull-up of another. */
 	unsigned chip;
-	/*
-	 * No wire: drivers of somebody else (the kernel) speak to the chips. An error is the
-	 * device's, not the link's; a driver sees to the chips that the wire feeds; a conversion is
-	 * over when convert() returns.
-	 */
-	bool driven;
+	const struct driver_ops *driver; /* of the kernel's drivers (driver.h); NULL: a wire */
 	/*
 	 * There is no strong pull-up: LINK_STRONG is refused. EEPROMs are then written by the
 	 * wire's resistor, thermometers fed by the wire do not convert.
@@ -213,9 +206,9 @@ struct link_master_ops {
 	 */
 	int (*there)(struct link_master *master, uint64_t *mark);
 	/*
-	 * Optional. Take chips that belong here and could not be taken at open(): their channels
-	 * come behind those that are there. 1: some are still missing, or may yet come, and why
-	 * names one that is; 0: none is. -ENODEV, -ECANCELED.
+	 * Optional. Take what belongs here and could not be taken at open(), or came later: its
+	 * channels come behind those that are there, each when it is whole. 1: some are still
+	 * missing, or may yet come, and why names one that is; 0: none is. -ENODEV, -ECANCELED.
 	 */
 	int (*grow)(struct link_master *master, char *why, size_t why_size);
 	unsigned (*channels)(struct link_master *master); /* known after open() and grow() */

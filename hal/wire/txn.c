@@ -6,6 +6,7 @@
 
 #include "hal/owfs/path.h"
 #include "hal/wire/crc.h"
+#include "hal/wire/driver.h"
 #include "hal/wire/search.h"
 #include "hal/wire/txn.h"
 
@@ -24,7 +25,7 @@ static int of_link(struct txn *txn, int result)
 		txn->silent = true;
 		return -ENODEV;
 	}
-	if (result < 0 && result != -EOPNOTSUPP && result != -EBADMSG && !txn->link->driven)
+	if (result < 0 && result != -EOPNOTSUPP && result != -EBADMSG && !txn->link->driver)
 		txn->link_error = result;
 	return result;
 }
@@ -249,7 +250,7 @@ int txn_started(struct txn *txn)
 	uint8_t busy, late[LINK_LATE];
 
 	/* A driver has waited for the end, or tells the error. */
-	if (txn->link->driven)
+	if (txn->link->driver)
 		return 0;
 	int err = txn_read_slots(txn, &busy, 1);
 	if (err || !busy)
@@ -298,14 +299,13 @@ int txn_read_pages(struct txn *txn, const uint8_t *head, size_t head_n, uint8_t 
 
 bool txn_driven(const struct txn *txn)
 {
-	return txn->link->driven && txn->link->ops->has_driver(txn->link, txn->device->rom);
+	return txn->link->driver && txn->link->driver->has(txn->link, txn->device->rom);
 }
 
 int txn_driver_read(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, size_t n)
 {
-	const struct link_ops *ops = txn->link->ops;
-	int err = ops->area_read(txn->link, txn->device->rom, area, at, bytes, (unsigned)n);
-
+	const struct driver_ops *driver = txn->link->driver;
+	int err = driver->area_read(txn->link, txn->device->rom, area, at, bytes, (unsigned)n);
 	bool blank = txn->blank;
 
 	txn->on_wire = true;
@@ -318,16 +318,16 @@ int txn_driver_read(struct txn *txn, const struct area *area, unsigned at, uint8
 int txn_driver_write(struct txn *txn, const struct area *area, unsigned at, const uint8_t *bytes,
                      size_t n)
 {
-	const struct link_ops *ops = txn->link->ops;
+	const struct driver_ops *driver = txn->link->driver;
 
 	txn->on_wire = true;
-	return ops->area_write(txn->link, txn->device->rom, area, at, bytes, (unsigned)n);
+	return driver->area_write(txn->link, txn->device->rom, area, at, bytes, (unsigned)n);
 }
 
 int txn_driver_convert(struct txn *txn, const char *what)
 {
 	txn->on_wire = true;
-	return txn->link->ops->convert(txn->link, txn->device->rom, what);
+	return txn->link->driver->convert(txn->link, txn->device->rom, what);
 }
 
 int txn_verify(struct txn *txn, bool alarm)

@@ -18,6 +18,7 @@
 #define TXN_NUMBERS 12
 #define TXN_MS INT64_C(1000000)
 
+struct area;
 struct native;
 struct property;
 
@@ -167,8 +168,8 @@ int64_t txn_ended(const struct txn *txn);
  */
 int txn_end(struct txn *txn, int err);
 /*
- * Of a device that somebody else's driver speaks to (link_ops.has_driver), in place of all above:
- * its areas (hal/chips/area.h), and what it is told to measure. As those of link_ops.
+ * Of a device that a driver of the kernel speaks to (driver_ops.has), in place of all above: its
+ * areas (hal/chips/area.h), and what it is told to measure. As those of driver_ops.
  */
 bool txn_driven(const struct txn *txn);
 int txn_driver_read(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,

@@ -9,7 +9,7 @@
  * both, and the checksums stand in different places. A look that is disturbed proves nothing: the
  * chip is known when LOOKS in a row say the same.
  *
- * The drivers of the kernel (link_ops.has_driver) give pages without a checksum. A TMP1826 has the
+ * The drivers of the kernel (driver_ops.has) give pages without a checksum. A TMP1826 has the
  * same bytes for each page's number, and a DS2438 has not.
  */
 #include <errno.h>

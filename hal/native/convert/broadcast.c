@@ -8,6 +8,7 @@
 #include "hal/native/convert/ending.h"
 #include "hal/native/convert/schedule.h"
 #include "hal/native/master.h"
+#include "hal/wire/driver.h"
 
 #define SKIP_ROM 0xcc
 #define TRIES 3
@@ -22,8 +23,8 @@ static int send_all(struct link *link, enum link_after after)
 	static const uint8_t command[] = {SKIP_ROM, THERMOMETER_CONVERT};
 	uint8_t busy, late[LINK_LATE];
 
-	if (link->driven)
-		return link->ops->convert(link, NULL, "temperature");
+	if (link->driver)
+		return link->driver->convert(link, NULL, "temperature");
 	int err = link->ops->reset(link);
 
 	if (err <= 0)
@@ -45,7 +46,7 @@ static int send_all(struct link *link, enum link_after after)
 /* How long after the command: a driver waits for the end itself. */
 static int64_t convert_ns(const struct link *link, const struct device *device)
 {
-	return link->driven ? 0 : thermometer_convert_ns(device);
+	return link->driver ? 0 : thermometer_convert_ns(device);
 }
 
 /* Who did not show that it heard may have heard. */
@@ -116,14 +117,14 @@ int broadcast_convert(struct native *native, unsigned n, bool strong, int64_t lo
 	int64_t now = native_now(native);
 	master_good(native, n);
 	native_count(native, COUNT_CONVERSIONS);
-	if (link->driven)
+	if (link->driver)
 		longest = 0;
 	if (strong && longest) {
 		native_hold(native, n, NULL, now + longest);
 		schedule_owe(&native->schedule, OWES_OTHER);
 	}
-	converting(native, n, strong && !link->driven, now, longest);
-	if (!strong && !link->driven)
+	converting(native, n, strong && !link->driver, now, longest);
+	if (!strong && !link->driver)
 		ending_begin(native, n, longest);
 	return 0;
 }

@@ -282,7 +282,7 @@ static bool starts_single(struct native *native, unsigned n, const struct schedu
 {
 	struct channel *channel = &native->channel[n];
 
-	if (plan->parasitic || channel->link->driven)
+	if (plan->parasitic || channel->link->driver)
 		return false;
 	if (!channel->single_ns)
 		channel->single_ns = now + SINGLE_NS;

@@ -103,7 +103,7 @@ static void look_at_jobs(struct schedule_plan *plan, const struct native *native
 struct schedule_plan schedule_look(const struct native *native, unsigned channel)
 {
 	/* A driver sees to those that are fed by the wire. */
-	bool feeds = native->channel[channel].link->driven;
+	bool feeds = native->channel[channel].link->driver;
 	struct schedule_plan plan = {.driven = feeds};
 
 	look_at_jobs(&plan, native, channel, feeds);

@@ -18,7 +18,7 @@ static int look_at_supply(struct link *link)
 	uint8_t slots;
 
 	/* A driver sees to those that are fed by the wire. */
-	if (link->driven)
+	if (link->driver)
 		return 1;
 	int err = link->ops->reset(link);
 

@@ -5,6 +5,7 @@
 
 #include "hal/chips/family.h"
 #include "hal/chips/field.h"
+#include "hal/wire/driver.h"
 #include "unity.h"
 
 static uint8_t chip[32];
@@ -43,13 +44,14 @@ static bool has_driver(struct link *link, const uint8_t rom[8])
 	return true;
 }
 
-static const struct link_ops ops = {
-	.has_driver = has_driver,
+static const struct driver_ops driver = {
+	.has = has_driver,
 	.area_read = area_read_of,
 	.area_write = area_write_of,
 };
 static const struct bus_env env = {.now = now};
-static struct link link_of_areas = {.ops = &ops, .env = &env, .driven = true};
+static const struct link_ops ops;
+static struct link link_of_areas = {.ops = &ops, .env = &env, .driver = &driver};
 static unsigned char own[DEVICE_OWN];
 static struct device device;
 static struct txn txn;

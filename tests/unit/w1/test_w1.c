@@ -15,6 +15,7 @@
 #include "hal/owfs/path.h"
 #include "hal/w1/master.h"
 #include "hal/w1/name.h"
+#include "hal/w1/state.h"
 #include "tests/unit/aid/fs_scene.h"
 
 void setUp(void)

@@ -16,6 +16,7 @@
 #include "hal/bus/worker.h"
 #include "hal/chips/family.h"
 #include "hal/wire/crc.h"
+#include "hal/wire/driver.h"
 
 #define S INT64_C(1000000000)
 #define HANGS 0
@@ -223,14 +224,12 @@ static int64_t now(void *ctx)
 
 static void test_a_pull_up_that_a_driver_has_not_is_no_error_of_the_master(void)
 {
-	static const struct link_ops ops = {.reset = reset,
-	                                    .write = write_bytes,
-	                                    .read = read_bytes,
-	                                    .bit = bit,
-	                                    .has_driver = has_no_driver};
+	static const struct link_ops ops = {
+		.reset = reset, .write = write_bytes, .read = read_bytes, .bit = bit};
+	static const struct driver_ops driver = {.has = has_no_driver};
 	int64_t time = S;
 	struct bus_env env = {.ctx = &time, .now = now};
-	struct link link = {.ops = &ops, .env = &env, .driven = true};
+	struct link link = {.ops = &ops, .env = &env, .driver = &driver};
 	static unsigned char own[DEVICE_OWN];
 	struct device device = {.rom = {0x20, 1}, .family = family_of(0x20), .own = own};
 	struct txn txn = {.link = &link, .device = &device};

@@ -10,7 +10,8 @@
 #include "hal/chips/area.h"
 #include "hal/native/native.h"
 #include "hal/owfs/path.h"
-#include "hal/w1/master.h"
+#include "hal/w1/state.h"
+#include "hal/wire/driver.h"
 #include "tests/unit/aid/fs_scene.h"
 
 void setUp(void)
@@ -106,8 +107,8 @@ static int scratchpad(struct link *link, uint8_t pad[9])
 	static const struct area area = {.name = "scratchpad", .size = 9};
 	static const uint8_t rom[8] = {0x28, 0xa1};
 
-	return pad ? link->ops->area_read(link, rom, &area, 0, pad, 9)
-	           : link->ops->convert(link, rom, "temperature");
+	return pad ? link->driver->area_read(link, rom, &area, 0, pad, 9)
+	           : link->driver->convert(link, rom, "temperature");
 }
 
 /* Whoever asks again, and not for a conversion, gets none of the values before it. */
