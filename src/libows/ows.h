@@ -432,7 +432,7 @@ struct ows_device {
 	char identity[48];  /* which chip it is by its behaviour; "" not known */
 	int target;         /* which answered last, for ows_target(); -1: none */
 	uint32_t power;     /* enum ows_power */
-	uint64_t answers;   /* good and bad */
+	uint64_t answers;   /* requests that its target answered, if only with an error */
 	uint64_t errors;    /* requests that failed, those without an answer too */
 	uint64_t retries;   /* how often the target did it again after an error */
 	uint64_t wire_us;   /* what the requests took of the wire; without what served several */

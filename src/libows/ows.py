@@ -252,7 +252,7 @@ class Device(NamedTuple):
     identity: str | None  # which chip it is by its behaviour
     power: str | None     # "parasite", "external"
     target: int | None    # index of the one that answered last
-    answers: int          # good and bad
+    answers: int          # of the target, if only an error
     errors: int
     retries: int
     wire_us: int

@@ -22,7 +22,7 @@ static bool list_add_row(struct table *table, struct ows *h, const struct row *r
 	char value[128], words[READING_WORDS], alarm[STANDING_WORDS], span[WHEN_TEXT] = "-";
 	struct ows_target target = {.name = "-"};
 
-	reading_show(reading, value, sizeof(value));
+	row_show(row, reading, value, sizeof(value));
 	if (reading->value.measured_ns)
 		when_span(reading->value.age_ns, span);
 	if (row->path)

@@ -171,6 +171,21 @@ const char *row_quality(const struct row *row, const struct reading *reading,
 	return words;
 }
 
+bool row_filled(const struct row *row, const struct reading *reading)
+{
+	bool input = row->path && !row->output;
+
+	return reading_filled(reading) && (!input || reading->value.measured_ns);
+}
+
+void row_show(const struct row *row, const struct reading *reading, char *out, size_t size)
+{
+	if (row_filled(row, reading))
+		reading_show(reading, out, size);
+	else
+		snprintf(out, size, "-");
+}
+
 bool rows_have_alarms(struct ows *h, const struct rows *rows)
 {
 	for (int i = 0; i < rows->count; i++) {

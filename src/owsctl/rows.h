@@ -64,6 +64,11 @@ bool rows_have_alarms(struct ows *h, const struct rows *rows);
 const char *row_quality(const struct row *row, const struct reading *reading,
                         char words[READING_WORDS]);
 
+/* Is there a value to show? The 0 of an input that was never measured is none. */
+bool row_filled(const struct row *row, const struct reading *reading);
+/* The text of the value for a table, "-": there is none. */
+void row_show(const struct row *row, const struct reading *reading, char *out, size_t size);
+
 /* Have value, quality, error or an alarm changed since the last call? */
 bool row_changed(struct row *row, const struct reading *reading);
 

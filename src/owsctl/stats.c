@@ -30,7 +30,7 @@ static void print_target(int index, const struct ows_target *target, bool severa
 
 /* clang-format off */
 static const struct table_column device_columns[] = {
-	{"DEVICE"}, {"IDENTITY"}, {"POWER"}, {"TARGET", .right = true}, {"ANSWERS", .right = true},
+	{"DEVICE"}, {"IDENTITY"}, {"POWER"}, {"TARGET", .right = true}, {"REQUESTS", .right = true},
 	{"ERRORS", .right = true}, {"RETRIES", .right = true}, {"WIRE", .right = true},
 	{"LAST", .right = true},
 };

@@ -243,7 +243,7 @@ struct ows_device_entry { /* 128 bytes */
 	uint32_t id_off;     /* in the pool, as in the configuration; constant */
 	uint32_t family_off; /* the kind that its family code names; 0 none; constant */
 	uint32_t target;     /* which answered last, index; 0xffffffff: none yet */
-	uint64_t answers;    /* good and bad */
+	uint64_t answers;    /* of the target, if only an error */
 	uint64_t errors;     /* requests that failed, those without an answer too */
 	uint64_t retries;    /* of the bus, after errors that it made good or not */
 	uint64_t wire_us;    /* what its requests took of the wire, as far as the bus knows */

@@ -210,7 +210,8 @@ enum device_what { DEVICE_ANSWERS, DEVICE_ERRORS, DEVICE_RETRIES, DEVICE_WIRE, D
 static const struct {
 	const char *name, *help;
 } device_whats[] = {
-	[DEVICE_ANSWERS] = {"ows_device_answers", "Answers of a device, good and bad."},
+	[DEVICE_ANSWERS] = {"ows_device_answers",
+                            "What its target answered for a device, errors too."},
 	[DEVICE_ERRORS] = {"ows_device_errors", "Requests for a device that failed."},
 	[DEVICE_RETRIES] = {"ows_device_retries",
                             "How often its target asked a device again. Absent if not known."},

@@ -96,7 +96,7 @@ bool when_parse(const char *text, int64_t *ns)
 
 #define FIRST_YEAR 1970
 #define LAST_YEAR 2114 /* libows-history draws none of later ones */
-#define WANTED "expected a time such as 24h or 7d (ago), yesterday, or 2026-11-26T14:30"
+#define WANTED "expected a time such as 24h, \"5m ago\", yesterday, or 2026-11-26T14:30"
 
 /* The fraction of a second at the beginning of text, as ns; text where none stands. */
 static const char *take_fraction(const char *text, int64_t *ns)

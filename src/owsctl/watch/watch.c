@@ -72,10 +72,10 @@ static void print_change(struct watch *watch, const struct row *row, const struc
 	}
 	text_clean(row->name, strlen(row->name), sizeof(name), name, sizeof(name));
 	printf("%s %s ", when_iso(now, now->boot, text), name);
-	if (reading_filled(reading) && reading->value.type == OWS_STRING)
+	if (row_filled(row, reading) && reading->value.type == OWS_STRING)
 		json_bytes(&json, NULL, reading->text, reading->len);
 	else
-		fputs(reading_filled(reading) ? reading->text : "-", stdout);
+		fputs(row_filled(row, reading) ? reading->text : "-", stdout);
 	printf(" %s", reading_quality(reading, words));
 	if (standing_any(&row->alarms))
 		printf("; alarm: %s", standing_text(&row->alarms, alarm));

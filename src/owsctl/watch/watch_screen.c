@@ -146,7 +146,7 @@ static bool watch_screen_add_row(struct watch *watch, struct table *table, const
 	char value[64], words[READING_WORDS], alarm[STANDING_WORDS], span[WHEN_TEXT] = "-";
 	struct ows_target target = {.name = "-"};
 
-	reading_show(reading, value, sizeof(value));
+	row_show(row, reading, value, sizeof(value));
 	if (reading->value.measured_ns)
 		whole_seconds(reading->value.age_ns, span);
 	if (row->path)

@@ -177,7 +177,7 @@ static void test_what_is_no_moment_is_refused_with_what_is_wrong(void)
 
 	zone("UTC0");
 	for (size_t i = 0; i < sizeof(none) / sizeof(none[0]); i++)
-		is_refused(none[i], "expected a time such as 24h");
+		is_refused(none[i], "expected a time such as 24h, \"5m ago\"");
 	for (size_t i = 0; i < sizeof(no_day) / sizeof(no_day[0]); i++)
 		is_refused(no_day[i], "no such");
 	for (size_t i = 0; i < sizeof(beyond) / sizeof(beyond[0]); i++)
