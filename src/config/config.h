@@ -231,6 +231,7 @@ struct config_report {
 	void (*problem)(void *ctx, bool is_error, int line, int column, const char *text);
 	void *ctx;
 	unsigned errors, warnings;
+	int at_line; /* of what is reported now; 0: of none; INT_MAX: after all others */
 };
 
 #endif

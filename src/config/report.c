@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Errors and warnings about a configuration, formatted with their place and passed on. */
+#include <limits.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,6 +23,7 @@ static void put_line(struct config_report *report, struct place place, bool is_e
 
 	if (++*count > REPORT_MAX + 1 || (!report->line && !report->problem))
 		return;
+	report->at_line = *count > REPORT_MAX ? INT_MAX : place.line;
 	if (report->problem)
 		n = 0;
 	else if (place.file && place.line && !place.column)

@@ -63,17 +63,48 @@ static int print_board(const struct arguments *a)
 
 /* Where the messages about a configuration go. */
 struct told {
-	struct log *log; /* NULL: stderr */
+	struct log *log; /* NULL: stderr, by line */
 	char *why;       /* the first error; NULL: nobody asks */
 	size_t why_size;
+	struct config_report report;
+	struct found {
+		int line;
+		char *message;
+	} found[2 * (REPORT_MAX + 1)];
+	unsigned count;
 };
+
+/* The file is gone through several times: what stands first in it is to be shown first. */
+static void keep_line(struct told *told, const char *message)
+{
+	unsigned at = told->count;
+	char *copy = at < sizeof(told->found) / sizeof(told->found[0]) ? strdup(message) : NULL;
+
+	if (!copy) {
+		fprintf(stderr, "%s\n", message);
+		return;
+	}
+	for (; at && told->found[at - 1].line > told->report.at_line; at--)
+		told->found[at] = told->found[at - 1];
+	told->found[at] = (struct found){told->report.at_line, copy};
+	told->count++;
+}
+
+static void print_lines(struct told *told)
+{
+	for (unsigned i = 0; i < told->count; i++) {
+		fprintf(stderr, "%s\n", told->found[i].message);
+		free(told->found[i].message);
+	}
+	told->count = 0;
+}
 
 static void report_line(void *ctx, bool is_error, const char *message)
 {
 	struct told *told = ctx;
 
 	if (!told->log)
-		fprintf(stderr, "%s\n", message);
+		keep_line(told, message);
 	else if (is_error)
 		log_err(told->log, "%s", message);
 	else
@@ -99,29 +130,29 @@ static int read_file(const struct arguments *a, struct config_report *report,
 
 static int owsd_load(const struct arguments *a, struct told *told, struct config **config)
 {
-	struct config_report report = {.line = report_line, .ctx = told};
-	int err = read_file(a, &report, config);
+	struct config_report *report = &told->report;
 
-	if (err)
-		return err;
-	if (a->target_count)
-		err = config_set_targets(*config, a->targets, a->target_count, &report);
+	*report = (struct config_report){.line = report_line, .ctx = told};
+	int err = read_file(a, report, config);
+
+	if (!err && a->target_count)
+		err = config_set_targets(*config, a->targets, a->target_count, report);
 	if (!err && a->listen_count)
-		err = config_set_listens(*config, a->listens, a->listen_count, &report);
+		err = config_set_listens(*config, a->listens, a->listen_count, report);
 	if (!err)
-		err = target_check_config(*config, &report);
+		err = target_check_config(*config, report);
 	if (!err && a->check)
-		err = target_look(*config, &report);
-	if (!err && a->strict && report.warnings) {
-		complain("--strict: %u warning%s", report.warnings,
-		         report.warnings == 1 ? "" : "s");
+		err = target_look(*config, report);
+	print_lines(told);
+	if (!err && a->strict && report->warnings) {
+		complain("--strict: %u warning%s", report->warnings,
+		         report->warnings == 1 ? "" : "s");
 		err = -EINVAL;
 	}
-	if (!err) {
+	if (!err)
 		config_hash_files(*config);
-		return 0;
-	}
-	config_free(*config);
+	else
+		config_free(*config);
 	return err;
 }
 

@@ -222,6 +222,18 @@ def test_a_strict_check_refuses_what_is_only_warned_of(scene):
     assert done.returncode == 2 and "--strict goes with --check" in done.stderr, done
 
 
+def test_a_check_shows_what_it_found_by_line(scene):
+    """The number of items is judged when all are read, and the target's device last of all."""
+    text = owsdtest.rio("i2c:/dev/i2c-199", [ITEM, ITEM | {"Name": "other"}])
+    text = text.replace("ItemCount               2", "ItemCount 5").replace("Item {", "Item { Sensor 5")
+    path = scene.file("lines.rio", text)
+    done = scene.owsd_once("--check", "--strict", "-c", path)
+    places = [line.removeprefix(f"{path}:").split(":") for line in done.stderr.splitlines()]
+    lines = [int(place[0]) for place in places if place[0].isdigit()]
+    assert lines == sorted(lines) and len(lines) == 4, done.stderr
+    assert "owsd: --strict: 4 warnings" in done.stderr.splitlines()[-1], done.stderr
+
+
 def test_a_device_that_is_not_here_is_a_warning_of_the_check(scene):
     nobody = str(scene.path / "nobody")
     socket.socket(socket.AF_UNIX).bind(nobody)
