@@ -56,6 +56,7 @@ static int get_one(const struct ctl *ctl, struct ows *h, const char *name, struc
 	char words[READING_WORDS];
 	struct ows_info info;
 	int id = ows_find(h, name);
+	bool is_value;
 
 	if (id == -ENOENT)
 		return ctl_unknown(h, name);
@@ -65,9 +66,11 @@ static int get_one(const struct ctl *ctl, struct ows *h, const char *name, struc
 		return ctl_fail("%s can only be set", name);
 	if (!reading_filled(reading))
 		return ctl_fail("%s: %s", name, error_text(reading->err));
-	reading_round(reading, names_info(h, ctl->instance, name, &info) ? info.decimals : -1);
+	is_value = names_info(h, ctl->instance, name, &info);
+	reading_round(reading, is_value ? info.decimals : -1);
 	print_text(reading);
-	say_command(h, name, id, reading);
+	if (is_value)
+		say_command(h, name, id, reading);
 	if (reading_good(reading))
 		return CTL_DONE;
 	/* keep the order of stderr and stdout where both go to one place */

@@ -105,6 +105,9 @@ def test_a_command_that_the_output_does_not_follow_is_shown(scene):
     scene.until(lambda: row() == (True, False), 10, row)
     assert "good (sim); commanded 0 " in line(), line()
     assert server.read(relay + "/PIO") == "1"
+    told = "owsctl: relay: commanded 0, and the device does not have it yet\n"
+    assert scene.owsctl(daemon, "get", "relay").stderr == told
+    assert scene.owsctl(daemon, "get", "relay_TRANSACTIONS").stderr == ""
     terminal = Terminal(daemon, 24, 120, "watch", "relay")
     terminal.until(lambda s: len(s) == 3 and "good (sim); commanded 0 " in s[2], "the command")
     os.write(terminal.fd, b"q")
