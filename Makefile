@@ -237,7 +237,7 @@ WEBPAGE  := $(patsubst src/web/page/%,%,$(foreach e,html css js svg png webmanif
 MAN      := $(wildcard docs/*.[1-8])
 # Tests
 UNIT_SRC := $(filter-out $(if $(PROTOBUFC),,%/test_sparkplug.c) $(if $(SQLITE),,%_past.c $(wildcard $(patsubst %,tests/unit/%/*.c,history libhistory recorder))),$(wildcard tests/unit/*/test_*.c))
-UNIT_AID := $(wildcard tests/unit/aid/*.c)
+UNIT_AID := $(filter-out $(if $(SQLITE),,%/past.c %/power_file.c),$(wildcard tests/unit/aid/*.c))
 ENDURANCE := $(wildcard tests/endurance/*.c)
 BENCH    := $(filter-out $(if $(SQLITE),,%/bench_history.c %/bench_recorder.c),$(wildcard tests/bench/bench_*.c))
 BENCH_AID := $(filter-out tests/bench/bench_%,$(wildcard tests/bench/*.c)) $(SIM_TABLE) tests/unit/aid/plant.c tests/unit/aid/plant_net.c tests/unit/aid/giving.c
