@@ -221,7 +221,9 @@ static size_t as_asked(struct directory *directory, const struct directory_form 
 
 	if (!form->node->devices || rom_parse(*name, len, rom))
 		return len;
-	directory->flags |= family_of(rom[0])->flags;
+	/* owserver has none for a list of alarms */
+	if (strcmp(form->node->path, "/alarm") != 0)
+		directory->flags |= family_of(rom[0])->flags;
 	*name = text;
 	return (size_t)rom_print(rom, format > ROM_FIC ? ROM_F_I : (enum rom_format)format, text);
 }

@@ -131,6 +131,21 @@ static void test_an_empty_directory_has_no_data(void)
 	TEST_ASSERT_EQUAL_INT(0, h.size);
 }
 
+static void test_the_flags_of_a_list_of_alarms_are_none(void)
+{
+	static const char *const paths[] = {"/alarm", "/bus.0/alarm", "/uncached/alarm"};
+	struct frame_header h;
+
+	for (size_t i = 0; i < sizeof(paths) / sizeof(paths[0]); i++) {
+		directory_begin(directory);
+		begin(paths[i], 0);
+		take(0, "/alarm/29.B89115000000\n");
+		formed(&h);
+		TEST_ASSERT_GREATER_THAN_INT(0, h.payload);
+		TEST_ASSERT_EQUAL_HEX32(0, h.offset);
+	}
+}
+
 static void test_lines_that_are_cut_are_left_out(void)
 {
 	struct frame_header h;
@@ -165,6 +180,7 @@ int main(void)
 	RUN_TEST(test_names_are_in_the_format_and_below_the_path_that_the_client_wrote);
 	RUN_TEST(test_frames_come_one_by_one_and_then_an_empty_one);
 	RUN_TEST(test_an_empty_directory_has_no_data);
+	RUN_TEST(test_the_flags_of_a_list_of_alarms_are_none);
 	RUN_TEST(test_lines_that_are_cut_are_left_out);
 	RUN_TEST(test_what_does_not_fit_is_an_error);
 	return UNITY_END();
