@@ -194,7 +194,7 @@ bool job_goes_first(const struct native *native, const struct job *a, const stru
 {
 	if (!b || a->req->prio != b->req->prio)
 		return !b || a->req->prio < b->req->prio;
-	if (a->soon != b->soon && (!native->soon_ran || native->soon >= NATIVE_MANY))
+	if (a->soon != b->soon && (!native->soon_ran || native->failed_jobs >= NATIVE_MANY))
 		return a->soon;
 	return (int32_t)(a->order - b->order) < 0;
 }

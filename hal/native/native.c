@@ -277,7 +277,7 @@ static struct job *pick(struct native *native, int64_t now, int64_t *next, struc
 {
 	struct job *best = NULL, *all = NULL;
 	bool initial = native_initial(native);
-	unsigned soon = 0;
+	unsigned failed = 0;
 
 	native->locate.waits = native->locate.urgent = false;
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
@@ -291,7 +291,7 @@ static struct job *pick(struct native *native, int64_t now, int64_t *next, struc
 			native->locate.waits = true;
 			native->locate.urgent |= job->req->prio <= BUS_OUTPUT;
 		}
-		soon += job->req && job->soon;
+		failed += job->req && job->txn.device && job->txn.device->failures;
 		if (job->req && job->kind == JOB_CONVERT &&
 		    (!all || (int32_t)(job->order - all->order) < 0))
 			all = job;
@@ -304,7 +304,7 @@ static struct job *pick(struct native *native, int64_t now, int64_t *next, struc
 			*other = job;
 	}
 	native->all = all;
-	native->soon = soon;
+	native->failed_jobs = failed;
 	return best;
 }
 

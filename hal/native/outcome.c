@@ -83,7 +83,7 @@ static void begin_again(struct native *native, struct job *job)
 	bool reads = job->state == JOB_RUN && schedule_asks(job) && job->req->op == BUS_READ;
 	int64_t ends_ns = reads ? thermometer_last(job->txn.device).ends_ns : 0;
 
-	if (ends_ns && ends_ns + NATIVE_S > native_now(native))
+	if (ends_ns && ends_ns + NATIVE_UNREAD_NS > native_now(native))
 		job_reread(native, job);
 	else
 		job_again(native, job);
@@ -107,8 +107,8 @@ static bool is_tried_again(const struct native *native, struct job *job, unsigne
 	const struct device *device = job->txn.device;
 
 	if (device &&
-	    (device->failures > NATIVE_DOUBTS ||
-	     (native->soon >= NATIVE_MANY && device->failures && job->req->prio > BUS_OUTPUT)))
+	    (device->failures > NATIVE_DOUBTS || (native->failed_jobs >= NATIVE_MANY &&
+	                                          device->failures && job->req->prio > BUS_OUTPUT)))
 		tries = 1;
 	return ++job->tries < tries;
 }

@@ -262,11 +262,11 @@ struct native {
 	struct job *jobs; /* NATIVE_DEPTH */
 	bool soon_ran;    /* the last step was that of a job that goes soon */
 	bool early;       /* the search had its turn, a request is next; before all were searched */
-	unsigned soon;    /* such jobs, as of the last step */
-	struct job *all;  /* the JOB_CONVERT that waits longest; it may be over */
-	int64_t due_ns;   /* the next step; 0: there was none */
-	int64_t late_ns;  /* so long the host has kept the thread from the processor in all */
-	uint32_t order;   /* of the next job */
+	unsigned failed_jobs; /* whose device failed lately, as of the last step */
+	struct job *all;      /* the JOB_CONVERT that waits longest; it may be over */
+	int64_t due_ns;       /* the next step; 0: there was none */
+	int64_t late_ns;      /* so long the host has kept the thread from the processor in all */
+	uint32_t order;       /* of the next job */
 	char where[NATIVE_WHERE_MAX];
 	struct bus_counter counters[COUNTS];
 

@@ -78,9 +78,10 @@ static bool is_served(const struct native *native, const struct job *job, int64_
 	struct thermometer_last last = thermometer_last(job->txn.device);
 	int64_t life = property_life_ns(native, job->property);
 	int64_t cached = life < SIMULTANEOUS_NS ? life : SIMULTANEOUS_NS;
+	int64_t fresh = job->req->prio == BUS_GUEST ? NATIVE_S : NATIVE_UNREAD_NS;
 
 	return last.ends_ns && (!job->fresh || last.unread) && !job->again &&
-	       last.ends_ns + (job->fresh ? NATIVE_S : cached) > now && is_right(job);
+	       last.ends_ns + (job->fresh ? fresh : cached) > now && is_right(job);
 }
 
 /*

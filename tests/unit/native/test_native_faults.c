@@ -116,7 +116,7 @@ static int64_t notice_within(const struct fault *fault, unsigned khz)
 {
 	if (fault->faulty == 1 || strcmp(fault->what, "corrupt") != 0)
 		return SOON_NS;
-	return khz == 400 ? 11 * PLANT_S / 2 : 7 * PLANT_S;
+	return khz == 400 ? 7 * PLANT_S / 2 : 9 * PLANT_S / 2;
 }
 
 static void run(const struct fault *fault, unsigned khz)
