@@ -220,7 +220,6 @@ static int read_places(struct ows_history *h)
 		{"select max(start) from gap where signal = 0", &gap},
 		{"select max(id) from event", &event},
 		{"select max(seen) from session", &seen},
-		{SCHEMA_HOURS_END, &h->hour_end},
 		{"select (min(id) >> 16) * 60000000 from minute", &minute},
 		{"select ((max(id) >> 16) + 1) * 60000000 from minute", &h->minute_end},
 	};
@@ -233,9 +232,16 @@ static int read_places(struct ows_history *h)
 		if (err < 0)
 			return err;
 	}
-	h->minute_first = minute < 0 ? h->hour_end : minute;
-	if (minute < 0)
-		h->minute_end = h->hour_end;
+	/* each hour is written with its last minute; to ask the hours reads eight of each signal */
+	h->hour_end = h->minute_end / HOUR_US * HOUR_US;
+	if (minute < 0) {
+		int err = sql_ask(h->db, SCHEMA_HOURS_END, &h->hour_end);
+
+		if (err < 0)
+			return err;
+		minute = h->minute_end = h->hour_end;
+	}
+	h->minute_first = minute;
 	h->end = raw_end > gap ? raw_end : gap;
 	h->end = event > h->end ? event : h->end;
 	h->end = seen > h->end ? seen : h->end;

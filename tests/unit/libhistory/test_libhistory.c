@@ -2,6 +2,7 @@
 /* Tests of libows-history: what a writer recorded is read by the calls of ows_history.h. */
 #include <errno.h>
 #include <math.h>
+#include <sqlite3.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -486,6 +487,15 @@ static void record_days(void)
 	}
 }
 
+static void open_days(void)
+{
+	ows_history_close(h);
+	h = NULL;
+	snprintf(path, sizeof(path), "%s/history%d", folder_place()->path, folders++);
+	record_days();
+	TEST_ASSERT_EQUAL_INT(0, ows_history_open(NULL, path, &h));
+}
+
 /* What the items say of a stretch, which is widened by so much on both sides. */
 static void sum_items(const struct ows_history_item *items, int count, int64_t from, int64_t until,
                       struct ows_history_point *sum)
@@ -512,11 +522,7 @@ static void test_points_of_sums_are_those_of_the_values(void)
 	struct ows_history_point points[STRETCHES], sum, wide;
 	int count = 0, got;
 
-	ows_history_close(h);
-	h = NULL;
-	snprintf(path, sizeof(path), "%s/history%d", folder_place()->path, folders++);
-	record_days();
-	TEST_ASSERT_EQUAL_INT(0, ows_history_open(NULL, path, &h));
+	open_days();
 	TEST_ASSERT_EQUAL_INT(0, ows_history_read(h, 0, 0, INT64_MAX));
 	while ((got = ows_history_next(h, &items[count], 7000 - count)) > 0)
 		count += got;
@@ -540,6 +546,33 @@ static void test_points_of_sums_are_those_of_the_values(void)
 			TEST_ASSERT_TRUE(p->min <= sum.min && p->max >= sum.max);
 			TEST_ASSERT_DOUBLE_WITHIN(0.01, sum.mean / (double)sum.known_ns, p->mean);
 		}
+	}
+}
+
+/* The last minute says where hours end: they are what they are when no minute is left. */
+static void test_hours_are_the_same_with_and_without_minutes(void)
+{
+	const int64_t from = NOON + 3600 * SECOND, until = from + STRETCHES * 7200 * SECOND;
+	struct ows_history_point with[STRETCHES], without[STRETCHES];
+	int64_t end;
+	char file[400];
+	sqlite3 *db;
+
+	open_days();
+	end = h->hour_end;
+	TEST_ASSERT_TRUE(end > (NOON + 2 * DAY) / 1000);
+	TEST_ASSERT_EQUAL_INT(STRETCHES, ows_history_points(h, 0, from, until, with, STRETCHES));
+	snprintf(file, sizeof(file), "%s/history.sqlite", path);
+	TEST_ASSERT_EQUAL_INT(SQLITE_OK, sqlite3_open(file, &db));
+	TEST_ASSERT_EQUAL_INT(SQLITE_OK, sqlite3_exec(db, "delete from minute", NULL, NULL, NULL));
+	sqlite3_close(db);
+	TEST_ASSERT_EQUAL_INT(0, ows_history_refresh(h));
+	TEST_ASSERT_EQUAL_INT64(end, h->hour_end);
+	TEST_ASSERT_EQUAL_INT(STRETCHES, ows_history_points(h, 0, from, until, without, STRETCHES));
+	for (int i = 0; i < STRETCHES; i++) {
+		TEST_ASSERT_EQUAL_INT64(with[i].known_ns, without[i].known_ns);
+		TEST_ASSERT_EQUAL_DOUBLE(with[i].min, without[i].min);
+		TEST_ASSERT_EQUAL_DOUBLE(with[i].max, without[i].max);
 	}
 }
 
@@ -610,6 +643,7 @@ int main(void)
 	RUN_TEST(test_a_user_who_may_only_read_reads_all);
 	RUN_TEST(test_a_copy_without_its_log_is_read_too);
 	RUN_TEST(test_points_of_sums_are_those_of_the_values);
+	RUN_TEST(test_hours_are_the_same_with_and_without_minutes);
 	RUN_TEST(test_all_rows_come_once_in_the_order_of_recording);
 	RUN_TEST(test_a_moment_behind_a_run_is_not_in_the_next_one);
 	return UNITY_END();
