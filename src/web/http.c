@@ -247,8 +247,9 @@ static enum MHD_Result handle(void *cls, struct MHD_Connection *connection, cons
 		request->web = cls;
 		request->connection = connection;
 		*own = request;
-		/* of an answer to HEAD libmicrohttpd sends the head alone */
-		if (!post && strcmp(method, "GET") != 0 && strcmp(method, "HEAD") != 0)
+		/* libmicrohttpd leaves out the body */
+		request->head = strcmp(method, "HEAD") == 0;
+		if (!post && !request->head && strcmp(method, "GET") != 0)
 			return (enum MHD_Result)http_error(request, 405, "GET, HEAD or POST");
 		status = refused(request, &why);
 		if (status)

@@ -22,6 +22,7 @@ struct request {
 	struct MHD_Connection *connection;
 	struct job *job; /* that makes the answer; NULL: none was given */
 	bool answered;   /* the job is done */
+	bool head;       /* the head of the answer is asked for alone */
 	size_t held;     /* bytes of the answer that count in web->held */
 	struct posted posted;
 };

@@ -88,6 +88,9 @@ int stream_answer(struct request *request, const char *type, const struct stream
 		stream_forget(stream);
 	else
 		MHD_add_response_header(response, "Content-Type", type);
+	/* no chunks: of those libmicrohttpd sends the end, of no body, too */
+	if (response && request->head)
+		MHD_set_response_options(response, MHD_RF_HTTP_VERSION_1_0_ONLY, MHD_RO_END);
 	return http_answer(request, 200, response);
 }
 

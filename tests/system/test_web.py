@@ -682,10 +682,11 @@ def test_heads_that_a_proxy_could_read_otherwise_are_refused(scene):
 
 def test_head_is_answered_as_get_without_the_body(scene):
     _, page = both(scene)
-    for path, status in (("/", 200), ("/api/info", 200), ("/none", 404), ("/api/events", 200)):
+    streams = "/api/events", "/api/signals"
+    for path, status in (("/", 200), ("/api/info", 200), ("/none", 404), *((p, 200) for p in streams)):
         head = page.raw(f"HEAD {path} HTTP/1.1\r\nHost: localhost\r\n\r\n".encode())
         assert status_of(head) == status and head.index(b"\r\n\r\n") == len(head) - 4, head
-        if path != "/api/events":
+        if path not in streams:
             _, _, body = page.ask(path)
             assert f"Content-Length: {len(body)}\r\n".encode() in head, (head, body)
     with Events(page) as stream:
