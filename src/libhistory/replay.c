@@ -22,6 +22,13 @@ int64_t replay_place(const struct ows_history *h, const struct replay_point *poi
 		if (i + 1 < h->session_count && place > session->end)
 			place = session->end - 1;
 	}
+	if (place >= 0 || point->boot == h->boot)
+		return place;
+	place = replay_end(h);
+	for (int i = h->session_count; i-- > 0; place = h->sessions[i].start)
+		if (h->sessions[i].boot != h->boot &&
+		    h->sessions[i].start + h->sessions[i].date < point->wall_us)
+			break;
 	return place;
 }
 
@@ -59,7 +66,8 @@ int replay_rows(struct ows_history *h, int64_t first, int64_t end, struct replay
 		while (session + 1 < h->session_count && step.id >= h->sessions[session].end)
 			session++;
 		*row = (struct replay_row){
-			.at = {h->sessions[session].boot, step.id - h->sessions[session].base},
+			.at = {h->sessions[session].boot, step.id - h->sessions[session].base,
+		               step.id + h->sessions[session].date},
 			.wall_us = step.id + h->sessions[session].date,
 			.dated = h->sessions[session].trusted,
 			.signal = signal,

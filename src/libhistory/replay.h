@@ -14,8 +14,9 @@ struct ows_history;
 
 /* A moment that stays the same when the clock is set. */
 struct replay_point {
-	int64_t boot; /* as history_boot_present() */
-	int64_t us;   /* boot time */
+	int64_t boot;    /* as history_boot_present() */
+	int64_t us;      /* boot time */
+	int64_t wall_us; /* the clock then, for a boot that the history does not know */
 };
 struct replay_row {
 	struct replay_point at;
@@ -26,7 +27,10 @@ struct replay_row {
 	char *text; /* of a string: of malloc(); else NULL */
 };
 
-/* Where a moment is in the order. -ENOENT: no recorder was there in that boot. */
+/*
+ * Where a moment is in the order. -ENOENT: no recorder was there in this boot yet. Of an earlier
+ * boot that is not known it is the begin of the first run that is later by the clock, or the end.
+ */
 int64_t replay_place(const struct ows_history *h, const struct replay_point *point);
 /* The place behind all that was there when the history was opened or refreshed. */
 int64_t replay_end(const struct ows_history *h);

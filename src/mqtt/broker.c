@@ -421,17 +421,13 @@ static bool put_last(void *ctx, const char *topic, const char *text, size_t len,
 
 void broker_end(struct broker *b)
 {
-	bool with_will = b->options->profile->session && client_mqtt5(b);
 	int64_t until_ns = ows_now() + END_NS;
 
 	if (b->state == BROKER_CONNECTED && drain(b, until_ns)) {
-		/* the goodbye would take the will back */
+		/* the goodbye takes the will back: nobody hears of the end twice */
 		if (b->ops->will(b->ctx, true, &(struct outlet){.put = put_last, .ctx = b}) &&
 		    drain(b, until_ns))
-			mosquitto_disconnect_v5(b->client,
-			                        with_will ? MQTT_RC_DISCONNECT_WITH_WILL_MSG
-			                                  : MQTT_RC_NORMAL_DISCONNECTION,
-			                        NULL);
+			mosquitto_disconnect(b->client);
 		/* it ends the connection when the goodbye is out */
 		while (!b->in_flight && !b->ended && ows_now() < until_ns)
 			if (mosquitto_loop(b->client, 50, 1))

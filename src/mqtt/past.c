@@ -7,7 +7,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "hal/base/time.h"
@@ -18,6 +17,7 @@
 
 #define NS_PER_US 1000
 #define US_PER_S INT64_C(1000000)
+#define US_PER_MS 1000
 /* After an outage of a broker a thousand nodes send again at once: 500 rows of each in a second */
 #define BATCH 256
 #define PACE_NS (500 * NS_PER_MS)
@@ -28,6 +28,9 @@
 /* The recorder writes once in a minute, and at least each ten minutes */
 #define WAIT_NS (2 * NS_PER_S)
 #define WAIT_MOST_NS (30 * NS_PER_S)
+#define LATE_NS (660 * NS_PER_S)
+/* So seldom a history is looked for that is not there */
+#define LOOK_MOST_NS (600 * NS_PER_S)
 /* A value that was measured before a moment may reach us after it */
 #define SLACK_US (2 * US_PER_S)
 /* In the history rows of the same time are microseconds apart */
@@ -38,7 +41,10 @@
 
 static struct replay_point point_of(const struct past *p, int64_t ns)
 {
-	return (struct replay_point){p->boot, ns / NS_PER_US};
+	struct when now = when_now();
+
+	return (struct replay_point){p->boot, ns / NS_PER_US,
+	                             (ns + now.wall - now.boot) / NS_PER_US};
 }
 
 /* --- What is kept ---------------------------------------------------------------------------- */
@@ -59,13 +65,20 @@ static void find_path(struct past *p)
 	int err = history_place_state(p->face->ops->program, "mqtt", p->face->arguments->instance,
 	                              place);
 
-	if (!err)
-		err = history_make_above(place);
-	if (!err && mkdir(place, 0750) < 0 && errno != EEXIST)
-		err = -errno;
 	if (err)
 		complain(p, place, -err);
 	snprintf(p->path, sizeof(p->path), "%s%s", err ? "" : place, err ? "" : "/reached");
+}
+
+static void print_point(FILE *f, const struct replay_point *point)
+{
+	fprintf(f, "%" PRId64 " %" PRId64 " %" PRId64 "\n", point->boot, point->us, point->wall_us);
+}
+
+static bool scan_point(FILE *f, struct replay_point *point)
+{
+	return fscanf(f, "%" SCNd64 " %" SCNd64 " %" SCNd64, &point->boot, &point->us,
+	              &point->wall_us) == 3;
 }
 
 static void keep(struct past *p, int64_t now_ns)
@@ -75,22 +88,21 @@ static void keep(struct past *p, int64_t now_ns)
 	int bad;
 
 	p->kept_ns = now_ns;
-	if (p->there && !*p->path)
-		find_path(p);
 	if (!p->there || !*p->path)
 		return;
 	snprintf(part, sizeof(part), "%s.part", p->path);
-	f = fopen(part, "we");
+	bad = history_make_above(part);
+	f = bad ? NULL : fopen(part, "we");
 	if (!f) {
-		complain(p, part, errno);
+		complain(p, part, bad ? -bad : errno);
 		return;
 	}
-	fprintf(f, "owsd-mqtt 1 %016" PRIx64 " %d\n%" PRId64 " %" PRId64 "\n", p->key, p->count,
-	        p->reached.boot, p->reached.us);
-	for (int i = 0; i < p->count; i++)
-		fprintf(f, "%" PRId64 " %" PRId64 " %" PRId64 " %" PRId64 "\n",
-		        p->windows[i].from.boot, p->windows[i].from.us, p->windows[i].until.boot,
-		        p->windows[i].until.us);
+	fprintf(f, "owsd-mqtt 2 %016" PRIx64 " %d\n", p->key, p->count);
+	print_point(f, &p->reached);
+	for (int i = 0; i < p->count; i++) {
+		print_point(f, &p->windows[i].from);
+		print_point(f, &p->windows[i].until);
+	}
 	fputs("end\n", f);
 	bad = fflush(f) || fsync(fileno(f)) < 0;
 	if (fclose(f) || bad || rename(part, p->path) < 0)
@@ -108,13 +120,10 @@ static bool read_kept(struct past *p)
 
 	if (!f)
 		return false;
-	good = fscanf(f, "owsd-mqtt 1 %" SCNx64 " %d %" SCNd64 " %" SCNd64, &key, &old.count,
-	              &old.reached.boot, &old.reached.us) == 4 &&
-	       key == p->key && old.count >= 0 && old.count <= PAST_WINDOWS;
+	good = fscanf(f, "owsd-mqtt 2 %" SCNx64 " %d", &key, &old.count) == 2 && key == p->key &&
+	       old.count >= 0 && old.count <= PAST_WINDOWS && scan_point(f, &old.reached);
 	for (int i = 0; good && i < old.count; i++)
-		good = fscanf(f, "%" SCNd64 " %" SCNd64 " %" SCNd64 " %" SCNd64,
-		              &old.windows[i].from.boot, &old.windows[i].from.us,
-		              &old.windows[i].until.boot, &old.windows[i].until.us) == 4;
+		good = scan_point(f, &old.windows[i].from) && scan_point(f, &old.windows[i].until);
 	good = good && fscanf(f, " %3s", end) == 1 && !strcmp(end, "end");
 	fclose(f);
 	if (good)
@@ -204,6 +213,20 @@ static struct row *row_of(struct past *p, const struct replay_row *r)
 
 /* --- A batch --------------------------------------------------------------------------------- */
 
+/* For now no more follows of chips that are away. */
+static void let_die(struct past *p)
+{
+	struct stream *s = p->stream;
+
+	for (int i = 0; i < s->chip_count; i++) {
+		int first = (int)(s->by_chip[s->chips[i].first] - s->rows);
+
+		if (s->chips[i].lent)
+			stream_changes(s, &first, 1);
+		s->chips[i].lent = false;
+	}
+}
+
 /* Nothing has gone out yet of what is sent next. */
 static void begin_anew(struct past *p)
 {
@@ -213,7 +236,7 @@ static void begin_anew(struct past *p)
 		p->stream->chips[i].filled = false;
 }
 
-void past_drop(struct past *p)
+static void drop_batch(struct past *p)
 {
 	for (int i = 0; i < p->value_count; i++)
 		free(p->values[i].text);
@@ -224,16 +247,29 @@ void past_drop(struct past *p)
 	p->by_name = NULL;
 	p->rows = NULL;
 	p->value_count = p->put = 0;
+	p->read = false;
+}
+
+void past_drop(struct past *p)
+{
+	drop_batch(p);
 	if (p->marking)
 		p->mark_published = UINT64_MAX; /* its answer is not waited for */
-	p->read = p->marking = false;
+	p->marking = false;
 	begin_anew(p);
 }
 
-static void wait_more(struct past *p, int64_t now_ns)
+static void wait_more(struct past *p, int64_t now_ns, int64_t most_ns)
 {
 	p->next_ns = now_ns + p->wait_ns;
-	p->wait_ns = 2 * p->wait_ns < WAIT_MOST_NS ? 2 * p->wait_ns : WAIT_MOST_NS;
+	p->wait_ns = 2 * p->wait_ns < most_ns ? 2 * p->wait_ns : most_ns;
+}
+
+static void say_once(struct past *p, bool *said, const char *words)
+{
+	if (p->worth && !*said)
+		log_notice(p->face->log, "what the broker has missed is sent again%s", words);
+	*said = *said || p->worth;
 }
 
 static void end_window(struct past *p, int64_t now_ns)
@@ -252,8 +288,9 @@ static void end_window(struct past *p, int64_t now_ns)
 			           "%" PRIu64 " values are of a time when the clock was never set: "
 			           "they are not sent",
 			           p->undated);
-		p->said = false;
+		p->worth = p->said = p->waits = false;
 		p->filled = p->undated = 0;
+		let_die(p);
 		close_history(p);
 	}
 	keep(p, now_ns);
@@ -293,6 +330,10 @@ static void add_value(struct past *p, struct row *row, struct replay_row *r)
 	if (r->at.boot == p->boot)
 		r->wall_us = r->at.us + (now.wall - now.boot) / NS_PER_US;
 	*value = (struct past_value){.row = row, .wall_us = r->wall_us, .v = r->v, .text = r->text};
+	/* who keeps values by their milliseconds keeps both */
+	if (value->wall_us >= row->past_us && value->wall_us < row->past_us + US_PER_MS)
+		value->wall_us = row->past_us + US_PER_MS;
+	row->past_us = value->wall_us;
 	value->place = p->value_count;
 	r->text = NULL;
 }
@@ -367,13 +408,8 @@ static int read_batch(struct past *p, int64_t now_ns)
 	}
 	from = replay_place(p->history, &w->from);
 	until = replay_place(p->history, &w->until);
-	if (from < 0 || until < 0) {
-		/* that of this boot has written nothing yet; of an older one it never will */
-		if ((from < 0 ? w->from : w->until).boot == p->boot)
-			return -EAGAIN;
-		end_window(p, now_ns);
-		return 0;
-	}
+	if (from < 0 || until < 0)
+		return -EAGAIN; /* it has written nothing yet */
 	if (until - from > MOST_US)
 		from = until - MOST_US;
 	end = replay_end(p->history) < until ? replay_end(p->history) : until;
@@ -416,6 +452,7 @@ static void end_batch(struct past *p, int64_t now_ns)
 	p->sent += (uint64_t)p->value_count;
 	p->filled += (uint64_t)p->value_count;
 	p->next_ns = now_ns + (p->value_count ? PACE_NS : 0);
+	p->moved_ns = now_ns;
 	for (int i = 0; i < p->value_count; i++)
 		free(p->values[i].text);
 	free(p->values);
@@ -432,6 +469,7 @@ static void end_batch(struct past *p, int64_t now_ns)
 void past_begin(struct past *p, uint64_t key)
 {
 	int64_t now_ns = ows_now();
+	bool kept;
 
 	p->on = p->stream->profile->past;
 	p->key = key;
@@ -439,14 +477,15 @@ void past_begin(struct past *p, uint64_t key)
 	p->reached = point_of(p, now_ns);
 	p->count = 0;
 	p->lost = true;
-	p->logged = p->said = false;
+	p->logged = p->worth = p->said = p->waits = false;
 	p->wait_ns = WAIT_NS;
-	if (!p->on || !open_history(p))
+	if (!p->on)
 		return;
-	close_history(p);
 	find_path(p);
-	if (*p->path && !read_kept(p))
+	kept = read_kept(p);
+	if (open_history(p) && !kept)
 		keep(p, now_ns);
+	close_history(p);
 }
 
 /* The broker has the birth: what it has missed before is known. */
@@ -456,18 +495,18 @@ static void begin_session(struct past *p, int64_t now_ns)
 
 	if (p->count < PAST_WINDOWS) {
 		w = &p->windows[p->count++];
-		w->from = (struct replay_point){p->reached.boot, p->reached.us - SLACK_US};
+		w->from = p->reached;
+		w->from.us -= SLACK_US;
+		w->from.wall_us -= SLACK_US;
 		if (w->from.boot == p->boot && w->from.us < p->born.us)
 			w->from = p->born;
 	}
 	w = &p->windows[p->count - 1];
 	w->until = p->born = p->mark;
-	if (w->from.boot != p->boot || w->until.us - w->from.us > WORTH_US) {
-		log_notice(p->face->log,
-		           "what the broker has missed is sent again, from the history");
-		p->said = true;
-	}
+	if (w->from.boot != p->boot || w->until.us - w->from.us > WORTH_US)
+		p->worth = true;
 	p->lost = false;
+	p->moved_ns = now_ns;
 	p->next_ns = now_ns + PACE_NS;
 	p->wait_ns = WAIT_NS;
 	p->kept_ns = 0;
@@ -524,9 +563,6 @@ void past_lost(struct past *p)
 		row->past_told = row->sure_told;
 	}
 	past_drop(p);
-	/* Without a history there were no marks: all that was known of has gone out. */
-	if (!p->lost && !p->there)
-		p->reached = point_of(p, p->face->looked_ns);
 	if (!p->lost)
 		keep(p, ows_now());
 	p->lost = true;
@@ -539,28 +575,53 @@ void past_end(struct past *p)
 	close_history(p);
 }
 
+/*
+ * Without a history there are no marks: what is known of has gone out. One that appears is found
+ * when there is something else to do.
+ */
+static bool has_come(struct past *p, int64_t now_ns)
+{
+	p->reached = point_of(p, p->face->looked_ns);
+	if (now_ns < p->next_ns)
+		return false;
+	wait_more(p, now_ns, LOOK_MOST_NS);
+	if (!open_history(p))
+		return false;
+	log_notice(p->face->log,
+	           "there is a history of owsd-recorder now: what the broker misses is sent again");
+	p->logged = false;
+	p->wait_ns = WAIT_NS;
+	return true;
+}
+
 void past_pump(struct past *p, int64_t now_ns)
 {
 	/* a time that is wrong does not count */
 	if (!p->on || !p->stream->live || !p->stream->announced || !p->stream->clock_set)
 		return;
 	if (p->lost && !p->marking && !open_history(p)) {
-		p->lost = false;
-		p->count = 0;
+		p->mark = point_of(p, now_ns);
+		begin_session(p, now_ns);
 	}
-	if (!p->there)
+	if (!p->there && !has_come(p, now_ns))
 		return;
 	if (p->marking && p->broker->marked)
 		marked(p, now_ns);
 	if (!p->lost && p->count && !p->read && now_ns >= p->next_ns) {
 		int err = read_batch(p, now_ns);
 
-		if (err)
-			wait_more(p, now_ns);
-		if (err)
-			past_drop(p);
-		else if (p->read && !p->value_count)
+		if (err) {
+			wait_more(p, now_ns, WAIT_MOST_NS);
+			drop_batch(p);
+			let_die(p);
+			if (now_ns - p->moved_ns > LATE_NS)
+				say_once(p, &p->waits,
+				         " when owsd-recorder has written it: does that run?");
+		} else if (p->read && !p->value_count) {
 			end_batch(p, now_ns);
+		} else if (p->read) {
+			say_once(p, &p->said, ", from the history");
+		}
 	}
 	if (!p->lost && !p->marking && p->broker->published == p->mark_published)
 		p->reached = point_of(p, p->face->looked_ns);

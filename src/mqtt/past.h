@@ -27,7 +27,9 @@ struct past {
 	bool there;  /* there is a history */
 	bool lost;   /* the broker does not get what changes now */
 	bool logged; /* why nothing is sent again, or is not kept */
+	bool worth;  /* what is missed is worth a line of the log */
 	bool said;   /* that it goes out again */
+	bool waits;  /* that the recorder has not written it, was said */
 	bool due;    /* there is something to do at next_ns; else the next event comes first */
 	bool dated;  /* the clock of this boot is known to be right */
 	char path[HISTORY_PATH + 16];
@@ -37,7 +39,7 @@ struct past {
 	struct replay_point born;                 /* the last birth */
 	struct past_window windows[PAST_WINDOWS]; /* but this, the oldest first */
 	int count;
-	int64_t kept_ns, next_ns, wait_ns;
+	int64_t kept_ns, next_ns, wait_ns, moved_ns;
 	bool marking, mark_batch; /* a mark is under way; behind a batch */
 	struct replay_point mark; /* what it is of */
 	int64_t marked_ns;

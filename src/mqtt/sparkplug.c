@@ -554,7 +554,7 @@ static bool value(struct stream *s, struct row *row)
 			return false;
 		}
 	}
-	if (!chip || plain_chip_there(s, chip))
+	if (!chip || plain_chip_there(s, chip) || (chip->lent && s->live))
 		return true;
 	sparkplug_begin(s);
 	chip->announced = !put_numbered(s, "DEATH", chip);
@@ -562,13 +562,13 @@ static bool value(struct stream *s, struct row *row)
 }
 
 /*
- * A chip that is away, and was there then, is born for it; its death follows, as the rows say. Of
- * one that was not there either nothing is to be said.
+ * Data needs a device that is born: a chip that is away, and was there then, is born for it once,
+ * with what it is now, and dies when no more follows. Of one that was not there either nothing is
+ * to be said.
  */
 static bool sparkplug_past(struct stream *s, const struct past_value *values, int n)
 {
 	uint64_t alias = first_alias(s);
-	int first = (int)(values->row - s->rows);
 	struct chip *chip = values->row->chip < 0 ? NULL : &s->chips[values->row->chip];
 	struct part *parts = s->parts;
 
@@ -584,8 +584,7 @@ static bool sparkplug_past(struct stream *s, const struct past_value *values, in
 		chip->announced = put_numbered(s, "BIRTH", chip);
 		if (!chip->announced)
 			return false;
-		stream_changes(s, &first, 1);
-		chip->filled = true;
+		chip->filled = chip->lent = true;
 	}
 	sparkplug_begin(s);
 	s->parts = NULL; /* they are in their order, and may be more than there are rows */

@@ -434,7 +434,7 @@ void stream_changes(struct stream *s, const int *signals, int n)
 void stream_announce(struct stream *s)
 {
 	for (int i = 0; i < s->chip_count; i++)
-		s->chips[i].announced = false;
+		s->chips[i].announced = s->chips[i].lent = false;
 	s->announced = false;
 	s->birth = s->profile->birth ? 0 : -1;
 }

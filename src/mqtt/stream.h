@@ -49,6 +49,7 @@ struct row {
 	 */
 	int64_t moment_ns, born_ns, sure_ns, past_ns;
 	uint64_t told, sure_told, past_told, past_print;
+	int64_t past_us; /* since 1970, of the last one that was sent again */
 };
 /* A value of a row at a time that is past. */
 struct past_value {
@@ -72,6 +73,7 @@ struct chip {
 	bool seen;                       /* it was there once, since owsd-mqtt has started */
 	bool announced;                  /* by the birth */
 	bool filled;                     /* what was missed has had values of it that were good */
+	bool lent;                       /* announced for what was missed alone: a death is due */
 	bool published;
 	enum chip_state state; /* what was published */
 };

@@ -4,35 +4,52 @@
 values, with the time of measurement."""
 
 import contextlib
+import itertools
 import json
 import sqlite3
 import time
 
 import owsdtest
-from mqtthouse import RELAY, SWITCH, Listener, item
-from owsdtest import BUILD, logged, raw, until
+from mqtthouse import RELAY, ROOM, SWITCH, Listener, item
+from owsdtest import BUILD, logged, raw, settled, until
 from test_mqtt_commands import publish
 from test_mqtt_sparkplug import Host, start
 
 RECORDER = BUILD / "owsd-recorder"
 DIAL = item("dial", f"/{SWITCH}/PIO.BYTE", "byte", "output")
+PROBE = "28.A0B1C2000009"
 
 
 class Plant:
     """A house that records, its host, and what the dial was set to: [(value, when)]."""
 
-    def __init__(self, scene, flush=1, **keys):
+    def __init__(self, scene, *items, flush=1, **keys):
         owsdtest.need(RECORDER)
         self.scene, self.was, self.got = scene, [], []
         self.env = {"STATE_DIRECTORY": str(scene.path / "state")}
         block = raw(f'{{ Flush {flush} Directory "{scene.path / "history"}" }}')
-        self.house, self.host = start(scene, DIAL, env=self.env, top={"Recorder": block}, **keys)
+        self.house, self.host = start(scene, DIAL, *items, env=self.env, top={"Recorder": block}, **keys)
         self.house.face.stop()
         self.record()
         self.house.face = self.house.start(self.env)
         if "PrimaryHost" in keys:
             self.say(True)
         self.host.hears("dbirth", SWITCH, after=len(self.host.heard))
+
+    @property
+    def file(self):
+        return self.scene.path / "history" / "history.sqlite"
+
+    @property
+    def reached(self):
+        return next((self.scene.path / "state").rglob("reached"))
+
+    def recorded(self, *values):
+        """They are in the file."""
+        def there():
+            with contextlib.closing(sqlite3.connect(self.file)) as db:
+                return [int(v) for v, in db.execute("select value from raw join signal using (signal) where name = 'dial' order by id")]
+        until(lambda: there()[-len(values):] == list(values), 20, there)
 
     def record(self):
         self.recorder = self.scene.start([RECORDER, "-n", self.house.daemon.name, "-c", self.house.daemon.config])
@@ -47,10 +64,13 @@ class Plant:
             self.was.append((value, time.time()))
 
     def back(self):
-        """The broker is there again; who listens is a new one."""
+        """The broker is there again; who listens is a new one, and hears all."""
         self.got += self.metrics()
+        if self.house.face.running():
+            self.house.face.freeze()
         self.house.broker.start()
         self.host = Host(Listener(self.scene, self.house.broker.port, "spBv1.0/#", ["-F", "=%q\t%r\t%t\t%x"]))
+        self.house.face.thaw()
 
     def metrics(self):
         """[(message, value, time, historical)] of the dial, as it came since back()."""
@@ -157,6 +177,83 @@ def test_what_a_host_that_was_away_has_missed_comes_when_it_is_back(scene):
     plant.say(True)
     plant.complete()
     plant.after_the_live_ones()
+
+
+def test_a_history_that_comes_after_owsd_mqtt_is_taken_up_with_what_was_kept(scene):
+    plant = Plant(scene)
+    plant.turn(1)
+    plant.has(1)
+    assert plant.house.face.stop() == 0
+    plant.turn(2, 3)
+    plant.recorded(2, 3)
+    assert plant.recorder.stop() == 0
+    away = plant.file.rename(plant.file.with_name("away"))
+    plant.house.face = plant.house.start(plant.env)
+    logged(plant.house.face, "what the broker misses is not sent again")
+    until(lambda: plant.metrics()[-1][1] == 3, 20, plant.metrics)
+    plant.turn(4)
+    until(lambda: plant.metrics()[-1][1] == 4, 20, plant.metrics)
+    assert not [m for m in plant.metrics() if m[3]], plant.metrics()
+    away.rename(plant.file)
+    plant.record()
+    logged(plant.house.face, "there is a history of owsd-recorder now")
+    plant.complete()
+    # and the session goes on as one that began with it
+    plant.turn(5)
+    plant.has(5)
+    plant.house.broker.process.kill()
+    plant.turn(6, 7)
+    plant.back()
+    plant.complete()
+
+
+def test_what_was_after_a_boot_that_a_new_history_does_not_know_is_sent(scene):
+    plant = Plant(scene)
+    plant.turn(1)
+    plant.has(1)
+    assert plant.house.face.stop() == 0
+    # the power was cut there, and the recorder began a new file
+    head, reached, *rest = plant.reached.read_text().splitlines()
+    boot, *moment = reached.split()
+    plant.reached.write_text("\n".join([head, " ".join([str(int(boot) ^ 1), *moment]), *rest, ""]))
+    plant.turn(2, 3)
+    plant.recorded(2, 3)
+    plant.house.face = plant.house.start(plant.env)
+    plant.turn(4)
+    plant.complete()
+
+
+def test_a_chip_that_is_away_is_born_once_for_what_it_had_and_dies_behind_it(scene):
+    plant = Plant(scene, item("probe", f"/{PROBE}/temperature"), item("pull", "/simulator/pull", "bool", "output"),
+                  wire=f"DS18B20 {PROBE} as probe temperature 5\nbutton pull unplug probe\n")
+    plant.host.hears("dbirth", PROBE)
+    plant.turn(1)
+    plant.has(1)
+    plant.house.broker.process.kill()
+    plant.turn(2)
+    plant.house.set("pull", "1")
+    until(lambda: scene.owsctl(plant.house.daemon, "get", "probe").returncode, 20, "it is unplugged")
+    plant.turn(3)
+    plant.recorded(2, 3)
+    assert plant.recorder.stop() == 0
+    # more than goes in a batch, before its loss
+    with contextlib.closing(sqlite3.connect(plant.file)) as db:
+        (begin,), (end, number) = (db.execute(f"select {what} from raw join signal using (signal) where {which}").fetchone() for what, which in
+                                   (("max(id)", "name = 'dial' and value = 2"), ("max(id), signal", "name = 'probe'")))
+        step = (end - begin) // 1000
+        assert step > 0, (begin, end)
+        db.executemany("insert into raw (id, signal, value, quality) values (?, ?, ?, 192)",
+                       [(begin + n * step, number, float(n)) for n in range(1, 901)])
+        db.commit()
+    plant.back()
+
+    def values():
+        return [m.value for _, device, m in plant.host.metrics if device == PROBE and m.is_historical and m.value is not None]
+    until(lambda: plant.host.look() and values()[-1:] == [900.0], 60, lambda: (values()[-5:], plant.house.face.log()))
+    assert values() == [float(n) for n in range(1, 901)], values()
+    plant.host.hears("ddeath", PROBE)
+    verbs = [verb for verb, device, _ in settled(lambda: list(plant.host.look())) if device == PROBE]
+    assert [verb for verb, _ in itertools.groupby(verbs)] == ["dbirth", "ddata", "ddeath"], verbs
 
 
 def test_without_a_history_it_says_so_once(scene):

@@ -578,7 +578,7 @@ static void test_hours_are_the_same_with_and_without_minutes(void)
 
 static void test_all_rows_come_once_in_the_order_of_recording(void)
 {
-	struct replay_point begin = {history_boot_present(), 0}, lost = begin;
+	struct replay_point begin = {history_boot_present(), 0, 0}, lost = begin;
 	struct replay_row rows[7];
 	int of_signal[COUNT] = {0}, gaps = 0, got;
 	int64_t first = replay_place(h, &begin), last = 0;
@@ -609,7 +609,7 @@ static void test_all_rows_come_once_in_the_order_of_recording(void)
 	TEST_ASSERT_EQUAL_INT(1, replay_rows(h, first, replay_end(h), rows, 1));
 	TEST_ASSERT_EQUAL_INT(-1, rows[0].signal);
 	lost.boot++;
-	TEST_ASSERT_EQUAL_INT64(-ENOENT, replay_place(h, &lost));
+	TEST_ASSERT_EQUAL_INT64(h->sessions[0].start, replay_place(h, &lost));
 }
 
 /* The boot of a run that ended long before the moment: what comes is of the next run, all of it. */
@@ -621,11 +621,34 @@ static void test_a_moment_behind_a_run_is_not_in_the_next_one(void)
 	const struct {
 		struct replay_point at;
 		int64_t place;
-	} cases[] = {{{1, 20}, 110},  {{1, 109}, 199},  {{1, 110}, 200},
-	             {{1, 111}, 199}, {{1, 5000}, 199}, {{2, 5000}, 5190}};
+	} cases[] = {{{1, 20, 0}, 110},  {{1, 109, 0}, 199},  {{1, 110, 0}, 200},
+	             {{1, 111, 0}, 199}, {{1, 5000, 0}, 199}, {{2, 5000, 0}, 5190}};
 
 	for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++)
 		TEST_ASSERT_EQUAL_INT64(cases[i].place, replay_place(&two, &cases[i].at));
+}
+
+/* The recorder was not there in that boot, or has begun a new file. */
+static void test_a_boot_that_is_not_known_has_its_place_by_the_clock(void)
+{
+	struct session runs[] = {{.start = 100, .base = 90, .boot = 1, .date = 1000},
+	                         {.start = 200, .base = 190, .boot = 2, .date = 2000},
+	                         {.start = 900, .base = 890, .boot = 3, .date = -900}};
+	struct ows_history three = {.sessions = runs, .session_count = 3, .end = 1000};
+	const struct {
+		int64_t boot; /* of now */
+		struct replay_point at;
+		int64_t place;
+	} cases[] = {
+		{3, {7, 5, 1100}, 100},  {3, {7, 5, 1101}, 200},     {3, {7, 5, 2200}, 200},
+		{3, {7, 5, 2201}, 900},  {3, {7, 5, 9999}, 900},     {3, {3, 15, 9999}, 905},
+		{8, {7, 5, 9999}, 1001}, {8, {8, 5, 9999}, -ENOENT},
+	};
+
+	for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+		three.boot = cases[i].boot;
+		TEST_ASSERT_EQUAL_INT64(cases[i].place, replay_place(&three, &cases[i].at));
+	}
 }
 
 int main(void)
@@ -646,5 +669,6 @@ int main(void)
 	RUN_TEST(test_hours_are_the_same_with_and_without_minutes);
 	RUN_TEST(test_all_rows_come_once_in_the_order_of_recording);
 	RUN_TEST(test_a_moment_behind_a_run_is_not_in_the_next_one);
+	RUN_TEST(test_a_boot_that_is_not_known_has_its_place_by_the_clock);
 	return UNITY_END();
 }

@@ -155,6 +155,9 @@ static void test_what_was_is_sent_of_a_chip_that_is_away_too(void)
 	TEST_ASSERT_EQUAL_STRING("DBIRTH/pi/28.000000000001 9\n"
 	                         "DDATA/pi/28.000000000001 10\n",
 	                         said);
+	TEST_ASSERT_EQUAL_STRING("", pump());
+	TEST_ASSERT_TRUE(stream_chip(&s, "28.000000000001")->lent);
+	change(ROOM, 1);
 	TEST_ASSERT_EQUAL_STRING("DDEATH/pi/28.000000000001 11\n", pump());
 }
 
