@@ -219,6 +219,7 @@ uint32_t bus_write_text(struct bus_req *req)
 	while ((req->single ? strtof(text, NULL) != (float)req->value
 	                    : strtod(text, NULL) != req->value) &&
 	       digits++ < most);
+	text[strcspn(text, ",")] = '.'; /* of a process with another decimal point */
 	return (uint32_t)n;
 }
 

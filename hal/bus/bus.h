@@ -63,10 +63,10 @@ struct bus_req {
 	bool fresh;   /* read past every cache */
 	/*
 	 * READ: where the answer is a number, its text is not needed. WRITE: `value` is written,
-	 * and data is room for its text.
+	 * and data is room for BUS_NUMBER_TEXT bytes, where a bus may put its text.
 	 */
 	bool number;
-	bool single; /* WRITE: `value` is a float, which has a shorter text */
+	bool single; /* `value` is a float: the shortest text that reads back so is meant */
 	double value;
 	int64_t deadline_ns; /* not begun by then: answered -ETIME without effect.
 	                        Begun: finished or failed by then, never undone. A READ may be
@@ -144,7 +144,7 @@ struct bus_answer {
 	uint8_t detail;      /* BUS_DETAIL_* */
 	uint8_t retries;     /* how often the bus did it again after an error; at most 255 */
 	uint8_t supply;      /* enum bus_supply, of the path's device */
-	uint32_t len;        /* READ and DIR: bytes in req->data; WRITE: bytes taken */
+	uint32_t len;        /* READ and DIR: bytes in req->data; WRITE: bytes taken, of the text */
 	int64_t measured_ns; /* when the chip latched the value, else when the answer came */
 	double number;       /* if kind is BUS_NUMBER */
 	/*

@@ -208,7 +208,7 @@ static int access_line(struct gpio_bus *gpio, int line, struct bus_req *req,
 	if (!err)
 		err = line_write(gpio, (unsigned)line, guest, value, why, why_size);
 	if (!err)
-		answer->len = req->len;
+		answer->len = bus_write_text(req);
 	return err;
 }
 

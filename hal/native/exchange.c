@@ -77,7 +77,8 @@ static int add_element(struct job *job)
 	const struct property *property = job->property;
 	bool all = job_wants_all(job);
 
-	if (job->req->number && format_is_number(property, job->extension))
+	/* of a float its text is what was meant: 1.2, which as a float is 1.2000000477 */
+	if (job->req->number && !job->req->single && format_is_number(property, job->extension))
 		return 0;
 	if (is_text(property)) {
 		if (txn->len > txn->room)
@@ -175,10 +176,10 @@ static void write_done(struct native *native, struct job *job)
 
 	if (job->txn.device && !job->property->offline)
 		job->txn.device->settled = true;
-	job->taken = text ? job->taken + job->txn.len : job->req->len;
+	job->taken = text ? job->taken + job->txn.len : bus_write_text(job->req);
 	job->tries = 0;
 	if (job_wants_all(job) && ++job->element < job->property->array.count &&
-	    (!text || job->taken < job->req->len)) {
+	    (!text || job->taken < bus_write_text(job->req))) {
 		job_txn(native, job);
 		return;
 	}

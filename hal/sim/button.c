@@ -118,7 +118,7 @@ static int read_state(const struct sim_net *net, const struct sim_button *button
 	return 0;
 }
 
-static int press(struct sim_net *net, const struct sim_button *button, const struct bus_req *req,
+static int press(struct sim_net *net, const struct sim_button *button, struct bus_req *req,
                  struct bus_answer *answer)
 {
 	struct sim_event event = button->event;
@@ -126,7 +126,7 @@ static int press(struct sim_net *net, const struct sim_button *button, const str
 
 	if (bus_write_switch(req, &on))
 		return -EINVAL;
-	answer->len = req->len;
+	answer->len = bus_write_text(req);
 	if (sim_net_lasts(net, &event) == on)
 		return 0;
 	event.on ^= !on;

@@ -82,8 +82,8 @@ static bool comes_later(const struct face *face, const struct ows_alarm *alarm, 
 }
 
 /*
- * Entries that are not kept any more are counted; one that owsd is writing waits. all: nothing more
- * comes to them.
+ * Entries that are not kept any more are counted; one that owsd is writing waits. all: also those
+ * whose value may still come.
  */
 static void take_alarms(struct face *face, bool all)
 {
@@ -226,7 +226,8 @@ static bool open_again(struct face *face, int64_t now_ns)
 static bool renew(struct face *face, int64_t now_ns)
 {
 	if (!face->stale) {
-		if (face->live)
+		/* of an image that was opened just now nothing was looked at: its count is another */
+		if (face->live && !face->fresh)
 			take_alarms(face, true);
 		face->stale = true;
 		face->stale_ns = now_ns;

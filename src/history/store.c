@@ -396,6 +396,7 @@ bool store_is_due(const struct history_store *store, int64_t seen_us)
 int store_commit(struct history_store *store, struct store_batch *batch)
 {
 	int err = store_ready(store);
+	uint32_t files = store->begun;
 	bool begun = false;
 
 	if (!err) {
@@ -418,10 +419,12 @@ int store_commit(struct history_store *store, struct store_batch *batch)
 		                  store->last_id);
 	if (!err && begun)
 		err = store_run(store, S_COMMIT);
-	if (err)
+	if (err) {
 		store_fail(store, batch, err);
-	else
+		store->begun = files;
+	} else {
 		store->commits++, store->rows += batch->count;
+	}
 	return err;
 }
 

@@ -46,7 +46,7 @@ struct history_writer {
 	int64_t newest_us; /* of all rows: no gap of all begins before it */
 	int64_t floor_us;  /* the end of the last gap of all */
 	int64_t begin_us, flushed_us, retry_us, step_us, repeat_us;
-	uint32_t files; /* in which this run began, or has yet to: after the last commit */
+	uint32_t files; /* begun so far; another number: the present one has nothing of before */
 	int error;
 	uint64_t dropped;
 };

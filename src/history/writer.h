@@ -82,7 +82,7 @@ struct history_state {
 	uint64_t dropped; /* rows that were lost since the start */
 	uint64_t rows;    /* written since the start */
 	uint64_t commits;
-	uint32_t files; /* in which the recording began: the last has nothing of those before */
+	uint32_t files; /* begun so far; one more: it has nothing of those before */
 };
 void history_writer_state(const struct history_writer *writer, struct history_state *state);
 

@@ -31,8 +31,8 @@ struct recording {
 	int64_t lost_ns;   /* owsd is lost since then; 0: it is there */
 	int64_t turned_ns; /* the last look at intervals; 0: none yet */
 	int disk_err;      /* as it was logged last */
-	uint64_t dropped;  /* likewise: rows */
-	uint32_t files;    /* likewise: that were begun */
+	uint64_t dropped;  /* rows that were lost, as logged last */
+	uint32_t files;    /* that were begun, as logged last */
 };
 
 /* The functions of the face's table; face->own is the recording. */

@@ -431,6 +431,7 @@ bool client_again(struct serve *s, struct client *c)
 {
 	if (c->state != CLIENT_READING || c->fd < 0 || c->lent || c->have || c->queued)
 		return false;
+	c->readable = true;
 	if (!client_receive(s, c))
 		client_close(s, c);
 	else if (c->have)

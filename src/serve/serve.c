@@ -218,11 +218,11 @@ static void take_next(struct serve *s)
 }
 
 /* A client that asks without a pause has so many requests answered before epoll is asked again. */
-#define AGAIN 15
+#define AGAIN_MOST 15
 
 /*
- * The client that was answered last asks again. With one CPU it has run while the answer was sent,
- * or runs now: that saves a sleep.
+ * The client whose turn was last asks again. With one CPU it has run while the answer was sent, or
+ * runs now: that saves a sleep.
  */
 static bool asks_again(struct serve *s)
 {
@@ -239,7 +239,7 @@ static int serve_wait(struct serve *s, struct epoll_event *events)
 {
 	int wait = wait_ms(s), n;
 
-	if (wait && s->again++ < AGAIN && asks_again(s))
+	if (wait && s->again++ < AGAIN_MOST && asks_again(s))
 		return 0;
 	s->again = 0;
 	wait = wait_ms(s);

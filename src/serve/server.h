@@ -175,7 +175,7 @@ struct serve {
 	unsigned free_count, used; /* used: the highest ever in use + 1 */
 	uint16_t *round;           /* clients that have something to do, in their order */
 	unsigned round_at, round_count;
-	unsigned again;  /* rounds since epoll was asked */
+	unsigned again;  /* how often a client was asked in place of epoll, since that was */
 	unsigned queued; /* clients that wait for a directory */
 	struct log_rate full_rate, error_rate, peer_rate;
 	struct bus_counter counters[SERVE_COUNTER_COUNT];

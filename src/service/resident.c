@@ -1,50 +1,58 @@
 /* SPDX-License-Identifier: MIT */
 /* The pages that the start of a program leaves mapped. */
-#include <link.h>
+#include <fcntl.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <string.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
 #include "src/service/resident.h"
 
-static int drop_object(struct dl_phdr_info *object, size_t size, void *arg)
+struct mapping {
+	uintptr_t from, to;
+	bool of_file; /* and cannot be written */
+};
+
+static void resident_line(struct mapping *mapping, const char *line)
 {
-	uintptr_t page = (uintptr_t) * (const long *)arg;
+	unsigned long from, to, kib;
+	char rights[5], path[2];
 
-	(void)size;
-	for (int i = 0; i < object->dlpi_phnum; i++) {
-		const ElfW(Phdr) *part = &object->dlpi_phdr[i];
-		uintptr_t begin = (uintptr_t)object->dlpi_addr + (uintptr_t)part->p_vaddr;
-		uintptr_t from = begin & -page, to = (begin + part->p_memsz + page - 1) & -page;
-
-		/* what the loader may have written is no page of the file any more */
-		if (part->p_type == PT_LOAD && !(part->p_flags & PF_W))
-			madvise((void *)from, to - from, MADV_DONTNEED);
+	if (sscanf(line, "%lx-%lx %4s", &from, &to, rights) == 3) {
+		mapping->from = from;
+		mapping->to = to;
+		mapping->of_file = !strchr(rights, 'w') && strchr(rights, 'p') &&
+		                   sscanf(line, "%*s %*s %*s %*s %*s %1s", path) == 1 &&
+		                   *path == '/';
+	} else if (mapping->of_file && sscanf(line, "Anonymous: %lu", &kib) == 1 && kib == 0) {
+		madvise((void *)mapping->from, mapping->to - mapping->from, MADV_DONTNEED);
 	}
-	return 0;
-}
-
-/* A breakpoint is a page of one's own, which would be lost. */
-static bool is_traced(void)
-{
-	FILE *status = fopen("/proc/self/status", "r");
-	char line[128];
-	long tracer = 0;
-
-	while (status && fgets(line, sizeof(line), status))
-		if (sscanf(line, "TracerPid: %ld", &tracer) == 1)
-			break;
-	if (status)
-		fclose(status);
-	return !status || tracer != 0;
 }
 
 void resident_drop_start(void)
 {
-	long page = sysconf(_SC_PAGESIZE);
+	int fd = open("/proc/self/smaps", O_RDONLY | O_CLOEXEC);
+	struct mapping mapping = {0};
+	char text[4096 + 1];
+	size_t have = 0;
+	ssize_t n;
 
-	if (!is_traced())
-		dl_iterate_phdr(drop_object, &page);
+	if (fd < 0)
+		return;
+	while (have < sizeof(text) - 1 &&
+	       (n = read(fd, text + have, sizeof(text) - 1 - have)) > 0) {
+		char *line = text, *end;
+
+		have += (size_t)n;
+		text[have] = '\0';
+		for (; (end = strchr(line, '\n')) != NULL; line = end + 1) {
+			*end = '\0';
+			resident_line(&mapping, line);
+		}
+		have = strlen(line);
+		memmove(text, line, have);
+	}
+	close(fd);
 }

@@ -201,7 +201,7 @@ static int64_t latched_ns(struct txn *txn, const uint8_t scratchpad[9], int64_t 
 	txn->unproven = chip->unseen && !(changed && chip->since_ns == chip->least_ns);
 	compare_bits(txn);
 	int64_t when = ended_ns(device);
-	if (txn->unproven && thermometer_marks(device))
+	if (txn->unproven && (changed || thermometer_marks(device)))
 		when = changed ? chip->since_ns : 0;
 	else if (txn->unproven)
 		when = chip->earlier_ns;

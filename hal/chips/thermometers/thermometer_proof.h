@@ -20,7 +20,7 @@
 struct thermometer_last {
 	int64_t ends_ns; /* when it ends or ended; 0: none is known */
 	int64_t busy_ns; /* until then the chip may convert, whatever it heard */
-	unsigned missed; /* starts in a row that it did not show; see THERMOMETER_SILENT */
+	unsigned missed; /* starts in a row that it did not show, to THERMOMETER_SILENT */
 	bool was_read;   /* a result has been read since then */
 	bool unread;     /* its result did not come over the wire whole */
 	bool cut;        /* the chip may have gone on with the one before it */

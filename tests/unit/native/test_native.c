@@ -221,6 +221,24 @@ static void test_a_number_is_written_as_its_text_is(void)
 	}
 }
 
+/* 1.2 as a float is 1.2000000477, which a chip that counts tenths would refuse. */
+static void test_a_float_is_written_as_its_shortest_text_is(void)
+{
+	struct sim_slave *slave;
+	uint32_t id;
+
+	wire_init(&host, 1, 1);
+	slave = wire_add(0, "DS18B20", 1);
+	start();
+	id = ask(BUS_WRITE, BUS_INPUT, true, of(slave, "templow"), "");
+	req[id].number = req[id].single = true;
+	req[id].value = 1.2F;
+	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+	TEST_ASSERT_EQUAL_UINT(3, answer_to(id)->len);
+	TEST_ASSERT_EQUAL_MEMORY("1.2", data[id], 3);
+	forget();
+}
+
 static void test_structure_states_the_properties(void)
 {
 	wire_init(&host, 1, 1);
@@ -343,6 +361,7 @@ int main(void)
 	RUN_TEST(test_an_alias_names_the_device);
 	RUN_TEST(test_the_end_of_a_line_or_string_behind_a_value_does_not_count);
 	RUN_TEST(test_a_number_is_written_as_its_text_is);
+	RUN_TEST(test_a_float_is_written_as_its_shortest_text_is);
 	RUN_TEST(test_structure_states_the_properties);
 	RUN_TEST(test_the_case_of_a_prefix_does_not_count);
 	RUN_TEST(test_structure_has_a_branch_as_a_file);

@@ -3,6 +3,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include "unity.h"
 
@@ -37,11 +39,28 @@ static void test_pages_of_files_are_given_back(void)
 {
 	long before = kib_of("RssFile:");
 
-	if (kib_of("TracerPid:"))
-		TEST_IGNORE_MESSAGE(
-			"a debugger's breakpoints would be lost: nothing is given back");
 	resident_drop_start();
 	TEST_ASSERT_LESS_THAN(before, kib_of("RssFile:"));
+}
+
+/* As a debugger and the kernel's probes do: a page of code that is no more that of the file. */
+static void test_a_page_that_differs_from_its_file_stays(void)
+{
+	long page = sysconf(_SC_PAGESIZE);
+	char path[] = "/tmp/owsd-test-resident-XXXXXX";
+	int fd = mkstemp(path);
+	char *code;
+
+	TEST_ASSERT_EQUAL(0, ftruncate(fd, page));
+	code = mmap(NULL, (size_t)page, PROT_READ | PROT_WRITE, MAP_PRIVATE, fd, 0);
+	TEST_ASSERT_TRUE(code != MAP_FAILED);
+	code[0] = 'x';
+	TEST_ASSERT_EQUAL(0, mprotect(code, (size_t)page, PROT_READ));
+	resident_drop_start();
+	TEST_ASSERT_EQUAL('x', code[0]);
+	munmap(code, (size_t)page);
+	close(fd);
+	unlink(path);
 }
 
 static void test_what_was_written_stays(void)
@@ -60,6 +79,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_pages_of_files_are_given_back);
+	RUN_TEST(test_a_page_that_differs_from_its_file_stays);
 	RUN_TEST(test_what_was_written_stays);
 	return UNITY_END();
 }
