@@ -88,7 +88,7 @@ struct face {
 	int64_t looked_ns;
 	/* Least time from one look at the changes to the next: what comes in it comes at once */
 	int64_t pace_ns;
-	/* owsd reads the value after a device's alarm later: so long the entry waits; 0: it does not */
+	/* owsd reads the value after a device's alarm later: so long the entry waits; 0: not */
 	int64_t after_ns;
 	/* Entries of the journals up to that time are known already and give no event. */
 	int64_t alarms_after_ns, commands_after_ns;

@@ -226,7 +226,7 @@ static bool open_again(struct face *face, int64_t now_ns)
 static bool renew(struct face *face, int64_t now_ns)
 {
 	if (!face->stale) {
-		/* of an image that was opened just now nothing was looked at: its count is another */
+		/* an image that was opened just now was not looked at: its count is another */
 		if (face->live && !face->fresh)
 			take_alarms(face, true);
 		face->stale = true;
