@@ -40,6 +40,9 @@ CLEAN = {
     "src/b/b.h": f"/* {MIT} */\n/* Room src/b: second things. Uses nothing. */\n#ifndef SRC_B_B_H\n"
                  "#define SRC_B_B_H\n\nint b(void);\n\n#endif\n",
     "src/b/b.c": f'{HEAD}#include "src/b/b.h"\n\nint b(void)\n{{\n\treturn 1;\n}}\n',
+    "src/a/part/state.h": f"/* {MIT} */\n/* What this part has. */\n#ifndef SRC_A_PART_STATE_H\n"
+                          "#define SRC_A_PART_STATE_H\n\nstruct part {\n\tint x;\n};\n\n#endif\n",
+    "src/a/part/p.c": f'{HEAD}#include "src/a/part/state.h"\n',
     "docs/a.3": f'.\\" {MIT}\n.TH A 3 "" "a" "Library functions"\n.SH NAME\na \\- first things\n'
                 ".SH SYNOPSIS\n.B #include <a.h>\n.PP\n.B int a(void);\n",
     "src/engine/e.c": f"/* {MIT} */\n/* Room src/engine: the engine. Uses nothing. */\n\n"
@@ -76,6 +79,8 @@ FAULTS = [
     ("docs/bad.svg", "<svg>\n<g>\n</svg>\n", r"docs/bad.svg:3: .*make it XML"),
     ("docs/bad.sh", f"#!/bin/sh\n# {MIT}\nif true; then\n", r"docs/bad.sh:\d+: .*sh cannot read it"),
     ("src/b/up.c", f'{HEAD}#include "src/a/a.h"\n', r"src/b/up.c:3: src/b may not use src/a"),
+    ("src/a/nosy.c", f'{HEAD}#include "src/a/part/state.h"\n',
+     r"src/a/nosy.c:3: this header is private to src/a/part"),
     ("src/a/home.h", f"/* {MIT} */\n#ifndef SRC_A_HOME_H\n#define SRC_A_HOME_H\nint a(void);\n#endif\n",
      r"src/a/home.h:4: a\(\) stands in src/a/a.c"),
     ("src/a/alone.h", f"/* {MIT} */\n#ifndef SRC_A_ALONE_H\n#define SRC_A_ALONE_H\nuint8_t y(void);\n#endif\n",
