@@ -30,21 +30,19 @@
 #define WORDS(name) \
 	"create table if not exists " name " (" name " integer primary key, text text not null);"
 
+/* clang-format off */
 #define EVENTS \
-	WORDS("alarm_kind") \
-	WORDS("alarm_event") \
-	WORDS("command_reason") \
-	"create view trend_event as select " ISO( \
-		"event.time") " as time," \
-			      " case event.kind when 6 then 'clock' when 7 then 'command' else 'alarm' end as kind," \
-			      " coalesce(c.text, ltrim(coalesce(k.text, '') || ' ' || a.text)) as what, name, value," \
-			      " before, unit, q.text as quality, event.text, program, person" \
-			      " from event left join signal using (signal) left join quality q" \
-			      " on q.quality = event.quality left join command_reason c" \
-			      " on event.kind = 7 and command_reason = event.reason left join alarm_kind k" \
-			      " on event.kind = 8 and alarm_kind = event.reason left join alarm_event a" \
-			      " on event.kind = 8 and alarm_event = event.event " SESSION( \
-				      "event.id") ";"
+	WORDS("alarm_kind") WORDS("alarm_event") WORDS("command_reason") \
+	"create view trend_event as select " ISO("event.time") " as time," \
+	" case event.kind when 6 then 'clock' when 7 then 'command' else 'alarm' end as kind," \
+	" coalesce(c.text, ltrim(coalesce(k.text, '') || ' ' || a.text)) as what, name, value," \
+	" before, unit, q.text as quality, event.text, program, person" \
+	" from event left join signal using (signal) left join quality q" \
+	" on q.quality = event.quality left join command_reason c" \
+	" on event.kind = 7 and command_reason = event.reason left join alarm_kind k" \
+	" on event.kind = 8 and alarm_kind = event.reason left join alarm_event a" \
+	" on event.kind = 8 and alarm_event = event.event " SESSION("event.id") ";"
+/* clang-format on */
 
 #define HOURS ROLLUP("hour", "3600000000", SCHEMA_HOUR("t.id"), "(t.id >> 3)")
 
