@@ -66,19 +66,21 @@ def happened(scene):
 
 
 class Clock:
-    """How far CLOCK_REALTIME and CLOCK_BOOTTIME are ahead, for all that got its env()."""
+    """How far CLOCK_REALTIME and CLOCK_BOOTTIME are ahead, for all that got its env(), and whether the
+    clock is synchronised; None: as it is."""
 
-    def __init__(self, scene):
-        self.path = scene.path / "clock"
-        self.path.write_bytes(bytes(16))
+    def __init__(self, scene, name="clock"):
+        self.path = scene.path / name
+        self.path.write_bytes(bytes(24))
 
-    def env(self, scene):
-        return env(scene, clock=self.path)
+    def env(self, scene, **faults):
+        return env(scene, clock=self.path, **faults)
 
-    def jump(self, wall=0.0, boot=0.0):
-        now = struct.unpack("qq", self.path.read_bytes())
+    def jump(self, wall=0.0, boot=0.0, synchronised=None):
+        now = struct.unpack("qqq", self.path.read_bytes())
         with open(self.path, "r+b", buffering=0) as file:
-            file.write(struct.pack("qq", now[0] + int(wall * 1e9), now[1] + int(boot * 1e9)))
+            file.write(struct.pack("qqq", now[0] + int(wall * 1e9), now[1] + int(boot * 1e9),
+                                   now[2] if synchronised is None else 1 + synchronised))
 
 
 class Traced(owsdtest.Owsd):

@@ -503,26 +503,36 @@ def victoria_here():
     return program
 
 
-def test_the_genuine_victoriametrics_has_what_owsctl_said(scene):
-    port = free_port()
-    url = f"http://127.0.0.1:{port}"
-    server = scene.start([victoria_here(), f"-httpListenAddr=127.0.0.1:{port}", "-retentionPeriod=1y",
-                          f"-storageDataPath={scene.path / 'data'}", "-memory.allowedBytes=64MB"])
+class Victoria:
+    def __init__(self, scene, *options):
+        port = free_port()
+        self.url = f"http://127.0.0.1:{port}"
+        self.process = scene.start([victoria_here(), f"-httpListenAddr=127.0.0.1:{port}", "-retentionPeriod=1y",
+                                    f"-storageDataPath={scene.path / 'data'}", "-memory.allowedBytes=64MB", *options])
+        until(self.here, 60, "it answers")
 
-    def here():
+    def here(self):
         try:
-            return ask(url + "/health")
+            return ask(self.url + "/health")
         except (OSError, urllib.error.URLError):
-            assert server.running(), server.log()
+            assert self.process.running(), self.process.log()
             return None
 
-    def exported(metric, name):
-        ask(url + "/internal/force_flush")
-        lines = ask(f'{url}/api/v1/export?match[]={{__name__="ows_{metric}",signal="{name}"}}')
+    def exported(self, match):
+        """[(ms, value)] of what fits, and the series."""
+        ask(self.url + "/internal/force_flush")
+        lines = ask(f"{self.url}/api/v1/export?end={time.time() + 86400:.0f}&match[]={{{match}}}")
         series = [json.loads(line) for line in lines.splitlines()]
         return [p for s in series for p in zip(s["timestamps"], s["values"])], series
 
-    until(here, 60, "it answers")
+
+def test_the_genuine_victoriametrics_has_what_owsctl_said(scene):
+    server = Victoria(scene)
+    url = server.url
+
+    def exported(metric, name):
+        return server.exported(f'__name__="ows_{metric}",signal="{name}"')
+
     daemon = scene.owsd(text(scene, url + "/write", ROOM, RELAYS, ABSENT))
     face = push(scene, daemon)
     until(lambda: scene.get(daemon, "room") == "21.5", 20, "the room is good")
@@ -542,7 +552,7 @@ def test_the_genuine_victoriametrics_has_what_owsctl_said(scene):
     assert exported("value", "absent")[0] == []
     assert [v for _, v in exported("quality", "absent")[0]][-1] == 8
     assert face.stop() == 0
-    assert server.stop() == 0
+    assert server.process.stop() == 0
 
 
 def test_under_the_units_filter_it_does_all_that_it_does(scene):

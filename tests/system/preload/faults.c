@@ -4,7 +4,9 @@
  *
  *   FAULT_MEMORY=N    the N-th allocation fails (malloc, calloc, realloc, mmap); N+: all from there
  *   FAULT_THREAD=N    the N-th thread cannot be made; a path: none, while that file is there
- *   FAULT_CLOCK=FILE  two 64-bit numbers: what CLOCK_REALTIME and CLOCK_BOOTTIME are ahead, in ns
+ *   FAULT_CLOCK=FILE  three 64-bit numbers: what CLOCK_REALTIME and CLOCK_BOOTTIME are ahead, in
+ *                     ns; 0, or 1: the clock is not synchronised, 2: it is
+ *   FAULT_BOOT=FILE   has the id of the boot
  *   FAULT_SOCKET=FILE a unix socket is a link to that file as soon as it is bound, as somebody
  *                     makes it who may write its folder
  *   FAULT_WATCH=FILE  epoll takes no descriptor, while that file is there
@@ -15,12 +17,14 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>
+#include <stdarg.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/epoll.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
+#include <sys/timex.h>
 #include <sys/un.h>
 #include <time.h>
 #include <unistd.h>
@@ -31,10 +35,12 @@ extern void *__libc_realloc(void *old, size_t size);
 
 static unsigned long memory_at, memory_count, thread_at, thread_count;
 static int memory_on;
-static const char *thread_file, *mark, *socket_file, *watch_file;
+static const char *thread_file, *mark, *socket_file, *watch_file, *boot_file;
 static const volatile int64_t *ahead;
 static int (*next_thread)(pthread_t *, const pthread_attr_t *, void *(*)(void *), void *);
 static int (*next_clock)(clockid_t, struct timespec *);
+static int (*next_adjtimex)(struct timex *);
+static int (*next_open)(const char *, int, ...);
 static int (*next_epoll_ctl)(int, int, int, struct epoll_event *);
 static int (*next_bind)(int, const struct sockaddr *, socklen_t);
 static void *(*next_mmap)(void *, size_t, int, int, int, off_t);
@@ -47,18 +53,21 @@ __attribute__((constructor)) static void prepare(void)
 
 	*(void **)&next_thread = dlsym(RTLD_NEXT, "pthread_create");
 	*(void **)&next_clock = dlsym(RTLD_NEXT, "clock_gettime");
+	*(void **)&next_adjtimex = dlsym(RTLD_NEXT, "adjtimex");
+	*(void **)&next_open = dlsym(RTLD_NEXT, "open64"); /* which open is, by _FILE_OFFSET_BITS */
 	*(void **)&next_mmap = dlsym(RTLD_NEXT, "mmap");
 	*(void **)&next_epoll_ctl = dlsym(RTLD_NEXT, "epoll_ctl");
 	*(void **)&next_bind = dlsym(RTLD_NEXT, "bind");
 	mark = getenv("FAULT_MARK");
 	socket_file = getenv("FAULT_SOCKET");
 	watch_file = getenv("FAULT_WATCH");
+	boot_file = getenv("FAULT_BOOT");
 	thread_file = getenv("FAULT_THREAD");
 	if (thread_file && *thread_file != '/')
 		thread_at = strtoul(thread_file, NULL, 10);
 	fd = clock ? open(clock, O_RDONLY | O_CLOEXEC) : -1;
 	if (fd >= 0) {
-		void *map = next_mmap(NULL, 2 * sizeof(int64_t), PROT_READ, MAP_SHARED, fd, 0);
+		void *map = next_mmap(NULL, 3 * sizeof(int64_t), PROT_READ, MAP_SHARED, fd, 0);
 
 		ahead = map == MAP_FAILED ? NULL : map;
 		close(fd);
@@ -171,4 +180,28 @@ int clock_gettime(clockid_t clock, struct timespec *now)
 		now->tv_sec--;
 	}
 	return err;
+}
+
+int adjtimex(struct timex *state)
+{
+	int err = next_adjtimex(state);
+
+	if (!ahead || !ahead[2])
+		return err;
+	state->status = ahead[2] == 1 ? STA_UNSYNC : 0;
+	return 0;
+}
+
+int open64(const char *path, int flags, ...)
+{
+	va_list more;
+	mode_t mode = 0;
+
+	va_start(more, flags);
+	if (flags & (O_CREAT | __O_TMPFILE))
+		mode = va_arg(more, mode_t);
+	va_end(more);
+	if (boot_file && !strcmp(path, "/proc/sys/kernel/random/boot_id"))
+		path = boot_file;
+	return next_open(path, flags, mode);
 }
