@@ -25,6 +25,7 @@
 #                                 be left); which lines and branches the tests reach
 #   make test-kill KILLS=10000    the writer of the shared memory killed at random points
 #   make test-power CUTS=500      power cuts at any point of what history writes
+#   make test-years YEARS=10      ten years of history: what is kept, its size, trends of it
 #   make hammer-arm64             the same readers and writer as arm64 code, in qemu
 #   make model                    the protocol of the shared memory, in a weak memory model
 #   make test-kernel              Debian's own kernel and owserver on the simulated chip, in QEMU
@@ -461,6 +462,11 @@ soak: all $(B)/unit/test_endurance
 .PHONY: test-power
 test-power: $(B)/unit/test_history_power
 	@POWER_CUTS=$(or $(CUTS),500) $<
+
+# Likewise years of it
+.PHONY: test-years
+test-years: $(B)/unit/test_history_years
+	@HISTORY_YEARS=$(or $(YEARS),10) $<
 
 # --- System tests, benches and the main job ---------------------------------------------------
 # Programs that system tests command
