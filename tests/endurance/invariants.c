@@ -86,16 +86,18 @@ static _Noreturn void fails(const char *what, const struct item *item, const str
 static void good_value_is_true(const struct item *item, uint32_t record, const struct ows_sample *s)
 {
 	const struct part *part = part_of(s);
-	int64_t from = s->measured_ns - (part ? part->ops->age_ns : 0);
+	int64_t from = s->measured_ns - (part ? part->ops->age_ns : 0), to = s->measured_ns;
 	bool is_true = true;
 
+	if (part && part->ops->given)
+		to = part->ops->given(part, to);
 	switch (item->kind) {
 	case ITEM_TEMPERATURE:
 		is_true = field_was_temperature((unsigned)item->device, number(item, s->value),
-		                                from, s->measured_ns);
+		                                from, to);
 		break;
 	case ITEM_PINS:
-		is_true = field_was_pins((unsigned)s->value >> 4, from, s->measured_ns);
+		is_true = field_was_pins((unsigned)s->value >> 4, from, to);
 		break;
 	case ITEM_TEXT:
 		is_true = strcmp(text_of(record, s->len), item->text) == 0;
@@ -157,9 +159,19 @@ static void updates_are_counted(const struct item *item, const struct ows_sample
 static bool is_known(uint8_t quality)
 {
 	static const uint8_t known[] = {
-		OWS_Q_NO_PROPERTY, OWS_Q_TYPE,        OWS_Q_ACCESS, OWS_Q_NO_DEVICE,
-		OWS_Q_DEVICE,      OWS_Q_SENSOR,      OWS_Q_TARGET, OWS_Q_SHORT,
-		OWS_Q_INITIAL,     OWS_Q_LAST_USABLE, OWS_Q_GOOD,
+		OWS_Q_NO_PROPERTY,
+		OWS_Q_TYPE,
+		OWS_Q_ACCESS,
+		OWS_Q_NO_DEVICE,
+		OWS_Q_DEVICE,
+		OWS_Q_SENSOR,
+		OWS_Q_TARGET,
+		OWS_Q_SHORT,
+		/* a switch that restarted, read before owsd knows of it */
+		OWS_Q_DIFFERS,
+		OWS_Q_INITIAL,
+		OWS_Q_LAST_USABLE,
+		OWS_Q_GOOD,
 	};
 
 	return memchr(known, quality, sizeof(known)) != NULL;

@@ -12,6 +12,11 @@ struct part_ops {
 	const char *name;
 	/* The longest time from a measurement to what the bus calls so. */
 	int64_t age_ns;
+	/*
+	 * Optional. When the kernel gave what was measured at that time or later: no program can
+	 * know at what moment of a long call its chip converted, so that the call's begin counts.
+	 */
+	int64_t (*given)(const struct part *part, int64_t measured_ns);
 	/* Once: make what there is; the target's text. */
 	void (*begin)(struct part *part, char *target, unsigned size);
 	void (*end)(struct part *part);
