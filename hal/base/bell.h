@@ -3,8 +3,7 @@
  * A bell wakes one thread that waits in poll or epoll for its descriptor. It stays rung until it is
  * read, and ringing never blocks.
  */
-#ifndef BUS_BELL_H
-#define BUS_BELL_H
+#pragma once
 
 /* A descriptor, or a negative errno. It is closed with close(). */
 int bell_open(void);
@@ -12,5 +11,3 @@ int bell_open(void);
 void bell_ring(int bell);
 /* It is silent until the next ring. */
 void bell_clear(int bell);
-
-#endif

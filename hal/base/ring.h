@@ -4,8 +4,7 @@
  * for ever; the caller keeps the cells, cell n is at n & (size - 1), and size is a power of two.
  * All is sequentially consistent, so that "put, then look whether the taker sleeps" is sound.
  */
-#ifndef HAL_BUS_RING_H
-#define HAL_BUS_RING_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -53,5 +52,3 @@ static inline void ring_did_take(struct ring *ring)
 {
 	__atomic_store_n(&ring->taken, ring->taken + 1, __ATOMIC_SEQ_CST);
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Threads of owsd beside the engine's. */
-#ifndef BUS_THREAD_H
-#define BUS_THREAD_H
+#pragma once
 
 #include <pthread.h>
 #include <stddef.h>
@@ -14,5 +13,3 @@
  */
 int thread_start(pthread_t *thread, const char *name, size_t stack, void *(*run)(void *ctx),
                  void *ctx);
-
-#endif

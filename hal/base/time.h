@@ -5,12 +5,9 @@
  * Room hal/base: what every room may need: units of time, threads, bells, a ring of messages. Uses
  * no other.
  */
-#ifndef HAL_BUS_TIME_H
-#define HAL_BUS_TIME_H
+#pragma once
 
 #include <stdint.h>
 
 #define NS_PER_S INT64_C(1000000000)
 #define NS_PER_MS INT64_C(1000000)
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The backend that a target names. */
-#ifndef HAL_BUS_BACKENDS_H
-#define HAL_BUS_BACKENDS_H
+#pragma once
 
 #include "hal/bus/bus.h"
 
@@ -14,5 +13,3 @@
  */
 int bus_create(const char *target, const struct bus_env *env, struct bus **bus, char *why,
                size_t why_size);
-
-#endif

@@ -11,8 +11,7 @@
  *
  * Room hal/bus: the bus contract, its worker threads, the list of backends. Uses hal/base.
  */
-#ifndef HAL_BUS_H
-#define HAL_BUS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -321,5 +320,3 @@ void bus_suspend(struct bus *bus, bool yes);
 /* As bus_ops.watch; -1 for a suspended bus, too. */
 int bus_watch(struct bus *bus);
 const struct bus_counter *bus_counters(struct bus *bus, size_t *n);
-
-#endif

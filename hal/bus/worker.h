@@ -4,8 +4,7 @@
  * The engine's side never blocks: worker_submit() writes one eventfd, worker_next() reads memory.
  * A worker that is stuck in the kernel stalls nobody: worker_stop() says so and goes on.
  */
-#ifndef HAL_BUS_WORKER_H
-#define HAL_BUS_WORKER_H
+#pragma once
 
 #include "hal/bus/bus.h"
 
@@ -59,5 +58,3 @@ void worker_destroy(struct worker *worker);
  */
 uint64_t worker_stalls(const struct worker *worker);
 uint64_t worker_dropped(const struct worker *worker);
-
-#endif

@@ -25,8 +25,7 @@
  *			that failed is made again from what stood there before it (txn_base).
  * Without .row, the area cannot be written by this master: -EOPNOTSUPP.
  */
-#ifndef HAL_CHIPS_AREA_H
-#define HAL_CHIPS_AREA_H
+#pragma once
 
 #include "hal/wire/txn.h"
 
@@ -143,5 +142,3 @@ int area_write(struct txn *txn, const struct area *area, unsigned at, const uint
 
 /* Returns TXN_MORE: to be called again when it is over; strong: with the strong pull-up. */
 int conversion_start(struct txn *txn, const struct conversion *conversion, bool strong);
-
-#endif

@@ -3,8 +3,7 @@
  * What the tables of the families say to programs that show or judge values: what a chip is called,
  * and the quantity that a property measures.
  */
-#ifndef HAL_CHIPS_FACTS_H
-#define HAL_CHIPS_FACTS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -28,5 +27,3 @@ bool quantity_of(const char *path, struct quantity *quantity);
 
 /* Is the number one that the chip cannot have measured? */
 bool quantity_excludes(const struct quantity *quantity, double number);
-
-#endif

@@ -11,8 +11,7 @@
  * Room hal/chips: the chip families: areas, properties, functions; values as texts. Uses hal/wire,
  * hal/owfs.
  */
-#ifndef HAL_CHIPS_FAMILY_H
-#define HAL_CHIPS_FAMILY_H
+#pragma once
 
 #include "hal/chips/property.h"
 
@@ -128,5 +127,3 @@ extern const struct family family_common;
 #define PROPERTIES(table) .properties = (table), .count = sizeof(table) / sizeof((table)[0])
 #define AREAS(list) .areas = (list), .area_count = sizeof(list) / sizeof((list)[0])
 #define HOW(list) .how = (list), .how_count = sizeof(list) / sizeof((list)[0])
-
-#endif

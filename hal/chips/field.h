@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Properties that are fields of an area: read and written as the bits of a chip. */
-#ifndef HAL_CHIPS_FIELD_H
-#define HAL_CHIPS_FIELD_H
+#pragma once
 
 #include "hal/chips/family.h"
 
@@ -17,5 +16,3 @@ int field_write(struct txn *txn);
 /* What reads it, and what writes it: the property's function, or the field's; NULL: nothing. */
 property_function *property_reader(const struct family *family, const struct property *property);
 property_function *property_writer(const struct family *family, const struct property *property);
-
-#endif

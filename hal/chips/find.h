@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Families found by code, and their properties by name or in order. */
-#ifndef HAL_CHIPS_FIND_H
-#define HAL_CHIPS_FIND_H
+#pragma once
 
 #include "hal/chips/family.h"
 
@@ -19,5 +18,3 @@ const struct property *family_property(const struct family *family, const struct
  */
 const struct property *family_next(const struct family *family, const struct device *device,
                                    const struct property *prev);
-
-#endif

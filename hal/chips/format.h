@@ -3,8 +3,7 @@
  * The texts of OWFS: numbers right-aligned in 12 characters, printed with %G to six digits, yes/no
  * one character, elements joined by commas. Pure functions.
  */
-#ifndef HAL_CHIPS_FORMAT_H
-#define HAL_CHIPS_FORMAT_H
+#pragma once
 
 #include "hal/chips/property.h"
 
@@ -60,5 +59,3 @@ int take_number(const struct property *property, int extension, double number, s
 bool list_part(const char *text, size_t len, unsigned n, const char **part, size_t *part_len);
 /* Has the list as many elements as the property, and can the property take each of them? */
 bool list_fits(const struct property *property, const char *text, size_t len);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What a row of a family's table names by a number: found in the lists of the family. */
-#ifndef HAL_CHIPS_HOW_H
-#define HAL_CHIPS_HOW_H
+#pragma once
 
 #include "hal/chips/family.h"
 
@@ -12,5 +11,3 @@ const struct property_how *family_how(const struct family *family, const struct 
 
 /* The area of the property's own field. */
 const struct area *family_area(const struct txn *txn);
-
-#endif

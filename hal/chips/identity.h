@@ -4,8 +4,7 @@
  * chip's name by its behaviour, with what is odd about it ("DS18B20 clone, family B1"), or
  * "unknown".
  */
-#ifndef HAL_CHIPS_IDENTITY_H
-#define HAL_CHIPS_IDENTITY_H
+#pragma once
 
 #include "hal/chips/property.h"
 
@@ -13,5 +12,3 @@
 #define IDENTITY_ROW(way, ...) \
 	PROPERTY("identity", ASCII, STABLE, READ, .size = 48, .hidden = true, .how = (way), \
 	         __VA_ARGS__)
-
-#endif

@@ -3,8 +3,7 @@
  * A property of a device, as OWFS has it: name, type, array, access, size and life of the value,
  * and the field of an area that it is, or its functions.
  */
-#ifndef HAL_CHIPS_PROPERTY_H
-#define HAL_CHIPS_PROPERTY_H
+#pragma once
 
 #include "hal/chips/area.h"
 
@@ -133,5 +132,3 @@ int property_text(struct txn *txn, const char *text);
 #define AREA_PAGES(area_, pages_, bytes_) \
 	PROPERTY("pages/page", BINARY, VOLATILE, BOTH, ELEMENTS(pages_, NUMBERS), \
 	         .size = (bytes_), FIELD(area_))
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Bytes without a checksum that may change by themselves, such as those of a clock. */
-#ifndef HAL_CHIPS_STEADY_H
-#define HAL_CHIPS_STEADY_H
+#pragma once
 
 #include "hal/wire/txn.h"
 
@@ -18,5 +17,3 @@ int steady_clock_load(struct txn *txn, const struct area *area, unsigned at, uin
                       unsigned n);
 /* It is written, if the clock has gone on for no more than two seconds since. */
 bool steady_clock_is_written(struct txn *txn, const uint8_t *have, const uint8_t *want, unsigned n);
-
-#endif

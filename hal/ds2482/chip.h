@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Inside the driver. Errors are those of hal/wire/link.h; those of io.h are those of i2c.h. */
-#ifndef HAL_DS2482_CHIP_H
-#define HAL_DS2482_CHIP_H
+#pragma once
 
 #include "hal/base/time.h"
 #include "hal/ds2482/ds2482.h"
@@ -15,5 +14,3 @@
 /* A chip that is busy for so much longer than it may be stays so; and how often to look. */
 #define DS2482_STUCK_NS (10 * NS_PER_MS)
 #define DS2482_POLL_NS INT64_C(200000)
-
-#endif

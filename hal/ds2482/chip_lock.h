@@ -4,8 +4,7 @@
  * only. So whoever drives the chip at an address locks the byte of that number in the adapter's
  * device file. The lock works between all users, ends with its holder, and leaves nothing behind.
  */
-#ifndef HAL_DS2482_CHIP_LOCK_H
-#define HAL_DS2482_CHIP_LOCK_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -19,5 +18,3 @@ int chip_lock(int fd, uint8_t address, int *holder);
 void chip_unlock(int fd, uint8_t address);
 /* Would chip_lock() be refused? */
 bool chip_locked(int fd, uint8_t address);
-
-#endif

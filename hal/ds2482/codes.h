@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* DS2482-100, -101, -800, DS2483, DS2484: codes, register bits and longest times by data sheet. */
-#ifndef HAL_DS2482_CODES_H
-#define HAL_DS2482_CODES_H
+#pragma once
 
 enum ds2482_command {
 	DS2482_DEVICE_RESET = 0xF0,
@@ -48,5 +47,3 @@ static const long ds2482_slot_ns[2] = {69300, 10500};
 static const long ds2482_slot_max_ns[2] = {72800, 11100};
 static const long ds2482_reset_ns[2] = {1184000, 146000};
 static const long ds2482_reset_max_ns[2] = {1243200, 153400};
-
-#endif

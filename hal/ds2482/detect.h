@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Finding a chip at an address, and setting it up. */
-#ifndef HAL_DS2482_DETECT_H
-#define HAL_DS2482_DETECT_H
+#pragma once
 
 #include <stdint.h>
 
@@ -13,5 +12,3 @@ int ds2482_detect(struct ds2482_chip *chip);
 int ds2482_setup(struct ds2482_chip *chip);
 /* Write the configuration with its complement, and read it back. */
 int ds2482_configure(struct ds2482_chip *chip, uint8_t config);
-
-#endif

@@ -6,8 +6,7 @@
  * Room hal/ds2482: DS2482 and its kin as links. Uses hal/native, hal/wire, hal/gpio, hal/bus,
  * hal/base.
  */
-#ifndef HAL_DS2482_H
-#define HAL_DS2482_H
+#pragma once
 
 #include "hal/ds2482/codes.h"
 #include "hal/ds2482/ends.h"
@@ -104,5 +103,3 @@ struct ds2482_master {
 	/* The cost before the adapter was opened again. */
 	struct link_master_cost cost;
 };
-
-#endif

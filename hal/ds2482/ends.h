@@ -8,8 +8,7 @@
  *
  * Standard speed alone. Nothing here waits or uses the bus.
  */
-#ifndef HAL_DS2482_ENDS_H
-#define HAL_DS2482_ENDS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -36,5 +35,3 @@ unsigned ds2482_pause(const struct ds2482_ends *ends, enum ds2482_operation oper
                       unsigned least, unsigned longest);
 /* The chip refused a command: what is known is of no use. */
 void ds2482_forget_ends(struct ds2482_ends *ends);
-
-#endif

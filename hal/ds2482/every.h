@@ -4,8 +4,7 @@
  * links of all of them in the order of the adapters' numbers. When one adapter is lost, all are
  * opened again.
  */
-#ifndef HAL_DS2482_EVERY_H
-#define HAL_DS2482_EVERY_H
+#pragma once
 
 #include "hal/wire/link.h"
 
@@ -24,5 +23,3 @@ struct every_source {
 /* 0 or -ENOMEM. */
 int every_create(const struct bus_env *env, const struct every_source *source,
                  struct link_master **master);
-
-#endif

@@ -4,8 +4,7 @@
  * the real one (libi2c and linux/i2c-dev.h), the simulated chip of hal/sim is another. Blocking,
  * each call bounded by the kernel's adapter time-out.
  */
-#ifndef HAL_DS2482_I2C_H
-#define HAL_DS2482_I2C_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -60,5 +59,3 @@ struct i2c_adapter {
 	uint64_t transfers, bytes, syscalls; /* counted by the adapter */
 	int holder; /* the process that has a refused address; 0: not known */
 };
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The kernel's I2C adapters, /dev/i2c-N, through libi2c (SMBus calls) and I2C_RDWR. */
-#ifndef HAL_DS2482_I2C_DEV_H
-#define HAL_DS2482_I2C_DEV_H
+#pragma once
 
 #include "hal/ds2482/i2c.h"
 
@@ -10,5 +9,3 @@
  * opening the device.
  */
 int i2c_dev_open(const char *path, struct i2c_adapter **adapter);
-
-#endif

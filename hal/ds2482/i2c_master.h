@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Scheme "i2c": `i2c:/dev/i2c-1`, `i2c:/dev/i2c-1:0x18`, `i2c:/dev/i2c-1:0x18.3`, `i2c:auto`. */
-#ifndef HAL_DS2482_I2C_MASTER_H
-#define HAL_DS2482_I2C_MASTER_H
+#pragma once
 
 #include "hal/wire/link.h"
 
 /* Scheme "i2c": over hal/ds2482/i2c_dev.h. */
 extern const struct link_master_ops ds2482_i2c_master;
-
-#endif

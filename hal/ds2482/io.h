@@ -2,8 +2,7 @@
 /*
  * Single I2C calls to a chip, and what the adapter can do and how fast it is, found by trying it.
  */
-#ifndef HAL_DS2482_IO_H
-#define HAL_DS2482_IO_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -36,5 +35,3 @@ void ds2482_was_refused(struct ds2482_chip *chip);
  * measured.
  */
 void ds2482_was_early(struct ds2482_chip *chip);
-
-#endif

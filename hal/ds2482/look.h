@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What the kernel's files show of an I2C adapter and its chips, without a byte on the wires. */
-#ifndef HAL_DS2482_LOOK_H
-#define HAL_DS2482_LOOK_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -20,5 +19,3 @@ void i2c_driver(const char *path, const char *sys, uint8_t address, char *driver
                 size_t driver_size, char *client, size_t client_size);
 /* Write the numbers N of all files i2c-N in root, rising; at most max. */
 unsigned i2c_list(const char *root, unsigned *numbers, unsigned max);
-
-#endif

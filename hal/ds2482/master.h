@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A master: the chips of an adapter, opened, closed and opened again. */
-#ifndef HAL_DS2482_MASTER_H
-#define HAL_DS2482_MASTER_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -28,5 +27,3 @@ unsigned ds2482_channels(struct link_master *master);
 struct link *ds2482_channel(struct link_master *master, unsigned n);
 void ds2482_cost(const struct link_master *master, struct link_master_cost *cost);
 void ds2482_destroy(struct link_master *master);
-
-#endif

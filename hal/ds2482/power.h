@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* GPIO lines beside the chips: the supply of the wire, and the SLPZ pins. */
-#ifndef HAL_DS2482_POWER_H
-#define HAL_DS2482_POWER_H
+#pragma once
 
 #include <stddef.h>
 
@@ -22,5 +21,3 @@ int ds2482_power_cycle(struct ds2482_master *master);
 /* The slots of link_master_ops but create. */
 int ds2482_option(struct link_master *master, const char *key, const char *text, char *why,
                   size_t why_size);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Runs whole 1-Wire operations of a chip. */
-#ifndef HAL_DS2482_RUN_H
-#define HAL_DS2482_RUN_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -36,5 +35,3 @@ bool ds2482_is_refused(int err);
 bool ds2482_reads_on(const struct ds2482_chip *chip, long max_ns);
 /* How many operations of so many messages fit in one transfer; 1 at least. */
 size_t ds2482_batch(const struct ds2482_chip *chip, unsigned messages_each);
-
-#endif

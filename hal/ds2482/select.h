@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What precedes an operation on a link, and what its beginning changes in the chip. */
-#ifndef HAL_DS2482_SELECT_H
-#define HAL_DS2482_SELECT_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -17,5 +16,3 @@ int ds2482_select(struct ds2482_link *link);
 bool ds2482_claimed(struct ds2482_chip *chip);
 /* A 1-Wire command has begun: it ends the strong pull-up and clears its bit. */
 void ds2482_began(struct ds2482_chip *chip);
-
-#endif

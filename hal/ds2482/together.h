@@ -5,8 +5,7 @@
  * Nothing is read on here, because that would hold the I2C bus while a chip works: each wait is
  * slept, by the longest times of the data sheet.
  */
-#ifndef HAL_DS2482_TOGETHER_H
-#define HAL_DS2482_TOGETHER_H
+#pragma once
 
 struct link;
 struct link_visit;
@@ -14,5 +13,3 @@ struct link_visit;
 /* As link_ops.together and link_ops.abreast. */
 void ds2482_together(struct link_visit *visits, unsigned n);
 unsigned ds2482_abreast(const struct link *link);
-
-#endif

@@ -11,8 +11,7 @@
  * How long a reset and a byte take is learnt of each chip (ends.h). The bytes that were read count
  * on the longest time of the data sheet, as nothing shows that a register was read too early.
  */
-#ifndef HAL_DS2482_VISIT_H
-#define HAL_DS2482_VISIT_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -23,5 +22,3 @@ struct link_visit;
 bool ds2482_visits(const struct link *link);
 /* As link_ops.together, of one. Blocks for the time of the transaction, some 15 ms at 400 kHz. */
 void ds2482_visit(struct link_visit *visit);
-
-#endif

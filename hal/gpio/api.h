@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The table of functions that each generation of libgpiod fills in. */
-#ifndef HAL_GPIO_API_H
-#define HAL_GPIO_API_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -67,5 +66,3 @@ struct gpio_api {
 
 /* The library of this build; NULL: none (LIBGPIOD=0). */
 extern const struct gpio_api *const gpio_library;
-
-#endif

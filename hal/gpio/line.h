@@ -6,8 +6,7 @@
  *
  * Room hal/gpio: GPIO lines, alone or beside a chip. Uses hal/bus, hal/base.
  */
-#ifndef HAL_GPIO_LINE_H
-#define HAL_GPIO_LINE_H
+#pragma once
 
 #include "hal/gpio/api.h"
 
@@ -53,5 +52,3 @@ struct gpio_output {
 int gpio_output_take(struct gpio_output *output, bool value, char *why, size_t why_size);
 int gpio_output_set(struct gpio_output *output, bool value);
 void gpio_output_release(struct gpio_output *output);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Inside the bus "gpio": the chip's lines, and the state that the bus keeps for each. */
-#ifndef HAL_GPIO_LINES_H
-#define HAL_GPIO_LINES_H
+#pragma once
 
 #include "hal/bus/bus.h"
 #include "hal/gpio/line.h"
@@ -65,5 +64,3 @@ int line_read(struct gpio_bus *gpio, unsigned line, bool guest, bool *value, int
               char *why, size_t why_size);
 int line_write(struct gpio_bus *gpio, unsigned line, bool guest, bool value, char *why,
                size_t why_size);
-
-#endif

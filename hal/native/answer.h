@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* How a request ends, or begins again. */
-#ifndef HAL_NATIVE_ANSWER_H
-#define HAL_NATIVE_ANSWER_H
+#pragma once
 
 #include "hal/native/state.h"
 
@@ -19,5 +18,3 @@ void job_count_retry(struct job *job);
 void job_again(struct native *native, struct job *job);
 /* The same with what its conversion left. */
 void job_reread(struct native *native, struct job *job);
-
-#endif

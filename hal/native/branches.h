@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The branches of couplers as channels: they come with the coupler, and go with it. */
-#ifndef HAL_NATIVE_BRANCHES_H
-#define HAL_NATIVE_BRANCHES_H
+#pragma once
 
 #include "hal/native/state.h"
 
@@ -32,5 +31,3 @@ bool branches_is_on(const struct native *native, unsigned channel);
 int branches_print(struct native *native, unsigned channel, char *text, size_t room);
 /* What bus.N is called in a message: "bus.0", "1F.000000000001/main", ".../1F.000000000009/aux". */
 void branches_name(struct native *native, unsigned channel, char *text, size_t room);
-
-#endif

@@ -3,8 +3,7 @@
  * What was read lately: texts of properties, bounded, found by device, property and extension. An
  * entry ends with its time, or when the device's `changes` has grown.
  */
-#ifndef HAL_NATIVE_CACHE_H
-#define HAL_NATIVE_CACHE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -41,5 +40,3 @@ const struct cache_entry *cache_find(struct cache *cache, const struct device *d
 /* A place for it; the caller fills the rest from until_ns on. */
 struct cache_entry *cache_add(struct cache *cache, const struct device *device,
                               const struct property *property, int extension);
-
-#endif

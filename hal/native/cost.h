@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What the work of a bus has cost: time of its wires, calls of the system. */
-#ifndef HAL_NATIVE_COST_H
-#define HAL_NATIVE_COST_H
+#pragma once
 
 #include "hal/native/state.h"
 
@@ -12,5 +11,3 @@
 void cost_of_job(struct native *native, struct job *job);
 /* At the end of a step: the counters have all that was done. */
 void cost_take(struct native *native);
-
-#endif

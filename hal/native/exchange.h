@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A property is read or written, or a chip says what it is before its properties are listed. */
-#ifndef HAL_NATIVE_EXCHANGE_H
-#define HAL_NATIVE_EXCHANGE_H
+#pragma once
 
 #include "hal/native/state.h"
 
@@ -16,5 +15,3 @@ void job_run_property(struct native *native, struct job *job, int64_t now);
 bool job_asks_first(const struct job *job, int64_t now);
 /* Then: one transaction of that, or the answer. */
 void job_run_asking(struct native *native, struct job *job, int64_t now);
-
-#endif

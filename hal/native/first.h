@@ -19,8 +19,7 @@
  * The supply is asked for once more when the search has ended: a device that came meanwhile was
  * not asked.
  */
-#ifndef HAL_NATIVE_FIRST_H
-#define HAL_NATIVE_FIRST_H
+#pragma once
 
 #include "hal/native/state.h"
 
@@ -30,5 +29,3 @@
  * whether it did something; if not, *next is when to call again at the latest.
  */
 bool first_step(struct native *native, int64_t now, int64_t *next);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Which requests are served before the first search of all wires has ended (first.h). */
-#ifndef HAL_NATIVE_FIRST_ASKED_H
-#define HAL_NATIVE_FIRST_ASKED_H
+#pragma once
 
 #include "hal/native/state.h"
 
@@ -16,5 +15,3 @@ bool first_asks(const struct native *native, const struct job *job);
 bool first_hurries(const struct native *native);
 /* A wire that was not searched yet, and on which all can be told to convert. */
 bool first_fits(const struct native *native, unsigned n);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What the first conversions (first.h) are to devices that are found later. */
-#ifndef HAL_NATIVE_FIRST_WIRE_H
-#define HAL_NATIVE_FIRST_WIRE_H
+#pragma once
 
 #include "hal/native/state.h"
 
@@ -14,5 +13,3 @@ void first_found(struct native *native, struct device *device);
 bool first_took_part(const struct native *native, const struct device *device);
 /* The conversions of all channels are void: their wires had no supply. */
 void first_void(struct native *native);
-
-#endif

@@ -7,12 +7,9 @@
  * read on that wire, and the answer proves it (first.h). The search for all comes after, and finds
  * what was hidden behind such a beginning.
  */
-#ifndef HAL_NATIVE_GUESS_H
-#define HAL_NATIVE_GUESS_H
+#pragma once
 
 #include "hal/native/state.h"
 
 /* One pass of it on one wire, some 8 ms. Returns false when there is nothing to do. */
 bool guess_step(struct native *native, int64_t now);
-
-#endif

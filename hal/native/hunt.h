@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Searches: in the background, for directories and alarms. */
-#ifndef HAL_NATIVE_HUNT_H
-#define HAL_NATIVE_HUNT_H
+#pragma once
 
 #include "hal/native/state.h"
 
@@ -10,5 +9,3 @@ bool hunt_step(struct native *native, int64_t now, bool idle, int64_t *next);
 /* A search has met the id: a device is there, or a bridge that has no id yet is woken. */
 void hunt_found(struct native *native, const uint8_t rom[8], unsigned n, int64_t now);
 void hunt_scan(struct native *native, struct job *job, int64_t now);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* One request on its way. */
-#ifndef HAL_NATIVE_JOB_H
-#define HAL_NATIVE_JOB_H
+#pragma once
 
 #include "hal/native/state.h"
 
@@ -13,5 +12,3 @@ bool job_ready(const struct native *native, const struct job *job, int64_t now, 
 bool job_goes_first(const struct native *native, const struct job *a, const struct job *b);
 /* One transaction or less. */
 void job_step(struct native *native, struct job *job, int64_t now);
-
-#endif

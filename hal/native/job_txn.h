@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The transactions of a job. */
-#ifndef HAL_NATIVE_JOB_TXN_H
-#define HAL_NATIVE_JOB_TXN_H
+#pragma once
 
 #include "hal/native/state.h"
 
@@ -11,5 +10,3 @@ void job_txn(struct native *native, struct job *job);
 bool job_wants_all(const struct job *job);
 /* How long a value of the property is true enough for a request that takes a cached one. */
 int64_t property_life_ns(const struct native *native, const struct property *property);
-
-#endif

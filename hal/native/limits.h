@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* How much a native bus takes on at once. */
-#ifndef HAL_NATIVE_LIMITS_H
-#define HAL_NATIVE_LIMITS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -16,5 +15,3 @@
 #define NATIVE_S INT64_C(1000000000)
 /* So long after a conversion its result, if nobody could read it, serves in place of another. */
 #define NATIVE_UNREAD_NS (4 * NATIVE_S)
-
-#endif

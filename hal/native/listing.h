@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Directories. */
-#ifndef HAL_NATIVE_LISTING_H
-#define HAL_NATIVE_LISTING_H
+#pragma once
 
 #include "hal/native/state.h"
 
@@ -11,5 +10,3 @@ int listing(struct native *native, struct job *job);
 int listing_add_device(struct native *native, struct job *job, const struct device *device);
 /* What stands in / and /bus.N beside the devices. */
 int listing_add_rest(struct native *native, struct job *job);
-
-#endif

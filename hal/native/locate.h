@@ -13,8 +13,7 @@
  * Looks take a tenth of the time, and up to a second that was saved before; while nothing else
  * needs the wire a quarter. Requests of alarms and outputs may owe a second.
  */
-#ifndef HAL_NATIVE_LOCATE_H
-#define HAL_NATIVE_LOCATE_H
+#pragma once
 
 #include "hal/native/state.h"
 
@@ -26,5 +25,3 @@ void locate_missing(struct native *native, struct job *job, int64_t now);
 bool locate_step(struct native *native, int64_t now, bool idle, int64_t *next);
 /* The deadline of a job that waits is over: what it is answered. */
 int locate_expired(const struct native *native, const struct job *job);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The master: open, lost, opened again; the recovery ladder. */
-#ifndef HAL_NATIVE_MASTER_H
-#define HAL_NATIVE_MASTER_H
+#pragma once
 
 #include "hal/native/state.h"
 
@@ -12,5 +11,3 @@ bool master_recover(struct native *native, unsigned channel, int err);
 void master_good(struct native *native, unsigned channel);
 /* Now and then: take chips that were missing. *next as elsewhere. */
 void master_grow(struct native *native, int64_t now, int64_t *next);
-
-#endif

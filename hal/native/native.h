@@ -41,8 +41,7 @@
  * Room hal/native: the native bus: requests, conversions, searches, listings. Uses hal/chips,
  * hal/wire, hal/owfs, hal/bus.
  */
-#ifndef HAL_NATIVE_H
-#define HAL_NATIVE_H
+#pragma once
 
 #include "hal/bus/bus.h"
 #include "hal/native/limits.h"
@@ -73,5 +72,3 @@ const struct bus_counter *native_counters(struct bus *bus, size_t *n);
 struct link_master *native_master(struct bus *bus);
 /* Of a bus that is up: search all channels now, and let the master grow. */
 void native_look(struct bus *bus, int64_t now);
-
-#endif

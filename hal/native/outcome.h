@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* How a transaction of a job ended, and what follows. */
-#ifndef HAL_NATIVE_OUTCOME_H
-#define HAL_NATIVE_OUTCOME_H
+#pragma once
 
 #include "hal/native/state.h"
 
@@ -11,5 +10,3 @@ void job_saw(struct native *native, struct job *job, int err, int64_t now);
 void job_failed(struct native *native, struct job *job, int err);
 /* Its device did not answer: look for it once, on all channels. */
 void job_missing(struct native *native, struct job *job, int err);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Devices found, seen, lost and restarted. */
-#ifndef HAL_NATIVE_PRESENCE_H
-#define HAL_NATIVE_PRESENCE_H
+#pragma once
 
 #include "hal/native/state.h"
 
@@ -10,5 +9,3 @@ void presence_found(struct native *native, const uint8_t rom[8], unsigned n, int
 void presence_seen(struct device *device, int64_t now);
 void presence_lost(struct native *native, struct device *device);
 void presence_restarted(struct native *native, struct device *device);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The sensors behind bridges: the file that names them, and what family a device is by it. */
-#ifndef HAL_NATIVE_SENSORS_H
-#define HAL_NATIVE_SENSORS_H
+#pragma once
 
 #include "hal/chips/bridges/sensor.h"
 
@@ -11,5 +10,3 @@ int sensors_read(struct sensor_table *table, const char *file, char *why, size_t
 const struct family *sensors_family(const struct sensor_table *table, const uint8_t rom[8]);
 /* Does the table name a bridge with this family code? */
 bool sensors_has(const struct sensor_table *table, uint8_t code);
-
-#endif

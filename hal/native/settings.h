@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* /settings: what can be changed while the bus runs. */
-#ifndef HAL_NATIVE_SETTINGS_H
-#define HAL_NATIVE_SETTINGS_H
+#pragma once
 
 #include "hal/native/state.h"
 
@@ -9,5 +8,3 @@
 void native_settings(struct native *native);
 
 extern const struct family virtual_settings;
-
-#endif

@@ -3,8 +3,7 @@
  * The state of a native bus, and of each request that it has: the files of this room work on it.
  * All of it belongs to the thread of the bus; any thread may read the counters.
  */
-#ifndef HAL_NATIVE_STATE_H
-#define HAL_NATIVE_STATE_H
+#pragma once
 
 #include "hal/chips/bridges/sensor.h"
 #include "hal/chips/family.h"
@@ -368,5 +367,3 @@ int64_t native_held(const struct native *native, unsigned channel, const struct 
                     int64_t now);
 /* ... it is on until then, for this job or (NULL) for several. */
 void native_hold(struct native *native, unsigned channel, struct job *job, int64_t until_ns);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* /statistics, and how requests are counted for it. */
-#ifndef HAL_NATIVE_STATISTICS_H
-#define HAL_NATIVE_STATISTICS_H
+#pragma once
 
 #include "hal/native/state.h"
 
@@ -10,5 +9,3 @@ void tally_begin(struct native *native, struct job *job);
 void tally_end(struct native *native, struct job *job, const struct bus_answer *answer);
 
 extern const struct family virtual_statistics;
-
-#endif

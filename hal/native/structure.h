@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* /structure: what properties a family has. */
-#ifndef HAL_NATIVE_STRUCTURE_H
-#define HAL_NATIVE_STRUCTURE_H
+#pragma once
 
 #include <stddef.h>
 
@@ -11,5 +10,3 @@ struct family;
 int structure_read(const char *path, size_t len, char *text, size_t room);
 /* The family that the path begins with, in *used bytes; NULL: none. */
 const struct family *structure_family(const char *path, size_t len, size_t *used);
-
-#endif

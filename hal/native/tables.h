@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The directories of OWFS that belong to no device. */
-#ifndef HAL_NATIVE_TABLES_H
-#define HAL_NATIVE_TABLES_H
+#pragma once
 
 #include <stddef.h>
 
@@ -9,5 +8,3 @@ struct family;
 
 /* The table of names in /statistics and the like; NULL: none of that name. */
 const struct family *virtual_family(const char *name, size_t len);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Keys that touch a wire: families 01 and 81 are searched for all the time, where that is asked. */
-#ifndef HAL_NATIVE_TOUCH_H
-#define HAL_NATIVE_TOUCH_H
+#pragma once
 
 #include "hal/native/state.h"
 
@@ -12,5 +11,3 @@ bool touch_knows(const struct native *native, const struct device *device, int64
 
 /* Are ids of this family searched for all the time? */
 bool touch_seeks(const struct native *native, const uint8_t rom[8]);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Properties without a device: their functions use no wire. */
-#ifndef HAL_NATIVE_VIRTUAL_H
-#define HAL_NATIVE_VIRTUAL_H
+#pragma once
 
 #include "hal/chips/family.h"
 
@@ -24,5 +23,3 @@ int virtual_count(struct txn *txn, uint64_t count);
 	 .offline = true, .size = (bytes), .how = (how_)}
 /* clang-format on */
 /* NOLINTEND(bugprone-macro-parentheses) */
-
-#endif

@@ -5,8 +5,7 @@
  * Room hal/netlink: the masters of the kernel, by netlink. Uses hal/w1, hal/native, hal/chips,
  * hal/wire.
  */
-#ifndef HAL_NETLINK_MASTER_H
-#define HAL_NETLINK_MASTER_H
+#pragma once
 
 #include "hal/netlink/run.h"
 
@@ -14,5 +13,3 @@ extern const struct link_master_ops w1_netlink_master;
 
 /* Is it "netlink", "netlink/...", of which this bus is? */
 bool w1_is_netlink(const char *where);
-
-#endif

@@ -14,8 +14,7 @@
  * Linux 6.1. The kernel carries out the commands of one request with the master's bus locked, so
  * that neither its own search nor another program comes between.
  */
-#ifndef HAL_NETLINK_RUN_H
-#define HAL_NETLINK_RUN_H
+#pragma once
 
 #include "hal/native/limits.h"
 #include "hal/netlink/talk.h"
@@ -58,5 +57,3 @@ struct w1_netlink {
  * -EIO also a command that the kernel refused; else as w1_request_run.
  */
 int w1_netlink_run(struct w1_netlink_link *link, struct w1_request *request);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The socket of the connector: requests of several commands, and their replies. */
-#ifndef HAL_NETLINK_TALK_H
-#define HAL_NETLINK_TALK_H
+#pragma once
 
 #include "hal/wire/link.h"
 
@@ -67,5 +66,3 @@ int w1_request_add(struct w1_request *request, enum w1_code code, const uint8_t 
  *   that makes no sense, -ECANCELED
  */
 int w1_request_run(struct w1_talk *talk, struct w1_request *request);
-
-#endif

@@ -3,8 +3,7 @@
  * The frames of the owserver protocol: six big-endian 32-bit words, then data. Pure functions,
  * no input or output. Every length is checked before it is used.
  */
-#ifndef HAL_OWFS_FRAME_H
-#define HAL_OWFS_FRAME_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -91,5 +90,3 @@ void frame_begin(struct frame_reader *reader, uint8_t *data, uint32_t limit);
  * -EPROTO: not an owserver's frame, -EMSGSIZE: data longer than limit.
  */
 int frame_feed(struct frame_reader *reader, const uint8_t *bytes, size_t n, size_t *used);
-
-#endif

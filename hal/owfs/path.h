@@ -11,8 +11,7 @@
  *
  * Room hal/owfs: the paths of OWFS, and the frames of its protocol. Uses no other.
  */
-#ifndef HAL_OWFS_PATH_H
-#define HAL_OWFS_PATH_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -77,5 +76,3 @@ const char *path_split(const char *text, size_t len, struct path *path);
  * no device.
  */
 bool path_same_device(const struct path *a, const struct path *b);
-
-#endif

@@ -4,8 +4,7 @@
  * up to the deadline given (and the resolver, which knows no deadline). The name is resolved at
  * each connect, so a change of address is followed; all its addresses are tried in turn.
  */
-#ifndef HAL_OWSERVER_CONNECTION_H
-#define HAL_OWSERVER_CONNECTION_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -55,5 +54,3 @@ int connection_send(struct connection *connection, const uint8_t *bytes, size_t 
 /* Returns the bytes received (at least 1), 0: the peer closed, or an error as connection_send(). */
 int connection_receive(struct connection *connection, uint8_t *bytes, size_t room,
                        int64_t until_ns);
-
-#endif

@@ -4,8 +4,7 @@
  * alias under the alias only; the property `address` has its id. The ids of aliases are kept for a
  * while.
  */
-#ifndef HAL_OWSERVER_LISTING_H
-#define HAL_OWSERVER_LISTING_H
+#pragma once
 
 #include "hal/owfs/path.h"
 #include "hal/owserver/talk.h"
@@ -31,5 +30,3 @@ struct listing {
  * talk_exchange().
  */
 int listing_read(struct listing *listing, struct talk *talk, struct bus_req *req, uint32_t *used);
-
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#ifndef HAL_OWSERVER_PROOF_H
-#define HAL_OWSERVER_PROOF_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -9,5 +8,3 @@
  * Then only a search for the device shows that it was there.
  */
 bool proof_is_needed(const char *path);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What an owserver says of itself. Both return 0, or the error of talk_exchange(). */
-#ifndef HAL_OWSERVER_SERVER_H
-#define HAL_OWSERVER_SERVER_H
+#pragma once
 
 #include "hal/owserver/talk.h"
 
@@ -15,5 +14,3 @@ int server_ask_cache(struct talk *talk, int64_t deadline_ns, int64_t *cache_ns);
  * buses, and all are simulated (owserver --fake, --tester, --mock).
  */
 int server_ask_simulated(struct talk *talk, int64_t deadline_ns, bool *simulated);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Maps owserver's return codes to errors of the bus contract. */
-#ifndef HAL_OWSERVER_STATUS_H
-#define HAL_OWSERVER_STATUS_H
+#pragma once
 
 #include "hal/bus/bus.h"
 
@@ -10,5 +9,3 @@
  * caller finds out which of them.
  */
 int status_of(int32_t code, enum bus_op op);
-
-#endif

@@ -8,8 +8,7 @@
  *
  * Room hal/owserver: a genuine owserver as a target. Uses hal/owfs, hal/bus, hal/base.
  */
-#ifndef HAL_OWSERVER_TALK_H
-#define HAL_OWSERVER_TALK_H
+#pragma once
 
 #include "hal/owfs/frame.h"
 #include "hal/owserver/connection.h"
@@ -72,5 +71,3 @@ int talk_exchange(struct talk *talk, const struct talk_request *request, int64_t
  */
 int talk_send(struct talk *talk, const struct talk_request *request, int64_t until_ns);
 int talk_receive(struct talk *talk, int64_t until_ns);
-
-#endif

@@ -3,8 +3,7 @@
  * The simulated network as an I2C adapter. A transaction takes the time that the bus's speed gives
  * it, and waits for that time through the environment (which on a virtual clock moves it).
  */
-#ifndef HAL_SIM_ADAPTER_H
-#define HAL_SIM_ADAPTER_H
+#pragma once
 
 #include "hal/bus/bus.h"
 #include "hal/ds2482/i2c.h"
@@ -20,5 +19,3 @@ struct sim_adapter {
 
 /* Limits and speed are those of the network. Allocates nothing. */
 void sim_adapter_init(struct sim_adapter *adapter, struct sim_net *net, const struct bus_env *env);
-
-#endif

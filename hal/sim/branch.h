@@ -3,8 +3,7 @@
  * The branches of couplers: the slaves behind a branch are on the wire only while it is on, and so
  * are those behind the couplers on it.
  */
-#ifndef HAL_SIM_BRANCH_H
-#define HAL_SIM_BRANCH_H
+#pragma once
 
 #include "hal/sim/slave.h"
 
@@ -30,5 +29,3 @@ bool sim_branch_reset(const struct sim_branch *branch, int64_t t);
 void sim_branch_restart(const struct sim_branch *branch, int64_t t);
 /* Is one of the coupler's branches on and short? */
 bool sim_branch_shorts(const struct sim_slave *coupler);
-
-#endif

@@ -4,8 +4,7 @@
  * written begins the button's event, a 0 ends it, and what is read is whether it lasts. Nothing of
  * this touches a simulated wire, so it works while the wire is short.
  */
-#ifndef HAL_SIM_BUTTON_H
-#define HAL_SIM_BUTTON_H
+#pragma once
 
 #include "hal/bus/bus.h"
 #include "hal/sim/net.h"
@@ -21,5 +20,3 @@ void button_parse(struct sim_net *net, struct words *words);
  */
 bool button_answer(struct sim_net *net, struct bus_req *req, int64_t now,
                    struct bus_answer *answer);
-
-#endif

@@ -7,8 +7,7 @@
  *
  * t is ns since the start of the simulation and never goes back.
  */
-#ifndef HAL_SIM_CHIP_H
-#define HAL_SIM_CHIP_H
+#pragma once
 
 #include "hal/sim/wire.h"
 
@@ -77,5 +76,3 @@ bool sim_chip_start(struct sim_chip *chip, bool read, int64_t t);
 bool sim_chip_write(struct sim_chip *chip, uint8_t byte, int64_t t);
 /* Send a byte that begins at t. */
 uint8_t sim_chip_read(struct sim_chip *chip, int64_t t);
-
-#endif

@@ -3,8 +3,7 @@
  * The checksums that 1-Wire slaves make (Application Note 27). The simulator has its own, so that
  * an error in those of the native bus cannot hide behind the same error here.
  */
-#ifndef HAL_SIM_CRC_H
-#define HAL_SIM_CRC_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -13,5 +12,3 @@
 uint8_t sim_crc8(uint8_t crc, const uint8_t *data, size_t n);
 /* x^16 + x^15 + x^2 + 1, least significant bit first, started with crc (0); not inverted. */
 uint16_t sim_crc16(uint16_t crc, const uint8_t *data, size_t n);
-
-#endif

@@ -3,8 +3,7 @@
  * A curve: what a quantity does over time, as a pure function of it. Idle time costs nothing.
  * Times are ns since the start of the simulation.
  */
-#ifndef HAL_SIM_CURVE_H
-#define HAL_SIM_CURVE_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -39,5 +38,3 @@ double sim_curve_at(const struct sim_curve *curve, int64_t t);
 int64_t sim_curve_next(const struct sim_curve *curve, int64_t t);
 /* Jumps downward (below 0.5 from above) in (from, to]: the falling edges of a logic level. */
 uint64_t sim_curve_falls(const struct sim_curve *curve, int64_t from, int64_t to);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Events of a simulated network: parsed from a line of a scenario, and carried out. */
-#ifndef HAL_SIM_EVENT_H
-#define HAL_SIM_EVENT_H
+#pragma once
 
 #include "hal/sim/net.h"
 #include "hal/sim/words.h"
@@ -24,5 +23,3 @@ bool event_is_held(const struct sim_event *event);
  */
 int sim_scenario_event(struct sim_net *net, const char *line, int64_t now, char *why,
                        size_t why_size);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The families of simulated slaves: a word in the list below for each. */
-#ifndef HAL_SIM_FAMILIES_H
-#define HAL_SIM_FAMILIES_H
+#pragma once
 
 #include "hal/sim/slave.h"
 
@@ -49,5 +48,3 @@
 
 #define SIM_FAMILY_DECLARE(part) extern const struct sim_family sim_##part;
 SIM_FAMILIES(SIM_FAMILY_DECLARE)
-
-#endif

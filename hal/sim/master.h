@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Scheme "sim": the DS2482 driver over a simulated network, `sim:FILE`, `sim:FILE:0x18.3`. */
-#ifndef HAL_SIM_MASTER_H
-#define HAL_SIM_MASTER_H
+#pragma once
 
 #include "hal/sim/net.h"
 #include "hal/wire/link.h"
@@ -10,5 +9,3 @@ extern const struct link_master_ops sim_master;
 
 /* The network below a master of scheme "sim", for tests and benches. */
 struct sim_net *sim_master_net(struct link_master *master);
-
-#endif

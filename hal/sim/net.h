@@ -9,8 +9,7 @@
  * Room hal/sim: a simulated I2C adapter, DS2482 and wires, in owsd-sim alone. Uses hal/ds2482,
  * hal/native, hal/wire, hal/owfs, hal/bus, hal/base.
  */
-#ifndef HAL_SIM_NET_H
-#define HAL_SIM_NET_H
+#pragma once
 
 #include "hal/sim/chip.h"
 
@@ -107,5 +106,3 @@ bool sim_i2c_start(struct sim_net *net, uint8_t address, bool read, int64_t now)
 bool sim_i2c_write(struct sim_net *net, uint8_t byte, int64_t now);
 /* now: the time when the byte begins. */
 uint8_t sim_i2c_read(struct sim_net *net, int64_t now);
-
-#endif

@@ -3,8 +3,7 @@
  * The open-drain pins of the switch families: each has an output latch, and a curve drives it from
  * outside. The state of such a slave begins with a struct sim_pins.
  */
-#ifndef HAL_SIM_PINS_H
-#define HAL_SIM_PINS_H
+#pragma once
 
 #include "hal/sim/slave.h"
 
@@ -35,5 +34,3 @@ void sim_pins_write(struct sim_slave *slave, uint8_t latch);
 void sim_pins_send(struct sim_slave *slave);
 void sim_pins_take(struct sim_slave *slave);
 void sim_pins_taken(struct sim_slave *slave);
-
-#endif

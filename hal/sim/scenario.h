@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The scenario language (docs/simulator.md): a text that makes a simulated network. */
-#ifndef HAL_SIM_SCENARIO_H
-#define HAL_SIM_SCENARIO_H
+#pragma once
 
 #include "hal/sim/net.h"
 
@@ -13,5 +12,3 @@ int sim_scenario_read(const char *file, struct sim_net *net, char *why, size_t w
 /* Make a network of a text; name stands for the file in messages. */
 int sim_scenario_parse(const char *name, const char *text, struct sim_net *net, char *why,
                        size_t why_size);
-
-#endif

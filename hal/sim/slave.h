@@ -6,8 +6,7 @@
  * t is ns since the start of the simulation; it never goes back for one slave. Each call with a t
  * leaves it in slave->now, where the functions of the family read it.
  */
-#ifndef HAL_SIM_SLAVE_H
-#define HAL_SIM_SLAVE_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -168,5 +167,3 @@ void sim_send_memory(struct sim_slave *slave, const uint8_t *memory, unsigned si
 void sim_send_stored(struct sim_slave *slave, uint8_t stored);
 /* Be busy for a while: read slots are 0, worked() ends it. */
 void sim_work(struct sim_slave *slave, int64_t takes);
-
-#endif

@@ -3,8 +3,7 @@
  * A simulated 1-Wire wire: the slots of one master reach the slaves on it, and the line is the AND
  * of all. Deaf slaves are skipped until the next reset, so that a hundred of them cost little.
  */
-#ifndef HAL_SIM_WIRE_H
-#define HAL_SIM_WIRE_H
+#pragma once
 
 #include "hal/sim/slave.h"
 
@@ -33,5 +32,3 @@ void sim_wire_strong(struct sim_wire *wire, bool on, int64_t t);
 void sim_wire_power(struct sim_wire *wire, bool on, int64_t t);
 /* A slave comes to the wire (and powers on) or leaves it. */
 void sim_wire_plug(struct sim_wire *wire, struct sim_slave *slave, bool in, int64_t t);
-
-#endif

@@ -3,8 +3,7 @@
  * Parses the words of a line of the scenario language. The first error stays; after it no word is
  * read.
  */
-#ifndef HAL_SIM_WORDS_H
-#define HAL_SIM_WORDS_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -37,5 +36,3 @@ double words_number(struct words *words, const char *what, double least, double 
 int64_t words_time(struct words *words, const char *what); /* "90s", "1.5h", in ns */
 /* Read a curve; each of its values is one that the input can have. */
 struct sim_curve words_curve(struct words *words, const struct sim_input *input);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Which driver has a slave, and what it gives of it. */
-#ifndef HAL_W1_DRIVER_H
-#define HAL_W1_DRIVER_H
+#pragma once
 
 #include "hal/w1/part.h"
 
@@ -13,5 +12,3 @@ bool w1_offers(struct w1_slave *slave, const char *property, int element);
 const struct w1_part *w1_part_of(const struct w1_slave *slave, const char *area);
 /* 1, 0, or an error: -EOPNOTSUPP it cannot be told, -ENODEV it is gone. */
 int w1_in_alarm(struct w1_slave *slave);
-
-#endif

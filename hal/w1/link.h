@@ -3,12 +3,9 @@
  * A master of the kernel's as a link with drivers: areas of slaves that have one, raw access to
  * those that have none.
  */
-#ifndef HAL_W1_LINK_H
-#define HAL_W1_LINK_H
+#pragma once
 
 #include "hal/wire/driver.h"
 
 extern const struct link_ops w1_link_ops;
 extern const struct driver_ops w1_driver_ops;
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The kernel's masters. */
-#ifndef HAL_W1_MASTER_H
-#define HAL_W1_MASTER_H
+#pragma once
 
 #include "hal/wire/link.h"
 
@@ -13,5 +12,3 @@ unsigned w1_master_only(const struct link_master *master);
 bool w1_master_has(const struct link_master *master, unsigned number);
 /* Does not hear from the kernel of slaves and masters any more, until it is opened again. */
 void w1_master_deafen(struct link_master *master);
-
-#endif

@@ -3,8 +3,7 @@
  * What a driver of the kernel's gives of a chip: the areas (hal/chips/area.h), by their names
  * there, that its attributes stand for, and the properties that can be had of these.
  */
-#ifndef HAL_W1_PART_H
-#define HAL_W1_PART_H
+#pragma once
 
 #include "hal/w1/slave.h"
 
@@ -36,5 +35,3 @@ struct w1_driver {
 #define W1_PARTS(table) .parts = (table), .part_count = sizeof(table) / sizeof((table)[0])
 #define W1_PROPERTIES(table) \
 	.properties = (table), .property_count = sizeof(table) / sizeof((table)[0])
-
-#endif

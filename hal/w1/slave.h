@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The slaves that the kernel has: what is remembered of each, and its attributes (tree.h). */
-#ifndef HAL_W1_SLAVE_H
-#define HAL_W1_SLAVE_H
+#pragma once
 
 #include "hal/w1/tree.h"
 #include "hal/wire/device.h"
@@ -36,5 +35,3 @@ int w1_slave_write(struct w1_slave *slave, const char *name, unsigned at, const 
 /* Text with NUL, in tree->text; -EIO when it is empty: so the kernel tells a failed reading. */
 int w1_slave_text(struct w1_slave *slave, const char *name);
 int w1_slave_number(struct w1_slave *slave, const char *name, long *number);
-
-#endif

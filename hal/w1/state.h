@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The masters of a target, and each as a link: master.c and link.c work on it. */
-#ifndef HAL_W1_STATE_H
-#define HAL_W1_STATE_H
+#pragma once
 
 #include "hal/native/limits.h"
 #include "hal/w1/thermometer.h"
@@ -28,5 +27,3 @@ struct w1_master {
 	int uevents;        /* socket; -1: none */
 	int64_t uevents_ns; /* when to look at it */
 };
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The thermometers, and the conversion of all of a master's at once. */
-#ifndef HAL_W1_THERMOMETER_H
-#define HAL_W1_THERMOMETER_H
+#pragma once
 
 #include "hal/w1/part.h"
 
@@ -18,5 +17,3 @@ struct w1_bulk {
 void w1_convert_all(struct w1_slaves *slaves, struct w1_bulk *bulk);
 /* When its alarm is asked for, a thermometer converts: what is known of it is too old. */
 bool w1_alarm_converts(const struct w1_slave *slave);
-
-#endif

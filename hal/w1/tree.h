@@ -6,8 +6,7 @@
  *   -EPERM no right (the log says so once), -EINVAL the kernel refuses the value, -EIO any other
  *   error
  */
-#ifndef HAL_W1_TREE_H
-#define HAL_W1_TREE_H
+#pragma once
 
 #include "hal/bus/bus.h"
 
@@ -38,5 +37,3 @@ int w1_slaves(struct w1_tree *tree, const char *directory);
 /* A line for the log. */
 void w1_note(struct w1_tree *tree, int err, const char *text);
 int64_t w1_now(const struct w1_tree *tree);
-
-#endif

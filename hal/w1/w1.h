@@ -18,12 +18,9 @@
  * Room hal/w1: the masters of the kernel, by sysfs: areas that its drivers give. Uses hal/native,
  * hal/chips, hal/wire, hal/owfs, hal/bus, hal/base.
  */
-#ifndef HAL_W1_W1_H
-#define HAL_W1_W1_H
+#pragma once
 
 #include "hal/bus/bus.h"
 
 /* Without "netlink" in its target: hal/netlink has the bus of both. */
 extern const struct bus_ops w1_sysfs_bus;
-
-#endif

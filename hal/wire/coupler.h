@@ -9,8 +9,7 @@
  * not switched on (-ECOMM): a short of it would be one of the whole wire. -EBADMSG: a coupler did
  * not confirm.
  */
-#ifndef HAL_WIRE_COUPLER_H
-#define HAL_WIRE_COUPLER_H
+#pragma once
 
 #include "hal/wire/link.h"
 
@@ -76,5 +75,3 @@ int coupler_look(struct coupler *coupler);
 void coupler_remove(struct coupler *coupler);
 /* Switch off what is on. 0 or an error. */
 int trunk_rest(struct trunk *trunk);
-
-#endif

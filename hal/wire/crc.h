@@ -3,8 +3,7 @@
  * CRC16 of 1-Wire memory commands (Maxim application note 27): X^16+X^15+X^2+1, reflected, start
  * value 0. The CRC8 of ids and scratchpads is rom_crc8() of hal/owfs/path.h.
  */
-#ifndef HAL_WIRE_CRC_H
-#define HAL_WIRE_CRC_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -18,5 +17,3 @@ bool onewire_crc16_matches(uint16_t crc, const uint8_t sent[2]);
 uint8_t onewire_crc8(const uint8_t *data, size_t n);
 /* A family that is not 0, and a right CRC8. */
 bool onewire_rom_valid(const uint8_t rom[8]);
-
-#endif

@@ -3,8 +3,7 @@
  * The device table of a native bus: every id that was ever seen, its channel, and what is known of
  * the chip. Bounded; a device keeps its place while it is away, so that it is known again.
  */
-#ifndef HAL_WIRE_DEVICE_H
-#define HAL_WIRE_DEVICE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -90,5 +89,3 @@ const char *device_alias(const struct device *device);
 /* Another device of that alias loses it. -EINVAL: such a text is no alias. */
 int device_set_alias(struct device *device, const char *text, size_t len);
 struct device *device_by_alias(struct device_table *table, const char *name, size_t len);
-
-#endif

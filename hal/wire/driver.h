@@ -7,8 +7,7 @@
  * Blocking: a call lasts as long as the driver takes. An error is the device's, not the link's: no
  * recovery follows. A driver sees to the chips that the wire feeds. One thread: the native bus.
  */
-#ifndef HAL_WIRE_DRIVER_H
-#define HAL_WIRE_DRIVER_H
+#pragma once
 
 #include "hal/wire/link.h"
 
@@ -40,5 +39,3 @@ static inline bool driver_offers(struct link *link, const uint8_t rom[8], const 
 {
 	return !link->driver || link->driver->offers(link, rom, property, element);
 }
-
-#endif

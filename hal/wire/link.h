@@ -17,8 +17,7 @@
  *
  * Room hal/wire: links, transactions, searches, devices. Uses hal/owfs, hal/bus.
  */
-#ifndef HAL_WIRE_LINK_H
-#define HAL_WIRE_LINK_H
+#pragma once
 
 #include "hal/bus/bus.h"
 
@@ -229,5 +228,3 @@ struct link_master {
 	const struct bus_env *env;
 	bool one_supply; /* the power cycle of one link is one of all */
 };
-
-#endif

@@ -3,8 +3,7 @@
  * The ROM search (Maxim application note 187), one device per call, so that other work fits
  * between. Made of reset, write and triplet of a link, or of bit() where it has no triplet.
  */
-#ifndef HAL_WIRE_SEARCH_H
-#define HAL_WIRE_SEARCH_H
+#pragma once
 
 #include "hal/wire/link.h"
 
@@ -46,5 +45,3 @@ int search_verify(struct link *link, const uint8_t rom[8], bool alarm);
  * stays. It leaves nothing selected.
  */
 int search_among(struct link *link, const uint8_t *const roms[], bool away[], unsigned n);
-
-#endif

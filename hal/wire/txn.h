@@ -8,8 +8,7 @@
  * how long the chip needs meanwhile. The device is its own until it returns something else.
  * After an error the function is begun again with phase 0, at most a few times.
  */
-#ifndef HAL_WIRE_TXN_H
-#define HAL_WIRE_TXN_H
+#pragma once
 
 #include "hal/wire/device.h"
 #include "hal/wire/link.h"
@@ -182,5 +181,3 @@ int txn_driver_convert(struct txn *txn, const char *what);
  * -EBADMSG the search was disturbed. 0 is also what a disturbed search may say, 1 is certain.
  */
 int txn_verify(struct txn *txn, bool alarm);
-
-#endif

@@ -5,8 +5,7 @@
  *
  * Room src/board: which board this machine is, and what it lacks. Uses src/text, hal/ds2482.
  */
-#ifndef BOARD_H
-#define BOARD_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -31,5 +30,3 @@ struct board_report {
 	bool missing;
 	bool full; /* the last line that was added found no place */
 };
-
-#endif

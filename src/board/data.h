@@ -3,8 +3,7 @@
  * The data of a board or of a HAT on it: the files of board/boards, a key and its value on each
  * line, `#` comments. Shell scripts read the same files with awk.
  */
-#ifndef BOARD_DATA_H
-#define BOARD_DATA_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -50,5 +49,3 @@ const struct board_data *board_data_hat(const struct board_data *data, unsigned 
                                         const char *vendor, const char *product);
 const struct board_data *board_data_id(const struct board_data *data, unsigned count,
                                        const char *id);
-
-#endif

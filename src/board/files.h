@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Inside src/board: files below a root directory. */
-#ifndef BOARD_FILES_H
-#define BOARD_FILES_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -26,5 +25,3 @@ const char *board_config(const char *root);
  * parameters.
  */
 bool board_configured(const char *root, const char *line);
-
-#endif

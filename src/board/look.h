@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Finds out which board this machine is. */
-#ifndef BOARD_LOOK_H
-#define BOARD_LOOK_H
+#pragma once
 
 #include <stddef.h>
 
@@ -16,5 +15,3 @@ void board_folder(char *folder, size_t size);
  */
 int board_look(const char *root, const char *folder, const char *id, struct board_report *report,
                char *why, size_t why_size);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Inside src/board: adds lines to a report. */
-#ifndef BOARD_REPORT_H
-#define BOARD_REPORT_H
+#pragma once
 
 #include "src/board/board.h"
 
@@ -16,5 +15,3 @@ void report_sort(struct board_report *report);
 
 /* Print each line, and its remedy indented below it. */
 void board_print(const struct board_report *report, FILE *out);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The key ControlAllow of the driver block: who may command which signals. */
-#ifndef CONFIG_ALLOW_H
-#define CONFIG_ALLOW_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -26,5 +25,3 @@ enum allow_word {
  * peer (NULL): somebody of whom nothing is known.
  */
 enum allow_word allow_ask(const struct config *config, const struct peer *peer, const char *name);
-
-#endif

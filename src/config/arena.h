@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* An arena: memory that is taken piece by piece and freed all at once. */
-#ifndef CONFIG_ARENA_H
-#define CONFIG_ARENA_H
+#pragma once
 
 #include <stddef.h>
 
@@ -15,5 +14,3 @@ void *arena_take(struct arena *arena, size_t size);
 /* Take a copy of len bytes of text, with a NUL. */
 char *arena_text(struct arena *arena, const char *text, size_t len);
 void arena_free(struct arena *arena);
-
-#endif

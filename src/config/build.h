@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Between the files that make a struct config out of a document. */
-#ifndef CONFIG_BUILD_H
-#define CONFIG_BUILD_H
+#pragma once
 
 #include "src/config/options.h"
 
@@ -42,5 +41,3 @@ text_check text_is_file;
  */
 const char *text_key(struct build *build, const struct option_value *values, enum option option,
                      text_check *check);
-
-#endif

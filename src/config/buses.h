@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The Bus blocks. What an option means is the backend's: here is only what its value looks like. */
-#ifndef CONFIG_BUSES_H
-#define CONFIG_BUSES_H
+#pragma once
 
 struct build;
 struct config;
@@ -21,5 +20,3 @@ const struct config_bus *config_bus(const struct config *config, const char *tar
 void config_hash_files(struct config *config);
 /* Warn of Bus blocks whose target is not among the configured targets. */
 void config_check_buses(const struct config *config, struct config_report *report);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What a configuration names, held against what is known of the chips. */
-#ifndef CONFIG_CHECK_H
-#define CONFIG_CHECK_H
+#pragma once
 
 struct config;
 struct config_report;
@@ -21,5 +20,3 @@ int config_check(struct config *config, struct config_report *report);
 void config_check_items(const struct config *config, struct config_report *report);
 /* The same of one item; a name that no item has is no fault. */
 void config_check_item(const struct config *config, const char *name, struct config_report *report);
-
-#endif

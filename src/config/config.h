@@ -6,8 +6,7 @@
  * Room src/config: the .rio file: read, checked, edited. Uses src/text, src/shm, src/signal,
  * hal/chips, hal/owfs, hal/bus, hal/base.
  */
-#ifndef CONFIG_H
-#define CONFIG_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -233,5 +232,3 @@ struct config_report {
 	unsigned errors, warnings;
 	int at_line; /* of what is reported now; 0: of none; INT_MAX: after all others */
 };
-
-#endif

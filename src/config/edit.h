@@ -6,8 +6,7 @@
  * Settings are "KEY=VALUE". Type, IO and Uncached go into the bits of IOType where an item has
  * that. Errors go to report. Returns 0, -EINVAL (reported), -ENOMEM or -EFBIG.
  */
-#ifndef CONFIG_EDIT_H
-#define CONFIG_EDIT_H
+#pragma once
 
 #include "src/config/rio.h"
 
@@ -55,5 +54,3 @@ int edit_lock(const char *file, struct config_report *report);
  */
 int edit_commit(const struct rio *rio, const char *file, const char *edited,
                 struct config_report *report);
-
-#endif

@@ -3,8 +3,7 @@
  * The blocks of a configuration by the names that edits have for them: an item's own name;
  * "OwsDrv"; and, where no item is called so, "Recorder", "Influx", "Web", "Mqtt", and "Bus:TARGET".
  */
-#ifndef CONFIG_EDIT_BLOCK_H
-#define CONFIG_EDIT_BLOCK_H
+#pragma once
 
 #include "src/config/options.h"
 
@@ -21,5 +20,3 @@ struct rio_node *edit_block(const struct rio *rio, const char *name, enum option
                             struct config_report *report);
 /* Make the block, if it is none of an item and not there. 0 or a negative errno of rio_add(). */
 int edit_make_block(struct rio **rio, const char *name);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A device of a configuration replaced by another of its family. */
-#ifndef CONFIG_EDIT_DEVICE_H
-#define CONFIG_EDIT_DEVICE_H
+#pragma once
 
 #include "hal/owfs/path.h"
 #include "src/config/rio.h"
@@ -16,5 +15,3 @@
 #define EDIT_REPLACE_MAX 256 /* each reads the whole text again */
 int edit_replace(struct rio **rio, const uint8_t before[ROM_LEN], const uint8_t after[ROM_LEN],
                  const char *location, struct config_report *report);
-
-#endif

@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* The Influx block, of which owsd-influx takes its options. owsd checks it, and does not use it. */
-#ifndef CONFIG_INFLUX_H
-#define CONFIG_INFLUX_H
+#pragma once
 
 struct build;
 struct rio_node;
 
 /* The block, or the defaults if it is NULL. */
 void influx_build(struct build *build, const struct rio_node *block);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Items of the file: makes a signal of an item's keys, and reports what is wrong or odd. */
-#ifndef CONFIG_ITEM_H
-#define CONFIG_ITEM_H
+#pragma once
 
 /* The bits of IOType. */
 #define IO_TYPE_CODE 0x0fu
@@ -18,5 +17,3 @@ struct rio_node;
 void item_build(struct build *build, const struct rio_node *block, struct config_item *item);
 /* What concerns items together: names. */
 void items_check(struct build *build, const struct place *names);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Limit alarms of an item. */
-#ifndef CONFIG_LIMITS_H
-#define CONFIG_LIMITS_H
+#pragma once
 
 struct build;
 struct config_item;
@@ -9,5 +8,3 @@ struct option_value;
 
 /* Its limit alarms, when its type is known. */
 void limits_build(struct build *build, const struct option_value *values, struct config_item *item);
-
-#endif

@@ -4,8 +4,7 @@
  * peers that it serves (addresses or ranges). Only numeric, so that owsd asks no name server. Pure
  * functions.
  */
-#ifndef CONFIG_LISTEN_H
-#define CONFIG_LISTEN_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -46,5 +45,3 @@ bool listen_peers_have(const struct listen_peers *peers, unsigned count, bool is
 #define LISTEN_TEXT_MAX 56
 void listen_print(const struct listen_address *address, char text[LISTEN_TEXT_MAX]);
 void listen_peers_print(const struct listen_peers *peers, char text[LISTEN_TEXT_MAX]);
-
-#endif

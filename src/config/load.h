@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The configuration made from a .rio document: its driver block, its items, its targets. */
-#ifndef CONFIG_LOAD_H
-#define CONFIG_LOAD_H
+#pragma once
 
 #include <stddef.h>
 
@@ -23,5 +22,3 @@ int config_set_targets(struct config *config, const char *const *texts, unsigned
 int config_set_listens(struct config *config, const char *const *texts, unsigned count,
                        struct config_report *report);
 void config_free(struct config *config);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The Mqtt block, of which owsd-mqtt takes its options. owsd checks it, and does not use it. */
-#ifndef CONFIG_MQTT_H
-#define CONFIG_MQTT_H
+#pragma once
 
 struct build;
 struct config_item;
@@ -12,5 +11,3 @@ struct rio_node;
 void mqtt_build(struct build *build, const struct rio_node *block);
 /* The key Class of an item. */
 void class_build(struct build *build, const struct option_value *value, struct config_item *item);
-
-#endif

@@ -3,8 +3,7 @@
  * All keys of the configuration in one table: the reader takes types, limits and defaults from it,
  * owsd --check and the edits their order, and a test lays the manual page beside it.
  */
-#ifndef CONFIG_OPTIONS_H
-#define CONFIG_OPTIONS_H
+#pragma once
 
 #include "src/config/arena.h"
 #include "src/config/config.h"
@@ -189,5 +188,3 @@ static inline int64_t option_ns(const struct option_value *value)
  */
 void options_read(const struct rio_node *block, enum option_place place,
                   struct option_value *values, struct config_report *report);
-
-#endif

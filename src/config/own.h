@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Targets that lead back to the owsd that has them. */
-#ifndef CONFIG_OWN_H
-#define CONFIG_OWN_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -15,5 +14,3 @@ struct config_report;
 int config_check_own(struct config *config, struct config_report *report);
 /* Is a target a server of the owserver protocol? */
 bool config_has_servers(const struct config *config);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The configuration as owsd understood it, printed as a file. */
-#ifndef CONFIG_PRINT_H
-#define CONFIG_PRINT_H
+#pragma once
 
 #include <stdio.h>
 
@@ -12,5 +11,3 @@ void config_print(const struct config *config, FILE *out);
 /* The same of one item, also with what its alarm does not define. */
 struct config_item;
 void config_print_item(const struct config_item *item, FILE *out);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What the tables of the families say of the property that a path names. */
-#ifndef CONFIG_PROPERTY_H
-#define CONFIG_PROPERTY_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -26,5 +25,3 @@ struct path_property {
 struct path_property property_look(const char *path);
 /* .there of it, and the nearest name. */
 bool property_known(const char *path, char nearest[PROPERTY_NAME]);
-
-#endif

@@ -10,8 +10,7 @@
  *     Record "change, raw"                  the raw value too
  *     Record "off"                          nothing of this signal
  */
-#ifndef CONFIG_RECORDER_H
-#define CONFIG_RECORDER_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -43,5 +42,3 @@ void record_build(struct build *build, const struct option_value *value, bool kn
  * "change" for a bool and a string, which have no distance. Pure.
  */
 struct config_record config_record_of(const struct config *config, const struct config_item *item);
-
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#ifndef CONFIG_REPLACE_H
-#define CONFIG_REPLACE_H
+#pragma once
 
 #include <limits.h>
 #include <stddef.h>
@@ -39,5 +38,3 @@ void replace_abandon(struct replacement *replacement);
  */
 int replace_lock(const char *file);
 void replace_unlock(const char *file, int fd);
-
-#endif

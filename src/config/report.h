@@ -3,8 +3,7 @@
  * What is wrong with a file, reported as "FILE:LINE:COLUMN: error: TEXT". The first 50 errors and
  * the first 50 warnings are passed on, all are counted.
  */
-#ifndef CONFIG_REPORT_H
-#define CONFIG_REPORT_H
+#pragma once
 
 #include "src/config/config.h"
 
@@ -19,5 +18,3 @@ void report_error(struct config_report *report, struct place place, const char *
 	__attribute__((format(printf, 3, 4)));
 void report_warning(struct config_report *report, struct place place, const char *format, ...)
 	__attribute__((format(printf, 3, 4)));
-
-#endif

@@ -15,8 +15,7 @@
  * In strings \" and \\ stand for the second character; other backslashes for themselves. LF, CRLF
  * and CR end a line, also mixed.
  */
-#ifndef CONFIG_RIO_H
-#define CONFIG_RIO_H
+#pragma once
 
 #include "src/config/arena.h"
 #include "src/config/report.h"
@@ -67,5 +66,3 @@ size_t rio_line_end_length(const char *p, const char *end);
 /* The first child with that key, or NULL; rio_next: the next one with the same key. */
 struct rio_node *rio_child(const struct rio_node *block, const char *key);
 struct rio_node *rio_next(const struct rio_node *node);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A .rio file read into memory. */
-#ifndef CONFIG_RIO_FILE_H
-#define CONFIG_RIO_FILE_H
+#pragma once
 
 #include <stddef.h>
 
@@ -13,5 +12,3 @@ struct config_report;
  * UTF-16, -EINVAL: the file is not regular, and was not opened. Blocking.
  */
 int rio_read(const char *file, struct config_report *report, char **text, size_t *len);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Printing values and changing a document; what is not changed keeps every byte. */
-#ifndef CONFIG_RIO_WRITE_H
-#define CONFIG_RIO_WRITE_H
+#pragma once
 
 #include "src/config/rio.h"
 
@@ -33,5 +32,3 @@ int rio_remove(struct rio **rio, struct rio_node *node);
  * one block. -EINVAL: the lines of one of them hold other text.
  */
 int rio_move(struct rio **rio, struct rio_node *node, const struct rio_node *other, bool behind);
-
-#endif

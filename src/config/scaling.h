@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What an item's value means: unit and description, scale, filter and range. */
-#ifndef CONFIG_SCALING_H
-#define CONFIG_SCALING_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -15,5 +14,3 @@ struct option_value;
  */
 void scaling_build(struct build *build, const struct option_value *values, bool known,
                    struct config_item *item);
-
-#endif

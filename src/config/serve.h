@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The keys Listen... of the driver block. */
-#ifndef CONFIG_SERVE_H
-#define CONFIG_SERVE_H
+#pragma once
 
 #include "src/config/rio.h"
 
@@ -16,5 +15,3 @@ void serve_addresses(struct build *build, const char *text, struct place place,
                      struct listen_address *all, unsigned *count);
 /* The addresses of owsd -l in their place. 0 or -EINVAL. */
 int serve_listens(struct build *build, const char *const *texts, unsigned count);
-
-#endif

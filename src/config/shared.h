@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Items that write the same register of a device. */
-#ifndef CONFIG_SHARED_H
-#define CONFIG_SHARED_H
+#pragma once
 
 struct config;
 struct config_report;
@@ -12,5 +11,3 @@ struct config_report;
  * name: only pairs with that item; NULL: all.
  */
 void shared_check(const struct config *config, const char *name, struct config_report *report);
-
-#endif

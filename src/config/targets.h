@@ -2,8 +2,7 @@
 /*
  * Targets as they are written: lists with commas and bars, auto, and which spellings are the same.
  */
-#ifndef CONFIG_TARGETS_H
-#define CONFIG_TARGETS_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -37,5 +36,3 @@ void targets_add(struct build *build, const char *text, struct place place);
  */
 const char *relative_file(struct build *build, const char *text, size_t prefix,
                           const struct place *place);
-
-#endif

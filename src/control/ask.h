@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Programs that ask for a reload: they wait at a place of the room, and are no controllers. */
-#ifndef CONTROL_ASK_H
-#define CONTROL_ASK_H
+#pragma once
 
 #include "src/control/private.h"
 
@@ -11,5 +10,3 @@ int ask_begin(struct control *c, struct control_place *p, const struct ows_hello
 bool ask_waits(const struct control_place *p);
 /* Send what came of it, with the reason in words; the caller hangs up. Never blocks. */
 void ask_answer(const struct control *c, const struct control_place *p, int err, const char *why);
-
-#endif

@@ -7,8 +7,7 @@
  * Room src/control: the control socket: connections, credentials, rights. Uses src/config,
  * src/text, src/libows, src/shm, hal/bus, hal/base.
  */
-#ifndef CONTROL_H
-#define CONTROL_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -101,5 +100,3 @@ void control_reloaded(struct control *control);
  * said in the memory of before that they wait.
  */
 void control_replaced(struct control *control);
-
-#endif

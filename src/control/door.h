@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Connections: who gets a place, what was sent over them, and how they end. */
-#ifndef CONTROL_DOOR_H
-#define CONTROL_DOOR_H
+#pragma once
 
 #include "src/control/private.h"
 
@@ -22,5 +21,3 @@ void door_drop(struct control *c, struct control_place *p, enum control_counter 
 size_t door_memory(struct control *c, uid_t uid);
 /* Close and free everything of a place. */
 void door_release(struct control *c, struct control_place *p);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What a controller gets of a generation: its memory and its rights. */
-#ifndef CONTROL_GRANT_H
-#define CONTROL_GRANT_H
+#pragma once
 
 #include "src/control/private.h"
 
@@ -10,5 +9,3 @@ int grant_make(struct control_grant *grant, const struct controller_layout *layo
                const struct rights *rights, const struct control_place *place);
 /* An empty grant stays as it is. */
 void grant_free(struct control_grant *grant);
-
-#endif

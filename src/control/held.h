@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Memories that owsd is done with: they count as their user's until they are empty. */
-#ifndef CONTROL_HELD_H
-#define CONTROL_HELD_H
+#pragma once
 
 #include "src/control/private.h"
 
@@ -18,5 +17,3 @@ bool held_full(const struct control *c);
 unsigned held_of(const struct control *c, uid_t uid, size_t *bytes);
 /* Let go of all, at the end. */
 void held_forget(struct control *c);
-
-#endif

@@ -4,8 +4,7 @@
  * put there. So a thread of its own does it, for which the engine only leaves word; what turns out
  * to be slow is rung less often.
  */
-#ifndef CONTROL_NEWS_H
-#define CONTROL_NEWS_H
+#pragma once
 
 #include "src/control/private.h"
 
@@ -24,5 +23,3 @@ void news_ring(struct control *c, const uint32_t *word);
 void news_begin(struct control_place *p);
 /* It is rung no more. False: it is being rung this moment. */
 bool news_end(struct control_place *p);
-
-#endif

@@ -3,8 +3,7 @@
  * How often users connect. Each connection that may get a place costs a memory, a bell and more;
  * users that connect without end cost no more than a small part of a core.
  */
-#ifndef CONTROL_OFTEN_H
-#define CONTROL_OFTEN_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -24,5 +23,3 @@ struct often {
 
 /* The user connects: is it too often? Then it does not count. */
 bool often_is_too(struct often *often, uid_t uid, int64_t now_ns);
-
-#endif

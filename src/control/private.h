@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The inside of the control room, which the files of this room share. */
-#ifndef CONTROL_PRIVATE_H
-#define CONTROL_PRIVATE_H
+#pragma once
 
 #include <pthread.h>
 
@@ -157,5 +156,3 @@ struct control {
 	struct log_rate refused, full;
 	struct bus_counter counters[CONTROL_COUNTER_COUNT];
 };
-
-#endif

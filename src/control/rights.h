@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Who may command which signal: ControlAllow of the configuration, and the rule without it. */
-#ifndef CONTROL_RIGHTS_H
-#define CONTROL_RIGHTS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -31,5 +30,3 @@ bool rights_read(const struct rights *rights, const struct peer *peer);
 bool rights_reload(const struct rights *rights, const struct peer *peer);
 /* Set a bit for each record that the peer may command; returns how many of them are signals. */
 uint32_t rights_fill(const struct rights *rights, const struct peer *peer, uint32_t *bits);
-
-#endif

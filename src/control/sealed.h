@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The memory of a controller: made by owsd, sealed, mapped by both. */
-#ifndef CONTROL_SEALED_H
-#define CONTROL_SEALED_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -19,5 +18,3 @@ void sealed_unmap(char *base, size_t size);
  * and whoever empties the file waits for it, even against SIGKILL.
  */
 bool sealed_is_empty(int own);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The socket NAME.control in owsd's directory. */
-#ifndef CONTROL_SOCKET_H
-#define CONTROL_SOCKET_H
+#pragma once
 
 #include <stdbool.h>
 #include <sys/types.h>
@@ -15,5 +14,3 @@ int socket_listen(int directory, const char *name, bool for_all, ino_t *inode);
 void socket_remove(int directory, const char *name, ino_t inode);
 /* May others than owsd's user and root connect? Their rights are looked at afterwards. */
 int socket_open_for(int directory, const char *name, bool all);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What owsd sends over the socket. */
-#ifndef CONTROL_WELCOME_H
-#define CONTROL_WELCOME_H
+#pragma once
 
 #include "src/control/private.h"
 
@@ -19,5 +18,3 @@ int welcome_end(struct control *c, const int *fds, unsigned count, int err, bool
 void welcome_send(struct control *c, struct control_place *p);
 /* Is there something that the controller has not read, or that the porter has not sent? */
 bool welcome_unread(struct control *c, const struct control_place *p);
-
-#endif

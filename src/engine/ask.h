@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What a lane asks its bus next. */
-#ifndef ENGINE_ASK_H
-#define ENGINE_ASK_H
+#pragma once
 
 #include "src/engine/state.h"
 
@@ -22,5 +21,3 @@ void lane_fill(struct lane *lane, int64_t now_ns);
 void lane_show_reads(struct lane *lane);
 /* When the lane wants to be filled again though nothing ended; INT64_MAX: not before. */
 int64_t lane_wake(const struct lane *lane);
-
-#endif

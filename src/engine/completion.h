@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The end of a read or a write. */
-#ifndef ENGINE_COMPLETION_H
-#define ENGINE_COMPLETION_H
+#pragma once
 
 #include "src/engine/state.h"
 
@@ -19,5 +18,3 @@ int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
 /* A request of the alarm machine for this item failed: that counts as a failed read. */
 void engine_alarm_failed(struct engine *e, struct lane *lane, const struct alarm_item *item,
                          int err);
-
-#endif

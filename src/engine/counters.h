@@ -3,8 +3,7 @@
  * Counters: the engine's own first, then LANE_COUNTERS for each port. The image is planned with
  * these names.
  */
-#ifndef ENGINE_COUNTERS_H
-#define ENGINE_COUNTERS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -17,5 +16,3 @@ void engine_counter_plan(unsigned port_count, struct image_counter *counters);
 uint64_t engine_counter(const struct engine *engine, unsigned index);
 /* Put all of them into the image. */
 void engine_publish_counters(struct engine *e);
-
-#endif

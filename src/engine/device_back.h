@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A device that came back. */
-#ifndef ENGINE_DEVICE_BACK_H
-#define ENGINE_DEVICE_BACK_H
+#pragma once
 
 #include "src/engine/state.h"
 
@@ -10,5 +9,3 @@
  * outputs again and arm its alarms.
  */
 void engine_device_back(struct lane *lane, struct device *device);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What is known and counted of each device that signals name, and the image of it. */
-#ifndef ENGINE_DEVICE_FACTS_H
-#define ENGINE_DEVICE_FACTS_H
+#pragma once
 
 #include "src/engine/state.h"
 
@@ -21,5 +20,3 @@ void engine_facts_failed(struct engine *e, const struct signal *s);
 void engine_facts_adopt(struct engine *e, const struct engine *old, const int *lanes);
 /* Put into the image what has changed. */
 void engine_publish_devices(struct engine *e);
-
-#endif

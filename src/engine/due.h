@@ -4,8 +4,7 @@
  * puts rows into the set when their period comes. Cost does not grow with the table: a row costs
  * one step when it is scheduled, one when it becomes due and one when it is taken.
  */
-#ifndef ENGINE_DUE_H
-#define ENGINE_DUE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -56,5 +55,3 @@ void due_wheel_turn(struct due_wheel *wheel, uint64_t period, due_ready *ready, 
  * DUE_BUCKETS later. It may be too soon: a row of a later round is in the same bucket.
  */
 uint64_t due_wheel_next(const struct due_wheel *wheel, uint64_t after, uint64_t most);
-
-#endif

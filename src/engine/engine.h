@@ -28,8 +28,7 @@
  * Room src/engine: the table of signals, lanes, alarms; no input or output. Uses src/config,
  * src/text, src/libows, src/shm, src/signal, hal/chips, hal/owfs, hal/bus, hal/base.
  */
-#ifndef ENGINE_H
-#define ENGINE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -87,5 +86,3 @@ int64_t engine_step(struct engine *engine, int64_t now_ns);
  * Was anything published since the last call? The host then wakes the consumers that wait for news.
  */
 bool engine_published(struct engine *engine);
-
-#endif

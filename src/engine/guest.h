@@ -4,8 +4,7 @@
  * protocol. They go out behind alarms, outputs and inputs, a bounded number at a time for each
  * lane, and are never starved by them.
  */
-#ifndef ENGINE_GUEST_H
-#define ENGINE_GUEST_H
+#pragma once
 
 #include "hal/bus/bus.h"
 
@@ -53,5 +52,3 @@ struct engine_guests {
 	void *ctx;
 	const uint8_t *token; /* of this server, BUS_TOKEN bytes: goes with the table's requests */
 };
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The guests of the lanes: which of them waits, and whose request the bus has. */
-#ifndef ENGINE_GUESTS_H
-#define ENGINE_GUESTS_H
+#pragma once
 
 #include "src/engine/state.h"
 
@@ -29,5 +28,3 @@ void guest_gone(struct engine *e, struct slot *slot);
 void guests_adopt(struct lane *lane, struct lane *before);
 void guests_refuse(struct lane *lane);
 void guests_release(struct lane *lane);
-
-#endif

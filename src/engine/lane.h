@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A lane: the engine's side of one bus. */
-#ifndef ENGINE_LANE_H
-#define ENGINE_LANE_H
+#pragma once
 
 #include "src/engine/state.h"
 
@@ -15,5 +14,3 @@ void lane_free(struct lane *lane);
  */
 void lane_take_row(struct lane *lane, uint32_t row);
 void lane_drop_row(struct lane *lane, uint32_t row);
-
-#endif

@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* The end of a request that is lent to a bus. */
-#ifndef ENGINE_LANE_ANSWER_H
-#define ENGINE_LANE_ANSWER_H
+#pragma once
 
 #include "src/engine/state.h"
 
 void lane_answer(struct lane *lane, const struct bus_answer *answer, int64_t now_ns);
 /* Give requests up whose time is over; returns when the next one's is. */
 int64_t lane_timeouts(struct lane *lane, int64_t now_ns);
-
-#endif

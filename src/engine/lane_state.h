@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A lane whose target goes up and fails. */
-#ifndef ENGINE_LANE_STATE_H
-#define ENGINE_LANE_STATE_H
+#pragma once
 
 #include "src/engine/state.h"
 
@@ -17,5 +16,3 @@ void lane_down(struct lane *lane, int err);
  */
 void lane_stuck(struct lane *lane, int64_t now_ns);
 void lane_unstuck(struct lane *lane, int64_t now_ns);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A port: one target, as the engine reaches it. The host fills it in. */
-#ifndef ENGINE_PORT_H
-#define ENGINE_PORT_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -24,5 +23,3 @@ struct engine_port {
 	/* bus_ops.suspend; never blocks. NULL: nothing to let go of. */
 	void (*suspend)(void *ctx, bool yes);
 };
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What the image shows. */
-#ifndef ENGINE_PUBLISH_H
-#define ENGINE_PUBLISH_H
+#pragma once
 
 #include "src/engine/state.h"
 
@@ -11,5 +10,3 @@ void engine_publish(struct engine *e, struct signal *s);
 bool engine_driver_changed(const struct engine *e);
 void engine_publish_driver(struct engine *e, int64_t now_ns);
 void engine_publish_target(struct engine *e, const struct lane *lane);
-
-#endif

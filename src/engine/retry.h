@@ -3,8 +3,7 @@
  * What a failure means: a pure function from the errors in a row to what to do next (section 3 of
  * docs/semantics.md, "What can fail").
  */
-#ifndef ENGINE_RETRY_H
-#define ENGINE_RETRY_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -35,5 +34,3 @@ struct retry {
  */
 bool retry_fail(struct retry *retry, unsigned max_retries, int64_t *wait_ns);
 void retry_clear(struct retry *retry);
-
-#endif

@@ -3,8 +3,7 @@
  * The raw values of a signal: what was read becomes its value, what it commands becomes what is
  * written. The rest of the engine knows engineering values only. Not of strings.
  */
-#ifndef ENGINE_SCALING_H
-#define ENGINE_SCALING_H
+#pragma once
 
 #include "src/engine/table.h"
 
@@ -35,5 +34,3 @@ bool signal_reads_as_written(struct signal *s, uint8_t *quality);
 
 /* A reload has copied s from was, and may have given it another scale. */
 void signal_rescale(struct signal *s, const struct signal *was);
-
-#endif

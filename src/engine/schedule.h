@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* When the rows of the table are read and written. */
-#ifndef ENGINE_SCHEDULE_H
-#define ENGINE_SCHEDULE_H
+#pragma once
 
 #include "src/engine/state.h"
 
@@ -22,5 +21,3 @@ bool engine_turn(struct engine *e);
  * at_most_ns (whole periods of it, but one at least) after the beginning of the present period.
  */
 int64_t engine_next_turn(const struct engine *e, int64_t at_most_ns);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The slots of a lane: rooms for requests, and which of them the bus has. */
-#ifndef ENGINE_SLOTS_H
-#define ENGINE_SLOTS_H
+#pragma once
 
 #include "src/engine/state.h"
 
@@ -20,5 +19,3 @@ bool slot_lend(struct lane *lane, struct slot *slot, int64_t now_ns);
 struct slot *slot_of_id(struct lane *lane, uint32_t id);
 /* The bus is done with the slot. */
 void slot_give_back(struct lane *lane, struct slot *slot);
-
-#endif

@@ -3,8 +3,7 @@
  * The state of an engine, for the files of this folder alone: structures, and nothing that acts on
  * them. Above each group of members stands the file that changes them; others only read.
  */
-#ifndef ENGINE_STATE_H
-#define ENGINE_STATE_H
+#pragma once
 
 #include "hal/base/time.h"
 #include "hal/bus/bus.h"
@@ -386,5 +385,3 @@ static inline struct route_place *engine_places(struct engine *e, uint32_t devic
 {
 	return &e->places[(size_t)device * e->group_count];
 }
-
-#endif

@@ -3,8 +3,7 @@
  * Types are checked against /structure, once, when a target comes to serve a signal: one whose type
  * cannot hold its property, or that writes what is read-only, is reported before its first value.
  */
-#ifndef ENGINE_STRUCTURE_H
-#define ENGINE_STRUCTURE_H
+#pragma once
 
 #include "src/engine/table.h"
 
@@ -38,5 +37,3 @@ int structure_parse(const char *text, size_t len, struct structure_entry *entry)
  */
 int structure_fault(const struct structure_entry *entry, const struct config_item *item,
                     const char **why);
-
-#endif

@@ -3,8 +3,7 @@
  * The signal table: one row for each item of the file, in its order, with everything the engine
  * knows of the signal. Allocated once. Row r is record r + 1 of the image.
  */
-#ifndef ENGINE_TABLE_H
-#define ENGINE_TABLE_H
+#pragma once
 
 #include "hal/chips/facts.h"
 #include "src/config/config.h"
@@ -235,5 +234,3 @@ void signal_end(struct signal *s, uint64_t period, uint64_t begun);
 void signal_update(struct signal *s, uint64_t period, int64_t measured_ns, int64_t now_ns);
 /* The edge of _DGNRESET. */
 void signal_reset_diagnostics(struct signal *s, uint64_t period, int64_t now_ns);
-
-#endif

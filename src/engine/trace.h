@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The trace of requests (`owsd -v -v -v`), at the one place that all of them pass. */
-#ifndef ENGINE_TRACE_H
-#define ENGINE_TRACE_H
+#pragma once
 
 #include "hal/base/time.h"
 #include "hal/bus/bus.h"
@@ -22,5 +21,3 @@ static inline bool trace_is_on(const struct log *log)
 /* The request of the slot has ended, or its time is over. Only where trace_is_on(). */
 void trace_answer(const struct lane *lane, const struct slot *slot, const struct bus_answer *answer,
                   int64_t now_ns);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The check of types on a lane, once for each property when the lane comes to serve it. */
-#ifndef ENGINE_TYPES_H
-#define ENGINE_TYPES_H
+#pragma once
 
 #include "src/engine/state.h"
 
@@ -10,5 +9,3 @@ int64_t types_next(struct lane *lane);
 /* Give that check to the bus; false: the bus takes none now. */
 bool types_ask(struct lane *lane, struct slot *slot, uint32_t check, int64_t now_ns);
 void types_done(struct lane *lane, const struct slot *slot, const struct bus_answer *answer);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The command line of a face: that of owsd, as far as it concerns a consumer. */
-#ifndef FACE_ARGUMENTS_H
-#define FACE_ARGUMENTS_H
+#pragma once
 
 #include "src/text/log.h"
 
@@ -32,5 +31,3 @@ int face_arguments_parse(const char *program, const struct face_option *own, int
 /* Print a line on stderr, made printable: names come from outside and must not steer a terminal. */
 void face_complain(const char *program, const char *format, ...)
 	__attribute__((format(printf, 2, 3)));
-
-#endif

@@ -12,8 +12,7 @@
  * Room src/face: what all faces share: one loop over the changes of an instance. Uses src/config,
  * src/text, src/libows, src/service, hal/base.
  */
-#ifndef FACE_FACE_H
-#define FACE_FACE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -114,5 +113,3 @@ struct face {
 	uint32_t next_alarm, next_command;
 	int fd, open_err;
 };
-
-#endif

@@ -3,8 +3,7 @@
  * A face's look at owsd: opens its instance, and again when that has to be; gives changes, losses
  * and entries of the journals to the face. Never blocks, but for libows's 20 ms after a restart.
  */
-#ifndef FACE_LOOK_H
-#define FACE_LOOK_H
+#pragma once
 
 #include "src/face/face.h"
 
@@ -32,5 +31,3 @@ int load_first(struct face *face);
 /* Read it again. Errors go to the log, and one that is refused leaves the present one. */
 void load_again(struct face *face);
 void load_free(struct face *face);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The program of a face: its start, its loop, its end; and what the loop does for the face. */
-#ifndef FACE_LOOP_H
-#define FACE_LOOP_H
+#pragma once
 
 #include "src/face/face.h"
 
@@ -16,5 +15,3 @@ int face_watch(struct face *face, int fd, short events);
 void face_ignore(struct face *face, int fd);
 /* What `systemctl status` shows. Sent only when it changes. */
 void face_status(struct face *face, const char *format, ...) __attribute__((format(printf, 2, 3)));
-
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#ifndef FACE_MOMENT_H
-#define FACE_MOMENT_H
+#pragma once
 
 #include <stdint.h>
 
@@ -12,5 +11,3 @@ struct ows_value;
  * quality, since the last attempt, or since now. Pure.
  */
 int64_t moment_of(const struct ows_value *v, int64_t now_ns);
-
-#endif

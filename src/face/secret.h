@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A token, password or key of a face, which stands in a file of its own. */
-#ifndef FACE_SECRET_H
-#define FACE_SECRET_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -21,5 +20,3 @@ int secret_read(const char *name, char token[SECRET_SIZE], char *why, size_t siz
  * as secret_read().
  */
 int secret_file(const char *name, bool own, char path[SECRET_PATH], char *why, size_t size);
-
-#endif

@@ -4,8 +4,7 @@
  * kernel calls the wall clock synchronised. A Raspberry Pi without a clock of its own starts with
  * the time of its last shutdown, and learns the right one minutes later.
  */
-#ifndef FACE_WALL_CLOCK_H
-#define FACE_WALL_CLOCK_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -30,5 +29,3 @@ void wall_clock_rearm(struct wall_clock *clock);
 
 /* Pure: what a look at the two clocks says of the known relation. */
 bool wall_clock_step(struct wall_clock *clock, int64_t offset_ns, bool synchronised);
-
-#endif

@@ -3,8 +3,7 @@
  * The file in its directory, open for the writer. The directory is locked while it is: a second
  * writer gets -EBUSY. A damaged file is put aside, under a name that is said. Blocking.
  */
-#ifndef HISTORY_FILE_H
-#define HISTORY_FILE_H
+#pragma once
 
 #include <sqlite3.h>
 #include <stdbool.h>
@@ -26,5 +25,3 @@ void file_close(struct history_file *file);
 bool file_is_there(const struct history_file *file);
 /* Close it, and give it another name. */
 int file_put_aside(struct history_file *file);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What is too old, or too much, is deleted: a part with each commit, so that none takes long. */
-#ifndef HISTORY_KEEP_H
-#define HISTORY_KEEP_H
+#pragma once
 
 #include <sqlite3.h>
 #include <stdint.h>
@@ -16,5 +15,3 @@ struct history_keep {
 /* Within a commit; last_id is the newest in the file. 0 or a negative errno. */
 int keep_delete(const struct history_keep *keep, sqlite3 *db, const char *directory,
                 int64_t last_id);
-
-#endif

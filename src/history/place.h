@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Where the history of an instance is kept, if nobody says. */
-#ifndef HISTORY_PLACE_H
-#define HISTORY_PLACE_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -30,5 +29,3 @@ int history_make_above(const char *path);
 
 /* A hash of the kernel's boot id, never 0; of "" where it cannot be read. A system call. */
 int64_t history_boot_present(void);
-
-#endif

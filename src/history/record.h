@@ -6,8 +6,7 @@
  * Room src/history: the file of history, an SQLite database: schema, writer, roll-ups, place. Uses
  * src/libows, src/signal.
  */
-#ifndef HISTORY_RECORD_H
-#define HISTORY_RECORD_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -75,5 +74,3 @@ struct history_signal {
 	uint8_t output;
 	int8_t decimals; /* -1: not known */
 };
-
-#endif

@@ -4,8 +4,7 @@
  * in the order of their ids; a minute or an hour that is over is given out once, all its signals in
  * their order. Allocates, touches no file.
  */
-#ifndef HISTORY_ROLLING_H
-#define HISTORY_ROLLING_H
+#pragma once
 
 #include "src/history/rollup.h"
 
@@ -43,5 +42,3 @@ int rolling_value(struct rolling *rolling, int64_t id, uint32_t signal,
 int rolling_gap(struct rolling *rolling, int64_t id, uint32_t signal);
 /* Would rolling_advance() give something out? */
 bool rolling_is_due(const struct rolling *rolling, int64_t id);
-
-#endif

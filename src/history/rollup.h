@@ -3,8 +3,7 @@
  * What a signal was over a stretch of time: its least, most, mean and last good value, for how long
  * it was good or known. Pure.
  */
-#ifndef HISTORY_ROLLUP_H
-#define HISTORY_ROLLUP_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -33,5 +32,3 @@ void rollup_value(struct rollup *sum, const struct rollup_state *state);
 /* What came after it joins. */
 void rollup_add(struct rollup *sum, const struct rollup *later);
 double rollup_mean(const struct rollup *sum); /* NaN: no good value */
-
-#endif

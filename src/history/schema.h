@@ -22,8 +22,7 @@
  *              value held.
  *     trend, trend_minute, trend_hour, trend_event  the same with names, ISO times and words
  */
-#ifndef HISTORY_SCHEMA_H
-#define HISTORY_SCHEMA_H
+#pragma once
 
 #include <sqlite3.h>
 #include <stdint.h>
@@ -59,5 +58,3 @@ static inline int64_t schema_hour(int64_t hour, uint32_t signal)
  * of the disk. *db is NULL unless 0 is returned.
  */
 int schema_open(const char *path, sqlite3 **db);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What writer and readers of the file need of SQLite: errors as errno, and statements in a line. */
-#ifndef HISTORY_SQL_H
-#define HISTORY_SQL_H
+#pragma once
 
 #include <sqlite3.h>
 #include <stdbool.h>
@@ -25,5 +24,3 @@ int sql_next(sqlite3_stmt *statement);
 int sql_number(sqlite3_stmt *statement, int64_t *value);
 /* The same of a text; prepared for this once. */
 int sql_ask(sqlite3 *db, const char *text, int64_t *value);
-
-#endif

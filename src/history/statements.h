@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What the writer of history says to SQLite, prepared once for a file. */
-#ifndef HISTORY_STATEMENTS_H
-#define HISTORY_STATEMENTS_H
+#pragma once
 
 #include <sqlite3.h>
 
@@ -35,5 +34,3 @@ enum statement {
 int statements_open(sqlite3 *db, sqlite3_stmt *statements[S_COUNT]);
 /* Free them; they are NULL then. */
 void statements_close(sqlite3_stmt *statements[S_COUNT]);
-
-#endif

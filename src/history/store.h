@@ -3,8 +3,7 @@
  * The writer's rows on their way into the file: a commit at a time, with the roll-ups that are
  * over, and what is old deleted. After an error the file is opened again. One thread, blocking.
  */
-#ifndef HISTORY_STORE_H
-#define HISTORY_STORE_H
+#pragma once
 
 #include "src/history/file.h"
 #include "src/history/keep.h"
@@ -71,5 +70,3 @@ bool store_is_due(const struct history_store *store, int64_t seen_us);
 int store_commit(struct history_store *store, struct store_batch *batch);
 /* The newest boot times of alarms and commands that the file has of this boot; 0: none. */
 int store_known(struct history_store *store, int64_t *alarms_ns, int64_t *commands_ns);
-
-#endif

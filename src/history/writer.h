@@ -9,8 +9,7 @@
  * come and tick() at least each second. A value that holds is repeated each hour, and after the
  * file was replaced.
  */
-#ifndef HISTORY_WRITER_H
-#define HISTORY_WRITER_H
+#pragma once
 
 #include "src/history/keep.h"
 #include "src/history/record.h"
@@ -85,5 +84,3 @@ struct history_state {
 	uint32_t files; /* begun so far; one more: it has nothing of those before */
 };
 void history_writer_state(const struct history_writer *writer, struct history_state *state);
-
-#endif

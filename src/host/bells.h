@@ -4,8 +4,7 @@
  * A controller's bell that rings too often is left out for a while; what the controller has marked
  * is looked at whenever the engine is awake.
  */
-#ifndef HOST_BELLS_H
-#define HOST_BELLS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -51,5 +50,3 @@ bool bells_close_eyes(struct bells *bells);
 /* Sleep until then or the next ring. */
 void bells_sleep(struct bells *bells, int64_t until_ns);
 void bells_open_eyes(struct bells *bells);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The engine's thread: what it does in turn, the bell that wakes it, the counters it publishes. */
-#ifndef HOST_ENGINE_THREAD_H
-#define HOST_ENGINE_THREAD_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -18,5 +17,3 @@ void host_ring(void *host);
  * caller frees the plan.
  */
 struct image_counter *host_plan_counters(const struct host *host, uint32_t *count);
-
-#endif

@@ -7,8 +7,7 @@
  * src/control, src/engine, src/config, src/text, src/libows, src/shm, src/signal, hal/gpio,
  * hal/bus, hal/base.
  */
-#ifndef HOST_H
-#define HOST_H
+#pragma once
 
 #include "src/engine/engine.h"
 #include "src/host/memory.h"
@@ -47,5 +46,3 @@ const struct config *host_config(const struct host *host);
  * everything that others could wait for is released, and the process has to _exit().
  */
 bool host_stop(struct host *host, int64_t timeout_ns);
-
-#endif

@@ -4,8 +4,7 @@
  * there is an alarm that `owsctl alarms` would show, HeartbeatLine blinks. A thread of the
  * indicator sets them from the image, so that neither engine nor supervisor waits for a line.
  */
-#ifndef HOST_INDICATOR_H
-#define HOST_INDICATOR_H
+#pragma once
 
 #include "src/config/config.h"
 #include "src/shm/image.h"
@@ -34,5 +33,3 @@ int indicator_start(struct indicator *indicator);
  * called.
  */
 bool indicator_stop(struct indicator *indicator, int64_t timeout_ns);
-
-#endif

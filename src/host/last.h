@@ -3,8 +3,7 @@
  * Stores the last commands of outputs with Start "last", on a thread of its own: at most once a
  * second, all changes since then at once.
  */
-#ifndef HOST_LAST_H
-#define HOST_LAST_H
+#pragma once
 
 #include "src/config/config.h"
 #include "src/engine/command/last.h"
@@ -41,5 +40,3 @@ void last_give_up(struct last *last);
 /* Tries that failed. */
 uint64_t last_failures(const struct last *last);
 void last_free(struct last *last);
-
-#endif

@@ -3,8 +3,7 @@
  * The file NAME.last on the disk: what it holds, and a check of all of it at its end. A new file
  * takes the place of the old one in one step, and is on the disk by then. Blocking.
  */
-#ifndef HOST_LAST_FILE_H
-#define HOST_LAST_FILE_H
+#pragma once
 
 #include <stddef.h>
 
@@ -27,5 +26,3 @@ int last_read(int directory, const char *instance, char **data, size_t *size);
  */
 #define LAST_CHECK 4
 int last_write(int directory, const char *instance, char *data, size_t size);
-
-#endif

@@ -2,8 +2,7 @@
 /*
  * What a start and a reload make: what serves a configuration, and its threads beside the engine's.
  */
-#ifndef HOST_MAKE_H
-#define HOST_MAKE_H
+#pragma once
 
 #include <stddef.h>
 
@@ -18,5 +17,3 @@ int host_make_serving(struct host *host, struct config *config, const struct ado
 /* Start all workers that do not run yet; returns the error of the first that cannot be started. */
 int host_start_workers(struct serving *serving, char *why, size_t why_size);
 int host_start_indicator(struct host *host, char *why, size_t why_size);
-
-#endif

@@ -3,8 +3,7 @@
  * The files of an instance that belong to a configuration: the image for the consumers, NAME.force
  * for the next owsd; and the layout of the controllers' memories. Blocking: file-system calls.
  */
-#ifndef HOST_MEMORY_H
-#define HOST_MEMORY_H
+#pragma once
 
 #include "src/config/config.h"
 #include "src/shm/controller.h"
@@ -74,5 +73,3 @@ void memory_stop(struct memory *memory);
  * again.
  */
 void memory_end(struct memory *memory);
-
-#endif

@@ -3,8 +3,7 @@
  * A thread beside the engine's that works on what may hang, a disk or a GPIO chip: it is asked to
  * end, and given up if it does not.
  */
-#ifndef HOST_OWN_THREAD_H
-#define HOST_OWN_THREAD_H
+#pragma once
 
 #include <pthread.h>
 #include <stdbool.h>
@@ -29,5 +28,3 @@ void own_thread_ends(struct own_thread *t);
  * at most. True: it has ended, or never ran.
  */
 bool own_thread_stop(struct own_thread *t, uint32_t *word, int64_t timeout_ns);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The inside of the host, which the files of this room share. */
-#ifndef HOST_PRIVATE_H
-#define HOST_PRIVATE_H
+#pragma once
 
 #include <pthread.h>
 
@@ -46,5 +45,3 @@ struct host {
 	int64_t finish_ns;   /* not sooner */
 	struct log_rate finish_rate;
 };
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Another configuration, served without a gap. */
-#ifndef HOST_RELOAD_H
-#define HOST_RELOAD_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -28,5 +27,3 @@ void host_answer(struct host *host, int err, const char *why);
  * then nothing changes. Only when host_may_reload().
  */
 int host_reload(struct host *host, struct config *config, char *why, size_t why_size);
-
-#endif

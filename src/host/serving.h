@@ -4,8 +4,7 @@
  * memory and its engine. A reload makes a second serving beside the first, which takes over the
  * workers that stay. No threads are started here; blocking.
  */
-#ifndef HOST_SERVING_H
-#define HOST_SERVING_H
+#pragma once
 
 #include "src/engine/engine.h"
 #include "src/engine/reload/adopt.h"
@@ -69,5 +68,3 @@ void serving_keep_counts(struct serving *serving, const struct serving *before, 
 bool serving_stop(struct serving *serving, int64_t timeout_ns);
 /* Free all, the configuration too. The workers that are not taken have ended before. */
 void serving_free(struct serving *serving);
-
-#endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#ifndef HOST_TARGET_H
-#define HOST_TARGET_H
+#pragma once
 
 #include <stddef.h>
 
@@ -27,5 +26,3 @@ int target_check_config(struct config *config, struct config_report *report);
  * checks a file where it is used. 0 or -EINVAL.
  */
 int target_look(const struct config *config, struct config_report *report);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The supervisor's upkeep: looks for the image, and finishes what a reload has left to do. */
-#ifndef HOST_TEND_H
-#define HOST_TEND_H
+#pragma once
 
 struct host;
 
@@ -16,5 +15,3 @@ void host_tend(struct host *host);
  * until it is done. host_tend() calls it once a second.
  */
 void host_finish_reload(struct host *host);
-
-#endif

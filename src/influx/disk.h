@@ -4,8 +4,7 @@
  * power or is full. Each function returns 0 (or the count or descriptor) or a negative errno, and
  * blocks as the system call of its name.
  */
-#ifndef INFLUX_DISK_H
-#define INFLUX_DISK_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -30,5 +29,3 @@ extern const struct spool_disk spool_disk_system;
 
 /* Open a directory for the calls above; make it, mode 0750, if it is missing and make says so. */
 int spool_disk_directory(const char *path, int make);
-
-#endif

@@ -3,8 +3,7 @@
  * The part of a batch that is sent at once: the whole batch, until the server calls it too large
  * (413). Pure functions over whole lines.
  */
-#ifndef INFLUX_PART_H
-#define INFLUX_PART_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -22,5 +21,3 @@ void part_taken(struct part *part);
 bool part_halve(struct part *part, const char *batch);
 /* Another batch, or the same one from its begin; what the server takes is still known. */
 void part_begin(struct part *part);
-
-#endif

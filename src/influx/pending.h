@@ -3,8 +3,7 @@
  * Lines that wait in memory to be sent, with boot times, as the wall clock may not be known yet. A
  * batch is lines with their wall-clock times. Bounded; allocates in pending_add() alone.
  */
-#ifndef INFLUX_PENDING_H
-#define INFLUX_PENDING_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -33,5 +32,3 @@ size_t pending_cut(struct pending *pending, int64_t offset_ns, char batch[BATCH_
 /* There is a whole batch. */
 bool pending_is_full(const struct pending *pending);
 unsigned batch_lines(const char *batch, size_t len);
-
-#endif

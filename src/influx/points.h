@@ -4,8 +4,7 @@
  * becomes a line when it differs from that, and every ten minutes. A value that is not good becomes
  * a line that has its quality alone. Allocates in points_make() and pending_add().
  */
-#ifndef INFLUX_POINTS_H
-#define INFLUX_POINTS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -46,5 +45,3 @@ void points_lost(struct points *points, struct pending *pending, int64_t now_ns)
 
 /* The fields of a value, with its quality. Pure. */
 void points_fields(const struct ows_value *v, const char *text, char *fields, size_t size);
-
-#endif

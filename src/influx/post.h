@@ -3,8 +3,7 @@
  * One POST at a time to one server, by libcurl, without blocking: the caller waits for the
  * descriptors and for the time that it asks for. Names are looked up by a thread of libcurl.
  */
-#ifndef INFLUX_POST_H
-#define INFLUX_POST_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -38,5 +37,3 @@ bool post_step(struct post *post, int fd, short ready, struct post_result *resul
 int64_t post_next(const struct post *post);
 /* Give up. The server may have got the data, or not. */
 void post_cancel(struct post *post);
-
-#endif

@@ -6,8 +6,7 @@
  * Room src/influx: the program owsd-influx: pushes signals to a server, and spools what it does not
  * take. Uses src/face, src/config, src/text, src/history, src/libows, src/signal, hal/base.
  */
-#ifndef INFLUX_PUSHING_H
-#define INFLUX_PUSHING_H
+#pragma once
 
 #include <stdint.h>
 
@@ -20,5 +19,3 @@ void pushing_changes(struct face *face, const int *signals, int n);
 void pushing_event(struct face *face, const struct face_event *event);
 void pushing_tick(struct face *face, int64_t now_ns);
 void pushing_close(struct face *face);
-
-#endif

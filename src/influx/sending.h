@@ -2,8 +2,7 @@
 /*
  * Batches on their way: cut from memory, put into the spool, sent, refused. face->own is a pushing.
  */
-#ifndef INFLUX_SENDING_H
-#define INFLUX_SENDING_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -77,5 +76,3 @@ void sending_drop(struct pushing *p);
 void sending_advance(struct face *face, int64_t now_ns);
 /* The server has answered, or will not. */
 void sending_finished(struct face *face, const struct post_result *result, int64_t now_ns);
-
-#endif

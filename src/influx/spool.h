@@ -4,8 +4,7 @@
  * first. A file is whole: it is written and synced under another name. What the server refuses is
  * moved aside as NUMBER.refused. All functions block as a disk does.
  */
-#ifndef INFLUX_SPOOL_H
-#define INFLUX_SPOOL_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -49,5 +48,3 @@ void spool_remove(struct spool *spool);
 void spool_refuse(struct spool *spool, const char *data, size_t len);
 /* The name of the oldest batch, for a message. */
 void spool_name(const struct spool *spool, char name[SPOOL_NAME]);
-
-#endif

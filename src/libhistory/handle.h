@@ -6,8 +6,7 @@
  * Room src/libhistory: the library that reads history, for consumers. Uses src/shm, src/signal,
  * src/history.
  */
-#ifndef LIBHISTORY_HANDLE_H
-#define LIBHISTORY_HANDLE_H
+#pragma once
 
 #include <sqlite3.h>
 #include <stdbool.h>
@@ -75,5 +74,3 @@ struct ows_history {
 		int count, given;
 	} list;
 };
-
-#endif

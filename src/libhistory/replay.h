@@ -3,8 +3,7 @@
  * All that a history has, in the order of recording: for a program that sends it somewhere else.
  * Not part of the library's interface.
  */
-#ifndef LIBHISTORY_REPLAY_H
-#define LIBHISTORY_REPLAY_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -36,5 +35,3 @@ int64_t replay_place(const struct ows_history *h, const struct replay_point *poi
 int64_t replay_end(const struct ows_history *h);
 /* Up to n rows of the places from first up to but without end: how many, or a negative errno. */
 int replay_rows(struct ows_history *h, int64_t first, int64_t end, struct replay_row *rows, int n);
-
-#endif

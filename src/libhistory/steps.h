@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Rows and gaps of a signal, as its steps. */
-#ifndef LIBHISTORY_STEPS_H
-#define LIBHISTORY_STEPS_H
+#pragma once
 
 #include "src/libhistory/handle.h"
 
@@ -16,5 +15,3 @@ int handle_held(struct ows_history *h, const struct known_signal *signal, int64_
 /* The steps of a signal from an id on, before end: as many as there is room for. Free the texts. */
 int handle_steps(struct ows_history *h, const struct known_signal *signal, int64_t first,
                  int64_t end, struct step *steps, int room);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Whether owsd lives, and whether the image is still the present one. */
-#ifndef LIBOWS_ALIVE_H
-#define LIBOWS_ALIVE_H
+#pragma once
 
 #include <errno.h>
 
@@ -33,5 +32,3 @@ static inline int handle_state(const struct ows *h)
  * another image: at most one system call.
  */
 int alive_look(struct ows *h, int64_t now_ns);
-
-#endif

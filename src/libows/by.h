@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Who did something, as the image has it and as libows shows it. */
-#ifndef LIBOWS_BY_H
-#define LIBOWS_BY_H
+#pragma once
 
 #include <string.h>
 
@@ -16,5 +15,3 @@ static inline struct ows_by by_of(const struct ows_who *who)
 	memcpy(by.person, who->person, sizeof(by.person) - 1);
 	return by;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What all that commands has in common: may it, does owsd live, and the bell. */
-#ifndef LIBOWS_COMMAND_H
-#define LIBOWS_COMMAND_H
+#pragma once
 
 #include <stdint.h>
 
@@ -23,5 +22,3 @@ int command_ready(struct ows *h);
  * longer looked at this memory. At most one system call.
  */
 int command_ring(struct ows *h);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Reads values: a whole sample of the image, its age, and its quality, lowered if owsd is dead. */
-#ifndef LIBOWS_GET_H
-#define LIBOWS_GET_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -13,5 +12,3 @@ struct ows_value;
 /* As ows_get_text(), of an id that need not be one of the handle; size is not 0. */
 int handle_get_text(struct ows *h, struct ows_id *id, int64_t now_ns, struct ows_value *value,
                     char *text, size_t size);
-
-#endif

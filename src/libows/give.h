@@ -4,8 +4,7 @@
  * checked once. Only this program and owsd have it; a forked child that writes rubbish leads the
  * parent to no other place.
  */
-#ifndef LIBOWS_GIVE_H
-#define LIBOWS_GIVE_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -65,5 +64,3 @@ static inline bool give_is_live(const struct give *give)
 {
 	return word_get(&give_header(give)->state) == OWS_STATE_LIVE;
 }
-
-#endif

@@ -4,8 +4,7 @@
  *
  * Room src/libows: the library of the consumers. Uses src/shm, src/signal, hal/base.
  */
-#ifndef LIBOWS_HANDLE_H
-#define LIBOWS_HANDLE_H
+#pragma once
 
 #include <stdbool.h>
 #include <sys/types.h>
@@ -147,5 +146,3 @@ static inline bool handle_ahead(const struct ows *h, int64_t now_ns, int64_t the
 {
 	return handle_age(then_ns, now_ns) > h->dead_after_ns;
 }
-
-#endif

@@ -3,8 +3,7 @@
  * The connection to owsd's control socket (layout.h, "The socket NAME.control"): hello, and the
  * welcomes with their descriptors. Every wait has a deadline; nothing here raises SIGPIPE.
  */
-#ifndef LIBOWS_JOIN_H
-#define LIBOWS_JOIN_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -35,5 +34,3 @@ int join_receive(struct join *join, int64_t until_ns, struct ows_welcome *welcom
 /* Sleep until the connection has something to receive, or for less; false: the time is over. */
 bool join_await(int connection, int64_t until_ns);
 void join_end(struct join *join);
-
-#endif

@@ -2,8 +2,7 @@
 /*
  * The image of an owsd: found by name, mapped, and checked before anything of it is used.
  */
-#ifndef LIBOWS_MAP_H
-#define LIBOWS_MAP_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -26,5 +25,3 @@ bool map_has_text(const struct ows_map *map, const struct ows_record *record);
 int map_find(const struct ows_map *map, const char *name, size_t len);
 /* Does the name lead to another file than the mapped one? One system call. */
 bool map_is_elsewhere(const struct ows_map *map, const char *place, const char *instance);
-
-#endif

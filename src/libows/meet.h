@@ -3,8 +3,7 @@
  * How a handle becomes a controller, and gets the memory that belongs to the present image: it
  * connects, takes what owsd hands it, and connects again after a restart.
  */
-#ifndef LIBOWS_MEET_H
-#define LIBOWS_MEET_H
+#pragma once
 
 #include <stdint.h>
 
@@ -21,5 +20,3 @@ int meet(struct ows *h, const struct ows_map *map, int64_t until_ns);
 void meet_take(struct ows *h);
 /* Leave in order: the commands stay in force. A forked child only closes what is its own. */
 void meet_leave(struct ows *h);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* News of owsd: by the descriptor of a connected handle, else by the word of the image. */
-#ifndef LIBOWS_NEWS_H
-#define LIBOWS_NEWS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -14,5 +13,3 @@ void news_arm(struct ows *h);
  * -EINTR.
  */
 int news_sleep(struct ows *h, uint32_t seen, int64_t left_ns);
-
-#endif

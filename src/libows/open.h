@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Opens an instance of a place that the caller names, for owsctl. */
-#ifndef LIBOWS_OPEN_H
-#define LIBOWS_OPEN_H
+#pragma once
 
 #include "src/libows/ows.h"
 
@@ -10,5 +9,3 @@ int open_in(const char *place, const char *instance, enum ows_mode mode, const c
             struct ows **h);
 /* The directory that the instance was found in; lives as long as the handle. */
 const char *open_place(const struct ows *h);
-
-#endif

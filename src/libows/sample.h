@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A sample of the image as the value that a caller of libows gets. */
-#ifndef LIBOWS_SAMPLE_H
-#define LIBOWS_SAMPLE_H
+#pragma once
 
 #include <string.h>
 
@@ -37,5 +36,3 @@ static inline void value_fill(const struct ows *h, uint32_t record, struct ows_v
 	value->detail = sample->detail;
 	value->target = sample->target;
 }
-
-#endif

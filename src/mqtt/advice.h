@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Why a broker is lost, in words, and what a person can do about it. Pure functions. */
-#ifndef MQTT_ADVICE_H
-#define MQTT_ADVICE_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -21,5 +20,3 @@ const char *advice_words(int code, int err, const char *tls);
 const char *advice_remedy(int code, int err);
 /* The part of a line of libmosquitto's log that a person can read. */
 const char *advice_tls(const char *line);
-
-#endif

@@ -5,8 +5,7 @@
  * lost connection is sent again. Nothing here blocks but the look-up of a host's name, for a few
  * seconds at most, and broker_end().
  */
-#ifndef MQTT_BROKER_H
-#define MQTT_BROKER_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -57,5 +56,3 @@ void broker_subscribe(struct broker *b, const char *topic);
  * there is something at the others nobody knows.
  */
 void broker_look(struct broker *b, char *const *topics, int count, bool begin);
-
-#endif

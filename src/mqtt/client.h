@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The state of a connection to a broker, and a client of libmosquitto that writes into it. */
-#ifndef MQTT_CLIENT_H
-#define MQTT_CLIENT_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -88,5 +87,3 @@ bool client_make(struct broker *b, char *why, size_t size);
 bool client_mqtt5(const struct broker *b);
 /* The QoS of what has to come: the will and commands. */
 int client_sure_qos(const struct broker *b);
-
-#endif

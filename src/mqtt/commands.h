@@ -3,8 +3,7 @@
  * Commands that came from the broker: the broker decides who may publish there, owsd what owsd-mqtt
  * may set. What is wrong with a command is a line of the log, and nothing else happens.
  */
-#ifndef MQTT_COMMANDS_H
-#define MQTT_COMMANDS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -53,5 +52,3 @@ void commands_take(struct commands *c, const char *name, bool known,
 /* Log how many refusals had no line, for each cause whose span is over by now. */
 void commands_tell(struct commands *c, int64_t now_ns);
 void commands_close(struct commands *c);
-
-#endif

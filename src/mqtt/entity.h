@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A signal as a component of Home Assistant's discovery by device: tables of kinds and classes. */
-#ifndef MQTT_ENTITY_H
-#define MQTT_ENTITY_H
+#pragma once
 
 #include "src/mqtt/stream.h"
 
@@ -37,5 +36,3 @@ void entity_device_json(struct json *json, const struct stream *s, const struct 
                         const char *name);
 /* The member avty: topics that all have to be online. */
 void entity_available_json(struct json *json, const struct stream *s, const struct chip *chip);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* How owsd, its targets and the broker do, as one retained message; and as entities of a device. */
-#ifndef MQTT_HEALTH_H
-#define MQTT_HEALTH_H
+#pragma once
 
 #include "src/mqtt/stream.h"
 
@@ -15,5 +14,3 @@ bool health_publish(struct stream *s, const struct health *health);
 void health_count(struct stream *s, int64_t numbers[HEALTH_NUMBERS]);
 /* Components of Home Assistant's discovery. */
 void health_entities_json(struct json *json, const struct stream *s, const char *owner);
-
-#endif

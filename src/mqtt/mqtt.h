@@ -6,8 +6,7 @@
  * from it. Uses src/show, src/face, src/config, src/text, src/libhistory, src/history, src/libows,
  * src/signal, hal/owfs, hal/base.
  */
-#ifndef MQTT_MQTT_H
-#define MQTT_MQTT_H
+#pragma once
 
 #include "src/face/face.h"
 #include "src/face/wall_clock.h"
@@ -36,5 +35,3 @@ void mqtt_event(struct face *face, const struct face_event *event);
 void mqtt_tick(struct face *face, int64_t now_ns);
 void mqtt_report(struct face *face, FILE *out);
 void mqtt_close(struct face *face);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What stands in the Mqtt block, kept over the time in which the file is read again. */
-#ifndef MQTT_OPTIONS_H
-#define MQTT_OPTIONS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -35,5 +34,3 @@ const char *mqtt_way_name(const struct mqtt_way *way, char text[MQTT_WAY_NAME]);
 struct face;
 /* Node: without the key the name of this machine; beside OWS also that of the instance. */
 void mqtt_options_take(struct mqtt_options *options, const struct face *face);
-
-#endif

@@ -5,8 +5,7 @@
  * follow the live values, a few at a time. That a broker has something is known by its answer to a
  * mark, which goes after it on the same connection.
  */
-#ifndef MQTT_PAST_H
-#define MQTT_PAST_H
+#pragma once
 
 #include "src/face/face.h"
 #include "src/history/place.h"
@@ -65,5 +64,3 @@ void past_lost(struct past *p);
 void past_pump(struct past *p, int64_t now_ns);
 /* When to go on at the latest. */
 int64_t past_next(const struct past *p);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The profile "plain": values, states and alarms as JSON. Others are built on it. */
-#ifndef MQTT_PLAIN_H
-#define MQTT_PLAIN_H
+#pragma once
 
 #include "src/mqtt/stream.h"
 
@@ -32,5 +31,3 @@ void plain_alarm(struct stream *s, const struct ows_alarm *alarm);
 	.none = "{\"v\":null,\"good\":false,\"q\":4,\"why\":\"not configured\"}", \
 	.writes = plain_writes, .topic = plain_topic, .value = plain_value, .state = plain_state, \
 	.alarm = plain_alarm
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* All profiles: by their names, and what one of them has left at the broker. */
-#ifndef MQTT_PROFILES_H
-#define MQTT_PROFILES_H
+#pragma once
 
 #include "src/config/config.h"
 #include "src/mqtt/stream.h"
@@ -23,5 +22,3 @@ void profiles_place(const struct stream *s, int number, char topic[TOPIC_SIZE]);
 /* A retained message that came there, NULL if empty: nobody writes the topic any more, so empty
  * it. */
 void profiles_kept(struct stream *s, const char *topic, const char *text);
-
-#endif

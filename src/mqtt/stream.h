@@ -4,8 +4,7 @@
  * of each. A profile decides how a row becomes a message, an outlet takes messages. There is no
  * queue of messages: a row that waits has the newest value when it goes.
  */
-#ifndef MQTT_STREAM_H
-#define MQTT_STREAM_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -264,5 +263,3 @@ bool stream_read(struct stream *s, struct row *row, struct news *news);
 /* A hash of a value as it is shown, never 0: of one that is not good of its quality alone. */
 uint64_t stream_print(const struct ows_value *v, const char *text);
 bool stream_published(struct row *row, const struct news *news); /* Returns true. */
-
-#endif

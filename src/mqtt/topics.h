@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The topics of a node: TOPIC/NODE/SIGNAL and what stands beside and below it. Pure functions. */
-#ifndef MQTT_TOPICS_H
-#define MQTT_TOPICS_H
+#pragma once
 
 #include <stddef.h>
 
@@ -22,5 +21,3 @@ void topic_escape(const char *name, char level[TOPIC_NAME]);
 void topic_slug(const char *text, char dash, char *id, size_t size);
 /* The text with '_' for all but letters, digits, '-' and '_', as Home Assistant takes ids. */
 void topic_id(const char *text, char *id, size_t size);
-
-#endif

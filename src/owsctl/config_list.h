@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What `owsctl config FILE list` shows of a configuration. */
-#ifndef OWSCTL_CONFIG_LIST_H
-#define OWSCTL_CONFIG_LIST_H
+#pragma once
 
 #include "src/config/config.h"
 #include "src/owsctl/ctl.h"
@@ -11,5 +10,3 @@
  * the exit status.
  */
 int config_list(const struct config *config, char *const *patterns, int count, bool json);
-
-#endif

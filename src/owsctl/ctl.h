@@ -7,8 +7,7 @@
  * themselves. Uses src/scan, src/show, src/config, src/board, src/text, src/libhistory, src/libows,
  * src/service, src/shm, src/signal, hal/chips, hal/owfs, hal/bus, hal/base.
  */
-#ifndef OWSCTL_CTL_H
-#define OWSCTL_CTL_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -102,5 +101,3 @@ bool ctl_reader_gone(void);
 int ctl_flush(int status);
 /* Write at once what is printed so far; false: writing failed, which ctl_flush() reports. */
 bool ctl_flush_lines(void);
-
-#endif

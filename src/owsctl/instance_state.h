@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* An instance of owsd as `owsctl instances` shows it. */
-#ifndef OWSCTL_INSTANCE_STATE_H
-#define OWSCTL_INSTANCE_STATE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -30,5 +29,3 @@ const char *instance_state_text(enum instance_state state);
 
 /* The configuration that a command line as in /proc/PID/cmdline names; NULL: it names none. */
 const char *instance_config_of(const char *line, size_t len);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The target that a verb of owsctl opens: that of -t, or the protocol that an instance serves. */
-#ifndef OWSCTL_OPEN_H
-#define OWSCTL_OPEN_H
+#pragma once
 
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/served.h"
@@ -24,5 +23,3 @@ const char *open_asked(const struct ctl *ctl, const struct target *target,
 
 /* The option -w of all verbs that open a target; as ctl_option(). */
 int target_option(struct ctl *ctl, int argc, char **argv, const char *options, int64_t *timeout_ns);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The history that verbs read, by libows-history. */
-#ifndef OWSCTL_PAST_H
-#define OWSCTL_PAST_H
+#pragma once
 
 #include "src/libhistory/ows_history.h"
 #include "src/owsctl/ctl.h"
@@ -21,5 +20,3 @@ int past_signal(struct ows_history *h, const char *instance, const char *name,
 int past_unknown(struct ows_history *h, const char *name);
 /* Say why something of it could not be read; returns CTL_FAILED. */
 int past_fail(const char *what, int err);
-
-#endif

@@ -3,8 +3,7 @@
  * A plot of a signal in characters: each is two columns and four rows of dots (Unicode's braille
  * patterns). Pure: the picture goes into memory.
  */
-#ifndef OWSCTL_PLOT_H
-#define OWSCTL_PLOT_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -24,5 +23,3 @@
 #define PLOT_TEXT ((PLOT_HEIGHT_MAX + 1) * (PLOT_WIDTH_MAX * 3 + 1) + 1)
 bool plot_draw(const struct ows_history_point *points, int width, int height, double *low,
                double *high, char text[PLOT_TEXT]);
-
-#endif

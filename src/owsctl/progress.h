@@ -3,8 +3,7 @@
  * How far a long reading has come: a bar in one line of stderr, if that is a terminal, from the
  * second second on. It is taken away at the end. Not blocking beyond a write to the terminal.
  */
-#ifndef OWSCTL_PROGRESS_H
-#define OWSCTL_PROGRESS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -21,5 +20,3 @@ struct progress progress_on(const char *what, int64_t now_ns, bool terminal);
 /* so much of all is done, from 0 to all; anything else counts as the nearer of both. */
 void progress_show(struct progress *progress, int64_t now_ns, int64_t done, int64_t all);
 void progress_end(struct progress *progress);
-
-#endif

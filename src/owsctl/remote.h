@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The same verb on another machine. */
-#ifndef OWSCTL_REMOTE_H
-#define OWSCTL_REMOTE_H
+#pragma once
 
 #include "src/owsctl/ctl.h"
 
@@ -11,5 +10,3 @@
  * why.
  */
 int remote_run(const struct ctl *ctl, int argc, char **argv);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The signals that patterns select, as list and watch show them. */
-#ifndef OWSCTL_ROWS_H
-#define OWSCTL_ROWS_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -86,5 +85,3 @@ void row_json(struct json *json, struct ows *h, const struct row *row, int64_t n
  * all, else 0.
  */
 int rows_check(const struct rows *rows, char *const *patterns, int pattern_count);
-
-#endif

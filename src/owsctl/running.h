@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What is to be seen of an instance, without asking it. */
-#ifndef OWSCTL_RUNNING_H
-#define OWSCTL_RUNNING_H
+#pragma once
 
 #include <stddef.h>
 
@@ -41,5 +40,3 @@ bool instance_of_file(const char *file, char *name);
  * has it. The file may be missing.
  */
 void instance_config(const char *name, char config[INSTANCE_FIELD]);
-
-#endif

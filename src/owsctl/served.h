@@ -2,8 +2,7 @@
 /*
  * The owserver protocol as an instance of owsd serves it: its address, and the targets it serves.
  */
-#ifndef OWSCTL_SERVED_H
-#define OWSCTL_SERVED_H
+#pragma once
 
 #include <stddef.h>
 
@@ -22,5 +21,3 @@ struct served {
  * does not serve what the verb needs.
  */
 int served_find(const struct ctl *ctl, struct served *served);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Columns of text, as wide as their cells, fitted into a terminal: columns are left out and cut. */
-#ifndef OWSCTL_TABLE_H
-#define OWSCTL_TABLE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -45,5 +44,3 @@ void table_fit(struct table *table, unsigned columns);
 size_t table_line(const struct table *table, int row, char *line, size_t size);
 /* Print all rows on stdout, as wide as they are; titled: below the titles. */
 void table_print(struct table *table, bool titled);
-
-#endif

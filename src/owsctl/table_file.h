@@ -7,8 +7,7 @@
  * not good, and a gap, has neither value nor text; quality has the word for it, or the reason. An
  * integer that a double does not have exactly is in text, as digits.
  */
-#ifndef OWSCTL_TABLE_FILE_H
-#define OWSCTL_TABLE_FILE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -36,5 +35,3 @@ bool table_file_broken(const struct table_file *table);
  * none. Returns status, or CTL_FAILED where python3 failed.
  */
 int table_file_end(struct table_file *table, int status);
-
-#endif

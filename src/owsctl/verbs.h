@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The verbs of owsctl: each stands in the file of its name, as a struct verb (ctl.h). */
-#ifndef OWSCTL_VERBS_H
-#define OWSCTL_VERBS_H
+#pragma once
 
 struct ctl;
 
@@ -26,5 +25,3 @@ int verb_read(struct ctl *ctl, int argc, char **argv);
 int verb_write(struct ctl *ctl, int argc, char **argv);
 int verb_mission(struct ctl *ctl, int argc, char **argv);
 int verb_scan(struct ctl *ctl, int argc, char **argv);
-
-#endif

@@ -5,8 +5,7 @@
  * Room src/owsd: the program: options, start-up, supervision, reload and end. Uses src/host,
  * src/config, src/board, src/text, src/libows, src/service, src/shm, hal/gpio, hal/bus, hal/base.
  */
-#ifndef OWSD_ARGUMENTS_H
-#define OWSD_ARGUMENTS_H
+#pragma once
 
 #include "src/config/config.h"
 #include "src/shm/segment.h"
@@ -41,5 +40,3 @@ int arguments_parse(int argc, char **argv, struct arguments *a);
 void complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* Close stdout; returns the exit status of an option that only prints. */
 int finish_output(void);
-
-#endif

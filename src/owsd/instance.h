@@ -2,8 +2,7 @@
 /*
  * The instance as this process holds it: its lock is taken at the start and checked every second.
  */
-#ifndef OWSD_INSTANCE_H
-#define OWSD_INSTANCE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -36,5 +35,3 @@ bool instance_keep(struct instance *instance, struct log *log);
 void instance_leave(struct instance *instance);
 /* After a start that failed: remove the files that did not exist before the start, and leave. */
 void instance_abandon(struct instance *instance);
-
-#endif

@@ -6,8 +6,7 @@
  * Room src/recorder: the program owsd-recorder: keeps what signals had, by rules. Uses src/face,
  * src/config, src/history, src/libows, src/signal, hal/base.
  */
-#ifndef RECORDER_RECORDING_H
-#define RECORDER_RECORDING_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -41,5 +40,3 @@ void recording_changes(struct face *face, const int *signals, int n);
 void recording_event(struct face *face, const struct face_event *event);
 void recording_tick(struct face *face, int64_t now_ns);
 void recording_close(struct face *face);
-
-#endif

@@ -3,8 +3,7 @@
  * Whether a value is kept, by the Record of its signal: pure functions of the rule, of what was
  * kept last and of what there is now. Times are arguments.
  */
-#ifndef RECORDER_RULE_H
-#define RECORDER_RULE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -36,5 +35,3 @@ bool rule_turn(const struct config_record *rule, struct rule_kept *kept, int64_t
 bool rule_interval(const struct rule_kept *kept, const struct rule_sample *sample);
 /* The wall-clock time of the next turn; INT64_MAX without an interval. */
 int64_t rule_next_turn(const struct config_record *rule, int64_t wall_ns);
-
-#endif

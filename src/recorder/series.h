@@ -3,8 +3,7 @@
  * The rows of the recorder: of each signal of owsd its rule, and what was kept last. Values go from
  * libows through the rule to the writer of history. Allocates in series_make() alone.
  */
-#ifndef RECORDER_SERIES_H
-#define RECORDER_SERIES_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -62,5 +61,3 @@ void series_forget(struct series *rows, int64_t now_ns);
 
 /* A value as the history has it: bits of a double, or an integer. Pure. */
 int64_t series_bits(uint8_t type, double number, int64_t integer);
-
-#endif

@@ -5,8 +5,7 @@
  * Room src/scan: a target opened without an engine: its devices, and what they have. Uses src/show,
  * hal/chips, hal/owfs, hal/bus, hal/base.
  */
-#ifndef SCAN_DEVICE_H
-#define SCAN_DEVICE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -49,5 +48,3 @@ struct scan {
 	unsigned count;
 	bool disturbed; /* each search had a wrong checksum: the list is what was known before */
 };
-
-#endif

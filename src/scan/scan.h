@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Asks a target for its devices and their properties. Blocking, as long as the target allows. */
-#ifndef SCAN_SCAN_H
-#define SCAN_SCAN_H
+#pragma once
 
 #include "src/scan/device.h"
 
@@ -28,5 +27,3 @@ void scan_free(struct scan *scan);
 bool scan_property(uint8_t family, unsigned i, struct scan_property *property);
 /* Does its code not decide which chip it is? Then devices have the property "identity". */
 bool scan_has_identity(uint8_t family);
-
-#endif

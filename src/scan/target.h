@@ -3,8 +3,7 @@
  * A target that a program opens without an engine: a bus that runs in the calling thread until its
  * answers have come. Blocking, up to the time given.
  */
-#ifndef SCAN_TARGET_H
-#define SCAN_TARGET_H
+#pragma once
 
 #include "hal/base/time.h"
 #include "hal/bus/bus.h"
@@ -62,5 +61,3 @@ bool target_path(const char *given, char path[256], bool *fresh);
 size_t target_unpad(char *text, size_t len);
 /* Is the text one number, as JSON writes them? */
 bool target_is_number(const char *text, size_t len);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Answers of the served protocol, made in a client's area and sent. */
-#ifndef SERVE_ANSWER_H
-#define SERVE_ANSWER_H
+#pragma once
 
 #include "hal/owfs/path.h"
 #include "src/serve/server.h"
@@ -13,5 +12,3 @@ void answer_error(struct serve *s, struct client *c, int err);
 void answer_value(struct serve *s, struct client *c, uint32_t len);
 void answer_written(struct serve *s, struct client *c, uint32_t taken);
 void answer_id(struct serve *s, struct client *c, const uint8_t rom[ROM_LEN]);
-
-#endif

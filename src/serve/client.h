@@ -2,8 +2,7 @@
 /*
  * Connections of clients: bytes in, bytes out, time limits. The meaning of requests is elsewhere.
  */
-#ifndef SERVE_CLIENT_H
-#define SERVE_CLIENT_H
+#pragma once
 
 #include "src/serve/server.h"
 
@@ -47,5 +46,3 @@ uint32_t client_room_size(struct client *c);
 void client_part(struct serve *s, int fd, bool network);
 /* Give the porter those that it has not taken yet. */
 void clients_away(struct serve *s);
-
-#endif

@@ -3,8 +3,7 @@
  * The return codes of the owserver protocol: the code that a client gets for an error of a bus, as
  * from the genuine owserver, and the texts that clients read in /settings/return_codes.
  */
-#ifndef SERVE_CODE_H
-#define SERVE_CODE_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -24,5 +23,3 @@ int32_t code_of(int err);
 const char *code_text(unsigned code);
 /* Print all texts with commas between. Returns the length, or -EMSGSIZE. */
 int code_texts(char *text, size_t room);
-
-#endif

@@ -4,8 +4,7 @@
  * and then made into the answer that the client asked for. The server has a few of these large
  * structs; their untouched pages cost no memory.
  */
-#ifndef SERVE_DIRECTORY_H
-#define SERVE_DIRECTORY_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -87,5 +86,3 @@ struct directory_form {
 };
 /* Format the whole answer in directory->out. 0 or -EMSGSIZE. */
 int directory_form(struct directory *directory, const struct directory_form *form);
-
-#endif

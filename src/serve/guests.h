@@ -3,8 +3,7 @@
  * The two bounded queues between the server's thread and the engine's: requests there, answers
  * back. Neither side blocks; the engine rings an eventfd, and only while the server sleeps.
  */
-#ifndef SERVE_GUESTS_H
-#define SERVE_GUESTS_H
+#pragma once
 
 #include "hal/base/ring.h"
 #include "src/engine/guest.h"
@@ -40,5 +39,3 @@ bool guests_sleep(struct guests *guests);
 void guests_awake(struct guests *guests);
 /* Wake the server, from any thread. */
 void guests_wake(struct guests *guests);
-
-#endif

@@ -4,8 +4,7 @@
  * that clients got lately. The life of an answer is as in owserver's cache, but shorter where the
  * control program may have changed the property: 2 s; and 300 s for a property that never changes.
  */
-#ifndef SERVE_KEPT_H
-#define SERVE_KEPT_H
+#pragma once
 
 #include "src/config/config.h"
 #include "src/serve/node.h"
@@ -33,5 +32,3 @@ void kept_forget(struct kept *kept, const struct node *node, int64_t now_ns);
 
 /* The record of the signal that has this path as output or input; -1: there is none. */
 int kept_signal(const struct kept *kept, const char *path, bool output);
-
-#endif

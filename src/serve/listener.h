@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The sockets where clients connect, and the admission of clients. */
-#ifndef SERVE_LISTENER_H
-#define SERVE_LISTENER_H
+#pragma once
 
 #include "src/serve/server.h"
 
@@ -10,5 +9,3 @@ int listeners_open(struct serve *s, char *why, size_t why_size);
 void listeners_close(struct serve *s);
 /* Accept some waiting clients; false: no client waits any more, or there is no free place. */
 bool listeners_accept(struct serve *s);
-
-#endif

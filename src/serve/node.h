@@ -7,8 +7,7 @@
  *     /signals/room1_Age                                the table
  *     /settings/return_codes/text.5
  */
-#ifndef SERVE_NODE_H
-#define SERVE_NODE_H
+#pragma once
 
 #include "hal/chips/family.h"
 #include "hal/owfs/path.h"
@@ -48,5 +47,3 @@ struct node {
 void node_parse(const char *path, size_t len, struct node *node);
 /* Is this name, an entry of the directory, a directory itself? */
 bool node_is_directory(const struct node *directory, const char *name, size_t len);
-
-#endif

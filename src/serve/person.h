@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Who is at the other end of a client's connection, and what he may write. */
-#ifndef SERVE_PERSON_H
-#define SERVE_PERSON_H
+#pragma once
 
 #include <netinet/in.h>
 #include <stdbool.h>
@@ -21,5 +20,3 @@ void person_address(const struct sockaddr *from, char name[OWS_NAME]);
  * entry has to name the client. Of a client over the network nothing is known.
  */
 bool person_may(const struct config *config, int fd, bool network, const char *signal);
-
-#endif

@@ -3,8 +3,7 @@
  * A request of the owserver protocol as it stands in a buffer. Pure functions over bytes of clients
  * that may be hostile: every length is checked here before it is used.
  */
-#ifndef SERVE_REQUEST_H
-#define SERVE_REQUEST_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -33,5 +32,3 @@ struct request {
  * more.
  */
 int request_parse(const uint8_t *bytes, size_t have, struct request *request, size_t *length);
-
-#endif

@@ -9,8 +9,7 @@
  * src/config, src/text, src/libows, src/shm, src/signal, hal/native, hal/chips, hal/owfs, hal/bus,
  * hal/base.
  */
-#ifndef SERVE_H
-#define SERVE_H
+#pragma once
 
 #include "hal/bus/bus.h"
 #include "src/config/config.h"
@@ -60,5 +59,3 @@ const struct bus_counter *serve_counters(const struct serve *serve, size_t *n);
 
 /* May other machines write through this server? */
 bool serve_is_open(const struct config_serve *config);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The inside of the server, shared by the files of this folder. */
-#ifndef SERVE_SERVER_H
-#define SERVE_SERVER_H
+#pragma once
 
 #include <netinet/in.h>
 #include <pthread.h>
@@ -191,5 +190,3 @@ static inline void count(struct serve *s, enum serve_counter what, uint64_t by)
 {
 	bus_count(&s->counters[what], by);
 }
-
-#endif

@@ -3,8 +3,7 @@
  * The table as clients of the protocol see it in /signals; the server reads and commands signals as
  * any consumer of the shared memory does. A value that is not good is answered as an error.
  */
-#ifndef SERVE_SIGNALS_H
-#define SERVE_SIGNALS_H
+#pragma once
 
 #include "src/libows/ows.h"
 #include "src/serve/directory.h"
@@ -54,5 +53,3 @@ int signals_applied(struct signals *signals, const char *name, struct signals_co
 
 /* All names that a list can hold. False: no room. */
 bool signals_list(struct signals *signals, struct directory *directory);
-
-#endif

@@ -4,8 +4,7 @@
  * with or without padding. Buses use degrees Celsius and mbar. Pure functions on texts; lists
  * ("1,2,3") are converted element by element.
  */
-#ifndef SERVE_UNITS_H
-#define SERVE_UNITS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -22,5 +21,3 @@ bool units_asked(uint32_t flags);
 int units_show(char type, uint32_t flags, char *text, size_t len, size_t room);
 /* From the client to the bus, into out. Returns the length; -EINVAL: no number; -EMSGSIZE. */
 int units_take(char type, uint32_t flags, const char *text, size_t len, char *out, size_t room);
-
-#endif

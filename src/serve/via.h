@@ -5,8 +5,7 @@
  * clears the first byte of the tokens that it passes on; so owsd ignores that byte, and sends 0 in
  * its own.
  */
-#ifndef SERVE_VIA_H
-#define SERVE_VIA_H
+#pragma once
 
 #include "hal/bus/bus.h"
 
@@ -22,5 +21,3 @@ bool via_came_round(const uint8_t *tokens, uint32_t count, const uint8_t token[B
 /* Set the tokens that go with the request to a target, unless the request came here before. */
 void via_pass(struct via *via, const uint8_t *tokens, uint32_t count,
               const uint8_t token[BUS_TOKEN]);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* From a request to its answer. */
-#ifndef SERVE_WORK_H
-#define SERVE_WORK_H
+#pragma once
 
 #include "src/serve/server.h"
 
@@ -10,5 +9,3 @@ void work_begin(struct serve *s, struct client *c);
 void work_answered(struct serve *s, struct client *c);
 /* Let clients that wait for a directory go on. */
 void work_queue(struct serve *s);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Requests to the engine: the path, the target, and the step that follows the answer. */
-#ifndef SERVE_WORK_ASK_H
-#define SERVE_WORK_ASK_H
+#pragma once
 
 #include "src/serve/server.h"
 
@@ -23,5 +22,3 @@ void work_next_target(struct serve *s, struct client *c);
 bool work_is_directory(const struct node *node);
 /* Refuse a directory, which can be neither read nor written, if it exists. */
 void work_refuse_directory(struct serve *s, struct client *c);
-
-#endif

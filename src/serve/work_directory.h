@@ -4,8 +4,7 @@
  * STEP_BUSES only looks for the buses of the targets. A function that returns true has ended such a
  * look: the client's request goes on.
  */
-#ifndef SERVE_WORK_DIRECTORY_H
-#define SERVE_WORK_DIRECTORY_H
+#pragma once
 
 #include "src/serve/server.h"
 
@@ -16,5 +15,3 @@ bool work_listed(struct serve *s, struct client *c, int err);
 bool work_waits(struct serve *s);
 /* The client that has waited longest begins. NULL: nobody waits, or no directory is free. */
 struct client *work_unqueue(struct serve *s, bool *ended);
-
-#endif

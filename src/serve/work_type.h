@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Asks a target for the type of a property that the server does not know, to convert its units. */
-#ifndef SERVE_WORK_TYPE_H
-#define SERVE_WORK_TYPE_H
+#pragma once
 
 #include "src/serve/server.h"
 
@@ -15,5 +14,3 @@ bool work_ask_type(struct serve *s, struct client *c);
  * answered the client.
  */
 bool work_typed(struct serve *s, struct client *c, int err);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* WRITE: to a device, to all targets, or as a command to the table. */
-#ifndef SERVE_WORK_WRITE_H
-#define SERVE_WORK_WRITE_H
+#pragma once
 
 #include "src/serve/server.h"
 
@@ -10,5 +9,3 @@ void work_write_target(struct serve *s, struct client *c);
 void work_written(struct serve *s, struct client *c, int err);
 /* Look whether the commands of clients are carried out. */
 void work_look(struct serve *s);
-
-#endif

@@ -6,8 +6,7 @@
  * Room src/service: what a program in the background needs of the system: service manager, signals,
  * streams. Uses hal/base.
  */
-#ifndef SERVICE_NOTIFY_H
-#define SERVICE_NOTIFY_H
+#pragma once
 
 #include <stdint.h>
 #include <sys/socket.h>
@@ -40,5 +39,3 @@ int notify_send(const struct notify *notify, enum notify_news news);
 /* What `systemctl status` shows; cut at 255 bytes, control characters become '?'. */
 int notify_status(const struct notify *notify, const char *format, ...)
 	__attribute__((format(printf, 2, 3)));
-
-#endif

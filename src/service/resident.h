@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What a program keeps mapped of its own code. */
-#ifndef SERVICE_RESIDENT_H
-#define SERVICE_RESIDENT_H
+#pragma once
 
 /*
  * Give back the pages of files that the program has mapped and cannot write, its code and constants
@@ -12,5 +11,3 @@
  * is over.
  */
 void resident_drop_start(void);
-
-#endif

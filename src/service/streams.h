@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Streams and sockets that a process is given by whoever starts it. */
-#ifndef SERVICE_STREAMS_H
-#define SERVICE_STREAMS_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -28,5 +27,3 @@ int inherited_sockets(int *fds, int most);
 
 /* Does somebody listen at that path? False also where that cannot be tried. Does not block. */
 bool socket_answers(const struct sockaddr_un *address);
-
-#endif

@@ -4,8 +4,7 @@
  * (SIGHUP). They are blocked in all threads, and one thread takes them while it waits: no code runs
  * in a handler.
  */
-#ifndef SERVICE_UNIX_SIGNALS_H
-#define SERVICE_UNIX_SIGNALS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -29,5 +28,3 @@ void unix_signals_take(struct unix_signals *signals);
  * all signals that have come.
  */
 void unix_signals_wait(struct unix_signals *signals, const int fds[2], int64_t at_most_ns);
-
-#endif

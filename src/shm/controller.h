@@ -5,8 +5,7 @@
  * word checks texts. A controller that writes rubbish harms itself alone. No system calls. One
  * thread.
  */
-#ifndef SHM_CONTROLLER_H
-#define SHM_CONTROLLER_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -111,5 +110,3 @@ void controller_shelf_done(const struct controller_memory *memory, uint32_t coun
  */
 void controller_copy(const struct controller_memory *to, const struct controller_memory *from,
                      const uint32_t *rows);
-
-#endif

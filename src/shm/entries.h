@@ -4,8 +4,7 @@
  * devices, the log, and the journals of alarms and of commands. Sequence and check words are set
  * here. No system calls. One thread.
  */
-#ifndef SHM_ENTRIES_H
-#define SHM_ENTRIES_H
+#pragma once
 
 #include "src/shm/image.h"
 
@@ -40,5 +39,3 @@ uint32_t image_command(struct image *image, const struct ows_journal_entry *entr
  * are gone.
  */
 void image_carry_journals(struct image *image, const struct image *before, const uint32_t *records);
-
-#endif

@@ -6,8 +6,7 @@
  * all of it to the disk. The next owsd reads what was left, once and before it runs. No system
  * calls. One thread puts; any may get.
  */
-#ifndef SHM_FORCE_H
-#define SHM_FORCE_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -83,5 +82,3 @@ bool force_find(const struct force_left *left, const struct force_signal *signal
 /* Returns whether the controller of this index was known. */
 bool force_find_controller(const struct force_left *left, uint32_t index,
                            struct force_controller *controller);
-
-#endif

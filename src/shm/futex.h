@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Waits on a word of shared memory, and wakes the processes that wait on it. */
-#ifndef SHM_FUTEX_H
-#define SHM_FUTEX_H
+#pragma once
 
 #include <stdint.h>
 
@@ -12,5 +11,3 @@
  */
 int segment_wait(const uint32_t *word, uint32_t seen, int64_t timeout_ns);
 int segment_wake(const uint32_t *word, int how_many);
-
-#endif

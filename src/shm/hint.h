@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The cause of an error of the place, for the log: it is full, or a file is in the way. */
-#ifndef SHM_HINT_H
-#define SHM_HINT_H
+#pragma once
 
 #include "src/shm/place.h"
 
@@ -13,5 +12,3 @@
 #define SEGMENT_HINT (PLACE_PATH + 160)
 const char *segment_hint(const struct shm_place *place, const char *instance, int err,
                          char text[SEGMENT_HINT]);
-
-#endif

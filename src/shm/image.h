@@ -3,8 +3,7 @@
  * The image, writer's side: build it in memory, publish into it. No function here makes a system
  * call: src/shm/segment.h makes the memory, tests use the heap. One thread.
  */
-#ifndef SHM_IMAGE_H
-#define SHM_IMAGE_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -106,5 +105,3 @@ void image_awake(struct image *image, bool awake);
 void image_state(struct image *image, enum ows_state state);
 /* Retire an image that an earlier owsd left, of which only the size is known. */
 void image_retire(void *old, size_t old_size);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The lock of an instance: one owsd for each name. */
-#ifndef SHM_LOCK_H
-#define SHM_LOCK_H
+#pragma once
 
 #include <stdbool.h>
 #include <sys/types.h>
@@ -32,5 +31,3 @@ int lock_look(int place, const char *name, pid_t *pid);
 int segment_lock_any(const struct shm_place *place, const char *instance, pid_t *pid);
 /* False: the lock's file was removed or replaced. True also where that cannot be found out. */
 bool segment_lock_held(const struct shm_place *place, int lock, const char *instance);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Who may own a segment that owsd uses. Blocking: reads /etc/passwd and /etc/group. */
-#ifndef SHM_OWNER_H
-#define SHM_OWNER_H
+#pragma once
 
 #include <stdbool.h>
 #include <sys/types.h>
@@ -18,5 +17,3 @@ bool owner_user(const char *name, uid_t *uid);
 bool owner_group(const char *name, gid_t *gid);
 /* Is the user in that group, by its own entry or by that of the group? */
 bool owner_in_group(uid_t uid, gid_t gid);
-
-#endif

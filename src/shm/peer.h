@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Who is at the other end of a connection, by the kernel's word; what it sends, taken with care. */
-#ifndef SHM_PEER_H
-#define SHM_PEER_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -38,5 +37,3 @@ int peer_death(int connection, const struct peer *peer);
 ptrdiff_t peer_receive(int connection, void *bytes, size_t room, bool take);
 /* Ask the kernel to refuse descriptors on connections to that socket (from Linux 6.16 on). */
 void peer_refuse_descriptors(int listener);
-
-#endif

@@ -3,8 +3,7 @@
  * The place: the directory of owsd that has the files of its instances. Nobody but its owner can
  * make a name in it. Blocking: file-system calls, and reads /etc/passwd; one thread.
  */
-#ifndef SHM_PLACE_H
-#define SHM_PLACE_H
+#pragma once
 
 #include <stddef.h>
 #include <sys/types.h>
@@ -41,5 +40,3 @@ void place_close(struct shm_place *place);
 /* What is wrong with a place that could not be made or opened, and what to do. */
 #define PLACE_FAULT (PLACE_PATH + 200)
 const char *place_fault(const struct shm_place *place, int err, char text[PLACE_FAULT]);
-
-#endif

@@ -7,8 +7,7 @@
  * the porter. The porter forks a child for it, and the child does it and ends: a process that ends
  * waits for no connection. A child that hangs holds nobody up; the porter goes on with the next.
  */
-#ifndef SHM_PORTER_H
-#define SHM_PORTER_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -44,5 +43,3 @@ enum porter_event {
 enum porter_event porter_tend(struct porter *porter, int64_t now_ns);
 /* The process, for the log; 0: there is none. */
 int porter_process(const struct porter *porter);
-
-#endif

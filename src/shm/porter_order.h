@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What the porter is asked to do. */
-#ifndef SHM_PORTER_ORDER_H
-#define SHM_PORTER_ORDER_H
+#pragma once
 
 #include <stdint.h>
 #include <sys/uio.h>
@@ -40,5 +39,3 @@ struct porter_order {
 	int fds[PORTER_FDS];
 	struct iovec bytes; /* at most PORTER_BYTES */
 };
-
-#endif

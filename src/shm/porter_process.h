@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The process of the porter, and what passes between it and owsd. Private to porter.c. */
-#ifndef SHM_PORTER_PROCESS_H
-#define SHM_PORTER_PROCESS_H
+#pragma once
 
 #include <sys/socket.h>
 
@@ -38,5 +37,3 @@ void porter_carry_out(unsigned what, const int *fds, unsigned count, struct iove
 /* After a fork: be the porter of these lanes, and end with them. */
 _Noreturn void porter_main(const int *lanes, struct porter_shared *shared);
 void porter_pause(int64_t ns);
-
-#endif

@@ -3,8 +3,7 @@
  * The reader's half of the protocols of records and of entries (layout.h). No system call, no lock,
  * at most READER_TRIES rounds.
  */
-#ifndef SHM_READER_H
-#define SHM_READER_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -77,5 +76,3 @@ static inline bool reader_entry(const void *from, void *entry, size_t size)
 /* Copies at most size - 1 bytes of text and a NUL; base is the segment's. */
 bool reader_text(const char *base, const struct ows_record *record, struct ows_sample *sample,
                  char *text, size_t size);
-
-#endif

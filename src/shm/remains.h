@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The files that owsds have left in a place: lists the instances, removes one that has ended. */
-#ifndef SHM_REMAINS_H
-#define SHM_REMAINS_H
+#pragma once
 
 #include "src/shm/segment.h"
 
@@ -22,5 +21,3 @@ void remains_free(struct remains *remains);
  */
 int remains_remove(const struct shm_place *place, const char *instance, pid_t *pid,
                    unsigned *files);
-
-#endif

@@ -5,8 +5,7 @@
  *
  * Room src/shm: the segments in shared memory, the side of owsd. Uses hal/base.
  */
-#ifndef SHM_SEGMENT_H
-#define SHM_SEGMENT_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -55,5 +54,3 @@ int segment_open_old(const struct shm_place *place, const char *instance, enum s
 void segment_close(struct segment *segment);
 /* Remove the name. */
 int segment_remove(const struct shm_place *place, const char *instance, enum segment_kind kind);
-
-#endif

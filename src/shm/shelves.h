@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Shelved alarms that outlive a reload, a restart and a kill of owsd. */
-#ifndef SHM_SHELVES_H
-#define SHM_SHELVES_H
+#pragma once
 
 #include <stddef.h>
 
@@ -12,5 +11,3 @@
  * name that is gone is left out. The image before may be of another owsd, and cut off anywhere.
  */
 void shelves_carry(struct image *image, const void *before, size_t size);
-
-#endif

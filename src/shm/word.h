@@ -3,8 +3,7 @@
  * Access to words that two processes share: 32 bit, by the compiler's atomic builtins on plain
  * integers (an _Atomic in a header is no C++), samples word by word.
  */
-#ifndef SHM_WORD_H
-#define SHM_WORD_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -81,5 +80,3 @@ static inline void words_store(void *to, const void *from, size_t n)
 	for (size_t i = 0; i < n; i++)
 		__atomic_store_n(&t[i], f[i], WORD_STORE);
 }
-
-#endif

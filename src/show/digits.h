@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Numbers as persons read them. */
-#ifndef SHOW_DIGITS_H
-#define SHOW_DIGITS_H
+#pragma once
 
 #include "src/signal/value.h"
 
@@ -11,5 +10,3 @@
  */
 void digits_print(enum ows_type type, double number, int64_t integer, int decimals,
                   char text[VALUE_TEXT_MAX]);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The faces of an instance, by the reports that they write (src/face/loop.c). */
-#ifndef SHOW_FACES_H
-#define SHOW_FACES_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -33,5 +32,3 @@ unsigned faces_read(const char *instance, struct faces_one faces[FACES_MOST]);
 bool faces_silent(const struct faces_one *face, int64_t now_ns);
 /* All of them as an array. */
 void faces_json(struct json *json, const char *key, const char *instance, const struct when *now);
-
-#endif

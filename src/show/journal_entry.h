@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Entries of both journals, alarms and commands, merged by time; and how one is shown. */
-#ifndef SHOW_JOURNAL_ENTRY_H
-#define SHOW_JOURNAL_ENTRY_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -52,5 +51,3 @@ bool journal_is_deed(const struct journal_entry *entry);
 const struct ows_by *journal_by(const struct journal_entry *entry);
 /* As an object. */
 void journal_json(struct json *json, const struct when *now, const struct journal_entry *entry);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Entries of the journal that owsd-recorder has on disk, put before those of owsd's memory. */
-#ifndef SHOW_JOURNAL_PAST_H
-#define SHOW_JOURNAL_PAST_H
+#pragma once
 
 #include "src/libhistory/ows_history.h"
 #include "src/show/journal_entry.h"
@@ -24,5 +23,3 @@ int journal_past(struct ows_history *history, const struct when *now, int64_t fr
  * several of these the newest are. false: no memory.
  */
 bool journal_past_drop(struct journal_entries *past, const struct journal_entries *entries);
-
-#endif

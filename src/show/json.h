@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A JSON writer: one document on one line, valid by RFC 8259 whatever the strings contain. */
-#ifndef SHOW_JSON_H
-#define SHOW_JSON_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -44,5 +43,3 @@ void json_seconds(struct json *json, const char *key, int64_t ns);
 /* A number that is already text; null if JSON has no such number (nan, inf). */
 void json_number(struct json *json, const char *key, const char *text);
 void json_double(struct json *json, const char *key, double number); /* null for a NaN */
-
-#endif

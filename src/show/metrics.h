@@ -4,8 +4,7 @@
  * 1.0, or in the one of Prometheus, 0.0.4. A value that is not good is absent: an old one would
  * look like a new one.
  */
-#ifndef SHOW_METRICS_H
-#define SHOW_METRICS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -28,5 +27,3 @@ struct metrics {
  * part; the table must stay the same until the last. True: there is more.
  */
 bool metrics_print(FILE *out, const struct metrics *metrics, int *at, int most);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Names as the user writes them: their signals, patterns, and the nearest name of the table. */
-#ifndef SHOW_NAMES_H
-#define SHOW_NAMES_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -23,5 +22,3 @@ bool names_match(const char *name, char *const *patterns, int count);
 
 /* The name that the user probably meant; false if no name is near. */
 bool names_nearest(struct ows *h, const char *name, char nearest[NAMES_MAX]);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The alarms of a signal that are present: that stand, are shelved, or cannot be armed. */
-#ifndef SHOW_PRESENT_H
-#define SHOW_PRESENT_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -33,5 +32,3 @@ void present_json(struct json *json, const struct present *alarm, const struct w
 /* Why the alarm of the reading's signal is not armed, if no reading has failed since. */
 const char *present_unarmed(const struct ows_alarm_state *state, const struct reading *reading,
                             char words[ERROR_WORDS]);
-
-#endif

@@ -5,8 +5,7 @@
  * Room src/show: values, alarms, journals and counters in words and as JSON, for programs that show
  * them. Uses src/text, src/libhistory, src/libows, src/signal, hal/base.
  */
-#ifndef SHOW_READING_H
-#define SHOW_READING_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -47,5 +46,3 @@ void reading_json_number(struct json *json, const char *key, const struct ows_va
 /* The members of a JSON object: value, quality and all that belongs to it. */
 void reading_json(struct json *json, struct ows *h, const struct reading *reading,
                   const struct when *now);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The present alarms of a signal, as list and watch show them. */
-#ifndef SHOW_STANDING_H
-#define SHOW_STANDING_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -30,5 +29,3 @@ const char *standing_text(const struct ows_alarm_state *state, char words[STANDI
 
 /* The member "alarms": an array with an object for each present alarm; and the member "shelved". */
 void standing_json(struct json *json, const struct ows_alarm_state *state);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The state of owsd, its targets, devices and counters, or the last ones of an owsd that ended. */
-#ifndef SHOW_STATS_H
-#define SHOW_STATS_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -27,5 +26,3 @@ bool stats_device_costs(const struct ows_device *device);
 void stats_whose(struct json *json, const char *instance);
 void stats_json(struct json *json, const char *instance, struct ows *h,
                 const struct ows_daemon *daemon, const struct when *now);
-
-#endif

@@ -3,8 +3,7 @@
  * Text on a terminal: how many columns its UTF-8 takes, in any locale, and the removal of what must
  * not reach the terminal.
  */
-#ifndef SHOW_TEXT_H
-#define SHOW_TEXT_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -25,5 +24,3 @@ unsigned text_clean(const char *text, size_t len, unsigned columns, char *out, s
 void text_only_ascii(bool only);
 /* Does the environment name a character set that is not UTF-8? Not if it names no locale at all. */
 bool text_locale_is_ascii(void);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Times as people and programs read them. */
-#ifndef SHOW_WHEN_H
-#define SHOW_WHEN_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -29,5 +28,3 @@ bool when_parse(const char *text, int64_t *ns);
  * is one. Of the years 1970 to 2114. Returns NULL, or what is wrong, and *wall_ns stays.
  */
 const char *when_moment(const struct when *now, const char *text, int64_t *wall_ns);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Who did something, as text cells and as JSON. */
-#ifndef SHOW_WHO_H
-#define SHOW_WHO_H
+#pragma once
 
 #include "src/libows/ows.h"
 #include "src/show/json.h"
@@ -16,5 +15,3 @@ const char *who_user(const struct ows_by *who, char text[WHO_TEXT]);
 const char *who_line(const struct ows_by *who, char text[WHO_LINE]);
 /* The member "by": an object, or null where owsd did it itself. */
 void who_json(struct json *json, const struct ows_by *who);
-
-#endif

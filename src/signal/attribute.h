@@ -3,8 +3,7 @@
  * The names of section 3.3 of the manual: driver signals and attributes of signals, with their
  * short forms; and the one order in which a name is looked up, the same for every interface.
  */
-#ifndef SIGNAL_ATTRIBUTE_H
-#define SIGNAL_ATTRIBUTE_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -60,5 +59,3 @@ int attribute_lookup(const char *prefix, const char *name, attribute_find *find,
  */
 #define SIGNAL_NAME_MAX 63
 const char *signal_name_fault(const char *name);
-
-#endif

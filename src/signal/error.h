@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#ifndef SIGNAL_ERROR_H
-#define SIGNAL_ERROR_H
+#pragma once
 
 /*
  * The words for a negative errno of the bus contract (hal/bus/bus.h) or of libows, and what the
@@ -12,5 +11,3 @@ const char *error_remedy(int err);
 /* Both in one: "no such property: check its spelling; ...". Returns words. */
 #define ERROR_WORDS 160
 const char *error_words(int err, char words[ERROR_WORDS]);
-
-#endif

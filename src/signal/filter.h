@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A low-pass filter of first order for samples that come at irregular times. */
-#ifndef SIGNAL_FILTER_H
-#define SIGNAL_FILTER_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -19,5 +18,3 @@ struct filter {
  * newer than the last one, as one that a cache gave again, changes nothing.
  */
 double filter_sample(struct filter *filter, double seconds, double sample, int64_t at_ns);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A number by which a change of a text shows: FNV-1a of 64 bits. It is no secret. */
-#ifndef SIGNAL_HASH_H
-#define SIGNAL_HASH_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -15,5 +14,3 @@ static inline uint64_t hash_text(uint64_t hash, const char *text, size_t len)
 		hash = (hash ^ (uint8_t)text[i]) * UINT64_C(0x100000001b3);
 	return hash;
 }
-
-#endif

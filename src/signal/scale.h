@@ -4,8 +4,7 @@
  * else sees, and back; and the range that the engineering value can have. Pure functions; no result
  * is NaN or infinite.
  */
-#ifndef SIGNAL_SCALE_H
-#define SIGNAL_SCALE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -56,5 +55,3 @@ int scale_raw(const struct scale *scale, double value, double *raw);
  * -EILSEQ not of that form, -E2BIG too many, -EDOM too few, -EINVAL raw values that do not rise,
  * -ERANGE values that neither rise nor fall throughout. */
 int scale_parse(const char *text, struct scale_point points[SCALE_POINTS_MAX]);
-
-#endif

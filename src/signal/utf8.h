@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* UTF-8, and which of its characters make a line of text look other than it is. */
-#ifndef SIGNAL_UTF8_H
-#define SIGNAL_UTF8_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -18,5 +17,3 @@ int32_t utf8_next(const char **text, size_t *len);
  * or -1?
  */
 bool utf8_disturbs(int32_t code);
-
-#endif

@@ -6,8 +6,7 @@
  *
  * Room src/signal: types, values and attributes of signals. Uses no other.
  */
-#ifndef SIGNAL_VALUE_H
-#define SIGNAL_VALUE_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -60,5 +59,3 @@ int value_parse(enum ows_type type, const char *text, int64_t *value);
  * text that reads back equal, bool 1 or 0. Returns its length. Not for strings.
  */
 int value_to_text(enum ows_type type, int64_t value, char text[VALUE_TEXT_MAX]);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* How near a word is to the one that a user probably meant. */
-#ifndef TEXT_DISTANCE_H
-#define TEXT_DISTANCE_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -19,5 +18,3 @@ unsigned text_distance(const char *a, const char *b);
 unsigned text_too_far(const char *word);
 /* Is it nearer than *best, which begins as text_too_far(word)? Then *best is its distance. */
 bool text_nearer(const char *word, const char *candidate, unsigned *best);
-
-#endif

@@ -6,8 +6,7 @@
  *
  *     ows,instance=OWS,signal=room1,unit=°C value=21.5 1700000000000000000
  */
-#ifndef TEXT_INFLUX_H
-#define TEXT_INFLUX_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -34,5 +33,3 @@ bool influx_series(const char *measurement, const char *instance, const char *si
  */
 bool influx_fields(enum ows_type type, double number, int64_t integer, const char *text, size_t len,
                    char fields[INFLUX_FIELDS]);
-
-#endif

@@ -6,8 +6,7 @@
  *
  * Room src/text: the log, and texts that are safe to print. Uses src/signal, hal/base.
  */
-#ifndef TEXT_LOG_H
-#define TEXT_LOG_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -78,5 +77,3 @@ void log_finish(struct log *log, int fd, int prefix);
 /* A bell (hal/base/bell.h), rung from the moment a line is put until the next log_drain(). */
 int log_bell(const struct log *log);
 uint64_t log_dropped(const struct log *log);
-
-#endif

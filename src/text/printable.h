@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#ifndef TEXT_PRINTABLE_H
-#define TEXT_PRINTABLE_H
+#pragma once
 
 #include <stdarg.h>
 #include <stddef.h>
@@ -20,5 +19,3 @@ size_t printable(char *text, size_t len);
  */
 #define PRINTABLE_LINE 1000
 char *printable_line(const char *format, va_list args) __attribute__((format(printf, 1, 0)));
-
-#endif

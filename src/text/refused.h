@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#ifndef TEXT_REFUSED_H
-#define TEXT_REFUSED_H
+#pragma once
 
 #include <getopt.h>
 #include <stddef.h>
@@ -12,5 +11,3 @@
  * them fit for a terminal.
  */
 void refused_option(int c, const struct option *longs, char *const *argv, char *text, size_t size);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What is behind the paths. */
-#ifndef WEB_API_H
-#define WEB_API_H
+#pragma once
 
 #include "src/web/web.h"
 
@@ -12,5 +11,3 @@ web_function api_find(const char *path, bool post);
  * may edit it. Looks at the head alone.
  */
 bool api_admits(const struct request *request, const char *path);
-
-#endif

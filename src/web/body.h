@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The body of a POST: one JSON object of texts, numbers and flags, and nothing deeper. */
-#ifndef WEB_BODY_H
-#define WEB_BODY_H
+#pragma once
 
 #include <stddef.h>
 
@@ -33,5 +32,3 @@ int body_parse(char *text, size_t len, struct body *body);
 const struct body_member *body_find(const struct body *body, const char *key);
 /* The string of that name; "" if there is none, or if it is none. */
 const char *body_string(const struct body *body, const char *key);
-
-#endif

@@ -3,8 +3,7 @@
  * The doors: sockets at which owsd-web listens. A connection waits here until the head of its
  * request is whole and right; then libmicrohttpd gets it. Each connection has one request.
  */
-#ifndef WEB_DOORS_H
-#define WEB_DOORS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -47,5 +46,3 @@ void doors_take(struct doors *doors, int64_t now_ns);
 /* When doors_take() has to be called at the latest. */
 int64_t doors_next(const struct doors *doors);
 void doors_close(struct doors *doors);
-
-#endif

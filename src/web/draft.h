@@ -3,8 +3,7 @@
  * POST api/config/draft: one edit of a text that a browser has, and a check of the result. Nothing
  * on disk is read or changed but what a check of any configuration reads (/etc/passwd, /etc/group).
  */
-#ifndef WEB_DRAFT_H
-#define WEB_DRAFT_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -26,5 +25,3 @@ int draft_check(const char *file, const char *text, size_t len, struct problems 
                 struct rio **rio);
 /* Is it UTF-8 without NUL, so that JSON can carry it unchanged? */
 bool draft_is_text(const char *text, size_t len);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* One edit of a draft: a text of a configuration that a browser has. */
-#ifndef WEB_DRAFT_EDIT_H
-#define WEB_DRAFT_EDIT_H
+#pragma once
 
 #include "src/config/rio.h"
 #include "src/web/body.h"
@@ -13,5 +12,3 @@
  * -ENOMEM or -EFBIG. Pure.
  */
 int draft_edit(struct rio **rio, const struct body *body, struct config_report *report);
-
-#endif

@@ -4,8 +4,7 @@
  * the generation of the table and a cursor (recent.h): a browser that comes back with it goes on
  * there.
  */
-#ifndef WEB_EVENTS_H
-#define WEB_EVENTS_H
+#pragma once
 
 #include "src/web/http.h"
 
@@ -17,5 +16,3 @@ void events_alarm(struct web *web, const struct ows_alarm *alarm);
 /* Alarms were missed: streams that go on from a time before now get an event that says so. */
 void events_miss_alarms(struct web *web);
 void events_forget_alarms(struct web *web);
-
-#endif

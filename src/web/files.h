@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The files of the page: those that a directory had at the start, and no others. */
-#ifndef WEB_FILES_H
-#define WEB_FILES_H
+#pragma once
 
 #include <stdint.h>
 #include <sys/types.h>
@@ -25,5 +24,3 @@ void files_close(struct files *files);
  */
 int files_find(const struct files *files, const char *path, uint64_t *size, const char **type,
                char tag[FILES_TAG]);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* May this POST do what it asks? By the page that it comes from, and the person that sends it. */
-#ifndef WEB_GUARD_H
-#define WEB_GUARD_H
+#pragma once
 
 #include "src/web/person.h"
 
@@ -15,5 +14,3 @@ struct request;
  */
 unsigned guard_post(const struct request *request, enum person_deed deed, char person[PERSON],
                     char words[GUARD_WORDS]);
-
-#endif

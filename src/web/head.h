@@ -3,8 +3,7 @@
  * The head of a request, looked at before libmicrohttpd reads it: by the letter of RFC 9112, so
  * that no proxy before owsd-web understands another request than owsd-web does.
  */
-#ifndef WEB_HEAD_H
-#define WEB_HEAD_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -22,5 +21,3 @@ int head_check(const char *bytes, size_t len, const char **why);
 
 /* Is that a path whose bodies may be large? Without "?". Pure. */
 bool head_large(const char *path);
-
-#endif

@@ -3,8 +3,7 @@
  * libmicrohttpd in the loop of the face: requests are read, given to the function of their path,
  * and answered. All answers say that nothing is to be kept, guessed or framed.
  */
-#ifndef WEB_HTTP_H
-#define WEB_HTTP_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -68,5 +67,3 @@ struct jobs *http_worker(struct web *web, struct jobs **worker);
 int http_defer(struct request *request, struct jobs *jobs, struct job *job);
 /* Answer those whose jobs are done. */
 void http_done(struct jobs *jobs);
-
-#endif

@@ -3,8 +3,7 @@
  * A thread for what takes longer than the loop may wait: it does jobs, one after another. Peers
  * take turns, so one that asks for much delays another by one job.
  */
-#ifndef WEB_JOBS_H
-#define WEB_JOBS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -47,5 +46,3 @@ void jobs_free(struct jobs *jobs);
 /* Answer a job with an error. */
 void job_error(struct job *job, unsigned status, const char *format, ...)
 	__attribute__((format(printf, 3, 4)));
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What a configuration says, as the forms of the page need it: keys as they are written. */
-#ifndef WEB_MODEL_H
-#define WEB_MODEL_H
+#pragma once
 
 #include "src/config/rio.h"
 #include "src/show/json.h"
@@ -13,5 +12,3 @@
 void model_json(struct json *json, const struct rio *rio);
 /* The array "keys": the table of the keys, from which the page makes its forms. */
 void model_keys(struct json *json);
-
-#endif

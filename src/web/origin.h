@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* From which page a browser asks, by the headers Host and Origin. Pure functions. */
-#ifndef WEB_ORIGIN_H
-#define WEB_ORIGIN_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -14,5 +13,3 @@
 bool origin_host(const char *host, const char *local, const char *machine, const char *list);
 /* Is the page of that Origin one of that Host? */
 bool origin_same(const char *origin, const char *host);
-
-#endif

@@ -5,8 +5,7 @@
  * at most. So few streams are quick, and many of them cost a twentieth of a processor. All streams
  * go together: what one gets, the others get too, and it is made once. Times in ns. Pure.
  */
-#ifndef WEB_PACE_H
-#define WEB_PACE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -24,5 +23,3 @@ void pace_spent(struct pace *pace, int64_t cpu_ns);
 int64_t pace_due(const struct pace *pace);
 /* True: it is due, and all up to the cursor newest goes out now. */
 bool pace_send(struct pace *pace, int64_t now_ns, uint64_t newest);
-
-#endif

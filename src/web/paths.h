@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The functions behind the paths (api.c); each answers its request, as web_function does. */
-#ifndef WEB_PATHS_H
-#define WEB_PATHS_H
+#pragma once
 
 struct request;
 
@@ -27,5 +26,3 @@ int save_restore(struct request *request);
 /* The configuration as it is on disk, and the table of its keys. */
 int stored_get(struct request *request);
 int stored_keys(struct request *request);
-
-#endif

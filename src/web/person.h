@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Who asks, and what that person may do. */
-#ifndef WEB_PERSON_H
-#define WEB_PERSON_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -30,5 +29,3 @@ uint64_t person_number(int fd, const struct config_web *options, const char *nam
 /* Is it a TCP connection? Then local gets its address at this end. */
 #define PERSON_ADDRESS 64
 bool person_is_tcp(int fd, char local[PERSON_ADDRESS]);
-
-#endif

@@ -3,8 +3,7 @@
  * The bytes of a body while they come, and until they are read. Few bodies may be large: there is
  * room for so many at a time. One thread, the loop of the face.
  */
-#ifndef WEB_POSTED_H
-#define WEB_POSTED_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -26,5 +25,3 @@ void posted_begin(struct posted *posted, size_t size, unsigned *large, bool may,
 /* False: it is longer than was announced, comes too slowly, or there is no memory. */
 bool posted_add(struct posted *posted, const char *bytes, size_t len, int64_t now_ns);
 void posted_free(struct posted *posted);
-
-#endif

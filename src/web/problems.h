@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What is wrong with the text of a configuration: collected, and shown at its keys. */
-#ifndef WEB_PROBLEMS_H
-#define WEB_PROBLEMS_H
+#pragma once
 
 #include "src/config/rio.h"
 #include "src/show/json.h"
@@ -28,5 +27,3 @@ const char *problems_first(const struct problems *problems, int *line);
  */
 void problems_json(struct json *json, const struct problems *problems, const struct rio *rio);
 void problems_free(struct problems *problems);
-
-#endif

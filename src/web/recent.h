@@ -4,8 +4,7 @@
  * owsd-web saw it, in microseconds of CLOCK_BOOTTIME, made greater than that of the change before
  * it. So a cursor still means the same to an owsd-web that was started again.
  */
-#ifndef WEB_RECENT_H
-#define WEB_RECENT_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -28,5 +27,3 @@ uint64_t recent_next(struct recent *recent, int64_t now_ns);
 void recent_change(struct recent *recent, int signal, uint64_t mark, int64_t now_ns);
 /* The first signal that changed after the cursor; -1: none has. */
 int recent_after(const struct recent *recent, uint64_t cursor);
-
-#endif

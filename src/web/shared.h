@@ -3,8 +3,7 @@
  * Pieces of events that several streams need, made once: streams that know the same get the same
  * (pace.h). A few of the last ones are kept.
  */
-#ifndef WEB_SHARED_H
-#define WEB_SHARED_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -42,5 +41,3 @@ const char *shared_find(const struct shared *shared, struct position *position, 
 void shared_keep(struct shared *shared, const struct position *from, const struct position *to,
                  int64_t now_ns, const char *text, size_t len);
 void shared_forget(struct shared *shared);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Signals of an instance as JSON of owsd-web. A value that is not good is null. */
-#ifndef WEB_SHOW_H
-#define WEB_SHOW_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -26,5 +25,3 @@ void show_value(struct json *json, const struct show *show, int signal);
 const char *show_alarm(const struct show *show, int signal, char words[SHOW_ALARM]);
 /* The time in milliseconds since 1970 of a boot time; 0 stays 0. */
 int64_t show_wall_ms(int64_t boot_ns);
-
-#endif

@@ -3,8 +3,7 @@
  * An answer that is made piece by piece, as fast as the client takes it: so a slow client costs one
  * piece of memory, and gets the newest state when it is ready again.
  */
-#ifndef WEB_STREAM_H
-#define WEB_STREAM_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -46,5 +45,3 @@ struct stream {
 int stream_answer(struct request *request, const char *type, const struct stream *first);
 /* All that sleep. */
 void stream_wake_all(struct web *web);
-
-#endif

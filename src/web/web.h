@@ -7,8 +7,7 @@
  * Uses src/scan, src/show, src/face, src/config, src/board, src/text, src/libhistory, src/libows,
  * src/service, src/shm, src/signal, hal/chips, hal/owfs, hal/base.
  */
-#ifndef WEB_WEB_H
-#define WEB_WEB_H
+#pragma once
 
 #include "src/face/face.h"
 #include "src/web/doors.h"
@@ -58,5 +57,3 @@ struct web {
 	unsigned next_alarm;
 	uint64_t alarms_lost; /* the cursor up to which alarms may be missing above */
 };
-
-#endif

@@ -3,8 +3,7 @@
  * owsd-config, the writer: owsd-web cannot write the configuration, and asks it. One request for
  * each connection to the socket NAME.config in the directory of owsd's files.
  */
-#ifndef WEB_WRITER_H
-#define WEB_WRITER_H
+#pragma once
 
 #include "src/config/tag.h"
 #include "src/web/problems.h"
@@ -50,5 +49,3 @@ int writer_parse(char *text, size_t len, struct writer_answer *answer);
 bool writer_is_tag(const char *text);
 /* How the writer is started, for a message. */
 void writer_remedy(const char *instance, char text[WRITER_WORDS]);
-
-#endif

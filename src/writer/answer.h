@@ -10,8 +10,7 @@
  *     why: Listen, ListenSocket, ListenAllow and ListenReadOnly change by a restart only
  *     problem: W 12 3 the item has no Unit
  */
-#ifndef WRITER_ANSWER_H
-#define WRITER_ANSWER_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -58,5 +57,3 @@ char *answer_print(struct answer *answer, size_t *len);
 void answer_free(struct answer *answer);
 /* The word of a status, for the log. */
 const char *answer_word(enum answer_status status);
-
-#endif

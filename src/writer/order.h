@@ -8,8 +8,7 @@
  *     for: anna
  *     length: 1234
  */
-#ifndef WRITER_ORDER_H
-#define WRITER_ORDER_H
+#pragma once
 
 #include <stddef.h>
 
@@ -35,5 +34,3 @@ struct order {
  * head, whatever follows, and why says what is wrong.
  */
 int order_parse(const char *text, size_t len, struct order *order, const char **why);
-
-#endif

@@ -5,8 +5,7 @@
  * the two steps leaves the same text in both: of a replace the old one, of a restore the new one.
  * Blocking: waits for other writers, five seconds at most.
  */
-#ifndef WRITER_STORE_H
-#define WRITER_STORE_H
+#pragma once
 
 #include "src/writer/answer.h"
 #include "src/writer/order.h"
@@ -19,5 +18,3 @@ void store_replace(const char *file, const struct order *order, const char *text
                    struct answer *answer);
 /* Put the file of before in place likewise; the present one is then the file of before. */
 void store_restore(const char *file, const struct order *order, struct answer *answer);
-
-#endif

@@ -6,8 +6,7 @@
  * reload. Uses src/face, src/host, src/config, src/text, src/libows, src/service, src/shm,
  * hal/base.
  */
-#ifndef WRITER_VISIT_H
-#define WRITER_VISIT_H
+#pragma once
 
 #include <stdbool.h>
 #include <sys/types.h>
@@ -26,5 +25,3 @@ struct writer {
  * for the answer at most, five to lock the file, and half a minute for the reload.
  */
 void visit(const struct writer *writer, int connection);
-
-#endif

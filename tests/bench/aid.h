@@ -3,8 +3,7 @@
  * What the benches share: time, placement, the line a figure is printed on, and the peer: the
  * genuine owserver with fake thermometers, asked over a bare socket.
  */
-#ifndef TESTS_BENCH_AID_H
-#define TESTS_BENCH_AID_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -63,5 +62,3 @@ bool bench_send_once(int fd, const char *path);
 int bench_receive(int fd, char *data, size_t size);
 /* A port that is free now. */
 int bench_port(void);
-
-#endif

@@ -4,8 +4,7 @@
  * them change. Programs that follow them are woken as owsd wakes them. Signal 0 is the probe: its
  * value is the time at which it was published, so a client knows how old what it sees is.
  */
-#ifndef TESTS_BENCH_MANY_H
-#define TESTS_BENCH_MANY_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -27,5 +26,3 @@ bool many_write_config(const char *path);
 /* Now in the unit of the probe: milliseconds since many_base_ms(), of the wall clock. */
 double many_now(void);
 int64_t many_base_ms(void);
-
-#endif

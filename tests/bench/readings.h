@@ -3,8 +3,7 @@
  * Readings of thermometers for the benches of history: the same in each run. A value stays or goes
  * up or down by 1/16, as that of a DS18B20 does.
  */
-#ifndef TESTS_BENCH_READINGS_H
-#define TESTS_BENCH_READINGS_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -20,5 +19,3 @@ struct readings readings_begin(unsigned count, double change);
 void readings_end(struct readings *readings);
 /* Read thermometer i again. Is it another value? */
 bool readings_next(struct readings *readings, unsigned i);
-
-#endif

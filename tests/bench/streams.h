@@ -3,8 +3,7 @@
  * Clients of the events of owsd-web at its Unix socket, in a thread: they count what comes, and
  * note how old the probe (many.h) is when they have it.
  */
-#ifndef TESTS_BENCH_STREAMS_H
-#define TESTS_BENCH_STREAMS_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -19,5 +18,3 @@ void streams_begin(void);
 uint64_t streams_bytes(void);
 size_t streams_latencies(double *ms, size_t most);
 void streams_close(void);
-
-#endif

@@ -3,8 +3,7 @@
  * What it costs on this machine to wake the threads that a command passes: one in another process,
  * another there, and one here. The last hop is an eventfd too, or a TCP connection over loopback.
  */
-#ifndef TESTS_BENCH_WAKES_H
-#define TESTS_BENCH_WAKES_H
+#pragma once
 
 #include <pthread.h>
 #include <stdbool.h>
@@ -24,5 +23,3 @@ bool bench_wakes_start(struct bench_wakes *wakes, bool loopback);
 /* Time from the first write until the third thread goes on, us; less than 0: it never did. */
 double bench_wakes_once(struct bench_wakes *wakes);
 void bench_wakes_end(struct bench_wakes *wakes);
-
-#endif

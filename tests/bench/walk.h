@@ -8,8 +8,7 @@
  *
  * All times are ns of wall clock. Each request waits a minute at the most.
  */
-#ifndef TESTS_BENCH_WALK_H
-#define TESTS_BENCH_WALK_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -57,5 +56,3 @@ int walk_read_one(struct walk *walk, const char *path);
  * returns how many.
  */
 unsigned walk_scenario(FILE *file, unsigned khz);
-
-#endif

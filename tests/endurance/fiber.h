@@ -3,8 +3,7 @@
  * A fiber: a function with a stack of its own that is left in the middle and entered again, as a
  * worker's thread that waits; but one at a time, in an order that a seed repeats.
  */
-#ifndef TESTS_ENDURANCE_FIBER_H
-#define TESTS_ENDURANCE_FIBER_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -30,5 +29,3 @@ void fiber_enter(struct fiber *fiber);
 /* Inside it: back to who entered. */
 void fiber_leave(struct fiber *fiber);
 void fiber_end(struct fiber *fiber);
-
-#endif

@@ -3,8 +3,7 @@
  * What there is in truth: devices, what they measure over time, how their pins are. Each part of
  * a world shows it in its way, and what the engine publishes is compared with it.
  */
-#ifndef TESTS_ENDURANCE_FIELD_H
-#define TESTS_ENDURANCE_FIELD_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -48,5 +47,3 @@ bool field_was_pins(unsigned pins, int64_t from, int64_t to);
 /* -1: no device of this id. */
 int field_find(const char *id);
 int field_switch(void);
-
-#endif

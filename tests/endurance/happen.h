@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What happens to a world: faults of its parts, devices, programs, reloads, suspends. */
-#ifndef TESTS_ENDURANCE_HAPPEN_H
-#define TESTS_ENDURANCE_HAPPEN_H
+#pragma once
 
 #include "tests/endurance/field.h"
 
@@ -16,5 +15,3 @@ void happen_pin(void);
 void happen_over(void);
 /* How often something did. */
 uint64_t happened(void);
-
-#endif

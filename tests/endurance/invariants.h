@@ -4,8 +4,7 @@
  * function of its own in invariants.c (signals) and accounts.c (requests, counters, memory), which
  * says seed, time and signal through world_fails().
  */
-#ifndef TESTS_ENDURANCE_INVARIANTS_H
-#define TESTS_ENDURANCE_INVARIANTS_H
+#pragma once
 
 #include "tests/endurance/station.h"
 
@@ -50,5 +49,3 @@ void accounts_well(void);
 /* Does the lane that serves the record do its work? */
 bool lane_works(uint32_t record);
 bool record_reads(uint32_t record);
-
-#endif

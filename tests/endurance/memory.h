@@ -3,8 +3,7 @@
  * Who allocates: what is allocated while the engine's thread is watched is counted, and how many
  * blocks live. The linker puts these functions in the place of the allocator's (--wrap).
  */
-#ifndef TESTS_ENDURANCE_MEMORY_H
-#define TESTS_ENDURANCE_MEMORY_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -12,5 +11,3 @@ void memory_watch(bool yes);
 unsigned long memory_watched(void);
 long memory_blocks(void);
 unsigned memory_descriptors(void);
-
-#endif

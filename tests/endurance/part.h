@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* One target of a world: what simulates it below the real backend, and what goes wrong there. */
-#ifndef TESTS_ENDURANCE_PART_H
-#define TESTS_ENDURANCE_PART_H
+#pragma once
 
 #include "hal/bus/bus.h"
 #include "tests/endurance/field.h"
@@ -54,5 +53,3 @@ uint32_t world_random(uint32_t n);
 void world_block(int64_t ns);
 /* A fault ends: called once at that time. */
 void world_after(int64_t ns, void (*end)(void *ctx), void *ctx);
-
-#endif

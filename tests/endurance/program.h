@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Control programs: they set the relays, beat, die, and scribble. */
-#ifndef TESTS_ENDURANCE_PROGRAM_H
-#define TESTS_ENDURANCE_PROGRAM_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -20,5 +19,3 @@ void program_sets(unsigned value);
 void program_dies(void);
 /* Everything that a program may write, and no program should; and sets it right. */
 void program_scribbles(void);
-
-#endif

@@ -5,8 +5,7 @@
  * twice, one with more behind it. The protocol has no request numbers, so an answer that comes
  * behind the next question would be taken for its answer by any client; that one lie is left out.
  */
-#ifndef TESTS_ENDURANCE_SERVER_H
-#define TESTS_ENDURANCE_SERVER_H
+#pragma once
 
 #include "hal/owfs/frame.h"
 #include "tests/endurance/part.h"
@@ -77,5 +76,3 @@ void server_lie(struct server_client *c, enum lie lie);
 /* server_answers.c: the length of the answer's text, or its code. */
 int server_answer(struct part *part, const struct frame_header *request, const char *path,
                   const char *data, char *text, size_t size);
-
-#endif

@@ -5,8 +5,7 @@
  * generation as the supervisor does: new buses and memory beside what runs, adoption in one step,
  * and the end of what did not stay while the engine goes on.
  */
-#ifndef TESTS_ENDURANCE_STATION_H
-#define TESTS_ENDURANCE_STATION_H
+#pragma once
 
 #include "src/config/config.h"
 #include "src/engine/engine.h"
@@ -114,5 +113,3 @@ bool station_settled(void);
 void station_ring(void);
 /* test_endurance.c: the world is broken. Does not return. */
 _Noreturn void world_fails(const char *what, const char *signal);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Between the files of the station. */
-#ifndef TESTS_ENDURANCE_STATION_PRIVATE_H
-#define TESTS_ENDURANCE_STATION_PRIVATE_H
+#pragma once
 
 #include "tests/endurance/station.h"
 
@@ -27,5 +26,3 @@ void station_log_begin(void);
 
 /* generation.c: of the generations that were replaced, those whose buses have ended. */
 void station_leave(void);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What a world is made of, and what it is told of while it lives. */
-#ifndef TESTS_ENDURANCE_WORLD_H
-#define TESTS_ENDURANCE_WORLD_H
+#pragma once
 
 #include "tests/endurance/invariants.h"
 
@@ -22,5 +21,3 @@ void world_note(const char *what);
 /* world_config.c: its .rio, with these differences; good until the next. */
 enum { WITHOUT_SECOND = 1, OTHER_PERIOD = 2, SLOWER = 4, WITHOUT_LAST_TARGET = 8, VARIANTS = 16 };
 const char *world_configuration(unsigned variant);
-
-#endif

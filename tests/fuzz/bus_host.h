@@ -4,8 +4,7 @@
  * request is answered once, by one of the errors that are listed there, within its room; a bus that
  * lost its target tells BUS_DOWN.
  */
-#ifndef TESTS_FUZZ_BUS_HOST_H
-#define TESTS_FUZZ_BUS_HOST_H
+#pragma once
 
 #include "hal/bus/bus.h"
 #include "tests/fuzz/fuzz.h"
@@ -42,5 +41,3 @@ void bus_host_ask(struct bus_host *host, enum bus_op op, const char *path, bool 
                   const void *data, uint32_t len, int64_t timeout_ns);
 /* Let time pass; with until_answered only until nothing is lent. */
 void bus_host_run(struct bus_host *host, int64_t ns, bool until_answered);
-
-#endif

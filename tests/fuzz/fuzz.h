@@ -5,8 +5,7 @@
  * part of make unit. Properties are checked with Unity's assertions; a target keeps nothing from
  * one input to the next that could change what it does.
  */
-#ifndef TESTS_FUZZ_H
-#define TESTS_FUZZ_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -40,5 +39,3 @@ int64_t fuzz_long(struct fuzz *fuzz);
 const uint8_t *fuzz_bytes(struct fuzz *fuzz, size_t most, size_t *n);
 /* The same as a text: what stands before a NUL or the end of the line, which is taken too. */
 const char *fuzz_line(struct fuzz *fuzz, char *room, size_t size);
-
-#endif

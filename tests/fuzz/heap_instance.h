@@ -4,8 +4,7 @@
  * as long as it says; and libows' way to both: ows_open() maps what stands in the files here,
  * whatever the name.
  */
-#ifndef TESTS_FUZZ_HEAP_INSTANCE_H
-#define TESTS_FUZZ_HEAP_INSTANCE_H
+#pragma once
 
 #include "src/shm/controller.h"
 #include "src/shm/image.h"
@@ -42,5 +41,3 @@ void heap_beat(int64_t now_ns);
 /* A good value of a record; of the string the text. */
 void heap_put(uint32_t record, int64_t value, const char *text, int64_t measured_ns,
               uint32_t applied);
-
-#endif

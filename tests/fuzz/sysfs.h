@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Files of w1 in the place of /sys/bus/w1/devices: hal/w1/file.c on a file system in memory. */
-#ifndef TESTS_FUZZ_SYSFS_H
-#define TESTS_FUZZ_SYSFS_H
+#pragma once
 
 #include "tests/fuzz/fuzz.h"
 
@@ -25,5 +24,3 @@ void sysfs_file(const char *directory, const char *name, const void *bytes, size
                 uint8_t fault);
 /* Name NULL: the directory and all of it. */
 void sysfs_remove(const char *directory, const char *name);
-
-#endif

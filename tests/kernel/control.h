@@ -3,8 +3,7 @@
  * The way by which the guest's scripts tell the simulator something: one command line, one answer,
  * over a socket of the guest.
  */
-#ifndef TESTS_KERNEL_CONTROL_H
-#define TESTS_KERNEL_CONTROL_H
+#pragma once
 
 #include <stddef.h>
 
@@ -18,5 +17,3 @@ void control_serve(int fd, control_command *command, void *ctx);
 
 /* The caller's side: words make the line. Prints the answer; the exit status for main(). */
 int control_tell(int words, char **word);
-
-#endif

@@ -3,8 +3,7 @@
  * A stretch of owsd's life on the rig, in real time: what the endurance program knows and checks.
  * It tells the simulated chips what to measure, so it knows which values can be true.
  */
-#ifndef TESTS_KERNEL_ENDURANCE_H
-#define TESTS_KERNEL_ENDURANCE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -70,5 +69,3 @@ uint64_t reader_looks(void);
 uint64_t reader_checked(void);
 /* Which signals are not good, and why. */
 void reader_explain(void);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The text that owdump and busdump share: one line a property, bytes that are no text as \xNN. */
-#ifndef TESTS_KERNEL_LINES_H
-#define TESTS_KERNEL_LINES_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -15,5 +14,3 @@ void lines_written(const char *path, int ret);
 void lines_of_paths(void (*read)(const char *path));
 /* Each "PATH VALUE" on standard input. */
 void lines_of_values(void (*write)(const char *path, const uint8_t *value, size_t len));
-
-#endif

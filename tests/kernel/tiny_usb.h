@@ -4,8 +4,7 @@
  * behind them. The kernel's i2c-tiny-usb driver makes each I2C message of a transaction one
  * transfer request and one status request. Pure but for the bus it is given.
  */
-#ifndef TESTS_KERNEL_TINY_USB_H
-#define TESTS_KERNEL_TINY_USB_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -27,5 +26,3 @@ struct tiny_usb {
  * what the device does not know (a stall).
  */
 int tiny_usb_control(struct tiny_usb *usb, const uint8_t setup[8], uint8_t *data, size_t room);
-
-#endif

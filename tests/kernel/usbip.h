@@ -3,8 +3,7 @@
  * The USB/IP headers that vhci_hcd sends and expects on the socket it was attached to: 48 bytes,
  * big-endian (Documentation/usb/usbip_protocol.rst). Pure: no I/O, no allocation.
  */
-#ifndef TESTS_KERNEL_USBIP_H
-#define TESTS_KERNEL_USBIP_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -37,5 +36,3 @@ int usbip_decode(const uint8_t header[USBIP_HEADER], struct usbip_request *reque
  */
 void usbip_answer(uint8_t header[USBIP_HEADER], const struct usbip_request *request, int32_t status,
                   uint32_t actual);
-
-#endif

@@ -3,8 +3,7 @@
  * A simulated USB device plugged into the kernel by vhci_hcd: we hold one end of a socket pair, the
  * kernel the other. Closing our end, or dying, unplugs the device.
  */
-#ifndef TESTS_KERNEL_VHCI_H
-#define TESTS_KERNEL_VHCI_H
+#pragma once
 
 #include "tests/kernel/tiny_usb.h"
 
@@ -16,5 +15,3 @@ int vhci_plug(unsigned port);
  * the kernel let go, -EPROTO it sent what no kernel sends.
  */
 int vhci_serve(int fd, struct tiny_usb *usb);
-
-#endif

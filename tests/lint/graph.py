@@ -140,7 +140,7 @@ class Graph:
             code = COMMENT.sub("", text).split("\n")
             guard = re.search(r"^#ifndef (\w+)\n#define \1$", "\n".join(code), re.M)
             return not any(line.strip() and (guard is None or line != f"#define {guard[1]}") and
-                           not re.match(r"#\s*(include|if|endif|else|elif)", line)
+                           not re.match(r"#\s*(include|if|endif|else|elif|pragma once)", line)
                            for line in code)
         return [h for h in self.headers() if bare(self.text[h])]
 

@@ -26,7 +26,7 @@ MANY = {"src/libows/ows.h", "src/libhistory/ows_history.h", "src/owsctl/verbs.h"
         "src/web/paths.h"}
 # Lists that are included where FAMILY or BACKEND is defined: no headers of their own
 PARTS = {"hal/chips/families.h", "hal/bus/schemes.h"}
-FLAGS = ["-std=c17", "-D_GNU_SOURCE", "-D_FILE_OFFSET_BITS=64", "-I.", "-Wall", "-Wextra", "-Werror"]
+FLAGS = ["-std=c17", "-D_GNU_SOURCE", "-D_FILE_OFFSET_BITS=64", "-I.", "-Wall", "-Wextra"]
 ROOM = re.compile(r"^- `([\w/]+)`: .*?\sUses\s(.*?)\.\n(?=- |\n)", re.M | re.S)
 # What the engine and the values may have of the C library: nothing that waits, reads or writes
 PURE = {"assert.h", "errno.h", "float.h", "limits.h", "math.h", "stdbool.h", "stddef.h", "stdint.h",
@@ -121,7 +121,8 @@ def check_each_header_declares_what_its_file_defines(tree):
 def check_each_header_compiles_alone(tree):
     headers = [f for f in tree.ending(".h") if f.startswith(("src/", "hal/")) and f not in PARTS]
     for output in parallel(["gcc", "-fsyntax-only", *FLAGS], headers):
-        for file, line, text in re.findall(r"^(\S+?):(\d+):\d+: (?:fatal )?error: (.*)$", output, re.M):
+        for file, line, text in re.findall(
+                r"^(\S+?):(\d+):\d+: (?:(?:fatal )?error|warning): (?!#pragma once)(.*)$", output, re.M):
             yield file, int(line), f"{text}; include what the header uses"
 
 

@@ -4,8 +4,7 @@
  * model. The file itself is the one that the programs are built from. Each access knows where it
  * stands, so that it can be weakened there.
  */
-#ifndef TESTS_MODEL_ACCESS_H
-#define TESTS_MODEL_ACCESS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -83,5 +82,3 @@ static inline uint32_t access_change(volatile uint32_t *at, enum access_rmw how,
 		access_done; \
 	}))
 #define __atomic_thread_fence(order) access_fence((order), ACCESS_SITE)
-
-#endif

@@ -4,8 +4,7 @@
  * and remembers the states it has been in. A thread is plain code, compiled with access.h; it stops
  * before each access, and its stack is put aside and back as the search goes to and fro.
  */
-#ifndef TESTS_MODEL_EXPLORE_H
-#define TESTS_MODEL_EXPLORE_H
+#pragma once
 
 #include "tests/model/access.h"
 #include "tests/model/weak.h"
@@ -57,5 +56,3 @@ unsigned explore_loads(void);
 /* For end: what lies there when all is over; is the thread asleep in a futex call? */
 uint64_t explore_last(const volatile void *at);
 bool explore_asleep(unsigned thread);
-
-#endif

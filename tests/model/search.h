@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Between the files of the search: where it stands, its threads, and their steps. */
-#ifndef TESTS_MODEL_SEARCH_H
-#define TESTS_MODEL_SEARCH_H
+#pragma once
 
 #include <setjmp.h>
 #include <ucontext.h>
@@ -95,5 +94,3 @@ bool step_perform(struct thread *t, unsigned from);
 void seen_begin(void);
 bool seen_before(void);
 void seen_end(void);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What main.c runs, and how it counts. */
-#ifndef TESTS_MODEL_SUITES_H
-#define TESTS_MODEL_SUITES_H
+#pragma once
 
 #include "tests/model/explore.h"
 
@@ -20,5 +19,3 @@ void record_pairs(struct tally *tally);
 extern const struct scenario record_scenarios[], command_scenarios[], change_scenarios[];
 /* Code that is wrong or of which too much is asked: each must fail. */
 extern const struct scenario wrong_scenarios[], wrong_changes[];
-
-#endif

@@ -10,8 +10,7 @@
  * An access that is sequentially consistent counts as release and acquire, which is weaker; only
  * fences are sequentially consistent in full.
  */
-#ifndef TESTS_MODEL_WEAK_H
-#define TESTS_MODEL_WEAK_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -80,5 +79,3 @@ static inline uint64_t mix(uint64_t h, uint64_t value)
 	h = (h ^ value) * 0x9e3779b97f4a7c15u;
 	return h ^ h >> 29;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A DS2438: its pages and its configuration. */
-#ifndef HAL_CHIPS_DS2438_H
-#define HAL_CHIPS_DS2438_H
+#pragma once
 
 #include "hal/chips/area.h"
 
@@ -78,4 +77,3 @@ int ds2438_read_selected(struct txn *txn, uint8_t select, uint8_t bytes[8]);
  */
 int ds2438_mark(struct txn *txn);
 int ds2438_is_marked(struct txn *txn);
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What a DS2438 measures: temperature, two voltages, a current. */
-#ifndef HAL_CHIPS_DS2438_MEASURE_H
-#define HAL_CHIPS_DS2438_MEASURE_H
+#pragma once
 
 #include "hal/chips/batteries/ds2438.h"
 #include "hal/chips/property.h"
@@ -36,5 +35,3 @@ enum { DS2438_WAY_COUNT = 5 };
 	PROPERTY("pages/page", BINARY, STABLE, BOTH, ELEMENTS(8, NUMBERS), .size = 8, \
 	         FIELD(PAGES), .how = (first) + 4)
 /* clang-format on */
-
-#endif

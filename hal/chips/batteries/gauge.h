@@ -4,8 +4,7 @@
  * DS2770, DS2780, DS2781): commands, areas, rows of their tables. None of their bytes has a
  * checksum; words come high byte first.
  */
-#ifndef HAL_CHIPS_GAUGE_H
-#define HAL_CHIPS_GAUGE_H
+#pragma once
 
 #include "hal/chips/family.h"
 #include "hal/chips/thermometers/thermocouple.h"
@@ -106,5 +105,3 @@ int gauge_couple_high(struct txn *txn);
 	GAUGE_COUPLE("typeN", TYPE_N, where, fine), GAUGE_COUPLE("typeR", TYPE_R, where, fine), \
 	GAUGE_COUPLE("typeS", TYPE_S, where, fine), GAUGE_COUPLE("typeT", TYPE_T, where, fine)
 /* clang-format on */
-
-#endif

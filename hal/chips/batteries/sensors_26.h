@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Sensors on boards with a DS2438: humidity, pressure, light. */
-#ifndef HAL_CHIPS_SENSORS_26_H
-#define HAL_CHIPS_SENSORS_26_H
+#pragma once
 
 #include "hal/chips/property.h"
 
@@ -44,5 +43,3 @@ enum {
 	PROPERTY(text, kind, STABLE, BOTH, .arg = (which), .how = WAY_SETTING)
 #define DS2438_LIGHT(text, lux, ...) \
 	PROPERTY(text, FLOAT, VOLATILE, READ, .arg = (lux), .how = WAY_LIGHT, __VA_ARGS__)
-
-#endif

@@ -4,8 +4,7 @@
  * that memory, also when it is read: so what it says is hidden. Who only looks at directories does
  * not write to a DS2760 that has no station.
  */
-#ifndef HAL_CHIPS_WS603_H
-#define HAL_CHIPS_WS603_H
+#pragma once
 
 #include "hal/chips/property.h"
 
@@ -58,5 +57,3 @@ enum { WS603_PARAMETERS = 0xa0, WS603_DATA, WS603_LIGHTS, WS603_SET_WIND, WS603_
 	WS603_BYTE("WS603/volt", READ, WS603_DATA | 4 << 8, first), \
 	PROPERTY("WS603/wind_speed", FLOAT, VOLATILE, READ, .hidden = true, .how = (first) + 2)
 /* clang-format on */
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The bridges from 1-Wire to I2C, and the sensors behind them as their properties. */
-#ifndef HAL_CHIPS_BRIDGE_H
-#define HAL_CHIPS_BRIDGE_H
+#pragma once
 
 #include "hal/chips/bridges/sensor.h"
 
@@ -19,5 +18,3 @@ int bridge_place(const struct sensor_table *table, struct sensor_bridge *bridge,
 int bridges_finish(struct sensor_table *table);
 /* NULL: the table does not name that device. */
 const struct family *bridge_family(const struct sensor_table *table, const uint8_t rom[8]);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* DS28E17: a bridge from 1-Wire to I2C. What it answers has no checksum. */
-#ifndef HAL_CHIPS_DS28E17_H
-#define HAL_CHIPS_DS28E17_H
+#pragma once
 
 #include "hal/chips/bridges/i2c.h"
 
@@ -9,5 +8,3 @@
 
 /* One I2C transaction, in one of 1-Wire. */
 int ds28e17_exchange(struct txn *txn, const struct i2c_transfer *transfer);
-
-#endif

@@ -3,8 +3,7 @@
  * DS28E18: a bridge from 1-Wire to I2C with a sequencer. All that it is sent and answers has a
  * CRC16.
  */
-#ifndef HAL_CHIPS_DS28E18_H
-#define HAL_CHIPS_DS28E18_H
+#pragma once
 
 #include "hal/chips/bridges/i2c.h"
 
@@ -19,5 +18,3 @@ int ds28e18_exchange(struct txn *txn, const struct i2c_transfer *transfer, uint8
 bool ds28e18_asleep(const uint8_t rom[8]);
 /* Gives all of these on the wire their own ids. 0 or an error. */
 int ds28e18_wake(struct txn *txn);
-
-#endif

@@ -5,8 +5,7 @@
  * operations, whose places and depth are checked then: evaluation cannot fail, but may give what is
  * no number.
  */
-#ifndef HAL_CHIPS_FORMULA_H
-#define HAL_CHIPS_FORMULA_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -54,5 +53,3 @@ double formula_value(const struct formula_pool *pool, struct formula formula,
                      const struct formula_input *input);
 /* False: a constant that is no byte. */
 bool formula_is_byte(const struct formula_pool *pool, struct formula formula);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What a bridge is asked to do on its I2C bus. */
-#ifndef HAL_CHIPS_I2C_H
-#define HAL_CHIPS_I2C_H
+#pragma once
 
 #include "hal/wire/txn.h"
 
@@ -18,5 +17,3 @@ struct i2c_transfer {
 	uint8_t *in;
 	unsigned m;
 };
-
-#endif

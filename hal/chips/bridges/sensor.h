@@ -6,8 +6,7 @@
  * All is allocated when the table is read. Each bridge becomes a family of its own whose properties
  * are the values of its sensors.
  */
-#ifndef HAL_CHIPS_SENSOR_H
-#define HAL_CHIPS_SENSOR_H
+#pragma once
 
 #include "hal/chips/bridges/formula.h"
 #include "hal/chips/family.h"
@@ -81,5 +80,3 @@ struct sensor_table {
 	struct sensor_bridge *bridges;
 	unsigned byte_count, step_count, value_count, kind_count, bridge_count;
 };
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Words, numbers and names of a line of a table of sensors; reasons with file and line. */
-#ifndef HAL_CHIPS_SENSOR_READER_H
-#define HAL_CHIPS_SENSOR_READER_H
+#pragma once
 
 #include "hal/chips/bridges/sensor.h"
 
@@ -41,5 +40,3 @@ int reader_equals(struct sensor_reader *r);
 int reader_range(struct sensor_reader *r, double *low, double *high);
 /* set: it may use $. The reason of an error has the formula. */
 int reader_formula(struct sensor_reader *r, bool set, struct formula *out);
-
-#endif

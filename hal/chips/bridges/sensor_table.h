@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Reads a table of sensors (sensor.h). */
-#ifndef HAL_CHIPS_SENSOR_TABLE_H
-#define HAL_CHIPS_SENSOR_TABLE_H
+#pragma once
 
 #include "hal/chips/bridges/sensor.h"
 
@@ -12,5 +11,3 @@
 int sensor_table_parse(struct sensor_table *table, const char *name, const char *text, char *why,
                        size_t why_size);
 void sensor_table_free(struct sensor_table *table);
-
-#endif

@@ -3,8 +3,7 @@
  * DS1921G, L, H and Z (their data sheets): areas, registers, and what is read of them. All pages
  * have a CRC16.
  */
-#ifndef HAL_CHIPS_DS1921_H
-#define HAL_CHIPS_DS1921_H
+#pragma once
 
 #include "hal/chips/area.h"
 
@@ -79,5 +78,3 @@ int ds1921_read_log(struct txn *txn);
 int ds1921_read_times(struct txn *txn);
 int ds1921_read_limit(struct txn *txn);
 int ds1921_read_trigger(struct txn *txn);
-
-#endif

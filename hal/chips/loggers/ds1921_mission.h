@@ -3,8 +3,7 @@
  * DS1921: conversions, settings, clock and missions. A write to the registers ends a mission, so it
  * is refused (-EBUSY) while one runs.
  */
-#ifndef HAL_CHIPS_DS1921_MISSION_H
-#define HAL_CHIPS_DS1921_MISSION_H
+#pragma once
 
 #include "hal/wire/txn.h"
 
@@ -20,5 +19,3 @@ int ds1921_clear_memory(struct txn *txn);
 int ds1921_write_frequency(struct txn *txn);
 int ds1921_write_running(struct txn *txn);
 int ds1921_write_easystart(struct txn *txn);
-
-#endif

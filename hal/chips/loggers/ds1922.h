@@ -4,8 +4,7 @@
  * what is read of them. Nearly each command has a password; that of a chip without one is ignored,
  * and owsd sends ones.
  */
-#ifndef HAL_CHIPS_DS1922_H
-#define HAL_CHIPS_DS1922_H
+#pragma once
 
 #include "hal/chips/area.h"
 
@@ -61,5 +60,3 @@ int ds1922_read_date(struct txn *txn);
 int ds1922_read_log(struct txn *txn);
 int ds1922_read_clock(struct txn *txn);
 int ds1922_read_interval(struct txn *txn);
-
-#endif

@@ -3,8 +3,7 @@
  * DS1922, DS1923, DS2422: conversions, settings, clock and missions. While a mission runs its
  * settings cannot be written (-EBUSY).
  */
-#ifndef HAL_CHIPS_DS1922_MISSION_H
-#define HAL_CHIPS_DS1922_MISSION_H
+#pragma once
 
 #include "hal/wire/txn.h"
 
@@ -15,5 +14,3 @@ int ds1922_write_date(struct txn *txn);
 int ds1922_write_udate(struct txn *txn);
 int ds1922_write_interval(struct txn *txn);
 int ds1922_write_running(struct txn *txn);
-
-#endif

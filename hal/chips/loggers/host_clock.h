@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The time of the host, for the clocks of chips. */
-#ifndef HAL_CHIPS_HOST_CLOCK_H
-#define HAL_CHIPS_HOST_CLOCK_H
+#pragma once
 
 /*
  * Seconds since 1970 by the host's clock. -EAGAIN: it says a time before this program was written,
@@ -9,5 +8,3 @@
  * is. Never blocks.
  */
 int host_clock(double *seconds);
-
-#endif

@@ -3,8 +3,7 @@
  * What the loggers have in common (DS1921, DS1922, DS1923, DS2422): registers that are written by
  * way of the scratchpad, dates, the places of samples in a log.
  */
-#ifndef HAL_CHIPS_LOGGER_H
-#define HAL_CHIPS_LOGGER_H
+#pragma once
 
 #include "hal/wire/txn.h"
 
@@ -54,5 +53,3 @@ uint32_t logger_sample(const struct logger_log *log, uint32_t n);
 
 /* A counter of n bytes, the low one first. */
 uint32_t logger_count(const uint8_t *bytes, unsigned n);
-
-#endif

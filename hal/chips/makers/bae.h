@@ -4,8 +4,7 @@
  * What a command gives has a CRC16; a command that writes is acknowledged with one, and acts when
  * the master confirms it. Nothing but what is read back shows whether the confirmation was heard.
  */
-#ifndef HAL_CHIPS_BAE_H
-#define HAL_CHIPS_BAE_H
+#pragma once
 
 #include "hal/chips/family.h"
 
@@ -28,5 +27,3 @@ int bae_confirmed(struct txn *txn, const uint8_t *command, unsigned n);
 /* What runs in a 0911: the expander on its I2C, the card, texts (bae_run.c). */
 property_function bae_read_expander, bae_write_expander, bae_read_sector, bae_write_sector;
 property_function bae_read_sector_number, bae_write_sector_number, bae_write_text;
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Sensors of CMC Industrial Electronics: each has measured a word of 16 bits. */
-#ifndef HAL_CHIPS_CMCIEL_H
-#define HAL_CHIPS_CMCIEL_H
+#pragma once
 
 #include "hal/chips/family.h"
 
@@ -13,5 +12,3 @@ enum { READING = 1 };
 #define CMCIEL_AREAS [READING] = &cmciel_reading
 #define CMCIEL_READING \
 	PROPERTY("reading", UNSIGNED, VOLATILE, READ, .hidden = true, FIELD(READING, .bytes = 2))
-
-#endif

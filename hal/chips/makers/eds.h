@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What the sensors of Embedded Data Systems have in common: areas, and ways that no field has. */
-#ifndef HAL_CHIPS_EDS_H
-#define HAL_CHIPS_EDS_H
+#pragma once
 
 #include "hal/chips/area.h"
 
@@ -42,5 +41,3 @@ int eds_write_state(struct txn *txn);
 /* Of the EDS0090: counters and latches. */
 int eds_write_reset(struct txn *txn);
 int eds_write_clear(struct txn *txn);
-
-#endif

@@ -3,8 +3,7 @@
  * What the boards of Hobby Boards have in common, families EE and EF: a command for each value, its
  * bytes without a checksum; one of them says which board it is, and so which properties it has.
  */
-#ifndef HAL_CHIPS_HOBBY_BOARDS_H
-#define HAL_CHIPS_HOBBY_BOARDS_H
+#pragma once
 
 #include "hal/chips/family.h"
 
@@ -64,5 +63,3 @@ int hobby_saw_setting(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n);
 		.name = (text), .size = (bytes_), .block = (bytes_), .read = (get), \
 		.row = (bytes_), .write = (put), .saw = hobby_saw_setting \
 	}
-
-#endif

@@ -4,8 +4,7 @@
  * firmware. A command ends with the CRC8 of the ROM id and of itself; the device answers 0 if it
  * has taken it, then bytes without a checksum.
  */
-#ifndef HAL_CHIPS_INFERNO_H
-#define HAL_CHIPS_INFERNO_H
+#pragma once
 
 #include "hal/chips/family.h"
 
@@ -30,5 +29,3 @@ property_function inferno_read_range, inferno_read_size;
 
 enum inferno_port { INFERNO_SWITCH, INFERNO_LED, INFERNO_STATE, INFERNO_MODE, INFERNO_TIMEOUT };
 #define INFERNO_PORT(what, port) ((what) << 8 | (port))
-
-#endif

@@ -3,8 +3,7 @@
  * What the LCD controller by Louis Swart shows: lines and screens, light. Nothing shows that such a
  * command was taken: all of them are sent twice, which changes nothing.
  */
-#ifndef HAL_CHIPS_LCD_SWART_H
-#define HAL_CHIPS_LCD_SWART_H
+#pragma once
 
 #include "hal/chips/family.h"
 
@@ -28,5 +27,3 @@ property_function lcd_swart_switch, lcd_swart_line, lcd_swart_screen;
 
 /* Write n bytes to the scratchpad, and read them back. */
 int lcd_swart_fill(struct txn *txn, const uint8_t *bytes, unsigned n);
-
-#endif

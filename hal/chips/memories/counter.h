@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Counters that belong to the pages of a memory: DS2423, DS1963L, DS1963S. */
-#ifndef HAL_CHIPS_COUNTER_H
-#define HAL_CHIPS_COUNTER_H
+#pragma once
 
 #include "hal/chips/family.h"
 
@@ -19,5 +18,3 @@ extern const struct area counter_area;
 #define PAGE_COUNTERS(area_, first, way) \
 	COUNTERS("pages/count", area_, 16, NUMBERS, 0, .arg = (first), .how = (way))
 int counter_read_page(struct txn *txn);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The EPROM of DS2505 and DS2506: pages of 32 bytes, and status bytes in eleven pages. */
-#ifndef HAL_CHIPS_EPROM_H
-#define HAL_CHIPS_EPROM_H
+#pragma once
 
 #include "hal/chips/area.h"
 
@@ -16,5 +15,3 @@ int eprom_load_status(struct txn *txn, const struct area *area, unsigned at, uin
 #define EPROM_STATUS(pages) \
 	.name = "status", .size = EPROM_STATUS_PAGES * (pages) / 8, .block = 8, \
 	.load = eprom_load_status
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* DS2408 (data sheet 19-5702): its registers, and what displays that stand on one need. */
-#ifndef HAL_CHIPS_DS2408_H
-#define HAL_CHIPS_DS2408_H
+#pragma once
 
 #include "hal/chips/area.h"
 
@@ -35,5 +34,3 @@ int ds2408_leave_test_mode(struct txn *txn);
 int ds2408_strobe(struct txn *txn);
 /* Bytes for the outputs, in one transaction. */
 int ds2408_put(struct txn *txn, const uint8_t *bytes, unsigned n);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What a conversion of all DS2450 at once needs of the chip (data sheet 19-5125). */
-#ifndef HAL_CHIPS_DS2450_H
-#define HAL_CHIPS_DS2450_H
+#pragma once
 
 #include "hal/chips/area.h"
 
@@ -17,5 +16,3 @@ static inline struct ds2450 *ds2450_of(const struct device *device)
 {
 	return device->own;
 }
-
-#endif

@@ -4,8 +4,7 @@
  * the board of Hobby Boards: four bits on P4 to P7, RS on P3, P0 to P2 left high. LCD_M, Maxim's
  * application note 3286: seven bits on P0 to P6, RS on P7. Neither can be read.
  */
-#ifndef HAL_CHIPS_LCD_H
-#define HAL_CHIPS_LCD_H
+#pragma once
 
 #include "hal/chips/property.h"
 
@@ -47,5 +46,3 @@ enum { WAY_LCD = 1, AFTER_LCD_WAYS };
 		LCD_ENTRY("LCD_M/home", YESNO, 0, LCD_M, LCD_HOME), \
 		LCD_ENTRY("LCD_M/message", ASCII, 128, LCD_M, LCD_MESSAGE), \
 		LCD_ENTRY("LCD_M/screen", ASCII, 128, LCD_M, LCD_SCREEN)
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The two open-drain switches of DS2413 (data sheet 19-5703) and DS28EA00 (19-5615). */
-#ifndef HAL_CHIPS_PIO_H
-#define HAL_CHIPS_PIO_H
+#pragma once
 
 #include "hal/chips/property.h"
 
@@ -24,5 +23,3 @@ bool pio_is_written(struct txn *txn, const uint8_t *have, const uint8_t *want, u
 #define PIO_READ(area_, part, inverted_) FIELD(area_, .at = (part), .inverted = (inverted_))
 /* A write of both gives the whole byte: what is there does not matter. */
 #define PIO_SET(area_) SET(area_, .bits = 8, .inverted = true)
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What the id of a chip with the family code of the DS18B20 says of it (family_28.c). */
-#ifndef HAL_CHIPS_CLONE_ID_H
-#define HAL_CHIPS_CLONE_ID_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -17,5 +16,3 @@ static inline bool clone_hides_restart(const uint8_t rom[8])
 {
 	return clone_has_id(rom) && rom[1] == 0 && rom[3] != 0;
 }
-
-#endif

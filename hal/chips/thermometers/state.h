@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What is known of a thermometer with a nine-byte scratchpad: this part alone has it. */
-#ifndef HAL_CHIPS_THERMOMETERS_STATE_H
-#define HAL_CHIPS_THERMOMETERS_STATE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -48,5 +47,3 @@ static inline struct thermometer *thermometer_of(const struct device *device)
 {
 	return device->own;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Thermocouples: voltage and temperature by the reference functions of NIST (ITS-90). */
-#ifndef HAL_CHIPS_THERMOCOUPLE_H
-#define HAL_CHIPS_THERMOCOUPLE_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -14,5 +13,3 @@ double thermocouple_high(enum thermocouple type);
 double thermocouple_mv(enum thermocouple type, double celsius);
 /* The temperature of the hot end; false: the voltage is none of the type. */
 bool thermocouple_celsius(enum thermocouple type, double mv, double cold, double *celsius);
-
-#endif

@@ -3,8 +3,7 @@
  * What the thermometers with a nine-byte scratchpad have in common (data sheets DS18B20 19-7487,
  * DS18S20 19-5474, DS1822, DS1825, DS28EA00).
  */
-#ifndef HAL_CHIPS_THERMOMETER_H
-#define HAL_CHIPS_THERMOMETER_H
+#pragma once
 
 #include "hal/chips/family.h"
 #include "hal/chips/thermometers/scratchpad.h"
@@ -119,5 +118,3 @@ enum {
 	THERMOMETER_ERRATA, THERMOMETER_TEMPERATURE("fasttemp", 9, 1), THERMOMETER_LATEST, \
 		THERMOMETER_POWER, THERMOMETER_SCRATCHPAD, THERMOMETER_TEMPERATURES
 #define THERMOMETER_FAMILY .thermometer = true, .alarms = true, .forget = thermometer_forget
-
-#endif

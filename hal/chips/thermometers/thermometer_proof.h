@@ -8,8 +8,7 @@
  * go on and ignore it; its slots show it busy either way. So the result counts as that of the
  * earliest conversion that it can be.
  */
-#ifndef HAL_CHIPS_THERMOMETER_PROOF_H
-#define HAL_CHIPS_THERMOMETER_PROOF_H
+#pragma once
 
 #include "hal/wire/txn.h"
 
@@ -78,5 +77,3 @@ int thermometer_took(struct txn *txn, const uint8_t scratchpad[9], int64_t now);
  * is for a request that insists on a conversion of its own (fresh).
  */
 bool thermometer_doubtful(const struct txn *txn, bool fresh);
-
-#endif

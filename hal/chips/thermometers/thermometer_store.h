@@ -20,12 +20,9 @@
  * take it; -EIO: it was not kept, or nothing shows what the EEPROM has. Commands: data sheets
  * 19-7487 and 19-5474. The files of the families include this for THERMOMETER_WAYS.
  */
-#ifndef HAL_CHIPS_THERMOMETER_STORE_H
-#define HAL_CHIPS_THERMOMETER_STORE_H
+#pragma once
 
 #include "hal/wire/txn.h"
 
 int thermometer_write_limit(struct txn *txn); /* of the field's byte */
 int thermometer_write_tempres(struct txn *txn);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What `errata` of a thermometer with a nine-byte scratchpad has. */
-#ifndef HAL_CHIPS_THERMOMETER_TRIM_H
-#define HAL_CHIPS_THERMOMETER_TRIM_H
+#pragma once
 
 #include "hal/chips/family.h"
 
@@ -10,5 +9,3 @@ int thermometer_read_trim(struct txn *txn);
 int thermometer_refuse_trim(struct txn *txn);
 int thermometer_read_trim_valid(struct txn *txn);
 int thermometer_read_trim_blanket(struct txn *txn);
-
-#endif

@@ -4,8 +4,7 @@
  * writes to such a chip but Convert T, and what a user writes. They cannot be told from each other;
  * both are "TMP1826".
  */
-#ifndef HAL_CHIPS_TMP1826_H
-#define HAL_CHIPS_TMP1826_H
+#pragma once
 
 #include "hal/chips/batteries/ds2438.h"
 #include "hal/chips/family.h"
@@ -51,5 +50,3 @@ int tmp1826_read_format(struct txn *txn);
 #define TMP1826_HIGH 11
 #define TMP1826_OFFSET 13
 enum { TMP1826_ALERT_LOW = 1, TMP1826_ALERT_HIGH = 2 };
-
-#endif

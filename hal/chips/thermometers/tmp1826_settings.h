@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* TMP1826 and TMP1827: limits and offset, and the alerts. Functions of properties. */
-#ifndef HAL_CHIPS_TMP1826_SETTINGS_H
-#define HAL_CHIPS_TMP1826_SETTINGS_H
+#pragma once
 
 #include "hal/chips/thermometers/tmp1826.h"
 
@@ -12,5 +11,3 @@ int tmp1826_write_limit(struct txn *txn);
 /* Has a conversion been beyond the limit? arg: the bit of tmp1826.alerts. 0 clears it. */
 int tmp1826_read_alert(struct txn *txn);
 int tmp1826_write_alert(struct txn *txn);
-
-#endif

@@ -3,8 +3,7 @@
  * Convert T for all thermometers of a channel, and what follows for a chip that was told to
  * convert. All times are ns. The thread of the bus calls it; a broadcast takes some ms.
  */
-#ifndef HAL_NATIVE_BROADCAST_H
-#define HAL_NATIVE_BROADCAST_H
+#pragma once
 
 #include "hal/native/state.h"
 
@@ -17,5 +16,3 @@ int broadcast_convert(struct native *native, unsigned n, bool strong, int64_t lo
 void broadcast_started(struct native *native, struct device *device, int64_t now);
 /* It was told to convert, at now at the latest, and whether it heard is not known. */
 void broadcast_told(const struct native *native, struct device *device, int64_t now);
-
-#endif

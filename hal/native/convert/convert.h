@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Who converts when. */
-#ifndef HAL_NATIVE_CONVERT_H
-#define HAL_NATIVE_CONVERT_H
+#pragma once
 
 #include "hal/native/state.h"
 
@@ -22,5 +21,3 @@ void convert_in_turn(struct native *native, struct job *job);
  * conversion; TXN_MORE: it is to convert again, as that may be an older one; -EBADMSG: it gives up.
  */
 int convert_judge(struct job *job);
-
-#endif

@@ -14,8 +14,7 @@
  * Only for chips that have shown a start of theirs, with a supply, and read since the conversion
  * before. It is asked when the bus has nothing else to do, on links that count their resets.
  */
-#ifndef HAL_NATIVE_ENDING_H
-#define HAL_NATIVE_ENDING_H
+#pragma once
 
 #include "hal/native/state.h"
 
@@ -23,5 +22,3 @@
 void ending_begin(struct native *native, unsigned n, int64_t longest);
 /* Ask where it is time. True: did that. *next: when to ask again. */
 bool ending_step(struct native *native, int64_t now, int64_t *next);
-
-#endif

@@ -14,8 +14,7 @@
  *
  * Nothing here waits, allocates or uses the wire. The thread of the bus calls it.
  */
-#ifndef HAL_NATIVE_SCHEDULE_H
-#define HAL_NATIVE_SCHEDULE_H
+#pragma once
 
 #include "hal/native/state.h"
 
@@ -55,5 +54,3 @@ static inline void schedule_owe(struct schedule *schedule, enum schedule_debt de
 }
 /* A step of the bus took from began to now, and did schedule.doing. */
 void schedule_took(struct schedule *schedule, int64_t began, int64_t now);
-
-#endif

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Writes to /simultaneous. */
-#ifndef HAL_NATIVE_SIMULTANEOUS_H
-#define HAL_NATIVE_SIMULTANEOUS_H
+#pragma once
 
 #include "hal/native/state.h"
 
 void convert_all(struct native *native, struct job *job);
-
-#endif

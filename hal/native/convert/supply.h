@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Which thermometers of a channel are fed by the wire: device.power. */
-#ifndef HAL_NATIVE_SUPPLY_H
-#define HAL_NATIVE_SUPPLY_H
+#pragma once
 
 #include "hal/native/state.h"
 
@@ -24,5 +23,3 @@ int supply_ask_all(struct native *native, struct job *job);
  * answer counts as parasitic. False: all are known.
  */
 bool supply_ask_one(struct native *native, unsigned n);
-
-#endif

@@ -8,8 +8,7 @@
  * Only what may be done twice is done so: to read a scratchpad, and to convert. A chip whose start
  * failed counts as one that may have heard it.
  */
-#ifndef HAL_NATIVE_TOGETHER_H
-#define HAL_NATIVE_TOGETHER_H
+#pragma once
 
 #include "hal/native/state.h"
 
@@ -18,5 +17,3 @@
  * a result is ready or a start is due.
  */
 void together_step(struct native *native, struct job *job, int64_t now);
-
-#endif

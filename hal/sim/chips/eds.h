@@ -3,8 +3,7 @@
  * The sensors of Embedded Data Systems: a kind is a table of what it measures and where its
  * registers are.
  */
-#ifndef HAL_SIM_CHIPS_EDS_H
-#define HAL_SIM_CHIPS_EDS_H
+#pragma once
 
 #include "hal/sim/chips/scratchpad.h"
 
@@ -48,5 +47,3 @@ void eds_power_on(struct sim_slave *slave);
 void eds_worked(struct sim_slave *slave);
 void eds_advance(struct sim_slave *slave);
 bool eds_alarm(struct sim_slave *slave);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What the simulated battery gauges with 256 addresses have in common. */
-#ifndef HAL_SIM_CHIPS_GAUGE_H
-#define HAL_SIM_CHIPS_GAUGE_H
+#pragma once
 
 #include "hal/sim/slave.h"
 
@@ -57,5 +56,3 @@ void sim_gauge_worked(struct sim_slave *slave);
 uint8_t *sim_gauge_memory(struct sim_slave *slave, size_t *size);
 extern const struct sim_function sim_gauge_functions[], sim_ds2740_functions[],
 	sim_ds2770_functions[];
-
-#endif

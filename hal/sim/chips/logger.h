@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What the simulated loggers share: a clock with a battery of its own, and their memory. */
-#ifndef HAL_SIM_CHIPS_LOGGER_H
-#define HAL_SIM_CHIPS_LOGGER_H
+#pragma once
 
 #include "hal/sim/chips/scratchpad.h"
 
@@ -23,5 +22,3 @@ void sim_clock_run(struct sim_clock *clock, int64_t t, bool run);
 /* A counter of n bytes, the low one first. */
 uint32_t sim_count(const uint8_t *at, unsigned n);
 void sim_put_count(uint8_t *at, unsigned n, uint32_t value);
-
-#endif

@@ -5,8 +5,7 @@
  *
  * Room hal/sim/chips: simulated chips, from their data sheets. Uses hal/sim, hal/base.
  */
-#ifndef HAL_SIM_CHIPS_SCRATCHPAD_H
-#define HAL_SIM_CHIPS_SCRATCHPAD_H
+#pragma once
 
 #include "hal/sim/pins.h"
 
@@ -53,5 +52,3 @@ void sim_scratchpad_copy(struct sim_slave *slave);
 void sim_scratchpad_dump(struct sim_slave *slave);
 /* Page by page, each with its checksum. */
 void sim_scratchpad_dump_pages(struct sim_slave *slave);
-
-#endif

@@ -2,8 +2,7 @@
 /*
  * An I2C part behind a bridge (sensors.h), as each part's file knows it. t never goes back.
  */
-#ifndef HAL_SIM_CHIPS_SENSOR_H
-#define HAL_SIM_CHIPS_SENSOR_H
+#pragma once
 
 #include "hal/sim/slave.h"
 
@@ -42,5 +41,3 @@ struct sim_sensor_kind {
 
 extern const struct sim_sensor_kind sim_sensor_sht4x, sim_sensor_bme280, sim_sensor_vcnl4040,
 	sim_sensor_mcp23017;
-
-#endif

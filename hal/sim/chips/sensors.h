@@ -4,8 +4,7 @@
  * MCP23017, each once at the most, at the address that its option gives. The state of the bridge
  * begins with a struct sim_sensors. t never goes back.
  */
-#ifndef HAL_SIM_CHIPS_SENSORS_H
-#define HAL_SIM_CHIPS_SENSORS_H
+#pragma once
 
 #include "hal/sim/chips/sensor.h"
 
@@ -26,5 +25,3 @@ bool sim_sensors_start(struct sim_slave *slave, uint8_t address, int64_t t);
 bool sim_sensors_write(struct sim_slave *slave, uint8_t byte, int64_t t);
 uint8_t sim_sensors_read(struct sim_slave *slave, int64_t t);
 void sim_sensors_stop(struct sim_slave *slave);
-
-#endif

@@ -2,8 +2,7 @@
 /*
  * What the thermometers' family files share: DS18B20 and its relatives, and what families 3B are.
  */
-#ifndef HAL_SIM_CHIPS_THERMOMETER_H
-#define HAL_SIM_CHIPS_THERMOMETER_H
+#pragma once
 
 #include "hal/sim/pins.h"
 
@@ -49,5 +48,3 @@ struct sim_max {
 	bool garbled;    /* the second scratchpad is read wrong */
 	unsigned copies; /* for the tests */
 };
-
-#endif

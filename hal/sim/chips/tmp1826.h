@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The state of a simulated TMP1826 or TMP1827. */
-#ifndef HAL_SIM_CHIPS_TMP1826_H
-#define HAL_SIM_CHIPS_TMP1826_H
+#pragma once
 
 #include "hal/sim/slave.h"
 
@@ -25,5 +24,3 @@ struct sim_tmp1826 {
 	uint8_t work;
 	bool checked_blocks; /* a CRC8 follows each block of the memory that is read */
 };
-
-#endif

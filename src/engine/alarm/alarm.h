@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The alarm machine of a lane: what the states of alarm_fsm.h ask of the bus. */
-#ifndef ENGINE_ALARM_H
-#define ENGINE_ALARM_H
+#pragma once
 
 #include "src/engine/state.h"
 
@@ -19,5 +18,3 @@ void alarm_answered(struct alarm_machine *m, struct lane *lane, const struct slo
 void alarm_passed(struct alarm_machine *m);
 /* When the machine has to run though nothing was answered; INT64_MAX: only then. */
 int64_t alarm_wake(const struct alarm_machine *m);
-
-#endif

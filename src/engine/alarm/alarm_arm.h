@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The arming of alarm items and the restarts of their devices. */
-#ifndef ENGINE_ALARM_ARM_H
-#define ENGINE_ALARM_ARM_H
+#pragma once
 
 #include "src/engine/state.h"
 
@@ -28,5 +27,3 @@ void alarm_arm_answered(struct alarm_machine *m, struct lane *lane, const struct
                         const char *data, int64_t now_ns);
 /* A device came back: its SetAlarm is compared again, and its next por is a restart. */
 void alarm_rearm(struct alarm_machine *m, struct engine *e, uint32_t device);
-
-#endif

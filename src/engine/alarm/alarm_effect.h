@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What the alarm machine changes in the table and in the journal. */
-#ifndef ENGINE_ALARM_EFFECT_H
-#define ENGINE_ALARM_EFFECT_H
+#pragma once
 
 #include "src/engine/state.h"
 
@@ -27,5 +26,3 @@ void engine_power_on_reset(struct lane *lane, const struct device *d, const stru
 void engine_alarm_polled(struct engine *e, struct alarm_item *item);
 /* The same of all items: they are ordinary inputs. */
 void engine_alarm_polls(struct engine *e, struct alarm_machine *m);
-
-#endif

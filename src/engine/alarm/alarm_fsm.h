@@ -4,8 +4,7 @@
  * be laid beside Table 3.1 row by row. Names of states are the manual's. docs/semantics.md has the
  * rulings; rows marked so in alarm_fsm.c are ours.
  */
-#ifndef ENGINE_ALARM_FSM_H
-#define ENGINE_ALARM_FSM_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -67,5 +66,3 @@ extern const size_t alarm_table_rows;
 /* The first row of the state, top to bottom, whose facts hold; NULL: stay. */
 const struct alarm_row *alarm_next(enum alarm_state state, uint32_t facts);
 const char *alarm_state_name(enum alarm_state state);
-
-#endif

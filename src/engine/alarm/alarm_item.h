@@ -3,8 +3,7 @@
  * The alarm items of the table, and what the alarm machine of a lane knows and holds of them.
  * Nothing here asks a bus or touches a signal.
  */
-#ifndef ENGINE_ALARM_ITEM_H
-#define ENGINE_ALARM_ITEM_H
+#pragma once
 
 #include "hal/bus/bus.h"
 #include "src/engine/alarm/alarm_fsm.h"
@@ -150,5 +149,3 @@ void alarm_restart(struct alarm_machine *m);
 bool alarm_serves(const struct alarm_machine *m);
 /* An output of the device has changed though nothing was written to it. */
 void alarm_output_differs(struct alarm_machine *m, uint32_t device);
-
-#endif

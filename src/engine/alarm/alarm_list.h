@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The list of devices in alarm. */
-#ifndef ENGINE_ALARM_LIST_H
-#define ENGINE_ALARM_LIST_H
+#pragma once
 
 #include "src/engine/state.h"
 
@@ -11,5 +10,3 @@ void alarm_take_list(struct alarm_machine *m, struct lane *lane, const char *lis
 void alarm_list_failed(struct alarm_machine *m, struct lane *lane, int err, int64_t now_ns);
 /* The target is back, and may be another or have another driver: has it an alarm search now? */
 void alarm_ask_again(struct alarm_machine *m, struct lane *lane, int64_t now_ns);
-
-#endif

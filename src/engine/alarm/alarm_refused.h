@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Requests of the alarm machine that fail: counted, told, and asked again later. */
-#ifndef ENGINE_ALARM_REFUSED_H
-#define ENGINE_ALARM_REFUSED_H
+#pragma once
 
 #include "src/engine/state.h"
 
@@ -29,5 +28,3 @@ void alarm_refused(struct lane *lane, struct alarm_item *item, enum ows_unarmed 
 void alarm_granted(struct engine *e, struct alarm_item *item, uint8_t unarmed);
 /* A visit begins anew, without the failures so far. */
 void alarm_visit_anew(struct engine *e, struct alarm_item *item);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The steps of a visit, as rows: what a state asks of the bus, and what the answer means. */
-#ifndef ENGINE_ALARM_STEP_H
-#define ENGINE_ALARM_STEP_H
+#pragma once
 
 #include "src/engine/state.h"
 
@@ -47,5 +46,3 @@ int64_t alarm_next_init(struct engine *e, struct alarm_machine *m);
 
 /* True: the slot has what the present state asks; false: it asks nothing now. */
 bool alarm_ask(struct alarm_machine *m, const struct lane *lane, struct slot *slot, int64_t now_ns);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Texts of latches, flags and alarm conditions. Pure functions. */
-#ifndef ENGINE_ALARM_TEXT_H
-#define ENGINE_ALARM_TEXT_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -21,5 +20,3 @@ uint32_t alarm_channels(const char *text);
 void alarm_trim(char *to, size_t size, const char *text, size_t len);
 /* Does the chip say what SetAlarm wants? Numbers are compared as numbers. */
 bool alarm_as_set(const char *text, size_t len, const char *value);
-
-#endif

@@ -4,8 +4,7 @@
  * are in force. The control room lets them join and leave, on the engine's thread; or on another
  * before that engine runs.
  */
-#ifndef ENGINE_CONTROLLERS_H
-#define ENGINE_CONTROLLERS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -46,5 +45,3 @@ void engine_look_controllers(struct engine *e);
  */
 void engine_controllers_retire(struct engine *old, const struct engine *e, int64_t now_ns);
 void engine_controllers_adopt(struct engine *e, const struct engine *old, const uint32_t *rows);
-
-#endif

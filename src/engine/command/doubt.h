@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Writes in doubt. */
-#ifndef ENGINE_DOUBT_H
-#define ENGINE_DOUBT_H
+#pragma once
 
 #include "src/engine/state.h"
 
@@ -14,5 +13,3 @@ void engine_doubts(struct engine *e);
  * value is written again.
  */
 void engine_doubt_ended(struct engine *e, const struct slot *slot);
-
-#endif

@@ -3,8 +3,7 @@
  * Which command is in force: section 3 of docs/semantics.md, "A command is in force". What is here
  * remembers each change for the owsd after this one.
  */
-#ifndef ENGINE_IN_FORCE_H
-#define ENGINE_IN_FORCE_H
+#pragma once
 
 #include "src/engine/state.h"
 
@@ -51,5 +50,3 @@ void engine_in_force_adopted(struct engine *e);
 /* For the owsd after this one. */
 void engine_remember(struct engine *e, const struct signal *s);
 void engine_remember_controller(struct engine *e, uint32_t controller);
-
-#endif

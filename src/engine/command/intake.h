@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The memories of controllers: what they have commanded there. */
-#ifndef ENGINE_INTAKE_H
-#define ENGINE_INTAKE_H
+#pragma once
 
 #include "src/engine/state.h"
 
@@ -14,5 +13,3 @@ void engine_intake(struct engine *e, uint32_t controller, int64_t now_ns);
 int64_t engine_intake_limited(struct engine *e, int64_t now_ns);
 /* Look at the signal in the memory of the controller whose command is in force. */
 void engine_intake_signal(struct engine *e, struct signal *s, int64_t now_ns);
-
-#endif

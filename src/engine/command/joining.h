@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A controller as it joins the engine. */
-#ifndef ENGINE_JOINING_H
-#define ENGINE_JOINING_H
+#pragma once
 
 #include "src/shm/controller.h"
 
@@ -14,5 +13,3 @@ struct engine_controller {
 	   memory */
 	const uint32_t *rights;
 };
-
-#endif

@@ -3,8 +3,7 @@
  * Where the last commands of outputs with Start "last" are kept over a reboot: a seam. The host
  * stores them on a thread of its own; no function here blocks.
  */
-#ifndef ENGINE_LAST_H
-#define ENGINE_LAST_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -24,5 +23,3 @@ struct engine_last {
 	bool (*find)(void *ctx, uint32_t row, int64_t *value, char *text, size_t room,
 	             uint32_t *len);
 };
-
-#endif

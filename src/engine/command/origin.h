@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Who gave the command in force: the origins in the image, and the journal of commands. */
-#ifndef ENGINE_ORIGIN_H
-#define ENGINE_ORIGIN_H
+#pragma once
 
 #include "src/engine/state.h"
 
@@ -21,5 +20,3 @@ void engine_origin_carry(struct engine *e, const struct signal *s, const struct 
                          uint32_t record);
 /* A reload: owsd itself begins s with the command in force, which engine_resume() made. */
 void engine_origin_begin(struct engine *e, struct signal *s);
-
-#endif

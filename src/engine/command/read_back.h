@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Does an output still have what was written? (docs/semantics.md, section 3, "Read back") */
-#ifndef ENGINE_READ_BACK_H
-#define ENGINE_READ_BACK_H
+#pragma once
 
 #include "hal/bus/bus.h"
 
@@ -21,5 +20,3 @@ bool engine_compare(struct engine *e, struct lane *lane, struct signal *s, const
 void engine_compares_no_more(struct engine *e, struct signal *s, uint8_t quality);
 /* Write a command again that the device lost, if it was not done just now; else later. */
 void engine_restore(struct engine *e, struct signal *s);
-
-#endif

@@ -3,8 +3,7 @@
  * Did a device restart? Asked of its power-on flag (por), where its outputs are read back and no
  * alarm item watches it.
  */
-#ifndef ENGINE_RESTART_H
-#define ENGINE_RESTART_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -21,5 +20,3 @@ void engine_restart_look(struct lane *lane, const struct signal *s, bool agrees)
 bool engine_restart_ask(struct lane *lane, struct slot *slot, int64_t now_ns);
 void engine_restart_done(struct lane *lane, const struct slot *slot,
                          const struct bus_answer *answer);
-
-#endif

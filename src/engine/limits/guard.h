@@ -4,8 +4,7 @@
  * scratchpad), one whose conversion starved 127.94. On every bus they must not pass as good. Which
  * properties are such a thermometer's stands in hal/chips (property.measures).
  */
-#ifndef ENGINE_GUARD_H
-#define ENGINE_GUARD_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -20,5 +19,3 @@ struct guard {
  * 85 on its way.
  */
 bool guard_refuses(struct guard *guard, double degrees, int64_t now_ns);
-
-#endif

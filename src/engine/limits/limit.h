@@ -13,8 +13,7 @@
  * While the alarm is shelved its conditions and delays go on, and its state is normal. It is raised
  * when it is no longer shelved and a condition is active.
  */
-#ifndef ENGINE_LIMIT_H
-#define ENGINE_LIMIT_H
+#pragma once
 
 #include "src/config/config.h"
 
@@ -60,5 +59,3 @@ uint8_t limit_acknowledge(struct limit *limit);
 void limit_shelve(struct limit *limit);
 /* Returns the kind that is raised now, 0: no condition is active. */
 uint8_t limit_unshelve(struct limit *limit);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The limit alarms of the signals. */
-#ifndef ENGINE_LIMITS_H
-#define ENGINE_LIMITS_H
+#pragma once
 
 #include "src/engine/state.h"
 
@@ -34,5 +33,3 @@ int engine_shelf_put(struct engine *e, struct signal *s, const struct ows_shelf_
 void engine_shelf_free(struct engine *e, struct signal *s);
 /* Take up what the image has from before a start or a reload. */
 void engine_shelves_resume(struct engine *e);
-
-#endif

@@ -3,8 +3,7 @@
  * A reload: an engine of the changed configuration takes over from the one that runs. The taking
  * over neither allocates nor searches, and belongs to the engine's thread.
  */
-#ifndef ENGINE_ADOPT_H
-#define ENGINE_ADOPT_H
+#pragma once
 
 #include <stdint.h>
 
@@ -23,5 +22,3 @@ void engine_adopt(struct engine *e, struct engine *old, const struct adoption *p
                   int64_t now_ns);
 /* The buses that did not stay have ended: what guests had lent to them is theirs again. */
 void engine_abandon(struct engine *old);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What a signal keeps over a reload. */
-#ifndef ENGINE_ADOPT_SIGNAL_H
-#define ENGINE_ADOPT_SIGNAL_H
+#pragma once
 
 #include "src/engine/table.h"
 
@@ -10,5 +9,3 @@
  * the file says counts where it was changed.
  */
 bool signal_adopt(struct signal *s, const struct signal *was);
-
-#endif

@@ -3,8 +3,7 @@
  * What stays over a reload: a pure comparison of two configurations, made on the supervisor's
  * thread.
  */
-#ifndef ENGINE_ADOPTION_H
-#define ENGINE_ADOPTION_H
+#pragma once
 
 #include <stdint.h>
 
@@ -28,5 +27,3 @@ struct adoption {
  */
 int adoption_plan(struct adoption *plan, const struct config *config, const struct config *before);
 void adoption_free(struct adoption *plan);
-
-#endif

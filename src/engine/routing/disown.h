@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What is lent and counts for nothing any more. */
-#ifndef ENGINE_DISOWN_H
-#define ENGINE_DISOWN_H
+#pragma once
 
 #include "src/engine/state.h"
 
@@ -25,5 +24,3 @@ void lane_resume_reads(struct lane *lane);
  * reach, until readings are resumed: successors[row] is that row here, TABLE_NO_ROW: it has none.
  */
 void lane_adopt(struct lane *lane, struct lane *before, const uint32_t *successors);
-
-#endif

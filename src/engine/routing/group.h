@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The groups: ways to one wire. */
-#ifndef ENGINE_GROUP_H
-#define ENGINE_GROUP_H
+#pragma once
 
 #include "src/engine/state.h"
 
@@ -9,5 +8,3 @@ int engine_groups_init(struct engine *e, const struct engine_port *ports); /* 0 
 void engine_groups_free(struct engine *e);
 /* A fact of the lane's way changed: the group's turn comes with the next engine_route(). */
 void engine_group_asks(struct lane *lane);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The only place where a signal's lane changes. */
-#ifndef ENGINE_MOVE_H
-#define ENGINE_MOVE_H
+#pragma once
 
 #include "src/engine/state.h"
 
@@ -11,5 +10,3 @@ void engine_move_device(struct engine *e, struct device *device, struct lane *to
 /* All signals of the lane; it is not open any more. */
 void engine_move_lane(struct engine *e, struct lane *from, struct lane *to, const char *why,
                       int64_t now_ns);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What is known of where each device is. Nothing here moves a device. */
-#ifndef ENGINE_PLACE_H
-#define ENGINE_PLACE_H
+#pragma once
 
 #include "src/engine/state.h"
 
@@ -26,5 +25,3 @@ void engine_probe_done(struct engine *e, struct lane *lane, const struct slot *s
 int64_t engine_probe_wait(const struct device *d);
 /* Nothing is looked for on this lane any more. */
 void engine_probes_forget(struct lane *lane);
-
-#endif

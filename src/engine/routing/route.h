@@ -5,8 +5,7 @@
  * device is served by one. The rules stand in docs/semantics.md, "Several targets"; the tests are
  * laid beside them.
  */
-#ifndef ENGINE_ROUTE_H
-#define ENGINE_ROUTE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -106,5 +105,3 @@ void route_bar_took(struct route_bar *bar, const struct route_way *ways,
 /* The group as the comma sees it. */
 enum route_state route_bar_state(const struct route_bar *bar, const struct route_way *ways,
                                  int64_t now_ns);
-
-#endif

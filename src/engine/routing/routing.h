@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The one place that acts on what is known of ways and devices. */
-#ifndef ENGINE_ROUTING_H
-#define ENGINE_ROUTING_H
+#pragma once
 
 #include "src/engine/state.h"
 
@@ -12,5 +11,3 @@
 bool engine_route(struct engine *e, int64_t now_ns);
 /* All groups, for time may lead to a step too; returns when to be called again. */
 int64_t engine_route_groups(struct engine *e, int64_t now_ns);
-
-#endif

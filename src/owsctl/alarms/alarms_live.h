@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* owsctl alarms: the alarms that stand. */
-#ifndef OWSCTL_ALARMS_LIVE_H
-#define OWSCTL_ALARMS_LIVE_H
+#pragma once
 
 #include "src/owsctl/ctl.h"
 
@@ -14,5 +13,3 @@
 /* Does each pattern match a signal? If not, prints the error on stderr. */
 bool alarms_known(struct ows *h, char *const *patterns, int count);
 int alarms_live(struct ctl *ctl, int argc, char **argv);
-
-#endif

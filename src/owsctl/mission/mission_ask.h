@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A logger as a target shows it: what its mission is, and requests for its properties. */
-#ifndef OWSCTL_MISSION_ASK_H
-#define OWSCTL_MISSION_ASK_H
+#pragma once
 
 #include "src/owsctl/open.h"
 
@@ -27,5 +26,3 @@ int mission_interval(struct mission *mission, double *seconds);
 /* UTC, as 2026-11-22T10:00:00Z. */
 #define MISSION_TIME 32
 void mission_time(double seconds, char text[MISSION_TIME]);
-
-#endif

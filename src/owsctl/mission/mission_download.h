@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The log of a logger's mission, printed. */
-#ifndef OWSCTL_MISSION_DOWNLOAD_H
-#define OWSCTL_MISSION_DOWNLOAD_H
+#pragma once
 
 #include "src/owsctl/mission/mission_ask.h"
 
@@ -10,5 +9,3 @@
  * printing why.
  */
 int mission_download(const struct ctl *ctl, struct mission *mission);
-
-#endif

@@ -3,8 +3,7 @@
  * What a scan means for an existing configuration: which of its devices stay, which are missing,
  * which of those found are new, and which replaces which. Pure functions, without files and buses.
  */
-#ifndef OWSCTL_MERGE_H
-#define OWSCTL_MERGE_H
+#pragma once
 
 #include "hal/owfs/path.h"
 
@@ -48,5 +47,3 @@ enum merge_fault {
 enum merge_fault merge_decide(struct merge_device *known, unsigned known_count,
                               struct merge_device *found, unsigned found_count,
                               const struct merge_pair *pairs, unsigned pair_count, unsigned *wrong);
-
-#endif

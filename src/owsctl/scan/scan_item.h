@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Makes items of a configuration for devices that were found, with names that are free. */
-#ifndef OWSCTL_SCAN_ITEM_H
-#define OWSCTL_SCAN_ITEM_H
+#pragma once
 
 #include <stdio.h>
 
@@ -52,5 +51,3 @@ int scan_add_items(struct rio **rio, struct scan_names *names);
 
 /* Would owsd accept the configuration? CTL_DONE, or CTL_FAILED after printing why not. */
 int scan_check(const struct rio *rio, const char *what);
-
-#endif

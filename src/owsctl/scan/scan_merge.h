@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* scan --rio --merge FILE: puts the devices that were found into an existing configuration. */
-#ifndef OWSCTL_SCAN_MERGE_H
-#define OWSCTL_SCAN_MERGE_H
+#pragma once
 
 #include "src/config/rio.h"
 #include "src/owsctl/scan/scan_item.h"
@@ -25,5 +24,3 @@ int scan_merge_open(struct scan_merge *merge);
  */
 int scan_merge(struct scan_merge *merge, const struct scan *scan, struct scan_choice choice);
 void scan_merge_close(struct scan_merge *merge);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What `owsctl wait` waits for: a comparison of a value. */
-#ifndef OWSCTL_CONDITION_H
-#define OWSCTL_CONDITION_H
+#pragma once
 
 #include "src/show/reading.h"
 
@@ -32,5 +31,3 @@ int condition_op(const char *text);
 int condition_make(enum ows_type type, const char *op, const char *text,
                    struct condition *condition);
 bool condition_holds(const struct condition *condition, const struct reading *reading);
-
-#endif

@@ -3,8 +3,7 @@
  * The terminal while a live table is on it, and the signals that end or change it. A process has
  * one.
  */
-#ifndef OWSCTL_TERMINAL_H
-#define OWSCTL_TERMINAL_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -47,5 +46,3 @@ enum terminal_key terminal_key(void);
 char terminal_byte(void);
 /* Write a whole picture; false: the terminal is gone. */
 bool terminal_write(const char *text, size_t len);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What the live table and the plain lines of `owsctl watch` have in common. */
-#ifndef OWSCTL_WATCH_SLEEP_H
-#define OWSCTL_WATCH_SLEEP_H
+#pragma once
 
 #include "src/owsctl/rows.h"
 
@@ -45,5 +44,3 @@ void watch_free(struct watch *watch);
 int watch_sleep(struct watch *watch, int64_t least_ns, int64_t timeout_ns);
 /* Is it time to end? */
 bool watch_over(const struct watch *watch);
-
-#endif

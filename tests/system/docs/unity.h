@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What examples of unit tests in the documentation need of Unity, to be compiled and not run. */
-#ifndef TESTS_SYSTEM_DOCS_UNITY_H
-#define TESTS_SYSTEM_DOCS_UNITY_H
+#pragma once
 
 #define UNITY_BEGIN()
 #define UNITY_END() 0
@@ -9,5 +8,3 @@
 #define TEST_ASSERT_TRUE(is) ((void)(is))
 #define TEST_ASSERT_EQUAL_INT(must, is) ((void)((must) == (is)))
 #define TEST_ASSERT_EQUAL_STRING(must, is) ((void)(must), (void)(is))
-
-#endif

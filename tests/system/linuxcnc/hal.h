@@ -4,8 +4,7 @@
  * declared as there, so that the example is compiled and run by the tests. LinuxCNC itself is
  * another project; docs/linuxcnc.md says against which one the example was tried.
  */
-#ifndef TESTS_SYSTEM_LINUXCNC_HAL_H
-#define TESTS_SYSTEM_LINUXCNC_HAL_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -32,5 +31,3 @@ HAL_PIN(bit, hal_bit_t);
 HAL_PIN(s32, hal_s32_t);
 HAL_PIN(u32, hal_u32_t);
 HAL_PIN(float, hal_float_t);
-
-#endif

@@ -5,8 +5,7 @@
  * runtime itself is another project under the GPL; docs/openplc.md says against which one the
  * example was tried.
  */
-#ifndef TESTS_SYSTEM_OPENPLC_LADDER_H
-#define TESTS_SYSTEM_OPENPLC_LADDER_H
+#pragma once
 
 #include <pthread.h>
 #include <stdint.h>
@@ -38,5 +37,3 @@ void finalizeHardware();
 void updateBuffersIn();
 void updateBuffersOut();
 extern "C" void openplc_log(char *logmsg);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Switches in alarm on a scene, for the tests of the alarm machine. */
-#ifndef TESTS_UNIT_AID_ALARM_SCENE_H
-#define TESTS_UNIT_AID_ALARM_SCENE_H
+#pragma once
 
 #include "tests/unit/aid/scene.h"
 
@@ -28,5 +27,3 @@ void judge_alarm(struct scene *s);
 void alarm_on_read(struct scene *s, const char *path);
 /* Start, and run until the first values have come and the alarms are armed. */
 void alarm_begin(struct scene *s);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Runs verbs of owsctl and catches their stdout and stderr. */
-#ifndef TESTS_UNIT_AID_CAUGHT_H
-#define TESTS_UNIT_AID_CAUGHT_H
+#pragma once
 
 #include "src/owsctl/ctl.h"
 
@@ -13,5 +12,3 @@ void caught_end(void);
 /* Run a verb with these words, its own name first. Returns its status. */
 int run(int (*function)(struct ctl *, int, char **), const char *words);
 void holds(const char *text, const char *part);
-
-#endif

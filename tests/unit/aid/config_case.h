@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Parses configurations from texts, and compares the messages about them. */
-#ifndef TESTS_UNIT_AID_CONFIG_CASE_H
-#define TESTS_UNIT_AID_CONFIG_CASE_H
+#pragma once
 
 #include "src/config/config.h"
 #include "tests/unit/aid/said.h"
@@ -31,5 +30,3 @@ struct line {
 /* Parse each text, and compare whether it is refused, and its messages. */
 void expect_errors(const struct line *cases, size_t count, int (*by)(const char *));
 void expect_warnings(const struct line *cases, size_t count, int (*by)(const char *));
-
-#endif

@@ -3,8 +3,7 @@
  * A control room with three signals and a thread that takes joining and leaving controllers as the
  * engine's does; and the programs that connect to it.
  */
-#ifndef TESTS_UNIT_AID_CONTROL_SCENE_H
-#define TESTS_UNIT_AID_CONTROL_SCENE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -55,5 +54,3 @@ void control_leave(struct control_client *client);
  * returns what control_join() returned there.
  */
 int control_join_as(uid_t uid, const gid_t *groups, size_t group_count, uint32_t flags);
-
-#endif

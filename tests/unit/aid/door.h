@@ -3,8 +3,7 @@
  * The control socket of an instance without owsd: a thread that welcomes whoever connects, with a
  * memory that the test reads by the engine's functions. It can lie, as owsd never does.
  */
-#ifndef TESTS_UNIT_AID_DOOR_H
-#define TESTS_UNIT_AID_DOOR_H
+#pragma once
 
 #include <pthread.h>
 
@@ -71,5 +70,3 @@ unsigned door_count(struct door *door);
 void door_wait_gone(struct door *door, unsigned i);
 /* How often the controller rang since the last call. */
 uint64_t door_rings(struct door *door, unsigned i);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The driver of the DS2482 over the simulated chip, in virtual time. */
-#ifndef TESTS_UNIT_AID_DS2482_SCENE_H
-#define TESTS_UNIT_AID_DS2482_SCENE_H
+#pragma once
 
 #include "hal/ds2482/ds2482.h"
 #include "hal/sim/adapter.h"
@@ -41,5 +40,3 @@ void ds_event(const char *text);
 int ds_read_scratchpad(const char *name, uint8_t scratchpad[9]);
 /* Check the scratchpad of the thermometer "t" against that after power-on. */
 void ds_check_scratchpad(void);
-
-#endif

@@ -3,8 +3,7 @@
  * One GPIO chip, "/dev/gpiochip0" labelled "fake", in place of libgpiod. As with the kernel, a line
  * has one holder, and an input keeps GPIO_EDGES_KEPT edges and loses later ones.
  */
-#ifndef TESTS_UNIT_AID_FAKE_GPIO_H
-#define TESTS_UNIT_AID_FAKE_GPIO_H
+#pragma once
 
 #include "hal/gpio/line.h"
 
@@ -37,5 +36,3 @@ void fake_gpio_begin(void);
 void fake_gpio_end(void);
 /* Change the level on the wire of a line at that time. */
 void fake_gpio_level(unsigned line, bool high, int64_t at_ns);
-
-#endif

@@ -4,8 +4,7 @@
  * temperature climbs all the time, so a value tells when the chip took it. Each answer is an error,
  * or the value of the moment that it states.
  */
-#ifndef TESTS_UNIT_AID_FLEET_H
-#define TESTS_UNIT_AID_FLEET_H
+#pragma once
 
 #include "tests/unit/aid/native_scene.h"
 
@@ -60,5 +59,3 @@ uint32_t fleet_ask(enum bus_prio prio, enum bus_op op, const char *path);
 uint32_t fleet_write(enum bus_prio prio, const char *path, const char *text);
 /* Run until it is answered, which takes a second at most. Returns how long it took. */
 int64_t fleet_answered(uint32_t id, int *err);
-
-#endif

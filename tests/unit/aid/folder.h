@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A place of the test's own, instead of that of an owsd which may run on this machine. */
-#ifndef TESTS_UNIT_AID_FOLDER_H
-#define TESTS_UNIT_AID_FOLDER_H
+#pragma once
 
 #include "src/shm/place.h"
 
@@ -12,5 +11,3 @@
 const struct shm_place *folder_place(void);
 /* The path of an instance's file there; overwritten by the next call. */
 const char *folder_file(const char *instance, const char *what);
-
-#endif

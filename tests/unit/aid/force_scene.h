@@ -3,8 +3,7 @@
  * A scene for tests of the command in force: one output of each kind, all of one device, and a
  * controller that has set all of them.
  */
-#ifndef TESTS_UNIT_AID_FORCE_SCENE_H
-#define TESTS_UNIT_AID_FORCE_SCENE_H
+#pragma once
 
 #include "tests/unit/aid/scene.h"
 
@@ -40,5 +39,3 @@ void restart_owsd(void);
 /* The controller connects again by its token, and beats, as ows_reopen() does. */
 void come_back(void);
 void beat_on(int64_t ns);
-
-#endif

@@ -3,8 +3,7 @@
  * The w1 bus on a directory that looks like /sys/bus/w1/devices, on a virtual clock. Masters are
  * w1_bus_master1 and on; a file is given by its directory and its name there.
  */
-#ifndef TESTS_UNIT_AID_FS_SCENE_H
-#define TESTS_UNIT_AID_FS_SCENE_H
+#pragma once
 
 #include "tests/unit/aid/host.h"
 
@@ -63,5 +62,3 @@ int fs_writes_at(uint32_t offset, const char *what, const char *value);
 void fs_lists(const char *expected, const char *what);
 /* Was the event reported with these words? */
 bool fs_told(enum bus_news news, const char *part);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A controller by hand: a memory on the heap, in which a test commands as libows does, or worse. */
-#ifndef TESTS_UNIT_AID_GIVING_H
-#define TESTS_UNIT_AID_GIVING_H
+#pragma once
 
 #include "src/shm/controller.h"
 
@@ -27,5 +26,3 @@ void giving_set_text(struct giving *g, uint32_t record, const char *text);
 void giving_enable(uint32_t *word, bool on);
 void giving_name_person(struct giving *g, unsigned index, const char *name);
 void giving_beat(struct giving *g, uint32_t period_ms);
-
-#endif

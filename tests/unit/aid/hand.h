@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Works a wire with slaves by hand: no chip and no driver stand between the test and the slave. */
-#ifndef TESTS_UNIT_AID_HAND_H
-#define TESTS_UNIT_AID_HAND_H
+#pragma once
 
 #include "hal/sim/families.h"
 #include "hal/sim/wire.h"
@@ -30,5 +29,3 @@ void hand_match(struct hand *hand, const struct sim_slave *slave);
 bool hand_in_alarm(struct hand *hand, const struct sim_slave *slave);
 /* All ids that a search (0xF0, 0xEC) finds, at most room. */
 unsigned hand_search(struct hand *hand, uint8_t command, uint8_t (*rom)[8], unsigned room);
-
-#endif

@@ -3,8 +3,7 @@
  * The host of a bus under test. On the virtual clock a wait takes no time: it moves the clock. On
  * the real one it waits as a worker does. Either way answers and events are collected here.
  */
-#ifndef TESTS_UNIT_AID_HOST_H
-#define TESTS_UNIT_AID_HOST_H
+#pragma once
 
 #include "hal/bus/bus.h"
 
@@ -38,5 +37,3 @@ bool host_run_events(struct host *host, struct bus *bus, unsigned n, int64_t unt
 const struct bus_answer *host_answer(const struct host *host, uint32_t id);
 unsigned host_answers(const struct host *host, uint32_t id);
 unsigned host_events(const struct host *host, enum bus_news news);
-
-#endif

@@ -3,8 +3,7 @@
  * An instance of owsd without owsd: makes the image under a name of this process and fills it by
  * the writer's functions as the engine does, and welcomes controllers (door.h).
  */
-#ifndef TESTS_UNIT_AID_INSTANCE_H
-#define TESTS_UNIT_AID_INSTANCE_H
+#pragma once
 
 #include "src/libows/ows.h"
 #include "src/shm/image.h"
@@ -70,5 +69,3 @@ void instance_dies_soon(struct instance *in);
 void instance_put(struct instance *in, uint32_t record, int64_t value, int64_t measured_ns);
 void instance_put_double(struct instance *in, uint32_t record, double value, int64_t measured_ns);
 void instance_put_text(struct instance *in, uint32_t record, const char *text, int64_t measured_ns);
-
-#endif

@@ -3,8 +3,7 @@
  * The native bus over a net of simulated slaves (wire_link.h) on a virtual clock: the common set-up
  * of its tests. They call wire_init() and wire_add() first, then start().
  */
-#ifndef TESTS_UNIT_AID_NATIVE_SCENE_H
-#define TESTS_UNIT_AID_NATIVE_SCENE_H
+#pragma once
 
 #include "tests/unit/aid/one_bus.h"
 #include "tests/unit/aid/wire_link.h"
@@ -39,5 +38,3 @@ int result(enum bus_op op, const char *what, const char *text);
 /* "/28.01005DDF0300", and the path of a property of the device; valid for three more calls. */
 const char *name_of(const struct sim_slave *slave);
 const char *of(const struct sim_slave *slave, const char *property);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What a test needs of the machine: without it the test is ignored, with the reason. */
-#ifndef TESTS_UNIT_AID_NEEDS_H
-#define TESTS_UNIT_AID_NEEDS_H
+#pragma once
 
 #include <stdio.h>
 
@@ -9,5 +8,3 @@
 void needs_python3(void);
 /* Start python3 with "import ows, sys" and code without a '. sys.argv[1] is the argument. */
 FILE *needs_python3_run(const char *code, const char *argument);
-
-#endif

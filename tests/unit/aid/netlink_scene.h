@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Sets up the target w1:netlink on a model of the kernel's 1-Wire core. */
-#ifndef TESTS_UNIT_AID_NETLINK_SCENE_H
-#define TESTS_UNIT_AID_NETLINK_SCENE_H
+#pragma once
 
 #include "hal/native/native.h"
 #include "tests/unit/aid/w1_core.h"
@@ -38,5 +37,3 @@ int nl_write(const struct sim_slave *slave, const char *property, const char *va
 void nl_reads(const struct sim_slave *slave, const char *property, const char *expected);
 void nl_lists(const char *directory, const char *expected);
 bool nl_told(enum bus_news news, const char *part);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The one bus of a test and its host: the common set-up of most tests of a bus. */
-#ifndef TESTS_UNIT_AID_ONE_BUS_H
-#define TESTS_UNIT_AID_ONE_BUS_H
+#pragma once
 
 #include "tests/unit/aid/host.h"
 
@@ -14,5 +13,3 @@ void simulate(const char *scenario);
 uint64_t counted(const char *name);
 /* Destroy the bus, if there is one. */
 void one_bus_end(void);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* One slave on a wire of the native bus (one_bus.h, virtual clock), and requests to it. */
-#ifndef TESTS_UNIT_AID_ONE_SLAVE_H
-#define TESTS_UNIT_AID_ONE_SLAVE_H
+#pragma once
 
 #include "tests/unit/aid/one_bus.h"
 #include "tests/unit/aid/wire_link.h"
@@ -28,5 +27,3 @@ void writes(const char *property, const char *text);
 void refuses(int err, enum bus_op op, const char *property, const char *text);
 /* "/29.01005DDF0300/PIO.0"; valid until the next call. */
 const char *slave_path(const char *property);
-
-#endif

@@ -3,8 +3,7 @@
  * The owserver bus (one_bus.h, on the real clock) against a peer on loopback: the common set-up of
  * its tests.
  */
-#ifndef TESTS_UNIT_AID_OWSERVER_SCENE_H
-#define TESTS_UNIT_AID_OWSERVER_SCENE_H
+#pragma once
 
 #include "tests/unit/aid/one_bus.h"
 #include "tests/unit/aid/peer.h"
@@ -46,5 +45,3 @@ void until_peer_saw(const unsigned *count, unsigned n);
 
 /* How many descriptors this process has open. */
 unsigned descriptors(void);
-
-#endif

@@ -3,8 +3,7 @@
  * A history in a folder of the test, written by a writer in virtual time and read by
  * libows-history.
  */
-#ifndef TESTS_PAST_H
-#define TESTS_PAST_H
+#pragma once
 
 #include "src/history/writer.h"
 #include "src/libhistory/ows_history.h"
@@ -40,5 +39,3 @@ int past_items(struct past *past, int signal, struct ows_history_item **items);
 int64_t past_ask(struct past *past, const char *text);
 /* Pseudo-random numbers; the seed is 1 at the start of a program. */
 unsigned past_random(unsigned below);
-
-#endif

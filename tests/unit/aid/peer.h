@@ -13,8 +13,7 @@
  *   g garbage     h payload 2 GB     n payload -5     v version 0x20000     w less than it says
  *   W more than it says
  */
-#ifndef TESTS_UNIT_AID_PEER_H
-#define TESTS_UNIT_AID_PEER_H
+#pragma once
 
 #include <pthread.h>
 #include <stdint.h>
@@ -46,5 +45,3 @@ void peer_end(struct peer *peer);
 /* Start again on the same port after peer_stop(). */
 void peer_restart(struct peer *peer, const char *plan);
 unsigned peer_saw(const unsigned *count);
-
-#endif

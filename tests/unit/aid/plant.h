@@ -6,8 +6,7 @@
  * requests reach the bus before the bus's next step. So a bus that goes on before the engine could
  * answer does so here too. For tests and benches; an error of the plant itself aborts.
  */
-#ifndef TESTS_UNIT_AID_PLANT_H
-#define TESTS_UNIT_AID_PLANT_H
+#pragma once
 
 #include "hal/sim/net.h"
 #include "src/config/config.h"
@@ -68,5 +67,3 @@ int64_t plant_time(const struct plant *plant, int64_t ns);
 
 /* In plant_net.c: the simulation below a bus of scheme "sim". */
 struct sim_net *plant_net(struct bus *bus);
-
-#endif

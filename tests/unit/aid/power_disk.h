@@ -4,8 +4,7 @@
  * power cut leaves of the noted calls. Data that was not synced may be there, or not, or some
  * sectors of it, in any order; names stay in their order up to some point.
  */
-#ifndef TESTS_POWER_DISK_H
-#define TESTS_POWER_DISK_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -59,5 +58,3 @@ void power_free(struct power_disk *power);
 void power_cut(const struct power_disk *power, int cut, uint64_t *seed, const char *to);
 /* Deterministic numbers (xorshift). */
 uint64_t power_random(uint64_t *seed);
-
-#endif

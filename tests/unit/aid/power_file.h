@@ -4,8 +4,7 @@
  * cut at any of these leaves: what was synced, and of all that was not, each sector of 512 bytes by
  * chance. One recording at a time, in one thread.
  */
-#ifndef TESTS_POWER_FILE_H
-#define TESTS_POWER_FILE_H
+#pragma once
 
 #include <stddef.h>
 
@@ -21,5 +20,3 @@ size_t power_file_steps(void);
  */
 void power_file_cut(const char *directory, const char *name, size_t step,
                     unsigned (*random)(unsigned below));
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The readers of a recording, and the checks of all that each has to find. */
-#ifndef TESTS_UNIT_AID_RECORDED_READERS_H
-#define TESTS_UNIT_AID_RECORDED_READERS_H
+#pragma once
 
 #include "src/libows/ows.h"
 
@@ -11,5 +10,3 @@ void check_all(struct ows *h);
 const char *output_of(const char *command);
 /* Run the code after "import ows, sys"; sys.argv[1] is the instance. */
 const char *python(const char *code);
-
-#endif

@@ -4,8 +4,7 @@
  * tests/unit/data, and the same one made by the present writer. Each field of a record is a
  * function of the record's number, so that all differ.
  */
-#ifndef TESTS_UNIT_AID_RECORDING_H
-#define TESTS_UNIT_AID_RECORDING_H
+#pragma once
 
 #include "src/shm/image.h"
 
@@ -53,5 +52,3 @@ void show(const char *kind, const char *memory, uint32_t size);
 void make_image(void);
 /* Write the recording again. */
 void record(void);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Parses .rio documents from texts, and checks what is in them. */
-#ifndef TESTS_UNIT_AID_RIO_CASE_H
-#define TESTS_UNIT_AID_RIO_CASE_H
+#pragma once
 
 #include "src/config/rio.h"
 #include "tests/unit/aid/said.h"
@@ -18,5 +17,3 @@ struct rio_node *rio_case_parse(const char *text);
 /* Check kind and value of the first entry with that key in block. */
 void rio_case_expect(const struct rio_node *block, const char *key, enum rio_kind kind,
                      const char *value);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Keeps the messages of a report, and fails the test on a message that must not come. */
-#ifndef TESTS_UNIT_AID_SAID_H
-#define TESTS_UNIT_AID_SAID_H
+#pragma once
 
 #include "src/config/config.h"
 
@@ -12,5 +11,3 @@ extern char said[8192];
 void said_begin(void);
 /* Begin, and let any message fail the test. */
 void said_must_not_begin(void);
-
-#endif

@@ -7,8 +7,7 @@
  * Most tests have one bus, and speak of it as the scene. Several are made by scene_bus(): each is a
  * target on a wire, and those on the same wire are ways to it (a bar).
  */
-#ifndef TESTS_UNIT_AID_SCENE_H
-#define TESTS_UNIT_AID_SCENE_H
+#pragma once
 
 #include "src/config/config.h"
 #include "src/engine/command/controllers.h"
@@ -233,5 +232,3 @@ uint64_t scene_counter(struct scene *scene, const char *name);
 /* A counter of a lane. */
 uint64_t scene_counter_of(struct scene *scene, unsigned bus, const char *name);
 uint32_t scene_target_state(struct scene *scene, unsigned bus);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What the files of the scene share. */
-#ifndef TESTS_UNIT_AID_SCENE_PRIVATE_H
-#define TESTS_UNIT_AID_SCENE_PRIVATE_H
+#pragma once
 
 #include "tests/unit/aid/scene.h"
 
@@ -18,5 +17,3 @@ void scene_join_again(struct scene *scene, unsigned place);
 /* The submit of an engine's port; ctx is the bus. */
 int scene_submit(void *ctx, struct bus_req *req);
 void scene_suspend(void *ctx, bool yes);
-
-#endif

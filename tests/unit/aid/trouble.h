@@ -4,8 +4,7 @@
  * for the rest of a transaction, presence pulses that get lost. Laid on wire_link.h by
  * wire_net.trouble. Slots and resets are counted from trouble_none() on.
  */
-#ifndef TESTS_UNIT_AID_TROUBLE_H
-#define TESTS_UNIT_AID_TROUBLE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -44,5 +43,3 @@ bool trouble_heard(struct trouble *trouble);
 bool trouble_presence(struct trouble *trouble, bool presence);
 /* A slot: is its bit turned over? Chips hear nothing while deaf. */
 bool trouble_turns(struct trouble *trouble);
-
-#endif

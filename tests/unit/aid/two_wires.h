@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A scene of two targets, each on a wire of its own. */
-#ifndef TESTS_UNIT_AID_TWO_WIRES_H
-#define TESTS_UNIT_AID_TWO_WIRES_H
+#pragma once
 
 #include "tests/unit/aid/scene.h"
 
@@ -16,5 +15,3 @@
 void two_wires_begin(struct scene *s);
 /* Start, and take both targets up. */
 void two_wires_up(struct scene *s);
-
-#endif

@@ -4,8 +4,7 @@
  * chip on a new wire, which measured once and whose inputs and memories then changed. The answer of
  * a visit without trouble is the truth.
  */
-#ifndef TESTS_UNIT_AID_VISIT_H
-#define TESTS_UNIT_AID_VISIT_H
+#pragma once
 
 #include "hal/chips/family.h"
 #include "tests/unit/aid/native_scene.h"
@@ -166,5 +165,3 @@ void visit_properties(const char *chip, bool parasite, bool turned,
                       void (*one)(struct visit *visit, const struct property *property));
 /* "slot 17 turned over" */
 const char *visit_says(const struct visit *visit, const struct trouble *what);
-
-#endif

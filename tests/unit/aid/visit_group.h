@@ -14,8 +14,7 @@
  *		return UNITY_END();
  *	}
  */
-#ifndef TESTS_UNIT_AID_VISIT_GROUP_H
-#define TESTS_UNIT_AID_VISIT_GROUP_H
+#pragma once
 
 #include "tests/unit/aid/visit_brownout.h"
 #include "tests/unit/aid/visit_noise.h"
@@ -59,5 +58,3 @@
 	RUN_TEST(test_what_is_told_to_be_written_is_in_the_##name);
 #define VISIT_RUN(chips) chips(VISIT_RUN_ONE) RUN_TEST(test_noise_makes_no_false_value_good);
 /* clang-format on */
-
-#endif

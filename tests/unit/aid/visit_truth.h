@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Each property of a chip is read with each trouble of the wire: the truth or an error. */
-#ifndef TESTS_UNIT_AID_VISIT_TRUTH_H
-#define TESTS_UNIT_AID_VISIT_TRUTH_H
+#pragma once
 
 #include "tests/unit/aid/visit.h"
 
 void visit_truth(const char *chip, bool parasite);
-
-#endif

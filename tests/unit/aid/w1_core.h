@@ -5,8 +5,7 @@
  * and replies as Linux 6.1 was seen to. It reports what is wrong with a request by errors of its
  * own.
  */
-#ifndef TESTS_UNIT_AID_W1_CORE_H
-#define TESTS_UNIT_AID_W1_CORE_H
+#pragma once
 
 #include "tests/unit/aid/wire_link.h"
 
@@ -34,5 +33,3 @@ extern struct w1_core w1_core;
 /* Take the place of the socket, after wire_init(). */
 void w1_core_start(struct host *host, unsigned masters);
 void w1_core_stop(void);
-
-#endif

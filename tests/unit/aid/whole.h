@@ -3,8 +3,7 @@
  * Records in which every field has the same number, so that a mixture of two records shows without
  * the check words: an oracle that shares nothing with the protocol under test.
  */
-#ifndef TESTS_UNIT_AID_WHOLE_H
-#define TESTS_UNIT_AID_WHOLE_H
+#pragma once
 
 #include "src/shm/image.h"
 
@@ -14,5 +13,3 @@ bool whole_sample(const struct ows_sample *sample);
 bool whole_slot(const struct ows_slot *slot);
 /* A sample with its text. */
 bool whole_text(const struct ows_sample *sample, const char *text, uint32_t room);
-
-#endif

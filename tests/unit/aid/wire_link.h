@@ -3,8 +3,7 @@
  * A link master for tests: slots reach the simulated slaves directly, without a bridge chip, and
  * each takes its time on the host's clock. Faults are injected at the link's calls.
  */
-#ifndef TESTS_UNIT_AID_WIRE_LINK_H
-#define TESTS_UNIT_AID_WIRE_LINK_H
+#pragma once
 
 #include "hal/sim/wire.h"
 #include "hal/wire/link.h"
@@ -55,5 +54,3 @@ void wire_set(struct sim_slave *slave, const char *input, double value);
 struct bus *wire_open(void);
 /* The simulation's time. */
 int64_t wire_time(void);
-
-#endif
