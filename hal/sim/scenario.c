@@ -147,8 +147,8 @@ static void branch_line(struct scenario *scenario, struct words *words)
 
 static void fill_memory(struct sim_slave *slave, struct words *words)
 {
-	size_t size = 0, at;
-	uint8_t *memory = slave->family->memory ? slave->family->memory(slave, &size) : NULL;
+	size_t size, at;
+	uint8_t *memory = sim_slave_memory(slave, &size);
 
 	if (!memory) {
 		words_fail(words, "a %s has no memory to fill", slave->family->name);

@@ -88,6 +88,12 @@ double sim_input_at(const struct sim_slave *slave, unsigned input, int64_t t)
 	return sim_curve_at(&slave->input[input], t);
 }
 
+uint8_t *sim_slave_memory(const struct sim_slave *slave, size_t *size)
+{
+	*size = slave->family->memory_size;
+	return *size ? (uint8_t *)slave->state + slave->family->memory_at : NULL;
+}
+
 void sim_receive(struct sim_slave *slave)
 {
 	slave->mode = SIM_RECEIVE;

@@ -71,9 +71,12 @@ struct sim_family {
 	void (*advance)(struct sim_slave *slave); /* follow the inputs up to now */
 	/* Take a start value of the scenario. 0, -ENOENT: no such option, -ERANGE. */
 	int (*option)(struct sim_slave *slave, const char *name, double value);
-	/* The memory that a scenario may fill. */
-	uint8_t *(*memory)(struct sim_slave *slave, size_t *size);
+	/* The memory that a scenario may fill, in the state: SIM_MEMORY(). size 0: none. */
+	size_t memory_at, memory_size;
 };
+
+#define SIM_MEMORY(type, member, size) \
+	.memory_at = offsetof(struct type, member), .memory_size = (size)
 
 enum sim_layer {
 	SIM_ROM_IDLE, /* deaf until the next reset */
@@ -146,6 +149,9 @@ void sim_slave_advance(struct sim_slave *slave, int64_t t);
 int sim_slave_input(const struct sim_slave *slave, const char *name);
 double sim_input_now(const struct sim_slave *slave, unsigned input);
 double sim_input_at(const struct sim_slave *slave, unsigned input, int64_t t);
+
+/* The memory that a scenario may fill; NULL: there is none. */
+uint8_t *sim_slave_memory(const struct sim_slave *slave, size_t *size);
 
 /* For the families. */
 #define sim_state(slave, type) ((struct type *)(slave)->state)

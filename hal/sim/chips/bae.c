@@ -305,13 +305,6 @@ static void query(struct sim_slave *slave)
 	sim_send_checked(slave, out, 2u + s->answers);
 }
 
-/* Registers (of the 0910 128, of the 0911 2048), EEPROM, SD card, I2C expander, text. */
-static uint8_t *bae_memory(struct sim_slave *slave, size_t *size)
-{
-	*size = offsetof(struct bae, taken);
-	return sim_state(slave, bae)->registers;
-}
-
 /* After the checksum the confirmation may come. */
 #define WRITES(code_) \
 	{ \
@@ -334,11 +327,13 @@ static const struct sim_function functions[] = {
 static const struct sim_input inputs[] = {{.name = "adc", .start = 2.5, .least = 0, .most = 5},
                                           {0}};
 
+/* Its memory: registers (of the 0910 128, of the 0911 2048), EEPROM, SD card, I2C expander, text. */
 #define BAE(part) \
 	{ \
 		.name = (part), .code = 0xFC, .state_size = sizeof(struct bae), \
 		.functions = functions, .inputs = inputs, .create = bae_create, \
-		.power_on = bae_power_on, .advance = bae_advance, .memory = bae_memory \
+		.power_on = bae_power_on, .advance = bae_advance, \
+		SIM_MEMORY(bae, registers, offsetof(struct bae, taken)) \
 	}
 
 const struct sim_family sim_bae0910 = BAE("BAE0910");

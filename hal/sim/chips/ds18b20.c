@@ -70,13 +70,11 @@ static void ds18b20_recall(struct sim_slave *slave)
 	s->scratchpad[4] = is_s20(slave) ? 0xFF : config_byte(slave, s->eeprom[2]);
 }
 
-static const struct sim_clone *clone_of(const struct sim_family *family);
-
 static void ds18b20_create(struct sim_slave *slave)
 {
 	struct sim_thermometer *s = slave->state;
 
-	s->clone = clone_of(slave->family);
+	s->clone = slave->family->kind;
 	if (s->clone) {
 		memcpy(s->eeprom, s->clone->first + 2, 3);
 		s->fixed = s->clone->fixed;
@@ -353,49 +351,25 @@ const struct sim_family sim_ds28ea00 = THERMOMETER("DS28EA00", FAMILY_EA00, .inp
 		0x90, 0x01, 0x55, 0x05, 0x7F, (five), (six), 0x66 \
 	}
 #define ENOUGH .copies = 255
-static const struct sim_clone clones[] = {
-	{&sim_ds18b20_a2, FIRST(0x12, 0x34, 0x0C, 0x10), HALVED(505), ENOUGH},
-	{&sim_ds18b20_a3, FIRST(0x7F, 0x80, 0x0C, 0x10), HALVED(621), .polls_late = true, ENOUGH},
-	{&sim_ds18b20_b1, FIRST(0x4B, 0x46, 0x0C, 0x10), HALVED(728), KEPT, .overwrites = true,
-         ENOUGH},
-	{&sim_ds18b20_b1v2, FIRST(0x4B, 0x46, 0x0C, 0x10), HALVED(650), ENOUGH},
-	{&sim_ds18b20_b2, FIRST(0x55, 0x00, 0x0C, 0x10), HALVED(697), KEPT, .overwrites = true,
-         ENOUGH},
-	{&sim_ds18b20_c, FIRST(0x55, 0x00, 0x0C, 0x10), SAME(30), KEPT, .fixed = true, .copies = 8},
-	/* a capacitor in place of an EEPROM */
-	{&sim_ds18b20_d1, FIRST_25(0x7E, 0x81), SAME(11), KEPT, .no_parasite = true, .keeps = true,
-         .copies = 0},
-	{&sim_ds18b20_d2, FIRST_25(0x7E, 0x81), SAME(523), KEPT, .no_parasite = true, ENOUGH},
-	{&sim_ds18b20_e, FIRST(0x4B, 0x46, 0x10, 0x10), SAME(25), ENOUGH},
-	{&sim_ds18b20_f, FIRST(0x55, 0x00, 0x0C, 0x10), SAME(27), KEPT, .fixed = true,
-         .never_polls = true, .copies = 0},
-	{&sim_ds18b20_g, FIRST(0x55, 0xAA, 0x0C, 0x10), HALVED(320), JOKER, .keeps = true, ENOUGH},
-	{&sim_ds18b20_h,
-         FIRST(0x55, 0xAA, 0x0C, 0x10),
-         {101, 141, 198, 279},
-         .keeps = true,
-         ENOUGH},
-};
+#define CLONE(name, part, ...) \
+	static const struct sim_clone clone_##name = {__VA_ARGS__}; \
+	const struct sim_family sim_ds18b20_##name = THERMOMETER(part, 0x28, PLAIN, \
+	                                                         .kind = &clone_##name);
 
-static const struct sim_clone *clone_of(const struct sim_family *family)
-{
-	for (size_t i = 0; i < sizeof(clones) / sizeof(clones[0]); i++) {
-		if (clones[i].family == family)
-			return &clones[i];
-	}
-	return NULL;
-}
-
-#define CLONE(part) THERMOMETER(part, 0x28, PLAIN)
-const struct sim_family sim_ds18b20_a2 = CLONE("DS18B20-A2");
-const struct sim_family sim_ds18b20_a3 = CLONE("DS18B20-A3");
-const struct sim_family sim_ds18b20_b1 = CLONE("DS18B20-B1");
-const struct sim_family sim_ds18b20_b1v2 = CLONE("DS18B20-B1v2");
-const struct sim_family sim_ds18b20_b2 = CLONE("DS18B20-B2");
-const struct sim_family sim_ds18b20_c = CLONE("DS18B20-C");
-const struct sim_family sim_ds18b20_d1 = CLONE("DS18B20-D1");
-const struct sim_family sim_ds18b20_d2 = CLONE("DS18B20-D2");
-const struct sim_family sim_ds18b20_e = CLONE("DS18B20-E");
-const struct sim_family sim_ds18b20_f = CLONE("DS18B20-F");
-const struct sim_family sim_ds18b20_g = CLONE("DS18B20-G");
-const struct sim_family sim_ds18b20_h = CLONE("DS18B20-H");
+CLONE(a2, "DS18B20-A2", FIRST(0x12, 0x34, 0x0C, 0x10), HALVED(505), ENOUGH)
+CLONE(a3, "DS18B20-A3", FIRST(0x7F, 0x80, 0x0C, 0x10), HALVED(621), .polls_late = true, ENOUGH)
+CLONE(b1, "DS18B20-B1", FIRST(0x4B, 0x46, 0x0C, 0x10), HALVED(728), KEPT, .overwrites = true,
+      ENOUGH)
+CLONE(b1v2, "DS18B20-B1v2", FIRST(0x4B, 0x46, 0x0C, 0x10), HALVED(650), ENOUGH)
+CLONE(b2, "DS18B20-B2", FIRST(0x55, 0x00, 0x0C, 0x10), HALVED(697), KEPT, .overwrites = true,
+      ENOUGH)
+CLONE(c, "DS18B20-C", FIRST(0x55, 0x00, 0x0C, 0x10), SAME(30), KEPT, .fixed = true, .copies = 8)
+/* a capacitor in place of an EEPROM */
+CLONE(d1, "DS18B20-D1", FIRST_25(0x7E, 0x81), SAME(11), KEPT, .no_parasite = true, .keeps = true,
+      .copies = 0)
+CLONE(d2, "DS18B20-D2", FIRST_25(0x7E, 0x81), SAME(523), KEPT, .no_parasite = true, ENOUGH)
+CLONE(e, "DS18B20-E", FIRST(0x4B, 0x46, 0x10, 0x10), SAME(25), ENOUGH)
+CLONE(f, "DS18B20-F", FIRST(0x55, 0x00, 0x0C, 0x10), SAME(27), KEPT, .fixed = true,
+      .never_polls = true, .copies = 0)
+CLONE(g, "DS18B20-G", FIRST(0x55, 0xAA, 0x0C, 0x10), HALVED(320), JOKER, .keeps = true, ENOUGH)
+CLONE(h, "DS18B20-H", FIRST(0x55, 0xAA, 0x0C, 0x10), {101, 141, 198, 279}, .keeps = true, ENOUGH)

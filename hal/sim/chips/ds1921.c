@@ -58,7 +58,6 @@ static void ds1921_create(struct sim_slave *slave)
 	static const uint8_t new_year[SIM_TIME] = {0, 0, 0, 1, 1, 0x81, 0}; /* of 2000 */
 	struct ds1921 *s = slave->state;
 
-	s->pad.kind = &kind;
 	s->clock.stopped = -1;
 	sim_clock_set(&s->clock, 0, new_year);
 	s->pad.memory[CONTROL] = EM;
@@ -349,19 +348,13 @@ static bool ds1921_alarm(struct sim_slave *slave)
 	return (memory[STATUS] & memory[CONTROL] & SEARCHES) != 0;
 }
 
-static uint8_t *memory(struct sim_slave *slave, size_t *size)
-{
-	*size = CLOCK;
-	return sim_state(slave, ds1921)->pad.memory;
-}
-
 #define PART(part, low, high) \
 	{ \
 		.name = (part), .code = 0x21, .overdrive = true, \
-		.state_size = sizeof(struct ds1921), .functions = functions, \
+		.state_size = sizeof(struct ds1921), .kind = &kind, .functions = functions, \
 		.create = ds1921_create, .alarm = ds1921_alarm, .bit = sim_scratchpad_bit, \
-		.worked = ds1921_worked, .advance = ds1921_advance, .memory = memory, \
-		.inputs = (const struct sim_input[]) \
+		.worked = ds1921_worked, .advance = ds1921_advance, \
+		SIM_MEMORY(ds1921, pad.memory, CLOCK), .inputs = (const struct sim_input[]) \
 		{ \
 			{.name = "temperature", .start = 20, .least = (low), .most = (high)}, \
 			{ \

@@ -72,7 +72,6 @@ static void ds1922_create(struct sim_slave *slave)
 	const struct sim_family *family = slave->family;
 	struct ds1922 *s = slave->state;
 
-	s->pad.kind = &kind;
 	s->clock.stopped = -1;
 	sim_clock_set(&s->clock, 0, new_year);
 	s->pad.memory[OSCILLATOR] = EOSC;
@@ -412,19 +411,13 @@ static bool ds1922_alarm(struct sim_slave *slave)
 	return (sim_state(slave, ds1922)->pad.memory[FLAGS] & (FLAGS_USED | BOR)) != 0;
 }
 
-static uint8_t *memory(struct sim_slave *slave, size_t *size)
-{
-	*size = CLOCK;
-	return sim_state(slave, ds1922)->pad.memory;
-}
-
 #define PART(part, list) \
 	{ \
 		.name = (part), .code = 0x41, .overdrive = true, \
-		.state_size = sizeof(struct ds1922), .functions = functions, \
+		.state_size = sizeof(struct ds1922), .kind = &kind, .functions = functions, \
 		.create = ds1922_create, .alarm = ds1922_alarm, .bit = sim_scratchpad_bit, \
-		.worked = ds1922_worked, .advance = ds1922_advance, .memory = memory, \
-		.inputs = (list) \
+		.worked = ds1922_worked, .advance = ds1922_advance, \
+		SIM_MEMORY(ds1922, pad.memory, CLOCK), .inputs = (list) \
 	}
 
 static const struct sim_input low_inputs[] = {

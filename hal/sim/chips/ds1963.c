@@ -33,10 +33,7 @@ static bool has_secrets(const struct sim_slave *slave)
 
 static void ds1963_create(struct sim_slave *slave)
 {
-	struct sim_scratchpad *s = &sim_state(slave, ds1963)->memory;
-
-	s->kind = has_secrets(slave) ? &ds1963s : &ds1963l;
-	memset(s->memory + HIDDEN, 0xFF, COUNTERS - HIDDEN);
+	memset(sim_state(slave, ds1963)->memory.memory + HIDDEN, 0xFF, COUNTERS - HIDDEN);
 }
 
 static void ds1963_power_on(struct sim_slave *slave)
@@ -152,12 +149,6 @@ static void dump(struct sim_slave *slave)
 	sim_scratchpad_dump(slave);
 }
 
-static uint8_t *ds1963_memory(struct sim_slave *slave, size_t *size)
-{
-	*size = 512;
-	return sim_state(slave, ds1963)->memory.memory;
-}
-
 static const struct sim_function ds1963l_functions[] = {
 	{.code = 0x0F, .takes = 2, .start = sim_scratchpad_target, .byte = ds1963_write_scratchpad},
 	{.code = 0xAA, .start = ds1963_read_scratchpad},
@@ -179,13 +170,13 @@ static const struct sim_function ds1963s_functions[] = {
 	{0},
 };
 
-#define COUNTED(part, family, commands) \
+#define COUNTED(part, family, sizes, commands) \
 	{ \
 		.name = (part), .code = (family), .overdrive = true, .resume = (family) == 0x18, \
-		.state_size = sizeof(struct ds1963), .functions = (commands), \
+		.state_size = sizeof(struct ds1963), .kind = &(sizes), .functions = (commands), \
 		.create = ds1963_create, .power_on = ds1963_power_on, .bit = sim_scratchpad_bit, \
-		.worked = ds1963_worked, .memory = ds1963_memory \
+		.worked = ds1963_worked, SIM_MEMORY(ds1963, memory.memory, 512) \
 	}
 
-const struct sim_family sim_ds1963l = COUNTED("DS1963L", 0x1A, ds1963l_functions);
-const struct sim_family sim_ds1963s = COUNTED("DS1963S", 0x18, ds1963s_functions);
+const struct sim_family sim_ds1963l = COUNTED("DS1963L", 0x1A, ds1963l, ds1963l_functions);
+const struct sim_family sim_ds1963s = COUNTED("DS1963S", 0x18, ds1963s, ds1963s_functions);

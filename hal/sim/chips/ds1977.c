@@ -33,11 +33,6 @@ static const struct sim_scratchpad_kind kind = {
 	.to_end = true,
 };
 
-static void ds1977_create(struct sim_slave *slave)
-{
-	sim_state(slave, ds1977)->memory.kind = &kind;
-}
-
 /* Does the password that came equal the one at this address? */
 static bool equals(struct sim_slave *slave, unsigned at)
 {
@@ -143,9 +138,9 @@ const struct sim_family sim_ds1977 = {
 	.starves = true,
 	.state_size = sizeof(struct ds1977),
 	.functions = functions,
-	.create = ds1977_create,
+	.kind = &kind,
 	.power_on = sim_scratchpad_power_on,
 	.bit = sim_scratchpad_bit,
 	.worked = ds1977_worked,
-	.memory = sim_scratchpad_memory,
+	SIM_MEMORY(ds1977, memory.memory, PASSWORD_CONTROL + 1),
 };

@@ -164,12 +164,6 @@ static void read_subkey(struct sim_slave *slave, uint8_t byte)
 	sim_send(slave, out + at, AREA - at);
 }
 
-static uint8_t *ds1991_memory(struct sim_slave *slave, size_t *size)
-{
-	*size = SUBKEYS * AREA;
-	return sim_state(slave, ds1991)->subkey[0];
-}
-
 static const struct sim_function functions[] = {
 	{.code = 0x96, .takes = 2, .start = begin_scratchpad, .byte = ds1991_write_scratchpad},
 	{.code = 0x69, .takes = 2, .start = ds1991_read_scratchpad},
@@ -195,7 +189,7 @@ static const struct sim_function functions[] = {
 #define MULTIKEY(part, family) \
 	{ \
 		.name = (part), .code = (family), .functions = functions, \
-		.state_size = sizeof(struct ds1991), .memory = ds1991_memory \
+		.state_size = sizeof(struct ds1991), SIM_MEMORY(ds1991, subkey, SUBKEYS * AREA) \
 	}
 
 const struct sim_family sim_ds1991 = MULTIKEY("DS1991", 0x02);

@@ -37,11 +37,6 @@ static const struct sim_scratchpad_kind kind = {
 	.plain = true,
 };
 
-static void ds2404_create(struct sim_slave *slave)
-{
-	sim_state(slave, ds2404)->memory.kind = &kind;
-}
-
 static uint64_t ds2404_get(const uint8_t *from, unsigned n)
 {
 	uint64_t value = 0;
@@ -168,10 +163,10 @@ static const struct sim_function functions[] = {
 #define TIME_CHIP(part) \
 	{ \
 		.name = (part), .code = 0x04, .state_size = sizeof(struct ds2404), \
-		.functions = functions, .create = ds2404_create, .power_on = ds2404_power_on, \
+		.functions = functions, .kind = &kind, .power_on = ds2404_power_on, \
 		.alarm = ds2404_alarm, .bit = sim_scratchpad_bit, .worked = ds2404_worked, \
 		.advance = ds2404_advance, .option = ds2404_option, \
-		.memory = sim_scratchpad_memory \
+		SIM_MEMORY(ds2404, memory.memory, END) \
 	}
 
 const struct sim_family sim_ds2404 = TIME_CHIP("DS2404");

@@ -165,12 +165,6 @@ static void write_pins(struct sim_slave *slave, uint8_t byte)
 		next_byte(slave);
 }
 
-static uint8_t *ds2406_memory(struct sim_slave *slave, size_t *size)
-{
-	*size = MEMORY;
-	return sim_state(slave, ds2406)->memory;
-}
-
 static const struct sim_function functions[] = {
 	{.code = 0xF0, .takes = 2, .start = send_memory, .next = send_memory}, /* Read Memory */
 	{.code = 0xAA, .takes = 2, .start = send_status, .next = send_status}, /* Read Status */
@@ -191,5 +185,5 @@ const struct sim_family sim_ds2406 = {
 	.power_on = ds2406_power_on,
 	.alarm = ds2406_alarm,
 	.advance = sim_pins_follow,
-	.memory = ds2406_memory,
+	SIM_MEMORY(ds2406, memory, MEMORY),
 };

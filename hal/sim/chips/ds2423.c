@@ -23,7 +23,6 @@ static void ds2423_create(struct sim_slave *slave)
 {
 	struct ds2423 *s = slave->state;
 
-	s->memory.kind = &kind;
 	s->level[0] = s->level[1] = true;
 }
 
@@ -102,6 +101,7 @@ const struct sim_family sim_ds2423 = {
 	.code = 0x1D,
 	.overdrive = true,
 	.state_size = sizeof(struct ds2423),
+	.kind = &kind,
 	.functions = functions,
 	.inputs = inputs,
 	.create = ds2423_create,
@@ -110,5 +110,5 @@ const struct sim_family sim_ds2423 = {
 	.worked = sim_scratchpad_worked,
 	.advance = ds2423_advance,
 	.option = ds2423_option,
-	.memory = sim_scratchpad_memory,
+	SIM_MEMORY(ds2423, memory.memory, 512),
 };

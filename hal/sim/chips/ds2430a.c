@@ -95,12 +95,6 @@ static void ds2430a_copy(struct sim_slave *slave)
 	sim_end(slave);
 }
 
-static uint8_t *ds2430a_memory(struct sim_slave *slave, size_t *size)
-{
-	*size = 32;
-	return sim_state(slave, ds2430a)->memory;
-}
-
 static const struct sim_function functions[] = {
 	/* Write, Read, Copy Scratchpad; Read Memory */
 	{.code = 0x0F, .takes = 1, .byte = ds2430a_write_scratchpad},
@@ -123,5 +117,5 @@ const struct sim_family sim_ds2430a = {
 	.create = ds2430a_create,
 	.power_on = ds2430a_power_on,
 	.worked = ds2430a_worked,
-	.memory = ds2430a_memory,
+	SIM_MEMORY(ds2430a, memory, 32),
 };

@@ -22,22 +22,19 @@ static const struct sim_scratchpad_kind ds28ec20 = {.size = 0xA40,
 
 static void ds2431_create(struct sim_slave *slave)
 {
-	struct sim_scratchpad *s = sim_state(slave, sim_scratchpad);
+	uint8_t *memory = sim_state(slave, sim_scratchpad)->memory;
 
 	switch (slave->family->code) {
 	case 0x2D:
-		s->kind = &ds2431;
-		s->memory[0x85] = 0xAA; /* factory byte */
-		memset(s->memory + 0x86, 0xFF, 0x90 - 0x86);
+		memory[0x85] = 0xAA; /* factory byte */
+		memset(memory + 0x86, 0xFF, 0x90 - 0x86);
 		break;
 	case 0x43:
-		s->kind = &ds28ec20;
-		memset(s->memory, 0xFF, 0xA00);
-		s->memory[0xA20] = 0x55; /* factory byte */
+		memset(memory, 0xFF, 0xA00);
+		memory[0xA20] = 0x55; /* factory byte */
 		break;
 	default:
-		s->kind = &ds2433;
-		memset(s->memory, 0xFF, 512);
+		memset(memory, 0xFF, 512);
 		break;
 	}
 }
@@ -53,15 +50,16 @@ static const struct sim_function ds28ec20_functions[] = {
 	{0},
 };
 
-#define EEPROM(part, family, commands) \
+#define EEPROM(part, family, sizes, bytes, commands) \
 	{ \
 		.name = (part), .code = (family), .overdrive = true, .functions = (commands), \
 		.resume = (family) != 0x23, .state_size = sizeof(struct sim_scratchpad), \
-		.create = ds2431_create, .power_on = sim_scratchpad_power_on, \
+		.kind = &(sizes), .create = ds2431_create, .power_on = sim_scratchpad_power_on, \
 		.bit = sim_scratchpad_bit, .worked = sim_scratchpad_worked, \
-		.memory = sim_scratchpad_memory \
+		SIM_MEMORY(sim_scratchpad, memory, bytes) \
 	}
 
-const struct sim_family sim_ds2431 = EEPROM("DS2431", 0x2D, functions);
-const struct sim_family sim_ds2433 = EEPROM("DS2433", 0x23, functions);
-const struct sim_family sim_ds28ec20 = EEPROM("DS28EC20", 0x43, ds28ec20_functions);
+const struct sim_family sim_ds2431 = EEPROM("DS2431", 0x2D, ds2431, 0x90, functions);
+const struct sim_family sim_ds2433 = EEPROM("DS2433", 0x23, ds2433, 512, functions);
+const struct sim_family sim_ds28ec20 = EEPROM("DS28EC20", 0x43, ds28ec20, 0xA40,
+                                              ds28ec20_functions);

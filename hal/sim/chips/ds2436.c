@@ -182,12 +182,6 @@ static void read_registers(struct sim_slave *slave)
 	sim_send_byte(slave, there ? *at(slave, address) : 0xFF);
 }
 
-static uint8_t *ds2436_memory(struct sim_slave *slave, size_t *size)
-{
-	*size = 64; /* the EEPROM is recalled at power-on */
-	return sim_state(slave, ds2436)->stored[0];
-}
-
 static const struct sim_function functions[] = {
 	{.code = 0x11, .takes = 1, .start = ds2436_read_scratchpad, .next = ds2436_read_scratchpad},
 	{.code = 0x17, .takes = 1, .byte = ds2436_write_scratchpad},
@@ -221,5 +215,5 @@ const struct sim_family sim_ds2436 = {
 	.inputs = inputs,
 	.power_on = ds2436_power_on,
 	.worked = ds2436_worked,
-	.memory = ds2436_memory,
+	SIM_MEMORY(ds2436, stored, 64), /* the EEPROM is recalled at power-on */
 };

@@ -192,12 +192,6 @@ static const struct sim_function functions[] = {
 	{0},
 };
 
-static uint8_t *ds2438_memory(struct sim_slave *slave, size_t *size)
-{
-	*size = 64;
-	return sim_state(slave, ds2438)->memory[0];
-}
-
 static const struct sim_input inputs[] = {
 	[TEMPERATURE] = SIM_TEMPERATURE_INPUT,
 	[VDD] = {.name = "vdd", .start = 5, .least = 2.4, .most = 10},
@@ -211,7 +205,7 @@ static const struct sim_input inputs[] = {
 		.name = (part), .code = (family), .state_size = sizeof(struct ds2438), \
 		.functions = functions, .inputs = inputs, .create = ds2438_create, \
 		.power_on = ds2438_power_on, .worked = ds2438_worked, .advance = ds2438_advance, \
-		.memory = ds2438_memory \
+		SIM_MEMORY(ds2438, memory, 64) \
 	}
 
 const struct sim_family sim_ds2437 = MONITOR("DS2437", 0x1E);

@@ -58,12 +58,6 @@ static void ds2502_write(struct sim_slave *slave, uint8_t byte)
 		                is_status ? s->status[slave->address] : s->memory[slave->address]);
 }
 
-static uint8_t *ds2502_memory(struct sim_slave *slave, size_t *size)
-{
-	*size = sizeof(struct ds2502); /* the status bytes after the data */
-	return sim_state(slave, ds2502)->memory;
-}
-
 static const struct sim_function functions[] = {
 	{.code = READ_MEMORY, .takes = 2, .start = send_checksum, .next = ds2502_send},
 	{.code = READ_STATUS, .takes = 2, .start = send_checksum, .next = ds2502_send},
@@ -78,7 +72,7 @@ static const struct sim_function functions[] = {
 	{ \
 		.name = (part), .code = (family), .crc8 = true, .functions = functions, \
 		.state_size = sizeof(struct ds2502), .create = ds2502_create, \
-		.memory = ds2502_memory \
+		SIM_MEMORY(ds2502, memory, sizeof(struct ds2502)) \
 	}
 
 const struct sim_family sim_ds2502 = EPROM("DS2502", 0x09);

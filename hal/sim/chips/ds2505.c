@@ -80,14 +80,6 @@ static void ds2505_write(struct sim_slave *slave, uint8_t byte)
 		sim_send_stored(slave, s->bytes[slave->address + (is_status ? s->size : 0)]);
 }
 
-static uint8_t *ds2505_memory(struct sim_slave *slave, size_t *size)
-{
-	struct ds2505 *s = slave->state;
-
-	*size = s->size + s->status_size;
-	return s->bytes;
-}
-
 static const struct sim_function functions[] = {
 	{.code = READ_MEMORY, .takes = 2, .start = ds2505_send, .next = ds2505_send},
 	{.code = 0xA5, .takes = 2, .start = begin_pages, .next = send_page},
@@ -97,14 +89,14 @@ static const struct sim_function functions[] = {
 	{0},
 };
 
-#define EPROM(part, family, fast) \
+#define EPROM(part, family, size, fast) \
 	{ \
 		.name = (part), .code = (family), .overdrive = (fast), .functions = functions, \
 		.state_size = sizeof(struct ds2505), .create = ds2505_create, \
-		.memory = ds2505_memory \
+		SIM_MEMORY(ds2505, bytes, (size) + REDIRECTION + (size) / PAGE) \
 	}
 
-const struct sim_family sim_ds2505 = EPROM("DS2505", 0x0B, false);
-const struct sim_family sim_ds1985u = EPROM("DS1985U", 0x8B, false);
-const struct sim_family sim_ds2506 = EPROM("DS2506", 0x0F, true);
-const struct sim_family sim_ds1986u = EPROM("DS1986U", 0x8F, true);
+const struct sim_family sim_ds2505 = EPROM("DS2505", 0x0B, 2048, false);
+const struct sim_family sim_ds1985u = EPROM("DS1985U", 0x8B, 2048, false);
+const struct sim_family sim_ds2506 = EPROM("DS2506", 0x0F, 8192, true);
+const struct sim_family sim_ds1986u = EPROM("DS1986U", 0x8F, 8192, true);

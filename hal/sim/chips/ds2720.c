@@ -162,14 +162,6 @@ static void lock(struct sim_slave *slave)
 	sim_end(slave);
 }
 
-static uint8_t *ds2720_memory(struct sim_slave *slave, size_t *size)
-{
-	struct ds2720 *s = slave->state;
-
-	*size = sizeof(s->eeprom); /* it is recalled at power-on */
-	return s->eeprom[0];
-}
-
 static const struct sim_function functions[] = {
 	{.code = 0x69, .takes = 1, .start = begin_read, .next = read_data}, /* Read Data */
 	{.code = 0x6C, .takes = 1, .start = ds2720_begin_write, .byte = write_data},
@@ -202,5 +194,5 @@ const struct sim_family sim_ds2720 = {
 	.power_on = ds2720_power_on,
 	.worked = ds2720_worked,
 	.advance = ds2720_advance,
-	.memory = ds2720_memory,
+	SIM_MEMORY(ds2720, eeprom, BLOCKS *BLOCK), /* it is recalled at power-on */
 };

@@ -27,10 +27,7 @@ static const struct sim_scratchpad_kind kind = {
 
 static void ds28e04_create(struct sim_slave *slave)
 {
-	struct sim_scratchpad *s = &sim_state(slave, ds28e04)->memory;
-
-	s->kind = &kind;
-	memset(s->memory, 0xFF, END);
+	memset(sim_state(slave, ds28e04)->memory.memory, 0xFF, END);
 }
 
 /* POL says what the pins are after power-on. */
@@ -141,12 +138,6 @@ static void reset_activity(struct sim_slave *slave)
 	confirm(slave);
 }
 
-static uint8_t *ds28e04_memory(struct sim_slave *slave, size_t *size)
-{
-	*size = kind.writable;
-	return sim_state(slave, ds28e04)->memory.memory;
-}
-
 static const struct sim_function functions[] = {
 	{.code = 0x0F, .takes = 2, .start = sim_scratchpad_target, .byte = sim_scratchpad_write},
 	{.code = 0xAA, .start = sim_scratchpad_read},
@@ -169,6 +160,7 @@ const struct sim_family sim_ds28e04 = {
 	.overdrive = true,
 	.resume = true,
 	.state_size = sizeof(struct ds28e04),
+	.kind = &kind,
 	.functions = functions,
 	.inputs = inputs,
 	.create = ds28e04_create,
@@ -177,5 +169,5 @@ const struct sim_family sim_ds28e04 = {
 	.bit = sim_scratchpad_bit,
 	.worked = sim_scratchpad_worked,
 	.advance = sim_pins_follow,
-	.memory = ds28e04_memory,
+	SIM_MEMORY(ds28e04, memory.memory, 0x210),
 };

@@ -27,15 +27,13 @@ enum control { WHILE_ALARM = 0, UNTIL_CLEARED, AS_WRITTEN, OFF };
 
 /* Light is measured four times a second, all else more seldom: here all alike. */
 #define TICK_NS (250 * NS_PER_MS)
-/* OWFS: 700 ms after a copy the new bytes can be read. */
-#define COPY_NS (600 * NS_PER_MS)
 /* The peak of a vibration decays. */
 #define DECAY_PER_S 10.0
 
-static const struct sim_scratchpad_kind small = {
-	.size = 0x60, .writable = 0x60, .page = 32, .copy_ns = COPY_NS};
-static const struct sim_scratchpad_kind large = {
-	.size = 0xA0, .writable = 0xA0, .page = 32, .copy_ns = COPY_NS};
+static const struct eds_kind *kind_of(const struct sim_slave *slave)
+{
+	return slave->family->kind;
+}
 
 static uint8_t *bytes_at(struct sim_slave *slave, unsigned at)
 {
@@ -61,7 +59,7 @@ static int64_t eds_get(const uint8_t *from, unsigned bytes, bool is_signed)
 
 static uint16_t word(struct sim_slave *slave, unsigned at)
 {
-	unsigned bytes = sim_state(slave, eds)->kind->alarm_bytes;
+	unsigned bytes = kind_of(slave)->alarm_bytes;
 
 	return (uint16_t)eds_get(bytes_at(slave, at), bytes, false);
 }
@@ -97,11 +95,11 @@ static uint16_t eds_measure(struct sim_slave *slave)
 	struct eds *s = slave->state;
 	uint16_t flags = 0;
 
-	for (unsigned i = 0; i < s->kind->quantity_count; i++) {
-		const struct eds_quantity *q = &s->kind->quantities[i];
+	for (unsigned i = 0; i < kind_of(slave)->quantity_count; i++) {
+		const struct eds_quantity *q = &kind_of(slave)->quantities[i];
 		double value;
 
-		if (!has(s->kind, i))
+		if (!has(kind_of(slave), i))
 			continue;
 		value = value_of(slave, q);
 		s->least[i] = fmin(s->least[i], value);
@@ -155,9 +153,8 @@ static uint16_t eds_follow(struct sim_slave *slave)
 /* Relay and LED: by the alarm, or as written. */
 static void switch_outputs(struct sim_slave *slave, bool beyond_now, bool flagged)
 {
-	struct eds *s = slave->state;
-	uint8_t function = *bytes_at(slave, s->kind->relay);
-	uint8_t *out = bytes_at(slave, s->kind->relay + 1u);
+	uint8_t function = *bytes_at(slave, kind_of(slave)->relay);
+	uint8_t *out = bytes_at(slave, kind_of(slave)->relay + 1u);
 
 	for (unsigned i = RELAY; i <= LED; i++) {
 		enum control control = function >> (2 * i) & 3;
@@ -171,7 +168,7 @@ static void switch_outputs(struct sim_slave *slave, bool beyond_now, bool flagge
 static void count_time(struct sim_slave *slave)
 {
 	struct eds *s = slave->state;
-	const struct eds_kind *kind = s->kind;
+	const struct eds_kind *kind = kind_of(slave);
 
 	eds_put(bytes_at(slave, kind->seconds), 4, (slave->now - s->started) / NS_PER_S);
 	if (kind->samples) {
@@ -195,7 +192,7 @@ static void count_time(struct sim_slave *slave)
 /* One round of the microcontroller. */
 static void work(struct sim_slave *slave)
 {
-	const struct eds_kind *kind = sim_state(slave, eds)->kind;
+	const struct eds_kind *kind = kind_of(slave);
 	uint16_t enabled = word(slave, kind->enable), flags = word(slave, kind->alarm);
 	uint16_t now = kind->digital ? eds_follow(slave) : eds_measure(slave);
 
@@ -225,7 +222,7 @@ static void eds_forget(struct sim_slave *slave)
 		s->least[i] = INFINITY;
 		s->most[i] = -INFINITY;
 	}
-	eds_put(bytes_at(slave, s->kind->alarm), s->kind->alarm_bytes, 0);
+	eds_put(bytes_at(slave, kind_of(slave)->alarm), kind_of(slave)->alarm_bytes, 0);
 }
 
 static void clear_alarms(struct sim_slave *slave)
@@ -237,13 +234,9 @@ static void clear_alarms(struct sim_slave *slave)
 
 void eds_create(struct sim_slave *slave)
 {
-	struct eds *s = slave->state;
-
-	s->kind = slave->family->kind;
-	s->memory.kind = s->kind->size == small.size ? &small : &large;
 	memset(bytes_at(slave, TAG), ' ', TAG_SIZE);
-	memcpy(bytes_at(slave, TAG), s->kind->tag, strlen(s->kind->tag));
-	eds_put(bytes_at(slave, ID), 2, s->kind->id);
+	memcpy(bytes_at(slave, TAG), kind_of(slave)->tag, strlen(kind_of(slave)->tag));
+	eds_put(bytes_at(slave, ID), 2, kind_of(slave)->id);
 }
 
 void eds_power_on(struct sim_slave *slave)
@@ -251,9 +244,9 @@ void eds_power_on(struct sim_slave *slave)
 	struct eds *s = slave->state;
 
 	sim_scratchpad_power_on(slave);
-	memset(bytes_at(slave, ID + 2), 0, s->kind->writable - (ID + 2u));
-	*bytes_at(slave, s->kind->relay + 1u) = 0;
-	if (s->kind->digital) {
+	memset(bytes_at(slave, ID + 2), 0, kind_of(slave)->writable - (ID + 2u));
+	*bytes_at(slave, kind_of(slave)->relay + 1u) = 0;
+	if (kind_of(slave)->digital) {
 		*bytes_at(slave, OUTPUT_VALUE) = 0;
 		s->level = 0;
 		for (unsigned i = 0; i < PINS; i++)
@@ -286,19 +279,19 @@ void eds_worked(struct sim_slave *slave)
 	struct eds *s = slave->state;
 	uint8_t fixed[0xA0];
 
-	if (s->kind->digital)
+	if (kind_of(slave)->digital)
 		eds_follow(slave);
-	memcpy(fixed, s->memory.memory, s->kind->writable);
+	memcpy(fixed, s->memory.memory, kind_of(slave)->writable);
 	sim_scratchpad_worked(slave);
-	memcpy(s->memory.memory, fixed, s->kind->writable);
-	if (s->kind->digital)
+	memcpy(s->memory.memory, fixed, kind_of(slave)->writable);
+	if (kind_of(slave)->digital)
 		act(slave);
 	work(slave);
 }
 
 bool eds_alarm(struct sim_slave *slave)
 {
-	return word(slave, sim_state(slave, eds)->kind->alarm) != 0;
+	return word(slave, kind_of(slave)->alarm) != 0;
 }
 
 const struct sim_function eds_functions[] = {

@@ -5,6 +5,7 @@
  */
 #pragma once
 
+#include "hal/base/time.h"
 #include "hal/sim/chips/scratchpad.h"
 
 /* What a kind measures: a register, its limits, and a pair of alarm flags (high, low). */
@@ -20,12 +21,12 @@ struct eds_quantity {
 };
 
 struct eds_kind {
+	struct sim_scratchpad_kind memory; /* first */
 	const struct eds_quantity *quantities;
 	const char *tag;
 	uint16_t id;       /* 0x0064: EDS0064 */
 	uint16_t measures; /* a bit for each quantity that the kind has */
 	uint8_t quantity_count;
-	uint8_t size;                   /* of the memory */
 	uint8_t writable;               /* from here on */
 	uint8_t alarm, alarm_bytes;     /* flags; the enables have as many bytes */
 	uint8_t enable, seconds, relay; /* relay: its function, then its state */
@@ -36,12 +37,13 @@ struct eds_kind {
 /* For struct sim_family. */
 struct eds {
 	struct sim_scratchpad memory; /* first */
-	const struct eds_kind *kind;
 	int64_t started, sampled, followed, tick;
 	double least[16], most[16], peak;
 	uint8_t level; /* of eight pins */
 };
 extern const struct sim_function eds_functions[];
+/* OWFS: 700 ms after a copy the new bytes can be read. */
+#define EDS_COPY_NS (600 * NS_PER_MS)
 void eds_create(struct sim_slave *slave);
 void eds_power_on(struct sim_slave *slave);
 void eds_worked(struct sim_slave *slave);

@@ -146,7 +146,8 @@ static const struct sim_input inputs_90[] = {SIM_PIN("pin.0"), SIM_PIN("pin.1"),
 
 /* Size of the memory, what of it can be written; registers: alarms, enables, seconds, relay. */
 #define KIND(number, text, bytes, from, flags, flag_bytes, enables, time, switches) \
-	.id = 0x##number, .tag = (text), .size = (bytes), .writable = (from), .alarm = (flags), \
+	.memory = {.size = (bytes), .writable = (bytes), .page = 32, .copy_ns = EDS_COPY_NS}, \
+	.id = 0x##number, .tag = (text), .writable = (from), .alarm = (flags), \
 	.alarm_bytes = (flag_bytes), .enable = (enables), .seconds = (time), .relay = (switches)
 #define MEASURES(what, which) \
 	.quantities = (what), .quantity_count = COUNT(what), .measures = (which)
@@ -166,28 +167,28 @@ static const struct sim_input inputs_90[] = {SIM_PIN("pin.0"), SIM_PIN("pin.1"),
 	}
 
 /* clang-format off */
-#define EDS(part, its_inputs, ...) \
+#define EDS(part, bytes, its_inputs, ...) \
 	static const struct eds_kind kind_##part = __VA_ARGS__; \
 	const struct sim_family sim_eds00##part = { \
 		.name = "EDS00" #part, .code = 0x7E, .state_size = sizeof(struct eds), \
 		.kind = &kind_##part, .functions = eds_functions, .inputs = (its_inputs), \
 		.create = eds_create, .power_on = eds_power_on, .bit = sim_scratchpad_bit, \
 		.worked = eds_worked, .advance = eds_advance, .alarm = eds_alarm, \
-		.memory = sim_scratchpad_memory, \
+		SIM_MEMORY(eds, memory.memory, bytes), \
 	}
-EDS(64, inputs_64, ENVIRONMENT(64, "OW-ENV-T", WARMTH));
-EDS(65, inputs_65, ENVIRONMENT(65, "OW-ENV-TH", WARMTH | WATER));
-EDS(66, inputs_66, ENVIRONMENT(66, "OW-ENV-TP", WARMTH | AIR));
-EDS(67, inputs_67, ENVIRONMENT(67, "OW-ENV-TL", WARMTH | LIGHT));
-EDS(68, inputs_68, ENVIRONMENT(68, "OW-ENV-THPL", WARMTH | WATER | AIR | LIGHT));
-EDS(70, inputs_70, {KIND(70, "OW-VIBRATION", 0x60, 0x40, 0x36, 1, 0x40, 0x3C, 0x5E),
+EDS(64, 0x60, inputs_64, ENVIRONMENT(64, "OW-ENV-T", WARMTH));
+EDS(65, 0x60, inputs_65, ENVIRONMENT(65, "OW-ENV-TH", WARMTH | WATER));
+EDS(66, 0x60, inputs_66, ENVIRONMENT(66, "OW-ENV-TP", WARMTH | AIR));
+EDS(67, 0x60, inputs_67, ENVIRONMENT(67, "OW-ENV-TL", WARMTH | LIGHT));
+EDS(68, 0x60, inputs_68, ENVIRONMENT(68, "OW-ENV-THPL", WARMTH | WATER | AIR | LIGHT));
+EDS(70, 0x60, inputs_70, {KIND(70, "OW-VIBRATION", 0x60, 0x40, 0x36, 1, 0x40, 0x3C, 0x5E),
                     MEASURES(vibration, 0x01), .peak = 0x26});
-EDS(71, inputs_71, RTD(71, "OW-RTD-4W"));
-EDS(72, inputs_71, RTD(72, "OW-RTD-3W"));
-EDS(80, inputs_80, OCTAL(80, "OW-IO-AI8-420", currents, 0xFF));
-EDS(82, inputs_82, OCTAL(82, "OW-IO-AI8-10V", voltages, 0xFF));
-EDS(83, inputs_83, OCTAL(83, "OW-IO-AI4-420", currents, 0x0F));
-EDS(85, inputs_85, OCTAL(85, "OW-IO-AI4-10V", voltages, 0x0F));
-EDS(90, inputs_90, {KIND(90, "OW-IO-DIO8", 0x60, 0x50, 0x2A, 2, 0x50, 0x2C, 0x5E),
+EDS(71, 0x60, inputs_71, RTD(71, "OW-RTD-4W"));
+EDS(72, 0x60, inputs_71, RTD(72, "OW-RTD-3W"));
+EDS(80, 0xA0, inputs_80, OCTAL(80, "OW-IO-AI8-420", currents, 0xFF));
+EDS(82, 0xA0, inputs_82, OCTAL(82, "OW-IO-AI8-10V", voltages, 0xFF));
+EDS(83, 0xA0, inputs_83, OCTAL(83, "OW-IO-AI4-420", currents, 0x0F));
+EDS(85, 0xA0, inputs_85, OCTAL(85, "OW-IO-AI4-10V", voltages, 0x0F));
+EDS(90, 0x60, inputs_90, {KIND(90, "OW-IO-DIO8", 0x60, 0x50, 0x2A, 2, 0x50, 0x2C, 0x5E),
                     .digital = true});
 /* clang-format on */

@@ -206,9 +206,10 @@ static void recall_block(struct sim_slave *slave, unsigned block)
 void sim_gauge_power_on(struct sim_slave *slave)
 {
 	struct gauge *s = slave->state;
-	const struct gauge_kind *k = s->kind;
+	const struct gauge_kind *k = slave->family->kind;
 	uint8_t locks = s->memory[k->eeprom] & 7;
 
+	s->kind = k;
 	memset(s->memory, 0, sizeof(s->memory));
 	if (k->eeprom)
 		s->memory[k->eeprom] = locks;
@@ -361,14 +362,6 @@ static void refresh(struct sim_slave *slave)
 	forget_lock(slave);
 	take_defaults(s, s->eeprom[1][1]);
 	sim_end(slave);
-}
-
-uint8_t *sim_gauge_memory(struct sim_slave *slave, size_t *size)
-{
-	struct gauge *s = slave->state;
-
-	*size = sizeof(s->eeprom); /* it is recalled at power-on */
-	return s->eeprom[0];
 }
 
 #define EEPROM_FUNCTIONS \

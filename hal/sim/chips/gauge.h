@@ -53,6 +53,5 @@ struct gauge {
 void sim_gauge_power_on(struct sim_slave *slave);
 void sim_gauge_advance(struct sim_slave *slave);
 void sim_gauge_worked(struct sim_slave *slave);
-uint8_t *sim_gauge_memory(struct sim_slave *slave, size_t *size);
 extern const struct sim_function sim_gauge_functions[], sim_ds2740_functions[],
 	sim_ds2770_functions[];

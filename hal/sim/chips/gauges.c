@@ -141,18 +141,8 @@ static const struct gauge_kind ds2781 = {
 
 static void gauges_create(struct sim_slave *slave)
 {
-	static const struct {
-		uint8_t code;
-		const struct gauge_kind *kind;
-	} kinds[] = {{0x36, &ds2740}, {0x51, &ds2751}, {0x35, &ds2755}, {0x30, &ds2760},
-	             {0x2E, &ds2770}, {0x32, &ds2780}, {0x3D, &ds2781}};
-	struct gauge *s = sim_state(slave, gauge);
-
-	for (unsigned i = 0; i < sizeof(kinds) / sizeof(kinds[0]); i++)
-		if (kinds[i].code == slave->family->code)
-			s->kind = kinds[i].kind;
 	if (slave->family->code == 0x30) /* factory default: both are enabled */
-		s->eeprom[1][0] = CE | DE;
+		sim_state(slave, gauge)->eeprom[1][0] = CE | DE;
 }
 
 #define CONDITION(text) \
@@ -190,18 +180,24 @@ static const struct sim_input ds278x_inputs[] = {
 	{0},
 };
 
-#define GAUGE(part, family, commands, measures) \
+/* Its memory is recalled from the EEPROM at power-on. */
+#define GAUGE(part, family, sizes, commands, measures) \
 	{ \
 		.name = (part), .code = (family), .state_size = sizeof(struct gauge), \
-		.functions = (commands), .inputs = (measures), .create = gauges_create, \
+		.kind = &(sizes), .functions = (commands), .inputs = (measures), \
 		.power_on = sim_gauge_power_on, .worked = sim_gauge_worked, \
-		.advance = sim_gauge_advance, .memory = sim_gauge_memory \
+		.advance = sim_gauge_advance, .create = gauges_create, \
+		SIM_MEMORY(gauge, eeprom, GAUGE_BLOCKS * GAUGE_BLOCK) \
 	}
 
-const struct sim_family sim_ds2740 = GAUGE("DS2740", 0x36, sim_ds2740_functions, inputs);
-const struct sim_family sim_ds2751 = GAUGE("DS2751", 0x51, sim_gauge_functions, inputs);
-const struct sim_family sim_ds2755 = GAUGE("DS2755", 0x35, sim_gauge_functions, inputs);
-const struct sim_family sim_ds2760 = GAUGE("DS2760", 0x30, sim_gauge_functions, ds2760_inputs);
-const struct sim_family sim_ds2770 = GAUGE("DS2770", 0x2E, sim_ds2770_functions, ds2770_inputs);
-const struct sim_family sim_ds2780 = GAUGE("DS2780", 0x32, sim_gauge_functions, ds278x_inputs);
-const struct sim_family sim_ds2781 = GAUGE("DS2781", 0x3D, sim_gauge_functions, ds278x_inputs);
+const struct sim_family sim_ds2740 = GAUGE("DS2740", 0x36, ds2740, sim_ds2740_functions, inputs);
+const struct sim_family sim_ds2751 = GAUGE("DS2751", 0x51, ds2751, sim_gauge_functions, inputs);
+const struct sim_family sim_ds2755 = GAUGE("DS2755", 0x35, ds2755, sim_gauge_functions, inputs);
+const struct sim_family sim_ds2760 = GAUGE("DS2760", 0x30, ds2760, sim_gauge_functions,
+                                           ds2760_inputs);
+const struct sim_family sim_ds2770 = GAUGE("DS2770", 0x2E, ds2770, sim_ds2770_functions,
+                                           ds2770_inputs);
+const struct sim_family sim_ds2780 = GAUGE("DS2780", 0x32, ds2780, sim_gauge_functions,
+                                           ds278x_inputs);
+const struct sim_family sim_ds2781 = GAUGE("DS2781", 0x3D, ds2781, sim_gauge_functions,
+                                           ds278x_inputs);

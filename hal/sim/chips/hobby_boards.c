@@ -45,17 +45,7 @@ struct hobby {
 
 static enum kind kind_of(const struct sim_slave *slave)
 {
-	static const struct {
-		const struct sim_family *family;
-		enum kind kind;
-	} kinds[] = {{&sim_hb_moisture_meter, MOISTURE}, {&sim_hb_hub, HUB},
-	             {&sim_hb_barometer, BAROMETER},     {&sim_hb_humidity, HUMIDITY},
-	             {&sim_hb_multitemp, MULTITEMP},     {&sim_hb_uvi_meter, UVI}};
-	unsigned i = 0;
-
-	while (kinds[i].kind != UVI && kinds[i].family != slave->family)
-		i++;
-	return kinds[i].kind;
+	return *(const enum kind *)slave->family->kind;
 }
 
 static int setting16(const struct sim_slave *slave, unsigned at)
@@ -366,12 +356,6 @@ static int hobby_boards_option(struct sim_slave *slave, const char *name, double
 	return 0;
 }
 
-static uint8_t *hobby_boards_memory(struct sim_slave *slave, size_t *size)
-{
-	*size = SETTINGS;
-	return sim_state(slave, hobby)->settings;
-}
-
 #define COMMAND(code_) \
 	{ \
 		.code = (code_), .start = hobby_boards_command, .byte = argument \
@@ -418,17 +402,18 @@ static const struct sim_input multitemp_inputs[] = {TEMPERATURE("temperature.0")
                                                     TEMPERATURE("temperature.5"),
                                                     {0}};
 
-#define HB(part, family, inputs_) \
+#define HB(part, family, which, inputs_) \
 	{ \
 		.name = (part), .code = (family), .state_size = sizeof(struct hobby), \
-		.functions = functions, .inputs = (inputs_), .create = hobby_boards_create, \
-		.power_on = hobby_boards_power_on, .option = hobby_boards_option, \
-		.memory = hobby_boards_memory \
+		.kind = &(const enum kind){which}, .functions = functions, .inputs = (inputs_), \
+		.create = hobby_boards_create, .power_on = hobby_boards_power_on, \
+		.option = hobby_boards_option, SIM_MEMORY(hobby, settings, SETTINGS) \
 	}
 
-const struct sim_family sim_hb_uvi_meter = HB("HB_UVI_METER", 0xEE, uvi_inputs);
-const struct sim_family sim_hb_moisture_meter = HB("HB_MOISTURE_METER", 0xEF, moisture_inputs);
-const struct sim_family sim_hb_hub = HB("HB_HUB", 0xEF, hub_inputs);
-const struct sim_family sim_hb_barometer = HB("HB_BAROMETER", 0xEF, barometer_inputs);
-const struct sim_family sim_hb_humidity = HB("HB_HUMIDITY", 0xEF, humidity_inputs);
-const struct sim_family sim_hb_multitemp = HB("HB_MULTITEMP", 0xEF, multitemp_inputs);
+const struct sim_family sim_hb_uvi_meter = HB("HB_UVI_METER", 0xEE, UVI, uvi_inputs);
+const struct sim_family sim_hb_moisture_meter = HB("HB_MOISTURE_METER", 0xEF, MOISTURE,
+                                                   moisture_inputs);
+const struct sim_family sim_hb_hub = HB("HB_HUB", 0xEF, HUB, hub_inputs);
+const struct sim_family sim_hb_barometer = HB("HB_BAROMETER", 0xEF, BAROMETER, barometer_inputs);
+const struct sim_family sim_hb_humidity = HB("HB_HUMIDITY", 0xEF, HUMIDITY, humidity_inputs);
+const struct sim_family sim_hb_multitemp = HB("HB_MULTITEMP", 0xEF, MULTITEMP, multitemp_inputs);

@@ -94,12 +94,6 @@ static void set_led(struct sim_slave *slave)
 	sim_end(slave);
 }
 
-static uint8_t *iblss_memory(struct sim_slave *slave, size_t *size)
-{
-	*size = 1;
-	return &sim_state(slave, iblss)->led;
-}
-
 static const struct sim_function functions[] = {
 	{.code = 0xB4, .start = iblss_convert},
 	{.code = 0xF0, .takes = 1, .start = read_page},
@@ -122,5 +116,5 @@ const struct sim_family sim_iblss = {
 	.power_on = iblss_power_on,
 	.advance = iblss_advance,
 	.option = iblss_option,
-	.memory = iblss_memory,
+	SIM_MEMORY(iblss, led, 1),
 };

@@ -28,7 +28,7 @@ struct inferno {
 	uint8_t led[PORTS], type[PORTS][CHANNELS];
 	uint8_t relay[3][RELAYS]; /* states, modes, timeouts */
 	uint8_t active[PORTS], level[PORTS];
-	enum kind kind, application;
+	enum kind kind; /* now */
 	uint8_t status;
 	uint8_t taken[WRITTEN + 1 + BLOCK + 4];
 	uint16_t got;
@@ -39,6 +39,12 @@ struct command {
 	uint8_t code, args;
 	void (*answer)(struct sim_slave *slave, const uint8_t *args);
 };
+
+/* What it is but while its firmware is written. */
+static enum kind application(const struct sim_slave *slave)
+{
+	return *(const enum kind *)slave->family->kind;
+}
 
 /* 0, and n bytes. */
 static void ok(struct sim_slave *slave, const uint8_t *data, unsigned n)
@@ -177,7 +183,7 @@ static void boot_application(struct sim_slave *slave, const uint8_t *args)
 	struct inferno *s = slave->state;
 
 	(void)args;
-	s->kind = s->application;
+	s->kind = application(slave);
 	ok(slave, NULL, 0);
 }
 
@@ -398,20 +404,11 @@ static void identity(struct sim_slave *slave)
 	sim_send(slave, out, slave->function->code == STATUS ? 8 : 4);
 }
 
-static void inferno_create(struct sim_slave *slave)
-{
-	struct inferno *s = slave->state;
-
-	s->application = slave->family == &sim_inferno_rgbw      ? RGBW
-	                 : slave->family == &sim_inferno_updater ? UPDATER
-	                                                         : SWITCHES;
-}
-
 static void inferno_power_on(struct sim_slave *slave)
 {
 	struct inferno *s = slave->state;
 
-	s->kind = s->application;
+	s->kind = application(slave);
 	s->status = POWER_ON;
 	memset(s->light, 0, sizeof(s->light));
 	memset(s->led, 0, sizeof(s->led));
@@ -462,13 +459,14 @@ static const struct sim_input switches[] = {
 	SWITCH("switch.0.3"), SWITCH("switch.1.0"), SWITCH("switch.1.1"),
 	SWITCH("switch.1.2"), SWITCH("switch.1.3"), {0}};
 
-#define INFERNO(part, inputs_) \
+#define INFERNO(part, which, inputs_) \
 	{ \
 		.name = (part), .code = 0xED, .resume = true, .inputs = (inputs_), \
 		.state_size = sizeof(struct inferno), .functions = functions, \
-		.create = inferno_create, .power_on = inferno_power_on, .advance = inferno_advance \
+		.kind = &(const enum kind){which}, .power_on = inferno_power_on, \
+		.advance = inferno_advance \
 	}
 
-const struct sim_family sim_inferno_switches = INFERNO("IE_SWITCH_MASTER", switches);
-const struct sim_family sim_inferno_rgbw = INFERNO("IE_RGBW", NULL);
-const struct sim_family sim_inferno_updater = INFERNO("IE_UPDATER", NULL);
+const struct sim_family sim_inferno_switches = INFERNO("IE_SWITCH_MASTER", SWITCHES, switches);
+const struct sim_family sim_inferno_rgbw = INFERNO("IE_RGBW", RGBW, NULL);
+const struct sim_family sim_inferno_updater = INFERNO("IE_UPDATER", UPDATER, NULL);

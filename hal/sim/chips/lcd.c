@@ -204,12 +204,6 @@ static void lcd_read_scratchpad(struct sim_slave *slave)
 	sim_send(slave, sim_state(slave, lcd)->scratchpad, VERSION_TEXT);
 }
 
-static uint8_t *lcd_memory(struct sim_slave *slave, size_t *size)
-{
-	*size = EEPROM + DISPLAY + 2;
-	return sim_state(slave, lcd)->eeprom;
-}
-
 #define COMMAND(code_) \
 	{ \
 		.code = (code_), .start = command \
@@ -249,5 +243,5 @@ const struct sim_family sim_lcd = {
 	.power_on = lcd_power_on,
 	.worked = lcd_worked,
 	.advance = lcd_advance,
-	.memory = lcd_memory,
+	SIM_MEMORY(lcd, eeprom, EEPROM + DISPLAY + 2),
 };

@@ -153,12 +153,6 @@ static int max31826_option(struct sim_slave *slave, const char *name, double val
 	return 0;
 }
 
-static uint8_t *max31826_memory(struct sim_slave *slave, size_t *size)
-{
-	*size = SIM_MAX_MEMORY;
-	return sim_state(slave, sim_max)->memory;
-}
-
 #define FUNCTIONS \
 	{.code = 0x44, .start = max31826_convert}, \
 		{.code = 0xBE, .start = max31826_read_scratchpad}, \
@@ -198,6 +192,7 @@ static const struct sim_input max31850_inputs[] = {
 	}
 
 const struct sim_family sim_max31826 = PART("MAX31826", .functions = max31826_functions,
-                                            .inputs = max31826_inputs, .memory = max31826_memory);
+                                            .inputs = max31826_inputs,
+                                            SIM_MEMORY(sim_max, memory, SIM_MAX_MEMORY));
 const struct sim_family sim_max31850 = PART("MAX31850", .functions = max31850_functions,
                                             .inputs = max31850_inputs);

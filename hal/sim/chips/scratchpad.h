@@ -23,7 +23,6 @@ struct sim_scratchpad_kind {
 #define SIM_SCRATCHPAD_MEMORY 0x8000
 struct sim_scratchpad {
 	struct sim_pins pins; /* first; of a memory with pins */
-	const struct sim_scratchpad_kind *kind;
 	uint8_t memory[SIM_SCRATCHPAD_MEMORY];
 	uint8_t pad[64];
 	uint16_t target;
@@ -31,7 +30,10 @@ struct sim_scratchpad {
 	bool bad_sequence;
 };
 
-/* For struct sim_family; the state begins with a struct sim_scratchpad. */
+/*
+ * For struct sim_family. Its state begins with a struct sim_scratchpad, and its kind is a struct
+ * sim_scratchpad_kind, or begins with one.
+ */
 #define SIM_SCRATCHPAD_FUNCTIONS(copy) \
 	{.code = 0x0F, .takes = 2, .start = sim_scratchpad_target, .byte = sim_scratchpad_write}, \
 		{.code = 0xAA, .start = sim_scratchpad_read}, \
@@ -43,7 +45,6 @@ struct sim_scratchpad {
 void sim_scratchpad_power_on(struct sim_slave *slave);
 bool sim_scratchpad_bit(struct sim_slave *slave);
 void sim_scratchpad_worked(struct sim_slave *slave);
-uint8_t *sim_scratchpad_memory(struct sim_slave *slave, size_t *size);
 /* For struct sim_function. */
 void sim_scratchpad_target(struct sim_slave *slave);
 void sim_scratchpad_write(struct sim_slave *slave, uint8_t byte);

@@ -10,7 +10,6 @@ enum { SIM_TEMPERATURE, SIM_PIN_A, SIM_PIN_B }; /* inputs */
 
 /* What a kind of clone of the DS18B20 does unlike it. */
 struct sim_clone {
-	const struct sim_family *family;
 	uint8_t first[8];                       /* the scratchpad after power-on */
 	uint16_t ms[4];                         /* a conversion of 9 to 12 bits */
 	enum { AS_GENUINE, KEPT, JOKER } sixth; /* byte 6 after a conversion */

@@ -309,12 +309,6 @@ static int tmp1826_option(struct sim_slave *slave, const char *name, double valu
 	return 0;
 }
 
-static uint8_t *memory(struct sim_slave *slave, size_t *size)
-{
-	*size = SIM_TMP1826_MEMORY;
-	return sim_state(slave, sim_tmp1826)->memory;
-}
-
 static const struct sim_input inputs[] = {
 	{.name = "temperature", .start = 20, .least = -55, .most = 150},
 	{0},
@@ -326,7 +320,7 @@ static const struct sim_input inputs[] = {
 		.state_size = sizeof(struct sim_tmp1826), .inputs = inputs, \
 		.functions = functions, .create = tmp1826_create, .power_on = tmp1826_power_on, \
 		.alarm = tmp1826_alarm, .bit = tmp1826_bit, .worked = tmp1826_worked, \
-		.option = tmp1826_option, .memory = memory \
+		.option = tmp1826_option, SIM_MEMORY(sim_tmp1826, memory, SIM_TMP1826_MEMORY) \
 	}
 
 const struct sim_family sim_tmp1826 = PART("TMP1826");

@@ -92,7 +92,7 @@ void visit_change(struct sim_slave *slave, bool again, bool turned)
 			value = again ? 61.5 : 20.25;
 		wire_set(slave, inputs[i].name, value);
 	}
-	uint8_t *memory = slave->family->memory ? slave->family->memory(slave, &size) : NULL;
+	uint8_t *memory = sim_slave_memory(slave, &size);
 	/* Registers; the first page of an EDS, which says what it is. */
 	bool has_registers = strcmp(slave->family->name, "DS2438") == 0 ||
 	                     strcmp(slave->family->name, "DS2437") == 0;

@@ -74,8 +74,8 @@ static size_t kept(const struct visit *visit, const uint8_t **state)
 	size_t size = visited->family->state_size;
 
 	*state = visited->state;
-	if (visited->family->memory && strcmp(visit->chip, "DS2406") != 0)
-		*state = visited->family->memory(visited, &size);
+	if (visited->family->memory_size && strcmp(visit->chip, "DS2406") != 0)
+		*state = sim_slave_memory(visited, &size);
 	if (strcmp(visit->chip, "DS2450") == 0)
 		size = 32;
 	if (strcmp(visit->chip, "DS2408") == 0)

@@ -75,7 +75,7 @@ static void test_a_conversion_under_way_shows_as_measuring(void)
 
 	is("temperature", "        21.5");
 	is("about/measuring", "0");
-	chip->family->memory(chip, &size)[0x214] &= 0x7f;
+	sim_slave_memory(chip, &size)[0x214] &= 0x7f;
 	is("about/measuring", "1");
 }
 

@@ -334,7 +334,7 @@ static void test_a_ds2502_is_read_and_needs_more_than_this_master_has_to_be_writ
 	size_t size;
 
 	start("DS2502");
-	uint8_t *memory = slave->family->memory(slave, &size);
+	uint8_t *memory = sim_slave_memory(slave, &size);
 	for (unsigned i = 0; i < 128; i++)
 		memory[i] = (uint8_t)(i * 3);
 	TEST_ASSERT_EQUAL_UINT(128, go(BUS_READ, "memory", NULL)->len);

@@ -51,7 +51,7 @@ static uint8_t *memory(void)
 {
 	size_t size;
 
-	return chip->family->memory(chip, &size);
+	return sim_slave_memory(chip, &size);
 }
 
 static void wait_s(unsigned seconds)

@@ -33,7 +33,7 @@ static void test_a_ds1977_is_read_on_a_host_that_is_late(void)
 	const struct sim_slave *outputs = wire_add(0, "DS2408", 2);
 	start();
 	size_t size;
-	memcpy(chip->family->memory(chip, &size) + 3 * 64, page, 32);
+	memcpy(sim_slave_memory(chip, &size) + 3 * 64, page, 32);
 	for (unsigned i = 0; i < 20; i++) {
 		uint32_t id = ask(BUS_READ, BUS_INPUT, true, of(chip, properties[i % 2]), NULL);
 		uint32_t other = ask(BUS_READ, BUS_ALARM, true, of(outputs, "latch.BYTE"), NULL);

@@ -35,7 +35,7 @@ static uint8_t *memory(void)
 {
 	size_t size;
 
-	return slave->family->memory(slave, &size);
+	return sim_slave_memory(slave, &size);
 }
 
 static void test_sensors_with_one_word_are_read(void)

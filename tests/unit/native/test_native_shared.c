@@ -98,7 +98,7 @@ static void test_a_list_is_as_old_as_its_oldest_element(void)
 	size_t size;
 
 	begin("DS2431");
-	uint8_t *memory = chip->family->memory(chip, &size);
+	uint8_t *memory = sim_slave_memory(chip, &size);
 
 	memset(memory, 'a', size);
 	TEST_ASSERT_EQUAL_INT(

@@ -30,7 +30,7 @@ static uint8_t *plug(const struct sim_family *family)
 	size_t size;
 
 	slave = hand_plug(&hand, family, 1);
-	return slave->family->memory(slave, &size);
+	return sim_slave_memory(slave, &size);
 }
 
 static void send(const uint8_t *bytes, unsigned n)

@@ -27,7 +27,7 @@ static uint8_t *plug(const struct sim_family *family)
 	size_t size;
 
 	slave = hand_plug(&hand, family, 1);
-	return slave->family->memory(slave, &size);
+	return sim_slave_memory(slave, &size);
 }
 
 static void send(const uint8_t *bytes, unsigned n)
@@ -71,7 +71,7 @@ static void test_the_password_opens_a_subkey_and_a_wrong_one_reads_noise(void)
 	begin_subkey(0x66, 0x50);
 	hand_write(&hand, wrong, 8);
 	hand_read(&hand, in, sizeof(in));
-	TEST_ASSERT_NOT_EQUAL(0, memcmp(in, slave->family->memory(slave, &(size_t){0}) + 0x50, 48));
+	TEST_ASSERT_NOT_EQUAL(0, memcmp(in, sim_slave_memory(slave, &(size_t){0}) + 0x50, 48));
 }
 
 static void test_a_subkey_is_written_with_its_password_only(void)

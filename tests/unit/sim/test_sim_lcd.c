@@ -30,7 +30,7 @@ static const uint8_t *seen(void)
 {
 	size_t size;
 
-	return slave->family->memory(slave, &size);
+	return sim_slave_memory(slave, &size);
 }
 
 static void scratchpad(uint8_t *bytes, unsigned n)

@@ -284,7 +284,7 @@ static uint8_t *plug_ds2502(void)
 	uint8_t *memory;
 
 	slave = hand_plug(&hand, &sim_ds2502, 1);
-	memory = slave->family->memory(slave, &size);
+	memory = sim_slave_memory(slave, &size);
 	TEST_ASSERT_EQUAL_size_t(128 + 8, size);
 	for (unsigned i = 0; i < 128; i++)
 		memory[i] = (uint8_t)i;

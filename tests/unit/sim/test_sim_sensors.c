@@ -98,7 +98,7 @@ static void test_the_smart_slave_has_a_light(void)
 
 	slave = hand_plug(&hand, &sim_iblss, 1);
 	hand_skip(&hand, 3, 0xA5, 0x00, 0x01);
-	TEST_ASSERT_EQUAL_HEX8(1, *slave->family->memory(slave, &size));
+	TEST_ASSERT_EQUAL_HEX8(1, *sim_slave_memory(slave, &size));
 }
 
 static void test_the_example_has_an_id_only(void)
