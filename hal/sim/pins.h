@@ -23,14 +23,9 @@ void sim_pins_follow(struct sim_slave *slave);
 void sim_pins_write(struct sim_slave *slave, uint8_t latch);
 
 /* PIO access of two pins, or Channel Access of eight: for struct sim_function. */
-#define SIM_PINS_READ(number) \
-	{ \
-		.code = (number), .start = sim_pins_send, .next = sim_pins_send \
-	}
+#define SIM_PINS_READ(number) .code = (number), .start = sim_pins_send, .next = sim_pins_send
 #define SIM_PINS_WRITE(number) \
-	{ \
-		.code = (number), .takes = 2, .start = sim_pins_take, .next = sim_pins_taken \
-	}
+	.code = (number), .takes = 2, .start = sim_pins_take, .next = sim_pins_taken
 void sim_pins_send(struct sim_slave *slave);
 void sim_pins_take(struct sim_slave *slave);
 void sim_pins_taken(struct sim_slave *slave);

@@ -23,14 +23,9 @@ struct sim_input {
 	double least, most; /* both 0: no bounds */
 };
 
-#define SIM_PIN(text) \
-	{ \
-		.name = (text), .start = 1, .pin = true \
-	}
-#define SIM_TEMPERATURE_INPUT \
-	{ \
-		.name = "temperature", .start = 20, .least = -55, .most = 125 \
-	}
+#define SIM_PIN(text) .name = (text), .start = 1, .pin = true
+#define SIM_CONDITION(text) .name = (text), .pin = true
+#define SIM_TEMPERATURE_INPUT .name = "temperature", .start = 20, .least = -55, .most = 125
 
 /*
  * A function command: its code, the bytes that belong to it, and what it does. The slave keeps the

@@ -306,20 +306,17 @@ static void query(struct sim_slave *slave)
 }
 
 /* After the checksum the confirmation may come. */
-#define WRITES(code_) \
-	{ \
-		.code = (code_), .start = bae_begin, .byte = bae_take, .next = sim_receive \
-	}
+#define WRITES(code_) .code = (code_), .start = bae_begin, .byte = bae_take, .next = sim_receive
 static const struct sim_function functions[] = {
 	{.code = VERSION, .start = version},
 	{.code = TYPE, .start = type},
-	WRITES(EXTENDED),
+	{WRITES(EXTENDED)},
 	{.code = READ_BLOCK, .takes = 3, .start = read_block},
-	WRITES(WRITE_BLOCK),
-	WRITES(ERASE_PAGE),
-	WRITES(WRITE_RUN),
-	WRITES(SEQUENCE_WRITE),
-	WRITES(SEQUENCE_READ),
+	{WRITES(WRITE_BLOCK)},
+	{WRITES(ERASE_PAGE)},
+	{WRITES(WRITE_RUN)},
+	{WRITES(SEQUENCE_WRITE)},
+	{WRITES(SEQUENCE_READ)},
 	{.code = QUERY, .start = query},
 	{0},
 };
@@ -327,14 +324,11 @@ static const struct sim_function functions[] = {
 static const struct sim_input inputs[] = {{.name = "adc", .start = 2.5, .least = 0, .most = 5},
                                           {0}};
 
-/* Its memory: registers (of the 0910 128, of the 0911 2048), EEPROM, SD card, I2C expander, text. */
+/* Its memory: registers (the 0910 has 128, the 0911 2048), EEPROM, SD card, I2C expander, text. */
 #define BAE(part) \
-	{ \
-		.name = (part), .code = 0xFC, .state_size = sizeof(struct bae), \
-		.functions = functions, .inputs = inputs, .create = bae_create, \
-		.power_on = bae_power_on, .advance = bae_advance, \
-		SIM_MEMORY(bae, registers, offsetof(struct bae, taken)) \
-	}
+	.name = (part), .code = 0xFC, .state_size = sizeof(struct bae), .functions = functions, \
+	.inputs = inputs, .create = bae_create, .power_on = bae_power_on, .advance = bae_advance, \
+	SIM_MEMORY(bae, registers, offsetof(struct bae, taken))
 
-const struct sim_family sim_bae0910 = BAE("BAE0910");
-const struct sim_family sim_bae0911 = BAE("BAE0911");
+const struct sim_family sim_bae0910 = {BAE("BAE0910")};
+const struct sim_family sim_bae0911 = {BAE("BAE0911")};

@@ -57,22 +57,17 @@ static const struct sim_input current[] = {{.name = "current", .least = 0, .most
 static const struct sim_input analog[] = {{.name = "volts", .least = 0, .most = 10}, {0}};
 
 /* 0: the contact is open, 1: closed, 2: its loop is shorted, 3: its loop is interrupted. */
-#define CONTACT(text) \
-	{ \
-		.name = (text), .least = 0, .most = 3 \
-	}
-static const struct sim_input contacts[] = {CONTACT("contact.0"),
-                                            CONTACT("contact.1"),
-                                            CONTACT("contact.2"),
-                                            CONTACT("contact.3"),
+#define CONTACT(text) .name = (text), .least = 0, .most = 3
+static const struct sim_input contacts[] = {{CONTACT("contact.0")},
+                                            {CONTACT("contact.1")},
+                                            {CONTACT("contact.2")},
+                                            {CONTACT("contact.3")},
                                             {0}};
 
 #define SENSOR(part, family, inputs_) \
-	{ \
-		.name = (part), .code = (family), .functions = functions, .inputs = (inputs_) \
-	}
+	.name = (part), .code = (family), .functions = functions, .inputs = (inputs_)
 
-const struct sim_family sim_mrs001 = SENSOR("mRS001", 0xA0, rotation);
-const struct sim_family sim_mcm001 = SENSOR("mCM001", 0xA2, current);
-const struct sim_family sim_mdi001 = SENSOR("mDI001", 0xA5, contacts);
-const struct sim_family sim_mam001 = SENSOR("mAM001", 0xB2, analog);
+const struct sim_family sim_mrs001 = {SENSOR("mRS001", 0xA0, rotation)};
+const struct sim_family sim_mcm001 = {SENSOR("mCM001", 0xA2, current)};
+const struct sim_family sim_mdi001 = {SENSOR("mDI001", 0xA5, contacts)};
+const struct sim_family sim_mam001 = {SENSOR("mAM001", 0xB2, analog)};

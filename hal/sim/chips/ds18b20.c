@@ -299,77 +299,63 @@ static int ds18b20_option(struct sim_slave *slave, const char *name, double valu
 static const struct sim_function functions[] = {FUNCTIONS, {0}};
 static const struct sim_function ea00_functions[] = {
 	FUNCTIONS,
-	SIM_PINS_READ(0xF5),
-	SIM_PINS_WRITE(0xA5),
+	{SIM_PINS_READ(0xF5)},
+	{SIM_PINS_WRITE(0xA5)},
 	{0},
 };
 
 static const struct sim_input inputs[] = {
-	[SIM_TEMPERATURE] = SIM_TEMPERATURE_INPUT,
+	[SIM_TEMPERATURE] = {SIM_TEMPERATURE_INPUT},
 	{0},
 };
 static const struct sim_input ea00_inputs[] = {
-	[SIM_TEMPERATURE] = SIM_TEMPERATURE_INPUT,
-	[SIM_PIN_A] = SIM_PIN("pin.A"),
-	[SIM_PIN_B] = SIM_PIN("pin.B"),
+	[SIM_TEMPERATURE] = {SIM_TEMPERATURE_INPUT},
+	[SIM_PIN_A] = {SIM_PIN("pin.A")},
+	[SIM_PIN_B] = {SIM_PIN("pin.B")},
 	{0},
 };
 
 #define THERMOMETER(part, family, ...) \
-	{ \
-		.name = part, .code = family, .state_size = sizeof(struct sim_thermometer), \
-		.starves = true, .create = ds18b20_create, .power_on = ds18b20_power_on, \
-		.alarm = ds18b20_alarm, .bit = ds18b20_bit, .worked = ds18b20_worked, \
-		.option = ds18b20_option, __VA_ARGS__ \
-	}
+	.name = part, .code = family, .state_size = sizeof(struct sim_thermometer), \
+	.starves = true, .create = ds18b20_create, .power_on = ds18b20_power_on, \
+	.alarm = ds18b20_alarm, .bit = ds18b20_bit, .worked = ds18b20_worked, \
+	.option = ds18b20_option, __VA_ARGS__
 #define PLAIN .inputs = inputs, .functions = functions
 
-const struct sim_family sim_ds18b20 = THERMOMETER("DS18B20", 0x28, PLAIN);
-const struct sim_family sim_ds18s20 = THERMOMETER("DS18S20", FAMILY_S20, PLAIN);
-const struct sim_family sim_ds1822 = THERMOMETER("DS1822", 0x22, PLAIN);
-const struct sim_family sim_ds1825 = THERMOMETER("DS1825", FAMILY_1825, PLAIN);
-const struct sim_family sim_ds28ea00 = THERMOMETER("DS28EA00", FAMILY_EA00, .inputs = ea00_inputs,
-                                                   .functions = ea00_functions, .overdrive = true,
-                                                   .advance = sim_pins_follow);
+const struct sim_family sim_ds18b20 = {THERMOMETER("DS18B20", 0x28, PLAIN)};
+const struct sim_family sim_ds18s20 = {THERMOMETER("DS18S20", FAMILY_S20, PLAIN)};
+const struct sim_family sim_ds1822 = {THERMOMETER("DS1822", 0x22, PLAIN)};
+const struct sim_family sim_ds1825 = {THERMOMETER("DS1825", FAMILY_1825, PLAIN)};
+const struct sim_family sim_ds28ea00 = {THERMOMETER("DS28EA00", FAMILY_EA00, .inputs = ea00_inputs,
+                                                    .functions = ea00_functions, .overdrive = true,
+                                                    .advance = sim_pins_follow)};
 
 /* --- The clones ------------------------------------------------------------------------------ */
 
-#define HALVED(full) \
-	{ \
-		(full) / 8, (full) / 4, (full) / 2, (full) \
-	}
-#define SAME(full) \
-	{ \
-		(full), (full), (full), (full) \
-	}
-#define FIRST(high, low, six, seven) \
-	{ \
-		0x50, 0x05, (high), (low), 0x7F, 0xFF, (six), (seven) \
-	}
-#define FIRST_25(five, six) \
-	{ \
-		0x90, 0x01, 0x55, 0x05, 0x7F, (five), (six), 0x66 \
-	}
+#define HALVED(full) (full) / 8, (full) / 4, (full) / 2, (full)
+#define SAME(full) (full), (full), (full), (full)
+#define FIRST(high, low, six, seven) 0x50, 0x05, (high), (low), 0x7F, 0xFF, (six), (seven)
+#define FIRST_25(five, six) 0x90, 0x01, 0x55, 0x05, 0x7F, (five), (six), 0x66
 #define ENOUGH .copies = 255
 #define CLONE(name, part, ...) \
 	static const struct sim_clone clone_##name = {__VA_ARGS__}; \
-	const struct sim_family sim_ds18b20_##name = THERMOMETER(part, 0x28, PLAIN, \
-	                                                         .kind = &clone_##name);
+	const struct sim_family sim_ds18b20_##name = { \
+		THERMOMETER(part, 0x28, PLAIN, .kind = &clone_##name)};
 
-CLONE(a2, "DS18B20-A2", FIRST(0x12, 0x34, 0x0C, 0x10), HALVED(505), ENOUGH)
-CLONE(a3, "DS18B20-A3", FIRST(0x7F, 0x80, 0x0C, 0x10), HALVED(621), .polls_late = true, ENOUGH)
-CLONE(b1, "DS18B20-B1", FIRST(0x4B, 0x46, 0x0C, 0x10), HALVED(728), KEPT, .overwrites = true,
+CLONE(a2, "DS18B20-A2", {FIRST(0x12, 0x34, 0x0C, 0x10)}, {HALVED(505)}, ENOUGH)
+CLONE(a3, "DS18B20-A3", {FIRST(0x7F, 0x80, 0x0C, 0x10)}, {HALVED(621)}, .polls_late = true, ENOUGH)
+CLONE(b1, "DS18B20-B1", {FIRST(0x4B, 0x46, 0x0C, 0x10)}, {HALVED(728)}, KEPT, .overwrites = true,
       ENOUGH)
-CLONE(b1v2, "DS18B20-B1v2", FIRST(0x4B, 0x46, 0x0C, 0x10), HALVED(650), ENOUGH)
-CLONE(b2, "DS18B20-B2", FIRST(0x55, 0x00, 0x0C, 0x10), HALVED(697), KEPT, .overwrites = true,
+CLONE(b1v2, "DS18B20-B1v2", {FIRST(0x4B, 0x46, 0x0C, 0x10)}, {HALVED(650)}, ENOUGH)
+CLONE(b2, "DS18B20-B2", {FIRST(0x55, 0x00, 0x0C, 0x10)}, {HALVED(697)}, KEPT, .overwrites = true,
       ENOUGH)
-CLONE(c, "DS18B20-C", FIRST(0x55, 0x00, 0x0C, 0x10), SAME(30), KEPT, .fixed = true, .copies = 8)
+CLONE(c, "DS18B20-C", {FIRST(0x55, 0x00, 0x0C, 0x10)}, {SAME(30)}, KEPT, .fixed = true, .copies = 8)
 /* a capacitor in place of an EEPROM */
-CLONE(d1, "DS18B20-D1", FIRST_25(0x7E, 0x81), SAME(11), KEPT, .no_parasite = true, .keeps = true,
-      .copies = 0)
-CLONE(d2, "DS18B20-D2", FIRST_25(0x7E, 0x81), SAME(523), KEPT, .no_parasite = true, ENOUGH)
-CLONE(e, "DS18B20-E", FIRST(0x4B, 0x46, 0x10, 0x10), SAME(25), ENOUGH)
-CLONE(f, "DS18B20-F", FIRST(0x55, 0x00, 0x0C, 0x10), SAME(27), KEPT, .fixed = true,
+CLONE(d1, "DS18B20-D1", {FIRST_25(0x7E, 0x81)}, {SAME(11)}, KEPT, .no_parasite = true,
+      .keeps = true, .copies = 0)
+CLONE(d2, "DS18B20-D2", {FIRST_25(0x7E, 0x81)}, {SAME(523)}, KEPT, .no_parasite = true, ENOUGH)
+CLONE(e, "DS18B20-E", {FIRST(0x4B, 0x46, 0x10, 0x10)}, {SAME(25)}, ENOUGH)
+CLONE(f, "DS18B20-F", {FIRST(0x55, 0x00, 0x0C, 0x10)}, {SAME(27)}, KEPT, .fixed = true,
       .never_polls = true, .copies = 0)
-CLONE(g, "DS18B20-G", FIRST(0x55, 0xAA, 0x0C, 0x10), HALVED(320), JOKER, .keeps = true, ENOUGH)
-CLONE(h, "DS18B20-H", FIRST(0x55, 0xAA, 0x0C, 0x10), {101, 141, 198, 279}, .keeps = true, ENOUGH)
+CLONE(g, "DS18B20-G", {FIRST(0x55, 0xAA, 0x0C, 0x10)}, {HALVED(320)}, JOKER, .keeps = true, ENOUGH)
+CLONE(h, "DS18B20-H", {FIRST(0x55, 0xAA, 0x0C, 0x10)}, {101, 141, 198, 279}, .keeps = true, ENOUGH)

@@ -349,20 +349,17 @@ static bool ds1921_alarm(struct sim_slave *slave)
 }
 
 #define PART(part, low, high) \
+	.name = (part), .code = 0x21, .overdrive = true, .state_size = sizeof(struct ds1921), \
+	.kind = &kind, .functions = functions, .create = ds1921_create, .alarm = ds1921_alarm, \
+	.bit = sim_scratchpad_bit, .worked = ds1921_worked, .advance = ds1921_advance, \
+	SIM_MEMORY(ds1921, pad.memory, CLOCK), .inputs = (const struct sim_input[]) \
 	{ \
-		.name = (part), .code = 0x21, .overdrive = true, \
-		.state_size = sizeof(struct ds1921), .kind = &kind, .functions = functions, \
-		.create = ds1921_create, .alarm = ds1921_alarm, .bit = sim_scratchpad_bit, \
-		.worked = ds1921_worked, .advance = ds1921_advance, \
-		SIM_MEMORY(ds1921, pad.memory, CLOCK), .inputs = (const struct sim_input[]) \
+		{.name = "temperature", .start = 20, .least = (low), .most = (high)}, \
 		{ \
-			{.name = "temperature", .start = 20, .least = (low), .most = (high)}, \
-			{ \
-				0 \
-			} \
+			0 \
 		} \
 	}
 
-const struct sim_family sim_ds1921g = PART("DS1921G", -40, 85);
-const struct sim_family sim_ds1921h = PART("DS1921H", 14.5, 46.375);
-const struct sim_family sim_ds1921z = PART("DS1921Z", -5.5, 26.375);
+const struct sim_family sim_ds1921g = {PART("DS1921G", -40, 85)};
+const struct sim_family sim_ds1921h = {PART("DS1921H", 14.5, 46.375)};
+const struct sim_family sim_ds1921z = {PART("DS1921Z", -5.5, 26.375)};

@@ -412,13 +412,10 @@ static bool ds1922_alarm(struct sim_slave *slave)
 }
 
 #define PART(part, list) \
-	{ \
-		.name = (part), .code = 0x41, .overdrive = true, \
-		.state_size = sizeof(struct ds1922), .kind = &kind, .functions = functions, \
-		.create = ds1922_create, .alarm = ds1922_alarm, .bit = sim_scratchpad_bit, \
-		.worked = ds1922_worked, .advance = ds1922_advance, \
-		SIM_MEMORY(ds1922, pad.memory, CLOCK), .inputs = (list) \
-	}
+	.name = (part), .code = 0x41, .overdrive = true, .state_size = sizeof(struct ds1922), \
+	.kind = &kind, .functions = functions, .create = ds1922_create, .alarm = ds1922_alarm, \
+	.bit = sim_scratchpad_bit, .worked = ds1922_worked, .advance = ds1922_advance, \
+	SIM_MEMORY(ds1922, pad.memory, CLOCK), .inputs = (list)
 
 static const struct sim_input low_inputs[] = {
 	{.name = "temperature", .start = 20, .least = -40, .most = 85},
@@ -439,7 +436,7 @@ static const struct sim_input bare_inputs[] = {
 	{0},
 };
 
-const struct sim_family sim_ds1923 = PART("DS1923", humid_inputs);
-const struct sim_family sim_ds1922l = PART("DS1922L", low_inputs);
-const struct sim_family sim_ds1922t = PART("DS1922T", high_inputs);
-const struct sim_family sim_ds2422 = PART("DS2422", bare_inputs);
+const struct sim_family sim_ds1923 = {PART("DS1923", humid_inputs)};
+const struct sim_family sim_ds1922l = {PART("DS1922L", low_inputs)};
+const struct sim_family sim_ds1922t = {PART("DS1922T", high_inputs)};
+const struct sim_family sim_ds2422 = {PART("DS2422", bare_inputs)};

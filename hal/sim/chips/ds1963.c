@@ -171,12 +171,10 @@ static const struct sim_function ds1963s_functions[] = {
 };
 
 #define COUNTED(part, family, sizes, commands) \
-	{ \
-		.name = (part), .code = (family), .overdrive = true, .resume = (family) == 0x18, \
-		.state_size = sizeof(struct ds1963), .kind = &(sizes), .functions = (commands), \
-		.create = ds1963_create, .power_on = ds1963_power_on, .bit = sim_scratchpad_bit, \
-		.worked = ds1963_worked, SIM_MEMORY(ds1963, memory.memory, 512) \
-	}
+	.name = (part), .code = (family), .overdrive = true, .resume = (family) == 0x18, \
+	.state_size = sizeof(struct ds1963), .kind = &(sizes), .functions = (commands), \
+	.create = ds1963_create, .power_on = ds1963_power_on, .bit = sim_scratchpad_bit, \
+	.worked = ds1963_worked, SIM_MEMORY(ds1963, memory.memory, 512)
 
-const struct sim_family sim_ds1963l = COUNTED("DS1963L", 0x1A, ds1963l, ds1963l_functions);
-const struct sim_family sim_ds1963s = COUNTED("DS1963S", 0x18, ds1963s, ds1963s_functions);
+const struct sim_family sim_ds1963l = {COUNTED("DS1963L", 0x1A, ds1963l, ds1963l_functions)};
+const struct sim_family sim_ds1963s = {COUNTED("DS1963S", 0x18, ds1963s, ds1963s_functions)};

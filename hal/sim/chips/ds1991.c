@@ -187,10 +187,8 @@ static const struct sim_function functions[] = {
 };
 
 #define MULTIKEY(part, family) \
-	{ \
-		.name = (part), .code = (family), .functions = functions, \
-		.state_size = sizeof(struct ds1991), SIM_MEMORY(ds1991, subkey, SUBKEYS * AREA) \
-	}
+	.name = (part), .code = (family), .functions = functions, \
+	.state_size = sizeof(struct ds1991), SIM_MEMORY(ds1991, subkey, SUBKEYS * AREA)
 
-const struct sim_family sim_ds1991 = MULTIKEY("DS1991", 0x02);
-const struct sim_family sim_ds1425 = MULTIKEY("DS1425", 0x82);
+const struct sim_family sim_ds1991 = {MULTIKEY("DS1991", 0x02)};
+const struct sim_family sim_ds1425 = {MULTIKEY("DS1425", 0x82)};

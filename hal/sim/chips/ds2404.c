@@ -161,13 +161,10 @@ static const struct sim_function functions[] = {
 };
 
 #define TIME_CHIP(part) \
-	{ \
-		.name = (part), .code = 0x04, .state_size = sizeof(struct ds2404), \
-		.functions = functions, .kind = &kind, .power_on = ds2404_power_on, \
-		.alarm = ds2404_alarm, .bit = sim_scratchpad_bit, .worked = ds2404_worked, \
-		.advance = ds2404_advance, .option = ds2404_option, \
-		SIM_MEMORY(ds2404, memory.memory, END) \
-	}
+	.name = (part), .code = 0x04, .state_size = sizeof(struct ds2404), .functions = functions, \
+	.kind = &kind, .power_on = ds2404_power_on, .alarm = ds2404_alarm, \
+	.bit = sim_scratchpad_bit, .worked = ds2404_worked, .advance = ds2404_advance, \
+	.option = ds2404_option, SIM_MEMORY(ds2404, memory.memory, END)
 
-const struct sim_family sim_ds2404 = TIME_CHIP("DS2404");
-const struct sim_family sim_ds1994 = TIME_CHIP("DS1994");
+const struct sim_family sim_ds2404 = {TIME_CHIP("DS2404")};
+const struct sim_family sim_ds1994 = {TIME_CHIP("DS1994")};

@@ -29,7 +29,7 @@ static bool ds2405_bit(struct sim_slave *slave)
 	return sim_state(slave, sim_pins)->level & 1;
 }
 
-static const struct sim_input inputs[] = {SIM_PIN("pin"), {0}};
+static const struct sim_input inputs[] = {{SIM_PIN("pin")}, {0}};
 
 const struct sim_family sim_ds2405 = {
 	.name = "DS2405",

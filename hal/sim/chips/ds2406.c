@@ -173,7 +173,7 @@ static const struct sim_function functions[] = {
 	{0},
 };
 
-static const struct sim_input inputs[] = {SIM_PIN("pin.A"), SIM_PIN("pin.B"), {0}};
+static const struct sim_input inputs[] = {{SIM_PIN("pin.A")}, {SIM_PIN("pin.B")}, {0}};
 
 const struct sim_family sim_ds2406 = {
 	.name = "DS2406",

@@ -111,7 +111,7 @@ static const struct sim_function functions[] = {
 	/* Read PIO Registers, Channel Access Read and Write */
 	{.code = 0xF0, .takes = 2, .start = send_registers, .next = send_registers},
 	{.code = 0xF5, .start = send_first_sample, .next = send_sample},
-	SIM_PINS_WRITE(0x5A),
+	{SIM_PINS_WRITE(0x5A)},
 	/* Write Conditional Search Register, Reset Activity Latches */
 	{.code = 0xCC, .takes = 2, .start = check_condition, .byte = write_condition},
 	{.code = 0xC3, .start = reset_activity, .next = confirm},
@@ -119,9 +119,9 @@ static const struct sim_function functions[] = {
 };
 
 static const struct sim_input inputs[] = {
-	SIM_PIN("pin.0"), SIM_PIN("pin.1"), SIM_PIN("pin.2"),
-	SIM_PIN("pin.3"), SIM_PIN("pin.4"), SIM_PIN("pin.5"),
-	SIM_PIN("pin.6"), SIM_PIN("pin.7"), {0},
+	{SIM_PIN("pin.0")}, {SIM_PIN("pin.1")}, {SIM_PIN("pin.2")},
+	{SIM_PIN("pin.3")}, {SIM_PIN("pin.4")}, {SIM_PIN("pin.5")},
+	{SIM_PIN("pin.6")}, {SIM_PIN("pin.7")}, {0},
 };
 
 const struct sim_family sim_ds2408 = {

@@ -191,7 +191,7 @@ static const struct sim_function functions[] = {
 
 /* What pulls a branch low from outside. */
 static const struct sim_input inputs[] = {
-	[SIM_MAIN] = SIM_PIN("main"), [SIM_AUX] = SIM_PIN("aux"), {0}};
+	[SIM_MAIN] = {SIM_PIN("main")}, [SIM_AUX] = {SIM_PIN("aux")}, {0}};
 
 const struct sim_family sim_ds2409 = {
 	.name = "DS2409",

@@ -8,8 +8,8 @@ static void ds2413_power_on(struct sim_slave *slave)
 	sim_pins_start(slave, 0, 2);
 }
 
-static const struct sim_function functions[] = {SIM_PINS_READ(0xF5), SIM_PINS_WRITE(0x5A), {0}};
-static const struct sim_input inputs[] = {SIM_PIN("pin.A"), SIM_PIN("pin.B"), {0}};
+static const struct sim_function functions[] = {{SIM_PINS_READ(0xF5)}, {SIM_PINS_WRITE(0x5A)}, {0}};
+static const struct sim_input inputs[] = {{SIM_PIN("pin.A")}, {SIM_PIN("pin.B")}, {0}};
 
 const struct sim_family sim_ds2413 = {
 	.name = "DS2413",

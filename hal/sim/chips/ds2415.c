@@ -92,10 +92,8 @@ static const struct sim_function functions[] = {
 };
 
 #define CLOCK(part, family) \
-	{ \
-		.name = (part), .code = (family), .state_size = sizeof(struct ds2415), \
-		.functions = functions, .advance = ds2415_advance, .option = ds2415_option \
-	}
+	.name = (part), .code = (family), .state_size = sizeof(struct ds2415), \
+	.functions = functions, .advance = ds2415_advance, .option = ds2415_option
 
-const struct sim_family sim_ds2415 = CLOCK("DS2415", 0x24);
-const struct sim_family sim_ds2417 = CLOCK("DS2417", 0x27);
+const struct sim_family sim_ds2415 = {CLOCK("DS2415", 0x24)};
+const struct sim_family sim_ds2417 = {CLOCK("DS2417", 0x27)};

@@ -94,7 +94,7 @@ static const struct sim_function functions[] = {
 	{0},
 };
 
-static const struct sim_input inputs[] = {SIM_PIN("pin.A"), SIM_PIN("pin.B"), {0}};
+static const struct sim_input inputs[] = {{SIM_PIN("pin.A")}, {SIM_PIN("pin.B")}, {0}};
 
 const struct sim_family sim_ds2423 = {
 	.name = "DS2423",

@@ -51,15 +51,12 @@ static const struct sim_function ds28ec20_functions[] = {
 };
 
 #define EEPROM(part, family, sizes, bytes, commands) \
-	{ \
-		.name = (part), .code = (family), .overdrive = true, .functions = (commands), \
-		.resume = (family) != 0x23, .state_size = sizeof(struct sim_scratchpad), \
-		.kind = &(sizes), .create = ds2431_create, .power_on = sim_scratchpad_power_on, \
-		.bit = sim_scratchpad_bit, .worked = sim_scratchpad_worked, \
-		SIM_MEMORY(sim_scratchpad, memory, bytes) \
-	}
+	.name = (part), .code = (family), .overdrive = true, .functions = (commands), \
+	.resume = (family) != 0x23, .state_size = sizeof(struct sim_scratchpad), .kind = &(sizes), \
+	.create = ds2431_create, .power_on = sim_scratchpad_power_on, .bit = sim_scratchpad_bit, \
+	.worked = sim_scratchpad_worked, SIM_MEMORY(sim_scratchpad, memory, bytes)
 
-const struct sim_family sim_ds2431 = EEPROM("DS2431", 0x2D, ds2431, 0x90, functions);
-const struct sim_family sim_ds2433 = EEPROM("DS2433", 0x23, ds2433, 512, functions);
-const struct sim_family sim_ds28ec20 = EEPROM("DS28EC20", 0x43, ds28ec20, 0xA40,
-                                              ds28ec20_functions);
+const struct sim_family sim_ds2431 = {EEPROM("DS2431", 0x2D, ds2431, 0x90, functions)};
+const struct sim_family sim_ds2433 = {EEPROM("DS2433", 0x23, ds2433, 512, functions)};
+const struct sim_family sim_ds28ec20 = {
+	EEPROM("DS28EC20", 0x43, ds28ec20, 0xA40, ds28ec20_functions)};

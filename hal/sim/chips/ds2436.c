@@ -202,7 +202,7 @@ static const struct sim_function functions[] = {
 };
 
 static const struct sim_input inputs[] = {
-	[TEMPERATURE] = SIM_TEMPERATURE_INPUT,
+	[TEMPERATURE] = {SIM_TEMPERATURE_INPUT},
 	[VOLT] = {.name = "volt", .start = 5, .least = 2.4, .most = 10},
 	{0},
 };

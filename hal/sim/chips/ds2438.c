@@ -193,7 +193,7 @@ static const struct sim_function functions[] = {
 };
 
 static const struct sim_input inputs[] = {
-	[TEMPERATURE] = SIM_TEMPERATURE_INPUT,
+	[TEMPERATURE] = {SIM_TEMPERATURE_INPUT},
 	[VDD] = {.name = "vdd", .start = 5, .least = 2.4, .most = 10},
 	[VAD] = {.name = "vad"},
 	[VSENS] = {.name = "vsens"},
@@ -201,13 +201,11 @@ static const struct sim_input inputs[] = {
 };
 
 #define MONITOR(part, family) \
-	{ \
-		.name = (part), .code = (family), .state_size = sizeof(struct ds2438), \
-		.functions = functions, .inputs = inputs, .create = ds2438_create, \
-		.power_on = ds2438_power_on, .worked = ds2438_worked, .advance = ds2438_advance, \
-		SIM_MEMORY(ds2438, memory, 64) \
-	}
+	.name = (part), .code = (family), .state_size = sizeof(struct ds2438), \
+	.functions = functions, .inputs = inputs, .create = ds2438_create, \
+	.power_on = ds2438_power_on, .worked = ds2438_worked, .advance = ds2438_advance, \
+	SIM_MEMORY(ds2438, memory, 64)
 
-const struct sim_family sim_ds2437 = MONITOR("DS2437", 0x1E);
-const struct sim_family sim_ds2438 = MONITOR("DS2438", 0x26);
-const struct sim_family sim_ds2438_a6 = MONITOR("DS2438-A6", 0xA6);
+const struct sim_family sim_ds2437 = {MONITOR("DS2437", 0x1E)};
+const struct sim_family sim_ds2438 = {MONITOR("DS2438", 0x26)};
+const struct sim_family sim_ds2438_a6 = {MONITOR("DS2438-A6", 0xA6)};

@@ -69,11 +69,9 @@ static const struct sim_function functions[] = {
 };
 
 #define EPROM(part, family) \
-	{ \
-		.name = (part), .code = (family), .crc8 = true, .functions = functions, \
-		.state_size = sizeof(struct ds2502), .create = ds2502_create, \
-		SIM_MEMORY(ds2502, memory, sizeof(struct ds2502)) \
-	}
+	.name = (part), .code = (family), .crc8 = true, .functions = functions, \
+	.state_size = sizeof(struct ds2502), .create = ds2502_create, \
+	SIM_MEMORY(ds2502, memory, sizeof(struct ds2502))
 
-const struct sim_family sim_ds2502 = EPROM("DS2502", 0x09);
-const struct sim_family sim_ds1982u = EPROM("DS1982U", 0x89);
+const struct sim_family sim_ds2502 = {EPROM("DS2502", 0x09)};
+const struct sim_family sim_ds1982u = {EPROM("DS1982U", 0x89)};

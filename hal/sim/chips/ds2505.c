@@ -90,13 +90,11 @@ static const struct sim_function functions[] = {
 };
 
 #define EPROM(part, family, size, fast) \
-	{ \
-		.name = (part), .code = (family), .overdrive = (fast), .functions = functions, \
-		.state_size = sizeof(struct ds2505), .create = ds2505_create, \
-		SIM_MEMORY(ds2505, bytes, (size) + REDIRECTION + (size) / PAGE) \
-	}
+	.name = (part), .code = (family), .overdrive = (fast), .functions = functions, \
+	.state_size = sizeof(struct ds2505), .create = ds2505_create, \
+	SIM_MEMORY(ds2505, bytes, (size) + REDIRECTION + (size) / PAGE)
 
-const struct sim_family sim_ds2505 = EPROM("DS2505", 0x0B, 2048, false);
-const struct sim_family sim_ds1985u = EPROM("DS1985U", 0x8B, 2048, false);
-const struct sim_family sim_ds2506 = EPROM("DS2506", 0x0F, 8192, true);
-const struct sim_family sim_ds1986u = EPROM("DS1986U", 0x8F, 8192, true);
+const struct sim_family sim_ds2505 = {EPROM("DS2505", 0x0B, 2048, false)};
+const struct sim_family sim_ds1985u = {EPROM("DS1985U", 0x8B, 2048, false)};
+const struct sim_family sim_ds2506 = {EPROM("DS2506", 0x0F, 8192, true)};
+const struct sim_family sim_ds1986u = {EPROM("DS1986U", 0x8F, 8192, true)};

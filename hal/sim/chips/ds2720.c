@@ -171,17 +171,12 @@ static const struct sim_function functions[] = {
 	{0},
 };
 
-#define CONDITION(text) \
-	{ \
-		.name = (text), .pin = true \
-	}
-
 static const struct sim_input inputs[] = {
-	[OVERVOLTAGE] = CONDITION("overvoltage"),
-	[UNDERVOLTAGE] = CONDITION("undervoltage"),
-	[OVERCURRENT] = CONDITION("overcurrent"),
-	[OVERTEMPERATURE] = CONDITION("overtemperature"),
-	[PS] = SIM_PIN("ps"),
+	[OVERVOLTAGE] = {SIM_CONDITION("overvoltage")},
+	[UNDERVOLTAGE] = {SIM_CONDITION("undervoltage")},
+	[OVERCURRENT] = {SIM_CONDITION("overcurrent")},
+	[OVERTEMPERATURE] = {SIM_CONDITION("overtemperature")},
+	[PS] = {SIM_PIN("ps")},
 	{0},
 };
 

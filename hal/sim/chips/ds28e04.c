@@ -152,7 +152,7 @@ static const struct sim_function functions[] = {
 };
 
 static const struct sim_input inputs[] = {
-	SIM_PIN("pin.0"), SIM_PIN("pin.1"), [PIN_POL] = SIM_PIN("pol"), {0}};
+	{SIM_PIN("pin.0")}, {SIM_PIN("pin.1")}, [PIN_POL] = {SIM_PIN("pol")}, {0}};
 
 const struct sim_family sim_ds28e04 = {
 	.name = "DS28E04",

@@ -189,18 +189,16 @@ static void revision(struct sim_slave *slave)
 }
 
 #define PACKET_FUNCTION(number, bytes) \
-	{ \
-		.code = (number), .takes = (bytes), .start = ds28e17_begin, .byte = packet, \
-		.next = send_more \
-	}
+	.code = (number), .takes = (bytes), .start = ds28e17_begin, .byte = packet, \
+	.next = send_more
 
 static const struct sim_function functions[] = {
-	PACKET_FUNCTION(WRITE_STOP, 2),
-	PACKET_FUNCTION(WRITE_NO_STOP, 2),
-	PACKET_FUNCTION(WRITE_ONLY, 1),
-	PACKET_FUNCTION(WRITE_ONLY_STOP, 1),
-	PACKET_FUNCTION(READ_STOP, 2),
-	PACKET_FUNCTION(WRITE_READ_STOP, 2),
+	{PACKET_FUNCTION(WRITE_STOP, 2)},
+	{PACKET_FUNCTION(WRITE_NO_STOP, 2)},
+	{PACKET_FUNCTION(WRITE_ONLY, 1)},
+	{PACKET_FUNCTION(WRITE_ONLY_STOP, 1)},
+	{PACKET_FUNCTION(READ_STOP, 2)},
+	{PACKET_FUNCTION(WRITE_READ_STOP, 2)},
 	{.code = 0xD2, .takes = 1, .start = write_configuration},
 	{.code = 0xE1, .start = read_configuration},
 	{.code = 0xC4, .start = revision},

@@ -90,59 +90,48 @@ static const struct eds_quantity rtd[] = {
 
 /* EDS0080 to EDS0085: mA or volts. */
 #define ANALOG(name, i) \
-	{ \
-		name "." #i, NULL, 1 / 2048.0, 0x30 + 2 * (i), 2, 0x70 + 4 * (i), 0x72 + 4 * (i), \
-			2, 2 * (i), 0x40 + 2 * (i), 0x50 + 2 * (i) \
-	}
+	name "." #i, NULL, 1 / 2048.0, 0x30 + 2 * (i), 2, 0x70 + 4 * (i), 0x72 + 4 * (i), 2, \
+		2 * (i), 0x40 + 2 * (i), 0x50 + 2 * (i)
 #define ANALOGS(name) \
 	{ \
-		ANALOG(name, 0), ANALOG(name, 1), ANALOG(name, 2), ANALOG(name, 3), \
-			ANALOG(name, 4), ANALOG(name, 5), ANALOG(name, 6), ANALOG(name, 7) \
+		{ANALOG(name, 0)}, {ANALOG(name, 1)}, {ANALOG(name, 2)}, {ANALOG(name, 3)}, \
+			{ANALOG(name, 4)}, {ANALOG(name, 5)}, {ANALOG(name, 6)}, \
+		{ \
+			ANALOG(name, 7) \
+		} \
 	}
 static const struct eds_quantity currents[] = ANALOGS("current");
 static const struct eds_quantity voltages[] = ANALOGS("volt");
 
-#define HUMIDITY_INPUT \
-	{ \
-		.name = "humidity", .start = 50, .least = 0, .most = 100 \
-	}
-#define PRESSURE_INPUT \
-	{ \
-		.name = "pressure", .start = 1013.25, .least = 100, .most = 2000 \
-	}
-#define LIGHT_INPUT \
-	{ \
-		.name = "light", .start = 100, .least = 0, .most = 0x7FFFFF \
-	}
-#define MILLIAMPERES(i) \
-	{ \
-		.name = "current." #i, .start = 4, .least = 0, .most = 24 \
-	}
-#define VOLTS(i) \
-	{ \
-		.name = "volt." #i, .least = 0, .most = 10 \
-	}
+#define HUMIDITY_INPUT .name = "humidity", .start = 50, .least = 0, .most = 100
+#define PRESSURE_INPUT .name = "pressure", .start = 1013.25, .least = 100, .most = 2000
+#define LIGHT_INPUT .name = "light", .start = 100, .least = 0, .most = 0x7FFFFF
+#define MILLIAMPERES(i) .name = "current." #i, .start = 4, .least = 0, .most = 24
+#define VOLTS(i) .name = "volt." #i, .least = 0, .most = 10
 
-static const struct sim_input inputs_64[] = {SIM_TEMPERATURE_INPUT, {0}};
-static const struct sim_input inputs_65[] = {SIM_TEMPERATURE_INPUT, HUMIDITY_INPUT, {0}};
-static const struct sim_input inputs_66[] = {SIM_TEMPERATURE_INPUT, PRESSURE_INPUT, {0}};
-static const struct sim_input inputs_67[] = {SIM_TEMPERATURE_INPUT, LIGHT_INPUT, {0}};
+static const struct sim_input inputs_64[] = {{SIM_TEMPERATURE_INPUT}, {0}};
+static const struct sim_input inputs_65[] = {{SIM_TEMPERATURE_INPUT}, {HUMIDITY_INPUT}, {0}};
+static const struct sim_input inputs_66[] = {{SIM_TEMPERATURE_INPUT}, {PRESSURE_INPUT}, {0}};
+static const struct sim_input inputs_67[] = {{SIM_TEMPERATURE_INPUT}, {LIGHT_INPUT}, {0}};
 static const struct sim_input inputs_68[] = {
-	SIM_TEMPERATURE_INPUT, HUMIDITY_INPUT, PRESSURE_INPUT, LIGHT_INPUT, {0}};
+	{SIM_TEMPERATURE_INPUT}, {HUMIDITY_INPUT}, {PRESSURE_INPUT}, {LIGHT_INPUT}, {0}};
 static const struct sim_input inputs_70[] = {{.name = "vibration", .least = 0, .most = 1023}, {0}};
 static const struct sim_input inputs_71[] = {
 	{.name = "temperature", .start = 20, .least = -200, .most = 850}, {0}};
-static const struct sim_input inputs_80[] = {MILLIAMPERES(0), MILLIAMPERES(1), MILLIAMPERES(2),
-                                             MILLIAMPERES(3), MILLIAMPERES(4), MILLIAMPERES(5),
-                                             MILLIAMPERES(6), MILLIAMPERES(7), {0}};
+static const struct sim_input inputs_80[] = {
+	{MILLIAMPERES(0)}, {MILLIAMPERES(1)}, {MILLIAMPERES(2)},
+	{MILLIAMPERES(3)}, {MILLIAMPERES(4)}, {MILLIAMPERES(5)},
+	{MILLIAMPERES(6)}, {MILLIAMPERES(7)}, {0}};
 static const struct sim_input inputs_83[] = {
-	MILLIAMPERES(0), MILLIAMPERES(1), MILLIAMPERES(2), MILLIAMPERES(3), {0}};
-static const struct sim_input inputs_82[] = {VOLTS(0), VOLTS(1), VOLTS(2), VOLTS(3), VOLTS(4),
-                                             VOLTS(5), VOLTS(6), VOLTS(7), {0}};
-static const struct sim_input inputs_85[] = {VOLTS(0), VOLTS(1), VOLTS(2), VOLTS(3), {0}};
-static const struct sim_input inputs_90[] = {SIM_PIN("pin.0"), SIM_PIN("pin.1"), SIM_PIN("pin.2"),
-                                             SIM_PIN("pin.3"), SIM_PIN("pin.4"), SIM_PIN("pin.5"),
-                                             SIM_PIN("pin.6"), SIM_PIN("pin.7"), {0}};
+	{MILLIAMPERES(0)}, {MILLIAMPERES(1)}, {MILLIAMPERES(2)}, {MILLIAMPERES(3)}, {0}};
+static const struct sim_input inputs_82[] = {{VOLTS(0)}, {VOLTS(1)}, {VOLTS(2)},
+                                             {VOLTS(3)}, {VOLTS(4)}, {VOLTS(5)},
+                                             {VOLTS(6)}, {VOLTS(7)}, {0}};
+static const struct sim_input inputs_85[] = {{VOLTS(0)}, {VOLTS(1)}, {VOLTS(2)}, {VOLTS(3)}, {0}};
+static const struct sim_input inputs_90[] = {
+	{SIM_PIN("pin.0")}, {SIM_PIN("pin.1")}, {SIM_PIN("pin.2")},
+	{SIM_PIN("pin.3")}, {SIM_PIN("pin.4")}, {SIM_PIN("pin.5")},
+	{SIM_PIN("pin.6")}, {SIM_PIN("pin.7")}, {0}};
 
 /* Size of the memory, what of it can be written; registers: alarms, enables, seconds, relay. */
 #define KIND(number, text, bytes, from, flags, flag_bytes, enables, time, switches) \
@@ -152,19 +141,12 @@ static const struct sim_input inputs_90[] = {SIM_PIN("pin.0"), SIM_PIN("pin.1"),
 #define MEASURES(what, which) \
 	.quantities = (what), .quantity_count = COUNT(what), .measures = (which)
 #define ENVIRONMENT(number, text, which) \
-	{ \
-		KIND(number, text, 0x60, 0x40, 0x3A, 2, 0x40, 0x3C, 0x5E), \
-			MEASURES(environment, which) \
-	}
+	KIND(number, text, 0x60, 0x40, 0x3A, 2, 0x40, 0x3C, 0x5E), MEASURES(environment, which)
 #define RTD(number, text) \
-	{ \
-		KIND(number, text, 0x60, 0x40, 0x36, 1, 0x40, 0x3C, 0x5E), MEASURES(rtd, 0x07), \
-			.samples = 0x38, .delay = 0x5D \
-	}
+	KIND(number, text, 0x60, 0x40, 0x36, 1, 0x40, 0x3C, 0x5E), MEASURES(rtd, 0x07), \
+		.samples = 0x38, .delay = 0x5D
 #define OCTAL(number, text, what, which) \
-	{ \
-		KIND(number, text, 0xA0, 0x60, 0x2A, 2, 0x9A, 0x2C, 0x9E), MEASURES(what, which) \
-	}
+	KIND(number, text, 0xA0, 0x60, 0x2A, 2, 0x9A, 0x2C, 0x9E), MEASURES(what, which)
 
 /* clang-format off */
 #define EDS(part, bytes, its_inputs, ...) \
@@ -176,19 +158,19 @@ static const struct sim_input inputs_90[] = {SIM_PIN("pin.0"), SIM_PIN("pin.1"),
 		.worked = eds_worked, .advance = eds_advance, .alarm = eds_alarm, \
 		SIM_MEMORY(eds, memory.memory, bytes), \
 	}
-EDS(64, 0x60, inputs_64, ENVIRONMENT(64, "OW-ENV-T", WARMTH));
-EDS(65, 0x60, inputs_65, ENVIRONMENT(65, "OW-ENV-TH", WARMTH | WATER));
-EDS(66, 0x60, inputs_66, ENVIRONMENT(66, "OW-ENV-TP", WARMTH | AIR));
-EDS(67, 0x60, inputs_67, ENVIRONMENT(67, "OW-ENV-TL", WARMTH | LIGHT));
-EDS(68, 0x60, inputs_68, ENVIRONMENT(68, "OW-ENV-THPL", WARMTH | WATER | AIR | LIGHT));
+EDS(64, 0x60, inputs_64, {ENVIRONMENT(64, "OW-ENV-T", WARMTH)});
+EDS(65, 0x60, inputs_65, {ENVIRONMENT(65, "OW-ENV-TH", WARMTH | WATER)});
+EDS(66, 0x60, inputs_66, {ENVIRONMENT(66, "OW-ENV-TP", WARMTH | AIR)});
+EDS(67, 0x60, inputs_67, {ENVIRONMENT(67, "OW-ENV-TL", WARMTH | LIGHT)});
+EDS(68, 0x60, inputs_68, {ENVIRONMENT(68, "OW-ENV-THPL", WARMTH | WATER | AIR | LIGHT)});
 EDS(70, 0x60, inputs_70, {KIND(70, "OW-VIBRATION", 0x60, 0x40, 0x36, 1, 0x40, 0x3C, 0x5E),
                     MEASURES(vibration, 0x01), .peak = 0x26});
-EDS(71, 0x60, inputs_71, RTD(71, "OW-RTD-4W"));
-EDS(72, 0x60, inputs_71, RTD(72, "OW-RTD-3W"));
-EDS(80, 0xA0, inputs_80, OCTAL(80, "OW-IO-AI8-420", currents, 0xFF));
-EDS(82, 0xA0, inputs_82, OCTAL(82, "OW-IO-AI8-10V", voltages, 0xFF));
-EDS(83, 0xA0, inputs_83, OCTAL(83, "OW-IO-AI4-420", currents, 0x0F));
-EDS(85, 0xA0, inputs_85, OCTAL(85, "OW-IO-AI4-10V", voltages, 0x0F));
+EDS(71, 0x60, inputs_71, {RTD(71, "OW-RTD-4W")});
+EDS(72, 0x60, inputs_71, {RTD(72, "OW-RTD-3W")});
+EDS(80, 0xA0, inputs_80, {OCTAL(80, "OW-IO-AI8-420", currents, 0xFF)});
+EDS(82, 0xA0, inputs_82, {OCTAL(82, "OW-IO-AI8-10V", voltages, 0xFF)});
+EDS(83, 0xA0, inputs_83, {OCTAL(83, "OW-IO-AI4-420", currents, 0x0F)});
+EDS(85, 0xA0, inputs_85, {OCTAL(85, "OW-IO-AI4-10V", voltages, 0x0F)});
 EDS(90, 0x60, inputs_90, {KIND(90, "OW-IO-DIO8", 0x60, 0x50, 0x2A, 2, 0x50, 0x2C, 0x5E),
                     .digital = true});
 /* clang-format on */

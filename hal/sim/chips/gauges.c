@@ -9,26 +9,26 @@
 #include "hal/sim/chips/gauge.h"
 #include "hal/sim/families.h"
 
-#define RULE(from, to, bits) \
+#define RULE(from, to, bits) .used = true, .first = (from), .last = (to), .write = (bits)
+#define ACR \
 	{ \
-		.used = true, .first = (from), .last = (to), .write = (bits) \
+		RULE(ACCUMULATED, ACCUMULATED + 1, 0xFF) \
 	}
-#define ACR RULE(ACCUMULATED, ACCUMULATED + 1, 0xFF)
-#define SRAM RULE(0x80, 0x8F, 0xFF)
-#define EEPROM_RULE(at) \
+#define SRAM \
 	{ \
-		.used = true, .first = (at), .last = (at), .set = LOCK \
+		RULE(0x80, 0x8F, 0xFF) \
 	}
+#define EEPROM_RULE(at) .used = true, .first = (at), .last = (at), .set = LOCK
 
 static const struct gauge_kind ds2740 = {
-	.rules = {RULE(STATUS, STATUS, 0x50), RULE(0x08, 0x08, 0x40), ACR},
+	.rules = {{RULE(STATUS, STATUS, 0x50)}, {RULE(0x08, 0x08, 0x40)}, ACR},
 	.special = 0x08,
 	.pio = 0x40,
 	.fine = true,
 };
 static const struct gauge_kind ds2751 = {
 	.block = {{0x20, 16}, {0x30, 16}},
-	.rules = {EEPROM_RULE(0x07),
+	.rules = {{EEPROM_RULE(0x07)},
                   {.used = true, .first = 8, .last = 8, .write = 0x40, .clear = 1},
                   ACR,
                   SRAM},
@@ -45,7 +45,7 @@ static const struct gauge_kind ds2751 = {
 };
 static const struct gauge_kind ds2755 = {
 	.block = {{0x20, 32}, {0x40, 32}, {0x60, 32}},
-	.rules = {EEPROM_RULE(0x07),
+	.rules = {{EEPROM_RULE(0x07)},
                   {.used = true, .first = 8, .last = 8, .write = 0x44, .clear = 0x80},
                   ACR,
                   SRAM},
@@ -68,7 +68,7 @@ static const struct gauge_kind ds2760 = {
                    .last = 0,
                    .write = CE | DE,
                    .clear = OV | UV | COC | DOC},
-                  EEPROM_RULE(0x07),
+                  {EEPROM_RULE(0x07)},
                   {.used = true, .first = 8, .last = 8, .write = 0x40, .set = 0x80},
                   ACR,
                   SRAM},
@@ -86,9 +86,9 @@ static const struct gauge_kind ds2760 = {
 static const struct gauge_kind ds2770 = {
 	.block = {{0x20, 16}, {0x30, 16}, {0x40, 8}},
 	.rules = {{.used = true, .first = STATUS, .last = STATUS, .clear = 0},
-                  RULE(0x02, 0x03, 0xFF),
-                  RULE(0x06, 0x06, 0xFF),
-                  EEPROM_RULE(0x07),
+                  {RULE(0x02, 0x03, 0xFF)},
+                  {RULE(0x06, 0x06, 0xFF)},
+                  {EEPROM_RULE(0x07)},
                   ACR,
                   SRAM},
 	.eeprom = 0x07,
@@ -104,7 +104,10 @@ static const struct gauge_kind ds2770 = {
 #define DS278X_RULES \
 	{ \
 		{.used = true, .first = STATUS, .last = STATUS, .clear = UVF | PORF}, ACR, \
-			RULE(0x14, 0x14, 0xFF), RULE(0x15, 0x15, 0x01), EEPROM_RULE(0x1F) \
+			{RULE(0x14, 0x14, 0xFF)}, {RULE(0x15, 0x15, 0x01)}, \
+		{ \
+			EEPROM_RULE(0x1F) \
+		} \
 	}
 static const struct gauge_kind ds2780 = {
 	.block = {{0x20, 16}, {0x60, 32}},
@@ -145,59 +148,52 @@ static void gauges_create(struct sim_slave *slave)
 		sim_state(slave, gauge)->eeprom[1][0] = CE | DE;
 }
 
-#define CONDITION(text) \
-	{ \
-		.name = (text), .pin = true \
-	}
 #define MEASURED \
-	[TEMPERATURE] = SIM_TEMPERATURE_INPUT, [VOLT] = {.name = "volt", .start = 3.7}, \
+	[TEMPERATURE] = {SIM_TEMPERATURE_INPUT}, [VOLT] = {.name = "volt", .start = 3.7}, \
 	[VIS] = {.name = "vis"} /* mV across the resistor */
 
-static const struct sim_input inputs[] = {MEASURED, [PIN] = SIM_PIN("pin"), {0}};
+static const struct sim_input inputs[] = {MEASURED, [PIN] = {SIM_PIN("pin")}, {0}};
 static const struct sim_input ds2760_inputs[] = {
 	MEASURED,
-	[PIN] = SIM_PIN("pin"),
-	[FLAGS] = CONDITION("overvoltage"),
-	CONDITION("undervoltage"),
-	CONDITION("charge_overcurrent"),
-	CONDITION("discharge_overcurrent"),
-	SIM_PIN("ps"),
+	[PIN] = {SIM_PIN("pin")},
+	[FLAGS] = {SIM_CONDITION("overvoltage")},
+	{SIM_CONDITION("undervoltage")},
+	{SIM_CONDITION("charge_overcurrent")},
+	{SIM_CONDITION("discharge_overcurrent")},
+	{SIM_PIN("ps")},
 	{0},
 };
 static const struct sim_input ds2770_inputs[] = {
 	MEASURED,
-	[CHARGER] = CONDITION("charger"),
-	[FULL] = CONDITION("full"),
+	[CHARGER] = {SIM_CONDITION("charger")},
+	[FULL] = {SIM_CONDITION("full")},
 	{0},
 };
 static const struct sim_input ds278x_inputs[] = {
 	MEASURED,
-	[PIN] = SIM_PIN("pin"),
-	[FLAGS] = CONDITION("charged"),
-	CONDITION("active_empty"),
-	CONDITION("standby_empty"),
-	CONDITION("learning"),
+	[PIN] = {SIM_PIN("pin")},
+	[FLAGS] = {SIM_CONDITION("charged")},
+	{SIM_CONDITION("active_empty")},
+	{SIM_CONDITION("standby_empty")},
+	{SIM_CONDITION("learning")},
 	{0},
 };
 
 /* Its memory is recalled from the EEPROM at power-on. */
 #define GAUGE(part, family, sizes, commands, measures) \
-	{ \
-		.name = (part), .code = (family), .state_size = sizeof(struct gauge), \
-		.kind = &(sizes), .functions = (commands), .inputs = (measures), \
-		.power_on = sim_gauge_power_on, .worked = sim_gauge_worked, \
-		.advance = sim_gauge_advance, .create = gauges_create, \
-		SIM_MEMORY(gauge, eeprom, GAUGE_BLOCKS * GAUGE_BLOCK) \
-	}
+	.name = (part), .code = (family), .state_size = sizeof(struct gauge), .kind = &(sizes), \
+	.functions = (commands), .inputs = (measures), .power_on = sim_gauge_power_on, \
+	.worked = sim_gauge_worked, .advance = sim_gauge_advance, .create = gauges_create, \
+	SIM_MEMORY(gauge, eeprom, GAUGE_BLOCKS * GAUGE_BLOCK)
 
-const struct sim_family sim_ds2740 = GAUGE("DS2740", 0x36, ds2740, sim_ds2740_functions, inputs);
-const struct sim_family sim_ds2751 = GAUGE("DS2751", 0x51, ds2751, sim_gauge_functions, inputs);
-const struct sim_family sim_ds2755 = GAUGE("DS2755", 0x35, ds2755, sim_gauge_functions, inputs);
-const struct sim_family sim_ds2760 = GAUGE("DS2760", 0x30, ds2760, sim_gauge_functions,
-                                           ds2760_inputs);
-const struct sim_family sim_ds2770 = GAUGE("DS2770", 0x2E, ds2770, sim_ds2770_functions,
-                                           ds2770_inputs);
-const struct sim_family sim_ds2780 = GAUGE("DS2780", 0x32, ds2780, sim_gauge_functions,
-                                           ds278x_inputs);
-const struct sim_family sim_ds2781 = GAUGE("DS2781", 0x3D, ds2781, sim_gauge_functions,
-                                           ds278x_inputs);
+const struct sim_family sim_ds2740 = {GAUGE("DS2740", 0x36, ds2740, sim_ds2740_functions, inputs)};
+const struct sim_family sim_ds2751 = {GAUGE("DS2751", 0x51, ds2751, sim_gauge_functions, inputs)};
+const struct sim_family sim_ds2755 = {GAUGE("DS2755", 0x35, ds2755, sim_gauge_functions, inputs)};
+const struct sim_family sim_ds2760 = {
+	GAUGE("DS2760", 0x30, ds2760, sim_gauge_functions, ds2760_inputs)};
+const struct sim_family sim_ds2770 = {
+	GAUGE("DS2770", 0x2E, ds2770, sim_ds2770_functions, ds2770_inputs)};
+const struct sim_family sim_ds2780 = {
+	GAUGE("DS2780", 0x32, ds2780, sim_gauge_functions, ds278x_inputs)};
+const struct sim_family sim_ds2781 = {
+	GAUGE("DS2781", 0x3D, ds2781, sim_gauge_functions, ds278x_inputs)};

@@ -356,64 +356,56 @@ static int hobby_boards_option(struct sim_slave *slave, const char *name, double
 	return 0;
 }
 
-#define COMMAND(code_) \
-	{ \
-		.code = (code_), .start = hobby_boards_command, .byte = argument \
-	}
+#define COMMAND(code_) .code = (code_), .start = hobby_boards_command, .byte = argument
 static const struct sim_function functions[] = {
-	COMMAND(0x11), COMMAND(0x12), COMMAND(0x14), COMMAND(0x15), COMMAND(0x16), COMMAND(0x21),
-	COMMAND(0x22), COMMAND(0x23), COMMAND(0x24), COMMAND(0x25), COMMAND(0x26), COMMAND(0x27),
-	COMMAND(0x28), COMMAND(0x31), COMMAND(0x40), COMMAND(0x60), COMMAND(0x61), COMMAND(0x94),
-	COMMAND(0x96), COMMAND(0xA2), COMMAND(0xA3), COMMAND(0xA4), COMMAND(0xA6), COMMAND(0xE1),
-	COMMAND(0xF1), COMMAND(0xF7), {0},
+	{COMMAND(0x11)}, {COMMAND(0x12)}, {COMMAND(0x14)},
+	{COMMAND(0x15)}, {COMMAND(0x16)}, {COMMAND(0x21)},
+	{COMMAND(0x22)}, {COMMAND(0x23)}, {COMMAND(0x24)},
+	{COMMAND(0x25)}, {COMMAND(0x26)}, {COMMAND(0x27)},
+	{COMMAND(0x28)}, {COMMAND(0x31)}, {COMMAND(0x40)},
+	{COMMAND(0x60)}, {COMMAND(0x61)}, {COMMAND(0x94)},
+	{COMMAND(0x96)}, {COMMAND(0xA2)}, {COMMAND(0xA3)},
+	{COMMAND(0xA4)}, {COMMAND(0xA6)}, {COMMAND(0xE1)},
+	{COMMAND(0xF1)}, {COMMAND(0xF7)}, {0},
 };
 
-#define TEMPERATURE(text) \
-	{ \
-		.name = (text), .start = 20, .least = -55, .most = 125 \
-	}
-#define RAW(text) \
-	{ \
-		.name = (text), .start = 100, .least = 0, .most = 4095 \
-	}
-#define SHORT(text) \
-	{ \
-		.name = (text), .pin = true \
-	}
+#define TEMPERATURE(text) .name = (text), .start = 20, .least = -55, .most = 125
+#define RAW(text) .name = (text), .start = 100, .least = 0, .most = 4095
 static const struct sim_input uvi_inputs[] = {
-	{.name = "uvi", .start = 3, .least = 0, .most = 16}, TEMPERATURE("temperature"), {0}};
+	{.name = "uvi", .start = 3, .least = 0, .most = 16}, {TEMPERATURE("temperature")}, {0}};
 static const struct sim_input moisture_inputs[] = {
-	RAW("sensor.0"), RAW("sensor.1"), RAW("sensor.2"), RAW("sensor.3"), {0}};
-static const struct sim_input hub_inputs[] = {
-	SHORT("short.0"), SHORT("short.1"), SHORT("short.2"), SHORT("short.3"), {0}};
+	{RAW("sensor.0")}, {RAW("sensor.1")}, {RAW("sensor.2")}, {RAW("sensor.3")}, {0}};
+static const struct sim_input hub_inputs[] = {{SIM_CONDITION("short.0")},
+                                              {SIM_CONDITION("short.1")},
+                                              {SIM_CONDITION("short.2")},
+                                              {SIM_CONDITION("short.3")},
+                                              {0}};
 static const struct sim_input barometer_inputs[] = {
-	TEMPERATURE("temperature"),
+	{TEMPERATURE("temperature")},
 	{.name = "pressure", .start = 1010, .least = 300, .most = 1100},
 	{0}};
 static const struct sim_input humidity_inputs[] = {
-	TEMPERATURE("temperature"),
+	{TEMPERATURE("temperature")},
 	{.name = "humidity", .start = 50, .least = 0, .most = 100},
 	{0}};
-static const struct sim_input multitemp_inputs[] = {TEMPERATURE("temperature.0"),
-                                                    TEMPERATURE("temperature.1"),
-                                                    TEMPERATURE("temperature.2"),
-                                                    TEMPERATURE("temperature.3"),
-                                                    TEMPERATURE("temperature.4"),
-                                                    TEMPERATURE("temperature.5"),
+static const struct sim_input multitemp_inputs[] = {{TEMPERATURE("temperature.0")},
+                                                    {TEMPERATURE("temperature.1")},
+                                                    {TEMPERATURE("temperature.2")},
+                                                    {TEMPERATURE("temperature.3")},
+                                                    {TEMPERATURE("temperature.4")},
+                                                    {TEMPERATURE("temperature.5")},
                                                     {0}};
 
 #define HB(part, family, which, inputs_) \
-	{ \
-		.name = (part), .code = (family), .state_size = sizeof(struct hobby), \
-		.kind = &(const enum kind){which}, .functions = functions, .inputs = (inputs_), \
-		.create = hobby_boards_create, .power_on = hobby_boards_power_on, \
-		.option = hobby_boards_option, SIM_MEMORY(hobby, settings, SETTINGS) \
-	}
+	.name = (part), .code = (family), .state_size = sizeof(struct hobby), \
+	.kind = &(const enum kind){which}, .functions = functions, .inputs = (inputs_), \
+	.create = hobby_boards_create, .power_on = hobby_boards_power_on, \
+	.option = hobby_boards_option, SIM_MEMORY(hobby, settings, SETTINGS)
 
-const struct sim_family sim_hb_uvi_meter = HB("HB_UVI_METER", 0xEE, UVI, uvi_inputs);
-const struct sim_family sim_hb_moisture_meter = HB("HB_MOISTURE_METER", 0xEF, MOISTURE,
-                                                   moisture_inputs);
-const struct sim_family sim_hb_hub = HB("HB_HUB", 0xEF, HUB, hub_inputs);
-const struct sim_family sim_hb_barometer = HB("HB_BAROMETER", 0xEF, BAROMETER, barometer_inputs);
-const struct sim_family sim_hb_humidity = HB("HB_HUMIDITY", 0xEF, HUMIDITY, humidity_inputs);
-const struct sim_family sim_hb_multitemp = HB("HB_MULTITEMP", 0xEF, MULTITEMP, multitemp_inputs);
+const struct sim_family sim_hb_uvi_meter = {HB("HB_UVI_METER", 0xEE, UVI, uvi_inputs)};
+const struct sim_family sim_hb_moisture_meter = {
+	HB("HB_MOISTURE_METER", 0xEF, MOISTURE, moisture_inputs)};
+const struct sim_family sim_hb_hub = {HB("HB_HUB", 0xEF, HUB, hub_inputs)};
+const struct sim_family sim_hb_barometer = {HB("HB_BAROMETER", 0xEF, BAROMETER, barometer_inputs)};
+const struct sim_family sim_hb_humidity = {HB("HB_HUMIDITY", 0xEF, HUMIDITY, humidity_inputs)};
+const struct sim_family sim_hb_multitemp = {HB("HB_MULTITEMP", 0xEF, MULTITEMP, multitemp_inputs)};

@@ -102,7 +102,7 @@ static const struct sim_function functions[] = {
 };
 
 static const struct sim_input inputs[] = {
-	[TEMPERATURE] = SIM_TEMPERATURE_INPUT,
+	[TEMPERATURE] = {SIM_TEMPERATURE_INPUT},
 	[HUMIDITY] = {.name = "humidity", .start = 50, .least = 0, .most = 100},
 	{0},
 };

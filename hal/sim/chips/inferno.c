@@ -436,37 +436,27 @@ static void inferno_advance(struct sim_slave *slave)
 }
 
 #define COMMAND(code_) \
-	{ \
-		.code = (code_), .start = inferno_begin, .byte = inferno_take, .next = answered \
-	}
-#define IDENTITY(code_) \
-	{ \
-		.code = (code_), .start = identity \
-	}
+	.code = (code_), .start = inferno_begin, .byte = inferno_take, .next = answered
+#define IDENTITY(code_) .code = (code_), .start = identity
 static const struct sim_function functions[] = {
-	COMMAND(0x00),         COMMAND(0x01),    COMMAND(0x02),     COMMAND(0x03),    COMMAND(0x04),
-	COMMAND(0x05),         COMMAND(0x06),    COMMAND(0x07),     COMMAND(0x08),    COMMAND(0x09),
-	COMMAND(0x0A),         COMMAND(0x0B),    COMMAND(0x0C),     COMMAND(0x0D),    COMMAND(0x0E),
-	COMMAND(BOOT_UPDATER), IDENTITY(STATUS), IDENTITY(VERSION), IDENTITY(DEVICE), {0},
+	{COMMAND(0x00)},    {COMMAND(0x01)},     {COMMAND(0x02)},    {COMMAND(0x03)},
+	{COMMAND(0x04)},    {COMMAND(0x05)},     {COMMAND(0x06)},    {COMMAND(0x07)},
+	{COMMAND(0x08)},    {COMMAND(0x09)},     {COMMAND(0x0A)},    {COMMAND(0x0B)},
+	{COMMAND(0x0C)},    {COMMAND(0x0D)},     {COMMAND(0x0E)},    {COMMAND(BOOT_UPDATER)},
+	{IDENTITY(STATUS)}, {IDENTITY(VERSION)}, {IDENTITY(DEVICE)}, {0},
 };
 
-#define SWITCH(text) \
-	{ \
-		.name = (text), .pin = true \
-	}
 static const struct sim_input switches[] = {
-	SWITCH("switch.0.0"), SWITCH("switch.0.1"), SWITCH("switch.0.2"),
-	SWITCH("switch.0.3"), SWITCH("switch.1.0"), SWITCH("switch.1.1"),
-	SWITCH("switch.1.2"), SWITCH("switch.1.3"), {0}};
+	{SIM_CONDITION("switch.0.0")}, {SIM_CONDITION("switch.0.1")}, {SIM_CONDITION("switch.0.2")},
+	{SIM_CONDITION("switch.0.3")}, {SIM_CONDITION("switch.1.0")}, {SIM_CONDITION("switch.1.1")},
+	{SIM_CONDITION("switch.1.2")}, {SIM_CONDITION("switch.1.3")}, {0}};
 
 #define INFERNO(part, which, inputs_) \
-	{ \
-		.name = (part), .code = 0xED, .resume = true, .inputs = (inputs_), \
-		.state_size = sizeof(struct inferno), .functions = functions, \
-		.kind = &(const enum kind){which}, .power_on = inferno_power_on, \
-		.advance = inferno_advance \
-	}
+	.name = (part), .code = 0xED, .resume = true, .inputs = (inputs_), \
+	.state_size = sizeof(struct inferno), .functions = functions, \
+	.kind = &(const enum kind){which}, .power_on = inferno_power_on, \
+	.advance = inferno_advance
 
-const struct sim_family sim_inferno_switches = INFERNO("IE_SWITCH_MASTER", SWITCHES, switches);
-const struct sim_family sim_inferno_rgbw = INFERNO("IE_RGBW", RGBW, NULL);
-const struct sim_family sim_inferno_updater = INFERNO("IE_UPDATER", UPDATER, NULL);
+const struct sim_family sim_inferno_switches = {INFERNO("IE_SWITCH_MASTER", SWITCHES, switches)};
+const struct sim_family sim_inferno_rgbw = {INFERNO("IE_RGBW", RGBW, NULL)};
+const struct sim_family sim_inferno_updater = {INFERNO("IE_UPDATER", UPDATER, NULL)};

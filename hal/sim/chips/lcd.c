@@ -204,34 +204,31 @@ static void lcd_read_scratchpad(struct sim_slave *slave)
 	sim_send(slave, sim_state(slave, lcd)->scratchpad, VERSION_TEXT);
 }
 
-#define COMMAND(code_) \
-	{ \
-		.code = (code_), .start = command \
-	}
+#define COMMAND(code_) .code = (code_), .start = command
 static const struct sim_function functions[] = {
-	COMMAND(0x03),
-	COMMAND(0x05),
-	COMMAND(0x07),
-	COMMAND(0x08),
+	{COMMAND(0x03)},
+	{COMMAND(0x05)},
+	{COMMAND(0x07)},
+	{COMMAND(0x08)},
 	{.code = 0x10, .takes = 1, .start = byte_command}, /* Write Register, Data, GPIO */
-	COMMAND(0x11),
+	{COMMAND(0x11)},
 	{.code = 0x12, .takes = 1, .start = byte_command},
-	COMMAND(0x13),
+	{COMMAND(0x13)},
 	{.code = 0x21, .takes = 1, .start = byte_command},
-	COMMAND(0x22),
-	COMMAND(0x23),
-	COMMAND(0x37),
+	{COMMAND(0x22)},
+	{COMMAND(0x23)},
+	{COMMAND(0x37)},
 	{.code = 0x39, .start = begin_copy}, /* Scratchpad to EEPROM */
-	COMMAND(0x41),
-	COMMAND(0x48),
-	COMMAND(0x49),
+	{COMMAND(0x41)},
+	{COMMAND(0x48)},
+	{COMMAND(0x49)},
 	{.code = 0x4E, .start = lcd_begin_write, .byte = lcd_write_scratchpad},
 	{.code = 0xBE, .start = lcd_read_scratchpad},
 	{0},
 };
 
 static const struct sim_input inputs[] = {
-	SIM_PIN("gpio.0"), SIM_PIN("gpio.1"), SIM_PIN("gpio.2"), SIM_PIN("gpio.3"), {0}};
+	{SIM_PIN("gpio.0")}, {SIM_PIN("gpio.1")}, {SIM_PIN("gpio.2")}, {SIM_PIN("gpio.3")}, {0}};
 
 const struct sim_family sim_lcd = {
 	.name = "LCD",

@@ -170,29 +170,23 @@ static const struct sim_function max31826_functions[] = {
 };
 static const struct sim_function max31850_functions[] = {FUNCTIONS, {0}};
 
-#define FAULT(text) \
-	{ \
-		.name = (text), .pin = true \
-	}
-static const struct sim_input max31826_inputs[] = {SIM_TEMPERATURE_INPUT, {0}};
+static const struct sim_input max31826_inputs[] = {{SIM_TEMPERATURE_INPUT}, {0}};
 static const struct sim_input max31850_inputs[] = {
 	[TEMPERATURE] = {.name = "temperature", .start = 20, .least = -55, .most = 127.9375},
 	[THERMOCOUPLE] = {.name = "thermocouple", .start = 20, .least = -270, .most = 1800},
-	[OPEN_CIRCUIT] = FAULT("open_circuit"),
-	[GROUND_SHORT] = FAULT("ground_short"),
-	[VDD_SHORT] = FAULT("vdd_short"),
+	[OPEN_CIRCUIT] = {SIM_CONDITION("open_circuit")},
+	[GROUND_SHORT] = {SIM_CONDITION("ground_short")},
+	[VDD_SHORT] = {SIM_CONDITION("vdd_short")},
 	{0},
 };
 
 #define PART(part, ...) \
-	{ \
-		.name = part, .code = 0x3B, .starves = true, .state_size = sizeof(struct sim_max), \
-		.create = max31826_create, .power_on = max31826_power_on, .bit = max31826_bit, \
-		.worked = max31826_worked, .option = max31826_option, __VA_ARGS__ \
-	}
+	.name = part, .code = 0x3B, .starves = true, .state_size = sizeof(struct sim_max), \
+	.create = max31826_create, .power_on = max31826_power_on, .bit = max31826_bit, \
+	.worked = max31826_worked, .option = max31826_option, __VA_ARGS__
 
-const struct sim_family sim_max31826 = PART("MAX31826", .functions = max31826_functions,
-                                            .inputs = max31826_inputs,
-                                            SIM_MEMORY(sim_max, memory, SIM_MAX_MEMORY));
-const struct sim_family sim_max31850 = PART("MAX31850", .functions = max31850_functions,
-                                            .inputs = max31850_inputs);
+const struct sim_family sim_max31826 = {PART("MAX31826", .functions = max31826_functions,
+                                             .inputs = max31826_inputs,
+                                             SIM_MEMORY(sim_max, memory, SIM_MAX_MEMORY))};
+const struct sim_family sim_max31850 = {
+	PART("MAX31850", .functions = max31850_functions, .inputs = max31850_inputs)};

@@ -207,12 +207,9 @@ static const struct sim_input max30207_inputs[] = {
 	{.name = "temperature", .start = 20, .least = -40, .most = 85}, {0}};
 
 #define THERMOMETER(part, input) \
-	{ \
-		.name = (part), .code = 0x54, .starves = true, \
-		.state_size = sizeof(struct max31888), .functions = functions, .inputs = (input), \
-		.power_on = max31888_power_on, .worked = max31888_worked, .bit = max31888_bit, \
-		.option = max31888_option \
-	}
+	.name = (part), .code = 0x54, .starves = true, .state_size = sizeof(struct max31888), \
+	.functions = functions, .inputs = (input), .power_on = max31888_power_on, \
+	.worked = max31888_worked, .bit = max31888_bit, .option = max31888_option
 
-const struct sim_family sim_max31888 = THERMOMETER("MAX31888", max31888_inputs);
-const struct sim_family sim_max30207 = THERMOMETER("MAX30207", max30207_inputs);
+const struct sim_family sim_max31888 = {THERMOMETER("MAX31888", max31888_inputs)};
+const struct sim_family sim_max30207 = {THERMOMETER("MAX30207", max30207_inputs)};

@@ -315,13 +315,11 @@ static const struct sim_input inputs[] = {
 };
 
 #define PART(part) \
-	{ \
-		.name = (part), .code = 0x26, .overdrive = true, .crc8 = true, \
-		.state_size = sizeof(struct sim_tmp1826), .inputs = inputs, \
-		.functions = functions, .create = tmp1826_create, .power_on = tmp1826_power_on, \
-		.alarm = tmp1826_alarm, .bit = tmp1826_bit, .worked = tmp1826_worked, \
-		.option = tmp1826_option, SIM_MEMORY(sim_tmp1826, memory, SIM_TMP1826_MEMORY) \
-	}
+	.name = (part), .code = 0x26, .overdrive = true, .crc8 = true, \
+	.state_size = sizeof(struct sim_tmp1826), .inputs = inputs, .functions = functions, \
+	.create = tmp1826_create, .power_on = tmp1826_power_on, .alarm = tmp1826_alarm, \
+	.bit = tmp1826_bit, .worked = tmp1826_worked, .option = tmp1826_option, \
+	SIM_MEMORY(sim_tmp1826, memory, SIM_TMP1826_MEMORY)
 
-const struct sim_family sim_tmp1826 = PART("TMP1826");
-const struct sim_family sim_tmp1827 = PART("TMP1827");
+const struct sim_family sim_tmp1826 = {PART("TMP1826")};
+const struct sim_family sim_tmp1827 = {PART("TMP1827")};
