@@ -8,7 +8,7 @@ const char *family_type(const struct device *device)
 {
 	const struct family *family = device->family;
 
-	return family->kind ? family->types[family->kind(device)] : family->type;
+	return family->types ? family->types[family->kind(device)] : family->type;
 }
 
 const char *family_identity(const struct device *device)

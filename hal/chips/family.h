@@ -60,7 +60,10 @@ struct family {
 	 * NULL: there is one.
 	 */
 	unsigned (*kind)(const struct device *device);
-	/* What each kind is called. [0] NULL: a request for `type` asks the chip first. */
+	/*
+	 * What each kind is called; NULL: all as `type`. [0] NULL: a request for `type` asks the
+	 * chip first.
+	 */
 	const char *const *types;
 	/*
 	 * Tells which kind it is, before any property of the family (those that every device has

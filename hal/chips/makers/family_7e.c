@@ -234,11 +234,6 @@ static const struct property properties[] = {
 };
 /* clang-format on */
 
-static const char *const types[EDS_KINDS] = {
-	"EDS", "EDS", "EDS", "EDS", "EDS", "EDS", "EDS", "EDS",
-	"EDS", "EDS", "EDS", "EDS", "EDS", "EDS", "EDS",
-};
-
 const struct family family_7e = {
 	.code = 0x7e,
 	.proof = PROOF_CHECKSUM,
@@ -247,7 +242,6 @@ const struct family family_7e = {
 	.flags = FLAG_ALARM | FLAG_TEMPERATURE,
 	.kind = eds_kind_of,
 	.tell = eds_identify,
-	.types = types,
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

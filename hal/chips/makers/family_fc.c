@@ -436,8 +436,6 @@ static const struct property properties[] = {
 };
 /* clang-format on */
 
-static const char *const types[] = {"BAE", "BAE", "BAE", "BAE"};
-
 const struct family family_fc = {
 	.code = 0xfc,
 	.proof = PROOF_PRESENCE,
@@ -445,7 +443,6 @@ const struct family family_fc = {
 	.flags = FLAG_RESUME | FLAG_ALARM,
 	.kind = bae_kind,
 	.tell = bae_identify,
-	.types = types,
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

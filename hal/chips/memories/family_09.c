@@ -2,6 +2,8 @@
 /*
  * DS2502: 1 kbit of EPROM (data sheet 19-5076), read by pages that have a CRC8 each. It is
  * programmed with pulses of 12 V, which no adapter here gives: the area has no row.
+ * DS1982U, DS2502-E48: one whose first bytes the factory has written (data sheet "48-Bit Node
+ * Address Chip"): a project code, and an Ethernet or FireWire address.
  */
 #include "hal/chips/family.h"
 
@@ -29,3 +31,17 @@ const struct family family_09 = {.code = 0x09,
                                  SCAN({"present", "present"}),
                                  AREAS(areas),
                                  PROPERTIES(properties)};
+
+#define PART(text, at_, bytes_) \
+	PROPERTY(text, BINARY, STABLE, READ, .size = (bytes_), FIELD(MEMORY, .at = (at_)))
+
+static const struct property written_properties[] = {
+	PART("mac_e", 4, 6),   PART("mac_fw", 4, 8),      AREA_MEMORY(MEMORY, 128),
+	PROPERTY_DIR("pages"), AREA_PAGES(MEMORY, 4, 32), PART("project", 0, 4),
+};
+
+const struct family family_89 = {.code = 0x89,
+                                 .proof = PROOF_PRESENCE,
+                                 .type = "DS1982U",
+                                 AREAS(areas),
+                                 PROPERTIES(written_properties)};
