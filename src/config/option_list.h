@@ -1,0 +1,198 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * All keys of the configuration: name in enum option, key, block, kind of value, and the other
+ * members of struct option_def. Included where OPTION() says what is made of each.
+ */
+/* clang-format off */
+OPTION(VERSION, "Version", DRIVER, TEXT, .preset = "1.00", .help = "version of the file format")
+OPTION(TARGET_NAME, "TargetName", DRIVER, TEXT, .preset = "localhost:4304",
+       .help = "where owsd reaches the devices")
+OPTION(MAX_CONS_ALARMS, "MaxConsAlarms", DRIVER, COUNT, RANGE(0, 1000), .preset = "5",
+       .help = "alarms served in a row before one write or read goes through")
+OPTION(MAX_REQUESTS, "MaxRequests", DRIVER, COUNT, RANGE(0, 1000), .preset = "1",
+       .help = "requests at a time, in older files; counts as 1")
+OPTION(MAX_RETRIES, "MaxRetries", DRIVER, COUNT, RANGE(0, 100), .preset = "3",
+       .help = "retries after an item error")
+OPTION(TIMEOUT, "Timeout", DRIVER, SECONDS, RANGE(0.001, DAY), .preset = "20",
+       .help = "time limit of a request, seconds")
+OPTION(PERIOD, "Period", DRIVER, SECONDS, RANGE(0.001, 60), .preset = "0.1",
+       .help = "period of the driver, seconds")
+OPTION(ALARM_PERIOD, "AlarmPeriod", DRIVER, SECONDS, RANGE(0, DAY), .preset = "0.05",
+       .help = "least time between two readings of /alarm, seconds")
+OPTION(LISTEN, "Listen", DRIVER, TEXT, .help = "where the owserver protocol is served")
+OPTION(LISTEN_SOCKET, "ListenSocket", DRIVER, TEXT, .help = "unix socket on which it is served")
+OPTION(LISTEN_ALLOW, "ListenAllow", DRIVER, TEXT,
+       .help = "addresses that may connect over the network")
+OPTION(LISTEN_READ_ONLY, "ListenReadOnly", DRIVER, FLAG, .preset = "off",
+       .help = "refuse all writes over the protocol")
+OPTION(CONTROL_ALLOW, "ControlAllow", DRIVER, TEXT, .repeats = true,
+       .help = "who may command the signals of a pattern")
+OPTION(ITEM_COUNT, "ItemCount", DRIVER, COUNT, RANGE(0, 1e9), .help = "number of items")
+OPTION(ALARM_LINE, "AlarmLine", DRIVER, TEXT,
+       .help = "GPIO line that is on while there is an alarm")
+OPTION(HEARTBEAT_LINE, "HeartbeatLine", DRIVER, TEXT,
+       .help = "GPIO line that blinks while owsd is well")
+OPTION(BUS, "Bus", DRIVER, BLOCK, .repeats = true, .help = "options of one target")
+OPTION(RECORDER, "Recorder", DRIVER, BLOCK,
+       .help = "options of owsd-recorder, which keeps the history")
+OPTION(INFLUX, "Influx", DRIVER, BLOCK,
+       .help = "options of owsd-influx, which pushes values to a server")
+OPTION(WEB, "Web", DRIVER, BLOCK,
+       .help = "options of owsd-web, which shows the signals in a browser")
+OPTION(MQTT, "Mqtt", DRIVER, BLOCK,
+       .help = "options of owsd-mqtt, which publishes the signals to a broker")
+OPTION(ITEM, "Item", DRIVER, BLOCK, .repeats = true, .help = "one signal")
+
+/* Of an item */
+OPTION(NAME, "Name", ITEM, TEXT, .help = "name of the signal")
+OPTION(PATH, "Path", ITEM, TEXT, .help = "OWFS path of the property")
+OPTION(IO_TYPE, "IOType", ITEM, COUNT, RANGE(0, UINT32_MAX),
+       .help = "type, direction and Uncached as bits")
+OPTION(TYPE, "Type", ITEM, TYPE, .help = "data type")
+OPTION(IO, "IO", ITEM, IO, .preset = "input", .help = "read cyclically, or written when changed")
+OPTION(READABLE, "Readable", ITEM, FLAG,
+       .help = "start value of _ReadEnable; on for inputs, off for outputs")
+OPTION(WRITABLE, "Writable", ITEM, FLAG,
+       .help = "start value of _WriteEnable; on for outputs, off for inputs")
+OPTION(UNCACHED, "Uncached", ITEM, FLAG, .preset = "off", .help = "read past the cache")
+OPTION(INIT_VALUE, "InitValue", ITEM, TEXT, .preset = "",
+       .help = "value until the first read; outputs: written once at start")
+OPTION(SAFE_VALUE, "SafeValue", ITEM, TEXT,
+       .help = "written when the control program stops beating")
+OPTION(SAFE_DELAY, "SafeDelay", ITEM, SECONDS, RANGE(0, DAY),
+       .help = "how long SafeValue waits for a control program that is lost, seconds")
+OPTION(START, "Start", ITEM, TEXT, .preset = "init",
+       .help = "what an output begins with: init (InitValue) or last (as it was)")
+OPTION(CONFIRM, "Confirm", ITEM, FLAG, .preset = "off",
+       .help = "a person is asked once more before a set by hand")
+OPTION(READ_BACK, "ReadBack", ITEM, SECONDS, RANGE(0, DAY),
+       .help = "how often an output is read back, seconds; 0: never; 10 for switches")
+OPTION(RESTORE, "Restore", ITEM, FLAG, .preset = "off",
+       .help = "write a command again that the device does not have any more")
+OPTION(PER_FACTOR, "PerFactor", ITEM, COUNT, RANGE(1, 1e6), .preset = "1",
+       .help = "read again no sooner than that many periods later")
+OPTION(STALE_AFTER, "StaleAfter", ITEM, SECONDS, RANGE(0, 365 * DAY), .preset = "0",
+       .help = "age at which a value is no longer good, seconds; 0: never")
+OPTION(ALARM, "Alarm", ITEM, FLAG, .preset = "off", .help = "watch the device by its alarms")
+OPTION(LATCH_ALARM, "LatchAlarm", ITEM, TEXT, .help = "property that shows what changed")
+OPTION(POR_ALARM, "PorAlarm", ITEM, TEXT, .help = "property that shows that the device restarted")
+OPTION(SET_ALARM, "SetAlarm", ITEM, TEXT, .help = "property=value that arms the alarm")
+OPTION(RESET_LATCH, "ResetLatch", ITEM, TEXT, .help = "property=value that clears the latch")
+OPTION(LIMIT_HH, "LimitHH", ITEM, NUMBER, RANGE(-DBL_MAX, DBL_MAX),
+       .help = "alarm at or above that value, higher than LimitH")
+OPTION(LIMIT_H, "LimitH", ITEM, NUMBER, RANGE(-DBL_MAX, DBL_MAX),
+       .help = "alarm at or above that value")
+OPTION(LIMIT_L, "LimitL", ITEM, NUMBER, RANGE(-DBL_MAX, DBL_MAX),
+       .help = "alarm at or below that value")
+OPTION(LIMIT_LL, "LimitLL", ITEM, NUMBER, RANGE(-DBL_MAX, DBL_MAX),
+       .help = "alarm at or below that value, lower than LimitL")
+OPTION(HYSTERESIS, "Hysteresis", ITEM, NUMBER, RANGE(0, DBL_MAX), .preset = "0",
+       .help = "how far a value returns inside a limit before its alarm ends")
+OPTION(ON_DELAY, "OnDelay", ITEM, SECONDS, RANGE(0, DAY), .preset = "0",
+       .help = "how long a limit alarm's condition stands before it is raised, seconds")
+OPTION(OFF_DELAY, "OffDelay", ITEM, SECONDS, RANGE(0, DAY), .preset = "0",
+       .help = "how long it is gone before the alarm returns, seconds")
+OPTION(UNIT, "Unit", ITEM, TEXT, .help = "unit of the value, such as bar")
+OPTION(DECIMALS, "Decimals", ITEM, COUNT, RANGE(0, 15),
+       .help = "most digits after the point, where people read the value")
+OPTION(DESCRIPTION, "Description", ITEM, TEXT, .help = "what the signal is, for people")
+OPTION(SCALE, "Scale", ITEM, NUMBER, RANGE(-DBL_MAX, DBL_MAX), .preset = "1",
+       .help = "value = raw value * Scale + Offset")
+OPTION(OFFSET, "Offset", ITEM, NUMBER, RANGE(-DBL_MAX, DBL_MAX), .preset = "0", .help = "see Scale")
+OPTION(POINTS, "Points", ITEM, TEXT, .help = "a line through points RAW:VALUE, in place of Scale")
+OPTION(MIN, "Min", ITEM, NUMBER, RANGE(-DBL_MAX, DBL_MAX),
+       .help = "a value below it is out of range")
+OPTION(MAX, "Max", ITEM, NUMBER, RANGE(-DBL_MAX, DBL_MAX),
+       .help = "a value above it is out of range")
+OPTION(FILTER, "Filter", ITEM, SECONDS, RANGE(0, DAY), .preset = "0",
+       .help = "time constant of a low-pass filter, seconds; 0: none")
+OPTION(DEADBAND, "Deadband", ITEM, NUMBER, RANGE(0, DBL_MAX), .preset = "0",
+       .help = "a smaller change is not listed as one")
+OPTION(CALIBRATED, "Calibrated", ITEM, TEXT, .help = "date of the last calibration, for the record")
+OPTION(RECORD, "Record", ITEM, TEXT,
+       .help = "when owsd-recorder keeps a value: change, deadband, interval, off")
+OPTION(CLASS, "Class", ITEM, TEXT,
+       .help = "what it is to Home Assistant: light, cover, or a device class")
+
+/* Of a Bus block */
+OPTION(BUS_TARGET, "Target", BUS, TEXT, .help = "the target it is for")
+OPTION(BUS_POWER_LINE, "PowerLine", BUS, TEXT,
+       .help = "GPIO line that switches the supply of the wire")
+OPTION(BUS_POWER_OFF_MS, "PowerOffMs", BUS, COUNT, RANGE(1, 60000), .preset = "500",
+       .help = "how long the supply is off, milliseconds")
+OPTION(BUS_SLEEP_LINE, "SleepLine", BUS, TEXT, .help = "GPIO line at the SLPZ pin of the chips")
+OPTION(BUS_SENSORS, "Sensors", BUS, TEXT, .help = "file of the sensors behind bridges to I2C")
+OPTION(BUS_ACTIVE_LOW, "ActiveLow", BUS, TEXT, .help = "lines that are 1 when low")
+OPTION(BUS_PULL_UP, "PullUp", BUS, TEXT, .help = "lines with pull-up")
+OPTION(BUS_PULL_DOWN, "PullDown", BUS, TEXT, .help = "lines with pull-down")
+OPTION(BUS_OPEN_DRAIN, "OpenDrain", BUS, TEXT, .help = "outputs that only pull low")
+OPTION(BUS_OPEN_SOURCE, "OpenSource", BUS, TEXT, .help = "outputs that only drive high")
+OPTION(BUS_TOUCH, "Touch", BUS, FLAG, .preset = "off",
+       .help = "keys that touch the wire are noticed at once")
+
+/* Of the Recorder block */
+OPTION(RECORDER_DIRECTORY, "Directory", RECORDER, TEXT, .help = "where the history is kept")
+OPTION(RECORDER_KEEP, "Keep", RECORDER, COUNT, RANGE(0, 36500), .preset = "90",
+       .help = "days after which values are deleted; 0: never")
+OPTION(RECORDER_KEEP_MINUTES, "KeepMinutes", RECORDER, COUNT, RANGE(0, 36500), .preset = "730",
+       .help = "the same of sums by the minute, and of events")
+OPTION(RECORDER_KEEP_HOURS, "KeepHours", RECORDER, COUNT, RANGE(0, 36500), .preset = "0",
+       .help = "the same of sums by the hour")
+OPTION(RECORDER_SIZE, "Size", RECORDER, COUNT, RANGE(0, 1e6), .preset = "2000",
+       .help = "most megabytes of history, the oldest is deleted; 0: no limit")
+OPTION(RECORDER_FLUSH, "Flush", RECORDER, SECONDS, RANGE(1, 600), .preset = "60",
+       .help = "how long what is recorded may be in memory alone, seconds")
+OPTION(RECORDER_RECORD, "Record", RECORDER, TEXT, .preset = "change",
+       .help = "of items without a Record of their own")
+
+/* Of the Influx block */
+OPTION(INFLUX_URL, "Url", INFLUX, TEXT,
+       .help = "where the server takes line protocol: http or https")
+OPTION(INFLUX_EVERY, "Every", INFLUX, SECONDS, RANGE(0.1, 3600), .preset = "10",
+       .help = "how often what has changed is sent, seconds")
+OPTION(INFLUX_TOKEN_FILE, "TokenFile", INFLUX, TEXT,
+       .help = "file with the token, or name of a credential")
+OPTION(INFLUX_MEASUREMENT, "Measurement", INFLUX, TEXT, .preset = "ows",
+       .help = "measurement of all points")
+OPTION(INFLUX_SPOOL, "Spool", INFLUX, TEXT,
+       .help = "where batches wait for a server that is not there")
+OPTION(INFLUX_SPOOL_SIZE, "SpoolSize", INFLUX, COUNT, RANGE(1, 100000), .preset = "64",
+       .help = "most megabytes that wait, the oldest are dropped")
+OPTION(INFLUX_CLOCK_WAIT, "ClockWait", INFLUX, SECONDS, RANGE(0, DAY), .preset = "600",
+       .help = "uptime from which a clock that nobody set is believed")
+
+/* Of the Web block */
+OPTION(WEB_LISTEN, "Listen", WEB, TEXT,
+       .help = "addresses where the page is served, besides its socket")
+OPTION(WEB_HOSTS, "Hosts", WEB, TEXT,
+       .help = "more names under which a browser may ask for the page")
+OPTION(WEB_WRITE, "Write", WEB, FLAG, .preset = "off",
+       .help = "let the page set outputs and acknowledge alarms")
+OPTION(WEB_CONFIGURE, "Configure", WEB, FLAG, .preset = "off",
+       .help = "let the page edit and save the configuration")
+OPTION(WEB_PROXY, "Proxy", WEB, TEXT,
+       .help = "user or address of the reverse proxy that names the person")
+OPTION(WEB_FILES, "Files", WEB, TEXT, .help = "where the files of the page are")
+
+/* Of the Mqtt block */
+OPTION(MQTT_BROKER, "Broker", MQTT, TEXT, .preset = "mqtt://localhost",
+       .help = "ways to a broker, with | between them; the first that works")
+OPTION(MQTT_USER, "User", MQTT, TEXT, .help = "name towards the broker")
+OPTION(MQTT_PASSWORD_FILE, "PasswordFile", MQTT, TEXT,
+       .help = "file with the password, or name of a credential")
+OPTION(MQTT_CA_FILE, "CaFile", MQTT, TEXT,
+       .help = "certificates that vouch for the broker, likewise")
+OPTION(MQTT_CERT_FILE, "CertFile", MQTT, TEXT, .help = "certificate towards the broker, likewise")
+OPTION(MQTT_KEY_FILE, "KeyFile", MQTT, TEXT, .help = "key of that certificate, likewise")
+OPTION(MQTT_PROTOCOL, "Protocol", MQTT, TEXT, .preset = "5",
+       .help = "version of MQTT to begin with: 5 or 3.1.1")
+OPTION(MQTT_NODE, "Node", MQTT, TEXT, .help = "name of this machine and instance in topics")
+OPTION(MQTT_TOPIC, "Topic", MQTT, TEXT, .preset = "owsd", .help = "what all topics begin with")
+OPTION(MQTT_PROFILE, "Profile", MQTT, TEXT, .preset = "homeassistant",
+       .help = "for whom it is published:" MQTT_PROFILES(MQTT_PROFILE_WORD))
+OPTION(MQTT_DISCOVERY, "Discovery", MQTT, TEXT, .preset = "homeassistant",
+       .help = "where Home Assistant looks for devices")
+OPTION(MQTT_PRIMARY_HOST, "PrimaryHost", MQTT, TEXT,
+       .help = "host of Sparkplug without which nothing is published")
+OPTION(MQTT_WRITE, "Write", MQTT, FLAG, .preset = "off", .help = "take commands from the broker")
+/* clang-format on */
