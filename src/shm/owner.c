@@ -14,11 +14,18 @@
 /* fgetpwent() and fgetgrent() have one entry for all threads */
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 
+struct user {
+	uid_t uid;
+	gid_t gid;
+	char name[OWNER_NAME];
+};
+
 /*
- * Read from the files themselves: the user and groups of owsd are local, and getpwnam() would load
- * the name services of a directory into the daemon for nothing.
+ * The user of that name; name NULL: of that uid. Read from the files themselves: the user and
+ * groups of owsd are local, and getpwnam() would load the name services of a directory into the
+ * daemon for nothing.
  */
-bool owner_user(const char *name, uid_t *uid)
+static bool find_user(const char *name, uid_t uid, struct user *user)
 {
 	FILE *file = fopen("/etc/passwd", "re");
 	const struct passwd *entry;
@@ -26,12 +33,51 @@ bool owner_user(const char *name, uid_t *uid)
 
 	pthread_mutex_lock(&lock);
 	while (file && !found && (entry = fgetpwent(file)) != NULL) {
-		found = strcmp(entry->pw_name, name) == 0;
-		*uid = entry->pw_uid;
+		found = name ? strcmp(entry->pw_name, name) == 0 : entry->pw_uid == uid;
+		*user = (struct user){.uid = entry->pw_uid, .gid = entry->pw_gid};
+		snprintf(user->name, sizeof(user->name), "%s", entry->pw_name);
 	}
 	pthread_mutex_unlock(&lock);
 	if (file)
 		fclose(file);
+	return found;
+}
+
+static bool lists(const struct group *entry, const char *name)
+{
+	for (char **member = entry->gr_mem; *member; member++)
+		if (strcmp(*member, name) == 0)
+			return true;
+	return false;
+}
+
+/* The group of that name; name NULL: *gid, if it lists the member. */
+static bool find_group(const char *name, const char *member, gid_t *gid)
+{
+	FILE *file = fopen("/etc/group", "re");
+	const struct group *entry;
+	bool found = false;
+
+	pthread_mutex_lock(&lock);
+	while (file && !found && (entry = fgetgrent(file)) != NULL) {
+		found = name ? strcmp(entry->gr_name, name) == 0
+		             : entry->gr_gid == *gid && lists(entry, member);
+		if (found)
+			*gid = entry->gr_gid;
+	}
+	pthread_mutex_unlock(&lock);
+	if (file)
+		fclose(file);
+	return found;
+}
+
+bool owner_user(const char *name, uid_t *uid)
+{
+	struct user user;
+	bool found = find_user(name, 0, &user);
+
+	if (found)
+		*uid = user.uid;
 	return found;
 }
 
@@ -54,70 +100,24 @@ bool owner_trusted(uid_t uid)
 
 const char *owner_name(uid_t uid, char name[OWNER_NAME])
 {
-	FILE *file = fopen("/etc/passwd", "re");
-	const struct passwd *entry;
+	struct user user;
 
-	snprintf(name, OWNER_NAME, "%lu", (unsigned long)uid);
-	pthread_mutex_lock(&lock);
-	while (file && (entry = fgetpwent(file)) != NULL)
-		if (entry->pw_uid == uid) {
-			snprintf(name, OWNER_NAME, "%.16s (%lu)", entry->pw_name,
-			         (unsigned long)uid);
-			break;
-		}
-	pthread_mutex_unlock(&lock);
-	if (file)
-		fclose(file);
+	if (find_user(NULL, uid, &user))
+		snprintf(name, OWNER_NAME, "%.16s (%lu)", user.name, (unsigned long)uid);
+	else
+		snprintf(name, OWNER_NAME, "%lu", (unsigned long)uid);
 	return name;
 }
 
 bool owner_group(const char *name, gid_t *gid)
 {
-	FILE *file = fopen("/etc/group", "re");
-	const struct group *entry;
-	bool found = false;
-
-	pthread_mutex_lock(&lock);
-	while (file && !found && (entry = fgetgrent(file)) != NULL) {
-		found = strcmp(entry->gr_name, name) == 0;
-		*gid = entry->gr_gid;
-	}
-	pthread_mutex_unlock(&lock);
-	if (file)
-		fclose(file);
-	return found;
-}
-
-static bool lists(const struct group *entry, const char *name)
-{
-	for (char **member = entry->gr_mem; *member; member++)
-		if (strcmp(*member, name) == 0)
-			return true;
-	return false;
+	return find_group(name, NULL, gid);
 }
 
 bool owner_in_group(uid_t uid, gid_t gid)
 {
-	FILE *file = fopen("/etc/passwd", "re");
-	const struct passwd *user;
-	const struct group *entry;
-	char name[OWNER_NAME] = "";
-	bool is = false;
+	struct user user;
 
-	pthread_mutex_lock(&lock);
-	while (file && !*name && (user = fgetpwent(file)) != NULL) {
-		if (user->pw_uid != uid)
-			continue;
-		is = user->pw_gid == gid;
-		snprintf(name, sizeof(name), "%s", user->pw_name);
-	}
-	if (file)
-		fclose(file);
-	file = *name && !is ? fopen("/etc/group", "re") : NULL;
-	while (file && !is && (entry = fgetgrent(file)) != NULL)
-		is = entry->gr_gid == gid && lists(entry, name);
-	pthread_mutex_unlock(&lock);
-	if (file)
-		fclose(file);
-	return is;
+	return find_user(NULL, uid, &user) &&
+	       (user.gid == gid || find_group(NULL, user.name, &gid));
 }
