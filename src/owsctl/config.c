@@ -195,9 +195,8 @@ static int change(const char *file, const char *action, char **words, unsigned c
 /* Run `list` or `show`: options may follow the word too, and patterns or names. */
 static int list_with(struct ctl *ctl, const char *file, int argc, char **argv)
 {
-	ctl_options();
-	if (ctl_option(ctl, argc, argv, "") != -1)
-		return CTL_USAGE;
+	optind = 0;
+	ctl_option(ctl, argc, argv, "");
 	return list(ctl, file, !strcmp(argv[0], "show"), argv + optind, argc - optind);
 }
 
@@ -219,9 +218,7 @@ int verb_config(struct ctl *ctl, int argc, char **argv)
 	const char *file, *action;
 	int words;
 
-	ctl_options();
-	if (ctl_option(ctl, argc, argv, "+") != -1)
-		return CTL_USAGE;
+	ctl_option(ctl, argc, argv, "+");
 	for (int i = optind; i < argc; i++)
 		if (!strcmp(argv[i], "--help") || !strcmp(argv[i], "-h")) {
 			ctl_help(ctl->verb, stdout);

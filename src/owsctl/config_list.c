@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* owsctl config FILE list: targets, the driver's keys and the items, as a table or JSON. */
+#include <math.h>
 #include <stdio.h>
 
 #include "src/owsctl/config_list.h"
@@ -85,7 +86,7 @@ static void print_driver(const struct config *config)
 	       seconds(config->period_ns));
 }
 
-static bool config_list_add_row(struct table *table, const struct config_item *item)
+static void config_list_add_row(struct table *table, const struct config_item *item)
 {
 	char per_factor[16], stale[32] = "-", limits[LIMITS_TEXT];
 
@@ -97,38 +98,35 @@ static bool config_list_add_row(struct table *table, const struct config_item *i
 	table->absent[PER_FACTOR] &= item->per_factor == 1;
 	table->absent[STALE_AFTER] &= !item->stale_after_ns;
 	table->absent[LIMITS] &= !item->limits.any;
-	return table_add(
-		table, (const char *const[COLUMNS]){[NAME] = item->name,
-	                                            [TYPE] = value_type_name(item->type),
-	                                            [IO] = item->output ? "output" : "input",
-	                                            [INIT] = item->init_text,
-	                                            [SAFE] = item->has_safe ? item->safe_text : "-",
-	                                            [READ] = yes(item->readable),
-	                                            [WRITE] = yes(item->writable),
-	                                            [UNCACHED] = yes(item->fresh),
-	                                            [PER_FACTOR] = per_factor,
-	                                            [STALE_AFTER] = stale,
-	                                            [ALARM] = yes(item->alarm),
-	                                            [LIMITS] = limits_text(&item->limits, limits),
-	                                            [PATH] = item->path});
+	table_add(table,
+	          (const char *const[COLUMNS]){[NAME] = item->name,
+	                                       [TYPE] = value_type_name(item->type),
+	                                       [IO] = item->output ? "output" : "input",
+	                                       [INIT] = item->init_text,
+	                                       [SAFE] = item->has_safe ? item->safe_text : "-",
+	                                       [READ] = yes(item->readable),
+	                                       [WRITE] = yes(item->writable),
+	                                       [UNCACHED] = yes(item->fresh),
+	                                       [PER_FACTOR] = per_factor,
+	                                       [STALE_AFTER] = stale,
+	                                       [ALARM] = yes(item->alarm),
+	                                       [LIMITS] = limits_text(&item->limits, limits),
+	                                       [PATH] = item->path});
 }
 
-static bool print_table(const struct config *config, char *const *patterns, int count)
+static void print_table(const struct config *config, char *const *patterns, int count)
 {
 	struct table table;
-	bool ok = true;
 
 	print_driver(config);
 	table_init(&table, columns, COLUMNS);
 	table.absent[SAFE] = table.absent[PER_FACTOR] = table.absent[STALE_AFTER] =
 		table.absent[LIMITS] = true;
-	for (unsigned i = 0; ok && i < config->item_count; i++)
+	for (unsigned i = 0; i < config->item_count; i++)
 		if (names_match(config->items[i].name, patterns, count))
-			ok = config_list_add_row(&table, &config->items[i]);
-	if (ok)
-		table_print(&table, true);
+			config_list_add_row(&table, &config->items[i]);
+	table_print(&table, true);
 	table_free(&table);
-	return ok;
 }
 
 static void limits_json(struct json *json, const struct config_limits *limits)
@@ -146,10 +144,7 @@ static void limits_json(struct json *json, const struct config_limits *limits)
 	}
 	json_object(json, "limits");
 	for (int i = 0; i < CONFIG_LIMITS; i++)
-		if (limits->has[i])
-			json_double(json, keys[i], limits->limit[i]);
-		else
-			json_null(json, keys[i]);
+		json_double(json, keys[i], limits->has[i] ? limits->limit[i] : NAN);
 	json_double(json, "hysteresis", limits->hysteresis);
 	json_seconds(json, "on_delay", limits->on_delay_ns);
 	json_seconds(json, "off_delay", limits->off_delay_ns);
@@ -161,22 +156,13 @@ static void scaling_json(struct json *json, const struct config_item *item)
 	const struct scale *scale = &item->scale;
 
 	json_string(json, "unit", item->unit);
-	if (item->decimals >= 0)
-		json_int(json, "decimals", item->decimals);
-	else
-		json_null(json, "decimals");
+	json_known(json, "decimals", item->decimals);
 	json_string(json, "description", item->description);
 	json_double(json, "scale", scale->linear ? scale->factor : 1);
 	json_double(json, "offset", scale->linear ? scale->offset : 0);
 	json_string(json, "points", item->points);
-	if (scale->has_min)
-		json_double(json, "min", scale->min);
-	else
-		json_null(json, "min");
-	if (scale->has_max)
-		json_double(json, "max", scale->max);
-	else
-		json_null(json, "max");
+	json_double(json, "min", scale->has_min ? scale->min : NAN);
+	json_double(json, "max", scale->has_max ? scale->max : NAN);
 	json_double(json, "filter", item->filter_s);
 	json_double(json, "deadband", item->deadband);
 	json_string(json, "calibrated", item->calibrated);
@@ -251,7 +237,7 @@ int config_list(const struct config *config, char *const *patterns, int count, b
 		return ctl_fail("no item matches");
 	if (json)
 		config_list_print_json(config, patterns, count);
-	else if (!print_table(config, patterns, count))
-		return ctl_fail("no memory");
+	else
+		print_table(config, patterns, count);
 	return CTL_DONE;
 }

@@ -218,19 +218,11 @@ int verb_control(struct ctl *ctl, int argc, char **argv)
 	static struct control control;
 	static char copy[sizeof(control.line)];
 	const char *name = "owsctl";
-	int c, status;
-
-	ctl_options();
-	while ((c = ctl_option(ctl, argc, argv, "A:")) != -1) {
-		if (c != 'A')
-			return CTL_USAGE;
+	while (ctl_option(ctl, argc, argv, "A:") != -1)
 		name = optarg;
-	}
 	if (optind < argc)
 		return ctl_usage(ctl, "control takes its orders from standard input");
-	status = ctl_open_as(ctl, OWS_CONTROL, name, &control.h);
-	if (status)
-		return status;
+	control.h = ctl_open_as(ctl, OWS_CONTROL, name);
 	if (!control_follow(&control, copy))
 		return CTL_DONE; /* Not closed: owsd takes the end for a loss, not for a goodbye */
 	ows_close(control.h);

@@ -24,13 +24,11 @@ static const struct table_column origin_columns[] = {
 /* clang-format on */
 #define COLUMNS(columns) (sizeof(columns) / sizeof((columns)[0]))
 
-/* What a table cannot hold is missing. */
 struct who {
 	struct ows *h;
 	char *const *patterns;
 	int count;
 	struct when now;
-	bool full; /* no memory */
 };
 
 static const char *controller_state(const struct ows_controller *controller)
@@ -52,12 +50,11 @@ static void add_controller(struct who *who, struct table *table,
 		snprintf(beat, sizeof(beat), "%gs", controller->period_ms / 1e3);
 	else
 		snprintf(beat, sizeof(beat), "-");
-	who->full |= !table_add(
-		table,
-		(const char *const[]){who_program(&controller->who, program),
-	                              who_user(&controller->who, user),
-	                              when_span(who->now.boot - controller->joined_ns, since), beat,
-	                              commands, refused, controller_state(controller)});
+	table_add(table,
+	          (const char *const[]){who_program(&controller->who, program),
+	                                who_user(&controller->who, user),
+	                                when_span(who->now.boot - controller->joined_ns, since),
+	                                beat, commands, refused, controller_state(controller)});
 }
 
 static void add_origin(struct who *who, struct table *table, const char *name,
@@ -66,12 +63,11 @@ static void add_origin(struct who *who, struct table *table, const char *name,
 	char program[WHO_TEXT], user[WHO_TEXT], ago[WHEN_TEXT];
 	bool none = origin->reason == OWS_REASON_NONE;
 
-	who->full |= !table_add(
-		table, (const char *const[]){
-			       name, ows_reason_text(origin->reason),
-			       none ? "-" : who_program(&origin->who, program),
-			       none ? "-" : who_user(&origin->who, user), origin->who.person,
-			       none ? "-" : when_span(who->now.boot - origin->taken_ns, ago)});
+	table_add(table, (const char *const[]){
+				 name, ows_reason_text(origin->reason),
+				 none ? "-" : who_program(&origin->who, program),
+				 none ? "-" : who_user(&origin->who, user), origin->who.person,
+				 none ? "-" : when_span(who->now.boot - origin->taken_ns, ago)});
 }
 
 /* The next output that the patterns select, from *signal on, with the origin of its command. */
@@ -91,7 +87,7 @@ static bool next_output(struct who *who, int *signal, struct ows_info *info,
 	return false;
 }
 
-static int print_text(struct who *who)
+static void print_text(struct who *who)
 {
 	struct table controllers, outputs;
 	struct ows_origin origin;
@@ -111,7 +107,6 @@ static int print_text(struct who *who)
 	table_print(&outputs, true);
 	table_free(&controllers);
 	table_free(&outputs);
-	return who->full ? ctl_fail("no memory") : CTL_DONE;
 }
 
 static void controller_json(const struct who *who, struct json *json,
@@ -174,22 +169,17 @@ static void controllers_print_json(struct who *who, const char *instance)
 int verb_who(struct ctl *ctl, int argc, char **argv)
 {
 	struct who who = {0};
-	int status;
 
-	ctl_options();
-	if (ctl_option(ctl, argc, argv, "") != -1)
-		return CTL_USAGE;
+	ctl_option(ctl, argc, argv, "");
 	who.patterns = argv + optind;
 	who.count = argc - optind;
-	status = ctl_open(ctl, OWS_READ, &who.h);
-	if (status)
-		return status;
+	who.h = ctl_open(ctl, OWS_READ);
 	who.now = when_now();
 	ctl_alive(ctl, who.h, who.now.boot);
 	if (ctl->json)
 		controllers_print_json(&who, ctl->instance);
 	else
-		status = print_text(&who);
+		print_text(&who);
 	ows_close(who.h);
-	return status;
+	return CTL_DONE;
 }

@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <getopt.h>
 #include <poll.h>
+#include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -69,9 +70,28 @@ int ctl_usage(const struct ctl *ctl, const char *format, ...)
 	return CTL_USAGE;
 }
 
-void ctl_options(void)
+static jmp_buf verb_end;
+static int verb_status;
+
+int ctl_run(struct ctl *ctl, int argc, char **argv)
 {
+	if (setjmp(verb_end))
+		return verb_status;
 	optind = 0;
+	return ctl->verb->run(ctl, argc, argv);
+}
+
+void ctl_end(int status)
+{
+	verb_status = status;
+	longjmp(verb_end, 1);
+}
+
+void *ctl_need(void *memory)
+{
+	if (!memory)
+		ctl_end(ctl_fail("no memory"));
+	return memory;
 }
 
 /* The long options of a verb, whose short ones are `options`. */
@@ -157,33 +177,41 @@ int ctl_option(struct ctl *ctl, int argc, char **argv, const char *options)
 		else
 			ctl->target = optarg;
 		index = -1;
-		if (c == 't' && !*optarg) {
-			ctl_usage(ctl, CTL_NO_TARGET);
-			return '?';
-		}
+		if (c == 't' && !*optarg)
+			ctl_end(ctl_usage(ctl, CTL_NO_TARGET));
 	}
 	if (c == 'h') {
 		ctl_help(ctl->verb, stdout);
-		exit(ctl_flush(CTL_DONE));
+		ctl_end(CTL_DONE);
 	}
 	if (c == ':' || c == '?') {
 		refused_option(c, longs, argv, why, sizeof(why));
-		ctl_usage(ctl, "%s", why);
-		return '?';
+		ctl_end(ctl_usage(ctl, "%s", why));
 	}
 	long_given = index < 0 ? NULL : longs[index].name;
 	return c;
 }
 
-bool ctl_moment(const struct ctl *ctl, int c, const struct when *now, int64_t *wall_ns)
+int64_t ctl_moment(const struct ctl *ctl, int c, const struct when *now)
 {
 	const char short_given[] = {(char)c, '\0'};
-	const char *why = when_moment(now, optarg, wall_ns);
+	int64_t wall_ns;
+	const char *why = when_moment(now, optarg, &wall_ns);
 
 	if (why)
-		ctl_usage(ctl, "-%s%s %s: %s", long_given ? "-" : "",
-		          long_given ? long_given : short_given, ctl_word(optarg), why);
-	return !why;
+		ctl_end(ctl_usage(ctl, "-%s%s %s: %s", long_given ? "-" : "",
+		                  long_given ? long_given : short_given, ctl_word(optarg), why));
+	return wall_ns;
+}
+
+int64_t ctl_option_seconds(const struct ctl *ctl, int c)
+{
+	int64_t ns;
+
+	if (!ctl_seconds(optarg, &ns))
+		ctl_end(ctl_usage(ctl, "-%c wants a number of seconds, not %s", c,
+		                  ctl_word(optarg)));
+	return ns;
 }
 
 const char *ctl_word(const char *word)
@@ -253,19 +281,12 @@ static int check_control(const char *name, int err)
 	return CTL_DONE;
 }
 
-int ctl_open(const struct ctl *ctl, enum ows_mode mode, struct ows **h)
-{
-	return ctl_open_as(ctl, mode, "owsctl", h);
-}
-
-int ctl_open_as(const struct ctl *ctl, enum ows_mode mode, const char *program, struct ows **h)
+/* Print why an instance cannot be opened. */
+static int refuse_open(const struct ctl *ctl, enum ows_mode mode, int err)
 {
 	const char *name = ctl->instance;
 	char one[SEGMENT_NAME_MAX + 1], names[400];
-	int err = ows_open_as(name, mode, program, h);
 
-	if (!err)
-		return CTL_DONE;
 	if (mode == OWS_CONTROL && check_control(name, err))
 		return CTL_FAILED;
 	if (err != -ENOENT && check_places(err))
@@ -293,6 +314,21 @@ int ctl_open_as(const struct ctl *ctl, enum ows_mode mode, const char *program, 
 		return ctl_fail("%s cannot be the name of an instance", ctl_word(name));
 	}
 	return ctl_fail("cannot open the shared memory of %s: %s", name, strerror(-err));
+}
+
+struct ows *ctl_open_as(const struct ctl *ctl, enum ows_mode mode, const char *program)
+{
+	struct ows *h;
+	int err = ows_open_as(ctl->instance, mode, program, &h);
+
+	if (err)
+		ctl_end(refuse_open(ctl, mode, err));
+	return h;
+}
+
+struct ows *ctl_open(const struct ctl *ctl, enum ows_mode mode)
+{
+	return ctl_open_as(ctl, mode, "owsctl");
 }
 
 bool ctl_alive(const struct ctl *ctl, struct ows *h, int64_t now_ns)

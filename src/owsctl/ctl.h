@@ -46,18 +46,18 @@ struct verb {
 /*
  * The next option as getopt(); options that begin with '+' stop at the first word that is none.
  * ctl_option() handles --json, and -t for verbs that open a target; --all means -a where the verb
- * has -a; -h prints the usage and ends the program. '?': the option was wrong and the reason is
- * printed; return CTL_USAGE. After -1 the operands are argv[optind] and up. ctl_options() starts
- * again.
+ * has -a; -h prints the usage and ends the verb, and so does a wrong option, with the reason.
+ * After -1 the operands are argv[optind] and up. To read other words, set optind to 0 before.
  */
 struct when;
-void ctl_options(void);
 int ctl_option(struct ctl *ctl, int argc, char **argv, const char *options);
 /*
- * The moment in optarg, by when_moment(). False after printing what is wrong with it, and with the
- * option c as the user gave it: -s or --since.
+ * The moment in optarg, by when_moment(). Ends the verb if it is none, and names the option c as
+ * the user gave it: -s or --since.
  */
-bool ctl_moment(const struct ctl *ctl, int c, const struct when *now, int64_t *wall_ns);
+int64_t ctl_moment(const struct ctl *ctl, int c, const struct when *now);
+/* The seconds in optarg, the argument of the option c. Ends the verb if they are none. */
+int64_t ctl_option_seconds(const struct ctl *ctl, int c);
 
 /* Print what a verb takes: at most a screen. */
 void ctl_help(const struct verb *verb, FILE *out);
@@ -72,6 +72,13 @@ int ctl_fail(const char *format, ...) /* returns CTL_FAILED */
 int ctl_nothing(const char *format, ...) /* returns CTL_NOTHING */
 	__attribute__((format(printf, 1, 2)));
 
+/* Run ctl->verb with these words, its own name first. Returns the exit status. */
+int ctl_run(struct ctl *ctl, int argc, char **argv);
+/* End the verb that runs: ctl_run() returns that status. What the verb has open stays so. */
+_Noreturn void ctl_end(int status);
+/* Memory that was allocated; without it the verb ends. */
+void *ctl_need(void *memory);
+
 /* The word as a message shows it: an empty word as "". */
 const char *ctl_word(const char *word);
 #define CTL_NO_TARGET "-t: a target expected, as localhost:4304, i2c:/dev/i2c-1 or w1"
@@ -81,10 +88,10 @@ bool ctl_seconds(const char *text, int64_t *ns);
 /* Parse a whole number from least to most; false: the text is none. */
 bool ctl_count(const char *text, int64_t least, int64_t most, int64_t *count);
 
-/* Open the instance; CTL_DONE, or CTL_FAILED after printing why. */
-int ctl_open(const struct ctl *ctl, enum ows_mode mode, struct ows **h);
+/* Open the instance. If that fails, prints why and ends the verb. */
+struct ows *ctl_open(const struct ctl *ctl, enum ows_mode mode);
 /* The same, as a program of another name than owsctl. */
-int ctl_open_as(const struct ctl *ctl, enum ows_mode mode, const char *program, struct ows **h);
+struct ows *ctl_open_as(const struct ctl *ctl, enum ows_mode mode, const char *program);
 /* Returns whether owsd runs; prints "owsd is not running ..." on stderr when it does not. */
 bool ctl_alive(const struct ctl *ctl, struct ows *h, int64_t now_ns);
 /* The time between two looks for a new owsd. */

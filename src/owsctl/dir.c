@@ -18,9 +18,7 @@ static void print(const struct ctl *ctl, char *text, const char *before)
 	struct json json;
 	char *rest;
 
-	json_open(&json, stdout);
-	if (ctl->json)
-		json_array(&json, NULL);
+	json_list(&json, stdout, ctl->json);
 	for (char *line = strtok_r(text, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
 		/* owserver prefixes its lines with /uncached, owsd's own buses do not */
 		bool prefixed = strncmp(line, "/uncached/", 10) == 0;
@@ -34,10 +32,7 @@ static void print(const struct ctl *ctl, char *text, const char *before)
 		else
 			puts(path);
 	}
-	if (ctl->json) {
-		json_array_end(&json);
-		json_end(&json);
-	}
+	json_list_end(&json);
 }
 
 int verb_dir(struct ctl *ctl, int argc, char **argv)
@@ -51,9 +46,7 @@ int verb_dir(struct ctl *ctl, int argc, char **argv)
 	struct ask ask = {.req = {.op = BUS_DIR, .prio = BUS_GUEST, .path = path}};
 	int status;
 
-	ctl_options();
-	if (target_option(ctl, argc, argv, "", &timeout_ns) != -1)
-		return CTL_USAGE;
+	target_option(ctl, argc, argv, "", &timeout_ns);
 	if (argc - optind > 1)
 		return ctl_usage(ctl, "one directory at a time");
 	if (!target_path(optind < argc ? argv[optind] : "/", path, &fresh))
@@ -61,11 +54,7 @@ int verb_dir(struct ctl *ctl, int argc, char **argv)
 	status = open_target(ctl, timeout_ns, &target, &served);
 	if (status)
 		return status;
-	text = malloc(LISTING_MAX + 1);
-	if (!text) {
-		target_close(&target);
-		return ctl_fail("no memory");
-	}
+	text = ctl_need(malloc(LISTING_MAX + 1));
 	ask.req.fresh = fresh;
 	ask.req.data = (uint8_t *)text;
 	ask.req.len = LISTING_MAX;

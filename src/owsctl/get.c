@@ -102,7 +102,8 @@ static int get_json(const struct ctl *ctl, struct json *json, struct ows *h, con
 		else if (!reading_good(reading))
 			status = CTL_NOT_GOOD;
 		reading_json(json, h, reading, now);
-		if (names_info(h, ctl->instance, name, &info) && meaning_of(h, &info, &meaning)) {
+		if (names_info(h, ctl->instance, name, &info)) {
+			meaning_of(h, &info, &meaning);
 			meaning_json(json, h, &meaning, now->boot);
 			meaning_free(&meaning);
 		}
@@ -117,29 +118,21 @@ int verb_get(struct ctl *ctl, int argc, char **argv)
 	struct when now;
 	struct json json;
 	struct ows *h;
-	int status, worst = CTL_DONE;
+	int worst = CTL_DONE;
 
-	ctl_options();
-	if (ctl_option(ctl, argc, argv, "") != -1)
-		return CTL_USAGE;
+	ctl_option(ctl, argc, argv, "");
 	if (optind == argc)
 		return ctl_usage(ctl, "get what?");
-	status = ctl_open(ctl, OWS_READ, &h);
-	if (status)
-		return status;
+	h = ctl_open(ctl, OWS_READ);
 	now = when_now();
-	json_open(&json, stdout);
-	if (ctl->json)
-		json_array(&json, NULL);
+	json_list(&json, stdout, ctl->json);
 	for (int i = optind; i < argc; i++) {
-		status = ctl->json ? get_json(ctl, &json, h, argv[i], &reading, &now)
-		                   : get_one(ctl, h, argv[i], &reading);
+		int status = ctl->json ? get_json(ctl, &json, h, argv[i], &reading, &now)
+		                       : get_one(ctl, h, argv[i], &reading);
+
 		worst = worse(worst, status);
 	}
-	if (ctl->json) {
-		json_array_end(&json);
-		json_end(&json);
-	}
+	json_list_end(&json);
 	if (worst != CTL_DONE)
 		ctl_alive(ctl, h, ows_now());
 	ows_close(h);

@@ -25,7 +25,7 @@ static const struct table_column columns[] = {
 #define PLACE_COLUMN 6
 /* clang-format on */
 
-static bool instances_add_row(struct table *table, const struct instance_info *info,
+static void instances_add_row(struct table *table, const struct instance_info *info,
                               const struct when *now)
 {
 	char pid[16] = "-", signals[16] = "-", span[WHEN_TEXT] = "-";
@@ -36,8 +36,7 @@ static bool instances_add_row(struct table *table, const struct instance_info *i
 		snprintf(signals, sizeof(signals), "%d", info->signals);
 	if (info->since_ns)
 		when_span(now->boot - info->since_ns, span);
-	return table_add(table,
-	                 (const char *const[]){info->name, instance_state_text(info->state), pid,
+	table_add(table, (const char *const[]){info->name, instance_state_text(info->state), pid,
 	                                       span, signals,
 	                                       info->targets[0] ? info->targets : "-", info->place,
 	                                       info->why         ? info->why
@@ -53,15 +52,9 @@ static void add_json(struct json *json, const struct instance_info *info, const 
 	json_string(json, "instance", info->name);
 	json_string(json, "place", info->place);
 	json_string(json, "state", instance_state_text(info->state));
-	if (info->pid)
-		json_int(json, "pid", info->pid);
-	else
-		json_null(json, "pid");
+	json_known(json, "pid", info->pid ? info->pid : -1);
 	json_string(json, "since", info->since_ns ? when_iso(now, info->since_ns, text) : NULL);
-	if (info->signals >= 0)
-		json_int(json, "signals", info->signals);
-	else
-		json_null(json, "signals");
+	json_known(json, "signals", info->signals);
 	json_string(json, "targets", info->targets[0] ? info->targets : NULL);
 	json_string(json, "config", info->config[0] ? info->config : NULL);
 	json_string(json, "error", info->why);
@@ -109,35 +102,28 @@ static int open_places(struct found *found)
 	return status;
 }
 
-static bool instances_show(const struct found *found, bool as_json)
+static void instances_show(const struct found *found, bool as_json)
 {
 	struct instance_info info;
 	struct when now = when_now();
 	struct table table;
 	struct json json;
-	bool ok = true;
 
 	table_init(&table, columns, sizeof(columns) / sizeof(columns[0]));
 	table.absent[PLACE_COLUMN] = !found->remains[0].count || !found->remains[1].count;
-	json_open(&json, stdout);
-	if (as_json)
-		json_array(&json, NULL);
+	json_list(&json, stdout, as_json);
 	for (unsigned k = 0; k < found->count; k++)
-		for (unsigned i = 0; ok && i < found->remains[k].count; i++) {
+		for (unsigned i = 0; i < found->remains[k].count; i++) {
 			instance_look(&found->place[k], found->remains[k].name[i], now.boot, &info);
 			if (as_json)
 				add_json(&json, &info, &now);
 			else
-				ok = instances_add_row(&table, &info, &now);
+				instances_add_row(&table, &info, &now);
 		}
-	if (as_json) {
-		json_array_end(&json);
-		json_end(&json);
-	}
-	if (ok && table.rows)
+	json_list_end(&json);
+	if (table.rows)
 		table_print(&table, true);
 	table_free(&table);
-	return ok;
 }
 
 int verb_instances(struct ctl *ctl, int argc, char **argv)
@@ -145,16 +131,13 @@ int verb_instances(struct ctl *ctl, int argc, char **argv)
 	struct found found;
 	int status;
 
-	ctl_options();
-	if (ctl_option(ctl, argc, argv, "") != -1)
-		return CTL_USAGE;
+	ctl_option(ctl, argc, argv, "");
 	if (optind < argc)
 		return ctl_usage(ctl, "instances takes no operands");
 	status = open_places(&found);
 	if (status == CTL_DONE && !found.remains[0].count && !found.remains[1].count)
 		ctl_fail("no owsd has run here");
-	if (!instances_show(&found, ctl->json))
-		status = ctl_fail("no memory");
+	instances_show(&found, ctl->json);
 	close_places(&found);
 	return status;
 }
@@ -209,17 +192,13 @@ int verb_remove(struct ctl *ctl, int argc, char **argv)
 	struct json json;
 	int status;
 
-	ctl_options();
-	if (ctl_option(ctl, argc, argv, "") != -1)
-		return CTL_USAGE;
+	ctl_option(ctl, argc, argv, "");
 	if (optind == argc)
 		return ctl_usage(ctl, "remove which instance? owsctl instances lists them");
 	status = open_places(&found);
 	if (status && !found.count)
 		return status;
-	json_open(&json, stdout);
-	if (ctl->json)
-		json_array(&json, NULL);
+	json_list(&json, stdout, ctl->json);
 	for (int i = optind; i < argc; i++) {
 		const char *name = argv[i];
 		unsigned files = 0;
@@ -237,10 +216,7 @@ int verb_remove(struct ctl *ctl, int argc, char **argv)
 			json_object_end(&json);
 		}
 	}
-	if (ctl->json) {
-		json_array_end(&json);
-		json_end(&json);
-	}
+	json_list_end(&json);
 	close_places(&found);
 	return status;
 }

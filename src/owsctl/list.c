@@ -16,7 +16,7 @@ static const struct table_column columns[] = {
 /* clang-format on */
 enum { UNIT = 2, ALARM = 4 };
 
-static bool list_add_row(struct table *table, struct ows *h, const struct row *row,
+static void list_add_row(struct table *table, struct ows *h, const struct row *row,
                          const struct reading *reading)
 {
 	char value[128], words[READING_WORDS], alarm[STANDING_WORDS], span[WHEN_TEXT] = "-";
@@ -27,8 +27,7 @@ static bool list_add_row(struct table *table, struct ows *h, const struct row *r
 		when_span(reading->value.age_ns, span);
 	if (row->path)
 		ows_target(h, reading->value.target, &target);
-	return table_add(table,
-	                 (const char *const[]){row->name, value, row_unit(row),
+	table_add(table, (const char *const[]){row->name, value, row_unit(row),
 	                                       row_quality(row, reading, words),
 	                                       standing_text(&row->alarms, alarm), span,
 	                                       value_type_name((enum ows_type)reading->value.type),
@@ -38,23 +37,20 @@ static bool list_add_row(struct table *table, struct ows *h, const struct row *r
 	                                       target.name, row->path ? row->path : ""});
 }
 
-static bool print_table(struct ows *h, struct rows *rows, struct reading *reading)
+static void print_table(struct ows *h, struct rows *rows, struct reading *reading)
 {
 	struct table table;
-	bool ok = true;
 
 	table_init(&table, columns, sizeof(columns) / sizeof(columns[0]));
 	table.absent[UNIT] = !rows_have_units(rows);
 	table.absent[ALARM] = !rows_have_alarms(h, rows);
-	for (int i = 0; ok && i < rows->count; i++) {
+	for (int i = 0; i < rows->count; i++) {
 		row_read(h, &rows->row[i], ows_now(), reading);
 		reading_round(reading, row_decimals(&rows->row[i]));
-		ok = list_add_row(&table, h, &rows->row[i], reading);
+		list_add_row(&table, h, &rows->row[i], reading);
 	}
-	if (ok)
-		table_print(&table, true);
+	table_print(&table, true);
 	table_free(&table);
-	return ok;
 }
 
 static void list_print_json(struct ows *h, struct rows *rows, struct reading *reading)
@@ -62,8 +58,7 @@ static void list_print_json(struct ows *h, struct rows *rows, struct reading *re
 	struct when now = when_now();
 	struct json json;
 
-	json_open(&json, stdout);
-	json_array(&json, NULL);
+	json_list(&json, stdout, true);
 	for (int i = 0; i < rows->count; i++) {
 		row_read(h, &rows->row[i], now.boot, reading);
 		json_object(&json, NULL);
@@ -71,41 +66,28 @@ static void list_print_json(struct ows *h, struct rows *rows, struct reading *re
 		reading_json(&json, h, reading, &now);
 		json_object_end(&json);
 	}
-	json_array_end(&json);
-	json_end(&json);
+	json_list_end(&json);
 }
 
 int verb_list(struct ctl *ctl, int argc, char **argv)
 {
 	static struct reading reading;
-	int status, c, patterns;
+	int status, patterns;
 	struct rows rows;
 	struct ows *h;
-	bool driver = false, ok = true;
+	bool driver = false;
 
-	ctl_options();
-	while ((c = ctl_option(ctl, argc, argv, "a")) != -1) {
-		if (c != 'a')
-			return CTL_USAGE;
+	while (ctl_option(ctl, argc, argv, "a") != -1)
 		driver = true;
-	}
 	patterns = argc - optind;
-	status = ctl_open(ctl, OWS_READ, &h);
-	if (status)
-		return status;
-	if (rows_collect(h, argv + optind, patterns, driver, &rows) != 0) {
-		ows_close(h);
-		return ctl_fail("no memory");
-	}
+	h = ctl_open(ctl, OWS_READ);
+	rows_collect(h, argv + optind, patterns, driver, &rows);
 	ctl_alive(ctl, h, ows_now());
 	if (ctl->json)
 		list_print_json(h, &rows, &reading);
 	else
-		ok = print_table(h, &rows, &reading);
-	if (!ok)
-		status = ctl_fail("no memory");
-	else
-		status = rows_check(&rows, argv + optind, patterns);
+		print_table(h, &rows, &reading);
+	status = rows_check(&rows, argv + optind, patterns);
 	rows_free(&rows);
 	ows_close(h);
 	return status;

@@ -22,21 +22,15 @@ static bool any_matches(struct ows *h, char *const *patterns, int count)
 int verb_metrics(struct ctl *ctl, int argc, char **argv)
 {
 	struct metrics metrics = {.instance = ctl->instance};
-	int status, c, at = 0;
+	int status = CTL_DONE, at = 0;
 
-	ctl_options();
-	while ((c = ctl_option(ctl, argc, argv, "p")) != -1) {
-		if (c != 'p')
-			return CTL_USAGE;
+	while (ctl_option(ctl, argc, argv, "p") != -1)
 		metrics.prometheus = true;
-	}
 	if (ctl->json)
 		return ctl_usage(ctl, "metrics are text; stats and list have --json");
 	metrics.patterns = argv + optind;
 	metrics.pattern_count = argc - optind;
-	status = ctl_open(ctl, OWS_READ, &metrics.h);
-	if (status)
-		return status;
+	metrics.h = ctl_open(ctl, OWS_READ);
 	if (metrics.pattern_count > 0 &&
 	    !any_matches(metrics.h, metrics.patterns, metrics.pattern_count))
 		status = ctl_fail("no signal matches");

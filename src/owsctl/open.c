@@ -104,11 +104,9 @@ int target_option(struct ctl *ctl, int argc, char **argv, const char *options, i
 
 	snprintf(all, sizeof(all), "%sw:%s", *options == '+' ? "+" : "",
 	         options + (*options == '+'));
-	while ((c = ctl_option(ctl, argc, argv, all)) == 'w') {
-		if (ctl_seconds(optarg, timeout_ns) && *timeout_ns > 0)
-			continue;
-		ctl_usage(ctl, "%s is not a number of seconds above 0", ctl_word(optarg));
-		return '?';
-	}
+	while ((c = ctl_option(ctl, argc, argv, all)) == 'w')
+		if (!ctl_seconds(optarg, timeout_ns) || *timeout_ns <= 0)
+			ctl_end(ctl_usage(ctl, "%s is not a number of seconds above 0",
+			                  ctl_word(optarg)));
 	return c;
 }

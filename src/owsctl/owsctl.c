@@ -19,6 +19,12 @@
 
 static int verb_help(struct ctl *ctl, int argc, char **argv);
 
+/* Of the verbs that open a target. */
+#define TARGET_OPTIONS \
+	"  -t TARGET   localhost:4304, i2c:/dev/i2c-1, w1, ...; default: the owsd that\n" \
+	"              runs, else localhost:4304\n" \
+	"  -w SECONDS  how long an answer may take, 20\n"
+
 static const struct verb verbs[] = {
 	{"list", "[-a] [PATTERN...]", "all signals with value, quality, age and path", verb_list,
          .options = "  -a  the readable signals of the driver too\n", .example = "list 'temp*'",
@@ -101,48 +107,32 @@ static const struct verb verbs[] = {
 	{"reload", "[-w SECONDS]", "have owsd load its configuration again, and wait for that",
          verb_reload, .options = "  -w SECONDS  how long that may take\n", .example = "reload"},
 	{"dir", "[-t TARGET] [-w SECONDS] [PATH]", "list a directory of a target", verb_dir,
-         .options =
-                 "  -t TARGET   localhost:4304, i2c:/dev/i2c-1, w1, ...; default: the owsd that\n"
-                 "              runs, else localhost:4304\n"
-                 "  -w SECONDS  how long an answer may take, 20\n",
-         .example = "dir /28.551DDF030000", .opens = true, .finds = true},
+         .options = TARGET_OPTIONS, .example = "dir /28.551DDF030000", .opens = true,
+         .finds = true},
 	{"read", "[-t TARGET] [-w SECONDS] PATH...", "properties of devices, one line for each",
-         verb_read,
-         .options =
-                 "  -t TARGET   localhost:4304, i2c:/dev/i2c-1, w1, ...; default: the owsd that\n"
-                 "              runs, else localhost:4304\n"
-                 "  -w SECONDS  how long an answer may take, 20\n",
-         .example = "read /28.551DDF030000/temperature", .opens = true, .finds = true},
+         verb_read, .options = TARGET_OPTIONS, .example = "read /28.551DDF030000/temperature",
+         .opens = true, .finds = true},
 	{"write", "[-t TARGET] [-w SECONDS] PATH VALUE", "write a property of a device", verb_write,
-         .options =
-                 "  -t TARGET   localhost:4304, i2c:/dev/i2c-1, w1, ...; default: the owsd that\n"
-                 "              runs, else localhost:4304\n"
-                 "  -w SECONDS  how long an answer may take, 20\n",
-         .example = "write /29.B89115000000/PIO.0 1", .opens = true, .writes = true},
+         .options = TARGET_OPTIONS, .example = "write /29.B89115000000/PIO.0 1", .opens = true,
+         .writes = true},
 	{"mission",
          "[-t TARGET] [-w SECONDS] start [-o] -i SECONDS | stop | status | download DEVICE",
          "the mission of a logger: DS1921, DS1922, DS1923", verb_mission,
-         .options =
-                 "  -t TARGET   localhost:4304, i2c:/dev/i2c-1, w1, ...; default: the owsd that\n"
-                 "              runs, else localhost:4304\n"
-                 "  -w SECONDS  how long an answer may take, 20\n"
-                 "  start -i SECONDS DEVICE  begin one, a sample every SECONDS; -o: the oldest\n"
-                 "                           samples make room\n"
-                 "  stop, status, download DEVICE\n",
+         .options = TARGET_OPTIONS
+         "  start -i SECONDS DEVICE  begin one, a sample every SECONDS; -o: the oldest\n"
+         "                           samples make room\n"
+         "  stop, status, download DEVICE\n",
          .example = "mission download /41.551DDF030000", .opens = true, .writes = true},
 	{"scan",
          "[-t TARGET] [-w SECONDS] [--alias FILE] [--rio [-i] [--bits] [--merge FILE [--replace OLD=NEW]...]]",
          "list the devices, or print a configuration for them", verb_scan,
-         .options =
-                 "  -t TARGET   localhost:4304, i2c:/dev/i2c-1, w1, ...; default: the owsd that\n"
-                 "              runs, else localhost:4304\n"
-                 "  -w SECONDS  how long an answer may take, 20\n"
-                 "  --alias FILE       names from an alias file of OWFS\n"
-                 "  --rio              print a configuration for what is there\n"
-                 "  -i                 with --rio: inputs only, nothing is written\n"
-                 "  --bits             with --rio: a signal for each switch, not one for all\n"
-                 "  --merge FILE       add to that file what it has not; its names stay\n"
-                 "  --replace OLD=NEW  with --merge: NEW takes the place of the device OLD\n",
+         .options = TARGET_OPTIONS
+         "  --alias FILE       names from an alias file of OWFS\n"
+         "  --rio              print a configuration for what is there\n"
+         "  -i                 with --rio: inputs only, nothing is written\n"
+         "  --bits             with --rio: a signal for each switch, not one for all\n"
+         "  --merge FILE       add to that file what it has not; its names stay\n"
+         "  --replace OLD=NEW  with --merge: NEW takes the place of the device OLD\n",
          .example = "-t i2c:/dev/i2c-1 scan --rio >plant.rio", .opens = true, .finds = true},
 	{"help", "[VERB]", "this list, or what a verb takes", verb_help, .example = "help watch"},
 };
@@ -213,9 +203,7 @@ static int verb_help(struct ctl *ctl, int argc, char **argv)
 {
 	const struct verb *verb;
 
-	ctl_options();
-	if (ctl_option(ctl, argc, argv, "") != -1)
-		return CTL_USAGE;
+	ctl_option(ctl, argc, argv, "");
 	if (optind == argc) {
 		usage(stdout);
 		return CTL_DONE;
@@ -319,9 +307,11 @@ int main(int argc, char **argv)
 		usage(stderr);
 		return CTL_USAGE;
 	}
-	ctl.verb = find_verb(argv[optind]);
+	argc -= optind;
+	argv += optind;
+	ctl.verb = find_verb(argv[0]);
 	if (!ctl.verb)
-		return no_verb(argv[optind]);
+		return no_verb(argv[0]);
 	if (ctl.target && !ctl.verb->opens)
 		return ctl_usage(
 			&ctl,
@@ -329,8 +319,8 @@ int main(int argc, char **argv)
 			"running owsd",
 			ctl.verb->name);
 	if (strchr(ctl.instance, '@') && ctl.verb->run != verb_help)
-		return ctl_flush(remote_run(&ctl, argc - optind, argv + optind));
+		return ctl_flush(remote_run(&ctl, argc, argv));
 	if (ctl.verb->finds)
-		find_instance(&ctl, argc - optind, argv + optind);
-	return ctl_flush(ctl.verb->run(&ctl, argc - optind, argv + optind));
+		find_instance(&ctl, argc, argv);
+	return ctl_flush(ctl_run(&ctl, argc, argv));
 }

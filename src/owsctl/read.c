@@ -86,24 +86,17 @@ int verb_read(struct ctl *ctl, int argc, char **argv)
 	struct json json;
 	int status;
 
-	ctl_options();
-	if (target_option(ctl, argc, argv, "", &timeout_ns) != -1)
-		return CTL_USAGE;
+	target_option(ctl, argc, argv, "", &timeout_ns);
 	if (optind == argc)
 		return ctl_usage(ctl, "read what?");
 	status = open_target(ctl, timeout_ns, &target, &served);
 	if (status)
 		return status;
-	json_open(&json, stdout);
-	if (ctl->json)
-		json_array(&json, NULL);
+	json_list(&json, stdout, ctl->json);
 	for (int i = optind; i < argc; i++)
 		if (read_one(ctl, &json, &target, &served, argv[i]))
 			status = CTL_FAILED;
-	if (ctl->json) {
-		json_array_end(&json);
-		json_end(&json);
-	}
+	json_list_end(&json);
 	target_close(&target);
 	return status;
 }

@@ -42,14 +42,8 @@ int verb_reload(struct ctl *ctl, int argc, char **argv)
 	char why[256];
 	int c, err;
 
-	ctl_options();
-	while ((c = ctl_option(ctl, argc, argv, "w:")) != -1) {
-		if (c != 'w')
-			return CTL_USAGE;
-		if (!ctl_seconds(optarg, &limit_ns))
-			return ctl_usage(ctl, "-w wants a number of seconds, not %s",
-			                 ctl_word(optarg));
-	}
+	while ((c = ctl_option(ctl, argc, argv, "w:")) != -1)
+		limit_ns = ctl_option_seconds(ctl, c);
 	if (optind < argc)
 		return ctl_usage(ctl, "reload takes no names");
 	err = ows_reload(ctl->instance, limit_ns, why, sizeof(why));

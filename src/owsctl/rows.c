@@ -10,21 +10,17 @@
 #include "src/show/names.h"
 #include "src/signal/hash.h"
 
-bool meaning_of(struct ows *h, const struct ows_info *info, struct meaning *meaning)
+void meaning_of(struct ows *h, const struct ows_info *info, struct meaning *meaning)
 {
 	char raw[NAMES_MAX];
 
 	snprintf(raw, sizeof(raw), "%s%s", info->name, attribute_table[ATTR_RAW].name);
 	*meaning = (struct meaning){
-		.unit = strdup(info->unit),
-		.description = strdup(info->description),
+		.unit = ctl_need(strdup(info->unit)),
+		.description = ctl_need(strdup(info->description)),
 		.decimals = info->decimals,
 		.raw = info->type == OWS_STRING ? -1 : ows_find(h, raw),
 	};
-	if (meaning->unit && meaning->description)
-		return true;
-	meaning_free(meaning);
-	return false;
 }
 
 void meaning_free(struct meaning *meaning)
@@ -51,60 +47,49 @@ static void raw_json(struct json *json, struct ows *h, int id, int64_t now_ns)
 void meaning_json(struct json *json, struct ows *h, const struct meaning *meaning, int64_t now_ns)
 {
 	json_string(json, "unit", *meaning->unit ? meaning->unit : NULL);
-	if (meaning->decimals >= 0)
-		json_int(json, "decimals", meaning->decimals);
-	else
-		json_null(json, "decimals");
+	json_known(json, "decimals", meaning->decimals);
 	json_string(json, "description", *meaning->description ? meaning->description : NULL);
 	raw_json(json, h, meaning->raw, now_ns);
 }
 
-static int rows_add(struct ows *h, struct rows *rows, const char *name, int signal,
-                    const struct ows_info *info)
+static void rows_add(struct ows *h, struct rows *rows, const char *name, int signal,
+                     const struct ows_info *info)
 {
-	struct row *row = &rows->row[rows->count];
+	struct row *row = &rows->row[rows->count++];
 
 	memset(row, 0, sizeof(*row));
 	row->id = ows_find(h, name);
 	row->signal = signal;
-	row->name = strdup(name);
-	if (!row->name)
-		return -ENOMEM;
-	rows->count++;
+	row->name = ctl_need(strdup(name));
 	if (!info)
-		return 0;
+		return;
 	row->type = info->type;
 	row->output = info->output;
 	row->fresh = info->fresh;
 	row->alarm = info->alarm;
-	row->path = strdup(info->path);
-	return row->path && meaning_of(h, info, &row->meaning) ? 0 : -ENOMEM;
+	row->path = ctl_need(strdup(info->path));
+	meaning_of(h, info, &row->meaning);
 }
 
-int rows_collect(struct ows *h, char *const *patterns, int pattern_count, bool driver,
-                 struct rows *rows)
+void rows_collect(struct ows *h, char *const *patterns, int pattern_count, bool driver,
+                  struct rows *rows)
 {
-	int err = 0, count = ows_count(h);
+	int count = ows_count(h);
 
 	rows->count = 0;
-	rows->row = calloc((size_t)count + ATTR_COUNT, sizeof(*rows->row));
-	if (!rows->row)
-		return -ENOMEM;
-	for (int i = 0; driver && err == 0 && i < ATTR_COUNT; i++) {
+	rows->row = ctl_need(calloc((size_t)count + ATTR_COUNT, sizeof(*rows->row)));
+	for (int i = 0; driver && i < ATTR_COUNT; i++) {
 		const struct attribute_def *def = &attribute_table[i];
 
 		if (def->driver && def->readable && names_match(def->name, patterns, pattern_count))
-			err = rows_add(h, rows, def->name, -1, NULL);
+			rows_add(h, rows, def->name, -1, NULL);
 	}
-	for (int i = 0; err == 0 && i < count; i++) {
+	for (int i = 0; i < count; i++) {
 		struct ows_info info;
 
 		if (ows_info(h, i, &info) == 0 && names_match(info.name, patterns, pattern_count))
-			err = rows_add(h, rows, info.name, i, &info);
+			rows_add(h, rows, info.name, i, &info);
 	}
-	if (err)
-		rows_free(rows);
-	return err;
 }
 
 static bool matches_some(const struct rows *rows, char *const *pattern)

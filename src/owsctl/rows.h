@@ -17,8 +17,8 @@ struct meaning {
 	int raw;                  /* the id of _Raw; negative: none */
 };
 
-/* All of it copied, so that it outlives ows_reopen(). False: no memory. */
-bool meaning_of(struct ows *h, const struct ows_info *info, struct meaning *meaning);
+/* All of it copied, so that it outlives ows_reopen(). */
+void meaning_of(struct ows *h, const struct ows_info *info, struct meaning *meaning);
 void meaning_free(struct meaning *meaning);
 
 /* As members of a JSON object. */
@@ -47,11 +47,9 @@ struct rows {
 	int count;
 };
 
-/*
- * Collect the signals, with `driver` the driver signals too. 0 or -ENOMEM. Free with rows_free().
- */
-int rows_collect(struct ows *h, char *const *patterns, int pattern_count, bool driver,
-                 struct rows *rows);
+/* Collect the signals, with `driver` the driver signals too. Free with rows_free(). */
+void rows_collect(struct ows *h, char *const *patterns, int pattern_count, bool driver,
+                  struct rows *rows);
 void rows_free(struct rows *rows);
 
 /* Read the value of a row, the state of its alarms, and its command. */

@@ -86,7 +86,7 @@ int served_find(const struct ctl *ctl, struct served *served)
 	if (err == -ENOENT && !ctl->named)
 		return CTL_DONE;
 	if (err)
-		return ctl_open(ctl, OWS_READ, &h); /* ctl_open() prints the reason */
+		h = ctl_open(ctl, OWS_READ); /* prints the reason, and ends */
 	ows_daemon(h, when_now().boot, &daemon);
 	served->runs = daemon.alive;
 	where = ows_served(h);

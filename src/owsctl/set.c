@@ -271,8 +271,7 @@ static void set_print_json(const struct order *orders, int count, bool waited)
 {
 	struct json json;
 
-	json_open(&json, stdout);
-	json_array(&json, NULL);
+	json_list(&json, stdout, true);
 	for (int i = 0; i < count; i++) {
 		json_object(&json, NULL);
 		json_string(&json, "name", orders[i].name);
@@ -283,8 +282,7 @@ static void set_print_json(const struct order *orders, int count, bool waited)
 			json_null(&json, "confirmed");
 		json_object_end(&json);
 	}
-	json_array_end(&json);
-	json_end(&json);
+	json_list_end(&json);
 }
 
 /* Refuse two values for one signal: chance would decide which of them the device gets. */
@@ -335,27 +333,16 @@ int verb_set(struct ctl *ctl, int argc, char **argv)
 	int c, count, status;
 	struct ows *h;
 
-	ctl_options();
 	while ((c = ctl_option(ctl, argc, argv, "+w:")) != -1) {
-		if (c != 'w')
-			return CTL_USAGE;
 		seconds = optarg;
-		if (!ctl_seconds(seconds, &limit_ns))
-			return ctl_usage(ctl, "-w wants a number of seconds, not %s",
-			                 ctl_word(seconds));
+		limit_ns = ctl_option_seconds(ctl, c);
 	}
 	count = (argc - optind) / 2;
 	if (argc == optind || (argc - optind) % 2)
 		return ctl_usage(ctl, argc == optind ? "set what?" : "%s needs a value",
 		                 argv[argc - 1]);
-	status = ctl_open(ctl, OWS_CONTROL, &h);
-	if (status)
-		return status;
-	orders = calloc((size_t)count, sizeof(*orders));
-	if (!orders) {
-		ows_close(h);
-		return ctl_fail("no memory");
-	}
+	h = ctl_open(ctl, OWS_CONTROL);
+	orders = ctl_need(calloc((size_t)count, sizeof(*orders)));
 	for (int i = 0; i < count; i++) {
 		orders[i].name = argv[optind + 2 * i];
 		orders[i].text = argv[optind + 2 * i + 1];

@@ -37,8 +37,8 @@ static const struct table_column device_columns[] = {
 /* clang-format on */
 #define DEVICE_COLUMNS (sizeof(device_columns) / sizeof(device_columns[0]))
 
-/* What is not known is "-"; WIRE: of the time since owsd's start. false: no memory. */
-static bool add_device(struct table *table, const struct ows_device *device, int64_t uptime_ns,
+/* What is not known is "-"; WIRE: of the time since owsd's start. */
+static void add_device(struct table *table, const struct ows_device *device, int64_t uptime_ns,
                        int64_t now_ns)
 {
 	char target[16] = "-", answers[24], errors[24], retries[24] = "-", wire[32] = "-",
@@ -56,10 +56,10 @@ static bool add_device(struct table *table, const struct ows_device *device, int
 	}
 	if (device->ok_ns)
 		when_span(now_ns - device->ok_ns, last);
-	return table_add(table, (const char *const[]){device->id,
-	                                              *device->identity ? device->identity : "-",
-	                                              power ? power : "-", target, answers, errors,
-	                                              retries, wire, last});
+	table_add(table,
+	          (const char *const[]){device->id, *device->identity ? device->identity : "-",
+	                                power ? power : "-", target, answers, errors, retries, wire,
+	                                last});
 }
 
 static void print_devices(struct ows *h, const struct ows_daemon *daemon, int64_t now_ns)
@@ -70,8 +70,8 @@ static void print_devices(struct ows *h, const struct ows_daemon *daemon, int64_
 
 	table_init(&table, device_columns, DEVICE_COLUMNS);
 	for (int i = 0; (err = ows_device(h, i, &device)) != -ENOENT; i++)
-		if (!err && !add_device(&table, &device, now_ns - daemon->start_ns, now_ns))
-			break;
+		if (!err)
+			add_device(&table, &device, now_ns - daemon->start_ns, now_ns);
 	if (table.rows) {
 		putchar('\n');
 		table_print(&table, true);
@@ -156,16 +156,11 @@ int verb_stats(struct ctl *ctl, int argc, char **argv)
 	struct json json;
 	struct when now;
 	struct ows *h;
-	int status;
 
-	ctl_options();
-	if (ctl_option(ctl, argc, argv, "") != -1)
-		return CTL_USAGE;
+	ctl_option(ctl, argc, argv, "");
 	if (optind < argc)
 		return ctl_usage(ctl, "stats takes no operands");
-	status = ctl_open(ctl, OWS_READ, &h);
-	if (status)
-		return status;
+	h = ctl_open(ctl, OWS_READ);
 	now = when_now();
 	ows_daemon(h, now.boot, &daemon);
 	ctl_alive(ctl, h, now.boot);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/owsctl/ctl.h"
 #include "src/owsctl/table.h"
 #include "src/show/text.h"
 
@@ -32,15 +33,13 @@ void table_free(struct table *table)
 	table_init(table, table->columns, table->count);
 }
 
-bool table_add(struct table *table, const char *const *cells)
+void table_add(struct table *table, const char *const *cells)
 {
 	if (table->rows == table->room) {
 		size_t room = table->room ? 2 * table->room : 32;
-		char **more = realloc(table->cells, room * table->count * sizeof(*more));
 
-		if (!more)
-			return false;
-		table->cells = more;
+		table->cells = ctl_need(
+			realloc(table->cells, room * table->count * sizeof(*table->cells)));
 		table->room = room;
 	}
 	for (unsigned i = 0; i < table->count; i++) {
@@ -48,15 +47,9 @@ bool table_add(struct table *table, const char *const *cells)
 		char clean[CELL];
 
 		text_clean(cells[i], strlen(cells[i]), most ? most : CELL, clean, sizeof(clean));
-		table->cells[table->rows * table->count + i] = strdup(clean);
-		if (!table->cells[table->rows * table->count + i]) {
-			while (i-- > 0)
-				free(table->cells[table->rows * table->count + i]);
-			return false;
-		}
+		table->cells[table->rows * table->count + i] = ctl_need(strdup(clean));
 	}
 	table->rows++;
-	return true;
 }
 
 static unsigned total(const struct table *table)

@@ -33,8 +33,8 @@ void table_init(struct table *table, const struct table_column *columns, unsigne
 void table_free(struct table *table);
 /* Remove the rows; what the caller set stays. */
 void table_clear(struct table *table);
-/* Add a row; cells are copied and cleaned. false: no memory. */
-bool table_add(struct table *table, const char *const *cells);
+/* Add a row; cells are copied and cleaned. */
+void table_add(struct table *table, const char *const *cells);
 /* Choose the widths; columns 0: no limit. */
 void table_fit(struct table *table, unsigned columns);
 /*

@@ -90,10 +90,8 @@ static void print_picture(const struct trend *t, const struct ows_history_signal
 static int draw(struct trend *t, int signal, const struct ows_history_signal *known)
 {
 	int width = columns(), got;
-	struct ows_history_point *points = calloc((size_t)width * 2, sizeof(*points));
+	struct ows_history_point *points = ctl_need(calloc((size_t)width * 2, sizeof(*points)));
 
-	if (!points)
-		return ctl_fail("no memory");
 	got = ows_history_points(t->h, signal, t->from_ns, t->until_ns, points, 2 * width);
 	if (got >= 0)
 		print_picture(t, known, points, width);
@@ -246,9 +244,7 @@ static int show_all(struct trend *t, char **names, int count)
 
 	if (t->csv)
 		puts("time,name,value,quality");
-	json_open(&t->json, stdout);
-	if (t->ctl->json)
-		json_array(&t->json, NULL);
+	json_list(&t->json, stdout, t->ctl->json);
 	for (int i = 0; i < count; i++) {
 		int one = trend_show(t, names[i]);
 
@@ -256,10 +252,7 @@ static int show_all(struct trend *t, char **names, int count)
 		if (i + 1 < count && !lists(t))
 			putchar('\n');
 	}
-	if (t->ctl->json) {
-		json_array_end(&t->json);
-		json_end(&t->json);
-	}
+	json_list_end(&t->json);
 	if (t->left_out)
 		ctl_fail("%u values are left out, which have line ends or are not finite: --csv "
 		         "and --json have them",
@@ -275,7 +268,6 @@ int verb_trend(struct ctl *ctl, int argc, char **argv)
 
 	when_moment(&t.now, SINCE, &t.from_ns);
 	t.until_ns = t.now.wall;
-	ctl_options();
 	while ((c = ctl_option(ctl, argc, argv, "s:u:d:CIS:P:")) != -1) {
 		if (c == 'C')
 			t.csv = true;
@@ -287,10 +279,10 @@ int verb_trend(struct ctl *ctl, int argc, char **argv)
 			parquet = optarg;
 		else if (c == 'd')
 			directory = optarg;
-		else if (c != 's' && c != 'u')
-			return CTL_USAGE;
-		else if (!ctl_moment(ctl, c, &t.now, c == 's' ? &t.from_ns : &t.until_ns))
-			return CTL_USAGE;
+		else if (c == 's')
+			t.from_ns = ctl_moment(ctl, c, &t.now);
+		else
+			t.until_ns = ctl_moment(ctl, c, &t.now);
 	}
 	if (optind == argc)
 		return ctl_usage(ctl, "expected the name of a signal");

@@ -17,9 +17,7 @@ int verb_write(struct ctl *ctl, int argc, char **argv)
 	int status;
 
 	/* A value may begin with "-". */
-	ctl_options();
-	if (target_option(ctl, argc, argv, "+", &timeout_ns) != -1)
-		return CTL_USAGE;
+	target_option(ctl, argc, argv, "+", &timeout_ns);
 	if (argc - optind != 2)
 		return ctl_usage(ctl, "expected a path and a value");
 	if (!target_path(argv[optind], path, &fresh))

@@ -187,10 +187,8 @@ static void json_value(struct json *json, const struct journal_entry *entry)
 		json_text(json, entry->command.text, strlen(entry->command.text));
 	else if (text && type == OWS_BOOL)
 		json_bool(json, "value", *text == '1');
-	else if (text)
-		json_number(json, "value", text);
 	else
-		json_null(json, "value");
+		json_number(json, "value", text);
 }
 
 void journal_json(struct json *json, const struct when *now, const struct journal_entry *entry)

@@ -20,6 +20,22 @@ void json_end(struct json *json)
 	json->inner = false;
 }
 
+void json_list(struct json *json, FILE *out, bool wanted)
+{
+	json_open(json, out);
+	json->list = wanted;
+	if (wanted)
+		json_array(json, NULL);
+}
+
+void json_list_end(struct json *json)
+{
+	if (!json->list)
+		return;
+	json_array_end(json);
+	json_end(json);
+}
+
 bool json_start(struct json *json, char **text, size_t *len)
 {
 	*text = NULL;
@@ -146,6 +162,14 @@ void json_uint(struct json *json, const char *key, uint64_t number)
 	fprintf(json->out, "%" PRIu64, number);
 }
 
+void json_known(struct json *json, const char *key, int number)
+{
+	if (number >= 0)
+		json_int(json, key, number);
+	else
+		json_null(json, key);
+}
+
 void json_bool(struct json *json, const char *key, bool value)
 {
 	json_begin(json, key);
@@ -205,7 +229,7 @@ static bool is_number(const char *at)
 void json_number(struct json *json, const char *key, const char *text)
 {
 	json_begin(json, key);
-	fputs(is_number(text) ? text : "null", json->out);
+	fputs(text && is_number(text) ? text : "null", json->out);
 }
 
 void json_double(struct json *json, const char *key, double number)

@@ -10,10 +10,14 @@
 struct json {
 	FILE *out;
 	bool inner; /* the next value needs a comma */
+	bool list;  /* json_list() has begun one */
 };
 
 void json_open(struct json *json, FILE *out);
 void json_end(struct json *json); /* Write the newline; the writer is as after json_open(). */
+/* A document that is an array, opened and ended. Not wanted: these two write nothing. */
+void json_list(struct json *json, FILE *out, bool wanted);
+void json_list_end(struct json *json);
 
 /*
  * A document in memory that is one object: open both, and end both. text is allocated, and valid
@@ -36,10 +40,11 @@ void json_bytes(struct json *json, const char *key, const char *text, size_t len
 void json_text(struct json *json, const char *text, size_t len);
 void json_int(struct json *json, const char *key, int64_t number);
 void json_uint(struct json *json, const char *key, uint64_t number);
+void json_known(struct json *json, const char *key, int number); /* null below 0 */
 void json_bool(struct json *json, const char *key, bool value);
 void json_null(struct json *json, const char *key);
 /* Nanoseconds as seconds with three digits. */
 void json_seconds(struct json *json, const char *key, int64_t ns);
-/* A number that is already text; null if JSON has no such number (nan, inf). */
+/* A number that is already text; null without a text, or if JSON has no such number (nan, inf). */
 void json_number(struct json *json, const char *key, const char *text);
 void json_double(struct json *json, const char *key, double number); /* null for a NaN */

@@ -175,10 +175,7 @@ void show_signal(struct json *json, const struct show *show, int signal)
 	json_bool(json, "output", info.output);
 	json_bool(json, "confirm", info.confirm);
 	put_text(json, "unit", info.unit);
-	if (info.decimals >= 0)
-		json_int(json, "decimals", info.decimals);
-	else
-		json_null(json, "decimals");
+	json_known(json, "decimals", info.decimals);
 	put_text(json, "description", info.description);
 	json_string(json, "path", info.path);
 	put_text(json, "family", info.family);

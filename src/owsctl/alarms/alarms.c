@@ -101,19 +101,13 @@ static int alarms_ack(struct ctl *ctl, int argc, char **argv)
 {
 	bool all = false;
 	struct ows *h;
-	int c, status;
+	int status;
 
-	ctl_options();
-	while ((c = ctl_option(ctl, argc, argv, "a")) != -1) {
-		if (c != 'a')
-			return CTL_USAGE;
+	while (ctl_option(ctl, argc, argv, "a") != -1)
 		all = true;
-	}
 	if (all != (optind == argc))
 		return ctl_usage(ctl, "alarms ack takes names or -a");
-	status = ctl_open(ctl, OWS_CONTROL, &h);
-	if (status)
-		return status;
+	h = ctl_open(ctl, OWS_CONTROL);
 	if (!ctl_alive(ctl, h, ows_now()))
 		status = CTL_FAILED;
 	else if (all)
@@ -146,7 +140,7 @@ static const char *value_text(const struct ows_alarm *alarm, bool after, int dec
 	return text;
 }
 
-static bool alarms_history_add_row(struct table *table, const struct when *now,
+static void alarms_history_add_row(struct table *table, const struct when *now,
                                    const struct ows_info *info, const struct ows_alarm *alarm)
 {
 	char before[VALUE_TEXT_MAX], after[VALUE_TEXT_MAX], time[WHEN_TEXT];
@@ -157,20 +151,11 @@ static bool alarms_history_add_row(struct table *table, const struct when *now,
 	if (alarm->event != OWS_ALARM_RAISED && alarm->event != OWS_ALARM_RETURNED &&
 	    alarm->event != OWS_ALARM_FAILED)
 		who_line(&alarm->who, by);
-	return table_add(table,
-	                 (const char *const[]){when_iso(now, alarm->occurred_ns, time), info->name,
+	table_add(table, (const char *const[]){when_iso(now, alarm->occurred_ns, time), info->name,
 	                                       ows_alarm_kind_text(alarm->kind),
 	                                       ows_alarm_event_text(alarm->event),
 	                                       left ? left : "-", right ? right : "-",
 	                                       ows_quality_text(alarm->quality), by, alarm->text});
-}
-
-static void json_value(struct json *json, const char *key, const char *text)
-{
-	if (text)
-		json_number(json, key, text);
-	else
-		json_null(json, key);
 }
 
 static void add_json(struct json *json, const struct when *now, uint32_t number, const char *name,
@@ -184,8 +169,8 @@ static void add_json(struct json *json, const struct when *now, uint32_t number,
 	json_string(json, "name", name);
 	json_string(json, "alarm", ows_alarm_kind_text(alarm->kind));
 	json_string(json, "event", ows_alarm_event_text(alarm->event));
-	json_value(json, "before", value_text(alarm, false, -1, text));
-	json_value(json, "after", value_text(alarm, true, -1, text));
+	json_number(json, "before", value_text(alarm, false, -1, text));
+	json_number(json, "after", value_text(alarm, true, -1, text));
 	json_string(json, "quality", ows_quality_text(alarm->quality));
 	who_json(json, &alarm->who);
 	json_string(json, "remark", *alarm->text ? alarm->text : NULL);
@@ -193,71 +178,60 @@ static void add_json(struct json *json, const struct when *now, uint32_t number,
 }
 
 /* Put all entries of the journal, the oldest first, into the table or the document. */
-static bool walk(struct ows *h, char *const *patterns, int count, struct table *table,
+static void walk(struct ows *h, char *const *patterns, int count, struct table *table,
                  struct json *json)
 {
 	uint32_t head = ows_alarm_count(h), first = head;
 	struct when now = when_now();
 	struct ows_alarm alarm;
 	struct ows_info info;
-	bool ok = true;
 
 	while (ows_alarm(h, first - 1, &alarm) != -ENOENT)
 		first--;
-	for (uint32_t number = first; ok && number != head; number++) {
+	for (uint32_t number = first; number != head; number++) {
 		if (ows_alarm(h, number, &alarm) != 0 || ows_info(h, alarm.signal, &info) != 0 ||
 		    !names_match(info.name, patterns, count))
 			continue;
 		if (table)
-			ok = alarms_history_add_row(table, &now, &info, &alarm);
+			alarms_history_add_row(table, &now, &info, &alarm);
 		else
 			add_json(json, &now, number, info.name, &alarm);
 	}
-	return ok;
 }
 
-static bool print_table(struct ows *h, char *const *patterns, int count)
+static void print_table(struct ows *h, char *const *patterns, int count)
 {
 	struct table table;
-	bool ok;
 
 	table_init(&table, columns, sizeof(columns) / sizeof(columns[0]));
-	ok = walk(h, patterns, count, &table, NULL);
-	if (ok)
-		table_print(&table, true);
+	walk(h, patterns, count, &table, NULL);
+	table_print(&table, true);
 	table_free(&table);
-	return ok;
 }
 
 static void alarms_history_print_json(struct ows *h, char *const *patterns, int count)
 {
 	struct json json;
 
-	json_open(&json, stdout);
-	json_array(&json, NULL);
+	json_list(&json, stdout, true);
 	walk(h, patterns, count, NULL, &json);
-	json_array_end(&json);
-	json_end(&json);
+	json_list_end(&json);
 }
 
 static int alarms_history(struct ctl *ctl, int argc, char **argv)
 {
 	struct ows *h;
-	int status;
+	int status = CTL_DONE;
 
-	ctl_options();
-	if (ctl_option(ctl, argc, argv, "") != -1)
-		return CTL_USAGE;
-	status = ctl_open(ctl, OWS_READ, &h);
-	if (status)
-		return status;
+	ctl_option(ctl, argc, argv, "");
+	h = ctl_open(ctl, OWS_READ);
 	ctl_alive(ctl, h, ows_now());
 	if (!alarms_known(h, argv + optind, argc - optind))
 		status = CTL_FAILED;
 	else if (ctl->json)
 		alarms_history_print_json(h, argv + optind, argc - optind);
-	else if (!print_table(h, argv + optind, argc - optind))
-		status = ctl_fail("no memory");
+	else
+		print_table(h, argv + optind, argc - optind);
 	ows_close(h);
 	return status;
 }
@@ -285,12 +259,9 @@ static int alarms_shelve_fail(const char *name, bool shelve, int err)
 /* seconds 0: unshelve. */
 static int request(struct ctl *ctl, int count, char **names, uint32_t seconds, const char *why)
 {
-	int status, id, err;
-	struct ows *h;
+	struct ows *h = ctl_open(ctl, OWS_CONTROL);
+	int status = CTL_DONE, id, err;
 
-	status = ctl_open(ctl, OWS_CONTROL, &h);
-	if (status)
-		return status;
 	if (!ctl_alive(ctl, h, ows_now()))
 		status = CTL_FAILED;
 	for (int i = 0; status == CTL_DONE && i < count; i++)
@@ -310,9 +281,7 @@ static int alarms_shelve(struct ctl *ctl, int argc, char **argv)
 {
 	int64_t ns;
 
-	ctl_options();
-	if (ctl_option(ctl, argc, argv, "") != -1)
-		return CTL_USAGE;
+	ctl_option(ctl, argc, argv, "");
 	if (argc - optind != 2 && argc - optind != 3)
 		return ctl_usage(ctl, "alarms shelve takes a name, a time and perhaps a reason");
 	if (!when_parse(argv[optind + 1], &ns) || ns < NS_PER_S || ns > OWS_SHELVE_MAX * NS_PER_S)
@@ -326,9 +295,7 @@ static int alarms_shelve(struct ctl *ctl, int argc, char **argv)
 
 static int alarms_unshelve(struct ctl *ctl, int argc, char **argv)
 {
-	ctl_options();
-	if (ctl_option(ctl, argc, argv, "") != -1)
-		return CTL_USAGE;
+	ctl_option(ctl, argc, argv, "");
 	if (optind == argc)
 		return ctl_usage(ctl, "alarms unshelve takes names");
 	return request(ctl, argc - optind, argv + optind, 0, "");

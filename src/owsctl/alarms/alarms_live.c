@@ -22,7 +22,6 @@ struct live {
 	struct reading *reading;
 	struct table *table; /* NULL: JSON */
 	struct json json;
-	bool ok;
 };
 
 static const struct table_column columns[] = {
@@ -49,10 +48,8 @@ static void alarms_live_add_row(struct live *live, const struct present *alarm)
 	reading_show(live->reading, value, sizeof(value));
 	if (alarm->since_ns)
 		when_span(live->now.boot - alarm->since_ns, span);
-	if (!table_add(live->table,
-	               (const char *const[]){alarm->name, alarm->kind, state, span, value,
-	                                     reading_quality(live->reading, words)}))
-		live->ok = false;
+	table_add(live->table, (const char *const[]){alarm->name, alarm->kind, state, span, value,
+	                                             reading_quality(live->reading, words)});
 }
 
 static void alarms_live_add(void *ctx, const struct present *alarm)
@@ -112,12 +109,12 @@ static void print_reasons(struct live *live, const struct rows *rows, char *cons
 }
 
 /* rows: all signals of the table, in its order. */
-static bool alarms_live_show(struct ows *h, const struct rows *rows, bool json,
+static void alarms_live_show(struct ows *h, const struct rows *rows, bool json,
                              char *const *patterns, int pattern_count)
 {
 	static struct reading reading;
 	struct table table;
-	struct live live = {.h = h, .now = when_now(), .reading = &reading, .ok = true};
+	struct live live = {.h = h, .now = when_now(), .reading = &reading};
 
 	table_init(&table, columns, COLUMNS);
 	if (json) {
@@ -126,20 +123,18 @@ static bool alarms_live_show(struct ows *h, const struct rows *rows, bool json,
 	} else {
 		live.table = &table;
 	}
-	for (int i = 0; live.ok && i < rows->count; i++)
+	for (int i = 0; i < rows->count; i++)
 		if (names_match(rows->row[i].name, patterns, pattern_count))
 			present_each(h, i, rows->row[i].id, live.now.boot, &reading,
 			             alarms_live_add, &live);
 	if (json) {
 		json_array_end(&live.json);
 		json_end(&live.json);
-	}
-	if (!json && live.ok) {
+	} else {
 		table_print(&table, true);
 		print_reasons(&live, rows, patterns, pattern_count);
 	}
 	table_free(&table);
-	return live.ok;
 }
 
 /* The words that `owsctl alarms` does not take for patterns. */
@@ -189,23 +184,16 @@ int alarms_live(struct ctl *ctl, int argc, char **argv)
 {
 	struct rows rows;
 	struct ows *h;
-	int status;
+	int status = CTL_DONE;
 
-	ctl_options();
-	if (ctl_option(ctl, argc, argv, "") != -1)
-		return CTL_USAGE;
-	status = ctl_open(ctl, OWS_READ, &h);
-	if (status)
-		return status;
-	if (rows_collect(h, NULL, 0, false, &rows) != 0) {
-		ows_close(h);
-		return ctl_fail("no memory");
-	}
+	ctl_option(ctl, argc, argv, "");
+	h = ctl_open(ctl, OWS_READ);
+	rows_collect(h, NULL, 0, false, &rows);
 	ctl_alive(ctl, h, ows_now());
 	if (!alarms_known(h, argv + optind, argc - optind))
 		status = CTL_FAILED;
-	else if (!alarms_live_show(h, &rows, ctl->json, argv + optind, argc - optind))
-		status = ctl_fail("no memory");
+	else
+		alarms_live_show(h, &rows, ctl->json, argv + optind, argc - optind);
 	rows_free(&rows);
 	ows_close(h);
 	return status;

@@ -35,8 +35,7 @@ static const struct table_column journal_columns[JOURNAL_COLUMNS] = {
 };
 /* clang-format on */
 
-/* false: no memory. */
-static bool journal_row(struct table *table, const struct when *now,
+static void journal_row(struct table *table, const struct when *now,
                         const struct journal_entry *entry)
 {
 	char time[WHEN_TEXT], event[JOURNAL_EVENT], value[VALUE_TEXT_MAX], more[32] = "";
@@ -53,8 +52,7 @@ static bool journal_row(struct table *table, const struct when *now,
 		snprintf(more, sizeof(more), "after %u more", (unsigned)entry->command.more);
 	if (entry->is_command && entry->command.type == OWS_STRING)
 		shown = entry->command.text;
-	return table_add(table,
-	                 (const char *const[]){when_iso(now, entry->when_ns, time), entry->name,
+	table_add(table, (const char *const[]){when_iso(now, entry->when_ns, time), entry->name,
 	                                       journal_event(entry, event), shown ? shown : "-",
 	                                       program, user, *person ? person : "-", remark});
 }
@@ -73,19 +71,16 @@ struct journal {
 	struct table table;
 };
 
-static bool print_rows(struct journal *j, unsigned from, bool titled)
+static void print_rows(struct journal *j, unsigned from, bool titled)
 {
 	struct when now = when_now();
-	bool ok = true;
 
-	for (unsigned i = from; ok && i < j->entries.count; i++)
-		ok = journal_row(&j->table, &now, &j->entries.entry[i]);
-	if (ok)
-		table_print(&j->table, titled);
+	for (unsigned i = from; i < j->entries.count; i++)
+		journal_row(&j->table, &now, &j->entries.entry[i]);
+	table_print(&j->table, titled);
 	/* later rows stand below these */
 	memcpy(j->table.least, j->table.width, sizeof(j->table.least));
 	table_clear(&j->table);
-	return ok;
 }
 
 /* One document; while it follows, a line for each entry. */
@@ -108,18 +103,19 @@ static void journal_print_json(struct journal *j, unsigned from)
 	json_end(&json);
 }
 
-static bool print_from(struct journal *j, unsigned from, bool titled)
+static void print_from(struct journal *j, unsigned from, bool titled)
 {
-	if (!j->ctl->json)
-		return print_rows(j, from, titled);
-	journal_print_json(j, from);
-	return true;
+	if (j->ctl->json)
+		journal_print_json(j, from);
+	else
+		print_rows(j, from, titled);
 }
 
-static bool print_news(struct journal *j)
+static void print_news(struct journal *j)
 {
-	return journal_look(j->h, j->patterns, j->pattern_count, &j->entries) &&
-	       print_from(j, 0, false);
+	if (!journal_look(j->h, j->patterns, j->pattern_count, &j->entries))
+		ctl_need(NULL);
+	print_from(j, 0, false);
 }
 
 static void drop_older(struct journal_entries *entries, int64_t since_ns)
@@ -139,7 +135,7 @@ static void show_progress(void *ctx, int64_t done, int64_t all)
 	progress_show(ctx, ows_now(), done, all);
 }
 
-/* Those of the disk first: what is entered meanwhile is then in memory. 0, -ENOMEM or another. */
+/* Those of the disk first: what is entered meanwhile is then in memory. 0 or -errno. */
 static int look_at_both(struct journal *j)
 {
 	unsigned most = j->most < 0 ? MOST : (unsigned)j->most;
@@ -147,19 +143,20 @@ static int look_at_both(struct journal *j)
 	struct progress progress = progress_begin("journal", ows_now());
 	struct journal_entries past = {0};
 	int err = 0;
-	bool ok;
 
 	if (j->history)
 		err = journal_past(j->history, &now, j->since_ns, j->patterns, j->pattern_count,
 		                   most ? most + RINGS : 0, show_progress, &progress, &past);
 	progress_end(&progress);
-	ok = (!j->h || journal_look(j->h, j->patterns, j->pattern_count, &j->entries)) &&
-	     journal_past_drop(&past, &j->entries);
-	if (ok && j->has_since)
+	if ((j->h && !journal_look(j->h, j->patterns, j->pattern_count, &j->entries)) ||
+	    !journal_past_drop(&past, &j->entries))
+		ctl_need(NULL);
+	if (j->has_since)
 		drop_older(&j->entries, now.boot - (now.wall - j->since_ns));
-	ok = ok && journal_add(&j->entries, &past);
+	if (!journal_add(&j->entries, &past))
+		ctl_need(NULL);
 	journal_free(&past);
-	return ok ? err : -ENOMEM;
+	return err;
 }
 
 /* A disk that cannot be read hides nothing of what owsd has in memory. */
@@ -168,8 +165,6 @@ static int print_both(struct journal *j)
 	int err = look_at_both(j), status = CTL_DONE;
 	unsigned count = j->entries.count, from = 0;
 
-	if (err == -ENOMEM)
-		return ctl_fail("no memory");
 	if (err)
 		status = past_fail("history", err);
 	if (j->most >= 0 || j->history) {
@@ -177,11 +172,12 @@ static int print_both(struct journal *j)
 
 		from = count > most ? count - most : 0;
 	}
-	return print_from(j, from, true) ? status : ctl_fail("no memory");
+	print_from(j, from, true);
+	return status;
 }
 
 /* A start of owsd begins its journals anew; a reload goes on with them. */
-static bool journal_follow(struct journal *j)
+static void journal_follow(struct journal *j)
 {
 	struct ows_daemon daemon = {0}, before;
 	uint32_t news = 0;
@@ -198,10 +194,8 @@ static bool journal_follow(struct journal *j)
 			ctl_fail("owsd %s was started again", j->ctl->instance);
 			j->entries.begun = false;
 		}
-		if (!print_news(j))
-			return false;
+		print_news(j);
 	}
-	return true;
 }
 
 static bool is_in_history(struct ows_history *history, char *const *pattern)
@@ -243,8 +237,8 @@ static int journal_show(struct journal *j)
 	status = print_both(j);
 	ows_history_close(j->history);
 	j->history = NULL;
-	if (j->follows && !journal_follow(j))
-		status = ctl_fail("no memory");
+	if (j->follows)
+		journal_follow(j);
 	table_free(&j->table);
 	journal_free(&j->entries);
 	return status;
@@ -259,7 +253,12 @@ static int open_both(struct journal *j, const char *directory)
 		return status;
 	if (j->history && !j->follows && ows_open(j->ctl->instance, OWS_READ, &j->h) == -ENOENT)
 		return CTL_DONE;
-	return j->h ? CTL_DONE : ctl_open(j->ctl, OWS_READ, &j->h);
+	if (!j->h && ows_open(j->ctl->instance, OWS_READ, &j->h)) {
+		ows_history_close(j->history);
+		j->history = NULL;
+		j->h = ctl_open(j->ctl, OWS_READ); /* says why */
+	}
+	return CTL_DONE;
 }
 
 int verb_journal(struct ctl *ctl, int argc, char **argv)
@@ -269,7 +268,6 @@ int verb_journal(struct ctl *ctl, int argc, char **argv)
 	const char *directory = NULL;
 	int c, status;
 
-	ctl_options();
 	while ((c = ctl_option(ctl, argc, argv, "fc:s:d:")) != -1) {
 		switch (c) {
 		case 'f':
@@ -281,15 +279,12 @@ int verb_journal(struct ctl *ctl, int argc, char **argv)
 				                 ctl_word(optarg));
 			break;
 		case 's':
-			if (!ctl_moment(ctl, c, &now, &j.since_ns))
-				return CTL_USAGE;
+			j.since_ns = ctl_moment(ctl, c, &now);
 			j.has_since = true;
 			break;
 		case 'd':
 			directory = optarg;
 			break;
-		default:
-			return CTL_USAGE;
 		}
 	}
 	j.patterns = argv + optind;

@@ -179,10 +179,7 @@ int verb_mission(struct ctl *ctl, int argc, char **argv)
 	struct mission mission;
 	int c, status;
 
-	ctl_options();
 	while ((c = target_option(ctl, argc, argv, "i:o", &timeout_ns)) != -1) {
-		if (c == '?')
-			return CTL_USAGE;
 		interval = c == 'i' ? optarg : interval;
 		rollover |= c == 'o';
 	}

@@ -183,15 +183,10 @@ int mission_download(const struct ctl *ctl, struct mission *mission)
 	status = mission_download_look(&download);
 	if (status)
 		return status;
-	json_open(&download.json, stdout);
-	if (ctl->json)
-		json_array(&download.json, NULL);
-	else
+	json_list(&download.json, stdout, ctl->json);
+	if (!ctl->json)
 		printf("time,temperature%s\n", download.has[1] ? ",humidity" : "");
 	status = print_all(ctl, &download);
-	if (ctl->json) {
-		json_array_end(&download.json);
-		json_end(&download.json);
-	}
+	json_list_end(&download.json);
 	return status ? status : check_begin(&download);
 }

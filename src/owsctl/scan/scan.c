@@ -99,8 +99,8 @@ static struct rio_node *driver_of(struct rio *rio)
 static int scan_rio_fill(struct rio **rio, struct scan_names *names, const struct scan *scan,
                          const char *target, struct scan_choice choice)
 {
-	char *quoted = rio_quote(target);
-	int err = quoted ? rio_set(rio, driver_of(*rio), "TargetName", quoted) : -ENOMEM;
+	char *quoted = ctl_need(rio_quote(target));
+	int err = rio_set(rio, driver_of(*rio), "TargetName", quoted);
 
 	rio_quote_free(quoted);
 	for (unsigned i = 0; i < scan->count; i++)
@@ -125,9 +125,8 @@ static int scan_rio(const struct scan *scan, const char *target, bool several,
 	/* several targets are written as in TargetName, so the name of a single one has neither */
 	if (!several && strpbrk(target, ",|"))
 		return ctl_fail("%s cannot be a TargetName: it holds \",\" or \"|\"", target);
-	err = scan_names_init(&names, (size_t)scan->count * SCAN_ITEMS) ? 0 : -ENOMEM;
-	if (!err)
-		err = rio_parse("scan", edit_empty, strlen(edit_empty), &silent, &rio);
+	scan_names_init(&names, (size_t)scan->count * SCAN_ITEMS);
+	err = rio_parse("scan", edit_empty, strlen(edit_empty), &silent, &rio);
 	if (!err)
 		err = scan_rio_fill(&rio, &names, scan, target, choice);
 	if (err)
@@ -203,14 +202,13 @@ static void show_values(const struct scan_device *device, char *out, size_t size
 	}
 }
 
-static bool print_table(const struct scan *scan)
+static void print_table(const struct scan *scan)
 {
 	struct table table;
 	char family[4], bus[40], values[400];
-	bool ok = true;
 
 	table_init(&table, columns, sizeof(columns) / sizeof(columns[0]));
-	for (unsigned i = 0; ok && i < scan->count; i++) {
+	for (unsigned i = 0; i < scan->count; i++) {
 		const struct scan_device *device = &scan->device[i];
 		const char *alarm = alarms(device);
 
@@ -220,14 +218,12 @@ static bool print_table(const struct scan *scan)
 		show_values(device, values, sizeof(values));
 		const char *type = device->identity[0] ? device->identity : device->type;
 
-		ok = table_add(&table, (const char *const[]){device->path, family, type,
-		                                             device->alias[0] ? device->alias : "-",
-		                                             bus, alarm ? alarm : "-", values});
+		table_add(&table, (const char *const[]){device->path, family, type,
+		                                        device->alias[0] ? device->alias : "-", bus,
+		                                        alarm ? alarm : "-", values});
 	}
-	if (ok)
-		table_print(&table, true);
+	table_print(&table, true);
 	table_free(&table);
-	return ok;
 }
 
 static void print_values(struct json *json, const struct scan_device *device)
@@ -253,8 +249,7 @@ static void scan_print_json(const struct scan *scan)
 {
 	struct json json;
 
-	json_open(&json, stdout);
-	json_array(&json, NULL);
+	json_list(&json, stdout, true);
 	for (unsigned i = 0; i < scan->count; i++) {
 		const struct scan_device *device = &scan->device[i];
 		const char *alarm = alarms(device);
@@ -276,8 +271,7 @@ static void scan_print_json(const struct scan *scan)
 		print_values(&json, device);
 		json_object_end(&json);
 	}
-	json_array_end(&json);
-	json_end(&json);
+	json_list_end(&json);
 }
 
 /* Print the configuration: a new one, or the given file with the devices added. */
@@ -294,15 +288,6 @@ static int print_rio(const struct ctl *ctl, const struct target *target,
 			ctl->instance);
 	return served->target[0] ? scan_rio(scan, served->targets, true, choice)
 	                         : scan_rio(scan, target->name, false, choice);
-}
-
-static int scan_show(const struct ctl *ctl, const struct scan *scan)
-{
-	if (ctl->json)
-		scan_print_json(scan);
-	else if (scan->count && !print_table(scan))
-		return ctl_fail("no memory");
-	return CTL_DONE;
 }
 
 /* After a failure, warn that the file to which stdout goes is empty. */
@@ -348,9 +333,12 @@ static int scan_look(struct ctl *ctl, int64_t timeout_ns, const char *aliases, b
 	status = find_devices(&target, &scan);
 	if (!status && aliases)
 		status = scan_aliases(aliases, &scan);
-	if (!status && (scan.count || !rio))
-		status = rio ? print_rio(ctl, &target, &served, &scan, merge, choice)
-		             : scan_show(ctl, &scan);
+	if (!status && rio && scan.count)
+		status = print_rio(ctl, &target, &served, &scan, merge, choice);
+	else if (!status && !rio && ctl->json)
+		scan_print_json(&scan);
+	else if (!status && !rio && scan.count)
+		print_table(&scan);
 	if (!status && !scan.count) {
 		status = ctl_nothing(
 			"%s answers, but no device is there: look at the wires and the "
@@ -372,7 +360,6 @@ int verb_scan(struct ctl *ctl, int argc, char **argv)
 	const char *aliases = NULL;
 	int c, status = CTL_DONE;
 
-	ctl_options();
 	while ((c = target_option(ctl, argc, argv, "riBL:M:R:", &timeout_ns)) != -1) {
 		if (c == 'r')
 			rio = true;
@@ -388,11 +375,9 @@ int verb_scan(struct ctl *ctl, int argc, char **argv)
 			return ctl_usage(ctl, "--merge is given twice");
 		else if (c == 'R' && merge.pair_count < SCAN_PAIRS)
 			merge.pair[merge.pair_count++] = optarg;
-		else if (c == 'R')
+		else
 			return ctl_usage(ctl, "at most %d devices are replaced at once",
 			                 SCAN_PAIRS);
-		else
-			return CTL_USAGE;
 	}
 	if (optind < argc)
 		return ctl_usage(ctl, "%s: scan looks at all of a target", argv[optind]);

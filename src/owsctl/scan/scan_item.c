@@ -15,22 +15,20 @@
 #include "src/signal/hash.h"
 #include "src/signal/value.h"
 
-bool scan_names_init(struct scan_names *names, size_t room)
+void scan_names_init(struct scan_names *names, size_t room)
 {
-	*names = (struct scan_names){.name = calloc(room + 1, sizeof(*names->name)),
+	*names = (struct scan_names){.name = ctl_need(calloc(room + 1, sizeof(*names->name))),
 	                             .room = (unsigned)room,
 	                             .places = 2};
 	while (names->places < 2 * room)
 		names->places *= 2;
-	names->place = calloc(names->places, sizeof(*names->place));
-	names->items = open_memstream(&names->text, &names->len);
-	return names->name && names->place && names->items;
+	names->place = ctl_need(calloc(names->places, sizeof(*names->place)));
+	names->items = ctl_need(open_memstream(&names->text, &names->len));
 }
 
 void scan_names_free(struct scan_names *names)
 {
-	if (names->items)
-		fclose(names->items);
+	fclose(names->items);
 	free(names->text);
 	free(names->place);
 	free(names->name);
@@ -249,7 +247,7 @@ int scan_check(const struct rio *rio, const char *what)
 	int err = config_parse("what was found", rio->text, rio->len, &report, &config);
 
 	if (err == -ENOMEM)
-		return ctl_fail("no memory");
+		ctl_need(NULL);
 	if (!err)
 		config_free(config);
 	return refusal.status;

@@ -34,8 +34,8 @@ struct scan_names {
 	size_t len;
 };
 
-/* Make room for so many names. False: no memory. Free with scan_names_free() in any case. */
-bool scan_names_init(struct scan_names *names, size_t room);
+/* Make room for so many names. Free with scan_names_free(). */
+void scan_names_init(struct scan_names *names, size_t room);
 void scan_names_free(struct scan_names *names);
 /* Add a name that is in use already. */
 void scan_names_add(struct scan_names *names, const char *name);

@@ -131,19 +131,17 @@ static const char *text_of(const struct rio_node *item, const char *key)
 	return node ? node->value : "";
 }
 
-static bool collect(struct work *work)
+static void collect(struct work *work)
 {
 	struct path path;
 	unsigned count = 0;
 
 	for (const struct rio_node *i = first_item(work->merge->rio); i; i = rio_next(i))
 		count++;
-	work->item = calloc((size_t)count + 1, sizeof(*work->item));
-	work->known = calloc((size_t)count + 1, sizeof(*work->known));
-	work->found = calloc((size_t)work->scan->count + 1, sizeof(*work->found));
-	if (!work->item || !work->known || !work->found ||
-	    !scan_names_init(&work->names, count + (size_t)work->scan->count * SCAN_ITEMS))
-		return false;
+	work->item = ctl_need(calloc((size_t)count + 1, sizeof(*work->item)));
+	work->known = ctl_need(calloc((size_t)count + 1, sizeof(*work->known)));
+	work->found = ctl_need(calloc((size_t)work->scan->count + 1, sizeof(*work->found)));
+	scan_names_init(&work->names, count + (size_t)work->scan->count * SCAN_ITEMS);
 	for (unsigned i = 0; i < work->scan->count; i++) {
 		const char *text = work->scan->device[i].path;
 
@@ -151,17 +149,13 @@ static bool collect(struct work *work)
 			memcpy(work->found[i].rom, path.rom, ROM_LEN);
 	}
 	for (const struct rio_node *i = first_item(work->merge->rio); i; i = rio_next(i)) {
-		struct item *item = &work->item[work->item_count];
+		struct item *item = &work->item[work->item_count++];
 
-		item->name = strdup(text_of(i, "Name"));
-		item->path = strdup(text_of(i, "Path"));
-		work->item_count++;
-		if (!item->name || !item->path)
-			return false;
+		item->name = ctl_need(strdup(text_of(i, "Name")));
+		item->path = ctl_need(strdup(text_of(i, "Path")));
 		item->device = device_of(work, item->path);
 		scan_names_add(&work->names, item->name);
 	}
-	return true;
 }
 
 static void release(struct work *work)
@@ -349,8 +343,10 @@ static int change(struct work *work, struct scan_choice choice)
 int scan_merge(struct scan_merge *merge, const struct scan *scan, struct scan_choice choice)
 {
 	struct work work = {.merge = merge, .scan = scan};
-	int err = 0, status = collect(&work) ? decide(&work) : ctl_fail("no memory");
+	int err, status;
 
+	collect(&work);
+	status = decide(&work);
 	if (!status) {
 		err = change(&work, choice);
 		if (err)

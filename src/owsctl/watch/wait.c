@@ -108,19 +108,13 @@ static int wait_begin(struct ctl *ctl, struct waiting *waiting, const char *valu
 	return CTL_DONE;
 }
 
-static int parse_limit(struct ctl *ctl, int argc, char **argv, int64_t *limit_ns)
+static void parse_limit(struct ctl *ctl, int argc, char **argv, int64_t *limit_ns)
 {
 	int c;
 
-	ctl_options();
-	while ((c = ctl_option(ctl, argc, argv, "+t:")) != -1) {
-		if (c != 't')
-			return CTL_USAGE;
-		if (!ctl_seconds(optarg, limit_ns))
-			return ctl_usage(ctl, "-t wants a number of seconds, not %s",
-			                 ctl_word(optarg));
-	}
-	return CTL_DONE;
+	optind = 0;
+	while ((c = ctl_option(ctl, argc, argv, "+t:")) != -1)
+		*limit_ns = ctl_option_seconds(ctl, c);
 }
 
 int verb_wait(struct ctl *ctl, int argc, char **argv)
@@ -129,10 +123,10 @@ int verb_wait(struct ctl *ctl, int argc, char **argv)
 	struct waiting waiting = {.reading = &reading};
 	const char *value = NULL;
 	int64_t limit_ns = NO_LIMIT;
-	int status = parse_limit(ctl, argc, argv, &limit_ns), at = optind;
+	int status, at;
 
-	if (status)
-		return status;
+	parse_limit(ctl, argc, argv, &limit_ns);
+	at = optind;
 	if (at == argc)
 		return ctl_usage(ctl, "wait for what?");
 	waiting.name = argv[at++];
@@ -147,15 +141,11 @@ int verb_wait(struct ctl *ctl, int argc, char **argv)
 	if (at < argc) {
 		argc -= at - 1;
 		argv += at - 1;
-		status = parse_limit(ctl, argc, argv, &limit_ns);
-		if (status)
-			return status;
+		parse_limit(ctl, argc, argv, &limit_ns);
 		if (optind < argc)
 			return ctl_usage(ctl, "%s is no comparison (= != < <= > >=)", argv[optind]);
 	}
-	status = ctl_open(ctl, OWS_READ, &waiting.h);
-	if (status)
-		return status;
+	waiting.h = ctl_open(ctl, OWS_READ);
 	status = wait_begin(ctl, &waiting, value);
 	if (status == CTL_DONE)
 		status = print_end(ctl, &waiting, sleep_until_it_came(&waiting, limit_ns));

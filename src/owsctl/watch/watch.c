@@ -116,23 +116,21 @@ static void print_changes(struct watch *watch)
 	}
 }
 
-static int watch_lines(struct watch *watch)
+static void watch_lines(struct watch *watch)
 {
 	/* write round by round, so that errno shows why a write failed */
 	setvbuf(stdout, NULL, _IOFBF, BUFSIZ);
 	if (!watch->alive)
 		print_event(watch, WATCH_LOST);
 	for (;;) {
-		int event;
+		enum watch_event event;
 
 		print_changes(watch);
 		if (watch_over(watch) || !ctl_flush_lines() || ctl_reader_gone())
-			return CTL_DONE;
+			return;
 		event = watch_sleep(watch, SHORTEST_SLEEP, INT64_MAX);
-		if (event < 0)
-			return ctl_fail("no memory");
 		if (event != WATCH_NOTHING)
-			print_event(watch, (enum watch_event)event);
+			print_event(watch, event);
 	}
 }
 
@@ -142,15 +140,13 @@ static int watch_begin(struct watch *watch, bool screen)
 	int status;
 
 	ows_daemon(watch->h, ows_now(), &daemon);
-	if (watch_collect(watch, &daemon) < 0)
-		return ctl_fail("no memory");
+	watch_collect(watch, &daemon);
 	status = rows_check(&watch->rows, watch->patterns, watch->pattern_count);
-	if (status) {
-		watch_free(watch);
-		return status;
-	}
 	terminal_catch_signals();
-	status = screen ? watch_screen(watch) : watch_lines(watch);
+	if (!status && screen)
+		watch_screen(watch);
+	else if (!status)
+		watch_lines(watch);
 	watch_free(watch);
 	return status;
 }
@@ -171,7 +167,6 @@ int verb_watch(struct ctl *ctl, int argc, char **argv)
 	int64_t limit_ns = -1;
 	int c, status;
 
-	ctl_options();
 	while ((c = ctl_option(ctl, argc, argv, "alc:t:")) != -1) {
 		switch (c) {
 		case 'a':
@@ -186,19 +181,13 @@ int verb_watch(struct ctl *ctl, int argc, char **argv)
 				                 ctl_word(optarg));
 			break;
 		case 't':
-			if (!ctl_seconds(optarg, &limit_ns))
-				return ctl_usage(ctl, "-t wants a number of seconds, not %s",
-				                 ctl_word(optarg));
+			limit_ns = ctl_option_seconds(ctl, c);
 			break;
-		default:
-			return CTL_USAGE;
 		}
 	}
 	watch.patterns = argv + optind;
 	watch.pattern_count = argc - optind;
-	status = ctl_open(ctl, OWS_READ, &watch.h);
-	if (status)
-		return status;
+	watch.h = ctl_open(ctl, OWS_READ);
 	if (limit_ns >= 0)
 		watch.end_ns = ows_now() + limit_ns;
 	status = watch_begin(&watch, screen && !ctl->json);

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* The live table of owsctl watch on a terminal. */
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -92,14 +91,13 @@ static void put_line(FILE *out, struct screen *screen, const char *style, const 
 }
 
 /* Nothing is known of what is on the terminal: all of it is written again. */
-static bool forget_lines(struct screen *screen)
+static void forget_lines(struct screen *screen)
 {
 	for (unsigned i = 0; i < screen->before_count; i++)
 		free(screen->before[i]);
 	free(screen->before);
-	screen->before = calloc(screen->lines + 1, sizeof(*screen->before));
-	screen->before_count = screen->before ? screen->lines : 0;
-	return screen->before;
+	screen->before = ctl_need(calloc(screen->lines + 1, sizeof(*screen->before)));
+	screen->before_count = screen->lines;
 }
 
 /* An age or a time in whole seconds: a picture changes no more often. */
@@ -140,7 +138,7 @@ static void put_head(FILE *out, struct screen *screen)
 	put_line(out, screen, daemon.alive ? "" : "\033[7m", text);
 }
 
-static bool watch_screen_add_row(struct watch *watch, struct table *table, const struct row *row)
+static void watch_screen_add_row(struct watch *watch, struct table *table, const struct row *row)
 {
 	const struct reading *reading = watch->reading;
 	char value[64], words[READING_WORDS], alarm[STANDING_WORDS], span[WHEN_TEXT] = "-";
@@ -151,10 +149,10 @@ static bool watch_screen_add_row(struct watch *watch, struct table *table, const
 		whole_seconds(reading->value.age_ns, span);
 	if (row->path)
 		ows_target(watch->h, reading->value.target, &target);
-	return table_add(table, (const char *const[]){row->name, value, row_unit(row),
-	                                              row_quality(row, reading, words),
-	                                              standing_text(&row->alarms, alarm), span,
-	                                              row->path ? row->path : "", target.name});
+	table_add(table, (const char *const[]){row->name, value, row_unit(row),
+	                                       row_quality(row, reading, words),
+	                                       standing_text(&row->alarms, alarm), span,
+	                                       row->path ? row->path : "", target.name});
 }
 
 /* Red for a value that is not good, yellow for an alarm to acknowledge; the words state both. */
@@ -205,19 +203,19 @@ static int compare_rows(const void *a, const void *b)
 }
 
 /* Read all rows: which are shown, in which order, and what the head line says of all. */
-static bool survey(struct screen *screen, struct table *table)
+static void survey(struct screen *screen, struct table *table)
 {
 	struct watch *watch = screen->watch;
-	struct sorted *sorted = calloc((size_t)watch->rows.count + 1, sizeof(*sorted));
-	int *order = realloc(screen->order, ((size_t)watch->rows.count + 1) * sizeof(*order));
+	size_t room = (size_t)watch->rows.count + 1;
+	struct sorted *sorted = ctl_need(calloc(room, sizeof(*sorted)));
 	int64_t now = ows_now();
 	struct ows_target target;
 	int served = -1;
 
-	screen->order = order ? order : screen->order;
+	screen->order = ctl_need(realloc(screen->order, room * sizeof(*screen->order)));
 	screen->count = screen->not_good = screen->in_alarm = 0;
 	screen->alarms = false;
-	for (int i = 0; sorted && order && i < watch->rows.count; i++) {
+	for (int i = 0; i < watch->rows.count; i++) {
 		struct row *row = &watch->rows.row[i];
 		bool good, alarm;
 
@@ -243,21 +241,18 @@ static bool survey(struct screen *screen, struct table *table)
 			                                           : 0,
 			};
 	}
-	if (sorted && order) {
-		qsort(sorted, (size_t)screen->count, sizeof(*sorted), compare_rows);
-		for (int i = 0; i < screen->count; i++)
-			order[i] = sorted[i].row;
-	}
+	qsort(sorted, (size_t)screen->count, sizeof(*sorted), compare_rows);
+	for (int i = 0; i < screen->count; i++)
+		screen->order[i] = sorted[i].row;
 	snprintf(screen->target, sizeof(screen->target), "%s",
 	         served >= 0 && ows_target(watch->h, served, &target) == 0 ? target.name : "");
 	table->absent[UNIT] = !rows_have_units(&watch->rows);
 	table->absent[ALARM] = !screen->alarms;
 	table->absent[TARGET] = screen->target[0] != '\0';
 	free(sorted);
-	return sorted && order;
 }
 
-static bool watch_screen_fill(struct screen *screen, struct table *table, const char **styles)
+static void watch_screen_fill(struct screen *screen, struct table *table, const char **styles)
 {
 	struct watch *watch = screen->watch;
 	int shown = room(screen);
@@ -269,10 +264,8 @@ static bool watch_screen_fill(struct screen *screen, struct table *table, const 
 		row_read(watch->h, row, now, watch->reading);
 		reading_round(watch->reading, row_decimals(row));
 		styles[i - screen->top] = style_of(row, watch->reading);
-		if (!watch_screen_add_row(watch, table, row))
-			return false;
+		watch_screen_add_row(watch, table, row);
 	}
-	return true;
 }
 
 static void put_foot(FILE *out, struct screen *screen, int last)
@@ -316,34 +309,30 @@ static void put_rows(FILE *out, struct screen *screen, struct table *table,
 		put_line(out, screen, "", "");
 }
 
-/* One picture, written at once. 0, -ENOMEM, -EPIPE. */
-static int draw(struct screen *screen)
+/* One picture, written at once; false: the terminal is gone. */
+static bool draw(struct screen *screen)
 {
 	char *text = NULL;
 	size_t len = 0;
-	FILE *out = open_memstream(&text, &len);
-	const char **styles = calloc(screen->lines + 1, sizeof(*styles));
+	FILE *out = ctl_need(open_memstream(&text, &len));
+	const char **styles = ctl_need(calloc(screen->lines + 1, sizeof(*styles)));
 	struct table table;
-	int err = -ENOMEM;
+	bool written;
 
 	table_init(&table, columns, COLUMNS);
 	screen->line = 0;
-	if (out && styles && survey(screen, &table)) {
-		keep_top_in_range(screen);
-		put_head(out, screen);
-		if (watch_screen_fill(screen, &table, styles)) {
-			put_rows(out, screen, &table, styles);
-			err = 0;
-		}
-	}
-	if (out && fclose(out) != 0)
-		err = -ENOMEM;
-	if (err == 0 && !terminal_write(text, len))
-		err = -EPIPE;
+	survey(screen, &table);
+	keep_top_in_range(screen);
+	put_head(out, screen);
+	watch_screen_fill(screen, &table, styles);
+	put_rows(out, screen, &table, styles);
+	if (fclose(out) != 0)
+		ctl_need(NULL);
+	written = terminal_write(text, len);
 	table_free(&table);
 	free(styles);
 	free(text);
-	return err;
+	return written;
 }
 
 /* Returns false to end. */
@@ -452,57 +441,52 @@ static void on_event(struct screen *screen, enum watch_event event)
 	}
 }
 
-static int watch_screen_run(struct screen *screen)
+static void watch_screen_run(struct screen *screen)
 {
 	int64_t drawn = 0;
 	uint32_t news = 0;
 
 	for (;;) {
+		enum watch_event event;
 		int64_t now;
-		int pressed, event, err;
+		int pressed;
 
 		terminal_suspend_if_asked();
 		if (terminal_size(&screen->lines, &screen->width)) {
 			memset(screen->least, 0, sizeof(screen->least));
-			if (!forget_lines(screen))
-				return -ENOMEM;
+			forget_lines(screen);
 			drawn = 0;
 		}
 		pressed = take_keys(screen);
 		if (pressed < 0)
-			return 0;
+			return;
 		now = ows_now();
 		if (pressed || drawn == 0 || now - drawn >= LONGEST_PICTURE ||
 		    (news != screen->watch->news && now - drawn >= BETWEEN_PICTURES)) {
 			news = screen->watch->news;
-			err = draw(screen);
-			if (err)
-				return err == -EPIPE ? 0 : err;
+			if (!draw(screen))
+				return;
 			drawn = now;
 		}
 		if (watch_over(screen->watch))
-			return 0;
+			return;
 		event = watch_sleep(screen->watch, BETWEEN_KEYS, BETWEEN_KEYS);
-		if (event < 0)
-			return event;
 		if (event != WATCH_NOTHING) {
-			on_event(screen, (enum watch_event)event);
+			on_event(screen, event);
 			drawn = 0;
 		}
 	}
 }
 
-int watch_screen(struct watch *watch)
+void watch_screen(struct watch *watch)
 {
 	struct screen screen = {.watch = watch, .note = ""};
-	int err;
 
 	terminal_open();
-	err = watch_screen_run(&screen);
+	watch_screen_run(&screen);
 	terminal_close();
 	screen.lines = 0;
 	forget_lines(&screen);
 	free(screen.before);
 	free(screen.order);
-	return err ? ctl_fail("no memory") : CTL_DONE;
 }

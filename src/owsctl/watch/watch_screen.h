@@ -4,5 +4,5 @@
 
 #include "src/owsctl/watch/watch_sleep.h"
 
-/* Show the table on the terminal until the user ends it. Returns the exit status. */
-int watch_screen(struct watch *watch);
+/* Show the table on the terminal until the user ends it. */
+void watch_screen(struct watch *watch);

@@ -5,6 +5,7 @@
 #include <time.h>
 
 #include "hal/base/time.h"
+#include "src/owsctl/ctl.h"
 #include "src/owsctl/watch/terminal.h"
 #include "src/owsctl/watch/watch_sleep.h"
 
@@ -15,7 +16,7 @@ bool watch_over(const struct watch *watch)
 	return terminal_asked_to_end() || watch->left == 0 || ows_now() >= watch->end_ns;
 }
 
-int watch_collect(struct watch *watch, const struct ows_daemon *daemon)
+enum watch_event watch_collect(struct watch *watch, const struct ows_daemon *daemon)
 {
 	bool went_on = daemon->start_ns == watch->start_ns;
 	int count = ows_count(watch->h);
@@ -26,10 +27,8 @@ int watch_collect(struct watch *watch, const struct ows_daemon *daemon)
 	watch->changed_count = -1;
 	watch->news++;
 	watch_free(watch);
-	watch->row_of = malloc(((size_t)count + 1) * sizeof(*watch->row_of));
-	if (!watch->row_of || rows_collect(watch->h, watch->patterns, watch->pattern_count,
-	                                   watch->driver, &watch->rows) != 0)
-		return -ENOMEM;
+	watch->row_of = ctl_need(malloc(((size_t)count + 1) * sizeof(*watch->row_of)));
+	rows_collect(watch->h, watch->patterns, watch->pattern_count, watch->driver, &watch->rows);
 	for (int i = 0; i < count; i++)
 		watch->row_of[i] = -1;
 	for (int i = 0; i < watch->rows.count; i++)
@@ -45,20 +44,19 @@ void watch_free(struct watch *watch)
 	watch->row_of = NULL;
 }
 
-/* Wait for changes, and look for a new owsd when the present one is gone. 0 or -ENOMEM. */
-static int watch_sleep_follow(struct watch *watch, int64_t timeout_ns)
+/* Wait for changes, and look for a new owsd when the present one is gone. */
+static void watch_sleep_follow(struct watch *watch, int64_t timeout_ns)
 {
 	int n = ows_changes(watch->h, &watch->cursor, watch->changed, WATCH_BATCH, timeout_ns);
 
 	if (n == -ENOMEM)
-		return n;
+		ctl_need(NULL);
 	if (n == -ESTALE)
 		ows_reopen(watch->h);
 	if (n == -EINTR)
 		n = 0;
 	watch->changed_count = n < 0 ? -1 : n;
 	watch->news += n != 0;
-	return 0;
 }
 
 /* Changes may come faster than anybody reads them. */
@@ -71,7 +69,7 @@ static void pause_until(int64_t until_ns)
 		nanosleep(&pause, NULL);
 }
 
-int watch_sleep(struct watch *watch, int64_t least_ns, int64_t timeout_ns)
+enum watch_event watch_sleep(struct watch *watch, int64_t least_ns, int64_t timeout_ns)
 {
 	struct ows_daemon daemon;
 	int64_t now = ows_now();
@@ -82,8 +80,8 @@ int watch_sleep(struct watch *watch, int64_t least_ns, int64_t timeout_ns)
 	if (timeout_ns > watch->end_ns - now)
 		timeout_ns = watch->end_ns - now;
 	watch->changed_count = 0;
-	if (timeout_ns > 0 && watch_sleep_follow(watch, timeout_ns) != 0)
-		return -ENOMEM;
+	if (timeout_ns > 0)
+		watch_sleep_follow(watch, timeout_ns);
 	pause_until(now + least_ns);
 	err = ows_daemon(watch->h, ows_now(), &daemon);
 	if (err && err != -ESTALE)

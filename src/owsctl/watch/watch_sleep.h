@@ -33,14 +33,14 @@ enum watch_event {
 	WATCH_LOST,      /* owsd stopped, or its heart does not beat */
 	WATCH_BACK,      /* the heart beats again */
 };
-/* Collect the rows of the present owsd. WATCH_RESTARTED, WATCH_RELOADED or -ENOMEM. */
-int watch_collect(struct watch *watch, const struct ows_daemon *daemon);
+/* Collect the rows of the present owsd. WATCH_RESTARTED or WATCH_RELOADED. */
+enum watch_event watch_collect(struct watch *watch, const struct ows_daemon *daemon);
 /* Free what watch_collect() made. */
 void watch_free(struct watch *watch);
 /*
  * Sleep until a signal changes, at least least_ns (below 1 s) and at most timeout_ns, and follow
- * owsd over restarts. -ENOMEM, else an event.
+ * owsd over restarts.
  */
-int watch_sleep(struct watch *watch, int64_t least_ns, int64_t timeout_ns);
+enum watch_event watch_sleep(struct watch *watch, int64_t least_ns, int64_t timeout_ns);
 /* Is it time to end? */
 bool watch_over(const struct watch *watch);

@@ -11,7 +11,7 @@
 
 struct ctl caught_ctl;
 char *out, *err;
-static const struct verb verb = {.name = "verb", .usage = "OPERANDS", .brief = "tested"};
+static struct verb verb = {.name = "verb", .usage = "OPERANDS", .brief = "tested"};
 
 void caught_begin(const char *instance)
 {
@@ -58,7 +58,8 @@ int run(int (*function)(struct ctl *, int, char **), const char *words)
 	fflush(stdout);
 	dup2(fileno(files[0]), STDOUT_FILENO);
 	dup2(fileno(files[1]), STDERR_FILENO);
-	status = ctl_flush(function(&caught_ctl, argc, argv));
+	verb.run = function;
+	status = ctl_flush(ctl_run(&caught_ctl, argc, argv));
 	dup2(saved[0], STDOUT_FILENO);
 	dup2(saved[1], STDERR_FILENO);
 	free(out);

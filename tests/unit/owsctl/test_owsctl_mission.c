@@ -52,7 +52,7 @@ static int start(const char *device)
 	struct ctl ctl = {.instance = "owsd", .target = target, .verb = &mission};
 
 	snprintf(name, sizeof(name), "%s", device);
-	return verb_mission(&ctl, 5, words);
+	return ctl_run(&ctl, 5, words);
 }
 
 static void test_a_mission_starts_only_where_the_time_is_known(void)
