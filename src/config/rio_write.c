@@ -7,57 +7,30 @@
 
 #include "src/config/rio_write.h"
 
-/* A text that grows; text NULL: no memory. */
-struct grow {
-	char *text;
-	size_t len, room;
-};
-
-static void grow_add(struct grow *grow, const char *text, size_t len)
-{
-	char *more;
-
-	if (!grow->text)
-		return;
-	if (grow->room - grow->len <= len) {
-		grow->room = (grow->len + len + 1) * 2;
-		more = realloc(grow->text, grow->room);
-		if (!more)
-			free(grow->text);
-		grow->text = more;
-		if (!more)
-			return;
-	}
-	memcpy(grow->text + grow->len, text, len);
-	grow->len += len;
-	grow->text[grow->len] = '\0';
-}
-
-static struct grow grow_make(void)
-{
-	return (struct grow){.text = calloc(1, 64), .room = 64};
-}
-
 char *rio_quote(const char *text)
 {
-	struct grow out = grow_make();
-	size_t in_line = 0;
+	static const char wrap[] = "\"\n\"";
+	size_t len = strlen(text), in_line = 0;
+	/* a backslash before each byte at most, two quotes and the end */
+	char *quoted = malloc(2 * len + len / RIO_WRAP * strlen(wrap) + 3), *end = quoted;
 
-	grow_add(&out, "\"", 1);
+	if (!quoted)
+		return NULL;
+	*end++ = '"';
 	for (const char *p = text; *p; p++) {
 		bool begins_character = ((unsigned char)*p & 0xc0) != 0x80;
 
 		if (in_line >= RIO_WRAP && begins_character) {
-			grow_add(&out, "\"\n\"", 3);
+			end = stpcpy(end, wrap);
 			in_line = 0;
 		}
 		if (*p == '"' || *p == '\\')
-			grow_add(&out, "\\", 1);
-		grow_add(&out, p, 1);
+			*end++ = '\\';
+		*end++ = *p;
 		in_line++;
 	}
-	grow_add(&out, "\"", 1);
-	return out.text;
+	strcpy(end, "\"");
+	return quoted;
 }
 
 void rio_quote_free(char *quoted)
@@ -65,39 +38,22 @@ void rio_quote_free(char *quoted)
 	free(quoted);
 }
 
-static void grow_add_lines(struct grow *grow, const char *lines, const char *line_end)
-{
-	for (;;) {
-		size_t len = strcspn(lines, "\n");
-
-		grow_add(grow, lines, len);
-		if (!lines[len])
-			return;
-		grow_add(grow, line_end, strlen(line_end));
-		lines += len + 1;
-	}
-}
-
-/* Replace the bytes begin to end by what was grown, which is freed. */
-static int splice_bytes(struct rio **rio, size_t begin, size_t end, struct grow *put)
+/* Replace the bytes begin to end by those of put. */
+static int splice_bytes(struct rio **rio, size_t begin, size_t end, const char *put, size_t put_len)
 {
 	struct config_report silent = {0};
-	struct grow out = grow_make();
+	size_t behind = (*rio)->len - end, len = begin + put_len + behind;
+	char *text = malloc(len + 1), *p = text;
 	struct rio *made;
 	int err;
 
-	grow_add(&out, (*rio)->text, begin);
-	if (!put->text) {
-		free(out.text);
+	if (!text)
 		return -ENOMEM;
-	}
-	grow_add(&out, put->text, put->len);
-	free(put->text);
-	grow_add(&out, (*rio)->text + end, (*rio)->len - end);
-	if (!out.text)
-		return -ENOMEM;
-	err = rio_parse((*rio)->root.at.file, out.text, out.len, &silent, &made);
-	free(out.text);
+	p = mempcpy(p, (*rio)->text, begin);
+	p = mempcpy(p, put, put_len);
+	memcpy(p, (*rio)->text + end, behind);
+	err = rio_parse((*rio)->root.at.file, text, len, &silent, &made);
+	free(text);
 	if (err)
 		return err;
 	rio_free(*rio);
@@ -108,10 +64,19 @@ static int splice_bytes(struct rio **rio, size_t begin, size_t end, struct grow 
 /* Replace the bytes begin to end by text, with the document's line ends. */
 static int rio_splice(struct rio **rio, size_t begin, size_t end, const char *text)
 {
-	struct grow put = grow_make();
+	char *put = malloc(2 * strlen(text) + 1), *p = put;
+	int err;
 
-	grow_add_lines(&put, text, (*rio)->line_end);
-	return splice_bytes(rio, begin, end, &put);
+	if (!put)
+		return -ENOMEM;
+	for (; *text; text++)
+		if (*text == '\n')
+			p = stpcpy(p, (*rio)->line_end);
+		else
+			*p++ = *text;
+	err = splice_bytes(rio, begin, end, put, (size_t)(p - put));
+	free(put);
+	return err;
 }
 
 static bool is_blank(char c)
@@ -172,72 +137,62 @@ static size_t behind_line(const struct rio *rio, const struct rio_node *node)
 	return p == end || rio->text[p] == '#' ? end : node->end;
 }
 
-static void add_indented(struct grow *out, const char *indent, size_t indent_len, const char *lines)
-{
-	while (*lines) {
-		size_t len = strcspn(lines, "\n");
-
-		grow_add(out, "\n", 1);
-		/* the rest of a wrapped string has no indentation */
-		if (*lines != '"')
-			grow_add(out, indent, indent_len);
-		grow_add(out, lines, len);
-		lines += len + (lines[len] == '\n');
-	}
-}
-
 /*
  * The lines to put after the node `after`, with its indentation; without `after` they come first in
- * the block, indented deeper than the block. They replace the text from *at to *end.
+ * the block, indented deeper than the block. They replace the text from *at to *end. NULL: no
+ * memory.
  */
 static char *lines_behind(const struct rio *rio, const struct rio_node *block,
                           const struct rio_node *after, const char *lines, size_t *at, size_t *end)
 {
 	const struct rio_node *like = after ? after : block;
-	size_t begin = line_begin(rio, like->begin);
-	struct grow indent = grow_make(), out = grow_make();
+	size_t begin = line_begin(rio, like->begin), len;
+	const char *indent = rio->text + begin, *deeper = after ? "" : "  ";
+	int blanks = blank_between(rio, begin, like->begin) ? (int)(like->begin - begin) : 0;
+	char *text = NULL;
+	FILE *out = open_memstream(&text, &len);
 
+	if (!out)
+		return NULL;
 	*at = *end = after ? behind_line(rio, after) : block->value_begin;
-	if (blank_between(rio, begin, like->begin))
-		grow_add(&indent, rio->text + begin, like->begin - begin);
-	if (!after)
-		grow_add(&indent, "  ", 2);
-	if (indent.text)
-		add_indented(&out, indent.text, indent.len, lines);
-	/* the rest of that line goes to a line of its own */
-	if (indent.text && !blank_between(rio, *at, line_end_at(rio, *at))) {
-		grow_add(&out, "\n", 1);
-		grow_add(&out, indent.text, indent.len >= 2 ? indent.len - 2 : 0);
+	for (; *lines; lines += len + (lines[len] == '\n')) {
+		len = strcspn(lines, "\n");
+		/* the rest of a wrapped string has no indentation */
+		if (*lines == '"')
+			fprintf(out, "\n%.*s", (int)len, lines);
+		else
+			fprintf(out, "\n%.*s%s%.*s", blanks, indent, deeper, (int)len, lines);
+	}
+	/* the rest of that line goes to a line of its own, indented as the block */
+	if (!blank_between(rio, *at, line_end_at(rio, *at))) {
+		if (after)
+			blanks = blanks > 2 ? blanks - 2 : 0;
+		fprintf(out, "\n%.*s", blanks, indent);
 		while (is_blank(rio->text[*end]))
 			++*end;
 	}
-	if (!indent.text) {
-		free(out.text);
-		out.text = NULL;
-	}
-	free(indent.text);
-	return out.text;
+	if (!fclose(out))
+		return text;
+	free(text);
+	return NULL;
 }
 
 static int add_behind(struct rio **rio, const struct rio_node *block, const struct rio_node *after,
                       const char *lines)
 {
-	struct grow out;
+	char *text = NULL;
 	size_t at, end;
 	int err;
 
 	if (!after || begins_line(*rio, after)) {
-		out.text = lines_behind(*rio, block, after, lines, &at, &end);
+		text = lines_behind(*rio, block, after, lines, &at, &end);
 	} else {
 		at = end = after->end;
-		out = grow_make();
-		grow_add(&out, " ", 1);
-		grow_add(&out, lines, strlen(lines));
-		if (!ends_word_at(*rio, at))
-			grow_add(&out, " ", 1);
+		if (asprintf(&text, " %s%s", lines, ends_word_at(*rio, at) ? "" : " ") < 0)
+			return -ENOMEM;
 	}
-	err = out.text ? rio_splice(rio, at, end, out.text) : -ENOMEM;
-	free(out.text);
+	err = text ? rio_splice(rio, at, end, text) : -ENOMEM;
+	free(text);
 	return err;
 }
 
@@ -246,25 +201,24 @@ int rio_add(struct rio **rio, struct rio_node *block, const char *lines)
 	return add_behind(rio, block, block->last, lines);
 }
 
-/* A value that stands at its key without a blank, as =5 may, gets one. */
 int rio_replace(struct rio **rio, const struct rio_node *node, const char *value)
 {
-	struct grow out = grow_make();
+	/* a value that stands at its key without a blank, as =5 may, gets one */
+	bool touches = node->value_begin == node->begin + strlen(node->key);
+	char *text;
 	int err;
 
-	if (node->value_begin == node->begin + strlen(node->key))
-		grow_add(&out, " ", 1);
-	grow_add(&out, value, strlen(value));
-	err = out.text ? rio_splice(rio, node->value_begin, node->end, out.text) : -ENOMEM;
-	free(out.text);
+	if (asprintf(&text, "%s%s", touches ? " " : "", value) < 0)
+		return -ENOMEM;
+	err = rio_splice(rio, node->value_begin, node->end, text);
+	free(text);
 	return err;
 }
 
 int rio_set(struct rio **rio, struct rio_node *block, const char *key, const char *value)
 {
 	const struct rio_node *node = rio_child(block, key), *after = NULL;
-	struct grow line;
-	char padded[RIO_KEY_MAX + 2];
+	char *line;
 	int err;
 
 	if (node)
@@ -272,12 +226,10 @@ int rio_set(struct rio **rio, struct rio_node *block, const char *key, const cha
 	for (node = block->first; node; node = node->next)
 		if (node->kind != RIO_BLOCK)
 			after = node;
-	line = grow_make();
-	snprintf(padded, sizeof(padded), "%-*s ", RIO_KEY_WIDTH - 1, key);
-	grow_add(&line, padded, strlen(padded));
-	grow_add(&line, value, strlen(value));
-	err = line.text ? add_behind(rio, block, after, line.text) : -ENOMEM;
-	free(line.text);
+	if (asprintf(&line, "%-*s %s", RIO_KEY_WIDTH - 1, key, value) < 0)
+		return -ENOMEM;
+	err = add_behind(rio, block, after, line);
+	free(line);
 	return err;
 }
 
@@ -339,8 +291,9 @@ static bool own_lines(const struct rio *rio, const struct rio_node *node, size_t
 
 int rio_move(struct rio **rio, struct rio_node *node, const struct rio_node *other, bool behind)
 {
-	size_t begin, end, at, other_begin, other_end, from, to;
-	struct grow out;
+	size_t begin, end, at, other_begin, other_end, from, middle, to;
+	char *put;
+	int err;
 
 	if (!own_lines(*rio, node, &begin, &end) ||
 	    !own_lines(*rio, other, &other_begin, &other_end))
@@ -350,12 +303,14 @@ int rio_move(struct rio **rio, struct rio_node *node, const struct rio_node *oth
 		return 0;
 	/* what stands between the two places changes sides with the node */
 	from = at < begin ? at : begin;
+	middle = at < begin ? begin : end;
 	to = at < begin ? end : at;
-	out = grow_make();
-	if (at < begin)
-		grow_add(&out, (*rio)->text + begin, end - begin);
-	grow_add(&out, (*rio)->text + (at < begin ? at : end), at < begin ? begin - at : at - end);
-	if (at > end)
-		grow_add(&out, (*rio)->text + begin, end - begin);
-	return splice_bytes(rio, from, to, &out);
+	put = malloc(to - from);
+	if (!put)
+		return -ENOMEM;
+	memcpy(put, (*rio)->text + middle, to - middle);
+	memcpy(put + (to - middle), (*rio)->text + from, middle - from);
+	err = splice_bytes(rio, from, to, put, to - from);
+	free(put);
+	return err;
 }
