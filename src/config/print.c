@@ -16,9 +16,11 @@ static void put_plain(FILE *out, int indent, const char *key, const char *text)
 	rio_quote_free(quoted);
 }
 
+/* Nothing is printed where there is no text. */
 static void put_text(FILE *out, int indent, enum option option, const char *text)
 {
-	put_plain(out, indent, option_table[option].key, text);
+	if (text)
+		put_plain(out, indent, option_table[option].key, text);
 }
 
 static void put_word(FILE *out, int indent, enum option option, const char *format, ...)
@@ -74,25 +76,19 @@ static void put_limits(FILE *out, const struct config_limits *limits)
 	put_seconds(out, 4, OPT_OFF_DELAY, limits->off_delay_ns);
 }
 
-static void put_text_if_given(FILE *out, enum option option, const char *text)
-{
-	if (text)
-		put_text(out, 4, option, text);
-}
-
 static void put_scaling(FILE *out, const struct config_item *item)
 {
 	const struct scale *scale = &item->scale;
 
-	put_text_if_given(out, OPT_UNIT, item->unit);
+	put_text(out, 4, OPT_UNIT, item->unit);
 	if (item->decimals >= 0)
 		put_word(out, 4, OPT_DECIMALS, "%d", item->decimals);
-	put_text_if_given(out, OPT_DESCRIPTION, item->description);
+	put_text(out, 4, OPT_DESCRIPTION, item->description);
 	if (scale->linear) {
 		put_number(out, 4, OPT_SCALE, scale->factor);
 		put_number(out, 4, OPT_OFFSET, scale->offset);
 	}
-	put_text_if_given(out, OPT_POINTS, item->points);
+	put_text(out, 4, OPT_POINTS, item->points);
 	if (scale->has_min)
 		put_number(out, 4, OPT_MIN, scale->min);
 	if (scale->has_max)
@@ -101,7 +97,7 @@ static void put_scaling(FILE *out, const struct config_item *item)
 		put_number(out, 4, OPT_FILTER, item->filter_s);
 	if (item->deadband > 0)
 		put_number(out, 4, OPT_DEADBAND, item->deadband);
-	put_text_if_given(out, OPT_CALIBRATED, item->calibrated);
+	put_text(out, 4, OPT_CALIBRATED, item->calibrated);
 }
 
 static void put_targets(FILE *out, const struct config *config)
@@ -138,8 +134,7 @@ static void put_recorder(FILE *out, const struct config_recorder *recorder)
 	if (!recorder->given)
 		return;
 	fprintf(out, "  %s {\n", option_table[OPT_RECORDER].key);
-	if (recorder->directory)
-		put_text(out, 4, OPT_RECORDER_DIRECTORY, recorder->directory);
+	put_text(out, 4, OPT_RECORDER_DIRECTORY, recorder->directory);
 	put_word(out, 4, OPT_RECORDER_KEEP, "%u", recorder->keep_days);
 	put_word(out, 4, OPT_RECORDER_KEEP_MINUTES, "%u", recorder->keep_minutes);
 	put_word(out, 4, OPT_RECORDER_KEEP_HOURS, "%u", recorder->keep_hours);
@@ -156,11 +151,9 @@ static void put_influx(FILE *out, const struct config_influx *influx)
 	fprintf(out, "  %s {\n", option_table[OPT_INFLUX].key);
 	put_text(out, 4, OPT_INFLUX_URL, influx->url);
 	put_seconds(out, 4, OPT_INFLUX_EVERY, influx->every_ns);
-	if (influx->token_file)
-		put_text(out, 4, OPT_INFLUX_TOKEN_FILE, influx->token_file);
+	put_text(out, 4, OPT_INFLUX_TOKEN_FILE, influx->token_file);
 	put_text(out, 4, OPT_INFLUX_MEASUREMENT, influx->measurement);
-	if (influx->spool)
-		put_text(out, 4, OPT_INFLUX_SPOOL, influx->spool);
+	put_text(out, 4, OPT_INFLUX_SPOOL, influx->spool);
 	put_word(out, 4, OPT_INFLUX_SPOOL_SIZE, "%u", influx->spool_mb);
 	put_seconds(out, 4, OPT_INFLUX_CLOCK_WAIT, influx->clock_wait_ns);
 	fputs("  }\n", out);
@@ -172,17 +165,17 @@ static void put_mqtt(FILE *out, const struct config_mqtt *mqtt)
 		return;
 	fprintf(out, "  %s {\n", option_table[OPT_MQTT].key);
 	put_text(out, 4, OPT_MQTT_BROKER, mqtt->broker);
-	put_text_if_given(out, OPT_MQTT_USER, mqtt->user);
-	put_text_if_given(out, OPT_MQTT_PASSWORD_FILE, mqtt->password_file);
-	put_text_if_given(out, OPT_MQTT_CA_FILE, mqtt->ca_file);
-	put_text_if_given(out, OPT_MQTT_CERT_FILE, mqtt->cert_file);
-	put_text_if_given(out, OPT_MQTT_KEY_FILE, mqtt->key_file);
+	put_text(out, 4, OPT_MQTT_USER, mqtt->user);
+	put_text(out, 4, OPT_MQTT_PASSWORD_FILE, mqtt->password_file);
+	put_text(out, 4, OPT_MQTT_CA_FILE, mqtt->ca_file);
+	put_text(out, 4, OPT_MQTT_CERT_FILE, mqtt->cert_file);
+	put_text(out, 4, OPT_MQTT_KEY_FILE, mqtt->key_file);
 	put_text(out, 4, OPT_MQTT_PROTOCOL, mqtt->mqtt5 ? "5" : "3.1.1");
-	put_text_if_given(out, OPT_MQTT_NODE, mqtt->node);
+	put_text(out, 4, OPT_MQTT_NODE, mqtt->node);
 	put_text(out, 4, OPT_MQTT_TOPIC, mqtt->topic);
 	put_text(out, 4, OPT_MQTT_PROFILE, mqtt->profile);
 	put_text(out, 4, OPT_MQTT_DISCOVERY, mqtt->discovery);
-	put_text_if_given(out, OPT_MQTT_PRIMARY_HOST, mqtt->primary_host);
+	put_text(out, 4, OPT_MQTT_PRIMARY_HOST, mqtt->primary_host);
 	put_flag(out, 4, OPT_MQTT_WRITE, mqtt->write);
 	fputs("  }\n", out);
 }
@@ -192,12 +185,12 @@ static void put_web(FILE *out, const struct config_web *web)
 	if (!web->given)
 		return;
 	fprintf(out, "  %s {\n", option_table[OPT_WEB].key);
-	put_text_if_given(out, OPT_WEB_LISTEN, web->listen);
-	put_text_if_given(out, OPT_WEB_HOSTS, web->hosts);
+	put_text(out, 4, OPT_WEB_LISTEN, web->listen);
+	put_text(out, 4, OPT_WEB_HOSTS, web->hosts);
 	put_flag(out, 4, OPT_WEB_WRITE, web->write);
 	put_flag(out, 4, OPT_WEB_CONFIGURE, web->configure);
-	put_text_if_given(out, OPT_WEB_PROXY, web->proxy);
-	put_text_if_given(out, OPT_WEB_FILES, web->files);
+	put_text(out, 4, OPT_WEB_PROXY, web->proxy);
+	put_text(out, 4, OPT_WEB_FILES, web->files);
 	fputs("  }\n", out);
 }
 
@@ -227,8 +220,7 @@ static void put_serve(FILE *out, const struct config_serve *serve)
 	}
 	if (serve->address_count)
 		fputs("\"\n", out);
-	if (serve->socket)
-		put_text(out, 2, OPT_LISTEN_SOCKET, serve->socket);
+	put_text(out, 2, OPT_LISTEN_SOCKET, serve->socket);
 	if (serve->peer_count)
 		put_peers(out, serve);
 	put_flag(out, 2, OPT_LISTEN_READ_ONLY, serve->read_only);
@@ -276,8 +268,8 @@ static void put_item(FILE *out, const struct config_item *item, bool all)
 	put_alarm(out, OPT_RESET_LATCH, item->reset_latch, all);
 	put_limits(out, &item->limits);
 	put_scaling(out, item);
-	put_text_if_given(out, OPT_RECORD, item->record_text);
-	put_text_if_given(out, OPT_CLASS, item->device_class);
+	put_text(out, 4, OPT_RECORD, item->record_text);
+	put_text(out, 4, OPT_CLASS, item->device_class);
 	fputs("  }\n", out);
 }
 
@@ -299,10 +291,8 @@ void config_print(const struct config *config, FILE *out)
 	put_serve(out, &config->serve);
 	for (unsigned i = 0; i < config->allow_count; i++)
 		put_text(out, 2, OPT_CONTROL_ALLOW, config->allows[i].text);
-	if (config->alarm_line)
-		put_text(out, 2, OPT_ALARM_LINE, config->alarm_line);
-	if (config->heartbeat_line)
-		put_text(out, 2, OPT_HEARTBEAT_LINE, config->heartbeat_line);
+	put_text(out, 2, OPT_ALARM_LINE, config->alarm_line);
+	put_text(out, 2, OPT_HEARTBEAT_LINE, config->heartbeat_line);
 	for (unsigned i = 0; i < config->bus_count; i++)
 		put_bus(out, &config->buses[i]);
 	put_recorder(out, &config->recorder);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* What an item's value means: unit and description, scale, filter and range. */
-#include <ctype.h>
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 
 #include "src/config/build.h"
 #include "src/config/scaling.h"
@@ -40,34 +40,18 @@ static const char *text_of(struct build *build, const struct option_value *value
 	return build_keep(build, value->text, strlen(value->text));
 }
 
-/* The number that these digits are. */
-static int digits(const char *text, int count)
-{
-	int number = 0;
-
-	for (int i = 0; i < count; i++)
-		number = number * 10 + (text[i] - '0');
-	return number;
-}
-
 static bool is_date(const char *text)
 {
-	static const int days[] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
-	int year, month, day;
-	bool leap;
+	struct tm tm = {0}, day;
+	const char *end = strptime(text, "%Y-%m-%d", &tm);
 
-	if (strlen(text) != 10 || text[4] != '-' || text[7] != '-')
+	/* no blanks, and no digit left out */
+	if (!end || *end || strspn(text, "0123456789-") != strlen("2026-11-22"))
 		return false;
-	for (int i = 0; i < 10; i++)
-		if (i != 4 && i != 7 && !isdigit((unsigned char)text[i]))
-			return false;
-	year = digits(text, 4);
-	month = digits(text + 5, 2);
-	day = digits(text + 8, 2);
-	if (month < 1 || month > 12)
-		return false;
-	leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
-	return year > 0 && day >= 1 && day <= days[month - 1] + (month == 2 && leap);
+	/* timegm() takes the 30th of February for a day of March */
+	day = tm;
+	timegm(&day);
+	return day.tm_mday == tm.tm_mday;
 }
 
 static void build_texts(struct build *build, const struct option_value *values,
