@@ -18,19 +18,9 @@ static struct sim_slave *device(const struct sim_net *net, struct words *words,
 		words_fail(words, "there is no device \"%s\"", words->word);
 		return NULL;
 	}
-	for (event->chip = 0; event->chip < net->chips; event->chip++) {
-		const struct sim_chip *chip = &net->chip[event->chip];
-
-		for (event->channel = 0; event->channel < chip->channels; event->channel++) {
-			const struct sim_wire *wire = &chip->wire[event->channel];
-
-			for (size_t i = 0; i < wire->count; i++) {
-				if (wire->slaves[i] == event->slave)
-					return event->slave;
-			}
-		}
-	}
-	return NULL;
+	event->chip = event->slave->chip;
+	event->channel = event->slave->channel;
+	return event->slave;
 }
 
 /* Parse "0x18", or with a channel "0x18.3". */
@@ -170,24 +160,9 @@ unsigned event_parse(const struct sim_net *net, struct words *words, struct sim_
 
 bool event_is_held(const struct sim_event *event)
 {
-	switch (event->what) {
-	case SIM_PLUG:
+	if (event->what == SIM_PLUG)
 		return !event->on;
-	case SIM_CORRUPT:
-	case SIM_SHORT:
-		return event->on;
-	case SIM_SET:
-	case SIM_BROWNOUT:
-	case SIM_STICK:
-	case SIM_JAM:
-	case SIM_CHIP_RESET:
-	case SIM_CHIP_SLEEP:
-	case SIM_REFUSE:
-	case SIM_REFUSE_DATA:
-	case SIM_ADAPTER:
-		break;
-	}
-	return false;
+	return event->on && (event->what == SIM_CORRUPT || event->what == SIM_SHORT);
 }
 
 int sim_scenario_event(struct sim_net *net, const char *line, int64_t now, char *why,

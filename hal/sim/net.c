@@ -37,6 +37,8 @@ int sim_net_add_chip(struct sim_net *net, enum sim_part part, uint8_t address)
 
 int sim_net_add_slave(struct sim_net *net, unsigned chip, unsigned channel, struct sim_slave *slave)
 {
+	slave->chip = chip;
+	slave->channel = channel;
 	return sim_wire_add(&net->chip[chip].wire[channel], slave);
 }
 
@@ -60,13 +62,12 @@ int sim_net_add_event(struct sim_net *net, const struct sim_event *event)
 }
 
 /* The i-th slave of all; NULL after the last. */
-static struct sim_slave *slave_at(const struct sim_net *net, size_t i, struct sim_wire const **on)
+static struct sim_slave *slave_at(const struct sim_net *net, size_t i)
 {
 	for (unsigned chip = 0; chip < net->chips; chip++) {
 		for (unsigned channel = 0; channel < net->chip[chip].channels; channel++) {
 			const struct sim_wire *wire = &net->chip[chip].wire[channel];
 
-			*on = wire;
 			if (i < wire->count)
 				return wire->slaves[i];
 			i -= wire->count;
@@ -77,10 +78,9 @@ static struct sim_slave *slave_at(const struct sim_net *net, size_t i, struct si
 
 struct sim_slave *sim_net_slave(const struct sim_net *net, const char *name)
 {
-	const struct sim_wire *wire;
 	struct sim_slave *slave;
 
-	for (size_t i = 0; (slave = slave_at(net, i, &wire)); i++) {
+	for (size_t i = 0; (slave = slave_at(net, i)); i++) {
 		if (strcmp(slave->name, name) == 0)
 			return slave;
 	}
@@ -89,14 +89,13 @@ struct sim_slave *sim_net_slave(const struct sim_net *net, const char *name)
 
 void sim_net_start(struct sim_net *net, int64_t now)
 {
-	const struct sim_wire *wire;
 	struct sim_slave *slave;
 
 	if (net->started)
 		return;
 	net->started = true;
 	net->epoch = now;
-	for (size_t i = 0; (slave = slave_at(net, i, &wire)); i++)
+	for (size_t i = 0; (slave = slave_at(net, i)); i++)
 		sim_slave_power_on(slave, 0);
 }
 
@@ -166,25 +165,11 @@ bool sim_net_lasts(const struct sim_net *net, const struct sim_event *event)
 {
 	const struct sim_slave *slave = event->slave;
 
-	switch (event->what) {
-	case SIM_PLUG:
+	if (event->what == SIM_PLUG)
 		return !slave->plugged;
-	case SIM_CORRUPT:
+	if (event->what == SIM_CORRUPT)
 		return slave->corrupt_every || slave->corrupt_probability > 0;
-	case SIM_SHORT:
-		return net->chip[event->chip].wire[event->channel].shorted;
-	case SIM_SET:
-	case SIM_BROWNOUT:
-	case SIM_STICK:
-	case SIM_JAM:
-	case SIM_CHIP_RESET:
-	case SIM_CHIP_SLEEP:
-	case SIM_REFUSE:
-	case SIM_REFUSE_DATA:
-	case SIM_ADAPTER:
-		break;
-	}
-	return false;
+	return event->what == SIM_SHORT && net->chip[event->chip].wire[event->channel].shorted;
 }
 
 static struct sim_event *next_event(const struct sim_net *net)

@@ -110,20 +110,6 @@ static void channel_line(struct scenario *scenario, struct words *words)
 	words_end(words);
 }
 
-/* The channel of the last chip on which the slave is; -1: none. */
-static int channel_of(const struct sim_net *net, const struct sim_slave *slave)
-{
-	const struct sim_chip *chip = &net->chip[net->chips - 1];
-
-	for (unsigned channel = 0; channel < chip->channels; channel++) {
-		for (size_t i = 0; i < chip->wire[channel].count; i++) {
-			if (chip->wire[channel].slaves[i] == slave)
-				return (int)channel;
-		}
-	}
-	return -1;
-}
-
 static void branch_line(struct scenario *scenario, struct words *words)
 {
 	const struct sim_net *net = scenario->net;
@@ -131,7 +117,7 @@ static void branch_line(struct scenario *scenario, struct words *words)
 
 	words_next(words);
 	coupler = sim_net_slave(net, words->word);
-	if (!coupler || !coupler->branches || channel_of(net, coupler) < 0) {
+	if (!coupler || !coupler->branches || coupler->chip != net->chips - 1) {
 		words_fail(words, "\"%s\": expected the name of a DS2409 of the last chip",
 		           words->word);
 		return;
@@ -141,7 +127,7 @@ static void branch_line(struct scenario *scenario, struct words *words)
 		words_fail(words, "\"%s\": expected main or aux", words->word);
 	scenario->coupler = coupler;
 	scenario->branch = strcmp(words->word, "aux") == 0 ? SIM_AUX : SIM_MAIN;
-	scenario->channel = (unsigned)channel_of(net, coupler);
+	scenario->channel = coupler->channel;
 	words_end(words);
 }
 

@@ -89,9 +89,10 @@ struct sim_slave {
 	const struct sim_family *family;
 	uint8_t rom[8];
 	char name[32];
-	bool plugged;  /* the slave is on the wire */
-	bool parasite; /* fed by the wire */
-	bool strong;   /* the wire's strong pull-up is on */
+	unsigned chip, channel; /* of the net (net.h), on which it is */
+	bool plugged;           /* the slave is on the wire */
+	bool parasite;          /* fed by the wire */
+	bool strong;            /* the wire's strong pull-up is on */
 	struct sim_curve input[SIM_MAX_INPUTS];
 	struct sim_branch *branches; /* of a coupler (branch.h); NULL: it is none */
 	struct sim_branch *behind;   /* the branch it is on; NULL: on the wire itself */
