@@ -227,8 +227,7 @@ static void check_item(const struct check *check)
 	check_alarm(check, OPT_RESET_LATCH, item->reset_latch, &path, true);
 }
 
-/* name NULL: all items. */
-static void check_items(const struct config *config, const char *name, struct config_report *report)
+void config_check_items(const struct config *config, const char *name, struct config_report *report)
 {
 	struct check check = {.report = report, .period_ns = config->period_ns, .caches = true};
 
@@ -247,16 +246,6 @@ static void check_items(const struct config *config, const char *name, struct co
 	shared_check(config, name, report);
 }
 
-void config_check_items(const struct config *config, struct config_report *report)
-{
-	check_items(config, NULL, report);
-}
-
-void config_check_item(const struct config *config, const char *name, struct config_report *report)
-{
-	check_items(config, name, report);
-}
-
 int config_check(struct config *config, struct config_report *report)
 {
 	int err = config_check_own(config, report);
@@ -264,6 +253,6 @@ int config_check(struct config *config, struct config_report *report)
 	if (err)
 		return err;
 	config_check_buses(config, report);
-	config_check_items(config, report);
+	config_check_items(config, NULL, report);
 	return 0;
 }

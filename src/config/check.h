@@ -15,8 +15,8 @@ int config_check(struct config *config, struct config_report *report);
 /*
  * Warn of what can hardly be meant: ids that cannot exist, the kernel's spelling of ids, properties
  * that the family has not, commands to what cannot be written, texts for numbers. Each warning has
- * the remedy. Another server may know more than owsd, so nothing of it is an error.
+ * the remedy. Another server may know more than owsd, so nothing of it is an error. name NULL: of
+ * all items; a name that no item has is no fault.
  */
-void config_check_items(const struct config *config, struct config_report *report);
-/* The same of one item; a name that no item has is no fault. */
-void config_check_item(const struct config *config, const char *name, struct config_report *report);
+void config_check_items(const struct config *config, const char *name,
+                        struct config_report *report);

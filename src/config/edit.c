@@ -462,7 +462,7 @@ int edit_commit(const struct rio *rio, const char *file, const char *edited,
 	if (err)
 		return err;
 	if (edited)
-		config_check_item(config, edited, report);
+		config_check_items(config, edited, report);
 	config_free(config);
 	err = replace_file(file, rio->text, rio->len);
 	if (err == -ENOENT && is_dangling(file))

@@ -236,7 +236,7 @@ static void put_alarm(FILE *out, enum option option, const char *text, bool all)
 		        option_table[option].key);
 }
 
-static void put_item(FILE *out, const struct config_item *item, bool all)
+void config_print_item(const struct config_item *item, bool all, FILE *out)
 {
 	fprintf(out, "  %s {\n", option_table[OPT_ITEM].key);
 	put_text(out, 4, OPT_NAME, item->name);
@@ -273,11 +273,6 @@ static void put_item(FILE *out, const struct config_item *item, bool all)
 	fputs("  }\n", out);
 }
 
-void config_print_item(const struct config_item *item, FILE *out)
-{
-	put_item(out, item, true);
-}
-
 void config_print(const struct config *config, FILE *out)
 {
 	fputs("OwsDrv {\n", out);
@@ -301,6 +296,6 @@ void config_print(const struct config *config, FILE *out)
 	put_mqtt(out, &config->mqtt);
 	put_word(out, 2, OPT_ITEM_COUNT, "%u", config->item_count);
 	for (unsigned i = 0; i < config->item_count; i++)
-		put_item(out, &config->items[i], false);
+		config_print_item(&config->items[i], false, out);
 	fputs("}\n", out);
 }

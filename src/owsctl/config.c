@@ -57,7 +57,7 @@ static int config_show(const struct config *config, char *const *names, int coun
 			if (text_nearer(names[k], config->items[i].name, &best))
 				nearest = config->items[i].name;
 		if (i < config->item_count)
-			config_print_item(&config->items[i], stdout);
+			config_print_item(&config->items[i], true, stdout);
 		else
 			status = ctl_fail("there is no item \"%s\"%s%s%s", names[k],
 			                  nearest ? "; did you mean \"" : "",

@@ -25,7 +25,7 @@ static int check(const char *keys)
 	int err = parse_item(keys);
 
 	if (!err)
-		config_check_items(config, &report);
+		config_check_items(config, NULL, &report);
 	return err;
 }
 
@@ -87,7 +87,7 @@ static int check_on_own_bus(const char *keys)
 	snprintf(text, sizeof(text), "TargetName i2c:auto Item {\n%s }", keys);
 	err = parse_driver(text);
 	if (!err)
-		config_check_items(config, &report);
+		config_check_items(config, NULL, &report);
 	return err;
 }
 
@@ -153,7 +153,7 @@ static int check_pair(const char *keys)
 	         strncmp(second, "IO", 2) ? "IO output " : "", second);
 	err = parse_driver(text);
 	if (!err)
-		config_check_items(config, &report);
+		config_check_items(config, NULL, &report);
 	return err;
 }
 
