@@ -12,7 +12,6 @@
 #include "hal/ds2482/ds2482.h"
 #include "hal/ds2482/io.h"
 #include "hal/ds2482/run.h"
-#include "hal/wire/link.h"
 
 #define SETTLE_NS NS_PER_MS /* a device reset takes 0.5 us */
 #define BUSY_NS (5 * NS_PER_MS)

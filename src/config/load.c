@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The configuration made from a .rio document: its driver block, its items, its targets. */
 #include <errno.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -3,7 +3,6 @@
 #include <ctype.h>
 #include <float.h>
 #include <limits.h>
-#include <math.h>
 #include <string.h>
 #include <strings.h>
 

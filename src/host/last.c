@@ -9,7 +9,6 @@
 #include "src/host/last.h"
 #include "src/host/last_file.h"
 #include "src/host/own_thread.h"
-#include "src/libows/ows.h"
 #include "src/shm/force.h"
 #include "src/shm/futex.h"
 #include "src/signal/value.h"

@@ -4,8 +4,6 @@
  */
 #pragma once
 
-#include <stddef.h>
-
 #include "src/owsctl/ctl.h"
 
 struct served {

@@ -3,14 +3,12 @@
 #include <errno.h>
 #include <getopt.h>
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include "hal/base/time.h"
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/past.h"
 #include "src/owsctl/plot.h"

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <stdbool.h>
-#include <stddef.h>
 
 #include "src/libows/ows.h"
 #include "src/signal/attribute.h"

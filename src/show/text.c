@@ -2,7 +2,6 @@
 /* The columns that a text takes on a terminal, and the removal of what must not reach one. */
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "src/show/text.h"
 #include "src/signal/utf8.h"

@@ -3,7 +3,6 @@
 #include <microhttpd.h>
 #include <string.h>
 #include <sys/utsname.h>
-#include <unistd.h>
 
 #include "hal/base/time.h"
 #include "src/board/files.h"

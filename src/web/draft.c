@@ -2,7 +2,6 @@
 /* Edits of a draft, on the worker for them. */
 #include <errno.h>
 #include <microhttpd.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <stdint.h>
-#include <sys/types.h>
 
 #define FILES 128
 #define FILES_NAME 64

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Trends and journals, on the worker for the past. */
 #include <errno.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
