@@ -146,11 +146,11 @@ static char *lines_behind(const struct rio *rio, const struct rio_node *block,
                           const struct rio_node *after, const char *lines, size_t *at, size_t *end)
 {
 	const struct rio_node *like = after ? after : block;
-	size_t begin = line_begin(rio, like->begin), len;
+	size_t begin = line_begin(rio, like->begin), size, len;
 	const char *indent = rio->text + begin, *deeper = after ? "" : "  ";
 	int blanks = blank_between(rio, begin, like->begin) ? (int)(like->begin - begin) : 0;
 	char *text = NULL;
-	FILE *out = open_memstream(&text, &len);
+	FILE *out = open_memstream(&text, &size);
 
 	if (!out)
 		return NULL;
