@@ -132,7 +132,7 @@ def test_saved_figures_become_tables_and_the_prose_is_kept(scene):
     assert status == 0, said
     assert prose(after) == prose(before)
     assert "Commit abc1234; Some CPU (virtual machine), 2 cores" in after
-    assert "| `rss`: resident with 100 signals | 3 024 KiB | 3 024 KiB | 3 024 KiB | owserver 5 152 KiB |  | 2 MiB: **missed** |" in after
+    assert "| `rss`: resident with 100 signals | 3 024 KiB | 3 024 KiB | 3 024 KiB | owserver 5 152 KiB |  | 2.6 MiB: **missed** |" in after
     assert "10 ns, or three loads from that cache: met" in after
     assert "| 1 000, 16 targets | 8.0 ms | 8.0 ms | 8.0 KiB | 8.0 us | 8.0 | 8.0 % | 8.0 /s |" in after
     assert "| 1 000, 64 targets | 8.0 ms |" in after
