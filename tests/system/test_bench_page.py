@@ -137,7 +137,7 @@ def test_saved_figures_become_tables_and_the_prose_is_kept(scene):
     assert "| 1 000, 16 targets | 8.0 ms | 8.0 ms | 8.0 KiB | 8.0 us | 8.0 | 8.0 % | 8.0 /s |" in after
     assert "| 1 000, 64 targets | 8.0 ms |" in after
     assert "| 80 on 8 channels | 1.25 s |" in after
-    assert "1.2 times that by eventfd" in after
+    assert "1.3 times that over loopback" in after
     assert "| 1, pinned | 4 000/s | 50.0, 99.0 us | 1 000/s | 50.0, 99.0 us | 4.0 | 73 000/s |" in after
     assert "| owsd direct | 50 | 6.00 | 3000 | 10000 | 600 | 50 | 1.34 |" in after
     assert "| owsd: read | 85 | 4.00 | 2000 | 10000 | 1000 | 90 |" in after
