@@ -59,10 +59,13 @@ class Listener:
         self.process = scene.start(command)
         until(lambda: "Subscribed" in self.process.log(), 20, "it listens")
 
+    def lines(self):
+        """[fields] of each message; the last line of the log may be on its way."""
+        return [line[1:].split("\t") for line in self.process.log().split("\n")[:-1] if line[:1] == "="]
+
     def all(self, topic=None):
         """[(retained, topic, text)] in the order of their coming."""
-        lines = [line[1:].split("\t", 2) for line in self.process.log().splitlines() if line[:1] == "="]
-        return [(r == "1", t, p) for r, t, p in lines if topic in (None, t)]
+        return [(r == "1", t, "\t".join(p)) for r, t, *p in self.lines() if topic in (None, t)]
 
     def last(self, topic):
         found = self.all(topic)

@@ -38,8 +38,7 @@ class Host:
 
     def look(self):
         """[(verb, device, {name: metric})] of all up to now."""
-        lines = [line[1:].split("\t") for line in self.listener.process.log().splitlines() if line[:1] == "="]
-        for qos, retained, topic, payload in lines[self.read:]:
+        for qos, retained, topic, payload in self.listener.lines()[self.read:]:
             self.read += 1
             if re.search("/[ND]CMD/|/STATE/", topic):
                 continue
