@@ -7,6 +7,7 @@
 #include <getopt.h>
 #include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/table.h"
@@ -102,8 +103,11 @@ static void print_faces(const char *instance, const struct when *now)
 	}
 }
 
-/* Those that are 0 come last of all: what has counted stands on the first screen. */
-static void print_counters(struct ows *h, bool zeros)
+/*
+ * Prints the counters that have counted, and those that are 0 to zeros. Each is read once: owsd may
+ * count meanwhile, and a counter must stand in one of the two lists.
+ */
+static void print_counters(struct ows *h, FILE *zeros)
 {
 	struct ows_target target;
 	struct ows_counter counter;
@@ -111,19 +115,20 @@ static void print_counters(struct ows *h, bool zeros)
 	for (int i = 0; ows_counter(h, i, &counter) == 0; i++) {
 		bool own = ows_target(h, counter.target, &target) != 0;
 
-		if (zeros == !counter.value)
-			printf("%12" PRIu64 "  %s%s%s\n", counter.value, counter.name,
-			       own ? "" : " of ", own ? "" : target.name);
+		fprintf(counter.value ? stdout : zeros, "%12" PRIu64 "  %s%s%s\n", counter.value,
+		        counter.name, own ? "" : " of ", own ? "" : target.name);
 	}
 }
 
 static void print_text(const struct ctl *ctl, struct ows *h, const struct ows_daemon *daemon,
                        const struct when *now)
 {
-	char text[WHEN_TEXT], span[WHEN_TEXT];
+	char text[WHEN_TEXT], span[WHEN_TEXT], *last = NULL;
 	unsigned served[STATS_TARGETS + 1];
 	bool several;
 	struct ows_target target;
+	size_t last_len;
+	FILE *zeros = ctl_need(open_memstream(&last, &last_len));
 
 	stats_served(h, now->boot, served);
 	printf("instance    %s\n", ctl->instance);
@@ -143,11 +148,12 @@ static void print_text(const struct ctl *ctl, struct ows *h, const struct ows_da
 	several = ows_target(h, 1, &target) == 0;
 	for (int i = 0; i < STATS_TARGETS && ows_target(h, i, &target) == 0; i++)
 		print_target(i, &target, several, daemon->alive, served[i]);
-	print_counters(h, false);
+	print_counters(h, zeros);
 	print_devices(h, daemon, now->boot);
 	print_faces(ctl->instance, now);
-	putchar('\n');
-	print_counters(h, true);
+	fclose(zeros);
+	printf("\n%s", (const char *)ctl_need(last));
+	free(last);
 }
 
 int verb_stats(struct ctl *ctl, int argc, char **argv)

@@ -163,16 +163,13 @@ def logged(daemon, text):
 
 
 def _unused(port):
-    """At no address of this machine somebody listens or has a connection there."""
-    both = socket.has_dualstack_ipv6()
-    with socket.socket(socket.AF_INET6 if both else socket.AF_INET) as s:
-        if both:
-            s.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 0)
-        try:
-            s.bind(("", port))
-        except OSError:
-            return False
-    return True
+    """No socket of this machine has the port. A socket that tried it could outlive its close(): a child
+    that another thread starts just then has it until it runs its program."""
+    rows = ""
+    for kind in ("tcp", "tcp6"):
+        with contextlib.suppress(FileNotFoundError):
+            rows += pathlib.Path("/proc/net", kind).read_text()
+    return f":{port:04X} " not in rows
 
 
 def free_port():

@@ -48,6 +48,11 @@ unsigned peer_saw(const unsigned *count)
 	return __atomic_load_n(count, __ATOMIC_SEQ_CST);
 }
 
+void peer_repeat(struct peer *peer)
+{
+	saw(&peer->repeat);
+}
+
 static int is_stopping(const struct peer *peer)
 {
 	return __atomic_load_n(&peer->stopping, __ATOMIC_SEQ_CST);
@@ -154,7 +159,8 @@ static int act(const struct peer *peer, int fd, char letter, uint8_t *answer, si
 		return 0;
 	case 'D':
 		send_all(fd, answer, len, len);
-		usleep(2000); /* so late it comes again */
+		while (!is_stopping(peer) && !peer_saw(&peer->repeat))
+			usleep(300); /* looks again */
 		break;
 	case 'x':
 		return 0;

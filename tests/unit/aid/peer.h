@@ -7,7 +7,7 @@
  *   k 3 keep-alives, then answer     K keep-alives every 0.1 s until the client goes
  *   f answer byte by byte            t answer and 3 bytes more   l answer with more than asked for
  *   x close instead of an answer     R reset instead             m half of an answer, then close
- *   D answer, and again 2 ms later
+ *   D answer, and again when the test has set repeat by peer_repeat()
  *   s silence until the client goes  d half of an answer, then silence
  *   z first of the plan: the names of its buses come 1.5 s late, and the rest follows
  *   g garbage     h payload 2 GB     n payload -5     v version 0x20000     w less than it says
@@ -29,6 +29,7 @@ struct peer {
 	int stopping;
 	/* What the peer saw; read with peer_saw(). */
 	unsigned connections, requests, greetings, writes;
+	unsigned repeat;       /* set by peer_repeat() */
 	unsigned done, closed; /* requests done by the plan; connections that the peer closed */
 	uint32_t flags;        /* of the last request */
 	int32_t size;
@@ -45,3 +46,5 @@ void peer_end(struct peer *peer);
 /* Start again on the same port after peer_stop(). */
 void peer_restart(struct peer *peer, const char *plan);
 unsigned peer_saw(const unsigned *count);
+/* The answer of a D goes out once more. */
+void peer_repeat(struct peer *peer);
