@@ -179,9 +179,9 @@ static int wire_triplet(struct link *link, bool direction)
 
 static int wire_recover(struct link *link, enum link_rung rung)
 {
-	if (rung == LINK_POWER_CYCLE && wire_net.no_power_line)
-		return -EOPNOTSUPP;
 	wire_net.recovered[rung]++;
+	if (wire_net.rung_err[rung])
+		return wire_net.rung_err[rung];
 	if (rung == LINK_POWER_CYCLE) {
 		sim_wire_power(wire_of(link), false, wire_time());
 		spend(1000000);

@@ -26,8 +26,8 @@ struct wire_net {
 	unsigned fault_count;
 	int fault_until;
 	unsigned recovered[LINK_RUNGS];
-	bool no_power_line;
-	bool passive; /* the links have no strong pull-up */
+	int rung_err[LINK_RUNGS]; /* what recover() returns */
+	bool passive;             /* the links have no strong pull-up */
 	int open_error;
 	unsigned opens, closes;
 	int64_t converts[64]; /* when a broadcast Convert T went out */

@@ -229,6 +229,9 @@ static void test_overdrive_is_the_links_own(void)
 	TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->recover(ds.wire, LINK_BUS_RESET));
 	TEST_ASSERT_EQUAL_HEX8(SIM_APU, ds.net.chip[0].config);
 	ds_check_scratchpad();
+	TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->speed(ds.wire, LINK_OVERDRIVE));
+	TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->recover(ds.wire, LINK_CHIP_RESET));
+	ds_check_scratchpad();
 }
 
 static void test_a_shutdown_ends_every_call(void)

@@ -61,9 +61,76 @@ static void test_a_stuck_chip_is_an_error_in_time_and_a_reset_frees_it(void)
 		ds_check_scratchpad();
 		ds_event("jam 0x18");
 		TEST_ASSERT_EQUAL_INT(-ETIMEDOUT, ds.wire->ops->reset(ds.wire));
+		TEST_ASSERT_EQUAL_INT(-ETIMEDOUT, ds.wire->ops->recover(ds.wire, LINK_BUS_RESET));
 		TEST_ASSERT_EQUAL_INT(-ETIMEDOUT, ds.wire->ops->recover(ds.wire, LINK_CHIP_RESET));
 		ds_event("end jam 0x18");
 		TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->recover(ds.wire, LINK_CHIP_RESET));
+		ds_check_scratchpad();
+		tearDown();
+	}
+}
+
+/* What is read back behind this command is not what was written. */
+static int (*reads_back)(struct i2c_adapter *adapter, uint8_t address, struct i2c_message *messages,
+                         size_t n);
+static uint8_t untaken;
+
+static int read_back_another(struct i2c_adapter *adapter, uint8_t address,
+                             struct i2c_message *messages, size_t n)
+{
+	int err = reads_back(adapter, address, messages, n);
+
+	if (!err && n == 2 && messages[0].data[0] == untaken)
+		messages[1].data[0] ^= 1;
+	return err;
+}
+
+static void test_a_chip_that_takes_no_configuration_or_channel_is_not_used(void)
+{
+	static struct i2c_adapter_ops ops;
+
+	ds_start("chip DS2482-800 0x18\nchannel 5\nDS18B20 28.000000000001 as t");
+	ds.wire = ds.master->ops->channel(ds.master, 5);
+	ops = *ds.adapter.adapter.ops;
+	reads_back = ops.transfer;
+	ops.transfer = read_back_another;
+	ds.adapter.adapter.ops = &ops;
+	untaken = DS2482_WRITE_CONFIG;
+	TEST_ASSERT_EQUAL_INT(-ENXIO, ds.wire->ops->recover(ds.wire, LINK_CHIP_RESET));
+	TEST_ASSERT_EQUAL_INT(-ENXIO, ds.wire->ops->reset(ds.wire));
+	untaken = DS2482_CHANNEL;
+	TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->recover(ds.wire, LINK_CHIP_RESET));
+	TEST_ASSERT_EQUAL_INT(-ENXIO, ds.wire->ops->reset(ds.wire));
+	untaken = 0;
+	TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->recover(ds.wire, LINK_CHIP_RESET));
+	ds_check_scratchpad();
+}
+
+static void test_one_refused_byte_does_not_fail_the_reset_of_a_chip(void)
+{
+	for (unsigned i = 0; i < DS_KINDS; i++) {
+		ds_start(ds_kinds[i]);
+		ds.net.refuse_address[0] = (struct refusal){.each = 1000, .count = 999};
+		TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->recover(ds.wire, LINK_CHIP_RESET));
+		TEST_ASSERT_LESS_THAN_UINT32(999, ds.net.refuse_address[0].count % 1000);
+		ds_check_scratchpad();
+		tearDown();
+	}
+}
+
+/* The chip saw it (SD), and the line is high again when it is asked. */
+static void test_a_short_that_ends_within_the_reset_is_a_short(void)
+{
+	for (unsigned i = 0; i < DS_KINDS; i++) {
+		struct sim_event event = {.what = SIM_SHORT, .on = true};
+
+		ds_start(ds_kinds[i]);
+		event.at_ns = ds.host.now - ds.net.epoch;
+		TEST_ASSERT_EQUAL_INT(0, sim_net_add_event(&ds.net, &event));
+		event.on = false;
+		event.at_ns += 1100000;
+		TEST_ASSERT_EQUAL_INT(0, sim_net_add_event(&ds.net, &event));
+		TEST_ASSERT_EQUAL_INT(-ECOMM, ds.wire->ops->reset(ds.wire));
 		ds_check_scratchpad();
 		tearDown();
 	}
@@ -303,6 +370,9 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_a_chip_that_restarted_is_noticed_and_set_up_again);
 	RUN_TEST(test_a_stuck_chip_is_an_error_in_time_and_a_reset_frees_it);
+	RUN_TEST(test_a_chip_that_takes_no_configuration_or_channel_is_not_used);
+	RUN_TEST(test_one_refused_byte_does_not_fail_the_reset_of_a_chip);
+	RUN_TEST(test_a_short_that_ends_within_the_reset_is_a_short);
 	RUN_TEST(test_a_process_that_was_not_scheduled_takes_no_chip_for_stuck);
 	RUN_TEST(test_a_missing_chip_is_taken_when_it_is_there_again);
 	RUN_TEST(test_a_refused_call_is_an_error_and_the_next_one_works);

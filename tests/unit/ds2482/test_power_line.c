@@ -17,7 +17,7 @@
 static struct sim_net *net;
 static int64_t off_ns, dark_ns;
 static unsigned cycles;
-static bool low_is_on;
+static bool low_is_on, is_broken; /* a chip that no supply brings back */
 static char why[200];
 
 static const char scenario[] = "chip DS2482-800 0x18\n"
@@ -39,7 +39,8 @@ static void driven(unsigned line, bool high)
 		return;
 	dark_ns = host.now - off_ns;
 	cycles++;
-	net->chip[0].stuck = SIM_FREE;
+	if (!is_broken)
+		net->chip[0].stuck = SIM_FREE;
 	sim_chip_power_on(&net->chip[0], net->time);
 }
 
@@ -49,7 +50,7 @@ void setUp(void)
 	fake_gpio.driven = driven;
 	off_ns = dark_ns = 0;
 	cycles = 0;
-	low_is_on = false;
+	low_is_on = is_broken = false;
 	simulate(scenario);
 	net = plant_net(bus);
 }
@@ -115,6 +116,20 @@ static void test_all_devices_count_as_restarted_after_it(void)
 	host_run(&host, bus, host.now + 10 * HOST_S);
 	TEST_ASSERT_EQUAL_UINT(1, cycles);
 	TEST_ASSERT_EQUAL_UINT(2, host_events(&host, BUS_POR));
+}
+
+static void test_where_it_does_not_help_no_device_has_restarted(void)
+{
+	option("PowerLine", "gpiochip0/2");
+	host_run(&host, bus, host.now + 2 * HOST_S);
+	read_both();
+	is_broken = true;
+	net->chip[0].stuck = SIM_STUCK_FAST;
+	host_run(&host, bus, host.now + 10 * HOST_S);
+	TEST_ASSERT_EQUAL_UINT64(1, counted("recover_power_cycle"));
+	TEST_ASSERT_EQUAL_UINT64(1, counted("recover_reopen"));
+	TEST_ASSERT_EQUAL_UINT(1, host_events(&host, BUS_DOWN));
+	TEST_ASSERT_EQUAL_UINT(0, host_events(&host, BUS_POR));
 }
 
 static void test_how_long_it_is_off_and_which_way_round_can_be_said(void)
@@ -207,6 +222,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_a_chip_that_nothing_else_helps_has_its_supply_cycled);
 	RUN_TEST(test_all_devices_count_as_restarted_after_it);
+	RUN_TEST(test_where_it_does_not_help_no_device_has_restarted);
 	RUN_TEST(test_how_long_it_is_off_and_which_way_round_can_be_said);
 	RUN_TEST(test_the_supply_stays_on_when_the_adapter_is_lost);
 	RUN_TEST(test_without_its_line_the_target_is_down_and_says_why);

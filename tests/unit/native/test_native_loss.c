@@ -136,6 +136,90 @@ static void test_the_ladder_is_climbed_until_the_chip_answers(void)
 	expect(true, of(slave, "power"), "1");
 }
 
+/* As the contract of recover() has it (hal/wire/link.h). */
+static void test_what_a_rung_returns_decides_what_follows(void)
+{
+	static const struct {
+		int err;
+		unsigned counted, chip_resets, opens;
+	} rungs[] = {{0, 1, 0, 1},
+	             {-ECOMM, 1, 0, 1},
+	             {-EOPNOTSUPP, 0, 1, 1},
+	             {-EIO, 1, 1, 1},
+	             {-EBUSY, 1, 0, 2}};
+
+	for (unsigned i = 0; i < sizeof(rungs) / sizeof(rungs[0]); i++) {
+		wire_init(&host, 1, 1);
+		struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+
+		start();
+		expect(true, of(slave, "power"), "1");
+		wire_net.rung_err[LINK_BUS_RESET] = rungs[i].err;
+		wire_net.fault = -EIO;
+		wire_net.fault_count = 2;
+		expect(true, of(slave, "power"), "1");
+		TEST_ASSERT_EQUAL_UINT(1, wire_net.recovered[LINK_BUS_RESET]);
+		TEST_ASSERT_EQUAL_UINT64(rungs[i].counted, counted("recover_bus_reset"));
+		TEST_ASSERT_EQUAL_UINT(rungs[i].chip_resets, wire_net.recovered[LINK_CHIP_RESET]);
+		TEST_ASSERT_EQUAL_UINT64(rungs[i].chip_resets, counted("recover_chip_reset"));
+		TEST_ASSERT_EQUAL_UINT(0, wire_net.recovered[LINK_POWER_CYCLE]);
+		TEST_ASSERT_EQUAL_UINT(rungs[i].opens, wire_net.opens);
+		native_end();
+		native_begin();
+	}
+}
+
+static void test_a_chip_that_was_reset_is_set_up_at_once(void)
+{
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+
+	start();
+	expect(true, of(slave, "power"), "1");
+	wire_net.fault = -ENXIO;
+	wire_net.fault_count = 1;
+	expect(true, of(slave, "power"), "1");
+	TEST_ASSERT_EQUAL_UINT(0, wire_net.recovered[LINK_BUS_RESET]);
+	TEST_ASSERT_EQUAL_UINT(1, wire_net.recovered[LINK_CHIP_RESET]);
+}
+
+static void test_a_transaction_that_succeeds_leads_down_to_the_ground(void)
+{
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+
+	start();
+	for (unsigned i = 0; i < 5; i++) {
+		expect(true, of(slave, "power"), "1");
+		wire_net.fault = -EIO;
+		wire_net.fault_count = 1;
+	}
+	TEST_ASSERT_EQUAL_UINT64(4, counted("retries"));
+	TEST_ASSERT_EQUAL_UINT(0, wire_net.recovered[LINK_BUS_RESET]);
+}
+
+/* It may have lost its strong pull-up. */
+static void test_after_a_reset_of_the_chip_a_conversion_begins_anew(void)
+{
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+
+	wire_set(slave, "temperature", 20.5);
+	start();
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_READ, of(slave, "temperature"), NULL));
+	wire_set(slave, "temperature", 21.5);
+	uint64_t before = counted("conversions");
+	uint32_t id = ask(BUS_READ, BUS_INPUT, true, of(slave, "temperature"), NULL);
+
+	while (counted("conversions") == before)
+		host_run(&host, bus, host.now + HOST_MS);
+	wire_net.fault = -ENXIO;
+	wire_net.fault_count = 1;
+	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+	TEST_ASSERT_EQUAL_UINT(1, wire_net.recovered[LINK_CHIP_RESET]);
+	TEST_ASSERT_EQUAL_UINT64(before + 2, counted("conversions"));
+}
+
 /* Nothing was done to its devices: none has restarted. */
 static void test_a_wire_without_rungs_is_tried_again_and_then_opened_anew(void)
 {
@@ -202,6 +286,10 @@ int main(void)
 	RUN_TEST(test_an_id_on_two_wires_is_reported_once);
 	RUN_TEST(test_a_device_that_is_moved_and_moved_back_is_no_twin);
 	RUN_TEST(test_the_ladder_is_climbed_until_the_chip_answers);
+	RUN_TEST(test_what_a_rung_returns_decides_what_follows);
+	RUN_TEST(test_a_chip_that_was_reset_is_set_up_at_once);
+	RUN_TEST(test_a_transaction_that_succeeds_leads_down_to_the_ground);
+	RUN_TEST(test_after_a_reset_of_the_chip_a_conversion_begins_anew);
 	RUN_TEST(test_a_wire_without_rungs_is_tried_again_and_then_opened_anew);
 	RUN_TEST(test_a_suspended_bus_lets_go_and_comes_back);
 	RUN_TEST(test_a_target_that_does_not_open_is_tried_again_for_ever);
