@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * A face: a program that shows the signals of owsd to others, or keeps them. It is a consumer of
- * libows like any other program, and a table of functions over one loop in one thread. The loop
- * waits for changes of the signals, for descriptors of the face and for its next tick; it opens the
- * instance again when owsd has reloaded, ended, died or started, reads the configuration again,
- * ends at SIGTERM, writes the log, and feeds the service manager's watchdog.
+ * libows like any other program, and a table of functions over one loop in one thread: main() gives
+ * the table to face_main() (loop.h); docs/extending.md has a whole face. The loop waits for changes
+ * of the signals, for descriptors of the face and for its next tick; it opens the instance again
+ * when owsd has reloaded, ended, died or started, reads the configuration again, ends at SIGTERM,
+ * writes the log, and feeds the service manager's watchdog.
  *
  * All functions of the table are called by that thread. A face must not wait in them for longer
  * than a write to a file may take.
@@ -50,18 +51,20 @@ struct face_event {
 
 struct face;
 
+/* NULL may be report, and tick where tick_ns stays INT64_MAX; all else is called. */
 struct face_ops {
 	const char *program; /* "owsd-recorder": in messages, and towards owsd */
 	/* the one option of the face besides those of all faces; letter 0: none */
 	struct face_option option;
 	/*
-	 * Before the loop; face->config is there, face->ows is not yet. Returns 0, or a negative
-	 * errno after reporting why with face_complain(): the program ends.
+	 * Before the loop; face->config is there, face->ows is not yet. Sets own, and what the face
+	 * wants of tick_ns, pace_ns and after_ns. Returns 0, or a negative errno after reporting
+	 * why with face_complain(): the program ends, and close() is not called.
 	 */
 	int (*open)(struct face *face);
 	/*
-	 * Values of the signals may have changed, as indexes of ows_info(), each once; NULL: of
-	 * any. Never called while owsd is lost.
+	 * Values of the signals may have changed, as indexes of ows_info() and ows_get_signal(),
+	 * each once; NULL: of any. Never called while owsd is lost.
 	 */
 	void (*changes)(struct face *face, const int *signals, int n);
 	void (*event)(struct face *face, const struct face_event *event);

@@ -5,7 +5,7 @@
 sh, console  run by a shell that finds the programs of standin.py and a few harmless ones, and no
              others; absolute paths lie below a root of the test's own. In a console block the
              output is compared too: numbers and "..." stand for anything
-c, cpp       compiled without a warning; whole programs are run
+c, cpp       compiled without a warning; whole programs are run, faces beside an owsd
 python       run
 rio, sim     read by owsd --check; by owsctl dir
 json         parsed
@@ -41,6 +41,7 @@ HARMLESS = ("cat chmod cp cut diff env false grep head install ls mkdir mv print
 BINUTILS = "ar as ld".split()
 WARN = ["-Wall", "-Wextra", "-Werror", "-Wno-unused-variable", "-Wno-unused-but-set-variable",
         "-Wno-unused-function", *os.environ.get("EXTRA_CFLAGS", "").split()]
+FACE = '"src/face/loop.h"'
 OF_THE_SYSTEM = re.compile(r"(?<![\w./:@$}-])/(boot|dev(?!/(?:null|shm))|etc|sys|usr|var)/")
 COMMAND = re.compile(r"(?:sudo +)?(%s)(?: |$)" % "|".join(re.escape(p) for p in standin.PROGRAMS))
 PAGES = sorted([SOURCE / n for n in ("README.md", "CONTRIBUTING.md", "SECURITY.md", "NEWS.md")
@@ -193,7 +194,7 @@ def compiled(stage, text, compiler, suffix, flags):
     """The program that a block is, or None where it is a part of one."""
     assert "..." not in re.sub(r"/\*.*?\*/|//.*|\"[^\"]*\"", "", text, flags=re.S), \
         "words in place of code: make it whole"
-    unit_test = '"unity.h"' in text
+    unit_test, face = '"unity.h"' in text, FACE in text
     whole = "main(" in text and not unit_test
     if not re.search(r"^(#include|static |extern )|^\w[\w *]*\([^;{]*\)\n\{", text, re.M):
         text = "void fragment(void);\nvoid fragment(void)\n{\n" + textwrap.indent(text, "\t") + "\n}\n"
@@ -202,6 +203,9 @@ def compiled(stage, text, compiler, suffix, flags):
     source = stage.scene.file("snippet" + suffix, stage.own(text))
     output = stage.path / "snippet"
     library = [f"-L{owsdtest.BUILD}", "-lows"] if whole else ["-c"]
+    if face:
+        library = [owsdtest.BUILD / "core.a",
+                   *re.findall(r"-l\w+", (owsdtest.BUILD / "with/ld").read_text())]
     done = stage.run([compiler, *flags, *WARN, "-D_GNU_SOURCE", f"-I{SOURCE}/src/libows",
                       f"-I{SOURCE}/src/libhistory", f"-I{SOURCE}", "-isystem", HERE / "docs", source,
                       *library, "-o", output])
@@ -209,9 +213,24 @@ def compiled(stage, text, compiler, suffix, flags):
     return output if whole else None
 
 
+def run_face(stage, program):
+    """It waits for owsd, prints the signals, follows a restart, and ends in order."""
+    scene, rio, name = stage.scene, stage.path / "stage.rio", stage.scene.name()
+    face = scene.start([program, "-c", rio, "-n", name])
+    for losses in (0, 1):
+        daemon = scene.owsd(rio, name=name)
+        scene.until(lambda: re.search("^room1 .* good$", face.log().split("owsd is lost")[losses], re.M),
+                    20, face.log)
+        daemon.stop()
+        scene.until(lambda: face.log().count("owsd is lost") > losses, 20, face.log)
+    assert face.stop() == 0 and "ends: SIGTERM" in face.log(), face.log()
+
+
 def do_c(stage, text):
     program = compiled(stage, text, shutil.which("gcc"), ".c", ["-std=c17"])
-    if program:
+    if program and FACE in text:
+        run_face(stage, program)
+    elif program:
         stage.program([program])
 
 
