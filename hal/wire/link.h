@@ -167,7 +167,7 @@ struct link_ops {
 	void (*cost)(const struct link *link, struct link_cost *cost);
 };
 
-/* First member of a backend's own struct. */
+/* First member of a backend's own struct; the master fills it, with the rest zero. */
 struct link {
 	const struct link_ops *ops;
 	const struct bus_env *env;
@@ -184,7 +184,8 @@ struct link {
 struct link_master;
 struct link_master_ops {
 	/*
-	 * where: the target without its scheme. Allocates all, touches nothing. As bus_ops.create.
+	 * where: the target without its scheme. Allocates all, fills ops and env, touches nothing.
+	 * As bus_ops.create.
 	 */
 	int (*create)(const char *where, const struct bus_env *env, struct link_master **master,
 	              char *why, size_t why_size);

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""docs/first-family.md, replayed: its files and lines in a copy of the source, built, and read.
+"""docs/first-family.md, replayed: its files and lines in a copy of the source, built, and read; and
+the backends of docs/extending.md beside it.
 
 A block after "`FILE`:" becomes that file. A block after "In `FILE`, after `LINE`:" is put after that
 line. A console block is run in the copy, and its output compared.
@@ -10,11 +11,13 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 
 import handbook
 import owsdtest
 
 PAGE = owsdtest.SOURCE / "docs/first-family.md"
+BACKENDS = owsdtest.SOURCE / "docs/extending.md"
 BEFORE = re.compile(r"`([\w./-]+\.[ch])`[^`]*after\s+`([^`]+)`:$", re.I)
 
 
@@ -30,8 +33,8 @@ def copied(folder):
     return folder
 
 
-def paragraph_before(block):
-    lines = PAGE.read_text().split("\n")[:block.line - 1]
+def paragraph_before(page, block):
+    lines = page.read_text().split("\n")[:block.line - 1]
     while lines and not lines[-1].strip():
         lines.pop()
     begin = max((n for n, line in enumerate(lines) if not line.strip()), default=-1)
@@ -57,7 +60,7 @@ def run(folder, command):
 def test_the_page_adds_a_family_that_was_not_there(scene):
     folder, files, lines, outputs = copied(scene.path / "owsd"), 0, 0, 0
     for block in handbook.blocks(PAGE):
-        place = BEFORE.search(paragraph_before(block))
+        place = BEFORE.search(paragraph_before(PAGE, block))
         if block.language in ("c", "sim"):
             assert block.file and not (folder / block.file).exists(), f"{block.file} is there already"
             (folder / block.file).write_text(block.text)
@@ -72,6 +75,34 @@ def test_the_page_adds_a_family_that_was_not_there(scene):
                 assert expected.split() == output.split() or not expected, output
                 outputs += bool(expected)
     assert (files, lines, outputs) == (3, 3, 5), (files, lines, outputs)
+    backends_are_added(folder)
+
+
+def backends_are_added(folder):
+    """The backends of the other page, in the same copy: built, read, and rooms as lint wants them."""
+    files = lines = 0
+    for block in handbook.blocks(BACKENDS):
+        before = paragraph_before(BACKENDS, block)
+        place = BEFORE.search(before)
+        if block.language == "c" and (block.file or "").count("/") == 2 and block.file.startswith("hal/"):
+            (folder / block.file).parent.mkdir()
+            (folder / block.file).write_text(block.text)
+            files += 1
+        elif place:
+            put_after(folder / place[1], place[2], block.text)
+            lines += 1
+        elif "`docs/design.md`, above" in before:
+            design = folder / "docs/design.md"
+            design.write_text(design.read_text().replace("- `hal/null`: ", block.text + "- `hal/null`: "))
+            lines += 1
+    assert (files, lines) == (2, 4), (files, lines)
+    run(folder, "make build/owsctl")
+    assert float(run(folder, "build/owsctl -t load read /load/5")) >= 0
+    assert "no device is there" in run(folder, "build/owsctl -t empty scan 2>&1 || true")
+    lint = subprocess.run([sys.executable, folder / "tests/lint/run", folder], text=True,
+                          capture_output=True, timeout=300, check=False)
+    found = re.findall(r"^(?:docs/design\.md|hal/(?:load|empty)/).*", lint.stdout, re.M)
+    assert "passed" in lint.stdout and not found, (found, lint.stderr)
 
 
 if __name__ == "__main__":
