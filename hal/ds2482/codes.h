@@ -37,13 +37,13 @@ enum ds2482_config {
 	DS2482_APU = 0x01,
 	DS2482_PDN = 0x02, /* DS2483, DS2484: the port's supply off */
 	DS2482_SPU = 0x04,
-	DS2482_1WS = 0x08,
 };
 
-/* ns; "1-Wire timing" of the electrical characteristics, [0] standard, [1] overdrive. */
+/* ns; "1-Wire timing" of the electrical characteristics, at standard speed. */
 static const long ds2482_slot_min_ns = 65800;
+static const long ds2482_slot_ns = 69300;
+static const long ds2482_slot_max_ns = 72800;
+static const long ds2482_byte_max_ns = 8 * 72800;
 static const long ds2482_reset_min_ns = 1124800;
-static const long ds2482_slot_ns[2] = {69300, 10500};
-static const long ds2482_slot_max_ns[2] = {72800, 11100};
-static const long ds2482_reset_ns[2] = {1184000, 146000};
-static const long ds2482_reset_max_ns[2] = {1243200, 153400};
+static const long ds2482_reset_ns = 1184000;
+static const long ds2482_reset_max_ns = 1243200;

@@ -27,7 +27,7 @@ static int device_reset(struct ds2482_chip *chip)
 	int err = ds2482_write1(chip, DS2482_DEVICE_RESET);
 
 	if (!err)
-		err = ds2482_wait_until(chip->master, ds2482_now(chip->master) + SETTLE_NS);
+		err = ds2482_wait(chip->master, SETTLE_NS);
 	if (err)
 		return err;
 	chip->channel = chip->config = 0;
@@ -59,7 +59,7 @@ static int prove(struct ds2482_chip *chip)
 			return -ENXIO;
 		if (!(status & DS2482_1WB))
 			return 0;
-		err = ds2482_wait_until(chip->master, ds2482_now(chip->master) + SETTLE_NS / 4);
+		err = ds2482_wait(chip->master, SETTLE_NS / 4);
 		if (err)
 			return err;
 	} while (!late);

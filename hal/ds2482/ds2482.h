@@ -28,7 +28,6 @@ struct ds2482_link {
 	struct link link; /* first */
 	struct ds2482_chip *chip;
 	uint8_t number;
-	enum link_speed speed;
 	struct link_cost cost;
 };
 

@@ -14,9 +14,9 @@
 /* -1: its time is not learnt. */
 static int which(long max_ns)
 {
-	if (max_ns == ds2482_reset_max_ns[0])
+	if (max_ns == ds2482_reset_max_ns)
 		return DS2482_OF_RESET;
-	return max_ns == 8 * ds2482_slot_max_ns[0] ? DS2482_OF_BYTE : -1;
+	return max_ns == ds2482_byte_max_ns ? DS2482_OF_BYTE : -1;
 }
 
 void ds2482_saw_end(struct ds2482_ends *ends, long max_ns, const uint8_t *status, unsigned n)

@@ -6,7 +6,7 @@
  * search. What follows from it is only how many bytes to let pass before the next command: the chip
  * refuses one that comes too early (1WB, "command not acknowledged"), and does not execute it.
  *
- * Standard speed alone. Nothing here waits or uses the bus.
+ * Nothing here waits or uses the bus.
  */
 #pragma once
 

@@ -16,6 +16,15 @@ struct i2c_message {
 	uint8_t *data;
 };
 
+static inline struct i2c_message i2c_to_write(uint8_t *data, size_t n)
+{
+	return (struct i2c_message){.len = (uint16_t)n, .data = data};
+}
+static inline struct i2c_message i2c_to_read(uint8_t *data, size_t n)
+{
+	return (struct i2c_message){.flags = I2C_MESSAGE_READ, .len = (uint16_t)n, .data = data};
+}
+
 struct i2c_adapter;
 struct i2c_adapter_ops {
 	/*

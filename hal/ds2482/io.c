@@ -36,6 +36,11 @@ int ds2482_wait_until(const struct ds2482_master *master, int64_t t)
 	return err < 0 ? err : 0;
 }
 
+int ds2482_wait(const struct ds2482_master *master, int64_t ns)
+{
+	return ds2482_wait_until(master, ds2482_now(master) + ns);
+}
+
 bool ds2482_combines(const struct ds2482_chip *chip)
 {
 	return chip->master->adapter->combine != I2C_SMBUS_ONLY && chip->master->byte_ns > 0;
@@ -66,10 +71,7 @@ int ds2482_write_read(struct ds2482_chip *chip, uint8_t command, uint8_t paramet
 {
 	struct i2c_adapter *adapter = chip->master->adapter;
 	uint8_t out[2] = {command, parameter}, in = 0;
-	struct i2c_message messages[2] = {
-		{.len = 2, .data = out},
-		{.flags = I2C_MESSAGE_READ, .len = 1, .data = &in},
-	};
+	struct i2c_message messages[] = {i2c_to_write(out, 2), i2c_to_read(&in, 1)};
 	int err;
 
 	if (adapter->combine == I2C_SMBUS_ONLY) {
@@ -92,18 +94,16 @@ static int io_measure(struct ds2482_chip *chip)
 	struct ds2482_master *master = chip->master;
 	struct i2c_adapter *adapter = master->adapter;
 	uint8_t in[1 + MEASURE_BYTES];
-	struct i2c_message message = {.flags = I2C_MESSAGE_READ, .data = in};
 	int64_t shortest[2] = {INT64_MAX, INT64_MAX};
 
 	master->byte_ns = 0;
 	if (adapter->combine == I2C_SMBUS_ONLY)
 		return 0;
 	for (unsigned i = 0; i < MEASURE_TIMES; i++) {
+		struct i2c_message message = i2c_to_read(in, i & 1 ? sizeof(in) : 1);
 		int64_t begun = ds2482_now(master), took;
-		int err;
+		int err = adapter->ops->transfer(adapter, chip->address, &message, 1);
 
-		message.len = i & 1 ? sizeof(in) : 1;
-		err = adapter->ops->transfer(adapter, chip->address, &message, 1);
 		if (err)
 			return err;
 		took = ds2482_now(master) - begun;
@@ -152,10 +152,9 @@ static int attempt(struct ds2482_chip *chip, size_t writes, size_t reads)
 	size_t n = 0;
 
 	while (writes-- > 0)
-		messages[n++] = (struct i2c_message){.len = 2, .data = out};
+		messages[n++] = i2c_to_write(out, 2);
 	while (reads-- > 0)
-		messages[n++] = (struct i2c_message){
-			.flags = I2C_MESSAGE_READ, .len = 1, .data = &in};
+		messages[n++] = i2c_to_read(&in, 1);
 	return adapter->ops->transfer(adapter, chip->address, messages, n);
 }
 

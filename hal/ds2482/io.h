@@ -13,6 +13,7 @@ struct ds2482_master;
 int64_t ds2482_now(const struct ds2482_master *master);
 /* 0, -ECANCELED. */
 int ds2482_wait_until(const struct ds2482_master *master, int64_t t);
+int ds2482_wait(const struct ds2482_master *master, int64_t ns);
 int ds2482_write1(struct ds2482_chip *chip, uint8_t command);
 int ds2482_write2(struct ds2482_chip *chip, uint8_t command, uint8_t parameter);
 /* Read the register at the read pointer. */

@@ -17,15 +17,9 @@ static struct ds2482_link *self(struct link *link)
 	return (struct ds2482_link *)link;
 }
 
-/* The longest time of n slots, in ns. */
-static long slots(const struct ds2482_link *link, unsigned n)
+static void spend_slots(struct ds2482_link *link, size_t n)
 {
-	return (long)n * ds2482_slot_max_ns[link->speed];
-}
-
-static void spent(struct ds2482_link *link, size_t n)
-{
-	link->cost.wire_ns += n * (uint64_t)ds2482_slot_ns[link->speed];
+	link->cost.wire_ns += n * (uint64_t)ds2482_slot_ns;
 }
 
 /* Set SPU before the operation after whose last bit the pull-up feeds the wire. */
@@ -41,13 +35,12 @@ static int link_reset(struct link *base)
 
 	if (status < 0)
 		return status;
-	status = ds2482_run(link->chip, DS2482_RESET, DS2482_NO_PARAMETER,
-	                    ds2482_reset_max_ns[link->speed]);
+	status = ds2482_run(link->chip, DS2482_RESET, DS2482_NO_PARAMETER, ds2482_reset_max_ns);
 	if (status < 0)
 		return status;
 	ds2482_began(link->chip);
 	link->cost.resets++;
-	link->cost.wire_ns += (uint64_t)ds2482_reset_ns[link->speed];
+	link->cost.wire_ns += (uint64_t)ds2482_reset_ns;
 	if (status & DS2482_SD)
 		return -ECOMM;
 	if (status & DS2482_PPD)
@@ -62,19 +55,19 @@ static int link_write(struct link *base, const uint8_t *data, size_t n, enum lin
 	int err = ds2482_select(link);
 
 	if (!err && before > 0) {
-		err = ds2482_write_block(link->chip, data, before, slots(link, 8));
+		err = ds2482_write_block(link->chip, data, before);
 		ds2482_began(link->chip);
 	}
 	if (!err && before < n) {
 		err = arm(link->chip);
 		if (!err)
-			err = ds2482_write_block(link->chip, data + before, 1, slots(link, 8));
+			err = ds2482_write_block(link->chip, data + before, 1);
 		/* the pull-up begins with the last slot of the byte, and so does its time */
 		if (!err)
 			err = ds2482_wait_until(link->chip->master, link->chip->free_at);
 	}
 	if (!err)
-		spent(link, 8 * n);
+		spend_slots(link, 8 * n);
 	return err;
 }
 
@@ -84,11 +77,11 @@ static int link_read(struct link *base, uint8_t *data, size_t n)
 	int err = ds2482_select(link);
 
 	if (!err && n > 0)
-		err = ds2482_read_block(link->chip, data, n, slots(link, 8));
+		err = ds2482_read_block(link->chip, data, n);
 	if (err)
 		return err;
 	ds2482_began(link->chip);
-	spent(link, 8 * n);
+	spend_slots(link, 8 * n);
 	return 0;
 }
 
@@ -100,12 +93,12 @@ static int link_bit(struct link *base, bool out, enum link_after after)
 	if (status == 0 && after == LINK_STRONG)
 		status = arm(link->chip);
 	if (status == 0)
-		status = ds2482_run(link->chip, DS2482_BIT, out ? 0x80 : 0, slots(link, 1));
+		status = ds2482_run(link->chip, DS2482_BIT, out ? 0x80 : 0, ds2482_slot_max_ns);
 	if (status < 0)
 		return status;
 	if (after != LINK_STRONG)
 		ds2482_began(link->chip);
-	spent(link, 1);
+	spend_slots(link, 1);
 	return status & DS2482_SBR ? 1 : 0;
 }
 
@@ -116,19 +109,14 @@ static int link_triplet(struct link *base, bool direction)
 
 	if (status < 0)
 		return status;
-	status = ds2482_run(link->chip, DS2482_TRIPLET, direction ? 0x80 : 0, slots(link, 3));
+	status = ds2482_run(link->chip, DS2482_TRIPLET, direction ? 0x80 : 0,
+	                    3 * ds2482_slot_max_ns);
 	if (status < 0)
 		return status;
 	ds2482_began(link->chip);
-	spent(link, 3);
+	spend_slots(link, 3);
 	return (status & DS2482_SBR ? 1 : 0) | (status & DS2482_TSB ? 2 : 0) |
 	       (status & DS2482_DIR ? 4 : 0);
-}
-
-static int link_speed(struct link *base, enum link_speed speed)
-{
-	self(base)->speed = speed;
-	return ds2482_select(self(base));
 }
 
 static int power_cycle(struct ds2482_link *link)
@@ -142,13 +130,11 @@ static int power_cycle(struct ds2482_link *link)
 	if (!err)
 		err = ds2482_configure(chip, (chip->config & DS2482_APU) | DS2482_PDN);
 	if (!err)
-		err = ds2482_wait_until(chip->master,
-		                        ds2482_now(chip->master) + DS2482_POWER_OFF_NS);
+		err = ds2482_wait(chip->master, DS2482_POWER_OFF_NS);
 	if (!err)
 		err = ds2482_configure(chip, chip->config & DS2482_APU);
 	if (!err)
-		err = ds2482_wait_until(chip->master,
-		                        ds2482_now(chip->master) + DS2482_POWER_ON_NS);
+		err = ds2482_wait(chip->master, DS2482_POWER_ON_NS);
 	return err;
 }
 
@@ -162,12 +148,9 @@ static int link_recover(struct link *base, enum link_rung rung)
 		return -ENODEV;
 	switch (rung) {
 	case LINK_BUS_RESET:
-		link->speed = LINK_STANDARD;
 		err = link_reset(base);
 		return err < 0 ? err : 0;
 	case LINK_CHIP_RESET:
-		for (unsigned i = 0; i < chip->channels; i++)
-			chip->link[i].speed = LINK_STANDARD;
 		/* a kernel driver may have taken the chip, whose reset looks like this */
 		err = chip->master->adapter->ops->claim(chip->master->adapter, chip->address);
 		return err ? err : ds2482_setup(chip);
@@ -194,7 +177,6 @@ static const struct link_ops link_ops = {
 	.together = ds2482_together,
 	.abreast = ds2482_abreast,
 	.visits = ds2482_visits,
-	.speed = link_speed,
 	.recover = link_recover,
 	.cost = link_cost,
 };

@@ -46,11 +46,6 @@ int ds2482_option(struct link_master *base, const char *key, const char *text, c
 	return 0;
 }
 
-static int pause_ns(const struct ds2482_master *master, int64_t ns)
-{
-	return ds2482_wait_until(master, ds2482_now(master) + ns);
-}
-
 int ds2482_power_on(struct ds2482_master *master, char *why, size_t why_size)
 {
 	bool was_off = is_given(&master->power) && !master->power.line;
@@ -59,7 +54,7 @@ int ds2482_power_on(struct ds2482_master *master, char *why, size_t why_size)
 	if (was_off)
 		err = gpio_output_take(&master->power, true, why, why_size);
 	if (!err && was_off)
-		err = pause_ns(master, DS2482_POWER_ON_NS);
+		err = ds2482_wait(master, DS2482_POWER_ON_NS);
 	if (err || !is_given(&master->sleep))
 		return err;
 	if (master->sleep.line)
@@ -68,7 +63,7 @@ int ds2482_power_on(struct ds2482_master *master, char *why, size_t why_size)
 		err = gpio_output_take(&master->sleep, true, why, why_size);
 	if (err && !*why)
 		snprintf(why, why_size, "SleepLine: %s", strerror(-err));
-	return err ? err : pause_ns(master, AWAKE_NS);
+	return err ? err : ds2482_wait(master, AWAKE_NS);
 }
 
 void ds2482_rest(struct ds2482_master *master)
@@ -92,8 +87,6 @@ static int set_up_all(struct ds2482_master *master)
 	for (unsigned i = 0; i < master->count; i++) {
 		int err = ds2482_setup(&master->chip[i]);
 
-		for (unsigned k = 0; k < master->chip[i].channels; k++)
-			master->chip[i].link[k].speed = LINK_STANDARD;
 		worst = err ? err : worst;
 	}
 	return worst;
@@ -107,13 +100,13 @@ int ds2482_power_cycle(struct ds2482_master *master)
 		return -EOPNOTSUPP;
 	err = gpio_output_set(&master->power, false);
 	if (!err)
-		err = pause_ns(master, master->power_off_ns);
+		err = ds2482_wait(master, master->power_off_ns);
 	/* switch on again after any error */
 	on = gpio_output_set(&master->power, true);
 	err = err ? err : on;
 	if (err == -ENODEV) /* the GPIO chip is gone: the master looks for it when it opens again */
 		gpio_output_release(&master->power);
 	if (!err)
-		err = pause_ns(master, DS2482_POWER_ON_NS);
+		err = ds2482_wait(master, DS2482_POWER_ON_NS);
 	return err ? err : set_up_all(master);
 }

@@ -68,7 +68,7 @@ static int wait_idle(struct ds2482_chip *chip, int status)
 
 		if (late)
 			return -ETIMEDOUT;
-		err = ds2482_wait_until(master, ds2482_now(master) + DS2482_POLL_NS);
+		err = ds2482_wait(master, DS2482_POLL_NS);
 		if (err)
 			return err;
 		late = ds2482_now(master) >= stuck;
@@ -102,7 +102,7 @@ int ds2482_diagnose(struct ds2482_chip *chip, int err)
 }
 
 /* Returns the last status of an operation, or its error. */
-static int judge(struct ds2482_chip *chip, int status)
+static int judge_status(struct ds2482_chip *chip, int status)
 {
 	if (status >= 0 && (status & DS2482_1WB))
 		ds2482_was_early(chip);
@@ -127,37 +127,31 @@ static void ends_within(struct ds2482_chip *chip, long max_ns)
 	chip->free_at = ds2482_now(chip->master) + max_ns;
 }
 
-static int start(struct ds2482_chip *chip, uint8_t command, int parameter)
-{
-	return parameter < 0 ? ds2482_write1(chip, command)
-	                     : ds2482_write2(chip, command, (uint8_t)parameter);
-}
-
 int ds2482_run(struct ds2482_chip *chip, uint8_t command, int parameter, long max_ns)
 {
 	uint8_t out[2] = {command, (uint8_t)parameter}, in[MAX_BYTES];
-	struct i2c_message messages[2] = {
-		{.len = parameter < 0 ? 1 : 2, .data = out},
-		{.flags = I2C_MESSAGE_READ, .data = in},
-	};
 	int err = wait_free(chip, 0);
 
 	if (err)
 		return err;
 	if (ds2482_combines(chip)) {
-		messages[1].len = (uint16_t)ds2482_reading_status(chip, max_ns);
+		unsigned n = ds2482_reading_status(chip, max_ns);
+		struct i2c_message messages[] = {i2c_to_write(out, parameter < 0 ? 1 : 2),
+		                                 i2c_to_read(in, n)};
+
 		err = transfer(chip, messages, 2);
 		if (err)
 			return ds2482_diagnose(chip, err);
-		ds2482_saw_end(&chip->ends, max_ns, in, messages[1].len);
-		return judge(chip, in[messages[1].len - 1]);
+		ds2482_saw_end(&chip->ends, max_ns, in, n);
+		return judge_status(chip, in[n - 1]);
 	}
-	err = start(chip, command, parameter);
+	err = parameter < 0 ? ds2482_write1(chip, command)
+	                    : ds2482_write2(chip, command, (uint8_t)parameter);
 	if (err)
 		return ds2482_diagnose(chip, err);
 	ends_within(chip, max_ns);
 	err = wait_free(chip, 0);
-	return err ? err : judge(chip, ds2482_read1(chip));
+	return err ? err : judge_status(chip, ds2482_read1(chip));
 }
 
 /* --- Writing ---------------------------------------------------------------------------------- */
@@ -179,9 +173,9 @@ bool ds2482_is_refused(int err)
  * data is read on to its end (with `last`), and only its status counts. Between two bytes nothing
  * is read where messages are slow.
  */
-static int write_combined(struct ds2482_chip *chip, const uint8_t *data, size_t n, long max_ns,
-                          bool last)
+static int write_combined(struct ds2482_chip *chip, const uint8_t *data, size_t n, bool last)
 {
+	const long max_ns = ds2482_byte_max_ns;
 	struct i2c_message messages[MAX_MESSAGES];
 	uint8_t out[MAX_MESSAGES][2], in[MAX_BYTES];
 	unsigned between = ds2482_reading_on(chip, max_ns, 4),
@@ -196,12 +190,9 @@ static int write_combined(struct ds2482_chip *chip, const uint8_t *data, size_t 
 
 		out[i][0] = DS2482_WRITE;
 		out[i][1] = data[i];
-		messages[count++] = (struct i2c_message){.len = 2, .data = out[i]};
+		messages[count++] = i2c_to_write(out[i], 2);
 		if (whole || !slow)
-			messages[count++] = (struct i2c_message){
-				.flags = I2C_MESSAGE_READ,
-				.len = (uint16_t)(whole ? end : between),
-				.data = in};
+			messages[count++] = i2c_to_read(in, whole ? end : between);
 	}
 	err = transfer(chip, messages, count);
 	if (ds2482_is_refused(err) && slow)
@@ -212,11 +203,11 @@ static int write_combined(struct ds2482_chip *chip, const uint8_t *data, size_t 
 		chip->free_at = ds2482_now(chip->master) + max_ns;
 	if (last)
 		ds2482_saw_end(&chip->ends, max_ns, in, end);
-	return last ? judge(chip, in[end - 1]) : 0;
+	return last ? judge_status(chip, in[end - 1]) : 0;
 }
 
 /* Read no status: the chip is idle when it acknowledges the next command. */
-static int write_timed(struct ds2482_chip *chip, uint8_t byte, long max_ns)
+static int write_timed(struct ds2482_chip *chip, uint8_t byte)
 {
 	int64_t ahead = chip->master->byte_ns > 0 ? 2 * chip->master->byte_ns : 0;
 	int err = wait_free(chip, ahead + ds2482_between(chip));
@@ -228,7 +219,7 @@ static int write_timed(struct ds2482_chip *chip, uint8_t byte, long max_ns)
 		ds2482_was_refused(chip);
 	if (err)
 		return ds2482_diagnose(chip, err);
-	ends_within(chip, max_ns);
+	ends_within(chip, ds2482_byte_max_ns);
 	return 0;
 }
 
@@ -240,9 +231,9 @@ size_t ds2482_batch(const struct ds2482_chip *chip, unsigned messages_each)
 	return adapter->combine == I2C_ANY && room > messages_each ? room / messages_each : 1;
 }
 
-bool ds2482_reads_on(const struct ds2482_chip *chip, long max_ns)
+bool ds2482_reads_on(const struct ds2482_chip *chip)
 {
-	bool slow = ds2482_is_slow(chip, max_ns);
+	bool slow = ds2482_is_slow(chip, ds2482_byte_max_ns);
 
 	/* A message between takes longer than what is left to wait. */
 	if (!ds2482_combines(chip) || (ds2482_between(chip) > BETWEEN_NS && !slow))
@@ -250,25 +241,26 @@ bool ds2482_reads_on(const struct ds2482_chip *chip, long max_ns)
 	return chip->master->byte_ns <= FAST_BYTE_NS || ds2482_batch(chip, slow ? 1 : 2) > 1;
 }
 
-int ds2482_write_block(struct ds2482_chip *chip, const uint8_t *data, size_t n, long max_ns)
+int ds2482_write_block(struct ds2482_chip *chip, const uint8_t *data, size_t n)
 {
-	size_t most = ds2482_batch(chip, ds2482_is_slow(chip, max_ns) ? 1 : 2);
+	bool slow = ds2482_is_slow(chip, ds2482_byte_max_ns);
+	size_t most = ds2482_batch(chip, slow ? 1 : 2);
 	int err = 0;
 
-	if (!ds2482_reads_on(chip, max_ns)) {
+	if (!ds2482_reads_on(chip)) {
 		while (n-- > 0 && err >= 0)
-			err = write_timed(chip, *data++, max_ns);
+			err = write_timed(chip, *data++);
 		return err;
 	}
-	/* The last has a status behind it. */
-	if (ds2482_is_slow(chip, max_ns) && most > 1)
+	/* The status is read after the last byte. */
+	if (slow && most > 1)
 		most--;
 	while (n > 0 && err >= 0) {
 		size_t now = n < most ? n : most;
 
 		err = wait_free(chip, 0);
 		if (!err)
-			err = write_combined(chip, data, now, max_ns, now == n);
+			err = write_combined(chip, data, now, now == n);
 		data += now;
 		n -= now;
 	}
@@ -281,31 +273,25 @@ int ds2482_write_block(struct ds2482_chip *chip, const uint8_t *data, size_t n, 
  * The pointer may be set while the operation runs, so the data register is read on. With `check`
  * the status is read after it: was the chip idle, and is it still set up?
  */
-static int read_combined(struct ds2482_chip *chip, uint8_t *data, size_t n, long max_ns, bool check)
+static int read_combined(struct ds2482_chip *chip, uint8_t *data, size_t n, bool check)
 {
-	static const uint8_t read = DS2482_READ;
-	static const uint8_t at_data[2] = {DS2482_READ_POINTER, DS2482_AT_DATA};
-	static const uint8_t at_status[2] = {DS2482_READ_POINTER, DS2482_AT_STATUS};
+	uint8_t read = DS2482_READ, at_data[] = {DS2482_READ_POINTER, DS2482_AT_DATA};
+	uint8_t at_status[] = {DS2482_READ_POINTER, DS2482_AT_STATUS};
 	struct i2c_message messages[MAX_MESSAGES];
-	uint8_t out[3][2], in[MAX_MESSAGES / 3][MAX_BYTES], status = 0;
-	unsigned wait = ds2482_reading_on(chip, max_ns, 4);
+	uint8_t in[MAX_MESSAGES / 3][MAX_BYTES], status = 0;
+	unsigned wait = ds2482_reading_on(chip, ds2482_byte_max_ns, 4);
 	size_t count = 0;
 	int err;
 
 	assert(3 * n + 2 <= MAX_MESSAGES);
-	out[0][0] = read;
-	memcpy(out[1], at_data, 2);
-	memcpy(out[2], at_status, 2);
 	for (size_t i = 0; i < n; i++) {
-		messages[count++] = (struct i2c_message){.len = 1, .data = out[0]};
-		messages[count++] = (struct i2c_message){.len = 2, .data = out[1]};
-		messages[count++] = (struct i2c_message){
-			.flags = I2C_MESSAGE_READ, .len = (uint16_t)wait, .data = in[i]};
+		messages[count++] = i2c_to_write(&read, 1);
+		messages[count++] = i2c_to_write(at_data, 2);
+		messages[count++] = i2c_to_read(in[i], wait);
 	}
 	if (check) {
-		messages[count++] = (struct i2c_message){.len = 2, .data = out[2]};
-		messages[count++] = (struct i2c_message){
-			.flags = I2C_MESSAGE_READ, .len = 1, .data = &status};
+		messages[count++] = i2c_to_write(at_status, 2);
+		messages[count++] = i2c_to_read(&status, 1);
 	}
 	err = transfer(chip, messages, count);
 	if (err)
@@ -315,9 +301,9 @@ static int read_combined(struct ds2482_chip *chip, uint8_t *data, size_t n, long
 	return status & (DS2482_1WB | DS2482_RST) ? ds2482_diagnose(chip, -EIO) : 0;
 }
 
-static int read_timed(struct ds2482_chip *chip, uint8_t *byte, long max_ns)
+static int read_timed(struct ds2482_chip *chip, uint8_t *byte)
 {
-	int status = ds2482_run(chip, DS2482_READ, DS2482_NO_PARAMETER, max_ns);
+	int status = ds2482_run(chip, DS2482_READ, DS2482_NO_PARAMETER, ds2482_byte_max_ns);
 
 	if (status < 0)
 		return status;
@@ -328,7 +314,7 @@ static int read_timed(struct ds2482_chip *chip, uint8_t *byte, long max_ns)
 	return 0;
 }
 
-int ds2482_read_block(struct ds2482_chip *chip, uint8_t *data, size_t n, long max_ns)
+int ds2482_read_block(struct ds2482_chip *chip, uint8_t *data, size_t n)
 {
 	size_t most = (MAX_MESSAGES - 2) / 3;
 	bool any = ds2482_batch(chip, 3) > 1;
@@ -336,7 +322,7 @@ int ds2482_read_block(struct ds2482_chip *chip, uint8_t *data, size_t n, long ma
 
 	if (!ds2482_combines(chip)) {
 		while (n-- > 0 && err == 0)
-			err = read_timed(chip, data++, max_ns);
+			err = read_timed(chip, data++);
 		return err;
 	}
 	if (any && chip->master->adapter->max_messages < MAX_MESSAGES)
@@ -347,7 +333,7 @@ int ds2482_read_block(struct ds2482_chip *chip, uint8_t *data, size_t n, long ma
 	while (n > 0 && err == 0) {
 		size_t now = n < most ? n : most;
 
-		err = read_combined(chip, data, now, max_ns, any);
+		err = read_combined(chip, data, now, any);
 		data += now;
 		n -= now;
 	}

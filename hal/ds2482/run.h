@@ -13,8 +13,8 @@ struct ds2482_chip;
 
 /* Run one operation of max_ns at most. Returns the status, or a negative errno. */
 int ds2482_run(struct ds2482_chip *chip, uint8_t command, int parameter, long max_ns);
-int ds2482_write_block(struct ds2482_chip *chip, const uint8_t *data, size_t n, long max_ns);
-int ds2482_read_block(struct ds2482_chip *chip, uint8_t *data, size_t n, long max_ns);
+int ds2482_write_block(struct ds2482_chip *chip, const uint8_t *data, size_t n);
+int ds2482_read_block(struct ds2482_chip *chip, uint8_t *data, size_t n);
 /*
  * The reason why an operation failed with err: -ETIMEDOUT: busy for ever, -ENXIO: the chip was
  * reset, -ENODEV, -EIO.
@@ -32,6 +32,6 @@ bool ds2482_is_slow(const struct ds2482_chip *chip, long max_ns);
 /* Did the chip refuse a command? */
 bool ds2482_is_refused(int err);
 /* Is time passed by reading on, and not by timed waits, between bytes that are written? */
-bool ds2482_reads_on(const struct ds2482_chip *chip, long max_ns);
+bool ds2482_reads_on(const struct ds2482_chip *chip);
 /* How many operations of so many messages fit in one transfer; 1 at least. */
 size_t ds2482_batch(const struct ds2482_chip *chip, unsigned messages_each);

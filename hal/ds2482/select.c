@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Before and at the beginning of a chip's operations: is the chip still ours, and are channel and
- * speed those of the link? By the data sheets of the DS2482. Each call takes at most a few I2C
+ * Before and at the beginning of a chip's operations: is the chip still ours, and is its channel
+ * that of the link? By the data sheets of the DS2482. Each call takes at most a few I2C
  * transfers, and waits until the chip's last operation has ended.
  */
 #include <errno.h>
@@ -37,24 +37,17 @@ static int select_channel(struct ds2482_chip *chip, uint8_t channel)
 int ds2482_select(struct ds2482_link *link)
 {
 	struct ds2482_chip *chip = link->chip;
-	uint8_t config = chip->config;
-	int err = 0;
 
 	if (!chip->master->adapter)
 		return -ENODEV;
 	if (chip->lost)
 		return -ENXIO;
-	config &= (uint8_t) ~(DS2482_1WS | DS2482_SPU);
-	if (link->speed == LINK_OVERDRIVE)
-		config |= DS2482_1WS;
+	if (chip->channel == link->number)
+		return 0;
+	int err = select_channel(chip, link->number);
 	/* a strong pull-up belongs to the channel it was armed for; the chip ends it by itself */
-	if (chip->channel != link->number) {
-		err = select_channel(chip, link->number);
-		if (!err && (chip->config & DS2482_SPU))
-			err = ds2482_configure(chip, config);
-	}
-	if (!err && ((chip->config ^ config) & DS2482_1WS))
-		err = ds2482_configure(chip, config);
+	if (!err && (chip->config & DS2482_SPU))
+		err = ds2482_configure(chip, (uint8_t)(chip->config & ~DS2482_SPU));
 	return err;
 }
 

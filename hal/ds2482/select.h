@@ -7,7 +7,7 @@
 struct ds2482_chip;
 struct ds2482_link;
 
-/* Select the channel of the link, and set its speed. */
+/* Select the channel of the link. */
 int ds2482_select(struct ds2482_link *link);
 /*
  * Before a transaction: is the chip still ours? Asked of the kernel now and then. false: the chip

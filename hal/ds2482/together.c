@@ -87,7 +87,7 @@ static int together_begin(struct course *course)
 	if (err)
 		return err;
 	ds2482_began(link->chip);
-	works(course, STEP_PRESENCE, ds2482_reset_max_ns[link->speed], 0);
+	works(course, STEP_PRESENCE, ds2482_reset_max_ns, 0);
 	course->stuck_ns = link->chip->free_at + DS2482_STUCK_NS;
 	return 0;
 }
@@ -102,7 +102,7 @@ static int write_next(struct course *course)
 	if (err)
 		return err;
 	bool last = ++course->at == visit->out_n;
-	works(course, last ? STEP_READ : STEP_WRITE, 8 * ds2482_slot_max_ns[link->speed], 2);
+	works(course, last ? STEP_READ : STEP_WRITE, ds2482_byte_max_ns, 2);
 	if (last)
 		course->at = 0;
 	return 0;
@@ -115,7 +115,7 @@ static int read_next(struct course *course)
 
 	/* the register is read after the pointer and two addresses */
 	if (!err)
-		works(course, STEP_FETCH, 8 * ds2482_slot_max_ns[link->speed], 4);
+		works(course, STEP_FETCH, ds2482_byte_max_ns, 4);
 	return err;
 }
 
@@ -135,7 +135,7 @@ static int look_for_presence(struct course *course)
 	if (status & DS2482_RST)
 		return -ENXIO;
 	link->cost.resets++;
-	link->cost.wire_ns += (uint64_t)ds2482_reset_ns[link->speed];
+	link->cost.wire_ns += (uint64_t)ds2482_reset_ns;
 	if (status & DS2482_SD)
 		return -ECOMM;
 	return status & DS2482_PPD ? write_next(course) : -EHOSTDOWN;
@@ -159,8 +159,7 @@ static int fetch(struct course *course)
 	if (status & (DS2482_1WB | DS2482_RST))
 		return -EIO;
 	link->chip->free_at = 0;
-	link->cost.wire_ns += 8u * (visit->out_n + visit->in_n) *
-	                      (uint64_t)ds2482_slot_ns[link->speed];
+	link->cost.wire_ns += 8u * (visit->out_n + visit->in_n) * (uint64_t)ds2482_slot_ns;
 	together_end(course, 0);
 	return 0;
 }

@@ -31,38 +31,29 @@ struct train {
 	bool read_last; /* the last message is a read */
 };
 
-/* A slow adapter takes longer for a message than an operation does. */
-static bool is_slow(const struct ds2482_chip *chip)
-{
-	return ds2482_is_slow(chip, 8 * ds2482_slot_max_ns[0]);
-}
-
 bool ds2482_visits(const struct link *base)
 {
 	const struct ds2482_link *link = (const struct ds2482_link *)base;
 	const struct ds2482_chip *chip = link->chip;
 	const struct i2c_adapter *adapter = chip->master->adapter;
 
-	return adapter && link->speed == LINK_STANDARD &&
-	       ds2482_reads_on(chip, 8 * ds2482_slot_max_ns[0]) &&
+	return adapter && ds2482_reads_on(chip) &&
 	       (adapter->combine != I2C_ANY || adapter->max_messages >= LEAST);
 }
 
-static void out(struct train *train, uint8_t command, int parameter)
+static void append_write(struct train *train, uint8_t command, int parameter)
 {
 	uint8_t *bytes = train->out[train->count];
 
 	bytes[0] = command;
 	bytes[1] = (uint8_t)parameter;
-	train->message[train->count++] = (struct i2c_message){.len = parameter < 0 ? 1 : 2,
-	                                                      .data = bytes};
+	train->message[train->count++] = i2c_to_write(bytes, parameter < 0 ? 1 : 2);
 	train->read_last = false;
 }
 
-static void in(struct train *train, uint8_t *bytes, unsigned n)
+static void append_read(struct train *train, uint8_t *bytes, unsigned n)
 {
-	train->message[train->count++] = (struct i2c_message){
-		.flags = I2C_MESSAGE_READ, .len = (uint16_t)n, .data = bytes};
+	train->message[train->count++] = i2c_to_read(bytes, n);
 	train->read_last = true;
 }
 
@@ -102,7 +93,8 @@ static int make_room(struct train *train, unsigned messages)
 }
 
 /* Let the time of an operation pass, unless the next message takes longer anyway. */
-static void pass(struct train *train, enum ds2482_operation operation, long min_ns, long max_ns)
+static void pass_time(struct train *train, enum ds2482_operation operation, long min_ns,
+                      long max_ns)
 {
 	struct ds2482_chip *chip = train->chip;
 	unsigned most = ds2482_reading_on(chip, max_ns, TO_COMMAND);
@@ -114,15 +106,8 @@ static void pass(struct train *train, enum ds2482_operation operation, long min_
 	if (!train->slow)
 		most = ds2482_pause(&chip->ends, operation,
 		                    ds2482_reading_on(chip, min_ns, TO_COMMAND), most);
-	in(train, train->pause, most);
+	append_read(train, train->pause, most);
 	train->max_ns = 0;
-}
-
-static int reset(struct train *train)
-{
-	out(train, DS2482_RESET, DS2482_NO_PARAMETER);
-	pass(train, DS2482_OF_RESET, ds2482_reset_min_ns, ds2482_reset_max_ns[0]);
-	return 0;
 }
 
 static int visit_write(struct train *train, uint8_t byte)
@@ -131,21 +116,21 @@ static int visit_write(struct train *train, uint8_t byte)
 
 	if (err)
 		return err;
-	out(train, DS2482_WRITE, byte);
-	pass(train, DS2482_OF_BYTE, 8 * ds2482_slot_min_ns, 8 * ds2482_slot_max_ns[0]);
+	append_write(train, DS2482_WRITE, byte);
+	pass_time(train, DS2482_OF_BYTE, 8 * ds2482_slot_min_ns, ds2482_byte_max_ns);
 	return 0;
 }
 
-static int read(struct train *train, uint8_t *byte)
+static int visit_read(struct train *train, uint8_t *byte)
 {
 	int err = train->reads == READS ? visit_send(train) : make_room(train, 3);
 
 	if (err)
 		return err;
-	out(train, DS2482_READ, DS2482_NO_PARAMETER);
-	out(train, DS2482_READ_POINTER, DS2482_AT_DATA);
+	append_write(train, DS2482_READ, DS2482_NO_PARAMETER);
+	append_write(train, DS2482_READ_POINTER, DS2482_AT_DATA);
 	train->byte[train->reads] = byte;
-	in(train, train->in[train->reads++], train->wait);
+	append_read(train, train->in[train->reads++], train->wait);
 	train->max_ns = 0;
 	return 0;
 }
@@ -158,8 +143,8 @@ static int visit_look(struct train *train)
 
 	if (err)
 		return err;
-	out(train, DS2482_READ_POINTER, DS2482_AT_STATUS);
-	in(train, &status, 1);
+	append_write(train, DS2482_READ_POINTER, DS2482_AT_STATUS);
+	append_read(train, &status, 1);
 	err = visit_send(train);
 	if (err)
 		return err;
@@ -175,14 +160,16 @@ static int visit_look(struct train *train)
 static int visit_run(struct train *train, const struct link_visit *visit)
 {
 	bool few = train->slow || visit->in_n <= FEW_READS;
-	int err = reset(train);
+	int err = 0;
 
+	append_write(train, DS2482_RESET, DS2482_NO_PARAMETER);
+	pass_time(train, DS2482_OF_RESET, ds2482_reset_min_ns, ds2482_reset_max_ns);
 	for (unsigned i = 0; !err && i < visit->out_n; i++)
 		err = visit_write(train, visit->out[i]);
 	if (!err && !few)
 		err = visit_send(train);
 	for (unsigned i = 0; !err && i < visit->in_n; i++)
-		err = read(train, &visit->in[i]);
+		err = visit_read(train, &visit->in[i]);
 	return err ? err : visit_look(train);
 }
 
@@ -198,19 +185,15 @@ void ds2482_visit(struct link_visit *visit)
 	train.count = train.reads = 0;
 	train.max_ns = 0;
 	train.any = chip->master->adapter->combine == I2C_ANY;
-	train.slow = is_slow(chip);
-	train.wait = ds2482_reading_on(chip, 8 * ds2482_slot_max_ns[0], TO_COMMAND);
+	train.slow = ds2482_is_slow(chip, ds2482_byte_max_ns);
+	train.wait = ds2482_reading_on(chip, ds2482_byte_max_ns, TO_COMMAND);
 	if (!err)
 		err = visit_run(&train, visit);
-	if (!err)
-		chip->free_at = 0;
-	else
-		chip->free_at = ds2482_now(chip->master) + ds2482_reset_max_ns[0];
+	chip->free_at = err ? ds2482_now(chip->master) + ds2482_reset_max_ns : 0;
 	if (!err) {
 		link->cost.resets++;
-		link->cost.wire_ns += (uint64_t)ds2482_reset_ns[0];
-		link->cost.wire_ns += 8u * (visit->out_n + visit->in_n) *
-		                      (uint64_t)ds2482_slot_ns[0];
+		link->cost.wire_ns += (uint64_t)ds2482_reset_ns;
+		link->cost.wire_ns += 8u * (visit->out_n + visit->in_n) * (uint64_t)ds2482_slot_ns;
 	}
 	ds2482_began(chip);
 	visit->err = err;

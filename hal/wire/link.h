@@ -45,8 +45,6 @@ static inline bool link_was_late(const uint8_t slots[LINK_LATE])
 	return true;
 }
 
-enum link_speed { LINK_STANDARD, LINK_OVERDRIVE };
-
 /*
  * What a link can do for a wire that fails. The native bus makes the transaction again first, then
  * climbs these rungs, and closes and opens the master last (hal/native/master.c).
@@ -161,8 +159,6 @@ struct link_ops {
 	 * ever kept.
 	 */
 	int (*flush)(struct link *link);
-	/* That of the next slots: 0 or an error, -EOPNOTSUPP it has no such one. NULL: standard. */
-	int (*speed)(struct link *link, enum link_speed speed);
 	/* Optional; also while the master is closed. Touches nothing. */
 	void (*cost)(const struct link *link, struct link_cost *cost);
 };

@@ -211,29 +211,6 @@ static void test_only_a_part_with_a_supply_switch_cycles_the_power(void)
 	ds_check_scratchpad();
 }
 
-static void test_overdrive_is_the_links_own(void)
-{
-	const uint8_t skip = 0x3C, read = 0xBE;
-	uint8_t scratchpad[9];
-
-	ds_start("i2c speed 400 combine any\nchip DS2482-100 0x18\nDS28EA00 42.000000000001 as t");
-	TEST_ASSERT_EQUAL_INT(1, ds.wire->ops->reset(ds.wire));
-	TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->write(ds.wire, &skip, 1, LINK_IDLE));
-	TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->speed(ds.wire, LINK_OVERDRIVE));
-	TEST_ASSERT_EQUAL_HEX8(SIM_1WS | SIM_APU, ds.net.chip[0].config);
-	TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->write(ds.wire, &read, 1, LINK_IDLE));
-	TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->read(ds.wire, scratchpad, 9));
-	TEST_ASSERT_EQUAL_HEX8(0, sim_crc8(0, scratchpad, 9));
-	TEST_ASSERT_EQUAL_HEX8(75, scratchpad[2]);
-	TEST_ASSERT_EQUAL_INT(1, ds.wire->ops->reset(ds.wire));
-	TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->recover(ds.wire, LINK_BUS_RESET));
-	TEST_ASSERT_EQUAL_HEX8(SIM_APU, ds.net.chip[0].config);
-	ds_check_scratchpad();
-	TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->speed(ds.wire, LINK_OVERDRIVE));
-	TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->recover(ds.wire, LINK_CHIP_RESET));
-	ds_check_scratchpad();
-}
-
 static void test_a_shutdown_ends_every_call(void)
 {
 	for (unsigned i = 0; i < DS_KINDS; i++) {
@@ -265,7 +242,6 @@ int main(void)
 	RUN_TEST(test_one_chip_or_one_channel_is_opened_when_it_is_named);
 	RUN_TEST(test_a_where_that_is_none_is_refused);
 	RUN_TEST(test_only_a_part_with_a_supply_switch_cycles_the_power);
-	RUN_TEST(test_overdrive_is_the_links_own);
 	RUN_TEST(test_a_shutdown_ends_every_call);
 	return UNITY_END();
 }
