@@ -33,7 +33,7 @@ static int triplet(struct link *link, bool direction)
 	return err < 0 ? err : id | complement << 1 | taken << 2;
 }
 
-static int start(struct link *link, uint8_t command)
+static int begin_search(struct link *link, uint8_t command)
 {
 	int present = link->ops->reset(link);
 
@@ -71,7 +71,7 @@ int search_next(struct search *search, struct link *link)
 
 	if (search->last)
 		return 0;
-	int present = start(link, search->command);
+	int present = begin_search(link, search->command);
 	if (present <= 0) {
 		search->last = true;
 		return present;
@@ -119,7 +119,7 @@ bool search_same(const uint8_t a[8], const uint8_t b[8], unsigned bits)
 	return bits % 8 == 0 || ((a[bytes] ^ b[bytes]) & ((1 << bits % 8) - 1)) == 0;
 }
 
-/* Those that begin like roms[0], and whose next bit nobody has. */
+/* Those that begin like roms[0], and whose next bit no chip has. */
 static void exclude(const uint8_t *const roms[], bool away[], unsigned n, unsigned position,
                     int bits)
 {
@@ -128,22 +128,26 @@ static void exclude(const uint8_t *const roms[], bool away[], unsigned n, unsign
 			away[i] = search_same(roms[i], roms[0], position - 1);
 }
 
-int search_among(struct link *link, const uint8_t *const roms[], bool away[], unsigned n)
+/*
+ * The path of roms[0], bit by bit: 1 the search has ended at that device, 0 it is not there, or an
+ * error.
+ */
+static int follow(struct link *link, uint8_t command, const uint8_t *const roms[], bool away[],
+                  unsigned n)
 {
-	int present = link->ops->verify ? link->ops->verify(link, roms[0], false)
-	                                : start(link, ONEWIRE_SEARCH);
+	int present = begin_search(link, command);
 
 	if (present == 0)
-		for (unsigned i = 0; i < (link->ops->verify ? 1 : n); i++)
+		for (unsigned i = 0; i < n; i++)
 			away[i] = true;
-	if (present <= 0 || link->ops->verify)
+	if (present <= 0)
 		return present;
 	for (unsigned position = 1; position <= 64; position++) {
 		int bits = triplet(link, rom_bit(roms[0], position));
 
 		if (bits < 0)
 			return bits;
-		/* Somebody answered the bit before. */
+		/* A chip answered the bit before. */
 		if ((bits & 3) == 3 && position > 1)
 			return -EBADMSG;
 		exclude(roms, away, n, position, bits);
@@ -153,26 +157,20 @@ int search_among(struct link *link, const uint8_t *const roms[], bool away[], un
 	return 1;
 }
 
+int search_among(struct link *link, const uint8_t *const roms[], bool away[], unsigned n)
+{
+	if (!link->ops->verify)
+		return follow(link, ONEWIRE_SEARCH, roms, away, n);
+	int present = link->ops->verify(link, roms[0], false);
+	away[0] |= present == 0;
+	return present;
+}
+
 int search_verify(struct link *link, const uint8_t rom[8], bool alarm)
 {
+	bool away = false;
+
 	if (link->ops->verify)
 		return link->ops->verify(link, rom, alarm);
-
-	int present = start(link, alarm ? ONEWIRE_ALARM_SEARCH : ONEWIRE_SEARCH);
-
-	if (present <= 0)
-		return present;
-	for (unsigned position = 1; position <= 64; position++) {
-		bool want = rom_bit(rom, position);
-		int bits = triplet(link, want);
-
-		if (bits < 0)
-			return bits;
-		/* Somebody answered the bit before. */
-		if ((bits & 3) == 3 && position > 1)
-			return -EBADMSG;
-		if ((bits & 3) == 3 || (bits >> 2 & 1) != want)
-			return 0;
-	}
-	return 1;
+	return follow(link, alarm ? ONEWIRE_ALARM_SEARCH : ONEWIRE_SEARCH, &rom, &away, 1);
 }
