@@ -235,15 +235,12 @@ static void look_at_idle(struct owserver *server)
 		go_down(server, as_loss(err), talk->trouble);
 }
 
-static int64_t owserver_step(struct bus *bus, int64_t now)
+/* The next slice of coming up; nothing if the server is up. */
+static void come_up(struct owserver *server)
 {
-	struct owserver *server = (struct owserver *)bus;
-
-	report_loss(server);
 	switch (server->state) {
 	case DOWN:
-		if (now >= server->retry_ns)
-			begin_connect(server);
+		begin_connect(server);
 		break;
 	case CONNECTING:
 		go_on_connecting(server);
@@ -252,22 +249,24 @@ static int64_t owserver_step(struct bus *bus, int64_t now)
 		go_on_greeting(server);
 		break;
 	case UP:
-		if (bus->stirred)
-			look_at_idle(server);
 		break;
 	}
+}
+
+static int64_t owserver_step(struct bus *bus, int64_t now)
+{
+	struct owserver *server = (struct owserver *)bus;
+
+	report_loss(server);
+	if (server->state == UP && bus->stirred)
+		look_at_idle(server);
+	else if (server->state != DOWN || now >= server->retry_ns)
+		come_up(server);
 	bus->stirred = false;
 	report_loss(server);
-	switch (server->state) {
-	case DOWN:
+	if (server->state == DOWN)
 		return server->retry_ns;
-	case CONNECTING:
-	case GREETING:
-		return now;
-	case UP:
-		break;
-	}
-	return INT64_MAX;
+	return server->state == UP ? INT64_MAX : now;
 }
 
 /* A server that goes closes the connection. */
@@ -297,28 +296,9 @@ static int owserver_there(struct bus *bus)
 {
 	struct owserver *server = (struct owserver *)bus;
 
-	switch (server->state) {
-	case DOWN:
-		begin_connect(server);
-		break;
-	case CONNECTING:
-		go_on_connecting(server);
-		break;
-	case GREETING:
-		go_on_greeting(server);
-		break;
-	case UP:
-		break;
-	}
-	switch (server->state) {
-	case DOWN:
-		return 0;
-	case CONNECTING:
-	case GREETING:
-		return -EAGAIN;
-	case UP:
-		break;
-	}
+	come_up(server);
+	if (server->state != UP)
+		return server->state == DOWN ? 0 : -EAGAIN;
 	connection_close(&server->talk.connection);
 	server->state = DOWN;
 	return 1;
