@@ -297,6 +297,21 @@ int txn_read_pages(struct txn *txn, const uint8_t *head, size_t head_n, uint8_t 
 	return 0;
 }
 
+int txn_ask(struct txn *txn, const uint8_t *command, size_t command_n, uint8_t *bytes, size_t n)
+{
+	int err = txn_command(txn, command, command_n);
+
+	return err ? err : txn_read(txn, bytes, n);
+}
+
+int txn_ask_crc16(struct txn *txn, const uint8_t *command, size_t command_n, uint8_t *bytes,
+                  size_t n)
+{
+	int err = txn_command(txn, command, command_n);
+
+	return err ? err : txn_read_crc16(txn, command, command_n, bytes, n);
+}
+
 bool txn_driven(const struct txn *txn)
 {
 	return txn->link->driver && txn->link->driver->has(txn->link, txn->device->rom);

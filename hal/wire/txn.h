@@ -121,6 +121,10 @@ int txn_read_crc16(struct txn *txn, const uint8_t *head, size_t head_n, uint8_t 
 /* The same for pages of n bytes, each with its CRC16; only the first one's covers head. */
 int txn_read_pages(struct txn *txn, const uint8_t *head, size_t head_n, uint8_t *bytes, size_t n,
                    unsigned pages);
+/* txn_command(), and the n bytes that the chip answers; the second: with the CRC16 of both. */
+int txn_ask(struct txn *txn, const uint8_t *command, size_t command_n, uint8_t *bytes, size_t n);
+int txn_ask_crc16(struct txn *txn, const uint8_t *command, size_t command_n, uint8_t *bytes,
+                  size_t n);
 /*
  * Registers are changed by reading, changing and writing them. A write that goes wrong may leave
  * what nobody asked for, and made again must not begin with that. txn_base: if such a write of

@@ -38,10 +38,8 @@ static int fetch(struct txn *txn, uint8_t bytes[PAGE], unsigned *covers)
 {
 	static const uint8_t command[] = {0xf0, 0};
 	uint8_t in[PAGE + 2];
-	int err = txn_command(txn, command, sizeof(command));
+	int err = txn_ask(txn, command, sizeof(command), in, sizeof(in));
 
-	if (!err)
-		err = txn_read(txn, in, sizeof(in));
 	if (err)
 		return err;
 	uint16_t head = onewire_crc16(0, command, sizeof(command));

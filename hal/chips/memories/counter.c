@@ -14,10 +14,8 @@ static int counter_load(struct txn *txn, const struct area *area, unsigned at, u
 {
 	unsigned address = at / area->block * 32 + 31;
 	uint8_t command[] = {READ_COUNTER, (uint8_t)address, (uint8_t)(address >> 8)}, in[9];
-	int err = txn_command(txn, command, sizeof(command));
+	int err = txn_ask_crc16(txn, command, sizeof(command), in, sizeof(in));
 
-	if (!err)
-		err = txn_read_crc16(txn, command, sizeof(command), in, sizeof(in));
 	if (!err)
 		memcpy(bytes, in + 1, n);
 	return err;

@@ -15,11 +15,9 @@ int eprom_load(struct txn *txn, const struct area *area, unsigned at, uint8_t *b
 {
 	const uint8_t command[] = {EXTENDED_READ_MEMORY, (uint8_t)at, (uint8_t)(at >> 8)};
 	uint8_t in[3 + AREA_UNIT + 2];
-	int err = txn_command(txn, command, sizeof(command));
+	int err = txn_ask(txn, command, sizeof(command), in, 3 + n + 2);
 
 	(void)area;
-	if (!err)
-		err = txn_read(txn, in, 3 + n + 2);
 	if (err)
 		return err;
 	if (!onewire_crc16_matches(onewire_crc16(onewire_crc16(0, command, 3), in, 1), in + 1) ||
@@ -39,7 +37,5 @@ int eprom_load_status(struct txn *txn, const struct area *area, unsigned at, uin
 	unsigned size = area->size / EPROM_STATUS_PAGES, page = at / size;
 	unsigned where = (page < 3 ? page * 0x20 : REDIRECTIONS + (page - 3) * size) + at % size;
 	const uint8_t command[] = {READ_STATUS, (uint8_t)where, (uint8_t)(where >> 8)};
-	int err = txn_command(txn, command, sizeof(command));
-
-	return err ? err : txn_read_crc16(txn, command, sizeof(command), bytes, n);
+	return txn_ask_crc16(txn, command, sizeof(command), bytes, n);
 }

@@ -17,11 +17,9 @@ static int family_02_load(struct txn *txn, const struct area *area, unsigned at,
 {
 	uint8_t where = (uint8_t)(at / IDENTIFIER_BYTES * SUBKEY_BYTES + DATA_AT);
 	const uint8_t command[] = {READ_SUBKEY, where, (uint8_t)~where};
-	int err = txn_command(txn, command, sizeof(command));
+	int err = txn_ask(txn, command, sizeof(command), bytes, n);
 
 	(void)area;
-	if (!err)
-		err = txn_read(txn, bytes, n);
 	return err ? err : steady(txn, bytes, n);
 }
 

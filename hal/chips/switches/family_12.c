@@ -20,10 +20,8 @@ static bool is_checked(const uint8_t command[3], const uint8_t in[4])
 static int channel_info(struct txn *txn, uint8_t control, uint8_t *info)
 {
 	uint8_t command[] = {CHANNEL_ACCESS, control, 0xff}, in[4];
-	int err = txn_command(txn, command, sizeof(command));
+	int err = txn_ask(txn, command, sizeof(command), in, sizeof(in));
 
-	if (!err)
-		err = txn_read(txn, in, sizeof(in));
 	if (!err && !is_checked(command, in)) {
 		/* That it was told to clear its latches: this is what they were. */
 		command[1] ^= ACCESS_RESET_LATCHES;

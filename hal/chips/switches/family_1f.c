@@ -58,10 +58,8 @@ static int read_event(struct txn *txn)
 static int family_1f_command(struct txn *txn, uint8_t code)
 {
 	uint8_t answer;
-	int err = txn_command(txn, &code, 1);
+	int err = txn_ask(txn, &code, 1, &answer, 1);
 
-	if (!err)
-		err = txn_read(txn, &answer, 1);
 	return err ? err : answer == code ? 0 : -EBADMSG;
 }
 
@@ -128,10 +126,8 @@ static int write_control(struct txn *txn)
 	if (txn->phase == 0) {
 		const uint8_t write[] = {STATUS, controls[(unsigned)want].write};
 		uint8_t answer[2];
-		int err = txn_command(txn, write, sizeof(write));
+		int err = txn_ask(txn, write, sizeof(write), answer, sizeof(answer));
 
-		if (!err)
-			err = txn_read(txn, answer, sizeof(answer));
 		if (err)
 			return err;
 		if (answer[0] != answer[1])

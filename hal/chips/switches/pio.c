@@ -16,10 +16,8 @@ static int read_status(struct txn *txn)
 {
 	static const uint8_t command = READ_PIO;
 	uint8_t status[3];
-	int err = txn_command(txn, &command, 1);
+	int err = txn_ask(txn, &command, 1, status, sizeof(status));
 
-	if (!err)
-		err = txn_read(txn, status, sizeof(status));
 	if (err)
 		return err;
 	bool twice = status[1] == status[0] || status[1] == status[2];
@@ -51,11 +49,9 @@ int pio_store(struct txn *txn, const struct area *area, unsigned at, const uint8
               unsigned n)
 {
 	uint8_t byte = bytes[0] | 0xfc, command[] = {area->write, byte, (uint8_t)~byte}, answer[2];
-	int err = txn_command(txn, command, sizeof(command));
+	int err = txn_ask(txn, command, sizeof(command), answer, sizeof(answer));
 
 	(void)at, (void)n;
-	if (!err)
-		err = txn_read(txn, answer, sizeof(answer));
 	return err ? err : answer[0] == CONFIRMED ? 0 : -EBADMSG;
 }
 

@@ -34,9 +34,7 @@ struct visit {
 static int read_registers(struct txn *txn, uint8_t at, uint8_t *bytes, uint8_t n)
 {
 	const uint8_t command[] = {READ, at, (uint8_t)(n - 1)};
-	int err = txn_command(txn, command, sizeof(command));
-
-	return err ? err : txn_read_crc16(txn, command, sizeof(command), bytes, n);
+	return txn_ask_crc16(txn, command, sizeof(command), bytes, n);
 }
 
 /* The chip answers with the CRC16 of the command; behind its last bit the conversion begins. */
@@ -69,9 +67,7 @@ static int flush(struct txn *txn)
 {
 	static const uint8_t command[] = {WRITE, FIFO_CONFIGURATION, 0, FLUSH};
 	uint8_t none;
-	int err = txn_command(txn, command, sizeof(command));
-
-	return err ? err : txn_read_crc16(txn, command, sizeof(command), &none, 0);
+	return txn_ask_crc16(txn, command, sizeof(command), &none, 0);
 }
 
 static int read_temperature(struct txn *txn)

@@ -39,10 +39,8 @@ int thermometer_read_die(struct txn *txn)
 static int read_trim(struct txn *txn)
 {
 	static const uint8_t commands[] = {READ_TRIM_1, READ_TRIM_2};
-	int err = txn_command(txn, &commands[txn->phase % 2], 1);
+	int err = txn_ask(txn, &commands[txn->phase % 2], 1, &trim_of(txn)[txn->phase], 1);
 
-	if (!err)
-		err = txn_read(txn, &trim_of(txn)[txn->phase], 1);
 	txn->silent = false;
 	if (err || ++txn->phase < 4)
 		return err ? err : TXN_MORE;

@@ -64,9 +64,7 @@ static int write_settings(struct txn *txn, const uint8_t settings[SETTINGS])
 	memcpy(command + 1, settings, SETTINGS);
 	tmp1826_of(txn)->kept = false;
 	txn_void(txn);
-	int err = txn_command(txn, command, sizeof(command));
-	if (!err)
-		err = txn_read(txn, &crc, 1);
+	int err = txn_ask(txn, command, sizeof(command), &crc, 1);
 	return err ? err : crc == onewire_crc8(settings, SETTINGS) ? 0 : -EBADMSG;
 }
 
