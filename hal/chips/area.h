@@ -96,6 +96,13 @@ struct area {
 	void (*adjust)(struct txn *txn, uint8_t *want);
 };
 
+/* An area that only the list of its family names: [STATUS] = AREA(.name = "status", ...). */
+#define AREA(...) \
+	&(const struct area) \
+	{ \
+		__VA_ARGS__ \
+	}
+
 struct field {
 	uint8_t area; /* which of the family's areas; 0: none */
 	uint8_t shift;

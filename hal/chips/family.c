@@ -8,7 +8,7 @@ const char *family_type(const struct device *device)
 {
 	const struct family *family = device->family;
 
-	return family->types ? family->types[family->kind(device)] : family->type;
+	return family->types ? family->types[device->kind] : family->type;
 }
 
 const char *family_identity(const struct device *device)
@@ -17,14 +17,12 @@ const char *family_identity(const struct device *device)
 
 	if (family->name)
 		return device->identity;
-	return family->kind && !family->kind(device) ? NULL : family_type(device);
+	return family->several && !device->kind ? NULL : family_type(device);
 }
 
 bool family_untold(const struct device *device)
 {
-	const struct family *family = device->family;
-
-	return family->kind && (family->identify || family->tell) && !family->kind(device);
+	return device->family->several && !device->kind;
 }
 
 /* All kinds that a chip of the family may turn out to be. */
@@ -40,7 +38,7 @@ static uint32_t candidates(const struct family *family)
 bool family_has(const struct device *device, const struct property *property)
 {
 	const struct family *family = device->family;
-	unsigned kind = family->kind ? family->kind(device) : 1;
+	unsigned kind = family->several ? device->kind : 1;
 	uint32_t kinds = property->kinds, all;
 
 	/* Those of every device have no kind. */
@@ -55,9 +53,7 @@ bool family_has(const struct device *device, const struct property *property)
 
 bool family_doubts(const struct device *device)
 {
-	const struct family *family = device->family;
-
-	return family->kind && family->doubted & KIND(family->kind(device));
+	return device->family->doubted & KIND(device->kind);
 }
 
 void family_forget(struct device *device)

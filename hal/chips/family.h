@@ -50,30 +50,26 @@ struct family {
 	bool fixed;       /* ... but its resolution cannot be changed */
 	bool alarms;      /* answers the conditional search */
 	bool is_virtual;  /* no chip: a table of /statistics and the like */
+	bool several;     /* chips have this code: device.kind says which of them it is */
 	uint16_t flags;   /* FLAG_ */
 	const char *type; /* "DS18B20", the usual chip of this code */
 	const struct family_scan
 		*scan; /* FAMILY_SCANS at most, then one without a name; NULL: none */
-	/*
-	 * Some families hold several chips. Which of them is it? 1 and up; 0 it is not known: then
-	 * requests may be for properties of any, and a list has what all of them have.
-	 * NULL: there is one.
-	 */
-	unsigned (*kind)(const struct device *device);
 	/*
 	 * What each kind is called; NULL: all as `type`. [0] NULL: a request for `type` asks the
 	 * chip first.
 	 */
 	const char *const *types;
 	/*
-	 * Tells which kind it is, before any property of the family (those that every device has
-	 * are none) is read or written: 0 it is known, TXN_MORE or an error. NULL: the functions
-	 * of its properties see to that.
+	 * Sets device.kind, before any property of the family (those that every device has are
+	 * none) is read or written, and before a list of its properties is made: 0 it is set,
+	 * TXN_MORE or an error. While the kind is 0, requests may be for properties of any kind,
+	 * and a list has what all of them have.
 	 */
 	int (*identify)(struct txn *txn);
 	/*
-	 * The same for a list of its properties, where identify is NULL. It may also return
-	 * TXN_MORE once when it is known. NULL: a list does not ask.
+	 * The same for a list alone: the functions of the properties see to the kind themselves,
+	 * because the readings themselves show it.
 	 */
 	int (*tell)(struct txn *txn);
 	/*
@@ -89,6 +85,8 @@ struct family {
 	uint32_t plain; /* KIND() of those that have the properties whose .kinds is 0; 0: all */
 	/* The chip was away or has restarted: what of device.own is void? NULL: all of it. */
 	void (*forget)(struct device *device);
+	const void *
+		facts; /* for the functions of its properties: what tells these chips from others */
 	const struct property *properties; /* sorted by name, the hidden ones too */
 	const struct area *const *areas;   /* what .area of a field means; [0] is none */
 	const struct property_how *how;    /* ... and .how of a property */

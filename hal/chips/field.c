@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "hal/chips/field.h"
-#include "hal/chips/how.h"
+#include "hal/chips/row.h"
 
 #define BYTES_MAX 4
 

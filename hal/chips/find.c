@@ -75,7 +75,7 @@ const struct property *family_property(const struct family *family, const struct
 	if (!property || is_visible(property, device))
 		return property;
 	/* the request looks which chip it is, and is refused then */
-	bool unknown = family->kind && (!family->kind(device) || family_doubts(device));
+	bool unknown = family->several && (!device->kind || family_doubts(device));
 
 	return unknown ? property : NULL;
 }

@@ -82,7 +82,7 @@ struct property {
 	} measures;
 };
 
-/* For property.kinds: a chip that family.kind calls n. No chip is of KIND(0). */
+/* For property.kinds: a chip whose device.kind is n. No chip is of KIND(0). */
 #define KIND(n) (UINT32_C(1) << (n))
 
 /* What no field can say of a property. */

@@ -5,7 +5,7 @@
 
 #include "hal/chips/field.h"
 #include "hal/chips/format.h"
-#include "hal/chips/how.h"
+#include "hal/chips/row.h"
 #include "hal/chips/thermometers/thermometer_proof.h"
 #include "hal/native/answer.h"
 #include "hal/native/convert/convert.h"
@@ -216,7 +216,7 @@ static int identify(struct job *job)
 	struct device *device = txn->device;
 
 	forget_doubtful(device, txn_now(txn));
-	if (family->kind(device))
+	if (device->kind)
 		return family_has(device, job->property) ? 0
 		       : family_doubts(device)           ? -EIO
 		                                         : -ENOENT;
@@ -345,7 +345,7 @@ void job_run_asking(struct native *native, struct job *job, int64_t now)
 		untold(native, job, err, now);
 		return;
 	}
-	if (err == TXN_MORE && !family->kind(txn->device)) {
+	if (err == TXN_MORE) {
 		run_again(native, job);
 		return;
 	}

@@ -9,7 +9,7 @@
 /* Is it certain without the chip's help which chip it is? */
 static bool is_plain(const struct family *family)
 {
-	return family && family->thermometer && !family->kind && !family->identify;
+	return family && family->thermometer && !family->several;
 }
 
 /* Does a request name its device by an id alone, which no coupler or alias has to be known for? */

@@ -142,7 +142,7 @@ void job_failed(struct native *native, struct job *job, int err)
 			return;
 		}
 		/* Perhaps another chip has taken its place: it is told anew. */
-		if (job->txn.device && job->txn.device->family->identify)
+		if (job->txn.device && job->txn.device->family->doubted)
 			family_forget(job->txn.device);
 		if (job->txn.silent && job->txn.device)
 			job_missing(native, job, err);

@@ -24,21 +24,15 @@ void device_table_destroy(struct device_table *table)
 	free(table->aliases);
 }
 
-/* By its first seven bytes; NULL: not in the table. */
-static struct device *device_find_id(struct device_table *table, const uint8_t id[7])
+struct device *device_find(struct device_table *table, const uint8_t rom[8])
 {
 	for (unsigned i = 0; i < table->count; i++)
-		if (memcmp(table->devices[i].rom, id, 7) == 0)
+		if (memcmp(table->devices[i].rom, rom, 7) == 0)
 			return &table->devices[i];
 	return NULL;
 }
 
-struct device *device_find(struct device_table *table, const uint8_t rom[8])
-{
-	return device_find_id(table, rom);
-}
-
-static struct device *place(struct device_table *table)
+static struct device *free_device(struct device_table *table)
 {
 	if (table->count < DEVICE_MAX)
 		return &table->devices[table->count++];
@@ -57,7 +51,7 @@ struct device *device_add(struct device_table *table, const uint8_t rom[8],
 	struct device *device = device_find(table, rom);
 
 	if (!device) {
-		device = place(table);
+		device = free_device(table);
 		if (!device)
 			return NULL;
 		uint32_t changes = device->changes + 1;
@@ -76,6 +70,7 @@ struct device *device_add(struct device_table *table, const uint8_t rom[8],
 void device_forget(struct device *device)
 {
 	device->changes++;
+	device->kind = 0;
 	device->power = POWER_UNKNOWN;
 	device->shadow_known = false;
 	device->base_of = NULL;

@@ -47,6 +47,7 @@ struct device {
 	uint32_t changes; /* grows when what is cached of it is void */
 	int64_t ok_ns;    /* last transaction that proved its presence; 0: never */
 	int64_t told_ns;  /* when family.identify told its kind; 0: never */
+	uint8_t kind;     /* of a family.several: which of its chips it is; 0: not known */
 
 	uint8_t power;        /* enum device_power */
 	const char *identity; /* what readings have shown that it is; NULL: nothing so far */
@@ -75,6 +76,7 @@ struct device_table {
 
 int device_table_create(struct device_table *table);
 void device_table_destroy(struct device_table *table);
+/* By the first seven bytes of its id; NULL: it is not in the table. */
 struct device *device_find(struct device_table *table, const uint8_t rom[8]);
 /*
  * The device's place, a new one if need be: of a full table that of a device that is away and has

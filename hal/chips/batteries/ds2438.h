@@ -20,7 +20,6 @@ struct ds2438 {
 	 */
 	uint8_t first[8];
 	int64_t temperature_ns; /* its last conversion of the temperature; 0: none is known */
-	uint8_t kind;           /* with family code 26: which chip it is (tmp1826.h) */
 };
 static inline struct ds2438 *ds2438_of(const struct txn *txn)
 {

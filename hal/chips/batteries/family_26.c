@@ -70,9 +70,8 @@ static const struct area *const areas[] = {[PAGES] = &ds2438_pages, [MEMORY] = &
 /* The same row serves both. */
 static int read_temperature(struct txn *txn)
 {
-	bool other = txn->device->family->kind && tmp1826_kind(txn->device) == IS_TMP1826;
-
-	return other ? tmp1826_read_temperature(txn) : ds2438_read_measured(txn);
+	return txn->device->kind == IS_TMP1826 ? tmp1826_read_temperature(txn)
+	                                       : ds2438_read_measured(txn);
 }
 
 enum {
@@ -191,7 +190,7 @@ const struct family family_26 = {
 	.flags = FLAG_VOLT | FLAG_TEMPERATURE,
 	SCAN({"temperature", "temperature"}, {"humidity", "humidity"}, {"VDD", "vdd"},
              {"VAD", "vad"}),
-	.kind = tmp1826_kind,
+	.several = true,
 	.types = types,
 	.identify = tmp1826_identify,
 	.forget = family_26_forget,

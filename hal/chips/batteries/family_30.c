@@ -7,31 +7,12 @@
 #include "hal/chips/batteries/gauge.h"
 #include "hal/chips/batteries/ws603.h"
 
-#define PINS 0x0c /* of the protection register: CC and DC mirror the pins */
-
-/* The pins follow at once, and are nothing that was written. */
-static int saw_protection(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
-{
-	(void)txn, (void)at, (void)n;
-	bytes[0] &= (uint8_t)~PINS;
-	return 0;
-}
-
-static const struct area protection = {
-	.name = "protection",
-	.size = 1,
-	GAUGE_WRITE(1),
-	.saw = saw_protection,
-};
-static const struct area pins = {.name = "pins", .size = 1, GAUGE_READ};
-static const struct area special = {.name = "special", .at = 0x08, .size = 1, GAUGE_WRITE(1)};
-
 enum { PROTECTION = AFTER_GAUGE_AREAS, PINS_OF, SPECIAL };
 static const struct area *const areas[] = {
 	GAUGE_AREAS,
-	[PROTECTION] = &protection,
-	[PINS_OF] = &pins,
-	[SPECIAL] = &special,
+	[PROTECTION] = &gauge_protection,
+	[PINS_OF] = &gauge_pins,
+	[SPECIAL] = GAUGE_REGISTER("special", 0x08),
 };
 
 enum { WAY_PAGE = AFTER_GAUGE_WAYS, WAY_PMOD, WAY_SWEN, WAY_CURRENTBIAS, WAY_VBIAS, WAYS_WS603 };

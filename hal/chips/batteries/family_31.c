@@ -5,30 +5,13 @@
  */
 #include "hal/chips/batteries/gauge.h"
 
-#define PINS 0x0c /* of the protection register: CC and DC mirror the pins */
-
-/* The pins follow at once, and are nothing that was written. */
-static int saw_protection(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
-{
-	(void)txn, (void)at, (void)n;
-	bytes[0] &= (uint8_t)~PINS;
-	return 0;
-}
-
-static const struct area protection = {
-	.name = "protection",
-	.size = 1,
-	GAUGE_WRITE(1),
-	.saw = saw_protection,
-};
-static const struct area pins = {.name = "pins", .size = 1, GAUGE_READ};
-static const struct area special = {.name = "special", .at = 8, .size = 1, GAUGE_WRITE(1)};
-static const struct area eeprom = {.name = "EEPROM", .size = 0x34, GAUGE_STORED(4)};
-
 enum { PROTECTION = AFTER_GAUGE_AREAS, PINS_OF, SPECIAL, BLOCKS };
 static const struct area *const areas[] = {
-	GAUGE_AREAS,          [PROTECTION] = &protection, [PINS_OF] = &pins,
-	[SPECIAL] = &special, [BLOCKS] = &eeprom,
+	GAUGE_AREAS,
+	[PROTECTION] = &gauge_protection,
+	[PINS_OF] = &gauge_pins,
+	[SPECIAL] = GAUGE_REGISTER("special", 0x08),
+	[BLOCKS] = AREA(.name = "EEPROM", .size = 0x34, GAUGE_STORED(4)),
 };
 static const struct property_how how[] = {GAUGE_WAYS};
 

@@ -6,14 +6,11 @@
 #include "hal/chips/batteries/gauge.h"
 
 enum { SPECIAL = AFTER_GAUGE_AREAS, ALARM, EEPROM32 };
-static const struct area special = {.name = "special", .at = 0x08, .size = 1, GAUGE_WRITE(1)};
-static const struct area alarm = {.name = "alarm", .at = 0x85, .size = 1, GAUGE_WRITE(1)};
-static const struct area eeprom = {.name = "EEPROM", .size = 128, GAUGE_STORED(32)};
 static const struct area *const areas[] = {
 	GAUGE_AREAS,
-	[EEPROM32] = &eeprom,
-	[SPECIAL] = &special,
-	[ALARM] = &alarm,
+	[EEPROM32] = AREA(.name = "EEPROM", .size = 128, GAUGE_STORED(32)),
+	[SPECIAL] = GAUGE_REGISTER("special", 0x08),
+	[ALARM] = GAUGE_REGISTER("alarm", 0x85),
 };
 static const struct property_how how[] = {GAUGE_WAYS};
 

@@ -6,12 +6,10 @@
 #include "hal/chips/batteries/gauge.h"
 
 enum { STATUS = AFTER_GAUGE_AREAS, SPECIAL, PARAMETERS };
-static const struct area status = {.name = "status", .at = 0x01, .size = 1, GAUGE_WRITE(1)};
-static const struct area special = {.name = "special", .at = 0x15, .size = 1, GAUGE_WRITE(1)};
 static const struct area *const areas[] = {
 	GAUGE_AREAS,
-	[STATUS] = &status,
-	[SPECIAL] = &special,
+	[STATUS] = GAUGE_REGISTER("status", 0x01),
+	[SPECIAL] = GAUGE_REGISTER("special", 0x15),
 	[PARAMETERS] = &gauge_parameters,
 };
 static const struct property_how how[] = {GAUGE_WAYS};

@@ -6,8 +6,8 @@
 #include "hal/chips/batteries/gauge.h"
 
 enum { SPECIAL = AFTER_GAUGE_AREAS };
-static const struct area special = {.name = "special", .at = 0x08, .size = 1, GAUGE_WRITE(1)};
-static const struct area *const areas[] = {GAUGE_AREAS, [SPECIAL] = &special};
+static const struct area *const areas[] = {
+	GAUGE_AREAS, [SPECIAL] = GAUGE_REGISTER("special", 0x08)};
 static const struct property_how how[] = {GAUGE_WAYS};
 
 #define BIAS(text, life_, resistor) \

@@ -4,7 +4,8 @@
 
 #include "hal/chips/batteries/gauge.h"
 
-#define VIS 0x0e /* the voltage across the resistor */
+#define VIS 0x0e             /* the voltage across the resistor */
+#define PROTECTION_PINS 0x0c /* of the protection register: CC and DC mirror the pins */
 
 const struct area gauge_memory = {.name = "memory", .size = 256, .block = 32, GAUGE_READ};
 const struct area gauge_words = {.name = "words", .size = 256, .block = 2, GAUGE_READ};
@@ -29,6 +30,22 @@ const struct area gauge_charge = {
 	GAUGE_WRITE(2),
 	.is_written = gauge_is_counted,
 };
+
+/* The pins follow at once, and are nothing that was written. */
+static int saw_protection(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
+{
+	(void)txn, (void)at, (void)n;
+	bytes[0] &= (uint8_t)~PROTECTION_PINS;
+	return 0;
+}
+
+const struct area gauge_protection = {
+	.name = "protection",
+	.size = 1,
+	GAUGE_WRITE(1),
+	.saw = saw_protection,
+};
+const struct area gauge_pins = {.name = "pins", .size = 1, GAUGE_READ};
 
 int gauge_read_lock(struct txn *txn)
 {

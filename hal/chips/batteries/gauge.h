@@ -16,11 +16,16 @@
 #define GAUGE_STORED(block_) \
 	.block = (block_), GAUGE_WRITE(block_), .recall = 0xb8, .copy = 0x48, .copy_ns = 10 * TXN_MS
 
+/* An area of one byte that is written by itself. */
+#define GAUGE_REGISTER(text, where) AREA(.name = (text), .at = (where), .size = 1, GAUGE_WRITE(1))
+
 /* A number of two bytes that goes on counting while it is written. */
 bool gauge_is_counted(struct txn *txn, const uint8_t *have, const uint8_t *want, unsigned n);
 extern const struct area gauge_memory, gauge_words, gauge_bytes, gauge_charge, gauge_eeprom;
 /* Of DS2780 and DS2781: one block of their EEPROM. */
 extern const struct area gauge_parameters;
+/* Of DS2720 and DS2760: the protection register, and the same byte to read the pins. */
+extern const struct area gauge_protection, gauge_pins;
 
 /* What stands first in the lists of the families. */
 enum {

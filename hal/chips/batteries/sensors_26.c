@@ -145,9 +145,3 @@ int sensor_read_type(struct txn *txn)
 		type = types[page[0] - 0x19];
 	return property_text(txn, type);
 }
-
-int sensor_reset_datanab(struct txn *txn)
-{
-	(void)txn;
-	return -EOPNOTSUPP;
-}

@@ -10,7 +10,6 @@ int sensor_read_light(struct txn *txn);   /* arg: 1 in lux */
 int sensor_read_setting(struct txn *txn); /* arg: enum sensor_setting */
 int sensor_write_setting(struct txn *txn);
 int sensor_read_type(struct txn *txn);
-int sensor_reset_datanab(struct txn *txn);
 
 enum sensor_humidity { HIH3600, HIH4000, HIH5030, HTM1735, DATANAB };
 enum sensor_setting { B1_GAIN, B1_OFFSET, S3_GAIN };
@@ -32,7 +31,7 @@ enum {
 	[WAY_LIGHT] = {.read = sensor_read_light}, \
 	[WAY_SETTING] = {.read = sensor_read_setting, .write = sensor_write_setting}, \
 	[WAY_SENSOR_TYPE] = {.read = sensor_read_type}, \
-	[WAY_RESET_DATANAB] = {.write = sensor_reset_datanab}
+	[WAY_RESET_DATANAB] = {.write = property_refuse}
 /* clang-format on */
 
 /* Sensors of 0 to 100 %RH within 5, and as much again for their ageing in wet air */

@@ -127,7 +127,6 @@ static void adjust_time(struct txn *txn, uint8_t *want)
 	want[0] = 0; /* of a second */
 }
 
-static const struct area memory = {.name = "memory", .size = 512, .row = 32, RAM};
 static const struct area status = {
 	.name = "status",
 	.at = 0x200,
@@ -137,18 +136,6 @@ static const struct area status = {
 	.load = load_status,
 	.is_written = status_is_written,
 };
-static const struct area control = {.name = "control", .at = 0x201, .size = 1, .row = 1, RAM};
-static const struct area now = {.name = "clock", .at = 0x202, TIMER, RUNS, .adjust = adjust_time};
-static const struct area interval = {
-	.name = "interval", .at = 0x207, TIMER, RUNS, .adjust = adjust_time};
-static const struct area cycle = {
-	.name = "cycle", .at = 0x20c, .size = 4, .block = 4, .row = 4, RAM};
-static const struct area now_alarm = {
-	.name = "clock alarm", .at = 0x210, TIMER, .adjust = adjust_time};
-static const struct area interval_alarm = {
-	.name = "interval alarm", .at = 0x215, TIMER, .adjust = adjust_time};
-static const struct area cycle_alarm = {
-	.name = "cycle alarm", .at = 0x21a, .size = 4, .block = 4, .row = 4, RAM};
 
 /* Three bits as three decimal digits. */
 static double digits_of(unsigned bits)
@@ -191,14 +178,16 @@ static int write_set_alarm(struct txn *txn)
 
 enum { MEMORY = 1, CONTROL, CLOCK, INTERVAL, CYCLE, CLOCK_ALARM, INTERVAL_ALARM, CYCLE_ALARM };
 static const struct area *const areas[] = {
-	[MEMORY] = &memory,
-	[CONTROL] = &control,
-	[CLOCK] = &now,
-	[INTERVAL] = &interval,
-	[CYCLE] = &cycle,
-	[CLOCK_ALARM] = &now_alarm,
-	[INTERVAL_ALARM] = &interval_alarm,
-	[CYCLE_ALARM] = &cycle_alarm,
+	[MEMORY] = AREA(.name = "memory", .size = 512, .row = 32, RAM),
+	[CONTROL] = AREA(.name = "control", .at = 0x201, .size = 1, .row = 1, RAM),
+	[CLOCK] = AREA(.name = "clock", .at = 0x202, TIMER, RUNS, .adjust = adjust_time),
+	[INTERVAL] = AREA(.name = "interval", .at = 0x207, TIMER, RUNS, .adjust = adjust_time),
+	[CYCLE] = AREA(.name = "cycle", .at = 0x20c, .size = 4, .block = 4, .row = 4, RAM),
+	[CLOCK_ALARM] = AREA(.name = "clock alarm", .at = 0x210, TIMER, .adjust = adjust_time),
+	[INTERVAL_ALARM] = AREA(.name = "interval alarm", .at = 0x215, TIMER,
+                                .adjust = adjust_time),
+	[CYCLE_ALARM] = AREA(.name = "cycle alarm", .at = 0x21a, .size = 4, .block = 4, .row = 4,
+                             RAM),
 };
 
 enum { WAY_ALARM = 1, WAY_SET_ALARM };

@@ -11,33 +11,21 @@
 
 enum { READ_TYPE = 0x12, READ_BLOCK = 0x14, WRITE_BLOCK };
 
-unsigned bae_kind(const struct device *device)
-{
-	return ((const struct bae *)device->own)->kind;
-}
-
 int bae_identify(struct txn *txn)
 {
 	static const uint8_t command = READ_TYPE;
-	struct bae *bae = txn->device->own;
 	uint8_t type[2];
-	int err;
+	int err = txn_ask_crc16(txn, &command, 1, type, sizeof(type));
 
-	if (bae->kind != BAE_UNKNOWN)
-		return family_has(txn->device, txn->property) ? 0 : -ENOENT;
-	err = txn_command(txn, &command, 1);
 	if (!err)
-		err = txn_read_crc16(txn, &command, 1, type, sizeof(type));
-	if (err)
-		return err;
-	bae->kind = type[0] == 2 ? BAE_910 : type[0] == 3 ? BAE_911 : BAE_OTHER;
-	return TXN_MORE;
+		txn->device->kind = type[0] == 2 ? BAE_910 : type[0] == 3 ? BAE_911 : BAE_OTHER;
+	return err;
 }
 
 /* The EEPROM of a 0910 stands elsewhere. */
 static unsigned address(const struct txn *txn, const struct area *area, unsigned at)
 {
-	bool moved = area->size > 0x3000 && bae_kind(txn->device) == BAE_910;
+	bool moved = area->size > 0x3000 && txn->device->kind == BAE_910;
 
 	return area->at + at + (moved ? EEPROM_910 : 0);
 }
@@ -46,9 +34,7 @@ int bae_load(struct txn *txn, const struct area *area, unsigned at, uint8_t *byt
 {
 	unsigned where = address(txn, area, at);
 	const uint8_t command[] = {READ_BLOCK, (uint8_t)where, (uint8_t)(where >> 8), (uint8_t)n};
-	int err = txn_command(txn, command, sizeof(command));
-
-	return err ? err : txn_read_crc16(txn, command, sizeof(command), bytes, n);
+	return txn_ask_crc16(txn, command, sizeof(command), bytes, n);
 }
 
 int bae_confirmed(struct txn *txn, const uint8_t *command, unsigned n)

@@ -8,13 +8,12 @@
 
 #include "hal/chips/family.h"
 
-enum bae_kind { BAE_UNKNOWN, BAE_910, BAE_911, BAE_OTHER };
+/* device.kind */
+enum bae_kind { BAE_910 = 1, BAE_911, BAE_OTHER };
 struct bae {
-	uint8_t kind;
 	uint32_t sector; /* of the card */
 };
-unsigned bae_kind(const struct device *device);
-/* 0: it is known which kind it is; TXN_MORE not yet, -ENOENT it has no such property. */
+/* family.identify */
 int bae_identify(struct txn *txn);
 
 /* Areas: blocks of memory, read and written by address. */

@@ -34,10 +34,8 @@ static int query(struct txn *txn, uint8_t *bytes, unsigned n)
 {
 	struct run *run = txn_own(txn, struct run);
 	uint8_t head[3] = {QUERY};
-	int err = txn_command(txn, head, 1);
+	int err = txn_ask(txn, head, 1, head + 1, 2);
 
-	if (!err)
-		err = txn_read(txn, head + 1, 2);
 	if (err)
 		return err;
 	if (head[1] == BUSY)
@@ -95,10 +93,8 @@ int bae_read_expander(struct txn *txn)
 	const uint8_t in[] = {EXPANDER, (uint8_t)txn->property->arg};
 	struct run *run = txn_own(txn, struct run);
 	uint8_t byte = 0, none[1];
-	int err = bae_identify(txn);
+	int err;
 
-	if (err)
-		return err;
 	switch (run->step) {
 	case 0:
 		return next(txn, start(txn, END_I2C, NULL, 0, none, 0));
@@ -120,10 +116,8 @@ int bae_write_expander(struct txn *txn)
 	const uint8_t in[] = {EXPANDER, (uint8_t)txn->property->arg, value};
 	struct run *run = txn_own(txn, struct run);
 	uint8_t byte = 0, none[1];
-	int err = bae_identify(txn);
+	int err;
 
-	if (err)
-		return err;
 	if (txn->number[0] > 0xff)
 		return -EINVAL;
 	switch (run->step) {
@@ -203,10 +197,8 @@ static int read_sector(struct txn *txn, unsigned from, bool compare)
 
 int bae_read_sector(struct txn *txn)
 {
-	int err = bae_identify(txn);
+	int err = read_sector(txn, 0, false);
 
-	if (!err)
-		err = read_sector(txn, 0, false);
 	if (!err)
 		txn->len = SECTOR;
 	return err;
@@ -217,10 +209,8 @@ int bae_write_sector(struct txn *txn)
 {
 	struct run *run = txn_own(txn, struct run);
 	uint8_t command[3 + BLOCK] = {SEND, BLOCK, CARD_WRITE}, none[1];
-	int err = bae_identify(txn);
+	int err;
 
-	if (err)
-		return err;
 	if (txn->at || txn->len != SECTOR)
 		return -EINVAL;
 	switch (run->step) {
@@ -248,14 +238,13 @@ int bae_write_text(struct txn *txn)
 	struct run *run = txn_own(txn, struct run);
 	size_t at = (size_t)run->chunk * BLOCK, n = txn->len - at < BLOCK ? txn->len - at : BLOCK;
 	uint8_t command[3 + BLOCK] = {SEND, (uint8_t)n, (uint8_t)txn->property->arg}, none[1];
-	int err = bae_identify(txn);
 
-	if (err || txn->len == 0)
-		return err;
+	if (txn->len == 0)
+		return 0;
 	if (txn->at)
 		return -EINVAL;
 	memcpy(command + 3, txn->data + at, n);
-	err = do_command(txn, command, (unsigned)(3 + n), none, 0);
+	int err = do_command(txn, command, (unsigned)(3 + n), none, 0);
 	if (err)
 		return err;
 	run->chunk++;

@@ -9,8 +9,8 @@
 #include <string.h>
 
 #include "hal/chips/family.h"
-#include "hal/chips/how.h"
 #include "hal/chips/makers/eds.h"
+#include "hal/chips/row.h"
 
 enum { PAGE = 32, ID_AT = 0x1e };
 enum { LATCHES_AT = 0x23, PULSES_AT = 0x30, COUNTERS = 8 };
@@ -22,7 +22,6 @@ enum { PULSE_RESET = 4, LATCH_RESET = 5, STATE = 15 }; /* in eds_switches */
 
 /* What is known of the sensor (device.own). */
 struct eds {
-	uint8_t kind;
 	uint32_t seconds; /* that it ran when they were last read */
 };
 
@@ -33,21 +32,16 @@ struct visit {
 	uint32_t pulses[COUNTERS];
 };
 
-unsigned eds_kind_of(const struct device *device)
-{
-	return ((const struct eds *)device->own)->kind;
-}
-
 static bool is_octal(unsigned kind)
 {
 	return kind >= EDS0080 && kind <= EDS0085;
 }
 
-static unsigned kind_of_id(unsigned id)
+static uint8_t kind_of_id(unsigned id)
 {
 	static const uint8_t ids[EDS_OTHER] = {0,    0x64, 0x65, 0x66, 0x67, 0x68, 0x70,
 	                                       0x71, 0x72, 0x80, 0x82, 0x83, 0x85, 0x90};
-	unsigned kind = EDS0064;
+	uint8_t kind = EDS0064;
 
 	while (kind < EDS_OTHER && ids[kind] != id)
 		kind++;
@@ -56,17 +50,12 @@ static unsigned kind_of_id(unsigned id)
 
 int eds_identify(struct txn *txn)
 {
-	struct eds *chip = txn->device->own;
 	uint8_t page[PAGE];
-	int err;
+	int err = area_fetch(txn, &eds_memory, 0, page, PAGE);
 
-	if (chip->kind)
-		return family_has(txn->device, txn->property) ? 0 : -ENOENT;
-	err = area_fetch(txn, &eds_memory, 0, page, PAGE);
-	if (err)
-		return err;
-	chip->kind = (uint8_t)kind_of_id(page[ID_AT] | (unsigned)page[ID_AT + 1] << 8);
-	return TXN_MORE;
+	if (!err)
+		txn->device->kind = kind_of_id(page[ID_AT] | (unsigned)page[ID_AT + 1] << 8);
+	return err;
 }
 
 /* The seconds since it was switched on: fewer than before prove a restart. */
@@ -74,10 +63,10 @@ static int saw(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
 {
 	struct eds *chip = txn->device->own;
 	struct visit *visit = txn_own(txn, struct visit);
-	unsigned clock = chip->kind >= EDS0080 ? 0x2c : 0x3c;
+	unsigned kind = txn->device->kind, clock = kind >= EDS0080 ? 0x2c : 0x3c;
 
 	visit->at = (uint8_t)at;
-	if (chip->kind != EDS_OTHER && at <= clock && clock + 4 <= at + n) {
+	if (kind != EDS_OTHER && at <= clock && clock + 4 <= at + n) {
 		uint32_t seconds = area_le32(bytes + clock - at);
 
 		txn->restarted |= seconds < chip->seconds;
@@ -112,7 +101,7 @@ static bool same(const uint8_t *have, const uint8_t *want, unsigned n, unsigned 
 static bool page_is_written(struct txn *txn, const uint8_t *have, const uint8_t *want, unsigned n)
 {
 	const struct visit *visit = txn_own(txn, struct visit);
-	unsigned last = is_octal(eds_kind_of(txn->device)) ? 0x80 : 0x40;
+	unsigned last = is_octal(txn->device->kind) ? 0x80 : 0x40;
 
 	return same(have, want, n, visit->at == last ? n - 1 : n);
 }
@@ -142,8 +131,8 @@ static void reset_nothing_else(struct txn *txn, uint8_t *want)
  * within 700 ms, and the old bytes are read until then.
  */
 #define PAGES \
-	.address_bytes = 2, .read = 0xa5, .check = AREA_CRC16, .begin = eds_identify, \
-	.write = 0x0f, .verify = 0xaa, .copy = 0x55, .write_crc16 = true, .copy_ns = 700 * TXN_MS
+	.address_bytes = 2, .read = 0xa5, .check = AREA_CRC16, .write = 0x0f, .verify = 0xaa, \
+	.copy = 0x55, .write_crc16 = true, .copy_ns = 700 * TXN_MS
 
 const struct area eds_memory = {
 	.name = "memory",
@@ -198,15 +187,11 @@ int eds_read_type(struct txn *txn)
 /* The sensor measures into the other pages. */
 int eds_write_memory(struct txn *txn)
 {
-	unsigned at = (unsigned)txn->element * PAGE + (unsigned)txn->at, kind;
-	unsigned n = (unsigned)txn->len, first, end;
-	int err = eds_identify(txn);
+	unsigned at = (unsigned)txn->element * PAGE + (unsigned)txn->at, n = (unsigned)txn->len;
+	unsigned kind = txn->device->kind;
+	unsigned first = is_octal(kind) ? 0x60 : kind == EDS0090 ? EDS_SWITCHES_AT : 0x40;
+	unsigned end = is_octal(kind) ? 0xa0 : 0x60;
 
-	if (err)
-		return err;
-	kind = eds_kind_of(txn->device);
-	first = is_octal(kind) ? 0x60 : kind == EDS0090 ? EDS_SWITCHES_AT : 0x40;
-	end = is_octal(kind) ? 0xa0 : 0x60;
 	if (kind == EDS_OTHER || at < first || at + n > end)
 		return -EOPNOTSUPP;
 	return kind == EDS0090 ? area_write(txn, &eds_switches, at - first, txn->data, NULL, n)
@@ -263,11 +248,6 @@ int eds_write_state(struct txn *txn)
 	return which & ~states_that_count(function) ? -EOPNOTSUPP : TXN_MORE;
 }
 
-static int fetch_counters(struct txn *txn, uint8_t bytes[PAGE], unsigned page)
-{
-	return area_fetch(txn, &eds_memory, page * PAGE, bytes, PAGE);
-}
-
 /* Is what was to be reset as it was before? */
 static bool is_unchanged(struct txn *txn, const uint8_t *page, unsigned first)
 {
@@ -301,17 +281,15 @@ int eds_write_reset(struct txn *txn)
 	struct visit *visit = txn_own(txn, struct visit);
 	unsigned first = visit->stage % 3 ? 4 : 0;
 	uint8_t page[PAGE] = {0};
-	int err = eds_identify(txn);
+	int err;
 
-	if (err)
-		return err;
 	if (visit->stage == 2) {
 		uint8_t bits = (uint8_t)txn->bits;
 		uint8_t which = txn->one ? (uint8_t)(1 << txn->element) : 0xff;
 
 		err = area_write(txn, &eds_switches, txn->property->field.at, &bits, &which, 1);
 	} else {
-		err = fetch_counters(txn, page, first ? 2 : 1);
+		err = area_fetch(txn, &eds_memory, (first ? 2 : 1) * PAGE, page, PAGE);
 	}
 	if (err)
 		return err;
@@ -327,13 +305,12 @@ int eds_write_clear(struct txn *txn)
 	static const uint8_t command = CLEAR_ALARMS;
 	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t page[PAGE];
-	int err = eds_identify(txn);
 
-	if (err || txn->number[0] == 0)
-		return err;
+	if (txn->number[0] == 0)
+		return 0;
 	if (visit->stage == CLEAR_TIMES)
-		return area_fetch(txn, &eds_memory, PAGE, page, PAGE); /* it is there */
-	err = txn_command(txn, &command, 1);
+		return area_fetch(txn, &eds_memory, PAGE, page, PAGE); /* the sensor is there */
+	int err = txn_command(txn, &command, 1);
 	txn_void(txn);
 	visit->stage++;
 	return err ? err : TXN_MORE;

@@ -4,7 +4,7 @@
 
 #include "hal/chips/area.h"
 
-/* Which sensor it is (family.kind). */
+/* Which sensor it is (device.kind). */
 enum eds_kind {
 	EDS0064 = 1,
 	EDS0065,
@@ -27,8 +27,7 @@ enum eds_kind {
 extern const struct area eds_memory, eds_switches;
 enum { EDS_SWITCHES_AT = 0x50 };
 
-unsigned eds_kind_of(const struct device *device);
-/* 0: it is known which sensor this is; TXN_MORE it is now; -ENOENT it has no such property. */
+/* family.identify */
 int eds_identify(struct txn *txn);
 int eds_read_tag(struct txn *txn);
 int eds_read_type(struct txn *txn);

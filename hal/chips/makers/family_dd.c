@@ -26,18 +26,12 @@ static int read_prime(struct txn *txn)
 	return 0;
 }
 
-/* The bus has no words behind a dot. */
-static int read_characters(struct txn *txn)
-{
-	(void)txn;
-	return -EOPNOTSUPP;
-}
-
 enum { WAY_EXAMPLE = 1, WAY_PRIME, WAY_CHARACTERS };
 static const struct property_how how[] = {
 	[WAY_EXAMPLE] = {.read = read_example},
 	[WAY_PRIME] = {.read = read_prime},
-	[WAY_CHARACTERS] = {.read = read_characters},
+	/* the bus has no words behind a dot */
+	[WAY_CHARACTERS] = {.read = property_refuse},
 };
 
 static const struct property properties[] = {

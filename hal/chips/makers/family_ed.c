@@ -5,10 +5,6 @@
  */
 #include "hal/chips/makers/inferno.h"
 
-/* Numbers have their low byte first. */
-static const struct area status = {.name = "status", .size = 8, .block = 8, .read = 0xfd};
-static const struct area version = {.name = "version", .size = 4, .block = 4, .read = 0xfe};
-
 /* It comes up as what its firmware makes of it. */
 static int exit_update(struct txn *txn)
 {
@@ -19,8 +15,12 @@ static int exit_update(struct txn *txn)
 	return err;
 }
 
+/* Numbers have their low byte first. */
 enum { STATUS = 1, VERSION };
-static const struct area *const areas[] = {[STATUS] = &status, [VERSION] = &version};
+static const struct area *const areas[] = {
+	[STATUS] = AREA(.name = "status", .size = 8, .block = 8, .read = 0xfd),
+	[VERSION] = AREA(.name = "version", .size = 4, .block = 4, .read = 0xfe),
+};
 
 enum {
 	WAY_DEVICE = 1,
@@ -111,8 +111,8 @@ const struct family family_ed = {
 	.proof = PROOF_PRESENCE,
 	.type = "InfernoEmbedded",
 	.flags = FLAG_RESUME,
-	.kind = inferno_kind,
-	.tell = inferno_identify,
+	.several = true,
+	.identify = inferno_identify,
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

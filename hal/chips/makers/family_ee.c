@@ -5,6 +5,7 @@
  */
 #include <errno.h>
 
+#include "hal/chips/field.h"
 #include "hal/chips/makers/hobby_boards.h"
 
 /* All ones: there is no measurement. */
@@ -22,10 +23,7 @@ static int saw_in_case(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
 	return 0;
 }
 
-static const struct area temperature = HOBBY_VALUE("temperature", 2, 0x21);
-static const struct area temperature_offset = HOBBY_SETTING("temperature offset", 2, 0x23, 0x22);
-static const struct area uvi = {.name = "UVI", .size = 1, .block = 1, .read = 0x24, .saw = saw_uvi};
-static const struct area uvi_offset = HOBBY_SETTING("UVI offset", 1, 0x26, 0x25);
+static const struct area uvi_offset = {HOBBY_SETTING("UVI offset", 1, 0x26, 0x25)};
 static const struct area in_case = {
 	.name = "in case",
 	.size = 1,
@@ -43,7 +41,7 @@ static int read_uvi(struct txn *txn)
 	int err;
 
 	if (txn->phase == 0) {
-		err = hobby_read(txn);
+		err = field_read(txn);
 		if (err)
 			return err;
 		txn->phase = 1;
@@ -55,9 +53,9 @@ static int read_uvi(struct txn *txn)
 enum { TEMPERATURE = AFTER_HOBBY_AREAS, TEMPERATURE_OFFSET, UVI_VALUE, UVI_OFFSET, IN_CASE };
 static const struct area *const areas[] = {
 	HOBBY_AREAS,
-	[TEMPERATURE] = &temperature,
-	[TEMPERATURE_OFFSET] = &temperature_offset,
-	[UVI_VALUE] = &uvi,
+	[TEMPERATURE] = AREA(HOBBY_VALUE("temperature", 2, 0x21)),
+	[TEMPERATURE_OFFSET] = AREA(HOBBY_SETTING("temperature offset", 2, 0x23, 0x22)),
+	[UVI_VALUE] = AREA(.name = "UVI", .size = 1, .block = 1, .read = 0x24, .saw = saw_uvi),
 	[UVI_OFFSET] = &uvi_offset,
 	[IN_CASE] = &in_case,
 };
@@ -72,17 +70,14 @@ static const struct property properties[] = {
 	PROPERTY("UVI/UVI", FLOAT, VOLATILE, READ, METER, FIELD(UVI_VALUE, .unit = 0.1),
                  .how = WAY_UVI),
 	PROPERTY("UVI/UVI_offset", FLOAT, STABLE, BOTH, METER,
-                 FIELD(UVI_OFFSET, .is_signed = true, .unit = 0.1), .how = WAY_HOBBY_FIELD),
-	PROPERTY("UVI/in_case", YESNO, STABLE, BOTH, METER, FIELD(IN_CASE, .unit = 1 / 255.0),
-                 .how = WAY_HOBBY_FIELD),
+                 FIELD(UVI_OFFSET, .is_signed = true, .unit = 0.1)),
+	PROPERTY("UVI/in_case", YESNO, STABLE, BOTH, METER, FIELD(IN_CASE, .unit = 1 / 255.0)),
 	PROPERTY("temperature", TEMPERATURE, VOLATILE, READ, METER,
-                 FIELD(TEMPERATURE, .bytes = 2, .is_signed = true, .unit = 0.5),
-                 .how = WAY_HOBBY_FIELD),
+                 FIELD(TEMPERATURE, .bytes = 2, .is_signed = true, .unit = 0.5)),
 	PROPERTY("temperature_offset", TEMPGAP, STABLE, BOTH, METER,
-                 FIELD(TEMPERATURE_OFFSET, .bytes = 2, .is_signed = true, .unit = 0.5),
-                 .how = WAY_HOBBY_FIELD),
+                 FIELD(TEMPERATURE_OFFSET, .bytes = 2, .is_signed = true, .unit = 0.5)),
 	PROPERTY("type", ASCII, VOLATILE, READ, .size = 32, .how = WAY_HOBBY_TYPE),
-	PROPERTY("type_number", UNSIGNED, STABLE, READ, FIELD(HOBBY_TYPE), .how = WAY_HOBBY_FIELD),
+	PROPERTY("type_number", UNSIGNED, STABLE, READ, FIELD(HOBBY_TYPE)),
 	PROPERTY("version", ASCII, STABLE, READ, .size = 7, .how = WAY_HOBBY_VERSION),
 	PROPERTY("version_number", UNSIGNED, STABLE, READ, .hidden = true,
                  FIELD(HOBBY_VERSION, .bytes = 2)),
@@ -94,8 +89,8 @@ const struct family family_ee = {
 	.code = 0xee,
 	.proof = PROOF_PRESENCE,
 	.type = "HobbyBoards_EE",
-	.kind = hobby_kind,
-	.tell = hobby_identify,
+	.several = true,
+	.identify = hobby_identify,
 	.types = types,
 	AREAS(areas),
 	HOW(how),

@@ -6,39 +6,19 @@
  */
 #include <errno.h>
 
-#include "hal/chips/field.h"
 #include "hal/chips/makers/hobby_boards.h"
 
 #define VERSION_1_80 (1 << 8 | 80) /* of a moisture meter: other commands from here on */
 #define SINGLE_CHANNEL 0x02        /* of the hub's settings */
 
-static const struct area polling = HOBBY_SETTING("polling frequency", 1, 0x14, 0x94);
-static const struct area available = HOBBY_VALUE("polling frequencies", 1, 0x15);
-static const struct area location = HOBBY_SETTING("location", 21, 0x16, 0x96);
-static const struct area config = HOBBY_SETTING("config", 1, 0x61, 0xe1);
-static const struct area temperature = HOBBY_VALUE("temperature", 2, 0x40);
+static const struct area leaf[] = {{HOBBY_SETTING("leaf", 1, 0x23, 0x22)},
+                                   {HOBBY_SETTING("leaf", 1, 0x22, 0xa2)}};
+static const struct area leaf_max[] = {{HOBBY_SETTING("leaf maximum", 2, 0x25, 0x24)},
+                                       {HOBBY_SETTING("leaf maximum", 2, 0x23, 0xa3)}};
+static const struct area leaf_min[] = {{HOBBY_SETTING("leaf minimum", 2, 0x27, 0x26)},
+                                       {HOBBY_SETTING("leaf minimum", 2, 0x24, 0xa4)}};
 
-static const struct area pressure = HOBBY_VALUE("pressure", 2, 0x22);
-static const struct area pressure_altitude = HOBBY_VALUE("pressure altitude", 2, 0x24);
-static const struct area altitude = HOBBY_SETTING("altitude", 2, 0x26, 0xa6);
-
-static const struct area corrected = HOBBY_VALUE("humidity", 2, 0x21);
-static const struct area uncorrected = HOBBY_VALUE("raw humidity", 2, 0x22);
-static const struct area humidity_offset = HOBBY_SETTING("humidity offset", 2, 0x24, 0xa4);
-
-static const struct area temperatures = HOBBY_VALUE("temperatures", 12, 0x21);
-
-static const struct area sensors = HOBBY_VALUE("sensors", 4, 0x21);
-static const struct area raw = HOBBY_VALUE("raw", 8, 0x31);
-static const struct area leaf[] = {HOBBY_SETTING("leaf", 1, 0x23, 0x22),
-                                   HOBBY_SETTING("leaf", 1, 0x22, 0xa2)};
-static const struct area leaf_max[] = {HOBBY_SETTING("leaf maximum", 2, 0x25, 0x24),
-                                       HOBBY_SETTING("leaf maximum", 2, 0x23, 0xa3)};
-static const struct area leaf_min[] = {HOBBY_SETTING("leaf minimum", 2, 0x27, 0x26),
-                                       HOBBY_SETTING("leaf minimum", 2, 0x24, 0xa4)};
-
-static const struct area hub_config = HOBBY_SETTING("hub config", 1, 0x61, 0x60);
-static const struct area shorted = HOBBY_VALUE("shorted", 1, 0x23);
+static const struct area hub_config = {HOBBY_SETTING("hub config", 1, 0x61, 0x60)};
 
 static int saw_branches(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
 {
@@ -76,12 +56,9 @@ static int write_branches(struct txn *txn)
 {
 	static const uint8_t zero = 0, single = SINGLE_CHANNEL;
 	const uint8_t on = txn->bits & 0x0f, mask = 0x0f;
-	int err = hobby_identify(txn);
 
-	if (err)
-		return err;
 	if (txn->phase == 0 && (on & (on - 1))) {
-		err = area_write(txn, &hub_config, 0, &zero, &single, 1);
+		int err = area_write(txn, &hub_config, 0, &zero, &single, 1);
 		if (err)
 			return err;
 		txn->phase = 1;
@@ -96,11 +73,10 @@ static int learn_version(struct txn *txn)
 {
 	struct hobby *board = txn->device->own;
 	uint8_t bytes[2];
-	int err = hobby_identify(txn);
 
-	if (err || board->version)
-		return err;
-	err = area_read(txn, &hobby_version, 0, bytes, 2);
+	if (board->version)
+		return 0;
+	int err = area_read(txn, &hobby_version, 0, bytes, 2);
 	if (err)
 		return err;
 	board->version = (uint16_t)(bytes[0] | bytes[1] << 8);
@@ -169,28 +145,8 @@ static int write_limit(struct txn *txn)
 static int write_command(struct txn *txn)
 {
 	const uint8_t command = (uint8_t)txn->property->arg;
-	int err = hobby_identify(txn);
 
-	return err || txn->number[0] == 0 ? err : txn_command(txn, &command, 1);
-}
-
-/* The other boards have no such command. */
-static int read_hub_config(struct txn *txn)
-{
-	int err = hobby_identify(txn);
-
-	if (err)
-		return err;
-	return hobby_kind(txn->device) == HOBBY_HUB ? field_read(txn) : -ENOENT;
-}
-
-static int write_hub_config(struct txn *txn)
-{
-	int err = hobby_identify(txn);
-
-	if (err)
-		return err;
-	return hobby_kind(txn->device) == HOBBY_HUB ? field_write(txn) : -ENOENT;
+	return txn->number[0] != 0 ? txn_command(txn, &command, 1) : 0;
 }
 
 enum {
@@ -214,33 +170,32 @@ enum {
 };
 static const struct area *const areas[] = {
 	HOBBY_AREAS,
-	[POLLING] = &polling,
-	[AVAILABLE] = &available,
-	[LOCATION] = &location,
-	[CONFIG] = &config,
-	[TEMPERATURE] = &temperature,
-	[PRESSURE] = &pressure,
-	[PRESSURE_ALTITUDE] = &pressure_altitude,
-	[ALTITUDE] = &altitude,
-	[CORRECTED] = &corrected,
-	[UNCORRECTED] = &uncorrected,
-	[HUMIDITY_OFFSET] = &humidity_offset,
-	[TEMPERATURES] = &temperatures,
-	[SENSORS] = &sensors,
-	[RAW] = &raw,
+	[POLLING] = AREA(HOBBY_SETTING("polling frequency", 1, 0x14, 0x94)),
+	[AVAILABLE] = AREA(HOBBY_VALUE("polling frequencies", 1, 0x15)),
+	[LOCATION] = AREA(HOBBY_SETTING("location", 21, 0x16, 0x96)),
+	[CONFIG] = AREA(HOBBY_SETTING("config", 1, 0x61, 0xe1)),
+	[TEMPERATURE] = AREA(HOBBY_VALUE("temperature", 2, 0x40)),
+	[PRESSURE] = AREA(HOBBY_VALUE("pressure", 2, 0x22)),
+	[PRESSURE_ALTITUDE] = AREA(HOBBY_VALUE("pressure altitude", 2, 0x24)),
+	[ALTITUDE] = AREA(HOBBY_SETTING("altitude", 2, 0x26, 0xa6)),
+	[CORRECTED] = AREA(HOBBY_VALUE("humidity", 2, 0x21)),
+	[UNCORRECTED] = AREA(HOBBY_VALUE("raw humidity", 2, 0x22)),
+	[HUMIDITY_OFFSET] = AREA(HOBBY_SETTING("humidity offset", 2, 0x24, 0xa4)),
+	[TEMPERATURES] = AREA(HOBBY_VALUE("temperatures", 12, 0x21)),
+	[SENSORS] = AREA(HOBBY_VALUE("sensors", 4, 0x21)),
+	[RAW] = AREA(HOBBY_VALUE("raw", 8, 0x31)),
 	[HUB_CONFIG] = &hub_config,
-	[SHORTED] = &shorted,
+	[SHORTED] = AREA(HOBBY_VALUE("shorted", 1, 0x23)),
 	[BRANCHES] = &branches,
 };
 
-enum { WAY_BRANCH = AFTER_HOBBY_WAYS, WAY_LEAF, WAY_LIMIT, WAY_COMMAND, WAY_HUB };
+enum { WAY_BRANCH = AFTER_HOBBY_WAYS, WAY_LEAF, WAY_LIMIT, WAY_COMMAND };
 static const struct property_how how[] = {
 	HOBBY_WAYS,
-	[WAY_BRANCH] = {.read = hobby_read, .write = write_branches},
+	[WAY_BRANCH] = {.write = write_branches},
 	[WAY_LEAF] = {.read = read_leaf, .write = write_leaf},
 	[WAY_LIMIT] = {.read = read_limit, .write = write_limit},
 	[WAY_COMMAND] = {.write = write_command},
-	[WAY_HUB] = {.read = read_hub_config, .write = write_hub_config},
 };
 
 /* clang-format off */
@@ -249,14 +204,12 @@ static const struct property_how how[] = {
 /* A value of two bytes. */
 #define VALUE(text, kind, board, area_, unit_) \
 	PROPERTY(text, kind, VOLATILE, READ, OF(board), \
-	         FIELD(area_, .bytes = 2, .is_signed = true, .unit = (unit_)), \
-	         .how = WAY_HOBBY_FIELD)
+	         FIELD(area_, .bytes = 2, .is_signed = true, .unit = (unit_)))
 #define SETTING(text, kind, life_, board, area_, unit_) \
 	PROPERTY(text, kind, life_, BOTH, OF(board), \
-	         FIELD(area_, .bytes = 2, .is_signed = true, .unit = (unit_)), \
-	         .how = WAY_HOBBY_FIELD)
+	         FIELD(area_, .bytes = 2, .is_signed = true, .unit = (unit_)))
 #define BYTE(text, access_, board, area_) \
-	PROPERTY(text, UNSIGNED, STABLE, access_, OF(board), FIELD(area_), .how = WAY_HOBBY_FIELD)
+	PROPERTY(text, UNSIGNED, STABLE, access_, OF(board), FIELD(area_))
 #define TEXT(text, board) \
 	PROPERTY(text, ASCII, STABLE, BOTH, OF(board), .size = 21, FIELD(LOCATION), \
 	         .how = WAY_HOBBY_TEXT)
@@ -278,10 +231,9 @@ static const struct property properties[] = {
 	FOLDER("hub", HUB),
 	PROPERTY("hub/branch", BITS, STABLE, BOTH, AGGREGATE(4, NUMBERS), OF(HUB),
 	         FIELD(BRANCHES), .holds = true, .how = WAY_BRANCH),
-	PROPERTY("hub/config", UNSIGNED, VOLATILE, BOTH, .hidden = true, FIELD(HUB_CONFIG),
-	         .how = WAY_HUB),
-	PROPERTY("hub/short", BITS, STABLE, READ, AGGREGATE(4, NUMBERS), OF(HUB), FIELD(SHORTED),
-	         .how = WAY_HOBBY_FIELD),
+	PROPERTY("hub/config", UNSIGNED, VOLATILE, BOTH, .hidden = true, OF(HUB),
+	         FIELD(HUB_CONFIG)),
+	PROPERTY("hub/short", BITS, STABLE, READ, AGGREGATE(4, NUMBERS), OF(HUB), FIELD(SHORTED)),
 	FOLDER("humidity", HUMIDITY),
 	BYTE("humidity/config", BOTH, HUMIDITY, CONFIG),
 	VALUE("humidity/humidity_corrected", FLOAT, HUMIDITY, CORRECTED, 0.01),
@@ -300,13 +252,13 @@ static const struct property properties[] = {
 	PROPERTY("moisture/calibrate/min", UNSIGNED, STABLE, BOTH, OF(MOISTURE), .arg = 0,
 	         .how = WAY_LIMIT),
 	PROPERTY("moisture/calibrate/raw", UNSIGNED, VOLATILE, READ, AGGREGATE(4, NUMBERS),
-	         OF(MOISTURE), FIELD(RAW, .bytes = 2, .stride = 2), .how = WAY_HOBBY_FIELD),
+	         OF(MOISTURE), FIELD(RAW, .bytes = 2, .stride = 2)),
 	PROPERTY("moisture/is_leaf", BITS, VOLATILE, BOTH, AGGREGATE(4, NUMBERS), OF(MOISTURE),
 	         .arg = 0x00, .how = WAY_LEAF),
 	PROPERTY("moisture/is_moisture", BITS, STABLE, BOTH, AGGREGATE(4, NUMBERS), OF(MOISTURE),
 	         .arg = 0x0f, .how = WAY_LEAF),
 	PROPERTY("moisture/sensor", INTEGER, VOLATILE, READ, AGGREGATE(4, NUMBERS), OF(MOISTURE),
-	         FIELD(SENSORS, .stride = 1), .how = WAY_HOBBY_FIELD),
+	         FIELD(SENSORS, .stride = 1)),
 	FOLDER("multitemp", MULTITEMP),
 	BYTE("multitemp/config", READ, MULTITEMP, CONFIG),
 	TEXT("multitemp/location", MULTITEMP),
@@ -316,10 +268,9 @@ static const struct property properties[] = {
 	COMMAND("multitemp/reset", MULTITEMP, 0xf7),
 	PROPERTY("multitemp/temperature", TEMPERATURE, VOLATILE, READ, AGGREGATE(6, NUMBERS),
 	         OF(MULTITEMP),
-	         FIELD(TEMPERATURES, .bytes = 2, .stride = 2, .is_signed = true, .unit = 0.1),
-	         .how = WAY_HOBBY_FIELD),
+	         FIELD(TEMPERATURES, .bytes = 2, .stride = 2, .is_signed = true, .unit = 0.1)),
 	PROPERTY("type", ASCII, VOLATILE, READ, .size = 32, .how = WAY_HOBBY_TYPE),
-	PROPERTY("type_number", UNSIGNED, STABLE, READ, FIELD(HOBBY_TYPE), .how = WAY_HOBBY_FIELD),
+	PROPERTY("type_number", UNSIGNED, STABLE, READ, FIELD(HOBBY_TYPE)),
 	PROPERTY("version", ASCII, VOLATILE, READ, .size = 7, .how = WAY_HOBBY_VERSION),
 	PROPERTY("version_number", UNSIGNED, STABLE, READ, .hidden = true,
 	         FIELD(HOBBY_VERSION, .bytes = 2)),
@@ -332,8 +283,8 @@ const struct family family_ef = {
 	.code = 0xef,
 	.proof = PROOF_PRESENCE,
 	.type = "HobbyBoards_EF",
-	.kind = hobby_kind,
-	.tell = hobby_identify,
+	.several = true,
+	.identify = hobby_identify,
 	.types = types,
 	AREAS(areas),
 	HOW(how),

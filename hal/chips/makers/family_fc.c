@@ -8,8 +8,8 @@
 #include <string.h>
 
 #include "hal/chips/field.h"
-#include "hal/chips/how.h"
 #include "hal/chips/makers/bae.h"
+#include "hal/chips/row.h"
 
 #define BLOCK 32
 #define PAGE 512
@@ -22,32 +22,9 @@
 enum { READ_VERSION = 0x11, READ_TYPE, EXTENDED, ERASE = 0x16 };
 
 #define MEMORY(text, at_, size_, block_) \
-	{ \
-		.name = (text), .at = (at_), .size = (size_), .block = (block_), .row = (block_), \
-		.load = bae_load, .store = bae_store \
-	}
-static const struct area registers_910 = MEMORY("registers", 0, 128, 1);
-static const struct area registers_911 = MEMORY("registers", REGISTERS, 0x800, 1);
-static const struct area generic = MEMORY("memory", 0, 128, BLOCK);
-static const struct area eeprom = MEMORY("EEPROM", 0, 32 * PAGE, BLOCK);
-static const struct area version = {
-	.name = "version", .size = 2, .block = 2, .read = READ_VERSION, .check = AREA_CRC16};
-static const struct area type = {
-	.name = "type", .size = 2, .block = 2, .read = READ_TYPE, .check = AREA_CRC16};
-
-static int read_field(struct txn *txn)
-{
-	int err = bae_identify(txn);
-
-	return err ? err : field_read(txn);
-}
-
-static int write_field(struct txn *txn)
-{
-	int err = bae_identify(txn);
-
-	return err ? err : field_write(txn);
-}
+	.name = (text), .at = (at_), .size = (size_), .block = (block_), .row = (block_), \
+	.load = bae_load, .store = bae_store
+static const struct area eeprom = {MEMORY("EEPROM", 0, 32 * PAGE, BLOCK)};
 
 static uint32_t number_of(const uint8_t *bytes, unsigned n)
 {
@@ -79,10 +56,8 @@ static int write_register(struct txn *txn, enum proof proof)
 	uint8_t bytes[4], in[4];
 	struct written *written = txn_own(txn, struct written);
 	double left = txn->number[0];
-	int err = bae_identify(txn);
+	int err;
 
-	if (err)
-		return err;
 	if (!(left >= 0 && left <= UINT32_MAX) || (n < 4 && left >= (double)(UINT32_C(1) << 8 * n)))
 		return -EINVAL;
 	for (unsigned i = 0; i < n; i++)
@@ -120,7 +95,7 @@ static int write_live(struct txn *txn)
 
 static int read_global(struct txn *txn)
 {
-	return txn->element < GLOBALS ? read_field(txn) : -EINVAL;
+	return txn->element < GLOBALS ? field_read(txn) : -EINVAL;
 }
 
 static int write_global(struct txn *txn)
@@ -145,10 +120,7 @@ static int read_words(struct txn *txn)
 /* 0: there is such a page. */
 static int check_page(struct txn *txn)
 {
-	int err = bae_identify(txn);
-	int pages = bae_kind(txn->device) == BAE_910 ? 2 : 8;
-
-	return err ? err : txn->element < pages ? 0 : -ENOENT;
+	return txn->element < (txn->device->kind == BAE_910 ? 2 : 8) ? 0 : -ENOENT;
 }
 
 static int read_page(struct txn *txn)
@@ -169,7 +141,7 @@ static int write_page(struct txn *txn)
 static int erase(struct txn *txn)
 {
 	unsigned where = (unsigned)txn->element * PAGE, n = 0;
-	unsigned moved = bae_kind(txn->device) == BAE_910 ? 0xe000 : 0;
+	unsigned moved = txn->device->kind == BAE_910 ? 0xe000 : 0;
 	const uint8_t command[] = {ERASE, (uint8_t)(where + moved),
 	                           (uint8_t)((where + moved) >> 8)};
 	uint8_t block[BLOCK];
@@ -205,19 +177,20 @@ static int write_command(struct txn *txn)
 
 enum { REGISTERS_910 = 1, REGISTERS_911, GENERIC, EEPROM, VERSION, TYPE };
 static const struct area *const areas[] = {
-	[REGISTERS_910] = &registers_910,
-	[REGISTERS_911] = &registers_911,
-	[GENERIC] = &generic,
+	[REGISTERS_910] = AREA(MEMORY("registers", 0, 128, 1)),
+	[REGISTERS_911] = AREA(MEMORY("registers", REGISTERS, 0x800, 1)),
+	[GENERIC] = AREA(MEMORY("memory", 0, 128, BLOCK)),
 	[EEPROM] = &eeprom,
-	[VERSION] = &version,
-	[TYPE] = &type,
+	[VERSION] = AREA(.name = "version", .size = 2, .block = 2, .read = READ_VERSION,
+                         .check = AREA_CRC16),
+	[TYPE] = AREA(.name = "type", .size = 2, .block = 2, .read = READ_TYPE,
+                      .check = AREA_CRC16),
 };
 
 enum {
 	KEPT = 1,
 	LIVE,
 	CLOCK,
-	WAY_FIELD,
 	WAY_GLOBAL,
 	WAY_WORDS,
 	WAY_PAGE,
@@ -230,10 +203,9 @@ enum {
 	WAY_SECTOR_NUMBER,
 };
 static const struct property_how how[] = {
-	[KEPT] = {.read = read_field, .write = write_kept},
-	[LIVE] = {.read = read_field, .write = write_live},
-	[CLOCK] = {.read = read_field, .write = write_clock},
-	[WAY_FIELD] = {.read = read_field, .write = write_field},
+	[KEPT] = {.write = write_kept},
+	[LIVE] = {.write = write_live},
+	[CLOCK] = {.write = write_clock},
 	[WAY_GLOBAL] = {.read = read_global, .write = write_global},
 	[WAY_WORDS] = {.read = read_words},
 	[WAY_PAGE] = {.read = read_page, .write = write_page},
@@ -276,7 +248,7 @@ static const struct property_how how[] = {
 	REGISTER_911(folder "/ref_clock", UNSIGNED, VOLATILE, BOTH, clock, 1, KEPT)
 /* The two bytes of the version and of the type: each alone, and together. */
 #define WORD(text, area_, byte) \
-	PROPERTY(text, UNSIGNED, VOLATILE, READ, FIELD(area_, .at = (byte)), .how = WAY_FIELD)
+	PROPERTY(text, UNSIGNED, VOLATILE, READ, FIELD(area_, .at = (byte)))
 #define STATE(text, area_) \
 	PROPERTY(text, UNSIGNED, VOLATILE, READ, .hidden = true, \
 	         FIELD(area_, .at = 0, .bytes = 2, .big_endian = true))
@@ -428,7 +400,7 @@ static const struct property properties[] = {
 	PROPERTY("firmware/function", BINARY, STABLE, WRITE, .size = 16384, .how = WAY_FIRMWARE),
 	FOLDER("generic", UNKNOWN_KIND),
 	PROPERTY("generic/memory", BINARY, VOLATILE, BOTH, .size = 128, .kinds = UNKNOWN_KIND,
-		 FIELD(GENERIC), .how = WAY_FIELD),
+		 FIELD(GENERIC)),
 	DOTTED("localtype", TYPE),
 	STATE("typestate", TYPE),
 	DOTTED("version", VERSION),
@@ -441,8 +413,8 @@ const struct family family_fc = {
 	.proof = PROOF_PRESENCE,
 	.type = "BAE",
 	.flags = FLAG_RESUME | FLAG_ALARM,
-	.kind = bae_kind,
-	.tell = bae_identify,
+	.several = true,
+	.identify = bae_identify,
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

@@ -4,27 +4,15 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "hal/chips/field.h"
-#include "hal/chips/how.h"
 #include "hal/chips/makers/hobby_boards.h"
+#include "hal/chips/row.h"
 
-const struct area hobby_type = HOBBY_VALUE("type", 1, 0x12);
-const struct area hobby_version = HOBBY_VALUE("version", 2, 0x11);
+const struct area hobby_type = {HOBBY_VALUE("type", 1, 0x12)};
+const struct area hobby_version = {HOBBY_VALUE("version", 2, 0x11)};
 
-unsigned hobby_kind(const struct device *device)
+/* All ones: the board is not ready, or none is there. */
+int hobby_identify(struct txn *txn)
 {
-	return ((const struct hobby *)device->own)->kind;
-}
-
-static int refuse_absent(const struct txn *txn)
-{
-	return family_has(txn->device, txn->property) ? 0 : -ENOENT;
-}
-
-/* All ones: the board is not ready, or nobody is there. */
-static int read_kind(struct txn *txn)
-{
-	struct hobby *board = txn->device->own;
 	uint8_t kind;
 	int err = area_read(txn, &hobby_type, 0, &kind, 1);
 
@@ -32,18 +20,8 @@ static int read_kind(struct txn *txn)
 		return err;
 	if (kind == 0xff)
 		return -EBADMSG;
-	board->kind = kind > 0 && kind < HOBBY_OTHER ? kind : HOBBY_OTHER;
+	txn->device->kind = kind > 0 && kind < HOBBY_OTHER ? kind : HOBBY_OTHER;
 	return 0;
-}
-
-int hobby_identify(struct txn *txn)
-{
-	int err;
-
-	if (hobby_kind(txn->device) != HOBBY_UNKNOWN)
-		return refuse_absent(txn);
-	err = read_kind(txn);
-	return err ? err : TXN_MORE;
 }
 
 int hobby_saw_setting(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
@@ -56,27 +34,11 @@ int hobby_saw_setting(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
 	return ones == n ? -EIO : 0;
 }
 
-int hobby_read(struct txn *txn)
-{
-	int err = hobby_identify(txn);
-
-	return err ? err : field_read(txn);
-}
-
-int hobby_write(struct txn *txn)
-{
-	int err = hobby_identify(txn);
-
-	return err ? err : field_write(txn);
-}
-
 int hobby_read_text(struct txn *txn)
 {
 	char text[AREA_UNIT + 1] = {0};
-	int err = hobby_identify(txn);
+	int err = area_read(txn, family_area(txn), 0, (uint8_t *)text, family_area(txn)->size);
 
-	if (!err)
-		err = area_read(txn, family_area(txn), 0, (uint8_t *)text, family_area(txn)->size);
 	return err ? err : property_text(txn, text);
 }
 
@@ -85,10 +47,7 @@ int hobby_write_text(struct txn *txn)
 {
 	const struct area *area = family_area(txn);
 	uint8_t text[AREA_UNIT] = {0};
-	int err = hobby_identify(txn);
 
-	if (err)
-		return err;
 	if (txn->at || txn->len >= area->size)
 		return -EINVAL;
 	memcpy(text, txn->data, txn->len);
@@ -97,7 +56,7 @@ int hobby_write_text(struct txn *txn)
 
 int hobby_read_type(struct txn *txn)
 {
-	int err = read_kind(txn);
+	int err = hobby_identify(txn);
 
 	return err ? err : property_text(txn, family_type(txn->device));
 }

@@ -7,7 +7,7 @@
 
 #include "hal/chips/family.h"
 
-/* The kinds are the numbers that the boards have themselves. */
+/* The kinds (device.kind) are the numbers that the boards have themselves. */
 enum hobby_kind {
 	HOBBY_UNKNOWN,
 	HOBBY_UVI,
@@ -21,25 +21,21 @@ enum hobby_kind {
 	HOBBY_OTHER,
 };
 struct hobby {
-	uint8_t kind;
 	uint16_t version; /* major, minor; 0: not known */
 };
-unsigned hobby_kind(const struct device *device);
 
 /* What stands first in the lists of a family. */
 enum { HOBBY_TYPE = 1, HOBBY_VERSION, AFTER_HOBBY_AREAS };
 #define HOBBY_AREAS [HOBBY_TYPE] = &hobby_type, [HOBBY_VERSION] = &hobby_version
 extern const struct area hobby_type, hobby_version;
-enum { WAY_HOBBY_FIELD = 1, WAY_HOBBY_TEXT, WAY_HOBBY_TYPE, WAY_HOBBY_VERSION, AFTER_HOBBY_WAYS };
+enum { WAY_HOBBY_TEXT = 1, WAY_HOBBY_TYPE, WAY_HOBBY_VERSION, AFTER_HOBBY_WAYS };
 #define HOBBY_WAYS \
-	[WAY_HOBBY_FIELD] = {.read = hobby_read, .write = hobby_write}, \
 	[WAY_HOBBY_TEXT] = {.read = hobby_read_text, .write = hobby_write_text}, \
 	[WAY_HOBBY_TYPE] = {.read = hobby_read_type}, \
 	[WAY_HOBBY_VERSION] = {.read = hobby_read_version}
-property_function hobby_read, hobby_write, hobby_read_text, hobby_write_text;
-property_function hobby_read_type, hobby_read_version;
+property_function hobby_read_text, hobby_write_text, hobby_read_type, hobby_read_version;
 
-/* 0: it is known which board this is; TXN_MORE not yet, -ENOENT it has no such property. */
+/* family.identify; also reads the kind again when it is known. */
 int hobby_identify(struct txn *txn);
 /*
  * A read command that loses one bit on its way is the command that writes the same setting, and the
@@ -55,11 +51,7 @@ int hobby_saw_setting(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n);
 	}
 /* Areas: what is read, and a setting. */
 #define HOBBY_VALUE(text, bytes_, command) \
-	{ \
-		.name = (text), .size = (bytes_), .block = (bytes_), .read = (command) \
-	}
+	.name = (text), .size = (bytes_), .block = (bytes_), .read = (command)
 #define HOBBY_SETTING(text, bytes_, get, put) \
-	{ \
-		.name = (text), .size = (bytes_), .block = (bytes_), .read = (get), \
-		.row = (bytes_), .write = (put), .saw = hobby_saw_setting \
-	}
+	.name = (text), .size = (bytes_), .block = (bytes_), .read = (get), .row = (bytes_), \
+	.write = (put), .saw = hobby_saw_setting

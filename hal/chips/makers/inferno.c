@@ -9,7 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/chips/field.h"
 #include "hal/chips/format.h"
 #include "hal/chips/makers/inferno.h"
 #include "hal/wire/crc.h"
@@ -25,7 +24,6 @@ enum { BOOTLOADER_SIZE = 0x00, RANGE = 0x04 };
 enum { COUNT_SWITCHES = 0x01, COUNT_LEDS, COUNT_RELAYS, SET_TYPE, GET_ACTIVATED = 0x06 };
 
 struct inferno {
-	uint8_t kind;
 	uint8_t counts[3][2]; /* switches, LEDs, relays: ports, channels; 0: not known */
 	int64_t fetched_ns;   /* when the device gave the activations; 0: it has not yet */
 	uint32_t activated[PORTS];
@@ -38,40 +36,25 @@ struct asked {
 	uint8_t seen[CHANNELS];
 };
 
-const struct area inferno_device = {.name = "device", .size = 4, .block = 4, .read = DEVICE};
+static const struct area identification = {.name = "device", .size = 4, .block = 4, .read = DEVICE};
 
 static struct inferno *of(const struct txn *txn)
 {
 	return txn->device->own;
 }
 
-unsigned inferno_kind(const struct device *device)
-{
-	return ((const struct inferno *)device->own)->kind;
-}
-
 int inferno_identify(struct txn *txn)
 {
 	uint8_t bytes[4];
-	int err;
+	int err = area_read(txn, &identification, 0, bytes, sizeof(bytes));
 
-	if (of(txn)->kind != INFERNO_UNKNOWN)
-		return family_has(txn->device, txn->property) ? 0 : -ENOENT;
-	err = area_read(txn, &inferno_device, 0, bytes, sizeof(bytes));
 	if (err)
 		return err;
 	if (bytes[3] == 0xff)
 		return -EBADMSG;
-	of(txn)->kind = bytes[0] > 0 && bytes[0] < INFERNO_OTHER && !bytes[1] ? bytes[0]
-	                                                                      : INFERNO_OTHER;
-	return TXN_MORE;
-}
-
-int inferno_read(struct txn *txn)
-{
-	int err = inferno_identify(txn);
-
-	return err ? err : field_read(txn);
+	bool known = bytes[0] > 0 && bytes[0] < INFERNO_OTHER && !bytes[1];
+	txn->device->kind = known ? bytes[0] : INFERNO_OTHER;
+	return 0;
 }
 
 /*
@@ -129,11 +112,10 @@ static int inferno_count(struct txn *txn, unsigned which)
 {
 	const struct asked *asked = txn_own(txn, struct asked);
 	uint8_t *counts = of(txn)->counts[which];
-	int err = inferno_identify(txn);
 
-	if (err || counts[0])
-		return err;
-	err = inferno_ask(txn, (uint8_t)(COUNT_SWITCHES + which), NULL, 0, 0, 2);
+	if (counts[0])
+		return 0;
+	int err = inferno_ask(txn, (uint8_t)(COUNT_SWITCHES + which), NULL, 0, 0, 2);
 	if (err)
 		return err;
 	if (!asked->seen[0] || asked->seen[1] > CHANNELS)
@@ -162,11 +144,9 @@ int inferno_read_count(struct txn *txn)
 {
 	static const uint8_t none;
 	const struct asked *asked = txn_own(txn, struct asked);
-	int err = inferno_identify(txn);
+	int err;
 
-	if (err)
-		return err;
-	if (inferno_kind(txn->device) == INFERNO_LIGHTS) {
+	if (txn->device->kind == INFERNO_LIGHTS) {
 		err = inferno_ask(txn, 0x02, &none, 0, 0, 1);
 		txn->number[0] = asked->seen[0];
 		return err;
@@ -335,10 +315,8 @@ int inferno_read_light(struct txn *txn)
 	const struct asked *asked = txn_own(txn, struct asked);
 	const uint8_t *in = asked->seen;
 	char text[40];
-	int err = inferno_identify(txn);
+	int err = inferno_ask(txn, GET_LIGHT, &channel, 1, 0, 7);
 
-	if (!err)
-		err = inferno_ask(txn, GET_LIGHT, &channel, 1, 0, 7);
 	if (err)
 		return err;
 	snprintf(text, sizeof(text), "%3d,%3d,%3d,%3d,%8d", in[0], in[1], in[2], in[3],
@@ -350,10 +328,8 @@ int inferno_write_light(struct txn *txn)
 {
 	struct asked *asked = txn_own(txn, struct asked);
 	uint8_t args[ARGS] = {(uint8_t)txn->property->arg};
-	int fade, err = inferno_identify(txn);
+	int fade, err;
 
-	if (err)
-		return err;
 	if (asked->stage)
 		return command(txn, COMMIT, NULL, 0);
 	fade = number(txn, 4, 0xffffff);
@@ -373,11 +349,7 @@ int inferno_write_light(struct txn *txn)
 
 int inferno_command(struct txn *txn)
 {
-	int err = inferno_identify(txn);
-
-	if (!err && txn->number[0] != 0)
-		err = command(txn, (uint8_t)txn->property->arg, NULL, 0);
-	return err;
+	return txn->number[0] != 0 ? command(txn, (uint8_t)txn->property->arg, NULL, 0) : 0;
 }
 
 int inferno_read_device(struct txn *txn)
@@ -389,9 +361,8 @@ int inferno_read_device(struct txn *txn)
 		[INFERNO_SWITCHES] = "Inferno Embedded Switch Master",
 		[INFERNO_OTHER] = "unknown",
 	};
-	int err = inferno_identify(txn);
 
-	return err ? err : property_text(txn, names[of(txn)->kind]);
+	return property_text(txn, names[txn->device->kind]);
 }
 
 /* It does not answer: the device that comes up shows it. */
@@ -409,16 +380,16 @@ int inferno_enter_update(struct txn *txn)
 		return err ? err : txn_wait(txn, BOOT_NS);
 	}
 	err = inferno_identify(txn);
-	return err ? err : of(txn)->kind == INFERNO_UPDATER ? 0 : -EIO;
+	if (err < 0)
+		txn->device->kind = INFERNO_UNKNOWN;
+	return err ? err : txn->device->kind == INFERNO_UPDATER ? 0 : -EIO;
 }
 
 int inferno_read_size(struct txn *txn)
 {
 	const struct asked *asked = txn_own(txn, struct asked);
-	int err = inferno_identify(txn);
+	int err = inferno_ask(txn, BOOTLOADER_SIZE, NULL, 0, 0, 4);
 
-	if (!err)
-		err = inferno_ask(txn, BOOTLOADER_SIZE, NULL, 0, 0, 4);
 	txn->number[0] = area_le32(asked->seen);
 	return err;
 }
@@ -427,10 +398,8 @@ int inferno_read_range(struct txn *txn)
 {
 	const struct asked *asked = txn_own(txn, struct asked);
 	char text[40];
-	int err = inferno_identify(txn);
+	int err = inferno_ask(txn, RANGE, NULL, 0, 0, 8);
 
-	if (!err)
-		err = inferno_ask(txn, RANGE, NULL, 0, 0, 8);
 	if (err)
 		return err;
 	snprintf(text, sizeof(text), "0x%08x,0x%08x", area_le32(asked->seen),

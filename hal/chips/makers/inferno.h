@@ -8,6 +8,7 @@
 
 #include "hal/chips/family.h"
 
+/* device.kind */
 enum inferno_kind {
 	INFERNO_UNKNOWN,
 	INFERNO_LIGHTS,
@@ -15,12 +16,10 @@ enum inferno_kind {
 	INFERNO_SWITCHES,
 	INFERNO_OTHER,
 };
-unsigned inferno_kind(const struct device *device);
-/* 0: it is known which device it is; TXN_MORE it is now; -ENOENT it has no such property. */
+/* family.identify */
 int inferno_identify(struct txn *txn);
-extern const struct area inferno_device;
 
-property_function inferno_read, inferno_read_device, inferno_enter_update;
+property_function inferno_read_device, inferno_enter_update;
 /* arg: INFERNO_PORT(what, port); a count: INFERNO_PORT(what, 0: ports, 1: channels). */
 property_function inferno_read_count, inferno_read_port, inferno_write_port;
 property_function inferno_set_type, inferno_refresh, inferno_read_light, inferno_write_light;

@@ -30,11 +30,13 @@ static const struct area application = {
 	.strong = true,
 	.copy_ns = 10 * TXN_MS,
 };
-static const struct area status = {.name = "status", .size = 1, .address_bytes = 1, .read = 0x66};
 
 enum { MEMORY = 1, APPLICATION, STATUS };
 static const struct area *const areas[] = {
-	[MEMORY] = &memory, [APPLICATION] = &application, [STATUS] = &status};
+	[MEMORY] = &memory,
+	[APPLICATION] = &application,
+	[STATUS] = AREA(.name = "status", .size = 1, .address_bytes = 1, .read = 0x66),
+};
 
 static const struct property properties[] = {
 	PROPERTY("application", BINARY, STABLE, BOTH, .size = 8, FIELD(APPLICATION)),

@@ -7,14 +7,13 @@
 
 #define WRITE_OUTPUT 0x5a
 #define WRITE_CONDITION 0xcc
-#define CONFIRMED 0xaa
+#define RESET_LATCHES 0xc3
 
-#define CONTROL_SETTINGS 0x07
 #define CONTROL_STROBE (1 << DS2408_STROBE)
 #define CONTROL_POR (1 << DS2408_POR)
 #define CONTROL_VCC (1 << DS2408_VCC)
 
-static void saw_control(struct txn *txn, uint8_t value)
+void ds2408_saw_control(struct txn *txn, uint8_t value)
 {
 	struct ds2408 *chip = txn->device->own;
 	bool por = value & CONTROL_POR;
@@ -30,7 +29,7 @@ static int read_control(struct txn *txn)
 	int err = area_fetch(txn, &ds2408_registers, DS2408_CONTROL, &value, 1);
 
 	if (!err)
-		saw_control(txn, value);
+		ds2408_saw_control(txn, value);
 	return err;
 }
 
@@ -41,7 +40,7 @@ static int read_control(struct txn *txn)
 static int saw_registers(struct txn *txn, unsigned at, uint8_t *value, unsigned n)
 {
 	if (at <= DS2408_CONTROL && at + n > DS2408_CONTROL)
-		saw_control(txn, value[DS2408_CONTROL - at]);
+		ds2408_saw_control(txn, value[DS2408_CONTROL - at]);
 	else if (value[0] == 0xff)
 		return read_control(txn);
 	return 0;
@@ -100,7 +99,7 @@ int ds2408_put(struct txn *txn, const uint8_t *bytes, unsigned n)
 			err = txn_read(txn, answer, sizeof(answer));
 		if (err)
 			return err;
-		if (answer[0] == CONFIRMED)
+		if (answer[0] == DS2408_CONFIRMED)
 			continue;
 		bool silent = txn->silent;
 		err = ds2408_leave_test_mode(txn);
@@ -150,17 +149,17 @@ static int store_condition(struct txn *txn, const struct area *area, unsigned at
 static int saw_condition(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
 {
 	(void)at, (void)n;
-	saw_control(txn, bytes[2]);
-	bytes[2] &= CONTROL_SETTINGS | CONTROL_POR;
+	ds2408_saw_control(txn, bytes[2]);
+	bytes[2] &= DS2408_SETTINGS | CONTROL_POR;
 	return 0;
 }
 
-/* A power-on flag that a disturbed write has cleared can only be told, not set. */
-static bool condition_is_written(struct txn *txn, const uint8_t *have, const uint8_t *want,
+/* A power-on flag that a disturbed write has cleared can only be reported, not set. */
+bool ds2408_condition_is_written(struct txn *txn, const uint8_t *have, const uint8_t *want,
                                  unsigned n)
 {
 	(void)n;
-	if (memcmp(have, want, 2) != 0 || ((have[2] ^ want[2]) & CONTROL_SETTINGS) ||
+	if (memcmp(have, want, 2) != 0 || ((have[2] ^ want[2]) & DS2408_SETTINGS) ||
 	    (have[2] & ~want[2] & CONTROL_POR))
 		return false;
 	txn->restarted |= (want[2] & ~have[2] & CONTROL_POR) != 0;
@@ -176,7 +175,7 @@ const struct area ds2408_condition = {
 	.load = load_part,
 	.store = store_condition,
 	.saw = saw_condition,
-	.is_written = condition_is_written,
+	.is_written = ds2408_condition_is_written,
 };
 
 int ds2408_strobe(struct txn *txn)
@@ -185,4 +184,37 @@ int ds2408_strobe(struct txn *txn)
 
 	return area_write(txn, &ds2408_condition, DS2408_CONTROL - DS2408_MASK, &strobe, &strobe,
 	                  1);
+}
+
+int ds2408_write_latch(struct txn *txn)
+{
+	static const struct area latches = {.name = "latches", .size = 1};
+	static const uint8_t command = RESET_LATCHES;
+	uint8_t answer;
+
+	if (txn_driven(txn))
+		return txn_driver_write(txn, &latches, 0, &command, 1);
+	int err = txn_ask(txn, &command, 1, &answer, 1);
+	return err ? err : answer == DS2408_CONFIRMED ? 0 : -EBADMSG;
+}
+
+double ds2408_digits(const uint8_t condition[3], unsigned n)
+{
+	uint32_t digits = condition[2] & DS2408_CONTROL_SOURCE;
+
+	while (n--)
+		digits = 10 * digits + (condition[0] >> n & 1) * 2u + (condition[1] >> n & 1);
+	return digits;
+}
+
+void ds2408_condition_of(double number, unsigned n, uint8_t condition[3])
+{
+	uint32_t digits = (uint32_t)number;
+
+	memset(condition, 0, 3);
+	for (unsigned i = 0; i < n; i++, digits /= 10) {
+		condition[0] |= (uint8_t)((digits % 10 >> 1 & 1) << i);
+		condition[1] |= (uint8_t)((digits % 10 & 1) << i);
+	}
+	condition[2] = (uint8_t)(digits & DS2408_CONTROL_SOURCE);
 }

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* DS2408 (data sheet 19-5702): its registers, and what displays that stand on one need. */
+/*
+ * DS2408 (data sheet 19-5702): its registers, and what displays that stand on one need. What
+ * stands first here holds for a DS28E04 too, whose registers are the same.
+ */
 #pragma once
 
 #include "hal/chips/area.h"
@@ -19,11 +22,28 @@ enum {
 enum { DS2408_SOURCE, DS2408_STROBE = 2 /* ROS */, DS2408_POR, DS2408_VCC = 7 };
 #define DS2408_CONTROL_SOURCE 0x03
 
-/* What is known of the chip (device.own). */
+/* What is known of the chip (device.own); of a DS28E04 too. */
 struct ds2408 {
 	bool por_clear;  /* the power-on flag has been seen clear */
 	uint8_t display; /* enum lcd_board: which one has been set up */
 };
+
+#define DS2408_SETTINGS 0x07 /* of the control register */
+#define DS2408_CONFIRMED 0xaa
+
+/* Notes what the control register says of the chip: a restart, its supply. */
+void ds2408_saw_control(struct txn *txn, uint8_t value);
+/* area.is_written of mask, polarity and control. */
+bool ds2408_condition_is_written(struct txn *txn, const uint8_t *have, const uint8_t *want,
+                                 unsigned n);
+/* For properties: whatever is written, the activity latches are cleared. */
+int ds2408_write_latch(struct txn *txn);
+/*
+ * Mask, polarity and control as digits: one for each of n pins, 2 selected + 1 high; before them
+ * the source.
+ */
+double ds2408_digits(const uint8_t condition[3], unsigned n);
+void ds2408_condition_of(double number, unsigned n, uint8_t condition[3]);
 
 /* All registers are read; the outputs, and mask, polarity and control, are written. */
 extern const struct area ds2408_registers, ds2408_output, ds2408_condition;

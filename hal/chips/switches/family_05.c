@@ -11,10 +11,6 @@
 
 #define LOOKS 3
 
-/* As a driver gives them. 1: does not conduct. */
-static const struct area output = {.name = "output", .size = 1, .row = 1, .hidden = true};
-static const struct area pin = {.name = "pin", .size = 1};
-
 /*
  * Not conducting, not there and not heard look the same: LOOKS that do not find it say that it does
  * not conduct, and then it is looked for among all.
@@ -85,8 +81,12 @@ static int write_pio(struct txn *txn)
 	return after ? -EIO : TXN_MORE;
 }
 
+/* As a driver gives them. 1: does not conduct. */
 enum { OUTPUT = 1, PIN };
-static const struct area *const areas[] = {[OUTPUT] = &output, [PIN] = &pin};
+static const struct area *const areas[] = {
+	[OUTPUT] = AREA(.name = "output", .size = 1, .row = 1, .hidden = true),
+	[PIN] = AREA(.name = "pin", .size = 1),
+};
 
 enum { WAY_PIO = 1, WAY_PIN };
 static const struct property_how how[] = {

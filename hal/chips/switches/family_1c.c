@@ -4,40 +4,24 @@
  * registers are those of a DS2408, without a checksum.
  */
 #include <errno.h>
-#include <string.h>
 
 #include "hal/chips/family.h"
+#include "hal/chips/switches/ds2408.h"
 
-#define CONFIRMED 0xaa
 #define WRITE_OUTPUT 0x5a
-#define RESET_LATCHES 0xc3
 #define EEPROM_BYTES 512
+#define PIN_COUNT 2
 #define PINS 0x03
 
-/* From the pins on, which are byte 0. */
-enum { AT_OUTPUT = 1, AT_ACTIVITY, AT_MASK, AT_POLARITY, AT_CONTROL, REGISTERS_N };
-enum { BIT_POR = 3, BIT_POLARITY = 6, BIT_POWER = 7 };
-#define SETTINGS 0x03 /* of the control register */
-#define POR (1 << BIT_POR)
-
-struct ds28e04 {
-	bool por_clear; /* the power-on flag was seen cleared */
-};
-
-static void saw_control(struct txn *txn, uint8_t value)
-{
-	struct ds28e04 *chip = txn->device->own;
-	bool por = value & POR;
-
-	txn->restarted |= por && chip->por_clear;
-	chip->por_clear = !por;
-	txn->device->power = value >> BIT_POWER & 1 ? POWER_EXTERNAL : POWER_PARASITE;
-}
+enum { REGISTERS_N = DS2408_CONTROL + 1 };
+enum { BIT_POLARITY = 6 }; /* of the control register */
+#define SETTINGS 0x03
+#define POR (1 << DS2408_POR)
 
 static int saw_registers(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
 {
 	(void)at, (void)n;
-	saw_control(txn, bytes[AT_CONTROL]);
+	ds2408_saw_control(txn, bytes[DS2408_CONTROL]);
 	return 0;
 }
 
@@ -53,39 +37,25 @@ static int store_output(struct txn *txn, const struct area *area, unsigned at, c
 {
 	uint8_t latches = bytes[0] | (uint8_t)~PINS, answer;
 	const uint8_t command[] = {WRITE_OUTPUT, latches, (uint8_t)~latches};
-	int err = txn_command(txn, command, sizeof(command));
+	int err = txn_ask(txn, command, sizeof(command), &answer, 1);
 
 	(void)area, (void)at, (void)n;
-	if (!err)
-		err = txn_read(txn, &answer, 1);
-	return err ? err : answer == CONFIRMED ? 0 : -EBADMSG;
+	return err ? err : answer == DS2408_CONFIRMED ? 0 : -EBADMSG;
 }
 
 static int saw_condition(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
 {
 	(void)at, (void)n;
-	saw_control(txn, bytes[2]);
+	ds2408_saw_control(txn, bytes[2]);
 	bytes[0] &= PINS;
 	bytes[1] &= PINS;
 	bytes[2] &= SETTINGS | POR;
 	return 0;
 }
 
-/* A power-on flag that a disturbed write has cleared can only be reported, not set. */
-static bool condition_is_written(struct txn *txn, const uint8_t *have, const uint8_t *want,
-                                 unsigned n)
-{
-	(void)n;
-	if (memcmp(have, want, 2) != 0 || ((have[2] ^ want[2]) & SETTINGS) ||
-	    (have[2] & ~want[2] & POR))
-		return false;
-	txn->restarted |= (want[2] & ~have[2] & POR) != 0;
-	return true;
-}
-
 static void adjust_condition(struct txn *txn, uint8_t *want)
 {
-	struct ds28e04 *chip = txn->device->own;
+	struct ds2408 *chip = txn->device->own;
 
 	if (!(want[2] & POR))
 		chip->por_clear = false;
@@ -114,7 +84,7 @@ static const struct area registers = {
 };
 static const struct area output = {
 	.name = "output",
-	.at = 0x220 + AT_OUTPUT,
+	.at = 0x220 + DS2408_OUTPUT,
 	.size = 1,
 	READ_MEMORY,
 	.row = 1,
@@ -125,37 +95,25 @@ static const struct area output = {
 /* Mask, polarity and control. */
 static const struct area condition = {
 	.name = "condition",
-	.at = 0x220 + AT_MASK,
+	.at = 0x220 + DS2408_MASK,
 	.size = 3,
 	.block = 3,
 	READ_MEMORY,
 	.row = 3,
 	.write = 0xcc,
 	.saw = saw_condition,
-	.is_written = condition_is_written,
+	.is_written = ds2408_condition_is_written,
 	.adjust = adjust_condition,
 };
-
-static int write_latch(struct txn *txn)
-{
-	static const uint8_t command = RESET_LATCHES;
-	uint8_t answer;
-	int err = txn_command(txn, &command, 1);
-
-	txn_void(txn);
-	if (!err)
-		err = txn_read(txn, &answer, 1);
-	return err ? err : answer == CONFIRMED ? 0 : -EBADMSG;
-}
 
 /* No host sets it. */
 static int write_por(struct txn *txn)
 {
 	static const uint8_t clear, mask = POR;
 
-	return txn->number[0] != 0
-	               ? -EOPNOTSUPP
-	               : area_write(txn, &condition, AT_CONTROL - AT_MASK, &clear, &mask, 1);
+	return txn->number[0] != 0 ? -EOPNOTSUPP
+	                           : area_write(txn, &condition, DS2408_CONTROL - DS2408_MASK,
+	                                        &clear, &mask, 1);
 }
 
 /* What follows the EEPROM protects its pages for good, or is a register. */
@@ -166,28 +124,21 @@ static int write_memory(struct txn *txn)
 	return area_write(txn, &memory, (unsigned)txn->at, txn->data, NULL, (unsigned)txn->len);
 }
 
-/* A digit for each pin, 2 selected + 1 high; before them the source, and 2 if all have to be so. */
 static int read_alarm(struct txn *txn)
 {
-	uint8_t value[3];
-	int err = area_read(txn, &registers, AT_MASK, value, sizeof(value));
+	uint8_t value[3] = {0};
+	int err = area_read(txn, &registers, DS2408_MASK, value, sizeof(value));
 
-	txn->number[0] = 100.0 * (value[2] & SETTINGS);
-	for (unsigned i = 0; i < 2 && !err; i++)
-		txn->number[0] += (i ? 10 : 1) * ((value[0] >> i & 1) * 2.0 + (value[1] >> i & 1));
+	txn->number[0] = ds2408_digits(value, PIN_COUNT);
 	return err;
 }
 
 static int write_alarm(struct txn *txn)
 {
 	static const uint8_t which[] = {PINS, PINS, SETTINGS};
-	unsigned digits = (unsigned)txn->number[0], ones = digits % 10, tens = digits / 10 % 10;
-	const uint8_t value[] = {
-		(uint8_t)((ones >> 1) | (tens & 2)),
-		(uint8_t)((ones & 1) | (tens & 1) << 1),
-		(uint8_t)(digits / 100),
-	};
+	uint8_t value[3];
 
+	ds2408_condition_of(txn->number[0], PIN_COUNT, value);
 	return area_write(txn, &condition, 0, value, which, sizeof(value));
 }
 
@@ -202,7 +153,7 @@ enum { WAY_MEMORY = 1, WAY_PIO, WAY_LATCH, WAY_POR, WAY_ALARM };
 static const struct property_how how[] = {
 	[WAY_MEMORY] = {.write = write_memory},
 	[WAY_PIO] = {SET(OUTPUT, .inverted = true)},
-	[WAY_LATCH] = {.write = write_latch},
+	[WAY_LATCH] = {.write = ds2408_write_latch},
 	[WAY_POR] = {.write = write_por},
 	[WAY_ALARM] = {.read = read_alarm, .write = write_alarm},
 };
@@ -211,19 +162,19 @@ static const struct property_how how[] = {
 	PROPERTY(text, BITS, life_, access_, AGGREGATE(2, NUMBERS), __VA_ARGS__)
 #define FLAG(text, access_, bit, ...) \
 	PROPERTY(text, YESNO, VOLATILE, access_, \
-	         FIELD(REGISTERS, .at = AT_CONTROL, .shift = (bit), .bits = 1), __VA_ARGS__)
+	         FIELD(REGISTERS, .at = DS2408_CONTROL, .shift = (bit), .bits = 1), __VA_ARGS__)
 
 static const struct property properties[] = {
-	SWITCHES("PIO", STABLE, BOTH, FIELD(REGISTERS, .at = AT_OUTPUT, .inverted = true),
+	SWITCHES("PIO", STABLE, BOTH, FIELD(REGISTERS, .at = DS2408_OUTPUT, .inverted = true),
                  .holds = true, .how = WAY_PIO),
-	SWITCHES("latch", VOLATILE, BOTH, FIELD(REGISTERS, .at = AT_ACTIVITY), .flag = true,
+	SWITCHES("latch", VOLATILE, BOTH, FIELD(REGISTERS, .at = DS2408_ACTIVITY), .flag = true,
                  .how = WAY_LATCH),
 	PROPERTY("memory", BINARY, VOLATILE, BOTH, .size = 550, FIELD(MEMORY), .how = WAY_MEMORY),
 	PROPERTY_DIR("pages"),
 	AREA_PAGES(MEMORY, 16, 32),
 	FLAG("polarity", READ, BIT_POLARITY, .flag = false),
-	FLAG("por", BOTH, BIT_POR, .flag = true, .how = WAY_POR),
-	FLAG("power", READ, BIT_POWER, .flag = false),
+	FLAG("por", BOTH, DS2408_POR, .flag = true, .how = WAY_POR),
+	FLAG("power", READ, DS2408_VCC, .flag = false),
 	SWITCHES("sensed", VOLATILE, READ, FIELD(REGISTERS)),
 	PROPERTY("set_alarm", UNSIGNED, STABLE, BOTH, .digits = 333, .how = WAY_ALARM),
 };

@@ -6,49 +6,24 @@
 #include "hal/chips/switches/ds2408.h"
 #include "hal/chips/switches/lcd.h"
 
-#define RESET_LATCHES 0xc3
-#define CONFIRMED 0xaa
+#define PINS 8
 
-static int write_latch(struct txn *txn)
-{
-	static const struct area latches = {.name = "latches", .size = 1};
-	static const uint8_t command = RESET_LATCHES;
-	uint8_t answer;
-
-	if (txn_driven(txn))
-		return txn_driver_write(txn, &latches, 0, &command, 1);
-	int err = txn_command(txn, &command, 1);
-
-	if (!err)
-		err = txn_read(txn, &answer, 1);
-	return err ? err : answer == CONFIRMED ? 0 : -EBADMSG;
-}
-
-/* A digit for each channel, 2 selected + 1 high; before them the source. */
 static int read_alarm(struct txn *txn)
 {
-	uint8_t value[3];
-	int err = area_read(txn, &ds2408_registers, DS2408_MASK, value, sizeof(value));
-	uint32_t digits = value[2] & DS2408_CONTROL_SOURCE;
+	uint8_t condition[3] = {0};
+	int err = area_read(txn, &ds2408_registers, DS2408_MASK, condition, sizeof(condition));
 
-	for (int i = 7; i >= 0 && !err; i--)
-		digits = 10 * digits + (value[0] >> i & 1) * 2u + (value[1] >> i & 1);
-	txn->number[0] = digits;
+	txn->number[0] = ds2408_digits(condition, PINS);
 	return err;
 }
 
 static int write_alarm(struct txn *txn)
 {
 	static const uint8_t which[] = {0xff, 0xff, DS2408_CONTROL_SOURCE};
-	uint32_t digits = (uint32_t)txn->number[0];
-	uint8_t value[3] = {0};
+	uint8_t condition[3];
 
-	for (int i = 0; i < 8; i++, digits /= 10) {
-		value[0] |= (uint8_t)((digits % 10 >> 1 & 1) << i);
-		value[1] |= (uint8_t)((digits % 10 & 1) << i);
-	}
-	value[2] = (uint8_t)(digits & DS2408_CONTROL_SOURCE);
-	return area_write(txn, &ds2408_condition, 0, value, which, sizeof(value));
+	ds2408_condition_of(txn->number[0], PINS, condition);
+	return area_write(txn, &ds2408_condition, 0, condition, which, sizeof(condition));
 }
 
 static int write_test_mode(struct txn *txn)
@@ -73,7 +48,7 @@ enum { WAY_PIO = AFTER_LCD_WAYS, WAY_LATCH, WAY_TEST_MODE, WAY_POR, WAY_STROBE, 
 static const struct property_how how[] = {
 	LCD_WAYS,
 	[WAY_PIO] = {SET(OUTPUT, .inverted = true)},
-	[WAY_LATCH] = {.write = write_latch},
+	[WAY_LATCH] = {.write = ds2408_write_latch},
 	[WAY_TEST_MODE] = {.write = write_test_mode},
 	[WAY_POR] = {SET_CONTROL(DS2408_POR)},
 	[WAY_STROBE] = {SET_CONTROL(DS2408_STROBE)},

@@ -14,11 +14,9 @@ static int store(struct txn *txn, const struct area *area, unsigned at, const ui
 	const uint8_t command[] = {area->write, bytes[1]};
 	const uint8_t whole[] = {area->write, bytes[1], 0xff, RELEASE};
 	uint8_t echo;
-	int err = txn_command(txn, command, sizeof(command));
+	int err = txn_ask(txn, command, sizeof(command), &echo, 1);
 
 	(void)at, (void)n;
-	if (!err)
-		err = txn_read(txn, &echo, 1);
 	if (err)
 		return err;
 	if (echo != bytes[1])
@@ -31,11 +29,11 @@ static int store(struct txn *txn, const struct area *area, unsigned at, const ui
 /* A byte that is not written comes first: the control register, or what the chip can do. */
 #define REGISTER .size = 2, .block = 2, .row = 2, .store = store
 
-static const struct area position = {.name = "position", REGISTER, .read = 0xf0, .write = 0x0f};
-static const struct area control = {.name = "control", REGISTER, .read = 0xaa, .write = 0x55};
-
 enum { POSITION = 1, CONTROL };
-static const struct area *const areas[] = {[POSITION] = &position, [CONTROL] = &control};
+static const struct area *const areas[] = {
+	[POSITION] = AREA(.name = "position", REGISTER, .read = 0xf0, .write = 0x0f),
+	[CONTROL] = AREA(.name = "control", REGISTER, .read = 0xaa, .write = 0x55),
+};
 
 static const struct property properties[] = {
 	PROPERTY("chargepump", YESNO, STABLE, BOTH, FIELD(CONTROL, .at = 1, .shift = 6, .bits = 1)),

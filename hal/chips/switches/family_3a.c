@@ -3,10 +3,11 @@
 #include "hal/chips/family.h"
 #include "hal/chips/switches/pio.h"
 
-static const struct area latches = {PIO_LATCHES(0x5a)};
-
 enum { STATUS = 1, LATCHES };
-static const struct area *const areas[] = {[STATUS] = &pio_status, [LATCHES] = &latches};
+static const struct area *const areas[] = {
+	[STATUS] = &pio_status,
+	[LATCHES] = AREA(PIO_LATCHES(0x5a)),
+};
 
 enum { WAY_PIO = 1, WAY_STATE };
 static const struct property_how how[] = {

@@ -22,19 +22,14 @@
 #include "hal/chips/thermometers/thermometer_proof.h"
 #include "hal/chips/thermometers/thermometer_store.h"
 
-enum { UNKNOWN, DS1825, MAX31826, MAX31850, MAX31825 }; /* thermometer.kind */
+enum { UNKNOWN, DS1825, MAX31826, MAX31850, MAX31825 }; /* device.kind */
 
 #define FAULT_ANY 1
-
-static unsigned kind_of(const struct device *device)
-{
-	return thermometer_of(device)->kind;
-}
 
 /* Which chip it is may have become known since this property was asked for: -ENOENT. */
 static int refuse_absent(struct txn *txn)
 {
-	bool absent = kind_of(txn->device) && !family_has(txn->device, txn->property);
+	bool absent = txn->device->kind && !family_has(txn->device, txn->property);
 
 	return absent ? -ENOENT : 0;
 }
@@ -44,7 +39,7 @@ static bool is_sign(uint8_t byte)
 	return byte >> 4 == 0 || byte >> 4 == 0xf;
 }
 
-static unsigned kind_by(const uint8_t *bytes)
+static uint8_t kind_by(const uint8_t *bytes)
 {
 	if (bytes[SP_CONFIG] & 0x80 &&
 	    (bytes[SP_5] & bytes[SP_REMAIN] & bytes[SP_PER_DEGREE]) == 0xff)
@@ -60,13 +55,14 @@ static unsigned kind_by(const uint8_t *bytes)
 static int saw_scratchpad(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
 {
 	struct thermometer *chip = txn->device->own;
-	unsigned kind = at || n < SP_CRC ? chip->kind : kind_by(bytes);
+	uint8_t *known = &txn->device->kind, kind = at || n < SP_CRC ? *known : kind_by(bytes);
 
-	if (!kind || (chip->kind && chip->kind != kind)) {
+	if (!kind || (*known && *known != kind)) {
 		*chip = (struct thermometer){0};
+		*known = UNKNOWN;
 		return -EIO;
 	}
-	chip->kind = (uint8_t)kind;
+	*known = kind;
 	/* Those have one resolution, or bits in another place that say so. */
 	if (kind != DS1825) {
 		chip->ignores = chip->only_12 = true;
@@ -94,15 +90,19 @@ static int now(struct txn *txn, uint8_t bytes[9])
 	return err ? err : saw_scratchpad(txn, 0, bytes, 9);
 }
 
+static int tell(struct txn *txn)
+{
+	uint8_t bytes[9];
+
+	return now(txn, bytes);
+}
+
 /* 0: it is known which chip this is; TXN_MORE it is now, -ENOENT it has no such property. */
 static int identify(struct txn *txn)
 {
-	uint8_t bytes[9];
-	int err;
-
-	if (kind_of(txn->device) != UNKNOWN)
+	if (txn->device->kind != UNKNOWN)
 		return refuse_absent(txn);
-	err = now(txn, bytes);
+	int err = tell(txn);
 	return err ? err : TXN_MORE;
 }
 
@@ -141,7 +141,7 @@ static int converted(struct txn *txn, uint8_t bytes[9])
 
 	if (!err)
 		err = thermometer_ended(txn, bytes, txn_ended(txn));
-	if (err || kind_of(txn->device) != MAX31850)
+	if (err || txn->device->kind != MAX31850)
 		return err;
 	int hot = thermocouple_raw(bytes), cold = cold_raw(bytes);
 	/* What an open thermocouple shows is near no temperature, and a restart shows no fault. */
@@ -171,9 +171,9 @@ static int read_temperature(struct txn *txn)
 
 	if (err)
 		return err;
-	if (kind_of(txn->device) == MAX31825)
+	if (txn->device->kind == MAX31825)
 		return read_max31825(txn);
-	if (kind_of(txn->device) != MAX31850)
+	if (txn->device->kind != MAX31850)
 		return thermometer_read_temperature(txn);
 	err = converted(txn, bytes);
 	if (err)
@@ -209,8 +209,8 @@ static int read_address(struct txn *txn)
 	uint8_t bytes[9];
 	int err = area_read(txn, &scratchpad, 0, bytes, 9);
 
-	txn->number[0] = kind_of(txn->device) == MAX31825 ? bytes[SP_HIGH] & 0x3f
-	                                                  : bytes[SP_CONFIG] & 0xf;
+	txn->number[0] = txn->device->kind == MAX31825 ? bytes[SP_HIGH] & 0x3f
+	                                               : bytes[SP_CONFIG] & 0xf;
 	return err;
 }
 
@@ -218,7 +218,7 @@ static int read_power(struct txn *txn)
 {
 	int err = txn->phase ? 0 : identify(txn);
 
-	if (!err && kind_of(txn->device) == MAX31825)
+	if (!err && txn->device->kind == MAX31825)
 		return -EOPNOTSUPP;
 	return err ? err : thermometer_read_power(txn);
 }
@@ -229,7 +229,7 @@ static int read_tempres(struct txn *txn)
 	uint8_t bytes[9];
 	int err = identify(txn);
 
-	if (err || kind_of(txn->device) != MAX31825)
+	if (err || txn->device->kind != MAX31825)
 		return err ? err : thermometer_read_tempres(txn);
 	err = now(txn, bytes);
 	txn->number[0] = resolutions[bytes[SP_LOW] >> 5 & 3];
@@ -240,7 +240,7 @@ static int write_tempres(struct txn *txn)
 {
 	int err = txn->phase ? 0 : identify(txn);
 
-	if (!err && kind_of(txn->device) == MAX31825)
+	if (!err && txn->device->kind == MAX31825)
 		return -EOPNOTSUPP;
 	return err ? err : thermometer_write_tempres(txn);
 }
@@ -272,8 +272,8 @@ static int read_flags(struct txn *txn)
 	uint8_t bytes[9];
 	int err = area_read(txn, &scratchpad, 0, bytes, 9);
 
-	if (!err && kind_of(txn->device) == MAX31850 && !thermocouple_raw(bytes) &&
-	    !cold_raw(bytes) && !(bytes[0] & FAULT_ANY))
+	if (!err && txn->device->kind == MAX31850 && !thermocouple_raw(bytes) && !cold_raw(bytes) &&
+	    !(bytes[0] & FAULT_ANY))
 		err = restarted(txn, 0);
 	txn->number[0] = (bytes[0] & 1) << 3 | (bytes[2] & 7);
 	return err;
@@ -380,8 +380,8 @@ const struct family family_3b = {
 	.type = "DS1825",
 	.flags = FLAG_ALARM | FLAG_TEMPERATURE,
 	SCAN({"temperature12", "temperature"}, {"thermocouple", "thermocouple"}),
-	.kind = kind_of,
-	.tell = identify,
+	.several = true,
+	.tell = tell,
 	.types = types,
 	THERMOMETER_FAMILY,
 	AREAS(areas),

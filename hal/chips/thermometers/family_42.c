@@ -4,11 +4,12 @@
 #include "hal/chips/thermometers/thermometer.h"
 #include "hal/chips/thermometers/thermometer_store.h"
 
-static const struct area latches = {PIO_LATCHES(0xa5)};
-
 enum { STATUS = AFTER_THERMOMETER_AREAS, LATCHES };
 static const struct area *const areas[] = {
-	THERMOMETER_AREAS, [STATUS] = &pio_status, [LATCHES] = &latches};
+	THERMOMETER_AREAS,
+	[STATUS] = &pio_status,
+	[LATCHES] = AREA(PIO_LATCHES(0xa5)),
+};
 
 enum { WAY_PIO = AFTER_THERMOMETER_WAYS };
 static const struct property_how how[] = {THERMOMETER_WAYS, [WAY_PIO] = {PIO_SET(LATCHES)}};

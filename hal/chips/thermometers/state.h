@@ -19,7 +19,6 @@ struct thermometer {
 	/* Until it restarts. */
 	uint8_t resolution;   /* 9 to 12 as read back; 0: not known */
 	uint8_t stored;       /* what it was before our first change: the EEPROM's; 0: not known */
-	uint8_t kind;         /* which chip of the family it is; 0: not known */
 	bool slow;            /* a lower resolution may not make it quicker (clones) */
 	uint8_t unheard;      /* starts in a row that it did not show */
 	bool shows;           /* it has shown a start */

@@ -77,11 +77,6 @@ static unsigned verdict_of(const uint8_t in[BYTES])
 	return blank || (!second && !is_reserved(in)) ? IS_DS2438 : 0;
 }
 
-unsigned tmp1826_kind(const struct device *device)
-{
-	return ((const struct ds2438 *)device->own)->kind;
-}
-
 /*
  * Of a TMP1826 both pages are the same settings between reserved bytes. Old kernels have no page 1.
  */
@@ -97,7 +92,7 @@ static int identify_driven(struct txn *txn)
 		return err;
 	if (is_reserved(page) && (err || memcmp(page + 2, other + 2, 5) == 0))
 		return -EIO;
-	ds2438_of(txn)->kind = IS_DS2438;
+	txn->device->kind = IS_DS2438;
 	return 0;
 }
 
@@ -143,7 +138,7 @@ static int look_again(struct txn *txn, const uint8_t in[BYTES])
 		keep_alerts(txn, look, in);
 	if (look->same < LOOKS)
 		return ++look->all < LOOKS_MOST ? TXN_MORE : -EBADMSG;
-	ds2438_of(txn)->kind = verdict ? (uint8_t)verdict : IS_NEITHER;
+	txn->device->kind = verdict ? (uint8_t)verdict : IS_NEITHER;
 	return 0;
 }
 
@@ -155,9 +150,7 @@ int tmp1826_identify(struct txn *txn)
 
 	if (txn_driven(txn))
 		return identify_driven(txn);
-	err = txn_command(txn, command, sizeof(command));
-	if (!err)
-		err = txn_read(txn, in, BYTES);
+	err = txn_ask(txn, command, sizeof(command), in, BYTES);
 	return err ? err : look_again(txn, in);
 }
 
@@ -170,10 +163,8 @@ struct measurement {
 int tmp1826_read_pad(struct txn *txn, uint8_t pad[PAD])
 {
 	static const uint8_t command = READ_SCRATCHPAD;
-	int err = txn_command(txn, &command, 1);
+	int err = txn_ask(txn, &command, 1, pad, PAD);
 
-	if (!err)
-		err = txn_read(txn, pad, PAD);
 	if (err)
 		return err;
 	if (rom_crc8(pad, FIRST) || rom_crc8(pad + FIRST, PAD - FIRST) || all_are(pad, PAD, 0))

@@ -9,7 +9,7 @@
 #include "hal/chips/batteries/ds2438.h"
 #include "hal/chips/family.h"
 
-/* The kinds of family 26; 0: not known. */
+/* The kinds of family 26 (device.kind). */
 enum { IS_DS2438 = 1, IS_TMP1826, IS_NEITHER };
 
 /* What is known of such a chip (device.own). */
@@ -24,9 +24,8 @@ static inline struct tmp1826 *tmp1826_of(const struct txn *txn)
 	return txn->device->own;
 }
 
-/* family.identify and family.kind of family 26. */
+/* family.identify of family 26. */
 int tmp1826_identify(struct txn *txn);
-unsigned tmp1826_kind(const struct device *device);
 
 /* Of the scratchpad: temperature, status, 3 bytes of settings, limits and offset; 2 checksums. */
 #define TMP1826_PAD 18

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The lists of a family, found by a row of its table. */
-#include "hal/chips/how.h"
+#include "hal/chips/row.h"
 
 const struct family *family_owner(const struct family *family, const struct property *property)
 {
