@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "hal/chips/family.h"
-#include "hal/chips/loggers/logger.h"
 
 #define CHECKED .address_bytes = 2, .read = 0xa5, .block = DS1921_PAGE, .check = AREA_CRC16
 
@@ -22,7 +21,7 @@ const struct area ds1921_memory = {
 	.copy_ns = TXN_MS,
 };
 const struct area ds1921_registers = {
-	.name = "registers", .at = DS1921_REGISTERS, .size = DS1921_REGISTERS_END, CHECKED};
+	.name = "registers", .at = LOGGER_REGISTERS, .size = DS1921_REGISTERS_END, CHECKED};
 const struct area ds1921_histogram = {.name = "histogram", .at = 0x800, .size = 128, CHECKED};
 const struct area ds1921_log = {.name = "log", .at = 0x1000, .size = DS1921_LOG_ROOM, CHECKED};
 
@@ -86,35 +85,8 @@ int ds1921_read_bins(struct txn *txn)
 	return 0;
 }
 
-int ds1921_read_clock(struct txn *txn)
-{
-	uint8_t bytes[DS1921_CLOCK_ALARM];
-	int err = area_read(txn, &ds1921_registers, DS1921_CLOCK, bytes, sizeof(bytes));
-
-	if (err)
-		return err;
-	memmove(bytes + DS1921_WEEKDAY, bytes + DS1921_WEEKDAY + 1, 3);
-	return logger_date(bytes, &txn->number[0]);
-}
-
-struct mission {
-	struct logger_log log;
-	double start, interval;
-};
-
 /* The stamp has no seconds, and its month may be without a century. */
-static int take_stamp(const uint8_t *stamp, double *start)
-{
-	uint8_t bcd[LOGGER_TIME] = {0};
-
-	memcpy(bcd + LOGGER_MINUTES, stamp, 5);
-	if (bcd[LOGGER_YEAR] < 0x70)
-		bcd[LOGGER_MONTH] |= 0x80;
-	return logger_date(bcd, start);
-}
-
-/* dates: of a logger that has logged nothing yet there is no stamp. */
-static int read_mission(struct txn *txn, struct mission *mission, bool dates)
+static int ds1921_mission(struct txn *txn, struct logger_mission *mission)
 {
 	uint8_t page[DS1921_PAGE];
 	int err = area_read(txn, &ds1921_registers, 0, page, DS1921_PAGE);
@@ -122,100 +94,94 @@ static int read_mission(struct txn *txn, struct mission *mission, bool dates)
 	if (err)
 		return err;
 	mission->interval = 60 * page[DS1921_RATE];
-	mission->log.samples = logger_count(page + DS1921_SAMPLES, 3);
-	mission->log.room = DS1921_LOG_ROOM;
-	mission->log.rollover = page[DS1921_CONTROL] & DS1921_RO;
-	return dates ? take_stamp(page + DS1921_STAMP, &mission->start) : 0;
-}
-
-int ds1921_read_start(struct txn *txn)
-{
-	struct mission mission = {0};
-	int err = read_mission(txn, &mission, true);
-
-	txn->number[0] = mission.start;
-	return err;
-}
-
-int ds1921_read_elements(struct txn *txn)
-{
-	struct mission mission = {0};
-	int err = read_mission(txn, &mission, false);
-
-	txn->number[0] = logger_elements(&mission.log);
-	return err;
-}
-
-int ds1921_read_log_date(struct txn *txn)
-{
-	struct mission mission = {0};
-	int err = read_mission(txn, &mission, true);
-
-	if (err)
-		return err;
-	if ((uint32_t)txn->element >= logger_elements(&mission.log))
-		return -EIO;
-	txn->number[0] = mission.start +
-	                 mission.interval * logger_sample(&mission.log, (uint32_t)txn->element);
+	mission->samples = logger_count(page + DS1921_SAMPLES, 3);
+	mission->room = DS1921_LOG_ROOM;
+	mission->rollover = page[DS1921_CONTROL] & DS1921_RO;
+	mission->stamp[LOGGER_SECONDS] = 0;
+	memcpy(mission->stamp + LOGGER_MINUTES, page + DS1921_STAMP, LOGGER_TIME - 1);
+	if (mission->stamp[LOGGER_YEAR] < 0x70)
+		mission->stamp[LOGGER_MONTH] |= 0x80;
 	return 0;
 }
+
+static int ds1921_look(struct txn *txn, uint8_t page[LOGGER_PAGE])
+{
+	return area_fetch(txn, &ds1921_registers, 0, page, LOGGER_PAGE);
+}
+
+const struct logger ds1921_logger = {
+	.copy = 0x55,
+	.weekday = true,
+	.status = DS1921_STATUS,
+	.running = DS1921_MIP,
+	.clock = &ds1921_registers,
+	.look = ds1921_look,
+	.mission = ds1921_mission,
+};
 
 int ds1921_read_log(struct txn *txn)
 {
 	const struct ds1921_version *version = ds1921_version_of(txn->device);
-	uint32_t *place = txn_own(txn, uint32_t);
-	struct mission mission = {0};
+	uint32_t *index = txn_own(txn, uint32_t);
+	struct logger_mission mission;
 	uint8_t code;
 	int err;
 
 	if (!version)
 		return -EIO;
 	if (txn->phase == 0) {
-		err = read_mission(txn, &mission, false);
+		err = ds1921_mission(txn, &mission);
 		if (err)
 			return err;
-		if ((uint32_t)txn->element >= logger_elements(&mission.log))
+		if ((uint32_t)txn->element >= logger_elements(&mission))
 			return -EIO;
-		*place = logger_place(&mission.log, (uint32_t)txn->element);
+		*index = logger_index(&mission, (uint32_t)txn->element);
 		txn->phase = 1;
 		return TXN_MORE;
 	}
-	err = area_read(txn, &ds1921_log, *place, &code, 1);
+	err = area_read(txn, &ds1921_log, *index, &code, 1);
 	if (!err)
 		txn->number[0] = ds1921_celsius(version, code);
 	return err;
 }
 
+struct times_visit {
+	struct logger_mission mission;
+	uint8_t first[DS1921_PAGE];
+};
+
 /* Of the times beyond a limit, each a sample's number and how many there were. */
-static void take_times(struct txn *txn, const uint8_t *times, const struct mission *mission)
+static int take_times(struct txn *txn, const uint8_t *times)
 {
+	const struct logger_mission *mission = &txn_own(txn, struct times_visit)->mission;
 	int what = txn->property->arg & 0xff;
 	unsigned used = 0;
+	double start = 0;
+	int err = 0;
 
 	while (used < DS1921_TIMES && times[4 * used + 3])
 		used++;
-	for (unsigned i = 0; i < DS1921_TIMES && what != DS1921_TIMES_HOW_MANY; i++) {
+	if (what == DS1921_TIMES_HOW_MANY) {
+		txn->number[0] = used;
+		return 0;
+	}
+	/* of a logger that has logged nothing yet there is no stamp, and no count needs it */
+	if (what != DS1921_TIMES_COUNT)
+		err = logger_date(mission->stamp, &start);
+	for (unsigned i = 0; i < DS1921_TIMES; i++) {
 		const uint8_t *entry = times + 4 * i;
 		double sample = logger_count(entry, 3) + (what == DS1921_TIMES_END ? entry[3] : 0);
 
-		txn->number[i] = what == DS1921_TIMES_COUNT
-		                         ? entry[3]
-		                         : mission->start + mission->interval * sample;
+		txn->number[i] = what == DS1921_TIMES_COUNT ? entry[3]
+		                                            : start + mission->interval * sample;
 	}
-	if (what == DS1921_TIMES_HOW_MANY)
-		txn->number[0] = used;
+	return err;
 }
-
-struct times_visit {
-	struct mission mission;
-	uint8_t first[DS1921_PAGE];
-};
 
 /* The registers, and the two pages on which the times are. */
 int ds1921_read_times(struct txn *txn)
 {
 	struct times_visit *visit = txn_own(txn, struct times_visit);
-	int what = txn->property->arg & 0xff;
 	unsigned first = (unsigned)txn->property->arg >> 8,
 		 head = DS1921_PAGE - first % DS1921_PAGE;
 	uint8_t times[4 * DS1921_TIMES];
@@ -223,17 +189,14 @@ int ds1921_read_times(struct txn *txn)
 
 	if (txn->phase < 2) {
 		err = txn->phase == 0
-		              ? read_mission(txn, &visit->mission,
-		                             what == DS1921_TIMES_BEGIN || what == DS1921_TIMES_END)
+		              ? ds1921_mission(txn, &visit->mission)
 		              : area_read(txn, &ds1921_registers, first, visit->first, head);
 		txn->phase++;
 		return err ? err : TXN_MORE;
 	}
 	memcpy(times, visit->first, head);
 	err = area_read(txn, &ds1921_registers, first + head, times + head, sizeof(times) - head);
-	if (!err)
-		take_times(txn, times, &visit->mission);
-	return err;
+	return err ? err : take_times(txn, times);
 }
 
 int ds1921_read_limit(struct txn *txn)

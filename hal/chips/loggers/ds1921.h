@@ -5,9 +5,7 @@
  */
 #pragma once
 
-#include "hal/chips/area.h"
-
-#define DS1921_REGISTERS 0x200
+#include "hal/chips/loggers/logger.h"
 
 /* Registers, from 200h on. */
 enum {
@@ -47,6 +45,7 @@ enum {
 enum { DS1921_PAGE = 32, DS1921_LOG_ROOM = 2048, DS1921_BINS = 63, DS1921_TIMES = 12 };
 enum { DS1921_CLEAR_MEMORY = 0x3c, DS1921_CONVERT = 0x44 };
 
+extern const struct logger ds1921_logger;
 extern const struct area ds1921_memory, ds1921_registers, ds1921_histogram, ds1921_log;
 
 /* Of the upper 12 bits of the serial number; owserver knows these as well. */
@@ -68,13 +67,14 @@ enum { DS1921_TIMES_COUNT, DS1921_TIMES_BEGIN, DS1921_TIMES_END, DS1921_TIMES_HO
 #define DS1921_TIMES_ARG(first, what) ((first) << 8 | (what))
 
 /* property.arg of the limits: their register. */
-int ds1921_read_version(struct txn *txn);
-int ds1921_read_bins(struct txn *txn);
-int ds1921_read_clock(struct txn *txn);
-int ds1921_read_start(struct txn *txn);
-int ds1921_read_elements(struct txn *txn);
-int ds1921_read_log_date(struct txn *txn);
-int ds1921_read_log(struct txn *txn);
-int ds1921_read_times(struct txn *txn);
-int ds1921_read_limit(struct txn *txn);
-int ds1921_read_trigger(struct txn *txn);
+property_function ds1921_read_version, ds1921_read_bins, ds1921_read_log, ds1921_read_times;
+property_function ds1921_read_limit, ds1921_read_trigger;
+
+/*
+ * Conversions, settings, clock and missions (ds1921_mission.c). A write to the registers ends a
+ * mission, so it is refused (-EBUSY) while one runs.
+ */
+property_function ds1921_read_temperature, ds1921_write_limit, ds1921_write_trigger;
+property_function ds1921_write_status, ds1921_write_flag, ds1921_write_date, ds1921_write_udate;
+property_function ds1921_clear_memory, ds1921_write_frequency, ds1921_write_running;
+property_function ds1921_write_easystart;

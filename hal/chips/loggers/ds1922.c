@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "hal/chips/family.h"
-#include "hal/chips/loggers/logger.h"
 
 /* Address and password, then the bytes to the end of the page with their CRC16. */
 int ds1922_load(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, unsigned n)
@@ -75,10 +74,9 @@ double ds1922_interval_of(const uint8_t *page)
 }
 
 struct mission {
-	struct logger_log log;
-	uint8_t settings, config, stamp[LOGGER_TIME];
+	struct logger_mission common;
+	uint8_t settings, config;
 	unsigned data; /* where samples of the second quantity begin */
-	double interval;
 };
 
 /* How the samples share the log: one quantity, both alike, or one of them wide. */
@@ -91,17 +89,19 @@ static void divide_log(struct mission *mission)
 
 	mission->data = 0;
 	if (!both) {
-		mission->log.room = (mission->settings & DS1922_LOG_TEMP ? wide : data_wide) ? 4096
-		                                                                             : 8192;
+		mission->common.room = (mission->settings & DS1922_LOG_TEMP ? wide : data_wide)
+		                               ? 4096
+		                               : 8192;
 		return;
 	}
-	mission->log.room = wide != data_wide ? 2560 : wide ? 2048 : 4096;
+	mission->common.room = wide != data_wide ? 2560 : wide ? 2048 : 4096;
 	mission->data = wide == data_wide ? 4096 : wide ? 0x1400 : 0xa00;
 }
 
 /* Two pages, one for each call; TXN_MORE until both are read: then the phase is 2. */
-static int read_mission(struct txn *txn, struct mission *mission)
+static int ds1922_mission(struct txn *txn, struct logger_mission *common)
 {
+	struct mission *mission = txn_own(txn, struct mission);
 	uint8_t page[DS1922_PAGE];
 	int err;
 
@@ -113,42 +113,31 @@ static int read_mission(struct txn *txn, struct mission *mission)
 		return err;
 	if (txn->phase++ == 0) {
 		mission->settings = page[DS1922_MISSION - DS1922_CLOCK];
-		mission->interval = ds1922_interval_of(page);
-		mission->log.rollover = mission->settings & DS1922_RO;
-		memcpy(mission->stamp, page + (DS1922_STAMP - DS1922_CLOCK), LOGGER_TIME);
+		common->interval = ds1922_interval_of(page);
+		common->rollover = mission->settings & DS1922_RO;
+		memcpy(common->stamp, page + (DS1922_STAMP - DS1922_CLOCK), LOGGER_TIME);
 		divide_log(mission);
 	} else {
-		mission->log.samples = logger_count(page, 3);
+		common->samples = logger_count(page, 3);
 		mission->config = page[DS1922_CONFIG - DS1922_SAMPLES];
 	}
 	return TXN_MORE;
 }
 
-int ds1922_read_elements(struct txn *txn)
+static int ds1922_look(struct txn *txn, uint8_t page[LOGGER_PAGE])
 {
-	struct mission *mission = txn_own(txn, struct mission);
-	int err = read_mission(txn, mission);
-
-	if (!err)
-		txn->number[0] = logger_elements(&mission->log);
-	return err;
+	return ds1922_load(txn, &ds1922_memory, DS1922_CLOCK, page, LOGGER_PAGE);
 }
 
-/* arg: of the mission's first sample, or of an element of the log. */
-int ds1922_read_date(struct txn *txn)
-{
-	struct mission *mission = txn_own(txn, struct mission);
-	int err = read_mission(txn, mission);
-
-	if (!err)
-		err = logger_date(mission->stamp, &txn->number[0]);
-	if (!err && txn->property->arg && (uint32_t)txn->element >= logger_elements(&mission->log))
-		err = -EIO;
-	if (!err && txn->property->arg)
-		txn->number[0] += mission->interval *
-		                  logger_sample(&mission->log, (uint32_t)txn->element);
-	return err;
-}
+const struct logger ds1922_logger = {
+	.copy = 0x99,
+	.password = true,
+	.status = DS1922_STATUS - DS1922_CLOCK,
+	.running = DS1922_MIP,
+	.clock = &ds1922_memory,
+	.look = ds1922_look,
+	.mission = ds1922_mission,
+};
 
 /* A sample of one quantity; arg: LOG_TEMP or LOG_DATA. */
 int ds1922_read_log(struct txn *txn)
@@ -156,30 +145,22 @@ int ds1922_read_log(struct txn *txn)
 	struct mission *mission = txn_own(txn, struct mission);
 	bool data = txn->property->arg == DS1922_LOG_DATA;
 	uint8_t bytes[2] = {0};
-	int err = read_mission(txn, mission);
+	int err = ds1922_mission(txn, &mission->common);
 
 	if (err)
 		return err;
 	unsigned size = mission->settings & (data ? DS1922_DATA_WIDE : DS1922_WIDE) ? 2 : 1;
 	uint32_t n = (uint32_t)txn->element;
-	if (!(mission->settings & txn->property->arg) || n >= logger_elements(&mission->log) ||
+	if (!(mission->settings & txn->property->arg) || n >= logger_elements(&mission->common) ||
 	    ds1922_zero_of(mission->config) < 0)
 		return -EIO;
 	err = area_read(txn, &ds1922_log,
-	                (data ? mission->data : 0) + size * logger_place(&mission->log, n), bytes,
-	                size);
+	                (data ? mission->data : 0) + size * logger_index(&mission->common, n),
+	                bytes, size);
 	if (!err)
 		txn->number[0] = data ? ds1922_humidity(bytes[0], bytes[1])
 		                      : ds1922_celsius(mission->config, bytes[0], bytes[1]);
 	return err;
-}
-
-int ds1922_read_clock(struct txn *txn)
-{
-	uint8_t bcd[LOGGER_TIME];
-	int err = area_read(txn, &ds1922_memory, DS1922_CLOCK, bcd, LOGGER_TIME);
-
-	return err ? err : logger_date(bcd, &txn->number[0]);
 }
 
 int ds1922_read_interval(struct txn *txn)

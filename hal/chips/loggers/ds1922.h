@@ -6,7 +6,7 @@
  */
 #pragma once
 
-#include "hal/chips/area.h"
+#include "hal/chips/loggers/logger.h"
 
 enum {
 	DS1922_CLOCK = 0x200,
@@ -41,6 +41,7 @@ enum {
 	DS1922_RATE_MOST = 0x3fff,
 };
 
+extern const struct logger ds1922_logger;
 extern const struct area ds1922_memory, ds1922_log;
 
 /* One transaction: n bytes from byte `at` of the area to the end of a page, their CRC16 checked. */
@@ -55,8 +56,10 @@ double ds1922_humidity(uint8_t high, uint8_t low);
 /* Seconds between two samples, by the first page of the registers. */
 double ds1922_interval_of(const uint8_t *page);
 
-int ds1922_read_elements(struct txn *txn);
-int ds1922_read_date(struct txn *txn);
-int ds1922_read_log(struct txn *txn);
-int ds1922_read_clock(struct txn *txn);
-int ds1922_read_interval(struct txn *txn);
+property_function ds1922_read_log, ds1922_read_interval;
+/*
+ * Conversions, settings, clock and missions (ds1922_mission.c). While a mission runs its settings
+ * cannot be written (-EBUSY).
+ */
+property_function ds1922_read_now, ds1922_write_page, ds1922_write_date, ds1922_write_udate;
+property_function ds1922_write_interval, ds1922_write_running;

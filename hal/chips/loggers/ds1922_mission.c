@@ -6,37 +6,20 @@
 
 #include "hal/chips/family.h"
 #include "hal/chips/loggers/ds1922.h"
-#include "hal/chips/loggers/ds1922_mission.h"
-#include "hal/chips/loggers/host_clock.h"
-#include "hal/chips/loggers/logger.h"
 
 enum { CLEAR_MEMORY = 0x96, START_MISSION = 0xcc, STOP_MISSION = 0x33 };
 
 #define CONVERT_NS (666 * TXN_MS)
 
-static const struct logger_chip chip = {.copy = 0x99, .password = true};
-
 struct visit {
-	struct logger_write write;
-	uint8_t page[DS1922_PAGE]; /* the first of the registers as it was */
-	uint8_t bytes[8];          /* what is written */
+	struct logger_visit common;
 	uint8_t before[3], config;
 };
 
-static int ds1922_mission_look(struct txn *txn, unsigned where, uint8_t page[DS1922_PAGE])
+/* The page of the registers that has the counters and the configuration. */
+static int look_at_samples(struct txn *txn, uint8_t page[DS1922_PAGE])
 {
-	return ds1922_load(txn, &ds1922_memory, where, page, DS1922_PAGE);
-}
-
-/* The first page of the registers; -EBUSY: a mission runs. */
-static int look_for_mission(struct txn *txn)
-{
-	struct visit *visit = txn_own(txn, struct visit);
-	int err = ds1922_mission_look(txn, DS1922_CLOCK, visit->page);
-
-	if (err)
-		return err;
-	return visit->page[DS1922_STATUS - DS1922_CLOCK] & DS1922_MIP ? -EBUSY : 0;
+	return ds1922_load(txn, &ds1922_memory, DS1922_SAMPLES, page, DS1922_PAGE);
 }
 
 /* arg: of which quantity. */
@@ -65,12 +48,12 @@ int ds1922_read_now(struct txn *txn)
 
 	switch (txn->phase++) {
 	case 0:
-		err = look_for_mission(txn);
-		if (!err && !(visit->page[DS1922_OSCILLATOR - DS1922_CLOCK] & DS1922_EOSC))
+		err = logger_look(txn);
+		if (!err && !(visit->common.page[DS1922_OSCILLATOR - DS1922_CLOCK] & DS1922_EOSC))
 			err = -EIO;
 		return err ? err : TXN_MORE;
 	case 1:
-		err = ds1922_mission_look(txn, DS1922_SAMPLES, page);
+		err = look_at_samples(txn, page);
 		if (err)
 			return err;
 		memcpy(visit->before, page + (DS1922_DEVICE_SAMPLES - DS1922_SAMPLES), 3);
@@ -84,13 +67,13 @@ int ds1922_read_now(struct txn *txn)
 		err = txn_command(txn, convert, sizeof(convert));
 		return err ? err : txn_wait(txn, CONVERT_NS);
 	case 3:
-		err = ds1922_mission_look(txn, DS1922_SAMPLES, page);
+		err = look_at_samples(txn, page);
 		if (!err &&
 		    memcmp(visit->before, page + (DS1922_DEVICE_SAMPLES - DS1922_SAMPLES), 3) == 0)
 			err = -EBADMSG;
 		return err ? err : TXN_MORE;
 	default:
-		err = ds1922_mission_look(txn, DS1922_CLOCK, page);
+		err = ds1922_logger.look(txn, page);
 		return err ? err : take_latest(txn, visit->config, page);
 	}
 }
@@ -98,41 +81,13 @@ int ds1922_read_now(struct txn *txn)
 /* The general pages; the registers have properties. */
 int ds1922_write_page(struct txn *txn)
 {
-	struct visit *visit = txn_own(txn, struct visit);
 	unsigned at = (unsigned)txn->element * DS1922_PAGE + (unsigned)txn->at;
 
 	if (txn->len == 0)
 		return 0;
 	if (at >= DS1922_GENERAL)
 		return -EOPNOTSUPP;
-	return logger_write(txn, &chip, &visit->write, at, txn->data, (unsigned)txn->len);
-}
-
-/* A field of the registers. What it is already may be written during a mission too. */
-int ds1922_write_field(struct txn *txn)
-{
-	const struct field *field = &txn->property->field;
-	struct visit *visit = txn_own(txn, struct visit);
-	unsigned n = field->bytes ? field->bytes : 1, bits = field->bits ? field->bits : 8 * n;
-	uint32_t mask = (UINT32_C(1) << bits) - 1, value = (uint32_t)txn->number[0];
-	const uint8_t *now = visit->page + (field->at - DS1922_CLOCK);
-	int err;
-
-	if (txn->number[0] > mask)
-		return -EINVAL;
-	if (txn->phase)
-		return logger_write(txn, &chip, &visit->write, field->at, visit->bytes, n);
-	err = look_for_mission(txn);
-	if (err && err != -EBUSY)
-		return err;
-	mask <<= field->shift;
-	value <<= field->shift;
-	for (unsigned i = 0; i < n; i++, mask >>= 8, value >>= 8)
-		visit->bytes[i] = (uint8_t)((now[i] & ~mask) | (value & mask));
-	if (memcmp(visit->bytes, now, n) == 0)
-		return 0;
-	txn->phase = 1;
-	return err ? err : TXN_MORE;
+	return logger_write(txn, at, txn->data, (unsigned)txn->len);
 }
 
 /* --- Clock and missions --- */
@@ -152,19 +107,8 @@ enum step {
 };
 enum { SETS_CLOCK = 1, RUNS_CLOCK = 2, SETS_RATE = 4, STARTS = 8 };
 
-static int ds1922_mission_put(struct txn *txn, unsigned at, unsigned n)
-{
-	struct visit *visit = txn_own(txn, struct visit);
-	int err = logger_write(txn, &chip, &visit->write, at, visit->bytes, n);
-
-	if (err)
-		return err;
-	txn->phase++;
-	return TXN_MORE;
-}
-
 /* A command, its password, and a byte that starts it. */
-static int ds1922_mission_command(struct txn *txn, uint8_t code)
+static int mission_command(struct txn *txn, uint8_t code)
 {
 	uint8_t bytes[2 + LOGGER_PASSWORD] = {code};
 
@@ -181,7 +125,7 @@ static int ds1922_mission_command(struct txn *txn, uint8_t code)
 static int has_flag(struct txn *txn, uint8_t flag)
 {
 	uint8_t page[DS1922_PAGE];
-	int err = ds1922_mission_look(txn, DS1922_CLOCK, page);
+	int err = ds1922_logger.look(txn, page);
 
 	if (err)
 		return err;
@@ -191,29 +135,19 @@ static int has_flag(struct txn *txn, uint8_t flag)
 
 static int set_clock(struct txn *txn, unsigned wanted)
 {
-	struct visit *visit = txn_own(txn, struct visit);
+	const struct logger_visit *visit = txn_own(txn, struct logger_visit);
 	bool stands = !(visit->page[DS1922_OSCILLATOR - DS1922_CLOCK] & DS1922_EOSC);
-	uint8_t weekday;
 
-	if (!(wanted & SETS_CLOCK) && !(wanted & STARTS && stands)) {
-		txn->phase++;
-		return TXN_MORE;
-	}
-	if (!visit->write.step) {
-		double seconds = txn->number[0];
-		int err = wanted & SETS_CLOCK ? 0 : host_clock(&seconds);
-
-		if (err)
-			return err;
-		logger_bcd(seconds, visit->bytes, &weekday);
-	}
-	return ds1922_mission_put(txn, DS1922_CLOCK, LOGGER_TIME);
+	if (wanted & SETS_CLOCK || (wanted & STARTS && stands))
+		return logger_set_clock(txn, !(wanted & SETS_CLOCK));
+	txn->phase++;
+	return TXN_MORE;
 }
 
 /* In seconds as far as they can be counted, then in minutes. */
 static int set_oscillator(struct txn *txn, unsigned wanted)
 {
-	struct visit *visit = txn_own(txn, struct visit);
+	struct logger_visit *visit = txn_own(txn, struct logger_visit);
 	uint8_t byte = visit->page[DS1922_OSCILLATOR - DS1922_CLOCK] & (DS1922_EOSC | DS1922_FAST);
 
 	if (wanted & (RUNS_CLOCK | STARTS))
@@ -223,21 +157,21 @@ static int set_oscillator(struct txn *txn, unsigned wanted)
 		                 (txn->number[0] <= DS1922_RATE_MOST ? DS1922_FAST : 0));
 	visit->bytes[0] = byte;
 	if (byte != visit->page[DS1922_OSCILLATOR - DS1922_CLOCK])
-		return ds1922_mission_put(txn, DS1922_OSCILLATOR, 1);
+		return logger_put(txn, DS1922_OSCILLATOR - DS1922_CLOCK, 1);
 	txn->phase++;
 	return TXN_MORE;
 }
 
 static int set_rate(struct txn *txn, unsigned wanted)
 {
-	struct visit *visit = txn_own(txn, struct visit);
+	struct logger_visit *visit = txn_own(txn, struct logger_visit);
 	unsigned rate = (unsigned)(txn->number[0] <= DS1922_RATE_MOST ? txn->number[0]
 	                                                              : txn->number[0] / 60);
 
 	if (wanted & SETS_RATE) {
 		visit->bytes[0] = (uint8_t)rate;
 		visit->bytes[1] = (uint8_t)(rate >> 8);
-		return ds1922_mission_put(txn, DS1922_RATE, 2);
+		return logger_put(txn, DS1922_RATE - DS1922_CLOCK, 2);
 	}
 	txn->phase = wanted & STARTS ? SET_MISSION : DONE;
 	return TXN_MORE;
@@ -248,12 +182,12 @@ static int set_mission(struct txn *txn)
 {
 	struct visit *visit = txn_own(txn, struct visit);
 
-	visit->bytes[0] = (uint8_t)((visit->page[DS1922_MISSION - DS1922_CLOCK] & DS1922_RO) |
-	                            DS1922_LOG_TEMP | DS1922_WIDE |
-	                            (ds1922_has_data(visit->config)
-	                                     ? DS1922_LOG_DATA | DS1922_DATA_WIDE
-	                                     : 0));
-	return ds1922_mission_put(txn, DS1922_MISSION, 1);
+	visit->common.bytes[0] =
+		(uint8_t)((visit->common.page[DS1922_MISSION - DS1922_CLOCK] & DS1922_RO) |
+	                  DS1922_LOG_TEMP | DS1922_WIDE |
+	                  (ds1922_has_data(visit->config) ? DS1922_LOG_DATA | DS1922_DATA_WIDE
+	                                                  : 0));
+	return logger_put(txn, DS1922_MISSION - DS1922_CLOCK, 1);
 }
 
 static int do_steps(struct txn *txn, unsigned wanted)
@@ -262,7 +196,7 @@ static int do_steps(struct txn *txn, unsigned wanted)
 
 	switch ((enum step)txn->phase) {
 	case LOOK:
-		err = look_for_mission(txn);
+		err = logger_look(txn);
 		txn->phase++;
 		return err ? err : TXN_MORE;
 	case SET_CLOCK:
@@ -276,11 +210,11 @@ static int do_steps(struct txn *txn, unsigned wanted)
 	case SET_MISSION:
 		return set_mission(txn);
 	case CLEAR:
-		return ds1922_mission_command(txn, CLEAR_MEMORY);
+		return mission_command(txn, CLEAR_MEMORY);
 	case IS_CLEAR:
 		return has_flag(txn, DS1922_MEMCLR);
 	case START:
-		return ds1922_mission_command(txn, START_MISSION);
+		return mission_command(txn, START_MISSION);
 	case IS_STARTED:
 		return has_flag(txn, DS1922_MIP);
 	case DONE:
@@ -314,8 +248,8 @@ static int stop_mission(struct txn *txn)
 	int err;
 
 	if (txn->phase == 0)
-		return ds1922_mission_command(txn, STOP_MISSION);
-	err = look_for_mission(txn);
+		return mission_command(txn, STOP_MISSION);
+	err = logger_look(txn);
 	return err == -EBUSY ? -EIO : err;
 }
 
@@ -331,7 +265,7 @@ int ds1922_write_running(struct txn *txn)
 	if (txn->phase > LOOK)
 		return do_steps(txn, STARTS);
 	if (!visit->before[0]) {
-		err = ds1922_mission_look(txn, DS1922_SAMPLES, page);
+		err = look_at_samples(txn, page);
 		if (err)
 			return err;
 		visit->config = page[DS1922_CONFIG - DS1922_SAMPLES];
@@ -339,5 +273,5 @@ int ds1922_write_running(struct txn *txn)
 		return TXN_MORE;
 	}
 	err = do_steps(txn, STARTS);
-	return err == TXN_MORE && ds1922_interval_of(visit->page) == 0 ? -EINVAL : err;
+	return err == TXN_MORE && ds1922_interval_of(visit->common.page) == 0 ? -EINVAL : err;
 }

@@ -2,7 +2,6 @@
 /* DS1922L, DS1922T, DS1923 and DS2422: loggers of a temperature and a second quantity. */
 #include "hal/chips/family.h"
 #include "hal/chips/loggers/ds1922.h"
-#include "hal/chips/loggers/ds1922_mission.h"
 
 enum { MEMORY = 1 };
 static const struct area *const areas[] = {[MEMORY] = &ds1922_memory};
@@ -20,13 +19,13 @@ enum {
 	WAY_PAGE,
 };
 static const struct property_how how[] = {
-	[WAY_DATE] = {.read = ds1922_read_clock, .write = ds1922_write_date},
-	[WAY_UDATE] = {.read = ds1922_read_clock, .write = ds1922_write_udate},
-	[WAY_STAMP] = {.read = ds1922_read_date},
-	[WAY_FIELD] = {.write = ds1922_write_field},
+	[WAY_DATE] = {.read = logger_read_clock, .write = ds1922_write_date},
+	[WAY_UDATE] = {.read = logger_read_clock, .write = ds1922_write_udate},
+	[WAY_STAMP] = {.read = logger_read_date},
+	[WAY_FIELD] = {.write = logger_write_field},
 	[WAY_RUNNING] = {.write = ds1922_write_running},
 	[WAY_INTERVAL] = {.read = ds1922_read_interval, .write = ds1922_write_interval},
-	[WAY_ELEMENTS] = {.read = ds1922_read_elements},
+	[WAY_ELEMENTS] = {.read = logger_read_elements},
 	[WAY_LOG] = {.read = ds1922_read_log},
 	[WAY_NOW] = {.read = ds1922_read_now},
 	[WAY_PAGE] = {.write = ds1922_write_page},
@@ -77,6 +76,7 @@ const struct family family_41 = {
 	.alarms = true,
 	.type = "DS1923",
 	.flags = FLAG_RESUME | FLAG_ALARM | FLAG_OVERDRIVE | FLAG_TEMPERATURE,
+	.facts = &ds1922_logger,
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),
