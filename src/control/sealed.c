@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "src/control/sealed.h"
+#include "src/shm/segment.h"
 
 /* Younger than the headers of some machines that build owsd. */
 #ifndef MFD_NOEXEC_SEAL
@@ -23,18 +24,6 @@ static int sealed_create(void)
 	return fd < 0 ? -errno : fd;
 }
 
-static int allocate(int fd, size_t size)
-{
-	int err;
-
-	if (ftruncate(fd, (off_t)size) < 0)
-		return -errno;
-	do {
-		err = posix_fallocate(fd, 0, (off_t)size);
-	} while (err == EINTR);
-	return -err;
-}
-
 /* Each open() of its own counts with the file, as a copy of a descriptor does not. */
 static int open_again(int fd)
 {
@@ -46,7 +35,7 @@ static int open_again(int fd)
 	return again < 0 ? -errno : again;
 }
 
-static int map(int fd, size_t size, char **base)
+static int map_memory(int fd, size_t size, char **base)
 {
 	void *mapped = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
 
@@ -75,11 +64,11 @@ int sealed_make(size_t size, char **base, int *own)
 
 	if (fd < 0)
 		return fd;
-	err = allocate(fd, size);
+	err = ftruncate(fd, (off_t)size) < 0 ? -errno : segment_allocate(fd, size);
 	if (!err && fcntl(fd, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) < 0)
 		err = -errno;
 	if (!err)
-		err = map(fd, size, base);
+		err = map_memory(fd, size, base);
 	theirs = err ? err : open_both(fd, own);
 	if (theirs < 0 && !err)
 		sealed_unmap(*base, size);

@@ -15,6 +15,6 @@ void sealed_unmap(char *base, size_t size);
 /*
  * Has it no pages any more? owsd itself asks for nothing more of a memory that a controller has
  * had: one that writes to the file out of memory that never comes holds its inode's lock for ever,
- * and whoever empties the file waits for it, even against SIGKILL.
+ * and a process that empties the file waits for it, even against SIGKILL.
  */
 bool sealed_is_empty(int own);

@@ -81,23 +81,21 @@ static int send_text(const struct notify *notify, const char *text)
 
 int notify_send(const struct notify *notify, enum notify_news news)
 {
+	static const char *const texts[] = {
+		[NOTIFY_READY] = "READY=1",
+		[NOTIFY_RELOADING] = "RELOADING=1",
+		[NOTIFY_STOPPING] = "STOPPING=1",
+		[NOTIFY_WATCHDOG] = "WATCHDOG=1",
+	};
 	struct timespec now;
 	char text[64];
 
-	switch (news) {
-	case NOTIFY_READY:
-		return send_text(notify, "READY=1");
-	case NOTIFY_RELOADING:
-		clock_gettime(CLOCK_MONOTONIC, &now);
-		snprintf(text, sizeof(text), "RELOADING=1\nMONOTONIC_USEC=%" PRId64,
-		         (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000);
-		return send_text(notify, text);
-	case NOTIFY_STOPPING:
-		return send_text(notify, "STOPPING=1");
-	case NOTIFY_WATCHDOG:
-		return send_text(notify, "WATCHDOG=1");
-	}
-	return -EINVAL;
+	if (news != NOTIFY_RELOADING)
+		return send_text(notify, texts[news]);
+	clock_gettime(CLOCK_MONOTONIC, &now);
+	snprintf(text, sizeof(text), "%s\nMONOTONIC_USEC=%" PRId64, texts[news],
+	         (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000);
+	return send_text(notify, text);
 }
 
 int notify_status(const struct notify *notify, const char *format, ...)

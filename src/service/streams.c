@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Streams and sockets that a process is given by whoever starts it. */
+/* Streams and sockets that a process gets from the one that starts it. */
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Streams and sockets that a process is given by whoever starts it. */
+/* Streams and sockets that a process gets from the one that starts it. */
 #pragma once
 
 #include <stdbool.h>
@@ -25,5 +25,5 @@ struct sockaddr_un;
  */
 int inherited_sockets(int *fds, int most);
 
-/* Does somebody listen at that path? False also where that cannot be tried. Does not block. */
+/* Does a process listen at that path? False also where that cannot be tried. Does not block. */
 bool socket_answers(const struct sockaddr_un *address);

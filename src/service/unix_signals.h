@@ -12,7 +12,7 @@
 struct unix_signals {
 	int fd;
 	int end;     /* the first signal that ends the program; 0: none has come */
-	bool reload; /* SIGHUP has come; whoever loads the file sets this to false before */
+	bool reload; /* SIGHUP has come; the caller sets this to false before it loads the file */
 };
 
 /*

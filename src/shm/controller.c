@@ -140,6 +140,10 @@ struct edges {
 	uint32_t read_enable, write_enable, one_shot, dgn_reset, acknowledged;
 };
 
+/*
+ * Each request of the controller that is no command counts a word up. owsd notes the counts in the
+ * slot itself, so that a reload takes them along with it.
+ */
 static void load_edges(struct ows_command_slot *s, struct edges *now)
 {
 	now->read_enable = word_get(&s->read_enable);
@@ -211,7 +215,7 @@ int controller_text(const struct controller_memory *memory, uint32_t record, cha
 }
 
 /* Copy a text that ends before size, with '?' for control characters, and fill up with NUL. */
-static void clean(char *to, const char *from, size_t size)
+static void clean_text(char *to, const char *from, size_t size)
 {
 	size_t n = 0;
 
@@ -225,7 +229,7 @@ static void clean(char *to, const char *from, size_t size)
 
 void controller_clean_name(char name[OWS_NAME], const char *from)
 {
-	clean(name, from, OWS_NAME);
+	clean_text(name, from, OWS_NAME);
 }
 
 void controller_person(const struct controller_memory *memory, uint32_t person, char name[OWS_NAME])
@@ -235,7 +239,7 @@ void controller_person(const struct controller_memory *memory, uint32_t person, 
 	assert(person <= OWS_PERSONS);
 	if (person != 0)
 		words_load(copy, person_at(memory, person - 1), OWS_NAME / 4);
-	clean(name, copy, OWS_NAME);
+	clean_text(name, copy, OWS_NAME);
 }
 
 bool controller_is_marked(const struct controller_memory *memory)
@@ -318,7 +322,7 @@ bool controller_shelf(const struct controller_memory *memory, struct controller_
 	if (shelf->person > OWS_PERSONS)
 		shelf->person = 0;
 	words_load(why, from->why, OWS_TEXT / 4);
-	clean(shelf->why, why, OWS_TEXT);
+	clean_text(shelf->why, why, OWS_TEXT);
 	return shelf->count != 0 && shelf->count != word_get(&from->done);
 }
 

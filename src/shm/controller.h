@@ -37,6 +37,16 @@ struct controller_memory {
 	char *base; /* layout->size bytes, aligned to 64 */
 	const struct controller_layout *layout;
 };
+/* A controller as it joins; owsd copies it. */
+struct joining_controller {
+	struct controller_memory memory; /* built and LIVE */
+	struct ows_who who;              /* serial, uid, pid, name (cleaned); person is empty */
+	uint8_t token[16]; /* of its welcome: that of the hello, if it had one, else a new one */
+	/* bit r: it may command record r (bit 0: reset the driver); NULL: all. Lives as long as
+	   memory */
+	const uint32_t *rights;
+};
+
 /* Lay out zeroed memory; its state is BUILDING after that. */
 void controller_build(const struct controller_memory *memory, uint32_t serial);
 /* For the controller to read; owsd keeps the rights of its own. */

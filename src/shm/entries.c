@@ -88,7 +88,7 @@ void image_carry_log(struct image *image, const struct image *before)
 		write_entry(&image->log[i], &before->log[i], sizeof(before->log[i]));
 }
 
-/* Enter an entry into a journal, whose head is a word of the header. */
+/* Enter an entry into a journal, which has its head in a word of the header. */
 static uint32_t entries_enter(const struct image *image, struct ows_journal_entry *journal,
                               uint32_t *head, const struct ows_journal_entry *entry)
 {
@@ -123,8 +123,8 @@ uint32_t image_command(struct image *image, const struct ows_journal_entry *entr
 	return entries_enter(image, image->commands, &image->header->command_head, entry);
 }
 
-static void carry(struct ows_journal_entry *to, const struct ows_journal_entry *from, uint32_t head,
-                  const uint32_t *records)
+static void carry_journal(struct ows_journal_entry *to, const struct ows_journal_entry *from,
+                          uint32_t head, const uint32_t *records)
 {
 	for (uint32_t n = head > OWS_JOURNAL ? head - OWS_JOURNAL : 0; n != head; n++) {
 		struct ows_journal_entry entry = from[n % OWS_JOURNAL];
@@ -143,8 +143,8 @@ void image_carry_journals(struct image *image, const struct image *before, const
 	uint32_t alarms = word_get(&before->header->alarm_head);
 	uint32_t commands = word_get(&before->header->command_head);
 
-	carry(image->alarms, before->alarms, alarms, records);
-	carry(image->commands, before->commands, commands, records);
+	carry_journal(image->alarms, before->alarms, alarms, records);
+	carry_journal(image->commands, before->commands, commands, records);
 	word_set(&image->header->alarm_head, alarms);
 	word_set(&image->header->command_head, commands);
 }

@@ -236,7 +236,7 @@ void force_get(const struct force *force, uint32_t row, struct force_command *co
 		.safe = slot.flags & SAFE,
 		.controller = slot.controller,
 	};
-	/* its entry is another's by now: nobody would come back for the command */
+	/* its entry is another's by now: no controller would come back for the command */
 	if (slot.controller >= force->controller_count || !slot.serial ||
 	    newest_controller(force, slot.controller)->controller.who.serial != slot.serial)
 		command->controller = FORCE_NOBODY;

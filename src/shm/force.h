@@ -49,7 +49,7 @@ struct force_command {
 	uint32_t stamp;
 	bool given;          /* false: no program's command is in force */
 	bool safe;           /* SafeValue is */
-	uint32_t controller; /* an index, FORCE_NOBODY: nobody would come back for it */
+	uint32_t controller; /* an index; FORCE_NOBODY: none would come back for it */
 };
 /* who.serial 0: the index is free. */
 void force_controller(struct force *force, uint32_t index,

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Sleep on a word of the shared memory, and wake who sleeps there. */
-
+/* Sleep on a word of the shared memory, and wake the threads that sleep there. */
 #include <errno.h>
 #include <linux/futex.h>
 #include <sys/syscall.h>

@@ -17,7 +17,7 @@ static bool is_in_the_way(const struct stat *st)
 	       (geteuid() != 0 && st->st_uid != geteuid());
 }
 
-static const char *kind_of(const struct stat *st)
+static const char *file_kind(const struct stat *st)
 {
 	if (S_ISREG(st->st_mode))
 		return "file";
@@ -64,7 +64,7 @@ const char *segment_hint(const struct shm_place *place, const char *instance, in
 		else
 			snprintf(text, SEGMENT_HINT,
 			         ": a %s of user %s is in the way: as root, rm -r %s/%s",
-			         kind_of(&st), user, place->path, name);
+			         file_kind(&st), user, place->path, name);
 		return text;
 	}
 	return "";

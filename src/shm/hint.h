@@ -6,7 +6,7 @@
 
 /*
  * What stands behind an error of a function of this room, as the end of a message: the place is
- * full, the instance is another user's, or which file is in the way, whose it is and what removes
+ * full, the instance is another user's, or which file is in the way, its owner and what removes
  * it. Empty where nothing is known. It never advises to remove what a running owsd may hold.
  */
 #define SEGMENT_HINT (PLACE_PATH + 160)

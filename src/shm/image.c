@@ -2,6 +2,8 @@
 /* The image as owsd lays it out and publishes into it. */
 #include <assert.h>
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "src/libows/ows.h"
@@ -82,40 +84,29 @@ static uint64_t changes_of(uint64_t records)
 	return n;
 }
 
+#define AREA(entry, n) ((struct image_area){.size = sizeof(entry), .count = (n)})
+
 static void find_areas(const struct image_plan *plan, struct image_areas *a)
 {
 	uint64_t records = (uint64_t)plan->signal_count + 1;
 
-	*a = (struct image_areas){
-		.of =
-			{
-				[OWS_AREA_RECORDS] = {sizeof(struct ows_record), records, 0},
-				[OWS_AREA_INFOS] = {sizeof(struct ows_info_entry), records, 0},
-				[OWS_AREA_NAMES] = {sizeof(struct ows_name_entry), records, 0},
-				[OWS_AREA_TARGETS] = {sizeof(struct ows_target_entry),
-	                                              plan->target_count, 0},
-				[OWS_AREA_COUNTERS] = {sizeof(struct ows_counter_entry),
-	                                               plan->counter_count, 0},
-				[OWS_AREA_POOL] = {1, pool_bytes(plan), 0},
-				[OWS_AREA_TEXTS] = {1, text_bytes(plan), 0},
-				[OWS_AREA_ORIGINS] = {sizeof(struct ows_origin_entry), records, 0},
-				[OWS_AREA_CONTROLLERS] = {sizeof(struct ows_controller_entry),
-	                                                  OWS_CONTROLLERS, 0},
-				[OWS_AREA_SHELVES] = {sizeof(struct ows_shelf_entry), OWS_SHELVES,
-	                                              0},
-				[OWS_AREA_ALARMS] = {sizeof(struct ows_journal_entry), OWS_JOURNAL,
-	                                             0},
-				[OWS_AREA_COMMANDS] = {sizeof(struct ows_journal_entry),
-	                                               OWS_JOURNAL, 0},
-				[OWS_AREA_CHANGES] = {sizeof(struct ows_change_entry),
-	                                              changes_of(records), 0},
-				[OWS_AREA_DEVICES] = {sizeof(struct ows_device_entry),
-	                                              plan->device_count, 0},
-				[OWS_AREA_LOG] = {sizeof(struct ows_log_entry), plan->log_lines, 0},
-			},
-		.end = align64(sizeof(struct ows_image_header) +
-	                       (OWS_AREAS - 1) * sizeof(struct ows_area_entry)),
-	};
+	a->of[OWS_AREA_RECORDS] = AREA(struct ows_record, records);
+	a->of[OWS_AREA_INFOS] = AREA(struct ows_info_entry, records);
+	a->of[OWS_AREA_NAMES] = AREA(struct ows_name_entry, records);
+	a->of[OWS_AREA_TARGETS] = AREA(struct ows_target_entry, plan->target_count);
+	a->of[OWS_AREA_COUNTERS] = AREA(struct ows_counter_entry, plan->counter_count);
+	a->of[OWS_AREA_POOL] = AREA(char, pool_bytes(plan));
+	a->of[OWS_AREA_TEXTS] = AREA(char, text_bytes(plan));
+	a->of[OWS_AREA_ORIGINS] = AREA(struct ows_origin_entry, records);
+	a->of[OWS_AREA_CONTROLLERS] = AREA(struct ows_controller_entry, OWS_CONTROLLERS);
+	a->of[OWS_AREA_SHELVES] = AREA(struct ows_shelf_entry, OWS_SHELVES);
+	a->of[OWS_AREA_ALARMS] = AREA(struct ows_journal_entry, OWS_JOURNAL);
+	a->of[OWS_AREA_COMMANDS] = AREA(struct ows_journal_entry, OWS_JOURNAL);
+	a->of[OWS_AREA_CHANGES] = AREA(struct ows_change_entry, changes_of(records));
+	a->of[OWS_AREA_DEVICES] = AREA(struct ows_device_entry, plan->device_count);
+	a->of[OWS_AREA_LOG] = AREA(struct ows_log_entry, plan->log_lines);
+	a->end = align64(sizeof(struct ows_image_header) +
+	                 (OWS_AREAS - 1) * sizeof(struct ows_area_entry));
 	for (unsigned kind = 1; kind < OWS_AREAS; kind++) {
 		a->of[kind].off = a->end;
 		a->end = align64(a->end + a->of[kind].size * a->of[kind].count);
@@ -146,52 +137,11 @@ static uint32_t add_optional(char *base, uint64_t *pool, const char *text)
 	return string_bytes(text) ? add_string(base, pool, text) : 0;
 }
 
-static void copy_name(char *to, size_t size, const char *from)
+static int compare_names(const void *a, const void *b, void *base)
 {
-	size_t n = strlen(from);
+	const struct ows_name_entry *x = a, *y = b;
 
-	if (n >= size)
-		n = size - 1;
-	memcpy(to, from, n);
-	to[n] = '\0';
-}
-
-static bool name_before(const char *base, const struct ows_name_entry *a,
-                        const struct ows_name_entry *b)
-{
-	return strcmp(base + a->name_off, base + b->name_off) < 0;
-}
-
-static void sift_down(const char *base, struct ows_name_entry *heap, uint32_t i, uint32_t n)
-{
-	for (;;) {
-		uint32_t child = 2 * i + 1;
-		struct ows_name_entry entry = heap[i];
-
-		if (child >= n)
-			return;
-		if (child + 1 < n && name_before(base, &heap[child], &heap[child + 1]))
-			child++;
-		if (!name_before(base, &entry, &heap[child]))
-			return;
-		heap[i] = heap[child];
-		heap[child] = entry;
-		i = child;
-	}
-}
-
-/* Heap sort: the comparison needs base to find the strings, and qsort() passes no context. */
-static void sort_names(const char *base, struct ows_name_entry *names, uint32_t n)
-{
-	for (uint32_t i = n / 2; i-- > 0;)
-		sift_down(base, names, i, n);
-	for (uint32_t last = n; last-- > 1;) {
-		struct ows_name_entry entry = names[0];
-
-		names[0] = names[last];
-		names[last] = entry;
-		sift_down(base, names, 0, last);
-	}
+	return strcmp((const char *)base + x->name_off, (const char *)base + y->name_off);
 }
 
 /*
@@ -227,6 +177,7 @@ static void fill_header(const struct image_plan *plan, const struct image_areas 
 	};
 }
 
+/* Areas lie one behind the other; readers find them by the directory alone. */
 static void point_into(const struct image_plan *plan, const struct image_areas *a, char *base,
                        struct image *image)
 {
@@ -325,7 +276,8 @@ static void fill_signals(const struct image_plan *plan, const struct image_areas
 		image->names[i + 1].name_off = image->infos[i + 1].name_off;
 		image->names[i + 1].record = i + 1;
 	}
-	sort_names(image->base, image->names, image->record_count);
+	qsort_r(image->names, image->record_count, sizeof(*image->names), compare_names,
+	        image->base);
 }
 
 void image_build(const struct image_plan *plan, void *memory, struct image *image)
@@ -338,12 +290,13 @@ void image_build(const struct image_plan *plan, void *memory, struct image *imag
 	fill_header(plan, &a, image->header);
 	fill_signals(plan, &a, image);
 	for (uint32_t i = 0; i < plan->target_count; i++) {
-		copy_name(image->targets[i].name, sizeof(image->targets[i].name), plan->targets[i]);
+		snprintf(image->targets[i].name, sizeof(image->targets[i].name), "%s",
+		         plan->targets[i]);
 		image->targets[i].group = plan->groups ? plan->groups[i] : i;
 	}
 	for (uint32_t i = 0; i < plan->counter_count; i++) {
-		copy_name(image->counters[i].name, sizeof(image->counters[i].name),
-		          plan->counters[i].name);
+		snprintf(image->counters[i].name, sizeof(image->counters[i].name), "%s",
+		         plan->counters[i].name);
 		image->counters[i].target = plan->counters[i].target;
 	}
 	for (uint32_t i = 0; i < plan->device_count; i++) {
@@ -378,7 +331,7 @@ void image_publish(struct image *image, uint32_t record, const struct ows_sample
 	assert(sample->len <= r->text_cap);
 	whole.sample.check = ows_check((const void *)&whole.sample, SAMPLE_WORDS - 1);
 	whole.attrs.check = ows_check((const void *)&whole.attrs, ATTRS_WORDS - 1);
-	/* A reader of this number copies the slot before, whose words must be visible by now */
+	/* A reader of this number copies the slot before: its words must be visible by now */
 	__atomic_store_n(&r->seq, 2 * n - 1, __ATOMIC_RELEASE);
 	word_fence(__ATOMIC_RELEASE);
 	words_store(slot, &whole, SAMPLE_WORDS + ATTRS_WORDS);

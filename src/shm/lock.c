@@ -18,7 +18,7 @@
 
 /*
  * Byte 0 is the instance. Byte 1 is held while the pid is written and while a corpse's file is
- * replaced, so that no owsd mistakes a lock whose new owner has not yet written its pid for a
+ * replaced, so that no owsd mistakes a lock of a new owner that has not yet written its pid for a
  * corpse's.
  */
 #define BYTE_INSTANCE 0
@@ -63,7 +63,7 @@ static int open_lock(int place, const char *name)
 	return fd;
 }
 
-static bool still_there(int fd, int place, const char *name)
+static bool is_still_named(int fd, int place, const char *name)
 {
 	struct stat a, b;
 
@@ -121,22 +121,16 @@ static int replace_lock(int fd, int place, const char *name)
 {
 	if (lock_bytes(fd, F_WRLCK, BYTE_PID, 1) < 0 || !is_corpse(read_pid(fd)))
 		return -EBUSY;
-	if (still_there(fd, place, name) && unlinkat(place, name, 0) < 0)
+	if (is_still_named(fd, place, name) && unlinkat(place, name, 0) < 0)
 		return -errno;
 	return 0;
 }
 
 bool segment_lock_held(const struct shm_place *place, int lock, const char *instance)
 {
-	struct stat ours, there;
 	char name[SEGMENT_FILE];
 
-	segment_file(instance, "lock", name);
-	if (fstat(lock, &ours) < 0)
-		return true;
-	if (fstatat(place->fd, name, &there, AT_SYMLINK_NOFOLLOW) < 0)
-		return errno != ENOENT;
-	return ours.st_ino == there.st_ino && ours.st_dev == there.st_dev;
+	return segment_leads_to(place->fd, segment_file(instance, "lock", name), lock);
 }
 
 int segment_lock(const struct shm_place *place, const char *instance, pid_t *pid, bool *stolen)
@@ -156,7 +150,7 @@ int segment_lock(const struct shm_place *place, const char *instance, pid_t *pid
 		if (fd < 0)
 			return fd;
 		err = lock_bytes(fd, F_WRLCK, BYTE_INSTANCE, 2);
-		if (err == 0 && still_there(fd, place->fd, name)) {
+		if (err == 0 && is_still_named(fd, place->fd, name)) {
 			err = write_pid(fd);
 			lock_bytes(fd, F_UNLCK, BYTE_PID, 1);
 			if (err == 0)
@@ -178,14 +172,18 @@ int segment_lock(const struct shm_place *place, const char *instance, pid_t *pid
 	return -EBUSY;
 }
 
-int lock_look(int place, const char *name, pid_t *pid)
+int segment_lock_look(const struct shm_place *place, const char *instance, pid_t *pid)
 {
+	char name[SEGMENT_FILE];
 	struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET, .l_len = 1};
 	struct stat st;
 	int fd, held;
 
 	*pid = 0;
-	fd = openat(place, name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+	if (!segment_name_ok(instance))
+		return -EINVAL;
+	fd = openat(place->fd, segment_file(instance, "lock", name),
+	            O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
 	if (fd < 0)
 		return errno == ELOOP || errno == ENXIO ? -EPERM : -errno;
 	held = fcntl(fd, F_OFD_GETLK, &lock) < 0 ? -errno : lock.l_type != F_UNLCK;
@@ -198,16 +196,6 @@ int lock_look(int place, const char *name, pid_t *pid)
 		held = !(*pid > 0 && is_corpse(*pid));
 	close(fd);
 	return held;
-}
-
-int segment_lock_look(const struct shm_place *place, const char *instance, pid_t *pid)
-{
-	char name[SEGMENT_FILE];
-
-	*pid = 0;
-	if (!segment_name_ok(instance))
-		return -EINVAL;
-	return lock_look(place->fd, segment_file(instance, "lock", name), pid);
 }
 
 int segment_lock_any(const struct shm_place *place, const char *instance, pid_t *pid)
@@ -232,7 +220,7 @@ int segment_lock_any(const struct shm_place *place, const char *instance, pid_t 
 		*pid = read_pid(fd);
 		/* a corpse creates no files any more */
 		err = *pid > 0 && is_corpse(*pid) ? 0 : -EBUSY;
-	} else if (!err && !still_there(fd, place->fd, name)) {
+	} else if (!err && !is_still_named(fd, place->fd, name)) {
 		err = -EBUSY; /* another process replaces or removes the file */
 	}
 	if (err) {

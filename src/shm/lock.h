@@ -21,10 +21,8 @@ int segment_lock(const struct shm_place *place, const char *instance, pid_t *pid
  * Does not take the lock.
  */
 int segment_lock_look(const struct shm_place *place, const char *instance, pid_t *pid);
-/* The same for a lock's file of any name in an open directory. */
-int lock_look(int place, const char *name, pid_t *pid);
 /*
- * Take the lock that exists, whoever owns its file, so that the files of the instance can be
+ * Take the lock that exists, of any owner, so that the files of the instance can be
  * removed. Returns a descriptor; -ENOENT: there is no lock; -EBUSY: an owsd runs; -EACCES; -EPERM:
  * the lock is no regular file.
  */

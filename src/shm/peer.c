@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Asks the kernel who is at the other end of a connection, and receives without descriptors. */
+/* Asks the kernel for the peer of a connection, and receives without descriptors. */
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
@@ -24,7 +24,7 @@
 #define SYS_pidfd_open 434
 #endif
 
-static int look(int connection, struct peer *peer)
+static int look_at_peer(int connection, struct peer *peer)
 {
 	struct ucred ucred;
 	socklen_t len = sizeof(ucred);
@@ -41,7 +41,7 @@ static int look(int connection, struct peer *peer)
 int peer_look_into(int connection, struct peer *peer, gid_t *room, unsigned most)
 {
 	socklen_t len = (socklen_t)(most * sizeof(*room));
-	int err = look(connection, peer);
+	int err = look_at_peer(connection, peer);
 
 	if (!err && getsockopt(connection, SOL_SOCKET, SO_PEERGROUPS, room, &len) == 0) {
 		peer->groups = room;
@@ -53,7 +53,7 @@ int peer_look_into(int connection, struct peer *peer, gid_t *room, unsigned most
 int peer_look(int connection, struct peer *peer)
 {
 	socklen_t len = 0;
-	int err = look(connection, peer);
+	int err = look_at_peer(connection, peer);
 
 	if (err)
 		return err;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Who is at the other end of a connection, by the kernel's word; what it sends, taken with care. */
+/* The peer of a connection, as the kernel reports it; what it sends, taken with care. */
 #pragma once
 
 #include <stdbool.h>

@@ -90,19 +90,14 @@ static int make_directory(const char *path)
 
 int place_make(struct shm_place *place)
 {
-	int err;
+	char path[PLACE_PATH];
+	int err = place_own(path);
 
 	*place = (struct shm_place){.fd = -1};
-	err = place_own(place->path);
+	snprintf(place->path, sizeof(place->path), "%s", path);
 	if (!err)
-		err = make_directory(place->path);
-	if (!err) {
-		char path[PLACE_PATH];
-
-		memcpy(path, place->path, sizeof(path));
-		err = place_open(path, place);
-	}
-	return err;
+		err = make_directory(path);
+	return err ? err : place_open(path, place);
 }
 
 void place_close(struct shm_place *place)

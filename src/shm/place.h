@@ -30,8 +30,8 @@ int place_own(char path[PLACE_PATH]);
 int place_list(char path[PLACES][PLACE_PATH]);
 /*
  * Open the place and check it. -ENOENT: there is none; -EACCES; -EPERM: it is a link or no
- * directory, or belongs to a user who is neither root nor owsd nor the caller, or others may write
- * into it. place->path is set in any case.
+ * directory, or its owner is neither root nor owsd nor the caller, or others may write into it.
+ * place->path is set in any case.
  */
 int place_open(const char *path, struct shm_place *place);
 /* Open this user's own place, made first (mode 0755) if it is missing. 0 or a negative errno. */

@@ -25,7 +25,7 @@ struct porter {
 	uint32_t sequence[PORTER_LANES];
 	uint32_t asked[PORTER_SLOTS];
 	pid_t pid;     /* 0: there is none */
-	uint32_t gone; /* the lanes lead to nobody */
+	uint32_t gone; /* the lanes lead to no process */
 	/* The supervisor's, of the one that is started again. */
 	int next[PORTER_LANES]; /* what becomes lanes when it is ready */
 	int64_t begun_ns, again_ns, pause_ns;
@@ -40,7 +40,7 @@ static void close_lanes(int *lanes)
 			close(lanes[i]);
 }
 
-/* Whoever may have a copy of them, the porter learns that owsd has ended. */
+/* Though other processes may have copies of them, the porter learns that owsd has ended. */
 static void end_lanes(int *lanes)
 {
 	for (unsigned i = 0; i < PORTER_LANES; i++)
@@ -188,7 +188,7 @@ int porter_process(const struct porter *p)
 
 /* --- Orders ----------------------------------------------------------------------------------- */
 
-static void let_go(const struct porter_order *order)
+static void close_given(const struct porter_order *order)
 {
 	for (unsigned i = 0; i < order->count; i++)
 		if (!(order->keep >> i & 1))
@@ -198,7 +198,7 @@ static void let_go(const struct porter_order *order)
 static int carry_here(const struct porter_order *order)
 {
 	porter_carry_out(order->what, order->fds, order->count, order->bytes);
-	let_go(order);
+	close_given(order);
 	return 0;
 }
 
@@ -236,7 +236,7 @@ int porter_give(struct porter *p, enum porter_lane lane, const struct porter_ord
 			                 __ATOMIC_RELEASE);
 		return carry_here(order);
 	}
-	let_go(order);
+	close_given(order);
 	__atomic_store_n(&p->shared->given[lane], sequence, __ATOMIC_RELEASE);
 	return 0;
 }

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The porter: a process of its own for what a peer can make slow. A descriptor that a peer has sent
- * may sleep for hours in close(); whoever wakes a socket walks all watches that its peer has put
- * there; a memory that a peer has may be locked by it. So no thread of owsd receives what may have
- * descriptors with it, sends over a connection, or closes what a peer had or has: it gives that to
- * the porter. The porter forks a child for it, and the child does it and ends: a process that ends
- * waits for no connection. A child that hangs holds nobody up; the porter goes on with the next.
+ * may sleep for hours in close(); a thread that wakes a socket walks all watches that its peer has
+ * put there; a memory that a peer has may be locked by it. So no thread of owsd receives what may
+ * have descriptors with it, sends over a connection, or closes what a peer had or has: it gives
+ * that to the porter. The porter forks a child for it, and the child does it and ends: a process
+ * that ends waits for no connection. A child that hangs delays no other; the porter goes on with
+ * the next.
  */
 #pragma once
 
@@ -30,7 +31,7 @@ bool porter_carried(const struct porter *porter, uint32_t slot);
 
 enum porter_event {
 	PORTER_GOES_ON,
-	PORTER_ENDED, /* somebody killed it: the caller's threads do it all until PORTER_IS_BACK */
+	PORTER_ENDED,   /* it was killed: the caller's threads do it all until PORTER_IS_BACK */
 	PORTER_IS_BACK, /* another is ready */
 	PORTER_FAILED,  /* another could not be started, or ended before it was ready */
 };

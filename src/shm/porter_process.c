@@ -80,7 +80,7 @@ static void send_over(const int *fds, unsigned count, struct iovec bytes)
 }
 
 /* What is unread at close() is an error to the peer. */
-static void hang_up(int fd)
+static void end_connection(int fd)
 {
 	char byte;
 
@@ -89,7 +89,7 @@ static void hang_up(int fd)
 		;
 }
 
-static void wake(int image)
+static void wake_sleepers(int image)
 {
 	const struct ows_image_header *h;
 
@@ -100,7 +100,7 @@ static void wake(int image)
 	munmap((void *)(uintptr_t)h, sizeof(*h));
 }
 
-static void empty(int file)
+static void free_pages(int file)
 {
 	struct stat st;
 
@@ -115,14 +115,14 @@ void porter_carry_out(unsigned what, const int *fds, unsigned count, struct iove
 	unsigned connections = what & PORTER_EACH ? count : 1;
 
 	if (what & PORTER_WAKE)
-		wake(fds[0]);
+		wake_sleepers(fds[0]);
 	if (what & PORTER_EMPTY)
-		empty(fds[0]);
+		free_pages(fds[0]);
 	for (unsigned i = 0; i < connections; i++) {
 		if (what & PORTER_SEND)
 			send_over(fds + i, what & PORTER_EACH ? 1 : count, bytes);
 		if (what & PORTER_HANG_UP)
-			hang_up(fds[i]);
+			end_connection(fds[i]);
 	}
 }
 

@@ -28,30 +28,28 @@ static inline bool reader_end(const struct ows_record *record, uint32_t seq)
 	return word_get(&record->seq) - (seq & ~1u) <= 2;
 }
 
-static inline bool reader_sample(const struct ows_record *record, struct ows_sample *sample)
+/* Copy the first bytes of the newest slot: its sample, or all of it. */
+static inline bool reader_bytes(const struct ows_record *record, void *to, size_t size)
 {
 	for (int i = 0; i < READER_TRIES; i++) {
 		uint32_t seq;
 		const struct ows_slot *slot = reader_begin(record, &seq);
 
-		words_load_aligned(sample, &slot->sample, sizeof(*sample) / 4);
+		words_load_aligned(to, slot, size / 4);
 		if (reader_end(record, seq))
 			return true;
 	}
 	return false;
 }
 
-static inline bool reader_slot(const struct ows_record *record, struct ows_slot *to)
+static inline bool reader_sample(const struct ows_record *record, struct ows_sample *sample)
 {
-	for (int i = 0; i < READER_TRIES; i++) {
-		uint32_t seq;
-		const struct ows_slot *slot = reader_begin(record, &seq);
+	return reader_bytes(record, sample, sizeof(*sample));
+}
 
-		words_load_aligned(to, slot, sizeof(*to) / 4);
-		if (reader_end(record, seq))
-			return true;
-	}
-	return false;
+static inline bool reader_slot(const struct ows_record *record, struct ows_slot *slot)
+{
+	return reader_bytes(record, slot, sizeof(*slot));
 }
 
 /*

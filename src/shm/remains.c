@@ -26,18 +26,18 @@ static bool instance_of(const char *file, char name[SEGMENT_NAME_MAX + 1])
 	return ours && segment_name_ok(name);
 }
 
-static int by_name(const void *a, const void *b)
+static int compare_instances(const void *a, const void *b)
 {
 	return strcmp(a, b);
 }
 
-static void sort(struct remains *remains)
+static void sort_instances(struct remains *remains)
 {
 	unsigned kept = 0;
 
 	if (!remains->count)
 		return;
-	qsort(remains->name, remains->count, sizeof(*remains->name), by_name);
+	qsort(remains->name, remains->count, sizeof(*remains->name), compare_instances);
 	for (unsigned i = 1; i < remains->count; i++)
 		if (strcmp(remains->name[kept], remains->name[i]) != 0)
 			memmove(remains->name[++kept], remains->name[i], sizeof(*remains->name));
@@ -74,7 +74,7 @@ int remains_list(const struct shm_place *place, struct remains *remains)
 	closedir(folder);
 	if (err)
 		remains_free(remains);
-	sort(remains);
+	sort_instances(remains);
 	return err;
 }
 

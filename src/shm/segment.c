@@ -58,7 +58,18 @@ static int give_to_group(int fd, const struct segment_role *role)
 	return fchmod(fd, 0600) < 0 ? -errno : 0;
 }
 
-static int allocate(int fd, size_t size)
+bool segment_leads_to(int directory, const char *name, int fd)
+{
+	struct stat ours, there;
+
+	if (fstat(fd, &ours) < 0)
+		return true;
+	if (fstatat(directory, name, &there, AT_SYMLINK_NOFOLLOW) < 0)
+		return errno != ENOENT;
+	return ours.st_ino == there.st_ino && ours.st_dev == there.st_dev;
+}
+
+int segment_allocate(int fd, size_t size)
 {
 	int err;
 
@@ -78,7 +89,7 @@ static int map(struct segment *segment)
 	return 0;
 }
 
-/* The lock is held and nobody else makes names there: a file of that name is a leftover. */
+/* The lock is held, and no other process makes names there: a file of that name is a leftover. */
 static int open_temporary(const char *instance, struct segment *segment)
 {
 	char what[12];
@@ -105,7 +116,7 @@ int segment_create(const struct shm_place *place, const char *instance, enum seg
 	err = open_temporary(instance, segment);
 	if (err)
 		return err;
-	err = allocate(segment->fd, size);
+	err = segment_allocate(segment->fd, size);
 	if (!err)
 		err = map(segment);
 	if (!err)
@@ -115,6 +126,7 @@ int segment_create(const struct shm_place *place, const char *instance, enum seg
 	return err;
 }
 
+/* Readers see the old file or the new one, and never a half one. */
 int segment_show(const char *instance, struct segment *segment)
 {
 	char name[SEGMENT_FILE];
@@ -130,15 +142,11 @@ int segment_show(const char *instance, struct segment *segment)
 
 bool segment_named(const char *instance, const struct segment *segment)
 {
-	struct stat ours, there;
 	char name[SEGMENT_FILE];
 
-	if (segment->temporary[0] != '\0' || fstat(segment->fd, &ours) < 0)
-		return true;
-	final_name(instance, segment->kind, name);
-	if (fstatat(segment->place, name, &there, AT_SYMLINK_NOFOLLOW) < 0)
-		return errno != ENOENT;
-	return ours.st_ino == there.st_ino && ours.st_dev == there.st_dev;
+	return segment->temporary[0] != '\0' ||
+	       segment_leads_to(segment->place, final_name(instance, segment->kind, name),
+	                        segment->fd);
 }
 
 int segment_open_old(const struct shm_place *place, const char *instance, enum segment_kind kind,

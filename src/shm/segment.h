@@ -24,6 +24,14 @@ bool segment_name_ok(const char *instance);
 #define SEGMENT_FILE (SEGMENT_NAME_MAX + 16)
 const char *segment_file(const char *instance, const char *what, char name[SEGMENT_FILE]);
 
+/*
+ * Does the name in that directory lead to the open file fd? True also where that cannot be found
+ * out.
+ */
+bool segment_leads_to(int directory, const char *name, int fd);
+/* Have the file system give all pages of the file now. 0 or a negative errno. */
+int segment_allocate(int fd, size_t size);
+
 struct segment {
 	char *base;
 	size_t size;

@@ -50,7 +50,7 @@ static bool open_earlier(struct earlier *from)
 }
 
 /* The name of a record; NULL: there is no such record. */
-static const char *name_of(const struct earlier *from, uint32_t record)
+static const char *earlier_name(const struct earlier *from, uint32_t record)
 {
 	const struct ows_info_entry *info;
 
@@ -95,7 +95,7 @@ void shelves_carry(struct image *image, const void *before, size_t size)
 
 		if (!reader_entry((const void *)at, &entry, sizeof(entry)) || !entry.record)
 			continue;
-		name = name_of(&from, entry.record);
+		name = earlier_name(&from, entry.record);
 		entry.record = name ? record_of(image, name) : 0;
 		if (entry.record)
 			image_shelf(image, entered++, &entry);

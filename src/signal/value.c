@@ -52,11 +52,6 @@ int value_type_parse(const char *name)
 	return -1;
 }
 
-static bool is_integer(enum ows_type type)
-{
-	return value_type_ok((int)type) && !value_is_float(type) && type != OWS_STRING;
-}
-
 static bool is_number(enum ows_type type)
 {
 	return value_type_ok((int)type) && type != OWS_STRING;
@@ -110,7 +105,7 @@ static bool is_digit(char c)
 	return c >= '0' && c <= '9';
 }
 
-static void trim(const char **text, size_t *len)
+static void trim_blanks(const char **text, size_t *len)
 {
 	while (*len && is_blank(**text)) {
 		++*text;
@@ -260,7 +255,7 @@ int value_from_text(enum ows_type type, const char *text, size_t len, int64_t *v
 	bool exact;
 	int side;
 
-	trim(&text, &len);
+	trim_blanks(&text, &len);
 	if (!is_number(type))
 		return -EINVAL;
 	if (decimal_parse(text, len, &d))
@@ -348,7 +343,7 @@ bool value_holds(enum ows_type type, int64_t value)
 		return isfinite((float)double_of(value));
 	if (type == OWS_DOUBLE)
 		return isfinite(double_of(value));
-	return is_integer(type) && value >= types[type].least && value <= types[type].most;
+	return is_number(type) && value >= types[type].least && value <= types[type].most;
 }
 
 static int word_of_bool(const char *text, size_t len)
@@ -371,7 +366,7 @@ int value_parse(enum ows_type type, const char *text, int64_t *value)
 	bool exact;
 	int word;
 
-	trim(&text, &len);
+	trim_blanks(&text, &len);
 	if (!is_number(type))
 		return -EINVAL;
 	word = type == OWS_BOOL ? word_of_bool(text, len) : -1;
