@@ -11,3 +11,8 @@
 
 #define NS_PER_S INT64_C(1000000000)
 #define NS_PER_MS INT64_C(1000000)
+
+static inline int64_t earlier_ns(int64_t a, int64_t b)
+{
+	return a < b ? a : b;
+}

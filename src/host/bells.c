@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What the engine's thread sleeps on: one bell for the threads of owsd and one for each
- * controller. */
+/* What the engine's thread sleeps on: a bell of owsd's threads, and one of each controller. */
 #include <errno.h>
 #include <poll.h>
 #include <sys/epoll.h>
@@ -21,7 +20,7 @@
 #define OWN OWS_CONTROLLERS
 #define EVENTS 32
 
-/* Edge-triggered: each write wakes once, and nobody needs to read. */
+/* Edge-triggered: each write wakes once, and the thread need not read. */
 static int bells_watch(const struct bells *bells, int fd, uint32_t data)
 {
 	struct epoll_event event = {.events = EPOLLIN | EPOLLET, .data.u32 = data};

@@ -37,7 +37,7 @@ void bells_close(struct bells *bells);
 /* Any thread: wake the engine's. */
 void bells_ring(struct bells *bells);
 
-/* The others are for the engine's thread. fd: an eventfd that nobody reads. */
+/* The others are for the engine's thread. fd: an eventfd that is never read. */
 void bells_add(struct bells *bells, unsigned place, int fd);
 void bells_remove(struct bells *bells, unsigned place);
 /* The engine looks at everything now: what rang before counts no more. */

@@ -124,11 +124,12 @@ int host_start(const struct host_setup *setup, struct host **host, char *why, si
 		return err;
 	}
 	err = memory_show(&h->now->memory, h->log, why, why_size);
-	if (err)
-		goto fail;
-	err = host_start_engine(h, setup->rt_priority, why, why_size);
-	if (err)
-		goto fail;
+	if (!err)
+		err = host_start_engine(h, setup->rt_priority, why, why_size);
+	if (err) {
+		free_host(h);
+		return err;
+	}
 	err = start_rest(h, why, why_size);
 	if (err) {
 		host_stop(h, NS_PER_S);
@@ -136,9 +137,6 @@ int host_start(const struct host_setup *setup, struct host **host, char *why, si
 	}
 	*host = h;
 	return 0;
-fail:
-	free_host(h);
-	return err;
 }
 
 static void see_line(void *ctx, int64_t time_ns, enum log_level level, const char *text, size_t len)
@@ -188,9 +186,7 @@ bool host_stop(struct host *h, int64_t timeout_ns)
 	stuck |= !last_stop(h->now->last, timeout_ns);
 	stuck |= !serving_stop(h->now, timeout_ns);
 	if (stuck) {
-		/*
-		 * a thread that returns from the kernel later still reads this memory
-		 */
+		/* a thread that returns from the kernel later still reads this memory */
 		memory_stop(&h->now->memory);
 		return false;
 	}

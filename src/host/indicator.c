@@ -13,7 +13,6 @@
 #include "src/shm/futex.h"
 #include "src/shm/reader.h"
 
-#define HALF (NS_PER_S / 2)
 #define FLASH (100 * NS_PER_MS)
 #define LOOK_NS (250 * NS_PER_MS) /* at the image, for alarms */
 #define AGAIN_NS (5 * NS_PER_S)
@@ -71,37 +70,25 @@ static enum indicator_health indicator_health(const struct image *image, int64_t
 	return INDICATOR_ALONE;
 }
 
-/* Is the heartbeat lamp on at now_ns? */
-static bool indicator_lit(enum indicator_health health, int64_t now_ns)
+/* Is the heartbeat lamp on at now_ns? next_ns: the time after that at which it may change. */
+static bool indicator_lit(enum indicator_health health, int64_t now_ns, int64_t *next_ns)
 {
-	switch (health) {
-	case INDICATOR_DEAD:
-		return false;
-	case INDICATOR_ALONE:
-		return now_ns % (2 * NS_PER_S) < FLASH;
-	case INDICATOR_WELL:
-		return now_ns % NS_PER_S < HALF;
-	}
-	return false;
+	static const struct {
+		int64_t round_ns, lit_ns; /* on at the begin of each round */
+	} rhythms[] = {
+		[INDICATOR_ALONE] = {2 * NS_PER_S, FLASH},
+		[INDICATOR_WELL] = {NS_PER_S, NS_PER_S / 2},
+	};
+	int64_t round_ns = rhythms[health].round_ns, lit_ns = rhythms[health].lit_ns;
+	bool lit = round_ns && now_ns % round_ns < lit_ns;
+
+	*next_ns = now_ns + LOOK_NS;
+	if (round_ns)
+		*next_ns = now_ns - now_ns % round_ns + (lit ? lit_ns : round_ns);
+	return lit;
 }
 
-/* The time after now_ns at which the heartbeat lamp changes next. */
-static int64_t next_change(enum indicator_health health, int64_t now_ns)
-{
-	switch (health) {
-	case INDICATOR_DEAD:
-		return now_ns + LOOK_NS;
-	case INDICATOR_ALONE:
-		return indicator_lit(health, now_ns)
-		               ? now_ns - now_ns % (2 * NS_PER_S) + FLASH
-		               : now_ns - now_ns % (2 * NS_PER_S) + 2 * NS_PER_S;
-	case INDICATOR_WELL:
-		return now_ns - now_ns % HALF + HALF;
-	}
-	return now_ns + LOOK_NS;
-}
-
-static void lost(struct indicator *indicator, struct lamp *lamp, const char *why)
+static void lose_lamp(struct indicator *indicator, struct lamp *lamp, const char *why)
 {
 	gpio_output_release(&lamp->output);
 	lamp->lit = -1;
@@ -130,7 +117,7 @@ static void set_lamp(struct indicator *indicator, struct lamp *lamp, bool lit, i
 			snprintf(why, sizeof(why), "%s", strerror(-err));
 	}
 	if (err)
-		lost(indicator, lamp, why);
+		lose_lamp(indicator, lamp, why);
 	else
 		lamp->lit = lit;
 }
@@ -139,16 +126,16 @@ int64_t indicator_step(struct indicator *indicator, int64_t now_ns)
 {
 	enum indicator_health health = indicator_health(indicator->image, indicator->period_ns,
 	                                                now_ns);
-	int64_t next_ns = next_change(health, now_ns);
+	int64_t next_ns;
+	bool lit = indicator_lit(health, now_ns, &next_ns);
 
 	if (indicator->alarm_lamp.key && now_ns >= indicator->look_ns) {
 		indicator->look_ns = now_ns + LOOK_NS;
 		indicator->alarm = indicator_alarm(indicator->image);
 	}
 	set_lamp(indicator, &indicator->alarm_lamp, indicator->alarm, now_ns);
-	set_lamp(indicator, &indicator->heartbeat_lamp, indicator_lit(health, now_ns), now_ns);
-	return indicator->alarm_lamp.key && indicator->look_ns < next_ns ? indicator->look_ns
-	                                                                 : next_ns;
+	set_lamp(indicator, &indicator->heartbeat_lamp, lit, now_ns);
+	return indicator->alarm_lamp.key ? earlier_ns(next_ns, indicator->look_ns) : next_ns;
 }
 
 static int lamp_create(struct lamp *lamp, const char *key, const char *text, struct log *log)

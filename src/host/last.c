@@ -56,12 +56,12 @@ static uint32_t last_put(void *ctx, uint32_t row, int64_t value, const char *tex
 	return c.stamp;
 }
 
-static uint32_t stored(void *ctx)
+static uint32_t last_stored(void *ctx)
 {
 	return __atomic_load_n(&((struct last *)ctx)->stored, __ATOMIC_ACQUIRE);
 }
 
-static int error(void *ctx)
+static int last_error(void *ctx)
 {
 	return __atomic_load_n(&((struct last *)ctx)->error, __ATOMIC_RELAXED);
 }
@@ -84,7 +84,7 @@ static bool last_find(void *ctx, uint32_t row, int64_t *value, char *text, size_
 
 /* --- The thread ------------------------------------------------------------------------------- */
 
-static int store(struct last *l)
+static int store_all(struct last *l)
 {
 	int directory = last_directory(l->where), err = directory < 0 ? directory : 0;
 
@@ -105,7 +105,7 @@ static int store(struct last *l)
 /* Store all up to this ticket, and let the engine know how it went. */
 static void store_up_to(struct last *l, uint32_t ticket)
 {
-	int err = store(l);
+	int err = store_all(l);
 
 	__atomic_store_n(&l->error, err, __ATOMIC_RELAXED);
 	if (!err) {
@@ -149,7 +149,7 @@ static void *store_main(void *ctx)
 
 /* --- Made and ended --------------------------------------------------------------------------- */
 
-static int make_rows(struct last *l, const struct config *config)
+static int make_stored_rows(struct last *l, const struct config *config)
 {
 	struct force_plan plan = {.text_cap = VALUE_STRING_MAX, .stored = true};
 	char *memory;
@@ -195,7 +195,7 @@ static int take_left(struct last *l, const char *data, size_t size)
 	return err;
 }
 
-static void read_file(struct last *l)
+static void read_stored(struct last *l)
 {
 	int directory = last_directory(l->where), err = directory < 0 ? directory : 0;
 	char *data = NULL;
@@ -220,7 +220,7 @@ static void read_file(struct last *l)
 int last_make(const struct last_setup *setup, struct last **last)
 {
 	struct last *l = calloc(1, sizeof(*l));
-	int err = l ? make_rows(l, setup->config) : -ENOMEM;
+	int err = l ? make_stored_rows(l, setup->config) : -ENOMEM;
 
 	*last = NULL;
 	if (err || !l->put.row_count) {
@@ -228,8 +228,8 @@ int last_make(const struct last_setup *setup, struct last **last)
 		return err;
 	}
 	l->setup = *setup;
-	l->seam = (struct engine_last){l, last_put, stored, error, last_find};
-	read_file(l);
+	l->seam = (struct engine_last){l, last_put, last_stored, last_error, last_find};
+	read_stored(l);
 	*last = l;
 	return 0;
 }

@@ -22,7 +22,7 @@ int last_directory(char path[LAST_WHERE]);
 int last_read(int directory, const char *instance, char **data, size_t *size);
 /*
  * Write the file; data has room for LAST_CHECK bytes after it. 0 or a negative errno; then the old
- * file stands. -EFBIG: longer than LAST_MAX, so that nobody would read it.
+ * file stands. -EFBIG: longer than LAST_MAX, so that last_read() would refuse it.
  */
 #define LAST_CHECK 4
 int last_write(int directory, const char *instance, char *data, size_t size);

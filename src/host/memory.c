@@ -226,21 +226,12 @@ void memory_resumed(struct memory *m)
 	m->has_left = false;
 }
 
-static void carry_shelves(struct memory *m)
-{
-	struct segment before;
-
-	if (!open_image_before(m, &before))
-		return;
-	shelves_carry(&m->image, before.base, before.size);
-	segment_close(&before);
-}
-
 int memory_make(struct memory *m, const struct memory_setup *setup, char *why, size_t why_size)
 {
 	char hint[SEGMENT_HINT];
 	uint64_t boot = boot_number();
 	struct segment before;
+	bool has_before;
 	int err;
 
 	*m = (struct memory){.instance = setup->instance,
@@ -251,32 +242,31 @@ int memory_make(struct memory *m, const struct memory_setup *setup, char *why, s
 	m->start_id = random_id();
 	m->start_ns = setup->before ? setup->before->start_ns : ows_now();
 	m->start_wall_ns = setup->before ? setup->before->start_wall_ns : wall_ns();
-	if (setup->before) {
+	has_before = !setup->before && open_image_before(m, &before);
+	m->generation = m->start_id; /* a new number, even if the image before was removed */
+	if (setup->before)
 		m->generation = setup->before->generation + 1;
-	} else if (open_image_before(m, &before)) {
+	else if (has_before)
 		m->generation = ((struct ows_image_header *)(void *)before.base)->generation + 1;
-		segment_close(&before);
-	} else {
-		m->generation =
-			m->start_id; /* a new number, even if the image before was removed */
-	}
 	err = make_image(m, setup->counters, setup->counter_count);
 	if (!err)
 		err = make_force(m, boot);
 	if (!err)
 		err = make_layout(m);
+	if (!err && has_before)
+		shelves_carry(&m->image, before.base, before.size);
+	if (has_before)
+		segment_close(&before);
 	if (err) {
 		snprintf(why, why_size, "cannot make the shared memory: %s%s", strerror(-err),
 		         segment_hint(m->place, m->instance, err, hint));
 		memory_end(m);
 		return err;
 	}
-	if (setup->before) {
+	if (setup->before)
 		image_carry_log(&m->image, &setup->before->image);
-	} else {
+	else
 		open_left(m, boot, setup->log);
-		carry_shelves(m);
-	}
 	return 0;
 }
 

@@ -40,7 +40,7 @@ struct memory_setup {
 	const struct image_counter *counters; /* as in struct image_plan */
 	uint32_t counter_count;
 	struct log *log;
-	struct porter *porter;       /* wakes who sleeps on an image that ends */
+	struct porter *porter;       /* wakes the programs that sleep on an image that ends */
 	const struct memory *before; /* a reload: what is in use; NULL: a start */
 };
 /*

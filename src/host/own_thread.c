@@ -35,7 +35,7 @@ bool own_thread_stop(struct own_thread *t, uint32_t *word, int64_t timeout_ns)
 	segment_wake(&t->stop, 1);
 	if (word)
 		segment_wake(word, 1);
-	/* pthread_timedjoin_np() uses the wall clock, which somebody may set meanwhile */
+	/* pthread_timedjoin_np() uses the wall clock, which may be set meanwhile */
 	while (!__atomic_load_n(&t->ended, __ATOMIC_ACQUIRE)) {
 		if (left_ns <= 0)
 			return false;

@@ -21,7 +21,7 @@ struct host {
 	struct serving *now;
 	struct serving *next; /* made by a reload, for the engine to take over */
 	const struct adoption *plan;
-	/* An engine whose buses have ended, for the engine's thread to abandon. */
+	/* An engine with buses that have ended, for the engine's thread to abandon. */
 	struct engine *ended;
 	struct log *log;
 	struct porter *porter;

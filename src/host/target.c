@@ -40,19 +40,21 @@ static void no_event(void *ctx, const struct bus_event *event)
 static const struct bus_env env = {
 	.now = target_now, .wait = no_wait, .answer = no_answer, .event = no_event};
 
-static int check_target(const struct config *config, const struct config_target *target,
-                        struct config_report *report)
+static struct place place_of(const struct config *config, const struct config_target *target)
 {
-	struct place place = {target->line ? config->file : NULL, target->line, target->column};
+	return (struct place){target->line ? config->file : NULL, target->line, target->column};
+}
+
+/* Make a bus of the target to see whether that works; reports why it does not. */
+static int try_target(const char *target, struct place place, struct bus **bus,
+                      struct config_report *report)
+{
 	char why[256] = "";
-	struct bus *bus = NULL;
-	int err = bus_create(target->text, &env, &bus, why, sizeof(why));
+	int err = bus_create(target, &env, bus, why, sizeof(why));
 
 	if (err)
-		report_error(report, place, "target \"%s\": %s", target->text,
+		report_error(report, place, "target \"%s\": %s", target,
 		             *why ? why : strerror(-err));
-	else
-		bus_destroy(bus);
 	return err;
 }
 
@@ -77,15 +79,15 @@ int target_options(struct bus *bus, const struct config *config, const char *tar
 static int check_bus(const struct config *config, const struct config_bus *block,
                      struct config_report *report)
 {
-	struct bus *bus = NULL;
+	struct bus *bus;
 	char why[160];
-	int err = bus_create(block->target, &env, &bus, why, sizeof(why)), worst = 0;
+	int worst = 0;
+	int err = try_target(block->target,
+	                     (struct place){config->file, block->line, block->column}, &bus,
+	                     report);
 
-	if (err) {
-		report_error(report, (struct place){config->file, block->line, block->column},
-		             "target \"%s\": %s", block->target, why);
+	if (err)
 		return err;
-	}
 	for (unsigned i = 0; i < block->option_count; i++) {
 		const struct config_option *option = &block->options[i];
 
@@ -133,10 +135,16 @@ static int check_options(const struct config *config, struct config_report *repo
 
 int target_check_config(struct config *config, struct config_report *report)
 {
+	struct bus *bus;
 	int err = 0;
 
-	for (unsigned i = 0; !err && i < config->target_count; i++)
-		err = check_target(config, &config->targets[i], report);
+	for (unsigned i = 0; !err && i < config->target_count; i++) {
+		const struct config_target *target = &config->targets[i];
+
+		err = try_target(target->text, place_of(config, target), &bus, report);
+		if (!err)
+			bus_destroy(bus);
+	}
 	if (!err)
 		err = check_options(config, report);
 	return err ? err : config_check(config, report);
@@ -170,8 +178,8 @@ static const struct way {
          "no socket"},
 };
 
-static void look_for(const struct config_target *target, struct place place, const struct way *way,
-                     struct config_report *report)
+static void look_for_path(const struct config_target *target, struct place place,
+                          const struct way *way, struct config_report *report)
 {
 	const char *where = target->text + strlen(way->scheme);
 	char path[300];
@@ -225,15 +233,14 @@ int target_look(const struct config *config, struct config_report *report)
 
 	for (unsigned i = 0; i < config->target_count; i++) {
 		const struct config_target *target = &config->targets[i];
-		struct place place = {target->line ? config->file : NULL, target->line,
-		                      target->column};
+		struct place place = place_of(config, target);
 		char what[300];
 
 		snprintf(what, sizeof(what), "target \"%s\"", target->text);
 		if (strncmp(target->text, gpio, strlen(gpio)) == 0)
 			look_for_chip(what, target->text + strlen(gpio), place, report);
 		for (unsigned k = 0; k < sizeof(ways) / sizeof(ways[0]); k++)
-			look_for(target, place, &ways[k], report);
+			look_for_path(target, place, &ways[k], report);
 	}
 	look_for_line(config, "AlarmLine", config->alarm_line, report);
 	look_for_line(config, "HeartbeatLine", config->heartbeat_line, report);

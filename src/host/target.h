@@ -21,8 +21,8 @@ int target_options(struct bus *bus, const struct config *config, const char *tar
 int target_check_config(struct config *config, struct config_report *report);
 
 /*
- * Warn of targets and GPIO lines whose device, socket or master is not on this machine now: owsd
- * would wait for it. What is there and can never be it is an error. Opens GPIO chips alone. For who
- * checks a file where it is used. 0 or -EINVAL.
+ * Warn of targets and GPIO lines with a device, socket or master that is not on this machine now:
+ * owsd would wait for it. What is there and can never be it is an error. Opens GPIO chips alone.
+ * For a check of a file where it is used. 0 or -EINVAL.
  */
 int target_look(const struct config *config, struct config_report *report);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * owsd's command line, and the messages to the user who typed it.
+ * owsd's command line, and the messages about it to the user.
  *
  * Room src/owsd: the program: options, start-up, supervision, reload and end. Uses src/host,
  * src/config, src/board, src/text, src/libows, src/service, src/shm, hal/gpio, hal/bus, hal/base.

@@ -64,7 +64,7 @@ static int print_board(const struct arguments *a)
 /* Where the messages about a configuration go. */
 struct told {
 	struct log *log; /* NULL: stderr, by line */
-	char *why;       /* the first error; NULL: nobody asks */
+	char *why;       /* gets the first error; NULL: it is not wanted */
 	size_t why_size;
 	struct config_report report;
 	struct found {
@@ -118,8 +118,8 @@ static bool has_file(const struct arguments *a)
 	return access(a->file, F_OK) == 0 || errno != ENOENT;
 }
 
-static int read_file(const struct arguments *a, struct config_report *report,
-                     struct config **config)
+static int read_config(const struct arguments *a, struct config_report *report,
+                       struct config **config)
 {
 	static const char empty[] = "OwsDrv {\n}\n";
 
@@ -133,7 +133,7 @@ static int owsd_load(const struct arguments *a, struct told *told, struct config
 	struct config_report *report = &told->report;
 
 	*report = (struct config_report){.line = report_line, .ctx = told};
-	int err = read_file(a, report, config);
+	int err = read_config(a, report, config);
 
 	if (!err && a->target_count)
 		err = config_set_targets(*config, a->targets, a->target_count, report);
@@ -379,7 +379,7 @@ int main(int argc, char **argv)
 #ifdef __GLIBC__
 	/*
 	 * Each block of 16 KiB or more is a mapping of its own. A mapping is zero when it is new,
-	 * so calloc() does not clear it, and a page that nobody uses takes no memory. free() gives
+	 * so calloc() does not clear it, and a page that is not used takes no memory. free() gives
 	 * it back to the system, so what reading the file took does not stay. A limit that is set
 	 * here is fixed; without it malloc raises it with each larger block that is freed. The heap
 	 * grows by what is needed and a page, not by the 128 KiB that malloc adds otherwise. All
