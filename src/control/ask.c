@@ -7,14 +7,9 @@
 #include "hal/base/time.h"
 #include "src/control/ask.h"
 
-static uint32_t state_of(const struct control_place *p)
-{
-	return __atomic_load_n(&p->state, __ATOMIC_ACQUIRE);
-}
-
 bool ask_waits(const struct control_place *p)
 {
-	uint32_t state = state_of(p);
+	enum control_state state = control_state_of(p);
 
 	return state == CONTROL_ASKING || state == CONTROL_ASKED;
 }

@@ -35,7 +35,7 @@ static const char *const counter_names[CONTROL_COUNTER_COUNT] = {
 #undef X
 };
 
-/* Others may connect where it is the kernel's word who they are that decides. */
+/* Any user may connect where rights follow from the credentials that the kernel reports. */
 static bool is_for_all(const struct control *c)
 {
 	return c->rights.has_controllers || c->rights.has_readers || c->rights.has_configurers ||
@@ -185,7 +185,7 @@ void control_stop(struct control *c)
 
 		if (p->now.memory.base)
 			controller_state(&p->now.memory, OWS_STATE_STOPPED);
-		if (__atomic_load_n(&p->state, __ATOMIC_ACQUIRE) != CONTROL_FREE)
+		if (control_state_of(p) != CONTROL_FREE)
 			part_with(c, &p->fd);
 	}
 	if (c->listener >= 0)
@@ -201,7 +201,7 @@ void control_destroy(struct control *c)
 		return;
 	control_stop(c);
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
-		if (__atomic_load_n(&c->places[i].state, __ATOMIC_ACQUIRE) != CONTROL_FREE)
+		if (control_state_of(&c->places[i]) != CONTROL_FREE)
 			door_release(c, &c->places[i]);
 	held_forget(c);
 	news_close(c);
@@ -217,28 +217,26 @@ void control_destroy(struct control *c)
 
 /* --- The engine's thread ---------------------------------------------------------------------- */
 
-static void show_turn(struct control_turn *turn, const struct control *c, unsigned place,
-                      const struct control_grant *grant)
+static void make_message(struct control_message *message, const struct control *c, unsigned place,
+                         const struct control_grant *grant)
 {
 	const struct control_place *p = &c->places[place];
 
-	*turn = (struct control_turn){
+	*message = (struct control_message){
 		.place = place,
 		.joins = true,
-		.memory = grant->memory,
-		.rights = grant->rights,
-		.who = p->who,
+		.controller = {.memory = grant->memory, .rights = grant->rights, .who = p->who},
 		.bell = p->bell,
 	};
-	memcpy(turn->token, p->token, sizeof(turn->token));
+	memcpy(message->controller.token, p->token, sizeof(p->token));
 }
 
-bool control_next(struct control *c, struct control_turn *turn)
+bool control_next(struct control *c, struct control_message *message)
 {
-	uint32_t turns = __atomic_load_n(&c->turns, __ATOMIC_ACQUIRE);
+	uint32_t changes = __atomic_load_n(&c->changes, __ATOMIC_ACQUIRE);
 
-	if (turns != c->engine.seen) {
-		c->engine.seen = turns;
+	if (changes != c->engine.seen) {
+		c->engine.seen = changes;
 		c->engine.at = 0;
 	}
 	while (c->engine.at < OWS_CONTROLLERS) {
@@ -246,36 +244,34 @@ bool control_next(struct control *c, struct control_turn *turn)
 		struct control_place *p = &c->places[place];
 		uint32_t state = CONTROL_JOINING;
 
-		if (__atomic_compare_exchange_n(&p->state, &state, CONTROL_TAKEN, false,
-		                                __ATOMIC_ACQ_REL, __ATOMIC_ACQUIRE)) {
-			show_turn(turn, c, place, &p->now);
-			return true;
-		}
-		if (state == CONTROL_LEAVING) {
-			show_turn(turn, c, place, &p->now);
-			turn->joins = false;
+		bool joins = __atomic_compare_exchange_n(&p->state, &state, CONTROL_TAKEN, false,
+		                                         __ATOMIC_ACQ_REL, __ATOMIC_ACQUIRE);
+
+		if (joins || state == CONTROL_LEAVING) {
+			make_message(message, c, place, &p->now);
+			message->joins = joins;
 			return true;
 		}
 	}
 	return false;
 }
 
-void control_done(struct control *c, const struct control_turn *turn)
+void control_done(struct control *c, const struct control_message *message)
 {
-	c->engine.memories[turn->place] = turn->joins ? turn->memory
-	                                              : (struct controller_memory){0};
-	if (turn->joins && c->engine.end <= turn->place)
-		c->engine.end = turn->place + 1;
+	c->engine.memories[message->place] = message->joins ? message->controller.memory
+	                                                    : (struct controller_memory){0};
+	if (message->joins && c->engine.end <= message->place)
+		c->engine.end = message->place + 1;
 	while (c->engine.end && !c->engine.memories[c->engine.end - 1].base)
 		c->engine.end--;
-	__atomic_store_n(&c->places[turn->place].state, turn->joins ? CONTROL_IN : CONTROL_LEFT,
-	                 __ATOMIC_RELEASE);
+	__atomic_store_n(&c->places[message->place].state,
+	                 message->joins ? CONTROL_IN : CONTROL_LEFT, __ATOMIC_RELEASE);
 	bell_ring(c->wake);
 }
 
 void control_news(struct control *c, const uint32_t *word)
 {
-	/* news are counted before the look who waits; who waits says so before it looks for news */
+	/* count the news, then look for waiting readers: a reader says that it waits, then looks */
 	word_fence(__ATOMIC_SEQ_CST);
 	for (unsigned i = 0; i < c->engine.end; i++) {
 		const struct controller_memory *memory = &c->engine.memories[i];
@@ -300,18 +296,13 @@ int control_asked_bell(const struct control *c)
 	return c->asked;
 }
 
-static bool control_is(const struct control_place *p, enum control_state state)
-{
-	return __atomic_load_n(&p->state, __ATOMIC_ACQUIRE) == (uint32_t)state;
-}
-
 bool control_asked(struct control *c)
 {
 	bool asked = false;
 
 	bell_clear(c->asked);
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
-		asked |= control_is(&c->places[i], CONTROL_ASKING);
+		asked |= control_state_of(&c->places[i]) == CONTROL_ASKING;
 	return asked;
 }
 
@@ -321,7 +312,7 @@ void control_take_askers(struct control *c)
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++) {
 		struct control_place *p = &c->places[i];
 
-		if (!control_is(p, CONTROL_ASKING))
+		if (control_state_of(p) != CONTROL_ASKING)
 			continue;
 		__atomic_store_n(&p->state, CONTROL_ASKED, __ATOMIC_RELEASE);
 		log_notice(c->log, "reload: asked for by %s (process %d, user %u)", p->who.name,
@@ -336,7 +327,7 @@ void control_answer(struct control *c, int err, const char *why)
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++) {
 		struct control_place *p = &c->places[i];
 
-		if (!control_is(p, CONTROL_ASKED))
+		if (control_state_of(p) != CONTROL_ASKED)
 			continue;
 		ask_answer(c, p, err, why);
 		door_drop(c, p, CONTROL_asked);
@@ -344,8 +335,12 @@ void control_answer(struct control *c, int err, const char *why)
 	pthread_mutex_unlock(&c->lock);
 }
 
-static void prepare(struct control *c, struct control_place *p,
-                    const struct controller_layout *layout, const struct rights *rights)
+/*
+ * The limits of a user hold for the new memory too, and the old one counts until it is empty. A
+ * controller for which there is no room goes on without a memory, and leaves.
+ */
+static void prepare_grant(struct control *c, struct control_place *p,
+                          const struct controller_layout *layout, const struct rights *rights)
 {
 	size_t has = 0, bytes;
 	int err = -ENOSPC;
@@ -370,14 +365,13 @@ void control_prepare(struct control *c, const struct config *config,
 	c->layout = layout;
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++) {
 		struct control_place *p = &c->places[i];
-		uint32_t state = __atomic_load_n(&p->state, __ATOMIC_ACQUIRE);
 
-		if (state == CONTROL_JOINING || state == CONTROL_TAKEN || state == CONTROL_IN)
-			prepare(c, p, layout, &c->rights);
+		if (control_belongs(p))
+			prepare_grant(c, p, layout, &c->rights);
 	}
 }
 
-bool control_prepared(struct control *c, unsigned *place, struct control_turn *turn)
+bool control_prepared(struct control *c, unsigned *place, struct control_message *message)
 {
 	while (*place < OWS_CONTROLLERS) {
 		unsigned i = (*place)++;
@@ -388,15 +382,16 @@ bool control_prepared(struct control *c, unsigned *place, struct control_turn *t
 		c->engine.memories[i] = next->memory;
 		if (!next->memory.base)
 			continue;
-		show_turn(turn, c, i, next);
+		make_message(message, c, i, next);
 		return true;
 	}
 	return false;
 }
 
-static void take_next(struct control *c, struct control_place *p)
+/* The engine has the new memory by now; until then the place needed both. */
+static void take_next_memory(struct control *c, struct control_place *p)
 {
-	if (__atomic_load_n(&p->state, __ATOMIC_ACQUIRE) != CONTROL_IN) {
+	if (control_state_of(p) != CONTROL_IN) {
 		held_free(c, p->peer.uid, &p->next, false);
 		return;
 	}
@@ -411,7 +406,7 @@ static void take_next(struct control *c, struct control_place *p)
 void control_reloaded(struct control *c)
 {
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
-		take_next(c, &c->places[i]);
+		take_next_memory(c, &c->places[i]);
 	socket_open_for(c->directory, c->name, is_for_all(c));
 	pthread_mutex_unlock(&c->lock);
 	bell_ring(c->wake);
@@ -420,10 +415,9 @@ void control_reloaded(struct control *c)
 void control_replaced(struct control *c)
 {
 	pthread_mutex_lock(&c->lock);
-	for (unsigned i = 0; i < OWS_CONTROLLERS; i++) {
-		if (control_is(&c->places[i], CONTROL_IN))
+	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
+		if (control_state_of(&c->places[i]) == CONTROL_IN)
 			news_due(c, i);
-	}
 	news_ring(c, NULL);
 	pthread_mutex_unlock(&c->lock);
 }

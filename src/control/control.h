@@ -46,19 +46,16 @@ const struct bus_counter *control_counters(const struct control *control, size_t
 
 /* --- For the engine's thread: these neither block nor allocate ------------------------------- */
 
-/* A controller that joins or leaves; which it has is valid until control_done() of its leaving. */
-struct control_turn {
+/* A controller joins or leaves; what it has is valid until control_done() of its leaving. */
+struct control_message {
 	unsigned place;
 	bool joins; /* else it leaves */
-	struct controller_memory memory;
-	const uint32_t *rights; /* a bit for each record that it may command */
-	struct ows_who who;
-	uint8_t token[16];
-	int bell; /* eventfd; for edge-triggered epoll: nobody reads it */
+	struct joining_controller controller;
+	int bell; /* eventfd, never read: for edge-triggered epoll */
 };
 /* The next controller that joins or leaves; the caller calls control_done() before the next. */
-bool control_next(struct control *control, struct control_turn *turn);
-void control_done(struct control *control, const struct control_turn *turn);
+bool control_next(struct control *control, struct control_message *message);
+void control_done(struct control *control, const struct control_message *message);
 /*
  * Have the news rung of the controllers that wait for it, and the sleepers of an image woken, by
  * another thread; word: of the image, which counts its news; NULL: none.
@@ -81,7 +78,7 @@ void control_take_askers(struct control *control);
 void control_answer(struct control *control, int err, const char *why);
 
 /*
- * Make the memories and rights of another configuration for all controllers. Nobody joins or leaves
+ * Make the memories and rights of another configuration for all controllers. None joins or leaves
  * until control_reloaded(), which the caller has to call.
  */
 void control_prepare(struct control *control, const struct config *config,
@@ -91,9 +88,8 @@ void control_prepare(struct control *control, const struct config *config,
  * at or after *place that has joined, with its new memory and rights; *place is then the one after
  * it. A controller for whom there was no room is not among them, and owsd hangs up on it.
  */
-bool control_prepared(struct control *control, unsigned *place, struct control_turn *turn);
-/* The engine has adopted and uses the memories of before no more: send the controllers the new
- * ones. */
+bool control_prepared(struct control *control, unsigned *place, struct control_message *message);
+/* The engine has adopted, and uses the old memories no more: send the controllers the new ones. */
 void control_reloaded(struct control *control);
 /*
  * The new image is in place, and the old one is retired: ring the news of all controllers. They

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Connections: who gets a place, what was sent over them, and how they end. */
+/* Connections: which get a place, what was sent over them, and how they end. */
 #include <errno.h>
 #include <poll.h>
 #include <string.h>
@@ -37,25 +37,13 @@ static void count(struct control *c, enum control_counter what)
 	bus_count(&c->counters[what], 1);
 }
 
-static uint32_t state_of(const struct control_place *p)
-{
-	return __atomic_load_n(&p->state, __ATOMIC_ACQUIRE);
-}
-
-static void close_fd(int *fd)
-{
-	if (*fd >= 0)
-		close(*fd);
-	*fd = -1;
-}
-
 /* How often owsd looks whether what it gave away is empty. */
 #define HELD_NS (100 * NS_PER_MS)
 /* How long owsd waits for a porter that has too much to do. */
 #define PORTER_NS (10 * NS_PER_MS)
 
 /* Give away what the place has of the peer's. False: later. */
-static bool let_go(struct control *c, struct control_place *p, bool with_connection)
+static bool give_away(struct control *c, struct control_place *p, bool with_connection)
 {
 	int *fds[] = {&p->bell, &p->news, &p->news_end, with_connection ? &p->fd : NULL};
 	struct porter_order order = {.slot = PORTER_NO_SLOT};
@@ -85,7 +73,7 @@ static void door_enter(struct control_place *p, enum control_state state)
 }
 
 /* Once. */
-static void hang_up(struct control *c, struct control_place *p)
+static void hang_up_on(struct control *c, struct control_place *p)
 {
 	if (!p->connected || p->fd < 0)
 		return;
@@ -100,8 +88,10 @@ void door_release(struct control *c, struct control_place *p)
 	held_free(c, p->peer.uid, &p->now, false);
 	held_free(c, p->peer.uid, &p->next, false);
 	peer_forget(&p->peer);
-	close_fd(&p->death);
-	hang_up(c, p);
+	if (p->death >= 0)
+		close(p->death);
+	p->death = -1;
+	hang_up_on(c, p);
 	/*
 	 * what lies unread in the socket of a living process counts among owsd's descriptors: its
 	 * user has one place less until then
@@ -109,7 +99,7 @@ void door_release(struct control *c, struct control_place *p)
 	unread = p->sent && welcome_unread(c, p);
 	if (p->connected && p->fd >= 0) {
 		door_enter(p, CONTROL_LEFT);
-	} else if (!let_go(c, p, !unread)) {
+	} else if (!give_away(c, p, !unread)) {
 		door_enter(p, CONTROL_LEFT);
 	} else if (unread) {
 		door_enter(p, CONTROL_UNREAD);
@@ -123,11 +113,11 @@ void door_release(struct control *c, struct control_place *p)
 
 static void let_engine_look(struct control *c)
 {
-	__atomic_fetch_add(&c->turns, 1, __ATOMIC_RELEASE);
+	__atomic_fetch_add(&c->changes, 1, __ATOMIC_RELEASE);
 	c->ring(c->ring_ctx);
 }
 
-static void leave(struct control *c, struct control_place *p)
+static void begin_leaving(struct control *c, struct control_place *p)
 {
 	door_enter(p, CONTROL_LEAVING);
 	let_engine_look(c);
@@ -143,21 +133,19 @@ void door_drop(struct control *c, struct control_place *p, enum control_counter 
 	p->leaves = true;
 	if (p->now.memory.base)
 		controller_state(&p->now.memory, OWS_STATE_STOPPED);
-	hang_up(c, p);
-	if (state_of(p) == CONTROL_HALF || ask_waits(p) ||
+	hang_up_on(c, p);
+	if (control_state_of(p) == CONTROL_HALF || ask_waits(p) ||
 	    __atomic_compare_exchange_n(&p->state, &joining, CONTROL_LEFT, false, __ATOMIC_ACQ_REL,
 	                                __ATOMIC_ACQUIRE))
 		door_release(c, p);
-	else if (state_of(p) == CONTROL_IN)
-		leave(c, p);
+	else if (control_state_of(p) == CONTROL_IN)
+		begin_leaving(c, p);
 	/* else the engine's thread takes it this moment: door_look() goes on */
 }
 
 void door_died(struct control *c, struct control_place *p)
 {
-	uint32_t state = state_of(p);
-
-	if (state == CONTROL_JOINING || state == CONTROL_TAKEN || state == CONTROL_IN)
+	if (control_belongs(p))
 		door_drop(c, p, CONTROL_died);
 }
 
@@ -171,22 +159,15 @@ static void door_refuse(struct control *c, struct control_place *p, int err,
 
 /* --- The hello -------------------------------------------------------------------------------- */
 
-size_t door_memory(struct control *c, uid_t uid)
-{
-	size_t sum;
-
-	held_of(c, uid, &sum);
-	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
-		if (c->places[i].peer.uid == uid)
-			sum += c->places[i].now.size;
-	return sum;
-}
-
-/* One controller of a user has a memory of any size. */
+/* The first controller of a user has a memory of any size; the others of this generation count. */
 static bool has_room(struct control *c, const struct control_place *p)
 {
-	size_t has = door_memory(c, p->peer.uid);
+	size_t has;
 
+	held_of(c, p->peer.uid, &has);
+	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
+		if (c->places[i].peer.uid == p->peer.uid)
+			has += c->places[i].now.size;
 	return !p->peer.uid || !has || has + c->layout->size <= CONTROL_MEMORY;
 }
 
@@ -225,7 +206,8 @@ static int open_descriptors(struct control *c, struct control_place *p)
 	return 0;
 }
 
-static int identify(struct control *c, struct control_place *p, const struct ows_hello *hello)
+static int identify_controller(struct control *c, struct control_place *p,
+                               const struct ows_hello *hello)
 {
 	static const uint8_t none[sizeof(hello->token)];
 
@@ -240,9 +222,10 @@ static int identify(struct control *c, struct control_place *p, const struct ows
 	return 0;
 }
 
-static void join(struct control *c, struct control_place *p, const struct ows_hello *hello)
+static void join_controller(struct control *c, struct control_place *p,
+                            const struct ows_hello *hello)
 {
-	int err = identify(c, p, hello);
+	int err = identify_controller(c, p, hello);
 
 	if (!err)
 		err = open_descriptors(c, p);
@@ -297,7 +280,7 @@ static void take_hello(struct control *c, struct control_place *p)
 	else if (!has_room(c, p))
 		door_refuse(c, p, -ENOSPC, CONTROL_refused_limits);
 	else
-		join(c, p, &hello);
+		join_controller(c, p, &hello);
 }
 
 /* --- Connections ------------------------------------------------------------------------------ */
@@ -316,9 +299,9 @@ static void look_for_end(struct control *c, struct control_place *p)
 
 void door_event(struct control *c, struct control_place *p)
 {
-	if (state_of(p) == CONTROL_HALF)
+	if (control_state_of(p) == CONTROL_HALF)
 		take_hello(c, p);
-	switch (state_of(p)) {
+	switch (control_state_of(p)) {
 	case CONTROL_ASKING:
 	case CONTROL_ASKED:
 	case CONTROL_JOINING: /* what came along with the hello brings no other event */
@@ -331,7 +314,7 @@ void door_event(struct control *c, struct control_place *p)
 	}
 }
 
-/* Programs of many users, and such as only want to hear of news, lock nobody else out. */
+/* Programs of many users, and such as only want to hear of news, lock no other program out. */
 static unsigned most_places(const struct control *c, const struct peer *peer)
 {
 	if (!peer->uid || peer->uid == c->rights.own)
@@ -350,7 +333,7 @@ static struct control_place *find_place(struct control *c, const struct peer *pe
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++) {
 		struct control_place *p = &c->places[i];
 
-		if (state_of(p) == CONTROL_FREE) {
+		if (control_state_of(p) == CONTROL_FREE) {
 			found = found ? found : p;
 			continue;
 		}
@@ -476,9 +459,9 @@ void door_accept(struct control *c)
 	c->accept_ns = c->now_ns + (full || rest_ns > REST_MOST_NS ? REST_MOST_NS : rest_ns);
 }
 
-static void look(struct control *c, struct control_place *p)
+static void look_at_place(struct control *c, struct control_place *p)
 {
-	switch (state_of(p)) {
+	switch (control_state_of(p)) {
 	case CONTROL_HALF:
 		if (c->now_ns >= p->until_ns)
 			door_refuse(c, p, -ETIMEDOUT, CONTROL_refused_protocol);
@@ -492,7 +475,7 @@ static void look(struct control *c, struct control_place *p)
 		break;
 	case CONTROL_IN:
 		if (p->leaves)
-			leave(c, p);
+			begin_leaving(c, p);
 		else if (!p->welcomed)
 			welcome_send(c, p);
 		break;
@@ -514,8 +497,8 @@ int64_t door_look(struct control *c)
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++) {
 		struct control_place *p = &c->places[i];
 
-		look(c, p);
-		if ((state_of(p) == CONTROL_HALF || ask_waits(p)) && p->until_ns < next_ns)
+		look_at_place(c, p);
+		if ((control_state_of(p) == CONTROL_HALF || ask_waits(p)) && p->until_ns < next_ns)
 			next_ns = p->until_ns;
 	}
 	if (c->later && c->now_ns + PORTER_NS < next_ns)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Connections: who gets a place, what was sent over them, and how they end. */
+/* Connections: which get a place, what was sent over them, and how they end. */
 #pragma once
 
 #include "src/control/private.h"
@@ -17,7 +17,5 @@ void door_died(struct control *c, struct control_place *p);
 int64_t door_look(struct control *c);
 /* The controller has to leave: there was no room for it at a reload. */
 void door_drop(struct control *c, struct control_place *p, enum control_counter why);
-/* How many bytes of memory the user's controllers have, of this generation. */
-size_t door_memory(struct control *c, uid_t uid);
 /* Close and free everything of a place. */
 void door_release(struct control *c, struct control_place *p);

@@ -7,12 +7,6 @@
 #include "src/control/grant.h"
 #include "src/control/sealed.h"
 
-static void show_rights(const struct control_grant *grant)
-{
-	for (uint32_t i = 0; i < grant->memory.layout->slot_count; i++)
-		controller_allow(&grant->memory, i, grant->rights[i / 32] >> i % 32 & 1);
-}
-
 int grant_make(struct control_grant *grant, const struct controller_layout *layout,
                const struct rights *rights, const struct control_place *place)
 {
@@ -37,7 +31,8 @@ int grant_make(struct control_grant *grant, const struct controller_layout *layo
 	if (place->commands)
 		grant->allowed = rights_fill(rights, &place->peer, grant->rights);
 	controller_build(&grant->memory, place->who.serial);
-	show_rights(grant);
+	for (uint32_t i = 0; i < layout->slot_count; i++)
+		controller_allow(&grant->memory, i, grant->rights[i / 32] >> i % 32 & 1);
 	controller_state(&grant->memory, OWS_STATE_LIVE);
 	return 0;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Memories that owsd is done with: the porter empties them, and they count as their user's until
- * they are empty. Whether somebody still has one cannot be known: a descriptor of O_PATH shows
+ * they are empty. Whether a process still has one cannot be known: a descriptor of O_PATH shows
  * nowhere.
  */
 #include "src/control/held.h"
@@ -13,7 +13,7 @@
 #define LOOK_NS (5 * NS_PER_MS)
 /* A controller that has just been sent the next memory still reads in the last one. */
 #define AFTER_RELOAD_NS (2 * NS_PER_S)
-/* A memory that takes longer is locked by somebody; then those of its user wait for it. */
+/* A memory that takes longer is locked by a process; then those of its user wait for it. */
 #define LOCKED_NS (NS_PER_S / 2)
 
 /* Returns porter_give(). */
@@ -37,7 +37,7 @@ static bool user_has_locked(const struct control *c, uid_t uid)
 	return false;
 }
 
-static void look(struct control *c, struct control_held *held)
+static void empty_memory(struct control *c, struct control_held *held)
 {
 	if (held->asked_ns || c->now_ns < held->until_ns || user_has_locked(c, held->uid))
 		return;
@@ -51,8 +51,8 @@ void held_look(struct control *c)
 		return;
 	c->held_ns = c->now_ns + LOOK_NS;
 	for (unsigned i = c->held_count; i-- > 0;) {
-		look(c, &c->held[i]);
-		/* where its pages come back, they are the user's who touches them */
+		empty_memory(c, &c->held[i]);
+		/* pages that come back count for the user that touches them */
 		if (c->held[i].asked_ns && sealed_is_empty(c->held[i].own) &&
 		    held_give(c, &c->held[i], false) == 0)
 			c->held[i] = c->held[--c->held_count];

@@ -65,7 +65,7 @@ bool news_end(struct control_place *p)
 
 /* --- The thread ------------------------------------------------------------------------------- */
 
-/* A socket whose room is full rings already; without a reader the controller is about to leave. */
+/* A socket that is full rings already; without a reader the controller is about to leave. */
 static void ring_place(struct control_place *p)
 {
 	uint32_t idle = NEWS_IDLE;
@@ -112,8 +112,8 @@ static void ring_one(struct control *c, unsigned i)
 }
 
 /*
- * Ring all that are not slow, then at most one that is and has rested; whoever rings meanwhile is
- * served before the next slow one. Returns how long nothing is due.
+ * Ring all that are not slow, then at most one that is and has rested; what becomes due meanwhile
+ * is served before the next slow one. Returns how long nothing is due.
  */
 int64_t news_turn(struct control *c)
 {

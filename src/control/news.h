@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * News: whoever writes to a socket or wakes a word walks all watches and sleepers that peers have
- * put there. So a thread of its own does it, for which the engine only leaves word; what turns out
- * to be slow is rung less often.
+ * News: a thread that writes to a socket or wakes a word walks all watches and sleepers that peers
+ * have put there. So a thread of its own does it, for which the engine only leaves word; what is
+ * found to be slow is rung less often.
  */
 #pragma once
 
@@ -17,7 +17,7 @@ void news_stop(struct control *c);
 int64_t news_turn(struct control *c);
 /* Any thread: the place is to be rung; news_ring() has to follow. */
 void news_due(struct control *c, unsigned place);
-/* Any thread, never blocks; word: of the image, whose sleepers are to be woken too, or NULL. */
+/* Any thread, never blocks; word: of an image with sleepers to be woken too, or NULL. */
 void news_ring(struct control *c, const uint32_t *word);
 /* The socket at the place may be rung from now on. */
 void news_begin(struct control_place *p);

@@ -14,15 +14,15 @@
 
 /* Limits of a user, which do not hold for root. */
 #define CONTROL_OF_USER 32
-/* Places that are kept for root and owsd's user, and of the rest for those who may command. */
+/* Places that are kept for root and owsd's user, and of the rest for users that may command. */
 #define CONTROL_KEPT 8
 #define CONTROL_KEPT_FROM_READERS 64
 /* A program has, beside its own, for two seconds those of the reloads before. */
 #define CONTROL_HELD (4 * CONTROL_OF_USER)
-/* Of all users; in the reach of held_full() nobody joins. */
+/* Of all users; where held_full() no controller joins. */
 #define CONTROL_HELD_ALL 1024
 #define CONTROL_MEMORY (64u << 20)
-/* In that time a program that connected has to say who it is. */
+/* In that time a program that connected has to send its hello. */
 #define CONTROL_HELLO_NS (2 * NS_PER_S)
 /* Programs that wait for a reload, and how long. */
 #define CONTROL_ASKERS 4
@@ -37,7 +37,7 @@
 	X(refused_protocol) /* wrong words, or none in time */ \
 	X(refused_errors)   /* owsd had no memory or descriptor; also when a connection waits */ \
 	X(hung_up) \
-	X(died) /* processes that ended while somebody held their socket */
+	X(died) /* processes that ended while another process held their socket */
 
 enum control_counter {
 #define X(name) CONTROL_##name,
@@ -46,7 +46,7 @@ enum control_counter {
 		CONTROL_COUNTER_COUNT
 };
 
-/* Who may touch a place: the engine's thread from JOINING to IN and from LEAVING to LEFT. */
+/* The engine's thread may touch a place from JOINING to IN and from LEAVING to LEFT. */
 enum control_state {
 	CONTROL_FREE,
 	CONTROL_HALF,   /* connected; its hello has not come */
@@ -70,7 +70,7 @@ struct control_grant {
 	int own;          /* owsd's own descriptor of it; -1 */
 };
 
-/* A memory whose controller has left, or got another at a reload. */
+/* A memory that its controller has left, or that another has replaced at a reload. */
 struct control_held {
 	int own;
 	uid_t uid;
@@ -81,7 +81,7 @@ struct control_held {
 
 struct control_place {
 	uint32_t state;           /* enum control_state */
-	uint32_t news_state;      /* of news.c: who has the socket news */
+	uint32_t news_state;      /* of news.c: may its thread use the socket news? */
 	int fd, death;            /* the connection; the process's pidfd, -1 unknown */
 	int bell, news, news_end; /* news: owsd's end; news_end: until it is sent */
 	struct peer peer;
@@ -96,6 +96,19 @@ struct control_place {
 	bool welcomed;    /* all was sent that there is to send */
 	struct control_grant now, next;
 };
+
+static inline enum control_state control_state_of(const struct control_place *p)
+{
+	return (enum control_state)__atomic_load_n(&p->state, __ATOMIC_ACQUIRE);
+}
+
+/* Does the place belong to a controller that joins or has joined? */
+static inline bool control_belongs(const struct control_place *p)
+{
+	enum control_state state = control_state_of(p);
+
+	return state == CONTROL_JOINING || state == CONTROL_TAKEN || state == CONTROL_IN;
+}
 
 /* The places, and the sleepers of the image. */
 #define NEWS_IMAGE OWS_CONTROLLERS
@@ -131,8 +144,8 @@ struct control {
 	struct control_held held[CONTROL_HELD_ALL];
 	unsigned held_count;
 	struct often often;
-	int64_t held_ns; /* when to look next */
-	uint32_t turns;  /* counts places that are for the engine's thread to look at */
+	int64_t held_ns;  /* when to look next */
+	uint32_t changes; /* counts places that are for the engine's thread to look at */
 	struct {
 		uint32_t seen;
 		unsigned at;

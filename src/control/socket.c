@@ -46,10 +46,10 @@ int socket_listen(int directory, const char *name, bool for_all, ino_t *inode)
 	if (!err &&
 	    (fstatat(directory, name, &st, AT_SYMLINK_NOFOLLOW) < 0 || listen(fd, BACKLOG) < 0))
 		err = -errno;
-	if (!err)
-		*inode = st.st_ino;
-	if (!err)
-		return fd;
-	close(fd);
-	return err;
+	if (err) {
+		close(fd);
+		return err;
+	}
+	*inode = st.st_ino;
+	return fd;
 }

@@ -41,7 +41,7 @@ int welcome_end(struct control *c, const int *fds, unsigned count, int err, bool
 	return porter_give(c->porter, PORTER_AWAY, &order);
 }
 
-static uint32_t slot_of(const struct control *c, const struct control_place *p)
+static uint32_t porter_slot(const struct control *c, const struct control_place *p)
 {
 	return (uint32_t)(p - c->places);
 }
@@ -52,7 +52,7 @@ bool welcome_unread(struct control *c, const struct control_place *p)
 
 	if (p->fd < 0)
 		return false;
-	if (!porter_carried(c->porter, slot_of(c, p))) {
+	if (!porter_carried(c->porter, porter_slot(c, p))) {
 		c->later = true;
 		return true;
 	}
@@ -75,7 +75,7 @@ void welcome_send(struct control *c, struct control_place *p)
 		.what = PORTER_SEND,
 		.count = p->news_end >= 0 ? 4 : 2,
 		.keep = 1 | 4, /* the connection and the bell */
-		.slot = slot_of(c, p),
+		.slot = porter_slot(c, p),
 		.fds = {p->fd, p->now.memfd, p->bell, p->news_end},
 		.bytes = {&welcome, sizeof(welcome)},
 	};

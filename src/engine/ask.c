@@ -29,7 +29,7 @@ static bool reads_fresh(const struct signal *s, int64_t now_ns)
 	        (c->differs || now_ns - looked_ns >= s->item->read_back_ns));
 }
 
-static bool ask_read(struct lane *lane, struct slot *slot, uint32_t row, int64_t now_ns)
+static bool ask_read(struct lane *lane, struct slot *slot, uint32_t row)
 {
 	struct engine *e = lane->engine;
 	struct signal *s = &e->table.signals[row];
@@ -41,18 +41,18 @@ static bool ask_read(struct lane *lane, struct slot *slot, uint32_t row, int64_t
 	slot->req = (struct bus_req){
 		.op = BUS_READ,
 		.prio = BUS_INPUT,
-		.fresh = reads_fresh(s, now_ns),
+		.fresh = reads_fresh(s, e->time.now_ns),
 		.path = s->item->path,
 		.number = !signal_is_string(s) && !trace_is_on(e->log),
 		.len = sizeof(slot->data),
 	};
-	if (!slot_lend(lane, slot, now_ns))
+	if (!slot_lend(lane, slot))
 		return false;
 	due_set_take(&lane->inputs, row);
 	guest_passed(lane);
 	lane->writes_in_row = 0;
 	if (slot->req.fresh)
-		s->command.looked_ns = now_ns;
+		s->command.looked_ns = e->time.now_ns;
 	s->reading = true;
 	signal_begin(s, e->time.period);
 	return true;
@@ -66,18 +66,17 @@ static void refuse_output(struct engine *e, struct signal *s)
 	e->counters.refused_commands++;
 	s->command.given = s->command.one_shot = false;
 	s->command.err = -ERANGE;
-	s->attrs.flags &= ~(uint32_t)OWS_ATTR_COMMANDED;
 	engine_write_check(e, s);
 	engine_publish(e, s);
 }
 
-static bool ask_write(struct lane *lane, struct slot *slot, uint32_t row, int64_t now_ns)
+static bool ask_write(struct lane *lane, struct slot *slot, uint32_t row)
 {
 	struct engine *e = lane->engine;
 	struct signal *s = &e->table.signals[row];
 
 	/* the value that counts is the one of this moment */
-	engine_intake_signal(e, s, now_ns);
+	engine_intake_signal(e, s);
 	if (!due_set_has(&lane->outputs, row)) {
 		engine_publish(e, s);
 		return true;
@@ -96,7 +95,7 @@ static bool ask_write(struct lane *lane, struct slot *slot, uint32_t row, int64_
 	slot->one_shot = s->command.one_shot;
 	slot->req = (struct bus_req){.prio = BUS_OUTPUT, .path = s->item->path};
 	signal_write(slot, s, s->command.value, s->command_text, s->command.len);
-	if (!slot_lend(lane, slot, now_ns))
+	if (!slot_lend(lane, slot))
 		return false;
 	due_set_take(&lane->outputs, row);
 	guest_passed(lane);
@@ -105,14 +104,14 @@ static bool ask_write(struct lane *lane, struct slot *slot, uint32_t row, int64_
 	s->writing = true;
 	s->command.one_shot = false;
 	s->command.forced = false;
-	s->sample.tried_ns = now_ns;
+	s->sample.tried_ns = e->time.now_ns;
 	signal_begin(s, e->time.period);
 	engine_publish(e, s);
 	return true;
 }
 
 /* True: the alarm machine has given the slot's request to the bus, or has none to give now. */
-static bool ask_alarm(struct lane *lane, struct slot *slot, int64_t now_ns)
+static bool ask_alarm(struct lane *lane, struct slot *slot)
 {
 	struct engine *e = lane->engine;
 	struct signal *s;
@@ -124,15 +123,15 @@ static bool ask_alarm(struct lane *lane, struct slot *slot, int64_t now_ns)
 	slot->stamp = 0;
 	slot->req = (struct bus_req){
 		.prio = BUS_ALARM, .fresh = true, .path = slot->path, .len = sizeof(slot->data)};
-	if (!alarm_run(&lane->alarm, lane, slot, now_ns) || !slot_lend(lane, slot, now_ns))
+	if (!alarm_run(&lane->alarm, lane, slot) || !slot_lend(lane, slot))
 		return false;
 	lane->lent.alarm = slot;
-	alarm_started(&lane->alarm, lane, now_ns);
+	alarm_started(&lane->alarm, lane);
 	if (slot->row == TABLE_NO_ROW)
 		return true;
 	s = &e->table.signals[slot->row];
 	s->alarming = true;
-	s->sample.tried_ns = now_ns;
+	s->sample.tried_ns = e->time.now_ns;
 	signal_begin(s, e->time.period);
 	engine_publish(e, s);
 	return true;
@@ -142,33 +141,32 @@ static bool ask_alarm(struct lane *lane, struct slot *slot, int64_t now_ns)
  * The order of a lane: what the bus is made of, alarms, one changed output, the next due input,
  * guests.
  */
-static bool ask_next(struct lane *lane, struct slot *slot, int64_t now_ns)
+static bool ask_next(struct lane *lane, struct slot *slot)
 {
 	int64_t output, input, check = types_next(lane);
 
 	if (check >= 0)
-		return types_ask(lane, slot, (uint32_t)check, now_ns);
-	if (ask_alarm(lane, slot, now_ns) || engine_probe_ask(lane, slot, now_ns) ||
-	    engine_restart_ask(lane, slot, now_ns))
+		return types_ask(lane, slot, (uint32_t)check);
+	if (ask_alarm(lane, slot) || engine_probe_ask(lane, slot) || engine_restart_ask(lane, slot))
 		return true;
 	output = lane->lent.writes || alarm_holds(&lane->alarm) ? -1 : due_set_next(&lane->outputs);
 	input = due_set_next(&lane->inputs);
 	if (guest_turn(lane, output >= 0 || input >= 0))
-		return guest_ask(lane, slot, now_ns);
+		return guest_ask(lane, slot);
 	/* a one-shot needs no writer, and has to come in its turn all the same */
 	if (output >= 0 && (input < 0 || lane->writes_in_row < (lane->writers ? lane->writers : 1)))
-		return ask_write(lane, slot, (uint32_t)output, now_ns);
+		return ask_write(lane, slot, (uint32_t)output);
 	if (input >= 0)
-		return ask_read(lane, slot, (uint32_t)input, now_ns);
+		return ask_read(lane, slot, (uint32_t)input);
 	return false;
 }
 
-void lane_fill(struct lane *lane, int64_t now_ns)
+void lane_fill(struct lane *lane)
 {
 	struct slot *slot;
 
 	while (lane->state.up && !lane->state.stuck && (slot = slot_next(lane)) != NULL)
-		if (!ask_next(lane, slot, now_ns))
+		if (!ask_next(lane, slot))
 			break;
 }
 
@@ -192,7 +190,7 @@ void lane_show_reads(struct lane *lane)
 
 int64_t lane_wake(const struct lane *lane)
 {
-	int64_t alarm, probe;
+	int64_t probe;
 
 	if (!lane->state.up || lane->state.stuck || lane->lent.count == lane->depth)
 		return INT64_MAX;
@@ -200,6 +198,5 @@ int64_t lane_wake(const struct lane *lane)
 	/* the end of these wakes it */
 	if (lane->lent.alarm || lane->lent.writes)
 		return probe;
-	alarm = alarm_wake(&lane->alarm);
-	return probe < alarm ? probe : alarm;
+	return earlier_ns(probe, alarm_wake(&lane->alarm));
 }

@@ -16,7 +16,7 @@ static inline bool lane_rests(const struct lane *lane)
 }
 
 /* Submit as much as the order of the lane and the depth of its bus allow. */
-void lane_fill(struct lane *lane, int64_t now_ns);
+void lane_fill(struct lane *lane);
 /* A new period: the image shows which readings have outlasted one. */
 void lane_show_reads(struct lane *lane);
 /* When the lane wants to be filled again though nothing ended; INT64_MAX: not before. */

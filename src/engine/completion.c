@@ -80,8 +80,7 @@ static int64_t back_off(const struct lane *lane, uint8_t quality, int64_t wait_n
 	return lane->port->brief && ends && wait_ns > RETRY_FIRST_NS ? RETRY_FIRST_NS : wait_ns;
 }
 
-/* An item error of a read; returns the back-off, 0: its next turn. */
-static int64_t fail_read(struct engine *e, struct lane *lane, struct signal *s, int err)
+int64_t engine_read_failed(struct engine *e, struct lane *lane, struct signal *s, int err)
 {
 	uint8_t quality = failure_quality(err);
 	int64_t wait_ns;
@@ -149,7 +148,7 @@ static void request_succeeded(struct engine *e, struct lane *lane, struct signal
  * measure, and is marked.
  */
 static int doubt_reading(struct lane *lane, struct signal *s, const struct bus_answer *answer,
-                         double number, int64_t now_ns)
+                         double number)
 {
 	if (!s->measured)
 		return 0;
@@ -159,7 +158,8 @@ static int doubt_reading(struct lane *lane, struct signal *s, const struct bus_a
 		          s->item->name, s->item->path, number);
 		return -EDOM;
 	}
-	if (s->quantity.starves && guard_refuses(&s->read.guard, number, now_ns)) {
+	if (s->quantity.starves &&
+	    guard_refuses(&s->read.guard, number, lane->engine->time.now_ns)) {
 		lane->counters.power_faults++;
 		return -ERANGE;
 	}
@@ -167,13 +167,13 @@ static int doubt_reading(struct lane *lane, struct signal *s, const struct bus_a
 }
 
 /*
- * An answer that was on its way while nobody ran may have been measured long before it was taken,
+ * An answer that was on its way while the engine did not run may be measured long before it came,
  * and its bus could not know: then it is as old as its request.
  */
 static int64_t time_of_reading(const struct engine *e, const struct slot *slot,
-                               const struct bus_answer *answer, int64_t now_ns)
+                               const struct bus_answer *answer)
 {
-	int64_t measured_ns = answer->measured_ns ? answer->measured_ns : now_ns;
+	int64_t measured_ns = answer->measured_ns ? answer->measured_ns : e->time.now_ns;
 
 	return slot->begun_ns < e->time.gap_ns && slot->begun_ns < measured_ns ? slot->begun_ns
 	                                                                       : measured_ns;
@@ -181,7 +181,7 @@ static int64_t time_of_reading(const struct engine *e, const struct slot *slot,
 
 /* The value of an answer into the sample; 0, or why it cannot be one. */
 static int take_read_value(struct lane *lane, struct signal *s, const struct slot *slot,
-                           const struct bus_answer *answer, uint8_t *quality, int64_t now_ns)
+                           const struct bus_answer *answer, int64_t measured_ns, uint8_t *quality)
 {
 	enum ows_type type = signal_raw_type(s);
 	int64_t raw;
@@ -202,20 +202,19 @@ static int take_read_value(struct lane *lane, struct signal *s, const struct slo
 	else
 		err = value_from_text(type, (const char *)slot->data, answer->len, &raw, quality);
 	if (!err)
-		err = doubt_reading(lane, s, answer, value_number(type, raw), now_ns);
+		err = doubt_reading(lane, s, answer, value_number(type, raw));
 	if (!err)
-		signal_take_raw(s, raw, time_of_reading(lane->engine, slot, answer, now_ns),
-		                quality);
+		signal_take_raw(s, raw, measured_ns, quality);
 	return err;
 }
 
 int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
-                        const struct slot *slot, const struct bus_answer *answer, int64_t now_ns,
-                        int64_t *wait_ns)
+                        const struct slot *slot, const struct bus_answer *answer, int64_t *wait_ns)
 {
 	int64_t value = s->sample.value, raw = s->attrs.raw;
+	int64_t measured_ns = time_of_reading(e, slot, answer);
 	uint8_t quality = OWS_Q_GOOD;
-	int err = take_read_value(lane, s, slot, answer, &quality, now_ns);
+	int err = take_read_value(lane, s, slot, answer, measured_ns, &quality);
 
 	*wait_ns = 0;
 	switch (failure_of(err)) {
@@ -228,12 +227,12 @@ int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
 			break;
 		}
 		s->read.begun_ns = slot->begun_ns;
-		signal_update(s, e->time.period, time_of_reading(e, slot, answer, now_ns), now_ns);
+		signal_update(s, e->time.period, measured_ns, e->time.now_ns);
 		s->sample.detail = answer->detail;
 		request_succeeded(e, lane, s, quality, true);
 		break;
 	case FAILURE_ITEM:
-		*wait_ns = fail_read(e, lane, s, err);
+		*wait_ns = engine_read_failed(e, lane, s, err);
 		break;
 	case FAILURE_TARGET:
 		s->sample.err = err;
@@ -266,7 +265,7 @@ static void read_next(struct engine *e, struct lane *lane, struct signal *s,
 }
 
 void engine_read_done(struct engine *e, struct lane *lane, const struct slot *slot,
-                      const struct bus_answer *answer, int64_t now_ns)
+                      const struct bus_answer *answer)
 {
 	struct signal *s = &e->table.signals[slot->row];
 	int64_t wait_ns;
@@ -275,23 +274,14 @@ void engine_read_done(struct engine *e, struct lane *lane, const struct slot *sl
 		engine_read_at(e, s, engine_read_back_at(e, s));
 		return;
 	}
-	if (engine_take_reading(e, lane, s, slot, answer, now_ns, &wait_ns) == 0)
+	if (engine_take_reading(e, lane, s, slot, answer, &wait_ns) == 0)
 		read_next(e, lane, s, slot);
 	else
 		engine_read_at(e, s, e->time.period + (wait_ns ? engine_periods(e, wait_ns) : 1));
 }
 
-void engine_alarm_failed(struct engine *e, struct lane *lane, const struct alarm_item *item,
-                         int err)
-{
-	struct signal *s = &e->table.signals[item->row];
-
-	if (failure_of(err) == FAILURE_ITEM)
-		fail_read(e, lane, s, err);
-}
-
 static void write_succeeded(struct engine *e, struct lane *lane, const struct slot *slot,
-                            const struct bus_answer *answer, int64_t now_ns)
+                            const struct bus_answer *answer)
 {
 	struct signal *s = &e->table.signals[slot->row];
 
@@ -303,7 +293,7 @@ static void write_succeeded(struct engine *e, struct lane *lane, const struct sl
 	s->command.confirmed = true;
 	s->command.agrees = s->command.doubted = false;
 	if (s->device != TABLE_NO_DEVICE && e->table.devices[s->device].por == POR_SET)
-		e->table.devices[s->device].por = POR_UNKNOWN; /* somebody may clear it */
+		e->table.devices[s->device].por = POR_UNKNOWN; /* the write may have cleared it */
 	s->command.written = slot->value;
 	s->sample.detail = answer->detail;
 	if (signal_is_string(s)) {
@@ -313,8 +303,8 @@ static void write_succeeded(struct engine *e, struct lane *lane, const struct sl
 	} else {
 		signal_written(s, slot->value);
 	}
-	signal_update(s, e->time.period, answer->measured_ns ? answer->measured_ns : now_ns,
-	              now_ns);
+	signal_update(s, e->time.period, answer->measured_ns ? answer->measured_ns : e->time.now_ns,
+	              e->time.now_ns);
 	retry_clear(&s->command.retry);
 	s->command.err = 0;
 	engine_settle_earlier(e, s, slot);
@@ -327,19 +317,19 @@ static void write_succeeded(struct engine *e, struct lane *lane, const struct sl
 }
 
 void engine_write_done(struct engine *e, struct lane *lane, const struct slot *slot,
-                       const struct bus_answer *answer, int64_t now_ns)
+                       const struct bus_answer *answer)
 {
 	struct signal *s = &e->table.signals[slot->row];
 	int64_t wait_ns;
 
-	s->command.ended_ns = now_ns;
+	s->command.ended_ns = e->time.now_ns;
 	if (answer->err) {
 		s->command.confirmed = false;
 		s->command.one_shot |= slot->one_shot;
 	}
 	switch (failure_of(answer->err)) {
 	case FAILURE_NONE:
-		write_succeeded(e, lane, slot, answer, now_ns);
+		write_succeeded(e, lane, slot, answer);
 		return;
 	case FAILURE_ITEM:
 		wait_ns = fail_write(e, lane, s, answer->err);

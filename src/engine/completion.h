@@ -5,16 +5,17 @@
 #include "src/engine/state.h"
 
 void engine_read_done(struct engine *e, struct lane *lane, const struct slot *slot,
-                      const struct bus_answer *answer, int64_t now_ns);
+                      const struct bus_answer *answer);
 void engine_write_done(struct engine *e, struct lane *lane, const struct slot *slot,
-                       const struct bus_answer *answer, int64_t now_ns);
+                       const struct bus_answer *answer);
 /*
  * The value of a read into the table; 0, or why it cannot be one (counted as item error). *wait_ns
  * is the back-off, 0: none.
  */
 int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
-                        const struct slot *slot, const struct bus_answer *answer, int64_t now_ns,
-                        int64_t *wait_ns);
-/* A request of the alarm machine for this item failed: that counts as a failed read. */
-void engine_alarm_failed(struct engine *e, struct lane *lane, const struct alarm_item *item,
-                         int err);
+                        const struct slot *slot, const struct bus_answer *answer, int64_t *wait_ns);
+/*
+ * An item error of a read, or of a request of the alarm machine that counts as one. Returns the
+ * back-off, 0: again in its next turn.
+ */
+int64_t engine_read_failed(struct engine *e, struct lane *lane, struct signal *s, int err);

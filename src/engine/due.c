@@ -154,7 +154,7 @@ void due_wheel_at(struct due_wheel *wheel, uint32_t row, uint64_t period)
 	wheel->used[period % DUE_BUCKETS / 32] |= 1u << (period % 32);
 }
 
-void due_wheel_turn(struct due_wheel *wheel, uint64_t period, due_ready *ready, void *ctx)
+void due_wheel_advance(struct due_wheel *wheel, uint64_t period, due_ready *ready, void *ctx)
 {
 	uint64_t turns = period > wheel->period ? period - wheel->period : 0;
 	uint64_t first = wheel->period + 1;

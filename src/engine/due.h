@@ -31,7 +31,7 @@ void due_set_take(struct due_set *set, uint32_t row);
 #define DUE_BUCKETS 1024
 #define DUE_NONE UINT32_MAX
 struct due_wheel {
-	uint64_t period; /* the last one that was turned to */
+	uint64_t period; /* the last one that it was advanced to */
 	uint32_t size;
 	uint32_t bucket[DUE_BUCKETS];
 	uint32_t used[DUE_BUCKETS / 32]; /* one bit a bucket that is not empty */
@@ -47,9 +47,9 @@ void due_wheel_free(struct due_wheel *wheel);
 /* Let row wait for period (not in the past: at least the next one); replaces an earlier wait. */
 void due_wheel_at(struct due_wheel *wheel, uint32_t row, uint64_t period);
 void due_wheel_cancel(struct due_wheel *wheel, uint32_t row);
-/* Turn to period; ready() is called for each row whose period came. */
+/* Advance to period; calls ready() for each row that waited for a period up to that. */
 typedef void due_ready(void *ctx, uint32_t row);
-void due_wheel_turn(struct due_wheel *wheel, uint64_t period, due_ready *ready, void *ctx);
+void due_wheel_advance(struct due_wheel *wheel, uint64_t period, due_ready *ready, void *ctx);
 /*
  * The first period after `after` for which a row may wait, at most `most`, which is less than
  * DUE_BUCKETS later. It may be too soon: a row of a later round is in the same bucket.

@@ -28,16 +28,14 @@
 /* All rows begin: what was in force comes back, and the image is filled. */
 static void engine_begin(struct engine *e, const struct engine_setup *setup)
 {
-	for (uint32_t row = 0; row < e->table.count; row++) {
-		e->table.signals[row].read.known_ns = setup->start_ns;
-		lane_take_row(&e->lanes[0], row);
+	for (struct signal *s = e->table.signals; s < table_end(&e->table); s++) {
+		s->read.known_ns = setup->start_ns;
+		lane_take_row(&e->lanes[0], engine_row(s));
+		engine_read_now(e, s);
+		engine_write_check(e, s);
 	}
 	for (uint32_t i = 0; i < e->alarm_count; i++)
 		alarm_take_item(&e->lanes[0].alarm, &e->alarm_items[i], setup->start_ns);
-	for (uint32_t row = 0; row < e->table.count; row++) {
-		engine_read_now(e, &e->table.signals[row]);
-		engine_write_check(e, &e->table.signals[row]);
-	}
 	engine_shelves_resume(e);
 	engine_resume(e, setup->left);
 	for (uint32_t row = 0; row < e->table.count; row++)
@@ -45,13 +43,23 @@ static void engine_begin(struct engine *e, const struct engine_setup *setup)
 	for (unsigned i = 0; i < e->lane_count; i++)
 		engine_publish_target(e, &e->lanes[i]);
 	engine_publish_devices(e);
-	engine_publish_driver(e, setup->start_ns);
+	engine_publish_driver(e);
+}
+
+static int make_lanes(struct engine *e, const struct engine_setup *setup)
+{
+	e->lanes = calloc(setup->port_count, sizeof(*e->lanes));
+	for (unsigned i = 0; e->lanes && i < setup->port_count; i++) {
+		if (lane_init(&e->lanes[i], e, &setup->ports[i], i))
+			return -ENOMEM;
+		e->lane_count++;
+	}
+	return e->lanes ? 0 : -ENOMEM;
 }
 
 int engine_create(const struct engine_setup *setup, struct engine **engine)
 {
 	struct engine *e = calloc(1, sizeof(*e));
-	int err;
 
 	assert(setup->port_count > 0);
 	if (!e)
@@ -64,33 +72,14 @@ int engine_create(const struct engine_setup *setup, struct engine **engine)
 	e->guests = setup->guests;
 	e->time.start_ns = setup->start_ns;
 	e->time.now_ns = setup->start_ns;
-	err = signal_table_init(&e->table, e->config);
-	if (!err)
-		err = due_wheel_init(&e->wheel, e->table.count * 2, 0);
-	if (!err)
-		err = due_wheel_init(&e->time_wheel, e->table.count, 0);
-	if (!err) {
-		e->lanes = calloc(setup->port_count, sizeof(*e->lanes));
-		err = e->lanes ? 0 : -ENOMEM;
-	}
-	if (!err)
-		err = structure_init(&e->structure, &e->table);
-	if (!err)
-		err = engine_facts_init(e);
-	if (!err)
-		err = alarm_items_init(&e->table, &e->alarm_items, &e->alarm_count);
-	for (unsigned i = 0; !err && i < setup->port_count; i++) {
-		err = lane_init(&e->lanes[i], e, &setup->ports[i], i);
-		if (!err)
-			e->lane_count++;
-	}
-	if (!err)
-		err = engine_groups_init(e, setup->ports);
-	if (!err)
-		err = engine_places_init(e);
-	if (err) {
+	if (signal_table_init(&e->table, e->config) ||
+	    due_wheel_init(&e->wheel, e->table.count * 2, 0) ||
+	    due_wheel_init(&e->time_wheel, e->table.count, 0) ||
+	    structure_init(&e->structure, &e->table) || engine_facts_init(e) ||
+	    alarm_items_init(&e->table, &e->alarm_items, &e->alarm_count) || make_lanes(e, setup) ||
+	    engine_groups_init(e, setup->ports) || engine_places_init(e)) {
 		engine_destroy(e);
-		return err;
+		return -ENOMEM;
 	}
 	engine_begin(e, setup);
 	*engine = e;
@@ -109,10 +98,8 @@ void engine_destroy(struct engine *e)
 	structure_free(&e->structure);
 	engine_facts_free(e);
 	free(e->alarm_items);
-	if (e->wheel.wait)
-		due_wheel_free(&e->wheel);
-	if (e->time_wheel.wait)
-		due_wheel_free(&e->time_wheel);
+	due_wheel_free(&e->wheel);
+	due_wheel_free(&e->time_wheel);
 	signal_table_free(&e->table);
 	free(e);
 }
@@ -121,16 +108,16 @@ void engine_answer(struct engine *e, unsigned port, const struct bus_answer *ans
 {
 	assert(port < e->lane_count);
 	engine_begin_call(e, now_ns);
-	lane_answer(&e->lanes[port], answer, now_ns);
-	engine_route(e, now_ns);
+	lane_answer(&e->lanes[port], answer);
+	engine_route(e);
 }
 
 void engine_event(struct engine *e, unsigned port, const struct bus_event *event, int64_t now_ns)
 {
 	assert(port < e->lane_count);
 	engine_begin_call(e, now_ns);
-	lane_event(&e->lanes[port], event, now_ns);
-	engine_route(e, now_ns);
+	lane_event(&e->lanes[port], event);
+	engine_route(e);
 }
 
 /* Does something of the lane wait for the next period, and for no event? */
@@ -145,15 +132,15 @@ static bool waits_for_period(const struct lane *lane)
 
 int64_t engine_step(struct engine *e, int64_t now_ns)
 {
-	int64_t next = INT64_MAX, groups, deferred, turn;
+	int64_t next;
 	bool turned, soon;
 
 	engine_begin_call(e, now_ns);
 	e->counters.steps++;
-	turned = engine_turn(e);
-	deferred = engine_intake_limited(e, now_ns);
+	turned = engine_tick(e);
+	next = engine_intake_limited(e);
 	engine_look_stored(e);
-	guests_take(e, now_ns);
+	guests_take(e);
 	if (turned) {
 		for (unsigned i = 0; i < e->lane_count; i++)
 			if (e->lanes[i].lent.count)
@@ -161,44 +148,33 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 		engine_look_controllers(e);
 		engine_publish_counters(e);
 		engine_publish_devices(e);
-		engine_publish_driver(e, now_ns);
+		engine_publish_driver(e);
 	}
-	if (deferred < next)
-		next = deferred;
-	groups = engine_route_groups(e, now_ns);
-	if (groups < next)
-		next = groups;
+	next = earlier_ns(next, engine_route_groups(e));
 	soon = !e->controllers_quiet;
-	soon |= engine_route(e, now_ns);
+	soon |= engine_route(e);
 	for (unsigned i = 0; i < e->lane_count; i++) {
-		int64_t timeout, alarm;
+		int64_t timeout;
 
 		if (lane_rests(&e->lanes[i]))
 			continue;
-		timeout = lane_timeouts(&e->lanes[i], now_ns);
-		/* what it leads to later, and in lanes that had their turn, is looked at soon */
-		soon |= engine_route(e, now_ns);
-		lane_fill(&e->lanes[i], now_ns);
+		timeout = lane_timeouts(&e->lanes[i]);
+		/* what it leads to later, and in lanes before this one, is looked at soon */
+		soon |= engine_route(e);
+		lane_fill(&e->lanes[i]);
 		/* what was lent just now included */
-		if (e->lanes[i].lent.count &&
-		    now_ns + e->config->timeout_ns + LANE_GRACE_NS < timeout)
-			timeout = now_ns + e->config->timeout_ns + LANE_GRACE_NS;
-		if (timeout < next)
-			next = timeout;
-		alarm = lane_wake(&e->lanes[i]);
-		if (alarm < next)
-			next = alarm;
+		if (e->lanes[i].lent.count)
+			timeout = earlier_ns(timeout,
+			                     now_ns + e->config->timeout_ns + LANE_GRACE_NS);
+		next = earlier_ns(next, earlier_ns(timeout, lane_wake(&e->lanes[i])));
 	}
 	/* a lane that was filled may have got devices of a later one */
 	for (unsigned i = 0; i < e->lane_count; i++)
 		soon |= waits_for_period(&e->lanes[i]);
-	/* what was done since the last turn is shown at the next */
+	/* what was done since the last tick is shown at the next */
 	soon |= engine_driver_changed(e);
-	turn = engine_next_turn(e, soon ? 0 : ENGINE_BEAT_NS);
-	if (turn < next)
-		next = turn;
-	e->time.next_ns = next;
-	return next;
+	e->time.next_ns = earlier_ns(next, engine_next_tick(e, soon ? 0 : ENGINE_BEAT_NS));
+	return e->time.next_ns;
 }
 
 bool engine_published(struct engine *e)

@@ -67,7 +67,7 @@ struct engine;
 
 /* All strings of the configuration must outlive the engine. 0 or -ENOMEM. */
 int engine_create(const struct engine_setup *setup, struct engine **engine);
-/* The buses must have given back what was lent, or never will. */
+/* Call it when every lent request was answered, or its bus was destroyed. */
 void engine_destroy(struct engine *engine);
 
 /* What a bus has answered and reported. Unknown and repeated ids are counted and ignored. */
@@ -77,7 +77,7 @@ void engine_event(struct engine *engine, unsigned port, const struct bus_event *
                   int64_t now_ns);
 
 /*
- * Do what is due at now_ns: take commands in, turn the period, find requests that ran out of time,
+ * Do what is due at now_ns: take commands in, go on to the period, find requests out of time,
  * submit requests, publish. Returns when it wants to be called again at the latest.
  */
 int64_t engine_step(struct engine *engine, int64_t now_ns);

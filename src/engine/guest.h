@@ -46,7 +46,7 @@ struct engine_guest {
 
 /* The engine's way to its guests. The functions never block; they are called on its thread. */
 struct engine_guests {
-	struct engine_guest *(*take)(void *ctx); /* NULL: nobody waits */
+	struct engine_guest *(*take)(void *ctx); /* NULL: none waits */
 	void (*answered)(void *ctx, struct engine_guest *guest);
 	void (*released)(void *ctx, struct engine_guest *guest);
 	void *ctx;

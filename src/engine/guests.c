@@ -18,7 +18,7 @@
 /* So many requests of a busy table go before a guest that waits. */
 #define GUEST_PASSED 4
 #define GUESTS_LENT 64
-#define GUESTS_PRESSING 16
+#define GUESTS_AS_INPUTS 16
 /*
  * How long one that came through another server waits for its turn: two servers that have each
  * other as targets may wait for each other's only connection.
@@ -113,7 +113,7 @@ static unsigned lane_of_path(const struct engine *e, const char *path)
 	return e->table.signals[e->table.device_rows[e->table.devices[device].first]].lane;
 }
 
-static void look_at_waiting(struct engine *e, struct lane *lane, int64_t now_ns)
+static void look_at_waiting(struct engine *e, struct lane *lane)
 {
 	struct engine_guest *g = lane->guests.first;
 
@@ -125,7 +125,7 @@ static void look_at_waiting(struct engine *e, struct lane *lane, int64_t now_ns)
 			guest_failed(e, g, -ENOTCONN);
 		else if (g->op != BUS_WRITE && __atomic_load_n(&g->unwanted, __ATOMIC_RELAXED))
 			guest_failed(e, g, -ECANCELED);
-		else if (now_ns >= g->until_ns)
+		else if (e->time.now_ns >= g->until_ns)
 			guest_failed(e, g, -ETIME);
 		else
 			guest_waits(lane, g);
@@ -141,14 +141,14 @@ static int64_t patience_ns(const struct engine *e, const struct engine_guest *g)
 	                                                         : e->config->timeout_ns;
 }
 
-void guests_take(struct engine *e, int64_t now_ns)
+void guests_take(struct engine *e)
 {
 	struct engine_guest *g;
 
 	if (!e->guests)
 		return;
 	while ((g = e->guests->take(e->guests->ctx)) != NULL) {
-		g->until_ns = now_ns + patience_ns(e, g);
+		g->until_ns = e->time.now_ns + patience_ns(e, g);
 		g->lent = false;
 		g->best_err = 0;
 		g->served = g->lane == GUEST_ANY_LANE ? lane_of_path(e, g->path)
@@ -168,7 +168,7 @@ void guests_take(struct engine *e, int64_t now_ns)
 	 */
 	for (unsigned i = 0; i < e->lane_count; i++)
 		if (e->lanes[i].guests.first)
-			look_at_waiting(e, &e->lanes[i], now_ns);
+			look_at_waiting(e, &e->lanes[i]);
 }
 
 static unsigned table_lent(const struct lane *lane)
@@ -202,28 +202,28 @@ void guest_passed(struct lane *lane)
  * that are lent beside the table's have the priority of inputs, and some of those on an idle bus
  * too.
  */
-bool guest_ask(struct lane *lane, struct slot *slot, int64_t now_ns)
+bool guest_ask(struct lane *lane, struct slot *slot)
 {
 	struct engine_guest *g = lane->guests.first;
 
 	slot->purpose = FOR_GUEST;
 	slot->row = TABLE_NO_ROW;
 	slot->guest = g;
-	slot->pressing = table_lent(lane) || lane->guests.pressing < GUESTS_PRESSING;
+	slot->as_input = table_lent(lane) || lane->guests.as_inputs < GUESTS_AS_INPUTS;
 	slot->req = (struct bus_req){.op = g->op,
 	                             .fresh = g->fresh,
 	                             .path = g->path,
-	                             .prio = slot->pressing ? BUS_INPUT : BUS_GUEST,
+	                             .prio = slot->as_input ? BUS_INPUT : BUS_GUEST,
 	                             .len = g->len,
 	                             .offset = g->offset,
 	                             .data = g->data,
 	                             .unwanted = &g->unwanted,
 	                             .tokens = g->tokens,
 	                             .token_count = g->token_count};
-	if (!slot_lend(lane, slot, now_ns))
+	if (!slot_lend(lane, slot))
 		return false;
 	guest_leaves(lane);
-	lane->guests.pressing += slot->pressing;
+	lane->guests.as_inputs += slot->as_input;
 	lane->guests.passed = 0;
 	lane->guests.lent++;
 	lane->counters.guests++;
@@ -259,9 +259,7 @@ static void restore_outputs(struct engine *e, const char *path)
 
 	if (path_split(path, strlen(path), &split) || !split.last.len)
 		return;
-	for (uint32_t row = 0; row < e->table.count; row++) {
-		struct signal *s = &e->table.signals[row];
-
+	for (struct signal *s = e->table.signals; s < table_end(&e->table); s++) {
 		if (!s->command.given || !signal_writes(s) || !same_latch(&split, s->item->path))
 			continue;
 		s->command.forced = true;
@@ -276,7 +274,7 @@ void guest_done(struct engine *e, struct lane *lane, struct slot *slot, const st
 	bool lent = slot->lent;
 
 	lane->guests.lent--;
-	lane->guests.pressing -= slot->pressing;
+	lane->guests.as_inputs -= slot->as_input;
 	if (g->op == BUS_WRITE &&
 	    (!a->err || failure_of(a->err) == FAILURE_TARGET || a->err == -EINPROGRESS))
 		restore_outputs(e, g->path);

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-/* The guests of the lanes: which of them waits, and whose request the bus has. */
+/* The guests of the lanes: which of them wait, and which have a request with the bus. */
 #pragma once
 
 #include "src/engine/state.h"
 
 /* Take the guests that wait at the server's side into the lanes. */
-void guests_take(struct engine *e, int64_t now_ns);
+void guests_take(struct engine *e);
 
 /* Is it a guest's turn, where the table has something to ask too (others), or not? */
 bool guest_turn(const struct lane *lane, bool others);
 /* Give the request of the first one to the bus; false: the bus takes none now. */
-bool guest_ask(struct lane *lane, struct slot *slot, int64_t now_ns);
+bool guest_ask(struct lane *lane, struct slot *slot);
 /* A request of the table went before them. */
 void guest_passed(struct lane *lane);
 

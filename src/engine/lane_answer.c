@@ -17,72 +17,58 @@
 #include "src/engine/trace.h"
 #include "src/engine/types.h"
 
-/* The request's time as the table sees it is over: by an answer, or given up. */
-static void complete_request(struct lane *lane, struct slot *slot, const struct bus_answer *answer,
-                             int64_t now_ns)
+static void apply_answer(struct lane *lane, struct slot *slot, const struct bus_answer *answer)
 {
-	bool counts = failure_of(answer->err) != FAILURE_VOID;
 	struct engine *e = lane->engine;
-	struct signal *s;
 
-	if (slot->purpose == FOR_GUEST) {
-		guest_done(e, lane, slot, answer);
-		return;
-	}
-	e->driver.transactions += counts;
 	switch (slot->purpose) {
 	case FOR_GUEST:
+		guest_done(e, lane, slot, answer);
 		break;
 	case FOR_STRUCTURE:
 		types_done(lane, slot, answer);
 		break;
 	case FOR_PROBE:
-		engine_probe_done(e, lane, slot, answer, now_ns);
+		engine_probe_done(e, lane, slot, answer);
 		break;
 	case FOR_RESTART:
 		engine_restart_done(lane, slot, answer);
 		break;
 	case FOR_READ:
-		s = &e->table.signals[slot->row];
-		s->reading = false;
-		/* a write of the signal may have begun since */
-		if (s->sample.tried_ns < slot->begun_ns)
-			s->sample.tried_ns = slot->begun_ns;
-		s->attrs.transactions += counts;
-		signal_end(s, e->time.period, slot->begun);
-		engine_read_done(e, lane, slot, answer, now_ns);
-		engine_publish(e, s);
+		engine_read_done(e, lane, slot, answer);
 		alarm_passed(&lane->alarm);
 		break;
 	case FOR_WRITE:
-		s = &e->table.signals[slot->row];
-		s->writing = false;
 		lane->lent.writes--;
-		s->attrs.transactions += counts;
-		signal_end(s, e->time.period, slot->begun);
-		engine_write_done(e, lane, slot, answer, now_ns);
-		engine_publish(e, s);
+		engine_write_done(e, lane, slot, answer);
 		alarm_passed(&lane->alarm);
 		break;
 	case FOR_ALARM:
-		if (slot->row == TABLE_NO_ROW) {
-			alarm_answered(&lane->alarm, lane, slot, answer, now_ns);
-			break;
-		}
-		s = &e->table.signals[slot->row];
-		s->alarming = false;
-		s->attrs.transactions += counts;
-		signal_end(s, e->time.period, slot->begun);
-		alarm_answered(&lane->alarm, lane, slot, answer, now_ns);
-		engine_publish(e, s);
+		alarm_answered(&lane->alarm, lane, slot, answer);
 		break;
 	}
 }
 
-static bool is_for_a_row(const struct slot *slot)
+/* The request's time as the table sees it is over: by an answer, or given up. */
+static void complete_request(struct lane *lane, struct slot *slot, const struct bus_answer *answer)
 {
-	return slot->purpose == FOR_READ || slot->purpose == FOR_WRITE ||
-	       (slot->purpose == FOR_ALARM && slot->row != TABLE_NO_ROW);
+	bool counts = failure_of(answer->err) != FAILURE_VOID;
+	struct engine *e = lane->engine;
+	struct signal *s;
+
+	e->driver.transactions += counts && slot->purpose != FOR_GUEST;
+	if (!slot_has_row(slot)) {
+		apply_answer(lane, slot, answer);
+		return;
+	}
+	s = slot_signal(lane, slot);
+	/* a write of the signal may have begun since */
+	if (s->sample.tried_ns < slot->begun_ns)
+		s->sample.tried_ns = slot->begun_ns;
+	s->attrs.transactions += counts;
+	slot_leaves_signal(lane, slot);
+	apply_answer(lane, slot, answer);
+	engine_publish(e, s);
 }
 
 /*
@@ -90,7 +76,7 @@ static bool is_for_a_row(const struct slot *slot)
  * late, not never. Its bus may have stamped it when it came: what was asked for later is newer.
  */
 static void take_late_reading(struct lane *lane, const struct slot *slot,
-                              const struct bus_answer *answer, int64_t now_ns)
+                              const struct bus_answer *answer)
 {
 	struct engine *e = lane->engine;
 	struct signal *s;
@@ -102,30 +88,30 @@ static void take_late_reading(struct lane *lane, const struct slot *slot,
 	if (!signal_reads(s) || s->lane != lane->index || slot->begun_ns < s->read.begun_ns ||
 	    (answer->measured_ns && answer->measured_ns <= s->sample.measured_ns))
 		return;
-	engine_take_reading(e, lane, s, slot, answer, now_ns, &wait_ns);
+	engine_take_reading(e, lane, s, slot, answer, &wait_ns);
 	engine_publish(e, s);
 }
 
-void lane_answer(struct lane *lane, const struct bus_answer *answer, int64_t now_ns)
+void lane_answer(struct lane *lane, const struct bus_answer *answer)
 {
 	struct slot *slot = slot_of_id(lane, answer->id);
 	struct engine *e = lane->engine;
 
-	lane->state.heard_ns = now_ns;
+	lane->state.heard_ns = e->time.now_ns;
 	if (!slot) {
 		lane->counters.unknown_answers++;
 		return;
 	}
 	if (trace_is_on(e->log))
-		trace_answer(lane, slot, answer, now_ns);
+		trace_answer(lane, slot, answer);
 	slot_give_back(lane, slot);
-	if (!slot->moved && is_for_a_row(slot))
+	if (!slot->moved && slot_has_row(slot))
 		engine_facts_answer(e, lane, slot->row, answer);
 	if (!slot->given_up && !slot->moved) {
-		complete_request(lane, slot, answer, now_ns);
+		complete_request(lane, slot, answer);
 	} else {
 		lane->counters.late_answers += slot->given_up;
-		take_late_reading(lane, slot, answer, now_ns);
+		take_late_reading(lane, slot, answer);
 		if (!slot->given_up && slot->purpose == FOR_WRITE)
 			lane->lent.writes--;
 		if (slot->purpose == FOR_GUEST)
@@ -134,12 +120,12 @@ void lane_answer(struct lane *lane, const struct bus_answer *answer, int64_t now
 			engine_doubt_ended(e, slot);
 	}
 	if (lane->state.stuck)
-		lane_unstuck(lane, now_ns);
+		lane_unstuck(lane);
 }
 
-int64_t lane_timeouts(struct lane *lane, int64_t now_ns)
+int64_t lane_timeouts(struct lane *lane)
 {
-	int64_t next = INT64_MAX;
+	int64_t next = INT64_MAX, now_ns = lane->engine->time.now_ns;
 	bool silent = false;
 	unsigned lost = 0;
 
@@ -159,8 +145,7 @@ int64_t lane_timeouts(struct lane *lane, int64_t now_ns)
 			continue;
 		}
 		if (end > now_ns) {
-			if (end < next)
-				next = end;
+			next = earlier_ns(next, end);
 			continue;
 		}
 		lost++;
@@ -170,15 +155,15 @@ int64_t lane_timeouts(struct lane *lane, int64_t now_ns)
 			silent = true;
 		}
 		if (trace_is_on(lane->engine->log))
-			trace_answer(lane, slot, &answer, now_ns);
+			trace_answer(lane, slot, &answer);
 		slot->given_up = true;
 		if (!slot->moved)
-			complete_request(lane, slot, &answer, now_ns);
+			complete_request(lane, slot, &answer);
 		else if (slot->purpose == FOR_WRITE)
 			lane->lent.writes--;
 	}
 	lane->lent.look_ns = next;
 	if (!lane->state.stuck && (silent || lost == lane->depth))
-		lane_stuck(lane, now_ns);
+		lane_stuck(lane);
 	return next;
 }

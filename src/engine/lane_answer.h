@@ -4,6 +4,6 @@
 
 #include "src/engine/state.h"
 
-void lane_answer(struct lane *lane, const struct bus_answer *answer, int64_t now_ns);
+void lane_answer(struct lane *lane, const struct bus_answer *answer);
 /* Give requests up whose time is over; returns when the next one's is. */
-int64_t lane_timeouts(struct lane *lane, int64_t now_ns);
+int64_t lane_timeouts(struct lane *lane);

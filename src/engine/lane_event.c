@@ -22,9 +22,7 @@ static void report_cached(const struct lane *lane, int64_t cache_ns)
 	const struct signal *first = NULL;
 	unsigned count = 0;
 
-	for (uint32_t row = 0; row < e->table.count; row++) {
-		const struct signal *s = &e->table.signals[row];
-
+	for (const struct signal *s = e->table.signals; s < table_end(&e->table); s++) {
 		if (s->lane != lane->index || s->device == TABLE_NO_DEVICE || !signal_reads(s) ||
 		    s->item->fresh || s->item->alarm ||
 		    e->config->period_ns >= cache_ns / s->item->per_factor)
@@ -41,7 +39,7 @@ static void report_cached(const struct lane *lane, int64_t cache_ns)
 		           first->item->name, count > 1 ? ", ..." : "");
 }
 
-static void down_event(struct lane *lane, int err, const char *text, int64_t now_ns)
+static void down_event(struct lane *lane, int err, const char *text)
 {
 	struct engine *e = lane->engine;
 	bool quiet = engine_group(e, lane)->state.quiet && err == lane->state.down_err;
@@ -53,7 +51,7 @@ static void down_event(struct lane *lane, int err, const char *text, int64_t now
 	lane->state.up = false;
 	lane->counters.target_failures++;
 	engine_publish_target(e, lane);
-	lane_fail(lane, err, now_ns);
+	lane_fail(lane, err);
 }
 
 static void device_event(struct lane *lane, const struct bus_event *event)
@@ -79,7 +77,7 @@ static void device_event(struct lane *lane, const struct bus_event *event)
 	}
 }
 
-static void up_event(struct lane *lane, const struct bus_event *event, int64_t now_ns)
+static void up_event(struct lane *lane, const struct bus_event *event)
 {
 	struct route_way *way = engine_way(lane->engine, lane);
 
@@ -87,18 +85,18 @@ static void up_event(struct lane *lane, const struct bus_event *event, int64_t n
 	if (lane->state.open) {
 		bool first = !lane->state.was_up;
 
-		lane_up(lane, event->text, now_ns);
+		lane_up(lane, event->text);
 		if (first && event->cache_ns)
 			report_cached(lane, event->cache_ns);
 	} else if (!lane->port->suspend &&
 	           !way->back) { /* without suspend, BUS_UP is the only sign of that */
 		way->back = true;
-		way->back_ns = now_ns;
+		way->back_ns = lane->engine->time.now_ns;
 	}
 }
 
 /* What a way says that was asked to let go is of no interest, but for these two. */
-static void suspended_event(struct lane *lane, const struct bus_event *event, int64_t now_ns)
+static void suspended_event(struct lane *lane, const struct bus_event *event)
 {
 	struct engine *e = lane->engine;
 	struct route_way *way = engine_way(e, lane);
@@ -107,7 +105,7 @@ static void suspended_event(struct lane *lane, const struct bus_event *event, in
 		return;
 	if (event->news == BUS_BACK) {
 		way->back = true;
-		way->back_ns = now_ns;
+		way->back_ns = e->time.now_ns;
 		log_debug(e->log, "%s: can be reached, and is kept closed", lane->port->target);
 	} else if (!way->released) {
 		way->released = true;
@@ -117,17 +115,17 @@ static void suspended_event(struct lane *lane, const struct bus_event *event, in
 	engine_group_asks(lane);
 }
 
-void lane_event(struct lane *lane, const struct bus_event *event, int64_t now_ns)
+void lane_event(struct lane *lane, const struct bus_event *event)
 {
-	lane->state.heard_ns = now_ns;
+	lane->state.heard_ns = lane->engine->time.now_ns;
 	switch ((enum bus_news)event->news) {
 	case BUS_UP:
-		up_event(lane, event, now_ns);
+		up_event(lane, event);
 		break;
 	case BUS_DOWN:
 		lane->state.reported_up = false;
 		if (lane->state.open)
-			down_event(lane, event->err, event->text, now_ns);
+			down_event(lane, event->err, event->text);
 		break;
 	case BUS_FOUND:
 	case BUS_POR:
@@ -137,7 +135,7 @@ void lane_event(struct lane *lane, const struct bus_event *event, int64_t now_ns
 		break;
 	case BUS_RELEASED:
 	case BUS_BACK:
-		suspended_event(lane, event, now_ns);
+		suspended_event(lane, event);
 		break;
 	case BUS_NOTE:
 		log_notice(lane->engine->log, "%s: %s", lane->port->target, event->text);

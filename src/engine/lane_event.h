@@ -4,4 +4,4 @@
 
 #include "src/engine/state.h"
 
-void lane_event(struct lane *lane, const struct bus_event *event, int64_t now_ns);
+void lane_event(struct lane *lane, const struct bus_event *event);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * A lane whose target goes up, fails, is stuck or answers again: what that means to the signals of
- * the lane, and the fact for the routing turn.
+ * the lane, and the fact for routing.
  */
 #include <errno.h>
 
@@ -17,19 +17,17 @@
 #include "src/text/log.h"
 
 /* All signals of the lane are read again, and written if there is something to write. */
-static void refresh_signals(struct lane *lane, int64_t now_ns)
+static void refresh_signals(struct lane *lane)
 {
 	struct engine *e = lane->engine;
 
-	alarm_ask_again(&lane->alarm, lane, now_ns);
-	for (uint32_t row = 0; row < e->table.count; row++) {
-		struct signal *s = &e->table.signals[row];
-
+	alarm_ask_again(&lane->alarm, lane);
+	for (struct signal *s = e->table.signals; s < table_end(&e->table); s++) {
 		if (s->lane != lane->index)
 			continue;
 		retry_clear(&s->read.retry);
 		retry_clear(&s->command.retry);
-		due_wheel_cancel(&e->wheel, row * 2 + 1);
+		due_wheel_cancel(&e->wheel, engine_row(s) * 2 + 1);
 		engine_read_now(e, s);
 		engine_write_check(e, s);
 		/* what is not read again stands as it stood */
@@ -42,7 +40,7 @@ static void refresh_signals(struct lane *lane, int64_t now_ns)
 	}
 }
 
-void lane_up(struct lane *lane, const char *text, int64_t now_ns)
+void lane_up(struct lane *lane, const char *text)
 {
 	struct engine *e = lane->engine;
 
@@ -52,7 +50,7 @@ void lane_up(struct lane *lane, const char *text, int64_t now_ns)
 	engine_group(e, lane)->state.quiet = false;
 	engine_way(e, lane)->up = true;
 	engine_way(e, lane)->failed = lane->state.stuck;
-	engine_way(e, lane)->up_ns = now_ns;
+	engine_way(e, lane)->up_ns = e->time.now_ns;
 	if (lane->state.was_up) {
 		lane->counters.reconnects++;
 		e->driver.reconnects++;
@@ -60,18 +58,18 @@ void lane_up(struct lane *lane, const char *text, int64_t now_ns)
 	log_notice(e->log, "%s: from down to up%s%s", lane->port->target, *text ? ": " : "", text);
 	lane->state.was_up = true;
 	engine_publish_target(e, lane);
-	engine_publish_driver(e, now_ns);
-	refresh_signals(lane, now_ns);
+	engine_publish_driver(e);
+	refresh_signals(lane);
 	engine_group_asks(lane);
 }
 
-void lane_fail(struct lane *lane, int err, int64_t now_ns)
+void lane_fail(struct lane *lane, int err)
 {
 	struct engine *e = lane->engine;
 	struct route_way *way = engine_way(e, lane);
 
 	if (!way->failed)
-		way->failed_ns = now_ns;
+		way->failed_ns = e->time.now_ns;
 	way->failed = true;
 	way->up = false;
 	engine_probes_forget(lane);
@@ -85,9 +83,7 @@ void lane_down(struct lane *lane, int err)
 	struct engine *e = lane->engine;
 
 	alarm_restart(&lane->alarm);
-	for (uint32_t row = 0; row < e->table.count; row++) {
-		struct signal *s = &e->table.signals[row];
-
+	for (struct signal *s = e->table.signals; s < table_end(&e->table); s++) {
 		if (s->lane != lane->index ||
 		    (s->sample.quality == OWS_Q_DISABLED && !s->item->output && !signal_reads(s)))
 			continue;
@@ -102,17 +98,17 @@ void lane_down(struct lane *lane, int err)
 	}
 }
 
-void lane_stuck(struct lane *lane, int64_t now_ns)
+void lane_stuck(struct lane *lane)
 {
 	lane->state.stuck = true;
 	if (!lane->state.open)
 		return;
 	log_err(lane->engine->log, "%s: no answer at all within Timeout", lane->port->target);
 	lane->counters.target_failures++;
-	lane_fail(lane, -ETIMEDOUT, now_ns);
+	lane_fail(lane, -ETIMEDOUT);
 }
 
-void lane_unstuck(struct lane *lane, int64_t now_ns)
+void lane_unstuck(struct lane *lane)
 {
 	struct engine *e = lane->engine;
 	struct route_way *way = engine_way(e, lane);
@@ -123,7 +119,7 @@ void lane_unstuck(struct lane *lane, int64_t now_ns)
 		return;
 	way->failed = false;
 	way->up = true;
-	way->up_ns = now_ns;
-	refresh_signals(lane, now_ns);
+	way->up_ns = e->time.now_ns;
+	refresh_signals(lane);
 	engine_group_asks(lane);
 }

@@ -5,14 +5,14 @@
 #include "src/engine/state.h"
 
 /* The target of an open lane went up; the bus has reported that now or before. */
-void lane_up(struct lane *lane, const char *text, int64_t now_ns);
-/* The target failed. Its signals stay as they are until the routing turn has acted on that. */
-void lane_fail(struct lane *lane, int err, int64_t now_ns);
+void lane_up(struct lane *lane, const char *text);
+/* The target failed. Its signals stay as they are until routing has acted on that. */
+void lane_fail(struct lane *lane, int err);
 /* The signals that no other lane has taken over go bad. */
 void lane_down(struct lane *lane, int err);
 /*
  * The bus has reported nothing at all since a request began, or all that it takes was given up: the
  * bus is stuck, not one device slow. And it answers again.
  */
-void lane_stuck(struct lane *lane, int64_t now_ns);
-void lane_unstuck(struct lane *lane, int64_t now_ns);
+void lane_stuck(struct lane *lane);
+void lane_unstuck(struct lane *lane);

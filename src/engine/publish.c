@@ -22,8 +22,8 @@ static bool is_near(const struct signal *s, int64_t value)
 }
 
 /*
- * Enter a change if the row differs for somebody who follows it: an update, even of the same value
- * (it is a new sample, and the age is new), or how it stands.
+ * Enter a change if the row differs for a program that follows it: an update, even of the same
+ * value (it is a new sample, and the age is new), or how it stands.
  */
 static void enter_change(struct engine *e, struct signal *s, const struct ows_sample *sample,
                          bool stale)
@@ -95,8 +95,8 @@ void engine_publish(struct engine *e, struct signal *s)
 	if (!sample.err && !signal_writes(s)) /* else it would look like the error of a write */
 		sample.err = s->alarm_err;
 	stale = ows_good(sample.quality) && e->time.now_ns >= stale_at;
-	if (ows_good(sample.quality) && !stale && stale_at < next)
-		next = stale_at;
+	if (ows_good(sample.quality) && !stale)
+		next = earlier_ns(next, stale_at);
 	look_again(e, s, next);
 	image_publish(e->image, s->record, &sample, &s->attrs, s->text);
 	enter_change(e, s, &sample, stale);
@@ -108,12 +108,12 @@ bool engine_driver_changed(const struct engine *e)
 	return e->driver.transactions + e->driver.reconnects != e->driver.shown;
 }
 
-void engine_publish_driver(struct engine *e, int64_t now_ns)
+void engine_publish_driver(struct engine *e)
 {
 	struct ows_sample sample = {
 		.value = (int64_t)e->driver.reconnects,
-		.measured_ns = now_ns,
-		.tried_ns = now_ns,
+		.measured_ns = e->time.now_ns,
+		.tried_ns = e->time.now_ns,
 		.quality = OWS_Q_GOOD,
 		.target = 255,
 		.count = (uint32_t)e->time.period,
@@ -124,7 +124,7 @@ void engine_publish_driver(struct engine *e, int64_t now_ns)
 	};
 
 	image_publish(e->image, 0, &sample, &attrs, NULL);
-	/* the heartbeat alone wakes nobody */
+	/* the heartbeat alone wakes no reader */
 	if (engine_driver_changed(e))
 		e->published = true;
 	e->driver.shown = e->driver.transactions + e->driver.reconnects;

@@ -83,9 +83,9 @@ static void time_ready(void *ctx, uint32_t row)
 	engine_publish(e, &e->table.signals[row]);
 }
 
-/* So late nobody ran: the machine was suspended, or owsd stopped. */
+/* A call so late says that the engine did not run: the machine was suspended, or owsd stopped. */
 #define GAP_NS (2 * NS_PER_S)
-/* So late nobody looked, and perhaps no controller could beat. */
+/* A call so late says that the engine did not look, and that perhaps no controller could beat. */
 #define PAUSE_NS (100 * NS_PER_MS)
 
 /* The period that has begun last at that time. */
@@ -104,7 +104,7 @@ void engine_begin_call(struct engine *e, int64_t now_ns)
 
 	if (e->time.next_ns && now_ns - e->time.next_ns > GAP_NS)
 		e->time.gap_ns = now_ns;
-	/* nobody knows when in the time since the last call the pause began */
+	/* when in the time since the last call the pause began is not known */
 	if (e->time.next_ns && late_ns > PAUSE_NS)
 		e->time.paused_ns += now_ns - e->time.now_ns;
 	e->time.now_ns = now_ns;
@@ -114,24 +114,24 @@ void engine_begin_call(struct engine *e, int64_t now_ns)
 		e->time.period = period;
 }
 
-bool engine_turn(struct engine *e)
+bool engine_tick(struct engine *e)
 {
 	uint64_t period = e->time.period, asked = begun_period(e, e->time.next_ns);
 
-	if (period == e->time.turned)
+	if (period == e->time.ticked)
 		return false;
-	if (asked <= e->time.turned)
-		asked = e->time.turned + 1;
+	if (asked <= e->time.ticked)
+		asked = e->time.ticked + 1;
 	if (period > asked)
 		e->counters.late_periods += period - asked;
-	e->counters.periods += period - e->time.turned;
-	e->time.turned = period;
-	due_wheel_turn(&e->wheel, period, row_ready, e);
-	due_wheel_turn(&e->time_wheel, period, time_ready, e);
+	e->counters.periods += period - e->time.ticked;
+	e->time.ticked = period;
+	due_wheel_advance(&e->wheel, period, row_ready, e);
+	due_wheel_advance(&e->time_wheel, period, time_ready, e);
 	return true;
 }
 
-int64_t engine_next_turn(const struct engine *e, int64_t at_most_ns)
+int64_t engine_next_tick(const struct engine *e, int64_t at_most_ns)
 {
 	uint64_t period = e->time.period, most = (uint64_t)(at_most_ns / e->config->period_ns);
 	uint64_t next = period + (most ? most : 1);

@@ -12,12 +12,12 @@ uint64_t engine_read_back_at(const struct engine *e, const struct signal *s);
 void engine_write_at(struct engine *e, struct signal *s, uint64_t period);
 /* Put the row among those to be written, or take it away, by signal_changed(). */
 void engine_write_check(struct engine *e, struct signal *s);
-/* Each call from outside begins with it: it keeps the time, and notices when nobody ran. */
+/* Each call from outside begins with it: it sets the time, and notices a time of no calls. */
 void engine_begin_call(struct engine *e, int64_t now_ns);
-/* Turn to the present period: what waited for it becomes due. False: it is the same as before. */
-bool engine_turn(struct engine *e);
+/* Go on to the present period: what waited for it becomes due. False: it is the same as before. */
+bool engine_tick(struct engine *e);
 /*
- * When the next turn is: the beginning of the first period for which a row waits. It is at most
+ * When the next tick is: the beginning of the first period for which a row waits. It is at most
  * at_most_ns (whole periods of it, but one at least) after the beginning of the present period.
  */
-int64_t engine_next_turn(const struct engine *e, int64_t at_most_ns);
+int64_t engine_next_tick(const struct engine *e, int64_t at_most_ns);

@@ -3,6 +3,7 @@
  * The slots of a lane: rooms for requests. A slot is lent to the bus with its request, and comes
  * back with the answer.
  */
+#include <assert.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -54,15 +55,15 @@ static void slot_own_path(struct slot *slot)
 	slot->req.path = slot->path;
 }
 
-bool slot_lend(struct lane *lane, struct slot *slot, int64_t now_ns)
+bool slot_lend(struct lane *lane, struct slot *slot)
 {
 	bool guest = slot->purpose == FOR_GUEST;
 	/* where only one request is under way, all others of the bus would wait for so long, too */
 	bool longer = guest && slot->guest->parts && lane->depth > 1;
-	int64_t parts = longer ? slot->guest->parts : 1;
+	int64_t parts = longer ? slot->guest->parts : 1, now_ns = lane->engine->time.now_ns;
 
-	slot->turn++;
-	slot->req.id = (uint32_t)(slot - lane->lent.slots) | (uint32_t)slot->turn << 16;
+	slot->generation++;
+	slot->req.id = (uint32_t)(slot - lane->lent.slots) | (uint32_t)slot->generation << 16;
 	slot->req.deadline_ns = now_ns + lane->engine->config->timeout_ns * parts;
 	if (!guest)
 		slot_own_path(slot);
@@ -96,6 +97,29 @@ struct slot *slot_of_id(struct lane *lane, uint32_t id)
 		return NULL;
 	slot = &lane->lent.slots[id & 0xffff];
 	return slot->lent && slot->req.id == id ? slot : NULL;
+}
+
+bool slot_has_row(const struct slot *slot)
+{
+	return slot->row != TABLE_NO_ROW &&
+	       (slot->purpose == FOR_READ || slot->purpose == FOR_WRITE ||
+	        slot->purpose == FOR_ALARM);
+}
+
+struct signal *slot_signal(const struct lane *lane, const struct slot *slot)
+{
+	assert(slot_has_row(slot));
+	return &lane->engine->table.signals[slot->row];
+}
+
+void slot_leaves_signal(const struct lane *lane, const struct slot *slot)
+{
+	struct signal *s = slot_signal(lane, slot);
+
+	s->reading &= slot->purpose != FOR_READ;
+	s->writing &= slot->purpose != FOR_WRITE;
+	s->alarming &= slot->purpose != FOR_ALARM;
+	signal_end(s, lane->engine->time.period, slot->begun);
 }
 
 void slot_give_back(struct lane *lane, struct slot *slot)

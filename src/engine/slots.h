@@ -14,8 +14,13 @@ void slots_free(struct lane *lane);
 /* A slot that is not lent, the same until it is; NULL: all are. */
 struct slot *slot_next(struct lane *lane);
 /* Give the slot's request to the bus; false: the bus takes none now. */
-bool slot_lend(struct lane *lane, struct slot *slot, int64_t now_ns);
-/* The lent slot whose request has this id, NULL: none has. */
+bool slot_lend(struct lane *lane, struct slot *slot);
+/* The lent slot with the request of this id, NULL: none has it. */
 struct slot *slot_of_id(struct lane *lane, uint32_t id);
+/* Does its request count for a row of the table, and which signal is that? */
+bool slot_has_row(const struct slot *slot);
+struct signal *slot_signal(const struct lane *lane, const struct slot *slot);
+/* The request of such a slot is in work for its signal no longer. */
+void slot_leaves_signal(const struct lane *lane, const struct slot *slot);
 /* The bus is done with the slot. */
 void slot_give_back(struct lane *lane, struct slot *slot);

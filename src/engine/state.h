@@ -8,7 +8,6 @@
 #include "hal/base/time.h"
 #include "hal/bus/bus.h"
 #include "src/engine/alarm/alarm_item.h"
-#include "src/engine/command/joining.h"
 #include "src/engine/due.h"
 #include "src/engine/port.h"
 #include "src/engine/routing/route.h"
@@ -36,14 +35,14 @@ struct engine_guests;
 enum purpose { FOR_READ, FOR_WRITE, FOR_STRUCTURE, FOR_ALARM, FOR_PROBE, FOR_RESTART, FOR_GUEST };
 
 /*
- * A request and its room. Its id is slot | turn << 16, so that a late answer does not fit a new
- * request.
+ * A request and its room. Its id is slot | generation << 16, so that a late answer does not fit a
+ * new request.
  */
 struct slot {
 	/* slots.c */
 	struct bus_req req;
 	bool lent; /* the bus has it */
-	uint16_t turn;
+	uint16_t generation;
 	int64_t begun_ns;
 	uint64_t begun; /* in this period */
 
@@ -53,15 +52,15 @@ struct slot {
 	bool moved; /* another lane serves its signal now; an answer only frees the slot */
 	bool kept;  /* while a reload goes on: a reading that was in flight before it */
 
-	/* whoever asks: ask.c, guests.c */
+	/* ask.c, guests.c and the others that ask */
 	enum purpose purpose;
 	/* of the table, of structure.checks (FOR_STRUCTURE), a device (FOR_PROBE, FOR_RESTART) */
 	uint32_t row;
 	int64_t value;               /* of a write */
 	uint32_t stamp;              /* of the command written, 0: owsd's */
-	uint32_t controller, serial; /* whose it is */
+	uint32_t controller, serial; /* that gave it */
 	bool one_shot;               /* the write was that of _WriteOneShot */
-	bool pressing;               /* a guest that goes as an input */
+	bool as_input;               /* a guest that goes with the priority of an input */
 	bool shown;                  /* a reading: the image has it that it is in work */
 	struct engine_guest *guest;  /* owns path and data of the request */
 	uint8_t data[LANE_DATA];
@@ -79,7 +78,7 @@ struct slot {
 	X(reconnects) \
 	X(given_up)        /* the bus did not answer in time */ \
 	X(late_answers)    /* came after that */ \
-	X(unknown_answers) /* nobody asked, or a second time */ \
+	X(unknown_answers) /* to no request, or a second time */ \
 	X(power_faults)    /* 85 and 127.94 refused */ \
 	X(out_of_range)    /* values that the chip cannot have measured, refused */ \
 	X(device_returns)  /* devices that came back */ \
@@ -135,9 +134,9 @@ struct lane {
 	/* ask.c */
 	uint32_t writes_in_row; /* since the last read was begun */
 	/* lane.c, intake.c */
-	uint32_t writers; /* rows whose writing is enabled */
+	uint32_t writers; /* rows that are enabled for writing */
 	/* restart.c */
-	struct due_set restarts; /* devices whose power-on flag is to be read */
+	struct due_set restarts; /* devices with a power-on flag that is to be read */
 	/* types.c */
 	struct due_set checks; /* of the engine's structure: to be asked here */
 
@@ -153,8 +152,8 @@ struct lane {
 	struct {
 		struct engine_guest *first, *last; /* those that wait */
 		unsigned lent;
-		unsigned passed;   /* requests of the table since one of them */
-		unsigned pressing; /* of those lent, how many go as inputs */
+		unsigned passed;    /* requests of the table since one of them */
+		unsigned as_inputs; /* of those lent, how many go as inputs */
 	} guests;
 
 	struct {
@@ -171,13 +170,13 @@ struct lane {
 	X(late_periods) /* boundaries that were more than a period late */ \
 	X(steps) \
 	X(commands)          /* values taken from controllers */ \
-	X(refused_commands)  /* values no program should have put there */ \
+	X(refused_commands)  /* values that no program should have put there */ \
 	X(deferred_commands) /* marks of commands that came too fast were left for 10 ms */ \
 	X(lost_controllers)  /* controllers that stopped beating */ \
 	X(safe_outputs)      /* outputs put to SafeValue */ \
 	X(reloads)           /* changed configurations that were taken over */
 
-/* What the engine knows of a controller; its index is its place, or behind the places. */
+/* What the engine knows of a controller; below OWS_CONTROLLERS the index is its place. */
 struct known_controller {
 	/* controllers.c */
 	enum controller_is {
@@ -186,7 +185,7 @@ struct known_controller {
 		CONTROLLER_HUNG_UP, /* it promised a beat, and said no goodbye */
 		CONTROLLER_AWAITED, /* it commanded before owsd's start */
 	} is;
-	struct engine_controller as; /* with a memory only while it is connected */
+	struct joining_controller as; /* with a memory only while it is connected */
 	bool late, may_set;
 	uint32_t shown; /* commands and refused that the image has */
 	int64_t joined_ns;
@@ -197,7 +196,7 @@ struct known_controller {
 	uint32_t beat;
 	uint32_t period_ms; /* promised; 0: none, or it said goodbye */
 	int64_t heard_ns;
-	uint32_t rows; /* signals whose command is its */
+	uint32_t rows; /* signals with a command in force that is its own */
 
 	/* intake.c */
 	uint32_t commands, refused;
@@ -235,10 +234,10 @@ struct engine_time {
 	/* schedule.c, adopt.c */
 	int64_t start_ns;       /* of period first: since then all were of the same length */
 	uint64_t period, first; /* boundaries since owsd's start */
-	uint64_t turned;        /* the last period that engine_step() turned to */
+	uint64_t ticked;        /* the last period that engine_tick() went on to */
 	int64_t now_ns;         /* of the call in work */
-	int64_t gap_ns;         /* end of the last time in which nobody ran; 0: none */
-	int64_t paused_ns;      /* sum of all times in which nobody ran */
+	int64_t gap_ns;         /* end of the last time in which the engine did not run; 0: none */
+	int64_t paused_ns;      /* sum of all such times */
 	/* engine.c */
 	int64_t next_ns; /* when engine_step() asked to be called again */
 };
@@ -292,7 +291,7 @@ struct engine {
 	unsigned asking; /* groups that ask */
 	bool bars;       /* a group has several ways */
 	/* routing.c: when time alone leads to a step of a group; 0: not known */
-	int64_t group_turn_ns;
+	int64_t group_step_ns;
 	/* place.c, and routing.c takes the devices out that it routes */
 	struct route_place *places; /* device * group_count + group; NULL: one group */
 	struct due_set routes;      /* devices of which something became known, as in route_wheel */
@@ -300,19 +299,18 @@ struct engine {
 		route_wheel; /* devices to be routed again, the one of no device behind them */
 
 	/* device_facts.c */
-	struct due_set facts; /* devices whose facts the image does not show yet */
+	struct due_set facts; /* devices with facts that the image does not show yet */
 
 	/* lane_answer.c, lane_state.c; intake.c resets it */
 	struct engine_driver driver;
 	/* publish.c, limits.c, alarm_effect.c */
 	bool published;
 
-	/* controllers.c, in_force.c, intake.c: the places of controllers, and behind them whom it
-	 * awaits */
+	/* controllers.c, in_force.c, intake.c: the places, and after them those that it awaits */
 	struct known_controller controllers[ENGINE_CONTROLLERS];
-	unsigned place_end; /* one past the last place that somebody has; controllers.c */
+	unsigned place_end; /* one past the last place that is taken; controllers.c */
 	/* intake.c */
-	unsigned greedy; /* controllers whose looks are used up */
+	unsigned greedy; /* controllers that have used up their looks */
 	/*
 	 * engine_look_controllers() has nothing to do: no controller has promised a beat, no text
 	 * of one is half written, and none that has gone is awaited. That function sets it; the
@@ -368,7 +366,7 @@ static inline struct route_way *engine_way(struct engine *e, const struct lane *
 	return &e->ways[lane->index];
 }
 
-/* A clock that stands still while nobody runs: nobody is late for that time. */
+/* A clock that stands still while the engine does not run: no controller is late for that time. */
 static inline int64_t engine_awake_ns(const struct engine *e)
 {
 	return e->time.now_ns - e->time.paused_ns;

@@ -25,15 +25,11 @@ static int compare_keys(const void *a, const void *b)
 
 	if (x->has_rom != y->has_rom)
 		return x->has_rom ? -1 : 1;
-	if (x->has_rom) {
-		order = memcmp(x->rom, y->rom, sizeof(x->rom));
-	} else {
-		shorter = x->alias_len < y->alias_len ? x->alias_len : y->alias_len;
-		order = memcmp(x->alias, y->alias, shorter);
-		if (!order)
-			order = (x->alias_len > y->alias_len) - (x->alias_len < y->alias_len);
-	}
-	return order;
+	if (x->has_rom)
+		return memcmp(x->rom, y->rom, sizeof(x->rom));
+	shorter = x->alias_len < y->alias_len ? x->alias_len : y->alias_len;
+	order = memcmp(x->alias, y->alias, shorter);
+	return order ? order : (x->alias_len > y->alias_len) - (x->alias_len < y->alias_len);
 }
 
 static int order_keys(const void *a, const void *b)
@@ -84,7 +80,10 @@ int table_image_devices(const struct config *config, uint32_t *first)
 	return count;
 }
 
-/* Group the rows by device. */
+/*
+ * Group the rows by device: what an answer says of a device reaches all of its signals without a
+ * search of the table. The rows without a device are a group of their own, the last.
+ */
 static int find_devices(struct table *table, const struct config *config)
 {
 	uint32_t n;
@@ -123,7 +122,7 @@ static void init_signal(struct signal *s, const struct config_item *item, uint32
 	s->item = item;
 	s->record = row + 1;
 	s->sample.quality = OWS_Q_INITIAL;
-	s->sample.target = 255;
+	s->sample.target = 255; /* none has answered yet */
 	s->attrs.flags = (item->readable ? OWS_ATTR_READ_ENABLE : 0) |
 	                 (item->writable ? OWS_ATTR_WRITE_ENABLE : 0) |
 	                 (item->limits.any ? OWS_ATTR_LIMITS : 0);
@@ -154,7 +153,8 @@ int signal_table_init(struct table *table, const struct config *config)
 	table->devices = calloc((size_t)table->count + 1, sizeof(*table->devices));
 	table->device_rows = calloc((size_t)table->count + 1, sizeof(*table->device_rows));
 	table->texts = calloc((size_t)strings * 3 + 1, TABLE_TEXT_CAP);
-	if (!table->signals || !table->devices || !table->device_rows || !table->texts) {
+	if (!table->signals || !table->devices || !table->device_rows || !table->texts ||
+	    find_devices(table, config)) {
 		signal_table_free(table);
 		return -ENOMEM;
 	}
@@ -169,10 +169,6 @@ int signal_table_init(struct table *table, const struct config *config)
 			text += 3 * TABLE_TEXT_CAP;
 		}
 		init_signal(s, &config->items[row], row);
-	}
-	if (find_devices(table, config)) {
-		signal_table_free(table);
-		return -ENOMEM;
 	}
 	return 0;
 }
@@ -246,7 +242,7 @@ void signal_table_image(const struct config_item *item, struct image_signal *sig
 	};
 }
 
-static bool differs(const struct signal *s)
+static bool command_differs(const struct signal *s)
 {
 	if (!s->command.confirmed || s->command.forced)
 		return true;
@@ -259,7 +255,7 @@ static bool differs(const struct signal *s)
 bool signal_changed(const struct signal *s)
 {
 	return s->command.given && !s->command.awaited &&
-	       (s->command.one_shot || (signal_writes(s) && differs(s)));
+	       (s->command.one_shot || (signal_writes(s) && command_differs(s)));
 }
 
 bool signal_settled(const struct signal *s)
@@ -313,6 +309,18 @@ void signal_update(struct signal *s, uint64_t period, int64_t measured_ns, int64
 	s->attrs.per_base = (uint32_t)period;
 	s->sample.measured_ns = measured_ns;
 	s->sample.count++;
+}
+
+struct ows_journal_entry signal_entry(const struct signal *s, enum ows_alarm_kind kind,
+                                      enum ows_alarm_event event, int64_t now_ns)
+{
+	return (struct ows_journal_entry){
+		.record = s->record,
+		.occurred_ns = now_ns,
+		.kind = (uint8_t)kind,
+		.event = (uint8_t)event,
+		.quality = s->sample.quality,
+	};
 }
 
 void signal_reset_diagnostics(struct signal *s, uint64_t period, int64_t now_ns)

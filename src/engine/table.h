@@ -21,7 +21,7 @@
 
 #define TABLE_NO_DEVICE UINT32_MAX
 
-/* The controller of a command that nobody answers for; NAME.force says the same. */
+/* The controller of a command that none answers for; NAME.force says the same. */
 #define CONTROLLER_NOBODY FORCE_NOBODY
 
 /*
@@ -60,10 +60,8 @@ struct signal_command {
 	int64_t ended_ns;       /* of the last write: what was asked before says nothing of it */
 	int64_t looked_ns;      /* it was asked for past the caches last */
 	enum ows_reason reason; /* how it came into force */
-	uint32_t
-		/* an index of engine.controllers, CONTROLLER_NOBODY: nobody answers for it */
-		controller;
-	uint32_t stamp;  /* as its controller counts; 0: owsd gave the command */
+	uint32_t controller;    /* an index of engine.controllers, or CONTROLLER_NOBODY */
+	uint32_t stamp;         /* as its controller counts; 0: owsd gave the command */
 	uint32_t ticket; /* Start "last": what engine_last.stored() reaches when it is stored */
 	uint32_t len, written_len; /* strings: of command_text, written_text */
 	struct retry retry;
@@ -91,7 +89,7 @@ struct signal_limit {
 	int64_t value[2]; /* of the update before the last, of the last */
 	uint32_t count;   /* sample.count of the last */
 	uint8_t values;   /* how many of the two are known */
-	uint8_t shelf;    /* shelved: its place in the image + 1 */
+	uint8_t shelf;    /* shelved: its shelf in the image + 1 */
 };
 
 /* What the last change in the ring of this engine's image had. */
@@ -166,7 +164,7 @@ struct device {
 	int64_t moved_ns;
 	bool probing;    /* queued or with a bus */
 	unsigned probed; /* the last group it was looked for on */
-	unsigned probe_doublings;
+	struct retry probe;
 	int64_t probe_ns; /* not before; 0: it need not be looked for */
 };
 
@@ -197,6 +195,12 @@ void signal_table_image(const struct config_item *item, struct image_signal *sig
 /* What people say of the signal; strings are those of the item. */
 void signal_table_meta(const struct config_item *item, struct image_meta *meta);
 
+/* One past the last signal. */
+static inline struct signal *table_end(const struct table *table)
+{
+	return table->signals + table->count;
+}
+
 static inline bool signal_is_string(const struct signal *s)
 {
 	return s->item->type == OWS_STRING;
@@ -211,7 +215,7 @@ static inline bool signal_writes(const struct signal *s)
 }
 /*
  * The device may have lost what was written to it: an output's command goes out again. A set of an
- * input was an event: nobody undoes what became of it since.
+ * input was an event: owsd does not undo what became of it since.
  */
 static inline void signal_forget_written(struct signal *s)
 {
@@ -232,5 +236,8 @@ int64_t signal_stale_at(const struct signal *s);
 void signal_begin(struct signal *s, uint64_t period);
 void signal_end(struct signal *s, uint64_t period, uint64_t begun);
 void signal_update(struct signal *s, uint64_t period, int64_t measured_ns, int64_t now_ns);
+/* An entry of the journal of alarms for the signal as it stands; it has no values yet. */
+struct ows_journal_entry signal_entry(const struct signal *s, enum ows_alarm_kind kind,
+                                      enum ows_alarm_event event, int64_t now_ns);
 /* The edge of _DGNRESET. */
 void signal_reset_diagnostics(struct signal *s, uint64_t period, int64_t now_ns);

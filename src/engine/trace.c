@@ -71,8 +71,7 @@ static bool may_show(struct engine *e, bool failed)
 	return true;
 }
 
-void trace_answer(const struct lane *lane, const struct slot *slot, const struct bus_answer *answer,
-                  int64_t now_ns)
+void trace_answer(const struct lane *lane, const struct slot *slot, const struct bus_answer *answer)
 {
 	static const char *const ops[] = {
 		[BUS_READ] = "read",
@@ -96,5 +95,6 @@ void trace_answer(const struct lane *lane, const struct slot *slot, const struct
 	log_trace(e->log, "trace: %s: %s %s%s%s%s: %s, %.1f ms%s", lane->port->target,
 	          ops[slot->req.op], slot->req.fresh ? "/uncached" : "", slot->req.path,
 	          is_write ? " " : "", value, answer->err ? error_text(answer->err) : text,
-	          (double)(now_ns - slot->begun_ns) / 1e6, slot->given_up ? " (too late)" : "");
+	          (double)(e->time.now_ns - slot->begun_ns) / 1e6,
+	          slot->given_up ? " (too late)" : "");
 }

@@ -19,5 +19,5 @@ static inline bool trace_is_on(const struct log *log)
 }
 
 /* The request of the slot has ended, or its time is over. Only where trace_is_on(). */
-void trace_answer(const struct lane *lane, const struct slot *slot, const struct bus_answer *answer,
-                  int64_t now_ns);
+void trace_answer(const struct lane *lane, const struct slot *slot,
+                  const struct bus_answer *answer);

@@ -12,7 +12,6 @@
 #include "src/engine/types.h"
 #include "src/text/log.h"
 
-/* The next check that a signal of this lane needs; -1: none. */
 int64_t types_next(struct lane *lane)
 {
 	const struct structure *st = &lane->engine->structure;
@@ -30,7 +29,7 @@ int64_t types_next(struct lane *lane)
 	return -1;
 }
 
-bool types_ask(struct lane *lane, struct slot *slot, uint32_t check, int64_t now_ns)
+bool types_ask(struct lane *lane, struct slot *slot, uint32_t check)
 {
 	slot->purpose = FOR_STRUCTURE;
 	slot->row = check;
@@ -38,7 +37,7 @@ bool types_ask(struct lane *lane, struct slot *slot, uint32_t check, int64_t now
 	                             .prio = BUS_INPUT,
 	                             .path = lane->engine->structure.checks[check].path,
 	                             .len = sizeof(slot->data)};
-	if (!slot_lend(lane, slot, now_ns))
+	if (!slot_lend(lane, slot))
 		return false;
 	due_set_take(&lane->checks, check);
 	return true;

@@ -47,23 +47,17 @@ static bool take_messages(struct serving *now, int64_t now_ns)
 	bool more = false;
 
 	for (unsigned i = 0; i < now->worker_count; i++) {
-		/*
-		 * bounded, so that a bus that sends without end does not keep the other buses
-		 * waiting
-		 */
-		for (unsigned n = 0;; n++) {
-			if (n == 2 * BUS_MAX_DEPTH) {
-				more = true;
-				break;
-			}
-			message = worker_next(now->workers[i]);
-			if (!message)
-				break;
+		unsigned n = 0;
+
+		/* bounded: a bus that sends without end does not keep the other buses waiting */
+		while (n < 2 * BUS_MAX_DEPTH && (message = worker_next(now->workers[i])) != NULL) {
+			n++;
 			if (message->is_event)
 				engine_event(now->engine, i, &message->event, now_ns);
 			else
 				engine_answer(now->engine, i, &message->answer, now_ns);
 		}
+		more |= n == 2 * BUS_MAX_DEPTH;
 	}
 	return more;
 }
@@ -79,14 +73,15 @@ static void publish_counters(struct host *h)
 {
 	struct image *image = &h->now->memory.image;
 	uint32_t index = h->now->own_counters;
+	struct serving_counts lost = serving_counts(h->now);
 	const struct bus_counter *list;
 	size_t n;
 
 	serving_publish(h->now);
 	image_counter(image, index + COUNTER_LOG_DROPPED, log_dropped(h->log));
 	image_counter(image, index + COUNTER_MUTED_BELLS, h->bells.mutes);
-	image_counter(image, index + COUNTER_WORKER_STALLS, serving_stalls(h->now));
-	image_counter(image, index + COUNTER_DROPPED_EVENTS, serving_dropped(h->now));
+	image_counter(image, index + COUNTER_WORKER_STALLS, lost.stalls);
+	image_counter(image, index + COUNTER_DROPPED_EVENTS, lost.dropped);
 	image_counter(image, index + COUNTER_UNFINISHED,
 	              __atomic_load_n(&h->unfinished, __ATOMIC_RELAXED));
 	image_counter(image, index + COUNTER_UNSTORED, last_failures(h->now->last));
@@ -98,40 +93,28 @@ static void publish_counters(struct host *h)
 	publish_list(h, list, n, index);
 }
 
-/* --- Controllers
- * ----------------------------------------------------------------------------------- */
-
-static void join(struct engine *e, const struct control_turn *turn, int64_t now_ns)
-{
-	struct engine_controller controller = {
-		.memory = turn->memory,
-		.who = turn->who,
-		.rights = turn->rights,
-	};
-
-	memcpy(controller.token, turn->token, sizeof(controller.token));
-	engine_controller_join(e, turn->place, &controller, now_ns);
-}
+/* --- Controllers ------------------------------------------------------------------------------ */
 
 /* Programs that connect and hang up without end do not keep the engine from its work. */
-#define TURNS (2 * OWS_CONTROLLERS)
+#define MESSAGES_AT_ONCE (2 * OWS_CONTROLLERS)
 
 /* Those that have connected, and those that hung up or are dead. True: there may be more. */
 static bool take_controllers(struct host *h, int64_t now_ns)
 {
-	struct control_turn turn;
+	struct control_message message;
 
-	for (unsigned n = 0; n < TURNS; n++) {
-		if (!control_next(h->control, &turn))
+	for (unsigned n = 0; n < MESSAGES_AT_ONCE; n++) {
+		if (!control_next(h->control, &message))
 			return false;
-		if (turn.joins) {
-			bells_add(&h->bells, turn.place, turn.bell);
-			join(h->now->engine, &turn, now_ns);
+		if (message.joins) {
+			bells_add(&h->bells, message.place, message.bell);
+			engine_controller_join(h->now->engine, message.place, &message.controller,
+			                       now_ns);
 		} else {
-			bells_remove(&h->bells, turn.place);
-			engine_controller_left(h->now->engine, turn.place, now_ns);
+			bells_remove(&h->bells, message.place);
+			engine_controller_left(h->now->engine, message.place, now_ns);
 		}
-		control_done(h->control, &turn);
+		control_done(h->control, &message);
 	}
 	return true;
 }
@@ -139,15 +122,15 @@ static bool take_controllers(struct host *h, int64_t now_ns)
 /* All that have joined the engine before join the next, with their new memories. */
 static void hand_over_controllers(struct host *h, struct engine *next, int64_t now_ns)
 {
-	struct control_turn turn;
+	struct control_message message;
 	unsigned place = 0;
 
 	take_controllers(h, now_ns);
-	while (control_prepared(h->control, &place, &turn))
-		join(next, &turn, now_ns);
+	while (control_prepared(h->control, &place, &message))
+		engine_controller_join(next, message.place, &message.controller, now_ns);
 }
 
-/* --- Turns ------------------------------------------------------------------------------------ */
+/* --- The thread ------------------------------------------------------------------------------- */
 
 /* Take over what a reload has made, and let go of the engine that it has ended. */
 static void take_next(struct host *h, int64_t now_ns)
@@ -158,7 +141,7 @@ static void take_next(struct host *h, int64_t now_ns)
 	if (next) {
 		hand_over_controllers(h, next->engine, now_ns);
 		engine_adopt(next->engine, h->now->engine, h->plan, now_ns);
-		serving_keep_counts(next, h->now, h->plan->ports);
+		serving_keep_counts(next, h->now, h->plan);
 		image_awake(&next->memory.image, true);
 		__atomic_store_n(&h->now, next, __ATOMIC_RELEASE);
 		__atomic_store_n(&h->next, NULL, __ATOMIC_RELEASE);
@@ -169,7 +152,7 @@ static void take_next(struct host *h, int64_t now_ns)
 	}
 }
 
-/* Whoever rings or marks after the words are cleared wakes the thread. */
+/* A ring or a mark after the words are cleared wakes the thread. */
 static void sleep_until(struct host *h, int64_t until_ns)
 {
 	struct image *image = &h->now->memory.image;
@@ -200,7 +183,7 @@ static void *engine_main(void *ctx)
 		int64_t now_ns = ows_now(), next_ns;
 		bool more;
 
-		/* first the bell: what it rings for is looked at behind it */
+		/* read the bell first, then look for what it announced */
 		bells_look(&h->bells);
 		if (__atomic_load_n(&h->stop, __ATOMIC_ACQUIRE))
 			break;
@@ -216,7 +199,7 @@ static void *engine_main(void *ctx)
 		if (__atomic_load_n(&h->next, __ATOMIC_ACQUIRE) ||
 		    __atomic_load_n(&h->ended, __ATOMIC_ACQUIRE))
 			take_next(h, now_ns);
-		else if (!more) /* nobody rings for what is left */
+		else if (!more) /* no bell rings for what is left */
 			sleep_until(h, next_ns);
 	}
 	/* a set that was in time is remembered for the owsd after this one */

@@ -24,19 +24,17 @@
 
 static void pause_until_null(void *word)
 {
-	static const uint32_t nobody = 0;
+	static const uint32_t never = 0;
 
 	while (__atomic_load_n((void **)word, __ATOMIC_ACQUIRE))
-		segment_wait(&nobody, 0, HOST_LOOK_NS);
+		segment_wait(&never, 0, HOST_LOOK_NS);
 }
 
 /* End the workers that do not stay; false: one of them does not end. */
-static bool end_workers(struct serving *before, const struct serving *now,
-                        const struct adoption *plan)
+static bool end_workers(struct serving *before, const struct adoption *plan)
 {
-	for (unsigned i = 0; i < now->worker_count; i++)
-		if (plan->ports[i] >= 0)
-			before->taken[plan->ports[i]] = true;
+	for (unsigned i = 0; i < before->worker_count; i++)
+		before->taken[i] = plan->port_successors[i] >= 0;
 	return serving_stop(before, END_NS);
 }
 
@@ -68,11 +66,11 @@ static void leave_before(struct host *h, struct serving *before, bool ended, boo
 		log_err(h->log,
 		        "a bus that the reload ended is stuck in the kernel; owsd gives it up");
 	}
-	if (!dark)
-		log_err(h->log,
-		        "AlarmLine or HeartbeatLine is stuck in the kernel; owsd gives it up");
 	if (dark)
 		memory_replaced(&before->memory);
+	else
+		log_err(h->log,
+		        "AlarmLine or HeartbeatLine is stuck in the kernel; owsd gives it up");
 	if (!ended || !stored || !dark) {
 		h->left_behind = true;
 		return;
@@ -120,7 +118,7 @@ static void exchange_serving(struct host *h, struct serving *next, const struct 
 		indicator_destroy(h->indicator);
 	h->indicator = NULL;
 	stored = end_last(h, before);
-	leave_before(h, before, end_workers(before, next, plan), stored, dark);
+	leave_before(h, before, end_workers(before, plan), stored, dark);
 	h->unstarted = true;
 	host_finish_reload(h);
 }

@@ -177,7 +177,7 @@ int serving_make(struct serving *s, const struct serving_setup *setup, char *why
 	if (!err)
 		return 0;
 	for (unsigned i = 0; i < s->worker_count; i++)
-		s->taken[i] = setup->plan && setup->plan->ports[i] >= 0;
+		s->taken[i] = setup->plan && setup->plan->ports[i] >= 0; /* still the other's */
 	s->config = NULL; /* the caller owns it again */
 	serving_free(s);
 	return err;
@@ -196,38 +196,28 @@ void serving_publish(struct serving *s)
 	}
 }
 
-uint64_t serving_stalls(const struct serving *s)
+static void add_counts(struct serving_counts *counts, const struct worker *worker)
 {
-	uint64_t n = s->stalls_before;
-
-	for (unsigned i = 0; i < s->worker_count; i++)
-		n += worker_stalls(s->workers[i]);
-	return n;
+	counts->stalls += worker_stalls(worker);
+	counts->dropped += worker_dropped(worker);
 }
 
-uint64_t serving_dropped(const struct serving *s)
+struct serving_counts serving_counts(const struct serving *s)
 {
-	uint64_t n = s->dropped_before;
+	struct serving_counts counts = s->before;
 
 	for (unsigned i = 0; i < s->worker_count; i++)
-		n += worker_dropped(s->workers[i]);
-	return n;
+		add_counts(&counts, s->workers[i]);
+	return counts;
 }
 
-void serving_keep_counts(struct serving *s, const struct serving *before, const int *ports)
+void serving_keep_counts(struct serving *s, const struct serving *before,
+                         const struct adoption *plan)
 {
-	s->stalls_before = before->stalls_before;
-	s->dropped_before = before->dropped_before;
-	for (unsigned i = 0; i < before->worker_count; i++) {
-		bool stays = false;
-
-		for (unsigned k = 0; k < s->worker_count; k++)
-			stays |= ports[k] == (int)i;
-		if (stays)
-			continue;
-		s->stalls_before += worker_stalls(before->workers[i]);
-		s->dropped_before += worker_dropped(before->workers[i]);
-	}
+	s->before = before->before;
+	for (unsigned i = 0; i < before->worker_count; i++)
+		if (plan->port_successors[i] < 0)
+			add_counts(&s->before, before->workers[i]);
 }
 
 bool serving_stop(struct serving *s, int64_t timeout_ns)

@@ -13,6 +13,11 @@
 struct last;
 struct worker;
 
+/* Messages that had to wait, and events that were dropped, of workers. */
+struct serving_counts {
+	uint64_t stalls, dropped;
+};
+
 struct serving {
 	struct config *config; /* owned by the serving */
 	struct memory memory;
@@ -24,7 +29,7 @@ struct serving {
 	unsigned worker_count;
 	unsigned *bus_counters; /* how many each worker's bus has */
 	unsigned own_counters;  /* index of the first counter that belongs to no bus and no lane */
-	uint64_t stalls_before, dropped_before; /* of workers that reloads have ended */
+	struct serving_counts before; /* of workers that reloads have ended */
 };
 
 struct porter;
@@ -56,14 +61,11 @@ int serving_make(struct serving *serving, const struct serving_setup *setup, cha
  * on.
  */
 void serving_publish(struct serving *serving);
-/*
- * Messages that had to wait, and events that were dropped, of all workers, including the workers
- * that reloads have ended.
- */
-uint64_t serving_stalls(const struct serving *serving);
-uint64_t serving_dropped(const struct serving *serving);
+/* Of all workers, including those that reloads have ended. */
+struct serving_counts serving_counts(const struct serving *serving);
 /* Keep the counts of the workers that do not stay. Called by the engine's thread at a reload. */
-void serving_keep_counts(struct serving *serving, const struct serving *before, const int *ports);
+void serving_keep_counts(struct serving *serving, const struct serving *before,
+                         const struct adoption *plan);
 /* End the workers that are not taken. Blocks; false: a worker did not end within timeout_ns. */
 bool serving_stop(struct serving *serving, int64_t timeout_ns);
 /* Free all, the configuration too. The workers that are not taken have ended before. */

@@ -114,11 +114,11 @@ static void welcome_until(int64_t until_ns)
 {
 	struct timespec t = {.tv_sec = (time_t)(until_ns / SECOND),
 	                     .tv_nsec = (long)(until_ns % SECOND)};
-	struct control_turn turn;
+	struct control_message message;
 
 	while (sem_clockwait(&many.bell, CLOCK_MONOTONIC, &t) == 0)
-		while (control_next(many.control, &turn))
-			control_done(many.control, &turn);
+		while (control_next(many.control, &message))
+			control_done(many.control, &message);
 }
 
 static void *live(void *ctx)

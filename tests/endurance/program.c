@@ -19,8 +19,8 @@ static uint32_t serials;
 
 static void join(struct generation *g, unsigned i)
 {
-	struct engine_controller controller = {.who = {.uid = 1, .pid = 42},
-	                                       .token = {(uint8_t)(i + 1)}};
+	struct joining_controller controller = {.who = {.uid = 1, .pid = 42},
+	                                        .token = {(uint8_t)(i + 1)}};
 
 	/* the serial stays over a reload */
 	controller.who.serial = before[i].memory.base ? giving_header(&before[i])->serial

@@ -116,16 +116,16 @@ static void look_at(const struct controller_memory *memory)
 
 static void turn_engine(unsigned most)
 {
-	struct control_turn turn;
+	struct control_message message;
 
-	while (most-- && control_next(room, &turn)) {
-		TEST_ASSERT_NOT_NULL(turn.memory.base);
-		TEST_ASSERT_NOT_NULL(memchr(turn.who.name, '\0', OWS_NAME));
-		TEST_ASSERT_NOT_EQUAL(0, turn.who.serial);
-		TEST_ASSERT_EQUAL_UINT(getuid(), turn.who.uid);
-		look_at(&turn.memory);
-		inside += turn.joins ? 1u : -1u;
-		control_done(room, &turn);
+	while (most-- && control_next(room, &message)) {
+		TEST_ASSERT_NOT_NULL(message.controller.memory.base);
+		TEST_ASSERT_NOT_NULL(memchr(message.controller.who.name, '\0', OWS_NAME));
+		TEST_ASSERT_NOT_EQUAL(0, message.controller.who.serial);
+		TEST_ASSERT_EQUAL_UINT(getuid(), message.controller.who.uid);
+		look_at(&message.controller.memory);
+		inside += message.joins ? 1u : -1u;
+		control_done(room, &message);
 	}
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
 		if (room->engine.memories[i].base)
@@ -134,15 +134,15 @@ static void turn_engine(unsigned most)
 
 static void reload(void)
 {
-	struct control_turn turn;
+	struct control_message message;
 	unsigned place = 0, prepared = 0;
 
 	control_asked(room);
 	control_take_askers(room);
 	control_prepare(room, &config, make_layout());
 	turn_engine(OWS_CONTROLLERS + 1);
-	for (; control_prepared(room, &place, &turn); prepared++)
-		TEST_ASSERT_EQUAL_PTR(&layouts[generation % 2], turn.memory.layout);
+	for (; control_prepared(room, &place, &message); prepared++)
+		TEST_ASSERT_EQUAL_PTR(&layouts[generation % 2], message.controller.memory.layout);
 	TEST_ASSERT_TRUE(prepared <= inside);
 	control_reloaded(room);
 	control_answer(room, 0, "");

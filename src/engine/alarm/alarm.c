@@ -24,12 +24,12 @@ static uint32_t defined_fact(const char *name, const char *value)
 
 /* --- Facts of the states that need no answer ------------------------------------------------- */
 
-static uint32_t process_facts(struct alarm_machine *m, struct engine *e, int64_t now_ns)
+static uint32_t process_facts(struct alarm_machine *m, struct engine *e)
 {
 	if (m->in_a_row >= e->config->max_cons_alarms)
 		return FACT_MAX_CONS;
 	while (++m->position < (int64_t)m->count)
-		if (alarm_takes_part(m->items[m->position], now_ns)) {
+		if (alarm_takes_part(m->items[m->position], e->time.now_ns)) {
 			m->in_a_row++;
 			return FACT_NEXT_ITEM;
 		}
@@ -41,8 +41,9 @@ static uint32_t process_facts(struct alarm_machine *m, struct engine *e, int64_t
  * What an overlapping bus has may wait for a conversion and leave the wire idle; the alarms do not
  * wait for that. A bus that could do something else has begun it by then.
  */
-static uint32_t bypass_facts(struct alarm_machine *m, const struct lane *lane, int64_t now_ns)
+static uint32_t bypass_facts(struct alarm_machine *m, const struct lane *lane)
 {
+	int64_t now_ns = lane->engine->time.now_ns;
 	bool pending = lane->inputs.count || lane->outputs.count || lane->lent.writes ||
 	               lane->lent.count > (m->in_work ? 1u : 0u);
 
@@ -54,16 +55,16 @@ static uint32_t bypass_facts(struct alarm_machine *m, const struct lane *lane, i
 }
 
 /* What is known of the state before its request is made. */
-static uint32_t facts_before(struct alarm_machine *m, struct lane *lane, int64_t now_ns)
+static uint32_t facts_before(struct alarm_machine *m, struct lane *lane)
 {
 	struct engine *e = lane->engine;
 	const struct alarm_item *i = alarm_current(m), *known;
 	const struct alarm_step *step = alarm_step(m->state);
 
 	if (m->state == ALARM_PROCESS)
-		return process_facts(m, e, now_ns);
+		return process_facts(m, e);
 	if (m->state == ALARM_BYPASS)
-		return bypass_facts(m, lane, now_ns);
+		return bypass_facts(m, lane);
 	if (m->state == ALARM_SET_WAIT) /* entered from ALARM_INIT_WRITE_WAIT: the next output */
 		return alarm_next_init(e, m) >= 0 ? 0 : FACT_DONE;
 	if (!step || step->asks != m->state)
@@ -91,7 +92,7 @@ static void enter_state(struct alarm_machine *m, struct lane *lane, const struct
 }
 
 /* The latch that another item of the device has read. */
-static void share_latch(struct alarm_machine *m, struct lane *lane, int64_t now_ns)
+static void share_latch(struct alarm_machine *m, struct lane *lane)
 {
 	struct alarm_item *i = alarm_current(m);
 	const struct alarm_item *known = alarm_done(m, i, alarm_step(ALARM_LATCH));
@@ -99,42 +100,42 @@ static void share_latch(struct alarm_machine *m, struct lane *lane, int64_t now_
 	i->set[ALARM_LATCH_WAS_READ] = known->set[ALARM_LATCH_WAS_READ];
 	memcpy(i->occurrence.latch_text, known->occurrence.latch_text,
 	       sizeof(i->occurrence.latch_text));
-	alarm_show_latch(lane, i, now_ns);
+	alarm_show_latch(lane, i);
 }
 
-bool alarm_run(struct alarm_machine *m, struct lane *lane, struct slot *slot, int64_t now_ns)
+bool alarm_run(struct alarm_machine *m, struct lane *lane, struct slot *slot)
 {
 	const struct alarm_row *row;
 
 	/* a cycle without requests ends in INIT or ALARM_BYPASS: bounded */
 	while (m->state != NOT_USED && !m->in_work) {
-		bool between = m->collecting >= 0 || m->proving;
-		uint32_t facts = between ? 0 : facts_before(m, lane, now_ns);
+		bool between = m->collecting || m->proving;
+		uint32_t facts = between ? 0 : facts_before(m, lane);
 
 		row = facts ? alarm_next(m->state, facts) : NULL;
 		if (!row)
-			return alarm_ask(m, lane, slot, now_ns);
+			return alarm_ask(m, lane, slot);
 		if (facts & FACT_KNOWN)
 			alarm_granted(lane->engine, alarm_current(m),
 			              alarm_step(m->state)->unarmed);
 		if (m->state == ALARM_SET && facts & FACT_ND)
-			alarm_set_missing(lane, alarm_current(m), now_ns);
+			alarm_set_missing(lane, alarm_current(m));
 		if (m->state == ALARM_LATCH && facts & FACT_KNOWN)
-			share_latch(m, lane, now_ns);
+			share_latch(m, lane);
 		enter_state(m, lane, row);
 	}
 	return false;
 }
 
-void alarm_started(struct alarm_machine *m, struct lane *lane, int64_t now_ns)
+void alarm_started(struct alarm_machine *m, struct lane *lane)
 {
 	uint32_t facts = FACT_STARTED;
 
 	m->in_work = true;
-	if (m->collecting >= 0 || m->arming >= 0 || m->proving)
+	if (m->collecting || m->arming || m->proving)
 		return;
 	if (m->state == INIT) {
-		m->list.next_ns = now_ns + lane->engine->config->alarm_period_ns;
+		m->list.next_ns = lane->engine->time.now_ns + lane->engine->config->alarm_period_ns;
 	} else if (m->state == ALARM_SET_WAIT) {
 		m->init_position = alarm_next_init(lane->engine, m);
 		facts = FACT_DONE | FACT_INIT_OUTPUT;
@@ -153,13 +154,13 @@ static uint32_t facts_after(const struct alarm_answer *a)
 	int err = a->answer->err;
 
 	if (m->state == ALARM_DIR && err)
-		alarm_list_failed(m, a->lane, err, a->now_ns);
+		alarm_list_failed(m, a->lane, err);
 	else if (m->state == ALARM_DIR)
-		alarm_take_list(m, a->lane, a->lane->lent.list, a->answer->len, a->now_ns);
+		alarm_take_list(m, a->lane, a->lane->lent.list, a->answer->len);
 	else if (m->state != ALARM_INIT_WRITE_WAIT)
 		return alarm_step(m->state)->take(a);
 	else
-		engine_write_done(a->lane->engine, a->lane, a->slot, a->answer, a->now_ns);
+		engine_write_done(a->lane->engine, a->lane, a->slot, a->answer);
 	return (err ? FACT_FAILED : FACT_DONE) | (m->init_position >= 0 ? FACT_INIT_POS : 0);
 }
 
@@ -174,7 +175,7 @@ static bool begin_collecting(struct alarm_machine *m)
 	if (!i || (m->state != ALARM_POR_READ_WAIT && m->state != ALARM_LATCH_WAIT))
 		return false;
 	m->collecting = alarm_to_collect(m, i);
-	return m->collecting >= 0;
+	return m->collecting;
 }
 
 /*
@@ -186,7 +187,7 @@ static uint32_t por_proven(const struct alarm_answer *a)
 
 	a->m->proving = false;
 	if (set) {
-		alarm_por_failed(a->lane, a->item, set < 0 ? set : -EUCLEAN, a->now_ns);
+		alarm_por_failed(a->lane, a->item, set < 0 ? set : -EUCLEAN);
 		return FACT_FAILED;
 	}
 	a->item->cycle_of[ALARM_POR_WAS_RESET] = a->m->list.cycle;
@@ -195,14 +196,14 @@ static uint32_t por_proven(const struct alarm_answer *a)
 }
 
 void alarm_answered(struct alarm_machine *m, struct lane *lane, const struct slot *slot,
-                    const struct bus_answer *answer, int64_t now_ns)
+                    const struct bus_answer *answer)
 {
-	struct alarm_answer a = {m, lane, alarm_current(m), slot, answer, now_ns};
+	struct alarm_answer a = {m, lane, alarm_current(m), slot, answer};
 	uint32_t facts;
 
 	m->in_work = false;
-	if (m->arming >= 0) {
-		alarm_arm_answered(m, lane, answer, (const char *)slot->data, now_ns);
+	if (m->arming) {
+		alarm_arm_answered(m, lane, answer, (const char *)slot->data);
 		return;
 	}
 	if (failure_of(answer->err) == FAILURE_TARGET || answer->err == -ECANCELED ||
@@ -210,13 +211,13 @@ void alarm_answered(struct alarm_machine *m, struct lane *lane, const struct slo
 		alarm_restart(m);
 		return;
 	}
-	if (m->collecting >= 0) {
-		a.item = m->items[m->collecting];
+	if (m->collecting) {
+		a.item = m->collecting;
 		/* what cannot be read now is asked for again by its own item */
 		a.item->cycle_of[ALARM_WAS_COLLECTED] = m->list.cycle;
 		alarm_take_latch(&a);
 		m->collecting = alarm_to_collect(m, alarm_current(m));
-		if (m->collecting < 0)
+		if (!m->collecting)
 			enter_state(m, lane, alarm_next(m->state, m->held));
 		return;
 	}
@@ -244,14 +245,9 @@ bool alarm_holds(const struct alarm_machine *m)
 
 int64_t alarm_wake(const struct alarm_machine *m)
 {
-	int64_t arm_ns;
-
 	if (m->in_work)
 		return INT64_MAX;
 	if (m->state == ALARM_BYPASS)
 		return m->bypass_ns;
-	if (m->state != INIT)
-		return INT64_MAX;
-	arm_ns = alarm_to_arm_ns(m);
-	return arm_ns < m->list.next_ns ? arm_ns : m->list.next_ns;
+	return m->state == INIT ? earlier_ns(alarm_to_arm_ns(m), m->list.next_ns) : INT64_MAX;
 }

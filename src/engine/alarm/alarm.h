@@ -10,10 +10,10 @@ bool alarm_holds(const struct alarm_machine *m);
  * Go on as far as there is something to do without asking; true: the slot has what to ask next.
  * alarm_started() must follow if it was given to the bus.
  */
-bool alarm_run(struct alarm_machine *m, struct lane *lane, struct slot *slot, int64_t now_ns);
-void alarm_started(struct alarm_machine *m, struct lane *lane, int64_t now_ns);
+bool alarm_run(struct alarm_machine *m, struct lane *lane, struct slot *slot);
+void alarm_started(struct alarm_machine *m, struct lane *lane);
 void alarm_answered(struct alarm_machine *m, struct lane *lane, const struct slot *slot,
-                    const struct bus_answer *answer, int64_t now_ns);
+                    const struct bus_answer *answer);
 /* A write or read of the lane went through. */
 void alarm_passed(struct alarm_machine *m);
 /* When the machine has to run though nothing was answered; INT64_MAX: only then. */

@@ -48,7 +48,7 @@ static void report_armed(struct engine *e, struct alarm_item *i)
 }
 
 static void count_unarmed(struct lane *lane, struct alarm_item *i, int err, const char *property,
-                          const char *why, int64_t now_ns)
+                          const char *why)
 {
 	struct engine *e = lane->engine;
 	int64_t wait_ns;
@@ -56,7 +56,7 @@ static void count_unarmed(struct lane *lane, struct alarm_item *i, int err, cons
 	lane->counters.item_errors++;
 	if (!retry_fail(&i->arming.retry, e->config->max_retries, &wait_ns))
 		return;
-	i->arming.not_before_ns = now_ns + wait_ns;
+	i->arming.not_before_ns = e->time.now_ns + wait_ns;
 	if (err != -ENODEV) /* its quality says so */
 		alarm_show(e, i, property == i->strings.por ? OWS_UNARMED_POR : OWS_UNARMED_SET,
 		           err, property, why);
@@ -102,22 +102,22 @@ void alarm_por_clear(struct alarm_machine *m, struct engine *e, const struct ala
 	}
 }
 
-void alarm_set_failed(struct lane *lane, struct alarm_item *i, int err, int64_t now_ns)
+void alarm_set_failed(struct lane *lane, struct alarm_item *i, int err)
 {
 	i->arming.wanted = alarm_arms(i);
-	count_unarmed(lane, i, err, i->strings.set, " cannot be written: ", now_ns);
+	count_unarmed(lane, i, err, i->strings.set, " cannot be written: ");
 }
 
-void alarm_set_missing(struct lane *lane, struct alarm_item *i, int64_t now_ns)
+void alarm_set_missing(struct lane *lane, struct alarm_item *i)
 {
 	if (i->restart.known) /* another item of the device may have ended it in this cycle */
 		count_unarmed(lane, i, -EBADRQC, "SetAlarm",
-		              i->strings.set ? " has no '='" : " is not defined", now_ns);
+		              i->strings.set ? " has no '='" : " is not defined");
 }
 
-void alarm_por_failed(struct lane *lane, struct alarm_item *i, int err, int64_t now_ns)
+void alarm_por_failed(struct lane *lane, struct alarm_item *i, int err)
 {
-	count_unarmed(lane, i, err, i->strings.por, " cannot be set to 0: ", now_ns);
+	count_unarmed(lane, i, err, i->strings.por, " cannot be set to 0: ");
 }
 
 void alarm_rearm(struct alarm_machine *m, struct engine *e, uint32_t device)
@@ -141,12 +141,12 @@ static bool wants_arming(const struct alarm_item *i)
 	return i->arming.wanted && !i->restart.known;
 }
 
-int64_t alarm_to_arm(const struct alarm_machine *m, int64_t now_ns)
+struct alarm_item *alarm_to_arm(const struct alarm_machine *m, int64_t now_ns)
 {
 	for (uint32_t k = 0; k < m->count; k++)
 		if (wants_arming(m->items[k]) && now_ns >= m->items[k]->arming.not_before_ns)
-			return k;
-	return -1;
+			return m->items[k];
+	return NULL;
 }
 
 int64_t alarm_to_arm_ns(const struct alarm_machine *m)
@@ -154,15 +154,15 @@ int64_t alarm_to_arm_ns(const struct alarm_machine *m)
 	int64_t next_ns = INT64_MAX;
 
 	for (uint32_t k = 0; k < m->count; k++)
-		if (wants_arming(m->items[k]) && m->items[k]->arming.not_before_ns < next_ns)
-			next_ns = m->items[k]->arming.not_before_ns;
+		if (wants_arming(m->items[k]))
+			next_ns = earlier_ns(next_ns, m->items[k]->arming.not_before_ns);
 	return next_ns;
 }
 
 void alarm_arm_answered(struct alarm_machine *m, struct lane *lane, const struct bus_answer *answer,
-                        const char *data, int64_t now_ns)
+                        const char *data)
 {
-	struct alarm_item *i = m->items[m->arming];
+	struct alarm_item *i = m->arming;
 	bool wrote = m->arm_writes;
 	int err = answer->err;
 
@@ -172,19 +172,13 @@ void alarm_arm_answered(struct alarm_machine *m, struct lane *lane, const struct
 		m->arm_writes = true;
 		return;
 	}
-	m->arming = -1;
+	m->arming = NULL;
 	m->arm_writes = false;
-	switch (failure_of(err)) {
-	case FAILURE_NONE:
+	if (!err) {
 		i->arming.wanted = false;
 		report_armed(lane->engine, i);
-		break;
-	case FAILURE_ITEM:
+	} else if (failure_of(err) == FAILURE_ITEM) {
 		count_unarmed(lane, i, err, i->strings.set,
-		              wrote ? " cannot be written: " : " cannot be read: ", now_ns);
-		break;
-	case FAILURE_TARGET:
-	case FAILURE_VOID:
-		break;
+		              wrote ? " cannot be written: " : " cannot be read: ");
 	}
 }

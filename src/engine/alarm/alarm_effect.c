@@ -19,16 +19,10 @@ struct alarm_item *alarm_current(struct alarm_machine *m)
 	return m->position < 0 ? NULL : m->items[m->position];
 }
 
-static struct ows_journal_entry alarm_entry(const struct signal *s, enum ows_alarm_kind kind,
-                                            enum ows_alarm_event event, int64_t now_ns)
+static struct ows_journal_entry alarm_entry(const struct engine *e, const struct signal *s,
+                                            enum ows_alarm_kind kind, enum ows_alarm_event event)
 {
-	struct ows_journal_entry entry = {
-		.record = s->record,
-		.occurred_ns = now_ns,
-		.kind = (uint8_t)kind,
-		.event = (uint8_t)event,
-		.quality = s->sample.quality,
-	};
+	struct ows_journal_entry entry = signal_entry(s, kind, event, e->time.now_ns);
 
 	if (s->sample.count && !signal_is_string(s)) {
 		entry.before = s->sample.value;
@@ -37,8 +31,7 @@ static struct ows_journal_entry alarm_entry(const struct signal *s, enum ows_ala
 	return entry;
 }
 
-void engine_alarm_raised(struct engine *e, struct lane *lane, struct alarm_item *item,
-                         int64_t now_ns)
+void engine_alarm_raised(struct engine *e, struct lane *lane, struct alarm_item *item)
 {
 	struct signal *s = &e->table.signals[item->row];
 	uint32_t channels = alarm_channels(item->occurrence.latch_text);
@@ -51,7 +44,7 @@ void engine_alarm_raised(struct engine *e, struct lane *lane, struct alarm_item 
 	s->attrs.flags |= OWS_ATTR_ALARM_STANDS;
 	lane->counters.alarms++;
 	if (channels & ~item->occurrence.entered) {
-		entry = alarm_entry(s, OWS_ALARM_DEVICE, OWS_ALARM_RAISED, now_ns);
+		entry = alarm_entry(e, s, OWS_ALARM_DEVICE, OWS_ALARM_RAISED);
 		memcpy(entry.text, item->occurrence.latch_text,
 		       strnlen(item->occurrence.latch_text, sizeof(item->occurrence.latch_text)));
 		item->occurrence.journal = image_alarm(e->image, &entry);
@@ -63,11 +56,10 @@ void engine_alarm_raised(struct engine *e, struct lane *lane, struct alarm_item 
 	engine_publish(e, s);
 }
 
-void engine_alarm_rests(struct engine *e, struct alarm_item *item, int64_t now_ns)
+void engine_alarm_rests(struct engine *e, struct alarm_item *item)
 {
 	struct signal *s = &e->table.signals[item->row];
-	struct ows_journal_entry entry = alarm_entry(s, OWS_ALARM_DEVICE, OWS_ALARM_RETURNED,
-	                                             now_ns);
+	struct ows_journal_entry entry = alarm_entry(e, s, OWS_ALARM_DEVICE, OWS_ALARM_RETURNED);
 
 	item->occurrence.stands = false;
 	if (s->attrs.flags & OWS_ATTR_ALARM_STANDS) {
@@ -85,8 +77,7 @@ void engine_power_on_reset(struct lane *lane, const struct device *d, const stru
                            bool seen)
 {
 	struct engine *e = lane->engine;
-	struct ows_journal_entry entry = alarm_entry(shown, OWS_ALARM_POR, OWS_ALARM_RAISED,
-	                                             e->time.now_ns);
+	struct ows_journal_entry entry = alarm_entry(e, shown, OWS_ALARM_POR, OWS_ALARM_RAISED);
 
 	image_alarm(e->image, &entry);
 	e->published = true;
@@ -107,7 +98,7 @@ void engine_power_on_reset(struct lane *lane, const struct device *d, const stru
 
 void engine_alarm_polled(struct engine *e, struct alarm_item *item)
 {
-	engine_alarm_rests(e, item, e->time.now_ns);
+	engine_alarm_rests(e, item);
 	alarm_signal(e, item)->attrs.flags |= OWS_ATTR_ALARM_POLLED;
 }
 

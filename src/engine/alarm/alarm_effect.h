@@ -9,13 +9,12 @@ struct signal *alarm_signal(struct engine *e, const struct alarm_item *item);
 struct alarm_item *alarm_current(struct alarm_machine *m);
 
 /* The latch of the item was read and is not 0. */
-void engine_alarm_raised(struct engine *e, struct lane *lane, struct alarm_item *item,
-                         int64_t now_ns);
+void engine_alarm_raised(struct engine *e, struct lane *lane, struct alarm_item *item);
 /*
- * Its latch was read 0, or its device is not listed, or nobody looks any more: what the journal has
- * of it ends with the return.
+ * Its latch was read 0, or its device is not listed, or the item looks for it no more: what the
+ * journal has of it ends with the return.
  */
-void engine_alarm_rests(struct engine *e, struct alarm_item *item, int64_t now_ns);
+void engine_alarm_rests(struct engine *e, struct alarm_item *item);
 /*
  * The device's por was read non-zero: its outputs are not what was written. The journal and the log
  * show it of one of its signals. seen: it was read before, so it is news.

@@ -105,26 +105,9 @@ const struct alarm_row *alarm_next(enum alarm_state state, uint32_t facts)
 const char *alarm_state_name(enum alarm_state state)
 {
 	static const char *const names[ALARM_STATES] = {
-		"NOT_USED",
-		"INIT",
-		"ALARM_DIR",
-		"ALARM_PROCESS",
-		"ALARM_POR_READ",
-		"ALARM_POR_READ_WAIT",
-		"ALARM_SET",
-		"ALARM_SET_WAIT",
-		"ALARM_INIT_WRITE_WAIT",
-		"ALARM_POR_RESET",
-		"ALARM_POR_RESET_WAIT",
-		"ALARM_LATCH",
-		"ALARM_LATCH_WAIT",
-		"ALARM_SENSED",
-		"ALARM_SENSED_WAIT",
-		"ALARM_LATCH_RESET",
-		"ALARM_LATCH_RESET_WAIT",
-		"SENSED",
-		"SENSED_WAIT",
-		"ALARM_BYPASS",
+#define X(name) #name,
+		ALARM_STATE_LIST(X)
+#undef X
 	};
 
 	return names[state + 1];

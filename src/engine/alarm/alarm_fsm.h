@@ -9,27 +9,34 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* In the manual's order; NOT_USED has the number -1 there. */
+#define ALARM_STATE_LIST(X) \
+	X(NOT_USED) \
+	X(INIT) \
+	X(ALARM_DIR) \
+	X(ALARM_PROCESS) \
+	X(ALARM_POR_READ) \
+	X(ALARM_POR_READ_WAIT) \
+	X(ALARM_SET) \
+	X(ALARM_SET_WAIT) \
+	X(ALARM_INIT_WRITE_WAIT) \
+	X(ALARM_POR_RESET) \
+	X(ALARM_POR_RESET_WAIT) \
+	X(ALARM_LATCH) \
+	X(ALARM_LATCH_WAIT) \
+	X(ALARM_SENSED) \
+	X(ALARM_SENSED_WAIT) \
+	X(ALARM_LATCH_RESET) \
+	X(ALARM_LATCH_RESET_WAIT) \
+	X(SENSED) \
+	X(SENSED_WAIT) \
+	X(ALARM_BYPASS)
+
 enum alarm_state {
-	NOT_USED = -1,
-	INIT = 0,
-	ALARM_DIR,
-	ALARM_PROCESS,
-	ALARM_POR_READ,
-	ALARM_POR_READ_WAIT,
-	ALARM_SET,
-	ALARM_SET_WAIT,
-	ALARM_INIT_WRITE_WAIT,
-	ALARM_POR_RESET,
-	ALARM_POR_RESET_WAIT,
-	ALARM_LATCH,
-	ALARM_LATCH_WAIT,
-	ALARM_SENSED,
-	ALARM_SENSED_WAIT,
-	ALARM_LATCH_RESET,
-	ALARM_LATCH_RESET_WAIT,
-	SENSED,
-	SENSED_WAIT,
-	ALARM_BYPASS,
+	ALARM_BEFORE_ALL = -2,
+#define X(name) name,
+	ALARM_STATE_LIST(X)
+#undef X
 };
 #define ALARM_STATES 20
 
@@ -63,6 +70,6 @@ struct alarm_row {
 extern const struct alarm_row alarm_table[];
 extern const size_t alarm_table_rows;
 
-/* The first row of the state, top to bottom, whose facts hold; NULL: stay. */
+/* The first row of the state, top to bottom, with facts that hold; NULL: stay. */
 const struct alarm_row *alarm_next(enum alarm_state state, uint32_t facts);
 const char *alarm_state_name(enum alarm_state state);

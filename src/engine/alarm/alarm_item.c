@@ -119,12 +119,8 @@ void alarm_name_list(struct alarm_machine *m, const struct table *table)
 
 int alarm_init(struct alarm_machine *m, uint32_t room, bool searches)
 {
-	*m = (struct alarm_machine){.state = NOT_USED,
-	                            .position = -1,
-	                            .init_position = -1,
-	                            .arming = -1,
-	                            .collecting = -1,
-	                            .searches = searches};
+	*m = (struct alarm_machine){
+		.state = NOT_USED, .position = -1, .init_position = -1, .searches = searches};
 	if (!room)
 		return 0;
 	m->items = calloc(room, sizeof(*m->items));
@@ -148,8 +144,6 @@ void alarm_take_item(struct alarm_machine *m, struct alarm_item *item, int64_t n
 	m->items[at] = item;
 	m->count++;
 	m->position += m->position >= (int64_t)at;
-	m->arming += m->arming >= (int64_t)at;
-	m->collecting += m->collecting >= (int64_t)at;
 	item->listed = false;
 	item->arming.wanted = alarm_arms(item);
 	item->asks_por = item->restart.known; /* unless it is listed there */
@@ -168,7 +162,7 @@ void alarm_take_item(struct alarm_machine *m, struct alarm_item *item, int64_t n
 
 bool alarm_drop_item(struct alarm_machine *m, struct alarm_item *item)
 {
-	bool current, arming, asked = m->in_work;
+	bool current, arming = item == m->arming, asked = m->in_work;
 	int64_t at = 0;
 
 	while (at < (int64_t)m->count && m->items[at] != item)
@@ -176,17 +170,14 @@ bool alarm_drop_item(struct alarm_machine *m, struct alarm_item *item)
 	if (at == (int64_t)m->count)
 		return false;
 	current = at == m->position;
-	arming = at == m->arming;
-	if (arming || (m->collecting >= 0 && (current || at == m->collecting))) {
-		m->arming = m->collecting = -1;
+	if (arming || (m->collecting && (current || item == m->collecting))) {
+		m->arming = m->collecting = NULL;
 		m->arm_writes = false;
 	}
 	m->count--;
 	memmove(&m->items[at], &m->items[at + 1], (m->count - (uint32_t)at) * sizeof(*m->items));
-	/* the next alarm is the one behind the present place */
+	/* the next alarm is the item after the one that leaves */
 	m->position -= m->position >= at;
-	m->arming -= m->arming > at;
-	m->collecting -= m->collecting > at;
 	if (current && m->state != ALARM_BYPASS)
 		m->state = ALARM_PROCESS;
 	if (current) {
@@ -207,7 +198,8 @@ void alarm_restart(struct alarm_machine *m)
 	if (m->state == NOT_USED)
 		return;
 	m->state = INIT;
-	m->position = m->init_position = m->arming = m->collecting = -1;
+	m->position = m->init_position = -1;
+	m->arming = m->collecting = NULL;
 	m->arm_writes = m->proving = false;
 	m->in_work = false;
 	m->in_a_row = 0;

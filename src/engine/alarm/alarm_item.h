@@ -107,19 +107,19 @@ struct alarm_machine {
 	struct alarm_item **items; /* which this lane serves now, in the order of the table */
 	uint32_t count;
 	struct alarm_listing list;
-	bool searches;         /* the list can be kept to families */
-	int64_t position;      /* iAlarmPos */
-	int64_t init_position; /* iAlarmInitPos */
-	unsigned in_a_row;     /* nCons */
-	bool in_work;          /* a request of the machine is with the bus */
-	bool passed;           /* since BYPASS was entered */
-	int64_t bypass_ns;     /* when it ends at the latest; 0: just entered */
-	int64_t arming;        /* item whose SetAlarm is compared, -1 none */
+	bool searches;             /* the list can be kept to families */
+	int64_t position;          /* iAlarmPos */
+	int64_t init_position;     /* iAlarmInitPos */
+	unsigned in_a_row;         /* nCons */
+	bool in_work;              /* a request of the machine is with the bus */
+	bool passed;               /* since BYPASS was entered */
+	int64_t bypass_ns;         /* when it ends at the latest; 0: just entered */
+	struct alarm_item *arming; /* its SetAlarm is compared; NULL: that of none */
 	bool arm_writes;
-	int64_t collecting;  /* item whose latch is read ahead of a reset, -1 none */
-	bool proving;        /* 0 was written to por, which is read back */
-	uint32_t held;       /* the facts that wait for the end of that */
-	char list_path[128]; /* "/alarm", or "/alarm/29,12"; if named */
+	struct alarm_item *collecting; /* its latch is read ahead of a reset; NULL: that of none */
+	bool proving;                  /* 0 was written to por, which is read back */
+	uint32_t held;                 /* the facts that wait for the end of that */
+	char list_path[128];           /* "/alarm", or "/alarm/29,12"; if named */
 	bool named;
 	uint8_t families[32];
 	unsigned family_count;

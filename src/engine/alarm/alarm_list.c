@@ -49,8 +49,7 @@ static void mark_listed(struct alarm_machine *m, struct lane *lane, const char *
 	         entry);
 }
 
-void alarm_take_list(struct alarm_machine *m, struct lane *lane, const char *list, size_t len,
-                     int64_t now_ns)
+void alarm_take_list(struct alarm_machine *m, struct lane *lane, const char *list, size_t len)
 {
 	m->list.cycle++;
 	lane->counters.alarm_lists++;
@@ -78,11 +77,11 @@ void alarm_take_list(struct alarm_machine *m, struct lane *lane, const char *lis
 	for (uint32_t k = 0; k < m->count; k++)
 		if (!m->items[k]->listed) {
 			m->items[k]->restart.seen = true;
-			engine_alarm_rests(lane->engine, m->items[k], now_ns);
+			engine_alarm_rests(lane->engine, m->items[k]);
 		}
 }
 
-void alarm_list_failed(struct alarm_machine *m, struct lane *lane, int err, int64_t now_ns)
+void alarm_list_failed(struct alarm_machine *m, struct lane *lane, int err)
 {
 	struct engine *e = lane->engine;
 
@@ -98,19 +97,19 @@ void alarm_list_failed(struct alarm_machine *m, struct lane *lane, int err, int6
 	m->list.wait_ns = m->list.wait_ns ? m->list.wait_ns * 2 : e->config->alarm_period_ns;
 	if (m->list.wait_ns > LIST_WAIT_MAX)
 		m->list.wait_ns = LIST_WAIT_MAX;
-	m->list.next_ns = now_ns + m->list.wait_ns;
+	m->list.next_ns = e->time.now_ns + m->list.wait_ns;
 	m->position = -1;
 	/* the wire is short: no device can say that it is in alarm, so no value stays good */
 	for (uint32_t k = 0; k < m->count && err == -ECOMM; k++)
 		engine_read_now(e, alarm_signal(e, m->items[k]));
 }
 
-void alarm_ask_again(struct alarm_machine *m, struct lane *lane, int64_t now_ns)
+void alarm_ask_again(struct alarm_machine *m, struct lane *lane)
 {
 	if (!m->list.polls)
 		return;
 	m->list.polls = false;
-	m->list.next_ns = now_ns;
+	m->list.next_ns = lane->engine->time.now_ns;
 	if (m->count)
 		m->state = alarm_next(NOT_USED, FACT_ITEMS)->next;
 	for (uint32_t k = 0; k < m->count; k++) {

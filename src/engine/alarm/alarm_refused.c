@@ -30,13 +30,8 @@ bool alarm_is_arming(uint8_t unarmed)
 
 static void alarm_refused_enter(struct engine *e, const struct signal *s, uint8_t unarmed, int err)
 {
-	struct ows_journal_entry entry = {
-		.record = s->record,
-		.occurred_ns = e->time.now_ns,
-		.kind = OWS_ALARM_DEVICE,
-		.event = OWS_ALARM_FAILED,
-		.quality = s->sample.quality,
-	};
+	struct ows_journal_entry entry = signal_entry(s, OWS_ALARM_DEVICE, OWS_ALARM_FAILED,
+	                                              e->time.now_ns);
 
 	snprintf(entry.text, sizeof(entry.text), "cannot be %s: %s: %s", unarmed_verb(unarmed),
 	         unarmed_key(unarmed), error_text(err));
@@ -94,7 +89,7 @@ bool alarm_of_device(int err)
 }
 
 void alarm_refused(struct lane *lane, struct alarm_item *i, enum ows_unarmed unarmed, int err,
-                   const char *property, const char *why, int64_t now_ns)
+                   const char *property, const char *why)
 {
 	struct engine *e = lane->engine;
 	int64_t wait_ns;
@@ -106,7 +101,7 @@ void alarm_refused(struct lane *lane, struct alarm_item *i, enum ows_unarmed una
 	i->visit.refused = unarmed;
 	if (!retry_fail(&i->visit.retry, e->config->max_retries, &wait_ns))
 		return;
-	i->visit.not_before_ns = now_ns + wait_ns;
+	i->visit.not_before_ns = e->time.now_ns + wait_ns;
 	if (!alarm_of_device(err))
 		alarm_show(e, i, unarmed, err, property, why);
 }

@@ -23,7 +23,7 @@ bool alarm_of_device(int err);
  * why as of alarm_show().
  */
 void alarm_refused(struct lane *lane, struct alarm_item *item, enum ows_unarmed unarmed, int err,
-                   const char *property, const char *why, int64_t now_ns);
+                   const char *property, const char *why);
 /* It succeeded; unarmed may be 0: nothing. */
 void alarm_granted(struct engine *e, struct alarm_item *item, uint8_t unarmed);
 /* A visit begins anew, without the failures so far. */

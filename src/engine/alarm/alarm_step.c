@@ -24,7 +24,7 @@ int alarm_flag(const struct alarm_answer *a)
 	                      : alarm_non_zero((const char *)a->slot->data, a->answer->len);
 }
 
-static void did(const struct alarm_answer *a, enum alarm_deed deed)
+static void mark_done(const struct alarm_answer *a, enum alarm_deed deed)
 {
 	a->item->cycle_of[deed] = a->m->list.cycle;
 }
@@ -34,11 +34,11 @@ static uint32_t alarm_step_fail(const struct alarm_answer *a, int err)
 	const struct alarm_step *step = alarm_step(a->m->state);
 
 	if (alarm_of_device(err))
-		engine_alarm_failed(a->lane->engine, a->lane, a->item, err);
-	alarm_refused(
-		a->lane, a->item, step->unarmed, err,
-		alarm_string(&a->item->strings, step->property),
-		step->op == BUS_WRITE ? " cannot be written: " : " cannot be read: ", a->now_ns);
+		engine_read_failed(a->lane->engine, a->lane, alarm_signal(a->lane->engine, a->item),
+		                   err);
+	alarm_refused(a->lane, a->item, step->unarmed, err,
+	              alarm_string(&a->item->strings, step->property),
+	              step->op == BUS_WRITE ? " cannot be written: " : " cannot be read: ");
 	return FACT_FAILED;
 }
 
@@ -51,7 +51,7 @@ static uint32_t take_por(const struct alarm_answer *a)
 	if (set < 0)
 		return alarm_step_fail(a, set);
 	alarm_granted(e, a->item, OWS_UNARMED_POR_READ);
-	did(a, ALARM_POR_WAS_READ);
+	mark_done(a, ALARM_POR_WAS_READ);
 	a->item->set[ALARM_POR_WAS_READ] = set;
 	if (set)
 		alarm_por_set(a->m, a->lane, a->item);
@@ -63,15 +63,15 @@ static uint32_t take_por(const struct alarm_answer *a)
 static uint32_t take_set(const struct alarm_answer *a)
 {
 	if (a->answer->err) {
-		alarm_set_failed(a->lane, a->item, a->answer->err, a->now_ns);
+		alarm_set_failed(a->lane, a->item, a->answer->err);
 		return FACT_FAILED;
 	}
-	did(a, ALARM_WAS_SET);
+	mark_done(a, ALARM_WAS_SET);
 	a->item->arming.wanted = false;
 	if (alarm_done(a->m, a->item, &(struct alarm_step){.deed = ALARM_INIT_WAS_WRITTEN}) ||
 	    alarm_next_init(a->lane->engine, a->m) < 0)
 		return FACT_DONE;
-	did(a, ALARM_INIT_WAS_WRITTEN);
+	mark_done(a, ALARM_INIT_WAS_WRITTEN);
 	return 0; /* the first output is asked for from here */
 }
 
@@ -80,7 +80,7 @@ static uint32_t take_por_reset(const struct alarm_answer *a)
 	a->m->proving = !a->answer->err;
 	if (!a->answer->err)
 		return FACT_DONE;
-	alarm_por_failed(a->lane, a->item, a->answer->err, a->now_ns);
+	alarm_por_failed(a->lane, a->item, a->answer->err);
 	return FACT_FAILED;
 }
 
@@ -91,19 +91,19 @@ int alarm_take_latch(const struct alarm_answer *a)
 
 	if (set < 0)
 		return set;
-	did(a, ALARM_LATCH_WAS_READ);
+	mark_done(a, ALARM_LATCH_WAS_READ);
 	a->item->set[ALARM_LATCH_WAS_READ] = set;
 	alarm_trim(o->latch_text, sizeof(o->latch_text), (const char *)a->slot->data,
 	           a->answer->len);
 	return 0;
 }
 
-uint32_t alarm_show_latch(struct lane *lane, struct alarm_item *i, int64_t now_ns)
+uint32_t alarm_show_latch(struct lane *lane, struct alarm_item *i)
 {
 	if (i->set[ALARM_LATCH_WAS_READ])
-		engine_alarm_raised(lane->engine, lane, i, now_ns);
+		engine_alarm_raised(lane->engine, lane, i);
 	else
-		engine_alarm_rests(lane->engine, i, now_ns);
+		engine_alarm_rests(lane->engine, i);
 	return FACT_DONE | (i->set[ALARM_LATCH_WAS_READ] ? FACT_NON_ZERO : 0);
 }
 
@@ -114,11 +114,11 @@ static uint32_t take_latch(const struct alarm_answer *a)
 	if (err)
 		return alarm_step_fail(a, err);
 	alarm_granted(a->lane->engine, a->item, OWS_UNARMED_LATCH);
-	return alarm_show_latch(a->lane, a->item, a->now_ns);
+	return alarm_show_latch(a->lane, a->item);
 }
 
 /* The value read under an alarm. */
-static uint32_t take_value(const struct alarm_answer *a)
+static uint32_t take_alarm_value(const struct alarm_answer *a)
 {
 	struct engine *e = a->lane->engine;
 	struct alarm_item *i = a->item;
@@ -128,9 +128,9 @@ static uint32_t take_value(const struct alarm_answer *a)
 
 	if (!signal_reads(s))
 		return FACT_DONE;
-	err = engine_take_reading(e, a->lane, s, a->slot, a->answer, a->now_ns, &wait_ns);
+	err = engine_take_reading(e, a->lane, s, a->slot, a->answer, &wait_ns);
 	if (wait_ns)
-		i->visit.not_before_ns = a->now_ns + wait_ns;
+		i->visit.not_before_ns = e->time.now_ns + wait_ns;
 	if (!err && i->occurrence.wants_after && !signal_is_string(s)) {
 		image_alarm_after(e->image, i->occurrence.journal, s->sample.value);
 		i->occurrence.wants_after = false;
@@ -145,7 +145,7 @@ static uint32_t take_latch_reset(const struct alarm_answer *a)
 {
 	if (a->answer->err)
 		return alarm_step_fail(a, a->answer->err);
-	did(a, ALARM_LATCH_WAS_RESET);
+	mark_done(a, ALARM_LATCH_WAS_RESET);
 	alarm_granted(a->lane->engine, a->item, OWS_UNARMED_RESET);
 	a->item->occurrence.stands = false;
 	return FACT_DONE;
@@ -165,11 +165,11 @@ static const struct alarm_step steps[] = {
 	{ALARM_LATCH, ALARM_LATCH_WAIT, BUS_READ, "", OF(latch), OF(latch), ALARM_LATCH_WAS_READ,
          OWS_UNARMED_LATCH, take_latch},
 	{ALARM_SENSED, ALARM_SENSED_WAIT, BUS_READ, "/alarm", OF(sensed), OF(sensed),
-         ALARM_VALUE_WAS_READ, 0, take_value},
+         ALARM_VALUE_WAS_READ, 0, take_alarm_value},
 	{ALARM_LATCH_RESET, ALARM_LATCH_RESET_WAIT, BUS_WRITE, "/alarm", OF(reset), OF(reset_value),
          ALARM_LATCH_WAS_RESET, OWS_UNARMED_RESET, take_latch_reset},
 	{SENSED, SENSED_WAIT, BUS_READ, "", OF(sensed), OF(sensed), ALARM_VALUE_WAS_READ, 0,
-         take_value},
+         take_alarm_value},
 };
 
 const struct alarm_step *alarm_step(enum alarm_state state)
@@ -200,19 +200,19 @@ const struct alarm_item *alarm_done(const struct alarm_machine *m, const struct 
 	return NULL;
 }
 
-int64_t alarm_to_collect(const struct alarm_machine *m, const struct alarm_item *i)
+struct alarm_item *alarm_to_collect(const struct alarm_machine *m, const struct alarm_item *i)
 {
 	for (uint32_t k = 0; k < m->count; k++) {
-		const struct alarm_item *other = m->items[k];
+		struct alarm_item *other = m->items[k];
 		const char *latch = other->strings.latch;
 
 		if (other != i && other->device == i->device && latch && *latch &&
 		    !same_string(other, i, OF(latch)) &&
 		    other->cycle_of[ALARM_WAS_COLLECTED] != m->list.cycle &&
 		    !alarm_done(m, other, alarm_step(ALARM_LATCH)))
-			return k;
+			return other;
 	}
-	return -1;
+	return NULL;
 }
 
 int64_t alarm_next_init(struct engine *e, struct alarm_machine *m)
@@ -265,24 +265,17 @@ static bool ask_init(struct engine *e, struct alarm_machine *m, struct slot *slo
 	return true;
 }
 
-/* The item whose SetAlarm is to be compared with the chip, if any is left. */
-static bool ask_arm(struct alarm_machine *m, struct slot *slot, int64_t now_ns)
+/* An item with a SetAlarm that is to be compared with the chip comes before the list. */
+static bool ask_list(struct alarm_machine *m, const struct lane *lane, struct slot *slot)
 {
-	if (m->arming < 0)
-		m->arming = alarm_to_arm(m, now_ns);
-	if (m->arming < 0)
-		return false;
-	ask_step(slot, m->items[m->arming], alarm_step(ALARM_SET),
-	         m->arm_writes ? BUS_WRITE : BUS_READ);
-	return true;
-}
+	int64_t now_ns = lane->engine->time.now_ns;
 
-static bool ask_list(struct alarm_machine *m, const struct lane *lane, struct slot *slot,
-                     int64_t now_ns)
-{
 	m->position = -1;
-	if (ask_arm(m, slot, now_ns))
-		return true;
+	if (!m->arming)
+		m->arming = alarm_to_arm(m, now_ns);
+	if (m->arming)
+		return ask_step(slot, m->arming, alarm_step(ALARM_SET),
+		                m->arm_writes ? BUS_WRITE : BUS_READ);
 	if (now_ns < m->list.next_ns)
 		return false;
 	if (!m->named)
@@ -293,16 +286,16 @@ static bool ask_list(struct alarm_machine *m, const struct lane *lane, struct sl
 	return true;
 }
 
-bool alarm_ask(struct alarm_machine *m, const struct lane *lane, struct slot *slot, int64_t now_ns)
+bool alarm_ask(struct alarm_machine *m, const struct lane *lane, struct slot *slot)
 {
 	const struct alarm_step *step = alarm_step(m->state);
 
-	if (m->collecting >= 0)
-		return ask_step(slot, m->items[m->collecting], alarm_step(ALARM_LATCH), BUS_READ);
+	if (m->collecting)
+		return ask_step(slot, m->collecting, alarm_step(ALARM_LATCH), BUS_READ);
 	if (m->proving)
 		return ask_step(slot, alarm_current(m), step, BUS_READ);
 	if (m->state == INIT)
-		return ask_list(m, lane, slot, now_ns);
+		return ask_list(m, lane, slot);
 	if (m->state == ALARM_SET_WAIT)
 		return ask_init(lane->engine, m, slot);
 	return step && step->asks == m->state && ask_step(slot, alarm_current(m), step, step->op);

@@ -11,7 +11,6 @@ struct alarm_answer {
 	struct alarm_item *item;
 	const struct slot *slot;
 	const struct bus_answer *answer;
-	int64_t now_ns;
 };
 
 struct alarm_step {
@@ -38,11 +37,11 @@ int alarm_flag(const struct alarm_answer *a);
 /* Take the latch for the item of the answer; 0 or a negative errno. */
 int alarm_take_latch(const struct alarm_answer *a);
 /* The item has the latch that was read: the alarm is raised, or over. Returns the facts. */
-uint32_t alarm_show_latch(struct lane *lane, struct alarm_item *item, int64_t now_ns);
-/* The next item of the device whose latch was not read in this cycle, -1: none. */
-int64_t alarm_to_collect(const struct alarm_machine *m, const struct alarm_item *item);
+uint32_t alarm_show_latch(struct lane *lane, struct alarm_item *item);
+/* The next item of the device with a latch that was not read in this cycle; NULL: none. */
+struct alarm_item *alarm_to_collect(const struct alarm_machine *m, const struct alarm_item *item);
 /* The next output below the device that gets its InitValue, a row of the table, -1: none. */
 int64_t alarm_next_init(struct engine *e, struct alarm_machine *m);
 
 /* True: the slot has what the present state asks; false: it asks nothing now. */
-bool alarm_ask(struct alarm_machine *m, const struct lane *lane, struct slot *slot, int64_t now_ns);
+bool alarm_ask(struct alarm_machine *m, const struct lane *lane, struct slot *slot);

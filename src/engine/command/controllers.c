@@ -35,14 +35,9 @@ static void show_controller(struct engine *e, uint32_t place)
 	g->shown = g->commands + g->refused;
 }
 
-static const char *plural(unsigned n)
-{
-	return n == 1 ? "" : "s";
-}
-
 /* --- The beat --------------------------------------------------------------------------------- */
 
-static void lose(struct engine *e, uint32_t controller, int64_t awake_ns)
+static void lose_outputs(struct engine *e, uint32_t controller, int64_t awake_ns)
 {
 	struct known_controller *g = &e->controllers[controller];
 	unsigned rows = g->rows, safe = engine_lose(e, controller, awake_ns, &g->lose_ns);
@@ -76,7 +71,7 @@ static void look_at_beat(struct engine *e, uint32_t place, int64_t awake_ns)
 	changes = late != g->late || g->period_ms != e->image->controllers[place].period_ms;
 	g->late = late;
 	if (late && g->rows && awake_ns > g->lose_ns)
-		lose(e, place, awake_ns);
+		lose_outputs(e, place, awake_ns);
 	if (changes || g->shown != g->commands + g->refused)
 		show_controller(e, place);
 }
@@ -86,10 +81,9 @@ static void look_at_absent(struct engine *e, uint32_t index, int64_t awake_ns)
 	struct known_controller *g = &e->controllers[index];
 
 	if (g->rows && awake_ns > g->lose_ns)
-		lose(e, index, awake_ns);
-	if (g->rows)
-		return;
-	controllers_forget(e, index);
+		lose_outputs(e, index, awake_ns);
+	if (!g->rows)
+		controllers_forget(e, index);
 }
 
 void engine_look_controllers(struct engine *e)
@@ -122,7 +116,7 @@ static bool has_token(const struct known_controller *g)
 	return memcmp(g->as.token, none, sizeof(none)) != 0;
 }
 
-static bool may_set(const struct engine_controller *controller)
+static bool may_set(const struct joining_controller *controller)
 {
 	const struct controller_layout *l = controller->memory.layout;
 	uint32_t any = 0;
@@ -132,7 +126,7 @@ static bool may_set(const struct engine_controller *controller)
 	return !controller->rights || any;
 }
 
-/* The one that it was before, whose commands are in force. */
+/* The controller that it was before, which has commands in force. */
 static uint32_t find_former(const struct engine *e, uint32_t place)
 {
 	const struct known_controller *g = &e->controllers[place];
@@ -158,14 +152,14 @@ static void come_back(struct engine *e, uint32_t place, uint32_t former)
 	engine_hand_over(e, former, place);
 	engine_come_back(e, place);
 	log_info(e->log, "%s (process %d) came back: its command%s of %u output%s in force",
-	         g->as.who.name, (int)g->as.who.pid, plural(g->rows), g->rows,
+	         g->as.who.name, (int)g->as.who.pid, g->rows == 1 ? "" : "s", g->rows,
 	         g->rows == 1 ? " is" : "s are");
 	if (former >= OWS_CONTROLLERS)
 		controllers_forget(e, former);
 }
 
 void engine_controller_join(struct engine *e, unsigned place,
-                            const struct engine_controller *controller, int64_t now_ns)
+                            const struct joining_controller *controller, int64_t now_ns)
 {
 	struct known_controller *g = &e->controllers[place];
 	struct controller_beat beat;
@@ -206,7 +200,7 @@ static uint32_t free_absent(const struct engine *e)
 }
 
 /* It promised a beat and said no goodbye: it may come back until its time is over. */
-static void hang_up(struct engine *e, uint32_t place, int64_t awake_ns)
+static void begin_absence(struct engine *e, uint32_t place, int64_t awake_ns)
 {
 	struct known_controller *g = &e->controllers[place];
 	uint32_t to = free_absent(e);
@@ -217,10 +211,10 @@ static void hang_up(struct engine *e, uint32_t place, int64_t awake_ns)
 	g->lose_ns = 0;
 	if (to == CONTROLLER_NOBODY) {
 		g->heard_ns = g->left_ns = INT64_MIN / 2; /* all of its time is over */
-		lose(e, place, awake_ns);
+		lose_outputs(e, place, awake_ns);
 		return;
 	}
-	lose(e, place, awake_ns); /* what has SafeDelay 0 */
+	lose_outputs(e, place, awake_ns); /* what has SafeDelay 0 */
 	e->controllers[to] = *g;
 	e->controllers[to].rows = 0;
 	e->controllers[to].as.memory = (struct controller_memory){0};
@@ -240,14 +234,14 @@ void engine_controller_left(struct engine *e, unsigned place, int64_t now_ns)
 		return;
 	engine_begin_call(e, now_ns);
 	e->controllers_quiet = false;
-	engine_intake(e, place, now_ns);
+	engine_intake(e, place);
 	engine_hear(e, place);
 	if (g->more)
 		e->greedy--;
 	if (g->period_ms && g->rows)
-		hang_up(e, place, engine_awake_ns(e));
+		begin_absence(e, place, engine_awake_ns(e));
 	else
-		engine_let_go(e, place);
+		engine_hand_over(e, place, CONTROLLER_NOBODY);
 	controllers_forget(e, place);
 	while (e->place_end && e->controllers[e->place_end - 1].is != CONTROLLER_CONNECTED)
 		e->place_end--;
@@ -278,7 +272,7 @@ void engine_controllers_retire(struct engine *old, const struct engine *e, int64
 			continue;
 		controller_state(&g->as.memory, OWS_STATE_RETIRED);
 		if (e->controllers[i].is == CONTROLLER_CONNECTED)
-			engine_intake(old, i, now_ns);
+			engine_intake(old, i);
 		else
 			engine_controller_left(old, i, now_ns);
 	}
@@ -289,7 +283,7 @@ void engine_controllers_adopt(struct engine *e, const struct engine *old, const 
 	for (uint32_t i = 0; i < ENGINE_CONTROLLERS; i++) {
 		const struct known_controller *was = &old->controllers[i];
 		struct known_controller *g = &e->controllers[i];
-		struct engine_controller as = g->as;
+		struct joining_controller as = g->as;
 
 		if (was->is == CONTROLLER_FREE)
 			continue;

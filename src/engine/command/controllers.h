@@ -9,19 +9,19 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "src/engine/command/joining.h"
+#include "src/shm/controller.h"
 
 struct engine;
 struct signal;
 
 /*
  * A controller takes a place (below OWS_CONTROLLERS) that is free. With the token of a controller
- * whose commands are in force it comes back as that one. A reload: each controller joins the new
+ * that has commands in force it comes back as that one. A reload: each controller joins the new
  * engine at its place with its serial and new memory, before engine_adopt(), which copies what the
  * old memory had.
  */
 void engine_controller_join(struct engine *e, unsigned place,
-                            const struct engine_controller *controller, int64_t now_ns);
+                            const struct joining_controller *controller, int64_t now_ns);
 /*
  * A controller hung up or is dead: the engine looks at its commands for the last time, and touches
  * its memory and rights no more after that.
@@ -29,19 +29,20 @@ void engine_controller_join(struct engine *e, unsigned place,
 void engine_controller_left(struct engine *e, unsigned place, int64_t now_ns);
 /*
  * Has some controller marked commands at which engine_step() would look? The engine's thread clears
- * awake in the image, then asks this, and sleeps only if not. Controllers whose budget of looks is
- * used up do not count: what engine_step() returned is early enough for them.
+ * awake in the image, then asks this, and sleeps only if not. Controllers that have used up their
+ * budget of looks do not count: what engine_step() returned is early enough for them.
  */
 bool engine_controllers_marked(const struct engine *e);
 
 /*
- * Once a period: who beats, who is late, whose time is over. Time in which owsd did not run counts
- * for nobody.
+ * Once a period: see which controllers beat, are late, or have used up their time. Time in which
+ * owsd did not run does not count.
  */
 void engine_look_controllers(struct engine *e);
 /*
  * A reload, in this order: the controllers of old can set there no more, and what they have set is
- * taken; who has no memory in e leaves. Then e goes on with them; rows as in struct adoption.
+ * taken; those without a memory in e leave. Then e goes on with the others; rows as in struct
+ * adoption.
  */
 void engine_controllers_retire(struct engine *old, const struct engine *e, int64_t now_ns);
 void engine_controllers_adopt(struct engine *e, const struct engine *old, const uint32_t *rows);

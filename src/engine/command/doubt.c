@@ -29,42 +29,32 @@ static bool lane_in_doubt(const struct lane *lane, const struct slot *slot)
 	       e->table.signals[slot->row].lane != lane->index && !engine_way(e, lane)->released;
 }
 
+enum doubt_round { FORGET_DOUBTS, COUNT_DOUBTS, WRITE_UNDOUBTED, DOUBT_ROUNDS };
+
 /* The slots that are lent say all: few, and looked through only when something moved or ended. */
-static void each_output_lent(struct engine *e, void (*visit)(struct lane *, const struct slot *))
+static void look_at_lent(struct lane *lane, enum doubt_round round)
 {
-	for (unsigned i = 0; i < e->lane_count; i++) {
-		struct lane *lane = &e->lanes[i];
+	for (unsigned k = 0; k < lane->depth; k++) {
+		const struct slot *slot = &lane->lent.slots[k];
+		struct signal *s;
 
-		for (unsigned k = 0; k < lane->depth; k++)
-			if (lane->lent.slots[k].lent &&
-			    lane_writes_output(lane, &lane->lent.slots[k]))
-				visit(lane, &lane->lent.slots[k]);
+		if (!slot->lent || !lane_writes_output(lane, slot))
+			continue;
+		s = &lane->engine->table.signals[slot->row];
+		if (round == FORGET_DOUBTS)
+			s->doubts = 0;
+		else if (round == COUNT_DOUBTS)
+			s->doubts += lane_in_doubt(lane, slot);
+		else if (!s->doubts)
+			engine_write_check(lane->engine, s);
 	}
-}
-
-static void forget_doubts(struct lane *lane, const struct slot *slot)
-{
-	lane->engine->table.signals[slot->row].doubts = 0;
-}
-
-static void count_doubt(struct lane *lane, const struct slot *slot)
-{
-	lane->engine->table.signals[slot->row].doubts += lane_in_doubt(lane, slot);
-}
-
-static void write_undoubted(struct lane *lane, const struct slot *slot)
-{
-	struct signal *s = &lane->engine->table.signals[slot->row];
-
-	if (!s->doubts)
-		engine_write_check(lane->engine, s);
 }
 
 void engine_doubts(struct engine *e)
 {
-	each_output_lent(e, forget_doubts);
-	each_output_lent(e, count_doubt);
-	each_output_lent(e, write_undoubted);
+	for (int round = 0; round < DOUBT_ROUNDS; round++)
+		for (unsigned i = 0; i < e->lane_count; i++)
+			look_at_lent(&e->lanes[i], (enum doubt_round)round);
 }
 
 void engine_doubt_ended(struct engine *e, const struct slot *slot)

@@ -36,7 +36,7 @@ void engine_remember_controller(struct engine *e, uint32_t controller)
 	force_controller(e->force, controller, &entry);
 }
 
-void engine_remember(struct engine *e, const struct signal *s)
+static void remember_command(struct engine *e, const struct signal *s)
 {
 	const struct signal_command *c = &s->command;
 	/* the next owsd writes InitValue anew */
@@ -93,22 +93,28 @@ static void store_last(struct engine *e, struct signal *s)
 		                                 s->command.len);
 }
 
+struct ows_who engine_who(const struct known_controller *g, uint32_t person)
+{
+	struct ows_who who = g->as.who;
+
+	if (person)
+		controller_person(&g->as.memory, person, who.person);
+	return who;
+}
+
 void engine_command(struct engine *e, struct signal *s, uint32_t controller,
                     const struct controller_command *command, const char *text, uint32_t len)
 {
 	struct origin_before before = origin_before(s, command->value, text, len);
-	const struct known_controller *g = &e->controllers[controller];
-	struct ows_who who = g->as.who;
+	struct ows_who who = engine_who(&e->controllers[controller], command->person);
 
 	in_force_put_value(s, command->value, text, len);
 	s->command.stamp = command->stamp;
 	s->command.reason = OWS_REASON_SET;
 	answer_for(e, s, controller);
-	if (command->person)
-		controller_person(&g->as.memory, command->person, who.person);
 	engine_origin(e, s, OWS_REASON_SET, &who, &before);
 	store_last(e, s);
-	engine_remember(e, s);
+	remember_command(e, s);
 }
 
 void engine_hear(struct engine *e, uint32_t place)
@@ -133,12 +139,12 @@ void engine_hear(struct engine *e, uint32_t place)
 		engine_remember_controller(e, place);
 }
 
-/* A command of owsd itself. who: because of whom. */
+/* A command of owsd itself. who: the lost controller that is the reason, else owsd. */
 static void put_own(struct engine *e, struct signal *s, enum ows_reason reason,
                     const struct ows_who *who, int64_t value, const char *text, uint32_t len)
 {
 	struct origin_before before = origin_before(s, value, text, len);
-	struct ows_who because = *who; /* who may be of a controller that is forgotten below */
+	struct ows_who because = *who; /* the controller that it is of may be forgotten below */
 
 	in_force_put_value(s, value, text, len);
 	s->command.stamp = 0;
@@ -252,7 +258,7 @@ static void resume_signal(struct engine *e, struct signal *s, const struct force
 	} else {
 		put_configured(e, s, found ? &was : NULL, text);
 	}
-	engine_remember(e, s);
+	remember_command(e, s);
 	engine_write_check(e, s);
 }
 
@@ -265,8 +271,7 @@ void engine_resume(struct engine *e, const struct force_left *left)
 		resume_signal(e, &e->table.signals[row], left, awaited);
 }
 
-/* --- A controller is lost, or comes back
- * ----------------------------------------------------------- */
+/* --- A controller is lost, or comes back ------------------------------------------------------ */
 
 /* Until then the commands of this controller's output stay, though it is not heard. */
 static int64_t patience_end(const struct known_controller *g, const struct config_item *item)
@@ -299,7 +304,7 @@ static void give_up(struct engine *e, struct signal *s, const struct ows_who *wh
 		put_configured(e, s, &left, s->command_text);
 	else
 		answer_for(e, s, CONTROLLER_NOBODY);
-	engine_remember(e, s);
+	remember_command(e, s);
 	engine_write_check(e, s);
 	engine_publish(e, s);
 }
@@ -310,8 +315,7 @@ unsigned engine_lose(struct engine *e, uint32_t controller, int64_t awake_ns, in
 	unsigned safe = 0;
 
 	*next = INT64_MAX;
-	for (uint32_t row = 0; row < e->table.count && g->rows; row++) {
-		struct signal *s = &e->table.signals[row];
+	for (struct signal *s = e->table.signals; s < table_end(&e->table) && g->rows; s++) {
 		int64_t end_ns;
 
 		if (s->command.controller != controller)
@@ -327,31 +331,15 @@ unsigned engine_lose(struct engine *e, uint32_t controller, int64_t awake_ns, in
 	return safe;
 }
 
-void engine_let_go(struct engine *e, uint32_t controller)
-{
-	const struct known_controller *g = &e->controllers[controller];
-
-	for (uint32_t row = 0; row < e->table.count && g->rows; row++) {
-		struct signal *s = &e->table.signals[row];
-
-		if (s->command.controller != controller)
-			continue;
-		answer_for(e, s, CONTROLLER_NOBODY);
-		engine_remember(e, s);
-	}
-}
-
 void engine_hand_over(struct engine *e, uint32_t from, uint32_t to)
 {
 	const struct known_controller *g = &e->controllers[from];
 
-	for (uint32_t row = 0; row < e->table.count && g->rows; row++) {
-		struct signal *s = &e->table.signals[row];
-
+	for (struct signal *s = e->table.signals; s < table_end(&e->table) && g->rows; s++) {
 		if (s->command.controller != from)
 			continue;
 		answer_for(e, s, to);
-		engine_remember(e, s);
+		remember_command(e, s);
 	}
 }
 
@@ -360,9 +348,7 @@ void engine_come_back(struct engine *e, uint32_t to)
 	const struct known_controller *g = &e->controllers[to];
 	struct origin_before before = {.given = true, .changes = true};
 
-	for (uint32_t row = 0; row < e->table.count; row++) {
-		struct signal *s = &e->table.signals[row];
-
+	for (struct signal *s = e->table.signals; s < table_end(&e->table); s++) {
 		if (s->command.controller != to)
 			continue;
 		controller_taken(&g->as.memory, s->record, s->command.stamp, 0);
@@ -374,7 +360,7 @@ void engine_come_back(struct engine *e, uint32_t to)
 		if (s->command.awaited)
 			store_last(e, s);
 		s->command.awaited = false;
-		engine_remember(e, s);
+		remember_command(e, s);
 		engine_settle(e, s);
 		engine_write_check(e, s);
 		engine_publish(e, s);
@@ -436,9 +422,7 @@ void engine_look_stored(struct engine *e)
 		return;
 	e->stored = stored;
 	e->store_err = err;
-	for (uint32_t row = 0; row < e->table.count; row++) {
-		struct signal *s = &e->table.signals[row];
-
+	for (struct signal *s = e->table.signals; s < table_end(&e->table); s++) {
 		if (!s->command.storing)
 			continue;
 		engine_settle(e, s);
@@ -453,15 +437,13 @@ void engine_in_force_adopted(struct engine *e)
 	for (uint32_t i = 0; i < ENGINE_CONTROLLERS; i++)
 		engine_remember_controller(e, i);
 	e->storing = 0;
-	for (uint32_t row = 0; row < e->table.count; row++) {
-		struct signal *s = &e->table.signals[row];
-
+	for (struct signal *s = e->table.signals; s < table_end(&e->table); s++) {
 		if (s->command.controller != CONTROLLER_NOBODY)
 			e->controllers[s->command.controller].rows++;
 		s->command.storing = false;
 		if (s->command.given && !s->command.awaited)
 			store_last(e, s);
 		engine_settle(e, s);
-		engine_remember(e, s);
+		remember_command(e, s);
 	}
 }

@@ -14,10 +14,12 @@ void engine_resume(struct engine *e, const struct force_left *left);
 
 /*
  * A controller's command, checked, becomes the one in force. The text of a string stands in text,
- * else NULL. person: for whom.
+ * else NULL.
  */
 void engine_command(struct engine *e, struct signal *s, uint32_t controller,
                     const struct controller_command *command, const char *text, uint32_t len);
+/* The controller as it commands for that person, an index of its memory; 0: for itself. */
+struct ows_who engine_who(const struct known_controller *g, uint32_t person);
 /*
  * Take the beat of a connected controller, and what it promised: before its commands, so that the
  * next owsd knows it with them. A promise begins with a beat.
@@ -25,28 +27,30 @@ void engine_command(struct engine *e, struct signal *s, uint32_t controller,
 void engine_hear(struct engine *e, uint32_t place);
 /* If the bus has the command in force, and the disk if it has to: its controller gets to know. */
 void engine_settle(struct engine *e, struct signal *s);
-/* A write has ended well whose command is no more the one in force. */
+/* A write has ended well, and its command is no longer the one in force. */
 void engine_settle_earlier(struct engine *e, struct signal *s, const struct slot *slot);
 /* Look whether more was stored on the disk. */
 void engine_look_stored(struct engine *e);
 
 /*
- * The controller of this index is lost: its outputs whose time is over go to SafeValue. Returns how
- * many went; *next gets when the next one's time is over, INT64_MAX: all are done. Both are awake
- * time.
+ * The controller of this index is lost: outputs of it go to SafeValue when their time is over.
+ * Returns how many went; *next gets when the next one's time is over, INT64_MAX: all are done. Both
+ * are awake time.
  */
 unsigned engine_lose(struct engine *e, uint32_t controller, int64_t awake_ns, int64_t *next);
-/* Its commands stay in force, and nobody answers for them. */
-void engine_let_go(struct engine *e, uint32_t controller);
-/* All rows of a controller go to another index. */
+/*
+ * All rows of a controller go to another index. CONTROLLER_NOBODY: their commands stay in force,
+ * and no controller answers for them.
+ */
 void engine_hand_over(struct engine *e, uint32_t from, uint32_t to);
 /* The controller came back, and got its rows at to: their commands are in force again. */
 void engine_come_back(struct engine *e, uint32_t to);
 
-/* A reload, after the rows and the controllers were adopted: who answers for which row; stored
- * anew. */
+/*
+ * After a reload has adopted rows and controllers: link each row to its controller again, and store
+ * the commands.
+ */
 void engine_in_force_adopted(struct engine *e);
 
-/* For the owsd after this one. */
-void engine_remember(struct engine *e, const struct signal *s);
+/* Remember the controller of this index for the owsd after this one. */
 void engine_remember_controller(struct engine *e, uint32_t controller);

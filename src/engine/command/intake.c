@@ -25,10 +25,10 @@
 #define DEFER_NS (10 * NS_PER_MS)
 
 static void refuse_command(struct engine *e, struct known_controller *g, const struct signal *s,
-                           int err, int64_t now_ns)
+                           int err)
 {
 	char others[LOG_OTHERS];
-	uint64_t n = log_rate(&e->refused, now_ns);
+	uint64_t n = log_rate(&e->refused, e->time.now_ns);
 
 	e->counters.refused_commands++;
 	g->refused++;
@@ -68,7 +68,7 @@ static int take_text(struct known_controller *g, uint32_t record, char *text, in
 }
 
 static void take_command(struct engine *e, uint32_t controller, struct signal *s,
-                         const struct controller_command *c, int64_t now_ns)
+                         const struct controller_command *c)
 {
 	struct known_controller *g = &e->controllers[controller];
 	char text[TABLE_TEXT_CAP + 1];
@@ -79,7 +79,7 @@ static void take_command(struct engine *e, uint32_t controller, struct signal *s
 	} else if (!may_command(g, s->record)) {
 		err = -EACCES;
 	} else if (signal_is_string(s)) {
-		len = take_text(g, s->record, text, now_ns);
+		len = take_text(g, s->record, text, e->time.now_ns);
 		err = len < 0 ? len : 0;
 	} else if (!signal_accepts(s, c->value)) {
 		err = -ERANGE;
@@ -87,7 +87,7 @@ static void take_command(struct engine *e, uint32_t controller, struct signal *s
 	if (err == -EBUSY)
 		return;
 	if (err) {
-		refuse_command(e, g, s, err, now_ns);
+		refuse_command(e, g, s, err);
 	} else {
 		/* a promise may have come along with it: a kill finds both, or none */
 		engine_hear(e, controller);
@@ -96,7 +96,7 @@ static void take_command(struct engine *e, uint32_t controller, struct signal *s
 		g->commands++;
 		e->counters.commands++;
 	}
-	/* after the origin: who sees it finds whose command is in force */
+	/* after the origin: a reader of this finds there which command is in force */
 	controller_taken(&g->as.memory, s->record, c->stamp, err);
 }
 
@@ -124,26 +124,13 @@ static void take_enables(struct engine *e, struct signal *s, const struct contro
 		if (!s->item->output)
 			s->sample.quality = OWS_Q_DISABLED;
 	}
-	if (signal_writes(s) != write_before) {
-		if (write_before) {
-			s->command.err = 0;
-			engine_lane(e, s)->writers--;
-		} else {
-			engine_lane(e, s)->writers++;
-		}
-	}
+	engine_lane(e, s)->writers += signal_writes(s);
+	engine_lane(e, s)->writers -= write_before;
+	if (write_before && !signal_writes(s))
+		s->command.err = 0;
 }
 
-static struct ows_who who_of(const struct known_controller *g, uint32_t person)
-{
-	struct ows_who who = g->as.who;
-
-	if (person)
-		controller_person(&g->as.memory, person, who.person);
-	return who;
-}
-
-static void look_at_signal(struct engine *e, uint32_t controller, struct signal *s, int64_t now_ns)
+static void look_at_signal(struct engine *e, uint32_t controller, struct signal *s)
 {
 	struct known_controller *g = &e->controllers[controller];
 	struct controller_command c;
@@ -151,7 +138,7 @@ static void look_at_signal(struct engine *e, uint32_t controller, struct signal 
 
 	controller_load(&g->as.memory, s->record, &c);
 	if (c.fresh)
-		take_command(e, controller, s, &c, now_ns);
+		take_command(e, controller, s, &c);
 	else if (g->busy == s->record)
 		g->busy = 0;
 	if (!may_command(g, s->record))
@@ -161,24 +148,24 @@ static void look_at_signal(struct engine *e, uint32_t controller, struct signal 
 		s->command.one_shot = s->command.given && !s->command.awaited &&
 		                      config_item_takes_sets(s->item);
 	if (c.dgn_reset)
-		signal_reset_diagnostics(s, e->time.period, now_ns);
+		signal_reset_diagnostics(s, e->time.period, e->time.now_ns);
 	if (c.acknowledged) {
-		who = who_of(g, c.person);
+		who = engine_who(g, c.person);
 		engine_limits_acknowledge(e, s, &who);
 	}
 	engine_settle(e, s);
 	engine_write_check(e, s);
 }
 
-void engine_intake_signal(struct engine *e, struct signal *s, int64_t now_ns)
+void engine_intake_signal(struct engine *e, struct signal *s)
 {
 	uint32_t controller = s->command.controller;
 
 	if (controller < OWS_CONTROLLERS && e->controllers[controller].is == CONTROLLER_CONNECTED)
-		look_at_signal(e, controller, s, now_ns);
+		look_at_signal(e, controller, s);
 }
 
-static void take_driver_reset(struct engine *e, const struct known_controller *g, int64_t now_ns)
+static void take_driver_reset(struct engine *e, const struct known_controller *g)
 {
 	struct controller_command c;
 	char others[LOG_OTHERS];
@@ -190,23 +177,23 @@ static void take_driver_reset(struct engine *e, const struct known_controller *g
 	e->driver.transactions = 0;
 	e->driver.reconnects = 0;
 	for (uint32_t row = 0; row < e->table.count; row++) {
-		signal_reset_diagnostics(&e->table.signals[row], e->time.period, now_ns);
+		signal_reset_diagnostics(&e->table.signals[row], e->time.period, e->time.now_ns);
 		engine_publish(e, &e->table.signals[row]);
 	}
-	n = log_rate(&e->resets, now_ns);
+	n = log_rate(&e->resets, e->time.now_ns);
 	if (n)
 		log_info(e->log, "diagnostics of all signals reset%s", log_others(n, others));
 }
 
-static void look_at_record(struct engine *e, uint32_t controller, uint32_t record, int64_t now_ns)
+static void look_at_record(struct engine *e, uint32_t controller, uint32_t record)
 {
 	struct signal *s;
 
 	if (record == 0) {
-		take_driver_reset(e, &e->controllers[controller], now_ns);
+		take_driver_reset(e, &e->controllers[controller]);
 	} else if (record <= e->table.count) {
 		s = &e->table.signals[record - 1];
-		look_at_signal(e, controller, s, now_ns);
+		look_at_signal(e, controller, s);
 		engine_publish(e, s);
 	}
 }
@@ -219,7 +206,7 @@ static void look_at_shelf(struct engine *e, struct known_controller *g)
 
 	if (!controller_shelf(&g->as.memory, &shelf))
 		return;
-	who = who_of(g, shelf.person);
+	who = engine_who(g, shelf.person);
 	if (!shelf.record || shelf.record > e->table.count) {
 		err = -EINVAL;
 	} else if (!may_command(g, shelf.record)) {
@@ -234,8 +221,7 @@ static void look_at_shelf(struct engine *e, struct known_controller *g)
 }
 
 /* Look at the marked slots from one on, at most so many. False: there are more. */
-static bool look_at_marked(struct engine *e, uint32_t controller, uint32_t *from, uint32_t *looks,
-                           int64_t now_ns)
+static bool look_at_marked(struct engine *e, uint32_t controller, uint32_t *from, uint32_t *looks)
 {
 	while (*looks) {
 		uint32_t cost;
@@ -245,45 +231,45 @@ static bool look_at_marked(struct engine *e, uint32_t controller, uint32_t *from
 			return true;
 		/* the driver's slot may reset all rows */
 		cost = record ? 1 : 1 + e->table.count;
-		look_at_record(e, controller, (uint32_t)record, now_ns);
+		look_at_record(e, controller, (uint32_t)record);
 		*from = (uint32_t)record + 1;
 		*looks -= cost < *looks ? cost : *looks;
 	}
 	return false;
 }
 
-void engine_intake(struct engine *e, uint32_t controller, int64_t now_ns)
+void engine_intake(struct engine *e, uint32_t controller)
 {
 	struct known_controller *g = &e->controllers[controller];
 	uint32_t all = UINT32_MAX, from = 0;
 
 	engine_hear(e, controller);
 	if (g->busy)
-		look_at_record(e, controller, g->busy, now_ns);
+		look_at_record(e, controller, g->busy);
 	controller_marked(&g->as.memory);
-	look_at_marked(e, controller, &from, &all, now_ns);
+	look_at_marked(e, controller, &from, &all);
 	look_at_shelf(e, g);
 }
 
 /* A look that was not needed yet is kept, up to two for each slot and some. */
-static void refill_looks(struct engine *e, struct known_controller *g, int64_t now_ns)
+static void refill_looks(struct engine *e, struct known_controller *g)
 {
 	uint64_t most = 2 * (uint64_t)e->table.count + LOOKS_LEAST;
 	uint64_t rate = LOOKS_PER_S / (e->greedy ? e->greedy : 1);
-	int64_t since_ns = now_ns - g->looks_ns;
+	int64_t since_ns = e->time.now_ns - g->looks_ns;
 	uint64_t more = since_ns < LOOKS_SPAN_NS ? (uint64_t)since_ns * rate / 1000000000u : most;
 
 	if (!more)
 		return;
 	g->looks = g->looks + more < most ? (uint32_t)(g->looks + more) : (uint32_t)most;
-	g->looks_ns = now_ns;
+	g->looks_ns = e->time.now_ns;
 }
 
 /*
  * Look once round: the first slots, marked again and again, do not keep the last ones waiting.
  * Returns whether nothing is left. That it is asked at all costs some looks too.
  */
-static bool look_round(struct engine *e, uint32_t controller, int64_t now_ns)
+static bool look_round(struct engine *e, uint32_t controller)
 {
 	struct known_controller *g = &e->controllers[controller];
 	uint32_t begin = g->look_from, cost = 1 + g->as.memory.layout->dirty_words / 64;
@@ -293,16 +279,16 @@ static bool look_round(struct engine *e, uint32_t controller, int64_t now_ns)
 	g->looks -= cost;
 	controller_marked(&g->as.memory);
 	look_at_shelf(e, g);
-	if (!look_at_marked(e, controller, &g->look_from, &g->looks, now_ns))
+	if (!look_at_marked(e, controller, &g->look_from, &g->looks))
 		return false;
 	g->look_from = 0;
-	if (begin && !look_at_marked(e, controller, &g->look_from, &g->looks, now_ns))
+	if (begin && !look_at_marked(e, controller, &g->look_from, &g->looks))
 		return false;
 	g->look_from = 0;
 	return true;
 }
 
-static void look_at_controller(struct engine *e, uint32_t controller, int64_t now_ns)
+static void look_at_controller(struct engine *e, uint32_t controller)
 {
 	struct known_controller *g = &e->controllers[controller];
 
@@ -312,16 +298,16 @@ static void look_at_controller(struct engine *e, uint32_t controller, int64_t no
 		e->greedy--;
 	}
 	engine_hear(e, controller);
-	refill_looks(e, g, now_ns);
-	if (look_round(e, controller, now_ns))
+	refill_looks(e, g);
+	if (look_round(e, controller))
 		return;
 	e->counters.deferred_commands++;
 	g->more = true;
 	e->greedy++;
-	g->defer_ns = now_ns + DEFER_NS;
+	g->defer_ns = e->time.now_ns + DEFER_NS;
 }
 
-int64_t engine_intake_limited(struct engine *e, int64_t now_ns)
+int64_t engine_intake_limited(struct engine *e)
 {
 	int64_t next = INT64_MAX;
 
@@ -331,9 +317,9 @@ int64_t engine_intake_limited(struct engine *e, int64_t now_ns)
 		if (g->is != CONTROLLER_CONNECTED)
 			continue;
 		if (g->busy)
-			look_at_record(e, i, g->busy, now_ns);
-		if (g->more ? now_ns >= g->defer_ns : controller_is_marked(&g->as.memory))
-			look_at_controller(e, i, now_ns);
+			look_at_record(e, i, g->busy);
+		if (g->more ? e->time.now_ns >= g->defer_ns : controller_is_marked(&g->as.memory))
+			look_at_controller(e, i);
 		if (g->more && g->defer_ns < next)
 			next = g->defer_ns;
 	}

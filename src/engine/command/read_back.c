@@ -21,17 +21,12 @@
 static void read_back_enter(struct engine *e, const struct signal *s, enum ows_alarm_event event,
                             uint8_t quality)
 {
-	struct ows_journal_entry entry = {
-		.record = s->record,
-		.occurred_ns = e->time.now_ns,
-		.kind = OWS_ALARM_DIFFERS,
-		.event = (uint8_t)event,
-		.quality = quality,
-		.before = s->command.written,
-		.after = s->sample.value,
-		.flags = OWS_JOURNAL_BEFORE | OWS_JOURNAL_AFTER,
-	};
+	struct ows_journal_entry entry = signal_entry(s, OWS_ALARM_DIFFERS, event, e->time.now_ns);
 
+	entry.quality = quality;
+	entry.before = s->command.written;
+	entry.after = s->sample.value;
+	entry.flags = OWS_JOURNAL_BEFORE | OWS_JOURNAL_AFTER;
 	image_alarm(e->image, &entry);
 	e->published = true;
 }
@@ -58,7 +53,8 @@ void engine_compares_no_more(struct engine *e, struct signal *s, uint8_t quality
 	end_difference(e, s, quality, "not compared with its command any more");
 }
 
-void engine_restore(struct engine *e, struct signal *s)
+/* Write a command again that the device lost, if it was not done just now; else later. */
+static void restore_command(struct engine *e, struct signal *s)
 {
 	struct signal_restore *r = &s->restore;
 
@@ -72,7 +68,7 @@ void engine_restore(struct engine *e, struct signal *s)
 	engine_write_check(e, s);
 }
 
-static void judge(struct engine *e, struct signal *s, bool agrees, uint8_t *quality)
+static void judge_read_back(struct engine *e, struct signal *s, bool agrees, uint8_t *quality)
 {
 	bool differed = s->command.differs;
 
@@ -87,7 +83,7 @@ static void judge(struct engine *e, struct signal *s, bool agrees, uint8_t *qual
 	*quality = OWS_Q_DIFFERS;
 	if (!differed)
 		begin_difference(e, s);
-	engine_restore(e, s);
+	restore_command(e, s);
 }
 
 bool engine_compare(struct engine *e, struct lane *lane, struct signal *s, const struct slot *slot,
@@ -126,7 +122,7 @@ bool engine_compare(struct engine *e, struct lane *lane, struct signal *s, const
 	c->agrees = agrees;
 	if (s->item->read_back_ns) {
 		engine_restart_look(lane, s, agrees);
-		judge(e, s, agrees, quality);
+		judge_read_back(e, s, agrees, quality);
 	}
 	return true;
 }

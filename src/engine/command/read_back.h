@@ -18,5 +18,3 @@ bool engine_compare(struct engine *e, struct lane *lane, struct signal *s, const
                     uint8_t *quality);
 /* The signal differed, and will not be compared any more: that ends in the journal too. */
 void engine_compares_no_more(struct engine *e, struct signal *s, uint8_t quality);
-/* Write a command again that the device lost, if it was not done just now; else later. */
-void engine_restore(struct engine *e, struct signal *s);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Restarts of devices that no alarm item watches: a power-on flag that was clear and is set proves
- * one, and then the outputs of the device are written again. One that nobody has cleared says
+ * one, and then the outputs of the device are written again. A flag that was never cleared says
  * nothing, and owsd does not clear it.
  */
 #include <stdio.h>
@@ -39,7 +39,7 @@ void engine_restart_look(struct lane *lane, const struct signal *s, bool agrees)
 		due_set_add(&lane->restarts, s->device);
 }
 
-bool engine_restart_ask(struct lane *lane, struct slot *slot, int64_t now_ns)
+bool engine_restart_ask(struct lane *lane, struct slot *slot)
 {
 	const struct table *table = &lane->engine->table;
 	int64_t device = due_set_next(&lane->restarts);
@@ -62,7 +62,7 @@ bool engine_restart_ask(struct lane *lane, struct slot *slot, int64_t now_ns)
 	                             .fresh = true,
 	                             .path = slot->path,
 	                             .len = sizeof(slot->data)};
-	if (!slot_lend(lane, slot, now_ns))
+	if (!slot_lend(lane, slot))
 		return false;
 	due_set_take(&lane->restarts, (uint32_t)device);
 	return true;

@@ -17,6 +17,6 @@ struct slot;
 /* The output was read back: ask for the flag if that is to be known. */
 void engine_restart_look(struct lane *lane, const struct signal *s, bool agrees);
 /* True: the request for one of these flags was given to the bus. */
-bool engine_restart_ask(struct lane *lane, struct slot *slot, int64_t now_ns);
+bool engine_restart_ask(struct lane *lane, struct slot *slot);
 void engine_restart_done(struct lane *lane, const struct slot *slot,
                          const struct bus_answer *answer);

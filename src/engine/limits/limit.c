@@ -45,7 +45,7 @@ static uint8_t highest(uint16_t conditions)
 }
 
 /* Is the value beyond a limit? An alarm that stands is left only by more than the hysteresis. */
-static bool beyond(const struct config_limits *limits, int i, double value, bool stands)
+static bool is_beyond_limit(const struct config_limits *limits, int i, double value, bool stands)
 {
 	double limit = limits->limit[i], room = stands ? limits->hysteresis : 0;
 
@@ -64,7 +64,8 @@ static uint16_t conditions_in(const struct limit *limit, const struct config_lim
 	for (int i = 0; i < CONFIG_LIMITS; i++) {
 		bool stands = limit->active & BIT(kinds[i]);
 
-		if (limits->has[i] && (known ? beyond(limits, i, reading->value, stands) : stands))
+		if (limits->has[i] &&
+		    (known ? is_beyond_limit(limits, i, reading->value, stands) : stands))
 			in |= BIT(kinds[i]);
 	}
 	return in;

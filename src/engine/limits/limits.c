@@ -10,14 +10,14 @@
 #include "src/signal/value.h"
 #include "src/text/log.h"
 
-/* --- The places of shelved alarms in the image ----------------------------------------------- */
+/* --- The shelves of the image ----------------------------------------------------------------- */
 
-const struct ows_shelf_entry *engine_shelf(const struct engine *e, const struct signal *s)
-{
-	return s->limit.shelf ? &e->image->shelves[s->limit.shelf - 1] : NULL;
-}
+/*
+ * Each entry of the image's area of shelves is one signal with a shelved alarm. owsd alone writes
+ * the image, so the entries there are what the engine knows of them.
+ */
 
-static unsigned free_place(const struct engine *e)
+static unsigned free_shelf(const struct engine *e)
 {
 	unsigned i = 0;
 
@@ -26,23 +26,16 @@ static unsigned free_place(const struct engine *e)
 	return i;
 }
 
-int engine_shelf_put(struct engine *e, struct signal *s, const struct ows_shelf_entry *entry)
+/* Enter the signal, or enter it anew. 0, -ENOSPC: OWS_SHELVES others are shelved. */
+static int put_on_shelf(struct engine *e, struct signal *s, const struct ows_shelf_entry *entry)
 {
-	unsigned place = s->limit.shelf ? s->limit.shelf - 1u : free_place(e);
+	unsigned shelf = s->limit.shelf ? s->limit.shelf - 1u : free_shelf(e);
 
-	if (place == OWS_SHELVES)
+	if (shelf == OWS_SHELVES)
 		return -ENOSPC;
-	image_shelf(e->image, place, entry);
-	s->limit.shelf = (uint8_t)(place + 1);
+	image_shelf(e->image, shelf, entry);
+	s->limit.shelf = (uint8_t)(shelf + 1);
 	return 0;
-}
-
-void engine_shelf_free(struct engine *e, struct signal *s)
-{
-	const struct ows_shelf_entry none = {0};
-
-	image_shelf(e->image, s->limit.shelf - 1u, &none);
-	s->limit.shelf = 0;
 }
 
 void engine_shelves_resume(struct engine *e)
@@ -72,21 +65,11 @@ void engine_shelves_resume(struct engine *e)
 /* After so many requests to shelve at once, one a second. */
 #define SHELVINGS OWS_SHELVES
 
-static struct ows_journal_entry limit_entry(const struct engine *e, const struct signal *s,
-                                            uint8_t kind, uint8_t event)
+static void journal_limit(struct engine *e, const struct signal *s, uint8_t kind,
+                          enum ows_alarm_event event)
 {
-	return (struct ows_journal_entry){
-		.record = s->record,
-		.occurred_ns = e->time.now_ns,
-		.kind = kind,
-		.event = event,
-		.quality = s->sample.quality,
-	};
-}
-
-static void journal_limit(struct engine *e, const struct signal *s, uint8_t kind, uint8_t event)
-{
-	struct ows_journal_entry entry = limit_entry(e, s, kind, event);
+	struct ows_journal_entry entry = signal_entry(s, (enum ows_alarm_kind)kind, event,
+	                                              e->time.now_ns);
 
 	if (s->limit.values) {
 		entry.after = s->limit.value[1];
@@ -100,11 +83,13 @@ static void journal_limit(struct engine *e, const struct signal *s, uint8_t kind
 	e->published = true;
 }
 
-/* Somebody did it: no value belongs to it. */
-static void journal_deed(struct engine *e, const struct signal *s, uint8_t kind, uint8_t event,
-                         const struct ows_who *who, const char why[OWS_TEXT])
+/* What a person did to the alarm: no value belongs to it. */
+static void journal_deed(struct engine *e, const struct signal *s, uint8_t kind,
+                         enum ows_alarm_event event, const struct ows_who *who,
+                         const char why[OWS_TEXT])
 {
-	struct ows_journal_entry entry = limit_entry(e, s, kind, event);
+	struct ows_journal_entry entry = signal_entry(s, (enum ows_alarm_kind)kind, event,
+	                                              e->time.now_ns);
 
 	entry.who = *who;
 	memcpy(entry.text, why, OWS_TEXT);
@@ -156,9 +141,11 @@ static void keep_limit_value(struct signal *s)
 static void unshelve(struct engine *e, struct signal *s, const struct ows_who *who,
                      const char why[OWS_TEXT])
 {
+	const struct ows_shelf_entry none = {0};
 	uint8_t kind = s->limit.alarm.kind;
 
-	engine_shelf_free(e, s);
+	image_shelf(e->image, s->limit.shelf - 1u, &none);
+	s->limit.shelf = 0;
 	journal_deed(e, s, kind, OWS_ALARM_UNSHELVED, who, why);
 	log_notice(e->log, "%s: alarm: no longer shelved", s->item->name);
 	kind = limit_unshelve(&s->limit.alarm);
@@ -170,19 +157,20 @@ static void unshelve(struct engine *e, struct signal *s, const struct ows_who *w
 static int64_t shelved_until(struct engine *e, struct signal *s)
 {
 	static const char over[OWS_TEXT] = "its time is over";
-	const struct ows_shelf_entry *shelf = engine_shelf(e, s);
 	const struct ows_who owsd = {0};
+	int64_t until_ns;
 
-	if (!shelf)
+	if (!s->limit.shelf)
 		return INT64_MAX;
-	if (shelf->until_ns > e->time.now_ns)
-		return shelf->until_ns;
+	until_ns = e->image->shelves[s->limit.shelf - 1].until_ns;
+	if (until_ns > e->time.now_ns)
+		return until_ns;
 	unshelve(e, s, &owsd, over);
 	return INT64_MAX;
 }
 
 /* Bring the alarm to the present. Returns when this is to be done again. */
-static int64_t evaluate(struct engine *e, struct signal *s)
+static int64_t evaluate_limits(struct engine *e, struct signal *s)
 {
 	int64_t stale_at = signal_stale_at(s), next;
 	struct limit_reading reading;
@@ -202,19 +190,17 @@ static int64_t evaluate(struct engine *e, struct signal *s)
 		limit_returned(e, s, news.returned);
 	if (news.raised)
 		limit_raised(e, s, news.raised);
-	return !reading.bad && !reading.stale && stale_at < next ? stale_at : next;
+	return reading.bad || reading.stale ? next : earlier_ns(next, stale_at);
 }
 
 int64_t engine_limits(struct engine *e, struct signal *s)
 {
-	int64_t next, over;
+	int64_t next;
 
 	if (!s->item->limits.any)
 		return INT64_MAX;
-	next = evaluate(e, s);
-	over = shelved_until(e, s);
-	if (over < next)
-		next = over;
+	next = evaluate_limits(e, s);
+	next = earlier_ns(next, shelved_until(e, s));
 	show_limit(s);
 	return next;
 }
@@ -278,7 +264,7 @@ int engine_shelve(struct engine *e, struct signal *s, uint32_t seconds, const st
 		unshelve(e, s, who, entry.why);
 		return 0;
 	}
-	err = engine_shelf_put(e, s, &entry);
+	err = put_on_shelf(e, s, &entry);
 	if (err)
 		return err;
 	journal_deed(e, s, s->limit.alarm.kind, OWS_ALARM_SHELVED, who, entry.why);

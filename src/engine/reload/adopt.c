@@ -76,14 +76,6 @@ static void take_group(struct engine *e, unsigned group, struct engine *old, uns
 	}
 }
 
-static int new_lane(const struct engine *e, const struct adoption *plan, unsigned before)
-{
-	for (unsigned i = 0; i < e->lane_count; i++)
-		if (plan->ports[i] == (int)before)
-			return (int)i;
-	return -1;
-}
-
 /* --- Devices --------------------------------------------------------------------------------- */
 
 static void serve_device(struct engine *e, uint32_t index, struct lane *lane)
@@ -98,6 +90,7 @@ static void serve_device(struct engine *e, uint32_t index, struct lane *lane)
 	}
 }
 
+/* Groups that stay keep what they know of the device; the others have not been asked. */
 static void take_places(struct engine *e, uint32_t index, const struct engine *old, uint32_t before,
                         const struct adoption *plan)
 {
@@ -112,6 +105,7 @@ static void take_places(struct engine *e, uint32_t index, const struct engine *o
 	}
 }
 
+/* A device of the new table was there before if any of its signals was. */
 static void take_device(struct engine *e, uint32_t index, const struct engine *old,
                         const struct adoption *plan)
 {
@@ -133,18 +127,14 @@ static void take_device(struct engine *e, uint32_t index, const struct engine *o
 	d->moved_ns = was->moved_ns;
 	if (e->places)
 		take_places(e, index, old, before, plan);
-	lane = new_lane(e, plan, old->groups[was->group].first);
+	lane = plan->port_successors[old->groups[was->group].first];
 	if (lane >= 0)
 		d->group = e->lanes[lane].port->group;
 }
 
 static void take_devices(struct engine *e, const struct engine *old, const struct adoption *plan)
 {
-	int lanes[CONFIG_TARGETS_MAX];
-
-	for (unsigned i = 0; i < old->lane_count; i++)
-		lanes[i] = new_lane(e, plan, i);
-	engine_facts_adopt(e, old, lanes);
+	engine_facts_adopt(e, old, plan->port_successors);
 	for (uint32_t i = 0; i <= e->table.device_count; i++) {
 		struct device *d = &e->table.devices[i];
 
@@ -159,14 +149,14 @@ static void take_devices(struct engine *e, const struct engine *old, const struc
 /* --- Signals --------------------------------------------------------------------------------- */
 
 /* A value that another target gave is the last usable one at best. */
-static void take_source(struct engine *e, struct signal *s, const struct adoption *plan)
+static void take_source(struct signal *s, const struct adoption *plan)
 {
-	int lane = s->sample.target == 255 ? -1 : new_lane(e, plan, s->sample.target);
+	uint8_t before = s->sample.target;
 
-	if (s->sample.target == 255)
+	if (before == 255)
 		return;
 	s->sample.target = (uint8_t)s->lane;
-	if (lane == (int)s->lane)
+	if (plan->port_successors[before] == (int)s->lane)
 		return;
 	signal_forget_written(s);
 	s->read.held = false;
@@ -176,7 +166,8 @@ static void take_source(struct engine *e, struct signal *s, const struct adoptio
 	}
 }
 
-static void take_turn(struct engine *e, struct signal *s, const struct engine *old, uint32_t before)
+static void take_schedule(struct engine *e, struct signal *s, const struct engine *old,
+                          uint32_t before)
 {
 	uint32_t row = engine_row(s);
 	uint64_t read = wait_of(&old->wheel, before * 2),
@@ -196,11 +187,12 @@ static void take_turn(struct engine *e, struct signal *s, const struct engine *o
 
 static void take_signals(struct engine *e, const struct engine *old, const struct adoption *plan)
 {
-	for (uint32_t row = 0; row < e->table.count; row++) {
-		struct signal *s = &e->table.signals[row];
+	for (struct signal *s = e->table.signals; s < table_end(&e->table); s++) {
 		struct lane *lane = engine_lane(e, s);
+		uint32_t before = plan->rows[engine_row(s)];
+		const struct signal *was;
 
-		if (plan->rows[row] == ADOPT_NEW) {
+		if (before == ADOPT_NEW) {
 			s->read.known_ns = e->time.now_ns;
 			s->attrs.per_base = (uint32_t)e->time.period;
 			engine_origin_begin(e, s);
@@ -208,18 +200,19 @@ static void take_signals(struct engine *e, const struct engine *old, const struc
 			engine_write_check(e, s);
 			continue;
 		}
+		was = &old->table.signals[before];
 		lane->writers -= signal_writes(s);
-		if (signal_adopt(s, &old->table.signals[plan->rows[row]]))
-			engine_origin_carry(e, s, old, plan->rows[row] + 1);
+		if (signal_adopt(s, was))
+			engine_origin_carry(e, s, old, before + 1);
 		else
 			engine_origin_begin(e, s);
-		if (old->table.signals[plan->rows[row]].command.differs && !s->command.differs)
+		if (was->command.differs && !s->command.differs)
 			engine_compares_no_more(e, s, s->sample.quality);
 		if (!s->item->limits.any)
-			engine_limits_end(e, s, &old->table.signals[plan->rows[row]]);
+			engine_limits_end(e, s, was);
 		lane->writers += signal_writes(s);
-		take_source(e, s, plan);
-		take_turn(e, s, old, plan->rows[row]);
+		take_source(s, plan);
+		take_schedule(e, s, old, before);
 	}
 }
 
@@ -251,7 +244,7 @@ static void end_alarm(struct engine *e, uint32_t row, const struct alarm_item *w
 	struct alarm_item item = {.row = row};
 
 	item.occurrence = was->occurrence;
-	engine_alarm_rests(e, &item, e->time.now_ns);
+	engine_alarm_rests(e, &item);
 }
 
 static void take_alarm(struct engine *e, struct alarm_item *item, const struct engine *old,
@@ -326,7 +319,7 @@ void engine_adopt(struct engine *e, struct engine *old, const struct adoption *p
 			take_group(e, g, old, old->lanes[port].port->group, plan->successors);
 	}
 	for (unsigned i = 0; i < old->lane_count; i++)
-		if (new_lane(e, plan, i) < 0)
+		if (plan->port_successors[i] < 0)
 			guests_refuse(&old->lanes[i]);
 	take_devices(e, old, plan);
 	image_carry_journals(e->image, old->image, plan->successors);
@@ -344,7 +337,7 @@ void engine_adopt(struct engine *e, struct engine *old, const struct adoption *p
 		engine_publish_target(e, &e->lanes[i]);
 	engine_publish_counters(e);
 	engine_publish_devices(e);
-	engine_publish_driver(e, now_ns);
+	engine_publish_driver(e);
 }
 
 void engine_abandon(struct engine *old)

@@ -20,5 +20,5 @@ struct engine;
  */
 void engine_adopt(struct engine *e, struct engine *old, const struct adoption *plan,
                   int64_t now_ns);
-/* The buses that did not stay have ended: what guests had lent to them is theirs again. */
+/* The buses that did not stay have ended: guests get back what they had lent to those. */
 void engine_abandon(struct engine *old);

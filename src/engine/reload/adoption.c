@@ -101,29 +101,30 @@ static bool same_group(const struct config *config, unsigned a, const struct con
 static int plan_ports(struct adoption *plan, const struct config *config,
                       const struct config *before)
 {
-	bool *taken = calloc((size_t)before->target_count + 1, sizeof(*taken));
 	unsigned n;
 
 	plan->ports = calloc((size_t)config->target_count + 1, sizeof(*plan->ports));
-	if (!taken || !plan->ports) {
-		free(taken);
+	plan->port_successors = calloc((size_t)before->target_count + 1,
+	                               sizeof(*plan->port_successors));
+	if (!plan->ports || !plan->port_successors)
 		return -ENOMEM;
-	}
+	for (unsigned b = 0; b < before->target_count; b++)
+		plan->port_successors[b] = -1;
 	for (unsigned a = 0; a < config->target_count; a += n) {
 		n = ways_at(config, a);
 		for (unsigned i = 0; i < n; i++)
 			plan->ports[a + i] = -1;
 		for (unsigned b = 0; b < before->target_count; b += ways_at(before, b)) {
-			if (taken[b] || !same_group(config, a, before, b))
+			if (plan->port_successors[b] >= 0 || !same_group(config, a, before, b))
 				continue;
-			taken[b] = true;
-			for (unsigned i = 0; i < n; i++)
+			for (unsigned i = 0; i < n; i++) {
 				plan->ports[a + i] = (int)(b + i);
+				plan->port_successors[b + i] = (int)(a + i);
+			}
 			plan->kept_ports += n;
 			break;
 		}
 	}
-	free(taken);
 	return 0;
 }
 
@@ -145,5 +146,6 @@ void adoption_free(struct adoption *plan)
 	free(plan->rows);
 	free(plan->successors);
 	free(plan->ports);
+	free(plan->port_successors);
 	*plan = (struct adoption){0};
 }

@@ -17,6 +17,7 @@ struct adoption {
 	uint32_t *successors; /* the other way round: of each old row the new one, or ADOPT_NEW */
 	/* of each new target: the old one that goes on as it is; -1: it has to be opened anew */
 	int *ports;
+	int *port_successors; /* the other way round: of each old target the new one, or -1 */
 	uint32_t kept_rows;
 	unsigned kept_ports;
 };

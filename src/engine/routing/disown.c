@@ -7,34 +7,16 @@
 
 #include "src/engine/due.h"
 #include "src/engine/routing/disown.h"
+#include "src/engine/slots.h"
 
 static void disown_slot(struct lane *lane, struct slot *slot)
 {
-	struct engine *e = lane->engine;
-	struct signal *s;
-
 	slot->moved = true;
-	if (slot->row == TABLE_NO_ROW)
+	if (!slot_has_row(slot))
 		return;
-	s = &e->table.signals[slot->row];
-	switch (slot->purpose) {
-	case FOR_READ:
-		s->reading = false;
-		break;
-	case FOR_WRITE:
-		s->writing = false;
-		s->command.one_shot |= slot->one_shot;
-		break;
-	case FOR_ALARM:
-		s->alarming = false;
-		break;
-	case FOR_STRUCTURE:
-	case FOR_PROBE:
-	case FOR_RESTART:
-	case FOR_GUEST:
-		return;
-	}
-	signal_end(s, e->time.period, slot->begun);
+	if (slot->purpose == FOR_WRITE)
+		slot_signal(lane, slot)->command.one_shot |= slot->one_shot;
+	slot_leaves_signal(lane, slot);
 }
 
 void lane_disown(struct lane *lane, bool all)
@@ -42,12 +24,10 @@ void lane_disown(struct lane *lane, bool all)
 	for (unsigned i = 0; i < lane->depth; i++) {
 		struct slot *slot = &lane->lent.slots[i];
 
-		if (!slot->lent || slot->given_up || slot->moved ||
-		    slot->purpose == FOR_STRUCTURE || slot->purpose == FOR_PROBE ||
-		    slot->purpose == FOR_RESTART || slot->purpose == FOR_GUEST)
+		if (!slot->lent || slot->given_up || slot->moved)
 			continue;
-		if (all || (slot->row != TABLE_NO_ROW &&
-		            lane->engine->table.signals[slot->row].lane != lane->index))
+		if (all ? slot_has_row(slot) || slot->purpose == FOR_ALARM
+		        : slot_has_row(slot) && slot_signal(lane, slot)->lane != lane->index)
 			disown_slot(lane, slot);
 	}
 }
@@ -90,13 +70,10 @@ void lane_resume_reads(struct lane *lane)
 
 static void come_over(struct slot *slot, const uint32_t *successors)
 {
-	bool of_row = slot->purpose == FOR_READ || slot->purpose == FOR_WRITE ||
-	              slot->purpose == FOR_ALARM;
-
 	if (slot->purpose == FOR_GUEST)
 		return;
 	slot->moved = true;
-	slot->row = of_row && slot->row != TABLE_NO_ROW ? successors[slot->row] : TABLE_NO_ROW;
+	slot->row = slot_has_row(slot) ? successors[slot->row] : TABLE_NO_ROW;
 }
 
 void lane_adopt(struct lane *lane, struct lane *before, const uint32_t *successors)

@@ -5,16 +5,16 @@
 #include "src/engine/state.h"
 
 /*
- * Requests in flight whose signals another lane serves now (all: every one of them) count for
- * nothing but their slots any more.
+ * Requests in flight for signals that another lane serves now (all: every request of the table)
+ * count for nothing but their slots any more.
  */
 void lane_disown(struct lane *lane, bool all);
 /* The request of the alarm machine counts for nothing either; the machine begins anew. */
 void lane_disown_alarm(struct lane *lane);
 
 /*
- * The readings that are in flight when a reload begins (keep, before all is disowned); those whose
- * signals stay in this lane go on here (resume, when its signals are known).
+ * keep: mark the readings in flight when a reload begins, before all is disowned. resume: those for
+ * signals that stay in this lane go on here, when its signals are known.
  */
 void lane_keep_reads(struct lane *lane);
 void lane_resume_reads(struct lane *lane);

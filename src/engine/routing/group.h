@@ -6,5 +6,5 @@
 
 int engine_groups_init(struct engine *e, const struct engine_port *ports); /* 0 or -ENOMEM */
 void engine_groups_free(struct engine *e);
-/* A fact of the lane's way changed: the group's turn comes with the next engine_route(). */
+/* A fact of the lane's way changed: the next engine_route() acts on the group. */
 void engine_group_asks(struct lane *lane);

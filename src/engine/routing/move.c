@@ -54,7 +54,7 @@ static void move_signal(struct engine *e, struct signal *s, struct lane *to)
 	to->counters.moves_in++;
 }
 
-/* Once the old lane has disowned what it had of it. */
+/* Call it when the old lane has disowned its requests for the signal. */
 static void signal_goes_on(struct engine *e, struct signal *s)
 {
 	if (s->doubts) {
@@ -67,8 +67,7 @@ static void signal_goes_on(struct engine *e, struct signal *s)
 	engine_publish(e, s);
 }
 
-static void move_alarms(struct engine *e, struct lane *from, struct lane *to, uint32_t device,
-                        int64_t now_ns)
+static void move_alarms(struct engine *e, struct lane *from, struct lane *to, uint32_t device)
 {
 	for (uint32_t i = 0; i < e->alarm_count; i++) {
 		struct alarm_item *item = &e->alarm_items[i];
@@ -77,7 +76,7 @@ static void move_alarms(struct engine *e, struct lane *from, struct lane *to, ui
 			continue;
 		if (alarm_drop_item(&from->alarm, item) && from->lent.alarm)
 			from->lent.alarm->moved = true;
-		alarm_take_item(&to->alarm, item, now_ns);
+		alarm_take_item(&to->alarm, item, e->time.now_ns);
 		if (to->alarm.list.polls)
 			engine_alarm_polled(e, item);
 	}
@@ -112,8 +111,7 @@ static void report_move(struct engine *e, const struct device *d, const struct l
 	       d->count, d->count == 1 ? "" : "s", from->port->target, to->port->target, why);
 }
 
-void engine_move_device(struct engine *e, struct device *d, struct lane *to, const char *why,
-                        int64_t now_ns)
+void engine_move_device(struct engine *e, struct device *d, struct lane *to, const char *why)
 {
 	const uint32_t *rows = &e->table.device_rows[d->first];
 	struct lane *from = engine_lane(e, &e->table.signals[rows[0]]);
@@ -123,7 +121,7 @@ void engine_move_device(struct engine *e, struct device *d, struct lane *to, con
 	for (uint32_t k = 0; k < d->count; k++)
 		move_signal(e, &e->table.signals[rows[k]], to);
 	if (has_alarms(e, d))
-		move_alarms(e, from, to, (uint32_t)(d - e->table.devices), now_ns);
+		move_alarms(e, from, to, (uint32_t)(d - e->table.devices));
 	lane_disown(from, false);
 	engine_publish_target(e, to);
 	engine_doubts(e);
@@ -131,8 +129,7 @@ void engine_move_device(struct engine *e, struct device *d, struct lane *to, con
 		signal_goes_on(e, &e->table.signals[rows[k]]);
 }
 
-void engine_move_lane(struct engine *e, struct lane *from, struct lane *to, const char *why,
-                      int64_t now_ns)
+void engine_move_lane(struct engine *e, struct lane *from, struct lane *to, const char *why)
 {
 	uint32_t moved = 0;
 
@@ -145,7 +142,7 @@ void engine_move_lane(struct engine *e, struct lane *from, struct lane *to, cons
 		for (uint32_t k = 0; k < d->count; k++)
 			move_signal(e, &e->table.signals[e->table.device_rows[d->first + k]], to);
 		if (has_alarms(e, d))
-			move_alarms(e, from, to, i, now_ns);
+			move_alarms(e, from, to, i);
 		moved += d->count;
 	}
 	log_at(e->log, engine_group(e, to)->state.quiet ? LOG_LEVEL_DEBUG : LOG_LEVEL_NOTICE,

@@ -5,8 +5,6 @@
 #include "src/engine/state.h"
 
 /* All signals of the device, TABLE_NO_DEVICE's too (devices[device_count]). */
-void engine_move_device(struct engine *e, struct device *device, struct lane *to, const char *why,
-                        int64_t now_ns);
+void engine_move_device(struct engine *e, struct device *device, struct lane *to, const char *why);
 /* All signals of the lane; it is not open any more. */
-void engine_move_lane(struct engine *e, struct lane *from, struct lane *to, const char *why,
-                      int64_t now_ns);
+void engine_move_lane(struct engine *e, struct lane *from, struct lane *to, const char *why);

@@ -33,8 +33,7 @@ void engine_places_free(struct engine *e)
 {
 	free(e->places);
 	due_set_free(&e->routes);
-	if (e->route_wheel.wait)
-		due_wheel_free(&e->route_wheel);
+	due_wheel_free(&e->route_wheel);
 }
 
 static void know_presence(struct engine *e, uint32_t device, unsigned group,
@@ -65,12 +64,14 @@ static bool is_doubted(struct engine *e, uint32_t device, unsigned group)
 	       e->time.now_ns < place->since_ns + ROUTE_DOUBT_NS;
 }
 
+/* A claim is no evidence: it does not bring a device back that was seen to fail just now. */
 void engine_place_claimed(struct engine *e, const struct lane *lane, uint32_t device)
 {
 	if (e->places && device != TABLE_NO_DEVICE && !is_doubted(e, device, lane->port->group))
 		know_presence(e, device, lane->port->group, ROUTE_PRESENT);
 }
 
+/* One wire has a device: what another group was known to have of it may be old. */
 void engine_place_found(struct engine *e, const struct lane *lane, uint32_t device)
 {
 	if (!e->places || device == TABLE_NO_DEVICE || is_doubted(e, device, lane->port->group))
@@ -116,11 +117,12 @@ static bool next_probe(struct lane *lane, struct slot *slot)
 	return true;
 }
 
-bool engine_probe_ask(struct lane *lane, struct slot *slot, int64_t now_ns)
+bool engine_probe_ask(struct lane *lane, struct slot *slot)
 {
-	if (lane->probing || now_ns < lane->probe_ns || !next_probe(lane, slot))
-		return false;
-	if (!slot_lend(lane, slot, now_ns))
+	int64_t now_ns = lane->engine->time.now_ns;
+
+	if (lane->probing || now_ns < lane->probe_ns || !next_probe(lane, slot) ||
+	    !slot_lend(lane, slot))
 		return false;
 	due_set_take(&lane->probes, slot->row);
 	lane->probing = true;
@@ -129,21 +131,16 @@ bool engine_probe_ask(struct lane *lane, struct slot *slot, int64_t now_ns)
 	return true;
 }
 
-int64_t engine_probe_wait(const struct device *d)
-{
-	return d->probe_doublings < 6 ? RETRY_FIRST_NS << d->probe_doublings : RETRY_MAX_NS;
-}
-
 void engine_probe_done(struct engine *e, struct lane *lane, const struct slot *slot,
-                       const struct bus_answer *answer, int64_t now_ns)
+                       const struct bus_answer *answer)
 {
 	struct device *d = &e->table.devices[slot->row];
+	int64_t wait_ns;
 
 	lane->probing = false;
 	d->probing = false;
-	d->probe_ns = now_ns + engine_probe_wait(d);
-	if (d->probe_doublings < 6)
-		d->probe_doublings++;
+	retry_fail(&d->probe, 0, &wait_ns);
+	d->probe_ns = e->time.now_ns + wait_ns;
 	if (!answer->err)
 		engine_place_claimed(e, lane, slot->row);
 	else if (answer->err == -ENODEV)

@@ -18,10 +18,8 @@ void engine_place_found(struct engine *e, const struct lane *lane, uint32_t devi
 void engine_places_check(struct engine *e);
 
 /* Ask the bus for the next device to be looked for here; false: there is none, or not now. */
-bool engine_probe_ask(struct lane *lane, struct slot *slot, int64_t now_ns);
+bool engine_probe_ask(struct lane *lane, struct slot *slot);
 void engine_probe_done(struct engine *e, struct lane *lane, const struct slot *slot,
-                       const struct bus_answer *answer, int64_t now_ns);
-/* How long until the device is looked for again. */
-int64_t engine_probe_wait(const struct device *d);
+                       const struct bus_answer *answer);
 /* Nothing is looked for on this lane any more. */
 void engine_probes_forget(struct lane *lane);

@@ -2,7 +2,7 @@
 /* The rules that choose which wire serves a device, and which way of a wire is open. */
 #include "src/engine/routing/route.h"
 
-static int64_t later(int64_t a, int64_t b)
+static int64_t later_ns(int64_t a, int64_t b)
 {
 	return a > b ? a : b;
 }
@@ -50,11 +50,11 @@ static struct route_choice give_back(const struct route_place *places,
 
 		if (groups[g].state != ROUTE_UP || places[g].presence != ROUTE_PRESENT)
 			continue;
-		at = ROUTE_HOLD_NS + later(later(places[g].since_ns, groups[g].since_ns), moved_ns);
+		at = ROUTE_HOLD_NS +
+		     later_ns(later_ns(places[g].since_ns, groups[g].since_ns), moved_ns);
 		if (now_ns >= at)
 			return (struct route_choice){g, INT64_MAX, "its device is there again"};
-		if (at < choice.again_ns)
-			choice.again_ns = at;
+		choice.again_ns = earlier_ns(choice.again_ns, at);
 	}
 	return choice;
 }
@@ -100,8 +100,7 @@ struct route_choice route_path(const struct route_group *groups, unsigned count,
 			continue;
 		if (now_ns >= at)
 			return (struct route_choice){g, INT64_MAX, "the target is up again"};
-		if (at < choice.again_ns)
-			choice.again_ns = at;
+		choice.again_ns = earlier_ns(choice.again_ns, at);
 	}
 	return choice;
 }
@@ -153,7 +152,7 @@ static bool steady(const struct route_way *way, int64_t until_ns)
 	return way->up_ns && until_ns - way->up_ns >= ROUTE_STEADY_NS;
 }
 
-/* Who is next in turn when the open way has failed; -1: nobody can be. */
+/* The way that is next in turn when the open one has failed; -1: none can be. */
 static int successor(const struct route_bar *bar, const struct route_way *ways)
 {
 	for (unsigned i = 1; i < bar->count; i++) {
@@ -216,12 +215,11 @@ static struct route_step go_back(const struct route_bar *bar, const struct route
 
 		if (!ways[w].released || !ways[w].back)
 			continue;
-		at = later(ways[w].back_ns, bar->since_ns) + bar->hold_ns;
+		at = later_ns(ways[w].back_ns, bar->since_ns) + bar->hold_ns;
 		if (now_ns >= at)
 			return (struct route_step){ROUTE_LEAVE, w, INT64_MAX,
 			                           "the target is there again"};
-		if (at < step.again_ns)
-			step.again_ns = at;
+		step.again_ns = earlier_ns(step.again_ns, at);
 	}
 	return step;
 }

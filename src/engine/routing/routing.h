@@ -8,6 +8,6 @@
  * Act on what became known, of groups that ask for it and of devices. Not inside an answer's work.
  * True: there was something; time alone may lead to more, which engine_route_groups() says.
  */
-bool engine_route(struct engine *e, int64_t now_ns);
+bool engine_route(struct engine *e);
 /* All groups, for time may lead to a step too; returns when to be called again. */
-int64_t engine_route_groups(struct engine *e, int64_t now_ns);
+int64_t engine_route_groups(struct engine *e);

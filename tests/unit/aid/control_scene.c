@@ -35,7 +35,7 @@ static sem_t bell;
 static pthread_t engine;
 static struct porter *porter;
 static bool engine_ends, reloads, rings_news;
-static struct control_turn turns[OWS_CONTROLLERS];
+static struct control_message messages[OWS_CONTROLLERS];
 static uint32_t
 	serials[OWS_CONTROLLERS]; /* of the controllers that are inside: the test looks at them */
 static uint32_t joined, left;
@@ -48,13 +48,13 @@ static void ring(void *ctx)
 
 static void take_reload(void)
 {
-	struct control_turn turn;
+	struct control_message message;
 	unsigned place = 0;
 
 	if (!__atomic_load_n(&reloads, __ATOMIC_ACQUIRE))
 		return;
-	while (control_prepared(control_room, &place, &turn))
-		turns[turn.place] = turn;
+	while (control_prepared(control_room, &place, &message))
+		messages[message.place] = message;
 	__atomic_store_n(&reloads, false, __ATOMIC_RELEASE);
 }
 
@@ -68,18 +68,19 @@ static void ring_news(void)
 
 static void *run(void *arg)
 {
-	struct control_turn turn;
+	struct control_message message;
 
 	(void)arg;
 	while (!__atomic_load_n(&engine_ends, __ATOMIC_ACQUIRE)) {
 		sem_wait(&bell);
-		while (control_next(control_room, &turn)) {
-			if (turn.joins)
-				turns[turn.place] = turn;
-			__atomic_store_n(&serials[turn.place], turn.joins ? turn.who.serial : 0,
+		while (control_next(control_room, &message)) {
+			if (message.joins)
+				messages[message.place] = message;
+			__atomic_store_n(&serials[message.place],
+			                 message.joins ? message.controller.who.serial : 0,
 			                 __ATOMIC_RELEASE);
-			__atomic_fetch_add(turn.joins ? &joined : &left, 1, __ATOMIC_SEQ_CST);
-			control_done(control_room, &turn);
+			__atomic_fetch_add(message.joins ? &joined : &left, 1, __ATOMIC_SEQ_CST);
+			control_done(control_room, &message);
 		}
 		take_reload();
 		ring_news();
@@ -194,11 +195,11 @@ unsigned control_inside(void)
 	return control_joined() - control_left();
 }
 
-const struct control_turn *control_turn_of(uint32_t serial)
+const struct control_message *control_message_of(uint32_t serial)
 {
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
 		if (__atomic_load_n(&serials[i], __ATOMIC_ACQUIRE) == serial)
-			return &turns[i];
+			return &messages[i];
 	TEST_FAIL_MESSAGE("no controller with that serial");
 	return NULL;
 }

@@ -30,8 +30,8 @@ void control_ring_news(void);
 
 /* How many controllers the engine's thread has now, and how often one joined or left. */
 unsigned control_joined(void), control_left(void), control_inside(void);
-/* The turn in which the controller with that serial joined, or its memory of a reload. */
-const struct control_turn *control_turn_of(uint32_t serial);
+/* The message by which the controller with that serial joined, or its memory of a reload. */
+const struct control_message *control_message_of(uint32_t serial);
 uint64_t control_count(const char *name);
 void control_wait_count(const char *name, uint64_t count);
 

@@ -247,7 +247,7 @@ void plant_begin(struct plant *p, const char *scenario, const char *rio)
 		broken("no memory");
 	engine_controller_join(
 		p->engine, 0,
-		&(struct engine_controller){.memory = p->controller.memory, .who.serial = 1},
+		&(struct joining_controller){.memory = p->controller.memory, .who.serial = 1},
 		p->now);
 	sim_net_start(p->net, p->now);
 	p->engine_ns = p->now;

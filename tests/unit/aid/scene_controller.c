@@ -16,7 +16,7 @@ void scene_allow(struct scene *s, unsigned place, unsigned record)
 
 void scene_join_again(struct scene *s, unsigned place)
 {
-	struct engine_controller controller = {
+	struct joining_controller controller = {
 		.who = {.serial = s->tokens[place] ? s->tokens[place] : 1000 + place,
 	                .uid = s->uid,
 	                .pid = 100 + (int32_t)place},

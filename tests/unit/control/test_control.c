@@ -121,9 +121,9 @@ static void test_a_controller_gets_a_sealed_memory_a_bell_and_news(void)
 	TEST_ASSERT_EQUAL_UINT(OWS_STATE_LIVE, h->state);
 	/* the engine had it before the welcome went out, and who it is by the kernel's word */
 	TEST_ASSERT_EQUAL_UINT(1, control_inside());
-	TEST_ASSERT_EQUAL_INT(getpid(), control_turn_of(h->serial)->who.pid);
-	TEST_ASSERT_EQUAL_UINT(getuid(), control_turn_of(h->serial)->who.uid);
-	TEST_ASSERT_EQUAL_STRING("plc?", control_turn_of(h->serial)->who.name);
+	TEST_ASSERT_EQUAL_INT(getpid(), control_message_of(h->serial)->controller.who.pid);
+	TEST_ASSERT_EQUAL_UINT(getuid(), control_message_of(h->serial)->controller.who.uid);
+	TEST_ASSERT_EQUAL_STRING("plc?", control_message_of(h->serial)->controller.who.name);
 	/* the news ring when it waits for them */
 	news = (struct pollfd){.fd = client.fds[2], .events = POLLIN};
 	control_ring_news();
@@ -163,7 +163,7 @@ static void test_a_token_comes_back_as_it_was_presented(void)
 	send(fd, &hello, sizeof(hello), 0);
 	TEST_ASSERT_EQUAL(0, control_receive(fd, &welcome, fds));
 	TEST_ASSERT_EQUAL_MEMORY(hello.token, welcome.token, sizeof(hello.token));
-	TEST_ASSERT_EQUAL_MEMORY(hello.token, control_turn_of(welcome.serial)->token,
+	TEST_ASSERT_EQUAL_MEMORY(hello.token, control_message_of(welcome.serial)->controller.token,
 	                         sizeof(hello.token));
 	for (int i = 0; i < 3; i++)
 		close(fds[i]);
@@ -173,19 +173,19 @@ static void test_a_token_comes_back_as_it_was_presented(void)
 static void test_the_memory_can_be_neither_cut_nor_sealed_and_a_hole_harms_only_its_controller(void)
 {
 	struct control_client a, b;
-	const struct control_turn *turn;
+	const struct control_message *message;
 
 	TEST_ASSERT_EQUAL(0, control_join(&a, OWS_HELLO_COMMAND, "a"));
 	TEST_ASSERT_EQUAL(0, control_join(&b, OWS_HELLO_COMMAND, "b"));
-	turn = control_turn_of(a.welcome.serial);
+	message = control_message_of(a.welcome.serial);
 	TEST_ASSERT_EQUAL(-1, ftruncate(a.fds[0], 0));
 	TEST_ASSERT_EQUAL(-1, ftruncate(a.fds[0], (off_t)a.welcome.size * 2));
 	TEST_ASSERT_EQUAL(-1, fcntl(a.fds[0], F_ADD_SEALS, F_SEAL_WRITE));
 	TEST_ASSERT_EQUAL(0, fallocate(a.fds[0], FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, 0,
 	                               (off_t)a.welcome.size));
 	/* owsd reads zeros there, and answers in it */
-	TEST_ASSERT_EQUAL(-1, controller_next_dirty(&turn->memory, 0));
-	controller_taken(&turn->memory, 1, 7, 0);
+	TEST_ASSERT_EQUAL(-1, controller_next_dirty(&message->controller.memory, 0));
+	controller_taken(&message->controller.memory, 1, 7, 0);
 	TEST_ASSERT_EQUAL_HEX32(OWS_CONTROLLER_MAGIC,
 	                        ((struct ows_controller_header *)(void *)b.memory)->magic);
 	control_leave(&a);

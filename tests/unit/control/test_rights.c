@@ -207,7 +207,7 @@ static void test_the_memory_shows_what_its_controller_may_command(void)
 	                       ((struct ows_controller_header *)(void *)client.memory)->slot_off);
 	for (int i = 0; i < 4; i++)
 		TEST_ASSERT_EQUAL_UINT(0, slots[i].allowed);
-	TEST_ASSERT_EQUAL_HEX32(0, control_turn_of(client.welcome.serial)->rights[0]);
+	TEST_ASSERT_EQUAL_HEX32(0, control_message_of(client.welcome.serial)->controller.rights[0]);
 	control_close(); /* whose thread frees the rights of one that has left, at any time */
 	control_leave(&client);
 }

@@ -107,12 +107,12 @@ static void test_a_row_comes_in_its_period_and_not_before(void)
 
 	due_wheel_init(&wheel, 10, 0);
 	due_wheel_at(&wheel, 3, 5);
-	due_wheel_turn(&wheel, 4, see, &seen);
+	due_wheel_advance(&wheel, 4, see, &seen);
 	TEST_ASSERT_EQUAL_UINT(0, seen.count);
-	due_wheel_turn(&wheel, 5, see, &seen);
+	due_wheel_advance(&wheel, 5, see, &seen);
 	TEST_ASSERT_EQUAL_UINT(1, seen.count);
 	TEST_ASSERT_EQUAL_UINT32(3, seen.rows[0]);
-	due_wheel_turn(&wheel, 5000, see, &seen);
+	due_wheel_advance(&wheel, 5000, see, &seen);
 	TEST_ASSERT_EQUAL_UINT(1, seen.count);
 	due_wheel_free(&wheel);
 }
@@ -125,9 +125,9 @@ static void test_a_wait_longer_than_the_wheel_goes_round_more_than_once(void)
 	due_wheel_init(&wheel, 2, 0);
 	due_wheel_at(&wheel, 1, 3 * DUE_BUCKETS + 7);
 	for (uint64_t p = 1; p < 3 * DUE_BUCKETS + 7; p++)
-		due_wheel_turn(&wheel, p, see, &seen);
+		due_wheel_advance(&wheel, p, see, &seen);
 	TEST_ASSERT_EQUAL_UINT(0, seen.count);
-	due_wheel_turn(&wheel, 3 * DUE_BUCKETS + 7, see, &seen);
+	due_wheel_advance(&wheel, 3 * DUE_BUCKETS + 7, see, &seen);
 	TEST_ASSERT_EQUAL_UINT(1, seen.count);
 	due_wheel_free(&wheel);
 }
@@ -140,7 +140,7 @@ static void test_a_turn_over_many_periods_misses_nobody(void)
 	due_wheel_init(&wheel, 40, 0);
 	for (uint32_t row = 0; row < 40; row++)
 		due_wheel_at(&wheel, row, 1 + row * 97);
-	due_wheel_turn(&wheel, 10 * DUE_BUCKETS, see, &seen);
+	due_wheel_advance(&wheel, 10 * DUE_BUCKETS, see, &seen);
 	TEST_ASSERT_EQUAL_UINT(40, seen.count);
 	due_wheel_free(&wheel);
 }
@@ -156,9 +156,9 @@ static void test_a_new_wait_replaces_the_old_one_and_a_cancelled_one_is_gone(voi
 	due_wheel_at(&wheel, 1, 9);
 	due_wheel_at(&wheel, 2, 9);
 	due_wheel_cancel(&wheel, 1);
-	due_wheel_turn(&wheel, 8, see, &seen);
+	due_wheel_advance(&wheel, 8, see, &seen);
 	TEST_ASSERT_EQUAL_UINT(0, seen.count);
-	due_wheel_turn(&wheel, 9, see, &seen);
+	due_wheel_advance(&wheel, 9, see, &seen);
 	TEST_ASSERT_EQUAL_UINT(2, seen.count);
 	due_wheel_free(&wheel);
 }
@@ -170,7 +170,7 @@ static void test_a_wait_for_the_past_comes_with_the_next_period(void)
 
 	due_wheel_init(&wheel, 1, 100);
 	due_wheel_at(&wheel, 0, 3);
-	due_wheel_turn(&wheel, 101, see, &seen);
+	due_wheel_advance(&wheel, 101, see, &seen);
 	TEST_ASSERT_EQUAL_UINT(1, seen.count);
 	due_wheel_free(&wheel);
 }
@@ -193,7 +193,7 @@ static void test_the_next_period_for_which_a_row_waits_is_found(void)
 	TEST_ASSERT_EQUAL_UINT64(1030, due_wheel_next(&wheel, 1000, 1030));
 	due_wheel_cancel(&wheel, 4);
 	TEST_ASSERT_EQUAL_UINT64(1031, due_wheel_next(&wheel, 1000, 1500));
-	due_wheel_turn(&wheel, 1031, see, &seen);
+	due_wheel_advance(&wheel, 1031, see, &seen);
 	TEST_ASSERT_EQUAL_UINT(1, seen.count);
 	TEST_ASSERT_EQUAL_UINT64(1499, due_wheel_next(&wheel, 1031, 1500));
 	due_wheel_at(&wheel, 6, 1040 + 2 * DUE_BUCKETS);

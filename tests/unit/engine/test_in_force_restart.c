@@ -41,7 +41,7 @@ static void test_a_promise_that_comes_along_with_a_command_is_known_with_it(void
 	controller_set_all(false);
 	giving_beat(&s.controllers[1], BEAT_MS);
 	giving_set(&s.controllers[1], 1, OTHER);
-	engine_intake_signal(s.engine, &s.engine->table.signals[0], s.now_ns);
+	engine_intake_signal(s.engine, &s.engine->table.signals[0]);
 	restart_owsd();
 	come_back();
 	beat_on(SCENE_S);

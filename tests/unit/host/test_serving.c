@@ -44,33 +44,39 @@ void tearDown(void)
 		worker_destroy(workers[i]);
 }
 
+/* successors: of each worker of before its number after the reload, -1: it ends. */
+static void keep_counts(int *successors)
+{
+	serving_keep_counts(&after, &before, &(struct adoption){.port_successors = successors});
+}
+
 static void test_counts_of_workers_that_a_reload_ends_are_kept(void)
 {
-	uint64_t stalls = serving_stalls(&before), dropped = serving_dropped(&before);
+	struct serving_counts counts = serving_counts(&before);
 
-	TEST_ASSERT_EQUAL_UINT64(worker_stalls(workers[0]), stalls);
-	TEST_ASSERT_GREATER_THAN_UINT64(0, dropped);
+	TEST_ASSERT_EQUAL_UINT64(worker_stalls(workers[0]), counts.stalls);
+	TEST_ASSERT_GREATER_THAN_UINT64(0, counts.dropped);
 	after = (struct serving){.workers = &workers[1], .worker_count = 1};
-	serving_keep_counts(&after, &before, (const int[]){1});
-	TEST_ASSERT_EQUAL_UINT64(stalls, serving_stalls(&after));
-	TEST_ASSERT_EQUAL_UINT64(dropped, serving_dropped(&after));
+	keep_counts((int[]){-1, 0});
+	TEST_ASSERT_EQUAL_UINT64(counts.stalls, serving_counts(&after).stalls);
+	TEST_ASSERT_EQUAL_UINT64(counts.dropped, serving_counts(&after).dropped);
 }
 
 static void test_counts_of_workers_that_stay_are_counted_once(void)
 {
-	uint64_t stalls = serving_stalls(&before);
+	uint64_t stalls = serving_counts(&before).stalls;
 
 	after = (struct serving){.workers = workers, .worker_count = 2};
-	serving_keep_counts(&after, &before, (const int[]){0, 1});
-	TEST_ASSERT_EQUAL_UINT64(stalls, serving_stalls(&after));
+	keep_counts((int[]){0, 1});
+	TEST_ASSERT_EQUAL_UINT64(stalls, serving_counts(&after).stalls);
 	after = (struct serving){.workers = workers, .worker_count = 1};
-	serving_keep_counts(&after, &before, (const int[]){0});
-	TEST_ASSERT_EQUAL_UINT64(stalls, serving_stalls(&after));
+	keep_counts((int[]){0, -1});
+	TEST_ASSERT_EQUAL_UINT64(stalls, serving_counts(&after).stalls);
 	/* and kept over a second one */
 	before = after;
-	before.stalls_before += 7;
-	serving_keep_counts(&after, &before, (const int[]){0});
-	TEST_ASSERT_EQUAL_UINT64(stalls + 7, serving_stalls(&after));
+	before.before.stalls += 7;
+	keep_counts((int[]){0});
+	TEST_ASSERT_EQUAL_UINT64(stalls + 7, serving_counts(&after).stalls);
 }
 
 int main(void)
