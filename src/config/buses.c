@@ -59,21 +59,14 @@ static void bus_build(struct build *build, const struct rio_node *block)
 	config->bus_count++;
 }
 
-static bool is_bus(const struct rio_node *node)
-{
-	return node->kind == RIO_BLOCK && !strcmp(node->key, option_table[OPT_BUS].key);
-}
-
 void buses_build(struct build *build, const struct rio_node *driver)
 {
 	struct config *config = &build->box->config;
-	unsigned count = 0;
+	unsigned count = options_blocks(driver, OPT_BUS);
 
-	for (const struct rio_node *node = driver->first; node; node = node->next)
-		count += is_bus(node);
 	config->buses = build_take(build, count, sizeof(*config->buses));
 	for (const struct rio_node *node = driver->first; node && config->buses; node = node->next)
-		if (is_bus(node))
+		if (option_is_block(node, OPT_BUS))
 			bus_build(build, node);
 }
 

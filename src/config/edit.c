@@ -106,15 +106,9 @@ static int edit_put_value(struct rio **rio, struct rio_node *block, enum option 
 	const char *key = option_table[option].key;
 	const struct rio_node *old = rio_child(block, key);
 	bool as_word = old ? old->kind == RIO_WORD : option_table[option].kind != OPTION_TEXT;
-	char *quoted;
-	int err;
 
-	if (as_word && is_plain_word(value))
-		return rio_set(rio, block, key, value);
-	quoted = rio_quote(value);
-	err = quoted ? rio_set(rio, block, key, quoted) : -ENOMEM;
-	rio_quote_free(quoted);
-	return err;
+	return as_word && is_plain_word(value) ? rio_set(rio, block, key, value)
+	                                       : rio_set_text(rio, block, key, value);
 }
 
 static int apply(struct rio **rio, struct rio_node *block, enum option option, const char *value)
@@ -203,7 +197,7 @@ static int follow_name(struct rio **rio, const char *from, const char *to)
 			return -ENOMEM;
 		quoted = rio_quote(text);
 		err = quoted ? rio_replace(rio, node, quoted) : -ENOMEM;
-		rio_quote_free(quoted);
+		free(quoted);
 		free(text);
 		/* the nodes are new: look again for others */
 		return err || !strcmp(from, to) ? err : follow_name(rio, from, to);
@@ -325,14 +319,11 @@ int edit_unset(struct rio **rio, const char *name, const char *const *keys, unsi
 int edit_count(struct rio **rio)
 {
 	struct rio_node *driver = edit_driver(*rio);
-	unsigned items = 0;
 	char text[16];
 
 	if (!driver || !rio_child(driver, option_table[OPT_ITEM_COUNT].key))
 		return 0;
-	for (const struct rio_node *node = driver->first; node; node = node->next)
-		items += node->kind == RIO_BLOCK && !strcmp(node->key, option_table[OPT_ITEM].key);
-	snprintf(text, sizeof(text), "%u", items);
+	snprintf(text, sizeof(text), "%u", options_blocks(driver, OPT_ITEM));
 	return edit_put_value(rio, driver, OPT_ITEM_COUNT, text);
 }
 
@@ -363,8 +354,8 @@ static char *item_text(const char *name, const char *path, bool bits)
 	             quoted_name, RIO_KEY_WIDTH - 1, option_table[OPT_PATH].key, quoted_path,
 	             bits ? as_bits : as_words) < 0)
 		text = NULL;
-	rio_quote_free(quoted_name);
-	rio_quote_free(quoted_path);
+	free(quoted_name);
+	free(quoted_path);
 	return text;
 }
 

@@ -17,10 +17,16 @@ struct rio_node *edit_driver(const struct rio *rio)
 	return node && node->kind == RIO_BLOCK ? node : NULL;
 }
 
-struct rio_node *edit_item(const struct rio *rio, const char *name)
+struct rio_node *edit_items(const struct rio *rio)
 {
 	struct rio_node *driver = edit_driver(rio);
-	struct rio_node *item = driver ? rio_child(driver, option_table[OPT_ITEM].key) : NULL;
+
+	return driver ? rio_child(driver, option_table[OPT_ITEM].key) : NULL;
+}
+
+struct rio_node *edit_item(const struct rio *rio, const char *name)
+{
+	struct rio_node *item = edit_items(rio);
 
 	for (; item; item = rio_next(item)) {
 		const struct rio_node *found = rio_child(item, option_table[OPT_NAME].key);
@@ -72,8 +78,7 @@ static struct rio_node *find_bus(const struct rio_node *driver, const char *targ
 
 void edit_no_item(const struct rio *rio, const char *name, struct config_report *report)
 {
-	const struct rio_node *driver = edit_driver(rio);
-	const struct rio_node *item = driver ? rio_child(driver, option_table[OPT_ITEM].key) : NULL;
+	const struct rio_node *item = edit_items(rio);
 	unsigned best = text_too_far(name);
 	const char *nearest = NULL;
 
@@ -126,7 +131,7 @@ static int make_bus(struct rio **rio, struct rio_node *driver, const char *targe
 		err = rio_add(rio, driver, text);
 		free(text);
 	}
-	rio_quote_free(quoted);
+	free(quoted);
 	return err;
 }
 

@@ -10,8 +10,9 @@
 #define EDIT_DRIVER "OwsDrv"
 #define EDIT_BUS "Bus:"
 
-/* The driver's block, and an item; NULL: there is none. */
+/* The driver's block; its first item, rio_next() has the others; one by its name. NULL: none. */
 struct rio_node *edit_driver(const struct rio *rio);
+struct rio_node *edit_items(const struct rio *rio);
 struct rio_node *edit_item(const struct rio *rio, const char *name);
 /* Report that there is no such item, with the one whose name is next to it. */
 void edit_no_item(const struct rio *rio, const char *name, struct config_report *report);

@@ -32,8 +32,7 @@ static bool has_device(const struct rio_node *item, const uint8_t rom[ROM_LEN],
 static struct rio_node *edit_device_find(const struct rio *rio, const uint8_t rom[ROM_LEN],
                                          struct item_path *in)
 {
-	struct rio_node *driver = edit_driver(rio);
-	struct rio_node *item = driver ? rio_child(driver, option_table[OPT_ITEM].key) : NULL;
+	struct rio_node *item = edit_items(rio);
 
 	while (item && !has_device(item, rom, in))
 		item = rio_next(item);
@@ -79,18 +78,14 @@ static int replace_in(struct rio **rio, struct rio_node *item, const struct item
                       const uint8_t after[ROM_LEN], const char *location,
                       struct config_report *report)
 {
-	char text[PATH_LEN_MAX + 64], *quoted;
-	int err;
+	char text[PATH_LEN_MAX + 64];
 
 	if (!new_path(in, after, location, text, sizeof(text))) {
 		report_error(report, (struct place){0}, "the path \"%s\" would be too long",
 		             in->text);
 		return -EINVAL;
 	}
-	quoted = rio_quote(text);
-	err = quoted ? rio_set(rio, item, option_table[OPT_PATH].key, quoted) : -ENOMEM;
-	rio_quote_free(quoted);
-	return err;
+	return rio_set_text(rio, item, option_table[OPT_PATH].key, text);
 }
 
 int edit_replace(struct rio **rio, const uint8_t before[ROM_LEN], const uint8_t after[ROM_LEN],

@@ -28,11 +28,10 @@ static const char *check_url(const char *url)
 
 void influx_build(struct build *build, const struct rio_node *block)
 {
-	static const struct rio_node none;
 	struct config_influx *influx = &build->box->config.influx;
 	struct option_value values[OPTION_COUNT_ALL];
 
-	options_read(block ? block : &none, PLACE_INFLUX, values, build->report);
+	options_read(block, PLACE_INFLUX, values, build->report);
 	influx->given = block != NULL;
 	influx->url = text_key(build, values, OPT_INFLUX_URL, check_url);
 	if (block && !influx->url)

@@ -3,8 +3,7 @@
 #include "src/config/limits.h"
 #include "src/config/build.h"
 
-/* From the least to the greatest. */
-static const enum option limit_options[CONFIG_LIMITS] = {
+const enum option limit_options[CONFIG_LIMITS] = {
 	[CONFIG_LIMIT_LL] = OPT_LIMIT_LL,
 	[CONFIG_LIMIT_L] = OPT_LIMIT_L,
 	[CONFIG_LIMIT_H] = OPT_LIMIT_H,

@@ -92,15 +92,6 @@ static void build_driver(struct build *build, const struct option_value *values)
 		targets_add(build, option_table[OPT_TARGET_NAME].preset, (struct place){0});
 }
 
-static unsigned count_items(const struct rio_node *driver)
-{
-	unsigned count = 0;
-
-	for (const struct rio_node *node = driver->first; node; node = node->next)
-		count += node->kind == RIO_BLOCK && !strcmp(node->key, option_table[OPT_ITEM].key);
-	return count;
-}
-
 static struct place name_place(const struct rio_node *block)
 {
 	const struct rio_node *name = rio_child(block, option_table[OPT_NAME].key);
@@ -112,7 +103,7 @@ static void build_items(struct build *build, const struct rio_node *driver,
                         const struct option_value *count)
 {
 	struct config *config = &build->box->config;
-	unsigned items = count_items(driver);
+	unsigned items = options_blocks(driver, OPT_ITEM);
 	struct place *names;
 
 	if (items > CONFIG_ITEMS_MAX) {
@@ -126,14 +117,11 @@ static void build_items(struct build *build, const struct rio_node *driver,
 		free(names);
 		return;
 	}
-	for (const struct rio_node *node = driver->first; node; node = node->next) {
-		if (node->kind != RIO_BLOCK)
-			continue;
-		if (!strcmp(node->key, option_table[OPT_ITEM].key)) {
+	for (const struct rio_node *node = driver->first; node; node = node->next)
+		if (option_is_block(node, OPT_ITEM)) {
 			names[config->item_count] = name_place(node);
 			item_build(build, node, &config->items[config->item_count++]);
 		}
-	}
 	items_check(build, names);
 	if (count->given && count->number != items)
 		report_warning(build->report, count->node->value_at,

@@ -152,12 +152,11 @@ static void check_together(struct build *build, const struct rio_node *block,
 
 void mqtt_build(struct build *build, const struct rio_node *block)
 {
-	static const struct rio_node none;
 	struct config_mqtt *mqtt = &build->box->config.mqtt;
 	struct option_value values[OPTION_COUNT_ALL];
 	const struct rio_node *broker;
 
-	options_read(block ? block : &none, PLACE_MQTT, values, build->report);
+	options_read(block, PLACE_MQTT, values, build->report);
 	mqtt->given = block != NULL;
 	broker = values[OPT_MQTT_BROKER].node ? values[OPT_MQTT_BROKER].node : block;
 	mqtt->broker = text_key(build, values, OPT_MQTT_BROKER, text_is_short);

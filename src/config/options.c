@@ -32,6 +32,20 @@ int option_find(enum option_place place, const char *key)
 	return -1;
 }
 
+bool option_is_block(const struct rio_node *node, enum option option)
+{
+	return node->kind == RIO_BLOCK && !strcmp(node->key, option_table[option].key);
+}
+
+unsigned options_blocks(const struct rio_node *driver, enum option option)
+{
+	unsigned count = 0;
+
+	for (const struct rio_node *node = driver->first; node; node = node->next)
+		count += option_is_block(node, option);
+	return count;
+}
+
 /* The fields of OwsDrv's dialog whose words are far from those of the keys, as they begin. */
 static const struct {
 	const char *words;
@@ -265,7 +279,7 @@ void options_read(const struct rio_node *block, enum option_place place,
 		if (def->preset)
 			parse_kind(def, def->preset, &values[i].number);
 	}
-	for (const struct rio_node *node = block->first; node; node = node->next) {
+	for (const struct rio_node *node = block ? block->first : NULL; node; node = node->next) {
 		int option = option_find(place, node->key);
 
 		if (option >= 0)

@@ -57,6 +57,11 @@ int option_find(enum option_place place, const char *key);
 #define OPTION_NEAREST 200
 const char *option_nearest(enum option_place place, const char *key, char text[OPTION_NEAREST]);
 
+/* Is the node a block of that key? */
+bool option_is_block(const struct rio_node *node, enum option option);
+/* How many of them the driver's block has. */
+unsigned options_blocks(const struct rio_node *driver, enum option option);
+
 /* A key of a block as the reader found it. */
 struct option_value {
 	const struct rio_node *node; /* NULL: absent */
@@ -71,8 +76,8 @@ static inline int64_t option_ns(const struct option_value *value)
 }
 
 /*
- * Check the keys of a block against the table and put the values into values, which has
- * OPTION_COUNT_ALL entries: unknown keys warn; keys that stand twice and values that cannot be
+ * Check the keys of a block (NULL: it is absent) against the table and put the values into values,
+ * which has OPTION_COUNT_ALL entries: unknown keys warn; keys that stand twice and values that cannot be
  * are errors.
  */
 void options_read(const struct rio_node *block, enum option_place place,

@@ -135,13 +135,12 @@ static bool take_record(struct build *build, const struct option_value *value,
 
 void recorder_build(struct build *build, const struct rio_node *block)
 {
-	static const struct rio_node none;
 	struct config_recorder *recorder = &build->box->config.recorder;
 	struct option_value values[OPTION_COUNT_ALL];
 	const struct option_value *record = &values[OPT_RECORDER_RECORD];
 	const char *text = option_table[OPT_RECORDER_RECORD].preset;
 
-	options_read(block ? block : &none, PLACE_RECORDER, values, build->report);
+	options_read(block, PLACE_RECORDER, values, build->report);
 	recorder->given = block != NULL;
 	recorder->directory = text_key(build, values, OPT_RECORDER_DIRECTORY, text_is_path);
 	recorder->keep_days = (unsigned)values[OPT_RECORDER_KEEP].number;

@@ -33,11 +33,6 @@ char *rio_quote(const char *text)
 	return quoted;
 }
 
-void rio_quote_free(char *quoted)
-{
-	free(quoted);
-}
-
 /* Replace the bytes begin to end by those of put. */
 static int splice_bytes(struct rio **rio, size_t begin, size_t end, const char *put, size_t put_len)
 {
@@ -230,6 +225,15 @@ int rio_set(struct rio **rio, struct rio_node *block, const char *key, const cha
 		return -ENOMEM;
 	err = add_behind(rio, block, after, line);
 	free(line);
+	return err;
+}
+
+int rio_set_text(struct rio **rio, struct rio_node *block, const char *key, const char *text)
+{
+	char *quoted = rio_quote(text);
+	int err = quoted ? rio_set(rio, block, key, quoted) : -ENOMEM;
+
+	free(quoted);
 	return err;
 }
 

@@ -7,9 +7,8 @@
 #define RIO_KEY_WIDTH 24 /* REXYGEN puts values in this column behind the key's first letter */
 #define RIO_WRAP 50 /* a longer string continues as another string at the start of the next line */
 
-/* text as a quoted string, wrapped if it is long; NULL: no memory. Free with rio_quote_free(). */
+/* text as a quoted string (malloc), wrapped if it is long; NULL: no memory. */
 char *rio_quote(const char *text);
-void rio_quote_free(char *quoted);
 
 /*
  * Changes work on the text: they return a new document in *rio, the old one and all its nodes are
@@ -21,6 +20,8 @@ void rio_quote_free(char *quoted);
  * strings first.
  */
 int rio_set(struct rio **rio, struct rio_node *block, const char *key, const char *value);
+/* The same with a text, which is quoted here. */
+int rio_set_text(struct rio **rio, struct rio_node *block, const char *key, const char *text);
 /* Put another value in the place of a key's: the same. */
 int rio_replace(struct rio **rio, const struct rio_node *node, const char *value);
 /* Add lines after the block's last child: `Key Value`, or a whole block. Indents every line. */

@@ -45,11 +45,10 @@ static void take_proxy(struct build *build, const struct option_value *values,
 
 void web_build(struct build *build, const struct rio_node *block)
 {
-	static const struct rio_node none;
 	struct config_web *web = &build->box->config.web;
 	struct option_value values[OPTION_COUNT_ALL];
 
-	options_read(block ? block : &none, PLACE_WEB, values, build->report);
+	options_read(block, PLACE_WEB, values, build->report);
 	web->given = block != NULL;
 	web->listen = text_key(build, values, OPT_WEB_LISTEN, NULL);
 	if (web->listen)

@@ -19,21 +19,6 @@
 #include "src/shm/segment.h"
 #include "src/text/distance.h"
 
-/* Warnings are the business of owsd --check, unless the file is edited. */
-static void print_errors(void *ctx, bool is_error, const char *message)
-{
-	(void)ctx;
-	if (is_error)
-		ctl_tell("%s", message);
-}
-
-static void print_report(void *ctx, bool is_error, const char *message)
-{
-	(void)ctx;
-	(void)is_error;
-	ctl_tell("%s", message);
-}
-
 /* All errors but -ENOMEM are already printed. */
 static int status_of(int err)
 {
@@ -69,7 +54,8 @@ static int config_show(const struct config *config, char *const *names, int coun
 /* list and show: both with --json are the same. */
 static int list(struct ctl *ctl, const char *file, bool whole, char *const *patterns, int count)
 {
-	struct config_report report = {.line = print_errors};
+	/* warnings are the business of owsd --check, unless the file is edited */
+	struct config_report report = {.line = ctl_report};
 	struct config *config;
 	int err = config_load(file, &report, &config), status;
 
@@ -159,7 +145,7 @@ static void hint(const char *file)
 
 static int change(const char *file, const char *action, char **words, unsigned count)
 {
-	struct config_report report = {.line = print_report};
+	struct config_report report = {.line = ctl_report, .ctx = &report};
 	struct rio *rio;
 	int lock = edit_lock(file, &report), err;
 

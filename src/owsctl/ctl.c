@@ -16,6 +16,7 @@
 #include "src/shm/place.h"
 #include "src/shm/segment.h"
 #include "src/show/names.h"
+#include "src/show/text.h"
 #include "src/show/when.h"
 #include "src/text/printable.h"
 #include "src/text/refused.h"
@@ -30,33 +31,20 @@ __attribute__((format(printf, 1, 0))) static void print_error(const char *format
 	free(text);
 }
 
-void ctl_tell(const char *format, ...)
+int ctl_say(int status, const char *format, ...)
 {
 	va_list args;
 
 	va_start(args, format);
 	print_error(format, args);
 	va_end(args);
+	return status;
 }
 
-int ctl_fail(const char *format, ...)
+void ctl_report(void *ctx, bool is_error, const char *message)
 {
-	va_list args;
-
-	va_start(args, format);
-	print_error(format, args);
-	va_end(args);
-	return CTL_FAILED;
-}
-
-int ctl_nothing(const char *format, ...)
-{
-	va_list args;
-
-	va_start(args, format);
-	print_error(format, args);
-	va_end(args);
-	return CTL_NOTHING;
+	if (is_error || ctx)
+		ctl_tell("%s", message);
 }
 
 int ctl_usage(const struct ctl *ctl, const char *format, ...)
@@ -382,6 +370,19 @@ int ctl_unknown(struct ows *h, const char *name)
 	if (names_nearest(h, name, nearest))
 		return ctl_fail("there is no %s; did you mean %s?", ctl_word(name), nearest);
 	return ctl_fail("there is no %s: owsctl list shows the names", ctl_word(name));
+}
+
+void ctl_value(const char *text, size_t len)
+{
+	static char clean[2 * CTL_VALUE];
+
+	if (isatty(STDOUT_FILENO)) {
+		text_clean(text, len, CTL_VALUE, clean, sizeof(clean));
+		puts(clean);
+	} else {
+		fwrite(text, 1, len, stdout);
+		putchar('\n');
+	}
 }
 
 bool ctl_reader_gone(void)

@@ -62,15 +62,17 @@ int64_t ctl_option_seconds(const struct ctl *ctl, int c);
 /* Print what a verb takes: at most a screen. */
 void ctl_help(const struct verb *verb, FILE *out);
 
-/* Print on stderr, after "owsctl: ", made printable: a text may have bytes from elsewhere. */
-void ctl_tell(const char *format, ...) __attribute__((format(printf, 1, 2)));
-int ctl_usage(const struct ctl *ctl, const char *format, ...) /* returns CTL_USAGE */
-	__attribute__((format(printf, 2, 3)));
-int ctl_fail(const char *format, ...) /* returns CTL_FAILED */
-	__attribute__((format(printf, 1, 2)));
-
-int ctl_nothing(const char *format, ...) /* returns CTL_NOTHING */
-	__attribute__((format(printf, 1, 2)));
+/*
+ * Print on stderr, after "owsctl: ", made printable: a text may have bytes from elsewhere. Returns
+ * the status.
+ */
+int ctl_say(int status, const char *format, ...) __attribute__((format(printf, 2, 3)));
+#define ctl_tell(...) ctl_say(CTL_DONE, __VA_ARGS__)
+#define ctl_fail(...) ctl_say(CTL_FAILED, __VA_ARGS__)
+/* The same, and after it the usage of the verb. Returns CTL_USAGE. */
+int ctl_usage(const struct ctl *ctl, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* As config_report.line (src/config): prints errors; where ctx is not NULL, warnings too. */
+void ctl_report(void *ctx, bool is_error, const char *message);
 
 /* Run ctl->verb with these words, its own name first. Returns the exit status. */
 int ctl_run(struct ctl *ctl, int argc, char **argv);
@@ -100,6 +102,12 @@ void ctl_nap(void);
 void ctl_sleep(struct ows *h, uint32_t *news, int64_t timeout_ns);
 /* Print that there is no such name, with the nearest name; returns CTL_FAILED. */
 int ctl_unknown(struct ows *h, const char *name);
+/*
+ * Print the bytes of a value, CTL_VALUE at most, on a line: a program gets them as they are, a
+ * terminal without control characters.
+ */
+#define CTL_VALUE 65536
+void ctl_value(const char *text, size_t len);
 /* Has the reader of stdout closed its end? */
 bool ctl_reader_gone(void);
 /*

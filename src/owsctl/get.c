@@ -2,29 +2,12 @@
 /* owsctl get: values alone, or as JSON. */
 #include <errno.h>
 #include <getopt.h>
-#include <unistd.h>
 
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/rows.h"
 #include "src/owsctl/verbs.h"
 #include "src/show/names.h"
 #include "src/show/reading.h"
-#include "src/show/text.h"
-#include "src/signal/value.h"
-
-/* Bytes from the bus go to a program as they are, and to a terminal without control characters. */
-static void print_text(const struct reading *reading)
-{
-	static char clean[READING_TEXT];
-
-	if (isatty(STDOUT_FILENO)) {
-		text_clean(reading->text, reading->len, READING_TEXT, clean, sizeof(clean));
-		puts(clean);
-	} else {
-		fwrite(reading->text, 1, reading->len, stdout);
-		putchar('\n');
-	}
-}
 
 static int worse(int a, int b)
 {
@@ -34,19 +17,11 @@ static int worse(int a, int b)
 /* A set takes a moment: say what is on its way, while the value is still the one before. */
 static void say_command(struct ows *h, const char *name, int id, const struct reading *reading)
 {
-	enum ows_type type = (enum ows_type)reading->value.type;
 	char text[VALUE_TEXT_MAX];
-	struct ows_command command;
-	int64_t value;
 
-	if (type == OWS_STRING || ows_command(h, id, &command) || !command.given)
-		return;
-	value = value_is_float(type) ? value_of_double(command.number) : command.integer;
-	if (value_is_float(type) ? command.number == reading->value.number
-	                         : command.integer == reading->value.integer)
+	if (reading->err || !command_differs(h, id, reading, text))
 		return;
 	ctl_flush_lines();
-	value_to_text(type, value, text);
 	ctl_tell("%s: commanded %s, and the device does not have it%s", name, text,
 	         reading->value.quality == OWS_Q_DIFFERS ? "" : " yet");
 }
@@ -68,7 +43,7 @@ static int get_one(const struct ctl *ctl, struct ows *h, const char *name, struc
 		return ctl_fail("%s: %s", name, error_text(reading->err));
 	is_value = names_info(h, ctl->instance, name, &info);
 	reading_round(reading, is_value ? info.decimals : -1);
-	print_text(reading);
+	ctl_value(reading->text, reading->len);
 	if (is_value)
 		say_command(h, name, id, reading);
 	if (reading_good(reading))

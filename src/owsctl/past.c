@@ -21,15 +21,10 @@ static const char *advice(int err)
 	                        : "";
 }
 
-static void ignore(void *ctx, bool is_error, const char *message)
-{
-	(void)ctx, (void)is_error, (void)message;
-}
-
 /* Where the recorder of the instance keeps it: as Directory says, or the default. */
 static int find_place(const char *instance, char place[PLACE])
 {
-	struct config_report report = {.line = ignore};
+	struct config_report silent = {0};
 	char file[INSTANCE_FIELD];
 	struct config *config;
 	int err = ows_history_place(instance, place, PLACE);
@@ -37,7 +32,7 @@ static int find_place(const char *instance, char place[PLACE])
 	if (err == -EINVAL)
 		return err;
 	instance_config(instance, file);
-	if (config_load(file, &report, &config))
+	if (config_load(file, &silent, &config))
 		return err;
 	if (config->recorder.directory)
 		err = snprintf(place, PLACE, "%s", config->recorder.directory) < PLACE
@@ -103,6 +98,12 @@ int past_unknown(struct ows_history *h, const char *name)
 	if (nearest)
 		return ctl_fail("the history has no signal %s; did you mean %s?", name, nearest);
 	return ctl_fail("the history has no signal %s", ctl_word(name));
+}
+
+const char *past_word(const struct ows_history_item *item)
+{
+	return item->known ? ows_quality_text(item->quality)
+	                   : ows_history_reason_text(item->reason);
 }
 
 int past_fail(const char *what, int err)

@@ -18,5 +18,7 @@ int past_signal(struct ows_history *h, const char *instance, const char *name,
                 struct ows_history_signal *known);
 /* Print that it has no such signal, with the nearest name; returns CTL_FAILED. */
 int past_unknown(struct ows_history *h, const char *name);
+/* The word for its quality; of a gap its reason. */
+const char *past_word(const struct ows_history_item *item);
 /* Say why something of it could not be read; returns CTL_FAILED. */
 int past_fail(const char *what, int err);

@@ -1,30 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* owsctl read: the value of a path of a target. */
 #include <getopt.h>
-#include <unistd.h>
 
 #include "src/owsctl/open.h"
 #include "src/owsctl/verbs.h"
 #include "src/show/json.h"
-#include "src/show/text.h"
 
 #define TEXT_MAX 65536
 
 static char text[TEXT_MAX + 1];
-
-/* Bytes go to a program as they are, and to a terminal without control characters. */
-static void print_text(size_t len)
-{
-	static char clean[TEXT_MAX * 2];
-
-	if (isatty(STDOUT_FILENO)) {
-		text_clean(text, len, TEXT_MAX, clean, sizeof(clean));
-		puts(clean);
-	} else {
-		fwrite(text, 1, len, stdout);
-		putchar('\n');
-	}
-}
 
 static void read_print_json(struct json *json, const char *path, const struct bus_answer *answer,
                             size_t len)
@@ -68,7 +52,7 @@ static int read_one(const struct ctl *ctl, struct json *json, struct target *tar
 	if (ctl->json)
 		read_print_json(json, given, &ask.answer, len);
 	else if (!err)
-		print_text(len);
+		ctl_value(text, len);
 	if (!err)
 		return CTL_DONE;
 	/* keep the order of stderr and stdout where both go to one place */

@@ -122,28 +122,28 @@ void rows_free(struct rows *rows)
 	rows->count = 0;
 }
 
-static void read_command(struct ows *h, struct row *row, const struct reading *reading)
+bool command_differs(struct ows *h, int id, const struct reading *reading,
+                     char commanded[VALUE_TEXT_MAX])
 {
 	enum ows_type type = (enum ows_type)reading->value.type;
 	struct ows_command command;
-	int err = ows_command(h, row->id, &command);
+	int err = ows_command(h, id, &command);
 	int64_t value;
 
-	row->commanded[0] = '\0';
-	row->differs = false;
+	commanded[0] = '\0';
 	if ((err && err != -ESTALE) || !command.given)
-		return;
+		return false;
 	value = value_is_float(type) ? value_of_double(command.number) : command.integer;
-	value_to_text(type, value, row->commanded);
-	row->differs = value_is_float(type) ? command.number != reading->value.number
-	                                    : command.integer != reading->value.integer;
+	value_to_text(type, value, commanded);
+	return value_is_float(type) ? command.number != reading->value.number
+	                            : command.integer != reading->value.integer;
 }
 
 void row_read(struct ows *h, struct row *row, int64_t now_ns, struct reading *reading)
 {
 	reading_get(h, row->id, now_ns, reading);
 	row->alarms = standing_of(h, row->id);
-	read_command(h, row, reading);
+	row->differs = command_differs(h, row->id, reading, row->commanded);
 }
 
 const char *row_quality(const struct row *row, const struct reading *reading,

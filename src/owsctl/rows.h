@@ -52,6 +52,13 @@ void rows_collect(struct ows *h, char *const *patterns, int pattern_count, bool 
                   struct rows *rows);
 void rows_free(struct rows *rows);
 
+/*
+ * Was something else commanded than what was read of the id? commanded is the command as a text,
+ * "": there is none, or it is a string.
+ */
+bool command_differs(struct ows *h, int id, const struct reading *reading,
+                     char commanded[VALUE_TEXT_MAX]);
+
 /* Read the value of a row, the state of its alarms, and its command. */
 void row_read(struct ows *h, struct row *row, int64_t now_ns, struct reading *reading);
 /* Can one of the signals have alarms? */

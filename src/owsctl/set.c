@@ -26,32 +26,17 @@ struct order {
 	bool confirmed;
 };
 
-static const char *range(enum ows_type type)
-{
-	switch (type) {
-	case OWS_BOOL:
-		return "0 or 1";
-	case OWS_BYTE:
-		return "0 to 255";
-	case OWS_SHORT:
-		return "-32768 to 32767";
-	case OWS_LONG:
-		return "-2147483648 to 2147483647";
-	case OWS_WORD:
-		return "0 to 65535";
-	case OWS_DWORD:
-		return "0 to 4294967295";
-	case OWS_FLOAT:
-		return "up to 3.4e38";
-	case OWS_DOUBLE:
-		return "up to 1.8e308";
-	case OWS_LARGE:
-		return "-9223372036854775808 to 9223372036854775807";
-	case OWS_STRING:
-		break;
-	}
-	return "text";
-}
+static const char *const ranges[] = {
+	[OWS_BOOL] = "0 or 1",
+	[OWS_BYTE] = "0 to 255",
+	[OWS_SHORT] = "-32768 to 32767",
+	[OWS_LONG] = "-2147483648 to 2147483647",
+	[OWS_WORD] = "0 to 65535",
+	[OWS_DWORD] = "0 to 4294967295",
+	[OWS_FLOAT] = "up to 3.4e38",
+	[OWS_DOUBLE] = "up to 1.8e308",
+	[OWS_LARGE] = "-9223372036854775808 to 9223372036854775807",
+};
 
 static bool is_edge(enum attribute attribute)
 {
@@ -62,6 +47,7 @@ static bool is_edge(enum attribute attribute)
 static int prepare(const struct ctl *ctl, struct ows *h, struct order *order)
 {
 	const struct attribute_def *def;
+	const char *type, *range;
 	struct ows_info info;
 	int signal, err;
 
@@ -82,16 +68,18 @@ static int prepare(const struct ctl *ctl, struct ows *h, struct order *order)
 	}
 	if (order->type == OWS_STRING)
 		return CTL_DONE;
+	type = value_type_name(order->type);
+	range = ranges[order->type];
 	err = value_parse(order->type, order->text, &order->value);
 	if (err == -ERANGE)
 		return ctl_fail("%s: %s is out of range for %s (%s)", order->name, order->text,
-		                value_type_name(order->type), range(order->type));
+		                type, range);
 	if (err && value_parse(OWS_DOUBLE, order->text, &order->value) == 0)
 		return ctl_fail("%s: %s is not a whole number, as %s wants it (%s)", order->name,
-		                order->text, value_type_name(order->type), range(order->type));
+		                order->text, type, range);
 	if (err)
 		return ctl_fail("%s: \"%s\" is not a value for %s (%s)", order->name, order->text,
-		                value_type_name(order->type), range(order->type));
+		                type, range);
 	return CTL_DONE;
 }
 

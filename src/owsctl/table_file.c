@@ -8,7 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "src/owsctl/ctl.h"
+#include "src/owsctl/past.h"
 #include "src/owsctl/table_file.h"
 #include "src/show/digits.h"
 #include "src/show/json.h"
@@ -128,9 +128,7 @@ void table_file_put(struct table_file *table, const char *signal,
 		json_bytes(&json, NULL, item->text, item->len);
 	else
 		json_null(&json, NULL);
-	json_string(&json, NULL,
-	            item->known ? ows_quality_text(item->quality)
-	                        : ows_history_reason_text(item->reason));
+	json_string(&json, NULL, past_word(item));
 	json_array_end(&json);
 	json_end(&json);
 }

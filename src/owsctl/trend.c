@@ -122,10 +122,7 @@ static void print_csv(const struct trend *t, const char *name, const struct ows_
 		fputs(text, stdout);
 	}
 	putchar(',');
-	put_csv(item->known ? ows_quality_text(item->quality)
-	                    : ows_history_reason_text(item->reason),
-	        strlen(item->known ? ows_quality_text(item->quality)
-	                           : ows_history_reason_text(item->reason)));
+	put_csv(past_word(item), strlen(past_word(item)));
 	putchar('\n');
 }
 
@@ -144,10 +141,7 @@ static void trend_print_json(struct trend *t, const struct ows_history_item *ite
 	} else {
 		json_null(&t->json, "value");
 	}
-	if (item->known)
-		json_string(&t->json, "quality", ows_quality_text(item->quality));
-	else
-		json_string(&t->json, "reason", ows_history_reason_text(item->reason));
+	json_string(&t->json, item->known ? "quality" : "reason", past_word(item));
 	json_bool(&t->json, "clock", item->trusted);
 	json_object_end(&t->json);
 }

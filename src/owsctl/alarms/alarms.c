@@ -177,45 +177,33 @@ static void add_json(struct json *json, const struct when *now, uint32_t number,
 	json_object_end(json);
 }
 
-/* Put all entries of the journal, the oldest first, into the table or the document. */
-static void walk(struct ows *h, char *const *patterns, int count, struct table *table,
-                 struct json *json)
+/* Print all entries of the journal, the oldest first. */
+static void print_history(struct ows *h, char *const *patterns, int count, bool as_json)
 {
 	uint32_t head = ows_alarm_count(h), first = head;
 	struct when now = when_now();
 	struct ows_alarm alarm;
 	struct ows_info info;
+	struct table table;
+	struct json json;
 
+	table_init(&table, columns, sizeof(columns) / sizeof(columns[0]));
+	json_list(&json, stdout, as_json);
 	while (ows_alarm(h, first - 1, &alarm) != -ENOENT)
 		first--;
 	for (uint32_t number = first; number != head; number++) {
 		if (ows_alarm(h, number, &alarm) != 0 || ows_info(h, alarm.signal, &info) != 0 ||
 		    !names_match(info.name, patterns, count))
 			continue;
-		if (table)
-			alarms_history_add_row(table, &now, &info, &alarm);
+		if (as_json)
+			add_json(&json, &now, number, info.name, &alarm);
 		else
-			add_json(json, &now, number, info.name, &alarm);
+			alarms_history_add_row(&table, &now, &info, &alarm);
 	}
-}
-
-static void print_table(struct ows *h, char *const *patterns, int count)
-{
-	struct table table;
-
-	table_init(&table, columns, sizeof(columns) / sizeof(columns[0]));
-	walk(h, patterns, count, &table, NULL);
-	table_print(&table, true);
-	table_free(&table);
-}
-
-static void alarms_history_print_json(struct ows *h, char *const *patterns, int count)
-{
-	struct json json;
-
-	json_list(&json, stdout, true);
-	walk(h, patterns, count, NULL, &json);
 	json_list_end(&json);
+	if (!as_json)
+		table_print(&table, true);
+	table_free(&table);
 }
 
 static int alarms_history(struct ctl *ctl, int argc, char **argv)
@@ -226,12 +214,10 @@ static int alarms_history(struct ctl *ctl, int argc, char **argv)
 	ctl_option(ctl, argc, argv, "");
 	h = ctl_open(ctl, OWS_READ);
 	ctl_alive(ctl, h, ows_now());
-	if (!alarms_known(h, argv + optind, argc - optind))
-		status = CTL_FAILED;
-	else if (ctl->json)
-		alarms_history_print_json(h, argv + optind, argc - optind);
+	if (alarms_known(h, argv + optind, argc - optind))
+		print_history(h, argv + optind, argc - optind, ctl->json);
 	else
-		print_table(h, argv + optind, argc - optind);
+		status = CTL_FAILED;
 	ows_close(h);
 	return status;
 }
@@ -303,19 +289,18 @@ static int alarms_unshelve(struct ctl *ctl, int argc, char **argv)
 
 /* --- The word -------------------------------------------------------------------------------- */
 
-static const struct {
-	const char *word;
-	int (*run)(struct ctl *ctl, int argc, char **argv);
-} words[] = {{ALARMS_HISTORY, alarms_history},
-             {ALARMS_ACK, alarms_ack},
-             {ALARMS_SHELVE, alarms_shelve},
-             {ALARMS_UNSHELVE, alarms_unshelve}};
-#define WORDS (sizeof(words) / sizeof(words[0]))
+const struct alarms_word alarms_words[] = {
+	{"history", alarms_history},
+	{"ack", alarms_ack},
+	{"shelve", alarms_shelve},
+	{"unshelve", alarms_unshelve},
+	{0},
+};
 
 int verb_alarms(struct ctl *ctl, int argc, char **argv)
 {
-	for (size_t i = 0; argc > 1 && i < WORDS; i++)
-		if (strcmp(argv[1], words[i].word) == 0)
-			return words[i].run(ctl, argc - 1, argv + 1);
+	for (const struct alarms_word *w = alarms_words; argc > 1 && w->word; w++)
+		if (strcmp(argv[1], w->word) == 0)
+			return w->run(ctl, argc - 1, argv + 1);
 	return alarms_live(ctl, argc, argv);
 }

@@ -117,36 +117,27 @@ static void alarms_live_show(struct ows *h, const struct rows *rows, bool json,
 	struct live live = {.h = h, .now = when_now(), .reading = &reading};
 
 	table_init(&table, columns, COLUMNS);
-	if (json) {
-		json_open(&live.json, stdout);
-		json_array(&live.json, NULL);
-	} else {
+	json_list(&live.json, stdout, json);
+	if (!json)
 		live.table = &table;
-	}
 	for (int i = 0; i < rows->count; i++)
 		if (names_match(rows->row[i].name, patterns, pattern_count))
 			present_each(h, i, rows->row[i].id, live.now.boot, &reading,
 			             alarms_live_add, &live);
-	if (json) {
-		json_array_end(&live.json);
-		json_end(&live.json);
-	} else {
+	json_list_end(&live.json);
+	if (!json) {
 		table_print(&table, true);
 		print_reasons(&live, rows, patterns, pattern_count);
 	}
 	table_free(&table);
 }
 
-/* The words that `owsctl alarms` does not take for patterns. */
-static const char *const words[] = {ALARMS_HISTORY, ALARMS_ACK, ALARMS_SHELVE, ALARMS_UNSHELVE};
-#define WORDS (sizeof(words) / sizeof(words[0]))
-
 /* The word that the pattern is but for a slip of the finger, or NULL. */
 static const char *nearest_word(const char *pattern)
 {
-	for (size_t i = 0; i < WORDS; i++)
-		if (text_distance(pattern, words[i]) <= strlen(words[i]) / 3)
-			return words[i];
+	for (const struct alarms_word *w = alarms_words; w->word; w++)
+		if (text_distance(pattern, w->word) <= strlen(w->word) / 3)
+			return w->word;
 	return NULL;
 }
 

@@ -89,18 +89,13 @@ static void journal_print_json(struct journal *j, unsigned from)
 	struct when now = when_now();
 	struct json json;
 
-	json_open(&json, stdout);
-	if (!j->follows)
-		json_array(&json, NULL);
+	json_list(&json, stdout, !j->follows);
 	for (unsigned i = from; i < j->entries.count; i++) {
 		journal_json(&json, &now, &j->entries.entry[i]);
 		if (j->follows)
 			json_end(&json);
 	}
-	if (j->follows)
-		return;
-	json_array_end(&json);
-	json_end(&json);
+	json_list_end(&json);
 }
 
 static void print_from(struct journal *j, unsigned from, bool titled)

@@ -30,12 +30,9 @@ static int mission_look(struct mission *mission, struct status *status)
 	              {"mission/rollover", &status->rollover},
 	              {"clock/udate", &status->clock}};
 
-	for (size_t i = 0; i < sizeof(wanted) / sizeof(wanted[0]); i++) {
-		int err = mission_read(mission, wanted[i].property, wanted[i].value);
-
-		if (err)
-			return mission_failed(mission, wanted[i].property, err);
-	}
+	for (size_t i = 0; i < sizeof(wanted) / sizeof(wanted[0]); i++)
+		if (mission_need(mission, wanted[i].property, wanted[i].value))
+			return CTL_FAILED;
 	int err = mission_interval(mission, &status->interval);
 	if (err)
 		return mission_failed(mission, "interval", err);
@@ -91,18 +88,17 @@ static int print_status(const struct ctl *ctl, struct mission *mission)
 static int check_started(struct mission *mission, double interval, bool rollover)
 {
 	double running, seconds, over;
-	int err = mission_read(mission, "mission/running", &running);
+	int err;
 
-	if (err)
-		return mission_failed(mission, "mission/running", err);
+	if (mission_need(mission, "mission/running", &running))
+		return CTL_FAILED;
 	if (running == 0)
 		return ctl_fail("%s: the mission has not begun", mission->device);
 	err = mission_interval(mission, &seconds);
 	if (err)
 		return mission_failed(mission, "interval", err);
-	err = mission_read(mission, "mission/rollover", &over);
-	if (err)
-		return mission_failed(mission, "mission/rollover", err);
+	if (mission_need(mission, "mission/rollover", &over))
+		return CTL_FAILED;
 	if (seconds == interval && (over != 0) == rollover)
 		return CTL_DONE;
 	return ctl_fail("%s: another program started a mission at the same time: it has an "
@@ -135,10 +131,9 @@ static int start(struct mission *mission, double interval, bool rollover)
 		{"mission/running", 1, false, true},
 	};
 	double running;
-	int err = mission_read(mission, "mission/running", &running);
 
-	if (err)
-		return mission_failed(mission, "mission/running", err);
+	if (mission_need(mission, "mission/running", &running))
+		return CTL_FAILED;
 	if (running != 0)
 		return ctl_fail("%s: a mission runs; stop it first", mission->device);
 	for (size_t i = 0; i < sizeof(steps) / sizeof(steps[0]); i++) {

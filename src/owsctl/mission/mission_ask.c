@@ -54,6 +54,13 @@ int mission_failed(const struct mission *mission, const char *property, int err)
 	return ctl_fail("%s/%s: %s", mission->device, property, error_words(err, words));
 }
 
+int mission_need(struct mission *mission, const char *property, double *value)
+{
+	int err = mission_read(mission, property, value);
+
+	return err ? mission_failed(mission, property, err) : CTL_DONE;
+}
+
 int mission_write(struct mission *mission, const char *property, double value)
 {
 	char path[256], text[VALUE_MAX];

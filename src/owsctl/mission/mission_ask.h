@@ -16,6 +16,8 @@ int mission_open(const struct ctl *ctl, const char *device, int64_t timeout_ns,
 
 /* A property as a number, read past all caches; -errno. */
 int mission_read(struct mission *mission, const char *property, double *value);
+/* The same: CTL_DONE, or CTL_FAILED after printing why. */
+int mission_need(struct mission *mission, const char *property, double *value);
 /* Write a number. CTL_DONE, or CTL_FAILED after printing why. */
 int mission_write(struct mission *mission, const char *property, double value);
 /* Print that reading failed; returns CTL_FAILED. */

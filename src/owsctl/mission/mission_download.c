@@ -164,10 +164,9 @@ static int mission_download_look(struct download *download)
 static int check_begin(struct download *download)
 {
 	double begin = download->begin;
-	int err = download->elements ? mission_read(download->mission, "log/udate.0", &begin) : 0;
 
-	if (err)
-		return mission_failed(download->mission, "log/udate.0", err);
+	if (download->elements && mission_need(download->mission, "log/udate.0", &begin))
+		return CTL_FAILED;
 	if (begin == download->begin)
 		return CTL_DONE;
 	return ctl_fail("%s: the log rolled over meanwhile; stop the mission, or download again",

@@ -91,18 +91,11 @@ static int scan_aliases(const char *file, struct scan *scan)
 	return err ? ctl_fail("%s: %s", file, strerror(err)) : CTL_DONE;
 }
 
-static struct rio_node *driver_of(struct rio *rio)
-{
-	return rio_child(&rio->root, "OwsDrv");
-}
-
 static int scan_rio_fill(struct rio **rio, struct scan_names *names, const struct scan *scan,
                          const char *target, struct scan_choice choice)
 {
-	char *quoted = ctl_need(rio_quote(target));
-	int err = rio_set(rio, driver_of(*rio), "TargetName", quoted);
+	int err = rio_set_text(rio, rio_child(&(*rio)->root, "OwsDrv"), "TargetName", target);
 
-	rio_quote_free(quoted);
 	for (unsigned i = 0; i < scan->count; i++)
 		scan_make_items(names, &scan->device[i], choice);
 	if (!err)
@@ -132,10 +125,10 @@ static int scan_rio(const struct scan *scan, const char *target, bool several,
 	if (err)
 		status = ctl_fail("%s", err == -ENOMEM ? "no memory" : strerror(-err));
 	else if (!names.count)
-		status = ctl_nothing(
-			"%s has %u device%s, and none that a configuration could be made "
-			"for",
-			target, scan->count, scan->count == 1 ? "" : "s");
+		status = ctl_say(CTL_NOTHING,
+		                 "%s has %u device%s, and none that a configuration could be made "
+		                 "for",
+		                 target, scan->count, scan->count == 1 ? "" : "s");
 	else if ((status = scan_check(rio, target)) == CTL_DONE)
 		fwrite(rio->text, 1, rio->len, stdout);
 	if (rio)
@@ -340,10 +333,10 @@ static int scan_look(struct ctl *ctl, int64_t timeout_ns, const char *aliases, b
 	else if (!status && !rio && scan.count)
 		print_table(&scan);
 	if (!status && !scan.count) {
-		status = ctl_nothing(
-			"%s answers, but no device is there: look at the wires and the "
-			"supply of the devices, or name another target with -t TARGET",
-			target.name);
+		status = ctl_say(CTL_NOTHING,
+		                 "%s answers, but no device is there: look at the wires and the "
+		                 "supply of the devices, or name another target with -t TARGET",
+		                 target.name);
 		scan_board(target.name);
 	}
 	target_close(&target);

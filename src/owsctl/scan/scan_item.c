@@ -6,6 +6,7 @@
 
 #include "hal/chips/find.h"
 #include "src/config/config.h"
+#include "src/config/edit_block.h"
 #include "src/config/load.h"
 #include "src/config/rio_write.h"
 #include "src/owsctl/ctl.h"
@@ -159,7 +160,7 @@ static void make_item(struct scan_names *names, const struct scan_device *device
 	        property->output ? "output" : "input",
 	        described ? "  Description             " : "", described ? described : "",
 	        described ? "\n" : "", rate, init);
-	rio_quote_free(described);
+	free(described);
 }
 
 /* Does the property get an item? Prints the reason where the answer is a surprise. */
@@ -222,7 +223,7 @@ int scan_add_items(struct rio **rio, struct scan_names *names)
 {
 	if (fflush(names->items) || ferror(names->items))
 		return -ENOMEM;
-	return names->len ? rio_add(rio, rio_child(&(*rio)->root, "OwsDrv"), names->text) : 0;
+	return names->len ? rio_add(rio, edit_driver(*rio), names->text) : 0;
 }
 
 /* Why owsd would refuse the configuration; status CTL_DONE: owsd would accept it. */

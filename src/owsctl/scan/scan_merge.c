@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "src/config/edit.h"
+#include "src/config/edit_block.h"
 #include "src/config/edit_device.h"
 #include "src/config/load.h"
 #include "src/config/rio_file.h"
@@ -37,13 +38,6 @@ struct work {
 	struct scan_names names;
 };
 
-static void print_report(void *ctx, bool is_error, const char *message)
-{
-	(void)ctx;
-	if (is_error)
-		ctl_tell("%s", message);
-}
-
 static bool is_stdout(const char *file)
 {
 	struct stat out, there;
@@ -54,7 +48,7 @@ static bool is_stdout(const char *file)
 
 int scan_merge_open(struct scan_merge *merge)
 {
-	struct config_report report = {.line = print_report};
+	struct config_report report = {.line = ctl_report};
 	struct config *config = NULL;
 	char *text;
 	size_t len;
@@ -119,11 +113,6 @@ static int device_of(struct work *work, const char *text)
 	return -1;
 }
 
-static struct rio_node *first_item(const struct rio *rio)
-{
-	return rio_child(rio_child(&rio->root, "OwsDrv"), "Item");
-}
-
 static const char *text_of(const struct rio_node *item, const char *key)
 {
 	const struct rio_node *node = rio_child(item, key);
@@ -136,7 +125,7 @@ static void collect(struct work *work)
 	struct path path;
 	unsigned count = 0;
 
-	for (const struct rio_node *i = first_item(work->merge->rio); i; i = rio_next(i))
+	for (const struct rio_node *i = edit_items(work->merge->rio); i; i = rio_next(i))
 		count++;
 	work->item = ctl_need(calloc((size_t)count + 1, sizeof(*work->item)));
 	work->known = ctl_need(calloc((size_t)count + 1, sizeof(*work->known)));
@@ -148,7 +137,7 @@ static void collect(struct work *work)
 		if (!path_split(text, strlen(text), &path))
 			memcpy(work->found[i].rom, path.rom, ROM_LEN);
 	}
-	for (const struct rio_node *i = first_item(work->merge->rio); i; i = rio_next(i)) {
+	for (const struct rio_node *i = edit_items(work->merge->rio); i; i = rio_next(i)) {
 		struct item *item = &work->item[work->item_count++];
 
 		item->name = ctl_need(strdup(text_of(i, "Name")));
@@ -299,7 +288,7 @@ static int replace_device(struct work *work, unsigned known)
 {
 	const struct merge_device *old = &work->known[known], *new = &work->found[old->other];
 	char names[NAMES_TEXT], id[2][ROM_TEXT_MAX];
-	struct config_report report = {.line = print_report};
+	struct config_report report = {.line = ctl_report};
 	int err = edit_replace(&work->merge->rio, old->rom, new->rom,
 	                       work->scan->device[old->other].location, &report);
 

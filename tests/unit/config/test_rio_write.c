@@ -101,11 +101,11 @@ static void test_strings_are_wrapped_only_when_long_and_read_back(void)
 
 	quoted = rio_quote("12345678901234567890123456789012345678901234567890");
 	TEST_ASSERT_NULL(strchr(quoted, '\n'));
-	rio_quote_free(quoted);
+	free(quoted);
 	quoted = rio_quote("123456789012345678901234567890123456789012345678901");
 	TEST_ASSERT_EQUAL_STRING("\"12345678901234567890123456789012345678901234567890\"\n\"1\"",
 	                         quoted);
-	rio_quote_free(quoted);
+	free(quoted);
 	for (size_t len = 0; len < 300; len++) {
 		char document[2000];
 
@@ -117,7 +117,7 @@ static void test_strings_are_wrapped_only_when_long_and_read_back(void)
 		quoted = rio_quote(text);
 		snprintf(document, sizeof(document), "K %s", quoted);
 		rio_case_expect(rio_case_parse(document), "K", RIO_STRING, text);
-		rio_quote_free(quoted);
+		free(quoted);
 	}
 }
 
@@ -131,14 +131,14 @@ static void test_a_character_of_several_bytes_is_not_cut_by_wrapping(void)
 	quoted = rio_quote(text);
 	end = strchr(quoted, '\n');
 	TEST_ASSERT_NULL(end);
-	rio_quote_free(quoted);
+	free(quoted);
 	memcpy(text + 49,
 	       "\xe2\x82\xac"
 	       "y",
 	       5);
 	quoted = rio_quote(text);
 	TEST_ASSERT_NOT_NULL(strstr(quoted, "\xe2\x82\xac\"\n\"y\""));
-	rio_quote_free(quoted);
+	free(quoted);
 }
 
 /* The only block's keys and values, a line each, but for those of one key. */
