@@ -8,6 +8,7 @@
 #pragma once
 
 #include <stdint.h>
+#include <time.h>
 
 #define NS_PER_S INT64_C(1000000000)
 #define NS_PER_MS INT64_C(1000000)
@@ -15,4 +16,13 @@
 static inline int64_t earlier_ns(int64_t a, int64_t b)
 {
 	return a < b ? a : b;
+}
+
+/* What a clock of clock_gettime() has. */
+static inline int64_t clock_ns(clockid_t clock)
+{
+	struct timespec t;
+
+	clock_gettime(clock, &t);
+	return (int64_t)t.tv_sec * NS_PER_S + t.tv_nsec;
 }

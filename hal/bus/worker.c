@@ -55,14 +55,6 @@ struct worker {
 	bool ended;
 };
 
-static int64_t clock_ns(clockid_t clock)
-{
-	struct timespec t;
-
-	clock_gettime(clock, &t);
-	return (int64_t)t.tv_sec * NS_PER_S + t.tv_nsec;
-}
-
 static bool is_stopping(const struct worker *worker)
 {
 	return __atomic_load_n(&worker->stopping, __ATOMIC_SEQ_CST);

@@ -12,9 +12,10 @@
 #include <stdio.h>
 
 enum board_kind {
+	/* in the order of the report */
 	BOARD_FACT,
-	BOARD_NOTE,    /* works, but could be better or may surprise */
 	BOARD_MISSING, /* target i2c: cannot work */
+	BOARD_NOTE,    /* works, but could be better or may surprise */
 };
 
 #define BOARD_LINES 24

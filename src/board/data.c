@@ -77,7 +77,7 @@ static int set_number(const char *key, const char *value, long max, long *number
 }
 
 /* Parse a line without its newline. The line is changed. */
-static int take_line(struct board_data *data, char *line, char *why, size_t why_size)
+static int take_data_line(struct board_data *data, char *line, char *why, size_t why_size)
 {
 	char *key = line + strspn(line, " \t"), *value;
 	size_t len;
@@ -148,7 +148,7 @@ int board_data_read(const char *file, struct board_data *data, char *why, size_t
 			break;
 		}
 		line[strcspn(line, "\r\n")] = '\0';
-		err = take_line(data, line, reason, sizeof(reason));
+		err = take_data_line(data, line, reason, sizeof(reason));
 	}
 	if (!err && ferror(in)) {
 		err = -EIO;

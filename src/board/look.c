@@ -203,7 +203,7 @@ static void look_at_header(const struct scene *scene, unsigned number)
 }
 
 /* A machine without board data: any adapter will do. */
-static void look_at_all(const struct scene *scene)
+static void look_at_adapters(const struct scene *scene)
 {
 	unsigned number[ADAPTERS], count;
 	char path[BOARD_PATH];
@@ -318,7 +318,7 @@ int board_look(const char *root, const char *folder, const char *id, struct boar
 		if (base && base->i2c >= 0)
 			look_at_header(&scene, (unsigned)base->i2c);
 		else
-			look_at_all(&scene);
+			look_at_adapters(&scene);
 		report_masters(&scene);
 		report_notes(&scene, scene.board);
 		report_notes(&scene, scene.hat);

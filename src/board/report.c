@@ -6,7 +6,7 @@
 #include "src/board/report.h"
 #include "src/text/printable.h"
 
-static void clean(char *text)
+static void clean_text(char *text)
 {
 	text[printable(text, strlen(text))] = '\0';
 }
@@ -26,7 +26,7 @@ void report_add(struct board_report *report, enum board_kind kind, const char *f
 	va_start(args, format);
 	vsnprintf(line->text, sizeof(line->text), format, args);
 	va_end(args);
-	clean(line->text);
+	clean_text(line->text);
 }
 
 void report_remedy(struct board_report *report, const char *format, ...)
@@ -39,20 +39,7 @@ void report_remedy(struct board_report *report, const char *format, ...)
 	va_start(args, format);
 	vsnprintf(line->remedy, sizeof(line->remedy), format, args);
 	va_end(args);
-	clean(line->remedy);
-}
-
-static int rank(enum board_kind kind)
-{
-	switch (kind) {
-	case BOARD_FACT:
-		return 0;
-	case BOARD_MISSING:
-		return 1;
-	case BOARD_NOTE:
-		return 2;
-	}
-	return 2;
+	clean_text(line->remedy);
 }
 
 void report_sort(struct board_report *report)
@@ -61,7 +48,7 @@ void report_sort(struct board_report *report)
 		for (unsigned at = i; at > 0; at--) {
 			struct board_line *line = &report->line[at], moved;
 
-			if (rank(line[-1].kind) <= rank(line->kind))
+			if (line[-1].kind <= line->kind)
 				break;
 			moved = line[-1];
 			line[-1] = *line;

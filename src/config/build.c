@@ -22,6 +22,22 @@ void *build_take(struct build *build, size_t count, size_t size)
 	return memory;
 }
 
+bool build_part(const char **text, const char *separators, const char **part, size_t *len)
+{
+	size_t n;
+
+	if (!*text)
+		return false;
+	*text += strspn(*text, " \t");
+	n = strcspn(*text, separators);
+	*part = *text;
+	*text = (*text)[n] ? *text + n + 1 : NULL;
+	while (n && strchr(" \t", (*part)[n - 1]))
+		n--;
+	*len = n;
+	return true;
+}
+
 const char *text_is_short(const char *text)
 {
 	return strlen(text) <= TEXT_KEY_MAX ? NULL : "expected at most 255 bytes";

@@ -24,6 +24,12 @@ const char *build_keep(struct build *build, const char *text, size_t len);
 /* Zeroed room for one element more than count; without memory returns NULL and sets no_memory. */
 void *build_take(struct build *build, size_t count, size_t size);
 
+/*
+ * The next part of a list, without the blanks around it; false: there is none. *text goes behind
+ * the separator, and is NULL after the last part.
+ */
+bool build_part(const char **text, const char *separators, const char **part, size_t *len);
+
 /* Keys whose value is a text: checked, reported and kept. */
 #define TEXT_KEY_LETTERS "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.-"
 #define TEXT_KEY_MAX 255 /* bytes of a path or another long text */

@@ -111,7 +111,8 @@ static int edit_put_value(struct rio **rio, struct rio_node *block, enum option 
 	                                       : rio_set_text(rio, block, key, value);
 }
 
-static int apply(struct rio **rio, struct rio_node *block, enum option option, const char *value)
+static int put_setting(struct rio **rio, struct rio_node *block, enum option option,
+                       const char *value)
 {
 	const struct rio_node *io_type = rio_child(block, option_table[OPT_IO_TYPE].key);
 	unsigned long bits;
@@ -259,7 +260,7 @@ int edit_set(struct rio **rio, const char *name, const char *const *settings, un
 		    is_driver_name(value, report))
 			err = -EINVAL;
 		if (!err)
-			err = apply(rio, block, option, value);
+			err = put_setting(rio, block, option, value);
 		/* the item has its new name from here on */
 		if (!err && option == OPT_NAME) {
 			warn_of_patterns(*rio, current, value, report);

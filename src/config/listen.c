@@ -18,7 +18,7 @@ static bool has_digits_only(const char *text, size_t len)
 }
 
 /* The number that the whole text is, at most `most`; else -1. */
-static long number(const char *text, size_t len, long most)
+static long whole_number(const char *text, size_t len, long most)
 {
 	long value = 0;
 
@@ -29,7 +29,7 @@ static long number(const char *text, size_t len, long most)
 	return value <= most ? value : -1;
 }
 
-static int numeric(const char *text, size_t len, bool *is_v6, uint8_t bytes[16])
+static int parse_address(const char *text, size_t len, bool *is_v6, uint8_t bytes[16])
 {
 	char copy[INET6_ADDRSTRLEN];
 
@@ -42,7 +42,7 @@ static int numeric(const char *text, size_t len, bool *is_v6, uint8_t bytes[16])
 	return inet_pton(*is_v6 ? AF_INET6 : AF_INET, copy, bytes) == 1 ? 0 : -EINVAL;
 }
 
-static int loopback(uint16_t port, struct listen_address addresses[2])
+static int both_loopbacks(uint16_t port, struct listen_address addresses[2])
 {
 	addresses[0] = (struct listen_address){.bytes = {127, 0, 0, 1}, .port = port};
 	addresses[1] = (struct listen_address){.is_v6 = true, .bytes = {[15] = 1}, .port = port};
@@ -50,8 +50,8 @@ static int loopback(uint16_t port, struct listen_address addresses[2])
 }
 
 /* The host of "host:port" and "[v6]:port", and where the port begins (NULL: none). */
-static bool split(const char *text, size_t len, const char **host, size_t *host_len,
-                  const char **port)
+static bool split_host(const char *text, size_t len, const char **host, size_t *host_len,
+                       const char **port)
 {
 	const char *end = text + len, *close, *colon;
 
@@ -78,26 +78,27 @@ int listen_parse(const char *text, size_t len, struct listen_address addresses[2
 {
 	const char *host, *port_text;
 	size_t host_len;
-	long port = number(text, len, 65535);
+	long port = whole_number(text, len, 65535);
 
 	if (port >= 0)
-		return loopback((uint16_t)port, addresses);
+		return both_loopbacks((uint16_t)port, addresses);
 	*why = "expected a port from 0 to 65535";
 	if (has_digits_only(text, len))
 		return -EINVAL;
 	*why = "expected PORT, HOST:PORT or [IPv6]:PORT";
-	if (!split(text, len, &host, &host_len, &port_text) || !host_len)
+	if (!split_host(text, len, &host, &host_len, &port_text) || !host_len)
 		return -EINVAL;
-	port = port_text ? number(port_text, (size_t)(text + len - port_text), 65535) : LISTEN_PORT;
+	port = port_text ? whole_number(port_text, (size_t)(text + len - port_text), 65535)
+	                 : LISTEN_PORT;
 	*why = "expected a port from 0 to 65535 after the colon";
 	if (port < 0)
 		return -EINVAL;
 	if (host_len == 9 && memcmp(host, "localhost", 9) == 0)
-		return loopback((uint16_t)port, addresses);
+		return both_loopbacks((uint16_t)port, addresses);
 	*why = "expected an address of this machine such as 192.168.1.5 (0.0.0.0 and [::]: all), "
 	       "or localhost";
 	addresses[0] = (struct listen_address){.port = (uint16_t)port};
-	return numeric(host, host_len, &addresses[0].is_v6, addresses[0].bytes) ? -EINVAL : 1;
+	return parse_address(host, host_len, &addresses[0].is_v6, addresses[0].bytes) ? -EINVAL : 1;
 }
 
 /* Make an IPv4 range in IPv6 form an IPv4 range, as listen_peers_have() looks peers up. */
@@ -119,10 +120,11 @@ int listen_peers_parse(const char *text, size_t len, struct listen_peers *peers,
 	long bits;
 
 	*why = "expected an address or a range such as 192.168.1.0/24";
-	if (numeric(text, host_len, &peers->is_v6, peers->bytes))
+	if (parse_address(text, host_len, &peers->is_v6, peers->bytes))
 		return -EINVAL;
 	peers->bits = peers->is_v6 ? 128 : 32;
-	bits = slash ? number(slash + 1, len - host_len - 1, (long)peers->bits) : (long)peers->bits;
+	bits = slash ? whole_number(slash + 1, len - host_len - 1, (long)peers->bits)
+	             : (long)peers->bits;
 	if (bits < 0)
 		return -EINVAL;
 	peers->bits = (unsigned)bits;

@@ -8,7 +8,6 @@
 
 #define PORT 1883
 #define PORT_TLS 8883
-#define BLANK " \t"
 #define CLASS_MAX 31u
 #define PROFILE_TEXT(name) #name,
 
@@ -84,18 +83,10 @@ static const char *take_way(struct build *build, const char *text, size_t len,
 
 static void take_ways(struct build *build, const struct rio_node *node, struct config_mqtt *mqtt)
 {
-	const char *text = mqtt->broker;
+	const char *rest = mqtt->broker, *text, *why = NULL;
+	size_t len;
 
-	for (bool more = true; more;) {
-		size_t len = strcspn(text, "|"), skip;
-		const char *next = text + len, *why = NULL;
-
-		more = *next == '|';
-		skip = strspn(text, BLANK);
-		text += skip < len ? skip : len;
-		len = (size_t)(next - text);
-		while (len && strchr(BLANK, text[len - 1]))
-			len--;
+	while (build_part(&rest, "|", &text, &len)) {
 		if (mqtt->way_count == CONFIG_MQTT_WAYS)
 			why = "more than 8 ways";
 		else
@@ -109,7 +100,6 @@ static void take_ways(struct build *build, const struct rio_node *node, struct c
 		if (why)
 			return;
 		mqtt->way_count++;
-		text = next + more;
 	}
 }
 

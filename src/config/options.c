@@ -156,7 +156,7 @@ static bool parse_hex(const char *text, double *number)
 	return true;
 }
 
-static bool parse_number(const char *text, enum ows_type type, double *number)
+static bool option_number(const char *text, enum ows_type type, double *number)
 {
 	int64_t value;
 
@@ -175,14 +175,14 @@ static bool parse_kind(const struct option_def *def, const char *text, double *n
 	case OPTION_BLOCK:
 		return true;
 	case OPTION_COUNT:
-		return (parse_hex(text, number) || parse_number(text, OWS_LARGE, number)) &&
+		return (parse_hex(text, number) || option_number(text, OWS_LARGE, number)) &&
 		       *number >= def->least && *number <= def->most;
 	case OPTION_SECONDS:
 	case OPTION_NUMBER:
-		return parse_number(text, OWS_DOUBLE, number) && *number >= def->least &&
+		return option_number(text, OWS_DOUBLE, number) && *number >= def->least &&
 		       *number <= def->most;
 	case OPTION_FLAG:
-		return parse_number(text, OWS_BOOL, number);
+		return option_number(text, OWS_BOOL, number);
 	case OPTION_TYPE:
 		type = value_type_parse(text);
 		*number = type;
@@ -197,47 +197,41 @@ static bool parse_kind(const struct option_def *def, const char *text, double *n
 static void report_expected(const struct option_def *def, const struct rio_node *node,
                             struct config_report *report)
 {
+	const char *expected = "";
+	char range[80];
+
 	switch (def->kind) {
 	case OPTION_COUNT:
-		if (def->most == UINT32_MAX)
-			report_error(report, node->value_at,
-			             "%s \"%s\": expected a whole number such as 0x0018", def->key,
-			             node->value);
-		else
-			report_error(report, node->value_at,
-			             "%s \"%s\": expected a whole number from %.0f to %.0f",
-			             def->key, node->value, def->least, def->most);
+		snprintf(range, sizeof(range), "a whole number from %.0f to %.0f", def->least,
+		         def->most);
+		expected = def->most == UINT32_MAX ? "a whole number such as 0x0018" : range;
 		break;
 	case OPTION_SECONDS:
-		report_error(report, node->value_at,
-		             "%s \"%s\": expected seconds from %.10g to %.10g", def->key,
-		             node->value, def->least, def->most);
+		snprintf(range, sizeof(range), "seconds from %.10g to %.10g", def->least,
+		         def->most);
+		expected = range;
 		break;
 	case OPTION_NUMBER:
-		report_error(report, node->value_at, "%s \"%s\": expected a number%s", def->key,
-		             node->value, def->least < 0 ? "" : ", not negative");
+		expected = def->least < 0 ? "a number" : "a number, not negative";
 		break;
 	case OPTION_FLAG:
-		report_error(report, node->value_at, "%s \"%s\": expected on or off", def->key,
-		             node->value);
+		expected = "on or off";
 		break;
 	case OPTION_TYPE:
-		report_error(report, node->value_at,
-		             "%s \"%s\": expected bool, byte, short, long, word, dword, float, "
-		             "double, large or string",
-		             def->key, node->value);
+		expected = "bool, byte, short, long, word, dword, float, double, large or string";
 		break;
 	case OPTION_IO:
-		report_error(report, node->value_at, "%s \"%s\": expected input or output",
-		             def->key, node->value);
+		expected = "input or output";
 		break;
 	case OPTION_TEXT:
 	case OPTION_BLOCK:
-		break;
+		return;
 	}
+	report_error(report, node->value_at, "%s \"%s\": expected %s", def->key, node->value,
+	             expected);
 }
 
-static void read_one(const struct rio_node *node, const struct option_def *def,
+static void read_key(const struct rio_node *node, const struct option_def *def,
                      struct option_value *value, struct config_report *report)
 {
 	double number = value->number;
@@ -283,7 +277,7 @@ void options_read(const struct rio_node *block, enum option_place place,
 		int option = option_find(place, node->key);
 
 		if (option >= 0)
-			read_one(node, &option_table[option], &values[option], report);
+			read_key(node, &option_table[option], &values[option], report);
 		else if (*node->key)
 			report_unknown(node, place, report);
 	}

@@ -19,14 +19,13 @@ static bool is_any(const struct listen_address *address)
  * Does target reach the server at served? A server at all addresses is reached at any of this
  * machine.
  */
-static bool meets(const struct listen_address *served, const struct listen_address *target)
+static bool reaches(const struct listen_address *served, const struct listen_address *target)
 {
 	if (!served->port || served->port != target->port)
 		return false;
 	if (is_any(served))
 		return listen_is_loopback(target) && (served->is_v6 || !target->is_v6);
-	return served->is_v6 == target->is_v6 &&
-	       memcmp(served->bytes, target->bytes, sizeof(served->bytes)) == 0;
+	return listen_same(served, target);
 }
 
 static bool is_own(const struct config_serve *serve, const char *target)
@@ -45,7 +44,7 @@ static bool is_own(const struct config_serve *serve, const char *target)
 	n = listen_parse(host, strlen(host), address, &why);
 	for (int i = 0; i < n; i++)
 		for (unsigned k = 0; k < serve->address_count; k++)
-			if (meets(&serve->addresses[k], &address[i]))
+			if (reaches(&serve->addresses[k], &address[i]))
 				return true;
 	return false;
 }
@@ -63,7 +62,7 @@ bool config_has_servers(const struct config *config)
 }
 
 /* Remove target i; the next way takes its relation to the target before. */
-static void leave_out(struct config *config, unsigned i)
+static void remove_target(struct config *config, unsigned i)
 {
 	struct config_target *target = &config->targets[i];
 
@@ -93,7 +92,7 @@ int config_check_own(struct config *config, struct config_report *report)
 		               "auto looks for no owserver at %s: this owsd listens "
 		               "there",
 		               target->text);
-		leave_out(config, i--);
+		remove_target(config, i--);
 	}
 	return report->errors == before ? 0 : -EINVAL;
 }

@@ -9,20 +9,20 @@
 #include "src/config/property.h"
 #include "src/text/distance.h"
 
-static bool begins(const struct property *property, const char *name, size_t len)
+static bool is_below(const struct property *property, const char *name, size_t len)
 {
 	return !strncmp(property->name, name, len) && property->name[len] == '/';
 }
 
 /* Is name the property itself, or the directory that it is in? */
-static bool has(const struct family *family, const char *name, size_t len)
+static bool has_name(const struct family *family, const char *name, size_t len)
 {
 	const struct property *property = NULL;
 
 	if (family_property(family, NULL, name, len))
 		return true;
 	while ((property = family_next(family, NULL, property)))
-		if (begins(property, name, len))
+		if (is_below(property, name, len))
 			return true;
 	return false;
 }
@@ -117,20 +117,12 @@ struct path_property property_look(const char *path)
 			snprintf(found.nearest, PROPERTY_NAME, "%s.BYTE", property->name);
 		return found;
 	}
-	if (property || has(family, name, strlen(name)) ||
-	    (dot && has(family, name, (size_t)(dot - name))))
+	if (property || has_name(family, name, strlen(name)) ||
+	    (dot && has_name(family, name, (size_t)(dot - name))))
 		return found;
 	found.there = false;
 	if (dot)
 		*dot = '\0';
 	find_nearest(family, name, dot ? split.property.text + (dot - name) : "", found.nearest);
 	return found;
-}
-
-bool property_known(const char *path, char nearest[PROPERTY_NAME])
-{
-	struct path_property found = property_look(path);
-
-	memcpy(nearest, found.nearest, PROPERTY_NAME);
-	return found.there;
 }

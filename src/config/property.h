@@ -23,5 +23,3 @@ struct path_property {
  * know.
  */
 struct path_property property_look(const char *path);
-/* .there of it, and the nearest name. */
-bool property_known(const char *path, char nearest[PROPERTY_NAME]);

@@ -216,7 +216,7 @@ static int lock_path(const char *file, char path[LOCK_PATH])
 }
 
 /* Whoever may put files into the directory may lock: its owner, and its group if that may write. */
-static void share(int fd, const char *lock)
+static void share_lock(int fd, const char *lock)
 {
 	char path[LOCK_PATH];
 	struct stat st;
@@ -244,7 +244,7 @@ static int try_lock(const char *path)
 	int fd = open(path, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
 
 	if (fd >= 0)
-		share(fd, path);
+		share_lock(fd, path);
 	else if (errno == EEXIST)
 		fd = open(path, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
 	if (fd < 0) {

@@ -48,7 +48,7 @@ static bool at_end(const struct parser *p)
 	return p->at.p == p->end;
 }
 
-static char peek(const struct parser *p)
+static char peek_byte(const struct parser *p)
 {
 	return at_end(p) ? '\0' : *p->at.p;
 }
@@ -73,7 +73,7 @@ static void skip_line(struct parser *p)
 }
 
 /* Skip blanks, line ends and comments. */
-static void skip(struct parser *p)
+static void skip_blanks(struct parser *p)
 {
 	while (!at_end(p)) {
 		if (at_line_end(p))
@@ -178,7 +178,7 @@ static void parse_piece(struct parser *p, struct rio_node *node)
 			refuse_control(p, node);
 		add_to_value(p, c);
 	}
-	if (peek(p) == '"') {
+	if (peek_byte(p) == '"') {
 		p->at.p++;
 		return;
 	}
@@ -197,8 +197,8 @@ static void parse_string(struct parser *p, struct rio_node *node)
 	do {
 		parse_piece(p, node);
 		behind = p->at;
-		skip(p);
-	} while (peek(p) == '"' && !node->broken);
+		skip_blanks(p);
+	} while (peek_byte(p) == '"' && !node->broken);
 	p->at = behind;
 	take_value(p, node);
 }
@@ -224,11 +224,11 @@ static void parse_list(struct parser *p, struct rio_node *node)
 		if (*p->at.p == '"')
 			parse_piece(p, node);
 		else if (at_line_end(p) || *p->at.p == '#')
-			skip(p);
+			skip_blanks(p);
 		else
 			p->at.p++;
 	}
-	if (peek(p) == ']') {
+	if (peek_byte(p) == ']') {
 		p->at.p++;
 	} else {
 		report_error(p->report, node->value_at, "expected ']' at the end of the list");
@@ -253,7 +253,7 @@ static void parse_block(struct parser *p, struct rio_node *node, int depth)
 		parse_entries(p, node, depth + 1);
 	}
 	node->value_end = offset_here(p);
-	if (peek(p) == '}') {
+	if (peek_byte(p) == '}') {
 		p->at.p++;
 	} else if (!p->stopped) {
 		report_error(p->report, place_here(p), "expected '}' to end %s of line %d",
@@ -290,21 +290,21 @@ static void parse_entry(struct parser *p, struct rio_node *block, int depth)
 
 	if (!node)
 		return;
-	if (peek(p) != '{')
+	if (peek_byte(p) != '{')
 		parse_key(p, node);
 	behind = p->at;
 	line = p->at.line;
-	skip(p);
+	skip_blanks(p);
 	node->value_at = place_here(p);
 	node->value_begin = offset_here(p);
-	if (peek(p) == '{') {
+	if (peek_byte(p) == '{') {
 		parse_block(p, node, depth);
 	} else {
-		if (peek(p) == '"') {
+		if (peek_byte(p) == '"') {
 			parse_string(p, node);
-		} else if (peek(p) == '[') {
+		} else if (peek_byte(p) == '[') {
 			parse_list(p, node);
-		} else if (p->at.line == line && peek(p) && !ends_word(peek(p))) {
+		} else if (p->at.line == line && peek_byte(p) && !ends_word(peek_byte(p))) {
 			parse_word(p, node);
 		} else {
 			p->at = behind;
@@ -339,7 +339,7 @@ static void refuse_here(struct parser *p, struct rio_node *block, int depth)
 
 static void parse_entries(struct parser *p, struct rio_node *block, int depth)
 {
-	for (skip(p); !at_end(p) && !p->no_memory; skip(p)) {
+	for (skip_blanks(p); !at_end(p) && !p->no_memory; skip_blanks(p)) {
 		if (is_letter(*p->at.p)) {
 			parse_entry(p, block, depth);
 		} else if (*p->at.p == '}' && depth) {

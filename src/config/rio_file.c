@@ -15,7 +15,7 @@
 #define ROOM_MAX ((size_t)RIO_FILE_MAX + 1)
 
 /* NULL: *err is why. */
-static char *read_all(int fd, size_t *len, int *err)
+static char *read_whole(int fd, size_t *len, int *err)
 {
 	size_t room = 64 * 1024, used = 0;
 	char *data = malloc(room + 1), *more;
@@ -56,7 +56,7 @@ static bool is_utf16(const char *text, size_t len)
 	                    !text[0] != !text[1]);
 }
 
-static const char *kind_of(mode_t mode)
+static const char *file_kind(mode_t mode)
 {
 	switch (mode & S_IFMT) {
 	case S_IFDIR:
@@ -75,7 +75,7 @@ static int rio_file_check(const struct stat *st, struct place place, struct conf
 {
 	if (!S_ISREG(st->st_mode)) {
 		report_error(report, place, "is a %s: only a regular file is read",
-		             kind_of(st->st_mode));
+		             file_kind(st->st_mode));
 		return -EINVAL;
 	}
 	if (st->st_size > (off_t)RIO_FILE_MAX) {
@@ -128,7 +128,7 @@ int rio_read(const char *file, struct config_report *report, char **text, size_t
 	*text = NULL;
 	if (fd < 0)
 		return fd;
-	*text = read_all(fd, len, &err);
+	*text = read_whole(fd, len, &err);
 	close(fd);
 	if (!*text)
 		return cannot_read(report, place, err);

@@ -15,7 +15,7 @@
 
 /* --- Texts ----------------------------------------------------------------------------------- */
 
-static const char *text_of(struct build *build, const struct option_value *value, size_t most)
+static const char *keep_utf8(struct build *build, const struct option_value *value, size_t most)
 {
 	size_t left = strlen(value->text);
 
@@ -59,9 +59,9 @@ static void build_texts(struct build *build, const struct option_value *values,
 {
 	const struct option_value *calibrated = &values[OPT_CALIBRATED];
 
-	item->unit = text_of(build, &values[OPT_UNIT], UNIT_MAX);
-	item->description = text_of(build, &values[OPT_DESCRIPTION], DESCRIPTION_MAX);
-	item->calibrated = text_of(build, calibrated, DESCRIPTION_MAX);
+	item->unit = keep_utf8(build, &values[OPT_UNIT], UNIT_MAX);
+	item->description = keep_utf8(build, &values[OPT_DESCRIPTION], DESCRIPTION_MAX);
+	item->calibrated = keep_utf8(build, calibrated, DESCRIPTION_MAX);
 	item->decimals = values[OPT_DECIMALS].given ? (int)values[OPT_DECIMALS].number : -1;
 	if (calibrated->given && !is_date(calibrated->text))
 		report_error(build->report, calibrated->node->value_at,

@@ -8,23 +8,6 @@
 
 #define SOCKET_PATH_MAX 107
 
-/* The next part of a comma list, without blanks; false: there is none. */
-static bool next_part(const char **text, const char **part, size_t *len)
-{
-	size_t n;
-
-	if (!*text)
-		return false;
-	*text += strspn(*text, " \t");
-	n = strcspn(*text, ",");
-	*part = *text;
-	*text = (*text)[n] ? *text + n + 1 : NULL;
-	while (n && ((*part)[n - 1] == ' ' || (*part)[n - 1] == '\t'))
-		n--;
-	*len = n;
-	return true;
-}
-
 struct addresses {
 	struct listen_address *all; /* LISTEN_MAX */
 	unsigned *count;
@@ -55,7 +38,7 @@ void serve_addresses(struct build *build, const char *text, struct place place,
 	const char *part, *why = "";
 	size_t len;
 
-	while (next_part(&text, &part, &len)) {
+	while (build_part(&text, ",", &part, &len)) {
 		int n = listen_parse(part, len, addresses, &why);
 
 		if (n < 0)
@@ -79,7 +62,7 @@ static void add_peers(struct build *build, const struct option_value *allow)
 	const char *text = allow->text, *part, *why = "";
 	size_t len;
 
-	while (next_part(&text, &part, &len)) {
+	while (build_part(&text, ",", &part, &len)) {
 		if (serve->peer_count == LISTEN_PEERS_MAX) {
 			report_error(build->report, allow->node->value_at,
 			             "ListenAllow: more than %d entries", LISTEN_PEERS_MAX);

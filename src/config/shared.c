@@ -18,7 +18,7 @@ struct output {
 	const char *element; /* "3", "A", "BYTE"; "": all of it */
 };
 
-static bool locate(const struct config_item *item, struct output *output)
+static bool find_output(const struct config_item *item, struct output *output)
 {
 	struct path_property property = property_look(item->path);
 	const char *dot = strrchr(item->path, '.');
@@ -50,17 +50,18 @@ static int compare(const void *a, const void *b)
 	return (x->item > y->item) - (x->item < y->item);
 }
 
-static bool is_whole(const char *element)
+static bool is_whole_register(const char *element)
 {
 	return !*element || !strcmp(element, "BYTE") || !strcmp(element, "ALL");
 }
 
-static bool fight(const struct output *a, const struct output *b)
+static bool are_rivals(const struct output *a, const struct output *b)
 {
 	if (!(a->item->restores && a->item->read_back_ns) &&
 	    !(b->item->restores && b->item->read_back_ns))
 		return false;
-	return is_whole(a->element) || is_whole(b->element) || !strcmp(a->element, b->element);
+	return is_whole_register(a->element) || is_whole_register(b->element) ||
+	       !strcmp(a->element, b->element);
 }
 
 /* The nearest output before n that fights with it; NULL: none. */
@@ -69,7 +70,7 @@ static const struct config_item *opponent(const struct output *outputs, unsigned
 	for (unsigned i = n; i > 0 && n - i < PARTNERS; i--) {
 		if (outputs[i - 1].where != outputs[n].where)
 			break;
-		if (fight(&outputs[i - 1], &outputs[n]))
+		if (are_rivals(&outputs[i - 1], &outputs[n]))
 			return outputs[i - 1].item;
 	}
 	return NULL;
@@ -81,7 +82,7 @@ void shared_check(const struct config *config, const char *name, struct config_r
 	unsigned count = 0;
 
 	for (unsigned i = 0; outputs && i < config->item_count; i++)
-		count += locate(&config->items[i], &outputs[count]);
+		count += find_output(&config->items[i], &outputs[count]);
 	if (outputs)
 		qsort(outputs, count, sizeof(*outputs), compare);
 	for (unsigned i = 0; i < count; i++) {

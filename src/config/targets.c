@@ -194,32 +194,19 @@ static void add_member(struct build *build, const char *text, size_t len,
 	}
 }
 
-static bool is_blank(char c)
-{
-	return c == ' ' || c == '\t';
-}
-
 void targets_add(struct build *build, const char *text, struct place place)
 {
 	enum config_relation relation = CONFIG_COMMA;
-	const char *p = text;
+	const char *rest = text, *part;
+	size_t len;
 
 	if (!text[strspn(text, " \t")]) {
 		report_warning(build->report, place, "TargetName is empty: %s is taken",
 		               DEFAULT_TARGET);
-		p = DEFAULT_TARGET;
+		rest = DEFAULT_TARGET;
 	}
-	for (;;) {
-		size_t len = strcspn(p, ",|"), begin = 0, end = len;
-
-		while (begin < end && is_blank(p[begin]))
-			begin++;
-		while (end > begin && is_blank(p[end - 1]))
-			end--;
-		add_member(build, p + begin, end - begin, relation, place);
-		if (!p[len])
-			return;
-		relation = p[len] == ',' ? CONFIG_COMMA : CONFIG_BAR;
-		p += len + 1;
+	while (build_part(&rest, ",|", &part, &len)) {
+		add_member(build, part, len, relation, place);
+		relation = rest && rest[-1] == '|' ? CONFIG_BAR : CONFIG_COMMA;
 	}
 }

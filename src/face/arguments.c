@@ -25,7 +25,7 @@ void face_complain(const char *program, const char *format, ...)
 	free(text);
 }
 
-static void usage(FILE *out, const char *program, const struct face_option *own)
+static void print_usage(FILE *out, const char *program, const struct face_option *own)
 {
 	fprintf(out, "usage: %s [-c FILE] [-n NAME]", program);
 	if (own->letter)
@@ -58,7 +58,7 @@ static int arguments_refuse(int option, const struct option *words, const struct
 
 	refused_option(option, words, argv, why, sizeof(why));
 	face_complain(program, "%s", why);
-	usage(stderr, program, own);
+	print_usage(stderr, program, own);
 	return FACE_EXIT_USAGE;
 }
 
@@ -111,7 +111,7 @@ int face_arguments_parse(const char *program, const struct face_option *own, int
 			printf("%s %s\n", program, OWSD_VERSION);
 			return finish_output(program);
 		} else if (option == 'h') {
-			usage(stdout, program, own);
+			print_usage(stdout, program, own);
 			return finish_output(program);
 		} else {
 			return arguments_refuse(option, words, own, argv, program);

@@ -42,12 +42,6 @@ void load_again(struct face *face)
 	face->config = config;
 }
 
-void load_free(struct face *face)
-{
-	config_free(face->config);
-	face->config = NULL;
-}
-
 #define BATCH 256
 #define ROUNDS 64 /* of batches in one look: others have their turn then */
 /* Nobody wakes a face when owsd dies or starts */
@@ -129,7 +123,7 @@ static void take_commands(struct face *face)
 	tell_lost_entries(face, lost);
 }
 
-static void lose(struct face *face)
+static void lose_owsd(struct face *face)
 {
 	if (!face->live)
 		return;
@@ -152,7 +146,7 @@ static void look_find(struct face *face, const struct ows_daemon *daemon)
 	bool reloaded = face->live && same_owsd;
 
 	if (!reloaded)
-		lose(face);
+		lose_owsd(face);
 	if (face->fresh)
 		load_again(face);
 	face->fresh = false;
@@ -170,12 +164,12 @@ static void look_find(struct face *face, const struct ows_daemon *daemon)
  * "Look at all": why? It is said once that owsd is dead, by a time that is later than now_ns.
  * -EAGAIN: owsd died in the middle of a beat.
  */
-static void look_at_all(struct face *face, int64_t now_ns)
+static void find_out_why(struct face *face, int64_t now_ns)
 {
 	struct ows_daemon daemon;
 
 	if (ows_daemon(face->ows, ows_now(), &daemon) || !daemon.alive) {
-		lose(face);
+		lose_owsd(face);
 		return;
 	}
 	if (!face->live || face->fresh) {
@@ -223,7 +217,7 @@ static bool open_again(struct face *face, int64_t now_ns)
 }
 
 /* -ESTALE: owsd has ended, was reloaded or is another. Not reached at once, it is lost. */
-static bool renew(struct face *face, int64_t now_ns)
+static bool open_present(struct face *face, int64_t now_ns)
 {
 	if (!face->stale) {
 		/* an image that was opened just now was not looked at: its count is another */
@@ -236,7 +230,7 @@ static bool renew(struct face *face, int64_t now_ns)
 	if (open_again(face, now_ns))
 		return true;
 	if (now_ns - face->stale_ns > STALE_NS)
-		lose(face);
+		lose_owsd(face);
 	return false;
 }
 
@@ -244,7 +238,7 @@ static bool renew(struct face *face, int64_t now_ns)
  * The descriptor that wakes the loop, silent until owsd publishes something after this call. A face
  * that owsd refuses, because too many programs are connected, looks at the image now and then.
  */
-static void arm(struct face *face, int64_t now_ns)
+static void arm_descriptor(struct face *face, int64_t now_ns)
 {
 	if (face->stale || now_ns < face->fd_ns)
 		return;
@@ -265,20 +259,20 @@ void look(struct face *face, int64_t now_ns)
 
 	if (now_ns < face->look_ns || (!face->ows && !open_again(face, now_ns)))
 		return;
-	arm(face, now_ns);
+	arm_descriptor(face, now_ns);
 	for (int round = 0; round < ROUNDS; round++) {
 		n = ows_changes(face->ows, &face->cursor, signals, BATCH, 0);
 		if (n == -EOVERFLOW)
-			look_at_all(face, now_ns);
+			find_out_why(face, now_ns);
 		else if (n > 0 && face->live)
 			face->ops->changes(face, signals, n);
-		else if (n != -ESTALE || !renew(face, now_ns))
+		else if (n != -ESTALE || !open_present(face, now_ns))
 			break;
 		some = true;
 	}
 	if (n == -ENOMEM || n == -EOPNOTSUPP) {
 		report_open(face, n);
-		lose(face); /* changes cannot be had */
+		lose_owsd(face); /* changes cannot be had */
 	}
 	if (look_is_current(face)) {
 		/* else more is to come, and what it is about may be older than this look */

@@ -21,8 +21,6 @@ int64_t look_next(const struct face *face, int64_t now_ns);
 /* A descriptor that is readable when there is something to look at; -1: none. */
 int look_descriptor(const struct face *face, int64_t now_ns);
 
-struct face;
-
 /*
  * Read the configuration for the first time, as face->config. Errors go to stderr. 0 or a negative
  * errno.
@@ -30,4 +28,3 @@ struct face;
 int load_first(struct face *face);
 /* Read it again. Errors go to the log, and one that is refused leaves the present one. */
 void load_again(struct face *face);
-void load_free(struct face *face);

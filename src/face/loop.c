@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "hal/base/time.h"
+#include "src/config/load.h"
 #include "src/face/look.h"
 #include "src/face/loop.h"
 #include "src/service/resident.h"
@@ -243,6 +244,6 @@ int face_main(const struct face_ops *ops, int argc, char **argv)
 		close(signals.fd);
 	}
 	log_destroy(face.log);
-	load_free(&face);
+	config_free(face.config);
 	return status;
 }

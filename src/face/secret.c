@@ -19,7 +19,7 @@ static int secret_refuse(int err, const char *path, const char *reason, char *wh
 }
 
 /* Cut what stands around the token, and look at its letters: a password may have blanks in it. */
-static bool trim(char *text)
+static bool trim_token(char *text)
 {
 	size_t begin = strspn(text, BLANK), len = strlen(text + begin);
 
@@ -36,7 +36,7 @@ static bool trim(char *text)
 }
 
 /* What it names: a path, or a credential, which the service manager keeps from others. */
-static int locate(const char *name, char path[SECRET_PATH], char *why, size_t size)
+static int secret_path(const char *name, char path[SECRET_PATH], char *why, size_t size)
 {
 	const char *directory = getenv("CREDENTIALS_DIRECTORY");
 	bool credential = name[0] != '/';
@@ -54,7 +54,7 @@ static int locate(const char *name, char path[SECRET_PATH], char *why, size_t si
 /* Open it, if it is a file that nobody else may read. Returns a descriptor. */
 static int open_own(const char *name, char path[SECRET_PATH], char *why, size_t size)
 {
-	int err = locate(name, path, why, size), fd;
+	int err = secret_path(name, path, why, size), fd;
 	struct stat st;
 
 	if (err)
@@ -83,7 +83,7 @@ int secret_file(const char *name, bool own, char path[SECRET_PATH], char *why, s
 			close(fd);
 		return fd < 0 ? fd : 0;
 	}
-	err = locate(name, path, why, size);
+	err = secret_path(name, path, why, size);
 	if (!err && access(path, R_OK)) {
 		err = -errno;
 		secret_refuse(err, path, strerror(-err), why, size);
@@ -108,7 +108,7 @@ int secret_read(const char *name, char token[SECRET_SIZE], char *why, size_t siz
 	token[n > 0 ? n : 0] = '\0';
 	if (n < 0)
 		return secret_refuse(-errno, path, strerror(errno), why, size);
-	if (n == SECRET_SIZE - 1 || !trim(token)) {
+	if (n == SECRET_SIZE - 1 || !trim_token(token)) {
 		token[0] = '\0';
 		return secret_refuse(-EINVAL, path, "expected one token in one line", why, size);
 	}

@@ -14,22 +14,14 @@
 #define READINGS 5
 #define FAR_S (365 * 86400)
 
-static int64_t now_of(clockid_t clock)
-{
-	struct timespec t;
-
-	clock_gettime(clock, &t);
-	return (int64_t)t.tv_sec * NS_PER_S + t.tv_nsec;
-}
-
 /* The reading that took the least time: others may have had the processor in between. */
 static int64_t read_offset(void)
 {
 	int64_t best_ns = INT64_MAX, offset_ns = 0;
 
 	for (int i = 0; i < READINGS; i++) {
-		int64_t before = now_of(CLOCK_BOOTTIME), wall = now_of(CLOCK_REALTIME);
-		int64_t took = now_of(CLOCK_BOOTTIME) - before;
+		int64_t before = clock_ns(CLOCK_BOOTTIME), wall = clock_ns(CLOCK_REALTIME);
+		int64_t took = clock_ns(CLOCK_BOOTTIME) - before;
 
 		if (took < best_ns) {
 			best_ns = took;
@@ -48,9 +40,9 @@ static bool is_synchronised(void)
 }
 
 /* The timer is far away: only that a setting of the clock cancels it is of interest. */
-static bool arm(int fd)
+static bool arm_timer(int fd)
 {
-	struct itimerspec far = {.it_value.tv_sec = (time_t)(now_of(CLOCK_REALTIME) / NS_PER_S) +
+	struct itimerspec far = {.it_value.tv_sec = (time_t)(clock_ns(CLOCK_REALTIME) / NS_PER_S) +
 	                                            FAR_S};
 
 	return timerfd_settime(fd, TFD_TIMER_ABSTIME | TFD_TIMER_CANCEL_ON_SET, &far, NULL) == 0;
@@ -62,16 +54,16 @@ void wall_clock_rearm(struct wall_clock *clock)
 
 	if (clock->fd < 0 || (read(clock->fd, &count, sizeof(count)) < 0 && errno == EAGAIN))
 		return;
-	if (!arm(clock->fd))
+	if (!arm_timer(clock->fd))
 		wall_clock_close(clock);
 }
 
 void wall_clock_open(struct wall_clock *clock)
 {
 	*clock = (struct wall_clock){.offset_ns = read_offset(), .trusted = is_synchronised()};
-	clock->asked_ns = now_of(CLOCK_BOOTTIME);
+	clock->asked_ns = clock_ns(CLOCK_BOOTTIME);
 	clock->fd = timerfd_create(CLOCK_REALTIME, TFD_CLOEXEC | TFD_NONBLOCK);
-	if (clock->fd >= 0 && !arm(clock->fd))
+	if (clock->fd >= 0 && !arm_timer(clock->fd))
 		wall_clock_close(clock);
 }
 

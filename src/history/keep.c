@@ -17,7 +17,7 @@
 #define ROWS 20000            /* of each table with a commit: far more than come */
 
 /* The oldest rows before an id. */
-static int cut(sqlite3 *db, const char *table, int64_t before)
+static int delete_before(sqlite3 *db, const char *table, int64_t before)
 {
 	char text[160];
 	sqlite3_stmt *statement;
@@ -36,7 +36,7 @@ static int cut(sqlite3 *db, const char *table, int64_t before)
 	return err;
 }
 
-static int64_t limit_of(int64_t last_id, uint32_t days)
+static int64_t oldest_kept(int64_t last_id, uint32_t days)
 {
 	return days ? last_id - days * DAY_US : 0;
 }
@@ -76,9 +76,9 @@ static int64_t oldest(sqlite3 *db, const char *text)
 int keep_delete(const struct history_keep *keep, sqlite3 *db, const char *directory,
                 int64_t last_id)
 {
-	int64_t raw = limit_of(last_id, keep->days);
-	int64_t minutes = limit_of(last_id, keep->minutes);
-	int64_t hours = limit_of(last_id, keep->hours);
+	int64_t raw = oldest_kept(last_id, keep->days);
+	int64_t minutes = oldest_kept(last_id, keep->minutes);
+	int64_t hours = oldest_kept(last_id, keep->hours);
 	bool large;
 	int err = is_too_large(keep, db, &large);
 
@@ -93,12 +93,12 @@ int keep_delete(const struct history_keep *keep, sqlite3 *db, const char *direct
 		    minutes < last_id - LEAST_US)
 			minutes = last_id - LEAST_US;
 	}
-	err = raw > 0 ? cut(db, "raw", raw) : 0;
+	err = raw > 0 ? delete_before(db, "raw", raw) : 0;
 	if (!err && minutes > 0)
-		err = cut(db, "minute", minutes / MINUTE_US << 16);
+		err = delete_before(db, "minute", minutes / MINUTE_US << 16);
 	if (!err && minutes > 0)
-		err = cut(db, "event", minutes);
+		err = delete_before(db, "event", minutes);
 	if (!err && hours > 0)
-		err = cut(db, "hour", schema_hour(hours / HOUR_US & ~INT64_C(7), 0));
+		err = delete_before(db, "hour", schema_hour(hours / HOUR_US & ~INT64_C(7), 0));
 	return err;
 }

@@ -28,8 +28,8 @@ void rolling_free(struct rolling *rolling)
 }
 
 /* The state lasts until then, in a stretch that may be a new one. */
-static void hold(struct rolling_part *part, int64_t begin, const struct rollup_state *state,
-                 int64_t id)
+static void hold_part(struct rolling_part *part, int64_t begin, const struct rollup_state *state,
+                      int64_t id)
 {
 	if (part->begin != begin)
 		*part = (struct rolling_part){.begin = begin, .at = begin};
@@ -57,7 +57,8 @@ static int close_minute(struct rolling *rolling)
 
 		if (row->minute.begin != minute_begin(rolling))
 			continue;
-		hold(&row->minute, row->minute.begin, &row->state, row->minute.begin + MINUTE_US);
+		hold_part(&row->minute, row->minute.begin, &row->state,
+		          row->minute.begin + MINUTE_US);
 		err = rolling->give(rolling->ctx, false, rolling->minute, i, &row->minute.sum,
 		                    &row->state);
 	}
@@ -75,7 +76,7 @@ static int close_hour(struct rolling *rolling)
 
 		if (row->hour.begin != begin && !row->state.known)
 			continue;
-		hold(&row->hour, begin, &row->state, begin + HOUR_US);
+		hold_part(&row->hour, begin, &row->state, begin + HOUR_US);
 		err = rolling->give(rolling->ctx, true, begin / HOUR_US, i, &row->hour.sum,
 		                    &row->state);
 	}
@@ -105,7 +106,7 @@ bool rolling_is_due(const struct rolling *rolling, int64_t id)
 	       ((rolling->known || rolling->hour_touched) && id >= hour_begin(rolling) + HOUR_US);
 }
 
-static int make_room(struct rolling *rolling, uint32_t signal)
+static int room_for_signal(struct rolling *rolling, uint32_t signal)
 {
 	uint32_t count = rolling->count ? rolling->count : 64;
 	struct rolling_row *rows;
@@ -125,8 +126,8 @@ static int make_room(struct rolling *rolling, uint32_t signal)
 
 static void touch(struct rolling *rolling, struct rolling_row *row, int64_t id)
 {
-	hold(&row->minute, minute_begin(rolling), &row->state, id);
-	hold(&row->hour, hour_begin(rolling), &row->state, id);
+	hold_part(&row->minute, minute_begin(rolling), &row->state, id);
+	hold_part(&row->hour, hour_begin(rolling), &row->state, id);
 	rolling->minute_touched = rolling->hour_touched = true;
 }
 
@@ -134,7 +135,7 @@ int rolling_value(struct rolling *rolling, int64_t id, uint32_t signal,
                   const struct rollup_state *state)
 {
 	struct rolling_row *row;
-	int err = signal > HISTORY_SIGNALS ? -E2BIG : make_room(rolling, signal);
+	int err = signal > HISTORY_SIGNALS ? -E2BIG : room_for_signal(rolling, signal);
 
 	if (!err)
 		err = rolling_advance(rolling, id);

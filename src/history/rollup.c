@@ -6,28 +6,33 @@
 
 #include "src/libows/ows.h"
 
-static void see(struct rollup *sum, const struct rollup_state *state)
+/* Good values from least to most, of which `last` came last. */
+static void widen(struct rollup *sum, double least, double most, double last)
+{
+	if (!sum->has_value || least < sum->least)
+		sum->least = least;
+	if (!sum->has_value || most > sum->most)
+		sum->most = most;
+	sum->last = last;
+	sum->has_value = true;
+}
+
+static void see_state(struct rollup *sum, const struct rollup_state *state)
 {
 	if (!state->known)
 		return;
 	if (!sum->has_quality || state->quality < sum->worst)
 		sum->worst = state->quality;
 	sum->has_quality = true;
-	if (!ows_good(state->quality) || isnan(state->value))
-		return;
-	if (!sum->has_value || state->value < sum->least)
-		sum->least = state->value;
-	if (!sum->has_value || state->value > sum->most)
-		sum->most = state->value;
-	sum->last = state->value;
-	sum->has_value = true;
+	if (ows_good(state->quality) && !isnan(state->value))
+		widen(sum, state->value, state->value, state->value);
 }
 
 void rollup_hold(struct rollup *sum, const struct rollup_state *state, int64_t us)
 {
 	if (us <= 0 || !state->known)
 		return;
-	see(sum, state);
+	see_state(sum, state);
 	sum->known_us += us;
 	if (!ows_good(state->quality))
 		return;
@@ -40,7 +45,7 @@ void rollup_hold(struct rollup *sum, const struct rollup_state *state, int64_t u
 
 void rollup_value(struct rollup *sum, const struct rollup_state *state)
 {
-	see(sum, state);
+	see_state(sum, state);
 	sum->count++;
 }
 
@@ -49,14 +54,8 @@ void rollup_add(struct rollup *sum, const struct rollup *later)
 	if (later->has_quality && (!sum->has_quality || later->worst < sum->worst))
 		sum->worst = later->worst;
 	sum->has_quality |= later->has_quality;
-	if (later->has_value) {
-		if (!sum->has_value || later->least < sum->least)
-			sum->least = later->least;
-		if (!sum->has_value || later->most > sum->most)
-			sum->most = later->most;
-		sum->last = later->last;
-		sum->has_value = true;
-	}
+	if (later->has_value)
+		widen(sum, later->least, later->most, later->last);
 	sum->sum += later->sum;
 	sum->sum_us += later->sum_us;
 	sum->good_us += later->good_us;

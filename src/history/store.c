@@ -100,7 +100,7 @@ static void store_fail(struct history_store *store, struct store_batch *batch, i
  * --- What the file has -------------------------------------------------------------------------
  */
 
-static struct rollup_state state_of(uint8_t type, int64_t value, uint8_t quality)
+static struct rollup_state state_of_value(uint8_t type, int64_t value, uint8_t quality)
 {
 	return (struct rollup_state){
 		.value = type == OWS_STRING ? NAN : value_number((enum ows_type)type, value),
@@ -190,7 +190,7 @@ static int add_gap(struct history_store *store, int64_t start, uint32_t signal, 
 }
 
 /* This run begins in the file: what is between the last one and now is a gap. */
-static int begin(struct history_store *store, const struct store_batch *batch)
+static int begin_run(struct history_store *store, const struct store_batch *batch)
 {
 	sqlite3_stmt *before = store->statements[S_BEFORE];
 	int64_t us = batch->begin_us, start = us + batch->offset_us, last = store->last_id;
@@ -225,7 +225,7 @@ static int begin(struct history_store *store, const struct store_batch *batch)
 	return sql_next(store->statements[S_SESSION]);
 }
 
-static int name(struct history_store *store, struct history_key *key)
+static int name_key(struct history_store *store, struct history_key *key)
 {
 	static const enum statement both[] = {S_RENEW, S_NAME};
 	int64_t number = 0;
@@ -268,7 +268,7 @@ static int64_t next_id(const struct history_store *store, int64_t us)
 static int store_put_value(struct history_store *store, struct history_key *key,
                            const struct history_row *row)
 {
-	struct rollup_state state = state_of(row->type, row->value, row->quality);
+	struct rollup_state state = state_of_value(row->type, row->value, row->quality);
 	sqlite3_stmt *to = store->statements[S_VALUE];
 	int64_t id = next_id(store, row->us);
 	int err;
@@ -350,10 +350,10 @@ static int put_row(struct history_store *store, struct store_batch *batch,
                    const struct history_row *row)
 {
 	struct history_key *key = row->key < batch->key_count ? &batch->keys[row->key] : NULL;
-	int err = store->start ? 0 : begin(store, batch);
+	int err = store->start ? 0 : begin_run(store, batch);
 
 	if (!err && key)
-		err = name(store, key);
+		err = name_key(store, key);
 	if (err)
 		return err;
 	switch ((enum history_row_kind)row->kind) {

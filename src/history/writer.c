@@ -110,7 +110,7 @@ static int by_time(const void *a, const void *b)
 	return left->seq < right->seq ? -1 : left->seq > right->seq;
 }
 
-static void sort(struct history_writer *w)
+static void sort_rows(struct history_writer *w)
 {
 	qsort(w->rows, w->row_count, sizeof(*w->rows), by_time);
 	for (uint32_t i = 0; i < w->row_count; i++)
@@ -136,7 +136,7 @@ static void drop_half(struct history_writer *w)
 	uint32_t half, left = 0, *last = calloc(w->key_count + 1, sizeof(*last));
 	struct history_row gap = {.kind = ROW_GAP, .key = ALL, .reason = HISTORY_DISK};
 
-	sort(w);
+	sort_rows(w);
 	half = w->row_count / 2;
 	gap.us = w->rows[0].us;
 	gap.value = w->rows[half].us;
@@ -165,7 +165,7 @@ static void drop_half(struct history_writer *w)
 	w->rows[left++] = gap;
 	memmove(w->rows + left, w->rows + half, (w->row_count - half) * sizeof(*w->rows));
 	w->row_count -= half - left;
-	sort(w);
+	sort_rows(w);
 }
 
 /* Texts and events count too. The row's memory belongs to the writer now. */
@@ -206,7 +206,7 @@ static void set_key(struct history_key *key, const struct history_signal *signal
 	key->number = 0; /* the file may have something else of it */
 }
 
-static int make_room(struct history_writer *w, uint32_t count)
+static int room_for_keys(struct history_writer *w, uint32_t count)
 {
 	struct history_key *keys = reallocarray(w->keys, count + 1, sizeof(*keys));
 	struct kept *kept;
@@ -236,7 +236,7 @@ int history_writer_signals(struct history_writer *w, const struct history_signal
 {
 	uint32_t *table = calloc(count + 1, sizeof(*table));
 	bool *there = calloc(w->key_count + count + 1, sizeof(*there));
-	int err = table && there ? make_room(w, w->key_count + count) : -ENOMEM;
+	int err = table && there ? room_for_keys(w, w->key_count + count) : -ENOMEM;
 	uint32_t before = w->key_count;
 
 	if (!err && w->key_count + count > HISTORY_SIGNALS)
@@ -311,7 +311,7 @@ void history_writer_forget(struct history_writer *w, uint32_t signal, int64_t fr
 		writer_forget(w, w->table[signal], from_ns / NS_PER_US, (uint8_t)reason);
 }
 
-static void add_value(struct history_writer *w, uint32_t key, int64_t us)
+static void add_value_row(struct history_writer *w, uint32_t key, int64_t us)
 {
 	struct kept *kept = &w->kept[key];
 
@@ -347,7 +347,7 @@ void history_writer_value(struct history_writer *w, uint32_t signal, int64_t mea
 	kept->quality = quality;
 	kept->known = true;
 	kept->us = us;
-	add_value(w, w->table[signal], us);
+	add_value_row(w, w->table[signal], us);
 }
 
 void history_writer_event(struct history_writer *w, const struct history_event *event)
@@ -378,15 +378,15 @@ void history_writer_clock(struct history_writer *w, int64_t now_ns, int64_t offs
  */
 
 /* All values that hold, again: those that have no row for an hour, or all of them. */
-static void repeat(struct history_writer *w, int64_t now_us, bool all)
+static void repeat_values(struct history_writer *w, int64_t now_us, bool all)
 {
 	for (uint32_t i = 0; i < w->key_count; i++)
 		if (w->kept[i].known && (all || now_us - w->kept[i].row_us >= REPEAT_US))
-			add_value(w, i, now_us);
+			add_value_row(w, i, now_us);
 	w->repeat_us = now_us;
 }
 
-static void note(struct history_writer *w, int err, int64_t now_us)
+static void note_commit(struct history_writer *w, int err, int64_t now_us)
 {
 	w->error = err;
 	if (!err) {
@@ -401,7 +401,7 @@ static void note(struct history_writer *w, int err, int64_t now_us)
 }
 
 /* Commit all rows up to a time. */
-static int commit(struct history_writer *w, int64_t now_us, int64_t until_us)
+static int commit_rows(struct history_writer *w, int64_t now_us, int64_t until_us)
 {
 	struct store_batch batch = {
 		.keys = w->keys,
@@ -415,17 +415,18 @@ static int commit(struct history_writer *w, int64_t now_us, int64_t until_us)
 	uint32_t files;
 	int err;
 
-	sort(w);
+	sort_rows(w);
 	while (batch.count < w->row_count && w->rows[batch.count].us <= until_us)
 		batch.count++;
 	err = store_commit(&w->store, &batch);
-	note(w, err, now_us);
+	note_commit(w, err, now_us);
 	if (err)
 		return err;
 	remove_rows(w, batch.count);
 	files = w->store.begun + (w->store.begun && !w->store.start);
 	if (w->files && files != w->files)
-		repeat(w, now_us, true); /* another file, which has nothing of what was before */
+		repeat_values(w, now_us,
+		              true); /* another file, which has nothing of what was before */
 	w->files = files;
 	return 0;
 }
@@ -436,7 +437,7 @@ int history_writer_tick(struct history_writer *w, int64_t now_ns)
 	bool full = w->row_count > w->row_most / 4 || w->text_bytes > w->text_most / 4;
 
 	if (now_us - w->repeat_us >= MINUTE_US)
-		repeat(w, now_us, false);
+		repeat_values(w, now_us, false);
 	if (w->error) {
 		if (now_us < w->retry_us)
 			return w->error;
@@ -445,12 +446,12 @@ int history_writer_tick(struct history_writer *w, int64_t now_ns)
 	}
 	if (!w->row_count && !w->error && !store_is_due(&w->store, now_us - LATE_US))
 		return 0;
-	return commit(w, now_us, now_us - LATE_US);
+	return commit_rows(w, now_us, now_us - LATE_US);
 }
 
 int history_writer_flush(struct history_writer *w, int64_t now_ns)
 {
-	return commit(w, now_ns / NS_PER_US, now_ns / NS_PER_US);
+	return commit_rows(w, now_ns / NS_PER_US, now_ns / NS_PER_US);
 }
 
 int history_writer_close(struct history_writer *w, int64_t now_ns)
@@ -461,7 +462,7 @@ int history_writer_close(struct history_writer *w, int64_t now_ns)
 		return 0;
 	if (w->files || w->row_count) {
 		gap_of_all(w, now_ns / NS_PER_US, now_ns / NS_PER_US, HISTORY_STOPPED);
-		err = commit(w, now_ns / NS_PER_US, INT64_MAX);
+		err = commit_rows(w, now_ns / NS_PER_US, INT64_MAX);
 	}
 	store_close(&w->store);
 	remove_rows(w, w->row_count);
@@ -481,7 +482,7 @@ int history_writer_known(struct history_writer *w, int64_t *alarms_ns, int64_t *
 	int err = store_known(&w->store, alarms_ns, commands_ns);
 
 	if (err)
-		note(w, err, w->flushed_us);
+		note_commit(w, err, w->flushed_us);
 	return err;
 }
 

@@ -9,7 +9,7 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
-static int result(int status)
+static int or_errno(int status)
 {
 	return status < 0 ? -errno : status;
 }
@@ -18,7 +18,7 @@ static int disk_open(void *ctx, int dir, const char *name, int flags)
 {
 	(void)ctx;
 	/* a FIFO of that name blocks nobody */
-	return result(openat(dir, name, flags | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0640));
+	return or_errno(openat(dir, name, flags | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0640));
 }
 
 static ssize_t disk_pread(void *ctx, int fd, void *data, size_t size, off_t at)
@@ -58,25 +58,25 @@ static int disk_sync(void *ctx, int fd)
 	(void)ctx;
 	if (fstat(fd, &st) < 0)
 		return -errno;
-	return result(S_ISDIR(st.st_mode) ? fsync(fd) : fdatasync(fd));
+	return or_errno(S_ISDIR(st.st_mode) ? fsync(fd) : fdatasync(fd));
 }
 
 static int disk_truncate(void *ctx, int fd, off_t size)
 {
 	(void)ctx;
-	return result(ftruncate(fd, size));
+	return or_errno(ftruncate(fd, size));
 }
 
 static int disk_rename(void *ctx, int dir, const char *from, const char *to)
 {
 	(void)ctx;
-	return result(renameat(dir, from, dir, to));
+	return or_errno(renameat(dir, from, dir, to));
 }
 
 static int disk_unlink(void *ctx, int dir, const char *name)
 {
 	(void)ctx;
-	return result(unlinkat(dir, name, 0));
+	return or_errno(unlinkat(dir, name, 0));
 }
 
 static void disk_close(void *ctx, int fd)
@@ -111,5 +111,5 @@ int spool_disk_directory(const char *path, int make)
 {
 	if (make && mkdir(path, 0750) < 0 && errno != EEXIST)
 		return -errno;
-	return result(open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+	return or_errno(open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC));
 }

@@ -2,22 +2,13 @@
 /* owsd-influx: pushes the signals of an owsd to a server that takes InfluxDB's line protocol. */
 #include "src/face/loop.h"
 #include "src/influx/pushing.h"
-#include "src/influx/sending.h"
-
-static int open_pushing(struct face *face)
-{
-	static struct pushing pushing;
-
-	face->own = &pushing;
-	return pushing_open(face);
-}
 
 int main(int argc, char **argv)
 {
 	static const struct face_ops ops = {
 		.program = "owsd-influx",
 		.option = {'d', "directory", "DIR", "where batches wait, in place of Spool"},
-		.open = open_pushing,
+		.open = pushing_open,
 		.changes = pushing_changes,
 		.event = pushing_event,
 		.tick = pushing_tick,

@@ -49,7 +49,7 @@ static void drop_quarter(struct pending *pending)
 	pending->dropped += lines;
 }
 
-static bool make_room(struct pending *pending, size_t size)
+static bool room_for_line(struct pending *pending, size_t size)
 {
 	while (pending->len + size > pending->room) {
 		size_t room = pending->room ? 2 * pending->room : FIRST_ROOM;
@@ -72,7 +72,7 @@ void pending_add(struct pending *pending, int64_t time_ns, const char *series, c
 	size_t size = strlen(series) + 1 + strlen(fields) + 1;
 	struct head head = {.time_ns = time_ns, .size = (uint32_t)size};
 
-	if (!make_room(pending, sizeof(head) + size)) {
+	if (!room_for_line(pending, sizeof(head) + size)) {
 		pending->dropped++;
 		return;
 	}

@@ -71,8 +71,8 @@ static bool points_get(struct ows *ows, int signal, int64_t now_ns, char fields[
 }
 
 /* A line that has that quality alone, of each signal whose last line has something else. */
-static void send_all(struct points *points, struct pending *pending, uint8_t quality,
-                     int64_t now_ns)
+static void send_quality(struct points *points, struct pending *pending, uint8_t quality,
+                         int64_t now_ns)
 {
 	const struct ows_value v = {.quality = quality};
 	char fields[FIELDS];
@@ -130,7 +130,7 @@ int points_make(struct points *points, struct ows *ows, const char *measurement,
 			err = -ENOMEM;
 	}
 	if (!err)
-		send_all(&old, pending, OWS_Q_NO_PROPERTY, now_ns);
+		send_quality(&old, pending, OWS_Q_NO_PROPERTY, now_ns);
 	points_free(&old);
 	if (err)
 		points_free(points);
@@ -176,5 +176,5 @@ void points_repeat(struct points *points, struct ows *ows, struct pending *pendi
 
 void points_lost(struct points *points, struct pending *pending, int64_t now_ns)
 {
-	send_all(points, pending, OWS_Q_TARGET, now_ns);
+	send_quality(points, pending, OWS_Q_TARGET, now_ns);
 }

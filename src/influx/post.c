@@ -162,7 +162,7 @@ bool post_is_busy(const struct post *post)
 	return post->busy;
 }
 
-static void finish(struct post *post, CURLcode code, struct post_result *result)
+static void finish_post(struct post *post, CURLcode code, struct post_result *result)
 {
 	const char *why = *post->error ? post->error : curl_easy_strerror(code);
 	size_t len;
@@ -197,7 +197,7 @@ bool post_step(struct post *post, int fd, short ready, struct post_result *resul
 	curl_multi_socket_action(post->multi, fd < 0 ? CURL_SOCKET_TIMEOUT : fd, flags, &running);
 	while ((message = curl_multi_info_read(post->multi, &left)))
 		if (message->msg == CURLMSG_DONE && post->busy) {
-			finish(post, message->data.result, result);
+			finish_post(post, message->data.result, result);
 			return true;
 		}
 	return false;

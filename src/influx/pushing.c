@@ -73,7 +73,7 @@ static void pushing_end(struct face *face)
 	p->on = false;
 }
 
-static void make_rows(struct face *face)
+static void make_points(struct face *face)
 {
 	struct pushing *p = face->own;
 
@@ -91,7 +91,7 @@ static void make_rows(struct face *face)
 }
 
 /* The file may say something else than before, or have no block any more. */
-static void renew(struct face *face, int64_t now_ns)
+static void take_file(struct face *face, int64_t now_ns)
 {
 	struct pushing *p = face->own;
 	struct push_options options;
@@ -111,12 +111,13 @@ static void renew(struct face *face, int64_t now_ns)
 	if (!p->on)
 		log_notice(face->log, "%s has no Influx block: nothing is pushed",
 		           face->arguments->file);
-	make_rows(face);
+	make_points(face);
 }
 
 int pushing_open(struct face *face)
 {
-	struct pushing *p = face->own;
+	static struct pushing pushing;
+	struct pushing *p = face->own = &pushing;
 	int64_t now_ns = ows_now();
 
 	p->spool.dir = -1;
@@ -130,7 +131,7 @@ int pushing_open(struct face *face)
 		face_watch(face, p->clock.fd, POLLIN);
 	face->pace_ns = PACE_NS;
 	face->tick_ns = now_ns;
-	renew(face, now_ns);
+	take_file(face, now_ns);
 	return 0;
 }
 
@@ -149,7 +150,7 @@ void pushing_close(struct face *face)
 }
 
 /* Whether lines can have wall-clock times. */
-static void look_at_clock(struct face *face, int64_t now_ns)
+static void believe_clock(struct face *face, int64_t now_ns)
 {
 	struct pushing *p = face->own;
 
@@ -178,7 +179,7 @@ static void report_dropped(struct face *face)
 	p->lost_lines = p->pending.dropped;
 }
 
-static void show_status(struct face *face)
+static void pushing_status(struct face *face)
 {
 	struct pushing *p = face->own;
 	const char *state = !p->on                      ? "no Influx block: off"
@@ -199,7 +200,7 @@ static void show_status(struct face *face)
 }
 
 /* fd is ready; -1: none, but something may be due. */
-static void go_on(struct face *face, int fd, short ready)
+static void push_on(struct face *face, int fd, short ready)
 {
 	struct pushing *p = face->own;
 	int64_t now_ns = ows_now();
@@ -219,14 +220,14 @@ void pushing_tick(struct face *face, int64_t now_ns)
 {
 	struct pushing *p = face->own;
 
-	look_at_clock(face, now_ns);
+	believe_clock(face, now_ns);
 	if (p->on && p->spool.dir < 0)
 		open_spool(face);
 	if (p->on && look_is_current(face))
 		points_repeat(&p->points, face->ows, &p->pending, now_ns);
-	go_on(face, -1, 0);
+	push_on(face, -1, 0);
 	report_dropped(face);
-	show_status(face);
+	pushing_status(face);
 }
 
 void pushing_changes(struct face *face, const int *signals, int n)
@@ -245,10 +246,10 @@ void pushing_event(struct face *face, const struct face_event *event)
 	switch (event->news) {
 	case FACE_FOUND:
 	case FACE_RELOADED:
-		renew(face, now_ns);
+		take_file(face, now_ns);
 		break;
 	case FACE_FILE:
-		renew(face, now_ns);
+		take_file(face, now_ns);
 		if (face->live)
 			pushing_changes(face, NULL, 0);
 		break;
@@ -266,14 +267,14 @@ void pushing_event(struct face *face, const struct face_event *event)
 		break;
 	case FACE_DESCRIPTOR:
 		if (event->fd != p->clock.fd) {
-			go_on(face, event->fd, event->ready);
+			push_on(face, event->fd, event->ready);
 			break;
 		}
 		face_ignore(face, event->fd);
 		wall_clock_rearm(&p->clock);
 		if (p->clock.fd >= 0)
 			face_watch(face, p->clock.fd, POLLIN);
-		look_at_clock(face, now_ns);
+		believe_clock(face, now_ns);
 		break;
 	}
 }

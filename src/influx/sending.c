@@ -105,7 +105,7 @@ void sending_drop(struct pushing *p)
 	p->batch_len = 0;
 }
 
-static const char *advice(long status)
+static const char *advice_on_status(long status)
 {
 	return status == 401       ? "TokenFile has to have its token"
 	       : status == 403     ? "its token may not write there"
@@ -125,7 +125,7 @@ static void sending_fail(struct face *face, const struct post_result *result, in
 		trouble = PUSH_DENIED;
 	if (trouble != p->trouble && trouble == PUSH_DENIED)
 		log_err(face->log, "%.100s refuses us: %s; %s", p->options.url, result->words,
-		        advice(result->status));
+		        advice_on_status(result->status));
 	else if (trouble != p->trouble)
 		log_warning(face->log, "%.100s is lost: %s; values wait", p->options.url,
 		            result->words);
@@ -142,7 +142,7 @@ static void sending_fail(struct face *face, const struct post_result *result, in
 }
 
 /* The server has understood what it got. */
-static void answered(struct face *face)
+static void server_answered(struct face *face)
 {
 	struct pushing *p = face->own;
 
@@ -164,22 +164,22 @@ static void part_over(struct pushing *p)
 	sending_drop(p);
 }
 
-static void arrived(struct face *face)
+static void batch_arrived(struct face *face)
 {
 	struct pushing *p = face->own;
 
-	answered(face);
+	server_answered(face);
 	p->refused = false;
 	p->sent += batch_lines(p->batch + p->part.at, p->part.len);
 	part_over(p);
 }
 
 /* The server does not want these lines: others may be better. */
-static void refused(struct face *face, const struct post_result *result)
+static void batch_refused(struct face *face, const struct post_result *result)
 {
 	struct pushing *p = face->own;
 
-	answered(face);
+	server_answered(face);
 	if (!p->refused)
 		log_err(face->log, "%.100s refuses lines: %s; the spool has them as *.refused",
 		        p->options.url, result->words);
@@ -195,15 +195,15 @@ static void refused(struct face *face, const struct post_result *result)
 }
 
 /* The same lines in smaller parts; a line that is too large alone is refused. */
-static void too_large(struct face *face, const struct post_result *result)
+static void batch_too_large(struct face *face, const struct post_result *result)
 {
 	struct pushing *p = face->own;
 
 	if (!part_halve(&p->part, p->batch)) {
-		refused(face, result);
+		batch_refused(face, result);
 		return;
 	}
-	answered(face);
+	server_answered(face);
 	log_notice(face->log, "%.100s takes less at once: %s; parts of %zu bytes follow",
 	           p->options.url, result->words, p->part.most);
 }
@@ -212,11 +212,11 @@ void sending_finished(struct face *face, const struct post_result *result, int64
 {
 	log_debug(face->log, "%s", result->words);
 	if (result->status >= 200 && result->status < 300)
-		arrived(face);
+		batch_arrived(face);
 	else if (result->status == 413)
-		too_large(face, result);
+		batch_too_large(face, result);
 	else if (result->status == 400 || result->status == 422)
-		refused(face, result);
+		batch_refused(face, result);
 	else
 		sending_fail(face, result, now_ns);
 }

@@ -26,7 +26,7 @@ static void make_name(char name[SPOOL_NAME], uint64_t number, const char *kind)
 }
 
 /* The number of a file of that kind; 0: it is none. */
-static uint64_t number_of(const char *name, const char *kind)
+static uint64_t file_number(const char *name, const char *kind)
 {
 	char made[SPOOL_NAME];
 	uint64_t number = strtoull(name, NULL, 10);
@@ -40,7 +40,7 @@ static uint64_t blocks(const struct spool_file *file)
 	return ((uint64_t)file->size + BLOCK - 1) / BLOCK * BLOCK;
 }
 
-static int append(struct spool *spool, uint64_t number, uint64_t size)
+static int spool_append(struct spool *spool, uint64_t number, uint64_t size)
 {
 	if (spool->first > spool->room / 2) {
 		spool->end -= spool->first;
@@ -90,8 +90,8 @@ static void keep_refused(struct spool *spool, uint64_t number)
 
 static int take_file(struct spool *spool, const char *name)
 {
-	uint64_t lines = number_of(name, LINES), refused = number_of(name, REFUSED);
-	uint64_t half = number_of(name, HALF), most = lines | refused | half;
+	uint64_t lines = file_number(name, LINES), refused = file_number(name, REFUSED);
+	uint64_t half = file_number(name, HALF), most = lines | refused | half;
 	struct stat st;
 
 	if (most >= spool->next)
@@ -103,7 +103,7 @@ static int take_file(struct spool *spool, const char *name)
 	if (!lines || fstatat(spool->dir, name, &st, AT_SYMLINK_NOFOLLOW) < 0 ||
 	    !S_ISREG(st.st_mode))
 		return 0;
-	return append(spool, lines, (uint64_t)st.st_size);
+	return spool_append(spool, lines, (uint64_t)st.st_size);
 }
 
 static int by_number(const void *a, const void *b)
@@ -214,7 +214,7 @@ int spool_put(struct spool *spool, const char *data, size_t len)
 	make_name(name, spool->next, LINES);
 	err = write_file(spool, half, name, data, len);
 	if (!err)
-		err = append(spool, spool->next, len);
+		err = spool_append(spool, spool->next, len);
 	if (err) {
 		unlink_kind(spool, spool->next, HALF);
 		unlink_kind(spool, spool->next, LINES);

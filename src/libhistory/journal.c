@@ -5,7 +5,7 @@
 
 #include "src/history/record.h"
 #include "src/history/sql.h"
-#include "src/libhistory/handle.h"
+#include "src/libhistory/steps.h"
 #include "src/signal/value.h"
 
 _Static_assert((int)OWS_HISTORY_BEGIN == (int)HISTORY_BEGIN &&
@@ -48,7 +48,7 @@ int ows_history_events(struct ows_history *h, int64_t from_ns, int64_t until_ns,
 	return 0;
 }
 
-static void put_text(char *to, size_t size, sqlite3_stmt *from, int column)
+static void copy_text(char *to, size_t size, sqlite3_stmt *from, int column)
 {
 	const char *text = (const char *)sqlite3_column_text(from, column);
 	size_t len = text ? strnlen(text, size - 1) : 0;
@@ -66,14 +66,6 @@ static void journal_put_value(sqlite3_stmt *from, int column, uint8_t type, doub
 		*integer = sqlite3_column_int64(from, column);
 }
 
-static int32_t journal_find(const struct ows_history *h, int64_t number)
-{
-	for (int i = 0; i < h->signal_count; i++)
-		if (h->signals[i].number == number)
-			return i;
-	return -1;
-}
-
 static void journal_convert(const struct ows_history *h, const struct session *session,
                             sqlite3_stmt *from, struct ows_history_event *to)
 {
@@ -83,7 +75,7 @@ static void journal_convert(const struct ows_history *h, const struct session *s
 	*to = (struct ows_history_event){
 		.time_ns = (id + session->date) * NS_PER_US,
 		.boot_ns = (id - session->base) * NS_PER_US,
-		.signal = journal_find(h, sqlite3_column_int64(from, SIGNAL)),
+		.signal = handle_signal(h, sqlite3_column_int64(from, SIGNAL)),
 		.kind = (uint8_t)sqlite3_column_int(from, KIND),
 		.reason = (uint8_t)sqlite3_column_int(from, REASON),
 		.type = (uint8_t)sqlite3_column_int(from, TYPE),
@@ -106,12 +98,12 @@ static void journal_convert(const struct ows_history *h, const struct session *s
 	}
 	if (to->type != OWS_STRING)
 		journal_put_value(from, VALUE, to->type, &to->number, &to->integer);
-	put_text(to->text, sizeof(to->text), from, TEXT);
+	copy_text(to->text, sizeof(to->text), from, TEXT);
 	to->who.serial = (uint32_t)sqlite3_column_int64(from, SERIAL);
 	to->who.uid = (uint32_t)sqlite3_column_int64(from, UID);
 	to->who.pid = sqlite3_column_int(from, PID);
-	put_text(to->who.name, sizeof(to->who.name), from, PROGRAM);
-	put_text(to->who.person, sizeof(to->who.person), from, PERSON);
+	copy_text(to->who.name, sizeof(to->who.name), from, PROGRAM);
+	copy_text(to->who.person, sizeof(to->who.person), from, PERSON);
 }
 
 static bool is_wanted(const struct ows_history *h, const struct ows_history_event *event)

@@ -151,8 +151,8 @@ static void open_forget(struct ows_history *h)
 }
 
 /* Each row into a list that grows. Returns how many, or a negative errno. */
-static int read_all(struct ows_history *h, const char *text, void **list, size_t size,
-                    int (*take)(sqlite3_stmt *from, void *to))
+static int read_rows(struct ows_history *h, const char *text, void **list, size_t size,
+                     int (*take)(sqlite3_stmt *from, void *to))
 {
 	sqlite3_stmt *from;
 	int count = 0, room = 0, got;
@@ -257,13 +257,13 @@ static int open_look(struct ows_history *h)
 		return err;
 	err = read_places(h);
 	if (!err)
-		err = h->session_count = read_all(
+		err = h->session_count = read_rows(
 			h,
 			"select start, boot, base, date, trusted, (select max(reason) from gap where"
 			" gap.until = session.start and signal = 0) from session order by start",
 			(void **)&h->sessions, sizeof(*h->sessions), take_session);
 	if (err >= 0)
-		err = h->signal_count = read_all(
+		err = h->signal_count = read_rows(
 			h, "select signal, name, unit, type, output, decimals from signal",
 			(void **)&h->signals, sizeof(*h->signals), take_signal);
 	sqlite3_exec(h->db, "commit", NULL, NULL, NULL);

@@ -47,7 +47,7 @@ static int point_of(const struct draw *d, int64_t us)
 }
 
 /* Of that time the run looked, with whatever result. */
-static void see(struct draw *d, int64_t from, int64_t until)
+static void see_span(struct draw *d, int64_t from, int64_t until)
 {
 	from += d->session->date;
 	until += d->session->date;
@@ -61,7 +61,8 @@ static void see(struct draw *d, int64_t from, int64_t until)
 }
 
 /* The state lasts from one id to another. */
-static void hold(struct draw *d, const struct rollup_state *state, int64_t from, int64_t until)
+static void hold_state(struct draw *d, const struct rollup_state *state, int64_t from,
+                       int64_t until)
 {
 	from += d->session->date;
 	until += d->session->date;
@@ -77,7 +78,7 @@ static void hold(struct draw *d, const struct rollup_state *state, int64_t from,
 	}
 }
 
-static struct rollup_state state_of(const struct step *step)
+static struct rollup_state state_of_step(const struct step *step)
 {
 	return (struct rollup_state){
 		.value = step->text ? NAN : step->number,
@@ -101,22 +102,22 @@ static int draw_steps(struct draw *d, int64_t first, int64_t end)
 		free(steps);
 		return got;
 	}
-	state = state_of(&held);
+	state = state_of_step(&held);
 	free(held.text);
 	while ((got = handle_steps(d->h, d->signal, first, end, steps, STEPS)) > 0) {
 		for (int i = 0; i < got; i++) {
 			int point = point_of(d, steps[i].id + d->session->date);
 
-			hold(d, &state, at, steps[i].id);
+			hold_state(d, &state, at, steps[i].id);
 			at = steps[i].id;
-			state = state_of(&steps[i]);
+			state = state_of_step(&steps[i]);
 			if (state.known)
 				rollup_value(&d->sums[point], &state);
 			free(steps[i].text);
 		}
 		first = at + 1;
 	}
-	hold(d, &state, at, end);
+	hold_state(d, &state, at, end);
 	free(steps);
 	return got;
 }
@@ -230,7 +231,7 @@ static int draw_minutes(struct draw *d, int64_t first, int64_t end)
  */
 
 /* Where hours end and minutes begin, and where these end: of what there is, of what is enough. */
-static void choose(const struct draw *d, int64_t *hours, int64_t *minutes)
+static void choose_sources(const struct draw *d, int64_t *hours, int64_t *minutes)
 {
 	const struct ows_history *h = d->h;
 	int64_t width = (d->until_us - d->from_us) / d->n;
@@ -252,7 +253,7 @@ static int draw_session(struct draw *d, int64_t first, int64_t end, int64_t hour
 {
 	int err = 0;
 
-	see(d, first, end);
+	see_span(d, first, end);
 	if (first < hours) {
 		int64_t part = end < hours ? end : hours;
 
@@ -268,7 +269,7 @@ static int draw_session(struct draw *d, int64_t first, int64_t end, int64_t hour
 	return !err && first < end ? draw_steps(d, first, end) : err;
 }
 
-static void finish(struct draw *d)
+static void finish_points(struct draw *d)
 {
 	for (int i = 0; i < d->n; i++) {
 		struct ows_history_point *p = &d->points[i];
@@ -310,7 +311,7 @@ int ows_history_points(struct ows_history *h, int signal, int64_t from_ns, int64
 		err = -ENOMEM;
 	for (int i = 0; !err && i < n; i++)
 		points[i] = (struct ows_history_point){.trusted = 1};
-	choose(&d, &hours, &minutes);
+	choose_sources(&d, &hours, &minutes);
 	if (!err)
 		err = sql_exec(h->db, "begin"); /* one look at the file, and fewer locks */
 	for (int i = 0; !err && i < h->session_count; i++) {
@@ -320,7 +321,7 @@ int ows_history_points(struct ows_history *h, int signal, int64_t from_ns, int64
 	}
 	sqlite3_exec(h->db, "commit", NULL, NULL, NULL);
 	if (!err)
-		finish(&d);
+		finish_points(&d);
 	free(d.sums);
 	free(d.unknown_us);
 	free(d.seen_us);

@@ -37,14 +37,6 @@ int64_t replay_end(const struct ows_history *h)
 	return h->end + 1;
 }
 
-static int signal_of(const struct ows_history *h, uint32_t number)
-{
-	for (int i = 0; i < h->signal_count; i++)
-		if (h->signals[i].number == number)
-			return i;
-	return -ENOENT;
-}
-
 int replay_rows(struct ows_history *h, int64_t first, int64_t end, struct replay_row *rows, int n)
 {
 	sqlite3_stmt *from = h->statements[H_ALL];
@@ -53,8 +45,8 @@ int replay_rows(struct ows_history *h, int64_t first, int64_t end, struct replay
 	sql_bind(from, "iii", first, end, (int64_t)n);
 	while (count < n && (got = sql_next(from)) == 1) {
 		struct replay_row *row = &rows[count];
-		uint32_t number = (uint32_t)sqlite3_column_int64(from, 4);
-		int signal = number ? signal_of(h, number) : -1;
+		int64_t number = sqlite3_column_int64(from, 4);
+		int signal = number ? handle_signal(h, number) : -1;
 		struct step step = {0};
 
 		if (number && signal < 0)

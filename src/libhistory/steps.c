@@ -52,6 +52,14 @@ int ows_history_find(struct ows_history *h, const char *name)
 	return -ENOENT;
 }
 
+int handle_signal(const struct ows_history *h, int64_t number)
+{
+	for (int i = 0; i < h->signal_count; i++)
+		if (h->signals[i].number == number)
+			return i;
+	return -1;
+}
+
 /*
  * --- Steps -------------------------------------------------------------------------------------
  */

@@ -9,6 +9,8 @@
  * changed counts. 0 or -ENOMEM. Free the text.
  */
 int steps_take(sqlite3_stmt *from, const struct known_signal *signal, struct step *step);
+/* The index of the signal that has this number in the file; -1: none. */
+int handle_signal(const struct ows_history *h, int64_t number);
 /* What held at an id: 1; 0: nothing is known of it. Free the text. */
 int handle_held(struct ows_history *h, const struct known_signal *signal, int64_t id,
                 struct step *step);

@@ -5,8 +5,7 @@
 
 #include "src/libows/alive.h"
 #include "src/libows/by.h"
-#include "src/libows/handle.h"
-#include "src/libows/ows.h"
+#include "src/libows/journal.h"
 #include "src/shm/reader.h"
 #include "src/signal/value.h"
 
@@ -41,15 +40,11 @@ static void alarm_fill(uint8_t type, int64_t value, double *number, int64_t *int
 
 int ows_alarm(struct ows *h, uint32_t number, struct ows_alarm *alarm)
 {
-	uint32_t kept = map_count(&h->map, OWS_AREA_ALARMS);
 	struct ows_journal_entry e;
+	int err = journal_read(h, OWS_AREA_ALARMS, ows_alarm_count(h), number, &e);
 
-	if (ows_alarm_count(h) - 1 - number >= kept)
-		return -ENOENT;
-	if (!reader_entry(map_entry(&h->map, OWS_AREA_ALARMS, number % kept), &e, sizeof(e)))
-		return -EAGAIN;
-	if (e.number != number || e.record == 0 || e.record >= h->map.count)
-		return -ENOENT;
+	if (err)
+		return err;
 	*alarm = (struct ows_alarm){
 		.signal = (int)e.record - 1,
 		.occurred_ns = e.occurred_ns,
@@ -78,13 +73,13 @@ static uint8_t unarmed_of(uint32_t flags)
 
 int ows_alarm_state(struct ows *h, int id, struct ows_alarm_state *state)
 {
-	const struct ows_record *r;
+	uint32_t record = handle_record(h, id);
+	const struct ows_record *r = map_record(&h->map, record);
 	const struct ows_attrs *a;
 	struct ows_slot slot;
 
-	if ((unsigned)id >= h->id_count || h->ids[id].record <= 0)
+	if (!record)
 		return -ENOENT;
-	r = map_record(&h->map, (uint32_t)h->ids[id].record);
 	if (!reader_slot(r, &slot))
 		return -EAGAIN;
 	a = &slot.attrs;
@@ -100,7 +95,7 @@ int ows_alarm_state(struct ows *h, int id, struct ows_alarm_state *state)
 		.shelved = a->shelved,
 	};
 	if (a->shelved)
-		shelved_of(h, (uint32_t)h->ids[id].record, state);
+		shelved_of(h, record, state);
 	return handle_state(h);
 }
 

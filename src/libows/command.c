@@ -74,9 +74,9 @@ static int check_signal(struct ows *h, int id, uint32_t *record)
 {
 	int err;
 
-	if ((unsigned)id >= h->id_count || h->ids[id].record <= 0)
+	*record = handle_record(h, id);
+	if (!*record)
 		return -ENOENT;
-	*record = (uint32_t)h->ids[id].record;
 	err = command_allowed(h, *record);
 	return err ? err : command_ready(h);
 }

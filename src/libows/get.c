@@ -46,8 +46,8 @@ static int64_t take_alarm(struct ows_memory *memory, uint32_t alarms)
 }
 
 /* The attribute as an integer; times in nanoseconds. */
-static int64_t compute(struct ows *h, struct ows_id *id, const struct ows_slot *slot,
-                       uint32_t period, int64_t age_ns)
+static int64_t attribute_value(struct ows *h, struct ows_id *id, const struct ows_slot *slot,
+                               uint32_t period, int64_t age_ns)
 {
 	const struct ows_attrs *a = &slot->attrs;
 	int64_t pend = a->flags & OWS_ATTR_IN_WORK ? periods(period, a->pend_base) : 0;
@@ -113,7 +113,7 @@ static int attribute_get(struct ows *h, struct ows_id *id, int64_t now_ns, struc
 	value_fill(h, (uint32_t)id->record, value, &slot.sample, (uint8_t)def->type);
 	since = slot.sample.measured_ns != 0 ? slot.sample.measured_ns : h->map.image->start_ns;
 	value->age_ns = handle_age(now_ns, since);
-	result = compute(h, id, &slot, present_period(h, &daemon, now_ns), value->age_ns);
+	result = attribute_value(h, id, &slot, present_period(h, &daemon, now_ns), value->age_ns);
 	value->number = def->type == OWS_DOUBLE ? (double)result / NS_PER_S : (double)result;
 	value->integer = def->type == OWS_DOUBLE ? 0 : result;
 	value->len = 0;
@@ -296,16 +296,14 @@ int ows_get_signal_text(struct ows *h, int signal, int64_t now_ns, struct ows_va
 
 int ows_command(struct ows *h, int id, struct ows_command *command)
 {
+	uint32_t record = handle_record(h, id);
+	const struct ows_record *r = map_record(&h->map, record);
 	const struct ows_command_slot *own;
-	const struct ows_record *r;
 	struct ows_slot slot;
-	uint32_t record;
 
 	*command = (struct ows_command){0};
-	if ((unsigned)id >= h->id_count || h->ids[id].record <= 0)
+	if (!record)
 		return -ENOENT;
-	record = (uint32_t)h->ids[id].record;
-	r = map_record(&h->map, record);
 	if (!reader_slot(r, &slot))
 		return -EAGAIN;
 	command->given = (slot.attrs.flags & OWS_ATTR_COMMANDED) != 0 && r->type != OWS_STRING;

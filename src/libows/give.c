@@ -10,12 +10,6 @@
 
 #define SEALS (F_SEAL_SEAL | F_SEAL_SHRINK | F_SEAL_GROW)
 
-/* Do count entries of size bytes at off lie inside the memory, in whole words? */
-static bool area_inside(const struct give *give, uint32_t off, uint32_t count, uint32_t size)
-{
-	return off % 8 == 0 && off <= give->size && (uint64_t)count * size <= give->size - off;
-}
-
 static int check_memory(const struct ows_welcome *welcome, struct give *give)
 {
 	struct ows_controller_header h = {0};
@@ -27,12 +21,12 @@ static int check_memory(const struct ows_welcome *welcome, struct give *give)
 	    h.slot_size % 8 != 0 || h.slot_count == 0 || h.text_cap > 0xffff ||
 	    h.text_cap % 4 != 0 || h.dirty_words != h.slot_count / 32 + (h.slot_count % 32 != 0))
 		return -EPROTO;
-	if (!area_inside(give, h.slot_off, h.slot_count, h.slot_size) ||
-	    !area_inside(give, h.dirty_off, h.dirty_words, 4) ||
-	    !area_inside(give, h.place_off, h.slot_count, 4) ||
-	    !area_inside(give, h.person_off, OWS_PERSONS, OWS_NAME) ||
-	    !area_inside(give, h.shelf_off, 1, sizeof(struct ows_command_shelf)) ||
-	    !area_inside(give, h.text_off, 0, 1))
+	if (!area_inside(give->size, h.slot_off, h.slot_count, h.slot_size) ||
+	    !area_inside(give->size, h.dirty_off, h.dirty_words, 4) ||
+	    !area_inside(give->size, h.place_off, h.slot_count, 4) ||
+	    !area_inside(give->size, h.person_off, OWS_PERSONS, OWS_NAME) ||
+	    !area_inside(give->size, h.shelf_off, 1, sizeof(struct ows_command_shelf)) ||
+	    !area_inside(give->size, h.text_off, 0, 1))
 		return -EPROTO;
 	give->generation = h.generation;
 	give->start_id = h.start_id;

@@ -11,6 +11,12 @@
 #include "src/shm/layout.h"
 #include "src/shm/word.h"
 
+/* Do count entries of size bytes at off lie inside `room` bytes, in whole words? */
+static inline bool area_inside(size_t room, uint32_t off, uint32_t count, uint32_t size)
+{
+	return off % 8 == 0 && off <= room && (uint64_t)count * size <= room - off;
+}
+
 struct give {
 	char *base; /* NULL: none */
 	size_t size;

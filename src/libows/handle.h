@@ -96,6 +96,14 @@ static inline bool handle_is_forked(const struct ows *h)
 	return h->mine != NULL && word_get(h->mine) == 0;
 }
 
+/* The record of a signal's id, 0: it has none. */
+static inline uint32_t handle_record(const struct ows *h, int id)
+{
+	bool known = (unsigned)id < h->id_count && h->ids[id].record > 0;
+
+	return known ? (uint32_t)h->ids[id].record : 0;
+}
+
 /* An entry of an area; the caller has compared i with the count. */
 static inline const void *map_entry(const struct ows_map *map, enum ows_area kind, uint32_t i)
 {

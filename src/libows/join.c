@@ -131,7 +131,7 @@ static int check_welcome(const struct join *join, const struct ows_welcome *welc
 	return 0;
 }
 
-static int receive(struct join *join, struct ows_welcome *welcome, int *memory)
+static int receive_welcome(struct join *join, struct ows_welcome *welcome, int *memory)
 {
 	union {
 		struct cmsghdr align;
@@ -187,7 +187,7 @@ int join_receive(struct join *join, int64_t until_ns, struct ows_welcome *welcom
 
 	*memory = -1;
 	do
-		err = receive(join, welcome, memory);
+		err = receive_welcome(join, welcome, memory);
 	while (err == -EAGAIN && join_await(join->connection, until_ns));
 	if (err && err != -EAGAIN)
 		join_end(join);

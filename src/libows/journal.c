@@ -4,9 +4,21 @@
 #include <string.h>
 
 #include "src/libows/by.h"
-#include "src/libows/handle.h"
+#include "src/libows/journal.h"
 #include "src/shm/reader.h"
 #include "src/signal/value.h"
+
+int journal_read(struct ows *h, enum ows_area area, uint32_t head, uint32_t number,
+                 struct ows_journal_entry *e)
+{
+	uint32_t kept = map_count(&h->map, area);
+
+	if (head - 1 - number >= kept)
+		return -ENOENT;
+	if (!reader_entry(map_entry(&h->map, area, number % kept), e, sizeof(*e)))
+		return -EAGAIN;
+	return e->number == number && e->record && e->record < h->map.count ? 0 : -ENOENT;
+}
 
 uint32_t ows_command_count(struct ows *h)
 {
@@ -15,15 +27,11 @@ uint32_t ows_command_count(struct ows *h)
 
 int ows_command_entry(struct ows *h, uint32_t number, struct ows_commanded *commanded)
 {
-	uint32_t kept = map_count(&h->map, OWS_AREA_COMMANDS);
 	struct ows_journal_entry e;
+	int err = journal_read(h, OWS_AREA_COMMANDS, ows_command_count(h), number, &e);
 
-	if (ows_command_count(h) - 1 - number >= kept)
-		return -ENOENT;
-	if (!reader_entry(map_entry(&h->map, OWS_AREA_COMMANDS, number % kept), &e, sizeof(e)))
-		return -EAGAIN;
-	if (e.number != number || e.record == 0 || e.record >= h->map.count)
-		return -ENOENT;
+	if (err)
+		return err;
 	*commanded = (struct ows_commanded){
 		.signal = (int)e.record - 1,
 		.taken_ns = e.occurred_ns,

@@ -43,12 +43,6 @@ static int map_file(const struct shm_place *place, const char *instance, void **
 	return err;
 }
 
-/* Do count entries of size bytes at off lie inside the segment, in whole words? */
-static bool area_inside(size_t segment, uint32_t off, uint32_t count, uint32_t size)
-{
-	return off % 8 == 0 && off <= segment && (uint64_t)count * size <= segment - off;
-}
-
 /* Does the text end within size bytes? */
 static bool text_ends(const char *text, size_t size)
 {
@@ -197,8 +191,9 @@ const char *map_name(const struct ows_map *map, uint32_t record)
 	return map_string(map, map_info(map, record)->name_off);
 }
 
-int map_find(const struct ows_map *map, const char *name, size_t len)
+int map_find(void *ctx, const char *name, size_t len)
 {
+	const struct ows_map *map = ctx;
 	uint32_t low = 0, high = map->count;
 
 	while (low < high) {

@@ -21,7 +21,7 @@ const char *map_string(const struct ows_map *map, uint32_t off);
 const char *map_name(const struct ows_map *map, uint32_t record);
 /* Do the texts of a record lie where texts are? */
 bool map_has_text(const struct ows_map *map, const struct ows_record *record);
-/* Record of a signal's name, -1 if there is none. */
-int map_find(const struct ows_map *map, const char *name, size_t len);
+/* Record of a signal's name, -1 if there is none; as attribute_find, map is a struct ows_map. */
+int map_find(void *map, const char *name, size_t len);
 /* Does the name lead to another file than the mapped one? One system call. */
 bool map_is_elsewhere(const struct ows_map *map, const char *place, const char *instance);

@@ -131,7 +131,7 @@ static int make_mine(struct ows *h)
 	return 0;
 }
 
-static bool fits(const struct give *give, const struct ows_map *map)
+static bool fits_image(const struct give *give, const struct ows_map *map)
 {
 	return give->base != NULL && give_is_live(give) && give->slot_count == map->count &&
 	       give->generation == map->image->generation && give->start_id == map->image->start_id;
@@ -179,7 +179,7 @@ int meet(struct ows *h, const struct ows_map *map, int64_t until_ns)
 	if (!err && connected)
 		err = connect_again(h);
 	while (!err) {
-		bool has = fits(&h->next, map) || (!h->join.new &&fits(&h->give, map));
+		bool has = fits_image(&h->next, map) || (!h->join.new &&fits_image(&h->give, map));
 		struct ows_welcome welcome;
 		int memory;
 

@@ -15,13 +15,8 @@
 
 /* --- Names that a program looks up ----------------------------------------------------------- */
 
-static int find_name(void *ctx, const char *name, size_t len)
-{
-	return map_find(ctx, name, len);
-}
-
 /* Make room for one more element; *array stays valid when there is no memory. */
-static int grow(void **array, unsigned count, unsigned *room, size_t size)
+static int grow_array(void **array, unsigned count, unsigned *room, size_t size)
 {
 	unsigned more = *room ? *room * 2 : 16;
 	void *grown;
@@ -43,7 +38,7 @@ static int find_memory(struct ows *h, const char *signal)
 	for (unsigned i = 0; i < h->memory_count; i++)
 		if (strcmp(h->memories[i].name, signal) == 0)
 			return (int)i;
-	if (grow(&array, h->memory_count, &h->memory_room, sizeof(*h->memories)))
+	if (grow_array(&array, h->memory_count, &h->memory_room, sizeof(*h->memories)))
 		return -ENOMEM;
 	h->memories = array;
 	h->memories[h->memory_count] = (struct ows_memory){.name = strdup(signal)};
@@ -60,7 +55,7 @@ static bool needs_memory(enum attribute attribute)
 
 static int find_resolve(struct ows *h, struct ows_id *id)
 {
-	id->record = attribute_lookup(h->instance, id->name, find_name, &h->map, &id->attribute);
+	id->record = attribute_lookup(h->instance, id->name, map_find, &h->map, &id->attribute);
 	if (id->record < 0) {
 		id->record = -1;
 		return -ENOENT;
@@ -87,7 +82,7 @@ int ows_find(struct ows *h, const char *name)
 	for (unsigned i = 0; i < h->id_count; i++)
 		if (strcmp(h->ids[i].name, name) == 0)
 			return h->ids[i].record >= 0 ? (int)i : -ENOENT;
-	if (grow(&array, h->id_count, &h->id_room, sizeof(*h->ids)))
+	if (grow_array(&array, h->id_count, &h->id_room, sizeof(*h->ids)))
 		return -ENOMEM;
 	h->ids = array;
 	id.name = strdup(name);
@@ -172,7 +167,7 @@ static int try_place(struct ows *h, const char *place)
 }
 
 /* The first place with a living owsd, else the first with an image. */
-static int find_place(struct ows *h, char places[PLACES][PLACE_PATH], int count)
+static int map_first_place(struct ows *h, char places[PLACES][PLACE_PATH], int count)
 {
 	int why = -ENOENT;
 
@@ -205,7 +200,7 @@ static int open_one(char places[PLACES][PLACE_PATH], int count, const char *inst
 	memcpy(h->program, program, strnlen(program, sizeof(h->program) - 1));
 	h->mode = mode;
 	join_none(&h->join);
-	err = find_place(h, places, count);
+	err = map_first_place(h, places, count);
 	if (!err && mode == OWS_CONTROL)
 		err = open_joined(h);
 	errno = saved;

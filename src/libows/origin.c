@@ -9,14 +9,11 @@
 
 int ows_origin(struct ows *h, int id, struct ows_origin *origin)
 {
+	uint32_t record = handle_record(h, id);
 	struct ows_origin_entry e;
-	uint32_t record;
 
 	*origin = (struct ows_origin){0};
-	if ((unsigned)id >= h->id_count || h->ids[id].record <= 0)
-		return -ENOENT;
-	record = (uint32_t)h->ids[id].record;
-	if (record >= map_count(&h->map, OWS_AREA_ORIGINS))
+	if (!record || record >= map_count(&h->map, OWS_AREA_ORIGINS))
 		return -ENOENT;
 	if (!reader_entry(map_entry(&h->map, OWS_AREA_ORIGINS, record), &e, sizeof(e)))
 		return -EIO;

@@ -11,12 +11,12 @@
 #define ON 2
 #define OFF 1
 
-static struct ows_command_slot *slot_of(const struct ows *h, const struct ows_id *id)
+static struct ows_command_slot *id_slot(const struct ows *h, const struct ows_id *id)
 {
 	return give_slot(&h->give, (uint32_t)id->record);
 }
 
-static void mark(const struct ows *h, const struct ows_id *id)
+static void mark_id(const struct ows *h, const struct ows_id *id)
 {
 	give_mark(&h->give, (uint32_t)id->record);
 }
@@ -26,7 +26,7 @@ static bool takes_sets(const struct ows *h, const struct ows_id *id, const struc
 {
 	uint32_t seq = __atomic_load_n(&r->seq, __ATOMIC_ACQUIRE);
 
-	if (r->flags & OWS_RECORD_OUTPUT || word_get(&slot_of(h, id)->write_enable) % 4 == ON)
+	if (r->flags & OWS_RECORD_OUTPUT || word_get(&id_slot(h, id)->write_enable) % 4 == ON)
 		return true;
 	return word_get(&r->slot[seq >> 1 & 1].attrs.flags) & OWS_ATTR_WRITE_ENABLE;
 }
@@ -53,7 +53,7 @@ static int check_set(const struct ows *h, const struct ows_id *e)
 	return err;
 }
 
-static enum ows_type type_of(const struct ows *h, const struct ows_id *id)
+static enum ows_type id_type(const struct ows *h, const struct ows_id *id)
 {
 	return id->attribute == ATTR_VALUE
 	               ? (enum ows_type)map_record(&h->map, (uint32_t)id->record)->type
@@ -68,7 +68,7 @@ static int check_range(const struct ows *h, const struct ows_id *e, int64_t valu
 
 	if (e->attribute != ATTR_VALUE)
 		return 0;
-	number = value_number(type_of(h, e), value);
+	number = value_number(id_type(h, e), value);
 	return number < info->min || number > info->max ? -ERANGE : 0; /* NaN: not set */
 }
 
@@ -85,7 +85,7 @@ static uint32_t stamp_it(struct ows *h, const struct ows_id *id)
 	h->stamp++;
 	if (h->stamp == 0) /* 0 means never commanded: count past it */
 		h->stamp++;
-	__atomic_store_n(&slot_of(h, id)->stamp, h->stamp, __ATOMIC_RELEASE);
+	__atomic_store_n(&id_slot(h, id)->stamp, h->stamp, __ATOMIC_RELEASE);
 	return h->stamp;
 }
 
@@ -106,7 +106,7 @@ static void set_enable(uint32_t *word, bool on)
 
 static void set_flag(const struct ows *h, const struct ows_id *id, bool on)
 {
-	struct ows_command_slot *slot = slot_of(h, id);
+	struct ows_command_slot *slot = id_slot(h, id);
 
 	if (id->attribute == ATTR_READ_ENABLE)
 		set_enable(&slot->read_enable, on);
@@ -119,9 +119,9 @@ static void set_flag(const struct ows *h, const struct ows_id *id, bool on)
 }
 
 /* Set a number, without the ring. */
-static void put_number(struct ows *h, const struct ows_id *id, int64_t value, uint32_t *stamp)
+static void store_number(struct ows *h, const struct ows_id *id, int64_t value, uint32_t *stamp)
 {
-	struct ows_command_slot *slot = slot_of(h, id);
+	struct ows_command_slot *slot = id_slot(h, id);
 	uint32_t got = 0;
 
 	word_set(&slot->person, h->person);
@@ -132,7 +132,7 @@ static void put_number(struct ows *h, const struct ows_id *id, int64_t value, ui
 	} else {
 		set_flag(h, id, value != 0);
 	}
-	mark(h, id);
+	mark_id(h, id);
 	if (stamp != NULL)
 		*stamp = got;
 }
@@ -145,7 +145,7 @@ static int put_checked(struct ows *h, const struct ows_id *id, int64_t value, ui
 		err = command_ready(h);
 	if (err)
 		return err;
-	put_number(h, id, value, stamp);
+	store_number(h, id, value, stamp);
 	return command_ring(h);
 }
 
@@ -156,7 +156,7 @@ int ows_set(struct ows *h, int id, double number, uint32_t *stamp)
 	int err = check_id(h, id, &e);
 
 	if (!err)
-		err = value_set_double(type_of(h, e), number, &value);
+		err = value_set_double(id_type(h, e), number, &value);
 	return err ? err : put_checked(h, e, value, stamp);
 }
 
@@ -167,7 +167,7 @@ int ows_set_integer(struct ows *h, int id, int64_t number, uint32_t *stamp)
 	int err = check_id(h, id, &e);
 
 	if (!err)
-		err = value_set_integer(type_of(h, e), number, &value);
+		err = value_set_integer(id_type(h, e), number, &value);
 	return err ? err : put_checked(h, e, value, stamp);
 }
 
@@ -182,12 +182,12 @@ int ows_set_many(struct ows *h, const int *ids, const double *values, int n)
 	for (done = 0; done < n; done++) {
 		err = check_id(h, ids[done], &e);
 		if (!err)
-			err = value_set_double(type_of(h, e), values[done], &value);
+			err = value_set_double(id_type(h, e), values[done], &value);
 		if (!err)
 			err = check_range(h, e, value);
 		if (err)
 			break;
-		put_number(h, e, value, NULL);
+		store_number(h, e, value, NULL);
 	}
 	if (done == 0)
 		return err;
@@ -211,9 +211,9 @@ static int set_string(struct ows *h, const struct ows_id *id, const char *text, 
 	if (t == NULL)
 		return -EPROTO;
 	give_store_text(t, text, len);
-	word_set(&slot_of(h, id)->person, h->person);
+	word_set(&id_slot(h, id)->person, h->person);
 	got = stamp_it(h, id);
-	mark(h, id);
+	mark_id(h, id);
 	if (stamp != NULL)
 		*stamp = got;
 	return command_ring(h);
@@ -226,9 +226,9 @@ int handle_set_text(struct ows *h, const struct ows_id *e, const char *text, uin
 
 	if (err)
 		return err;
-	if (type_of(h, e) == OWS_STRING)
+	if (id_type(h, e) == OWS_STRING)
 		return set_string(h, e, text, stamp);
-	err = value_parse(type_of(h, e), text, &value);
+	err = value_parse(id_type(h, e), text, &value);
 	return err ? err : put_checked(h, e, value, stamp);
 }
 

@@ -52,7 +52,8 @@ static int config_show(const struct config *config, char *const *names, int coun
 }
 
 /* list and show: both with --json are the same. */
-static int list(struct ctl *ctl, const char *file, bool whole, char *const *patterns, int count)
+static int list_file(struct ctl *ctl, const char *file, bool whole, char *const *patterns,
+                     int count)
 {
 	/* warnings are the business of owsd --check, unless the file is edited */
 	struct config_report report = {.line = ctl_report};
@@ -97,11 +98,11 @@ static int open_document(const char *file, bool make, struct config_report *repo
  */
 static int check_path(const char *path)
 {
-	char nearest[PROPERTY_NAME];
+	struct path_property found = property_look(path);
 
-	if (property_known(path, nearest) || !*nearest)
+	if (found.there || !*found.nearest)
 		return 0;
-	ctl_fail("%s: its family has no such property; did you mean %s?", path, nearest);
+	ctl_fail("%s: its family has no such property; did you mean %s?", path, found.nearest);
 	return -EINVAL;
 }
 
@@ -119,7 +120,7 @@ static int check_paths(const char *action, char **words, unsigned count)
 }
 
 /* move NAME --before OTHER or --after OTHER */
-static int move(struct rio **rio, char **words, struct config_report *report)
+static int move_item(struct rio **rio, char **words, struct config_report *report)
 {
 	return edit_move(rio, words[0], words[2], !strcmp(words[1], "--after"), report);
 }
@@ -131,7 +132,7 @@ static const char *const *words_of(char **argv)
 }
 
 /* A running owsd does not notice the change by itself. */
-static void hint(const char *file)
+static void hint_at_reload(const char *file)
 {
 	char name[SEGMENT_NAME_MAX + 1];
 	bool usual;
@@ -143,7 +144,7 @@ static void hint(const char *file)
 	         usual ? "" : "-n ", usual ? "" : name, usual ? "" : " ");
 }
 
-static int change(const char *file, const char *action, char **words, unsigned count)
+static int change_file(const char *file, const char *action, char **words, unsigned count)
 {
 	struct config_report report = {.line = ctl_report, .ctx = &report};
 	struct rio *rio;
@@ -155,7 +156,7 @@ static int change(const char *file, const char *action, char **words, unsigned c
 	if (!err)
 		err = check_paths(action, words, count);
 	if (!err && !strcmp(action, "move"))
-		err = move(&rio, words, &report);
+		err = move_item(&rio, words, &report);
 	else if (!err && !strcmp(action, "add"))
 		err = edit_add(&rio, words[0], words[1], words_of(words + 2), count - 2, &report);
 	else if (!err && !strcmp(action, "set"))
@@ -172,7 +173,7 @@ static int change(const char *file, const char *action, char **words, unsigned c
 	rio_free(rio);
 	replace_unlock(file, lock);
 	if (!err)
-		hint(file);
+		hint_at_reload(file);
 	if (err == -EFBIG && !report.errors)
 		return ctl_fail("%s would be longer than %u bytes", file, RIO_FILE_MAX);
 	return status_of(err);
@@ -183,7 +184,7 @@ static int list_with(struct ctl *ctl, const char *file, int argc, char **argv)
 {
 	optind = 0;
 	ctl_option(ctl, argc, argv, "");
-	return list(ctl, file, !strcmp(argv[0], "show"), argv + optind, argc - optind);
+	return list_file(ctl, file, !strcmp(argv[0], "show"), argv + optind, argc - optind);
 }
 
 int verb_config(struct ctl *ctl, int argc, char **argv)
@@ -228,7 +229,7 @@ int verb_config(struct ctl *ctl, int argc, char **argv)
 		                     strcmp(argv[optind + 3], "--after") != 0))))
 			return ctl_usage(ctl, "expected config FILE %s%s", action,
 			                 actions[i].words);
-		return change(file, action, argv + optind + 2, (unsigned)words);
+		return change_file(file, action, argv + optind + 2, (unsigned)words);
 	}
 	return ctl_usage(ctl, "there is no config %s", action);
 }

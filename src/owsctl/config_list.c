@@ -114,7 +114,7 @@ static void config_list_add_row(struct table *table, const struct config_item *i
 	                                       [PATH] = item->path});
 }
 
-static void print_table(const struct config *config, char *const *patterns, int count)
+static void config_list_print_table(const struct config *config, char *const *patterns, int count)
 {
 	struct table table;
 
@@ -238,6 +238,6 @@ int config_list(const struct config *config, char *const *patterns, int count, b
 	if (json)
 		config_list_print_json(config, patterns, count);
 	else
-		print_table(config, patterns, count);
+		config_list_print_table(config, patterns, count);
 	return CTL_DONE;
 }

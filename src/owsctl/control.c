@@ -33,7 +33,7 @@ static char *next_word(char **rest)
 	return word;
 }
 
-static bool parse_number(const char *word, unsigned long most, uint32_t *number)
+static bool parse_uint32(const char *word, unsigned long most, uint32_t *number)
 {
 	char *end;
 	unsigned long value;
@@ -70,7 +70,7 @@ static int do_beat(struct control *control, char *rest)
 {
 	uint32_t period_ms;
 
-	if (!parse_number(next_word(&rest), UINT32_MAX, &period_ms) || !period_ms || *rest) {
+	if (!parse_uint32(next_word(&rest), UINT32_MAX, &period_ms) || !period_ms || *rest) {
 		control->why = "beat takes a number of milliseconds";
 		return -EINVAL;
 	}
@@ -103,7 +103,7 @@ static int do_shelve(struct control *control, char *rest)
 
 	if (id < 0)
 		return id;
-	if (!parse_number(next_word(&rest), UINT32_MAX, &seconds)) {
+	if (!parse_uint32(next_word(&rest), UINT32_MAX, &seconds)) {
 		control->why = "shelve takes a name, a number of seconds, and why";
 		return -EINVAL;
 	}
@@ -149,7 +149,7 @@ static void run_line(struct control *control, char *copy)
 	}
 }
 
-static bool answer(const struct control *control)
+static bool print_answer(const struct control *control)
 {
 	const char *why = control->why ? control->why : error_text(control->err);
 
@@ -206,7 +206,7 @@ static bool control_follow(struct control *control, char *copy)
 				return true;
 			run_line(control, copy);
 		}
-		if (!answer(control))
+		if (!print_answer(control))
 			break;
 	}
 	return false;

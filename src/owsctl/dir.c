@@ -12,7 +12,7 @@
 
 #define LISTING_MAX (256u * 1024)
 
-static void print(const struct ctl *ctl, char *text, const char *before)
+static void print_entries(const struct ctl *ctl, char *text, const char *before)
 {
 	static char clean[4096], path[4096 + 16];
 	struct json json;
@@ -65,7 +65,7 @@ int verb_dir(struct ctl *ctl, int argc, char **argv)
 		                  open_asked(ctl, &target, &served));
 	} else {
 		text[ask.answer.len] = '\0';
-		print(ctl, text, fresh ? "/uncached" : "");
+		print_entries(ctl, text, fresh ? "/uncached" : "");
 	}
 	target_close(&target);
 	free(text);

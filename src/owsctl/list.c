@@ -37,7 +37,7 @@ static void list_add_row(struct table *table, struct ows *h, const struct row *r
 	                                       target.name, row->path ? row->path : ""});
 }
 
-static void print_table(struct ows *h, struct rows *rows, struct reading *reading)
+static void list_print_table(struct ows *h, struct rows *rows, struct reading *reading)
 {
 	struct table table;
 
@@ -86,7 +86,7 @@ int verb_list(struct ctl *ctl, int argc, char **argv)
 	if (ctl->json)
 		list_print_json(h, &rows, &reading);
 	else
-		print_table(h, &rows, &reading);
+		list_print_table(h, &rows, &reading);
 	status = rows_check(&rows, argv + optind, patterns);
 	rows_free(&rows);
 	ows_close(h);

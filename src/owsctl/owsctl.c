@@ -139,7 +139,7 @@ static const struct verb verbs[] = {
 enum { JSON = 256 };
 #define VERBS (sizeof(verbs) / sizeof(verbs[0]))
 
-static void usage(FILE *out)
+static void print_verbs(FILE *out)
 {
 	fputs("usage: owsctl [-n NAME | -t TARGET] [--json] VERB ...\n", out);
 	for (size_t i = 0; i < VERBS; i++)
@@ -205,7 +205,7 @@ static int verb_help(struct ctl *ctl, int argc, char **argv)
 
 	ctl_option(ctl, argc, argv, "");
 	if (optind == argc) {
-		usage(stdout);
+		print_verbs(stdout);
 		return CTL_DONE;
 	}
 	verb = find_verb(argv[optind]);
@@ -285,7 +285,7 @@ int main(int argc, char **argv)
 			if (*optarg)
 				break;
 			ctl_fail(CTL_NO_TARGET);
-			usage(stderr);
+			print_verbs(stderr);
 			return CTL_USAGE;
 		case JSON:
 			ctl.json = true;
@@ -294,17 +294,17 @@ int main(int argc, char **argv)
 			puts("owsctl " OWSD_VERSION);
 			return ctl_flush(CTL_DONE);
 		case 'h':
-			usage(stdout);
+			print_verbs(stdout);
 			return ctl_flush(CTL_DONE);
 		default:
 			refused_option(c, longs, argv, why, sizeof(why));
 			ctl_fail("%s", why);
-			usage(stderr);
+			print_verbs(stderr);
 			return CTL_USAGE;
 		}
 	}
 	if (optind == argc) {
-		usage(stderr);
+		print_verbs(stderr);
 		return CTL_USAGE;
 	}
 	argc -= optind;

@@ -12,7 +12,7 @@
 
 #define PLACE 512
 
-static const char *advice(int err)
+static const char *advice_on_history(int err)
 {
 	return err == -ENOENT ? "; does owsd-recorder run?"
 	       : err == -EPROTONOSUPPORT
@@ -22,7 +22,7 @@ static const char *advice(int err)
 }
 
 /* Where the recorder of the instance keeps it: as Directory says, or the default. */
-static int find_place(const char *instance, char place[PLACE])
+static int find_history(const char *instance, char place[PLACE])
 {
 	struct config_report silent = {0};
 	char file[INSTANCE_FIELD];
@@ -48,13 +48,13 @@ int past_open(const struct ctl *ctl, const char *directory, struct ows_history *
 	int err = 0;
 
 	if (!directory) {
-		err = find_place(ctl->instance, place);
+		err = find_history(ctl->instance, place);
 		directory = err ? ctl->instance : place;
 	}
 	if (!err)
 		err = ows_history_open(NULL, directory, h);
 	if (err)
-		return ctl_fail("%s: %s%s", directory, strerror(-err), advice(err));
+		return ctl_fail("%s: %s%s", directory, strerror(-err), advice_on_history(err));
 	return CTL_DONE;
 }
 
@@ -66,7 +66,7 @@ int past_look(const struct ctl *ctl, const char *directory, struct ows_history *
 	*h = NULL;
 	if (directory)
 		return past_open(ctl, directory, h);
-	if (find_place(ctl->instance, place) != 0)
+	if (find_history(ctl->instance, place) != 0)
 		return CTL_DONE;
 	err = ows_history_open(NULL, place, h);
 	if (err && err != -ENOENT && err != -ENOTDIR)

@@ -31,7 +31,7 @@ static bool find_range(const struct ows_history_point *points, int count, double
 }
 
 /* The row of dots of a value, 0 at the top. A constant is in the middle. */
-static int row_of(double value, double low, double high, int rows)
+static int dot_row(double value, double low, double high, int rows)
 {
 	/* halves: the difference of two doubles may be none. Those of the least doubles are 0 */
 	double range = high / 2 - low / 2;
@@ -89,9 +89,9 @@ bool plot_draw(const struct ows_history_point *points, int width, int height, do
 
 			for (int column = 0; column < 2; column++) {
 				const struct ows_history_point *p = &points[2 * i + column];
-				int top = has_value(p) ? row_of(p->max, *low, *high, 4 * height)
+				int top = has_value(p) ? dot_row(p->max, *low, *high, 4 * height)
 				                       : 0;
-				int bottom = has_value(p) ? row_of(p->min, *low, *high, 4 * height)
+				int bottom = has_value(p) ? dot_row(p->min, *low, *high, 4 * height)
 				                          : 0;
 
 				pattern |= pattern_of(p, column, line, top, bottom);

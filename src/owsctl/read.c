@@ -18,7 +18,7 @@ static void read_print_json(struct json *json, const char *path, const struct bu
 	text[len] = '\0';
 	if (answer->err)
 		json_null(json, "value");
-	else if (target_is_number(text, len))
+	else if (json_is_number(text, len))
 		json_number(json, "value", text);
 	else
 		json_text(json, text, len);
@@ -29,8 +29,8 @@ static void read_print_json(struct json *json, const char *path, const struct bu
 	json_object_end(json);
 }
 
-static int read_one(const struct ctl *ctl, struct json *json, struct target *target,
-                    const struct served *served, const char *given)
+static int read_path(const struct ctl *ctl, struct json *json, struct target *target,
+                     const struct served *served, const char *given)
 {
 	char path[256];
 	bool fresh;
@@ -78,7 +78,7 @@ int verb_read(struct ctl *ctl, int argc, char **argv)
 		return status;
 	json_list(&json, stdout, ctl->json);
 	for (int i = optind; i < argc; i++)
-		if (read_one(ctl, &json, &target, &served, argv[i]))
+		if (read_path(ctl, &json, &target, &served, argv[i]))
 			status = CTL_FAILED;
 	json_list_end(&json);
 	target_close(&target);

@@ -44,7 +44,7 @@ static bool is_edge(enum attribute attribute)
 }
 
 /* Check all orders before the first value is set. */
-static int prepare(const struct ctl *ctl, struct ows *h, struct order *order)
+static int check_order(const struct ctl *ctl, struct ows *h, struct order *order)
 {
 	const struct attribute_def *def;
 	const char *type, *range;
@@ -138,7 +138,7 @@ static int set_send(struct ows *h, struct order *order)
 }
 
 /* Has the bus, or for the enables the engine, taken what was set, and does it read so? */
-static bool confirmed(struct ows *h, struct order *order, struct reading *reading)
+static bool is_confirmed(struct ows *h, struct order *order, struct reading *reading)
 {
 	if (order->confirmed || is_edge(order->attribute))
 		return true;
@@ -157,7 +157,7 @@ static bool all_confirmed(struct ows *h, struct order *orders, int count, struct
 	bool all = true;
 
 	for (int i = 0; i < count; i++)
-		all &= confirmed(h, &orders[i], reading);
+		all &= is_confirmed(h, &orders[i], reading);
 	return all;
 }
 
@@ -294,7 +294,7 @@ static int set_all(struct ctl *ctl, struct ows *h, struct order *orders, int cou
 	if (!daemon.alive)
 		return ctl_fail("owsd is not running: nothing was set");
 	for (int i = 0; i < count; i++)
-		if (prepare(ctl, h, &orders[i]) != CTL_DONE)
+		if (check_order(ctl, h, &orders[i]) != CTL_DONE)
 			status = CTL_FAILED;
 	if (status == CTL_DONE)
 		status = refuse_twice(orders, count);
@@ -305,7 +305,7 @@ static int set_all(struct ctl *ctl, struct ows *h, struct order *orders, int cou
 	if (seconds && set_await(h, orders, count, limit_ns, &reading) != CTL_DONE) {
 		status = CTL_FAILED;
 		for (int i = 0; i < count; i++)
-			if (!confirmed(h, &orders[i], &reading))
+			if (!is_confirmed(h, &orders[i], &reading))
 				print_why(h, &orders[i], seconds, &reading);
 	}
 	if (ctl->json)

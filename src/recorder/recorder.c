@@ -3,21 +3,13 @@
 #include "src/face/loop.h"
 #include "src/recorder/recording.h"
 
-static int open_recording(struct face *face)
-{
-	static struct recording recording;
-
-	face->own = &recording;
-	return recording_open(face);
-}
-
 int main(int argc, char **argv)
 {
 	static const struct face_ops ops = {
 		.program = "owsd-recorder",
 		.option = {'d', "directory", "DIR",
 	                   "where the history is kept, in place of Directory"},
-		.open = open_recording,
+		.open = recording_open,
 		.changes = recording_changes,
 		.event = recording_event,
 		.tick = recording_tick,

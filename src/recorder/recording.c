@@ -52,7 +52,7 @@ static int choose_directory(struct face *face, char path[HISTORY_PATH])
 }
 
 /* What to do about a disk that takes nothing, besides what its error says. */
-static const char *advice(int err)
+static const char *advice_on_disk(int err)
 {
 	switch (err) {
 	case -EBUSY:
@@ -122,7 +122,8 @@ static bool is_hopeless(int err)
 
 int recording_open(struct face *face)
 {
-	struct recording *r = face->own;
+	static struct recording recording;
+	struct recording *r = face->own = &recording;
 	int64_t now_ns = ows_now();
 	int err, disk_err = 0;
 
@@ -142,7 +143,7 @@ int recording_open(struct face *face)
 	}
 	if (err) {
 		face_complain(face->ops->program, "%s: %s%s", r->directory, strerror(-err),
-		              advice(err));
+		              advice_on_disk(err));
 		return err;
 	}
 	face->pace_ns = PACE_NS;
@@ -153,7 +154,7 @@ int recording_open(struct face *face)
 }
 
 /* The table of signals is new. */
-static void make_rows(struct face *face, int64_t now_ns)
+static void make_series(struct face *face, int64_t now_ns)
 {
 	struct recording *r = face->own;
 	int err = series_make(&r->rows, face->ows, face->config, r->writer, now_ns);
@@ -170,11 +171,11 @@ static void make_rows(struct face *face, int64_t now_ns)
 	face->tick_ns = now_ns;
 }
 
-static void found(struct face *face, int64_t now_ns)
+static void owsd_found(struct face *face, int64_t now_ns)
 {
 	struct recording *r = face->own;
 
-	make_rows(face, now_ns);
+	make_series(face, now_ns);
 	if (!r->begun)
 		history_writer_begin(r->writer, now_ns);
 	else
@@ -189,7 +190,7 @@ static void found(struct face *face, int64_t now_ns)
  * Since its last heartbeat nothing of owsd is known; what was recorded is. The gap is recorded at
  * once: if the recorder ended now, nothing would look like a constant.
  */
-static void lost(struct face *face, int64_t now_ns)
+static void owsd_lost(struct face *face, int64_t now_ns)
 {
 	struct recording *r = face->own;
 	struct ows_daemon daemon;
@@ -209,7 +210,7 @@ static void lost(struct face *face, int64_t now_ns)
 	            (double)(now_ns - from_ns) / 1e9);
 }
 
-static void overrun(struct face *face, int64_t now_ns)
+static void changes_missed(struct face *face, int64_t now_ns)
 {
 	struct recording *r = face->own;
 
@@ -250,7 +251,7 @@ static void take_options(struct face *face, int64_t now_ns)
 }
 
 /* SIGHUP, or owsd has reloaded its file: rules, options and perhaps the table are new. */
-static void renewed(struct face *face, int64_t now_ns)
+static void file_renewed(struct face *face, int64_t now_ns)
 {
 	struct recording *r = face->own;
 
@@ -259,10 +260,10 @@ static void renewed(struct face *face, int64_t now_ns)
 		return;
 	/* nothing was missed: new rows keep each value anew, with the time of its measurement */
 	if (r->begun) {
-		make_rows(face, now_ns);
+		make_series(face, now_ns);
 	} else {
 		r->lost_ns = 0;
-		found(face, now_ns);
+		owsd_found(face, now_ns);
 	}
 }
 
@@ -275,7 +276,7 @@ static void take_entry(struct recording *r, const struct face_event *event)
 		history_writer_event(r->writer, &entry);
 }
 
-static void look_at_clock(struct face *face, int64_t now_ns)
+static void note_clock(struct face *face, int64_t now_ns)
 {
 	struct recording *r = face->own;
 	int64_t before_ns = r->clock.offset_ns;
@@ -300,19 +301,19 @@ void recording_event(struct face *face, const struct face_event *event)
 	case FACE_FOUND:
 		take_options(face, now_ns);
 		if (r->writer)
-			found(face, now_ns);
+			owsd_found(face, now_ns);
 		break;
 	case FACE_RELOADED:
-		renewed(face, now_ns);
+		file_renewed(face, now_ns);
 		break;
 	case FACE_LOST:
-		lost(face, now_ns);
+		owsd_lost(face, now_ns);
 		break;
 	case FACE_OVERRUN:
-		overrun(face, now_ns);
+		changes_missed(face, now_ns);
 		break;
 	case FACE_FILE:
-		renewed(face, now_ns);
+		file_renewed(face, now_ns);
 		if (r->writer && face->live)
 			recording_changes(face, NULL, 0);
 		break;
@@ -332,7 +333,7 @@ void recording_event(struct face *face, const struct face_event *event)
 		wall_clock_rearm(&r->clock);
 		if (r->clock.fd >= 0)
 			face_watch(face, r->clock.fd, POLLIN);
-		look_at_clock(face, now_ns);
+		note_clock(face, now_ns);
 		break;
 	}
 }
@@ -376,7 +377,7 @@ static void report_disk(struct face *face, const struct history_state *state)
 		log_err(face->log,
 		        "%s cannot be written: %s%s; up to %u kB are kept in memory, and written "
 		        "when that is over",
-		        r->directory, strerror(-state->error), advice(state->error),
+		        r->directory, strerror(-state->error), advice_on_disk(state->error),
 		        MEMORY_BYTES / 1024);
 	else if (state->error && state->error != r->disk_err)
 		log_info(face->log, "%s cannot be written yet: %s", r->directory,
@@ -395,7 +396,7 @@ static void report_disk(struct face *face, const struct history_state *state)
 	r->disk_err = state->error;
 }
 
-static void show_status(struct face *face, const struct history_state *state)
+static void recording_status(struct face *face, const struct history_state *state)
 {
 	struct recording *r = face->own;
 
@@ -429,7 +430,7 @@ void recording_tick(struct face *face, int64_t now_ns)
 	face->tick_ns = now_ns + TICK_NS;
 	if (!r->writer)
 		return;
-	look_at_clock(face, now_ns);
+	note_clock(face, now_ns);
 	/* an image that is new has no rows yet */
 	if (look_is_current(face) && r->begun) {
 		assert(series_are_of(&r->rows, face->ows, now_ns));
@@ -443,7 +444,7 @@ void recording_tick(struct face *face, int64_t now_ns)
 	history_writer_tick(r->writer, seen_until(face, now_ns));
 	history_writer_state(r->writer, &state);
 	report_disk(face, &state);
-	show_status(face, &state);
+	recording_status(face, &state);
 }
 
 void recording_close(struct face *face)

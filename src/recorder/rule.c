@@ -3,16 +3,13 @@
 #include <math.h>
 
 #include "src/recorder/rule.h"
-
-static bool is_float(const struct rule_sample *sample)
-{
-	return sample->type == OWS_FLOAT || sample->type == OWS_DOUBLE;
-}
+#include "src/signal/value.h"
 
 /* NaN is a value like others here: the same as NaN, and far from each number. */
 static double distance(const struct rule_sample *a, const struct rule_sample *b)
 {
-	if (!is_float(a)) /* beyond 2^53 it is rounded: then two numbers differ by at least 1 */
+	/* an integer beyond 2^53 is rounded: two that differ are then at least 1 apart */
+	if (!value_is_float((enum ows_type)a->type))
 		return a->integer == b->integer
 		               ? 0
 		               : fmax(fabs((double)a->integer - (double)b->integer), 1);
@@ -38,7 +35,7 @@ bool rule_change(const struct config_record *rule, const struct rule_kept *kept,
 	return rule->deadband > 0 && moved > rule->deadband;
 }
 
-static int64_t slot_of(const struct config_record *rule, int64_t wall_ns)
+static int64_t interval_slot(const struct config_record *rule, int64_t wall_ns)
 {
 	int64_t slot = wall_ns / rule->interval_ns;
 
@@ -51,7 +48,7 @@ bool rule_turn(const struct config_record *rule, struct rule_kept *kept, int64_t
 
 	if (rule->interval_ns <= 0)
 		return false;
-	slot = slot_of(rule, wall_ns);
+	slot = interval_slot(rule, wall_ns);
 	if (slot == kept->slot)
 		return false;
 	kept->slot = slot;
@@ -67,5 +64,5 @@ int64_t rule_next_turn(const struct config_record *rule, int64_t wall_ns)
 {
 	if (rule->interval_ns <= 0)
 		return INT64_MAX;
-	return (slot_of(rule, wall_ns) + 1) * rule->interval_ns;
+	return (interval_slot(rule, wall_ns) + 1) * rule->interval_ns;
 }

@@ -9,17 +9,13 @@
 #include "src/face/moment.h"
 #include "src/recorder/series.h"
 #include "src/signal/hash.h"
+#include "src/signal/value.h"
 
 #define TEXT_MAX 1025 /* of a string signal, with NUL */
 
 int64_t series_bits(uint8_t type, double number, int64_t integer)
 {
-	int64_t bits;
-
-	if (type != OWS_FLOAT && type != OWS_DOUBLE)
-		return integer;
-	memcpy(&bits, &number, sizeof(bits));
-	return bits;
+	return value_is_float((enum ows_type)type) ? value_of_double(number) : integer;
 }
 
 /* By name: the file may have changed since owsd read it. Sorted once, for a table of thousands. */
@@ -28,7 +24,7 @@ struct named {
 	const struct config_item *item;
 };
 
-static int by_name(const void *a, const void *b)
+static int by_item_name(const void *a, const void *b)
 {
 	return strcmp(((const struct named *)a)->name, ((const struct named *)b)->name);
 }
@@ -40,7 +36,7 @@ static struct named *sort_items(const struct config *config)
 	for (unsigned i = 0; sorted && i < config->item_count; i++)
 		sorted[i] = (struct named){config->items[i].name, &config->items[i]};
 	if (sorted)
-		qsort(sorted, config->item_count, sizeof(*sorted), by_name);
+		qsort(sorted, config->item_count, sizeof(*sorted), by_item_name);
 	return sorted;
 }
 
@@ -51,7 +47,7 @@ static struct config_record rule_of(const struct config *config, const struct na
 	struct named wanted = {.name = info->name};
 	struct config_item unknown = {.type = (enum ows_type)info->type};
 	const struct named *found = bsearch(&wanted, sorted, config->item_count, sizeof(*sorted),
-	                                    by_name);
+	                                    by_item_name);
 
 	return config_record_of(config, found ? found->item : &unknown);
 }
@@ -184,9 +180,10 @@ static bool series_get(struct ows *ows, int signal, int64_t now_ns, struct ows_v
 	return true;
 }
 
-static void keep(struct series *rows, struct rule_kept *kept, const struct rule_sample *sample,
-                 struct history_writer *writer, uint32_t number, const struct ows_value *v,
-                 const char *text, int64_t now_ns)
+static void keep_sample(struct series *rows, struct rule_kept *kept,
+                        const struct rule_sample *sample, struct history_writer *writer,
+                        uint32_t number, const struct ows_value *v, const char *text,
+                        int64_t now_ns)
 {
 	int64_t time_ns = time_of(rows, v, now_ns);
 
@@ -210,7 +207,7 @@ static void keep_raw(struct series *rows, struct row *row, struct ows *ows,
 	sample.quality = v.quality;
 	sample.number = v.number;
 	sample.measured_ns = v.measured_ns;
-	keep(rows, &row->raw_kept, &sample, writer, row->raw_row, &v, "", now_ns);
+	keep_sample(rows, &row->raw_kept, &sample, writer, row->raw_row, &v, "", now_ns);
 }
 
 /*
@@ -255,7 +252,7 @@ static void series_take(struct series *rows, int signal, struct ows *ows,
 	if (!rule_change(&row->rule, &row->kept, &sample) &&
 	    !(turned && rule_interval(&row->kept, &sample)))
 		return;
-	keep(rows, &row->kept, &sample, writer, (uint32_t)signal, &v, text, now_ns);
+	keep_sample(rows, &row->kept, &sample, writer, (uint32_t)signal, &v, text, now_ns);
 	keep_raw(rows, row, ows, writer, now_ns);
 }
 

@@ -16,7 +16,7 @@
 /* In periods of 0.1 s: measurements once a second, contacts in each period. */
 #define MEASURED 10
 
-static enum ows_type type_of(const struct property *row, const char *name)
+static enum ows_type property_type(const struct property *row, const char *name)
 {
 	if (row->type == PROPERTY_FLOAT || row->type == PROPERTY_TEMPERATURE)
 		return OWS_DOUBLE;
@@ -40,7 +40,7 @@ bool scan_property(uint8_t code, unsigned i, struct scan_property *property)
 		return false;
 	*property = (struct scan_property){.name = scan->name,
 	                                   .word = scan->word,
-	                                   .type = type_of(row, scan->name),
+	                                   .type = property_type(row, scan->name),
 	                                   .output = row->access & ACCESS_WRITE};
 	property->per_factor = property->type == OWS_DOUBLE ? MEASURED : 0;
 	return true;
@@ -88,7 +88,7 @@ static int scan_list(struct target *target, const char *path, bool fresh, char *
 }
 
 /* Parse the device of a line; false if the line shows none. */
-static bool device_of(const char *line, struct scan_device *device)
+bool scan_device_of(const char *line, struct scan_device *device)
 {
 	char rom[ROM_TEXT_MAX];
 	struct path path;
@@ -99,13 +99,11 @@ static bool device_of(const char *line, struct scan_device *device)
 	*device = (struct scan_device){.family = path.rom[0]};
 	int way = (int)(path.last.text - path.device.text);
 	int n = snprintf(device->path, sizeof(device->path), "/%.*s%s", way, path.device.text, rom);
-	if (n < 0 || (size_t)n >= sizeof(device->path))
-		return false;
-	return true;
+	return n >= 0 && (size_t)n < sizeof(device->path);
 }
 
 /* Room for one more. It is doubled where the count is a power of two: 40,000 move a few times. */
-static bool grow(struct scan *scan)
+static bool room_for_device(struct scan *scan)
 {
 	size_t room = scan->count ? 2 * (size_t)scan->count : 1;
 	struct scan_device *more;
@@ -125,9 +123,9 @@ static int take_list(struct scan *scan, char *text)
 	char *rest;
 
 	for (char *line = strtok_r(text, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
-		if (!device_of(line, &device))
+		if (!scan_device_of(line, &device))
 			continue;
-		if (!grow(scan))
+		if (!room_for_device(scan))
 			return -ENOMEM;
 		scan->device[scan->count++] = device;
 	}
@@ -182,7 +180,7 @@ static int list_all(struct target *target, struct scan *scan, char *text)
 	return scan->disturbed ? scan_list(target, "/", false, text) : err;
 }
 
-static int find(struct target *target, struct scan *scan, char *text)
+static int find_all(struct target *target, struct scan *scan, char *text)
 {
 	unsigned kept = 0;
 	int err = list_all(target, scan, text);
@@ -202,7 +200,7 @@ static int find(struct target *target, struct scan *scan, char *text)
 }
 
 /* Find the bus of each device on a wire itself; buses are numbered without gaps. */
-static void locate(struct target *target, struct scan *scan, char *text)
+static void locate_devices(struct target *target, struct scan *scan, char *text)
 {
 	char path[16], *rest;
 
@@ -214,7 +212,7 @@ static void locate(struct target *target, struct scan *scan, char *text)
 		     line = strtok_r(NULL, "\n", &rest)) {
 			struct scan_device key, *found;
 
-			if (!device_of(line, &key))
+			if (!scan_device_of(line, &key))
 				continue;
 			found = bsearch(&key, scan->device, scan->count, sizeof(key), by_path);
 			if (found)
@@ -324,16 +322,11 @@ int scan_find(struct target *target, struct scan *scan)
 	*scan = (struct scan){0};
 	if (!text)
 		return -ENOMEM;
-	err = find(target, scan, text);
+	err = find_all(target, scan, text);
 	if (!err)
-		locate(target, scan, text);
+		locate_devices(target, scan, text);
 	free(text);
 	return err;
-}
-
-bool scan_device_of(const char *path, struct scan_device *device)
-{
-	return device_of(path, device);
 }
 
 void scan_free(struct scan *scan)

@@ -7,16 +7,14 @@
 #include <time.h>
 
 #include "src/scan/target.h"
+#include "src/show/json.h"
 
 #define GRACE_NS (2 * NS_PER_S) /* after its deadline the bus has this time to end a request */
 
 static int64_t boottime(void *ctx)
 {
-	struct timespec t;
-
 	(void)ctx;
-	clock_gettime(CLOCK_BOOTTIME, &t);
-	return (int64_t)t.tv_sec * NS_PER_S + t.tv_nsec;
+	return clock_ns(CLOCK_BOOTTIME);
 }
 
 static int wait_fd(void *ctx, int fd, short events, int64_t until_ns)
@@ -83,13 +81,18 @@ static void target_step(struct target *target, int64_t until_ns)
 		wait_fd(NULL, -1, 0, next);
 }
 
-int target_connect(struct target *target, char *why, size_t why_size)
+static int64_t deadline(const struct target *target)
 {
 	int64_t until_ns = boottime(NULL) + target->timeout_ns;
+
+	return target->until_ns && until_ns > target->until_ns ? target->until_ns : until_ns;
+}
+
+int target_connect(struct target *target, char *why, size_t why_size)
+{
+	int64_t until_ns = deadline(target);
 	int err;
 
-	if (target->until_ns && until_ns > target->until_ns)
-		until_ns = target->until_ns;
 	target->env = (struct bus_env){.ctx = target,
 	                               .now = boottime,
 	                               .wait = wait_fd,
@@ -117,13 +120,6 @@ void target_close(struct target *target)
 {
 	bus_destroy(target->bus);
 	target->bus = NULL;
-}
-
-static int64_t deadline(const struct target *target)
-{
-	int64_t until_ns = boottime(NULL) + target->timeout_ns;
-
-	return target->until_ns && until_ns > target->until_ns ? target->until_ns : until_ns;
 }
 
 static int64_t wait_until(const struct target *target)
@@ -188,38 +184,6 @@ bool target_path(const char *given, char path[256], bool *fresh)
 
 #define PADDED 12
 
-static bool is_digit(char c)
-{
-	return c >= '0' && c <= '9';
-}
-
-/* -?D+(.D+)?([eE][+-]?D+)? */
-bool target_is_number(const char *text, size_t len)
-{
-	size_t i = 0, from;
-
-	i += i < len && text[i] == '-';
-	for (from = i; i < len && is_digit(text[i]);)
-		i++;
-	if (i == from || (text[from] == '0' && i > from + 1))
-		return false;
-	if (i < len && text[i] == '.') {
-		for (from = ++i; i < len && is_digit(text[i]);)
-			i++;
-		if (i == from)
-			return false;
-	}
-	if (i < len && (text[i] == 'e' || text[i] == 'E')) {
-		i++;
-		i += i < len && (text[i] == '-' || text[i] == '+');
-		for (from = i; i < len && is_digit(text[i]);)
-			i++;
-		if (i == from)
-			return false;
-	}
-	return i == len;
-}
-
 static size_t blanks(const char *text, size_t len)
 {
 	size_t n = 0;
@@ -239,7 +203,7 @@ size_t target_unpad(char *text, size_t len)
 
 		n = comma ? (size_t)(comma - text) - at : len - at;
 		if (lead > n || (lead && n != PADDED) ||
-		    !target_is_number(text + at + lead, n - lead))
+		    !json_is_number(text + at + lead, n - lead))
 			return len;
 	}
 	for (size_t at = 0; at < len; at++)

@@ -59,5 +59,3 @@ bool target_path(const char *given, char path[256], bool *fresh);
  * numbers, to 12 characters; in place; other text stays. Returns the new length.
  */
 size_t target_unpad(char *text, size_t len);
-/* Is the text one number, as JSON writes them? */
-bool target_is_number(const char *text, size_t len);

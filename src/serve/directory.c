@@ -107,14 +107,6 @@ static void remember_first(struct directory *directory)
 	}
 }
 
-static bool is_in_root(const char *name, size_t len)
-{
-	for (int i = 0; in_root[i]; i++)
-		if (strlen(in_root[i]) == len && memcmp(in_root[i], name, len) == 0)
-			return true;
-	return false;
-}
-
 /*
  * A target's root adds only its devices: the server adds all other entries of the root by itself.
  */
@@ -129,7 +121,7 @@ static bool keeps(const struct node *node, struct buses *buses, unsigned target,
 		return true;
 	if (number >= 0)
 		buses_number(buses, target, (unsigned)number);
-	return number < 0 && !is_in_root(name, len);
+	return number < 0 && !node_is_in(in_root, name, len);
 }
 
 void directory_take(struct directory *directory, const struct node *node, struct buses *buses,
@@ -228,8 +220,8 @@ static size_t as_asked(struct directory *directory, const struct directory_form 
 	return (size_t)rom_print(rom, format > ROM_FIC ? ROM_F_I : (enum rom_format)format, text);
 }
 
-static bool put_entry(struct directory *directory, const struct directory_form *form,
-                      const char *name, size_t len)
+static bool put_name(struct directory *directory, const struct directory_form *form,
+                     const char *name, size_t len)
 {
 	bool slash = form->slash && node_is_directory(form->node, name, len);
 	bool root = form->prefix_len && form->prefix[0] != '/';
@@ -248,7 +240,7 @@ static bool put_entry(struct directory *directory, const struct directory_form *
 }
 
 /* Keep room for the header of a DIRALL, which states the length of the names. */
-static bool begin(struct directory *directory, const struct directory_form *form)
+static bool begin_answer(struct directory *directory, const struct directory_form *form)
 {
 	return form->frames || put_header(directory, form, 0, 0, 0);
 }
@@ -274,12 +266,12 @@ int directory_form(struct directory *directory, const struct directory_form *for
 	uint32_t at = 0;
 
 	directory->out_len = directory->flags = 0;
-	ok = begin(directory, form);
+	ok = begin_answer(directory, form);
 	while (ok && at < directory->len) {
 		const char *name = directory->raw + at;
 		const char *stop = memchr(name, '\n', directory->len - at);
 
-		ok = put_entry(directory, form, name, (size_t)(stop - name));
+		ok = put_name(directory, form, name, (size_t)(stop - name));
 		at += (uint32_t)(stop - name) + 1;
 	}
 	return ok && directory_end(directory, form) ? 0 : -EMSGSIZE;

@@ -33,12 +33,12 @@ static void put_message(struct guests *g, struct engine_guest *guest, bool relea
 		guests_wake(g);
 }
 
-static void answered(void *ctx, struct engine_guest *guest)
+static void put_answer(void *ctx, struct engine_guest *guest)
 {
 	put_message(ctx, guest, false);
 }
 
-static void released(void *ctx, struct engine_guest *guest)
+static void put_release(void *ctx, struct engine_guest *guest)
 {
 	put_message(ctx, guest, true);
 }
@@ -46,7 +46,7 @@ static void released(void *ctx, struct engine_guest *guest)
 int guests_create(struct guests *g, unsigned most, void (*ring)(void *ctx), void *ring_ctx)
 {
 	*g = (struct guests){.ring = ring, .ring_ctx = ring_ctx};
-	g->port = (struct engine_guests){take_message, answered, released, g};
+	g->port = (struct engine_guests){take_message, put_answer, put_release, g};
 	g->there.size = ring_size(most);
 	g->back.size = ring_size(2 * most);
 	g->requests = calloc(g->there.size, sizeof(*g->requests));

@@ -101,7 +101,7 @@ int kept_signal(const struct kept *kept, const char *path, bool output)
 	return -1;
 }
 
-static int64_t *written(struct kept *kept, const struct node *node)
+static int64_t *last_write(struct kept *kept, const struct node *node)
 {
 	return &kept->written_ns[node->has_rom
 	                                 ? hash_text(HASH_BEGIN, node->path, node->device_len) %
@@ -144,7 +144,7 @@ static int find_signal(struct kept *kept, const struct image *image, const struc
 	type = (enum ows_type)image->records[record].type;
 	if (!holds(type, node->type) || !reader_slot(&image->records[record], &slot) ||
 	    slot.sample.quality != OWS_Q_GOOD || !slot.sample.measured_ns ||
-	    slot.sample.measured_ns <= *written(kept, node) ||
+	    slot.sample.measured_ns <= *last_write(kept, node) ||
 	    now_ns - slot.sample.measured_ns > life_ns(node->life))
 		return -ENOENT;
 	return format_number((uint8_t)node->type, value_number(OWS_DOUBLE, slot.attrs.raw), text,
@@ -217,7 +217,7 @@ void kept_forget(struct kept *kept, const struct node *node, int64_t now_ns)
 {
 	for (unsigned i = 0; !node->has_rom && i < WRITTEN; i++)
 		kept->written_ns[i] = now_ns;
-	*written(kept, node) = kept->written_ns[WRITTEN] = now_ns;
+	*last_write(kept, node) = kept->written_ns[WRITTEN] = now_ns;
 	for (unsigned i = 0; i < SETS * WAYS; i++) {
 		struct entry *entry = &kept->entries[i];
 

@@ -325,8 +325,8 @@ static void refuse_peer(struct serve *s, int fd, const union address *from)
 }
 
 /* All places are taken: hold the connection. owsd logs the first and counts them all. */
-static void hold(struct serve *s, int fd, const struct listener *from,
-                 const struct sockaddr_in6 *peer)
+static void hold_connection(struct serve *s, int fd, const struct listener *from,
+                            const struct sockaddr_in6 *peer)
 {
 	char others[LOG_OTHERS];
 	uint64_t n = log_rate(&s->full_rate, s->now_ns);
@@ -348,14 +348,15 @@ static void take_client(struct serve *s, int fd, const struct listener *from,
 	count(s, COUNT_connections, 1);
 }
 
-static void meet(struct serve *s, int fd, const struct listener *at, const union address *from)
+static void admit_client(struct serve *s, int fd, const struct listener *at,
+                         const union address *from)
 {
 	if (at->network && !is_allowed(s, from))
 		refuse_peer(s, fd, from);
 	else if (s->free_count || client_evict(s))
 		take_client(s, fd, at, &from->v6);
 	else
-		hold(s, fd, at, &from->v6);
+		hold_connection(s, fd, at, &from->v6);
 }
 
 /* Give the held connection a place. True: no connection is held any more. */
@@ -397,7 +398,7 @@ bool listeners_accept(struct serve *s)
 				break;
 			any = true;
 			if (fd >= 0)
-				meet(s, fd, &s->listeners[i], &from);
+				admit_client(s, fd, &s->listeners[i], &from);
 		}
 	}
 	return any && s->waiting && !s->held.is;

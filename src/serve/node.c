@@ -18,6 +18,14 @@ static bool node_is(const char *text, size_t len, const char *word)
 	return strlen(word) == len && memcmp(text, word, len) == 0;
 }
 
+bool node_is_in(const char *const *names, const char *name, size_t len)
+{
+	for (; *names; names++)
+		if (node_is(name, len, *names))
+			return true;
+	return false;
+}
+
 static bool starts(const char *text, size_t len, const char *word)
 {
 	size_t n = strlen(word);
@@ -139,7 +147,7 @@ static void take_virtual(struct node *node, const struct path *split)
 		find_property(node, virtual_family(text, word), slash + 1, len - word - 1);
 }
 
-static void append(struct node *node, size_t *at, const char *text, size_t len)
+static void append_path(struct node *node, size_t *at, const char *text, size_t len)
 {
 	size_t room = sizeof(node->path) - 1 - *at;
 
@@ -161,15 +169,15 @@ static void print_path(struct node *node, const struct path *split)
 		device.len = (size_t)rom_print(split->rom, ROM_F_I, id);
 		device.text = id;
 	}
-	append(node, &n, alarm, strlen(alarm));
+	append_path(node, &n, alarm, strlen(alarm));
 	if (device.len) {
-		append(node, &n, "/", 1);
-		append(node, &n, device.text, device.len);
+		append_path(node, &n, "/", 1);
+		append_path(node, &n, device.text, device.len);
 	}
 	node->device_len = (uint16_t)n;
 	if (split->property.len || !n) {
-		append(node, &n, "/", 1);
-		append(node, &n, split->property.text, split->property.len);
+		append_path(node, &n, "/", 1);
+		append_path(node, &n, split->property.text, split->property.len);
 	}
 	node->path[n] = '\0';
 	/* /Settings is /settings */
@@ -245,14 +253,6 @@ static const char *const virtual_subdirectories[] = {
 	NULL,
 };
 
-static bool is_named(const char *const *names, const char *name, size_t len)
-{
-	for (; *names; names++)
-		if (node_is(name, len, *names))
-			return true;
-	return false;
-}
-
 /* /structure/28: the entries are those that devices of the family have. */
 static bool is_of_structure(const struct node *directory, const char *name, size_t len)
 {
@@ -271,7 +271,7 @@ static bool is_of_structure(const struct node *directory, const char *name, size
 	property = family_property(family_of((uint8_t)strtoul(code, NULL, 16)), NULL, path,
 	                           (size_t)n);
 	return property ? property->type == PROPERTY_DIRECTORY
-	                : is_named(subdirectories, name, len);
+	                : node_is_in(subdirectories, name, len);
 }
 
 static bool is_subdirectory(const struct node *directory, const char *name, size_t len)
@@ -286,10 +286,10 @@ static bool is_subdirectory(const struct node *directory, const char *name, size
 	if (child.type)
 		return child.type == PROPERTY_DIRECTORY;
 	if (directory->has_device)
-		return is_named(subdirectories, name, len);
+		return node_is_in(subdirectories, name, len);
 	return is_of_structure(directory, name, len) ||
 	       (strncmp(directory->path, "/structure", 10) != 0 &&
-	        is_named(virtual_subdirectories, name, len));
+	        node_is_in(virtual_subdirectories, name, len));
 }
 
 bool node_is_directory(const struct node *directory, const char *name, size_t len)

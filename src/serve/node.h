@@ -45,5 +45,7 @@ struct node {
 };
 
 void node_parse(const char *path, size_t len, struct node *node);
+/* Is the name in the list, which NULL ends? */
+bool node_is_in(const char *const *names, const char *name, size_t len);
 /* Is this name, an entry of the directory, a directory itself? */
 bool node_is_directory(const struct node *directory, const char *name, size_t len);

@@ -35,7 +35,7 @@ struct signals {
 };
 
 /* Make room for all alarms. Without memory clients see an alarm again rather than never. */
-static void make_room(struct signals *signals)
+static void room_for_alarms(struct signals *signals)
 {
 	const struct ows_map *map = &signals->h->map;
 	size_t items = signals->seen_count;
@@ -56,7 +56,7 @@ static void make_room(struct signals *signals)
 static void signals_follow(struct signals *signals)
 {
 	if (handle_state(signals->h) && ows_reopen(signals->h) == 0)
-		make_room(signals);
+		room_for_alarms(signals);
 }
 
 int signals_open(const char *place, const char *instance, struct signals **out)
@@ -72,7 +72,7 @@ int signals_open(const char *place, const char *instance, struct signals **out)
 		return err;
 	}
 	signals->h->mode = OWS_CONTROL;
-	make_room(signals);
+	room_for_alarms(signals);
 	*out = signals;
 	return 0;
 }
@@ -86,18 +86,13 @@ void signals_close(struct signals *signals)
 	free(signals);
 }
 
-static int find_name(void *ctx, const char *name, size_t len)
-{
-	return map_find(ctx, name, len);
-}
-
 static int look_up(struct signals *signals, const char *name, struct ows_id *id)
 {
 	struct ows *h = signals->h;
 	int record;
 
 	signals_follow(signals);
-	record = attribute_lookup(h->instance, name, find_name, &h->map, &id->attribute);
+	record = attribute_lookup(h->instance, name, map_find, &h->map, &id->attribute);
 	if (record < 0)
 		return -ENOENT;
 	id->name = NULL;
@@ -107,13 +102,6 @@ static int look_up(struct signals *signals, const char *name, struct ows_id *id)
 	h->memories[0].alarms_seen = 0;
 	h->memories[0].reset_level = h->memories[0].shot_level = false;
 	return 0;
-}
-
-bool signals_has(struct signals *signals, const char *name)
-{
-	struct ows_id id;
-
-	return look_up(signals, name, &id) == 0;
 }
 
 int signals_record(struct signals *signals, const char *name)
@@ -133,7 +121,7 @@ const char *signals_name(struct signals *signals, const char *name)
 }
 
 /* Clients come and go, so all of them are one reader; `seen` has what this reader has read. */
-static bool take_alarms(struct signals *signals, const char *name, uint32_t alarms)
+static bool are_news(struct signals *signals, const char *name, uint32_t alarms)
 {
 	struct seen *seen = signals->seen;
 	size_t i = 0;
@@ -161,8 +149,8 @@ static int read_alarms(struct signals *signals, const struct ows_id *id, char *t
 		return -EIO;
 	if (room < 1)
 		return -EMSGSIZE;
-	*text = take_alarms(signals, map_name(map, (uint32_t)id->record), slot.attrs.alarms) ? '1'
-	                                                                                     : '0';
+	*text = are_news(signals, map_name(map, (uint32_t)id->record), slot.attrs.alarms) ? '1'
+	                                                                                  : '0';
 	return 1;
 }
 
@@ -226,7 +214,7 @@ static int not_yet(int err)
 }
 
 /* Become a controller, at the first write: when owsd starts its control room is not open yet. */
-static int join(struct ows *h)
+static int become_controller(struct ows *h)
 {
 	int err = h->give.base ? 0 : meet(h, &h->map, ows_now() + MEET_NS);
 
@@ -239,7 +227,7 @@ static int join(struct ows *h)
  * All clients are one controller, with one command for each signal: that of another client may only
  * be replaced when owsd knows whose it was.
  */
-static int become(struct ows *h, const struct ows_id *id, const char *person)
+static int command_for(struct ows *h, const struct ows_id *id, const char *person)
 {
 	const struct ows_command_slot *own = give_slot(&h->give, (uint32_t)id->record);
 
@@ -249,8 +237,9 @@ static int become(struct ows *h, const struct ows_id *id, const char *person)
 	return ows_for(h, person);
 }
 
-static int set(struct signals *signals, const char *person, struct ows_id *id, int64_t now_ns,
-               const char *text, size_t len, struct signals_command *command)
+static int signals_set(struct signals *signals, const char *person, struct ows_id *id,
+                       int64_t now_ns, const char *text, size_t len,
+                       struct signals_command *command)
 {
 	struct ows *h = signals->h;
 	char copy[VALUE_STRING_MAX + 1];
@@ -264,9 +253,9 @@ static int set(struct signals *signals, const char *person, struct ows_id *id, i
 		return err;
 	if (!takes_commands(h, id))
 		return -EACCES;
-	err = join(h);
+	err = become_controller(h);
 	if (!err)
-		err = become(h, id, person);
+		err = command_for(h, id, person);
 	if (!err)
 		err = handle_set_text(h, id, copy, &stamp);
 	if (err == -ERANGE)
@@ -290,7 +279,7 @@ int signals_write(struct signals *signals, const char *person, const char *name,
 
 	*command = (struct signals_command){0};
 	if (!err)
-		err = set(signals, person, &id, now_ns, text, len, command);
+		err = signals_set(signals, person, &id, now_ns, text, len, command);
 	if (err != -ESTALE)
 		return err;
 	/* a reload gave the signal another record meanwhile */
@@ -299,7 +288,7 @@ int signals_write(struct signals *signals, const char *person, const char *name,
 		return err;
 	err = err ? -EIO : look_up(signals, name, &id);
 	if (!err)
-		err = set(signals, person, &id, now_ns, text, len, command);
+		err = signals_set(signals, person, &id, now_ns, text, len, command);
 	return err == -ESTALE ? -EIO : err;
 }
 

@@ -17,8 +17,6 @@ struct signals;
 int signals_open(const char *place, const char *instance, struct signals **signals);
 void signals_close(struct signals *signals);
 
-/* Is this the name of a signal or of an attribute? */
-bool signals_has(struct signals *signals, const char *name);
 /* The signal's own name, also of an attribute, "" of the driver's; NULL: there is none. */
 const char *signals_name(struct signals *signals, const char *name);
 /* The record of the signal that has this name or attribute; -1: there is none. */

@@ -42,7 +42,7 @@ static struct scale scale_of(char type, uint32_t flags)
 	return scale;
 }
 
-static bool is_number(char type)
+static bool is_number_type(char type)
 {
 	return type && strchr("ifutgp", type);
 }
@@ -60,7 +60,7 @@ bool units_convert(char type, uint32_t flags)
 }
 
 /* Parse one element, without the blanks of its padding. */
-static int parse(const char *text, size_t len, double *number)
+static int parse_element(const char *text, size_t len, double *number)
 {
 	char copy[64], *end;
 
@@ -78,7 +78,7 @@ static int parse(const char *text, size_t len, double *number)
 	return end != copy + len || !isfinite(*number) ? -EINVAL : 0;
 }
 
-static size_t element(const char *text, size_t len)
+static size_t element_length(const char *text, size_t len)
 {
 	const char *comma = memchr(text, ',', len);
 
@@ -86,17 +86,17 @@ static size_t element(const char *text, size_t len)
 }
 
 /* Convert each element of `from` into `to`; the lengths may differ. */
-static int each(const struct scale *scale, bool back, const char *from, size_t len, char *to,
-                size_t room)
+static int convert_each(const struct scale *scale, bool back, const char *from, size_t len,
+                        char *to, size_t room)
 {
 	size_t used = 0, at = 0;
 
 	for (;;) {
-		size_t n = element(from + at, len - at);
+		size_t n = element_length(from + at, len - at);
 		double number;
 		int put;
 
-		if (parse(from + at, n, &number))
+		if (parse_element(from + at, n, &number))
 			return -EINVAL;
 		number = back ? (number - scale->offset) / scale->factor
 		              : number * scale->factor + scale->offset;
@@ -112,7 +112,7 @@ static int each(const struct scale *scale, bool back, const char *from, size_t l
 	}
 }
 
-static size_t trim(char *text, size_t len)
+static size_t drop_padding(char *text, size_t len)
 {
 	size_t used = 0;
 	bool begins = true;
@@ -141,7 +141,7 @@ int units_show(char type, uint32_t flags, char *text, size_t len, size_t room)
 	if (len && units_convert(type, flags)) {
 		struct scale scale = scale_of(type, flags);
 
-		n = each(&scale, false, text, len, out, sizeof(out));
+		n = convert_each(&scale, false, text, len, out, sizeof(out));
 		if (n < 0)
 			return n == -EINVAL ? -EIO : n;
 		if ((size_t)n > room)
@@ -149,8 +149,8 @@ int units_show(char type, uint32_t flags, char *text, size_t len, size_t room)
 		memcpy(text, out, (size_t)n);
 		len = (size_t)n;
 	}
-	if (flags & FRAME_TRIM && (is_number(type) || (!type && looks_padded(text, len))))
-		len = trim(text, len);
+	if (flags & FRAME_TRIM && (is_number_type(type) || (!type && looks_padded(text, len))))
+		len = drop_padding(text, len);
 	return (int)len;
 }
 
@@ -160,5 +160,5 @@ int units_take(char type, uint32_t flags, const char *text, size_t len, char *ou
 
 	if (len == 0)
 		return -EINVAL;
-	return each(&scale, true, text, len, out, room);
+	return convert_each(&scale, true, text, len, out, room);
 }

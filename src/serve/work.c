@@ -128,7 +128,7 @@ static void begin_present(struct serve *s, struct client *c)
 	static const uint8_t none[ROM_LEN];
 	const struct node *node = &c->node;
 
-	if (node->kind == NODE_SIGNAL && !signals_has(s->signals, node->name))
+	if (node->kind == NODE_SIGNAL && signals_record(s->signals, node->name) < 0)
 		answer_error(s, c, -ENOENT);
 	else if (node->kind != NODE_TARGET || node->devices)
 		answer_id(s, c, none);
@@ -169,7 +169,8 @@ static void begin_get(struct serve *s, struct client *c)
 static void begin_dir(struct serve *s, struct client *c)
 {
 	if (c->node.kind == NODE_SIGNAL)
-		answer_error(s, c, signals_has(s->signals, c->node.name) ? -ENOTDIR : -ENOENT);
+		answer_error(s, c,
+		             signals_record(s->signals, c->node.name) < 0 ? -ENOENT : -ENOTDIR);
 	else if (c->node.kind == NODE_CODE)
 		answer_error(s, c, -ENOTDIR);
 	else

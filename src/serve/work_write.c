@@ -10,11 +10,27 @@
 #include "src/serve/work_type.h"
 #include "src/serve/work_write.h"
 
+/*
+ * The value to write, in the units of the bus: as the client sent it, or converted, in the client's
+ * room. Returns its length, or a negative errno.
+ */
+static int value_for_bus(struct client *c, uint8_t **data)
+{
+	const struct request *r = &c->request;
+	const char *text = (const char *)r->data;
+
+	*data = (uint8_t *)(uintptr_t)r->data;
+	if (!units_convert(c->node.type, r->flags))
+		return (int)r->data_len;
+	*data = client_room(c);
+	return units_take(c->node.type, r->flags, text, r->data_len, (char *)*data,
+	                  client_room_size(c));
+}
+
 void work_write_target(struct serve *s, struct client *c)
 {
-	uint8_t *data = (uint8_t *)(uintptr_t)c->request.data;
-	uint32_t len = c->request.data_len;
-	int lane;
+	uint8_t *data;
+	int lane, len;
 
 	/* a part of a number is another number; the target decides about an unknown type */
 	if (c->request.offset && c->node.type && c->node.type != PROPERTY_BINARY) {
@@ -22,25 +38,19 @@ void work_write_target(struct serve *s, struct client *c)
 		return;
 	}
 	kept_forget(s->kept, &c->node, s->now_ns);
-	if (units_convert(c->node.type, c->request.flags)) {
-		int n = units_take(c->node.type, c->request.flags, (const char *)data, len,
-		                   (char *)client_room(c), client_room_size(c));
-
-		if (n < 0) {
-			answer_error(s, c, n);
-			return;
-		}
-		data = client_room(c);
-		len = (uint32_t)n;
+	len = value_for_bus(c, &data);
+	if (len < 0) {
+		answer_error(s, c, len);
+		return;
 	}
 	lane = work_path(s, c);
 	if (!c->node.every) {
-		work_ask(s, c, STEP_WRITE, BUS_WRITE, lane, data, len);
+		work_ask(s, c, STEP_WRITE, BUS_WRITE, lane, data, (uint32_t)len);
 		return;
 	}
 	work_next_target(s, c);
 	if (c->target < work_targets(s))
-		work_ask(s, c, STEP_WRITE_EACH, BUS_WRITE, (int)c->target, data, len);
+		work_ask(s, c, STEP_WRITE_EACH, BUS_WRITE, (int)c->target, data, (uint32_t)len);
 	else
 		answer_error(s, c, c->worst == WORK_NOT_YET ? -ENOTCONN : c->worst);
 }
@@ -48,7 +58,7 @@ void work_write_target(struct serve *s, struct client *c)
 /*
  * The name of the signal to command: the path names it, or it is the output at the path; or NULL.
  */
-static const char *name_of(const struct serve *s, const struct node *node)
+static const char *commanded_name(const struct serve *s, const struct node *node)
 {
 	int record;
 
@@ -61,28 +71,21 @@ static const char *name_of(const struct serve *s, const struct node *node)
 /* Command an output of the table. The control program commands the same output. */
 static int work_write_give(struct serve *s, struct client *c, const char *name)
 {
-	const char *text = (const char *)c->request.data;
-	uint32_t len = c->request.data_len;
 	char person[OWS_NAME];
+	uint8_t *data;
+	int len = value_for_bus(c, &data);
 
-	if (c->node.kind != NODE_SIGNAL && units_convert(c->node.type, c->request.flags)) {
-		char *room = (char *)client_room(c);
-		int n = units_take(c->node.type, c->request.flags, text, len, room,
-		                   client_room_size(c));
-
-		if (n < 0)
-			return n;
-		len = (uint32_t)n;
-		text = room;
-	}
+	if (len < 0)
+		return len;
 	person_name(c->fd, c->network, &c->peer, person);
-	return signals_write(s->signals, person, name, s->now_ns, text, len, &c->command);
+	return signals_write(s->signals, person, name, s->now_ns, (const char *)data, (size_t)len,
+	                     &c->command);
 }
 
 /* Give a command that has to wait to the engine; look whether one that it has is carried out. */
-static int apply(struct serve *s, struct client *c)
+static int apply_command(struct serve *s, struct client *c)
 {
-	const char *name = name_of(s, &c->node);
+	const char *name = commanded_name(s, &c->node);
 	int err = name ? 0 : -ENOENT;
 
 	if (!err && c->waits) {
@@ -94,9 +97,9 @@ static int apply(struct serve *s, struct client *c)
 	return err || !c->command.record ? err : signals_applied(s->signals, name, &c->command);
 }
 
-static void applying(struct serve *s, struct client *c)
+static void await_command(struct serve *s, struct client *c)
 {
-	int err = apply(s, c);
+	int err = apply_command(s, c);
 
 	if (err == 0) {
 		kept_forget(s->kept, &c->node, s->now_ns);
@@ -112,7 +115,7 @@ static void work_write_command(struct serve *s, struct client *c)
 {
 	c->waits = true;
 	client_enter(s, c, CLIENT_APPLYING);
-	applying(s, c);
+	await_command(s, c);
 }
 
 /* Does ControlAllow let the client write this signal, or a device where name is NULL? */
@@ -145,7 +148,7 @@ void work_write(struct serve *s, struct client *c)
 	} else if (node->kind == NODE_CODE) {
 		answer_error(s, c, -EACCES);
 	} else {
-		name = name_of(s, node);
+		name = commanded_name(s, node);
 		if (!is_allowed(s, c, name))
 			work_write_refuse(s, c);
 		else if (name && c->request.offset)
@@ -187,5 +190,5 @@ void work_look(struct serve *s)
 {
 	for (unsigned i = 0; i < s->used; i++)
 		if (s->clients[i].state == CLIENT_APPLYING)
-			applying(s, &s->clients[i]);
+			await_command(s, &s->clients[i]);
 }

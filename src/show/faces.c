@@ -32,7 +32,7 @@ static int64_t positive(const char *text)
 	return n > 0 ? n : 0;
 }
 
-static void take_line(struct faces_one *face, const char *line)
+static void take_report_line(struct faces_one *face, const char *line)
 {
 	struct faces_counter *counter = &face->counters[face->count];
 	const char *rest;
@@ -53,7 +53,7 @@ static void take_line(struct faces_one *face, const char *line)
 }
 
 /* False: it cannot be read, or is no report. */
-static bool read_one(const char *path, const char *program, struct faces_one *face)
+static bool read_report(const char *path, const char *program, struct faces_one *face)
 {
 	/* a face may have been taken over, and its reader has more rights */
 	int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOFOLLOW | O_NOCTTY | O_CLOEXEC);
@@ -72,7 +72,7 @@ static bool read_one(const char *path, const char *program, struct faces_one *fa
 	for (unsigned i = 0; i < LINES_MOST && fgets(line, sizeof(line), in); i++) {
 		line[strcspn(line, "\n")] = '\0';
 		line[printable(line, strlen(line))] = '\0';
-		take_line(face, line);
+		take_report_line(face, line);
 	}
 	fclose(in);
 	return face->beat_ns > 0;
@@ -95,8 +95,8 @@ unsigned faces_read(const char *instance, struct faces_one faces[FACES_MOST])
 	for (size_t i = 0; i < found.gl_pathc && count < FACES_MOST; i++) {
 		const char *path = found.gl_pathv[i], *end = strrchr(path, '.');
 
-		count += read_one(path, own && end ? end + 1 : path + strlen("/run/"),
-		                  &faces[count]);
+		count += read_report(path, own && end ? end + 1 : path + strlen("/run/"),
+		                     &faces[count]);
 	}
 	globfree(&found);
 	return count;

@@ -25,7 +25,7 @@ struct reading {
 	void *ctx;
 };
 
-static struct ows_by by_of(const struct ows_history_who *who)
+static struct ows_by past_by(const struct ows_history_who *who)
 {
 	struct ows_by by = {.serial = who->serial, .uid = who->uid, .pid = who->pid};
 
@@ -60,7 +60,7 @@ static struct journal_entry journal_past_convert(const struct reading *r,
 			.type = event->type,
 			.reason = event->reason,
 			.quality = event->quality,
-			.who = by_of(&event->who),
+			.who = past_by(&event->who),
 		};
 		snprintf(entry.command.text, sizeof(entry.command.text), "%.*s",
 		         (int)sizeof(entry.command.text) - 1, event->text);
@@ -79,7 +79,7 @@ static struct journal_entry journal_past_convert(const struct reading *r,
 		.kind = event->alarm,
 		.event = event->event,
 		.quality = event->quality,
-		.who = by_of(&event->who),
+		.who = past_by(&event->who),
 	};
 	snprintf(entry.alarm.text, sizeof(entry.alarm.text), "%.*s",
 	         (int)sizeof(entry.alarm.text) - 1, event->text);
@@ -87,7 +87,7 @@ static struct journal_entry journal_past_convert(const struct reading *r,
 }
 
 /* The place for one more entry: a new one, or that of the oldest. NULL: no memory. */
-static struct journal_entry *place(struct reading *r)
+static struct journal_entry *next_entry(struct reading *r)
 {
 	struct journal_entries *to = r->to;
 	struct journal_entry *more;
@@ -115,7 +115,7 @@ static int journal_past_take(struct reading *r, const struct ows_history_event *
 		ows_history_signal(r->history, event->signal, &signal);
 	if (!names_match(signal.name, r->patterns, r->count) || !r->most)
 		return 0;
-	entry = place(r);
+	entry = next_entry(r);
 	if (!entry)
 		return -ENOMEM;
 	*entry = journal_past_convert(r, event, &signal);

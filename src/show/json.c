@@ -193,43 +193,41 @@ void json_seconds(struct json *json, const char *key, int64_t ns)
 	        (unsigned)imaxabs(ms % 1000));
 }
 
-static bool digits(const char **at)
+static bool take_digits(const char **at, const char *end)
 {
 	const char *first = *at;
 
-	while (**at >= '0' && **at <= '9')
+	while (*at < end && **at >= '0' && **at <= '9')
 		(*at)++;
 	return *at > first;
 }
 
-static bool is_number(const char *at)
+bool json_is_number(const char *at, size_t len)
 {
-	const char *first;
+	const char *end = at + len, *first;
 
-	if (*at == '-')
-		at++;
+	at += at < end && *at == '-';
 	first = at;
-	if (!digits(&at) || (*first == '0' && at - first > 1))
+	if (!take_digits(&at, end) || (*first == '0' && at - first > 1))
 		return false;
-	if (*at == '.') {
+	if (at < end && *at == '.') {
 		at++;
-		if (!digits(&at))
+		if (!take_digits(&at, end))
 			return false;
 	}
-	if (*at == 'e' || *at == 'E') {
+	if (at < end && (*at == 'e' || *at == 'E')) {
 		at++;
-		if (*at == '+' || *at == '-')
-			at++;
-		if (!digits(&at))
+		at += at < end && (*at == '+' || *at == '-');
+		if (!take_digits(&at, end))
 			return false;
 	}
-	return *at == '\0';
+	return at == end;
 }
 
 void json_number(struct json *json, const char *key, const char *text)
 {
 	json_begin(json, key);
-	fputs(text && is_number(text) ? text : "null", json->out);
+	fputs(text && json_is_number(text, strlen(text)) ? text : "null", json->out);
 }
 
 void json_double(struct json *json, const char *key, double number)

@@ -45,6 +45,8 @@ void json_bool(struct json *json, const char *key, bool value);
 void json_null(struct json *json, const char *key);
 /* Nanoseconds as seconds with three digits. */
 void json_seconds(struct json *json, const char *key, int64_t ns);
+/* Has JSON such a number? -?D+(.D+)?([eE][+-]?D+)? without a 0 in front. */
+bool json_is_number(const char *text, size_t len);
 /* A number that is already text; null without a text, or if JSON has no such number (nan, inf). */
 void json_number(struct json *json, const char *key, const char *text);
 void json_double(struct json *json, const char *key, double number); /* null for a NaN */

@@ -19,12 +19,13 @@ struct print {
 };
 
 /* A family of metrics begins; its samples follow. */
-static void family(const struct print *p, const char *name, const char *type, const char *help)
+static void begin_family(const struct print *p, const char *name, const char *type,
+                         const char *help)
 {
 	fprintf(p->out, "# TYPE %s %s\n# HELP %s %s\n", name, type, name, help);
 }
 
-static void label(const struct print *p, const char *name, const char *text)
+static void put_label(const struct print *p, const char *name, const char *text)
 {
 	size_t len = strlen(text);
 
@@ -48,14 +49,14 @@ static void label(const struct print *p, const char *name, const char *text)
 static void next_label(const struct print *p, const char *name, const char *text)
 {
 	putc(',', p->out);
-	label(p, name, text);
+	put_label(p, name, text);
 }
 
 /* The start of a sample: its name and the label of owsd, and the brace stays open. */
-static void sample(const struct print *p, const char *name)
+static void begin_sample(const struct print *p, const char *name)
 {
 	fprintf(p->out, "%s{", name);
-	label(p, "owsd", p->metrics->instance);
+	put_label(p, "owsd", p->metrics->instance);
 }
 
 static void end_sample(const struct print *p, const char *value)
@@ -66,6 +67,16 @@ static void end_sample(const struct print *p, const char *value)
 static void end_seconds(const struct print *p, int64_t ns)
 {
 	fprintf(p->out, "} %" PRId64 ".%03d\n", ns / 1000000000, (int)(ns % 1000000000 / 1000000));
+}
+
+/* us: the value is in microseconds, and is shown in seconds. */
+static void end_count(const struct print *p, uint64_t value, bool us)
+{
+	if (us)
+		fprintf(p->out, "} %" PRIu64 ".%06u\n", value / 1000000,
+		        (unsigned)(value % 1000000));
+	else
+		fprintf(p->out, "} %" PRIu64 "\n", value);
 }
 
 enum what { VALUE, QUALITY, AGE, SIMULATED, ALARM, WHATS };
@@ -133,7 +144,7 @@ static void print_signal(const struct print *p, int signal, enum what what)
 		return;
 	if (!sample_of(p, signal, &info, what, text, &seconds_ns))
 		return;
-	sample(p, whats[what].name);
+	begin_sample(p, whats[what].name);
 	next_label(p, "signal", info.name);
 	if (*info.device)
 		next_label(p, "device", info.device);
@@ -153,9 +164,9 @@ static void print_targets(const struct print *p)
 
 	ows_daemon(p->metrics->h, p->now.boot, &daemon);
 	alive = daemon.alive && !p->metrics->lost;
-	family(p, "ows_target_up", "gauge", "1 while a target is up.");
+	begin_family(p, "ows_target_up", "gauge", "1 while a target is up.");
 	for (int i = 0; ows_target(p->metrics->h, i, &target) == 0; i++) {
-		sample(p, "ows_target_up");
+		begin_sample(p, "ows_target_up");
 		next_label(p, "target", target.name);
 		end_sample(p, alive && target.state == 1 ? "1" : "0");
 	}
@@ -189,19 +200,15 @@ static void print_counters(const struct print *p)
 		snprintf(name, sizeof(name), "ows_%.*s%s", (int)(us ? len - 3 : len), counter.name,
 		         us ? "_seconds" : "");
 		snprintf(whole, sizeof(whole), "%s_total", name);
-		family(p, p->metrics->prometheus ? whole : name, "counter",
-		       "A counter of owsctl stats.");
+		begin_family(p, p->metrics->prometheus ? whole : name, "counter",
+		             "A counter of owsctl stats.");
 		for (int j = i; ows_counter(h, j, &same) == 0; j++) {
 			if (strcmp(same.name, counter.name) != 0)
 				continue;
-			sample(p, whole);
+			begin_sample(p, whole);
 			if (ows_target(h, same.target, &target) == 0)
 				next_label(p, "target", target.name);
-			if (us)
-				fprintf(p->out, "} %" PRIu64 ".%06u\n", same.value / 1000000,
-				        (unsigned)(same.value % 1000000));
-			else
-				fprintf(p->out, "} %" PRIu64 "\n", same.value);
+			end_count(p, same.value, us);
 		}
 	}
 }
@@ -238,16 +245,14 @@ static void print_device(const struct print *p, int index, enum device_what what
 	    (what >= DEVICE_RETRIES && !stats_device_costs(&device)))
 		return;
 	snprintf(whole, sizeof(whole), "%s_total", device_whats[what].name);
-	sample(p, whole);
+	begin_sample(p, whole);
 	next_label(p, "device", device.id);
-	if (what == DEVICE_WIRE)
-		fprintf(p->out, "} %" PRIu64 ".%06u\n", device.wire_us / 1000000,
-		        (unsigned)(device.wire_us % 1000000));
-	else
-		fprintf(p->out, "} %" PRIu64 "\n",
-		        what == DEVICE_ANSWERS  ? device.answers
-		        : what == DEVICE_ERRORS ? device.errors
-		                                : device.retries);
+	end_count(p,
+	          what == DEVICE_ANSWERS   ? device.answers
+	          : what == DEVICE_ERRORS  ? device.errors
+	          : what == DEVICE_RETRIES ? device.retries
+	                                   : device.wire_us,
+	          what == DEVICE_WIRE);
 }
 
 /* As metrics_print(); *at is first before the first part. */
@@ -264,7 +269,7 @@ static bool print_devices(const struct print *p, int first, int *at, int most)
 		snprintf(whole, sizeof(whole), "%s%s", device_whats[what].name,
 		         p->metrics->prometheus ? "_total" : "");
 		if (done % devices == 0)
-			family(p, whole, "counter", device_whats[what].help);
+			begin_family(p, whole, "counter", device_whats[what].help);
 		print_device(p, done % devices, what);
 	}
 	*at = first + done;
@@ -276,11 +281,12 @@ static void print_daemon(const struct print *p)
 	struct ows_daemon daemon = {0};
 
 	ows_daemon(p->metrics->h, p->now.boot, &daemon);
-	family(p, "ows_up", "gauge", "1 while owsd runs.");
-	sample(p, "ows_up");
+	begin_family(p, "ows_up", "gauge", "1 while owsd runs.");
+	begin_sample(p, "ows_up");
 	end_sample(p, daemon.alive && !p->metrics->lost ? "1" : "0");
-	family(p, "ows_start_time_seconds", "gauge", "When owsd started, in seconds since 1970.");
-	sample(p, "ows_start_time_seconds");
+	begin_family(p, "ows_start_time_seconds", "gauge",
+	             "When owsd started, in seconds since 1970.");
+	begin_sample(p, "ows_start_time_seconds");
 	end_seconds(p, p->now.wall - p->now.boot + daemon.start_ns);
 }
 
@@ -295,7 +301,7 @@ bool metrics_print(FILE *out, const struct metrics *metrics, int *at, int most)
 		enum what what = (enum what)(*at / count);
 
 		if (*at % count == 0)
-			family(&print, whats[what].name, "gauge", whats[what].help);
+			begin_family(&print, whats[what].name, "gauge", whats[what].help);
 		print_signal(&print, *at % count, what);
 	}
 	if (*at < WHATS * count)

@@ -98,27 +98,16 @@ void reading_show(const struct reading *reading, char *out, size_t size)
 void reading_json_number(struct json *json, const char *key, const struct ows_value *value,
                          const char *text)
 {
-	switch ((enum ows_type)value->type) {
-	case OWS_STRING:
+	if (value->type == OWS_STRING)
 		json_string(json, key, text);
-		return;
-	case OWS_BOOL:
+	else if (value->type == OWS_BOOL)
 		json_bool(json, key, value->integer != 0);
-		return;
-	case OWS_BYTE:
-	case OWS_SHORT:
-	case OWS_LONG:
-	case OWS_WORD:
-	case OWS_DWORD:
-	case OWS_LARGE:
-		json_int(json, key, value->integer);
-		return;
-	case OWS_FLOAT:
-	case OWS_DOUBLE:
+	else if (value_is_float((enum ows_type)value->type))
 		json_number(json, key, text);
-		return;
-	}
-	json_null(json, key);
+	else if (value_type_ok(value->type))
+		json_int(json, key, value->integer);
+	else
+		json_null(json, key);
 }
 
 static void json_when(struct json *json, const char *key, const struct when *now, int64_t ns)

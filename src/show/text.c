@@ -10,7 +10,7 @@ struct range {
 	int32_t first, last;
 };
 
-static bool in(const struct range *ranges, size_t n, int32_t c)
+static bool in_ranges(const struct range *ranges, size_t n, int32_t c)
 {
 	for (size_t i = 0; i < n; i++)
 		if (c >= ranges[i].first && c <= ranges[i].last)
@@ -34,9 +34,9 @@ static unsigned text_columns_of(int32_t c)
 
 	if (c < 0x300)
 		return 1;
-	if (in(none, sizeof(none) / sizeof(none[0]), c))
+	if (in_ranges(none, sizeof(none) / sizeof(none[0]), c))
 		return 0;
-	return in(wide, sizeof(wide) / sizeof(wide[0]), c) ? 2 : 1;
+	return in_ranges(wide, sizeof(wide) / sizeof(wide[0]), c) ? 2 : 1;
 }
 
 static bool only_ascii;

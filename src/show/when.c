@@ -11,13 +11,7 @@
 
 struct when when_now(void)
 {
-	struct timespec wall;
-	struct when now;
-
-	clock_gettime(CLOCK_REALTIME, &wall);
-	now.wall = (int64_t)wall.tv_sec * NS_PER_S + wall.tv_nsec;
-	now.boot = ows_now();
-	return now;
+	return (struct when){.wall = clock_ns(CLOCK_REALTIME), .boot = ows_now()};
 }
 
 const char *when_iso(const struct when *now, int64_t boot_ns, char text[WHEN_TEXT])

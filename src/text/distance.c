@@ -5,12 +5,12 @@
 
 #include "src/text/distance.h"
 
-static unsigned least(unsigned a, unsigned b)
+static unsigned smaller(unsigned a, unsigned b)
 {
 	return a < b ? a : b;
 }
 
-static bool same(char a, char b)
+static bool same_letter(char a, char b)
 {
 	return tolower((unsigned char)a) == tolower((unsigned char)b);
 }
@@ -29,10 +29,11 @@ unsigned text_distance(const char *a, const char *b)
 
 		row[0] = (unsigned)i;
 		for (size_t j = 1; j <= lb; j++) {
-			row[j] = least(least(above[j] + 1, row[j - 1] + 1),
-			               above[j - 1] + !same(a[i - 1], b[j - 1]));
-			if (i > 1 && j > 1 && same(a[i - 1], b[j - 2]) && same(a[i - 2], b[j - 1]))
-				row[j] = least(row[j], above2[j - 2] + 1);
+			row[j] = smaller(smaller(above[j] + 1, row[j - 1] + 1),
+			                 above[j - 1] + !same_letter(a[i - 1], b[j - 1]));
+			if (i > 1 && j > 1 && same_letter(a[i - 1], b[j - 2]) &&
+			    same_letter(a[i - 2], b[j - 1]))
+				row[j] = smaller(row[j], above2[j - 2] + 1);
 		}
 	}
 	return rows[la % 3][lb];

@@ -57,7 +57,7 @@ bool influx_series(const char *measurement, const char *instance, const char *si
 	return put_tag(at, last, ",unit=", unit) && is_tag(signal);
 }
 
-static bool put_text(const char *text, size_t len, char fields[INFLUX_FIELDS])
+static bool text_field(const char *text, size_t len, char fields[INFLUX_FIELDS])
 {
 	char *at = stpcpy(fields, "text=\"");
 
@@ -81,7 +81,7 @@ bool influx_fields(enum ows_type type, double number, int64_t integer, const cha
 	int n;
 
 	if (type == OWS_STRING)
-		return put_text(text, len, fields);
+		return text_field(text, len, fields);
 	if (!isfinite(number))
 		return false;
 	value_to_text(type, value_is_float(type) ? value_of_double(number) : integer, value);

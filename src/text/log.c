@@ -71,14 +71,6 @@ enum log_level log_level(const struct log *log)
 	return log->level;
 }
 
-static int64_t clock_ns(clockid_t clock)
-{
-	struct timespec t;
-
-	clock_gettime(clock, &t);
-	return (int64_t)t.tv_sec * NS_PER_S + t.tv_nsec;
-}
-
 static struct line *claim_line(struct log *log, uint32_t *turn)
 {
 	uint32_t head = __atomic_load_n(&log->head, __ATOMIC_RELAXED);

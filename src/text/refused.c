@@ -6,7 +6,7 @@
 
 #include "src/text/refused.h"
 
-static const char *name_of(const struct option *longs, int value)
+static const char *long_name(const struct option *longs, int value)
 {
 	for (; longs->name; longs++)
 		if (longs->val == value)
@@ -42,7 +42,7 @@ static void refuse_long(const struct option *longs, const char *word, char *text
 void refused_option(int c, const struct option *longs, char *const *argv, char *text, size_t size)
 {
 	/* getopt has moved past a long option; past a short one only where it ends its word */
-	const char *word = argv[optind - 1], *name = name_of(longs, optopt);
+	const char *word = argv[optind - 1], *name = long_name(longs, optopt);
 	bool is_long = strncmp(word, "--", 2) == 0;
 
 	if (c == ':' && is_long)

@@ -47,7 +47,7 @@ void answer_problem(struct answer *answer, bool is_error, int line, int column, 
 		        text);
 }
 
-static void print(const struct answer *answer, FILE *out)
+static void print_answer(const struct answer *answer, FILE *out)
 {
 	fprintf(out, "status: %s\n", statuses[answer->status]);
 	if (answer->has_tag)
@@ -73,7 +73,7 @@ char *answer_print(struct answer *answer, size_t *len)
 	out = open_memstream(&text, len);
 	if (!out)
 		return NULL;
-	print(answer, out);
+	print_answer(answer, out);
 	if (fclose(out) == 0)
 		return text;
 	free(text);

@@ -87,7 +87,7 @@ static const struct {
 };
 
 /* had: a bit for each key that came before. Returns what is wrong, or NULL. */
-static const char *take_line(struct word line, unsigned *had, struct order *order)
+static const char *take_head_line(struct word line, unsigned *had, struct order *order)
 {
 	const char *colon = memchr(line.at, ':', line.len);
 	struct word name = {line.at, colon ? (size_t)(colon - line.at) : 0}, value;
@@ -146,7 +146,7 @@ int order_parse(const char *text, size_t len, struct order *order, const char **
 	for (line = text + first; line <= end && !*why;) {
 		const char *next = memchr(line, '\n', (size_t)(end + 1 - line));
 
-		*why = take_line((struct word){line, (size_t)(next - line)}, &had, order);
+		*why = take_head_line((struct word){line, (size_t)(next - line)}, &had, order);
 		line = next + 1;
 	}
 	if (!*why)

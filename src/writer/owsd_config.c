@@ -71,7 +71,7 @@ static int name_socket(const char *instance, char *path, size_t size)
 }
 
 /* The socket of the service manager, path then is ""; else that of -l, or in this user's place. */
-static int open_socket(const struct face_arguments *a, char *path, size_t size)
+static int writer_socket(const struct face_arguments *a, char *path, size_t size)
 {
 	int fd, count = inherited_sockets(&fd, 1);
 
@@ -149,7 +149,7 @@ static int owsd_config_run(const struct face_arguments *a, struct unix_signals *
 		face_complain(PROGRAM, "no memory or no descriptor for the log");
 		return FACE_EXIT_RUN;
 	}
-	listener = open_socket(a, path, sizeof(path));
+	listener = writer_socket(a, path, sizeof(path));
 	if (listener < 0) {
 		log_destroy(writer.log);
 		return FACE_EXIT_RUN;

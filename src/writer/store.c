@@ -181,7 +181,7 @@ static int write_both(const char *file, const char *backup, bool backup_first,
 }
 
 /* Nothing is to be written: the file of before stays what it is. */
-static void keep(const char *backup, const struct stored *present, struct answer *answer)
+static void leave_in_place(const char *backup, const struct stored *present, struct answer *answer)
 {
 	struct stored before;
 
@@ -191,9 +191,9 @@ static void keep(const char *backup, const struct stored *present, struct answer
 	show_tag(answer, present->tag);
 }
 
-static void exchange(const char *file, const char *backup, bool backup_first,
-                     const struct stored *present, const char *text, size_t len,
-                     struct answer *answer)
+static void exchange_texts(const char *file, const char *backup, bool backup_first,
+                           const struct stored *present, const char *text, size_t len,
+                           struct answer *answer)
 {
 	char tag[TAG_TEXT];
 
@@ -202,7 +202,7 @@ static void exchange(const char *file, const char *backup, bool backup_first,
 		return;
 	}
 	if (present->text && present->len == len && memcmp(present->text, text, len) == 0) {
-		keep(backup, present, answer);
+		leave_in_place(backup, present, answer);
 	} else {
 		if (write_both(file, backup, backup_first, present, text, len, answer))
 			return;
@@ -213,7 +213,7 @@ static void exchange(const char *file, const char *backup, bool backup_first,
 	*answer->why = '\0';
 }
 
-static int lock(const char *file, struct answer *answer)
+static int lock_config(const char *file, struct answer *answer)
 {
 	int fd = replace_lock(file);
 
@@ -230,12 +230,12 @@ void store_replace(const char *file, const struct order *order, const char *text
 {
 	struct stored present = {0};
 	char backup[PATH_MAX];
-	int fd = name_backup(file, backup, answer) ? -1 : lock(file, answer);
+	int fd = name_backup(file, backup, answer) ? -1 : lock_config(file, answer);
 
 	if (fd < 0)
 		return;
 	if (store_load(file, &present, answer) == 0 && is_base(&present, order, answer))
-		exchange(file, backup, true, &present, text, order->length, answer);
+		exchange_texts(file, backup, true, &present, text, order->length, answer);
 	store_forget(&present);
 	replace_unlock(file, fd);
 }
@@ -244,7 +244,7 @@ void store_restore(const char *file, const struct order *order, struct answer *a
 {
 	struct stored present = {0}, before = {0};
 	char backup[PATH_MAX];
-	int fd = name_backup(file, backup, answer) ? -1 : lock(file, answer);
+	int fd = name_backup(file, backup, answer) ? -1 : lock_config(file, answer);
 
 	if (fd < 0)
 		return;
@@ -252,7 +252,7 @@ void store_restore(const char *file, const struct order *order, struct answer *a
 	    store_load(backup, &before, answer))
 		goto out;
 	if (before.text)
-		exchange(file, backup, false, &present, before.text, before.len, answer);
+		exchange_texts(file, backup, false, &present, before.text, before.len, answer);
 	else
 		answer_say(answer, ANSWER_REFUSED, "there is no %s: nothing was saved before",
 		           backup);

@@ -40,7 +40,7 @@ static ssize_t visit_receive(int fd, char *to, size_t room, int64_t until_ns)
 	return n < 0 ? -errno : n;
 }
 
-static void send_all(int fd, const char *text, size_t len, int64_t until_ns)
+static void send_answer(int fd, const char *text, size_t len, int64_t until_ns)
 {
 	while (len) {
 		ssize_t n = send(fd, text, len, MSG_NOSIGNAL);
@@ -57,7 +57,7 @@ static void send_all(int fd, const char *text, size_t len, int64_t until_ns)
 }
 
 /* A peer that still sends would not find the answer; one that never stops is left. */
-static void drain(int fd)
+static void drain_peer(int fd)
 {
 	int64_t until_ns = ows_now() + DRAIN_NS;
 	char bytes[4096];
@@ -131,13 +131,13 @@ static char *receive_request(int fd, struct order *order, struct answer *answer)
 	return NULL;
 }
 
-static bool may(const struct writer *writer, const struct peer *peer)
+static bool may_write(const struct writer *writer, const struct peer *peer)
 {
 	return !peer->uid || peer->uid == geteuid() ||
 	       (writer->has_group && peer_in_group(peer, writer->group));
 }
 
-static void reload(const struct writer *writer, struct answer *answer)
+static void ask_reload(const struct writer *writer, struct answer *answer)
 {
 	char why[ANSWER_WHY];
 	int err = ows_reload(writer->instance, RELOAD_NS, why, sizeof(why));
@@ -158,8 +158,8 @@ static void reload(const struct writer *writer, struct answer *answer)
 		answer_say(answer, ANSWER_DONE, "owsd did not reload: %s", strerror(-err));
 }
 
-static void act(const struct writer *writer, const struct order *order, const char *body,
-                struct answer *answer)
+static void carry_out(const struct writer *writer, const struct order *order, const char *body,
+                      struct answer *answer)
 {
 	switch (order->kind) {
 	case ORDER_REPLACE:
@@ -170,12 +170,12 @@ static void act(const struct writer *writer, const struct order *order, const ch
 		break;
 	}
 	if (answer->status == ANSWER_DONE)
-		reload(writer, answer);
+		ask_reload(writer, answer);
 }
 
 /* kind: "request", where it was not understood. */
-static void report(const struct writer *writer, const struct peer *peer, const char *kind,
-                   const struct order *order, const struct answer *answer)
+static void log_visit(const struct writer *writer, const struct peer *peer, const char *kind,
+                      const struct order *order, const struct answer *answer)
 {
 	bool named = *order->person;
 
@@ -197,23 +197,23 @@ void visit(const struct writer *writer, int fd)
 
 	if (err)
 		answer_say(&answer, ANSWER_ERROR, "%s", strerror(-err));
-	else if (!may(writer, &peer))
+	else if (!may_write(writer, &peer))
 		answer_say(&answer, ANSWER_REFUSED,
 		           "no right to change the configuration: that is for root and the group "
 		           "owsd-config");
 	else
 		body = receive_request(fd, &order, &answer);
 	if (body)
-		act(writer, &order, body, &answer);
-	report(writer, &peer,
-	       !body                         ? "request"
-	       : order.kind == ORDER_RESTORE ? "restore"
-	                                     : "replace",
-	       &order, &answer);
+		carry_out(writer, &order, body, &answer);
+	log_visit(writer, &peer,
+	          !body                         ? "request"
+	          : order.kind == ORDER_RESTORE ? "restore"
+	                                        : "replace",
+	          &order, &answer);
 	text = answer_print(&answer, &len);
 	if (text)
-		send_all(fd, text, len, ows_now() + PATIENCE_NS);
-	drain(fd);
+		send_answer(fd, text, len, ows_now() + PATIENCE_NS);
+	drain_peer(fd);
 	free(text);
 	free(body);
 	answer_free(&answer);

@@ -243,7 +243,7 @@ static int alarms_shelve_fail(const char *name, bool shelve, int err)
 }
 
 /* seconds 0: unshelve. */
-static int request(struct ctl *ctl, int count, char **names, uint32_t seconds, const char *why)
+static int shelve_names(struct ctl *ctl, int count, char **names, uint32_t seconds, const char *why)
 {
 	struct ows *h = ctl_open(ctl, OWS_CONTROL);
 	int status = CTL_DONE, id, err;
@@ -275,8 +275,8 @@ static int alarms_shelve(struct ctl *ctl, int argc, char **argv)
 		                 "%s is no time to shelve an alarm: seconds, or as 30m, 8h or 2d; "
 		                 "at most 7d",
 		                 ctl_word(argv[optind + 1]));
-	return request(ctl, 1, argv + optind, (uint32_t)(ns / NS_PER_S),
-	               argc - optind == 3 ? argv[optind + 2] : "");
+	return shelve_names(ctl, 1, argv + optind, (uint32_t)(ns / NS_PER_S),
+	                    argc - optind == 3 ? argv[optind + 2] : "");
 }
 
 static int alarms_unshelve(struct ctl *ctl, int argc, char **argv)
@@ -284,7 +284,7 @@ static int alarms_unshelve(struct ctl *ctl, int argc, char **argv)
 	ctl_option(ctl, argc, argv, "");
 	if (optind == argc)
 		return ctl_usage(ctl, "alarms unshelve takes names");
-	return request(ctl, argc - optind, argv + optind, 0, "");
+	return shelve_names(ctl, argc - optind, argv + optind, 0, "");
 }
 
 /* --- The word -------------------------------------------------------------------------------- */

@@ -107,7 +107,7 @@ static int check_started(struct mission *mission, double interval, bool rollover
 }
 
 /* The one runs when its interval is written, the other when it is started. */
-static int start(struct mission *mission, double interval, bool rollover)
+static int start_mission(struct mission *mission, double interval, bool rollover)
 {
 	double now;
 
@@ -163,7 +163,7 @@ static int check_and_start(const struct ctl *ctl, struct mission *mission, const
 		return ctl_usage(ctl, "-i %s",
 		                 mission->minutes ? "60 to 15300 seconds, in whole minutes"
 		                                  : "1 to 16383 seconds, or whole minutes");
-	return start(mission, (double)ns / NS_PER_S, rollover);
+	return start_mission(mission, (double)ns / NS_PER_S, rollover);
 }
 
 int verb_mission(struct ctl *ctl, int argc, char **argv)

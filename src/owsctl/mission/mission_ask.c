@@ -20,7 +20,7 @@ static bool path_of(const struct mission *mission, const char *property, char pa
 	return n > 0 && n < (int)sizeof(given) && target_path(given, path, &fresh);
 }
 
-static int read_text(struct mission *mission, const char *property, char text[VALUE_MAX])
+static int read_property(struct mission *mission, const char *property, char text[VALUE_MAX])
 {
 	char path[256];
 	struct ask ask = {.req = {.op = BUS_READ,
@@ -39,7 +39,7 @@ static int read_text(struct mission *mission, const char *property, char text[VA
 int mission_read(struct mission *mission, const char *property, double *value)
 {
 	char text[VALUE_MAX], *end;
-	int err = read_text(mission, property, text);
+	int err = read_property(mission, property, text);
 
 	if (err)
 		return err;
@@ -85,7 +85,7 @@ int mission_open(const struct ctl *ctl, const char *device, int64_t timeout_ns,
 	status = open_target(ctl, timeout_ns, &mission->target, &served);
 	if (status)
 		return status;
-	err = read_text(mission, "family", family);
+	err = read_property(mission, "family", family);
 	mission->minutes = strcmp(family, "21") == 0;
 	if (!err && (mission->minutes || strcmp(family, "41") == 0))
 		return CTL_DONE;

@@ -7,7 +7,7 @@
 
 #include "src/owsctl/scan/merge.h"
 
-static bool same(const uint8_t a[ROM_LEN], const uint8_t b[ROM_LEN])
+static bool same_rom(const uint8_t a[ROM_LEN], const uint8_t b[ROM_LEN])
 {
 	return memcmp(a, b, ROM_LEN) == 0;
 }
@@ -15,14 +15,14 @@ static bool same(const uint8_t a[ROM_LEN], const uint8_t b[ROM_LEN])
 static int merge_find(const struct merge_device *list, unsigned count, const uint8_t rom[ROM_LEN])
 {
 	for (unsigned i = 0; i < count; i++)
-		if (same(list[i].rom, rom))
+		if (same_rom(list[i].rom, rom))
 			return (int)i;
 	return -1;
 }
 
-static enum merge_fault replace(struct merge_device *known, unsigned known_count,
-                                struct merge_device *found, unsigned found_count,
-                                const struct merge_pair *pair)
+static enum merge_fault merge_replace(struct merge_device *known, unsigned known_count,
+                                      struct merge_device *found, unsigned found_count,
+                                      const struct merge_pair *pair)
 {
 	int old = merge_find(known, known_count, pair->old_rom);
 	int new = merge_find(found, found_count, pair->new_rom);
@@ -92,8 +92,8 @@ enum merge_fault merge_decide(struct merge_device *known, unsigned known_count,
 		found[i].pairs = 0;
 	}
 	for (*wrong = 0; *wrong < pair_count; ++*wrong) {
-		enum merge_fault fault = replace(known, known_count, found, found_count,
-		                                 &pairs[*wrong]);
+		enum merge_fault fault = merge_replace(known, known_count, found, found_count,
+		                                       &pairs[*wrong]);
 
 		if (fault != MERGE_RIGHT)
 			return fault;

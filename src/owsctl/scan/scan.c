@@ -195,7 +195,7 @@ static void show_values(const struct scan_device *device, char *out, size_t size
 	}
 }
 
-static void print_table(const struct scan *scan)
+static void scan_print_table(const struct scan *scan)
 {
 	struct table table;
 	char family[4], bus[40], values[400];
@@ -230,7 +230,7 @@ static void print_values(struct json *json, const struct scan_device *device)
 
 		if (value->err)
 			json_null(json, name);
-		else if (target_is_number(value->text, strlen(value->text)))
+		else if (json_is_number(value->text, strlen(value->text)))
 			json_number(json, name, value->text);
 		else
 			json_string(json, name, value->text);
@@ -331,7 +331,7 @@ static int scan_look(struct ctl *ctl, int64_t timeout_ns, const char *aliases, b
 	else if (!status && !rio && ctl->json)
 		scan_print_json(&scan);
 	else if (!status && !rio && scan.count)
-		print_table(&scan);
+		scan_print_table(&scan);
 	if (!status && !scan.count) {
 		status = ctl_say(CTL_NOTHING,
 		                 "%s answers, but no device is there: look at the wires and the "

@@ -111,8 +111,8 @@ static bool has_several(const struct scan_device *device)
  * The name of a signal: of the device's alias, with the property's word where it has several; else
  * the word with the first number that is free.
  */
-static const char *choose(struct scan_names *names, const struct scan_device *device,
-                          const struct scan_property *property, const char *element)
+static const char *choose_name(struct scan_names *names, const struct scan_device *device,
+                               const struct scan_property *property, const char *element)
 {
 	bool several = *element || has_several(device);
 	char name[SIGNAL_NAME_MAX + SCAN_ALIAS], word[48];
@@ -133,7 +133,7 @@ static const char *choose(struct scan_names *names, const struct scan_device *de
 static void make_item(struct scan_names *names, const struct scan_device *device,
                       const struct scan_property *property, const char *value, const char *element)
 {
-	const char *name = choose(names, device, property, element);
+	const char *name = choose_name(names, device, property, element);
 	bool named = strncmp(name, device->alias, strlen(device->alias)) == 0;
 	char *described = named ? NULL : rio_quote(device->alias);
 	char rate[48] = "", init[128] = "";
@@ -164,8 +164,8 @@ static void make_item(struct scan_names *names, const struct scan_device *device
 }
 
 /* Does the property get an item? Prints the reason where the answer is a surprise. */
-static bool wanted(const struct scan_device *device, const struct scan_property *property,
-                   const struct scan_value *value, bool inputs_only)
+static bool gets_item(const struct scan_device *device, const struct scan_property *property,
+                      const struct scan_value *value, bool inputs_only)
 {
 	int64_t number;
 
@@ -214,7 +214,7 @@ void scan_make_items(struct scan_names *names, const struct scan_device *device,
 	struct scan_property property;
 
 	for (unsigned i = 0; scan_property(device->family, i, &property); i++)
-		if (wanted(device, &property, &device->value[i], choice.inputs_only) &&
+		if (gets_item(device, &property, &device->value[i], choice.inputs_only) &&
 		    !(choice.bits && make_bits(names, device, &property, device->value[i].text)))
 			make_item(names, device, &property, device->value[i].text, "");
 }

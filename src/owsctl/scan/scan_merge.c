@@ -113,14 +113,14 @@ static int device_of(struct work *work, const char *text)
 	return -1;
 }
 
-static const char *text_of(const struct rio_node *item, const char *key)
+static const char *text_of_key(const struct rio_node *item, const char *key)
 {
 	const struct rio_node *node = rio_child(item, key);
 
 	return node ? node->value : "";
 }
 
-static void collect(struct work *work)
+static void collect_items(struct work *work)
 {
 	struct path path;
 	unsigned count = 0;
@@ -140,14 +140,14 @@ static void collect(struct work *work)
 	for (const struct rio_node *i = edit_items(work->merge->rio); i; i = rio_next(i)) {
 		struct item *item = &work->item[work->item_count++];
 
-		item->name = ctl_need(strdup(text_of(i, "Name")));
-		item->path = ctl_need(strdup(text_of(i, "Path")));
+		item->name = ctl_need(strdup(text_of_key(i, "Name")));
+		item->path = ctl_need(strdup(text_of_key(i, "Path")));
 		item->device = device_of(work, item->path);
 		scan_names_add(&work->names, item->name);
 	}
 }
 
-static void release(struct work *work)
+static void free_work(struct work *work)
 {
 	for (unsigned i = 0; i < work->item_count; i++) {
 		free(work->item[i].name);
@@ -313,7 +313,7 @@ static void make_items(struct work *work, unsigned i, struct scan_choice choice)
 		         device->type);
 }
 
-static int change(struct work *work, struct scan_choice choice)
+static int merge_devices(struct work *work, struct scan_choice choice)
 {
 	unsigned named = work->names.count;
 	int err = 0;
@@ -334,10 +334,10 @@ int scan_merge(struct scan_merge *merge, const struct scan *scan, struct scan_ch
 	struct work work = {.merge = merge, .scan = scan};
 	int err, status;
 
-	collect(&work);
+	collect_items(&work);
 	status = decide(&work);
 	if (!status) {
-		err = change(&work, choice);
+		err = merge_devices(&work, choice);
 		if (err)
 			status = ctl_fail("%s: %s", merge->file, strerror(-err));
 	}
@@ -347,6 +347,6 @@ int scan_merge(struct scan_merge *merge, const struct scan *scan, struct scan_ch
 		report_missing(&work);
 		fwrite(merge->rio->text, 1, merge->rio->len, stdout);
 	}
-	release(&work);
+	free_work(&work);
 	return status;
 }

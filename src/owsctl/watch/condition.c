@@ -8,17 +8,24 @@
 #include "src/owsctl/watch/condition.h"
 #include "src/signal/value.h"
 
-static const char *const ops[] = {
-	[CONDITION_EQ] = "=",  [CONDITION_NE] = "!=", [CONDITION_LT] = "<",
-	[CONDITION_LE] = "<=", [CONDITION_GT] = ">",  [CONDITION_GE] = ">=",
+/* Of each operator: does it hold for a value that is less, equal, greater? */
+static const struct {
+	const char *text;
+	bool less, equal, greater, of_strings;
+} ops[] = {
+	{"=", .equal = true, .of_strings = true},
+	{"==", .equal = true, .of_strings = true},
+	{"!=", .less = true, .greater = true, .of_strings = true},
+	{"<", .less = true},
+	{"<=", .less = true, .equal = true},
+	{">", .greater = true},
+	{">=", .greater = true, .equal = true},
 };
 
 int condition_op(const char *text)
 {
-	if (strcmp(text, "==") == 0)
-		return CONDITION_EQ;
 	for (int i = 0; i < (int)(sizeof(ops) / sizeof(ops[0])); i++)
-		if (strcmp(text, ops[i]) == 0)
+		if (strcmp(text, ops[i].text) == 0)
 			return i;
 	return -1;
 }
@@ -42,10 +49,10 @@ int condition_make(enum ows_type type, const char *op, const char *text,
 	if (found < 0)
 		return -EINVAL;
 	memset(condition, 0, sizeof(*condition));
-	condition->op = (enum condition_op)found;
+	condition->op = found;
 	condition->text = text;
 	if (type == OWS_STRING)
-		return found > CONDITION_NE ? -EOPNOTSUPP : 0;
+		return ops[found].of_strings ? 0 : -EOPNOTSUPP;
 	if (type == OWS_BOOL && value_parse(OWS_BOOL, text, &condition->integer) == 0) {
 		condition->whole = true;
 		condition->number = (double)condition->integer;
@@ -68,19 +75,7 @@ bool condition_holds(const struct condition *condition, const struct reading *re
 	else
 		order = (reading->value.number > condition->number) -
 		        (reading->value.number < condition->number);
-	switch (condition->op) {
-	case CONDITION_EQ:
-		return order == 0;
-	case CONDITION_NE:
-		return order != 0;
-	case CONDITION_LT:
-		return order < 0;
-	case CONDITION_LE:
-		return order <= 0;
-	case CONDITION_GT:
-		return order > 0;
-	case CONDITION_GE:
-		return order >= 0;
-	}
-	return false;
+	return order < 0   ? ops[condition->op].less
+	       : order > 0 ? ops[condition->op].greater
+	                   : ops[condition->op].equal;
 }

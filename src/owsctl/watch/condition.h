@@ -4,24 +4,15 @@
 
 #include "src/show/reading.h"
 
-enum condition_op {
-	CONDITION_EQ,
-	CONDITION_NE,
-	CONDITION_LT,
-	CONDITION_LE,
-	CONDITION_GT,
-	CONDITION_GE,
-};
-
 struct condition {
-	enum condition_op op;
+	int op; /* by condition_op() */
 	const char *text;
 	bool whole; /* the number is an integer, exact in integer */
 	int64_t integer;
 	double number;
 };
 
-/* The operator "=" "==" "!=" "<" "<=" ">" ">="; -1: the text is none of them. */
+/* The number of the operator "=" "==" "!=" "<" "<=" ">" ">="; -1: the text is none of them. */
 int condition_op(const char *text);
 /*
  * Make a condition for values of that type. Numbers as in `owsctl set`, but without the limits of

@@ -11,6 +11,7 @@
 #include "src/scan/device.h"
 #include "src/scan/scan.h"
 #include "src/scan/target.h"
+#include "src/show/json.h"
 
 void setUp(void)
 {
@@ -59,9 +60,9 @@ static void test_numbers_are_those_that_json_has(void)
 	                                        "1E", "0x1F", "nan", "1 ", "+1"};
 
 	for (size_t i = 0; i < sizeof(yes) / sizeof(yes[0]); i++)
-		TEST_ASSERT_TRUE_MESSAGE(target_is_number(yes[i], strlen(yes[i])), yes[i]);
+		TEST_ASSERT_TRUE_MESSAGE(json_is_number(yes[i], strlen(yes[i])), yes[i]);
 	for (size_t i = 0; i < sizeof(no) / sizeof(no[0]); i++)
-		TEST_ASSERT_FALSE_MESSAGE(target_is_number(no[i], strlen(no[i])), no[i]);
+		TEST_ASSERT_FALSE_MESSAGE(json_is_number(no[i], strlen(no[i])), no[i]);
 }
 
 static void check_path(const char *expected, bool expected_fresh, const char *given)
