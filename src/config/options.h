@@ -77,8 +77,8 @@ static inline int64_t option_ns(const struct option_value *value)
 
 /*
  * Check the keys of a block (NULL: it is absent) against the table and put the values into values,
- * which has OPTION_COUNT_ALL entries: unknown keys warn; keys that stand twice and values that cannot be
- * are errors.
+ * which has OPTION_COUNT_ALL entries: unknown keys warn; keys that stand twice and values that
+ * cannot be are errors.
  */
 void options_read(const struct rio_node *block, enum option_place place,
                   struct option_value *values, struct config_report *report);
