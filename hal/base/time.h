@@ -2,8 +2,8 @@
 /*
  * The units of time: every time and every span here is in nanoseconds.
  *
- * Room hal/base: what every room may need: units of time, threads, bells, a ring of messages. Uses
- * no other.
+ * Room hal/base: what every room may need: units of time, threads, bells, a ring of messages, the
+ * text of a file. Uses no other.
  */
 #pragma once
 

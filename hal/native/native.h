@@ -39,7 +39,7 @@
  * All of it runs on the bus's thread; but the counters, which any thread may read.
  *
  * Room hal/native: the native bus: requests, conversions, searches, listings. Uses hal/chips,
- * hal/wire, hal/owfs, hal/bus.
+ * hal/wire, hal/owfs, hal/bus, hal/base.
  */
 #pragma once
 

@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* The simulated network as an I2C adapter. */
+/*
+ * The simulated network as an I2C adapter. A byte takes effect at the time of its acknowledge bit,
+ * which the adapter computes from the bus's speed; the caller waits once, at the end of a
+ * transaction, until the time has come.
+ */
 #include <errno.h>
 
 #include "hal/base/time.h"
@@ -13,7 +17,7 @@ struct clock {
 	int64_t now;
 };
 
-static int64_t bits(const struct sim_adapter *adapter, unsigned n)
+static int64_t bits_ns(const struct sim_adapter *adapter, unsigned n)
 {
 	return NS_PER_S * n / adapter->net->hz;
 }
@@ -26,20 +30,20 @@ static void adapter_begin(struct clock *clock, struct sim_adapter *adapter)
 	clock->now = now < adapter->free_at ? adapter->free_at : now;
 }
 
-static int message(struct clock *clock, uint8_t address, const struct i2c_message *message)
+static int transact_message(struct clock *clock, uint8_t address, const struct i2c_message *message)
 {
 	struct sim_adapter *adapter = clock->adapter;
 	struct sim_net *net = adapter->net;
 	bool read = message->flags & I2C_MESSAGE_READ;
 
-	clock->now += bits(adapter, 1 + BITS_BYTE);
+	clock->now += bits_ns(adapter, 1 + BITS_BYTE);
 	adapter->adapter.bytes++;
 	if (!sim_i2c_start(net, address, read, clock->now))
 		return net->plugged ? -ENXIO : -ENODEV;
 	for (unsigned i = 0; i < message->len; i++) {
 		if (read)
 			message->data[i] = sim_i2c_read(net, clock->now);
-		clock->now += bits(adapter, BITS_BYTE);
+		clock->now += bits_ns(adapter, BITS_BYTE);
 		adapter->adapter.bytes++;
 		if (!read && !sim_i2c_write(net, message->data[i], clock->now))
 			return net->plugged ? -EIO : -ENODEV;
@@ -53,7 +57,7 @@ static int adapter_end(struct clock *clock, int err)
 	struct sim_adapter *adapter = clock->adapter;
 	int waited;
 
-	clock->now += bits(adapter, 1);
+	clock->now += bits_ns(adapter, 1);
 	adapter->free_at = clock->now;
 	adapter->adapter.transfers++;
 	adapter->adapter.syscalls++;
@@ -61,7 +65,8 @@ static int adapter_end(struct clock *clock, int err)
 	return waited == -ECANCELED ? waited : err;
 }
 
-static bool allowed(const struct i2c_adapter *adapter, const struct i2c_message *messages, size_t n)
+static bool is_allowed(const struct i2c_adapter *adapter, const struct i2c_message *messages,
+                       size_t n)
 {
 	switch (adapter->combine) {
 	case I2C_SMBUS_ONLY:
@@ -87,17 +92,17 @@ static int transact(struct i2c_adapter *base, uint8_t address, struct i2c_messag
 
 	adapter_begin(&clock, adapter);
 	for (size_t i = 0; !err && i < n; i++)
-		err = message(&clock, address, &messages[i]);
+		err = transact_message(&clock, address, &messages[i]);
 	return adapter_end(&clock, err);
 }
 
-static int transfer(struct i2c_adapter *base, uint8_t address, struct i2c_message *messages,
-                    size_t n)
+static int sim_transfer(struct i2c_adapter *base, uint8_t address, struct i2c_message *messages,
+                        size_t n)
 {
-	return allowed(base, messages, n) ? transact(base, address, messages, n) : -EOPNOTSUPP;
+	return is_allowed(base, messages, n) ? transact(base, address, messages, n) : -EOPNOTSUPP;
 }
 
-static int write_byte(struct i2c_adapter *base, uint8_t address, uint8_t command)
+static int sim_write_byte(struct i2c_adapter *base, uint8_t address, uint8_t command)
 {
 	struct i2c_message message = {.len = 1, .data = &command};
 
@@ -112,7 +117,7 @@ static int write_byte_data(struct i2c_adapter *base, uint8_t address, uint8_t co
 	return transact(base, address, &message, 1);
 }
 
-static int read_byte(struct i2c_adapter *base, uint8_t address)
+static int sim_read_byte(struct i2c_adapter *base, uint8_t address)
 {
 	uint8_t byte = 0xFF;
 	struct i2c_message message = {.flags = I2C_MESSAGE_READ, .len = 1, .data = &byte};
@@ -121,7 +126,7 @@ static int read_byte(struct i2c_adapter *base, uint8_t address)
 	return err ? err : byte;
 }
 
-static int claim(struct i2c_adapter *base, uint8_t address)
+static int sim_claim(struct i2c_adapter *base, uint8_t address)
 {
 	struct sim_adapter *adapter = (struct sim_adapter *)base;
 
@@ -136,11 +141,11 @@ static void adapter_close(struct i2c_adapter *base)
 }
 
 static const struct i2c_adapter_ops sim_adapter_ops = {
-	.transfer = transfer,
-	.write_byte = write_byte,
+	.transfer = sim_transfer,
+	.write_byte = sim_write_byte,
 	.write_byte_data = write_byte_data,
-	.read_byte = read_byte,
-	.claim = claim,
+	.read_byte = sim_read_byte,
+	.claim = sim_claim,
 	.close = adapter_close,
 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The branches of couplers: who is behind them, and what reaches those slaves. */
+/* The branches of couplers: the slaves behind them, and what reaches those slaves. */
 #include "hal/sim/branch.h"
 
 void sim_branch_put(struct sim_slave *slave, struct sim_slave *coupler,

@@ -13,7 +13,7 @@
 #define DIRECTORY "simulator"
 
 /* Letters, digits, '_' and '-', a letter first: never two components of a path, or an element. */
-static bool is_name(const char *text)
+static bool is_button_name(const char *text)
 {
 	size_t len = strlen(text);
 
@@ -48,7 +48,7 @@ void button_parse(struct sim_net *net, struct words *words)
 		words_fail(words, "there are %d buttons already", SIM_MAX_BUTTONS);
 		return;
 	}
-	if (!is_name(words->word)) {
+	if (!is_button_name(words->word)) {
 		words_fail(words,
 		           "\"%s\": expected a name: a letter, then letters, digits, _ and -, %d "
 		           "at most",
@@ -118,8 +118,9 @@ static int read_state(const struct sim_net *net, const struct sim_button *button
 	return 0;
 }
 
-static int press(struct sim_net *net, const struct sim_button *button, struct bus_req *req,
-                 struct bus_answer *answer)
+/* To press a button whose event lasts already, by itself or by another event, has no effect. */
+static int press_button(struct sim_net *net, const struct sim_button *button, struct bus_req *req,
+                        struct bus_answer *answer)
 {
 	struct sim_event event = button->event;
 	bool on;
@@ -158,7 +159,7 @@ bool button_answer(struct sim_net *net, struct bus_req *req, int64_t now, struct
 		answer->err = read_state(net, button, req, answer);
 		break;
 	case BUS_WRITE:
-		answer->err = press(net, button, req, answer);
+		answer->err = press_button(net, button, req, answer);
 		break;
 	case BUS_DIR:
 		answer->err = -ENOTDIR;

@@ -39,26 +39,20 @@ static const struct sim_timing ds2482_timing[2] = {
 	{72 * US, 74 * US, 7500, 10500, 1500},
 };
 
-static bool adjustable(const struct sim_chip *chip)
+static bool is_adjustable(const struct sim_chip *chip)
 {
 	return chip->part == SIM_DS2483 || chip->part == SIM_DS2484;
 }
 
 const char *sim_part_name(enum sim_part part)
 {
-	switch (part) {
-	case SIM_DS2482_100:
-		return "DS2482-100";
-	case SIM_DS2482_101:
-		return "DS2482-101";
-	case SIM_DS2482_800:
-		return "DS2482-800";
-	case SIM_DS2483:
-		return "DS2483";
-	case SIM_DS2484:
-		return "DS2484";
-	}
-	return "?";
+	static const char *const names[] = {
+		[SIM_DS2482_100] = "DS2482-100", [SIM_DS2482_101] = "DS2482-101",
+		[SIM_DS2482_800] = "DS2482-800", [SIM_DS2483] = "DS2483",
+		[SIM_DS2484] = "DS2484",
+	};
+
+	return names[part];
 }
 
 /*
@@ -81,7 +75,8 @@ static struct sim_timing adjusted_timing(const struct sim_chip *chip, bool od)
 struct sim_timing sim_chip_timing(const struct sim_chip *chip)
 {
 	bool od = chip->config & SIM_1WS;
-	struct sim_timing timing = adjustable(chip) ? adjusted_timing(chip, od) : ds2482_timing[od];
+	struct sim_timing timing = is_adjustable(chip) ? adjusted_timing(chip, od)
+	                                               : ds2482_timing[od];
 	int64_t percent = chip->percent ? chip->percent : 100;
 
 	timing.reset_low_ns = timing.reset_low_ns * percent / 100;
@@ -92,23 +87,23 @@ struct sim_timing sim_chip_timing(const struct sim_chip *chip)
 	return timing;
 }
 
-static struct sim_wire *wire(struct sim_chip *chip)
+static struct sim_wire *selected_wire(struct sim_chip *chip)
 {
 	return &chip->wire[chip->channel];
 }
 
 static void end_strong(struct sim_chip *chip, int64_t t)
 {
-	if (!wire(chip)->strong)
+	if (!selected_wire(chip)->strong)
 		return;
-	sim_wire_strong(wire(chip), false, t);
+	sim_wire_strong(selected_wire(chip), false, t);
 	chip->config &= (uint8_t)~SIM_SPU;
 }
 
 static void device_reset(struct sim_chip *chip, int64_t t)
 {
-	sim_wire_strong(wire(chip), false, t);
-	sim_wire_power(wire(chip), true, t);
+	sim_wire_strong(selected_wire(chip), false, t);
+	sim_wire_power(selected_wire(chip), true, t);
 	chip->op = 0;
 	if (chip->stuck == SIM_STUCK)
 		chip->stuck = SIM_FREE;
@@ -122,9 +117,7 @@ void sim_chip_init(struct sim_chip *chip, enum sim_part part, uint8_t address)
 {
 	*chip = (struct sim_chip){.part = part, .address = address};
 	chip->channels = part == SIM_DS2482_800 ? 8 : 1;
-	chip->status = SIM_RST;
-	chip->pointer = AT_STATUS;
-	memset(chip->port, 6, sizeof(chip->port));
+	device_reset(chip, 0);
 }
 
 void sim_chip_clear(struct sim_chip *chip)
@@ -192,21 +185,22 @@ static void do_slot(struct sim_chip *chip, int64_t t)
 	bool present;
 
 	if (chip->op == WIRE_RESET) {
-		present = sim_wire_reset(wire(chip), overdrive, t);
+		present = sim_wire_reset(selected_wire(chip), overdrive, t);
 		set_bit(&chip->status, SIM_PPD, present);
-		set_bit(&chip->status, SIM_SD, !sim_wire_level(wire(chip), t));
+		set_bit(&chip->status, SIM_SD, !sim_wire_level(selected_wire(chip), t));
 		return;
 	}
-	slot_result(chip, chip->op_done,
-	            sim_wire_slot(wire(chip), slot_value(chip, chip->op_done), overdrive, t));
+	slot_result(
+		chip, chip->op_done,
+		sim_wire_slot(selected_wire(chip), slot_value(chip, chip->op_done), overdrive, t));
 }
 
-static void finish(struct sim_chip *chip)
+static void finish_operation(struct sim_chip *chip)
 {
 	bool feeds = chip->op == WIRE_BIT || chip->op == WIRE_WRITE;
 
 	if (feeds && (chip->config & SIM_SPU))
-		sim_wire_strong(wire(chip), true, chip->op_end);
+		sim_wire_strong(selected_wire(chip), true, chip->op_end);
 	chip->wire_ns += chip->op_end - chip->op_start;
 	chip->op = 0;
 	chip->status &= (uint8_t)~SIM_1WB;
@@ -230,7 +224,7 @@ void sim_chip_run(struct sim_chip *chip, int64_t t)
 		chip->op_done++;
 	}
 	if (chip->op_end <= t)
-		finish(chip);
+		finish_operation(chip);
 }
 
 static void chip_begin(struct sim_chip *chip, uint8_t op, unsigned slots, uint8_t data, int64_t t)
@@ -264,13 +258,13 @@ bool sim_chip_start(struct sim_chip *chip, bool read, int64_t t)
 	return true;
 }
 
-static bool busy(const struct sim_chip *chip)
+static bool is_busy(const struct sim_chip *chip)
 {
 	return chip->stuck != SIM_FREE || (chip->status & SIM_1WB);
 }
 
 /* Valid command codes are acknowledged, those for the wire only while it is idle. */
-static bool take_command(struct sim_chip *chip, uint8_t command, int64_t t)
+static bool take_chip_command(struct sim_chip *chip, uint8_t command, int64_t t)
 {
 	switch (command) {
 	case DEVICE_RESET:
@@ -278,45 +272,29 @@ static bool take_command(struct sim_chip *chip, uint8_t command, int64_t t)
 		return true;
 	case SET_READ_POINTER:
 		return true;
+	}
+	if (is_busy(chip))
+		return false;
+	switch (command) {
 	case CHANNEL_SELECT:
-		return !busy(chip) && (chip->part == SIM_DS2482_800 || adjustable(chip));
-	case WRITE_CONFIG:
-	case WIRE_BIT:
-	case WIRE_WRITE:
-	case WIRE_TRIPLET:
-		return !busy(chip);
+		return chip->part == SIM_DS2482_800 || is_adjustable(chip);
 	case WIRE_RESET:
-		if (busy(chip))
-			return false;
 		chip_begin(chip, WIRE_RESET, 1, 0, t);
 		return true;
 	case WIRE_READ:
-		if (busy(chip))
-			return false;
 		chip_begin(chip, WIRE_READ, 8, 0xFF, t);
 		return true;
 	}
-	return false;
+	return command == WRITE_CONFIG || command == WIRE_BIT || command == WIRE_WRITE ||
+	       command == WIRE_TRIPLET;
 }
 
 static bool set_pointer(struct sim_chip *chip, uint8_t code)
 {
-	switch (code) {
-	case AT_STATUS:
-	case AT_DATA:
-	case AT_CONFIG:
-		break;
-	case AT_CHANNEL:
-		if (chip->part != SIM_DS2482_800)
-			return false;
-		break;
-	case AT_PORT:
-		if (!adjustable(chip))
-			return false;
-		break;
-	default:
+	if (code != AT_STATUS && code != AT_DATA && code != AT_CONFIG &&
+	    !(code == AT_CHANNEL && chip->part == SIM_DS2482_800) &&
+	    !(code == AT_PORT && is_adjustable(chip)))
 		return false;
-	}
 	chip->pointer = code;
 	return true;
 }
@@ -327,13 +305,13 @@ static bool write_config(struct sim_chip *chip, uint8_t byte, int64_t t)
 
 	if ((byte >> 4 ^ config) != 0x0F)
 		return false;
-	if (!adjustable(chip))
+	if (!is_adjustable(chip))
 		config &= (uint8_t)~SIM_PDN; /* PPM of old revisions: reads back 0 */
 	if (!(config & SIM_SPU))
 		end_strong(chip, t);
 	chip->config = config;
-	if (adjustable(chip))
-		sim_wire_power(wire(chip), !(config & SIM_PDN), t);
+	if (is_adjustable(chip))
+		sim_wire_power(selected_wire(chip), !(config & SIM_PDN), t);
 	chip->status &= (uint8_t)~SIM_RST;
 	chip->pointer = AT_CONFIG;
 	return true;
@@ -374,7 +352,8 @@ static bool take_parameter(struct sim_chip *chip, uint8_t byte, int64_t t)
 	case WRITE_CONFIG:
 		return write_config(chip, byte, t);
 	case CHANNEL_SELECT:
-		return adjustable(chip) ? adjust_port(chip, byte) : select_channel(chip, byte, t);
+		return is_adjustable(chip) ? adjust_port(chip, byte)
+		                           : select_channel(chip, byte, t);
 	case WIRE_BIT:
 		chip_begin(chip, WIRE_BIT, 1, byte, t);
 		return true;
@@ -397,14 +376,14 @@ bool sim_chip_write(struct sim_chip *chip, uint8_t byte, int64_t t)
 		return false;
 	if (!chip->parameter) {
 		chip->command = byte;
-		taken = take_command(chip, byte, t);
+		taken = take_chip_command(chip, byte, t);
 		chip->parameter = true;
 	} else {
 		taken = take_parameter(chip, byte, t);
 		/*
 		 * DS2484, "Adjust 1-Wire Port": parameters may follow each other; nothing else may.
 		 */
-		if (chip->command != ADJUST_PORT || !adjustable(chip))
+		if (chip->command != ADJUST_PORT || !is_adjustable(chip))
 			chip->command = 0;
 	}
 	if (!taken)
@@ -430,7 +409,7 @@ uint8_t sim_chip_read(struct sim_chip *chip, int64_t t)
 		chip->port_at = (uint8_t)((at + 1) % 8);
 		return at < 6 ? chip->port[at / 2][at % 2] : chip->port[at - 3][0];
 	default:
-		set_bit(&chip->status, SIM_LL, sim_wire_level(wire(chip), t));
+		set_bit(&chip->status, SIM_LL, sim_wire_level(selected_wire(chip), t));
 		return (uint8_t)(chip->status | (chip->stuck != SIM_FREE ? SIM_1WB : 0));
 	}
 }

@@ -11,7 +11,7 @@ struct sim_curve sim_constant(double value)
 }
 
 /* The time since the current repetition began. */
-static int64_t phase(const struct sim_curve *curve, int64_t t)
+static int64_t phase_of(const struct sim_curve *curve, int64_t t)
 {
 	int64_t since = t - curve->start_ns;
 
@@ -21,7 +21,7 @@ static int64_t phase(const struct sim_curve *curve, int64_t t)
 }
 
 /* The sine of so many turns, 0 to 1. libm would cost the daemon 300 KiB for this function alone. */
-static double sine(double turns)
+static double sine_of(double turns)
 {
 	int quarter = (int)(turns * 4);
 	double x = turns * 4 - quarter, square, term, sum;
@@ -71,19 +71,20 @@ double sim_curve_at(const struct sim_curve *curve, int64_t t)
 		part = (double)(t - curve->start_ns) / (double)curve->span_ns;
 		return curve->a + (curve->b - curve->a) * part;
 	case SIM_SINE:
-		part = (double)phase(curve, t) / (double)curve->span_ns;
-		return curve->a + curve->b * sine(part);
+		part = (double)phase_of(curve, t) / (double)curve->span_ns;
+		return curve->a + curve->b * sine_of(part);
 	case SIM_SQUARE:
-		return phase(curve, t) < curve->span_ns / 2 ? curve->a : curve->b;
+		return phase_of(curve, t) < curve->span_ns / 2 ? curve->a : curve->b;
 	case SIM_STEPS:
-		return curve->step[step_at(curve, phase(curve, t))].value;
+		return curve->step[step_at(curve, phase_of(curve, t))].value;
 	}
 	return curve->a;
 }
 
 int64_t sim_curve_next(const struct sim_curve *curve, int64_t t)
 {
-	int64_t since = phase(curve, t), base = t < curve->start_ns ? curve->start_ns : t - since;
+	int64_t since = phase_of(curve, t),
+		base = t < curve->start_ns ? curve->start_ns : t - since;
 	unsigned i;
 
 	switch (curve->shape) {

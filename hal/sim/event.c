@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static struct sim_slave *device(const struct sim_net *net, struct words *words,
-                                struct sim_event *event)
+static struct sim_slave *parse_device(const struct sim_net *net, struct words *words,
+                                      struct sim_event *event)
 {
 	if (!words_next(words)) {
 		words_fail(words, "expected the name of a device");
@@ -24,7 +24,7 @@ static struct sim_slave *device(const struct sim_net *net, struct words *words,
 }
 
 /* Parse "0x18", or with a channel "0x18.3". */
-static void chip(const struct sim_net *net, struct words *words, struct sim_event *event)
+static void parse_chip(const struct sim_net *net, struct words *words, struct sim_event *event)
 {
 	char *end;
 	unsigned long address;
@@ -61,11 +61,11 @@ static void corruption(struct words *words, struct sim_event *event)
 		event->seed = (uint64_t)words_number(words, "the seed", 1, 4e9);
 }
 
-static void input(const struct sim_net *net, struct words *words, struct sim_event *event)
+static void parse_input(const struct sim_net *net, struct words *words, struct sim_event *event)
 {
 	int found;
 
-	if (!device(net, words, event))
+	if (!parse_device(net, words, event))
 		return;
 	words_next(words);
 	found = sim_slave_input(event->slave, words->word);
@@ -78,6 +78,7 @@ static void input(const struct sim_net *net, struct words *words, struct sim_eve
 	event->curve = words_curve(words, &event->slave->family->inputs[found]);
 }
 
+/* One row serves "unplug", "end unplug" and "unplug ... for": the flag is turned over. */
 static const struct {
 	const char *name;
 	enum sim_what what;
@@ -97,14 +98,14 @@ static void operands(const struct sim_net *net, struct words *words, struct sim_
 {
 	switch (event->what) {
 	case SIM_SET:
-		input(net, words, event);
+		parse_input(net, words, event);
 		break;
 	case SIM_PLUG:
 	case SIM_BROWNOUT:
-		device(net, words, event);
+		parse_device(net, words, event);
 		break;
 	case SIM_CORRUPT:
-		device(net, words, event);
+		parse_device(net, words, event);
 		corruption(words, event);
 		break;
 	case SIM_SHORT:
@@ -112,11 +113,11 @@ static void operands(const struct sim_net *net, struct words *words, struct sim_
 	case SIM_JAM:
 	case SIM_CHIP_RESET:
 	case SIM_CHIP_SLEEP:
-		chip(net, words, event);
+		parse_chip(net, words, event);
 		break;
 	case SIM_REFUSE:
 	case SIM_REFUSE_DATA:
-		chip(net, words, event);
+		parse_chip(net, words, event);
 		event->each = 1;
 		if (words_take(words, "each"))
 			event->each = (uint32_t)words_number(words, "the count", 1, 1e9);

@@ -35,7 +35,7 @@ static int open_adapter(void *ctx, const struct bus_env *env, struct i2c_adapter
 	return 0;
 }
 
-static int there(void *ctx, const struct bus_env *env, uint8_t chips, uint64_t *mark)
+static int sim_visible(void *ctx, const struct bus_env *env, uint8_t chips, uint64_t *mark)
 {
 	struct simulation *simulation = ctx;
 
@@ -67,7 +67,7 @@ static int sim_master_create(const char *where, const struct bus_env *env,
 	size_t len = (size_t)(chip - where);
 	struct simulation *simulation = calloc(1, sizeof(*simulation) + len + 1);
 	struct ds2482_source source = {.open = open_adapter,
-	                               .there = there,
+	                               .there = sim_visible,
 	                               .destroy = destroy_simulation,
 	                               .ctx = simulation};
 	int err;

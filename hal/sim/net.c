@@ -107,7 +107,7 @@ static void set_input(struct sim_slave *slave, unsigned input, struct sim_curve 
 	sim_slave_advance(slave, t);
 }
 
-static void apply(struct sim_net *net, const struct sim_event *event, int64_t t)
+static void apply_event(struct sim_net *net, const struct sim_event *event, int64_t t)
 {
 	struct sim_chip *chip = &net->chip[event->chip];
 	struct sim_wire *wire = &chip->wire[event->channel];
@@ -158,7 +158,7 @@ static void apply(struct sim_net *net, const struct sim_event *event, int64_t t)
 
 void sim_net_apply(struct sim_net *net, const struct sim_event *event)
 {
-	apply(net, event, net->time);
+	apply_event(net, event, net->time);
 }
 
 bool sim_net_lasts(const struct sim_net *net, const struct sim_event *event)
@@ -195,7 +195,7 @@ static void run_chips(struct sim_net *net, int64_t t)
  * After a pause, skip all but the last times of repeating events: those of a day in which the
  * machine slept would block the caller for too long.
  */
-static void leave_out(struct sim_net *net, int64_t t)
+static void skip_repeats(struct sim_net *net, int64_t t)
 {
 	int64_t repeats = 0, keep;
 
@@ -214,6 +214,7 @@ static void leave_out(struct sim_net *net, int64_t t)
 	}
 }
 
+/* Each chip is run up to an event before it is applied: a slot sees the network as it was then. */
 void sim_net_run(struct sim_net *net, int64_t now)
 {
 	struct sim_event *event;
@@ -224,10 +225,10 @@ void sim_net_run(struct sim_net *net, int64_t now)
 	if (t < net->time)
 		t = net->time;
 	if (t - net->time > PAUSE_NS)
-		leave_out(net, t);
+		skip_repeats(net, t);
 	while ((event = next_event(net)) && event->at_ns <= t) {
 		run_chips(net, event->at_ns);
-		apply(net, event, event->at_ns);
+		apply_event(net, event, event->at_ns);
 		if (event->every_ns > 0)
 			event->at_ns += event->every_ns;
 		else
@@ -244,7 +245,7 @@ int64_t sim_net_next(const struct sim_net *net)
 	return event ? net->epoch + event->at_ns : INT64_MAX;
 }
 
-static bool refused(struct refusal *refusal)
+static bool is_refused(struct refusal *refusal)
 {
 	return refusal->each && ++refusal->count % refusal->each == 0;
 }
@@ -258,7 +259,7 @@ bool sim_i2c_start(struct sim_net *net, uint8_t address, bool read, int64_t now)
 	for (unsigned i = 0; i < net->chips; i++) {
 		if (net->chip[i].address != address)
 			continue;
-		if (refused(&net->refuse_address[i]))
+		if (is_refused(&net->refuse_address[i]))
 			return false;
 		if (!sim_chip_start(&net->chip[i], read, net->time))
 			return false;
@@ -272,7 +273,7 @@ bool sim_i2c_write(struct sim_net *net, uint8_t byte, int64_t now)
 {
 	sim_net_run(net, now);
 	if (!net->selected || !net->plugged ||
-	    refused(&net->refuse_data[net->selected - net->chip]))
+	    is_refused(&net->refuse_data[net->selected - net->chip]))
 		return false;
 	return sim_chip_write(net->selected, byte, net->time);
 }

@@ -69,14 +69,29 @@ void sim_pins_write(struct sim_slave *slave, uint8_t latch)
 	sim_pins_follow(slave);
 }
 
-/* Send two pins as pin A, latch A, pin B, latch B, and their complement above; or eight levels. */
+/* A bit for each pin. */
+static uint8_t each_pin(const struct sim_pins *pins)
+{
+	return (uint8_t)((1u << pins->count) - 1);
+}
+
+/* The level of each pin, and ones where there is none. */
+static uint8_t levels_in_byte(const struct sim_slave *slave)
+{
+	const struct sim_pins *pins = slave->state;
+
+	return pins->level | (uint8_t)~each_pin(pins);
+}
+
+/* Send two pins as pin A, latch A, pin B, latch B, and their complement above; or a sample. */
 void sim_pins_send(struct sim_slave *slave)
 {
 	const struct sim_pins *pins = slave->state;
 	unsigned low = (pins->level & 1) | (pins->latch & 1) << 1 | (pins->level & 2) << 1 |
 	               (pins->latch & 2) << 2;
 
-	sim_send_byte(slave, pins->count == 8 ? pins->level : (uint8_t)(low | (~low & 15) << 4));
+	sim_send_byte(slave,
+	              pins->registers ? levels_in_byte(slave) : (uint8_t)(low | (~low & 15) << 4));
 }
 
 /* Take new latches and their complement, and answer AAh, */
@@ -86,9 +101,8 @@ void sim_pins_take(struct sim_slave *slave)
 		sim_end(slave);
 		return;
 	}
-	sim_pins_write(slave,
-	               slave->taken[0] & ((1u << sim_state(slave, sim_pins)->count) - 1) & 0xFF);
-	sim_send_byte(slave, 0xAA);
+	sim_pins_write(slave, slave->taken[0] & each_pin(slave->state));
+	sim_pins_confirm(slave);
 }
 
 /* then send the pins as they are now, and receive the next two bytes. */
@@ -101,4 +115,74 @@ void sim_pins_taken(struct sim_slave *slave)
 		slave->got = 0;
 		sim_receive(slave);
 	}
+}
+
+/* --- The registers --------------------------------------------------------------------------- */
+
+#define SAMPLES 32 /* between two checksums */
+
+void sim_pins_registers(const struct sim_slave *slave, uint8_t out[SIM_PIN_REGISTERS])
+{
+	const struct sim_pins *pins = slave->state;
+
+	out[SIM_LOGIC] = pins->level;
+	out[SIM_LATCH] = pins->latch;
+	out[SIM_ACTIVITY] = pins->activity;
+	out[SIM_MASK] = pins->mask;
+	out[SIM_POLARITY] = pins->polarity;
+	out[SIM_CONTROL] = (uint8_t)(pins->control | (slave->parasite ? 0 : SIM_VCCP));
+}
+
+bool sim_pins_match(struct sim_slave *slave)
+{
+	const struct sim_pins *pins = slave->state;
+	uint8_t source = pins->control & SIM_PLS ? pins->activity : pins->level;
+	uint8_t match = (uint8_t) ~(source ^ pins->polarity) & pins->mask;
+
+	return pins->control & SIM_CT ? match == pins->mask && pins->mask : match;
+}
+
+/* The address counts the samples. */
+void sim_pins_sample(struct sim_slave *slave)
+{
+	sim_send_next(slave, levels_in_byte(slave), SAMPLES);
+}
+
+void sim_pins_check_condition(struct sim_slave *slave)
+{
+	unsigned first = sim_state(slave, sim_pins)->registers;
+
+	if (slave->address < first + SIM_MASK || slave->address > first + SIM_CONTROL)
+		sim_end(slave);
+}
+
+void sim_pins_write_condition(struct sim_slave *slave, uint8_t byte)
+{
+	struct sim_pins *pins = slave->state;
+	uint8_t writable = SIM_PLS | SIM_CT | (pins->count == 8 ? SIM_ROS : 0);
+
+	switch (slave->address++ & 7) {
+	case SIM_MASK:
+		pins->mask = byte & each_pin(pins);
+		break;
+	case SIM_POLARITY:
+		pins->polarity = byte & each_pin(pins);
+		break;
+	case SIM_CONTROL:
+		pins->control = (uint8_t)((byte & writable) |
+		                          (pins->control & (SIM_POL | (byte & SIM_PORL))));
+		sim_end(slave);
+		break;
+	}
+}
+
+void sim_pins_confirm(struct sim_slave *slave)
+{
+	sim_send_byte(slave, 0xAA);
+}
+
+void sim_pins_reset_activity(struct sim_slave *slave)
+{
+	sim_state(slave, sim_pins)->activity = 0;
+	sim_pins_confirm(slave);
 }

@@ -1,15 +1,17 @@
 /* SPDX-License-Identifier: MIT */
-/* The parser of the scenario language, which makes a simulated network of a text. */
+/*
+ * The parser of the scenario language, which makes a simulated network of a text. A line's first
+ * word decides what the line is. The first error stays in struct words and no word is read after
+ * it, so the functions of the lines look for it only where they would do damage.
+ */
 #include <ctype.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
+#include "hal/base/file.h"
 #include "hal/owfs/path.h"
 #include "hal/sim/branch.h"
 #include "hal/sim/button.h"
@@ -180,12 +182,11 @@ static void properties(struct sim_slave *slave, struct words *words)
 			continue;
 		}
 		memcpy(name, words->word, sizeof(name));
-		if (!slave->family->option || slave->family->option(slave, name, 0) == -ENOENT) {
+		if (sim_slave_option(slave, name, 0) == -ENOENT) {
 			words_fail(words, "a %s has no \"%s\"", slave->family->name, name);
 			return;
 		}
-		err = slave->family->option(slave, name,
-		                            words_number(words, name, -1e9, UINT32_MAX));
+		err = sim_slave_option(slave, name, words_number(words, name, -1e9, UINT32_MAX));
 		if (err)
 			words_fail(words, "%s is out of the range of %s", words->word, name);
 	}
@@ -288,6 +289,7 @@ static void at_line(struct scenario *scenario, struct words *words)
 	}
 }
 
+/* Keywords come before names: a device's name cannot hide one. */
 static void parse_line(struct scenario *scenario, struct words *words)
 {
 	const struct sim_family *family;
@@ -343,52 +345,10 @@ int sim_scenario_parse(const char *name, const char *text, struct sim_net *net, 
 	return scenario.nomem ? -ENOMEM : -EINVAL;
 }
 
-/*
- * Returns the file's text, which the caller frees; NULL: *err and why. A file that is not regular
- * might never end.
- */
-static char *read_text(const char *file, char *why, size_t why_size, int *err)
-{
-	int fd = open(file, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-	char *text = NULL;
-	struct stat st;
-	size_t len = 0;
-	ssize_t n = 1;
-
-	*err = fd < 0 || fstat(fd, &st) ? -errno : S_ISREG(st.st_mode) ? 0 : -EINVAL;
-	if (*err) {
-		snprintf(why, why_size, "%s: %s", file,
-		         *err == -EINVAL ? "not a regular file" : strerror(-*err));
-	} else {
-		text = malloc(MAX_FILE + 2);
-		*err = text ? 0 : -ENOMEM;
-	}
-	while (text && n > 0 && len <= MAX_FILE) {
-		n = read(fd, text + len, MAX_FILE + 1 - len);
-		len += n > 0 ? (size_t)n : 0;
-	}
-	if (fd >= 0)
-		close(fd);
-	if (!text)
-		return NULL;
-	text[len] = '\0';
-	if (n >= 0 && len <= MAX_FILE && strlen(text) == len)
-		return text;
-	*err = n < 0 ? -EIO : len > MAX_FILE ? -EFBIG : -EINVAL;
-	if (n < 0)
-		snprintf(why, why_size, "%s: cannot be read", file);
-	else if (len > MAX_FILE)
-		snprintf(why, why_size, "%s: longer than %d bytes", file, MAX_FILE);
-	else
-		snprintf(why, why_size, "%s: has a zero byte, is not text", file);
-	free(text);
-	return NULL;
-}
-
 int sim_scenario_read(const char *file, struct sim_net *net, char *why, size_t why_size)
 {
 	int err;
-	char *text = read_text(file, why, why_size, &err);
+	char *text = file_text(file, MAX_FILE, &err, why, why_size);
 
 	if (!text)
 		return err;

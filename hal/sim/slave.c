@@ -1,6 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* A simulated slave: the ROM layer bit by bit, and the calls of its family. */
+/*
+ * A simulated slave: the ROM layer bit by bit, and the calls of its family.
+ *
+ * In each slot the wire asks every slave for its output, and then gives all of them the level that
+ * results. So slaves that send different bits at once act as on a wire with open-drain outputs. A
+ * slave that takes no further part is deaf (SIM_ROM_IDLE) until the next reset.
+ */
 #include <assert.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -88,6 +95,23 @@ double sim_input_at(const struct sim_slave *slave, unsigned input, int64_t t)
 	return sim_curve_at(&slave->input[input], t);
 }
 
+int sim_slave_option(struct sim_slave *slave, const char *name, double value)
+{
+	const struct sim_option *option = slave->family->options;
+
+	while (option && option->name && strcmp(option->name, name) != 0)
+		option++;
+	if (!option || !option->name)
+		return -ENOENT;
+	if (value < option->least || value > option->most || value != (double)(int64_t)value)
+		return -ERANGE;
+	if (option->set)
+		option->set(slave, (int64_t)value);
+	else
+		*((uint8_t *)slave->state + option->at) = (uint8_t)(int64_t)value;
+	return 0;
+}
+
 uint8_t *sim_slave_memory(const struct sim_slave *slave, size_t *size)
 {
 	*size = slave->family->memory_size;
@@ -162,22 +186,32 @@ void sim_send_crc8(struct sim_slave *slave, const uint8_t *data, size_t n)
 	sim_send(slave, out, n + 1);
 }
 
+void sim_send_next(struct sim_slave *slave, uint8_t byte, unsigned page)
+{
+	slave->address++;
+	if (page && slave->address % page == 0)
+		sim_send_checked(slave, &byte, 1);
+	else
+		sim_send_byte(slave, byte);
+}
+
 void sim_send_memory(struct sim_slave *slave, const uint8_t *memory, unsigned size, unsigned page)
 {
 	if (slave->address >= size) {
 		sim_end(slave);
 		return;
 	}
-	memory += slave->address++;
-	if (page && slave->address % page == 0)
-		sim_send_checked(slave, memory, 1);
-	else
-		sim_send_byte(slave, *memory);
+	sim_send_next(slave, memory[slave->address], page);
+}
+
+void sim_send_checksum(struct sim_slave *slave)
+{
+	sim_send_checked(slave, NULL, 0);
 }
 
 void sim_send_stored(struct sim_slave *slave, uint8_t stored)
 {
-	sim_send_checked(slave, NULL, 0);
+	sim_send_checksum(slave);
 	slave->send[slave->send_count++] = stored;
 	slave->address++;
 	slave->crc = slave->family->crc8 ? slave->address & 0xFF : slave->address;
@@ -191,6 +225,16 @@ void sim_work(struct sim_slave *slave, int64_t takes)
 	sim_send_bits(slave);
 }
 
+bool sim_ones(struct sim_slave *slave)
+{
+	(void)slave;
+	return true;
+}
+
+/*
+ * A slave that the wire feeds restarts if the strong pull-up does not come in time. Work ends at
+ * its own time, not at the time of this call, so that it measures what the inputs were then.
+ */
 void sim_slave_advance(struct sim_slave *slave, int64_t t)
 {
 	bool fed = !slave->parasite || slave->strong || !slave->family->starves;
@@ -260,6 +304,7 @@ static double random_part(uint64_t *state)
 	return (double)((x * 2685821657736338717u) >> 11) / 9007199254740992.0;
 }
 
+/* The slave was addressed. Whether a bit of this call is to be spoiled is decided here, once. */
 static void function_layer(struct sim_slave *slave)
 {
 	slave->layer = SIM_FUNCTION;
@@ -403,6 +448,7 @@ static bool is_function(const struct sim_function *function)
 	return function->code || function->start || function->byte;
 }
 
+/* A code that the family does not have makes the slave deaf, as the data sheets state. */
 static void begin_function(struct sim_slave *slave, uint8_t code)
 {
 	const struct sim_function *function = slave->family->functions;
@@ -415,8 +461,10 @@ static void begin_function(struct sim_slave *slave, uint8_t code)
 	}
 	slave->function = function;
 	slave->got = 0;
-	slave->crc = 0;
+	slave->address = slave->crc = 0;
 	slave_check(slave, &code, 1);
+	if (slave->family->begun)
+		slave->family->begun(slave);
 	if (!function->takes && function->start)
 		function->start(slave);
 }
@@ -429,7 +477,8 @@ static void function_byte(struct sim_slave *slave, uint8_t byte)
 		begin_function(slave, byte);
 		return;
 	}
-	slave_check(slave, &byte, 1);
+	if (slave->got >= function->takes || slave->got < function->takes - function->unchecked)
+		slave_check(slave, &byte, 1);
 	if (slave->got < function->takes) {
 		slave->taken[slave->got++] = byte;
 		if (slave->got < function->takes)

@@ -10,6 +10,7 @@
 
 #include <stdbool.h>
 
+#include "hal/sim/bytes.h"
 #include "hal/sim/curve.h"
 
 struct sim_branch;
@@ -27,12 +28,26 @@ struct sim_input {
 #define SIM_CONDITION(text) .name = (text), .pin = true
 #define SIM_TEMPERATURE_INPUT .name = "temperature", .start = 20, .least = -55, .most = 125
 
+/* A start value that a scenario gives: a whole number. */
+struct sim_option {
+	const char *name; /* NULL ends a list */
+	double least, most;
+	size_t at; /* of the byte of the state that takes the value, unless there is set() */
+	void (*set)(struct sim_slave *slave, int64_t value);
+};
+#define SIM_OPTION(type, text, from, to, member) \
+	{ \
+		(text), (from), (to), offsetof(struct type, member) \
+	}
+
 /*
  * A function command: its code, the bytes that belong to it, and what it does. The slave keeps the
- * bytes in taken, and an address of one or two of them in address.
+ * bytes in taken, and an address of one or two of them in address; without such bytes the address
+ * begins at 0.
  */
 struct sim_function {
 	uint8_t code, takes; /* zeros end a table */
+	uint8_t unchecked;   /* of these bytes, the last ones, which no checksum covers */
 	/* All optional. */
 	void (*start)(struct sim_slave *slave);              /* the code and its bytes are there */
 	void (*byte)(struct sim_slave *slave, uint8_t byte); /* one more byte came */
@@ -50,6 +65,7 @@ struct sim_family {
 	bool crc8;    /* the checksums of its functions have 8 bits, not 16 */
 	bool starves; /* fed by the wire, restarts if it works without strong pull-up */
 	const struct sim_function *functions; /* NULL: none */
+	const struct sim_option *options;     /* NULL: none */
 	const void *kind; /* what tells it from others with the same functions */
 
 	/* All optional. */
@@ -60,12 +76,11 @@ struct sim_family {
 	 * function layer.
 	 */
 	void (*selected)(struct sim_slave *slave, bool match);
+	void (*begun)(struct sim_slave *slave);   /* the code of a function came */
 	bool (*alarm)(struct sim_slave *slave);   /* answers a conditional search? */
 	bool (*bit)(struct sim_slave *slave);     /* the next one in SIM_BITS; NULL: idle? */
 	void (*worked)(struct sim_slave *slave);  /* the work of sim_work() has ended */
 	void (*advance)(struct sim_slave *slave); /* follow the inputs up to now */
-	/* Take a start value of the scenario. 0, -ENOENT: no such option, -ERANGE. */
-	int (*option)(struct sim_slave *slave, const char *name, double value);
 	/* The memory that a scenario may fill, in the state: SIM_MEMORY(). size 0: none. */
 	size_t memory_at, memory_size;
 };
@@ -115,7 +130,7 @@ struct sim_slave {
 	uint8_t send[SIM_MAX_SEND];
 
 	const struct sim_function *function; /* NULL: the function's code has yet to come */
-	uint8_t taken[3], got;
+	uint8_t taken[18], got;
 	uint16_t address;
 	uint16_t crc; /* checksum of all bytes since the code, or since the last checksum */
 	bool busy;    /* the operation runs from since to until */
@@ -142,6 +157,8 @@ bool sim_slave_output(struct sim_slave *slave, int64_t t);
 void sim_slave_slot(struct sim_slave *slave, bool line, int64_t t);
 void sim_slave_strong(struct sim_slave *slave, bool on, int64_t t);
 void sim_slave_advance(struct sim_slave *slave, int64_t t);
+/* Give an option its value. 0, -ENOENT: no such option, -ERANGE. */
+int sim_slave_option(struct sim_slave *slave, const char *name, double value);
 int sim_slave_input(const struct sim_slave *slave, const char *name);
 double sim_input_now(const struct sim_slave *slave, unsigned input);
 double sim_input_at(const struct sim_slave *slave, unsigned input, int64_t t);
@@ -160,12 +177,15 @@ void sim_end(struct sim_slave *slave);       /* deaf until the next reset */
 void sim_send_checked(struct sim_slave *slave, const uint8_t *data, size_t n);
 /* Send n bytes and their own CRC8. */
 void sim_send_crc8(struct sim_slave *slave, const uint8_t *data, size_t n);
-/*
- * Send the byte at the address, and move the address on; after each page the checksum. page 0:
- * none.
- */
+/* Send the byte, and move the address on; after each page the checksum. page 0: none. */
+void sim_send_next(struct sim_slave *slave, uint8_t byte, unsigned page);
+/* In the same way send the byte at the address; after the last byte be deaf. */
 void sim_send_memory(struct sim_slave *slave, const uint8_t *memory, unsigned size, unsigned page);
 /* Send the checksum, then the byte now stored at the address. The next checksum starts after it. */
 void sim_send_stored(struct sim_slave *slave, uint8_t stored);
+/* Send the checksum of what came since the code. */
+void sim_send_checksum(struct sim_slave *slave);
 /* Be busy for a while: read slots are 0, worked() ends it. */
 void sim_work(struct sim_slave *slave, int64_t takes);
+/* For a family whose read slots do not show that it works. */
+bool sim_ones(struct sim_slave *slave);

@@ -32,8 +32,8 @@ void sim_wire_clear(struct sim_wire *wire)
 	*wire = (struct sim_wire){0};
 }
 
-/* No slot reaches anybody; a branch that is on shorts the wire with itself. */
-static bool dead(const struct sim_wire *wire, int64_t t)
+/* No slot reaches a slave; a branch that is on shorts the wire with itself. */
+static bool is_dead_wire(const struct sim_wire *wire, int64_t t)
 {
 	bool shorted = wire->shorted;
 
@@ -52,7 +52,7 @@ bool sim_wire_reset(struct sim_wire *wire, bool overdrive, int64_t t)
 {
 	wire->resets++;
 	wire->active_count = 0;
-	if (dead(wire, t))
+	if (is_dead_wire(wire, t))
 		return false;
 	for (size_t i = 0; i < wire->count; i++) {
 		struct sim_slave *slave = wire->slaves[i];
@@ -67,7 +67,7 @@ bool sim_wire_reset(struct sim_wire *wire, bool overdrive, int64_t t)
 }
 
 /* A coupler may have switched: those that hear the next slot. */
-static void regroup(struct sim_wire *wire)
+static void regroup_active(struct sim_wire *wire)
 {
 	wire->active_count = 0;
 	for (size_t i = 0; i < wire->count; i++) {
@@ -84,7 +84,7 @@ bool sim_wire_slot(struct sim_wire *wire, bool out, bool overdrive, int64_t t)
 	size_t kept = 0;
 
 	wire->slots++;
-	if (dead(wire, t)) {
+	if (is_dead_wire(wire, t)) {
 		wire->active_count = 0;
 		return false;
 	}
@@ -105,13 +105,13 @@ bool sim_wire_slot(struct sim_wire *wire, bool out, bool overdrive, int64_t t)
 	}
 	wire->active_count = kept;
 	if (coupler)
-		regroup(wire);
+		regroup_active(wire);
 	return line;
 }
 
 bool sim_wire_level(const struct sim_wire *wire, int64_t t)
 {
-	return !dead(wire, t);
+	return !is_dead_wire(wire, t);
 }
 
 void sim_wire_strong(struct sim_wire *wire, bool on, int64_t t)
@@ -121,9 +121,10 @@ void sim_wire_strong(struct sim_wire *wire, bool on, int64_t t)
 	wire->strong = on;
 	for (size_t i = 0; i < wire->count; i++) {
 		if (wire->slaves[i]->plugged)
-			sim_slave_strong(
-				wire->slaves[i],
-				on && !dead(wire, t) && sim_branch_connects(wire->slaves[i]), t);
+			sim_slave_strong(wire->slaves[i],
+			                 on && !is_dead_wire(wire, t) &&
+			                         sim_branch_connects(wire->slaves[i]),
+			                 t);
 	}
 }
 

@@ -47,7 +47,7 @@ static const char *skip_blanks(const char *text)
 	return text;
 }
 
-static size_t length(const char *text)
+static size_t word_length(const char *text)
 {
 	return strcspn(text, " \t\r\n#");
 }
@@ -55,7 +55,7 @@ static size_t length(const char *text)
 bool words_next(struct words *words)
 {
 	const char *word = skip_blanks(words->next);
-	size_t len = length(word);
+	size_t len = word_length(word);
 
 	words->column = (unsigned)(word - words->text) + 1;
 	words->word[0] = '\0';
@@ -72,10 +72,11 @@ bool words_next(struct words *words)
 	return true;
 }
 
+/* The column of an error is that of the last word, so a word that is not taken is not counted. */
 bool words_take(struct words *words, const char *word)
 {
 	const char *next = skip_blanks(words->next);
-	size_t len = length(next);
+	size_t len = word_length(next);
 
 	if (len != strlen(word) || memcmp(next, word, len) != 0)
 		return false;
@@ -97,7 +98,7 @@ void words_end(struct words *words)
 }
 
 /* Parse the number at the beginning of the word, in the same way in every locale. */
-static double decimal(const char *word, const char **end)
+static double parse_decimal(const char *word, const char **end)
 {
 	double value = 0, scale = 1;
 	bool negative = *word == '-', any = false;
@@ -131,7 +132,7 @@ double words_number(struct words *words, const char *what, double least, double 
 		value = (double)strtoul(words->word + 2, &stop, 16);
 		end = words->word[2] ? stop : NULL;
 	} else {
-		value = decimal(words->word, &end);
+		value = parse_decimal(words->word, &end);
 	}
 	if (!end || *end)
 		words_fail(words, "\"%s\": expected %s, a number", words->word, what);
@@ -160,7 +161,7 @@ static double unit_seconds(const char *unit)
 static bool parse_time(const char *word, int64_t *ns)
 {
 	const char *end;
-	double value = decimal(word, &end), unit = end ? unit_seconds(end) : 0;
+	double value = parse_decimal(word, &end), unit = end ? unit_seconds(end) : 0;
 
 	if (end && !*end && value == 0)
 		unit = 1;
@@ -182,7 +183,7 @@ int64_t words_time(struct words *words, const char *what)
 	return ns;
 }
 
-static int64_t period(struct words *words)
+static int64_t parse_period(struct words *words)
 {
 	int64_t ns = words_time(words, "the period");
 
@@ -202,7 +203,8 @@ static void words_check(struct words *words, const struct sim_input *input, doub
 		           input->most);
 }
 
-static void steps(struct words *words, const struct sim_input *input, struct sim_curve *curve)
+/* Steps end at the first word that is no number, which belongs to what follows the curve. */
+static void parse_steps(struct words *words, const struct sim_input *input, struct sim_curve *curve)
 {
 	while (words_number_ahead(words) && words_next(words)) {
 		struct sim_step *step = &curve->step[curve->steps];
@@ -211,7 +213,7 @@ static void steps(struct words *words, const struct sim_input *input, struct sim
 
 		if (colon) {
 			*colon = '\0';
-			step->value = decimal(colon + 1, &end);
+			step->value = parse_decimal(colon + 1, &end);
 		}
 		if (curve->steps == SIM_MAX_STEPS) {
 			words_fail(words, "%d steps are the most", SIM_MAX_STEPS);
@@ -232,7 +234,7 @@ static void steps(struct words *words, const struct sim_input *input, struct sim
 		words_next(words);
 		words_fail(words, "expected a step, as 0:20");
 	} else if (words_take(words, "repeat")) {
-		curve->span_ns = period(words);
+		curve->span_ns = parse_period(words);
 		if (!words->failed && curve->span_ns <= curve->step[curve->steps - 1].at_ns)
 			words_fail(words, "the steps are longer than that");
 	}
@@ -268,7 +270,7 @@ struct sim_curve words_curve(struct words *words, const struct sim_input *input)
 			           words->word, input->name);
 	}
 	if (curve.shape == SIM_STEPS) {
-		steps(words, input, &curve);
+		parse_steps(words, input, &curve);
 		return curve;
 	}
 	curve.a = words_number(words, "a value", -1e9, 1e9);
@@ -277,7 +279,7 @@ struct sim_curve words_curve(struct words *words, const struct sim_input *input)
 		curve.b = words_number(words, "a value", -1e9, 1e9);
 		words_check(words, input, curve.shape == SIM_SINE ? curve.a - curve.b : curve.b);
 		words_check(words, input, curve.shape == SIM_SINE ? curve.a + curve.b : curve.b);
-		curve.span_ns = period(words);
+		curve.span_ns = parse_period(words);
 	}
 	return curve;
 }

@@ -45,7 +45,7 @@ static bool is_911(const struct sim_slave *slave)
 }
 
 /* NULL: there is nothing at this address. */
-static uint8_t *cell(struct sim_slave *slave, unsigned at)
+static uint8_t *cell_at(struct sim_slave *slave, unsigned at)
 {
 	struct bae *s = slave->state;
 	unsigned eeprom = is_911(slave) ? EEPROM_911 : EEPROM_910;
@@ -87,17 +87,6 @@ static void bae_power_on(struct sim_slave *slave)
 		s->registers[POWER_ON_FLAGS] = 0x80;
 }
 
-static void put32(uint8_t *at, uint32_t value)
-{
-	for (unsigned i = 0; i < 4; i++)
-		at[i] = (uint8_t)(value >> (24 - 8 * i));
-}
-
-static uint32_t get32(const uint8_t *at)
-{
-	return (uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 | (uint32_t)at[2] << 8 | at[3];
-}
-
 static unsigned clock_at(const struct sim_slave *slave)
 {
 	return is_911(slave) ? CLOCK_911 : CLOCK_910;
@@ -108,23 +97,21 @@ static void bae_advance(struct sim_slave *slave)
 	struct bae *s = slave->state;
 	unsigned adc = (unsigned)sim_round(sim_input_now(slave, 0) * 1023 / 5);
 
-	put32(s->registers + clock_at(slave), (uint32_t)((slave->now - s->started) / NS_PER_S));
+	sim_put_high(s->registers + clock_at(slave), 4, (slave->now - s->started) / NS_PER_S);
 	if (is_911(slave)) {
-		s->registers[0x700] = (uint8_t)(adc >> 8); /* ADC0 */
-		s->registers[0x701] = (uint8_t)adc;
+		sim_put_high(s->registers + 0x700, 2, adc); /* ADC0 */
 	} else {
 		s->registers[50] = (uint8_t)(adc >> 2); /* 8 bits, and 10 */
-		s->registers[62] = (uint8_t)(adc >> 8);
-		s->registers[63] = (uint8_t)adc;
+		sim_put_high(s->registers + 62, 2, adc);
 	}
 }
 
-static void version(struct sim_slave *slave)
+static void bae_version(struct sim_slave *slave)
 {
 	sim_send_checked(slave, (const uint8_t[]){0x02, 0x0C}, 2);
 }
 
-static void type(struct sim_slave *slave)
+static void bae_type(struct sim_slave *slave)
 {
 	sim_send_checked(slave, (const uint8_t[]){is_911(slave) ? 3 : 2, 0x24}, 2);
 }
@@ -139,7 +126,7 @@ static void read_block(struct sim_slave *slave)
 		return;
 	}
 	for (unsigned i = 0; i < n; i++) {
-		const uint8_t *from = cell(slave, at + i);
+		const uint8_t *from = cell_at(slave, at + i);
 
 		out[i] = from ? *from : 0xFF;
 	}
@@ -147,24 +134,25 @@ static void read_block(struct sim_slave *slave)
 }
 
 /* EEPROM can only be cleared bit by bit; erasing sets all. */
-static void write_block(struct sim_slave *slave)
+static void bae_write_block(struct sim_slave *slave)
 {
 	struct bae *s = slave->state;
-	unsigned at = s->taken[0] | (unsigned)s->taken[1] << 8;
+	unsigned at = (unsigned)sim_get(s->taken, 2);
 
 	for (unsigned i = 0; i < s->taken[2]; i++) {
-		uint8_t *to = cell(slave, at + i);
+		uint8_t *to = cell_at(slave, at + i);
 
 		if (to)
 			*to = is_eeprom(slave, to) ? *to & s->taken[3 + i] : s->taken[3 + i];
 	}
-	s->started = slave->now - (int64_t)get32(s->registers + clock_at(slave)) * NS_PER_S;
+	s->started = slave->now -
+	             (int64_t)sim_get_high(s->registers + clock_at(slave), 4) * NS_PER_S;
 }
 
 static void erase_page(struct sim_slave *slave)
 {
 	struct bae *s = slave->state;
-	uint8_t *page = cell(slave, s->taken[0] | (unsigned)s->taken[1] << 8);
+	uint8_t *page = cell_at(slave, (unsigned)sim_get(s->taken, 2));
 
 	if (page && is_eeprom(slave, page))
 		memset(s->eeprom + (page - s->eeprom) / PAGE * PAGE, 0xFF, PAGE);
@@ -183,7 +171,7 @@ static void i2c(struct bae *s, const uint8_t *bytes, unsigned n)
 }
 
 /* taken: bytes of the argument, function, bytes of the answer, argument. */
-static void run(struct bae *s)
+static void run_function(struct bae *s)
 {
 	s->answers = s->taken[2] > BLOCK ? BLOCK : s->taken[2];
 	switch (s->taken[1]) {
@@ -192,7 +180,7 @@ static void run(struct bae *s)
 		break;
 	case BEGIN_SD_WRITE:
 	case BEGIN_SD_READ:
-		s->sd_at = get32(s->taken + 3);
+		s->sd_at = (uint32_t)sim_get_high(s->taken + 3, 4);
 		if (s->sd_at >= sizeof(s->sd))
 			s->result = FAILED;
 		break;
@@ -205,7 +193,7 @@ static void run(struct bae *s)
 	}
 }
 
-static void sequence(struct bae *s, bool write)
+static void run_sequence(struct bae *s, bool write)
 {
 	unsigned n = s->taken[0] > BLOCK ? BLOCK : s->taken[0];
 	const uint8_t *bytes = s->taken + 2;
@@ -225,13 +213,13 @@ static void sequence(struct bae *s, bool write)
 	}
 }
 
-static void act(struct sim_slave *slave)
+static void bae_act(struct sim_slave *slave)
 {
 	struct bae *s = slave->state;
 
 	switch (slave->function->code) {
 	case WRITE_BLOCK:
-		write_block(slave);
+		bae_write_block(slave);
 		return;
 	case ERASE_PAGE:
 		erase_page(slave);
@@ -243,13 +231,13 @@ static void act(struct sim_slave *slave)
 	s->answers = 0;
 	s->done = slave->now + NS_PER_MS;
 	if (slave->function->code == WRITE_RUN)
-		run(s);
+		run_function(s);
 	else
-		sequence(s, slave->function->code == SEQUENCE_WRITE);
+		run_sequence(s, slave->function->code == SEQUENCE_WRITE);
 }
 
 /* How many bytes has the command that is coming in? */
-static unsigned whole(const struct sim_slave *slave, const struct bae *s)
+static unsigned command_size(const struct sim_slave *slave, const struct bae *s)
 {
 	switch (slave->function->code) {
 	case WRITE_BLOCK:
@@ -277,12 +265,12 @@ static void bae_take(struct sim_slave *slave, uint8_t byte)
 
 	if (s->sent) {
 		if (byte == CONFIRM)
-			act(slave);
+			bae_act(slave);
 		sim_end(slave);
 		return;
 	}
 	s->taken[s->got++] = byte;
-	if (s->got < whole(slave, s) && s->got < MOST)
+	if (s->got < command_size(slave, s) && s->got < MOST)
 		return;
 	if (slave->function->code == WRITE_BLOCK && s->taken[2] > BLOCK) {
 		sim_end(slave);
@@ -292,7 +280,7 @@ static void bae_take(struct sim_slave *slave, uint8_t byte)
 	sim_send_checked(slave, NULL, 0);
 }
 
-static void query(struct sim_slave *slave)
+static void bae_query(struct sim_slave *slave)
 {
 	struct bae *s = slave->state;
 	uint8_t out[2 + BLOCK] = {s->result, s->answers};
@@ -308,8 +296,8 @@ static void query(struct sim_slave *slave)
 /* After the checksum the confirmation may come. */
 #define WRITES(code_) .code = (code_), .start = bae_begin, .byte = bae_take, .next = sim_receive
 static const struct sim_function functions[] = {
-	{.code = VERSION, .start = version},
-	{.code = TYPE, .start = type},
+	{.code = VERSION, .start = bae_version},
+	{.code = TYPE, .start = bae_type},
 	{WRITES(EXTENDED)},
 	{.code = READ_BLOCK, .takes = 3, .start = read_block},
 	{WRITES(WRITE_BLOCK)},
@@ -317,7 +305,7 @@ static const struct sim_function functions[] = {
 	{WRITES(WRITE_RUN)},
 	{WRITES(SEQUENCE_WRITE)},
 	{WRITES(SEQUENCE_READ)},
-	{.code = QUERY, .start = query},
+	{.code = QUERY, .start = bae_query},
 	{0},
 };
 

@@ -83,23 +83,17 @@ static uint32_t raw_of(double value, unsigned bits, double (*of)(double, double)
 	return (uint32_t)sim_round(least);
 }
 
-static void bme280_put16(uint8_t *at, int value)
-{
-	at[0] = (uint8_t)value;
-	at[1] = (uint8_t)((unsigned)value >> 8);
-}
-
 static void bme280_power_on(struct sim_sensor *sensor)
 {
 	uint8_t *reg = sensor->reg, *h = reg + HUMIDITY_2;
 
 	memset(reg, 0, sizeof(sensor->reg));
 	for (unsigned i = 0; i < 3; i++)
-		bme280_put16(reg + CALIBRATION + 2 * i, t_digits[i]);
+		sim_put(reg + CALIBRATION + 2 * i, 2, t_digits[i]);
 	for (unsigned i = 0; i < 9; i++)
-		bme280_put16(reg + CALIBRATION + 6 + 2 * i, p_digits[i]);
+		sim_put(reg + CALIBRATION + 6 + 2 * i, 2, p_digits[i]);
 	reg[HUMIDITY_1] = H1;
-	bme280_put16(h, H2);
+	sim_put(h, 2, H2);
 	h[2] = H3;
 	h[3] = H4 >> 4;
 	h[4] = (H4 & 15) | (H5 & 15) << 4;
@@ -116,40 +110,31 @@ static unsigned samples(unsigned setting)
 	return setting == 0 ? 0 : setting > 5 ? 16 : 1u << (setting - 1);
 }
 
-static void put20(uint8_t *at, uint32_t raw)
-{
-	at[0] = (uint8_t)(raw >> 12);
-	at[1] = (uint8_t)(raw >> 4);
-	at[2] = (uint8_t)(raw << 4);
-}
-
 /* The registers get the results now, and show the measurement until its end. */
-static void bme280_measure(struct sim_slave *slave, struct sim_sensor *sensor, int64_t t)
+static void bme280_measure(struct sim_slave *slave, struct sim_sensor *sensor)
 {
 	unsigned of_t = samples(sensor->reg[CTRL_MEAS] >> 5);
 	unsigned of_p = samples(sensor->reg[CTRL_MEAS] >> 2 & 7);
 	unsigned of_h = samples(sensor->reg[CTRL_HUM] & 7);
-	uint32_t raw = raw_of(sim_input_at(slave, SENSOR_TEMPERATURE, t), 20, temperature_of, 0);
+	uint32_t raw = raw_of(sim_input_now(slave, SENSOR_TEMPERATURE), 20, temperature_of, 0);
 	double fine = fine_of(raw);
 	uint8_t *data = sensor->reg + DATA;
 	int64_t us = 1250 + 2300 * (int64_t)of_t;
 
 	us += of_p ? 2300 * (int64_t)of_p + 575 : 0;
 	us += of_h ? 2300 * (int64_t)of_h + 575 : 0;
-	sensor->until = t + us * 1000;
-	put20(data + 3, of_t ? raw : 0x80000);
-	raw = raw_of(sim_input_at(slave, SENSOR_PRESSURE, t), 20, pressure_of, fine);
-	put20(data, of_p ? raw : 0x80000);
-	raw = raw_of(sim_input_at(slave, SENSOR_HUMIDITY, t), 16, humidity_of, fine);
-	raw = of_h ? raw : 0x8000;
-	data[6] = (uint8_t)(raw >> 8);
-	data[7] = (uint8_t)raw;
+	sensor->until = slave->now + us * 1000;
+	sim_put_high(data + 3, 3, (of_t ? raw : 0x80000) << 4);
+	raw = raw_of(sim_input_now(slave, SENSOR_PRESSURE), 20, pressure_of, fine);
+	sim_put_high(data, 3, (of_p ? raw : 0x80000) << 4);
+	raw = raw_of(sim_input_now(slave, SENSOR_HUMIDITY), 16, humidity_of, fine);
+	sim_put_high(data + 6, 2, of_h ? raw : 0x8000);
 	slave->conversions++;
 }
 
 /* Register, byte, register, byte. */
 static bool bme280_take(struct sim_slave *slave, struct sim_sensor *sensor, uint8_t byte,
-                        unsigned at, int64_t t)
+                        unsigned at)
 {
 	if (at % 2 == 0)
 		sensor->pointer = byte;
@@ -159,23 +144,21 @@ static bool bme280_take(struct sim_slave *slave, struct sim_sensor *sensor, uint
 	         sensor->pointer == CONFIG)
 		sensor->reg[sensor->pointer] = byte;
 	if (at % 2 == 1 && sensor->pointer == CTRL_MEAS && (byte & 3) && (byte & 3) <= 2 * FORCED) {
-		bme280_measure(slave, sensor, t);
+		bme280_measure(slave, sensor);
 		sensor->reg[CTRL_MEAS] &= 0xFC; /* it sleeps again */
 	}
 	return true;
 }
 
-static uint8_t bme280_give(struct sim_slave *slave, struct sim_sensor *sensor, unsigned at,
-                           int64_t t)
+static uint8_t bme280_give(struct sim_slave *slave, struct sim_sensor *sensor, unsigned at)
 {
 	uint8_t reg = sensor->pointer++;
 
-	(void)slave;
 	(void)at;
 	if (reg == STATUS)
-		return t < sensor->until ? MEASURING : 0;
+		return slave->now < sensor->until ? MEASURING : 0;
 	return sensor->reg[reg];
 }
 
 const struct sim_sensor_kind sim_sensor_bme280 = {
-	.name = "bme280", .power_on = bme280_power_on, .write = bme280_take, .read = bme280_give};
+	.power_on = bme280_power_on, .write = bme280_take, .read = bme280_give};

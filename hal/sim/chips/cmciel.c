@@ -9,13 +9,6 @@
 /* Bits of a word of the mDI001, from which on there is one for each contact. */
 enum { CLOSED = 0, SHORTED = 4, OPEN = 8, STATUS_WORD = 0x8000 };
 
-static int within(double value, int least, int most)
-{
-	int64_t whole = sim_round(value);
-
-	return whole < least ? least : whole > most ? most : (int)whole;
-}
-
 /* What the sensor has measured, 16 bits. */
 static unsigned reading(const struct sim_slave *slave, int64_t t)
 {
@@ -23,14 +16,14 @@ static unsigned reading(const struct sim_slave *slave, int64_t t)
 
 	switch (slave->family->code) {
 	case 0xA0: /* turns a minute, below zero in reverse */
-		return (unsigned)within(sim_input_at(slave, 0, t), -1000, 1000);
+		return (unsigned)sim_within(sim_input_at(slave, 0, t), -1000, 1000);
 	case 0xA2: /* 10 mA */
-		return (unsigned)within(sim_input_at(slave, 0, t) * 100, 0, 500);
+		return (unsigned)sim_within(sim_input_at(slave, 0, t) * 100, 0, 500);
 	case 0xB2: /* 10,000 is 10 V or 20 mA */
-		return (unsigned)within(sim_input_at(slave, 0, t) * 1000, 0, 10000);
+		return (unsigned)sim_within(sim_input_at(slave, 0, t) * 1000, 0, 10000);
 	}
 	for (unsigned i = 0; i < 4; i++) {
-		int contact = within(sim_input_at(slave, i, t), 0, 3);
+		int contact = sim_within(sim_input_at(slave, i, t), 0, 3);
 
 		if (contact)
 			word |= 1u << (contact == 1 ? CLOSED : contact == 2 ? SHORTED : OPEN) << i;

@@ -5,7 +5,6 @@
  * (github.com/cpetrich/counterfeit_DS18B20, whose letters name them; each takes the longest
  * conversion seen). Not simulated: their errors and noise, and commands that no data sheet knows.
  */
-#include <errno.h>
 #include <math.h>
 #include <string.h>
 
@@ -30,7 +29,7 @@ static bool is_s20(const struct sim_slave *slave)
 	return slave->family->code == FAMILY_S20;
 }
 
-static unsigned resolution(const struct sim_slave *slave)
+static unsigned resolution_bits(const struct sim_slave *slave)
 {
 	const struct sim_thermometer *s = slave->state;
 
@@ -43,8 +42,8 @@ static int64_t sim_thermometer_conversion(struct sim_slave *slave)
 	const struct sim_thermometer *s = slave->state;
 
 	/* tCONV: 93.75, 187.5, 375, 750 ms at most. */
-	int64_t full = s->clone ? s->clone->ms[resolution(slave) - 9] * NS_PER_MS
-	                        : (750 * NS_PER_MS) >> (12 - resolution(slave));
+	int64_t full = s->clone ? s->clone->ms[resolution_bits(slave) - 9] * NS_PER_MS
+	                        : (750 * NS_PER_MS) >> (12 - resolution_bits(slave));
 
 	return s->percent ? full / 100 * s->percent : full;
 }
@@ -88,8 +87,6 @@ static void ds18b20_create(struct sim_slave *slave)
 static void ds18b20_power_on(struct sim_slave *slave)
 {
 	struct sim_thermometer *s = slave->state;
-	int raw = is_s20(slave) ? 85 * 2 : 85 * 16;
-
 	if (slave->family->code == FAMILY_EA00)
 		sim_pins_start(slave, SIM_PIN_A, 2);
 	s->alarm = false;
@@ -100,8 +97,7 @@ static void ds18b20_power_on(struct sim_slave *slave)
 		ds18b20_recall(slave);
 		return;
 	}
-	s->scratchpad[0] = (uint8_t)raw;
-	s->scratchpad[1] = (uint8_t)(raw >> 8);
+	sim_put(s->scratchpad, 2, is_s20(slave) ? 85 * 2 : 85 * 16);
 	s->scratchpad[5] = 0xFF;
 	s->scratchpad[6] = 0x0C;
 	s->scratchpad[7] = 0x10;
@@ -119,11 +115,8 @@ static void set_alarm(struct sim_slave *slave, double celsius)
 static void latch_temperature(struct sim_slave *slave)
 {
 	struct sim_thermometer *s = slave->state;
-	double celsius = sim_input_now(slave, SIM_TEMPERATURE);
-	int raw;
+	int raw = sim_within(sim_input_now(slave, SIM_TEMPERATURE) * 16, -55 * 16, 125 * 16);
 
-	celsius = celsius < -55 ? -55 : celsius > 125 ? 125 : celsius;
-	raw = (int)sim_round(celsius * 16);
 	set_alarm(slave, raw / 16.0);
 	if (is_s20(slave)) {
 		/* TEMPERATURE = TEMP_READ - 0.25 + (COUNT_PER_C - COUNT_REMAIN) / COUNT_PER_C */
@@ -132,15 +125,14 @@ static void latch_temperature(struct sim_slave *slave)
 		s->scratchpad[6] = (uint8_t)(16 - (shifted & 15));
 		raw = whole * 2 + ((shifted & 15) >= 8);
 	} else {
-		raw &= ~((1 << (12 - resolution(slave))) - 1);
+		raw &= ~((1 << (12 - resolution_bits(slave))) - 1);
 		/* The data sheet reserves the byte; the genuine chip does this, few clones do. */
 		if (s->clone && s->clone->sixth == JOKER)
 			s->scratchpad[6] = (uint8_t)(32 - (raw & 15));
 		else if (s->clone ? s->clone->sixth == AS_GENUINE : !s->fixed)
 			s->scratchpad[6] = (uint8_t)(16 - (raw & 15));
 	}
-	s->scratchpad[0] = (uint8_t)raw;
-	s->scratchpad[1] = (uint8_t)(raw >> 8);
+	sim_put(s->scratchpad, 2, raw);
 	slave->conversions++;
 }
 
@@ -225,16 +217,11 @@ static void ds18b20_read_scratchpad(struct sim_slave *slave)
 	sim_send_crc8(slave, bytes, 8);
 }
 
-static void ds18b20_begin_write(struct sim_slave *slave)
-{
-	slave->address = 2;
-}
-
 static void ds18b20_write_scratchpad(struct sim_slave *slave, uint8_t byte)
 {
 	struct sim_thermometer *s = slave->state;
 	bool overwrites = s->clone && s->clone->overwrites;
-	unsigned at = slave->address++;
+	unsigned at = 2u + slave->address++;
 
 	if (at <= 4)
 		s->scratchpad[at] = at == 4 ? config_byte(slave, byte) : byte;
@@ -251,47 +238,39 @@ static bool ds18b20_alarm(struct sim_slave *slave)
 	return sim_state(slave, sim_thermometer)->alarm;
 }
 
-static int ds18b20_option(struct sim_slave *slave, const char *name, double value)
+static void set_resolution(struct sim_slave *slave, int64_t bits)
 {
-	struct sim_thermometer *s = slave->state;
-	int64_t whole = sim_round(value);
-
-	if (value != (double)whole)
-		return -ERANGE;
-	if (strcmp(name, "resolution") == 0 && !is_s20(slave)) {
-		if (whole < 9 || whole > 12)
-			return -ERANGE;
-		s->eeprom[2] = (uint8_t)((whole - 9) << 5 | 0x1F);
-	} else if (strcmp(name, "high") == 0 || strcmp(name, "low") == 0) {
-		if (whole < -128 || whole > 127)
-			return -ERANGE;
-		s->eeprom[name[0] == 'l'] = (uint8_t)whole;
-	} else if (strcmp(name, "fixed") == 0) {
-		s->fixed = whole != 0;
-	} else if (strcmp(name, "once") == 0) {
-		s->once = whole != 0;
-	} else if (strcmp(name, "speed") == 0) {
-		if (whole < 1 || whole > 200)
-			return -ERANGE;
-		s->percent = (int)whole;
-	} else if (strcmp(name, "recall") == 0) {
-		s->no_recall = whole == 0;
-	} else if (strcmp(name, "upset") == 0) {
-		s->upset = whole != 0;
-	} else if (strcmp(name, "address") == 0 && slave->family->code == FAMILY_1825) {
-		if (whole < 0 || whole > 15)
-			return -ERANGE;
-		s->address = (uint8_t)whole;
-	} else {
-		return -ENOENT;
-	}
-	return 0;
+	sim_state(slave, sim_thermometer)->eeprom[2] = (uint8_t)((bits - 9) << 5 | 0x1F);
 }
+
+static void set_recall(struct sim_slave *slave, int64_t knows)
+{
+	sim_state(slave, sim_thermometer)->no_recall = !knows;
+}
+
+#define OPTIONS \
+	SIM_OPTION(sim_thermometer, "high", -128, 127, eeprom[0]), \
+		SIM_OPTION(sim_thermometer, "low", -128, 127, eeprom[1]), \
+		SIM_OPTION(sim_thermometer, "fixed", 0, 1, fixed), \
+		SIM_OPTION(sim_thermometer, "once", 0, 1, once), \
+		SIM_OPTION(sim_thermometer, "upset", 0, 1, upset), \
+		SIM_OPTION(sim_thermometer, "speed", 1, 200, percent), \
+	{ \
+		"recall", 0, 1, .set = set_recall \
+	}
+#define RESOLUTION \
+	{ \
+		"resolution", 9, 12, .set = set_resolution \
+	}
+static const struct sim_option s20_options[] = {OPTIONS, {0}};
+static const struct sim_option options[] = {OPTIONS, RESOLUTION, {0}};
+static const struct sim_option ds1825_options[] = {
+	OPTIONS, RESOLUTION, SIM_OPTION(sim_thermometer, "address", 0, 15, address), {0}};
 
 #define FUNCTIONS \
 	{.code = 0x44, .start = ds18b20_convert}, \
 		{.code = 0xBE, .start = ds18b20_read_scratchpad}, \
-		{.code = 0x4E, .start = ds18b20_begin_write, .byte = ds18b20_write_scratchpad}, \
+		{.code = 0x4E, .byte = ds18b20_write_scratchpad}, \
 		{.code = 0x48, .start = ds18b20_copy}, {.code = 0xB8, .start = recall_eeprom}, \
 	{ \
 		.code = READ_POWER, .start = sim_send_bits \
@@ -318,17 +297,16 @@ static const struct sim_input ea00_inputs[] = {
 #define THERMOMETER(part, family, ...) \
 	.name = part, .code = family, .state_size = sizeof(struct sim_thermometer), \
 	.starves = true, .create = ds18b20_create, .power_on = ds18b20_power_on, \
-	.alarm = ds18b20_alarm, .bit = ds18b20_bit, .worked = ds18b20_worked, \
-	.option = ds18b20_option, __VA_ARGS__
-#define PLAIN .inputs = inputs, .functions = functions
+	.alarm = ds18b20_alarm, .bit = ds18b20_bit, .worked = ds18b20_worked, __VA_ARGS__
+#define PLAIN(choices) .inputs = inputs, .functions = functions, .options = (choices)
 
-const struct sim_family sim_ds18b20 = {THERMOMETER("DS18B20", 0x28, PLAIN)};
-const struct sim_family sim_ds18s20 = {THERMOMETER("DS18S20", FAMILY_S20, PLAIN)};
-const struct sim_family sim_ds1822 = {THERMOMETER("DS1822", 0x22, PLAIN)};
-const struct sim_family sim_ds1825 = {THERMOMETER("DS1825", FAMILY_1825, PLAIN)};
+const struct sim_family sim_ds18b20 = {THERMOMETER("DS18B20", 0x28, PLAIN(options))};
+const struct sim_family sim_ds18s20 = {THERMOMETER("DS18S20", FAMILY_S20, PLAIN(s20_options))};
+const struct sim_family sim_ds1822 = {THERMOMETER("DS1822", 0x22, PLAIN(options))};
+const struct sim_family sim_ds1825 = {THERMOMETER("DS1825", FAMILY_1825, PLAIN(ds1825_options))};
 const struct sim_family sim_ds28ea00 = {THERMOMETER("DS28EA00", FAMILY_EA00, .inputs = ea00_inputs,
-                                                    .functions = ea00_functions, .overdrive = true,
-                                                    .advance = sim_pins_follow)};
+                                                    .functions = ea00_functions, .options = options,
+                                                    .overdrive = true, .advance = sim_pins_follow)};
 
 /* --- The clones ------------------------------------------------------------------------------ */
 
@@ -340,7 +318,7 @@ const struct sim_family sim_ds28ea00 = {THERMOMETER("DS28EA00", FAMILY_EA00, .in
 #define CLONE(name, part, ...) \
 	static const struct sim_clone clone_##name = {__VA_ARGS__}; \
 	const struct sim_family sim_ds18b20_##name = { \
-		THERMOMETER(part, 0x28, PLAIN, .kind = &clone_##name)};
+		THERMOMETER(part, 0x28, PLAIN(options), .kind = &clone_##name)};
 
 CLONE(a2, "DS18B20-A2", {FIRST(0x12, 0x34, 0x0C, 0x10)}, {HALVED(505)}, ENOUGH)
 CLONE(a3, "DS18B20-A3", {FIRST(0x7F, 0x80, 0x0C, 0x10)}, {HALVED(621)}, .polls_late = true, ENOUGH)

@@ -37,6 +37,8 @@ enum {
 enum { EOSC = 0x80, EMCLR = 0x40, EM = 0x10, RO = 0x08, SEARCHES = 0x07 };
 enum { TCB = 0x80, MEMCLR = 0x40, MIP = 0x20, SIP = 0x10, TLF = 0x04, THF = 0x02, TAF = 0x01 };
 
+enum { COPY = 0x55, READ_CHECKED = 0xA5, CLEAR = 0x3C }; /* commands */
+
 #define CONVERSION_NS (90 * NS_PER_MS)
 #define PER_MINUTE (60 * NS_PER_S)
 #define COPY_NS_PER_BYTE 2000
@@ -55,11 +57,9 @@ static const struct sim_scratchpad_kind kind = {
 
 static void ds1921_create(struct sim_slave *slave)
 {
-	static const uint8_t new_year[SIM_TIME] = {0, 0, 0, 1, 1, 0x81, 0}; /* of 2000 */
 	struct ds1921 *s = slave->state;
 
-	s->clock.stopped = -1;
-	sim_clock_set(&s->clock, 0, new_year);
+	sim_clock_init(&s->clock);
 	s->pad.memory[CONTROL] = EM;
 	s->pad.memory[STATUS] = TCB;
 }
@@ -68,21 +68,12 @@ static uint8_t raw_temperature(struct sim_slave *slave, int64_t t)
 {
 	double celsius = sim_input_at(slave, 0, t);
 	const struct sim_family *family = slave->family;
-	int64_t raw = sim_round(family == &sim_ds1921h   ? (celsius - 14.5) * 8
-	                        : family == &sim_ds1921z ? (celsius + 5.5) * 8
-	                                                 : (celsius + 40) * 2);
+	double raw = family == &sim_ds1921h   ? (celsius - 14.5) * 8
+	             : family == &sim_ds1921z ? (celsius + 5.5) * 8
+	                                      : (celsius + 40) * 2;
+
 	/* the finer ones use all codes */
-	int most = family == &sim_ds1921g ? 0xFA : 0xFF;
-
-	return (uint8_t)(raw < 0 ? 0 : raw > most ? most : raw);
-}
-
-static void ds1921_add(uint8_t *counter, unsigned n, uint32_t most)
-{
-	uint32_t value = sim_count(counter, n);
-
-	if (value < most)
-		sim_put_count(counter, n, value + 1);
+	return (uint8_t)sim_within(raw, 0, family == &sim_ds1921g ? 0xFA : 0xFF);
 }
 
 /* Beyond a limit: a new entry of sample number and duration, or one more sample for the last. */
@@ -101,17 +92,17 @@ static void note_time(struct ds1921 *s, unsigned first, bool beyond, bool *was)
 	*was = beyond;
 }
 
-static void sample(struct sim_slave *slave, int64_t t)
+static void ds1921_sample(struct sim_slave *slave, int64_t t)
 {
 	struct ds1921 *s = slave->state;
 	uint8_t *memory = s->pad.memory, raw = raw_temperature(slave, t);
-	uint32_t n = sim_count(memory + SAMPLES, 3);
+	uint64_t n = sim_get(memory + SAMPLES, 3);
 
 	if (n < sizeof(s->log) || memory[CONTROL] & RO)
 		s->log[n % sizeof(s->log)] = raw;
-	ds1921_add(memory + SAMPLES, 3, 0xFFFFFF);
-	ds1921_add(memory + DEVICE_SAMPLES, 3, 0xFFFFFF);
-	ds1921_add(memory + HISTOGRAM + raw / 4 * 2, 2, 0xFFFF);
+	sim_count_up(memory + SAMPLES, 3);
+	sim_count_up(memory + DEVICE_SAMPLES, 3);
+	sim_count_up(memory + HISTOGRAM + raw / 4 * 2, 2);
 	note_time(s, LOW_TIMES, raw <= memory[LOW], &s->was_low);
 	note_time(s, HIGH_TIMES, raw >= memory[HIGH], &s->was_high);
 	memory[STATUS] |= (raw <= memory[LOW] ? TLF : 0) | (raw >= memory[HIGH] ? THF : 0);
@@ -119,7 +110,7 @@ static void sample(struct sim_slave *slave, int64_t t)
 }
 
 /* Does the clock alarm match this second? Bit 7 of a register: whatever it holds. */
-static bool matches(const uint8_t *alarm, const uint8_t *now)
+static bool alarm_matches(const uint8_t *alarm, const uint8_t *now)
 {
 	for (unsigned i = 0; i < 4; i++) {
 		if (!(alarm[i] & 0x80) && alarm[i] != now[i])
@@ -138,7 +129,7 @@ static void follow_alarm(struct ds1921 *s, int64_t t)
 		s->checked = t - week;
 	for (; s->checked <= t && !(s->pad.memory[STATUS] & TAF); s->checked += NS_PER_S) {
 		sim_clock_get(&s->clock, s->checked, now);
-		if (matches(s->pad.memory + CLOCK_ALARM, now))
+		if (alarm_matches(s->pad.memory + CLOCK_ALARM, now))
 			s->pad.memory[STATUS] |= TAF;
 	}
 	s->checked = t;
@@ -154,17 +145,17 @@ static void ds1921_advance(struct sim_slave *slave)
 		return;
 	follow_alarm(s, slave->now);
 	while (s->next <= slave->now) {
-		sample(slave, s->next);
+		ds1921_sample(slave, s->next);
 		s->next += memory[RATE] * PER_MINUTE;
 	}
 }
 
 /* --- What is written ------------------------------------------------------------------------- */
 
-static void start_mission(struct ds1921 *s, int64_t t)
+static void ds1921_start_mission(struct ds1921 *s, int64_t t)
 {
 	uint8_t *memory = s->pad.memory, now[SIM_TIME];
-	int64_t delay = memory[DELAY] | memory[DELAY + 1] << 8;
+	int64_t delay = (int64_t)sim_get(memory + DELAY, 2);
 
 	memory[STATUS] = (uint8_t)((memory[STATUS] | MIP) & ~MEMCLR);
 	sim_clock_get(&s->clock, t, now);
@@ -203,7 +194,7 @@ static void write_register(struct sim_slave *slave, unsigned at, uint8_t byte)
 		sim_clock_run(&s->clock, slave->now, !(byte & EOSC));
 }
 
-static void copied(struct sim_slave *slave)
+static void ds1921_copied(struct sim_slave *slave)
 {
 	struct ds1921 *s = slave->state;
 	unsigned first = s->pad.target, last = (first & ~31u) + (s->pad.status & 31u);
@@ -215,7 +206,7 @@ static void copied(struct sim_slave *slave)
 	}
 	if (rate && s->pad.memory[RATE] && s->pad.memory[STATUS] & MEMCLR &&
 	    !(s->pad.memory[CONTROL] & (EM | EOSC)))
-		start_mission(s, slave->now);
+		ds1921_start_mission(s, slave->now);
 	s->pad.status |= 0x80;
 }
 
@@ -224,12 +215,12 @@ static void ds1921_worked(struct sim_slave *slave)
 	struct ds1921 *s = slave->state;
 
 	if (!s->converting) {
-		copied(slave);
+		ds1921_copied(slave);
 		return;
 	}
 	s->converting = false;
 	s->pad.memory[READOUT] = raw_temperature(slave, slave->now);
-	ds1921_add(s->pad.memory + DEVICE_SAMPLES, 3, 0xFFFFFF);
+	sim_count_up(s->pad.memory + DEVICE_SAMPLES, 3);
 	s->pad.memory[STATUS] |= TCB;
 	slave->conversions++;
 }
@@ -237,34 +228,15 @@ static void ds1921_worked(struct sim_slave *slave)
 /* --- Commands -------------------------------------------------------------------------------- */
 
 /* Any other command than Clear Memory takes its permission away. */
-static void forbid_clear(struct sim_slave *slave)
+static void ds1921_begun(struct sim_slave *slave)
 {
-	sim_state(slave, ds1921)->pad.memory[CONTROL] &= (uint8_t)~EMCLR;
-}
-
-static void target(struct sim_slave *slave)
-{
-	forbid_clear(slave);
-	sim_scratchpad_target(slave);
-}
-
-static void ds1921_read_scratchpad(struct sim_slave *slave)
-{
-	forbid_clear(slave);
-	sim_scratchpad_read(slave);
-}
-
-static void ds1921_copy(struct sim_slave *slave)
-{
-	forbid_clear(slave);
-	if (slave->busy) {
+	if (slave->function->code != CLEAR)
+		sim_state(slave, ds1921)->pad.memory[CONTROL] &= (uint8_t)~EMCLR;
+	if (slave->function->code == COPY && slave->busy)
 		sim_end(slave);
-		return;
-	}
-	sim_scratchpad_copy(slave);
 }
 
-static uint8_t byte_at(struct sim_slave *slave, unsigned at)
+static uint8_t ds1921_byte(struct sim_slave *slave, unsigned at)
 {
 	struct ds1921 *s = slave->state;
 
@@ -273,34 +245,14 @@ static uint8_t byte_at(struct sim_slave *slave, unsigned at)
 	return at < TIMES_END || (at >= HISTOGRAM && at < HISTOGRAM_END) ? s->pad.memory[at] : 0;
 }
 
-static void next_byte(struct sim_slave *slave)
+static void ds1921_next(struct sim_slave *slave)
 {
-	sim_send_byte(slave, byte_at(slave, slave->address++));
+	bool checked = slave->function->code == READ_CHECKED;
+
+	sim_send_next(slave, ds1921_byte(slave, slave->address), checked ? kind.page : 0);
 }
 
-static void next_checked(struct sim_slave *slave)
-{
-	uint8_t byte = byte_at(slave, slave->address++);
-
-	if (slave->address % 32 == 0)
-		sim_send_checked(slave, &byte, 1);
-	else
-		sim_send_byte(slave, byte);
-}
-
-static void read_memory(struct sim_slave *slave)
-{
-	forbid_clear(slave);
-	next_byte(slave);
-}
-
-static void read_checked(struct sim_slave *slave)
-{
-	forbid_clear(slave);
-	next_checked(slave);
-}
-
-static void clear(struct sim_slave *slave)
+static void ds1921_clear(struct sim_slave *slave)
 {
 	uint8_t *memory = sim_state(slave, ds1921)->pad.memory;
 
@@ -312,7 +264,7 @@ static void clear(struct sim_slave *slave)
 		memset(memory + HISTOGRAM, 0, HISTOGRAM_END - HISTOGRAM);
 		memory[STATUS] |= MEMCLR;
 	}
-	forbid_clear(slave);
+	memory[CONTROL] &= (uint8_t)~EMCLR;
 	sim_end(slave);
 }
 
@@ -320,7 +272,6 @@ static void ds1921_convert(struct sim_slave *slave)
 {
 	struct ds1921 *s = slave->state;
 
-	forbid_clear(slave);
 	if (!(s->pad.memory[STATUS] & MIP) && !slave->busy) {
 		s->converting = true;
 		s->pad.memory[STATUS] &= (uint8_t)~TCB;
@@ -330,12 +281,9 @@ static void ds1921_convert(struct sim_slave *slave)
 }
 
 static const struct sim_function functions[] = {
-	{.code = 0x0F, .takes = 2, .start = target, .byte = sim_scratchpad_write},
-	{.code = 0xAA, .start = ds1921_read_scratchpad},
-	{.code = 0x55, .takes = 3, .start = ds1921_copy},
-	{.code = 0xF0, .takes = 2, .start = read_memory, .next = next_byte},
-	{.code = 0xA5, .takes = 2, .start = read_checked, .next = next_checked},
-	{.code = 0x3C, .start = clear},
+	SIM_SCRATCHPAD_COMMANDS(COPY, ds1921_next),
+	{.code = READ_CHECKED, .takes = 2, .start = ds1921_next, .next = ds1921_next},
+	{.code = CLEAR, .start = ds1921_clear},
 	{.code = 0x44, .start = ds1921_convert},
 	{0},
 };
@@ -351,8 +299,9 @@ static bool ds1921_alarm(struct sim_slave *slave)
 #define PART(part, low, high) \
 	.name = (part), .code = 0x21, .overdrive = true, .state_size = sizeof(struct ds1921), \
 	.kind = &kind, .functions = functions, .create = ds1921_create, .alarm = ds1921_alarm, \
-	.bit = sim_scratchpad_bit, .worked = ds1921_worked, .advance = ds1921_advance, \
-	SIM_MEMORY(ds1921, pad.memory, CLOCK), .inputs = (const struct sim_input[]) \
+	.begun = ds1921_begun, .bit = sim_scratchpad_bit, .worked = ds1921_worked, \
+	.advance = ds1921_advance, SIM_MEMORY(ds1921, pad.memory, CLOCK), \
+	.inputs = (const struct sim_input[]) \
 	{ \
 		{.name = "temperature", .start = 20, .least = (low), .most = (high)}, \
 		{ \

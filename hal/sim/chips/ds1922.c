@@ -54,8 +54,6 @@ struct ds1922 {
 	uint8_t log[LOG_END - LOG];
 	int64_t next; /* the next sample of the mission */
 	bool converting;
-	uint16_t crc; /* before a password, which is no part of a checksum */
-	uint8_t password[9], got;
 };
 
 static const struct sim_scratchpad_kind kind = {
@@ -68,12 +66,10 @@ static bool has_data(const struct sim_slave *slave)
 
 static void ds1922_create(struct sim_slave *slave)
 {
-	static const uint8_t new_year[SIM_TIME] = {0, 0, 0, 1, 1, 0x81, 0}; /* of 2000 */
 	const struct sim_family *family = slave->family;
 	struct ds1922 *s = slave->state;
 
-	s->clock.stopped = -1;
-	sim_clock_set(&s->clock, 0, new_year);
+	sim_clock_init(&s->clock);
 	s->pad.memory[OSCILLATOR] = EOSC;
 	s->pad.memory[CONFIG] = family == &sim_ds1923    ? 0x20
 	                        : family == &sim_ds1922l ? 0x40
@@ -83,17 +79,12 @@ static void ds1922_create(struct sim_slave *slave)
 
 /* --- Samples --------------------------------------------------------------------------------- */
 
-static int64_t within(int64_t value, int64_t most)
-{
-	return value < 0 ? 0 : value > most ? most : value;
-}
-
 /* 11 bits above five zeros: T/2 - 41, of the DS1922T T/2 - 1, with the high byte as T. */
 static uint16_t raw_temperature(struct sim_slave *slave, int64_t t)
 {
 	double zero = slave->family == &sim_ds1922t ? 1 : 41;
 
-	return (uint16_t)(within(sim_round((sim_input_at(slave, 0, t) + zero) * 16), 0x7FF) << 5);
+	return (uint16_t)(sim_within((sim_input_at(slave, 0, t) + zero) * 16, 0, 0x7FF) << 5);
 }
 
 /* 12 bits above four zeros: 5.02 V in 4096 parts; the humidity sensor gives 0.958 + 0.0307 %. */
@@ -103,18 +94,16 @@ static uint16_t raw_data(struct sim_slave *slave, int64_t t)
 
 	if (slave->family == &sim_ds1923)
 		volts = 0.958 + 0.0307 * volts;
-	return has_data(slave) ? (uint16_t)(within(sim_round(volts / 5.02 * 4096), 4095) << 4) : 0;
+	return has_data(slave) ? (uint16_t)(sim_within(volts / 5.02 * 4096, 0, 4095) << 4) : 0;
 }
 
 static void ds1922_measure(struct sim_slave *slave, int64_t t)
 {
 	uint8_t *memory = sim_state(slave, ds1922)->pad.memory;
-	uint32_t device = sim_count(memory + DEVICE_SAMPLES, 3);
 
-	sim_put_count(memory + LATEST, 2, raw_temperature(slave, t));
-	sim_put_count(memory + LATEST_DATA, 2, raw_data(slave, t));
-	if (device < 0xFFFFFF)
-		sim_put_count(memory + DEVICE_SAMPLES, 3, device + 1);
+	sim_put(memory + LATEST, 2, raw_temperature(slave, t));
+	sim_put(memory + LATEST_DATA, 2, raw_data(slave, t));
+	sim_count_up(memory + DEVICE_SAMPLES, 3);
 	slave->conversions++;
 }
 
@@ -159,21 +148,21 @@ static void check_alarms(uint8_t *memory)
 	}
 }
 
-static void stamp(struct sim_slave *slave, int64_t t)
+/* The registers of a date have no day of the week. */
+static void put_date(struct ds1922 *s, unsigned at, int64_t t)
 {
-	struct ds1922 *s = slave->state;
 	uint8_t now[SIM_TIME];
 
 	sim_clock_get(&s->clock, t, now);
-	memcpy(s->pad.memory + STAMP, now, 3);
-	memcpy(s->pad.memory + STAMP + 3, now + SIM_DATE, 3);
+	memcpy(s->pad.memory + at, now, 3);
+	memcpy(s->pad.memory + at + 3, now + SIM_DATE, 3);
 }
 
-static void sample(struct sim_slave *slave, int64_t t)
+static void ds1922_sample(struct sim_slave *slave, int64_t t)
 {
 	struct ds1922 *s = slave->state;
 	uint8_t *memory = s->pad.memory, mission = memory[MISSION];
-	uint32_t n = sim_count(memory + SAMPLES, 3), room;
+	uint32_t n = (uint32_t)sim_get(memory + SAMPLES, 3), room;
 	unsigned data;
 
 	ds1922_measure(slave, t);
@@ -184,7 +173,7 @@ static void sample(struct sim_slave *slave, int64_t t)
 		memory[STATUS] &= (uint8_t)~WFTA;
 	}
 	if (n == 0)
-		stamp(slave, t);
+		put_date(s, STAMP, t);
 	room = log_parts(mission, &data);
 	if (room && (n < room || mission & RO)) {
 		if (mission & LOG_TEMP)
@@ -192,21 +181,18 @@ static void sample(struct sim_slave *slave, int64_t t)
 		if (mission & LOG_DATA)
 			ds1922_put(s, data, n % room, memory + LATEST_DATA, mission & DATA_WIDE);
 	}
-	if (n < 0xFFFFFF)
-		sim_put_count(memory + SAMPLES, 3, n + 1);
+	sim_count_up(memory + SAMPLES, 3);
 }
 
 static void ds1922_advance(struct sim_slave *slave)
 {
 	struct ds1922 *s = slave->state;
-	uint8_t *memory = s->pad.memory, now[SIM_TIME];
+	uint8_t *memory = s->pad.memory;
 	int64_t unit = memory[OSCILLATOR] & SECONDS ? NS_PER_S : 60 * NS_PER_S;
 
-	sim_clock_get(&s->clock, slave->now, now);
-	memcpy(memory + CLOCK, now, 3);
-	memcpy(memory + CLOCK + 3, now + SIM_DATE, 3);
+	put_date(s, CLOCK, slave->now);
 	while (memory[STATUS] & MIP && s->next <= slave->now) {
-		sample(slave, s->next);
+		ds1922_sample(slave, s->next);
 		s->next += unit * (memory[RATE] | (memory[RATE + 1] & 0x3F) << 8);
 	}
 }
@@ -225,7 +211,7 @@ static bool is_writable(const struct ds1922 *s, unsigned at)
 	       password;
 }
 
-static void set_clock(struct ds1922 *s, int64_t t)
+static void ds1922_set_clock(struct ds1922 *s, int64_t t)
 {
 	uint8_t bcd[SIM_TIME];
 
@@ -235,7 +221,7 @@ static void set_clock(struct ds1922 *s, int64_t t)
 	sim_clock_set(&s->clock, t, bcd);
 }
 
-static void copied(struct sim_slave *slave)
+static void ds1922_copied(struct sim_slave *slave)
 {
 	struct ds1922 *s = slave->state;
 	unsigned first = s->pad.target, last = (first & ~31u) + (s->pad.status & 31u);
@@ -250,7 +236,7 @@ static void copied(struct sim_slave *slave)
 	s->pad.memory[OSCILLATOR] &= EOSC | SECONDS;
 	s->pad.memory[MISSION] &= 0x3F;
 	if (clock)
-		set_clock(s, slave->now);
+		ds1922_set_clock(s, slave->now);
 	sim_clock_run(&s->clock, slave->now, s->pad.memory[OSCILLATOR] & EOSC);
 	s->pad.status |= 0x80;
 }
@@ -262,49 +248,38 @@ static void ds1922_worked(struct sim_slave *slave)
 	if (s->converting)
 		ds1922_measure(slave, slave->now);
 	else
-		copied(slave);
+		ds1922_copied(slave);
 	s->converting = false;
 }
 
 /* --- Commands -------------------------------------------------------------------------------- */
 
-/* A password follows, and the dummy byte of a command that has one. */
-static void begin_password(struct sim_slave *slave)
+/* While the chip is busy its memory cannot be reached. */
+static void ds1922_begun(struct sim_slave *slave)
 {
-	struct ds1922 *s = slave->state;
-
-	s->crc = slave->crc;
-	s->got = 0;
-	if (slave->busy)
+	if (slave->busy && slave->function->unchecked)
 		sim_end(slave);
 }
 
-/* One more byte of it: true when it was the last and the password opens what it should. */
-static bool password(struct sim_slave *slave, uint8_t byte, unsigned n, bool reads)
+/* Does the password that came after n bytes of the command open what it should? Else be deaf. */
+static bool opens(struct sim_slave *slave, unsigned n, bool reads)
 {
-	struct ds1922 *s = slave->state;
-	const uint8_t *memory = s->pad.memory;
+	const uint8_t *memory = sim_state(slave, ds1922)->pad.memory, *password = slave->taken + n;
 
-	s->password[s->got++] = byte;
-	if (s->got < n)
-		return false;
-	slave->crc = s->crc;
-	if (memory[PASSWORDS] == PASSWORDS_ON &&
-	    memcmp(s->password, memory + FULL_PASSWORD, 8) != 0 &&
-	    (!reads || memcmp(s->password, memory + READ_PASSWORD, 8) != 0)) {
-		sim_end(slave);
-		return false;
-	}
-	return true;
+	if (memory[PASSWORDS] != PASSWORDS_ON || memcmp(password, memory + FULL_PASSWORD, 8) == 0 ||
+	    (reads && memcmp(password, memory + READ_PASSWORD, 8) == 0))
+		return true;
+	sim_end(slave);
+	return false;
 }
 
-static void ds1922_copy(struct sim_slave *slave, uint8_t byte)
+static void ds1922_copy(struct sim_slave *slave)
 {
-	if (password(slave, byte, 8, false))
+	if (opens(slave, 3, false))
 		sim_scratchpad_copy(slave);
 }
 
-static uint8_t byte_at(struct sim_slave *slave, unsigned at)
+static uint8_t ds1922_byte(struct sim_slave *slave, unsigned at)
 {
 	const struct ds1922 *s = slave->state;
 
@@ -323,29 +298,25 @@ static uint8_t byte_at(struct sim_slave *slave, unsigned at)
 	return at < CALIBRATION_END ? s->pad.memory[at] : 0xFF;
 }
 
-static void next_byte(struct sim_slave *slave)
+static void ds1922_next(struct sim_slave *slave)
 {
-	uint8_t byte = byte_at(slave, slave->address++);
-
-	if (slave->address > LOG_END)
+	if (slave->address >= LOG_END)
 		sim_end(slave);
-	else if (slave->address % 32 == 0)
-		sim_send_checked(slave, &byte, 1);
 	else
-		sim_send_byte(slave, byte);
+		sim_send_next(slave, ds1922_byte(slave, slave->address), kind.page);
 }
 
-static void read_memory(struct sim_slave *slave, uint8_t byte)
+static void ds1922_read_memory(struct sim_slave *slave)
 {
-	if (password(slave, byte, 8, true))
-		next_byte(slave);
+	if (opens(slave, 2, true))
+		ds1922_next(slave);
 }
 
-static void clear(struct sim_slave *slave, uint8_t byte)
+static void ds1922_clear(struct sim_slave *slave)
 {
 	uint8_t *memory = sim_state(slave, ds1922)->pad.memory;
 
-	if (!password(slave, byte, 9, false))
+	if (!opens(slave, 0, false))
 		return;
 	if (!(memory[STATUS] & MIP)) {
 		memset(memory + STAMP, 0, 6);
@@ -358,24 +329,24 @@ static void clear(struct sim_slave *slave, uint8_t byte)
 	sim_end(slave);
 }
 
-static void start_mission(struct sim_slave *slave, uint8_t byte)
+static void ds1922_start_mission(struct sim_slave *slave)
 {
 	struct ds1922 *s = slave->state;
 	uint8_t *memory = s->pad.memory;
 
-	if (!password(slave, byte, 9, false))
+	if (!opens(slave, 0, false))
 		return;
 	if (memory[STATUS] & MEMCLR && !(memory[STATUS] & MIP) && memory[OSCILLATOR] & EOSC &&
-	    sim_count(memory + RATE, 2) && memory[MISSION] & (LOG_TEMP | LOG_DATA)) {
+	    sim_get(memory + RATE, 2) && memory[MISSION] & (LOG_TEMP | LOG_DATA)) {
 		memory[STATUS] = MIP | (memory[MISSION] & SUTA ? WFTA : 0);
-		s->next = slave->now + sim_count(memory + DELAY, 3) * 60 * NS_PER_S;
+		s->next = slave->now + (int64_t)sim_get(memory + DELAY, 3) * 60 * NS_PER_S;
 	}
 	sim_end(slave);
 }
 
-static void stop_mission(struct sim_slave *slave, uint8_t byte)
+static void ds1922_stop_mission(struct sim_slave *slave)
 {
-	if (!password(slave, byte, 9, false))
+	if (!opens(slave, 0, false))
 		return;
 	sim_state(slave, ds1922)->pad.memory[STATUS] &= (uint8_t)~MIP;
 	sim_end(slave);
@@ -397,12 +368,17 @@ static void ds1922_convert(struct sim_slave *slave)
 static const struct sim_function functions[] = {
 	{.code = 0x0F, .takes = 2, .start = sim_scratchpad_target, .byte = sim_scratchpad_write},
 	{.code = 0xAA, .start = sim_scratchpad_read},
-	{.code = 0x99, .takes = 3, .start = begin_password, .byte = ds1922_copy},
-	{.code = 0x69, .takes = 2, .start = begin_password, .byte = read_memory, .next = next_byte},
-	{.code = 0x96, .start = begin_password, .byte = clear},
 	{.code = 0x55, .takes = 1, .start = ds1922_convert},
-	{.code = 0xCC, .start = begin_password, .byte = start_mission},
-	{.code = 0x33, .start = begin_password, .byte = stop_mission},
+	/* With a password, and a byte after it that means nothing where none comes before it. */
+	{.code = 0x99, .takes = 3 + 8, .unchecked = 8, .start = ds1922_copy},
+	{.code = 0x69,
+         .takes = 2 + 8,
+         .unchecked = 8,
+         .start = ds1922_read_memory,
+         .next = ds1922_next},
+	{.code = 0x96, .takes = 8 + 1, .unchecked = 8, .start = ds1922_clear},
+	{.code = 0xCC, .takes = 8 + 1, .unchecked = 8, .start = ds1922_start_mission},
+	{.code = 0x33, .takes = 8 + 1, .unchecked = 8, .start = ds1922_stop_mission},
 	{0},
 };
 
@@ -414,8 +390,8 @@ static bool ds1922_alarm(struct sim_slave *slave)
 #define PART(part, list) \
 	.name = (part), .code = 0x41, .overdrive = true, .state_size = sizeof(struct ds1922), \
 	.kind = &kind, .functions = functions, .create = ds1922_create, .alarm = ds1922_alarm, \
-	.bit = sim_scratchpad_bit, .worked = ds1922_worked, .advance = ds1922_advance, \
-	SIM_MEMORY(ds1922, pad.memory, CLOCK), .inputs = (list)
+	.begun = ds1922_begun, .bit = sim_scratchpad_bit, .worked = ds1922_worked, \
+	.advance = ds1922_advance, SIM_MEMORY(ds1922, pad.memory, CLOCK), .inputs = (list)
 
 static const struct sim_input low_inputs[] = {
 	{.name = "temperature", .start = 20, .least = -40, .most = 85},

@@ -60,32 +60,16 @@ static void ds1963_worked(struct sim_slave *slave)
 		s->count[page]++;
 }
 
-static void put_count(uint8_t *to, uint32_t count)
+static void ds1963_send_page(struct sim_slave *slave)
 {
-	for (unsigned i = 0; i < 4; i++)
-		to[i] = (uint8_t)(count >> (8 * i));
-}
-
-/* Send the rest of the page, its counter, and four bytes more; then the checksum. */
-static void send_page(struct sim_slave *slave)
-{
+	static const uint8_t intact[4] = {0x55, 0x55, 0x55, 0x55};
 	const struct ds1963 *s = slave->state;
-	unsigned page = slave->address / 32u, n = 0;
-	uint8_t out[32 + 4 + 4];
+	unsigned page = slave->address / 32u % PAGES;
+	const uint8_t *secret = s->memory.memory + SECRET_COUNTERS + page % SECRETS * 4;
 
-	if (page >= PAGES) {
-		sim_end(slave);
-		return;
-	}
-	do
-		out[n++] = s->memory.memory[slave->address++];
-	while (slave->address % 32);
-	put_count(out + n, page < first_counted(slave) ? UINT32_MAX : s->count[page]);
-	if (has_secrets(slave))
-		memcpy(out + n + 4, s->memory.memory + SECRET_COUNTERS + page % SECRETS * 4, 4);
-	else
-		memset(out + n + 4, 0x55, 4);
-	sim_send_checked(slave, out, n + 8);
+	sim_scratchpad_send_counted(slave,
+	                            page < first_counted(slave) ? UINT32_MAX : s->count[page],
+	                            has_secrets(slave) ? secret : intact);
 }
 
 /* Compute for 1 ms; then 0 and 1 in turns. The result, in the scratchpad, is hidden. */
@@ -99,7 +83,7 @@ static void authenticate(struct sim_slave *slave)
 	sim_work(slave, 1000000);
 }
 
-static void erase(struct sim_slave *slave)
+static void erase_scratchpad(struct sim_slave *slave)
 {
 	struct ds1963 *s = slave->state;
 
@@ -140,33 +124,36 @@ static void ds1963_copy(struct sim_slave *slave)
 		sim_scratchpad_copy(slave);
 }
 
-static void dump(struct sim_slave *slave)
+static void ds1963_dump(struct sim_slave *slave)
 {
 	struct ds1963 *s = slave->state;
 
 	for (unsigned i = 0; i < PAGES - 8 && has_secrets(slave); i++)
-		put_count(s->memory.memory + COUNTERS + 4 * i, s->count[8 + i]);
+		sim_put(s->memory.memory + COUNTERS + 4 * i, 4, s->count[8 + i]);
 	sim_scratchpad_dump(slave);
 }
 
+#define FUNCTIONS(copy) \
+	{.code = 0x0F, \
+	 .takes = 2, \
+	 .start = sim_scratchpad_target, \
+	 .byte = ds1963_write_scratchpad}, \
+		{.code = 0xAA, .start = ds1963_read_scratchpad}, \
+		{.code = (copy), .takes = 3, .start = ds1963_copy}, \
+	{ \
+		.code = 0xF0, .takes = 2, .start = ds1963_dump, .next = ds1963_dump \
+	}
 static const struct sim_function ds1963l_functions[] = {
-	{.code = 0x0F, .takes = 2, .start = sim_scratchpad_target, .byte = ds1963_write_scratchpad},
-	{.code = 0xAA, .start = ds1963_read_scratchpad},
-	{.code = 0x5A, .takes = 3, .start = ds1963_copy},
-	{.code = 0xF0, .takes = 2, .start = dump, .next = dump},
+	FUNCTIONS(0x5A),
 	/* Read Memory and Counter */
-	{.code = 0xA5, .takes = 2, .start = send_page, .next = send_page},
+	{.code = 0xA5, .takes = 2, .start = ds1963_send_page, .next = ds1963_send_page},
 	{0},
 };
-
 static const struct sim_function ds1963s_functions[] = {
-	{.code = 0x0F, .takes = 2, .start = sim_scratchpad_target, .byte = ds1963_write_scratchpad},
-	{.code = 0xAA, .start = ds1963_read_scratchpad},
-	{.code = 0x55, .takes = 3, .start = ds1963_copy},
-	{.code = 0xF0, .takes = 2, .start = dump, .next = dump},
+	FUNCTIONS(0x55),
 	/* Read Authenticated Page, Erase Scratchpad */
-	{.code = 0xA5, .takes = 2, .start = send_page, .next = authenticate},
-	{.code = 0xC3, .takes = 2, .start = erase},
+	{.code = 0xA5, .takes = 2, .start = ds1963_send_page, .next = authenticate},
+	{.code = 0xC3, .takes = 2, .start = erase_scratchpad},
 	{0},
 };
 

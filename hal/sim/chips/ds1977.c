@@ -19,10 +19,7 @@ enum { COPY = 0x99, READ = 0x69, VERIFY = 0xC3 };
 
 struct ds1977 {
 	struct sim_scratchpad memory; /* first */
-	uint8_t password[LENGTH];
-	uint8_t count; /* bytes of the password that came */
-	bool copying;  /* the work under way is a copy */
-	uint16_t crc;  /* of command and address, without the password */
+	bool copying;                 /* the work under way is a copy */
 };
 
 static const struct sim_scratchpad_kind kind = {
@@ -36,9 +33,9 @@ static const struct sim_scratchpad_kind kind = {
 /* Does the password that came equal the one at this address? */
 static bool equals(struct sim_slave *slave, unsigned at)
 {
-	struct ds1977 *s = slave->state;
+	const uint8_t *password = slave->taken + slave->function->takes - LENGTH;
 
-	return memcmp(s->password, s->memory.memory + at, LENGTH) == 0;
+	return memcmp(password, sim_state(slave, ds1977)->memory.memory + at, LENGTH) == 0;
 }
 
 static bool accepted(struct sim_slave *slave)
@@ -52,22 +49,10 @@ static bool accepted(struct sim_slave *slave)
 	       (slave->function->code == READ && equals(slave, READ_PASSWORD));
 }
 
-static void ds1977_begin(struct sim_slave *slave)
+static void take_password(struct sim_slave *slave)
 {
 	struct ds1977 *s = slave->state;
 
-	s->count = 0;
-	s->crc = slave->crc;
-}
-
-static void take_password(struct sim_slave *slave, uint8_t byte)
-{
-	struct ds1977 *s = slave->state;
-
-	s->password[s->count++] = byte;
-	if (s->count < LENGTH)
-		return;
-	slave->crc = s->crc;
 	s->copying = slave->function->code == COPY;
 	if (!accepted(slave)) {
 		sim_end(slave);
@@ -92,10 +77,7 @@ static void ds1977_send(struct sim_slave *slave)
 	}
 	if (slave->address < READ_PASSWORD || slave->address >= PASSWORD_CONTROL)
 		byte = s->memory.memory[slave->address];
-	if (++slave->address % PAGE == 0)
-		sim_send_checked(slave, &byte, 1);
-	else
-		sim_send_byte(slave, byte);
+	sim_send_next(slave, byte, PAGE);
 }
 
 static void ds1977_worked(struct sim_slave *slave)
@@ -116,16 +98,14 @@ static void send_version(struct sim_slave *slave)
 		sim_end(slave);
 }
 
+#define PROTECTED(number, bytes) \
+	.code = (number), .takes = (bytes) + LENGTH, .unchecked = LENGTH, .start = take_password
 static const struct sim_function functions[] = {
 	{.code = 0x0F, .takes = 2, .start = sim_scratchpad_target, .byte = sim_scratchpad_write},
 	{.code = 0xAA, .start = sim_scratchpad_read},
-	{.code = COPY, .takes = 3, .start = ds1977_begin, .byte = take_password},
-	{.code = READ,
-         .takes = 2,
-         .start = ds1977_begin,
-         .byte = take_password,
-         .next = ds1977_send},
-	{.code = VERIFY, .takes = 2, .start = ds1977_begin, .byte = take_password},
+	{PROTECTED(COPY, 3)},
+	{PROTECTED(READ, 2), .next = ds1977_send},
+	{PROTECTED(VERIFY, 2)},
 	{.code = 0xCC, .takes = 2, .start = send_version},
 	{0},
 };

@@ -69,11 +69,6 @@ static void ds1991_read_scratchpad(struct sim_slave *slave)
 		sim_send(slave, sim_state(slave, ds1991)->scratchpad + at, AREA - at);
 }
 
-static void begin_copy(struct sim_slave *slave)
-{
-	take_address(slave, false, 0, 0);
-}
-
 /* Keep a byte that came; true: there are n. */
 static bool ds1991_take(struct sim_slave *slave, uint8_t byte, unsigned n)
 {
@@ -84,23 +79,24 @@ static bool ds1991_take(struct sim_slave *slave, uint8_t byte, unsigned n)
 }
 
 /* After selector and password: copy the block. */
-static void ds1991_copy(struct sim_slave *slave, uint8_t byte)
+static void ds1991_copy(struct sim_slave *slave)
 {
 	struct ds1991 *s = slave->state;
-	unsigned block = 0;
+	const uint8_t *select = slave->taken + 2, *password = select + FIELD;
+	unsigned block = 0, at = 0, size = AREA;
 
-	if (!ds1991_take(slave, byte, 2 * FIELD))
+	if (!take_address(slave, false, 0, 0))
 		return;
 	sim_end(slave);
-	while (block < BLOCKS && memcmp(selector[block], s->in, FIELD) != 0)
+	while (block < BLOCKS && memcmp(selector[block], select, FIELD) != 0)
 		block++;
-	if (block == BLOCKS || memcmp(subkey(slave) + PASSWORD, s->in + FIELD, FIELD) != 0)
+	if (block == BLOCKS || memcmp(subkey(slave) + PASSWORD, password, FIELD) != 0)
 		return;
-	if (block == 0)
-		memcpy(subkey(slave), s->scratchpad, AREA);
-	else
-		memcpy(subkey(slave) + (block - 1) * FIELD, s->scratchpad + (block - 1) * FIELD,
-		       FIELD);
+	if (block > 0) {
+		at = (block - 1) * FIELD;
+		size = FIELD;
+	}
+	memcpy(subkey(slave) + at, s->scratchpad + at, size);
 }
 
 /* All that needs a password begins with the identifier. */
@@ -164,25 +160,15 @@ static void read_subkey(struct sim_slave *slave, uint8_t byte)
 	sim_send(slave, out + at, AREA - at);
 }
 
+#define PROTECTED(number, takes_byte) \
+	.code = (number), .takes = 2, .start = send_identifier, .byte = (takes_byte)
 static const struct sim_function functions[] = {
 	{.code = 0x96, .takes = 2, .start = begin_scratchpad, .byte = ds1991_write_scratchpad},
 	{.code = 0x69, .takes = 2, .start = ds1991_read_scratchpad},
-	{.code = 0x3C, .takes = 2, .start = begin_copy, .byte = ds1991_copy},
-	{.code = WRITE_PASSWORD,
-         .takes = 2,
-         .start = send_identifier,
-         .byte = write_password,
-         .next = sim_receive},
-	{.code = WRITE_SUBKEY,
-         .takes = 2,
-         .start = send_identifier,
-         .byte = write_subkey,
-         .next = sim_receive},
-	{.code = READ_SUBKEY,
-         .takes = 2,
-         .start = send_identifier,
-         .byte = read_subkey,
-         .next = next_of_read},
+	{.code = 0x3C, .takes = 2 + 2 * FIELD, .start = ds1991_copy},
+	{PROTECTED(WRITE_PASSWORD, write_password), .next = sim_receive},
+	{PROTECTED(WRITE_SUBKEY, write_subkey), .next = sim_receive},
+	{PROTECTED(READ_SUBKEY, read_subkey), .next = next_of_read},
 	{0},
 };
 

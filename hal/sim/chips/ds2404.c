@@ -4,7 +4,6 @@
  * and an alarm for each. A cycle is a power-on. Neither interrupt pulses nor programmable
  * expiration; the interval timer in automatic mode always runs, as where the wire is always high.
  */
-#include <errno.h>
 #include <string.h>
 
 #include "hal/sim/chips/scratchpad.h"
@@ -37,25 +36,14 @@ static const struct sim_scratchpad_kind kind = {
 	.plain = true,
 };
 
-static uint64_t ds2404_get(const uint8_t *from, unsigned n)
-{
-	uint64_t value = 0;
-
-	while (n--)
-		value = value << 8 | from[n];
-	return value;
-}
-
 /* Count; the flag is set when the counter reaches its alarm. */
 static void ds2404_count(struct sim_slave *slave, unsigned which, uint64_t by)
 {
 	uint8_t *memory = sim_state(slave, ds2404)->memory.memory;
 	unsigned at = counters[which].at, n = counters[which].bytes;
-	uint64_t old = ds2404_get(memory + at, n),
-		 alarm = ds2404_get(memory + counters[which].alarm, n);
+	uint64_t old = sim_get(memory + at, n), alarm = sim_get(memory + counters[which].alarm, n);
 
-	for (unsigned i = 0; i < n; i++)
-		memory[at + i] = (uint8_t)((old + by) >> (8 * i));
+	sim_put(memory + at, n, (int64_t)(old + by));
 	if (alarm > old && alarm - old <= by)
 		memory[STATUS] |= (uint8_t)(1 << which);
 }
@@ -91,7 +79,7 @@ static bool ds2404_alarm(struct sim_slave *slave)
 }
 
 /* Put back what a write protection keeps from the copy. */
-static void protect(uint8_t *memory, const uint8_t *before)
+static void keep_protected(uint8_t *memory, const uint8_t *before)
 {
 	uint8_t old = before[CONTROL - STATUS], *control = &memory[CONTROL];
 
@@ -123,13 +111,13 @@ static void ds2404_worked(struct sim_slave *slave)
 	memcpy(before, memory + STATUS, sizeof(before));
 	sim_scratchpad_worked(slave);
 	memory[STATUS] = (uint8_t)((memory[STATUS] & ENABLES) | (before[0] & FLAGS));
-	protect(memory, before);
+	keep_protected(memory, before);
 	if (memory[CONTROL] != before[CONTROL - STATUS])
 		s->part = 0;
 }
 
 /* To read the status register clears its flags. */
-static void dump(struct sim_slave *slave)
+static void ds2404_dump(struct sim_slave *slave)
 {
 	unsigned at = slave->address;
 
@@ -138,33 +126,24 @@ static void dump(struct sim_slave *slave)
 		sim_state(slave, ds2404)->memory.memory[STATUS] &= ENABLES;
 }
 
-static int ds2404_option(struct sim_slave *slave, const char *name, double value)
+/* The clock runs then. */
+static void set_seconds(struct sim_slave *slave, int64_t seconds)
 {
 	uint8_t *memory = sim_state(slave, ds2404)->memory.memory;
 
-	if (strcmp(name, "seconds") != 0)
-		return -ENOENT;
-	if (value < 0 || value > UINT32_MAX)
-		return -ERANGE;
-	for (unsigned i = 0; i < 4; i++)
-		memory[CLOCK + 1 + i] = (uint8_t)((uint32_t)value >> (8 * i));
+	sim_put(memory + CLOCK + 1, 4, seconds);
 	memory[CONTROL] |= OSC;
-	return 0;
 }
 
-static const struct sim_function functions[] = {
-	{.code = 0x0F, .takes = 2, .start = sim_scratchpad_target, .byte = sim_scratchpad_write},
-	{.code = 0xAA, .start = sim_scratchpad_read},
-	{.code = 0x55, .takes = 3, .start = sim_scratchpad_copy},
-	{.code = 0xF0, .takes = 2, .start = dump, .next = dump},
-	{0},
-};
+static const struct sim_option options[] = {{"seconds", 0, UINT32_MAX, .set = set_seconds}, {0}};
+
+static const struct sim_function functions[] = {SIM_SCRATCHPAD_COMMANDS(0x55, ds2404_dump), {0}};
 
 #define TIME_CHIP(part) \
 	.name = (part), .code = 0x04, .state_size = sizeof(struct ds2404), .functions = functions, \
 	.kind = &kind, .power_on = ds2404_power_on, .alarm = ds2404_alarm, \
 	.bit = sim_scratchpad_bit, .worked = ds2404_worked, .advance = ds2404_advance, \
-	.option = ds2404_option, SIM_MEMORY(ds2404, memory.memory, END)
+	.options = options, SIM_MEMORY(ds2404, memory.memory, END)
 
 const struct sim_family sim_ds2404 = {TIME_CHIP("DS2404")};
 const struct sim_family sim_ds1994 = {TIME_CHIP("DS1994")};

@@ -12,14 +12,14 @@ static void ds2405_power_on(struct sim_slave *slave)
 	sim_pins_start(slave, 0, 1);
 }
 
-static void selected(struct sim_slave *slave, bool match)
+static void ds2405_selected(struct sim_slave *slave, bool match)
 {
 	if (match)
 		sim_pins_write(slave, sim_state(slave, sim_pins)->latch ^ 1);
 	sim_send_bits(slave);
 }
 
-static bool alarm(struct sim_slave *slave)
+static bool ds2405_alarm(struct sim_slave *slave)
 {
 	return !(sim_state(slave, sim_pins)->latch & 1);
 }
@@ -37,8 +37,8 @@ const struct sim_family sim_ds2405 = {
 	.state_size = sizeof(struct sim_pins),
 	.inputs = inputs,
 	.power_on = ds2405_power_on,
-	.selected = selected,
-	.alarm = alarm,
+	.selected = ds2405_selected,
+	.alarm = ds2405_alarm,
 	.bit = ds2405_bit,
 	.advance = sim_pins_follow,
 };

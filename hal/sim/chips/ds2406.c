@@ -73,12 +73,12 @@ static void write_status(struct sim_slave *slave)
 
 /* --- Channel access --------------------------------------------------------------------------- */
 
-static unsigned channels(const struct sim_slave *slave)
+static unsigned selected_channels(const struct sim_slave *slave)
 {
 	return slave->taken[0] >> 2 & 3;
 }
 
-static uint8_t info(const struct sim_slave *slave)
+static uint8_t channel_info(const struct sim_slave *slave)
 {
 	const struct ds2406 *s = slave->state;
 
@@ -89,24 +89,24 @@ static uint8_t info(const struct sim_slave *slave)
 static void begin_access(struct sim_slave *slave)
 {
 	struct ds2406 *s = slave->state;
-	uint8_t out = info(slave);
+	uint8_t out = channel_info(slave);
 
 	s->reading = slave->taken[0] & IM;
 	s->bytes = 0;
 	if (slave->taken[0] & ALR)
 		s->pins.activity = 0;
-	if (channels(slave) == 0)
+	if (selected_channels(slave) == 0)
 		sim_end(slave);
 	else
 		sim_send_byte(slave, out);
 }
 
-static uint8_t sample(const struct sim_slave *slave)
+static uint8_t channel_sample(const struct sim_slave *slave)
 {
 	const struct ds2406 *s = slave->state;
 	bool a = s->pins.level & 1, b = s->pins.level & 2;
 
-	switch (channels(slave)) {
+	switch (selected_channels(slave)) {
 	case 1:
 		return a ? 0xFF : 0;
 	case 2:
@@ -127,10 +127,10 @@ static bool crc_is_due(struct sim_slave *slave)
 }
 
 /* Begin the next byte of the exchange, in its direction. */
-static void next_byte(struct sim_slave *slave)
+static void next_exchange(struct sim_slave *slave)
 {
 	struct ds2406 *s = slave->state;
-	uint8_t out = sample(slave);
+	uint8_t out = channel_sample(slave);
 
 	if (!s->reading) {
 		sim_receive(slave);
@@ -150,9 +150,9 @@ static void write_pins(struct sim_slave *slave, uint8_t byte)
 	struct ds2406 *s = slave->state;
 	uint8_t latch = s->pins.latch;
 
-	if (channels(slave) == 1)
+	if (selected_channels(slave) == 1)
 		latch = (uint8_t)((latch & 2) | byte >> 7);
-	else if (channels(slave) == 2)
+	else if (selected_channels(slave) == 2)
 		latch = (uint8_t)((latch & 1) | (byte >> 7) << 1);
 	else
 		latch = byte >> 6;
@@ -162,14 +162,18 @@ static void write_pins(struct sim_slave *slave, uint8_t byte)
 	if (crc_is_due(slave))
 		sim_send_checked(slave, NULL, 0);
 	else
-		next_byte(slave);
+		next_exchange(slave);
 }
 
 static const struct sim_function functions[] = {
 	{.code = 0xF0, .takes = 2, .start = send_memory, .next = send_memory}, /* Read Memory */
 	{.code = 0xAA, .takes = 2, .start = send_status, .next = send_status}, /* Read Status */
 	{.code = 0x55, .takes = 3, .start = write_status},
-	{.code = 0xF5, .takes = 2, .start = begin_access, .next = next_byte, .byte = write_pins},
+	{.code = 0xF5,
+         .takes = 2,
+         .start = begin_access,
+         .next = next_exchange,
+         .byte = write_pins},
 	{0},
 };
 

@@ -33,7 +33,7 @@ static void ds2409_create(struct sim_slave *slave)
 		slave->branches[i].coupler = slave;
 }
 
-static void all_off(struct ds2409 *s)
+static void branches_off(struct ds2409 *s)
 {
 	for (unsigned i = 0; i < SIM_BRANCHES; i++)
 		s->branch[i].on = s->branch[i].event = false;
@@ -43,7 +43,7 @@ static void ds2409_power_on(struct sim_slave *slave)
 {
 	struct ds2409 *s = slave->state;
 
-	all_off(s);
+	branches_off(s);
 	s->manual = s->control = s->discharging = false;
 	s->seen = slave->now;
 	for (unsigned i = 0; i < SIM_BRANCHES; i++) {
@@ -77,7 +77,7 @@ static bool ds2409_alarm(struct sim_slave *slave)
 	return s->branch[SIM_MAIN].event || s->branch[SIM_AUX].event;
 }
 
-static uint8_t info(const struct ds2409 *s)
+static uint8_t ds2409_info(const struct ds2409 *s)
 {
 	uint8_t byte = (uint8_t)((s->manual ? MODE : 0) | (s->control ? CONTROL : 0));
 
@@ -101,7 +101,7 @@ static void end_discharge(struct ds2409 *s, int64_t t)
 	s->discharging = false;
 }
 
-static void status(struct sim_slave *slave)
+static void ds2409_status(struct sim_slave *slave)
 {
 	struct ds2409 *s = slave->state;
 	uint8_t control = slave->taken[0], out[2];
@@ -111,11 +111,11 @@ static void status(struct sim_slave *slave)
 		s->manual = control & MANUAL;
 		s->control = control & (s->manual ? DATA : AUX_OR_ON);
 	}
-	out[0] = out[1] = info(s);
+	out[0] = out[1] = ds2409_info(s);
 	sim_send(slave, out, 2);
 }
 
-static void confirm(struct sim_slave *slave)
+static void confirm_code(struct sim_slave *slave)
 {
 	sim_send_byte(slave, slave->function->code);
 }
@@ -125,8 +125,8 @@ static void all_lines_off(struct sim_slave *slave)
 	struct ds2409 *s = slave->state;
 
 	end_discharge(s, slave->now);
-	all_off(s);
-	confirm(slave);
+	branches_off(s);
+	confirm_code(slave);
 }
 
 static void discharge(struct sim_slave *slave)
@@ -137,7 +137,7 @@ static void discharge(struct sim_slave *slave)
 	if (!s->discharging)
 		s->since = slave->now;
 	s->discharging = true;
-	confirm(slave);
+	confirm_code(slave);
 }
 
 static void switch_on(struct ds2409 *s, enum sim_branch_number number)
@@ -152,10 +152,10 @@ static void direct_on_main(struct sim_slave *slave)
 
 	end_discharge(s, slave->now);
 	switch_on(s, SIM_MAIN);
-	confirm(slave);
+	confirm_code(slave);
 }
 
-static enum sim_branch_number asked(const struct sim_slave *slave)
+static enum sim_branch_number asked_branch(const struct sim_slave *slave)
 {
 	return slave->function->code == SMART_ON_MAIN ? SIM_MAIN : SIM_AUX;
 }
@@ -164,7 +164,7 @@ static enum sim_branch_number asked(const struct sim_slave *slave)
 static void smart_on(struct sim_slave *slave)
 {
 	struct ds2409 *s = slave->state;
-	struct sim_branch *branch = &s->branch[asked(slave)];
+	struct sim_branch *branch = &s->branch[asked_branch(slave)];
 	uint8_t out[2] = {0x00, slave->function->code};
 
 	end_discharge(s, slave->now);
@@ -176,11 +176,11 @@ static void smart_on(struct sim_slave *slave)
 
 static void smart_on_confirmed(struct sim_slave *slave)
 {
-	switch_on(sim_state(slave, ds2409), asked(slave));
+	switch_on(sim_state(slave, ds2409), asked_branch(slave));
 }
 
 static const struct sim_function functions[] = {
-	{.code = 0x5A, .takes = 1, .start = status},
+	{.code = 0x5A, .takes = 1, .start = ds2409_status},
 	{.code = ALL_LINES_OFF, .start = all_lines_off},
 	{.code = 0x99, .start = discharge},
 	{.code = 0xA5, .start = direct_on_main},

@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* DS2423 (data sheet, "4kbit 1-Wire RAM with Counter"): RAM, and two counters of falling edges. */
-#include <errno.h>
-#include <string.h>
 
 #include "hal/sim/chips/scratchpad.h"
 #include "hal/sim/families.h"
 
-enum { FIRST_COUNTER_PAGE = 14, PAGES = 16 };
+enum { FIRST_COUNTER_PAGE = 14 };
 
 struct ds2423 {
 	struct sim_scratchpad memory; /* first */
@@ -51,46 +49,33 @@ static void ds2423_advance(struct sim_slave *slave)
 	s->seen = slave->now;
 }
 
-/* Send the rest of the page, its counter, four bytes of 0, and the checksum. */
-static void send_page(struct sim_slave *slave)
+static void ds2423_send_page(struct sim_slave *slave)
 {
+	static const uint8_t zeros[4] = {0};
 	const struct ds2423 *s = slave->state;
-	unsigned page = slave->address / 32, n = 0;
-	uint32_t count = page < FIRST_COUNTER_PAGE ? UINT32_MAX : s->counter[page % 2];
-	uint8_t out[32 + 4 + 4] = {0};
+	unsigned page = slave->address / 32;
 
-	if (page >= PAGES) {
-		sim_end(slave);
-		return;
-	}
-	do
-		out[n++] = s->memory.memory[slave->address++];
-	while (slave->address % 32);
-	for (unsigned i = 0; i < 4; i++)
-		out[n++] = (uint8_t)(count >> (8 * i));
-	sim_send_checked(slave, out, n + 4);
+	sim_scratchpad_send_counted(
+		slave, page < FIRST_COUNTER_PAGE ? UINT32_MAX : s->counter[page % 2], zeros);
 }
 
-static int ds2423_option(struct sim_slave *slave, const char *name, double value)
+static void set_a(struct sim_slave *slave, int64_t count)
 {
-	unsigned counter;
-
-	if (strcmp(name, "count.A") == 0)
-		counter = 0;
-	else if (strcmp(name, "count.B") == 0)
-		counter = 1;
-	else
-		return -ENOENT;
-	if (value < 0 || value > UINT32_MAX)
-		return -ERANGE;
-	sim_state(slave, ds2423)->counter[counter] = (uint32_t)value;
-	return 0;
+	sim_state(slave, ds2423)->counter[0] = (uint32_t)count;
 }
+
+static void set_b(struct sim_slave *slave, int64_t count)
+{
+	sim_state(slave, ds2423)->counter[1] = (uint32_t)count;
+}
+
+static const struct sim_option options[] = {
+	{"count.A", 0, UINT32_MAX, .set = set_a}, {"count.B", 0, UINT32_MAX, .set = set_b}, {0}};
 
 static const struct sim_function functions[] = {
 	SIM_SCRATCHPAD_FUNCTIONS(0x5A),
 	/* Read Memory and Counter */
-	{.code = 0xA5, .takes = 2, .start = send_page, .next = send_page},
+	{.code = 0xA5, .takes = 2, .start = ds2423_send_page, .next = ds2423_send_page},
 	{0},
 };
 
@@ -109,6 +94,6 @@ const struct sim_family sim_ds2423 = {
 	.bit = sim_scratchpad_bit,
 	.worked = sim_scratchpad_worked,
 	.advance = ds2423_advance,
-	.option = ds2423_option,
+	.options = options,
 	SIM_MEMORY(ds2423, memory.memory, 512),
 };

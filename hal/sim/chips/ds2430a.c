@@ -49,7 +49,7 @@ static void send_scratchpad(struct sim_slave *slave)
 	sim_send_byte(slave, sim_state(slave, ds2430a)->scratchpad[slave->address++ % 32]);
 }
 
-static void read_memory(struct sim_slave *slave)
+static void ds2430a_read_memory(struct sim_slave *slave)
 {
 	struct ds2430a *s = slave->state;
 
@@ -100,7 +100,7 @@ static const struct sim_function functions[] = {
 	{.code = 0x0F, .takes = 1, .byte = ds2430a_write_scratchpad},
 	{.code = 0xAA, .takes = 1, .start = send_scratchpad, .next = send_scratchpad},
 	{.code = 0x55, .takes = 1, .start = ds2430a_copy},
-	{.code = 0xF0, .takes = 1, .start = read_memory, .next = send_scratchpad},
+	{.code = 0xF0, .takes = 1, .start = ds2430a_read_memory, .next = send_scratchpad},
 	/* Write and Read Application Register, Read Status Register */
 	{.code = 0x99, .takes = 1, .byte = write_application},
 	{.code = 0xC3, .takes = 1, .start = send_application, .next = send_application},

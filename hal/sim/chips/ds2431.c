@@ -43,10 +43,7 @@ static const struct sim_function functions[] = {SIM_SCRATCHPAD_FUNCTIONS(0x55), 
 static const struct sim_function ds28ec20_functions[] = {
 	SIM_SCRATCHPAD_FUNCTIONS(0x55),
 	/* Extended Read Memory */
-	{.code = 0xA5,
-         .takes = 2,
-         .start = sim_scratchpad_dump_pages,
-         .next = sim_scratchpad_dump_pages},
+	{SIM_SCRATCHPAD_PAGES},
 	{0},
 };
 

@@ -24,13 +24,13 @@ struct ds2436 {
 	uint8_t work; /* the code of the command that runs */
 };
 
-static uint8_t *at(struct sim_slave *slave, unsigned address)
+static uint8_t *register_at(struct sim_slave *slave, unsigned address)
 {
 	return &sim_state(slave, ds2436)->registers[address - CELSIUS];
 }
 
 /* The byte of a scratchpad; NULL: there is none at this address. */
-static uint8_t *scratch(struct sim_slave *slave, unsigned address)
+static uint8_t *scratchpad_at(struct sim_slave *slave, unsigned address)
 {
 	unsigned page = address / 32;
 
@@ -45,40 +45,25 @@ static void ds2436_power_on(struct sim_slave *slave)
 
 	memset(s->stored[SRAM], 0, sizeof(s->stored[SRAM]));
 	memcpy(s->scratchpad, s->stored, sizeof(s->scratchpad));
-	memset(at(slave, CELSIUS), 0, 2);
-	*at(slave, STATUS) &= LOCK;
-	memset(at(slave, VOLTAGE), 0, 2);
+	memset(register_at(slave, CELSIUS), 0, 2);
+	*register_at(slave, STATUS) &= LOCK;
+	memset(register_at(slave, VOLTAGE), 0, 2);
 	s->work = 0;
-}
-
-static void ds2436_put16(uint8_t *to, int value)
-{
-	to[0] = (uint8_t)value;
-	to[1] = (uint8_t)(value >> 8);
-}
-
-static void ds2436_count(struct sim_slave *slave)
-{
-	uint8_t *cycles = at(slave, CYCLES);
-	int n = cycles[0] | cycles[1] << 8;
-
-	if (n < 0xFFFF)
-		ds2436_put16(cycles, n + 1);
 }
 
 static void ds2436_worked(struct sim_slave *slave)
 {
 	struct ds2436 *s = slave->state;
-	int64_t volt = sim_round(sim_input_now(slave, VOLT) * 100);
 
 	switch (s->work) {
 	case 0xD2: /* 13 bits of 0.03125 degrees, left-aligned */
-		ds2436_put16(at(slave, CELSIUS),
-		             (int)sim_round(sim_input_now(slave, TEMPERATURE) * 32) * 8);
+		sim_put(register_at(slave, CELSIUS), 2,
+		        sim_round(sim_input_now(slave, TEMPERATURE) * 32) * 8);
 		slave->conversions++;
 		break;
 	case 0xB4: /* 10 bits of 10 mV */
-		ds2436_put16(at(slave, VOLTAGE), volt < 0 ? 0 : volt > 1023 ? 1023 : (int)volt);
+		sim_put(register_at(slave, VOLTAGE), 2,
+		        sim_within(sim_input_now(slave, VOLT) * 100, 0, 1023));
 		slave->conversions++;
 		break;
 	case 0x22:
@@ -88,29 +73,27 @@ static void ds2436_worked(struct sim_slave *slave)
 		memcpy(s->stored[NV2], s->scratchpad[NV2], page_size[NV2]);
 		break;
 	case 0x43:
-		*at(slave, STATUS) |= LOCK;
+		*register_at(slave, STATUS) |= LOCK;
 		break;
 	case 0x44:
-		*at(slave, STATUS) &= (uint8_t)~LOCK;
+		*register_at(slave, STATUS) &= (uint8_t)~LOCK;
 		break;
 	case 0xB8:
-		ds2436_put16(at(slave, CYCLES), 0);
+		sim_put(register_at(slave, CYCLES), 2, 0);
 		break;
 	case 0xB5:
-		ds2436_count(slave);
-		break;
-	default:
+		sim_count_up(register_at(slave, CYCLES), 2);
 		break;
 	}
 	s->work = 0;
-	*at(slave, STATUS) &= LOCK;
+	*register_at(slave, STATUS) &= LOCK;
 }
 
-static void work(struct sim_slave *slave, uint8_t flag, int64_t takes)
+static void ds2436_work(struct sim_slave *slave, uint8_t flag, int64_t takes)
 {
 	if (!slave->busy) {
 		sim_state(slave, ds2436)->work = slave->function->code;
-		*at(slave, STATUS) |= flag;
+		*register_at(slave, STATUS) |= flag;
 		sim_work(slave, takes);
 	}
 	sim_end(slave);
@@ -118,20 +101,20 @@ static void work(struct sim_slave *slave, uint8_t flag, int64_t takes)
 
 static void ds2436_convert(struct sim_slave *slave)
 {
-	work(slave, slave->function->code == 0xD2 ? TB : ADB, CONVERSION_NS);
+	ds2436_work(slave, slave->function->code == 0xD2 ? TB : ADB, CONVERSION_NS);
 }
 
-static void change(struct sim_slave *slave)
+static void change_eeprom(struct sim_slave *slave)
 {
-	work(slave, NVB, COPY_NS);
+	ds2436_work(slave, NVB, COPY_NS);
 }
 
 static void copy_locked(struct sim_slave *slave)
 {
-	if (*at(slave, STATUS) & LOCK)
+	if (*register_at(slave, STATUS) & LOCK)
 		sim_end(slave);
 	else
-		change(slave);
+		change_eeprom(slave);
 }
 
 static void copy_sram(struct sim_slave *slave)
@@ -156,46 +139,43 @@ static void ds2436_recall(struct sim_slave *slave)
 /* Where there is nothing the line stays high. */
 static void ds2436_read_scratchpad(struct sim_slave *slave)
 {
-	const uint8_t *byte = scratch(slave, slave->address);
+	const uint8_t *byte = scratchpad_at(slave, slave->address++);
 
-	slave->address++;
 	sim_send_byte(slave, byte ? *byte : 0xFF);
 }
 
 static void ds2436_write_scratchpad(struct sim_slave *slave, uint8_t byte)
 {
-	uint8_t *to = scratch(slave, slave->address);
+	uint8_t *to = scratchpad_at(slave, slave->address++);
 
-	slave->address++;
 	if (to)
 		*to = byte;
 }
 
-static void read_registers(struct sim_slave *slave)
+static void ds2436_read_registers(struct sim_slave *slave)
 {
-	unsigned address = slave->address;
-	bool there = (address >= CELSIUS && address < CELSIUS + 4) ||
-	             (address >= VOLTAGE && address < VOLTAGE + 2) ||
-	             (address >= CYCLES - 2 && address < END);
+	unsigned address = slave->address++;
+	bool is_register = (address >= CELSIUS && address < CELSIUS + 4) ||
+	                   (address >= VOLTAGE && address < VOLTAGE + 2) ||
+	                   (address >= CYCLES - 2 && address < END);
 
-	slave->address++;
-	sim_send_byte(slave, there ? *at(slave, address) : 0xFF);
+	sim_send_byte(slave, is_register ? *register_at(slave, address) : 0xFF);
 }
 
 static const struct sim_function functions[] = {
 	{.code = 0x11, .takes = 1, .start = ds2436_read_scratchpad, .next = ds2436_read_scratchpad},
 	{.code = 0x17, .takes = 1, .byte = ds2436_write_scratchpad},
 	{.code = 0x22, .start = copy_locked},
-	{.code = 0x25, .start = change},
+	{.code = 0x25, .start = change_eeprom},
 	{.code = 0x28, .start = copy_sram},
 	{.code = 0x71, .start = ds2436_recall},
 	{.code = 0x77, .start = ds2436_recall},
 	{.code = 0x7A, .start = ds2436_recall},
-	{.code = 0x43, .start = change}, /* Lock, Unlock NV1 */
-	{.code = 0x44, .start = change},
-	{.code = 0xB2, .takes = 1, .start = read_registers, .next = read_registers},
-	{.code = 0xB8, .start = change}, /* Reset, Increment Cycle Counter */
-	{.code = 0xB5, .start = change},
+	{.code = 0x43, .start = change_eeprom}, /* Lock, Unlock NV1 */
+	{.code = 0x44, .start = change_eeprom},
+	{.code = 0xB2, .takes = 1, .start = ds2436_read_registers, .next = ds2436_read_registers},
+	{.code = 0xB8, .start = change_eeprom}, /* Reset, Increment Cycle Counter */
+	{.code = 0xB5, .start = change_eeprom},
 	{.code = 0xB4, .start = ds2436_convert}, /* Convert V, Convert T */
 	{.code = 0xD2, .start = ds2436_convert},
 	{0},

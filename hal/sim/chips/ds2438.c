@@ -18,13 +18,13 @@ enum { IAD = 0x01, CA = 0x02, EE = 0x04, AD = 0x08, TB = 0x10, NVB = 0x20, ADB =
 #define CURRENT_MV 0.2441
 
 enum { TEMPERATURE, VDD, VAD, VSENS };
-enum work { IDLE, TEMPERATURE_WORK, VOLTAGE_WORK, COPY_WORK };
+enum { CONVERT_T = 0x44, CONVERT_V = 0xB4, COPY = 0x48 }; /* commands that take a while */
 
 struct ds2438 {
 	uint8_t memory[8][8];     /* pages 0 to 2 in part registers */
 	uint8_t scratchpad[8][8]; /* each page has its own */
 	uint8_t busy_page;
-	enum work work;
+	uint8_t work;    /* the command that runs; 0: none */
 	int64_t started; /* the elapsed time meter was 0 at started */
 };
 
@@ -42,21 +42,8 @@ static void ds2438_power_on(struct sim_slave *slave)
 	s->memory[1][7] = 0xFF;
 	memset(s->memory[2], 0, 8);
 	memcpy(s->scratchpad, s->memory, sizeof(s->memory));
-	s->work = IDLE;
+	s->work = 0;
 	s->started = slave->now;
-}
-
-static void ds2438_put16(uint8_t *at, int value)
-{
-	at[0] = (uint8_t)value;
-	at[1] = (uint8_t)(value >> 8);
-}
-
-static int within(double value, int least, int most)
-{
-	int64_t whole = sim_round(value);
-
-	return whole < least ? least : whole > most ? most : (int)whole;
 }
 
 /*
@@ -67,8 +54,8 @@ static void measure_current(struct sim_slave *slave)
 	struct ds2438 *s = slave->state;
 
 	if (s->scratchpad[0][0] & IAD)
-		ds2438_put16(s->memory[0] + 5,
-		             within(sim_input_now(slave, VSENS) / CURRENT_MV, -1023, 1023));
+		sim_put(s->memory[0] + 5, 2,
+		        sim_within(sim_input_now(slave, VSENS) / CURRENT_MV, -1023, 1023));
 }
 
 static void ds2438_worked(struct sim_slave *slave)
@@ -77,43 +64,35 @@ static void ds2438_worked(struct sim_slave *slave)
 	unsigned source = s->scratchpad[0][0] & AD ? VDD : VAD;
 
 	switch (s->work) {
-	case IDLE:
-		break;
-	case TEMPERATURE_WORK: /* 13 bits of 0.03125, left-aligned */
-		ds2438_put16(s->memory[0] + 1,
-		             within(sim_input_now(slave, TEMPERATURE) * 32, -55 * 32, 125 * 32) *
-		                     8);
+	case CONVERT_T: /* 13 bits of 0.03125, left-aligned */
+		sim_put(s->memory[0] + 1, 2,
+		        sim_within(sim_input_now(slave, TEMPERATURE) * 32, -55 * 32, 125 * 32) * 8);
 		slave->conversions++;
 		break;
-	case VOLTAGE_WORK: /* 10 bits of 10 mV */
-		ds2438_put16(s->memory[0] + 3, within(sim_input_now(slave, source) * 100, 0, 1023));
+	case CONVERT_V: /* 10 bits of 10 mV */
+		sim_put(s->memory[0] + 3, 2,
+		        sim_within(sim_input_now(slave, source) * 100, 0, 1023));
 		slave->conversions++;
 		break;
-	case COPY_WORK:
+	case COPY:
 		if (s->busy_page == 0) { /* the measured values are read-only */
 			s->memory[0][0] = s->scratchpad[0][0] & 15;
 			s->memory[0][7] = s->scratchpad[0][7];
 		} else {
 			memcpy(s->memory[s->busy_page], s->scratchpad[s->busy_page], 8);
 		}
-		if (s->busy_page == 1) {
-			const uint8_t *b = s->memory[1];
-			uint32_t seconds = b[0] | b[1] << 8 | b[2] << 16 | (uint32_t)b[3] << 24;
-
-			s->started = slave->now - (int64_t)seconds * NS_PER_S;
-		}
+		if (s->busy_page == 1)
+			s->started = slave->now - (int64_t)sim_get(s->memory[1], 4) * NS_PER_S;
 		break;
 	}
-	s->work = IDLE;
+	s->work = 0;
 }
 
 static void ds2438_advance(struct sim_slave *slave)
 {
 	struct ds2438 *s = slave->state;
-	uint32_t seconds = (uint32_t)((slave->now - s->started) / NS_PER_S);
 
-	for (unsigned i = 0; i < 4; i++)
-		s->memory[1][i] = (uint8_t)(seconds >> (8 * i));
+	sim_put(s->memory[1], 4, (slave->now - s->started) / NS_PER_S);
 }
 
 static unsigned page_of(const struct sim_slave *slave)
@@ -121,24 +100,12 @@ static unsigned page_of(const struct sim_slave *slave)
 	return slave->taken[0] & 7;
 }
 
-static void convert_temperature(struct sim_slave *slave)
-{
-	sim_state(slave, ds2438)->work = TEMPERATURE_WORK;
-	sim_work(slave, WORK_NS);
-}
-
-static void convert_voltage(struct sim_slave *slave)
-{
-	sim_state(slave, ds2438)->work = VOLTAGE_WORK;
-	sim_work(slave, WORK_NS);
-}
-
-static void ds2438_copy(struct sim_slave *slave)
+static void ds2438_work(struct sim_slave *slave)
 {
 	struct ds2438 *s = slave->state;
 
-	s->work = COPY_WORK;
-	s->busy_page = slave->taken[0] & 7;
+	s->work = slave->function->code;
+	s->busy_page = (uint8_t)page_of(slave);
 	sim_work(slave, WORK_NS);
 }
 
@@ -155,24 +122,18 @@ static void ds2438_recall(struct sim_slave *slave)
 
 static void ds2438_read_scratchpad(struct sim_slave *slave)
 {
-	static const uint8_t busy[] = {[IDLE] = 0, TB, ADB, NVB};
 	const struct ds2438 *s = slave->state;
-	uint8_t out[8];
+	uint8_t out[8], busy = s->work == CONVERT_T ? TB : s->work == CONVERT_V ? ADB : NVB;
 
 	memcpy(out, s->scratchpad[page_of(slave)], 8);
 	if (page_of(slave) == 0)
-		out[0] = (uint8_t)((out[0] & 15) | busy[s->work]);
+		out[0] = (uint8_t)((out[0] & 15) | (s->work ? busy : 0));
 	sim_send_crc8(slave, out, 8);
-}
-
-static void begin_page(struct sim_slave *slave)
-{
-	slave->address = 0;
 }
 
 static void ds2438_write_scratchpad(struct sim_slave *slave, uint8_t byte)
 {
-	unsigned page = page_of(slave), at = slave->address++;
+	unsigned page = page_of(slave), at = slave->address++ - slave->taken[0];
 
 	/* Of page 0 the configuration and the threshold can be written. */
 	if (page != 0 || at == 0 || at == 7)
@@ -182,12 +143,12 @@ static void ds2438_write_scratchpad(struct sim_slave *slave, uint8_t byte)
 }
 
 static const struct sim_function functions[] = {
-	{.code = 0x44, .start = convert_temperature},
-	{.code = 0xB4, .start = convert_voltage},
+	{.code = CONVERT_T, .start = ds2438_work},
+	{.code = CONVERT_V, .start = ds2438_work},
 	/* Write, Read, Copy Scratchpad; Recall Memory */
-	{.code = 0x4E, .takes = 1, .start = begin_page, .byte = ds2438_write_scratchpad},
+	{.code = 0x4E, .takes = 1, .byte = ds2438_write_scratchpad},
 	{.code = 0xBE, .takes = 1, .start = ds2438_read_scratchpad},
-	{.code = 0x48, .takes = 1, .start = ds2438_copy},
+	{.code = COPY, .takes = 1, .start = ds2438_work},
 	{.code = 0xB8, .takes = 1, .start = ds2438_recall},
 	{0},
 };

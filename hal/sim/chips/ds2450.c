@@ -33,7 +33,7 @@ static void ds2450_power_on(struct sim_slave *slave)
 	}
 }
 
-static unsigned resolution(const struct ds2450 *s, unsigned channel)
+static unsigned channel_bits(const struct ds2450 *s, unsigned channel)
 {
 	unsigned bits = s->memory[CONTROL + 2 * channel] & 15;
 
@@ -48,13 +48,12 @@ static void ds2450_measure(struct sim_slave *slave, unsigned channel)
 		*limit = &s->memory[LIMITS + 2 * channel];
 	double range = control[1] & IR ? 5.12 : 2.56;
 	double part = floor(sim_input_now(slave, channel) / range * 65536);
-	unsigned raw = part < 0 ? 0 : part > 65535 ? 65535 : (unsigned)part;
+	unsigned raw = (unsigned)sim_within(part, 0, 65535);
 
 	if ((control[0] & (OE | OC)) == OE) /* the output transistor pulls the input down */
 		raw = 0;
-	raw &= 0xFFFFu << (16 - resolution(s, channel));
-	s->memory[2 * channel] = (uint8_t)raw;
-	s->memory[2 * channel + 1] = (uint8_t)(raw >> 8);
+	raw &= 0xFFFFu << (16 - channel_bits(s, channel));
+	sim_put(s->memory + 2 * channel, 2, raw);
 	control[1] &= (uint8_t) ~(AFL | AFH);
 	if (raw >> 8 < limit[0])
 		control[1] |= AFL;
@@ -105,11 +104,6 @@ static void write_memory(struct sim_slave *slave, uint8_t byte)
 	sim_send_stored(slave, s->memory[slave->address]);
 }
 
-static void send_checksum(struct sim_slave *slave)
-{
-	sim_send_checked(slave, NULL, 0);
-}
-
 /* The conversion starts after the checksum, where a parasite needs the strong pull-up. */
 static void ds2450_convert(struct sim_slave *slave)
 {
@@ -121,7 +115,7 @@ static void ds2450_convert(struct sim_slave *slave)
 		unsigned preset = slave->taken[1] >> (2 * i) & 3;
 
 		if (s->channels >> i & 1)
-			takes += BIT_NS * resolution(s, i);
+			takes += BIT_NS * channel_bits(s, i);
 		if (preset == 1 || preset == 2)
 			memset(&s->memory[2 * i], preset == 1 ? 0 : 0xFF, 2);
 	}
@@ -131,7 +125,7 @@ static void ds2450_convert(struct sim_slave *slave)
 static const struct sim_function functions[] = {
 	{.code = 0xAA, .takes = 2, .start = send_memory, .next = send_memory}, /* Read Memory */
 	{.code = 0x55, .takes = 2, .byte = write_memory, .next = sim_receive},
-	{.code = 0x3C, .takes = 2, .start = send_checksum, .next = ds2450_convert},
+	{.code = 0x3C, .takes = 2, .start = sim_send_checksum, .next = ds2450_convert},
 	{0},
 };
 

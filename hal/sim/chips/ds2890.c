@@ -8,7 +8,6 @@ enum { WRITE_POSITION = 0x0F, RELEASE = 0x96, INCREMENT = 0xC3, DECREMENT = 0x99
 struct ds2890 {
 	uint8_t position, control;
 	uint8_t fresh; /* was sent back, takes effect with the release code */
-	bool asked;
 };
 
 static void ds2890_power_on(struct sim_slave *slave)
@@ -26,7 +25,7 @@ static void read_position(struct sim_slave *slave)
 }
 
 /* or the features and the control register, */
-static void read_control(struct sim_slave *slave)
+static void ds2890_read_control(struct sim_slave *slave)
 {
 	const uint8_t out[2] = {FEATURES, sim_state(slave, ds2890)->control};
 
@@ -39,20 +38,14 @@ static void send_zero(struct sim_slave *slave)
 	sim_send_byte(slave, 0);
 }
 
-static void ds2890_begin_write(struct sim_slave *slave)
-{
-	sim_state(slave, ds2890)->asked = false;
-}
-
 /* Send the byte back; it takes effect when the release code follows. */
 static void ds2890_write(struct sim_slave *slave, uint8_t byte)
 {
 	struct ds2890 *s = slave->state;
 	bool is_position = slave->function->code == WRITE_POSITION;
 
-	if (!s->asked) {
+	if (slave->address++ == 0) {
 		s->fresh = byte;
-		s->asked = true;
 		if (is_position || (byte & ~CHARGE_PUMP) == CONTROL)
 			sim_send_byte(slave, byte);
 		else
@@ -92,12 +85,9 @@ static void another_step(struct sim_slave *slave, uint8_t byte)
 
 static const struct sim_function functions[] = {
 	{.code = 0xF0, .start = read_position, .next = send_zero},
-	{.code = WRITE_POSITION,
-         .start = ds2890_begin_write,
-         .byte = ds2890_write,
-         .next = sim_receive},
-	{.code = 0xAA, .start = read_control, .next = send_zero},
-	{.code = 0x55, .start = ds2890_begin_write, .byte = ds2890_write, .next = sim_receive},
+	{.code = WRITE_POSITION, .byte = ds2890_write, .next = sim_receive},
+	{.code = 0xAA, .start = ds2890_read_control, .next = send_zero},
+	{.code = 0x55, .byte = ds2890_write, .next = sim_receive},
 	{.code = INCREMENT, .start = first_step, .byte = another_step, .next = sim_receive},
 	{.code = DECREMENT, .start = first_step, .byte = another_step, .next = sim_receive},
 	{0},

@@ -43,33 +43,33 @@ static void ds28e17_power_on(struct sim_slave *slave)
 	s->started = false;
 }
 
-static bool writes(uint8_t code)
+static bool has_write(uint8_t code)
 {
 	return code != READ_STOP;
 }
 
-static bool addresses(uint8_t code)
+static bool has_address(uint8_t code)
 {
 	return code != WRITE_ONLY && code != WRITE_ONLY_STOP;
 }
 
-static bool reads(uint8_t code)
+static bool has_read(uint8_t code)
 {
 	return code == READ_STOP || code == WRITE_READ_STOP;
 }
 
 /* Returns the status of writing; *at: the byte that was not acknowledged, from 1 on. */
-static uint8_t write_bytes(struct sim_slave *slave, uint8_t code, uint8_t *at)
+static uint8_t write_i2c(struct sim_slave *slave, uint8_t code, uint8_t *at)
 {
 	struct ds28e17 *s = slave->state;
 
 	*at = 0;
-	if (!addresses(code) && !s->started)
+	if (!has_address(code) && !s->started)
 		return NO_START;
-	if (addresses(code) && !sim_sensors_start(slave, s->address & 0xFE, slave->now))
+	if (has_address(code) && !sim_sensors_start(slave, s->address & 0xFE))
 		return NO_ADDRESS;
 	for (unsigned i = 0; i < s->length && !*at; i++) {
-		if (!sim_sensors_write(slave, s->data[i], slave->now))
+		if (!sim_sensors_write(slave, s->data[i]))
 			*at = (uint8_t)(i + 1);
 	}
 	return 0;
@@ -81,20 +81,20 @@ static void ds28e17_put(struct ds28e17 *s, uint8_t byte)
 }
 
 /* The packet is whole and its checksum right: the I2C transaction. */
-static void exchange(struct sim_slave *slave)
+static void exchange_i2c(struct sim_slave *slave)
 {
 	struct ds28e17 *s = slave->state;
 	uint8_t code = s->code, at = 0;
-	uint8_t status = writes(code) ? write_bytes(slave, code, &at) : 0;
+	uint8_t status = has_write(code) ? write_i2c(slave, code, &at) : 0;
 	unsigned n = code == READ_STOP ? s->length : s->data[s->length];
 
-	if (reads(code) && !status && !at && !sim_sensors_start(slave, s->address | 1, slave->now))
+	if (has_read(code) && !status && !at && !sim_sensors_start(slave, s->address | 1))
 		status = NO_ADDRESS;
 	ds28e17_put(s, status);
-	if (writes(code))
+	if (has_write(code))
 		ds28e17_put(s, at);
-	for (unsigned i = 0; reads(code) && i < n; i++)
-		ds28e17_put(s, status || at ? 0xFF : sim_sensors_read(slave, slave->now));
+	for (unsigned i = 0; has_read(code) && i < n; i++)
+		ds28e17_put(s, status || at ? 0xFF : sim_sensors_read(slave));
 	s->started = !status && !at && (code == WRITE_NO_STOP || code == WRITE_ONLY);
 	if (!s->started)
 		sim_sensors_stop(slave);
@@ -108,10 +108,10 @@ static void ds28e17_worked(struct sim_slave *slave)
 	ds28e17_put(s, 0);
 	if (!s->good) {
 		ds28e17_put(s, BAD_CRC);
-		if (writes(s->code))
+		if (has_write(s->code))
 			ds28e17_put(s, 0);
 	} else {
-		exchange(slave);
+		exchange_i2c(slave);
 	}
 }
 
@@ -151,19 +151,19 @@ static void ds28e17_begin(struct sim_slave *slave)
 		sim_end(slave);
 }
 
-static void packet(struct sim_slave *slave, uint8_t byte)
+static void take_packet(struct sim_slave *slave, uint8_t byte)
 {
 	static const int64_t byte_ns[] = {90000, 23000, 10000};
 	struct ds28e17 *s = slave->state;
 	uint8_t code = slave->function->code;
-	unsigned written = writes(code) ? s->length : 0;
+	unsigned written = has_write(code) ? s->length : 0;
 	unsigned whole = written + (code == WRITE_READ_STOP) + 2;
 	unsigned bytes = written + 2;
 
 	s->data[s->got++] = byte;
 	if (s->got < whole)
 		return;
-	if (reads(code))
+	if (has_read(code))
 		bytes += code == READ_STOP ? s->length : s->data[s->length];
 	s->code = code;
 	s->address = slave->taken[0];
@@ -189,7 +189,7 @@ static void revision(struct sim_slave *slave)
 }
 
 #define PACKET_FUNCTION(number, bytes) \
-	.code = (number), .takes = (bytes), .start = ds28e17_begin, .byte = packet, \
+	.code = (number), .takes = (bytes), .start = ds28e17_begin, .byte = take_packet, \
 	.next = send_more
 
 static const struct sim_function functions[] = {
@@ -217,5 +217,5 @@ const struct sim_family sim_ds28e17 = {
 	.power_on = ds28e17_power_on,
 	.bit = ds28e17_bit,
 	.worked = ds28e17_worked,
-	.option = sim_sensors_option,
+	.options = sim_sensor_options,
 };

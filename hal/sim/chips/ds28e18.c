@@ -68,7 +68,6 @@ static void ds28e18_power_on(struct sim_slave *slave)
 struct run {
 	struct sim_slave *slave;
 	unsigned at, end;
-	int64_t t;
 	bool addressing; /* the next byte that is written follows a START */
 };
 
@@ -77,11 +76,11 @@ static void spend_byte(struct run *run)
 {
 	static const int64_t byte_ns[] = {136000, 45000, 25000, 25000};
 
-	run->t += byte_ns[sim_state(run->slave, ds28e18)->configuration & 3];
+	run->slave->now += byte_ns[sim_state(run->slave, ds28e18)->configuration & 3];
 }
 
 /* False: the byte was not acknowledged. */
-static bool write_bytes(struct run *run, unsigned n)
+static bool run_write(struct run *run, unsigned n)
 {
 	struct ds28e18 *s = sim_state(run->slave, ds28e18);
 	bool taken = true;
@@ -90,21 +89,21 @@ static bool write_bytes(struct run *run, unsigned n)
 		uint8_t byte = s->sequence[run->at++];
 
 		spend_byte(run);
-		taken = run->addressing ? sim_sensors_start(run->slave, byte, run->t)
-		                        : sim_sensors_write(run->slave, byte, run->t);
+		taken = run->addressing ? sim_sensors_start(run->slave, byte)
+		                        : sim_sensors_write(run->slave, byte);
 		run->addressing = false;
 		taken |= (s->configuration & IGNORE_NACK) != 0;
 	}
 	return taken;
 }
 
-static void read_bytes(struct run *run, unsigned n)
+static void run_read(struct run *run, unsigned n)
 {
 	struct ds28e18 *s = sim_state(run->slave, ds28e18);
 
 	while (n--) {
 		spend_byte(run);
-		s->sequence[run->at++] = sim_sensors_read(run->slave, run->t);
+		s->sequence[run->at++] = sim_sensors_read(run->slave);
 	}
 }
 
@@ -157,13 +156,13 @@ static uint8_t ds28e18_step(struct run *run)
 		sim_sensors_stop(run->slave);
 		break;
 	case 0xE3:
-		return write_bytes(run, n) ? DONE : REFUSED;
+		return run_write(run, n) ? DONE : REFUSED;
 	case 0xD3:
 	case 0xD4:
-		read_bytes(run, n);
+		run_read(run, n);
 		break;
 	case 0xDD:
-		run->t += NS_PER_MS << (length & 15);
+		run->slave->now += NS_PER_MS << (length & 15);
 		break;
 	default:
 		run->at += n;
@@ -183,13 +182,13 @@ static void ds28e18_add(struct ds28e18 *s, uint8_t byte)
 	s->result[++s->result[0]] = byte;
 }
 
-/* The sequence runs at once, on a clock of its own. Returns how long it took. */
+/* The sequence runs at once, ahead of the time. Returns how long it took. */
 static int64_t run_sequencer(struct sim_slave *slave)
 {
 	struct ds28e18 *s = slave->state;
 	unsigned length = s->packet[2] >> 1 | (s->packet[3] & 3u) << 7;
-	struct run run = {
-		.slave = slave, .at = s->packet[1] | (s->packet[2] & 1u) << 8, .t = slave->now};
+	struct run run = {.slave = slave, .at = s->packet[1] | (s->packet[2] & 1u) << 8};
+	int64_t began = slave->now, took;
 	uint8_t result = s->empty ? POWER_ON : DONE;
 
 	run.end = run.at + (length ? length : SEQUENCE);
@@ -203,7 +202,9 @@ static int64_t run_sequencer(struct sim_slave *slave)
 		ds28e18_add(s, (uint8_t)(run.at >> 8 & 1));
 		sim_sensors_stop(slave);
 	}
-	return run.t - slave->now;
+	took = slave->now - began;
+	slave->now = began;
+	return took;
 }
 
 /* --- Device functions ------------------------------------------------------------------------- */
@@ -231,7 +232,7 @@ static void read_sequencer(struct ds28e18 *s)
 		ds28e18_add(s, s->sequence[at + i]);
 }
 
-static void gpio(struct ds28e18 *s, bool write)
+static void access_gpio(struct ds28e18 *s, bool write)
 {
 	uint8_t which = s->packet[1] - 0x0B;
 
@@ -256,7 +257,7 @@ static void device_status(struct ds28e18 *s)
 }
 
 /* Parameters of the device functions; -1: as many as come; -2: no such function. */
-static int parameters(uint8_t function)
+static int parameters_of(uint8_t function)
 {
 	switch (function) {
 	case WRITE_SEQUENCER:
@@ -281,7 +282,7 @@ static int parameters(uint8_t function)
 static int64_t carry_out(struct sim_slave *slave)
 {
 	struct ds28e18 *s = slave->state;
-	int want = parameters(s->packet[0]);
+	int want = parameters_of(s->packet[0]);
 	int64_t takes = OPERATION_NS;
 
 	ds28e18_answer(s, DONE);
@@ -308,10 +309,10 @@ static int64_t carry_out(struct sim_slave *slave)
 		break;
 	case WRITE_GPIO:
 		memcpy(slave->rom, s->rom, 8);
-		gpio(s, true);
+		access_gpio(s, true);
 		break;
 	case READ_GPIO:
-		gpio(s, false);
+		access_gpio(s, false);
 		break;
 	default:
 		device_status(s);
@@ -331,7 +332,7 @@ static void ds28e18_begin(struct sim_slave *slave)
 		sim_end(slave);
 }
 
-static void packet(struct sim_slave *slave, uint8_t byte)
+static void take_packet(struct sim_slave *slave, uint8_t byte)
 {
 	struct ds28e18 *s = slave->state;
 
@@ -362,7 +363,7 @@ static void ds28e18_worked(struct sim_slave *slave)
 }
 
 /* Behind the packet's checksum the release byte is due; behind the answer, nothing. */
-static void sent(struct sim_slave *slave)
+static void send_result(struct sim_slave *slave)
 {
 	struct ds28e18 *s = slave->state;
 	unsigned n = s->answers - s->sent;
@@ -382,12 +383,16 @@ static void sent(struct sim_slave *slave)
 static bool ds28e18_bit(struct sim_slave *slave)
 {
 	if (!slave->busy)
-		sent(slave);
+		send_result(slave);
 	return true;
 }
 
 static const struct sim_function functions[] = {
-	{.code = 0x66, .takes = 1, .start = ds28e18_begin, .byte = packet, .next = sent},
+	{.code = 0x66,
+         .takes = 1,
+         .start = ds28e18_begin,
+         .byte = take_packet,
+         .next = send_result},
 	{0},
 };
 
@@ -404,5 +409,5 @@ const struct sim_family sim_ds28e18 = {
 	.power_on = ds28e18_power_on,
 	.bit = ds28e18_bit,
 	.worked = ds28e18_worked,
-	.option = sim_sensors_option,
+	.options = sim_sensor_options,
 };

@@ -30,7 +30,7 @@ enum control { WHILE_ALARM = 0, UNTIL_CLEARED, AS_WRITTEN, OFF };
 /* The peak of a vibration decays. */
 #define DECAY_PER_S 10.0
 
-static const struct eds_kind *kind_of(const struct sim_slave *slave)
+static const struct eds_kind *eds_kind_of(const struct sim_slave *slave)
 {
 	return slave->family->kind;
 }
@@ -40,51 +40,38 @@ static uint8_t *bytes_at(struct sim_slave *slave, unsigned at)
 	return sim_state(slave, eds)->memory.memory + at;
 }
 
-static void eds_put(uint8_t *to, unsigned bytes, int64_t value)
+static uint16_t flags_at(struct sim_slave *slave, unsigned at)
 {
-	for (unsigned i = 0; i < bytes; i++)
-		to[i] = (uint8_t)((uint64_t)value >> (8 * i));
+	unsigned bytes = eds_kind_of(slave)->alarm_bytes;
+
+	return (uint16_t)sim_get(bytes_at(slave, at), bytes);
 }
 
-static int64_t eds_get(const uint8_t *from, unsigned bytes, bool is_signed)
-{
-	uint64_t value = 0;
-
-	for (unsigned i = 0; i < bytes; i++)
-		value |= (uint64_t)from[i] << (8 * i);
-	if (is_signed && value >> (8 * bytes - 1))
-		value -= UINT64_C(1) << (8 * bytes);
-	return (int64_t)value;
-}
-
-static uint16_t word(struct sim_slave *slave, unsigned at)
-{
-	unsigned bytes = kind_of(slave)->alarm_bytes;
-
-	return (uint16_t)eds_get(bytes_at(slave, at), bytes, false);
-}
-
-static double value_of(struct sim_slave *slave, const struct eds_quantity *q)
+static double quantity_now(struct sim_slave *slave, const struct eds_quantity *q)
 {
 	return q->derived ? q->derived(slave)
 	                  : sim_input_now(slave, (unsigned)sim_slave_input(slave, q->input));
 }
 
-/* Which of the pair of flags does the value deserve? */
-static unsigned beyond(struct sim_slave *slave, const struct eds_quantity *q, double value)
+/* The limit of a quantity at an address; a limit of two bytes has no sign. */
+static double limit_at(struct sim_slave *slave, const struct eds_quantity *q, unsigned at)
 {
-	double unit = q->coarse ? 1 : q->unit;
-	bool is_signed = q->limit_bytes != 2;
+	int64_t limit = (int64_t)sim_get(bytes_at(slave, at), q->limit_bytes);
 
-	if (!q->limit_bytes)
-		return 0;
-	return (value >
-	        (double)eds_get(bytes_at(slave, q->high), q->limit_bytes, is_signed) * unit) |
-	       (value < (double)eds_get(bytes_at(slave, q->low), q->limit_bytes, is_signed) * unit)
-	               << 1;
+	if (q->limit_bytes != 2 && limit >> (8 * q->limit_bytes - 1))
+		limit -= INT64_C(1) << (8 * q->limit_bytes);
+	return (double)limit * (q->coarse ? 1 : q->unit);
 }
 
-static bool has(const struct eds_kind *kind, unsigned i)
+/* Which of the pair of flags does the value deserve? */
+static unsigned flags_beyond(struct sim_slave *slave, const struct eds_quantity *q, double value)
+{
+	if (!q->limit_bytes)
+		return 0;
+	return (value > limit_at(slave, q, q->high)) | (value < limit_at(slave, q, q->low)) << 1;
+}
+
+static bool has_quantity(const struct eds_kind *kind, unsigned i)
 {
 	return kind->measures >> i & 1;
 }
@@ -95,22 +82,22 @@ static uint16_t eds_measure(struct sim_slave *slave)
 	struct eds *s = slave->state;
 	uint16_t flags = 0;
 
-	for (unsigned i = 0; i < kind_of(slave)->quantity_count; i++) {
-		const struct eds_quantity *q = &kind_of(slave)->quantities[i];
+	for (unsigned i = 0; i < eds_kind_of(slave)->quantity_count; i++) {
+		const struct eds_quantity *q = &eds_kind_of(slave)->quantities[i];
 		double value;
 
-		if (!has(kind_of(slave), i))
+		if (!has_quantity(eds_kind_of(slave), i))
 			continue;
-		value = value_of(slave, q);
+		value = quantity_now(slave, q);
 		s->least[i] = fmin(s->least[i], value);
 		s->most[i] = fmax(s->most[i], value);
-		eds_put(bytes_at(slave, q->at), q->bytes, sim_round(value / q->unit));
+		sim_put(bytes_at(slave, q->at), q->bytes, sim_round(value / q->unit));
 		if (q->min)
-			eds_put(bytes_at(slave, q->min), q->bytes,
+			sim_put(bytes_at(slave, q->min), q->bytes,
 			        sim_round(s->least[i] / q->unit));
 		if (q->max)
-			eds_put(bytes_at(slave, q->max), q->bytes, sim_round(s->most[i] / q->unit));
-		flags |= (uint16_t)(beyond(slave, q, value) << q->flag);
+			sim_put(bytes_at(slave, q->max), q->bytes, sim_round(s->most[i] / q->unit));
+		flags |= (uint16_t)(flags_beyond(slave, q, value) << q->flag);
 	}
 	return flags;
 }
@@ -131,7 +118,7 @@ static void follow_pin(struct sim_slave *slave, unsigned pin)
 	if (falls || was != is)
 		*bytes_at(slave, LATCH) |= mask;
 	if (pin < COUNTERS)
-		eds_put(pulses, 4, eds_get(pulses, 4, false) + (int64_t)falls);
+		sim_put(pulses, 4, (int64_t)(sim_get(pulses, 4) + falls));
 	s->level = (uint8_t)(is ? s->level | mask : s->level & ~mask);
 }
 
@@ -153,8 +140,8 @@ static uint16_t eds_follow(struct sim_slave *slave)
 /* Relay and LED: by the alarm, or as written. */
 static void switch_outputs(struct sim_slave *slave, bool beyond_now, bool flagged)
 {
-	uint8_t function = *bytes_at(slave, kind_of(slave)->relay);
-	uint8_t *out = bytes_at(slave, kind_of(slave)->relay + 1u);
+	uint8_t function = *bytes_at(slave, eds_kind_of(slave)->relay);
+	uint8_t *out = bytes_at(slave, eds_kind_of(slave)->relay + 1u);
 
 	for (unsigned i = RELAY; i <= LED; i++) {
 		enum control control = function >> (2 * i) & 3;
@@ -168,15 +155,15 @@ static void switch_outputs(struct sim_slave *slave, bool beyond_now, bool flagge
 static void count_time(struct sim_slave *slave)
 {
 	struct eds *s = slave->state;
-	const struct eds_kind *kind = kind_of(slave);
+	const struct eds_kind *kind = eds_kind_of(slave);
 
-	eds_put(bytes_at(slave, kind->seconds), 4, (slave->now - s->started) / NS_PER_S);
+	sim_put(bytes_at(slave, kind->seconds), 4, (slave->now - s->started) / NS_PER_S);
 	if (kind->samples) {
 		int64_t delay = *bytes_at(slave, kind->delay);
 		int64_t each = (delay ? delay : 1) * NS_PER_S, n = (slave->now - s->sampled) / each;
 		uint8_t *samples = bytes_at(slave, kind->samples);
 
-		eds_put(samples, 4, eds_get(samples, 4, false) + n);
+		sim_put(samples, 4, (int64_t)sim_get(samples, 4) + n);
 		s->sampled += n * each;
 	}
 	if (kind->peak) {
@@ -184,21 +171,21 @@ static void count_time(struct sim_slave *slave)
 
 		s->peak -= (double)(slave->now - s->sampled) / (double)NS_PER_S * DECAY_PER_S;
 		s->peak = fmax(s->peak, level);
-		eds_put(bytes_at(slave, kind->peak), 2, sim_round(s->peak));
+		sim_put(bytes_at(slave, kind->peak), 2, sim_round(s->peak));
 		s->sampled = slave->now;
 	}
 }
 
 /* One round of the microcontroller. */
-static void work(struct sim_slave *slave)
+static void eds_round(struct sim_slave *slave)
 {
-	const struct eds_kind *kind = kind_of(slave);
-	uint16_t enabled = word(slave, kind->enable), flags = word(slave, kind->alarm);
+	const struct eds_kind *kind = eds_kind_of(slave);
+	uint16_t enabled = flags_at(slave, kind->enable), flags = flags_at(slave, kind->alarm);
 	uint16_t now = kind->digital ? eds_follow(slave) : eds_measure(slave);
 
 	now &= enabled;
 	flags |= now;
-	eds_put(bytes_at(slave, kind->alarm), kind->alarm_bytes, flags);
+	sim_put(bytes_at(slave, kind->alarm), kind->alarm_bytes, flags);
 	count_time(slave);
 	switch_outputs(slave, now, flags);
 }
@@ -210,7 +197,7 @@ void eds_advance(struct sim_slave *slave)
 	if (slave->now / TICK_NS == s->tick)
 		return;
 	s->tick = slave->now / TICK_NS;
-	work(slave);
+	eds_round(slave);
 }
 
 /* Minimum and maximum begin anew. */
@@ -222,21 +209,21 @@ static void eds_forget(struct sim_slave *slave)
 		s->least[i] = INFINITY;
 		s->most[i] = -INFINITY;
 	}
-	eds_put(bytes_at(slave, kind_of(slave)->alarm), kind_of(slave)->alarm_bytes, 0);
+	sim_put(bytes_at(slave, eds_kind_of(slave)->alarm), eds_kind_of(slave)->alarm_bytes, 0);
 }
 
 static void clear_alarms(struct sim_slave *slave)
 {
 	eds_forget(slave);
-	work(slave);
+	eds_round(slave);
 	sim_end(slave);
 }
 
 void eds_create(struct sim_slave *slave)
 {
 	memset(bytes_at(slave, TAG), ' ', TAG_SIZE);
-	memcpy(bytes_at(slave, TAG), kind_of(slave)->tag, strlen(kind_of(slave)->tag));
-	eds_put(bytes_at(slave, ID), 2, kind_of(slave)->id);
+	memcpy(bytes_at(slave, TAG), eds_kind_of(slave)->tag, strlen(eds_kind_of(slave)->tag));
+	sim_put(bytes_at(slave, ID), 2, eds_kind_of(slave)->id);
 }
 
 void eds_power_on(struct sim_slave *slave)
@@ -244,9 +231,9 @@ void eds_power_on(struct sim_slave *slave)
 	struct eds *s = slave->state;
 
 	sim_scratchpad_power_on(slave);
-	memset(bytes_at(slave, ID + 2), 0, kind_of(slave)->writable - (ID + 2u));
-	*bytes_at(slave, kind_of(slave)->relay + 1u) = 0;
-	if (kind_of(slave)->digital) {
+	memset(bytes_at(slave, ID + 2), 0, eds_kind_of(slave)->writable - (ID + 2u));
+	*bytes_at(slave, eds_kind_of(slave)->relay + 1u) = 0;
+	if (eds_kind_of(slave)->digital) {
 		*bytes_at(slave, OUTPUT_VALUE) = 0;
 		s->level = 0;
 		for (unsigned i = 0; i < PINS; i++)
@@ -256,17 +243,17 @@ void eds_power_on(struct sim_slave *slave)
 	s->tick = slave->now / TICK_NS;
 	s->peak = 0;
 	eds_forget(slave);
-	work(slave);
+	eds_round(slave);
 }
 
 /* What the host wrote into registers that act. */
-static void act(struct sim_slave *slave)
+static void eds_act(struct sim_slave *slave)
 {
 	uint8_t *reset = bytes_at(slave, PULSE_RESET);
 
 	for (unsigned i = 0; i < COUNTERS; i++)
 		if (*reset >> i & 1)
-			eds_put(bytes_at(slave, PULSES + 4 * i), 4, 0);
+			sim_put(bytes_at(slave, PULSES + 4 * i), 4, 0);
 	*reset = 0;
 	*bytes_at(slave, LATCH) &= (uint8_t) ~*bytes_at(slave, LATCH_RESET);
 	*bytes_at(slave, LATCH_RESET) = 0;
@@ -279,28 +266,25 @@ void eds_worked(struct sim_slave *slave)
 	struct eds *s = slave->state;
 	uint8_t fixed[0xA0];
 
-	if (kind_of(slave)->digital)
+	if (eds_kind_of(slave)->digital)
 		eds_follow(slave);
-	memcpy(fixed, s->memory.memory, kind_of(slave)->writable);
+	memcpy(fixed, s->memory.memory, eds_kind_of(slave)->writable);
 	sim_scratchpad_worked(slave);
-	memcpy(s->memory.memory, fixed, kind_of(slave)->writable);
-	if (kind_of(slave)->digital)
-		act(slave);
-	work(slave);
+	memcpy(s->memory.memory, fixed, eds_kind_of(slave)->writable);
+	if (eds_kind_of(slave)->digital)
+		eds_act(slave);
+	eds_round(slave);
 }
 
 bool eds_alarm(struct sim_slave *slave)
 {
-	return word(slave, kind_of(slave)->alarm) != 0;
+	return flags_at(slave, eds_kind_of(slave)->alarm) != 0;
 }
 
 const struct sim_function eds_functions[] = {
 	SIM_SCRATCHPAD_FUNCTIONS(0x55),
 	/* Read Memory with CRC */
-	{.code = 0xA5,
-         .takes = 2,
-         .start = sim_scratchpad_dump_pages,
-         .next = sim_scratchpad_dump_pages},
+	{SIM_SCRATCHPAD_PAGES},
 	{.code = 0x33, .start = clear_alarms},
 	{0},
 };

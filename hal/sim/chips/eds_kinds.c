@@ -7,7 +7,7 @@
 
 #define COUNT(array) (sizeof(array) / sizeof((array)[0]))
 
-static double input(struct sim_slave *slave, const char *name)
+static double input_now(struct sim_slave *slave, const char *name)
 {
 	return sim_input_now(slave, (unsigned)sim_slave_input(slave, name));
 }
@@ -18,43 +18,44 @@ static double magnus(double temperature)
 	return 17.62 * temperature / (243.12 + temperature);
 }
 
-static double humidity(struct sim_slave *slave)
+static double humidity_part(struct sim_slave *slave)
 {
-	return fmax(input(slave, "humidity"), 1) / 100;
+	return fmax(input_now(slave, "humidity"), 1) / 100;
 }
 
 static double dew_point(struct sim_slave *slave)
 {
-	double gamma = log(humidity(slave)) + magnus(input(slave, "temperature"));
+	double gamma = log(humidity_part(slave)) + magnus(input_now(slave, "temperature"));
 
 	return 243.12 * gamma / (17.62 - gamma);
 }
 
 static double humidex(struct sim_slave *slave)
 {
-	double temperature = input(slave, "temperature");
+	double temperature = input_now(slave, "temperature");
 
-	return temperature + 5.0 / 9 * (6.112 * exp(magnus(temperature)) * humidity(slave) - 10);
+	return temperature +
+	       5.0 / 9 * (6.112 * exp(magnus(temperature)) * humidity_part(slave) - 10);
 }
 
 /* Steadman's simple formula; the chip's own is not known. */
 static double heat_index(struct sim_slave *slave)
 {
-	double f = input(slave, "temperature") * 1.8 + 32;
+	double f = input_now(slave, "temperature") * 1.8 + 32;
 
-	f = 0.5 * (f + 61 + (f - 68) * 1.2 + humidity(slave) * 9.4);
+	f = 0.5 * (f + 61 + (f - 68) * 1.2 + humidity_part(slave) * 9.4);
 	return (f - 32) / 1.8;
 }
 
 static double inches_of_mercury(struct sim_slave *slave)
 {
-	return input(slave, "pressure") / 33.8638866667;
+	return input_now(slave, "pressure") / 33.8638866667;
 }
 
 /* IEC 60751: a Pt100. */
 static double resistance(struct sim_slave *slave)
 {
-	double c = input(slave, "temperature");
+	double c = input_now(slave, "temperature");
 	double below = c < 0 ? -4.183e-12 * (c - 100) * c * c * c : 0;
 
 	return 100 * (1 + 3.9083e-3 * c - 5.775e-7 * c * c + below);
@@ -81,7 +82,7 @@ static const struct eds_quantity vibration[] = {
 	{"vibration", NULL, 1, 0x24, 2, 0x44, 0x46, 2, 2, .min = 0x30, .max = 0x28},
 };
 
-/* EDS0071, EDS0072. Nobody says what a conversion's number means. */
+/* EDS0071, EDS0072. No source says what a conversion's number means. */
 static const struct eds_quantity rtd[] = {
 	{"temperature", NULL, 1 / 2048.0, 0x22, 3, 0x42, 0x45, 3, 0},
 	{NULL, resistance, 1 / 2048.0, 0x25, 3, 0x48, 0x4B, 3, 2},

@@ -4,7 +4,6 @@
  * thermometers. A command reads or writes one value, low byte first, without a checksum. No manual
  * can be had; the facts are those of OWFS's driver and manual page.
  */
-#include <errno.h>
 #include <string.h>
 
 #include "hal/sim/families.h"
@@ -28,10 +27,9 @@ enum { ALTITUDE = OWN, HUMIDITY_OFFSET = OWN };
 enum { NEW_MOISTURE = 1 << 8 | 80 }; /* this version has other commands */
 enum { WATERMARK_MOST = 199, LEAF_MOST = 99 };
 
-/* A command, and the bytes that it reads or writes. */
+/* A value of the board: the commands that read and write it, 0 for none, and its bytes. */
 struct variable {
-	uint8_t code, size, at; /* at: of a setting */
-	bool writes;
+	uint8_t read, write, size, at;                                /* at: of a setting */
 	void (*measure)(const struct sim_slave *slave, uint8_t *out); /* not a setting */
 	void (*act)(struct sim_slave *slave, const uint8_t *bytes);
 };
@@ -43,43 +41,33 @@ struct hobby {
 	uint8_t bytes[LOCATION_BYTES];
 };
 
-static enum kind kind_of(const struct sim_slave *slave)
+static enum kind board_of(const struct sim_slave *slave)
 {
 	return *(const enum kind *)slave->family->kind;
 }
 
 static int setting16(const struct sim_slave *slave, unsigned at)
 {
-	const uint8_t *from = sim_state(slave, hobby)->settings + at;
-
-	return (int16_t)(from[0] | from[1] << 8);
+	return (int16_t)sim_get(sim_state(slave, hobby)->settings + at, 2);
 }
 
-static void hobby_boards_put16(uint8_t *out, double value)
+static void put_rounded(uint8_t *out, double value)
 {
-	int64_t whole = sim_round(value);
-
-	out[0] = (uint8_t)whole;
-	out[1] = (uint8_t)(whole >> 8);
-}
-
-static double between(double value, double least, double most)
-{
-	return value < least ? least : value > most ? most : value;
+	sim_put(out, 2, sim_round(value));
 }
 
 static void hobby_boards_create(struct sim_slave *slave)
 {
 	uint8_t *settings = sim_state(slave, hobby)->settings;
-	enum kind kind = kind_of(slave);
+	enum kind kind = board_of(slave);
 
 	memset(settings, 0, SETTINGS);
 	settings[VERSION + 1] = 1;
 	settings[POLLING] = 1;
 	memcpy(settings + LOCATION, "nowhere", sizeof("nowhere"));
 	if (kind == MOISTURE) {
-		hobby_boards_put16(settings + LEAF_MAX, 3000);
-		hobby_boards_put16(settings + LEAF_MIN, 500);
+		put_rounded(settings + LEAF_MAX, 3000);
+		put_rounded(settings + LEAF_MIN, 500);
 	}
 }
 
@@ -89,9 +77,9 @@ static void hobby_boards_power_on(struct sim_slave *slave)
 	sim_state(slave, hobby)->channels = 0;
 }
 
-static void type(const struct sim_slave *slave, uint8_t *out)
+static void board_type(const struct sim_slave *slave, uint8_t *out)
 {
-	out[0] = (uint8_t)kind_of(slave);
+	out[0] = (uint8_t)board_of(slave);
 }
 
 static void polling_available(const struct sim_slave *slave, uint8_t *out)
@@ -100,13 +88,13 @@ static void polling_available(const struct sim_slave *slave, uint8_t *out)
 	out[0] = 0x07;
 }
 
-static void reboot(struct sim_slave *slave, const uint8_t *bytes)
+static void reboot_board(struct sim_slave *slave, const uint8_t *bytes)
 {
 	(void)bytes;
 	hobby_boards_power_on(slave);
 }
 
-static void factory(struct sim_slave *slave, const uint8_t *bytes)
+static void reset_settings(struct sim_slave *slave, const uint8_t *bytes)
 {
 	(void)bytes;
 	hobby_boards_create(slave);
@@ -115,20 +103,20 @@ static void factory(struct sim_slave *slave, const uint8_t *bytes)
 /* Half degrees. */
 static void uvi_temperature(const struct sim_slave *slave, uint8_t *out)
 {
-	hobby_boards_put16(out, sim_input_now(slave, 1) * 2 + setting16(slave, TEMPERATURE_OFFSET));
+	put_rounded(out, sim_input_now(slave, 1) * 2 + setting16(slave, TEMPERATURE_OFFSET));
 }
 
-static void uvi(const struct sim_slave *slave, uint8_t *out)
+static void uvi_index(const struct sim_slave *slave, uint8_t *out)
 {
 	int8_t offset = (int8_t)sim_state(slave, hobby)->settings[UVI_OFFSET];
 
-	out[0] = (uint8_t)sim_round(between(sim_input_now(slave, 0) * 10 + offset, 0, 160));
+	out[0] = (uint8_t)sim_within(sim_input_now(slave, 0) * 10 + offset, 0, 160);
 }
 
 static void moisture_raw(const struct sim_slave *slave, uint8_t *out)
 {
 	for (unsigned i = 0; i < 4; i++)
-		hobby_boards_put16(out + 2 * i, sim_input_now(slave, i));
+		put_rounded(out + 2 * i, sim_input_now(slave, i));
 }
 
 /* A watermark sensor reads 0 to 199, a leaf's is scaled to 0 to 99. */
@@ -137,17 +125,16 @@ static void moisture(const struct sim_slave *slave, uint8_t *out)
 	double least = setting16(slave, LEAF_MIN), most = setting16(slave, LEAF_MAX);
 
 	for (unsigned i = 0; i < 4; i++) {
+		bool leaf = sim_state(slave, hobby)->settings[LEAF] >> i & 1;
 		double raw = sim_input_now(slave, i);
 
-		if (sim_state(slave, hobby)->settings[LEAF] >> i & 1)
-			raw = most > least ? between((raw - least) * LEAF_MOST / (most - least), 0,
-			                             LEAF_MOST)
-			                   : 0;
-		out[i] = (uint8_t)sim_round(between(raw, 0, WATERMARK_MOST));
+		if (leaf)
+			raw = most > least ? (raw - least) * LEAF_MOST / (most - least) : 0;
+		out[i] = (uint8_t)sim_within(raw, 0, leaf ? LEAF_MOST : WATERMARK_MOST);
 	}
 }
 
-static void channels(const struct sim_slave *slave, uint8_t *out)
+static void hub_channels(const struct sim_slave *slave, uint8_t *out)
 {
 	out[0] = sim_state(slave, hobby)->channels;
 }
@@ -177,120 +164,105 @@ static void switch_channels(struct sim_slave *slave, const uint8_t *bytes)
 /* Tenths of a degree, of one sensor or of six. */
 static void temperatures(const struct sim_slave *slave, uint8_t *out)
 {
-	unsigned n = kind_of(slave) == MULTITEMP ? 6 : 1;
+	unsigned n = board_of(slave) == MULTITEMP ? 6 : 1;
 
 	for (unsigned i = 0; i < n; i++)
-		hobby_boards_put16(out + 2 * i, sim_input_now(slave, i) * 10);
+		put_rounded(out + 2 * i, sim_input_now(slave, i) * 10);
 }
 
 static void pressure(const struct sim_slave *slave, uint8_t *out)
 {
-	hobby_boards_put16(out, sim_input_now(slave, 1) / 10); /* kPa of mbar */
+	put_rounded(out, sim_input_now(slave, 1) / 10); /* kPa of mbar */
 }
 
 /* Of the standard atmosphere, near enough: 8.3 m a mbar. */
 static void pressure_altitude(const struct sim_slave *slave, uint8_t *out)
 {
-	hobby_boards_put16(out, (1013.25 - sim_input_now(slave, 1)) * 8.3);
+	put_rounded(out, (1013.25 - sim_input_now(slave, 1)) * 8.3);
 }
 
 static void humidity_raw(const struct sim_slave *slave, uint8_t *out)
 {
-	hobby_boards_put16(out, sim_input_now(slave, 1) * 100);
+	put_rounded(out, sim_input_now(slave, 1) * 100);
 }
 
-static void humidity(const struct sim_slave *slave, uint8_t *out)
+static void humidity_now(const struct sim_slave *slave, uint8_t *out)
 {
-	hobby_boards_put16(out, sim_input_now(slave, 1) * 100 + setting16(slave, HUMIDITY_OFFSET));
+	put_rounded(out, sim_input_now(slave, 1) * 100 + setting16(slave, HUMIDITY_OFFSET));
 }
 
 #define COMMON \
-	{.code = 0x11, .size = 2, .at = VERSION}, \
+	{.read = 0x11, .size = 2, .at = VERSION}, \
 	{ \
-		.code = 0x12, .size = 1, .measure = type \
+		.read = 0x12, .size = 1, .measure = board_type \
 	}
 #define BOARD \
-	{.code = 0x14, .size = 1, .at = POLLING}, \
-		{.code = 0x94, .size = 1, .at = POLLING, .writes = true}, \
-		{.code = 0x15, .size = 1, .measure = polling_available}, \
-		{.code = 0x16, .size = LOCATION_BYTES, .at = LOCATION}, \
-		{.code = 0x96, .size = LOCATION_BYTES, .at = LOCATION, .writes = true}, \
-		{.code = 0x61, .size = 1, .at = CONFIG}, \
-		{.code = 0xE1, .size = 1, .at = CONFIG, .writes = true}, \
-		{.code = 0xF1, .act = reboot}, \
+	{.read = 0x14, .write = 0x94, .size = 1, .at = POLLING}, \
+		{.read = 0x15, .size = 1, .measure = polling_available}, \
+		{.read = 0x16, .write = 0x96, .size = LOCATION_BYTES, .at = LOCATION}, \
+		{.read = 0x61, .write = 0xE1, .size = 1, .at = CONFIG}, \
+		{.write = 0xF1, .act = reboot_board}, \
 	{ \
-		.code = 0xF7, .act = factory \
+		.write = 0xF7, .act = reset_settings \
 	}
 
 static const struct variable of_uvi[] = {
 	COMMON,
-	{.code = 0x21, .size = 2, .measure = uvi_temperature},
-	{.code = 0x22, .size = 2, .at = TEMPERATURE_OFFSET, .writes = true},
-	{.code = 0x23, .size = 2, .at = TEMPERATURE_OFFSET},
-	{.code = 0x24, .size = 1, .measure = uvi},
-	{.code = 0x25, .size = 1, .at = UVI_OFFSET, .writes = true},
-	{.code = 0x26, .size = 1, .at = UVI_OFFSET},
-	{.code = 0x27, .size = 1, .at = IN_CASE, .writes = true},
-	{.code = 0x28, .size = 1, .at = IN_CASE},
+	{.read = 0x21, .size = 2, .measure = uvi_temperature},
+	{.read = 0x23, .write = 0x22, .size = 2, .at = TEMPERATURE_OFFSET},
+	{.read = 0x24, .size = 1, .measure = uvi_index},
+	{.read = 0x26, .write = 0x25, .size = 1, .at = UVI_OFFSET},
+	{.read = 0x28, .write = 0x27, .size = 1, .at = IN_CASE},
 	{0},
 };
 static const struct variable of_old_moisture[] = {
 	COMMON,
-	{.code = 0x21, .size = 4, .measure = moisture},
-	{.code = 0x22, .size = 1, .at = LEAF, .writes = true},
-	{.code = 0x23, .size = 1, .at = LEAF},
-	{.code = 0x24, .size = 2, .at = LEAF_MAX, .writes = true},
-	{.code = 0x25, .size = 2, .at = LEAF_MAX},
-	{.code = 0x26, .size = 2, .at = LEAF_MIN, .writes = true},
-	{.code = 0x27, .size = 2, .at = LEAF_MIN},
-	{.code = 0x31, .size = 8, .measure = moisture_raw},
+	{.read = 0x21, .size = 4, .measure = moisture},
+	{.read = 0x23, .write = 0x22, .size = 1, .at = LEAF},
+	{.read = 0x25, .write = 0x24, .size = 2, .at = LEAF_MAX},
+	{.read = 0x27, .write = 0x26, .size = 2, .at = LEAF_MIN},
+	{.read = 0x31, .size = 8, .measure = moisture_raw},
 	{0},
 };
 static const struct variable of_new_moisture[] = {
 	COMMON,
-	{.code = 0x21, .size = 4, .measure = moisture},
-	{.code = 0xA2, .size = 1, .at = LEAF, .writes = true},
-	{.code = 0x22, .size = 1, .at = LEAF},
-	{.code = 0xA3, .size = 2, .at = LEAF_MAX, .writes = true},
-	{.code = 0x23, .size = 2, .at = LEAF_MAX},
-	{.code = 0xA4, .size = 2, .at = LEAF_MIN, .writes = true},
-	{.code = 0x24, .size = 2, .at = LEAF_MIN},
-	{.code = 0x31, .size = 8, .measure = moisture_raw},
+	{.read = 0x21, .size = 4, .measure = moisture},
+	{.read = 0x22, .write = 0xA2, .size = 1, .at = LEAF},
+	{.read = 0x23, .write = 0xA3, .size = 2, .at = LEAF_MAX},
+	{.read = 0x24, .write = 0xA4, .size = 2, .at = LEAF_MIN},
+	{.read = 0x31, .size = 8, .measure = moisture_raw},
 	{0},
 };
 static const struct variable of_hub[] = {
 	COMMON,
-	{.code = 0x21, .size = 1, .act = switch_channels},
-	{.code = 0x22, .size = 1, .measure = channels},
-	{.code = 0x23, .size = 1, .measure = shorted},
-	{.code = 0x60, .size = 1, .at = HUB_CONFIG, .writes = true},
-	{.code = 0x61, .size = 1, .at = HUB_CONFIG},
+	{.write = 0x21, .size = 1, .act = switch_channels},
+	{.read = 0x22, .size = 1, .measure = hub_channels},
+	{.read = 0x23, .size = 1, .measure = shorted},
+	{.read = 0x61, .write = 0x60, .size = 1, .at = HUB_CONFIG},
 	{0},
 };
 static const struct variable of_barometer[] = {
 	COMMON,
 	BOARD,
-	{.code = 0x40, .size = 2, .measure = temperatures},
-	{.code = 0x22, .size = 2, .measure = pressure},
-	{.code = 0x24, .size = 2, .measure = pressure_altitude},
-	{.code = 0x26, .size = 2, .at = ALTITUDE},
-	{.code = 0xA6, .size = 2, .at = ALTITUDE, .writes = true},
+	{.read = 0x40, .size = 2, .measure = temperatures},
+	{.read = 0x22, .size = 2, .measure = pressure},
+	{.read = 0x24, .size = 2, .measure = pressure_altitude},
+	{.read = 0x26, .write = 0xA6, .size = 2, .at = ALTITUDE},
 	{0},
 };
 static const struct variable of_humidity[] = {
 	COMMON,
 	BOARD,
-	{.code = 0x40, .size = 2, .measure = temperatures},
-	{.code = 0x21, .size = 2, .measure = humidity},
-	{.code = 0x22, .size = 2, .measure = humidity_raw},
-	{.code = 0x24, .size = 2, .at = HUMIDITY_OFFSET},
-	{.code = 0xA4, .size = 2, .at = HUMIDITY_OFFSET, .writes = true},
+	{.read = 0x40, .size = 2, .measure = temperatures},
+	{.read = 0x21, .size = 2, .measure = humidity_now},
+	{.read = 0x22, .size = 2, .measure = humidity_raw},
+	{.read = 0x24, .write = 0xA4, .size = 2, .at = HUMIDITY_OFFSET},
 	{0},
 };
 static const struct variable of_multitemp[] = {
 	COMMON,
 	BOARD,
-	{.code = 0x21, .size = 12, .measure = temperatures},
+	{.read = 0x21, .size = 12, .measure = temperatures},
 	{0},
 };
 
@@ -301,14 +273,15 @@ static const struct variable *hobby_boards_find(const struct sim_slave *slave, u
 		[HUB] = of_hub,           [BAROMETER] = of_barometer,
 		[HUMIDITY] = of_humidity, [MULTITEMP] = of_multitemp,
 	};
-	enum kind kind = kind_of(slave);
+	enum kind kind = board_of(slave);
 	const struct variable *v = tables[kind];
 
 	if (kind == MOISTURE && setting16(slave, VERSION) >= NEW_MOISTURE)
 		v = of_new_moisture;
-	while (v->code && v->code != code)
-		v++;
-	return v->code ? v : NULL;
+	for (; v->read || v->write; v++)
+		if (v->read == code || v->write == code)
+			return v;
+	return NULL;
 }
 
 static void hobby_boards_command(struct sim_slave *slave)
@@ -317,17 +290,17 @@ static void hobby_boards_command(struct sim_slave *slave)
 	const struct variable *v = hobby_boards_find(slave, slave->function->code);
 
 	s->variable = v;
-	slave->address = 0;
 	if (!v) {
 		sim_end(slave);
-	} else if (v->act && !v->size) {
+	} else if (slave->function->code == v->read) {
+		if (v->measure)
+			v->measure(slave, s->bytes);
+		else
+			memcpy(s->bytes, s->settings + v->at, v->size);
+		sim_send(slave, s->bytes, v->size);
+	} else if (!v->size) {
 		v->act(slave, NULL);
 		sim_end(slave);
-	} else if (v->measure) {
-		v->measure(slave, s->bytes);
-		sim_send(slave, s->bytes, v->size);
-	} else if (!v->writes && !v->act) {
-		sim_send(slave, s->settings + v->at, v->size);
 	}
 }
 
@@ -346,15 +319,12 @@ static void argument(struct sim_slave *slave, uint8_t byte)
 	sim_end(slave);
 }
 
-static int hobby_boards_option(struct sim_slave *slave, const char *name, double value)
+static void set_version(struct sim_slave *slave, int64_t version)
 {
-	if (strcmp(name, "version") != 0)
-		return -ENOENT;
-	if (value < 0 || value > 0xFFFF)
-		return -ERANGE;
-	hobby_boards_put16(sim_state(slave, hobby)->settings + VERSION, value);
-	return 0;
+	sim_put(sim_state(slave, hobby)->settings + VERSION, 2, version);
 }
+
+static const struct sim_option options[] = {{"version", 0, 0xFFFF, .set = set_version}, {0}};
 
 #define COMMAND(code_) .code = (code_), .start = hobby_boards_command, .byte = argument
 static const struct sim_function functions[] = {
@@ -399,8 +369,8 @@ static const struct sim_input multitemp_inputs[] = {{TEMPERATURE("temperature.0"
 #define HB(part, family, which, inputs_) \
 	.name = (part), .code = (family), .state_size = sizeof(struct hobby), \
 	.kind = &(const enum kind){which}, .functions = functions, .inputs = (inputs_), \
-	.create = hobby_boards_create, .power_on = hobby_boards_power_on, \
-	.option = hobby_boards_option, SIM_MEMORY(hobby, settings, SETTINGS)
+	.create = hobby_boards_create, .power_on = hobby_boards_power_on, .options = options, \
+	SIM_MEMORY(hobby, settings, SETTINGS)
 
 const struct sim_family sim_hb_uvi_meter = {HB("HB_UVI_METER", 0xEE, UVI, uvi_inputs)};
 const struct sim_family sim_hb_moisture_meter = {

@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * iButtonLink SmartSlave SS-WALL-TH: temperature and humidity. No data sheet can be had; the facts
- * are those of OWFS's driver. What its checksum covers nobody knows: the page alone, or, with the
+ * are those of OWFS's driver. No source says what its checksum covers: the page alone, or, with the
  * option "command" 1, what was sent before it, too; with 2 it fits neither.
  */
-#include <errno.h>
-#include <string.h>
 
 #include "hal/base/time.h"
 #include "hal/sim/families.h"
@@ -31,22 +29,16 @@ static void iblss_power_on(struct sim_slave *slave)
 	*s = (struct iblss){.page = {[SUBTYPE] = 0x04, [VERSION] = 0x12}, .covers = s->covers};
 }
 
-static void iblss_put(uint8_t *at, double value)
-{
-	int64_t whole = sim_round(value * 128);
-
-	at[0] = (uint8_t)(whole >> 8);
-	at[1] = (uint8_t)whole;
-}
-
 static void iblss_advance(struct sim_slave *slave)
 {
 	struct iblss *s = slave->state;
 
 	if (!s->done || slave->now < s->done)
 		return;
-	iblss_put(s->page + TEMPERATURE_AT, sim_input_at(slave, TEMPERATURE, s->done));
-	iblss_put(s->page + HUMIDITY_AT, sim_input_at(slave, HUMIDITY, s->done));
+	sim_put_high(s->page + TEMPERATURE_AT, 2,
+	             sim_round(sim_input_at(slave, TEMPERATURE, s->done) * 128));
+	sim_put_high(s->page + HUMIDITY_AT, 2,
+	             sim_round(sim_input_at(slave, HUMIDITY, s->done) * 128));
 	s->page[BUSY] = 0;
 	s->page[VALID] = 1;
 	s->done = 0;
@@ -62,17 +54,9 @@ static void iblss_convert(struct sim_slave *slave)
 	sim_end(slave);
 }
 
-static int iblss_option(struct sim_slave *slave, const char *name, double value)
-{
-	if (strcmp(name, "command") != 0)
-		return -ENOENT;
-	if (value != 0 && value != 1 && value != 2)
-		return -ERANGE;
-	sim_state(slave, iblss)->covers = (uint8_t)value;
-	return 0;
-}
+static const struct sim_option options[] = {SIM_OPTION(iblss, "command", 0, 2, covers), {0}};
 
-static void read_page(struct sim_slave *slave)
+static void iblss_read_page(struct sim_slave *slave)
 {
 	struct iblss *s = slave->state;
 
@@ -96,7 +80,7 @@ static void set_led(struct sim_slave *slave)
 
 static const struct sim_function functions[] = {
 	{.code = 0xB4, .start = iblss_convert},
-	{.code = 0xF0, .takes = 1, .start = read_page},
+	{.code = 0xF0, .takes = 1, .start = iblss_read_page},
 	{.code = 0xA5, .takes = 2, .start = set_led},
 	{0},
 };
@@ -115,6 +99,6 @@ const struct sim_family sim_iblss = {
 	.inputs = inputs,
 	.power_on = iblss_power_on,
 	.advance = iblss_advance,
-	.option = iblss_option,
+	.options = options,
 	SIM_MEMORY(iblss, led, 1),
 };

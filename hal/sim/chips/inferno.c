@@ -37,8 +37,10 @@ struct inferno {
 
 struct command {
 	uint8_t code, args;
-	void (*answer)(struct sim_slave *slave, const uint8_t *args);
+	/* Returns how many bytes the answer has after its 0; REFUSED; SILENT: there is none. */
+	int (*answer)(struct sim_slave *slave, const uint8_t *args, uint8_t *out);
 };
+enum { REFUSED = -1, SILENT = -2 };
 
 /* What it is but while its firmware is written. */
 static enum kind application(const struct sim_slave *slave)
@@ -46,34 +48,8 @@ static enum kind application(const struct sim_slave *slave)
 	return *(const enum kind *)slave->family->kind;
 }
 
-/* 0, and n bytes. */
-static void ok(struct sim_slave *slave, const uint8_t *data, unsigned n)
-{
-	uint8_t out[1 + 16] = {0};
-
-	if (n)
-		memcpy(out + 1, data, n);
-	sim_send(slave, out, 1 + n);
-}
-
-static void inferno_refuse(struct sim_slave *slave)
-{
-	sim_send_byte(slave, 1);
-}
-
-static void put32(uint8_t *at, uint32_t value)
-{
-	for (unsigned i = 0; i < 4; i++)
-		at[i] = (uint8_t)(value >> (8 * i));
-}
-
-static uint32_t get32(const uint8_t *at)
-{
-	return at[0] | (uint32_t)at[1] << 8 | (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24;
-}
-
 /* What a light shows; returns the ms that its fade still takes. */
-static uint32_t shown(const struct light *light, uint8_t colour[4], int64_t t)
+static uint32_t light_shown(const struct light *light, uint8_t colour[4], int64_t t)
 {
 	int64_t gone = (t - light->since) / NS_PER_MS;
 	uint32_t left = gone < light->fade_ms ? light->fade_ms - (uint32_t)gone : 0;
@@ -88,238 +64,226 @@ static uint32_t shown(const struct light *light, uint8_t colour[4], int64_t t)
 	return left;
 }
 
-static void all_off(struct sim_slave *slave, const uint8_t *args)
+static int lights_off(struct sim_slave *slave, const uint8_t *args, uint8_t *out)
 {
 	struct inferno *s = slave->state;
 
-	(void)args;
+	(void)args, (void)out;
 	memset(s->light, 0, sizeof(s->light));
-	ok(slave, NULL, 0);
+	return 0;
 }
 
-static void count_lights(struct sim_slave *slave, const uint8_t *args)
+static int count_lights(struct sim_slave *slave, const uint8_t *args, uint8_t *out)
 {
-	(void)args;
-	ok(slave, (const uint8_t[]){LEDS}, 1);
+	(void)slave, (void)args;
+	out[0] = LEDS;
+	return 1;
 }
 
-static void set_light(struct sim_slave *slave, const uint8_t *args)
+static int set_light(struct sim_slave *slave, const uint8_t *args, uint8_t *out)
 {
 	struct light *light = sim_state(slave, inferno)->light + args[0] % LEDS;
 
-	if (args[0] >= LEDS) {
-		inferno_refuse(slave);
-		return;
-	}
+	(void)out;
+	if (args[0] >= LEDS)
+		return REFUSED;
 	memcpy(light->next, args + 1, 4);
-	light->next_ms = args[5] | (uint32_t)args[6] << 8 | (uint32_t)args[7] << 16;
-	ok(slave, NULL, 0);
+	light->next_ms = (uint32_t)sim_get(args + 5, 3);
+	return 0;
 }
 
-static void get_light(struct sim_slave *slave, const uint8_t *args)
+static int get_light(struct sim_slave *slave, const uint8_t *args, uint8_t *out)
 {
-	uint8_t out[8];
-
-	if (args[0] >= LEDS) {
-		inferno_refuse(slave);
-		return;
-	}
-	put32(out + 4, shown(sim_state(slave, inferno)->light + args[0], out, slave->now));
-	ok(slave, out, 7);
+	if (args[0] >= LEDS)
+		return REFUSED;
+	sim_put(out + 4, 3,
+	        light_shown(sim_state(slave, inferno)->light + args[0], out, slave->now));
+	return 7;
 }
 
-static void commit(struct sim_slave *slave, const uint8_t *args)
+static int commit_lights(struct sim_slave *slave, const uint8_t *args, uint8_t *out)
 {
-	(void)args;
+	(void)args, (void)out;
 	for (unsigned i = 0; i < LEDS; i++) {
 		struct light *light = sim_state(slave, inferno)->light + i;
 
 		if (memcmp(light->next, light->to, 4) == 0)
 			continue;
-		shown(light, light->from, slave->now);
+		light_shown(light, light->from, slave->now);
 		memcpy(light->to, light->next, 4);
 		light->fade_ms = light->next_ms;
 		light->since = slave->now;
 	}
-	ok(slave, NULL, 0);
+	return 0;
 }
 
 static const struct command of_rgbw[] = {
-	{0x01, 0, all_off},   {0x02, 0, count_lights}, {0x03, 8, set_light},
-	{0x04, 1, get_light}, {0x05, 0, commit},       {0},
+	{0x01, 0, lights_off}, {0x02, 0, count_lights},  {0x03, 8, set_light},
+	{0x04, 1, get_light},  {0x05, 0, commit_lights}, {0},
 };
 
-static void bootloader_size(struct sim_slave *slave, const uint8_t *args)
+static int bootloader_size(struct sim_slave *slave, const uint8_t *args, uint8_t *out)
 {
-	uint8_t out[4];
-
-	(void)args;
-	put32(out, START);
-	ok(slave, out, 4);
+	(void)slave, (void)args;
+	sim_put(out, 4, START);
+	return 4;
 }
 
-static void range(struct sim_slave *slave, const uint8_t *args)
+static int firmware_range(struct sim_slave *slave, const uint8_t *args, uint8_t *out)
 {
-	uint8_t out[8];
-
-	(void)args;
-	put32(out, START);
-	put32(out + 4, START + FIRMWARE);
-	ok(slave, out, 8);
+	(void)slave, (void)args;
+	sim_put(out, 4, START);
+	sim_put(out + 4, 4, START + FIRMWARE);
+	return 8;
 }
 
-static void erase(struct sim_slave *slave, const uint8_t *args)
+static int erase_firmware(struct sim_slave *slave, const uint8_t *args, uint8_t *out)
 {
 	struct inferno *s = slave->state;
 
-	(void)args;
+	(void)args, (void)out;
 	memset(s->firmware, 0xFF, FIRMWARE);
 	s->status = SUCCESS;
-	ok(slave, NULL, 0);
+	return 0;
 }
 
-static void boot_application(struct sim_slave *slave, const uint8_t *args)
+static int boot_application(struct sim_slave *slave, const uint8_t *args, uint8_t *out)
 {
-	struct inferno *s = slave->state;
-
-	(void)args;
-	s->kind = application(slave);
-	ok(slave, NULL, 0);
+	(void)args, (void)out;
+	sim_state(slave, inferno)->kind = application(slave);
+	return 0;
 }
 
 /* A part of the firmware: an address and a number of bytes. */
-static uint8_t *part(struct sim_slave *slave, const uint8_t *args, unsigned *n)
+static uint8_t *firmware_part(struct sim_slave *slave, const uint8_t *args, unsigned *n)
 {
-	uint32_t at = get32(args);
+	uint32_t at = (uint32_t)sim_get(args, 4);
 
-	*n = get32(args + 4);
+	*n = (unsigned)sim_get(args + 4, 4);
 	if (at < START || at >= START + FIRMWARE || *n > START + FIRMWARE - at)
 		return NULL;
 	return sim_state(slave, inferno)->firmware + (at - START);
 }
 
-static void write_block(struct sim_slave *slave, const uint8_t *args)
+/* The block may come then: take_block. */
+static int inferno_write_block(struct sim_slave *slave, const uint8_t *args, uint8_t *out)
 {
 	unsigned n;
 
-	if (!part(slave, args, &n) || !n || n > BLOCK)
-		inferno_refuse(slave);
-	else
-		ok(slave, NULL, 0); /* the block may come: take_block */
+	(void)out;
+	return firmware_part(slave, args, &n) && n && n <= BLOCK ? 0 : REFUSED;
 }
 
-static void firmware_crc(struct sim_slave *slave, const uint8_t *args)
+static int firmware_crc(struct sim_slave *slave, const uint8_t *args, uint8_t *out)
 {
 	unsigned n;
-	const uint8_t *from = part(slave, args, &n);
-	uint16_t crc = from ? sim_crc16(0, from, n) : 0;
+	const uint8_t *from = firmware_part(slave, args, &n);
 
-	if (from)
-		ok(slave, (const uint8_t[]){(uint8_t)crc, (uint8_t)(crc >> 8)}, 2);
-	else
-		inferno_refuse(slave);
+	if (!from)
+		return REFUSED;
+	sim_put(out, 2, sim_crc16(0, from, n));
+	return 2;
 }
 
 static const struct command of_updater[] = {
 	{0x00, 0, bootloader_size},
-	{0x01, 0, erase},
-	{0x04, 0, range},
+	{0x01, 0, erase_firmware},
+	{0x04, 0, firmware_range},
 	{0x05, 0, boot_application},
-	{0x06, 8, write_block},
+	{0x06, 8, inferno_write_block},
 	{0x07, 8, firmware_crc},
 	{0},
 };
 
 /* Switches, LEDs (one bit a channel), relays: ports and channels. */
-static void count_ports(struct sim_slave *slave, const uint8_t *args)
+static int count_ports(struct sim_slave *slave, const uint8_t *args, uint8_t *out)
 {
 	(void)args;
-	ok(slave, (const uint8_t[]){slave->function->code == 0x03 ? 1 : PORTS, CHANNELS}, 2);
+	out[0] = slave->function->code == 0x03 ? 1 : PORTS;
+	out[1] = CHANNELS;
+	return 2;
 }
 
-static void set_switch_type(struct sim_slave *slave, const uint8_t *args)
+static int set_switch_type(struct sim_slave *slave, const uint8_t *args, uint8_t *out)
 {
 	struct inferno *s = slave->state;
 
-	if (args[0] >= PORTS || args[1] >= CHANNELS || args[2] > 3) {
-		inferno_refuse(slave);
-		return;
-	}
+	(void)out;
+	if (args[0] >= PORTS || args[1] >= CHANNELS || args[2] > 3)
+		return REFUSED;
 	s->type[args[0]][args[1]] = args[2];
 	s->active[args[0]] &= (uint8_t) ~(1u << args[1]);
-	ok(slave, NULL, 0);
+	return 0;
 }
 
-static void activated(struct sim_slave *slave, const uint8_t *args)
+static int read_activated(struct sim_slave *slave, const uint8_t *args, uint8_t *out)
 {
 	struct inferno *s = slave->state;
 
 	(void)args;
-	ok(slave, s->active, PORTS);
+	memcpy(out, s->active, PORTS);
 	for (unsigned port = 0; port < PORTS; port++)
 		for (unsigned i = 0; i < CHANNELS; i++)
 			if (s->type[port][i] >= 2) /* momentary */
 				s->active[port] &= (uint8_t) ~(1u << i);
 	s->status &= (uint8_t)~ACTIVATED;
+	return PORTS;
 }
 
-static void set_led(struct sim_slave *slave, const uint8_t *args)
+static int set_led(struct sim_slave *slave, const uint8_t *args, uint8_t *out)
 {
 	uint8_t *led = sim_state(slave, inferno)->led + args[0] % PORTS;
 
-	if (args[0] >= PORTS || args[1] >= CHANNELS) {
-		inferno_refuse(slave);
-		return;
-	}
+	(void)out;
+	if (args[0] >= PORTS || args[1] >= CHANNELS)
+		return REFUSED;
 	*led = (uint8_t)((*led & ~(1u << args[1])) | (args[2] ? 1u << args[1] : 0));
-	ok(slave, NULL, 0);
+	return 0;
 }
 
-static void get_led(struct sim_slave *slave, const uint8_t *args)
+static int get_led(struct sim_slave *slave, const uint8_t *args, uint8_t *out)
 {
-	if (args[0] < PORTS)
-		ok(slave, sim_state(slave, inferno)->led + args[0], 1);
-	else
-		inferno_refuse(slave);
+	out[0] = sim_state(slave, inferno)->led[args[0] % PORTS];
+	return args[0] < PORTS ? 1 : REFUSED;
 }
 
 /* 09h mode, 0Ah timeout, 0Bh state; 0Ch states, 0Dh modes, 0Eh timeouts. */
-static void set_relay(struct sim_slave *slave, const uint8_t *args)
+static int set_relay(struct sim_slave *slave, const uint8_t *args, uint8_t *out)
 {
 	static const uint8_t which[] = {1, 2, 0};
 
-	if (args[0] || args[1] >= RELAYS) {
-		inferno_refuse(slave);
-		return;
-	}
+	(void)out;
+	if (args[0] || args[1] >= RELAYS)
+		return REFUSED;
 	sim_state(slave, inferno)->relay[which[slave->function->code - 0x09]][args[1]] = args[2];
-	ok(slave, NULL, 0);
+	return 0;
 }
 
-static void get_relays(struct sim_slave *slave, const uint8_t *args)
+static int get_relays(struct sim_slave *slave, const uint8_t *args, uint8_t *out)
 {
 	(void)args;
-	ok(slave, sim_state(slave, inferno)->relay[slave->function->code - 0x0C], RELAYS);
+	memcpy(out, sim_state(slave, inferno)->relay[slave->function->code - 0x0C], RELAYS);
+	return RELAYS;
 }
 
 static const struct command of_switches[] = {
-	{0x01, 0, count_ports}, {0x02, 0, count_ports},
-	{0x03, 0, count_ports}, {0x04, 3, set_switch_type},
-	{0x06, 0, activated},   {0x07, 3, set_led},
-	{0x08, 1, get_led},     {0x09, 3, set_relay},
-	{0x0A, 3, set_relay},   {0x0B, 3, set_relay},
-	{0x0C, 0, get_relays},  {0x0D, 0, get_relays},
-	{0x0E, 0, get_relays},  {0},
+	{0x01, 0, count_ports},    {0x02, 0, count_ports},
+	{0x03, 0, count_ports},    {0x04, 3, set_switch_type},
+	{0x06, 0, read_activated}, {0x07, 3, set_led},
+	{0x08, 1, get_led},        {0x09, 3, set_relay},
+	{0x0A, 3, set_relay},      {0x0B, 3, set_relay},
+	{0x0C, 0, get_relays},     {0x0D, 0, get_relays},
+	{0x0E, 0, get_relays},     {0},
 };
 
-static void boot_updater(struct sim_slave *slave, const uint8_t *args)
+static int boot_updater(struct sim_slave *slave, const uint8_t *args, uint8_t *out)
 {
 	struct inferno *s = slave->state;
 
-	(void)args;
+	(void)args, (void)out;
 	s->kind = UPDATER;
 	s->status = POWER_ON;
-	sim_end(slave);
+	return SILENT;
 }
 
 static const struct command *inferno_find(struct sim_slave *slave)
@@ -349,12 +313,12 @@ static void take_block(struct sim_slave *slave)
 	struct inferno *s = slave->state;
 	const uint8_t *block = s->taken + WRITTEN + 1;
 	unsigned n;
-	uint8_t *to = part(slave, s->taken, &n);
+	uint8_t *to = firmware_part(slave, s->taken, &n);
 	bool good;
 
 	if (s->got < WRITTEN + 1 + n + 4)
 		return;
-	good = sim_crc16(0, block, n) == (block[n] | block[n + 1] << 8);
+	good = sim_crc16(0, block, n) == sim_get(block + n, 2);
 	s->status = good ? SUCCESS : FAIL;
 	if (good)
 		memcpy(to, block, n);
@@ -365,7 +329,8 @@ static void inferno_take(struct sim_slave *slave, uint8_t byte)
 {
 	struct inferno *s = slave->state;
 	const struct command *c = inferno_find(slave);
-	uint8_t crc;
+	uint8_t crc, out[1 + 16] = {0};
+	int n = REFUSED;
 
 	s->taken[s->got++] = byte;
 	if (!c || s->got <= c->args)
@@ -377,13 +342,17 @@ static void inferno_take(struct sim_slave *slave, uint8_t byte)
 	crc = sim_crc8(0, slave->rom, 8);
 	crc = sim_crc8(crc, &c->code, 1);
 	if (sim_crc8(crc, s->taken, c->args) == byte)
-		c->answer(slave, s->taken);
+		n = c->answer(slave, s->taken, out + 1);
+	if (n == REFUSED)
+		sim_send_byte(slave, 1);
+	else if (n == SILENT)
+		sim_end(slave);
 	else
-		inferno_refuse(slave);
+		sim_send(slave, out, 1u + (unsigned)n);
 }
 
 /* The block that a command has announced may come. */
-static void answered(struct sim_slave *slave)
+static void inferno_answered(struct sim_slave *slave)
 {
 	const struct inferno *s = slave->state;
 
@@ -392,7 +361,7 @@ static void answered(struct sim_slave *slave)
 		sim_receive(slave);
 }
 
-static void identity(struct sim_slave *slave)
+static void inferno_identity(struct sim_slave *slave)
 {
 	struct inferno *s = slave->state;
 	uint8_t out[8] = {0};
@@ -400,7 +369,7 @@ static void identity(struct sim_slave *slave)
 	if (slave->function->code == STATUS)
 		out[0] = s->status;
 	else
-		put32(out, slave->function->code == DEVICE ? (uint32_t)s->kind : 7);
+		sim_put(out, 4, slave->function->code == DEVICE ? (int)s->kind : 7);
 	sim_send(slave, out, slave->function->code == STATUS ? 8 : 4);
 }
 
@@ -436,8 +405,8 @@ static void inferno_advance(struct sim_slave *slave)
 }
 
 #define COMMAND(code_) \
-	.code = (code_), .start = inferno_begin, .byte = inferno_take, .next = answered
-#define IDENTITY(code_) .code = (code_), .start = identity
+	.code = (code_), .start = inferno_begin, .byte = inferno_take, .next = inferno_answered
+#define IDENTITY(code_) .code = (code_), .start = inferno_identity
 static const struct sim_function functions[] = {
 	{COMMAND(0x00)},    {COMMAND(0x01)},     {COMMAND(0x02)},    {COMMAND(0x03)},
 	{COMMAND(0x04)},    {COMMAND(0x05)},     {COMMAND(0x06)},    {COMMAND(0x07)},

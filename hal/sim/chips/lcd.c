@@ -22,7 +22,7 @@ struct lcd {
 	uint8_t level; /* of the pins, when they were last looked at */
 };
 
-static uint8_t pins(struct sim_slave *slave)
+static uint8_t pin_levels(struct sim_slave *slave)
 {
 	uint8_t level = 0;
 
@@ -46,14 +46,14 @@ static void lcd_power_on(struct sim_slave *slave)
 	memset(s->count, 0, sizeof(s->count));
 	s->on = s->backlight = s->cursor = s->filled = 0;
 	s->output = 0x0F;
-	s->level = pins(slave);
+	s->level = pin_levels(slave);
 }
 
 /* Each change from outside counts, so a button counts twice. */
 static void lcd_advance(struct sim_slave *slave)
 {
 	struct lcd *s = slave->state;
-	uint8_t now = pins(slave);
+	uint8_t now = pin_levels(slave);
 
 	for (unsigned i = 0; i < PINS; i++)
 		if ((now ^ s->level) >> i & 1)
@@ -61,31 +61,30 @@ static void lcd_advance(struct sim_slave *slave)
 	s->level = now;
 }
 
-static void clear(struct lcd *s)
+static void clear_display(struct lcd *s)
 {
 	memset(s->display, ' ', DISPLAY);
 	s->cursor = 0;
 }
 
-static void instruction(struct lcd *s, uint8_t byte)
+static void display_instruction(struct lcd *s, uint8_t byte)
 {
 	if (byte == CLEAR_DISPLAY)
-		clear(s);
+		clear_display(s);
 	else if (byte & SET_ADDRESS)
 		s->cursor = byte & 0x7F;
 }
 
-static void print(struct lcd *s, uint8_t byte)
+static void print_byte(struct lcd *s, uint8_t byte)
 {
 	s->display[s->cursor] = byte;
 	s->cursor = (uint8_t)((s->cursor + 1) % DISPLAY);
 }
 
-static void counters(struct lcd *s)
+static void take_counters(struct lcd *s)
 {
 	for (unsigned i = 0; i < PINS; i++) {
-		s->scratchpad[2 * i] = (uint8_t)s->count[i];
-		s->scratchpad[2 * i + 1] = (uint8_t)(s->count[i] >> 8);
+		sim_put(s->scratchpad + 2 * i, 2, s->count[i]);
 		s->count[i] = 0;
 	}
 }
@@ -110,11 +109,11 @@ static void print_scratchpad(struct lcd *s)
 {
 	s->cursor = s->scratchpad[0] % DISPLAY;
 	for (unsigned i = 1; i < s->filled; i++)
-		print(s, s->scratchpad[i]);
+		print_byte(s, s->scratchpad[i]);
 }
 
 /* Commands without bytes of their own. */
-static void command(struct sim_slave *slave)
+static void lcd_command(struct sim_slave *slave)
 {
 	static const char version[VERSION_TEXT + 1] = "LCD 1.00 L.Swart";
 	struct lcd *s = slave->state;
@@ -124,7 +123,7 @@ static void command(struct sim_slave *slave)
 	case 0x05:
 		s->on = slave->function->code == 0x03;
 		if (s->on)
-			clear(s);
+			clear_display(s);
 		break;
 	case 0x07:
 	case 0x08:
@@ -140,7 +139,7 @@ static void command(struct sim_slave *slave)
 		s->scratchpad[0] = s->level;
 		break;
 	case 0x23:
-		counters(s);
+		take_counters(s);
 		break;
 	case 0x37:
 		read_eeprom(s);
@@ -152,7 +151,7 @@ static void command(struct sim_slave *slave)
 		print_scratchpad(s);
 		break;
 	case 0x49:
-		clear(s);
+		clear_display(s);
 		break;
 	}
 	sim_end(slave);
@@ -164,12 +163,12 @@ static void byte_command(struct sim_slave *slave)
 	uint8_t byte = slave->taken[0];
 
 	if (slave->function->code == 0x10)
-		instruction(s, byte);
+		display_instruction(s, byte);
 	else if (slave->function->code == 0x12)
-		print(s, byte);
+		print_byte(s, byte);
 	else
 		s->output = byte & 0x0F;
-	s->level = pins(slave); /* what the chip does itself is no change from outside */
+	s->level = pin_levels(slave); /* what the chip does itself is no change from outside */
 	sim_end(slave);
 }
 
@@ -204,7 +203,7 @@ static void lcd_read_scratchpad(struct sim_slave *slave)
 	sim_send(slave, sim_state(slave, lcd)->scratchpad, VERSION_TEXT);
 }
 
-#define COMMAND(code_) .code = (code_), .start = command
+#define COMMAND(code_) .code = (code_), .start = lcd_command
 static const struct sim_function functions[] = {
 	{COMMAND(0x03)},
 	{COMMAND(0x05)},

@@ -71,6 +71,14 @@ void sim_clock_set(struct sim_clock *clock, int64_t t, const uint8_t bcd[SIM_TIM
 		clock->stopped = since * NS_PER_S;
 }
 
+void sim_clock_init(struct sim_clock *clock)
+{
+	static const uint8_t new_year[SIM_TIME] = {0, 0, 0, 1, 1, 0x81, 0};
+
+	clock->stopped = -1;
+	sim_clock_set(clock, 0, new_year);
+}
+
 void sim_clock_run(struct sim_clock *clock, int64_t t, bool run)
 {
 	if (run && clock->stopped >= 0)
@@ -79,19 +87,4 @@ void sim_clock_run(struct sim_clock *clock, int64_t t, bool run)
 		clock->stopped = t - clock->zero;
 	if (run)
 		clock->stopped = -1;
-}
-
-uint32_t sim_count(const uint8_t *at, unsigned n)
-{
-	uint32_t value = 0;
-
-	while (n--)
-		value = value << 8 | at[n];
-	return value;
-}
-
-void sim_put_count(uint8_t *at, unsigned n, uint32_t value)
-{
-	for (unsigned i = 0; i < n; i++, value >>= 8)
-		at[i] = (uint8_t)value;
 }

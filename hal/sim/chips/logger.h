@@ -14,11 +14,9 @@ struct sim_clock {
 	uint8_t day;     /* what the first day of that week is called, 0 to 6 */
 };
 
+/* It is the first of January 2000, as from the factory. */
+void sim_clock_init(struct sim_clock *clock);
 /* BCD as in the registers: the century is bit 7 of the month. */
 void sim_clock_get(const struct sim_clock *clock, int64_t t, uint8_t bcd[SIM_TIME]);
 void sim_clock_set(struct sim_clock *clock, int64_t t, const uint8_t bcd[SIM_TIME]);
 void sim_clock_run(struct sim_clock *clock, int64_t t, bool run);
-
-/* A counter of n bytes, the low one first. */
-uint32_t sim_count(const uint8_t *at, unsigned n);
-void sim_put_count(uint8_t *at, unsigned n, uint32_t value);

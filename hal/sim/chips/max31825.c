@@ -7,8 +7,6 @@
  * (here as in its relatives), and of Read Power Supply (here unknown to the chip). Not simulated:
  * conversions by itself, overdrive.
  */
-#include <errno.h>
-#include <math.h>
 #include <string.h>
 
 #include "hal/base/time.h"
@@ -45,9 +43,8 @@ static void max31825_worked(struct sim_slave *slave)
 	struct max31825 *s = slave->state;
 	const uint8_t *pad = s->scratchpad;
 	int most = pad[CONFIG] & EXTENDED ? 145 * 16 : 2047;
-	int raw = (int)sim_round(sim_input_now(slave, 0) * 16);
+	int raw = sim_within(sim_input_now(slave, 0) * 16, -55 * 16, most);
 
-	raw = raw > most ? most : raw < -55 * 16 ? -55 * 16 : raw;
 	raw &= ~((1 << unused[pad[CONFIG] >> 5 & 3]) - 1);
 	if (!(pad[CONFIG] & INTERRUPT))
 		s->faults = 0;
@@ -55,8 +52,7 @@ static void max31825_worked(struct sim_slave *slave)
 		s->faults |= TH_FAULT;
 	if (raw < (int16_t)(pad[TL + 1] << 8 | pad[TL]))
 		s->faults |= TL_FAULT;
-	s->scratchpad[0] = (uint8_t)raw;
-	s->scratchpad[1] = (uint8_t)(raw >> 8);
+	sim_put(s->scratchpad, 2, raw);
 	slave->conversions++;
 }
 
@@ -70,14 +66,9 @@ static void max31825_read_scratchpad(struct sim_slave *slave)
 	sim_send_crc8(slave, s->scratchpad, 8);
 }
 
-static void max31825_begin_write(struct sim_slave *slave)
-{
-	slave->address = CONFIG;
-}
-
 static void max31825_write_scratchpad(struct sim_slave *slave, uint8_t byte)
 {
-	unsigned at = slave->address++;
+	unsigned at = CONFIG + slave->address++;
 
 	sim_state(slave, max31825)->scratchpad[at] = at == CONFIG ? byte & 0xF7 : byte;
 	if (at == 7)
@@ -98,7 +89,7 @@ static void select_address(struct sim_slave *slave)
 static const struct sim_function functions[] = {
 	{.code = 0x44, .start = max31825_convert},
 	{.code = 0xBE, .start = max31825_read_scratchpad},
-	{.code = 0x4E, .start = max31825_begin_write, .byte = max31825_write_scratchpad},
+	{.code = 0x4E, .byte = max31825_write_scratchpad},
 	{.code = 0x88, .start = sim_end}, /* The resistors are as they were at power-on. */
 	{.code = 0x70, .takes = 1, .start = select_address},
 	{0},
@@ -109,20 +100,13 @@ static bool max31825_alarm(struct sim_slave *slave)
 	return sim_state(slave, max31825)->faults != 0;
 }
 
-static int max31825_option(struct sim_slave *slave, const char *name, double value)
-{
-	if (strcmp(name, "address") != 0)
-		return -ENOENT;
-	if (value < 0 || value > ADDRESS || value != floor(value))
-		return -ERANGE;
-	sim_state(slave, max31825)->address = (uint8_t)value;
-	return 0;
-}
-
 static const struct sim_input inputs[] = {
 	{.name = "temperature", .start = 20, .least = -55, .most = 145},
 	{0},
 };
+
+static const struct sim_option options[] = {SIM_OPTION(max31825, "address", 0, ADDRESS, address),
+                                            {0}};
 
 const struct sim_family sim_max31825 = {
 	.name = "MAX31825",
@@ -134,5 +118,5 @@ const struct sim_family sim_max31825 = {
 	.power_on = max31825_power_on,
 	.alarm = max31825_alarm,
 	.worked = max31825_worked,
-	.option = max31825_option,
+	.options = options,
 };

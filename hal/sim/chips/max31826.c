@@ -3,8 +3,6 @@
  * The parts of family 3B other than the DS1825: MAX31826 (data sheet 19-6264), a thermometer with 1
  * kbit of EEPROM, and MAX31850 (19-6725), which measures a thermocouple and its cold junction.
  */
-#include <errno.h>
-#include <math.h>
 #include <string.h>
 
 #include "hal/base/time.h"
@@ -28,29 +26,16 @@ static void max31826_create(struct sim_slave *slave)
 	memset(sim_state(slave, sim_max)->memory, 0xFF, SIM_MAX_MEMORY);
 }
 
-static void max31826_put16(uint8_t *at, int64_t raw)
-{
-	at[0] = (uint8_t)raw;
-	at[1] = (uint8_t)(raw >> 8);
-}
-
 static void max31826_power_on(struct sim_slave *slave)
 {
 	struct sim_max *s = slave->state;
 
 	memset(s->scratchpad, 0xFF, 8);
-	max31826_put16(s->scratchpad, is_max31850(slave) ? 0 : 85 * 16);
+	sim_put(s->scratchpad, 2, is_max31850(slave) ? 0 : 85 * 16);
 	if (is_max31850(slave))
-		max31826_put16(s->scratchpad + 2, 0);
+		sim_put(s->scratchpad + 2, 2, 0);
 	s->scratchpad[4] = (uint8_t)(0xF0 | s->address);
 	s->copying = false;
-}
-
-static int64_t part_of(struct sim_slave *slave, unsigned input, double least, double most, int in)
-{
-	double celsius = sim_input_now(slave, input);
-
-	return sim_round((celsius < least ? least : celsius > most ? most : celsius) * in);
 }
 
 /*
@@ -60,14 +45,15 @@ static int64_t part_of(struct sim_slave *slave, unsigned input, double least, do
 static void measure_thermocouple(struct sim_slave *slave)
 {
 	struct sim_max *s = slave->state;
-	unsigned faults = 0;
+	int faults = 0;
 
 	for (unsigned i = 0; i < 3; i++)
-		faults |= (unsigned)(sim_input_now(slave, OPEN_CIRCUIT + i) >= 0.5) << i;
-	max31826_put16(s->scratchpad,
-	               part_of(slave, THERMOCOUPLE, -270, 1800, 4) * 4 + (faults != 0));
-	max31826_put16(s->scratchpad + 2,
-	               part_of(slave, TEMPERATURE, -55, 127.9375, 16) * 16 + faults);
+		faults |= (sim_input_now(slave, OPEN_CIRCUIT + i) >= 0.5) << i;
+	sim_put(s->scratchpad, 2,
+	        sim_within(sim_input_now(slave, THERMOCOUPLE) * 4, -270 * 4, 1800 * 4) * 4 +
+	                (faults != 0));
+	sim_put(s->scratchpad + 2, 2,
+	        sim_within(sim_input_now(slave, TEMPERATURE) * 16, -55 * 16, 2047) * 16 + faults);
 }
 
 static void max31826_worked(struct sim_slave *slave)
@@ -82,7 +68,8 @@ static void max31826_worked(struct sim_slave *slave)
 	if (is_max31850(slave))
 		measure_thermocouple(slave);
 	else
-		max31826_put16(s->scratchpad, part_of(slave, TEMPERATURE, -55, 125, 16));
+		sim_put(s->scratchpad, 2,
+		        sim_within(sim_input_now(slave, TEMPERATURE) * 16, -55 * 16, 125 * 16));
 }
 
 static bool max31826_bit(struct sim_slave *slave)
@@ -103,12 +90,12 @@ static void max31826_read_scratchpad(struct sim_slave *slave)
 
 /* --- The memory of the MAX31826: pages of 8 bytes, by a second scratchpad --------------------- */
 
-static void read_memory(struct sim_slave *slave)
+static void max31826_read_memory(struct sim_slave *slave)
 {
 	sim_send_memory(slave, sim_state(slave, sim_max)->memory, SIM_MAX_MEMORY, 0);
 }
 
-static void target(struct sim_slave *slave)
+static void set_target(struct sim_slave *slave)
 {
 	sim_state(slave, sim_max)->target = slave->taken[0] & (SIM_MAX_MEMORY - SIM_MAX_PAGE);
 	slave->address = 0;
@@ -143,15 +130,7 @@ static void max31826_copy(struct sim_slave *slave)
 	sim_end(slave);
 }
 
-static int max31826_option(struct sim_slave *slave, const char *name, double value)
-{
-	if (strcmp(name, "address") != 0)
-		return -ENOENT;
-	if (value < 0 || value > 15 || value != floor(value))
-		return -ERANGE;
-	sim_state(slave, sim_max)->address = (uint8_t)value;
-	return 0;
-}
+static const struct sim_option options[] = {SIM_OPTION(sim_max, "address", 0, 15, address), {0}};
 
 #define FUNCTIONS \
 	{.code = 0x44, .start = max31826_convert}, \
@@ -161,9 +140,9 @@ static int max31826_option(struct sim_slave *slave, const char *name, double val
 	}
 static const struct sim_function max31826_functions[] = {
 	FUNCTIONS,
-	{.code = 0xF0, .takes = 1, .start = read_memory, .next = read_memory},
+	{.code = 0xF0, .takes = 1, .start = max31826_read_memory, .next = max31826_read_memory},
 	/* Write, Read, Copy Scratchpad 2 */
-	{.code = 0x0F, .takes = 1, .start = target, .byte = write_second},
+	{.code = 0x0F, .takes = 1, .start = set_target, .byte = write_second},
 	{.code = 0xAA, .takes = 1, .start = read_second},
 	{.code = 0x55, .takes = 1, .start = max31826_copy},
 	{0},
@@ -183,7 +162,7 @@ static const struct sim_input max31850_inputs[] = {
 #define PART(part, ...) \
 	.name = part, .code = 0x3B, .starves = true, .state_size = sizeof(struct sim_max), \
 	.create = max31826_create, .power_on = max31826_power_on, .bit = max31826_bit, \
-	.worked = max31826_worked, .option = max31826_option, __VA_ARGS__
+	.worked = max31826_worked, .options = options, __VA_ARGS__
 
 const struct sim_family sim_max31826 = {PART("MAX31826", .functions = max31826_functions,
                                              .inputs = max31826_inputs,

@@ -6,8 +6,6 @@
  * after Convert T have been read. What an empty FIFO gives is not stated: here the last result.
  * The conditional search and the GPIO pins are not simulated.
  */
-#include <errno.h>
-#include <string.h>
 
 #include "hal/base/time.h"
 #include "hal/sim/families.h"
@@ -39,20 +37,15 @@ enum { DEPTH = 32 };
 struct max31888 {
 	uint8_t reg[256];
 	uint16_t fifo[DEPTH];
-	bool early;  /* the count of results stands where the write pointer is else */
-	bool second; /* the low byte of the result is the next to be read */
+	uint8_t count; /* the register of the count of results; 0: RESULTS */
+	bool second;   /* the low byte of the result is the next to be read */
 };
-
-static int16_t word(const uint8_t *at)
-{
-	return (int16_t)(at[0] << 8 | at[1]);
-}
 
 static void max31888_power_on(struct sim_slave *slave)
 {
 	struct max31888 *s = slave->state;
 
-	*s = (struct max31888){.early = s->early};
+	*s = (struct max31888){.count = s->count};
 	s->reg[ALARM_HIGH] = 0x7F;
 	s->reg[ALARM_HIGH + 1] = 0xFF;
 	s->reg[ALARM_LOW] = 0x80;
@@ -67,9 +60,9 @@ static void max31888_worked(struct sim_slave *slave)
 
 	slave->conversions++;
 	s->reg[STATUS] |= READY;
-	if (result > word(s->reg + ALARM_HIGH))
+	if (result > (int16_t)sim_get_high(s->reg + ALARM_HIGH, 2))
 		s->reg[STATUS] |= TOO_HIGH;
-	if (result < word(s->reg + ALARM_LOW))
+	if (result < (int16_t)sim_get_high(s->reg + ALARM_LOW, 2))
 		s->reg[STATUS] |= TOO_LOW;
 	if (s->reg[RESULTS] == DEPTH) { /* it is full: the new one is lost */
 		s->reg[OVERFLOWS] += s->reg[OVERFLOWS] < DEPTH - 1;
@@ -98,7 +91,7 @@ static uint8_t max31888_take(struct max31888 *s)
 	return (uint8_t)s->fifo[at];
 }
 
-static uint8_t read_byte(struct max31888 *s, unsigned at)
+static uint8_t read_register(struct max31888 *s, unsigned at)
 {
 	uint8_t byte = s->reg[at & 0xFF];
 
@@ -106,13 +99,13 @@ static uint8_t read_byte(struct max31888 *s, unsigned at)
 		return max31888_take(s);
 	if (at == STATUS)
 		s->reg[STATUS] = 0;
-	if (s->early && at == WRITE_POINTER)
+	if (s->count == WRITE_POINTER && at == WRITE_POINTER)
 		return s->reg[RESULTS];
-	return s->early && at == RESULTS ? 0 : byte;
+	return s->count == WRITE_POINTER && at == RESULTS ? 0 : byte;
 }
 
 /* Command, register, and the count of bytes less one. */
-static void read_registers(struct sim_slave *slave)
+static void max31888_read(struct sim_slave *slave)
 {
 	struct max31888 *s = slave->state;
 	unsigned at = slave->taken[0], n = slave->taken[1] + 1u;
@@ -122,7 +115,7 @@ static void read_registers(struct sim_slave *slave)
 		n = sizeof(out);
 	s->second = false;
 	for (unsigned i = 0; i < n; i++) {
-		out[i] = read_byte(s, at);
+		out[i] = read_register(s, at);
 		at += at != FIFO;
 	}
 	sim_send_checked(slave, out, n);
@@ -133,7 +126,7 @@ static void max31888_begin_write(struct sim_slave *slave)
 	slave->address = slave->taken[0];
 }
 
-static void flush(struct max31888 *s)
+static void flush_fifo(struct max31888 *s)
 {
 	s->reg[WRITE_POINTER] = s->reg[READ_POINTER] = 0;
 	s->reg[OVERFLOWS] = s->reg[RESULTS] = s->reg[STATUS] = 0;
@@ -145,7 +138,7 @@ static void write_registers(struct sim_slave *slave, uint8_t byte)
 	unsigned at = slave->address++;
 
 	if (at == FIFO_CONFIGURATION && (byte & FLUSH))
-		flush(s);
+		flush_fifo(s);
 	if (at == SYSTEM && (byte & RESET))
 		max31888_power_on(slave);
 	if (at == SETUP && (byte & 1)) /* CONVERT_T clears itself */
@@ -157,12 +150,7 @@ static void write_registers(struct sim_slave *slave, uint8_t byte)
 	else if (at != STATUS && at != SYSTEM && at < PART && (at < WRITE_POINTER || at > FIFO))
 		s->reg[at] = byte;
 	if (slave->address == slave->taken[0] + slave->taken[1] + 1u)
-		sim_send_checked(slave, NULL, 0);
-}
-
-static void confirm(struct sim_slave *slave)
-{
-	sim_send_checked(slave, NULL, 0);
+		sim_send_checksum(slave);
 }
 
 static void checksum_was_read(struct sim_slave *slave)
@@ -176,27 +164,13 @@ static void reset_was_confirmed(struct sim_slave *slave)
 	sim_end(slave);
 }
 
-/* No slot shows that it converts. */
-static bool max31888_bit(struct sim_slave *slave)
-{
-	(void)slave;
-	return true;
-}
-
-static int max31888_option(struct sim_slave *slave, const char *name, double value)
-{
-	if (strcmp(name, "count") != 0)
-		return -ENOENT;
-	if (value != WRITE_POINTER && value != RESULTS)
-		return -ERANGE;
-	sim_state(slave, max31888)->early = value == WRITE_POINTER;
-	return 0;
-}
+static const struct sim_option options[] = {
+	SIM_OPTION(max31888, "count", WRITE_POINTER, RESULTS, count), {0}};
 
 static const struct sim_function functions[] = {
-	{.code = 0x44, .start = confirm, .next = checksum_was_read},
-	{.code = 0x82, .start = confirm, .next = reset_was_confirmed}, /* Soft Reset */
-	{.code = 0x33, .takes = 2, .start = read_registers},
+	{.code = 0x44, .start = sim_send_checksum, .next = checksum_was_read},
+	{.code = 0x82, .start = sim_send_checksum, .next = reset_was_confirmed}, /* Soft Reset */
+	{.code = 0x33, .takes = 2, .start = max31888_read},
 	{.code = 0xCC, .takes = 2, .start = max31888_begin_write, .byte = write_registers},
 	{0},
 };
@@ -209,7 +183,7 @@ static const struct sim_input max30207_inputs[] = {
 #define THERMOMETER(part, input) \
 	.name = (part), .code = 0x54, .starves = true, .state_size = sizeof(struct max31888), \
 	.functions = functions, .inputs = (input), .power_on = max31888_power_on, \
-	.worked = max31888_worked, .bit = max31888_bit, .option = max31888_option
+	.worked = max31888_worked, .bit = sim_ones, .options = options
 
 const struct sim_family sim_max31888 = {THERMOMETER("MAX31888", max31888_inputs)};
 const struct sim_family sim_max30207 = {THERMOMETER("MAX30207", max30207_inputs)};

@@ -25,12 +25,11 @@ static void move_on(struct sim_sensor *sensor)
 }
 
 static bool mcp23017_take(struct sim_slave *slave, struct sim_sensor *sensor, uint8_t byte,
-                          unsigned at, int64_t t)
+                          unsigned at)
 {
 	uint8_t to = sensor->pointer;
 
 	(void)slave;
-	(void)t;
 	if (at == 0) {
 		sensor->pointer = byte;
 		return true;
@@ -46,29 +45,25 @@ static bool mcp23017_take(struct sim_slave *slave, struct sim_sensor *sensor, ui
 }
 
 /* An output has its latch, an input what drives it, turned over where IPOL says so. */
-static uint8_t level(struct sim_slave *slave, const struct sim_sensor *sensor, unsigned port,
-                     int64_t t)
+static uint8_t port_level(struct sim_slave *slave, const struct sim_sensor *sensor, unsigned port)
 {
-	uint8_t in = (uint8_t)((unsigned)sim_input_at(slave, SENSOR_PINS, t) >> 8 * port);
+	uint8_t in = (uint8_t)((unsigned)sim_input_now(slave, SENSOR_PINS) >> 8 * port);
 	uint8_t direction = sensor->reg[IODIR + port];
 
 	in ^= sensor->reg[IPOL + port];
 	return (uint8_t)((in & direction) | (sensor->reg[OLAT + port] & ~direction));
 }
 
-static uint8_t mcp23017_give(struct sim_slave *slave, struct sim_sensor *sensor, unsigned at,
-                             int64_t t)
+static uint8_t mcp23017_give(struct sim_slave *slave, struct sim_sensor *sensor, unsigned at)
 {
 	uint8_t from = sensor->pointer;
 
 	(void)at;
 	move_on(sensor);
 	if (from == GPIO || from == GPIO + 1)
-		return level(slave, sensor, from - GPIO, t);
+		return port_level(slave, sensor, from - GPIO);
 	return from < REGISTERS ? sensor->reg[from] : 0;
 }
 
-const struct sim_sensor_kind sim_sensor_mcp23017 = {.name = "mcp23017",
-                                                    .power_on = mcp23017_power_on,
-                                                    .write = mcp23017_take,
-                                                    .read = mcp23017_give};
+const struct sim_sensor_kind sim_sensor_mcp23017 = {
+	.power_on = mcp23017_power_on, .write = mcp23017_take, .read = mcp23017_give};

@@ -34,14 +34,19 @@ struct sim_scratchpad {
  * For struct sim_family. Its state begins with a struct sim_scratchpad, and its kind is a struct
  * sim_scratchpad_kind, or begins with one.
  */
-#define SIM_SCRATCHPAD_FUNCTIONS(copy) \
+#define SIM_SCRATCHPAD_FUNCTIONS(copy) SIM_SCRATCHPAD_COMMANDS(copy, sim_scratchpad_dump)
+/* The same with a read of the memory that is the chip's own. */
+#define SIM_SCRATCHPAD_COMMANDS(copy, dump) \
 	{.code = 0x0F, .takes = 2, .start = sim_scratchpad_target, .byte = sim_scratchpad_write}, \
 		{.code = 0xAA, .start = sim_scratchpad_read}, \
 		{.code = (copy), .takes = 3, .start = sim_scratchpad_copy}, \
 	{ \
-		.code = 0xF0, .takes = 2, .start = sim_scratchpad_dump, \
-		.next = sim_scratchpad_dump \
+		.code = 0xF0, .takes = 2, .start = (dump), .next = (dump) \
 	}
+#define SIM_DUMP_PAGES 0xA5
+#define SIM_SCRATCHPAD_PAGES \
+	.code = SIM_DUMP_PAGES, .takes = 2, .start = sim_scratchpad_dump, \
+	.next = sim_scratchpad_dump
 void sim_scratchpad_power_on(struct sim_slave *slave);
 bool sim_scratchpad_bit(struct sim_slave *slave);
 void sim_scratchpad_worked(struct sim_slave *slave);
@@ -50,6 +55,11 @@ void sim_scratchpad_target(struct sim_slave *slave);
 void sim_scratchpad_write(struct sim_slave *slave, uint8_t byte);
 void sim_scratchpad_read(struct sim_slave *slave);
 void sim_scratchpad_copy(struct sim_slave *slave);
+/* By SIM_DUMP_PAGES page by page, each with its checksum. */
 void sim_scratchpad_dump(struct sim_slave *slave);
-/* Page by page, each with its checksum. */
-void sim_scratchpad_dump_pages(struct sim_slave *slave);
+
+/*
+ * Send the rest of the page at the address, a count, four bytes more, and the checksum; after the
+ * last page be deaf.
+ */
+void sim_scratchpad_send_counted(struct sim_slave *slave, uint32_t count, const uint8_t more[4]);

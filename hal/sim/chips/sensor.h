@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * An I2C part behind a bridge (sensors.h), as each part's file knows it. t never goes back.
+ * An I2C part behind a bridge (sensors.h), as each part's file knows it. The time is slave->now.
  */
 #pragma once
 
@@ -29,14 +29,13 @@ struct sim_sensor {
 
 /* A part. Its measured quantities are the inputs of the slave. */
 struct sim_sensor_kind {
-	const char *name; /* the option's */
 	void (*power_on)(struct sim_sensor *sensor);
 	/* Does it take its address now? */
 	bool (*selects)(const struct sim_sensor *sensor, bool reading, int64_t t);
 	/* at: how many bytes have come before since it took its address. False: not taken. */
-	bool (*write)(struct sim_slave *slave, struct sim_sensor *sensor, uint8_t byte, unsigned at,
-	              int64_t t);
-	uint8_t (*read)(struct sim_slave *slave, struct sim_sensor *sensor, unsigned at, int64_t t);
+	bool (*write)(struct sim_slave *slave, struct sim_sensor *sensor, uint8_t byte,
+	              unsigned at);
+	uint8_t (*read)(struct sim_slave *slave, struct sim_sensor *sensor, unsigned at);
 };
 
 extern const struct sim_sensor_kind sim_sensor_sht4x, sim_sensor_bme280, sim_sensor_vcnl4040,

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The I2C bus behind a bridge: which part takes an address, and who is spoken to. */
-#include <errno.h>
-#include <string.h>
+/* The I2C bus behind a bridge: the part that takes an address gets the bytes after it. */
 
 #include "hal/sim/chips/sensors.h"
 
@@ -18,18 +16,12 @@ const struct sim_input sim_sensor_inputs[] = {
 	{0},
 };
 
-int sim_sensors_option(struct sim_slave *slave, const char *name, double value)
-{
-	for (unsigned i = 0; i < SENSOR_PARTS; i++) {
-		if (strcmp(kinds[i]->name, name) != 0)
-			continue;
-		if (value < 0x08 || value > 0x77 || value != (int)value)
-			return -ERANGE;
-		sim_state(slave, sim_sensors)->part[i].address = (uint8_t)value;
-		return 0;
-	}
-	return -ENOENT;
-}
+#define ADDRESS(name, i) SIM_OPTION(sim_sensors, name, 0x08, 0x77, part[i].address)
+const struct sim_option sim_sensor_options[] = {ADDRESS("sht4x", 0),
+                                                ADDRESS("bme280", 1),
+                                                ADDRESS("vcnl4040", 2),
+                                                ADDRESS("mcp23017", 3),
+                                                {0}};
 
 void sim_sensors_power_on(struct sim_slave *slave)
 {
@@ -42,7 +34,7 @@ void sim_sensors_power_on(struct sim_slave *slave)
 	}
 }
 
-bool sim_sensors_start(struct sim_slave *slave, uint8_t address, int64_t t)
+bool sim_sensors_start(struct sim_slave *slave, uint8_t address)
 {
 	struct sim_sensors *s = slave->state;
 
@@ -52,27 +44,27 @@ bool sim_sensors_start(struct sim_slave *slave, uint8_t address, int64_t t)
 		const struct sim_sensor *part = &s->part[i];
 
 		if (part->address && part->address == address >> 1 &&
-		    (!kinds[i]->selects || kinds[i]->selects(part, address & 1, t)))
+		    (!kinds[i]->selects || kinds[i]->selects(part, address & 1, slave->now)))
 			s->selected = i;
 	}
 	return s->selected >= 0;
 }
 
-bool sim_sensors_write(struct sim_slave *slave, uint8_t byte, int64_t t)
+bool sim_sensors_write(struct sim_slave *slave, uint8_t byte)
 {
 	struct sim_sensors *s = slave->state;
 
 	return s->selected >= 0 &&
-	       kinds[s->selected]->write(slave, &s->part[s->selected], byte, s->took++, t);
+	       kinds[s->selected]->write(slave, &s->part[s->selected], byte, s->took++);
 }
 
-uint8_t sim_sensors_read(struct sim_slave *slave, int64_t t)
+uint8_t sim_sensors_read(struct sim_slave *slave)
 {
 	struct sim_sensors *s = slave->state;
 
 	if (s->selected < 0)
 		return 0xFF;
-	return kinds[s->selected]->read(slave, &s->part[s->selected], s->took++, t);
+	return kinds[s->selected]->read(slave, &s->part[s->selected], s->took++);
 }
 
 void sim_sensors_stop(struct sim_slave *slave)

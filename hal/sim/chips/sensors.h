@@ -2,7 +2,7 @@
 /*
  * The I2C bus behind a DS28E17 or a DS28E18, with the parts on it: SHT4x, BME280, VCNL4040,
  * MCP23017, each once at the most, at the address that its option gives. The state of the bridge
- * begins with a struct sim_sensors. t never goes back.
+ * begins with a struct sim_sensors. The time is slave->now.
  */
 #pragma once
 
@@ -15,13 +15,11 @@ struct sim_sensors {
 };
 
 extern const struct sim_input sim_sensor_inputs[];
-
-/* For struct sim_family. */
-int sim_sensors_option(struct sim_slave *slave, const char *name, double value);
+extern const struct sim_option sim_sensor_options[];
 
 void sim_sensors_power_on(struct sim_slave *slave);
 /* START and the address byte, acknowledged or not; what is written and read then; STOP. */
-bool sim_sensors_start(struct sim_slave *slave, uint8_t address, int64_t t);
-bool sim_sensors_write(struct sim_slave *slave, uint8_t byte, int64_t t);
-uint8_t sim_sensors_read(struct sim_slave *slave, int64_t t);
+bool sim_sensors_start(struct sim_slave *slave, uint8_t address);
+bool sim_sensors_write(struct sim_slave *slave, uint8_t byte);
+uint8_t sim_sensors_read(struct sim_slave *slave);
 void sim_sensors_stop(struct sim_slave *slave);

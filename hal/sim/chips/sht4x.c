@@ -3,9 +3,7 @@
  * SHT4x (Sensirion, "4th generation, high-accuracy, ultra-low-power" humidity and temperature
  * sensor): commands of one byte, results with CRC8; the heater is not simulated.
  */
-#include <string.h>
 
-#include "hal/base/time.h"
 #include "hal/sim/chips/sensor.h"
 
 enum { SERIAL = 0x89, RESET = 0x94 };
@@ -23,11 +21,9 @@ static uint8_t crc(const uint8_t *bytes)
 	return sum;
 }
 
-static void sht4x_put(uint8_t *out, int64_t word)
+static void sht4x_put(uint8_t *out, int word)
 {
-	word = word < 0 ? 0 : word > 65535 ? 65535 : word;
-	out[0] = (uint8_t)(word >> 8);
-	out[1] = (uint8_t)word;
+	sim_put_high(out, 2, word);
 	out[2] = crc(out);
 }
 
@@ -59,21 +55,21 @@ static bool selects(const struct sim_sensor *sensor, bool reading, int64_t t)
 }
 
 static bool sht4x_take(struct sim_slave *slave, struct sim_sensor *sensor, uint8_t byte,
-                       unsigned at, int64_t t)
+                       unsigned at)
 {
-	double temperature = sim_input_at(slave, SENSOR_TEMPERATURE, t);
-	double humidity = sim_input_at(slave, SENSOR_HUMIDITY, t);
+	double temperature = sim_input_now(slave, SENSOR_TEMPERATURE);
+	double humidity = sim_input_now(slave, SENSOR_HUMIDITY);
 
 	sensor->out_count = 0;
-	sensor->until = t + measures(byte);
+	sensor->until = slave->now + measures(byte);
 	if (at > 0)
 		return false;
 	if (byte == SERIAL) {
 		sht4x_put(sensor->out, slave->rom[1] << 8 | slave->rom[2]);
 		sht4x_put(sensor->out + 3, slave->rom[3] << 8 | slave->rom[4]);
 	} else if (measures(byte)) {
-		sht4x_put(sensor->out, sim_round((temperature + 45) / 175 * 65535));
-		sht4x_put(sensor->out + 3, sim_round((humidity + 6) / 125 * 65535));
+		sht4x_put(sensor->out, sim_within((temperature + 45) / 175 * 65535, 0, 65535));
+		sht4x_put(sensor->out + 3, sim_within((humidity + 6) / 125 * 65535, 0, 65535));
 		slave->conversions++;
 	} else {
 		return byte == RESET;
@@ -83,17 +79,14 @@ static bool sht4x_take(struct sim_slave *slave, struct sim_sensor *sensor, uint8
 }
 
 /* A result is read once. */
-static uint8_t sht4x_give(struct sim_slave *slave, struct sim_sensor *sensor, unsigned at,
-                          int64_t t)
+static uint8_t sht4x_give(struct sim_slave *slave, struct sim_sensor *sensor, unsigned at)
 {
 	(void)slave;
-	(void)t;
 	sensor->out_count = 0;
 	return at < sizeof(sensor->out) ? sensor->out[at] : 0xFF;
 }
 
 const struct sim_sensor_kind sim_sensor_sht4x = {
-	.name = "sht4x",
 	.power_on = sht4x_power_on,
 	.selects = selects,
 	.write = sht4x_take,

@@ -29,7 +29,7 @@ struct sim_thermometer {
 	uint8_t eeprom[3];             /* TH, TL, configuration */
 	uint8_t address;               /* DS1825: AD0..AD3 */
 	bool fixed;                    /* a clone: stays at 12 bits, whatever is written */
-	int percent;                   /* of the conversion time by the data sheet; 0 means 100 */
+	uint8_t percent;               /* of the conversion time by the data sheet; 0 means 100 */
 	bool alarm, copying;
 	bool once;      /* a Convert T while it converts is ignored; else it begins anew */
 	bool upset;     /* while it converts, the temperature in the scratchpad is not the last */

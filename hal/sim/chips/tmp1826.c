@@ -7,7 +7,6 @@
  * Not simulated: pins, flexible addresses, arbitration, the modes in which the chip
  * converts by itself, the TMP1827's SHA-256.
  */
-#include <errno.h>
 #include <math.h>
 #include <string.h>
 
@@ -60,11 +59,9 @@ static int in_128ths(const struct sim_tmp1826 *s, const uint8_t *at)
 static void tmp1826_measure(struct sim_slave *slave)
 {
 	struct sim_tmp1826 *s = slave->state;
-	double celsius = sim_input_now(slave, 0);
-	int raw;
+	int raw = sim_within(sim_input_now(slave, 0) * 128, -55 * 128, 150 * 128) +
+	          in_128ths(s, s->settings + 7);
 
-	celsius = celsius < -55 ? -55 : celsius > 150 ? 150 : celsius;
-	raw = (int)sim_round(celsius * 128) + in_128ths(s, s->settings + 7);
 	s->status &= (uint8_t) ~(s->settings[0] & ALERT_MODE ? ALERT_HIGH | ALERT_LOW : 0);
 	if (raw >= in_128ths(s, s->settings + 5))
 		s->status |= ALERT_HIGH;
@@ -121,14 +118,7 @@ static void tmp1826_worked(struct sim_slave *slave)
 	}
 }
 
-/* The host has to leave the bus idle meanwhile: no data sheet promises a busy slot. */
-static bool tmp1826_bit(struct sim_slave *slave)
-{
-	(void)slave;
-	return true;
-}
-
-static void work(struct sim_slave *slave, enum work what, int64_t takes)
+static void tmp1826_work(struct sim_slave *slave, enum work what, int64_t takes)
 {
 	sim_state(slave, sim_tmp1826)->work = what;
 	sim_work(slave, takes);
@@ -139,12 +129,12 @@ static void tmp1826_convert(struct sim_slave *slave)
 	const uint8_t config = sim_state(slave, sim_tmp1826)->settings[0];
 	int64_t takes = config & LONG ? LONG_NS : SHORT_NS;
 
-	work(slave, CONVERSION, DELAY_NS + (config & AVERAGE ? 8 * takes : takes));
+	tmp1826_work(slave, CONVERSION, DELAY_NS + (config & AVERAGE ? 8 * takes : takes));
 }
 
 static void copy_settings(struct sim_slave *slave)
 {
-	work(slave, COPY_SETTINGS, PROGRAM_NS);
+	tmp1826_work(slave, COPY_SETTINGS, PROGRAM_NS);
 }
 
 /* Two times eight bytes, each with its checksum. */
@@ -154,15 +144,13 @@ static void tmp1826_read_scratchpad(struct sim_slave *slave)
 	uint8_t *out = s->sent;
 
 	memset(out, 0xFF, sizeof(s->sent));
-	out[0] = (uint8_t)s->temperature;
-	out[1] = (uint8_t)(s->temperature >> 8);
+	sim_put(out, 2, s->temperature);
 	out[2] = (uint8_t)(s->status | RESERVED | (slave->parasite ? FED_BY_BUS : 0) |
 	                   (s->settings[1] & LOCK_EN));
 	memcpy(out + 4, s->settings, 3);
 	out[8] = sim_crc8(0, out, 8);
 	memcpy(out + 9, s->settings + 3, 6);
 	out[17] = sim_crc8(0, out + 9, 8);
-	slave->address = 0;
 	sim_send_byte(slave, out[0]);
 }
 
@@ -177,12 +165,7 @@ static void read_more(struct sim_slave *slave)
 		sim_send_byte(slave, s->sent[slave->address]);
 }
 
-static void begin_settings(struct sim_slave *slave)
-{
-	slave->address = 0;
-}
-
-static void write_settings(struct sim_slave *slave, uint8_t byte)
+static void tmp1826_write_settings(struct sim_slave *slave, uint8_t byte)
 {
 	struct sim_tmp1826 *s = slave->state;
 	unsigned at = slave->address++;
@@ -198,91 +181,95 @@ static void write_settings(struct sim_slave *slave, uint8_t byte)
 
 /* --- The memory: blocks of 8 bytes by a second scratchpad; its addresses begin with the MSB. -- */
 
-static uint16_t address(const struct sim_slave *slave)
+static uint16_t taken_address(const struct sim_slave *slave)
 {
-	return (uint16_t)(slave->taken[0] << 8 | slave->taken[1]);
+	return (uint16_t)sim_get_high(slave->taken, 2);
 }
 
 static void begin_block(struct sim_slave *slave)
 {
 	struct sim_tmp1826 *s = slave->state;
 
-	s->target = address(slave);
+	s->target = taken_address(slave);
 	if (s->target < SIM_TMP1826_MEMORY)
 		s->target &= (uint16_t) ~(SIM_TMP1826_BLOCK - 1);
 	slave->address = 0;
 }
 
-/* The checksum is that of the address and the bytes; of a page lock there is one byte. */
-static void send_block_crc(struct sim_slave *slave, unsigned n)
+/* Of a page lock there is one byte. */
+static unsigned block_size(const struct sim_tmp1826 *s)
 {
-	uint8_t crc = sim_crc8(0, slave->taken, 2);
-
-	sim_send_byte(slave, sim_crc8(crc, sim_state(slave, sim_tmp1826)->second, n));
+	return s->target >> 8 == LOCK_PAGE ? 1 : SIM_TMP1826_BLOCK;
 }
 
-static void write_block(struct sim_slave *slave, uint8_t byte)
+/* The checksum is that of the address and the bytes. */
+static void send_block_crc(struct sim_slave *slave)
+{
+	const struct sim_tmp1826 *s = slave->state;
+	uint8_t crc = sim_crc8(0, slave->taken, 2);
+
+	sim_send_byte(slave, sim_crc8(crc, s->second, block_size(s)));
+}
+
+static void tmp1826_write_block(struct sim_slave *slave, uint8_t byte)
 {
 	struct sim_tmp1826 *s = slave->state;
-	unsigned n = s->target >> 8 == LOCK_PAGE ? 1 : SIM_TMP1826_BLOCK;
 
 	s->second[slave->address++] = byte;
-	if (slave->address == n)
-		send_block_crc(slave, n);
+	if (slave->address == block_size(s))
+		send_block_crc(slave);
 }
 
 static void read_block(struct sim_slave *slave)
 {
 	struct sim_tmp1826 *s = slave->state;
-	unsigned n = s->target >> 8 == LOCK_PAGE ? 1 : SIM_TMP1826_BLOCK;
 
-	if (address(slave) != s->target) {
+	if (taken_address(slave) != s->target) {
 		sim_end(slave);
 		return;
 	}
 	slave->address = 0;
-	sim_send(slave, s->second, n);
+	sim_send(slave, s->second, block_size(s));
 }
 
 static void end_block(struct sim_slave *slave)
 {
 	if (slave->address++ == 0)
-		send_block_crc(slave, sim_state(slave, sim_tmp1826)->target >> 8 == LOCK_PAGE
-		                              ? 1
-		                              : SIM_TMP1826_BLOCK);
+		send_block_crc(slave);
 }
 
 static void copy_block(struct sim_slave *slave)
 {
 	if (slave->taken[0] == KEY && sim_state(slave, sim_tmp1826)->target != SIM_TMP1826_NOWHERE)
-		work(slave, COPY_MEMORY, PROGRAM_NS);
+		tmp1826_work(slave, COPY_MEMORY, PROGRAM_NS);
 	else
 		sim_end(slave);
 }
 
 /* Before each block the line has to stay high while the chip fetches it. */
-static void fetch(struct sim_slave *slave)
+static void fetch_block(struct sim_slave *slave)
 {
-	work(slave, FETCH, READ_IDLE_NS);
+	tmp1826_work(slave, FETCH, READ_IDLE_NS);
 }
 
-static void read_memory(struct sim_slave *slave)
+static void tmp1826_read_memory(struct sim_slave *slave)
 {
-	slave->address = address(slave) & (uint16_t) ~(SIM_TMP1826_BLOCK - 1);
-	fetch(slave);
+	slave->address = taken_address(slave) & (uint16_t) ~(SIM_TMP1826_BLOCK - 1);
+	fetch_block(slave);
 }
 
+/* No data sheet promises a busy slot: the host has to leave the bus idle meanwhile. */
 static const struct sim_function functions[] = {
 	{.code = 0x44, .start = tmp1826_convert},
 	/* Write, Read, Copy Scratchpad-1: temperature and settings */
-	{.code = 0x4E, .start = begin_settings, .byte = write_settings},
+	{.code = 0x4E, .byte = tmp1826_write_settings},
 	{.code = 0xBE, .start = tmp1826_read_scratchpad, .next = read_more},
 	{.code = 0x48, .start = copy_settings},
 	/* Write, Read, Copy Scratchpad-2, Read EEPROM */
-	{.code = 0x0F, .takes = 2, .start = begin_block, .byte = write_block},
+	{.code = 0x0F, .takes = 2, .start = begin_block, .byte = tmp1826_write_block},
 	{.code = 0xAA, .takes = 2, .start = read_block, .next = end_block},
 	{.code = 0x55, .takes = 1, .start = copy_block},
-	{.code = 0xF0, .takes = 2, .start = read_memory, .next = fetch},
+	{.code = 0xF0, .takes = 2, .start = tmp1826_read_memory, .next = fetch_block},
 	{0},
 };
 
@@ -291,23 +278,26 @@ static bool tmp1826_alarm(struct sim_slave *slave)
 	return (sim_state(slave, sim_tmp1826)->status & (ALERT_HIGH | ALERT_LOW)) != 0;
 }
 
-/* Which settings the EEPROM holds: "precise" is the format, "averaging" that of 8 conversions. */
-static int tmp1826_option(struct sim_slave *slave, const char *name, double value)
+static void store_flag(struct sim_slave *slave, uint8_t flag, bool on)
 {
-	struct sim_tmp1826 *s = slave->state;
-	uint8_t flag = strcmp(name, "precise") == 0     ? TEMP_FMT
-	               : strcmp(name, "averaging") == 0 ? AVERAGE
-	                                                : 0;
+	uint8_t *settings = sim_state(slave, sim_tmp1826)->stored;
 
-	if (!flag)
-		return -ENOENT;
-	if (value != 0 && value != 1)
-		return -ERANGE;
-	s->stored[0] &= (uint8_t)~flag;
-	if (value == 1)
-		s->stored[0] |= flag;
-	return 0;
+	settings[0] = (uint8_t)(on ? settings[0] | flag : settings[0] & ~flag);
 }
+
+static void set_precise(struct sim_slave *slave, int64_t on)
+{
+	store_flag(slave, TEMP_FMT, on);
+}
+
+static void set_averaging(struct sim_slave *slave, int64_t on)
+{
+	store_flag(slave, AVERAGE, on);
+}
+
+/* Which settings the EEPROM holds: "precise" is the format, "averaging" that of 8 conversions. */
+static const struct sim_option options[] = {
+	{"precise", 0, 1, .set = set_precise}, {"averaging", 0, 1, .set = set_averaging}, {0}};
 
 static const struct sim_input inputs[] = {
 	{.name = "temperature", .start = 20, .least = -55, .most = 150},
@@ -318,7 +308,7 @@ static const struct sim_input inputs[] = {
 	.name = (part), .code = 0x26, .overdrive = true, .crc8 = true, \
 	.state_size = sizeof(struct sim_tmp1826), .inputs = inputs, .functions = functions, \
 	.create = tmp1826_create, .power_on = tmp1826_power_on, .alarm = tmp1826_alarm, \
-	.bit = tmp1826_bit, .worked = tmp1826_worked, .option = tmp1826_option, \
+	.bit = sim_ones, .worked = tmp1826_worked, .options = options, \
 	SIM_MEMORY(sim_tmp1826, memory, SIM_TMP1826_MEMORY)
 
 const struct sim_family sim_tmp1826 = {PART("TMP1826")};

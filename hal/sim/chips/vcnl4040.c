@@ -20,44 +20,37 @@ enum {
 };
 enum { SHUT_DOWN = 1 };
 
+static void vcnl4040_put(struct sim_sensor *sensor, unsigned command, double value)
+{
+	sim_put(sensor->reg + 2 * command, 2, sim_within(value, 0, 65535));
+}
+
 static void vcnl4040_power_on(struct sim_sensor *sensor)
 {
 	memset(sensor->reg, 0, sizeof(sensor->reg));
 	sensor->reg[2 * ALS_CONF] = sensor->reg[2 * PS_CONF] = SHUT_DOWN;
-	sensor->reg[2 * ID] = 0x86;
-	sensor->reg[2 * ID + 1] = 0x01;
-}
-
-static uint16_t within(double value)
-{
-	return (uint16_t)(value < 0 ? 0 : value > 65535 ? 65535 : sim_round(value));
-}
-
-static void vcnl4040_put(struct sim_sensor *sensor, unsigned command, uint16_t word)
-{
-	sensor->reg[2 * command] = (uint8_t)word;
-	sensor->reg[2 * command + 1] = (uint8_t)(word >> 8);
+	vcnl4040_put(sensor, ID, 0x186);
 }
 
 /* What is switched on measures. 0.1 lux a step at 80 ms, and half of it at twice the time. */
-static void vcnl4040_measure(struct sim_slave *slave, struct sim_sensor *sensor, int64_t t)
+static void vcnl4040_measure(struct sim_slave *slave, struct sim_sensor *sensor)
 {
 	uint8_t light = sensor->reg[2 * ALS_CONF];
-	double steps = sim_input_at(slave, SENSOR_LIGHT, t) * 10 * (1 << (light >> 6));
+	double steps = sim_input_now(slave, SENSOR_LIGHT) * 10 * (1 << (light >> 6));
 
 	if (!(light & SHUT_DOWN)) {
-		vcnl4040_put(sensor, ALS_DATA, within(steps));
-		vcnl4040_put(sensor, WHITE_DATA, within(steps));
+		vcnl4040_put(sensor, ALS_DATA, steps);
+		vcnl4040_put(sensor, WHITE_DATA, steps);
 	}
 	if (!(sensor->reg[2 * PS_CONF] & SHUT_DOWN))
-		vcnl4040_put(sensor, PS_DATA, within(sim_input_at(slave, SENSOR_PROXIMITY, t)));
+		vcnl4040_put(sensor, PS_DATA, sim_input_now(slave, SENSOR_PROXIMITY));
 }
 
 static bool vcnl4040_take(struct sim_slave *slave, struct sim_sensor *sensor, uint8_t byte,
-                          unsigned at, int64_t t)
+                          unsigned at)
 {
 	if (at == 0) {
-		vcnl4040_measure(slave, sensor, t);
+		vcnl4040_measure(slave, sensor);
 		sensor->pointer = byte;
 		return byte <= LAST;
 	}
@@ -68,15 +61,11 @@ static bool vcnl4040_take(struct sim_slave *slave, struct sim_sensor *sensor, ui
 	return true;
 }
 
-static uint8_t vcnl4040_give(struct sim_slave *slave, struct sim_sensor *sensor, unsigned at,
-                             int64_t t)
+static uint8_t vcnl4040_give(struct sim_slave *slave, struct sim_sensor *sensor, unsigned at)
 {
 	(void)slave;
-	(void)t;
 	return at < 2 && sensor->pointer <= LAST ? sensor->reg[2 * sensor->pointer + at] : 0xFF;
 }
 
-const struct sim_sensor_kind sim_sensor_vcnl4040 = {.name = "vcnl4040",
-                                                    .power_on = vcnl4040_power_on,
-                                                    .write = vcnl4040_take,
-                                                    .read = vcnl4040_give};
+const struct sim_sensor_kind sim_sensor_vcnl4040 = {
+	.power_on = vcnl4040_power_on, .write = vcnl4040_take, .read = vcnl4040_give};

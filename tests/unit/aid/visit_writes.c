@@ -79,7 +79,7 @@ static size_t kept(const struct visit *visit, const uint8_t **state)
 	if (strcmp(visit->chip, "DS2450") == 0)
 		size = 32;
 	if (strcmp(visit->chip, "DS2408") == 0)
-		size = sizeof(struct sim_pins) + 3; /* and mask, polarity, control */
+		size = sizeof(struct sim_pins);
 	if (strcmp(visit->chip, "DS2415") == 0)
 		size = 1; /* the control byte */
 	if (strcmp(visit->chip, "DS2890") == 0)
@@ -90,10 +90,6 @@ static size_t kept(const struct visit *visit, const uint8_t **state)
 		size = 4096;
 	if (visited->rom[0] == 0xED)
 		size = INFERNO_LIGHTS * INFERNO_LIGHT + 2 + 8 + 12; /* LEDs, types, relays */
-	if (strcmp(visit->chip, "DS2720") == 0) {                   /* registers, shadow, EEPROM */
-		*state = visited->state;
-		size = 256 + 8;
-	}
 	if (is_gauge()) { /* registers, what was latched, EEPROM */
 		*state = sim_state(visited, gauge)->memory;
 		size = GAUGE_END;

@@ -441,7 +441,7 @@ static void test_each_chip_of_family_3b_gets_its_own_values(void)
 		slave[i] = wire_add(0, chips[i], 10 + i);
 		wire_set(slave[i], "temperature", -20.0625 - i);
 	}
-	TEST_ASSERT_EQUAL_INT(0, slave[1]->family->option(slave[1], "address", 0x2a));
+	TEST_ASSERT_EQUAL_INT(0, sim_slave_option(slave[1], "address", 0x2a));
 	start();
 	for (unsigned i = 0; i < 4; i++) {
 		snprintf(text, sizeof(text), "%12G", -20.0625 - i);

@@ -30,7 +30,7 @@ void tearDown(void)
 
 static void option(const char *name, double address)
 {
-	TEST_ASSERT_EQUAL_INT(0, bridge->family->option(bridge, name, address));
+	TEST_ASSERT_EQUAL_INT(0, sim_slave_option(bridge, name, address));
 }
 
 /* The shipped kinds, and these lines behind them. */

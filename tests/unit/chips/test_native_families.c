@@ -431,9 +431,9 @@ static void test_a_ds2423_counts(void)
 	reads("mincount", "           0");
 	reads("pages/count.14", "           0");
 	refuses(-ENOENT, BUS_READ, "pages/count.11", NULL);
-	TEST_ASSERT_EQUAL_INT(0, slave->family->option(slave, "count.A", UINT32_MAX));
+	TEST_ASSERT_EQUAL_INT(0, sim_slave_option(slave, "count.A", UINT32_MAX));
 	reads("counter.A", "  4294967295");
-	TEST_ASSERT_NOT_EQUAL_INT(0, slave->family->option(slave, "count.A", 4294967296.0));
+	TEST_ASSERT_NOT_EQUAL_INT(0, sim_slave_option(slave, "count.A", 4294967296.0));
 }
 
 static void test_a_ds2450_converts_and_switches(void)

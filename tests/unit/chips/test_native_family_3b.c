@@ -32,7 +32,7 @@ static void plug_with(const char *chip, const char *option, double value)
 	writes = 0;
 	slave = wire_add(0, chip, 1);
 	if (option)
-		TEST_ASSERT_EQUAL_INT(0, slave->family->option(slave, option, value));
+		TEST_ASSERT_EQUAL_INT(0, sim_slave_option(slave, option, value));
 	sim_slave_power_on(slave, wire_time());
 	part = slave->state;
 	scratchpad = part->scratchpad;
@@ -116,7 +116,7 @@ static void test_a_ds1825_tells_its_address_pins_and_resolution(void)
 		unsigned resolution = i % 4;
 
 		plug_with("DS1825", "address", i);
-		slave->family->option(slave, "resolution", 9 + resolution);
+		sim_slave_option(slave, "resolution", 9 + resolution);
 		sim_slave_power_on(slave, wire_time());
 		start();
 		TEST_ASSERT_EQUAL_INT(0, result(BUS_READ, of(slave, "temperature"), NULL));
@@ -143,7 +143,7 @@ static void test_the_power_on_value_of_a_ds1825_is_no_reading(void)
 static void test_limits_of_one_below_zero_make_no_max31826_of_a_ds1825(void)
 {
 	plug_with("DS1825", "high", -1);
-	slave->family->option(slave, "low", -1);
+	sim_slave_option(slave, "low", -1);
 	sim_slave_power_on(slave, wire_time());
 	start();
 	wire_set(slave, "temperature", 25.0625);

@@ -66,7 +66,7 @@ static void test_it_measures_with_200_steps_a_degree(void)
 static void test_the_count_of_results_may_stand_in_another_register(void)
 {
 	begin("MAX31888", false);
-	TEST_ASSERT_EQUAL_INT(0, chip->family->option(chip, "count", 4));
+	TEST_ASSERT_EQUAL_INT(0, sim_slave_option(chip, "count", 4));
 	for (unsigned i = 0; i < 40; i++) {
 		wire_set(chip, "temperature", 20 + i);
 		expect_temperature(20 + i);
@@ -118,7 +118,7 @@ static void once(struct trouble what, bool parasite)
 	const struct bus_answer *answer;
 
 	begin("MAX31888", parasite);
-	TEST_ASSERT_EQUAL_INT(0, chip->family->option(chip, "count", count));
+	TEST_ASSERT_EQUAL_INT(0, sim_slave_option(chip, "count", count));
 	measure();
 	wire_set(chip, "temperature", 60);
 	host_run(&host, bus, host.now + HOST_S);

@@ -123,7 +123,7 @@ static void test_a_room_is_measured(void)
 
 static void set_option(const char *name, double value)
 {
-	TEST_ASSERT_EQUAL_INT(0, slave->family->option(slave, name, value));
+	TEST_ASSERT_EQUAL_INT(0, sim_slave_option(slave, name, value));
 }
 
 static void test_a_room_whose_checksum_covers_the_command_is_measured(void)

@@ -73,7 +73,7 @@ static void set_out(const struct setup *setup)
 	fleet.slave[0]->parasite = setup->parasite;
 	for (unsigned i = 0; i < setup->count; i++) {
 		fleet.pause_ns[i] = setup->pause_ns * i;
-		fleet.slave[i]->family->option(fleet.slave[i], "once", setup->once);
+		sim_slave_option(fleet.slave[i], "once", setup->once);
 	}
 	/* It is refused at once. */
 	if (setup->passive && setup->parasite)
@@ -215,7 +215,7 @@ static void test_the_first_value_of_a_chip_has_the_time_of_its_resolution(void)
 		fleet_again();
 		wire_init(&host, 1, 1);
 		struct sim_slave *slave = wire_add(0, "DS18B20", 1);
-		slave->family->option(slave, "resolution", bits);
+		sim_slave_option(slave, "resolution", bits);
 		sim_slave_power_on(slave, host.now);
 		start();
 		int64_t begun = host.now;

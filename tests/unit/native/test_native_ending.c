@@ -31,8 +31,7 @@ static void set_out(unsigned count, const char *chip)
 	fleet_add(chip, count);
 	fleet.early_ns = 170 * HOST_MS;
 	for (unsigned i = 0; i < count; i++)
-		TEST_ASSERT_EQUAL_INT(0,
-		                      fleet.slave[i]->family->option(fleet.slave[i], "speed", 80));
+		TEST_ASSERT_EQUAL_INT(0, sim_slave_option(fleet.slave[i], "speed", 80));
 }
 
 /* The mean time in which the value of the one is new, in ms. */

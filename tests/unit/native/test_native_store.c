@@ -139,7 +139,7 @@ static void test_the_mark_of_a_thermometer_fed_by_the_wire_does_not_become_lasti
 static void test_a_chip_that_knows_no_recall_keeps_what_it_had(void)
 {
 	begin("DS18B20");
-	TEST_ASSERT_EQUAL_INT(0, slave->family->option(slave, "recall", 0));
+	TEST_ASSERT_EQUAL_INT(0, sim_slave_option(slave, "recall", 0));
 	leave(21, 19, 12);
 	start();
 	wire_net.sent = count_copies;

@@ -263,7 +263,7 @@ static void test_the_power_on_value_is_never_good(void)
 	wire_init(&host, 1, 1);
 	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
 
-	TEST_ASSERT_EQUAL_INT(0, slave->family->option(slave, "fixed", 1));
+	TEST_ASSERT_EQUAL_INT(0, sim_slave_option(slave, "fixed", 1));
 	wire_set(slave, "temperature", 20.5);
 	start();
 	TEST_ASSERT_EQUAL_INT(-ERANGE, result(BUS_READ, of(slave, "latesttemp"), NULL));
@@ -285,7 +285,7 @@ static void test_a_chip_that_takes_no_resolution_is_read_all_the_same(void)
 	wire_init(&host, 1, 1);
 	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
 
-	TEST_ASSERT_EQUAL_INT(0, slave->family->option(slave, "fixed", 1));
+	TEST_ASSERT_EQUAL_INT(0, sim_slave_option(slave, "fixed", 1));
 	wire_set(slave, "temperature", 21.0625);
 	start();
 	expect(true, of(slave, "temperature9"), "     21.0625");

@@ -15,10 +15,10 @@ static uint8_t got[200];
 static void plug(struct sim_slave **slave, const struct sim_family *family)
 {
 	*slave = hand_plug(&hand, family, 1);
-	TEST_ASSERT_EQUAL_INT(0, family->option(*slave, "sht4x", 0x44));
-	TEST_ASSERT_EQUAL_INT(0, family->option(*slave, "bme280", 0x76));
-	TEST_ASSERT_EQUAL_INT(0, family->option(*slave, "vcnl4040", 0x60));
-	TEST_ASSERT_EQUAL_INT(0, family->option(*slave, "mcp23017", 0x20));
+	TEST_ASSERT_EQUAL_INT(0, sim_slave_option(*slave, "sht4x", 0x44));
+	TEST_ASSERT_EQUAL_INT(0, sim_slave_option(*slave, "bme280", 0x76));
+	TEST_ASSERT_EQUAL_INT(0, sim_slave_option(*slave, "vcnl4040", 0x60));
+	TEST_ASSERT_EQUAL_INT(0, sim_slave_option(*slave, "mcp23017", 0x20));
 }
 
 void setUp(void)

@@ -173,7 +173,7 @@ static void test_a_max31825_has_its_own_scratchpad_and_times(void)
 	static const uint8_t first[8] = {0, 0, 0x15, 0x60, 0x07, 0xFF, 0x90, 0xFC};
 
 	plug(&sim_max31825);
-	TEST_ASSERT_EQUAL_INT(0, slave->family->option(slave, "address", 0x15));
+	TEST_ASSERT_EQUAL_INT(0, sim_slave_option(slave, "address", 0x15));
 	scratchpad();
 	TEST_ASSERT_EQUAL_HEX8_ARRAY(first, pad, 8);
 	TEST_ASSERT_EQUAL_INT(-161, measure(-10.0625, 161));
@@ -190,7 +190,7 @@ static void test_a_max31825_has_its_own_scratchpad_and_times(void)
 static void test_a_max31825_is_selected_by_its_location(void)
 {
 	plug(&sim_max31825);
-	TEST_ASSERT_EQUAL_INT(0, slave->family->option(slave, "address", 0x15));
+	TEST_ASSERT_EQUAL_INT(0, sim_slave_option(slave, "address", 0x15));
 	hand_skip(&hand, 3, 0x70, 0x15, 0xBE);
 	hand_read(&hand, pad, 9);
 	TEST_ASSERT_EQUAL_HEX8(0x15, pad[2]);

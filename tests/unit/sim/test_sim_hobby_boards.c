@@ -94,7 +94,7 @@ static void test_a_leaf_is_scaled_between_its_limits(void)
 static void test_moisture_meters_from_version_1_80_on_have_other_commands(void)
 {
 	slave = hand_plug(&hand, &sim_hb_moisture_meter, 1);
-	TEST_ASSERT_EQUAL_INT(0, slave->family->option(slave, "version", 0x0150));
+	TEST_ASSERT_EQUAL_INT(0, sim_slave_option(slave, "version", 0x0150));
 	hand_skip(&hand, 2, 0xA2, 0x05);
 	TEST_ASSERT_EQUAL_HEX8(0x05, byte_of(0x22));
 	hand_skip(&hand, 3, 0xA3, 0x10, 0x20);

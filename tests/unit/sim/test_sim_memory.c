@@ -129,7 +129,7 @@ static void test_a_ds2423_counts_falling_edges(void)
 		.shape = SIM_SQUARE, .a = 1, .b = 0, .span_ns = 10 * HAND_MS};
 
 	slave = hand_plug(&hand, &sim_ds2423, 1);
-	TEST_ASSERT_EQUAL_INT(0, slave->family->option(slave, "count.B", 1000));
+	TEST_ASSERT_EQUAL_INT(0, sim_slave_option(slave, "count.B", 1000));
 	TEST_ASSERT_EQUAL_UINT32(0, counter(14));
 	TEST_ASSERT_EQUAL_UINT32(1000, counter(15));
 	TEST_ASSERT_EQUAL_HEX32(0xFFFFFFFF, counter(3));

@@ -67,7 +67,7 @@ static void test_only_the_matched_one_answers(void)
 	uint8_t scratchpad[9];
 	const uint8_t read = 0xBE;
 
-	hand_plug(&hand, &sim_ds18b20, 2)->family->option(hand.wire.slaves[1], "high", 11);
+	sim_slave_option(hand_plug(&hand, &sim_ds18b20, 2), "high", 11);
 	sim_slave_power_on(hand.wire.slaves[1], 0);
 	hand_match(&hand, first);
 	hand_write(&hand, &read, 1);

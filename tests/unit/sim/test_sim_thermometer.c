@@ -183,7 +183,7 @@ static void test_a_clone_ignores_the_resolution(void)
 {
 	uint8_t out[9];
 
-	TEST_ASSERT_EQUAL_INT(0, slave->family->option(slave, "fixed", 1));
+	TEST_ASSERT_EQUAL_INT(0, sim_slave_option(slave, "fixed", 1));
 	hand_skip(&hand, 4, 0x4E, 75, 70, 0x1F);
 	scratchpad(out);
 	TEST_ASSERT_EQUAL_HEX8(0x7F, out[4]);
@@ -196,7 +196,7 @@ static void test_a_ds1825_shows_its_address_pins(void)
 
 	hand_clear(&hand);
 	slave = hand_plug(&hand, &sim_ds1825, 1);
-	TEST_ASSERT_EQUAL_INT(0, slave->family->option(slave, "address", 9));
+	TEST_ASSERT_EQUAL_INT(0, sim_slave_option(slave, "address", 9));
 	sim_slave_power_on(slave, 0);
 	scratchpad(out);
 	TEST_ASSERT_EQUAL_HEX8(0x79, out[4]);
