@@ -16,7 +16,7 @@ struct start {
 };
 
 /* A thread names itself: with its first line in run it has its name. */
-static void *begin(void *arg)
+static void *begin_thread(void *arg)
 {
 	struct start *start = arg;
 	void *(*run)(void *ctx) = start->run;
@@ -49,7 +49,7 @@ int thread_start(pthread_t *thread, const char *name, size_t stack, void *(*run)
 		err = pthread_sigmask(SIG_SETMASK, &all, &before);
 	if (!err) {
 		sem_init(&start.taken, 0, 0);
-		err = pthread_create(thread, &attr, begin, &start);
+		err = pthread_create(thread, &attr, begin_thread, &start);
 		pthread_sigmask(SIG_SETMASK, &before, NULL);
 		while (!err && sem_wait(&start.taken) && errno == EINTR)
 			;

@@ -63,6 +63,7 @@ static struct bus_req **slot(struct bus *bus, unsigned i)
 	return &bus->queue[(bus->head + i) % bus->ops->depth];
 }
 
+/* Those before it move up by one, so that requests of a rank keep their order. */
 static struct bus_req *take_request(struct bus *bus, unsigned i)
 {
 	struct bus_req *req = *slot(bus, i);
@@ -133,18 +134,19 @@ static void refuse_all(struct bus *bus)
 	}
 }
 
+/* Report once that the target of a suspended bus is visible; and again after it was gone. */
 static int64_t look_for_target(struct bus *bus, int64_t now)
 {
-	int there;
+	int visible;
 
 	if (now < bus->look_ns)
 		return bus->look_ns;
-	there = bus->ops->there ? bus->ops->there(bus) : 1;
-	if (there == -EAGAIN)
+	visible = bus->ops->visible ? bus->ops->visible(bus) : 1;
+	if (visible == -EAGAIN)
 		return now;
-	if (there > 0 && !bus->there)
+	if (visible > 0 && !bus->visible)
 		report_news(bus, BUS_BACK);
-	bus->there = there > 0;
+	bus->visible = visible > 0;
 	bus->look_ns = bus->env->now(bus->env->ctx) + LOOK_NS;
 	return bus->look_ns;
 }
@@ -188,7 +190,7 @@ void bus_suspend(struct bus *bus, bool yes)
 	if (bus->ops->exec)
 		refuse_all(bus);
 	report_news(bus, BUS_RELEASED);
-	bus->there = false;
+	bus->visible = false;
 	bus->look_ns = 0;
 }
 

@@ -76,7 +76,7 @@ struct bus_req {
 	                    A value that is no bytes cannot be written in parts: -EINVAL */
 	uint8_t *data;
 	/*
-	 * Not 0 as soon as nobody wants the answer any more; any thread may set it while the bus
+	 * Not 0 as soon as the answer is not wanted any more; any thread may set it while the bus
 	 * has the request. What is not begun of it is left out then, at once or at the end of the
 	 * part that is under way, and the answer is -ECANCELED. A WRITE goes on to its end, and a
 	 * bus may do so with all. NULL: the answer is wanted.
@@ -130,7 +130,7 @@ enum bus_supply {
  *   -EOPNOTSUPP   this bus has no such operation (DIR of /alarm on some)
  *   -ETIME        not begun before its deadline, no effect
  *   -EINPROGRESS  the target lives but had no answer by the deadline; a write is in doubt
- *   -ECANCELED    the host shuts down, or nobody wants the answer (bus_req.unwanted)
+ *   -ECANCELED    the host shuts down, or the answer is not wanted (bus_req.unwanted)
  *   -ENOTCONN     the target is down; nothing was sent
  *   -ETIMEDOUT    the target fell silent; a BUS_DOWN follows; a write is in doubt
  *   -ECONNRESET   the target was lost on the way; a BUS_DOWN follows; a write is in doubt
@@ -259,7 +259,7 @@ struct bus_ops {
 	 * failed while it was visible counts as present again only after what is visible has
 	 * changed. NULL: always.
 	 */
-	int (*there)(struct bus *bus);
+	int (*visible)(struct bus *bus);
 	/*
 	 * While the bus waits for its next step: a descriptor that can be read, or has hung up,
 	 * when there is something to do sooner; -1: none. The host sets `stirred` then, which the
@@ -280,7 +280,7 @@ struct bus {
 	bool told_up; /* simple tier without step: BUS_UP was reported at its first step */
 	bool suspended;
 	bool stirred;    /* what watch() returned can be read: for the next step */
-	bool there;      /* suspended: BUS_BACK was reported */
+	bool visible;    /* suspended: BUS_BACK was reported */
 	int64_t look_ns; /* suspended: when to look for the target again */
 };
 

@@ -45,8 +45,8 @@ struct worker {
 	int wake_fd;
 	uint32_t sleeping; /* the thread waits for orders: wake it */
 	uint32_t stopping;
-	/* Turns of bus_suspend() asked for and done: odd ones suspend, even ones take again. */
-	uint32_t turns_asked, turns_done;
+	/* Calls of bus_suspend() asked for and done: odd ones suspend, even ones take again. */
+	uint32_t suspends_asked, suspends_done;
 
 	bool started;
 	pthread_t thread;
@@ -126,6 +126,7 @@ static bool wait_for_room(struct worker *worker, uint32_t full, unsigned naps)
 	return false;
 }
 
+/* An answer is never dropped: the engine lent the request's memory until it has the answer. */
 static void env_answer(void *ctx, const struct bus_answer *answer)
 {
 	struct worker *worker = ctx;
@@ -162,19 +163,20 @@ static void take_orders(struct worker *worker)
 	}
 }
 
-static bool has_turn(const struct worker *worker)
+static bool suspend_is_due(const struct worker *worker)
 {
-	return __atomic_load_n(&worker->turns_asked, __ATOMIC_SEQ_CST) != worker->turns_done;
+	return __atomic_load_n(&worker->suspends_asked, __ATOMIC_SEQ_CST) != worker->suspends_done;
 }
 
-static void take_turns(struct worker *worker)
+static void take_suspends(struct worker *worker)
 {
-	while (has_turn(worker)) {
-		worker->turns_done++;
-		bus_suspend(worker->bus, worker->turns_done & 1);
+	while (suspend_is_due(worker)) {
+		worker->suspends_done++;
+		bus_suspend(worker->bus, worker->suspends_done & 1);
 	}
 }
 
+/* `sleeping` is set before the last look: an order that comes after that look rings the bell. */
 static void sleep_until(struct worker *worker, int64_t until_ns)
 {
 	/* On one CPU the engine, which the bell woke, runs now; its next order saves a sleep. */
@@ -182,7 +184,7 @@ static void sleep_until(struct worker *worker, int64_t until_ns)
 	if (ring_used(&worker->orders))
 		return;
 	__atomic_store_n(&worker->sleeping, 1, __ATOMIC_SEQ_CST);
-	if (!ring_used(&worker->orders) && !has_turn(worker) && !is_stopping(worker))
+	if (!ring_used(&worker->orders) && !suspend_is_due(worker) && !is_stopping(worker))
 		worker->bus->stirred = poll_once(worker, bus_watch(worker->bus), POLLIN, until_ns);
 	__atomic_store_n(&worker->sleeping, 0, __ATOMIC_SEQ_CST);
 }
@@ -196,7 +198,7 @@ static void *worker_main(void *arg)
 		int64_t next;
 
 		take_orders(worker);
-		take_turns(worker);
+		take_suspends(worker);
 		left = ring_used(&worker->orders);
 		next = bus_step(worker->bus, clock_ns(CLOCK_BOOTTIME));
 		/* Orders that the bus had no room for wait until the bus wants its next step. */
@@ -309,11 +311,11 @@ int worker_submit(struct worker *worker, struct bus_req *req)
 
 void worker_suspend(struct worker *worker, bool yes)
 {
-	uint32_t turns = worker->turns_asked;
+	uint32_t asked = worker->suspends_asked;
 
-	if ((turns & 1) == yes)
+	if ((asked & 1) == yes)
 		return;
-	__atomic_store_n(&worker->turns_asked, turns + 1, __ATOMIC_SEQ_CST);
+	__atomic_store_n(&worker->suspends_asked, asked + 1, __ATOMIC_SEQ_CST);
 	bell_ring(worker->wake_fd);
 }
 

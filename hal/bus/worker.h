@@ -2,7 +2,8 @@
 /*
  * A worker: the thread that runs one bus, and the two bounded queues between it and the engine.
  * The engine's side never blocks: worker_submit() writes one eventfd, worker_next() reads memory.
- * A worker that is stuck in the kernel stalls nobody: worker_stop() says so and goes on.
+ * A worker that is stuck in the kernel stalls no other thread: worker_stop() reports that and
+ * returns.
  */
 #pragma once
 

@@ -23,7 +23,7 @@ void job_unlock(struct native *native, struct job *job)
 	job->locks = false;
 }
 
-/* Which supply a driver sees to is its affair: nobody asked the chip. */
+/* A driver sees to the supply itself: owsd has not asked the chip for it. */
 static uint8_t supply_of(const struct native *native, const struct device *device)
 {
 	const struct link *link = native->channel[device->channel].link;
@@ -45,6 +45,8 @@ static void answer_give(struct native *native, struct job *job, struct bus_answe
 	uint64_t us = job->wire_ns / 1000;
 
 	tally_end(native, job, answer);
+	if (native->master->ops->simulated)
+		answer->detail |= BUS_DETAIL_SIMULATED;
 	answer->retries = job->retries;
 	answer->wire_us = us < UINT32_MAX ? (uint32_t)us : UINT32_MAX;
 	if (device) {
@@ -78,8 +80,6 @@ void job_answer(struct native *native, struct job *job, int err)
 
 	job_unlock(native, job);
 	note_failure(job, err);
-	if (native->master->ops->simulated)
-		answer.detail |= BUS_DETAIL_SIMULATED;
 	if (!err && job->req->op == BUS_WRITE)
 		answer.len = (uint32_t)job->taken;
 	else if (!err)
@@ -98,7 +98,7 @@ void job_answer(struct native *native, struct job *job, int err)
 			answer.number = format_as_number(property, job->extension, &job->txn);
 		}
 	}
-	/* Behind an empty list nothing follows. */
+	/* After an empty list the engine sends no next request. */
 	if (job->req->prio == BUS_ALARM && (job->req->op != BUS_DIR || job->out))
 		native->follow_ns = native_now(native) + FOLLOW_NS;
 	answer_give(native, job, &answer);
@@ -117,8 +117,6 @@ void job_answer_cached(struct native *native, struct job *job, const struct cach
 		job_answer(native, job, -EMSGSIZE);
 		return;
 	}
-	if (native->master->ops->simulated)
-		answer.detail |= BUS_DETAIL_SIMULATED;
 	memcpy(job->req->data, entry->text, entry->len);
 	if (entry->kind == BUS_NUMBER && !entry->len && !job->req->number) {
 		int n = format_alone(entry->property, entry->extension, entry->number,
@@ -142,12 +140,11 @@ bool job_answer_own(struct native *native, struct job *job)
 	if (!native->master->ops->own ||
 	    !native->master->ops->own(native->master, job->req, &answer))
 		return false;
-	if (native->master->ops->simulated)
-		answer.detail |= BUS_DETAIL_SIMULATED;
 	answer_give(native, job, &answer);
 	return true;
 }
 
+/* Keep the answer for reads that need not be fresh, for as long as the property says. */
 void job_keep(struct native *native, struct job *job)
 {
 	const struct property *property = job->property;
@@ -168,6 +165,7 @@ void job_keep(struct native *native, struct job *job)
 	memcpy(entry->text, job->req->data, job->out);
 }
 
+/* The job begins anew, with the same request and what its tries have counted. */
 void job_restart(struct native *native, struct job *job)
 {
 	job_unlock(native, job);

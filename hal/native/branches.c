@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The branches of couplers as channels behind those of the master: found, lost, called by a path,
- * and switched off when nobody uses them, so that a short of one does not become one of the wire.
+ * and switched off when no request uses them: a short of a branch then does not short the wire.
  */
 #include <errno.h>
 #include <stdio.h>
@@ -30,7 +30,7 @@ static struct branch *branch_of(struct coupler *couplers, unsigned channel)
 }
 
 /* The slot of a coupler; NATIVE_COUPLERS: it has none. */
-static unsigned slot_of(const struct native *native, const uint8_t rom[8])
+static unsigned coupler_slot(const struct native *native, const uint8_t rom[8])
 {
 	unsigned n = 0;
 
@@ -39,7 +39,7 @@ static unsigned slot_of(const struct native *native, const uint8_t rom[8])
 	return n;
 }
 
-/* One that is free, or whose coupler is gone. */
+/* The first slot that is free, or that belongs to a coupler that is gone. */
 static unsigned free_slot(const struct native *native)
 {
 	unsigned n = 0;
@@ -66,31 +66,13 @@ static struct trunk *trunk_of(struct native *native, unsigned wire)
 	return channel->trunk;
 }
 
-/* running: nobody waits for the first list any more. */
-static void open_channel(struct native *native, unsigned n, struct branch *branch, unsigned wire,
-                         bool running)
-{
-	struct channel *channel = &native->channel[n];
-
-	*channel = (struct channel){
-		.link = &branch->relay.link,
-		.wire = (uint8_t)wire,
-		.round = channel->round,
-		.errors = channel->errors,
-		.shorts = channel->shorts,
-		.checksums = channel->checksums,
-		.transactions = channel->transactions,
-		.listed = running,
-		.search_ns = native_now(native),
-	};
-}
-
 void branches_found(struct native *native, struct device *device)
 {
-	unsigned n = slot_of(native, device->rom), wire = native->channel[device->channel].wire;
+	unsigned n = coupler_slot(native, device->rom),
+		 wire = native->channel[device->channel].wire;
 	struct trunk *trunk = trunk_of(native, wire);
 	struct coupler *coupler;
-	bool running = true;
+	bool running = true; /* the first list was made, so no client waits for it */
 
 	for (unsigned i = native_next(native, 0); i < NATIVE_ALL; i = native_next(native, i + 1))
 		running &= native->channel[i].listed;
@@ -107,13 +89,18 @@ void branches_found(struct native *native, struct device *device)
 		coupler_remove(coupler);
 	coupler_add(trunk, branch_of(native->coupler, device->channel), coupler, device->rom,
 	            device->own);
-	for (unsigned i = 0; i < COUPLER_BRANCHES; i++)
-		open_channel(native, channel_of(n, i), &coupler->branch[i], wire, running);
+	for (unsigned i = 0; i < COUPLER_BRANCHES; i++) {
+		struct channel *channel = &native->channel[channel_of(n, i)];
+
+		native_open_channel(native, channel_of(n, i), &coupler->branch[i].relay.link, wire);
+		channel->listed = running;
+		channel->search_ns = native_now(native);
+	}
 }
 
 bool branches_lost(struct native *native, const struct device *device)
 {
-	unsigned n = slot_of(native, device->rom);
+	unsigned n = coupler_slot(native, device->rom);
 
 	if (n == NATIVE_COUPLERS)
 		return false;
@@ -136,7 +123,7 @@ struct link *branches_wire(struct native *native, unsigned n, struct link *link)
 int branches_channel(const struct native *native, const struct device *coupler,
                      struct path_slice word)
 {
-	unsigned n = slot_of(native, coupler->rom);
+	unsigned n = coupler_slot(native, coupler->rom);
 
 	for (unsigned i = 0; n < NATIVE_COUPLERS && i < COUPLER_BRANCHES; i++)
 		if (word.len == strlen(words[i]) && memcmp(word.text, words[i], word.len) == 0 &&
@@ -147,7 +134,7 @@ int branches_channel(const struct native *native, const struct device *coupler,
 
 int branches_look(struct native *native, const uint8_t rom[8])
 {
-	unsigned n = slot_of(native, rom);
+	unsigned n = coupler_slot(native, rom);
 
 	return n < NATIVE_COUPLERS && native_has(native, channel_of(n, 0))
 	               ? coupler_look(&native->coupler[n])

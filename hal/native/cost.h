@@ -6,7 +6,7 @@
 
 /*
  * What the job's wire did since it was looked at last was a transaction of this job. For what
- * serves several devices (searches, Convert T for all) nobody calls this.
+ * serves several devices (searches, Convert T for all) this function is not called.
  */
 void cost_of_job(struct native *native, struct job *job);
 /* At the end of a step: the counters have all that was done. */

@@ -29,7 +29,7 @@ static bool is_text(const struct property *property)
 }
 
 /* Is it kept as it is written? Then an end of line or of string behind it is not part of it. */
-static bool is_name(const struct property *property)
+static bool is_kept_as_written(const struct property *property)
 {
 	return property->type == PROPERTY_ALIAS ||
 	       (property->type == PROPERTY_ASCII && property->access == ACCESS_BOTH);
@@ -40,12 +40,12 @@ static const struct family *family_of_job(const struct job *job)
 	return job->txn.device ? job->txn.device->family : job->table;
 }
 
-static property_function *reader(const struct job *job)
+static property_function *read_function(const struct job *job)
 {
 	return property_reader(family_of_job(job), job->property);
 }
 
-static property_function *writer(const struct job *job)
+static property_function *write_function(const struct job *job)
 {
 	return property_writer(family_of_job(job), job->property);
 }
@@ -147,7 +147,7 @@ int job_take_value(struct job *job)
 	if (is_text(property)) {
 		size_t skip = all ? job->element * size : 0;
 
-		if (is_name(property)) {
+		if (is_kept_as_written(property)) {
 			len = text_end(text, len);
 			job->taken = whole - len;
 		}
@@ -190,7 +190,8 @@ static void write_done(struct native *native, struct job *job)
 static bool needs_merge(const struct job *job)
 {
 	return job->req->op == BUS_WRITE && !job->merged && job->extension >= 0 &&
-	       job->property->array.count > 1 && reader(job) && writer(job) != field_write &&
+	       job->property->array.count > 1 && read_function(job) &&
+	       write_function(job) != field_write &&
 	       (job->property->array.aggregate || job->property->type == PROPERTY_BITS);
 }
 
@@ -205,7 +206,7 @@ static void forget_doubtful(struct device *device, int64_t now)
  * Which chip it is, where the family code does not tell: known before anything is asked of it.
  * -ENOENT: such a chip has no such property. -EIO: a fault of the chip may be why it has none.
  */
-static int identify(struct job *job)
+static int identify_chip(struct job *job)
 {
 	struct txn *txn = &job->txn;
 	const struct family *family = family_of_job(job);
@@ -247,28 +248,28 @@ static int run_function(struct job *job)
 		txn->measured_ns = txn->device->ok_ns;
 		return 0;
 	}
-	int known = identify(job);
+	int known = identify_chip(job);
 	if (known)
 		return known;
 	if (job->req->op == BUS_READ)
-		return reader(job)(txn);
+		return read_function(job)(txn);
 	if (needs_merge(job))
-		return merge ? merge(txn) : reader(job)(txn);
+		return merge ? merge(txn) : read_function(job)(txn);
 	if (txn->phase == 0) {
 		int err = job_take_value(job);
 
 		if (err)
 			return err;
 	}
-	/* Also of a write that fails nobody knows what it has changed. */
+	/* A write that fails may have changed the chip, too. */
 	if (txn->device && !job->property->offline) {
 		txn->device->changes++;
 		txn_void(txn);
 	}
-	return writer(job)(txn);
+	return write_function(job)(txn);
 }
 
-/* The function has to be called again, and the chip is nobody else's until then. */
+/* The function has to be called again; until then the chip is locked for other jobs. */
 static void run_again(struct native *native, struct job *job)
 {
 	if (++job->steps == TURN)
@@ -384,14 +385,14 @@ static int ask_for_chip(struct txn *txn)
 }
 
 /* The search before or after a reading. True: the reading is proved. */
-static bool prove(struct native *native, struct job *job, int64_t now)
+static bool prove_reading(struct native *native, struct job *job, int64_t now)
 {
 	int err = txn_end(&job->txn, ask_for_chip(&job->txn));
 
 	err = err > 0 ? 0 : err;
 	job_saw(native, job, err, now);
 	if (err) {
-		/* What was shared of it is nobody's; nor what it said of the chip. */
+		/* The readings that were to be shared are void, and what they said of the chip. */
 		txn_void(&job->txn);
 		job_failed(native, job, err);
 		return false;
@@ -410,7 +411,7 @@ void job_run_property(struct native *native, struct job *job, int64_t now)
 	struct txn *txn = &job->txn;
 	bool asks = job->prove == PROVE_BEFORE || job->prove == PROVE_AFTER;
 
-	if (asks && !prove(native, job, now))
+	if (asks && !prove_reading(native, job, now))
 		return;
 	if (!asks) {
 		int err = txn_end(txn, run_function(job));

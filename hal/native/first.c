@@ -138,8 +138,8 @@ static void attach(struct native *native, struct job *job, struct device *device
 }
 
 /*
- * Read an id that nobody has found yet. Its answer proves it, and is the request's reading. Who
- * does not answer is left to the search.
+ * Read an id that no search has found yet. The answer proves the id, and is the request's reading.
+ * A chip that does not answer is left to the search.
  */
 static void read_unknown(struct native *native, struct job *job, unsigned n, int64_t now)
 {
@@ -209,7 +209,7 @@ static bool is_ready(struct native *native, struct job *job, int64_t now, int64_
 		       job_ready(native, job, now, next);
 	}
 	*n = 0;
-	/* The only wire is the one on which an id that nobody knows may be. */
+	/* An unknown id can only be on the wire that is the only one. */
 	bool only = native_next(native, 1) == NATIVE_ALL;
 	if (!first_names(native, job, &path))
 		return false;
@@ -231,7 +231,7 @@ static bool is_ready(struct native *native, struct job *job, int64_t now, int64_
 	       !native_held(native, *n, NULL, now);
 }
 
-static void read_one(struct native *native, struct job *job, unsigned n, int64_t now)
+static void first_read(struct native *native, struct job *job, unsigned n, int64_t now)
 {
 	if (job->state == JOB_NEW) {
 		job_look(native, job, now);
@@ -265,7 +265,7 @@ static bool others_wait(const struct native *native)
 	return false;
 }
 
-static bool read_next(struct native *native, int64_t now, int64_t *next)
+static bool first_read_next(struct native *native, int64_t now, int64_t *next)
 {
 	struct job *best = NULL;
 	unsigned n = 0, best_n = 0;
@@ -282,7 +282,7 @@ static bool read_next(struct native *native, int64_t now, int64_t *next)
 	}
 	if (!best)
 		return guess_step(native, now);
-	read_one(native, best, best_n, now);
+	first_read(native, best, best_n, now);
 	return true;
 }
 
@@ -333,5 +333,5 @@ bool first_step(struct native *native, int64_t now, int64_t *next)
 		first_convert(native, n);
 		return true;
 	}
-	return read_next(native, now, next);
+	return first_read_next(native, now, next);
 }

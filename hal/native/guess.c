@@ -7,7 +7,7 @@
 #include "hal/native/hunt.h"
 #include "hal/wire/search.h"
 
-/* It begins so long after the bus is up: those who ask at once have done so by then. */
+/* It begins so long after the bus is up: clients that ask at once have asked by then. */
 #define GATHER_NS (20 * TXN_MS)
 
 /* The ids that are asked for, and those that are known. */
@@ -18,7 +18,7 @@ struct ids {
 };
 
 /* Returns whether some of them are not known. */
-static bool gather(struct native *native, struct ids *ids)
+static bool gather_ids(struct native *native, struct ids *ids)
 {
 	unsigned known = 0;
 	struct path path;
@@ -61,7 +61,7 @@ static void note_likely(struct native *native, const uint8_t rom[8], unsigned n)
 {
 	struct path path;
 
-	/* One that is known, and perhaps no thermometer, nobody waits for. */
+	/* No request waits for a device that is known, and perhaps no thermometer. */
 	for (struct job *job = NULL; (job = native_job(native, job));)
 		if (first_names(native, job, &path) &&
 		    memcmp(path.rom, rom, sizeof(path.rom)) == 0) {
@@ -71,7 +71,7 @@ static void note_likely(struct native *native, const uint8_t rom[8], unsigned n)
 }
 
 /* What goes wrong here is seen to by the search. */
-static void guess(struct native *native, unsigned n, struct ids *ids, int64_t now)
+static void guess_wire(struct native *native, unsigned n, struct ids *ids, int64_t now)
 {
 	struct channel *channel = &native->channel[n];
 
@@ -111,8 +111,8 @@ bool guess_step(struct native *native, int64_t now)
 	}
 	if (best == NATIVE_ALL)
 		return false;
-	if (!gather(native, &ids))
+	if (!gather_ids(native, &ids))
 		return false;
-	guess(native, best, &ids, now);
+	guess_wire(native, best, &ids, now);
 	return true;
 }

@@ -3,9 +3,9 @@
  * On which of several wires are the thermometers that are asked for after a start?
  *
  * A search that stops where only one of the ids that are asked for, or known, begins as the bits
- * read so far takes a third of a whole one. Whether it is that device nobody knows: the request is
- * read on that wire, and the answer proves it (first.h). The search for all comes after, and finds
- * what was hidden behind such a beginning.
+ * read so far takes a third of a whole one. It does not show whether that device is there: owsd
+ * reads it on that wire for the request, and the answer proves it (first.h). The search for all
+ * comes after, and finds what was hidden behind such a beginning.
  */
 #pragma once
 

@@ -116,7 +116,7 @@ static int next_device(struct native *native, unsigned n, struct search *search,
  * a bridge too, waking had no effect: then this round is not void, or a bridge that cannot be woken
  * would keep every lost device present. Returns whether the id was such a bridge's.
  */
-static bool wake(struct native *native, unsigned n, const uint8_t rom[8])
+static bool wake_bridge(struct native *native, unsigned n, const uint8_t rom[8])
 {
 	struct channel *channel = &native->channel[n];
 	struct txn txn = {.native = native, .link = channel->link, .channel = n};
@@ -135,11 +135,11 @@ static bool wake(struct native *native, unsigned n, const uint8_t rom[8])
 
 void hunt_found(struct native *native, const uint8_t rom[8], unsigned n, int64_t now)
 {
-	if (!wake(native, n, rom))
+	if (!wake_bridge(native, n, rom))
 		presence_found(native, rom, n, now);
 }
 
-static void pass(struct native *native, unsigned n, int64_t now)
+static void hunt_pass(struct native *native, unsigned n, int64_t now)
 {
 	struct channel *channel = &native->channel[n];
 
@@ -188,7 +188,7 @@ static void timed_pass(struct native *native, unsigned n, int64_t now)
 	int64_t pause;
 
 	native->hunter = n + 1;
-	pass(native, n, now);
+	hunt_pass(native, n, now);
 	native->pass_ns = native_now(native) - now;
 	pause = native->pass_ns * (PASS_SHARE - 1);
 	native->hunt_ns = native_now(native) + (pause > PASS_NS ? pause : PASS_NS);
@@ -227,7 +227,7 @@ struct lone {
 	unsigned n;
 };
 
-static bool lone(void *ctx, const uint8_t prefix[8], unsigned bits, uint8_t rom[8])
+static bool is_lone(void *ctx, const uint8_t prefix[8], unsigned bits, uint8_t rom[8])
 {
 	const struct lone *lone = ctx;
 	const struct device *only = NULL;
@@ -281,7 +281,7 @@ void hunt_scan(struct native *native, struct job *job, int64_t now)
 		job->searching = true;
 		job->mark = job->out;
 		if (job->kind == JOB_ALARM && ++channel->alarm_searches % FULL_EVERY)
-			job->search.lone = lone;
+			job->search.lone = is_lone;
 	}
 	job->search.ctx = &ctx;
 	int found = next_device(native, job->channel, &job->search, job);

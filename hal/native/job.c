@@ -18,7 +18,7 @@
 #include "hal/native/state.h"
 #include "hal/native/structure.h"
 
-static bool away(const struct native *native, const struct device *device)
+static bool is_away(const struct native *native, const struct device *device)
 {
 	return !device || !device->present || device->astray ||
 	       !native_has(native, device->channel);
@@ -29,7 +29,7 @@ static void look_read(struct native *native, struct job *job, int64_t now)
 	const struct cache_entry *entry;
 
 	native_count(native, COUNT_READS);
-	if (job->fresh || job->property->offline || away(native, job->txn.device))
+	if (job->fresh || job->property->offline || is_away(native, job->txn.device))
 		return;
 	entry = cache_find(&native->cache, job->txn.device, job->property, job->extension, now);
 	if (entry)
@@ -57,6 +57,7 @@ static void look_convert(struct native *native, struct job *job)
 		job_answer(native, job, err);
 }
 
+/* What needs no wire is answered at once; the rest waits in the state that this leaves. */
 void job_look(struct native *native, struct job *job, int64_t now)
 {
 	int err;
@@ -69,7 +70,7 @@ void job_look(struct native *native, struct job *job, int64_t now)
 		job_answer(native, job, err);
 		return;
 	}
-	bool lost = job->path.device.len && away(native, job->txn.device);
+	bool lost = job->path.device.len && is_away(native, job->txn.device);
 	job->soon = job->txn.device && job->txn.device->failures &&
 	            job->txn.device->failures <= NATIVE_DOUBTS;
 	switch ((enum job_kind)job->kind) {
@@ -119,7 +120,7 @@ void job_look(struct native *native, struct job *job, int64_t now)
 		locate_wait(native, job, now);
 }
 
-static void later(int64_t when, int64_t *next)
+static void look_again(int64_t when, int64_t *next)
 {
 	if (when < *next)
 		*next = when;
@@ -183,7 +184,7 @@ bool job_ready(const struct native *native, const struct job *job, int64_t now, 
 
 	when = held > when ? held : when;
 	if (when > now) {
-		later(when, next);
+		look_again(when, next);
 		return false;
 	}
 	return true;
@@ -199,6 +200,7 @@ bool job_goes_first(const struct native *native, const struct job *a, const stru
 	return (int32_t)(a->order - b->order) < 0;
 }
 
+/* A probe is a search for the id: it shows presence, whatever the chip can be asked for. */
 static void run_probe(struct native *native, struct job *job, int64_t now)
 {
 	job_txn(native, job);
@@ -216,7 +218,7 @@ static void run_probe(struct native *native, struct job *job, int64_t now)
 /* had_begun: before the step that this is */
 static void begin_property(struct native *native, struct job *job, bool had_begun, int64_t now)
 {
-	if (job->path.device.len && away(native, job->txn.device)) {
+	if (job->path.device.len && is_away(native, job->txn.device)) {
 		job->begun = had_begun;
 		locate_wait(native, job, now);
 		return;

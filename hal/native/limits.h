@@ -6,12 +6,12 @@
 
 #define NATIVE_DEPTH 400   /* requests */
 #define NATIVE_CHANNELS 64 /* links of a master */
-#define NATIVE_COUPLERS 16 /* whose branches are channels behind those */
+#define NATIVE_COUPLERS 16 /* their branches are channels behind those */
 #define NATIVE_ALL (NATIVE_CHANNELS + 2 * NATIVE_COUPLERS)
 /* Requests in a row that a device may fail before it is taken to be broken. */
 #define NATIVE_DOUBTS 3
 /* Of so many requests for devices that failed it is not one device that fails now and then. */
 #define NATIVE_MANY 4
 #define NATIVE_S INT64_C(1000000000)
-/* So long after a conversion its result, if nobody could read it, serves in place of another. */
+/* For so long the result of a conversion that no job could read serves in place of another. */
 #define NATIVE_UNREAD_NS (4 * NATIVE_S)

@@ -67,6 +67,7 @@ int listing_add_device(struct native *native, struct job *job, const struct devi
 	return add_below(job, text);
 }
 
+/* The entries after the devices, where owserver has them; /uncached does not list itself. */
 int listing_add_rest(struct native *native, struct job *job)
 {
 	static const char *const in_root[] = {"uncached",  "settings",     "system", "statistics",

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Looks for devices that did not answer, and for those that nobody knows. */
+/* Looks for devices that did not answer, and for those that no search has found. */
 #include <errno.h>
 #include <string.h>
 
@@ -19,13 +19,13 @@
 #define TRIES 3
 #define TRIES_LINK 6
 
-/* Where a chip of the master does not answer, nobody knows what is behind it. */
+/* While a chip of the master does not answer, any device may be behind it. */
 static int not_found(const struct native *native)
 {
 	return native->grow_told ? -ENXIO : -ENODEV;
 }
 
-/* Somebody has found its device meanwhile. */
+/* A search has found the job's device meanwhile. */
 static bool is_found(struct native *native, struct job *job)
 {
 	struct device *device = device_find(&native->table, job->path.rom);
@@ -105,7 +105,7 @@ static bool is_searched(const struct native *native, const struct job *job, unsi
 }
 
 /* Has this channel still to be looked at for the job? */
-static bool lacks(const struct native *native, const struct job *job, unsigned n)
+static bool lacks_look(const struct native *native, const struct job *job, unsigned n)
 {
 	return is_for(job, n) && !is_searched(native, job, n) &&
 	       native->channel[n].looked_ns < looked_from(native, job);
@@ -114,12 +114,12 @@ static bool lacks(const struct native *native, const struct job *job, unsigned n
 static bool lacks_any(const struct native *native, const struct job *job)
 {
 	for (unsigned n = native_next(native, 0); n < NATIVE_ALL; n = native_next(native, n + 1))
-		if (lacks(native, job, n))
+		if (lacks_look(native, job, n))
 			return true;
 	return false;
 }
 
-/* It is nowhere. Before all is searched it may be behind a coupler that nobody knows. */
+/* The device is nowhere. Until all is searched it may be behind a coupler not found yet. */
 static bool is_decided(const struct native *native, const struct job *job)
 {
 	return !native_initial(native) && !lacks_any(native, job);
@@ -156,7 +156,7 @@ void locate_wait(struct native *native, struct job *job, int64_t now)
 }
 
 /* The requests that need no look any more go on. Returns whether there are any. */
-static bool let_go(struct native *native)
+static bool let_decided_go(struct native *native)
 {
 	bool found = native->locate.found != native->count[COUNT_FOUND], any = false;
 
@@ -164,7 +164,7 @@ static bool let_go(struct native *native)
 	for (struct job *job = NULL; (job = native_job(native, job));) {
 		if (!is_waiting(job))
 			continue;
-		/* One that went astray may have answered somebody else where it was. */
+		/* A device that went astray may have answered another job where it was. */
 		bool decided = is_decided(native, job);
 		if (!((found || decided) && is_found(native, job)) && decided)
 			answer_away(native, job);
@@ -174,12 +174,12 @@ static bool let_go(struct native *native)
 }
 
 /* Those that wait for this channel. Returns whether there are any. */
-static bool gather(struct native *native, unsigned n, int64_t now, bool begin)
+static bool gather_jobs(struct native *native, unsigned n, int64_t now, bool begin)
 {
 	bool any = false;
 
 	for (struct job *job = NULL; (job = native_job(native, job));) {
-		bool wanted = is_waiting(job) && lacks(native, job, n) &&
+		bool wanted = is_waiting(job) && lacks_look(native, job, n) &&
 		              looked_from(native, job) <= now;
 
 		any |= wanted;
@@ -189,7 +189,7 @@ static bool gather(struct native *native, unsigned n, int64_t now, bool begin)
 	return any;
 }
 
-/* A strong pull-up feeds somebody: no search may cut it. */
+/* A strong pull-up feeds a chip: no search may cut it. */
 static bool is_held(const struct native *native, unsigned n, int64_t now, int64_t *next)
 {
 	int64_t until = native_held(native, n, NULL, now);
@@ -207,10 +207,10 @@ static bool locate_begin(struct native *native, int64_t now, int64_t *next)
 	for (unsigned i = 1; i <= NATIVE_ALL; i++) {
 		unsigned n = (locate->channel + i) % NATIVE_ALL;
 
-		if (!native_has(native, n) || !gather(native, n, now, false) ||
+		if (!native_has(native, n) || !gather_jobs(native, n, now, false) ||
 		    is_held(native, n, now, next))
 			continue;
-		gather(native, n, now, true);
+		gather_jobs(native, n, now, true);
 		locate->looking = true;
 		locate->channel = n;
 		locate->tries = 0;
@@ -227,11 +227,11 @@ static void locate_end(struct native *native, bool heard)
 
 	for (struct job *job = NULL; (job = native_job(native, job));)
 		if (is_waiting(job) && looked_from(native, job) <= locate->begun_ns &&
-		    lacks(native, job, locate->channel))
+		    lacks_look(native, job, locate->channel))
 			job->heard |= heard;
 	locate->looking = false;
 	native->channel[locate->channel].looked_ns = locate->begun_ns;
-	let_go(native);
+	let_decided_go(native);
 }
 
 /* The look failed for good. */
@@ -243,7 +243,7 @@ static void give_up(struct native *native, int err)
 			job_answer(native, job, err);
 }
 
-static void failed(struct native *native, int err)
+static void locate_failed(struct native *native, int err)
 {
 	struct locate *locate = &native->locate;
 
@@ -283,7 +283,7 @@ static bool locate_look(struct native *native, int64_t now)
 	native_count(native, COUNT_TRANSACTIONS);
 	int there = search_among(native->channel[locate->channel].link, roms, away, n);
 	if (there < 0) {
-		failed(native, there);
+		locate_failed(native, there);
 		return false;
 	}
 	locate->tries = 0;
@@ -301,7 +301,7 @@ static bool locate_look(struct native *native, int64_t now)
 	return there;
 }
 
-static void save(struct locate *locate, int64_t now)
+static void save_credit(struct locate *locate, int64_t now)
 {
 	int64_t saved = locate->credit_ns + (now - locate->counted_ns) / SHARE;
 
@@ -325,9 +325,9 @@ bool locate_step(struct native *native, int64_t now, bool idle, int64_t *next)
 	locate->looking &= locate->waits && native_has(native, locate->channel);
 	if (!locate->waits)
 		return false;
-	save(locate, now);
+	save_credit(locate, now);
 	/* Others may have found devices, or searched a channel as a whole. */
-	if (let_go(native))
+	if (let_decided_go(native))
 		return true;
 	int64_t when = when_due(locate, now, idle && *next - now > locate->took_ns);
 	if (when > now) {

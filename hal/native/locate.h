@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Devices that requests name, and that are not where they were, or that nobody has seen yet.
+ * Devices that requests name, and that are not where they were, or that no search has found yet.
  *
- * One that did not answer is looked for three times where it was. One that nobody knows may be on
+ * One that did not answer is looked for three times where it was. An unknown one may be on
  * each channel, and a look at a branch of a coupler costs 50 ms of wire. So requests do not look by
  * themselves: they wait, and each look at a channel is one for all that wait, in as few searches as
  * it takes (search_among). A request is answered -ENODEV when each channel that it could be on was
@@ -17,7 +17,7 @@
 
 #include "hal/native/state.h"
 
-/* Nobody knows this job's device: it waits for a look, or has its answer. */
+/* This job's device is not known: the job waits for a look, or has its answer. */
 void locate_wait(struct native *native, struct job *job, int64_t now);
 /* The device of this job did not answer: is it there? One transaction. */
 void locate_missing(struct native *native, struct job *job, int64_t now);

@@ -25,17 +25,9 @@ static void take_channels(struct native *native, unsigned first)
 	if (native->channels > NATIVE_CHANNELS)
 		native->channels = NATIVE_CHANNELS;
 	for (unsigned i = first; i < native->channels; i++) {
-		struct channel *channel = &native->channel[i];
 		struct link *link = native->master->ops->channel(native->master, i);
-		struct channel fresh = {.link = branches_wire(native, i, link),
-		                        .trunk = channel->trunk,
-		                        .wire = (uint8_t)i,
-		                        .round = channel->round,
-		                        .errors = channel->errors,
-		                        .shorts = channel->shorts,
-		                        .checksums = channel->checksums,
-		                        .transactions = channel->transactions};
-		*channel = fresh;
+
+		native_open_channel(native, i, branches_wire(native, i, link), i);
 	}
 }
 
@@ -53,6 +45,7 @@ static void take_all_channels(struct native *native)
 			presence_lost(native, &native->table.devices[i]);
 }
 
+/* Masters or channels that were missing are looked for again, less and less often. */
 void master_grow(struct native *native, int64_t now, int64_t *next)
 {
 	unsigned before = native->channels;
@@ -148,7 +141,7 @@ static void convert_again(struct native *native)
 			job_restart(native, job);
 }
 
-static bool reopen(struct native *native)
+static bool reopen_master(struct native *native)
 {
 	char why[BUS_EVENT_TEXT] = "";
 
@@ -210,6 +203,10 @@ static bool recover_link(struct native *native, unsigned n)
 	return false;
 }
 
+/*
+ * After an error of a link: climb the ladder by one rung that has an effect. True: the caller may
+ * try again. False: the master is down, and its jobs were answered.
+ */
 bool master_recover(struct native *native, unsigned n, int err)
 {
 	struct channel *channel = &native->channel[n];
@@ -231,7 +228,7 @@ bool master_recover(struct native *native, unsigned n, int err)
 		return true;
 	if (channel->rung < GIVE_UP) {
 		native_count(native, COUNT_REOPENS);
-		if (!reopen(native))
+		if (!reopen_master(native))
 			return false;
 		convert_again(native);
 		native->channel[n].rung = GIVE_UP;

@@ -37,28 +37,9 @@
 #define LATE_MOST_NS (60 * NATIVE_S)
 
 static const char *const count_names[COUNTS] = {
-	[COUNT_RETRIES] = "retries",
-	[COUNT_BUS_RESETS] = "recover_bus_reset",
-	[COUNT_CHIP_RESETS] = "recover_chip_reset",
-	[COUNT_POWER_CYCLES] = "recover_power_cycle",
-	[COUNT_REOPENS] = "recover_reopen",
-	[COUNT_CHECKSUMS] = "checksum_errors",
-	[COUNT_SHORTS] = "shorts",
-	[COUNT_LINK_ERRORS] = "link_errors",
-	[COUNT_CONVERSIONS] = "conversions",
-	[COUNT_SEARCHES] = "search_passes",
-	[COUNT_TRANSACTIONS] = "wire_transactions",
-	[COUNT_READS] = "reads",
-	[COUNT_WRITES] = "writes",
-	[COUNT_DIRECTORIES] = "directories",
-	[COUNT_CACHE_HITS] = "cache_hits",
-	[COUNT_POWER_FAULTS] = "power_faults",
-	[COUNT_FOUND] = "devices_found",
-	[COUNT_LOST] = "devices_lost",
-	[COUNT_RESTARTED] = "devices_restarted",
-	[COUNT_WIRE_US] = "wire_us",
-	[COUNT_I2C_TRANSFERS] = "i2c_transfers",
-	[COUNT_SYSCALLS] = "syscalls",
+#define X(count, name) name,
+	NATIVE_COUNTS(X)
+#undef X
 };
 
 int native_create(const struct bus_ops *ops, const struct link_master_ops *master,
@@ -107,7 +88,7 @@ void native_destroy(struct bus *bus)
 	free(native);
 }
 
-static int take_flag(bool *flag, const char *text, char *why, size_t why_size)
+static int take_switch(bool *flag, const char *text, char *why, size_t why_size)
 {
 	*flag = strcmp(text, "on") == 0;
 	if (*flag || strcmp(text, "off") == 0)
@@ -121,9 +102,9 @@ int native_option(struct bus *bus, const char *key, const char *text, char *why,
 	struct native *native = (struct native *)bus;
 	struct link_master *master = native->master;
 
-	/* Where drivers of somebody else search or convert, nobody can be that quick. */
+	/* The kernel's drivers search and convert too slowly for it. */
 	if (strcmp(key, "Touch") == 0 && strcmp(bus->ops->scheme, "w1") != 0)
-		return take_flag(&native->touch, text, why, why_size);
+		return take_switch(&native->touch, text, why, why_size);
 	if (strcmp(key, "Sensors") == 0)
 		return sensors_read(&native->sensors, text, why, why_size);
 	return master->ops->option ? master->ops->option(master, key, text, why, why_size)
@@ -164,7 +145,7 @@ int native_submit(struct bus *bus, struct bus_req *req)
 	return -EAGAIN;
 }
 
-static int see(struct native *native, uint64_t *mark)
+static int see_master(struct native *native, uint64_t *mark)
 {
 	*mark = 0;
 	return native->master->ops->there ? native->master->ops->there(native->master, mark) : 1;
@@ -178,8 +159,8 @@ static void refuse_all(struct native *native)
 }
 
 /*
- * What is to be seen of a master may be there while the chip behind it is not: then nothing but a
- * change of it is a reason to try again.
+ * A master may be visible while the chip behind it is gone: then only a change of what is visible
+ * is a reason to try again.
  */
 void native_suspend(struct bus *bus, bool yes)
 {
@@ -189,21 +170,21 @@ void native_suspend(struct bus *bus, bool yes)
 		master_down(native, 0, "suspended");
 	if (yes) {
 		refuse_all(native);
-		native->failed = native->down_err && see(native, &native->failed_mark) > 0;
+		native->failed = native->down_err && see_master(native, &native->failed_mark) > 0;
 	}
 	native->told = false;
 	native->open_ns = native->pause_ns = 0;
 }
 
-int native_there(struct bus *bus)
+int native_visible(struct bus *bus)
 {
 	struct native *native = (struct native *)bus;
 	uint64_t mark;
-	int there = see(native, &mark);
+	int visible = see_master(native, &mark);
 
-	if (there <= 0 || mark != native->failed_mark)
+	if (visible <= 0 || mark != native->failed_mark)
 		native->failed = false;
-	return there > 0 && !native->failed;
+	return visible > 0 && !native->failed;
 }
 
 /* It is looked for, and no part of it was written before. */
@@ -249,7 +230,7 @@ static void note_late(struct native *native, int64_t since_ns, int64_t now)
 		native->late_ns += now - since_ns;
 }
 
-static void expire(struct native *native, int64_t now, int64_t *next)
+static void expire_jobs(struct native *native, int64_t now, int64_t *next)
 {
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
 		struct job *job = &native->jobs[i];
@@ -273,7 +254,7 @@ static void expire(struct native *native, int64_t now, int64_t *next)
  * *other: of those that read no thermometer the one that waits longest, whatever its rank. Before
  * all wires were searched, of those that need not wait for that.
  */
-static struct job *pick(struct native *native, int64_t now, int64_t *next, struct job **other)
+static struct job *pick_job(struct native *native, int64_t now, int64_t *next, struct job **other)
 {
 	struct job *best = NULL, *all = NULL;
 	bool initial = native_initial(native);
@@ -309,10 +290,10 @@ static struct job *pick(struct native *native, int64_t now, int64_t *next, struc
 }
 
 /*
- * Who got an alarm's answer asks for the next thing at once, but he has to be woken first. A
+ * The engine sends its next request of an alarm at once, but its thread has to wake first. A
  * transaction begun meanwhile would make each step of the alarm wait for it.
  */
-static bool follows(struct native *native, const struct job *job, int64_t now)
+static bool awaits_alarm(struct native *native, const struct job *job, int64_t now)
 {
 	if (now >= native->follow_ns || (job && job->req->prio == BUS_ALARM))
 		native->follow_ns = 0;
@@ -320,10 +301,10 @@ static bool follows(struct native *native, const struct job *job, int64_t now)
 }
 
 /*
- * Nobody uses the branches of couplers now: they are switched off, so that a short of one does not
- * become one of the wire. True: did that.
+ * No request uses the branches of couplers now: switch them off, so that a short of one does not
+ * short the wire. True: a branch was switched off.
  */
-static bool rest(struct native *native, int64_t now, int64_t *next)
+static bool rest_branches(struct native *native, int64_t now, int64_t *next)
 {
 	for (unsigned n = 0; n < native->channels; n++) {
 		struct trunk *trunk = native->channel[n].trunk;
@@ -365,13 +346,13 @@ static void native_run(struct native *native, struct job *job, int64_t now)
  */
 static bool ask_early(struct native *native, int64_t now, int64_t *next, bool *yields)
 {
-	struct job *other = NULL, *job = pick(native, now, next, &other);
+	struct job *other = NULL, *job = pick_job(native, now, next, &other);
 
 	if (native->locate.urgent && locate_step(native, now, false, next))
 		return true;
 	if (!job || job->req->prio > BUS_OUTPUT) {
 		native->early = !native->early;
-		if (first_hurries(native) || follows(native, job, now))
+		if (first_hurries(native) || awaits_alarm(native, job, now))
 			return false;
 		*yields = native->early && (job || native->locate.waits);
 		if (native->early)
@@ -384,7 +365,7 @@ static bool ask_early(struct native *native, int64_t now, int64_t *next, bool *y
 	return job;
 }
 
-static int64_t step(struct native *native, int64_t now)
+static int64_t step_once(struct native *native, int64_t now)
 {
 	int64_t next = INT64_MAX;
 	struct job *other = NULL, *in_turn = NULL;
@@ -393,18 +374,18 @@ static int64_t step(struct native *native, int64_t now)
 	master_grow(native, now, &next);
 	if (!native->up)
 		return now;
-	expire(native, now, &next);
+	expire_jobs(native, now, &next);
 	if (native_initial(native) && ask_early(native, now, &next, &yields))
 		return now;
 	if (first_step(native, now, &next))
 		return now;
-	struct job *job = native_initial(native) ? NULL : pick(native, now, &next, &other);
+	struct job *job = native_initial(native) ? NULL : pick_job(native, now, &next, &other);
 	/* Others have waited for the search: they and the first readings take turns. */
 	if (job && job->first == FIRST_TAKES_PART && other &&
 	    (native->first_turn = !native->first_turn))
 		job = other;
 
-	if (follows(native, job, now))
+	if (awaits_alarm(native, job, now))
 		return native->follow_ns;
 	if (job && job->req->prio <= BUS_OUTPUT) {
 		native_run(native, job, now);
@@ -440,7 +421,7 @@ static int64_t step(struct native *native, int64_t now)
 		native_run(native, job, now);
 		return now;
 	}
-	if (ending_step(native, now, &next) || rest(native, now, &next))
+	if (ending_step(native, now, &next) || rest_branches(native, now, &next))
 		return now;
 	/* The search has nothing to do on a wire that is held: the request has the next turn. */
 	return next > now && !yields ? next : now;
@@ -466,7 +447,7 @@ int64_t native_step(struct bus *bus, int64_t now)
 	uint64_t wire_ns = native->wire_ns;
 	note_late(native, due, began);
 	native->schedule.doing = SCHEDULE_FREE;
-	next = step(native, now);
+	next = step_once(native, now);
 	int64_t ended = native_now(native);
 	schedule_took(&native->schedule, began, ended);
 	if (native->up)

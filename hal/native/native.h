@@ -6,14 +6,14 @@
  *   job.c      one request on its way: what it waits for, its next step
  *   resolve.c  what a path means
  *   hunt.c     searches: background, directories, alarms
- *   locate.c   devices that requests name and nobody knows
+ *   locate.c   devices that requests name and no search has found
  *   first.c    first values, before the first search has ended
  *   first_asked.c  ... for which requests
  *   guess.c    ... on which of several wires
  *   first_wire.c  ... of devices that are found meanwhile
  *   touch.c    keys that touch a wire
  *   exchange.c properties read and written
- *   convert/   who converts when, and what a result is worth
+ *   convert/   when thermometers convert, and what a result is worth
  *     simultaneous.c  writes to /simultaneous
  *     convert.c    one Convert T for all thermometers due on a channel, or each in turn
  *     broadcast.c  Convert T for all of a channel
@@ -60,13 +60,13 @@ int native_option(struct bus *bus, const char *key, const char *text, char *why,
 int native_submit(struct bus *bus, struct bus_req *req);
 int64_t native_step(struct bus *bus, int64_t now);
 void native_suspend(struct bus *bus, bool yes);
-int native_there(struct bus *bus);
+int native_visible(struct bus *bus);
 const struct bus_counter *native_counters(struct bus *bus, size_t *n);
 /* Of a scheme with a step of its own, which calls native_step(). */
 #define NATIVE_BUS_SLOTS_BUT_STEP \
 	.depth = NATIVE_DEPTH, .searches = true, .destroy = native_destroy, \
 	.option = native_option, .submit = native_submit, .suspend = native_suspend, \
-	.there = native_there, .counters = native_counters
+	.visible = native_visible, .counters = native_counters
 #define NATIVE_BUS_SLOTS NATIVE_BUS_SLOTS_BUT_STEP, .step = native_step, .brief = true
 /* For such a step. The master while the bus is up, else NULL. */
 struct link_master *native_master(struct bus *bus);

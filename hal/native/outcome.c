@@ -60,7 +60,7 @@ static void failed_on_link(struct native *native, struct job *job, int err)
 		job_again(native, job);
 }
 
-/* All ones, or nobody: is it away? Looked for once, on all channels. */
+/* All ones, or no presence: is the device away? It is looked for once, on all channels. */
 void job_missing(struct native *native, struct job *job, int err)
 {
 	if (job->verified) {
@@ -113,7 +113,7 @@ static bool is_tried_again(const struct native *native, struct job *job, unsigne
 	return ++job->tries < tries;
 }
 
-/* The adapter was lost, and nobody has heard the device since, nor searched for all. */
+/* The adapter was lost; since then the device has not answered, nor was all searched. */
 static bool may_have_moved(const struct native *native, const struct device *device)
 {
 	return device && native_initial(native) && device->ok_ns < native->up_ns;

@@ -44,6 +44,7 @@ static bool has_parts(const struct property *property, int extension)
 	       extension != EXTENSION_ALL;
 }
 
+/* A name such as temperature9 may be a property of its own, or one with an extension. */
 static int resolve_property(struct job *job, const struct family *family,
                             const struct device *device, const char *name, size_t len)
 {
@@ -125,10 +126,9 @@ static int resolve_follow(struct native *native, struct path_slice way, int *bus
 	return 0;
 }
 
-static bool is_branch(struct path_slice name)
+static uint8_t kind_of_list(const struct job *job)
 {
-	return (name.len == 4 && memcmp(name.text, "main", 4) == 0) ||
-	       (name.len == 3 && memcmp(name.text, "aux", 3) == 0);
+	return job->path.alarm ? JOB_ALARM : job->fresh ? JOB_SCAN : JOB_LISTING;
 }
 
 /* The directory of a branch. */
@@ -142,11 +142,11 @@ static int resolve_branch(struct native *native, struct job *job)
 	if (channel < 0)
 		return -EOPNOTSUPP;
 	job->kind = JOB_PROBE;
-	if (job->req->op != BUS_DIR)
-		return 0;
-	job->bus = channel;
-	job->inside = true;
-	job->kind = job->path.alarm ? JOB_ALARM : job->fresh ? JOB_SCAN : JOB_LISTING;
+	if (job->req->op == BUS_DIR) {
+		job->bus = channel;
+		job->inside = true;
+		job->kind = kind_of_list(job);
+	}
 	return 0;
 }
 
@@ -178,7 +178,7 @@ static int resolve_device(struct native *native, struct job *job)
 		job->txn.device = device;
 	}
 	job->table = device->family;
-	if (path->rom[0] == COUPLER_FAMILY && is_branch(path->property))
+	if (path->rom[0] == COUPLER_FAMILY && path_is_branch(path->property))
 		return resolve_branch(native, job);
 	if (path->property.len)
 		return resolve_property(job, device->family, device, path->property.text,
@@ -187,13 +187,6 @@ static int resolve_device(struct native *native, struct job *job)
 		return -EISDIR;
 	job->kind = job->req->op == BUS_DIR ? JOB_LISTING : JOB_PROBE;
 	return 0;
-}
-
-static int hex(char c)
-{
-	if (c >= '0' && c <= '9')
-		return c - '0';
-	return c >= 'A' && c <= 'F' ? c - 'A' + 10 : c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
 }
 
 /* "/alarm/29,12": only the devices of these families. False: no such list. */
@@ -205,7 +198,7 @@ static bool take_families(struct job *job)
 	if (job->path.has_rom || job->path.property.len || list.len % 3 != 2)
 		return false;
 	for (size_t i = 0; i < list.len; i += 3, n++) {
-		int high = hex(list.text[i]), low = hex(list.text[i + 1]);
+		int high = hex_digit(list.text[i]), low = hex_digit(list.text[i + 1]);
 
 		if (n == sizeof(job->families) || high < 0 || low < 0 || (high | low) == 0)
 			return false;
@@ -224,7 +217,7 @@ static int resolve_directory(struct job *job)
 	}
 	if (job->req->op != BUS_DIR)
 		return -EISDIR;
-	job->kind = job->path.alarm ? JOB_ALARM : job->fresh ? JOB_SCAN : JOB_LISTING;
+	job->kind = kind_of_list(job);
 	return 0;
 }
 

@@ -143,7 +143,7 @@ static const struct property_how how[] = {
 
 #define TIMEOUT(text, which) \
 	VIRTUAL(text, PROPERTY_UNSIGNED, LIFE_STATIC, ACCESS_BOTH, which, WAY_TIMEOUT)
-/* Of masters and servers that this bus has not: kept for those who wrote them, without effect. */
+/* Of masters and servers that this bus has not: a client reads what it wrote, without effect. */
 #define IDLE(text, which) \
 	VIRTUAL(text, PROPERTY_UNSIGNED, LIFE_STATIC, ACCESS_BOTH, which, WAY_IDLE)
 #define FLAG(text, which) VIRTUAL(text, PROPERTY_YESNO, LIFE_STATIC, ACCESS_BOTH, which, WAY_FLAG)

@@ -34,6 +34,20 @@ bool native_has(const struct native *native, unsigned channel)
 	       !native->channel[channel].gone;
 }
 
+void native_open_channel(struct native *native, unsigned channel, struct link *link, unsigned wire)
+{
+	const struct channel old = native->channel[channel];
+
+	native->channel[channel] = (struct channel){.link = link,
+	                                            .trunk = old.trunk,
+	                                            .wire = (uint8_t)wire,
+	                                            .round = old.round,
+	                                            .errors = old.errors,
+	                                            .shorts = old.shorts,
+	                                            .checksums = old.checksums,
+	                                            .transactions = old.transactions};
+}
+
 unsigned native_next(const struct native *native, unsigned n)
 {
 	if (n >= native->channels && n < NATIVE_CHANNELS)

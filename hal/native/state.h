@@ -18,30 +18,35 @@
 
 #define NATIVE_IDLE_TIMEOUTS 8
 
+/* What a bus counts, and the counter's name. */
+#define NATIVE_COUNTS(X) \
+	X(RETRIES, "retries") \
+	X(BUS_RESETS, "recover_bus_reset") \
+	X(CHIP_RESETS, "recover_chip_reset") \
+	X(POWER_CYCLES, "recover_power_cycle") \
+	X(REOPENS, "recover_reopen") \
+	X(CHECKSUMS, "checksum_errors") \
+	X(SHORTS, "shorts") \
+	X(LINK_ERRORS, "link_errors") \
+	X(CONVERSIONS, "conversions") \
+	X(SEARCHES, "search_passes") \
+	X(TRANSACTIONS, "wire_transactions") \
+	X(READS, "reads") \
+	X(WRITES, "writes") \
+	X(DIRECTORIES, "directories") \
+	X(CACHE_HITS, "cache_hits") \
+	X(POWER_FAULTS, "power_faults") \
+	X(FOUND, "devices_found") \
+	X(LOST, "devices_lost") \
+	X(RESTARTED, "devices_restarted") \
+	X(WIRE_US, "wire_us") \
+	X(I2C_TRANSFERS, "i2c_transfers") \
+	X(SYSCALLS, "syscalls")
 enum native_count {
-	COUNT_RETRIES,
-	COUNT_BUS_RESETS,
-	COUNT_CHIP_RESETS,
-	COUNT_POWER_CYCLES,
-	COUNT_REOPENS,
-	COUNT_CHECKSUMS,
-	COUNT_SHORTS,
-	COUNT_LINK_ERRORS,
-	COUNT_CONVERSIONS,
-	COUNT_SEARCHES,
-	COUNT_TRANSACTIONS,
-	COUNT_READS,
-	COUNT_WRITES,
-	COUNT_DIRECTORIES,
-	COUNT_CACHE_HITS,
-	COUNT_POWER_FAULTS,
-	COUNT_FOUND,
-	COUNT_LOST,
-	COUNT_RESTARTED,
-	COUNT_WIRE_US,
-	COUNT_I2C_TRANSFERS,
-	COUNT_SYSCALLS,
-	COUNTS,
+#define X(count, name) COUNT_##count,
+	NATIVE_COUNTS(X)
+#undef X
+		COUNTS,
 };
 
 enum job_kind {
@@ -58,7 +63,7 @@ enum job_kind {
 enum job_state {
 	JOB_NEW,        /* not looked at */
 	JOB_QUEUED,     /* not begun, or to be begun again */
-	JOB_LOCATE,     /* the device did not answer, or (!verified) nobody knows where it is */
+	JOB_LOCATE,     /* the device did not answer, or (!verified) was never found */
 	JOB_PREPARE,    /* thermometer: power supply and resolution */
 	JOB_DUE,        /* thermometer: waits for the next Convert T */
 	JOB_CONVERTING, /* ... which is under way until ready_ns */
@@ -94,7 +99,7 @@ struct job {
 	bool begun, fresh, verified, locks;
 	uint8_t again;              /* enum job_again */
 	uint8_t prove;              /* enum job_prove */
-	bool offered;               /* somebody or something can answer it */
+	bool offered;               /* a function of the property can answer it */
 	bool soon;                  /* its device failed lately: it goes ahead of its rank */
 	bool alone;                 /* its next transaction is made with no others (together.h) */
 	bool sought;                /* LOCATE: the look under way has not decided it yet */
@@ -209,7 +214,7 @@ enum schedule_work {
 	SCHEDULE_FREE,  /* what gives way to all else: searches, Convert T for all */
 };
 
-/* Who is next, ahead of another start. */
+/* The kind of job that is next, ahead of another start. */
 enum schedule_debt {
 	OWES_NOTHING,
 	OWES_OTHER, /* chips convert, in turn or with the pull-up: one that reads no thermometer */
@@ -225,7 +230,7 @@ struct schedule {
 	uint8_t owes;               /* enum schedule_debt */
 };
 
-/* Looks for devices that nobody knows (locate.h). */
+/* Looks for devices that no search has found (locate.h). */
 struct locate {
 	bool waits, urgent; /* a request waits for one; ... of an alarm or an output */
 	bool looking;       /* a look at `channel` is under way */
@@ -234,7 +239,7 @@ struct locate {
 	int64_t begun_ns;   /* this look */
 	int64_t credit_ns;  /* wire that looks may take; less than 0: they took more */
 	int64_t counted_ns; /* ... as of then */
-	int64_t idle_ns;    /* when nobody else needs the wire: the next one */
+	int64_t idle_ns;    /* when no other job needs the wire: the next one */
 	int64_t took_ns;    /* the last transaction */
 	uint64_t found;     /* COUNT_FOUND when the requests were looked at last */
 };
@@ -251,7 +256,7 @@ struct tally {
 
 #define NATIVE_WHERE_MAX 128
 
-/* Who writes a member stands before it; all may read. */
+/* The file that writes a member stands before it; all may read. */
 struct native {
 	/* native.c */
 	struct bus bus;
@@ -261,7 +266,7 @@ struct native {
 	struct job *jobs; /* NATIVE_DEPTH */
 	bool soon_ran;    /* the last step was that of a job that goes soon */
 	bool early;       /* the search had its turn, a request is next; before all were searched */
-	unsigned failed_jobs; /* whose device failed lately, as of the last step */
+	unsigned failed_jobs; /* jobs of devices that failed lately, as of the last step */
 	struct job *all;      /* the JOB_CONVERT that waits longest; it may be over */
 	int64_t due_ns;       /* the next step; 0: there was none */
 	int64_t late_ns;      /* so long the host has kept the thread from the processor in all */
@@ -304,16 +309,16 @@ struct native {
 	int64_t follow_ns; /* until then an alarm's next request is waited for; 0: it is not */
 
 	/* hunt.c */
-	unsigned hunter;          /* the channel whose turn to be searched is next */
+	unsigned hunter;          /* the channel that is searched next */
 	int64_t hunt_ns, pass_ns; /* background search: its next pass; what the last took */
 
-	/* locate.c; native.c says who waits */
+	/* locate.c; native.c counts the waiting jobs */
 	struct locate locate;
 	/* first.c */
 	bool first_turn; /* a reading has had its turn, another thing is next; native.c, too */
 	bool first_left; /* a wire's first conversions have begun, and not all is done */
 
-	/* native.c: keys are searched for; touch.c: whose turn it is */
+	/* native.c: keys are searched for; touch.c: the channel that has its turn */
 	bool touch;
 	bool touched; /* a search was made, or a look: a request goes first now. Also locate.c */
 	unsigned toucher;         /* the channel of the last round; it may not have ended */
@@ -350,6 +355,8 @@ void native_count(struct native *native, enum native_count what);
 void native_event(struct native *native, enum bus_news news, const uint8_t rom[8], int err,
                   const char *text);
 bool native_has(const struct native *native, unsigned channel);
+/* A channel begins anew, with what it has counted so far and the couplers of its wire. */
+void native_open_channel(struct native *native, unsigned channel, struct link *link, unsigned wire);
 /* The first channel from n on, a wire or a branch; NATIVE_ALL: there is none. */
 unsigned native_next(const struct native *native, unsigned n);
 /* The first request, or the next one; and so the thermometers of a channel. NULL: no more. */

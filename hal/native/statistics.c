@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* /statistics: what was asked of the bus, and how it went. */
+/*
+ * /statistics: what was asked of the bus, and how it went, under the names that owserver gives
+ * them. Clients of owserver read numbers of 32 bits: a count wraps.
+ */
 #include <errno.h>
 #include <string.h>
 
@@ -7,7 +10,7 @@
 #include "hal/native/statistics.h"
 #include "hal/native/virtual.h"
 
-static enum tally_kind kind_of(const struct job *job)
+static enum tally_kind tally_kind_of(const struct job *job)
 {
 	switch ((enum bus_op)job->req->op) {
 	case BUS_READ:
@@ -33,7 +36,7 @@ static void statistics_enter(struct tally *tally)
 void tally_begin(struct native *native, struct job *job)
 {
 	job->since_ns = native_now(native);
-	statistics_enter(&native->tally[kind_of(job)]);
+	statistics_enter(&native->tally[tally_kind_of(job)]);
 	statistics_enter(&native->tally[TALLY_OVERALL]);
 }
 
@@ -51,7 +54,7 @@ static void count_entries(struct tally *tally, const struct job *job, size_t len
 
 void tally_end(struct native *native, struct job *job, const struct bus_answer *answer)
 {
-	struct tally *tally = &native->tally[kind_of(job)];
+	struct tally *tally = &native->tally[tally_kind_of(job)];
 	int64_t took = native_now(native) - job->since_ns;
 
 	tally->now--;
@@ -68,36 +71,26 @@ void tally_end(struct native *native, struct job *job, const struct bus_answer *
 		count_entries(tally, job, answer->len);
 }
 
-enum what { CALLS, SUCCESS, BYTES, NOW, MAX, SUM, BUS_LISTS, BUS_ENTRIES, LISTS, ENTRIES };
+enum { CALLS, SUCCESS, BYTES, NOW, MAX, SUM, BUS_LISTS, BUS_ENTRIES, LISTS, ENTRIES };
 #define OF(kind, what) ((kind) << 8 | (what))
 
 static int read_tally(struct txn *txn)
 {
 	const struct tally *tally = &txn->native->tally[txn->property->arg >> 8];
+	const uint64_t values[] = {
+		[CALLS] = tally->calls,
+		[SUCCESS] = tally->success,
+		[BYTES] = tally->bytes,
+		[NOW] = tally->now,
+		[MAX] = tally->max,
+		[SUM] = tally->sum,
+		[BUS_LISTS] = tally->lists[0],
+		[BUS_ENTRIES] = tally->entries[0],
+		[LISTS] = tally->lists[1],
+		[ENTRIES] = tally->entries[1],
+	};
 
-	switch ((enum what)(txn->property->arg & 0xff)) {
-	case CALLS:
-		return virtual_count(txn, tally->calls);
-	case SUCCESS:
-		return virtual_count(txn, tally->success);
-	case BYTES:
-		return virtual_count(txn, tally->bytes);
-	case NOW:
-		return virtual_count(txn, tally->now);
-	case MAX:
-		return virtual_count(txn, tally->max);
-	case SUM:
-		return virtual_count(txn, tally->sum);
-	case BUS_LISTS:
-		return virtual_count(txn, tally->lists[0]);
-	case BUS_ENTRIES:
-		return virtual_count(txn, tally->entries[0]);
-	case LISTS:
-		return virtual_count(txn, tally->lists[1]);
-	case ENTRIES:
-		return virtual_count(txn, tally->entries[1]);
-	}
-	return 0;
+	return virtual_count(txn, values[txn->property->arg & 0xff]);
 }
 
 static int read_tries(struct txn *txn)
@@ -105,7 +98,7 @@ static int read_tries(struct txn *txn)
 	return virtual_count(txn, txn->native->tally[txn->property->arg].tries[txn->element]);
 }
 
-static int read_count(struct txn *txn)
+static int read_statistics_count(struct txn *txn)
 {
 	return virtual_count(txn, txn->native->count[txn->property->arg]);
 }
@@ -132,9 +125,12 @@ static int read_delay(struct txn *txn)
 
 enum { WAY_TALLY = 1, WAY_TRIES, WAY_COUNT, WAY_CACHE, WAY_DELAY, WAY_ZERO };
 static const struct property_how how[] = {
-	[WAY_TALLY] = {.read = read_tally}, [WAY_TRIES] = {.read = read_tries},
-	[WAY_COUNT] = {.read = read_count}, [WAY_CACHE] = {.read = read_cache},
-	[WAY_DELAY] = {.read = read_delay}, [WAY_ZERO] = {.read = virtual_zero},
+	[WAY_TALLY] = {.read = read_tally},
+	[WAY_TRIES] = {.read = read_tries},
+	[WAY_COUNT] = {.read = read_statistics_count},
+	[WAY_CACHE] = {.read = read_cache},
+	[WAY_DELAY] = {.read = read_delay},
+	[WAY_ZERO] = {.read = virtual_zero},
 };
 
 #define TALLY(text, kind, what) VIRTUAL_NUMBER(text, WAY_TALLY, OF(kind, what))

@@ -150,7 +150,7 @@ static int read_count(struct txn *txn)
 	return virtual_count(txn, txn->native->count[txn->property->arg]);
 }
 
-/* Of all three tables. */
+/* The ways in which all three tables answer: index of how[]. */
 enum {
 	WAY_ADDRESS = 1,
 	WAY_ZERO,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A key (DS1990, DS2401, DS1420) is on the wire for as long as somebody holds it there. With the
+ * A key (DS1990, DS2401, DS1420) is on the wire for as long as a person holds it there. With the
  * option Touch each wire is searched for these families alone, 33 times a second: where there is
  * none, that takes a reset and a few slots. What three such searches in a row did not see is gone.
  *
@@ -65,7 +65,7 @@ static bool has_key(const struct native *native, unsigned n)
 }
 
 /* True: it was not there before. */
-static bool found(struct native *native, unsigned n, const uint8_t rom[8], int64_t now)
+static bool found_key(struct native *native, unsigned n, const uint8_t rom[8], int64_t now)
 {
 	const struct device *device = device_find(&native->table, rom);
 	bool known = device && is_key(device, n, rom[0]);
@@ -85,7 +85,7 @@ static bool found(struct native *native, unsigned n, const uint8_t rom[8], int64
 	return true;
 }
 
-static int64_t later(int64_t a, int64_t b)
+static int64_t later_of(int64_t a, int64_t b)
 {
 	return a > b ? a : b;
 }
@@ -105,11 +105,11 @@ static void end_round(struct native *native, unsigned n, int64_t now)
 		return;
 	touch->holds = has_key(native, n);
 	touch->ended_ns = now;
-	touch->next_ns = now + later(HOLDS_NS, took);
+	touch->next_ns = now + later_of(HOLDS_NS, took);
 	touch->turn_ns = now + (branches_has_news(native, n) ? QUIET_NS : TURN_NS);
 	touch->used = false;
 	native->touch_ns = now + took;
-	native->touch_in_turn_ns = now + later(TURN_NS, (TURN_SHARE - 1) * took);
+	native->touch_in_turn_ns = now + later_of(TURN_NS, (TURN_SHARE - 1) * took);
 }
 
 /* The family is through; on to the next, or a pause. */
@@ -159,7 +159,7 @@ static int touch_begin(struct native *native, unsigned n, int64_t now)
 }
 
 /* A search failed. A key that is just being put on spoils it: then the next one is at once. */
-static void failed(struct native *native, unsigned n, int err, int64_t now)
+static void touch_failed(struct native *native, unsigned n, int err, int64_t now)
 {
 	struct touch *touch = &native->channel[n].touch;
 	bool again = err == -EBADMSG && ++touch->spoiled <= SPOILED_MAX;
@@ -178,14 +178,14 @@ static void failed(struct native *native, unsigned n, int err, int64_t now)
 		master_recover(native, n, err);
 }
 
-static void pass(struct native *native, unsigned n, int64_t now)
+static void touch_pass(struct native *native, unsigned n, int64_t now)
 {
 	struct touch *touch = &native->channel[n].touch;
 	int err = touch_begin(native, n, now);
 
 	now = native_now(native);
 	if (err < 0) {
-		failed(native, n, err, now);
+		touch_failed(native, n, err, now);
 		return;
 	}
 	master_good(native, n);
@@ -193,7 +193,7 @@ static void pass(struct native *native, unsigned n, int64_t now)
 	if (is_branch(n))
 		branches_news_end(native, n);
 	/* The signals of a new key are read before anything else is searched for. */
-	if (err > 0 && touch->family < FAMILIES && found(native, n, touch->search.rom, now)) {
+	if (err > 0 && touch->family < FAMILIES && found_key(native, n, touch->search.rom, now)) {
 		end_round(native, n, now);
 		return;
 	}
@@ -231,11 +231,11 @@ static int64_t when_due(struct native *native, unsigned n, int64_t now)
 	if (branches_news(native, n))
 		return native->touch_ns;
 	if (touch->holds || touch->used)
-		return later(touch->next_ns, native->touch_ns);
-	return later(touch->turn_ns, native->touch_in_turn_ns);
+		return later_of(touch->next_ns, native->touch_ns);
+	return later_of(touch->turn_ns, native->touch_in_turn_ns);
 }
 
-static bool try(struct native *native, unsigned n, int64_t now, int64_t *next)
+static bool try_channel(struct native *native, unsigned n, int64_t now, int64_t *next)
 {
 	if (!native_has(native, n))
 		return false;
@@ -245,7 +245,7 @@ static bool try(struct native *native, unsigned n, int64_t now, int64_t *next)
 		return false;
 	}
 	native->toucher = n;
-	pass(native, n, now);
+	touch_pass(native, n, now);
 	return true;
 }
 
@@ -260,14 +260,14 @@ bool touch_step(struct native *native, int64_t now, int64_t *next)
 	if (!native->touch)
 		return false;
 	if (is_under_way(&native->channel[native->toucher].touch) &&
-	    try(native, native->toucher, now, next))
+	    try_channel(native, native->toucher, now, next))
 		return true;
 	for (unsigned i = 0; i < branches; i++)
-		if (try(native, NATIVE_CHANNELS + (native->next_touch[1] + i) % branches, now,
-		        next))
+		if (try_channel(native, NATIVE_CHANNELS + (native->next_touch[1] + i) % branches,
+		                now, next))
 			return true;
 	for (unsigned i = 0; i < wires; i++)
-		if (try(native, (native->next_touch[0] + i) % wires, now, next))
+		if (try_channel(native, (native->next_touch[0] + i) % wires, now, next))
 			return true;
 	return false;
 }

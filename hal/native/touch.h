@@ -6,7 +6,7 @@
 
 /* One pass of such a search; true: did one. */
 bool touch_step(struct native *native, int64_t now, int64_t *next);
-/* Has such a search just seen this key? Then nobody needs to look whether it is there. */
+/* Has such a search just seen this key? Then no other look for it is needed. */
 bool touch_knows(const struct native *native, const struct device *device, int64_t now);
 
 /* Are ids of this family searched for all the time? */

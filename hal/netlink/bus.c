@@ -10,8 +10,8 @@ static const struct bus_ops netlink_bus = {
 	NATIVE_BUS_SLOTS,
 };
 
-static int create(const char *where, const struct bus_env *env, struct bus **bus, char *why,
-                  size_t why_size)
+static int netlink_bus_create(const char *where, const struct bus_env *env, struct bus **bus,
+                              char *why, size_t why_size)
 {
 	if (w1_is_netlink(where))
 		return native_create(&netlink_bus, &w1_netlink_master, where, env, bus, why,
@@ -22,5 +22,5 @@ static int create(const char *where, const struct bus_env *env, struct bus **bus
 const struct bus_ops w1_bus = {
 	.scheme = "w1",
 	.summary = "1-Wire devices of the kernel's drivers (sysfs)",
-	.create = create,
+	.create = netlink_bus_create,
 };

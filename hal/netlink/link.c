@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * What a transaction writes is kept until it reads or ends, and then goes to the kernel as one
- * request with its reset. There are no single slots: bit() reads a byte and gives its first slot;
- * to the chips that are asked so the seven behind it mean nothing.
+ * request with its reset. There are no single slots: first_slot() reads a byte and returns the
+ * first of its slots; to the chips that are asked so the seven behind it mean nothing.
  */
 #include <errno.h>
 
@@ -10,23 +10,23 @@
 #include "hal/netlink/run.h"
 #include "hal/netlink/search.h"
 
-static struct w1_netlink_link *self(struct link *link)
+static struct w1_netlink_link *link_of(struct link *link)
 {
 	return (struct w1_netlink_link *)link;
 }
 
-static int flush(struct link *base)
+static int send_kept(struct link *base)
 {
-	struct w1_netlink_link *link = self(base);
+	struct w1_netlink_link *link = link_of(base);
 
 	return link->request.count ? w1_netlink_run(link, &link->request) : 0;
 }
 
 /* What the transaction before kept goes first. */
-static int reset(struct link *base)
+static int keep_reset(struct link *base)
 {
-	struct w1_netlink_link *link = self(base);
-	int err = flush(base);
+	struct w1_netlink_link *link = link_of(base);
+	int err = send_kept(base);
 
 	if (err)
 		return err == -EHOSTDOWN ? 0 : err;
@@ -35,9 +35,9 @@ static int reset(struct link *base)
 	return w1_request_add(&link->request, W1_RESET, NULL, 0, NULL) ? -EIO : 1;
 }
 
-static int write_bytes(struct link *base, const uint8_t *data, size_t n, enum link_after after)
+static int netlink_write(struct link *base, const uint8_t *data, size_t n, enum link_after after)
 {
-	struct w1_netlink_link *link = self(base);
+	struct w1_netlink_link *link = link_of(base);
 
 	if (after == LINK_STRONG || link->sent)
 		return -EOPNOTSUPP;
@@ -46,20 +46,20 @@ static int write_bytes(struct link *base, const uint8_t *data, size_t n, enum li
 	return w1_request_add(&link->request, W1_WRITE, data, n, NULL) ? -EIO : 0;
 }
 
-static int read_bytes(struct link *base, uint8_t *data, size_t n)
+static int netlink_read(struct link *base, uint8_t *data, size_t n)
 {
-	struct w1_netlink_link *link = self(base);
+	struct w1_netlink_link *link = link_of(base);
 
 	if (n == 0)
-		return flush(base);
+		return send_kept(base);
 	if (w1_request_add(&link->request, W1_READ, NULL, n, data))
 		return -EIO;
 	return w1_netlink_run(link, &link->request);
 }
 
-static int bit(struct link *base, bool out, enum link_after after)
+static int first_slot(struct link *base, bool out, enum link_after after)
 {
-	struct w1_netlink_link *link = self(base);
+	struct w1_netlink_link *link = link_of(base);
 	int slot = link->next_slot;
 	uint8_t byte;
 
@@ -68,19 +68,19 @@ static int bit(struct link *base, bool out, enum link_after after)
 	link->next_slot = -1;
 	if (slot >= 0)
 		return slot;
-	int err = read_bytes(base, &byte, 1);
+	int err = netlink_read(base, &byte, 1);
 	return err ? err : byte & 1;
 }
 
 /* The kernel's driver sees to its chip; what is left to try is to ask again. */
-static int recover(struct link *base, enum link_rung rung)
+static int netlink_recover(struct link *base, enum link_rung rung)
 {
 	switch (rung) {
 	case LINK_BUS_RESET: {
-		int err = reset(base);
+		int err = keep_reset(base);
 
 		if (err > 0)
-			err = flush(base);
+			err = send_kept(base);
 		return err == -EHOSTDOWN ? 0 : err;
 	}
 	case LINK_CHIP_RESET:
@@ -91,20 +91,20 @@ static int recover(struct link *base, enum link_rung rung)
 	return -EOPNOTSUPP;
 }
 
-static void cost(const struct link *base, struct link_cost *cost)
+static void netlink_cost(const struct link *base, struct link_cost *cost)
 {
 	*cost = ((const struct w1_netlink_link *)base)->cost;
 }
 
 const struct link_ops w1_netlink_link_ops = {
 	.name = "w1 netlink",
-	.reset = reset,
-	.write = write_bytes,
-	.read = read_bytes,
-	.bit = bit,
+	.reset = keep_reset,
+	.write = netlink_write,
+	.read = netlink_read,
+	.bit = first_slot,
 	.search = w1_netlink_search,
 	.verify = w1_netlink_verify,
-	.flush = flush,
-	.recover = recover,
-	.cost = cost,
+	.flush = send_kept,
+	.recover = netlink_recover,
+	.cost = netlink_cost,
 };

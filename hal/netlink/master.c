@@ -25,8 +25,8 @@ static bool has_master(void *ctx, uint32_t master)
 }
 
 /* Behind the word and a slash: what target w1 takes. */
-static int create(const char *where, const struct bus_env *env, struct link_master **out, char *why,
-                  size_t why_size)
+static int netlink_create(const char *where, const struct bus_env *env, struct link_master **out,
+                          char *why, size_t why_size)
 {
 	struct w1_netlink *netlink = calloc(1, sizeof(*netlink));
 	const char *rest = where + sizeof(word) - 1;
@@ -39,12 +39,13 @@ static int create(const char *where, const struct bus_env *env, struct link_mast
 		return err;
 	}
 	netlink->master = (struct link_master){.ops = &w1_netlink_master, .env = env};
-	netlink->talk = (struct w1_talk){.env = env, .there = has_master, .ctx = netlink, .fd = -1};
+	netlink->talk = (struct w1_talk){
+		.env = env, .has_master = has_master, .ctx = netlink, .fd = -1};
 	*out = &netlink->master;
 	return 0;
 }
 
-static void destroy(struct link_master *base)
+static void netlink_destroy(struct link_master *base)
 {
 	struct w1_netlink *netlink = (struct w1_netlink *)base;
 
@@ -85,7 +86,7 @@ static int add_links(struct w1_netlink *netlink)
 }
 
 /* The kernel may get more at any time. A master that goes has no devices, and keeps its channel. */
-static int grow(struct link_master *base, char *why, size_t why_size)
+static int netlink_grow(struct link_master *base, char *why, size_t why_size)
 {
 	struct w1_netlink *netlink = (struct w1_netlink *)base;
 
@@ -116,7 +117,7 @@ static bool has_no_slots(void)
  * Why netlink cannot serve here, now and later; NULL: it is a passing fault, as is silence of a
  * kernel that has answered before.
  */
-static const char *reason(const struct w1_netlink *netlink, int err)
+static const char *refusal_text(const struct w1_netlink *netlink, int err)
 {
 	switch (err) {
 	case -EPERM:
@@ -144,7 +145,7 @@ static int serve_sysfs(struct w1_netlink *netlink, int err)
 
 	netlink->refused = true;
 	snprintf(event.text, sizeof(event.text),
-	         "netlink refused: %s; served by files as target w1", reason(netlink, err));
+	         "netlink refused: %s; served by files as target w1", refusal_text(netlink, err));
 	if (!netlink->told)
 		netlink->master.env->event(netlink->master.env->ctx, &event);
 	netlink->told = true;
@@ -160,7 +161,7 @@ static int open_masters(struct link_master *base, char *why, size_t why_size)
 	netlink->refused = false;
 	if (n)
 		return n;
-	/* its own search finds devices; nobody would take what the kernel says of them */
+	/* owsd's own search finds devices; no thread would read the kernel's events of them */
 	w1_master_deafen(netlink->sysfs);
 	n = has_no_slots() ? -EOPNOTSUPP : w1_talk_open(&netlink->talk);
 	if (!n)
@@ -171,7 +172,7 @@ static int open_masters(struct link_master *base, char *why, size_t why_size)
 		return 0;
 	}
 	w1_talk_close(&netlink->talk);
-	if (reason(netlink, n))
+	if (refusal_text(netlink, n))
 		return serve_sysfs(netlink, n);
 	snprintf(why, why_size, "netlink: %s", n < 0 ? strerror(-n) : "no such master any more");
 	return n < 0 ? n : -ENODEV;
@@ -187,41 +188,41 @@ static void close_masters(struct link_master *base)
 }
 
 /* The same masters as target w1, whoever serves them. */
-static int there(struct link_master *base, uint64_t *mark)
+static int netlink_visible(struct link_master *base, uint64_t *mark)
 {
 	struct w1_netlink *netlink = (struct w1_netlink *)base;
 
 	return w1_master.there(netlink->sysfs, mark);
 }
 
-static unsigned channels(struct link_master *base)
+static unsigned netlink_channels(struct link_master *base)
 {
 	struct w1_netlink *netlink = (struct w1_netlink *)base;
 
 	return netlink->refused ? w1_master.channels(netlink->sysfs) : netlink->count;
 }
 
-static struct link *channel(struct link_master *base, unsigned n)
+static struct link *netlink_channel(struct link_master *base, unsigned n)
 {
 	struct w1_netlink *netlink = (struct w1_netlink *)base;
 
 	return netlink->refused ? w1_master.channel(netlink->sysfs, n) : &netlink->links[n].link;
 }
 
-static void cost(const struct link_master *base, struct link_master_cost *cost)
+static void netlink_master_cost(const struct link_master *base, struct link_master_cost *cost)
 {
 	*cost = (struct link_master_cost){
 		.syscalls = ((const struct w1_netlink *)base)->talk.syscalls};
 }
 
 const struct link_master_ops w1_netlink_master = {
-	.create = create,
+	.create = netlink_create,
 	.open = open_masters,
-	.grow = grow,
+	.grow = netlink_grow,
 	.close = close_masters,
-	.there = there,
-	.channels = channels,
-	.channel = channel,
-	.cost = cost,
-	.destroy = destroy,
+	.there = netlink_visible,
+	.channels = netlink_channels,
+	.channel = netlink_channel,
+	.cost = netlink_master_cost,
+	.destroy = netlink_destroy,
 };

@@ -5,7 +5,7 @@
 #include "hal/netlink/run.h"
 
 /* The master did not know the link's number: -ENODEV if none of ours is left, else -EHOSTDOWN. */
-static int gone(struct w1_netlink *netlink)
+static int error_of_lost(struct w1_netlink *netlink)
 {
 	uint32_t numbers[NATIVE_CHANNELS];
 	int n = w1_talk_masters(&netlink->talk, numbers, NATIVE_CHANNELS);
@@ -28,7 +28,7 @@ int w1_netlink_run(struct w1_netlink_link *link, struct w1_request *request)
 	link->sent = true;
 	w1_request_begin(request, link->number);
 	if (err == -ENODEV)
-		return gone(link->netlink);
+		return error_of_lost(link->netlink);
 	if (err)
 		return err == -EPROTO ? -EIO : err;
 	if (resets && request->command[0].status == W1_STATUS_NOBODY)

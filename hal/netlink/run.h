@@ -6,8 +6,8 @@
  *   bus.c     the target "w1" of both, masters that come later
  *   master.c  the masters there are; sysfs in place of a refused netlink
  *   link.c    one master as a link: a transaction is gathered into one request
- *   search.c  searches, made of slots whose direction is chosen before
- *   run.c     a request of a link, and what became of it
+ *   search.c  searches, made of slots; their direction is chosen before
+ *   run.c     a request of a link, and the errno that its reply means
  *   talk.c    the socket; requests of several commands and their replies
  *
  * Wire format and what replies mean: the kernel's Documentation/w1/w1-netlink.rst, and seen on
@@ -53,7 +53,7 @@ struct w1_netlink {
 };
 
 /*
- * Runs a request, which is empty afterwards. -EHOSTDOWN nobody answered its reset,
+ * Runs a request, which is empty afterwards. -EHOSTDOWN no chip answered its reset,
  * -EIO also a command that the kernel refused; else as w1_request_run.
  */
 int w1_netlink_run(struct w1_netlink_link *link, struct w1_request *request);

@@ -4,7 +4,7 @@
  * a device that is known, and it is told where the wire went another way.
  *
  * All devices are looked for by the kernel's own search, which takes one request, but not those in
- * alarm: its conditional search goes on for 64 rounds when nobody is (as many as
+ * alarm: its conditional search goes on for 64 rounds when none is (as many as
  * w1_master_max_slave_count says), and counts the silent ones as gone.
  */
 #include <errno.h>
@@ -48,8 +48,8 @@ static void set_bit(uint8_t *bytes, unsigned i, unsigned value)
  * The first n bytes of path are searched along: two slots that read and one that writes, for each
  * bit. slots gets what was read; and behind a whole id eight read slots more. 0, or an error.
  */
-static int along(struct w1_netlink_link *link, bool alarm, const uint8_t *path, unsigned n,
-                 uint8_t slots[25])
+static int search_along(struct w1_netlink_link *link, bool alarm, const uint8_t *path, unsigned n,
+                        uint8_t slots[25])
 {
 	const uint8_t command = alarm ? ONEWIRE_ALARM_SEARCH : ONEWIRE_SEARCH;
 	uint8_t out[25];
@@ -64,7 +64,7 @@ static int along(struct w1_netlink_link *link, bool alarm, const uint8_t *path, 
 	return err ? err : w1_netlink_run(link, &link->request);
 }
 
-/* What the wire says at a bit: 0 or 1 all have that, 2 there are both, 3 nobody is left. */
+/* The bit that the devices have: 0 or 1 all have that, 2 there are both, 3 none is left. */
 static unsigned wire_at(const uint8_t *slots, unsigned i)
 {
 	unsigned id = bit_of(slots, 3 * i), complement = bit_of(slots, 3 * i + 1);
@@ -76,14 +76,14 @@ int w1_netlink_verify(struct link *base, const uint8_t rom[8], bool alarm)
 {
 	struct w1_netlink_link *link = (struct w1_netlink_link *)base;
 	uint8_t slots[25];
-	int err = along(link, alarm, rom, 8, slots);
+	int err = search_along(link, alarm, rom, 8, slots);
 
 	if (err)
 		return err == -EHOSTDOWN ? 0 : err;
 	for (unsigned i = 0; i < 64; i++) {
 		unsigned there = wire_at(slots, i);
 
-		/* Somebody answered the bit before. */
+		/* A device answered the bit before. */
 		if (there == 3 && i)
 			return -EBADMSG;
 		if (there == 3 || (there < 2 && there != bit_of(rom, i)))
@@ -93,7 +93,7 @@ int w1_netlink_verify(struct link *base, const uint8_t rom[8], bool alarm)
 	return 1;
 }
 
-static bool begins(const uint8_t rom[8], const struct prefix *prefix)
+static bool begins_with(const uint8_t rom[8], const struct prefix *prefix)
 {
 	for (unsigned i = 0; i < prefix->bits; i++)
 		if (bit_of(rom, i) != bit_of(prefix->rom, i))
@@ -114,7 +114,8 @@ static unsigned common_bits(const uint8_t a[8], const uint8_t b[8])
  * A known device that begins with prefix, and how many of its bits tell it from all others. NULL:
  * none is known.
  */
-static const uint8_t *guess(const struct walk *walk, const struct prefix *prefix, unsigned *bits)
+static const uint8_t *guess_known(const struct walk *walk, const struct prefix *prefix,
+                                  unsigned *bits)
 {
 	const struct w1_netlink *netlink = walk->link->netlink;
 	unsigned channel = (unsigned)(walk->link - netlink->links);
@@ -125,7 +126,7 @@ static const uint8_t *guess(const struct walk *walk, const struct prefix *prefix
 		const struct w1_seen *seen = &netlink->seen[i];
 
 		if (seen->channel != channel || !family_of(seen->rom[0])->alarms ||
-		    !begins(seen->rom, prefix))
+		    !begins_with(seen->rom, prefix))
 			continue;
 		if (!rom) {
 			rom = seen->rom;
@@ -151,7 +152,7 @@ static void look_later(struct walk *walk, const uint8_t path[8], unsigned i, uns
 static int search_look(struct walk *walk, const struct prefix *prefix)
 {
 	unsigned own;
-	const uint8_t *known = guess(walk, prefix, &own);
+	const uint8_t *known = guess_known(walk, prefix, &own);
 	uint8_t path[8], slots[25];
 	unsigned bits = own > prefix->bits + 1 ? own : prefix->bits + 1;
 	unsigned n = known && walk->full ? 8 : (bits + 7) / 8;
@@ -160,7 +161,7 @@ static int search_look(struct walk *walk, const struct prefix *prefix)
 	for (unsigned i = prefix->bits; !known && i < 64; i++)
 		set_bit(path, i, 0);
 	n = n > 8 ? 8 : n;
-	int err = along(walk->link, walk->alarm, path, n, slots);
+	int err = search_along(walk->link, walk->alarm, path, n, slots);
 	if (err)
 		return err == -EHOSTDOWN ? 0 : err;
 	for (unsigned i = 0; i < 8 * n; i++) {
@@ -209,7 +210,7 @@ struct all {
 	int stop; /* what found returned */
 };
 
-static int found_one(void *ctx, const uint8_t rom[8])
+static int note_found(void *ctx, const uint8_t rom[8])
 {
 	struct all *all = ctx;
 	struct w1_netlink *netlink = all->netlink;
@@ -249,7 +250,7 @@ int w1_netlink_search(struct link *base, bool alarm, uint8_t family, link_found 
 	search_forget(link->netlink, all.channel);
 	struct w1_request request;
 	w1_request_begin(&request, link->number);
-	request.found = found_one;
+	request.found = note_found;
 	request.ctx = &all;
 	int err = w1_request_add(&request, W1_SEARCH, NULL, 0, NULL);
 	if (!err)

@@ -118,7 +118,7 @@ static int send_request(struct w1_talk *talk, struct w1_request *request, uint8_
 }
 
 /* The next datagram of the kernel's: its bytes, or an error as w1_request_run. */
-static int receive(struct w1_talk *talk, int64_t until)
+static int receive_datagram(struct w1_talk *talk, int64_t until)
 {
 	const struct bus_env *env = talk->env;
 	struct sockaddr_nl from = {.nl_pid = 0};
@@ -159,8 +159,9 @@ static int take_found(const struct w1_request *request, const uint8_t *data, siz
 	return 0;
 }
 
-static int take_command(struct progress *progress, const struct w1_head *head,
-                        const struct w1_command_head *command, const uint8_t *data, bool is_status)
+static int take_command_reply(struct progress *progress, const struct w1_head *head,
+                              const struct w1_command_head *command, const uint8_t *data,
+                              bool is_status)
 {
 	struct w1_request *request = progress->request;
 	unsigned i = progress->statuses;
@@ -180,7 +181,7 @@ static int take_command(struct progress *progress, const struct w1_head *head,
 	return 0;
 }
 
-static int refused(const struct w1_head *head)
+static int error_of_status(const struct w1_head *head)
 {
 	return head->status == ENODEV ? -ENODEV : head->status == ENOMEM ? -EIO : -EPROTO;
 }
@@ -195,7 +196,7 @@ static int take_message(struct progress *progress, const struct w1_head *head, c
 	if (head->type != MASTER_COMMAND || head->master != progress->request->master)
 		return -EPROTO;
 	if (n == 0)
-		return refused(head);
+		return error_of_status(head);
 	while (n && !err) {
 		struct w1_command_head command;
 
@@ -204,7 +205,8 @@ static int take_message(struct progress *progress, const struct w1_head *head, c
 		memcpy(&command, data, sizeof(command));
 		if (command.len > n - sizeof(command))
 			return -EPROTO;
-		err = take_command(progress, head, &command, data + sizeof(command), is_status);
+		err = take_command_reply(progress, head, &command, data + sizeof(command),
+		                         is_status);
 		data += sizeof(command) + command.len;
 		n -= sizeof(command) + command.len;
 	}
@@ -281,8 +283,8 @@ static int receive_reply(struct w1_talk *talk, uint32_t master, int64_t until)
 	do {
 		int64_t look = talk->env->now(talk->env->ctx) + LOOK_NS;
 
-		n = receive(talk, look < until ? look : until);
-		if (n == -ETIMEDOUT && !talk->there(talk->ctx, master))
+		n = receive_datagram(talk, look < until ? look : until);
+		if (n == -ETIMEDOUT && !talk->has_master(talk->ctx, master))
 			return -ENODEV;
 	} while (n == -ETIMEDOUT && talk->env->now(talk->env->ctx) < until);
 	return n;
@@ -342,7 +344,7 @@ int w1_talk_masters(struct w1_talk *talk, uint32_t *numbers, unsigned room)
 	w1_request_begin(&request, 0);
 	n = send_request(talk, &request, LIST_MASTERS);
 	while (n == 0) {
-		n = receive(talk, until);
+		n = receive_datagram(talk, until);
 		if (n >= 0)
 			n = walk_datagram(talk, (size_t)n, take_masters, &list);
 	}

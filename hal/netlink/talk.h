@@ -10,7 +10,7 @@ enum w1_code {
 	W1_WRITE,
 	W1_SEARCH,
 	W1_TOUCH = 4, /* each bit of the data is a slot; a 1 reads */
-	W1_RESET = 5, /* status 255: nobody answered */
+	W1_RESET = 5, /* status 255: no device answered */
 };
 
 #define W1_STATUS_NOBODY 255
@@ -36,7 +36,7 @@ struct w1_request {
 struct w1_talk {
 	const struct bus_env *env;
 	/* Is there still such a master? Asked when a reply takes long. */
-	bool (*there)(void *ctx, uint32_t master);
+	bool (*has_master)(void *ctx, uint32_t master);
 	void *ctx;
 	int fd; /* -1: closed */
 	uint32_t seq;
@@ -51,8 +51,8 @@ extern int (*w1_socket)(void);
 int w1_talk_open(struct w1_talk *talk);
 void w1_talk_close(struct w1_talk *talk);
 /*
- * The numbers of all masters, sorted. Their count, or -ETIMEDOUT: nobody serves w1 there; else as
- * sendto(2) says.
+ * The numbers of all masters, sorted. Their count, or -ETIMEDOUT: no driver serves w1 there; else
+ * as sendto(2) says.
  */
 int w1_talk_masters(struct w1_talk *talk, uint32_t *numbers, unsigned room);
 

@@ -30,7 +30,7 @@ static const struct {
 };
 #define FORMS (sizeof(forms) / sizeof(forms[0]))
 
-static int hex_digit(char c)
+int hex_digit(char c)
 {
 	if (c >= '0' && c <= '9')
 		return c - '0';
@@ -97,13 +97,13 @@ int rom_print(const uint8_t rom[ROM_LEN], enum rom_format format, char text[ROM_
 	return forms[format].len;
 }
 
-/* As owserver compares the words that stand in the place of a device. */
+/* As owserver compares the words that stand where a device may. */
 static bool slice_is(struct path_slice slice, const char *word)
 {
 	return slice.len == strlen(word) && !strncasecmp(slice.text, word, slice.len);
 }
 
-static bool is_branch(struct path_slice slice)
+bool path_is_branch(struct path_slice slice)
 {
 	return (slice.len == 4 && !memcmp(slice.text, "main", 4)) ||
 	       (slice.len == 3 && !memcmp(slice.text, "aux", 3));
@@ -211,7 +211,7 @@ static bool leads_on(const struct path *path, struct path_slice branch, struct p
 {
 	uint8_t rom[ROM_LEN];
 
-	if (!next.len || !is_branch(branch) || slice_in(next, no_device))
+	if (!next.len || !path_is_branch(branch) || slice_in(next, no_device))
 		return false;
 	if (path->has_rom)
 		return path->rom[0] == DS2409_FAMILY;

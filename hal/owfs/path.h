@@ -70,6 +70,11 @@ struct path {
  */
 const char *path_split(const char *text, size_t len, struct path *path);
 
+/* The value of a hexadecimal digit, -1: it is none. */
+int hex_digit(char c);
+/* Is the component a branch of a coupler, main or aux? */
+bool path_is_branch(struct path_slice slice);
+
 /*
  * Do both paths name the same device? ROM ids are compared as ids, so format and branch do not
  * matter; aliases by their letters. False when only one of the two is an alias, or when a path has

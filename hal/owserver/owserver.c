@@ -474,7 +474,7 @@ const struct bus_ops owserver_bus = {
 	.exec = owserver_exec,
 	.step = owserver_step,
 	.suspend = owserver_suspend,
-	.there = owserver_there,
+	.visible = owserver_there,
 	.watch = owserver_watch,
 	.counters = owserver_counters,
 };

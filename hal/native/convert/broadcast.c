@@ -14,11 +14,11 @@
 #define TRIES 3
 
 /*
- * Those with a supply hold the line low while they convert: if nobody does, nobody heard. One that
- * alone did not hear is hidden by the others; the rounds one by one find it. The strong pull-up
- * lets nobody show it: thermometer_proof.c looks at what each chip latched.
+ * Chips with a supply hold the line low while they convert: if none does, none heard. One that
+ * alone did not hear is hidden by the others; the rounds one by one find it. Under the strong
+ * pull-up no chip can show it: thermometer_proof.c looks at what each chip latched.
  */
-static int send_all(struct link *link, enum link_after after)
+static int send_convert_all(struct link *link, enum link_after after)
 {
 	static const uint8_t command[] = {SKIP_ROM, THERMOMETER_CONVERT};
 	uint8_t busy, late[LINK_LATE];
@@ -49,7 +49,7 @@ static int64_t convert_ns(const struct link *link, const struct device *device)
 	return link->driver ? 0 : thermometer_convert_ns(device);
 }
 
-/* Who did not show that it heard may have heard. */
+/* A chip that did not show that it heard may have heard. */
 void broadcast_told(const struct native *native, struct device *device, int64_t now)
 {
 	thermometer_told(device, now, convert_ns(native->channel[device->channel].link, device));
@@ -61,8 +61,8 @@ static void told_all(struct native *native, unsigned n)
 		broadcast_told(native, device, native_now(native));
 }
 
-/* Who waited for a conversion that this one cut off waits for this one. NULL: of all. */
-static void await(struct native *native, unsigned n, const struct device *device)
+/* Jobs that waited for a conversion that this one cut off wait for this one. NULL: of all. */
+static void wait_for_end(struct native *native, unsigned n, const struct device *device)
 {
 	for (struct job *job = NULL; (job = native_job(native, job));) {
 		if ((job->state != JOB_DUE && job->state != JOB_CONVERTING) ||
@@ -79,10 +79,11 @@ void broadcast_started(struct native *native, struct device *device, int64_t now
 
 	thermometer_showed(device, false);
 	thermometer_converts(device, now, convert_ns(link, device), false);
-	await(native, device->channel, device);
+	wait_for_end(native, device->channel, device);
 }
 
-static void converting(struct native *native, unsigned n, bool unseen, int64_t now, int64_t longest)
+static void all_convert(struct native *native, unsigned n, bool unseen, int64_t now,
+                        int64_t longest)
 {
 	struct channel *channel = &native->channel[n];
 	struct device *only = NULL;
@@ -96,7 +97,7 @@ static void converting(struct native *native, unsigned n, bool unseen, int64_t n
 	}
 	if (only && !unseen)
 		thermometer_showed(only, true);
-	await(native, n, NULL);
+	wait_for_end(native, n, NULL);
 }
 
 int broadcast_convert(struct native *native, unsigned n, bool strong, int64_t longest)
@@ -105,7 +106,7 @@ int broadcast_convert(struct native *native, unsigned n, bool strong, int64_t lo
 	int err = -EBADMSG;
 
 	for (int try = 0; try < TRIES && err == -EBADMSG; try++) {
-		err = send_all(link, strong ? LINK_STRONG : LINK_IDLE);
+		err = send_convert_all(link, strong ? LINK_STRONG : LINK_IDLE);
 		native_count(native, COUNT_TRANSACTIONS);
 		if (err == -EBADMSG)
 			native_count(native, COUNT_CHECKSUMS);
@@ -123,7 +124,7 @@ int broadcast_convert(struct native *native, unsigned n, bool strong, int64_t lo
 		native_hold(native, n, NULL, now + longest);
 		schedule_owe(&native->schedule, OWES_OTHER);
 	}
-	converting(native, n, strong && !link->driver, now, longest);
+	all_convert(native, n, strong && !link->driver, now, longest);
 	if (!strong && !link->driver)
 		ending_begin(native, n, longest);
 	return 0;

@@ -8,8 +8,8 @@
 #include "hal/native/state.h"
 
 /*
- * Convert T to all; -EBADMSG if nobody begins. strong: with the pull-up, which holds it longest ns.
- * The requests that are due wait for the end then.
+ * Convert T to all; -EBADMSG if no chip begins. strong: with the pull-up, which holds the channel
+ * for longest ns. The requests that are due wait for the end then.
  */
 int broadcast_convert(struct native *native, unsigned n, bool strong, int64_t longest);
 /* This chip alone began to convert at now, and has shown it. All that wait for it wait for that. */

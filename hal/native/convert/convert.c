@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Who converts when. Thermometers that are due on a channel are gathered and get one Convert T
+ * When thermometers convert. Those that are due on a channel are gathered and get one Convert T
  * with Skip ROM; the next waits until the results of the last have been read, as it would overwrite
  * them. Where it is faster each gets its own as soon as it was read (schedule.h). A parasitic one
  * needs the strong pull-up for as long as it converts, which holds the channel; on a channel that
@@ -28,7 +28,7 @@
 /* Conversions in a row that a chip did not make, as what it holds shows. */
 #define TRIES_UNHEARD 3
 
-static unsigned wanted(const struct job *job)
+static unsigned wanted_bits(const struct job *job)
 {
 	return job->again == AGAIN_MARK ? THERMOMETER_MARK
 	                                : thermometer_bits(job->txn.device, job->property->convert);
@@ -36,7 +36,7 @@ static unsigned wanted(const struct job *job)
 
 static bool is_right(const struct job *job)
 {
-	return thermometer_has_bits(job->txn.device, wanted(job));
+	return thermometer_has_bits(job->txn.device, wanted_bits(job));
 }
 
 /* The result of another job's conversion has not been read yet: the next would overwrite it. */
@@ -49,7 +49,7 @@ static bool is_measuring(const struct native *native, const struct device *devic
 }
 
 /* Another job has this device between its preparation and its reading, at its resolution. */
-static bool taken(const struct native *native, const struct job *job)
+static bool is_taken(const struct native *native, const struct job *job)
 {
 	for (const struct job *other = NULL; (other = native_job(native, other));)
 		if (other != job && other->txn.device == job->txn.device && schedule_asks(other) &&
@@ -70,8 +70,8 @@ static bool is_overtaking(const struct native *native, const struct job *job)
 }
 
 /*
- * A conversion that is under way or just over serves who does not insist on one of his own, and
- * who insists if nobody could read its result.
+ * A conversion that is under way or just over serves a job that does not insist on one of its own;
+ * and a job that insists, if no other could read the result.
  */
 static bool is_served(const struct native *native, const struct job *job, int64_t now)
 {
@@ -113,7 +113,7 @@ void convert_begin(struct native *native, struct job *job, int64_t now)
 	convert_prepare(native, job, now);
 }
 
-static int prepare(struct native *native, struct job *job)
+static int prepare_chip(struct native *native, struct job *job)
 {
 	struct device *device = job->txn.device;
 
@@ -129,7 +129,7 @@ static int prepare(struct native *native, struct job *job)
 		return thermometer_recall(&job->txn);
 	if (job->txn.phase == 0 && is_right(job))
 		return 0;
-	int err = thermometer_prepare(&job->txn, wanted(job));
+	int err = thermometer_prepare(&job->txn, wanted_bits(job));
 	if (err == 0)
 		job->txn.phase = 0;
 	return err;
@@ -141,7 +141,7 @@ void convert_prepare(struct native *native, struct job *job, int64_t now)
 	struct device *device = job->txn.device;
 
 	if (job->txn.phase == 0 &&
-	    ((!is_right(job) && taken(native, job)) || is_overtaking(native, job))) {
+	    ((!is_right(job) && is_taken(native, job)) || is_overtaking(native, job))) {
 		/* Its turn comes when the other resolution has been read. */
 		job->txn.wake_ns = now + GATHER_NS;
 		job->waits = true;
@@ -155,7 +155,7 @@ void convert_prepare(struct native *native, struct job *job, int64_t now)
 		job->txn.wake_ns = busy_ns;
 		return;
 	}
-	int err = txn_end(&job->txn, prepare(native, job));
+	int err = txn_end(&job->txn, prepare_chip(native, job));
 
 	job_saw(native, job, err, now);
 	if (err < 0) {

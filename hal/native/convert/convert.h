@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Who converts when. */
+/* When thermometers convert. */
 #pragma once
 
 #include "hal/native/state.h"
@@ -9,11 +9,11 @@ void convert_early(struct native *native, struct job *job, int64_t now);
 void convert_begin(struct native *native, struct job *job, int64_t now);
 void convert_prepare(struct native *native, struct job *job, int64_t now);
 /*
- * Start a conversion where one is due. True: did a transaction, or *in_turn is the job whose chip
+ * Start a conversion where one is due. True: did a transaction, or the chip of the job *in_turn
  * is to convert in turn now, by convert_in_turn(). *next: when to look again.
  */
 bool convert_step(struct native *native, int64_t now, int64_t *next, struct job **in_turn);
-/* The job of a channel whose chip converts in turn next, now. NULL: none does. */
+/* The job of a channel that has its chip convert in turn next, now. NULL: none does. */
 struct job *convert_next_in_turn(struct native *native, unsigned n, int64_t now);
 void convert_in_turn(struct native *native, struct job *job);
 /*

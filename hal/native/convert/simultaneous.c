@@ -50,7 +50,7 @@ static int convert_voltage(struct native *native, unsigned n)
 	return 0;
 }
 
-/* Where there is no thermometer, nobody says that it converts. */
+/* Without a thermometer on the channel no chip shows that it converts. */
 static int convert_temperature(struct native *native, unsigned n)
 {
 	bool parasitic = false, any = false;

@@ -11,7 +11,7 @@
 #define LOOKS 3
 #define TRIES 3
 
-/* Read Power Supply of all at once: ones mean that nobody is parasitic, or that nobody heard. */
+/* Read Power Supply of all at once: ones mean that no chip is parasitic, or that none heard. */
 static int look_at_supply(struct link *link)
 {
 	static const uint8_t command[] = {SKIP_ROM, THERMOMETER_READ_POWER};

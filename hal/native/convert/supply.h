@@ -6,7 +6,7 @@
 
 /*
  * Asks all thermometers of a channel at once, some times. 1: none is fed by the wire; 0: one is, or
- * another chip made it seem so; -ENODEV nobody is there, or an error of the link.
+ * another chip made it seem so; -ENODEV no chip is there, or an error of the link.
  */
 int supply_look(struct native *native, unsigned n);
 /* That of all thermometers of a channel is this. */
@@ -18,8 +18,8 @@ void supply_know(struct native *native, unsigned n, enum device_power power);
  */
 int supply_ask_all(struct native *native, struct job *job);
 /*
- * Ask one thermometer for its supply that nobody asked yet: the broadcast was answered with a zero,
- * by a parasitic one or by another chip to which the command means something else. Who does not
- * answer counts as parasitic. False: all are known.
+ * Ask one thermometer that was not asked yet for its supply: the broadcast was answered with a
+ * zero, by a parasitic one or by another chip to which the command means something else. A
+ * thermometer that does not answer counts as parasitic. False: all are known.
  */
 bool supply_ask_one(struct native *native, unsigned n);

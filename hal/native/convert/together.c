@@ -16,7 +16,7 @@ struct group {
 	unsigned n;
 	struct job *job[LINK_TOGETHER];
 	struct device *device[LINK_TOGETHER];
-	const struct bus_req *req[LINK_TOGETHER]; /* whose job it was */
+	const struct bus_req *req[LINK_TOGETHER]; /* the request of the job */
 	uint8_t state[LINK_TOGETHER];             /* ... and its state */
 	struct link_visit visit[LINK_TOGETHER];
 	uint8_t out[LINK_TOGETHER][TXN_SELECT + 1], in[LINK_TOGETHER][SCRATCHPAD_SIZE];
@@ -60,7 +60,7 @@ static bool is_worth_it(const struct group *group)
 }
 
 /* Is there room for a job on this channel? */
-static bool fits(const struct native *native, const struct group *group, unsigned channel)
+static bool fits_group(const struct native *native, const struct group *group, unsigned channel)
 {
 	const struct link *link = native_abreast(native, channel), *first = group->visit[0].link;
 
@@ -108,19 +108,19 @@ static struct job *next_reading(struct native *native, const struct group *group
 
 	for (struct job *job = NULL; (job = native_job(native, job));)
 		if (!job->alone && reads_scratchpad(job) &&
-		    fits(native, group, job->txn.device->channel) &&
+		    fits_group(native, group, job->txn.device->channel) &&
 		    job_ready(native, job, now, &next) && job_goes_first(native, job, best))
 			best = job;
 	return best;
 }
 
 /* The starts first: until then a chip waits, and until a reading its result does. */
-static void gather(struct native *native, struct group *group, int64_t now)
+static void gather_group(struct native *native, struct group *group, int64_t now)
 {
 	struct job *job;
 
 	for (unsigned n = 0; n < native->channels && n < NATIVE_CHANNELS; n++) {
-		job = fits(native, group, n) ? convert_next_in_turn(native, n, now) : NULL;
+		job = fits_group(native, group, n) ? convert_next_in_turn(native, n, now) : NULL;
 		if (job && !job->alone)
 			together_add(native, group, job);
 	}
@@ -128,7 +128,7 @@ static void gather(struct native *native, struct group *group, int64_t now)
 		together_add(native, group, job);
 }
 
-static void step(struct native *native, struct job *job, int64_t now)
+static void step_alone(struct native *native, struct job *job, int64_t now)
 {
 	job->alone = false;
 	if (job->state == JOB_DUE)
@@ -144,14 +144,14 @@ void together_step(struct native *native, struct job *job, int64_t now)
 
 	if ((job->state != JOB_DUE && !reads_scratchpad(job)) ||
 	    !together_begin(native, &group, job)) {
-		step(native, job, now);
+		step_alone(native, job, now);
 		return;
 	}
 	/* Not with others: an alarm or an output, which would wait for them. */
 	if (job->req->prio > BUS_OUTPUT)
-		gather(native, &group, now);
+		gather_group(native, &group, now);
 	if (!is_worth_it(&group)) {
-		step(native, job, now);
+		step_alone(native, job, now);
 		return;
 	}
 	group.visit[0].link->ops->together(group.visit, group.n);
@@ -171,7 +171,7 @@ void together_step(struct native *native, struct job *job, int64_t now)
 				broadcast_told(native, group.device[i], group.visit[i].ended_ns);
 			continue;
 		}
-		step(native, group.job[i], native_now(native));
+		step_alone(native, group.job[i], native_now(native));
 		drop_visit(&group, i);
 	}
 	native->schedule.doing = reads ? SCHEDULE_READ : SCHEDULE_START;

@@ -277,7 +277,7 @@ static const struct bus_ops late_bus = {
 	.submit = late_submit,
 	.step = late_step,
 	.suspend = late_suspend,
-	.there = late_there,
+	.visible = late_there,
 };
 
 const struct bus_ops *const bus_backends[] = {
