@@ -113,15 +113,12 @@ static int take_data_line(struct board_data *data, char *line, char *why, size_t
 	return set_text(data, key, value, why, why_size);
 }
 
-static void take_id(struct board_data *data, const char *file)
+/* The length of a file's name without the suffix; that of all of it where it has none. */
+static size_t stem_length(const char *name)
 {
-	const char *slash = strrchr(file, '/');
-	const char *name = slash ? slash + 1 : file;
 	size_t len = strlen(name), tail = strlen(SUFFIX);
 
-	if (len > tail && !strcmp(name + len - tail, SUFFIX))
-		len -= tail;
-	snprintf(data->id, sizeof(data->id), "%.*s", (int)len, name);
+	return len > tail && !strcmp(name + len - tail, SUFFIX) ? len - tail : len;
 }
 
 int board_data_read(const char *file, struct board_data *data, char *why, size_t why_size)
@@ -132,7 +129,8 @@ int board_data_read(const char *file, struct board_data *data, char *why, size_t
 	FILE *in;
 
 	*data = (struct board_data){.i2c = -1};
-	take_id(data, file);
+	snprintf(data->id, sizeof(data->id), "%.*s", (int)stem_length(basename(file)),
+	         basename(file));
 	in = fopen(file, "re");
 	if (!in) {
 		err = -errno;
@@ -169,13 +167,6 @@ static int by_id(const void *a, const void *b)
 	return strcmp(((const struct board_data *)a)->id, ((const struct board_data *)b)->id);
 }
 
-static bool is_data(const char *name)
-{
-	size_t len = strlen(name), tail = strlen(SUFFIX);
-
-	return name[0] != '.' && len > tail && !strcmp(name + len - tail, SUFFIX);
-}
-
 int board_data_list(const char *folder, struct board_data *data, unsigned max, char *why,
                     size_t why_size)
 {
@@ -190,7 +181,7 @@ int board_data_list(const char *folder, struct board_data *data, unsigned max, c
 		return err;
 	}
 	for (struct dirent *entry; !err && (entry = readdir(dir));) {
-		if (!is_data(entry->d_name))
+		if (entry->d_name[0] == '.' || !entry->d_name[stem_length(entry->d_name)])
 			continue;
 		if (count == max) {
 			snprintf(why, why_size, "%s: more than %u boards", folder, max);

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Finds what the files of /proc and /sys, and the data of boards, show about this machine. */
+/*
+ * Finds what the files of /proc and /sys, and the data of boards, show about this machine. Each
+ * path begins with the folder `root`, so that a test can show it another machine.
+ */
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>

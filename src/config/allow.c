@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The key ControlAllow of the driver block: who may command which signals. */
+/* The key ControlAllow of the driver block: which users may command which signals. */
 #include <fnmatch.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,18 +10,7 @@
 #include "src/shm/peer.h"
 
 #define BLANK " \t"
-#define WHO_MAX 63 /* the longest name of a user or a group */
-
-static unsigned count_words(const char *text)
-{
-	unsigned count = 0;
-
-	for (text += strspn(text, BLANK); *text; text += strspn(text, BLANK)) {
-		text += strcspn(text, BLANK);
-		count++;
-	}
-	return count;
-}
+#define HOLDER_MAX 63 /* the longest name of a user or a group */
 
 static bool find_id(const char *name, bool group, uint32_t *id)
 {
@@ -40,20 +29,20 @@ static bool find_id(const char *name, bool group, uint32_t *id)
 	}
 	number = strtoul(name, &end, 10);
 	*id = (uint32_t)number;
-	/* the last number is that of nobody: chown() takes it for "as before" */
+	/* the last number is no user: chown() takes it for "as before" */
 	return *name >= '0' && *name <= '9' && !*end && number < UINT32_MAX;
 }
 
 /* Adds user:NAME or group:NAME; one that this machine does not know has no rights. */
-static void add_who(struct build *build, struct config_allow *allow, const char *word, size_t len,
-                    struct place place)
+static void add_holder(struct build *build, struct config_allow *allow, const char *word,
+                       size_t len, struct place place)
 {
-	char name[WHO_MAX + 1] = "";
+	char name[HOLDER_MAX + 1] = "";
 	bool user = !strncmp(word, "user:", 5), group = !strncmp(word, "group:", 6);
 	size_t prefix = user ? 5 : 6;
 	uint32_t id;
 
-	if ((!user && !group) || len <= prefix || len - prefix > WHO_MAX) {
+	if ((!user && !group) || len <= prefix || len - prefix > HOLDER_MAX) {
 		report_error(build->report, place,
 		             "ControlAllow \"%.*s\": expected user:NAME or group:NAME", (int)len,
 		             word);
@@ -61,7 +50,8 @@ static void add_who(struct build *build, struct config_allow *allow, const char 
 	}
 	memcpy(name, word + prefix, len - prefix);
 	if (find_id(name, group, &id))
-		allow->who[allow->who_count++] = (struct config_who){.group = group, .id = id};
+		allow->holders[allow->holder_count++] = (struct config_holder){.group = group,
+		                                                               .id = id};
 	else
 		report_warning(build->report, place, "ControlAllow: there is no %s %s here",
 		               group ? "group" : "user", name);
@@ -81,10 +71,9 @@ static void add_allow(struct build *build, const struct rio_node *node)
 	struct config *config = &build->box->config;
 	struct config_allow *allow = &config->allows[config->allow_count];
 	const char *text = node->value + strspn(node->value, BLANK);
-	unsigned words = count_words(text);
 	size_t len = strcspn(text, BLANK);
 
-	if (words < 2) {
+	if (!text[len + strspn(text + len, BLANK)]) {
 		report_error(build->report, node->value_at,
 		             "ControlAllow \"%s\": expected a pattern of signal names, then "
 		             "user:NAME or group:NAME",
@@ -93,12 +82,13 @@ static void add_allow(struct build *build, const struct rio_node *node)
 	}
 	allow->text = build_keep(build, node->value, strlen(node->value));
 	allow->pattern = build_keep(build, text, len);
-	allow->who = build_take(build, words, sizeof(*allow->who));
+	/* a word and its blank are two bytes at least */
+	allow->holders = build_take(build, strlen(text) / 2, sizeof(*allow->holders));
 	if (build->no_memory)
 		return;
 	for (text += len; *(text += strspn(text, BLANK)); text += len) {
 		len = strcspn(text, BLANK);
-		add_who(build, allow, text, len, node->value_at);
+		add_holder(build, allow, text, len, node->value_at);
 	}
 	if (!fits_some(config, allow->pattern))
 		report_warning(build->report, node->value_at,
@@ -128,10 +118,10 @@ void allow_build(struct build *build, const struct rio_node *driver)
 
 bool allow_names(const struct config_allow *allow, const struct peer *peer)
 {
-	for (unsigned i = 0; i < allow->who_count; i++) {
-		const struct config_who *who = &allow->who[i];
+	for (unsigned i = 0; i < allow->holder_count; i++) {
+		const struct config_holder *holder = &allow->holders[i];
 
-		if (who->group ? peer_in_group(peer, who->id) : peer->uid == who->id)
+		if (holder->group ? peer_in_group(peer, holder->id) : peer->uid == holder->id)
 			return true;
 	}
 	return false;

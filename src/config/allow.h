@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The key ControlAllow of the driver block: who may command which signals. */
+/* The key ControlAllow of the driver block: which users may command which signals. */
 #pragma once
 
 #include <stdbool.h>
@@ -22,6 +22,6 @@ enum allow_word {
 };
 /*
  * What ControlAllow says about the peer and the signal; the empty name is that of the driver. No
- * peer (NULL): somebody of whom nothing is known.
+ * peer (NULL): a client of which owsd knows nothing.
  */
 enum allow_word allow_ask(const struct config *config, const struct peer *peer, const char *name);

@@ -82,7 +82,7 @@ const struct config_bus *config_bus(const struct config *config, const char *tar
 
 static uint64_t hash_of(const char *file)
 {
-	/* whoever has made it a pipe meanwhile does not hold a reload */
+	/* O_NONBLOCK: the name may lead to a pipe by now, which must not hold a reload */
 	int fd = open(file, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
 	FILE *in = fd < 0 ? NULL : fdopen(fd, "r");
 	uint64_t hash = HASH_BEGIN;

@@ -112,7 +112,7 @@ static void check_property(const struct check *check, const char *path, const ch
 {
 	struct path_property found = property_look(path);
 
-	if (found.there)
+	if (found.exists)
 		return;
 	if (*found.nearest)
 		report_warning(check->report, check->place,

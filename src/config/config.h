@@ -190,16 +190,16 @@ struct config_mqtt {
 };
 
 /* A user or a group of ControlAllow. */
-struct config_who {
+struct config_holder {
 	bool group;
 	uint32_t id;
 };
-/* An entry of ControlAllow: who may command the signals whose names fit the pattern. */
+/* An entry of ControlAllow: the users that may command the signals whose names fit the pattern. */
 struct config_allow {
 	const char *text; /* as written */
 	const char *pattern;
-	struct config_who *who; /* those that this machine knows */
-	unsigned who_count;
+	struct config_holder *holders; /* those that this machine knows */
+	unsigned holder_count;
 };
 
 struct config {

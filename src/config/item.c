@@ -239,7 +239,7 @@ static bool has_por(const struct config_item *item)
 		return false;
 	snprintf(path, sizeof(path), "/%s/por", item->device);
 	property = property_look(path);
-	return property.type && property.there && property.readable;
+	return property.type && property.exists && property.readable;
 }
 
 /* What of an output reads as it was written is read back, and the file says how often. */

@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* The configuration made from a .rio document: its driver block, its items, its targets. */
+/*
+ * The configuration made from a .rio document: its driver block, its items, its targets. A part is
+ * built although another has an error, so that one check reports all errors. ControlAllow comes
+ * last: its patterns are compared with the names of the items.
+ */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* The configuration as owsd understood it, printed as a file. */
+/*
+ * The configuration as owsd understood it, printed as a file that owsd would read again: each value
+ * in force is there, also where it is the default.
+ */
 #include <stdarg.h>
-
 #include <stdlib.h>
 
 #include "src/config/limits.h"

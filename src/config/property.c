@@ -90,7 +90,7 @@ static bool is_element(const struct property *property, const char *name)
 struct path_property property_look(const char *path)
 {
 	struct path_property found = {
-		.there = true, .readable = true, .writable = true, .exact = true};
+		.exists = true, .readable = true, .writable = true, .exact = true};
 	char name[PATH_LEN_MAX + 1], *dot;
 	const struct property *property;
 	const struct family *family;
@@ -112,7 +112,7 @@ struct path_property property_look(const char *path)
 	take_access(family, property, &found);
 	if (property && dot && property->name[dot - name] == '\0' &&
 	    !is_element(property, dot + 1)) {
-		found.there = false;
+		found.exists = false;
 		if (text_distance(dot + 1, "BYTE") < 3)
 			snprintf(found.nearest, PROPERTY_NAME, "%s.BYTE", property->name);
 		return found;
@@ -120,7 +120,7 @@ struct path_property property_look(const char *path)
 	if (property || has_name(family, name, strlen(name)) ||
 	    (dot && has_name(family, name, (size_t)(dot - name))))
 		return found;
-	found.there = false;
+	found.exists = false;
 	if (dot)
 		*dot = '\0';
 	find_nearest(family, name, dot ? split.property.text + (dot - name) : "", found.nearest);

@@ -9,17 +9,17 @@
 
 struct path_property {
 	const char *type;            /* of the family, as "DS18B20"; NULL: not known */
-	bool there;                  /* true too where nobody can know */
-	bool readable, writable;     /* true too where nobody can know */
+	bool exists;                 /* true too of what the tables do not have */
+	bool readable, writable;     /* likewise */
 	bool holds;                  /* what is written reads the same (hal/chips/property.h) */
 	uint8_t life;                /* enum property_life; 0: not known */
 	bool exact;                  /* a whole number, or on and off; true too likewise */
 	char held[PROPERTY_NAME];    /* its name, or of the one that shows what it sets; "": none */
-	char nearest[PROPERTY_NAME]; /* not there: what was probably meant, or "" */
+	char nearest[PROPERTY_NAME]; /* does not exist: what was probably meant, or "" */
 };
 
 /*
- * Look up a path. Nobody can know: a path without an id or a property, a family that owsd does not
- * know.
+ * Look up a path. The tables do not have: a path without an id or a property, a family that owsd
+ * does not know.
  */
 struct path_property property_look(const char *path);

@@ -21,7 +21,7 @@
 #define LOCK_TRIES 250
 #define LOCK_PAUSE (20 * NS_PER_MS) /* ns: five seconds in all */
 
-static int write_all(int fd, const char *text, size_t len)
+int replace_write(int fd, const char *text, size_t len)
 {
 	while (len) {
 		ssize_t n = write(fd, text, len);
@@ -33,7 +33,7 @@ static int write_all(int fd, const char *text, size_t len)
 		text += n;
 		len -= (size_t)n;
 	}
-	return 0;
+	return fsync(fd) ? -errno : 0;
 }
 
 /* Give the new file the owner and then the mode of the old: a new owner clears the set-id bits. */
@@ -49,7 +49,7 @@ static int copy_owner(int fd, const struct stat *old)
 	return fchmod(fd, old->st_mode & 07777) ? -errno : 0;
 }
 
-/* Can the user who owned the file until now read it, though another owns it? */
+/* Can the owner of before still read the file, though another user owns it now? */
 static bool owner_reads_on(const struct stat *old, bool group_kept, mode_t mode)
 {
 	if (!old->st_uid || !(old->st_mode & S_IRUSR) || (mode & S_IROTH))
@@ -70,7 +70,7 @@ static int take_over(int fd, const struct stat *old)
 		return -errno;
 	if (made.st_gid != old->st_gid && fchown(fd, (uid_t)-1, old->st_gid))
 		kept = false;
-	/* the group is another: who had rights by the old one keeps those of all */
+	/* the group is another: users of the old group keep the rights that all have */
 	if (!kept && (mode & S_IRGRP) && !(mode & S_IROTH))
 		return -EPERM;
 	if (!kept)
@@ -93,11 +93,7 @@ static int replace_fill(int fd, const struct stat *old, int (*give)(int fd, cons
 {
 	int err = old ? give(fd, old) : mode_of_new_file(fd);
 
-	if (!err)
-		err = write_all(fd, text, len);
-	if (!err && fsync(fd))
-		err = -errno;
-	return err;
+	return err ? err : replace_write(fd, text, len);
 }
 
 /* Open the directory of path; cuts path at its last slash. */
@@ -215,7 +211,7 @@ static int lock_path(const char *file, char path[LOCK_PATH])
 	return 0;
 }
 
-/* Whoever may put files into the directory may lock: its owner, and its group if that may write. */
+/* The users that may put files into the directory may lock: its owner, a group that may write. */
 static void share_lock(int fd, const char *lock)
 {
 	char path[LOCK_PATH];

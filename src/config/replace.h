@@ -6,6 +6,9 @@
 
 struct stat;
 
+/* Write all of a text and sync it. 0 or a negative errno. Blocking. */
+int replace_write(int fd, const char *text, size_t len);
+
 /*
  * Put len bytes in the place of file in one step, keeping its owner and mode; the target of a
  * symbolic link is replaced, not the link. A file that is not there is made. 0 or a negative
@@ -17,7 +20,7 @@ int replace_file(const char *file, const char *text, size_t len);
  * The same in two steps, for several files, of which none is to be replaced before all are written
  * out. Only root can keep the owner of a file that is another's: here the caller becomes the owner
  * where that has to be. Mode and group stay then, or the group has no more rights than all have.
- * Whoever could read the file as its owner or by its group still can, else -EPERM.
+ * A user that could read the file, as its owner or by its group, still can, else -EPERM.
  * like: whose owner, group and mode the file gets; NULL: it is new, 0666 without the umask.
  * replace_commit() or replace_abandon() ends it. 0 or a negative errno, which ends it. Blocking.
  */
@@ -31,7 +34,7 @@ void replace_abandon(struct replacement *replacement);
 
 /*
  * Lock file against replacement by other processes; it need not exist. What is locked is file.lock
- * beside it, which nobody can open but who may replace the file: the owner of the directory, its
+ * beside it. Only the users that may replace the file can open it: the owner of the directory, its
  * group if that may write there, and root. A descriptor for replace_unlock(), which removes the
  * lock; -EBUSY: another process held it for five seconds; or another negative errno. A process that
  * is killed leaves the file, and no lock.

@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* The reader of .rio files: bytes become a document of nodes with their places. */
+/*
+ * The reader of .rio files: bytes become a document of nodes with their places. After an error the
+ * reader goes on where the next key may begin, and marks the block as broken: then a key that seems
+ * to be missing is no second error.
+ */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>

@@ -43,8 +43,8 @@ void load_again(struct face *face)
 }
 
 #define BATCH 256
-#define ROUNDS 64 /* of batches in one look: others have their turn then */
-/* Nobody wakes a face when owsd dies or starts */
+#define ROUNDS 64 /* of batches in one look: after them the loop serves its other descriptors */
+/* No event wakes a face when owsd dies or starts: it looks so often */
 #define LOOK_NS NS_PER_S
 #define OPEN_NS (200 * NS_PER_MS)
 /* Without a descriptor of owsd; a face that cannot connect still sees all */

@@ -74,12 +74,6 @@ static void report_write(struct face *face, int64_t now_ns)
 		unlink(fresh);
 }
 
-static void report_remove(const struct face *face)
-{
-	if (*face->report)
-		unlink(face->report);
-}
-
 int face_watch(struct face *face, int fd, short events)
 {
 	if (face->fd_count == FACE_DESCRIPTORS)
@@ -202,7 +196,8 @@ static int loop_run(struct face *face, struct unix_signals *signals)
 		resident_drop_start();
 		loop(face, signals, prefix);
 		notify_send(&face->notify, NOTIFY_STOPPING);
-		report_remove(face);
+		if (*face->report)
+			unlink(face->report);
 		face->ops->close(face);
 	}
 	log_finish(face->log, STDERR_FILENO, prefix);

@@ -51,7 +51,7 @@ static int secret_path(const char *name, char path[SECRET_PATH], char *why, size
 	return 0;
 }
 
-/* Open it, if it is a file that nobody else may read. Returns a descriptor. */
+/* Open the secret, if it is a file that no other user may read. Returns a descriptor. */
 static int open_own(const char *name, char path[SECRET_PATH], char *why, size_t size)
 {
 	int err = secret_path(name, path, why, size), fd;

@@ -16,7 +16,7 @@
  */
 int secret_read(const char *name, char token[SECRET_SIZE], char *why, size_t size);
 /*
- * The path of such a file, for a library that reads it itself. own: nobody else may read it. Errors
- * as secret_read().
+ * The path of such a file, for a library that reads it itself. own: no other user may read it.
+ * Errors as secret_read().
  */
 int secret_file(const char *name, bool own, char path[SECRET_PATH], char *why, size_t size);

@@ -35,7 +35,7 @@ static bool is_synchronised(void)
 {
 	struct timex t = {0};
 
-	/* a machine that forbids the question is none whose clock is known to be right */
+	/* of a machine that forbids the question it is not known whether its clock is right */
 	return adjtimex(&t) >= 0 && !(t.status & STA_UNSYNC);
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * How long rows are kept. Ages are counted in ids, which stand still while nobody records: so
+ * How long rows are kept. Ages are counted in ids, which stand still while no recorder runs: so
  * nothing is deleted too early. The file does not become smaller, what is free in it is used again.
  */
 #include "src/history/keep.h"

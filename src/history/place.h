@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Where the history of an instance is kept, if nobody says. */
+/* Where the history of an instance is kept if no Directory is given. */
 #pragma once
 
 #include <stddef.h>

@@ -23,8 +23,8 @@
 
 enum history_kind {
 	HISTORY_BEGIN = 3, /* the recorder began to look: what was before is not known */
-	HISTORY_END,       /* it ended: nobody looks from here on */
-	HISTORY_GAP,       /* between two times nobody looked, or what was seen is lost */
+	HISTORY_END,       /* it ended: no recorder looks from here on */
+	HISTORY_GAP,       /* between two times no recorder looked, or what it saw is lost */
 	HISTORY_CLOCK,     /* the wall clock was set, or its time became trusted */
 	HISTORY_COMMAND,
 	HISTORY_ALARM,
@@ -64,7 +64,7 @@ struct history_event {
 	int64_t value;  /* as in src/signal/value.h: the bits of a double, or an integer */
 	int64_t before; /* ALARM: likewise; value is the one after */
 	char text[160];
-	struct history_who who; /* serial 0: nobody */
+	struct history_who who; /* serial 0: no program */
 };
 
 /* A line of the table of signals, as a recorder describes it. */

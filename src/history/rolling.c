@@ -93,7 +93,7 @@ int rolling_advance(struct rolling *rolling, int64_t id)
 		if (!err && (rolling->minute + 1) % PER_HOUR == 0)
 			err = close_hour(rolling);
 		rolling->minute++;
-		/* of years in which nobody looked there is nothing to say */
+		/* years without a recorder have no minutes to write */
 		if (!rolling->known && !rolling->hour_touched)
 			rolling->minute = id / MINUTE_US;
 	}

@@ -14,7 +14,7 @@
 #define SESSION(id) \
 	"join session on session.start = " \
 	"(select max(start) from session where start <= " id ")"
-/* real: a whole number takes a byte or two of the file, and is no integer to who divides by it */
+/* real: a whole number takes a byte or two of the file, and a query that divides gets a fraction */
 #define ROLLUP(name, us, number, signals) \
 	"create table " name " (id integer primary key, least real, most real, mean real," \
 	" last real, good real, known real, count, quality, worst);" \

@@ -13,7 +13,7 @@
  *     raw      a signal has a value from id on; repeated each hour, so that what held at a time is
  *              found in the hour before it
  *     gap      nothing is known from start on, of a signal or (0) of all
- *     event    commands and alarms with who, and steps of the clock; time may be before id
+ *     event    commands and alarms with their program; steps of the clock; time may be before id
  *     minute, hour  of each signal least, most, mean and last good value, seconds good and known,
  *              number of rows, quality at the end (null: not known) and the worst one. The id is
  *              minute: its number (of ids) times 65536, plus the signal; hour: the number of eight

@@ -368,7 +368,7 @@ static int put_row(struct history_store *store, struct store_batch *batch,
 	return -EINVAL;
 }
 
-/* Without rows the file says now and then that somebody looks. */
+/* Without rows the file says now and then that the recorder looks. */
 static int put_seen(struct history_store *store, const struct store_batch *batch)
 {
 	int64_t id = store->base + batch->seen_us;

@@ -22,7 +22,7 @@ struct history_options {
 	int64_t flush_ns;      /* from one commit to the next; 0: a minute */
 	uint32_t memory_bytes; /* kept while the disk fails; 0: 4 MiB */
 	struct history_keep keep;
-	void (*say)(void *ctx, const char *text); /* of a damaged file; NULL: nobody listens */
+	void (*say)(void *ctx, const char *text); /* of a damaged file; NULL: it is not reported */
 	void *ctx;
 };
 
@@ -54,7 +54,7 @@ void history_writer_value(struct history_writer *writer, uint32_t signal, int64_
 /* Nothing is known of the signal from that time on. */
 void history_writer_forget(struct history_writer *writer, uint32_t signal, int64_t from_ns,
                            enum history_reason reason);
-/* Between two times nobody looked. All values are unknown after it: record each anew. */
+/* Between two times no recorder looked. All values are unknown after it: record each anew. */
 void history_writer_gap(struct history_writer *writer, int64_t from_ns, int64_t until_ns,
                         enum history_reason reason);
 /* The wall clock was set, or is trusted now. */

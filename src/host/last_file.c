@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "src/config/replace.h"
 #include "src/host/last_file.h"
 #include "src/shm/layout.h"
 #include "src/shm/owner.h"
@@ -111,23 +112,6 @@ int last_read(int directory, const char *instance, char **data, size_t *size)
 	return -EBADMSG;
 }
 
-static int write_all(int fd, const char *text, size_t size)
-{
-	while (size) {
-		ssize_t n = write(fd, text, size);
-
-		if (n < 0 && errno != EINTR)
-			return -errno;
-		if (n == 0)
-			return -EIO;
-		if (n > 0) {
-			text += n;
-			size -= (size_t)n;
-		}
-	}
-	return fsync(fd) < 0 ? -errno : 0;
-}
-
 int last_write(int directory, const char *instance, char *data, size_t size)
 {
 	char name[NAME_MAX_], fresh[NAME_MAX_ + 4];
@@ -142,7 +126,7 @@ int last_write(int directory, const char *instance, char *data, size_t size)
 	snprintf(fresh, sizeof(fresh), "%s.new", name);
 	unlinkat(directory, fresh, 0);
 	fd = openat(directory, fresh, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
-	err = fd < 0 ? -errno : write_all(fd, data, size + LAST_CHECK);
+	err = fd < 0 ? -errno : replace_write(fd, data, size + LAST_CHECK);
 	if (fd >= 0 && close(fd) < 0 && !err)
 		err = -errno;
 	if (!err && renameat(directory, fresh, directory, name) < 0)

@@ -23,20 +23,12 @@
 
 #define BOOT_ID "/proc/sys/kernel/random/boot_id"
 
-static int64_t wall_ns(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_REALTIME, &t);
-	return (int64_t)t.tv_sec * NS_PER_S + t.tv_nsec;
-}
-
 static uint32_t random_id(void)
 {
 	uint32_t id = 0;
 
 	if (getrandom(&id, sizeof(id), GRND_NONBLOCK) != (ssize_t)sizeof(id))
-		id = (uint32_t)wall_ns() ^ (uint32_t)getpid();
+		id = (uint32_t)clock_ns(CLOCK_REALTIME) ^ (uint32_t)getpid();
 	return id | 1;
 }
 
@@ -241,7 +233,7 @@ int memory_make(struct memory *m, const struct memory_setup *setup, char *why, s
 	m->image_segment.fd = m->force_segment.fd = m->left_segment.fd = -1;
 	m->start_id = random_id();
 	m->start_ns = setup->before ? setup->before->start_ns : ows_now();
-	m->start_wall_ns = setup->before ? setup->before->start_wall_ns : wall_ns();
+	m->start_wall_ns = setup->before ? setup->before->start_wall_ns : clock_ns(CLOCK_REALTIME);
 	has_before = !setup->before && open_image_before(m, &before);
 	m->generation = m->start_id; /* a new number, even if the image before was removed */
 	if (setup->before)

@@ -17,7 +17,7 @@ static int or_errno(int status)
 static int disk_open(void *ctx, int dir, const char *name, int flags)
 {
 	(void)ctx;
-	/* a FIFO of that name blocks nobody */
+	/* O_NONBLOCK: a FIFO of that name must not block */
 	return or_errno(openat(dir, name, flags | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0640));
 }
 

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* One POST at a time, by libcurl's multi interface. */
+/*
+ * One POST at a time, by libcurl's multi interface: libcurl names the descriptors and the time that
+ * it waits for, and the loop of the face waits for them beside its own.
+ */
 #include <curl/curl.h>
 #include <errno.h>
 #include <poll.h>
@@ -75,7 +78,7 @@ static bool set_up(struct post *post)
 	curl_multi_setopt(post->multi, CURLMOPT_TIMERFUNCTION, on_timer);
 	curl_multi_setopt(post->multi, CURLMOPT_TIMERDATA, post);
 #if LIBCURL_VERSION_NUM >= 0x075700
-	/* nobody waits for a thread that looks a name up */
+	/* the end does not wait for a thread that looks a name up */
 	curl_easy_setopt(e, CURLOPT_QUICK_EXIT, 1L);
 #endif
 	return !curl_easy_setopt(e, CURLOPT_NOSIGNAL, 1L) &&

@@ -42,7 +42,7 @@ struct pushing {
 	bool on; /* the file has the block, and the spool is open */
 	struct push_options options;
 	struct wall_clock clock;
-	bool believed; /* the wall clock, since it was trusted, or nobody set it for too long */
+	bool believed; /* the wall clock, since it was trusted, or was not set for too long */
 	struct points points;
 	struct pending pending;
 	struct spool spool;

@@ -168,11 +168,6 @@ size_t spool_count(const struct spool *spool)
 	return spool->end - spool->first;
 }
 
-static int sync_names(struct spool *spool)
-{
-	return spool->disk->sync(spool->disk->ctx, spool->dir);
-}
-
 /* Write it under the name `half`, and give it its own when it is on the disk. */
 static int write_file(struct spool *spool, const char *half, const char *name, const char *data,
                       size_t len)
@@ -189,7 +184,7 @@ static int write_file(struct spool *spool, const char *half, const char *name, c
 	disk->close(disk->ctx, fd);
 	if (!err)
 		err = disk->rename(disk->ctx, spool->dir, half, name);
-	return err ? err : sync_names(spool);
+	return err ? err : disk->sync(disk->ctx, spool->dir);
 }
 
 static void drop_for(struct spool *spool, size_t len)

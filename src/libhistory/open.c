@@ -60,7 +60,7 @@ int ows_history_place(const char *instance, char *path, size_t size)
  * --- The file ----------------------------------------------------------------------------------
  */
 
-/* frozen: nobody writes it, and there is no log of commits beside it. */
+/* frozen: no recorder writes the file, and there is no log of commits beside it. */
 static int try_open(struct ows_history *h, bool frozen)
 {
 	char uri[URI] = "file:"; /* and zeros */
@@ -105,7 +105,7 @@ static void close_file(struct ows_history *h)
 	h->db = NULL;
 }
 
-/* A reader who cannot write beside the file needs what the recorder leaves there, or no log. */
+/* A reader that cannot write beside the file needs what the recorder leaves there, or no log. */
 static int open_file(struct ows_history *h)
 {
 	char log[sizeof(h->path) + 8];

@@ -160,7 +160,7 @@ enum ows_history_kind {
 };
 /* Who did it, as in struct ows_by of ows.h. */
 struct ows_history_who {
-	uint32_t serial; /* 0: owsd itself, or nobody */
+	uint32_t serial; /* 0: owsd itself, or no program */
 	uint32_t uid;
 	int32_t pid;
 	char name[32];   /* NUL-terminated, like person */

@@ -205,7 +205,7 @@ static int draw_minutes(struct draw *d, int64_t first, int64_t end)
 
 	/*
 	 * The signals of a minute lie side by side: the next signal needs the pages of this one,
-	 * and a day of 50 signals fits in 8 MB. Whoever reads hours comes to no page twice, and is
+	 * and a day of 50 signals fits in 8 MB. A read of hours comes to no page twice, and is
 	 * faster with the default.
 	 */
 	sqlite3_exec(d->h->db, "pragma cache_size = -8000", NULL, NULL, NULL);

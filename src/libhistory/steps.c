@@ -276,7 +276,7 @@ static int next_item(struct ows_history *h, struct ows_history_item *item)
 		steps_convert(h, step, item);
 		return 1;
 	}
-	/* nobody has said what came then */
+	/* the file does not say what came then */
 	if (got == 0 && h->read.holds && !h->read.ended) {
 		const struct session *last = &h->sessions[h->session_count - 1];
 

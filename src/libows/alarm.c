@@ -3,8 +3,8 @@
 #include <errno.h>
 #include <string.h>
 
+#include "src/libows/actor.h"
 #include "src/libows/alive.h"
-#include "src/libows/by.h"
 #include "src/libows/journal.h"
 #include "src/shm/reader.h"
 #include "src/signal/value.h"
@@ -21,7 +21,7 @@ static void shelved_of(struct ows *h, uint32_t record, struct ows_alarm_state *s
 			continue;
 		state->since_ns = e.since_ns;
 		state->until_ns = e.until_ns;
-		state->who = by_of(&e.who);
+		state->who = actor_of(&e.who);
 		memcpy(state->why, e.why, sizeof(state->why) - 1);
 		return;
 	}
@@ -54,7 +54,7 @@ int ows_alarm(struct ows *h, uint32_t number, struct ows_alarm *alarm)
 		.kind = e.kind,
 		.event = e.event,
 		.quality = e.quality,
-		.who = by_of(&e.who),
+		.who = actor_of(&e.who),
 	};
 	if (alarm->has_before)
 		alarm_fill(alarm->type, e.before, &alarm->before, &alarm->before_integer);

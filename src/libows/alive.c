@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Whether owsd lives, by its heartbeat. If it does not, the image may be an orphan: its name was
- * removed while nobody marked it, and the next owsd makes another.
+ * removed while no owsd lived to mark it, and the next owsd makes another.
  */
 #include "src/libows/alive.h"
 #include "src/libows/map.h"

@@ -19,7 +19,7 @@
 
 /* No ring enters 2^32 changes in that time: a number that is behind by so many looks like new. */
 #define CURSOR_KEEPS_NS (3600 * NS_PER_S)
-/* Nobody wakes a program when the next owsd is there, or when it did not reopen. */
+/* No event wakes a program when the next owsd is there, or when it did not reopen. */
 #define NEXT_OWSD_NS (100 * NS_PER_MS)
 
 static bool make_marks(struct ows *h)
@@ -121,7 +121,7 @@ static int changes_look(struct ows *h, struct ows_cursor *cursor, int *signals, 
 	return got == -EOVERFLOW ? look_at_all(h, cursor, now_ns, lost) : got;
 }
 
-/* The longest sleep in which nothing is missed of which nobody wakes: owsd's death above all. */
+/* The longest sleep: what wakes no program, as the death of owsd, is noticed after it. */
 static int64_t slice(const struct ows *h, const struct ows_cursor *cursor, int64_t now_ns)
 {
 	int64_t dies_in = INT64_MAX;
@@ -137,11 +137,11 @@ static int64_t slice(const struct ows *h, const struct ows_cursor *cursor, int64
 /* A program that does not reopen, or cannot yet, does not spin. */
 static int stale(struct ows_cursor *cursor, int64_t timeout_ns)
 {
-	static const uint32_t nobody = 0;
+	static const uint32_t unchanged = 0;
 	int64_t pause = timeout_ns < 0 || timeout_ns > NEXT_OWSD_NS ? NEXT_OWSD_NS : timeout_ns;
 
 	if (cursor->flags & STALE && pause > 0)
-		segment_wait(&nobody, 0, pause);
+		segment_wait(&unchanged, 0, pause);
 	cursor->flags |= STALE;
 	return -ESTALE;
 }
@@ -149,9 +149,7 @@ static int stale(struct ows_cursor *cursor, int64_t timeout_ns)
 int ows_changes(struct ows *h, struct ows_cursor *cursor, int *signals, int n, int64_t timeout_ns)
 {
 	const uint32_t *news = &h->map.image->news;
-	int64_t now_ns = ows_now();
-	int64_t until = timeout_ns < 0 || timeout_ns > INT64_MAX - now_ns ? INT64_MAX
-	                                                                  : now_ns + timeout_ns;
+	int64_t now_ns = ows_now(), until = wait_until(now_ns, timeout_ns);
 
 	if (n < 1)
 		return -EINVAL;

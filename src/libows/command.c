@@ -10,7 +10,7 @@
 #include "src/libows/command.h"
 #include "src/libows/handle.h"
 
-/* owsd takes a request at its next turn; an owsd that takes longer hangs. */
+/* owsd takes a request in its next period; an owsd that takes longer hangs. */
 #define SHELF_PATIENCE_NS (2 * NS_PER_S)
 
 int command_allowed(const struct ows *h, uint32_t record)

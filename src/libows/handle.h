@@ -78,7 +78,7 @@ struct ows {
 	uint32_t stamp;             /* of the last command */
 	uint32_t period_ms;         /* promised; 0: none */
 	uint32_t person;            /* as in a slot */
-	uint32_t next_person;       /* the place that is replaced next */
+	uint32_t next_person;       /* the slot that is replaced next */
 	char person_name[OWS_NAME]; /* "": for itself */
 	char program[OWS_NAME];
 

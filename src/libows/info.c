@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* What libows returns about signals, targets, devices, counters and the daemon itself. */
+/*
+ * What libows returns about signals, targets, devices, counters and the daemon itself. All of it is
+ * in the image. What owsd changes while it runs is read by reader_entry() or word by word; the rest
+ * stays as it is until the next generation.
+ */
 #include <errno.h>
 #include <string.h>
 

@@ -61,12 +61,6 @@ static int connect_to(int directory, const char *file, int *connection)
 	return 0;
 }
 
-/* Copy a name, cut at the room. */
-static void copy_name(char to[OWS_NAME], const char *name)
-{
-	memcpy(to, name, strnlen(name, OWS_NAME - 1));
-}
-
 int join_begin(struct join *join, int directory, const char *file, const char *program,
                uint32_t flags)
 {
@@ -83,7 +77,7 @@ int join_begin(struct join *join, int directory, const char *file, const char *p
 	if (err)
 		return err;
 	memcpy(hello.token, join->token, sizeof(hello.token));
-	copy_name(hello.name, program);
+	memcpy(hello.name, program, strnlen(program, sizeof(hello.name) - 1));
 	join->new = true;
 	/* An owsd that refuses this program answers and hangs up before it reads the hello */
 	if (send(join->connection, &hello, sizeof(hello), MSG_NOSIGNAL) != sizeof(hello) &&

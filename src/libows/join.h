@@ -16,11 +16,17 @@ struct join {
 	uint8_t token[16];          /* of the last welcome: it outlives the connection */
 };
 
+/* When a wait that begins now is over; timeout_ns below 0: never, INT64_MAX. */
+static inline int64_t wait_until(int64_t now_ns, int64_t timeout_ns)
+{
+	return timeout_ns < 0 || timeout_ns > INT64_MAX - now_ns ? INT64_MAX : now_ns + timeout_ns;
+}
+
 void join_none(struct join *join);
 /*
  * Connect to the socket `file` in a directory, and send the hello with the program's name and
  * OWS_HELLO_ flags. Returns
- * 0; -ENOENT: nobody listens there; -EACCES; -EAGAIN: too many wait there at the moment.
+ * 0; -ENOENT: no owsd listens there; -EACCES; -EAGAIN: too many wait there at the moment.
  */
 int join_begin(struct join *join, int directory, const char *file, const char *program,
                uint32_t flags);

@@ -3,7 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
-#include "src/libows/by.h"
+#include "src/libows/actor.h"
 #include "src/libows/journal.h"
 #include "src/shm/reader.h"
 #include "src/signal/value.h"
@@ -39,7 +39,7 @@ int ows_command_entry(struct ows *h, uint32_t number, struct ows_commanded *comm
 		.type = map_record(&h->map, e.record)->type,
 		.reason = e.kind,
 		.quality = e.quality,
-		.who = by_of(&e.who),
+		.who = actor_of(&e.who),
 	};
 	if (commanded->type == OWS_STRING) {
 		memcpy(commanded->text, e.text, sizeof(commanded->text) - 1);

@@ -38,7 +38,7 @@ static uint32_t in_use(const struct give *give)
 	return used;
 }
 
-/* The place of a person, -1: of none. */
+/* The slot of a person, -1: there is none. */
 static int person_find(const struct give *give, const char name[OWS_NAME])
 {
 	for (uint32_t i = 0; i < OWS_PERSONS; i++)
@@ -47,15 +47,15 @@ static int person_find(const struct give *give, const char name[OWS_NAME])
 	return -1;
 }
 
-/* The place of the person who is replaced next, -1: owsd has still to look at all. */
-static int next_place(struct ows *h)
+/* The slot where the next person is entered, -1: owsd has still to look at the commands of all. */
+static int next_slot(struct ows *h)
 {
-	static const char nobody[OWS_NAME];
-	int place = person_find(&h->give, nobody);
+	static const char no_name[OWS_NAME];
+	int slot = person_find(&h->give, no_name);
 	uint32_t used;
 
-	if (place >= 0)
-		return place;
+	if (slot >= 0)
+		return slot;
 	used = in_use(&h->give);
 	for (uint32_t i = 0; i < OWS_PERSONS; i++) {
 		uint32_t next = (h->next_person + i) % OWS_PERSONS;
@@ -68,29 +68,29 @@ static int next_place(struct ows *h)
 	return -1;
 }
 
-/* Enter the handle's person into its memory. Returns 0, or -EBUSY: all places are in use. */
+/* Enter the handle's person into its memory. Returns 0, or -EBUSY: all slots are in use. */
 static int person_enter(struct ows *h)
 {
-	int place;
+	int slot;
 
 	h->person = 0;
 	if (h->person_name[0] == '\0')
 		return 0;
-	place = person_find(&h->give, h->person_name);
-	if (place < 0) {
-		place = next_place(h);
-		if (place < 0)
+	slot = person_find(&h->give, h->person_name);
+	if (slot < 0) {
+		slot = next_slot(h);
+		if (slot < 0)
 			return -EBUSY;
-		give_store_name(give_person(&h->give, (uint32_t)place), h->person_name, OWS_NAME);
+		give_store_name(give_person(&h->give, (uint32_t)slot), h->person_name, OWS_NAME);
 	}
-	h->person = (uint32_t)place + 1;
+	h->person = (uint32_t)slot + 1;
 	return 0;
 }
 
 int ows_for(struct ows *h, const char *person)
 {
 	char before[OWS_NAME];
-	uint32_t place_before = h->person;
+	uint32_t slot_before = h->person;
 	size_t len = person ? strlen(person) : 0;
 	int err;
 
@@ -106,7 +106,7 @@ int ows_for(struct ows *h, const char *person)
 	err = person_enter(h);
 	if (err) {
 		memcpy(h->person_name, before, sizeof(before));
-		h->person = place_before;
+		h->person = slot_before;
 	}
 	return err;
 }
@@ -137,7 +137,7 @@ static bool fits_image(const struct give *give, const struct ows_map *map)
 	       give->generation == map->image->generation && give->start_id == map->image->start_id;
 }
 
-/* Connect; nobody looks at the memory of the connection before. */
+/* Connect; owsd no longer looks at the memory of the connection before. */
 static int connect_again(struct ows *h)
 {
 	char name[SEGMENT_FILE];
@@ -209,7 +209,7 @@ void meet_take(struct ows *h)
 	if (h->mode != OWS_CONTROL)
 		return;
 	if (person_enter(h))
-		h->person = 0; /* cannot be: the places are those of before, or all are free */
+		h->person = 0; /* cannot be: the slots are those of before, or all are free */
 	if (h->period_ms == 0)
 		return;
 	/* A controller that comes back beats at once, so that its commands stay in force */

@@ -12,7 +12,7 @@ struct ows_map;
 
 /*
  * Get the memory that belongs to the map, until then at most; meet_take() puts it in place. Returns
- * 0; -EAGAIN: owsd has not handed it out yet, call again; -ENOENT: nobody listens; or why owsd
+ * 0; -EAGAIN: owsd has not handed it out yet, call again; -ENOENT: no owsd listens; or why owsd
  * refuses.
  */
 int meet(struct ows *h, const struct ows_map *map, int64_t until_ns);

@@ -45,7 +45,7 @@ void news_arm(struct ows *h)
 		if (read(h->join.news, room, sizeof(room)) <= 0)
 			break;
 	word_set(&give_header(&h->give)->waits, 1);
-	/* owsd counts its news before it looks who waits */
+	/* owsd counts its news before it looks which programs wait */
 	word_fence(__ATOMIC_SEQ_CST);
 	errno = saved;
 }

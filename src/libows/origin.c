@@ -2,8 +2,8 @@
 /* Who commands: the connected controllers, and the origin of each signal's command. */
 #include <errno.h>
 
+#include "src/libows/actor.h"
 #include "src/libows/alive.h"
-#include "src/libows/by.h"
 #include "src/libows/handle.h"
 #include "src/shm/reader.h"
 
@@ -18,7 +18,7 @@ int ows_origin(struct ows *h, int id, struct ows_origin *origin)
 	if (!reader_entry(map_entry(&h->map, OWS_AREA_ORIGINS, record), &e, sizeof(e)))
 		return -EIO;
 	*origin = (struct ows_origin){
-		.who = by_of(&e.who),
+		.who = actor_of(&e.who),
 		.taken_ns = e.taken_ns,
 		.reason = e.reason <= UINT8_MAX ? (uint8_t)e.reason : OWS_REASON_NONE,
 		.own = e.who.serial != 0 && e.who.serial == h->give.serial,
@@ -38,7 +38,7 @@ int ows_controller(struct ows *h, int index, struct ows_controller *controller)
 	if (!(e.flags & OWS_CONTROLLER_CONNECTED))
 		return 0;
 	*controller = (struct ows_controller){
-		.who = by_of(&e.who),
+		.who = actor_of(&e.who),
 		.joined_ns = e.joined_ns,
 		.period_ms = e.period_ms,
 		.commands = e.commands,

@@ -120,7 +120,7 @@ enum ows_mode {
  * OWS_CONTROL needs an owsd that runs, and waits for its answer, 2 s at most.
  * -ENOENT: no owsd of that name has run, or, for OWS_CONTROL, runs; -EACCES: no permission (group
  * owsd may read; ControlAllow of the configuration, else group owsd-control, may set); -EPROTO: not
- * of owsd, or of another layout; -EPERM: the image or the directory belongs to a user who is
+ * of owsd, or of another layout; -EPERM: the image or the directory belongs to a user that is
  * neither root, nor owsd, nor the caller, or others may write into the directory; -EINVAL: no
  * instance can have that name, or OWS_DIR is no absolute path or longer than 191 bytes; -ENOSPC:
  * too many programs command, or too many of this user; -ETIMEDOUT: owsd does not answer; -EMFILE,
@@ -128,7 +128,7 @@ enum ows_mode {
  */
 int ows_open(const char *instance, enum ows_mode mode, struct ows **h);
 /*
- * The same, under another name than the program's own: owsd shows it where it shows who commanded.
+ * The same, under another name than the program's own: owsd shows it beside the commands.
  * It is a claim, cut at 31 bytes; user and process are the kernel's word.
  */
 int ows_open_as(const char *instance, enum ows_mode mode, const char *name, struct ows **h);
@@ -166,8 +166,8 @@ int ows_get_text(struct ows *h, int id, int64_t now_ns, struct ows_value *value,
                  size_t size);
 
 /*
- * Command an output (or a writable attribute). The value goes out at the signal's next write
- * turn, if it changed. At most one system call (none while the engine is awake).
+ * Command an output (or a writable attribute). The value goes out at the signal's next
+ * write, if it changed. At most one system call (none while the engine is awake).
  * Returns 0; -ERANGE: the type cannot hold the value, or it is beyond Min or Max of the
  * configuration; -EINVAL: NaN or infinity, or no text of such
  * a number; -EACCES: not writable, not by this user, or the handle is OWS_READ; -EROFS: an input
@@ -229,7 +229,7 @@ int ows_for(struct ows *h, const char *person);
 
 /* Who did something: uid and pid are the kernel's word, both names the claims of the program. */
 struct ows_by {
-	uint32_t serial; /* each connection has another; 0: owsd itself, or nobody */
+	uint32_t serial; /* each connection has another; 0: owsd itself, or no program */
 	uint32_t uid;
 	int32_t pid;     /* 0: not known */
 	char name[32];   /* of the program; NUL-terminated, like person */
@@ -242,7 +242,7 @@ enum ows_reason {
 	OWS_REASON_SET,      /* a program commanded it */
 	OWS_REASON_RETURNED, /* from before owsd's start; its program came back */
 	OWS_REASON_INIT,     /* owsd wrote InitValue */
-	OWS_REASON_SAFE,     /* owsd wrote SafeValue: the program that who names is lost */
+	OWS_REASON_SAFE,     /* owsd wrote SafeValue: the program in `who` is lost */
 	OWS_REASON_LAST,     /* owsd wrote what was stored */
 };
 /* The words for a reason ("set", "SafeValue"); never NULL. */
@@ -264,7 +264,7 @@ int ows_origin(struct ows *h, int id, struct ows_origin *origin);
 
 /* A program that is connected to owsd. */
 struct ows_controller {
-	struct ows_by who;   /* serial 0: nobody has this place */
+	struct ows_by who;   /* serial 0: no controller has this place */
 	int64_t joined_ns;
 	uint32_t period_ms;  /* promised longest time between two beats; 0: promised none */
 	uint32_t commands;   /* taken */
@@ -496,7 +496,7 @@ struct ows_alarm {
 	uint8_t event;       /* enum ows_alarm_event */
 	uint8_t quality;     /* of the signal at that moment */
 	char text[64];       /* the latch, why it was shelved, or what is refused; NUL-terminated */
-	struct ows_by who;   /* who acknowledged or shelved it */
+	struct ows_by who;   /* the program that acknowledged or shelved it */
 	uint64_t spare[4]; /* 0: room for later members */
 };
 /* States of a limit alarm, as in ISA-18.2. */

@@ -80,18 +80,9 @@ static int ask_first(const char *instance, struct join *join)
 	return why;
 }
 
-static int64_t after(int64_t timeout_ns)
-{
-	int64_t until_ns;
-
-	if (timeout_ns < 0 || __builtin_add_overflow(ows_now(), timeout_ns, &until_ns))
-		return INT64_MAX;
-	return until_ns;
-}
-
 int ows_reload(const char *instance, int64_t timeout_ns, char *why, size_t size)
 {
-	int64_t until_ns = after(timeout_ns);
+	int64_t until_ns = wait_until(ows_now(), timeout_ns);
 	int saved = errno, err;
 	struct join join;
 

@@ -9,9 +9,7 @@
 int ows_wait(struct ows *h, uint32_t *news, int64_t timeout_ns)
 {
 	const uint32_t *word = &h->map.image->news;
-	int64_t now_ns = ows_now();
-	int64_t until = timeout_ns < 0 || timeout_ns > INT64_MAX - now_ns ? -1
-	                                                                  : now_ns + timeout_ns;
+	int64_t now_ns = ows_now(), until = wait_until(now_ns, timeout_ns);
 
 	for (;; now_ns = ows_now()) {
 		int64_t left = ALIVE_LOOK_NS; /* no owsd wakes a program that waits on an orphan */
@@ -25,12 +23,10 @@ int ows_wait(struct ows *h, uint32_t *news, int64_t timeout_ns)
 			*news = seen;
 			return 1;
 		}
-		if (until >= 0) {
-			if (until <= now_ns)
-				return 0;
-			if (until - now_ns < left)
-				left = until - now_ns;
-		}
+		if (until <= now_ns)
+			return 0;
+		if (until - now_ns < left)
+			left = until - now_ns;
 		err = news_sleep(h, seen, left);
 		if (err && err != -ETIMEDOUT)
 			return err;

@@ -100,7 +100,7 @@ static int check_path(const char *path)
 {
 	struct path_property found = property_look(path);
 
-	if (found.there || !*found.nearest)
+	if (found.exists || !*found.nearest)
 		return 0;
 	ctl_fail("%s: its family has no such property; did you mean %s?", path, found.nearest);
 	return -EINVAL;
@@ -117,12 +117,6 @@ static int check_paths(const char *action, char **words, unsigned count)
 		if (!strncmp(words[i], "Path=", 5))
 			err = check_path(words[i] + 5);
 	return err;
-}
-
-/* move NAME --before OTHER or --after OTHER */
-static int move_item(struct rio **rio, char **words, struct config_report *report)
-{
-	return edit_move(rio, words[0], words[2], !strcmp(words[1], "--after"), report);
 }
 
 /* the words of commands that only read are not changed */
@@ -156,7 +150,7 @@ static int change_file(const char *file, const char *action, char **words, unsig
 	if (!err)
 		err = check_paths(action, words, count);
 	if (!err && !strcmp(action, "move"))
-		err = move_item(&rio, words, &report);
+		err = edit_move(&rio, words[0], words[2], !strcmp(words[1], "--after"), &report);
 	else if (!err && !strcmp(action, "add"))
 		err = edit_add(&rio, words[0], words[1], words_of(words + 2), count - 2, &report);
 	else if (!err && !strcmp(action, "set"))

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* owsctl who: the programs that may command, and who gave each output its command. */
+/* owsctl who: the programs that may command, and which of them commanded each output. */
 #include <getopt.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -7,11 +7,11 @@
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/table.h"
 #include "src/owsctl/verbs.h"
+#include "src/show/actor.h"
 #include "src/show/json.h"
 #include "src/show/names.h"
 #include "src/show/stats.h"
 #include "src/show/when.h"
-#include "src/show/who.h"
 
 /* clang-format off */
 static const struct table_column controller_columns[] = {
@@ -24,7 +24,7 @@ static const struct table_column origin_columns[] = {
 /* clang-format on */
 #define COLUMNS(columns) (sizeof(columns) / sizeof((columns)[0]))
 
-struct who {
+struct listing {
 	struct ows *h;
 	char *const *patterns;
 	int count;
@@ -38,10 +38,10 @@ static const char *controller_state(const struct ows_controller *controller)
 	return controller->may_set ? "" : "reads";
 }
 
-static void add_controller(struct who *who, struct table *table,
+static void add_controller(struct listing *l, struct table *table,
                            const struct ows_controller *controller)
 {
-	char program[WHO_TEXT], user[WHO_TEXT], since[WHEN_TEXT], beat[32], commands[16],
+	char program[ACTOR_TEXT], user[ACTOR_TEXT], since[WHEN_TEXT], beat[32], commands[16],
 		refused[16];
 
 	snprintf(commands, sizeof(commands), "%" PRIu32, controller->commands);
@@ -51,33 +51,33 @@ static void add_controller(struct who *who, struct table *table,
 	else
 		snprintf(beat, sizeof(beat), "-");
 	table_add(table,
-	          (const char *const[]){who_program(&controller->who, program),
-	                                who_user(&controller->who, user),
-	                                when_span(who->now.boot - controller->joined_ns, since),
-	                                beat, commands, refused, controller_state(controller)});
+	          (const char *const[]){actor_program(&controller->who, program),
+	                                actor_user(&controller->who, user),
+	                                when_span(l->now.boot - controller->joined_ns, since), beat,
+	                                commands, refused, controller_state(controller)});
 }
 
-static void add_origin(struct who *who, struct table *table, const char *name,
+static void add_origin(struct listing *l, struct table *table, const char *name,
                        const struct ows_origin *origin)
 {
-	char program[WHO_TEXT], user[WHO_TEXT], ago[WHEN_TEXT];
+	char program[ACTOR_TEXT], user[ACTOR_TEXT], ago[WHEN_TEXT];
 	bool none = origin->reason == OWS_REASON_NONE;
 
 	table_add(table, (const char *const[]){
 				 name, ows_reason_text(origin->reason),
-				 none ? "-" : who_program(&origin->who, program),
-				 none ? "-" : who_user(&origin->who, user), origin->who.person,
-				 none ? "-" : when_span(who->now.boot - origin->taken_ns, ago)});
+				 none ? "-" : actor_program(&origin->who, program),
+				 none ? "-" : actor_user(&origin->who, user), origin->who.person,
+				 none ? "-" : when_span(l->now.boot - origin->taken_ns, ago)});
 }
 
 /* The next output that the patterns select, from *signal on, with the origin of its command. */
-static bool next_output(struct who *who, int *signal, struct ows_info *info,
+static bool next_output(struct listing *l, int *signal, struct ows_info *info,
                         struct ows_origin *origin)
 {
-	for (; ows_info(who->h, *signal, info) == 0; (*signal)++) {
-		bool shown = names_match(info->name, who->patterns, who->count);
+	for (; ows_info(l->h, *signal, info) == 0; (*signal)++) {
+		bool shown = names_match(info->name, l->patterns, l->count);
 
-		if (!shown || ows_origin(who->h, ows_find(who->h, info->name), origin))
+		if (!shown || ows_origin(l->h, ows_find(l->h, info->name), origin))
 			continue;
 		if (info->output || origin->reason != OWS_REASON_NONE) {
 			(*signal)++;
@@ -87,7 +87,7 @@ static bool next_output(struct who *who, int *signal, struct ows_info *info,
 	return false;
 }
 
-static void print_text(struct who *who)
+static void print_text(struct listing *l)
 {
 	struct table controllers, outputs;
 	struct ows_origin origin;
@@ -97,11 +97,11 @@ static void print_text(struct who *who)
 
 	table_init(&controllers, controller_columns, COLUMNS(controller_columns));
 	table_init(&outputs, origin_columns, COLUMNS(origin_columns));
-	for (int i = 0; ows_controller(who->h, i, &controller) == 0; i++)
+	for (int i = 0; ows_controller(l->h, i, &controller) == 0; i++)
 		if (controller.who.serial)
-			add_controller(who, &controllers, &controller);
-	while (next_output(who, &signal, &info, &origin))
-		add_origin(who, &outputs, info.name, &origin);
+			add_controller(l, &controllers, &controller);
+	while (next_output(l, &signal, &info, &origin))
+		add_origin(l, &outputs, info.name, &origin);
 	table_print(&controllers, true);
 	putchar('\n');
 	table_print(&outputs, true);
@@ -109,14 +109,14 @@ static void print_text(struct who *who)
 	table_free(&outputs);
 }
 
-static void controller_json(const struct who *who, struct json *json,
+static void controller_json(const struct listing *l, struct json *json,
                             const struct ows_controller *controller)
 {
 	char text[WHEN_TEXT];
 
 	json_object(json, NULL);
-	who_json(json, &controller->who);
-	json_string(json, "since", when_iso(&who->now, controller->joined_ns, text));
+	actor_json(json, &controller->who);
+	json_string(json, "since", when_iso(&l->now, controller->joined_ns, text));
 	if (controller->period_ms)
 		json_seconds(json, "beat", controller->period_ms * INT64_C(1000000));
 	else
@@ -128,7 +128,7 @@ static void controller_json(const struct who *who, struct json *json,
 	json_object_end(json);
 }
 
-static void origin_json(const struct who *who, struct json *json, const char *name,
+static void origin_json(const struct listing *l, struct json *json, const char *name,
                         const struct ows_origin *origin)
 {
 	char text[WHEN_TEXT];
@@ -137,12 +137,12 @@ static void origin_json(const struct who *who, struct json *json, const char *na
 	json_object(json, NULL);
 	json_string(json, "name", name);
 	json_string(json, "reason", none ? NULL : ows_reason_text(origin->reason));
-	json_string(json, "time", none ? NULL : when_iso(&who->now, origin->taken_ns, text));
-	who_json(json, &origin->who);
+	json_string(json, "time", none ? NULL : when_iso(&l->now, origin->taken_ns, text));
+	actor_json(json, &origin->who);
 	json_object_end(json);
 }
 
-static void controllers_print_json(struct who *who, const char *instance)
+static void controllers_print_json(struct listing *l, const char *instance)
 {
 	struct ows_origin origin;
 	struct ows_controller controller;
@@ -154,13 +154,13 @@ static void controllers_print_json(struct who *who, const char *instance)
 	json_object(&json, NULL);
 	stats_whose(&json, instance);
 	json_array(&json, "controllers");
-	for (int i = 0; ows_controller(who->h, i, &controller) == 0; i++)
+	for (int i = 0; ows_controller(l->h, i, &controller) == 0; i++)
 		if (controller.who.serial)
-			controller_json(who, &json, &controller);
+			controller_json(l, &json, &controller);
 	json_array_end(&json);
 	json_array(&json, "outputs");
-	while (next_output(who, &signal, &info, &origin))
-		origin_json(who, &json, info.name, &origin);
+	while (next_output(l, &signal, &info, &origin))
+		origin_json(l, &json, info.name, &origin);
 	json_array_end(&json);
 	json_object_end(&json);
 	json_end(&json);
@@ -168,18 +168,18 @@ static void controllers_print_json(struct who *who, const char *instance)
 
 int verb_who(struct ctl *ctl, int argc, char **argv)
 {
-	struct who who = {0};
+	struct listing l = {0};
 
 	ctl_option(ctl, argc, argv, "");
-	who.patterns = argv + optind;
-	who.count = argc - optind;
-	who.h = ctl_open(ctl, OWS_READ);
-	who.now = when_now();
-	ctl_alive(ctl, who.h, who.now.boot);
+	l.patterns = argv + optind;
+	l.count = argc - optind;
+	l.h = ctl_open(ctl, OWS_READ);
+	l.now = when_now();
+	ctl_alive(ctl, l.h, l.now.boot);
 	if (ctl->json)
-		controllers_print_json(&who, ctl->instance);
+		controllers_print_json(&l, ctl->instance);
 	else
-		print_text(&who);
-	ows_close(who.h);
+		print_text(&l);
+	ows_close(l.h);
 	return CTL_DONE;
 }

@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* What the verbs of owsctl have in common: options, messages, opening an instance, ending. */
+/*
+ * What the verbs of owsctl have in common: options, messages, opening an instance, ending. A verb
+ * that cannot go on ends by longjmp() in ctl_end(), so that no function has to pass the status up.
+ * The process ends after it: what the verb has open is not closed.
+ */
 #include <errno.h>
 #include <getopt.h>
 #include <poll.h>

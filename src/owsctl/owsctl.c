@@ -228,8 +228,8 @@ static bool acts(int argc, char **argv)
 }
 
 /*
- * Nobody named an instance and none of the name OWS has run here: the one that runs is meant. It is
- * said, as the next call may find two.
+ * The user named no instance, and none of the name OWS has run here: the instance that runs is
+ * meant. owsctl says so, as the next call may find two.
  */
 static void find_instance(struct ctl *ctl, int argc, char **argv)
 {

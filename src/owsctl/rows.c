@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* The signals that patterns select, and the state of each. */
+/*
+ * The signals that patterns select, and the state of each. A row has copies of names and units,
+ * because ows_reopen() unmaps the image that ows_info() points into.
+ */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -184,24 +187,18 @@ bool rows_have_alarms(struct ows *h, const struct rows *rows)
 
 bool row_changed(struct row *row, const struct reading *reading)
 {
-	uint8_t quality = reading_filled(reading) ? reading->value.quality : 0;
-	int32_t err = reading_filled(reading) ? reading->value.err : reading->err;
-	uint64_t text_hash = hash_text(HASH_BEGIN, reading->text, reading->len);
-	bool changed = !row->seen || row->quality != quality || row->err != err ||
-	               row->text_hash != text_hash || row->stands != row->alarms.stands ||
-	               row->unarmed != row->alarms.unarmed ||
-	               row->limit_state != row->alarms.limit_state ||
-	               row->limit_kind != row->alarms.limit_kind;
+	const struct ows_alarm_state *alarms = &row->alarms;
+	bool filled = reading_filled(reading);
+	int32_t err = filled ? reading->value.err : reading->err;
+	const char bytes[] = {(char)(filled ? reading->value.quality : 0), (char)alarms->stands,
+	                      (char)alarms->unarmed, (char)alarms->limit_state,
+	                      (char)alarms->limit_kind};
+	uint64_t before = row->state;
 
-	row->seen = true;
-	row->quality = quality;
-	row->err = err;
-	row->text_hash = text_hash;
-	row->stands = row->alarms.stands;
-	row->unarmed = row->alarms.unarmed;
-	row->limit_state = row->alarms.limit_state;
-	row->limit_kind = row->alarms.limit_kind;
-	return changed;
+	row->state = hash_text(HASH_BEGIN, reading->text, reading->len);
+	row->state = hash_text(row->state, (const char *)&err, sizeof(err));
+	row->state = hash_text(row->state, bytes, sizeof(bytes));
+	return row->state != before;
 }
 
 const char *row_unit(const struct row *row)

@@ -34,13 +34,8 @@ struct row {
 	struct meaning meaning;         /* of a signal */
 	struct ows_alarm_state alarms;  /* of the last row_read() */
 	char commanded[VALUE_TEXT_MAX]; /* the last row_read(): the command; "": none or a string */
-	bool differs; /* the last row_read(): the command differs from the value */
-	/* the state at the last call of row_changed() */
-	bool seen;
-	uint8_t quality;
-	int32_t err;
-	uint64_t text_hash;
-	uint8_t stands, unarmed, limit_state, limit_kind;
+	bool differs;   /* the last row_read(): the command differs from the value */
+	uint64_t state; /* a hash of what the last call of row_changed() saw */
 };
 struct rows {
 	struct row *row;

@@ -9,9 +9,9 @@
 #include "hal/base/time.h"
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/verbs.h"
+#include "src/show/actor.h"
 #include "src/show/names.h"
 #include "src/show/reading.h"
-#include "src/show/who.h"
 #include "src/signal/value.h"
 
 struct order {
@@ -208,7 +208,7 @@ static bool print_lost(struct ows *h, const struct order *order)
 {
 	struct ows_command command = {0};
 	struct ows_origin origin = {0};
-	char words[ERROR_WORDS], who[WHO_LINE];
+	char words[ERROR_WORDS], who[ACTOR_LINE];
 
 	if (order->attribute != ATTR_VALUE)
 		return false;
@@ -224,7 +224,7 @@ static bool print_lost(struct ows *h, const struct order *order)
 	if (origin.own || !origin.who.serial || (int32_t)(command.taken - order->stamp) < 0)
 		return false;
 	ctl_fail("%s was not confirmed: %s has set it since", order->name,
-	         who_line(&origin.who, who));
+	         actor_line(&origin.who, who));
 	return true;
 }
 

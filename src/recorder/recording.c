@@ -19,7 +19,7 @@
 #define TICK_NS NS_PER_S
 /* Of a bus that answers slowly; no longer than most commits wait anyway */
 #define AFTER_NS (10 * NS_PER_S)
-/* Each second the loop looks: later than that it did not get to it */
+/* Each second the loop looks: a look that is later than that is late */
 #define LATE_NS (2 * NS_PER_S)
 /* In memory while the disk takes nothing: hours of a small plant */
 #define MEMORY_BYTES (4u << 20)
@@ -338,7 +338,7 @@ void recording_event(struct face *face, const struct face_event *event)
 	}
 }
 
-/* For a starved machine, a stopped process or a slow disk: 0, or since when nobody has looked. */
+/* For a starved machine, a stopped process or a slow disk: 0, or since when the loop was late. */
 static int64_t unseen_since(int64_t looked_ns, int64_t now_ns)
 {
 	return now_ns - looked_ns > LATE_NS ? looked_ns : 0;
@@ -411,20 +411,20 @@ static void recording_status(struct face *face, const struct history_state *stat
 		            r->directory, (unsigned long long)state->rows);
 }
 
-/* The wall-clock time of the next turn as a boot time, not later than the next tick. */
-static int64_t next_tick(const struct recording *r, int64_t turn_ns, int64_t now_ns)
+/* The wall-clock time of the next interval as a boot time, not later than the next tick. */
+static int64_t next_tick(const struct recording *r, int64_t due_ns, int64_t now_ns)
 {
 	int64_t tick_ns = now_ns + TICK_NS;
 
-	if (turn_ns != INT64_MAX && turn_ns - r->clock.offset_ns < tick_ns)
-		tick_ns = turn_ns - r->clock.offset_ns;
+	if (due_ns != INT64_MAX && due_ns - r->clock.offset_ns < tick_ns)
+		tick_ns = due_ns - r->clock.offset_ns;
 	return tick_ns > now_ns ? tick_ns : now_ns + NS_PER_MS;
 }
 
 void recording_tick(struct face *face, int64_t now_ns)
 {
 	struct recording *r = face->own;
-	int64_t turn_ns = INT64_MAX;
+	int64_t due_ns = INT64_MAX;
 	struct history_state state;
 
 	face->tick_ns = now_ns + TICK_NS;
@@ -434,13 +434,13 @@ void recording_tick(struct face *face, int64_t now_ns)
 	/* an image that is new has no rows yet */
 	if (look_is_current(face) && r->begun) {
 		assert(series_are_of(&r->rows, face->ows, now_ns));
-		turn_ns = series_turn(&r->rows, face->ows, r->writer,
-		                      unseen_since(r->turned_ns, now_ns), now_ns,
-		                      now_ns + r->clock.offset_ns);
+		due_ns = series_tick(&r->rows, face->ows, r->writer,
+		                     unseen_since(r->ticked_ns, now_ns), now_ns,
+		                     now_ns + r->clock.offset_ns);
 	}
-	r->turned_ns = now_ns;
+	r->ticked_ns = now_ns;
 	report_missed(face);
-	face->tick_ns = next_tick(r, turn_ns, now_ns);
+	face->tick_ns = next_tick(r, due_ns, now_ns);
 	history_writer_tick(r->writer, seen_until(face, now_ns));
 	history_writer_state(r->writer, &state);
 	report_disk(face, &state);

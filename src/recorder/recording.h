@@ -28,7 +28,7 @@ struct recording {
 	int64_t boot;
 	bool begun;        /* owsd was found in this run */
 	int64_t lost_ns;   /* owsd is lost since then; 0: it is there */
-	int64_t turned_ns; /* the last look at intervals; 0: none yet */
+	int64_t ticked_ns; /* the last look at intervals; 0: none yet */
 	int disk_err;      /* as it was logged last */
 	uint64_t dropped;  /* rows that were lost, as logged last */
 	uint32_t files;    /* that were begun, as logged last */

@@ -42,7 +42,7 @@ static int64_t interval_slot(const struct config_record *rule, int64_t wall_ns)
 	return wall_ns % rule->interval_ns < 0 ? slot - 1 : slot;
 }
 
-bool rule_turn(const struct config_record *rule, struct rule_kept *kept, int64_t wall_ns)
+bool rule_tick(const struct config_record *rule, struct rule_kept *kept, int64_t wall_ns)
 {
 	int64_t slot;
 
@@ -60,7 +60,7 @@ bool rule_interval(const struct rule_kept *kept, const struct rule_sample *sampl
 	return !kept->any || sample->measured_ns > kept->sample.measured_ns;
 }
 
-int64_t rule_next_turn(const struct config_record *rule, int64_t wall_ns)
+int64_t rule_next_tick(const struct config_record *rule, int64_t wall_ns)
 {
 	if (rule->interval_ns <= 0)
 		return INT64_MAX;

@@ -30,8 +30,8 @@ bool rule_change(const struct config_record *rule, const struct rule_kept *kept,
  * Has another slot of the interval begun, by the wall clock? Then *kept is in that slot; without
  * an interval never.
  */
-bool rule_turn(const struct config_record *rule, struct rule_kept *kept, int64_t wall_ns);
-/* At the turn of a slot: is the newest sample kept? */
+bool rule_tick(const struct config_record *rule, struct rule_kept *kept, int64_t wall_ns);
+/* At the tick that begins a slot: is the newest sample kept? */
 bool rule_interval(const struct rule_kept *kept, const struct rule_sample *sample);
-/* The wall-clock time of the next turn; INT64_MAX without an interval. */
-int64_t rule_next_turn(const struct config_record *rule, int64_t wall_ns);
+/* The wall-clock time of the next tick; INT64_MAX without an interval. */
+int64_t rule_next_tick(const struct config_record *rule, int64_t wall_ns);

@@ -214,12 +214,12 @@ static void keep_raw(struct series *rows, struct row *row, struct ows *ows,
  * May there have been a value between the last that was kept and this one, which the rule would
  * have kept? Measurements are counted, changes are not: of several, one may have been a change.
  */
-static bool is_missed(const struct row *row, const struct ows_value *v, bool turned,
+static bool is_missed(const struct row *row, const struct ows_value *v, bool ticked,
                       int64_t unseen_ns, int64_t now_ns)
 {
 	if (!unseen_ns || !row->kept.any)
 		return false;
-	if (turned)
+	if (ticked)
 		return now_ns - unseen_ns > row->rule.interval_ns;
 	return (row->rule.change || row->rule.deadband > 0) && v->count - row->count > 1;
 }
@@ -236,7 +236,7 @@ static void miss(struct series *rows, struct row *row, int signal, struct histor
 }
 
 static void series_take(struct series *rows, int signal, struct ows *ows,
-                        struct history_writer *writer, bool turned, int64_t unseen_ns,
+                        struct history_writer *writer, bool ticked, int64_t unseen_ns,
                         int64_t now_ns)
 {
 	struct row *row = &rows->rows[signal];
@@ -246,11 +246,11 @@ static void series_take(struct series *rows, int signal, struct ows *ows,
 
 	if (row->rule.off || !series_get(ows, signal, now_ns, &v, text, &sample))
 		return;
-	if (is_missed(row, &v, turned, unseen_ns, now_ns))
+	if (is_missed(row, &v, ticked, unseen_ns, now_ns))
 		miss(rows, row, signal, writer, unseen_ns);
 	row->count = v.count;
 	if (!rule_change(&row->rule, &row->kept, &sample) &&
-	    !(turned && rule_interval(&row->kept, &sample)))
+	    !(ticked && rule_interval(&row->kept, &sample)))
 		return;
 	keep_sample(rows, &row->kept, &sample, writer, (uint32_t)signal, &v, text, now_ns);
 	keep_raw(rows, row, ows, writer, now_ns);
@@ -269,19 +269,19 @@ void series_changes(struct series *rows, struct ows *ows, struct history_writer 
 	}
 }
 
-int64_t series_turn(struct series *rows, struct ows *ows, struct history_writer *writer,
+int64_t series_tick(struct series *rows, struct ows *ows, struct history_writer *writer,
                     int64_t unseen_ns, int64_t now_ns, int64_t wall_ns)
 {
 	int64_t next = INT64_MAX;
 
 	for (int i = 0; rows->has_intervals && i < rows->count; i++) {
 		struct row *row = &rows->rows[i];
-		int64_t turn;
+		int64_t due;
 
-		if (rule_turn(&row->rule, &row->kept, wall_ns))
+		if (rule_tick(&row->rule, &row->kept, wall_ns))
 			series_take(rows, i, ows, writer, true, unseen_ns, now_ns);
-		turn = rule_next_turn(&row->rule, wall_ns);
-		next = turn < next ? turn : next;
+		due = rule_next_tick(&row->rule, wall_ns);
+		next = due < next ? due : next;
 	}
 	return next;
 }

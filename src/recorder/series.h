@@ -44,17 +44,17 @@ void series_free(struct series *rows);
 bool series_are_of(const struct series *rows, struct ows *ows, int64_t now_ns);
 
 /*
- * Signals that changed; signals NULL: look at all. unseen_ns: nobody has looked since then, though
- * somebody should have; 0: all looks were in time. A signal that was measured more than once since
- * then has a gap from then to its newest value.
+ * Signals that changed; signals NULL: look at all. unseen_ns: the recorder has not looked since
+ * then, though it was due; 0: all looks were in time. A signal that was measured more than once
+ * since then has a gap from then to its newest value.
  */
 void series_changes(struct series *rows, struct ows *ows, struct history_writer *writer,
                     const int *signals, int n, int64_t unseen_ns, int64_t now_ns);
 /*
- * Keep what is due by intervals at wall_ns. Returns the wall-clock time of the next turn, INT64_MAX
- * without intervals. unseen_ns: of the turns, likewise.
+ * Keep what is due by intervals at wall_ns. Returns the wall-clock time of the next tick, INT64_MAX
+ * without intervals. unseen_ns: of the ticks, likewise.
  */
-int64_t series_turn(struct series *rows, struct ows *ows, struct history_writer *writer,
+int64_t series_tick(struct series *rows, struct ows *ows, struct history_writer *writer,
                     int64_t unseen_ns, int64_t now_ns, int64_t wall_ns);
 /* Nothing was known until now: each value is kept anew, as of now if it is older. */
 void series_forget(struct series *rows, int64_t now_ns);

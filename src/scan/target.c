@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* Opens a target without an engine, and sends requests to it. */
+/*
+ * Opens a target without an engine, and sends requests to it. The caller's thread steps the bus. A
+ * target that has missed its deadline is dead and never stepped again: the bus could write an
+ * answer to memory that the caller has freed.
+ */
 #include <errno.h>
 #include <poll.h>
 #include <stdio.h>
@@ -122,15 +126,10 @@ void target_close(struct target *target)
 	target->bus = NULL;
 }
 
-static int64_t wait_until(const struct target *target)
-{
-	return deadline(target) + GRACE_NS;
-}
-
 void target_ask(struct target *target, struct ask *asks, unsigned count)
 {
 	unsigned given = 0;
-	int64_t until = wait_until(target);
+	int64_t until = deadline(target) + GRACE_NS;
 
 	target->printed_ns = boottime(NULL);
 	target->first_id += target->count;
@@ -155,7 +154,7 @@ void target_ask(struct target *target, struct ask *asks, unsigned count)
 		if (target->progress && count > 1)
 			target->progress(target);
 		if (target->answered != answered)
-			until = wait_until(target);
+			until = deadline(target) + GRACE_NS;
 	}
 	target->dead = target->answered < count;
 }

@@ -15,7 +15,7 @@ struct target {
 	              size_t why_size);
 	int64_t timeout_ns; /* for opening, and for each request */
 	int64_t until_ns;   /* for all requests, CLOCK_BOOTTIME; 0: no limit */
-	/* Called while several requests are under way; NULL: nobody wants to know. */
+	/* Called while several requests are under way; NULL: the caller shows no progress. */
 	void (*progress)(struct target *target);
 	int64_t printed_ns; /* of progress */
 	struct bus *bus;

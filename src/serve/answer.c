@@ -33,7 +33,6 @@ void answer_error(struct serve *s, struct client *c, int err)
 	answer_code(s, c, code_of(err));
 }
 
-/* Send the part of the value that the client wants; len bytes of value are in client_room(). */
 void answer_value(struct serve *s, struct client *c, uint32_t len)
 {
 	uint32_t offset = (uint32_t)c->request.offset, size = (uint32_t)c->request.size;

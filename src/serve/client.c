@@ -142,7 +142,7 @@ static void client_close(struct serve *s, struct client *c)
 		s->queued--;
 	if (!engine_has_it)
 		release_directory(c);
-	/* What it has asked to read nobody waits for; what it has asked to write is written. */
+	/* No client waits for what was to be read; what was to be written is written. */
 	if (engine_has_it) {
 		__atomic_store_n(&c->guest.unwanted, 1, __ATOMIC_RELAXED);
 		c->state = CLIENT_LEFT;

@@ -11,20 +11,21 @@
 
 int buses_number(struct buses *buses, unsigned target, unsigned number)
 {
+	unsigned at = buses->count;
+
 	for (unsigned i = 0; i < buses->count; i++)
 		if (buses->bus[i].target == target && buses->bus[i].number == number)
 			return (int)i;
-	for (unsigned i = 0; buses->count == BUSES_MAX && i < BUSES_MAX; i++)
-		if (buses->bus[i].target == BUSES_NO_TARGET) {
-			buses->bus[i].target = (uint8_t)target;
-			buses->bus[i].number = (uint16_t)number;
-			return (int)i;
-		}
-	if (buses->count == BUSES_MAX)
+	if (at < BUSES_MAX)
+		buses->count++;
+	else
+		for (at = 0; at < BUSES_MAX && buses->bus[at].target != BUSES_NO_TARGET;)
+			at++;
+	if (at == BUSES_MAX)
 		return -1;
-	buses->bus[buses->count].target = (uint8_t)target;
-	buses->bus[buses->count].number = (uint16_t)number;
-	return (int)buses->count++;
+	buses->bus[at].target = (uint8_t)target;
+	buses->bus[at].number = (uint16_t)number;
+	return (int)at;
 }
 
 void buses_renumber(struct buses *buses, const int *ports, unsigned count)
@@ -239,12 +240,6 @@ static bool put_name(struct directory *directory, const struct directory_form *f
 	       directory_put(directory, form->frames ? "" : ",", 1);
 }
 
-/* Keep room for the header of a DIRALL, which states the length of the names. */
-static bool begin_answer(struct directory *directory, const struct directory_form *form)
-{
-	return form->frames || put_header(directory, form, 0, 0, 0);
-}
-
 static bool directory_end(struct directory *directory, const struct directory_form *form)
 {
 	uint32_t len = directory->out_len, payload = len - FRAME_HEADER;
@@ -266,7 +261,8 @@ int directory_form(struct directory *directory, const struct directory_form *for
 	uint32_t at = 0;
 
 	directory->out_len = directory->flags = 0;
-	ok = begin_answer(directory, form);
+	/* the header of a DIRALL states the length of the names: it is written again at the end */
+	ok = form->frames || put_header(directory, form, 0, 0, 0);
 	while (ok && at < directory->len) {
 		const char *name = directory->raw + at;
 		const char *stop = memchr(name, '\n', directory->len - at);

@@ -12,10 +12,10 @@ static struct engine_guest *take_message(void *ctx)
 	struct guests *g = ctx;
 	struct engine_guest *guest;
 
-	if (!ring_used(&g->there))
+	if (!ring_used(&g->asked))
 		return NULL;
-	guest = g->requests[ring_take_at(&g->there)];
-	ring_did_take(&g->there);
+	guest = g->requests[ring_take_at(&g->asked)];
+	ring_did_take(&g->asked);
 	return guest;
 }
 
@@ -27,8 +27,8 @@ void guests_wake(struct guests *g)
 /* The queue has room for two messages of each request that can be in work. */
 static void put_message(struct guests *g, struct engine_guest *guest, bool released)
 {
-	g->answers[ring_put_at(&g->back)] = (struct guests_message){guest, released};
-	ring_did_put(&g->back);
+	g->answers[ring_put_at(&g->answered)] = (struct guests_message){guest, released};
+	ring_did_put(&g->answered);
 	if (__atomic_exchange_n(&g->sleeping, 0, __ATOMIC_SEQ_CST))
 		guests_wake(g);
 }
@@ -47,10 +47,10 @@ int guests_create(struct guests *g, unsigned most, void (*ring)(void *ctx), void
 {
 	*g = (struct guests){.ring = ring, .ring_ctx = ring_ctx};
 	g->port = (struct engine_guests){take_message, put_answer, put_release, g};
-	g->there.size = ring_size(most);
-	g->back.size = ring_size(2 * most);
-	g->requests = calloc(g->there.size, sizeof(*g->requests));
-	g->answers = calloc(g->back.size, sizeof(*g->answers));
+	g->asked.size = ring_size(most);
+	g->answered.size = ring_size(2 * most);
+	g->requests = calloc(g->asked.size, sizeof(*g->requests));
+	g->answers = calloc(g->answered.size, sizeof(*g->answers));
 	g->wake_fd = bell_open();
 	if (g->wake_fd < 0)
 		return -errno;
@@ -67,24 +67,24 @@ void guests_destroy(struct guests *g)
 
 void guests_ask(struct guests *g, struct engine_guest *guest)
 {
-	g->requests[ring_put_at(&g->there)] = guest;
-	ring_did_put(&g->there);
+	g->requests[ring_put_at(&g->asked)] = guest;
+	ring_did_put(&g->asked);
 	g->ring(g->ring_ctx);
 }
 
 bool guests_next(struct guests *g, struct guests_message *message)
 {
-	if (!ring_used(&g->back))
+	if (!ring_used(&g->answered))
 		return false;
-	*message = g->answers[ring_take_at(&g->back)];
-	ring_did_take(&g->back);
+	*message = g->answers[ring_take_at(&g->answered)];
+	ring_did_take(&g->answered);
 	return true;
 }
 
 bool guests_sleep(struct guests *g)
 {
 	__atomic_store_n(&g->sleeping, 1, __ATOMIC_SEQ_CST);
-	if (!ring_used(&g->back))
+	if (!ring_used(&g->answered))
 		return true;
 	__atomic_store_n(&g->sleeping, 0, __ATOMIC_SEQ_CST);
 	return false;

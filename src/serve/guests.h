@@ -14,8 +14,8 @@ struct guests_message {
 };
 
 struct guests {
-	struct engine_guests port; /* the engine's side */
-	struct ring there, back;
+	struct engine_guests port;   /* the engine's side */
+	struct ring asked, answered; /* the places of requests and answers in use */
 	struct engine_guest **requests;
 	struct guests_message *answers;
 	uint32_t sleeping;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Where clients connect: addresses, the unix socket, and who gets a place. */
+/* Where clients connect: addresses, the unix socket; and which clients get a place. */
 #include <arpa/inet.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -21,7 +21,7 @@
 
 /* Connections that wait for a place; the kernel's net.core.somaxconn may be less. */
 #define BACKLOG 4096
-/* Connections that the server accepts in a row before clients have their turn again. */
+/* Connections that the server accepts in a row before it serves clients again. */
 #define ACCEPTS 16
 
 union address {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Who a client is, by the kernel's word, and what ControlAllow lets him write. */
+/* The user of a client, by the kernel's word, and what ControlAllow lets that user write. */
 #include <arpa/inet.h>
 #include <stdio.h>
 #include <string.h>

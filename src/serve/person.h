@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Who is at the other end of a client's connection, and what he may write. */
+/* The user at the other end of a client's connection, and what that user may write. */
 #pragma once
 
 #include <netinet/in.h>

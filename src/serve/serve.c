@@ -96,7 +96,7 @@ int serve_create(const struct serve_setup *setup, struct serve **serve, char *wh
 	s->passes_on = config_has_servers(setup->config);
 	s->epoll_fd = epoll_create1(EPOLL_CLOEXEC);
 	err = s->epoll_fd < 0 ? -errno : allocate(s);
-	via_token(s->token);
+	tokens_own(s->token);
 	s->guests.port.token = s->token;
 	if (!err && epoll_ctl(s->epoll_fd, EPOLL_CTL_ADD, s->guests.wake_fd, &event) < 0)
 		err = -errno;

@@ -12,7 +12,7 @@
 #include "src/serve/kept.h"
 #include "src/serve/request.h"
 #include "src/serve/signals.h"
-#include "src/serve/via.h"
+#include "src/serve/tokens.h"
 #include "src/shm/layout.h"
 #include "src/text/log.h"
 
@@ -86,8 +86,8 @@ struct client {
 	struct node node;
 	char path[NODE_PATH_MAX + 16]; /* the path that the engine gets */
 	struct engine_guest guest;
-	struct via via;
-	uint32_t value_len; /* READ: bytes of value in client_room() */
+	struct tokens passed; /* go with the request to a target */
+	uint32_t value_len;   /* READ: bytes of value in client_room() */
 	struct signals_command command;
 	struct directory *directory;
 	const uint8_t *out; /* the answer's bytes */
@@ -111,7 +111,7 @@ struct client {
 	X(evicted)        /* idle clients closed because others waited */ \
 	X(refused_errors) /* closed at once, because the kernel lacked something */ \
 	X(garbage)        /* frames that are no requests */ \
-	X(timeouts)       /* half requests, answers nobody took, idle connections */ \
+	X(timeouts)       /* half requests, answers no client took, idle connections */ \
 	X(bytes_in) \
 	X(bytes_out)
 

@@ -225,7 +225,7 @@ static int become_controller(struct ows *h)
 
 /*
  * All clients are one controller, with one command for each signal: that of another client may only
- * be replaced when owsd knows whose it was.
+ * be replaced after owsd has entered the person of that command.
  */
 static int command_for(struct ows *h, const struct ows_id *id, const char *person)
 {

@@ -36,7 +36,7 @@ struct signals_command {
 	int64_t since_ns;
 };
 /*
- * Command a signal or attribute for this person, who stands with the command in image and journal.
+ * Command a signal or attribute for this person; image and journal show the person beside it.
  * 0; -EBUSY: owsd has still to look at the commands of others, call again soon; -ENOENT, -EACCES,
  * -EINVAL: the text is no value of its type, -EDOM: its type cannot hold the value, -EIO.
  */

@@ -72,7 +72,7 @@ static void read_target(struct serve *s, struct client *c)
 	work_ask(s, c, STEP_READ, BUS_READ, work_path(s, c), client_room(c), client_room_size(c));
 }
 
-/* A server asks for a signal that is an item of another owsd: that owsd may be the one who asks. */
+/* A server asks for a signal that is an item of another owsd: that server may be that owsd. */
 static bool is_passed_on(const struct serve *s, const struct client *c)
 {
 	int record = c->request.token_count && s->passes_on
@@ -263,11 +263,11 @@ void work_begin(struct serve *s, struct client *c)
 	}
 	node_parse(r->path, r->path_len, &c->node);
 	c->node.fresh |= (r->flags & FRAME_UNCACHED) != 0;
-	if (r->token_count && via_came_round(r->tokens, r->token_count, s->token)) {
+	if (r->token_count && tokens_came_round(r->tokens, r->token_count, s->token)) {
 		came_round(s, c);
 		return;
 	}
-	via_pass(&c->via, r->tokens, r->token_count, s->token);
+	tokens_pass(&c->passed, r->tokens, r->token_count, s->token);
 	if (c->node.kind == NODE_NONE || (!lists && is_no_directory(&c->node)))
 		answer_error(s, c, -ENOENT);
 	else
@@ -291,7 +291,7 @@ void work_answered(struct serve *s, struct client *c)
 	 */
 	if (c->lent && !err)
 		err = -EIO;
-	/* The device is gone: what was read of it before answers nobody. */
+	/* The device is gone: what was read of it before answers no client. */
 	if (err == -ENODEV && c->node.has_rom)
 		kept_forget(s->kept, &c->node, s->now_ns);
 	switch ((enum client_step)c->step) {

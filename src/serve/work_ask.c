@@ -54,8 +54,8 @@ void work_ask(struct serve *s, struct client *c, enum client_step step, enum bus
 	                                 .parts = parts(c, step, len),
 	                                 .offset = op == BUS_WRITE ? (uint32_t)c->request.offset
 	                                                           : 0,
-	                                 .tokens = c->via.tokens,
-	                                 .token_count = c->via.count};
+	                                 .tokens = c->passed.bytes,
+	                                 .token_count = c->passed.count};
 	count(s, COUNT_bus_requests, 1);
 	if (c->state != CLIENT_WORKING)
 		client_enter(s, c, CLIENT_WORKING);

@@ -13,5 +13,5 @@ bool work_want_directory(struct serve *s, struct client *c, enum client_step ste
 bool work_listed(struct serve *s, struct client *c, int err);
 /* Does a client wait for a directory, and is one free? */
 bool work_waits(struct serve *s);
-/* The client that has waited longest begins. NULL: nobody waits, or no directory is free. */
+/* The client that has waited longest begins. NULL: no client waits, or no directory is free. */
 struct client *work_unqueue(struct serve *s, bool *ended);

@@ -5,10 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/show/actor.h"
 #include "src/show/digits.h"
 #include "src/show/journal_entry.h"
 #include "src/show/names.h"
-#include "src/show/who.h"
 
 /* --- Reading --------------------------------------------------------------------------------- */
 
@@ -193,7 +193,7 @@ static void json_value(struct json *json, const struct journal_entry *entry)
 
 void journal_json(struct json *json, const struct when *now, const struct journal_entry *entry)
 {
-	static const struct ows_by nobody;
+	static const struct ows_by none;
 	char time[WHEN_TEXT];
 
 	json_object(json, NULL);
@@ -213,7 +213,7 @@ void journal_json(struct json *json, const struct when *now, const struct journa
 		json_string(json, "event", ows_alarm_event_text(entry->alarm.event));
 	}
 	json_value(json, entry);
-	who_json(json, journal_is_deed(entry) ? journal_by(entry) : &nobody);
+	actor_json(json, journal_is_deed(entry) ? journal_by(entry) : &none);
 	if (entry->past && entry->is_command)
 		json_null(json, "more");
 	else

@@ -46,7 +46,7 @@ const char *journal_event(const struct journal_entry *entry, char text[JOURNAL_E
 /* The value, with at most so many decimals (-1: all); NULL: the entry has none, or a text. */
 const char *journal_value(const struct journal_entry *entry, int decimals,
                           char text[VALUE_TEXT_MAX]);
-/* Did somebody do it? An alarm is raised, and returns, by itself. */
+/* Did a program or a person do it? An alarm is raised, and returns, by itself. */
 bool journal_is_deed(const struct journal_entry *entry);
 const struct ows_by *journal_by(const struct journal_entry *entry);
 /* As an object. */

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Writes a JSON document piece by piece. */
+/*
+ * Writes a JSON document piece by piece. The writer knows no depth: it keeps only whether the next
+ * value needs a comma, and the end of an object or array leaves that true for the one around it.
+ */
 #include <inttypes.h>
 #include <string.h>
 

@@ -3,8 +3,8 @@
 #include <errno.h>
 #include <stdio.h>
 
+#include "src/show/actor.h"
 #include "src/show/present.h"
-#include "src/show/who.h"
 #include "src/signal/unarmed.h"
 
 /* When the present alarm of a signal was raised, as far as the journal goes back; else 0. */
@@ -67,7 +67,7 @@ void present_json(struct json *json, const struct present *alarm, const struct w
 		json_uint(json, "occurrences", alarm->occurrences);
 	if (alarm->shelved) {
 		json_string(json, "until", when_iso(now, alarm->shelved->until_ns, text));
-		who_json(json, &alarm->shelved->who);
+		actor_json(json, &alarm->shelved->who);
 		json_string(json, "why", *alarm->shelved->why ? alarm->shelved->why : NULL);
 	}
 }

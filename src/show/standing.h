@@ -15,7 +15,7 @@ bool standing_possible(const struct ows_alarm_state *state);
 /* An alarm that is shelved does not stand. */
 bool standing_any(const struct ows_alarm_state *state);
 /*
- * Does the signal have an alarm that nobody has acknowledged? A device alarm cannot be
+ * Does the signal have an alarm that is not acknowledged? A device alarm cannot be
  * acknowledged.
  */
 bool standing_wants_eyes(const struct ows_alarm_state *state);
@@ -23,7 +23,7 @@ bool standing_wants_eyes(const struct ows_alarm_state *state);
 #define STANDING_WORDS 64
 /*
  * "! high", "high, acknowledged", "! high, returned", "! device", "high, shelved"; "-" without an
- * alarm. The mark stands before an alarm that nobody has acknowledged. Returns words.
+ * alarm. The mark stands before an alarm that is not acknowledged. Returns words.
  */
 const char *standing_text(const struct ows_alarm_state *state, char words[STANDING_WORDS]);
 

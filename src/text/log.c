@@ -22,11 +22,11 @@
 #define HOUR_NS (3600 * NS_PER_S)
 
 /*
- * turn names the owner of the line: in round r of the ring, r * LINES is the producers', r * LINES
- * + 1 the reader's. All zero is the empty ring, so untouched lines cost no memory.
+ * generation names the owner of the line: in round r of the ring, r * LINES is the producers',
+ * r * LINES + 1 the reader's. All zero is the empty ring, so untouched lines cost no memory.
  */
 struct line {
-	uint32_t turn;
+	uint32_t generation;
 	uint8_t level;
 	uint8_t len;
 	int64_t time_ns;
@@ -71,14 +71,15 @@ enum log_level log_level(const struct log *log)
 	return log->level;
 }
 
-static struct line *claim_line(struct log *log, uint32_t *turn)
+static struct line *claim_line(struct log *log, uint32_t *generation)
 {
 	uint32_t head = __atomic_load_n(&log->head, __ATOMIC_RELAXED);
 
 	for (;;) {
 		struct line *line = &log->lines[head % LINES];
 		uint32_t mine = head - head % LINES;
-		int32_t ahead = (int32_t)(__atomic_load_n(&line->turn, __ATOMIC_ACQUIRE) - mine);
+		int32_t ahead = (int32_t)(__atomic_load_n(&line->generation, __ATOMIC_ACQUIRE) -
+		                          mine);
 
 		if (ahead < 0)
 			return NULL;
@@ -86,7 +87,7 @@ static struct line *claim_line(struct log *log, uint32_t *turn)
 			head = __atomic_load_n(&log->head, __ATOMIC_RELAXED);
 		} else if (__atomic_compare_exchange_n(&log->head, &head, head + 1, true,
 		                                       __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
-			*turn = mine;
+			*generation = mine;
 			return line;
 		}
 	}
@@ -113,7 +114,7 @@ void log_put(struct log *log, enum log_level level, const char *format, ...)
 {
 	char text[LINE_BYTES + 1];
 	struct line *line;
-	uint32_t turn;
+	uint32_t generation;
 	va_list args;
 	size_t len;
 	int made;
@@ -128,7 +129,7 @@ void log_put(struct log *log, enum log_level level, const char *format, ...)
 	len = made > LINE_BYTES ? whole_characters(text, LINE_BYTES) : (size_t)made;
 	len = printable(text, len);
 
-	line = claim_line(log, &turn);
+	line = claim_line(log, &generation);
 	if (!line) {
 		__atomic_fetch_add(&log->dropped, 1, __ATOMIC_RELAXED);
 		return;
@@ -137,7 +138,7 @@ void log_put(struct log *log, enum log_level level, const char *format, ...)
 	line->level = (uint8_t)level;
 	line->len = (uint8_t)len;
 	memcpy(line->text, text, len);
-	__atomic_store_n(&line->turn, turn + 1, __ATOMIC_RELEASE);
+	__atomic_store_n(&line->generation, generation + 1, __ATOMIC_RELEASE);
 	bell_ring(log->bell);
 }
 
@@ -224,9 +225,9 @@ static void report_lost(struct log *log, int fd, int prefix)
 static bool has_lines(const struct log *log)
 {
 	const struct line *line = &log->lines[log->tail % LINES];
-	uint32_t turn = log->tail - log->tail % LINES;
+	uint32_t generation = log->tail - log->tail % LINES;
 
-	return __atomic_load_n(&line->turn, __ATOMIC_ACQUIRE) == turn + 1;
+	return __atomic_load_n(&line->generation, __ATOMIC_ACQUIRE) == generation + 1;
 }
 
 void log_show(struct log *log, log_see *see, void *ctx)
@@ -244,7 +245,7 @@ int log_drain(struct log *log, int fd, int prefix)
 	/* One round at most: producers that never stop must not keep the supervisor here. */
 	while (count < (int)LINES) {
 		struct line *line = &log->lines[log->tail % LINES];
-		uint32_t turn = log->tail - log->tail % LINES;
+		uint32_t generation = log->tail - log->tail % LINES;
 		int err;
 
 		if (!has_lines(log))
@@ -257,7 +258,7 @@ int log_drain(struct log *log, int fd, int prefix)
 		if (log->see)
 			log->see(log->see_ctx, line->time_ns, (enum log_level)line->level,
 			         line->text, line->len);
-		__atomic_store_n(&line->turn, turn + LINES, __ATOMIC_RELEASE);
+		__atomic_store_n(&line->generation, generation + LINES, __ATOMIC_RELEASE);
 		log->tail++;
 		count++;
 	}

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Reads the head of a request: a first line with the version, then lines "key: value". */
+/*
+ * Reads the head of a request: a first line with the version, then lines "key: value". The peer may
+ * be hostile: each length is checked before bytes are used, and no key may stand twice.
+ */
 #include <errno.h>
 #include <stdbool.h>
 #include <string.h>

@@ -117,7 +117,7 @@ static void take_one(const struct writer *writer, int listener)
 	close(fd);
 }
 
-/* Until a signal ends it, or nobody has come for a while and the service manager has the socket. */
+/* Until a signal ends it, or no client comes for a while and the service manager listens. */
 static void serve(struct writer *writer, int listener, bool may_leave, struct unix_signals *signals,
                   int prefix)
 {

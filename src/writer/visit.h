@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A connection to the writer: looks who is there, takes one order, answers, and hangs up.
+ * A connection to the writer: looks which user it is, takes one order, answers, and hangs up.
  *
  * Room src/writer: the program owsd-config: replaces the configuration of an instance, and has owsd
  * reload. Uses src/face, src/host, src/config, src/text, src/libows, src/service, src/shm,

@@ -14,11 +14,11 @@
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/table.h"
 #include "src/owsctl/verbs.h"
+#include "src/show/actor.h"
 #include "src/show/digits.h"
 #include "src/show/json.h"
 #include "src/show/names.h"
 #include "src/show/when.h"
-#include "src/show/who.h"
 
 /* --- Acknowledge ----------------------------------------------------------------------------- */
 
@@ -146,11 +146,11 @@ static void alarms_history_add_row(struct table *table, const struct when *now,
 	char before[VALUE_TEXT_MAX], after[VALUE_TEXT_MAX], time[WHEN_TEXT];
 	const char *left = value_text(alarm, false, info->decimals, before);
 	const char *right = value_text(alarm, true, info->decimals, after);
-	char by[WHO_LINE] = "-";
+	char by[ACTOR_LINE] = "-";
 
 	if (alarm->event != OWS_ALARM_RAISED && alarm->event != OWS_ALARM_RETURNED &&
 	    alarm->event != OWS_ALARM_FAILED)
-		who_line(&alarm->who, by);
+		actor_line(&alarm->who, by);
 	table_add(table, (const char *const[]){when_iso(now, alarm->occurred_ns, time), info->name,
 	                                       ows_alarm_kind_text(alarm->kind),
 	                                       ows_alarm_event_text(alarm->event),
@@ -172,7 +172,7 @@ static void add_json(struct json *json, const struct when *now, uint32_t number,
 	json_number(json, "before", value_text(alarm, false, -1, text));
 	json_number(json, "after", value_text(alarm, true, -1, text));
 	json_string(json, "quality", ows_quality_text(alarm->quality));
-	who_json(json, &alarm->who);
+	actor_json(json, &alarm->who);
 	json_string(json, "remark", *alarm->text ? alarm->text : NULL);
 	json_object_end(json);
 }

@@ -8,10 +8,10 @@
 #include "src/owsctl/alarms/alarms_live.h"
 #include "src/owsctl/rows.h"
 #include "src/owsctl/table.h"
+#include "src/show/actor.h"
 #include "src/show/names.h"
 #include "src/show/present.h"
 #include "src/show/text.h"
-#include "src/show/who.h"
 #include "src/signal/error.h"
 #include "src/signal/unarmed.h"
 #include "src/text/distance.h"
@@ -77,10 +77,10 @@ static void print_line(const char *line)
 static void print_shelved(const struct live *live, const char *name,
                           const struct ows_alarm_state *state)
 {
-	char until[WHEN_TEXT], who[WHO_LINE], line[512];
+	char until[WHEN_TEXT], who[ACTOR_LINE], line[512];
 
 	snprintf(line, sizeof(line), "%s: shelved until %s by %s%s%s", name,
-	         when_iso(&live->now, state->until_ns, until), who_line(&state->who, who),
+	         when_iso(&live->now, state->until_ns, until), actor_line(&state->who, who),
 	         *state->why ? ": " : "", state->why);
 	print_line(line);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * owsctl journal: who did what and when; alarms and commands, of owsd's memory and of the disk,
- * merged, and followed as they come.
+ * owsctl journal: which program did what, and when; alarms and commands, of owsd's memory and of
+ * the disk, merged, and followed as they come.
  */
 #include <errno.h>
 #include <getopt.h>
@@ -16,10 +16,10 @@
 #include "src/owsctl/table.h"
 #include "src/owsctl/verbs.h"
 #include "src/owsctl/watch/terminal.h"
+#include "src/show/actor.h"
 #include "src/show/journal_entry.h"
 #include "src/show/journal_past.h"
 #include "src/show/names.h"
-#include "src/show/who.h"
 
 #define SLICE (500 * NS_PER_MS) /* a dead owsd sends no wake-up */
 #define SINCE (7 * 86400 * NS_PER_S)
@@ -39,12 +39,12 @@ static void journal_row(struct table *table, const struct when *now,
                         const struct journal_entry *entry)
 {
 	char time[WHEN_TEXT], event[JOURNAL_EVENT], value[VALUE_TEXT_MAX], more[32] = "";
-	char program[WHO_TEXT] = "-", user[WHO_TEXT] = "-";
+	char program[ACTOR_TEXT] = "-", user[ACTOR_TEXT] = "-";
 	const char *shown = journal_value(entry, entry->decimals, value), *person = "", *remark;
 
 	if (journal_is_deed(entry)) {
-		who_program(journal_by(entry), program);
-		who_user(journal_by(entry), user);
+		actor_program(journal_by(entry), program);
+		actor_user(journal_by(entry), user);
 		person = journal_by(entry)->person;
 	}
 	remark = entry->is_command ? more : entry->alarm.text;
@@ -239,7 +239,7 @@ static int journal_show(struct journal *j)
 	return status;
 }
 
-/* The memory of owsd, the disk, or both. Nobody can follow an owsd that has never run. */
+/* Open the memory of owsd, the disk, or both. An owsd that has never run has no news to follow. */
 static int open_both(struct journal *j, const char *directory)
 {
 	int status = past_look(j->ctl, directory, &j->history);

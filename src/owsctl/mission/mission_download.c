@@ -32,7 +32,7 @@ struct download {
 
 /*
  * May a cache have these samples as they were before they were logged? So it may the page that is
- * logged to, and others whose last sample came a moment ago.
+ * logged to, and a page whose last sample came a moment ago.
  */
 static bool is_young(const struct download *download, unsigned first, unsigned n)
 {

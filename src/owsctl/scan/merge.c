@@ -7,15 +7,10 @@
 
 #include "src/owsctl/scan/merge.h"
 
-static bool same_rom(const uint8_t a[ROM_LEN], const uint8_t b[ROM_LEN])
-{
-	return memcmp(a, b, ROM_LEN) == 0;
-}
-
 static int merge_find(const struct merge_device *list, unsigned count, const uint8_t rom[ROM_LEN])
 {
 	for (unsigned i = 0; i < count; i++)
-		if (same_rom(list[i].rom, rom))
+		if (memcmp(list[i].rom, rom, ROM_LEN) == 0)
 			return (int)i;
 	return -1;
 }

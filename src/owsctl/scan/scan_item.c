@@ -20,10 +20,10 @@ void scan_names_init(struct scan_names *names, size_t room)
 {
 	*names = (struct scan_names){.name = ctl_need(calloc(room + 1, sizeof(*names->name))),
 	                             .room = (unsigned)room,
-	                             .places = 2};
-	while (names->places < 2 * room)
-		names->places *= 2;
-	names->place = ctl_need(calloc(names->places, sizeof(*names->place)));
+	                             .slots = 2};
+	while (names->slots < 2 * room)
+		names->slots *= 2;
+	names->slot = ctl_need(calloc(names->slots, sizeof(*names->slot)));
 	names->items = ctl_need(open_memstream(&names->text, &names->len));
 }
 
@@ -31,33 +31,33 @@ void scan_names_free(struct scan_names *names)
 {
 	fclose(names->items);
 	free(names->text);
-	free(names->place);
+	free(names->slot);
 	free(names->name);
 }
 
-/* The name's place in the hash table, or the free place for it. Half of the places stay free. */
+/* The name's slot in the hash table, or the free slot for it. Half of the slots stay free. */
 static unsigned *scan_item_find(const struct scan_names *names, const char *name)
 {
-	unsigned at = (unsigned)hash_text(HASH_BEGIN, name, strlen(name)) & (names->places - 1);
+	unsigned at = (unsigned)hash_text(HASH_BEGIN, name, strlen(name)) & (names->slots - 1);
 
-	for (; names->place[at]; at = (at + 1) & (names->places - 1))
-		if (!strcmp(names->name[names->place[at] - 1], name))
+	for (; names->slot[at]; at = (at + 1) & (names->slots - 1))
+		if (!strcmp(names->name[names->slot[at] - 1], name))
 			break;
-	return &names->place[at];
+	return &names->slot[at];
 }
 
 void scan_names_add(struct scan_names *names, const char *name)
 {
 	char *to = names->name[names->count];
-	unsigned *place;
+	unsigned *slot;
 
 	if (names->count == names->room)
 		return;
 	memcpy(to, name, strnlen(name, SIGNAL_NAME_MAX)); /* the other bytes are 0 */
-	place = scan_item_find(names, to);
+	slot = scan_item_find(names, to);
 	names->count++;
-	if (!*place)
-		*place = names->count;
+	if (!*slot)
+		*slot = names->count;
 }
 
 static bool is_free(const struct scan_names *names, const char *name)

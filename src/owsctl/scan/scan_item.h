@@ -23,8 +23,8 @@ struct scan_choice {
 struct scan_names {
 	char (*name)[SIGNAL_NAME_MAX + 1];
 	unsigned count, room;
-	unsigned *place; /* hash table of names: number of the name + 1, 0: free */
-	unsigned places; /* a power of two */
+	unsigned *slot; /* hash table of names: number of the name + 1, 0: free */
+	unsigned slots; /* a power of two */
 	struct scan_word {
 		const char *word;
 		unsigned last; /* the last number given for the word */

@@ -36,7 +36,7 @@ static int make_number(const char *text, struct condition *condition)
 
 	errno = 0;
 	condition->integer = strtoll(text, &end, 10);
-	condition->whole = errno == 0 && end != text && *end == '\0';
+	condition->has_integer = errno == 0 && end != text && *end == '\0';
 	condition->number = strtod(text, &end);
 	return end == text || *end || !isfinite(condition->number) ? -EINVAL : 0;
 }
@@ -54,7 +54,7 @@ int condition_make(enum ows_type type, const char *op, const char *text,
 	if (type == OWS_STRING)
 		return ops[found].of_strings ? 0 : -EOPNOTSUPP;
 	if (type == OWS_BOOL && value_parse(OWS_BOOL, text, &condition->integer) == 0) {
-		condition->whole = true;
+		condition->has_integer = true;
 		condition->number = (double)condition->integer;
 		return 0;
 	}
@@ -69,7 +69,7 @@ bool condition_holds(const struct condition *condition, const struct reading *re
 	if (type == OWS_STRING)
 		order = reading->len != strlen(condition->text) ||
 		        memcmp(reading->text, condition->text, reading->len) != 0;
-	else if (condition->whole && !value_is_float(type))
+	else if (condition->has_integer && !value_is_float(type))
 		order = (reading->value.integer > condition->integer) -
 		        (reading->value.integer < condition->integer);
 	else

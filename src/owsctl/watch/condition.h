@@ -7,7 +7,7 @@
 struct condition {
 	int op; /* by condition_op() */
 	const char *text;
-	bool whole; /* the number is an integer, exact in integer */
+	bool has_integer; /* the number is whole, and exact in integer */
 	int64_t integer;
 	double number;
 };

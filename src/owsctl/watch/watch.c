@@ -16,11 +16,13 @@
 
 static void print_event(struct watch *watch, enum watch_event event)
 {
-	static const char *const words[] = {
-		[WATCH_RESTARTED] = "restarted",
-		[WATCH_RELOADED] = "reloaded",
-		[WATCH_LOST] = "lost",
-		[WATCH_BACK] = "back",
+	static const struct {
+		const char *word, *told;
+	} events[] = {
+		[WATCH_RESTARTED] = {"restarted", "was started again"},
+		[WATCH_RELOADED] = {"reloaded", "has reloaded its file"},
+		[WATCH_LOST] = {"lost", NULL},
+		[WATCH_BACK] = {"back", "is back"},
 	};
 	char text[WHEN_TEXT];
 	struct when now = when_now();
@@ -30,27 +32,14 @@ static void print_event(struct watch *watch, enum watch_event event)
 		json_open(&json, stdout);
 		json_object(&json, NULL);
 		json_string(&json, "time", when_iso(&now, now.boot, text));
-		json_string(&json, "event", words[event]);
+		json_string(&json, "event", events[event].word);
 		json_uint(&json, "generation", watch->generation);
 		json_object_end(&json);
 		json_end(&json);
-		return;
-	}
-	switch (event) {
-	case WATCH_NOTHING:
-		return;
-	case WATCH_RESTARTED:
-		ctl_fail("owsd %s was started again", watch->ctl->instance);
-		return;
-	case WATCH_RELOADED:
-		ctl_fail("owsd %s has reloaded its file", watch->ctl->instance);
-		return;
-	case WATCH_LOST:
+	} else if (event == WATCH_LOST) {
 		ctl_alive(watch->ctl, watch->h, ows_now());
-		return;
-	case WATCH_BACK:
-		ctl_fail("owsd %s is back", watch->ctl->instance);
-		return;
+	} else {
+		ctl_tell("owsd %s %s", watch->ctl->instance, events[event].told);
 	}
 }
 

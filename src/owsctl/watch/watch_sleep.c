@@ -59,7 +59,7 @@ static void watch_sleep_follow(struct watch *watch, int64_t timeout_ns)
 	watch->news += n != 0;
 }
 
-/* Changes may come faster than anybody reads them. */
+/* Changes may come faster than a person reads them. */
 static void pause_until(int64_t until_ns)
 {
 	int64_t left = until_ns - ows_now();

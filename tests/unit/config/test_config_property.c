@@ -31,7 +31,7 @@ static void test_every_property_of_every_family_is_known(void)
 				snprintf(path, sizeof(path), "%s/%02X.000000000001/%s%s",
 				         form == 1 ? "/uncached" : "", family->code, property->name,
 				         form == 2 ? ".ALL" : "");
-				TEST_ASSERT_TRUE_MESSAGE(property_look(path).there, path);
+				TEST_ASSERT_TRUE_MESSAGE(property_look(path).exists, path);
 			}
 			count++;
 		}
@@ -54,7 +54,7 @@ static void test_of_what_nobody_can_know_nothing_is_said(void)
 	};
 
 	for (unsigned i = 0; i < sizeof(paths) / sizeof(paths[0]); i++)
-		TEST_ASSERT_TRUE_MESSAGE(property_look(paths[i]).there, paths[i]);
+		TEST_ASSERT_TRUE_MESSAGE(property_look(paths[i]).exists, paths[i]);
 }
 
 static void test_a_typing_error_is_answered_with_what_was_meant(void)
@@ -75,7 +75,7 @@ static void test_a_typing_error_is_answered_with_what_was_meant(void)
 	for (unsigned i = 0; i < sizeof(rows) / sizeof(rows[0]); i++) {
 		struct path_property found = property_look(rows[i].path);
 
-		TEST_ASSERT_FALSE_MESSAGE(found.there, rows[i].path);
+		TEST_ASSERT_FALSE_MESSAGE(found.exists, rows[i].path);
 		TEST_ASSERT_EQUAL_STRING(rows[i].nearest, found.nearest);
 	}
 }

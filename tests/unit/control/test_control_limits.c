@@ -21,13 +21,13 @@
 
 static struct control_client clients[OWS_CONTROLLERS];
 #define USERS 5
-static struct config_who users[USERS] = {{.id = SOMEBODY},
-                                         {.id = SOMEBODY + 1},
-                                         {.id = SOMEBODY + 2},
-                                         {.id = SOMEBODY + 3},
-                                         {.id = SOMEBODY + 4}};
+static struct config_holder users[USERS] = {{.id = SOMEBODY},
+                                            {.id = SOMEBODY + 1},
+                                            {.id = SOMEBODY + 2},
+                                            {.id = SOMEBODY + 3},
+                                            {.id = SOMEBODY + 4}};
 static struct config_allow allow = {
-	.text = "* user:54321", .pattern = "*", .who = users, .who_count = USERS};
+	.text = "* user:54321", .pattern = "*", .holders = users, .holder_count = USERS};
 
 void setUp(void)
 {

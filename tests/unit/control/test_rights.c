@@ -20,11 +20,11 @@ enum {
 	OPS = 402
 };
 
-static struct config_who plc = {.id = PLC}, ops = {.group = true, .id = OPS};
+static struct config_holder plc = {.id = PLC}, ops = {.group = true, .id = OPS};
 static struct config_allow allows[] = {
-	{.pattern = "pump_*", .who = &plc, .who_count = 1},
-	{.pattern = "pump_2", .who = &ops, .who_count = 1},
-	{.pattern = "nobody?", .who_count = 0},
+	{.pattern = "pump_*", .holders = &plc, .holder_count = 1},
+	{.pattern = "pump_2", .holders = &ops, .holder_count = 1},
+	{.pattern = "nobody?", .holder_count = 0},
 };
 static struct config_item items[] = {{.name = "pump_1"}, {.name = "pump_2"}, {.name = "valve"}};
 static struct config with = {.allows = allows, .allow_count = 3, .items = items, .item_count = 3},

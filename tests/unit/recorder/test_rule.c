@@ -155,9 +155,9 @@ static void second(int64_t wall_s, double number)
 	                             .quality = OWS_Q_GOOD,
 	                             .number = number,
 	                             .measured_ns = wall_s * NS_PER_S};
-	bool turned = rule_turn(&rule, &kept, wall_s * NS_PER_S);
+	bool ticked = rule_tick(&rule, &kept, wall_s * NS_PER_S);
 
-	if (rule_change(&rule, &kept, &sample) || (turned && rule_interval(&kept, &sample)))
+	if (rule_change(&rule, &kept, &sample) || (ticked && rule_interval(&kept, &sample)))
 		keep(&sample);
 }
 
@@ -167,8 +167,8 @@ static void test_an_interval_keeps_the_newest_value_at_its_multiples(void)
 	for (int64_t t = 3; t <= 43; t++)
 		second(t, (double)t);
 	TEST_ASSERT_EQUAL_STRING("3,10,20,30,40,", took);
-	TEST_ASSERT_EQUAL_INT64(50 * NS_PER_S, rule_next_turn(&rule, 43 * NS_PER_S));
-	TEST_ASSERT_EQUAL_INT64(50 * NS_PER_S, rule_next_turn(&rule, 40 * NS_PER_S));
+	TEST_ASSERT_EQUAL_INT64(50 * NS_PER_S, rule_next_tick(&rule, 43 * NS_PER_S));
+	TEST_ASSERT_EQUAL_INT64(50 * NS_PER_S, rule_next_tick(&rule, 40 * NS_PER_S));
 }
 
 static void test_an_interval_beside_a_deadband_adds_what_stayed_within_it(void)
@@ -187,8 +187,8 @@ static void test_a_value_that_was_not_read_anew_is_not_kept_again(void)
 	record("interval 10");
 	TEST_ASSERT_TRUE(rule_change(&rule, &kept, &sample));
 	keep(&sample);
-	TEST_ASSERT_TRUE(rule_turn(&rule, &kept, 10 * NS_PER_S));
-	TEST_ASSERT_FALSE(rule_turn(&rule, &kept, 19 * NS_PER_S));
+	TEST_ASSERT_TRUE(rule_tick(&rule, &kept, 10 * NS_PER_S));
+	TEST_ASSERT_FALSE(rule_tick(&rule, &kept, 19 * NS_PER_S));
 	TEST_ASSERT_FALSE(rule_interval(&kept, &sample));
 	sample.measured_ns++;
 	TEST_ASSERT_TRUE(rule_interval(&kept, &sample));
@@ -197,17 +197,17 @@ static void test_a_value_that_was_not_read_anew_is_not_kept_again(void)
 static void test_a_clock_that_is_set_back_turns_the_slot_too(void)
 {
 	record("interval 60");
-	TEST_ASSERT_TRUE(rule_turn(&rule, &kept, 6000 * NS_PER_S));
-	TEST_ASSERT_TRUE(rule_turn(&rule, &kept, 30 * NS_PER_S));
-	TEST_ASSERT_TRUE(rule_turn(&rule, &kept, -NS_PER_S));
-	TEST_ASSERT_EQUAL_INT64(0, rule_next_turn(&rule, -NS_PER_S));
+	TEST_ASSERT_TRUE(rule_tick(&rule, &kept, 6000 * NS_PER_S));
+	TEST_ASSERT_TRUE(rule_tick(&rule, &kept, 30 * NS_PER_S));
+	TEST_ASSERT_TRUE(rule_tick(&rule, &kept, -NS_PER_S));
+	TEST_ASSERT_EQUAL_INT64(0, rule_next_tick(&rule, -NS_PER_S));
 }
 
 static void test_without_an_interval_there_is_no_turn(void)
 {
 	record("change");
-	TEST_ASSERT_FALSE(rule_turn(&rule, &kept, 6000 * NS_PER_S));
-	TEST_ASSERT_EQUAL_INT64(INT64_MAX, rule_next_turn(&rule, 5));
+	TEST_ASSERT_FALSE(rule_tick(&rule, &kept, 6000 * NS_PER_S));
+	TEST_ASSERT_EQUAL_INT64(INT64_MAX, rule_next_tick(&rule, 5));
 }
 
 int main(void)

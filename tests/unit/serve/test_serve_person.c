@@ -22,10 +22,10 @@
 
 static const struct instance_signal relay[] = {
 	{.name = "relay", .path = "/29.551DDF030000/PIO.0", .type = OWS_BOOL, .output = true}};
-static struct config_who stranger = {.id = STRANGER};
+static struct config_holder stranger = {.id = STRANGER};
 static struct config_allow allows[] = {
-	{.pattern = "pump_*", .who = &stranger, .who_count = 1},
-	{.pattern = "valve", .who_count = 0},
+	{.pattern = "pump_*", .holders = &stranger, .holder_count = 1},
+	{.pattern = "valve", .holder_count = 0},
 };
 static struct config open_to_all, with = {.allows = allows, .allow_count = 2},
 				  pumps = {.allows = allows, .allow_count = 1};

@@ -7,7 +7,7 @@
 #include "src/libows/ows.h"
 #include "src/shm/layout.h"
 
-static inline struct ows_by by_of(const struct ows_who *who)
+static inline struct ows_by actor_of(const struct ows_who *who)
 {
 	struct ows_by by = {.serial = who->serial, .uid = who->uid, .pid = who->pid};
 

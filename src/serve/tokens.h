@@ -9,15 +9,15 @@
 
 #include "hal/bus/bus.h"
 
-struct via {
-	uint8_t tokens[BUS_TOKENS_MAX * BUS_TOKEN];
+struct tokens {
+	uint8_t bytes[BUS_TOKENS_MAX * BUS_TOKEN];
 	uint32_t count; /* 0: the client is no server */
 };
 
 /* A token that no other server has. Never blocks. */
-void via_token(uint8_t token[BUS_TOKEN]);
+void tokens_own(uint8_t token[BUS_TOKEN]);
 /* Did the request come through this server before, or through too many servers to know? */
-bool via_came_round(const uint8_t *tokens, uint32_t count, const uint8_t token[BUS_TOKEN]);
+bool tokens_came_round(const uint8_t *tokens, uint32_t count, const uint8_t token[BUS_TOKEN]);
 /* Set the tokens that go with the request to a target, unless the request came here before. */
-void via_pass(struct via *via, const uint8_t *tokens, uint32_t count,
-              const uint8_t token[BUS_TOKEN]);
+void tokens_pass(struct tokens *passed, const uint8_t *tokens, uint32_t count,
+                 const uint8_t token[BUS_TOKEN]);

@@ -5,16 +5,16 @@
 
 #include "hal/owfs/frame.h"
 #include "src/serve/request.h"
-#include "src/serve/via.h"
+#include "src/serve/tokens.h"
 
 static uint8_t here[BUS_TOKEN], there[BUS_TOKEN];
-static struct via via;
+static struct tokens passed;
 
 void setUp(void)
 {
-	via_token(here);
-	via_token(there);
-	memset(&via, 0, sizeof(via));
+	tokens_own(here);
+	tokens_own(there);
+	memset(&passed, 0, sizeof(passed));
 }
 
 void tearDown(void)
@@ -29,22 +29,22 @@ static void test_tokens_differ(void)
 
 static void test_a_request_of_a_program_goes_on_with_our_token(void)
 {
-	TEST_ASSERT_FALSE(via_came_round(NULL, 0, here));
-	via_pass(&via, NULL, 0, here);
-	TEST_ASSERT_EQUAL_UINT32(1, via.count);
-	TEST_ASSERT_EQUAL_UINT8_ARRAY(here, via.tokens, BUS_TOKEN);
+	TEST_ASSERT_FALSE(tokens_came_round(NULL, 0, here));
+	tokens_pass(&passed, NULL, 0, here);
+	TEST_ASSERT_EQUAL_UINT32(1, passed.count);
+	TEST_ASSERT_EQUAL_UINT8_ARRAY(here, passed.bytes, BUS_TOKEN);
 }
 
 static void test_what_passed_here_has_come_round(void)
 {
-	struct via next;
+	struct tokens next;
 
-	via_pass(&via, NULL, 0, here);
-	TEST_ASSERT_FALSE(via_came_round(via.tokens, via.count, there));
-	via_pass(&next, via.tokens, via.count, there);
+	tokens_pass(&passed, NULL, 0, here);
+	TEST_ASSERT_FALSE(tokens_came_round(passed.bytes, passed.count, there));
+	tokens_pass(&next, passed.bytes, passed.count, there);
 	TEST_ASSERT_EQUAL_UINT32(2, next.count);
-	TEST_ASSERT_TRUE(via_came_round(next.tokens, next.count, here));
-	TEST_ASSERT_TRUE(via_came_round(next.tokens, next.count, there));
+	TEST_ASSERT_TRUE(tokens_came_round(next.bytes, next.count, here));
+	TEST_ASSERT_TRUE(tokens_came_round(next.bytes, next.count, there));
 }
 
 /* As owserver 3.2p4 passes 6ea24ad6... on: 00a24ad6... */
@@ -54,20 +54,20 @@ static void test_a_token_whose_first_byte_was_cleared_is_known(void)
 
 	memcpy(old, here, sizeof(old));
 	old[0] = 0x6e;
-	via_pass(&via, NULL, 0, old);
-	via.tokens[0] = 0;
-	TEST_ASSERT_TRUE(via_came_round(via.tokens, via.count, old));
-	TEST_ASSERT_TRUE(via_came_round(via.tokens, via.count, here));
+	tokens_pass(&passed, NULL, 0, old);
+	passed.bytes[0] = 0;
+	TEST_ASSERT_TRUE(tokens_came_round(passed.bytes, passed.count, old));
+	TEST_ASSERT_TRUE(tokens_came_round(passed.bytes, passed.count, here));
 }
 
 static void test_a_chain_that_is_too_long_is_taken_for_a_ring(void)
 {
 	uint8_t tokens[(BUS_TOKENS_MAX + 1) * BUS_TOKEN] = {0};
 
-	TEST_ASSERT_FALSE(via_came_round(tokens, BUS_TOKENS_MAX - 1, here));
-	via_pass(&via, tokens, BUS_TOKENS_MAX - 1, here);
-	TEST_ASSERT_EQUAL_UINT32(BUS_TOKENS_MAX, via.count);
-	TEST_ASSERT_TRUE(via_came_round(tokens, BUS_TOKENS_MAX, here));
+	TEST_ASSERT_FALSE(tokens_came_round(tokens, BUS_TOKENS_MAX - 1, here));
+	tokens_pass(&passed, tokens, BUS_TOKENS_MAX - 1, here);
+	TEST_ASSERT_EQUAL_UINT32(BUS_TOKENS_MAX, passed.count);
+	TEST_ASSERT_TRUE(tokens_came_round(tokens, BUS_TOKENS_MAX, here));
 }
 
 static void test_tokens_travel_behind_a_request(void)
@@ -77,14 +77,14 @@ static void test_tokens_travel_behind_a_request(void)
 	size_t length;
 	int n;
 
-	via_pass(&via, there, 1, here);
+	tokens_pass(&passed, there, 1, here);
 	n = frame_request(frame, FRAME_WRITE, 0, 0, "/a", (const uint8_t *)"xy", 2);
-	n = frame_add_tokens(frame, n, via.tokens, via.count);
+	n = frame_add_tokens(frame, n, passed.bytes, passed.count);
 	TEST_ASSERT_EQUAL_INT(FRAME_HEADER + 3 + 2 + 32, n);
 	TEST_ASSERT_EQUAL_INT(0, request_parse(frame, (size_t)n - 1, &request, &length));
 	TEST_ASSERT_EQUAL_INT(1, request_parse(frame, (size_t)n, &request, &length));
 	TEST_ASSERT_EQUAL_UINT32(2, request.token_count);
-	TEST_ASSERT_EQUAL_UINT8_ARRAY(via.tokens, request.tokens, 32);
+	TEST_ASSERT_EQUAL_UINT8_ARRAY(passed.bytes, request.tokens, 32);
 	TEST_ASSERT_EQUAL_UINT32(2, request.data_len);
 }
 
