@@ -168,8 +168,7 @@ int main(void)
 	double idle = idle_search_ms();
 
 	bench_line("alarm_search.idle.wire", idle, "ms");
-	bench_line("alarm_search.idle.limit", (ds2482_reset_ns[0] + 32 * ds2482_slot_ns[0]) / 1e6,
-	           "ms");
+	bench_line("alarm_search.idle.limit", (ds2482_reset_ns + 32 * ds2482_slot_ns) / 1e6, "ms");
 	measure("alarm4", idle / 1e3 / 0.04);
 	measure("alarm10", idle / 1e3 / 0.10);
 	measure("cyclic", 0);
