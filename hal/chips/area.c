@@ -7,15 +7,15 @@
 #include "hal/chips/area.h"
 #include "hal/wire/crc.h"
 
-#define BLANK_LOOKS 3 /* more */
+#define BLANK_LOOKS 3 /* more, where nothing but ones was read */
 
-static unsigned least(unsigned a, unsigned b)
+static unsigned smaller(unsigned a, unsigned b)
 {
 	return a < b ? a : b;
 }
 
 /* The command and where in the area; its length. */
-static unsigned address(uint8_t *command, uint8_t code, const struct area *area, unsigned at)
+static unsigned put_address(uint8_t *command, uint8_t code, const struct area *area, unsigned at)
 {
 	unsigned where = area->at + at;
 
@@ -25,7 +25,7 @@ static unsigned address(uint8_t *command, uint8_t code, const struct area *area,
 	return 1u + area->address_bytes;
 }
 
-static bool is_blank(const uint8_t *bytes, unsigned n)
+static bool is_all_alike(const uint8_t *bytes, unsigned n)
 {
 	return n && (bytes[0] == 0 || bytes[0] == 0xff) && memcmp(bytes, bytes + 1, n - 1) == 0;
 }
@@ -44,7 +44,7 @@ static int read_pages(struct txn *txn, const struct area *area, const uint8_t *c
 	for (const uint8_t *page = in + 1; n; n -= area->block, page += area->block + 1) {
 		if (onewire_crc8(page, area->block + 1u))
 			return -EBADMSG;
-		txn->blank |= is_blank(page, area->block + 1u);
+		txn->blank |= is_all_alike(page, area->block + 1u);
 		memcpy(bytes, page, area->block);
 		bytes += area->block;
 	}
@@ -54,13 +54,13 @@ static int read_pages(struct txn *txn, const struct area *area, const uint8_t *c
 int area_fetch(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, unsigned n)
 {
 	uint8_t command[3];
-	unsigned len = address(command, area->recall, area, at);
+	unsigned len = put_address(command, area->recall, area, at);
 	int err = 0;
 
 	if (txn_driven(txn)) {
 		err = txn_driver_read(txn, area, at, bytes, n);
 		if (!err && area->check == AREA_UNCHECKED && !area->load)
-			txn->blank |= is_blank(bytes, n);
+			txn->blank |= is_all_alike(bytes, n);
 		return err;
 	}
 	if (area->recall)
@@ -89,10 +89,10 @@ int area_ask_driver(struct txn *txn, const struct area *const *areas, unsigned c
 
 	for (unsigned i = 1; i < count; i++) {
 		const struct area *area = areas[i];
-		unsigned n = least(area->size, AREA_UNIT);
+		unsigned n = smaller(area->size, AREA_UNIT);
 		int err = txn_driver_read(txn, area, 0, bytes, n);
 
-		if (!err && !is_blank(bytes, n))
+		if (!err && !is_all_alike(bytes, n))
 			return 1;
 		if (err && err != -ENOENT && err != -EOPNOTSUPP)
 			return err;
@@ -109,8 +109,8 @@ static int area_load(struct txn *txn, const struct area *area, unsigned at, uint
 }
 
 /*
- * To visit->have; TXN_MORE until enough looks agree. So long as nothing but ones is read, perhaps
- * nobody hears: of a chip that is there the last look is made again.
+ * To visit->have; TXN_MORE until enough looks agree. So long as nothing but ones is read, the
+ * chip may not have heard: if it was found by its id, the last look is made again.
  */
 static int area_look(struct txn *txn, const struct area *area, unsigned at, unsigned n)
 {
@@ -132,7 +132,7 @@ static int area_look(struct txn *txn, const struct area *area, unsigned at, unsi
 		}
 	}
 	visit->looks = visit->blanks = 0;
-	/* It is read again, or answers nobody: it shows nothing of the chip. */
+	/* It is read again, or no request gets it: it shows nothing of the chip. */
 	if (txn->blank && !txn->asked)
 		return 0;
 	return area->saw ? area->saw(txn, at, visit->have, n) : 0;
@@ -144,7 +144,7 @@ static void whole_blocks(const struct area *area, unsigned *at, unsigned *n)
 	unsigned block = area->block ? area->block : 1, before = *at % block;
 
 	*at -= before;
-	*n = least((*n + before + block - 1) / block * block, area->size - *at);
+	*n = smaller((*n + before + block - 1) / block * block, area->size - *at);
 	assert(*n <= AREA_UNIT);
 }
 
@@ -179,7 +179,7 @@ int area_read(struct txn *txn, const struct area *area, unsigned at, uint8_t *by
 int area_read_data(struct txn *txn, const struct area *area, unsigned at, unsigned n)
 {
 	bool single = area->block && area->check == AREA_UNCHECKED;
-	unsigned part = least(n - (unsigned)txn->len, single ? area->block : AREA_UNIT);
+	unsigned part = smaller(n - (unsigned)txn->len, single ? area->block : AREA_UNIT);
 	int err = area_read(txn, area, at + (unsigned)txn->len, txn->data + txn->len, part);
 
 	if (err)
@@ -212,7 +212,8 @@ static struct unit unit_of(const struct area *area, unsigned at)
 }
 
 /* Registers take effect with the byte behind the checksum. */
-static int answered(struct txn *txn, const struct area *area, const uint8_t *command, unsigned len)
+static int check_answer(struct txn *txn, const struct area *area, const uint8_t *command,
+                        unsigned len)
 {
 	uint8_t in[3];
 	int err = txn_read(txn, in, area->verify ? 2 : 3);
@@ -227,7 +228,7 @@ static int answered(struct txn *txn, const struct area *area, const uint8_t *com
 static int write_row(struct txn *txn, const struct area *area, unsigned at, const uint8_t *row)
 {
 	uint8_t command[3 + AREA_UNIT];
-	unsigned len = address(command, area->write, area, at);
+	unsigned len = put_address(command, area->write, area, at);
 	int err;
 
 	if (area->store)
@@ -235,7 +236,7 @@ static int write_row(struct txn *txn, const struct area *area, unsigned at, cons
 	memcpy(command + len, row, area->row);
 	len += area->row;
 	err = txn_command(txn, command, len);
-	return err || !area->write_crc16 ? err : answered(txn, area, command, len);
+	return err || !area->write_crc16 ? err : check_answer(txn, area, command, len);
 }
 
 /* Row by row where it differs; 0 when none does. */
@@ -258,7 +259,7 @@ static int verify_row(struct txn *txn, const struct area *area, struct unit unit
 {
 	struct area_visit *visit = &txn->area;
 	uint8_t command[3], in[3 + AREA_UNIT];
-	unsigned len = address(command, area->verify, area, unit.at);
+	unsigned len = put_address(command, area->verify, area, unit.at);
 	unsigned head = area->key ? 0 : 3;
 	int err = txn_command(txn, command, head ? 1 : len);
 
@@ -277,7 +278,7 @@ static int verify_row(struct txn *txn, const struct area *area, struct unit unit
 static int copy_row(struct txn *txn, const struct area *area, struct unit unit)
 {
 	uint8_t command[4 + AREA_PASSWORD] = {0};
-	unsigned len = address(command, area->copy, area, unit.at);
+	unsigned len = put_address(command, area->copy, area, unit.at);
 
 	if (area->key) {
 		command[1] = area->key;
@@ -359,11 +360,11 @@ static bool is_given(const struct area *area, struct unit unit, unsigned at, con
 }
 
 /* What is there, and what is to be there. 0: it is already; TXN_MORE: go on. */
-static int prepare(struct txn *txn, const struct area *area, struct unit unit, unsigned at,
-                   const uint8_t *bytes, const uint8_t *mask, unsigned n)
+static int prepare_unit(struct txn *txn, const struct area *area, struct unit unit, unsigned at,
+                        const uint8_t *bytes, const uint8_t *mask, unsigned n)
 {
 	struct area_visit *visit = &txn->area;
-	unsigned from = at > unit.at ? at : unit.at, to = least(at + n, unit.at + unit.n);
+	unsigned from = at > unit.at ? at : unit.at, to = smaller(at + n, unit.at + unit.n);
 	int err;
 
 	if (is_given(area, unit, at, mask, n)) {
@@ -413,7 +414,7 @@ int area_write(struct txn *txn, const struct area *area, unsigned at, const uint
 	if (at > area->size || n > area->size - at)
 		return -EINVAL;
 	struct unit unit = unit_of(area, at + visit->done);
-	err = visit->step == LOOK ? prepare(txn, area, unit, at, bytes, mask, n)
+	err = visit->step == LOOK ? prepare_unit(txn, area, unit, at, bytes, mask, n)
 	                          : write_step(txn, area, unit);
 	if (err)
 		return err;

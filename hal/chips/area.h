@@ -17,7 +17,7 @@
  *	};
  *
  * Reading: the command, the address, the bytes, and their check. What was read is kept with the
- * device: who asks for another field of the same bytes within its life gets them without the wire.
+ * device: a request for another field of the same bytes within its life needs no wire.
  *
  * Writing, unit by unit: look what is there, put the new bits in, and write if that differs.
  *	with .verify	a scratchpad takes a row, is read back, and copied
@@ -139,7 +139,7 @@ int area_read_data(struct txn *txn, const struct area *area, unsigned at, unsign
 /* One transaction: the command and what it gives, its checksum checked. */
 int area_fetch(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, unsigned n);
 /*
- * Of a device that somebody else's driver speaks to, which nobody can search for: does it send
+ * Of a device that a driver of the kernel speaks to, which owsd cannot search for: does it send
  * anything but ones and zeros in one of its areas? areas[0] is none. 1, 0 or an error.
  */
 int area_ask_driver(struct txn *txn, const struct area *const *areas, unsigned count);

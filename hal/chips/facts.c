@@ -16,7 +16,8 @@ const char *family_name(uint8_t code)
 }
 
 /* The row of the property, or of the array that it is an element of; NULL: it measures nothing. */
-static const struct property *row_of(const struct family *family, const struct path_slice *name)
+static const struct property *measuring_row(const struct family *family,
+                                            const struct path_slice *name)
 {
 	const char *dot = memchr(name->text, '.', name->len);
 	size_t len = dot ? (size_t)(dot - name->text) : name->len;
@@ -34,9 +35,9 @@ bool quantity_of(const char *text, struct quantity *quantity)
 	if (path_split(text, strlen(text), &path) || !path.device.len || !path.property.len)
 		return false;
 	if (path.has_rom)
-		row = row_of(family_of(path.rom[0]), &path.property);
+		row = measuring_row(family_of(path.rom[0]), &path.property);
 	for (unsigned n = 0; !path.has_rom && !row && (family = family_nth(n)); n++)
-		row = row_of(family, &path.property);
+		row = measuring_row(family, &path.property);
 	if (!row)
 		return false;
 	*quantity = (struct quantity){.least = row->measures.least,

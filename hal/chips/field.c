@@ -20,7 +20,7 @@ static uint32_t mask_of(const struct field *field)
 	return bits < 32 ? (UINT32_C(1) << bits) - 1 : UINT32_MAX;
 }
 
-static uint32_t join(const struct field *field, const uint8_t *bytes)
+static uint32_t join_bytes(const struct field *field, const uint8_t *bytes)
 {
 	uint32_t joined = 0;
 	unsigned n = bytes_of(field);
@@ -30,7 +30,7 @@ static uint32_t join(const struct field *field, const uint8_t *bytes)
 	return joined;
 }
 
-static void split(const struct field *field, uint32_t joined, uint8_t bytes[BYTES_MAX])
+static void split_bytes(const struct field *field, uint32_t joined, uint8_t bytes[BYTES_MAX])
 {
 	unsigned n = bytes_of(field);
 
@@ -38,7 +38,7 @@ static void split(const struct field *field, uint32_t joined, uint8_t bytes[BYTE
 		bytes[field->big_endian ? n - 1 - i : i] = (uint8_t)joined;
 }
 
-static double value_of(const struct field *field, uint32_t joined)
+static double value_of_bits(const struct field *field, uint32_t joined)
 {
 	uint32_t mask = mask_of(field);
 	uint32_t bits = (field->inverted ? ~joined : joined) >> field->shift & mask;
@@ -55,7 +55,8 @@ static bool is_binary(const struct property *property)
 }
 
 /* Where the element begins. */
-static unsigned place(const struct property *property, const struct field *field, unsigned element)
+static unsigned element_at(const struct property *property, const struct field *field,
+                           unsigned element)
 {
 	unsigned stride = field->stride || !is_binary(property) ? field->stride : property->size;
 
@@ -71,7 +72,8 @@ static const struct area *area_of(const struct txn *txn, const struct field *fie
 	return family_owner(txn->device->family, txn->property)->areas[field->area];
 }
 
-static const struct field *written(const struct family *family, const struct property *property)
+static const struct field *written_field(const struct family *family,
+                                         const struct property *property)
 {
 	const struct field *set = &family_how(family, property)->set;
 
@@ -83,7 +85,7 @@ int field_read(struct txn *txn)
 	const struct property *property = txn->property;
 	const struct field *field = &property->field;
 	const struct area *area = area_of(txn, field);
-	unsigned at = place(property, field, (unsigned)txn->element), count = 1;
+	unsigned at = element_at(property, field, (unsigned)txn->element), count = 1;
 	uint8_t bytes[AREA_UNIT];
 
 	if (is_binary(property)) {
@@ -100,11 +102,12 @@ int field_read(struct txn *txn)
 	if (err)
 		return err;
 	if (property->type == PROPERTY_BITS) {
-		txn->bits = join(field, bytes) >> field->shift ^ (field->inverted ? UINT32_MAX : 0);
+		txn->bits = join_bytes(field, bytes) >> field->shift ^
+		            (field->inverted ? UINT32_MAX : 0);
 		txn->bits &= (UINT32_C(1) << property->array.count) - 1;
 	}
 	for (unsigned i = 0; i < count; i++)
-		txn->number[i] = value_of(field, join(field, bytes + i * field->stride));
+		txn->number[i] = value_of_bits(field, join_bytes(field, bytes + i * field->stride));
 	return 0;
 }
 
@@ -127,9 +130,9 @@ static int bits_of(const struct field *field, double value, uint32_t *bits)
 int field_write(struct txn *txn)
 {
 	const struct property *property = txn->property;
-	const struct field *field = written(txn->device->family, property);
+	const struct field *field = written_field(txn->device->family, property);
 	const struct area *area = area_of(txn, field);
-	unsigned at = place(property, field, (unsigned)txn->element), count = 1;
+	unsigned at = element_at(property, field, (unsigned)txn->element), count = 1;
 	uint8_t bytes[AREA_UNIT], which[AREA_UNIT] = {0};
 	uint32_t bits = 0, mask = mask_of(field) << field->shift;
 
@@ -141,8 +144,8 @@ int field_write(struct txn *txn)
 		                   : ((UINT32_C(1) << property->array.count) - 1) << field->shift;
 		mask = txn->one ? UINT32_C(1) << txn->element << field->shift : mask;
 		bits = (field->inverted ? ~txn->bits : txn->bits) << field->shift;
-		split(field, bits, bytes);
-		split(field, mask, which);
+		split_bytes(field, bits, bytes);
+		split_bytes(field, mask, which);
 		return area_write(txn, area, field->at, bytes, which, bytes_of(field));
 	}
 	if (property->array.aggregate && !txn->one)
@@ -153,8 +156,8 @@ int field_write(struct txn *txn)
 
 		if (err)
 			return err;
-		split(field, bits, bytes + i * field->stride);
-		split(field, mask, which + i * field->stride);
+		split_bytes(field, bits, bytes + i * field->stride);
+		split_bytes(field, mask, which + i * field->stride);
 	}
 	return area_write(txn, area, at, bytes, which,
 	                  (count - 1) * field->stride + bytes_of(field));
@@ -170,7 +173,7 @@ property_function *property_reader(const struct family *family, const struct pro
 property_function *property_writer(const struct family *family, const struct property *property)
 {
 	property_function *write = family_how(family, property)->write;
-	bool none = !(property->access & ACCESS_WRITE) || !written(family, property)->area;
+	bool none = !(property->access & ACCESS_WRITE) || !written_field(family, property)->area;
 
 	return write || none ? write : field_write;
 }

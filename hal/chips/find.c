@@ -37,7 +37,7 @@ static int order(const char *name, size_t len, const char *other)
 }
 
 /* The first that is not below the name. Tables of families are sorted. */
-static unsigned find(const struct family *family, const char *name, size_t len)
+static unsigned first_from(const struct family *family, const char *name, size_t len)
 {
 	unsigned low = 0, high = family->count;
 
@@ -52,9 +52,9 @@ static unsigned find(const struct family *family, const char *name, size_t len)
 	return low;
 }
 
-static const struct property *by_name(const struct family *family, const char *name, size_t len)
+static const struct property *row_by_name(const struct family *family, const char *name, size_t len)
 {
-	unsigned i = family->is_virtual ? 0 : find(family, name, len);
+	unsigned i = family->is_virtual ? 0 : first_from(family, name, len);
 
 	for (; i < family->count; i++) {
 		if (order(name, len, family->properties[i].name) == 0)
@@ -68,10 +68,10 @@ static const struct property *by_name(const struct family *family, const char *n
 const struct property *family_property(const struct family *family, const struct device *device,
                                        const char *name, size_t len)
 {
-	const struct property *property = by_name(family, name, len);
+	const struct property *property = row_by_name(family, name, len);
 
 	if (!property && !family->is_virtual)
-		property = by_name(&family_common, name, len);
+		property = row_by_name(&family_common, name, len);
 	if (!property || is_visible(property, device))
 		return property;
 	/* the request looks which chip it is, and is refused then */
@@ -86,7 +86,7 @@ static const struct property *nearer(const struct family *family, const struct d
 {
 	bool sorted = !family->is_virtual;
 
-	for (unsigned i = sorted && prev ? find(family, prev->name, strlen(prev->name)) : 0;
+	for (unsigned i = sorted && prev ? first_from(family, prev->name, strlen(prev->name)) : 0;
 	     i < family->count &&
 	     !(sorted && best && strcmp(family->properties[i].name, best->name) > 0);
 	     i++) {

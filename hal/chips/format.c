@@ -271,7 +271,7 @@ static bool digits_fit(uint32_t limits, double number)
 	return true;
 }
 
-static bool is_whole(double number, double least, double most)
+static bool is_whole_between(double number, double least, double most)
 {
 	return number == trunc(number) && number >= least && number <= most;
 }
@@ -279,16 +279,16 @@ static bool is_whole(double number, double least, double most)
 static bool takes(const struct property *property, int extension, double number)
 {
 	if (extension == EXTENSION_BYTE)
-		return is_whole(number, 0, ldexp(1, property->array.count) - 1);
+		return is_whole_between(number, 0, ldexp(1, property->array.count) - 1);
 	switch ((enum property_type)property->type) {
 	case PROPERTY_YESNO:
 	case PROPERTY_BITS:
-		return is_whole(number, 0, 1);
+		return is_whole_between(number, 0, 1);
 	case PROPERTY_UNSIGNED:
-		return is_whole(number, property->negative ? INT32_MIN : 0, UINT32_MAX) &&
+		return is_whole_between(number, property->negative ? INT32_MIN : 0, UINT32_MAX) &&
 		       (!property->digits || digits_fit(property->digits, number));
 	case PROPERTY_INTEGER:
-		return is_whole(number, INT32_MIN, INT32_MAX);
+		return is_whole_between(number, INT32_MIN, INT32_MAX);
 	case PROPERTY_FLOAT:
 	case PROPERTY_TEMPGAP:
 	case PROPERTY_PRESSURE:
@@ -304,8 +304,8 @@ static bool takes(const struct property *property, int extension, double number)
 	return false;
 }
 
-static int parse_number(const struct property *property, int extension, const char *text,
-                        size_t len, double *number)
+static int parse_text(const struct property *property, int extension, const char *text, size_t len,
+                      double *number)
 {
 	char copy[TEXT_ROOM];
 
@@ -353,7 +353,7 @@ int parse_value(const struct property *property, int extension, const char *text
 	int err;
 
 	if (extension != EXTENSION_ALL) {
-		err = parse_number(property, extension, text, len, &number);
+		err = parse_text(property, extension, text, len, &number);
 		if (!err)
 			set_element(property, extension, number, txn);
 		return err;
@@ -362,7 +362,7 @@ int parse_value(const struct property *property, int extension, const char *text
 		return -EINVAL;
 	for (int i = 0; i < property->array.count; i++)
 		if (list_part(text, len, (unsigned)i, &part, &part_len) &&
-		    parse_number(property, i, part, part_len, &number) == 0)
+		    parse_text(property, i, part, part_len, &number) == 0)
 			set_element(property, i, number, txn);
 	return 0;
 }
@@ -394,7 +394,7 @@ bool list_fits(const struct property *property, const char *text, size_t len)
 
 	for (; list_part(text, len, n, &part, &part_len); n++)
 		if (n == property->array.count ||
-		    parse_number(property, (int)n, part, part_len, &number))
+		    parse_text(property, (int)n, part, part_len, &number))
 			return false;
 	return n == property->array.count;
 }

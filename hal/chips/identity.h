@@ -8,7 +8,7 @@
 
 #include "hal/chips/property.h"
 
-/* A row of a family's table; how: its way, whose function ends with property_text(). */
+/* A row of a family's table; the function of the way ends with property_text(). */
 #define IDENTITY_ROW(way, ...) \
 	PROPERTY("identity", ASCII, STABLE, READ, .size = 48, .hidden = true, .how = (way), \
 	         __VA_ARGS__)

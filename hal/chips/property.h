@@ -54,7 +54,7 @@ struct property {
 	bool hidden;  /* not listed */
 	bool offline; /* its functions use no wire */
 	bool flag;  /* tells why a chip alarms: a visit of the alarm machine reads all such once */
-	bool holds; /* reads as it was written, until somebody else writes or power is lost */
+	bool holds; /* reads as it was written, until another master writes or power is lost */
 	bool negative;   /* unsigned, and a write may be below zero all the same */
 	uint8_t convert; /* 9 to 12, CONVERT_TEMPRES, or 0 */
 	struct {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The lock on a chip: whoever drives the chip locks a byte of the adapter's device file. */
+/* The lock on a chip: the process that drives it locks a byte of the adapter's device file. */
 #include <errno.h>
 #include <fcntl.h>
 

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Two masters on one chip break each other's transactions, and i2c-dev keeps out kernel drivers
- * only. So whoever drives the chip at an address locks the byte of that number in the adapter's
- * device file. The lock works between all users, ends with its holder, and leaves nothing behind.
+ * only. So the process that drives the chip at an address locks the byte of that number in the
+ * adapter's device file. The lock works between all users, ends with its holder, and leaves nothing
+ * behind.
  */
 #pragma once
 

@@ -31,6 +31,11 @@ struct ds2482_link {
 	struct link_cost cost;
 };
 
+static inline struct ds2482_link *ds2482_link_of(struct link *link)
+{
+	return (struct ds2482_link *)link;
+}
+
 struct ds2482_master;
 struct ds2482_chip {
 	struct ds2482_master *master;
@@ -52,10 +57,10 @@ struct ds2482_source {
 	int (*open)(void *ctx, const struct bus_env *env, struct i2c_adapter **adapter, char *why,
 	            size_t why_size);
 	/*
-	 * As link_master_ops.there, of the chips whose bits are set (bit 0: 0x18); 0: which ones
+	 * As link_master_ops.visible, of the chips whose bits are set (bit 0: 0x18); 0: which ones
 	 * are meant is not known. NULL: that cannot be seen.
 	 */
-	int (*there)(void *ctx, const struct bus_env *env, uint8_t chips, uint64_t *mark);
+	int (*visible)(void *ctx, const struct bus_env *env, uint8_t chips, uint64_t *mark);
 	/*
 	 * Write into why what to do about a chip that a kernel driver has. NULL: there are no such
 	 * drivers.

@@ -68,7 +68,7 @@ static int open_one(struct every_master *every, struct every_adapter *adapter, c
 	adapter->open = !err;
 	adapter->failed_mark = 0;
 	if (err)
-		(void)adapter->master->ops->there(adapter->master, &adapter->failed_mark);
+		(void)adapter->master->ops->visible(adapter->master, &adapter->failed_mark);
 	else
 		take_links(every, adapter);
 	return err;
@@ -135,7 +135,7 @@ static int grow_one(struct every_master *every, struct every_adapter *adapter, c
 			take_links(every, adapter);
 		return left;
 	}
-	if (adapter->master->ops->there(adapter->master, &mark) <= 0 ||
+	if (adapter->master->ops->visible(adapter->master, &mark) <= 0 ||
 	    mark == adapter->failed_mark)
 		return 0;
 	left = open_one(every, adapter, why, why_size);
@@ -164,7 +164,7 @@ static int every_grow(struct link_master *base, char *why, size_t why_size)
 	return 1;
 }
 
-static int every_there(struct link_master *base, uint64_t *mark)
+static int every_visible(struct link_master *base, uint64_t *mark)
 {
 	struct every_master *every = (struct every_master *)base;
 	unsigned number[EVERY_ADAPTERS];
@@ -175,7 +175,7 @@ static int every_there(struct link_master *base, uint64_t *mark)
 		struct every_adapter *adapter = adapter_of(every, number[i]);
 
 		if (adapter)
-			there |= adapter->master->ops->there(adapter->master, mark);
+			there |= adapter->master->ops->visible(adapter->master, mark);
 		*mark = (*mark ^ number[i]) * 31;
 	}
 	return there > 0;
@@ -222,7 +222,7 @@ static const struct link_master_ops every_ops = {
 	.open = every_open,
 	.grow = every_grow,
 	.close = every_close,
-	.there = every_there,
+	.visible = every_visible,
 	.channels = every_channels,
 	.channel = every_channel,
 	.cost = every_cost,

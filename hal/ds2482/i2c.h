@@ -47,7 +47,7 @@ struct i2c_adapter_ops {
 	 * target has it, of process adapter->holder.
 	 */
 	int (*claim)(struct i2c_adapter *adapter, uint8_t address);
-	/* Give the address back, as close() does. NULL: claims keep nobody out. */
+	/* Give the address back, as close() does. NULL: claims keep no other process out. */
 	void (*release)(struct i2c_adapter *adapter, uint8_t address);
 	void (*close)(struct i2c_adapter *adapter);
 };

@@ -27,7 +27,7 @@ struct i2c_dev {
 };
 
 /* Map the errors that adapter drivers use for a refusal to the ones of i2c.h. */
-static int plain(int err, bool first)
+static int i2c_error(int err, bool first)
 {
 	switch (err) {
 	case ENODEV:
@@ -50,8 +50,8 @@ static int plain(int err, bool first)
 	}
 }
 
-static int transfer(struct i2c_adapter *base, uint8_t address, struct i2c_message *messages,
-                    size_t n)
+static int dev_transfer(struct i2c_adapter *base, uint8_t address, struct i2c_message *messages,
+                        size_t n)
 {
 	struct i2c_dev *dev = (struct i2c_dev *)base;
 	struct i2c_msg msgs[I2C_RDWR_IOCTL_MAX_MSGS];
@@ -70,7 +70,7 @@ static int transfer(struct i2c_adapter *base, uint8_t address, struct i2c_messag
 		                           .buf = messages[i].data};
 		base->bytes += messages[i].len + 1u;
 	}
-	return ioctl(dev->fd, I2C_RDWR, &data) < 0 ? plain(errno, false) : 0;
+	return ioctl(dev->fd, I2C_RDWR, &data) < 0 ? i2c_error(errno, false) : 0;
 }
 
 static int set_address(struct i2c_dev *dev, uint8_t address)
@@ -79,7 +79,7 @@ static int set_address(struct i2c_dev *dev, uint8_t address)
 		return 0;
 	dev->adapter.syscalls++;
 	if (ioctl(dev->fd, I2C_SLAVE, (long)address) < 0)
-		return plain(errno, true);
+		return i2c_error(errno, true);
 	dev->address = address;
 	return 0;
 }
@@ -91,7 +91,7 @@ static void i2c_dev_count(struct i2c_dev *dev, unsigned bytes)
 	dev->adapter.bytes += bytes;
 }
 
-static int write_byte(struct i2c_adapter *base, uint8_t address, uint8_t command)
+static int dev_write_byte(struct i2c_adapter *base, uint8_t address, uint8_t command)
 {
 	struct i2c_dev *dev = (struct i2c_dev *)base;
 	int err = set_address(dev, address);
@@ -99,10 +99,11 @@ static int write_byte(struct i2c_adapter *base, uint8_t address, uint8_t command
 	if (err)
 		return err;
 	i2c_dev_count(dev, 2);
-	return i2c_smbus_write_byte(dev->fd, command) < 0 ? plain(errno, true) : 0;
+	return i2c_smbus_write_byte(dev->fd, command) < 0 ? i2c_error(errno, true) : 0;
 }
 
-static int write_byte_data(struct i2c_adapter *base, uint8_t address, uint8_t command, uint8_t data)
+static int dev_write_byte_data(struct i2c_adapter *base, uint8_t address, uint8_t command,
+                               uint8_t data)
 {
 	struct i2c_dev *dev = (struct i2c_dev *)base;
 	int err = set_address(dev, address);
@@ -110,10 +111,10 @@ static int write_byte_data(struct i2c_adapter *base, uint8_t address, uint8_t co
 	if (err)
 		return err;
 	i2c_dev_count(dev, 3);
-	return i2c_smbus_write_byte_data(dev->fd, command, data) < 0 ? plain(errno, false) : 0;
+	return i2c_smbus_write_byte_data(dev->fd, command, data) < 0 ? i2c_error(errno, false) : 0;
 }
 
-static int read_byte(struct i2c_adapter *base, uint8_t address)
+static int dev_read_byte(struct i2c_adapter *base, uint8_t address)
 {
 	struct i2c_dev *dev = (struct i2c_dev *)base;
 	int byte = set_address(dev, address);
@@ -122,10 +123,10 @@ static int read_byte(struct i2c_adapter *base, uint8_t address)
 		return byte;
 	i2c_dev_count(dev, 2);
 	byte = i2c_smbus_read_byte(dev->fd);
-	return byte < 0 ? plain(errno, true) : byte;
+	return byte < 0 ? i2c_error(errno, true) : byte;
 }
 
-static int claim(struct i2c_adapter *base, uint8_t address)
+static int dev_claim(struct i2c_adapter *base, uint8_t address)
 {
 	struct i2c_dev *dev = (struct i2c_dev *)base;
 	int err;
@@ -135,12 +136,12 @@ static int claim(struct i2c_adapter *base, uint8_t address)
 	return err ? err : chip_lock(dev->fd, address, &base->holder);
 }
 
-static void release(struct i2c_adapter *base, uint8_t address)
+static void dev_release(struct i2c_adapter *base, uint8_t address)
 {
 	chip_unlock(((struct i2c_dev *)base)->fd, address);
 }
 
-static void close_dev(struct i2c_adapter *base)
+static void dev_close(struct i2c_adapter *base)
 {
 	struct i2c_dev *dev = (struct i2c_dev *)base;
 
@@ -149,13 +150,13 @@ static void close_dev(struct i2c_adapter *base)
 }
 
 static const struct i2c_adapter_ops i2c_dev_ops = {
-	.transfer = transfer,
-	.write_byte = write_byte,
-	.write_byte_data = write_byte_data,
-	.read_byte = read_byte,
-	.claim = claim,
-	.release = release,
-	.close = close_dev,
+	.transfer = dev_transfer,
+	.write_byte = dev_write_byte,
+	.write_byte_data = dev_write_byte_data,
+	.read_byte = dev_read_byte,
+	.claim = dev_claim,
+	.release = dev_release,
+	.close = dev_close,
 };
 
 int i2c_dev_open(const char *path, struct i2c_adapter **adapter)

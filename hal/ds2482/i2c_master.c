@@ -54,7 +54,7 @@ static int open_adapter(void *ctx, const struct bus_env *env, struct i2c_adapter
 	return err;
 }
 
-static void explain(void *ctx, uint8_t address, char *why, size_t why_size)
+static void explain_driver(void *ctx, uint8_t address, char *why, size_t why_size)
 {
 	char driver[32], client[24];
 
@@ -70,7 +70,7 @@ static void explain(void *ctx, uint8_t address, char *why, size_t why_size)
 		         (unsigned)address, (const char *)ctx);
 }
 
-static int there(void *ctx, const struct bus_env *env, uint8_t chips, uint64_t *mark)
+static int is_adapter_there(void *ctx, const struct bus_env *env, uint8_t chips, uint64_t *mark)
 {
 	(void)env;
 	return i2c_look(ctx, I2C_SYS_ROOT, chips, mark);
@@ -104,8 +104,10 @@ static int i2c_master_create(const char *where, const struct bus_env *env,
                              struct link_master **master, char *why, size_t why_size)
 {
 	size_t len = strcspn(where, ":");
-	struct ds2482_source source = {
-		.open = open_adapter, .there = there, .explain = explain, .destroy = free};
+	struct ds2482_source source = {.open = open_adapter,
+	                               .visible = is_adapter_there,
+	                               .explain = explain_driver,
+	                               .destroy = free};
 	static const struct every_source every = {.list = list_adapters, .make = make_adapter};
 	char *path;
 
@@ -139,7 +141,7 @@ const struct link_master_ops ds2482_i2c_master = {
 	.open = ds2482_open,
 	.grow = ds2482_grow,
 	.close = ds2482_close,
-	.there = ds2482_there,
+	.visible = ds2482_visible,
 	.channels = ds2482_channels,
 	.channel = ds2482_channel,
 	.cost = ds2482_cost,

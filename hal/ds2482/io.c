@@ -144,7 +144,7 @@ void ds2482_was_early(struct ds2482_chip *chip)
 }
 
 /* Send messages that change nothing; -EOPNOTSUPP: the adapter cannot. */
-static int attempt(struct ds2482_chip *chip, size_t writes, size_t reads)
+static int try_messages(struct ds2482_chip *chip, size_t writes, size_t reads)
 {
 	struct i2c_adapter *adapter = chip->master->adapter;
 	uint8_t out[2] = {DS2482_READ_POINTER, DS2482_AT_STATUS}, in;
@@ -176,7 +176,7 @@ static int measure_messages(struct ds2482_chip *chip)
 		return 0;
 	for (unsigned i = 0; i < MEASURE_TIMES; i++) {
 		int64_t begun = ds2482_now(master), took;
-		int err = attempt(chip, i & 1 ? most : 1, 0);
+		int err = try_messages(chip, i & 1 ? most : 1, 0);
 
 		if (err)
 			return err;
@@ -201,12 +201,12 @@ int ds2482_learn(struct ds2482_chip *chip)
 	if (room > MOST_MESSAGES)
 		room = MOST_MESSAGES;
 	if (adapter->combine == I2C_ANY) {
-		err = attempt(chip, 0, room);
+		err = try_messages(chip, 0, room);
 		if (err == -EOPNOTSUPP)
 			adapter->combine = I2C_ONE_READ_LAST;
 	}
 	if (adapter->combine == I2C_ONE_READ_LAST) {
-		err = attempt(chip, 2, 1);
+		err = try_messages(chip, 2, 1);
 		if (err == -EOPNOTSUPP) {
 			adapter->combine = I2C_SMBUS_ONLY;
 			err = 0;

@@ -12,25 +12,20 @@
 #include "hal/ds2482/together.h"
 #include "hal/ds2482/visit.h"
 
-static struct ds2482_link *self(struct link *link)
-{
-	return (struct ds2482_link *)link;
-}
-
 static void spend_slots(struct ds2482_link *link, size_t n)
 {
 	link->cost.wire_ns += n * (uint64_t)ds2482_slot_ns;
 }
 
 /* Set SPU before the operation after whose last bit the pull-up feeds the wire. */
-static int arm(struct ds2482_chip *chip)
+static int arm_pullup(struct ds2482_chip *chip)
 {
 	return ds2482_configure(chip, chip->config | DS2482_SPU);
 }
 
 static int link_reset(struct link *base)
 {
-	struct ds2482_link *link = self(base);
+	struct ds2482_link *link = ds2482_link_of(base);
 	int status = ds2482_claimed(link->chip) ? ds2482_select(link) : -ENXIO;
 
 	if (status < 0)
@@ -50,7 +45,7 @@ static int link_reset(struct link *base)
 
 static int link_write(struct link *base, const uint8_t *data, size_t n, enum link_after after)
 {
-	struct ds2482_link *link = self(base);
+	struct ds2482_link *link = ds2482_link_of(base);
 	size_t before = after == LINK_STRONG && n > 0 ? n - 1 : n;
 	int err = ds2482_select(link);
 
@@ -59,7 +54,7 @@ static int link_write(struct link *base, const uint8_t *data, size_t n, enum lin
 		ds2482_began(link->chip);
 	}
 	if (!err && before < n) {
-		err = arm(link->chip);
+		err = arm_pullup(link->chip);
 		if (!err)
 			err = ds2482_write_block(link->chip, data + before, 1);
 		/* the pull-up begins with the last slot of the byte, and so does its time */
@@ -73,7 +68,7 @@ static int link_write(struct link *base, const uint8_t *data, size_t n, enum lin
 
 static int link_read(struct link *base, uint8_t *data, size_t n)
 {
-	struct ds2482_link *link = self(base);
+	struct ds2482_link *link = ds2482_link_of(base);
 	int err = ds2482_select(link);
 
 	if (!err && n > 0)
@@ -87,11 +82,11 @@ static int link_read(struct link *base, uint8_t *data, size_t n)
 
 static int link_bit(struct link *base, bool out, enum link_after after)
 {
-	struct ds2482_link *link = self(base);
+	struct ds2482_link *link = ds2482_link_of(base);
 	int status = ds2482_select(link);
 
 	if (status == 0 && after == LINK_STRONG)
-		status = arm(link->chip);
+		status = arm_pullup(link->chip);
 	if (status == 0)
 		status = ds2482_run(link->chip, DS2482_BIT, out ? 0x80 : 0, ds2482_slot_max_ns);
 	if (status < 0)
@@ -104,7 +99,7 @@ static int link_bit(struct link *base, bool out, enum link_after after)
 
 static int link_triplet(struct link *base, bool direction)
 {
-	struct ds2482_link *link = self(base);
+	struct ds2482_link *link = ds2482_link_of(base);
 	int status = ds2482_select(link);
 
 	if (status < 0)
@@ -140,7 +135,7 @@ static int power_cycle(struct ds2482_link *link)
 
 static int link_recover(struct link *base, enum link_rung rung)
 {
-	struct ds2482_link *link = self(base);
+	struct ds2482_link *link = ds2482_link_of(base);
 	struct ds2482_chip *chip = link->chip;
 	int err;
 

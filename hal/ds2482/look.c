@@ -80,7 +80,7 @@ void i2c_driver(const char *path, const char *sys, uint8_t address, char *driver
 	snprintf(driver, driver_size, "%s", name ? name + 1 : to);
 }
 
-static bool number_of(const char *name, unsigned *number)
+static bool adapter_number(const char *name, unsigned *number)
 {
 	char *end;
 
@@ -98,7 +98,7 @@ unsigned i2c_list(const char *root, unsigned *numbers, unsigned max)
 	for (struct dirent *entry; dir && count < max && (entry = readdir(dir));) {
 		unsigned at = count;
 
-		if (!number_of(entry->d_name, &number))
+		if (!adapter_number(entry->d_name, &number))
 			continue;
 		for (; at > 0 && numbers[at - 1] > number; at--)
 			numbers[at] = numbers[at - 1];

@@ -10,8 +10,8 @@
 
 /*
  * 1: the adapter's device file may be read and written; and of the chips at 0x18 + n, for each bit
- * n of chips, at least one is free if any bit is set: no kernel driver is bound to it and nobody
- * holds its lock (chip_lock.h). *mark is mixed with what was seen. sys: I2C_SYS_ROOT.
+ * n of chips, at least one is free if any bit is set: no kernel driver is bound to it and no
+ * process holds its lock (chip_lock.h). *mark is mixed with what was seen. sys: I2C_SYS_ROOT.
  */
 int i2c_look(const char *path, const char *sys, uint8_t chips, uint64_t *mark);
 /* Find the kernel driver of the chip ("ds2482", or ""), and the chip's name there ("1-0018"). */

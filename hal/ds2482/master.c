@@ -290,19 +290,19 @@ int ds2482_create(const struct link_master_ops *ops, const struct bus_env *env,
 	return 0;
 }
 
-int ds2482_there(struct link_master *base, uint64_t *mark)
+int ds2482_visible(struct link_master *base, uint64_t *mark)
 {
 	struct ds2482_master *master = (struct ds2482_master *)base;
 	unsigned chips = 0;
 
-	if (!master->source.there)
+	if (!master->source.visible)
 		return 1;
 	if (master->address >= DS2482_FIRST_ADDRESS)
 		chips = 1u << (master->address - DS2482_FIRST_ADDRESS);
 	for (unsigned i = 0; master->address < 0 && i < DS2482_ADDRESSES; i++)
 		if (master->missing[i] || is_known(master, (uint8_t)(DS2482_FIRST_ADDRESS + i)))
 			chips |= 1u << i;
-	return master->source.there(master->source.ctx, base->env, (uint8_t)chips, mark);
+	return master->source.visible(master->source.ctx, base->env, (uint8_t)chips, mark);
 }
 
 unsigned ds2482_channels(struct link_master *base)

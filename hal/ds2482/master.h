@@ -22,7 +22,7 @@ int ds2482_create(const struct link_master_ops *ops, const struct bus_env *env,
 int ds2482_open(struct link_master *master, char *why, size_t why_size);
 int ds2482_grow(struct link_master *master, char *why, size_t why_size);
 void ds2482_close(struct link_master *master);
-int ds2482_there(struct link_master *master, uint64_t *mark);
+int ds2482_visible(struct link_master *master, uint64_t *mark);
 unsigned ds2482_channels(struct link_master *master);
 struct link *ds2482_channel(struct link_master *master, unsigned n);
 void ds2482_cost(const struct link_master *master, struct link_master_cost *cost);

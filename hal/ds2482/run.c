@@ -46,7 +46,7 @@ unsigned ds2482_reading_status(const struct ds2482_chip *chip, long max_ns)
 	return ds2482_reading_on(chip, left > 0 ? (long)left : 0, 1);
 }
 
-static int transfer(struct ds2482_chip *chip, struct i2c_message *messages, size_t n)
+static int transfer_all(struct ds2482_chip *chip, struct i2c_message *messages, size_t n)
 {
 	struct i2c_adapter *adapter = chip->master->adapter;
 
@@ -139,7 +139,7 @@ int ds2482_run(struct ds2482_chip *chip, uint8_t command, int parameter, long ma
 		struct i2c_message messages[] = {i2c_to_write(out, parameter < 0 ? 1 : 2),
 		                                 i2c_to_read(in, n)};
 
-		err = transfer(chip, messages, 2);
+		err = transfer_all(chip, messages, 2);
 		if (err)
 			return ds2482_diagnose(chip, err);
 		ds2482_saw_end(&chip->ends, max_ns, in, n);
@@ -194,7 +194,7 @@ static int write_combined(struct ds2482_chip *chip, const uint8_t *data, size_t 
 		if (whole || !slow)
 			messages[count++] = i2c_to_read(in, whole ? end : between);
 	}
-	err = transfer(chip, messages, count);
+	err = transfer_all(chip, messages, count);
 	if (ds2482_is_refused(err) && slow)
 		ds2482_was_refused(chip);
 	if (err)
@@ -293,7 +293,7 @@ static int read_combined(struct ds2482_chip *chip, uint8_t *data, size_t n, bool
 		messages[count++] = i2c_to_write(at_status, 2);
 		messages[count++] = i2c_to_read(&status, 1);
 	}
-	err = transfer(chip, messages, count);
+	err = transfer_all(chip, messages, count);
 	if (err)
 		return ds2482_diagnose(chip, err);
 	for (size_t i = 0; i < n; i++)

@@ -32,11 +32,6 @@ struct course {
 	int64_t busy_ns;  /* of the I2C bus, so far */
 };
 
-static struct ds2482_link *self(struct link *link)
-{
-	return (struct ds2482_link *)link;
-}
-
 static void together_end(struct course *course, int err)
 {
 	course->visit->err = err;
@@ -48,7 +43,7 @@ static void together_end(struct course *course, int err)
  * One message, with its address: the SMBus calls of i2c-dev would have the address set anew for
  * each other chip. Adapters that have nothing else take no group (ds2482_abreast()).
  */
-static int message(const struct ds2482_chip *chip, uint16_t flags, uint8_t *data, uint16_t n)
+static int transfer_one(const struct ds2482_chip *chip, uint16_t flags, uint8_t *data, uint16_t n)
 {
 	struct i2c_adapter *adapter = chip->master->adapter;
 	struct i2c_message one = {.flags = flags, .len = n, .data = data};
@@ -58,14 +53,14 @@ static int message(const struct ds2482_chip *chip, uint16_t flags, uint8_t *data
 
 static int together_command(const struct ds2482_chip *chip, uint8_t code)
 {
-	return message(chip, 0, &code, 1);
+	return transfer_one(chip, 0, &code, 1);
 }
 
 /*
  * An operation of at most max_ns has begun. The next step may begin so many bytes before its end as
  * pass on the I2C bus before the chip looks at it.
  */
-static void works(struct course *course, enum step next, int64_t max_ns, unsigned ahead)
+static void set_ready(struct course *course, enum step next, int64_t max_ns, unsigned ahead)
 {
 	struct ds2482_chip *chip = course->link->chip;
 	int64_t byte_ns = chip->master->byte_ns;
@@ -87,35 +82,35 @@ static int together_begin(struct course *course)
 	if (err)
 		return err;
 	ds2482_began(link->chip);
-	works(course, STEP_PRESENCE, ds2482_reset_max_ns, 0);
+	set_ready(course, STEP_PRESENCE, ds2482_reset_max_ns, 0);
 	course->stuck_ns = link->chip->free_at + DS2482_STUCK_NS;
 	return 0;
 }
 
-static int write_next(struct course *course)
+static int write_byte_next(struct course *course)
 {
 	struct ds2482_link *link = course->link;
 	const struct link_visit *visit = course->visit;
 	uint8_t bytes[2] = {DS2482_WRITE, visit->out[course->at]};
-	int err = message(link->chip, 0, bytes, sizeof(bytes));
+	int err = transfer_one(link->chip, 0, bytes, sizeof(bytes));
 
 	if (err)
 		return err;
 	bool last = ++course->at == visit->out_n;
-	works(course, last ? STEP_READ : STEP_WRITE, ds2482_byte_max_ns, 2);
+	set_ready(course, last ? STEP_READ : STEP_WRITE, ds2482_byte_max_ns, 2);
 	if (last)
 		course->at = 0;
 	return 0;
 }
 
-static int read_next(struct course *course)
+static int begin_read(struct course *course)
 {
 	struct ds2482_link *link = course->link;
 	int err = together_command(link->chip, DS2482_READ);
 
 	/* the register is read after the pointer and two addresses */
 	if (!err)
-		works(course, STEP_FETCH, ds2482_byte_max_ns, 4);
+		set_ready(course, STEP_FETCH, ds2482_byte_max_ns, 4);
 	return err;
 }
 
@@ -124,7 +119,7 @@ static int look_for_presence(struct course *course)
 	struct ds2482_link *link = course->link;
 	bool late = ds2482_now(link->chip->master) >= course->stuck_ns;
 	uint8_t status;
-	int err = message(link->chip, I2C_MESSAGE_READ, &status, 1);
+	int err = transfer_one(link->chip, I2C_MESSAGE_READ, &status, 1);
 
 	if (err)
 		return err;
@@ -138,11 +133,11 @@ static int look_for_presence(struct course *course)
 	link->cost.wire_ns += (uint64_t)ds2482_reset_ns;
 	if (status & DS2482_SD)
 		return -ECOMM;
-	return status & DS2482_PPD ? write_next(course) : -EHOSTDOWN;
+	return status & DS2482_PPD ? write_byte_next(course) : -EHOSTDOWN;
 }
 
 /* One byte is fetched; after the last the status says whether the chip was idle, and is set up. */
-static int fetch(struct course *course)
+static int fetch_byte(struct course *course)
 {
 	struct ds2482_link *link = course->link;
 	struct link_visit *visit = course->visit;
@@ -152,7 +147,7 @@ static int fetch(struct course *course)
 		return byte;
 	visit->in[course->at++] = (uint8_t)byte;
 	if (course->at < visit->in_n)
-		return read_next(course);
+		return begin_read(course);
 	status = ds2482_write_read(link->chip, DS2482_READ_POINTER, DS2482_AT_STATUS);
 	if (status < 0)
 		return status;
@@ -164,7 +159,7 @@ static int fetch(struct course *course)
 	return 0;
 }
 
-static void go_on(struct course *course)
+static void make_step(struct course *course)
 {
 	int err = 0;
 
@@ -176,13 +171,13 @@ static void go_on(struct course *course)
 		err = look_for_presence(course);
 		break;
 	case STEP_WRITE:
-		err = write_next(course);
+		err = write_byte_next(course);
 		break;
 	case STEP_READ:
-		err = read_next(course);
+		err = begin_read(course);
 		break;
 	case STEP_FETCH:
-		err = fetch(course);
+		err = fetch_byte(course);
 		break;
 	case STEP_DONE:
 		break;
@@ -204,7 +199,7 @@ static struct course *soonest(struct course *courses, unsigned n)
 }
 
 /* What a transaction takes of its own I2C bus, waits for the chips left out. */
-static void learn(const struct course *course)
+static void learn_visit_time(const struct course *course)
 {
 	struct ds2482_master *master = course->link->chip->master;
 
@@ -214,7 +209,7 @@ static void learn(const struct course *course)
 }
 
 /*
- * Each transfer on a bus that somebody holds takes the kernel's time-out. So one is enough: all
+ * Each transfer on a bus whose lines are held takes the kernel's time-out. So one is enough: all
  * others of that adapter end with it.
  */
 static void end_others(struct course *courses, unsigned n, const struct course *failed)
@@ -241,7 +236,8 @@ void ds2482_together(struct link_visit *visits, unsigned n)
 	}
 	for (unsigned i = 0; i < n; i++) {
 		assert(visits[i].out_n > 0 && visits[i].in_n > 0);
-		courses[i] = (struct course){.visit = &visits[i], .link = self(visits[i].link)};
+		courses[i] = (struct course){.visit = &visits[i],
+		                             .link = ds2482_link_of(visits[i].link)};
 	}
 	while ((course = soonest(courses, n))) {
 		const struct ds2482_master *master = course->link->chip->master;
@@ -251,14 +247,14 @@ void ds2482_together(struct link_visit *visits, unsigned n)
 		if (err)
 			together_end(course, err);
 		else
-			go_on(course);
+			make_step(course);
 		course->busy_ns += ds2482_now(master) - begun_ns;
 		if (course->step == STEP_DONE && is_of_adapter(course->visit->err))
 			end_others(courses, n, course);
 	}
 	for (unsigned i = 0; i < n; i++)
 		if (!visits[i].err)
-			learn(&courses[i]);
+			learn_visit_time(&courses[i]);
 }
 
 /*

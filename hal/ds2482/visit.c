@@ -81,7 +81,7 @@ static int visit_send(struct train *train)
 }
 
 /* Room for another operation of so many messages. A read ends what a bcm2835 can combine. */
-static int make_room(struct train *train, unsigned messages)
+static int make_room_for(struct train *train, unsigned messages)
 {
 	const struct i2c_adapter *adapter = train->chip->master->adapter;
 	unsigned room = adapter->max_messages < DS2482_MAX_MESSAGES ? adapter->max_messages
@@ -112,7 +112,7 @@ static void pass_time(struct train *train, enum ds2482_operation operation, long
 
 static int visit_write(struct train *train, uint8_t byte)
 {
-	int err = make_room(train, 2);
+	int err = make_room_for(train, 2);
 
 	if (err)
 		return err;
@@ -123,7 +123,7 @@ static int visit_write(struct train *train, uint8_t byte)
 
 static int visit_read(struct train *train, uint8_t *byte)
 {
-	int err = train->reads == READS ? visit_send(train) : make_room(train, 3);
+	int err = train->reads == READS ? visit_send(train) : make_room_for(train, 3);
 
 	if (err)
 		return err;
@@ -135,11 +135,11 @@ static int visit_read(struct train *train, uint8_t *byte)
 	return 0;
 }
 
-/* Was the chip idle, is it still set up, and who answered the reset? */
+/* Was the chip idle, is it still set up, and did a slave answer the reset? */
 static int visit_look(struct train *train)
 {
 	uint8_t status;
-	int err = make_room(train, 2);
+	int err = make_room_for(train, 2);
 
 	if (err)
 		return err;

@@ -5,8 +5,8 @@
  *
  *   - a command for the wire that comes while the chip works is refused, and not executed: so
  *     nothing has to be read between two of them but to pass the time;
- *   - the bits of the status that say who answered a reset stay until the next reset: so one
- *     status, at the end, tells that and whether the chip was idle.
+ *   - the bits of the status that show an answer to a reset stay until the next reset: so one
+ *     status, at the end, shows that and whether the chip was idle.
  *
  * How long a reset and a byte take is learnt of each chip (ends.h). The bytes that were read count
  * on the longest time of the data sheet, as nothing shows that a register was read too early.

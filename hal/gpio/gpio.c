@@ -26,7 +26,7 @@ static const char *const names[GPIO_COUNTS] = {
 	[GPIO_OPENS] = "chip_opened",
 };
 
-static int64_t now_of(const struct gpio_bus *gpio)
+static int64_t gpio_now(const struct gpio_bus *gpio)
 {
 	return gpio->bus.env->now(gpio->bus.env->ctx);
 }
@@ -76,18 +76,18 @@ static int gpio_create(const char *where, const struct bus_env *env, struct bus 
 	return 0;
 }
 
-static void down(struct gpio_bus *gpio, int err, const char *why)
+static void go_down_chip(struct gpio_bus *gpio, int err, const char *why)
 {
 	lines_release(gpio);
 	gpio_close(gpio->chip);
 	gpio->chip = NULL;
-	gpio->next_ns = now_of(gpio) + AGAIN_NS;
+	gpio->next_ns = gpio_now(gpio) + AGAIN_NS;
 	if (!gpio->told)
 		report_news(gpio, BUS_DOWN, err, why);
 	gpio->told = true;
 }
 
-static int open_chip(struct gpio_bus *gpio, char *why, size_t why_size)
+static int bring_up(struct gpio_bus *gpio, char *why, size_t why_size)
 {
 	int err = gpio_open(gpio->where, &gpio->chip, why, why_size);
 
@@ -122,14 +122,14 @@ static int64_t gpio_step(struct bus *bus, int64_t now)
 		while (i + 1 < gpio->lines && gpio->line[i].held)
 			i++;
 		if (gpio_api()->info(gpio->chip, i, &info) == -ENODEV)
-			down(gpio, -ENODEV, "the chip is gone");
+			go_down_chip(gpio, -ENODEV, "the chip is gone");
 		else
 			gpio->next_ns = now + LOOK_NS;
 		return gpio->next_ns;
 	}
-	err = open_chip(gpio, why, sizeof(why));
+	err = bring_up(gpio, why, sizeof(why));
 	if (err) {
-		down(gpio, err, why);
+		go_down_chip(gpio, err, why);
 		return gpio->next_ns;
 	}
 	gpio->told = false;
@@ -212,14 +212,14 @@ static int access_line(struct gpio_bus *gpio, int line, struct bus_req *req,
 	return err;
 }
 
-static void exec(struct bus *bus, struct bus_req *req, struct bus_answer *answer)
+static void gpio_exec(struct bus *bus, struct bus_req *req, struct bus_answer *answer)
 {
 	struct gpio_bus *gpio = (struct gpio_bus *)bus;
 	char why[100] = "";
 	int line;
 
 	answer->kind = BUS_TEXT;
-	answer->measured_ns = now_of(gpio);
+	answer->measured_ns = gpio_now(gpio);
 	if (!gpio->chip) {
 		answer->err = -ENOTCONN;
 		return;
@@ -237,14 +237,14 @@ static void exec(struct bus *bus, struct bus_req *req, struct bus_answer *answer
 	}
 	answer->err = access_line(gpio, line, req, answer, why, sizeof(why));
 	if (answer->err == -ENODEV || answer->err == -ENXIO) {
-		down(gpio, -ENODEV, "the chip is gone");
+		go_down_chip(gpio, -ENODEV, "the chip is gone");
 		answer->err = -ECONNRESET;
 	} else if (*why) {
 		report_news(gpio, BUS_NOTE, answer->err, why);
 	}
 }
 
-static void suspend(struct bus *bus, bool yes)
+static void gpio_suspend(struct bus *bus, bool yes)
 {
 	struct gpio_bus *gpio = (struct gpio_bus *)bus;
 
@@ -257,7 +257,7 @@ static void suspend(struct bus *bus, bool yes)
 	gpio->chip = NULL;
 }
 
-static const struct bus_counter *counters(struct bus *bus, size_t *n)
+static const struct bus_counter *gpio_counters(struct bus *bus, size_t *n)
 {
 	*n = GPIO_COUNTS;
 	return ((struct gpio_bus *)bus)->count;
@@ -270,8 +270,8 @@ const struct bus_ops gpio_bus = {
 	.create = gpio_create,
 	.destroy = gpio_destroy,
 	.option = lines_option,
-	.exec = exec,
+	.exec = gpio_exec,
 	.step = gpio_step,
-	.suspend = suspend,
-	.counters = counters,
+	.suspend = gpio_suspend,
+	.counters = gpio_counters,
 };

@@ -19,7 +19,7 @@ struct gpio_line {
 	bool edges;
 };
 
-static int failed(void)
+static int library_error(void)
 {
 	return errno ? -errno : -EIO;
 }
@@ -33,7 +33,7 @@ static int open_chip(const char *path, struct gpio_chip **out)
 	errno = 0;
 	chip->chip = gpiod_chip_open(path);
 	if (!chip->chip) {
-		int err = failed();
+		int err = library_error();
 
 		free(chip);
 		return err;
@@ -48,17 +48,17 @@ static void close_chip(struct gpio_chip *chip)
 	free(chip);
 }
 
-static const char *label(struct gpio_chip *chip)
+static const char *chip_label(struct gpio_chip *chip)
 {
 	return gpiod_chip_label(chip->chip);
 }
 
-static unsigned lines(struct gpio_chip *chip)
+static unsigned chip_lines(struct gpio_chip *chip)
 {
 	return gpiod_chip_num_lines(chip->chip);
 }
 
-static int info(struct gpio_chip *chip, unsigned offset, struct gpio_info *info)
+static int line_info(struct gpio_chip *chip, unsigned offset, struct gpio_info *info)
 {
 	struct gpiod_line *line;
 	const char *name, *consumer;
@@ -67,7 +67,7 @@ static int info(struct gpio_chip *chip, unsigned offset, struct gpio_info *info)
 	line = gpiod_chip_get_line(chip->chip, offset);
 	/* It may be held, and then what is known of it is what was known before. */
 	if (!line || (!gpiod_line_is_requested(line) && gpiod_line_update(line)))
-		return failed();
+		return library_error();
 	name = gpiod_line_name(line);
 	consumer = gpiod_line_consumer(line);
 	snprintf(info->name, sizeof(info->name), "%s", name ? name : "");
@@ -97,8 +97,8 @@ static int flags_of(const struct gpio_setup *setup)
 	return setup->direction == GPIO_OUTPUT ? flags | drive[setup->drive] : flags;
 }
 
-static int request(struct gpio_chip *chip, unsigned offset, const struct gpio_setup *setup,
-                   const char *consumer, struct gpio_line **out)
+static int request_line(struct gpio_chip *chip, unsigned offset, const struct gpio_setup *setup,
+                        const char *consumer, struct gpio_line **out)
 {
 	static const int types[] = {
 		[GPIO_AS_IT_IS] = GPIOD_LINE_REQUEST_DIRECTION_AS_IS,
@@ -128,7 +128,7 @@ static int request(struct gpio_chip *chip, unsigned offset, const struct gpio_se
 		err = gpiod_line_request(line->line, &config, 0);
 	}
 	if (err) {
-		err = failed();
+		err = library_error();
 		free(line);
 		return err;
 	}
@@ -136,28 +136,28 @@ static int request(struct gpio_chip *chip, unsigned offset, const struct gpio_se
 	return 0;
 }
 
-static int set(struct gpio_line *line, bool value)
+static int set_line(struct gpio_line *line, bool value)
 {
 	errno = 0;
-	return gpiod_line_set_value(line->line, value) ? failed() : 0;
+	return gpiod_line_set_value(line->line, value) ? library_error() : 0;
 }
 
-static int library_v1_get(struct gpio_line *line)
+static int get_line(struct gpio_line *line)
 {
 	int value;
 
 	errno = 0;
 	value = gpiod_line_get_value(line->line);
-	return value < 0 ? failed() : value;
+	return value < 0 ? library_error() : value;
 }
 
-static int fd(struct gpio_line *line)
+static int edge_fd(struct gpio_line *line)
 {
 	return line->edges ? gpiod_line_event_get_fd(line->line) : -1;
 }
 
 /* The kernel's times (5.7 and later) are of CLOCK_MONOTONIC, which stands still in suspend. */
-static int64_t boottime(const struct timespec *ts)
+static int64_t boottime_of(const struct timespec *ts)
 {
 	struct timespec boot, mono;
 
@@ -167,22 +167,22 @@ static int64_t boottime(const struct timespec *ts)
 	       boot.tv_nsec - mono.tv_nsec;
 }
 
-static int edge(struct gpio_line *line, struct gpio_edge *edge)
+static int next_edge(struct gpio_line *line, struct gpio_edge *edge)
 {
-	struct pollfd ready = {.fd = fd(line), .events = POLLIN};
+	struct pollfd ready = {.fd = edge_fd(line), .events = POLLIN};
 	struct gpiod_line_event event;
 
 	if (!line->edges || poll(&ready, 1, 0) <= 0)
 		return 0;
 	errno = 0;
 	if (!(ready.revents & POLLIN) || gpiod_line_event_read_fd(ready.fd, &event))
-		return ready.revents & POLLIN ? failed() : -ENODEV;
-	edge->at_ns = boottime(&event.ts);
+		return ready.revents & POLLIN ? library_error() : -ENODEV;
+	edge->at_ns = boottime_of(&event.ts);
 	edge->value = event.event_type == GPIOD_LINE_EVENT_RISING_EDGE;
 	return 1;
 }
 
-static void release(struct gpio_line *line)
+static void release_line(struct gpio_line *line)
 {
 	gpiod_line_release(line->line);
 	free(line);
@@ -192,15 +192,15 @@ static const struct gpio_api library = {
 	.version = gpiod_version_string,
 	.open = open_chip,
 	.close = close_chip,
-	.label = label,
-	.lines = lines,
-	.info = info,
-	.request = request,
-	.set = set,
-	.get = library_v1_get,
-	.edge = edge,
-	.fd = fd,
-	.release = release,
+	.label = chip_label,
+	.lines = chip_lines,
+	.info = line_info,
+	.request = request_line,
+	.set = set_line,
+	.get = get_line,
+	.edge = next_edge,
+	.fd = edge_fd,
+	.release = release_line,
 };
 const struct gpio_api *const gpio_library = &library;
 #elif !defined(OWSD_LIBGPIOD)

@@ -21,7 +21,7 @@ struct gpio_line {
 	unsigned offset;
 };
 
-static int failed(void)
+static int library_error(void)
 {
 	return errno ? -errno : -EIO;
 }
@@ -45,7 +45,7 @@ static int open_chip(const char *path, struct gpio_chip **out)
 	chip->chip = gpiod_chip_open(path);
 	info = chip->chip ? gpiod_chip_get_info(chip->chip) : NULL;
 	if (!info) {
-		err = failed();
+		err = library_error();
 		close_chip(chip);
 		return err;
 	}
@@ -56,17 +56,17 @@ static int open_chip(const char *path, struct gpio_chip **out)
 	return 0;
 }
 
-static const char *label(struct gpio_chip *chip)
+static const char *chip_label(struct gpio_chip *chip)
 {
 	return chip->label;
 }
 
-static unsigned lines(struct gpio_chip *chip)
+static unsigned chip_lines(struct gpio_chip *chip)
 {
 	return chip->lines;
 }
 
-static int info(struct gpio_chip *chip, unsigned offset, struct gpio_info *info)
+static int line_info(struct gpio_chip *chip, unsigned offset, struct gpio_info *info)
 {
 	struct gpiod_line_info *line;
 	const char *name, *consumer;
@@ -74,7 +74,7 @@ static int info(struct gpio_chip *chip, unsigned offset, struct gpio_info *info)
 	errno = 0;
 	line = gpiod_chip_get_line_info(chip->chip, offset);
 	if (!line)
-		return failed();
+		return library_error();
 	name = gpiod_line_info_get_name(line);
 	consumer = gpiod_line_info_get_consumer(line);
 	snprintf(info->name, sizeof(info->name), "%s", name ? name : "");
@@ -85,7 +85,7 @@ static int info(struct gpio_chip *chip, unsigned offset, struct gpio_info *info)
 	return 0;
 }
 
-static int settle(struct gpiod_line_settings *to, const struct gpio_setup *setup, bool edges)
+static int fill_settings(struct gpiod_line_settings *to, const struct gpio_setup *setup, bool edges)
 {
 	static const enum gpiod_line_direction directions[] = {
 		[GPIO_AS_IT_IS] = GPIOD_LINE_DIRECTION_AS_IS,
@@ -120,9 +120,9 @@ static int settle(struct gpiod_line_settings *to, const struct gpio_setup *setup
 	return err;
 }
 
-static struct gpiod_line_request *library_v2_ask(struct gpio_chip *chip, unsigned offset,
-                                                 const struct gpio_setup *setup,
-                                                 const char *consumer, bool edges)
+static struct gpiod_line_request *request_with(struct gpio_chip *chip, unsigned offset,
+                                               const struct gpio_setup *setup, const char *consumer,
+                                               bool edges)
 {
 	struct gpiod_line_settings *settings = gpiod_line_settings_new();
 	struct gpiod_line_config *lines_config = gpiod_line_config_new();
@@ -131,7 +131,7 @@ static struct gpiod_line_request *library_v2_ask(struct gpio_chip *chip, unsigne
 	int kept;
 
 	errno = 0;
-	if (settings && lines_config && config && !settle(settings, setup, edges) &&
+	if (settings && lines_config && config && !fill_settings(settings, setup, edges) &&
 	    !gpiod_line_config_add_line_settings(lines_config, &offset, 1, settings)) {
 		gpiod_request_config_set_consumer(config, consumer);
 		gpiod_request_config_set_event_buffer_size(config, GPIO_EDGES_KEPT);
@@ -145,7 +145,7 @@ static struct gpiod_line_request *library_v2_ask(struct gpio_chip *chip, unsigne
 	return request;
 }
 
-static void release(struct gpio_line *line)
+static void release_line(struct gpio_line *line)
 {
 	if (line->request)
 		gpiod_line_request_release(line->request);
@@ -153,8 +153,8 @@ static void release(struct gpio_line *line)
 	free(line);
 }
 
-static int request(struct gpio_chip *chip, unsigned offset, const struct gpio_setup *setup,
-                   const char *consumer, struct gpio_line **out)
+static int request_line(struct gpio_chip *chip, unsigned offset, const struct gpio_setup *setup,
+                        const char *consumer, struct gpio_line **out)
 {
 	struct gpio_line *line = calloc(1, sizeof(*line));
 	bool edges = setup->direction == GPIO_INPUT;
@@ -163,34 +163,34 @@ static int request(struct gpio_chip *chip, unsigned offset, const struct gpio_se
 	if (!line)
 		return -ENOMEM;
 	line->offset = offset;
-	line->request = library_v2_ask(chip, offset, setup, consumer, edges);
+	line->request = request_with(chip, offset, setup, consumer, edges);
 	/* A line without an interrupt can still be read: request it without edges. */
 	if (!line->request && edges && errno != EBUSY && errno != EPERM && errno != ENODEV) {
 		edges = false;
-		line->request = library_v2_ask(chip, offset, setup, consumer, false);
+		line->request = request_with(chip, offset, setup, consumer, false);
 	}
 	if (line->request && edges)
 		line->edges = gpiod_edge_event_buffer_new(1);
 	if (!line->request || (edges && !line->edges)) {
-		err = failed();
-		release(line);
+		err = library_error();
+		release_line(line);
 		return err;
 	}
 	*out = line;
 	return 0;
 }
 
-static int set(struct gpio_line *line, bool value)
+static int set_line(struct gpio_line *line, bool value)
 {
 	errno = 0;
 	return gpiod_line_request_set_value(line->request, line->offset,
 	                                    value ? GPIOD_LINE_VALUE_ACTIVE
 	                                          : GPIOD_LINE_VALUE_INACTIVE)
-	               ? failed()
+	               ? library_error()
 	               : 0;
 }
 
-static int library_v2_get(struct gpio_line *line)
+static int get_line(struct gpio_line *line)
 {
 	errno = 0;
 	switch (gpiod_line_request_get_value(line->request, line->offset)) {
@@ -201,16 +201,16 @@ static int library_v2_get(struct gpio_line *line)
 	case GPIOD_LINE_VALUE_ERROR:
 		break;
 	}
-	return failed();
+	return library_error();
 }
 
-static int fd(struct gpio_line *line)
+static int edge_fd(struct gpio_line *line)
 {
 	return line->edges ? gpiod_line_request_get_fd(line->request) : -1;
 }
 
 /* The kernel's times are of CLOCK_MONOTONIC, which stands still in suspend. */
-static int64_t boottime(uint64_t monotonic_ns)
+static int64_t boottime_of(uint64_t monotonic_ns)
 {
 	struct timespec boot, mono;
 
@@ -220,7 +220,7 @@ static int64_t boottime(uint64_t monotonic_ns)
 	       boot.tv_nsec - mono.tv_nsec;
 }
 
-static int edge(struct gpio_line *line, struct gpio_edge *edge)
+static int next_edge(struct gpio_line *line, struct gpio_edge *edge)
 {
 	struct gpiod_edge_event *event;
 	int n;
@@ -230,9 +230,9 @@ static int edge(struct gpio_line *line, struct gpio_edge *edge)
 	if (n > 0)
 		n = gpiod_line_request_read_edge_events(line->request, line->edges, 1);
 	if (n <= 0)
-		return n < 0 ? failed() : 0;
+		return n < 0 ? library_error() : 0;
 	event = gpiod_edge_event_buffer_get_event(line->edges, 0);
-	edge->at_ns = boottime(gpiod_edge_event_get_timestamp_ns(event));
+	edge->at_ns = boottime_of(gpiod_edge_event_get_timestamp_ns(event));
 	edge->value = gpiod_edge_event_get_event_type(event) == GPIOD_EDGE_EVENT_RISING_EDGE;
 	return 1;
 }
@@ -241,15 +241,15 @@ static const struct gpio_api library = {
 	.version = gpiod_api_version,
 	.open = open_chip,
 	.close = close_chip,
-	.label = label,
-	.lines = lines,
-	.info = info,
-	.request = request,
-	.set = set,
-	.get = library_v2_get,
-	.edge = edge,
-	.fd = fd,
-	.release = release,
+	.label = chip_label,
+	.lines = chip_lines,
+	.info = line_info,
+	.request = request_line,
+	.set = set_line,
+	.get = get_line,
+	.edge = next_edge,
+	.fd = edge_fd,
+	.release = release_line,
 };
 const struct gpio_api *const gpio_library = &library;
 #endif

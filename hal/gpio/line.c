@@ -82,7 +82,7 @@ static int open_label(const char *label, struct gpio_chip **chip, char *why, siz
 	return err && refused ? -EACCES : err;
 }
 
-static bool is_number(const char *text, size_t len)
+static bool is_digits(const char *text, size_t len)
 {
 	for (size_t i = 0; i < len; i++)
 		if (!isdigit((unsigned char)text[i]))
@@ -102,7 +102,7 @@ int gpio_open(const char *name, struct gpio_chip **chip, char *why, size_t why_s
 	}
 	if (name[0] == '/')
 		return open_path(name, chip, why, why_size);
-	if (strncmp(name, PREFIX, prefix) != 0 || !is_number(name + prefix, strlen(name + prefix)))
+	if (strncmp(name, PREFIX, prefix) != 0 || !is_digits(name + prefix, strlen(name + prefix)))
 		return open_label(name, chip, why, why_size);
 	snprintf(path, sizeof(path), DEV "%s", name);
 	return open_path(path, chip, why, why_size);
@@ -119,7 +119,7 @@ int gpio_offset(struct gpio_chip *chip, const char *text, size_t len)
 	unsigned lines = gpio_api()->lines(chip);
 	struct gpio_info info;
 
-	if (is_number(text, len)) {
+	if (is_digits(text, len)) {
 		unsigned long number = len > 6 ? lines : strtoul(text, NULL, 10);
 
 		return number < lines ? (int)number : -ENOENT;
@@ -149,7 +149,7 @@ int gpio_request(struct gpio_chip *chip, unsigned offset, const struct gpio_setu
 	return err;
 }
 
-static bool take_word(struct gpio_setup *setup, const char *word, size_t len)
+static bool apply_word(struct gpio_setup *setup, const char *word, size_t len)
 {
 	static const struct {
 		const char *word;
@@ -196,7 +196,7 @@ int gpio_spec_parse(const char *text, struct gpio_spec *spec, char *why, size_t 
 	for (word = text + len; *word; word += len) {
 		word++;
 		len = strcspn(word, ",");
-		if (!take_word(&spec->setup, word, len)) {
+		if (!apply_word(&spec->setup, word, len)) {
 			snprintf(why, why_size,
 			         "\"%.*s\": expected active-low, pull-up, pull-down, "
 			         "open-drain or open-source",

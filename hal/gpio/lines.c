@@ -115,7 +115,7 @@ int lines_find(const struct gpio_bus *gpio, const char *text)
 	return -ENOENT;
 }
 
-static int take_line(struct gpio_bus *gpio, unsigned number, const struct gpio_setup *setup,
+static int hold_line(struct gpio_bus *gpio, unsigned number, const struct gpio_setup *setup,
                      struct gpio_line **held, char *why, size_t why_size)
 {
 	struct line_state *line = &gpio->line[number];
@@ -142,7 +142,7 @@ static int take_line(struct gpio_bus *gpio, unsigned number, const struct gpio_s
 	}
 }
 
-static int plain(int err)
+static int line_error(int err)
 {
 	return err == -ENODEV || err == -ENXIO ? err : -EIO;
 }
@@ -153,14 +153,14 @@ static int peek(struct gpio_bus *gpio, unsigned number, bool *value, char *why, 
 	struct gpio_setup setup = {.direction = GPIO_AS_IT_IS,
 	                           .active_low = gpio->line[number].setup.active_low};
 	struct gpio_line *held;
-	int level, err = take_line(gpio, number, &setup, &held, why, why_size);
+	int level, err = hold_line(gpio, number, &setup, &held, why, why_size);
 
 	if (err)
 		return err;
 	level = gpio_api()->get(held);
 	gpio_api()->release(held);
 	*value = level > 0;
-	return level < 0 ? plain(level) : 0;
+	return level < 0 ? line_error(level) : 0;
 }
 
 struct edges {
@@ -170,7 +170,7 @@ struct edges {
 };
 
 /* Take the edges that the kernel kept. When they are GPIO_EDGES_KEPT, others may be lost. */
-static int drain(struct gpio_bus *gpio, struct line_state *line, struct edges *edges)
+static int take_edges(struct gpio_bus *gpio, struct line_state *line, struct edges *edges)
 {
 	struct gpio_edge edge;
 	int n = 1;
@@ -195,13 +195,13 @@ static int read_input(struct gpio_bus *gpio, struct line_state *line, bool *valu
                       int64_t *measured_ns)
 {
 	struct edges edges;
-	int err = drain(gpio, line, &edges);
+	int err = take_edges(gpio, line, &edges);
 	int level = err ? err : gpio_api()->get(line->held);
 	unsigned shown = 0;
 	bool pulse;
 
 	if (level < 0)
-		return plain(level);
+		return line_error(level);
 	pulse = (level != 0) == line->shown && edges.first_ns[!line->shown];
 	*value = pulse ? !line->shown : level != 0;
 	if (pulse) {
@@ -238,14 +238,14 @@ int line_read(struct gpio_bus *gpio, unsigned number, bool guest, bool *value, i
 		int err;
 
 		line->setup.direction = GPIO_INPUT;
-		err = take_line(gpio, number, &line->setup, &line->held, why, why_size);
+		err = hold_line(gpio, number, &line->setup, &line->held, why, why_size);
 		if (err)
 			return err;
 		line->since_ns = 0;
 	}
 	level = gpio_api()->get(line->held);
 	if (level < 0)
-		return plain(level);
+		return line_error(level);
 	*value = level;
 	if (!guest)
 		line->shown = *value;
@@ -263,12 +263,12 @@ int line_write(struct gpio_bus *gpio, unsigned number, bool guest, bool value, c
 	if (output) {
 		int err = gpio_api()->set(line->held, value);
 
-		return err ? plain(err) : 0;
+		return err ? line_error(err) : 0;
 	}
 	if (line->held)
 		gpio_api()->release(line->held);
 	line->held = NULL;
 	line->setup.direction = GPIO_OUTPUT;
 	line->setup.value = value;
-	return take_line(gpio, number, &line->setup, &line->held, why, why_size);
+	return hold_line(gpio, number, &line->setup, &line->held, why, why_size);
 }

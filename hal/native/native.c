@@ -148,7 +148,8 @@ int native_submit(struct bus *bus, struct bus_req *req)
 static int see_master(struct native *native, uint64_t *mark)
 {
 	*mark = 0;
-	return native->master->ops->there ? native->master->ops->there(native->master, mark) : 1;
+	return native->master->ops->visible ? native->master->ops->visible(native->master, mark)
+	                                    : 1;
 }
 
 static void refuse_all(struct native *native)

@@ -192,7 +192,7 @@ static int netlink_visible(struct link_master *base, uint64_t *mark)
 {
 	struct w1_netlink *netlink = (struct w1_netlink *)base;
 
-	return w1_master.there(netlink->sysfs, mark);
+	return w1_master.visible(netlink->sysfs, mark);
 }
 
 static unsigned netlink_channels(struct link_master *base)
@@ -220,7 +220,7 @@ const struct link_master_ops w1_netlink_master = {
 	.open = open_masters,
 	.grow = netlink_grow,
 	.close = close_masters,
-	.there = netlink_visible,
+	.visible = netlink_visible,
 	.channels = netlink_channels,
 	.channel = netlink_channel,
 	.cost = netlink_master_cost,

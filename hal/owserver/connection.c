@@ -213,7 +213,7 @@ int connection_begin(struct connection *connection)
 	return err;
 }
 
-static int outcome(const struct connection *connection)
+static int connect_result(const struct connection *connection)
 {
 	int err = 0;
 	socklen_t len = sizeof(err);
@@ -238,7 +238,7 @@ int connection_go_on(struct connection *connection, int64_t until_ns)
 			return ready;
 		if (ready == 0 && last)
 			return -EAGAIN;
-		connection->last_err = ready ? outcome(connection) : -ETIMEDOUT;
+		connection->last_err = ready ? connect_result(connection) : -ETIMEDOUT;
 		if (connection->last_err == 0) {
 			forget_addresses(connection);
 			return 0;

@@ -10,8 +10,8 @@
 #define KEEP_NS (10 * NS_PER_S)
 #define ADDRESS_LEN 16
 
-static const struct listing_name *known(const struct listing *listing, const char *alias,
-                                        size_t len, int64_t now)
+static const struct listing_name *known_name(const struct listing *listing, const char *alias,
+                                             size_t len, int64_t now)
 {
 	for (unsigned i = 0; i < LISTING_NAMES; i++) {
 		const struct listing_name *name = &listing->name[i];
@@ -39,7 +39,7 @@ static int find_id(struct listing *listing, struct talk *talk, const char *alias
                    int64_t deadline_ns, char id[ROM_TEXT_MAX])
 {
 	const struct bus_env *env = talk->connection.env;
-	const struct listing_name *name = known(listing, alias, len, env->now(env->ctx));
+	const struct listing_name *name = known_name(listing, alias, len, env->now(env->ctx));
 	struct listing_name *place = &listing->name[listing->next];
 	char path[FRAME_PATH_MAX + 1];
 	uint8_t address[ADDRESS_LEN];

@@ -93,7 +93,7 @@ static void owserver_destroy(struct bus *bus)
 	free(server);
 }
 
-static int64_t now_of(const struct owserver *server)
+static int64_t server_now(const struct owserver *server)
 {
 	return server->bus.env->now(server->bus.env->ctx);
 }
@@ -103,7 +103,7 @@ static void go_down(struct owserver *server, int err, const char *text)
 {
 	connection_close(&server->talk.connection);
 	server->state = DOWN;
-	server->retry_ns = now_of(server) + server->backoff_ns;
+	server->retry_ns = server_now(server) + server->backoff_ns;
 	server->backoff_ns *= 2;
 	if (server->backoff_ns > BACKOFF_MAX)
 		server->backoff_ns = BACKOFF_MAX;
@@ -142,7 +142,7 @@ static void begin_connect(struct owserver *server)
 {
 	int err = connection_begin(&server->talk.connection);
 
-	server->give_up_ns = now_of(server) + GREETING_NS;
+	server->give_up_ns = server_now(server) + GREETING_NS;
 	if (err)
 		go_down(server, -ECONNRESET, server->talk.connection.trouble);
 	else
@@ -160,7 +160,7 @@ static void out_of_time(struct owserver *server)
 
 static int64_t slice_end(const struct owserver *server)
 {
-	int64_t end = now_of(server) + SLICE_NS;
+	int64_t end = server_now(server) + SLICE_NS;
 
 	return end < server->give_up_ns ? end : server->give_up_ns;
 }
@@ -172,7 +172,7 @@ static void go_on_connecting(struct owserver *server)
 	int err = connection_go_on(&talk->connection, slice_end(server));
 
 	if (err == -EAGAIN || err == -ECANCELED) {
-		if (now_of(server) >= server->give_up_ns)
+		if (server_now(server) >= server->give_up_ns)
 			out_of_time(server);
 		return;
 	}
@@ -204,15 +204,15 @@ static void go_on_greeting(struct owserver *server)
 		return;
 	}
 	if (err == 0)
-		err = server_ask_simulated(&server->talk, now_of(server) + NAMES_NS,
+		err = server_ask_simulated(&server->talk, server_now(server) + NAMES_NS,
 		                           &server->simulated);
 	if (err == 0)
-		err = server_ask_cache(&server->talk, now_of(server) + NAMES_NS, &cache_ns);
+		err = server_ask_cache(&server->talk, server_now(server) + NAMES_NS, &cache_ns);
 	if (err == 0)
 		go_up(server, cache_ns);
 	else if (err != -EAGAIN)
 		go_down(server, as_loss(err), server->talk.trouble);
-	else if (now_of(server) >= server->give_up_ns)
+	else if (server_now(server) >= server->give_up_ns)
 		out_of_time(server);
 }
 
@@ -230,7 +230,7 @@ static void look_at_idle(struct owserver *server)
 	if (!connection_is_open(&talk->connection) || !connection_is_stale(&talk->connection))
 		return;
 	talk->heard = false;
-	err = talk_exchange(talk, &nop, now_of(server) + REOPEN_NS);
+	err = talk_exchange(talk, &nop, server_now(server) + REOPEN_NS);
 	if (err && err != -EINPROGRESS)
 		go_down(server, as_loss(err), talk->trouble);
 }
@@ -331,7 +331,7 @@ static int present(struct owserver *server, const struct bus_req *req, bool fres
 }
 
 /* The error for a negative return code; for -1, ask the server whether the device is there. */
-static int refused(struct owserver *server, const struct bus_req *req)
+static int error_of_refusal(struct owserver *server, const struct bus_req *req)
 {
 	int err = status_of(server->talk.reader.header.type, (enum bus_op)req->op);
 	struct path split;
@@ -362,7 +362,7 @@ static int do_read(struct owserver *server, struct bus_req *req, uint32_t *len)
 	if (err)
 		return err;
 	if (reply->type < 0)
-		return refused(server, req);
+		return error_of_refusal(server, req);
 	/* either length could make a false value, as 21 of 21.5 */
 	if (reply->type != reply->payload) {
 		snprintf(server->talk.trouble, sizeof(server->talk.trouble),
@@ -394,7 +394,7 @@ static int do_write(struct owserver *server, struct bus_req *req, uint32_t *len)
 	if (err)
 		return err;
 	if (reply->type < 0)
-		return refused(server, req);
+		return error_of_refusal(server, req);
 	/* a memory that ends earlier takes less, but a part of an output is another value */
 	if (reply->size < 0 || (is_output && (uint32_t)reply->size < request.data_len))
 		return -EIO;
@@ -406,7 +406,7 @@ static int do_dir(struct owserver *server, struct bus_req *req, uint32_t *len)
 {
 	int err = listing_read(&server->listing, &server->talk, req, len);
 
-	return err == 1 ? refused(server, req) : err;
+	return err == 1 ? error_of_refusal(server, req) : err;
 }
 
 static int do_probe(struct owserver *server, struct bus_req *req)
@@ -416,7 +416,7 @@ static int do_probe(struct owserver *server, struct bus_req *req)
 	return err == 1 ? -ENODEV : err;
 }
 
-static int serve(struct owserver *server, struct bus_req *req, uint32_t *len)
+static int owserver_serve(struct owserver *server, struct bus_req *req, uint32_t *len)
 {
 	switch ((enum bus_op)req->op) {
 	case BUS_READ:
@@ -445,7 +445,7 @@ static void owserver_exec(struct bus *bus, struct bus_req *req, struct bus_answe
 	server->talk.heard = false;
 	server->talk.tokens = req->tokens;
 	server->talk.token_count = req->token_count;
-	err = serve(server, req, &answer->len);
+	err = owserver_serve(server, req, &answer->len);
 	server->talk.token_count = 0;
 	if (err == -ECONNREFUSED)
 		err = -ECONNRESET;
@@ -456,7 +456,7 @@ static void owserver_exec(struct bus *bus, struct bus_req *req, struct bus_answe
 	if (err)
 		answer->len = 0;
 	answer->err = err;
-	answer->measured_ns = now_of(server);
+	answer->measured_ns = server_now(server);
 }
 
 static const struct bus_counter *owserver_counters(struct bus *bus, size_t *n)

@@ -16,7 +16,7 @@ static const struct {
                  {0x12, "pages/page"},  {0x3b, "memory"}, {0x3b, "pages/page"},
                  {0x26, "S3-R1-A/gain"}};
 
-static bool begins(struct path_slice slice, const char *begin)
+static bool begins_with(struct path_slice slice, const char *begin)
 {
 	return slice.len >= strlen(begin) && memcmp(slice.text, begin, strlen(begin)) == 0;
 }
@@ -26,13 +26,13 @@ bool proof_is_needed(const char *path)
 	struct path split;
 
 	if (path_split(path, strlen(path), &split) || !split.last.len || !split.property.len ||
-	    (begins(split.property, "present") && split.property.len == strlen("present")))
+	    (begins_with(split.property, "present") && split.property.len == strlen("present")))
 		return false;
 	if (!split.has_rom || !memchr(checked, split.rom[0], sizeof(checked)))
 		return true;
 	for (size_t i = 0; i < sizeof(unchecked) / sizeof(*unchecked); i++)
 		if ((!unchecked[i].family || unchecked[i].family == split.rom[0]) &&
-		    begins(split.property, unchecked[i].begin))
+		    begins_with(split.property, unchecked[i].begin))
 			return true;
 	return false;
 }

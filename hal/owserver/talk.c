@@ -19,7 +19,7 @@
 #define PIECES 16u
 #define PAUSE_NS NS_PER_MS
 
-static int64_t now(const struct talk *talk)
+static int64_t talk_now(const struct talk *talk)
 {
 	return talk->connection.env->now(talk->connection.env->ctx);
 }
@@ -64,7 +64,7 @@ static int make_request(struct talk *talk, const struct talk_request *request)
 
 static void expect_reply(struct talk *talk, const struct talk_request *request)
 {
-	talk->asked_ns = now(talk);
+	talk->asked_ns = talk_now(talk);
 	talk->alives = talk->pieces = 0;
 	if (request->room)
 		frame_begin(&talk->reader, request->room, request->limit);
@@ -86,7 +86,7 @@ int talk_send(struct talk *talk, const struct talk_request *request, int64_t unt
 	return err == -ETIMEDOUT ? time_is_over(talk) : err ? fail_socket(talk, err) : 0;
 }
 
-static int whole(struct talk *talk, size_t left_over)
+static int end_reply(struct talk *talk, size_t left_over)
 {
 	if (left_over)
 		return talk_fail(talk, -EPROTO, "garbage after the answer");
@@ -100,7 +100,7 @@ static int whole(struct talk *talk, size_t left_over)
 /* Does the peer send more keep-alives than any owserver does? They cost time and carry nothing. */
 static bool is_flood(struct talk *talk)
 {
-	int64_t waited_ns = now(talk) - talk->asked_ns;
+	int64_t waited_ns = talk_now(talk) - talk->asked_ns;
 
 	bus_count(&talk->counter[TALK_KEEPALIVES], 1);
 	return ++talk->alives > ALIVE_BURST + (uint64_t)(waited_ns * ALIVE_PER_S / NS_PER_S);
@@ -113,7 +113,7 @@ static bool is_flood(struct talk *talk)
 static int pause_after_pieces(struct talk *talk, int64_t until_ns)
 {
 	const struct bus_env *env = talk->connection.env;
-	int64_t end_ns = now(talk) + PAUSE_NS;
+	int64_t end_ns = talk_now(talk) + PAUSE_NS;
 
 	if (++talk->pieces <= PIECES)
 		return 0;
@@ -144,7 +144,7 @@ int talk_receive(struct talk *talk, int64_t until_ns)
 
 			at += used;
 			if (state == FRAME_WHOLE)
-				return whole(talk, (size_t)n - at);
+				return end_reply(talk, (size_t)n - at);
 			if (state == FRAME_ALIVE && is_flood(talk)) {
 				bus_count(&talk->counter[TALK_FLOODS], 1);
 				return talk_fail(talk, -EPROTO, "keep-alives without end");
@@ -154,11 +154,11 @@ int talk_receive(struct talk *talk, int64_t until_ns)
 			else if (state < 0)
 				return talk_fail(talk, -EPROTO, "this is not an owserver");
 		}
-	} while (now(talk) < until_ns);
+	} while (talk_now(talk) < until_ns);
 	return -EAGAIN;
 }
 
-static int reopen(struct talk *talk, int64_t deadline_ns)
+static int talk_reopen(struct talk *talk, int64_t deadline_ns)
 {
 	int err = connection_open(&talk->connection, deadline_ns);
 
@@ -175,8 +175,8 @@ static int reopen(struct talk *talk, int64_t deadline_ns)
 }
 
 /* Try once. *again: the peer had closed the kept connection, and repeating does no harm. */
-static int attempt(struct talk *talk, const struct talk_request *request, size_t len,
-                   int64_t deadline_ns, bool *again)
+static int talk_once(struct talk *talk, const struct talk_request *request, size_t len,
+                     int64_t deadline_ns, bool *again)
 {
 	bool kept = connection_is_open(&talk->connection);
 	uint64_t in_before = talk->counter[TALK_BYTES_IN].value;
@@ -194,7 +194,7 @@ static int attempt(struct talk *talk, const struct talk_request *request, size_t
 		connection_close(&talk->connection);
 	}
 	if (!connection_is_open(&talk->connection)) {
-		err = reopen(talk, deadline_ns);
+		err = talk_reopen(talk, deadline_ns);
 		if (err)
 			return err;
 	}
@@ -222,10 +222,10 @@ int talk_exchange(struct talk *talk, const struct talk_request *request, int64_t
 	if (len < 0)
 		return len;
 	bus_count(&talk->counter[TALK_REQUESTS], 1);
-	err = attempt(talk, request, (size_t)len, deadline_ns, &again);
+	err = talk_once(talk, request, (size_t)len, deadline_ns, &again);
 	if (again) {
 		bus_count(&talk->counter[TALK_STALE], 1);
-		err = attempt(talk, request, (size_t)len, deadline_ns, &again);
+		err = talk_once(talk, request, (size_t)len, deadline_ns, &again);
 	}
 	return err;
 }

@@ -67,7 +67,7 @@ static int sim_master_create(const char *where, const struct bus_env *env,
 	size_t len = (size_t)(chip - where);
 	struct simulation *simulation = calloc(1, sizeof(*simulation) + len + 1);
 	struct ds2482_source source = {.open = open_adapter,
-	                               .there = sim_visible,
+	                               .visible = sim_visible,
 	                               .destroy = destroy_simulation,
 	                               .ctx = simulation};
 	int err;
@@ -108,7 +108,7 @@ const struct link_master_ops sim_master = {
 	.open = ds2482_open,
 	.grow = ds2482_grow,
 	.close = ds2482_close,
-	.there = ds2482_there,
+	.visible = ds2482_visible,
 	.channels = ds2482_channels,
 	.channel = ds2482_channel,
 	.cost = ds2482_cost,

@@ -43,7 +43,7 @@ static int write_eeprom(struct w1_slave *slave, unsigned at, const uint8_t *byte
 }
 
 /* The driver's lines are of pages 12 to 15: 42 bytes, "crc=YES c=1234". */
-static int counter(const char *line, unsigned page, uint32_t *count)
+static int parse_counter(const char *line, unsigned page, uint32_t *count)
 {
 	const char *good, *number;
 	char *end;
@@ -74,7 +74,8 @@ static int read_counters(struct w1_slave *slave, unsigned at, uint8_t *bytes, un
 	for (unsigned i = 0; i < n && !err; i++) {
 		uint32_t count = 0;
 
-		err = at + i < 4 * 12 ? -ENOENT : counter(slave->tree->text, (at + i) / 4, &count);
+		err = at + i < 4 * 12 ? -ENOENT
+		                      : parse_counter(slave->tree->text, (at + i) / 4, &count);
 		bytes[i] = (uint8_t)(count >> 8 * ((at + i) % 4));
 	}
 	return err;

@@ -16,27 +16,27 @@
 
 #define MATCH_ROM 0x55
 
-static struct w1_link *self(struct link *link)
+static struct w1_link *w1_link_of(struct link *link)
 {
 	return (struct w1_link *)link;
 }
 
 static struct w1_slave *slave_of(struct link *link, const uint8_t rom[8])
 {
-	return w1_slave_of(&self(link)->master->slaves, rom);
+	return w1_slave_of(&w1_link_of(link)->master->slaves, rom);
 }
 
 /* --- Raw access --- */
 
-static int reset(struct link *base)
+static int w1_link_reset(struct link *base)
 {
-	self(base)->slave = NULL;
+	w1_link_of(base)->slave = NULL;
 	return 1;
 }
 
-static int write_bytes(struct link *base, const uint8_t *bytes, size_t n, enum link_after after)
+static int w1_link_write(struct link *base, const uint8_t *bytes, size_t n, enum link_after after)
 {
-	struct w1_link *link = self(base);
+	struct w1_link *link = w1_link_of(base);
 
 	if (link->slave || n < 9 || bytes[0] != MATCH_ROM || after == LINK_STRONG)
 		return -EOPNOTSUPP;
@@ -47,14 +47,14 @@ static int write_bytes(struct link *base, const uint8_t *bytes, size_t n, enum l
 	return w1_slave_write(slave, "rw", 0, bytes + 9, n - 9);
 }
 
-static int read_bytes(struct link *base, uint8_t *bytes, size_t n)
+static int w1_link_read(struct link *base, uint8_t *bytes, size_t n)
 {
-	struct w1_slave *slave = self(base)->slave;
+	struct w1_slave *slave = w1_link_of(base)->slave;
 
 	return slave ? w1_slave_read(slave, "rw", 0, bytes, n) : -EOPNOTSUPP;
 }
 
-static int bit(struct link *link, bool out, enum link_after after)
+static int w1_link_bit(struct link *link, bool out, enum link_after after)
 {
 	(void)link, (void)out, (void)after;
 	return -EOPNOTSUPP;
@@ -72,8 +72,8 @@ static bool offers(struct link *link, const uint8_t rom[8], const char *property
 	return w1_offers(slave_of(link, rom), property, element);
 }
 
-static int read_area(struct link *link, const uint8_t rom[8], const struct area *area, unsigned at,
-                     uint8_t *bytes, unsigned n)
+static int w1_read_area(struct link *link, const uint8_t rom[8], const struct area *area,
+                        unsigned at, uint8_t *bytes, unsigned n)
 {
 	struct w1_slave *slave = slave_of(link, rom);
 	const struct w1_part *part = w1_part_of(slave, area->name);
@@ -81,8 +81,8 @@ static int read_area(struct link *link, const uint8_t rom[8], const struct area 
 	return part && part->read ? part->read(slave, at, bytes, n) : -ENOENT;
 }
 
-static int write_area(struct link *link, const uint8_t rom[8], const struct area *area, unsigned at,
-                      const uint8_t *bytes, unsigned n)
+static int w1_write_area(struct link *link, const uint8_t rom[8], const struct area *area,
+                         unsigned at, const uint8_t *bytes, unsigned n)
 {
 	struct w1_slave *slave = slave_of(link, rom);
 	const struct w1_part *part = w1_part_of(slave, area->name);
@@ -90,9 +90,9 @@ static int write_area(struct link *link, const uint8_t rom[8], const struct area
 	return part && part->write ? part->write(slave, at, bytes, n) : -EOPNOTSUPP;
 }
 
-static int link_convert(struct link *base, const uint8_t *rom, const char *what)
+static int w1_link_convert(struct link *base, const uint8_t *rom, const char *what)
 {
-	struct w1_link *link = self(base);
+	struct w1_link *link = w1_link_of(base);
 
 	if (!rom) {
 		w1_convert_all(&link->master->slaves, &link->bulk);
@@ -162,9 +162,10 @@ static void convert_for_alarms(struct w1_link *link, uint8_t family, char *end)
 		w1_convert_all(&link->master->slaves, &link->bulk);
 }
 
-static int search(struct link *base, bool alarm, uint8_t family, link_found *found, void *ctx)
+static int w1_link_search(struct link *base, bool alarm, uint8_t family, link_found *found,
+                          void *ctx)
 {
-	struct w1_link *link = self(base);
+	struct w1_link *link = w1_link_of(base);
 	char *line = link->master->tree.lists;
 	int n = read_list(link), err = 0;
 	bool told = false, hidden = false;
@@ -188,9 +189,9 @@ static int search(struct link *base, bool alarm, uint8_t family, link_found *fou
 	return hidden && (family || !told) ? -EOPNOTSUPP : 0;
 }
 
-static int verify(struct link *base, const uint8_t rom[8], bool alarm)
+static int w1_link_verify(struct link *base, const uint8_t rom[8], bool alarm)
 {
-	struct w1_link *link = self(base);
+	struct w1_link *link = w1_link_of(base);
 	char *line = link->master->tree.lists;
 	struct w1_slave *slave;
 	int n = read_list(link);
@@ -205,18 +206,18 @@ static int verify(struct link *base, const uint8_t rom[8], bool alarm)
 
 const struct link_ops w1_link_ops = {
 	.name = "w1",
-	.reset = reset,
-	.write = write_bytes,
-	.read = read_bytes,
-	.bit = bit,
-	.search = search,
-	.verify = verify,
+	.reset = w1_link_reset,
+	.write = w1_link_write,
+	.read = w1_link_read,
+	.bit = w1_link_bit,
+	.search = w1_link_search,
+	.verify = w1_link_verify,
 };
 
 const struct driver_ops w1_driver_ops = {
 	.has = has_driver,
 	.offers = offers,
-	.area_read = read_area,
-	.area_write = write_area,
-	.convert = link_convert,
+	.area_read = w1_read_area,
+	.area_write = w1_write_area,
+	.convert = w1_link_convert,
 };

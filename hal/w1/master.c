@@ -40,8 +40,8 @@ static int take_where(struct w1_master *master, const char *where, char *why, si
 	return 0;
 }
 
-static int create(const char *where, const struct bus_env *env, struct link_master **out, char *why,
-                  size_t why_size)
+static int w1_create_master(const char *where, const struct bus_env *env, struct link_master **out,
+                            char *why, size_t why_size)
 {
 	struct w1_master *master = calloc(1, sizeof(*master));
 
@@ -60,7 +60,7 @@ static int create(const char *where, const struct bus_env *env, struct link_mast
 	return 0;
 }
 
-static void destroy(struct link_master *base)
+static void w1_destroy_master(struct link_master *base)
 {
 	w1_master_deafen(base);
 	free(base);
@@ -96,7 +96,7 @@ static bool has_link(const struct w1_master *master, unsigned number)
  * The kernel numbers its masters from 1 on and gives the lowest that is free. It may get more at
  * any time. A master that goes has no slaves, and keeps its channel.
  */
-static int grow(struct link_master *base, char *why, size_t why_size)
+static int w1_grow(struct link_master *base, char *why, size_t why_size)
 {
 	struct w1_master *master = (struct w1_master *)base;
 	unsigned first = master->only ? master->only : 1;
@@ -126,7 +126,7 @@ static int open_masters(struct link_master *base, char *why, size_t why_size)
 	master->count = 0;
 	master->slaves.count = 0;
 	master->tree.told_rights = false;
-	grow(base, why, why_size);
+	w1_grow(base, why, why_size);
 	if (master->count) {
 		if (strcmp(master->tree.root, W1_ROOT) == 0)
 			master->uevents = w1_uevents_open();
@@ -148,7 +148,7 @@ static void close_masters(struct link_master *base)
 }
 
 /* Directories say what is there without a look at any wire. */
-static int there(struct link_master *base, uint64_t *mark)
+static int w1_visible(struct link_master *base, uint64_t *mark)
 {
 	const struct w1_master *master = (const struct w1_master *)base;
 	unsigned first = master->only ? master->only : 1;
@@ -160,23 +160,23 @@ static int there(struct link_master *base, uint64_t *mark)
 	return *mark != 0;
 }
 
-static unsigned channels(struct link_master *base)
+static unsigned w1_channels(struct link_master *base)
 {
 	return ((struct w1_master *)base)->count;
 }
 
-static struct link *channel(struct link_master *base, unsigned n)
+static struct link *w1_channel(struct link_master *base, unsigned n)
 {
 	return &((struct w1_master *)base)->links[n].link;
 }
 
 const struct link_master_ops w1_master = {
-	.create = create,
+	.create = w1_create_master,
 	.open = open_masters,
-	.grow = grow,
+	.grow = w1_grow,
 	.close = close_masters,
-	.there = there,
-	.channels = channels,
-	.channel = channel,
-	.destroy = destroy,
+	.visible = w1_visible,
+	.channels = w1_channels,
+	.channel = w1_channel,
+	.destroy = w1_destroy_master,
 };

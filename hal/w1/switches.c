@@ -66,10 +66,10 @@ static int read_condition(struct w1_slave *slave, unsigned at, uint8_t *bytes, u
 }
 
 /*
- * What differs from what was read last: drivers let nobody change mask and polarity, and then the
- * attributes refuse it. With the control register the driver compares what it reads back, the
+ * What differs from what was read last: some drivers do not let mask and polarity be changed, and
+ * their attributes refuse it. With the control register the driver compares what it reads back, the
  * supply's bit included; where the compiler's char has a sign it finds that bit different and
- * returns an error, though the chip took the value: who writes looks what is there.
+ * returns an error, though the chip took the value: the caller reads it back.
  */
 static int write_condition(struct w1_slave *slave, unsigned at, const uint8_t *bytes, unsigned n)
 {

@@ -154,7 +154,7 @@ static int read_now(struct w1_slave *slave, bool due, uint8_t scratchpad[9])
 }
 
 /*
- * A conversion that is still to be read is not for who asks for settings alone. What the chip
+ * A conversion that is still to be read is not for a request for settings alone. What the chip
  * measured last, where that is not known yet, it measures now.
  */
 static int thermometer_read_scratchpad(struct w1_slave *slave, unsigned at, uint8_t *bytes,
@@ -205,7 +205,7 @@ static int save(struct w1_slave *slave, unsigned at, const uint8_t *bytes, unsig
 	return thermometer_put(slave, "eeprom_cmd", "save\n");
 }
 
-/* All ones: nobody is fed by the wire. */
+/* All ones: the wire feeds no chip. */
 static int read_supply(struct w1_slave *slave, unsigned at, uint8_t *bytes, unsigned n)
 {
 	long power = 0;
@@ -234,7 +234,7 @@ static long master_number(struct w1_tree *tree, const char *name, const char *fi
 /*
  * A slave that is no thermometer and is attached while all convert makes the driver (6.1) follow a
  * null pointer: the kernel's thread dies and the wire with it. So not among others, and not before
- * the first search is over; from then on only who plugs one in meets it.
+ * the first search is over; from then on it happens only when a user plugs one in.
  */
 static bool converts_at_once(struct w1_slaves *slaves, struct w1_bulk *bulk, const char *name)
 {
@@ -243,7 +243,8 @@ static bool converts_at_once(struct w1_slaves *slaves, struct w1_bulk *bulk, con
 		    !family_of(slaves->slave[i].rom[0])->thermometer)
 			return false;
 	/*
-	 * No oftener than need be: who reads these while the master is removed hangs, and it too.
+	 * No oftener than need be: a read of these while the master is removed hangs, and so does
+	 * the removal.
 	 */
 	bulk->searched = bulk->searched ||
 	                 master_number(slaves->tree, name, "w1_master_attempts", 2) >= 2;

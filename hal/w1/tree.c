@@ -41,7 +41,7 @@ void w1_note(struct w1_tree *tree, int err, const char *text)
 	tree->env->event(tree->env->ctx, &event);
 }
 
-/* Drivers have attributes that can only be read, whoever one is. */
+/* Drivers have attributes that no user can write, root included. */
 static bool may_be_written(const struct w1_tree *tree, const char *directory, const char *name)
 {
 	char path[PATH_MAX_HERE];

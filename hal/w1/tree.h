@@ -31,7 +31,7 @@ bool w1_exists(const struct w1_tree *tree, const char *directory, const char *na
 /*
  * The slaves of a master, a line each, sorted, in tree->lists; bytes or an error. From its
  * directory: w1_master_slaves takes a mutex that a master being removed holds while it waits for
- * who reads its attributes, and both hang for good.
+ * the readers of its attributes, and both hang for good.
  */
 int w1_slaves(struct w1_tree *tree, const char *directory);
 /* A line for the log. */

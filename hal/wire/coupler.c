@@ -28,7 +28,7 @@ static struct link *under(const struct trunk *trunk)
 	return trunk->relay.under;
 }
 
-static struct branch *outer(const struct branch *branch)
+static struct branch *outer_branch(const struct branch *branch)
 {
 	return branch->coupler->parent;
 }
@@ -37,13 +37,13 @@ static struct branch *outer(const struct branch *branch)
 static bool leads_to(const struct branch *which, const struct branch *branch)
 {
 	while (branch && branch != which)
-		branch = outer(branch);
+		branch = outer_branch(branch);
 	return branch == which;
 }
 
 static int coupler_enter(struct branch *branch);
 
-/* Reset on the wire that the coupler is on, and what it is to do. -EHOSTDOWN: nobody is there. */
+/* Reset on the wire that the coupler is on, and what it is to do. -EHOSTDOWN: no chip is there. */
 static int coupler_command(const struct coupler *coupler, const uint8_t *bytes, size_t n,
                            uint8_t *answer, size_t answer_n)
 {
@@ -59,7 +59,7 @@ static int coupler_command(const struct coupler *coupler, const uint8_t *bytes, 
 	return err ? err : link->ops->read(link, answer, answer_n);
 }
 
-/* 1: somebody is there, 0: nobody is. -EHOSTDOWN: a coupler does not answer. */
+/* 1: a chip is there, 0: none is. -EHOSTDOWN: a coupler does not answer. */
 static int coupler_enter(struct branch *branch)
 {
 	struct trunk *trunk = branch->coupler->trunk;
@@ -80,7 +80,7 @@ static int coupler_enter(struct branch *branch)
 }
 
 /* The status. A coupler that is silent looks like one in which every bit is set. */
-static int look(struct coupler *coupler, uint8_t *info)
+static int look_at_status(struct coupler *coupler, uint8_t *info)
 {
 	static const uint8_t status[] = {STATUS, LOOK};
 	uint8_t answer[2];
@@ -113,7 +113,7 @@ static int try_off(struct coupler *coupler)
 {
 	static const uint8_t off = ALL_LINES_OFF;
 	uint8_t info, answer;
-	int err = look(coupler, &info);
+	int err = look_at_status(coupler, &info);
 
 	if (!err)
 		err = coupler_command(coupler, &off, 1, &answer, 1);
@@ -147,7 +147,7 @@ static int switch_off(struct coupler *coupler)
 }
 
 /* Switch off what branch (NULL: the trunk) is not behind. */
-static int leave(struct trunk *trunk, const struct branch *branch)
+static int leave_branches(struct trunk *trunk, const struct branch *branch)
 {
 	int err = 0;
 
@@ -159,16 +159,16 @@ static int leave(struct trunk *trunk, const struct branch *branch)
 int coupler_look(struct coupler *coupler)
 {
 	uint8_t info;
-	int err = leave(coupler->trunk, NULL);
+	int err = leave_branches(coupler->trunk, NULL);
 
 	if (!err)
-		err = look(coupler, &info);
+		err = look_at_status(coupler, &info);
 	if (!err && !coupler->seen->news && coupler->seen->flags)
 		err = switch_off(coupler);
 	return err == -EHOSTDOWN ? -EBADMSG : err;
 }
 
-/* The couplers on this branch (NULL: on the trunk) that somebody else may have switched. */
+/* The couplers on this branch (NULL: on the trunk) that another master may have switched. */
 static int make_sure(struct trunk *trunk, const struct branch *branch)
 {
 	struct coupler *coupler = trunk->first;
@@ -189,9 +189,9 @@ static int coupler_check(struct branch *branch)
 	while (!leads_to(branch, trunk->on)) {
 		struct branch *next = branch;
 
-		while (outer(next) != trunk->on)
-			next = outer(next);
-		int err = look(next->coupler, &info);
+		while (outer_branch(next) != trunk->on)
+			next = outer_branch(next);
+		int err = look_at_status(next->coupler, &info);
 		if (err)
 			return err;
 		info >>= 2 * next->number;
@@ -208,13 +208,13 @@ static int coupler_check(struct branch *branch)
 
 int trunk_rest(struct trunk *trunk)
 {
-	return leave(trunk, NULL);
+	return leave_branches(trunk, NULL);
 }
 
 static int trunk_reset(struct link *link)
 {
 	struct trunk *trunk = (struct trunk *)link;
-	int err = leave(trunk, NULL);
+	int err = leave_branches(trunk, NULL);
 
 	if (!err)
 		err = make_sure(trunk, NULL);
@@ -225,7 +225,7 @@ static int branch_reset(struct link *link)
 {
 	struct branch *branch = (struct branch *)link;
 	struct trunk *trunk = branch->coupler->trunk;
-	int err = leave(trunk, branch);
+	int err = leave_branches(trunk, branch);
 
 	if (!err)
 		err = coupler_check(branch);
@@ -236,39 +236,39 @@ static int branch_reset(struct link *link)
 	return err == -EHOSTDOWN ? -EBADMSG : err;
 }
 
-static struct link *beyond(const struct link *link)
+static struct link *link_beyond(const struct link *link)
 {
 	return ((const struct relay *)link)->under;
 }
 
 static int relay_write(struct link *link, const uint8_t *data, size_t n, enum link_after after)
 {
-	return beyond(link)->ops->write(beyond(link), data, n, after);
+	return link_beyond(link)->ops->write(link_beyond(link), data, n, after);
 }
 
 static int relay_read(struct link *link, uint8_t *data, size_t n)
 {
-	return beyond(link)->ops->read(beyond(link), data, n);
+	return link_beyond(link)->ops->read(link_beyond(link), data, n);
 }
 
 static int relay_bit(struct link *link, bool out, enum link_after after)
 {
-	return beyond(link)->ops->bit(beyond(link), out, after);
+	return link_beyond(link)->ops->bit(link_beyond(link), out, after);
 }
 
 static int relay_triplet(struct link *link, bool direction)
 {
-	return beyond(link)->ops->triplet(beyond(link), direction);
+	return link_beyond(link)->ops->triplet(link_beyond(link), direction);
 }
 
 static int relay_recover(struct link *link, enum link_rung rung)
 {
-	return beyond(link)->ops->recover(beyond(link), rung);
+	return link_beyond(link)->ops->recover(link_beyond(link), rung);
 }
 
 static void relay_cost(const struct link *link, struct link_cost *cost)
 {
-	beyond(link)->ops->cost(beyond(link), cost);
+	link_beyond(link)->ops->cost(link_beyond(link), cost);
 }
 
 bool trunk_fits(const struct link *link)

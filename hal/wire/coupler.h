@@ -3,7 +3,7 @@
  * Couplers (DS2409, data sheet 102199 "MicroLAN Coupler"): the branches behind them as links. Two
  * links stand in front of that of a wire. The trunk is the wire itself: it switches off what is on
  * before anything else. A branch switches itself on with Smart-On, coupler by coupler: then those
- * behind it have had their reset, and nobody else listens.
+ * behind it have had their reset, and no other chip listens.
  *
  * At most one branch of a wire is on, and those that it is behind. A branch whose level is low is
  * not switched on (-ECOMM): a short of it would be one of the whole wire. -EBADMSG: a coupler did
@@ -23,7 +23,7 @@ enum coupler_branch { COUPLER_MAIN, COUPLER_AUX, COUPLER_BRANCHES };
 struct coupler_seen {
 	uint8_t events; /* since the user cleared them */
 	uint8_t flags;  /* as last seen in the chip */
-	uint8_t news;   /* flags that were not set at the look before; who acts on one clears it */
+	uint8_t news; /* flags that the look before did not show; the bus clears each as it acts */
 };
 
 /* The calls that go on to the link of the wire; first member of trunk and branch. */

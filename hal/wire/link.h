@@ -11,8 +11,8 @@
  *   -EIO        the way to the chip failed once (refused byte, refused address)
  *   -ENXIO      the chip was reset or changed under us: recover(LINK_CHIP_RESET)
  *   -ENODEV     the adapter is gone: close the master
- *   -EHOSTDOWN  nobody answered the reset, said late (see flush)
- *   -EOPNOTSUPP this link cannot: the strong pull-up, the slot, a write behind a read
+ *   -EHOSTDOWN  no chip answered the reset; a later call reports it (see flush)
+ *   -EOPNOTSUPP this link has no strong pull-up, no single slots, or no write after a read
  *   -ECANCELED  the host shuts down
  *
  * Room hal/wire: links, transactions, searches, devices. Uses hal/owfs, hal/bus.
@@ -29,8 +29,8 @@ enum link_after {
 /*
  * Eight read slots behind a command that takes time: the chip holds all of them low while it is at
  * work. Some begin up to 1 ms late (clones of the DS18B20, family A3): then the first slots are
- * ones, and LINK_LATE bytes more are worth a look. All but two of them have to be low: so many
- * zeros no id has, which a disturbed Skip ROM makes a chip send.
+ * ones, and LINK_LATE bytes more are worth a look. All but two of them have to be low: no id has
+ * so many zeros (after a disturbed Skip ROM a chip sends its id).
  */
 #define LINK_LATE 10
 static inline bool link_may_be_late(uint8_t slots)
@@ -100,15 +100,15 @@ struct link_ops {
 	 *   0            makes the transaction again; if it fails again, the next rung is next
 	 *   -ECOMM       the same: the rung is done, and the wire is short
 	 *   -EOPNOTSUPP  goes on with the next rung: this link has no such one
-	 *   -EBUSY       leaves out the rungs between, closes and opens the master: somebody else
-	 *                has the chip, and open() says who
+	 *   -EBUSY       leaves out the rungs between, closes and opens the master: a driver or
+	 *                another process has the chip, and open() says which
 	 *   others       goes on with the next rung: it did not help
-	 * A link whose master is closed says -ENODEV. NULL: the link has no rungs.
+	 * A link whose master is closed returns -ENODEV. NULL: the link has no rungs.
 	 */
 	int (*recover)(struct link *link, enum link_rung rung);
 	/*
-	 * Ends the transaction before it. 1: somebody is there, and all chips listen for a ROM
-	 * command; 0: nobody is; or an error.
+	 * Ends the transaction before it. 1: a chip is there, and all listen for a ROM command; 0:
+	 * none is; or an error.
 	 */
 	int (*reset)(struct link *link);
 	/*
@@ -153,8 +153,8 @@ struct link_ops {
 	/*
 	 * For links that share their wire, and hold it for one request at a time: such a one keeps
 	 * what is written until something is read, so that a transaction is one request. reset()
-	 * says 1 then, and read(), bit() or flush() say -EHOSTDOWN if nobody was there; a write()
-	 * behind a read() of the same transaction would be a request of its own and is refused.
+	 * returns 1 then, and read(), bit() or flush() -EHOSTDOWN if no chip was there; a write()
+	 * after a read() of the same transaction would be a request of its own and is refused.
 	 * This sends what is kept, and so does the next reset(); 0 or an error. NULL: nothing is
 	 * ever kept.
 	 */
@@ -200,7 +200,7 @@ struct link_master_ops {
 	 * differs where something else is seen than before (a device file made anew, a driver bound
 	 * or unbound). NULL: that cannot be seen.
 	 */
-	int (*there)(struct link_master *master, uint64_t *mark);
+	int (*visible)(struct link_master *master, uint64_t *mark);
 	/*
 	 * Optional. Take what belongs here and could not be taken at open(), or came later: its
 	 * channels come behind those that are there, each when it is whole. 1: some are still

@@ -41,7 +41,7 @@ int search_next(struct search *search, struct link *link);
 int search_verify(struct link *link, const uint8_t rom[8], bool alarm);
 /*
  * The same of roms[0], of n; away[i] becomes true for each that this one search shows not to be
- * there, roms[0] included: ids that nobody is near to are decided together. What is true already
+ * there, roms[0] included: ids that no chip is near to are decided together. What is true already
  * stays. It leaves nothing selected.
  */
 int search_among(struct link *link, const uint8_t *const roms[], bool away[], unsigned n);

@@ -93,7 +93,7 @@ static bool was_read(struct txn *txn, uint8_t *bytes, size_t n)
 	return true;
 }
 
-static int reset(struct txn *txn)
+static int begin_transaction(struct txn *txn)
 {
 	/* It is over, or another comes first. */
 	txn->done = NULL;
@@ -107,7 +107,7 @@ static int reset(struct txn *txn)
 
 int txn_raw(struct txn *txn, const uint8_t *bytes, size_t n)
 {
-	int err = reset(txn);
+	int err = begin_transaction(txn);
 
 	return err ? err : txn_write(txn, bytes, n);
 }
@@ -121,7 +121,7 @@ size_t txn_select(const struct device *device, const uint8_t *bytes, size_t n, u
 	return TXN_SELECT + n;
 }
 
-static int command(struct txn *txn, const uint8_t *bytes, size_t n, enum link_after after)
+static int send_command(struct txn *txn, const uint8_t *bytes, size_t n, enum link_after after)
 {
 	uint8_t out[TXN_SELECT + BYTES_MAX];
 
@@ -131,14 +131,14 @@ static int command(struct txn *txn, const uint8_t *bytes, size_t n, enum link_af
 	size_t out_n = txn_select(txn->device, bytes, n, out);
 	if (was_sent(txn, out, out_n, after))
 		return 0;
-	int err = reset(txn);
+	int err = begin_transaction(txn);
 	if (err)
 		return err;
 	return of_link(txn, txn->link->ops->write(txn->link, out, out_n, after));
 }
 
 /* The strong pull-up, or what takes its place. */
-static int pull(const struct txn *txn, enum link_after *after)
+static int choose_pullup(const struct txn *txn, enum link_after *after)
 {
 	*after = txn->link->passive ? LINK_IDLE : LINK_STRONG;
 	return txn->link->passive && txn->device && txn->device->power == POWER_PARASITE
@@ -146,7 +146,7 @@ static int pull(const struct txn *txn, enum link_after *after)
 	               : 0;
 }
 
-static int hold(struct txn *txn, int err, int64_t ns)
+static int hold_pullup(struct txn *txn, int err, int64_t ns)
 {
 	if (err < 0)
 		return err;
@@ -156,15 +156,15 @@ static int hold(struct txn *txn, int err, int64_t ns)
 
 int txn_command(struct txn *txn, const uint8_t *bytes, size_t n)
 {
-	return command(txn, bytes, n, LINK_IDLE);
+	return send_command(txn, bytes, n, LINK_IDLE);
 }
 
 int txn_command_strong(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns)
 {
 	enum link_after after;
-	int err = pull(txn, &after);
+	int err = choose_pullup(txn, &after);
 
-	return err ? err : hold(txn, command(txn, bytes, n, after), ns);
+	return err ? err : hold_pullup(txn, send_command(txn, bytes, n, after), ns);
 }
 
 int txn_write(struct txn *txn, const uint8_t *bytes, size_t n)
@@ -192,7 +192,7 @@ int txn_write_paused(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns
 	return err;
 }
 
-static void hear(struct txn *txn, const uint8_t *bytes, size_t n)
+static void note_heard(struct txn *txn, const uint8_t *bytes, size_t n)
 {
 	bool zeros = n;
 
@@ -216,7 +216,7 @@ int txn_read(struct txn *txn, uint8_t *bytes, size_t n)
 	}
 	if (err < 0)
 		return err;
-	hear(txn, bytes, n);
+	note_heard(txn, bytes, n);
 	return 0;
 }
 
@@ -242,7 +242,7 @@ int txn_bit_strong(struct txn *txn, int64_t ns)
 
 	if (!err)
 		err = of_link(txn, txn->link->ops->bit(txn->link, true, LINK_STRONG));
-	return hold(txn, err, ns);
+	return hold_pullup(txn, err, ns);
 }
 
 int txn_started(struct txn *txn)
@@ -325,7 +325,7 @@ int txn_driver_read(struct txn *txn, const struct area *area, unsigned at, uint8
 
 	txn->on_wire = true;
 	if (!err)
-		hear(txn, bytes, n);
+		note_heard(txn, bytes, n);
 	txn->blank = blank; /* of most chips the driver has looked at a checksum: area.c knows */
 	return err;
 }

@@ -5,7 +5,8 @@
  * A property function does at most one 1-Wire transaction (a reset and what follows it, about 15
  * ms) per call. It returns 0 when the value is there, a negative errno, or TXN_MORE: it is called
  * again after other work had its turn, with phase, area and own as it left them. txn_wait() says
- * how long the chip needs meanwhile. The device is its own until it returns something else.
+ * how long the chip needs meanwhile. The device stays locked until the function returns something
+ * else.
  * After an error the function is begun again with phase 0, at most a few times.
  */
 #pragma once
@@ -51,7 +52,7 @@ struct txn {
 	int64_t measured_ns; /* read: when the chip took the value; 0: now */
 	/* A reading that others left serves if it began at since_ns or was made at oldest_ns. */
 	int64_t since_ns, oldest_ns;
-	bool once;         /* and then it serves nobody else */
+	bool once;         /* and then it serves no other request */
 	int64_t shared_ns; /* when the oldest of those that served was made; 0: none did */
 	int64_t part_ns;   /* when the oldest part that this request has read was made; 0: none */
 
@@ -82,7 +83,7 @@ int64_t txn_now(const struct txn *txn);
 /* Sends what is written so far; then returns TXN_MORE: to be called again ns later. */
 int txn_wait(struct txn *txn, int64_t ns);
 
-/* Reset, match ROM, and n bytes. -ENODEV nobody there. */
+/* Reset, match ROM, and n bytes. -ENODEV: no chip is there. */
 int txn_command(struct txn *txn, const uint8_t *bytes, size_t n);
 /*
  * The same with the strong pull-up after the last bit, for ns. Returns TXN_MORE: to be called
@@ -127,7 +128,7 @@ int txn_ask_crc16(struct txn *txn, const uint8_t *command, size_t command_n, uin
                   size_t n);
 /*
  * Registers are changed by reading, changing and writing them. A write that goes wrong may leave
- * what nobody asked for, and made again must not begin with that. txn_base: if such a write of
+ * what no request asked for, and made again must not begin with that. txn_base: if such a write of
  * these registers (which: their area) has not succeeded yet, bytes become what was there before it.
  * txn_keep, ahead of the first write: this is what is there. txn_changed: the write has succeeded.
  */
@@ -135,7 +136,7 @@ bool txn_base(const struct txn *txn, const void *which, uint8_t *bytes, size_t n
 void txn_keep(struct txn *txn, const void *which, const uint8_t *bytes, size_t n);
 void txn_changed(struct txn *txn);
 /*
- * What was read of a chip is kept with the device for others who ask for it: txn_share, of what
+ * What was read of a chip is kept with the device for other requests: txn_share, of what
  * (an area, or anything else that has an address) n bytes from `at` on; begun_ns: when reading
  * began. txn_shared: bytes that are kept and serve this request; false: they have to be read.
  * txn_void: the chip's registers are written: nothing that is kept is true any more.

@@ -5,7 +5,7 @@
  *
  * Its checksum covers neither the command nor the page's number, and Recall says nothing: if it is
  * lost, the scratchpad's old contents come with a right checksum. So the scratchpad's first byte is
- * changed before and read back (the mark): who finds the memory's byte there knows of the Recall.
+ * changed before and read back (the mark): the memory's byte in its place proves the Recall.
  * What is read is read twice, as the number of another page may have reached the chip; it may be
  * the same one twice. The measurements are in page 0: there the configuration must be the known
  * one.

@@ -178,8 +178,8 @@ int ds2438_read_measured(struct txn *txn)
 }
 
 /*
- * A zero may be what a restart left, and of when a result is that the bus has not asked for, nobody
- * knows: then it is measured.
+ * A zero may be what a restart left, and the time of a result that the bus did not ask for is not
+ * known: then it is measured.
  */
 int ds2438_read_latest(struct txn *txn)
 {

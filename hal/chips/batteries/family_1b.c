@@ -227,7 +227,7 @@ static int write_reset(struct txn *txn)
 }
 
 /* The page as it is to be; the bytes behind it cannot be written. */
-static int prepare(struct txn *txn, uint8_t want[PAGE])
+static int prepare_page(struct txn *txn, uint8_t want[PAGE])
 {
 	unsigned page = (unsigned)txn->element;
 	int err;
@@ -258,7 +258,7 @@ static int write_page(struct txn *txn)
 
 	switch (txn->phase) {
 	case 0:
-		err = prepare(txn, want);
+		err = prepare_page(txn, want);
 		break;
 	case 1:
 		err = page == 0 ? family_1b_command(txn, UNLOCK, COPY_NS) : 0;

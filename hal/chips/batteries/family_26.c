@@ -171,7 +171,7 @@ static const struct property properties[] = {
 	MEASURED("vis", FLOAT, DS2438_VIS, MEASURES(-0.25, 0.25, 5, "V")),
 };
 
-/* The alerts of a TMP1826 stay: reading has cleared them in the chip, and nobody has seen them. */
+/* The alerts of a TMP1826 stay: reading cleared them in the chip, and no client has them yet. */
 static void family_26_forget(struct device *device)
 {
 	struct tmp1826 *chip = device->own;

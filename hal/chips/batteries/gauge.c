@@ -79,7 +79,7 @@ int gauge_write_lock(struct txn *txn)
 	return err ? err : txn->number[0] != 0 ? 0 : -EIO;
 }
 
-static int word(const uint8_t *bytes)
+static int signed_word(const uint8_t *bytes)
 {
 	return (int16_t)(bytes[0] << 8 | bytes[1]);
 }
@@ -96,15 +96,15 @@ int gauge_read_couple(struct txn *txn)
 		err = area_read(txn, &gauge_words, VIS, bytes, 2);
 		if (err)
 			return err;
-		*mv = word(bytes) * 1000 * (arg >> 16 ? GAUGE_FINE : GAUGE_COARSE);
+		*mv = signed_word(bytes) * 1000 * (arg >> 16 ? GAUGE_FINE : GAUGE_COARSE);
 		txn->phase = 1;
 		return TXN_MORE;
 	}
 	err = area_read(txn, &gauge_words, arg >> 8 & 0xff, bytes, 2);
 	if (err)
 		return err;
-	return thermocouple_celsius((enum thermocouple)(arg & 0xff), *mv, (word(bytes) >> 5) * .125,
-	                            &txn->number[0])
+	return thermocouple_celsius((enum thermocouple)(arg & 0xff), *mv,
+	                            (signed_word(bytes) >> 5) * .125, &txn->number[0])
 	               ? 0
 	               : -ERANGE;
 }

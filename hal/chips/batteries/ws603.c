@@ -27,7 +27,7 @@ struct visit {
 	uint8_t calibration; /* of the wind, in percent */
 };
 
-static uint8_t sum(const uint8_t *bytes, unsigned n)
+static uint8_t sum_of(const uint8_t *bytes, unsigned n)
 {
 	uint8_t total = 0;
 
@@ -58,7 +58,7 @@ static int ws603_give(struct txn *txn, const uint8_t *bytes, unsigned n)
 	uint8_t command[8];
 
 	memcpy(command, bytes, n);
-	command[n] = sum(bytes, n);
+	command[n] = sum_of(bytes, n);
 	command[n + 1] = (uint8_t)(bytes[0] << 4 | 0x0e);
 	return ws603_put(txn, COMMAND, command, n + 2);
 }
@@ -87,7 +87,7 @@ static int ws603_ask(struct txn *txn, uint8_t what, uint8_t bytes[5])
 	err = area_fetch(txn, &memory, ANSWER, in, ANSWER_BYTES);
 	if (err)
 		return err;
-	if (in[0] != what || in[ANSWER_BYTES - 1] != sum(in, ANSWER_BYTES - 1))
+	if (in[0] != what || in[ANSWER_BYTES - 1] != sum_of(in, ANSWER_BYTES - 1))
 		return ++visit->tries < TRIES ? txn_wait(txn, WAIT_NS) : -EIO;
 	visit->step = CLEAR;
 	memcpy(bytes, in + 1, 5);

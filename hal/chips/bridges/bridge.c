@@ -57,7 +57,7 @@ static struct sensor sensor_of(const struct txn *txn)
 	};
 }
 
-static double value_of(const struct sensor *sensor, struct formula formula, double set)
+static double evaluate(const struct sensor *sensor, struct formula formula, double set)
 {
 	const struct formula_input input = {
 		.bytes = sensor->place->bytes, .names = sensor->place->names, .set = set};
@@ -65,7 +65,7 @@ static double value_of(const struct sensor *sensor, struct formula formula, doub
 	return formula_value(&sensor->table->pool, formula, &input);
 }
 
-static int exchange(struct txn *txn, const struct i2c_transfer *transfer)
+static int bridge_exchange(struct txn *txn, const struct i2c_transfer *transfer)
 {
 	struct visit *visit = txn_own(txn, struct visit);
 
@@ -73,19 +73,20 @@ static int exchange(struct txn *txn, const struct i2c_transfer *transfer)
 	                                           : ds28e18_exchange(txn, transfer, &visit->part);
 }
 
-static int write_bytes(struct txn *txn, const struct sensor *sensor, unsigned first, unsigned count,
-                       uint8_t *in, unsigned m)
+static int write_to_sensor(struct txn *txn, const struct sensor *sensor, unsigned first,
+                           unsigned count, uint8_t *in, unsigned m)
 {
 	uint8_t out[SENSOR_AT_ONCE];
 
 	for (unsigned i = 0; i < count; i++) {
-		double byte = value_of(sensor, sensor->table->bytes[first + i], txn->number[0]);
+		double byte = evaluate(sensor, sensor->table->bytes[first + i], txn->number[0]);
 
 		if (!(byte >= 0 && byte <= 255) || byte != floor(byte))
 			return -EINVAL;
 		out[i] = (uint8_t)byte;
 	}
-	return exchange(txn, &(struct i2c_transfer){sensor->place->address, out, count, in, m});
+	return bridge_exchange(txn,
+	                       &(struct i2c_transfer){sensor->place->address, out, count, in, m});
 }
 
 static bool checksum_fits(const struct sensor_step *step, const uint8_t *bytes)
@@ -105,7 +106,7 @@ static int bridge_look(struct txn *txn, const struct sensor *sensor, const struc
 {
 	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t in[SENSOR_AT_ONCE];
-	int err = write_bytes(txn, sensor, step->first, step->count, in, step->n);
+	int err = write_to_sensor(txn, sensor, step->first, step->count, in, step->n);
 
 	if (err)
 		return err;
@@ -122,13 +123,13 @@ static int bridge_look(struct txn *txn, const struct sensor *sensor, const struc
 /* What needs no wire. */
 static int compute(const struct sensor *sensor, const struct sensor_step *step)
 {
-	double a = value_of(sensor, step->a, 0);
+	double a = evaluate(sensor, step->a, 0);
 
 	if (step->kind == SENSOR_CRC8)
 		return checksum_fits(step, sensor->place->bytes) ? 0 : -EBADMSG;
 	if (step->kind == SENSOR_LET)
 		sensor->place->names[step->name] = a;
-	return step->kind == SENSOR_SAME && a != value_of(sensor, step->b, 0) ? -EIO : 0;
+	return step->kind == SENSOR_SAME && a != evaluate(sensor, step->b, 0) ? -EIO : 0;
 }
 
 /* One step; TXN_MORE: it used the wire, or has to be waited for. */
@@ -141,15 +142,16 @@ static int bridge_step(struct txn *txn, const struct sensor *sensor)
 
 	switch (step->kind) {
 	case SENSOR_WRITE:
-		err = write_bytes(txn, sensor, step->first, step->count, NULL, 0);
+		err = write_to_sensor(txn, sensor, step->first, step->count, NULL, 0);
 		break;
 	case SENSOR_EXCHANGE:
 		err = bridge_look(txn, sensor, step);
 		break;
 	case SENSOR_READ:
-		err = exchange(txn, &(struct i2c_transfer){.address = sensor->place->address,
-		                                           .in = sensor->place->bytes + step->at,
-		                                           .m = step->n});
+		err = bridge_exchange(txn,
+		                      &(struct i2c_transfer){.address = sensor->place->address,
+		                                             .in = sensor->place->bytes + step->at,
+		                                             .m = step->n});
 		break;
 	case SENSOR_WAIT:
 		visit->step++;
@@ -184,7 +186,7 @@ static bool take_shared(struct txn *txn, const struct sensor *sensor)
 	return n > 0;
 }
 
-static void share(struct txn *txn, const struct sensor *sensor)
+static void share_bytes(struct txn *txn, const struct sensor *sensor)
 {
 	const struct visit *visit = txn_own(txn, struct visit);
 	unsigned n = sensor->kind->bytes;
@@ -210,12 +212,12 @@ static int bridge_measure(struct txn *txn, const struct sensor *sensor)
 		err = bridge_step(txn, sensor);
 	if (err)
 		return err;
-	share(txn, sensor);
+	share_bytes(txn, sensor);
 	txn->measured_ns = visit->begun_ns;
 	return 0;
 }
 
-static bool is_whole(uint8_t type)
+static bool is_whole_type(uint8_t type)
 {
 	return type == PROPERTY_UNSIGNED || type == PROPERTY_INTEGER || type == PROPERTY_YESNO;
 }
@@ -227,17 +229,17 @@ void bridge_bounds(uint8_t type, double *least, double *most)
 }
 
 /* The value of what was measured; -ERANGE: it is none that the sensor can mean. */
-static int result(const struct sensor *sensor, double *number)
+static int take_result(const struct sensor *sensor, double *number)
 {
 	const struct sensor_value *value = sensor->value;
 	double least, most;
 
 	bridge_bounds(value->type, &least, &most);
-	*number = value_of(sensor, value->formula, 0);
+	*number = evaluate(sensor, value->formula, 0);
 	if (!isfinite(*number) ||
 	    (value->ranged && (*number < value->low || *number > value->high)))
 		return -ERANGE;
-	if (is_whole(value->type) &&
+	if (is_whole_type(value->type) &&
 	    (*number != floor(*number) || *number < least || *number > most))
 		return -ERANGE;
 	return 0;
@@ -248,7 +250,7 @@ static int read_value(struct txn *txn)
 	struct sensor sensor = sensor_of(txn);
 	int err = bridge_measure(txn, &sensor);
 
-	return err ? err : result(&sensor, &txn->number[0]);
+	return err ? err : take_result(&sensor, &txn->number[0]);
 }
 
 /* What was written is measured and has to be the same. */
@@ -264,13 +266,14 @@ static int write_value(struct txn *txn)
 		    !(want >= sensor.value->low && want <= sensor.value->high))
 			return -EINVAL;
 		txn_void(txn);
-		err = write_bytes(txn, &sensor, sensor.value->first, sensor.value->count, NULL, 0);
+		err = write_to_sensor(txn, &sensor, sensor.value->first, sensor.value->count, NULL,
+		                      0);
 		visit->written = !err;
 		return err ? err : TXN_MORE;
 	}
 	err = bridge_measure(txn, &sensor);
 	if (!err)
-		err = result(&sensor, &have);
+		err = take_result(&sensor, &have);
 	if (err)
 		return err;
 	return have == want ? 0 : -EIO;
@@ -305,8 +308,8 @@ static int bridge_add_row(struct sensor_bridge *bridge, const struct property *r
 	return 0;
 }
 
-static int add_value(struct sensor_bridge *bridge, const struct sensor_value *value, int32_t arg,
-                     const char *prefix)
+static int add_value_row(struct sensor_bridge *bridge, const struct sensor_value *value,
+                         int32_t arg, const char *prefix)
 {
 	struct property row = {
 		.type = value->type,
@@ -339,13 +342,13 @@ int bridge_place(const struct sensor_table *table, struct sensor_bridge *bridge,
 		err = bridge_add_row(bridge, &directory);
 	}
 	for (unsigned i = 0; !err && i < of->values; i++)
-		err = add_value(bridge, &table->values[of->first_value + i],
-		                (int32_t)(bridge->count << 8 | i), prefix);
+		err = add_value_row(bridge, &table->values[of->first_value + i],
+		                    (int32_t)(bridge->count << 8 | i), prefix);
 	bridge->count++;
 	return err;
 }
 
-static int by_name(const void *a, const void *b)
+static int compare_names_of_rows(const void *a, const void *b)
 {
 	const struct property *x = a, *y = b;
 
@@ -358,7 +361,7 @@ int bridges_finish(struct sensor_table *table)
 		struct sensor_bridge *bridge = &table->bridges[i];
 
 		qsort(bridge->properties, bridge->family.count, sizeof(*bridge->properties),
-		      by_name);
+		      compare_names_of_rows);
 		bridge->family.code = bridge->rom[0];
 		bridge->family.proof = PROOF_PRESENCE;
 		bridge->family.type = bridge_type(bridge->rom[0]);

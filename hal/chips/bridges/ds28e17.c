@@ -10,7 +10,7 @@
 #include "hal/wire/crc.h"
 
 enum { WRITE_STOP = 0x4b, READ_STOP = 0x87, WRITE_READ_STOP = 0x2d };
-enum { BAD_CRC = 0x01 }; /* status; the others: nobody took the address */
+enum { BAD_CRC = 0x01 }; /* status; the others: no sensor took the address */
 
 /* 100 kHz take 90 us a byte, a read slot 70 us at the least. */
 #define SLOTS(bytes) (40 + 2 * (bytes))

@@ -39,7 +39,7 @@ struct parser {
 	size_t why_size;
 };
 
-static int sum(struct parser *p);
+static int parse_sum(struct parser *p);
 
 static int formula_fail(struct parser *p, const char *what)
 {
@@ -47,7 +47,7 @@ static int formula_fail(struct parser *p, const char *what)
 	return -EINVAL;
 }
 
-static void skip(struct parser *p)
+static void skip_blanks(struct parser *p)
 {
 	while (*p->at == ' ' || *p->at == '\t')
 		p->at++;
@@ -55,7 +55,7 @@ static void skip(struct parser *p)
 
 static bool formula_take(struct parser *p, char c)
 {
-	skip(p);
+	skip_blanks(p);
 	if (*p->at != c)
 		return false;
 	p->at++;
@@ -81,7 +81,7 @@ static int formula_add(struct parser *p, uint8_t code, double number, int change
 }
 
 /* Letters, digits and _ from p->at on; their length. */
-static size_t word(const struct parser *p)
+static size_t word_length(const struct parser *p)
 {
 	size_t n = strspn(p->at, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789");
 
@@ -116,7 +116,7 @@ static int field(struct parser *p, uint8_t code)
 
 	if (!formula_take(p, '('))
 		return formula_fail(p, "expected (");
-	skip(p);
+	skip_blanks(p);
 	at = strtoul(p->at, &end, 0);
 	if (end == p->at || *p->at == '-')
 		return formula_fail(p, "expected the number of a byte");
@@ -134,7 +134,7 @@ static int call(struct parser *p, enum code code, unsigned n)
 
 	for (unsigned i = 0; !err && i < n; i++) {
 		err = i && !formula_take(p, ',') ? formula_fail(p, "expected ,") : 0;
-		err = err ? err : sum(p);
+		err = err ? err : parse_sum(p);
 	}
 	if (!err && !formula_take(p, ')'))
 		err = formula_fail(p, "expected )");
@@ -152,7 +152,7 @@ static int named(struct parser *p)
 	                 {"floor", FLOOR, 1},
 	                 {"pow", POWER, 2}};
 	const char *name = p->at;
-	size_t n = word(p);
+	size_t n = word_length(p);
 	uint8_t code;
 
 	for (unsigned i = 0; n && i < p->scope->name_count; i++) {
@@ -182,7 +182,7 @@ static int primary(struct parser *p)
 	char *end;
 	int err;
 
-	skip(p);
+	skip_blanks(p);
 	if ((*p->at >= '0' && *p->at <= '9') || *p->at == '.') {
 		double number = strtod(p->at, &end);
 
@@ -202,7 +202,7 @@ static int primary(struct parser *p)
 	if (p->nested == FORMULA_DEPTH)
 		return formula_fail(p, "too many parentheses");
 	p->nested++;
-	err = sum(p);
+	err = parse_sum(p);
 	p->nested--;
 	return err ? err : formula_take(p, ')') ? 0 : formula_fail(p, "expected )");
 }
@@ -230,7 +230,7 @@ static bool is_constant(const struct formula_pool *pool, struct formula formula)
 	return true;
 }
 
-static int product(struct parser *p)
+static int parse_product(struct parser *p)
 {
 	int err = unary(p);
 
@@ -252,9 +252,9 @@ static int product(struct parser *p)
 	return err;
 }
 
-static int sum(struct parser *p)
+static int parse_sum(struct parser *p)
 {
-	int err = product(p);
+	int err = parse_product(p);
 
 	while (!err) {
 		enum code code = formula_take(p, '+')   ? ADD
@@ -263,7 +263,7 @@ static int sum(struct parser *p)
 
 		if (code == NUMBER)
 			break;
-		err = product(p);
+		err = parse_product(p);
 		err = err ? err : formula_add(p, (uint8_t)code, 0, -1);
 	}
 	return err;
@@ -277,9 +277,9 @@ int formula_parse(struct formula_pool *pool, const struct formula_scope *scope, 
 	int err;
 
 	formula->first = pool->count;
-	err = sum(&p);
+	err = parse_sum(&p);
 	formula->count = pool->count - formula->first;
-	skip(&p);
+	skip_blanks(&p);
 	if (!err && is_constant(pool, *formula) &&
 	    !isfinite(formula_value(pool, *formula, &(struct formula_input){0})))
 		err = formula_fail(&p, "a formula that is never a number, before");

@@ -18,7 +18,7 @@
 #define SIZE(list) (sizeof(list) / sizeof((list)[0]))
 
 /* One more element of a growing list: list is the address of its pointer. NULL: no memory. */
-static void *grow(void *list, unsigned *count, size_t size)
+static void *grow_list(void *list, unsigned *count, size_t size)
 {
 	void *base;
 	char *bigger;
@@ -32,7 +32,7 @@ static void *grow(void *list, unsigned *count, size_t size)
 	return bigger + (*count)++ * size;
 }
 
-static bool is_set(const uint32_t *bits, unsigned at)
+static bool has_bit(const uint32_t *bits, unsigned at)
 {
 	return bits[at / 32] >> at % 32 & 1;
 }
@@ -42,7 +42,7 @@ static bool is_set(const uint32_t *bits, unsigned at)
 static struct sensor_step *sensor_table_step(struct sensor_reader *r, enum sensor_step_kind kind)
 {
 	struct sensor_table *table = r->table;
-	struct sensor_step *step = grow(&table->steps, &table->step_count, sizeof(*step));
+	struct sensor_step *step = grow_list(&table->steps, &table->step_count, sizeof(*step));
 
 	if (step) {
 		step->kind = (uint8_t)kind;
@@ -52,14 +52,14 @@ static struct sensor_step *sensor_table_step(struct sensor_reader *r, enum senso
 }
 
 /* Bytes up to the end or the word "read": each a number, or a formula in parentheses. */
-static int written(struct sensor_reader *r, bool set, unsigned *first, unsigned *count)
+static int take_written_bytes(struct sensor_reader *r, bool set, unsigned *first, unsigned *count)
 {
 	struct sensor_table *table = r->table;
 	int err = 0;
 
 	*first = table->byte_count;
 	while (!err && !reader_ended(r) && strncmp(r->at, "read", 4) != 0) {
-		struct formula *byte = grow(&table->bytes, &table->byte_count, sizeof(*byte));
+		struct formula *byte = grow_list(&table->bytes, &table->byte_count, sizeof(*byte));
 
 		if (!byte)
 			return -ENOMEM;
@@ -98,7 +98,7 @@ static int read_write(struct sensor_reader *r)
 {
 	struct sensor_step *to = sensor_table_step(r, SENSOR_WRITE);
 	unsigned first = 0, count = 0;
-	int err = to ? written(r, false, &first, &count) : -ENOMEM;
+	int err = to ? take_written_bytes(r, false, &first, &count) : -ENOMEM;
 
 	if (err)
 		return err;
@@ -227,7 +227,7 @@ static struct sensor_value *value_named(struct sensor_reader *r, const char *tex
 	return NULL;
 }
 
-static uint8_t type_of(struct sensor_reader *r)
+static uint8_t take_type(struct sensor_reader *r)
 {
 	static const struct {
 		const char *word;
@@ -242,7 +242,7 @@ static uint8_t type_of(struct sensor_reader *r)
 	return PROPERTY_FLOAT;
 }
 
-/* Its type bounds it: anything beyond is refused. Of others nobody but the author knows. */
+/* Its type bounds it: anything beyond is refused. Bounds of other types are the author's. */
 static bool is_bounded(uint8_t type)
 {
 	return type == PROPERTY_UNSIGNED || type == PROPERTY_INTEGER || type == PROPERTY_YESNO;
@@ -272,7 +272,7 @@ static int read_value(struct sensor_reader *r)
 		return reader_fail(r, "a sensor has %d values at most", KIND_VALUES);
 	if (!err && value_named(r, found.name))
 		return reader_fail(r, "there is a value %s already", found.name);
-	found.type = type_of(r);
+	found.type = take_type(r);
 	if (!err)
 		err = reader_equals(r);
 	if (!err)
@@ -286,7 +286,7 @@ static int read_value(struct sensor_reader *r)
 		                  "value %s has no range: add range LOW to HIGH, what the "
 		                  "sensor can mean",
 		                  found.name);
-	value = err ? NULL : grow(&table->values, &table->value_count, sizeof(*value));
+	value = err ? NULL : grow_list(&table->values, &table->value_count, sizeof(*value));
 	if (!value)
 		return err ? err : -ENOMEM;
 	*value = found;
@@ -307,7 +307,7 @@ static int read_set(struct sensor_reader *r)
 		return reader_fail(r, "expected a value %s before this: what is set is read back",
 		                   text);
 	value->writable = true;
-	return reader_take(r, "write") ? written(r, true, &value->first, &value->count)
+	return reader_take(r, "write") ? take_written_bytes(r, true, &value->first, &value->count)
 	                               : reader_fail(r, "expected write at \"%.24s\"", r->at);
 }
 
@@ -328,7 +328,7 @@ static int end_kind(struct sensor_reader *r)
 		return reader_fail(r, "sensor %s of line %u: more than %d lines to do", kind->name,
 		                   kind->line, KIND_STEPS);
 	for (unsigned i = 0; i < kind->bytes; i++)
-		if (is_set(r->lone, i) && !is_set(r->checked, i))
+		if (has_bit(r->lone, i) && !has_bit(r->checked, i))
 			return reader_fail(
 				r,
 				"sensor %s of line %u: byte %u is read without a register and "
@@ -364,7 +364,7 @@ static int read_sensor(struct sensor_reader *r)
 	if (before)
 		err = reader_fail(r, "there is a sensor %s already, in line %u", text,
 		                  before->line);
-	kind = err ? NULL : grow(&table->kinds, &table->kind_count, sizeof(*kind));
+	kind = err ? NULL : grow_list(&table->kinds, &table->kind_count, sizeof(*kind));
 	if (!kind)
 		return err ? err : -ENOMEM;
 	memcpy(kind->name, text, sizeof(text));
@@ -420,7 +420,7 @@ static int read_at(struct sensor_reader *r)
 	if (!bridge) {
 		if (table->bridge_count == BRIDGES_MAX)
 			return reader_fail(r, "more than %d bridges", BRIDGES_MAX);
-		bridge = grow(&table->bridges, &table->bridge_count, sizeof(*bridge));
+		bridge = grow_list(&table->bridges, &table->bridge_count, sizeof(*bridge));
 		if (!bridge)
 			return -ENOMEM;
 		memcpy(bridge->rom, rom, 8);

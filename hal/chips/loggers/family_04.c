@@ -11,7 +11,7 @@
 #include "hal/chips/steady.h"
 
 #define FLAGS 0x07
-#define SEARCHES 3 /* a disturbed one finds nobody */
+#define SEARCHES 3 /* a disturbed one finds no chip */
 #define ENABLES_SHIFT 3
 #define ENABLES (FLAGS << ENABLES_SHIFT) /* 0 enables */
 
@@ -50,7 +50,7 @@ static uint8_t just_set(const uint8_t *bytes)
  * counter, if the alarm came between them. A flag that is not enabled proves nothing and is left
  * out.
  */
-static int judge(struct txn *txn, uint8_t status)
+static int judge_flags(struct txn *txn, uint8_t status)
 {
 	struct ds2404 *chip = txn->device->own;
 	uint8_t enabled = FLAGS & ~(status >> ENABLES_SHIFT), flags = chip->unproven & enabled;
@@ -109,7 +109,7 @@ static int load_status(struct txn *txn, const struct area *area, unsigned at, ui
 		looks->status = bytes[0] & ENABLES;
 		return TXN_MORE;
 	}
-	err = judge(txn, looks->status);
+	err = judge_flags(txn, looks->status);
 	bytes[0] = looks->status | chip->flags;
 	memset(looks, 0, sizeof(*looks));
 	return err;

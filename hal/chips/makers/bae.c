@@ -23,7 +23,7 @@ int bae_identify(struct txn *txn)
 }
 
 /* The EEPROM of a 0910 stands elsewhere. */
-static unsigned address(const struct txn *txn, const struct area *area, unsigned at)
+static unsigned bae_address(const struct txn *txn, const struct area *area, unsigned at)
 {
 	bool moved = area->size > 0x3000 && txn->device->kind == BAE_910;
 
@@ -32,7 +32,7 @@ static unsigned address(const struct txn *txn, const struct area *area, unsigned
 
 int bae_load(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, unsigned n)
 {
-	unsigned where = address(txn, area, at);
+	unsigned where = bae_address(txn, area, at);
 	const uint8_t command[] = {READ_BLOCK, (uint8_t)where, (uint8_t)(where >> 8), (uint8_t)n};
 	return txn_ask_crc16(txn, command, sizeof(command), bytes, n);
 }
@@ -56,7 +56,7 @@ int bae_confirmed(struct txn *txn, const uint8_t *command, unsigned n)
 int bae_store(struct txn *txn, const struct area *area, unsigned at, const uint8_t *bytes,
               unsigned n)
 {
-	unsigned where = address(txn, area, at);
+	unsigned where = bae_address(txn, area, at);
 	uint8_t command[4 + AREA_UNIT] = {WRITE_BLOCK, (uint8_t)where, (uint8_t)(where >> 8),
 	                                  (uint8_t)n};
 

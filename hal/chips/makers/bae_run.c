@@ -30,7 +30,7 @@ struct run {
 };
 
 /* 0: it is done, and has given n bytes. */
-static int query(struct txn *txn, uint8_t *bytes, unsigned n)
+static int query_result(struct txn *txn, uint8_t *bytes, unsigned n)
 {
 	struct run *run = txn_own(txn, struct run);
 	uint8_t head[3] = {QUERY};
@@ -60,14 +60,14 @@ static int do_command(struct txn *txn, const uint8_t *command, unsigned n, uint8
 	int err;
 
 	if (run->looks)
-		return query(txn, out, out_n);
+		return query_result(txn, out, out_n);
 	run->looks = 1;
 	err = bae_confirmed(txn, command, n);
 	return err ? err : txn_wait(txn, SOON_NS);
 }
 
-static int start(struct txn *txn, uint8_t function, const uint8_t *in, unsigned n, uint8_t *out,
-                 unsigned out_n)
+static int start_function(struct txn *txn, uint8_t function, const uint8_t *in, unsigned n,
+                          uint8_t *out, unsigned out_n)
 {
 	uint8_t command[4 + 4] = {RUN, (uint8_t)n, function, (uint8_t)out_n};
 
@@ -77,7 +77,7 @@ static int start(struct txn *txn, uint8_t function, const uint8_t *in, unsigned 
 }
 
 /* The step is over; TXN_MORE: there are others. */
-static int next(struct txn *txn, int err)
+static int next_step(struct txn *txn, int err)
 {
 	struct run *run = txn_own(txn, struct run);
 
@@ -97,14 +97,14 @@ int bae_read_expander(struct txn *txn)
 
 	switch (run->step) {
 	case 0:
-		return next(txn, start(txn, END_I2C, NULL, 0, none, 0));
+		return next_step(txn, start_function(txn, END_I2C, NULL, 0, none, 0));
 	case 1:
-		err = start(txn, BEGIN_I2C, in, sizeof(in), &byte, 1);
+		err = start_function(txn, BEGIN_I2C, in, sizeof(in), &byte, 1);
 		if (!err)
 			run->pass = byte;
-		return next(txn, err);
+		return next_step(txn, err);
 	}
-	err = start(txn, END_I2C, NULL, 0, none, 0);
+	err = start_function(txn, END_I2C, NULL, 0, none, 0);
 	txn->number[0] = run->pass;
 	return err;
 }
@@ -122,14 +122,14 @@ int bae_write_expander(struct txn *txn)
 		return -EINVAL;
 	switch (run->step) {
 	case 0:
-		return next(txn, start(txn, BEGIN_I2C, in, sizeof(in), none, 0));
+		return next_step(txn, start_function(txn, BEGIN_I2C, in, sizeof(in), none, 0));
 	case 1:
 	case 3:
-		err = next(txn, start(txn, END_I2C, NULL, 0, none, 0));
+		err = next_step(txn, start_function(txn, END_I2C, NULL, 0, none, 0));
 		return run->step == 4 ? 0 : err;
 	}
-	err = start(txn, BEGIN_I2C, in, 2, &byte, 1);
-	return err ? err : byte == value ? next(txn, 0) : -EIO;
+	err = start_function(txn, BEGIN_I2C, in, 2, &byte, 1);
+	return err ? err : byte == value ? next_step(txn, 0) : -EIO;
 }
 
 int bae_read_sector_number(struct txn *txn)
@@ -153,7 +153,7 @@ static int begin_sector(struct txn *txn, uint8_t function)
 	                      (uint8_t)at};
 	uint8_t none[1];
 
-	return start(txn, function, in, sizeof(in), none, 0);
+	return start_function(txn, function, in, sizeof(in), none, 0);
 }
 
 /* A lost confirmation gives a block twice: so the sector is read twice. first: the first time. */
@@ -184,11 +184,11 @@ static int read_sector(struct txn *txn, unsigned from, bool compare)
 
 	switch (run->step - from) {
 	case 0:
-		return next(txn, begin_sector(txn, BEGIN_READ));
+		return next_step(txn, begin_sector(txn, BEGIN_READ));
 	case 1:
-		return next(txn, read_blocks(txn, run->pass == 0 && !compare));
+		return next_step(txn, read_blocks(txn, run->pass == 0 && !compare));
 	}
-	err = start(txn, END_READ, NULL, 0, none, 0);
+	err = start_function(txn, END_READ, NULL, 0, none, 0);
 	if (err)
 		return err;
 	run->step = (uint8_t)from;
@@ -215,7 +215,7 @@ int bae_write_sector(struct txn *txn)
 		return -EINVAL;
 	switch (run->step) {
 	case 0:
-		return next(txn, begin_sector(txn, BEGIN_WRITE));
+		return next_step(txn, begin_sector(txn, BEGIN_WRITE));
 	case 1:
 		memcpy(command + 3, txn->data + run->chunk * BLOCK, BLOCK);
 		err = do_command(txn, command, sizeof(command), none, 0);
@@ -224,9 +224,9 @@ int bae_write_sector(struct txn *txn)
 		if (++run->chunk < SECTOR / BLOCK)
 			return TXN_MORE;
 		run->chunk = 0;
-		return next(txn, 0);
+		return next_step(txn, 0);
 	case 2:
-		return next(txn, start(txn, END_WRITE, NULL, 0, none, 0));
+		return next_step(txn, start_function(txn, END_WRITE, NULL, 0, none, 0));
 	}
 	err = read_sector(txn, 3, true);
 	return err == -EBADMSG ? -EIO : err;

@@ -59,7 +59,7 @@ int eds_identify(struct txn *txn)
 }
 
 /* The seconds since it was switched on: fewer than before prove a restart. */
-static int saw(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
+static int saw_page(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
 {
 	struct eds *chip = txn->device->own;
 	struct visit *visit = txn_own(txn, struct visit);
@@ -87,7 +87,7 @@ static uint8_t states_that_count(uint8_t function)
 }
 
 /* state: where the state stands, behind the function; n: nowhere. */
-static bool same(const uint8_t *have, const uint8_t *want, unsigned n, unsigned state)
+static bool is_equal_but_state(const uint8_t *have, const uint8_t *want, unsigned n, unsigned state)
 {
 	for (unsigned i = 0; i < n; i++) {
 		uint8_t mask = i == state ? states_that_count(want[i - 1]) : 0xff;
@@ -103,7 +103,7 @@ static bool page_is_written(struct txn *txn, const uint8_t *have, const uint8_t 
 	const struct visit *visit = txn_own(txn, struct visit);
 	unsigned last = is_octal(txn->device->kind) ? 0x80 : 0x40;
 
-	return same(have, want, n, visit->at == last ? n - 1 : n);
+	return is_equal_but_state(have, want, n, visit->at == last ? n - 1 : n);
 }
 
 /* What resets something is not kept. */
@@ -111,9 +111,9 @@ static bool switches_are_written(struct txn *txn, const uint8_t *have, const uin
                                  unsigned n)
 {
 	(void)txn;
-	return same(have, want, PULSE_RESET, n) &&
-	       same(have + LATCH_RESET + 1, want + LATCH_RESET + 1, n - LATCH_RESET - 1,
-	            STATE - LATCH_RESET - 1);
+	return is_equal_but_state(have, want, PULSE_RESET, n) &&
+	       is_equal_but_state(have + LATCH_RESET + 1, want + LATCH_RESET + 1,
+	                          n - LATCH_RESET - 1, STATE - LATCH_RESET - 1);
 }
 
 /* Nothing is reset by the way. */
@@ -140,7 +140,7 @@ const struct area eds_memory = {
 	.block = PAGE,
 	.row = PAGE,
 	PAGES,
-	.saw = saw,
+	.saw = saw_page,
 	.is_written = page_is_written,
 };
 
@@ -267,7 +267,7 @@ static bool is_unchanged(struct txn *txn, const uint8_t *page, unsigned first)
 	return unchanged;
 }
 
-static void note(struct visit *visit, const uint8_t *page, unsigned first)
+static void note_counters(struct visit *visit, const uint8_t *page, unsigned first)
 {
 	if (!first)
 		visit->latches = page[LATCHES_AT - PAGE];
@@ -294,7 +294,7 @@ int eds_write_reset(struct txn *txn)
 	if (err)
 		return err;
 	if (visit->stage < 2)
-		note(visit, page, first);
+		note_counters(visit, page, first);
 	else if (visit->stage > 2 && is_unchanged(txn, page, first))
 		return -EIO;
 	return ++visit->stage > 4 ? 0 : TXN_MORE;

@@ -26,7 +26,7 @@ enum { READ_VERSION = 0x11, READ_TYPE, EXTENDED, ERASE = 0x16 };
 	.load = bae_load, .store = bae_store
 static const struct area eeprom = {MEMORY("EEPROM", 0, 32 * PAGE, BLOCK)};
 
-static uint32_t number_of(const uint8_t *bytes, unsigned n)
+static uint32_t big_endian_of(const uint8_t *bytes, unsigned n)
 {
 	uint32_t number = 0;
 
@@ -75,7 +75,7 @@ static int write_register(struct txn *txn, enum proof proof)
 	uint32_t gone = proof == SECONDS ? (uint32_t)((txn_now(txn) - written->ns) / S_NS) + LATE_S
 	                                 : 0;
 
-	return number_of(in, n) - (uint32_t)left <= gone ? 0 : -EIO;
+	return big_endian_of(in, n) - (uint32_t)left <= gone ? 0 : -EIO;
 }
 
 static int write_kept(struct txn *txn)
@@ -138,7 +138,7 @@ static int write_page(struct txn *txn)
 }
 
 /* All of the page is looked at after that. */
-static int erase(struct txn *txn)
+static int erase_page(struct txn *txn)
 {
 	unsigned where = (unsigned)txn->element * PAGE, n = 0;
 	unsigned moved = txn->device->kind == BAE_910 ? 0xe000 : 0;
@@ -209,7 +209,7 @@ static const struct property_how how[] = {
 	[WAY_GLOBAL] = {.read = read_global, .write = write_global},
 	[WAY_WORDS] = {.read = read_words},
 	[WAY_PAGE] = {.read = read_page, .write = write_page},
-	[WAY_ERASE] = {.write = erase},
+	[WAY_ERASE] = {.write = erase_page},
 	[WAY_COMMAND] = {.write = write_command},
 	/* half a firmware leaves no device: not over a wire that may fail */
 	[WAY_FIRMWARE] = {.write = property_refuse},

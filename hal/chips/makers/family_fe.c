@@ -4,7 +4,7 @@
  * commands are those of OWFS's driver.
  *
  * That driver takes a page if the CRC16 of the page alone does not fit, and refuses it if it does.
- * So nobody knows what a real one computes. The memory chips of 1-Wire start their CRC16 with the
+ * So what a real one computes is not known. The memory chips of 1-Wire start their CRC16 with the
  * command and the address. A page is good with either of both checksums, but of one chip always
  * with the same: it is learned from LEARNS pages in a row. So what noise may do to get past the
  * checksum is as rare as with one. A page with neither is refused.
@@ -34,7 +34,7 @@ struct smart_slave {
 	int64_t measured_ns;     /* its last conversion that was verified; 0: none is known */
 };
 
-static int fetch(struct txn *txn, uint8_t bytes[PAGE], unsigned *covers)
+static int fetch_page(struct txn *txn, uint8_t bytes[PAGE], unsigned *covers)
 {
 	static const uint8_t command[] = {0xf0, 0};
 	uint8_t in[PAGE + 2];
@@ -58,7 +58,7 @@ static int load_page(struct txn *txn, const struct area *area, unsigned at, uint
 	struct smart_slave *slave = txn->device->own;
 	unsigned covers = NOT_KNOWN;
 	uint8_t page[PAGE];
-	int err = fetch(txn, page, &covers);
+	int err = fetch_page(txn, page, &covers);
 
 	(void)area;
 	if (!err && (slave->covers || slave->pages) && covers != slave->learning)
@@ -84,7 +84,7 @@ static bool is_busy(const uint8_t bytes[PAGE])
 	return bytes[BUSY] || bytes[BUSY + 1];
 }
 
-static int now(struct txn *txn, uint8_t bytes[PAGE])
+static int page_now(struct txn *txn, uint8_t bytes[PAGE])
 {
 	int err = load_page(txn, &page, 0, bytes, PAGE);
 
@@ -106,13 +106,13 @@ static int family_fe_convert(struct txn *txn, uint8_t bytes[PAGE])
 		err = txn_command(txn, &command, 1);
 		return err ? err : txn_wait(txn, SOON_NS);
 	case 1:
-		err = now(txn, bytes);
+		err = page_now(txn, bytes);
 		txn->phase -= err == TXN_MORE;
 		if (err)
 			return err;
 		return is_busy(bytes) ? txn_wait(txn, CONVERT_NS) : -EBADMSG;
 	default:
-		err = now(txn, bytes);
+		err = page_now(txn, bytes);
 		txn->phase -= err == TXN_MORE;
 		if (err)
 			return err;
@@ -126,7 +126,7 @@ static int family_fe_convert(struct txn *txn, uint8_t bytes[PAGE])
 	}
 }
 
-static double value(const uint8_t *bytes)
+static double th_value(const uint8_t *bytes)
 {
 	return (int16_t)(bytes[0] << 8 | bytes[1]) / 128.0;
 }
@@ -138,11 +138,11 @@ static int read_measured(struct txn *txn)
 	int err = family_fe_convert(txn, bytes);
 
 	if (!err)
-		txn->number[0] = value(bytes + txn->property->arg);
+		txn->number[0] = th_value(bytes + txn->property->arg);
 	return err;
 }
 
-/* Of when a conversion is that the bus did not ask for, nobody knows. */
+/* The time of a conversion that the bus did not ask for is not known. */
 static int read_latest(struct txn *txn)
 {
 	const struct smart_slave *slave = txn->device->own;
@@ -153,7 +153,7 @@ static int read_latest(struct txn *txn)
 		return err;
 	if (bytes[SUBTYPE] != SUBTYPE_TH)
 		return -ENOENT;
-	txn->number[0] = value(bytes + txn->property->arg);
+	txn->number[0] = th_value(bytes + txn->property->arg);
 	txn->measured_ns = slave->measured_ns;
 	return !bytes[VALID] || is_busy(bytes) || !slave->measured_ns ? -EIO : 0;
 }

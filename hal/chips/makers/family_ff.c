@@ -63,8 +63,8 @@ static int read_pad(struct txn *txn, uint8_t bytes[LCD_PAD])
  * What the command puts into the scratchpad, twice, ahead of which other bytes stood there: so a
  * lost command shows. setup: what it takes from the scratchpad.
  */
-static int fetch(struct txn *txn, uint8_t code, const uint8_t *setup, unsigned setup_n,
-                 uint8_t *bytes, unsigned n)
+static int fetch_by_pad(struct txn *txn, uint8_t code, const uint8_t *setup, unsigned setup_n,
+                        uint8_t *bytes, unsigned n)
 {
 	struct pad *pad = txn_own(txn, struct pad);
 	uint8_t fill[LCD_PAD], in[LCD_PAD];
@@ -101,7 +101,7 @@ static int load_eeprom(struct txn *txn, const struct area *area, unsigned at, ui
 	const uint8_t setup[] = {(uint8_t)at, LCD_PAD};
 
 	(void)area;
-	return fetch(txn, READ_EEPROM, setup, sizeof(setup), bytes, n);
+	return fetch_by_pad(txn, READ_EEPROM, setup, sizeof(setup), bytes, n);
 }
 
 static int store_eeprom(struct txn *txn, const struct area *area, unsigned at, const uint8_t *bytes,
@@ -128,7 +128,7 @@ static const struct area eeprom = {
 static int read_version(struct txn *txn)
 {
 	uint8_t bytes[LCD_PAD];
-	int err = fetch(txn, READ_VERSION, NULL, 0, bytes, LCD_PAD);
+	int err = fetch_by_pad(txn, READ_VERSION, NULL, 0, bytes, LCD_PAD);
 
 	if (err)
 		return err;
@@ -143,7 +143,7 @@ static int read_version(struct txn *txn)
  * arg: the command. A disturbed one may have changed the display: no second try hides that. A
  * display that counts on with each read gives no two equal ones.
  */
-static int read_byte(struct txn *txn)
+static int read_lcd_byte(struct txn *txn)
 {
 	struct lcd *lcd = txn->device->own;
 	uint8_t byte = 0;
@@ -153,7 +153,7 @@ static int read_byte(struct txn *txn)
 		lcd->doubted--;
 		return -EIO;
 	}
-	err = fetch(txn, (uint8_t)txn->property->arg, NULL, 0, &byte, 1);
+	err = fetch_by_pad(txn, (uint8_t)txn->property->arg, NULL, 0, &byte, 1);
 	if (!err)
 		txn->number[0] = byte;
 	if (err != -EBADMSG)
@@ -163,7 +163,7 @@ static int read_byte(struct txn *txn)
 }
 
 /* The command beside that which reads it. Nothing shows that it was taken. */
-static int write_byte(struct txn *txn)
+static int write_lcd_byte(struct txn *txn)
 {
 	const uint8_t byte = (uint8_t)txn->number[0];
 
@@ -176,7 +176,7 @@ static int write_byte(struct txn *txn)
 static int read_pins(struct txn *txn)
 {
 	uint8_t byte = 0;
-	int err = fetch(txn, READ_PINS, NULL, 0, &byte, 1);
+	int err = fetch_by_pad(txn, READ_PINS, NULL, 0, &byte, 1);
 
 	if (!err)
 		txn->bits = ~byte & 0x0f;
@@ -294,7 +294,7 @@ enum { WAY_VERSION = AFTER_LCD_SWART_WAYS, WAY_BYTE, WAY_PINS, WAY_COUNTS, WAY_S
 static const struct property_how how[] = {
 	LCD_SWART_WAYS,
 	[WAY_VERSION] = {.read = read_version},
-	[WAY_BYTE] = {.read = read_byte, .write = write_byte},
+	[WAY_BYTE] = {.read = read_lcd_byte, .write = write_lcd_byte},
 	[WAY_PINS] = {.read = read_pins, .write = write_pins, .merge = merge_pins},
 	[WAY_COUNTS] = {.read = read_counts},
 	[WAY_SUM] = {.read = read_sum, .write = write_sum},

@@ -38,7 +38,7 @@ struct asked {
 
 static const struct area identification = {.name = "device", .size = 4, .block = 4, .read = DEVICE};
 
-static struct inferno *of(const struct txn *txn)
+static struct inferno *inferno_of(const struct txn *txn)
 {
 	return txn->device->own;
 }
@@ -61,8 +61,8 @@ int inferno_identify(struct txn *txn)
  * The command, its n bytes and their checksum; the device answers 0 and in_n bytes. These are read
  * at once: on a wire with other masters only the answer proves that the bytes after it are its own.
  */
-static int exchange(struct txn *txn, uint8_t code, const uint8_t *args, unsigned n, uint8_t *in,
-                    unsigned in_n)
+static int inferno_exchange(struct txn *txn, uint8_t code, const uint8_t *args, unsigned n,
+                            uint8_t *in, unsigned in_n)
 {
 	uint8_t bytes[8 + 1 + ARGS + 1], answer[1 + PORTS * CHANNELS];
 	int err;
@@ -83,9 +83,9 @@ static int exchange(struct txn *txn, uint8_t code, const uint8_t *args, unsigned
 	return answer[0] ? -EBADMSG : 0;
 }
 
-static int command(struct txn *txn, uint8_t code, const uint8_t *args, unsigned n)
+static int inferno_send(struct txn *txn, uint8_t code, const uint8_t *args, unsigned n)
 {
-	return exchange(txn, code, args, n, NULL, 0);
+	return inferno_exchange(txn, code, args, n, NULL, 0);
 }
 
 /* The n bytes of the answer after `skip`, to asked->seen; TXN_MORE until enough looks agree. */
@@ -94,7 +94,8 @@ static int inferno_ask(struct txn *txn, uint8_t code, const uint8_t *args, unsig
 {
 	struct asked *asked = txn_own(txn, struct asked);
 	uint8_t in[PORTS * CHANNELS];
-	int err = skip + n > sizeof(in) ? -EIO : exchange(txn, code, args, args_n, in, skip + n);
+	int err = skip + n > sizeof(in) ? -EIO
+	                                : inferno_exchange(txn, code, args, args_n, in, skip + n);
 
 	if (err)
 		return err;
@@ -111,7 +112,7 @@ static int inferno_ask(struct txn *txn, uint8_t code, const uint8_t *args, unsig
 static int inferno_count(struct txn *txn, unsigned which)
 {
 	const struct asked *asked = txn_own(txn, struct asked);
-	uint8_t *counts = of(txn)->counts[which];
+	uint8_t *counts = inferno_of(txn)->counts[which];
 
 	if (counts[0])
 		return 0;
@@ -152,7 +153,7 @@ int inferno_read_count(struct txn *txn)
 		return err;
 	}
 	err = inferno_count(txn, counted(txn));
-	txn->number[0] = of(txn)->counts[counted(txn)][port_of(txn)];
+	txn->number[0] = inferno_of(txn)->counts[counted(txn)][port_of(txn)];
 	return err;
 }
 
@@ -186,17 +187,17 @@ int inferno_read_port(struct txn *txn)
 
 	if (err)
 		return err;
-	const uint8_t *counts = of(txn)->counts[counted(txn)];
+	const uint8_t *counts = inferno_of(txn)->counts[counted(txn)];
 	unsigned n = counts[1], bytes = (n + 7) / 8;
 
 	if (port >= counts[0])
 		return -ENOENT;
 	switch ((enum inferno_port)what_of(txn)) {
 	case INFERNO_SWITCH:
-		if (!of(txn)->fetched_ns)
+		if (!inferno_of(txn)->fetched_ns)
 			return -EIO;
-		txn->measured_ns = of(txn)->fetched_ns;
-		return put_bits(txn, of(txn)->activated[port], n);
+		txn->measured_ns = inferno_of(txn)->fetched_ns;
+		return put_bits(txn, inferno_of(txn)->activated[port], n);
 	case INFERNO_LED:
 		err = inferno_ask(txn, codes[INFERNO_LED], &port, 1, 0, bytes);
 		for (unsigned i = 0; i < bytes && !err; i++)
@@ -212,7 +213,7 @@ int inferno_read_port(struct txn *txn)
 }
 
 /* Number i of the list that is written; -EINVAL: it is none, -ENOENT: the list has ended. */
-static int number(const struct txn *txn, unsigned i, uint32_t most)
+static int list_number(const struct txn *txn, unsigned i, uint32_t most)
 {
 	const char *part;
 	char text[16] = "", *end;
@@ -236,7 +237,7 @@ static int check_list(const struct txn *txn, unsigned n, uint32_t most)
 	unsigned i = 0;
 	int value;
 
-	while ((value = number(txn, i, most)) >= 0)
+	while ((value = list_number(txn, i, most)) >= 0)
 		i++;
 	return txn->at || value != -ENOENT || i == 0 || i > n ? -EINVAL : 0;
 }
@@ -251,18 +252,18 @@ int inferno_write_port(struct txn *txn)
 
 	if (err)
 		return err;
-	const uint8_t *counts = of(txn)->counts[counted(txn)];
+	const uint8_t *counts = inferno_of(txn)->counts[counted(txn)];
 
 	if (port_of(txn) >= counts[0])
 		return -ENOENT;
 	if (asked->channel == 0 && check_list(txn, counts[1], most))
 		return -EINVAL;
-	value = number(txn, asked->channel, most);
+	value = list_number(txn, asked->channel, most);
 	if (value < 0)
 		return 0;
 	const uint8_t args[] = {(uint8_t)port_of(txn), asked->channel, (uint8_t)value};
 
-	err = command(txn, codes[what_of(txn)], args, sizeof(args));
+	err = inferno_send(txn, codes[what_of(txn)], args, sizeof(args));
 	asked->channel++;
 	return err ? err : TXN_MORE;
 }
@@ -274,21 +275,21 @@ int inferno_set_type(struct txn *txn)
 
 	if (err)
 		return err;
-	if (check_list(txn, 3, 255) || number(txn, 2, 3) < 0)
+	if (check_list(txn, 3, 255) || list_number(txn, 2, 3) < 0)
 		return -EINVAL;
-	const uint8_t args[] = {(uint8_t)number(txn, 0, 255), (uint8_t)number(txn, 1, 255),
-	                        (uint8_t)number(txn, 2, 3)};
-	const uint8_t *counts = of(txn)->counts[INFERNO_SWITCH];
+	const uint8_t args[] = {(uint8_t)list_number(txn, 0, 255),
+	                        (uint8_t)list_number(txn, 1, 255), (uint8_t)list_number(txn, 2, 3)};
+	const uint8_t *counts = inferno_of(txn)->counts[INFERNO_SWITCH];
 
 	if (args[0] >= counts[0] || args[1] >= counts[1])
 		return -EINVAL;
-	return command(txn, SET_TYPE, args, sizeof(args));
+	return inferno_send(txn, SET_TYPE, args, sizeof(args));
 }
 
 /* It clears what it reads: it is read once, and nothing proves the bytes. */
 int inferno_refresh(struct txn *txn)
 {
-	struct inferno *inferno = of(txn);
+	struct inferno *inferno = inferno_of(txn);
 	uint8_t bytes[PORTS * 4];
 	int err = inferno_count(txn, INFERNO_SWITCH);
 
@@ -298,7 +299,7 @@ int inferno_refresh(struct txn *txn)
 	unsigned each = (inferno->counts[INFERNO_SWITCH][1] + 7u) / 8;
 
 	ports = ports < PORTS ? ports : PORTS;
-	err = exchange(txn, GET_ACTIVATED, NULL, 0, bytes, ports * each);
+	err = inferno_exchange(txn, GET_ACTIVATED, NULL, 0, bytes, ports * each);
 	if (err)
 		return err;
 	memset(inferno->activated, 0, sizeof(inferno->activated));
@@ -331,25 +332,25 @@ int inferno_write_light(struct txn *txn)
 	int fade, err;
 
 	if (asked->stage)
-		return command(txn, COMMIT, NULL, 0);
-	fade = number(txn, 4, 0xffffff);
+		return inferno_send(txn, COMMIT, NULL, 0);
+	fade = list_number(txn, 4, 0xffffff);
 	if (fade < 0 || check_list(txn, 5, 0xffffff))
 		return -EINVAL;
 	for (unsigned i = 0; i < 4; i++) {
-		if (number(txn, i, 255) < 0)
+		if (list_number(txn, i, 255) < 0)
 			return -EINVAL;
-		args[1 + i] = (uint8_t)number(txn, i, 255);
+		args[1 + i] = (uint8_t)list_number(txn, i, 255);
 	}
 	for (unsigned i = 0; i < 3; i++)
 		args[5 + i] = (uint8_t)(fade >> 8 * i);
-	err = command(txn, SET_LIGHT, args, sizeof(args));
+	err = inferno_send(txn, SET_LIGHT, args, sizeof(args));
 	asked->stage = 1;
 	return err ? err : TXN_MORE;
 }
 
 int inferno_command(struct txn *txn)
 {
-	return txn->number[0] != 0 ? command(txn, (uint8_t)txn->property->arg, NULL, 0) : 0;
+	return txn->number[0] != 0 ? inferno_send(txn, (uint8_t)txn->property->arg, NULL, 0) : 0;
 }
 
 int inferno_read_device(struct txn *txn)
@@ -375,8 +376,8 @@ int inferno_enter_update(struct txn *txn)
 		return 0;
 	if (asked->stage == 0) {
 		asked->stage = 1;
-		memset(of(txn), 0, sizeof(struct inferno));
-		err = command(txn, BOOT_UPDATER, NULL, 0);
+		memset(inferno_of(txn), 0, sizeof(struct inferno));
+		err = inferno_send(txn, BOOT_UPDATER, NULL, 0);
 		return err ? err : txn_wait(txn, BOOT_NS);
 	}
 	err = inferno_identify(txn);

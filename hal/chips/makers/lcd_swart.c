@@ -51,7 +51,7 @@ static int lcd_swart_send(struct txn *txn, uint8_t command, int64_t ns)
 }
 
 /* A line goes to the display in chunks, each with its place ahead. 0: all are there. */
-static int print(struct txn *txn, unsigned row, const char *line)
+static int print_line(struct txn *txn, unsigned row, const char *line)
 {
 	struct shown *shown = txn_own(txn, struct shown);
 	unsigned width = (unsigned)txn->property->arg, from = shown->chunk * CHUNK;
@@ -85,7 +85,7 @@ int lcd_swart_line(struct txn *txn)
 	if (txn->at + txn->len > (unsigned)txn->property->arg)
 		return -EINVAL;
 	memcpy(line + txn->at, txn->data, txn->len);
-	return print(txn, (unsigned)txn->element, line);
+	return print_line(txn, (unsigned)txn->element, line);
 }
 
 /* The row's text, which ends with a line end or where the display does; false: there is none. */
@@ -123,7 +123,7 @@ int lcd_swart_screen(struct txn *txn)
 	}
 	if (shown->row == rows || !line_of(txn, shown->row, line))
 		return 0;
-	err = print(txn, shown->row, line);
+	err = print_line(txn, shown->row, line);
 	if (err)
 		return err;
 	shown->row++;

@@ -10,8 +10,8 @@
 #define ERASE_SCRATCHPAD 0xc3
 
 /* What the chip has computed hides the scratchpad until it is erased. */
-static int store(struct txn *txn, const struct area *area, unsigned at, const uint8_t *bytes,
-                 unsigned n)
+static int store_row(struct txn *txn, const struct area *area, unsigned at, const uint8_t *bytes,
+                     unsigned n)
 {
 	static const uint8_t erase[] = {ERASE_SCRATCHPAD, 0, 0};
 	uint8_t command[3 + AREA_UNIT] = {area->write, (uint8_t)at, (uint8_t)(at >> 8)};
@@ -32,7 +32,7 @@ static const struct area memory = {
 	.verify = 0xaa,
 	.copy = 0x55,
 	.copy_ns = TXN_MS,
-	.store = store,
+	.store = store_row,
 };
 
 enum { MEMORY = 1, COUNTS };

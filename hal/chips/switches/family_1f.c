@@ -63,7 +63,7 @@ static int family_1f_command(struct txn *txn, uint8_t code)
 	return err ? err : answer == code ? 0 : -EBADMSG;
 }
 
-static int all_off(struct txn *txn)
+static int switch_all_off(struct txn *txn)
 {
 	struct coupler_seen *seen = txn->device->own;
 	int err = family_1f_command(txn, ALL_LINES_OFF);
@@ -76,12 +76,12 @@ static int all_off(struct txn *txn)
 /* The bus itself switches the branches on, whenever it needs one. */
 static int write_branch(struct txn *txn)
 {
-	return txn->bits ? -EOPNOTSUPP : all_off(txn);
+	return txn->bits ? -EOPNOTSUPP : switch_all_off(txn);
 }
 
 static int write_clearevent(struct txn *txn)
 {
-	return txn->number[0] != 0 ? all_off(txn) : 0;
+	return txn->number[0] != 0 ? switch_all_off(txn) : 0;
 }
 
 /* The wire is left alone meanwhile: any other command to the chip ends the discharge. */
@@ -90,7 +90,7 @@ static int write_discharge(struct txn *txn)
 	if (txn->number[0] == 0)
 		return 0;
 	if (txn->phase)
-		return all_off(txn);
+		return switch_all_off(txn);
 	int err = family_1f_command(txn, DISCHARGE_LINES);
 	if (err)
 		return err;

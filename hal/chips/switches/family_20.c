@@ -102,7 +102,7 @@ static void want_conversion(int arg, uint8_t want[8], uint8_t which[8])
 	}
 }
 
-static bool is_set(int arg, const uint8_t control[8])
+static bool is_set_for(int arg, const uint8_t control[8])
 {
 	uint8_t want[8], which[8];
 	bool set = true;
@@ -134,7 +134,7 @@ static int look_at_settings(struct txn *txn)
 	if (err)
 		return err;
 	visit->supply = bytes[SUPPLY_AT - CONTROL];
-	visit->set = is_set(txn->property->arg, bytes) && !txn->device->base_of;
+	visit->set = is_set_for(txn->property->arg, bytes) && !txn->device->base_of;
 	txn->phase = 1;
 	return TXN_MORE;
 }
@@ -163,13 +163,13 @@ static int family_20_convert(struct txn *txn)
 		err = saw_pages(txn, RESULTS, bytes, sizeof(bytes));
 	if (err)
 		return err;
-	if (!is_set(txn->property->arg, bytes + CONTROL))
+	if (!is_set_for(txn->property->arg, bytes + CONTROL))
 		return -EIO;
 	take_volts(txn, bytes);
 	return 0;
 }
 
-/* One conversion serves all who want its volts in the same way. */
+/* One conversion serves all requests for its volts in the same way. */
 static int read_volt(struct txn *txn)
 {
 	static const char conversions[4];
@@ -191,7 +191,7 @@ static int read_volt(struct txn *txn)
 }
 
 /*
- * Of when a result is that the bus has not asked for, nobody knows, and one of another range would
+ * The time of a result that the bus did not ask for is not known, and one of another range would
  * be twice as much or half: a conversion gives the truth.
  * A restart leaves zeros as results. Nothing but zeros may be of one whose flags a setting has
  * cleared since: a conversion gives the truth.

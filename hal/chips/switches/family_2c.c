@@ -7,8 +7,8 @@
 #define RELEASE 0x96
 
 /* The chip sends the byte back, and takes it with the release code. */
-static int store(struct txn *txn, const struct area *area, unsigned at, const uint8_t *bytes,
-                 unsigned n)
+static int store_register(struct txn *txn, const struct area *area, unsigned at,
+                          const uint8_t *bytes, unsigned n)
 {
 	static const uint8_t release = RELEASE;
 	const uint8_t command[] = {area->write, bytes[1]};
@@ -27,7 +27,7 @@ static int store(struct txn *txn, const struct area *area, unsigned at, const ui
 }
 
 /* A byte that is not written comes first: the control register, or what the chip can do. */
-#define REGISTER .size = 2, .block = 2, .row = 2, .store = store
+#define REGISTER .size = 2, .block = 2, .row = 2, .store = store_register
 
 enum { POSITION = 1, CONTROL };
 static const struct area *const areas[] = {

@@ -2,8 +2,8 @@
 /*
  * DS18B20 and MAX31820, and the clones of the DS18B20 by the families of Chris Petrich's catalogue
  * (github.com/cpetrich/counterfeit_DS18B20, 2024, whose letters these are): by the id, the reserved
- * bytes of the scratchpad, and the limits as the maker sets them, which who uses the chip may have
- * changed. Only Read Scratchpad is sent. What an id alone suggests may be wrong: ids of some
+ * bytes of the scratchpad, and the limits as the maker sets them, which a user may have changed.
+ * Only Read Scratchpad is sent. What an id alone suggests may be wrong: ids of some
  * clones are random.
  *
  * Byte 6 after a conversion is, with the last four bits n of the temperature: 16 - n in the genuine

@@ -51,7 +51,7 @@ static uint8_t kind_by(const uint8_t *bytes)
 	               : UNKNOWN;
 }
 
-/* Another chip than was known has taken its place, or one that nobody knows. */
+/* Another chip than was known has taken its place, or one that is in no data sheet: -EIO. */
 static int saw_scratchpad(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
 {
 	struct thermometer *chip = txn->device->own;
@@ -83,26 +83,26 @@ static const struct area scratchpad = {
 	.saw = saw_scratchpad,
 };
 
-static int now(struct txn *txn, uint8_t bytes[9])
+static int scratchpad_now(struct txn *txn, uint8_t bytes[9])
 {
 	int err = area_fetch(txn, &scratchpad, 0, bytes, 9);
 
 	return err ? err : saw_scratchpad(txn, 0, bytes, 9);
 }
 
-static int tell(struct txn *txn)
+static int tell_kind(struct txn *txn)
 {
 	uint8_t bytes[9];
 
-	return now(txn, bytes);
+	return scratchpad_now(txn, bytes);
 }
 
 /* 0: it is known which chip this is; TXN_MORE it is now, -ENOENT it has no such property. */
-static int identify(struct txn *txn)
+static int learn_kind(struct txn *txn)
 {
 	if (txn->device->kind != UNKNOWN)
 		return refuse_absent(txn);
-	int err = tell(txn);
+	int err = tell_kind(txn);
 	return err ? err : TXN_MORE;
 }
 
@@ -137,7 +137,7 @@ static int cold_raw(const uint8_t bytes[9])
 /* Of the last conversion, as far as the chip can show that; TXN_MORE: not yet. */
 static int converted(struct txn *txn, uint8_t bytes[9])
 {
-	int err = now(txn, bytes);
+	int err = scratchpad_now(txn, bytes);
 
 	if (!err)
 		err = thermometer_ended(txn, bytes, txn_ended(txn));
@@ -167,7 +167,7 @@ static int read_max31825(struct txn *txn)
 static int read_temperature(struct txn *txn)
 {
 	uint8_t bytes[9];
-	int err = identify(txn);
+	int err = learn_kind(txn);
 
 	if (err)
 		return err;
@@ -198,7 +198,7 @@ static int read_thermocouple(struct txn *txn)
 
 static int write_limit(struct txn *txn)
 {
-	int err = identify(txn);
+	int err = learn_kind(txn);
 
 	return err ? err : thermometer_write_limit(txn);
 }
@@ -216,7 +216,7 @@ static int read_address(struct txn *txn)
 
 static int read_power(struct txn *txn)
 {
-	int err = txn->phase ? 0 : identify(txn);
+	int err = txn->phase ? 0 : learn_kind(txn);
 
 	if (!err && txn->device->kind == MAX31825)
 		return -EOPNOTSUPP;
@@ -227,18 +227,18 @@ static int read_tempres(struct txn *txn)
 {
 	static const uint8_t resolutions[] = {8, 9, 10, 12};
 	uint8_t bytes[9];
-	int err = identify(txn);
+	int err = learn_kind(txn);
 
 	if (err || txn->device->kind != MAX31825)
 		return err ? err : thermometer_read_tempres(txn);
-	err = now(txn, bytes);
+	err = scratchpad_now(txn, bytes);
 	txn->number[0] = resolutions[bytes[SP_LOW] >> 5 & 3];
 	return err;
 }
 
 static int write_tempres(struct txn *txn)
 {
-	int err = txn->phase ? 0 : identify(txn);
+	int err = txn->phase ? 0 : learn_kind(txn);
 
 	if (!err && txn->device->kind == MAX31825)
 		return -EOPNOTSUPP;
@@ -248,7 +248,7 @@ static int write_tempres(struct txn *txn)
 static int read_identity(struct txn *txn)
 {
 	uint8_t bytes[9];
-	int err = now(txn, bytes);
+	int err = scratchpad_now(txn, bytes);
 
 	if (err && err != -EIO)
 		return err;
@@ -282,7 +282,7 @@ static int read_flags(struct txn *txn)
 /* No data sheet says what becomes of a conversion while the memory is used. */
 static int begin_memory(struct txn *txn)
 {
-	int err = identify(txn);
+	int err = learn_kind(txn);
 
 	return err ? err : thermometer_rest(txn);
 }
@@ -381,7 +381,7 @@ const struct family family_3b = {
 	.flags = FLAG_ALARM | FLAG_TEMPERATURE,
 	SCAN({"temperature12", "temperature"}, {"thermocouple", "thermocouple"}),
 	.several = true,
-	.tell = tell,
+	.tell = tell_kind,
 	.types = types,
 	THERMOMETER_FAMILY,
 	AREAS(areas),

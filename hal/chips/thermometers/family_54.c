@@ -38,7 +38,7 @@ static int read_registers(struct txn *txn, uint8_t at, uint8_t *bytes, uint8_t n
 }
 
 /* The chip answers with the CRC16 of the command; behind its last bit the conversion begins. */
-static int start(struct txn *txn)
+static int start_conversion(struct txn *txn)
 {
 	static const uint8_t command = CONVERT;
 	uint16_t covered = onewire_crc16(0, &command, 1);
@@ -63,7 +63,7 @@ static int start(struct txn *txn)
 	return txn->link->passive ? txn_wait(txn, CONVERT_NS) : txn_bit_strong(txn, CONVERT_NS);
 }
 
-static int flush(struct txn *txn)
+static int flush_fifo(struct txn *txn)
 {
 	static const uint8_t command[] = {WRITE, FIFO_CONFIGURATION, 0, FLUSH};
 	uint8_t none;
@@ -77,13 +77,13 @@ static int read_temperature(struct txn *txn)
 	int err;
 
 	if (visit->flush) {
-		err = flush(txn);
+		err = flush_fifo(txn);
 		visit->flush = visit->started = false;
 		visit->flushed = !err;
 		return err ? err : TXN_MORE;
 	}
 	if (!visit->started) {
-		err = start(txn);
+		err = start_conversion(txn);
 		visit->started = err == TXN_MORE;
 		visit->done_ns = txn->wake_ns;
 		return err;

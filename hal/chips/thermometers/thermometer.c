@@ -64,8 +64,8 @@ static int saw_config(struct txn *txn, const uint8_t scratchpad[9])
 }
 
 /*
- * The ones of a wire on which nobody answers get a right checksum by two bits turned over. Chips of
- * family 3B are told apart by that bit.
+ * The ones of a wire on which no chip answers get a right checksum by two bits turned over. Chips
+ * of family 3B are told apart by that bit.
  */
 static bool is_noise(const struct device *device, const uint8_t scratchpad[9])
 {

@@ -44,15 +44,15 @@ enum {
 /* While the chip recalls its slots are zeros, as the data sheet says; it takes microseconds. */
 #define RECALL_BYTES 4
 
-static unsigned settings_of(const struct txn *txn)
+static unsigned count_settings(const struct txn *txn)
 {
 	return txn->device->family->fixed ? 2 : 3;
 }
 
-static bool is_set(struct txn *txn, const uint8_t scratchpad[9])
+static bool has_settings(struct txn *txn, const uint8_t scratchpad[9])
 {
 	return memcmp(scratchpad + SP_HIGH, visit_of(txn)->scratchpad + SP_HIGH,
-	              settings_of(txn)) == 0;
+	              count_settings(txn)) == 0;
 }
 
 /* Recall E2, its end, and what is there then. */
@@ -84,7 +84,7 @@ static int copy_settings(struct txn *txn)
 
 		return err ? err : TXN_MORE;
 	}
-	/* Without a strong pull-up it matters who feeds the chip. */
+	/* Without a strong pull-up a chip that the wire feeds cannot copy. */
 	if (txn->link->passive && txn->device->power == POWER_UNKNOWN) {
 		int err = thermometer_ask_power(txn);
 
@@ -106,7 +106,7 @@ static int stored(struct txn *txn)
 }
 
 /* What the EEPROM has, but for the field; after a write that failed what it had before that. */
-static int want(struct txn *txn, const uint8_t scratchpad[9])
+static int want_settings(struct txn *txn, const uint8_t scratchpad[9])
 {
 	struct visit *visit = visit_of(txn);
 
@@ -141,7 +141,7 @@ static int thermometer_store_look(struct txn *txn)
 		visit->scratchpad[SP_CONFIG] = thermometer_config(
 			visit->scratchpad[SP_CONFIG], thermometer_of(txn->device)->stored);
 	visit->proven = true;
-	return want(txn, visit->scratchpad);
+	return want_settings(txn, visit->scratchpad);
 }
 
 static int recall_first(struct txn *txn)
@@ -154,11 +154,11 @@ static int recall_first(struct txn *txn)
 		err = recall_settings(txn, scratchpad);
 	if (err)
 		return err;
-	visit->proven = memcmp(visit->was, scratchpad + SP_HIGH, settings_of(txn)) != 0;
+	visit->proven = memcmp(visit->was, scratchpad + SP_HIGH, count_settings(txn)) != 0;
 	if (!visit->proven && ++visit->looks < RECALLS_FIRST)
 		return TXN_MORE;
 	visit->looks = 0;
-	return want(txn, scratchpad);
+	return want_settings(txn, scratchpad);
 }
 
 static int thermometer_store_write(struct txn *txn)
@@ -182,7 +182,7 @@ static int verify(struct txn *txn)
 	int err = thermometer_settings(txn, scratchpad);
 	if (err)
 		return err;
-	if (!is_set(txn, scratchpad))
+	if (!has_settings(txn, scratchpad))
 		return scratchpad[SP_CONFIG] != visit->scratchpad[SP_CONFIG] ? -EINVAL : -EBADMSG;
 	if (visit->proven)
 		txn_keep(txn, &thermometer_area, visit->kept, 3);
@@ -198,9 +198,9 @@ static int probe(struct txn *txn)
 
 	if (err)
 		return err;
-	visit->proven = !is_set(txn, scratchpad);
+	visit->proven = !has_settings(txn, scratchpad);
 	if (visit->proven)
-		return want(txn, scratchpad);
+		return want_settings(txn, scratchpad);
 	if (++visit->looks >= PROBES) {
 		memcpy(visit->scratchpad + SP_HIGH, visit->was, 3);
 		txn->phase = RESTORE;
@@ -222,7 +222,7 @@ static int restore(struct txn *txn)
 	thermometer_of(txn->device)->resolution = 0;
 	err = thermometer_settings(txn, scratchpad);
 	if (!err)
-		err = is_set(txn, scratchpad) ? -EIO : -EBADMSG;
+		err = has_settings(txn, scratchpad) ? -EIO : -EBADMSG;
 	return err;
 }
 
@@ -239,14 +239,14 @@ static int thermometer_store_check(struct txn *txn)
 	}
 	if (err)
 		return err;
-	if (!is_set(txn, scratchpad))
+	if (!has_settings(txn, scratchpad))
 		return -EIO;
 	if (++txn->phase < CHECK)
 		return TXN_MORE;
 	return stored(txn);
 }
 
-static int store(struct txn *txn)
+static int store_settings(struct txn *txn)
 {
 	switch (txn->phase) {
 	case LOOK:
@@ -274,21 +274,21 @@ int thermometer_write_limit(struct txn *txn)
 	double value = txn->number[0];
 
 	if (txn->phase)
-		return store(txn);
+		return store_settings(txn);
 	if (!(value > -128.5 && value < 127.5))
 		return -EINVAL;
 	visit_of(txn)->at = (uint8_t)txn->property->field.at;
 	visit_of(txn)->value = (uint8_t)(int)(value < 0 ? value - 0.5 : value + 0.5);
-	return store(txn);
+	return store_settings(txn);
 }
 
 int thermometer_write_tempres(struct txn *txn)
 {
 	if (txn->phase)
-		return store(txn);
+		return store_settings(txn);
 	if (!(txn->number[0] >= 9 && txn->number[0] <= 12))
 		return -EINVAL;
 	visit_of(txn)->at = SP_CONFIG;
 	visit_of(txn)->value = (uint8_t)txn->number[0];
-	return store(txn);
+	return store_settings(txn);
 }

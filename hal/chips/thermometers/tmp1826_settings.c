@@ -24,7 +24,7 @@
 static const char base[] = "settings"; /* for txn_keep() */
 
 /* All settings, in the order in which they are written. */
-static void settings_of(const uint8_t pad[TMP1826_PAD], uint8_t settings[SETTINGS])
+static void settings_of_pad(const uint8_t pad[TMP1826_PAD], uint8_t settings[SETTINGS])
 {
 	memcpy(settings, pad + TMP1826_SETTINGS, FIRST_HALF);
 	memcpy(settings + FIRST_HALF, pad + TMP1826_LOW, SETTINGS - FIRST_HALF);
@@ -39,7 +39,7 @@ static int in_range(double raw, int16_t *out)
 }
 
 /* What the settings are to be; of a write that failed before, from those before it. */
-static int wanted(struct txn *txn, const uint8_t have[SETTINGS], uint8_t want[SETTINGS])
+static int wanted_settings(struct txn *txn, const uint8_t have[SETTINGS], uint8_t want[SETTINGS])
 {
 	unsigned at = FIRST_HALF + (unsigned)txn->property->arg - TMP1826_LOW;
 	int16_t raw = 0;
@@ -89,9 +89,9 @@ int tmp1826_write_limit(struct txn *txn)
 
 	if (err)
 		return err;
-	settings_of(pad, have);
+	settings_of_pad(pad, have);
 	if (txn->phase == LOOK) {
-		err = wanted(txn, have, visit->want);
+		err = wanted_settings(txn, have, visit->want);
 		if (err)
 			return err;
 		bool equal = memcmp(have, visit->want, SETTINGS) == 0;

@@ -70,7 +70,7 @@ static const struct link_master_ops place_ops = {
 	.open = ds2482_open,
 	.grow = ds2482_grow,
 	.close = ds2482_close,
-	.there = ds2482_there,
+	.visible = ds2482_visible,
 	.channels = ds2482_channels,
 	.channel = ds2482_channel,
 	.cost = ds2482_cost,
@@ -91,7 +91,7 @@ static unsigned list(void *ctx, unsigned *numbers, unsigned max)
 static int make(void *ctx, unsigned number, const struct bus_env *env, struct link_master **master)
 {
 	const struct ds2482_source source = {.open = open_place,
-	                                     .there = see_place,
+	                                     .visible = see_place,
 	                                     .destroy = forget,
 	                                     .name = "test",
 	                                     .ctx = &place[number]};
@@ -259,12 +259,12 @@ static void test_what_is_seen_of_it_changes_with_each_adapter(void)
 {
 	uint64_t none = 0, one = 0, two = 0, again = 0;
 
-	TEST_ASSERT_EQUAL_INT(0, every->ops->there(every, &none));
+	TEST_ASSERT_EQUAL_INT(0, every->ops->visible(every, &none));
 	plug(1, "");
-	TEST_ASSERT_EQUAL_INT(1, every->ops->there(every, &one));
+	TEST_ASSERT_EQUAL_INT(1, every->ops->visible(every, &one));
 	plug(2, "");
-	TEST_ASSERT_EQUAL_INT(1, every->ops->there(every, &two));
-	TEST_ASSERT_EQUAL_INT(1, every->ops->there(every, &again));
+	TEST_ASSERT_EQUAL_INT(1, every->ops->visible(every, &two));
+	TEST_ASSERT_EQUAL_INT(1, every->ops->visible(every, &again));
 	TEST_ASSERT_TRUE(none != one && one != two);
 	TEST_ASSERT_EQUAL_UINT64(two, again);
 	TEST_ASSERT_EQUAL_UINT(0, place[1].opens + place[2].opens);
