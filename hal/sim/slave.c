@@ -453,13 +453,14 @@ static void begin_function(struct sim_slave *slave, uint8_t code)
 {
 	const struct sim_function *function = slave->family->functions;
 
-	while (function && is_function(function) && function->code != code)
+	while (function && is_function(function) && !function->any && function->code != code)
 		function++;
 	if (!function || !is_function(function)) {
 		sim_end(slave);
 		return;
 	}
 	slave->function = function;
+	slave->code = code;
 	slave->got = 0;
 	slave->address = slave->crc = 0;
 	slave_check(slave, &code, 1);

@@ -48,6 +48,7 @@ struct sim_option {
 struct sim_function {
 	uint8_t code, takes; /* zeros end a table */
 	uint8_t unchecked;   /* of these bytes, the last ones, which no checksum covers */
+	bool any;            /* the last row: takes each code that has no row of its own */
 	/* All optional. */
 	void (*start)(struct sim_slave *slave);              /* the code and its bytes are there */
 	void (*byte)(struct sim_slave *slave, uint8_t byte); /* one more byte came */
@@ -130,6 +131,7 @@ struct sim_slave {
 	uint8_t send[SIM_MAX_SEND];
 
 	const struct sim_function *function; /* NULL: the function's code has yet to come */
+	uint8_t code;                        /* of the function */
 	uint8_t taken[18], got;
 	uint16_t address;
 	uint16_t crc; /* checksum of all bytes since the code, or since the last checksum */

@@ -107,48 +107,40 @@ static void run_read(struct run *run, unsigned n)
 	}
 }
 
-/* Bytes of a command behind its first parameter, if it has one; SEQUENCE: no such command. */
-static unsigned bytes_of(uint8_t command, uint8_t length)
-{
-	switch (command) {
-	case 0x02: /* START, STOP */
-	case 0x03:
-	case 0xCC: /* SENS_VDD on, off */
-	case 0xBB:
-		return 0;
-	case 0xE3: /* write, read, read with NACK at the end */
-	case 0xD4:
-	case 0xD3:
-		return length ? length : 256;
-	case 0xDD: /* delay, GPIO buffer write, read */
-	case 0xD1:
-	case 0x1D:
-		return 0;
-	case 0xE2: /* GPIO control write, read */
-	case 0x2E:
-		return 1;
-	default:
-		return SEQUENCE;
-	}
-}
-
-static bool is_single(uint8_t command)
-{
-	return command == 0x02 || command == 0x03 || command == 0xCC || command == 0xBB;
-}
+/* The commands of a sequence. */
+static const struct command {
+	uint8_t code;
+	bool alone;     /* no parameter follows */
+	uint16_t bytes; /* after the parameter; 256: as many as it says, and 256 for 0 */
+} commands[] = {
+	{0x02, true, 0},    {0x03, true, 0},    /* START, STOP */
+	{0xCC, true, 0},    {0xBB, true, 0},    /* SENS_VDD on, off */
+	{0xE3, false, 256}, {0xD4, false, 256}, /* write, read */
+	{0xD3, false, 256}, {0xDD, false, 0},   /* read with NACK at the end, delay */
+	{0xD1, false, 0},   {0x1D, false, 0},   /* GPIO buffer write, read */
+	{0xE2, false, 1},   {0x2E, false, 1},   /* GPIO control write, read */
+};
+#define COMMANDS (sizeof(commands) / sizeof(commands[0]))
 
 /* One command of the sequence; DONE, or the result that ends it. */
 static uint8_t ds28e18_step(struct run *run)
 {
 	struct ds28e18 *s = sim_state(run->slave, ds28e18);
-	uint8_t command = s->sequence[run->at++];
-	uint8_t length = run->at < run->end && !is_single(command) ? s->sequence[run->at] : 0;
-	unsigned n = bytes_of(command, length);
+	const struct command *command = commands;
+	uint8_t code = s->sequence[run->at++], parameter = 0;
+	unsigned n;
 
-	run->at += !is_single(command);
+	while (command < commands + COMMANDS && command->code != code)
+		command++;
+	if (command == commands + COMMANDS)
+		return MALFORMED;
+	if (!command->alone && run->at < run->end)
+		parameter = s->sequence[run->at];
+	run->at += !command->alone;
+	n = command->bytes == 256 && parameter ? parameter : command->bytes;
 	if (run->at + n > run->end)
 		return MALFORMED;
-	switch (command) {
+	switch (code) {
 	case 0x02:
 		run->addressing = true;
 		break;
@@ -162,7 +154,7 @@ static uint8_t ds28e18_step(struct run *run)
 		run_read(run, n);
 		break;
 	case 0xDD:
-		run->slave->now += NS_PER_MS << (length & 15);
+		run->slave->now += NS_PER_MS << (parameter & 15);
 		break;
 	default:
 		run->at += n;
@@ -256,41 +248,31 @@ static void device_status(struct ds28e18 *s)
 	s->restarted = false;
 }
 
-/* Parameters of the device functions; -1: as many as come; -2: no such function. */
-static int parameters_of(uint8_t function)
+/* Is the packet a device function with as many parameters as it takes? */
+static bool is_valid(const struct ds28e18 *s)
 {
-	switch (function) {
-	case WRITE_SEQUENCER:
-		return -1;
-	case READ_SEQUENCER:
-	case READ_GPIO:
-		return 2;
-	case RUN_SEQUENCER:
-		return 3;
-	case WRITE_GPIO:
-		return 4;
-	case WRITE_CONFIGURATION:
-		return 1;
-	case READ_CONFIGURATION:
-	case DEVICE_STATUS:
-		return 0;
-	default:
-		return -2;
-	}
+	static const struct {
+		uint8_t function, least, most;
+	} functions[] = {
+		{WRITE_SEQUENCER, 3, PACKET}, {READ_SEQUENCER, 2, 2}, {RUN_SEQUENCER, 3, 3},
+		{WRITE_CONFIGURATION, 1, 1},  {WRITE_GPIO, 4, 4},     {READ_GPIO, 2, 2},
+		{READ_CONFIGURATION, 0, 0},   {DEVICE_STATUS, 0, 0},
+	};
+
+	for (unsigned i = 0; i < sizeof(functions) / sizeof(functions[0]); i++)
+		if (functions[i].function == s->packet[0])
+			return s->got > functions[i].least && s->got <= functions[i].most + 1u;
+	return false;
 }
 
 static int64_t carry_out(struct sim_slave *slave)
 {
 	struct ds28e18 *s = slave->state;
-	int want = parameters_of(s->packet[0]);
 	int64_t takes = OPERATION_NS;
 
-	ds28e18_answer(s, DONE);
-	if (want == -2 || (want == -1 && s->got < 4) ||
-	    (want >= 0 && s->got != 1u + (unsigned)want)) {
-		ds28e18_answer(s, INVALID);
+	ds28e18_answer(s, is_valid(s) ? DONE : INVALID);
+	if (!is_valid(s))
 		return takes;
-	}
 	switch (s->packet[0]) {
 	case WRITE_SEQUENCER:
 		write_sequencer(s);

@@ -287,12 +287,12 @@ static const struct variable *hobby_boards_find(const struct sim_slave *slave, u
 static void hobby_boards_command(struct sim_slave *slave)
 {
 	struct hobby *s = slave->state;
-	const struct variable *v = hobby_boards_find(slave, slave->function->code);
+	const struct variable *v = hobby_boards_find(slave, slave->code);
 
 	s->variable = v;
 	if (!v) {
 		sim_end(slave);
-	} else if (slave->function->code == v->read) {
+	} else if (slave->code == v->read) {
 		if (v->measure)
 			v->measure(slave, s->bytes);
 		else
@@ -326,18 +326,8 @@ static void set_version(struct sim_slave *slave, int64_t version)
 
 static const struct sim_option options[] = {{"version", 0, 0xFFFF, .set = set_version}, {0}};
 
-#define COMMAND(code_) .code = (code_), .start = hobby_boards_command, .byte = argument
 static const struct sim_function functions[] = {
-	{COMMAND(0x11)}, {COMMAND(0x12)}, {COMMAND(0x14)},
-	{COMMAND(0x15)}, {COMMAND(0x16)}, {COMMAND(0x21)},
-	{COMMAND(0x22)}, {COMMAND(0x23)}, {COMMAND(0x24)},
-	{COMMAND(0x25)}, {COMMAND(0x26)}, {COMMAND(0x27)},
-	{COMMAND(0x28)}, {COMMAND(0x31)}, {COMMAND(0x40)},
-	{COMMAND(0x60)}, {COMMAND(0x61)}, {COMMAND(0x94)},
-	{COMMAND(0x96)}, {COMMAND(0xA2)}, {COMMAND(0xA3)},
-	{COMMAND(0xA4)}, {COMMAND(0xA6)}, {COMMAND(0xE1)},
-	{COMMAND(0xF1)}, {COMMAND(0xF7)}, {0},
-};
+	{.any = true, .start = hobby_boards_command, .byte = argument}, {0}};
 
 #define TEMPERATURE(text) .name = (text), .start = 20, .least = -55, .most = 125
 #define RAW(text) .name = (text), .start = 100, .least = 0, .most = 4095

@@ -199,7 +199,7 @@ static const struct command of_updater[] = {
 static int count_ports(struct sim_slave *slave, const uint8_t *args, uint8_t *out)
 {
 	(void)args;
-	out[0] = slave->function->code == 0x03 ? 1 : PORTS;
+	out[0] = slave->code == 0x03 ? 1 : PORTS;
 	out[1] = CHANNELS;
 	return 2;
 }
@@ -255,14 +255,14 @@ static int set_relay(struct sim_slave *slave, const uint8_t *args, uint8_t *out)
 	(void)out;
 	if (args[0] || args[1] >= RELAYS)
 		return REFUSED;
-	sim_state(slave, inferno)->relay[which[slave->function->code - 0x09]][args[1]] = args[2];
+	sim_state(slave, inferno)->relay[which[slave->code - 0x09]][args[1]] = args[2];
 	return 0;
 }
 
 static int get_relays(struct sim_slave *slave, const uint8_t *args, uint8_t *out)
 {
 	(void)args;
-	memcpy(out, sim_state(slave, inferno)->relay[slave->function->code - 0x0C], RELAYS);
+	memcpy(out, sim_state(slave, inferno)->relay[slave->code - 0x0C], RELAYS);
 	return RELAYS;
 }
 
@@ -293,9 +293,9 @@ static const struct command *inferno_find(struct sim_slave *slave)
 	static const struct command boot = {BOOT_UPDATER, 0, boot_updater};
 	const struct command *c = tables[sim_state(slave, inferno)->kind];
 
-	if (slave->function->code == BOOT_UPDATER)
+	if (slave->code == BOOT_UPDATER)
 		return &boot;
-	while (c->answer && c->code != slave->function->code)
+	while (c->answer && c->code != slave->code)
 		c++;
 	return c->answer ? c : NULL;
 }
@@ -356,7 +356,7 @@ static void inferno_answered(struct sim_slave *slave)
 {
 	const struct inferno *s = slave->state;
 
-	if (s->kind == UPDATER && slave->function->code == 0x06 && s->got == WRITTEN + 1 &&
+	if (s->kind == UPDATER && slave->code == 0x06 && s->got == WRITTEN + 1 &&
 	    slave->send[0] == 0)
 		sim_receive(slave);
 }
@@ -366,11 +366,11 @@ static void inferno_identity(struct sim_slave *slave)
 	struct inferno *s = slave->state;
 	uint8_t out[8] = {0};
 
-	if (slave->function->code == STATUS)
+	if (slave->code == STATUS)
 		out[0] = s->status;
 	else
-		sim_put(out, 4, slave->function->code == DEVICE ? (int)s->kind : 7);
-	sim_send(slave, out, slave->function->code == STATUS ? 8 : 4);
+		sim_put(out, 4, slave->code == DEVICE ? (int)s->kind : 7);
+	sim_send(slave, out, slave->code == STATUS ? 8 : 4);
 }
 
 static void inferno_power_on(struct sim_slave *slave)
@@ -404,15 +404,13 @@ static void inferno_advance(struct sim_slave *slave)
 	}
 }
 
-#define COMMAND(code_) \
-	.code = (code_), .start = inferno_begin, .byte = inferno_take, .next = inferno_answered
-#define IDENTITY(code_) .code = (code_), .start = inferno_identity
+/* What the tables above have is the commands of the device as it is now. */
 static const struct sim_function functions[] = {
-	{COMMAND(0x00)},    {COMMAND(0x01)},     {COMMAND(0x02)},    {COMMAND(0x03)},
-	{COMMAND(0x04)},    {COMMAND(0x05)},     {COMMAND(0x06)},    {COMMAND(0x07)},
-	{COMMAND(0x08)},    {COMMAND(0x09)},     {COMMAND(0x0A)},    {COMMAND(0x0B)},
-	{COMMAND(0x0C)},    {COMMAND(0x0D)},     {COMMAND(0x0E)},    {COMMAND(BOOT_UPDATER)},
-	{IDENTITY(STATUS)}, {IDENTITY(VERSION)}, {IDENTITY(DEVICE)}, {0},
+	{.code = STATUS, .start = inferno_identity},
+	{.code = VERSION, .start = inferno_identity},
+	{.code = DEVICE, .start = inferno_identity},
+	{.any = true, .start = inferno_begin, .byte = inferno_take, .next = inferno_answered},
+	{0},
 };
 
 static const struct sim_input switches[] = {
