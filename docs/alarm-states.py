@@ -68,8 +68,7 @@ def read_table(path):
 def read_numbers(path):
     """The state's numbers, which are the manual's; the first is -1."""
     text = pathlib.Path(path).with_suffix(".h").read_text()
-    body = text[text.index("enum alarm_state {"):]
-    names = re.findall(r"^\t(\w+)", body[:body.index("\n};")], re.M)
+    names = re.findall(r"^\tX\((\w+)\)", text, re.M)
     if set(names) != set(PLACES):
         sys.exit(f"{path}: the states {set(names) ^ set(PLACES)} are there or here alone")
     return {name: number for number, name in enumerate(names, -1)}
