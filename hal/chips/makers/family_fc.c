@@ -412,6 +412,7 @@ const struct family family_fc = {
 	.code = 0xfc,
 	.proof = PROOF_PRESENCE,
 	.type = "BAE",
+	.alarms = true,
 	.flags = FLAG_RESUME | FLAG_ALARM,
 	.several = true,
 	.identify = bae_identify,
