@@ -1,11 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /* A new thread has the signals blocked that its maker has blocked. */
 #include <errno.h>
+#include <sched.h>
 #include <semaphore.h>
 #include <signal.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "hal/base/thread.h"
+#include "hal/base/time.h"
+
+#define YIELD_LONG_NS (NS_PER_MS / 2)
 
 /* On the maker's stack, until the thread has taken it. */
 struct start {
@@ -57,4 +62,25 @@ int thread_start(pthread_t *thread, const char *name, size_t stack, void *(*run)
 	}
 	pthread_attr_destroy(&attr);
 	return -err;
+}
+
+static int64_t thread_now(void)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return (int64_t)t.tv_sec * NS_PER_S + t.tv_nsec;
+}
+
+bool thread_yield(int64_t *rest_ns)
+{
+	int64_t begun_ns = thread_now(), ended_ns;
+
+	if (begun_ns < *rest_ns)
+		return false;
+	sched_yield();
+	ended_ns = thread_now();
+	if (ended_ns - begun_ns > YIELD_LONG_NS)
+		*rest_ns = ended_ns + NS_PER_S;
+	return true;
 }

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <pthread.h>
+#include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 /*
  * Start a thread with a stack of so many bytes, or of the least that the machine gives a thread,
@@ -13,3 +15,11 @@
  */
 int thread_start(pthread_t *thread, const char *name, size_t stack, void *(*run)(void *ctx),
                  void *ctx);
+
+/*
+ * Let whom the thread has just woken run first, where both share a CPU: its answer saves a sleep
+ * then. On a busy machine others run too, and a yield may cost more than any sleep: after one that
+ * took long there is none for a second. rest_ns: 0 at first, the caller's to keep. False: there
+ * was none.
+ */
+bool thread_yield(int64_t *rest_ns);

@@ -7,7 +7,6 @@
 #include <errno.h>
 #include <poll.h>
 #include <pthread.h>
-#include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,6 +42,7 @@ struct worker {
 	struct bus_counter stalls, dropped;
 
 	int wake_fd;
+	int64_t rest_ns;   /* of thread_yield() */
 	uint32_t sleeping; /* the thread waits for orders: wake it */
 	uint32_t stopping;
 	/* Calls of bus_suspend() asked for and done: odd ones suspend, even ones take again. */
@@ -179,9 +179,8 @@ static void take_suspends(struct worker *worker)
 /* `sleeping` is set before the last look: an order that comes after that look rings the bell. */
 static void sleep_until(struct worker *worker, int64_t until_ns)
 {
-	/* On one CPU the engine, which the bell woke, runs now; its next order saves a sleep. */
-	sched_yield();
-	if (ring_used(&worker->orders))
+	/* the engine, which the bell woke, may have its next order at once */
+	if (thread_yield(&worker->rest_ns) && ring_used(&worker->orders))
 		return;
 	__atomic_store_n(&worker->sleeping, 1, __ATOMIC_SEQ_CST);
 	if (!ring_used(&worker->orders) && !suspend_is_due(worker) && !is_stopping(worker))

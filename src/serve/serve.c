@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The server of the owserver protocol: its thread, its start and end, and what a reload changes. */
 #include <errno.h>
-#include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -220,18 +219,13 @@ static void take_next(struct serve *s)
 /* A client that asks without a pause has so many requests answered before epoll is asked again. */
 #define AGAIN_MOST 15
 
-/*
- * The client whose turn was last asks again. With one CPU it has run while the answer was sent, or
- * runs now: that saves a sleep.
- */
+/* The client whose turn was last asks again: that saves a sleep, if it ran on this CPU meanwhile. */
 static bool asks_again(struct serve *s)
 {
 	unsigned last = s->round[(s->round_at + SERVER_CLIENTS - 1) % SERVER_CLIENTS];
+	struct client *c = &s->clients[last];
 
-	if (client_again(s, &s->clients[last]))
-		return true;
-	sched_yield();
-	return client_again(s, &s->clients[last]);
+	return c->state == CLIENT_READING && thread_yield(&s->rest_ns) && client_again(s, c);
 }
 
 /* Wait for something to do. Returns the number of events. */

@@ -175,6 +175,7 @@ struct serve {
 	uint16_t *round;           /* clients that have something to do, in their order */
 	unsigned round_at, round_count;
 	unsigned again;  /* how often a client was asked in place of epoll, since that was */
+	int64_t rest_ns; /* of thread_yield() */
 	unsigned queued; /* clients that wait for a directory */
 	struct log_rate full_rate, error_rate, peer_rate;
 	struct bus_counter counters[SERVE_COUNTER_COUNT];

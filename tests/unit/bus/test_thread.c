@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* What a thread beside the engine's is started with. */
+#include <sched.h>
 #include <signal.h>
 
 #include "hal/base/thread.h"
+#include "hal/base/time.h"
+#include "src/libows/ows.h"
 #include "unity.h"
 
 struct seen {
@@ -10,6 +13,20 @@ struct seen {
 	char name[16];
 	sigset_t blocked;
 };
+
+static unsigned yields;
+static int64_t others_take_ns;
+
+/* In place of the C library's: others run for so long. */
+int sched_yield(void)
+{
+	int64_t until_ns = ows_now() + others_take_ns;
+
+	yields++;
+	while (ows_now() < until_ns)
+		;
+	return 0;
+}
 
 void setUp(void)
 {
@@ -72,6 +89,20 @@ static void test_signals_are_blocked_but_for_a_fault_of_memory(void)
 	TEST_ASSERT_FALSE(sigismember(&here, SIGTERM));
 }
 
+static void test_after_a_yield_that_took_long_there_is_none_for_a_second(void)
+{
+	int64_t rest_ns = 0;
+
+	others_take_ns = NS_PER_MS;
+	TEST_ASSERT_TRUE(thread_yield(&rest_ns));
+	TEST_ASSERT_FALSE(thread_yield(&rest_ns));
+	TEST_ASSERT_EQUAL_UINT(1, yields);
+	rest_ns -= NS_PER_S;
+	others_take_ns = 0;
+	TEST_ASSERT_TRUE(thread_yield(&rest_ns));
+	TEST_ASSERT_EQUAL_UINT(2, yields);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -79,5 +110,6 @@ int main(void)
 	RUN_TEST(test_a_stack_below_the_least_of_the_machine_starts_too);
 	RUN_TEST(test_a_thread_has_its_name_from_the_beginning);
 	RUN_TEST(test_signals_are_blocked_but_for_a_fault_of_memory);
+	RUN_TEST(test_after_a_yield_that_took_long_there_is_none_for_a_second);
 	return UNITY_END();
 }
