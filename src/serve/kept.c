@@ -165,7 +165,7 @@ int kept_find(struct kept *kept, const struct image *image, const struct node *n
               char *text, size_t room)
 {
 	size_t len = strlen(node->path);
-	struct entry *entry = set_of(kept, node->path, len);
+	struct entry *entry;
 	int n;
 
 	if (!node->has_device || node->bus >= 0 || !node->type)
@@ -173,6 +173,7 @@ int kept_find(struct kept *kept, const struct image *image, const struct node *n
 	n = find_signal(kept, image, node, now_ns, text, room);
 	if (n >= 0)
 		return n;
+	entry = set_of(kept, node->path, len);
 	for (int way = 0; way < WAYS; way++, entry++) {
 		if (!kept_is(entry, node->path, len))
 			continue;

@@ -198,7 +198,7 @@ void node_parse(const char *path, size_t len, struct node *node)
 		len--;
 	}
 	if ((node->slash && path[len - 1] == '/') || path_split(path, len, &split) ||
-	    branches_again(path, len))
+	    ((split.alarm || split.bus >= 0) && branches_again(path, len)))
 		return;
 	node->kind = NODE_TARGET;
 	node->fresh = node->uncached = split.uncached;
