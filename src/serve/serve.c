@@ -219,7 +219,7 @@ static void take_next(struct serve *s)
 /* A client that asks without a pause has so many requests answered before epoll is asked again. */
 #define AGAIN_MOST 15
 
-/* The client whose turn was last asks again: that saves a sleep, if it ran on this CPU meanwhile. */
+/* The client whose turn was last asks again: that saves a sleep, if it ran here meanwhile. */
 static bool asks_again(struct serve *s)
 {
 	unsigned last = s->round[(s->round_at + SERVER_CLIENTS - 1) % SERVER_CLIENTS];
