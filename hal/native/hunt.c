@@ -1,8 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Searches. In the background each channel is searched for ever, one device a pass, when nothing
- * else is to do and nothing will be before the pass is over; where there always is something, one
- * pass a second. What two whole searches in a row did not see and no transaction heard is lost.
+ * else is to do and nothing will be before the pass is over; where there always is something, a
+ * hundredth of the time or one pass a second. What two searches in a row did not see and no
+ * transaction heard is lost.
+ *
+ * A device that is known is not asked for the rest of its id again: its pass is cut some bits after
+ * those that set it apart from the others. Who is new differs from it before that, or is found by a
+ * pass that goes to the end, as one in sixteen does, of each device in its turn. With the option
+ * Touch no pass is cut: more of them would make keys wait.
  */
 #include <errno.h>
 #include <stdio.h>
@@ -14,23 +20,34 @@
 #include "hal/native/hunt.h"
 #include "hal/native/limits.h"
 #include "hal/native/listing.h"
+#include "hal/native/locate.h"
 #include "hal/native/master.h"
 #include "hal/native/outcome.h"
 #include "hal/native/presence.h"
 #include "hal/native/sensors.h"
 #include "hal/native/state.h"
 
-#define PASS_NS (NATIVE_S / 10)
-#define PASS_SHARE 8 /* passes take one part in so many of the time */
-#define OVERDUE_NS NATIVE_S
-#define ROUND_NS (5 * NATIVE_S)
+#define PASS_NS (NATIVE_S * 12 / 100)
+#define PASS_TOUCH_NS (NATIVE_S / 10)
+#define PASS_SHARE 8     /* passes take one part in so many of the time */
+#define OVERDUE_SHARE 40 /* ... or in so many where something else is always to do, */
+#define OVERDUE_MIN_NS (NATIVE_S * 6 / 10)
+#define OVERDUE_NS NATIVE_S     /* ... but one is made after this time */
+#define ROUND_NS (5 * NATIVE_S) /* between two, */
+#define BEGIN_NS (9 * NATIVE_S) /* ... or from begin to begin of a wire where that is sooner */
 #define AGAIN_NS (NATIVE_S / 2)
 #define MISSED_MAX 2
 #define TRIES 3
-#define TRIES_PASS 8  /* of a search for one device; a search of many goes on from there */
+#define TRIES_PASS 8 /* of a search for one device; a search of many goes on from there */
+#define FAMILY_BITS 8
+#define APART 6 /* bits of a known device that are read after it is alone */
+#define WHOLE_EVERY 16
 #define FULL_EVERY 16 /* alarm searches in a row: one looks for ids that are not known, too */
 
-/* whole: it was right to its end. */
+/*
+ * whole: it was right to its end. A pass that is cut ends without a checksum: so the last round by
+ * which a device is lost is one whose passes go to the end.
+ */
 static void end_round(struct native *native, unsigned n, bool whole, int64_t now)
 {
 	struct channel *channel = &native->channel[n];
@@ -38,21 +55,30 @@ static void end_round(struct native *native, unsigned n, bool whole, int64_t now
 	channel->searching = false;
 	channel->listed = true;
 	channel->search_ns = now + ROUND_NS;
-	if (whole && !channel->dirty)
+	if (!native->touch && n < NATIVE_CHANNELS &&
+	    channel->search_ns > channel->round_ns + BEGIN_NS)
+		channel->search_ns = channel->round_ns + BEGIN_NS;
+	if (channel->dirty) {
+		channel->search_ns = now + AGAIN_NS;
+		return;
+	}
+	if (whole)
 		channel->whole_ns = channel->round_ns;
-	for (unsigned i = 0; !channel->dirty && i < native->table.count; i++) {
+	bool cuts = channel->cuts;
+	channel->cuts = !native->touch;
+	for (unsigned i = 0; i < native->table.count; i++) {
 		struct device *device = &native->table.devices[i];
 
 		if (!device->present || device->channel != n || device->seen == channel->round ||
 		    device->ok_ns >= channel->round_ns)
 			continue;
-		if (++device->missed >= MISSED_MAX)
+		if (++device->missed >= MISSED_MAX && !cuts) {
 			presence_lost(native, device);
-		else
-			channel->search_ns = now + AGAIN_NS;
-	}
-	if (channel->dirty)
+			continue;
+		}
 		channel->search_ns = now + AGAIN_NS;
+		channel->cuts = false;
+	}
 }
 
 static void told_short(struct native *native, unsigned n, bool is_short)
@@ -139,17 +165,66 @@ void hunt_found(struct native *native, const uint8_t rom[8], unsigned n, int64_t
 		presence_found(native, rom, n, now);
 }
 
+struct known {
+	const struct native *native;
+	unsigned n;
+	struct device *device; /* at which the pass was cut */
+};
+
+static bool is_known(void *ctx, const uint8_t prefix[8], unsigned bits, uint8_t rom[8])
+{
+	struct known *known = ctx;
+	const struct native *native = known->native;
+	unsigned branch = native->channel[known->n].search.branch;
+	struct device *only = NULL;
+
+	/* A pass that went to the end may have found a branch behind many bits. */
+	if (bits < APART + (branch > FAMILY_BITS ? branch : FAMILY_BITS))
+		return false;
+	for (unsigned i = 0; i < native->table.count; i++) {
+		struct device *device = &native->table.devices[i];
+
+		if (!device->present || device->channel != known->n ||
+		    !search_same(device->rom, prefix, bits - APART))
+			continue;
+		if (only)
+			return false;
+		only = device;
+	}
+	if (!only || !search_same(only->rom, prefix, bits) || locate_wants(native, prefix, bits))
+		return false;
+	memcpy(rom, only->rom, sizeof(only->rom));
+	only->cut = (uint8_t)bits;
+	only->seen = native->channel[known->n].round;
+	known->device = only;
+	return true;
+}
+
+static void whole_pass(struct native *native, unsigned n, int64_t now)
+{
+	const uint8_t *rom = native->channel[n].search.rom;
+	struct device *device;
+
+	hunt_found(native, rom, n, now);
+	device = device_find(&native->table, rom);
+	if (device)
+		device->cut = 0;
+}
+
 static void hunt_pass(struct native *native, unsigned n, int64_t now)
 {
 	struct channel *channel = &native->channel[n];
+	struct known known = {.native = native, .n = n};
 
 	if (!channel->searching) {
 		search_begin(&channel->search, false, 0);
 		channel->searching = true;
 		channel->dirty = false;
-		channel->round++;
+		channel->passes = ++channel->round;
 		channel->round_ns = now;
 	}
+	channel->search.lone = channel->cuts && ++channel->passes % WHOLE_EVERY ? is_known : NULL;
+	channel->search.ctx = &known;
 	int found = next_device(native, n, &channel->search, NULL);
 	now = native_now(native);
 	if (found >= 0 || found == -EBADMSG) {
@@ -164,7 +239,8 @@ static void hunt_pass(struct native *native, unsigned n, int64_t now)
 	}
 	channel->spoiled = 0;
 	if (found > 0) {
-		hunt_found(native, channel->search.rom, n, now);
+		if (!known.device)
+			whole_pass(native, n, now);
 		channel->search_ns = now;
 		if (channel->search.last)
 			end_round(native, n, true, now);
@@ -191,12 +267,26 @@ static void timed_pass(struct native *native, unsigned n, int64_t now)
 	hunt_pass(native, n, now);
 	native->pass_ns = native_now(native) - now;
 	pause = native->pass_ns * (PASS_SHARE - 1);
-	native->hunt_ns = native_now(native) + (pause > PASS_NS ? pause : PASS_NS);
+	int64_t least = native->touch ? PASS_TOUCH_NS : PASS_NS;
+	native->hunt_ns = native_now(native) + (pause > least ? pause : least);
+}
+
+/*
+ * How long a pass waits where there always is something else to do. To switch a branch on makes the
+ * event of a key on another one void: that is not done more often because passes are cut.
+ */
+static int64_t overdue(const struct native *native, unsigned n)
+{
+	int64_t share = native->pass_ns * OVERDUE_SHARE;
+
+	if (native->touch || n >= NATIVE_CHANNELS || share > OVERDUE_NS)
+		return OVERDUE_NS;
+	return share > OVERDUE_MIN_NS ? share : OVERDUE_MIN_NS;
 }
 
 bool hunt_step(struct native *native, int64_t now, bool idle, int64_t *next)
 {
-	int64_t least = native->hunt_ns + (idle && *next - now > native->pass_ns ? 0 : OVERDUE_NS);
+	bool fits = idle && *next - now > native->pass_ns;
 	int64_t first = INT64_MAX;
 
 	for (unsigned i = 0; i < NATIVE_ALL; i++) {
@@ -205,6 +295,7 @@ bool hunt_step(struct native *native, int64_t now, bool idle, int64_t *next)
 
 		if (!native_has(native, n))
 			continue;
+		int64_t least = native->hunt_ns + (fits ? 0 : overdue(native, n));
 		int64_t when = channel->search_ns > least ? channel->search_ns : least;
 
 		if (!channel->listed)

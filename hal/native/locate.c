@@ -84,6 +84,15 @@ static bool is_waiting(const struct job *job)
 	return job->req && job->state == JOB_LOCATE && !job->verified;
 }
 
+bool locate_wants(const struct native *native, const uint8_t prefix[8], unsigned bits)
+{
+	for (unsigned i = 0; native->locate.waits && i < NATIVE_DEPTH; i++)
+		if (is_waiting(&native->jobs[i]) &&
+		    search_same(native->jobs[i].path.rom, prefix, bits))
+			return true;
+	return false;
+}
+
 static bool is_for(const struct job *job, unsigned n)
 {
 	return job->bus < 0 || (unsigned)job->bus == n;
@@ -95,12 +104,29 @@ static int64_t looked_from(const struct native *native, const struct job *job)
 	return job->locate_ns + (touch_seeks(native, job->path.rom) ? TOUCH_NS : 0);
 }
 
+/* Has a background search that began since then shown whether the id is there? */
+static bool has_shown(const struct native *native, unsigned n, const uint8_t rom[8],
+                      int64_t since_ns)
+{
+	if (native->channel[n].whole_ns < since_ns)
+		return false;
+	for (unsigned i = 0; i < native->table.count; i++) {
+		const struct device *device = &native->table.devices[i];
+
+		if (device->channel == n && device->cut &&
+		    search_same(device->rom, rom, device->cut) &&
+		    memcmp(device->rom, rom, ROM_LEN) != 0)
+			return false;
+	}
+	return true;
+}
+
 /* Was the channel searched as a whole, or for all keys, since the request came? */
 static bool is_searched(const struct native *native, const struct job *job, unsigned n)
 {
 	const struct channel *channel = &native->channel[n];
 
-	return channel->whole_ns >= job->since_ns ||
+	return has_shown(native, n, job->path.rom, job->since_ns) ||
 	       (touch_seeks(native, job->path.rom) && channel->touch.whole_ns >= job->since_ns);
 }
 

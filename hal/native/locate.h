@@ -25,3 +25,5 @@ void locate_missing(struct native *native, struct job *job, int64_t now);
 bool locate_step(struct native *native, int64_t now, bool idle, int64_t *next);
 /* The deadline of a job that waits is over: what it is answered. */
 int locate_expired(const struct native *native, const struct job *job);
+/* Does a request wait for an id that begins with these bits? */
+bool locate_wants(const struct native *native, const uint8_t prefix[8], unsigned bits);

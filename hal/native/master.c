@@ -78,7 +78,7 @@ static void search_anew(struct native *native, int64_t now)
 {
 	for (unsigned n = native_next(native, 0); n < NATIVE_ALL; n = native_next(native, n + 1)) {
 		native->channel[n].listed = false;
-		native->channel[n].searching = false;
+		native->channel[n].searching = native->channel[n].cuts = false;
 		native->channel[n].search_ns = now;
 		native->channel[n].first = (struct first){.tried = false};
 	}

@@ -192,11 +192,13 @@ struct channel {
 	int64_t simultaneous_ns[SIMULTANEOUS];
 	int64_t search_ns;     /* next pass of the background search */
 	uint32_t round;        /* number of the background search */
+	uint32_t passes;       /* counts those of a round, from its number on */
 	int64_t whole_ns;      /* when the last one began that was right to its end; 0: none was */
 	int64_t looked_ns;     /* ... look for those that requests name (locate.h) */
 	uint32_t asleep_round; /* the last that found a bridge without id (DS28E18); 0: none */
 	int64_t round_ns;      /* when it began */
 	bool searching, dirty;
+	bool cuts;       /* passes of this round end soon after a known device is alone */
 	uint8_t spoiled; /* passes in a row that a checksum ended */
 	struct search search;
 	struct touch touch;

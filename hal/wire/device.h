@@ -42,8 +42,9 @@ struct device {
 	bool settled;     /* was read or written since it came or restarted */
 	bool locked;      /* a job of several transactions is at work with it */
 	uint8_t failures; /* requests in a row that it failed */
-	uint8_t missed;   /* full searches in a row that did not see it */
-	uint32_t seen;    /* number of the last full search that saw it */
+	uint8_t missed;   /* searches in a row that did not see it */
+	uint8_t cut;      /* so many bits of it the last background search read; 0: all */
+	uint32_t seen;    /* number of the last background search that saw it */
 	uint32_t changes; /* grows when what is cached of it is void */
 	int64_t ok_ns;    /* last transaction that proved its presence; 0: never */
 	int64_t told_ns;  /* when family.identify told its kind; 0: never */
