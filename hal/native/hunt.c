@@ -5,10 +5,10 @@
  * hundredth of the time or one pass a second. What two searches in a row did not see and no
  * transaction heard is lost.
  *
- * A device that is known is not asked for the rest of its id again: its pass is cut some bits after
- * those that set it apart from the others. Who is new differs from it before that, or is found by a
- * pass that goes to the end, as one in sixteen does, of each device in its turn. With the option
- * Touch no pass is cut: more of them would make keys wait.
+ * A pass does not ask a known device for the rest of its id again: the pass is cut some bits after
+ * those that set the device apart from the others. A new device differs from it before that, or a
+ * pass that goes to the end finds it; one pass in sixteen does, of each device in turn. With the
+ * option Touch no pass is cut: more passes would make keys wait.
  */
 #include <errno.h>
 #include <stdio.h>
