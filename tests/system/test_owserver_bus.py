@@ -170,7 +170,8 @@ def test_genuine_killed_frozen_and_started_again(scene):
         bus.ok(f"read {sensor}/temperature")
         server.kill()
         bus.fails(f"read {sensor}/temperature", errno.ECONNRESET, errno.ENOTCONN)
-        assert "refused" in bus.ok("down")
+        why = bus.ok("down")  # the port of a process that ends may take one more connection
+        assert any(word in why for word in ("refused", "closed", "reset")), why
         server = scene.again(server)
         bus.ok("up")
         bus.ok(f"read {sensor}/temperature")
