@@ -187,7 +187,6 @@ const struct family family_26 = {
 	.code = 0x26,
 	.proof = PROOF_PRESENCE,
 	.type = "DS2438",
-	.alarms = true, /* a TMP1826 answers */
 	.flags = FLAG_VOLT | FLAG_TEMPERATURE,
 	SCAN({"temperature", "temperature"}, {"humidity", "humidity"}, {"VDD", "vdd"},
              {"VAD", "vad"}),

@@ -51,7 +51,6 @@ static const struct property properties[] = {
 const struct family family_35 = {.code = 0x35,
                                  .proof = PROOF_PRESENCE,
                                  .type = "DS2755",
-                                 .alarms = true,
                                  .flags = FLAG_ALARM,
                                  AREAS(areas),
                                  HOW(how),

@@ -48,7 +48,6 @@ const struct family family_dd = {
 	.code = 0xdd,
 	.proof = PROOF_PRESENCE,
 	.type = "Example_slave",
-	.alarms = true,
 	.flags = FLAG_ALARM,
 	HOW(how),
 	PROPERTIES(properties),

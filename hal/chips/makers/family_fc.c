@@ -412,7 +412,6 @@ const struct family family_fc = {
 	.code = 0xfc,
 	.proof = PROOF_PRESENCE,
 	.type = "BAE",
-	.alarms = true,
 	.flags = FLAG_RESUME | FLAG_ALARM,
 	.several = true,
 	.identify = bae_identify,

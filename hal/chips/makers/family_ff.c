@@ -324,7 +324,6 @@ const struct family family_ff = {
 	.code = 0xff,
 	.proof = PROOF_PRESENCE,
 	.type = "LCD",
-	.alarms = true,
 	.flags = FLAG_ALARM,
 	.forget = family_ff_forget,
 	AREAS(areas),

@@ -43,7 +43,6 @@ static const struct property properties[] = {
 const struct family family_2c = {.code = 0x2c,
                                  .proof = PROOF_PRESENCE,
                                  .type = "DS2890",
-                                 .alarms = true, /* while the wiper is where power-on puts it */
                                  .flags = FLAG_RESUME | FLAG_ALARM | FLAG_OVERDRIVE,
                                  AREAS(areas),
                                  PROPERTIES(properties)};

@@ -15,12 +15,6 @@ static void ds2890_power_on(struct sim_slave *slave)
 	*sim_state(slave, ds2890) = (struct ds2890){.control = CONTROL};
 }
 
-/* At the position of a power-on. */
-static bool ds2890_alarm(struct sim_slave *slave)
-{
-	return sim_state(slave, ds2890)->position == 0;
-}
-
 /* Send control register and position, */
 static void read_position(struct sim_slave *slave)
 {
@@ -107,5 +101,4 @@ const struct sim_family sim_ds2890 = {
 	.state_size = sizeof(struct ds2890),
 	.functions = functions,
 	.power_on = ds2890_power_on,
-	.alarm = ds2890_alarm,
 };

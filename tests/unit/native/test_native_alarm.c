@@ -4,7 +4,6 @@
 
 #include "unity.h"
 
-#include "hal/chips/find.h"
 #include "tests/unit/aid/native_scene.h"
 
 void setUp(void)
@@ -41,39 +40,6 @@ static void test_alarms_list_the_devices_in_alarm(void)
 	id = ask(BUS_DIR, BUS_ALARM, true, "/alarm/29", NULL);
 	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
 	TEST_ASSERT_EQUAL_STRING("", (char *)data[id]);
-}
-
-/* The search is cut short where one device is left that can answer it: is it that one? */
-static void test_a_wiper_at_its_start_is_in_alarm_and_nobody_for_it(void)
-{
-	wire_init(&host, 1, 1);
-	wire_add(0, "DS18S20", 1); /* has not converted: it is in no alarm */
-	struct sim_slave *wiper = wire_add(0, "DS2890", 2);
-
-	start();
-	for (int i = 0; i < 20; i++) {
-		uint32_t id = ask(BUS_DIR, BUS_ALARM, true, "/alarm", NULL);
-		TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
-		TEST_ASSERT_EQUAL_STRING("/alarm/2C.02005DDF0300\n", (char *)data[id]);
-	}
-	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, of(wiper, "wiper"), "1"));
-	uint32_t id = ask(BUS_DIR, BUS_ALARM, true, "/alarm", NULL);
-	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
-	TEST_ASSERT_EQUAL_STRING("", (char *)data[id]);
-}
-
-/* A family that answers and does not say so would be taken for another. */
-static void test_each_family_that_may_answer_the_alarm_search_says_so(void)
-{
-	const struct family *family;
-
-	for (unsigned n = 0; (family = family_nth(n)); n++)
-		TEST_ASSERT_TRUE_MESSAGE(family->alarms || !(family->flags & FLAG_ALARM),
-		                         family->type);
-	for (unsigned n = 0; sim_families[n]; n++)
-		TEST_ASSERT_TRUE_MESSAGE(family_of(sim_families[n]->code)->alarms ||
-		                                 !sim_families[n]->alarm,
-		                         sim_families[n]->name);
 }
 
 static void test_an_alarm_search_goes_no_further_than_its_family(void)
@@ -188,8 +154,6 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_alarms_list_the_devices_in_alarm);
-	RUN_TEST(test_a_wiper_at_its_start_is_in_alarm_and_nobody_for_it);
-	RUN_TEST(test_each_family_that_may_answer_the_alarm_search_says_so);
 	RUN_TEST(test_an_alarm_search_goes_no_further_than_its_family);
 	RUN_TEST(test_an_alarm_s_next_request_is_waited_for);
 	RUN_TEST(test_one_register_read_serves_por_and_latch_of_a_visit);
