@@ -27,7 +27,10 @@ char *file_text(const char *file, size_t most, int *err, char *why, size_t why_s
 		*err = text ? 0 : -ENOMEM;
 	}
 	while (text && n > 0 && len <= most) {
-		n = read(fd, text + len, most + 1 - len);
+		do
+			n = read(fd, text + len, most + 1 - len);
+		while (n < 0 && errno == EINTR);
+		*err = n < 0 ? -errno : 0;
 		len += n > 0 ? (size_t)n : 0;
 	}
 	if (fd >= 0)
@@ -37,13 +40,15 @@ char *file_text(const char *file, size_t most, int *err, char *why, size_t why_s
 	text[len] = '\0';
 	if (n >= 0 && len <= most && strlen(text) == len)
 		return text;
-	*err = n < 0 ? -EIO : len > most ? -EFBIG : -EINVAL;
-	if (n < 0)
-		snprintf(why, why_size, "%.100s: cannot be read", file);
-	else if (len > most)
+	if (n < 0) {
+		snprintf(why, why_size, "%.100s: %s", file, strerror(-*err));
+	} else if (len > most) {
+		*err = -EFBIG;
 		snprintf(why, why_size, "%.100s: longer than %zu bytes", file, most);
-	else
+	} else {
+		*err = -EINVAL;
 		snprintf(why, why_size, "%.100s: has a zero byte, is not text", file);
+	}
 	free(text);
 	return NULL;
 }

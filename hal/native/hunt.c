@@ -191,7 +191,9 @@ static bool is_known(void *ctx, const uint8_t prefix[8], unsigned bits, uint8_t 
 			return false;
 		only = device;
 	}
-	if (!only || !search_same(only->rom, prefix, bits) || locate_wants(native, prefix, bits))
+	/* An astray device has to answer; a restarted bridge has some bits of its id alone. */
+	if (!only || only->astray || only->rom[0] == DS28E18_CODE ||
+	    !search_same(only->rom, prefix, bits) || locate_wants(native, prefix, bits))
 		return false;
 	memcpy(rom, only->rom, sizeof(only->rom));
 	only->cut = (uint8_t)bits;

@@ -95,7 +95,7 @@ static int add_line(struct bus_req *req, const char *path, size_t len, uint32_t 
 }
 
 /* The root lists the devices, a device its properties. */
-static int null_list(struct bus_req *req, uint32_t *used)
+static int null_list(struct null_bus *null, struct bus_req *req, uint32_t *used)
 {
 	bool is_root = strcmp(req->path, "/") == 0;
 	const char *last = "";
@@ -103,6 +103,8 @@ static int null_list(struct bus_req *req, uint32_t *used)
 
 	if (!is_root && !has_device(req->path))
 		return -ENODEV;
+	if (!is_root && req->path[DEVICE_LEN])
+		return find_property(null, req->path) ? -ENOTDIR : -ENODEV;
 	for (unsigned i = 0; i < PROPERTIES && !err; i++) {
 		const char *path = at_start[i].path;
 
@@ -144,7 +146,7 @@ static int null_serve(struct null_bus *null, struct bus_req *req, uint32_t *len)
 		/* There is no search for alarms: a backend may do without one. */
 		if (strcmp(req->path, "/alarm") == 0)
 			return -EOPNOTSUPP;
-		return null_list(req, len);
+		return null_list(null, req, len);
 	}
 	if (!has_device(req->path))
 		return -ENODEV;

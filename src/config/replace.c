@@ -28,8 +28,8 @@ int replace_write(int fd, const char *text, size_t len)
 
 		if (n < 0 && errno == EINTR)
 			continue;
-		if (n < 0)
-			return -errno;
+		if (n <= 0)
+			return n ? -errno : -EIO;
 		text += n;
 		len -= (size_t)n;
 	}

@@ -24,7 +24,7 @@ BEFORE = re.compile(r"`([\w./-]+\.[ch])`[^`]*after\s+`([^`]+)`:$", re.I)
 def copied(folder):
     """The source without what was built of it."""
     folder.mkdir()
-    for name in ("Makefile", "LICENSE", "README.md", "NEWS.md", "src", "hal", "tests", "board", "docs"):
+    for name in (".clang-format", "Makefile", "LICENSE", "README.md", "NEWS.md", "src", "hal", "tests", "board", "docs"):
         source = owsdtest.SOURCE / name
         if source.is_dir():
             shutil.copytree(source, folder / name, ignore=shutil.ignore_patterns("__pycache__"))

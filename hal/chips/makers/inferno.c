@@ -378,6 +378,8 @@ int inferno_enter_update(struct txn *txn)
 		asked->stage = 1;
 		memset(inferno_of(txn), 0, sizeof(struct inferno));
 		err = inferno_send(txn, BOOT_UPDATER, NULL, 0);
+		/* Also if this request ends here, the way out of the updater must stay open. */
+		txn->device->kind = err ? INFERNO_UNKNOWN : INFERNO_UPDATER;
 		return err ? err : txn_wait(txn, BOOT_NS);
 	}
 	err = inferno_identify(txn);

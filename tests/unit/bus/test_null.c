@@ -90,6 +90,9 @@ static void test_device_and_property_are_missed_by_different_errors(void)
 	TEST_ASSERT_EQUAL_INT(-ENODEV, ask(BUS_PROBE, "/28.FFFFFFFFFFFF", NULL, 0)->err);
 	TEST_ASSERT_EQUAL_INT(0, ask(BUS_PROBE, "/28.000000000001/temperature", NULL, 0)->err);
 	TEST_ASSERT_EQUAL_INT(-ENODEV, ask(BUS_DIR, "/28.FFFFFFFFFFFF", NULL, 64)->err);
+	TEST_ASSERT_EQUAL_INT(-ENODEV, ask(BUS_DIR, "/28.000000000001x", NULL, 64)->err);
+	TEST_ASSERT_EQUAL_INT(-ENOTDIR,
+	                      ask(BUS_DIR, "/28.000000000001/temperature", NULL, 64)->err);
 }
 
 static void test_too_little_room_is_an_error_and_writes_nothing(void)
