@@ -225,7 +225,7 @@ static bool asks_again(struct serve *s)
 	unsigned last = s->round[(s->round_at + SERVER_CLIENTS - 1) % SERVER_CLIENTS];
 	struct client *c = &s->clients[last];
 
-	return c->state == CLIENT_READING && thread_yield(&s->rest_ns) && client_again(s, c);
+	return thread_yield(&s->rest_ns) && c->state == CLIENT_READING && client_again(s, c);
 }
 
 /* Wait for something to do. Returns the number of events. */
