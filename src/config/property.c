@@ -48,7 +48,7 @@ static const struct property *holder(const struct family *family, const struct p
 {
 	const struct property *other = NULL;
 
-	if (property->holds || !property->how)
+	if (property->holds || !property->how || !(property->access & ACCESS_WRITE))
 		return property->holds ? property : NULL;
 	while ((other = family_next(family, NULL, other)) &&
 	       (!other->holds || other->how != property->how))
