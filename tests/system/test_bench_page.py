@@ -22,10 +22,12 @@ def some_output():
              "owserver_reads.bare_socket.cpu 9.60 us/read", "rss 3024 KiB", "rss.owserver 5152 KiB",
              "text_size 535 KiB", "cpu_idle 0.57 %", "cpu_idle.owserver 0.46 %", "cpu_idle.bare_socket 0.21 %",
              "cpu_idle.no_signals 0.02 %", "cpu_idle.one_cpu 0.10 %", "wakes.no_signals 3.10 /s", "rss.proportional 1402 KiB",
+             "rss.anonymous 504 KiB", "history.file 197 MB", "history.year_of_one.p50 13.00 ms",
+             "history.day_of_ten.p50 11.00 ms", "recorder.50.rrdtool.file 7.58 MB", "recorder.10000.rrdtool.file 1516 MB",
              "limit.cache 1.40 ns",
              "limit.memory 120 ns", "limit.wake 30.00 us", "shm_get.owserver_read 70000 ns",
              "limit.loopback.pinned 73000 1/s", "limit.loopback.apart 20000 1/s",
-             "limit.loopback.pinned.new 30000 1/s", "limit.loopback.pinned.16 90000 1/s",
+             "limit.loopback.pinned.new 30000 1/s", "limit.loopback.pinned.16 90000 1/s", "limit.loopback.pinned.64 90000 1/s",
              "served_rss.64_clients 3432 KiB", "served_rss.64_clients.owserver 6564 KiB",
              "served_late_periods 0.00 periods", "served_periods 900 periods",
              "set_to_wire.wakes 100.00 us", "set_to_wire.wakes_loopback 120.00 us",
@@ -48,6 +50,9 @@ def some_output():
         lines += [f"page.{name}.p{p} {p + (30 if name == 'screen' else 0)} ms" for p in (50, 95, 99)]
     for name in ("signals", "owhttpd.uncached", "owhttpd.cached"):
         lines += [f"page.{name}.bytes 2494 bytes", f"page.{name}.p50 4.50 ms", f"page.{name}.rate 200 1/s"]
+    for at in (f"recorder.{n}.{who}" for n in (50, 10000) for who in ("owsd", "sqlite", "rrdtool")):
+        lines += [f"{at}.written_a_day 121 MB", f"{at}.growth_a_day 22.02 MB", f"{at}.cpu 22.25 us/s",
+                  f"{at}.memory 4336 kB"]
     for n in ("futex", 1, 8, 100):
         lines += [f"bells.{n} 8.00 us", f"bells.{n}.one_cpu 6.00 us"]
     for n in (10, 1000, 10000):
@@ -136,9 +141,14 @@ def test_saved_figures_become_tables_and_the_prose_is_kept(scene):
     assert "10 ns, or three loads from that cache: met" in after
     assert "| 1 000, 16 targets | 8.0 ms | 8.0 ms | 8.0 KiB | 8.0 us | 8.0 | 8.0 % | 8.0 /s |" in after
     assert "| 1 000, 64 targets | 8.0 ms |" in after
-    assert "| 80 on 8 channels | 1.25 s |" in after
+    assert "| 50 | 1.25 s | 1.7 s: met |\n| 80 on 8 channels | 1.25 s | 2.2 s: met |" in after
+    assert "| alarm items, idle search 10 % | 60 ms | 109 ms | 70 ms: **missed** |" in after
+    assert "| 50 | rrdtool, the archives of collectd | 121 MB | none, 7.6 MB | 22.2 us/s | 4 336 kB |" in after
     assert "1.3 times that over loopback" in after
-    assert "| 1, pinned | 4 000/s | 50.0, 99.0 us | 1 000/s | 50.0, 99.0 us | 4.0 | 73 000/s |" in after
+    assert "| 1, pinned | 4 000/s | 50.0, 99.0 us | 1 000/s | 50.0, 99.0 us | 4.0 | 73 000/s | 1.2 times the time of loopback alone: **missed** |" in after
+    assert "| 16, pinned | 4 000/s | 50.0, 99.0 us | 1 000/s | 50.0, 99.0 us | 4.0 | 90 000/s | 8 times: **missed** |" in after
+    assert "| all of 50 thermometers anew, 100 kHz, kernel rig | 6.0 s | kernel w1 6.0 s (bulk), 6.0 s (one by one), owserver 6.0 s |" in after
+    assert "| served reads, 1 client | 4 000/s | owserver 1 000/s |" in after
     assert "| owsd direct | 50 | 6.00 | 3000 | 10000 | 600 | 50 | 1.34 |" in after
     assert "| owsd: read | 85 | 4.00 | 2000 | 10000 | 1000 | 90 |" in after
     assert "| owserver, all | 600 | 3 000 |" in after
@@ -151,6 +161,10 @@ def test_saved_figures_become_tables_and_the_prose_is_kept(scene):
     assert "| one signal changes | 50.0, 95.0, 99.0 ms | p95 100 ms and a frame: met |" in after
     assert "| owhttpd: one of 100 thermometers, uncached | 2 494 | 4.5 ms | 200/s |" in after
     assert "not quiet" not in after
+    # whatever is missed in a table is in the list at the beginning
+    short = after[after.index("| missed | measured | aim |"):after.index("<!-- end of figures -->", after.index("| missed |"))]
+    assert short.count("\n| ") == after.count(": **missed** |") > 5
+    assert "| served reads, clients: 16, pinned | 4.0 times | 8 times |" in short
     again, _, same = written(scene, page)
     assert again == 0 and same == after
 
