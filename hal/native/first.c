@@ -28,16 +28,24 @@ static bool is_on(const struct path *path, unsigned n)
 	return path->bus < 0 || path->bus == (int)n;
 }
 
-/* Have all that waited for the conversions of a wire got their readings? */
-static bool are_served(const struct native *native, unsigned n)
+/* A result that is read too late serves nobody: all convert again, while the search goes on. */
+static bool is_fresh(const struct native *native, unsigned n, int64_t now)
+{
+	return native->channel[n].first.ready_ns + FRESH_NS > now;
+}
+
+/* Have all that waited for the conversions of a wire got their readings, or can get none? */
+static bool are_served(const struct native *native, unsigned n, int64_t now)
 {
 	for (const struct job *job = NULL; (job = native_job(native, job));) {
 		struct path path;
 
 		if (job->first != FIRST_TAKES_PART)
 			continue;
-		if (job->state != JOB_NEW ? job->txn.device && job->txn.device->channel == n
-		                          : first_names(native, job, &path) && is_on(&path, n))
+		if (job->state != JOB_NEW
+		            ? job->txn.device && job->txn.device->channel == n
+		            : is_fresh(native, n, now) && first_names(native, job, &path) &&
+		                      is_on(&path, n))
 			return false;
 	}
 	return true;
@@ -51,8 +59,8 @@ static bool may_convert(const struct native *native, unsigned n, int64_t now)
 
 	if (!first_fits(native, n) || (!channel->searching && !first->likely))
 		return false;
-	if (first->tried &&
-	    (first->refused || !first->ready_ns || first->ready_ns > now || !are_served(native, n)))
+	if (first->tried && (first->refused || !first->ready_ns || first->ready_ns > now ||
+	                     !are_served(native, n, now)))
 		return false;
 	/* All hear the command, also a chip that is at work for a request that went first. */
 	return !native_held(native, n, NULL, now) && !native_at_work(native, n);
@@ -225,7 +233,7 @@ static bool is_ready(struct native *native, struct job *job, int64_t now, int64_
 
 	if (ready_ns > now && ready_ns < *next)
 		*next = ready_ns;
-	return ready_ns && ready_ns <= now && ready_ns + FRESH_NS > now && is_on(&path, *n) &&
+	return ready_ns && ready_ns <= now && is_fresh(native, *n, now) && is_on(&path, *n) &&
 	       (!known ||
 	        (first_took_part(native, device) && !thermometer_last(device).was_read)) &&
 	       !native_held(native, *n, NULL, now);

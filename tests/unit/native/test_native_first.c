@@ -136,6 +136,19 @@ static void run(unsigned n)
 	TEST_ASSERT_EQUAL_UINT(n, answers);
 }
 
+/* On a host that takes so long for each step. */
+static void run_slowly(unsigned n, int64_t step_ns)
+{
+	int64_t until_ns = host.now + 30 * HOST_S;
+
+	while (answers < n && host.now < until_ns) {
+		int64_t next = bus_step(bus, host.now);
+
+		host.now = (next < until_ns && next > host.now ? next : host.now) + step_ns;
+	}
+	TEST_ASSERT_EQUAL_UINT(n, answers);
+}
+
 static uint64_t counter(const char *name)
 {
 	size_t n;
@@ -629,6 +642,24 @@ static void test_noise_makes_no_false_value(void)
 	}
 }
 
+/*
+ * The first conversions are too old for the last ones, whose readings come so late. The search, in
+ * which nobody reads, would take seven seconds.
+ */
+static void test_what_a_slow_host_reads_too_late_converts_again_before_the_search_has_ended(void)
+{
+	spread = true;
+	begin(50, 1, "", "");
+	for (unsigned i = 0; i < 50; i++)
+		ask_thermometer(i, true);
+	run_slowly(50, 120 * HOST_MS);
+	for (unsigned i = 0; i < 50; i++) {
+		TEST_ASSERT_EQUAL_INT(0, err_of[i]);
+		TEST_ASSERT_LESS_THAN_INT64(10 * HOST_S, took_ns[i]);
+		TEST_ASSERT_LESS_THAN_INT64(6 * HOST_S, begun_ns + took_ns[i] - measured_ns[i]);
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -655,5 +686,6 @@ int main(void)
 	RUN_TEST(test_a_coarse_one_converts_again);
 	RUN_TEST(test_a_chip_that_has_to_tell_what_it_is_does_so_first);
 	RUN_TEST(test_noise_makes_no_false_value);
+	RUN_TEST(test_what_a_slow_host_reads_too_late_converts_again_before_the_search_has_ended);
 	return UNITY_END();
 }
