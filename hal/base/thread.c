@@ -11,6 +11,7 @@
 #include "hal/base/time.h"
 
 #define YIELD_LONG_NS (NS_PER_MS / 2)
+#define REST 32 /* after a long one there is none for so many times its time */
 
 /* On the maker's stack, until the thread has taken it. */
 struct start {
@@ -81,6 +82,6 @@ bool thread_yield(int64_t *rest_ns)
 	sched_yield();
 	ended_ns = thread_now();
 	if (ended_ns - begun_ns > YIELD_LONG_NS)
-		*rest_ns = ended_ns + NS_PER_S;
+		*rest_ns = ended_ns + REST * (ended_ns - begun_ns);
 	return true;
 }

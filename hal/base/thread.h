@@ -19,7 +19,7 @@ int thread_start(pthread_t *thread, const char *name, size_t stack, void *(*run)
 /*
  * Let whom the thread has just woken run first, where both share a CPU: its answer saves a sleep
  * then. On a busy machine others run too, and a yield may cost more than any sleep: after one that
- * took long there is none for a second. rest_ns: 0 at first, the caller's to keep. False: there
- * was none.
+ * took long there is none for 32 times as long. rest_ns: 0 at first, the caller's to keep. False:
+ * there was none.
  */
 bool thread_yield(int64_t *rest_ns);
