@@ -271,15 +271,20 @@ void control_done(struct control *c, const struct control_message *message)
 
 void control_news(struct control *c, const uint32_t *word)
 {
+	bool left = news_sleepers_left(c, word), due = false;
+
 	/* count the news, then look for waiting readers: a reader says that it waits, then looks */
 	word_fence(__ATOMIC_SEQ_CST);
 	for (unsigned i = 0; i < c->engine.end; i++) {
 		const struct controller_memory *memory = &c->engine.memories[i];
 
-		if (memory->base && controller_waits(memory))
-			news_due(c, i);
+		if (!memory->base || !controller_waits(memory))
+			continue;
+		news_due(c, i);
+		due = true;
 	}
-	news_ring(c, word);
+	if (left || due)
+		news_ring(c, left ? word : NULL);
 }
 
 void control_end(struct control *c)

@@ -57,8 +57,8 @@ struct control_message {
 bool control_next(struct control *control, struct control_message *message);
 void control_done(struct control *control, const struct control_message *message);
 /*
- * Have the news rung of the controllers that wait for it, and the sleepers of an image woken, by
- * another thread; word: of the image, which counts its news; NULL: none.
+ * Have the news rung of the controllers that wait for it, and wake the sleepers of an image, by
+ * another thread where there are several; word: of the image, which counts its news.
  */
 void control_news(struct control *control, const uint32_t *word);
 /* The engine ends: refuse all sets from here on. What was set before, the next step finds. */

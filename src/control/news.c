@@ -20,6 +20,11 @@
 #define SLOW_NS (NS_PER_MS / 2)
 #define REST 20
 
+/* Of the engine's thread: so many sleepers it wakes itself, if that takes no longer than this. */
+#define WOKEN_HERE 2
+#define LONG_NS (NS_PER_MS / 10)
+#define LONG_REST_NS NS_PER_S
+
 enum { NEWS_GONE, NEWS_IDLE, NEWS_BUSY };
 
 int news_open(struct control *c)
@@ -47,6 +52,20 @@ void news_ring(struct control *c, const uint32_t *word)
 		news_due(c, NEWS_IMAGE);
 	}
 	bell_ring(c->news.bell);
+}
+
+bool news_sleepers_left(struct control *c, const uint32_t *word)
+{
+	int64_t begun_ns = ows_now(), ended_ns;
+	int woken;
+
+	if (begun_ns < c->engine.rest_until_ns)
+		return true;
+	woken = segment_wake(word, WOKEN_HERE);
+	ended_ns = ows_now();
+	if (ended_ns - begun_ns > LONG_NS)
+		c->engine.rest_until_ns = ended_ns + LONG_REST_NS;
+	return woken == WOKEN_HERE;
 }
 
 void news_begin(struct control_place *p)

@@ -2,7 +2,8 @@
 /*
  * News: a thread that writes to a socket or wakes a word walks all watches and sleepers that peers
  * have put there. So a thread of its own does it, for which the engine only leaves word; what is
- * found to be slow is rung less often.
+ * found to be slow is rung less often. Mostly nobody sleeps on the image: that the engine sees for
+ * itself, and wakes no thread then.
  */
 #pragma once
 
@@ -15,6 +16,11 @@ int news_start(struct control *c);
 void news_stop(struct control *c);
 /* What the thread does when its bell has rung: how long nothing is due then; -1: until it rings. */
 int64_t news_turn(struct control *c);
+/*
+ * The engine's thread: wakes one or two sleepers of the word. True: the thread of news has to wake
+ * the others, if there are any. After a call that took long it has to for a second, without a call.
+ */
+bool news_sleepers_left(struct control *c, const uint32_t *word);
 /* Any thread: the place is to be rung; news_ring() has to follow. */
 void news_due(struct control *c, unsigned place);
 /* Any thread, never blocks; word: of an image with sleepers to be woken too, or NULL. */

@@ -26,7 +26,7 @@ MODEL     := $(wildcard tests/model/*.c)
 MODEL_CODE := src/shm/image.c src/shm/entries.c src/shm/reader.c src/shm/controller.c src/host/bells.c \
              src/control/control.c src/control/news.c src/libows/alive.c src/libows/changes.c src/libows/get.c \
              src/libows/set.c src/libows/give.c src/libows/command.c src/libows/wait.c \
-             src/libows/news.c src/libows/alarm.c src/libows/origin.c
+             src/libows/news.c src/libows/alarm.c src/libows/journal.c src/libows/origin.c
 # What runs as a thread of the model, beside that; all else here is the model itself
 MODEL_RUN := tests/model/changes.c tests/model/litmus.c tests/model/orders.c tests/model/records.c
 

@@ -573,6 +573,13 @@ static void setup_news_read(void)
 	handles[0].join.news = -1;
 }
 
+/* A wake took long a moment ago: the engine leaves the next to the thread. */
+static void setup_news_long(void)
+{
+	setup_news_read();
+	control.engine.rest_until_ns = INT64_MAX;
+}
+
 static void engine_publishes(void)
 {
 	for (uint32_t n = 1; n <= last_message; n++) {
@@ -631,6 +638,8 @@ const struct scenario command_scenarios[] = {
 	{"a controller waits for news", setup_news, 3,
 	 {engine_publishes, program_waits_for_news, thread_rings}, .end = last_message_taken},
 	{"a reader waits for news", setup_news_read, 3,
+	 {engine_publishes, program_waits_for_news, thread_rings}, .end = last_message_taken},
+	{"a reader waits for news of the thread", setup_news_long, 3,
 	 {engine_publishes, program_waits_for_news, thread_rings}, .end = last_message_taken},
 	{NULL},
 };

@@ -7,6 +7,7 @@ import time
 
 import owsdtest
 from owsdtest import raw, until
+from test_serve_crowd import wakes
 
 import ows  # of owsdtest.PYTHON
 
@@ -102,6 +103,24 @@ def test_who_follows_outlives_a_reload_a_kill_and_an_end(scene):
         assert not any(signals.get(name).good for name in NAMES)
         daemon = scene.owsd(daemon.config, name=daemon.name)
         go_over(signals, changes)
+
+
+def test_a_busy_owsd_whose_changes_nobody_waits_for_wakes_no_thread_for_each(scene):
+    server = scene.owserver(fake=["28"] * 20)
+    items = [dict(Name=f"t{i}", Path=f"{path}/temperature", Type=raw("double"), IO=raw("input"))
+             for i, path in enumerate(server.devices())]
+    daemon = scene.owsd(owsdtest.rio(server.target, items, Period=0.01))
+    signals = ows.Ows(daemon.name)
+    seen = []
+
+    def spared():
+        seen[:] = seen[-1:] + [(wakes(daemon, "owsd-news")[0], signals.get("_TRANSACTIONS").value)]
+        return len(seen) == 2 and 5 * (seen[1][0] - seen[0][0]) < seen[1][1] - seen[0][1]
+    until(spared, 20, lambda: f"few wakes for many readings: {seen}", 0.5)
+    # who comes to wait is woken all the same
+    changes = signals.changes(owsdtest.PATIENCE)
+    next(changes)
+    follow(changes, has("t7"))
 
 
 if __name__ == "__main__":

@@ -4,6 +4,8 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
+#include <pthread.h>
+#include <sched.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,7 +18,9 @@
 
 #include "unity.h"
 
+#include "hal/base/time.h"
 #include "src/libows/ows.h"
+#include "src/shm/futex.h"
 #include "tests/unit/aid/control_scene.h"
 
 #define SEALS (F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL)
@@ -132,6 +136,43 @@ static void test_a_controller_gets_a_sealed_memory_a_bell_and_news(void)
 	control_ring_news();
 	TEST_ASSERT_EQUAL(1, poll(&news, 1, CONTROL_SCENE_MS));
 	control_leave(&client);
+}
+
+#define SLEEPERS 8
+static uint32_t image_word, sleepers;
+
+static void *sleep_on_image(void *ctx)
+{
+	(void)ctx;
+	__atomic_fetch_add(&sleepers, 1, __ATOMIC_RELAXED);
+	while (!__atomic_load_n(&image_word, __ATOMIC_ACQUIRE))
+		if (segment_wait(&image_word, 0, CONTROL_SCENE_MS * NS_PER_MS) == -ETIMEDOUT)
+			return ctx;
+	return NULL;
+}
+
+/* The engine wakes the first of them, and the thread of news the others. */
+static void test_all_sleepers_of_an_image_are_woken(void)
+{
+	const struct timespec asleep = {.tv_nsec = 20 * NS_PER_MS};
+	pthread_t thread[SLEEPERS];
+	void *late;
+
+	for (unsigned n = 0; n <= SLEEPERS; n++) {
+		image_word = sleepers = 0;
+		for (unsigned i = 0; i < n; i++)
+			TEST_ASSERT_EQUAL(
+				0, pthread_create(&thread[i], NULL, sleep_on_image, &image_word));
+		while (__atomic_load_n(&sleepers, __ATOMIC_RELAXED) < n)
+			sched_yield();
+		nanosleep(&asleep, NULL); /* they have said that they sleep, and now do */
+		__atomic_store_n(&image_word, 1, __ATOMIC_RELEASE);
+		control_news(control_room, &image_word);
+		for (unsigned i = 0; i < n; i++) {
+			TEST_ASSERT_EQUAL(0, pthread_join(thread[i], &late));
+			TEST_ASSERT_NULL(late);
+		}
+	}
 }
 
 static void test_two_controllers_share_nothing(void)
@@ -434,6 +475,7 @@ int main(void)
 	RUN_TEST(test_a_later_minor_version_with_flags_that_are_not_known_is_welcome);
 	RUN_TEST(test_who_says_nothing_in_time_is_hung_up_on);
 	RUN_TEST(test_a_controller_gets_a_sealed_memory_a_bell_and_news);
+	RUN_TEST(test_all_sleepers_of_an_image_are_woken);
 	RUN_TEST(test_two_controllers_share_nothing);
 	RUN_TEST(test_a_token_comes_back_as_it_was_presented);
 	RUN_TEST(
