@@ -65,22 +65,14 @@ int thread_start(pthread_t *thread, const char *name, size_t stack, void *(*run)
 	return -err;
 }
 
-static int64_t thread_now(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return (int64_t)t.tv_sec * NS_PER_S + t.tv_nsec;
-}
-
 bool thread_yield(int64_t *rest_ns)
 {
-	int64_t begun_ns = thread_now(), ended_ns;
+	int64_t begun_ns = clock_ns(CLOCK_MONOTONIC), ended_ns;
 
 	if (begun_ns < *rest_ns)
 		return false;
 	sched_yield();
-	ended_ns = thread_now();
+	ended_ns = clock_ns(CLOCK_MONOTONIC);
 	if (ended_ns - begun_ns > YIELD_LONG_NS)
 		*rest_ns = ended_ns + REST * (ended_ns - begun_ns);
 	return true;
