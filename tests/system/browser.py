@@ -36,13 +36,15 @@ class Page:
                    "binary": chromium()}
         session = self.ask("POST", "/session", {"capabilities": {"alwaysMatch": {
             "browserName": "chrome", "goog:chromeOptions": options,
+            "timeouts": {"script": 1000 * owsdtest.PATIENCE},
             "goog:loggingPrefs": {"browser": "ALL"}}}})
         self.base = f"/session/{session['sessionId']}"
         self.size(1280, 800)
 
     def ask(self, method, path, body=None):
         """What chromedriver answers."""
-        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=owsdtest.PATIENCE)
+        connection = http.client.HTTPConnection("127.0.0.1", self.port,
+                                                timeout=owsdtest.PATIENCE + 10)
         with contextlib.closing(connection):
             connection.request(method, path, None if body is None else json.dumps(body),
                                {"Content-Type": "application/json"})

@@ -421,7 +421,8 @@ def test_messages_that_are_explained_are_those_of_the_programs(_scene):
 
 def test_each_rung_of_the_recovery_is_explained_by_its_counter(_scene):
     said = (SOURCE / "docs/native.md").read_text().split("\n## Recovery\n")[1].split("\n## ")[0]
-    names = re.findall(r'"(recover_\w+|retries|link_errors|shorts)"', (SOURCE / "hal/native/native.c").read_text())
+    names = re.findall(r'"(recover_\w+|retries|link_errors|shorts)"',
+                       (SOURCE / "hal/native/state.h").read_text())
     missing = [name for name in names if f"`bus_{name}`" not in said]
     assert len(names) >= 7 and not missing, (names, missing)
 
