@@ -271,7 +271,7 @@ void control_done(struct control *c, const struct control_message *message)
 
 void control_news(struct control *c, const uint32_t *word)
 {
-	bool left = news_sleepers_left(c, word), due = false;
+	bool left = news_wake(c, word), due = false;
 
 	/* count the news, then look for waiting readers: a reader says that it waits, then looks */
 	word_fence(__ATOMIC_SEQ_CST);

@@ -54,7 +54,7 @@ void news_ring(struct control *c, const uint32_t *word)
 	bell_ring(c->news.bell);
 }
 
-bool news_sleepers_left(struct control *c, const uint32_t *word)
+bool news_wake(struct control *c, const uint32_t *word)
 {
 	int64_t begun_ns = ows_now(), ended_ns;
 	int woken;

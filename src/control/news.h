@@ -17,10 +17,10 @@ void news_stop(struct control *c);
 /* What the thread does when its bell has rung: how long nothing is due then; -1: until it rings. */
 int64_t news_turn(struct control *c);
 /*
- * The engine's thread: wakes one or two sleepers of the word. True: the thread of news has to wake
- * the others, if there are any. After a call that took long it has to for a second, without a call.
+ * The engine's thread: wake two sleepers of the word at most. True: there may be others, which the
+ * thread of news has to wake. For a second after a wake that took long it wakes none, and is true.
  */
-bool news_sleepers_left(struct control *c, const uint32_t *word);
+bool news_wake(struct control *c, const uint32_t *word);
 /* Any thread: the place is to be rung; news_ring() has to follow. */
 void news_due(struct control *c, unsigned place);
 /* Any thread, never blocks; word: of an image with sleepers to be woken too, or NULL. */

@@ -150,7 +150,7 @@ struct control {
 		uint32_t seen;
 		unsigned at;
 		unsigned end;          /* no memory stands at or after it */
-		int64_t rest_until_ns; /* of news_sleepers_left() */
+		int64_t rest_until_ns; /* of news_wake() */
 		struct controller_memory memories[OWS_CONTROLLERS]; /* of those that have joined */
 	} engine;                                                   /* of the engine's thread */
 	struct {
