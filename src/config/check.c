@@ -164,6 +164,27 @@ static void check_direction(const struct check *check)
 		               item->name, strrchr(item->path, '/') + 1);
 }
 
+/* A name of a temperature that is not that of the property, which nothing converts. */
+static void check_unit(const struct check *check)
+{
+	static const char *const others[] = {"F", "°F", "degF", "Fahrenheit", "fahrenheit",
+	                                     "K", "°K", "Kelvin", "kelvin"};
+	const struct config_item *item = check->item;
+	struct quantity quantity;
+
+	if (!item->unit || item->scale.linear || item->scale.count ||
+	    !quantity_of(item->path, &quantity) || strcmp(quantity.unit, "°C") != 0)
+		return;
+	for (size_t i = 0; i < sizeof(others) / sizeof(others[0]); i++)
+		if (!strcmp(item->unit, others[i]))
+			report_warning(check->report, check->place,
+			               "\"%s\": Unit \"%s\" is shown beside a value in °C: write "
+			               "%s too",
+			               item->name, item->unit,
+			               strpbrk(item->unit, "Ff") ? "Scale 1.8 and Offset 32"
+			                                         : "Offset 273.15");
+}
+
 /* So long owsd's own buses give a value again that was measured (docs/semantics.md 6). */
 static int64_t cached_ns(const struct check *check)
 {
@@ -203,6 +224,7 @@ static void check_age(const struct check *check)
 
 static void check_item(const struct check *check)
 {
+	static const char simultaneous[] = "simultaneous/";
 	const struct config_item *item = check->item;
 	struct quantity quantity;
 	struct path path;
@@ -212,7 +234,14 @@ static void check_item(const struct check *check)
 	check_ids(check);
 	if (path.property.len)
 		check_property(check, item->path, "", path.property.text);
+	if (!path.device.len && item->readable &&
+	    !strncmp(path.property.text, simultaneous, strlen(simultaneous)))
+		report_warning(check->report, check->place,
+		               "\"%s\": %s begins conversions and shows no value: write IO output, "
+		               "or the Path of a device",
+		               item->name, item->path);
 	check_direction(check);
+	check_unit(check);
 	if (item->type == OWS_STRING && quantity_of(item->path, &quantity))
 		report_warning(
 			check->report, check->place,

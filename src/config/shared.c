@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Finds items that set the same bits of a device while Restore writes one of them again. */
+/* Finds items that set the same bits of a device. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -55,25 +55,27 @@ static bool is_whole_register(const char *element)
 	return !*element || !strcmp(element, "BYTE") || !strcmp(element, "ALL");
 }
 
-static bool are_rivals(const struct output *a, const struct output *b)
+static bool overlap(const struct output *a, const struct output *b)
 {
-	if (!(a->item->restores && a->item->read_back_ns) &&
-	    !(b->item->restores && b->item->read_back_ns))
-		return false;
 	return is_whole_register(a->element) || is_whole_register(b->element) ||
 	       !strcmp(a->element, b->element);
 }
 
-/* The nearest output before n that fights with it; NULL: none. */
+/* The nearest output before n that sets bits of it too; NULL: none. */
 static const struct config_item *opponent(const struct output *outputs, unsigned n)
 {
 	for (unsigned i = n; i > 0 && n - i < PARTNERS; i--) {
 		if (outputs[i - 1].where != outputs[n].where)
 			break;
-		if (are_rivals(&outputs[i - 1], &outputs[n]))
+		if (overlap(&outputs[i - 1], &outputs[n]))
 			return outputs[i - 1].item;
 	}
 	return NULL;
+}
+
+static bool is_restored(const struct config_item *item)
+{
+	return item->restores && item->read_back_ns;
 }
 
 void shared_check(const struct config *config, const char *name, struct config_report *report)
@@ -91,10 +93,12 @@ void shared_check(const struct config *config, const char *name, struct config_r
 		if (!other || (name && strcmp(item->name, name) && strcmp(other->name, name)))
 			continue;
 		report_warning(report, (struct place){config->file, item->line, 0},
-		               "\"%s\" and \"%s\" in line %d set the same bits, and Restore on "
-		               "undoes what the other commands: write Restore off, or keep one of "
-		               "them",
-		               item->name, other->name, other->line);
+		               "\"%s\" and \"%s\" in line %d set the same bits, and %s",
+		               item->name, other->name, other->line,
+		               is_restored(item) || is_restored(other)
+		                       ? "Restore on undoes what the other commands: write Restore "
+		                         "off, or keep one of them"
+		                       : "the last command counts for both: keep one of them");
 	}
 	free(outputs);
 }

@@ -58,6 +58,17 @@ static void test_what_cannot_be_meant_is_named_with_its_remedy(void)
 	         AT " is Writable, but temperature cannot be written: write Writable off\n"},
 		{"Name x Path /28.551DDF030000/temperature Type string",
 	         AT " is a number, and a string shows it as text: write Type double\n"},
+		{"Name x Path /simultaneous/temperature Type bool",
+	         AT ": /simultaneous/temperature begins conversions and shows no value: write IO "
+	            "output, or the Path of a device\n"},
+		{"Name x Path /28.551DDF030000/temperature Type double Unit F",
+	         AT ": Unit \"F\" is shown beside a value in °C: write Scale 1.8 and Offset 32 "
+	            "too\n"},
+		{"Name x Path /room/temperature Type double Unit \"°F\"",
+	         AT ": Unit \"°F\" is shown beside a value in °C: write Scale 1.8 and Offset 32 "
+	            "too\n"},
+		{"Name x Path /28.551DDF030000/temperature Type double Unit K",
+	         AT ": Unit \"K\" is shown beside a value in °C: write Offset 273.15 too\n"},
 		{"Name x Path /29.B89115000000/sensed.BYTE Type byte Alarm on LatchAlarm \"latch.BYT\" "
 	         "PorAlarm \"porr\" SetAlarm \"set_alarm=1\" ResetLatch \"sensed.BYTE=0\"",
 	         AT ": LatchAlarm: a DS2408 has no latch.BYT; did you mean latch.BYTE?\n" AT
@@ -121,6 +132,11 @@ static void test_what_may_be_meant_is_not_mentioned(void)
 	static const struct line cases[] = {
 		{"Name x Path /kitchen/temprature Type double", ""},
 		{"Name x Path /28.kitchen/temperature Type double", ""},
+		{"Name x Path /simultaneous/temperature Type bool IO output", ""},
+		{"Name x Path /28.551DDF030000/temperature Type double Unit F Scale 1.8 Offset 32",
+	         ""},
+		{"Name x Path /28.551DDF030000/temperature Type double Unit K Offset 273.15", ""},
+		{"Name x Path /26.B89115000000/VAD Type double Unit K", ""},
 		{"Name x Path /ab.cdef/temperature Type double", ""},
 		{"Name x Path /28551DDF030000/temperature12 Type double", ""},
 		{"Name x Path /29.B89115000000/PIO.3 Type bool IO output", ""},
@@ -157,11 +173,14 @@ static int check_pair(const char *keys)
 	return err;
 }
 
-static void test_two_outputs_of_the_same_bits_of_which_one_is_restored_are_named(void)
+static void test_two_outputs_of_the_same_bits_are_named(void)
 {
 #define FIGHT \
 	"f:4: warning: \"b\" and \"a\" in line 2 set the same bits, and Restore on undoes what the " \
 	"other commands: write Restore off, or keep one of them\n"
+#define SHARE \
+	"f:4: warning: \"b\" and \"a\" in line 2 set the same bits, and the last command counts for " \
+	"both: keep one of them\n"
 #define ALIAS "ReadBack 5 Path /lamp/PIO.A"
 	static const struct line cases[] = {
 		{"Path /29.B89115000000/PIO.BYTE Restore on;Path /29.B89115000000/PIO.3", FIGHT},
@@ -180,7 +199,11 @@ static void test_two_outputs_of_the_same_bits_of_which_one_is_restored_are_named
 	         FIGHT},
 		{"Path /29.B89115000000/PIO.BYTE Restore on;IO input Path /29.B89115000000/PIO.3",
 	         ""},
-		{"Path /29.B89115000000/PIO.BYTE;Path /29.B89115000000/PIO.3", ""},
+		{"Path /29.B89115000000/PIO.BYTE;Path /29.B89115000000/PIO.3", SHARE},
+		{"Path /29.B89115000000/PIO.3 InitValue 1;Path /29.B89115000000/PIO.3 InitValue 0",
+	         SHARE},
+		{"Path /lamp/PIO.A;Path /lamp/PIO.A", SHARE},
+		{"Path /29.B89115000000/PIO.2;Path /29.B89115000000/PIO.3", ""},
 		{"Path /29.B89115000000/PIO.2 Restore on;Path /29.B89115000000/PIO.3 Restore on",
 	         ""},
 		{"Path /29.B89115000000/PIO.3 Restore on;Path /29.000000000001/PIO.3 Restore on",
@@ -224,7 +247,7 @@ int main(void)
 	RUN_TEST(test_what_cannot_be_meant_is_named_with_its_remedy);
 	RUN_TEST(test_the_age_that_a_cache_leaves_is_reckoned_with);
 	RUN_TEST(test_what_may_be_meant_is_not_mentioned);
-	RUN_TEST(test_two_outputs_of_the_same_bits_of_which_one_is_restored_are_named);
+	RUN_TEST(test_two_outputs_of_the_same_bits_are_named);
 	RUN_TEST(test_no_property_of_any_family_in_its_own_direction_is_complained_of);
 	return UNITY_END();
 }
