@@ -167,7 +167,7 @@ static void check_direction(const struct check *check)
 /* A name of a temperature that is not that of the property, which nothing converts. */
 static void check_unit(const struct check *check)
 {
-	static const char *const others[] = {"F", "°F", "degF", "Fahrenheit", "fahrenheit",
+	static const char *const others[] = {"F", "°F", "degF",   "Fahrenheit", "fahrenheit",
 	                                     "K", "°K", "Kelvin", "kelvin"};
 	const struct config_item *item = check->item;
 	struct quantity quantity;

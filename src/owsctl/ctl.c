@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "hal/base/time.h"
+#include "src/libows/open.h"
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/running.h"
 #include "src/shm/place.h"
@@ -332,12 +333,14 @@ bool ctl_alive(const struct ctl *ctl, struct ows *h, int64_t now_ns)
 	if (daemon.alive)
 		return true;
 	if (daemon.state == 3)
-		ctl_fail("owsd %s was stopped; these are its last values", ctl->instance);
+		ctl_fail("owsd %s of %s was stopped %s ago; these are its last values",
+		         ctl->instance, open_place(h), when_span(daemon.beat_age_ns, span));
 	else if (!daemon.beat_age_ns)
-		ctl_fail("owsd %s is not running: its heartbeat lies in the future", ctl->instance);
+		ctl_fail("owsd %s of %s is not running: its heartbeat lies in the future",
+		         ctl->instance, open_place(h));
 	else
-		ctl_fail("owsd %s is not running: last heartbeat %s ago", ctl->instance,
-		         when_span(daemon.beat_age_ns, span));
+		ctl_fail("owsd %s of %s is not running: last heartbeat %s ago", ctl->instance,
+		         open_place(h), when_span(daemon.beat_age_ns, span));
 	return false;
 }
 

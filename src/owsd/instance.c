@@ -4,6 +4,8 @@
 #include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include "hal/base/time.h"
@@ -33,6 +35,41 @@ static unsigned look_before(const struct shm_place *place, const char *name)
 			before |= 1u << i;
 	}
 	return before;
+}
+
+/*
+ * Does an owsd listen there for programs that command? Its control socket takes packets: the kernel
+ * refuses a stream with another error where nobody listens, and connects in no case.
+ */
+static bool is_served(const char *place, const char *name)
+{
+	struct sockaddr_un address = {.sun_family = AF_UNIX};
+	int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+	char file[SEGMENT_FILE];
+	int len = snprintf(address.sun_path, sizeof(address.sun_path), "%s/%s", place,
+	                   segment_file(name, "control", file));
+	bool is = fd >= 0 && len < (int)sizeof(address.sun_path) &&
+	          connect(fd, (const struct sockaddr *)&address, sizeof(address)) &&
+	          errno == EPROTOTYPE;
+
+	if (fd >= 0)
+		close(fd);
+	return is;
+}
+
+/* Programs of this user find the one or the other, and both may write to the same devices. */
+static void warn_of_namesakes(const struct instance *instance, struct log *log)
+{
+	char places[PLACES][PLACE_PATH];
+	int count = place_list(places);
+
+	for (int i = 0; i < count; i++)
+		if (strcmp(places[i], instance->place.path) != 0 &&
+		    is_served(places[i], instance->name))
+			log_warning(log,
+			            "another owsd %s runs, in %s: owsctl of this user sees the one "
+			            "in %s; end one of them, or name this one otherwise with -n",
+			            instance->name, places[i], instance->place.path);
 }
 
 int instance_take(struct instance *instance, const char *name, struct log *log, char *why,
@@ -65,8 +102,10 @@ int instance_take(struct instance *instance, const char *name, struct log *log, 
 		log_warning(
 			log,
 			"the previous owsd is stuck in the kernel: owsd starts with a new lock");
-	if (lock >= 0)
+	if (lock >= 0) {
+		warn_of_namesakes(instance, log);
 		return 0;
+	}
 	place_close(&instance->place);
 	return lock;
 }

@@ -369,6 +369,9 @@ def test_a_user_sees_the_nearest_owsd_of_a_name_that_lives(scene):
             json.loads(done.stdout)["daemon"]["pid"] == daemon.pid
 
     until(lambda: served_by(own), 20, "his own is the nearest")
+    assert f"another owsd {service.name} runs, in {owsdtest.place()}: owsctl of this user sees the one in " \
+        f"{home}/owsd; end one of them, or name this one otherwise with -n" in own.log(), own.log()
+    assert "another owsd" not in service.log()
     rows = scene._run([*as_plc, programs() / "owsctl", "instances"], 30).stdout
     for daemon, where in ((own, home / "owsd"), (service, owsdtest.place())):
         assert re.search(rf"^{service.name} +running +{daemon.pid} .* {where} ", rows, re.M), rows
@@ -382,6 +385,11 @@ def test_a_user_sees_the_nearest_owsd_of_a_name_that_lives(scene):
     until(lambda: watch.log().endswith("True\n"), 20, "and follows its owsd")
     assert str(owsdtest.place()) not in watch.log()
     assert own.stop() == 0 and service.stop() == 0
+    done = scene._run([*as_plc, programs() / "owsctl", "-n", service.name, "list"], 30)
+    assert f"owsd {service.name} of {home}/owsd was stopped" in done.stderr, done
+    own = scene.start(command)
+    until(lambda: "from down to up" in own.log(), 20, "it runs alone")
+    assert "another owsd" not in own.log() and own.stop() == 0
     done = scene._run([*as_plc, programs() / "owsctl", "remove", service.name], 30)
     assert done.returncode == 0 and list((home / "owsd").iterdir()) == [], "he removes what is his"
     assert "image" in faulty.leftovers(service.name)
