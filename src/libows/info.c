@@ -184,22 +184,11 @@ const char *ows_quality_text(uint8_t quality)
 		uint8_t quality;
 		const char *text;
 	} texts[] = {
-		{OWS_Q_NO_PROPERTY, "no such property"},
-		{OWS_Q_TYPE, "wrong type"},
-		{OWS_Q_ACCESS, "access refused"},
-		{OWS_Q_NO_DEVICE, "device absent"},
-		{OWS_Q_DEVICE, "device error"},
-		{OWS_Q_SENSOR, "sensor power fault"},
-		{OWS_Q_STALE, "stale"},
-		{OWS_Q_TARGET, "target down"},
-		{OWS_Q_SHORT, "wire short"},
-		{OWS_Q_DIFFERS, "not as commanded"},
-		{OWS_Q_INITIAL, "initial"},
-		{OWS_Q_LAST_USABLE, "last usable value"},
-		{OWS_Q_RANGE, "out of range"},
-		{OWS_Q_LOW, "at lower limit"},
-		{OWS_Q_HIGH, "at upper limit"},
-		{OWS_Q_CUT, "cut"},
+#define QUALITY(code, word, cause, remedy) {OWS_Q_##code, word},
+#define ERROR(err, word, remedy)
+#include "src/signal/words_list.h"
+#undef ERROR
+#undef QUALITY
 	};
 
 	for (size_t i = 0; i < sizeof(texts) / sizeof(texts[0]); i++)

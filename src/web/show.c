@@ -11,40 +11,9 @@
 #include "src/show/standing.h"
 #include "src/show/when.h"
 #include "src/signal/error.h"
+#include "src/signal/quality.h"
 #include "src/signal/value.h"
 #include "src/web/show.h"
-
-/* What people can do about a value that is not good. */
-static const struct {
-	uint8_t quality;
-	const char *text;
-} remedies[] = {
-	{OWS_Q_NO_PROPERTY, "check the path: owsctl dir shows what the device has"},
-	{OWS_Q_TYPE, "choose another Type; owsctl read PATH shows the text"},
-	{OWS_Q_ACCESS, "the property can only be read, or only be written"},
-	{OWS_Q_NO_DEVICE, "the device does not answer: look at its plug, its cable and its ID"},
-	{OWS_Q_DEVICE, "the device answers with errors: look at cable length, pull-up and noise"},
-	{OWS_Q_SENSOR, "the sensor has lost its supply: look at its supply line"},
-	{OWS_Q_STALE, "the value is too old: the bus is overloaded, or the device fails"},
-	{OWS_Q_TARGET, "the target is down: look at its cable and its service"},
-	{OWS_Q_SHORT, "data line and ground touch each other: look for the short circuit"},
-	{OWS_Q_DIFFERS, "the device lost its command: look at its supply; Restore writes it again"},
-	{OWS_Q_INITIAL, "nothing was read yet"},
-	{OWS_Q_LAST_USABLE, "it is not read now: its target moves, or _ReadEnable is off"},
-	{OWS_Q_RANGE, "the value is beyond Min or Max: look at the sensor"},
-	{OWS_Q_LOW, "the value is below what its type or its Points can hold"},
-	{OWS_Q_HIGH, "the value is above what its type or its Points can hold"},
-	{OWS_Q_CUT, "the text is longer than the room for it"},
-};
-
-/* Of a quality (enum ows_quality), where no error says more; "": nothing. Never NULL. */
-static const char *remedy_of(uint8_t quality)
-{
-	for (size_t i = 0; i < sizeof(remedies) / sizeof(remedies[0]); i++)
-		if (remedies[i].quality == quality)
-			return remedies[i].text;
-	return "";
-}
 
 struct look {
 	struct ows_value value;
@@ -98,20 +67,25 @@ static void put_text(struct json *json, const char *key, const char *text)
 	json_string(json, key, *text ? text : NULL);
 }
 
-/* Why the value is not good, and what to do. */
+/* Why the value is not good, and what to do: an error says more than its quality. */
 static void put_quality(struct json *json, const struct show *show, const struct look *look)
 {
-	char words[ERROR_WORDS] = "";
+	const char *why = "", *remedy = "";
 
-	if (!show->live)
-		snprintf(words, sizeof(words), "%s", "owsd does not run: start it");
-	else if (!look->good && look->value.err)
-		error_words(look->value.err, words);
+	if (!show->live) {
+		why = "owsd does not run";
+		remedy = "Start it.";
+	} else if (!look->good) {
+		why = look->value.err ? error_text(look->value.err) : quality_cause(look->code);
+		remedy = look->value.err ? error_remedy(look->value.err) : "";
+		remedy = *remedy ? remedy : quality_remedy(look->code);
+	}
 	json_object(json, "quality");
 	json_bool(json, "good", look->good);
 	json_int(json, "code", look->code);
 	json_string(json, "text", ows_quality_text(look->code));
-	put_text(json, "why", look->good ? "" : *words ? words : remedy_of(look->code));
+	put_text(json, "why", why);
+	put_text(json, "remedy", remedy);
 	json_object_end(json);
 }
 

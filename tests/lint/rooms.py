@@ -25,7 +25,7 @@ PUBLIC = "src/libows/ows"
 MANY = {"src/libows/ows.h", "src/libhistory/ows_history.h", "src/owsctl/verbs.h",
         "src/web/paths.h"}
 # Lists that are included where FAMILY or BACKEND is defined: no headers of their own
-PARTS = {"hal/chips/families.h", "hal/bus/schemes.h", "src/config/option_list.h"}
+PARTS = {"hal/chips/families.h", "hal/bus/schemes.h", "src/config/option_list.h", "src/signal/words_list.h"}
 FLAGS = ["-std=c17", "-D_GNU_SOURCE", "-D_FILE_OFFSET_BITS=64", "-I.", "-Wall", "-Wextra"]
 ROOM = re.compile(r"^- `([\w/]+)`: .*?\sUses\s(.*?)\.\n(?=- |\n)", re.M | re.S)
 # What the engine and the values may have of the C library: nothing that waits, reads or writes

@@ -216,14 +216,15 @@ def test_signals_come_in_the_order_of_the_file_with_all_that_is_known_of_them(sc
     assert [(s["i"], s["name"]) for s in signals] == [
         (0, "relays"), (1, "room"), (2, "odd"), (3, "gone"), (4, "text")], signals
     room = signals[1]
-    assert room["quality"] == {"good": True, "code": 192, "text": "good", "why": None}, room
+    assert room["quality"] == {"good": True, "code": 192, "text": "good", "why": None, "remedy": None}, room
     assert (room["unit"], room["type"], room["output"], room["family"]) == ("\u00b0C", "double", False, "DS18B20")
     assert room["limits"] == {"hh": None, "h": 20, "l": None, "ll": None} and room["alarm"] == "! high"
     assert 0 <= room["age"] < 60, room
     assert (signals[2]["min"], signals[2]["max"], signals[2]["limits"]) == (-10, 50, None), signals[2]
     assert signals[2]["description"] == "*/<b>\u00b0", signals[2]
     gone = signals[3]
-    assert gone["value"] is None and not gone["quality"]["good"] and gone["quality"]["why"], gone
+    assert gone["value"] is None and not gone["quality"]["good"], gone
+    assert gone["quality"]["why"] == "no such device there" and "owsctl scan" in gone["quality"]["remedy"], gone
     info = page.json("/api/info")
     assert info["instance"] == daemon.name and info["signals"] == 5 and info["writable"] is False, info
     assert info["generation"] == all_of_it["generation"], info
@@ -299,7 +300,8 @@ def test_the_loss_of_owsd_makes_all_values_unknown_and_its_return_is_told(scene)
         last = events.id
         signals = page.json("/api/signals")["signals"]
         assert all(s["value"] is None and not s["quality"]["good"] for s in signals), signals
-        assert "start" in signals[0]["quality"]["why"], signals[0]
+        assert signals[0]["quality"]["why"] == "owsd does not run", signals[0]
+        assert signals[0]["quality"]["remedy"] == "Start it.", signals[0]
         assert page.json("/api/info")["up"] is None
         # a browser that comes now learns it too
         with Events(page) as another:

@@ -239,7 +239,8 @@ class Store extends EventTarget {
 		const fresh = list.signals.map((given) => {
 			const signal = same ? old.get(given.name) : null;
 			return this.#set(Object.assign(signal ?? {recent: old.get(given.name)?.recent ?? []},
-				{...given, why: given.quality.why, text: given.quality.text}), given.value,
+				{...given, why: given.quality.why, remedy: given.quality.remedy,
+					text: given.quality.text}), given.value,
 			given.quality.code, given.quality.good, given.age, now);
 		});
 		this.#generation = list.generation;
@@ -276,7 +277,7 @@ class Store extends EventTarget {
 				continue;
 			if (signal.code !== code) {
 				signal.text = qualityWords(code);
-				signal.why = null;
+				signal.why = signal.remedy = null;
 				if (!good)
 					this.#details(); // the reason in words comes with the list
 			}

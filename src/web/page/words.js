@@ -3,46 +3,67 @@
 
 /** code: [words, what it means, what to do] */
 const QUALITIES = new Map([
-	[0x04, ["no such property", "The device has no property of that name.",
-		"Look for a typing error in the path after the device. \u201cowsctl dir\u201d lists what the "
-		+ "device has."]],
-	[0x05, ["wrong type", "The property exists, and the type of the signal does not fit it.",
+// from src/signal/words_list.h
+	[0x04, ["no such property",
+		"The device has no property of that name.",
+		"Look for a typing error in the path after the device. \u201cowsctl dir\u201d lists "
+		+ "what the device has."]],
+	[0x05, ["wrong type",
+		"The property exists, and the type of the signal does not fit it.",
 		"Take the type that the log names; for lists (.ALL) and texts take string."]],
-	[0x06, ["access refused", "The property is read-only or write-only, or owsd has no permission.",
+	[0x06, ["access refused",
+		"The property is read-only or write-only, or owsd has no permission.",
 		"Make the item an input, or an output without Readable. For permissions look at the "
 		+ "owserver\u2019s option readonly and at the rights of the files of the kernel."]],
-	[0x08, ["device absent", "The device does not answer on its wire, or its id is wrong.",
-		"Is the id listed by \u201cowsctl scan\u201d? Check ground, data and the pull-up, and the path "
-		+ "of the signal."]],
-	[0x0c, ["device error", "The device answers, and the answer cannot be true: a checksum fails, "
-		+ "or the number is out of the chip\u2019s range.",
-		"Look for a bad contact, a long wire without enough pull-up, or noise. Look at the same path "
-		+ "with \u201cowsctl read\u201d."]],
-	[0x10, ["sensor power fault", "A thermometer reads 85 or 127.94 \u00b0C: it lost its supply "
-		+ "during the conversion.",
+	[0x08, ["device absent",
+		"The device does not answer on its wire.",
+		"Does \u201cowsctl scan\u201d list the id? Compare it with the path of the signal. "
+		+ "Check ground, data and the pull-up."]],
+	[0x0c, ["device error",
+		"The device answers, and the answer cannot be true: a checksum fails, or the number "
+		+ "is out of the chip\u2019s range.",
+		"Look for a bad contact, a long wire without enough pull-up, or noise. \u201cowsctl "
+		+ "read\u201d of the same path shows the answer."]],
+	[0x10, ["sensor power fault",
+		"The answer is that of a sensor without supply: a thermometer reads 85 or 127.94 "
+		+ "\u00b0C.",
 		"Check its supply line. Parasite power over a long wire needs a strong pull-up."]],
-	[0x14, ["stale", "No newer value came within StaleAfter.",
-		"Is the target up, and is the signal read at all? _ReadEnable or PerFactor may hold it back."]],
-	[0x18, ["target down", "The target does not answer, or it answers too late. Also: one of "
-		+ "several bridge chips does not answer.",
-		"Does owserver run, and is its port right? Is the bridge chip at its address? owsd tries again "
-		+ "by itself, and the signals come back."]],
-	[0x19, ["wire short", "The data line of the wire is held at ground.",
-		"Look for a short between data and ground; unplug branches until the wire lives again."]],
-	[0x1c, ["not as commanded", "The output reads otherwise than it was written.",
-		"Did the device lose its supply, or did another program switch it? Set it again; Restore in "
-		+ "the configuration does it by itself."]],
-	[0x20, ["initial", "Never read or written.",
+	[0x14, ["stale",
+		"No newer value came within StaleAfter.",
+		"Is the target up, and is the signal read at all? _ReadEnable or PerFactor may hold "
+		+ "it back."]],
+	[0x18, ["target down",
+		"The target does not answer, or it answers too late, or one of several bridge chips "
+		+ "does not answer.",
+		"Does owserver run, and is its port right? Is the bridge chip at its address? owsd "
+		+ "tries again by itself, and the signals come back."]],
+	[0x19, ["wire short",
+		"The data line of the wire is held at ground.",
+		"Look for a short between data and ground; unplug branches until the wire lives "
+		+ "again."]],
+	[0x1c, ["not as commanded",
+		"The output reads otherwise than it was written.",
+		"Did the device lose its supply, or did another program switch it? Set it again; "
+		+ "Restore in the configuration does it by itself."]],
+	[0x20, ["initial",
+		"The signal was never read or written.",
 		"An input has its first value soon. Set an output, or give it an InitValue."]],
-	[0x44, ["last usable value", "Reading is disabled, or another target has not answered yet.",
+	[0x44, ["last usable value",
+		"Reading is disabled, or another target has not answered yet.",
 		"Wait for the new target, or set _ReadEnable to 1."]],
-	[0x54, ["out of range", "The value is beyond Min or Max of the configuration.",
+	[0x54, ["out of range",
+		"The value is beyond Min or Max of the configuration.",
 		"Is the sensor or its wire broken? Else correct Min and Max."]],
-	[0x55, ["at lower limit", "The value is held at the lower end of its type or of Points.",
+	[0x55, ["at lower limit",
+		"The value is held at the lower end of its type or of Points.",
 		"Take a wider type, or continue Points."]],
-	[0x56, ["at upper limit", "The value is held at the upper end of its type or of Points.",
+	[0x56, ["at upper limit",
+		"The value is held at the upper end of its type or of Points.",
 		"Take a wider type, or continue Points."]],
-	[0x58, ["cut", "The text is longer than the room that it has.", "Read a part of it."]],
+	[0x58, ["cut",
+		"The text is longer than the room that it has.",
+		"Read a part of it."]],
+// to here
 ]);
 
 export const UNKNOWN = -1;

@@ -8,6 +8,7 @@
 #include "src/engine/retry.h"
 #include "src/libows/ows.h"
 #include "src/signal/error.h"
+#include "src/signal/quality.h"
 
 void setUp(void)
 {
@@ -41,22 +42,37 @@ static void test_each_error_of_a_bus_has_words_of_its_own(void)
 	TEST_ASSERT_EQUAL_STRING("", error_remedy(-EXDEV));
 }
 
-static void test_what_is_wrong_in_a_configuration_has_a_remedy(void)
+static void test_each_error_has_a_remedy_and_fits_into_its_room(void)
 {
 	char words[ERROR_WORDS];
 
 	for (size_t i = 0; i < ERRORS; i++) {
-		switch (failure_quality(errors[i])) {
-		case OWS_Q_NO_PROPERTY:
-		case OWS_Q_TYPE:
-		case OWS_Q_ACCESS:
-			if (errors[i] != -ENOTDIR && errors[i] != -EOPNOTSUPP)
-				TEST_ASSERT_NOT_EQUAL_MESSAGE(0, strlen(error_remedy(errors[i])),
-				                              error_text(errors[i]));
-		}
+		TEST_ASSERT_NOT_EQUAL_MESSAGE(0, strlen(error_remedy(errors[i])),
+		                              error_text(errors[i]));
 		error_words(errors[i], words);
 		TEST_ASSERT_LESS_THAN_size_t(ERROR_WORDS - 1, strlen(words));
 	}
+}
+
+/* What an error becomes, and what needs no error; good, and what owsd never says, have nothing. */
+static void test_each_quality_that_is_not_good_has_a_cause_and_a_remedy(void)
+{
+	static const uint8_t own[] = {OWS_Q_STALE, OWS_Q_DIFFERS, OWS_Q_INITIAL, OWS_Q_LAST_USABLE,
+	                              OWS_Q_RANGE, OWS_Q_LOW,     OWS_Q_HIGH,    OWS_Q_CUT};
+
+	for (size_t i = 0; i < ERRORS + sizeof(own); i++) {
+		uint8_t quality = i < ERRORS ? failure_quality(errors[i]) : own[i - ERRORS];
+
+		TEST_ASSERT_FALSE(ows_good(quality));
+		TEST_ASSERT_NOT_EQUAL_MESSAGE(0, strlen(quality_cause(quality)),
+		                              ows_quality_text(quality));
+		TEST_ASSERT_NOT_EQUAL_MESSAGE(0, strlen(quality_remedy(quality)),
+		                              ows_quality_text(quality));
+		TEST_ASSERT_NOT_EQUAL_MESSAGE(0, strcmp("bad", ows_quality_text(quality)),
+		                              ows_quality_text(quality));
+	}
+	TEST_ASSERT_EQUAL_STRING("", quality_cause(OWS_Q_GOOD));
+	TEST_ASSERT_EQUAL_STRING("", quality_remedy(0x3c));
 }
 
 /* A typing error, a wrong type and a refused access look alike in no table. */
@@ -75,7 +91,8 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_each_error_of_a_bus_has_words_of_its_own);
-	RUN_TEST(test_what_is_wrong_in_a_configuration_has_a_remedy);
+	RUN_TEST(test_each_error_has_a_remedy_and_fits_into_its_room);
+	RUN_TEST(test_each_quality_that_is_not_good_has_a_cause_and_a_remedy);
 	RUN_TEST(test_three_causes_have_three_qualities_with_words_of_their_own);
 	return UNITY_END();
 }

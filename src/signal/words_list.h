@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The words of owsd for what is wrong, once for C, the page's script and the documentation
+ * (tests/lint/words.py, which compares them, and with --write copies them). No guard: each
+ * includer defines QUALITY and ERROR.
+ *
+ * QUALITY(code, word, cause, remedy): a quality of ows.h that is not good.
+ * ERROR(errno, word, remedy): an error of the bus contract (hal/bus/bus.h) or of libows. Its word
+ * is the cause. It is printed as "word: remedy".
+ *
+ * A cause is what owsd has seen, and no more. A remedy says what to look at or to do.
+ */
+
+/* clang-format off */
+QUALITY(NO_PROPERTY, "no such property", "The device has no property of that name.",
+        "Look for a typing error in the path after the device. \"owsctl dir\" lists what the "
+        "device has.")
+QUALITY(TYPE, "wrong type", "The property exists, and the type of the signal does not fit it.",
+        "Take the type that the log names; for lists (.ALL) and texts take string.")
+QUALITY(ACCESS, "access refused",
+        "The property is read-only or write-only, or owsd has no permission.",
+        "Make the item an input, or an output without Readable. For permissions look at the "
+        "owserver's option readonly and at the rights of the files of the kernel.")
+QUALITY(NO_DEVICE, "device absent", "The device does not answer on its wire.",
+        "Does \"owsctl scan\" list the id? Compare it with the path of the signal. Check ground, "
+        "data and the pull-up.")
+QUALITY(DEVICE, "device error",
+        "The device answers, and the answer cannot be true: a checksum fails, or the number is "
+        "out of the chip's range.",
+        "Look for a bad contact, a long wire without enough pull-up, or noise. \"owsctl read\" of "
+        "the same path shows the answer.")
+QUALITY(SENSOR, "sensor power fault",
+        "The answer is that of a sensor without supply: a thermometer reads 85 or 127.94 °C.",
+        "Check its supply line. Parasite power over a long wire needs a strong pull-up.")
+QUALITY(STALE, "stale", "No newer value came within StaleAfter.",
+        "Is the target up, and is the signal read at all? _ReadEnable or PerFactor may hold it "
+        "back.")
+QUALITY(TARGET, "target down",
+        "The target does not answer, or it answers too late, or one of several bridge chips does "
+        "not answer.",
+        "Does owserver run, and is its port right? Is the bridge chip at its address? owsd tries "
+        "again by itself, and the signals come back.")
+QUALITY(SHORT, "wire short", "The data line of the wire is held at ground.",
+        "Look for a short between data and ground; unplug branches until the wire lives again.")
+QUALITY(DIFFERS, "not as commanded", "The output reads otherwise than it was written.",
+        "Did the device lose its supply, or did another program switch it? Set it again; Restore "
+        "in the configuration does it by itself.")
+QUALITY(INITIAL, "initial", "The signal was never read or written.",
+        "An input has its first value soon. Set an output, or give it an InitValue.")
+QUALITY(LAST_USABLE, "last usable value",
+        "Reading is disabled, or another target has not answered yet.",
+        "Wait for the new target, or set _ReadEnable to 1.")
+QUALITY(RANGE, "out of range", "The value is beyond Min or Max of the configuration.",
+        "Is the sensor or its wire broken? Else correct Min and Max.")
+QUALITY(LOW, "at lower limit", "The value is held at the lower end of its type or of Points.",
+        "Take a wider type, or continue Points.")
+QUALITY(HIGH, "at upper limit", "The value is held at the upper end of its type or of Points.",
+        "Take a wider type, or continue Points.")
+QUALITY(CUT, "cut", "The text is longer than the room that it has.", "Read a part of it.")
+
+/* What a path can be wrong in. */
+ERROR(ENODEV, "no such device there",
+      "does owsctl scan list the id? Compare it with the path; check plug and cable")
+ERROR(ENOENT, "no such property", "check its spelling; owsctl dir shows what a device has")
+ERROR(EISDIR, "it is a directory", "owsctl dir shows the properties in it")
+ERROR(ENOTDIR, "it is no directory", "owsctl read shows its value")
+ERROR(EILSEQ, "the answer is not a value of this type",
+      "choose another Type; string takes any text")
+ERROR(EPROTOTYPE, "the type does not fit the property", "the log says which Type fits")
+ERROR(EMSGSIZE, "the answer is longer than the room for it",
+      "choose a property that answers less")
+ERROR(EACCES, "it can only be read, or only be written",
+      "IO input reads it; IO output without Readable writes it")
+ERROR(EBADRQC, "SetAlarm is not defined, or has no '='", "write SetAlarm \"property=value\"")
+ERROR(EUCLEAN, "it is still set after 0 was written",
+      "does what sets it last? owsctl read shows the input")
+ERROR(ENXIO, "not found, and a bridge chip of the target does not answer",
+      "look at its supply, SDA, SCL")
+ERROR(EPERM, "no permission",
+      "a read-only server, or ControlAllow, refuses the write; a file of the kernel needs root or "
+      "a udev rule")
+/* What happens on the way. */
+ERROR(EINVAL, "the target refuses this value", "write a value that the property takes")
+ERROR(EBADMSG, "wrong checksum", "look for a bad contact, a weak pull-up, or noise")
+ERROR(EDOM, "a value out of the chip's range",
+      "look at the sensor and its supply; owsctl read shows the answer")
+ERROR(ECOMM, "the wire is short",
+      "data is held at ground: unplug branches until the wire lives again")
+ERROR(ERANGE, "reading of a sensor without power, or out of range",
+      "look at its supply line; parasite power may need a strong pull-up")
+ERROR(ETIME, "its turn did not come in time",
+      "the bus has more to do than fits: raise Period or PerFactor")
+ERROR(ETIMEDOUT, "no answer in time", "owsctl stats shows how the target does; Timeout is the limit")
+ERROR(EINPROGRESS, "no answer in time; the device may have done it",
+      "owsctl get shows what it does; Timeout is the limit")
+ERROR(ENOTCONN, "the target is down", "owsctl stats says why; owsd tries again by itself")
+ERROR(ECONNREFUSED, "the target refuses the connection",
+      "does an owserver run there, and is its port right?")
+ERROR(ECONNRESET, "the target closed the connection", "owsd connects again by itself")
+ERROR(EPIPE, "the target closed the connection", "owsd connects again by itself")
+ERROR(EPROTO, "the target answered garbage", "is it an owserver that listens there?")
+ERROR(EOPNOTSUPP, "this target cannot do that", "owsctl dir shows what the target has")
+/* clang-format on */
