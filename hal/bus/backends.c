@@ -32,15 +32,23 @@ static bool is_bare_ipv6(const char *target, const char *colon)
 }
 
 /*
- * Is the word an adapter of OWFS that owsd reaches only by another target? Then why has the remedy.
+ * Is the word a chip, or an adapter of OWFS, that owsd reaches by another target? Then why has the
+ * remedy.
  */
 static bool is_others_adapter(const char *word, size_t len, char *why, size_t why_size)
 {
 	static const char *const usb[] = {"usb", "ds9490", "ds9490r", "ds2490"};
 	static const char *const serial[] = {"serial", "link",    "linkusb",
 	                                     "ds9097", "ds9097u", "ds2480b"};
-	bool found = false;
+	bool found = (len >= 6 && strncasecmp(word, "ds248", 5) == 0) ||
+	             (len > 4 && strncasecmp(word, "i2c-", 4) == 0);
 
+	if (found)
+		snprintf(
+			why, why_size,
+			"%.*s is a chip or an adapter of I2C: write i2c:/dev/i2c-1, or i2c:auto (a "
+			"host: owserver:%.*s)",
+			(int)(len > 40 ? 40 : len), word, (int)(len > 40 ? 40 : len), word);
 	for (size_t i = 0; i < sizeof(usb) / sizeof(usb[0]) && !found; i++) {
 		found = strlen(usb[i]) == len && strncasecmp(word, usb[i], len) == 0;
 		if (found)

@@ -132,6 +132,7 @@ enum bus_supply {
  *   -EINPROGRESS  the target lives but had no answer by the deadline; a write is in doubt
  *   -ECANCELED    the host shuts down, or the answer is not wanted (bus_req.unwanted)
  *   -ENOTCONN     the target is down; nothing was sent
+ *   -ECONNREFUSED in a BUS_DOWN alone: nobody listens at the target's address
  *   -ETIMEDOUT    the target fell silent; a BUS_DOWN follows; a write is in doubt
  *   -ECONNRESET   the target was lost on the way; a BUS_DOWN follows; a write is in doubt
  *   -EPROTO       the target answered garbage; a BUS_DOWN follows; a write is in doubt

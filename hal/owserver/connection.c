@@ -81,6 +81,15 @@ int connection_init(struct connection *connection, const struct bus_env *env, co
 	return err;
 }
 
+/* Why the address that was tried last is of no use. Returns the error. */
+static int set_trouble(struct connection *connection)
+{
+	snprintf(connection->trouble, sizeof(connection->trouble), "%.60s: %.36s%s",
+	         connection->peer, strerror(-connection->last_err),
+	         connection->last_err == -ECONNREFUSED ? "; does an owserver run there?" : "");
+	return connection->last_err;
+}
+
 static int resolve(struct connection *connection)
 {
 	const struct addrinfo hints = {
@@ -170,9 +179,7 @@ static int try_next(struct connection *connection)
 		connection->last_err = -errno;
 		close_socket(connection);
 	}
-	snprintf(connection->trouble, sizeof(connection->trouble), "%.60s: %.36s", connection->peer,
-	         strerror(-connection->last_err));
-	return connection->last_err;
+	return set_trouble(connection);
 }
 
 /* Connect to a unix socket, which succeeds or fails at once. */
@@ -189,9 +196,7 @@ static int begin_local(struct connection *connection)
 		return 0;
 	/* the queue is full: report it as no server, because -EAGAIN means to go on */
 	connection->last_err = errno == EAGAIN ? -ECONNREFUSED : -errno;
-	snprintf(connection->trouble, sizeof(connection->trouble), "%.60s: %.36s", connection->peer,
-	         strerror(-connection->last_err));
-	return connection->last_err;
+	return set_trouble(connection);
 }
 
 int connection_begin(struct connection *connection)
@@ -259,9 +264,8 @@ int connection_open(struct connection *connection, int64_t until_ns)
 	if (!err)
 		err = connection_go_on(connection, until_ns);
 	if (err == -EAGAIN) {
-		snprintf(connection->trouble, sizeof(connection->trouble), "%.60s: %.36s",
-		         connection->peer, strerror(ETIMEDOUT));
-		err = -ETIMEDOUT;
+		connection->last_err = -ETIMEDOUT;
+		err = set_trouble(connection);
 	}
 	if (err)
 		connection_close(connection);

@@ -23,7 +23,7 @@ struct connection {
 	int64_t give_up_ns;           /* the present address is tried until then */
 	int last_err;                 /* why the last address failed */
 	char peer[80];                /* "127.0.0.1:4304", once connected or tried */
-	char trouble[100];            /* why connecting failed, as a sentence */
+	char trouble[128];            /* why connecting failed, as a sentence */
 };
 
 /*

@@ -138,13 +138,19 @@ static void report_loss(struct owserver *server)
 
 /* --- Coming up, slice by slice --------------------------------------------------------------- */
 
+/* Nothing was sent: nobody listens there, or the host cannot be reached. */
+static int as_absence(int err)
+{
+	return err == -ECONNREFUSED ? err : -ENOTCONN;
+}
+
 static void begin_connect(struct owserver *server)
 {
 	int err = connection_begin(&server->talk.connection);
 
 	server->give_up_ns = server_now(server) + GREETING_NS;
 	if (err)
-		go_down(server, -ECONNRESET, server->talk.connection.trouble);
+		go_down(server, as_absence(err), server->talk.connection.trouble);
 	else
 		server->state = CONNECTING;
 }
@@ -177,7 +183,7 @@ static void go_on_connecting(struct owserver *server)
 		return;
 	}
 	if (err) {
-		go_down(server, -ECONNRESET, talk->connection.trouble);
+		go_down(server, as_absence(err), talk->connection.trouble);
 		return;
 	}
 	bus_count(&server->counter[TALK_CONNECTIONS], 1);

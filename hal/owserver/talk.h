@@ -33,7 +33,7 @@ struct talk {
 	int64_t asked_ns;            /* when the wait for this reply began */
 	uint32_t alives, pieces;     /* keep-alives and pieces of this reply */
 	bool heard;                  /* bytes came since the caller cleared it */
-	char trouble[112];           /* why an exchange failed, as a sentence */
+	char trouble[128];           /* why an exchange failed, as a sentence */
 	struct bus_counter *counter; /* by enum talk_counter */
 	const uint8_t *tokens;       /* sent with each request: the servers that it came through */
 	uint32_t token_count;

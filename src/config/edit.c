@@ -58,7 +58,9 @@ static int split_setting(char *setting, enum option_place place, enum option *op
 		return -EINVAL;
 	}
 	if (found < 0) {
-		nearest = option_nearest(place, setting, text);
+		nearest = place == PLACE_ITEM ? option_of_alarm(setting, *value, text) : NULL;
+		if (!nearest)
+			nearest = option_nearest(place, setting, text);
 		report_error(report, command_line, "there is no key %s%s%s%s", setting,
 		             nearest ? "; is it " : "", nearest ? nearest : "", nearest ? "?" : "");
 		return -EINVAL;
@@ -434,7 +436,11 @@ int edit_lock(const char *file, struct config_report *report)
 	if (fd == -EBUSY)
 		report_error(report, place, "another program has been editing here for 5 s");
 	else if (fd < 0)
-		report_error(report, place, "cannot be locked: %s", strerror(-fd));
+		report_error(
+			report, place, "cannot be locked: %s%s", strerror(-fd),
+			fd == -EACCES || fd == -EPERM
+				? "; edit it as its owner, with sudo, or on the page of owsd-web"
+				: "");
 	return fd;
 }
 

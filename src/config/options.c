@@ -76,6 +76,10 @@ const char *option_nearest(enum option_place place, const char *key, char text[O
 		if (option_table[i].place != place)
 			continue;
 		distance = text_distance(key, known);
+		/* the beginning of a long key means that key */
+		if (distance > 1 + strlen(known) / 4 && strlen(key) > 2 &&
+		    !strncasecmp(known, key, strlen(key)))
+			distance = 1;
 		if (distance > 1 + strlen(known) / 4 || distance > least)
 			continue;
 		used = distance < least ? 0 : used;
@@ -86,13 +90,8 @@ const char *option_nearest(enum option_place place, const char *key, char text[O
 	return used ? text : NULL;
 }
 
-/*
- * The alarm key that has such a value, or such a name: the original's names of these keys are not
- * public. NULL: it is no part of an alarm.
- */
-static const char *alarm_key(const struct rio_node *node, char text[OPTION_NEAREST])
+const char *option_of_alarm(const char *key, const char *value, char text[OPTION_NEAREST])
 {
-	const char *value = node->kind == RIO_STRING ? node->value : "";
 	bool sets = strchr(value, '=') && !strpbrk(value, " \t"),
 	     latch = !strncasecmp(value, "latch", 5);
 
@@ -102,17 +101,17 @@ static const char *alarm_key(const struct rio_node *node, char text[OPTION_NEARE
 		return option_table[OPT_LATCH_ALARM].key;
 	if (!strcasecmp(value, "por") || !strncasecmp(value, "por.", 4))
 		return option_table[OPT_POR_ALARM].key;
-	if (!strcasestr(node->key, "alarm"))
+	if (!strcasestr(key, "alarm"))
 		return NULL;
-	if (strcasestr(node->key, "latch"))
+	if (strcasestr(key, "latch"))
 		return option_table[OPT_LATCH_ALARM].key;
-	if (strcasestr(node->key, "por"))
+	if (strcasestr(key, "por"))
 		return option_table[OPT_POR_ALARM].key;
-	if (strcasestr(node->key, "set"))
+	if (strcasestr(key, "set"))
 		return option_table[OPT_SET_ALARM].key;
-	const char *near = option_nearest(PLACE_ITEM, node->key, text);
+	const char *near = option_nearest(PLACE_ITEM, key, text);
 
-	return near ? near : option_table[OPT_ALARM].key;
+	return near ? near : "Alarm, LatchAlarm, PorAlarm, SetAlarm or ResetLatch";
 }
 
 static void report_unknown(const struct rio_node *node, enum option_place place,
@@ -120,7 +119,9 @@ static void report_unknown(const struct rio_node *node, enum option_place place,
 {
 	char text[OPTION_NEAREST], alarm_text[OPTION_NEAREST];
 	const char *nearest = option_nearest(place, node->key, text);
-	const char *alarm = place == PLACE_ITEM ? alarm_key(node, alarm_text) : NULL;
+	const char *value = node->kind == RIO_STRING ? node->value : "";
+	const char *alarm = place == PLACE_ITEM ? option_of_alarm(node->key, value, alarm_text)
+	                                        : NULL;
 
 	if (alarm)
 		report_error(report, node->at,

@@ -56,6 +56,11 @@ int option_find(enum option_place place, const char *key);
  */
 #define OPTION_NEAREST 200
 const char *option_nearest(enum option_place place, const char *key, char text[OPTION_NEAREST]);
+/*
+ * The key of an alarm that has such a value, or such a name: the original's names of these keys are
+ * not public. NULL: it is no part of an alarm.
+ */
+const char *option_of_alarm(const char *key, const char *value, char text[OPTION_NEAREST]);
 
 /* Is the node a block of that key? */
 bool option_is_block(const struct rio_node *node, enum option option);

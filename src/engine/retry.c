@@ -13,6 +13,7 @@ enum failure failure_of(int err)
 	case 0:
 		return FAILURE_NONE;
 	case ENOTCONN:
+	case ECONNREFUSED:
 	case ETIMEDOUT:
 	case ECONNRESET:
 	case EPROTO:
@@ -48,6 +49,7 @@ uint8_t failure_quality(int err)
 		return OWS_Q_SHORT;
 	case ENXIO:
 	case ENOTCONN:
+	case ECONNREFUSED:
 	case ETIMEDOUT:
 	case ECONNRESET:
 	case EPROTO:

@@ -25,7 +25,11 @@ int load_first(struct face *face)
 {
 	struct config_report report = {.line = report_line};
 
-	return config_load(face->arguments->file, &report, &face->config);
+	int err = config_load(face->arguments->file, &report, &face->config);
+
+	if (err == -ENOENT && face->arguments->file == face->arguments->default_file)
+		face_complain(face->ops->program, "-c FILE names another");
+	return err;
 }
 
 void load_again(struct face *face)

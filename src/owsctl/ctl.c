@@ -179,6 +179,10 @@ int ctl_option(struct ctl *ctl, int argc, char **argv, const char *options)
 	}
 	if (c == ':' || c == '?') {
 		refused_option(c, longs, argv, why, sizeof(why));
+		if (optopt == 'n' && c == '?')
+			ctl_end(ctl_usage(ctl,
+			                  "%s; -n NAME stands before the verb: owsctl -n NAME %s",
+			                  why, ctl->verb->name));
 		ctl_end(ctl_usage(ctl, "%s", why));
 	}
 	long_given = index < 0 ? NULL : longs[index].name;

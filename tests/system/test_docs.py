@@ -403,7 +403,7 @@ def test_every_page_can_be_reached_from_the_readme(_scene):
 
 def test_messages_that_are_explained_are_those_of_the_programs(_scene):
     """What stands for %s differs, so pairs of words are looked for."""
-    files = [f for d in ("src", "hal") for f in (SOURCE / d).rglob("*.c")]
+    files = [f for d in ("src", "hal") for form in ("*.c", "*_list.h") for f in (SOURCE / d).rglob(form)]
     said = re.sub(r'"\s*\n\s*"', "", "\n".join(f.read_text() for f in files))
     said = re.sub(r"(?<=[a-z])%s", "s", said)  # of a plural
     explained = 0

@@ -137,22 +137,21 @@ static int scan_rio(const struct scan *scan, const char *target, bool several,
 	return status;
 }
 
-static bool is_hardware(const char *target)
+static bool may_be_i2c(const char *target)
 {
-	return target && (!strcmp(target, "auto") || !strncmp(target, "i2c:", 4) ||
-	                  !strcmp(target, "w1") || !strncmp(target, "w1:", 3));
+	return target && (!strcmp(target, "auto") || !strncmp(target, "i2c:", 4));
 }
 
 /*
  * After a scan that found nothing: print on stderr which board this is and what is missing there.
- * For a target that is not this machine's hardware, prints nothing.
+ * For a target that needs no I2C adapter, prints nothing.
  */
 static void scan_board(const char *target)
 {
 	struct board_report report;
 	char folder[400], why[800];
 
-	if (!is_hardware(target))
+	if (!may_be_i2c(target))
 		return;
 	board_folder(folder, sizeof(folder));
 	if (board_look("", folder, NULL, &report, why, sizeof(why)) == 0)

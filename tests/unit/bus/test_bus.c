@@ -129,6 +129,7 @@ static void test_an_adapter_that_others_drive_is_refused_with_the_way_to_it(void
 	static const char *const usb[] = {"usb", "USB", "usb:all", "DS9490R", "ds2490"};
 	static const char *const serial[] = {"link", "LinkUSB", "DS9097U", "serial:/dev/ttyS0",
 	                                     "/dev/ttyUSB0"};
+	static const char *const i2c[] = {"i2c-1", "DS2482", "ds2482-800", "DS2484"};
 
 	for (size_t i = 0; i < sizeof(usb) / sizeof(usb[0]); i++) {
 		is_refused(usb[i], -EINVAL, "target w1");
@@ -136,7 +137,11 @@ static void test_an_adapter_that_others_drive_is_refused_with_the_way_to_it(void
 	}
 	for (size_t i = 0; i < sizeof(serial) / sizeof(serial[0]); i++)
 		is_refused(serial[i], -EINVAL, "localhost:4304");
+	for (size_t i = 0; i < sizeof(i2c) / sizeof(i2c[0]); i++)
+		is_refused(i2c[i], -EINVAL, "i2c:/dev/i2c-1");
 	becomes("link:4304", "owserver");
+	becomes("i2c-1:4304", "owserver");
+	becomes("ds24", "owserver");
 	becomes("usb2", "owserver");
 	becomes("owserver:usb", "owserver");
 	becomes("usb.example.org", "owserver");

@@ -289,6 +289,8 @@ static void test_a_part_of_an_alarm_that_is_not_understood_is_an_error(void)
 		{ITEM "Foo \"set_alarm=133333333\"", PART("Foo", "SetAlarm")},
 		{ITEM "Foo \"latch.BYTE=0\"", PART("Foo", "ResetLatch")},
 		{ITEM "AlarmOn 1", PART("AlarmOn", "Alarm")},
+		{ITEM "AlarmText \"x\"",
+	         PART("AlarmText", "Alarm, LatchAlarm, PorAlarm, SetAlarm or ResetLatch")},
 	};
 
 	expect_errors(cases, COUNT(cases), parse_item);

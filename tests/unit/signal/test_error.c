@@ -22,7 +22,7 @@ void tearDown(void)
 static const int errors[] = {
 	-ENODEV,   -ENOENT,    -EACCES,     -EPERM,    -EISDIR,     -ENOTDIR,    -EINVAL,
 	-EBADMSG,  -ECOMM,     -ERANGE,     -EMSGSIZE, -EOPNOTSUPP, -ETIME,      -EINPROGRESS,
-	-ENOTCONN, -ETIMEDOUT, -ECONNRESET, -EPROTO,   -EILSEQ,     -EPROTOTYPE,
+	-ENOTCONN, -ETIMEDOUT, -ECONNRESET, -EPROTO,   -EILSEQ,     -EPROTOTYPE, -ECONNREFUSED,
 };
 #define ERRORS (sizeof(errors) / sizeof(errors[0]))
 
