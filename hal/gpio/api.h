@@ -64,5 +64,11 @@ struct gpio_api {
 /* Edges that the kernel keeps for a line until they are taken. */
 #define GPIO_EDGES_KEPT 16
 
+/*
+ * The error of open(), of a library that looks into /sys and reports -ENODEV or -ENOENT for a file
+ * that is there and is no GPIO chip (libgpiod 2): -ENOTTY then, else err.
+ */
+int gpio_open_error(const char *path, int err);
+
 /* The library of this build; NULL: none (LIBGPIOD=0). */
 extern const struct gpio_api *const gpio_library;

@@ -45,7 +45,7 @@ static int open_chip(const char *path, struct gpio_chip **out)
 	chip->chip = gpiod_chip_open(path);
 	info = chip->chip ? gpiod_chip_get_info(chip->chip) : NULL;
 	if (!info) {
-		err = library_error();
+		err = gpio_open_error(path, library_error());
 		close_chip(chip);
 		return err;
 	}

@@ -7,6 +7,7 @@
 #include "unity.h"
 
 #include "hal/bus/backends.h"
+#include "hal/gpio/api.h"
 #include "tests/unit/aid/fake_gpio.h"
 #include "tests/unit/aid/one_bus.h"
 
@@ -270,6 +271,15 @@ static void test_a_missing_chip_is_told_once_and_served_when_it_comes(void)
 	TEST_ASSERT_EQUAL_INT(0, input("/gpio/3")->err);
 }
 
+static void test_a_file_that_is_no_chip_is_told_from_none(void)
+{
+	TEST_ASSERT_EQUAL_INT(-ENOTTY, gpio_open_error("/dev/null", -ENODEV));
+	TEST_ASSERT_EQUAL_INT(-ENOTTY, gpio_open_error("/dev/null", -ENOENT));
+	TEST_ASSERT_EQUAL_INT(-EACCES, gpio_open_error("/dev/null", -EACCES));
+	TEST_ASSERT_EQUAL_INT(-ENOENT, gpio_open_error("/dev/there-is-none", -ENOENT));
+	TEST_ASSERT_EQUAL_INT(-ENODEV, gpio_open_error("/dev/there-is-none", -ENODEV));
+}
+
 static void test_without_the_right_the_group_is_named(void)
 {
 	fake_gpio.open_err = -EACCES;
@@ -381,6 +391,7 @@ int main(void)
 	RUN_TEST(test_a_guest_takes_no_edge_away);
 	RUN_TEST(test_who_has_a_line_is_told_once_and_it_is_taken_when_it_is_free);
 	RUN_TEST(test_a_missing_chip_is_told_once_and_served_when_it_comes);
+	RUN_TEST(test_a_file_that_is_no_chip_is_told_from_none);
 	RUN_TEST(test_without_the_right_the_group_is_named);
 	RUN_TEST(test_a_chip_that_goes_takes_the_target_down_and_back);
 	RUN_TEST(test_a_chip_that_goes_is_noticed_without_a_request);
