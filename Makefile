@@ -161,7 +161,7 @@ LIBMOSQUITTO := $(LIBMOSQUITTO)
 MOSQUITTO := $(filter 1,$(LIBMOSQUITTO))
 
 # The profile sparkplug of owsd-mqtt, where libprotobuf-c and its compiler are; LIBPROTOBUFC=0 leaves it out
-PROTOC_C ?= $(firstword $(shell command -v protoc-c protoc))
+PROTOC_C ?= $(or $(and $(shell command -v protoc-gen-c),$(shell command -v protoc)),$(shell command -v protoc-c))
 LIBPROTOBUFC ?= $(and $(PROTOC_C),$(shell printf '\043include <stdint.h>\n\043include <protobuf-c/protobuf-c.h>\nint main(void) { return !protobuf_c_version_number(); }\n' | \
               $(CC) $(CPPFLAGS) $(CFLAGS) $(EXTRA_CFLAGS) $(LDFLAGS) -x c -o /dev/null - -lprotobuf-c 2>/dev/null && echo 1))
 LIBPROTOBUFC := $(LIBPROTOBUFC)

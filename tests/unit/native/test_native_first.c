@@ -53,7 +53,7 @@ static void id_of(unsigned i, char text[20])
 	if (spread)
 		snprintf(text, 20, "28.%08X%04X", (i + 1) * 2654435761u, i);
 	else
-		snprintf(text, 20, "28.0000000000%02X", i + 1);
+		snprintf(text, 20, "28.0000000000%02X", (uint8_t)(i + 1));
 }
 
 /* So many DS18B20 on so many channels; more: lines behind them, and what they are followed by. */
