@@ -175,6 +175,40 @@ static void test_a_wait_for_the_past_comes_with_the_next_period(void)
 	due_wheel_free(&wheel);
 }
 
+/* The present period is over for the wheel: what waits for it is not to wait for a whole turn. */
+static void test_a_wait_for_the_present_period_comes_with_the_next_one(void)
+{
+	struct due_wheel wheel;
+	struct seen seen = {.count = 0};
+
+	due_wheel_init(&wheel, 2, 100);
+	due_wheel_at(&wheel, 0, 100);
+	due_wheel_at(&wheel, 1, 101);
+	TEST_ASSERT_EQUAL_UINT64(101, due_wheel_next(&wheel, 100, 200));
+	due_wheel_advance(&wheel, 101, see, &seen);
+	TEST_ASSERT_EQUAL_UINT(2, seen.count);
+	due_wheel_free(&wheel);
+}
+
+/* A turn that ends where it began has no period, and one to the last bucket has them all. */
+static void test_a_turn_to_the_present_period_or_back_gives_nobody(void)
+{
+	struct due_wheel wheel;
+	struct seen seen = {.count = 0};
+
+	due_wheel_init(&wheel, 2, 100);
+	due_wheel_at(&wheel, 0, 101);
+	due_wheel_at(&wheel, 1, 100 + DUE_BUCKETS);
+	due_wheel_advance(&wheel, 100, see, &seen);
+	due_wheel_advance(&wheel, 40, see, &seen);
+	TEST_ASSERT_EQUAL_UINT(0, seen.count);
+	due_wheel_advance(&wheel, 99 + DUE_BUCKETS, see, &seen);
+	TEST_ASSERT_EQUAL_UINT(1, seen.count);
+	due_wheel_advance(&wheel, 100 + DUE_BUCKETS, see, &seen);
+	TEST_ASSERT_EQUAL_UINT(2, seen.count);
+	due_wheel_free(&wheel);
+}
+
 /* It may be too soon, by a row of a later round, and never too late. */
 static void test_the_next_period_for_which_a_row_waits_is_found(void)
 {
@@ -213,6 +247,8 @@ int main(void)
 	RUN_TEST(test_a_turn_over_many_periods_misses_nobody);
 	RUN_TEST(test_a_new_wait_replaces_the_old_one_and_a_cancelled_one_is_gone);
 	RUN_TEST(test_a_wait_for_the_past_comes_with_the_next_period);
+	RUN_TEST(test_a_wait_for_the_present_period_comes_with_the_next_one);
+	RUN_TEST(test_a_turn_to_the_present_period_or_back_gives_nobody);
 	RUN_TEST(test_the_next_period_for_which_a_row_waits_is_found);
 	return UNITY_END();
 }

@@ -48,6 +48,49 @@ static void test_value_and_quality_stand_through_the_retries(void)
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 2).quality);
 }
 
+/* The quality after one failed reading, of a device that the bus has lost or not. */
+static uint8_t after_one(bool lost, int err)
+{
+	two_thermometers();
+	if (lost)
+		scene_tell(&s, 0, BUS_LOST, T1);
+	scene_put(&s, T1, NULL, err);
+	scene_run(&s, 100 * SCENE_MS);
+	TEST_ASSERT_EQUAL_INT32(err, scene_sample(&s, 1).err);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 2).quality);
+	return scene_sample(&s, 1).quality;
+}
+
+static void test_a_device_that_its_bus_lost_is_bad_at_the_first_failure(void)
+{
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_NO_DEVICE, after_one(true, -ENODEV));
+}
+
+/* It takes both: that the bus lost the device, and that the failure says that it is not there. */
+static void test_a_lost_device_that_answers_disturbed_has_its_retries(void)
+{
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, after_one(true, -EBADMSG));
+}
+
+static void test_a_device_that_was_not_looked_for_has_its_retries(void)
+{
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, after_one(false, -ENODEV));
+}
+
+/* ... and again so, once it has come back. */
+static void test_a_device_that_came_back_has_its_retries_again(void)
+{
+	two_thermometers();
+	scene_tell(&s, 0, BUS_LOST, T1);
+	scene_run(&s, 100 * SCENE_MS);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
+	scene_put(&s, T1, NULL, -ENODEV);
+	scene_run(&s, 300 * SCENE_MS);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
+	scene_run(&s, 100 * SCENE_MS);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_NO_DEVICE, scene_sample(&s, 1).quality);
+}
+
 static void test_one_success_between_failures_clears_the_count(void)
 {
 	two_thermometers();
@@ -508,6 +551,10 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_value_and_quality_stand_through_the_retries);
+	RUN_TEST(test_a_device_that_its_bus_lost_is_bad_at_the_first_failure);
+	RUN_TEST(test_a_lost_device_that_answers_disturbed_has_its_retries);
+	RUN_TEST(test_a_device_that_was_not_looked_for_has_its_retries);
+	RUN_TEST(test_a_device_that_came_back_has_its_retries_again);
 	RUN_TEST(test_one_success_between_failures_clears_the_count);
 	RUN_TEST(test_a_missing_device_costs_ever_less_and_never_slows_the_others);
 	RUN_TEST(test_a_device_that_comes_back_is_good_again);
