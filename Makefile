@@ -1,45 +1,61 @@
 # SPDX-License-Identifier: MIT
 # owsd: the makefile is the map of the program. Everything is built in $(B).
 #
+#   make                          owsd, owsctl, the other programs and libows, in build/
+#   make help                     these lines
 #   make run                      the main job, on a simulated house; no root, nothing else needed
 #   make run TARGET=...           the same on localhost:4304, i2c:/dev/i2c-1, ...; only reads.
 #                                 owserver: on the genuine one, with simulated devices if need be
-#   make test                     unit tests, and the main job by the real programs, in five minutes
-#                                 (sets up what they need); TESTS='test_run.py test_shm.py' these
-#                                 system tests alone
-#   make lint format              the form of all files; what a program can mend of it
+#   make install uninstall        programs, libraries, pages below PREFIX=/usr/local, and away
+#   make install-service          the service for systemd, of what is installed;
+#                                 make uninstall-service takes it away
+#   make clean                    removes build/
+#
+#   make test                     unit tests, and the main job by the real programs (sets up what they
+#                                 need); TESTS='test_run.py test_shm.py' these system tests alone
+#   make unit                     unit tests alone, with each place of each visit of a chip
+#   make system                   all system tests; TESTS=test_reload.py some
+#   make lint                     the form of all files; make format mends what a program can of it
 #   make check                    all suites of tests/suites, in forty minutes; goes on where it was
 #                                 broken off. SUITES='kernel gpio' some, AGAIN=1 all of them again
 #   make touched                  which of them a change asks for; BASE=main against another commit
 #   make check-all                these and the suites of hours, before a release
-#   make all unit soak system bench install uninstall clean
-#   make bench-page               make bench and bench-kernel into docs/performance.md, with plots
+#
 #   make compare                  what owserver and owsd read of the same simulated devices, and what
 #                                 becomes of what both write, against what is recorded; WRITE=1
 #                                 records it, PARTS='DS2438 DS2450' some
 #   make properties-page          docs/properties.md, of what is recorded
-#   make clang sanitize m32       a second compiler, its sanitizers, 32 bits
+#   make diagrams                 the picture of the alarm machine, of its table
+#   make bench                    how fast it is
+#   make bench-page               make bench and make bench-kernel into docs/performance.md, with plots
+#
+#   make clang                    unit tests made by a second compiler; make m32 with 32 bits
+#   make asan tsan                unit and system tests with a sanitizer; OF=unit the first alone
+#   make sanitize                 both
 #   make fuzz                     libFuzzer on what comes from outside; FUZZ=rio one of its targets,
 #                                 FUZZ_SECONDS=60 for each
-#   make analyze coverage         what gcc's analyzer, clang-tidy and cppcheck find (nothing is to
-#                                 be left); which lines and branches the tests reach
-#   make test-kill KILLS=10000    the writer of the shared memory killed at random points
-#   make test-power CUTS=500      power cuts at any point of what history writes
-#   make test-years YEARS=10      ten years of history: what is kept, its size, trends of it
-#   make hammer-arm64             the same readers and writer as arm64 code, in qemu
+#   make analyze                  what gcc's analyzer, clang-tidy and cppcheck find: nothing may be left
+#   make coverage                 which lines and branches the tests reach
+#   make soak                     a month of faults in virtual time; HOURS=24 less of it
+#   make test-kill                the writer of the shared memory killed at KILLS=10000 random points
+#   make test-power               power cuts at CUTS=500 points of what history writes
+#   make test-years               YEARS=10 of history: what is kept, its size, trends of it
 #   make model                    the protocol of the shared memory, in a weak memory model
+#   make hammer-arm64             readers and writer of the shared memory as arm64 code, in qemu
 #   make test-kernel              Debian's own kernel and owserver on the simulated chip, in QEMU
+#   make bench-kernel             how fast the kernel's ways are, there
 #   make endurance-kernel         the same for an hour with faults of everything; MINUTES=2 SEED=1
+#   make test-gpio                GPIO lines of an arm64 guest, with libgpiod 1.6 and 2.x;
+#                                 make test-gpio-pi the same of a Raspberry Pi 3
+#
+#   make deb                      Debian packages in build/deb; ARCH=arm64, SUITE=trixie for others
 #   make dist                     the release as a tarball, of what is committed (docs/release.md)
 #   make test-dist                that tarball built and run without git and network
-#   make deb ARCH=arm64           Debian packages in build/deb; SUITE=trixie for another Debian
 #   make test-package             packages of three architectures, lintian, install to purge
 #   make test-fresh               the first two commands in new systems of Debian 12 and 13, with
 #                                 make alone or with gcc; DEBIAN=bookworm HAVE=gcc AT=tmp
 #                                 ORDER=run-test TESTS=test_run.py for less
 #   make test-service             the service under systemd in QEMU, with the packages of make deb
-#   make test-gpio                GPIO lines of an arm64 guest, with libgpiod 1.6 and 2.x;
-#                                 test-gpio-pi the same of a Raspberry Pi 3
 #   make test-image               an image for a Raspberry Pi, booted in QEMU; CASES=main for less
 
 VERSION  := 0.10.0
@@ -190,7 +206,9 @@ $(foreach f,$(WITH),$(if $(call same,$(strip $(with_$(notdir $(f)))),$(strip $(f
 V        ?= 0
 Q        := $(if $(filter 1,$(V)),,@)
 quiet    := $(findstring s,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
-show      = $(if $(Q),$(if $(quiet),,@echo "  $(1)	$@"))
+show      = $(if $(Q),$(if $(quiet),,@echo "  $(step)$(1)	$@"))
+# Of how many files this is which, where make test has counted them
+step      = $(if $(STEPS),$(eval MADE += x)$(words $(MADE))/$(STEPS) )
 
 # What objects and programs are made with; $(1) are flags of their own
 define compile
@@ -263,10 +281,10 @@ LIBRARIES := libows $(if $(SQLITE),libows-history)
 PYTHON_MADE := $(if $(PYTHON),$(B)/python/ows.py $(LIBRARIES:%=$(B)/python/%.so.$(SOMAJOR)))
 LIBRARY  := $(foreach l,$(LIBRARIES),$(B)/$(l).so.$(VERSION) $(B)/$(l).a $(B)/$(l).pc)
 
-.PHONY: all unit soak system test run bench install uninstall install-service uninstall-service \
+.PHONY: all unit soak system test run bench bench-page install uninstall install-service uninstall-service \
         deb test-package test-service test-fresh dist test-dist clean \
         examples unit-programs benches system-programs diagrams compare properties-page check check-all \
-        touched FORCE
+        touched help FORCE
 all: $(PROGRAMS) $(LIBRARY) $(PYTHON_MADE) $(B)/core.a $(B)/with/libraries
 
 # Two makes may do this at once
@@ -495,10 +513,12 @@ test: export VISIT_STRIDE ?= 7
 test:
 	@sh board/install-deps build run test
 	@case "$$MAKEFLAGS" in *-j*) jobs= ;; *) jobs=-j$$(nproc) ;; esac; \
-	$(MAKE) --no-print-directory $$jobs all && \
+	what='all examples $(if $(TESTS),,unit-programs) system-programs'; \
+	n=$$($(MAKE) -n V=0 --no-print-directory $$what | grep -c '^echo "  ') || true; \
+	$(if $(quiet),,echo "make test: $$n files to make, then the tests";) \
+	$(MAKE) --no-print-directory $$jobs STEPS=$$n $$what && \
 	if [ -n '$(TESTS)' ]; then $(MAKE) --no-print-directory $$jobs system; \
-	else $(MAKE) --no-print-directory $$jobs examples unit-programs system-programs && \
-	    TESTS="$$(python3 tests/check --tests test)" sh tests/both $(MAKE) --no-print-directory $$jobs; fi
+	else TESTS="$$(python3 tests/check --tests test)" sh tests/both $(MAKE) --no-print-directory $$jobs; fi
 
 # A compiler is enough for the simulation
 run:
@@ -532,8 +552,13 @@ include tests/image/image.mk
 include tests/fuzz/fuzz.mk
 include tests/analyze/analyze.mk
 
+# The head of this file
+help:
+	@sed -n '/^VERSION/q; /^#   make/,$$ s/^# \{0,3\}//p' $(firstword $(MAKEFILE_LIST))
+
 # --- The ladder: tests/suites has the suites, tests/check runs them ------------------------------
 check:
+	$(if $(SUITES)$(filter undefined,$(origin SUITES)),,$(error SUITES is empty: name suites, or none, or leave it out))
 	@B=$(B) python3 tests/check $(if $(AGAIN),--again) $(or $(SUITES),--rung check)
 check-all:
 	@B=$(B) python3 tests/check $(if $(AGAIN),--again) --rung hours
