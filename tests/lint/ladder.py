@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""The table of suites: whole, of things that are there, and with every system test in it."""
+"""The table of suites: whole, of things that are there, with every system test and every room."""
 
 import configparser
 import importlib.machinery
 import importlib.util
 import pathlib
 import re
+
+from tree import Skip
 
 TABLE = "tests/suites"
 KEYS = {"rung", "why", "run", "seconds", "paths", "tests", "needs", "row", "reads"}
@@ -20,6 +22,34 @@ def module():
     return found
 
 
+def check_make_help_has_each_target_that_pages_name(tree):
+    """The head of the Makefile is what it prints."""
+    if "Makefile" not in tree.files:
+        raise Skip("no Makefile")
+    head, rest = tree.text("Makefile").split("\nVERSION", 1)
+    helped = set(" ".join(re.findall(r"make ((?:[a-z][\w-]*(?: (?=\S))?)+)", head)).split())
+    rules = rest + "".join(tree.text(f) for f in tree.ending(".mk"))
+    phony = set(" ".join(re.findall(r"^\.PHONY: ((?:.*\\\n)*.*)", rules, re.M)).replace("\\", "").split())
+    for name in re.findall(r"^#   make ([a-z][\w-]*)", head, re.M):
+        if name not in phony:
+            yield "Makefile", tree.line_of("Makefile", f"#   make {name}"), f"{name} is no phony target; take it out"
+    for file in tree.ending(".md"):
+        for name in re.findall(r"(?:^|`|sudo )make(?: -s)? ([a-z][\w-]*)", tree.text(file), re.M):
+            if name in phony and name not in helped:
+                yield file, tree.line_of(file, f"make {name}"), f"make help has no {name}; say in the Makefile's head what it does"
+
+
+def rooms_without(suites, check, tree):
+    """Rooms whose change asks for no suite: make touched would name none. Of src it has to be one of
+    system tests; a pattern of all of them is the same code made otherwise, by a sanitizer."""
+    asked = [s for s in suites.values() if s.get("rung") == "check"]
+    for room in sorted({"/".join(f.split("/")[:2]) for f in tree.files if re.match(r"(src|hal)/\w+/", f)}):
+        those = [s for s in asked if not room.startswith("src/") or s.get("tests", "*")[0] != "*"]
+        if not any(check.is_under(room, p) for s in those for p in s.get("paths", "").split()):
+            yield TABLE, 1, f"a change of {room} asks for no suite" + \
+                (" of system tests" if room.startswith("src/") else "") + "; name it in the paths of one"
+
+
 def check_the_table_of_suites_is_whole(tree):
     if TABLE not in tree.files:
         return
@@ -31,11 +61,14 @@ def check_the_table_of_suites_is_whole(tree):
         yield TABLE, getattr(error, "lineno", 1), f"{str(error).splitlines()[0]}; mend the table"
         return
     suites = {name: dict(parser[name]) for name in parser.sections()}
+    yield from rooms_without(suites, check, tree)
     names = {check.stem(pathlib.Path(f)): f for f in tree.files
              if re.fullmatch(r"tests/system/test_\w+\.(py|sh)", f)}
     run = set()
     for name, suite in suites.items():
         line = tree.line_of(TABLE, f"[{name}]")
+        if name == "none":
+            yield TABLE, line, "none is what make touched prints where there is no suite; name it otherwise"
         for key in {"rung", "why", "run", "seconds"} - set(suite):
             yield TABLE, line, f"{name} has no {key}; say it"
         for key in set(suite) - KEYS:
