@@ -255,7 +255,7 @@ WEBPAGE  := $(patsubst src/web/page/%,%,$(foreach e,html css js svg png webmanif
             $(wildcard src/web/page/*.$(e) src/web/page/*/*.$(e))))
 MAN      := $(wildcard docs/*.[1-8])
 # Tests
-UNIT_SRC := $(filter-out $(if $(PROTOBUFC),,%/test_sparkplug.c) $(if $(SQLITE),,%_past.c $(wildcard $(patsubst %,tests/unit/%/*.c,history libhistory recorder))),$(wildcard tests/unit/*/test_*.c))
+UNIT_SRC := $(filter-out $(if $(PROTOBUFC),,%/test_sparkplug.c) $(if $(MOSQUITTO),,%/test_advice.c) $(if $(SQLITE),,%_past.c $(wildcard $(patsubst %,tests/unit/%/*.c,history libhistory recorder))),$(wildcard tests/unit/*/test_*.c))
 UNIT_AID := $(filter-out $(if $(SQLITE),,%/past.c %/power_file.c),$(wildcard tests/unit/aid/*.c))
 ENDURANCE := $(wildcard tests/endurance/*.c)
 BENCH    := $(filter-out $(if $(SQLITE),,%/bench_history.c %/bench_recorder.c),$(wildcard tests/bench/bench_*.c))
@@ -432,7 +432,8 @@ $(B)/tests/unit/%.o: tests/unit/%.c $(UNITY)/unity.h $(B)/with/cc
 	$(call compile,$(UNITY_FLAGS))
 
 $(foreach t,$(UNIT_SRC),$(eval $(B)/unit/$(basename $(notdir $(t))): $(call obj,$(t))))
-$(B)/unit/test_sparkplug $(B)/unit/test_stream: LIBS += $(PROTOBUFC:1=-lprotobuf-c)
+$(patsubst tests/unit/mqtt/%.c,$(B)/unit/%,$(wildcard tests/unit/mqtt/*.c)): LIBS += $(PROTOBUFC:1=-lprotobuf-c) \
+    $(MOSQUITTO:1=-lmosquitto)
 $(filter-out %/test_endurance,$(UNIT)): $(B)/unit/unity.o $(call obj,$(UNIT_AID)) $(B)/core.a $(B)/with/ld
 	$(call link)
 
