@@ -13,30 +13,23 @@ import ows
 
 async def changes(signals):
     """The names of signals that change, as they come; over restarts and reloads of owsd, too."""
-    loop, look = asyncio.get_running_loop(), signals.changes(0)
+    loop, look, news = asyncio.get_running_loop(), signals.changes(0), asyncio.Event()
     while True:
-        news = asyncio.Event()
-        try:
-            fd = signals.fileno()  # before the look: what comes after it makes it readable
-            loop.add_reader(fd, news.set)
-        except (ows.Stale, ows.NotRunning):
-            fd = None
+        fd = signals.fileno()  # before the look: what comes after it makes it readable
         try:
             if names := next(look):
                 yield names
                 continue
-            # owsd's death wakes nobody
-            await asyncio.wait_for(news.wait(), 1)
-        except asyncio.TimeoutError:
-            pass
         except ows.Stale:
             try:
                 signals.reopen()
+                continue
             except OSError:  # the next one is not there yet
-                await asyncio.sleep(0.1)
-        finally:
-            if fd is not None:
-                loop.remove_reader(fd)
+                pass
+        news.clear()
+        loop.add_reader(fd, news.set)
+        await news.wait()  # at most for half a second
+        loop.remove_reader(fd)
 
 
 async def follow(instance):

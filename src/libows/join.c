@@ -5,8 +5,10 @@
 #include <poll.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/epoll.h>
 #include <sys/socket.h>
 #include <sys/time.h>
+#include <sys/timerfd.h>
 #include <sys/un.h>
 #include <time.h>
 #include <unistd.h>
@@ -17,10 +19,18 @@
 
 #define FIRST 3 /* descriptors of the first welcome: memory, bell, news; later the memory alone */
 #define ERRNO_MAX 4095
+/* Nothing wakes a program when owsd dies in a frozen state, or is back: so often it looks */
+#define TIMER_NS (500 * NS_PER_MS)
 
 void join_none(struct join *join)
 {
-	*join = (struct join){.connection = -1, .bell = -1, .news = -1};
+	*join = (struct join){
+		.connection = -1,
+		.bell = -1,
+		.news = -1,
+		.epoll = -1,
+		.timer = -1,
+	};
 }
 
 static void close_fd(int *fd)
@@ -30,11 +40,56 @@ static void close_fd(int *fd)
 	*fd = -1;
 }
 
+static int watch(struct join *join, int fd)
+{
+	struct epoll_event event = {.events = EPOLLIN};
+
+	return epoll_ctl(join->epoll, EPOLL_CTL_ADD, fd, &event) < 0 ? -errno : 0;
+}
+
+int join_watch(struct join *join)
+{
+	const struct timespec each = {.tv_nsec = TIMER_NS};
+	int err;
+
+	if (join->epoll >= 0)
+		return 0;
+	join->epoll = epoll_create1(EPOLL_CLOEXEC);
+	join->timer = timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC | TFD_NONBLOCK);
+	if (join->epoll < 0 || join->timer < 0 ||
+	    timerfd_settime(join->timer, 0, &(struct itimerspec){each, each}, NULL) < 0)
+		err = -errno;
+	else
+		err = watch(join, join->timer);
+	if (!err && join->news >= 0)
+		err = watch(join, join->news);
+	if (err) {
+		close_fd(&join->epoll);
+		close_fd(&join->timer);
+	}
+	return err;
+}
+
+void join_hush(struct join *join)
+{
+	/* closing it does not take it out while a forked child has it too */
+	if (join->epoll >= 0 && join->news >= 0)
+		epoll_ctl(join->epoll, EPOLL_CTL_DEL, join->news, NULL);
+	close_fd(&join->news);
+}
+
 void join_end(struct join *join)
 {
 	close_fd(&join->connection);
 	close_fd(&join->bell);
-	close_fd(&join->news);
+	join_hush(join);
+}
+
+void join_leave(struct join *join)
+{
+	close_fd(&join->epoll);
+	close_fd(&join->timer);
+	join_end(join);
 }
 
 static int connect_to(int directory, const char *file, int *connection)
@@ -157,6 +212,9 @@ static int receive_welcome(struct join *join, struct ows_welcome *welcome, int *
 	if (join->new) {
 		join->bell = fds[1];
 		join->news = fds[2];
+		/* without it the timer alone wakes the program */
+		if (join->epoll >= 0)
+			watch(join, join->news);
 	}
 	join->new = false;
 	memcpy(join->token, welcome->token, sizeof(join->token));

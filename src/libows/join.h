@@ -12,8 +12,10 @@
 
 struct join {
 	int connection, bell, news; /* descriptors; -1: none */
-	bool new;                   /* connected, and no welcome has come yet */
-	uint8_t token[16];          /* of the last welcome: it outlives the connection */
+	/* Of ows_fd(), over all connections: an epoll of the news and the timer; -1: none */
+	int epoll, timer;
+	bool new;          /* connected, and no welcome has come yet */
+	uint8_t token[16]; /* of the last welcome: it outlives the connection */
 };
 
 /* When a wait that begins now is over; timeout_ns below 0: never, INT64_MAX. */
@@ -39,4 +41,11 @@ int join_begin(struct join *join, int directory, const char *file, const char *p
 int join_receive(struct join *join, int64_t until_ns, struct ows_welcome *welcome, int *memory);
 /* Sleep until the connection has something to receive, or for less; false: the time is over. */
 bool join_await(int connection, int64_t until_ns);
+/* Make epoll and timer, if there are none. Returns 0 or a negative errno. */
+int join_watch(struct join *join);
+/* owsd has hung up: close the news, so that epoll is silent but for the timer. */
+void join_hush(struct join *join);
+/* Close the connection, for another one. */
 void join_end(struct join *join);
+/* The same, and epoll and timer; in a forked child its parent keeps all. */
+void join_leave(struct join *join);

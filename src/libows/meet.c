@@ -223,7 +223,7 @@ void meet_leave(struct ows *h)
 {
 	if (h->give.base != NULL && !handle_is_forked(h))
 		__atomic_store_n(&give_header(&h->give)->goodbye, 1, __ATOMIC_RELEASE);
-	join_end(&h->join);
+	join_leave(&h->join);
 	give_unmap(&h->next);
 	give_unmap(&h->give);
 	if (h->mine != NULL)

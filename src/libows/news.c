@@ -37,13 +37,15 @@ void news_arm(struct ows *h)
 {
 	int saved = errno;
 	char room[64];
-	bool gone;
+	bool gone = false;
 
 	if (!has_descriptor(h))
 		return;
 	while (news_await(h->join.news, 0, &gone) == 1)
 		if (read(h->join.news, room, sizeof(room)) <= 0)
 			break;
+	if (gone)
+		join_hush(&h->join);
 	word_set(&give_header(&h->give)->waits, 1);
 	/* owsd counts its news before it looks which programs wait */
 	word_fence(__ATOMIC_SEQ_CST);
@@ -69,6 +71,7 @@ int news_sleep(struct ows *h, uint32_t seen, int64_t left_ns)
 int ows_fd(struct ows *h)
 {
 	int saved = errno, err;
+	uint64_t ticks;
 
 	if (h->mine == NULL) {
 		err = meet(h, &h->map, ows_now() + JOIN_NS);
@@ -82,6 +85,9 @@ int ows_fd(struct ows *h)
 	}
 	if (handle_is_forked(h))
 		return -EPERM;
+	err = join_watch(&h->join);
 	news_arm(h);
-	return h->join.news >= 0 ? h->join.news : -ESTALE;
+	if (!err && read(h->join.timer, &ticks, sizeof(ticks)) < 0)
+		errno = saved;
+	return err ? err : h->join.epoll;
 }

@@ -308,10 +308,12 @@ int ows_changes(struct ows *h, struct ows_cursor *cursor, int *signals, int n,
  */
 int ows_wait(struct ows *h, uint32_t *news, int64_t timeout_ns);
 /*
- * A descriptor for poll(): readable when owsd publishes something after this call. Call it again
- * before each poll(), and after ows_reopen(), which may bring another descriptor. Do not read or
- * close it. An OWS_READ handle connects to owsd at the first call; errors then as
- * ows_open(OWS_CONTROL). -ESTALE: owsd has ended; -EPERM as ows_set().
+ * A descriptor for poll(): readable when owsd publishes something after this call, when owsd has
+ * ended, and twice a second, to look whether owsd lives or is back: so poll() needs no timeout.
+ * Call it again before each poll(), and before the look at what has changed: that makes it silent.
+ * It stays the same until ows_close(), also while owsd is away. Do not read or close it. An
+ * OWS_READ handle connects to owsd at the first call; errors then as ows_open(OWS_CONTROL). -EPERM
+ * as ows_set(); -EMFILE, -ENFILE, -ENOMEM.
  */
 int ows_fd(struct ows *h);
 

@@ -588,9 +588,10 @@ class Ows:
     # --- Waiting --------------------------------------------------------------------------------
 
     def fileno(self) -> int:
-        """A descriptor for select and poll: readable when something is published after this call.
-        Call it again before each poll, and after reopen(); do not read it. A reader connects to
-        owsd at the first call."""
+        """A descriptor for select and poll: readable when something is published after this call,
+        when owsd has ended, and twice a second, to look whether owsd lives or is back. Call it again
+        before each poll, and before the look: that makes it silent. It stays the same until
+        close(); do not read it. A reader connects to owsd at the first call."""
         fd = _lib.ows_fd(self._handle())
         if fd == -errno.ENOENT:
             raise NotRunning(self.instance)

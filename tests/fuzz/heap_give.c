@@ -19,12 +19,17 @@ enum { CONTROLLER_FD = 1002 };
 
 void join_none(struct join *join)
 {
-	*join = (struct join){.connection = -1, .bell = -1, .news = -1};
+	*join = (struct join){.connection = -1, .bell = -1, .news = -1, .epoll = -1, .timer = -1};
 }
 
 void join_end(struct join *join)
 {
 	join->connection = join->bell = join->news = -1;
+}
+
+void join_leave(struct join *join)
+{
+	join_end(join);
 }
 
 int join_begin(struct join *join, int directory, const char *file, const char *program,

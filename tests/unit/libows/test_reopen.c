@@ -8,6 +8,7 @@
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "unity.h"
@@ -124,15 +125,20 @@ static void test_of_several_reloads_the_last_counts(void)
 	TEST_ASSERT_EQUAL_INT64(1, instance_command(&in, 0, 2).value);
 }
 
-/* An owsd that is killed, and the next one. */
-static void restart(void)
+/* The owsd after one that was killed. */
+static void start_next(void)
 {
-	instance_kill(&in);
 	image_state(&in.image, OWS_STATE_RETIRED);
 	instance_leave(&in);
 	instance_make(&in, "reopen", 1, ows_now() + 1, before, 3);
 	instance_lives_on(&in);
 	instance_show(&in);
+}
+
+static void restart(void)
+{
+	instance_kill(&in);
+	start_next();
 }
 
 static void test_after_a_restart_the_controller_comes_back_with_its_token_and_beats(void)
@@ -211,6 +217,88 @@ static void test_a_reader_that_asks_for_a_descriptor_is_woken_by_it(void)
 	instance_lives_on(&in);
 	TEST_ASSERT_EQUAL(0, reopen(reader));
 	TEST_ASSERT_EQUAL(news.fd, ows_fd(reader));
+	ows_close(reader);
+}
+
+/* How often poll() finds the descriptor readable in half a second, when asked anew each time. */
+static int wakes(struct ows *reader)
+{
+	int64_t until = ows_now() + INSTANCE_S / 2;
+	int count = 0;
+
+	while (ows_now() < until) {
+		struct pollfd news = {.fd = ows_fd(reader), .events = POLLIN};
+
+		TEST_ASSERT_GREATER_OR_EQUAL(0, news.fd);
+		count += poll(&news, 1, 50);
+	}
+	return count;
+}
+
+static void test_a_descriptor_whose_owsd_has_ended_wakes_only_now_and_then(void)
+{
+	const uint64_t one = 1;
+	struct ows *reader;
+	struct pollfd news = {.events = POLLIN};
+
+	TEST_ASSERT_EQUAL(0, ows_open(in.name, OWS_READ, &reader));
+	news.fd = ows_fd(reader);
+	TEST_ASSERT_GREATER_OR_EQUAL(0, news.fd);
+	instance_kill(&in);
+	TEST_ASSERT_EQUAL(1, poll(&news, 1, 60000));
+	TEST_ASSERT_EQUAL(news.fd, ows_fd(reader));
+	TEST_ASSERT_LESS_OR_EQUAL(3, wakes(reader));
+	start_next();
+	TEST_ASSERT_EQUAL(0, reopen(reader));
+	TEST_ASSERT_EQUAL(news.fd, ows_fd(reader));
+	image_news(&in.image);
+	TEST_ASSERT_EQUAL(8, write(door_controller(in.door, 0)->news, &one, sizeof(one)));
+	TEST_ASSERT_EQUAL(1, poll(&news, 1, 400));
+	ows_close(reader);
+}
+
+static void test_without_any_news_the_descriptor_wakes_by_itself(void)
+{
+	struct ows *reader;
+	struct pollfd news = {.events = POLLIN};
+
+	TEST_ASSERT_EQUAL(0, ows_open(in.name, OWS_READ, &reader));
+	news.fd = ows_fd(reader);
+	TEST_ASSERT_EQUAL(1, poll(&news, 1, 60000));
+	TEST_ASSERT_EQUAL(news.fd, ows_fd(reader));
+	TEST_ASSERT_EQUAL(0, poll(&news, 1, 0));
+	ows_close(reader);
+}
+
+/* A forked child has the connection too, and closes what it has of it: the parent goes on. */
+static void test_a_childs_copy_of_the_news_keeps_no_parent_awake(void)
+{
+	int hold[2], status;
+	struct ows *reader;
+	pid_t child;
+	char byte;
+
+	TEST_ASSERT_EQUAL(0, ows_open(in.name, OWS_READ, &reader));
+	TEST_ASSERT_GREATER_OR_EQUAL(0, ows_fd(reader));
+	TEST_ASSERT_EQUAL(0, pipe(hold));
+	child = fork();
+	if (child == 0) {
+		close(hold[1]);
+		_exit(read(hold[0], &byte, 1) != 0);
+	}
+	instance_kill(&in);
+	TEST_ASSERT_LESS_OR_EQUAL(3, wakes(reader));
+	close(hold[0]);
+	close(hold[1]);
+	TEST_ASSERT_EQUAL(child, waitpid(child, &status, 0));
+	TEST_ASSERT_EQUAL(0, status);
+	child = fork();
+	if (child == 0) {
+		ows_close(reader);
+		_exit(0);
+	}
+	TEST_ASSERT_EQUAL(child, waitpid(child, &status, 0));
+	TEST_ASSERT_GREATER_OR_EQUAL(1, wakes(reader)); /* its timer still wakes it */
 	ows_close(reader);
 }
 
@@ -391,6 +479,9 @@ int main(void)
 	RUN_TEST(test_while_nobody_listens_the_old_image_stays_readable);
 	RUN_TEST(test_a_reader_that_asks_for_a_descriptor_is_woken_by_it);
 	RUN_TEST(test_a_connected_sleeper_wakes_by_its_descriptor);
+	RUN_TEST(test_a_descriptor_whose_owsd_has_ended_wakes_only_now_and_then);
+	RUN_TEST(test_without_any_news_the_descriptor_wakes_by_itself);
+	RUN_TEST(test_a_childs_copy_of_the_news_keeps_no_parent_awake);
 	RUN_TEST(test_reopen_waits_for_the_new_image);
 	RUN_TEST(test_reopen_of_what_is_present_changes_nothing);
 	RUN_TEST(test_wait_returns_for_news_time_and_retirement);

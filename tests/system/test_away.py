@@ -1,0 +1,177 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""owsd ends, dies, or is removed: no program beside it spins, and each finds the next one soon."""
+
+import contextlib
+import os
+import pathlib
+import socket
+import sys
+import time
+
+import mqtthouse
+import owsdtest
+import recorded
+import webhouse
+import ows
+from owsdtest import BUILD, OWSCTL, SOURCE, free_port, raw, segment, until
+
+POLLER = BUILD / "system" / "poller"
+SENSOR = "/28.A0B1C2000001"
+# A part of one processor, and how long it is looked at
+IDLE, LOOK = 0.005, 4
+FOUND = 2
+# It keeps its watch of the descriptor while it lives, where follow.py takes it away between two waits
+KEEPER = """
+import asyncio, sys, ows
+
+signals = ows.Ows(sys.argv[1])
+look = signals.changes(0)
+
+def news():
+    signals.fileno()
+    try:
+        if next(look):
+            print(flush=True)
+            loop.call_soon(news)
+    except ows.Stale:
+        try:
+            signals.reopen()
+            loop.call_soon(news)
+        except OSError:
+            pass
+
+loop = asyncio.new_event_loop()
+loop.add_reader(signals.fileno(), news)
+loop.run_forever()
+"""
+
+
+def text(scene, port, databases):
+    wire = scene.file("house.sim", "chip DS2482-100 0x18\nDS18B20 28.A0B1C2000001 temperature 21.5\n")
+    return owsdtest.rio(
+        f"sim:{wire}", [dict(Name="room", Path=SENSOR + "/temperature", Type=raw("double"), IO=raw("input"))],
+        Period=0.1, Timeout=3, Recorder=raw("{ Flush 1 }"), Web=raw("{ Write off }"),
+        Mqtt=raw(f'{{ Broker "mqtt://127.0.0.1:{port}" Node "pi7" }}'),
+        Influx=raw(f'{{ Url "http://127.0.0.1:{databases}/write" Every 1 ClockWait 0 }}'))
+
+
+class Beside:
+    """All that can run beside an owsd, each with what it has found of it."""
+
+    def __init__(self, scene):
+        self.scene, port = scene, free_port()
+        mqtthouse.Broker(scene, port)
+        self.text = text(scene, port, free_port())
+        self.daemon = daemon = scene.owsd(self.text)
+        self.name, python = daemon.name, {"PYTHONPATH": str(owsdtest.PYTHON)}
+        writer = owsdtest.with_sim(BUILD / "owsd-config", daemon.config, cwd=scene.path)
+        keeper = scene.file("keeper.py", KEEPER)
+        self.programs = {
+            "owsd-recorder": recorded.record(scene, daemon),
+            "owsd-web": webhouse.serve(scene, daemon),
+            "owsd-mqtt": self.face("owsd-mqtt"),
+            "owsd-influx": self.face("owsd-influx", "-d", scene.path / "spool"),
+            "owsd-config": scene.start([writer, "-n", self.name, "-c", daemon.config]),
+            "owsctl": scene.start([OWSCTL, "-n", self.name, "watch", "-l"]),
+            "poller": scene.start([POLLER, self.name]),
+            "follow.py": scene.start([sys.executable, SOURCE / "docs/examples/follow.py", self.name], python),
+            "keeper.py": scene.start([sys.executable, keeper, self.name], python),
+        }
+
+    def face(self, program, *options):
+        owsdtest.need(BUILD / program)
+        return self.scene.start([BUILD / program, "-n", self.name, "-c", self.daemon.config, *options])
+
+    def connected(self):
+        """The programs that owsd has."""
+        with contextlib.suppress(OSError), ows.Ows(self.name) as signals:
+            return {controller.who.name for controller in signals.controllers()}
+        return set()
+
+    def lines(self):
+        return {name: len(program.log().splitlines()) for name, program in self.programs.items()}
+
+    def missing(self, before):
+        """Those that have not found owsd: they are not connected, or print nothing of it."""
+        connected, lines = self.connected(), self.lines()
+        by_lines = {name for name in ("owsctl", "poller", "follow.py", "keeper.py") if lines[name] <= before[name]}
+        return (set(self.programs) - {"owsd-config", "owsctl"} - connected) | by_lines
+
+    def all_there(self, before):
+        until(lambda: not self.missing(before), 20, lambda: f"all find owsd: {self.missing(before)}", step=0.05)
+
+    def start_again(self):
+        """It is looked at from the moment that it is ready."""
+        self.daemon = self.scene.owsd(self.daemon.config, name=self.name)
+
+
+def spent(pid):
+    """Processor time of all its threads, in seconds."""
+    total = 0
+    for task in pathlib.Path(f"/proc/{pid}/task").iterdir():
+        with contextlib.suppress(FileNotFoundError):
+            total += int((task / "schedstat").read_text().split()[0])
+    return total / 1e9
+
+
+def parts(beside):
+    """What part of a processor each takes."""
+    before = {name: spent(program.pid) for name, program in beside.programs.items()}
+    begun = time.monotonic()
+    time.sleep(LOOK)  # this is measured
+    passed = time.monotonic() - begun
+    return {name: (spent(program.pid) - before[name]) / passed for name, program in beside.programs.items()}
+
+
+def nobody_spins(beside):
+    time.sleep(5)  # what is done once, at the loss, is over
+    found = parts(beside)
+    assert not [name for name, program in beside.programs.items() if not program.running()]
+    assert max(found.values()) <= IDLE, found
+
+
+def judge(beside, end):
+    beside.all_there(dict.fromkeys(beside.programs, 0))
+    end()
+    nobody_spins(beside)
+    before = beside.lines()
+    beside.start_again()
+    begun = time.monotonic()
+    beside.all_there(before)
+    took = time.monotonic() - begun
+    assert took <= FOUND * max(1, os.getloadavg()[0] / os.cpu_count()), took
+
+
+def test_beside_an_owsd_that_was_stopped_no_program_spins(scene):
+    beside = Beside(scene)
+    judge(beside, lambda: beside.daemon.stop())
+
+
+def test_beside_an_owsd_that_was_killed_no_program_spins(scene):
+    beside = Beside(scene)
+    judge(beside, lambda: beside.daemon.kill())
+
+
+def test_beside_an_owsd_that_was_removed_no_program_spins(scene):
+    beside = Beside(scene)
+
+    def remove():
+        beside.daemon.kill()
+        for path in owsdtest.place().glob(f"{beside.name}.*"):
+            path.unlink()
+    judge(beside, remove)
+
+
+def test_beside_an_owsd_that_hangs_no_program_spins(scene):
+    beside = Beside(scene)
+    beside.all_there(dict.fromkeys(beside.programs, 0))
+    beside.daemon.freeze()
+    nobody_spins(beside)
+    before = beside.lines()
+    beside.daemon.thaw()
+    beside.all_there(before)
+
+
+if __name__ == "__main__":
+    owsdtest.main()
