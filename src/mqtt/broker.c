@@ -8,7 +8,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/random.h>
 #include <sys/socket.h>
 
 #include "hal/base/time.h"
@@ -22,8 +21,7 @@
 
 #define KEEPALIVE_S 30
 #define ANSWER_NS (15 * NS_PER_S) /* for TCP, TLS and CONNACK together */
-#define STEP_NS (2 * NS_PER_S)
-#define STEP_MOST_NS (60 * NS_PER_S)
+#define GOOD_NS (60 * NS_PER_S)
 #define TEND_NS (5 * NS_PER_S)
 #define IN_FLIGHT_MOST 100
 #define READS 64 /* packets at a time */
@@ -71,19 +69,14 @@ static void drop(struct broker *b)
 	b->marking = false;
 }
 
-static uint64_t random_of(uint64_t most)
+static int64_t pause_of(struct broker *b)
 {
-	uint64_t random = 0;
+	enum backoff_why why = b->refused ? BACKOFF_REFUSED : BACKOFF_AWAY;
 
-	if (getrandom(&random, sizeof(random), GRND_NONBLOCK) < 0)
-		random = (uint64_t)ows_now();
-	return random % most;
-}
-
-/* A random part of the step: a thousand clients of a broker that restarts do not come together. */
-static int64_t pause_of(int64_t step_ns)
-{
-	return step_ns / 8 + (int64_t)random_of((uint64_t)step_ns);
+	b->refused = false;
+	if (b->brief == BRIEF_MOST)
+		return backoff_spread(TAKEN_NS, backoff_random());
+	return backoff_pause(&b->backoff, why, backoff_random());
 }
 
 /*
@@ -107,8 +100,7 @@ static bool choose(struct broker *b, bool was_connected, int64_t now_ns)
 	if (!was_connected && b->way < b->options->way_count)
 		return false;
 	b->way = 0;
-	b->next_ns = now_ns + pause_of(b->step_ns);
-	b->step_ns = 2 * b->step_ns < STEP_MOST_NS ? 2 * b->step_ns : STEP_MOST_NS;
+	b->next_ns = now_ns + pause_of(b);
 	return false;
 }
 
@@ -156,7 +148,6 @@ void broker_taken(struct broker *b)
 		return;
 	b->taken = true;
 	b->brief = BRIEF_MOST;
-	b->step_ns = TAKEN_NS;
 	snprintf(b->last, sizeof(b->last), "%.80s was lost: %.200s; %.50s",
 	         mqtt_way_name(&b->options->ways[b->way], name), taken_words(b, words),
 	         advice_remedy(ADVICE_TAKEN_OVER, 0));
@@ -166,7 +157,7 @@ void broker_taken(struct broker *b)
 /* How long a connection has to last until it counts as a good one */
 static int64_t good_ns(const struct broker *b)
 {
-	return b->brief == BRIEF_MOST ? TAKEN_GOOD_NS : STEP_MOST_NS;
+	return b->brief == BRIEF_MOST ? TAKEN_GOOD_NS : GOOD_NS;
 }
 
 bool broker_is_settled(const struct broker *b, int64_t now_ns)
@@ -186,7 +177,7 @@ static void attempt(struct broker *b, int64_t now_ns)
 	b->tls_words[0] = '\0';
 	b->begun_ns = now_ns;
 	if (!client_make(b, why, sizeof(why))) {
-		b->tcp = true; /* no other address helps */
+		b->tcp = b->refused = true; /* no other address helps, and no haste */
 		broker_fail(b, why, "", now_ns);
 		return;
 	}
@@ -196,10 +187,19 @@ static void attempt(struct broker *b, int64_t now_ns)
 	if (err) {
 		const char *words = advice_words(err, errno, b->tls_words);
 
+		b->taken = false;
+		b->brief = 0;
 		broker_fail(b, words, advice_remedy(err, errno), ows_now());
 		return;
 	}
 	broker_watch(b);
+}
+
+/* Is it an answer, of TLS or of MQTT, to who wants to connect? No network or name is none. */
+static bool is_refusal(int code)
+{
+	return code != MOSQ_ERR_ERRNO && code != MOSQ_ERR_EAI && code != MOSQ_ERR_CONN_LOST &&
+	       code != MOSQ_ERR_NO_CONN;
 }
 
 /* It is over, or libmosquitto reports that. */
@@ -231,10 +231,10 @@ static void finish(struct broker *b, int code, int err, int64_t now_ns)
 	                              : b->brief + (b->brief < BRIEF_MOST);
 	words = advice_words(code, err, b->tls_words);
 	remedy = advice_remedy(b->taken ? ADVICE_TAKEN_OVER : code, err);
-	if (b->brief == BRIEF_MOST) {
-		b->step_ns = TAKEN_NS;
+	if (b->brief == BRIEF_MOST)
 		words = taken_words(b, taken);
-	}
+	/* a connection that ends soon was thrown out, or its line is bad: both want time */
+	b->refused |= soon || (b->state != BROKER_CONNECTED && is_refusal(code));
 	broker_fail(b, words, remedy, now_ns);
 }
 
@@ -245,6 +245,8 @@ static void connected(struct broker *b, int64_t now_ns)
 
 	b->begun_ns = now_ns;
 	b->connects++;
+	b->refused = false;
+	backoff_met(&b->backoff);
 	b->again = b->known & 1u << b->way;
 	b->known |= 1u << b->way;
 	b->refusal_logged = false;
@@ -305,7 +307,7 @@ static void work(struct broker *b, short ready, int64_t now_ns)
 	if (!code && !b->ended && !was_connected && b->state == BROKER_CONNECTED)
 		connected(b, now_ns);
 	if (b->state == BROKER_CONNECTED && now_ns - b->begun_ns > good_ns(b))
-		b->step_ns = STEP_NS;
+		backoff_forget(&b->backoff);
 	if (code || b->ended)
 		finish(b, code, err, now_ns);
 	else if (b->state == BROKER_CONNECTING && now_ns - b->begun_ns > ANSWER_NS)
@@ -354,14 +356,15 @@ void broker_begin(struct broker *b, int64_t now_ns)
 	b->fd = -1;
 	b->way = b->known = b->vain = 0;
 	b->v4 = b->old_protocol = false;
-	b->step_ns = STEP_NS;
+	b->refused = false;
+	backoff_forget(&b->backoff);
 	b->next_ns = now_ns;
 	b->state = BROKER_WAITING;
 	forget_trouble(b);
 	b->drained = true;
 	if (!*b->session)
 		snprintf(b->session, sizeof(b->session), "%016llx",
-		         (unsigned long long)random_of(UINT64_MAX));
+		         (unsigned long long)backoff_random());
 }
 
 void broker_hurry(struct broker *b, int64_t now_ns)
@@ -369,7 +372,7 @@ void broker_hurry(struct broker *b, int64_t now_ns)
 	if (b->state != BROKER_WAITING)
 		return;
 	b->next_ns = now_ns;
-	b->step_ns = STEP_NS;
+	backoff_forget(&b->backoff);
 	forget_trouble(b);
 }
 

@@ -6,6 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "src/face/backoff.h"
 #include "src/mqtt/options.h"
 
 #define BROKER_WORDS 384
@@ -65,7 +66,9 @@ struct broker {
 	bool marking;        /* the broker may answer the last mark yet */
 	bool marked;         /* it has */
 	int mark;            /* its number */
-	int64_t begun_ns, next_ns, step_ns;
+	bool refused;        /* a way that was tried since the last pause answered, and refused */
+	struct backoff backoff;
+	int64_t begun_ns, next_ns;
 	int64_t tend_ns;                   /* when broker_tick() is due, once there is a client */
 	unsigned known;                    /* ways that it was connected by, as bits */
 	unsigned vain;                     /* those whose last connection was left for nothing */
