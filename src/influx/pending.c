@@ -83,12 +83,12 @@ void pending_add(struct pending *pending, int64_t time_ns, const char *series, c
 	pending->lines++;
 }
 
-size_t pending_cut(struct pending *pending, int64_t offset_ns, char batch[BATCH_BYTES])
+size_t pending_copy(const struct pending *pending, int64_t offset_ns, char batch[BATCH_BYTES],
+                    unsigned *lines)
 {
-	unsigned lines = 0;
 	size_t len = 0, at = 0;
 
-	while (at < pending->len && lines < BATCH_LINES) {
+	for (*lines = 0; at < pending->len && *lines < BATCH_LINES; ++*lines) {
 		struct head head = head_at(pending, at);
 
 		if (len + head.size + TIME_TEXT > BATCH_BYTES)
@@ -97,9 +97,25 @@ size_t pending_cut(struct pending *pending, int64_t offset_ns, char batch[BATCH_
 		len += (size_t)snprintf(batch + len, head.size + TIME_TEXT, "%s %" PRId64 "\n",
 		                        pending->data + at, head.time_ns + offset_ns);
 		at += head.size;
-		lines++;
 	}
+	return len;
+}
+
+void pending_remove(struct pending *pending, unsigned lines)
+{
+	size_t at = 0;
+
+	for (unsigned i = 0; i < lines; i++)
+		at += sizeof(struct head) + head_at(pending, at).size;
 	remove_first(pending, at, lines);
+}
+
+size_t pending_cut(struct pending *pending, int64_t offset_ns, char batch[BATCH_BYTES])
+{
+	unsigned lines;
+	size_t len = pending_copy(pending, offset_ns, batch, &lines);
+
+	pending_remove(pending, lines);
 	return len;
 }
 

@@ -29,6 +29,11 @@ void pending_add(struct pending *pending, int64_t time_ns, const char *series, c
  * offset_ns: wall clock minus boot time.
  */
 size_t pending_cut(struct pending *pending, int64_t offset_ns, char batch[BATCH_BYTES]);
+/* The same, and they stay: *lines is how many there are, for pending_remove(). */
+size_t pending_copy(const struct pending *pending, int64_t offset_ns, char batch[BATCH_BYTES],
+                    unsigned *lines);
+/* Remove the oldest lines. */
+void pending_remove(struct pending *pending, unsigned lines);
 /* There is a whole batch. */
 bool pending_is_full(const struct pending *pending);
 unsigned batch_lines(const char *batch, size_t len);

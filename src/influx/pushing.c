@@ -42,7 +42,7 @@ static void pushing_begin(struct face *face, int64_t now_ns)
 
 	p->on = true;
 	p->trouble = PUSH_WELL;
-	p->step_ns = 0;
+	backoff_forget(&p->backoff);
 	p->next_ns = now_ns;
 	p->cut_ns = now_ns + p->options.every_ns;
 	sending_read_token(face);

@@ -46,8 +46,8 @@ bool push_options_same(const struct push_options *a, const struct push_options *
 	       a->clock_wait_ns == b->clock_wait_ns;
 }
 
-#define STEP_NS NS_PER_S
-#define STEP_MOST_NS (60 * NS_PER_S)
+/* A server that answers sooner costs no file, whatever Every is */
+#define ANSWER_NS NS_PER_S
 #define UNREAD_NS (10 * NS_PER_S)
 
 void sending_read_token(struct face *face)
@@ -76,27 +76,54 @@ void sending_report_disk(struct face *face, int err)
 	p->disk_err = err;
 }
 
-/* A batch of the memory into the spool. False: it stays in memory. */
-bool sending_put_away(struct face *face)
+static bool put(struct face *face, const char *lines, size_t len)
 {
 	struct pushing *p = face->own;
 	int err;
 
-	err = spool_put(&p->spool, p->batch, p->batch_len);
+	err = spool_put(&p->spool, lines, len);
 	/* the directory has gone, or was never there: it is opened again */
 	if (err == -ENOENT)
 		spool_close(&p->spool);
 	if (err != -EBADF)
 		sending_report_disk(face, err);
-	if (!err)
-		p->batch_len = 0;
 	return !err;
+}
+
+bool sending_put_away(struct face *face)
+{
+	struct pushing *p = face->own;
+
+	if (!put(face, p->batch, p->batch_len))
+		return false;
+	p->batch_len = 0;
+	return true;
+}
+
+/* The server does not answer in time: what is under way, and what has come since, may be lost. */
+static void put_behind(struct face *face)
+{
+	struct pushing *p = face->own;
+	unsigned lines;
+	size_t len;
+
+	if (!p->spooled && !spool_count(&p->spool) && put(face, p->batch, p->batch_len))
+		p->spooled = spool_oldest(&p->spool);
+	len = p->spooled ? pending_copy(&p->pending, p->clock.offset_ns, p->later, &lines) : 0;
+	if (len && put(face, p->later, len))
+		pending_remove(&p->pending, lines);
 }
 
 void sending_cut(struct pushing *p)
 {
 	p->batch_len = pending_cut(&p->pending, p->clock.offset_ns, p->batch);
-	p->spooled = false;
+	p->spooled = 0;
+}
+
+/* Is the batch the oldest of the spool still? A full one may have dropped it. */
+static bool is_oldest(const struct pushing *p)
+{
+	return p->spooled && p->spooled == spool_oldest(&p->spool);
 }
 
 void sending_drop(struct pushing *p)
@@ -112,6 +139,13 @@ static const char *advice_on_status(long status)
 	       : status == 404     ? "it has no such path or database: correct Url"
 	       : status / 100 == 3 ? "it is elsewhere: correct Url"
 	                           : "correct Url";
+}
+
+/* A proxy whose server is away answers with 502 or 504. */
+static enum backoff_why why_of(const struct post_result *result)
+{
+	return result->status && result->status != 502 && result->status != 504 ? BACKOFF_REFUSED
+	                                                                        : BACKOFF_AWAY;
 }
 
 /* Once when it is lost, once more when the reason is of another kind. */
@@ -130,10 +164,7 @@ static void sending_fail(struct face *face, const struct post_result *result, in
 		log_warning(face->log, "%.100s is lost: %s; values wait", p->options.url,
 		            result->words);
 	p->trouble = trouble;
-	p->step_ns = p->step_ns ? 2 * p->step_ns : STEP_NS;
-	if (p->step_ns > STEP_MOST_NS)
-		p->step_ns = STEP_MOST_NS;
-	p->next_ns = now_ns + p->step_ns;
+	p->next_ns = now_ns + backoff_pause(&p->backoff, why_of(result), backoff_random());
 	part_begin(&p->part);
 	if (p->spooled)
 		p->batch_len = 0;
@@ -148,9 +179,9 @@ static void server_answered(struct face *face)
 
 	if (p->trouble != PUSH_WELL)
 		log_notice(face->log, "%.100s is back; %zu batches wait", p->options.url,
-		           spool_count(&p->spool) - p->spooled);
+		           spool_count(&p->spool) - is_oldest(p));
 	p->trouble = PUSH_WELL;
-	p->step_ns = 0;
+	backoff_forget(&p->backoff);
 }
 
 /* The part is done with; after the last one the batch is. */
@@ -159,7 +190,7 @@ static void part_over(struct pushing *p)
 	part_taken(&p->part);
 	if (p->part.at < p->batch_len)
 		return;
-	if (p->spooled)
+	if (is_oldest(p))
 		spool_remove(&p->spool);
 	sending_drop(p);
 }
@@ -190,7 +221,7 @@ static void batch_refused(struct face *face, const struct post_result *result)
 		part_over(p);
 		return;
 	}
-	spool_refuse(&p->spool, p->spooled ? NULL : p->batch, p->batch_len);
+	spool_refuse(&p->spool, is_oldest(p) ? NULL : p->batch, p->batch_len);
 	sending_drop(p);
 }
 
@@ -232,7 +263,7 @@ static void take_spooled(struct face *face, int64_t now_ns)
 
 	if (len > 0) {
 		p->batch_len = (size_t)len;
-		p->spooled = true;
+		p->spooled = spool_oldest(&p->spool);
 		return;
 	}
 	/* What the disk, or this process, cannot do now it may do later. */
@@ -254,20 +285,22 @@ static void take_spooled(struct face *face, int64_t now_ns)
 void sending_advance(struct face *face, int64_t now_ns)
 {
 	struct pushing *p = face->own;
-	bool due = p->pending.lines && (now_ns >= p->cut_ns || pending_is_full(&p->pending));
+	bool busy = post_is_busy(p->post), waits = p->pending.lines || (busy && !p->spooled);
+	bool due = waits && (now_ns >= p->cut_ns || pending_is_full(&p->pending));
 
-	if (!p->on || !p->believed || post_is_busy(p->post))
+	if (!p->on || !p->believed)
 		return;
-	if (due && !p->batch_len) {
+	if (due && busy && now_ns >= p->begun_ns + ANSWER_NS) {
+		p->cut_ns = now_ns + p->options.every_ns;
+		put_behind(face);
+	} else if (due && !p->batch_len) {
+		p->cut_ns = now_ns + p->options.every_ns;
 		sending_cut(p);
-		/* fewer and longer files while the server is away: a card has to survive them */
-		p->cut_ns = now_ns +
-		            (p->step_ns > p->options.every_ns ? p->step_ns : p->options.every_ns);
 		/* nothing overtakes what waits */
 		if (spool_count(&p->spool) || now_ns < p->next_ns)
 			sending_put_away(face);
 	}
-	if (now_ns < p->next_ns)
+	if (busy || now_ns < p->next_ns)
 		return;
 	if (!p->batch_len && spool_count(&p->spool))
 		take_spooled(face, now_ns);
@@ -276,6 +309,7 @@ void sending_advance(struct face *face, int64_t now_ns)
 	if (p->trouble == PUSH_DENIED)
 		sending_read_token(face);
 	part_next(&p->part, p->batch, p->batch_len);
+	p->begun_ns = now_ns;
 	if (post_begin(p->post, p->options.url, p->token, p->batch + p->part.at, p->part.len))
 		sending_fail(face, &(struct post_result){.words = "no memory"}, now_ns);
 }

@@ -7,6 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "src/face/backoff.h"
 #include "src/face/secret.h"
 #include "src/face/wall_clock.h"
 #include "src/history/place.h"
@@ -48,15 +49,17 @@ struct pushing {
 	struct spool spool;
 	struct post *post;
 	char token[SECRET_SIZE], batch[BATCH_BYTES];
-	size_t batch_len; /* of what is sent or has to be sent next; 0: nothing */
-	struct part part; /* of the batch: what is sent now */
-	bool spooled;     /* it is the oldest file of the spool, too */
+	char later[BATCH_BYTES]; /* goes into the spool while the batch is under way */
+	size_t batch_len;        /* of what is sent or has to be sent next; 0: nothing */
+	struct part part;        /* of the batch: what is sent now */
+	uint64_t spooled;        /* the number of the file of the spool that has it, too; 0: none */
 	enum push_trouble trouble;
-	int disk_err;                    /* as it was logged last */
-	struct log_rate unread;          /* files of the spool that could not be read */
-	bool refused;                    /* the server refused lines, and has taken none since */
-	int64_t cut_ns, next_ns;         /* when to make a batch; when to send one */
-	int64_t step_ns;                 /* after a failure; 0: none */
+	int disk_err;            /* as it was logged last */
+	struct log_rate unread;  /* files of the spool that could not be read */
+	bool refused;            /* the server refused lines, and has taken none since */
+	int64_t cut_ns, next_ns; /* when to make a batch; when to send one */
+	int64_t begun_ns;        /* when the last one was begun */
+	struct backoff backoff;
 	uint64_t sent;                   /* lines that arrived */
 	uint64_t refused_batches;        /* also those of which no file is kept any more */
 	uint64_t lost_bytes, lost_lines; /* dropped, as it was logged last */

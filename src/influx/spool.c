@@ -219,6 +219,11 @@ int spool_put(struct spool *spool, const char *data, size_t len)
 	return 0;
 }
 
+uint64_t spool_oldest(const struct spool *spool)
+{
+	return spool_count(spool) ? spool->files[spool->first].number : 0;
+}
+
 void spool_name(const struct spool *spool, char name[SPOOL_NAME])
 {
 	make_name(name, spool->files[spool->first].number, LINES);

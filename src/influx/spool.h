@@ -46,5 +46,7 @@ int64_t spool_read(struct spool *spool, char *data, size_t size);
 void spool_remove(struct spool *spool);
 /* The server refuses a batch: put it aside; data NULL: the oldest one. It may fail. */
 void spool_refuse(struct spool *spool, const char *data, size_t len);
+/* The number of the oldest batch, 0: none waits; no other batch ever has it. */
+uint64_t spool_oldest(const struct spool *spool);
 /* The name of the oldest batch, for a message. */
 void spool_name(const struct spool *spool, char name[SPOOL_NAME]);

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""owsd ends, dies, or is removed: no program beside it spins, and each finds the next one soon."""
+"""owsd ends, dies, or is removed: no program beside it spins, and each finds the next one soon. A
+broker and a database that were away are found soon, too, and nobody spins for them."""
 
 import contextlib
 import os
@@ -171,6 +172,43 @@ def test_beside_an_owsd_that_hangs_no_program_spins(scene):
     before = beside.lines()
     beside.daemon.thaw()
     beside.all_there(before)
+
+
+def test_a_broker_and_a_database_that_were_away_for_a_minute_are_found_within_15_seconds(scene):
+    port, databases = free_port(), free_port()
+    broker = mqtthouse.Broker(scene, port)
+    database = socket.create_server(("127.0.0.1", databases))
+    daemon = scene.owsd(text(scene, port, databases))
+    faces = {}
+    for n in range(4):
+        config = scene.file(f"house{n}.rio", daemon.config.read_text().replace('"pi7"', f'"pi{n}"'))
+        for program, more in (("owsd-mqtt", []), ("owsd-influx", ["-d", scene.path / f"spool{n}"])):
+            faces[program, n] = scene.start([BUILD / program, "-n", daemon.name, "-c", config, *more],
+                                            {"no_proxy": "*"})
+
+    def back():
+        return sum(faces["owsd-mqtt", n].log().count("connected to") > 1 for n in range(4))
+
+    until(lambda: all(faces["owsd-mqtt", n].log().count("connected to") for n in range(4)), 30, "all are connected")
+    broker.process.kill()
+    database.close()
+    begun, spent_before = time.monotonic(), {key: spent(face.pid) for key, face in faces.items()}
+    time.sleep(62)  # so long that a step that doubles is a minute
+    passed = time.monotonic() - begun
+    shares = {key: (spent(face.pid) - spent_before[key]) / passed for key, face in faces.items()}
+    assert max(shares.values()) <= 2 * IDLE, shares  # owsd lives, and has changes
+    broker.start()
+    database = socket.create_server(("127.0.0.1", databases))
+    database.settimeout(15 + 3)
+    begun = time.monotonic()
+    # each keeps its connection, as it gets no answer
+    connections = [database.accept()[0] for _ in range(4)]
+    until(lambda: back() == 4, 20, lambda: f"all are back: {back()}")
+    took = time.monotonic() - begun
+    assert took <= 15 * max(1, os.getloadavg()[0] / os.cpu_count() / 4), took
+    for connection in connections:
+        connection.close()
+    database.close()
 
 
 if __name__ == "__main__":

@@ -388,6 +388,63 @@ def test_a_killed_one_loses_nothing_of_the_spool_and_sends_it_as_it_was(scene):
         assert face.stop() == 0
 
 
+def commands(signals, first, last, pause):
+    for value in range(first, last + 1):
+        signals.set("relays", value)
+        time.sleep(pause)  # the rate of the changes
+
+
+def on_disk(scene):
+    return [value for value in (value_of(f) for name, f, _ in spooled(scene) if name == "relays") if value]
+
+
+def test_one_killed_while_the_server_is_away_or_hangs_has_what_is_older_than_every_on_the_disk(scene):
+    import ows
+    port = free_port()
+    daemon = scene.owsd(text(scene, f"http://127.0.0.1:{port}/write"))
+    face = push(scene, daemon)
+    with ows.Ows(daemon.name, control=True) as signals:
+        begun = time.monotonic()
+        value = 0
+        while time.monotonic() - begun < 18:  # so long that it seldom asks
+            value = value % 200 + 1
+            commands(signals, value, value, 0.1)
+        commands(signals, 201, 230, 0.1)
+        time.sleep(1.5)  # what this is about: the last ones, Every and a moment before the kill
+        face.kill()
+        there = distinct(on_disk(scene))
+        assert there[-30:] == [str(v) for v in range(201, 231)], there[-40:]
+        before = len(spooled(scene))
+        with Server(port, answer="hang") as server:
+            face = push(scene, daemon)
+            until(lambda: server.requests, 20, "it is asked, and waits for the answer")
+            commands(signals, 1, 30, 0.1)
+            time.sleep(2)  # likewise, with the second that the server has
+            face.kill()
+        there = distinct([v for v in (value_of(f) for n, f, _ in spooled(scene)[before:] if n == "relays") if v])
+        assert there[-30:] == [str(v) for v in range(1, 31)], there
+    with Server(port) as server:
+        face = push(scene, daemon)
+        until(lambda: not spooled(scene), 60, "all is sent")
+        assert face.stop() == 0
+
+
+def test_a_batch_that_went_to_the_disk_on_its_way_is_sent_once_and_leaves_no_file(scene):
+    with Server(answer="hang") as server:
+        daemon = scene.owsd(text(scene, server.url))
+        face = push(scene, daemon)
+        until(lambda: spooled(scene), 20, "what the server does not answer goes to the disk")
+        set_relays(scene, daemon, 5)
+        until(lambda: on_disk(scene)[-1:] == ["5"], 10, "what comes meanwhile too")
+        server.answer = 204
+        server.ended.set()
+        arrives(server, "relays", "5")
+        until(lambda: not spooled(scene), 20, "the spool is empty")
+        got = [point for batch in server.batches for point in batch]
+        assert len(got) == len(set(got)), got
+        assert face.stop() == 0
+
+
 def test_what_is_in_memory_at_the_end_is_spooled(scene):
     with Server() as server:
         daemon = scene.owsd(text(scene, server.url, Every=3600))

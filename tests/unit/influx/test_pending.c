@@ -42,6 +42,26 @@ static void test_a_batch_has_the_time_that_is_known_when_it_is_made(void)
 	TEST_ASSERT_EQUAL_UINT(0, pending.lines);
 }
 
+static void test_a_copy_leaves_the_lines_until_they_are_removed(void)
+{
+	unsigned lines;
+	size_t len;
+
+	for (int i = 0; i < 3; i++)
+		pending_add(&pending, i, "s", "value=1");
+	len = pending_copy(&pending, 5, batch, &lines);
+	TEST_ASSERT_EQUAL_UINT(3, lines);
+	TEST_ASSERT_EQUAL_UINT(3, batch_lines(batch, len));
+	TEST_ASSERT_EQUAL_UINT(3, pending.lines);
+	pending_add(&pending, 3, "s", "value=2");
+	pending_remove(&pending, 2);
+	cut(5);
+	TEST_ASSERT_EQUAL_STRING("s value=1 7\ns value=2 8\n", batch);
+	len = pending_copy(&pending, 5, batch, &lines);
+	TEST_ASSERT_EQUAL_UINT(0, lines);
+	TEST_ASSERT_EQUAL_size_t(0, len);
+}
+
 static void test_a_batch_has_at_most_5000_lines_and_the_rest_comes_next(void)
 {
 	for (int i = 0; i < 5001; i++)
@@ -93,6 +113,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_a_batch_has_the_time_that_is_known_when_it_is_made);
+	RUN_TEST(test_a_copy_leaves_the_lines_until_they_are_removed);
 	RUN_TEST(test_a_batch_has_at_most_5000_lines_and_the_rest_comes_next);
 	RUN_TEST(test_a_batch_has_at_most_a_megabyte);
 	RUN_TEST(test_the_oldest_go_when_memory_is_full_and_they_are_counted);
