@@ -89,6 +89,7 @@ int control_create(const struct control_setup *setup, struct control **control, 
 		c->counters[i].name = counter_names[i];
 	snprintf(c->name, sizeof(c->name), "%s.control", setup->instance);
 	rights_find(&c->rights, c->config);
+	held_open(c);
 	err = open_all(c);
 	if (err) {
 		snprintf(why, why_size, "cannot make the socket %s: %s", c->name, strerror(-err));
@@ -130,18 +131,17 @@ static void *control_run(void *arg)
 {
 	struct epoll_event events[EVENTS];
 	struct control *c = arg;
-	int64_t next_ns = INT64_MAX;
+	int ms = -1;
 
 	while (!__atomic_load_n(&c->stop, __ATOMIC_ACQUIRE)) {
-		int n = epoll_wait(c->epoll, events, EVENTS, wait_ms(c, next_ns));
+		int n = epoll_wait(c->epoll, events, EVENTS, ms);
 
-		pthread_mutex_lock(&c->lock);
-		c->now_ns = ows_now();
+		control_lock(c);
 		for (int i = 0; i < n; i++)
 			take_event(c, events[i].data.u32);
 		if (c->accepts && c->now_ns >= c->accept_ns)
 			door_accept(c);
-		next_ns = door_look(c);
+		ms = wait_ms(c, door_look(c));
 		pthread_mutex_unlock(&c->lock);
 	}
 	return NULL;
@@ -152,7 +152,6 @@ int control_start(struct control *c, const struct controller_layout *layout)
 	int err;
 
 	c->layout = layout;
-	c->now_ns = ows_now();
 	err = thread_start(&c->thread, "owsd-control", STACK_SIZE, control_run, c);
 	c->running = !err;
 	return err ? err : news_start(c);
@@ -313,7 +312,7 @@ bool control_asked(struct control *c)
 
 void control_take_askers(struct control *c)
 {
-	pthread_mutex_lock(&c->lock);
+	control_lock(c);
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++) {
 		struct control_place *p = &c->places[i];
 
@@ -328,7 +327,7 @@ void control_take_askers(struct control *c)
 
 void control_answer(struct control *c, int err, const char *why)
 {
-	pthread_mutex_lock(&c->lock);
+	control_lock(c);
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++) {
 		struct control_place *p = &c->places[i];
 
@@ -364,7 +363,7 @@ static void prepare_grant(struct control *c, struct control_place *p,
 void control_prepare(struct control *c, const struct config *config,
                      const struct controller_layout *layout)
 {
-	pthread_mutex_lock(&c->lock);
+	control_lock(c);
 	rights_find(&c->rights, config);
 	c->config = config;
 	c->layout = layout;
@@ -419,7 +418,7 @@ void control_reloaded(struct control *c)
 
 void control_replaced(struct control *c)
 {
-	pthread_mutex_lock(&c->lock);
+	control_lock(c);
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
 		if (control_state_of(&c->places[i]) == CONTROL_IN)
 			news_due(c, i);

@@ -15,6 +15,17 @@
 #define AFTER_RELOAD_NS (2 * NS_PER_S)
 /* A memory that takes longer is locked by a process; then those of its user wait for it. */
 #define LOCKED_NS (NS_PER_S / 2)
+/* When a memory is emptied again in which a process has written meanwhile. */
+#define AGAIN_NS (NS_PER_S / 2)
+/* Before them stand those of the places. */
+#define FIRST_SLOT OWS_CONTROLLERS
+_Static_assert(FIRST_SLOT + CONTROL_HELD_ALL <= PORTER_SLOTS, "each memory has a slot");
+
+void held_open(struct control *c)
+{
+	for (unsigned i = 0; i < CONTROL_HELD_ALL; i++)
+		c->held[i].slot = FIRST_SLOT + i;
+}
 
 /* Returns porter_give(). */
 static int held_give(struct control *c, const struct control_held *held, bool empty)
@@ -22,7 +33,7 @@ static int held_give(struct control *c, const struct control_held *held, bool em
 	const struct porter_order order = {.what = empty ? PORTER_EMPTY : 0,
 	                                   .count = 1,
 	                                   .keep = empty,
-	                                   .slot = PORTER_NO_SLOT,
+	                                   .slot = empty ? held->slot : PORTER_NO_SLOT,
 	                                   .fds = {held->own}};
 
 	return porter_give(c->porter, PORTER_MEMORY, &order);
@@ -45,17 +56,33 @@ static void empty_memory(struct control *c, struct control_held *held)
 		held->asked_ns = c->now_ns;
 }
 
+/* Each slot stays with one memory at most. */
+static void remove_memory(struct control *c, struct control_held *held)
+{
+	uint32_t slot = held->slot;
+
+	*held = c->held[--c->held_count];
+	c->held[c->held_count].slot = slot;
+}
+
 void held_look(struct control *c)
 {
 	if (c->now_ns < c->held_ns)
 		return;
 	c->held_ns = c->now_ns + LOOK_NS;
 	for (unsigned i = c->held_count; i-- > 0;) {
-		empty_memory(c, &c->held[i]);
-		/* pages that come back count for the user that touches them */
-		if (c->held[i].asked_ns && sealed_is_empty(c->held[i].own) &&
-		    held_give(c, &c->held[i], false) == 0)
-			c->held[i] = c->held[--c->held_count];
+		struct control_held *held = &c->held[i];
+
+		empty_memory(c, held);
+		if (!held->asked_ns || !porter_carried(c->porter, held->slot))
+			continue;
+		if (!sealed_is_empty(held->own)) {
+			held->asked_ns = 0;
+			held->until_ns = c->now_ns + AGAIN_NS;
+		} else if (held_give(c, held, false) == 0) {
+			/* pages that come back count for the user that touches them */
+			remove_memory(c, held);
+		}
 	}
 }
 
@@ -66,14 +93,16 @@ bool held_full(const struct control *c)
 
 void held_free(struct control *c, uid_t uid, struct control_grant *grant, bool reload)
 {
-	const struct control_held held = {.own = grant->own,
-	                                  .uid = uid,
-	                                  .size = grant->size,
-	                                  .until_ns = reload ? c->now_ns + AFTER_RELOAD_NS : 0};
+	struct control_held *held = &c->held[c->held_count];
 
 	if (grant->memory.base && c->held_count < CONTROL_HELD_ALL) {
+		*held = (struct control_held){.own = grant->own,
+		                              .uid = uid,
+		                              .size = grant->size,
+		                              .until_ns = reload ? c->now_ns + AFTER_RELOAD_NS : 0,
+		                              .slot = held->slot};
 		grant->own = -1;
-		c->held[c->held_count++] = held;
+		c->held_count++;
 	}
 	grant_free(grant);
 }

@@ -4,6 +4,7 @@
 
 #include "src/control/private.h"
 
+void held_open(struct control *c);
 /*
  * Free what that user got; its memory counts as the user's until it is empty. reload: its
  * controller goes on, and gets another.

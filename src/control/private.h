@@ -4,9 +4,11 @@
 
 #include <pthread.h>
 
+#include "hal/base/time.h"
 #include "hal/bus/bus.h"
 #include "src/control/often.h"
 #include "src/control/rights.h"
+#include "src/libows/ows.h"
 #include "src/shm/controller.h"
 #include "src/shm/peer.h"
 #include "src/shm/porter.h"
@@ -76,7 +78,8 @@ struct control_held {
 	uid_t uid;
 	size_t size;
 	int64_t until_ns; /* it is not emptied before */
-	int64_t asked_ns; /* since when the porter has it to empty; 0: not yet */
+	int64_t asked_ns; /* since when the porter has it to empty; 0: it has not */
+	uint32_t slot;    /* of the porter */
 };
 
 struct control_place {
@@ -138,7 +141,8 @@ struct control {
 	bool later; /* the porter had no time for something */
 	int asked;  /* the bell of those that ask for a reload */
 	bool accepts;
-	int64_t now_ns, accept_ns; /* accept_ns: not sooner */
+	int64_t now_ns;    /* when a thread took the lock; see control_lock() */
+	int64_t accept_ns; /* not sooner */
 	uint32_t serial;
 	struct control_place places[OWS_CONTROLLERS];
 	struct control_held held[CONTROL_HELD_ALL];
@@ -170,3 +174,10 @@ struct control {
 	struct log_rate refused, full;
 	struct bus_counter counters[CONTROL_COUNTER_COUNT];
 };
+
+/* Each thread that takes the lock has the time of that moment in now_ns, not another's last. */
+static inline void control_lock(struct control *c)
+{
+	pthread_mutex_lock(&c->lock);
+	c->now_ns = ows_now();
+}

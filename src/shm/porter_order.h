@@ -17,7 +17,7 @@ enum porter_lane {
 
 #define PORTER_FDS 64
 #define PORTER_BYTES 320
-#define PORTER_SLOTS 128
+#define PORTER_SLOTS (128 + 1024) /* connections, and memories to empty */
 #define PORTER_NO_SLOT UINT32_MAX
 
 enum porter_what {
