@@ -6,7 +6,6 @@
 #include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -25,14 +24,16 @@ static int make_path(const struct history_file *file, const char *name, char pat
 
 static int lock_directory(struct history_file *file)
 {
+	int directory;
+
 	if (mkdir(file->directory, 0750) < 0 && errno != EEXIST && errno != EROFS)
 		return -errno;
-	file->lock = open(file->directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-	if (file->lock < 0)
+	directory = open(file->directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+	if (directory < 0)
 		return -errno;
-	if (flock(file->lock, LOCK_EX | LOCK_NB) < 0)
-		return errno == EWOULDBLOCK ? -EBUSY : -errno;
-	return 0;
+	file->lock = history_lock(directory);
+	close(directory);
+	return file->lock < 0 ? file->lock : 0;
 }
 
 /* SQLite would make it for all to read, and open one that it may not write for reading alone. */

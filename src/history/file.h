@@ -14,7 +14,7 @@ struct history_file {
 	void (*say)(void *ctx, const char *text);
 	void *ctx;
 	sqlite3 *db; /* NULL: not open */
-	int lock;    /* descriptor of the directory; -1 */
+	int lock;    /* its descriptor; -1 */
 	uint64_t device, inode;
 };
 

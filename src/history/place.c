@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -13,6 +14,7 @@
 
 #define RECORDER "owsd-recorder"
 #define WHAT "history"
+#define LOCK "lock"
 
 static const char *absolute(const char *name)
 {
@@ -84,6 +86,24 @@ int history_make_above(const char *path)
 		*slash = '/';
 	}
 	return 0;
+}
+
+int history_lock(int directory)
+{
+	int fd = openat(directory, LOCK, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK,
+	                0600);
+	struct stat seen;
+	int err = 0;
+
+	if (fd < 0)
+		return -errno;
+	/* who may read a file or a directory may lock it: it would lock us out */
+	if (fstat(fd, &seen) < 0 || (seen.st_mode & 077 && fchmod(fd, 0600) < 0) ||
+	    flock(fd, LOCK_EX | LOCK_NB) < 0)
+		err = errno == EWOULDBLOCK ? -EBUSY : -errno;
+	if (err)
+		close(fd);
+	return err ? err : fd;
 }
 
 int64_t history_boot_present(void)

@@ -24,6 +24,11 @@ int history_place_state(const char *program, const char *what, const char *insta
 int history_place_found(const char *instance, char path[HISTORY_PATH]);
 /* Make the directories above path, mode 0750, as far as they are missing. 0 or a negative errno. */
 int history_make_above(const char *path);
+/*
+ * Lock a directory by a file in it that nobody else may open: another program that locks it there
+ * too gets -EBUSY. Returns the lock's descriptor, whose closing frees it, or a negative errno.
+ */
+int history_lock(int directory);
 
 /* The boot that this machine is in. */
 

@@ -7,6 +7,7 @@
 
 #include "src/history/record.h"
 #include "src/history/sql.h"
+#include "src/history/wal_lock.h"
 
 #define BUSY_MS 200
 
@@ -172,7 +173,8 @@ int schema_open(const char *path, sqlite3 **db)
 {
 	int err, keep = 1;
 
-	err = sqlite3_open_v2(path, db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX, NULL);
+	err = sqlite3_open_v2(path, db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX,
+	                      wal_lock_vfs());
 	err = sql_errno(*db, err);
 	if (!err) {
 		sqlite3_busy_timeout(*db, BUSY_MS);

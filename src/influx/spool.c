@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -137,17 +136,15 @@ int spool_open(struct spool *spool, const char *path, uint64_t limit, const stru
 {
 	int err = history_make_above(path);
 
-	*spool = (struct spool){.disk = disk, .limit = limit, .next = 1};
+	*spool = (struct spool){.disk = disk, .limit = limit, .next = 1, .lock = -1};
 	spool->dir = err ? err : spool_disk_directory(path, 1);
 	if (spool->dir < 0) {
 		err = spool->dir;
 		spool->dir = -1;
 		return err;
 	}
-	if (flock(spool->dir, LOCK_EX | LOCK_NB) < 0)
-		err = errno == EWOULDBLOCK ? -EBUSY : -errno;
-	else
-		err = spool_look(spool);
+	spool->lock = history_lock(spool->dir);
+	err = spool->lock < 0 ? spool->lock : spool_look(spool);
 	if (err)
 		spool_close(spool);
 	return err;
@@ -155,9 +152,11 @@ int spool_open(struct spool *spool, const char *path, uint64_t limit, const stru
 
 void spool_close(struct spool *spool)
 {
+	if (spool->lock >= 0)
+		close(spool->lock);
 	if (spool->dir >= 0)
 		close(spool->dir);
-	spool->dir = -1;
+	spool->dir = spool->lock = -1;
 	free(spool->files);
 	spool->files = NULL;
 	spool->first = spool->end = spool->room = 0;

@@ -20,7 +20,7 @@ struct spool_file {
 };
 struct spool {
 	const struct spool_disk *disk;
-	int dir; /* -1: not open */
+	int dir, lock; /* -1: not open */
 	uint64_t limit, bytes, next;
 	struct spool_file *files; /* the oldest first */
 	size_t first, end, room;

@@ -1,13 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /* Tests of the writer of history, by what libows-history reads of its file. */
 #include <errno.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <sqlite3.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "unity.h"
@@ -462,6 +466,8 @@ static void test_a_file_of_another_owner_stays_his_and_gets_all_once_it_is_ours(
 	TEST_ASSERT_EQUAL_INT(0, chown(file(""), 65534, (gid_t)-1));
 	TEST_ASSERT_EQUAL_INT(0, chown(file("-wal"), 65534, (gid_t)-1));
 	TEST_ASSERT_EQUAL_INT(0, chown(file("-shm"), 65534, (gid_t)-1));
+	snprintf(above, sizeof(above), "%s/lock", past.directory);
+	TEST_ASSERT_EQUAL_INT(0, chown(above, 65534, (gid_t)-1));
 	TEST_ASSERT_EQUAL_INT(0, seteuid(65534));
 	past_end(&past, 200 * PAST_S);
 	TEST_ASSERT_EQUAL_INT(0, seteuid(0));
@@ -522,6 +528,88 @@ static void test_a_second_writer_of_a_directory_is_refused(void)
 	past_begin(&other, 0, PAST_NOON, true);
 	TEST_ASSERT_EQUAL_INT(-EBUSY, history_writer_flush(other.writer, 0));
 	history_writer_close(other.writer, PAST_S);
+}
+
+/*
+ * Another process has locked all that a member of the group may open. Locks of one process do not
+ * meet: it is a child.
+ */
+static pid_t lock_all(void)
+{
+	static const char *const names[] = {"", "lock", "history.sqlite", "history.sqlite-shm",
+	                                    "history.sqlite-wal"};
+	int ready[2];
+	pid_t child;
+	char byte;
+
+	TEST_ASSERT_EQUAL_INT(0, pipe(ready));
+	child = fork();
+	if (child == 0) {
+		/* not ours: the lock of the writer is one of them */
+		prctl(PR_SET_PDEATHSIG, SIGKILL);
+		dup2(ready[1], STDIN_FILENO);
+		close_range(3, ~0u, 0);
+	}
+	for (size_t i = 0; child == 0 && i < sizeof(names) / sizeof(names[0]); i++) {
+		struct flock all = {.l_type = F_RDLCK, .l_whence = SEEK_SET};
+		char name[400];
+		struct stat seen;
+		int fd;
+
+		snprintf(name, sizeof(name), "%s/%s", past.directory, names[i]);
+		if (stat(name, &seen) < 0 || !(seen.st_mode & 040))
+			continue;
+		fd = open(name, O_RDONLY);
+		flock(fd, LOCK_EX | LOCK_NB);
+		fcntl(fd, F_SETLK, &all);
+	}
+	if (child == 0) {
+		(void)!write(STDIN_FILENO, "", 1);
+		pause();
+		_exit(0);
+	}
+	TEST_ASSERT_EQUAL_INT64(1, read(ready[0], &byte, 1));
+	close(ready[0]);
+	close(ready[1]);
+	return child;
+}
+
+static void test_no_lock_that_a_reader_can_have_stops_the_writer(void)
+{
+	pid_t locks[2];
+
+	past_begin(&past, 0, PAST_NOON, true);
+	past_room(&past, PAST_S, 1);
+	TEST_ASSERT_EQUAL_INT(0, history_writer_flush(past.writer, 2 * PAST_S));
+	locks[0] = lock_all();
+	for (int second = 3; second < 300; second++) {
+		past_room(&past, second * PAST_S, second);
+		TEST_ASSERT_EQUAL_INT(0, history_writer_flush(past.writer, second * PAST_S));
+	}
+	/* nor its start, nor one after the machine has crashed */
+	for (int crashed = 0; crashed < 2; crashed++) {
+		history_writer_close(past.writer, (400 + 10 * crashed) * PAST_S);
+		if (crashed) {
+			int fd = open(file("-shm"), O_WRONLY);
+
+			TEST_ASSERT_EQUAL_INT64(8,
+			                        pwrite(fd, "\377\377\377\377\377\377\377", 8, 0));
+			close(fd);
+		}
+		past_begin(&past, (401 + 10 * crashed) * PAST_S, PAST_NOON, true);
+		past_room(&past, (402 + 10 * crashed) * PAST_S, 7);
+		TEST_ASSERT_EQUAL_INT(
+			0, history_writer_flush(past.writer, (403 + 10 * crashed) * PAST_S));
+	}
+	locks[1] = lock_all();
+	past_room(&past, 420 * PAST_S, 8);
+	past_end(&past, 430 * PAST_S);
+	for (int i = 0; i < 2; i++) {
+		kill(locks[i], SIGKILL);
+		waitpid(locks[i], NULL, 0);
+	}
+	/* each end of a run is an item too */
+	TEST_ASSERT_EQUAL_INT(298 + 3 + 3, count_of(PAST_ROOM));
 }
 
 static uint32_t files(void)
@@ -763,6 +851,7 @@ int main(void)
 	RUN_TEST(test_a_file_that_another_program_has_locked_gets_all_later);
 	RUN_TEST(test_a_reader_that_takes_minutes_holds_nothing_up);
 	RUN_TEST(test_a_second_writer_of_a_directory_is_refused);
+	RUN_TEST(test_no_lock_that_a_reader_can_have_stops_the_writer);
 	RUN_TEST(test_a_file_that_is_deleted_is_begun_again_with_all_that_holds);
 	RUN_TEST(test_where_nothing_waits_the_new_file_has_all_that_holds_too);
 	RUN_TEST(test_a_damaged_file_is_put_aside_by_name_and_another_is_begun);

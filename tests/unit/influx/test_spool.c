@@ -2,9 +2,11 @@
 /* Tests of the spool: order, bounds, what is refused, full disks and power cuts. */
 #include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -113,6 +115,19 @@ static void test_a_second_program_finds_the_directory_locked(void)
 
 	TEST_ASSERT_EQUAL_INT(-EBUSY, spool_open(&other, path, 1000000, &power.disk));
 	TEST_ASSERT_EQUAL_INT(-1, other.dir);
+}
+
+static void test_a_lock_of_the_directory_keeps_nobody_out(void)
+{
+	int directory = open(path, O_RDONLY | O_DIRECTORY);
+	struct stat lock;
+
+	spool_close(&spool);
+	TEST_ASSERT_EQUAL_INT(0, flock(directory, LOCK_EX | LOCK_NB));
+	TEST_ASSERT_EQUAL_INT(0, spool_open(&spool, path, 1000000, &power.disk));
+	TEST_ASSERT_EQUAL_INT(0, fstatat(directory, "lock", &lock, 0));
+	TEST_ASSERT_EQUAL_INT(0600, lock.st_mode & 0777);
+	close(directory);
 }
 
 static void test_the_size_is_bounded_and_the_oldest_are_dropped_and_counted(void)
@@ -249,6 +264,7 @@ int main(void)
 	RUN_TEST(test_the_oldest_batch_comes_first_also_after_a_restart);
 	RUN_TEST(test_hundreds_of_batches_keep_their_order);
 	RUN_TEST(test_a_second_program_finds_the_directory_locked);
+	RUN_TEST(test_a_lock_of_the_directory_keeps_nobody_out);
 	RUN_TEST(test_the_size_is_bounded_and_the_oldest_are_dropped_and_counted);
 	RUN_TEST(test_what_is_refused_is_kept_aside_the_newest_eight_of_it);
 	RUN_TEST(test_a_disk_that_takes_nothing_leaves_what_is_there);
