@@ -10,8 +10,8 @@
  * All functions of the table are called by that thread. A face must not wait in them for longer
  * than a write to a file may take.
  *
- * Room src/face: what all faces share: one loop over the changes of an instance. Uses src/config,
- * src/text, src/libows, src/service, hal/base.
+ * Room src/face: what all faces share: one loop over the changes of an instance, one way for
+ * commands. Uses src/show, src/config, src/text, src/libows, src/service, src/signal, hal/base.
  */
 #pragma once
 
@@ -19,6 +19,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "hal/base/time.h"
 #include "src/config/config.h"
 #include "src/face/arguments.h"
 #include "src/libows/ows.h"
@@ -77,6 +78,8 @@ struct face_ops {
 };
 
 #define FACE_DESCRIPTORS 8
+/* A command that may be older moves nothing, whatever held it. */
+#define FACE_OLD_NS (2 * NS_PER_S)
 
 struct face {
 	const struct face_ops *ops;
@@ -101,6 +104,7 @@ struct face {
 	char status[256];
 	int fds[FACE_DESCRIPTORS];
 	short wanted[FACE_DESCRIPTORS];
+	int64_t came_ns[FACE_DESCRIPTORS];
 	unsigned fd_count;
 	int64_t fed_ns;
 

@@ -79,6 +79,7 @@ int face_watch(struct face *face, int fd, short events)
 	if (face->fd_count == FACE_DESCRIPTORS)
 		return -ENOSPC;
 	face->fds[face->fd_count] = fd;
+	face->came_ns[face->fd_count] = 0;
 	face->wanted[face->fd_count++] = events;
 	return 0;
 }
@@ -90,8 +91,17 @@ void face_ignore(struct face *face, int fd)
 			face->fd_count--;
 			face->fds[i] = face->fds[face->fd_count];
 			face->wanted[i] = face->wanted[face->fd_count];
+			face->came_ns[i] = face->came_ns[face->fd_count];
 			return;
 		}
+}
+
+int64_t face_came(const struct face *face, int fd)
+{
+	for (unsigned i = 0; i < face->fd_count; i++)
+		if (face->fds[i] == fd)
+			return face->came_ns[i];
+	return 0;
 }
 
 void face_status(struct face *face, const char *format, ...)
@@ -131,8 +141,9 @@ static void wait_and_take(struct face *face, struct unix_signals *signals, int64
 		{.fd = look_descriptor(face, now_ns), .events = POLLIN},
 	};
 	unsigned count = face->fd_count;
-	int64_t until = earlier(face->tick_ns, look_next(face, now_ns)), left;
+	int64_t until = earlier(face->tick_ns, look_next(face, now_ns)), left, looked_ns;
 	struct timespec t;
+	int ready;
 
 	if (*face->report)
 		until = earlier(until, face->report_ns);
@@ -143,7 +154,15 @@ static void wait_and_take(struct face *face, struct unix_signals *signals, int64
 	                      .tv_nsec = (long)(left % NS_PER_S)};
 	for (unsigned i = 0; i < count; i++)
 		fds[3 + i] = (struct pollfd){.fd = face->fds[i], .events = face->wanted[i]};
-	if (ppoll(fds, 3 + count, &t, NULL) <= 0)
+	ready = ppoll(fds, 3 + count, &t, NULL);
+	looked_ns = ows_now();
+	/* was it stopped between the look and the clock? It never sleeps so long */
+	if (looked_ns - now_ns > FACE_OLD_NS)
+		looked_ns = now_ns;
+	for (unsigned i = 0; ready >= 0 && i < count; i++)
+		if (!fds[3 + i].revents)
+			face->came_ns[i] = looked_ns;
+	if (ready <= 0)
 		return;
 	if (fds[0].revents)
 		unix_signals_take(signals);

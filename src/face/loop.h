@@ -13,5 +13,10 @@ int face_main(const struct face_ops *ops, int argc, char **argv);
 /* Wait for fd too, events as in poll(2). 0 or -ENOSPC. face_ignore() before closing it. */
 int face_watch(struct face *face, int fd, short events);
 void face_ignore(struct face *face, int fd);
+/*
+ * When the loop last saw that nothing was to be read at fd: all that is read there now came later.
+ * That is a second ago at most, but where the face did not run, or was busy. 0: not yet.
+ */
+int64_t face_came(const struct face *face, int fd);
 /* What `systemctl status` shows. Sent only when it changes. */
 void face_status(struct face *face, const char *format, ...) __attribute__((format(printf, 2, 3)));

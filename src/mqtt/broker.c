@@ -173,9 +173,10 @@ static void attempt(struct broker *b, int64_t now_ns)
 	int err;
 
 	b->state = BROKER_CONNECTING;
-	b->ended = b->tcp = false;
+	b->ended = b->tcp = b->held = false;
+	b->drained = true;
 	b->tls_words[0] = '\0';
-	b->begun_ns = now_ns;
+	b->begun_ns = b->came_ns = now_ns;
 	if (!client_make(b, why, sizeof(why))) {
 		b->tcp = b->refused = true; /* no other address helps, and no haste */
 		broker_fail(b, why, "", now_ns);
@@ -238,6 +239,22 @@ static void finish(struct broker *b, int code, int err, int64_t now_ns)
 	broker_fail(b, words, remedy, now_ns);
 }
 
+/* The broker publishes the will, and the birth follows it. */
+static void begin_anew(struct broker *b, int64_t now_ns)
+{
+	log_warning(b->face->log,
+	            "commands have waited for longer than 2 seconds: connecting again, so that the "
+	            "broker drops those that it holds");
+	drop(b);
+	b->state = BROKER_WAITING;
+	b->next_ns = now_ns;
+}
+
+void broker_forget(struct broker *b)
+{
+	b->held = true;
+}
+
 static void connected(struct broker *b, int64_t now_ns)
 {
 	bool mqtt5 = client_mqtt5(b);
@@ -270,14 +287,21 @@ static void connected(struct broker *b, int64_t now_ns)
 
 static int read_all(struct broker *b)
 {
+	int64_t came_ns = face_came(b->face, b->fd);
 	int code = 0;
 
+	if (came_ns > b->came_ns && b->drained)
+		b->came_ns = came_ns;
 	b->drained = false;
 	for (int i = 0; !code && !b->ended && !b->drained && i < READS; i++) {
+		int64_t now_ns = ows_now();
+
 		/* a TLS library may hold more than the socket shows */
 		errno = 0;
 		code = mosquitto_loop_read(b->client, 1);
 		b->drained = errno == EAGAIN;
+		if (b->drained)
+			b->came_ns = now_ns;
 	}
 	return code;
 }
@@ -308,7 +332,9 @@ static void work(struct broker *b, short ready, int64_t now_ns)
 		connected(b, now_ns);
 	if (b->state == BROKER_CONNECTED && now_ns - b->begun_ns > good_ns(b))
 		backoff_forget(&b->backoff);
-	if (code || b->ended)
+	if (b->held)
+		begin_anew(b, now_ns);
+	else if (code || b->ended)
 		finish(b, code, err, now_ns);
 	else if (b->state == BROKER_CONNECTING && now_ns - b->begun_ns > ANSWER_NS)
 		finish(b, MOSQ_ERR_ERRNO, ETIMEDOUT, now_ns);

@@ -39,6 +39,11 @@ bool broker_is_settled(const struct broker *b, int64_t now_ns);
  * The will of another process came that had our id meanwhile: two of one node throw each other out.
  */
 void broker_taken(struct broker *b);
+/*
+ * What came was too old, so what the broker holds behind it is, too: connect again, to a session
+ * that has nothing.
+ */
+void broker_forget(struct broker *b);
 /* Try again at once, if it is not connected. */
 void broker_hurry(struct broker *b, int64_t now_ns);
 

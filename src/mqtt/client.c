@@ -149,6 +149,7 @@ static void on_message(struct mosquitto *client, void *ctx, const struct mosquit
 		/* libmosquitto puts a NUL behind it */
 		.text = got->payload ? got->payload : "",
 		.len = got->payloadlen > 0 ? (size_t)got->payloadlen : 0,
+		.came_ns = b->came_ns,
 		.retained = got->retain,
 	};
 

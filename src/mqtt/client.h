@@ -23,6 +23,7 @@ struct mosquitto;
 struct broker_message {
 	const char *topic, *text; /* NUL-terminated behind len bytes */
 	size_t len;
+	int64_t came_ns;              /* it came later than that */
 	bool retained;                /* the broker has kept it */
 	const char *fault;            /* what is wrong with it as a command; NULL: not known */
 	char person[BROKER_PERSON];   /* who sent it, as it claims; "": nothing is claimed */
@@ -57,6 +58,8 @@ struct broker {
 	bool old_protocol;   /* MQTT 3.1.1 in place of 5, as the broker wants it */
 	bool ended;          /* libmosquitto has ended it */
 	bool drained;        /* nothing is to be read any more */
+	bool held;           /* what the broker holds for us is too old */
+	int64_t came_ns;     /* what is read now came later than that */
 	int end_code;        /* why */
 	bool refusal_logged; /* that the broker refuses what is published */
 	unsigned sent;       /* CONNECTs */

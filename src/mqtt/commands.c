@@ -2,18 +2,18 @@
 /* Checks a command and hands it to owsd, or logs why not. */
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-#include "src/libows/ows.h"
+#include "src/face/command.h"
 #include "src/mqtt/commands.h"
+#include "src/mqtt/credit.h"
 #include "src/mqtt/entity.h"
-#include "src/show/names.h"
-#include "src/signal/error.h"
+#include "src/mqtt/stream.h"
 #include "src/signal/hash.h"
 #include "src/signal/value.h"
 
 #define OPEN_NS NS_PER_S
-#define COST_NS (NS_PER_S / COMMANDS_A_SECOND)
 
 void commands_tell(struct commands *c, int64_t now_ns)
 {
@@ -49,31 +49,6 @@ static void commands_refuse(struct commands *c, const char *name, const char *wh
 	}
 }
 
-static const char *why_not(int err, char words[ERROR_WORDS])
-{
-	switch (-err) {
-	case EACCES:
-		return "owsd refuses owsd-mqtt: add its user to the group owsd-control, or name it in "
-		       "ControlAllow";
-	case EROFS:
-		return "it is an input: Writable is off in the configuration";
-	case ERANGE:
-	case EINVAL:
-		return "it is no value for it, or beyond the range of its type, Min or Max";
-	case ENOENT:
-		return "there is no such signal";
-	case ENOSPC:
-	case EBUSY:
-	case EAGAIN:
-		return "too many commands or programs: try again in a second";
-	case ESTALE:
-	case ETIMEDOUT:
-		return "owsd does not answer: does it run?";
-	default:
-		return error_words(err, words);
-	}
-}
-
 /* 0, or a negative errno. */
 static int connect_owsd(struct commands *c, int64_t now_ns)
 {
@@ -91,61 +66,57 @@ static int connect_owsd(struct commands *c, int64_t now_ns)
 	return err == -ENOENT ? -ESTALE : err;
 }
 
-static int set_number(struct commands *c, int id, const struct ows_info *info, const char *text)
+/* on and off are all of a light or a cover that has a number, or nothing; else text. */
+static const char *number_of(const struct commands *c, const struct ows_info *info,
+                             const char *text, char number[VALUE_TEXT_MAX])
 {
 	const struct stream *s = c->stream;
-	enum ows_type type = (enum ows_type)info->type;
+	enum entity_kind kind;
 	double least, most;
-	int64_t value;
-	int err;
 
-	if (type != OWS_BOOL && (!strcmp(text, "on") || !strcmp(text, "off"))) {
-		enum entity_kind kind = entity_kind(info, s->class_of(s->class_ctx, info->name),
-		                                    true);
-
-		/* all of it, or nothing; another number has no such words */
-		if (kind != ENTITY_LIGHT && kind != ENTITY_COVER)
-			return -EINVAL;
-		entity_range(info, &least, &most);
-		return ows_set(c->h, id, text[1] == 'n' ? most : least, NULL);
-	}
-	err = value_parse(type, text, &value);
-	if (err)
-		return err;
-	return value_is_float(type) ? ows_set(c->h, id, value_number(type, value), NULL)
-	                            : ows_set_integer(c->h, id, value, NULL);
+	if (info->type == OWS_BOOL || (strcmp(text, "on") != 0 && strcmp(text, "off") != 0))
+		return text;
+	kind = entity_kind(info, s->class_of(s->class_ctx, info->name), true);
+	if (kind != ENTITY_LIGHT && kind != ENTITY_COVER)
+		return text;
+	entity_range(info, &least, &most);
+	value_to_text(OWS_DOUBLE, value_of_double(text[1] == 'n' ? most : least), number);
+	return number;
 }
 
-static int set(struct commands *c, const char *name, const char *text, const char *person)
+/* That of the signal, by its id. NULL: no memory. */
+static struct credit *credit_of(struct commands *c, int id)
 {
-	struct ows_daemon daemon;
-	struct ows_info info;
-	int id, err;
+	struct credit *more;
 
-	/* names and types may be others since a reload */
-	if (ows_daemon(c->h, ows_now(), &daemon) == -ESTALE)
-		return -ESTALE;
-	if (!names_info(c->h, c->instance, name, &info))
-		return -ENOENT;
-	id = ows_find(c->h, name);
-	err = id < 0 ? id : ows_for(c->h, person);
-	if (err)
-		return err;
-	return info.type == OWS_STRING ? ows_set_text(c->h, id, text, NULL)
-	                               : set_number(c, id, &info, text);
+	if (id < c->credit_count)
+		return &c->credits[id];
+	more = realloc(c->credits, (size_t)(id + 1) * sizeof(*more));
+	if (!more)
+		return NULL;
+	memset(more + c->credit_count, 0, (size_t)(id + 1 - c->credit_count) * sizeof(*more));
+	c->credits = more;
+	c->credit_count = id + 1;
+	return &c->credits[id];
 }
 
-/* Is there credit for one more? It grows with time, up to that of a burst. */
-static bool may_come(struct commands *c, int64_t now_ns)
+/* -EDQUOT: there is no credit for it. */
+static int set(struct commands *c, struct face_command *command, struct ows_info *info)
 {
-	c->credit_ns += now_ns - c->counted_ns;
-	c->counted_ns = now_ns;
-	if (c->credit_ns > COMMANDS_BURST * COST_NS)
-		c->credit_ns = COMMANDS_BURST * COST_NS;
-	if (c->credit_ns < COST_NS)
-		return false;
-	c->credit_ns -= COST_NS;
-	return true;
+	const char *given = command->text;
+	char number[VALUE_TEXT_MAX];
+	struct credit *credit;
+	int id = face_command_find(c->h, command, info), err;
+
+	if (id < 0)
+		return id;
+	credit = credit_of(c, id);
+	if (!credit || !credit_spend(credit, ows_now()))
+		return credit ? -EDQUOT : -ENOMEM;
+	command->text = number_of(c, info, given, number);
+	err = face_command_set(c->h, command, id, info, NULL);
+	command->text = given;
+	return err;
 }
 
 /* What is wrong with the message itself; NULL: nothing. */
@@ -162,48 +133,65 @@ static const char *fault_of(const struct broker_message *message)
 	return NULL;
 }
 
-void commands_take(struct commands *c, const char *name, bool known,
-                   const struct broker_message *message, const char *place, int64_t now_ns)
+/* 0, or a negative errno. */
+static int take(struct commands *c, struct face_command *command, struct ows_info *info,
+                int64_t now_ns)
 {
-	const char *why = !may_come(c, now_ns) ? "more than 50 commands in a second" : NULL;
-	char person[BROKER_PERSON], words[ERROR_WORDS];
-	int err;
+	int err = connect_owsd(c, now_ns);
 
-	if (!why)
-		why = message->fault ? message->fault : fault_of(message);
-	if (!why && !c->stream->live)
-		why = why_not(-ESTALE, words);
-	if (!why && !known)
-		why = why_not(-ENOENT, words);
-	if (why) {
-		commands_refuse(c, name, why, now_ns);
-		return;
-	}
-	snprintf(person, sizeof(person), "%.*s", BROKER_PERSON - 1,
-	         *message->person ? message->person : place);
-	err = connect_owsd(c, now_ns);
 	if (!err)
-		err = set(c, name, message->text, person);
+		err = set(c, command, info);
 	if (err == -ESTALE && c->h) {
 		/* owsd has reloaded, or was started again */
 		err = ows_reopen(c->h);
-		err = err ? -ESTALE : set(c, name, message->text, person);
+		err = err ? -ESTALE : set(c, command, info);
 	}
 	if (err == -ESTALE && c->h) {
 		commands_close(c);
 		c->open_ns = ows_now() + OPEN_NS;
 	}
+	return err;
+}
+
+int commands_take(struct commands *c, const char *name, bool known,
+                  const struct broker_message *message, const char *place, int64_t now_ns)
+{
+	const char *fault = message->fault ? message->fault : fault_of(message);
+	char person[BROKER_PERSON], words[FACE_REFUSAL];
+	struct face_command command = {.program = c->program,
+	                               .instance = c->instance,
+	                               .name = name,
+	                               .text = message->text,
+	                               .person = person,
+	                               .came_ns = message->came_ns};
+	struct ows_info info = {0};
+	int err;
+
+	if (fault) {
+		commands_refuse(c, name, fault, now_ns);
+		return -EINVAL;
+	}
+	snprintf(person, sizeof(person), "%.*s", BROKER_PERSON - 1,
+	         *message->person ? message->person : place);
+	err = !c->stream->live ? -ESTALE : !known ? -ENOENT : take(c, &command, &info, now_ns);
 	if (err) {
-		commands_refuse(c, name, why_not(err, words), now_ns);
-		return;
+		commands_refuse(c, name,
+		                err == -EDQUOT ? "more than 50 commands in a second"
+		                               : face_refusal(&command, &info, err, words),
+		                now_ns);
+		return err;
 	}
 	c->taken++;
 	c->trouble[0] = '\0';
 	log_info(c->log, "%s set to %.60s for %s", name, message->text, person);
+	return 0;
 }
 
 void commands_close(struct commands *c)
 {
 	ows_close(c->h);
 	c->h = NULL;
+	free(c->credits);
+	c->credits = NULL;
+	c->credit_count = 0;
 }

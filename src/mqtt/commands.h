@@ -12,11 +12,10 @@
 #include "src/mqtt/client.h"
 #include "src/text/log.h"
 
+struct credit;
 struct ows;
 struct stream;
 
-#define COMMANDS_A_SECOND 50
-#define COMMANDS_BURST 100
 #define COMMANDS_TEXT 1024 /* bytes of a value */
 /* Lines of the log for each cause of refusals, in COMMANDS_SPAN_NS; the others are counted */
 #define COMMANDS_LINES 10
@@ -33,10 +32,11 @@ struct commands_cause {
 struct commands {
 	struct log *log;
 	const char *instance, *program;
-	const struct stream *stream;   /* whether owsd is there, and classes of signals */
-	struct ows *h;                 /* NULL: not connected */
-	int64_t open_ns;               /* when it may be tried again */
-	int64_t counted_ns, credit_ns; /* what may come at once */
+	const struct stream *stream; /* whether owsd is there, and classes of signals */
+	struct ows *h;               /* NULL: not connected */
+	int64_t open_ns;             /* when it may be tried again */
+	struct credit *credits;      /* by ids of h */
+	int credit_count;
 	struct commands_cause causes[COMMANDS_CAUSES]; /* by a hash of their words */
 	uint64_t taken, refused;
 	char trouble[BROKER_WORDS]; /* the last refusal, and what to do */
@@ -45,10 +45,10 @@ struct commands {
 /*
  * The command of a message for the signal name; known: it is one of those that are published.
  * place: for whom, if the message does not name one. Waits for owsd when it connects, two seconds
- * at most, once a second.
+ * at most, once a second. 0, or why it was refused; -ETIME: it may be too old.
  */
-void commands_take(struct commands *c, const char *name, bool known,
-                   const struct broker_message *message, const char *place, int64_t now_ns);
+int commands_take(struct commands *c, const char *name, bool known,
+                  const struct broker_message *message, const char *place, int64_t now_ns);
 /* Log how many refusals had no line, for each cause whose span is over by now. */
 void commands_tell(struct commands *c, int64_t now_ns);
 void commands_close(struct commands *c);

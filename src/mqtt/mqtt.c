@@ -93,7 +93,8 @@ static void mqtt_command(struct mqtt *m, const char *name, bool known,
 	if (!m->options.write)
 		one.fault = "Write is off in the block Mqtt: set it to on there, and reload owsd";
 	snprintf(place, sizeof(place), "mqtt:%s", m->options.ways[m->broker.way].host);
-	commands_take(&m->commands, name, known, &one, place, ows_now());
+	if (commands_take(&m->commands, name, known, &one, place, ows_now()) == -ETIME)
+		broker_forget(&m->broker);
 }
 
 /* A message that has commands, and who takes them. */
@@ -345,7 +346,7 @@ static void look_at_clock(struct face *face, int64_t now_ns)
 	bool before = m->stream.clock_set;
 
 	wall_clock_look(&m->clock, now_ns);
-	m->past.dated = m->clock.trusted;
+	m->past.dated = m->stream.clock_right = m->clock.trusted;
 	m->stream.clock_set = m->clock.trusted || now_ns >= CLOCK_WAIT_NS;
 	/* where a message has to have a time it had a wrong one */
 	if (m->stream.clock_set && !before && m->stream.live && m->stream.profile->session)

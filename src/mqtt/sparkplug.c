@@ -37,6 +37,7 @@ enum { GOOD = 192, BAD = 0, STALE = 500 };
 #define ALIAS_BITS 20
 #define COMMAND_MOST 65536 /* bytes of a message */
 #define COMMANDS_MOST 100
+#define STAMP_OLD_MS 60000 /* of a command */
 
 /* --- Payloads -------------------------------------------------------------------------------- */
 
@@ -730,7 +731,16 @@ static const struct row *row_of(const struct stream *s, const Spb__Metric *metri
 	return NULL;
 }
 
-static void sparkplug_command(const struct stream *s, const Spb__Metric *metric, int chip,
+/* By the clock of the sender, which counts where ours is right; one that is ahead is wrong. */
+static bool is_old(const struct stream *s, bool stamped, uint64_t stamp_ms)
+{
+	uint64_t now_ms = ms_of(when_now().wall);
+
+	return s->clock_right && stamped && stamp_ms < now_ms && now_ms - stamp_ms > STAMP_OLD_MS;
+}
+
+/* old: the message is. */
+static void sparkplug_command(const struct stream *s, const Spb__Metric *metric, int chip, bool old,
                               stream_take *take, void *ctx)
 {
 	const struct row *row = row_of(s, metric, chip);
@@ -745,9 +755,11 @@ static void sparkplug_command(const struct stream *s, const Spb__Metric *metric,
 	}
 	text = text_of(metric, row->info.type, buffer);
 	take(ctx, row->info.name, text ? text : "",
-	     metric->has_is_null && metric->is_null ? "it is null"
-	     : text                                 ? NULL
-	                                            : "its datatype is not that of the birth");
+	     old || is_old(s, metric->has_timestamp, metric->timestamp)
+	             ? "its time stamp is more than a minute old: look at the clock of the sender"
+	     : metric->has_is_null && metric->is_null ? "it is null"
+	     : text                                   ? NULL
+	                                              : "its datatype is not that of the birth");
 }
 
 static bool take_all(struct stream *s, const char *topic, const char *text, size_t len,
@@ -780,6 +792,7 @@ static bool take_all(struct stream *s, const char *topic, const char *text, size
 			                  chip     ? (int)(chip - s->chips)
 			                  : device ? s->chip_count /* none has that */
 			                           : -1,
+			                  is_old(s, payload->has_timestamp, payload->timestamp),
 			                  take, ctx);
 	}
 	spb__payload__free_unpacked(payload, NULL);

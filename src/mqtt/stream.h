@@ -133,6 +133,7 @@ struct stream {
 	char *health;   /* as it was published last */
 	int64_t numbers[HEALTH_NUMBERS]; /* the same, of a session */
 	bool clock_set;                  /* wall-clock times can be believed */
+	bool clock_right;                /* they are those of others, too: it is synchronised */
 	uint64_t described;              /* by homie5: a hash of the description, */
 	int64_t description;             /* and its version */
 	/*

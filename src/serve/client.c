@@ -79,6 +79,7 @@ void client_open(struct serve *s, int fd, const struct listener *from,
 	if (!c->network)
 		setsockopt(fd, SOL_SOCKET, SO_OOBINLINE, &one, sizeof(one));
 	c->readable = true;
+	c->came_ns = from->came_ns;
 	c->need = FRAME_HEADER;
 	c->area = s->areas + (size_t)index * AREA_SIZE;
 	c->out_len = c->out_at = 0;
@@ -237,8 +238,11 @@ void client_event(struct serve *s, struct client *c, uint32_t events)
 		return;
 	}
 	c->ended |= (events & EPOLLRDHUP) != 0;
-	if (events & (EPOLLIN | EPOLLRDHUP))
+	if (events & (EPOLLIN | EPOLLRDHUP)) {
+		if (!c->readable)
+			c->came_ns = s->came_ns;
 		c->readable = true;
+	}
 	if (c->state == CLIENT_SENDING ? events & EPOLLOUT
 	                               : c->state == CLIENT_READING && c->readable)
 		client_ready(s, c);
@@ -379,13 +383,17 @@ static bool client_receive(struct serve *s, struct client *c)
 	while (n == -EINTR);
 	if (n == -EAGAIN) {
 		c->readable = false;
+		c->came_ns = s->now_ns;
 		return true;
 	}
 	if (n <= 0)
 		return false;
+	c->given_ns = c->came_ns;
 	/* the end of the stream, after these bytes, has no event of its own */
-	if ((size_t)n < room && !c->ended)
+	if ((size_t)n < room && !c->ended) {
 		c->readable = false;
+		c->came_ns = s->now_ns;
+	}
 	if (!c->have)
 		client_enter(s, c, CLIENT_READING);
 	c->have += (size_t)n;

@@ -133,6 +133,8 @@ static void take_events(struct serve *s, const struct epoll_event *events, int n
 			client_event(s, &s->clients[who], events[i].events);
 		if (who <= WAKE_EVENT)
 			continue;
+		if (!(s->waiting >> (who - WAKE_EVENT - 1) & 1))
+			s->listeners[who - WAKE_EVENT - 1].came_ns = s->came_ns;
 		s->waiting |= (uint32_t)1 << (who - WAKE_EVENT - 1);
 		s->accepting = true;
 	}
@@ -197,7 +199,7 @@ static int wait_ms(struct serve *s)
 		return 0;
 	if (s->away_count && left > PORTER_NS)
 		left = PORTER_NS;
-	return left > NS_PER_MS * 60000 ? 60000 : (int)((left + NS_PER_MS - 1) / NS_PER_MS);
+	return left > NS_PER_MS * LOOK_MS ? LOOK_MS : (int)((left + NS_PER_MS - 1) / NS_PER_MS);
 }
 
 static void take_next(struct serve *s)
@@ -232,6 +234,7 @@ static bool asks_again(struct serve *s)
 static int serve_wait(struct serve *s, struct epoll_event *events)
 {
 	int wait = wait_ms(s), n;
+	int64_t asked_ns;
 
 	if (wait && s->again++ < AGAIN_MOST && asks_again(s))
 		return 0;
@@ -239,7 +242,12 @@ static int serve_wait(struct serve *s, struct epoll_event *events)
 	wait = wait_ms(s);
 	if (wait && !guests_sleep(&s->guests))
 		wait = 0;
+	asked_ns = ows_now();
 	n = epoll_wait(s->epoll_fd, events, EVENTS, wait);
+	s->came_ns = s->asked_ns;
+	/* what was not reported comes from now on, if it did not stop between that and the clock */
+	if (n >= 0 && n < EVENTS)
+		s->asked_ns = ows_now() - asked_ns > WRITE_OLD_NS ? asked_ns : ows_now();
 	if (wait)
 		guests_awake(&s->guests);
 	return n;
@@ -283,7 +291,7 @@ int serve_start(struct serve *s, const struct image *image)
 	int err;
 
 	s->image = image;
-	s->now_ns = ows_now();
+	s->now_ns = s->asked_ns = s->came_ns = ows_now();
 	s->look_ns = INT64_MAX;
 	s->kept = kept_create(s->config);
 	err = s->kept ? signals_open(s->place, s->instance, &s->signals) : -ENOMEM;

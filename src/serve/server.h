@@ -29,6 +29,10 @@
 #define ANSWER_NS (60 * NS_PER_S) /* until the client has taken the whole answer */
 #define APPLY_NS (10 * NS_PER_S)  /* until the bus has a commanded output */
 #define APPLY_LOOK_NS (10 * NS_PER_MS)
+/* A write that may have waited for longer, for this program or in its queues, is refused. */
+#define WRITE_OLD_NS (2 * NS_PER_S)
+/* The server sleeps no longer, so as to see when it did not run: while no request is there. */
+#define LOOK_MS 500
 
 /*
  * The area of a connection: the request, and after it the answer. Pages that are not touched cost
@@ -77,6 +81,8 @@ struct client {
 	int32_t worst;            /* the result of the targets so far; 1: none has answered yet */
 	int64_t since_ns;         /* when the state began; READING: when the first byte came */
 	int64_t tick_ns;          /* the time of the last progress, or of the last keep-alive */
+	int64_t came_ns;          /* the bytes that are not yet read came later than that */
+	int64_t given_ns;         /* those that were read last did */
 	int64_t active_ns; /* when the connection began, or the last request other than NOP ended */
 	uint64_t served;   /* requests that were answered */
 
@@ -106,7 +112,7 @@ struct client {
 	X(full)           /* connections that had to wait for a place */ \
 	X(not_kept)       /* closed after an answer, because others waited */ \
 	X(refused_peers)  /* peers that are not in ListenAllow */ \
-	X(refused_writes) /* writes refused in read-only mode, or by ControlAllow */ \
+	X(refused_writes) /* writes refused in read-only mode, by ControlAllow, or as too old */ \
 	X(came_round)     /* requests that came here before, by way of other servers */ \
 	X(evicted)        /* idle clients closed because others waited */ \
 	X(refused_errors) /* closed at once, because the kernel lacked something */ \
@@ -148,6 +154,7 @@ struct serve {
 	struct listener {
 		int fd;
 		bool network, own; /* own: NAME.sock in the directory of owsd's files */
+		int64_t came_ns;   /* who waits there came later than that */
 	} listeners[SERVER_LISTENERS];
 	unsigned listener_count, listener_at; /* listener_at: the one that accepts first */
 	uint32_t waiting; /* listeners that may have connections, one bit each */
@@ -165,7 +172,8 @@ struct serve {
 	bool running;
 	uint32_t stop;
 	int64_t now_ns;
-	int64_t look_ns; /* the earliest time limit of all clients */
+	int64_t came_ns, asked_ns; /* what epoll reports now came later; will report next */
+	int64_t look_ns;           /* the earliest time limit of all clients */
 
 	uint8_t *areas;
 	struct directory *directories;

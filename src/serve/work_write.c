@@ -142,6 +142,12 @@ void work_write(struct serve *s, struct client *c)
 		work_write_refuse(s, c);
 		return;
 	}
+	if (ows_now() - c->given_ns > WRITE_OLD_NS) {
+		client_refused(s, COUNT_refused_writes, &s->error_rate,
+		               "a write may have waited for longer than 2 seconds");
+		answer_code(s, c, CODE_TOO_OLD);
+		return;
+	}
 	c->request.data_len = (uint32_t)c->request.size;
 	if (work_is_directory(node)) {
 		work_refuse_directory(s, c);

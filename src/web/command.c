@@ -4,25 +4,24 @@
 #include <microhttpd.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
 
 #include "hal/base/time.h"
+#include "src/face/command.h"
 #include "src/show/json.h"
-#include "src/show/names.h"
-#include "src/signal/error.h"
-#include "src/signal/value.h"
 #include "src/web/body.h"
 #include "src/web/guard.h"
 #include "src/web/http.h"
 #include "src/web/paths.h"
 
-#define WAIT_NS (5 * NS_PER_S)  /* for the commands before it */
 #define CONFIRM_NS NS_PER_S     /* so long a page waits for the bus */
 #define TAKEN_NS (2 * NS_PER_S) /* and for owsd */
 
 struct order {
 	struct job job;
 	char instance[128], person[PERSON];
-	int64_t given_ns;
+	int64_t came_ns;
+	int fd; /* of the request */
 	struct body body;
 	struct ows *h;
 	int id;
@@ -41,70 +40,70 @@ static void command_answer(struct order *order, const char *result)
 	json_finish(&json);
 }
 
-static void command_refuse(struct order *order, int err)
+static struct face_command command_of(const struct order *order)
 {
 	const struct body_member *value = body_find(&order->body, "value");
-	const char *name = body_string(&order->body, "name");
-	char words[ERROR_WORDS];
 
+	return (struct face_command){
+		.program = "owsd-web",
+		.instance = order->instance,
+		.name = body_string(&order->body, "name"),
+		.text = value && value->kind != BODY_NULL ? value->text : NULL,
+		.person = order->person,
+		.came_ns = order->came_ns,
+	};
+}
+
+static unsigned status_of(int err)
+{
 	switch (-err) {
 	case EACCES:
-		job_error(
-			&order->job, 403,
-			"%s: owsd refuses owsd-web: add its user to the group owsd-control, or name "
-			"it in ControlAllow",
-			name);
-		break;
 	case EROFS:
-		job_error(&order->job, 403, "%s is an input: Writable is off in the configuration",
-		          name);
-		break;
+		return 403;
 	case ERANGE:
 	case EINVAL:
-		job_error(&order->job, 400,
-		          "%s: %s is no value for it, or beyond the range of its type, Min or Max",
-		          name, value ? value->text : "that");
-		break;
 	case EOPNOTSUPP:
-		job_error(&order->job, 400, "%s has no limit alarms", name);
-		break;
+		return 400;
 	case ENOENT:
-		job_error(&order->job, 404, "there is no signal %s", name);
-		break;
+		return 404;
 	case ENOSPC:
 	case EBUSY:
 	case EAGAIN:
-		job_error(&order->job, 503, "%s: too many commands: try again in a second", name);
-		break;
+	case ETIME:
 	case ESTALE:
 	case ETIMEDOUT:
-		job_error(&order->job, 503, "%s: owsd does not answer: does it run?", name);
-		break;
+		return 503;
 	default:
-		job_error(&order->job, 500, "%s: %s", name, error_words(err, words));
+		return 500;
 	}
+}
+
+static void command_refuse(struct order *order, int err)
+{
+	struct face_command command = command_of(order);
+	char words[FACE_REFUSAL];
+
+	job_error(&order->job, status_of(err), "%s: %s", command.name,
+	          err == -EOPNOTSUPP ? "it has no limit alarms"
+	                             : face_refusal(&command, &order->info, err, words));
 }
 
 /* Connect, and find the signal. False after answering. */
 static bool command_begin(struct order *order)
 {
-	const char *name = body_string(&order->body, "name");
+	struct face_command command = command_of(order);
 	int err;
 
-	/* whoever gave it has given it up: nothing may move a minute later */
-	if (ows_now() - order->given_ns > WAIT_NS) {
-		job_error(&order->job, 503, "%s: not set: too many commands wait", name);
+	/* whoever gave it has given it up; the connection lasts as long as the job */
+	if (recv(order->fd, &(char){0}, 1, MSG_PEEK | MSG_DONTWAIT) == 0) {
+		job_error(&order->job, 503, "%s: not set: the client has hung up", command.name);
 		return false;
 	}
 	err = ows_open_as(order->instance, OWS_CONTROL, "owsd-web", &order->h);
 	if (err == -ENOENT)
 		err = -ESTALE; /* of owsd, not of the name */
-	if (!err)
-		err = ows_for(order->h, order->person);
-	if (!err && !names_info(order->h, order->instance, name, &order->info))
-		err = -ENOENT;
 	if (!err) {
-		order->id = ows_find(order->h, name);
+		order->id = face_command_find(order->h, &command, &order->info);
 		err = order->id < 0 ? order->id : 0;
 	}
 	if (err)
@@ -114,35 +113,17 @@ static bool command_begin(struct order *order)
 
 /* --- Values ---------------------------------------------------------------------------------- */
 
-static int command_put(struct order *order, uint32_t *stamp)
-{
-	const struct body_member *value = body_find(&order->body, "value");
-	enum ows_type type = (enum ows_type)order->info.type;
-	int64_t number;
-	int err;
-
-	if (!value || value->kind == BODY_NULL)
-		return -EINVAL;
-	if (type == OWS_STRING)
-		return ows_set_text(order->h, order->id, value->text, stamp);
-	err = value_parse(type, value->text, &number);
-	if (err)
-		return err;
-	if (value_is_float(type))
-		return ows_set(order->h, order->id, value_number(type, number), stamp);
-	return ows_set_integer(order->h, order->id, number, stamp);
-}
-
 static void run_set(struct job *job)
 {
 	struct order *order = (struct order *)job;
 	int64_t until_ns = ows_now() + CONFIRM_NS;
+	struct face_command given = command_of(order);
 	struct ows_command command = {0};
 	uint32_t stamp = 0, news = 0;
 	int err;
 
 	if (command_begin(order)) {
-		err = command_put(order, &stamp);
+		err = face_command_set(order->h, &given, order->id, &order->info, &stamp);
 		while (!err && ows_now() < until_ns) {
 			err = ows_command(order->h, order->id, &command);
 			if (err || (int32_t)(command.applied - stamp) >= 0)
@@ -248,7 +229,8 @@ static int command_give(struct request *request, void (*run)(struct job *job),
 
 	if (!order)
 		return MHD_NO;
-	order->given_ns = ows_now();
+	order->came_ns = request->came_ns;
+	order->fd = http_descriptor(request);
 	snprintf(order->instance, sizeof(order->instance), "%s",
 	         request->web->face->arguments->instance);
 	if (!may(request, order, &result)) {

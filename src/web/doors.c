@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "hal/base/time.h"
+#include "src/libows/ows.h"
 #include "src/service/streams.h"
 #include "src/web/doors.h"
 #include "src/web/head.h"
@@ -24,6 +25,7 @@ struct visitor {
 	bool used; /* the place; fd counts then */
 	int fd;
 	int64_t until_ns;
+	int64_t came_ns, watched_ns; /* what it has sent came later; it is watched since then */
 	socklen_t len;
 	struct sockaddr_storage address;
 };
@@ -182,6 +184,8 @@ static void admit(struct doors *doors, struct visitor *visitor)
 {
 	int fd = visitor->fd;
 
+	/* has epoll had nothing of it since it is watched? */
+	doors->head_ns = doors->came_ns > visitor->watched_ns ? doors->came_ns : visitor->came_ns;
 	let_go(doors, visitor, true);
 	doors->welcome(doors->ctx, fd, (const struct sockaddr *)&visitor->address, visitor->len);
 }
@@ -229,6 +233,8 @@ static void welcome(struct doors *doors, const struct visitor *new, int64_t now_
 	}
 	doors->visitors[i] = *new;
 	doors->visitors[i].until_ns = now_ns + DOORS_IDLE_S * NS_PER_S;
+	doors->visitors[i].came_ns = doors->came_ns;
+	doors->visitors[i].watched_ns = ows_now();
 	doors->visitor_count++;
 }
 
@@ -248,7 +254,8 @@ static void bound(int fd)
 	setsockopt(fd, SOL_SOCKET, SO_SNDBUF, &size, sizeof(size));
 }
 
-static void accept_some(struct doors *doors, int door, int64_t now_ns)
+/* True: nobody waits there any more. */
+static bool accept_some(struct doors *doors, int door, int64_t now_ns)
 {
 	for (int i = 0; i < BATCH; i++) {
 		struct visitor new = {.used = true, .len = sizeof(new.address)};
@@ -259,10 +266,11 @@ static void accept_some(struct doors *doors, int door, int64_t now_ns)
 		    (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM))
 			pause_doors(doors, now_ns);
 		if (new.fd < 0)
-			return;
+			return errno == EAGAIN;
 		bound(new.fd);
 		welcome(doors, &new, now_ns);
 	}
+	return false;
 }
 
 static void end_late(struct doors *doors, int64_t now_ns)
@@ -280,17 +288,21 @@ static void end_late(struct doors *doors, int64_t now_ns)
 void doors_take(struct doors *doors, int64_t now_ns)
 {
 	struct epoll_event events[BATCH];
+	int64_t began_ns = ows_now();
 	int n = epoll_wait(doors->epoll, events, BATCH, 0);
+	bool all = n < BATCH;
 
 	for (int i = 0; i < n; i++) {
 		unsigned number = events[i].data.u32;
 
 		if (number < DOORS)
-			accept_some(doors, doors->fds[number], now_ns);
+			all &= accept_some(doors, doors->fds[number], now_ns);
 		else if (doors->visitors[number - DOORS].used)
 			look_at(doors, &doors->visitors[number - DOORS],
 			        events[i].events & (EPOLLRDHUP | EPOLLHUP | EPOLLERR));
 	}
+	if (all)
+		doors->came_ns = began_ns;
 	if (now_ns >= doors_next(doors))
 		end_late(doors, now_ns);
 	if (doors->paused_ns && now_ns >= doors->paused_ns) {

@@ -19,7 +19,9 @@ struct log;
 struct visitor;
 
 struct doors {
-	int epoll; /* readable when doors_take() has something to do; -1: not open */
+	int64_t came_ns; /* what epoll reports now came later than that */
+	int64_t head_ns; /* and the head of the visitor who is let in */
+	int epoll;       /* readable when doors_take() has something to do; -1: not open */
 	int fds[DOORS];
 	unsigned count;
 	struct visitor *visitors; /* DOORS_CONNECTIONS */

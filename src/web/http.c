@@ -230,6 +230,32 @@ static void expect_body(struct request *request, const char *url)
 	posted_begin(&request->posted, size, &request->web->large, may, ows_now());
 }
 
+/* Notes when who begins a connection may have sent its head, until its end. */
+static void meet(void *cls, struct MHD_Connection *connection, void **own,
+                 enum MHD_ConnectionNotificationCode code)
+{
+	const struct web *web = cls;
+	int64_t *came_ns;
+
+	(void)connection;
+	if (code == MHD_CONNECTION_NOTIFY_CLOSED) {
+		free(*own);
+		return;
+	}
+	came_ns = malloc(sizeof(*came_ns));
+	if (came_ns)
+		*came_ns = web->doors.head_ns;
+	*own = came_ns;
+}
+
+static int64_t came(struct MHD_Connection *connection)
+{
+	const union MHD_ConnectionInfo *info = MHD_get_connection_info(
+		connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
+
+	return info && info->socket_context ? *(const int64_t *)info->socket_context : 0;
+}
+
 static enum MHD_Result handle(void *cls, struct MHD_Connection *connection, const char *url,
                               const char *method, const char *version, const char *data,
                               size_t *size, void **own)
@@ -246,6 +272,7 @@ static enum MHD_Result handle(void *cls, struct MHD_Connection *connection, cons
 			return MHD_NO;
 		request->web = cls;
 		request->connection = connection;
+		request->came_ns = came(connection);
 		*own = request;
 		/* libmicrohttpd leaves out the body */
 		request->head = strcmp(method, "HEAD") == 0;
@@ -315,7 +342,7 @@ int http_open(struct web *web)
 		MHD_OPTION_PER_IP_CONNECTION_LIMIT, (unsigned)DOORS_PER_PEER,
 		MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)DOORS_IDLE_S,
 		MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)MEMORY, MHD_OPTION_NOTIFY_COMPLETED,
-		completed, NULL, MHD_OPTION_END);
+		completed, NULL, MHD_OPTION_NOTIFY_CONNECTION, meet, web, MHD_OPTION_END);
 	if (!web->daemon)
 		return -ENOMEM;
 	info = MHD_get_daemon_info(web->daemon, MHD_DAEMON_INFO_EPOLL_FD);

@@ -22,6 +22,7 @@ struct request {
 	struct job *job; /* that makes the answer; NULL: none was given */
 	bool answered;   /* the job is done */
 	bool head;       /* the head of the answer is asked for alone */
+	int64_t came_ns; /* it came later than that */
 	size_t held;     /* bytes of the answer that count in web->held */
 	struct posted posted;
 };

@@ -277,6 +277,15 @@ static void owsd_web_find(struct web *web)
 		web->ids[i] = id_of(web->face->ows, i);
 }
 
+static void open_door(struct web *web)
+{
+	int64_t came_ns = face_came(web->face, web->doors.epoll);
+
+	if (came_ns > web->doors.came_ns)
+		web->doors.came_ns = came_ns;
+	doors_take(&web->doors, ows_now());
+}
+
 static void event(struct face *face, const struct face_event *event)
 {
 	struct web *web = face->own;
@@ -308,7 +317,7 @@ static void event(struct face *face, const struct face_event *event)
 			http_done(web->scans);
 		}
 		if (event->fd == web->doors.epoll)
-			doors_take(&web->doors, ows_now());
+			open_door(web);
 		owsd_web_run(web);
 		return;
 	}
@@ -321,7 +330,7 @@ static void tick(struct face *face, int64_t now_ns)
 	struct web *web = face->own;
 
 	if (now_ns >= doors_next(&web->doors))
-		doors_take(&web->doors, now_ns);
+		open_door(web);
 	owsd_web_run(web);
 }
 

@@ -3,9 +3,11 @@
 """Commands from the broker: those that may come have their effect and their name in the journal, and
 of all others nothing is left but a line of the log."""
 
+import contextlib
 import re
 import signal
 import subprocess
+import threading
 
 import owsdtest
 from mqtthouse import RELAY, ROOM, SWITCH, House, item, program
@@ -86,8 +88,9 @@ def test_what_is_no_command_is_a_line_of_the_log_and_nothing_else(scene):
     health = house.arrives("health", lambda m: m["commands"] + m["commands_refused"] == len(cases))
     assert health["commands"] == 0, health
     assert "it is empty" in health["trouble"], health
-    assert "command to relay refused: it is no value" in house.face.log(), house.face.log()
+    assert "command to relay refused: \"toggle\" is no value for it: expected 0 or 1" in house.face.log(), house.face.log()
     # nobody has to guess which of them was refused
+    assert "command to dial refused: \"201\" is no value for it: expected 0 to 200" in house.face.log(), house.face.log()
     until(lambda: house.face.log().count(" refused: ") == len(cases), 20, lambda: house.face.log())
     assert scene.get(house.daemon, "dial") == "7" and "owsd-mqtt" not in journal(house)
     assert "relay_WriteEnable" not in scene.owsctl(house.daemon, "journal").stdout
@@ -133,6 +136,42 @@ def test_a_flood_is_cut_and_logged_in_a_few_lines(scene):
     assert house.face.stop() == 0
     others = re.search(r"more than 50 commands in a second \((\d+) times since the last such line\)", house.face.log())
     assert others and house.face.log().count(" refused: ") - 1 + int(others[1]) == refused, house.face.log()
+
+
+@contextlib.contextmanager
+def flood(house, *topics):
+    """Some 2000 commands a second to each of these, of other clients, as long as it lasts."""
+    sender = [program("mosquitto_pub"), "-p", str(house.broker.port), "-q", "0", "-l", "-t"]
+    clients = [subprocess.Popen([*sender, topic], stdin=subprocess.PIPE) for topic in topics]
+    done = threading.Event()
+
+    def send():
+        while not done.wait(0.01):
+            for client in clients:
+                client.stdin.write(b"1\n" * 20)
+                client.stdin.flush()
+    thread = threading.Thread(target=send)
+    thread.start()
+    try:
+        yield
+    finally:
+        done.set()
+        thread.join()
+        for client in clients:
+            client.stdin.close()
+            client.wait(owsdtest.PATIENCE)
+
+
+def test_a_flood_of_others_starves_no_command(scene):
+    house = ready(scene, ROOM, DIAL, RELAY)
+    house.set("relay", 0)
+    with flood(house, "owsd/pi7/nosuch/set", "owsd/pi7/relay/set"):
+        logged(house.face, "command to nosuch refused: there is no such signal")
+        logged(house.face, "command to relay refused: more than 50 commands in a second")
+        for n in range(1, 31):
+            command(house, "dial", str(n))
+            house.arrives("dial", lambda m, n=n: m["v"] == n)
+    assert "command to dial refused" not in house.face.log()
 
 
 def test_commands_go_on_after_a_reload_and_a_restart_of_owsd(scene):

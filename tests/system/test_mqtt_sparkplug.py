@@ -244,7 +244,7 @@ def test_commands_go_the_way_of_all_commands(scene):
         (there, (relay, "DOUBLE", 1.0), "command to relay refused: its datatype is not that of the birth"),
         (there, ("relay", "STRING", "1"), "command to relay refused: its datatype is not that of the birth"),
         (there, ("relay", "BOOLEAN", None), "command to relay refused: it is null"),
-        (there, ("dial", "UINT8", 201), "command to dial refused: it is no value for it, or beyond"),
+        (there, ("dial", "UINT8", 201), "command to dial refused: \"201\" is no value for it: expected 0 to 200"),
         (there, (relay + 77, "BOOLEAN", True), f"command to alias {relay + 77} refused: the last birth has no such"),
         (there, ("room", "DOUBLE", 1.0), "command to room refused: the last birth has no such metric there"),
         ("NCMD/pi7", ("relay", "BOOLEAN", True), "command to relay refused: the last birth has no such metric there"),
