@@ -100,7 +100,7 @@ static void print_reasons(struct live *live, const struct rows *rows, char *cons
 		if (state.shelved)
 			print_shelved(live, rows->row[i].name, &state);
 		reading_get(live->h, rows->row[i].id, live->now.boot, live->reading);
-		/* the journal has it beside the alarms; the table above has what can be acknowledged */
+		/* the journal has it; the table above has only what can be acknowledged */
 		if (reading_filled(live->reading) &&
 		    live->reading->value.quality == OWS_Q_DIFFERS) {
 			snprintf(line, sizeof(line), "%s: %s: owsctl list shows what it reads",
