@@ -57,15 +57,25 @@ static bool gives_nothing(const struct engine *e, const struct signal *failed)
 	return true;
 }
 
-/*
- * How many failures the signal forgives: none where its bus has looked for the device, and lost it.
- */
+/* Does the error say no more than what is known, by the signals of the device or by its bus? */
+static bool is_known_absent(const struct engine *e, const struct signal *s, int err)
+{
+	return err == -ENODEV && s->device != TABLE_NO_DEVICE && e->table.devices[s->device].absent;
+}
+
+/* How many failures the signal forgives: none where the device is known to be absent. */
 static unsigned retries_of(const struct engine *e, const struct signal *s, int err)
 {
-	bool lost = err == -ENODEV && s->device != TABLE_NO_DEVICE &&
-	            e->table.devices[s->device].absent;
+	return is_known_absent(e, s, err) ? 0 : e->config->max_retries;
+}
 
-	return lost ? 0 : e->config->max_retries;
+/* A device that stays absent is one fault, however often it is looked for. */
+static void count_failure(struct engine *e, struct lane *lane, const struct signal *s, int err)
+{
+	if (is_known_absent(e, s, err) || (err == -ENODEV && s->sample.quality == OWS_Q_NO_DEVICE))
+		return;
+	lane->counters.item_errors++;
+	engine_facts_failed(e, s);
 }
 
 /*
@@ -85,8 +95,7 @@ int64_t engine_read_failed(struct engine *e, struct lane *lane, struct signal *s
 	uint8_t quality = failure_quality(err);
 	int64_t wait_ns;
 
-	lane->counters.item_errors++;
-	engine_facts_failed(e, s);
+	count_failure(e, lane, s, err);
 	s->sample.err = err;
 	if (!retry_fail(&s->read.retry, retries_of(e, s, err), &wait_ns))
 		return 0;
@@ -107,8 +116,7 @@ static int64_t fail_write(struct engine *e, struct lane *lane, struct signal *s,
 	uint8_t quality = failure_quality(err);
 	int64_t wait_ns;
 
-	lane->counters.item_errors++;
-	engine_facts_failed(e, s);
+	count_failure(e, lane, s, err);
 	s->command.err = err;
 	if (!retry_fail(&s->command.retry, e->config->max_retries, &wait_ns))
 		return 0;

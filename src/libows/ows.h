@@ -435,7 +435,8 @@ struct ows_device {
 	int target;         /* which answered last, for ows_target(); -1: none */
 	uint32_t power;     /* enum ows_power */
 	uint64_t answers;   /* requests that its target answered, if only with an error */
-	uint64_t errors;    /* requests that failed, those without an answer too */
+	/* Requests that failed, without an answer too; not of a device known to be absent */
+	uint64_t errors;
 	uint64_t retries;   /* how often the target did it again after an error */
 	uint64_t wire_us;   /* what the requests took of the wire; without what served several */
 	int64_t ok_ns;      /* last good answer; 0: none */

@@ -48,6 +48,29 @@ def test_nothing_is_published_while_nothing_changes(scene):
     assert house.listener.all("owsd/pi7/room") == before
 
 
+def test_health_of_a_plant_with_an_absent_chip_is_still(scene):
+    """Also of one with an alarm that cannot be armed, an output that cannot be written, an alias."""
+    house = House(scene, ROOM, RELAY, ABSENT,
+                  item("away", "/29.FFFFFFFFFFFF/PIO.0", "bool", "output", InitValue=1),
+                  item("latch", "/29.FFFFFFFFFFFE/sensed.0", "bool", Alarm=raw("on"), LatchAlarm="latch.BYTE", PorAlarm="por",
+                       SetAlarm="set_alarm=133333333", ResetLatch="latch.BYTE=0"),
+                  top={"PerFactor": 1})
+    for name in ("absent", "away", "latch"):
+        house.arrives(name, lambda m: m["q"] != 0x20 and not m["good"])
+
+    def errors():
+        """All counters of errors that are not 0."""
+        lines = house.scene.owsctl(house.daemon, "metrics").stdout.splitlines()
+        return {line for line in lines if line.startswith("ows_") and "error" in line.split("}")[0] and line[-2:] != " 0"}
+
+    before = owsdtest.settled(errors, times=60)
+    assert any("ows_device_errors_total" in line for line in before), before
+    health = len(house.listener.all("owsd/pi7/health"))
+    owsdtest.worked(house.daemon.name, 12)
+    assert errors() == before, errors() ^ before
+    assert len(house.listener.all("owsd/pi7/health")) <= health + 1, house.listener.all("owsd/pi7/health")
+
+
 def test_a_killed_owsd_mqtt_leaves_its_will_and_an_ended_one_says_so(scene):
     house = House(scene)
     house.says(STATE, "online")

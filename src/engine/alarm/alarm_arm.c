@@ -53,7 +53,8 @@ static void count_unarmed(struct lane *lane, struct alarm_item *i, int err, cons
 	struct engine *e = lane->engine;
 	int64_t wait_ns;
 
-	lane->counters.item_errors++;
+	if (err != -ENODEV || !e->table.devices[i->device].absent)
+		lane->counters.item_errors++;
 	if (!retry_fail(&i->arming.retry, e->config->max_retries, &wait_ns))
 		return;
 	i->arming.not_before_ns = e->time.now_ns + wait_ns;

@@ -96,6 +96,38 @@ static void test_an_error_is_that_of_its_device(void)
 	TEST_ASSERT_EQUAL_UINT64(0, scene_device(&s, RELAYS).errors);
 }
 
+static void test_a_device_that_stays_absent_is_counted_until_it_is_known_to_be(void)
+{
+	uint64_t errors, answers;
+
+	begin();
+	scene_run(&s, SCENE_S);
+	scene_put(&s, "/28.551DDF030000/temperature", "", -ENODEV);
+	scene_put(&s, "/28.551DDF030000/power", "", -ENODEV);
+	scene_run(&s, 5 * SCENE_S);
+	errors = scene_device(&s, SENSOR).errors;
+	answers = scene_device(&s, SENSOR).answers;
+	TEST_ASSERT_GREATER_THAN_UINT64(0, errors);
+	TEST_ASSERT_EQUAL_UINT64(errors, scene_counter_of(&s, 0, "item_errors"));
+	scene_run(&s, 600 * SCENE_S);
+	TEST_ASSERT_GREATER_THAN_UINT64(answers, scene_device(&s, SENSOR).answers);
+	TEST_ASSERT_EQUAL_UINT64(errors, scene_device(&s, SENSOR).errors);
+	TEST_ASSERT_EQUAL_UINT64(errors, scene_counter_of(&s, 0, "item_errors"));
+	/* another error of it says something new */
+	scene_put(&s, "/28.551DDF030000/temperature", "", -EIO);
+	scene_run(&s, 60 * SCENE_S);
+	TEST_ASSERT_GREATER_THAN_UINT64(errors, scene_device(&s, SENSOR).errors);
+	/* and so does its next absence */
+	scene_put(&s, "/28.551DDF030000/temperature", "21", 0);
+	scene_put(&s, "/28.551DDF030000/power", "1", 0);
+	scene_run(&s, 60 * SCENE_S);
+	errors = scene_device(&s, SENSOR).errors;
+	scene_put(&s, "/28.551DDF030000/temperature", "", -ENODEV);
+	scene_put(&s, "/28.551DDF030000/power", "", -ENODEV);
+	scene_run(&s, 60 * SCENE_S);
+	TEST_ASSERT_GREATER_THAN_UINT64(errors, scene_device(&s, SENSOR).errors);
+}
+
 static void test_what_a_bus_knows_stays_when_a_later_answer_does_not_say_it(void)
 {
 	begin();
@@ -230,6 +262,7 @@ int main(void)
 	RUN_TEST(test_each_device_with_a_rom_id_has_a_row_and_none_has_answered);
 	RUN_TEST(test_each_answer_for_a_device_is_counted_with_what_it_cost);
 	RUN_TEST(test_an_error_is_that_of_its_device);
+	RUN_TEST(test_a_device_that_stays_absent_is_counted_until_it_is_known_to_be);
 	RUN_TEST(test_what_a_bus_knows_stays_when_a_later_answer_does_not_say_it);
 	RUN_TEST(test_an_identity_that_is_too_long_is_cut);
 	RUN_TEST(test_a_late_answer_counts_with_the_wire_that_it_took);
