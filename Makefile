@@ -649,7 +649,8 @@ install-service:
 	    exit 1; esac
 	install -d $(addprefix $(SERVICE_IN)/,$(sort $(dir $(SERVICE)))) $(D)/etc/owsd
 	@set -e; for u in owsd $(filter-out $(SOCKETED),$(FACES)); do f=$(SERVICE_IN)/systemd/system/$$u; \
-	    sed 's,@SBINDIR@,$(SERVICE_PREFIX:/=)/sbin,' board/systemd/$$u@.service >$$f@.service; \
+	    sed 's,@SBINDIR@,$(SERVICE_PREFIX:/=)/sbin,; s,@BINDIR@,$(SERVICE_PREFIX:/=)/bin,' \
+	    board/systemd/$$u@.service >$$f@.service; \
 	    chmod 644 $$f@.service; install -m 644 board/systemd/$$u.service $$f.service; done
 	install -m 644 board/systemd/sysusers.conf $(SERVICE_IN)/sysusers.d/owsd.conf
 	@set -e; for f in $(FACES); do \

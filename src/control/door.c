@@ -152,7 +152,7 @@ void door_died(struct control *c, struct control_place *p)
 static void door_refuse(struct control *c, struct control_place *p, int err,
                         enum control_counter why)
 {
-	welcome_report(c, &p->peer, err);
+	welcome_report(c, &p->peer, p->deed, err);
 	p->refused = err;
 	door_drop(c, p, why);
 }
@@ -261,6 +261,21 @@ static bool may_join(const struct control *c, const struct control_place *p,
 	       (!(hello->flags & OWS_HELLO_COMMAND) && rights_read(&c->rights, &p->peer));
 }
 
+static void admit(struct control *c, struct control_place *p, const struct ows_hello *hello)
+{
+	p->deed = hello->flags & OWS_HELLO_RELOAD    ? WELCOME_RELOAD
+	          : hello->flags & OWS_HELLO_COMMAND ? WELCOME_COMMAND
+	                                             : WELCOME_CONNECT;
+	if (p->deed == WELCOME_RELOAD)
+		door_ask(c, p, hello);
+	else if (!may_join(c, p, hello))
+		door_refuse(c, p, -EACCES, CONTROL_refused_rights);
+	else if (!has_room(c, p))
+		door_refuse(c, p, -ENOSPC, CONTROL_refused_limits);
+	else
+		join_controller(c, p, hello);
+}
+
 static void take_hello(struct control *c, struct control_place *p)
 {
 	struct ows_hello hello;
@@ -273,14 +288,8 @@ static void take_hello(struct control *c, struct control_place *p)
 	else if (n != (ssize_t)sizeof(hello) || hello.magic != OWS_HELLO_MAGIC ||
 	         hello.major != OWS_LAYOUT_MAJOR)
 		door_refuse(c, p, -EPROTO, CONTROL_refused_protocol);
-	else if (hello.flags & OWS_HELLO_RELOAD)
-		door_ask(c, p, &hello);
-	else if (!may_join(c, p, &hello))
-		door_refuse(c, p, -EACCES, CONTROL_refused_rights);
-	else if (!has_room(c, p))
-		door_refuse(c, p, -ENOSPC, CONTROL_refused_limits);
 	else
-		join_controller(c, p, &hello);
+		admit(c, p, &hello);
 }
 
 /* --- Connections ------------------------------------------------------------------------------ */
@@ -399,7 +408,7 @@ static void meet(struct control *c, int fd)
 	count(c, err == -EACCES   ? CONTROL_refused_rights
 	         : err == -ENOSPC ? CONTROL_refused_limits
 	                          : CONTROL_refused_errors);
-	welcome_report(c, &peer, err);
+	welcome_report(c, &peer, WELCOME_CONNECT, err);
 	peer_forget(&peer);
 	/* door_accept() has seen to it that there is room for one at least */
 	if (c->away_count && c->away_err != err && !send_away(c))

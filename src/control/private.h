@@ -62,6 +62,9 @@ enum control_state {
 	CONTROL_UNREAD, /* left, but for descriptors that lie unread in its socket */
 };
 
+/* What a program wants that connects; WELCOME_CONNECT: also while that is not known. */
+enum welcome_deed { WELCOME_CONNECT, WELCOME_COMMAND, WELCOME_RELOAD };
+
 /* What a controller gets of a generation. */
 struct control_grant {
 	struct controller_memory memory;
@@ -94,9 +97,10 @@ struct control_place {
 	bool commands;    /* it wants to, by its hello */
 	bool leaves;      /* door_drop() was there */
 	bool connected;   /* the porter has not been asked to hang up */
-	int refused;      /* with this errno it is; 0: it is not */
-	bool sent;        /* descriptors went over the socket */
-	bool welcomed;    /* all was sent that there is to send */
+	enum welcome_deed deed;
+	int refused;   /* with this errno it is; 0: it is not */
+	bool sent;     /* descriptors went over the socket */
+	bool welcomed; /* all was sent that there is to send */
 	struct control_grant now, next;
 };
 

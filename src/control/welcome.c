@@ -2,23 +2,37 @@
 /* What owsd sends over the socket. */
 #include <errno.h>
 #include <linux/sockios.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/ioctl.h>
 
 #include "src/control/welcome.h"
 
-void welcome_report(struct control *c, const struct peer *peer, int err)
+void welcome_refusal(enum welcome_deed deed, int err, const char *door, char *text, size_t size)
 {
-	char others[LOG_OTHERS];
+	static const char *const deeds[] = {[WELCOME_CONNECT] = "connect to",
+	                                    [WELCOME_COMMAND] = "command by",
+	                                    [WELCOME_RELOAD] = "reload by"};
+
+	snprintf(
+		text, size, "%s %s: %s", deeds[deed], door,
+		err == -ENOSPC   ? "there are too many, of this user or all"
+		: err != -EACCES ? strerror(-err)
+		: deed == WELCOME_RELOAD
+			? "that is for root, the user of owsd and, of the service, group owsd-config"
+			: "it has no right to");
+}
+
+void welcome_report(struct control *c, const struct peer *peer, enum welcome_deed deed, int err)
+{
+	char others[LOG_OTHERS], text[200];
 	uint64_t n = log_rate(&c->refused, c->now_ns);
 
-	if (n)
-		log_warning(c->log, "process %d of user %u may not connect to %s: %s%s",
-		            (int)peer->pid, (unsigned)peer->uid, c->name,
-		            err == -EACCES   ? "it has no right to"
-		            : err == -ENOSPC ? "there are too many, of this user or all"
-		                             : strerror(-err),
-		            log_others(n, others));
+	if (!n)
+		return;
+	welcome_refusal(deed, err, c->name, text, sizeof(text));
+	log_warning(c->log, "process %d of user %u may not %s%s", (int)peer->pid,
+	            (unsigned)peer->uid, text, log_others(n, others));
 }
 
 int welcome_end(struct control *c, const int *fds, unsigned count, int err, bool keep)

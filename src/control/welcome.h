@@ -5,7 +5,9 @@
 #include "src/control/private.h"
 
 /* Log now and then that the peer is refused with err. */
-void welcome_report(struct control *c, const struct peer *peer, int err);
+void welcome_report(struct control *c, const struct peer *peer, enum welcome_deed deed, int err);
+/* What stands in that line after "may not". door: the name of the socket. */
+void welcome_refusal(enum welcome_deed deed, int err, const char *door, char *text, size_t size);
 /*
  * Hang up on so many connections, after a refusal if err is not 0. Returns porter_give(); with keep
  * the first stays open.

@@ -25,12 +25,14 @@ enum {
 	COUNTER_DROPPED_EVENTS,
 	COUNTER_UNFINISHED,
 	COUNTER_UNSTORED,
+	COUNTER_REFUSED,
 	HOST_COUNTERS,
 };
 static const char *const host_counters[HOST_COUNTERS] = {
 	[COUNTER_LOG_DROPPED] = "log_dropped",      [COUNTER_MUTED_BELLS] = "muted_bells",
 	[COUNTER_WORKER_STALLS] = "worker_stalls",  [COUNTER_DROPPED_EVENTS] = "dropped_events",
 	[COUNTER_UNFINISHED] = "unfinished_reload", [COUNTER_UNSTORED] = "failed_stores",
+	[COUNTER_REFUSED] = "refused_reloads",
 };
 
 void host_ring(void *ctx)
@@ -85,6 +87,8 @@ static void publish_counters(struct host *h)
 	image_counter(image, index + COUNTER_UNFINISHED,
 	              __atomic_load_n(&h->unfinished, __ATOMIC_RELAXED));
 	image_counter(image, index + COUNTER_UNSTORED, last_failures(h->now->last));
+	image_counter(image, index + COUNTER_REFUSED,
+	              __atomic_load_n(&h->refused_reloads, __ATOMIC_RELAXED));
 	list = control_counters(h->control, &n);
 	index = publish_list(h, list, n, index + HOST_COUNTERS);
 	if (!h->serve)

@@ -44,4 +44,5 @@ struct host {
 	uint32_t unfinished; /* how many of the two; a counter shows it */
 	int64_t finish_ns;   /* not sooner */
 	struct log_rate finish_rate;
+	uint32_t refused_reloads; /* since the start; a counter shows it */
 };

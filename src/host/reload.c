@@ -16,8 +16,11 @@
 #include "src/host/private.h"
 #include "src/host/reload.h"
 #include "src/host/tend.h"
+#include "src/libows/ows.h"
 #include "src/serve/serve.h"
+#include "src/shm/entries.h"
 #include "src/shm/futex.h"
+#include "src/text/printable.h"
 
 /* The time that all buses which a reload ends may take together. */
 #define END_NS (2 * NS_PER_S)
@@ -146,6 +149,16 @@ void host_take_askers(struct host *h)
 void host_answer(struct host *h, int err, const char *why)
 {
 	control_answer(h->control, err, why);
+}
+
+void host_refused(struct host *h, const char *why)
+{
+	char text[OWS_LINE];
+	size_t len = strnlen(why, sizeof(text));
+
+	memcpy(text, why, len);
+	image_refused(&h->now->memory.image, ows_now(), text, printable(text, len));
+	__atomic_fetch_add(&h->refused_reloads, 1, __ATOMIC_RELAXED);
 }
 
 int host_reload(struct host *h, struct config *config, char *why, size_t why_size)

@@ -21,6 +21,11 @@ bool host_asked(struct host *host);
 void host_take_askers(struct host *host);
 void host_answer(struct host *host, int err, const char *why);
 /*
+ * A configuration was refused: consumers see why until one is taken over or owsd ends. Supervisor
+ * only.
+ */
+void host_refused(struct host *host, const char *why);
+/*
  * Serve another configuration without a gap: signals of the same name, path and type go on with
  * value, quality, alarms and retries, targets with the same options stay open. Blocks until the
  * reload is done. Returns 0 (the host owns config), or a negative errno with the reason in why:

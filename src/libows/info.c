@@ -143,10 +143,9 @@ int ows_device(struct ows *h, int index, struct ows_device *device)
 	return 0;
 }
 
-static int log_entry(struct ows *h, uint32_t place, struct ows_log_entry *entry)
+static int line_entry(struct ows *h, uint32_t area, uint32_t place, struct ows_log_entry *entry)
 {
-	return reader_entry(map_entry(&h->map, OWS_AREA_LOG, place), entry, sizeof(*entry)) ? 0
-	                                                                                    : -EIO;
+	return reader_entry(map_entry(&h->map, area, place), entry, sizeof(*entry)) ? 0 : -EIO;
 }
 
 uint32_t ows_log_last(struct ows *h)
@@ -155,7 +154,7 @@ uint32_t ows_log_last(struct ows *h)
 	struct ows_log_entry e;
 
 	for (uint32_t i = 0; i < map_count(&h->map, OWS_AREA_LOG); i++)
-		if (log_entry(h, i, &e) == 0 && e.number > last)
+		if (line_entry(h, OWS_AREA_LOG, i, &e) == 0 && e.number > last)
 			last = e.number;
 	return last;
 }
@@ -168,12 +167,29 @@ int ows_log_line(struct ows *h, uint32_t number, struct ows_log_line *line)
 
 	if (!count || !number)
 		return -ENOENT;
-	err = log_entry(h, number % count, &e);
+	err = line_entry(h, OWS_AREA_LOG, number % count, &e);
 	if (err)
 		return err;
 	if (e.number != number)
 		return -ENOENT;
 	*line = (struct ows_log_line){.number = number, .level = e.level, .time_ns = e.time_ns};
+	memcpy(line->text, e.text, sizeof(line->text) - 1);
+	return 0;
+}
+
+int ows_refused_reload(struct ows *h, struct ows_log_line *line)
+{
+	struct ows_log_entry e;
+	int err;
+
+	if (!map_count(&h->map, OWS_AREA_REFUSED))
+		return -ENOENT;
+	err = line_entry(h, OWS_AREA_REFUSED, 0, &e);
+	if (err)
+		return err;
+	if (!e.number)
+		return -ENOENT;
+	*line = (struct ows_log_line){.number = e.number, .level = e.level, .time_ns = e.time_ns};
 	memcpy(line->text, e.text, sizeof(line->text) - 1);
 	return 0;
 }

@@ -461,6 +461,12 @@ uint32_t ows_log_last(struct ows *h);
 int ows_log_line(struct ows *h, uint32_t number, struct ows_log_line *line);
 
 /*
+ * The reload that owsd refused last: text says why, number counts those since a reload was taken
+ * over last. -ENOENT: none, so what owsd serves was loaded last. -EIO: owsd died while it wrote.
+ */
+int ows_refused_reload(struct ows *h, struct ows_log_line *line);
+
+/*
  * The journal of alarms since owsd started: entries count from 0; the last 256 are kept. The entry
  * of a device alarm has what the device's latch showed; that of a limit alarm names the limit of
  * the signal (owsd.rio(5)).

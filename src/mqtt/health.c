@@ -54,8 +54,10 @@ void health_count(struct stream *s, int64_t numbers[HEALTH_NUMBERS])
 
 bool health_publish(struct stream *s, const struct health *health)
 {
+	struct ows_log_line refused = {.number = 0};
 	struct json json;
 
+	ows_refused_reload(s->h, &refused);
 	stream_message(s, &json);
 	json_object(&json, NULL);
 	json_int(&json, "signals", s->count);
@@ -67,6 +69,7 @@ bool health_publish(struct stream *s, const struct health *health)
 	json_uint(&json, "commands", health->commands);
 	json_uint(&json, "commands_refused", health->refused_commands);
 	json_string(&json, "trouble", health->trouble);
+	json_string(&json, "reload_refused", refused.text);
 	json_object_end(&json);
 	if (fflush(s->out))
 		return false;

@@ -348,6 +348,17 @@ bool ctl_alive(const struct ctl *ctl, struct ows *h, int64_t now_ns)
 	return false;
 }
 
+void ctl_refused(const struct ctl *ctl, struct ows *h, int64_t now_ns)
+{
+	struct ows_log_line line;
+	char span[WHEN_TEXT];
+
+	if (ows_refused_reload(h, &line) == 0)
+		ctl_fail("owsd %s goes on with what it loaded before: a reload was refused %s ago: "
+		         "%s",
+		         ctl->instance, when_span(now_ns - line.time_ns, span), line.text);
+}
+
 void ctl_nap(void)
 {
 	const struct timespec nap = {.tv_nsec = 200 * NS_PER_MS};

@@ -96,6 +96,8 @@ struct ows *ctl_open(const struct ctl *ctl, enum ows_mode mode);
 struct ows *ctl_open_as(const struct ctl *ctl, enum ows_mode mode, const char *program);
 /* Returns whether owsd runs; prints "owsd is not running ..." on stderr when it does not. */
 bool ctl_alive(const struct ctl *ctl, struct ows *h, int64_t now_ns);
+/* Prints on stderr why owsd refused the last reload, if it did: its file is not what it serves. */
+void ctl_refused(const struct ctl *ctl, struct ows *h, int64_t now_ns);
 /* The time between two looks for a new owsd. */
 void ctl_nap(void);
 /* As ows_wait(), and looks for a new owsd when the present one is gone. */

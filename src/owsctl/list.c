@@ -82,7 +82,8 @@ int verb_list(struct ctl *ctl, int argc, char **argv)
 	patterns = argc - optind;
 	h = ctl_open(ctl, OWS_READ);
 	rows_collect(h, argv + optind, patterns, driver, &rows);
-	ctl_alive(ctl, h, ows_now());
+	if (ctl_alive(ctl, h, ows_now()))
+		ctl_refused(ctl, h, ows_now());
 	if (ctl->json)
 		list_print_json(h, &rows, &reading);
 	else

@@ -127,6 +127,7 @@ static void print_text(const struct ctl *ctl, struct ows *h, const struct ows_da
 	unsigned served[STATS_TARGETS + 1];
 	bool several;
 	struct ows_target target;
+	struct ows_log_line refused;
 	size_t last_len;
 	FILE *zeros = ctl_need(open_memstream(&last, &last_len));
 
@@ -140,6 +141,9 @@ static void print_text(const struct ctl *ctl, struct ows *h, const struct ows_da
 	printf("started     %s, %s ago\n", when_iso(now, daemon->start_ns, text),
 	       when_span(now->boot - daemon->start_ns, span));
 	printf("generation  %u\n", (unsigned)daemon->generation);
+	if (ows_refused_reload(h, &refused) == 0)
+		printf("refused     a reload, %s ago: %s\n",
+		       when_span(now->boot - refused.time_ns, span), refused.text);
 	printf("period      %g s\n", (double)daemon->period_ns / 1e9);
 	printf("heartbeat   %s ago\n", when_span(daemon->beat_age_ns, span));
 	printf("signals     %d, %d not good\n", ows_count(h), stats_not_good(h, now->boot));

@@ -239,8 +239,12 @@ static void reload(struct host *host, const struct arguments *a, struct log *log
 	notify_send(notify, NOTIFY_RELOADING);
 	host_take_askers(host);
 	err = reload_file(host, a, log, why, sizeof(why));
-	if (!err)
+	if (!err) {
 		report_served(host, a, log, notify);
+	} else {
+		host_refused(host, why);
+		notify_status(notify, "reload refused, all goes on as before: %s", why);
+	}
 	host_answer(host, err, err ? why : "");
 	notify_send(notify, NOTIFY_READY);
 }

@@ -80,6 +80,17 @@ void image_log(struct image *image, int64_t time_ns, uint32_t level, const char 
 	write_entry(&image->log[entry.number % image->log_lines], &entry, sizeof(entry));
 }
 
+void image_refused(struct image *image, int64_t time_ns, const char *why, size_t len)
+{
+	struct ows_log_entry entry = {.time_ns = time_ns, .level = 3};
+
+	if (!image->refused)
+		return;
+	entry.number = image->refused->number + 1;
+	memcpy(entry.text, why, len < OWS_LINE ? len : OWS_LINE - 1);
+	write_entry(image->refused, &entry, sizeof(entry));
+}
+
 void image_carry_log(struct image *image, const struct image *before)
 {
 	if (image->log_lines != before->log_lines)

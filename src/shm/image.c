@@ -105,6 +105,7 @@ static void find_areas(const struct image_plan *plan, struct image_areas *a)
 	a->of[OWS_AREA_CHANGES] = AREA(struct ows_change_entry, changes_of(records));
 	a->of[OWS_AREA_DEVICES] = AREA(struct ows_device_entry, plan->device_count);
 	a->of[OWS_AREA_LOG] = AREA(struct ows_log_entry, plan->log_lines);
+	a->of[OWS_AREA_REFUSED] = AREA(struct ows_log_entry, plan->log_lines != 0);
 	a->end = align64(sizeof(struct ows_image_header) +
 	                 (OWS_AREAS - 1) * sizeof(struct ows_area_entry));
 	for (unsigned kind = 1; kind < OWS_AREAS; kind++) {
@@ -197,6 +198,7 @@ static void point_into(const struct image_plan *plan, const struct image_areas *
 		.changes = (void *)(base + a->of[OWS_AREA_CHANGES].off),
 		.devices = (void *)(base + a->of[OWS_AREA_DEVICES].off),
 		.log = (void *)(base + a->of[OWS_AREA_LOG].off),
+		.refused = plan->log_lines ? (void *)(base + a->of[OWS_AREA_REFUSED].off) : NULL,
 		.record_count = plan->signal_count + 1,
 		.target_count = plan->target_count,
 		.counter_count = plan->counter_count,

@@ -265,6 +265,10 @@ struct ows_log_entry { /* 280 bytes */
 	char text[OWS_LINE];
 	uint32_t check;
 };
+/*
+ * In OWS_AREA_REFUSED: number counts the reloads that were refused since this image was made, text
+ * says why the last one was. 0: what is served was loaded last.
+ */
 
 /*
  * The journals: rings of alarms and of commands. Entry number n, from 0 at owsd's start, is at
@@ -329,6 +333,7 @@ enum ows_area {
 	OWS_AREA_CHANGES = 13,
 	OWS_AREA_DEVICES = 14,
 	OWS_AREA_LOG = 15,
+	OWS_AREA_REFUSED = 16, /* one line of the log's form: the reload that was refused last */
 	OWS_AREAS /* one more than the last */
 };
 

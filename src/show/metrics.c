@@ -279,11 +279,16 @@ static bool print_devices(const struct print *p, int first, int *at, int most)
 static void print_daemon(const struct print *p)
 {
 	struct ows_daemon daemon = {0};
+	struct ows_log_line refused;
 
 	ows_daemon(p->metrics->h, p->now.boot, &daemon);
 	begin_family(p, "ows_up", "gauge", "1 while owsd runs.");
 	begin_sample(p, "ows_up");
 	end_sample(p, daemon.alive && !p->metrics->lost ? "1" : "0");
+	begin_family(p, "ows_reload_refused", "gauge",
+	             "1 while owsd refuses its file and serves what it loaded before.");
+	begin_sample(p, "ows_reload_refused");
+	end_sample(p, ows_refused_reload(p->metrics->h, &refused) == 0 ? "1" : "0");
 	begin_family(p, "ows_start_time_seconds", "gauge",
 	             "When owsd started, in seconds since 1970.");
 	begin_sample(p, "ows_start_time_seconds");

@@ -105,6 +105,22 @@ void stats_whose(struct json *json, const char *instance)
 	json_string(json, "host", *host ? host : NULL);
 }
 
+static void refused_json(struct json *json, struct ows *h, const struct when *now)
+{
+	struct ows_log_line line;
+	char text[WHEN_TEXT];
+
+	if (ows_refused_reload(h, &line)) {
+		json_null(json, "refused_reload");
+		return;
+	}
+	json_object(json, "refused_reload");
+	json_uint(json, "count", line.number);
+	json_string(json, "time", when_iso(now, line.time_ns, text));
+	json_string(json, "why", line.text);
+	json_object_end(json);
+}
+
 void stats_json(struct json *json, const char *instance, struct ows *h,
                 const struct ows_daemon *daemon, const struct when *now)
 {
@@ -125,6 +141,7 @@ void stats_json(struct json *json, const char *instance, struct ows *h,
 	json_string(json, "started", when_iso(now, daemon->start_ns, text));
 	json_seconds(json, "uptime", now->boot - daemon->start_ns);
 	json_uint(json, "generation", daemon->generation);
+	refused_json(json, h, now);
 	json_seconds(json, "period", daemon->period_ns);
 	json_seconds(json, "heartbeat_age", daemon->beat_age_ns);
 	json_string(json, "last_heartbeat", when_iso(now, now->boot - daemon->beat_age_ns, text));

@@ -51,6 +51,7 @@ static int answer_info(struct request *request)
 	const struct web *web = request->web;
 	char person[PERSON] = "";
 	struct ows_daemon daemon = {0};
+	struct ows_log_line refused;
 	bool writable;
 	int64_t now_ns = ows_now();
 	char *text;
@@ -70,6 +71,10 @@ static int answer_info(struct request *request)
 		json_seconds(&json, "up", now_ns - daemon.start_ns);
 	else
 		json_null(&json, "up");
+	json_string(&json, "refused",
+	            web->face->live && ows_refused_reload(web->face->ows, &refused) == 0
+	                    ? refused.text
+	                    : NULL);
 	json_int(&json, "now", show_wall_ms(now_ns));
 	json_int(&json, "since", web->since_ns / NS_PER_MS);
 	writable = may(request, PERSON_WRITE, person);

@@ -42,6 +42,7 @@ static void put_found(struct stream *stream, FILE *out)
 	stream->position.seen = stream->alarms_seen = web->recent.newest;
 	stream->begun = true;
 	stream->told_lost = false;
+	stream->refused_seen = web->refused;
 	put_id(&stream->position, out);
 	events_begin(out, "found", &json);
 	json_uint(&json, "generation", web->generation);
@@ -60,12 +61,11 @@ static void put_lost(struct stream *stream, FILE *out)
 	fputs("\n\n", out);
 }
 
-/* Alarms came that this stream does not get any more: the client has to look at all. */
-static void put_missed(struct stream *stream, FILE *out)
+/* The client has to look at all. */
+static void put_missed(FILE *out)
 {
 	struct json json;
 
-	stream->alarms_seen = stream->web->alarms_lost;
 	events_begin(out, "missed", &json);
 	json_object_end(&json);
 	fputs("\n\n", out);
@@ -76,9 +76,11 @@ static bool put_alarms(struct stream *stream, FILE *out)
 	const struct web *web = stream->web;
 	bool some = stream->alarms_seen < web->alarms_lost;
 
-	if (some)
-		put_missed(stream, out);
-
+	if (some) {
+		/* alarms came that this stream does not get any more */
+		stream->alarms_seen = web->alarms_lost;
+		put_missed(out);
+	}
 	for (unsigned i = 0; i < WEB_ALARMS; i++) {
 		unsigned at = (web->next_alarm + i) % WEB_ALARMS;
 
@@ -171,6 +173,11 @@ static bool put_next(struct stream *stream, FILE *out)
 	}
 	if (put_alarms(stream, out))
 		return true;
+	if (stream->refused_seen != web->refused) {
+		stream->refused_seen = web->refused;
+		put_missed(out);
+		return true;
+	}
 	if (!may_go_out(web, stream))
 		return false;
 	stream->position.until = web->pace.sent;

@@ -12,6 +12,7 @@
 
 #include "hal/base/bell.h"
 #include "hal/base/time.h"
+#include "src/face/look.h"
 #include "src/face/loop.h"
 #include "src/shm/place.h"
 #include "src/web/api.h"
@@ -40,6 +41,19 @@ static int64_t cpu_ns(void)
 	return (int64_t)t.tv_sec * NS_PER_S + t.tv_nsec;
 }
 
+/* No signal changes when owsd refuses its file: pages are told of it here. */
+static void look_for_refusal(struct web *web)
+{
+	struct ows_log_line line = {.number = 0};
+
+	if (web->face->live && look_is_current(web->face))
+		ows_refused_reload(web->face->ows, &line);
+	if (line.number == web->refused)
+		return;
+	web->refused = line.number;
+	stream_wake_all(web);
+}
+
 /*
  * Something may have happened: changes go out that are due, libmicrohttpd has its turn, and says
  * when it wants the next.
@@ -53,6 +67,7 @@ static void owsd_web_run(struct web *web)
 		web->alive_ns = now_ns + EVENTS_ALIVE_S * NS_PER_S / 5;
 		stream_wake_all(web);
 	}
+	look_for_refusal(web);
 	if (pace_send(&web->pace, now_ns, web->recent.newest))
 		stream_wake_all(web);
 	http_run(web);

@@ -37,6 +37,7 @@ struct stream {
 	int row;
 	struct position position;
 	uint64_t alarms_seen;
+	uint32_t refused_seen; /* number of the refused reload that the client knows */
 	bool begun, told_lost;
 	int64_t written_ns;
 };

@@ -42,6 +42,7 @@ struct web {
 	size_t held;         /* bytes of answers that are being sent */
 	int bell;            /* of all */
 	uint32_t generation; /* of the table; 0: owsd was never there */
+	uint32_t refused;    /* number of the reload that owsd has refused; 0: none */
 	int64_t since_ns;    /* when owsd-web was started */
 	bool ends;
 	struct stream *streams;

@@ -101,9 +101,10 @@ same 'systemctl says how many there are now' 1 \
 	"$(systemctl status --no-pager owsd@HOUSE | grep -c 'Status: "11 signals')"
 
 echo 'OwsDrv { Period wrong }' >/etc/owsd/HOUSE.rio
-does 'told to load a broken file, systemctl returns' timeout 20 systemctl reload owsd@HOUSE
+does 'told to load a broken file, systemctl fails' refused timeout 40 systemctl reload owsd@HOUSE
 does 'its status says that it was refused' within 20 status_says 'is refused: all goes on as before'
-does 'and where it is broken' status_says '/etc/owsd/HOUSE.rio:1:17'
+does 'in the status line too, and where it is broken' \
+	status_says 'Status: "reload refused, all goes on as before: /etc/owsd/HOUSE.rio:1:17'
 same 'the same process goes on' "$pid" "$(house MainPID)"
 same 'as a service that is active' active "$(house ActiveState)"
 does 'with the old ones' reads warm 21.0625

@@ -69,7 +69,7 @@ class Machine:
         shutil.rmtree("/etc/owsd", ignore_errors=True)
         pathlib.Path("/etc/owsd").mkdir()
         for unit in (SOURCE / "board/systemd").glob("owsd*.service"):
-            pathlib.Path("/etc/systemd/system", unit.name).write_text(unit.read_text().replace("@SBINDIR@", "/usr/sbin"))
+            pathlib.Path("/etc/systemd/system", unit.name).write_text(unit.read_text().replace("@SBINDIR@", "/usr/sbin").replace("@BINDIR@", "/usr/bin"))
         self.wire = scene.file("house.sim", f"chip DS2482-100 0x18\nDS18B20 {SENSOR} temperature 21.5\n")
         bin_dir = scene.path / "bin"
         bin_dir.mkdir()

@@ -202,5 +202,17 @@ def test_the_first_command_to_a_name_that_a_reload_brought_is_taken(scene):
     house.arrives("pump", lambda m: m["v"] is False)
 
 
+def test_a_refused_reload_stands_in_the_health_until_one_is_taken_over(scene):
+    house = House(scene)
+    house.arrives("health", lambda m: m["reload_refused"] == "")
+    good = house.daemon.config.read_text()
+    house.daemon.config.write_text(good + "Driver {\n")
+    assert scene.owsctl(house.daemon, "reload").returncode == 1
+    house.arrives("health", lambda m: f"{house.daemon.config}:" in m["reload_refused"])
+    house.daemon.config.write_text(good)
+    assert scene.owsctl(house.daemon, "reload").returncode == 0
+    house.arrives("health", lambda m: m["reload_refused"] == "")
+
+
 if __name__ == "__main__":
     owsdtest.main(at_once=4)

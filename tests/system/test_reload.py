@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 """SIGHUP: a changed file is served without a gap, a broken one changes nothing."""
 
+import json
 import os
 import signal
 import time
@@ -106,6 +107,51 @@ def test_owsctl_asks_for_a_reload_and_knows_when_it_is_done(scene):
     # many at once are answered by a reload each, or by one together
     askers = [scene.start([owsdtest.OWSCTL, "-n", daemon.name, "reload"]) for _ in range(4)]
     assert [asker.wait() for asker in askers] == [0] * 4, [asker.log() for asker in askers]
+
+
+def said(daemon):
+    """The lines STATUS= that the service manager has got."""
+    lines = []
+    daemon.notify.setblocking(False)
+    try:
+        while True:
+            lines += daemon.notify.recv(4096).decode().splitlines()
+    except BlockingIOError:
+        return [line for line in lines if line.startswith("STATUS=")]
+
+
+def refusal(scene, daemon):
+    """Who reports the refused reload: what each place of owsctl has of it."""
+    stats = scene.owsctl(daemon, "--json", "stats").stdout
+    rows = json.loads(stats)
+    metrics = scene.owsctl(daemon, "metrics").stdout.splitlines()
+    return {"list": scene.owsctl(daemon, "list").stderr,
+            "stats": [line for line in scene.owsctl(daemon, "stats").stdout.splitlines() if line.startswith("refused ")],
+            "json": rows["daemon"]["refused_reload"],
+            "counter": {row["name"]: row["value"] for row in rows["counters"]}["refused_reloads"],
+            "metric": [line[-1] for line in metrics if line.startswith("ows_reload_refused{")]}
+
+
+def test_a_refused_reload_stays_visible_until_one_is_taken_over(scene):
+    daemon, target = start(scene)
+    good = daemon.config.read_text()
+    fine = {"list": "", "stats": [], "json": None, "counter": 0, "metric": ["0"]}
+    assert refusal(scene, daemon) == fine, refusal(scene, daemon)
+    for n, (text, why) in enumerate([(good + "Driver {\n", f"{daemon.config}:"),
+                                     (rio(target, ROOM, Listen=str(owsdtest.free_port())), "by a restart only")], 1):
+        said(daemon)
+        daemon.config.write_text(text)
+        assert scene.owsctl(daemon, "reload").returncode == 1
+        assert any(line.startswith("STATUS=reload refused") and why in line for line in said(daemon))
+        until(lambda: refusal(scene, daemon)["counter"] == n, 10, "it is counted")
+        found = refusal(scene, daemon)
+        assert "a reload was refused" in found["list"] and why in found["list"], found
+        assert why in found["stats"][0] and found["metric"] == ["1"], found
+        assert found["json"]["count"] == n and why in found["json"]["why"], found
+    daemon.config.write_text(good)
+    assert scene.owsctl(daemon, "reload").returncode == 0
+    assert said(daemon)[-1].startswith("STATUS=3 signals")
+    until(lambda: refusal(scene, daemon) == {**fine, "counter": 2}, 10, lambda: refusal(scene, daemon))
 
 
 def test_a_reload_that_is_refused_says_why_to_who_asked(scene):

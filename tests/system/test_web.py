@@ -318,6 +318,23 @@ def test_the_loss_of_owsd_makes_all_values_unknown_and_its_return_is_told(scene)
         assert events.until("found")["generation"] != second
 
 
+def test_a_page_is_told_of_a_refused_reload_and_of_the_next_that_is_not(scene):
+    daemon, page = both(scene)
+    until(lambda: page.values()["room"] == 21.5, 20, "the room is good")
+    assert page.json("/api/info")["refused"] is None
+    good = daemon.config.read_text()
+    with Events(page) as events:
+        events.until("found")
+        daemon.config.write_text(good + "Driver {\n")
+        assert scene.owsctl(daemon, "reload").returncode == 1
+        events.until("missed")  # it asks for all again, then
+        assert f"{daemon.config}:" in page.json("/api/info")["refused"]
+        daemon.config.write_text(good)
+        assert scene.owsctl(daemon, "reload").returncode == 0
+        events.until("found")
+        assert page.json("/api/info")["refused"] is None
+
+
 def command(page, path, unix=True, headers=None, status=200, **body):
     """The answer to a POST as the page of the same origin sends it."""
     more = {"Content-Type": "application/json", "X-Owsd": "1", "Origin": "http://localhost",

@@ -84,6 +84,9 @@ function trust() {
 function renewed() {
 	if (!$("instance").firstElementChild)
 		put($("instance"), store.info?.instance ?? "");
+	const refused = store.info?.refused;
+	$("refused").hidden = !refused;
+	put($("refused"), refused ? `owsd has refused its file and goes on with what it loaded before: ${refused}` : "");
 	$("read-only").hidden = !store.info || store.info.writable
 		|| !store.signals.some((signal) => signal.output);
 	show();

@@ -11,6 +11,7 @@
 
 #include "hal/base/bell.h"
 #include "src/control/private.h"
+#include "src/control/welcome.h"
 #include "src/libows/ows.h"
 #include "tests/unit/aid/control_scene.h"
 
@@ -201,6 +202,21 @@ static void test_a_stranger_may_not_ask(void)
 	TEST_ASSERT_FALSE(control_asked(control_room));
 }
 
+static void test_the_log_names_what_was_refused_and_not_another_door(void)
+{
+	char text[200];
+
+	welcome_refusal(WELCOME_RELOAD, -EACCES, "OWS.control", text, sizeof(text));
+	TEST_ASSERT_EQUAL_STRING("reload by OWS.control: that is for root, the user of owsd and, "
+	                         "of the service, group owsd-config",
+	                         text);
+	welcome_refusal(WELCOME_COMMAND, -EACCES, "OWS.control", text, sizeof(text));
+	TEST_ASSERT_EQUAL_STRING("command by OWS.control: it has no right to", text);
+	welcome_refusal(WELCOME_CONNECT, -ENOSPC, "OWS.control", text, sizeof(text));
+	TEST_ASSERT_EQUAL_STRING("connect to OWS.control: there are too many, of this user or all",
+	                         text);
+}
+
 static void test_who_waits_at_the_end_of_owsd_is_hung_up_on(void)
 {
 	int fd = ask("waits");
@@ -222,6 +238,7 @@ int main(void)
 	RUN_TEST(test_an_asker_that_says_more_is_hung_up_on);
 	RUN_TEST(test_an_asker_waits_for_a_time_that_ends);
 	RUN_TEST(test_a_stranger_may_not_ask);
+	RUN_TEST(test_the_log_names_what_was_refused_and_not_another_door);
 	RUN_TEST(test_who_waits_at_the_end_of_owsd_is_hung_up_on);
 	return UNITY_END();
 }

@@ -107,6 +107,32 @@ static void test_a_reload_goes_on_with_the_numbers(void)
 	instance_leave(&next);
 }
 
+static void test_a_refused_reload_is_known_with_its_reason_until_the_next_image(void)
+{
+	struct ows_log_line line;
+
+	TEST_ASSERT_EQUAL(-ENOENT, ows_refused_reload(h, &line));
+	image_refused(&in.image, 5, "a.rio:1:1: no and rest", strlen("a.rio:1:1: no"));
+	image_refused(&in.image, 7, "a.rio:2:1: no and rest", strlen("a.rio:2:1: no"));
+	TEST_ASSERT_EQUAL(0, ows_refused_reload(h, &line));
+	TEST_ASSERT_EQUAL_UINT(2, line.number);
+	TEST_ASSERT_EQUAL_INT64(7, line.time_ns);
+	TEST_ASSERT_EQUAL_STRING("a.rio:2:1: no", line.text);
+	in.image.refused->seq++; /* owsd died in it */
+	TEST_ASSERT_EQUAL(-EIO, ows_refused_reload(h, &line));
+}
+
+static void test_a_long_reason_is_cut_and_ends(void)
+{
+	struct ows_log_line line;
+	char why[2 * OWS_LINE];
+
+	memset(why, 'x', sizeof(why));
+	image_refused(&in.image, 5, why, sizeof(why));
+	TEST_ASSERT_EQUAL(0, ows_refused_reload(h, &line));
+	TEST_ASSERT_EQUAL_UINT(OWS_LINE - 1, strlen(line.text));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -114,5 +140,7 @@ int main(void)
 	RUN_TEST(test_a_long_line_is_cut_and_ends);
 	RUN_TEST(test_an_entry_that_owsd_died_in_is_skipped);
 	RUN_TEST(test_a_reload_goes_on_with_the_numbers);
+	RUN_TEST(test_a_refused_reload_is_known_with_its_reason_until_the_next_image);
+	RUN_TEST(test_a_long_reason_is_cut_and_ends);
 	return UNITY_END();
 }
