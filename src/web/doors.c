@@ -47,16 +47,24 @@ static int doors_watch(struct doors *doors, int fd, unsigned number, uint32_t ho
 	return epoll_ctl(doors->epoll, EPOLL_CTL_ADD, fd, &event) ? -errno : 0;
 }
 
-/* Takes fd in any case. */
-static int doors_add(struct doors *doors, int fd)
+/* Takes fd in any case. at: of doors_address(), else NULL. */
+static int doors_add(struct doors *doors, int fd, const struct listen_address *at)
 {
-	int err = doors->count == DOORS ? -ENOSPC : doors_watch(doors, fd, doors->count, 0);
+	unsigned i = 0;
+	int err;
 
-	if (err)
+	while (i < doors->count && doors->fds[i] >= 0)
+		i++;
+	err = i == DOORS ? -ENOSPC : doors_watch(doors, fd, i, 0);
+	if (err) {
 		close(fd);
-	else
-		doors->fds[doors->count++] = fd;
-	return err;
+		return err;
+	}
+	doors->fds[i] = fd;
+	doors->at[i] = at ? *at : (struct listen_address){0};
+	doors->by_address[i] = at != NULL;
+	doors->count += i == doors->count;
+	return 0;
 }
 
 int doors_inherit(struct doors *doors)
@@ -64,7 +72,7 @@ int doors_inherit(struct doors *doors)
 	int fds[DOORS], count = inherited_sockets(fds, DOORS);
 
 	for (int i = 0; i < count; i++) {
-		int err = doors_add(doors, fds[i]);
+		int err = doors_add(doors, fds[i], NULL);
 
 		if (err)
 			return err;
@@ -72,7 +80,8 @@ int doors_inherit(struct doors *doors)
 	return count;
 }
 
-static int listen_at(struct doors *doors, int fd, const struct sockaddr *address, socklen_t len)
+static int listen_at(struct doors *doors, int fd, const struct sockaddr *address, socklen_t len,
+                     const struct listen_address *at)
 {
 	int one = 1, err = 0;
 
@@ -88,7 +97,7 @@ static int listen_at(struct doors *doors, int fd, const struct sockaddr *address
 	    listen(fd, BACKLOG))
 		err = -errno;
 	if (!err)
-		return doors_add(doors, fd);
+		return doors_add(doors, fd, at);
 	close(fd);
 	return err;
 }
@@ -106,10 +115,21 @@ int doors_socket(struct doors *doors, const char *path)
 	if (unlink(path) && errno != ENOENT)
 		return -errno;
 	err = listen_at(doors, socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0),
-	                (const struct sockaddr *)&address, sizeof(address));
+	                (const struct sockaddr *)&address, sizeof(address), NULL);
 	if (!err)
 		memcpy(doors->path, address.sun_path, sizeof(doors->path));
 	return err;
+}
+
+/* The door that was opened at that address; doors->count: none. */
+static unsigned door_at(const struct doors *doors, const struct listen_address *address)
+{
+	unsigned i = 0;
+
+	while (i < doors->count &&
+	       (doors->fds[i] < 0 || !doors->by_address[i] || !listen_same(&doors->at[i], address)))
+		i++;
+	return i;
 }
 
 int doors_address(struct doors *doors, struct listen_address *address)
@@ -124,10 +144,34 @@ int doors_address(struct doors *doors, struct listen_address *address)
 	memcpy(&v4.sin_addr, address->bytes, sizeof(v4.sin_addr));
 	err = listen_at(doors,
 	                socket(any->sa_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0), any,
-	                len);
-	if (!err && getsockname(doors->fds[doors->count - 1], any, &len) == 0)
+	                len, address);
+	if (!err && getsockname(doors->fds[door_at(doors, address)], any, &len) == 0)
 		address->port = ntohs(address->is_v6 ? v6.sin6_port : v4.sin_port);
 	return err;
+}
+
+bool doors_has(const struct doors *doors, const struct listen_address *address)
+{
+	return door_at(doors, address) < doors->count;
+}
+
+bool doors_shut(struct doors *doors, const struct listen_address *keep, unsigned count,
+                struct listen_address *shut)
+{
+	for (unsigned i = 0; i < doors->count; i++) {
+		bool kept = doors->fds[i] < 0 || !doors->by_address[i];
+
+		for (unsigned k = 0; k < count; k++)
+			kept |= listen_same(&keep[k], &doors->at[i]);
+		if (kept)
+			continue;
+		epoll_ctl(doors->epoll, EPOLL_CTL_DEL, doors->fds[i], NULL);
+		close(doors->fds[i]);
+		doors->fds[i] = -1;
+		*shut = doors->at[i];
+		return true;
+	}
+	return false;
 }
 
 /* --- Visitors -------------------------------------------------------------------------------- */
@@ -243,7 +287,8 @@ static void pause_doors(struct doors *doors, int64_t now_ns)
 {
 	doors->paused_ns = now_ns + PAUSE_NS;
 	for (unsigned i = 0; i < doors->count; i++)
-		epoll_ctl(doors->epoll, EPOLL_CTL_DEL, doors->fds[i], NULL);
+		if (doors->fds[i] >= 0)
+			epoll_ctl(doors->epoll, EPOLL_CTL_DEL, doors->fds[i], NULL);
 }
 
 /* What the kernel keeps of an answer counts as memory of this program: 1200 of these are 75 MB. */
@@ -308,7 +353,8 @@ void doors_take(struct doors *doors, int64_t now_ns)
 	if (doors->paused_ns && now_ns >= doors->paused_ns) {
 		doors->paused_ns = 0;
 		for (unsigned i = 0; i < doors->count; i++)
-			doors_watch(doors, doors->fds[i], i, 0);
+			if (doors->fds[i] >= 0)
+				doors_watch(doors, doors->fds[i], i, 0);
 	}
 }
 
@@ -328,7 +374,8 @@ void doors_close(struct doors *doors)
 		if (doors->visitors[i].used)
 			close(doors->visitors[i].fd);
 	for (unsigned i = 0; i < doors->count; i++)
-		close(doors->fds[i]);
+		if (doors->fds[i] >= 0)
+			close(doors->fds[i]);
 	if (*doors->path)
 		unlink(doors->path);
 	if (doors->epoll >= 0)

@@ -5,6 +5,7 @@
  */
 #pragma once
 
+#include <stdbool.h>
 #include <stdint.h>
 #include <sys/socket.h>
 
@@ -22,7 +23,9 @@ struct doors {
 	int64_t came_ns; /* what epoll reports now came later than that */
 	int64_t head_ns; /* and the head of the visitor who is let in */
 	int epoll;       /* readable when doors_take() has something to do; -1: not open */
-	int fds[DOORS];
+	int fds[DOORS];  /* -1: the place is free */
+	struct listen_address at[DOORS]; /* as it was asked for, if by_address */
+	bool by_address[DOORS];
 	unsigned count;
 	struct visitor *visitors; /* DOORS_CONNECTIONS */
 	unsigned visitor_count;
@@ -42,6 +45,14 @@ int doors_inherit(struct doors *doors);
 int doors_socket(struct doors *doors, const char *path);
 /* At an address; *address gets the port that the kernel chose. */
 int doors_address(struct doors *doors, struct listen_address *address);
+/* Is there a door that doors_address() has opened for that? */
+bool doors_has(const struct doors *doors, const struct listen_address *address);
+/*
+ * Close one that doors_address() has opened and that is not among those to keep: true, and its
+ * address in *shut. Connections stay. False: there is none.
+ */
+bool doors_shut(struct doors *doors, const struct listen_address *keep, unsigned count,
+                struct listen_address *shut);
 /* Accept, read heads, refuse. Never blocks. */
 void doors_take(struct doors *doors, int64_t now_ns);
 /* When doors_take() has to be called at the latest. */

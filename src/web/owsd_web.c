@@ -110,7 +110,7 @@ static int open_address(struct web *web, struct listen_address address)
 
 	listen_print(&address, text);
 	if (err)
-		face_complain("owsd-web", "%s: %s", text, strerror(-err));
+		log_err(web->face->log, "%s: %s", text, strerror(-err));
 	else
 		log_at(web->face->log,
 		       listen_is_loopback(&address) ? LOG_LEVEL_NOTICE : LOG_LEVEL_WARNING,
@@ -157,6 +157,25 @@ static int open_doors(struct web *web)
 	return err ? err : open_addresses(web);
 }
 
+/* What Listen says now: doors of the socket and of the service manager stay, as does that of -l. */
+static void follow_addresses(struct web *web)
+{
+	const struct config_web *options = &web->face->config->web;
+	struct listen_address shut;
+	char text[LISTEN_TEXT_MAX];
+
+	if (web->face->arguments->option)
+		return;
+	/* first: the new one may be another address with the same port */
+	while (doors_shut(&web->doors, options->addresses, options->address_count, &shut)) {
+		listen_print(&shut, text);
+		log_notice(web->face->log, "the page is no longer at http://%s/", text);
+	}
+	for (unsigned i = 0; i < options->address_count; i++)
+		if (!doors_has(&web->doors, &options->addresses[i]))
+			open_address(web, options->addresses[i]);
+}
+
 /* --- The page -------------------------------------------------------------------------------- */
 
 /* Where Files says; else where this program was installed, or where it was built. */
@@ -182,6 +201,14 @@ static void open_files(struct web *web)
 	if (err)
 		log_warning(web->face->log, "there are no files of the page in %s: %s", path,
 		            strerror(-err));
+}
+
+/* The configuration was read again: what was made of it at the start is made anew. */
+static void follow_file(struct web *web)
+{
+	follow_addresses(web);
+	files_close(&web->files);
+	open_files(web);
 }
 
 /* --- The face -------------------------------------------------------------------------------- */
@@ -308,6 +335,7 @@ static void event(struct face *face, const struct face_event *event)
 	switch (event->news) {
 	case FACE_FOUND:
 	case FACE_RELOADED:
+		follow_file(web);
 		owsd_web_find(web);
 		break;
 	case FACE_ALARM:
@@ -320,7 +348,9 @@ static void event(struct face *face, const struct face_event *event)
 		break;
 	case FACE_OVERRUN:
 	case FACE_COMMAND:
+		return;
 	case FACE_FILE:
+		follow_file(web);
 		return;
 	case FACE_DESCRIPTOR:
 		if (event->fd == web->bell) {

@@ -335,6 +335,57 @@ def test_a_page_is_told_of_a_refused_reload_and_of_the_next_that_is_not(scene):
         assert page.json("/api/info")["refused"] is None
 
 
+def fetched(port, path="/api/info"):
+    """The body of an answer at that port of loopback; None: nobody listens there."""
+    c = http.client.HTTPConnection("127.0.0.1", port, timeout=owsdtest.PATIENCE)
+    try:
+        c.request("GET", path)
+        return c.getresponse().read().decode()
+    except ConnectionRefusedError:
+        return None
+    finally:
+        c.close()
+
+
+def test_doors_and_files_follow_the_file_at_a_reload(scene):
+    first, second, taken = (owsdtest.free_port() for _ in range(3))
+    daemon = scene.owsd(text(scene))
+    web = scene.start([WEB, "-n", daemon.name, "-c", daemon.config])
+    until(lambda: "the page is at the socket" in web.log(), 20, "it serves")
+    page = Page.__new__(Page)  # a client of it without -l
+    page.port = first
+    page.socket = place() / f"{daemon.name}.web"
+
+    def reload(program=None, **keys):
+        daemon.config.write_text(text(scene, **keys))
+        if program:
+            program.signal(owsdtest.signal.SIGHUP)
+        else:
+            assert scene.owsctl(daemon, "reload").returncode == 0
+
+    assert fetched(first) is None
+    reload(Listen=f"127.0.0.1:{first}")
+    until(lambda: fetched(first), 20, "what owsd has reloaded is followed")
+    reload(web, Listen=f"127.0.0.1:{second}, 127.0.0.1:{first}")
+    until(lambda: fetched(second), 20, "SIGHUP alone is followed")
+    assert fetched(first)
+    reload(Listen=f"127.0.0.1:{second}")
+    until(lambda: fetched(first) is None, 20, "what is no longer there is closed")
+    assert fetched(second) and f"no longer at http://127.0.0.1:{first}/" in web.log()
+    assert page.json("/api/info", unix=True)["instance"] == daemon.name, "the socket stays"
+    with socket.create_server(("127.0.0.1", taken)):
+        reload(Listen=f"127.0.0.1:{taken}")
+        owsdtest.logged(web, f"127.0.0.1:{taken}: Address already in use")
+    reload(web, Listen=f"127.0.0.1:{taken}")
+    until(lambda: fetched(taken), 20, "it is free, and the next reload takes it")
+    other = scene.path / "other"
+    other.mkdir()
+    (other / "index.html").write_text("<!doctype html><title>another</title>\n")
+    reload(Listen=f"127.0.0.1:{taken}", Files=other)
+    until(lambda: "another" in fetched(taken, "/"), 20, "the files of another directory are served")
+    assert "cannot" not in web.log()
+
+
 def command(page, path, unix=True, headers=None, status=200, **body):
     """The answer to a POST as the page of the same origin sends it."""
     more = {"Content-Type": "application/json", "X-Owsd": "1", "Origin": "http://localhost",
