@@ -16,6 +16,7 @@
 #include "src/show/json.h"
 #include "src/signal/error.h"
 #include "src/signal/value.h"
+#include "src/web/guard.h"
 #include "src/web/http.h"
 #include "src/web/paths.h"
 #include "src/web/person.h"
@@ -285,14 +286,14 @@ static bool parse_ids(const char *text, struct devices *devices)
 int devices_get(struct request *request)
 {
 	struct web *web = request->web;
-	const char *ids = http_argument(request, "ids"), *why;
+	const char *ids = http_argument(request, "ids");
 	struct devices *devices;
-	char person[PERSON];
-
+	char person[PERSON], words[GUARD_WORDS];
 	/* it loads the wire */
-	if (!person_may_do(http_descriptor(request), &web->face->config->web, PERSON_CONFIGURE,
-	                   http_header(request, "X-Remote-User"), person, &why))
-		return http_error(request, 403, "%s", why);
+	unsigned status = guard_person(request, PERSON_CONFIGURE, person, words);
+
+	if (status)
+		return http_error(request, status, "%s", words);
 	devices = (struct devices *)http_job(request, sizeof(*devices), devices_run);
 	if (!devices)
 		return MHD_NO;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* May this POST do what it asks? By the page that it comes from, and the person that sends it. */
+/* May this request do what it asks? By headers that only the page sends, and the person. */
 #pragma once
 
 #include "src/web/person.h"
@@ -9,8 +9,13 @@ struct request;
 #define GUARD_WORDS 256
 
 /*
- * 0, with who it is in person; or the status of the refusal, with the reason in words. Looks at the
- * head alone. Reads /etc/passwd and /etc/group.
+ * Each returns 0, with who it is in person; or the status of the refusal, with the reason in words.
+ * Each looks at the head alone, and reads /etc/passwd and /etc/group.
  */
+
+/* Of a request with an effect. */
+unsigned guard_person(const struct request *request, enum person_deed deed, char person[PERSON],
+                      char words[GUARD_WORDS]);
+/* The same of a POST, whose body is JSON. */
 unsigned guard_post(const struct request *request, enum person_deed deed, char person[PERSON],
                     char words[GUARD_WORDS]);

@@ -13,9 +13,8 @@ struct part {
 
 /* Headers that may stand once, because they decide something. */
 static const char *const once[] = {
-	"Host",   "Content-Length", "Content-Type",
-	"Origin", "X-Remote-User",  "X-Remote-User-Name",
-	"X-Owsd", "Expect",         "Last-Event-ID",
+	"Host",   "Content-Length", "Content-Type",       "Origin", "Sec-Fetch-Site",
+	"X-Owsd", "X-Remote-User",  "X-Remote-User-Name", "Expect", "Last-Event-ID",
 };
 #define ONCE (sizeof(once) / sizeof(once[0]))
 enum { HOST, CONTENT_LENGTH };

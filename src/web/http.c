@@ -19,6 +19,10 @@
 #define POLICY \
 	"default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; " \
 	"connect-src 'self'; frame-ancestors 'self'; base-uri 'none'; form-action 'none'"
+/* of a browser; the page needs none */
+#define FEATURES \
+	"camera=(), display-capture=(), geolocation=(), microphone=(), midi=(), payment=(), " \
+	"serial=(), usb=()"
 
 const char *http_header(const struct request *request, const char *name)
 {
@@ -57,6 +61,8 @@ int http_answer(struct request *request, unsigned status, struct MHD_Response *r
 	MHD_add_response_header(response, "Content-Security-Policy", POLICY);
 	MHD_add_response_header(response, "X-Content-Type-Options", "nosniff");
 	MHD_add_response_header(response, "Referrer-Policy", "no-referrer");
+	MHD_add_response_header(response, "Cross-Origin-Resource-Policy", "same-origin");
+	MHD_add_response_header(response, "Permissions-Policy", FEATURES);
 	MHD_add_response_header(response, "Cache-Control", "no-cache");
 	result = MHD_queue_response(request->connection, status, response);
 	MHD_destroy_response(response);
@@ -188,10 +194,21 @@ static int answer_file(struct request *request, const char *path)
 
 /* --- Requests -------------------------------------------------------------------------------- */
 
+static bool is_foreign(const struct request *request)
+{
+	return origin_foreign(http_header(request, "Host"), http_header(request, "Origin"),
+	                      http_header(request, "Sec-Fetch-Site"));
+}
+
 static int answer(struct request *request, const char *url, bool post)
 {
 	web_function function = request->web->route(url + 1, post);
 
+	/* the files of the page may be asked for from anywhere, as by a link to it */
+	if ((function || post) && is_foreign(request))
+		return http_error(request, 403,
+		                  "this request comes from another page: open that "
+		                  "of this owsd-web itself");
 	if (function)
 		return function(request);
 	if (post)
@@ -225,7 +242,7 @@ static void expect_body(struct request *request, const char *url)
 {
 	const char *length = http_header(request, "Content-Length");
 	size_t size = length ? strtoul(length, NULL, 10) : 0;
-	bool may = size > BODY_MAX && request->web->admits(request, url);
+	bool may = size > BODY_MAX && !is_foreign(request) && request->web->admits(request, url);
 
 	posted_begin(&request->posted, size, &request->web->large, may, ows_now());
 }

@@ -76,10 +76,19 @@ bool origin_host(const char *host, const char *local, const char *machine, const
 	       (label && strcasecmp(name, mdns) == 0) || (list && is_listed(name, list));
 }
 
-bool origin_same(const char *origin, const char *host)
+/* Is the page of that Origin one of that Host? */
+static bool is_same(const char *origin, const char *host)
 {
 	const char *at = strstr(origin, "://");
 
 	return at && (!strncmp(origin, "http:", 5) || !strncmp(origin, "https:", 6)) &&
 	       at - origin <= 5 && strcasecmp(at + 3, host) == 0;
+}
+
+bool origin_foreign(const char *host, const char *origin, const char *site)
+{
+	/* none: somebody entered the address. same-site: another port or name of this machine */
+	if (site && strcmp(site, "same-origin") != 0 && strcmp(site, "none") != 0)
+		return true;
+	return origin && (!host || !is_same(origin, host));
 }

@@ -11,5 +11,8 @@
  * server gave the name this machine's address.
  */
 bool origin_host(const char *host, const char *local, const char *machine, const char *list);
-/* Is the page of that Origin one of that Host? */
-bool origin_same(const char *origin, const char *host);
+/*
+ * Does a browser send this for a page of another origin? By the headers Host, Origin and
+ * Sec-Fetch-Site; each may be NULL: it was not sent. What is no browser sends neither of the last.
+ */
+bool origin_foreign(const char *host, const char *origin, const char *site);

@@ -350,10 +350,14 @@ def test_what_is_no_order_does_not_reach_the_writer(scene):
     fake.path.unlink()
 
 
+def devices(page, query="", status=200):
+    return page.json(f"/api/devices{query}", status, X_Owsd="1")
+
+
 def test_all_devices_are_found_with_their_signals_and_present_values(scene):
     daemon, page = editor(scene)
     until(lambda: page.values()["room"] == 21.5, 20, "the bus is up")
-    got = page.json("/api/devices")
+    got = devices(page)
     assert got["whole"], got
     sensor, relay = got["devices"]
     assert (sensor["id"], sensor["path"], sensor["family"], sensor["type"]) == (
@@ -366,15 +370,15 @@ def test_all_devices_are_found_with_their_signals_and_present_values(scene):
     assert relay["signals"] == ["relays"], relay
     outputs = relay["properties"][1]
     assert (outputs["name"], outputs["output"], outputs["value"]) == ("PIO.BYTE", True, "0"), outputs
-    again = page.json(f"/api/devices?ids={SENSOR[1:].replace('.', '')},28.0000000000FF")["devices"]
+    again = devices(page, f"?ids={SENSOR[1:].replace('.', '')},28.0000000000FF")["devices"]
     assert again[0]["properties"] == sensor["properties"] and again[0]["signals"] == ["room"]
     gone = again[1]["properties"][0]
     assert gone["value"] is None and gone["why"], gone
     for wrong in ("", "x", "28.00", SENSOR[1:] + ",", ",".join([SENSOR[1:]] * 129)):
         status = 200 if wrong.endswith(",") and wrong else 400
-        page.json(f"/api/devices?ids={wrong}", status)
+        devices(page, f"?ids={wrong}", status)
     daemon.stop()
-    assert "does it run" in page.json("/api/devices", 503)["error"]
+    assert "does it run" in devices(page, status=503)["error"]
 
 
 def test_a_scan_of_a_hundred_devices_takes_seconds(scene):
@@ -384,8 +388,8 @@ def test_a_scan_of_a_hundred_devices_takes_seconds(scene):
     page = Page(scene, daemon)
     until(lambda: page.json("/api/info")["live"] and page.values()["room"] == 1, 30, "the bus is up")
     # the first one finds out what they all are, too
-    until(lambda: page.json("/api/devices")["whole"], 90, "a scan has read all")
-    got = page.json("/api/devices")
+    until(lambda: devices(page)["whole"], 90, "a scan has read all")
+    got = devices(page)
     assert len(got["devices"]) == 101
     assert [d["properties"][0]["value"] for d in got["devices"][:-1]] == [
         str(i % 50) for i in range(100)]
@@ -393,7 +397,7 @@ def test_a_scan_of_a_hundred_devices_takes_seconds(scene):
 
 def test_only_who_may_configure_has_the_wires_scanned(scene):
     _, page = both(scene)
-    assert "Configure on" in page.json("/api/devices", 403)["error"]
+    assert "Configure on" in devices(page, status=403)["error"]
 
 
 if __name__ == "__main__":

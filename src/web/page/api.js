@@ -3,7 +3,9 @@
 import {way} from "./way.js";
 
 async function ask(path, options) {
-	const {status, text} = await way.ask(path, options);
+	const {headers, ...more} = options;
+	// a page of another site cannot send that header
+	const {status, text} = await way.ask(path, {headers: {"X-Owsd": "1", ...headers}, ...more});
 	let data = null;
 	try {
 		data = JSON.parse(text);
@@ -38,6 +40,6 @@ export const get = (path, values = {}, patience) => {
  */
 export const post = (path, body, patience) => ask(`api/${path}`, {
 	method: "POST",
-	headers: {"Content-Type": "application/json", "X-Owsd": "1"},
+	headers: {"Content-Type": "application/json"},
 	body: JSON.stringify(body), patience,
 });

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Tests of the names that a browser may know this machine by. */
+#include <stdio.h>
+
 #include "unity.h"
 
 #include "src/web/origin.h"
@@ -72,16 +74,55 @@ static void test_all_others_are_not(void)
 	TEST_ASSERT_FALSE(origin_host(".local", "", "", NULL));
 }
 
-static void test_a_page_is_of_the_same_origin_if_its_host_and_port_are(void)
+static void test_what_a_page_of_another_origin_has_a_browser_send_is_foreign(void)
 {
-	TEST_ASSERT_TRUE(origin_same("http://a:80", "a:80"));
-	TEST_ASSERT_TRUE(origin_same("https://A", "a"));
-	TEST_ASSERT_FALSE(origin_same("http://a", "a:80"));
-	TEST_ASSERT_FALSE(origin_same("http://a.b", "a"));
-	TEST_ASSERT_FALSE(origin_same("null", "null"));
-	TEST_ASSERT_FALSE(origin_same("ftp://a", "a"));
-	TEST_ASSERT_FALSE(origin_same("", ""));
-	TEST_ASSERT_FALSE(origin_same("http:x://a", "a"));
+	static const struct {
+		const char *host, *origin, *site;
+		bool foreign;
+	} cases[] = {
+		/* no browser */
+		{"a", NULL, NULL, false},
+		{NULL, NULL, NULL, false},
+		/* the page itself, and an address that somebody entered */
+		{"a", NULL, "same-origin", false},
+		{"a", NULL, "none", false},
+		{"a:80", "http://a:80", "same-origin", false},
+		{"a:80", "http://a:80", NULL, false},
+		{"a", "https://A", NULL, false},
+		/* another one, with Origin */
+		{"a", "http://b", NULL, true},
+		{"a:80", "http://a", NULL, true},
+		{"a", "http://a:80", NULL, true},
+		{"a", "http://a.b", NULL, true},
+		{"a", "ftp://a", NULL, true},
+		{"a", "http:x://a", NULL, true},
+		{"a", "a", NULL, true},
+		{"null", "null", NULL, true},
+		{"", "", NULL, true},
+		{NULL, "http://a", NULL, true},
+		/* or without, as of an image */
+		{"a", NULL, "cross-site", true},
+		{"a", NULL, "same-site", true},
+		{"a", NULL, "", true},
+		{"a", NULL, "Same-Origin", true},
+		{"a", NULL, "same-origin, cross-site", true},
+		/* one of the two suffices */
+		{"a", "http://a", "cross-site", true},
+		{"a", "http://b", "same-origin", true},
+		{"a", "http://b", "none", true},
+	};
+
+	for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+		char what[100];
+
+		snprintf(what, sizeof(what), "Host: %s, Origin: %s, Sec-Fetch-Site: %s",
+		         cases[i].host ? cases[i].host : "-",
+		         cases[i].origin ? cases[i].origin : "-",
+		         cases[i].site ? cases[i].site : "-");
+		TEST_ASSERT_EQUAL_MESSAGE(
+			cases[i].foreign,
+			origin_foreign(cases[i].host, cases[i].origin, cases[i].site), what);
+	}
 }
 
 int main(void)
@@ -89,6 +130,6 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_names_and_addresses_of_this_machine_are_known);
 	RUN_TEST(test_all_others_are_not);
-	RUN_TEST(test_a_page_is_of_the_same_origin_if_its_host_and_port_are);
+	RUN_TEST(test_what_a_page_of_another_origin_has_a_browser_send_is_foreign);
 	return UNITY_END();
 }
