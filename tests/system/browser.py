@@ -36,7 +36,7 @@ class Page:
                    "binary": chromium()}
         session = self.ask("POST", "/session", {"capabilities": {"alwaysMatch": {
             "browserName": "chrome", "goog:chromeOptions": options,
-            "timeouts": {"script": 1000 * owsdtest.PATIENCE},
+            "timeouts": {"script": 1000 * owsdtest.PATIENCE, "pageLoad": 1000 * owsdtest.PATIENCE},
             "goog:loggingPrefs": {"browser": "ALL"}}}})
         self.base = f"/session/{session['sessionId']}"
         self.size(1280, 800)
@@ -60,6 +60,21 @@ class Page:
 
     def go(self, address):
         self.ask("POST", f"{self.base}/url", {"url": address})
+
+    def tab(self, address=None):
+        """The present tab, for show(); with an address a new one, which is shown then."""
+        if address:
+            self.show(self.ask("POST", f"{self.base}/window/new", {"type": "tab"})["handle"])
+            self.go(address)
+        return self.ask("GET", f"{self.base}/window")
+
+    def show(self, tab):
+        """Show this tab, as a click on it does; the others are hidden then."""
+        self.ask("POST", f"{self.base}/window", {"handle": tab})
+        # by that chromedriver has a page believe that it is shown for ever
+        self.devtools("Emulation.setFocusEmulationEnabled", enabled=False)
+        self.devtools("Page.bringToFront")
+        self.until("return !document.hidden", "the tab is shown")
 
     def run(self, script, *arguments):
         """What the script returns; it may return a promise."""

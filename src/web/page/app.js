@@ -2,7 +2,7 @@
 // Starts the page: the views, which of them is shown (the address says it), and the state of all.
 import {announce, el, later, mark, put} from "./dom.js";
 import * as live from "./live.js";
-import {store} from "./store.js";
+import {HIDDEN, store} from "./store.js";
 import {way} from "./way.js";
 import {alarmOf, clock} from "./words.js";
 
@@ -47,7 +47,8 @@ const config = fetched(() => import("./config.js"));
 const VIEWS = {live, alarms, trends, wire, config, about};
 const LATER_MS = 1000; // after the first values: then a lost connection leaves views to look at
 const $ = (id) => document.getElementById(id);
-let present = null;
+const PATIENCE_MS = 1000; // values that are on their way need no words
+let present = null, banner = 0;
 
 function show() {
 	const [name, query] = location.hash.slice(1).split("?");
@@ -75,10 +76,14 @@ function trust() {
 	const why = store.unknown;
 	mark($("state"), "is-", why ? "unknown" : "good");
 	put($("state-words"), why ? "Values unknown" : "Connected");
-	$("banner").hidden = !why;
+	clearTimeout(banner);
+	$("banner").hidden = !why || why === HIDDEN;
+	if (why === HIDDEN)
+		banner = setTimeout(() => { $("banner").hidden = false; }, PATIENCE_MS);
 	put($("banner-words"), why ? `${why} All values are unknown since ${clock(store.now())}. `
 		+ "The page tries again by itself." : "");
-	announce(why ? `Values are unknown. ${why}` : "Values are known.");
+	if (why !== HIDDEN)
+		announce(why ? `Values are unknown. ${why}` : "Values are known.");
 }
 
 function renewed() {

@@ -161,8 +161,12 @@ function told({reload, why}, good) {
 
 /* Do signals that were good become good again? */
 function watch(good) {
-	const until = performance.now() + WATCH_MS;
+	let until = performance.now() + WATCH_MS;
 	const look = () => {
+		if (document.hidden) { // it gets no values
+			until = performance.now() + WATCH_MS;
+			return;
+		}
 		const lost = good.filter((name) => store.find(name) && !store.find(name).good);
 		const names = lost.slice(0, NAMED).join(", ")
 			+ (lost.length > NAMED ? ` and ${lost.length - NAMED} more` : "");

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What the page knows: the signals, their last values and a few before them, and whether it may be
 // believed. Events: "signals" (others than before), "values" (detail: a set of signals), "trust"
-// (why values are unknown, or that they are known again), "alarm".
+// (why values are unknown, or that they are known again), "alarm". A page that is hidden holds no
+// connection; it asks for all anew when it is shown.
 import {get} from "./api.js";
 import {later} from "./dom.js";
 import {askAll} from "./early.js";
@@ -13,6 +14,9 @@ const FAILED_MS = 3000; // a connection that has failed for so long makes values
 const SILENT_MS = 5000; // without an event for so long, the page asks whether the server lives
 const DEAD_MS = 35000;  // and after so long believes nothing: owsd-web sends one each 15 s
 const APART_MS = 5000;  // two clocks that go apart by so much: one stood, or the other was set
+
+/** Why values are unknown when the page is shown again, until it has them. */
+export const HIDDEN = "The page was hidden and asks for the values anew.";
 
 class Store extends EventTarget {
 	info = null;
@@ -29,6 +33,7 @@ class Store extends EventTarget {
 	#asked = 0;
 	#apart = Date.now() - performance.now();
 	#failed = 0; // timer
+	#left = null; // since when the page is hidden and has no stream, as performance.now()
 	#lost = null; // why owsd is lost
 	#broken = "The page has no values yet."; // why the connection cannot be trusted
 	#details = later(() => this.#load(), 1000);
@@ -59,22 +64,30 @@ class Store extends EventTarget {
 
 	async start() {
 		await this.#load();
-		this.#connect();
+		if (document.hidden)
+			this.#leave();
+		else
+			this.#connect();
 		setInterval(() => this.#watch(), 1000);
-		document.addEventListener("visibilitychange", () => this.#watch());
+		// a page that the browser keeps for the way back is left, too
+		const leave = () => this.#leave(), back = () => this.#comeBack();
+		document.addEventListener("visibilitychange", () => document.hidden ? leave() : back());
+		window.addEventListener("pagehide", leave);
+		window.addEventListener("pageshow", back);
 	}
 
 	#tell(type, detail) {
 		this.dispatchEvent(new CustomEvent(type, {detail}));
 	}
 
-	#trust() {
+	/* since: how long ago the last value came that was true, ms */
+	#trust(since = 0) {
 		const why = this.#lost || this.#broken;
 		if (why === this.unknown)
 			return;
 		if (why && !this.unknown)
 			for (const signal of this.signals)
-				this.#keep(signal, null, UNKNOWN);
+				this.#keep(signal, null, UNKNOWN, this.now() - since);
 		this.unknown = why;
 		this.#tell("trust");
 	}
@@ -154,11 +167,42 @@ class Store extends EventTarget {
 		this.#broken = null;
 	}
 
-	#doubt(why) {
+	#doubt(why, since = 0) {
 		this.#heard = performance.now();
 		this.#broken = why;
-		this.#trust();
+		this.#trust(since);
 		this.#connect();
+	}
+
+	/*
+	 * Over HTTP/1.1 a browser has six connections to one server, for all its tabs and for all that
+	 * they ask. Those that nobody looks at leave them to the others. What a page had counts for as
+	 * long as after a failure.
+	 */
+	#leave() {
+		if (this.#left !== null)
+			return;
+		this.#left = performance.now();
+		this.#source?.close();
+		this.#source = null;
+		this.#after = "";
+		this.#fail(HIDDEN);
+	}
+
+	#comeBack() {
+		if (this.#left === null || document.hidden)
+			return;
+		const since = performance.now() - this.#left;
+		this.#left = null;
+		if (this.#slept())
+			return; // that connects
+		if (since < FAILED_MS) {
+			this.#connect();
+			return;
+		}
+		clearTimeout(this.#failed);
+		this.#failed = 0; // a connection that fails now has its own words
+		this.#doubt(HIDDEN, since);
 	}
 
 	/* Of two clocks one stands while the computer sleeps, and the other can be set. */
@@ -175,24 +219,24 @@ class Store extends EventTarget {
 	 * answers another request proves nothing of the stream.
 	 */
 	async #watch() {
-		const now = performance.now(), heard = this.#heard;
-		if (!heard || this.#slept() || now - heard < SILENT_MS)
+		const now = performance.now(), heard = this.#heard, source = this.#source;
+		if (!heard || !source || this.#slept() || now - heard < SILENT_MS)
 			return;
 		if (now - heard >= DEAD_MS) {
 			this.#doubt("Nothing came from owsd-web for half a minute.");
 			return;
 		}
-		if (now - this.#asked < SILENT_MS || document.hidden)
+		if (now - this.#asked < SILENT_MS)
 			return;
 		this.#asked = now;
 		try {
 			const {since} = this.info ?? {};
 			this.info = await get("info");
 			// another process answers, and the stream of the one before it may hang
-			if (this.info.since !== since)
+			if (this.info.since !== since && source === this.#source)
 				this.#connect();
 		} catch (error) {
-			if (heard === this.#heard)
+			if (heard === this.#heard && source === this.#source)
 				this.#doubt(`The page has ${error.message}.`);
 		}
 	}
@@ -200,6 +244,8 @@ class Store extends EventTarget {
 	// --- Signals and values -----------------------------------------------------------------
 
 	async #load() {
+		if (this.#left !== null)
+			return; // all is fetched when the page is shown
 		if (this.#loading) {
 			this.#again = true;
 			return;
@@ -260,8 +306,8 @@ class Store extends EventTarget {
 		return signal;
 	}
 
-	#keep(signal, number, code) {
-		const t = number === null ? this.now() : signal.measured ?? this.now();
+	#keep(signal, number, code, now = this.now()) {
+		const t = number === null ? now : signal.measured ?? now;
 		if (signal.type !== "string")
 			keep(signal.recent, t, number, code, signal.watched);
 	}
