@@ -39,6 +39,7 @@
 #   make soak                     a month of faults in virtual time; HOURS=24 less of it
 #   make test-kill                the writer of the shared memory killed at KILLS=10000 random points
 #   make test-power               power cuts at CUTS=500 points of what history writes
+#   make test-page              the page's own JavaScript, by node
 #   make test-years               YEARS=10 of history: what is kept, its size, trends of it
 #   make model                    the protocol of the shared memory, in a weak memory model
 #   make hammer-arm64             readers and writer of the shared memory as arm64 code, in qemu
@@ -506,6 +507,11 @@ system: all examples $(SYSTEM_AIDS)
 	@OWSD_BUILD=$(abspath $(B)) python3 tests/system/run $(TESTS:%=tests/system/%)
 
 system-programs: $(SYSTEM_AIDS)
+
+# The page's own JavaScript, as far as it touches no document
+.PHONY: test-page
+test-page:
+	@B=$(B) python3 tests/page/run
 
 # The gate's part of the tests, with all processors unless -j says another number. Of the places of a
 # visit one in VISIT_STRIDE is tried, as make unit tries each of them.

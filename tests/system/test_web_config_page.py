@@ -564,29 +564,6 @@ def test_a_thousand_items_stay_usable(scene):
         assert 3 <= calls <= 3 * 2, calls
 
 
-CASES = [[[], []], [["a"], []], [["a", "b", "c"], ["a", "x", "c"]],
-         [list("abcabba"), list("cbabac")], [list("abcdef"), list("acdxef")]]
-
-
-def test_differences_and_merges_are_true(scene):
-    with dialog(scene) as (_, _, page):
-        got = page.run("return import('./diff.js').then(({hunks, patched}) => arguments[0].map("
-                       "([a, b]) => patched(a, hunks(a, b))))", CASES)
-        assert got == [b for _, b in CASES], got
-
-        def merged(base, mine, theirs):
-            both = page.run("return import('./diff.js').then(({merge}) => merge(...arguments))",
-                            list(base), list(mine), list(theirs))
-            return "".join(both["lines"]), len(both["clashes"])
-        assert merged("abcd", "aXcd", "abcdY") == ("aXcdY", 0)
-        assert merged("ab}", "abM}", "abT}") == ("abTM}", 0)
-        assert merged("abc", "aMc", "aTc") == ("aMc", 1)
-        keyed = (["{", "}"], ["{", " Unit K", " Period 1", "}"], ["{", " Min 0", " Unit C", "}"])
-        assert merged(*keyed) == ("{ Min 0 Unit K Period 1}", 1)
-        assert merged("abc", "ac", "ac") == ("ac", 0)
-        assert merged("abcdef", "abXdef", "bcdef") == ("bXdef", 0)
-
-
 # --- Pictures -------------------------------------------------------------------------------
 
 

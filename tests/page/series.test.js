@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// Trends: columns of the recorder, joined with what the page has heard. A time of which nothing is
+// known is a gap, never a line.
+import assert from "node:assert/strict";
+import {beforeEach, test} from "node:test";
+import {server} from "./browser.js";
+import {UNKNOWN} from "./page/words.js";
+
+const {continued, csvOf, goodCode, pastOf} = await import("./page/series.js");
+const {store} = await import("./page/store.js");
+const GOOD = 0xc0, UNCERTAIN = 0x54, ABSENT = 0x08;
+const signal = {name: "room", type: "double", unit: "\u00b0C", recent: []};
+const EMPTY = {name: "room", x: [], min: [], max: [], last: [], code: [], gap: []};
+const now = () => Date.now() + store.skew;
+const points = (all) => all.x.map((x, n) => [x, all.last[n], all.code[n]]);
+
+beforeEach(() => {
+	store.info = {history: true};
+	store.unknown = null;
+	signal.recent = [];
+	server.asked.length = 0;
+});
+
+const past = (data) => {
+	server.answers["api/trend"] = data;
+	return pastOf(signal, 0, 5000, 60);
+};
+
+test("a column is good, bad or unknown, and only a good one has a last value", async () => {
+	const got = await past({from: [0, 1, 2, 3], min: [1, 2, null, null], max: [3, 4, null, null],
+		last: [2, 3, 9, 9], quality: [GOOD, UNCERTAIN, ABSENT, GOOD], gap: [0, 1, 0, 0]});
+	assert.deepEqual(got.last, [2, null, null, 9]);
+	assert.deepEqual(got.code, [GOOD, UNCERTAIN, ABSENT, GOOD]);
+	assert.deepEqual(got.gap, [false, true, false, false]);
+	assert.ok(goodCode(GOOD) && !goodCode(UNKNOWN) && !goodCode(UNCERTAIN));
+});
+
+test("a gap in the middle stays one; what the recorder has not written yet is none", async () => {
+	const got = await past({from: [0, 1, 2, 3], min: [1, null, 1, null], max: [1, null, 1, null],
+		last: [1, null, 1, null], quality: [GOOD, null, GOOD, 0]});
+	assert.deepEqual(got.x, [0, 1, 2]);
+	assert.deepEqual(got.code, [GOOD, UNKNOWN, GOOD]);
+	assert.equal(got.last[1], null);
+});
+
+test("a signal that the recorder does not have is empty, another error is told", async () => {
+	assert.deepEqual(await past(404), EMPTY);
+	await assert.rejects(past(503), {status: 503});
+});
+
+test("without a recorder, and of texts, nothing is asked", async () => {
+	assert.deepEqual((await pastOf({...signal, type: "string"}, 0, 1, 1)).x, []);
+	store.info = {history: false};
+	assert.deepEqual((await past({from: [1]})).x, []);
+	assert.equal(server.asked.length, 0);
+});
+
+test("the past goes on with what was heard after it, and no sooner", () => {
+	const end = now(), at = (n) => end - 10000 + n * 1000;
+	signal.recent = [{t: at(1), v: 1, low: 1, high: 1, code: GOOD},
+		{t: at(5), v: 5, low: 4, high: 6, code: GOOD}];
+	const all = continued({...EMPTY, x: [at(0), at(2)], min: [7, 7], max: [7, 7], last: [7, 7],
+		code: [GOOD, GOOD], gap: [false, false]}, signal, at(0), end);
+	assert.deepEqual(points(all), [[at(0), 7, GOOD], [at(2), 7, GOOD], [at(4), 1, GOOD],
+		[at(5), 5, GOOD], [end, 5, GOOD]]);
+	assert.deepEqual([all.min[3], all.max[3]], [4, 6]);
+});
+
+test("before the first thing that was heard nothing is known", () => {
+	const end = now();
+	signal.recent = [{t: end - 1000, v: 1, low: 1, high: 1, code: GOOD}];
+	assert.deepEqual(points(continued(EMPTY, signal, end - 5000, end)),
+		[[end - 5000, null, UNKNOWN], [end - 1000, 1, GOOD], [end, 1, GOOD]]);
+});
+
+test("a value of which the page does not know any more does not reach to the present", () => {
+	const end = now();
+	signal.recent = [{t: end - 1000, v: 1, low: 1, high: 1, code: GOOD}];
+	store.unknown = "owsd does not run.";
+	assert.deepEqual(points(continued(EMPTY, signal, end - 5000, end)).at(-1), [end, null, UNKNOWN]);
+});
+
+test("a window that ends in the past shows nothing that came after it", () => {
+	const end = now();
+	signal.recent = [{t: end - 9000, v: 1, low: 1, high: 1, code: GOOD},
+		{t: end - 1000, v: 2, low: 2, high: 2, code: GOOD}];
+	assert.deepEqual(points(continued(EMPTY, signal, end - 8000, end - 5000)),
+		[[end - 8000, 1, GOOD], [end - 5000, 1, GOOD]]);
+});
+
+test("what is continued leaves the columns as they were", () => {
+	const columns = {...EMPTY, x: [1], min: [1], max: [1], last: [1], code: [GOOD], gap: [false]};
+	continued(columns, signal, 0, now());
+	assert.deepEqual(columns.x, [1]);
+});
+
+test("a table for spreadsheets has no formula and no broken line", () => {
+	const one = {...EMPTY, x: [0, 1000], min: [1, null], max: [2, null], last: [1.5, null],
+		code: [GOOD, UNKNOWN], gap: [false, false]};
+	const csv = csvOf([{signal: {name: "=1+1", unit: 'a,"b"'}, past: one}]);
+	assert.deepEqual(csv.split("\r\n"), ["time,signal,unit,min,max,last,quality",
+		"1970-01-01T00:00:00.000Z,'=1+1,\"a,\"\"b\"\"\",1,2,1.5,good",
+		"1970-01-01T00:00:01.000Z,'=1+1,\"a,\"\"b\"\"\",,,,unknown", ""]);
+	for (const sign of "+-@")
+		assert.match(csvOf([{signal: {name: `${sign}x`}, past: one}]), new RegExp(`,'\\${sign}x,`));
+});
