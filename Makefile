@@ -39,7 +39,7 @@
 #   make soak                     a month of faults in virtual time; HOURS=24 less of it
 #   make test-kill                the writer of the shared memory killed at KILLS=10000 random points
 #   make test-power               power cuts at CUTS=500 points of what history writes
-#   make test-page              the page's own JavaScript, by node
+#   make test-page                the page's own JavaScript, by node
 #   make test-years               YEARS=10 of history: what is kept, its size, trends of it
 #   make model                    the protocol of the shared memory, in a weak memory model
 #   make hammer-arm64             readers and writer of the shared memory as arm64 code, in qemu
@@ -232,7 +232,7 @@ endef
 # docs/design.md which others it may use
 SOURCES  := $(wildcard src/*/*.c src/*/*/*.c hal/*/*.c hal/*/*/*.c)
 # Of owsd-web: what calls libmicrohttpd; its main(), and what must be in no other program
-WEB_MAIN := src/web/owsd_web.c src/web/no_tls.c
+WEB_MAIN := src/web/owsd_web.c src/web/no_tls.c src/web/wire.c
 WEB_HTTP := $(WEB_MAIN) $(patsubst %,src/web/%.c,api command devices draft events guard http lists past save stored stream)
 # Of owsd-mqtt: what calls libmosquitto, and its main()
 MQTT_ALL := $(patsubst %,src/mqtt/%.c,owsd_mqtt mqtt broker client advice)

@@ -5,7 +5,7 @@
  * own; the engine's thread takes them from here. Nothing that comes over the socket is believed.
  *
  * Room src/control: the control socket: connections, credentials, rights. Uses src/config,
- * src/text, src/libows, src/shm, hal/bus, hal/base.
+ * src/text, src/libows, src/service, src/shm, hal/bus, hal/base.
  */
 #pragma once
 

@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "src/control/socket.h"
-#include "src/shm/peer.h"
+#include "src/service/listen.h"
 
 #define BACKLOG 1024 /* the kernel's net.core.somaxconn may be less */
 
@@ -36,17 +36,11 @@ int socket_listen(int directory, const char *name, bool for_all, ino_t *inode)
 	snprintf(to.sun_path, sizeof(to.sun_path), "/proc/self/fd/%d/%s", directory, name);
 	if (unlinkat(directory, name, 0) < 0 && errno != ENOENT)
 		return -errno;
-	fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+	fd = listen_local(&to, SOCK_SEQPACKET, for_all ? 0666 : 0600, (gid_t)-1);
 	if (fd < 0)
-		return -errno;
-	peer_refuse_descriptors(fd);
-	err = bind(fd, (struct sockaddr *)&to, sizeof(to)) < 0 ? -errno : 0;
-	if (!err)
-		err = socket_open_for(directory, name, for_all);
-	if (!err &&
-	    (fstatat(directory, name, &st, AT_SYMLINK_NOFOLLOW) < 0 || listen(fd, BACKLOG) < 0))
+		return fd;
+	if (fstatat(directory, name, &st, AT_SYMLINK_NOFOLLOW) < 0 || listen(fd, BACKLOG) < 0) {
 		err = -errno;
-	if (err) {
 		close(fd);
 		return err;
 	}

@@ -64,7 +64,6 @@ void client_open(struct serve *s, int fd, const struct listener *from,
 	unsigned index = s->free[s->free_count - 1];
 	struct client *c = &s->clients[index];
 	bool queued = c->queued;
-	const int one = 1;
 
 	s->free_count--;
 	if (index >= s->used)
@@ -75,9 +74,6 @@ void client_open(struct serve *s, int fd, const struct listener *from,
 	c->network = from->network;
 	c->own = from->own;
 	c->peer = *peer;
-	/* else a byte out of band leaves the socket unseen, with its descriptors */
-	if (!c->network)
-		setsockopt(fd, SOL_SOCKET, SO_OOBINLINE, &one, sizeof(one));
 	c->readable = true;
 	c->came_ns = from->came_ns;
 	c->need = FRAME_HEADER;
@@ -127,15 +123,21 @@ void client_part(struct serve *s, int fd, bool network)
 		s->away[s->away_count++] = fd;
 }
 
+/* To end a connection whose peer makes that slow is the porter's, too, as far as there is room. */
+static bool may_close_here(const struct serve *s, const struct client *c)
+{
+	return c->network && (!c->budget.over || s->away_count >= SERVER_CLIENTS);
+}
+
 static void client_close(struct serve *s, struct client *c)
 {
 	bool engine_has_it = c->state == CLIENT_WORKING || c->lent;
 
 	if (c->fd < 0)
 		return;
-	if (!c->network && c->watched)
+	if ((!c->network || c->budget.over) && c->watched)
 		epoll_ctl(s->epoll_fd, EPOLL_CTL_DEL, c->fd, NULL);
-	client_part(s, c->fd, c->network);
+	client_part(s, c->fd, may_close_here(s, c));
 	c->fd = -1;
 	accept_again(s);
 	count(s, COUNT_clients, (uint64_t)-1);
@@ -262,14 +264,33 @@ uint32_t client_room_size(struct client *c)
 	return (uint32_t)(c->area + AREA_SIZE - client_room(c));
 }
 
+/* After a call that sends or receives: is the connection to be closed, since it costs too much? */
+static bool over_budget(struct serve *s, struct client *c, const struct budget_call *call,
+                        size_t bytes)
+{
+	int err = errno;
+	bool over = !budget_end(&c->budget, call, bytes);
+
+	if (over)
+		client_refused(s, COUNT_costly, &s->costly_rate,
+		               "its peer has its own end watched so often that each byte to it "
+		               "takes long");
+	errno = err;
+	return over;
+}
+
 /* Returns how many bytes were sent, 0: none now, -1: the client has left. */
 static ssize_t push(struct serve *s, struct client *c, const uint8_t *bytes, size_t len, int flags)
 {
+	struct budget_call call;
 	ssize_t n;
 
-	do
+	do {
+		budget_begin(&c->budget, &call);
 		n = send(c->fd, bytes, len, MSG_NOSIGNAL | MSG_DONTWAIT | flags);
-	while (n < 0 && errno == EINTR);
+	} while (n < 0 && errno == EINTR);
+	if (over_budget(s, c, &call, len))
+		return -1;
 	if (n < 0)
 		return errno == EAGAIN || errno == EWOULDBLOCK ? 0 : -1;
 	count(s, COUNT_bytes_out, (uint64_t)n);
@@ -362,14 +383,19 @@ void client_send(struct serve *s, struct client *c, const uint8_t *bytes, uint32
 
 /* --- In --------------------------------------------------------------------------------------- */
 
-static ssize_t receive_bytes(const struct client *c, uint8_t *bytes, size_t room)
+static ssize_t receive_bytes(struct serve *s, struct client *c, uint8_t *bytes, size_t room)
 {
+	struct budget_call call;
 	ssize_t n;
 
-	if (!c->network)
-		return peer_receive(c->fd, bytes, room, true);
-	n = recv(c->fd, bytes, room, MSG_DONTWAIT);
-	return n < 0 ? -errno : n;
+	budget_begin(&c->budget, &call);
+	if (c->network) {
+		n = recv(c->fd, bytes, room, MSG_DONTWAIT);
+		n = n < 0 ? -errno : n;
+	} else {
+		n = peer_receive(c->fd, bytes, room, true);
+	}
+	return over_budget(s, c, &call, room) ? -ECONNRESET : n;
 }
 
 /* Receive what is there, up to the end of the present request. False: the client has left. */
@@ -379,7 +405,7 @@ static bool client_receive(struct serve *s, struct client *c)
 	ssize_t n;
 
 	do
-		n = receive_bytes(c, c->area + c->have, room);
+		n = receive_bytes(s, c, c->area + c->have, room);
 	while (n == -EINTR);
 	if (n == -EAGAIN) {
 		c->readable = false;

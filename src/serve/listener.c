@@ -15,8 +15,8 @@
 
 #include "src/serve/client.h"
 #include "src/serve/listener.h"
+#include "src/service/listen.h"
 #include "src/shm/owner.h"
-#include "src/shm/peer.h"
 #include "src/shm/segment.h"
 
 /* Connections that wait for a place; the kernel's net.core.somaxconn may be less. */
@@ -126,66 +126,17 @@ static int open_network(struct serve *s, const struct listen_address *address)
 	return err;
 }
 
-/* Remove the socket of an owsd that was killed, but no socket on which a process listens. */
-static int remove_old(const union address *to)
-{
-	struct stat st;
-	int fd, err;
-
-	if (lstat(to->local.sun_path, &st) < 0)
-		return errno == ENOENT ? 0 : -errno;
-	if (!S_ISSOCK(st.st_mode))
-		return -EEXIST;
-	fd = socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-	if (fd < 0)
-		return -errno;
-	err = connect(fd, &to->any, sizeof(to->local)) < 0 ? errno : 0;
-	close(fd);
-	if (err != ECONNREFUSED)
-		return -EADDRINUSE;
-	return unlink(to->local.sun_path) < 0 ? -errno : 0;
-}
-
-/*
- * The group may use the socket. bind() made it with mode 0600. In a folder that others may write,
- * another file may have taken its place by now; owsd does not change the rights of that file.
- */
-static int give_rights(const char *path, const char *group)
-{
-	int fd = open(path, O_PATH | O_NOFOLLOW | O_CLOEXEC), err = 0;
-	char self[32];
-	struct stat st;
-	gid_t gid;
-
-	if (fd < 0)
-		return -errno;
-	snprintf(self, sizeof(self), "/proc/self/fd/%d", fd);
-	if (fstat(fd, &st) < 0 || !S_ISSOCK(st.st_mode) || st.st_uid != geteuid())
-		err = -EPERM;
-	else if (owner_group(group, &gid) && fchownat(fd, "", (uid_t)-1, gid, AT_EMPTY_PATH) == 0 &&
-	         chmod(self, 0660) < 0)
-		err = -errno;
-	close(fd);
-	return err;
-}
-
 /* A socket of that path, which does not exist, for this user and the group. */
 static int bind_local(struct serve *s, const union address *to, const char *group, bool own)
 {
-	mode_t mask;
-	int fd, err;
+	gid_t gid;
+	bool has = owner_group(group, &gid);
+	int fd = listen_local(&to->local, SOCK_STREAM, has ? 0660 : 0600, has ? gid : (gid_t)-1);
+	int err;
 
-	fd = socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
 	if (fd < 0)
-		return -errno;
-	peer_refuse_descriptors(fd);
-	mask = umask(0177);
-	err = bind(fd, &to->any, sizeof(to->local)) < 0 ? -errno : 0;
-	umask(mask);
-	if (!err)
-		err = give_rights(to->local.sun_path, group);
-	if (!err)
-		err = listener_add(s, fd, (struct listener){.own = own});
+		return fd;
+	err = listener_add(s, fd, (struct listener){.own = own});
 	if (err)
 		close(fd);
 	return err;
@@ -197,7 +148,7 @@ static int open_local(struct serve *s, const char *path)
 	int err;
 
 	snprintf(to.local.sun_path, sizeof(to.local.sun_path), "%s", path);
-	err = remove_old(&to);
+	err = listen_vacate(&to.local);
 	return err ? err : bind_local(s, &to, "owsd-control", false);
 }
 
@@ -387,14 +338,13 @@ bool listeners_accept(struct serve *s)
 				break;
 			union address from = {.any = {.sa_family = AF_UNSPEC}};
 			socklen_t len = sizeof(from);
-			int fd = accept4(s->listeners[i].fd, &from.any, &len,
-			                 SOCK_NONBLOCK | SOCK_CLOEXEC);
+			int fd = listen_accept(s->listeners[i].fd, &from.any, &len);
 
-			if (fd < 0 && errno == EAGAIN)
+			if (fd == -EAGAIN)
 				s->waiting &= ~((uint32_t)1 << i);
 			/* the connection waits until a client leaves, or the next one comes */
-			if (fd < 0 && (errno == EAGAIN || errno == EMFILE || errno == ENFILE ||
-			               errno == ENOBUFS || errno == ENOMEM))
+			if (fd == -EAGAIN || fd == -EMFILE || fd == -ENFILE || fd == -ENOBUFS ||
+			    fd == -ENOMEM)
 				break;
 			any = true;
 			if (fd >= 0)

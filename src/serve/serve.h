@@ -6,8 +6,8 @@
  * after serve_start().
  *
  * Room src/serve: the served owserver protocol, on a thread of its own. Uses src/engine,
- * src/config, src/text, src/libows, src/shm, src/signal, hal/native, hal/chips, hal/owfs, hal/bus,
- * hal/base.
+ * src/config, src/text, src/libows, src/service, src/shm, src/signal, hal/native, hal/chips,
+ * hal/owfs, hal/bus, hal/base.
  */
 #pragma once
 

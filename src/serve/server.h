@@ -13,6 +13,7 @@
 #include "src/serve/request.h"
 #include "src/serve/signals.h"
 #include "src/serve/tokens.h"
+#include "src/service/budget.h"
 #include "src/shm/layout.h"
 #include "src/text/log.h"
 
@@ -85,6 +86,7 @@ struct client {
 	int64_t given_ns;         /* those that were read last did */
 	int64_t active_ns; /* when the connection began, or the last request other than NOP ended */
 	uint64_t served;   /* requests that were answered */
+	struct budget budget;
 
 	size_t have, need, length; /* bytes in the area, and the request's length as far as known */
 	size_t past;               /* bytes of an answered request that a bus still uses */
@@ -116,6 +118,7 @@ struct client {
 	X(came_round)     /* requests that came here before, by way of other servers */ \
 	X(evicted)        /* idle clients closed because others waited */ \
 	X(refused_errors) /* closed at once, because the kernel lacked something */ \
+	X(costly)         /* closed because each byte to them took long */ \
 	X(garbage)        /* frames that are no requests */ \
 	X(timeouts)       /* half requests, answers no client took, idle connections */ \
 	X(bytes_in) \
@@ -185,7 +188,7 @@ struct serve {
 	unsigned again;  /* how often a client was asked in place of epoll, since that was */
 	int64_t rest_ns; /* of thread_yield() */
 	unsigned queued; /* clients that wait for a directory */
-	struct log_rate full_rate, error_rate, peer_rate;
+	struct log_rate full_rate, error_rate, peer_rate, costly_rate;
 	struct bus_counter counters[SERVE_COUNTER_COUNT];
 };
 

@@ -6,15 +6,15 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/epoll.h>
-#include <sys/stat.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include "hal/base/time.h"
 #include "src/libows/ows.h"
-#include "src/service/streams.h"
+#include "src/service/listen.h"
+#include "src/shm/peer.h"
 #include "src/web/doors.h"
 #include "src/web/head.h"
+#include "src/web/wire.h"
 
 #define BACKLOG 1024
 #define BATCH 64
@@ -69,7 +69,7 @@ static int doors_add(struct doors *doors, int fd, const struct listen_address *a
 
 int doors_inherit(struct doors *doors)
 {
-	int fds[DOORS], count = inherited_sockets(fds, DOORS);
+	int fds[DOORS], count = listen_inherited(fds, DOORS);
 
 	for (int i = 0; i < count; i++) {
 		int err = doors_add(doors, fds[i], NULL);
@@ -80,22 +80,11 @@ int doors_inherit(struct doors *doors)
 	return count;
 }
 
-static int listen_at(struct doors *doors, int fd, const struct sockaddr *address, socklen_t len,
-                     const struct listen_address *at)
+/* Takes fd in any case. at: of doors_address(), else NULL. */
+static int listen_at(struct doors *doors, int fd, const struct listen_address *at)
 {
-	int one = 1, err = 0;
+	int err = listen(fd, BACKLOG) ? -errno : 0;
 
-	if (fd < 0)
-		return -errno;
-	if (address->sa_family != AF_UNIX)
-		setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &one, sizeof(one));
-	if (address->sa_family == AF_INET6)
-		setsockopt(fd, IPPROTO_IPV6, IPV6_V6ONLY, &one, sizeof(one));
-	if (bind(fd, address, len) ||
-	    (address->sa_family == AF_UNIX &&
-	     chmod(((const struct sockaddr_un *)(const void *)address)->sun_path, 0660)) ||
-	    listen(fd, BACKLOG))
-		err = -errno;
 	if (!err)
 		return doors_add(doors, fd, at);
 	close(fd);
@@ -105,17 +94,18 @@ static int listen_at(struct doors *doors, int fd, const struct sockaddr *address
 int doors_socket(struct doors *doors, const char *path)
 {
 	struct sockaddr_un address = {.sun_family = AF_UNIX};
-	int err;
+	int fd, err;
 
 	if (strlen(path) >= sizeof(address.sun_path))
 		return -ENAMETOOLONG;
 	memcpy(address.sun_path, path, strlen(path));
-	if (socket_answers(&address))
-		return -EADDRINUSE;
-	if (unlink(path) && errno != ENOENT)
-		return -errno;
-	err = listen_at(doors, socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0),
-	                (const struct sockaddr *)&address, sizeof(address), NULL);
+	err = listen_vacate(&address);
+	if (err)
+		return err;
+	fd = listen_local(&address, SOCK_STREAM, 0660, (gid_t)-1);
+	if (fd < 0)
+		return fd;
+	err = listen_at(doors, fd, NULL);
 	if (!err)
 		memcpy(doors->path, address.sun_path, sizeof(doors->path));
 	return err;
@@ -138,13 +128,22 @@ int doors_address(struct doors *doors, struct listen_address *address)
 	struct sockaddr_in v4 = {.sin_family = AF_INET, .sin_port = htons(address->port)};
 	struct sockaddr *any = address->is_v6 ? (struct sockaddr *)&v6 : (struct sockaddr *)&v4;
 	socklen_t len = address->is_v6 ? sizeof(v6) : sizeof(v4);
-	int err;
+	int fd = socket(any->sa_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+	int one = 1, err;
 
+	if (fd < 0)
+		return -errno;
 	memcpy(&v6.sin6_addr, address->bytes, sizeof(v6.sin6_addr));
 	memcpy(&v4.sin_addr, address->bytes, sizeof(v4.sin_addr));
-	err = listen_at(doors,
-	                socket(any->sa_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0), any,
-	                len, address);
+	setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &one, sizeof(one));
+	if (address->is_v6)
+		setsockopt(fd, IPPROTO_IPV6, IPV6_V6ONLY, &one, sizeof(one));
+	if (bind(fd, any, len)) {
+		err = -errno;
+		close(fd);
+		return err;
+	}
+	err = listen_at(doors, fd, address);
 	if (!err && getsockname(doors->fds[door_at(doors, address)], any, &len) == 0)
 		address->port = ntohs(address->is_v6 ? v6.sin6_port : v4.sin_port);
 	return err;
@@ -180,7 +179,7 @@ static void let_go(struct doors *doors, struct visitor *visitor, bool inside)
 {
 	epoll_ctl(doors->epoll, EPOLL_CTL_DEL, visitor->fd, NULL);
 	if (!inside)
-		close(visitor->fd);
+		crowd_leave(&doors->crowd, wire_close(visitor->fd));
 	visitor->used = false;
 	doors->visitor_count--;
 }
@@ -198,30 +197,22 @@ static void doors_refuse(int fd, int status, const char *why)
 	send(fd, text, (size_t)len, MSG_NOSIGNAL | MSG_DONTWAIT);
 	shutdown(fd, SHUT_WR);
 	/* unread bytes would make the kernel take the answer back */
-	for (int i = 0; i < 4 && recv(fd, text, sizeof(text), MSG_DONTWAIT | MSG_TRUNC) > 0; i++)
-		continue;
+	wire_drain(fd, text, sizeof(text));
 }
 
-static bool same_host(const struct sockaddr_storage *a, const struct sockaddr_storage *b)
+/* Its place among those of its user or address; the reverse proxy has as many as it likes. */
+static int find_place(struct doors *doors, const struct visitor *new)
 {
-	const struct sockaddr_in *a4 = (const void *)a, *b4 = (const void *)b;
-	const struct sockaddr_in6 *a6 = (const void *)a, *b6 = (const void *)b;
+	bool local = new->address.ss_family == AF_UNIX;
+	struct crowd_key key = crowd_address(&new->address);
+	struct peer peer;
 
-	if (a->ss_family != b->ss_family)
-		return false;
-	if (a->ss_family == AF_INET)
-		return a4->sin_addr.s_addr == b4->sin_addr.s_addr;
-	return a->ss_family == AF_INET6 &&
-	       memcmp(&a6->sin6_addr, &b6->sin6_addr, sizeof(a6->sin6_addr)) == 0;
-}
-
-static unsigned waiting_of(const struct doors *doors, const struct sockaddr_storage *address)
-{
-	unsigned count = 0;
-
-	for (unsigned i = 0; i < DOORS_CONNECTIONS; i++)
-		count += doors->visitors[i].used && same_host(&doors->visitors[i].address, address);
-	return count;
+	if (local && peer_look_into(new->fd, &peer, NULL, 0) == 0)
+		key = crowd_user(peer.uid);
+	if (!key.kind || (local && (!peer.uid || peer.uid == geteuid())) ||
+	    doors->is_proxy(doors->ctx, new->fd))
+		return CROWD_NOBODY;
+	return crowd_enter(&doors->crowd, &key, DOORS_PER_PEER);
 }
 
 static void admit(struct doors *doors, struct visitor *visitor)
@@ -238,11 +229,11 @@ static void admit(struct doors *doors, struct visitor *visitor)
 static void look_at(struct doors *doors, struct visitor *visitor, bool gone)
 {
 	static char head[HEAD_MAX + 1];
-	ssize_t got = recv(visitor->fd, head, sizeof(head), MSG_PEEK | MSG_DONTWAIT);
+	ptrdiff_t got = wire_look(visitor->fd, head, sizeof(head));
 	const char *why;
 	int status;
 
-	if (got < 0 && (errno == EAGAIN || errno == EINTR))
+	if (got == -EAGAIN || got == -EINTR)
 		return;
 	if (got <= 0) {
 		let_go(doors, visitor, false);
@@ -263,16 +254,24 @@ static void welcome(struct doors *doors, const struct visitor *new, int64_t now_
 {
 	unsigned i = 0;
 
-	if (doors->visitor_count + doors->count_inside(doors->ctx) >= DOORS_CONNECTIONS ||
-	    waiting_of(doors, &new->address) >= DOORS_PER_PEER) {
-		doors_refuse(new->fd, 503, "too many connections: try again later");
+	int place = -ENOSPC;
+
+	if (doors->visitor_count + doors->count_inside(doors->ctx) < DOORS_CONNECTIONS)
+		place = find_place(doors, new);
+	if (!wire_begin(new->fd, new->address.ss_family == AF_UNIX, place)) {
+		crowd_leave(&doors->crowd, place);
 		close(new->fd);
+		return;
+	}
+	if (place == -ENOSPC) {
+		doors_refuse(new->fd, 503, "too many connections: try again later");
+		wire_close(new->fd);
 		return;
 	}
 	while (doors->visitors[i].used)
 		i++;
 	if (doors_watch(doors, new->fd, DOORS + i, EPOLLET | EPOLLRDHUP)) {
-		close(new->fd);
+		crowd_leave(&doors->crowd, wire_close(new->fd));
 		return;
 	}
 	doors->visitors[i] = *new;
@@ -282,7 +281,7 @@ static void welcome(struct doors *doors, const struct visitor *new, int64_t now_
 	doors->visitor_count++;
 }
 
-/* No descriptor is left: connections wait with the kernel for a moment. */
+/* No descriptor is left, or the porter is late: connections wait with the kernel for a moment. */
 static void pause_doors(struct doors *doors, int64_t now_ns)
 {
 	doors->paused_ns = now_ns + PAUSE_NS;
@@ -305,13 +304,16 @@ static bool accept_some(struct doors *doors, int door, int64_t now_ns)
 	for (int i = 0; i < BATCH; i++) {
 		struct visitor new = {.used = true, .len = sizeof(new.address)};
 
-		new.fd = accept4(door, (struct sockaddr *)&new.address, &new.len,
-		                 SOCK_CLOEXEC | SOCK_NONBLOCK);
-		if (new.fd < 0 &&
-		    (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM))
+		if (wire_is_full()) {
+			pause_doors(doors, now_ns);
+			return false;
+		}
+		new.fd = listen_accept(door, (struct sockaddr *)&new.address, &new.len);
+		if (new.fd == -EMFILE || new.fd == -ENFILE || new.fd == -ENOBUFS ||
+		    new.fd == -ENOMEM)
 			pause_doors(doors, now_ns);
 		if (new.fd < 0)
-			return errno == EAGAIN;
+			return new.fd == -EAGAIN;
 		bound(new.fd);
 		welcome(doors, &new, now_ns);
 	}
@@ -328,6 +330,11 @@ static void end_late(struct doors *doors, int64_t now_ns)
 		doors_refuse(visitor->fd, 408, "the request took longer than 30 seconds");
 		let_go(doors, visitor, false);
 	}
+}
+
+void doors_leave(struct doors *doors, int fd)
+{
+	crowd_leave(&doors->crowd, wire_leave(fd));
 }
 
 void doors_take(struct doors *doors, int64_t now_ns)
@@ -372,10 +379,11 @@ void doors_close(struct doors *doors)
 {
 	for (unsigned i = 0; doors->visitors && i < DOORS_CONNECTIONS; i++)
 		if (doors->visitors[i].used)
-			close(doors->visitors[i].fd);
+			wire_close(doors->visitors[i].fd);
+	/* nobody has accepted what waits there, and what was sent along */
 	for (unsigned i = 0; i < doors->count; i++)
 		if (doors->fds[i] >= 0)
-			close(doors->fds[i]);
+			wire_close(doors->fds[i]);
 	if (*doors->path)
 		unlink(doors->path);
 	if (doors->epoll >= 0)

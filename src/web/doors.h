@@ -10,10 +10,11 @@
 #include <sys/socket.h>
 
 #include "src/config/listen.h"
+#include "src/web/crowd.h"
 
 #define DOORS (LISTEN_MAX + 1)
-#define DOORS_CONNECTIONS 1200
-#define DOORS_PER_PEER 64 /* of one TCP address */
+#define DOORS_CONNECTIONS CROWD
+#define DOORS_PER_PEER 64 /* of one user at a socket, or one TCP address */
 #define DOORS_IDLE_S 30
 
 struct log;
@@ -30,14 +31,16 @@ struct doors {
 	struct visitor *visitors; /* DOORS_CONNECTIONS */
 	unsigned visitor_count;
 	int64_t paused_ns; /* no descriptor was left: listen again then; 0: it listens */
-	char path[108];    /* of the socket, to remove at the end; "": the manager's */
+	struct crowd crowd;
+	char path[108]; /* of the socket, to remove at the end; "": the manager's */
 	/* Takes a connection and closes it at the end. count: how many it has already. */
 	void (*welcome)(void *ctx, int fd, const struct sockaddr *address, socklen_t len);
 	unsigned (*count_inside)(void *ctx);
+	bool (*is_proxy)(void *ctx, int fd);
 	void *ctx;
 };
 
-/* Before the others; welcome, count_inside and ctx are set. 0 or a negative errno. */
+/* Before the others; the functions and ctx are set. 0 or a negative errno. */
 int doors_open(struct doors *doors);
 /* Listen: at the sockets of LISTEN_FDS (sd_listen_fds(3)); how many, or a negative errno. */
 int doors_inherit(struct doors *doors);
@@ -55,6 +58,8 @@ bool doors_shut(struct doors *doors, const struct listen_address *keep, unsigned
                 struct listen_address *shut);
 /* Accept, read heads, refuse. Never blocks. */
 void doors_take(struct doors *doors, int64_t now_ns);
+/* One that was welcomed ends: its place is free. welcome's taker closes it when this returns. */
+void doors_leave(struct doors *doors, int fd);
 /* When doors_take() has to be called at the latest. */
 int64_t doors_next(const struct doors *doors);
 void doors_close(struct doors *doors);

@@ -251,11 +251,14 @@ static void expect_body(struct request *request, const char *url)
 static void meet(void *cls, struct MHD_Connection *connection, void **own,
                  enum MHD_ConnectionNotificationCode code)
 {
-	const struct web *web = cls;
+	const union MHD_ConnectionInfo *info = MHD_get_connection_info(
+		connection, MHD_CONNECTION_INFO_CONNECTION_FD);
+	struct web *web = cls;
 	int64_t *came_ns;
 
-	(void)connection;
 	if (code == MHD_CONNECTION_NOTIFY_CLOSED) {
+		if (info)
+			doors_leave(&web->doors, info->connect_fd);
 		free(*own);
 		return;
 	}
@@ -349,6 +352,13 @@ static unsigned count_inside(void *ctx)
 	return info ? info->num_connections : 0;
 }
 
+static bool is_proxy(void *ctx, int fd)
+{
+	const struct web *web = ctx;
+
+	return person_is_proxy(fd, &web->face->config->web);
+}
+
 int http_open(struct web *web)
 {
 	const union MHD_DaemonInfo *info;
@@ -356,16 +366,16 @@ int http_open(struct web *web)
 	web->daemon = MHD_start_daemon(
 		MHD_USE_EPOLL | MHD_USE_NO_LISTEN_SOCKET | MHD_ALLOW_SUSPEND_RESUME, 0, NULL, NULL,
 		handle, web, MHD_OPTION_CONNECTION_LIMIT, (unsigned)DOORS_CONNECTIONS,
-		MHD_OPTION_PER_IP_CONNECTION_LIMIT, (unsigned)DOORS_PER_PEER,
-		MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)DOORS_IDLE_S,
-		MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)MEMORY, MHD_OPTION_NOTIFY_COMPLETED,
-		completed, NULL, MHD_OPTION_NOTIFY_CONNECTION, meet, web, MHD_OPTION_END);
+		MHD_OPTION_NOTIFY_CONNECTION, meet, web, MHD_OPTION_CONNECTION_TIMEOUT,
+		(unsigned)DOORS_IDLE_S, MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)MEMORY,
+		MHD_OPTION_NOTIFY_COMPLETED, completed, NULL, MHD_OPTION_END);
 	if (!web->daemon)
 		return -ENOMEM;
 	info = MHD_get_daemon_info(web->daemon, MHD_DAEMON_INFO_EPOLL_FD);
 	web->epoll = info ? info->epoll_fd : -1;
 	web->doors.welcome = welcome;
 	web->doors.count_inside = count_inside;
+	web->doors.is_proxy = is_proxy;
 	web->doors.ctx = web;
 	return web->epoll < 0 ? -ENOTSUP : 0;
 }

@@ -20,8 +20,10 @@
 #include "src/web/http.h"
 #include "src/web/stream.h"
 #include "src/web/web.h"
+#include "src/web/wire.h"
 
-#define DESCRIPTORS (2 * DOORS_CONNECTIONS) /* connections, files that are sent, and a few more */
+/* Connections, files that are sent, what the porter has not yet taken, and a few more */
+#define DESCRIPTORS (3 * DOORS_CONNECTIONS)
 #define TICK_NS NS_PER_S
 /* Streams have a pace of their own: that of the face is for what comes in bursts */
 #define PACE_NS (20 * NS_PER_MS)
@@ -71,12 +73,14 @@ static void owsd_web_run(struct web *web)
 	if (pace_send(&web->pace, now_ns, web->recent.newest))
 		stream_wake_all(web);
 	http_run(web);
+	wire_run(now_ns);
 	face_status(web->face, "%u streams, %d signals%s", web->stream_count, web->recent.count,
 	            web->face->live ? "" : ", owsd does not run");
 	pace_spent(&web->pace, cpu_ns() - begin);
 	now_ns = ows_now();
 	web->face->tick_ns = earlier(earlier(now_ns + TICK_NS, pace_due(&web->pace)),
 	                             earlier(http_next(web, now_ns), doors_next(&web->doors)));
+	web->face->tick_ns = earlier(web->face->tick_ns, wire_next(now_ns));
 }
 
 /* --- Doors ----------------------------------------------------------------------------------- */
@@ -238,6 +242,7 @@ static int open_web(struct face *face)
 	recent_make(&web.recent, 0);
 	events_miss_alarms(&web);
 	raise_limit();
+	wire_open();
 	err = http_open(&web);
 	if (err)
 		face_complain(face->ops->program, "libmicrohttpd: %s", strerror(-err));
@@ -415,6 +420,7 @@ static void close_web(struct face *face)
 	doors_close(&web->doors);
 	end_streams(web);
 	http_close(web);
+	wire_end();
 	events_forget_alarms(web);
 	shared_forget(&web->shared);
 	recent_free(&web->recent);
