@@ -1,29 +1,32 @@
 /* SPDX-License-Identifier: MIT */
 /* owsd-config: the one program that may write the configuration of an owsd for others. */
 #include <errno.h>
+#include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
-#include <sys/socket.h>
-#include <sys/stat.h>
-#include <sys/un.h>
 #include <time.h>
 #include <unistd.h>
 
 #include "hal/base/time.h"
 #include "src/face/arguments.h"
+#include "src/service/listen.h"
 #include "src/service/notify.h"
 #include "src/service/streams.h"
 #include "src/service/unix_signals.h"
 #include "src/shm/owner.h"
+#include "src/shm/peer.h"
 #include "src/shm/place.h"
 #include "src/text/log.h"
 #include "src/writer/visit.h"
+#include "src/writer/visitors.h"
 
 #define PROGRAM "owsd-config"
 #define GROUP "owsd-config"
 #define BACKLOG 16
+#define LOOK_MS 100   /* how often it looks which visits have ended */
 #define IDLE_MS 30000 /* then the service manager waits in its place */
 #define PAUSE_NS (200 * NS_PER_MS)
 
@@ -31,25 +34,18 @@
 static int listen_at(const char *path)
 {
 	struct sockaddr_un address = {.sun_family = AF_UNIX};
-	int fd, err = 0;
-	mode_t mask;
+	int fd, err;
 
 	if (strlen(path) >= sizeof(address.sun_path))
 		return -ENAMETOOLONG;
 	memcpy(address.sun_path, path, strlen(path));
-	if (socket_answers(&address))
-		return -EADDRINUSE;
-	if (unlink(path) && errno != ENOENT)
-		return -errno;
-	fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-	if (fd < 0)
-		return -errno;
-	mask = umask(0177);
-	if (bind(fd, (const struct sockaddr *)&address, sizeof(address)) || listen(fd, BACKLOG))
-		err = -errno;
-	umask(mask);
-	if (!err)
+	err = listen_vacate(&address);
+	if (err)
+		return err;
+	fd = listen_local(&address, SOCK_STREAM, 0600, (gid_t)-1);
+	if (fd < 0 || listen(fd, BACKLOG) == 0)
 		return fd;
+	err = -errno;
 	close(fd);
 	return err;
 }
@@ -73,7 +69,7 @@ static int name_socket(const char *instance, char *path, size_t size)
 /* The socket of the service manager, path then is ""; else that of -l, or in this user's place. */
 static int writer_socket(const struct face_arguments *a, char *path, size_t size)
 {
-	int fd, count = inherited_sockets(&fd, 1);
+	int fd, count = listen_inherited(&fd, 1);
 
 	*path = '\0';
 	if (count < 0) {
@@ -103,35 +99,77 @@ static void find_group(struct writer *writer)
 	                    owner_group(GROUP, &writer->group);
 }
 
-static void take_one(const struct writer *writer, int listener)
+/*
+ * In a process of its own, which keeps no other connection waiting, and which ends with all that
+ * the peer has sent along: the kernel lets no connection linger in a process that ends.
+ */
+static _Noreturn void attend(const struct writer *writer, int fd, int begin, bool may, int prefix)
+{
+	sigset_t ends;
+	char byte;
+
+	sigemptyset(&ends);
+	sigaddset(&ends, SIGTERM);
+	sigaddset(&ends, SIGINT);
+	sigprocmask(SIG_UNBLOCK, &ends, NULL);
+	/* owsd-config closes its copy first: none of those of this process is closed before */
+	while (read(begin, &byte, 1) < 0 && errno == EINTR)
+		;
+	visit(writer, fd, may);
+	log_drain(writer->log, STDERR_FILENO, prefix);
+	exit(EXIT_SUCCESS);
+}
+
+static void take_one(const struct writer *writer, struct visitors *visitors, int listener,
+                     int prefix)
 {
 	const struct timespec pause = {.tv_nsec = PAUSE_NS};
-	int fd = accept4(listener, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK);
+	struct sockaddr_storage from = {0};
+	socklen_t len = sizeof(from);
+	struct peer peer = {0};
+	int fd = listen_accept(listener, (struct sockaddr *)&from, &len), begin[2];
+	bool may;
+	pid_t pid;
 
-	if (fd < 0) {
-		if (errno == EMFILE || errno == ENFILE || errno == ENOMEM || errno == ENOBUFS)
-			nanosleep(&pause, NULL);
+	if (fd == -EMFILE || fd == -ENFILE || fd == -ENOMEM || fd == -ENOBUFS)
+		nanosleep(&pause, NULL);
+	if (fd < 0)
 		return;
+	peer_look_into(fd, &peer, NULL, 0);
+	may = visitors_may(visitors, peer.uid);
+	pid = pipe2(begin, O_CLOEXEC) ? -1 : fork();
+	if (pid == 0) {
+		close(begin[1]);
+		attend(writer, fd, begin[0], may, prefix);
 	}
-	visit(writer, fd);
+	if (pid < 0)
+		log_warning(writer->log, "no process for a request: %s", strerror(errno));
+	else
+		visitors_add(visitors, pid, peer.uid);
 	close(fd);
+	close(begin[0]);
+	close(begin[1]);
 }
 
 /* Until a signal ends it, or no client comes for a while and the service manager listens. */
-static void serve(struct writer *writer, int listener, bool may_leave, struct unix_signals *signals,
-                  int prefix)
+static void serve(struct writer *writer, struct visitors *visitors, int listener, bool may_leave,
+                  struct unix_signals *signals, int prefix)
 {
 	while (!signals->end) {
 		struct pollfd fds[] = {{.fd = signals->fd, .events = POLLIN},
 		                       {.fd = listener, .events = POLLIN}};
-		int n = poll(fds, 2, may_leave ? IDLE_MS : -1);
+		unsigned there = visitors_look(visitors);
+		int n;
 
+		if (there == VISITORS)
+			fds[1].fd = -1;
+		n = poll(fds, 2, there ? LOOK_MS : may_leave ? IDLE_MS : -1);
 		unix_signals_take(signals);
-		if (n == 0)
+		if (n == 0 && !there)
 			return;
 		if (fds[1].revents && !signals->end) {
 			find_group(writer); /* it may have been made meanwhile */
-			take_one(writer, listener);
+			take_one(writer, visitors, listener, prefix);
 		}
 		log_drain(writer->log, STDERR_FILENO, prefix);
 	}
@@ -139,6 +177,7 @@ static void serve(struct writer *writer, int listener, bool may_leave, struct un
 
 static int owsd_config_run(const struct face_arguments *a, struct unix_signals *signals)
 {
+	struct visitors visitors = {0};
 	struct writer writer = {.file = a->file, .instance = a->instance};
 	int prefix = journal_is_stderr(), listener;
 	char path[PLACE_PATH + 128];
@@ -161,11 +200,12 @@ static int owsd_config_run(const struct face_arguments *a, struct unix_signals *
 		           OWSD_VERSION, a->file, path);
 	log_drain(writer.log, STDERR_FILENO, prefix);
 	notify_send(&notify, NOTIFY_READY);
-	serve(&writer, listener, !*path, signals, prefix);
+	serve(&writer, &visitors, listener, !*path, signals, prefix);
 	notify_send(&notify, NOTIFY_STOPPING);
+	visitors_end(&visitors);
 	if (*path)
 		unlink(path);
-	close(listener);
+	/* the listener ends with the process: what was sent to it may be slow to close */
 	notify_close(&notify);
 	log_finish(writer.log, STDERR_FILENO, prefix);
 	log_destroy(writer.log);

@@ -2,6 +2,7 @@
 /* Receives a request within its deadline, has it done, and sends the answer. */
 #include <errno.h>
 #include <poll.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
@@ -34,10 +35,10 @@ static ssize_t visit_receive(int fd, char *to, size_t room, int64_t until_ns)
 {
 	ssize_t n;
 
-	while ((n = recv(fd, to, room, 0)) < 0 && (errno == EAGAIN || errno == EINTR))
+	while ((n = peer_receive(fd, to, room, true)) == -EAGAIN || n == -EINTR)
 		if (!visit_await(fd, POLLIN, until_ns))
 			return -ETIMEDOUT;
-	return n < 0 ? -errno : n;
+	return n;
 }
 
 static void send_answer(int fd, const char *text, size_t len, int64_t until_ns)
@@ -72,6 +73,7 @@ static void say_lost(ssize_t got, struct answer *answer)
 	answer_say(answer, ANSWER_REFUSED, "%s",
 	           got == -ETIMEDOUT ? "the request took longer than ten seconds"
 	           : got == 0        ? "the request ends before its end"
+	           : got == -EBADMSG ? "a descriptor came with the request: send bytes alone"
 	                             : strerror((int)-got));
 }
 
@@ -186,7 +188,18 @@ static void log_visit(const struct writer *writer, const struct peer *peer, cons
 	       *answer->why ? ", " : "", answer->why);
 }
 
-void visit(const struct writer *writer, int fd)
+/* A signal that ends the program waits until the change is whole. */
+static void hold_signals(bool hold)
+{
+	sigset_t ends;
+
+	sigemptyset(&ends);
+	sigaddset(&ends, SIGTERM);
+	sigaddset(&ends, SIGINT);
+	sigprocmask(hold ? SIG_BLOCK : SIG_UNBLOCK, &ends, NULL);
+}
+
+void visit(const struct writer *writer, int fd, bool may)
 {
 	struct answer answer = {.status = ANSWER_ERROR};
 	struct order order = {0};
@@ -201,15 +214,21 @@ void visit(const struct writer *writer, int fd)
 		answer_say(&answer, ANSWER_REFUSED,
 		           "no right to change the configuration: that is for root and the group "
 		           "owsd-config");
+	else if (!may)
+		answer_say(&answer, ANSWER_REFUSED,
+		           "too many requests of this user wait: try again when one has ended");
 	else
 		body = receive_request(fd, &order, &answer);
-	if (body)
+	if (body) {
+		hold_signals(true);
 		carry_out(writer, &order, body, &answer);
+	}
 	log_visit(writer, &peer,
 	          !body                         ? "request"
 	          : order.kind == ORDER_RESTORE ? "restore"
 	                                        : "replace",
 	          &order, &answer);
+	hold_signals(false);
 	text = answer_print(&answer, &len);
 	if (text)
 		send_answer(fd, text, len, ows_now() + PATIENCE_NS);

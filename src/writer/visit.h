@@ -21,7 +21,9 @@ struct writer {
 };
 
 /*
- * The connection is not blocking; the caller closes it. Takes ten seconds for the request and ten
- * for the answer at most, five to lock the file, and half a minute for the reload.
+ * In a process of its own: SIGTERM and SIGINT end it but while a change is under way. The
+ * connection is not blocking, and ends with the process. may: else the user has too many visits.
+ * Takes ten seconds for the request and ten for the answer at most, five to lock the file, and half
+ * a minute for the reload.
  */
-void visit(const struct writer *writer, int connection);
+void visit(const struct writer *writer, int connection, bool may);

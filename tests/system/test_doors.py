@@ -1,17 +1,20 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Nobody who is let in, or not let in, costs owsd a thread: while users of every kind do their worst at
-its sockets, others join, a reload is done, SafeValue is in time, and owsd ends. The bounds are
-generous: an attack holds for an hour."""
+its sockets, others join, a reload is done, SafeValue is in time, and owsd ends. So it is with the
+sockets of the other programs, their own and those of a service manager: others are served, and the
+program ends. The bounds are generous: an attack holds for an hour."""
 
 import os
 import shutil
 import signal
+import socket
 import time
 
 import faulty
 import owsdtest
 import private
+import writing
 from owsdtest import raw, until
 from test_control import CLIENT, LOCK, PY, door
 from test_privilege import ctl, daemon_of, good, programs
@@ -152,6 +155,120 @@ def test_the_same_at_the_sockets_of_the_served_protocol(scene):
         for _ in range(5):
             lasts(lambda: served(scene, daemon, where), "a served reading")
         unharmed(scene, daemon, plc)
+
+
+REQUEST = "GET /api/info HTTP/1.1\r\nHost: localhost\r\n\r\n"
+ORDER = "owsd-config 1\ndo: restore\nbase: 0000000000000000\n\n"
+
+
+def doors_of(scene, program, user, daemon, env, *options):
+    """The program with a socket of its own, and with one that it is handed over."""
+    command = [reached(owsdtest.BUILD / program), "-n", daemon.name, "-c", daemon.config, *options]
+    own, handed = owsdtest.segment(daemon.name, "web"), scene.path / "handed.sock"
+    alone = command
+    if program == "owsd-config":  # the place of the sockets is that of the user of owsd
+        own = scene.path / "own.sock"
+        alone = [*command, "-l", own]
+    for path, start in ((own, alone), (handed, writing.activated(handed, *command))):
+        face = scene.start([*private.as_user(user), *start], env=env)
+        until(path.exists, 20, face.log)
+        os.chmod(path, 0o666)
+        yield face, path
+        path.unlink(missing_ok=True)
+
+
+def asked(path, request, expected):
+    """At a path, or at a port of this machine."""
+    local = not isinstance(path, int)
+    with socket.socket(socket.AF_UNIX if local else socket.AF_INET) as door:
+        door.settimeout(60)
+        door.connect(str(path) if local else ("127.0.0.1", path))
+        door.sendall(request.encode())
+        answer = b""
+        while more := door.recv(65536):
+            answer += more
+    assert expected in answer.decode(), answer
+
+
+def test_the_same_at_the_page_and_at_the_writer(scene):
+    for env in kernels():
+        daemon = plant(scene)
+        port = owsdtest.free_port()
+        for program, user, enemy, text, expected, options in (
+                ("owsd-web", "owsd", "reader", REQUEST, '"signals"', ("-l", f"127.0.0.1:{port}")),
+                ("owsd-config", "owsd-config", "editor", ORDER, "conflict", ())):
+            for face, path in doors_of(scene, program, user, daemon, env, *options):
+                lasts(lambda: asked(path, text, expected), "the first request")
+                held = attack(scene, enemy, "stream", path, text)
+                assert env is None or held, (program, path)
+                for _ in range(3):
+                    lasts(lambda: asked(path, text, expected), f"{program} at {path}")
+                    if options:
+                        lasts(lambda: asked(port, text, expected), "the page at its address")
+                lasts(face.stop, f"the end of {program}")
+        assert daemon.stop() == 0
+
+
+ASK = """
+import socket, sys
+door = socket.socket(socket.AF_UNIX)
+door.connect(sys.argv[1])
+door.sendall(sys.argv[2].encode())
+while data := door.recv(65536):
+    print(data.decode(), end="")
+"""
+EVENTS = REQUEST.replace("info", "events")
+
+
+def page_of(scene, daemon):
+    port, path = owsdtest.free_port(), owsdtest.segment(daemon.name, "web")
+    page = scene.start([*private.as_user("owsd"), reached(owsdtest.BUILD / "owsd-web"), "-n", daemon.name,
+                        "-c", daemon.config, "-l", f"127.0.0.1:{port}"])
+    until(path.exists, 20, page.log)
+    return page, path, port
+
+
+def said_to(scene, who, path):
+    done = scene.start([*private.as_user(who), PY, "-c", ASK, path, REQUEST])
+    done.wait()
+    return done.log()
+
+
+def test_watches_of_a_peer_cost_the_peer_its_connection(scene):
+    where, port = scene.path / "served.sock", owsdtest.free_port()
+    # a change in each period, for the streams
+    daemon = plant(scene, ListenSocket=str(where), Listen=f"127.0.0.1:{port}")
+    page, path, web_port = page_of(scene, daemon)
+    attack_of = reached(owsdtest.BUILD / "system" / "doors")
+    for who, at, text in (("stranger", port, "/28.A0B1C2000001/type"), ("plc", where, "/28.A0B1C2000001/type"),
+                          ("stranger", web_port, EVENTS), ("reader", path, EVENTS)):
+        enemy = scene.start([*private.as_user(who), attack_of, "watches", at, text])
+        until(lambda: "ready" in enemy.log() or not enemy.running(), 60, "the watches")
+        if "watches: No space" in enemy.log():
+            owsdtest.skip("this kernel gives a user too few watches")
+        until(lambda: "closed" in enemy.log(), 120, f"{who} at {at} is closed: {enemy.log()}")
+        enemy.kill()
+    for at in (path, web_port):
+        lasts(lambda: asked(at, REQUEST, '"signals"'), "the page")
+    for _ in range(3):
+        lasts(lambda: served(scene, daemon, where), "a served reading")
+    assert page.stop() == 0
+
+
+def test_a_user_leaves_places_of_the_page_to_others(scene):
+    daemon = plant(scene)
+    page, path, port = page_of(scene, daemon)
+    attack_of = reached(owsdtest.BUILD / "system" / "doors")
+    for text in ("G", REQUEST.replace("GET", "POST").replace("\r\n\r\n", "\r\nContent-Length: 9\r\n\r\n")):
+        enemy = scene.start([*private.as_user("reader"), attack_of, "places", path, text])
+        until(lambda: "ready" in enemy.log() or not enemy.running(), 60, enemy.log)
+        assert enemy.log().split()[0] == "64", enemy.log()
+        for who in ("plc", "owsd"):
+            assert '"signals"' in said_to(scene, who, path), who
+        asked(port, REQUEST, '"signals"')
+        enemy.kill()
+        until(lambda: "signals" in said_to(scene, "reader", path), 20, "its places are free again")
+    assert page.stop() == 0
 
 
 def porter_of(daemon):

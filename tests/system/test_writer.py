@@ -198,15 +198,27 @@ def test_what_is_no_request_is_refused_and_changes_nothing(scene):
         assert writing.answer_of(door).status == "done"
 
 
-def test_a_peer_that_is_slow_loses_its_turn_after_ten_seconds(scene):
+def test_a_peer_that_is_slow_keeps_nobody_waiting_and_is_refused_after_ten_seconds(scene):
+    writer = alone(scene, "OwsDrv {\n}\n")
+    slow = [writing.connect(writer.socket) for _ in range(8)]
+    for door in slow:
+        door.sendall(b"owsd-config 1\ndo: rep")
+    begun = time.monotonic()
+    done = writer.replace("OwsDrv {\n  Period 2\n}\n")
+    assert done.status == "done" and time.monotonic() - begun < 8, done.text
+    for door in slow:
+        answer = writing.answer_of(door)
+        assert answer.status == "refused" and "longer than ten seconds" in answer.why, answer.text
+    assert 8 < time.monotonic() - begun < owsdtest.patience(15)
+
+
+def test_the_end_waits_for_no_request(scene):
     writer = alone(scene, "OwsDrv {\n}\n")
     slow = writing.connect(writer.socket)
     slow.sendall(b"owsd-config 1\ndo: rep")
+    assert writer.replace("OwsDrv {\n  Period 2\n}\n").status == "done"
     begun = time.monotonic()
-    done = writer.replace("OwsDrv {\n  Period 2\n}\n")
-    assert done.status == "done" and time.monotonic() - begun > 8, done.text
-    answer = writing.answer_of(slow)
-    assert answer.status == "refused" and "longer than ten seconds" in answer.why, answer.text
+    assert writer.stop() == 0 and time.monotonic() - begun < 5, writer.log()
 
 
 def test_of_many_at_once_one_wins_and_the_others_learn_it(scene):
