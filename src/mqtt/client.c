@@ -14,6 +14,9 @@
 #include "src/signal/utf8.h"
 
 #define SESSION "session"
+/* A birth of an earlier run has to come back whole, to be emptied; libmosquitto takes any length */
+#define MESSAGE_MOST (1024 * 1024)
+#define NO_KEEPALIVE 1 /* less than libmosquitto takes */
 #define CA_PATH "/etc/ssl/certs"
 
 bool client_mqtt5(const struct broker *b)
@@ -221,6 +224,24 @@ static bool set_will(void *ctx, const char *topic, const char *text, size_t len,
 	return false;
 }
 
+/*
+ * Have the broker keep what is longer from us. No function sets a property of CONNECT alone; the
+ * one that connects and waits keeps it for all that come after, though it refuses this keep-alive.
+ */
+static bool bound_messages(struct broker *b)
+{
+	mosquitto_property *most = NULL;
+	bool bound;
+
+	if (!client_mqtt5(b))
+		return true;
+	bound = !mosquitto_property_add_int32(&most, MQTT_PROP_MAXIMUM_PACKET_SIZE, MESSAGE_MOST) &&
+	        mosquitto_connect_bind_v5(b->client, "", 0, NO_KEEPALIVE, NULL, most) ==
+	                MOSQ_ERR_INVAL;
+	mosquitto_property_free_all(&most);
+	return bound;
+}
+
 bool client_make(struct broker *b, char *why, size_t size)
 {
 	char id[160];
@@ -241,7 +262,8 @@ bool client_make(struct broker *b, char *why, size_t size)
 	mosquitto_int_option(b->client, MOSQ_OPT_PROTOCOL_VERSION,
 	                     client_mqtt5(b) ? MQTT_PROTOCOL_V5 : MQTT_PROTOCOL_V311);
 	mosquitto_int_option(b->client, MOSQ_OPT_TCP_NODELAY, 1);
-	if (!b->ops->will(b->ctx, false, &(struct outlet){.put = set_will, .ctx = b})) {
+	if (!bound_messages(b) ||
+	    !b->ops->will(b->ctx, false, &(struct outlet){.put = set_will, .ctx = b})) {
 		snprintf(why, size, "no memory");
 		return false;
 	}

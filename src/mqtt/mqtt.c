@@ -134,6 +134,11 @@ static bool is_topic(void *ctx, const char *topic, const char *text, size_t len,
 	return !strcmp(topic, ctx);
 }
 
+/*
+ * By its topic a message is a command of a session, or one of a signal, and nothing else. Any other
+ * may be several things, looked for in this order: the will of another process of this node,
+ * something that was kept and is no more, a word that asks for the birth.
+ */
 static void on_message(void *ctx, const struct broker_message *message)
 {
 	struct mqtt *m = ctx;

@@ -191,15 +191,21 @@ static void serve_round(struct serve *s)
 /* How long the server waits for a porter that has too much to do. */
 #define PORTER_NS (10 * NS_PER_MS)
 
+static bool may_be_written(const struct config_serve *config)
+{
+	return !config->read_only && (config->address_count || config->socket);
+}
+
 static int wait_ms(struct serve *s)
 {
 	int64_t left = s->look_ns - s->now_ns;
+	int most = may_be_written(&s->config->serve) ? LOOK_MS : 60000;
 
 	if (s->round_count || s->accepting || left <= 0 || work_waits(s))
 		return 0;
 	if (s->away_count && left > PORTER_NS)
 		left = PORTER_NS;
-	return left > NS_PER_MS * LOOK_MS ? LOOK_MS : (int)((left + NS_PER_MS - 1) / NS_PER_MS);
+	return left > NS_PER_MS * most ? most : (int)((left + NS_PER_MS - 1) / NS_PER_MS);
 }
 
 static void take_next(struct serve *s)

@@ -32,7 +32,7 @@
 #define APPLY_LOOK_NS (10 * NS_PER_MS)
 /* A write that may have waited for longer, for this program or in its queues, is refused. */
 #define WRITE_OLD_NS (2 * NS_PER_S)
-/* The server sleeps no longer, so as to see when it did not run: while no request is there. */
+/* Where clients may write the server sleeps no longer, so as to see when it did not run. */
 #define LOOK_MS 500
 
 /*

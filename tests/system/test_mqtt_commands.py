@@ -4,6 +4,7 @@
 of all others nothing is left but a line of the log."""
 
 import contextlib
+import pathlib
 import re
 import signal
 import subprocess
@@ -136,6 +137,29 @@ def test_a_flood_is_cut_and_logged_in_a_few_lines(scene):
     assert house.face.stop() == 0
     others = re.search(r"more than 50 commands in a second \((\d+) times since the last such line\)", house.face.log())
     assert others and house.face.log().count(" refused: ") - 1 + int(others[1]) == refused, house.face.log()
+
+
+def peak_kib(program):
+    return int(re.search(r"VmHWM:\s+(\d+)", pathlib.Path(f"/proc/{program.pid}/status").read_text())[1])
+
+
+def test_a_message_of_any_length_costs_nothing(scene):
+    house = ready(scene)
+    house.set("relay", 0)
+    usual, huge = peak_kib(house.face), bytes(48 << 20)
+    for topic in ("owsd/pi7/zz/set", "owsd/pi7/relay/set", "owsd/pi7/zz", "homeassistant/device/owsd_pi7/config"):
+        publish(house, topic, huge, "-r")
+    for write in ("on", "off"):
+        house.face.stop()
+        house.daemon.config.write_text(house.text(ROOM, RELAY, Write=raw(write)))
+        house.face = house.start()
+        house.says("owsd/pi7/state", "online")
+        publish(house, "owsd/pi7/relay/set", huge)
+        house.arrives("health", lambda m: m["commands"] == 0)
+        command(house, "relay", "on")
+        logged(house.face, "relay set to on" if write == "on" else "command to relay refused: Write is off")
+        assert house.face.running() and peak_kib(house.face) < usual + 20000, (usual, peak_kib(house.face))
+        assert house.face.log().count("connected to") == 1, house.face.log()
 
 
 @contextlib.contextmanager
