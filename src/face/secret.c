@@ -11,6 +11,8 @@
 #include "src/face/secret.h"
 
 #define BLANK " \t\r\n"
+#define NO_CREDENTIAL \
+	"the service has no such credential: a file in /etc/credstore, LoadCredential= in its unit"
 
 static int secret_refuse(int err, const char *path, const char *reason, char *why, size_t size)
 {
@@ -42,9 +44,7 @@ static int secret_path(const char *name, char path[SECRET_PATH], char *why, size
 	bool credential = name[0] != '/';
 
 	if (credential && !directory)
-		return secret_refuse(-ENOENT, name,
-		                     "the service has no credentials: LoadCredential= in its unit",
-		                     why, size);
+		return secret_refuse(-ENOENT, name, NO_CREDENTIAL, why, size);
 	if (snprintf(path, SECRET_PATH, "%s%s%s", credential ? directory : "",
 	             credential ? "/" : "", name) >= SECRET_PATH)
 		return secret_refuse(-ENAMETOOLONG, name, strerror(ENAMETOOLONG), why, size);
@@ -61,8 +61,11 @@ static int open_own(const char *name, char path[SECRET_PATH], char *why, size_t 
 		return err;
 	fd = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
 	if (fd < 0) {
+		bool missing = errno == ENOENT && name[0] != '/';
+
 		err = -errno;
-		return secret_refuse(err, path, strerror(-err), why, size);
+		return secret_refuse(err, missing ? name : path,
+		                     missing ? NO_CREDENTIAL : strerror(-err), why, size);
 	}
 	if (fstat(fd, &st) < 0 || !S_ISREG(st.st_mode))
 		err = secret_refuse(-EINVAL, path, "is no file", why, size);

@@ -57,6 +57,7 @@ FAULTS = [
     ("docs/page.md", f"{LONG}x\n", r"docs/page.md:1: 101 columns; wrap the line"),
     ("docs/blank.py", f"# {MIT}\nx = 1 \n", r"docs/blank.py:2: a blank at the end"),
     ("docs/bare.py", "x = 1\n", r"docs/bare.py:1: no SPDX lines"),
+    ("docs/secret.md", "LoadCredential=x:" + "/etc/owsd/x\n", r"docs/secret.md:1: a credential in a directory"),
     ("src/a/twice.c", f"/* {MIT} */\n{HEAD}", r"src/a/twice.c:1: 2 SPDX lines"),
     ("src/a/headless.c", f"/* {MIT} */\n\nint x;\n", r"src/a/headless.c:2: no comment after"),
     ("src/a/guard.h", f"/* {MIT} */\n#ifndef SRC_A_A_H\n#define SRC_A_A_H\nint g(void);\n#endif\n",

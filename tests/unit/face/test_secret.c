@@ -76,6 +76,8 @@ static void test_a_name_is_that_of_a_credential_of_the_service(void)
 	TEST_ASSERT_EQUAL_INT(-ENOENT, secret_read("token", token, why, sizeof(why)));
 	TEST_ASSERT_NOT_NULL(strstr(why, "LoadCredential="));
 	setenv("CREDENTIALS_DIRECTORY", folder_place()->path, 1);
+	TEST_ASSERT_EQUAL_INT(-ENOENT, secret_read("another", token, why, sizeof(why)));
+	TEST_ASSERT_NOT_NULL(strstr(why, "/etc/credstore"));
 	read_text("abc\n", 0440);
 	TEST_ASSERT_EQUAL_INT(0, secret_read("token", token, why, sizeof(why)));
 	TEST_ASSERT_EQUAL_STRING("abc", token);
