@@ -43,7 +43,7 @@ struct history_writer {
 	size_t text_bytes, text_most;
 	int64_t offset_us;
 	bool trusted;
-	int64_t newest_us; /* of all rows: no gap of all begins before it */
+	int64_t newest_us; /* no gap of all begins before it: of all rows, and after a value */
 	int64_t floor_us;  /* the end of the last gap of all */
 	int64_t begin_us, flushed_us, retry_us, step_us, repeat_us;
 	uint32_t files; /* begun so far; another number: the present one has nothing of before */
@@ -179,8 +179,8 @@ static void writer_add(struct history_writer *w, struct history_row row)
 	row.seq = w->seq++;
 	w->text_bytes += bytes;
 	w->rows[w->row_count++] = row;
-	if (row.us > w->newest_us && row.kind != ROW_EVENT)
-		w->newest_us = row.us;
+	if (row.us >= w->newest_us && row.kind != ROW_EVENT)
+		w->newest_us = row.us + (row.kind == ROW_VALUE);
 }
 
 /*

@@ -244,6 +244,28 @@ static void test_a_run_that_ended_without_a_word_ends_where_it_last_looked(void)
 	expect(2, 2001 * PAST_S, 22);
 }
 
+/* A gap that is known longer by now is one; values between two of one time make them two. */
+static void test_a_gap_at_the_time_of_values_after_a_gap_is_another(void)
+{
+	for (unsigned values = 0; values < 2; values++) {
+		past_make(&past);
+		past_begin(&past, 10 * PAST_S, PAST_NOON, true);
+		past_room(&past, 10 * PAST_S, 19);
+		history_writer_gap(past.writer, 11 * PAST_S, 12 * PAST_S, HISTORY_OWSD_LOST);
+		history_writer_gap(past.writer, 11 * PAST_S, 12 * PAST_S, HISTORY_OWSD_LOST);
+		if (values)
+			past_room(&past, 11 * PAST_S, 20);
+		history_writer_gap(past.writer, 11 * PAST_S, 15 * PAST_S, HISTORY_OWSD_LOST);
+		past_room(&past, 15 * PAST_S, 21);
+		past_end(&past, 20 * PAST_S);
+		TEST_ASSERT_EQUAL_INT64(
+			1 + values, past_ask(&past, "select count(*) from gap where reason = 3"));
+		TEST_ASSERT_EQUAL_INT(4 + 2 * (int)values, past_items(&past, PAST_ROOM, &items));
+		for (unsigned i = 0; i < 4 + 2 * values; i++)
+			TEST_ASSERT_EQUAL_UINT8(i % 2 == 0, items[i].known);
+	}
+}
+
 static void test_gaps_are_read_as_gaps_and_values_after_them_are_new(void)
 {
 	past_begin(&past, 5 * PAST_S, PAST_NOON, true);
@@ -840,6 +862,7 @@ int main(void)
 	RUN_TEST(test_a_clock_that_is_late_or_set_moves_dates_and_changes_no_value);
 	RUN_TEST(test_ids_never_go_back_whatever_the_clock_says);
 	RUN_TEST(test_a_run_that_ended_without_a_word_ends_where_it_last_looked);
+	RUN_TEST(test_a_gap_at_the_time_of_values_after_a_gap_is_another);
 	RUN_TEST(test_gaps_are_read_as_gaps_and_values_after_them_are_new);
 	RUN_TEST(test_a_value_that_holds_is_repeated_each_hour_and_one_of_a_gone_signal_is_not);
 	RUN_TEST(test_values_are_kept_for_days_minutes_for_more_and_hours_for_ever);
