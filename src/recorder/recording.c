@@ -127,6 +127,7 @@ int recording_open(struct face *face)
 	int64_t now_ns = ows_now();
 	int err, disk_err = 0;
 
+	*r = (struct recording){.clock = {.fd = -1}};
 	err = choose_directory(face, r->directory);
 	if (err) {
 		face_complain(face->ops->program, "the directory's path is too long");
