@@ -264,6 +264,12 @@ void look(struct face *face, int64_t now_ns)
 	if (now_ns < face->look_ns || (!face->ows && !open_again(face, now_ns)))
 		return;
 	arm_descriptor(face, now_ns);
+	/*
+	 * Until owsd is found each look asks anew: the heart may have stopped or beaten between the
+	 * answer of ows_changes(), which comes once, and that of ows_daemon()
+	 */
+	if (face->fresh || !face->live)
+		face->cursor = (struct ows_cursor){0};
 	for (int round = 0; round < ROUNDS; round++) {
 		n = ows_changes(face->ows, &face->cursor, signals, BATCH, 0);
 		if (n == -EOVERFLOW)

@@ -252,6 +252,36 @@ static void test_an_owsd_that_hangs_is_lost_and_found_when_its_heart_beats_again
 	TEST_ASSERT_EQUAL_STRING("found all ", looked());
 }
 
+/*
+ * ows_changes() and ows_daemon() look at the heart one after the other: a beat that comes between
+ * them, or the end of its time, gives two answers, and what changes comes once.
+ */
+static void test_an_owsd_that_was_dead_for_one_question_alone_is_found(void)
+{
+	start();
+	looked();
+	looks_quiet();
+	/* as a look leaves it that was told of a change, and found no heart that beats */
+	face.live = false;
+	TEST_ASSERT_EQUAL_STRING("found all ", looked());
+	face.live = false;
+	face.fresh = true;
+	TEST_ASSERT_EQUAL_STRING("found all ", looked());
+	looks_quiet();
+}
+
+static void test_an_image_that_was_opened_again_though_it_is_the_present_one_is_looked_at(void)
+{
+	start();
+	looked();
+	looks_quiet();
+	TEST_ASSERT_EQUAL_INT(0, ows_reopen(face.ows));
+	face.fresh = true;
+	TEST_ASSERT_EQUAL_STRING("reloaded all ", looked());
+	TEST_ASSERT_TRUE(look_is_current(&face));
+	looks_quiet();
+}
+
 /* The loop's time is older than that by which the changes are looked at. */
 static void test_an_owsd_that_dies_between_two_looks_at_the_time_is_lost(void)
 {
@@ -353,6 +383,8 @@ int main(void)
 	RUN_TEST(test_a_look_that_the_pace_puts_off_has_not_looked);
 	RUN_TEST(test_an_owsd_that_ends_is_lost_once_and_the_next_is_found);
 	RUN_TEST(test_an_owsd_that_hangs_is_lost_and_found_when_its_heart_beats_again);
+	RUN_TEST(test_an_owsd_that_was_dead_for_one_question_alone_is_found);
+	RUN_TEST(test_an_image_that_was_opened_again_though_it_is_the_present_one_is_looked_at);
 	RUN_TEST(test_an_owsd_that_dies_between_two_looks_at_the_time_is_lost);
 	RUN_TEST(test_more_changes_than_are_kept_are_an_overrun);
 	RUN_TEST(test_an_alarm_waits_for_its_value_and_those_behind_it_in_their_order);
