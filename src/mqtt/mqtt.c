@@ -27,6 +27,8 @@
 #define ANNOUNCE_NS (10 * NS_PER_S)
 /* The same where each birth that does not come makes a host ask again */
 #define REBIRTH_NS NS_PER_S
+/* Nothing is published for so long, and something waits: the log says what it waits for */
+#define STUCK_NS (5 * NS_PER_S)
 /* So long the host of a session may be away until it is looked for at another broker */
 #define HOST_WAIT_NS (60 * NS_PER_S)
 
@@ -312,16 +314,21 @@ static bool publish_health(struct mqtt *m)
 	                                                   .refused_messages = m->broker.refusals});
 }
 
-/* Publish what waits. Between two images no row can be looked at. */
-static void pump(struct face *face, int64_t now_ns)
+/*
+ * Publish what waits. Returns what it waits for, NULL: nothing. Between two images no row can be
+ * looked at.
+ */
+static const char *pump(struct face *face, int64_t now_ns)
 {
 	struct mqtt *m = mqtt_own(face);
 	bool session = m->stream.profile->session;
 
 	if (m->broker.state != BROKER_CONNECTED)
 		past_lost(&m->past);
-	if (m->broker.state != BROKER_CONNECTED || (face->live && !look_is_current(face)))
-		return;
+	if (m->broker.state != BROKER_CONNECTED)
+		return NULL;
+	if (face->live && !look_is_current(face))
+		return "a look at the new image of owsd";
 	if (face->live && m->stream.count)
 		sweep(m, now_ns);
 	if (m->asked && (face->live || !session) && now_ns >= announce_ns(m)) {
@@ -331,17 +338,40 @@ static void pump(struct face *face, int64_t now_ns)
 	}
 	/* who asks for a birth gets nothing else before, but that owsd is lost */
 	if (m->asked && session && face->live)
-		return;
+		return "the pause between two births";
 	m->stream.settled = broker_is_settled(&m->broker, now_ns);
-	if (!stream_pump(&m->stream) || !face->live)
-		return;
+	if (!stream_pump(&m->stream))
+		return m->stream.host && !m->stream.host_there ? NULL : "the broker to take it";
+	if (!face->live)
+		return NULL;
 	past_pump(&m->past, now_ns);
 	if (now_ns < m->health_ns)
-		return;
+		return NULL;
 	if (m->stream.profile->health
 	            ? publish_health(m)
 	            : !m->stream.profile->numbers || m->stream.profile->numbers(&m->stream))
 		m->health_ns = now_ns + HEALTH_NS;
+	return NULL;
+}
+
+/* Once when nothing goes on, once when it does. */
+static void report_stuck(struct face *face, const char *what, int64_t now_ns)
+{
+	struct mqtt *m = mqtt_own(face);
+	uint64_t taken = m->broker.acknowledged;
+
+	if (!what || taken != m->pumped) {
+		if (m->stuck && m->broker.state == BROKER_CONNECTED)
+			log_notice(face->log, "it is published again");
+		m->pumped_ns = now_ns;
+		m->pumped = taken;
+		m->stuck = false;
+	} else if (!m->stuck && now_ns - m->pumped_ns >= STUCK_NS) {
+		m->stuck = true;
+		log_warning(face->log,
+		            "nothing is published for %d s: it waits for %s; %u under way",
+		            (int)(STUCK_NS / NS_PER_S), what, m->broker.in_flight);
+	}
 }
 
 static void look_at_clock(struct face *face, int64_t now_ns)
@@ -435,7 +465,7 @@ static void go_on(struct face *face, int64_t now_ns)
 
 	look_at_host(face, now_ns);
 	m->past.due = false;
-	pump(face, now_ns);
+	report_stuck(face, pump(face, now_ns), now_ns);
 	face->tick_ns = broker_next(&m->broker);
 	if (past_next(&m->past) < face->tick_ns)
 		face->tick_ns = past_next(&m->past);

@@ -27,6 +27,9 @@ struct mqtt {
 	bool asked;           /* again, too soon after that */
 	bool sweep;           /* the broker has to be asked what it keeps of us */
 	int64_t sweep_ns;     /* it is being asked until then; 0: not */
+	int64_t pumped_ns;    /* all that waited was published, or the broker took some of it */
+	uint64_t pumped;      /* what the broker had taken then */
+	bool stuck;           /* it is logged that nothing goes on */
 };
 
 int mqtt_open(struct face *face);

@@ -10,7 +10,7 @@ import subprocess
 import threading
 
 import owsdtest
-from mqtthouse import ROOM, Broker, House, Listener, program
+from mqtthouse import ROOM, SENSOR, Broker, House, Listener, item, program
 from owsdtest import free_port, logged, raw, until
 
 STATE = "owsd/pi7/state"
@@ -265,6 +265,24 @@ def test_a_broker_that_acknowledges_nothing_keeps_the_will(scene):
         server.join(20)
         # a DISCONNECT would stand behind the last text
         assert not server.is_alive() and 0xE0 not in said[-4:], bytes(said[-40:])
+
+
+def test_what_is_waited_for_is_logged_when_a_broker_takes_nothing(scene):
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        def serve():
+            with listener.accept()[0] as connection:
+                connection.recv(4096)
+                connection.sendall(b"\x20\x03\x00\x00\x00")
+                while connection.recv(65536):
+                    pass
+        server = threading.Thread(target=serve, daemon=True)
+        server.start()
+        house = House(scene, *(item(f"room{n}", f"/{SENSOR}/temperature") for n in range(120)),
+                      Broker=f"mqtt://127.0.0.1:{listener.getsockname()[1]}")
+        logged(house.face, "nothing is published for 5 s: it waits for the broker to take it; 100 under way")
+        assert house.face.log().count("nothing is published") == 1, house.face.log()
+        assert house.face.stop() == 0
+        server.join(20)
 
 
 def test_a_listener_that_says_nothing_is_given_up(scene):
