@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """owsd ends, dies, or is removed: no program beside it spins, and each finds the next one soon. A
-broker and a database that were away are found soon, too, and nobody spins for them."""
+broker and a database that were away are found soon, too; nobody spins for them, nor for peers that
+hang up."""
 
 import contextlib
 import os
 import pathlib
 import socket
+import subprocess
 import sys
 import time
 
@@ -172,6 +174,79 @@ def test_beside_an_owsd_that_hangs_no_program_spins(scene):
     before = beside.lines()
     beside.daemon.thaw()
     beside.all_there(before)
+
+
+def reach(kind, place):
+    peer = socket.socket(socket.AF_INET if isinstance(place, tuple) else socket.AF_UNIX, kind)
+    peer.connect(place)
+    return peer
+
+
+def test_beside_peers_that_hang_up_half_or_say_half_a_word_no_program_spins(scene):
+    beside = Beside(scene)
+    beside.all_there(dict.fromkeys(beside.programs, 0))
+    page, served = ("127.0.0.1", beside.programs["owsd-web"].port), str(segment(beside.name, "sock"))
+    host = f"Host: 127.0.0.1:{page[1]}\r\n"
+    words = [(page, b""), (page, b"GET / HTT"), (page, f"GET /api/info HTTP/1.1\r\n{host}\r\n".encode()),
+             (page, f"GET /api/events HTTP/1.1\r\n{host}\r\n".encode()),
+             (page, f"GET /api/signals HTTP/1.1\r\n{host}\r\n".encode() * 50),
+             (str(segment(beside.name, "web")), b"GET / HTT"), (served, b""), (served, b"\0\0\0\0\0\0"),
+             (str(segment(beside.name, "config")), b"")]
+    peers = []
+    for place, word in words:
+        for half in (socket.SHUT_WR, socket.SHUT_RD, None):
+            with contextlib.suppress(ConnectionRefusedError, BrokenPipeError):
+                peer = reach(socket.SOCK_STREAM, place)
+                if word:
+                    peer.sendall(word)
+                if half is not None:
+                    peer.shutdown(half)
+                peers.append(peer)
+    control = reach(socket.SOCK_SEQPACKET, str(segment(beside.name, "control")))
+    control.shutdown(socket.SHUT_WR)
+    time.sleep(2)  # what is answered at once is over
+    watched = {**{name: program.pid for name, program in beside.programs.items()}, "owsd": beside.daemon.pid}
+    before = {name: spent(pid) for name, pid in watched.items()}
+    time.sleep(LOOK)  # this is measured
+    found = {name: (spent(pid) - before[name]) / LOOK for name, pid in watched.items()}
+    # owsd reads its plant meanwhile
+    assert max(found.values()) <= 10 * IDLE, found
+    assert len(peers) > 20
+    for peer in (*peers, control):
+        peer.close()
+
+
+def test_a_program_whose_output_nobody_reads_any_more_does_not_spin(scene):
+    beside = Beside(scene)
+    beside.all_there(dict.fromkeys(beside.programs, 0))
+    read, write = os.pipe()
+    mute = [subprocess.Popen([str(word) for word in command], stdin=subprocess.DEVNULL, stdout=write, stderr=write)
+            for command in ([BUILD / "owsd-recorder", "-n", beside.name, "-c", beside.daemon.config, "-d", scene.path / "other"],
+                            [BUILD / "owsd-mqtt", "-n", beside.name, "-c", beside.daemon.config],
+                            [OWSCTL, "-n", beside.name, "watch", "-l"])]
+    try:
+        os.close(write)
+        os.set_blocking(read, False)
+        said = []
+
+        def logged():
+            with contextlib.suppress(BlockingIOError):
+                said.append(os.read(read, 65536))
+            return b"owsd-mqtt 0" in b"".join(said)
+        until(logged, 20, "they log")
+        os.close(read)
+        beside.daemon.stop()  # which all log
+        time.sleep(5)  # what is done once, at the loss, is over
+        alive = [program for program in mute if program.poll() is None]
+        assert len(alive) >= 2, mute
+        before = {program.pid: spent(program.pid) for program in alive}
+        time.sleep(LOOK)  # this is measured
+        found = {program.pid: (spent(program.pid) - before[program.pid]) / LOOK for program in alive}
+        assert max(found.values(), default=0) <= IDLE, found
+    finally:
+        for program in mute:
+            program.kill()
+            program.wait()
 
 
 def test_a_broker_and_a_database_that_were_away_for_a_minute_are_found_within_15_seconds(scene):
