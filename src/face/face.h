@@ -111,6 +111,8 @@ struct face {
 	/* of loop.c alone, its report */
 	char report[256]; /* its file; "": none */
 	int64_t report_ns;
+	int64_t loaded_ns; /* when the configuration was read last */
+	char refused[256]; /* why it counts no more, though the one before does; "": it counts */
 
 	/* of look.c alone */
 	struct ows_cursor cursor;

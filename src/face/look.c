@@ -10,33 +10,42 @@
 
 /* --- The configuration ----------------------------------------------------------------------- */
 
-/* Warnings are owsd's to report, of the same file. ctx: a log; NULL: stderr */
+/* Warnings are owsd's to report, of the same file. ctx: the face; it has no log at the start. */
 static void report_line(void *ctx, bool is_error, const char *message)
 {
+	struct face *face = ctx;
+
 	if (!is_error)
 		return;
-	if (ctx)
-		log_err((struct log *)ctx, "%s", message);
-	else
+	if (!face->log) {
 		fprintf(stderr, "%s\n", message);
+		return;
+	}
+	log_err(face->log, "%s", message);
+	if (!*face->refused)
+		snprintf(face->refused, sizeof(face->refused), "%s", message);
 }
 
 int load_first(struct face *face)
 {
-	struct config_report report = {.line = report_line};
+	struct config_report report = {.line = report_line, .ctx = face};
 
 	int err = config_load(face->arguments->file, &report, &face->config);
 
 	if (err == -ENOENT && face->arguments->file == face->arguments->default_file)
 		face_complain(face->ops->program, "-c FILE names another");
+	face->loaded_ns = ows_now();
 	return err;
 }
 
 void load_again(struct face *face)
 {
-	struct config_report report = {.line = report_line, .ctx = face->log};
+	struct config_report report = {.line = report_line, .ctx = face};
 	struct config *config;
 
+	face->loaded_ns = ows_now();
+	face->refused[0] = '\0';
+	face->report_ns = 0;
 	if (config_load(face->arguments->file, &report, &config)) {
 		log_err(face->log, "%s is refused: what it said before counts on",
 		        face->arguments->file);

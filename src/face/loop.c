@@ -27,8 +27,9 @@
 /*
  * A small file in which a face says how it does, for `owsctl stats`. It is RUNTIME_DIRECTORY/status
  * of a service, else OWS_DIR/INSTANCE.PROGRAM; without either there is none. Lines of a word and
- * its value: pid, beat (the boot time of the report, ns), status; what face_ops.report writes:
- * since (a boot time), trouble, count NAME NUMBER.
+ * its value: pid, beat (the boot time of the report, ns), status, loaded (that of the
+ * configuration), refused (why it does not count); what face_ops.report writes: since (a boot
+ * time), trouble, count NAME NUMBER.
  */
 static void report_open(struct face *face)
 {
@@ -68,6 +69,9 @@ static void report_write(struct face *face, int64_t now_ns)
 	fchmod(fd, 0640);
 	fprintf(out, "pid %ld\nbeat %lld\nstatus %s\n", (long)getpid(), (long long)now_ns,
 	        face->status);
+	fprintf(out, "loaded %lld\n", (long long)face->loaded_ns);
+	if (*face->refused)
+		fprintf(out, "refused %s\n", face->refused);
 	if (face->ops->report)
 		face->ops->report(face, out);
 	if (fclose(out) || rename(fresh, face->report))

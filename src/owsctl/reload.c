@@ -2,13 +2,17 @@
 /* owsctl reload: asks owsd to load its configuration again. */
 #include <errno.h>
 #include <getopt.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "hal/base/time.h"
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/verbs.h"
+#include "src/show/faces.h"
 
 #define WAIT_NS (30 * NS_PER_S)
+/* From the begin on; faces follow within moments, and report it. */
+#define FACES_NS (3 * NS_PER_S)
 
 static int reload_fail(const char *name, int err)
 {
@@ -36,9 +40,42 @@ static int reload_fail(const char *name, int err)
 	}
 }
 
+/* Faces read the file when owsd has reloaded it. */
+static bool all_have_loaded(const struct faces_one *faces, unsigned count, int64_t begin_ns)
+{
+	for (unsigned i = 0; i < count; i++)
+		if (!faces_silent(&faces[i], begin_ns) && faces[i].loaded_ns < begin_ns)
+			return false;
+	return true;
+}
+
+static void print_faces(const char *instance, int64_t begin_ns)
+{
+	struct faces_one faces[FACES_MOST];
+	unsigned count = faces_read(instance, faces);
+
+	while (!all_have_loaded(faces, count, begin_ns) && ows_now() - begin_ns < FACES_NS) {
+		ctl_nap();
+		count = faces_read(instance, faces);
+	}
+	for (unsigned i = 0; i < count; i++) {
+		const struct faces_one *face = &faces[i];
+
+		if (faces_silent(face, begin_ns))
+			printf("%s: does not run\n", face->program);
+		else if (face->loaded_ns < begin_ns)
+			printf("%s: has not reloaded yet: restart it, or look into its log\n",
+			       face->program);
+		else if (*face->refused)
+			printf("%s: goes on as before: %s\n", face->program, face->refused);
+		else
+			printf("%s: reloaded\n", face->program);
+	}
+}
+
 int verb_reload(struct ctl *ctl, int argc, char **argv)
 {
-	int64_t limit_ns = WAIT_NS;
+	int64_t limit_ns = WAIT_NS, begin_ns = ows_now();
 	char why[256];
 	int c, err;
 
@@ -50,5 +87,9 @@ int verb_reload(struct ctl *ctl, int argc, char **argv)
 	if (err && *why)
 		return ctl_fail("owsd refuses the configuration, and all goes on as before: %s",
 		                why);
-	return err ? reload_fail(ctl->instance, err) : CTL_DONE;
+	if (err)
+		return reload_fail(ctl->instance, err);
+	printf("owsd %s: reloaded\n", ctl->instance);
+	print_faces(ctl->instance, begin_ns);
+	return CTL_DONE;
 }

@@ -97,6 +97,8 @@ static void print_faces(const char *instance, const struct when *now)
 			printf("%11s %s\n", "connected", when_iso(now, face->since_ns, text));
 		if (*face->trouble)
 			printf("%11s %s\n", "last error", face->trouble);
+		if (*face->refused)
+			printf("%11s its file: %s\n", "refused", face->refused);
 		for (unsigned k = 0; k < face->count; k++)
 			printf("%12" PRIu64 "  %s\n", face->counters[k].value,
 			       face->counters[k].name);

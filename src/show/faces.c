@@ -41,6 +41,10 @@ static void take_report_line(struct faces_one *face, const char *line)
 		snprintf(face->status, sizeof(face->status), "%.255s", rest);
 	else if ((rest = after(line, "trouble ")))
 		snprintf(face->trouble, sizeof(face->trouble), "%.255s", rest);
+	else if ((rest = after(line, "refused ")))
+		snprintf(face->refused, sizeof(face->refused), "%.255s", rest);
+	else if ((rest = after(line, "loaded ")))
+		face->loaded_ns = positive(rest);
 	else if ((rest = after(line, "pid ")))
 		face->pid = (long)(positive(rest) & INT32_MAX);
 	else if ((rest = after(line, "beat ")))
@@ -126,6 +130,7 @@ void faces_json(struct json *json, const char *key, const char *instance, const 
 		json_string(json, "connected",
 		            face->since_ns ? when_iso(now, face->since_ns, text) : NULL);
 		json_string(json, "trouble", *face->trouble ? face->trouble : NULL);
+		json_string(json, "refused", *face->refused ? face->refused : NULL);
 		json_object(json, "counters");
 		for (unsigned k = 0; k < face->count; k++)
 			json_uint(json, face->counters[k].name, face->counters[k].value);

@@ -18,8 +18,10 @@ struct faces_counter {
 struct faces_one {
 	char program[32];
 	long pid;
-	int64_t beat_ns;  /* the boot time of the report */
-	int64_t since_ns; /* of its connection; 0: none */
+	int64_t beat_ns;   /* the boot time of the report */
+	int64_t since_ns;  /* of its connection; 0: none */
+	int64_t loaded_ns; /* the boot time at which it read its configuration; 0: not known */
+	char refused[256]; /* why that one is refused, and the one before counts; "": it counts */
 	char status[256];
 	char trouble[256]; /* the last one; "": none */
 	struct faces_counter counters[FACES_COUNTERS];

@@ -100,7 +100,8 @@ def test_owsctl_asks_for_a_reload_and_knows_when_it_is_done(scene):
     daemon, target = start(scene)
     daemon.config.write_text(rio(target, ROOM, CELLAR))
     done = scene.owsctl(daemon, "reload")
-    assert done.returncode == 0 and done.stdout + done.stderr == "", done
+    assert done.returncode == 0 and done.stderr == "", done
+    assert done.stdout == f"owsd {daemon.name}: reloaded\n", done
     assert scene.owsctl(daemon, "list", "cellar").returncode == 0, "it is there at once"
     until(lambda: "reload: asked for by owsctl (process" in daemon.log(), 10, daemon.log)
     until(lambda: get(scene, daemon, "cellar") == "12", 10, "the new one is read")
@@ -152,6 +153,32 @@ def test_a_refused_reload_stays_visible_until_one_is_taken_over(scene):
     assert scene.owsctl(daemon, "reload").returncode == 0
     assert said(daemon)[-1].startswith("STATUS=3 signals")
     until(lambda: refusal(scene, daemon) == {**fine, "counter": 2}, 10, lambda: refusal(scene, daemon))
+
+
+def test_owsctl_reload_tells_which_faces_took_the_file_over_and_which_did_not(scene):
+    for face in ("owsd-web", "owsd-recorder"):
+        owsdtest.need(owsdtest.BUILD / face)
+    daemon, _target = start(scene)
+    other = scene.file("other.rio", daemon.config.read_text())
+    scene.start([owsdtest.BUILD / "owsd-web", "-n", daemon.name, "-c", other])
+    recorder = scene.start([owsdtest.BUILD / "owsd-recorder", "-n", daemon.name, "-c", daemon.config, "-d", scene.path / "history"])
+
+    def told():
+        done = scene.owsctl(daemon, "reload")
+        assert done.returncode == 0, done
+        return done.stdout.splitlines()
+    first = [f"owsd {daemon.name}: reloaded", "owsd-recorder: reloaded", "owsd-web: reloaded"]
+    until(lambda: told() == first, 20, told)
+    other.write_text("OwsDrv { Period wrong }\n")
+    lines = told()
+    assert lines[:2] == first[:2] and lines[2].startswith(f"owsd-web: goes on as before: {other}:1:17"), lines
+    faces = {face["program"]: face["refused"] for face in json.loads(scene.owsctl(daemon, "--json", "stats").stdout)["faces"]}
+    assert faces["owsd-recorder"] is None and f"{other}:1:17" in faces["owsd-web"], faces
+    other.write_text(daemon.config.read_text())
+    assert told() == first
+    recorder.freeze()
+    lines = told()
+    assert lines[0] == first[0] and lines[1].startswith("owsd-recorder: has not reloaded yet") and lines[2] == first[2], lines
 
 
 def test_a_reload_that_is_refused_says_why_to_who_asked(scene):

@@ -45,7 +45,7 @@ static void test_a_report_has_state_trouble_and_counters(void)
 {
 	put("HOUSE.owsd-mqtt", "pid 7\nbeat 5000000000\nstatus publishing to a b\nsince 3\n"
 	                       "trouble it is lost; wait\ncount connects 2\ncount refused 0\n");
-	put("HOUSE.owsd-web", "pid 8\nbeat 1\nstatus 1 streams\n");
+	put("HOUSE.owsd-web", "pid 8\nbeat 1\nstatus 1 streams\nloaded 4\nrefused a.rio:1:2: no\n");
 	put("OTHER.owsd-web", "pid 9\nbeat 1\nstatus 1 streams\n");
 	put("HOUSE.owsd-web.new", "pid 10\nbeat 1\n");
 	put("HOUSE.image", "pid 11\nbeat 1\n");
@@ -60,6 +60,9 @@ static void test_a_report_has_state_trouble_and_counters(void)
 	TEST_ASSERT_EQUAL_UINT64(2, faces[0].counters[0].value);
 	TEST_ASSERT_EQUAL_STRING("owsd-web", faces[1].program);
 	TEST_ASSERT_EQUAL_STRING("", faces[1].trouble);
+	TEST_ASSERT_EQUAL_STRING("", faces[0].refused);
+	TEST_ASSERT_EQUAL_STRING("a.rio:1:2: no", faces[1].refused);
+	TEST_ASSERT_EQUAL_INT64(4, faces[1].loaded_ns);
 	TEST_ASSERT_FALSE(faces_silent(&faces[0], 10 * S));
 	TEST_ASSERT_TRUE(faces_silent(&faces[0], 30 * S));
 }
