@@ -11,6 +11,7 @@
 #include "src/text/printable.h"
 #include "src/text/refused.h"
 
+#define OPT_CHECK 256    /* it has no letter */
 #define INSTANCE_MAX 100 /* owsd's own limit is lower, and libows knows it */
 
 void face_complain(const char *program, const char *format, ...)
@@ -30,13 +31,14 @@ static void print_usage(FILE *out, const char *program, const struct face_option
 	fprintf(out, "usage: %s [-c FILE] [-n NAME]", program);
 	if (own->letter)
 		fprintf(out, " [-%c %s]", own->letter, own->value);
-	fputs(" [-v] [-V] [-h]\n"
+	fputs(" [--check] [-v] [-V] [-h]\n"
 	      "  -c, --config FILE   configuration, that of owsd (" FACE_DIR "/NAME.rio)\n"
 	      "  -n, --name NAME     instance of owsd (OWS)\n",
 	      out);
 	if (own->letter)
 		fprintf(out, "  -%c, --%s %s %s\n", own->letter, own->word, own->value, own->help);
-	fputs("  -v, --verbose       log more; twice: debugging\n"
+	fputs("      --check         report what is wrong with the configuration, and end\n"
+	      "  -v, --verbose       log more; twice: debugging\n"
 	      "  -V, --version       version\n"
 	      "  -h, --help          this text\n",
 	      out);
@@ -84,6 +86,7 @@ int face_arguments_parse(const char *program, const struct face_option *own, int
 	const struct option words[] = {
 		{"config", required_argument, NULL, 'c'},
 		{"name", required_argument, NULL, 'n'},
+		{"check", no_argument, NULL, OPT_CHECK},
 		{"verbose", no_argument, NULL, 'v'},
 		{"version", no_argument, NULL, 'V'},
 		{"help", no_argument, NULL, 'h'},
@@ -101,6 +104,8 @@ int face_arguments_parse(const char *program, const struct face_option *own, int
 	while ((option = getopt_long(argc, argv, letters, words, NULL)) != -1) {
 		if (own->letter && option == own->letter)
 			a->option = optarg;
+		else if (option == OPT_CHECK)
+			a->check = true;
 		else if (option == 'c')
 			a->file = optarg;
 		else if (option == 'n')

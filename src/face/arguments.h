@@ -2,6 +2,8 @@
 /* The command line of a face: that of owsd, as far as it concerns a consumer. */
 #pragma once
 
+#include <stdbool.h>
+
 #include "src/text/log.h"
 
 #define FACE_DIR "/etc/owsd"
@@ -20,6 +22,7 @@ struct face_arguments {
 	char default_file[128];
 	const char *option; /* the value of the face's own option; NULL: not given */
 	enum log_level level;
+	bool check; /* read the configuration, and end */
 };
 
 /*

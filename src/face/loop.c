@@ -251,6 +251,10 @@ int face_main(const struct face_ops *ops, int argc, char **argv)
 		return status;
 	if (load_first(&face))
 		return FACE_EXIT_USAGE;
+	if (arguments.check) {
+		config_free(face.config);
+		return EXIT_SUCCESS;
+	}
 	face.log = log_create(arguments.level);
 	status = unix_signals_open(&signals);
 	if (!face.log || status) {

@@ -4,7 +4,9 @@
 
 import json
 import os
+import re
 import signal
+import subprocess
 import time
 
 import owsdtest
@@ -179,6 +181,27 @@ def test_owsctl_reload_tells_which_faces_took_the_file_over_and_which_did_not(sc
     recorder.freeze()
     lines = told()
     assert lines[0] == first[0] and lines[1].startswith("owsd-recorder: has not reloaded yet") and lines[2] == first[2], lines
+
+
+def test_the_reload_of_each_service_fails_for_a_file_that_is_refused(scene):
+    """By the commands of its unit that stand before the signal, or in its place."""
+    daemon, _target = start(scene)
+    good = daemon.config.read_text()
+    units = [unit for unit in (owsdtest.SOURCE / "board/systemd").glob("owsd*@.service")
+             if "ExecReload=" in unit.read_text()]
+    assert len(units) == 5, units
+    for unit in units:
+        words = re.search(r"ExecReload=@S?BINDIR@/(\S+) -n %i (\S+)$", unit.read_text(), re.M)
+        assert words, f"{unit}: its reload tells nobody what became of it"
+        program, verb = words.groups()
+        owsdtest.need(owsdtest.BUILD / program)
+        file = [] if program == "owsctl" else ["-c", daemon.config]
+        for text, why in ((good, ""), ("OwsDrv { Period wrong }\n", f"{daemon.config}:1:17: error")):
+            daemon.config.write_text(text)
+            done = subprocess.run([owsdtest.BUILD / program, "-n", daemon.name, *file, verb],
+                                  capture_output=True, text=True, timeout=owsdtest.PATIENCE)
+            assert (done.returncode == 0) == (not why), (unit, done)
+            assert why in done.stderr, (unit, done)
 
 
 def test_a_reload_that_is_refused_says_why_to_who_asked(scene):
