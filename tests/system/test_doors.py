@@ -14,6 +14,7 @@ import time
 import faulty
 import owsdtest
 import private
+import sandbox
 import writing
 from owsdtest import raw, until
 from test_control import CLIENT, LOCK, PY, door
@@ -162,8 +163,11 @@ ORDER = "owsd-config 1\ndo: restore\nbase: 0000000000000000\n\n"
 
 
 def doors_of(scene, program, user, daemon, env, *options):
-    """The program with a socket of its own, and with one that it is handed over."""
-    command = [reached(owsdtest.BUILD / program), "-n", daemon.name, "-c", daemon.config, *options]
+    """The program with a socket of its own, and with one that it is handed over; under the filter of
+    its unit."""
+    filtered = sandbox.command(sandbox.UNITS / f"{program}@.service")
+    filtered[0] = reached(sandbox.SANDBOX)
+    command = [*filtered, reached(owsdtest.BUILD / program), "-n", daemon.name, "-c", daemon.config, *options]
     own, handed = owsdtest.segment(daemon.name, "web"), scene.path / "handed.sock"
     alone = command
     if program == "owsd-config":  # the place of the sockets is that of the user of owsd
@@ -206,6 +210,7 @@ def test_the_same_at_the_page_and_at_the_writer(scene):
                     if options:
                         lasts(lambda: asked(port, text, expected), "the page at its address")
                 lasts(face.stop, f"the end of {program}")
+                assert "ot permitted" not in face.log(), face.log()
         assert daemon.stop() == 0
 
 

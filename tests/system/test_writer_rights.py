@@ -6,6 +6,7 @@ who may ask, and who may read the file afterwards. As genuine users."""
 import os
 import re
 import shutil
+import time
 
 import faulty
 import owsdtest
@@ -92,6 +93,29 @@ def test_who_may_ask_and_who_may_not(scene):
           "for anna: done" in service.writer.log(), 20, service.writer.log)
     until(lambda: re.search(rf"asked for by owsd-config \(process \d+, user {WRITER}\)", service.daemon.log()),
           20, service.daemon.log)
+
+
+SLOW = """
+import socket, sys, time
+doors = [socket.socket(socket.AF_UNIX) for _ in range(20)]
+for door in doors:
+    door.connect(sys.argv[1])
+    door.sendall(b"owsd-config 1\\n")
+print("there", flush=True)
+answers = [door.recv(4096).decode() for door in doors]
+print("over", sum("too many requests" in text for text in answers),
+      sum("longer than ten seconds" in text for text in answers), flush=True)
+"""
+
+
+def test_slow_requests_of_a_user_keep_no_other_user_waiting(scene):
+    service = Service(scene)
+    slow = scene.start([*private.as_user("editor"), "/usr/bin/python3", "-c", SLOW, service.socket])
+    until(lambda: "there" in slow.log(), 20, slow.log)
+    begun = time.monotonic()
+    answer = writing.Answer(service.ask_as("owsd-config", order(tag_of(service.file), b"nonsense")).stdout)
+    assert answer.status == "invalid" and time.monotonic() - begun < 8, answer.text
+    until(lambda: "over 16 4" in slow.log(), 60, slow.log)
 
 
 def test_at_a_socket_that_is_open_to_all_the_kernels_word_decides(scene):
