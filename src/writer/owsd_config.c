@@ -12,6 +12,7 @@
 
 #include "hal/base/time.h"
 #include "src/face/arguments.h"
+#include "src/libows/ows.h"
 #include "src/service/listen.h"
 #include "src/service/notify.h"
 #include "src/service/streams.h"
@@ -145,7 +146,7 @@ static void take_one(const struct writer *writer, struct visitors *visitors, int
 	if (pid < 0)
 		log_warning(writer->log, "no process for a request: %s", strerror(errno));
 	else
-		visitors_add(visitors, pid, peer.uid);
+		visitors_add(visitors, pid, peer.uid, ows_now());
 	close(fd);
 	close(begin[0]);
 	close(begin[1]);
@@ -158,7 +159,7 @@ static void serve(struct writer *writer, struct visitors *visitors, int listener
 	while (!signals->end) {
 		struct pollfd fds[] = {{.fd = signals->fd, .events = POLLIN},
 		                       {.fd = listener, .events = POLLIN}};
-		unsigned there = visitors_look(visitors);
+		unsigned there = visitors_look(visitors, ows_now());
 		int n;
 
 		if (there == VISITORS)

@@ -19,7 +19,7 @@ bool visitors_may(const struct visitors *v, uid_t uid)
 	return !uid || count < VISITORS_PER_USER;
 }
 
-void visitors_add(struct visitors *v, pid_t pid, uid_t uid)
+void visitors_add(struct visitors *v, pid_t pid, uid_t uid, int64_t now_ns)
 {
 	unsigned i = 0;
 
@@ -27,15 +27,18 @@ void visitors_add(struct visitors *v, pid_t pid, uid_t uid)
 		i++;
 	v->places[i].pid = pid;
 	v->places[i].uid = uid;
+	v->places[i].until_ns = now_ns + VISITORS_NS;
 }
 
-unsigned visitors_look(struct visitors *v)
+unsigned visitors_look(struct visitors *v, int64_t now_ns)
 {
 	unsigned count = 0;
 
 	for (unsigned i = 0; i < VISITORS; i++) {
 		if (v->places[i].pid && waitpid(v->places[i].pid, NULL, WNOHANG) != 0)
 			v->places[i].pid = 0;
+		else if (v->places[i].pid && now_ns > v->places[i].until_ns)
+			kill(v->places[i].pid, SIGKILL);
 		count += v->places[i].pid != 0;
 	}
 	return count;
@@ -49,7 +52,7 @@ void visitors_end(struct visitors *v)
 	for (unsigned i = 0; i < VISITORS; i++)
 		if (v->places[i].pid)
 			kill(v->places[i].pid, SIGTERM);
-	while (visitors_look(v) && left_ns > 0) {
+	while (visitors_look(v, 0) && left_ns > 0) {
 		nanosleep(&pause, NULL);
 		left_ns -= PAUSE_NS;
 	}

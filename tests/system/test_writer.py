@@ -212,6 +212,23 @@ def test_a_peer_that_is_slow_keeps_nobody_waiting_and_is_refused_after_ten_secon
     assert 8 < time.monotonic() - begun < owsdtest.patience(15)
 
 
+def test_a_text_that_names_an_endless_file_keeps_nobody_waiting(scene):
+    target = f"sim:{scene.file('few.sim', 'chip DS2482-100 0x18' + chr(10))}"
+    old = f'OwsDrv {{\n  TargetName "{target}"\n}}\n'
+    writer = alone(scene, old)
+    endless = writer.file.parent / "endless.table"
+    os.mkfifo(endless)
+    held = os.open(endless, os.O_RDWR)  # what opens it waits for bytes
+    text = old.replace("}", f'  Bus {{\n    Target "{target}"\n    Sensors "{endless}"\n  }}\n}}')
+    with writing.connect(writer.socket) as door:
+        door.sendall(order(tag_of(writer.file), text.encode()))
+        begun = time.monotonic()
+        until(lambda: writer.replace(old.replace("}", "  Period 2\n}")).status == "done", 60, writer.log)
+        assert time.monotonic() - begun < owsdtest.patience(15), writer.log()
+    os.close(held)
+    assert writer.stop() == 0
+
+
 def test_the_end_waits_for_no_request(scene):
     writer = alone(scene, "OwsDrv {\n}\n")
     slow = writing.connect(writer.socket)
