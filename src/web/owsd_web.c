@@ -242,7 +242,7 @@ static int open_web(struct face *face)
 	recent_make(&web.recent, 0);
 	events_miss_alarms(&web);
 	raise_limit();
-	wire_open();
+	wire_open(face->log);
 	err = http_open(&web);
 	if (err)
 		face_complain(face->ops->program, "libmicrohttpd: %s", strerror(-err));

@@ -12,6 +12,7 @@
 #include "src/service/budget.h"
 #include "src/shm/peer.h"
 #include "src/shm/porter.h"
+#include "src/text/log.h"
 #include "src/web/crowd.h"
 #include "src/web/wire.h"
 
@@ -30,6 +31,7 @@ static int away[WIRE_AWAY];
 static unsigned away_count;
 static struct porter *porter;
 static int64_t tended_ns;
+static struct log *reports;
 
 static struct wire *wire_of(int fd)
 {
@@ -114,10 +116,19 @@ ssize_t wire_sendfile(int fd, int file, off64_t *offset, size_t len)
 
 /* --- Connections ----------------------------------------------------------------------------- */
 
-void wire_open(void)
+static void say_it_failed(void)
 {
-	if (porter_start(&porter))
-		porter = NULL;
+	log_err(reports, "the process for connections, owsd-porter, cannot be started: until it "
+	                 "runs, users of the socket can delay the page");
+}
+
+void wire_open(struct log *log)
+{
+	reports = log;
+	if (porter_start(&porter) == 0)
+		return;
+	porter = NULL;
+	say_it_failed();
 }
 
 bool wire_begin(int fd, bool local, int place)
@@ -206,7 +217,22 @@ void wire_run(int64_t now_ns)
 	if (!porter || now_ns - tended_ns < TEND_NS)
 		return;
 	tended_ns = now_ns;
-	porter_tend(porter, now_ns);
+	switch (porter_tend(porter, now_ns)) {
+	case PORTER_ENDED:
+		log_err(reports,
+		        "the process for connections, owsd-porter, was killed: owsd-web "
+		        "starts it again; until then users of the socket can delay the page");
+		return;
+	case PORTER_FAILED:
+		say_it_failed();
+		return;
+	case PORTER_IS_BACK:
+		log_notice(reports, "the process for connections runs again (process %d)",
+		           porter_process(porter));
+		return;
+	case PORTER_GOES_ON:
+		return;
+	}
 }
 
 int64_t wire_next(int64_t now_ns)

@@ -15,8 +15,10 @@
 #define WIRE_FDS 4096 /* a connection has a descriptor below that */
 #define WIRE_AWAY 2400
 
+struct log;
+
 /* Before the first thread: starts the porter. Without one this thread closes all itself. */
-void wire_open(void);
+void wire_open(struct log *log);
 /* A connection begins, local: of a unix socket. False: its descriptor is too high. */
 bool wire_begin(int fd, bool local, int place);
 /* As recv() with MSG_PEEK | MSG_DONTWAIT, or a negative errno; -EBADMSG: with descriptors. */

@@ -288,6 +288,18 @@ def porter_of(daemon):
     return None
 
 
+def test_a_porter_of_the_page_that_is_killed_comes_back(scene):
+    daemon = plant(scene)
+    page, path, _ = page_of(scene, daemon)
+    killed = porter_of(page)
+    os.kill(killed, signal.SIGKILL)
+    until(lambda: "owsd-porter, was killed" in page.log(), 20, page.log)
+    lasts(lambda: asked(path, REQUEST, '"signals"'), "the page without a porter")
+    until(lambda: "runs again" in page.log(), 20, page.log)
+    assert porter_of(page) not in (None, killed), page.log()
+    assert page.stop() == 0
+
+
 def test_a_porter_that_is_killed_comes_back_and_defends_as_before(scene):
     for env in kernels():
         daemon = plant(scene, env)
