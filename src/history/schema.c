@@ -122,6 +122,19 @@ static int add_words(sqlite3 *db)
 	return err;
 }
 
+int schema_tables(sqlite3 *db)
+{
+	/* a virtual table has no page, and a column that is computed is one "as" something */
+	static const char text[] =
+		"select count(*) from sqlite_master where type = 'table' and rootpage > 0 and name in"
+		" ('session', 'signal', 'raw', 'gap', 'event', 'minute', 'hour')"
+		" and lower(sql) not glob '*[^a-z]as[^a-z]*'";
+	int64_t count = 0;
+	int err = sql_ask(db, text, &count);
+
+	return err < 0 ? err : count == 7 ? 0 : -EBADMSG;
+}
+
 static int migrate(sqlite3 *db, int64_t version)
 {
 	int err = sql_exec(db, "begin immediate");
@@ -166,7 +179,9 @@ static int schema_check(sqlite3 *db)
 	 */
 	err = sql_exec(db, "pragma synchronous = extra; pragma journal_mode = wal;"
 	                   "pragma temp_store = memory; pragma journal_size_limit = 4194304");
-	return err || version == HISTORY_SCHEMA ? err : migrate(db, version);
+	if (!err && version < HISTORY_SCHEMA)
+		err = migrate(db, version);
+	return err ? err : schema_tables(db);
 }
 
 int schema_open(const char *path, sqlite3 **db)
@@ -178,6 +193,7 @@ int schema_open(const char *path, sqlite3 **db)
 	err = sql_errno(*db, err);
 	if (!err) {
 		sqlite3_busy_timeout(*db, BUSY_MS);
+		sqlite3_db_config(*db, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, NULL);
 		/* readers that cannot write there need the two files beside it */
 		sqlite3_file_control(*db, "main", SQLITE_FCNTL_PERSIST_WAL, &keep);
 		err = schema_check(*db);

@@ -22,6 +22,8 @@ int sql_errno(sqlite3 *db, int rc)
 	case SQLITE_CORRUPT:
 	case SQLITE_NOTADB:
 		return -EBADMSG;
+	case SQLITE_INTERRUPT:
+		return -ETIMEDOUT;
 	case SQLITE_FULL:
 		return -ENOSPC;
 	case SQLITE_READONLY:

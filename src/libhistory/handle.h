@@ -16,6 +16,9 @@
 #include "src/libhistory/ows_history.h"
 
 #define NS_PER_US 1000
+/* Whatever the file says: ids and what is added to them are within the first, dates the second */
+#define MOST_ID (INT64_MAX / NS_PER_US)
+#define MOST_US (INT64_C(4600000000) * 1000000) /* 2115 */
 #define READY 256
 
 enum handle_statement { H_RAW, H_GAPS, H_STEPS, H_ALL, H_MINUTE, H_HOUR, H_EVENTS, H_COUNT };
@@ -43,13 +46,31 @@ struct step {
 	bool known;
 };
 
+/* A number that the file has of a time, as one that can be reckoned with. */
+static inline int64_t handle_within(int64_t number, int64_t least, int64_t most)
+{
+	return number < least ? least : number > most ? most : number;
+}
+
+/* Microseconds since 1970, and boot time, of an id. */
+static inline int64_t handle_wall_us(const struct session *session, int64_t id)
+{
+	return handle_within(id + session->date, 0, MOST_US);
+}
+static inline int64_t handle_boot_us(const struct session *session, int64_t id)
+{
+	return handle_within(id - session->base, -MOST_US, MOST_US);
+}
+
 struct ows_history {
 	char path[HISTORY_PATH + 64];
 	sqlite3 *db;
 	sqlite3_stmt *statements[H_COUNT];
 	dev_t device;
 	ino_t inode;
-	int64_t boot; /* that this machine is in */
+	int64_t size;     /* in bytes, when it was opened or refreshed */
+	int64_t boot;     /* that this machine is in */
+	int64_t until_ns; /* of the thread's processor time: then a call gives up */
 	struct session *sessions;
 	int session_count;
 	int64_t end; /* the id up to which something is known */

@@ -5,6 +5,7 @@
 
 #include "src/history/record.h"
 #include "src/history/sql.h"
+#include "src/libhistory/open.h"
 #include "src/libhistory/steps.h"
 #include "src/signal/value.h"
 
@@ -66,15 +67,20 @@ static void journal_put_value(sqlite3_stmt *from, int column, uint8_t type, doub
 		*integer = sqlite3_column_int64(from, column);
 }
 
+static int64_t column_id(sqlite3_stmt *from, int column)
+{
+	return handle_within(sqlite3_column_int64(from, column), -MOST_ID, MOST_ID);
+}
+
 static void journal_convert(const struct ows_history *h, const struct session *session,
                             sqlite3_stmt *from, struct ows_history_event *to)
 {
 	bool alarm, has_value = sqlite3_column_type(from, VALUE) != SQLITE_NULL;
-	int64_t id = sqlite3_column_int64(from, TIME);
+	int64_t id = column_id(from, TIME);
 
 	*to = (struct ows_history_event){
-		.time_ns = (id + session->date) * NS_PER_US,
-		.boot_ns = (id - session->base) * NS_PER_US,
+		.time_ns = handle_wall_us(session, id) * NS_PER_US,
+		.boot_ns = handle_boot_us(session, id) * NS_PER_US,
 		.signal = handle_signal(h, sqlite3_column_int64(from, SIGNAL)),
 		.kind = (uint8_t)sqlite3_column_int(from, KIND),
 		.reason = (uint8_t)sqlite3_column_int(from, REASON),
@@ -85,7 +91,7 @@ static void journal_convert(const struct ows_history *h, const struct session *s
 		.this_boot = session->boot == h->boot,
 	};
 	if (sqlite3_column_type(from, UNTIL) != SQLITE_NULL)
-		to->until_ns = (sqlite3_column_int64(from, UNTIL) + session->date) * NS_PER_US;
+		to->until_ns = handle_wall_us(session, column_id(from, UNTIL)) * NS_PER_US;
 	alarm = to->kind == OWS_HISTORY_ALARM;
 	if (!alarm && to->kind != OWS_HISTORY_COMMAND)
 		return;
@@ -141,8 +147,8 @@ static int journal_fill(struct ows_history *h)
 		h->list.next = session->start;
 		journal_take(h,
 		             &(struct ows_history_event){
-				     .time_ns = (session->start + session->date) * NS_PER_US,
-				     .boot_ns = (session->start - session->base) * NS_PER_US,
+				     .time_ns = handle_wall_us(session, session->start) * NS_PER_US,
+				     .boot_ns = handle_boot_us(session, session->start) * NS_PER_US,
 				     .signal = -1,
 				     .kind = OWS_HISTORY_BEGIN,
 				     .reason = session->reason ? session->reason : OWS_HISTORY_LOST,
@@ -170,6 +176,7 @@ int ows_history_next_event(struct ows_history *h, struct ows_history_event *even
 {
 	int got = h->list.on ? 1 : -EINVAL;
 
+	open_allow(h);
 	while (got == 1 && h->list.given == h->list.count)
 		got = journal_fill(h);
 	if (got != 1)

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "src/history/place.h"
@@ -15,6 +16,13 @@
 
 /* The recorder's commits take less, and wait for no reader */
 #define BUSY_MS 2000
+/* A call may look at each row once: on a small machine two microseconds for its 26 bytes */
+#define NS_PER_S INT64_C(1000000000)
+#define LIMIT_NS (2 * NS_PER_S)
+#define LIMIT_NS_PER_BYTE 100
+#define PROGRESS 20000      /* steps of SQLite */
+#define TEXT_MOST 1000000   /* bytes */
+#define ROWS_MOST (1 << 20) /* of a list that is in memory */
 #define URI (3 * HISTORY_PATH + 256)
 
 static const char *const texts[H_COUNT] = {
@@ -60,6 +68,53 @@ int ows_history_place(const char *instance, char *path, size_t size)
  * --- The file ----------------------------------------------------------------------------------
  */
 
+static int64_t spent_ns(void)
+{
+	struct timespec now;
+
+	clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+	return now.tv_sec * NS_PER_S + now.tv_nsec;
+}
+
+void open_allow(struct ows_history *h)
+{
+	h->until_ns = spent_ns() + LIMIT_NS + h->size * LIMIT_NS_PER_BYTE;
+}
+
+static int is_too_long(void *ctx)
+{
+	const struct ows_history *h = ctx;
+
+	return spent_ns() > h->until_ns;
+}
+
+/* What the file could hold up, or run: nothing of it is believed. */
+static void open_armed(struct ows_history *h)
+{
+	sqlite3_busy_timeout(h->db, BUSY_MS);
+	sqlite3_db_config(h->db, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
+	sqlite3_db_config(h->db, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);
+	sqlite3_db_config(h->db, SQLITE_DBCONFIG_ENABLE_VIEW, 0, NULL);
+	sqlite3_limit(h->db, SQLITE_LIMIT_LENGTH, TEXT_MOST);
+	sqlite3_progress_handler(h->db, PROGRESS, is_too_long, h);
+}
+
+/* A pipe among its files would be opened without an end. */
+static int check_files(const struct ows_history *h)
+{
+	static const char *const beside[] = {"", "-journal", "-wal", "-shm"};
+
+	for (size_t i = 0; i < sizeof(beside) / sizeof(beside[0]); i++) {
+		char name[sizeof(h->path) + 16];
+		struct stat seen;
+
+		snprintf(name, sizeof(name), "%s%s", h->path, beside[i]);
+		if (stat(name, &seen) == 0 && !S_ISREG(seen.st_mode))
+			return -EBADMSG;
+	}
+	return 0;
+}
+
 /* frozen: no recorder writes the file, and there is no log of commits beside it. */
 static int try_open(struct ows_history *h, bool frozen)
 {
@@ -79,15 +134,16 @@ static int try_open(struct ows_history *h, bool frozen)
 	                      SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_URI, NULL);
 	err = sql_errno(h->db, err);
 	if (!err) {
-		sqlite3_busy_timeout(h->db, BUSY_MS);
+		open_armed(h);
 		err = sql_ask(h->db, "pragma user_version", &version);
 	}
 	if (err >= 0)
 		err = sql_ask(h->db, "pragma application_id", &application);
 	if (err >= 0)
-		err = application != HISTORY_APPLICATION                          ? -EBADMSG
-		      : version < HISTORY_SCHEMA_READ || version > HISTORY_SCHEMA ? -EPROTONOSUPPORT
-		                                                                  : 0;
+		err = application != HISTORY_APPLICATION ? -EBADMSG
+		      : version < HISTORY_SCHEMA_READ || version > HISTORY_SCHEMA
+		              ? -EPROTONOSUPPORT
+		              : schema_tables(h->db);
 	for (int i = 0; !err && i < H_COUNT; i++)
 		err = sql_errno(h->db,
 		                sqlite3_prepare_v3(h->db, texts[i], -1, SQLITE_PREPARE_PERSISTENT,
@@ -116,9 +172,14 @@ static int open_file(struct ows_history *h)
 		return -errno;
 	h->device = seen.st_dev;
 	h->inode = seen.st_ino;
+	h->size = seen.st_size;
+	open_allow(h);
+	err = check_files(h);
+	if (err)
+		return err;
 	err = try_open(h, false);
 	snprintf(log, sizeof(log), "%s-wal", h->path);
-	if (err && err != -EPROTONOSUPPORT && err != -ENOMEM &&
+	if (err && err != -EPROTONOSUPPORT && err != -ENOMEM && err != -ETIMEDOUT &&
 	    (stat(log, &seen) < 0 || seen.st_size == 0)) {
 		close_file(h);
 		err = try_open(h, true);
@@ -161,6 +222,10 @@ static int read_rows(struct ows_history *h, const char *text, void **list, size_
 	if (err)
 		return err;
 	while ((got = sql_next(from)) == 1) {
+		if (count == ROWS_MOST) {
+			got = -EBADMSG;
+			break;
+		}
 		if (count == room) {
 			void *more = reallocarray(*list, (size_t)(room += room + 16), size);
 
@@ -182,10 +247,10 @@ static int read_rows(struct ows_history *h, const char *text, void **list, size_
 static int take_session(sqlite3_stmt *from, void *to)
 {
 	*(struct session *)to = (struct session){
-		.start = sqlite3_column_int64(from, 0),
+		.start = handle_within(sqlite3_column_int64(from, 0), 0, MOST_ID),
 		.boot = sqlite3_column_int64(from, 1),
-		.base = sqlite3_column_int64(from, 2),
-		.date = sqlite3_column_int64(from, 3),
+		.base = handle_within(sqlite3_column_int64(from, 2), -MOST_ID, MOST_ID),
+		.date = handle_within(sqlite3_column_int64(from, 3), -MOST_ID, MOST_ID),
 		.trusted = sqlite3_column_int(from, 4) != 0,
 		.reason = (uint8_t)sqlite3_column_int(from, 5),
 	};
@@ -231,6 +296,8 @@ static int read_places(struct ows_history *h)
 
 		if (err < 0)
 			return err;
+		if (*asked[i].to != INT64_MAX)
+			*asked[i].to = handle_within(*asked[i].to, -1, MOST_ID);
 	}
 	/* each hour is written with its last minute; to ask the hours reads eight of each signal */
 	h->hour_end = h->minute_end / HOUR_US * HOUR_US;
@@ -239,6 +306,7 @@ static int read_places(struct ows_history *h)
 
 		if (err < 0)
 			return err;
+		h->hour_end = handle_within(h->hour_end, 0, MOST_ID);
 		minute = h->minute_end = h->hour_end;
 	}
 	h->minute_first = minute;
@@ -326,6 +394,9 @@ int ows_history_refresh(struct ows_history *h)
 	    seen.st_ino != h->inode) {
 		close_file(h);
 		err = open_file(h);
+	} else {
+		h->size = seen.st_size;
+		open_allow(h);
 	}
 	return err ? err : open_look(h);
 }
@@ -334,10 +405,11 @@ int ows_history_span(struct ows_history *h, int64_t *from_ns, int64_t *until_ns)
 {
 	if (!h->session_count)
 		return -ENODATA;
-	*from_ns = *until_ns = (h->end + h->sessions[h->session_count - 1].date) * NS_PER_US;
+	*until_ns = handle_wall_us(&h->sessions[h->session_count - 1], h->end) * NS_PER_US;
+	*from_ns = *until_ns;
 	for (int i = 0; i < h->session_count; i++) {
 		const struct session *session = &h->sessions[i];
-		int64_t from = (session->start + session->date) * NS_PER_US;
+		int64_t from = handle_wall_us(session, session->start) * NS_PER_US;
 
 		*from_ns = from < *from_ns ? from : *from_ns;
 	}

@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* Which ids of a run are of a time of the wall clock. */
+/* What the calls of the library share: their limit, and which ids are of a time. */
 #pragma once
 
 #include "src/libhistory/handle.h"
 
+/* A call begins: from now on it may take so much of the processor as a file of that size
+ * can need, then -ETIMEDOUT. */
+void open_allow(struct ows_history *h);
 /* The ids of a run that are between two times. False: none. Pure. */
 bool handle_range(const struct session *session, int64_t from_us, int64_t until_us, int64_t *first,
                   int64_t *end);

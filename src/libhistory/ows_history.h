@@ -20,8 +20,10 @@
  * block, allocate, and are not for real-time threads. All return 0 (or the count or index that is
  * stated) or a negative errno; none sets errno. Besides what is stated each that reads may return
  * -ENOMEM, -EIO or another error of the disk, -EAGAIN (another program has the file locked for
- * longer than two seconds) and -EBADMSG (the file is damaged). Texts are valid until the next
- * ows_history_refresh() or _close(), if nothing else is said.
+ * longer than two seconds), -EBADMSG (the file is damaged, or none that a recorder made) and
+ * -ETIMEDOUT (it takes more of the processor than any recorder's file of that size does: two
+ * seconds, and one for each 10 MB).
+ * Texts are valid until the next ows_history_refresh() or _close(), if nothing else is said.
  *
  * Times are nanoseconds since 1970 (UTC). The history has boot times (CLOCK_BOOTTIME), which are
  * shown by what is known now of the clock at that boot: so a machine without a clock of its own has

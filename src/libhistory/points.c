@@ -11,9 +11,8 @@
 #include "src/libhistory/steps.h"
 
 #define STEPS 512
-#define PER_POINT 2                             /* roll-ups that a point needs at least */
-#define NOTICED_US 1000                         /* less than that is no gap */
-#define MOST_US (INT64_C(4600000000) * 1000000) /* 2115 */
+#define PER_POINT 2     /* roll-ups that a point needs at least */
+#define NOTICED_US 1000 /* less than that is no gap */
 
 struct draw {
 	struct ows_history *h;
@@ -126,6 +125,14 @@ static int draw_steps(struct draw *d, int64_t first, int64_t end)
  * --- Of roll-ups -------------------------------------------------------------------------------
  */
 
+/* Seconds as microseconds, of an hour at most. */
+static int64_t column_us(sqlite3_stmt *from, int column)
+{
+	double seconds = sqlite3_column_double(from, column);
+
+	return !(seconds > 0) ? 0 : seconds < 3600 ? (int64_t)(seconds * 1e6 + 0.5) : HOUR_US;
+}
+
 /* Columns: least, most, mean, last, good, known, count, quality, worst. 1; 0: there is none. */
 static int read_rollup(struct draw *d, bool hour, int64_t bucket, struct rollup *sum,
                        struct rollup_state *end)
@@ -143,8 +150,8 @@ static int read_rollup(struct draw *d, bool hour, int64_t bucket, struct rollup 
 		.least = sqlite3_column_double(from, 0),
 		.most = sqlite3_column_double(from, 1),
 		.last = sqlite3_column_double(from, 3),
-		.good_us = (int64_t)(sqlite3_column_double(from, 4) * 1e6 + 0.5),
-		.known_us = (int64_t)(sqlite3_column_double(from, 5) * 1e6 + 0.5),
+		.good_us = column_us(from, 4),
+		.known_us = column_us(from, 5),
 		.count = (uint32_t)sqlite3_column_int64(from, 6),
 		.worst = (uint8_t)sqlite3_column_int(from, 8),
 		.has_value = sqlite3_column_type(from, 0) != SQLITE_NULL,
@@ -209,7 +216,8 @@ static int draw_minutes(struct draw *d, int64_t first, int64_t end)
 	 * faster with the default.
 	 */
 	sqlite3_exec(d->h->db, "pragma cache_size = -8000", NULL, NULL, NULL);
-	for (int64_t back = 1; got == 0 && back <= LOOK_BACK_US / MINUTE_US; back++)
+	for (int64_t back = 1;
+	     got == 0 && back <= LOOK_BACK_US / MINUTE_US && back <= first / MINUTE_US; back++)
 		got = read_rollup(d, false, first / MINUTE_US - back, &sum, &state);
 	for (int64_t minute = first / MINUTE_US; got >= 0 && minute * MINUTE_US < end; minute++) {
 		struct rollup_state before = state;
@@ -297,6 +305,7 @@ int ows_history_points(struct ows_history *h, int signal, int64_t from_ns, int64
 	int64_t hours, minutes, first, end;
 	int err = 0;
 
+	open_allow(h);
 	h->read.on = false;
 	d.from_us = from_ns / NS_PER_US;
 	d.until_us = until_ns / NS_PER_US;

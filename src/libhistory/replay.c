@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "src/history/sql.h"
+#include "src/libhistory/open.h"
 #include "src/libhistory/replay.h"
 #include "src/libhistory/steps.h"
 
@@ -13,7 +14,7 @@ int64_t replay_place(const struct ows_history *h, const struct replay_point *poi
 
 	for (int i = 0; i < h->session_count; i++) {
 		const struct session *session = &h->sessions[i];
-		int64_t id = point->us + session->base;
+		int64_t id = handle_within(point->us, 0, MOST_US) + session->base;
 
 		if (session->boot != point->boot || (place >= 0 && id < session->start))
 			continue;
@@ -27,7 +28,7 @@ int64_t replay_place(const struct ows_history *h, const struct replay_point *poi
 	place = replay_end(h);
 	for (int i = h->session_count; i-- > 0; place = h->sessions[i].start)
 		if (h->sessions[i].boot != h->boot &&
-		    h->sessions[i].start + h->sessions[i].date < point->wall_us)
+		    handle_wall_us(&h->sessions[i], h->sessions[i].start) < point->wall_us)
 			break;
 	return place;
 }
@@ -42,11 +43,13 @@ int replay_rows(struct ows_history *h, int64_t first, int64_t end, struct replay
 	sqlite3_stmt *from = h->statements[H_ALL];
 	int count = 0, got = 0, session = 0;
 
+	open_allow(h);
 	sql_bind(from, "iii", first, end, (int64_t)n);
 	while (count < n && (got = sql_next(from)) == 1) {
 		struct replay_row *row = &rows[count];
 		int64_t number = sqlite3_column_int64(from, 4);
 		int signal = number ? handle_signal(h, number) : -1;
+		const struct session *of;
 		struct step step = {0};
 
 		if (number && signal < 0)
@@ -57,11 +60,11 @@ int replay_rows(struct ows_history *h, int64_t first, int64_t end, struct replay
 			break;
 		while (session + 1 < h->session_count && step.id >= h->sessions[session].end)
 			session++;
+		of = &h->sessions[session];
 		*row = (struct replay_row){
-			.at = {h->sessions[session].boot, step.id - h->sessions[session].base,
-		               step.id + h->sessions[session].date},
-			.wall_us = step.id + h->sessions[session].date,
-			.dated = h->sessions[session].trusted,
+			.at = {of->boot, handle_boot_us(of, step.id), handle_wall_us(of, step.id)},
+			.wall_us = handle_wall_us(of, step.id),
+			.dated = of->trusted,
 			.signal = signal,
 			.v = {.number = step.number,
 		              .integer = step.integer,

@@ -242,8 +242,8 @@ static void steps_convert(struct ows_history *h, const struct step *step,
 	while (i > 0 && step->id < h->sessions[i].start)
 		i--;
 	*item = (struct ows_history_item){
-		.time_ns = (step->id + h->sessions[i].date) * NS_PER_US,
-		.boot_ns = (step->id - h->sessions[i].base) * NS_PER_US,
+		.time_ns = handle_wall_us(&h->sessions[i], step->id) * NS_PER_US,
+		.boot_ns = handle_boot_us(&h->sessions[i], step->id) * NS_PER_US,
 		.number = step->number,
 		.integer = value_is_float((enum ows_type)step->type) ? 0 : step->integer,
 		.text = step->text,
@@ -300,6 +300,7 @@ int ows_history_next(struct ows_history *h, struct ows_history_item *items, int 
 
 	if (!h->read.on || n < 1)
 		return -EINVAL;
+	open_allow(h);
 	while (count < n) {
 		got = next_item(h, &items[count]);
 		if (got != 1)

@@ -17,6 +17,9 @@ int ows_count(const struct ows *h)
 	return (int)h->map.count - 1;
 }
 
+/* More than a double has: an image that says so would cost its readers seconds. */
+#define DECIMALS_MOST 99
+
 int ows_info(const struct ows *h, int signal, struct ows_info *info)
 {
 	const struct ows_info_entry *entry;
@@ -51,7 +54,7 @@ int ows_info(const struct ows *h, int signal, struct ows_info *info)
 		.limit_ll = entry->limit_ll,
 		.filter_s = entry->filter_s,
 		.deadband = entry->deadband,
-		.decimals = (int32_t)entry->decimals,
+		.decimals = entry->decimals <= DECIMALS_MOST ? (int32_t)entry->decimals : -1,
 		.confirm = (entry->flags & OWS_INFO_CONFIRM) != 0,
 	};
 	return 0;

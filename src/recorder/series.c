@@ -92,9 +92,7 @@ static void series_fill(struct series *rows, struct table *table, struct ows *ow
 			.unit = info.unit,
 			.type = info.type,
 			.output = info.output,
-			.decimals = (int8_t)(info.decimals < 0 || info.decimals > 99
-		                                     ? -1
-		                                     : info.decimals),
+			.decimals = (int8_t)info.decimals,
 		};
 		rows->recorded += !row->rule.off;
 		rows->has_intervals |= row->rule.interval_ns > 0;

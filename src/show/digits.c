@@ -6,6 +6,8 @@
 
 #include "src/show/digits.h"
 
+#define DECIMALS_MOST 99 /* printf() would compute as many as it is asked for */
+
 void digits_print(enum ows_type type, double number, int64_t integer, int decimals,
                   char text[VALUE_TEXT_MAX])
 {
@@ -13,7 +15,7 @@ void digits_print(enum ows_type type, double number, int64_t integer, int decima
 	int n;
 
 	value_to_text(type, value_is_float(type) ? value_of_double(number) : integer, text);
-	if (decimals < 0 || !value_is_float(type) || !isfinite(number))
+	if (decimals < 0 || decimals > DECIMALS_MOST || !value_is_float(type) || !isfinite(number))
 		return;
 	n = snprintf(cut, sizeof(cut), "%.*f", decimals, number);
 	if (n >= (int)sizeof(cut)) /* so great that decimals do not matter */

@@ -109,8 +109,9 @@ int lists_log(struct request *request)
 		return MHD_NO;
 	json_array(&json, "lines");
 	last = ows_log_last(web->face->ows);
-	for (uint32_t n = last > LINES ? last - LINES + 1 : 1; n <= last; n++) {
-		if (ows_log_line(web->face->ows, n, &line))
+	/* counted down: the last may be the greatest number that there is */
+	for (uint32_t left = last > LINES ? LINES : last; left > 0; left--) {
+		if (ows_log_line(web->face->ows, last - left + 1, &line))
 			continue;
 		json_object(&json, NULL);
 		json_uint(&json, "number", line.number);

@@ -97,6 +97,23 @@ static void test_a_name_without_end_is_refused(void)
 	TEST_ASSERT_EQUAL(0, open_it());
 }
 
+static void test_decimals_that_no_number_has_are_not_known(void)
+{
+	static const struct {
+		uint32_t said;
+		int32_t known;
+	} rows[] = {{0, 0},          {17, 17},        {99, 99},         {100, -1},
+	            {290489133, -1}, {INT32_MAX, -1}, {0x80000000, -1}, {UINT32_MAX, -1}};
+	struct ows_info info;
+
+	for (size_t i = 0; i < sizeof(rows) / sizeof(rows[0]); i++) {
+		in.image.infos[1].decimals = rows[i].said;
+		TEST_ASSERT_EQUAL(0, open_it());
+		TEST_ASSERT_EQUAL(0, ows_info(h, 0, &info));
+		TEST_ASSERT_EQUAL_INT32(rows[i].known, info.decimals);
+	}
+}
+
 static void test_texts_at_odd_places_are_refused(void)
 {
 	in.image.records[2].text_off += 2;
@@ -129,6 +146,7 @@ int main(void)
 	RUN_TEST(test_a_text_that_is_said_to_lie_elsewhere_is_not_read);
 	RUN_TEST(test_a_name_that_changes_into_none_of_the_table_is_not_found);
 	RUN_TEST(test_a_name_without_end_is_refused);
+	RUN_TEST(test_decimals_that_no_number_has_are_not_known);
 	RUN_TEST(test_texts_at_odd_places_are_refused);
 	RUN_TEST(test_times_at_the_ends_of_their_range_are_old_or_new);
 	return UNITY_END();

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* The digits of a number that owsctl shows to a person: those of the chip. */
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "unity.h"
 
@@ -94,6 +96,20 @@ static void test_integers_strings_and_driver_signals_stay_as_they_are(void)
 	TEST_ASSERT_DOUBLE_WITHIN(1e285, 1e300, strtod(reading.text, NULL));
 }
 
+/* As an image may say that nobody of us has made. */
+static void test_decimals_without_end_take_no_time(void)
+{
+	static const int decimals[] = {100, 290489133, INT_MAX};
+	clock_t begin = clock();
+
+	for (size_t i = 0; i < sizeof(decimals) / sizeof(decimals[0]); i++) {
+		be(OWS_DOUBLE, 0.1);
+		reading_round(&reading, decimals[i]);
+		TEST_ASSERT_EQUAL_STRING("0.1", reading.text);
+	}
+	TEST_ASSERT_LESS_THAN_INT64(CLOCKS_PER_SEC, clock() - begin);
+}
+
 /* What a thermometer can say, its digits say exactly. */
 static void test_every_step_of_a_thermometer_reads_back(void)
 {
@@ -110,6 +126,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_a_number_has_the_digits_of_its_chip);
 	RUN_TEST(test_integers_strings_and_driver_signals_stay_as_they_are);
+	RUN_TEST(test_decimals_without_end_take_no_time);
 	RUN_TEST(test_every_step_of_a_thermometer_reads_back);
 	return UNITY_END();
 }
