@@ -7,6 +7,7 @@
 
 #include "src/history/record.h"
 #include "src/history/sql.h"
+#include "src/history/tables.h"
 #include "src/history/wal_lock.h"
 
 #define BUSY_MS 200
@@ -122,19 +123,6 @@ static int add_words(sqlite3 *db)
 	return err;
 }
 
-int schema_tables(sqlite3 *db)
-{
-	/* a virtual table has no page, and a column that is computed is one "as" something */
-	static const char text[] =
-		"select count(*) from sqlite_master where type = 'table' and rootpage > 0 and name in"
-		" ('session', 'signal', 'raw', 'gap', 'event', 'minute', 'hour')"
-		" and lower(sql) not glob '*[^a-z]as[^a-z]*'";
-	int64_t count = 0;
-	int err = sql_ask(db, text, &count);
-
-	return err < 0 ? err : count == 7 ? 0 : -EBADMSG;
-}
-
 static int migrate(sqlite3 *db, int64_t version)
 {
 	int err = sql_exec(db, "begin immediate");
@@ -181,7 +169,7 @@ static int schema_check(sqlite3 *db)
 	                   "pragma temp_store = memory; pragma journal_size_limit = 4194304");
 	if (!err && version < HISTORY_SCHEMA)
 		err = migrate(db, version);
-	return err ? err : schema_tables(db);
+	return err ? err : tables_check(db);
 }
 
 int schema_open(const char *path, sqlite3 **db)

@@ -52,8 +52,6 @@ static inline int64_t schema_hour(int64_t hour, uint32_t signal)
 	"select (max(" SCHEMA_HOUR("id") ") + 1) * 3600000000 from hour" \
 					 " where id >= (select max(id) >> 19 << 19 from hour)"
 
-/* Are the tables of the file tables, which hold what is read? 0; -EBADMSG: something else. */
-int schema_tables(sqlite3 *db);
 /*
  * Open for writing; make the tables, or bring older ones up to date. 0; -EBADMSG: damaged, or no
  * database; -EPROTONOSUPPORT: newer than HISTORY_SCHEMA; -EEXIST: of another program; or the error

@@ -11,6 +11,7 @@
 #include "src/history/place.h"
 #include "src/history/schema.h"
 #include "src/history/sql.h"
+#include "src/history/tables.h"
 #include "src/libhistory/open.h"
 #include "src/shm/segment.h"
 
@@ -143,7 +144,7 @@ static int try_open(struct ows_history *h, bool frozen)
 		err = application != HISTORY_APPLICATION ? -EBADMSG
 		      : version < HISTORY_SCHEMA_READ || version > HISTORY_SCHEMA
 		              ? -EPROTONOSUPPORT
-		              : schema_tables(h->db);
+		              : tables_check(h->db);
 	for (int i = 0; !err && i < H_COUNT; i++)
 		err = sql_errno(h->db,
 		                sqlite3_prepare_v3(h->db, texts[i], -1, SQLITE_PREPARE_PERSISTENT,

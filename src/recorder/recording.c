@@ -66,10 +66,14 @@ static const char *advice_on_disk(int err)
 	case -EACCES:
 		return "; it, or a file in it, is of another user: chown it";
 	case -EPROTONOSUPPORT:
-		return ": history.sqlite is of a newer owsd-recorder; install that, or move the "
+		return "; history.sqlite is of a newer owsd-recorder: install that, or move the "
 		       "file away";
 	case -EEXIST:
-		return ": history.sqlite is there, and is no history of owsd; move it away";
+		return "; history.sqlite is there, and is no history of owsd: move it away";
+	case -EISDIR:
+		return "; history.sqlite is in the way: move it away";
+	case -ELOOP:
+		return "; history.sqlite is a link: move it away";
 	default:
 		return "";
 	}
@@ -114,12 +118,6 @@ static int open_writer(struct face *face, int64_t now_ns, int *disk_err)
 	return 0;
 }
 
-/* What no time heals. */
-static bool is_hopeless(int err)
-{
-	return err == -EBUSY || err == -EPROTONOSUPPORT || err == -EEXIST;
-}
-
 int recording_open(struct face *face)
 {
 	static struct recording recording;
@@ -138,7 +136,8 @@ int recording_open(struct face *face)
 	if (r->clock.fd >= 0)
 		face_watch(face, r->clock.fd, POLLIN);
 	err = open_writer(face, now_ns, &disk_err);
-	if (!err && is_hopeless(disk_err)) {
+	/* all else may be over some day, and until then it is in memory */
+	if (!err && disk_err == -EBUSY) {
 		history_writer_close(r->writer, now_ns); /* it has nothing yet */
 		err = disk_err;
 	}

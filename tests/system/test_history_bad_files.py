@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Files in the place of a history that are none, or damaged: owsd-recorder puts them aside by name
-or refuses them by name, and owsctl says what is wrong; a user of the group reads what there is."""
+"""Files in the place of a history that are none, or damaged: owsd-recorder puts them aside by name,
+or says by name what is in its way and goes on in memory, and owsctl says what is wrong; a user of
+the group reads what there is."""
 
 import contextlib
 import os
@@ -47,35 +48,41 @@ def test_a_damaged_file_is_put_aside_and_another_is_begun(scene):
     assert "1" not in Past(scene).good("relays")
 
 
-def test_a_newer_file_and_one_of_another_program_are_refused_by_name_and_left_alone(scene):
+def in_memory_until_it_is_moved_away(scene, daemon, folder, reason, value):
+    """The recorder says REASON and what to do, and has the value when the way is free."""
+    recorder = record(scene, daemon, directory=folder)
+    until(lambda: "cannot be written: " in recorder.log(), 20, "it says so")
+    line = next(line for line in recorder.log().splitlines() if "cannot be written" in line)
+    assert reason in line and FILE in line and "move" in line, line
+    set_relays(scene, daemon, value)
+    assert trend(scene, daemon, folder).returncode == 1
+    (folder / FILE).rename(folder / f"away-{value}")
+    until(lambda: "is written again" in recorder.log(), 90, "it catches up")
+    assert recorder.stop() == 0
+    assert Past(scene, folder).good("relays")[-1] == str(value)
+
+
+def test_a_newer_file_and_one_of_another_program_are_left_alone_until_they_are_moved(scene):
     daemon, folder = history(scene)
-    for change, reason in (("pragma user_version = 77", "of a newer owsd-recorder"),
-                           ("pragma application_id = 5", "is no history of owsd")):
+    for value, change, reason in ((3, "pragma user_version = 77", "of a newer owsd-recorder"),
+                                  (4, "pragma application_id = 5", "is no history of owsd")):
         with contextlib.closing(sqlite3.connect(folder / FILE)) as db:
             db.execute(change)
             db.execute("pragma wal_checkpoint(truncate)")
         before = (folder / FILE).read_bytes()
-        done = scene._run([RECORDER, "-n", daemon.name, "-c", daemon.config, "-d", folder], 20)
-        assert done.returncode == 1 and FILE in done.stderr and reason in done.stderr, done
-        assert trend(scene, daemon, folder).returncode == 1
-        assert (folder / FILE).read_bytes() == before
+        in_memory_until_it_is_moved_away(scene, daemon, folder, reason, value)
+        assert (folder / f"away-{value}").read_bytes() == before
 
 
-def test_a_folder_or_a_pipe_in_its_place_is_said_and_kept(scene):
+def test_a_folder_a_pipe_or_a_link_in_its_place_is_said_and_kept(scene):
     daemon = scene.owsd(text(scene))
-    pipe, folder = scene.path / "pipe", scene.path / "folder"
-    pipe.mkdir()
-    os.mkfifo(pipe / FILE)
-    done = scene._run([RECORDER, "-n", daemon.name, "-c", daemon.config, "-d", pipe], 20)
-    assert done.returncode == 1 and "is no history of owsd" in done.stderr, done
-    (folder / FILE).mkdir(parents=True)
-    recorder = record(scene, daemon, directory=folder)
-    until(lambda: "cannot be written: Is a directory" in recorder.log(), 20, "it says so")
-    set_relays(scene, daemon, 7)
-    (folder / FILE).rmdir()
-    until(lambda: "is written again" in recorder.log(), 60, "it catches up")
-    assert recorder.stop() == 0
-    assert Past(scene, folder).good("relays")[-1] == "7"
+    for value, make, reason in ((5, os.mkfifo, "is no history of owsd"),
+                                (6, os.mkdir, "Is a directory"),
+                                (7, lambda path: os.symlink("/etc/passwd", path), "is a link")):
+        folder = scene.path / f"history-{value}"
+        folder.mkdir()
+        make(folder / FILE)
+        in_memory_until_it_is_moved_away(scene, daemon, folder, reason, value)
 
 
 def test_plain_sql_reads_names_times_and_words(scene):
