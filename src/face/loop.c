@@ -149,6 +149,8 @@ static void wait_and_take(struct face *face, struct unix_signals *signals, int64
 	struct timespec t;
 	int ready;
 
+	if (count)
+		until = earlier(until, now_ns + FACE_OLD_NS / 2); /* face_came() needs a look */
 	if (*face->report)
 		until = earlier(until, face->report_ns);
 	if (face->notify.watchdog_ns)

@@ -2,6 +2,7 @@
 /* owsctl set: checks values, sets them, and waits until the bus has them. */
 #include <errno.h>
 #include <getopt.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +12,7 @@
 #include "src/owsctl/verbs.h"
 #include "src/show/actor.h"
 #include "src/show/names.h"
+#include "src/show/range.h"
 #include "src/show/reading.h"
 #include "src/signal/value.h"
 
@@ -20,22 +22,11 @@ struct order {
 	int id;
 	enum attribute attribute;
 	enum ows_type type;
-	int64_t value; /* numbers */
+	char range[RANGE_WORDS]; /* what it takes */
+	int64_t value;           /* numbers */
 	uint32_t stamp;
 	bool input; /* the value of one */
 	bool confirmed;
-};
-
-static const char *const ranges[] = {
-	[OWS_BOOL] = "0 or 1",
-	[OWS_BYTE] = "0 to 255",
-	[OWS_SHORT] = "-32768 to 32767",
-	[OWS_LONG] = "-2147483648 to 2147483647",
-	[OWS_WORD] = "0 to 65535",
-	[OWS_DWORD] = "0 to 4294967295",
-	[OWS_FLOAT] = "up to 3.4e38",
-	[OWS_DOUBLE] = "up to 1.8e308",
-	[OWS_LARGE] = "-9223372036854775808 to 9223372036854775807",
 };
 
 static bool is_edge(enum attribute attribute)
@@ -47,8 +38,8 @@ static bool is_edge(enum attribute attribute)
 static int check_order(const struct ctl *ctl, struct ows *h, struct order *order)
 {
 	const struct attribute_def *def;
-	const char *type, *range;
-	struct ows_info info;
+	struct ows_info info = {.min = NAN, .max = NAN};
+	const char *type;
 	int signal, err;
 
 	if (names_lookup(h, ctl->instance, order->name, &signal, &order->attribute) != 0)
@@ -66,20 +57,20 @@ static int check_order(const struct ctl *ctl, struct ows *h, struct order *order
 		order->type = (enum ows_type)info.type;
 		order->input = !info.output;
 	}
+	range_words(order->type, info.min, info.max, order->range);
 	if (order->type == OWS_STRING)
 		return CTL_DONE;
 	type = value_type_name(order->type);
-	range = ranges[order->type];
 	err = value_parse(order->type, order->text, &order->value);
 	if (err == -ERANGE)
 		return ctl_fail("%s: %s is out of range for %s (%s)", order->name, order->text,
-		                type, range);
+		                type, order->range);
 	if (err && value_parse(OWS_DOUBLE, order->text, &order->value) == 0)
 		return ctl_fail("%s: %s is not a whole number, as %s wants it (%s)", order->name,
-		                order->text, type, range);
+		                order->text, type, order->range);
 	if (err)
 		return ctl_fail("%s: \"%s\" is not a value for %s (%s)", order->name, order->text,
-		                type, range);
+		                type, order->range);
 	return CTL_DONE;
 }
 
@@ -132,7 +123,8 @@ static int set_send(struct ows *h, struct order *order)
 		                "configuration)",
 		                order->name);
 	case ERANGE:
-		return ctl_fail("%s: %s is too long or out of range", order->name, order->text);
+		return ctl_fail("%s: %s is too long, or beyond the signal's range: expected %s",
+		                order->name, order->text, order->range);
 	}
 	return ctl_fail("%s: %s", order->name, error_text(err));
 }
@@ -214,10 +206,12 @@ static bool print_lost(struct ows *h, const struct order *order)
 		return false;
 	ows_command(h, order->id, &command);
 	if (command.taken == order->stamp && command.refused) {
-		ctl_fail("%s was refused: %s", order->name,
-		         command.refused == -ERANGE
-		                 ? "the type cannot hold it, or it is beyond the signal's range"
-		                 : error_words(command.refused, words));
+		if (command.refused == -ERANGE)
+			ctl_fail("%s was refused: %s is beyond the signal's range: expected %s",
+			         order->name, order->text, order->range);
+		else
+			ctl_fail("%s was refused: %s", order->name,
+			         error_words(command.refused, words));
 		return true;
 	}
 	ows_origin(h, order->id, &origin);

@@ -202,7 +202,7 @@ def test_commands_have_the_way_and_the_rights_of_all_commands(scene):
         journal = scene.owsctl(house.daemon, "journal").stdout
         assert "owsd-mqtt" in journal and "mqtt:127.0.0.1" in journal, journal
         command(house, profile, "relay", "7")
-        logged(house.face, "command to relay refused: it is no value")
+        logged(house.face, "command to relay refused: \"7\" is no value for it: expected 0 or 1")
         command(house, profile, "room", "20")
         logged(house.face, "command to room refused: it is an input")
         command(house, profile, "relay", profile.off, "-r")
