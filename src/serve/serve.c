@@ -240,7 +240,7 @@ static bool asks_again(struct serve *s)
 static int serve_wait(struct serve *s, struct epoll_event *events)
 {
 	int wait = wait_ms(s), n;
-	int64_t asked_ns;
+	int64_t asked_ns, told_ns;
 
 	if (wait && s->again++ < AGAIN_MOST && asks_again(s))
 		return 0;
@@ -252,8 +252,9 @@ static int serve_wait(struct serve *s, struct epoll_event *events)
 	n = epoll_wait(s->epoll_fd, events, EVENTS, wait);
 	s->came_ns = s->asked_ns;
 	/* what was not reported comes from now on, if it did not stop between that and the clock */
+	told_ns = ows_now();
 	if (n >= 0 && n < EVENTS)
-		s->asked_ns = ows_now() - asked_ns > WRITE_OLD_NS ? asked_ns : ows_now();
+		s->asked_ns = told_ns - asked_ns > WRITE_OLD_NS ? asked_ns : told_ns;
 	if (wait)
 		guests_awake(&s->guests);
 	return n;
