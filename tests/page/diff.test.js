@@ -71,6 +71,7 @@ test("changes at different places are both there", () => {
 	assert.deepEqual(merged("abcd", "aXcd", "abcdY"), ["aXcdY", 0]);
 	assert.deepEqual(merged("abcdef", "abXdef", "bcdef"), ["bXdef", 0]);
 	assert.deepEqual(merged("abcdef", "bcdef", "abcde"), ["bcde", 0]);
+	assert.deepEqual(merged("abcd", "aXcd", "abYd"), ["aXYd", 0], "lines beside each other");
 });
 
 test("where both changed the same line mine is taken, and the clash is told", () => {
@@ -78,6 +79,11 @@ test("where both changed the same line mine is taken, and the clash is told", ()
 	assert.deepEqual(merge(["a", "b", "c"], ["a", "M", "c"], ["a", "c"]).clashes,
 		[{mine: ["M"], theirs: []}]);
 	assert.deepEqual(merged("abc", "ac", "ac"), ["ac", 0]);
+});
+
+test("one change of mine over several of theirs is one place", () => {
+	assert.deepEqual(merged("abcdef", "a1ef", "aXcYef"), ["a1ef", 1]);
+	assert.deepEqual(merged("abcdef", "aXcYef", "a1ef"), ["aXcYef", 1]);
 });
 
 test("of lines that both inserted theirs come first", () =>
