@@ -61,7 +61,7 @@ def test_a_stream_that_missed_alarms_is_told_to_look_at_all(scene):
         assert [events.next()[0] for _ in range(2)] == ["found", "values"]
 
 
-def test_a_thousand_streams_get_each_change_and_one_more_is_refused(scene):
+def test_a_thousand_streams_get_each_change_one_more_is_refused_and_others_come_after_them(scene):
     daemon, page = both(scene)
     with contextlib.ExitStack() as all_of_them:
         streams = [all_of_them.enter_context(Events(page)) for _ in range(1000)]
@@ -75,6 +75,12 @@ def test_a_thousand_streams_get_each_change_and_one_more_is_refused(scene):
                 stream.value(1, value)
         assert page.json("/api/info")["signals"] == 2
         assert page.program.running() and len(owsdtest.open_files(page.program)) > 1000
+    # that a client has gone is noticed when something is written to it
+    set_relays(scene, daemon, 9)
+    until(lambda: len(owsdtest.open_files(page.program)) < 100, 30, "they have gone")
+    with contextlib.ExitStack() as all_of_them:
+        statuses = [all_of_them.enter_context(Events(page)).status for _ in range(1000)]
+        assert set(statuses) == {200}, statuses.count(200)
 
 
 def test_slow_readers_of_large_answers_cost_a_bounded_memory(scene):

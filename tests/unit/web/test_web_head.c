@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Tests of the strict look at the head of a request. */
+#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -102,6 +103,36 @@ static void test_a_refusal_does_not_wait_for_the_end_of_the_head(void)
 	TEST_ASSERT_EQUAL_INT(0, check("GET / HTTP/1.1\r"));
 }
 
+static void test_a_header_that_decides_something_stands_once(void)
+{
+	static const char *const headers[] = {
+		"Host: a",
+		"Content-Length: 0",
+		"Content-Type: application/json",
+		"Origin: http://a",
+		"Sec-Fetch-Site: none",
+		"X-Owsd: 1",
+		"X-Remote-User: anna",
+		"X-Remote-User-Name: anna",
+		"Expect: 100-continue",
+		"Last-Event-ID: 1:2",
+	};
+
+	for (size_t i = 0; i < sizeof(headers) / sizeof(headers[0]); i++) {
+		char text[300], other[100];
+		const char *host = i ? "Host: a\r\n" : "";
+
+		snprintf(text, sizeof(text), "POST / HTTP/1.1\r\n%s%s\r\n\r\n", host, headers[i]);
+		TEST_ASSERT_EQUAL_INT_MESSAGE(200, check(text), headers[i]);
+		snprintf(other, sizeof(other), "%s", headers[i]);
+		for (char *c = other; *c && *c != ':'; c++)
+			*c = (char)tolower((unsigned char)*c);
+		snprintf(text, sizeof(text), "POST / HTTP/1.1\r\n%s%s\r\nAccept: x\r\n%s\r\n\r\n",
+		         host, headers[i], other);
+		TEST_ASSERT_EQUAL_INT_MESSAGE(400, check(text), headers[i]);
+	}
+}
+
 static void test_a_head_has_8192_bytes_at_most(void)
 {
 	static char text[HEAD_MAX + 2];
@@ -144,6 +175,7 @@ int main(void)
 	RUN_TEST(test_a_proper_head_is_whole_at_its_last_byte);
 	RUN_TEST(test_what_is_not_by_the_letter_is_refused_with_a_reason);
 	RUN_TEST(test_a_refusal_does_not_wait_for_the_end_of_the_head);
+	RUN_TEST(test_a_header_that_decides_something_stands_once);
 	RUN_TEST(test_a_head_has_8192_bytes_at_most);
 	RUN_TEST(test_a_turned_byte_is_refused_or_understood_and_never_read_past);
 	return UNITY_END();
