@@ -32,7 +32,8 @@ const values = (...rows) => streams.at(-1).sends("values",
 /* A page that is shown and connected, of which all is known. */
 beforeEach(async () => {
 	if (!store) {
-		({HIDDEN, store} = await import("./page/store.js"));
+		({HIDDEN} = await import("./page/connection.js"));
+		({store} = await import("./page/store.js"));
 		await store.start();
 	}
 	value = 21;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Starts the page: the views, which of them is shown (the address says it), and the state of all.
+import {HIDDEN} from "./connection.js";
 import {announce, el, later, mark, put} from "./dom.js";
 import * as live from "./live.js";
-import {HIDDEN, store} from "./store.js";
+import {store} from "./store.js";
 import {way} from "./way.js";
 import {alarmOf, clock} from "./words.js";
 
