@@ -175,6 +175,17 @@ def test_the_person_whom_ingress_names_commands_and_stands_in_the_journal(scene)
             assert [s["value"] for s in signals if s["name"] == "relays"] == [5], signals
 
 
+def test_the_wires_are_scanned_for_the_person_whom_ingress_names(scene):
+    _, page = behind(scene, Configure="on")
+    with ingress(page.port, ANNA) as server:
+        assert ask(server, "api/devices", X_Owsd="1")[0] == 200
+        assert ask(server, "api/devices")[0] == 403
+    with ingress(page.port, {}) as server:
+        # Supervisor passes that on as the browser sent it
+        status, body = ask(server, "api/devices", X_Owsd="1", X_Remote_User="root")
+        assert status == 403 and b"X-Remote-User-Name" in body, body
+
+
 def test_at_an_address_all_but_the_proxy_are_refused_and_the_socket_is_as_before(scene):
     _, page = behind(scene)
     for path in ("/", "/api/info", "/api/signals", "/api/events"):

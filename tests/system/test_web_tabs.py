@@ -9,7 +9,7 @@ import time
 
 import owsdtest
 from owsdtest import until
-from webhouse import CELLS, house, plant
+from webhouse import CELLS, plant, shows
 
 TABS = 8  # a browser has six connections to one server
 STALE_S = 4  # so long after a page is hidden its values are no longer believed, and a little more
@@ -78,6 +78,20 @@ def test_a_hidden_page_holds_no_connection_and_is_right_when_it_is_shown(scene):
         scene.owsctl(daemon, "set", "pump", "0")
         has_value(page, "pump", "off")
         assert not page.complaints()
+
+
+def test_a_command_is_carried_out_though_the_page_is_hidden_at_once(scene):
+    with plant(scene, write=True) as (daemon, _, page):
+        scene.owsctl(daemon, "set", "pump", "0")
+        first, other = page.tab(), page.tab("about:blank")
+        for want in ("1", "0", "1"):
+            page.show(first)
+            page.click(f"{PUMP}[aria-checked={'false' if want == '1' else 'true'}]:enabled")
+            page.show(other)
+            until(lambda: scene.get(daemon, "pump") == want, 10, "the command is carried out")
+        page.show(first)
+        has_value(page, "pump", "on")
+        shows(page, "#live", "on: taken")
 
 
 def test_a_page_that_is_shown_at_once_again_never_calls_its_values_unknown(scene):
