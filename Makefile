@@ -257,7 +257,7 @@ WEBPAGE  := $(patsubst src/web/page/%,%,$(foreach e,html css js svg png webmanif
 MAN      := $(wildcard docs/*.[1-8])
 # Tests
 UNIT_SRC := $(filter-out $(if $(PROTOBUFC),,%/test_sparkplug.c) $(if $(MOSQUITTO),,%/test_advice.c) $(if $(SQLITE),,%_past.c $(wildcard $(patsubst %,tests/unit/%/*.c,history libhistory recorder))),$(wildcard tests/unit/*/test_*.c))
-UNIT_AID := $(filter-out %/published.c $(if $(SQLITE),,%/past.c %/power_file.c),$(wildcard tests/unit/aid/*.c))
+UNIT_AID := $(filter-out %/published.c %/past.c $(if $(SQLITE),,%/power_file.c),$(wildcard tests/unit/aid/*.c))
 ENDURANCE := $(wildcard tests/endurance/*.c)
 BENCH    := $(filter-out $(if $(SQLITE),,%/bench_history.c %/bench_recorder.c),$(wildcard tests/bench/bench_*.c))
 BENCH_AID := $(filter-out tests/bench/bench_%,$(wildcard tests/bench/*.c)) $(SIM_TABLE) tests/unit/aid/plant.c tests/unit/aid/plant_net.c tests/unit/aid/giving.c
@@ -436,6 +436,8 @@ $(foreach t,$(UNIT_SRC),$(eval $(B)/unit/$(basename $(notdir $(t))): $(call obj,
 MQTT_UNITS := $(patsubst tests/unit/mqtt/%.c,$(B)/unit/%,$(wildcard tests/unit/mqtt/*.c))
 $(MQTT_UNITS): LIBS += $(PROTOBUFC:1=-lprotobuf-c) $(MOSQUITTO:1=-lmosquitto)
 $(MQTT_UNITS): $(B)/tests/unit/aid/published.o
+# It has names of src/mqtt/past.c
+$(if $(SQLITE),$(filter-out $(MQTT_UNITS) %/test_endurance,$(UNIT)): $(B)/tests/unit/aid/past.o)
 $(filter-out %/test_endurance,$(UNIT)): $(B)/unit/unity.o $(call obj,$(UNIT_AID)) $(B)/core.a $(B)/with/ld
 	$(call link)
 

@@ -7,9 +7,14 @@ import importlib.util
 import pathlib
 import re
 
+import graph
+import rooms
 from tree import Skip
 
 TABLE = "tests/suites"
+# In percent of the lines of a room: files of which no unit test names a function. Lower what has fallen
+BARE = {"src/mqtt": 30, "src/recorder": 30, "src/web": 67, "src/writer": 59, "src/influx": 51, "src/history": 48,
+        "src/face": 42, "src/config": 30, "src/control": 32, "src/shm": 28, "src/serve": 23, "src/libows": 20}
 KEYS = {"rung", "why", "run", "seconds", "paths", "tests", "needs", "row", "reads"}
 CHECK = pathlib.Path(__file__).resolve().parents[1] / "check"
 
@@ -20,6 +25,30 @@ def module():
     found = importlib.util.module_from_spec(spec)
     loader.exec_module(found)
     return found
+
+
+def shares(tree):
+    """room -> (percent of its lines, the largest file) of files of which no unit test names a function.
+    A name that tests define themselves says nothing: it is a stand-in, or another's."""
+    found = rooms.graph_of(tree)
+    code = [graph.NOT_CODE.sub(" ", tree.text(f)) for f in tree.ending(".c", ".h")
+            if f.startswith(("tests/unit/", "tests/fuzz/", "tests/endurance/"))]
+    own = {name for text in code for kind in (graph.FUNCTION, graph.DATA) for name in kind.findall(text)}
+    named = {name for text in code for name in graph.NAME.findall(text)} - own
+    held = {found.defined[name] for name in named & set(found.defined)}
+    lines = {f: tree.text(f).count("\n") for f in found.files if f.endswith(".c")}
+    for room in sorted({graph.room_of(f) for f in lines}):
+        of_room = [f for f in lines if graph.room_of(f) == room]
+        bare = sorted((f for f in of_room if f not in held), key=lambda f: lines[f])
+        if bare:
+            yield room, 100 * sum(lines[f] for f in bare) // sum(lines[f] for f in of_room), bare[-1]
+
+
+def check_no_room_leaves_more_to_system_tests_than_it_does(tree):
+    for room, share, file in shares(tree):
+        if share > BARE.get(room, 100):
+            yield file, 1, f"no unit test names a function of it, nor of {share} % of the lines of {room}, " \
+                f"and at most {BARE[room]} % may be so; write a unit test"
 
 
 def check_make_help_has_each_target_that_pages_name(tree):

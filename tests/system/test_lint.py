@@ -90,6 +90,8 @@ FAULTS = [
     ("src/a/only.h", f'/* {MIT} */\n#ifndef SRC_A_ONLY_H\n#define SRC_A_ONLY_H\n#include "src/a/a.h"\n#endif\n',
      r"src/a/only.h:1: only includes other headers"),
     ("src/a/loose.c", f'{HEAD}#include "a.h"\n', r"src/a/loose.c:3: a.h is no path from the top"),
+    ("src/mqtt/bare.c", f"{HEAD}\nint bare(void)\n{{\n\treturn 0;\n}}\n",
+     r"src/mqtt/bare.c:1: no unit test names a function of it, nor of 100 % of the lines of src/mqtt"),
     ("src/c/new.c", HEAD, r"src/c/new.c:1: docs/design.md has no room src/c"),
     ("src/engine/talk.c", f'{HEAD}#include <sys/socket.h>\n', r"src/engine/talk.c:3: <sys/socket.h> waits"),
     ("src/engine/part/talk.c", f'{HEAD}#include <sys/socket.h>\n', r"src/engine/part/talk.c:3: <sys/socket.h> waits"),

@@ -9,6 +9,7 @@
 #include "src/face/face.h"
 #include "src/libhistory/ows_history.h"
 #include "src/recorder/recording.h"
+#include "src/signal/value.h"
 #include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/instance.h"
 
@@ -380,6 +381,16 @@ static void test_the_next_tick_is_within_a_second_and_never_before_now(void)
 	}
 }
 
+/* Also of a float: the file has doubles alone. */
+static void test_a_value_is_kept_as_the_bits_of_a_double_or_as_it_is(void)
+{
+	TEST_ASSERT_EQUAL_INT64(value_of_double(-0.5), series_bits(OWS_DOUBLE, -0.5, 7));
+	TEST_ASSERT_EQUAL_INT64(value_of_double(0.1f), series_bits(OWS_FLOAT, 0.1f, 7));
+	TEST_ASSERT_EQUAL_INT64(-7, series_bits(OWS_LARGE, 0.5, -7));
+	TEST_ASSERT_EQUAL_INT64(1, series_bits(OWS_BOOL, 0.5, 1));
+	TEST_ASSERT_EQUAL_INT64(9, series_bits(OWS_STRING, 0.5, 9));
+}
+
 static void test_the_status_says_what_is_waited_for_and_what_is_kept(void)
 {
 	TEST_ASSERT_EQUAL_INT(0, recording_open(&face));
@@ -407,6 +418,7 @@ int main(void)
 	RUN_TEST(test_a_signal_that_is_off_is_not_kept);
 	RUN_TEST(test_an_alarm_of_a_signal_that_is_there_is_kept_and_of_no_other);
 	RUN_TEST(test_the_next_tick_is_within_a_second_and_never_before_now);
+	RUN_TEST(test_a_value_is_kept_as_the_bits_of_a_double_or_as_it_is);
 	RUN_TEST(test_the_status_says_what_is_waited_for_and_what_is_kept);
 	return UNITY_END();
 }
