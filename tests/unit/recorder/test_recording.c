@@ -146,6 +146,23 @@ static void test_values_are_kept_when_they_change_with_their_times(void)
 	TEST_ASSERT_TRUE(items[1].boot_ns <= items[2].boot_ns);
 }
 
+/* The one gap of the history's journal: when it began, and how long it was at least. */
+static void is_in_the_journal(int64_t time_ns, int64_t least_ns)
+{
+	struct ows_history_event event;
+	struct ows_history *h;
+
+	TEST_ASSERT_EQUAL_INT(0, ows_history_open(NULL, directory, &h));
+	TEST_ASSERT_EQUAL_INT(0, ows_history_events(h, 0, INT64_MAX, 1u << OWS_HISTORY_GAP));
+	TEST_ASSERT_EQUAL_INT(1, ows_history_next_event(h, &event));
+	TEST_ASSERT_EQUAL_UINT8(OWS_HISTORY_OWSD_LOST, event.reason);
+	TEST_ASSERT_EQUAL_INT64(time_ns, event.time_ns);
+	TEST_ASSERT_GREATER_OR_EQUAL_INT64(event.time_ns + least_ns, event.until_ns);
+	TEST_ASSERT_LESS_THAN_INT64(event.time_ns + least_ns + 60 * S, event.until_ns);
+	TEST_ASSERT_EQUAL_INT(0, ows_history_next_event(h, &event));
+	ows_history_close(h);
+}
+
 static void test_while_owsd_is_lost_nothing_is_known_and_no_value_reaches_in(void)
 {
 	int64_t lost_ns, back_ns;
@@ -166,6 +183,7 @@ static void test_while_owsd_is_lost_nothing_is_known_and_no_value_reaches_in(voi
 	TEST_ASSERT_TRUE(items[1].boot_ns <= lost_ns);
 	TEST_ASSERT_TRUE(items[1].boot_ns >= items[0].boot_ns);
 	TEST_ASSERT_TRUE(items[2].boot_ns >= back_ns - 1000);
+	is_in_the_journal(items[1].time_ns, back_ns - lost_ns);
 }
 
 /* It ends again before its next heartbeat: the values of its return are of a moment alone. */
