@@ -36,6 +36,8 @@
 #                                 FUZZ_SECONDS=60 for each
 #   make analyze                  what gcc's analyzer, clang-tidy and cppcheck find: nothing may be left
 #   make coverage                 which lines and branches the tests reach
+#   make mutate                   which faults of one line, in the newest rooms, their unit tests find;
+#                                 ROOMS='mqtt web' of these, FAULTS=30 of each, SEED=1
 #   make soak                     a month of faults in virtual time; HOURS=24 less of it
 #   make test-kill                the writer of the shared memory killed at KILLS=10000 random points
 #   make test-power               power cuts at CUTS=500 points of what history writes
@@ -285,7 +287,7 @@ LIBRARY  := $(foreach l,$(LIBRARIES),$(B)/$(l).so.$(VERSION) $(B)/$(l).a $(B)/$(
 .PHONY: all unit soak system test run bench bench-page install uninstall install-service uninstall-service \
         deb test-package test-service test-fresh dist test-dist clean \
         examples unit-programs benches system-programs diagrams compare properties-page check check-all \
-        touched help FORCE
+        touched mutate help FORCE
 all: $(PROGRAMS) $(LIBRARY) $(PYTHON_MADE) $(B)/core.a $(B)/with/libraries
 
 # Two makes may do this at once
@@ -574,6 +576,9 @@ check-all:
 	@B=$(B) python3 tests/check $(if $(AGAIN),--again) --rung hours
 touched:
 	@python3 tests/check --touched $(BASE)
+# One that is not found is a line that no unit test holds
+mutate: all
+	@B=$(B) WERROR=$(WERROR) python3 tests/mutate $(FAULTS:%=--faults %) $(SEED:%=--seed %) $(ROOMS)
 
 # --- Diagrams: made of the program's own tables, and kept beside the pages that show them -------
 diagrams:
