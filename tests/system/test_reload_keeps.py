@@ -28,7 +28,11 @@ with ows.Ows(sys.argv[1], control=True) as o:
         except OSError as e:
             if e.errno != errno.ESTALE:
                 raise
-            o.reopen()
+            try:
+                o.reopen()
+            except OSError as e:  # owsd has 20 ms to answer: the next round tries again
+                if e.errno in (errno.ENOSPC, errno.EACCES, errno.EPERM):
+                    raise
         time.sleep(0.05)  # pace
 """
 
