@@ -15,6 +15,8 @@
 static const char *advice_on_history(int err)
 {
 	return err == -ENOENT ? "; does owsd-recorder run?"
+	       : err == -EBADMSG
+	               ? "; history.sqlite is damaged, empty (was the disk full?) or no history"
 	       : err == -EPROTONOSUPPORT
 	               ? "; its file is of another version of owsd, or owsd-recorder has not run since"
 	       : err == -ENOSYS ? "; this owsctl was built without SQLite"
@@ -86,18 +88,35 @@ int past_signal(struct ows_history *h, const char *instance, const char *name,
 	return err ? err : signal;
 }
 
-int past_unknown(struct ows_history *h, const char *name)
+int past_unknown(const struct ctl *ctl, struct ows_history *h, const char *name)
 {
 	unsigned best = text_too_far(name);
 	struct ows_history_signal signal;
 	const char *nearest = NULL;
+	struct ows *live = NULL;
+	struct ows_info info;
+	bool known = false;
 
 	for (int i = 0; !ows_history_signal(h, i, &signal); i++)
 		if (text_nearer(name, signal.name, &best))
 			nearest = signal.name;
-	if (nearest)
-		return ctl_fail("the history has no signal %s; did you mean %s?", name, nearest);
-	return ctl_fail("the history has no signal %s", ctl_word(name));
+	/* what owsd has, the recorder may not have written yet */
+	if (ows_open(ctl->instance, OWS_READ, &live) == 0)
+		for (int i = 0; !ows_info(live, i, &info); i++) {
+			known |= !strcmp(info.name, name);
+			if (text_nearer(name, info.name, &best))
+				nearest = info.name;
+		}
+	if (known)
+		ctl_fail("the history has nothing of %s yet: owsd-recorder writes each minute, or "
+		         "as Flush says",
+		         name);
+	else if (nearest)
+		ctl_fail("the history has no signal %s; did you mean %s?", name, nearest);
+	else
+		ctl_fail("the history has no signal %s", ctl_word(name));
+	ows_close(live);
+	return CTL_FAILED;
 }
 
 const char *past_word(const struct ows_history_item *item)

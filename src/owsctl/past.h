@@ -16,8 +16,11 @@ int past_look(const struct ctl *ctl, const char *directory, struct ows_history *
 /* A signal by its name, as it is or as INSTANCE__NAME: its index, and *known; -ENOENT. */
 int past_signal(struct ows_history *h, const char *instance, const char *name,
                 struct ows_history_signal *known);
-/* Print that it has no such signal, with the nearest name; returns CTL_FAILED. */
-int past_unknown(struct ows_history *h, const char *name);
+/*
+ * Print that it has no such signal, with the nearest name, or that it has nothing yet of one that
+ * owsd has; returns CTL_FAILED.
+ */
+int past_unknown(const struct ctl *ctl, struct ows_history *h, const char *name);
 /* The word for its quality; of a gap its reason. */
 const char *past_word(const struct ows_history_item *item);
 /* Say why something of it could not be read; returns CTL_FAILED. */

@@ -220,7 +220,7 @@ static int trend_show(struct trend *t, const char *name)
 	int signal = past_signal(t->h, t->ctl->instance, name, &known);
 
 	if (signal == -ENOENT)
-		return past_unknown(t->h, name);
+		return past_unknown(t->ctl, t->h, name);
 	if (signal < 0)
 		return past_fail(ctl_word(name), signal);
 	if (lists(t))

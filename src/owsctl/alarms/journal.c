@@ -214,7 +214,7 @@ static bool patterns_known(struct journal *j)
 		if (j->h && alarms_known(j->h, &j->patterns[i], 1))
 			continue;
 		if (!j->h)
-			past_unknown(j->history, j->patterns[i]);
+			past_unknown(j->ctl, j->history, j->patterns[i]);
 		known = false;
 	}
 	return known;

@@ -355,6 +355,35 @@ static void test_values_are_kept_for_days_minutes_for_more_and_hours_for_ever(vo
 	                                     " typeof(good) <> 'real' or typeof(least) <> 'real'"));
 }
 
+static void test_the_journal_is_kept_as_long_as_minutes(void)
+{
+	struct history_event event = {.kind = HISTORY_COMMAND};
+
+	past.options.flush_ns = 1800 * PAST_S;
+	past.options.keep.days = 1;
+	past.options.keep.minutes = 3;
+	past_begin(&past, 0, PAST_NOON, true);
+	for (int day = 0; day < 6; day++) {
+		event.time_ns = day * PAST_DAY + PAST_DAY / 2;
+		history_writer_event(past.writer, &event);
+		days(day, day + 1);
+	}
+	past_end(&past, 6 * PAST_DAY);
+	/* those of the days 3, 4 and 5; the values of day 4 are gone */
+	TEST_ASSERT_EQUAL_INT64(3, past_ask(&past, "select count(*) from event where kind = 7"));
+}
+
+static void test_a_value_that_was_measured_before_the_last_one_comes_after_it(void)
+{
+	past_begin(&past, 0, PAST_NOON, true);
+	past_room(&past, 10 * PAST_S, 1);
+	past_room(&past, 5 * PAST_S, 2);
+	past_end(&past, 20 * PAST_S);
+	TEST_ASSERT_EQUAL_INT(3, count_of(PAST_ROOM));
+	expect(0, 10 * PAST_S, 1);
+	expect(1, 10 * PAST_S, 2);
+}
+
 static void test_a_file_that_is_too_large_loses_its_oldest_values(void)
 {
 	past.options.flush_ns = 1800 * PAST_S;
@@ -866,6 +895,8 @@ int main(void)
 	RUN_TEST(test_gaps_are_read_as_gaps_and_values_after_them_are_new);
 	RUN_TEST(test_a_value_that_holds_is_repeated_each_hour_and_one_of_a_gone_signal_is_not);
 	RUN_TEST(test_values_are_kept_for_days_minutes_for_more_and_hours_for_ever);
+	RUN_TEST(test_the_journal_is_kept_as_long_as_minutes);
+	RUN_TEST(test_a_value_that_was_measured_before_the_last_one_comes_after_it);
 	RUN_TEST(test_a_file_that_is_too_large_loses_its_oldest_values);
 	RUN_TEST(test_without_a_directory_it_goes_on_in_memory_and_catches_up);
 	RUN_TEST(test_a_memory_that_is_full_becomes_a_gap_after_which_all_is_known);

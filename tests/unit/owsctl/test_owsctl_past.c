@@ -350,6 +350,16 @@ static void test_a_name_that_the_history_has_not_is_answered_with_the_nearest(vo
 	holds(err, "the history has no signal elephant\n");
 }
 
+static void test_of_a_signal_that_owsd_has_nothing_may_be_written_yet(void)
+{
+	value(ROOM, 1, OWS_Q_GOOD, value_of_double(1), NULL);
+	written();
+	TEST_ASSERT_EQUAL(CTL_FAILED, trend("--csv pump"));
+	holds(err, "the history has nothing of pump yet: owsd-recorder writes each minute");
+	TEST_ASSERT_EQUAL(CTL_FAILED, trend("--csv pumq"));
+	holds(err, "the history has no signal pumq; did you mean pump?");
+}
+
 static void test_a_name_may_have_the_instance_in_front(void)
 {
 	char asked[120];
@@ -439,6 +449,7 @@ int main(void)
 	RUN_TEST(test_a_damaged_file_is_named);
 	RUN_TEST(test_good_values_are_points_of_the_line_protocol);
 	RUN_TEST(test_a_name_that_the_history_has_not_is_answered_with_the_nearest);
+	RUN_TEST(test_of_a_signal_that_owsd_has_nothing_may_be_written_yet);
 	RUN_TEST(test_a_name_may_have_the_instance_in_front);
 	RUN_TEST(test_the_times_of_a_list_can_be_asked_for);
 	RUN_TEST(test_a_bar_is_shown_from_the_second_second_on_and_taken_away);
