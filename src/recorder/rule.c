@@ -66,3 +66,13 @@ int64_t rule_next_tick(const struct config_record *rule, int64_t wall_ns)
 		return INT64_MAX;
 	return (interval_slot(rule, wall_ns) + 1) * rule->interval_ns;
 }
+
+bool rule_missed(const struct config_record *rule, const struct rule_kept *kept, uint32_t measured,
+                 bool ticked, int64_t unseen_ns, int64_t now_ns)
+{
+	if (!unseen_ns || !kept->any)
+		return false;
+	if (ticked)
+		return now_ns - unseen_ns > rule->interval_ns;
+	return (rule->change || rule->deadband > 0) && measured > 1;
+}

@@ -33,5 +33,13 @@ bool rule_change(const struct config_record *rule, const struct rule_kept *kept,
 bool rule_tick(const struct config_record *rule, struct rule_kept *kept, int64_t wall_ns);
 /* At the tick that begins a slot: is the newest sample kept? */
 bool rule_interval(const struct rule_kept *kept, const struct rule_sample *sample);
+/*
+ * May there have been a value between the last that was kept and this one, which the rule would
+ * have kept? measured: how often since the last look; changes are not counted, and of several
+ * measurements one may have been a change. unseen_ns: the recorder has not looked since then,
+ * though it was due; 0: it has. ticked: at a tick.
+ */
+bool rule_missed(const struct config_record *rule, const struct rule_kept *kept, uint32_t measured,
+                 bool ticked, int64_t unseen_ns, int64_t now_ns);
 /* The wall-clock time of the next tick; INT64_MAX without an interval. */
 int64_t rule_next_tick(const struct config_record *rule, int64_t wall_ns);

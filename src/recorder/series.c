@@ -151,8 +151,7 @@ void series_free(struct series *rows)
 	*rows = (struct series){.last_ns = rows->last_ns, .since_ns = rows->since_ns};
 }
 
-/* No value reaches back into a gap. */
-static int64_t time_of(const struct series *rows, const struct ows_value *v, int64_t now_ns)
+int64_t series_time(const struct series *rows, const struct ows_value *v, int64_t now_ns)
 {
 	int64_t time_ns = moment_of(v, now_ns);
 
@@ -183,7 +182,7 @@ static void keep_sample(struct series *rows, struct rule_kept *kept,
                         uint32_t number, const struct ows_value *v, const char *text,
                         int64_t now_ns)
 {
-	int64_t time_ns = time_of(rows, v, now_ns);
+	int64_t time_ns = series_time(rows, v, now_ns);
 
 	history_writer_value(writer, number, time_ns, v->quality,
 	                     series_bits(v->type, v->number, v->integer), text, strlen(text));
@@ -208,20 +207,6 @@ static void keep_raw(struct series *rows, struct row *row, struct ows *ows,
 	keep_sample(rows, &row->raw_kept, &sample, writer, row->raw_row, &v, "", now_ns);
 }
 
-/*
- * May there have been a value between the last that was kept and this one, which the rule would
- * have kept? Measurements are counted, changes are not: of several, one may have been a change.
- */
-static bool is_missed(const struct row *row, const struct ows_value *v, bool ticked,
-                      int64_t unseen_ns, int64_t now_ns)
-{
-	if (!unseen_ns || !row->kept.any)
-		return false;
-	if (ticked)
-		return now_ns - unseen_ns > row->rule.interval_ns;
-	return (row->rule.change || row->rule.deadband > 0) && v->count - row->count > 1;
-}
-
 /* Nothing is known of the signal from then on, or from what was kept later. */
 static void miss(struct series *rows, struct row *row, int signal, struct history_writer *writer,
                  int64_t unseen_ns)
@@ -244,7 +229,7 @@ static void series_take(struct series *rows, int signal, struct ows *ows,
 
 	if (row->rule.off || !series_get(ows, signal, now_ns, &v, text, &sample))
 		return;
-	if (is_missed(row, &v, ticked, unseen_ns, now_ns))
+	if (rule_missed(&row->rule, &row->kept, v.count - row->count, ticked, unseen_ns, now_ns))
 		miss(rows, row, signal, writer, unseen_ns);
 	row->count = v.count;
 	if (!rule_change(&row->rule, &row->kept, &sample) &&

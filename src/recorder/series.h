@@ -59,5 +59,7 @@ int64_t series_tick(struct series *rows, struct ows *ows, struct history_writer 
 /* Nothing was known until now: each value is kept anew, as of now if it is older. */
 void series_forget(struct series *rows, int64_t now_ns);
 
+/* The time that the history has of a value: none reaches back into a gap. Pure. */
+int64_t series_time(const struct series *rows, const struct ows_value *v, int64_t now_ns);
 /* A value as the history has it: bits of a double, or an integer. Pure. */
 int64_t series_bits(uint8_t type, double number, int64_t integer);

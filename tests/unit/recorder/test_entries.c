@@ -5,6 +5,7 @@
 #include "unity.h"
 
 #include "src/recorder/entries.h"
+#include "src/recorder/series.h"
 #include "src/signal/value.h"
 
 void setUp(void)
@@ -62,10 +63,21 @@ static void test_a_command_has_its_number_or_its_text(void)
 	TEST_ASSERT_TRUE(strlen(event.text) > 0 && strlen(event.text) < sizeof(event.text));
 }
 
+static void test_no_value_reaches_back_into_a_gap(void)
+{
+	struct series rows = {.since_ns = 100};
+	struct ows_value v = {.quality = OWS_Q_GOOD, .measured_ns = 90};
+
+	TEST_ASSERT_EQUAL_INT64(100, series_time(&rows, &v, 200));
+	v.measured_ns = 110;
+	TEST_ASSERT_EQUAL_INT64(110, series_time(&rows, &v, 200));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_an_alarm_is_whole);
 	RUN_TEST(test_a_command_has_its_number_or_its_text);
+	RUN_TEST(test_no_value_reaches_back_into_a_gap);
 	return UNITY_END();
 }

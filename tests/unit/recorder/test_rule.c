@@ -210,6 +210,22 @@ static void test_without_an_interval_there_is_no_turn(void)
 	TEST_ASSERT_EQUAL_INT64(INT64_MAX, rule_next_tick(&rule, 5));
 }
 
+static void test_a_change_may_be_missed_where_more_than_one_measurement_was_not_seen(void)
+{
+	struct config_record change = {.change = true}, deadband = {.deadband = 0.5}, none = {0};
+	struct config_record interval = {.interval_ns = 10 * NS_PER_S};
+	struct rule_kept before = {.any = true}, nothing = {0};
+
+	TEST_ASSERT_FALSE(rule_missed(&change, &before, 1, false, 5, 9));
+	TEST_ASSERT_TRUE(rule_missed(&change, &before, 2, false, 5, 9));
+	TEST_ASSERT_TRUE(rule_missed(&deadband, &before, 2, false, 5, 9));
+	TEST_ASSERT_FALSE(rule_missed(&none, &before, 2, false, 5, 9));
+	TEST_ASSERT_FALSE(rule_missed(&change, &before, 2, false, 0, 9));
+	TEST_ASSERT_FALSE(rule_missed(&change, &nothing, 2, false, 5, 9));
+	TEST_ASSERT_FALSE(rule_missed(&interval, &before, 9, true, 1, 10 * NS_PER_S + 1));
+	TEST_ASSERT_TRUE(rule_missed(&interval, &before, 9, true, 1, 10 * NS_PER_S + 2));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -224,5 +240,6 @@ int main(void)
 	RUN_TEST(test_a_value_that_was_not_read_anew_is_not_kept_again);
 	RUN_TEST(test_a_clock_that_is_set_back_turns_the_slot_too);
 	RUN_TEST(test_without_an_interval_there_is_no_turn);
+	RUN_TEST(test_a_change_may_be_missed_where_more_than_one_measurement_was_not_seen);
 	return UNITY_END();
 }
