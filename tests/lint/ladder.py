@@ -29,12 +29,13 @@ def module():
 
 def shares(tree):
     """room -> (percent of its lines, the largest file) of files of which no unit test names a function.
-    A name that tests define themselves says nothing: it is a stand-in, or another's."""
+    A name that tests of the same kind define themselves says nothing: it is a stand-in, or another's."""
     found = rooms.graph_of(tree)
-    code = [graph.NOT_CODE.sub(" ", tree.text(f)) for f in tree.ending(".c", ".h")
-            if f.startswith(("tests/unit/", "tests/fuzz/", "tests/endurance/"))]
-    own = {name for text in code for kind in (graph.FUNCTION, graph.DATA) for name in kind.findall(text)}
-    named = {name for text in code for name in graph.NAME.findall(text)} - own
+    named = set()
+    for folder in ("tests/unit/", "tests/fuzz/", "tests/endurance/"):
+        code = [graph.NOT_CODE.sub(" ", tree.text(f)) for f in tree.ending(".c", ".h") if f.startswith(folder)]
+        own = {name for text in code for kind in (graph.FUNCTION, graph.DATA) for name in kind.findall(text)}
+        named |= {name for text in code for name in graph.NAME.findall(text)} - own
     held = {found.defined[name] for name in named & set(found.defined)}
     lines = {f: tree.text(f).count("\n") for f in found.files if f.endswith(".c")}
     for room in sorted({graph.room_of(f) for f in lines}):
