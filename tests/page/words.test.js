@@ -12,8 +12,8 @@ const source = (path) => readFileSync(`${process.env.PAGE_SOURCE}/${path}`, "utf
 function qualities() {
 	const codes = new Map([...source("src/libows/ows.h").matchAll(
 		/(OWS_Q_\w+)\s*=\s*(0x[0-9a-f]+)/gi)].map(([, name, code]) => [name, Number(code)]));
-	return [...source("src/libows/info.c").matchAll(/\{(OWS_Q_\w+),\s*"([^"]+)"\}/g)]
-		.map(([, name, words]) => [codes.get(name), words]);
+	return [...source("src/signal/words_list.h").matchAll(/^QUALITY\((\w+),\s*"([^"]+)"/gm)]
+		.map(([, name, words]) => [codes.get(`OWS_Q_${name}`), words]);
 }
 
 test("each quality has the words that libows has, a meaning and a remedy", () => {
