@@ -297,7 +297,8 @@ static int read_places(struct ows_history *h)
 
 		if (err < 0)
 			return err;
-		if (*asked[i].to != INT64_MAX)
+		/* without a row it is behind all of them */
+		if (asked[i].to != &h->raw_first || *asked[i].to != INT64_MAX)
 			*asked[i].to = handle_within(*asked[i].to, -1, MOST_ID);
 	}
 	/* each hour is written with its last minute; to ask the hours reads eight of each signal */

@@ -114,7 +114,8 @@ static void test_each_other_refusal_has_its_remedy(void)
 	is("there is no such signal", -ENOENT);
 	is("it is an input: Writable is off in the configuration", -EROFS);
 	is("too many commands or programs: try again in a second", -EAGAIN);
-	is("the wire is short", -ECOMM);
+	is("the wire is short: data is held at ground: unplug branches until the wire lives again",
+	   -ECOMM);
 }
 
 int main(void)

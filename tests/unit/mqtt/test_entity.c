@@ -294,7 +294,7 @@ static void test_health_is_published_when_it_is_another_and_has_the_trouble(void
 	TEST_ASSERT_NOT_NULL(text);
 	has(text, "{\"signals\":6,\"bad\":");
 	has(text,
-	    "\"connects\":2,\"refused\":0,\"commands\":3,\"commands_refused\":1,\"trouble\":\"\"}");
+	    "\"connects\":2,\"refused\":0,\"commands\":3,\"commands_refused\":1,\"trouble\":\"\",\"reload_refused\":\"\"}");
 	p.said[0] = '\0';
 	TEST_ASSERT_TRUE(health_publish(&p.s, &health));
 	TEST_ASSERT_EQUAL_STRING("", p.said);
