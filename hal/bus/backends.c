@@ -31,6 +31,20 @@ static bool is_bare_ipv6(const char *target, const char *colon)
 	return strchr(colon + 1, ':') && target[strspn(target, "0123456789abcdefABCDEF:.")] == '\0';
 }
 
+/* "ds2482", "DS2482-800" or "i2c-1", and not a host as "i2c-garden". */
+static bool is_i2c_word(const char *word, size_t len)
+{
+	const char *number = NULL, *end = word + len;
+
+	if (len > 4 && strncasecmp(word, "i2c-", 4) == 0)
+		number = word + 4;
+	else if (len >= 6 && strncasecmp(word, "ds248", 5) == 0 && word[5] >= '2' && word[5] <= '5')
+		number = len == 6 ? end : len > 7 && word[6] == '-' ? word + 7 : NULL;
+	while (number && number < end && *number >= '0' && *number <= '9')
+		number++;
+	return number == end;
+}
+
 /*
  * Is the word a chip, or an adapter of OWFS, that owsd reaches by another target? Then why has the
  * remedy.
@@ -40,8 +54,7 @@ static bool is_others_adapter(const char *word, size_t len, char *why, size_t wh
 	static const char *const usb[] = {"usb", "ds9490", "ds9490r", "ds2490"};
 	static const char *const serial[] = {"serial", "link",    "linkusb",
 	                                     "ds9097", "ds9097u", "ds2480b"};
-	bool found = (len >= 6 && strncasecmp(word, "ds248", 5) == 0) ||
-	             (len > 4 && strncasecmp(word, "i2c-", 4) == 0);
+	bool found = is_i2c_word(word, len);
 
 	if (found)
 		snprintf(

@@ -127,9 +127,11 @@ static void test_an_unknown_scheme_is_refused_with_the_names_there_are(void)
 static void test_an_adapter_that_others_drive_is_refused_with_the_way_to_it(void)
 {
 	static const char *const usb[] = {"usb", "USB", "usb:all", "DS9490R", "ds2490"};
-	static const char *const serial[] = {"link", "LinkUSB", "DS9097U", "serial:/dev/ttyS0",
-	                                     "/dev/ttyUSB0"};
-	static const char *const i2c[] = {"i2c-1", "DS2482", "ds2482-800", "DS2484"};
+	static const char *const serial[] = {
+		"link", "LinkUSB", "DS9097U", "serial:/dev/ttyS0", "/dev/ttyUSB0", "ds2480b"};
+	static const char *const i2c[] = {"i2c-1", "I2C-10", "DS2482", "ds2482-800", "DS2484"};
+	static const char *const hosts[] = {"i2c-garden", "i2c-1a",  "ds2482-garden", "ds2482-",
+	                                    "ds24820",    "ds2480c", "ds2413",        "ds24"};
 
 	for (size_t i = 0; i < sizeof(usb) / sizeof(usb[0]); i++) {
 		is_refused(usb[i], -EINVAL, "target w1");
@@ -141,7 +143,8 @@ static void test_an_adapter_that_others_drive_is_refused_with_the_way_to_it(void
 		is_refused(i2c[i], -EINVAL, "i2c:/dev/i2c-1");
 	becomes("link:4304", "owserver");
 	becomes("i2c-1:4304", "owserver");
-	becomes("ds24", "owserver");
+	for (size_t i = 0; i < sizeof(hosts) / sizeof(hosts[0]); i++)
+		becomes(hosts[i], "owserver");
 	becomes("usb2", "owserver");
 	becomes("owserver:usb", "owserver");
 	becomes("usb.example.org", "owserver");
