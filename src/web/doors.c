@@ -253,7 +253,6 @@ static void look_at(struct doors *doors, struct visitor *visitor, bool gone)
 static void welcome(struct doors *doors, const struct visitor *new, int64_t now_ns)
 {
 	unsigned i = 0;
-
 	int place = -ENOSPC;
 
 	if (doors->visitor_count + doors->count_inside(doors->ctx) < DOORS_CONNECTIONS)
@@ -285,6 +284,7 @@ static void welcome(struct doors *doors, const struct visitor *new, int64_t now_
 static void pause_doors(struct doors *doors, int64_t now_ns)
 {
 	doors->paused_ns = now_ns + PAUSE_NS;
+	doors->watched_ns = INT64_MAX;
 	for (unsigned i = 0; i < doors->count; i++)
 		if (doors->fds[i] >= 0)
 			epoll_ctl(doors->epoll, EPOLL_CTL_DEL, doors->fds[i], NULL);
@@ -337,6 +337,13 @@ void doors_leave(struct doors *doors, int fd)
 	crowd_leave(&doors->crowd, wire_leave(fd));
 }
 
+void doors_empty(struct doors *doors, int64_t looked_ns)
+{
+	/* epoll says nothing of what waits at doors that pause */
+	if (looked_ns > doors->came_ns && looked_ns > doors->watched_ns)
+		doors->came_ns = looked_ns;
+}
+
 void doors_take(struct doors *doors, int64_t now_ns)
 {
 	struct epoll_event events[BATCH];
@@ -354,7 +361,7 @@ void doors_take(struct doors *doors, int64_t now_ns)
 			        events[i].events & (EPOLLRDHUP | EPOLLHUP | EPOLLERR));
 	}
 	if (all)
-		doors->came_ns = began_ns;
+		doors_empty(doors, began_ns);
 	if (now_ns >= doors_next(doors))
 		end_late(doors, now_ns);
 	if (doors->paused_ns && now_ns >= doors->paused_ns) {
@@ -362,6 +369,7 @@ void doors_take(struct doors *doors, int64_t now_ns)
 		for (unsigned i = 0; i < doors->count; i++)
 			if (doors->fds[i] >= 0)
 				doors_watch(doors, doors->fds[i], i, 0);
+		doors->watched_ns = ows_now();
 	}
 }
 

@@ -30,7 +30,8 @@ struct doors {
 	unsigned count;
 	struct visitor *visitors; /* DOORS_CONNECTIONS */
 	unsigned visitor_count;
-	int64_t paused_ns; /* no descriptor was left: listen again then; 0: it listens */
+	int64_t paused_ns;  /* no descriptor was left: listen again then; 0: it listens */
+	int64_t watched_ns; /* epoll has all doors since then; INT64_MAX: they pause */
 	struct crowd crowd;
 	char path[108]; /* of the socket, to remove at the end; "": the manager's */
 	/* Takes a connection and closes it at the end. count: how many it has already. */
@@ -56,6 +57,8 @@ bool doors_has(const struct doors *doors, const struct listen_address *address);
  */
 bool doors_shut(struct doors *doors, const struct listen_address *keep, unsigned count,
                 struct listen_address *shut);
+/* At that time epoll had nothing to report: what comes now came later. */
+void doors_empty(struct doors *doors, int64_t looked_ns);
 /* Accept, read heads, refuse. Never blocks. */
 void doors_take(struct doors *doors, int64_t now_ns);
 /* One that was welcomed ends: its place is free. welcome's taker closes it when this returns. */

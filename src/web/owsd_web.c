@@ -326,10 +326,7 @@ static void owsd_web_find(struct web *web)
 
 static void open_door(struct web *web)
 {
-	int64_t came_ns = face_came(web->face, web->doors.epoll);
-
-	if (came_ns > web->doors.came_ns)
-		web->doors.came_ns = came_ns;
+	doors_empty(&web->doors, face_came(web->face, web->doors.epoll));
 	doors_take(&web->doors, ows_now());
 }
 

@@ -4,6 +4,8 @@
 whoever waits for an answer gets the reason."""
 
 import json
+import os
+import resource
 import socket
 import time
 
@@ -211,6 +213,24 @@ def test_a_command_whose_client_has_hung_up_moves_nothing(scene):
         assert scene.get(daemon, "relays") == "0"
         time.sleep(0.3)  # it would move now
         assert scene.get(daemon, "relays") == "0", unix
+
+
+def test_a_command_that_waited_for_a_descriptor_of_the_page_moves_nothing(scene):
+    daemon, page = page_of(scene)
+    pid = page.program.process.pid
+    before = resource.prlimit(pid, resource.RLIMIT_NOFILE)
+    for unix in (False, True):
+        used = {int(fd) for fd in os.listdir(f"/proc/{pid}/fd")}
+        free = next(n for n in range(len(used) + 1) if n not in used)
+        resource.prlimit(pid, resource.RLIMIT_NOFILE, (free, before[1]))
+        waits = post(page, unix)
+        time.sleep(STOP_S)  # it is not accepted for so long
+        resource.prlimit(pid, resource.RLIMIT_NOFILE, before)
+        status, words = answer(waits)
+        assert status == 503 and OLD in words["error"], (status, words)
+        assert scene.get(daemon, "relays") == "0"
+    status, words = answer(post(page, True, 5))
+    assert status == 200 and words["ok"], (status, words)
 
 
 # --- The served protocol --------------------------------------------------------------------------
