@@ -11,6 +11,7 @@
 #include "hal/ds2482/codes.h"
 #include "hal/ds2482/ends.h"
 #include "hal/ds2482/i2c.h"
+#include "hal/ds2482/rivals.h"
 #include "hal/gpio/line.h"
 #include "hal/wire/link.h"
 
@@ -68,6 +69,8 @@ struct ds2482_source {
 	void (*explain)(void *ctx, uint8_t address, char *why, size_t why_size);
 	void (*destroy)(void *ctx);
 	const char *name; /* "/dev/i2c-1", for messages */
+	/* RIVALS_PROC, and name is a device file: see rivals.h. NULL: nobody else can have it. */
+	const char *proc;
 	void *ctx;
 };
 
@@ -104,6 +107,13 @@ struct ds2482_master {
 	 */
 	struct gpio_output power, sleep;
 	int64_t power_off_ns;
+	/*
+	 * notice.c; link.c says which chip had been reset or changed when it was set up again. 0:
+	 * none. Env times of the next look, of the next after such a change, of its next report.
+	 */
+	struct rivals rivals;
+	uint8_t changed;
+	int64_t look_ns, changed_look_ns, changed_told_ns;
 	/* The cost before the adapter was opened again. */
 	struct link_master_cost cost;
 };

@@ -181,6 +181,20 @@ static int every_visible(struct link_master *base, uint64_t *mark)
 	return there > 0;
 }
 
+static bool every_notice(struct link_master *base, char *text, size_t size)
+{
+	struct every_master *every = (struct every_master *)base;
+
+	for (unsigned i = 0; i < every->count; i++) {
+		struct link_master *master = every->adapter[i].master;
+
+		if (every->adapter[i].open && master->ops->notice &&
+		    master->ops->notice(master, text, size))
+			return true;
+	}
+	return false;
+}
+
 static unsigned every_channels(struct link_master *base)
 {
 	return ((struct every_master *)base)->links;
@@ -222,6 +236,7 @@ static const struct link_master_ops every_ops = {
 	.open = every_open,
 	.grow = every_grow,
 	.close = every_close,
+	.notice = every_notice,
 	.visible = every_visible,
 	.channels = every_channels,
 	.channel = every_channel,

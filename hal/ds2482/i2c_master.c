@@ -11,6 +11,7 @@
 #include "hal/ds2482/i2c_master.h"
 #include "hal/ds2482/look.h"
 #include "hal/ds2482/master.h"
+#include "hal/ds2482/notice.h"
 #include "hal/ds2482/power.h"
 
 static int open_adapter(void *ctx, const struct bus_env *env, struct i2c_adapter **adapter,
@@ -107,7 +108,8 @@ static int i2c_master_create(const char *where, const struct bus_env *env,
 	struct ds2482_source source = {.open = open_adapter,
 	                               .visible = is_adapter_there,
 	                               .explain = explain_driver,
-	                               .destroy = free};
+	                               .destroy = free,
+	                               .proc = RIVALS_PROC};
 	static const struct every_source every = {.list = list_adapters, .make = make_adapter};
 	char *path;
 
@@ -141,6 +143,7 @@ const struct link_master_ops ds2482_i2c_master = {
 	.open = ds2482_open,
 	.grow = ds2482_grow,
 	.close = ds2482_close,
+	.notice = ds2482_notice,
 	.visible = ds2482_visible,
 	.channels = ds2482_channels,
 	.channel = ds2482_channel,

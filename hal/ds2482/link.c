@@ -137,6 +137,7 @@ static int link_recover(struct link *base, enum link_rung rung)
 {
 	struct ds2482_link *link = ds2482_link_of(base);
 	struct ds2482_chip *chip = link->chip;
+	bool lost = chip->lost;
 	int err;
 
 	if (!chip->master->adapter)
@@ -148,7 +149,10 @@ static int link_recover(struct link *base, enum link_rung rung)
 	case LINK_CHIP_RESET:
 		/* a kernel driver may have taken the chip, whose reset looks like this */
 		err = chip->master->adapter->ops->claim(chip->master->adapter, chip->address);
-		return err ? err : ds2482_setup(chip);
+		err = err ? err : ds2482_setup(chip);
+		if (!err && lost)
+			chip->master->changed = chip->address;
+		return err;
 	case LINK_POWER_CYCLE:
 		return power_cycle(link);
 	case LINK_RUNGS:

@@ -10,6 +10,7 @@
 #include "hal/ds2482/link.h"
 #include "hal/ds2482/master.h"
 #include "hal/ds2482/power.h"
+#include "hal/ds2482/rivals.h"
 
 static int parse_where(struct ds2482_master *master, const char *where, char *why, size_t why_size)
 {
@@ -60,28 +61,6 @@ static void close_adapter(struct ds2482_master *master)
 	adapter->ops->close(adapter);
 }
 
-/* "owsd (process 4711)" */
-static void name_holder(int pid, char *text, size_t size)
-{
-	char path[32], name[32] = "";
-	FILE *file;
-
-	if (pid <= 0) {
-		snprintf(text, size, "another target or process");
-		return;
-	}
-	snprintf(path, sizeof(path), "/proc/%d/comm", pid);
-	file = fopen(path, "re");
-	if (file) {
-		if (!fgets(name, sizeof(name), file))
-			name[0] = '\0';
-		fclose(file);
-	}
-	name[strcspn(name, "\n")] = '\0';
-	snprintf(text, size, "%s%sprocess %d%s", name, name[0] ? " (" : "", pid,
-	         name[0] ? ")" : "");
-}
-
 static void explain(const struct ds2482_master *master, int err, int address, char *why,
                     size_t size)
 {
@@ -90,7 +69,7 @@ static void explain(const struct ds2482_master *master, int err, int address, ch
 
 	switch (err) {
 	case -EADDRINUSE:
-		name_holder(master->adapter->holder, holder, sizeof(holder));
+		rivals_name(RIVALS_PROC, master->adapter->holder, holder, sizeof(holder));
 		snprintf(why, size, "the chip at 0x%02x on %s is in use by %s", (unsigned)address,
 		         name, holder);
 		break;

@@ -45,6 +45,16 @@ static void take_all_channels(struct native *native)
 			presence_lost(native, &native->table.devices[i]);
 }
 
+/* After the master was opened, or a link has failed. */
+static void notice(struct native *native)
+{
+	char text[BUS_EVENT_TEXT];
+
+	while (native->master->ops->notice &&
+	       native->master->ops->notice(native->master, text, sizeof(text)))
+		native_event(native, BUS_NOTE, NULL, 0, text);
+}
+
 /* Masters or channels that were missing are looked for again, less and less often. */
 void master_grow(struct native *native, int64_t now, int64_t *next)
 {
@@ -111,6 +121,7 @@ int64_t master_step(struct native *native, int64_t now)
 		family_forget(&native->table.devices[i]);
 	search_anew(native, native->up_ns);
 	native_event(native, BUS_UP, NULL, 0, "");
+	notice(native);
 	return native->up_ns;
 }
 
@@ -197,8 +208,10 @@ static bool recover_link(struct native *native, unsigned n)
 			convert_again(native);
 		if (done == 0 && rung == LINK_POWER_CYCLE)
 			power_cycled(native, n);
-		if (done == 0 || done == -ECOMM)
+		if (done == 0 || done == -ECOMM) {
+			notice(native);
 			return true;
+		}
 	}
 	return false;
 }
@@ -222,6 +235,7 @@ bool master_recover(struct native *native, unsigned n, int err)
 	if (channel->rung == RETRY) {
 		channel->rung = OF_LINK;
 		native_count(native, COUNT_RETRIES);
+		notice(native);
 		return true;
 	}
 	if (recover_link(native, n))
@@ -230,6 +244,7 @@ bool master_recover(struct native *native, unsigned n, int err)
 		native_count(native, COUNT_REOPENS);
 		if (!reopen_master(native))
 			return false;
+		notice(native);
 		convert_again(native);
 		native->channel[n].rung = GIVE_UP;
 		return true;

@@ -207,6 +207,11 @@ struct link_master_ops {
 	 * missing, or may yet come, and why names one that is; 0: none is. -ENODEV, -ECANCELED.
 	 */
 	int (*grow)(struct link_master *master, char *why, size_t why_size);
+	/*
+	 * Optional. Open, and after open() or an error of a link: what the log has to say of it, as
+	 * that another program uses the hardware. False: nothing, or nothing new. May take some ms.
+	 */
+	bool (*notice)(struct link_master *master, char *text, size_t size);
 	unsigned (*channels)(struct link_master *master); /* known after open() and grow() */
 	struct link *(*channel)(struct link_master *master, unsigned n);
 	/* Optional; also while closed. */

@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: MIT */
+/* When to look for other programs on the adapter, and what the log has to say of them. */
+#include <stdio.h>
+
+#include "hal/base/time.h"
+#include "hal/ds2482/ds2482.h"
+#include "hal/ds2482/io.h"
+#include "hal/ds2482/notice.h"
+#include "hal/ds2482/rivals.h"
+
+#define LOOK_NS (60 * NS_PER_S)
+#define CHANGED_NS (3600 * NS_PER_S)
+
+/* A chip that was changed is worth a look of its own, however short the last one is ago. */
+static bool due(struct ds2482_master *master, int64_t now)
+{
+	int64_t *next = master->changed ? &master->changed_look_ns : &master->look_ns;
+
+	if (now < *next)
+		return false;
+	*next = now + LOOK_NS;
+	return true;
+}
+
+bool ds2482_notice(struct link_master *base, char *text, size_t size)
+{
+	struct ds2482_master *master = (struct ds2482_master *)base;
+	const char *name = master->source.name;
+	int64_t now = ds2482_now(master);
+	char who[RIVALS_TEXT];
+	uint8_t changed;
+	unsigned open;
+
+	if (!master->source.proc || !due(master, now))
+		return false;
+	changed = master->changed;
+	master->changed = 0;
+	open = rivals_find(master->source.proc, name, &master->rivals, who, sizeof(who));
+	if (who[0]) {
+		snprintf(text, size,
+		         "%s is also open in %s: two programs on one DS2482 disturb each other",
+		         name, who);
+		return true;
+	}
+	if (open || !changed || now < master->changed_told_ns)
+		return false;
+	master->changed_told_ns = now + CHANGED_NS;
+	snprintf(text, size,
+	         "0x%02x on %s was reset or changed by another program (owserver? the kernel's "
+	         "driver?), or lost its supply: sudo fuser -v %s names programs",
+	         changed, name, name);
+	return true;
+}

@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: MIT */
+/* Finds the programs that have an adapter open beside owsd. */
+#include <dirent.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "hal/ds2482/rivals.h"
+
+/* "" if it has ended, or is hidden. */
+static void read_comm(const char *proc, int pid, char *name, size_t size)
+{
+	char path[64];
+	FILE *file;
+
+	name[0] = '\0';
+	snprintf(path, sizeof(path), "%s/%d/comm", proc, pid);
+	file = fopen(path, "re");
+	if (!file)
+		return;
+	if (!fgets(name, (int)size, file))
+		name[0] = '\0';
+	fclose(file);
+	name[strcspn(name, "\n")] = '\0';
+}
+
+void rivals_name(const char *proc, int pid, char *text, size_t size)
+{
+	char name[32];
+
+	if (pid <= 0) {
+		snprintf(text, size, "another target or process");
+		return;
+	}
+	read_comm(proc, pid, name, sizeof(name));
+	snprintf(text, size, "%s%sprocess %d%s", name, name[0] ? " (" : "", pid,
+	         name[0] ? ")" : "");
+}
+
+/* A file elsewhere than in /dev is left alone: it may be on a server that does not answer. */
+static bool is_device(int fds, const char *name, dev_t device)
+{
+	char to[8];
+	struct stat st;
+
+	return readlinkat(fds, name, to, sizeof(to)) > 5 && !memcmp(to, "/dev/", 5) &&
+	       !fstatat(fds, name, &st, 0) && S_ISCHR(st.st_mode) && st.st_rdev == device;
+}
+
+static bool has_open(const char *proc, int pid, dev_t device)
+{
+	char path[64];
+	bool found = false;
+	DIR *dir;
+
+	snprintf(path, sizeof(path), "%s/%d/fd", proc, pid);
+	dir = opendir(path);
+	for (struct dirent *entry; dir && !found && (entry = readdir(dir));)
+		found = is_device(dirfd(dir), entry->d_name, device);
+	if (dir)
+		closedir(dir);
+	return found;
+}
+
+static bool was_told(const struct rivals *rivals, int pid)
+{
+	for (unsigned i = 0; i < RIVALS_TOLD; i++)
+		if (rivals->told[i] == pid)
+			return true;
+	return false;
+}
+
+/* owsd, owsd-sim, owsctl -t */
+static bool takes_lock(const char *name)
+{
+	return !strncmp(name, "owsd", 4) || !strncmp(name, "owsctl", 6);
+}
+
+unsigned rivals_find(const char *proc, const char *device, struct rivals *rivals, char *text,
+                     size_t size)
+{
+	unsigned open = 0;
+	size_t len = 0;
+	struct stat st;
+	DIR *dir;
+
+	text[0] = '\0';
+	if (stat(device, &st))
+		return 0;
+	dir = opendir(proc);
+	for (struct dirent *entry; dir && (entry = readdir(dir));) {
+		int pid = atoi(entry->d_name);
+		char name[32];
+
+		if (pid <= 0 || pid == getpid() || !has_open(proc, pid, st.st_rdev))
+			continue;
+		read_comm(proc, pid, name, sizeof(name));
+		if (takes_lock(name))
+			continue;
+		open++;
+		/* one more than there is room for is told next time */
+		if (was_told(rivals, pid) || size - len < sizeof(name) + 32)
+			continue;
+		len += (size_t)snprintf(text + len, size - len, "%s%s, process %d",
+		                        len ? " and " : "", name[0] ? name : "a program", pid);
+		rivals->told[rivals->count++ % RIVALS_TOLD] = pid;
+	}
+	if (dir)
+		closedir(dir);
+	return open;
+}

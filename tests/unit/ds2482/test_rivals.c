@@ -1,0 +1,316 @@
+/* SPDX-License-Identifier: MIT */
+/* Other programs that have the adapter open, in a folder like /proc, and what the log is told. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "hal/base/time.h"
+#include "hal/ds2482/every.h"
+#include "hal/ds2482/master.h"
+#include "hal/ds2482/notice.h"
+#include "hal/ds2482/rivals.h"
+#include "hal/native/native.h"
+#include "hal/sim/scenario.h"
+#include "unity.h"
+
+#include "tests/unit/aid/ds2482_scene.h"
+
+#define DEVICE "/dev/null" /* of the adapter: a device file that every machine has */
+
+static char proc[64], said[BUS_EVENT_TEXT];
+static struct rivals rivals;
+
+static void fill(const char *name, const char *text)
+{
+	char path[192];
+	FILE *file;
+
+	snprintf(path, sizeof(path), "%s/%s", proc, name);
+	file = fopen(path, "w");
+	TEST_ASSERT_NOT_NULL(file);
+	TEST_ASSERT_GREATER_OR_EQUAL_INT(0, fprintf(file, "%s\n", text));
+	TEST_ASSERT_EQUAL_INT(0, fclose(file));
+}
+
+/* A process with a descriptor of that file. */
+static void run(int pid, const char *comm, const char *file)
+{
+	char path[128];
+
+	snprintf(path, sizeof(path), "%s/%d", proc, pid);
+	TEST_ASSERT_EQUAL_INT(0, mkdir(path, 0755));
+	snprintf(path, sizeof(path), "%s/%d/fd", proc, pid);
+	TEST_ASSERT_EQUAL_INT(0, mkdir(path, 0755));
+	snprintf(path, sizeof(path), "%s/%d/fd/7", proc, pid);
+	TEST_ASSERT_EQUAL_INT(0, symlink(file, path));
+	snprintf(path, sizeof(path), "%d/comm", pid);
+	fill(path, comm);
+}
+
+void setUp(void)
+{
+	ds_begin();
+	snprintf(proc, sizeof(proc), "/tmp/owsd-rivals-XXXXXX");
+	TEST_ASSERT_NOT_NULL(mkdtemp(proc));
+	memset(&rivals, 0, sizeof(rivals));
+}
+
+void tearDown(void)
+{
+	char command[96];
+
+	ds_end();
+	snprintf(command, sizeof(command), "rm -r %s", proc);
+	TEST_ASSERT_EQUAL_INT(0, system(command));
+}
+
+static unsigned find(void)
+{
+	return rivals_find(proc, DEVICE, &rivals, said, RIVALS_TEXT);
+}
+
+static void test_a_program_that_has_the_adapter_open_is_named_once(void)
+{
+	run(80, "bash", "/dev/zero");
+	run(81, "cat", "/etc/passwd");
+	run(109, "owserver", DEVICE);
+	TEST_ASSERT_EQUAL_UINT(1, find());
+	TEST_ASSERT_EQUAL_STRING("owserver, process 109", said);
+	TEST_ASSERT_EQUAL_UINT(1, find());
+	TEST_ASSERT_EQUAL_STRING("", said);
+	run(203, "python3", DEVICE);
+	TEST_ASSERT_EQUAL_UINT(2, find());
+	TEST_ASSERT_EQUAL_STRING("python3, process 203", said);
+}
+
+static void test_several_programs_are_named_together(void)
+{
+	run(109, "owserver", DEVICE);
+	run(110, "owserver", DEVICE);
+	TEST_ASSERT_EQUAL_UINT(2, find());
+	TEST_ASSERT_NOT_NULL(strstr(said, "owserver, process 109"));
+	TEST_ASSERT_NOT_NULL(strstr(said, "owserver, process 110"));
+	TEST_ASSERT_NOT_NULL(strstr(said, " and "));
+}
+
+/* The text has no room for all of them: each is named in the end. */
+static void test_many_programs_are_all_named_in_turn(void)
+{
+	unsigned named = 0;
+
+	for (int i = 0; i < RIVALS_TOLD; i++)
+		run(4194000 + i, "a-name-as-long", DEVICE);
+	for (int look = 0; look < RIVALS_TOLD; look++) {
+		TEST_ASSERT_EQUAL_UINT(RIVALS_TOLD, find());
+		for (const char *at = said; (at = strstr(at, "process ")); at++)
+			named++;
+	}
+	TEST_ASSERT_EQUAL_UINT(RIVALS_TOLD, named);
+	TEST_ASSERT_EQUAL_STRING("", said);
+}
+
+static void test_programs_that_take_the_lock_and_this_one_are_no_rivals(void)
+{
+	run(300, "owsd", DEVICE);
+	run(301, "owsd-sim", DEVICE);
+	run(302, "owsctl", DEVICE);
+	run(getpid(), "test", DEVICE);
+	TEST_ASSERT_EQUAL_UINT(0, find());
+	TEST_ASSERT_EQUAL_STRING("", said);
+}
+
+/* As a program of another user is to the service. */
+static void test_what_is_hidden_is_nobody(void)
+{
+	run(109, "owserver", "/nothing");
+	TEST_ASSERT_EQUAL_UINT(0, find());
+	TEST_ASSERT_EQUAL_UINT(0, rivals_find("/nothing", DEVICE, &rivals, said, RIVALS_TEXT));
+	TEST_ASSERT_EQUAL_UINT(0, rivals_find(proc, "/nothing", &rivals, said, RIVALS_TEXT));
+	TEST_ASSERT_EQUAL_STRING("", said);
+}
+
+static void test_a_process_has_a_name_where_it_can_be_seen(void)
+{
+	run(109, "owserver", DEVICE);
+	rivals_name(proc, 109, said, sizeof(said));
+	TEST_ASSERT_EQUAL_STRING("owserver (process 109)", said);
+	rivals_name(proc, 110, said, sizeof(said));
+	TEST_ASSERT_EQUAL_STRING("process 110", said);
+	rivals_name(proc, 0, said, sizeof(said));
+	TEST_ASSERT_EQUAL_STRING("another target or process", said);
+}
+
+/* --- The driver ------------------------------------------------------------------------------- */
+
+static void start(void)
+{
+	ds_start("chip DS2482-100 0x18\nDS18B20 28.A0B1C2000028 as t temperature 20\n");
+	((struct ds2482_master *)ds.master)->source.name = DEVICE;
+	((struct ds2482_master *)ds.master)->source.proc = proc;
+}
+
+static bool notice(void)
+{
+	return ds2482_notice(ds.master, said, sizeof(said));
+}
+
+/* Another driver configures the chip. */
+static void change(void)
+{
+	ds_event("reset 0x18");
+	TEST_ASSERT_EQUAL_INT(-ENXIO, ds.wire->ops->reset(ds.wire));
+	TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->recover(ds.wire, LINK_CHIP_RESET));
+}
+
+static void test_the_log_names_who_has_the_adapter_when_it_is_opened(void)
+{
+	run(109, "owserver", DEVICE);
+	start();
+	TEST_ASSERT_TRUE(notice());
+	TEST_ASSERT_EQUAL_STRING("/dev/null is also open in owserver, process 109: two programs on "
+	                         "one DS2482 disturb each other",
+	                         said);
+	TEST_ASSERT_FALSE(notice());
+}
+
+static void test_who_comes_later_is_named_when_it_disturbs(void)
+{
+	start();
+	TEST_ASSERT_FALSE(notice());
+	run(109, "owserver", DEVICE);
+	TEST_ASSERT_FALSE(notice()); /* at most one look a minute */
+	change();
+	TEST_ASSERT_TRUE(notice());
+	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "owserver, process 109"), said);
+	change();
+	ds.host.now += 2 * 60 * HOST_S;
+	TEST_ASSERT_FALSE(notice());
+	/* a link's error without a change of the chip, too */
+	run(110, "python3", DEVICE);
+	ds.host.now += 2 * 60 * HOST_S;
+	TEST_ASSERT_TRUE(notice());
+	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "python3, process 110"), said);
+}
+
+static void test_where_nobody_is_seen_the_log_has_the_change_once_an_hour(void)
+{
+	unsigned lines = 0;
+
+	start();
+	for (unsigned minute = 0; minute < 119; minute++) {
+		change();
+		if (notice()) {
+			lines++;
+			TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "0x18 on " DEVICE), said);
+			TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "owserver"), said);
+			TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "fuser -v " DEVICE), said);
+		}
+		ds.host.now += 60 * HOST_S;
+	}
+	TEST_ASSERT_EQUAL_UINT(2, lines);
+}
+
+/* What is unplugged was not changed by anybody. */
+static void test_a_chip_that_does_not_come_back_was_not_changed(void)
+{
+	start();
+	ds_event("refuse 0x18 for 60s");
+	TEST_ASSERT_LESS_THAN_INT(0, ds.wire->ops->reset(ds.wire));
+	TEST_ASSERT_LESS_THAN_INT(0, ds.wire->ops->recover(ds.wire, LINK_CHIP_RESET));
+	TEST_ASSERT_FALSE(notice());
+}
+
+static void test_a_simulated_adapter_has_no_rivals(void)
+{
+	run(109, "owserver", DEVICE);
+	start();
+	((struct ds2482_master *)ds.master)->source.proc = NULL;
+	change();
+	TEST_ASSERT_FALSE(notice());
+}
+
+/* --- The bus of i2c:auto ---------------------------------------------------------------------- */
+
+static unsigned list(void *ctx, unsigned *numbers, unsigned max)
+{
+	(void)ctx, (void)max;
+	numbers[0] = 1;
+	return 1;
+}
+
+static int make(void *ctx, unsigned number, const struct bus_env *env, struct link_master **master)
+{
+	static struct link_master_ops ops;
+	const struct ds2482_source source = {
+		.open = ds_open_adapter, .destroy = ds_forget, .name = DEVICE, .proc = proc};
+
+	(void)ctx, (void)number;
+	ops = ds_ops;
+	ops.notice = ds2482_notice;
+	return ds2482_create(&ops, env, &source, "", master, ds.why, sizeof(ds.why));
+}
+
+static int create_every(const char *where, const struct bus_env *env, struct link_master **master,
+                        char *why, size_t why_size)
+{
+	static const struct every_source source = {.list = list, .make = make};
+
+	(void)where, (void)why, (void)why_size;
+	return every_create(env, &source, master);
+}
+
+static unsigned notes(const char *text)
+{
+	unsigned n = 0;
+
+	for (unsigned i = 0; i < ds.host.events; i++)
+		n += ds.host.event[i].news == BUS_NOTE && strstr(ds.host.event[i].text, text);
+	return n;
+}
+
+static void test_a_bus_reports_the_program_and_the_change(void)
+{
+	static const struct link_master_ops master = {.create = create_every};
+	static const struct bus_ops ops = {NATIVE_BUS_SLOTS};
+	struct bus *bus;
+
+	TEST_ASSERT_EQUAL_INT(0, sim_scenario_parse("test",
+	                                            "chip DS2482-100 0x18\n"
+	                                            "DS2401 01.010203040506\n",
+	                                            &ds.net, ds.why, sizeof(ds.why)));
+	TEST_ASSERT_EQUAL_INT(
+		0, native_create(&ops, &master, "", &ds.host.env, &bus, ds.why, sizeof(ds.why)));
+	host_run(&ds.host, bus, ds.host.now + 5 * HOST_S);
+	TEST_ASSERT_EQUAL_UINT(0, host_events(&ds.host, BUS_NOTE));
+	ds_event("reset 0x18");
+	host_run(&ds.host, bus, ds.host.now + 60 * HOST_S);
+	TEST_ASSERT_EQUAL_UINT(1, notes("was reset or changed by another program"));
+	run(109, "owserver", DEVICE);
+	host_run(&ds.host, bus, ds.host.now + 60 * HOST_S);
+	ds_event("reset 0x18");
+	host_run(&ds.host, bus, ds.host.now + 60 * HOST_S);
+	TEST_ASSERT_EQUAL_UINT(1, notes("is also open in owserver, process 109"));
+	TEST_ASSERT_EQUAL_UINT(2, host_events(&ds.host, BUS_NOTE));
+	native_destroy(bus);
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_a_program_that_has_the_adapter_open_is_named_once);
+	RUN_TEST(test_several_programs_are_named_together);
+	RUN_TEST(test_many_programs_are_all_named_in_turn);
+	RUN_TEST(test_programs_that_take_the_lock_and_this_one_are_no_rivals);
+	RUN_TEST(test_what_is_hidden_is_nobody);
+	RUN_TEST(test_a_process_has_a_name_where_it_can_be_seen);
+	RUN_TEST(test_the_log_names_who_has_the_adapter_when_it_is_opened);
+	RUN_TEST(test_who_comes_later_is_named_when_it_disturbs);
+	RUN_TEST(test_where_nobody_is_seen_the_log_has_the_change_once_an_hour);
+	RUN_TEST(test_a_chip_that_does_not_come_back_was_not_changed);
+	RUN_TEST(test_a_simulated_adapter_has_no_rivals);
+	RUN_TEST(test_a_bus_reports_the_program_and_the_change);
+	return UNITY_END();
+}
