@@ -10,8 +10,10 @@
 #include "hal/native/sensors.h"
 #include "hal/native/state.h"
 
-/* More than the time between two searches of all wires. A plug is seldom moved so often. */
+/* More than the time between two searches of idle wires. A plug is seldom moved so often. */
 #define RETURN_NS (60 * NATIVE_S)
+/* Busy wires are searched less often: but a plug is not moved while its device answers. */
+#define ANSWERED_NS (5 * NATIVE_S)
 #define RETURNS 3
 
 void presence_seen(struct device *device, int64_t now)
@@ -25,7 +27,8 @@ void presence_seen(struct device *device, int64_t now)
 static void look_for_twin(struct native *native, struct device *device, unsigned n, int64_t now)
 {
 	char id[ROM_TEXT_MAX], here[40], there[40], text[BUS_EVENT_TEXT];
-	bool back = device->before == n && device->moved_ns && now - device->moved_ns < RETURN_NS;
+	bool back = device->before == n && device->moved_ns &&
+	            (now - device->moved_ns < RETURN_NS || now - device->ok_ns < ANSWERED_NS);
 
 	device->returns = (uint8_t)(!back ? 0 : device->returns + (device->returns < RETURNS + 1));
 	device->before = device->channel;
