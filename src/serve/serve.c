@@ -23,7 +23,8 @@
 
 #define STACK_SIZE (128 * 1024)
 #define TAKE_NS NS_PER_MS /* the pause between two looks whether the thread has taken the reload */
-#define EVENTS 64
+/* All that is watched: so epoll reports all there is, and what it does not comes later. */
+#define EVENTS (SERVER_CLIENTS + SERVER_LISTENERS + 1)
 #define WAKE_EVENT SERVER_CLIENTS
 
 static const char *const counter_names[SERVE_COUNTER_COUNT] = {
@@ -253,7 +254,7 @@ static int serve_wait(struct serve *s, struct epoll_event *events)
 	s->came_ns = s->asked_ns;
 	/* what was not reported comes from now on, if it did not stop between that and the clock */
 	told_ns = ows_now();
-	if (n >= 0 && n < EVENTS)
+	if (n >= 0)
 		s->asked_ns = told_ns - asked_ns > WRITE_OLD_NS ? asked_ns : told_ns;
 	if (wait)
 		guests_awake(&s->guests);
