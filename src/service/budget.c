@@ -9,6 +9,8 @@
 /* A board with one slow core sends a full buffer over loopback within that. */
 #define CALL_NS (NS_PER_MS / 2)
 #define BYTE_NS 20
+/* A call counts no more: where a hypervisor or the firmware has other work, nothing shows it. */
+#define CALL_MOST_NS (BUDGET_CREDIT_NS / 2)
 
 static int64_t preempted(void)
 {
@@ -32,7 +34,7 @@ bool budget_spend(struct budget *b, int64_t now_ns, int64_t took_ns, size_t byte
 	if (b->spent_ns < 0)
 		b->spent_ns = 0;
 	if (beyond_ns > 0)
-		b->spent_ns += beyond_ns;
+		b->spent_ns += beyond_ns < CALL_MOST_NS ? beyond_ns : CALL_MOST_NS;
 	b->over |= b->spent_ns > BUDGET_CREDIT_NS;
 	return !b->over;
 }

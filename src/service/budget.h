@@ -8,7 +8,8 @@
  *
  * A clock that goes on while the thread is preempted would close honest connections of a busy
  * machine. The clock of the thread is a system call. So that is asked only for a connection that
- * had a slow call before, which is not counted.
+ * had a slow call before, which is not counted. Other pauses of the machine show nowhere: no call
+ * uses up the credit alone.
  */
 #pragma once
 
