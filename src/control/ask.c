@@ -6,6 +6,7 @@
 #include "hal/base/bell.h"
 #include "hal/base/time.h"
 #include "src/control/ask.h"
+#include "src/text/printable.h"
 
 bool ask_waits(const struct control_place *p)
 {
@@ -41,7 +42,7 @@ void ask_answer(const struct control *c, const struct control_place *p, int err,
 		.start_id = c->layout->start_id,
 	};
 	char bytes[sizeof(answer) + OWS_WHY];
-	size_t len = strnlen(why, OWS_WHY);
+	size_t len = printable_cut(why, OWS_WHY);
 	const struct porter_order order = {
 		.what = PORTER_SEND,
 		.count = 1,

@@ -154,7 +154,7 @@ void host_answer(struct host *h, int err, const char *why)
 void host_refused(struct host *h, const char *why)
 {
 	char text[OWS_LINE];
-	size_t len = strnlen(why, sizeof(text));
+	size_t len = printable_cut(why, sizeof(text) - 1);
 
 	memcpy(text, why, len);
 	image_refused(&h->now->memory.image, ows_now(), text, printable(text, len));

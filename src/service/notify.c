@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "src/service/notify.h"
+#include "src/text/printable.h"
 
 /* A whole number greater than 0, else 0. */
 static int64_t positive(const char *text)
@@ -106,8 +107,7 @@ int notify_status(const struct notify *notify, const char *format, ...)
 	va_start(args, format);
 	vsnprintf(text + 7, sizeof(text) - 7, format, args);
 	va_end(args);
-	for (char *at = text; *at; at++)
-		if ((unsigned char)*at < 0x20 || *at == 0x7f)
-			*at = '?';
+	/* systemd takes no status that is not UTF-8 */
+	text[printable(text, printable_cut(text, sizeof(text) - 1))] = '\0';
 	return send_text(notify, text);
 }

@@ -4,7 +4,7 @@
  * datagrams to the socket named in NOTIFY_SOCKET. Without that variable all functions do nothing.
  *
  * Room src/service: what a program in the background needs of the system: service manager, signals,
- * streams, listeners. Uses src/shm, hal/base.
+ * streams, listeners. Uses src/text, src/shm, hal/base.
  */
 #pragma once
 

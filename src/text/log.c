@@ -93,23 +93,6 @@ static struct line *claim_line(struct log *log, uint32_t *generation)
 	}
 }
 
-/* The length of text without the UTF-8 character that was cut at its end. */
-static size_t whole_characters(const char *text, size_t len)
-{
-	size_t start = len;
-
-	while (start > 0 && len - start < 3 && ((unsigned char)text[start - 1] & 0xc0) == 0x80)
-		start--;
-	if (start > 0 && (unsigned char)text[start - 1] >= 0xc0) {
-		unsigned char lead = (unsigned char)text[start - 1];
-		size_t want = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
-
-		if (len - (start - 1) < want)
-			return start - 1;
-	}
-	return len;
-}
-
 void log_put(struct log *log, enum log_level level, const char *format, ...)
 {
 	char text[LINE_BYTES + 1];
@@ -126,7 +109,7 @@ void log_put(struct log *log, enum log_level level, const char *format, ...)
 	va_end(args);
 	if (made < 0)
 		return;
-	len = made > LINE_BYTES ? whole_characters(text, LINE_BYTES) : (size_t)made;
+	len = made > LINE_BYTES ? printable_cut(text, LINE_BYTES) : (size_t)made;
 	len = printable(text, len);
 
 	line = claim_line(log, &generation);

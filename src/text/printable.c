@@ -27,6 +27,24 @@ size_t printable(char *text, size_t len)
 	return to;
 }
 
+size_t printable_cut(const char *text, size_t most)
+{
+	size_t len = strnlen(text, most), start = len;
+
+	if (len < most)
+		return len;
+	while (start > 0 && len - start < 3 && ((unsigned char)text[start - 1] & 0xc0) == 0x80)
+		start--;
+	if (start > 0 && (unsigned char)text[start - 1] >= 0xc0) {
+		unsigned char lead = (unsigned char)text[start - 1];
+		size_t want = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
+
+		if (len - (start - 1) < want)
+			return start - 1;
+	}
+	return len;
+}
+
 static int is_inside_character(char c)
 {
 	return ((unsigned char)c & 0xc0) == 0x80;

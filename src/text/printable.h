@@ -12,6 +12,9 @@
  */
 size_t printable(char *text, size_t len);
 
+/* The length of text, at most that many bytes, without a UTF-8 character that is cut there. */
+size_t printable_cut(const char *text, size_t most);
+
 /*
  * A message as vprintf() would print it, made printable. A message longer than PRINTABLE_LINE bytes
  * (a long word of the user stands in it) loses its middle, because its end has the reason. The

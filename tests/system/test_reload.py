@@ -151,10 +151,17 @@ def test_a_refused_reload_stays_visible_until_one_is_taken_over(scene):
         assert "a reload was refused" in found["list"] and why in found["list"], found
         assert why in found["stats"][0] and found["metric"] == ["1"], found
         assert found["json"]["count"] == n and why in found["json"]["why"], found
+    # a long reason is cut, and stays UTF-8 wherever that is
+    for n, shift in enumerate("abc", 3):
+        daemon.config.write_text(good.replace('"room"', f'"{shift * (n - 2)}{"€" * 150}"'))
+        assert scene.owsctl(daemon, "reload").returncode == 1
+        until(lambda: refusal(scene, daemon)["counter"] == n, 10, "it is counted")
+        found = refusal(scene, daemon)
+        assert "€€" in found["json"]["why"] and "\ufffd" not in found["json"]["why"], found
     daemon.config.write_text(good)
     assert scene.owsctl(daemon, "reload").returncode == 0
     assert said(daemon)[-1].startswith("STATUS=3 signals")
-    until(lambda: refusal(scene, daemon) == {**fine, "counter": 2}, 10, lambda: refusal(scene, daemon))
+    until(lambda: refusal(scene, daemon) == {**fine, "counter": 5}, 10, lambda: refusal(scene, daemon))
 
 
 def test_owsctl_reload_tells_which_faces_took_the_file_over_and_which_did_not(scene):

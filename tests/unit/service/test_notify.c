@@ -105,6 +105,22 @@ static void test_a_status_cannot_smuggle_other_news_in(void)
 	TEST_ASSERT_EQUAL_STRING("STATUS=3 signals?READY=1", told());
 }
 
+static void test_a_status_is_utf8_wherever_it_is_cut(void)
+{
+	char big[400] = "";
+
+	for (int i = 0; i < 100; i++)
+		strcat(big, "\xe2\x82\xac");
+	listen_on(path);
+	for (int i = 0; i < 3; i++) {
+		TEST_ASSERT_EQUAL(0, notify_status(&notify, "%.*s%s", i, "xx", big));
+		TEST_ASSERT_EQUAL(7 + i + (255 - i) / 3 * 3, strlen(told()));
+		TEST_ASSERT_NULL(strchr(received, '?'));
+	}
+	TEST_ASSERT_EQUAL(0, notify_status(&notify, "venkovn\xed"));
+	TEST_ASSERT_EQUAL_STRING("STATUS=venkovn?", told());
+}
+
 static void test_a_long_status_is_cut(void)
 {
 	char big[1000];
@@ -195,6 +211,7 @@ int main(void)
 	RUN_TEST(test_news_arrive_at_an_abstract_name);
 	RUN_TEST(test_reloading_tells_the_monotonic_time);
 	RUN_TEST(test_a_status_cannot_smuggle_other_news_in);
+	RUN_TEST(test_a_status_is_utf8_wherever_it_is_cut);
 	RUN_TEST(test_a_long_status_is_cut);
 	RUN_TEST(test_a_manager_that_is_gone_is_an_error_and_no_signal);
 	RUN_TEST(test_a_manager_that_does_not_listen_does_not_block);

@@ -61,6 +61,15 @@ static void test_bytes_that_are_not_utf8_become_question_marks(void)
 	TEST_ASSERT_EQUAL_STRING("a?", made("a\xc2"));
 }
 
+static void test_a_text_is_cut_between_characters(void)
+{
+	static const char text[] = "a\xc2\xb0\xe2\x82\xac\xf0\x9f\x8c\xa1";
+	static const size_t lengths[] = {0, 1, 1, 3, 3, 3, 6, 6, 6, 6, 10, 10};
+
+	for (size_t most = 0; most < sizeof(lengths) / sizeof(lengths[0]); most++)
+		TEST_ASSERT_EQUAL_UINT(lengths[most], printable_cut(text, most));
+}
+
 __attribute__((format(printf, 1, 2))) static char *line(const char *format, ...)
 {
 	va_list args;
@@ -109,6 +118,7 @@ int main(void)
 	RUN_TEST(test_control_characters_become_question_marks);
 	RUN_TEST(test_what_turns_the_direction_becomes_a_question_mark);
 	RUN_TEST(test_bytes_that_are_not_utf8_become_question_marks);
+	RUN_TEST(test_a_text_is_cut_between_characters);
 	RUN_TEST(test_a_long_message_loses_its_middle_and_keeps_its_reason);
 	return UNITY_END();
 }
