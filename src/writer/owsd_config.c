@@ -128,7 +128,7 @@ static void take_one(const struct writer *writer, struct visitors *visitors, int
 	struct sockaddr_storage from = {0};
 	socklen_t len = sizeof(from);
 	struct peer peer = {0};
-	int fd = listen_accept(listener, (struct sockaddr *)&from, &len), begin[2];
+	int fd = listen_accept(listener, (struct sockaddr *)&from, &len), begin[] = {-1, -1};
 	bool may;
 	pid_t pid;
 
@@ -137,6 +137,7 @@ static void take_one(const struct writer *writer, struct visitors *visitors, int
 	if (fd < 0)
 		return;
 	peer_look_into(fd, &peer, NULL, 0);
+	visitors_look(visitors, ows_now()); /* one that has ended meanwhile has left its place */
 	may = visitors_may(visitors, peer.uid);
 	pid = pipe2(begin, O_CLOEXEC) ? -1 : fork();
 	if (pid == 0) {

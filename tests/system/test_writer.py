@@ -4,6 +4,7 @@
 
 import concurrent.futures
 import os
+import resource
 import shutil
 import socket
 import time
@@ -200,7 +201,7 @@ def test_what_is_no_request_is_refused_and_changes_nothing(scene):
 
 def test_a_peer_that_is_slow_keeps_nobody_waiting_and_is_refused_after_ten_seconds(scene):
     writer = alone(scene, "OwsDrv {\n}\n")
-    slow = [writing.connect(writer.socket) for _ in range(8)]
+    slow = [writing.connect(writer.socket) for _ in range(2)]  # a user has four places
     for door in slow:
         door.sendall(b"owsd-config 1\ndo: rep")
     begun = time.monotonic()
@@ -227,6 +228,22 @@ def test_a_text_that_names_an_endless_file_keeps_nobody_waiting(scene):
         assert time.monotonic() - begun < owsdtest.patience(15), writer.log()
     os.close(held)
     assert writer.stop() == 0
+
+
+def test_without_descriptors_for_a_process_it_serves_again_when_there_are_some(scene):
+    writer = alone(scene, "OwsDrv {\n}\n")
+    pid = writer.process.pid
+    before = resource.prlimit(pid, resource.RLIMIT_NOFILE)
+    used = {int(fd) for fd in os.listdir(f"/proc/{pid}/fd")}
+    free = next(n for n in range(len(used) + 1) if n not in used)
+    for more in (1, 2):  # for the connection alone, and for one end of the pipe to its process
+        resource.prlimit(pid, resource.RLIMIT_NOFILE, (free + more, before[1]))
+        with writing.connect(writer.socket) as door:
+            assert not door.recv(1), writer.log()
+        assert "no process for a request: Too many open files" in writer.log()
+    resource.prlimit(pid, resource.RLIMIT_NOFILE, before)
+    assert {int(fd) for fd in os.listdir(f"/proc/{pid}/fd")} == used, writer.log()
+    assert writer.replace("OwsDrv {\n  Period 2\n}\n").status == "done", writer.log()
 
 
 def test_the_end_waits_for_no_request(scene):
