@@ -201,6 +201,8 @@ def test_the_reload_of_each_service_fails_for_a_file_that_is_refused(scene):
         words = re.search(r"ExecReload=@S?BINDIR@/(\S+) -n %i (\S+)$", unit.read_text(), re.M)
         assert words, f"{unit}: its reload tells nobody what became of it"
         program, verb = words.groups()
+        may_run = re.search(r"^ExecPaths=(.*)$", unit.read_text(), re.M)[1].split()
+        assert set(re.findall(r"^Exec\w+=(@\w+@)/", unit.read_text(), re.M)) <= set(may_run), (unit, may_run)
         owsdtest.need(owsdtest.BUILD / program)
         file = [] if program == "owsctl" else ["-c", daemon.config]
         for text, why in ((good, ""), ("OwsDrv { Period wrong }\n", f"{daemon.config}:1:17: error")):
