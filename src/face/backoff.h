@@ -15,7 +15,7 @@ struct backoff {
 	unsigned failed[BACKOFF_REFUSED + 1]; /* pauses of each kind, one after the other */
 };
 
-/* Some number. */
+/* A random number. */
 uint64_t backoff_random(void);
 /* A time from an eighth of the step to nine of them. Pure. */
 int64_t backoff_spread(int64_t step_ns, uint64_t random);

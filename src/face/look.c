@@ -29,7 +29,6 @@ static void report_line(void *ctx, bool is_error, const char *message)
 int load_first(struct face *face)
 {
 	struct config_report report = {.line = report_line, .ctx = face};
-
 	int err = config_load(face->arguments->file, &report, &face->config);
 
 	if (err == -ENOENT && face->arguments->file == face->arguments->default_file)

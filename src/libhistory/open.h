@@ -4,8 +4,10 @@
 
 #include "src/libhistory/handle.h"
 
-/* A call begins: from now on it may take so much of the processor as a file of that size
- * can need, then -ETIMEDOUT. */
+/*
+ * A call begins. When it has taken as much of the processor as a file of that size can need, it
+ * gets -ETIMEDOUT.
+ */
 void open_allow(struct ows_history *h);
 /* The ids of a run that are between two times. False: none. Pure. */
 bool handle_range(const struct session *session, int64_t from_us, int64_t until_us, int64_t *first,

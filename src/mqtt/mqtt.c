@@ -362,7 +362,7 @@ static void report_stuck(struct face *face, const char *what, int64_t now_ns)
 
 	if (!what || taken != m->pumped) {
 		if (m->stuck && m->broker.state == BROKER_CONNECTED)
-			log_notice(face->log, "it is published again");
+			log_notice(face->log, "messages go out again");
 		m->pumped_ns = now_ns;
 		m->pumped = taken;
 		m->stuck = false;

@@ -35,14 +35,6 @@ static int64_t earlier(int64_t a, int64_t b)
 	return a < b ? a : b;
 }
 
-static int64_t cpu_ns(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-	return (int64_t)t.tv_sec * NS_PER_S + t.tv_nsec;
-}
-
 /* No signal changes when owsd refuses its file: pages are told of it here. */
 static void look_for_refusal(struct web *web)
 {
@@ -62,7 +54,7 @@ static void look_for_refusal(struct web *web)
  */
 static void owsd_web_run(struct web *web)
 {
-	int64_t now_ns = ows_now(), begin = cpu_ns();
+	int64_t now_ns = ows_now(), begin = clock_ns(CLOCK_THREAD_CPUTIME_ID);
 
 	/* changes may come so often that there is no tick between them */
 	if (now_ns >= web->alive_ns) {
@@ -76,7 +68,7 @@ static void owsd_web_run(struct web *web)
 	wire_run(now_ns);
 	face_status(web->face, "%u streams, %d signals%s", web->stream_count, web->recent.count,
 	            web->face->live ? "" : ", owsd does not run");
-	pace_spent(&web->pace, cpu_ns() - begin);
+	pace_spent(&web->pace, clock_ns(CLOCK_THREAD_CPUTIME_ID) - begin);
 	now_ns = ows_now();
 	web->face->tick_ns = earlier(earlier(now_ns + TICK_NS, pace_due(&web->pace)),
 	                             earlier(http_next(web, now_ns), doors_next(&web->doors)));
@@ -242,7 +234,12 @@ static int open_web(struct face *face)
 	recent_make(&web.recent, 0);
 	events_miss_alarms(&web);
 	raise_limit();
-	wire_open(face->log);
+	err = wire_open(face->log);
+	if (err) {
+		face_complain(face->ops->program, "cannot start the process for connections: %s",
+		              strerror(-err));
+		return err;
+	}
 	err = http_open(&web);
 	if (err)
 		face_complain(face->ops->program, "libmicrohttpd: %s", strerror(-err));

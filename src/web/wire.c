@@ -116,19 +116,10 @@ ssize_t wire_sendfile(int fd, int file, off64_t *offset, size_t len)
 
 /* --- Connections ----------------------------------------------------------------------------- */
 
-static void say_it_failed(void)
-{
-	log_err(reports, "the process for connections, owsd-porter, cannot be started: until it "
-	                 "runs, users of the socket can delay the page");
-}
-
-void wire_open(struct log *log)
+int wire_open(struct log *log)
 {
 	reports = log;
-	if (porter_start(&porter) == 0)
-		return;
-	porter = NULL;
-	say_it_failed();
+	return porter_start(&porter);
 }
 
 bool wire_begin(int fd, bool local, int place)
@@ -214,7 +205,7 @@ static void wire_flush(void)
 void wire_run(int64_t now_ns)
 {
 	wire_flush();
-	if (!porter || now_ns - tended_ns < TEND_NS)
+	if (now_ns - tended_ns < TEND_NS)
 		return;
 	tended_ns = now_ns;
 	switch (porter_tend(porter, now_ns)) {
@@ -224,7 +215,8 @@ void wire_run(int64_t now_ns)
 		        "starts it again; until then users of the socket can delay the page");
 		return;
 	case PORTER_FAILED:
-		say_it_failed();
+		log_err(reports, "the process for connections cannot be started: owsd-web tries "
+		                 "again, each minute at last");
 		return;
 	case PORTER_IS_BACK:
 		log_notice(reports, "the process for connections runs again (process %d)",

@@ -17,8 +17,8 @@
 
 struct log;
 
-/* Before the first thread: starts the porter. Without one this thread closes all itself. */
-void wire_open(struct log *log);
+/* Before the first thread: starts the porter. 0 or a negative errno. */
+int wire_open(struct log *log);
 /* A connection begins, local: of a unix socket. False: its descriptor is too high. */
 bool wire_begin(int fd, bool local, int place);
 /* As recv() with MSG_PEEK | MSG_DONTWAIT, or a negative errno; -EBADMSG: with descriptors. */
