@@ -21,7 +21,7 @@
 struct check {
 	struct config_report *report;
 	const struct config_item *item;
-	struct place place;
+	struct place place, path_place; /* of the item, of its Path */
 	int64_t period_ns;
 	bool caches; /* all targets are owsd's own buses, whose values have the age of the chip's */
 	bool tables; /* a Bus names a file of sensors: devices may have more properties */
@@ -78,16 +78,16 @@ static void check_component(const struct check *check, const char *text, size_t 
 	digits = digits_of(rest, left);
 	if (text[2] == '-' && left == ID_DIGITS && digits == left) {
 		from_kernel(code, rest, right);
-		report_warning(check->report, check->place,
+		report_warning(check->report, check->path_place,
 		               "\"%s\": %.*s is the kernel's spelling of a device: write %s", name,
 		               (int)len, text, right);
 	} else if (digits == left && left >= 4) {
-		report_warning(check->report, check->place,
+		report_warning(check->report, check->path_place,
 		               "\"%s\": %.*s has %zu digits after its family and counts as an "
 		               "alias; an id has %d: owsctl scan shows them",
 		               name, (int)len, text, left, ID_DIGITS);
 	} else if (left == ID_DIGITS && text[2] == '.' && digits >= left / 2) {
-		report_warning(check->report, check->place,
+		report_warning(check->report, check->path_place,
 		               "\"%s\": %.*s counts as an alias; an id has no digit '%c', only 0 "
 		               "to 9 and A to F",
 		               name, (int)len, text, rest[digits]);
@@ -106,28 +106,34 @@ static void check_ids(const struct check *check)
 	}
 }
 
+/* Where that stands, or the item if its key is absent. */
+static struct place place_at(const struct check *check, struct config_spot at)
+{
+	return at.line ? (struct place){check->place.file, at.line, at.column} : check->place;
+}
+
 /* A property that is named at `what`: "" or the key of an alarm, with a blank behind it. */
-static void check_property(const struct check *check, const char *path, const char *what,
-                           const char *property)
+static void check_property(const struct check *check, struct place place, const char *path,
+                           const char *what, const char *property)
 {
 	struct path_property found = property_look(path);
 
 	if (found.exists)
 		return;
 	if (*found.nearest)
-		report_warning(check->report, check->place,
-		               "\"%s\": %sa %s has no %s; did you mean %s?", check->item->name,
-		               what, found.type, property, found.nearest);
+		report_warning(check->report, place, "\"%s\": %sa %s has no %s; did you mean %s?",
+		               check->item->name, what, found.type, property, found.nearest);
 	else if (!check->tables)
-		report_warning(check->report, check->place,
+		report_warning(check->report, place,
 		               "\"%s\": %sowsd knows no %s of a %s: check its spelling",
 		               check->item->name, what, property, found.type);
 }
 
 /* The property of an alarm key, whose value may be property=value. */
 static void check_alarm(const struct check *check, enum option option, const char *value,
-                        const struct path *path, bool writes)
+                        struct config_spot at, const struct path *path, bool writes)
 {
+	struct place place = place_at(check, at);
 	size_t head = path->property.len ? (size_t)(path->property.text - check->item->path) : 0;
 	char text[PATH_LEN_MAX + 64], what[32];
 	int len = value ? (int)strcspn(value, "=") : 0;
@@ -138,9 +144,9 @@ static void check_alarm(const struct check *check, enum option option, const cha
 	                     value) >= sizeof(text))
 		return;
 	snprintf(what, sizeof(what), "%s: ", option_table[option].key);
-	check_property(check, text, what, text + head);
+	check_property(check, place, text, what, text + head);
 	if (writes && !property_look(text).writable)
-		report_warning(check->report, check->place,
+		report_warning(check->report, place,
 		               "\"%s\": %s%s cannot be written, so the alarm cannot be served",
 		               check->item->name, what, text + head);
 }
@@ -151,15 +157,15 @@ static void check_direction(const struct check *check)
 	struct path_property found = property_look(item->path);
 
 	if (item->output && !found.writable)
-		report_warning(check->report, check->place,
+		report_warning(check->report, check->path_place,
 		               "\"%s\" is an output, but %s cannot be written: write IO input",
 		               item->name, strrchr(item->path, '/') + 1);
 	else if (item->writable && !found.writable)
-		report_warning(check->report, check->place,
+		report_warning(check->report, check->path_place,
 		               "\"%s\" is Writable, but %s cannot be written: write Writable off",
 		               item->name, strrchr(item->path, '/') + 1);
 	else if (item->readable && !found.readable)
-		report_warning(check->report, check->place,
+		report_warning(check->report, check->path_place,
 		               "\"%s\" is read, but %s can only be written: write IO output",
 		               item->name, strrchr(item->path, '/') + 1);
 }
@@ -233,10 +239,10 @@ static void check_item(const struct check *check)
 		return;
 	check_ids(check);
 	if (path.property.len)
-		check_property(check, item->path, "", path.property.text);
+		check_property(check, check->path_place, item->path, "", path.property.text);
 	if (!path.device.len && item->readable &&
 	    !strncmp(path.property.text, simultaneous, strlen(simultaneous)))
-		report_warning(check->report, check->place,
+		report_warning(check->report, check->path_place,
 		               "\"%s\": %s begins conversions and shows no value: write IO output, "
 		               "or the Path of a device",
 		               item->name, item->path);
@@ -250,10 +256,10 @@ static void check_item(const struct check *check)
 	check_age(check);
 	if (!item->alarm)
 		return;
-	check_alarm(check, OPT_LATCH_ALARM, item->latch_alarm, &path, false);
-	check_alarm(check, OPT_POR_ALARM, item->por_alarm, &path, true);
-	check_alarm(check, OPT_SET_ALARM, item->set_alarm, &path, true);
-	check_alarm(check, OPT_RESET_LATCH, item->reset_latch, &path, true);
+	check_alarm(check, OPT_LATCH_ALARM, item->latch_alarm, item->latch_at, &path, false);
+	check_alarm(check, OPT_POR_ALARM, item->por_alarm, item->por_at, &path, true);
+	check_alarm(check, OPT_SET_ALARM, item->set_alarm, item->set_at, &path, true);
+	check_alarm(check, OPT_RESET_LATCH, item->reset_latch, item->reset_at, &path, true);
 }
 
 void config_check_items(const struct config *config, const char *name, struct config_report *report)
@@ -269,6 +275,7 @@ void config_check_items(const struct config *config, const char *name, struct co
 	for (unsigned i = 0; i < config->item_count; i++) {
 		check.item = &config->items[i];
 		check.place = (struct place){config->file, check.item->line, 0};
+		check.path_place = place_at(&check, check.item->path_at);
 		if (!name || !strcmp(check.item->name, name))
 			check_item(&check);
 	}

@@ -43,6 +43,11 @@ struct config_record {
 	int64_t interval_ns; /* the newest value at each multiple of that time; 0: not given */
 };
 
+/* Where the value of a key stands in the file. */
+struct config_spot {
+	int line, column;
+};
+
 struct config_item {
 	const char *name;
 	const char *path;   /* normalised: leading "/", without "/uncached" and "/alarm" */
@@ -78,6 +83,8 @@ struct config_item {
 	struct config_record record;
 	const char *device_class; /* "light", "door"; NULL: not given */
 	int line;                 /* of Item */
+	/* Of Path and of the keys of the alarm; line 0: not given. */
+	struct config_spot path_at, latch_at, por_at, set_at, reset_at;
 };
 /* Does the item take sets? An input with Writable off never does, whatever its _WriteEnable. */
 static inline bool config_item_takes_sets(const struct config_item *item)

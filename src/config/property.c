@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Looks up the properties that paths name in the tables of the families. */
+#include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "hal/chips/family.h"
 #include "hal/chips/find.h"
+#include "hal/chips/format.h"
 #include "hal/owfs/path.h"
 #include "src/config/property.h"
 #include "src/text/distance.h"
@@ -27,19 +29,35 @@ static bool has_name(const struct family *family, const char *name, size_t len)
 	return false;
 }
 
-static void find_nearest(const struct family *family, const char *name, const char *extension,
-                         char nearest[PROPERTY_NAME])
+static bool has_letters_of(const char *a, const char *b)
 {
-	unsigned best = text_too_far(name);
+	int count[256] = {0};
+
+	for (; *a && *b; a++, b++) {
+		count[tolower((unsigned char)*a)]++;
+		count[tolower((unsigned char)*b)]--;
+	}
+	for (unsigned i = 0; i < 256; i++)
+		if (count[i])
+			return false;
+	return !*a && !*b;
+}
+
+/* Of two names that are as near the one with the same letters: pro is por, not PIO. */
+static void find_nearest(const struct family *family, const char *name, const char *extension,
+                         char nearest[PROPERTY_NEAREST])
+{
+	unsigned best = 2 * text_too_far(name);
 	const struct property *property = NULL;
 
 	while ((property = family_next(family, NULL, property))) {
-		unsigned distance = text_distance(name, property->name);
+		unsigned distance = 2 * text_distance(name, property->name);
 
+		distance += !has_letters_of(name, property->name);
 		if (property->type == PROPERTY_DIRECTORY || distance >= best)
 			continue;
 		best = distance;
-		snprintf(nearest, PROPERTY_NAME, "%s%s", property->name, extension);
+		snprintf(nearest, PROPERTY_NEAREST, "%s%s", property->name, extension);
 	}
 }
 
@@ -72,19 +90,22 @@ static void take_access(const struct family *family, const struct property *prop
 	               property->type == PROPERTY_UNSIGNED || property->type == PROPERTY_INTEGER;
 }
 
-/* Does an element of an array have that name: BYTE, ALL, its number or its letter? */
-static bool is_element(const struct property *property, const char *name)
+/* What of a property can be named: "latch.BYTE, or latch.0 to latch.7", "por". */
+static void print_elements(const struct property *property, char text[PROPERTY_NEAREST])
 {
-	unsigned count = property->array.count, number = 0;
-	const char *p = name;
+	int first = property->array.index == INDEX_LETTERS ? EXTENSION_LETTERS : 0;
+	int last = property->array.count ? first + property->array.count - 1 : first;
+	const char *name = property->name;
+	char from[8], to[8];
+	int n = 0;
 
-	if (!count || !strcmp(name, "ALL") || !strcmp(name, "BYTE"))
-		return true;
-	if (property->array.index == INDEX_LETTERS)
-		return *name >= 'A' && (unsigned)(*name - 'A') < count && !name[1];
-	for (; *p >= '0' && *p <= '9' && number < count; p++)
-		number = number * 10 + (unsigned)(*p - '0');
-	return p != name && !*p && number < count;
+	extension_print(property, first, from);
+	extension_print(property, last, to);
+	if (property->type == PROPERTY_BITS)
+		n = snprintf(text, PROPERTY_NEAREST, "%s.BYTE, or ", name);
+	n += snprintf(text + n, PROPERTY_NEAREST - (size_t)n, "%s%s", name, from);
+	if (last > first)
+		snprintf(text + n, PROPERTY_NEAREST - (size_t)n, " to %s%s", name, to);
 }
 
 struct path_property property_look(const char *path)
@@ -95,6 +116,8 @@ struct path_property property_look(const char *path)
 	const struct property *property;
 	const struct family *family;
 	struct path split;
+	int extension;
+	size_t len;
 
 	if (path_split(path, strlen(path), &split) || !split.has_rom || !split.property.len ||
 	    split.property.len >= sizeof(name))
@@ -110,11 +133,13 @@ struct path_property property_look(const char *path)
 	if (!property && dot)
 		property = family_property(family, NULL, name, (size_t)(dot - name));
 	take_access(family, property, &found);
-	if (property && dot && property->name[dot - name] == '\0' &&
-	    !is_element(property, dot + 1)) {
+	extension = extension_split(name, split.property.len, &len);
+	if (property && strlen(property->name) == len && !extension_fits(property, extension)) {
 		found.exists = false;
-		if (text_distance(dot + 1, "BYTE") < 3)
-			snprintf(found.nearest, PROPERTY_NAME, "%s.BYTE", property->name);
+		if (dot && property->type == PROPERTY_BITS && text_distance(dot + 1, "BYTE") < 3)
+			snprintf(found.nearest, PROPERTY_NEAREST, "%s.BYTE", property->name);
+		else
+			print_elements(property, found.nearest);
 		return found;
 	}
 	if (property || has_name(family, name, strlen(name)) ||

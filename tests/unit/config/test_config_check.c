@@ -6,6 +6,7 @@
 #include "unity.h"
 
 #include "hal/chips/find.h"
+#include "hal/chips/format.h"
 #include "src/config/check.h"
 #include "src/config/load.h"
 #include "tests/unit/aid/config_case.h"
@@ -30,37 +31,41 @@ static int check(const char *keys)
 }
 
 #define AT "f:2: warning: \"x\""
+#define PATH_AT "f:3:13: warning: \"x\""
+#define VALUE_AT(column) "f:3:" #column ": warning: \"x\""
 static void test_what_cannot_be_meant_is_named_with_its_remedy(void)
 {
 	static const struct line cases[] = {
-		{"Name x Path /28-000003df1d55/temperature Type double", AT
+		{"Name x Path /28-000003df1d55/temperature Type double", PATH_AT
 	         ": 28-000003df1d55 is the kernel's spelling of a device: write 28.551DDF030000\n"},
-		{"Name x Path /sys/bus/w1/devices/28-000003df1d55/w1_slave Type double", AT
+		{"Name x Path /sys/bus/w1/devices/28-000003df1d55/w1_slave Type double", PATH_AT
 	         ": 28-000003df1d55 is the kernel's spelling of a device: write 28.551DDF030000\n"},
-		{"Name x Path /28.551DDF03000/temperature Type double",
-	         AT ": 28.551DDF03000 has 11 digits after its family and counts as an alias; an id "
-	            "has 12: owsctl scan shows them\n"},
-		{"Name x Path /28.00A1/temperature Type double",
-	         AT ": 28.00A1 has 4 digits after its family and counts as an alias; an id has 12: "
-	            "owsctl scan shows them\n"},
-		{"Name x Path /28.0000000000ZZ/temperature Type double", AT
+		{"Name x Path /28.551DDF03000/temperature Type double", PATH_AT
+	         ": 28.551DDF03000 has 11 digits after its family and counts as an alias; an id "
+	         "has 12: owsctl scan shows them\n"},
+		{"Name x Path /28.00A1/temperature Type double", PATH_AT
+	         ": 28.00A1 has 4 digits after its family and counts as an alias; an id has 12: "
+	         "owsctl scan shows them\n"},
+		{"Name x Path /28.0000000000ZZ/temperature Type double", PATH_AT
 	         ": 28.0000000000ZZ counts as an alias; an id has no digit 'Z', only 0 to 9 and A "
 	         "to F\n"},
 		{"Name x Path /28.551DDF030000/temprature12 Type double",
-	         AT ": a DS18B20 has no temprature12; did you mean temperature12?\n"},
+	         PATH_AT ": a DS18B20 has no temprature12; did you mean temperature12?\n"},
 		{"Name x Path /29.B89115000000/PIO.8 Type bool",
-	         AT ": owsd knows no PIO.8 of a DS2408: check its spelling\n"},
+	         PATH_AT ": a DS2408 has no PIO.8; did you mean PIO.BYTE, or PIO.0 to PIO.7?\n"},
+		{"Name x Path /29.B89115000000/latch Type byte", PATH_AT
+	         ": a DS2408 has no latch; did you mean latch.BYTE, or latch.0 to latch.7?\n"},
 		{"Name x Path /28.551DDF030000/pressure Type double",
-	         AT ": owsd knows no pressure of a DS18B20: check its spelling\n"},
+	         PATH_AT ": owsd knows no pressure of a DS18B20: check its spelling\n"},
 		{"Name x Path /28.551DDF030000/temperature Type double IO output",
-	         AT " is an output, but temperature cannot be written: write IO input\n"},
+	         PATH_AT " is an output, but temperature cannot be written: write IO input\n"},
 		{"Name x Path /28.551DDF030000/temperature Type double Writable on",
-	         AT " is Writable, but temperature cannot be written: write Writable off\n"},
+	         PATH_AT " is Writable, but temperature cannot be written: write Writable off\n"},
 		{"Name x Path /28.551DDF030000/temperature Type string",
 	         AT " is a number, and a string shows it as text: write Type double\n"},
-		{"Name x Path /simultaneous/temperature Type bool",
-	         AT ": /simultaneous/temperature begins conversions and shows no value: write IO "
-	            "output, or the Path of a device\n"},
+		{"Name x Path /simultaneous/temperature Type bool", PATH_AT
+	         ": /simultaneous/temperature begins conversions and shows no value: write IO "
+	         "output, or the Path of a device\n"},
 		{"Name x Path /28.551DDF030000/temperature Type double Unit F",
 	         AT ": Unit \"F\" is shown beside a value in °C: write Scale 1.8 and Offset 32 "
 	            "too\n"},
@@ -71,9 +76,13 @@ static void test_what_cannot_be_meant_is_named_with_its_remedy(void)
 	         AT ": Unit \"K\" is shown beside a value in °C: write Offset 273.15 too\n"},
 		{"Name x Path /29.B89115000000/sensed.BYTE Type byte Alarm on LatchAlarm \"latch.BYT\" "
 	         "PorAlarm \"porr\" SetAlarm \"set_alarm=1\" ResetLatch \"sensed.BYTE=0\"",
-	         AT ": LatchAlarm: a DS2408 has no latch.BYT; did you mean latch.BYTE?\n" AT
-	            ": PorAlarm: a DS2408 has no porr; did you mean por?\n" AT
-	            ": ResetLatch: sensed.BYTE cannot be written, so the alarm cannot be served\n"},
+	         VALUE_AT(72) ": LatchAlarm: a DS2408 has no latch.BYT; did you mean latch.BYTE?\n" VALUE_AT(
+			 93) ": PorAlarm: a DS2408 has no porr; did you mean por?\n" VALUE_AT(134) ": ResetLatch: sensed.BYTE cannot be written, so the alarm cannot be served\n"},
+		{"Name x Path /29.B89115000000/sensed.BYTE Type byte Alarm on LatchAlarm latch "
+	         "PorAlarm pro SetAlarm \"set_alarm=133333333\"",
+	         VALUE_AT(72) ": LatchAlarm: a DS2408 has no latch; did you mean latch.BYTE, or "
+	                      "latch.0 to latch.7?\n" VALUE_AT(
+				      87) ": PorAlarm: a DS2408 has no pro; did you mean por?\n"},
 		{"Name x Path /29.B89115000000/sensed.BYTE Type byte Alarm on LatchAlarm latch.BYTE "
 	         "PorAlarm por SetAlarm \"set_alarm=133333333\" StaleAfter 20",
 	         AT " is stale before it is read again, each 60 s unless its alarm comes: write "
@@ -223,13 +232,15 @@ static void test_no_property_of_any_family_in_its_own_direction_is_complained_of
 		const struct property *property = NULL;
 
 		while ((property = family_next(family_nth(n), NULL, property))) {
-			char keys[160];
+			bool letters = property->array.index == INDEX_LETTERS;
+			char keys[160], first[8];
 
 			if (property->type == PROPERTY_DIRECTORY || !property->access)
 				continue;
+			extension_print(property, letters ? EXTENSION_LETTERS : 0, first);
 			snprintf(keys, sizeof(keys),
-			         "Name x Path \"/%02X.000000000001/%s\" Type double%s",
-			         family_nth(n)->code, property->name,
+			         "Name x Path \"/%02X.000000000001/%s%s\" Type double%s",
+			         family_nth(n)->code, property->name, first,
 			         property->access & ACCESS_READ ? "" : " IO output");
 			said_begin();
 			TEST_ASSERT_EQUAL_INT(0, check(keys));
