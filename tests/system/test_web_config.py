@@ -80,10 +80,10 @@ def test_an_edit_keeps_comments_order_and_line_ends(scene):
             "  Item { Name \"b\" Path \"/28.000000000002/temperature\" Type double }\r\n}\r\n")
     got = draft(page, text, "check")
     assert got["text"] == text and got["valid"], got
-    done = draft(page, text, "set", name="a", keys="Unit=K\nLimitH=30\nType=float")
+    done = draft(page, text, "set", name="a", keys="Unit=°C\nLimitH=30\nType=float")
     assert done["valid"] and not done["problems"], done
     assert re.sub("  +(?=[\"3])", " ", done["text"]) == text.replace(
-        "IOType 0x18", 'IOType 0x0017 Unit "K" LimitH 30'), done["text"]
+        "IOType 0x18", 'IOType 0x0017 Unit "°C" LimitH 30'), done["text"]
     assert [i["name"] for i in done["model"]["items"]] == ["a", "b"]
     for do, more, was, becomes in (
             ("rename", dict(name="b", keys="Name=c"), '"b"', '"c"'),
@@ -98,8 +98,8 @@ def test_an_edit_keeps_comments_order_and_line_ends(scene):
             assert got["text"] == text.replace(was, becomes), (do, got["text"])
     moved = draft(page, text.replace("Item { Name a", "Item {\r\n Name a"), "move", name="b", other="a", where="before")
     assert [i["name"] for i in moved["model"]["items"]] == ["b", "a"] and "# warm" in moved["text"]
-    added = draft(page, text, "add", name="c", path="/28.000000000003/temperature", keys="Unit=K")
-    assert added["model"]["items"][2]["keys"]["Unit"] == "K", added
+    added = draft(page, text, "add", name="c", path="/28.000000000003/temperature", keys="Unit=°C")
+    assert added["model"]["items"][2]["keys"]["Unit"] == "°C", added
     removed = draft(page, added["text"], "remove", name="c")
     assert removed["text"] == text
     bus = draft(page, text, "bus-set", target="sim:x", keys="PowerOffMs=700")
@@ -172,7 +172,7 @@ def test_an_edit_that_cannot_be_is_refused_with_the_reason(scene):
     daemon, page = editor(scene)
     before = daemon.config.read_text()
     for do, more, words in (
-            ("set", dict(name="nobody", keys="Unit=K"), "nobody"), ("set", dict(name="room"), "keys"),
+            ("set", dict(name="nobody", keys="Unit=°C"), "nobody"), ("set", dict(name="room"), "keys"),
             ("set", dict(name="room", keys="LimitH=warm"), "LimitH"),
             ("set", dict(name="room", keys="Limmit=1"), "LimitH"),
             ("set", dict(keys="a=b"), "name"), ("add", dict(name="room", path="/x/y"), "already"),
