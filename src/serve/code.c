@@ -50,7 +50,7 @@ static const struct {
 	{30, "writing is not allowed here"},
 	{34, "out of range"},
 	{42, "unknown request"},
-	{62, "the write waited too long and was not done"},
+	{73, "the write waited too long and was not done"},
 	{74, "a request without a path"},
 	{90, "a size that cannot be served"},
 	{95, "the property cannot be read or written so"},

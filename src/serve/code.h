@@ -12,7 +12,7 @@
 #define CODE_NO_SUCH_PATH (-1)
 #define CODE_READ_ONLY (-30)
 #define CODE_BAD_TYPE (-42)
-#define CODE_TOO_OLD (-62)
+#define CODE_TOO_OLD (-73) /* "Owserver protocol - timeout" in the texts of owserver */
 #define CODE_EMPTY (-74)
 #define CODE_BAD_SIZE (-90)
 
