@@ -88,6 +88,7 @@ int ows_fd(struct ows *h)
 	err = join_watch(&h->join);
 	news_arm(h);
 	if (!err && read(h->join.timer, &ticks, sizeof(ticks)) < 0)
-		errno = saved;
+		ticks = 0; /* it has not run out yet */
+	errno = saved;
 	return err ? err : h->join.epoll;
 }

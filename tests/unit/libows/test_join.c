@@ -227,6 +227,24 @@ static void test_errno_is_left_alone(void)
 	TEST_ASSERT_EQUAL(EDOM, errno);
 }
 
+static void test_a_program_without_room_for_the_descriptor_asks_again_later(void)
+{
+	struct rlimit had, none;
+	struct ows *h;
+
+	TEST_ASSERT_EQUAL(0, ows_open(in.name, OWS_CONTROL, &h));
+	TEST_ASSERT_EQUAL(0, getrlimit(RLIMIT_NOFILE, &had));
+	none = (struct rlimit){.rlim_max = had.rlim_max};
+	TEST_ASSERT_EQUAL(0, setrlimit(RLIMIT_NOFILE, &none));
+	errno = EDOM;
+	TEST_ASSERT_EQUAL(-EMFILE, ows_fd(h));
+	TEST_ASSERT_EQUAL(EDOM, errno);
+	TEST_ASSERT_EQUAL(0, setrlimit(RLIMIT_NOFILE, &had));
+	TEST_ASSERT_GREATER_OR_EQUAL(0, ows_fd(h));
+	TEST_ASSERT_EQUAL(EDOM, errno);
+	ows_close(h);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -241,5 +259,6 @@ int main(void)
 	RUN_TEST(test_nobody_who_listens_is_no_owsd);
 	RUN_TEST(test_a_hang_up_raises_no_sigpipe);
 	RUN_TEST(test_errno_is_left_alone);
+	RUN_TEST(test_a_program_without_room_for_the_descriptor_asks_again_later);
 	return UNITY_END();
 }
