@@ -28,6 +28,32 @@ static struct place place_of(const struct option_value *value, const struct rio_
 	return value->node ? value->node->value_at : block->at;
 }
 
+/*
+ * Report that the key is missing, and which unknown one was probably meant: a warning does not come
+ * to everybody who reads the error.
+ */
+static void report_missing(struct build *build, const struct rio_node *block, const char *key,
+                           const char *what)
+{
+	char text[OPTION_NEAREST];
+
+	if (block->broken)
+		return;
+	for (const struct rio_node *child = block->first; child; child = child->next) {
+		const char *nearest = option_find(PLACE_ITEM, child->key) < 0
+		                              ? option_nearest(PLACE_ITEM, child->key, text)
+		                              : NULL;
+
+		if (!nearest || !strstr(nearest, key))
+			continue;
+		report_error(build->report, child->at,
+		             "expected %s in this Item: is %s meant to be %s?", what, child->key,
+		             nearest);
+		return;
+	}
+	report_error(build->report, block->at, "expected %s in this Item", what);
+}
+
 static struct config_spot spot_of(const struct option_value *value)
 {
 	struct config_spot none = {0, 0};
@@ -45,8 +71,7 @@ static void build_name(struct build *build, const struct rio_node *block,
 
 	item->name = build_keep(build, name->text, strlen(name->text));
 	if (!name->node) {
-		if (!block->broken)
-			report_error(build->report, block->at, "expected a Name in this Item");
+		report_missing(build, block, "Name", "a Name");
 		return;
 	}
 	fault = name->given ? signal_name_fault(name->text) : NULL;
@@ -82,8 +107,8 @@ static void build_path(struct build *build, const struct rio_node *block,
 	item->path = "";
 	item->path_at = spot_of(value);
 	if (!value->given) {
-		if (!value->node && !block->broken)
-			report_error(build->report, block->at, "expected a Path in this Item");
+		if (!value->node)
+			report_missing(build, block, "Path", "a Path");
 		return;
 	}
 	fault = path_split(text, strlen(text), path);
@@ -157,8 +182,8 @@ static bool build_type(struct build *build, const struct rio_node *block,
 			             value_type_name(item->type));
 		item->type = (enum ows_type)(int)type->number;
 		known = true;
-	} else if (!bits->node && !type->node && !block->broken) {
-		report_error(build->report, block->at, "expected a Type or an IOType in this Item");
+	} else if (!bits->node && !type->node) {
+		report_missing(build, block, "Type", "a Type or an IOType");
 	}
 	if (bits->node && bits->given && io->given && item->output != (io->number != 0))
 		report_error(build->report, io->node->value_at,

@@ -219,6 +219,9 @@ def test_a_reload_that_is_refused_says_why_to_who_asked(scene):
     refused = scene.owsctl(daemon, "reload")
     assert refused.returncode == 1 and f"{daemon.config}:" in refused.stderr, refused
     assert "goes on as before" in refused.stderr, refused
+    daemon.config.write_text(rio(target, ROOM).replace("Type", "Typ"))
+    refused = scene.owsctl(daemon, "reload")
+    assert refused.returncode == 1 and "is Typ meant to be Type?" in refused.stderr, refused
     daemon.config.write_text(rio(target, ROOM, Listen=str(owsdtest.free_port())))
     refused = scene.owsctl(daemon, "reload")
     assert refused.returncode == 1 and "change by a restart only" in refused.stderr, refused

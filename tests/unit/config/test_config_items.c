@@ -27,6 +27,21 @@ static void test_wrong_items_are_errors_with_what_was_expected(void)
 		{"Path \"/a/b\" Type bool", "f:2:1: error: expected a Name in this Item\n"},
 		{"Name \"x\" Type bool", "f:2:1: error: expected a Path in this Item\n"},
 		{"Name x Path /a/b", "f:2:1: error: expected a Type or an IOType in this Item\n"},
+		{"Name x Path /a/b Typ bool",
+	         "f:3:18: warning: unknown key Typ in Item is ignored; is it Type?\n"
+	         "f:3:18: error: expected a Type or an IOType in this Item: is Typ meant to be "
+	         "Type?\n"},
+		{"Name x Path /a/b IoTyp 0x11",
+	         "f:3:18: warning: unknown key IoTyp in Item is ignored; is it IOType?\n"
+	         "f:3:18: error: expected a Type or an IOType in this Item: is IoTyp meant to be "
+	         "IOType?\n"},
+		{"Nam x Path /a/b Type bool",
+	         "f:3:1: warning: unknown key Nam in Item is ignored; is it Name?\n"
+	         "f:3:1: error: expected a Name in this Item: is Nam meant to be Name?\n"},
+		{"Name x Pfad y Paht /a/b Type bool",
+	         "f:3:8: warning: unknown key Pfad in Item is ignored\n"
+	         "f:3:15: warning: unknown key Paht in Item is ignored; is it Path?\n"
+	         "f:3:15: error: expected a Path in this Item: is Paht meant to be Path?\n"},
 		{"Name \"\" Path /a/b Type bool", "f:3:6: error: the name \"\" is empty\n"},
 		{"Name \"a/b\" Path /a/b Type bool",
 	         "f:3:6: error: the name \"a/b\" holds one of / \" # { }\n"},
