@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 #
 # In a Debian that its own systemd has booted: all packages with all their units enabled through
-# upgrade, reboot, removal, reinstallation and purge, and then each package alone. Is run at each
+# reloads, upgrade, reboot, removal, reinstallation and purge, and then each package alone. Is run at each
 # boot: the second goes on after the reboot.
 exec >>/root/test/lines 2>&1
 cd /root/test || exit 1
@@ -77,6 +77,27 @@ secrets() {
 	rm /etc/credstore/owsd-mqtt.mqtt-password
 	systemctl restart owsd-mqtt@OWS.service
 }
+# reloads: no unit says yes to a broken file and does nothing; each takes over a good one
+reloads() {
+	services='owsd@OWS owsd-recorder@OWS owsd-influx@OWS owsd-mqtt@OWS owsd-web@OWS'
+	before=$(pids "$services")
+	echo 'OwsDrv { Period wrong }' >/etc/owsd/OWS.rio
+	for s in $services; do
+		does "$s refuses a broken file" sh -c "! timeout 40 systemctl reload $s"
+		does "$s goes on" systemctl -q is-active "$s"
+	done
+	does 'the status of owsd says so' sh -c "systemctl status --no-pager owsd@OWS | \
+		grep -q 'Status: \"reload refused, all goes on as before: /etc/owsd/OWS.rio:1:'"
+	does 'and list' sh -c "owsctl list 2>&1 | grep -q 'OWS.rio:1:'"
+	sed 's,127.0.0.1:8080,127.0.0.1:8081,' /etc/owsd/HOUSE.rio >/etc/owsd/OWS.rio
+	for s in $services; do does "$s takes a good file" timeout 40 systemctl reload "$s"; done
+	does 'the page listens where Listen says now' within 20 sh -c 'ss -H -l -t -n | grep -q 127.0.0.1:8081'
+	does 'and there alone' within 20 sh -c '! ss -H -l -t -n | grep -q 127.0.0.1:8080'
+	does 'list has nothing more to say of it' sh -c "! owsctl list 2>&1 | grep -q 'OWS.rio:1:'"
+	cp /etc/owsd/HOUSE.rio /etc/owsd/OWS.rio
+	for s in $services; do does "$s takes the first file" timeout 40 systemctl reload "$s"; done
+	same 'the same processes run' "$before" "$(pids "$services")"
+}
 enable_units() {
 	# shellcheck disable=SC2046 # units are words
 	systemctl enable --now $(units "$1")
@@ -143,6 +164,7 @@ RIO
 	for p in $packages; do does "all of $p is enabled" enable_units "$p"; done
 	takes 'as installed' $packages
 	[ $failed = 0 ] || finish
+	reloads
 	secrets
 
 	for p in $packages; do
