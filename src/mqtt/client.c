@@ -227,19 +227,19 @@ static bool set_will(void *ctx, const char *topic, const char *text, size_t len,
 /*
  * Have the broker keep what is longer from us. No function sets a property of CONNECT alone; the
  * one that connects and waits keeps it for all that come after, though it refuses this keep-alive.
+ * False: no memory.
  */
 static bool bound_messages(struct broker *b)
 {
 	mosquitto_property *most = NULL;
-	bool bound;
 
 	if (!client_mqtt5(b))
 		return true;
-	bound = !mosquitto_property_add_int32(&most, MQTT_PROP_MAXIMUM_PACKET_SIZE, MESSAGE_MOST) &&
-	        mosquitto_connect_bind_v5(b->client, "", 0, NO_KEEPALIVE, NULL, most) ==
-	                MOSQ_ERR_INVAL;
+	if (mosquitto_property_add_int32(&most, MQTT_PROP_MAXIMUM_PACKET_SIZE, MESSAGE_MOST))
+		return false;
+	mosquitto_connect_bind_v5(b->client, "", 0, NO_KEEPALIVE, NULL, most);
 	mosquitto_property_free_all(&most);
-	return bound;
+	return true;
 }
 
 bool client_make(struct broker *b, char *why, size_t size)
