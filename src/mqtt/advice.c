@@ -68,12 +68,40 @@ const char *advice_words(int code, int err, const char *tls)
 	return mosquitto_strerror(code);
 }
 
-const char *advice_remedy(int code, int err)
+/* Words of OpenSSL, which has one for a CA and a date that do not fit, and of libmosquitto. */
+static const struct {
+	const char *part, *remedy;
+} tls_reasons[] = {
+	{"certificate verify failed", "look at CaFile, and at the clock of this machine"},
+	{"host name verification failed", "write a name of its certificate in Broker"},
+	{"certificate required", "the broker wants CertFile and KeyFile"},
+	{"alert certificate expired", "look at the date of CertFile, and the clocks"},
+	{"alert bad certificate", "look at CertFile and KeyFile"},
+	{"alert unknown ca", "look at CertFile, and cafile of the broker"},
+	{"wrong version number", "is that a port without TLS: mqtt://?"},
+};
+
+static const char *tls_remedy(const char *tls)
+{
+	for (size_t i = 0; i < sizeof(tls_reasons) / sizeof(tls_reasons[0]); i++)
+		if (strstr(tls, tls_reasons[i].part))
+			return tls_reasons[i].remedy;
+	return "";
+}
+
+const char *advice_hung_up(bool tls)
+{
+	return tls ? "is that a port without TLS: mqtt://?" : "does that port want TLS: mqtts://?";
+}
+
+const char *advice_remedy(int code, int err, const char *tls)
 {
 	size_t i = reason_of(code);
 
 	if (i < sizeof(reasons) / sizeof(reasons[0]))
 		return reasons[i].remedy;
+	if (code < 128 && *tls_remedy(tls))
+		return tls_remedy(tls);
 	if (code == MOSQ_ERR_TLS)
 		return "look at CaFile, and the name in Broker";
 	if (code == MOSQ_ERR_EAI)

@@ -17,6 +17,11 @@ int advice_connack(int code, bool old);
  */
 const char *advice_words(int code, int err, const char *tls);
 /* "" if nothing helps but waiting. */
-const char *advice_remedy(int code, int err);
+const char *advice_remedy(int code, int err, const char *tls);
+/*
+ * The remedy for a broker that took the connection and closed it without an answer. tls: we spoke
+ * TLS.
+ */
+const char *advice_hung_up(bool tls);
 /* The part of a line of libmosquitto's log that a person can read. */
 const char *advice_tls(const char *line);

@@ -114,7 +114,10 @@ static void broker_fail(struct broker *b, const char *why, const char *remedy, i
 
 	snprintf(words, sizeof(words), "%.80s %s: %.200s%s%.50s",
 	         mqtt_way_name(&b->options->ways[b->way], name),
-	         was_connected ? "is lost" : "cannot be reached", why, *remedy ? "; " : "", remedy);
+	         was_connected ? "is lost"
+	         : b->client   ? "cannot be reached"
+	                       : "is not tried",
+	         why, *remedy ? "; " : "", remedy);
 	drop(b);
 	if (choose(b, was_connected, now_ns))
 		return;
@@ -150,7 +153,7 @@ void broker_taken(struct broker *b)
 	b->brief = BRIEF_MOST;
 	snprintf(b->last, sizeof(b->last), "%.80s was lost: %.200s; %.50s",
 	         mqtt_way_name(&b->options->ways[b->way], name), taken_words(b, words),
-	         advice_remedy(ADVICE_TAKEN_OVER, 0));
+	         advice_remedy(ADVICE_TAKEN_OVER, 0, ""));
 	log_warning(b->face->log, "%s", b->last);
 }
 
@@ -178,6 +181,7 @@ static void attempt(struct broker *b, int64_t now_ns)
 	b->tls_words[0] = '\0';
 	b->begun_ns = b->came_ns = now_ns;
 	if (!client_make(b, why, sizeof(why))) {
+		drop(b);
 		b->tcp = b->refused = true; /* no other address helps, and no haste */
 		broker_fail(b, why, "", now_ns);
 		return;
@@ -190,7 +194,7 @@ static void attempt(struct broker *b, int64_t now_ns)
 
 		b->taken = false;
 		b->brief = 0;
-		broker_fail(b, words, advice_remedy(err, errno), ows_now());
+		broker_fail(b, words, advice_remedy(err, errno, b->tls_words), ows_now());
 		return;
 	}
 	broker_watch(b);
@@ -231,7 +235,10 @@ static void finish(struct broker *b, int code, int err, int64_t now_ns)
 	           : !soon || !closed ? 0
 	                              : b->brief + (b->brief < BRIEF_MOST);
 	words = advice_words(code, err, b->tls_words);
-	remedy = advice_remedy(b->taken ? ADVICE_TAKEN_OVER : code, err);
+	remedy = advice_remedy(b->taken ? ADVICE_TAKEN_OVER : code, err, b->tls_words);
+	if (!*remedy && b->state == BROKER_CONNECTING && b->tcp &&
+	    (code == MOSQ_ERR_CONN_LOST || (code == MOSQ_ERR_ERRNO && err == ECONNRESET)))
+		remedy = advice_hung_up(b->options->ways[b->way].tls);
 	if (b->brief == BRIEF_MOST)
 		words = taken_words(b, taken);
 	/* a connection that ends soon was thrown out, or its line is bad: both want time */
@@ -314,7 +321,8 @@ static void work(struct broker *b, short ready, int64_t now_ns)
 
 	if (!b->tcp && (ready & (POLLERR | POLLHUP))) {
 		getsockopt(b->fd, SOL_SOCKET, SO_ERROR, &err, &size);
-		finish(b, MOSQ_ERR_ERRNO, err ? err : ECONNREFUSED, now_ns);
+		b->tcp = !err; /* it took the connection, and has closed it since */
+		finish(b, MOSQ_ERR_ERRNO, err ? err : ECONNRESET, now_ns);
 		return;
 	}
 	if (ready & POLLOUT) {

@@ -174,16 +174,22 @@ static void on_log(struct mosquitto *client, void *ctx, int level, const char *t
 
 /* --- A new client ---------------------------------------------------------------------------- */
 
+static bool key_fails(const char *key, const char *reason, char *why, size_t size)
+{
+	snprintf(why, size, "%s: %s", key, reason);
+	return false;
+}
+
 static bool set_password(struct broker *b, char *why, size_t size)
 {
-	char password[SECRET_SIZE];
+	char password[SECRET_SIZE], reason[SECRET_PATH + 128];
 	int err;
 
 	if (!*b->options->user)
 		return true;
 	if (secret_read(*b->options->password_file ? b->options->password_file : NULL, password,
-	                why, size))
-		return false;
+	                reason, sizeof(reason)))
+		return key_fails("PasswordFile", reason, why, size);
 	err = mosquitto_username_pw_set(b->client, b->options->user, *password ? password : NULL);
 	explicit_bzero(password, sizeof(password));
 	snprintf(why, size, "%s", mosquitto_strerror(err));
@@ -193,15 +199,17 @@ static bool set_password(struct broker *b, char *why, size_t size)
 static bool set_tls(struct broker *b, char *why, size_t size)
 {
 	const struct mqtt_options *o = b->options;
-	char ca[SECRET_PATH], cert[SECRET_PATH], key[SECRET_PATH];
+	char ca[SECRET_PATH], cert[SECRET_PATH], key[SECRET_PATH], reason[SECRET_PATH + 128];
 	int err;
 
 	if (!o->ways[b->way].tls)
 		return true;
-	if ((*o->ca_file && secret_file(o->ca_file, false, ca, why, size)) ||
-	    (*o->cert_file && secret_file(o->cert_file, false, cert, why, size)) ||
-	    (*o->key_file && secret_file(o->key_file, true, key, why, size)))
-		return false;
+	if (*o->ca_file && secret_file(o->ca_file, false, ca, reason, sizeof(reason)))
+		return key_fails("CaFile", reason, why, size);
+	if (*o->cert_file && secret_file(o->cert_file, false, cert, reason, sizeof(reason)))
+		return key_fails("CertFile", reason, why, size);
+	if (*o->key_file && secret_file(o->key_file, true, key, reason, sizeof(reason)))
+		return key_fails("KeyFile", reason, why, size);
 	err = mosquitto_tls_set(b->client, *o->ca_file ? ca : NULL, *o->ca_file ? NULL : CA_PATH,
 	                        *o->cert_file ? cert : NULL, *o->key_file ? key : NULL, NULL);
 	snprintf(why, size, "TLS: %s", mosquitto_strerror(err));

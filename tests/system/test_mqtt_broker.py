@@ -117,13 +117,35 @@ def test_tls_takes_the_broker_that_the_ca_vouches_for_and_shows_our_certificate(
     # a broker that nobody vouches for
     house.daemon.config.write_text(house.text(ROOM, CaFile=scene.path / "client.pem"))
     house.face = house.start()
-    logged(house.face, "certificate verify failed; look at CaFile, and the name in Broker")
+    logged(house.face, "certificate verify failed; look at CaFile, and at the clock of this machine")
     house.face.stop()
     # another name than the certificate's
     house.daemon.config.write_text(house.text(ROOM, Broker=f"mqtts://127.0.0.1:{port}"))
     house.face = house.start()
-    logged(house.face, "look at CaFile, and the name in Broker")
+    logged(house.face, "host name verification failed.; write a name of its certificate in Broker")
     assert "connected" not in house.face.log(), house.face.log()
+
+
+def test_a_fault_of_ours_and_a_wrong_scheme_are_told_from_a_broker_that_is_away(scene):
+    certificates(scene)
+    port = free_port()
+    lines = ("allow_anonymous true", f"listener {port} 127.0.0.1", f"cafile {scene.path}/ca.pem",
+             f"certfile {scene.path}/broker.pem", f"keyfile {scene.path}/broker.key",
+             "require_certificate true", "allow_anonymous true")
+    house = House(scene, ROOM, lines=lines)
+    house.says(STATE, "online")
+    tls = dict(Broker=f"mqtts://localhost:{port}", CaFile=scene.path / "ca.pem")
+    for keys, words in ((dict(User="pi7", PasswordFile="/nofile"), "is not tried: PasswordFile: /nofile: No such file"),
+                        (dict(tls, CaFile="/nofile"), "is not tried: CaFile: /nofile: No such file"),
+                        (tls, "certificate required; the broker wants CertFile and KeyFile"),
+                        (dict(Broker=f"mqtt://localhost:{port}"), "does that port want TLS: mqtts://?"),
+                        (dict(tls, Broker=f"mqtts://localhost:{house.broker.port}"),
+                         "is that a port without TLS: mqtt://?")):
+        house.face.stop()
+        house.daemon.config.write_text(house.text(ROOM, **keys))
+        house.face = house.start()
+        logged(house.face, words)
+        assert "does a broker run there?" not in house.face.log(), house.face.log()
 
 
 def test_the_first_way_that_works_is_taken_and_by_the_address_that_works(scene):
