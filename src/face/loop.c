@@ -16,6 +16,7 @@
 #include "src/config/load.h"
 #include "src/face/look.h"
 #include "src/face/loop.h"
+#include "src/service/heap.h"
 #include "src/service/resident.h"
 #include "src/service/streams.h"
 #include "src/service/unix_signals.h"
@@ -240,8 +241,10 @@ int face_main(const struct face_ops *ops, int argc, char **argv)
 	                    .tick_ns = INT64_MAX,
 	                    .notify.fd = -1,
 	                    .status = "starting"};
-	int status = standard_open();
+	int status;
 
+	heap_give_back();
+	status = standard_open();
 	if (status) {
 		face_complain(ops->program, "/dev/null: %s", strerror(-status));
 		return FACE_EXIT_RUN;

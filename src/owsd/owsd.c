@@ -17,15 +17,13 @@
 #include "src/libows/ows.h"
 #include "src/owsd/arguments.h"
 #include "src/owsd/instance.h"
+#include "src/service/heap.h"
 #include "src/service/notify.h"
 #include "src/service/resident.h"
 #include "src/service/streams.h"
 #include "src/service/unix_signals.h"
 #include "src/shm/porter.h"
 #include "src/text/log.h"
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -380,19 +378,7 @@ int main(int argc, char **argv)
 	char why[512];
 	int status;
 
-#ifdef __GLIBC__
-	/*
-	 * Each block of 16 KiB or more is a mapping of its own. A mapping is zero when it is new,
-	 * so calloc() does not clear it, and a page that is not used takes no memory. free() gives
-	 * it back to the system, so what reading the file took does not stay. A limit that is set
-	 * here is fixed; without it malloc raises it with each larger block that is freed. The heap
-	 * grows by what is needed and a page, not by the 128 KiB that malloc adds otherwise. All
-	 * threads share it: they allocate when they connect, if ever.
-	 */
-	mallopt(M_MMAP_THRESHOLD, 16 * 1024);
-	mallopt(M_TOP_PAD, 4096);
-	mallopt(M_ARENA_MAX, 1);
-#endif
+	heap_give_back();
 	status = standard_open();
 	if (status) {
 		complain("/dev/null: %s", strerror(-status));

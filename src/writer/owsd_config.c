@@ -13,6 +13,7 @@
 #include "hal/base/time.h"
 #include "src/face/arguments.h"
 #include "src/libows/ows.h"
+#include "src/service/heap.h"
 #include "src/service/listen.h"
 #include "src/service/notify.h"
 #include "src/service/streams.h"
@@ -221,8 +222,10 @@ int main(int argc, char **argv)
 		"the socket, for this user alone (NAME.config in the directory of owsd)"};
 	struct face_arguments a;
 	struct unix_signals signals;
-	int status = standard_open();
+	int status;
 
+	heap_give_back();
+	status = standard_open();
 	if (status) {
 		face_complain(PROGRAM, "/dev/null: %s", strerror(-status));
 		return FACE_EXIT_RUN;

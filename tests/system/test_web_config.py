@@ -7,6 +7,7 @@ import re
 import socket
 import threading
 
+import faulty
 import owsdtest
 from owsdtest import place, raw, until
 from test_web import ROOM, SENSOR, Page, both
@@ -214,6 +215,28 @@ def test_large_texts_are_taken_up_to_a_mebibyte_and_two_at_a_time(scene):
         s.close()
     until(lambda: page.ask("/api/config/draft", "POST", json.dumps(dict(text=filled, do="check")),
                            **MARKED)[1] == 200, 10, "the rooms are free again")
+
+
+def test_what_large_answers_took_is_given_back(scene):
+    faulty.not_sanitized("a sanitizer has memory of its own")
+    daemon, page = editor(scene)
+    text = daemon.config.read_text()
+    filled = text + "#" * (1000 << 10) + "\n"
+
+    def own_kib():
+        with open(f"/proc/{page.program.pid}/smaps_rollup", encoding="ascii") as file:
+            return int(file.read().split("Private_Dirty:")[1].split()[0])
+
+    def work(text):
+        draft(page, text, "check")
+        draft(page, text, "set", name="room", keys="Description=x")
+        for path in ("config", "signals", "log", "stats", "info"):
+            page.json(f"/api/{path}")
+    work(text)
+    before = own_kib()
+    for _ in range(8):
+        work(filled)
+    until(lambda: own_kib() < before + 400, 10, lambda: f"{before} KiB before, {own_kib()} after")
 
 
 def test_a_file_that_json_would_change_is_shown_and_not_edited(scene):
