@@ -213,6 +213,23 @@ def test_a_peer_that_is_slow_keeps_nobody_waiting_and_is_refused_after_ten_secon
     assert 8 < time.monotonic() - begun < owsdtest.patience(15)
 
 
+def test_without_room_for_descriptors_it_loses_none_of_its_own(scene):
+    writer = alone(scene, "OwsDrv {\n}\n")
+    had, limits = owsdtest.settled(lambda: owsdtest.open_files(writer)), resource.prlimit(writer.pid, resource.RLIMIT_NOFILE)
+    for more in range(4):
+        resource.prlimit(writer.pid, resource.RLIMIT_NOFILE, (had[-1] + 1 + more, limits[1]))
+        with writing.connect(writer.socket) as door:
+            door.settimeout(0.5)
+            try:
+                door.recv(1)
+            except TimeoutError:
+                pass
+        until(lambda: owsdtest.open_files(writer) == had, 10, lambda: owsdtest.open_files(writer))
+    assert "no process for a request" in writer.log()
+    resource.prlimit(writer.pid, resource.RLIMIT_NOFILE, limits)
+    assert writer.replace("OwsDrv {\n  Period 2\n}\n").status == "done", writer.log()
+
+
 def test_a_text_that_names_an_endless_file_keeps_nobody_waiting(scene):
     target = f"sim:{scene.file('few.sim', 'chip DS2482-100 0x18' + chr(10))}"
     old = f'OwsDrv {{\n  TargetName "{target}"\n}}\n'
