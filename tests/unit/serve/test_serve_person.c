@@ -64,6 +64,16 @@ static int set(const char *person, const char *name)
 	return signals_write(signals, person, name, ows_now(), "1", 1, &given);
 }
 
+/* The first one, which owsd has still to welcome: on a busy machine one try is not enough. */
+static int set_first(const char *person)
+{
+	int err = -EBUSY;
+
+	for (int i = 0; i < 1000 && err == -EBUSY; i++)
+		err = set(person, "relay");
+	return err;
+}
+
 static void stands_for(const char *person)
 {
 	struct ows_command_slot *slot = instance_slot(&in, 0, RELAY);
@@ -86,7 +96,7 @@ static void test_each_command_stands_for_the_client_that_gave_it(void)
 	start();
 	for (int i = 0; i < 100; i++) {
 		snprintf(person, sizeof(person), "10.0.0.%d", i % 40);
-		TEST_ASSERT_EQUAL_INT(0, set(person, "relay"));
+		TEST_ASSERT_EQUAL_INT(0, i ? set(person, "relay") : set_first(person));
 		stands_for(person);
 		take();
 	}
@@ -97,7 +107,7 @@ static void test_each_command_stands_for_the_client_that_gave_it(void)
 static void test_a_command_waits_until_owsd_has_taken_that_of_another_client(void)
 {
 	start();
-	TEST_ASSERT_EQUAL_INT(0, set("10.0.0.1", "relay"));
+	TEST_ASSERT_EQUAL_INT(0, set_first("10.0.0.1"));
 	TEST_ASSERT_EQUAL_INT(-EBUSY, set("10.0.0.2", "relay"));
 	TEST_ASSERT_EQUAL_INT(-EBUSY, set("10.0.0.2", "relay_WriteOneShot"));
 	stands_for("10.0.0.1");
