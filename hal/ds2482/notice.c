@@ -47,7 +47,7 @@ bool ds2482_notice(struct link_master *base, char *text, size_t size)
 	master->changed_told_ns = now + CHANGED_NS;
 	snprintf(text, size,
 	         "0x%02x on %s was reset or changed by another program (owserver? the kernel's "
-	         "driver?), or lost its supply: sudo fuser -v %s names programs",
-	         changed, name, name);
+	         "driver?), or lost its supply: sudo owsd --board names programs",
+	         changed, name);
 	return true;
 }

@@ -13,7 +13,7 @@
 /* "" if it has ended, or is hidden. */
 static void read_comm(const char *proc, int pid, char *name, size_t size)
 {
-	char path[64];
+	char path[320];
 	FILE *file;
 
 	name[0] = '\0';
@@ -52,7 +52,7 @@ static bool is_device(int fds, const char *name, dev_t device)
 
 static bool has_open(const char *proc, int pid, dev_t device)
 {
-	char path[64];
+	char path[320];
 	bool found = false;
 	DIR *dir;
 

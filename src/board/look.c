@@ -15,6 +15,7 @@
 
 #include "hal/ds2482/ds2482.h"
 #include "hal/ds2482/look.h"
+#include "hal/ds2482/rivals.h"
 #include "src/board/data.h"
 #include "src/board/files.h"
 #include "src/board/look.h"
@@ -191,6 +192,25 @@ static void look_for_claims(const struct scene *scene, unsigned number)
 	}
 }
 
+/* Root sees the programs of all users, and the service of owsd does not. */
+static void look_for_rivals(const struct scene *scene, unsigned number)
+{
+	char path[BOARD_PATH], proc[BOARD_PATH], who[RIVALS_TEXT];
+	struct rivals rivals = {0};
+
+	board_path(path, scene->root, I2C_DEV_ROOT "/i2c-%u", number);
+	board_path(proc, scene->root, RIVALS_PROC);
+	rivals_find(proc, path, &rivals, who, sizeof(who));
+	if (!who[0])
+		return;
+	report_add(scene->report, BOARD_NOTE,
+	           "i2c-%u is open in %s: two programs on one DS2482 disturb each other", number,
+	           who);
+	report_remedy(scene->report,
+	              "sudo systemctl disable --now owserver.socket owserver.service    # if it is "
+	              "that one");
+}
+
 static void look_at_header(const struct scene *scene, unsigned number)
 {
 	char file[48];
@@ -203,6 +223,7 @@ static void look_at_header(const struct scene *scene, unsigned number)
 	report_adapter(scene, number);
 	may_use(scene, number);
 	look_for_claims(scene, number);
+	look_for_rivals(scene, number);
 }
 
 /* A machine without board data: any adapter will do. */
@@ -227,6 +248,7 @@ static void look_at_adapters(const struct scene *scene)
 		board_path(path, scene->root, I2C_DEV_ROOT "/i2c-%u", number[i]);
 		usable |= faccessat(AT_FDCWD, path, R_OK | W_OK, AT_EACCESS) == 0;
 		look_for_claims(scene, number[i]);
+		look_for_rivals(scene, number[i]);
 	}
 	if (usable)
 		return;

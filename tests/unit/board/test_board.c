@@ -307,6 +307,29 @@ static void test_a_hat_is_known_by_what_its_eeprom_says(void)
 	expect(BOARD_FACT, "on it: Relay?[2J HAT of REX Controls, of which there is no data", NULL);
 }
 
+static void test_another_program_on_the_adapter_is_a_note(void)
+{
+	char at[300];
+
+	good_pi();
+	text("/proc/109/comm", "owserver\n");
+	folders("/proc/109/fd/7");
+	snprintf(at, sizeof(at), "%s/proc/109/fd/7", root);
+	TEST_ASSERT_EQUAL(0, symlink("/dev/null", at));
+	snprintf(at, sizeof(at), "%s/dev/i2c-1", root);
+	look();
+	for (unsigned i = 0; i < report.count; i++)
+		TEST_ASSERT_NULL_MESSAGE(strstr(report.line[i].text, "owserver"),
+		                         report.line[i].text);
+	/* the adapter is the device that it has open */
+	TEST_ASSERT_EQUAL(0, unlink(at));
+	TEST_ASSERT_EQUAL(0, symlink("/dev/null", at));
+	look();
+	TEST_ASSERT_FALSE(report.missing);
+	expect(BOARD_NOTE, "i2c-1 is open in owserver, process 109",
+	       "sudo systemctl disable --now owserver.socket");
+}
+
 static void test_a_board_that_does_not_tell_is_named(void)
 {
 	good_pi();
@@ -449,6 +472,7 @@ int main(void)
 	RUN_TEST(test_what_is_missing_stands_before_the_notes);
 	RUN_TEST(test_the_first_revision_has_its_header_on_the_other_adapter);
 	RUN_TEST(test_a_hat_is_known_by_what_its_eeprom_says);
+	RUN_TEST(test_another_program_on_the_adapter_is_a_note);
 	RUN_TEST(test_a_board_that_does_not_tell_is_named);
 	RUN_TEST(test_a_machine_without_a_device_tree_takes_any_adapter);
 	RUN_TEST(test_more_than_a_report_holds_leaves_its_lines_right);

@@ -206,7 +206,7 @@ static void test_where_nobody_is_seen_the_log_has_the_change_once_an_hour(void)
 			lines++;
 			TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "0x18 on " DEVICE), said);
 			TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "owserver"), said);
-			TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "fuser -v " DEVICE), said);
+			TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "sudo owsd --board"), said);
 		}
 		ds.host.now += 60 * HOST_S;
 	}
