@@ -271,7 +271,7 @@ static unsigned notes(const char *text)
 	return n;
 }
 
-static void test_a_bus_reports_the_program_and_the_change(void)
+static struct bus *open_bus(void)
 {
 	static const struct link_master_ops master = {.create = create_every};
 	static const struct bus_ops ops = {NATIVE_BUS_SLOTS};
@@ -285,6 +285,13 @@ static void test_a_bus_reports_the_program_and_the_change(void)
 		0, native_create(&ops, &master, "", &ds.host.env, &bus, ds.why, sizeof(ds.why)));
 	host_run(&ds.host, bus, ds.host.now + 5 * HOST_S);
 	TEST_ASSERT_EQUAL_UINT(0, host_events(&ds.host, BUS_NOTE));
+	return bus;
+}
+
+static void test_a_bus_reports_the_program_and_the_change(void)
+{
+	struct bus *bus = open_bus();
+
 	ds_event("reset 0x18");
 	host_run(&ds.host, bus, ds.host.now + 60 * HOST_S);
 	TEST_ASSERT_EQUAL_UINT(1, notes("was reset or changed by another program"));
@@ -294,6 +301,37 @@ static void test_a_bus_reports_the_program_and_the_change(void)
 	host_run(&ds.host, bus, ds.host.now + 60 * HOST_S);
 	TEST_ASSERT_EQUAL_UINT(1, notes("is also open in owserver, process 109"));
 	TEST_ASSERT_EQUAL_UINT(2, host_events(&ds.host, BUS_NOTE));
+	native_destroy(bus);
+}
+
+/* As an owserver: it resets the wire whenever it wants to, and leaves the chip as it was. */
+static const struct i2c_adapter_ops *undisturbed;
+static unsigned transfers;
+
+static int disturbed_transfer(struct i2c_adapter *base, uint8_t address,
+                              struct i2c_message *messages, size_t n)
+{
+	uint8_t command = DS2482_RESET;
+	struct i2c_message reset = i2c_to_write(&command, 1);
+
+	if (++transfers % 20 == 0)
+		(void)undisturbed->transfer(base, address, &reset, 1);
+	return undisturbed->transfer(base, address, messages, n);
+}
+
+static void test_a_program_that_works_the_wire_between_is_named(void)
+{
+	struct bus *bus = open_bus();
+	struct i2c_adapter_ops disturbed = *ds.adapter.adapter.ops;
+
+	run(109, "owserver", DEVICE);
+	undisturbed = ds.adapter.adapter.ops;
+	disturbed.transfer = disturbed_transfer;
+	ds.adapter.adapter.ops = &disturbed;
+	host_run(&ds.host, bus, ds.host.now + 120 * HOST_S);
+	ds.adapter.adapter.ops = undisturbed;
+	TEST_ASSERT_EQUAL_UINT(1, notes("is also open in owserver, process 109"));
+	TEST_ASSERT_EQUAL_UINT(1, host_events(&ds.host, BUS_NOTE));
 	native_destroy(bus);
 }
 
@@ -312,5 +350,6 @@ int main(void)
 	RUN_TEST(test_a_chip_that_does_not_come_back_was_not_changed);
 	RUN_TEST(test_a_simulated_adapter_has_no_rivals);
 	RUN_TEST(test_a_bus_reports_the_program_and_the_change);
+	RUN_TEST(test_a_program_that_works_the_wire_between_is_named);
 	return UNITY_END();
 }
