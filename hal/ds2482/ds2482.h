@@ -109,11 +109,13 @@ struct ds2482_master {
 	int64_t power_off_ns;
 	/*
 	 * notice.c; link.c says which chip had been reset or changed when it was set up again. 0:
-	 * none. Env times of the next look, of the next after such a change, of its next report.
+	 * none. Openings and errors since the last look. Env times of the next look, of the next
+	 * after such a change, of the next report where no program was seen.
 	 */
 	struct rivals rivals;
 	uint8_t changed;
-	int64_t look_ns, changed_look_ns, changed_told_ns;
+	unsigned failures;
+	int64_t look_ns, changed_look_ns, told_ns;
 	/* The cost before the adapter was opened again. */
 	struct link_master_cost cost;
 };

@@ -22,6 +22,7 @@
 
 static char proc[64], said[BUS_EVENT_TEXT];
 static struct rivals rivals;
+static unsigned disturbs; /* after so many transfers of the driver; 0: never */
 
 static void fill(const char *name, const char *text)
 {
@@ -56,6 +57,7 @@ void setUp(void)
 	snprintf(proc, sizeof(proc), "/tmp/owsd-rivals-XXXXXX");
 	TEST_ASSERT_NOT_NULL(mkdtemp(proc));
 	memset(&rivals, 0, sizeof(rivals));
+	disturbs = 0;
 }
 
 void tearDown(void)
@@ -213,6 +215,31 @@ static void test_where_nobody_is_seen_the_log_has_the_change_once_an_hour(void)
 	TEST_ASSERT_EQUAL_UINT(2, lines);
 }
 
+/* Two minutes with so many errors each. Returns the lines. */
+static unsigned fail_often(unsigned errors)
+{
+	unsigned lines = 0;
+
+	for (unsigned i = 0; i < 2 * errors; i++) {
+		lines += notice();
+		ds.host.now += 60 * HOST_S / errors;
+	}
+	return lines;
+}
+
+static void test_where_nobody_is_seen_errors_are_a_reason_if_they_are_many(void)
+{
+	start();
+	TEST_ASSERT_EQUAL_UINT(0, fail_often(6));
+	TEST_ASSERT_EQUAL_UINT(1, fail_often(40));
+	TEST_ASSERT_EQUAL_UINT(0, fail_often(40)); /* within the hour */
+	ds.host.now += 3600 * HOST_S;
+	for (unsigned i = 0; i < 40 && !notice(); i++)
+		ds.host.now += HOST_S;
+	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "commands on " DEVICE " fail again and again"),
+	                             said);
+}
+
 /* What is unplugged was not changed by anybody. */
 static void test_a_chip_that_does_not_come_back_was_not_changed(void)
 {
@@ -234,6 +261,36 @@ static void test_a_simulated_adapter_has_no_rivals(void)
 
 /* --- The bus of i2c:auto ---------------------------------------------------------------------- */
 
+/* As an owserver: it resets the wire whenever it wants to, and leaves the chip as it was. */
+static const struct i2c_adapter_ops *undisturbed;
+static unsigned transfers;
+
+static int disturbed_transfer(struct i2c_adapter *base, uint8_t address,
+                              struct i2c_message *messages, size_t n)
+{
+	uint8_t command = DS2482_RESET;
+	struct i2c_message reset = i2c_to_write(&command, 1);
+
+	if (disturbs && ++transfers % disturbs == 0)
+		(void)undisturbed->transfer(base, address, &reset, 1);
+	return undisturbed->transfer(base, address, messages, n);
+}
+
+static int open_disturbed(void *ctx, const struct bus_env *env, struct i2c_adapter **out,
+                          char *text, size_t size)
+{
+	static struct i2c_adapter_ops ops;
+	int err = ds_open_adapter(ctx, env, out, text, size);
+
+	if (err)
+		return err;
+	undisturbed = (*out)->ops;
+	ops = *undisturbed;
+	ops.transfer = disturbed_transfer;
+	(*out)->ops = &ops;
+	return 0;
+}
+
 static unsigned list(void *ctx, unsigned *numbers, unsigned max)
 {
 	(void)ctx, (void)max;
@@ -245,7 +302,7 @@ static int make(void *ctx, unsigned number, const struct bus_env *env, struct li
 {
 	static struct link_master_ops ops;
 	const struct ds2482_source source = {
-		.open = ds_open_adapter, .destroy = ds_forget, .name = DEVICE, .proc = proc};
+		.open = open_disturbed, .destroy = ds_forget, .name = DEVICE, .proc = proc};
 
 	(void)ctx, (void)number;
 	ops = ds_ops;
@@ -304,32 +361,29 @@ static void test_a_bus_reports_the_program_and_the_change(void)
 	native_destroy(bus);
 }
 
-/* As an owserver: it resets the wire whenever it wants to, and leaves the chip as it was. */
-static const struct i2c_adapter_ops *undisturbed;
-static unsigned transfers;
-
-static int disturbed_transfer(struct i2c_adapter *base, uint8_t address,
-                              struct i2c_message *messages, size_t n)
+static void disturb(struct bus *bus, unsigned each)
 {
-	uint8_t command = DS2482_RESET;
-	struct i2c_message reset = i2c_to_write(&command, 1);
+	disturbs = each;
+	host_run(&ds.host, bus, ds.host.now + 180 * HOST_S);
+}
 
-	if (++transfers % 20 == 0)
-		(void)undisturbed->transfer(base, address, &reset, 1);
-	return undisturbed->transfer(base, address, messages, n);
+/* To the service the programs of others are hidden. */
+static void test_a_hidden_program_that_works_the_wire_between_is_asked_for_once(void)
+{
+	struct bus *bus = open_bus();
+
+	disturb(bus, 20);
+	TEST_ASSERT_EQUAL_UINT(1, notes("fail again and again: does another program use it"));
+	TEST_ASSERT_EQUAL_UINT(1, host_events(&ds.host, BUS_NOTE));
+	native_destroy(bus);
 }
 
 static void test_a_program_that_works_the_wire_between_is_named(void)
 {
 	struct bus *bus = open_bus();
-	struct i2c_adapter_ops disturbed = *ds.adapter.adapter.ops;
 
 	run(109, "owserver", DEVICE);
-	undisturbed = ds.adapter.adapter.ops;
-	disturbed.transfer = disturbed_transfer;
-	ds.adapter.adapter.ops = &disturbed;
-	host_run(&ds.host, bus, ds.host.now + 120 * HOST_S);
-	ds.adapter.adapter.ops = undisturbed;
+	disturb(bus, 20);
 	TEST_ASSERT_EQUAL_UINT(1, notes("is also open in owserver, process 109"));
 	TEST_ASSERT_EQUAL_UINT(1, host_events(&ds.host, BUS_NOTE));
 	native_destroy(bus);
@@ -347,9 +401,11 @@ int main(void)
 	RUN_TEST(test_the_log_names_who_has_the_adapter_when_it_is_opened);
 	RUN_TEST(test_who_comes_later_is_named_when_it_disturbs);
 	RUN_TEST(test_where_nobody_is_seen_the_log_has_the_change_once_an_hour);
+	RUN_TEST(test_where_nobody_is_seen_errors_are_a_reason_if_they_are_many);
 	RUN_TEST(test_a_chip_that_does_not_come_back_was_not_changed);
 	RUN_TEST(test_a_simulated_adapter_has_no_rivals);
 	RUN_TEST(test_a_bus_reports_the_program_and_the_change);
+	RUN_TEST(test_a_hidden_program_that_works_the_wire_between_is_asked_for_once);
 	RUN_TEST(test_a_program_that_works_the_wire_between_is_named);
 	return UNITY_END();
 }
