@@ -26,7 +26,6 @@
 #define IN_FLIGHT_MOST 100
 #define READS 64 /* packets at a time */
 #define END_NS (2 * NS_PER_S)
-#define BRIEF_MOST 3 /* connections that the broker closed soon, one after the other */
 /* The step of one whose place another client takes each time; it has to last longer than a pause */
 #define TAKEN_NS (120 * NS_PER_S)
 #define TAKEN_GOOD_NS (150 * NS_PER_S)
@@ -72,9 +71,10 @@ static void drop(struct broker *b)
 static int64_t pause_of(struct broker *b)
 {
 	enum backoff_why why = b->refused ? BACKOFF_REFUSED : BACKOFF_AWAY;
+	bool thrown_out = b->thrown_out;
 
-	b->refused = false;
-	if (b->brief == BRIEF_MOST)
+	b->refused = b->thrown_out = false;
+	if (thrown_out)
 		return backoff_spread(TAKEN_NS, backoff_random());
 	return backoff_pause(&b->backoff, why, backoff_random());
 }
@@ -135,7 +135,7 @@ static void broker_fail(struct broker *b, const char *why, const char *remedy, i
 static const char *taken_words(const struct broker *b, char words[BROKER_WORDS])
 {
 	snprintf(words, BROKER_WORDS,
-	         b->taken
+	         b->taken.contested
 	                 ? "another client took the id " CLIENT_ID
 	                 : "the broker closes each connection; has another client the id " CLIENT_ID
 	                   "?",
@@ -147,10 +147,9 @@ void broker_taken(struct broker *b)
 {
 	char name[MQTT_WAY_NAME], words[BROKER_WORDS];
 
-	if (b->taken)
+	if (b->taken.contested)
 		return;
-	b->taken = true;
-	b->brief = BRIEF_MOST;
+	taken_proved(&b->taken);
 	snprintf(b->last, sizeof(b->last), "%.80s was lost: %.200s; %.50s",
 	         mqtt_way_name(&b->options->ways[b->way], name), taken_words(b, words),
 	         advice_remedy(ADVICE_TAKEN_OVER, 0, ""));
@@ -160,13 +159,13 @@ void broker_taken(struct broker *b)
 /* How long a connection has to last until it counts as a good one */
 static int64_t good_ns(const struct broker *b)
 {
-	return b->brief == BRIEF_MOST ? TAKEN_GOOD_NS : GOOD_NS;
+	return taken_again(&b->taken) ? TAKEN_GOOD_NS : GOOD_NS;
 }
 
 bool broker_is_settled(const struct broker *b, int64_t now_ns)
 {
 	return b->state == BROKER_CONNECTED &&
-	       now_ns - b->begun_ns > (b->brief == BRIEF_MOST ? TAKEN_GOOD_NS : SETTLED_NS);
+	       now_ns - b->begun_ns > (taken_again(&b->taken) ? TAKEN_GOOD_NS : SETTLED_NS);
 }
 
 static void attempt(struct broker *b, int64_t now_ns)
@@ -192,8 +191,7 @@ static void attempt(struct broker *b, int64_t now_ns)
 	if (err) {
 		const char *words = advice_words(err, errno, b->tls_words);
 
-		b->taken = false;
-		b->brief = 0;
+		taken_end(&b->taken, TAKEN_OTHER, 0);
 		broker_fail(b, words, advice_remedy(err, errno, b->tls_words), ows_now());
 		return;
 	}
@@ -207,12 +205,20 @@ static bool is_refusal(int code)
 	       code != MOSQ_ERR_NO_CONN;
 }
 
+static enum taken_end end_of(const struct broker *b, int code, int err)
+{
+	if (code == ADVICE_TAKEN_OVER)
+		return TAKEN_TOLD;
+	return b->state == BROKER_CONNECTED && code == MOSQ_ERR_CONN_LOST && !err ? TAKEN_CLOSED
+	                                                                          : TAKEN_OTHER;
+}
+
 /* It is over, or libmosquitto reports that. */
 static void finish(struct broker *b, int code, int err, int64_t now_ns)
 {
 	char taken[BROKER_WORDS];
 	const char *words, *remedy;
-	bool soon, closed;
+	bool soon;
 
 	if (b->ended)
 		code = b->end_code;
@@ -224,22 +230,15 @@ static void finish(struct broker *b, int code, int err, int64_t now_ns)
 		b->next_ns = now_ns;
 		return;
 	}
-	/*
-	 * By MQTT 3.1.1 a broker has no word for it when it closes the older one of two with the
-	 * same id; but it closes it, and a line that breaks or a machine that restarts does not.
-	 */
 	soon = b->state == BROKER_CONNECTED && now_ns - b->begun_ns <= good_ns(b);
-	closed = code == MOSQ_ERR_CONN_LOST && !err;
-	b->taken = code == ADVICE_TAKEN_OVER || (b->taken && soon && closed);
-	b->brief = b->taken           ? BRIEF_MOST
-	           : !soon || !closed ? 0
-	                              : b->brief + (b->brief < BRIEF_MOST);
+	b->thrown_out = taken_end(&b->taken, end_of(b, code, err), now_ns - b->begun_ns);
 	words = advice_words(code, err, b->tls_words);
-	remedy = advice_remedy(b->taken ? ADVICE_TAKEN_OVER : code, err, b->tls_words);
+	remedy = advice_remedy(b->thrown_out && b->taken.contested ? ADVICE_TAKEN_OVER : code, err,
+	                       b->tls_words);
 	if (!*remedy && b->state == BROKER_CONNECTING && b->tcp &&
 	    (code == MOSQ_ERR_CONN_LOST || (code == MOSQ_ERR_ERRNO && err == ECONNRESET)))
 		remedy = advice_hung_up(b->options->ways[b->way].tls);
-	if (b->brief == BRIEF_MOST)
+	if (b->thrown_out)
 		words = taken_words(b, taken);
 	/* a connection that ends soon was thrown out, or its line is bad: both want time */
 	b->refused |= soon || (b->state != BROKER_CONNECTED && is_refusal(code));
@@ -390,7 +389,7 @@ void broker_begin(struct broker *b, int64_t now_ns)
 	b->fd = -1;
 	b->way = b->known = b->vain = 0;
 	b->v4 = b->old_protocol = false;
-	b->refused = false;
+	b->refused = b->thrown_out = false;
 	backoff_forget(&b->backoff);
 	b->next_ns = now_ns;
 	b->state = BROKER_WAITING;

@@ -8,6 +8,7 @@
 
 #include "src/face/backoff.h"
 #include "src/mqtt/options.h"
+#include "src/mqtt/taken.h"
 
 #define BROKER_WORDS 384
 #define BROKER_SESSION 20
@@ -63,8 +64,8 @@ struct broker {
 	int end_code;        /* why */
 	bool refusal_logged; /* that the broker refuses what is published */
 	unsigned sent;       /* CONNECTs */
-	unsigned brief;      /* connections in a row that the broker closed soon */
-	bool taken;          /* another client took the last one: proved, not guessed */
+	struct taken taken;  /* whether another client takes our id */
+	bool thrown_out;     /* it took the last connection, or that looks so */
 	unsigned in_flight;  /* put, and not taken by the broker */
 	bool marking;        /* the broker may answer the last mark yet */
 	bool marked;         /* it has */

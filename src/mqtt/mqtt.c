@@ -388,24 +388,6 @@ static void look_at_clock(struct face *face, int64_t now_ns)
 		stream_announce(&m->stream);
 }
 
-static void show_status(struct face *face)
-{
-	struct mqtt *m = mqtt_own(face);
-	char name[MQTT_WAY_NAME];
-	const struct broker *b = &m->broker;
-	bool waits = m->stream.host && !m->stream.host_there;
-
-	face_status(face, "%s%.150s; %llu published, %llu refused, %llu times connected",
-	            b->state == BROKER_CONNECTED ? !face->live ? "waiting for owsd, at "
-	                                           : waits     ? "waiting for the primary host, at "
-	                                                       : "publishing to "
-	            : *b->trouble                ? ""
-	                                         : "connecting to ",
-	            *b->trouble ? b->trouble : mqtt_way_name(&m->options.ways[b->way], name),
-	            (unsigned long long)b->acknowledged, (unsigned long long)b->refusals,
-	            (unsigned long long)b->connects);
-}
-
 void mqtt_report(struct face *face, FILE *out)
 {
 	struct mqtt *m = mqtt_own(face);
@@ -459,6 +441,25 @@ static void look_at_host(struct face *face, int64_t now_ns)
 		broker_leave(b, !m->stream.born, now_ns);
 }
 
+static void show_status(struct face *face)
+{
+	struct mqtt *m = mqtt_own(face);
+	char name[MQTT_WAY_NAME];
+	const struct broker *b = &m->broker;
+	bool waits = m->stream.host && !m->stream.host_there;
+
+	face_status(face, "%s%.150s; %llu published, %llu refused, %llu times connected",
+	            b->state == BROKER_CONNECTED ? !face->live ? "waiting for owsd, at "
+	                                           : waits     ? "waiting for the primary host, at "
+	                                                       : "publishing to "
+	            : *b->trouble                ? ""
+	                                         : "connecting to ",
+	            *b->trouble ? b->trouble : mqtt_way_name(&m->options.ways[b->way], name),
+	            (unsigned long long)b->acknowledged, (unsigned long long)b->refusals,
+	            (unsigned long long)b->connects);
+	m->shown = b->state;
+}
+
 static void go_on(struct face *face, int64_t now_ns)
 {
 	struct mqtt *m = mqtt_own(face);
@@ -471,6 +472,9 @@ static void go_on(struct face *face, int64_t now_ns)
 		face->tick_ns = past_next(&m->past);
 	if (m->asked && announce_ns(m) > now_ns && announce_ns(m) < face->tick_ns)
 		face->tick_ns = announce_ns(m);
+	/* the next tick may be minutes away; to show each count at once would cost too much */
+	if (m->broker.state != m->shown)
+		show_status(face);
 }
 
 /* --- The face -------------------------------------------------------------------------------- */

@@ -22,14 +22,15 @@ struct mqtt {
 	struct commands commands;
 	struct past past;
 	struct wall_clock clock;
-	int64_t health_ns;    /* when to look at it again */
-	int64_t announced_ns; /* when somebody asked for the birth last */
-	bool asked;           /* again, too soon after that */
-	bool sweep;           /* the broker has to be asked what it keeps of us */
-	int64_t sweep_ns;     /* it is being asked until then; 0: not */
-	int64_t pumped_ns;    /* all that waited was published, or the broker took some of it */
-	uint64_t pumped;      /* what the broker had taken then */
-	bool stuck;           /* it is logged that nothing goes on */
+	int64_t health_ns;       /* when to look at it again */
+	int64_t announced_ns;    /* when somebody asked for the birth last */
+	bool asked;              /* again, too soon after that */
+	bool sweep;              /* the broker has to be asked what it keeps of us */
+	int64_t sweep_ns;        /* it is being asked until then; 0: not */
+	int64_t pumped_ns;       /* all that waited was published, or the broker took some of it */
+	uint64_t pumped;         /* what the broker had taken then */
+	bool stuck;              /* it is logged that nothing goes on */
+	enum broker_state shown; /* by the status */
 };
 
 int mqtt_open(struct face *face);

@@ -4,6 +4,7 @@
 or old; what is wrong stands in the log with its remedy."""
 
 import re
+import signal
 import socket
 import struct
 import subprocess
@@ -213,6 +214,29 @@ def test_two_with_one_node_are_told_so_and_do_not_flood_the_broker(scene):
         assert face.log().count("is lost: The connection was lost") < 3, face.log()
 
 
+def shows(house, words):
+    """The status of owsd-mqtt has them, though its next tick may be two minutes away."""
+    def stats():
+        return house.scene.owsctl(house.daemon, "stats").stdout
+    until(lambda: re.search(f"owsd-mqtt, pid .*{words}", stats()), 10, stats, step=0.2)
+
+
+def test_a_broker_that_ends_after_a_takeover_is_lost_and_found_again(scene):
+    house = House(scene, ROOM)
+    house.says(STATE, "online")
+    other = house.start()
+    logged(house.face, "lost: another client took the id owsd-pi7")
+    assert other.stop() == 0
+    house.face.signal(signal.SIGHUP)  # it tries again at once
+    shows(house, "publishing to")
+    blamed, connected = (house.face.log().count(words) for words in ("another client", "connected to"))
+    house.broker.process.kill()
+    shows(house, "cannot be reached")
+    house.broker.start()
+    until(lambda: house.face.log().count("connected to") == connected + 1, 20, lambda: house.face.log())
+    assert house.face.log().count("another client") == blamed, house.face.log()
+
+
 def closes(scene, how):
     """The log of one whose broker ends each connection after a CONNACK; how: "reset" or "close"."""
     made = []
@@ -243,6 +267,8 @@ def closes(scene, how):
         house = House(scene, ROOM, Broker=f"mqtt://127.0.0.1:{listener.getsockname()[1]}")
         until(lambda: len(made) > 2 and house.face.log().count("connected to") > 2 and
               ("closes each" in house.face.log() or len(made) > 3), 60, lambda: house.face.log())
+        if how == "close":
+            shows(house, "is lost: the broker closes each")
         assert house.face.stop() == 0
     return house.face.log()
 
