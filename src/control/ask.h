@@ -8,5 +8,5 @@
 int ask_begin(struct control *c, struct control_place *p, const struct ows_hello *hello);
 /* Does the program of the place wait for a reload? */
 bool ask_waits(const struct control_place *p);
-/* Send what came of it, with the reason in words; the caller hangs up. Never blocks. */
+/* Send what came of it, with the words of control_answer(); the caller hangs up. Never blocks. */
 void ask_answer(const struct control *c, const struct control_place *p, int err, const char *why);

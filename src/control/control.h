@@ -72,7 +72,8 @@ int control_asked_bell(const struct control *control);
 bool control_asked(struct control *control);
 /*
  * A reload begins for all that ask by now; the others wait for the next. control_answer() ends it:
- * answers those programs and hangs up on them. err: 0, or why it was refused, and why in words.
+ * answers those programs and hangs up on them. err: 0, or why it was refused; why: the same in
+ * words, or with err 0 what the file is warned of, "": of nothing.
  */
 void control_take_askers(struct control *control);
 void control_answer(struct control *control, int err, const char *why);

@@ -16,7 +16,8 @@ int host_asked_bell(const struct host *host);
 bool host_asked(struct host *host);
 /*
  * Around a reload, for the programs that ask for one before it begins: host_answer() reports them
- * what came of it: 0, or a negative errno with the reason in why. Supervisor only.
+ * what came of it: 0, and warnings in why ("": none), or a negative errno with the reason in why.
+ * Supervisor only.
  */
 void host_take_askers(struct host *host);
 void host_answer(struct host *host, int err, const char *why);

@@ -331,9 +331,10 @@ int ows_reopen(struct ows *h);
  * Ask the owsd of that instance (NULL: "OWS") to load its configuration again, and wait until it
  * serves it, at most timeout_ns (negative: no limit): owsd leaves up to ten seconds between two
  * reloads. Needs no handle. Root, owsd's own user and, of the service, the group owsd-config may.
- * Returns 0: done. A negative errno, and a reason in why (NULL: not wanted; else NUL-terminated,
- * cut at size bytes, without control characters): owsd refuses the configuration, and all goes on
- * as before. An empty reason: there was no reload, or not in time. -ENOENT: no owsd of that name
+ * Returns 0: done, and what owsd warns of in why, "2 warnings; the first: ...", empty: of nothing.
+ * A negative errno, and a reason in why (NULL: not wanted; else NUL-terminated, cut at size bytes,
+ * without control characters): owsd refuses the configuration, and all goes on as before. An empty
+ * reason: there was no reload, or not in time. -ENOENT: no owsd of that name
  * runs; -EACCES: this user may not ask; -ENOSPC: too many programs ask; -ETIMEDOUT; -ENOTCONN: owsd
  * has ended meanwhile; -EPROTO: it is too old to be asked; others as ows_open().
  */

@@ -42,7 +42,7 @@ static int reload_take(int connection, char *why, size_t size)
 	if (n < (ssize_t)sizeof(*welcome) || welcome->magic != OWS_WELCOME_MAGIC ||
 	    welcome->size != 0 || welcome->err > 0 || welcome->err < -ERRNO_MAX)
 		return -EPROTO;
-	if (welcome->err && why && size)
+	if (why && size)
 		reload_show(answer.words, (size_t)n - sizeof(*welcome), why, size);
 	return welcome->err;
 }

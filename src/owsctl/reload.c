@@ -89,7 +89,10 @@ int verb_reload(struct ctl *ctl, int argc, char **argv)
 		                why);
 	if (err)
 		return reload_fail(ctl->instance, err);
-	printf("owsd %s: reloaded\n", ctl->instance);
+	if (*why)
+		printf("owsd %s: reloaded, with %s; owsd --check shows all\n", ctl->instance, why);
+	else
+		printf("owsd %s: reloaded\n", ctl->instance);
 	print_faces(ctl->instance, begin_ns);
 	return CTL_DONE;
 }

@@ -64,6 +64,8 @@ struct told {
 	struct log *log; /* NULL: stderr, by line */
 	char *why;       /* gets the first error; NULL: it is not wanted */
 	size_t why_size;
+	char warning[256]; /* the one that stands first in the file; "": there is none */
+	int warning_line;
 	struct config_report report;
 	struct found {
 		int line;
@@ -109,6 +111,10 @@ static void report_line(void *ctx, bool is_error, const char *message)
 		log_warning(told->log, "%s", message);
 	if (is_error && told->why && !*told->why)
 		snprintf(told->why, told->why_size, "%s", message);
+	if (!is_error && (!*told->warning || told->report.at_line < told->warning_line)) {
+		told->warning_line = told->report.at_line;
+		snprintf(told->warning, sizeof(told->warning), "%s", message);
+	}
 }
 
 static bool has_file(const struct arguments *a)
@@ -208,6 +214,17 @@ static void report_served(const struct host *host, const struct arguments *a, st
 	              config->item_count == 1 ? "" : "s", targets);
 }
 
+/* In why, for who asked: what the file that was taken over is warned of; "": of nothing. */
+static void name_warnings(const struct told *told, char *why, size_t why_size)
+{
+	unsigned n = told->report.warnings;
+
+	*why = '\0';
+	if (n)
+		snprintf(why, why_size, "%u warning%s; the first: %s", n, n == 1 ? "" : "s",
+		         told->warning);
+}
+
 /* Load the file again and serve it; a file that is refused changes nothing. */
 static int reload_file(struct host *host, const struct arguments *a, struct log *log, char *why,
                        size_t why_size)
@@ -224,6 +241,8 @@ static int reload_file(struct host *host, const struct arguments *a, struct log 
 	if (err) {
 		config_free(config);
 		log_err(log, "reload: %s: all goes on as before", why);
+	} else {
+		name_warnings(&told, why, why_size);
 	}
 	return err;
 }
@@ -243,7 +262,7 @@ static void reload(struct host *host, const struct arguments *a, struct log *log
 		host_refused(host, why);
 		notify_status(notify, "reload refused, all goes on as before: %s", why);
 	}
-	host_answer(host, err, err ? why : "");
+	host_answer(host, err, why);
 	notify_send(notify, NOTIFY_READY);
 }
 

@@ -444,8 +444,8 @@ struct ows_controller_header { /* 256 bytes */
  * A hello with OWS_HELLO_RELOAD makes no controller: it asks owsd to load its configuration again,
  * which root, owsd's user and the group owsd-config may. owsd answers with one welcome of size 0,
  * without descriptors, when it serves the configuration (err 0; its generation) or has refused it;
- * in the same message the reason follows in words, OWS_WHY bytes at most, without NUL. Then owsd
- * hangs up.
+ * in the same message the reason follows in words, or with err 0 how many warnings there are and
+ * the first, OWS_WHY bytes at most, without NUL. Then owsd hangs up.
  */
 struct ows_hello { /* 128 bytes */
 	uint32_t magic;

@@ -112,6 +112,21 @@ def test_owsctl_asks_for_a_reload_and_knows_when_it_is_done(scene):
     assert [asker.wait() for asker in askers] == [0] * 4, [asker.log() for asker in askers]
 
 
+def test_a_reload_tells_who_asked_what_the_file_is_warned_of(scene):
+    daemon, target = start(scene)
+    lamp = item("lamp", RELAY + "/PIO.1", "bool", "output", SaveValue="0")
+    one, two = rio(target, ROOM, lamp), rio(target, ROOM, lamp, PerFactr=raw("1"))
+    for text, number, words in ((one, "1 warning", "is it SafeValue?"), (two, "2 warnings", "PerFactr")):
+        daemon.config.write_text(text)
+        line = next(n for n, row in enumerate(text.splitlines(), 1) if "SaveValue" in row or "PerFactr" in row)
+        done = scene.owsctl(daemon, "reload")
+        assert done.returncode == 0 and done.stderr == "", done
+        assert done.stdout.startswith(f"owsd {daemon.name}: reloaded, with {number}; the first: {daemon.config}:{line}:"), done
+        assert words in done.stdout and done.stdout.endswith("; owsd --check shows all\n"), done
+    daemon.config.write_text(rio(target, ROOM))
+    assert scene.owsctl(daemon, "reload").stdout == f"owsd {daemon.name}: reloaded\n"
+
+
 def said(daemon):
     """The lines STATUS= that the service manager has got."""
     lines = []

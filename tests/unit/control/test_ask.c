@@ -120,6 +120,19 @@ static void test_a_refusal_comes_with_its_reason_in_words(void)
 	TEST_ASSERT_EQUAL_UINT(OWS_WHY, strlen(answer.words));
 }
 
+static void test_a_reload_comes_with_its_warnings_in_words(void)
+{
+	int fd = ask("editor");
+	struct answer answer;
+
+	wait_asked();
+	reload(0, "1 warning; the first: house.rio:3:2: warning: unknown key");
+	answer = answer_of(fd);
+	TEST_ASSERT_EQUAL(0, answer.welcome.err);
+	TEST_ASSERT_EQUAL_STRING("1 warning; the first: house.rio:3:2: warning: unknown key",
+	                         answer.words);
+}
+
 static void test_who_asks_during_a_reload_waits_for_the_next(void)
 {
 	int early = ask("early"), late;
@@ -233,6 +246,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_who_asks_is_answered_when_the_reload_is_done);
 	RUN_TEST(test_a_refusal_comes_with_its_reason_in_words);
+	RUN_TEST(test_a_reload_comes_with_its_warnings_in_words);
 	RUN_TEST(test_who_asks_during_a_reload_waits_for_the_next);
 	RUN_TEST(test_more_askers_than_owsd_lets_wait_are_refused);
 	RUN_TEST(test_an_asker_that_says_more_is_hung_up_on);
