@@ -52,8 +52,11 @@ static int choose_directory(struct face *face, char path[HISTORY_PATH])
 }
 
 /* What to do about a disk that takes nothing, besides what its error says. */
-static const char *advice_on_disk(int err)
+static const char *advice_on_disk(const struct recording *r, int err)
 {
+	if (err == -ENOENT && !r->files && access(r->directory, F_OK) < 0)
+		return "; there is no such directory, and it cannot be made: Directory or -d "
+		       "gives another";
 	switch (err) {
 	case -EBUSY:
 		return "; another owsd-recorder writes there: end it, or give one of the two "
@@ -143,7 +146,7 @@ int recording_open(struct face *face)
 	}
 	if (err) {
 		face_complain(face->ops->program, "%s: %s%s", r->directory, strerror(-err),
-		              advice_on_disk(err));
+		              advice_on_disk(r, err));
 		return err;
 	}
 	face->pace_ns = PACE_NS;
@@ -158,6 +161,7 @@ static void make_series(struct face *face, int64_t now_ns)
 {
 	struct recording *r = face->own;
 	int err = series_make(&r->rows, face->ows, face->config, r->writer, now_ns);
+	struct history_state state;
 
 	if (err) {
 		/* what was known would be repeated, and look constant */
@@ -165,8 +169,10 @@ static void make_series(struct face *face, int64_t now_ns)
 		log_err(face->log, "%d signals cannot be recorded: %s", ows_count(face->ows),
 		        strerror(-err));
 	} else {
-		log_notice(face->log, "recording %d of %d signals into %s", r->rows.recorded,
-		           r->rows.count, r->directory);
+		history_writer_state(r->writer, &state);
+		log_notice(face->log, "recording %d of %d signals into %s%s", r->rows.recorded,
+		           r->rows.count, state.error ? "memory, until it can be written: " : "",
+		           r->directory);
 	}
 	face->tick_ns = now_ns;
 }
@@ -377,7 +383,7 @@ static void report_disk(struct face *face, const struct history_state *state)
 		log_err(face->log,
 		        "%s cannot be written: %s%s; up to %u kB are kept in memory, and written "
 		        "when that is over",
-		        r->directory, strerror(-state->error), advice_on_disk(state->error),
+		        r->directory, strerror(-state->error), advice_on_disk(r, state->error),
 		        MEMORY_BYTES / 1024);
 	else if (state->error && state->error != r->disk_err)
 		log_info(face->log, "%s cannot be written yet: %s", r->directory,

@@ -267,6 +267,15 @@ def test_a_disk_that_takes_no_larger_file_gets_all_once_it_does(scene):
            lambda: limit(resource.RLIM_INFINITY))
 
 
+def test_a_directory_that_cannot_be_made_was_not_deleted(scene):
+    daemon = scene.owsd(text(scene))
+    recorder = scene.start([owsdtest.BUILD / "owsd-recorder", "-n", daemon.name, "-c", daemon.config, "-d", "/proc/nohist"])
+    until(lambda: "/proc/nohist cannot be written" in recorder.log(), 20, recorder.log)
+    assert "it cannot be made: Directory or -d gives another; up to 4096 kB are kept in memory" in recorder.log(), recorder.log()
+    until(lambda: "signals into memory, until it can be written: /proc/nohist" in recorder.log(), 20, recorder.log)
+    assert "deleted" not in recorder.log(), recorder.log()
+
+
 def test_a_directory_that_is_deleted_is_said_and_made_anew(scene):
     daemon = scene.owsd(text(scene))
     recorder = record(scene, daemon)
