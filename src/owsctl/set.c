@@ -307,27 +307,45 @@ static int set_all(struct ctl *ctl, struct ows *h, struct order *orders, int cou
 	return status;
 }
 
+/*
+ * Options may stand before each name, and behind the last value: no name begins with a minus, but a
+ * value may. Names and values are in argv from 1 on then; returns how many there are.
+ */
+static int take_options(struct ctl *ctl, int argc, char **argv, const char **seconds,
+                        int64_t *limit_ns)
+{
+	int c, at = 1, count = 0;
+	char **words = argv + 1;
+
+	while (at < argc) {
+		argc -= at - 1;
+		argv += at - 1;
+		optind = 0;
+		while ((c = ctl_option(ctl, argc, argv, "+w:")) != -1) {
+			*seconds = optarg;
+			*limit_ns = ctl_option_seconds(ctl, c);
+		}
+		for (at = optind; at < argc && at < optind + 2; at++)
+			words[count++] = argv[at];
+	}
+	return count;
+}
+
 int verb_set(struct ctl *ctl, int argc, char **argv)
 {
 	const char *seconds = NULL;
 	struct order *orders;
 	int64_t limit_ns = 0;
-	int c, count, status;
+	int words = take_options(ctl, argc, argv, &seconds, &limit_ns), count = words / 2, status;
 	struct ows *h;
 
-	while ((c = ctl_option(ctl, argc, argv, "+w:")) != -1) {
-		seconds = optarg;
-		limit_ns = ctl_option_seconds(ctl, c);
-	}
-	count = (argc - optind) / 2;
-	if (argc == optind || (argc - optind) % 2)
-		return ctl_usage(ctl, argc == optind ? "set what?" : "%s needs a value",
-		                 argv[argc - 1]);
+	if (!words || words % 2)
+		return ctl_usage(ctl, words ? "%s needs a value" : "set what?", argv[words]);
 	h = ctl_open(ctl, OWS_CONTROL);
 	orders = ctl_need(calloc((size_t)count, sizeof(*orders)));
 	for (int i = 0; i < count; i++) {
-		orders[i].name = argv[optind + 2 * i];
-		orders[i].text = argv[optind + 2 * i + 1];
+		orders[i].name = argv[1 + 2 * i];
+		orders[i].text = argv[2 + 2 * i];
 	}
 	status = set_all(ctl, h, orders, count, seconds, limit_ns);
 	free(orders);

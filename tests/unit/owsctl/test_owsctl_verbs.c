@@ -192,6 +192,22 @@ static void test_set_needs_names_and_values_in_pairs(void)
 	TEST_ASSERT_EQUAL(CTL_USAGE, run(verb_set, "set relay"));
 	TEST_ASSERT_EQUAL(CTL_USAGE, run(verb_set, "set relay 1 level"));
 	TEST_ASSERT_EQUAL(CTL_USAGE, run(verb_set, "set -w soon relay 1"));
+	TEST_ASSERT_EQUAL(CTL_USAGE, run(verb_set, "set relay 1 -w"));
+	TEST_ASSERT_EQUAL(CTL_USAGE, run(verb_set, "set relay -w 20"));
+	holds(err, "20 needs a value");
+	TEST_ASSERT_EQUAL(CTL_USAGE, run(verb_set, "set relay 1 -x"));
+	holds(err, "unknown option: -x");
+}
+
+static void test_set_takes_options_behind_values_and_values_with_a_minus(void)
+{
+	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_set, "set level -5"));
+	holds(err, "level: -5 is out of range for byte (0 to 255)");
+	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_set, "set -- level -w"));
+	holds(err, "level: \"-w\" is not a value for byte");
+	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_set, "set relay 0 --json level 7"));
+	holds(out, "{\"name\":\"level\",\"set\":\"7\"");
+	TEST_ASSERT_EQUAL_INT64(7, commanded(5)->value);
 }
 
 static void test_set_makes_an_edge_each_time(void)
@@ -262,6 +278,8 @@ static void test_set_waits_until_it_is_confirmed(void)
 	__atomic_store_n(&ended, 0, __ATOMIC_RELEASE);
 	TEST_ASSERT_EQUAL(0, pthread_create(&thread, NULL, confirm, NULL));
 	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_set, "set --json -w 20 relay 0"));
+	TEST_ASSERT_EQUAL_STRING("[{\"name\":\"relay\",\"set\":\"0\",\"confirmed\":true}]\n", out);
+	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_set, "set relay 0 -w 20 --json"));
 	TEST_ASSERT_EQUAL_STRING("[{\"name\":\"relay\",\"set\":\"0\",\"confirmed\":true}]\n", out);
 	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_wait, "wait relay = off -t 20"));
 	TEST_ASSERT_EQUAL_STRING("0\n", out);
@@ -377,6 +395,7 @@ int main(void)
 	RUN_TEST(test_set_sets_nothing_when_one_of_its_values_is_wrong);
 	RUN_TEST(test_set_of_an_input_is_refused);
 	RUN_TEST(test_set_needs_names_and_values_in_pairs);
+	RUN_TEST(test_set_takes_options_behind_values_and_values_with_a_minus);
 	RUN_TEST(test_set_makes_an_edge_each_time);
 	RUN_TEST(test_set_while_owsd_is_dead_fails_and_says_why);
 	RUN_TEST(test_set_that_is_not_confirmed_says_why);
