@@ -14,7 +14,8 @@
 
 static const char *advice_on_history(int err)
 {
-	return err == -ENOENT ? "; does owsd-recorder run?"
+	return err == -ENOENT
+	               ? "; does owsd-recorder run? -d DIR names its Directory, if it has one"
 	       : err == -EBADMSG
 	               ? "; history.sqlite is damaged, empty (was the disk full?) or no history"
 	       : err == -EPROTONOSUPPORT

@@ -89,6 +89,13 @@ static int trend(const char *more)
 	return run(verb_trend, words);
 }
 
+static void test_a_trend_of_a_directory_that_is_not_there_names_the_option_and_the_key(void)
+{
+	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_trend, "trend -d /nowhere room"));
+	holds(err, "/nowhere: No such file or directory; does owsd-recorder run? "
+	           "-d DIR names its Directory, if it has one");
+}
+
 static void on_disk(unsigned signal, int64_t value, int64_t at_ns)
 {
 	struct history_event event = {.kind = HISTORY_COMMAND,
@@ -440,6 +447,7 @@ static void test_a_bar_is_shown_from_the_second_second_on_and_taken_away(void)
 int main(void)
 {
 	UNITY_BEGIN();
+	RUN_TEST(test_a_trend_of_a_directory_that_is_not_there_names_the_option_and_the_key);
 	RUN_TEST(test_what_is_in_memory_and_on_disk_is_shown_once);
 	RUN_TEST(test_of_the_same_in_a_millisecond_the_newest_are_those_in_memory);
 	RUN_TEST(test_one_order_in_which_earlier_boots_come_first);
