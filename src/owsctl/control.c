@@ -5,21 +5,29 @@
  */
 #include <errno.h>
 #include <getopt.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/verbs.h"
+#include "src/show/names.h"
+#include "src/show/range.h"
+#include "src/show/text.h"
 #include "src/signal/error.h"
 
 #define LINE_MAX 65536 /* the longest text a layout can hold, and a name */
 #define TRIES 10       /* naps until owsd counts as gone */
+#define QUOTED 60      /* characters of a value or a name in an answer */
+#define QUOTED_BYTES (4 * QUOTED + 1)
 
 struct control {
 	struct ows *h;
+	const char *instance;
 	int err;         /* of the line */
 	const char *why; /* what is wrong with the line itself; NULL: err says it */
+	char own[2 * QUOTED_BYTES + NAMES_MAX + RANGE_WORDS]; /* what why may be */
 	char line[LINE_MAX + 256];
 };
 
@@ -51,19 +59,52 @@ static bool parse_uint32(const char *word, unsigned long most, uint32_t *number)
 static int control_find(struct control *control, const char *name)
 {
 	int id = ows_find(control->h, name);
+	char clean[QUOTED_BYTES], nearest[NAMES_MAX];
+	bool near;
 
-	if (id == -ENOENT)
-		control->why = "there is no such name";
+	if (id != -ENOENT)
+		return id;
+	near = names_nearest(control->h, name, nearest);
+	text_clean(name, strlen(name), QUOTED, clean, sizeof(clean));
+	snprintf(control->own, sizeof(control->own), "there is no such name: %s%s%s%s", clean,
+	         near ? "; did you mean " : "", near ? nearest : "", near ? "?" : "");
+	control->why = control->own;
 	return id;
+}
+
+/* Name what was sent, and which values there are. */
+static void refuse_value(struct control *control, const char *name, const char *value)
+{
+	struct ows_info info = {.min = NAN, .max = NAN};
+	char clean[QUOTED_BYTES], named[QUOTED_BYTES], range[RANGE_WORDS];
+	enum attribute attribute;
+	enum ows_type type;
+	int signal;
+
+	if (names_lookup(control->h, control->instance, name, &signal, &attribute) != 0)
+		return;
+	type = attribute_table[attribute].type;
+	if (attribute == ATTR_VALUE && ows_info(control->h, signal, &info) == 0)
+		type = (enum ows_type)info.type;
+	text_clean(value, strlen(value), QUOTED, clean, sizeof(clean));
+	text_clean(name, strlen(name), QUOTED, named, sizeof(named));
+	snprintf(control->own, sizeof(control->own), "\"%s\" is no value for %s: expected %s",
+	         clean, named, range_words(type, info.min, info.max, range));
+	control->why = control->own;
 }
 
 static int do_set(struct control *control, char *equals)
 {
-	int id;
+	int id, err;
 
 	*equals = '\0';
 	id = control_find(control, control->line);
-	return id < 0 ? id : ows_set_text(control->h, id, equals + 1, NULL);
+	if (id < 0)
+		return id;
+	err = ows_set_text(control->h, id, equals + 1, NULL);
+	if (err == -EINVAL || err == -ERANGE)
+		refuse_value(control, control->line, equals + 1);
+	return err;
 }
 
 static int do_beat(struct control *control, char *rest)
@@ -222,6 +263,7 @@ int verb_control(struct ctl *ctl, int argc, char **argv)
 		name = optarg;
 	if (optind < argc)
 		return ctl_usage(ctl, "control takes its orders from standard input");
+	control.instance = ctl->instance;
 	control.h = ctl_open_as(ctl, OWS_CONTROL, name);
 	if (!control_follow(&control, copy))
 		return CTL_DONE; /* Not closed: owsd takes the end for a loss, not for a goodbye */
