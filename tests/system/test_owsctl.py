@@ -172,6 +172,13 @@ def test_watch_tells_a_reload_from_a_start(scene):
     told.until('"event": ?"reloaded"')
     terminal.until(lambda s: any("owsd has reloaded its file" in line for line in s), "the note")
     assert "started again" not in said.text
+    good = daemon.config.read_text()
+    daemon.config.write_text("OwsDrv { Period wrong }\n")
+    assert scene.owsctl(daemon, "reload").returncode == 1
+    terminal.until(lambda s: "0 not good  reload refused: " + str(daemon.config)[:20] in s[0], "the reason")
+    daemon.config.write_text(good)
+    assert scene.owsctl(daemon, "reload").returncode == 0
+    terminal.until(lambda s: "refused" not in s[0], "it is taken over")
     os.write(terminal.fd, b"q")
     assert terminal.end() == (0, True)
     for program in (watch, objects):

@@ -109,12 +109,26 @@ static const char *whole_seconds(int64_t ns, char text[WHEN_TEXT])
 	return text;
 }
 
+/* What else is to be said of an owsd that lives: the refused reload first, as it has the reason. */
+static void head_end(const struct screen *screen, int64_t up_ns, char *text, size_t size)
+{
+	struct ows_log_line refused;
+	char span[WHEN_TEXT];
+
+	if (ows_refused_reload(screen->watch->h, &refused) == 0)
+		snprintf(text, size, "reload refused: %s", refused.text);
+	else
+		snprintf(text, size, "up %s%s%s%s%s", whole_seconds(up_ns, span),
+		         *screen->note ? "  " : "", screen->note, *screen->target ? "  " : "",
+		         screen->target);
+}
+
 static void put_head(FILE *out, struct screen *screen)
 {
 	struct watch *watch = screen->watch;
 	struct ows_daemon daemon = {0};
 	int64_t now = ows_now();
-	char text[512], span[WHEN_TEXT], clock[16] = "", alarms[32] = "";
+	char text[640], end[400], span[WHEN_TEXT], clock[16] = "", alarms[32] = "";
 	time_t wall = time(NULL);
 	struct tm local;
 
@@ -123,12 +137,11 @@ static void put_head(FILE *out, struct screen *screen)
 		strftime(clock, sizeof(clock), "%H:%M:%S", &local);
 	if (screen->alarms)
 		snprintf(alarms, sizeof(alarms), ", %d in alarm", screen->in_alarm);
+	head_end(screen, now - daemon.start_ns, end, sizeof(end));
 	if (daemon.alive)
-		snprintf(text, sizeof(text), "%s  %s  %d signal%s, %d not good%s  up %s%s%s%s%s",
+		snprintf(text, sizeof(text), "%s  %s  %d signal%s, %d not good%s  %s",
 		         watch->ctl->instance, clock, watch->rows.count,
-		         watch->rows.count == 1 ? "" : "s", screen->not_good, alarms,
-		         whole_seconds(now - daemon.start_ns, span), *screen->note ? "  " : "",
-		         screen->note, *screen->target ? "  " : "", screen->target);
+		         watch->rows.count == 1 ? "" : "s", screen->not_good, alarms, end);
 	else if (daemon.state == 3)
 		snprintf(text, sizeof(text), "%s  %s  owsd was stopped", watch->ctl->instance,
 		         clock);
