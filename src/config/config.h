@@ -217,6 +217,7 @@ struct config {
 	unsigned max_retries;
 	int64_t timeout_ns, period_ns, alarm_period_ns;
 	const char *alarm_line, *heartbeat_line; /* NULL: none */
+	struct config_spot alarm_line_at, heartbeat_line_at;
 	struct config_bus *buses;
 	unsigned bus_count;
 	struct config_item *items;

@@ -54,15 +54,6 @@ static void report_missing(struct build *build, const struct rio_node *block, co
 	report_error(build->report, block->at, "expected %s in this Item", what);
 }
 
-static struct config_spot spot_of(const struct option_value *value)
-{
-	struct config_spot none = {0, 0};
-
-	return value->node ? (struct config_spot){value->node->value_at.line,
-	                                          value->node->value_at.column}
-	                   : none;
-}
-
 static void build_name(struct build *build, const struct rio_node *block,
                        const struct option_value *values, struct config_item *item)
 {
@@ -105,7 +96,7 @@ static void build_path(struct build *build, const struct rio_node *block,
 
 	memset(path, 0, sizeof(*path));
 	item->path = "";
-	item->path_at = spot_of(value);
+	item->path_at = option_spot(value);
 	if (!value->given) {
 		if (!value->node)
 			report_missing(build, block, "Path", "a Path");
@@ -355,10 +346,10 @@ static void build_alarm(struct build *build, const struct rio_node *block,
 	item->por_alarm = keep_if_given(build, &values[OPT_POR_ALARM]);
 	item->set_alarm = keep_if_given(build, &values[OPT_SET_ALARM]);
 	item->reset_latch = keep_if_given(build, &values[OPT_RESET_LATCH]);
-	item->latch_at = spot_of(&values[OPT_LATCH_ALARM]);
-	item->por_at = spot_of(&values[OPT_POR_ALARM]);
-	item->set_at = spot_of(&values[OPT_SET_ALARM]);
-	item->reset_at = spot_of(&values[OPT_RESET_LATCH]);
+	item->latch_at = option_spot(&values[OPT_LATCH_ALARM]);
+	item->por_at = option_spot(&values[OPT_POR_ALARM]);
+	item->set_at = option_spot(&values[OPT_SET_ALARM]);
+	item->reset_at = option_spot(&values[OPT_RESET_LATCH]);
 	latch_empty = item->latch_alarm && !*item->latch_alarm;
 	if (!item->alarm)
 		return;

@@ -88,7 +88,9 @@ static void build_driver(struct build *build, const struct option_value *values)
 		report_warning(build->report, values[OPT_VERSION].node->value_at,
 		               "Version %s: only 1.00 is known", values[OPT_VERSION].text);
 	config->alarm_line = text_key(build, values, OPT_ALARM_LINE, NULL);
+	config->alarm_line_at = option_spot(&values[OPT_ALARM_LINE]);
 	config->heartbeat_line = text_key(build, values, OPT_HEARTBEAT_LINE, NULL);
+	config->heartbeat_line_at = option_spot(&values[OPT_HEARTBEAT_LINE]);
 	serve_build(build, values);
 	if (target->given)
 		targets_add(build, target->text, target->node->value_at);

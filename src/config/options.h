@@ -79,6 +79,15 @@ static inline int64_t option_ns(const struct option_value *value)
 {
 	return (int64_t)(value->number * 1e9 + 0.5);
 }
+/* Where the value stands; 0 and 0: the key is absent. */
+static inline struct config_spot option_spot(const struct option_value *value)
+{
+	struct config_spot none = {0, 0};
+
+	return value->node ? (struct config_spot){value->node->value_at.line,
+	                                          value->node->value_at.column}
+	                   : none;
+}
 
 /*
  * Check the keys of a block (NULL: it is absent) against the table and put the values into values,

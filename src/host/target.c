@@ -102,7 +102,12 @@ static int check_bus(const struct config *config, const struct config_bus *block
 	return worst;
 }
 
-static int check_line(const struct config *config, const char *key, const char *text,
+static struct place place_in(const struct config *config, struct config_spot spot)
+{
+	return (struct place){config->file, spot.line, spot.column};
+}
+
+static int check_line(struct place place, const char *key, const char *text,
                       struct config_report *report)
 {
 	struct gpio_spec spec;
@@ -110,20 +115,21 @@ static int check_line(const struct config *config, const char *key, const char *
 	int err = text ? gpio_spec_parse(text, &spec, why, sizeof(why)) : 0;
 
 	if (err)
-		report_error(report, (struct place){config->file, 0, 0}, "%s: %s", key, why);
+		report_error(report, place, "%s: %s", key, why);
 	return err;
 }
 
 static int check_options(const struct config *config, struct config_report *report)
 {
-	int err = check_line(config, "AlarmLine", config->alarm_line, report);
-	int other = check_line(config, "HeartbeatLine", config->heartbeat_line, report);
+	struct place alarm = place_in(config, config->alarm_line_at);
+	struct place heartbeat = place_in(config, config->heartbeat_line_at);
+	int err = check_line(alarm, "AlarmLine", config->alarm_line, report);
+	int other = check_line(heartbeat, "HeartbeatLine", config->heartbeat_line, report);
 
 	err = err ? err : other;
 	if (!err && config->alarm_line && config->heartbeat_line &&
 	    strcmp(config->alarm_line, config->heartbeat_line) == 0) {
-		report_error(report, (struct place){config->file, 0, 0},
-		             "AlarmLine and HeartbeatLine are the same line");
+		report_error(report, heartbeat, "AlarmLine and HeartbeatLine are the same line");
 		err = -EINVAL;
 	}
 	for (unsigned i = 0; i < config->bus_count; i++) {
@@ -216,14 +222,14 @@ static void look_for_chip(const char *what, const char *name, struct place place
 		               name);
 }
 
-static void look_for_line(const struct config *config, const char *key, const char *text,
+static void look_for_line(struct place place, const char *key, const char *text,
                           struct config_report *report)
 {
 	struct gpio_spec spec;
 	char why[160];
 
 	if (text && gpio_spec_parse(text, &spec, why, sizeof(why)) == 0)
-		look_for_chip(key, spec.chip, (struct place){config->file, 0, 0}, report);
+		look_for_chip(key, spec.chip, place, report);
 }
 
 int target_look(const struct config *config, struct config_report *report)
@@ -242,7 +248,9 @@ int target_look(const struct config *config, struct config_report *report)
 		for (unsigned k = 0; k < sizeof(ways) / sizeof(ways[0]); k++)
 			look_for_path(target, place, &ways[k], report);
 	}
-	look_for_line(config, "AlarmLine", config->alarm_line, report);
-	look_for_line(config, "HeartbeatLine", config->heartbeat_line, report);
+	look_for_line(place_in(config, config->alarm_line_at), "AlarmLine", config->alarm_line,
+	              report);
+	look_for_line(place_in(config, config->heartbeat_line_at), "HeartbeatLine",
+	              config->heartbeat_line, report);
 	return report->errors == errors ? 0 : -EINVAL;
 }
