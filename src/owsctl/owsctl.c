@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* owsctl: look at the signals of owsd and set them; look at devices without owsd. */
+#include <errno.h>
 #include <getopt.h>
 #include <signal.h>
 #include <stdio.h>
@@ -141,7 +142,8 @@ enum { JSON = 256 };
 
 static void print_verbs(FILE *out)
 {
-	fputs("usage: owsctl [-n NAME | -t TARGET] [--json] VERB ...\n", out);
+	fprintf(out, "usage: %s [-n NAME | -t TARGET] [--json] VERB ...\n",
+	        program_invocation_short_name);
 	for (size_t i = 0; i < VERBS; i++)
 		fprintf(out, "  %-9s %s\n", verbs[i].name, verbs[i].brief);
 	fputs("owsctl help VERB shows what a verb takes; before the verb there may be:\n"

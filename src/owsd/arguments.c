@@ -56,7 +56,9 @@ int finish_output(void)
 
 static void usage(FILE *out)
 {
-	fputs("usage: owsd [-c FILE] [-n NAME] [-t TARGET]... [-l [HOST:]PORT]...\n"
+	/* owsd-sim is another name of the same arguments */
+	fprintf(out, "usage: %s", program_invocation_short_name);
+	fputs(" [-c FILE] [-n NAME] [-t TARGET]... [-l [HOST:]PORT]...\n"
 	      "            [--check [--strict]] [--board[=ID]] [--rt PRIO] [-v] [-V] [-h]\n"
 	      "  -c, --config FILE   configuration (" ARGUMENTS_DIR "/NAME.rio);\n"
 	      "                      without that file -t and -l serve the devices, no signals\n"

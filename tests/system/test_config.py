@@ -477,5 +477,18 @@ def test_one_line_cannot_be_two_lamps(scene):
     assert done.returncode == 2 and "the same line" in done.stderr, done
 
 
+def test_what_is_wrong_with_a_lamp_has_its_line_and_column(scene):
+    for key in ("AlarmLine", "HeartbeatLine"):
+        file = scene.file("lamp.rio", f'OwsDrv {{\n  TargetName "null:"\n  {key} "x"\n}}\n')
+        done = scene.owsd_once("--check", "-c", file)
+        assert done.returncode == 2 and f"{file}:3:{4 + len(key)}: error: {key}: " in done.stderr, done
+
+
+def test_the_usage_of_a_program_has_its_name(scene):
+    for name in ("owsd", "owsd-sim", "owsctl", "owsctl-sim"):
+        done = scene._run([owsdtest.BUILD / name, "--help"], 20)
+        assert done.returncode == 0 and done.stdout.startswith(f"usage: {name} "), done
+
+
 if __name__ == "__main__":
     owsdtest.main()
