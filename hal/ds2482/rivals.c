@@ -92,7 +92,7 @@ unsigned rivals_find(const char *proc, const char *device, struct rivals *rivals
 		return 0;
 	dir = opendir(proc);
 	for (struct dirent *entry; dir && (entry = readdir(dir));) {
-		int pid = atoi(entry->d_name);
+		int pid = (int)strtol(entry->d_name, NULL, 10);
 		char name[32];
 
 		if (pid <= 0 || pid == getpid() || !has_open(proc, pid, st.st_rdev))

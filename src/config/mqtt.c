@@ -83,6 +83,7 @@ static const char *take_way(struct build *build, const char *text, size_t len,
 
 static void take_ways(struct build *build, const struct rio_node *node, struct config_mqtt *mqtt)
 {
+	const struct place at = node ? node->value_at : (struct place){0};
 	const char *rest = mqtt->broker, *text, *why = NULL;
 	size_t len;
 
@@ -93,10 +94,9 @@ static void take_ways(struct build *build, const struct rio_node *node, struct c
 			why = take_way(build, text, len, &mqtt->ways[mqtt->way_count]);
 		/* there may be a password in it */
 		if (why && strcspn(text, "@?") < len)
-			report_error(build->report, node->value_at, "Broker: %s", why);
+			report_error(build->report, at, "Broker: %s", why);
 		else if (why)
-			report_error(build->report, node->value_at, "Broker \"%.*s\": %s", (int)len,
-			             text, why);
+			report_error(build->report, at, "Broker \"%.*s\": %s", (int)len, text, why);
 		if (why)
 			return;
 		mqtt->way_count++;

@@ -29,7 +29,7 @@ char *rio_quote(const char *text)
 		*end++ = *p;
 		in_line++;
 	}
-	strcpy(end, "\"");
+	memcpy(end, "\"", 2);
 	return quoted;
 }
 

@@ -97,9 +97,7 @@ void door_release(struct control *c, struct control_place *p)
 	 * user has one place less until then
 	 */
 	unread = p->sent && welcome_unread(c, p);
-	if (p->connected && p->fd >= 0) {
-		door_enter(p, CONTROL_LEFT);
-	} else if (!give_away(c, p, !unread)) {
+	if ((p->connected && p->fd >= 0) || !give_away(c, p, !unread)) {
 		door_enter(p, CONTROL_LEFT);
 	} else if (unread) {
 		door_enter(p, CONTROL_UNREAD);

@@ -324,8 +324,8 @@ static int put_event(struct history_store *store, const struct history_key *key,
 	sql_bind(to, "iiinnnnnnnnnnnnn", id, store->base + row->us,
 	         (int64_t)(event ? event->kind : HISTORY_CLOCK));
 	store->last_id = id;
-	if (!event)
-		return sql_next(to);
+	if (!event || !key)
+		return event ? -EINVAL : sql_next(to);
 	sqlite3_bind_int64(to, 4, key->number);
 	sqlite3_bind_int(to, 5, event->type);
 	sqlite3_bind_int(to, 6, event->quality);
@@ -358,7 +358,7 @@ static int put_row(struct history_store *store, struct store_batch *batch,
 		return err;
 	switch ((enum history_row_kind)row->kind) {
 	case ROW_VALUE:
-		return store_put_value(store, key, row);
+		return key ? store_put_value(store, key, row) : -EINVAL;
 	case ROW_GAP:
 		return put_gap(store, key, row);
 	case ROW_EVENT:

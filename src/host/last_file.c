@@ -104,9 +104,11 @@ int last_read(int directory, const char *instance, char **data, size_t *size)
 	if (err)
 		return err == -ENOENT ? 0 : err;
 	*size = *size < LAST_CHECK ? 0 : *size - LAST_CHECK;
-	memcpy(&check, *data + *size, *size ? LAST_CHECK : 0);
-	if (*size && check == ows_check_bytes(*data, *size))
-		return 0;
+	if (*size) {
+		memcpy(&check, *data + *size, LAST_CHECK);
+		if (check == ows_check_bytes(*data, *size))
+			return 0;
+	}
 	free(*data);
 	*data = NULL;
 	return -EBADMSG;

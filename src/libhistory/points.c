@@ -207,7 +207,7 @@ static int draw_hours(struct draw *d, int64_t first, int64_t end)
 static int draw_minutes(struct draw *d, int64_t first, int64_t end)
 {
 	struct rollup_state state = {0};
-	struct rollup sum;
+	struct rollup sum = {0};
 	int got = 0;
 
 	/*

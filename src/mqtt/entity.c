@@ -351,8 +351,8 @@ void entity_json(struct json *json, const struct stream *s, const struct row *ro
 		json_string(json, "dev_cla", "button");
 		put_topic(json, "stat_t", row, "/event");
 		json_array(json, "evt_typ");
-		for (uint8_t e = OWS_ALARM_RAISED; e <= OWS_ALARM_FAILED; e++)
-			json_string(json, NULL, ows_alarm_event_text(e));
+		for (int e = OWS_ALARM_RAISED; e <= OWS_ALARM_FAILED; e++)
+			json_string(json, NULL, ows_alarm_event_text((uint8_t)e));
 		json_array_end(json);
 		json_object_end(json);
 	}

@@ -62,13 +62,15 @@ static void put_format(struct json *json, const struct ows_info *info, bool sett
 	             info->type != OWS_LARGE;
 	char format[96] = "";
 	double least, most;
+	size_t len;
 
 	if (info->type == OWS_BOOL || info->type == OWS_STRING)
 		return;
 	entity_range(info, &least, &most);
 	if (typed || !isnan(info->min))
 		put_bound(format, sizeof(format), least);
-	strcat(format, ":");
+	len = strlen(format);
+	snprintf(format + len, sizeof(format) - len, ":");
 	if (typed || !isnan(info->max))
 		put_bound(format, sizeof(format), most);
 	if (format[1])

@@ -687,7 +687,7 @@ static int64_t signed_of(uint32_t value, uint32_t datatype)
 static const char *text_of(const Spb__Metric *metric, uint8_t type, char text[VALUE_TEXT_MAX])
 {
 	uint32_t datatype = datatype_of(type);
-	bool whole = datatype != BOOLEAN && datatype < FLOAT;
+	bool whole = datatype < FLOAT;
 
 	if (metric->has_datatype && metric->datatype != datatype)
 		return NULL;

@@ -20,6 +20,7 @@ static void resident_line(struct mapping *mapping, const char *line)
 	unsigned long from, to, kib;
 	char rights[5], path[2];
 
+	/* NOLINTBEGIN(cert-err34-c): the kernel writes them */
 	if (sscanf(line, "%lx-%lx %4s", &from, &to, rights) == 3) {
 		mapping->from = from;
 		mapping->to = to;
@@ -29,6 +30,7 @@ static void resident_line(struct mapping *mapping, const char *line)
 	} else if (mapping->of_file && sscanf(line, "Anonymous: %lu", &kib) == 1 && kib == 0) {
 		madvise((void *)mapping->from, mapping->to - mapping->from, MADV_DONTNEED);
 	}
+	/* NOLINTEND(cert-err34-c) */
 }
 
 void resident_drop_start(void)

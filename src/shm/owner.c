@@ -45,7 +45,7 @@ static bool find_user(const char *name, uid_t uid, struct user *user)
 
 static bool lists(const struct group *entry, const char *name)
 {
-	for (char **member = entry->gr_mem; *member; member++)
+	for (char **member = entry->gr_mem; name && *member; member++)
 		if (strcmp(*member, name) == 0)
 			return true;
 	return false;

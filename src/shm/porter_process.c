@@ -5,6 +5,7 @@
 #include <limits.h>
 #include <poll.h>
 #include <signal.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -184,7 +185,7 @@ static void be_child(struct process *p, unsigned lane)
 	if (getppid() == p->pid)
 		while (taken < most && take_order(p, lane))
 			taken++;
-	_exit(!taken);
+	_exit(taken ? EXIT_SUCCESS : EXIT_FAILURE);
 }
 
 /* --- The porter ------------------------------------------------------------------------------- */
@@ -261,10 +262,9 @@ static bool porter_round(struct process *p, struct children *children)
 	for (unsigned i = 0; i < PORTER_LANES; i++) {
 		/* at the end of owsd what no child carries out goes with the porter */
 		bool over = fds[i].revents & POLLHUP;
-		if (over &&
-		    (!fds[i].events || recv(p->lanes[i], &byte, 1, MSG_PEEK | MSG_DONTWAIT) <= 0))
-			p->lanes[i] = -1;
-		else if (fds[i].revents & POLLIN && !start_child(p, i, &children[i]) && over)
+		bool empty = over && (!fds[i].events ||
+		                      recv(p->lanes[i], &byte, 1, MSG_PEEK | MSG_DONTWAIT) <= 0);
+		if (empty || (fds[i].revents & POLLIN && !start_child(p, i, &children[i]) && over))
 			p->lanes[i] = -1;
 		any |= p->lanes[i] >= 0;
 	}

@@ -51,7 +51,7 @@ static void take_report_line(struct faces_one *face, const char *line)
 		face->beat_ns = positive(rest);
 	else if ((rest = after(line, "since ")))
 		face->since_ns = positive(rest);
-	else if (face->count < FACES_COUNTERS &&
+	else if (face->count < FACES_COUNTERS && /* NOLINTNEXTLINE(cert-err34-c): owsd's own */
 	         sscanf(line, "count %31s %" SCNu64, counter->name, &counter->value) == 2)
 		face->count++;
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The rows of a visit's steps, what their answers mean, and the requests of the alarm machine. */
+#include <assert.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -33,6 +34,7 @@ static uint32_t alarm_step_fail(const struct alarm_answer *a, int err)
 {
 	const struct alarm_step *step = alarm_step(a->m->state);
 
+	assert(step); /* an answer comes while one waits */
 	if (alarm_of_device(err))
 		engine_read_failed(a->lane->engine, a->lane, alarm_signal(a->lane->engine, a->item),
 		                   err);
@@ -191,6 +193,7 @@ static bool same_string(const struct alarm_item *x, const struct alarm_item *y, 
 const struct alarm_item *alarm_done(const struct alarm_machine *m, const struct alarm_item *i,
                                     const struct alarm_step *step)
 {
+	assert(step);
 	for (uint32_t k = 0; k < m->count; k++)
 		if (m->items[k]->device == i->device &&
 		    m->items[k]->cycle_of[step->deed] == m->list.cycle &&
@@ -241,7 +244,10 @@ int64_t alarm_next_init(struct engine *e, struct alarm_machine *m)
 static bool ask_step(struct slot *slot, const struct alarm_item *i, const struct alarm_step *step,
                      enum bus_op op)
 {
-	const char *value = step->value ? alarm_string(&i->strings, step->value) : "0";
+	const char *value;
+
+	assert(step);
+	value = step->value ? alarm_string(&i->strings, step->value) : "0";
 
 	slot->req.op = (uint8_t)op;
 	slot->row = i->row;
