@@ -30,7 +30,7 @@
  * of a service, else OWS_DIR/INSTANCE.PROGRAM; without either there is none. Lines of a word and
  * its value: pid, beat (the boot time of the report, ns), status, loaded (that of the
  * configuration), refused (why it does not count); what face_ops.report writes: since (a boot
- * time), trouble, count NAME NUMBER.
+ * time), trouble, troubled (its boot time), count NAME NUMBER.
  */
 static void report_open(struct face *face)
 {

@@ -129,6 +129,7 @@ static void broker_fail(struct broker *b, const char *why, const char *remedy, i
 	b->logged[way] = print;
 	memcpy(b->trouble, words, sizeof(words));
 	memcpy(b->last, words, sizeof(words));
+	b->last_ns = now_ns;
 }
 
 /* What is proved, else what it looks like. */
@@ -153,6 +154,7 @@ void broker_taken(struct broker *b)
 	snprintf(b->last, sizeof(b->last), "%.80s was lost: %.200s; %.50s",
 	         mqtt_way_name(&b->options->ways[b->way], name), taken_words(b, words),
 	         advice_remedy(ADVICE_TAKEN_OVER, 0, ""));
+	b->last_ns = ows_now();
 	log_warning(b->face->log, "%s", b->last);
 }
 
@@ -272,7 +274,7 @@ static void connected(struct broker *b, int64_t now_ns)
 	backoff_met(&b->backoff);
 	b->again = b->known & 1u << b->way;
 	b->known |= 1u << b->way;
-	b->refusal_logged = false;
+	b->refusal[0] = '\0';
 	if (b->vain & 1u << b->way) {
 		b->trouble[0] = '\0';
 		b->ops->connected(b->ctx);
@@ -436,10 +438,11 @@ static bool publish(struct broker *b, const char *topic, const char *text, size_
 		return false;
 	/* it would never be taken, and must not stand in the way of the others */
 	b->refusals++;
-	if (!b->refusal_logged)
-		log_err(b->face->log, "%.150s cannot be published: %s", topic,
-		        mosquitto_strerror(err));
-	b->refusal_logged = true;
+	if (*b->refusal)
+		return true;
+	snprintf(b->refusal, sizeof(b->refusal), "%.150s cannot be published: %s", topic,
+	         mosquitto_strerror(err));
+	log_err(b->face->log, "%s", b->refusal);
 	return true;
 }
 

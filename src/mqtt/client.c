@@ -74,13 +74,14 @@ static void on_publish(struct mosquitto *client, void *ctx, int mid, int reason,
 		return;
 	}
 	b->refusals++;
-	if (!b->refusal_logged)
-		log_err(b->face->log,
-		        "%.100s refuses what is published: %s; its access list has to let us write "
-		        "%.60s/# and the topics of discovery",
-		        mqtt_way_name(&b->options->ways[b->way], name),
-		        mosquitto_reason_string(reason), b->options->prefix);
-	b->refusal_logged = true;
+	if (*b->refusal)
+		return;
+	snprintf(b->refusal, sizeof(b->refusal),
+	         "%.100s refuses what is published: %s; its access list has to let us write "
+	         "%.60s/# and the topics of discovery",
+	         mqtt_way_name(&b->options->ways[b->way], name), mosquitto_reason_string(reason),
+	         b->options->prefix);
+	log_err(b->face->log, "%s", b->refusal);
 }
 
 static void on_subscribe(struct mosquitto *client, void *ctx, int mid, int count,

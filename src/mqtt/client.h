@@ -54,23 +54,22 @@ struct broker {
 	enum broker_state state;
 	int fd; /* that the face waits for; -1: none */
 	unsigned way;
-	bool v4;             /* the way is tried at its IPv4 address alone */
-	bool tcp;            /* it has a connection, so far without a word of MQTT */
-	bool old_protocol;   /* MQTT 3.1.1 in place of 5, as the broker wants it */
-	bool ended;          /* libmosquitto has ended it */
-	bool drained;        /* nothing is to be read any more */
-	bool held;           /* what the broker holds for us is too old */
-	int64_t came_ns;     /* what is read now came later than that */
-	int end_code;        /* why */
-	bool refusal_logged; /* that the broker refuses what is published */
-	unsigned sent;       /* CONNECTs */
-	struct taken taken;  /* whether another client takes our id */
-	bool thrown_out;     /* it took the last connection, or that looks so */
-	unsigned in_flight;  /* put, and not taken by the broker */
-	bool marking;        /* the broker may answer the last mark yet */
-	bool marked;         /* it has */
-	int mark;            /* its number */
-	bool refused;        /* a way that was tried since the last pause answered, and refused */
+	bool v4;            /* the way is tried at its IPv4 address alone */
+	bool tcp;           /* it has a connection, so far without a word of MQTT */
+	bool old_protocol;  /* MQTT 3.1.1 in place of 5, as the broker wants it */
+	bool ended;         /* libmosquitto has ended it */
+	bool drained;       /* nothing is to be read any more */
+	bool held;          /* what the broker holds for us is too old */
+	int64_t came_ns;    /* what is read now came later than that */
+	int end_code;       /* why */
+	unsigned sent;      /* CONNECTs */
+	struct taken taken; /* whether another client takes our id */
+	bool thrown_out;    /* it took the last connection, or that looks so */
+	unsigned in_flight; /* put, and not taken by the broker */
+	bool marking;       /* the broker may answer the last mark yet */
+	bool marked;        /* it has */
+	int mark;           /* its number */
+	bool refused;       /* a way that was tried since the last pause answered, and refused */
 	struct backoff backoff;
 	int64_t begun_ns, next_ns;
 	int64_t tend_ns;                   /* when broker_tick() is due, once there is a client */
@@ -81,6 +80,8 @@ struct broker {
 	char tls_words[BROKER_WORDS];      /* the last error that libmosquitto logged */
 	char trouble[BROKER_WORDS];        /* what is wrong now, and its remedy; "": nothing */
 	char last[BROKER_WORDS];           /* the same, kept after its end */
+	int64_t last_ns;                   /* since when */
+	char refusal[BROKER_WORDS];        /* what the broker refuses of us now; "": nothing */
 	uint64_t logged[CONFIG_MQTT_WAYS]; /* a hash of what was logged of each way */
 	uint64_t connects, failures, published, acknowledged, refusals;
 };

@@ -37,6 +37,7 @@ static void commands_refuse(struct commands *c, const char *name, const char *wh
 
 	commands_tell(c, now_ns);
 	c->refused++;
+	c->trouble_ns = now_ns;
 	snprintf(c->trouble, sizeof(c->trouble), "command to %.63s refused: %.150s", name, why);
 	if (!cause->lines)
 		cause->begun_ns = now_ns;
@@ -185,6 +186,11 @@ int commands_take(struct commands *c, const char *name, bool known,
 	c->trouble[0] = '\0';
 	log_info(c->log, "%s set to %.60s for %s", name, message->text, person);
 	return 0;
+}
+
+const char *commands_trouble(const struct commands *c, int64_t now_ns)
+{
+	return now_ns - c->trouble_ns < COMMANDS_TROUBLE_NS ? c->trouble : "";
 }
 
 void commands_close(struct commands *c)

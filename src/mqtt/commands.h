@@ -21,6 +21,7 @@ struct stream;
 #define COMMANDS_LINES 10
 #define COMMANDS_SPAN_NS (60 * NS_PER_S)
 #define COMMANDS_CAUSES 32
+#define COMMANDS_TROUBLE_NS (60 * NS_PER_S)
 
 struct commands_cause {
 	int64_t begun_ns;
@@ -40,6 +41,7 @@ struct commands {
 	struct commands_cause causes[COMMANDS_CAUSES]; /* by a hash of their words */
 	uint64_t taken, refused;
 	char trouble[BROKER_WORDS]; /* the last refusal, and what to do */
+	int64_t trouble_ns;         /* when it was */
 };
 
 /*
@@ -51,4 +53,6 @@ int commands_take(struct commands *c, const char *name, bool known,
                   const struct broker_message *message, const char *place, int64_t now_ns);
 /* Log how many refusals had no line, for each cause whose span is over by now. */
 void commands_tell(struct commands *c, int64_t now_ns);
+/* The last refusal, for a minute: then it is nothing that is wrong now. "": none. */
+const char *commands_trouble(const struct commands *c, int64_t now_ns);
 void commands_close(struct commands *c);

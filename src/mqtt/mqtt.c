@@ -306,9 +306,17 @@ static int64_t announce_ns(const struct mqtt *m)
 	return m->announced_ns + (m->stream.profile->session ? REBIRTH_NS : ANNOUNCE_NS);
 }
 
-static bool publish_health(struct mqtt *m)
+/* What is wrong now: the connection is there when that is published. */
+static const char *trouble_of(const struct mqtt *m, int64_t now_ns)
 {
-	return health_publish(&m->stream, &(struct health){.trouble = m->commands.trouble,
+	if (*m->broker.face->refused)
+		return m->broker.face->refused;
+	return *m->broker.refusal ? m->broker.refusal : commands_trouble(&m->commands, now_ns);
+}
+
+static bool publish_health(struct mqtt *m, int64_t now_ns)
+{
+	return health_publish(&m->stream, &(struct health){.trouble = trouble_of(m, now_ns),
 	                                                   .commands = m->commands.taken,
 	                                                   .refused_commands = m->commands.refused,
 	                                                   .connects = m->broker.connects,
@@ -349,7 +357,7 @@ static const char *pump(struct face *face, int64_t now_ns)
 	if (now_ns < m->health_ns)
 		return NULL;
 	if (m->stream.profile->health
-	            ? publish_health(m)
+	            ? publish_health(m, now_ns)
 	            : !m->stream.profile->numbers || m->stream.profile->numbers(&m->stream))
 		m->health_ns = now_ns + HEALTH_NS;
 	return NULL;
@@ -393,6 +401,7 @@ void mqtt_report(struct face *face, FILE *out)
 {
 	struct mqtt *m = mqtt_own(face);
 	const struct broker *b = &m->broker;
+	bool commanded = *m->commands.trouble && m->commands.trouble_ns >= b->last_ns;
 	const struct {
 		const char *name;
 		uint64_t value;
@@ -411,7 +420,9 @@ void mqtt_report(struct face *face, FILE *out)
 	if (b->state == BROKER_CONNECTED)
 		fprintf(out, "since %lld\n", (long long)b->begun_ns);
 	if (*m->commands.trouble || *b->last)
-		fprintf(out, "trouble %s\n", *m->commands.trouble ? m->commands.trouble : b->last);
+		fprintf(out, "trouble %s\ntroubled %lld\n",
+		        commanded ? m->commands.trouble : b->last,
+		        (long long)(commanded ? m->commands.trouble_ns : b->last_ns));
 	for (size_t i = 0; i < sizeof(counters) / sizeof(counters[0]); i++)
 		fprintf(out, "count %s %llu\n", counters[i].name,
 		        (unsigned long long)counters[i].value);

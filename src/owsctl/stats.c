@@ -95,7 +95,10 @@ static void print_faces(const char *instance, const struct when *now)
 			       when_span(now->boot - face->beat_ns, text));
 		if (face->since_ns)
 			printf("%11s %s\n", "connected", when_iso(now, face->since_ns, text));
-		if (*face->trouble)
+		if (*face->trouble && face->trouble_ns)
+			printf("%11s %s ago: %s\n", "last error",
+			       when_span(now->boot - face->trouble_ns, text), face->trouble);
+		else if (*face->trouble)
 			printf("%11s %s\n", "last error", face->trouble);
 		if (*face->refused)
 			printf("%11s its file: %s\n", "refused", face->refused);

@@ -41,6 +41,8 @@ static void take_report_line(struct faces_one *face, const char *line)
 		snprintf(face->status, sizeof(face->status), "%.255s", rest);
 	else if ((rest = after(line, "trouble ")))
 		snprintf(face->trouble, sizeof(face->trouble), "%.255s", rest);
+	else if ((rest = after(line, "troubled ")))
+		face->trouble_ns = positive(rest);
 	else if ((rest = after(line, "refused ")))
 		snprintf(face->refused, sizeof(face->refused), "%.255s", rest);
 	else if ((rest = after(line, "loaded ")))
@@ -130,6 +132,8 @@ void faces_json(struct json *json, const char *key, const char *instance, const 
 		json_string(json, "connected",
 		            face->since_ns ? when_iso(now, face->since_ns, text) : NULL);
 		json_string(json, "trouble", *face->trouble ? face->trouble : NULL);
+		if (face->trouble_ns)
+			json_seconds(json, "trouble_age", now->boot - face->trouble_ns);
 		json_string(json, "refused", *face->refused ? face->refused : NULL);
 		json_object(json, "counters");
 		for (unsigned k = 0; k < face->count; k++)

@@ -23,7 +23,8 @@ struct faces_one {
 	int64_t loaded_ns; /* the boot time at which it read its configuration; 0: not known */
 	char refused[256]; /* why that one is refused, and the one before counts; "": it counts */
 	char status[256];
-	char trouble[256]; /* the last one; "": none */
+	char trouble[256];  /* the last one; "": none */
+	int64_t trouble_ns; /* its boot time; 0: not known */
 	struct faces_counter counters[FACES_COUNTERS];
 	unsigned count;
 };

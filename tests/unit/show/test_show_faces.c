@@ -43,8 +43,9 @@ static void put(const char *name, const char *text)
 
 static void test_a_report_has_state_trouble_and_counters(void)
 {
-	put("HOUSE.owsd-mqtt", "pid 7\nbeat 5000000000\nstatus publishing to a b\nsince 3\n"
-	                       "trouble it is lost; wait\ncount connects 2\ncount refused 0\n");
+	put("HOUSE.owsd-mqtt",
+	    "pid 7\nbeat 5000000000\nstatus publishing to a b\nsince 3\n"
+	    "trouble it is lost; wait\ntroubled 7\ncount connects 2\ncount refused 0\n");
 	put("HOUSE.owsd-web", "pid 8\nbeat 1\nstatus 1 streams\nloaded 4\nrefused a.rio:1:2: no\n");
 	put("OTHER.owsd-web", "pid 9\nbeat 1\nstatus 1 streams\n");
 	put("HOUSE.owsd-web.new", "pid 10\nbeat 1\n");
@@ -54,6 +55,7 @@ static void test_a_report_has_state_trouble_and_counters(void)
 	TEST_ASSERT_EQUAL_INT(7, faces[0].pid);
 	TEST_ASSERT_EQUAL_STRING("publishing to a b", faces[0].status);
 	TEST_ASSERT_EQUAL_STRING("it is lost; wait", faces[0].trouble);
+	TEST_ASSERT_EQUAL_INT64(7, faces[0].trouble_ns);
 	TEST_ASSERT_EQUAL_INT64(3, faces[0].since_ns);
 	TEST_ASSERT_EQUAL_UINT(2, faces[0].count);
 	TEST_ASSERT_EQUAL_STRING("connects", faces[0].counters[0].name);

@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: MIT */
+/* Tests of how long a refused command counts as what is wrong now. */
+#include <errno.h>
+
+#include "unity.h"
+
+#include "src/mqtt/commands.h"
+#include "src/mqtt/stream.h"
+
+#define START (100 * NS_PER_S)
+
+void setUp(void)
+{
+}
+
+void tearDown(void)
+{
+}
+
+static void test_a_refused_command_is_trouble_for_a_minute(void)
+{
+	static struct stream stream;
+	static struct broker_message empty = {.topic = "o/pi/relay/set", .text = ""};
+	static struct commands c = {.stream = &stream};
+
+	TEST_ASSERT_EQUAL_STRING("", commands_trouble(&c, START));
+	c.log = log_create(LOG_LEVEL_ERR);
+	TEST_ASSERT_EQUAL_INT(-EINVAL, commands_take(&c, "relay", true, &empty, "mqtt:x", START));
+	TEST_ASSERT_EQUAL_STRING("command to relay refused: it is empty",
+	                         commands_trouble(&c, START));
+	TEST_ASSERT_EQUAL_STRING("command to relay refused: it is empty",
+	                         commands_trouble(&c, START + COMMANDS_TROUBLE_NS - 1));
+	TEST_ASSERT_EQUAL_STRING("", commands_trouble(&c, START + COMMANDS_TROUBLE_NS));
+	TEST_ASSERT_EQUAL_UINT64(1, c.refused);
+	log_destroy(c.log);
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_a_refused_command_is_trouble_for_a_minute);
+	return UNITY_END();
+}
