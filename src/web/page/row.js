@@ -80,7 +80,7 @@ export class Row {
 			return;
 		}
 		const why = this.signal.why ? el("p", {}, `Reason: ${this.signal.why}`) : null;
-		const remedy = this.signal.remedy || remedyOf(code);
+		const remedy = remedyOf(code);
 		this.detail.replaceChildren(...[why, el("p", {}, meaningOf(code)),
 			remedy ? el("p", {}, el("strong", {}, "Remedy: "), remedy) : null,
 			this.signal.path ? el("p", {class: "path"}, `Path: ${this.signal.path}`) : null]

@@ -149,8 +149,7 @@ class Store extends EventTarget {
 		const fresh = list.signals.map((given) => {
 			const signal = same ? old.get(given.name) : null;
 			return this.#set(Object.assign(signal ?? {recent: old.get(given.name)?.recent ?? []},
-				{...given, why: given.quality.why, remedy: given.quality.remedy,
-					text: given.quality.text}), given.value,
+				{...given, why: given.quality.why, text: given.quality.text}), given.value,
 			given.quality.code, given.quality.good, given.age, now);
 		});
 		this.#generation = list.generation;
@@ -187,7 +186,7 @@ class Store extends EventTarget {
 				continue;
 			if (signal.code !== code) {
 				signal.text = qualityWords(code);
-				signal.why = signal.remedy = null;
+				signal.why = null;
 				if (!good)
 					this.#details(); // the reason in words comes with the list
 			}
