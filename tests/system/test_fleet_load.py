@@ -177,7 +177,7 @@ class Reader(Link):
     def __init__(self, fleet):
         super().__init__(fleet, "host")
         self.came = collections.defaultdict(collections.Counter)
-        self.births, self.ages, self.lines = {}, [], []
+        self.births, self.ages, self.genuine = {}, [], []
 
     def take(self, kind, body):
         if kind == 0x20:
@@ -192,7 +192,7 @@ class Reader(Link):
             if verb == "host":
                 pass
             elif node == "pi7":
-                self.lines.append(f"={int(verb == 'NDEATH')}\t0\t{topic}\t{payload.hex()}")
+                self.genuine.append([str(int(verb == "NDEATH")), "0", topic, payload.hex()])
             elif verb == "DDATA":
                 ms, _ = stamp(payload)
                 self.ages += [now - ms / 1000] if not self.came[node][ms] else []
@@ -200,13 +200,9 @@ class Reader(Link):
             elif verb == "NBIRTH":
                 self.births[node] = now
 
-    # as a Listener, of the one node that is genuine
-    @property
-    def process(self):
-        return self
-
-    def log(self):
-        return "\n".join(self.lines)
+    def lines(self):
+        """As of a Listener, of the one node that is genuine."""
+        return self.genuine
 
 
 class Fleet:
@@ -306,13 +302,13 @@ def test_a_fleet_loses_nothing_when_its_broker_is_killed_and_one_in_ten_is_away(
     host = Host(fleet.reader)
 
     def said(*verbs):
-        return {v: [bytes.fromhex(line.split("\t")[3]) for line in fleet.reader.lines if f"/{v}/" in line] for v in verbs}
+        return {v: [bytes.fromhex(line[3]) for line in fleet.reader.lines() if f"/{v}/" in line[2]] for v in verbs}
     assert fleet.run(30, lambda: len(said("DDATA")["DDATA"]) > 5), face.log()
     face.stop()
     fleet.run(1)
     fleet.tape = said("NBIRTH", "DBIRTH", "DDATA", "NDEATH")
     until(lambda: all(fleet.tape.values()), 0.1, lambda: fleet.tape)
-    fleet.reader.lines.clear()
+    fleet.reader.genuine.clear()
     host.births, host.seq, host.read = {}, None, 0
     face = scene.start(face.command, {"STATE_DIRECTORY": str(scene.path / "state")})
 
