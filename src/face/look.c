@@ -168,6 +168,9 @@ static void look_find(struct face *face, const struct ows_daemon *daemon)
 	}
 	face->start_ns = daemon->start_ns;
 	face->live = true;
+	if (!reloaded)
+		log_notice(face->log, "owsd %s is there: %d signals", face->arguments->instance,
+		           ows_count(face->ows));
 	tell(face, reloaded ? FACE_RELOADED : FACE_FOUND);
 	face->ops->changes(face, NULL, 0);
 }

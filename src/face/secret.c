@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "src/face/secret.h"
+#include "src/signal/hash.h"
 
 #define BLANK " \t\r\n"
 #define NO_CREDENTIAL \
@@ -100,7 +101,7 @@ int secret_read(const char *name, char token[SECRET_SIZE], char *why, size_t siz
 	ssize_t n;
 	int fd;
 
-	token[0] = '\0';
+	token[0] = why[0] = '\0';
 	if (!name)
 		return 0;
 	fd = open_own(name, path, why, size);
@@ -116,4 +117,12 @@ int secret_read(const char *name, char token[SECRET_SIZE], char *why, size_t siz
 		return secret_refuse(-EINVAL, path, "expected one token in one line", why, size);
 	}
 	return 0;
+}
+
+bool secret_is_news(const char *why, uint64_t *print)
+{
+	uint64_t before = *print;
+
+	*print = *why ? hash_text(HASH_BEGIN, why, strlen(why)) : 0;
+	return *print && *print != before;
 }

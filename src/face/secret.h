@@ -4,6 +4,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #define SECRET_SIZE 1024
 #define SECRET_PATH 512
@@ -11,10 +12,12 @@
 /*
  * Read the file: a path, or the name of a credential that systemd has put into
  * CREDENTIALS_DIRECTORY; NULL: none, token is "". Blanks and line ends around the token are left
- * out. Returns 0, or a negative errno, with the reason in why: others may read the file; it is no
- * file; it is empty, or longer than a token. Blocking.
+ * out. Returns 0, with why "", or a negative errno, with the reason in why: others may read the
+ * file; it is no file; it is empty, or longer than a token. Blocking.
  */
 int secret_read(const char *name, char token[SECRET_SIZE], char *why, size_t size);
+/* Is why ("": nothing is wrong) another than that of *print, 0 at first? It is from now on. */
+bool secret_is_news(const char *why, uint64_t *print);
 /*
  * The path of such a file, for a library that reads it itself. own: no other user may read it.
  * Errors as secret_read().

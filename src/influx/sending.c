@@ -55,8 +55,9 @@ void sending_read_token(struct face *face)
 	struct pushing *p = face->own;
 	char why[SECRET_PATH + 128];
 
-	if (secret_read(*p->options.token_file ? p->options.token_file : NULL, p->token, why,
-	                sizeof(why)))
+	secret_read(*p->options.token_file ? p->options.token_file : NULL, p->token, why,
+	            sizeof(why));
+	if (secret_is_news(why, &p->token_print))
 		log_err(face->log, "without a token: %s", why);
 }
 

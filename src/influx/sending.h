@@ -49,6 +49,7 @@ struct pushing {
 	struct spool spool;
 	struct post *post;
 	char token[SECRET_SIZE], batch[BATCH_BYTES];
+	uint64_t token_print;    /* of why there is no token, as it was logged last */
 	char later[BATCH_BYTES]; /* goes into the spool while the batch is under way */
 	size_t batch_len;        /* of what is sent or has to be sent next; 0: nothing */
 	struct part part;        /* of the batch: what is sent now */
@@ -65,7 +66,7 @@ struct pushing {
 	uint64_t lost_bytes, lost_lines; /* dropped, as it was logged last */
 };
 
-/* Read the token's file again. Blocking, as a disk does; so do the others. */
+/* Read the token's file again, log an error once. Blocking, as a disk does; so do the others. */
 void sending_read_token(struct face *face);
 /* err is that of the spool's directory, 0: it works. Logs it once. */
 void sending_report_disk(struct face *face, int err);

@@ -341,6 +341,7 @@ static void event(struct face *face, const struct face_event *event)
 		events_alarm(web, event->alarm);
 		break;
 	case FACE_LOST:
+		log_warning(face->log, "owsd is lost: no value is good");
 		break;
 	case FACE_ENTRIES_LOST:
 		events_miss_alarms(web);

@@ -349,8 +349,13 @@ def test_a_server_that_does_not_let_it_in_is_said_and_asked_again_with_the_token
         with open(f"/proc/{daemon.pid}/cmdline", "rb") as words:
             assert b"right" not in words.read()
         token.chmod(0o644)
+        server.answer = 401
         face = push(scene, daemon)
+        logged(face, " is there: 3 signals")
         logged(face, "without a token: ")
+        asked = len(server.requests)
+        until(lambda: len(server.requests) > asked + 1, 60, "it asks again")
+        assert face.log().count("without a token: ") == 1, face.log()
         assert "others may read it: chmod 600" in face.log(), face.log()
         assert face.stop() == 0
 

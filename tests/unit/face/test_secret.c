@@ -100,9 +100,22 @@ static void test_a_key_has_to_be_ours_alone_and_a_certificate_has_not(void)
 	TEST_ASSERT_EQUAL_STRING(path, found);
 }
 
+static void test_a_reason_is_news_until_it_is_another(void)
+{
+	uint64_t print = 0;
+
+	TEST_ASSERT_FALSE(secret_is_news("", &print));
+	TEST_ASSERT_TRUE(secret_is_news("it is missing", &print));
+	TEST_ASSERT_FALSE(secret_is_news("it is missing", &print));
+	TEST_ASSERT_TRUE(secret_is_news("others may read it", &print));
+	TEST_ASSERT_FALSE(secret_is_news("", &print));
+	TEST_ASSERT_TRUE(secret_is_news("others may read it", &print));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
+	RUN_TEST(test_a_reason_is_news_until_it_is_another);
 	RUN_TEST(test_a_token_stands_in_a_line_of_a_file_that_is_ours_alone);
 	RUN_TEST(test_a_file_that_others_may_read_or_that_has_no_token_is_refused);
 	RUN_TEST(test_a_name_is_that_of_a_credential_of_the_service);
