@@ -243,8 +243,8 @@ LIBOWS   := $(wildcard src/libows/*.c)
 # And the one that reads history
 LIBHISTORY := $(filter-out src/libhistory/none.c,$(wildcard src/libhistory/*.c))
 # What calls SQLite; and what stands in its place
-SQLITE_ALL := $(LIBHISTORY) $(patsubst %,src/history/%.c,file keep schema sql statements store tables wal_lock writer) \
-            $(wildcard src/recorder/*.c)
+SQLITE_ALL := $(LIBHISTORY) $(patsubst %,src/history/%.c,file keep rolling schema sql statements store \
+            tables wal_lock writer) $(wildcard src/recorder/*.c)
 # What makes of owsd the program owsd-sim
 SIM_TABLE := hal/sim/table.c
 # Programs to start from, and configurations
