@@ -108,6 +108,7 @@ static void test_memories_keep_slots_of_their_own_while_others_go(void)
 {
 	struct control_client clients[3];
 	bool taken[PORTER_SLOTS] = {false};
+	uint32_t slots[CONTROL_HELD_ALL];
 
 	for (int i = 0; i < 3; i++)
 		TEST_ASSERT_EQUAL(0, control_join(&clients[i], OWS_HELLO_COMMAND, "x"));
@@ -115,8 +116,12 @@ static void test_memories_keep_slots_of_their_own_while_others_go(void)
 	control_leave(&clients[1]);
 	control_reload();
 	wait_held(0);
+	pthread_mutex_lock(&control_room->lock);
+	for (unsigned i = 0; i < CONTROL_HELD_ALL; i++)
+		slots[i] = control_room->held[i].slot;
+	pthread_mutex_unlock(&control_room->lock);
 	for (unsigned i = 0; i < CONTROL_HELD_ALL; i++) {
-		uint32_t slot = control_room->held[i].slot;
+		uint32_t slot = slots[i];
 
 		TEST_ASSERT_LESS_THAN_UINT(PORTER_SLOTS, slot);
 		TEST_ASSERT_GREATER_OR_EQUAL_UINT(OWS_CONTROLLERS, slot);
