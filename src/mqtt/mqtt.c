@@ -264,7 +264,8 @@ static void renew(struct face *face, int64_t now_ns)
 
 	m->sweep_ns = 0; /* the rows may be those of an image that is gone */
 	mqtt_options_take(&options, face);
-	/* all zero but for what is set. NOLINTNEXTLINE(bugprone-suspicious-memory-comparison) */
+	/* All of it is zero but for what is set.
+	   NOLINTNEXTLINE(bugprone-suspicious-memory-comparison,cert-exp42-c,cert-flp37-c) */
 	if (memcmp(&options, &m->options, sizeof(options)) != 0) {
 		mqtt_end(face);
 		m->options = options;
