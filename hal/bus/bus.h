@@ -46,6 +46,7 @@ enum bus_news {
 	BUS_LOST,     /* the device rom disappeared */
 	BUS_POR,      /* the device rom was seen to have restarted */
 	BUS_NOTE,     /* text for the log, nothing changes */
+	BUS_TROUBLE,  /* it is up: what disturbs the target from now on, in text; "": nothing */
 	BUS_RELEASED, /* the bus was asked to suspend and has released its hardware */
 	BUS_BACK,     /* the suspended bus sees that its target is back, without touching the wire;
 	                 sent once per change */

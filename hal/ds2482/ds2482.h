@@ -109,13 +109,15 @@ struct ds2482_master {
 	int64_t power_off_ns;
 	/*
 	 * notice.c; link.c says which chip had been reset or changed when it was set up again. 0:
-	 * none. Openings and errors since the last look. Env times of the next look, of the next
-	 * after such a change, of the next report where no program was seen.
+	 * none. Errors since the last look. Env times of the next look, of the next after such a
+	 * change. What disturbs, whether it names programs, and when its cause was seen last.
 	 */
-	struct rivals rivals;
 	uint8_t changed;
 	unsigned failures;
-	int64_t look_ns, changed_look_ns, told_ns;
+	int64_t look_ns, changed_look_ns;
+	char trouble[BUS_EVENT_TEXT];
+	bool named;
+	int64_t trouble_ns;
 	/* The cost before the adapter was opened again. */
 	struct link_master_cost cost;
 };

@@ -181,18 +181,23 @@ static int every_visible(struct link_master *base, uint64_t *mark)
 	return there > 0;
 }
 
-static bool every_notice(struct link_master *base, char *text, size_t size)
+/* That of all adapters, one after the other. */
+static void every_trouble(struct link_master *base, bool failed, char *text, size_t size)
 {
 	struct every_master *every = (struct every_master *)base;
+	size_t len = 0;
 
-	for (unsigned i = 0; i < every->count; i++) {
+	text[0] = '\0';
+	for (unsigned i = 0; i < every->count && len < size; i++) {
 		struct link_master *master = every->adapter[i].master;
+		char one[BUS_EVENT_TEXT] = "";
 
-		if (every->adapter[i].open && master->ops->notice &&
-		    master->ops->notice(master, text, size))
-			return true;
+		if (every->adapter[i].open && master->ops->trouble)
+			master->ops->trouble(master, failed, one, sizeof(one));
+		if (*one)
+			len += (size_t)snprintf(text + len, size - len, "%s%s", len ? "; " : "",
+			                        one);
 	}
-	return false;
 }
 
 static unsigned every_channels(struct link_master *base)
@@ -236,7 +241,7 @@ static const struct link_master_ops every_ops = {
 	.open = every_open,
 	.grow = every_grow,
 	.close = every_close,
-	.notice = every_notice,
+	.trouble = every_trouble,
 	.visible = every_visible,
 	.channels = every_channels,
 	.channel = every_channel,

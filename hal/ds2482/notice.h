@@ -7,5 +7,5 @@
 
 struct link_master;
 
-/* link_master_ops.notice: at most one look a minute, each program once. */
-bool ds2482_notice(struct link_master *master, char *text, size_t size);
+/* link_master_ops.trouble: at most one look a minute. */
+void ds2482_trouble(struct link_master *master, bool failed, char *text, size_t size);

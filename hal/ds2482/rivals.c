@@ -65,24 +65,18 @@ static bool has_open(const char *proc, int pid, dev_t device)
 	return found;
 }
 
-static bool was_told(const struct rivals *rivals, int pid)
-{
-	for (unsigned i = 0; i < RIVALS_TOLD; i++)
-		if (rivals->told[i] == pid)
-			return true;
-	return false;
-}
-
 /* owsd, owsd-sim, owsctl -t */
 static bool takes_lock(const char *name)
 {
 	return !strncmp(name, "owsd", 4) || !strncmp(name, "owsctl", 6);
 }
 
-unsigned rivals_find(const char *proc, const char *device, struct rivals *rivals, char *text,
-                     size_t size)
+#define ONE (sizeof(" and , process 2147483647") + 16) /* what one of them takes at most */
+#define MORE (sizeof(" and 4294967295 more"))
+
+unsigned rivals_find(const char *proc, const char *device, char *text, size_t size)
 {
-	unsigned open = 0;
+	unsigned open = 0, named = 0;
 	size_t len = 0;
 	struct stat st;
 	DIR *dir;
@@ -93,7 +87,7 @@ unsigned rivals_find(const char *proc, const char *device, struct rivals *rivals
 	dir = opendir(proc);
 	for (struct dirent *entry; dir && (entry = readdir(dir));) {
 		int pid = (int)strtol(entry->d_name, NULL, 10);
-		char name[32];
+		char name[17];
 
 		if (pid <= 0 || pid == getpid() || !has_open(proc, pid, st.st_rdev))
 			continue;
@@ -101,14 +95,15 @@ unsigned rivals_find(const char *proc, const char *device, struct rivals *rivals
 		if (takes_lock(name))
 			continue;
 		open++;
-		/* one more than there is room for is told next time */
-		if (was_told(rivals, pid) || size - len < sizeof(name) + 32)
+		if (size - len < ONE + MORE)
 			continue;
 		len += (size_t)snprintf(text + len, size - len, "%s%s, process %d",
 		                        len ? " and " : "", name[0] ? name : "a program", pid);
-		rivals->told[rivals->count++ % RIVALS_TOLD] = pid;
+		named++;
 	}
 	if (dir)
 		closedir(dir);
+	if (open > named)
+		snprintf(text + len, size - len, " and %u more", open - named);
 	return open;
 }

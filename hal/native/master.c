@@ -17,6 +17,7 @@
 #define PAUSE_MAX_NS (5 * NATIVE_S)
 #define GROW_MIN_NS NATIVE_S
 #define GROW_MAX_NS (10 * NATIVE_S)
+#define TROUBLE_NS (60 * NATIVE_S)
 
 /* From the first on; those before are known. */
 static void take_channels(struct native *native, unsigned first)
@@ -45,14 +46,26 @@ static void take_all_channels(struct native *native)
 			presence_lost(native, &native->table.devices[i]);
 }
 
-/* After the master was opened, or a link has failed. */
-static void notice(struct native *native)
+/* After the master was opened, a link has failed, or while there is trouble. */
+static void look_for_trouble(struct native *native, bool failed)
 {
-	char text[BUS_EVENT_TEXT];
+	char text[BUS_EVENT_TEXT] = "";
 
-	while (native->master->ops->notice &&
-	       native->master->ops->notice(native->master, text, sizeof(text)))
-		native_event(native, BUS_NOTE, NULL, 0, text);
+	if (native->master->ops->trouble)
+		native->master->ops->trouble(native->master, failed, text, sizeof(text));
+	native->trouble_ns = *text ? native_now(native) + TROUBLE_NS : INT64_MAX;
+	if (strcmp(text, native->trouble) == 0)
+		return;
+	memcpy(native->trouble, text, sizeof(text));
+	native_event(native, BUS_TROUBLE, NULL, 0, text);
+}
+
+void master_trouble(struct native *native, int64_t now, int64_t *next)
+{
+	if (now >= native->trouble_ns)
+		look_for_trouble(native, false);
+	if (native->trouble_ns < *next)
+		*next = native->trouble_ns;
 }
 
 /* Masters or channels that were missing are looked for again, less and less often. */
@@ -121,7 +134,7 @@ int64_t master_step(struct native *native, int64_t now)
 		family_forget(&native->table.devices[i]);
 	search_anew(native, native->up_ns);
 	native_event(native, BUS_UP, NULL, 0, "");
-	notice(native);
+	look_for_trouble(native, false);
 	return native->up_ns;
 }
 
@@ -209,7 +222,7 @@ static bool recover_link(struct native *native, unsigned n)
 		if (done == 0 && rung == LINK_POWER_CYCLE)
 			power_cycled(native, n);
 		if (done == 0 || done == -ECOMM) {
-			notice(native);
+			look_for_trouble(native, true);
 			return true;
 		}
 	}
@@ -235,7 +248,7 @@ bool master_recover(struct native *native, unsigned n, int err)
 	if (channel->rung == RETRY) {
 		channel->rung = OF_LINK;
 		native_count(native, COUNT_RETRIES);
-		notice(native);
+		look_for_trouble(native, true);
 		return true;
 	}
 	if (recover_link(native, n))
@@ -244,7 +257,7 @@ bool master_recover(struct native *native, unsigned n, int err)
 		native_count(native, COUNT_REOPENS);
 		if (!reopen_master(native))
 			return false;
-		notice(native);
+		look_for_trouble(native, true);
 		convert_again(native);
 		native->channel[n].rung = GIVE_UP;
 		return true;

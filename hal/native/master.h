@@ -15,4 +15,6 @@ bool master_recover(struct native *native, unsigned channel, int err);
 /* A transaction of the channel was good: the next error begins at the foot of the ladder. */
 void master_good(struct native *native, unsigned channel);
 /* Now and then: take chips that were missing. *next as elsewhere. */
+/* While something disturbs the hardware, looks whether it still does. */
+void master_trouble(struct native *native, int64_t now, int64_t *next);
 void master_grow(struct native *native, int64_t now, int64_t *next);

@@ -372,6 +372,7 @@ static int64_t step_once(struct native *native, int64_t now)
 	struct job *other = NULL, *in_turn = NULL;
 	bool yields = false;
 
+	master_trouble(native, now, &next);
 	master_grow(native, now, &next);
 	if (!native->up)
 		return now;

@@ -289,6 +289,8 @@ struct native {
 	int64_t grow_ns;       /* next look for chips that were missing; INT64_MAX: none was */
 	int64_t grow_pause_ns; /* until the one after that */
 	bool grow_told;        /* one is missing, and the log says so */
+	int64_t trouble_ns;    /* next look whether it has gone; INT64_MAX: there is none */
+	char trouble[BUS_EVENT_TEXT]; /* as it was reported */
 	unsigned channels;
 
 	/* Every file that works on a channel: `channels` wires; branches from NATIVE_CHANNELS on */

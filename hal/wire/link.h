@@ -208,10 +208,10 @@ struct link_master_ops {
 	 */
 	int (*grow)(struct link_master *master, char *why, size_t why_size);
 	/*
-	 * Optional. Open, and after open() or an error of a link: what the log has to say of it, as
-	 * that another program uses the hardware. False: nothing, or nothing new. May take some ms.
+	 * Optional. Open: what disturbs the use of the hardware now, as another program; "":
+	 * nothing. failed: a link had an error since the last call. May take some ms.
 	 */
-	bool (*notice)(struct link_master *master, char *text, size_t size);
+	void (*trouble)(struct link_master *master, bool failed, char *text, size_t size);
 	unsigned (*channels)(struct link_master *master); /* known after open() and grow() */
 	struct link *(*channel)(struct link_master *master, unsigned n);
 	/* Optional; also while closed. */

@@ -196,11 +196,10 @@ static void look_for_claims(const struct scene *scene, unsigned number)
 static void look_for_rivals(const struct scene *scene, unsigned number)
 {
 	char path[BOARD_PATH], proc[BOARD_PATH], who[RIVALS_TEXT];
-	struct rivals rivals = {0};
 
 	board_path(path, scene->root, I2C_DEV_ROOT "/i2c-%u", number);
 	board_path(proc, scene->root, RIVALS_PROC);
-	rivals_find(proc, path, &rivals, who, sizeof(who));
+	rivals_find(proc, path, who, sizeof(who));
 	if (!who[0])
 		return;
 	report_add(scene->report, BOARD_NOTE,

@@ -11,6 +11,7 @@
 #include "src/engine/routing/group.h"
 #include "src/engine/routing/place.h"
 #include "src/text/log.h"
+#include "src/text/printable.h"
 
 /*
  * A server with a cache may give the same value again and again without a sign of it. The log
@@ -39,6 +40,28 @@ static void report_cached(const struct lane *lane, int64_t cache_ns)
 		           first->item->name, count > 1 ? ", ..." : "");
 }
 
+static void take_note(struct lane *lane, struct lane_note *note, const char *text)
+{
+	size_t len = printable_cut(text, sizeof(note->text) - 1);
+
+	memcpy(note->text, text, len);
+	note->text[printable(note->text, len)] = '\0';
+	note->since_ns = lane->engine->time.now_ns;
+	engine_publish_target(lane->engine, lane);
+}
+
+static void trouble_event(struct lane *lane, const char *text)
+{
+	struct lane_note *note = &lane->state.trouble;
+
+	if (*text)
+		log_notice(lane->engine->log, "%s: %s", lane->port->target, text);
+	else
+		log_notice(lane->engine->log, "%s: this is over: %s", lane->port->target,
+		           note->text);
+	take_note(lane, note, text);
+}
+
 static void down_event(struct lane *lane, int err, const char *text)
 {
 	struct engine *e = lane->engine;
@@ -50,7 +73,7 @@ static void down_event(struct lane *lane, int err, const char *text)
 	       *text ? text : strerror(-err));
 	lane->state.up = false;
 	lane->counters.target_failures++;
-	engine_publish_target(e, lane);
+	take_note(lane, &lane->state.why_down, *text ? text : strerror(-err));
 	lane_fail(lane, err);
 }
 
@@ -106,6 +129,7 @@ static void suspended_event(struct lane *lane, const struct bus_event *event)
 	if (event->news == BUS_BACK) {
 		way->back = true;
 		way->back_ns = e->time.now_ns;
+		take_note(lane, &lane->state.why_down, "");
 		log_debug(e->log, "%s: can be reached, and is kept closed", lane->port->target);
 	} else if (!way->released) {
 		way->released = true;
@@ -139,6 +163,9 @@ void lane_event(struct lane *lane, const struct bus_event *event)
 		break;
 	case BUS_NOTE:
 		log_notice(lane->engine->log, "%s: %s", lane->port->target, event->text);
+		break;
+	case BUS_TROUBLE:
+		trouble_event(lane, event->text);
 		break;
 	}
 }

@@ -57,6 +57,7 @@ void lane_up(struct lane *lane, const char *text)
 	}
 	log_notice(e->log, "%s: from down to up%s%s", lane->port->target, *text ? ": " : "", text);
 	lane->state.was_up = true;
+	lane->state.why_down.text[0] = '\0';
 	engine_publish_target(e, lane);
 	engine_publish_driver(e);
 	refresh_signals(lane);

@@ -7,6 +7,7 @@
 
 #include "src/engine/due.h"
 #include "src/engine/limits/limits.h"
+#include "src/shm/entries.h"
 #include "src/signal/value.h"
 
 /* The attributes that say how a signal stands; the others count, or are of one moment. */
@@ -133,8 +134,11 @@ void engine_publish_driver(struct engine *e)
 void engine_publish_target(struct engine *e, const struct lane *lane)
 {
 	uint32_t state = lane->state.up ? 1 : engine_way(e, lane)->released ? 2 : 0;
+	const struct lane_note *note = lane->state.up ? &lane->state.trouble
+	                                              : &lane->state.why_down;
 
 	image_target(e->image, lane->index, state, (uint32_t)lane->counters.reconnects);
 	image_moves(e->image, lane->index, (uint32_t)lane->counters.moves_in);
+	image_note(e->image, lane->index, note->since_ns, note->text);
 	e->published = true;
 }

@@ -92,6 +92,12 @@ struct slot {
 	X(guests)       /* requests of clients of the served protocol, given to the bus */ \
 	X(guest_errors)
 
+/* What is to be said of the target, and since when; "": nothing. */
+struct lane_note {
+	char text[BUS_EVENT_TEXT];
+	int64_t since_ns;
+};
+
 /* How the target is; a reload carries it over. */
 struct lane_state {
 	/* lane_state.c */
@@ -102,7 +108,8 @@ struct lane_state {
 	/* lane_event.c; heard_ns: lane_answer.c too */
 	bool reported_up; /* the last report of the bus was BUS_UP */
 	int down_err; /* of its last BUS_DOWN; the log of a way that is tried again has a new one */
-	int64_t heard_ns; /* last answer or event of the bus */
+	struct lane_note why_down, trouble; /* shown while it is down; while it is up */
+	int64_t heard_ns;                   /* last answer or event of the bus */
 };
 
 /* What the bus has, and room for it; a reload carries it over. */

@@ -180,14 +180,15 @@ int ows_log_line(struct ows *h, uint32_t number, struct ows_log_line *line)
 	return 0;
 }
 
-int ows_refused_reload(struct ows *h, struct ows_log_line *line)
+/* The entry at this place of an area; number 0: none was written. */
+static int placed_line(struct ows *h, uint32_t area, uint32_t place, struct ows_log_line *line)
 {
 	struct ows_log_entry e;
 	int err;
 
-	if (!map_count(&h->map, OWS_AREA_REFUSED))
+	if (place >= map_count(&h->map, area))
 		return -ENOENT;
-	err = line_entry(h, OWS_AREA_REFUSED, 0, &e);
+	err = line_entry(h, area, place, &e);
 	if (err)
 		return err;
 	if (!e.number)
@@ -195,6 +196,18 @@ int ows_refused_reload(struct ows *h, struct ows_log_line *line)
 	*line = (struct ows_log_line){.number = e.number, .level = e.level, .time_ns = e.time_ns};
 	memcpy(line->text, e.text, sizeof(line->text) - 1);
 	return 0;
+}
+
+int ows_refused_reload(struct ows *h, struct ows_log_line *line)
+{
+	return placed_line(h, OWS_AREA_REFUSED, 0, line);
+}
+
+int ows_target_note(struct ows *h, int index, struct ows_log_line *line)
+{
+	int err = index < 0 ? -ENOENT : placed_line(h, OWS_AREA_NOTES, (uint32_t)index, line);
+
+	return err || *line->text ? err : -ENOENT;
 }
 
 const char *ows_quality_text(uint8_t quality)

@@ -96,6 +96,7 @@ static const uint16_t entry_size[OWS_AREAS] = {
 	[OWS_AREA_DEVICES] = sizeof(struct ows_device_entry),
 	[OWS_AREA_LOG] = sizeof(struct ows_log_entry),
 	[OWS_AREA_REFUSED] = sizeof(struct ows_log_entry),
+	[OWS_AREA_NOTES] = sizeof(struct ows_log_entry),
 };
 
 static bool entry_fits(uint32_t kind, uint32_t size)

@@ -468,6 +468,12 @@ int ows_log_line(struct ows *h, uint32_t number, struct ows_log_line *line);
 int ows_refused_reload(struct ows *h, struct ows_log_line *line);
 
 /*
+ * What is to be said of a target, and since when: why it is down; while it is up what disturbs it,
+ * as another program that has its adapter open. -ENOENT: nothing. -EIO: owsd died while it wrote.
+ */
+int ows_target_note(struct ows *h, int index, struct ows_log_line *line);
+
+/*
  * The journal of alarms since owsd started: entries count from 0; the last 256 are kept. The entry
  * of a device alarm has what the device's latch showed; that of a limit alarm names the limit of
  * the signal (owsd.rio(5)).

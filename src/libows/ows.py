@@ -87,7 +87,7 @@ except OSError as e:
     raise ImportError(f"ows.py needs the library libows.so.1, package libows1: {e}") from None
 _declare(_lib, "ows_", "open_as:sisp reopen:h find:hs get:hiqp get_text:hiqpsu wait:hpq fd:h "
          "changes:hppiq set:hidp set_integer:hiqp set_text:hisp beat:hu for:hs count:h info:hip "
-         "origin:hip controller:hip daemon:hqp target:hip device:hip alarm:hup alarm_state:hip "
+         "origin:hip controller:hip daemon:hqp target:hip target_note:hip device:hip alarm:hup alarm_state:hip "
          "acknowledge:hi shelve:hius command_entry:hup")
 _declare(_lib, "ows_", "close:h", None)
 _declare(_lib, "ows_", "now:", ctypes.c_int64)
@@ -126,6 +126,7 @@ _Info = _structure("char_p name path; uint8 type; bool output fresh alarm; uint3
 _Daemon = _structure("int32 pid; uint32 state generation; int64 start_ns beat_age_ns period_ns; "
                      "int alive; uint64 spare[4]")
 _Target = _structure("char_p name; uint32 state reconnects group moves; uint64 spare[4]")
+_LogLine = _structure("uint32 number level; int64 time_ns; char text[256]; uint64 spare[2]")
 _Device = _structure("char_p id family; char identity[48]; int target; uint32 power; "
                      "uint64 answers errors retries wire_us; int64 ok_ns; uint64 spare[4]")
 _Alarm = _structure("int signal; int64 occurred_ns; double before after; "
@@ -242,6 +243,7 @@ class Target(NamedTuple):
     reconnects: int
     group: int
     moves: int  # signals that came from another target
+    note: str | None  # why it is down; while it is up what disturbs it
 
 
 class Device(NamedTuple):
@@ -570,7 +572,10 @@ class Ows:
 
     def targets(self) -> Iterator[Target]:
         for index, found in self._each(_lib.ows_target, _Target):
-            yield _row(Target, found, index=index, state=TARGET_STATES[min(found.state, 2)])
+            line = _LogLine()
+            err = _lib.ows_target_note(self._handle(), index, ctypes.byref(line))
+            yield _row(Target, found, index=index, state=TARGET_STATES[min(found.state, 2)],
+                       note=None if err else _text(line.text))
 
     def devices(self) -> Iterator[Device]:
         """What owsd knows of each device that signals name."""

@@ -29,6 +29,15 @@ static void print_target(int index, const struct ows_target *target, bool severa
 	putchar('\n');
 }
 
+static void print_note(struct ows *h, int index, int64_t now_ns)
+{
+	struct ows_log_line note;
+	char span[WHEN_TEXT];
+
+	if (ows_target_note(h, index, &note) == 0)
+		printf("%11s for %s: %s\n", "", when_span(now_ns - note.time_ns, span), note.text);
+}
+
 /* clang-format off */
 static const struct table_column device_columns[] = {
 	{"DEVICE"}, {"IDENTITY"}, {"POWER"}, {"TARGET", .right = true}, {"REQUESTS", .right = true},
@@ -155,8 +164,10 @@ static void print_text(const struct ctl *ctl, struct ows *h, const struct ows_da
 	if (ows_served(h))
 		printf("served      %s\n", ows_served(h));
 	several = ows_target(h, 1, &target) == 0;
-	for (int i = 0; i < STATS_TARGETS && ows_target(h, i, &target) == 0; i++)
+	for (int i = 0; i < STATS_TARGETS && ows_target(h, i, &target) == 0; i++) {
 		print_target(i, &target, several, daemon->alive, served[i]);
+		print_note(h, i, now->boot);
+	}
 	print_counters(h, zeros);
 	print_devices(h, daemon, now->boot);
 	print_faces(ctl->instance, now);

@@ -63,6 +63,7 @@ static void take_event(void *ctx, const struct bus_event *event)
 	case BUS_LOST:
 	case BUS_POR:
 	case BUS_NOTE:
+	case BUS_TROUBLE:
 	case BUS_RELEASED:
 	case BUS_BACK:
 		break;

@@ -91,6 +91,18 @@ void image_refused(struct image *image, int64_t time_ns, const char *why, size_t
 	write_entry(image->refused, &entry, sizeof(entry));
 }
 
+void image_note(struct image *image, uint32_t target, int64_t time_ns, const char *text)
+{
+	struct ows_log_entry entry = {.time_ns = time_ns, .level = 5};
+
+	assert(target < image->target_count);
+	if (!image->notes)
+		return;
+	entry.number = image->notes[target].number + 1;
+	memcpy(entry.text, text, strnlen(text, OWS_LINE - 1));
+	write_entry(&image->notes[target], &entry, sizeof(entry));
+}
+
 void image_carry_log(struct image *image, const struct image *before)
 {
 	if (image->log_lines != before->log_lines)

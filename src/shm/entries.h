@@ -23,6 +23,8 @@ void image_device(struct image *image, uint32_t place, const struct ows_device_e
 void image_log(struct image *image, int64_t time_ns, uint32_t level, const char *text, size_t len);
 /* A reload was refused, and why; counted here. */
 void image_refused(struct image *image, int64_t time_ns, const char *why, size_t len);
+/* What is to be said of a target since time_ns; "": nothing. */
+void image_note(struct image *image, uint32_t target, int64_t time_ns, const char *text);
 /* Continue the log of the previous image in this one, with its numbers. */
 void image_carry_log(struct image *image, const struct image *before);
 

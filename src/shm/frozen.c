@@ -262,5 +262,5 @@ _Static_assert(OWS_AREA_RECORDS == 1 && OWS_AREA_INFOS == 2 && OWS_AREA_NAMES ==
                        OWS_AREA_TEXTS == 7 && OWS_AREA_ORIGINS == 8 && OWS_AREA_CONTROLLERS == 9 &&
                        OWS_AREA_SHELVES == 10 && OWS_AREA_ALARMS == 11 && OWS_AREA_COMMANDS == 12 &&
                        OWS_AREA_CHANGES == 13 && OWS_AREA_DEVICES == 14 && OWS_AREA_LOG == 15 &&
-                       OWS_AREA_REFUSED == 16,
+                       OWS_AREA_REFUSED == 16 && OWS_AREA_NOTES == 17,
                "published");

@@ -86,6 +86,19 @@ static uint64_t changes_of(uint64_t records)
 
 #define AREA(entry, n) ((struct image_area){.size = sizeof(entry), .count = (n)})
 
+/*
+ * Areas that came later are left out of the directory while they are empty: such an image is that
+ * of the first owsd of this major version, byte for byte.
+ */
+static uint32_t area_count(const struct image_areas *a)
+{
+	uint32_t count = OWS_AREAS - 1;
+
+	while (count > OWS_AREA_CHANGES && a->of[count].count == 0)
+		count--;
+	return count;
+}
+
 static void find_areas(const struct image_plan *plan, struct image_areas *a)
 {
 	uint64_t records = (uint64_t)plan->signal_count + 1;
@@ -106,8 +119,10 @@ static void find_areas(const struct image_plan *plan, struct image_areas *a)
 	a->of[OWS_AREA_DEVICES] = AREA(struct ows_device_entry, plan->device_count);
 	a->of[OWS_AREA_LOG] = AREA(struct ows_log_entry, plan->log_lines);
 	a->of[OWS_AREA_REFUSED] = AREA(struct ows_log_entry, plan->log_lines != 0);
+	a->of[OWS_AREA_NOTES] = AREA(struct ows_log_entry,
+	                             plan->log_lines ? plan->target_count : 0);
 	a->end = align64(sizeof(struct ows_image_header) +
-	                 (OWS_AREAS - 1) * sizeof(struct ows_area_entry));
+	                 area_count(a) * sizeof(struct ows_area_entry));
 	for (unsigned kind = 1; kind < OWS_AREAS; kind++) {
 		a->of[kind].off = a->end;
 		a->end = align64(a->end + a->of[kind].size * a->of[kind].count);
@@ -143,19 +158,6 @@ static int compare_names(const void *a, const void *b, void *base)
 	const struct ows_name_entry *x = a, *y = b;
 
 	return strcmp((const char *)base + x->name_off, (const char *)base + y->name_off);
-}
-
-/*
- * Areas that came later are left out of the directory while they are empty: such an image is that
- * of the first owsd of this major version, byte for byte.
- */
-static uint32_t area_count(const struct image_areas *a)
-{
-	uint32_t count = OWS_AREAS - 1;
-
-	while (count > OWS_AREA_CHANGES && a->of[count].count == 0)
-		count--;
-	return count;
 }
 
 static void fill_header(const struct image_plan *plan, const struct image_areas *a,
@@ -199,6 +201,7 @@ static void point_into(const struct image_plan *plan, const struct image_areas *
 		.devices = (void *)(base + a->of[OWS_AREA_DEVICES].off),
 		.log = (void *)(base + a->of[OWS_AREA_LOG].off),
 		.refused = plan->log_lines ? (void *)(base + a->of[OWS_AREA_REFUSED].off) : NULL,
+		.notes = plan->log_lines ? (void *)(base + a->of[OWS_AREA_NOTES].off) : NULL,
 		.record_count = plan->signal_count + 1,
 		.target_count = plan->target_count,
 		.counter_count = plan->counter_count,

@@ -74,6 +74,7 @@ struct image {
 	struct ows_device_entry *devices;
 	struct ows_log_entry *log;
 	struct ows_log_entry *refused; /* NULL: there is none, as there is no log */
+	struct ows_log_entry *notes;   /* likewise */
 	uint32_t record_count, target_count, counter_count, change_count, device_count, log_lines;
 	char *base;
 };

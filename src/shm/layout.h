@@ -268,6 +268,7 @@ struct ows_log_entry { /* 280 bytes */
 /*
  * In OWS_AREA_REFUSED: number counts the reloads that were refused since this image was made, text
  * says why the last one was. 0: what is served was loaded last.
+ * In OWS_AREA_NOTES: why the target is down; while it is up what disturbs it; "": nothing.
  */
 
 /*
@@ -334,6 +335,7 @@ enum ows_area {
 	OWS_AREA_DEVICES = 14,
 	OWS_AREA_LOG = 15,
 	OWS_AREA_REFUSED = 16, /* one line of the log's form: the reload that was refused last */
+	OWS_AREA_NOTES = 17,   /* one line of the log's form for each target */
 	OWS_AREAS /* one more than the last */
 };
 

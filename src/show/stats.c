@@ -127,6 +127,7 @@ void stats_json(struct json *json, const char *instance, struct ows *h,
 	char text[WHEN_TEXT];
 	unsigned served[STATS_TARGETS + 1];
 	struct ows_target target;
+	struct ows_log_line note;
 	struct ows_counter counter;
 	struct ows_device device;
 	int err;
@@ -156,6 +157,7 @@ void stats_json(struct json *json, const char *instance, struct ows *h,
 		json_string(json, "state",
 		            daemon->alive ? stats_target_state(target.state) : "unknown");
 		json_string(json, "last_state", stats_target_state(target.state));
+		json_string(json, "note", ows_target_note(h, i, &note) ? NULL : note.text);
 		json_uint(json, "reconnects", target.reconnects);
 		json_uint(json, "wire", target.group);
 		json_uint(json, "signals", served[i]);

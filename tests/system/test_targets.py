@@ -187,6 +187,8 @@ def test_a_way_that_is_killed_is_left_and_taken_again(scene):
     watch.has(HERE, other)
     until(lambda: served(scene, daemon, "limit", other) == 45, 10, "the output went with it")
     until(lambda: states(scene, daemon) == ["suspended", "up"], 10)
+    notes = [t["note"] for t in targets(scene, daemon).values()]
+    assert notes[0] and notes[1] is None, notes
     assert scene.owsctl(daemon, "set", "-w", "60", "limit_out", "46").returncode == 0
     again = scene.again(server)
     returns_and_was_counted(scene, daemon, again, other, limit, watch)

@@ -338,6 +338,20 @@ def test_a_house_without_a_fault_on_demand_shows_no_faults_of_a_simulation(scene
         assert not page.run("return document.querySelector('#wire .simulation').checkVisibility()")
 
 
+def test_a_target_that_is_down_has_its_reason_on_the_view_wire(scene):
+    with browser.open_one(scene) as page:
+        scene.file("house.sim", f"chip DS2482-100 0x18\nDS18B20 {ROOM} temperature 21.5\n")
+        daemon = scene.owsd(owsdtest.rio("sim:house.sim,i2c:/dev/i2c-77", [
+            item("room", f"/{ROOM}/temperature12")]))
+        page.go(serve(scene, daemon).address)
+        view(page, "wire")
+        shows(page, "#wire", "i2c:/dev/i2c-77", "\u00d7 down")
+        targets = json.loads(scene.owsctl(daemon, "stats", "--json").stdout)["targets"]
+        notes = {target["name"]: target["note"] for target in targets}
+        assert notes["sim:house.sim"] is None and "/dev/i2c-77" in notes["i2c:/dev/i2c-77"], notes
+        shows(page, "#wire table", notes["i2c:/dev/i2c-77"])
+
+
 def test_a_number_is_entered_by_slider_or_field_and_checked(scene):
     with plant(scene, write=True) as (daemon, _, page):
         page.click("[aria-label='Set others']:enabled")

@@ -144,7 +144,8 @@ function drawTargets() {
 	const rows = (last.targets ?? []).map((target) => {
 		const load = last.load.get(target.name);
 		return [
-			el("code", {}, target.name),
+			el("span", {}, el("code", {}, target.name),
+				target.note ? el("p", {class: "hint"}, target.note) : null),
 			el("span", {class: `pill is-${target.state === "up" ? "good" : "bad"}`},
 				target.state === "up" ? "up" : `\u00d7 ${target.state}`),
 			String(target.wire ?? ""),

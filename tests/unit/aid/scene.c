@@ -91,6 +91,7 @@ static void make_memory(struct scene *s, const struct config *config, struct ima
 		.device_count = (uint32_t)table_image_devices(config, devices),
 		.generation = 1,
 		.start_id = 7,
+		.log_lines = 1, /* so that targets have notes */
 		.pid = 1,
 		.start_ns = s->now_ns,
 		.period_ns = config->period_ns,

@@ -21,7 +21,6 @@
 #define DEVICE "/dev/null" /* of the adapter: a device file that every machine has */
 
 static char proc[64], said[BUS_EVENT_TEXT];
-static struct rivals rivals;
 static unsigned disturbs; /* after so many transfers of the driver; 0: never */
 
 static void fill(const char *name, const char *text)
@@ -56,7 +55,6 @@ void setUp(void)
 	ds_begin();
 	snprintf(proc, sizeof(proc), "/tmp/owsd-rivals-XXXXXX");
 	TEST_ASSERT_NOT_NULL(mkdtemp(proc));
-	memset(&rivals, 0, sizeof(rivals));
 	disturbs = 0;
 }
 
@@ -71,21 +69,28 @@ void tearDown(void)
 
 static unsigned find(void)
 {
-	return rivals_find(proc, DEVICE, &rivals, said, RIVALS_TEXT);
+	return rivals_find(proc, DEVICE, said, RIVALS_TEXT);
 }
 
-static void test_a_program_that_has_the_adapter_open_is_named_once(void)
+/* It has ended. */
+static void end(int pid)
+{
+	char command[96];
+
+	snprintf(command, sizeof(command), "rm -r %s/%d", proc, pid);
+	TEST_ASSERT_EQUAL_INT(0, system(command));
+}
+
+static void test_a_program_that_has_the_adapter_open_is_named(void)
 {
 	run(80, "bash", "/dev/zero");
 	run(81, "cat", "/etc/passwd");
 	run(109, "owserver", DEVICE);
 	TEST_ASSERT_EQUAL_UINT(1, find());
 	TEST_ASSERT_EQUAL_STRING("owserver, process 109", said);
-	TEST_ASSERT_EQUAL_UINT(1, find());
+	end(109);
+	TEST_ASSERT_EQUAL_UINT(0, find());
 	TEST_ASSERT_EQUAL_STRING("", said);
-	run(203, "python3", DEVICE);
-	TEST_ASSERT_EQUAL_UINT(2, find());
-	TEST_ASSERT_EQUAL_STRING("python3, process 203", said);
 }
 
 static void test_several_programs_are_named_together(void)
@@ -98,20 +103,19 @@ static void test_several_programs_are_named_together(void)
 	TEST_ASSERT_NOT_NULL(strstr(said, " and "));
 }
 
-/* The text has no room for all of them: each is named in the end. */
-static void test_many_programs_are_all_named_in_turn(void)
+/* The text has no room for all of them. */
+static void test_of_many_programs_two_are_named_and_the_others_counted(void)
 {
-	unsigned named = 0;
+	const char *first, *second;
 
-	for (int i = 0; i < RIVALS_TOLD; i++)
-		run(4194000 + i, "a-name-as-long", DEVICE);
-	for (int look = 0; look < RIVALS_TOLD; look++) {
-		TEST_ASSERT_EQUAL_UINT(RIVALS_TOLD, find());
-		for (const char *at = said; (at = strstr(at, "process ")); at++)
-			named++;
-	}
-	TEST_ASSERT_EQUAL_UINT(RIVALS_TOLD, named);
-	TEST_ASSERT_EQUAL_STRING("", said);
+	for (int i = 0; i < 12; i++)
+		run(2147483600 + i, "a-name-as-long!", DEVICE);
+	TEST_ASSERT_EQUAL_UINT(12, find());
+	first = strstr(said, "a-name-as-long!, process 21474836");
+	TEST_ASSERT_EQUAL_PTR(said, first);
+	second = strstr(first + 1, " and a-name-as-long!, process 21474836");
+	TEST_ASSERT_NOT_NULL_MESSAGE(second, said);
+	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(second, " and 10 more"), said);
 }
 
 static void test_programs_that_take_the_lock_and_this_one_are_no_rivals(void)
@@ -129,8 +133,8 @@ static void test_what_is_hidden_is_nobody(void)
 {
 	run(109, "owserver", "/nothing");
 	TEST_ASSERT_EQUAL_UINT(0, find());
-	TEST_ASSERT_EQUAL_UINT(0, rivals_find("/nothing", DEVICE, &rivals, said, RIVALS_TEXT));
-	TEST_ASSERT_EQUAL_UINT(0, rivals_find(proc, "/nothing", &rivals, said, RIVALS_TEXT));
+	TEST_ASSERT_EQUAL_UINT(0, rivals_find("/nothing", DEVICE, said, RIVALS_TEXT));
+	TEST_ASSERT_EQUAL_UINT(0, rivals_find(proc, "/nothing", said, RIVALS_TEXT));
 	TEST_ASSERT_EQUAL_STRING("", said);
 }
 
@@ -154,9 +158,17 @@ static void start(void)
 	((struct ds2482_master *)ds.master)->source.proc = proc;
 }
 
-static bool notice(void)
+/* What stands, after an error of a link or without. */
+static const char *trouble(bool failed)
 {
-	return ds2482_notice(ds.master, said, sizeof(said));
+	memset(said, 'x', sizeof(said));
+	ds2482_trouble(ds.master, failed, said, sizeof(said));
+	return said;
+}
+
+static void later(int64_t minutes)
+{
+	ds.host.now += minutes * 60 * HOST_S;
 }
 
 /* Another driver configures the chip. */
@@ -167,77 +179,87 @@ static void change(void)
 	TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->recover(ds.wire, LINK_CHIP_RESET));
 }
 
-static void test_the_log_names_who_has_the_adapter_when_it_is_opened(void)
+#define OPEN_IN(who) \
+	"/dev/null is also open in " who ": two programs on one DS2482 disturb each other"
+
+static void test_who_has_the_adapter_when_it_is_opened_is_named_until_it_ends(void)
 {
 	run(109, "owserver", DEVICE);
 	start();
-	TEST_ASSERT_TRUE(notice());
-	TEST_ASSERT_EQUAL_STRING("/dev/null is also open in owserver, process 109: two programs on "
-	                         "one DS2482 disturb each other",
-	                         said);
-	TEST_ASSERT_FALSE(notice());
+	TEST_ASSERT_EQUAL_STRING(OPEN_IN("owserver, process 109"), trouble(false));
+	TEST_ASSERT_EQUAL_STRING(OPEN_IN("owserver, process 109"), trouble(false));
+	later(2);
+	TEST_ASSERT_EQUAL_STRING(OPEN_IN("owserver, process 109"), trouble(false));
+	end(109);
+	TEST_ASSERT_EQUAL_STRING(OPEN_IN("owserver, process 109"), trouble(false)); /* not looked */
+	later(2);
+	TEST_ASSERT_EQUAL_STRING("", trouble(false));
 }
 
 static void test_who_comes_later_is_named_when_it_disturbs(void)
 {
 	start();
-	TEST_ASSERT_FALSE(notice());
+	TEST_ASSERT_EQUAL_STRING("", trouble(false));
 	run(109, "owserver", DEVICE);
-	TEST_ASSERT_FALSE(notice()); /* at most one look a minute */
+	TEST_ASSERT_EQUAL_STRING("", trouble(true)); /* at most one look a minute */
 	change();
-	TEST_ASSERT_TRUE(notice());
-	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "owserver, process 109"), said);
-	change();
-	ds.host.now += 2 * 60 * HOST_S;
-	TEST_ASSERT_FALSE(notice());
+	TEST_ASSERT_EQUAL_STRING(OPEN_IN("owserver, process 109"), trouble(true));
+	end(109);
 	/* a link's error without a change of the chip, too */
 	run(110, "python3", DEVICE);
-	ds.host.now += 2 * 60 * HOST_S;
-	TEST_ASSERT_TRUE(notice());
-	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "python3, process 110"), said);
+	later(2);
+	TEST_ASSERT_EQUAL_STRING(OPEN_IN("python3, process 110"), trouble(true));
 }
 
-static void test_where_nobody_is_seen_the_log_has_the_change_once_an_hour(void)
+static void test_what_was_named_and_goes_on_hidden_is_trouble_still(void)
 {
-	unsigned lines = 0;
-
+	run(109, "owserver", DEVICE);
 	start();
-	for (unsigned minute = 0; minute < 119; minute++) {
-		change();
-		if (notice()) {
-			lines++;
-			TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "0x18 on " DEVICE), said);
-			TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "owserver"), said);
-			TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "sudo owsd --board"), said);
-		}
-		ds.host.now += 60 * HOST_S;
-	}
-	TEST_ASSERT_EQUAL_UINT(2, lines);
+	TEST_ASSERT_EQUAL_STRING(OPEN_IN("owserver, process 109"), trouble(false));
+	end(109);
+	later(2);
+	change();
+	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(trouble(true), "0x18 on " DEVICE), said);
 }
 
-/* Two minutes with so many errors each. Returns the lines. */
-static unsigned fail_often(unsigned errors)
+static void test_where_nobody_is_seen_the_change_stands_until_ten_quiet_minutes_have_passed(void)
 {
-	unsigned lines = 0;
+	start();
+	for (unsigned minute = 0; minute < 60; minute++) {
+		change();
+		TEST_ASSERT_NOT_NULL_MESSAGE(strstr(trouble(true), "0x18 on " DEVICE), said);
+		TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "owserver"), said);
+		TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "sudo owsd --board"), said);
+		later(1);
+	}
+	for (unsigned minute = 1; minute < 10; minute++) {
+		TEST_ASSERT_NOT_NULL_MESSAGE(strstr(trouble(false), "0x18 on " DEVICE), said);
+		later(1);
+	}
+	TEST_ASSERT_EQUAL_STRING("", trouble(false));
+}
 
+/* Two minutes with so many errors each. */
+static const char *fail_often(unsigned errors)
+{
 	for (unsigned i = 0; i < 2 * errors; i++) {
-		lines += notice();
+		trouble(true);
 		ds.host.now += 60 * HOST_S / errors;
 	}
-	return lines;
+	return trouble(false);
 }
 
 static void test_where_nobody_is_seen_errors_are_a_reason_if_they_are_many(void)
 {
 	start();
-	TEST_ASSERT_EQUAL_UINT(0, fail_often(6));
-	TEST_ASSERT_EQUAL_UINT(1, fail_often(40));
-	TEST_ASSERT_EQUAL_UINT(0, fail_often(40)); /* within the hour */
-	ds.host.now += 3600 * HOST_S;
-	for (unsigned i = 0; i < 40 && !notice(); i++)
-		ds.host.now += HOST_S;
-	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "commands on " DEVICE " fail again and again"),
+	TEST_ASSERT_EQUAL_STRING("", fail_often(6));
+	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(fail_often(40), "commands on " DEVICE " fail again and "
+	                                                    "again"),
 	                             said);
+	later(11);
+	trouble(false); /* of the errors after the last look */
+	later(11);
+	TEST_ASSERT_EQUAL_STRING("", trouble(false));
 }
 
 /* What is unplugged was not changed by anybody. */
@@ -247,7 +269,7 @@ static void test_a_chip_that_does_not_come_back_was_not_changed(void)
 	ds_event("refuse 0x18 for 60s");
 	TEST_ASSERT_LESS_THAN_INT(0, ds.wire->ops->reset(ds.wire));
 	TEST_ASSERT_LESS_THAN_INT(0, ds.wire->ops->recover(ds.wire, LINK_CHIP_RESET));
-	TEST_ASSERT_FALSE(notice());
+	TEST_ASSERT_EQUAL_STRING("", trouble(true));
 }
 
 static void test_a_simulated_adapter_has_no_rivals(void)
@@ -256,7 +278,7 @@ static void test_a_simulated_adapter_has_no_rivals(void)
 	start();
 	((struct ds2482_master *)ds.master)->source.proc = NULL;
 	change();
-	TEST_ASSERT_FALSE(notice());
+	TEST_ASSERT_EQUAL_STRING("", trouble(true));
 }
 
 /* --- The bus of i2c:auto ---------------------------------------------------------------------- */
@@ -306,7 +328,7 @@ static int make(void *ctx, unsigned number, const struct bus_env *env, struct li
 
 	(void)ctx, (void)number;
 	ops = ds_ops;
-	ops.notice = ds2482_notice;
+	ops.trouble = ds2482_trouble;
 	return ds2482_create(&ops, env, &source, "", master, ds.why, sizeof(ds.why));
 }
 
@@ -324,7 +346,7 @@ static unsigned notes(const char *text)
 	unsigned n = 0;
 
 	for (unsigned i = 0; i < ds.host.events; i++)
-		n += ds.host.event[i].news == BUS_NOTE && strstr(ds.host.event[i].text, text);
+		n += ds.host.event[i].news == BUS_TROUBLE && strstr(ds.host.event[i].text, text);
 	return n;
 }
 
@@ -341,7 +363,7 @@ static struct bus *open_bus(void)
 	TEST_ASSERT_EQUAL_INT(
 		0, native_create(&ops, &master, "", &ds.host.env, &bus, ds.why, sizeof(ds.why)));
 	host_run(&ds.host, bus, ds.host.now + 5 * HOST_S);
-	TEST_ASSERT_EQUAL_UINT(0, host_events(&ds.host, BUS_NOTE));
+	TEST_ASSERT_EQUAL_UINT(0, host_events(&ds.host, BUS_TROUBLE));
 	return bus;
 }
 
@@ -357,7 +379,12 @@ static void test_a_bus_reports_the_program_and_the_change(void)
 	ds_event("reset 0x18");
 	host_run(&ds.host, bus, ds.host.now + 60 * HOST_S);
 	TEST_ASSERT_EQUAL_UINT(1, notes("is also open in owserver, process 109"));
-	TEST_ASSERT_EQUAL_UINT(2, host_events(&ds.host, BUS_NOTE));
+	TEST_ASSERT_EQUAL_UINT(2, host_events(&ds.host, BUS_TROUBLE));
+	/* the wire is quiet: nothing but the look itself finds that the program has ended */
+	end(109);
+	host_run(&ds.host, bus, ds.host.now + 130 * HOST_S);
+	TEST_ASSERT_EQUAL_UINT(3, host_events(&ds.host, BUS_TROUBLE));
+	TEST_ASSERT_EQUAL_STRING("", ds.host.event[ds.host.events - 1].text);
 	native_destroy(bus);
 }
 
@@ -374,7 +401,7 @@ static void test_a_hidden_program_that_works_the_wire_between_is_asked_for_once(
 
 	disturb(bus, 20);
 	TEST_ASSERT_EQUAL_UINT(1, notes("fail again and again: does another program use it"));
-	TEST_ASSERT_EQUAL_UINT(1, host_events(&ds.host, BUS_NOTE));
+	TEST_ASSERT_EQUAL_UINT(1, host_events(&ds.host, BUS_TROUBLE));
 	native_destroy(bus);
 }
 
@@ -385,22 +412,23 @@ static void test_a_program_that_works_the_wire_between_is_named(void)
 	run(109, "owserver", DEVICE);
 	disturb(bus, 20);
 	TEST_ASSERT_EQUAL_UINT(1, notes("is also open in owserver, process 109"));
-	TEST_ASSERT_EQUAL_UINT(1, host_events(&ds.host, BUS_NOTE));
+	TEST_ASSERT_EQUAL_UINT(1, host_events(&ds.host, BUS_TROUBLE));
 	native_destroy(bus);
 }
 
 int main(void)
 {
 	UNITY_BEGIN();
-	RUN_TEST(test_a_program_that_has_the_adapter_open_is_named_once);
+	RUN_TEST(test_a_program_that_has_the_adapter_open_is_named);
 	RUN_TEST(test_several_programs_are_named_together);
-	RUN_TEST(test_many_programs_are_all_named_in_turn);
+	RUN_TEST(test_of_many_programs_two_are_named_and_the_others_counted);
 	RUN_TEST(test_programs_that_take_the_lock_and_this_one_are_no_rivals);
 	RUN_TEST(test_what_is_hidden_is_nobody);
 	RUN_TEST(test_a_process_has_a_name_where_it_can_be_seen);
-	RUN_TEST(test_the_log_names_who_has_the_adapter_when_it_is_opened);
+	RUN_TEST(test_who_has_the_adapter_when_it_is_opened_is_named_until_it_ends);
 	RUN_TEST(test_who_comes_later_is_named_when_it_disturbs);
-	RUN_TEST(test_where_nobody_is_seen_the_log_has_the_change_once_an_hour);
+	RUN_TEST(test_what_was_named_and_goes_on_hidden_is_trouble_still);
+	RUN_TEST(test_where_nobody_is_seen_the_change_stands_until_ten_quiet_minutes_have_passed);
 	RUN_TEST(test_where_nobody_is_seen_errors_are_a_reason_if_they_are_many);
 	RUN_TEST(test_a_chip_that_does_not_come_back_was_not_changed);
 	RUN_TEST(test_a_simulated_adapter_has_no_rivals);

@@ -473,6 +473,39 @@ static void test_a_bus_that_only_talks_and_keeps_all_it_was_given_is_stuck_too(v
 	TEST_ASSERT_EQUAL_UINT64(1, scene_counter(&s, "target_failures"));
 }
 
+/* What the image says of the target; "": nothing. */
+static const char *note(void)
+{
+	return s.image.notes[0].text;
+}
+
+static void trouble(const char *text)
+{
+	struct bus_event event = {.news = BUS_TROUBLE};
+
+	memcpy(event.text, text, strlen(text));
+	engine_event(s.engine, 0, &event, s.now_ns);
+}
+
+static void test_a_target_has_the_reason_while_it_is_down_and_its_trouble_while_it_is_up(void)
+{
+	two_thermometers();
+	TEST_ASSERT_EQUAL_STRING("", note());
+	trouble("owserver, \x1bprocess 109");
+	TEST_ASSERT_EQUAL_STRING("owserver, ?process 109", note());
+	scene_reload(&s, NULL);
+	TEST_ASSERT_EQUAL_STRING("owserver, ?process 109", note());
+	scene_down(&s, -ECONNREFUSED);
+	TEST_ASSERT_EQUAL_STRING("Connection refused", note());
+	scene_up(&s);
+	TEST_ASSERT_EQUAL_STRING("owserver, ?process 109", note());
+	scene_down(&s, -ECONNREFUSED);
+	trouble("");
+	TEST_ASSERT_EQUAL_STRING("Connection refused", note());
+	scene_up(&s);
+	TEST_ASSERT_EQUAL_STRING("", note());
+}
+
 static void test_a_timeout_shorter_than_the_period_is_kept(void)
 {
 	s.config.period_ns = 60 * SCENE_S;
@@ -577,6 +610,7 @@ int main(void)
 	RUN_TEST(test_a_write_that_fails_is_not_tried_each_second_where_a_reading_is);
 	RUN_TEST(test_one_request_without_answer_spoils_only_its_signal_on_a_bus_that_lives);
 	RUN_TEST(test_a_bus_that_only_talks_and_keeps_all_it_was_given_is_stuck_too);
+	RUN_TEST(test_a_target_has_the_reason_while_it_is_down_and_its_trouble_while_it_is_up);
 	RUN_TEST(test_a_timeout_shorter_than_the_period_is_kept);
 	RUN_TEST(test_a_write_in_doubt_that_ends_late_is_followed_by_the_present_value);
 	RUN_TEST(test_answers_that_nobody_asked_for_are_counted_and_ignored);

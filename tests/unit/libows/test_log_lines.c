@@ -125,12 +125,33 @@ static void test_a_refused_reload_is_known_with_its_reason_until_the_next_image(
 static void test_a_long_reason_is_cut_and_ends(void)
 {
 	struct ows_log_line line;
-	char why[2 * OWS_LINE];
+	char why[2 * OWS_LINE] = "";
 
-	memset(why, 'x', sizeof(why));
+	memset(why, 'x', sizeof(why) - 1);
 	image_refused(&in.image, 5, why, sizeof(why));
 	TEST_ASSERT_EQUAL(0, ows_refused_reload(h, &line));
 	TEST_ASSERT_EQUAL_UINT(OWS_LINE - 1, strlen(line.text));
+	image_note(&in.image, 1, 5, why);
+	TEST_ASSERT_EQUAL(0, ows_target_note(h, 1, &line));
+	TEST_ASSERT_EQUAL_UINT(OWS_LINE - 1, strlen(line.text));
+}
+
+static void test_each_target_has_a_note_until_there_is_nothing_to_say(void)
+{
+	struct ows_log_line line;
+
+	TEST_ASSERT_EQUAL(-ENOENT, ows_target_note(h, 1, &line));
+	image_note(&in.image, 1, 7, "the adapter is gone");
+	TEST_ASSERT_EQUAL(0, ows_target_note(h, 1, &line));
+	TEST_ASSERT_EQUAL_INT64(7, line.time_ns);
+	TEST_ASSERT_EQUAL_STRING("the adapter is gone", line.text);
+	TEST_ASSERT_EQUAL(-ENOENT, ows_target_note(h, 0, &line));
+	TEST_ASSERT_EQUAL(-ENOENT, ows_target_note(h, 2, &line));
+	TEST_ASSERT_EQUAL(-ENOENT, ows_target_note(h, -1, &line));
+	image_note(&in.image, 1, 8, "");
+	TEST_ASSERT_EQUAL(-ENOENT, ows_target_note(h, 1, &line));
+	in.image.notes[1].seq++; /* owsd died in it */
+	TEST_ASSERT_EQUAL(-EIO, ows_target_note(h, 1, &line));
 }
 
 int main(void)
@@ -142,5 +163,6 @@ int main(void)
 	RUN_TEST(test_a_reload_goes_on_with_the_numbers);
 	RUN_TEST(test_a_refused_reload_is_known_with_its_reason_until_the_next_image);
 	RUN_TEST(test_a_long_reason_is_cut_and_ends);
+	RUN_TEST(test_each_target_has_a_note_until_there_is_nothing_to_say);
 	return UNITY_END();
 }

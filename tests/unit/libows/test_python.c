@@ -97,10 +97,11 @@ static void test_python_names_the_targets(void)
 {
 	image_target(&in.image, 0, 2, 3);
 	image_moves(&in.image, 1, 5);
+	image_note(&in.image, 1, 5, "the kernel's");
 	instance_put_double(&in, ROOM, 21.5, ows_now());
 	expect("s = ows.Ows(name)\nfor t in s.targets(): print(*t)\n"
 	       "print(list(s.targets())[s.get(s.names()[0]).target].name)",
-	       "0 localhost:4304 suspended 3 0 0\n1 w1 down 0 1 5\nw1\n");
+	       "0 localhost:4304 suspended 3 0 0 None\n1 w1 down 0 1 5 the kernel's\nw1\n");
 }
 
 static void test_its_signals_are_like_a_dictionary(void)

@@ -99,8 +99,8 @@ static void test_python_reads_a_recorded_image(void)
 	               " v.target, v.measured_ns, v.tried_ns, sep=\"|\")\n"));
 	TEST_ASSERT_EQUAL_STRING(
 		"5000000002 0.5 2.0 200.0 2 3 10 402 10 True False 77 3\n"
-		"0 localhost:4304 suspended 4 0 0\n"
-		"1 i2c:/dev/i2c-1 up 5 0 6\n"
+		"0 localhost:4304 suspended 4 0 0 None\n"
+		"1 i2c:/dev/i2c-1 up 5 0 6 None\n"
 		"0 never 1001000000000 False True device raised 192 1,0,0,1 0\n"
 		"1 room.temperature 1002000000000 30.5 None high high acknowledged 192  0\n"
 		"0 byte 1002000000000 255 set 192 4 3 1000 777 hmi Jana\n"

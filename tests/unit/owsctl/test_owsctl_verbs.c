@@ -11,6 +11,7 @@
 
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/verbs.h"
+#include "src/shm/entries.h"
 #include "src/shm/futex.h"
 #include "src/signal/value.h"
 #include "tests/unit/aid/caught.h"
@@ -349,6 +350,19 @@ static void test_stats_show_owsd_targets_and_counters(void)
 	TEST_ASSERT_EQUAL(CTL_USAGE, run(verb_stats, "stats more"));
 }
 
+static void test_stats_have_the_note_of_a_target(void)
+{
+	image_target(&in.image, 0, 1, 2);
+	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_stats, "stats --json"));
+	holds(out, "\"note\":null");
+	image_note(&in.image, 0, ows_now() - 90 * INSTANCE_S, "another program uses it");
+	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_stats, "stats"));
+	holds(out, "localhost:4304: up, 2 reconnects, wire 0, ");
+	holds(out, "\n            for 90s: another program uses it\n");
+	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_stats, "stats --json"));
+	holds(out, "\"note\":\"another program uses it\"");
+}
+
 static void test_metrics_have_one_family_for_the_counters_of_all_targets(void)
 {
 	image_target(&in.image, 0, 1, 2);
@@ -406,6 +420,7 @@ int main(void)
 	RUN_TEST(test_watch_prints_a_line_for_each_signal);
 	RUN_TEST(test_watch_refuses_a_count_that_is_none);
 	RUN_TEST(test_stats_show_owsd_targets_and_counters);
+	RUN_TEST(test_stats_have_the_note_of_a_target);
 	RUN_TEST(test_metrics_have_one_family_for_the_counters_of_all_targets);
 	RUN_TEST(test_json_of_one_object_names_instance_and_machine);
 	return UNITY_END();
