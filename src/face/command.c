@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "src/face/command.h"
+#include "src/service/command_age.h"
 #include "src/show/names.h"
 #include "src/show/range.h"
 #include "src/signal/error.h"
@@ -11,7 +12,7 @@
 
 static bool is_old(const struct face_command *command)
 {
-	return ows_now() - command->came_ns > FACE_OLD_NS;
+	return ows_now() - command->came_ns > COMMAND_OLD_NS;
 }
 
 int face_command_find(struct ows *h, const struct face_command *command, struct ows_info *info)

@@ -2,7 +2,7 @@
 /*
  * The way from outside to an output, of all faces: the signal is found, the value is taken for its
  * type, and what is refused is so in words. A command has an age: what may have waited for longer
- * than FACE_OLD_NS is refused, whatever held it.
+ * than COMMAND_OLD_NS is refused, whatever held it.
  */
 #pragma once
 

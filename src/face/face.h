@@ -78,8 +78,6 @@ struct face_ops {
 };
 
 #define FACE_DESCRIPTORS 8
-/* A command that may be older moves nothing, whatever held it. */
-#define FACE_OLD_NS (2 * NS_PER_S)
 
 struct face {
 	const struct face_ops *ops;

@@ -16,6 +16,7 @@
 #include "src/config/load.h"
 #include "src/face/look.h"
 #include "src/face/loop.h"
+#include "src/service/command_age.h"
 #include "src/service/heap.h"
 #include "src/service/resident.h"
 #include "src/service/streams.h"
@@ -151,7 +152,7 @@ static void wait_and_take(struct face *face, struct unix_signals *signals, int64
 	int ready;
 
 	if (count)
-		until = earlier(until, now_ns + FACE_OLD_NS / 2); /* face_came() needs a look */
+		until = earlier(until, now_ns + COMMAND_OLD_NS / 2); /* face_came() needs a look */
 	if (*face->report)
 		until = earlier(until, face->report_ns);
 	if (face->notify.watchdog_ns)
@@ -164,7 +165,7 @@ static void wait_and_take(struct face *face, struct unix_signals *signals, int64
 	ready = ppoll(fds, 3 + count, &t, NULL);
 	looked_ns = ows_now();
 	/* was it stopped between the look and the clock? It never sleeps so long */
-	if (looked_ns - now_ns > FACE_OLD_NS)
+	if (looked_ns - now_ns > COMMAND_OLD_NS)
 		looked_ns = now_ns;
 	for (unsigned i = 0; ready >= 0 && i < count; i++)
 		if (!fds[3 + i].revents)

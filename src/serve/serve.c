@@ -19,6 +19,7 @@
 #include "src/serve/work.h"
 #include "src/serve/work_directory.h"
 #include "src/serve/work_write.h"
+#include "src/service/command_age.h"
 #include "src/shm/futex.h"
 
 #define STACK_SIZE (128 * 1024)
@@ -255,7 +256,7 @@ static int serve_wait(struct serve *s, struct epoll_event *events)
 	/* what was not reported comes from now on, if it did not stop between that and the clock */
 	told_ns = ows_now();
 	if (n >= 0)
-		s->asked_ns = told_ns - asked_ns > WRITE_OLD_NS ? asked_ns : told_ns;
+		s->asked_ns = told_ns - asked_ns > COMMAND_OLD_NS ? asked_ns : told_ns;
 	if (wait)
 		guests_awake(&s->guests);
 	return n;

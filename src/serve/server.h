@@ -30,8 +30,6 @@
 #define ANSWER_NS (60 * NS_PER_S) /* until the client has taken the whole answer */
 #define APPLY_NS (10 * NS_PER_S)  /* until the bus has a commanded output */
 #define APPLY_LOOK_NS (10 * NS_PER_MS)
-/* A write that may have waited for longer, for this program or in its queues, is refused. */
-#define WRITE_OLD_NS (2 * NS_PER_S)
 /* Where clients may write the server sleeps no longer, so as to see when it did not run. */
 #define LOOK_MS 500
 

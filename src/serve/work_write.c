@@ -9,6 +9,7 @@
 #include "src/serve/work_ask.h"
 #include "src/serve/work_type.h"
 #include "src/serve/work_write.h"
+#include "src/service/command_age.h"
 
 /*
  * The value to write, in the units of the bus: as the client sent it, or converted, in the client's
@@ -142,7 +143,7 @@ void work_write(struct serve *s, struct client *c)
 		work_write_refuse(s, c);
 		return;
 	}
-	if (ows_now() - c->given_ns > WRITE_OLD_NS) {
+	if (ows_now() - c->given_ns > COMMAND_OLD_NS) {
 		client_refused(s, COUNT_refused_writes, &s->error_rate,
 		               "a write may have waited for longer than 2 seconds");
 		answer_code(s, c, CODE_TOO_OLD);

@@ -7,6 +7,7 @@
 #include "unity.h"
 
 #include "src/face/command.h"
+#include "src/service/command_age.h"
 #include "tests/unit/aid/instance.h"
 
 static const struct instance_signal signals[] = {
@@ -53,7 +54,7 @@ static void test_a_command_of_now_is_set_and_one_that_waited_is_not(void)
 	TEST_ASSERT_EQUAL_INT(0, give());
 	TEST_ASSERT_EQUAL_INT64(1, instance_command(&in, 0, RELAY + 1).value);
 	command.text = "0";
-	command.came_ns = ows_now() - FACE_OLD_NS - 1;
+	command.came_ns = ows_now() - COMMAND_OLD_NS - 1;
 	TEST_ASSERT_EQUAL_INT(-ETIME, give());
 	command.came_ns = 0; /* not known */
 	TEST_ASSERT_EQUAL_INT(-ETIME, give());
@@ -61,7 +62,7 @@ static void test_a_command_of_now_is_set_and_one_that_waited_is_not(void)
 	/* it waited behind the search */
 	command.came_ns = ows_now();
 	id = face_command_find(ows, &command, &info);
-	command.came_ns = ows_now() - FACE_OLD_NS - 1;
+	command.came_ns = ows_now() - COMMAND_OLD_NS - 1;
 	TEST_ASSERT_EQUAL_INT(-ETIME, face_command_set(ows, &command, id, &info, NULL));
 	TEST_ASSERT_EQUAL_INT64(1, instance_command(&in, 0, RELAY + 1).value);
 }

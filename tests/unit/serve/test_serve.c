@@ -16,6 +16,7 @@
 #include "hal/owfs/frame.h"
 #include "src/serve/serve.h"
 #include "src/serve/server.h"
+#include "src/service/command_age.h"
 #include "src/shm/word.h"
 #include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/instance.h"
@@ -419,7 +420,7 @@ static void test_a_write_of_this_moment_is_not_called_old_in_a_crowd(void)
 	                      (const uint8_t *)text, sizeof(text));
 
 	atomic_store(&crowd, true);
-	usleep((WRITE_OLD_NS + WRITE_OLD_NS / 10) / 1000); /* longer than a write may wait */
+	usleep((COMMAND_OLD_NS + COMMAND_OLD_NS / 10) / 1000); /* longer than a write may wait */
 	TEST_ASSERT_EQUAL_INT(n, send(fd, frame, (size_t)n, MSG_NOSIGNAL));
 	TEST_ASSERT_TRUE(is_silent(fd));
 	give(next_guest(), "");
