@@ -8,6 +8,7 @@ its time."""
 import contextlib
 import json
 import pathlib
+import queue
 import socket
 import sqlite3
 import threading
@@ -31,6 +32,7 @@ class Cable:
 
     def __init__(self, to):
         self.to, self.port, self.pairs, self.lock = to, free_port(), [], threading.Lock()
+        self.entered = b""  # all that came in at the near end
         self.flows, self.whole = threading.Event(), True
         self.flows.set()
         self.listener = socket.create_server(("127.0.0.1", self.port))
@@ -46,11 +48,21 @@ class Cable:
                     with self.lock:
                         self.pairs.append(pair)
                     for one, other in (pair, pair[::-1]):
-                        threading.Thread(target=self.carry, args=(one, other), daemon=True).start()
+                        inside = queue.SimpleQueue()
+                        threading.Thread(target=self.enter, args=(one, inside, one is near), daemon=True).start()
+                        threading.Thread(target=self.leave, args=(one, inside, other), daemon=True).start()
 
-    def carry(self, one, other):
+    def enter(self, one, inside, near):
+        """It takes what comes also while it holds."""
         with contextlib.suppress(OSError):
             while data := one.recv(65536):
+                self.entered += data if near else b""
+                inside.put(data)
+        inside.put(b"")
+
+    def leave(self, one, inside, other):
+        with contextlib.suppress(OSError):
+            while data := inside.get():
                 self.flows.wait()
                 other.sendall(data)
         # nothing of an end crosses a cable that is cut
@@ -177,11 +189,18 @@ class Machine:
         until(lambda: "recording " in self.recorder.log(), 20, self.recorder.log)
         self.face = scene.start([MQTT, *names, "-v"], self.env)
 
-    def turn(self, was, *values):
+    def turn(self, was, *values, sent=None):
+        """
+        One after the other; sent(): how many messages of the dial owsd-mqtt has sent. A value is out before the
+        next one comes: of changes that are less than 50 ms apart only the newest goes out.
+        """
         for value in values:
+            before = sent and sent()
             done = faulty.ctl(self.scene, self.daemon, self.env, "set", "-w", "20", "dial", str(value))
             assert done.returncode == 0, done
             was.append((time.time() + self.ahead, value))
+            if sent:
+                until(lambda: sent() > before, 20, self.face.log)
 
     def recorded(self, value):
         """It is on the disk."""
@@ -231,10 +250,13 @@ def plant(scene, cable=False, make=Historian, **keys):
 def test_a_cable_that_holds_for_a_while_loses_nothing_and_repeats_nothing(scene):
     with plant(scene, cable=True) as (historian, machine, cable):
         was = []
-        machine.turn(was, 1, 2)
+        def sent():
+            return cable.entered.count(f"/DDATA/pi7/{SWITCH}".encode())
+        machine.turn(was, 1, 2, sent=sent)
         arrives(historian, 2)
         cable.hold()
-        machine.turn(was, 3, 4, 5)
+        machine.turn(was, 3, 4, 5, sent=sent)
+        assert [v for _, v in historian.of("dial")] == [1, 2], historian.of("dial")
         cable.go()
         machine.turn(was, 6)
         assert set(has_each(historian, was, machine).values()) == {1}, historian.of("dial")
@@ -243,7 +265,9 @@ def test_a_cable_that_holds_for_a_while_loses_nothing_and_repeats_nothing(scene)
 def test_what_was_under_way_when_the_cable_was_cut_comes_again(scene):
     with plant(scene, cable=True) as (historian, machine, cable):
         was = []
-        machine.turn(was, 1, 2)
+        machine.turn(was, 1)
+        arrives(historian, 1)
+        machine.turn(was, 2)
         arrives(historian, 2)
         cable.hold()
         machine.turn(was, 3, 4, 5)
@@ -362,7 +386,9 @@ def test_victoriametrics_has_each_change_once_after_an_hour_without_a_broker(sce
         return sorted((ms / 1000, value) for ms, value in server.exported(f'__name__="sparkplug_{of}",metric="{name}"')[0])
     with plant(scene, make=lambda port: Bridge(port, server.url), env=clock.env(scene)) as (historian, machine, broker):
         was = []
-        machine.turn(was, 1, 2)
+        machine.turn(was, 1)
+        arrives(historian, 1)
+        machine.turn(was, 2)
         arrives(historian, 2)
         broker.process.kill()
         machine.turn(was, 3)
