@@ -15,42 +15,89 @@ const char *family_name(uint8_t code)
 	return family == &family_common ? bridge_type(code) : family->type;
 }
 
-/* The row of the property, or of the array that it is an element of; NULL: it measures nothing. */
-static const struct property *measuring_row(const struct family *family,
-                                            const struct path_slice *name)
+/* A temperature is not below this, whatever measures it. */
+#define ABSOLUTE_ZERO (-273.15)
+
+/* What the type of a property says of it, where its row does not say more. */
+static bool quantity_of_type(enum property_type type, struct quantity *quantity)
+{
+	*quantity = (struct quantity){.least = -HUGE_VAL, .most = HUGE_VAL, .decimals = -1};
+	switch (type) {
+	case PROPERTY_TEMPERATURE:
+		quantity->least = ABSOLUTE_ZERO;
+		quantity->unit = DEGREES_C;
+		return true;
+	case PROPERTY_TEMPGAP:
+		quantity->unit = "K";
+		return true;
+	case PROPERTY_PRESSURE:
+		quantity->unit = "mbar";
+		return true;
+	case PROPERTY_ALIAS:
+	case PROPERTY_ASCII:
+	case PROPERTY_BINARY:
+	case PROPERTY_BITS:
+	case PROPERTY_DATE:
+	case PROPERTY_DIRECTORY:
+	case PROPERTY_FLOAT:
+	case PROPERTY_INTEGER:
+	case PROPERTY_UNSIGNED:
+	case PROPERTY_YESNO:
+		break;
+	}
+	return false;
+}
+
+/* The quantity of the property, or of the array that it is an element of; false: it has none. */
+static bool quantity_of_name(const struct family *family, const struct path_slice *name,
+                             struct quantity *quantity)
 {
 	const char *dot = memchr(name->text, '.', name->len);
 	size_t len = dot ? (size_t)(dot - name->text) : name->len;
 	const struct property *row = family_property(family, NULL, name->text, len);
 
-	return row && row->measures.least < row->measures.most ? row : NULL;
-}
-
-bool quantity_of(const char *text, struct quantity *quantity)
-{
-	const struct property *row = NULL;
-	const struct family *family;
-	struct path path;
-
-	if (path_split(text, strlen(text), &path) || !path.device.len || !path.property.len)
-		return false;
-	if (path.has_rom)
-		row = measuring_row(family_of(path.rom[0]), &path.property);
-	for (unsigned n = 0; !path.has_rom && !row && (family = family_nth(n)); n++)
-		row = measuring_row(family, &path.property);
 	if (!row)
 		return false;
+	if (row->measures.least >= row->measures.most)
+		return quantity_of_type(row->type, quantity);
 	*quantity = (struct quantity){.least = row->measures.least,
 	                              .most = row->measures.most,
 	                              .decimals = row->measures.decimals,
 	                              .starves = row->measures.starves,
 	                              .unit = row->measures.unit};
-	if (!path.has_rom) {
-		/* a temperature is not below absolute zero, whatever measures it */
-		quantity->least = quantity->starves ? -273.15 : -HUGE_VAL;
-		quantity->most = HUGE_VAL;
-	}
 	return true;
+}
+
+/* Of a property whose chip is not known. */
+static bool quantity_of_any(const struct path_slice *name, struct quantity *quantity)
+{
+	const struct family *family;
+	bool found = false;
+
+	for (unsigned n = 0; (family = family_nth(n)); n++) {
+		struct quantity one;
+
+		if (!quantity_of_name(family, name, &one))
+			continue;
+		if (!found || one.starves)
+			*quantity = one;
+		found = true;
+	}
+	if (!found)
+		return false;
+	quantity->least = strcmp(quantity->unit, DEGREES_C) ? -HUGE_VAL : ABSOLUTE_ZERO;
+	quantity->most = HUGE_VAL;
+	return true;
+}
+
+bool quantity_of(const char *text, struct quantity *quantity)
+{
+	struct path path;
+
+	if (path_split(text, strlen(text), &path) || !path.device.len || !path.property.len)
+		return false;
+	return path.has_rom ? quantity_of_name(family_of(path.rom[0]), &path.property, quantity)
+	                    : quantity_of_any(&path.property, quantity);
 }
 
 bool quantity_excludes(const struct quantity *quantity, double number)

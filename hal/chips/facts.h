@@ -14,14 +14,15 @@ const char *family_name(uint8_t code);
 /* The row of property.measures. */
 struct quantity {
 	double least, most; /* a number outside is never a true measurement */
-	int decimals;       /* of its resolution */
+	int decimals;       /* of its resolution; -1: not known */
 	bool starves;       /* a thermometer that reports 85 or 127.94 when it lacks power */
 	const char *unit;   /* "" for a plain number; UTF-8; lives as long as the program */
 };
 
 /*
- * The quantity of the property at path; false: nothing is known of that property. An alias may name
- * any chip: then the property's name decides, and only what no chip can measure is out of range.
+ * The quantity of the property at path; false: it is none, or nothing is known of that property. A
+ * limit or a setting has a unit and no range. An alias may name any chip: then the property's name
+ * decides, and only what no chip can measure is out of range.
  */
 bool quantity_of(const char *path, struct quantity *quantity);
 

@@ -5,6 +5,8 @@
  */
 #pragma once
 
+#include <math.h>
+
 #include "hal/chips/area.h"
 
 /* The letters are those of /structure. */
@@ -71,14 +73,14 @@ struct property {
 	/*
 	 * Of a measurement, the range that the chip measures by its data sheet, widened by the
 	 * error that the data sheet allows at its ends: a chip at 125 degrees may rightly report
-	 * 127. Where a result is computed from a register, the range that the register holds. Both
-	 * 0: nothing is known.
+	 * 127. Where a result is computed from a register, the range that the register holds. Of a
+	 * limit or another setting, its unit alone. Both 0: the type says what there is to say.
 	 */
 	struct {
 		double least, most;
-		char unit[6]; /* UTF-8; "": a plain number */
-		int8_t decimals;
-		bool starves; /* a thermometer that reports 85 or 127.94 when it lacks power */
+		char unit[6];    /* UTF-8; "": a plain number */
+		int8_t decimals; /* of its resolution; -1: not known */
+		bool starves;    /* a thermometer that reports 85 or 127.94 when it lacks power */
 	} measures;
 };
 
@@ -124,6 +126,10 @@ int property_text(struct txn *txn, const char *text);
 #define FIELD(...) .field = {.area = __VA_ARGS__}
 #define MEASURES(least, most, decimals, unit) .measures = {least, most, unit, decimals, false}
 #define DEGREES_C "\u00b0C"
+/* A setting, or what no data sheet gives a range for: a unit, and any number. "": a plain one. */
+#define IN_UNIT(unit) MEASURES(-HUGE_VAL, HUGE_VAL, -1, unit)
+/* What counts, in a register of so many bits. */
+#define COUNTS_TO(most) MEASURES(0, most, 0, "")
 /* The same in a property_how, of what is written. */
 #define SET(...) .set = {.area = __VA_ARGS__}
 /* The rows of a table that nearly every memory has: "memory", and below "pages" its pages. */

@@ -392,7 +392,7 @@ static void warn_of_decimals(struct build *build, const struct rio_node *block,
 	struct quantity quantity;
 
 	if (value_is_float(item->type) || item->type == OWS_STRING || scale_changes(&item->scale) ||
-	    !quantity_of(item->path, &quantity) || quantity.decimals == 0)
+	    !quantity_of(item->path, &quantity) || quantity.decimals <= 0)
 		return;
 	report_warning(build->report, place_of(&values[OPT_TYPE], block),
 	               "\"%s\" has decimals, and a %s has none: write Type double or float",

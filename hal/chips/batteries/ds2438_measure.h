@@ -23,8 +23,15 @@ enum { DS2438_WAY_COUNT = 5 };
 
 #define DS2438_MEASURED(text, kind, what, first, ...) \
 	PROPERTY(text, kind, VOLATILE, READ, .arg = (what), .how = (first), __VA_ARGS__)
-#define DS2438_LATEST(first) \
-	PROPERTY("latesttemp", TEMPERATURE, VOLATILE, READ, .how = (first) + 1)
+/* -55 to +125 within 2, 0.03125; a TMP1826 up to 150 */
+#define DS2438_CELSIUS(most) MEASURES(-58, most, 5, DEGREES_C)
+/* 10 bits of 10 mV; on a VDD of 2.4 V at least the chip runs: a 0 is what a restart left */
+#define DS2438_VAD_VOLTS MEASURES(0, 10.23, 2, "V")
+#define DS2438_VDD_VOLTS MEASURES(2, 10.23, 2, "V")
+/* 10 bits and sign of 0.2441 mV */
+#define DS2438_VIS_VOLTS MEASURES(-0.25, 0.25, 5, "V")
+#define DS2438_LATEST(most, first) \
+	PROPERTY("latesttemp", TEMPERATURE, VOLATILE, READ, DS2438_CELSIUS(most), .how = (first) + 1)
 #define DS2438_FLAG(text, bit, first) \
 	PROPERTY(text, YESNO, STABLE, BOTH, FIELD(PAGES, .shift = (bit), .bits = 1), \
 	         .how = (first) + 2)

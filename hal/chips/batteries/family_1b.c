@@ -298,14 +298,17 @@ static const struct property_how how[] = {
 static const struct property properties[] = {
 	PROPERTY_DIR("counter"),
 	PROPERTY("counter/cycles", UNSIGNED, STABLE, READ,
-                 FIELD(REGISTERS, .at = COUNT, .bytes = 2)),
+                 FIELD(REGISTERS, .at = COUNT, .bytes = 2), COUNTS_TO(UINT16_MAX)),
 	PROPERTY("counter/increment", YESNO, VOLATILE, WRITE, .how = WAY_INCREMENT),
 	PROPERTY("counter/reset", YESNO, VOLATILE, WRITE, .how = WAY_RESET),
 	PROPERTY_DIR("pages"),
 	PROPERTY("pages/page", BINARY, STABLE, BOTH, ELEMENTS(3, NUMBERS), .size = PAGE,
                  FIELD(MEMORY), .how = WAY_PAGE),
-	PROPERTY("temperature", TEMPERATURE, VOLATILE, READ, .how = WAY_TEMPERATURE),
-	PROPERTY("volts", FLOAT, VOLATILE, READ, .how = WAY_VOLTS),
+	/* -40 to +85 within 4; stored down to -55 and up to 125 */
+	PROPERTY("temperature", TEMPERATURE, VOLATILE, READ, MEASURES(-58, 128, 3, DEGREES_C),
+                 .how = WAY_TEMPERATURE),
+	/* 10 bits of 10 mV, of its own supply */
+	PROPERTY("volts", FLOAT, VOLATILE, READ, MEASURES(2, 10.23, 2, "V"), .how = WAY_VOLTS),
 };
 
 const struct family family_1b = {

@@ -111,8 +111,8 @@ static const struct property_how how[] = {
 
 static const struct property properties[] = {
 	PROPERTY_DIR("B1-R1-A"),
-	DS2438_SETTING("B1-R1-A/gain", PRESSURE, B1_GAIN),
-	DS2438_SETTING("B1-R1-A/offset", PRESSURE, B1_OFFSET),
+	DS2438_SETTING("B1-R1-A/gain", PRESSURE, B1_GAIN, IN_UNIT("")),
+	DS2438_SETTING("B1-R1-A/offset", PRESSURE, B1_OFFSET, IN_UNIT("mbar")),
 	/* absolute, of any sensor: gain and offset are settings */
 	PROPERTY("B1-R1-A/pressure", PRESSURE, VOLATILE, READ, MEASURES(0, HUGE_VAL, 2, "mbar"),
                  .how = WAY_PRESSURE),
@@ -135,12 +135,11 @@ static const struct property properties[] = {
 	PROPERTY_DIR("MultiSensor"),
 	PROPERTY("MultiSensor/type", ASCII, STABLE, READ, .size = 12, .how = WAY_SENSOR_TYPE),
 	PROPERTY_DIR("S3-R1-A"),
-	DS2438_LIGHT("S3-R1-A/current", 0, .hidden = false),
-	DS2438_SETTING("S3-R1-A/gain", FLOAT, S3_GAIN),
+	DS2438_LIGHT("S3-R1-A/current", 0, MEASURES(0, HUGE_VAL, 3, "\u00b5A")),
+	DS2438_SETTING("S3-R1-A/gain", FLOAT, S3_GAIN, IN_UNIT("")),
 	DS2438_LIGHT("S3-R1-A/illuminance", 1, MEASURES(0, HUGE_VAL, 1, "lx")),
-	/* 10 bits of 10 mV; on a VDD of 2.4 V at least the chip runs: a 0 is what a restart left */
-	MEASURED("VAD", FLOAT, DS2438_VAD, MEASURES(0, 10.23, 2, "V")),
-	MEASURED("VDD", FLOAT, DS2438_VDD, MEASURES(2, 10.23, 2, "V")),
+	MEASURED("VAD", FLOAT, DS2438_VAD, DS2438_VAD_VOLTS),
+	MEASURED("VDD", FLOAT, DS2438_VDD, DS2438_VDD_VOLTS),
 	OTHER("alert_high", YESNO, VOLATILE, BOTH, .arg = TMP1826_ALERT_HIGH, .how = WAY_ALERT),
 	OTHER("alert_low", YESNO, VOLATILE, BOTH, .arg = TMP1826_ALERT_LOW, .how = WAY_ALERT),
 	TIME("date", DATE, VOLATILE, 8),
@@ -152,23 +151,21 @@ static const struct property properties[] = {
 	TIME("endcharge/udate", UNSIGNED, VOLATILE, 20),
 	DS2438_HUMIDITY("humidity", HIH3600),
 	IDENTITY_ROW(WAY_IDENTITY, .kinds = KIND(IS_DS2438) | KIND(IS_TMP1826) | KIND(IS_NEITHER)),
-	DS2438_LATEST(WAYS),
+	DS2438_LATEST(151, WAYS),
 	OTHER("memory", BINARY, VOLATILE, BOTH, .size = 256, FIELD(MEMORY)),
 	PROPERTY("offset", UNSIGNED, STABLE, BOTH, .negative = true, .how = WAY_OFFSET),
 	PROPERTY_DIR("pages"),
 	DS2438_PAGES(WAYS),
 	OTHER("power", YESNO, VOLATILE, READ, .how = WAY_POWER),
-	/* -55 to +125 within 2, 0.03125; a TMP1826 up to 150 */
 	PROPERTY("temperature", TEMPERATURE, VOLATILE, READ, .arg = DS2438_TEMPERATURE,
-                 MEASURES(-58, 151, 5, DEGREES_C), .kinds = KIND(IS_DS2438) | KIND(IS_TMP1826),
+                 DS2438_CELSIUS(151), .kinds = KIND(IS_DS2438) | KIND(IS_TMP1826),
                  .how = WAY_TEMPERATURE),
 	OTHER("temphigh", TEMPERATURE, STABLE, BOTH, .arg = TMP1826_HIGH, .how = WAY_LIMIT),
 	OTHER("templow", TEMPERATURE, STABLE, BOTH, .arg = TMP1826_LOW, .how = WAY_LIMIT),
 	OTHER("tempoffset", TEMPGAP, STABLE, BOTH, .arg = TMP1826_OFFSET, .how = WAY_LIMIT),
 	OTHER("tempres", UNSIGNED, STABLE, READ, .how = WAY_FORMAT),
 	TIME("udate", UNSIGNED, SECOND, 8),
-	/* 10 bits and sign of 0.2441 mV */
-	MEASURED("vis", FLOAT, DS2438_VIS, MEASURES(-0.25, 0.25, 5, "V")),
+	MEASURED("vis", FLOAT, DS2438_VIS, DS2438_VIS_VOLTS),
 };
 
 /* The alerts of a TMP1826 stay: reading cleared them in the chip, and no client has them yet. */

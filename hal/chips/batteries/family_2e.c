@@ -108,20 +108,21 @@ static const struct property_how how[] = {
 #define SETTING(text, bit) \
 	PROPERTY(text, YESNO, STABLE, BOTH, \
 	         FIELD(BYTES, .at = STATUS_AT, .shift = (bit), .bits = 1), .how = WAY_SETTING)
-#define BIAS(text, life_, resistor) \
+#define BIAS(text, life_, resistor, unit_) \
 	PROPERTY(text, FLOAT, life_, BOTH, \
 	         FIELD(EEPROM, .at = 0x32, .bytes = 2, .big_endian = true, .is_signed = true, \
-	               .unit = GAUGE_FINE / (resistor)))
+	               .unit = GAUGE_FINE / (resistor)), \
+	         IN_UNIT(unit_))
 
 static const struct property properties[] = {
-	GAUGE_CHARGE("amphours", GAUGE_RESISTOR),
+	GAUGE_AMPHOURS,
 	PROPERTY("charge", YESNO, STABLE, WRITE, .how = WAY_CHARGE),
 	SETTING("cini", 1),
 	GAUGE_BIT("cstat0", STABLE, BOTH, STATUS, 0, 6),
 	GAUGE_BIT("cstat1", STABLE, BOTH, STATUS, 0, 7),
 	SETTING("ctype", 0),
-	GAUGE_WORD("current", 0x0e, GAUGE_FINE / GAUGE_RESISTOR),
-	BIAS("currentbias", VOLATILE, GAUGE_RESISTOR),
+	GAUGE_WORD("current", 0x0e, GAUGE_FINE / GAUGE_RESISTOR, GAUGE_CURRENT_FINE),
+	BIAS("currentbias", VOLATILE, GAUGE_RESISTOR, "A"),
 	GAUGE_BIT("defaultpmod", STABLE, BOTH, EEPROM, DEFAULTS_AT, 5),
 	GAUGE_LOCK(3, 0x07, 0x403020),
 	AREA_MEMORY(MEMORY, 256),
@@ -130,14 +131,15 @@ static const struct property properties[] = {
                  FIELD(EEPROM, .at = 0x20)),
 	SETTING("pmod", 5),
 	PROPERTY("refresh", YESNO, STABLE, WRITE, .how = WAY_REFRESH),
-	GAUGE_TEMPERATURE(0x18, .hidden = false),
+	GAUGE_TEMPERATURE(0x18),
 	PROPERTY("timer", FLOAT, VOLATILE, BOTH,
-                 FIELD(TIMER, .bytes = 2, .big_endian = true, .unit = .015625)),
+                 FIELD(TIMER, .bytes = 2, .big_endian = true, .unit = .015625),
+                 MEASURES(0, 1024, 6, "h")),
 	GAUGE_COUPLES(0x18, 1),
-	BIAS("vbias", STABLE, 1),
-	GAUGE_WORD("vis", 0x0e, GAUGE_FINE),
+	BIAS("vbias", STABLE, 1, "V"),
+	GAUGE_WORD("vis", 0x0e, GAUGE_FINE, GAUGE_VIS_FINE),
 	GAUGE_VOLT(.00488),
-	GAUGE_CHARGE("volthours", 1),
+	GAUGE_VOLTHOURS,
 };
 
 const struct family family_2e = {.code = 0x2e,

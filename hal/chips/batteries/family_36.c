@@ -17,9 +17,9 @@ static const struct property properties[] = {
                  FIELD(SPECIAL, .shift = 6, .bits = 1, .inverted = true)),
 	AREA_MEMORY(MEMORY, 256),
 	GAUGE_BIT("smod", VOLATILE, BOTH, STATUS, 0, 6),
-	GAUGE_WORD("vis", 0x0e, GAUGE_FINE),
-	GAUGE_WORD("vis_B", 0x0e, GAUGE_FINE),
-	GAUGE_CHARGE("volthours", 1),
+	GAUGE_WORD("vis", 0x0e, GAUGE_FINE, GAUGE_VIS_FINE),
+	GAUGE_WORD("vis_B", 0x0e, GAUGE_FINE, GAUGE_VIS_FINE),
+	GAUGE_VOLTHOURS,
 };
 
 const struct family family_36 = {.code = 0x36,

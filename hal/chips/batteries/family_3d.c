@@ -19,7 +19,8 @@ static const struct property_how how[] = {GAUGE_WAYS};
 #define FLAG(text, bit) GAUGE_BIT(text, VOLATILE, BOTH, STATUS, 0, bit)
 #define BIAS(text, life_, where, unit_) \
 	PROPERTY(text, FLOAT, life_, BOTH, \
-	         FIELD(PARAMETERS, .at = (where), .is_signed = true, .unit = (unit_)))
+	         FIELD(PARAMETERS, .at = (where), .is_signed = true, .unit = (unit_)), \
+	         IN_UNIT("V"))
 
 static const struct property properties[] = {
 	PROPERTY("PIO", YESNO, VOLATILE, WRITE, FIELD(SPECIAL, .bits = 1, .inverted = true)),
@@ -33,16 +34,16 @@ static const struct property properties[] = {
 	FLAG("porf", 1),
 	FLAG("sef", 5),
 	GAUGE_BIT("sensed", VOLATILE, READ, BYTES, 0x15, 0),
-	GAUGE_TEMPERATURE(0x0a, .hidden = false),
+	GAUGE_TEMPERATURE(0x0a),
 	GAUGE_COUPLES(0x0a, 1),
 	SETTING("uven", 6),
 	FLAG("uvf", 2),
 	BIAS("vbias", STABLE, 0x01, GAUGE_FINE),
-	GAUGE_WORD("vis", 0x0e, GAUGE_FINE),
-	GAUGE_WORD("vis_avg", 0x08, GAUGE_FINE),
+	GAUGE_WORD("vis", 0x0e, GAUGE_FINE, GAUGE_VIS_FINE),
+	GAUGE_WORD("vis_avg", 0x08, GAUGE_FINE, GAUGE_VIS_FINE),
 	BIAS("vis_offset", VOLATILE, 0x1b, 1.56e-6),
 	GAUGE_VOLT(.00976),
-	GAUGE_CHARGE("volthours", 1),
+	GAUGE_VOLTHOURS,
 };
 
 const struct family family_3d = {.code = 0x3d,

@@ -73,29 +73,42 @@ int gauge_couple_high(struct txn *txn);
 #define GAUGE_LOCK(n, register_, blocks) \
 	PROPERTY("lock", YESNO, STABLE, BOTH, ELEMENTS(n, NUMBERS), \
 	         .arg = (register_) | (blocks) << 8, .how = WAY_LOCK)
-#define GAUGE_WORD(text, where, unit_) \
+#define GAUGE_WORD(text, where, unit_, measures_) \
 	PROPERTY(text, FLOAT, VOLATILE, READ, \
 	         FIELD(WORDS, .at = (where), .bytes = 2, .big_endian = true, .is_signed = true, \
-	               .unit = (unit_)))
+	               .unit = (unit_)), measures_)
+/* What the register of the voltage across the resistor holds, in V and, inside, in A. */
+#define GAUGE_VIS_COARSE MEASURES(-0.064, 0.064, 6, "V")
+#define GAUGE_VIS_FINE MEASURES(-0.0512, 0.0512, 7, "V")
+#define GAUGE_CURRENT_COARSE MEASURES(-2.56, 2.56, 6, "A")
+#define GAUGE_CURRENT_FINE MEASURES(-2.048, 2.048, 7, "A")
+/* 10 bits and sign; the chip measures from 0 on, within 5 mV of one cell. */
 #define GAUGE_VOLT(unit_) \
 	PROPERTY("volt", FLOAT, VOLATILE, READ, \
 	         FIELD(WORDS, .at = 0x0c, .bytes = 2, .big_endian = true, .is_signed = true, \
-	               .shift = 5, .unit = (unit_)))
-#define GAUGE_TEMPERATURE(where, ...) \
+	               .shift = 5, .unit = (unit_)), \
+	         MEASURES(-0.02, (unit_) * 1023.5, 3, "V"))
+/* Registers hold -128 to 127.875; no such chip lives below -55 or above 125, within 3. */
+#define GAUGE_CELSIUS MEASURES(-58, 127.875, 3, DEGREES_C)
+#define GAUGE_TEMPERATURE(where) \
 	PROPERTY("temperature", TEMPERATURE, VOLATILE, READ, \
 	         FIELD(WORDS, .at = (where), .bytes = 2, .big_endian = true, .is_signed = true, \
-	               .shift = 5, .unit = .125), __VA_ARGS__)
-/* The accumulated current: 6.25 uVh. */
-#define GAUGE_CHARGE(text, resistor) \
+	               .shift = 5, .unit = .125), GAUGE_CELSIUS)
+/* The accumulated current: 6.25 uVh, 15 bits and sign. */
+#define GAUGE_CHARGE(text, resistor, unit_) \
 	PROPERTY(text, FLOAT, VOLATILE, BOTH, \
 	         FIELD(CHARGE, .bytes = 2, .big_endian = true, .is_signed = true, \
-	               .unit = 6.25e-6 / (resistor)))
+	               .unit = 6.25e-6 / (resistor)), \
+	         MEASURES(-.2048 / (resistor), .2048 / (resistor), 6, unit_))
+#define GAUGE_AMPHOURS GAUGE_CHARGE("amphours", GAUGE_RESISTOR, "Ah")
+#define GAUGE_VOLTHOURS GAUGE_CHARGE("volthours", 1, "Vh")
 #define GAUGE_BIT(text, life_, access_, area_, where, bit) \
 	PROPERTY(text, YESNO, life_, access_, \
 	         FIELD(area_, .at = (where), .shift = (bit), .bits = 1))
 #define GAUGE_BESIDE_PIO(text, life_, area_, bit) \
 	PROPERTY(text, YESNO, life_, BOTH, FIELD(area_, .shift = (bit), .bits = 1), \
 	         .how = WAY_BESIDE_PIO)
+/* Each type ends inside the range of all of them; range_low and range_high have its own. */
 #define GAUGE_COUPLE(text, type_, where, fine) \
 	PROPERTY_DIR(text), \
 	PROPERTY(text "/range_high", TEMPERATURE, STATIC, READ, .offline = true, \
@@ -103,7 +116,8 @@ int gauge_couple_high(struct txn *txn);
 	PROPERTY(text "/range_low", TEMPERATURE, STATIC, READ, .offline = true, \
 	         .arg = (type_), .how = WAY_COUPLE_LOW), \
 	PROPERTY(text "/temperature", TEMPERATURE, VOLATILE, READ, \
-	         .arg = (type_) | (where) << 8 | (fine) << 16, .how = WAY_COUPLE)
+	         .arg = (type_) | (where) << 8 | (fine) << 16, \
+	         MEASURES(-270, 1820, 3, DEGREES_C), .how = WAY_COUPLE)
 #define GAUGE_COUPLES(where, fine) \
 	GAUGE_COUPLE("typeB", TYPE_B, where, fine), GAUGE_COUPLE("typeE", TYPE_E, where, fine), \
 	GAUGE_COUPLE("typeJ", TYPE_J, where, fine), GAUGE_COUPLE("typeK", TYPE_K, where, fine), \

@@ -38,7 +38,7 @@ enum {
 #define DS2438_HUMIDITY(text, which) \
 	PROPERTY(text, FLOAT, VOLATILE, READ, .arg = (which), MEASURES(-10, 110, 2, "%"), \
 	         .how = WAY_HUMIDITY)
-#define DS2438_SETTING(text, kind, which) \
-	PROPERTY(text, kind, STABLE, BOTH, .arg = (which), .how = WAY_SETTING)
+#define DS2438_SETTING(text, kind, which, unit_) \
+	PROPERTY(text, kind, STABLE, BOTH, .arg = (which), unit_, .how = WAY_SETTING)
 #define DS2438_LIGHT(text, lux, ...) \
 	PROPERTY(text, FLOAT, VOLATILE, READ, .arg = (lux), .how = WAY_LIGHT, __VA_ARGS__)

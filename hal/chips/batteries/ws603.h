@@ -53,7 +53,8 @@ enum { WS603_PARAMETERS = 0xa0, WS603_DATA, WS603_LIGHTS, WS603_SET_WIND, WS603_
 	WS603_BYTES("WS603/param_string", STABLE, WS603_PARAMETERS, first), \
 	PROPERTY("WS603/temperature", TEMPERATURE, VOLATILE, READ, \
 	         FIELD(words, .at = 0x18, .bytes = 2, .big_endian = true, .is_signed = true, \
-	               .shift = 5, .unit = .125)), \
+	               .shift = 5, .unit = .125), GAUGE_CELSIUS), \
 	WS603_BYTE("WS603/volt", READ, WS603_DATA | 4 << 8, first), \
-	PROPERTY("WS603/wind_speed", FLOAT, VOLATILE, READ, .hidden = true, .how = (first) + 2)
+	PROPERTY("WS603/wind_speed", FLOAT, VOLATILE, READ, .hidden = true, \
+	         MEASURES(0, HUGE_VAL, 2, "m/s"), .how = (first) + 2)
 /* clang-format on */

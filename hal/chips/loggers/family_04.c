@@ -205,7 +205,8 @@ static const struct property_how how[] = {
 #define DATE_OF(text, area_) PROPERTY(text, DATE, VOLATILE, BOTH, FIELD(area_, .at = 1, .bytes = 4))
 #define SECONDS_OF(text, area_) \
 	PROPERTY(text, UNSIGNED, SECOND, BOTH, FIELD(area_, .at = 1, .bytes = 4))
-#define CYCLES_OF(text, area_) PROPERTY(text, UNSIGNED, SECOND, BOTH, FIELD(area_, .bytes = 4))
+#define CYCLES_OF(text, area_) \
+	PROPERTY(text, UNSIGNED, SECOND, BOTH, FIELD(area_, .bytes = 4), COUNTS_TO(UINT32_MAX))
 
 static const struct property properties[] = {
 	PROPERTY("alarm", UNSIGNED, VOLATILE, READ, .flag = true, .how = WAY_ALARM),

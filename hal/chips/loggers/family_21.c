@@ -61,24 +61,27 @@ static const struct property_how how[] = {
 #define ALARM(text, where) \
 	PROPERTY(text, UNSIGNED, STABLE, BOTH, .how = WAY_FIELD, \
 	         FIELD(REGISTERS, .at = (where), .bits = 7))
-#define EACH_TIME(text, type, first, what) \
+#define EACH_TIME(text, type, first, what, ...) \
 	PROPERTY(text, type, VOLATILE, READ, AGGREGATE(DS1921_TIMES, NUMBERS), .how = WAY_TIMES, \
-	         .arg = DS1921_TIMES_ARG(first, what))
+	         .arg = DS1921_TIMES_ARG(first, what), __VA_ARGS__)
 #define RATE_OF(text, life) \
 	PROPERTY(text, UNSIGNED, life, BOTH, .how = WAY_FREQUENCY, \
 	         FIELD(REGISTERS, .at = DS1921_RATE))
 /* clang-format off */
 #define TIMES_BEYOND(name_, first, limit) \
 	PROPERTY_DIR(name_), \
-	EACH_TIME(name_ "/count", UNSIGNED, first, DS1921_TIMES_COUNT), \
-	EACH_TIME(name_ "/date", DATE, first, DS1921_TIMES_BEGIN), \
+	EACH_TIME(name_ "/count", UNSIGNED, first, DS1921_TIMES_COUNT, COUNTS_TO(UINT8_MAX)), \
+	EACH_TIME(name_ "/date", DATE, first, DS1921_TIMES_BEGIN, .size = 0), \
 	PROPERTY(name_ "/elements", UNSIGNED, VOLATILE, READ, .how = WAY_TIMES, \
 	         .arg = DS1921_TIMES_ARG(first, DS1921_TIMES_HOW_MANY)), \
-	EACH_TIME(name_ "/end", DATE, first, DS1921_TIMES_END), \
+	EACH_TIME(name_ "/end", DATE, first, DS1921_TIMES_END, .size = 0), \
 	PROPERTY(name_ "/temperature", TEMPERATURE, STABLE, BOTH, .arg = (limit), \
 	         .how = WAY_LIMIT), \
-	EACH_TIME(name_ "/udate", UNSIGNED, first, DS1921_TIMES_BEGIN)
+	EACH_TIME(name_ "/udate", UNSIGNED, first, DS1921_TIMES_BEGIN, .size = 0)
 /* clang-format on */
+
+/* G: -40 to +85 within 1.3, 0.5; H and Z 0.125 */
+#define CELSIUS MEASURES(-42, 87, 3, DEGREES_C)
 
 static const struct property properties[] = {
 	PROPERTY("ControlRegister", UNSIGNED, STABLE, BOTH, .hidden = true, .how = WAY_FIELD,
@@ -89,7 +92,7 @@ static const struct property properties[] = {
 	PROPERTY("about/measuring", YESNO, VOLATILE, READ,
                  FIELD(REGISTERS, .at = DS1921_STATUS, .shift = 7, .bits = 1, .inverted = true)),
 	VERSION("about/resolution", TEMPGAP, DS1921_RESOLUTION),
-	COUNT("about/samples", DS1921_DEVICE_SAMPLES, 3, READ),
+	COUNT("about/samples", DS1921_DEVICE_SAMPLES, 3, READ, COUNTS_TO(0xffffff)),
 	VERSION("about/temphigh", TEMPERATURE, DS1921_MOST),
 	VERSION("about/templow", TEMPERATURE, DS1921_LEAST),
 	PROPERTY("about/version", ASCII, STABLE, READ, .offline = true, .arg = DS1921_NAME,
@@ -107,7 +110,7 @@ static const struct property properties[] = {
 	PROPERTY("clock/udate", UNSIGNED, SECOND, BOTH, .how = WAY_UDATE),
 	PROPERTY_DIR("histogram"),
 	PROPERTY("histogram/counts", UNSIGNED, VOLATILE, READ, ELEMENTS(DS1921_BINS, NUMBERS),
-                 FIELD(HISTOGRAM, .stride = 2, .bytes = 2)),
+                 FIELD(HISTOGRAM, .stride = 2, .bytes = 2), COUNTS_TO(UINT16_MAX)),
 	PROPERTY("histogram/elements", UNSIGNED, STATIC, READ, .offline = true, .how = WAY_BINS),
 	VERSION("histogram/gap", TEMPGAP, DS1921_GAP),
 	PROPERTY("histogram/temperature", TEMPERATURE, STATIC, READ, ELEMENTS(DS1921_BINS, NUMBERS),
@@ -117,7 +120,7 @@ static const struct property properties[] = {
                  .how = WAY_STAMP, .arg = 1),
 	PROPERTY("log/elements", UNSIGNED, VOLATILE, READ, .how = WAY_ELEMENTS),
 	PROPERTY("log/temperature", TEMPERATURE, VOLATILE, READ, ELEMENTS(DS1921_LOG_ROOM, NUMBERS),
-                 .how = WAY_LOG),
+                 CELSIUS, .how = WAY_LOG),
 	PROPERTY("log/udate", UNSIGNED, VOLATILE, READ, ELEMENTS(DS1921_LOG_ROOM, NUMBERS),
                  .how = WAY_STAMP, .arg = 1),
 	AREA_MEMORY(MEMORY, 512),
@@ -131,7 +134,7 @@ static const struct property properties[] = {
 	RATE_OF("mission/frequency", VOLATILE),
 	BIT("mission/rollover", BOTH, DS1921_CONTROL, 3, .how = WAY_FIELD),
 	BIT("mission/running", BOTH, DS1921_STATUS, 5, .how = WAY_RUNNING),
-	COUNT("mission/samples", DS1921_SAMPLES, 3, READ),
+	COUNT("mission/samples", DS1921_SAMPLES, 3, READ, COUNTS_TO(0xffffff)),
 	BIT("mission/sampling", READ, DS1921_STATUS, 4, .how = 0),
 	BIT("mission/temphigh", BOTH, DS1921_STATUS, 1, .how = WAY_FLAG),
 	BIT("mission/templow", BOTH, DS1921_STATUS, 2, .how = WAY_FLAG),
@@ -145,9 +148,7 @@ static const struct property properties[] = {
 	BIT("set_alarm/temphigh", BOTH, DS1921_CONTROL, 1, .how = WAY_FIELD),
 	BIT("set_alarm/templow", BOTH, DS1921_CONTROL, 2, .how = WAY_FIELD),
 	PROPERTY("set_alarm/trigger", YESNO, VOLATILE, NONE, .how = 0),
-	/* G: -40 to +85 within 1.3, 0.5; H and Z 0.125 */
-	PROPERTY("temperature", TEMPERATURE, VOLATILE, READ, MEASURES(-42, 87, 3, DEGREES_C),
-                 .how = WAY_TEMPERATURE),
+	PROPERTY("temperature", TEMPERATURE, VOLATILE, READ, CELSIUS, .how = WAY_TEMPERATURE),
 	TIMES_BEYOND("undertemp", DS1921_LOW_TIMES, DS1921_LOW),
 };
 

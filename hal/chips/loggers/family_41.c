@@ -37,37 +37,42 @@ static const struct property_how how[] = {
 /* What owserver does not have: hidden. */
 #define OWN(text, type, access, ...) \
 	PROPERTY(text, type, VOLATILE, access, .hidden = true, __VA_ARGS__)
-#define SAMPLES_OF(text, type, way, what) \
-	OWN(text, type, READ, ELEMENTS(DS1922_LOG_SIZE, NUMBERS), .how = (way), .arg = (what))
+#define SAMPLES_OF(text, type, way, what, ...) \
+	OWN(text, type, READ, ELEMENTS(DS1922_LOG_SIZE, NUMBERS), .how = (way), .arg = (what), \
+	    __VA_ARGS__)
+
+/* 0 to 100 %RH within 5, and as much again for its ageing in wet air */
+#define PERCENT MEASURES(-10, 110, 2, "%")
+/* L: -40 to +85, T to +125, E to +140, within 2; 0.0625 */
+#define CELSIUS MEASURES(-42, 142, 4, DEGREES_C)
 
 static const struct property properties[] = {
 	PROPERTY_DIR("clock"),
 	PROPERTY("clock/date", DATE, SECOND, BOTH, .how = WAY_DATE),
 	BIT("clock/running", STABLE, BOTH, DS1922_OSCILLATOR, 0, WAY_FIELD),
 	PROPERTY("clock/udate", UNSIGNED, SECOND, BOTH, .how = WAY_UDATE),
-	/* 0 to 100 %RH within 5, and as much again for its ageing in wet air */
-	PROPERTY("humidity", FLOAT, VOLATILE, READ, MEASURES(-10, 110, 2, "%"), .how = WAY_NOW,
+	PROPERTY("humidity", FLOAT, VOLATILE, READ, PERCENT, .how = WAY_NOW,
                  .arg = DS1922_LOG_DATA),
 	OWN("log/elements", UNSIGNED, READ, .how = WAY_ELEMENTS),
-	SAMPLES_OF("log/humidity", FLOAT, WAY_LOG, DS1922_LOG_DATA),
-	SAMPLES_OF("log/temperature", TEMPERATURE, WAY_LOG, DS1922_LOG_TEMP),
-	SAMPLES_OF("log/udate", UNSIGNED, WAY_STAMP, 1),
+	SAMPLES_OF("log/humidity", FLOAT, WAY_LOG, DS1922_LOG_DATA, PERCENT),
+	SAMPLES_OF("log/temperature", TEMPERATURE, WAY_LOG, DS1922_LOG_TEMP, CELSIUS),
+	SAMPLES_OF("log/udate", UNSIGNED, WAY_STAMP, 1, .size = 0),
 	PROPERTY_DIR("mission"),
 	PROPERTY("mission/delay", UNSIGNED, VOLATILE, BOTH, .how = WAY_FIELD,
                  FIELD(MEMORY, .at = DS1922_DELAY, .bytes = 3)),
 	OWN("mission/interval", UNSIGNED, BOTH, .how = WAY_INTERVAL),
 	BIT("mission/rollover", STABLE, BOTH, DS1922_MISSION, 4, WAY_FIELD),
 	BIT("mission/running", VOLATILE, BOTH, DS1922_STATUS, 1, WAY_RUNNING),
-	OWN("mission/samples", UNSIGNED, READ, FIELD(MEMORY, .at = DS1922_SAMPLES, .bytes = 3)),
+	OWN("mission/samples", UNSIGNED, READ, COUNTS_TO(0xffffff),
+            FIELD(MEMORY, .at = DS1922_SAMPLES, .bytes = 3)),
 	BIT("mission/samplinghumidity", VOLATILE, READ, DS1922_MISSION, 1, 0),
 	BIT("mission/samplingtemp", VOLATILE, READ, DS1922_MISSION, 0, 0),
 	OWN("mission/udate", UNSIGNED, READ, .how = WAY_STAMP),
 	PROPERTY_DIR("pages"),
 	PROPERTY("pages/page", BINARY, VOLATILE, BOTH, ELEMENTS(DS1922_PAGES, NUMBERS),
                  .size = DS1922_PAGE, .how = WAY_PAGE, FIELD(MEMORY)),
-	/* L: -40 to +85, T to +125, E to +140, within 2; 0.0625 */
-	PROPERTY("temperature", TEMPERATURE, VOLATILE, READ, MEASURES(-42, 142, 4, DEGREES_C),
-                 .how = WAY_NOW, .arg = DS1922_LOG_TEMP),
+	PROPERTY("temperature", TEMPERATURE, VOLATILE, READ, CELSIUS, .how = WAY_NOW,
+                 .arg = DS1922_LOG_TEMP),
 };
 
 const struct family family_41 = {

@@ -24,10 +24,11 @@ static const struct property_how how[] = {
 /* A property of the kind k: OF(64, "temperature", ...) is EDS0064/temperature. */
 #define OF(k, name, ...) PROPERTY("EDS00" #k "/" name, __VA_ARGS__, .kinds = KIND(EDS00##k))
 #define DIRECTORY_OF(k, name) OF(k, name, DIRECTORY, STATIC, NONE)
-#define MEASURED(k, name, type, ...) OF(k, name, type, VOLATILE, READ, FIELD(MEMORY, __VA_ARGS__))
+#define MEASURED(k, name, type, range, ...) \
+	OF(k, name, type, VOLATILE, READ, range, FIELD(MEMORY, __VA_ARGS__))
 #define SETTING(k, name, type, ...) OF(k, name, type, VOLATILE, BOTH, FIELD(MEMORY, __VA_ARGS__))
-#define LIMIT(k, name, type, ...) \
-	OF(k, "threshold/" name, type, STABLE, BOTH, FIELD(MEMORY, __VA_ARGS__))
+#define LIMIT(k, name, type, unit_, ...) \
+	OF(k, "threshold/" name, type, STABLE, BOTH, IN_UNIT(unit_), FIELD(MEMORY, __VA_ARGS__))
 #define HIDDEN(k, name, access, where, n, ...) \
 	OF(k, name, UNSIGNED, VOLATILE, access, FIELD(where, .bytes = (n), __VA_ARGS__), \
 	   .hidden = true)
@@ -59,7 +60,8 @@ static const struct property_how how[] = {
 	DIRECTORY_OF(k, "alarm")
 #define CLEAR(k) OF(k, "alarm/clear", YESNO, STABLE, WRITE, .how = WAY_CLEAR)
 #define SECONDS(k, where) \
-	OF(k, "counter/seconds", UNSIGNED, SECOND, READ, FIELD(MEMORY, .at = (where), .bytes = 4))
+	OF(k, "counter/seconds", UNSIGNED, SECOND, READ, MEASURES(0, UINT32_MAX, 0, "s"), \
+	   FIELD(MEMORY, .at = (where), .bytes = 4))
 #define RELAY(k, where, at_) \
 	DIRECTORY_OF(k, "relay"), \
 	OF(k, "relay/control", UNSIGNED, VOLATILE, BOTH, FIELD(where, .at = (at_), .bits = 2)), \
@@ -72,14 +74,23 @@ static const struct property_how how[] = {
 /* EDS0064 to EDS0068: HAS(...) or NOT(...) water, air, light. */
 #define HAS(...) __VA_ARGS__,
 #define NOT(...)
+/*
+ * Semiconductors, also those for pressure: as widely as any of them measures. What air feels like
+ * is computed of it. A platinum resistor: -200 to 850 degrees; its resistance as the register holds
+ * it.
+ */
+#define CELSIUS MEASURES(-58, 128, 4, DEGREES_C)
+#define FELT(unit_) MEASURES(-90, HUGE_VAL, 4, unit_)
+#define WORD COUNTS_TO(UINT16_MAX)
+#define OHM "\u03a9"
 #define SIXTEENTHS .bytes = 2, .is_signed = true, .unit = 1 / 16.0
 #define FINE .bytes = 3, .is_signed = true, .unit = 1 / 2048.0
-#define BYTES(k, name, type, where) \
-	LIMIT(k, name "_hi", type, .at = (where), .is_signed = true), \
-	LIMIT(k, name "_low", type, .at = (where) + 1, .is_signed = true)
-#define FINES(k, name, type, where) \
-	LIMIT(k, name "_hi", type, .at = (where), FINE), \
-	LIMIT(k, name "_low", type, .at = (where) + 3, FINE)
+#define BYTES(k, name, type, unit_, where) \
+	LIMIT(k, name "_hi", type, unit_, .at = (where), .is_signed = true), \
+	LIMIT(k, name "_low", type, unit_, .at = (where) + 1, .is_signed = true)
+#define FINES(k, name, type, unit_, where) \
+	LIMIT(k, name "_hi", type, unit_, .at = (where), FINE), \
+	LIMIT(k, name "_low", type, unit_, .at = (where) + 3, FINE)
 #define ENVIRONMENT(k, water, air, light) \
 	HEAD(k, MEMORY, 0x5e), CLEAR(k), \
 	water(FLAGS(k, "dew_point", 0x3a, 2, 4), FLAGS(k, "heat_index", 0x3a, 2, 8), \
@@ -88,27 +99,28 @@ static const struct property_how how[] = {
 	air(FLAGS(k, "pressure", 0x3a, 2, 10)) \
 	HIDDEN(k, "alarm/state", READ, MEMORY, 2, .at = 0x3a), \
 	FLAGS(k, "temp", 0x3a, 2, 0), DIRECTORY_OF(k, "counter"), SECONDS(k, 0x3c), \
-	water(MEASURED(k, "dew_point", TEMPERATURE, .at = 0x26, SIXTEENTHS), \
-	      MEASURED(k, "heat_index", TEMPERATURE, .at = 0x2a, SIXTEENTHS), \
-	      MEASURED(k, "humidex", FLOAT, .at = 0x28, SIXTEENTHS), \
-	      MEASURED(k, "humidity", FLOAT, .at = 0x24, SIXTEENTHS)) \
-	air(MEASURED(k, "inHg", FLOAT, .at = 0x2f, FINE)) \
-	light(MEASURED(k, "light", UNSIGNED, .at = 0x32, .bytes = 3)) \
-	air(MEASURED(k, "pressure", PRESSURE, .at = 0x2c, FINE)) \
+	water(MEASURED(k, "dew_point", TEMPERATURE, CELSIUS, .at = 0x26, SIXTEENTHS), \
+	      MEASURED(k, "heat_index", TEMPERATURE, FELT(DEGREES_C), .at = 0x2a, SIXTEENTHS), \
+	      MEASURED(k, "humidex", FLOAT, FELT(""), .at = 0x28, SIXTEENTHS), \
+	      MEASURED(k, "humidity", FLOAT, MEASURES(-10, 110, 4, "%"), .at = 0x24, SIXTEENTHS)) \
+	air(MEASURED(k, "inHg", FLOAT, MEASURES(0.3, 38.4, 3, "inHg"), .at = 0x2f, FINE)) \
+	light(MEASURED(k, "light", UNSIGNED, MEASURES(0, 0xffffff, 0, "lx"), .at = 0x32, .bytes = 3)) \
+	air(MEASURED(k, "pressure", PRESSURE, MEASURES(10, 1300, 3, "mbar"), .at = 0x2c, FINE)) \
 	RELAY(k, MEMORY, 0x5e), DIRECTORY_OF(k, "set_alarm"), \
 	HIDDEN(k, "set_alarm/alarm_function", BOTH, MEMORY, 2, .at = 0x40), \
 	water(ENABLES(k, "dew_point", 2, 4), ENABLES(k, "heat_index", 2, 8), \
 	      ENABLES(k, "humidex", 2, 6), ENABLES(k, "humidity", 2, 2)) \
 	air(ENABLES(k, "inHg", 2, 12)) light(ENABLES(k, "light", 2, 14)) \
 	air(ENABLES(k, "pressure", 2, 10)) ENABLES(k, "temp", 2, 0), \
-	MEASURED(k, "temperature", TEMPERATURE, .at = 0x22, SIXTEENTHS), \
+	MEASURED(k, "temperature", TEMPERATURE, CELSIUS, .at = 0x22, SIXTEENTHS), \
 	DIRECTORY_OF(k, "threshold"), \
-	water(BYTES(k, "dew_point", TEMPERATURE, 0x46), BYTES(k, "heat_index", TEMPERATURE, 0x4a), \
-	      BYTES(k, "humidex", FLOAT, 0x48), BYTES(k, "humidity", FLOAT, 0x44)) \
-	air(FINES(k, "inHg", FLOAT, 0x52)) \
-	light(LIMIT(k, "light_hi", UNSIGNED, .at = 0x58, .bytes = 3), \
-	      LIMIT(k, "light_low", UNSIGNED, .at = 0x5b, .bytes = 3)) \
-	air(FINES(k, "pressure", PRESSURE, 0x4c)) BYTES(k, "temp", TEMPERATURE, 0x42)
+	water(BYTES(k, "dew_point", TEMPERATURE, DEGREES_C, 0x46), \
+	      BYTES(k, "heat_index", TEMPERATURE, DEGREES_C, 0x4a), \
+	      BYTES(k, "humidex", FLOAT, "", 0x48), BYTES(k, "humidity", FLOAT, "%", 0x44)) \
+	air(FINES(k, "inHg", FLOAT, "inHg", 0x52)) \
+	light(LIMIT(k, "light_hi", UNSIGNED, "lx", .at = 0x58, .bytes = 3), \
+	      LIMIT(k, "light_low", UNSIGNED, "lx", .at = 0x5b, .bytes = 3)) \
+	air(FINES(k, "pressure", PRESSURE, "mbar", 0x4c)) BYTES(k, "temp", TEMPERATURE, DEGREES_C, 0x42)
 
 /* EDS0071 and EDS0072 differ in what their limits of the resistance are called. */
 #define RTD(k, upper, lower) \
@@ -120,22 +132,26 @@ static const struct property_how how[] = {
 	   FIELD(MEMORY, .at = 0x30, .bytes = 4)), \
 	OF(k, "calibration/key", UNSIGNED, STABLE, BOTH, FIELD(MEMORY, .at = 0x5c)), \
 	DIRECTORY_OF(k, "counter"), \
-	OF(k, "counter/samples", UNSIGNED, SECOND, READ, FIELD(MEMORY, .at = 0x38, .bytes = 4)), \
+	OF(k, "counter/samples", UNSIGNED, SECOND, READ, COUNTS_TO(UINT32_MAX), \
+	   FIELD(MEMORY, .at = 0x38, .bytes = 4)), \
 	SECONDS(k, 0x3c), SETTING(k, "delay", UNSIGNED, .at = 0x5d), \
 	HIDDEN(k, "raw", READ, MEMORY, 3, .at = 0x28), RELAY(k, MEMORY, 0x5e), \
-	MEASURED(k, "resistance", FLOAT, .at = 0x25, FINE), DIRECTORY_OF(k, "set_alarm"), \
+	MEASURED(k, "resistance", FLOAT, MEASURES(0, 4096, 3, OHM), .at = 0x25, FINE), \
+	DIRECTORY_OF(k, "set_alarm"), \
 	upper(ENABLES(k, "RTD", 1, 2)) \
 	HIDDEN(k, "set_alarm/alarm_function", BOTH, MEMORY, 1, .at = 0x40), \
 	lower(ENABLES(k, "resistance", 1, 2)) ENABLES(k, "temp", 1, 0), \
-	MEASURED(k, "temperature", TEMPERATURE, .at = 0x22, FINE), DIRECTORY_OF(k, "threshold"), \
-	FINES(k, "resistance", FLOAT, 0x48), FINES(k, "temp", TEMPERATURE, 0x42), \
+	MEASURED(k, "temperature", TEMPERATURE, MEASURES(-210, 860, 3, DEGREES_C), \
+		 .at = 0x22, FINE), \
+	DIRECTORY_OF(k, "threshold"), \
+	FINES(k, "resistance", FLOAT, OHM, 0x48), FINES(k, "temp", TEMPERATURE, DEGREES_C, 0x42), \
 	SETTING(k, "user_byte", UNSIGNED, .at = 0x41)
 
 /* EDS0080 to EDS0085: currents (in A) or voltages, whose names sort differently. */
-#define CHANNELS(k, name, life, access, n, step, unit_, where) \
-	OF(k, name, FLOAT, life, access, ELEMENTS(n, NUMBERS), \
+#define CHANNELS(k, name, life, access, n, step, unit_, where, ...) \
+	OF(k, name, FLOAT, life, access, ELEMENTS(n, NUMBERS), __VA_ARGS__, \
 	   FIELD(MEMORY, .at = (where), .bytes = 2, .stride = (step), .unit = (unit_)))
-#define ANALOG(k, what, n, unit_, currents, voltages) \
+#define ANALOG(k, what, n, unit_, range, symbol, currents, voltages) \
 	HEAD(k, MEMORY, 0x9e), CLEAR(k), \
 	currents(PAIRS(k, "alarm/" what "_hi", READ, n, MEMORY, .at = 0x2a), \
 		 PAIRS(k, "alarm/" what "_low", READ, n, MEMORY, .at = 0x2a, .shift = 1)) \
@@ -143,10 +159,10 @@ static const struct property_how how[] = {
 	voltages(PAIRS(k, "alarm/" what "_hi", READ, n, MEMORY, .at = 0x2a), \
 		 PAIRS(k, "alarm/" what "_low", READ, n, MEMORY, .at = 0x2a, .shift = 1)) \
 	DIRECTORY_OF(k, "counter"), SECONDS(k, 0x2c), \
-	currents(CHANNELS(k, what, VOLATILE, READ, n, 2, unit_, 0x30)) \
-	CHANNELS(k, "max_" what, VOLATILE, READ, n, 2, unit_, 0x50), \
+	currents(CHANNELS(k, what, VOLATILE, READ, n, 2, unit_, 0x30, range)) \
+	CHANNELS(k, "max_" what, VOLATILE, READ, n, 2, unit_, 0x50, range), \
 	OF(k, "memory", BINARY, VOLATILE, BOTH, .size = 160, FIELD(MEMORY), .how = WAY_MEMORY), \
-	CHANNELS(k, "min_" what, VOLATILE, READ, n, 2, unit_, 0x40), DIRECTORY_OF(k, "pages"), \
+	CHANNELS(k, "min_" what, VOLATILE, READ, n, 2, unit_, 0x40, range), DIRECTORY_OF(k, "pages"), \
 	OF(k, "pages/page", BINARY, VOLATILE, BOTH, ELEMENTS(5, NUMBERS), .size = 32, \
 	   FIELD(MEMORY), .how = WAY_MEMORY), \
 	RELAY(k, MEMORY, 0x9e), DIRECTORY_OF(k, "set_alarm"), \
@@ -154,12 +170,17 @@ static const struct property_how how[] = {
 	PAIRS(k, "set_alarm/" what "_hi", BOTH, n, MEMORY, .at = 0x9a), \
 	PAIRS(k, "set_alarm/" what "_low", BOTH, n, MEMORY, .at = 0x9a, .shift = 1), \
 	DIRECTORY_OF(k, "threshold"), \
-	CHANNELS(k, "threshold/" what "_hi", STABLE, BOTH, n, 4, unit_, 0x70), \
-	CHANNELS(k, "threshold/" what "_low", STABLE, BOTH, n, 4, unit_, 0x72)
-#define CURRENT(k, n) ANALOG(k, "current", n, 1 / 2048000.0, HAS, NOT)
+	CHANNELS(k, "threshold/" what "_hi", STABLE, BOTH, n, 4, unit_, 0x70, \
+		 IN_UNIT(symbol)), \
+	CHANNELS(k, "threshold/" what "_low", STABLE, BOTH, n, 4, unit_, 0x72, \
+		 IN_UNIT(symbol))
+/* What the words hold. */
+#define AMPERES MEASURES(0, .032, 7, "A")
+#define VOLTS MEASURES(0, 32, 4, "V")
+#define CURRENT(k, n) ANALOG(k, "current", n, 1 / 2048000.0, AMPERES, "A", HAS, NOT)
 #define VOLTAGE(k, n) \
-	ANALOG(k, "volts", n, 1 / 2048.0, NOT, HAS), \
-	CHANNELS(k, "volts", VOLATILE, READ, n, 2, 1 / 2048.0, 0x30)
+	ANALOG(k, "volts", n, 1 / 2048.0, VOLTS, "V", NOT, HAS), \
+	CHANNELS(k, "volts", VOLATILE, READ, n, 2, 1 / 2048.0, 0x30, VOLTS)
 
 /* EDS0090 */
 #define PINS(name, life, access, ...) \
@@ -186,12 +207,12 @@ static const struct property properties[] = {
 	HIDDEN(70, "set_alarm/alarm_function", BOTH, MEMORY, 1, .at = 0x40),
 	ENABLES(70, "vib", 1, 2),
 	DIRECTORY_OF(70, "threshold"),
-	LIMIT(70, "vib_hi", TEMPERATURE, .at = 0x44, .bytes = 2),
-	LIMIT(70, "vib_low", TEMPERATURE, .at = 0x46, .bytes = 2),
-	MEASURED(70, "vib_level", UNSIGNED, .at = 0x24, .bytes = 2),
-	MEASURED(70, "vib_max", UNSIGNED, .at = 0x28, .bytes = 2),
-	MEASURED(70, "vib_min", UNSIGNED, .at = 0x30, .bytes = 2),
-	MEASURED(70, "vib_peak", UNSIGNED, .at = 0x26, .bytes = 2),
+	LIMIT(70, "vib_hi", TEMPERATURE, "", .at = 0x44, .bytes = 2),
+	LIMIT(70, "vib_low", TEMPERATURE, "", .at = 0x46, .bytes = 2),
+	MEASURED(70, "vib_level", UNSIGNED, WORD, .at = 0x24, .bytes = 2),
+	MEASURED(70, "vib_max", UNSIGNED, WORD, .at = 0x28, .bytes = 2),
+	MEASURED(70, "vib_min", UNSIGNED, WORD, .at = 0x30, .bytes = 2),
+	MEASURED(70, "vib_peak", UNSIGNED, WORD, .at = 0x26, .bytes = 2),
 
 	RTD(71, NOT, HAS),
 	RTD(72, HAS, NOT),
@@ -207,7 +228,7 @@ static const struct property properties[] = {
 	HIDDEN(90, "alarm/state", READ, MEMORY, 2, .at = 0x2a),
 	DIRECTORY_OF(90, "counter"),
 	OF(90, "counter/pulses", UNSIGNED, VOLATILE, READ, ELEMENTS(8, NUMBERS),
-	   FIELD(MEMORY, .at = 0x30, .bytes = 4, .stride = 4)),
+	   FIELD(MEMORY, .at = 0x30, .bytes = 4, .stride = 4), COUNTS_TO(UINT32_MAX)),
 	RESET("counter/reset", 0x54),
 	SECONDS(90, 0x2c),
 	PINS("input", STABLE, READ, MEMORY, .at = 0x22),

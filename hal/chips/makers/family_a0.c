@@ -19,7 +19,8 @@ enum { WAY_RPM = 1 };
 static const struct property_how how[] = {[WAY_RPM] = {.read = read_rpm}};
 
 static const struct property properties[] = {
-	PROPERTY("RPM", UNSIGNED, VOLATILE, READ, .how = WAY_RPM),
+	PROPERTY("RPM", UNSIGNED, VOLATILE, READ, MEASURES(INT16_MIN, INT16_MAX, 0, "rpm"),
+                 .how = WAY_RPM),
 	CMCIEL_READING,
 };
 

@@ -5,7 +5,8 @@
 static const struct area *const areas[] = {CMCIEL_AREAS};
 
 static const struct property properties[] = {
-	PROPERTY("current", FLOAT, VOLATILE, READ, FIELD(READING, .bytes = 2, .unit = 0.01)),
+	PROPERTY("current", FLOAT, VOLATILE, READ, FIELD(READING, .bytes = 2, .unit = 0.01),
+                 MEASURES(0, 655.35, 2, "A")),
 	CMCIEL_READING,
 };
 

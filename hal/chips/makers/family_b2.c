@@ -5,9 +5,11 @@
 static const struct area *const areas[] = {CMCIEL_AREAS};
 
 static const struct property properties[] = {
-	PROPERTY("current", FLOAT, VOLATILE, READ, FIELD(READING, .bytes = 2, .unit = 2e-6)),
+	PROPERTY("current", FLOAT, VOLATILE, READ, FIELD(READING, .bytes = 2, .unit = 2e-6),
+                 MEASURES(0, .131072, 6, "A")),
 	CMCIEL_READING,
-	PROPERTY("volts", FLOAT, VOLATILE, READ, FIELD(READING, .bytes = 2, .unit = 0.001)),
+	PROPERTY("volts", FLOAT, VOLATILE, READ, FIELD(READING, .bytes = 2, .unit = 0.001),
+                 MEASURES(0, 65.536, 3, "V")),
 };
 
 const struct family family_b2 = {

@@ -199,14 +199,15 @@ static const struct property_how how[] = {
 };
 
 /* clang-format off */
+#define PERCENT MEASURES(-10, 110, 2, "%")
 #define OF(board) .kinds = KIND(HOBBY_##board)
 #define FOLDER(text, board) PROPERTY(text, DIRECTORY, STATIC, NONE, OF(board))
 /* A value of two bytes. */
-#define VALUE(text, kind, board, area_, unit_) \
-	PROPERTY(text, kind, VOLATILE, READ, OF(board), \
+#define VALUE(text, kind, board, area_, unit_, measures_) \
+	PROPERTY(text, kind, VOLATILE, READ, OF(board), measures_, \
 	         FIELD(area_, .bytes = 2, .is_signed = true, .unit = (unit_)))
-#define SETTING(text, kind, life_, board, area_, unit_) \
-	PROPERTY(text, kind, life_, BOTH, OF(board), \
+#define SETTING(text, kind, life_, board, area_, unit_, measures_) \
+	PROPERTY(text, kind, life_, BOTH, OF(board), measures_, \
 	         FIELD(area_, .bytes = 2, .is_signed = true, .unit = (unit_)))
 #define BYTE(text, access_, board, area_) \
 	PROPERTY(text, UNSIGNED, STABLE, access_, OF(board), FIELD(area_))
@@ -218,16 +219,16 @@ static const struct property_how how[] = {
 
 static const struct property properties[] = {
 	FOLDER("barometer", BAROMETER),
-	SETTING("barometer/altitude", INTEGER, VOLATILE, BAROMETER, ALTITUDE, 1),
+	SETTING("barometer/altitude", INTEGER, VOLATILE, BAROMETER, ALTITUDE, 1, IN_UNIT("m")),
 	BYTE("barometer/config", BOTH, BAROMETER, CONFIG),
 	TEXT("barometer/location", BAROMETER),
 	BYTE("barometer/polling_available", READ, BAROMETER, AVAILABLE),
 	BYTE("barometer/polling_frequency", BOTH, BAROMETER, POLLING),
-	VALUE("barometer/pressure", PRESSURE, BAROMETER, PRESSURE, 10),
-	VALUE("barometer/pressure_altitude", INTEGER, BAROMETER, PRESSURE_ALTITUDE, 1),
+	VALUE("barometer/pressure", PRESSURE, BAROMETER, PRESSURE, 10, MEASURES(10, 1300, 0, "mbar")),
+	VALUE("barometer/pressure_altitude", INTEGER, BAROMETER, PRESSURE_ALTITUDE, 1, IN_UNIT("m")),
 	COMMAND("barometer/reboot", BAROMETER, 0xf1),
 	COMMAND("barometer/reset", BAROMETER, 0xf7),
-	VALUE("barometer/temperature", TEMPERATURE, BAROMETER, TEMPERATURE, 0.1),
+	VALUE("barometer/temperature", TEMPERATURE, BAROMETER, TEMPERATURE, 0.1, HOBBY_CELSIUS),
 	FOLDER("hub", HUB),
 	PROPERTY("hub/branch", BITS, STABLE, BOTH, AGGREGATE(4, NUMBERS), OF(HUB),
 	         FIELD(BRANCHES), .holds = true, .how = WAY_BRANCH),
@@ -236,29 +237,29 @@ static const struct property properties[] = {
 	PROPERTY("hub/short", BITS, STABLE, READ, AGGREGATE(4, NUMBERS), OF(HUB), FIELD(SHORTED)),
 	FOLDER("humidity", HUMIDITY),
 	BYTE("humidity/config", BOTH, HUMIDITY, CONFIG),
-	VALUE("humidity/humidity_corrected", FLOAT, HUMIDITY, CORRECTED, 0.01),
-	SETTING("humidity/humidity_offset", FLOAT, VOLATILE, HUMIDITY, HUMIDITY_OFFSET, 0.01),
-	VALUE("humidity/humidity_raw", FLOAT, HUMIDITY, UNCORRECTED, 0.01),
+	VALUE("humidity/humidity_corrected", FLOAT, HUMIDITY, CORRECTED, 0.01, PERCENT),
+	SETTING("humidity/humidity_offset", FLOAT, VOLATILE, HUMIDITY, HUMIDITY_OFFSET, 0.01, IN_UNIT("%")),
+	VALUE("humidity/humidity_raw", FLOAT, HUMIDITY, UNCORRECTED, 0.01, PERCENT),
 	TEXT("humidity/location", HUMIDITY),
 	BYTE("humidity/polling_available", READ, HUMIDITY, AVAILABLE),
 	BYTE("humidity/polling_frequency", BOTH, HUMIDITY, POLLING),
 	COMMAND("humidity/reboot", HUMIDITY, 0xf1),
 	COMMAND("humidity/reset", HUMIDITY, 0xf7),
-	VALUE("humidity/temperature", TEMPERATURE, HUMIDITY, TEMPERATURE, 0.1),
+	VALUE("humidity/temperature", TEMPERATURE, HUMIDITY, TEMPERATURE, 0.1, HOBBY_CELSIUS),
 	FOLDER("moisture", MOISTURE),
 	FOLDER("moisture/calibrate", MOISTURE),
-	PROPERTY("moisture/calibrate/max", UNSIGNED, STABLE, BOTH, OF(MOISTURE), .arg = 1,
+	PROPERTY("moisture/calibrate/max", UNSIGNED, STABLE, BOTH, OF(MOISTURE), .arg = 1, COUNTS_TO(UINT16_MAX),
 	         .how = WAY_LIMIT),
-	PROPERTY("moisture/calibrate/min", UNSIGNED, STABLE, BOTH, OF(MOISTURE), .arg = 0,
+	PROPERTY("moisture/calibrate/min", UNSIGNED, STABLE, BOTH, OF(MOISTURE), .arg = 0, COUNTS_TO(UINT16_MAX),
 	         .how = WAY_LIMIT),
 	PROPERTY("moisture/calibrate/raw", UNSIGNED, VOLATILE, READ, AGGREGATE(4, NUMBERS),
-	         OF(MOISTURE), FIELD(RAW, .bytes = 2, .stride = 2)),
+	         OF(MOISTURE), FIELD(RAW, .bytes = 2, .stride = 2), COUNTS_TO(UINT16_MAX)),
 	PROPERTY("moisture/is_leaf", BITS, VOLATILE, BOTH, AGGREGATE(4, NUMBERS), OF(MOISTURE),
 	         .arg = 0x00, .how = WAY_LEAF),
 	PROPERTY("moisture/is_moisture", BITS, STABLE, BOTH, AGGREGATE(4, NUMBERS), OF(MOISTURE),
 	         .arg = 0x0f, .how = WAY_LEAF),
 	PROPERTY("moisture/sensor", INTEGER, VOLATILE, READ, AGGREGATE(4, NUMBERS), OF(MOISTURE),
-	         FIELD(SENSORS, .stride = 1)),
+	         FIELD(SENSORS, .stride = 1), COUNTS_TO(UINT8_MAX)),
 	FOLDER("multitemp", MULTITEMP),
 	BYTE("multitemp/config", READ, MULTITEMP, CONFIG),
 	TEXT("multitemp/location", MULTITEMP),
@@ -268,7 +269,8 @@ static const struct property properties[] = {
 	COMMAND("multitemp/reset", MULTITEMP, 0xf7),
 	PROPERTY("multitemp/temperature", TEMPERATURE, VOLATILE, READ, AGGREGATE(6, NUMBERS),
 	         OF(MULTITEMP),
-	         FIELD(TEMPERATURES, .bytes = 2, .stride = 2, .is_signed = true, .unit = 0.1)),
+	         FIELD(TEMPERATURES, .bytes = 2, .stride = 2, .is_signed = true, .unit = 0.1),
+	         HOBBY_CELSIUS),
 	PROPERTY("type", ASCII, VOLATILE, READ, .size = 32, .how = WAY_HOBBY_TYPE),
 	PROPERTY("type_number", UNSIGNED, STABLE, READ, FIELD(HOBBY_TYPE)),
 	PROPERTY("version", ASCII, VOLATILE, READ, .size = 7, .how = WAY_HOBBY_VERSION),

@@ -225,17 +225,18 @@ static const struct property_how how[] = {
 #define UNKNOWN_KIND KIND(BAE_OTHER)
 #define FOLDER(text, which) PROPERTY(text, DIRECTORY, STATIC, NONE, .kinds = (which))
 /* High byte first. */
-#define REGISTER_910(text, kind, life_, access_, at_, bytes_, way) \
+#define REGISTER_910(text, kind, life_, access_, at_, bytes_, ...) \
 	PROPERTY(text, kind, life_, access_, .kinds = OLD, \
-	         FIELD(REGISTERS_910, .at = (at_), .bytes = (bytes_), .big_endian = true), .how = (way))
+	         FIELD(REGISTERS_910, .at = (at_), .bytes = (bytes_), .big_endian = true), \
+	         .how = __VA_ARGS__)
 #define REGISTER_911(text, kind, life_, access_, at_, bytes_, way) \
 	PROPERTY(text, kind, life_, access_, .kinds = NEW, \
 	         FIELD(REGISTERS_911, .at = (at_) - REGISTERS, .bytes = (bytes_), .big_endian = true), \
 	         .how = (way))
-#define ARRAY_911(text, kind, access_, n, at_, bytes_, way) \
+#define ARRAY_911(text, kind, access_, n, at_, bytes_, ...) \
 	PROPERTY(text, kind, VOLATILE, access_, ELEMENTS(n, NUMBERS), .kinds = NEW, \
 	         FIELD(REGISTERS_911, .at = (at_) - REGISTERS, .bytes = (bytes_), \
-	               .stride = (bytes_), .big_endian = true), .how = (way))
+	               .stride = (bytes_), .big_endian = true), .how = __VA_ARGS__)
 #define RUNS(text, kind, life_, access_, way, ...) \
 	PROPERTY(text, kind, life_, access_, .kinds = NEW, .how = (way), __VA_ARGS__)
 #define PWM(folder, duty0, duty1, mode0, mode1, period, clock) \
@@ -272,7 +273,7 @@ static const struct property properties[] = {
 	REGISTER_910("910/alct", UNSIGNED, VOLATILE, BOTH, 0x46, 4, KEPT),
 	REGISTER_910("910/cnt", UNSIGNED, VOLATILE, READ, 0x33, 1, KEPT),
 	REGISTER_910("910/cntc", UNSIGNED, VOLATILE, BOTH, 0x3, 1, KEPT),
-	REGISTER_910("910/count", UNSIGNED, VOLATILE, BOTH, 0x2c, 4, LIVE),
+	REGISTER_910("910/count", UNSIGNED, VOLATILE, BOTH, 0x2c, 4, LIVE, COUNTS_TO(UINT32_MAX)),
 	REGISTER_910("910/cps", UNSIGNED, VOLATILE, READ, 0x1e, 2, KEPT),
 	REGISTER_910("910/date", DATE, VOLATILE, BOTH, 0x28, 4, CLOCK),
 	REGISTER_910("910/duty1", UNSIGNED, VOLATILE, BOTH, 0xe, 2, KEPT),
@@ -340,7 +341,8 @@ static const struct property properties[] = {
 	         FIELD(REGISTERS_911, .at = 0x7c00 - REGISTERS, .bytes = 1, .stride = 1)),
 	REGISTER_911("911/automation_engine/pc0", UNSIGNED, VOLATILE, BOTH, 0x7e07, 2, LIVE),
 	FOLDER("911/counters", NEW),
-	ARRAY_911("911/counters/count", UNSIGNED, BOTH, 18, 0x7f20, 4, LIVE),
+	ARRAY_911("911/counters/count", UNSIGNED, BOTH, 18, 0x7f20, 4, LIVE,
+		  COUNTS_TO(UINT32_MAX)),
 	ARRAY_911("911/counters/enable_counter", YESNO, BOTH, 18, 0x796e, 1, KEPT),
 	REGISTER_911("911/counters/enable_encoder0", YESNO, VOLATILE, BOTH, 0x799a, 1, KEPT),
 	REGISTER_911("911/counters/enable_encoder16", YESNO, VOLATILE, BOTH, 0x799e, 1, KEPT),

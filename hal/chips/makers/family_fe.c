@@ -189,14 +189,20 @@ static const struct property_how how[] = {
 	[WAY_LED] = {.write = write_led},
 };
 
+/* What such sensors of rooms measure, as widely as any does. */
+#define PERCENT MEASURES(-10, 110, 2, "%")
+#define CELSIUS MEASURES(-58, 128, 3, DEGREES_C)
+
 static const struct property properties[] = {
 	PROPERTY_DIR("TH"),
-	PROPERTY("TH/humidity", FLOAT, VOLATILE, READ, .arg = HUMIDITY_AT, .how = WAY_MEASURED),
-	PROPERTY("TH/latesthumidity", FLOAT, VOLATILE, READ, .arg = HUMIDITY_AT, .how = WAY_LATEST),
-	PROPERTY("TH/latesttemp", TEMPERATURE, VOLATILE, READ, .arg = TEMPERATURE_AT,
+	PROPERTY("TH/humidity", FLOAT, VOLATILE, READ, PERCENT, .arg = HUMIDITY_AT,
+                 .how = WAY_MEASURED),
+	PROPERTY("TH/latesthumidity", FLOAT, VOLATILE, READ, PERCENT, .arg = HUMIDITY_AT,
+                 .how = WAY_LATEST),
+	PROPERTY("TH/latesttemp", TEMPERATURE, VOLATILE, READ, CELSIUS, .arg = TEMPERATURE_AT,
                  .how = WAY_LATEST),
 	PROPERTY("TH/led", YESNO, STABLE, WRITE, .how = WAY_LED),
-	PROPERTY("TH/temperature", TEMPERATURE, VOLATILE, READ, .arg = TEMPERATURE_AT,
+	PROPERTY("TH/temperature", TEMPERATURE, VOLATILE, READ, CELSIUS, .arg = TEMPERATURE_AT,
                  .how = WAY_MEASURED),
 	PROPERTY("firmware", ASCII, STABLE, READ, .size = 5, .arg = VERSION, .how = WAY_TEXT),
 	PROPERTY("subtype", ASCII, STABLE, READ, .size = 2, .arg = SUBTYPE, .how = WAY_TEXT),

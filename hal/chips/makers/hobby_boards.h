@@ -55,3 +55,5 @@ int hobby_saw_setting(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n);
 #define HOBBY_SETTING(text, bytes_, get, put) \
 	.name = (text), .size = (bytes_), .block = (bytes_), .read = (get), .row = (bytes_), \
 	.write = (put), .saw = hobby_saw_setting
+/* Semiconductors: as widely as any of them measures. */
+#define HOBBY_CELSIUS MEASURES(-58, 128, 1, DEGREES_C)

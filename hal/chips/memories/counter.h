@@ -9,7 +9,8 @@ extern const struct area counter_area;
 
 #define COUNTERS(text, area_, n, index_, page, ...) \
 	PROPERTY(text, UNSIGNED, VOLATILE, READ, ELEMENTS(n, index_), \
-	         FIELD(area_, .at = 4 * (page), .stride = 4, .bytes = 4), __VA_ARGS__)
+	         FIELD(area_, .at = 4 * (page), .stride = 4, .bytes = 4), COUNTS_TO(UINT32_MAX), \
+	         __VA_ARGS__)
 
 /*
  * The counters of all pages, a row of the table. Pages below `first` have none, and the chip sends

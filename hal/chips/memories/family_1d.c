@@ -53,12 +53,11 @@ static const struct property_how how[] = {
 	[WAY_PAGE_COUNT] = {.read = counter_read_page},
 };
 
-#define BITS32 MEASURES(0, UINT32_MAX, 0, "")
 static const struct property properties[] = {
-	COUNTERS("counter", COUNTS, 2, LETTERS, EXTERNAL_A, BITS32),
-	COUNTERS("counters", COUNTS, 2, LETTERS, EXTERNAL_A, BITS32, .hidden = true),
+	COUNTERS("counter", COUNTS, 2, LETTERS, EXTERNAL_A, .hidden = false),
+	COUNTERS("counters", COUNTS, 2, LETTERS, EXTERNAL_A, .hidden = true),
 	AREA_MEMORY(MEMORY, 512),
-	PROPERTY("mincount", UNSIGNED, VOLATILE, BOTH, .how = WAY_MINIMUM),
+	PROPERTY("mincount", UNSIGNED, VOLATILE, BOTH, COUNTS_TO(UINT32_MAX), .how = WAY_MINIMUM),
 	PROPERTY_DIR("pages"),
 	PAGE_COUNTERS(COUNTS, FIRST_COUNTED, WAY_PAGE_COUNT),
 	AREA_PAGES(MEMORY, 16, 32),

@@ -121,26 +121,29 @@ static const struct property_how how[] = {
 	         FIELD(INFO, .shift = (shift_)), .how = (how_))
 #define NOT_THERE(text, kind, life_, ...) \
 	PROPERTY(text, kind, life_, READ, .how = WAY_NOT_THERE, __VA_ARGS__)
+/* 10 to 1100 mbar within 15, -40 to +125 */
+#define MS5534_PRESSURE MEASURES(-5, 1115, 2, "mbar")
+#define MS5534_CELSIUS MEASURES(-42, 127, 2, DEGREES_C)
 
 static const struct property properties[] = {
 	PROPERTY("PIO", BITS, STABLE, BOTH, AGGREGATE(2, LETTERS), FIELD(INFO, .inverted = true),
                  .holds = true, .how = WAY_PIO),
 	PROPERTY("T8A", DIRECTORY, STATIC, NONE, .kinds = KIND(0)),
-	NOT_THERE("T8A/volt", FLOAT, VOLATILE, ELEMENTS(8, NUMBERS), .kinds = KIND(0)),
+	NOT_THERE("T8A/volt", FLOAT, VOLATILE, ELEMENTS(8, NUMBERS), IN_UNIT("V"),
+                  .kinds = KIND(0)),
 	PROPERTY_DIR("TAI8570"),
 	NOT_THERE("TAI8570/C", UNSIGNED, STATIC, AGGREGATE(6, NUMBERS), .hidden = true),
 	NOT_THERE("TAI8570/D1", UNSIGNED, VOLATILE, .hidden = true),
 	NOT_THERE("TAI8570/D2", UNSIGNED, VOLATILE, .hidden = true),
 	PROPERTY_DIR("TAI8570/DA5534"),
-	NOT_THERE("TAI8570/DA5534/pressure", PRESSURE, VOLATILE, .size = 0),
-	NOT_THERE("TAI8570/DA5534/temperature", TEMPERATURE, VOLATILE, .size = 0),
+	NOT_THERE("TAI8570/DA5534/pressure", PRESSURE, VOLATILE, MS5534_PRESSURE),
+	NOT_THERE("TAI8570/DA5534/temperature", TEMPERATURE, VOLATILE, MS5534_CELSIUS),
 	PROPERTY_DIR("TAI8570/DA5540"),
-	NOT_THERE("TAI8570/DA5540/pressure", PRESSURE, VOLATILE, .size = 0),
-	NOT_THERE("TAI8570/DA5540/temperature", TEMPERATURE, VOLATILE, .size = 0),
-	/* MS5534: 10 to 1100 mbar within 15, -40 to +125 */
-	NOT_THERE("TAI8570/pressure", PRESSURE, VOLATILE, MEASURES(-5, 1115, 2, "mbar")),
+	NOT_THERE("TAI8570/DA5540/pressure", PRESSURE, VOLATILE, MS5534_PRESSURE),
+	NOT_THERE("TAI8570/DA5540/temperature", TEMPERATURE, VOLATILE, MS5534_CELSIUS),
+	NOT_THERE("TAI8570/pressure", PRESSURE, VOLATILE, MS5534_PRESSURE),
 	NOT_THERE("TAI8570/sibling", ASCII, STABLE, .size = 16),
-	NOT_THERE("TAI8570/temperature", TEMPERATURE, VOLATILE, MEASURES(-42, 127, 2, DEGREES_C)),
+	NOT_THERE("TAI8570/temperature", TEMPERATURE, VOLATILE, MS5534_CELSIUS),
 	PROPERTY_BRANCH("aux", .arg = 0),
 	PROPERTY("channels", UNSIGNED, STABLE, READ,
                  FIELD(INFO, .shift = 6, .bits = 1, .offset = 1)),

@@ -315,18 +315,20 @@ static const struct property_how how[] = {
 /* Steps of 20 or 10 mV. */
 #define LIMIT(text, where, unit_) \
 	PROPERTY(text, FLOAT, STABLE, BOTH, ELEMENTS(4, LETTERS), \
-	         FIELD(MEMORY, .at = LIMITS + (where), .stride = 2, .unit = (unit_)))
+	         FIELD(MEMORY, .at = LIMITS + (where), .stride = 2, .unit = (unit_)), \
+	         IN_UNIT("V"))
 
 static const struct property properties[] = {
 	PROPERTY_DIR("8bit"),
-	VOLT("8bit/latestvolt", EIGHT_BIT, WAY_LATEST, .hidden = false),
-	VOLT("8bit/latestvolt2", EIGHT_BIT | HALF_RANGE, WAY_LATEST, .hidden = false),
-	VOLT("8bit/volt", EIGHT_BIT, WAY_VOLT, .hidden = false),
-	VOLT("8bit/volt2", EIGHT_BIT | HALF_RANGE, WAY_VOLT, .hidden = false),
+	VOLT("8bit/latestvolt", EIGHT_BIT, WAY_LATEST, FULL),
+	VOLT("8bit/latestvolt2", EIGHT_BIT | HALF_RANGE, WAY_LATEST, HALF),
+	VOLT("8bit/volt", EIGHT_BIT, WAY_VOLT, FULL),
+	VOLT("8bit/volt2", EIGHT_BIT | HALF_RANGE, WAY_VOLT, HALF),
 	PROPERTY_DIR("CO2"),
 	PROPERTY("CO2/Vdd", YESNO, VOLATILE, READ, .how = WAY_CO2_SUPPLY),
-	PROPERTY("CO2/ppm", UNSIGNED, VOLATILE, READ, .how = WAY_CO2_PPM),
-	PROPERTY("CO2/status", FLOAT, VOLATILE, READ, .how = WAY_CO2_STATUS),
+	PROPERTY("CO2/ppm", UNSIGNED, VOLATILE, READ, MEASURES(0, UINT16_MAX, 0, "ppm"),
+                 .how = WAY_CO2_PPM),
+	PROPERTY("CO2/status", FLOAT, VOLATILE, READ, FULL, .how = WAY_CO2_STATUS),
 	PROPERTY("PIO", YESNO, STABLE, BOTH, ELEMENTS(4, LETTERS), .arg = ENDS_POWER_ON,
                  .holds = true, .how = WAY_PIO),
 	PROPERTY_DIR("alarm"),

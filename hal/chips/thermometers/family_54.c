@@ -127,7 +127,9 @@ static const struct property_how how[] = {[WAY_TEMPERATURE] = {.read = read_temp
 	               .unit = 1.0 / PER_DEGREE))
 
 static const struct property properties[] = {
-	PROPERTY("temperature", TEMPERATURE, VOLATILE, READ, .how = WAY_TEMPERATURE),
+	/* -40 to +125 within 0.7, 0.005 */
+	PROPERTY("temperature", TEMPERATURE, VOLATILE, READ, MEASURES(-42, 127, 3, DEGREES_C),
+                 .how = WAY_TEMPERATURE),
 	LIMIT("temphigh", 0),
 	LIMIT("templow", 2),
 };

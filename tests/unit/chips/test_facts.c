@@ -36,11 +36,10 @@ static void test_thermometers_that_can_starve_are_known_in_every_spelling(void)
 		"/boiler/temperature",
 		"/1F.112233445566/main/28.551DDF030000/temperature",
 	};
-	static const char *const no[] = {"/26.0CBEEA010000/temperature",
-	                                 "/26.0CBEEA010000/humidity",
-	                                 "/3B.112233445566/thermocouple"};
+	static const char *const no[] = {
+		"/26.0CBEEA010000/temperature", "/26.0CBEEA010000/humidity",
+		"/3B.112233445566/thermocouple", "/28.551DDF030000/templow"};
 	static const char *const nothing[] = {
-		"/28.551DDF030000/templow",
 		"/28.551DDF030000/power",
 		"/simultaneous/temperature",
 		"/29.B89115000000/sensed.BYTE",
