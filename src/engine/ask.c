@@ -117,7 +117,7 @@ static bool ask_alarm(struct lane *lane, struct slot *slot)
 	struct signal *s;
 
 	/* one that was given up is still lent: the room for a list is not ours yet */
-	if (lane->lent.alarm || lane->lent.writes)
+	if (lane->lent.alarm || lane->lent.writes || alarm_yields(&lane->alarm, lane))
 		return false;
 	slot->purpose = FOR_ALARM;
 	slot->stamp = 0;

@@ -260,8 +260,7 @@ static uint64_t reads_apart(struct engine *e, struct lane *lane, const struct si
 	return s->item->per_factor;
 }
 
-/* After a good reading. */
-static void read_next(struct engine *e, struct lane *lane, struct signal *s,
+void engine_read_next(struct engine *e, struct lane *lane, struct signal *s,
                       const struct slot *slot)
 {
 	if (s->command.doubted || slot->begun_ns < s->command.ended_ns)
@@ -283,7 +282,7 @@ void engine_read_done(struct engine *e, struct lane *lane, const struct slot *sl
 		return;
 	}
 	if (engine_take_reading(e, lane, s, slot, answer, &wait_ns) == 0)
-		read_next(e, lane, s, slot);
+		engine_read_next(e, lane, s, slot);
 	else
 		engine_read_at(e, s, e->time.period + (wait_ns ? engine_periods(e, wait_ns) : 1));
 }

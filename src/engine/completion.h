@@ -14,6 +14,9 @@ void engine_write_done(struct engine *e, struct lane *lane, const struct slot *s
  */
 int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
                         const struct slot *slot, const struct bus_answer *answer, int64_t *wait_ns);
+/* When it is read again, after a good reading. */
+void engine_read_next(struct engine *e, struct lane *lane, struct signal *s,
+                      const struct slot *slot);
 /*
  * An item error of a read, or of a request of the alarm machine that counts as one. Returns the
  * back-off, 0: again in its next turn.

@@ -24,6 +24,13 @@ static uint32_t defined_fact(const char *name, const char *value)
 
 /* --- Facts of the states that need no answer ------------------------------------------------- */
 
+static uint32_t init_facts(const struct alarm_machine *m, const struct engine *e)
+{
+	bool arms = !m->arming && alarm_to_arm(m, e->time.now_ns);
+
+	return arms && m->in_a_row >= e->config->max_cons_alarms ? FACT_MAX_CONS : 0;
+}
+
 static uint32_t process_facts(struct alarm_machine *m, struct engine *e)
 {
 	if (m->in_a_row >= e->config->max_cons_alarms)
@@ -61,6 +68,8 @@ static uint32_t facts_before(struct alarm_machine *m, struct lane *lane)
 	const struct alarm_item *i = alarm_current(m), *known;
 	const struct alarm_step *step = alarm_step(m->state);
 
+	if (m->state == INIT)
+		return init_facts(m, e);
 	if (m->state == ALARM_PROCESS)
 		return process_facts(m, e);
 	if (m->state == ALARM_BYPASS)
@@ -132,9 +141,13 @@ void alarm_started(struct alarm_machine *m, struct lane *lane)
 	uint32_t facts = FACT_STARTED;
 
 	m->in_work = true;
+	m->yielded = 0;
+	if (m->arming)
+		m->in_a_row += !m->arm_writes;
 	if (m->collecting || m->arming || m->proving)
 		return;
 	if (m->state == INIT) {
+		m->anew = false;
 		m->list.next_ns = lane->engine->time.now_ns + lane->engine->config->alarm_period_ns;
 	} else if (m->state == ALARM_SET_WAIT) {
 		m->init_position = alarm_next_init(lane->engine, m);
@@ -236,6 +249,16 @@ void alarm_answered(struct alarm_machine *m, struct lane *lane, const struct slo
 void alarm_passed(struct alarm_machine *m)
 {
 	m->passed = true;
+}
+
+bool alarm_yields(struct alarm_machine *m, const struct lane *lane)
+{
+	if (m->state != INIT || m->in_work || m->arming || !lane->outputs.count ||
+	    m->yielded >= lane->writers ||
+	    (!m->anew && !alarm_to_arm(m, lane->engine->time.now_ns)))
+		return false;
+	m->yielded++;
+	return true;
 }
 
 bool alarm_holds(const struct alarm_machine *m)

@@ -7,6 +7,11 @@
 /* Does the lane hold writes back for the machine? */
 bool alarm_holds(const struct alarm_machine *m);
 /*
+ * Does the machine let an output go first? It does before the first list and before each SetAlarm
+ * that is compared, for as many writes as the lane has outputs.
+ */
+bool alarm_yields(struct alarm_machine *m, const struct lane *lane);
+/*
  * Go on as far as there is something to do without asking; true: the slot has what to ask next.
  * alarm_started() must follow if it was given to the bus.
  */

@@ -129,6 +129,7 @@ void alarm_rearm(struct alarm_machine *m, struct engine *e, uint32_t device)
 		if (i->device != device)
 			continue;
 		i->arming.wanted = alarm_arms(i);
+		i->arming.cycle = m->list.cycle;
 		i->restart.known = i->restart.differs = i->asks_por = false;
 		arm_anew(e, i);
 		alarm_visit_anew(e, i);
@@ -137,15 +138,16 @@ void alarm_rearm(struct alarm_machine *m, struct engine *e, uint32_t device)
 
 /* --- SetAlarm at start, and when a device comes back ------------------------------------------ */
 
-static bool wants_arming(const struct alarm_item *i)
+/* A list comes first: what has por set gets its SetAlarm by that, in ALARM_SET. */
+static bool wants_arming(const struct alarm_machine *m, const struct alarm_item *i)
 {
-	return i->arming.wanted && !i->restart.known;
+	return i->arming.wanted && !i->restart.known && i->arming.cycle != m->list.cycle;
 }
 
 struct alarm_item *alarm_to_arm(const struct alarm_machine *m, int64_t now_ns)
 {
 	for (uint32_t k = 0; k < m->count; k++)
-		if (wants_arming(m->items[k]) && now_ns >= m->items[k]->arming.not_before_ns)
+		if (wants_arming(m, m->items[k]) && now_ns >= m->items[k]->arming.not_before_ns)
 			return m->items[k];
 	return NULL;
 }
@@ -155,7 +157,7 @@ int64_t alarm_to_arm_ns(const struct alarm_machine *m)
 	int64_t next_ns = INT64_MAX;
 
 	for (uint32_t k = 0; k < m->count; k++)
-		if (wants_arming(m->items[k]))
+		if (wants_arming(m, m->items[k]))
 			next_ns = earlier_ns(next_ns, m->items[k]->arming.not_before_ns);
 	return next_ns;
 }

@@ -91,7 +91,11 @@ void engine_power_on_reset(struct lane *lane, const struct device *d, const stru
 
 		if (s->lane != lane->index)
 			continue;
-		signal_forget_written(s);
+		/* after a restart before owsd's first look it got its command, and no InitValue */
+		if (!seen && s->command.confirmed && s->item->output)
+			s->command.forced = true;
+		else
+			signal_forget_written(s);
 		engine_write_check(e, s);
 	}
 }

@@ -7,6 +7,7 @@
 const struct alarm_row alarm_table[] = {
 	{NOT_USED, FACT_ITEMS, 0, INIT, "at least one alarm was found when the driver was opened"},
 
+	{INIT, FACT_MAX_CONS, 0, ALARM_BYPASS, RULING "nMaxConsAlarms were armed in a row"},
 	{INIT, FACT_STARTED, 0, ALARM_DIR, "reading of /alarm was started"},
 
 	{ALARM_DIR, FACT_FAILED, 0, ALARM_BYPASS, RULING "reading failed; iAlarmPos = -1"},

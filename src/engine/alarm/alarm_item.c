@@ -120,7 +120,12 @@ void alarm_name_list(struct alarm_machine *m, const struct table *table)
 int alarm_init(struct alarm_machine *m, uint32_t room, bool searches)
 {
 	*m = (struct alarm_machine){
-		.state = NOT_USED, .position = -1, .init_position = -1, .searches = searches};
+		.state = NOT_USED,
+		.position = -1,
+		.init_position = -1,
+		.searches = searches,
+		.anew = true,
+	};
 	if (!room)
 		return 0;
 	m->items = calloc(room, sizeof(*m->items));
@@ -146,6 +151,7 @@ void alarm_take_item(struct alarm_machine *m, struct alarm_item *item, int64_t n
 	m->position += m->position >= (int64_t)at;
 	item->listed = false;
 	item->arming.wanted = alarm_arms(item);
+	item->arming.cycle = m->list.cycle;
 	item->asks_por = item->restart.known; /* unless it is listed there */
 	retry_clear(&item->arming.retry);
 	item->arming.not_before_ns = 0;
@@ -198,6 +204,7 @@ void alarm_restart(struct alarm_machine *m)
 	if (m->state == NOT_USED)
 		return;
 	m->state = INIT;
+	m->anew = true;
 	m->position = m->init_position = -1;
 	m->arming = m->collecting = NULL;
 	m->arm_writes = m->proving = false;

@@ -64,6 +64,7 @@ struct alarm_restart {
 /* SetAlarm compared with the chip; a reload carries it over. */
 struct alarm_arming {
 	bool wanted;
+	uint32_t cycle;     /* of the last list before that: the next may find that por is set */
 	struct retry retry; /* of that, and of ending the restart */
 	int64_t not_before_ns;
 };
@@ -113,6 +114,8 @@ struct alarm_machine {
 	unsigned in_a_row;         /* nCons */
 	bool in_work;              /* a request of the machine is with the bus */
 	bool passed;               /* since BYPASS was entered */
+	bool anew;                 /* no list was asked for since the target is up */
+	uint32_t yielded;          /* writes that went before the list, or before SetAlarm */
 	int64_t bypass_ns;         /* when it ends at the latest; 0: just entered */
 	struct alarm_item *arming; /* its SetAlarm is compared; NULL: that of none */
 	bool arm_writes;

@@ -138,7 +138,9 @@ static uint32_t take_alarm_value(const struct alarm_answer *a)
 		i->occurrence.wants_after = false;
 	}
 	engine_publish(e, s);
-	if (err && a->m->state == SENSED_WAIT)
+	if (!err)
+		engine_read_next(e, a->lane, s, a->slot);
+	else if (a->m->state == SENSED_WAIT)
 		engine_read_at(e, s, e->time.period + 1);
 	return err ? FACT_FAILED : FACT_DONE;
 }

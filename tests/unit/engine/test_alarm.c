@@ -167,8 +167,7 @@ static void test_the_alarm_condition_is_armed_at_start_if_it_differs(void)
 	scene_up(&s);
 	scene_run(&s, 40 * SCENE_MS);
 	TEST_ASSERT_EQUAL_STRING("133333333", scene_at(&s, D "/set_alarm"));
-	TEST_ASSERT_EQUAL_STRING_LEN("r " D "/set_alarm\nW " D "/set_alarm=133333333\n", s.trace,
-	                             2 * strlen("r " D "/set_alarm\n") + 10);
+	TEST_ASSERT_NOT_NULL(strstr(s.trace, "r " D "/set_alarm\nW " D "/set_alarm=133333333\n"));
 }
 
 static void test_numbers_are_compared_as_numbers_when_arming(void)

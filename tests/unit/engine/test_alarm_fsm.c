@@ -45,6 +45,7 @@ static void test_every_state_on_every_single_fact(void)
 		enum alarm_state next;
 	} leaves[] = {
 		{NOT_USED, FACT_ITEMS, INIT},
+		{INIT, FACT_MAX_CONS, ALARM_BYPASS},
 		{INIT, FACT_STARTED, ALARM_DIR},
 		{ALARM_DIR, FACT_DONE, ALARM_PROCESS},
 		{ALARM_DIR, FACT_FAILED, ALARM_BYPASS},

@@ -145,6 +145,7 @@ static const struct {
 	{"T4", 10, FACT_KNOWN | FACT_NON_ZERO, 0, "ALARM_SENSED"},
 	{"T4", 10, FACT_KNOWN, 0, "ALARM_PROCESS"},
 	{"T4", 14, FACT_KNOWN, 0, "SENSED"},
+	{"T5", 0, FACT_MAX_CONS, 0, "ALARM_BYPASS"},
 };
 
 static bool is_added(const struct alarm_row *row, size_t i)
