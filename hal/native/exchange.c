@@ -417,6 +417,10 @@ void job_run_property(struct native *native, struct job *job, int64_t now)
 		int err = txn_end(txn, run_function(job));
 
 		job_saw(native, job, err, now);
+		if (convert_instead(job, err)) {
+			job_restart(native, job);
+			return;
+		}
 		if (err < 0) {
 			job_failed(native, job, err);
 			return;

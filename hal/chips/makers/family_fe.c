@@ -142,20 +142,30 @@ static int read_measured(struct txn *txn)
 	return err;
 }
 
-/* The time of a conversion that the bus did not ask for is not known. */
+/*
+ * The time of a conversion that the bus did not ask for is not known, and a restart takes the
+ * result: then it converts.
+ */
 static int read_latest(struct txn *txn)
 {
-	const struct smart_slave *slave = txn->device->own;
+	struct smart_slave *slave = txn->device->own;
 	uint8_t bytes[PAGE];
+
+	if (!slave->measured_ns)
+		return read_measured(txn);
 	int err = area_read(txn, &page, 0, bytes, PAGE);
 
 	if (err)
 		return err;
 	if (bytes[SUBTYPE] != SUBTYPE_TH)
 		return -ENOENT;
+	if (!bytes[VALID] || is_busy(bytes)) {
+		slave->measured_ns = 0;
+		return TXN_MORE;
+	}
 	txn->number[0] = th_value(bytes + txn->property->arg);
 	txn->measured_ns = slave->measured_ns;
-	return !bytes[VALID] || is_busy(bytes) || !slave->measured_ns ? -EIO : 0;
+	return 0;
 }
 
 static int read_text(struct txn *txn)

@@ -25,7 +25,7 @@ enum { RESULTS = 0, CONTROL = 8, LIMITS = 16 }; /* pages of 8 bytes */
 struct visit {
 	bool set;     /* the settings of a conversion are as wanted */
 	bool started; /* it is under way or over */
-	bool latest;  /* the latest result may be what a restart left: a conversion is made */
+	bool latest;  /* the latest result is of no use: a conversion is made */
 	uint8_t supply;
 	int64_t begun_ns;
 };
@@ -191,10 +191,10 @@ static int read_volt(struct txn *txn)
 }
 
 /*
- * The time of a result that the bus did not ask for is not known, and one of another range would
- * be twice as much or half: a conversion gives the truth.
- * A restart leaves zeros as results. Nothing but zeros may be of one whose flags a setting has
- * cleared since: a conversion gives the truth.
+ * A conversion gives the truth where the bus did not ask for the result, so that its time is not
+ * known; where its range was another, so that it would be twice as much or half; and where it is
+ * what a restart left. That is zeros, whether the power-on flags are set, or a setting has cleared
+ * them since.
  */
 static int read_latest(struct txn *txn)
 {
@@ -204,11 +204,12 @@ static int read_latest(struct txn *txn)
 	if (visit->latest)
 		return read_volt(txn);
 	int err = area_read(txn, &memory, RESULTS, bytes, sizeof(bytes));
-	if (err || power_on_flags(bytes + CONTROL))
-		return err ? err : -EIO;
+	if (err)
+		return err;
 	take_volts(txn, bytes);
 	txn->measured_ns = ds2450_of(txn->device)->measured_ns;
-	bool known = txn->measured_ns && is_range(txn->property->arg, bytes + CONTROL);
+	bool known = txn->measured_ns && !power_on_flags(bytes + CONTROL) &&
+	             is_range(txn->property->arg, bytes + CONTROL);
 	for (int i = 0; i < 8 && known; i++)
 		if (bytes[i] != 0)
 			return 0;

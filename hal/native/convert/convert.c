@@ -7,7 +7,9 @@
  * has such a one, others are asked to convert one by one.
  */
 #include <errno.h>
+#include <string.h>
 
+#include "hal/chips/find.h"
 #include "hal/chips/thermometers/thermometer.h"
 #include "hal/chips/thermometers/thermometer_proof.h"
 #include "hal/native/answer.h"
@@ -380,6 +382,18 @@ static bool is_doubtful(struct job *job)
 		break;
 	}
 	return false;
+}
+
+bool convert_instead(struct job *job, int err)
+{
+	static const char name[] = "temperature";
+	const struct device *device = job->txn.device;
+
+	if (err != -EIO || !job->txn.unproven || job->property->convert ||
+	    !thermometer_last(device).ends_ns)
+		return false;
+	job->property = family_property(device->family, device, name, strlen(name));
+	return true;
 }
 
 int convert_judge(struct job *job)

@@ -17,6 +17,11 @@ bool convert_step(struct native *native, int64_t now, int64_t *next, struct job 
 struct job *convert_next_in_turn(struct native *native, unsigned n, int64_t now);
 void convert_in_turn(struct native *native, struct job *job);
 /*
+ * The job asked for the latest result, and failed with err. All were told to convert, but nothing
+ * proves that its chip did (a strong pull-up hides it)? Then the job has the chip convert anew.
+ */
+bool convert_instead(struct job *job, int err);
+/*
  * The job has read what its chip holds. 0: that is the result that it asked for, or no result of a
  * conversion; TXN_MORE: it is to convert again, as that may be an older one; -EBADMSG: it gives up.
  */

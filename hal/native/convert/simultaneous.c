@@ -6,6 +6,7 @@
 #include "hal/native/answer.h"
 #include "hal/native/convert/broadcast.h"
 #include "hal/native/convert/simultaneous.h"
+#include "hal/native/convert/supply.h"
 #include "hal/native/master.h"
 #include "hal/native/outcome.h"
 #include "hal/native/state.h"
@@ -50,6 +51,25 @@ static int convert_voltage(struct native *native, unsigned n)
 	return 0;
 }
 
+/*
+ * A chip whose supply is not known would get the strong pull-up, and could not show that it
+ * converts. TXN_MORE: one of them, or all, were asked now.
+ */
+static int ask_supply(struct native *native, struct job *job)
+{
+	unsigned n = job->channel;
+	struct device *device = NULL;
+
+	while ((device = native_thermometer(native, n, device)))
+		if (device->power == POWER_UNKNOWN)
+			break;
+	if (!device)
+		return 0;
+	if (!native->channel[n].power_asked)
+		return supply_ask_all(native, job);
+	return supply_ask_one(native, n) ? TXN_MORE : 0;
+}
+
 /* Without a thermometer on the channel no chip shows that it converts. */
 static int convert_temperature(struct native *native, unsigned n)
 {
@@ -90,11 +110,16 @@ void convert_all(struct native *native, struct job *job)
 {
 	bool temperature = job->property->arg == SIMULTANEOUS_TEMPERATURE;
 	unsigned n = job->channel;
-	int err = temperature             ? convert_temperature(native, n)
-	          : has_ds2450(native, n) ? convert_voltage(native, n)
-	                                  : 0;
 
 	job->txn.channel = n;
+	int err = temperature ? ask_supply(native, job) : 0;
+
+	if (err == TXN_MORE)
+		return;
+	if (!err)
+		err = temperature             ? convert_temperature(native, n)
+		      : has_ds2450(native, n) ? convert_voltage(native, n)
+		                              : 0;
 	forget_kept(native, n, temperature);
 	if (err < 0 && err != -ENODEV) {
 		job->txn.link_error = err == -EBADMSG || err == -EOPNOTSUPP ? 0 : err;

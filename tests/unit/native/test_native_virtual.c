@@ -179,8 +179,8 @@ static void test_all_voltages_are_converted_at_once(void)
 	wire_set(b, "volt.A", 2);
 	start();
 	expect(true, "/simultaneous/voltage", "0");
-	TEST_ASSERT_EQUAL_INT_MESSAGE(-EIO, result(BUS_READ, of(a, "latestvolt.A"), NULL),
-	                              "nothing was converted since it has power");
+	TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(0.01, 1, number(of(a, "latestvolt.A")),
+	                                  "nothing was converted since it has power");
 	TEST_ASSERT_EQUAL_INT(0, result(BUS_READ, of(a, "volt.A"), NULL));
 	TEST_ASSERT_EQUAL_INT(0, result(BUS_READ, of(b, "volt.A"), NULL));
 	TEST_ASSERT_DOUBLE_WITHIN(0.01, 1, number(of(a, "latestvolt.A")));
