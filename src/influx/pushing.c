@@ -48,6 +48,9 @@ static void pushing_begin(struct face *face, int64_t now_ns)
 	sending_read_token(face);
 	open_spool(face);
 	log_notice(face->log, "pushing to %.100s, spool %s", p->options.url, p->options.spool);
+	log_info(face->log, "SpoolSize %llu MB, ClockWait %lld s",
+	         (unsigned long long)(p->spool.limit / 1000000),
+	         (long long)(p->options.clock_wait_ns / NS_PER_S));
 }
 
 /* What is under way and in memory goes to the spool, if its time is known. */

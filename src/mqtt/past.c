@@ -259,6 +259,7 @@ void past_drop(struct past *p)
 		p->mark_published = UINT64_MAX; /* its answer is not waited for */
 	p->marking = false;
 	begin_anew(p);
+	close_history(p); /* the file may name another */
 }
 
 static void wait_more(struct past *p, int64_t now_ns, int64_t most_ns)
@@ -574,7 +575,6 @@ void past_end(struct past *p)
 {
 	past_lost(p);
 	past_drop(p);
-	close_history(p);
 }
 
 /*

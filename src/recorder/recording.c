@@ -112,6 +112,9 @@ static int open_writer(struct face *face, int64_t now_ns, int *disk_err)
 	err = history_writer_open(&to, now_ns, r->clock.offset_ns, r->clock.trusted, &r->writer);
 	if (err)
 		return err;
+	log_info(face->log, "Keep %u, KeepMinutes %u, KeepHours %u, Size %llu MB, Flush %g s",
+	         to.keep.days, to.keep.minutes, to.keep.hours,
+	         (unsigned long long)(to.keep.bytes / 1000000), (double)to.flush_ns / NS_PER_S);
 	*disk_err = history_writer_known(r->writer, &alarms_ns, &commands_ns);
 	/* what an earlier run of this boot has */
 	if (alarms_ns > face->alarms_after_ns)

@@ -11,28 +11,10 @@ import subprocess
 import threading
 
 import owsdtest
-from mqtthouse import ROOM, SENSOR, Broker, House, Listener, item, program
+from mqtthouse import ROOM, SENSOR, Broker, House, Listener, certificates, item, openssl, program
 from owsdtest import free_port, logged, raw, until
 
 STATE = "owsd/pi7/state"
-
-
-def openssl(scene, *arguments):
-    subprocess.run([program("openssl"), *map(str, arguments)], cwd=scene.path, check=True, capture_output=True,
-                   timeout=owsdtest.PATIENCE)
-
-
-def certificates(scene):
-    """ca.pem, and broker and client with keys that it signed."""
-    openssl(scene, "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-keyout", "ca.key", "-out", "ca.pem",
-            "-days", "2", "-subj", "/CN=test-ca")
-    for name, subject in (("broker", "/CN=localhost"), ("client", "/CN=pi7")):
-        openssl(scene, "req", "-newkey", "rsa:2048", "-nodes", "-keyout", f"{name}.key", "-out", f"{name}.csr",
-                "-subj", subject)
-        extra = scene.file(f"{name}.ext", "subjectAltName=DNS:localhost\n")
-        openssl(scene, "x509", "-req", "-in", f"{name}.csr", "-CA", "ca.pem", "-CAkey", "ca.key",
-                "-CAcreateserial", "-out", f"{name}.pem", "-days", "2", "-extfile", extra)
-    (scene.path / "client.key").chmod(0o600)
 
 
 def passwords(scene):
