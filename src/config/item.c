@@ -7,6 +7,7 @@
 
 #include "hal/chips/facts.h"
 #include "hal/owfs/path.h"
+#include "src/config/alarm.h"
 #include "src/config/build.h"
 #include "src/config/item.h"
 #include "src/config/limits.h"
@@ -19,8 +20,6 @@
 
 /* How often a switch is read back: it costs a busy wire little. */
 #define READ_BACK_NS (10 * INT64_C(1000000000))
-
-#define IO_TYPE_KNOWN (IO_TYPE_CODE | IO_TYPE_INPUT | IO_TYPE_OUTPUT | IO_TYPE_UNCACHED)
 
 /* Where a key's value stands, or the item if the key is absent. */
 static struct place place_of(const struct option_value *value, const struct rio_node *block)
@@ -319,69 +318,6 @@ static void build_values(struct build *build, const struct option_value *values,
 	item->stale_after_ns = option_ns(&values[OPT_STALE_AFTER]);
 }
 
-static const char *keep_if_given(struct build *build, const struct option_value *value)
-{
-	return value->given ? build_keep(build, value->text, strlen(value->text)) : NULL;
-}
-
-static void warn_without_equals(struct build *build, const struct option_value *value,
-                                const char *follows)
-{
-	if (value->given && *value->text && !strchr(value->text, '='))
-		report_warning(
-			build->report, value->node->value_at,
-			"%s \"%s\" has no '=': nothing is written%s; expected property=value",
-			value->node->key, value->text, follows);
-}
-
-/* Table 3.1: rows 3 and 10 leave for the next alarm when these are not defined. */
-static void build_alarm(struct build *build, const struct rio_node *block,
-                        const struct option_value *values, const struct path *path,
-                        struct config_item *item)
-{
-	struct place place = place_of(&values[OPT_ALARM], block);
-	bool latch_empty;
-
-	item->latch_alarm = keep_if_given(build, &values[OPT_LATCH_ALARM]);
-	item->por_alarm = keep_if_given(build, &values[OPT_POR_ALARM]);
-	item->set_alarm = keep_if_given(build, &values[OPT_SET_ALARM]);
-	item->reset_latch = keep_if_given(build, &values[OPT_RESET_LATCH]);
-	item->latch_at = option_spot(&values[OPT_LATCH_ALARM]);
-	item->por_at = option_spot(&values[OPT_POR_ALARM]);
-	item->set_at = option_spot(&values[OPT_SET_ALARM]);
-	item->reset_at = option_spot(&values[OPT_RESET_LATCH]);
-	latch_empty = item->latch_alarm && !*item->latch_alarm;
-	if (!item->alarm)
-		return;
-	if (*item->path && !path->device.len)
-		report_error(build->report, place, "Alarm on: expected a device in the path \"%s\"",
-		             item->path);
-	if (!values[OPT_POR_ALARM].node)
-		report_warning(
-			build->report, place,
-			"this alarm can never do anything: PorAlarm is not defined; write "
-			"PorAlarm \"por\", or PorAlarm \"\" if the device has no such property");
-	if (!values[OPT_LATCH_ALARM].node || latch_empty)
-		report_warning(build->report, place,
-		               "this alarm never reads anything: LatchAlarm is %s; write the "
-		               "device's latch such as LatchAlarm \"latch.BYTE\", or LatchAlarm "
-		               "\"present\" if it has none",
-		               latch_empty ? "empty" : "not defined");
-	if (item->por_alarm && *item->por_alarm && !item->set_alarm)
-		report_warning(
-			build->report, place,
-			"this alarm cannot be armed after a restart of its device: SetAlarm is "
-			"not defined, so %s is never cleared; write SetAlarm "
-			"\"property=value\", or SetAlarm \"\" if nothing has to be set",
-			item->por_alarm);
-	warn_without_equals(
-		build, &values[OPT_SET_ALARM],
-		item->por_alarm && *item->por_alarm
-			? ", and the alarm cannot be armed after a restart of its device"
-			: "");
-	warn_without_equals(build, &values[OPT_RESET_LATCH], "");
-}
-
 /*
  * Warn of an integer type for a property with decimals: its value would be bad at every fraction.
  * A scaled value is rounded instead.
@@ -416,7 +352,7 @@ void item_build(struct build *build, const struct rio_node *block, struct config
 	scaling_build(build, values, known, item);
 	if (known)
 		warn_of_decimals(build, block, values, item);
-	build_alarm(build, block, values, &path, item);
+	alarm_build(build, block, values, &path, item);
 	limits_build(build, values, item);
 	record_build(build, &values[OPT_RECORD], known, item);
 	class_build(build, &values[OPT_CLASS], item);

@@ -2,12 +2,6 @@
 /* Items of the file: makes a signal of an item's keys, and reports what is wrong or odd. */
 #pragma once
 
-/* The bits of IOType. */
-#define IO_TYPE_CODE 0x0fu
-#define IO_TYPE_INPUT 0x10u
-#define IO_TYPE_OUTPUT 0x20u
-#define IO_TYPE_UNCACHED 0x100u
-
 struct build;
 struct config_item;
 struct place;

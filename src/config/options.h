@@ -67,6 +67,13 @@ bool option_is_block(const struct rio_node *node, enum option option);
 /* How many of them the driver's block has. */
 unsigned options_blocks(const struct rio_node *driver, enum option option);
 
+/* The bits of IOType. */
+#define IO_TYPE_CODE 0x0fu
+#define IO_TYPE_INPUT 0x10u
+#define IO_TYPE_OUTPUT 0x20u
+#define IO_TYPE_UNCACHED 0x100u
+#define IO_TYPE_KNOWN (IO_TYPE_CODE | IO_TYPE_INPUT | IO_TYPE_OUTPUT | IO_TYPE_UNCACHED)
+
 /* A key of a block as the reader found it. */
 struct option_value {
 	const struct rio_node *node; /* NULL: absent */

@@ -7,7 +7,7 @@
 #include "hal/chips/facts.h"
 #include "hal/owfs/path.h"
 #include "src/config/edit_block.h"
-#include "src/config/item.h"
+#include "src/config/options.h"
 #include "src/signal/value.h"
 #include "src/web/model.h"
 

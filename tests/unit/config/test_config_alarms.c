@@ -101,6 +101,17 @@ static void test_an_alarm_that_can_do_nothing_is_told_what_to_write(void)
 		{ITEM "Alarm on LatchAlarm \"latch.BYTE\"", "f:3:34: " NO_POR},
 		{ITEM "Alarm on PorAlarm \"\" LatchAlarm \"present\"", ""},
 		{ITEM "Alarm off LatchAlarm \"\"", ""},
+		{ITEM "PorAlarm \"\" SetAlarm \"\" ResetLatch \"\"", ""},
+		{ITEM "Alarm off LatchAlarm latch.BYTE PorAlarm por",
+	         "f:3:38: warning: LatchAlarm does nothing while Alarm is off: write Alarm on, or take "
+	         "the keys of the alarm out\n"},
+		{ITEM "LatchAlarm \"\" ResetLatch latch.BYTE=0",
+	         "f:3:42: warning: ResetLatch does nothing without Alarm: write Alarm on, or take the "
+	         "keys of the alarm out\n"},
+		{"Name x Path /29.000000000001/sensed.BYTE IOType 0x0312 Alarm off LatchAlarm latch.BYTE",
+	         "f:3:49: warning: IOType 0x0312 has the unknown bits 0x0200, which are ignored\n"
+	         "f:3:66: warning: LatchAlarm does nothing while Alarm is off: write Alarm on, or take "
+	         "the keys of the alarm out\n"},
 		{ITEM
 	         "Alarm on PorAlarm \"por\" LatchAlarm \"latch\" SetAlarm \"set_alarm\" ResetLatch \"\"",
 	         "f:3:80: warning: SetAlarm \"set_alarm\" has no '=': nothing is written, and the alarm "
@@ -113,6 +124,19 @@ static void test_an_alarm_that_can_do_nothing_is_told_what_to_write(void)
 	expect_warnings(cases, COUNT(cases), parse_item);
 	TEST_ASSERT_EQUAL_STRING("a=b", config->items[0].set_alarm);
 	TEST_ASSERT_EQUAL_STRING("latch=0", config->items[0].reset_latch);
+}
+
+static void test_strings_without_alarm_beside_unknown_bits_are_an_error(void)
+{
+#define BITS "warning: IOType 0x0312 has the unknown bits 0x0200, which are ignored\n"
+	static const struct line cases[] = {
+		{"Name x Path /29.000000000001/sensed.BYTE IOType 0x0312 PorAlarm por LatchAlarm l",
+	         "f:3:49: " BITS
+	         "f:3:69: error: LatchAlarm is there and Alarm is not, and IOType 0x0312 has the "
+	         "unknown bits 0x0200: write Alarm on, or Alarm off if it is to do nothing\n"},
+	};
+
+	expect_errors(cases, COUNT(cases), parse_item);
 }
 
 static void test_absent_alarm_strings_are_not_defined_and_empty_ones_are_empty(void)
@@ -131,6 +155,7 @@ int main(void)
 	RUN_TEST(test_wrong_limits_are_errors_with_what_was_expected);
 	RUN_TEST(test_limits_make_limit_alarms);
 	RUN_TEST(test_an_alarm_that_can_do_nothing_is_told_what_to_write);
+	RUN_TEST(test_strings_without_alarm_beside_unknown_bits_are_an_error);
 	RUN_TEST(test_absent_alarm_strings_are_not_defined_and_empty_ones_are_empty);
 	return UNITY_END();
 }
