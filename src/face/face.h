@@ -52,11 +52,17 @@ struct face_event {
 
 struct face;
 
-/* NULL may be report, and tick where tick_ns stays INT64_MAX; all else is called. */
+/* NULL may be check, report, and tick where tick_ns stays INT64_MAX; all else is called. */
 struct face_ops {
 	const char *program; /* "owsd-recorder": in messages, and towards owsd */
 	/* the one option of the face besides those of all faces; letter 0: none */
 	struct face_option option;
+	/*
+	 * Of --check, besides the text of the file: may what the block names be used? face->config
+	 * is there, and no more. Returns 0, or a negative errno after reporting why not with
+	 * face_complain(). NULL: it names nothing.
+	 */
+	int (*check)(const struct face *face);
 	/*
 	 * Before the loop; face->config is there, face->ows is not yet. Sets own, and what the face
 	 * wants of tick_ns, pace_ns and after_ns. Returns 0, or a negative errno after reporting

@@ -258,8 +258,9 @@ int face_main(const struct face_ops *ops, int argc, char **argv)
 	if (load_first(&face))
 		return FACE_EXIT_USAGE;
 	if (arguments.check) {
+		status = ops->check && ops->check(&face) ? FACE_EXIT_USAGE : EXIT_SUCCESS;
 		config_free(face.config);
-		return EXIT_SUCCESS;
+		return status;
 	}
 	face.log = log_create(arguments.level);
 	status = unix_signals_open(&signals);

@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "src/face/arguments.h"
 #include "src/face/secret.h"
 #include "src/signal/hash.h"
 
@@ -117,6 +118,30 @@ int secret_read(const char *name, char token[SECRET_SIZE], char *why, size_t siz
 		return secret_refuse(-EINVAL, path, "expected one token in one line", why, size);
 	}
 	return 0;
+}
+
+int secret_check(const char *program, const char *key, const char *name, enum secret_kind kind)
+{
+	char token[SECRET_SIZE], path[SECRET_PATH], why[SECRET_PATH + 128];
+	int err;
+
+	if (!name || !*name)
+		return 0;
+	if (name[0] != '/' && !getenv("CREDENTIALS_DIRECTORY")) {
+		face_complain(program, "%s: the service alone sees its credential %s: not checked",
+		              key, name);
+		return 0;
+	}
+	err = kind == SECRET_TOKEN ? secret_read(name, token, why, sizeof(why))
+	                           : secret_file(name, kind == SECRET_KEY, path, why, sizeof(why));
+	if (err == -EACCES)
+		face_complain(program, "%s: %s: not checked; try as its owner, or as root", key,
+		              why);
+	else if (err)
+		face_complain(program, "%s: %s%s", key, why,
+		              err == -ENOENT && name[0] == '/' ? "; make it, or name another"
+		                                               : "");
+	return err == -EACCES ? 0 : err;
 }
 
 bool secret_is_news(const char *why, uint64_t *print)

@@ -16,6 +16,17 @@
  * file; it is no file; it is empty, or longer than a token. Blocking.
  */
 int secret_read(const char *name, char token[SECRET_SIZE], char *why, size_t size);
+/*
+ * For --check, which may run as another user than the service and without its credentials: may the
+ * face use what its key names (NULL: nothing)? Reports why not, and what cannot be looked at from
+ * here. Returns 0, or a negative errno if it may not.
+ */
+enum secret_kind {
+	SECRET_TOKEN,  /* of secret_read() */
+	SECRET_KEY,    /* of secret_file(), own */
+	SECRET_PUBLIC, /* of secret_file(), not own */
+};
+int secret_check(const char *program, const char *key, const char *name, enum secret_kind kind);
 /* Is why ("": nothing is wrong) another than that of *print, 0 at first? It is from now on. */
 bool secret_is_news(const char *why, uint64_t *print);
 /*

@@ -1,13 +1,21 @@
 /* SPDX-License-Identifier: MIT */
 /* owsd-influx: pushes the signals of an owsd to a server that takes InfluxDB's line protocol. */
 #include "src/face/loop.h"
+#include "src/face/secret.h"
 #include "src/influx/pushing.h"
+
+static int check(const struct face *face)
+{
+	return secret_check(face->ops->program, "TokenFile", face->config->influx.token_file,
+	                    SECRET_TOKEN);
+}
 
 int main(int argc, char **argv)
 {
 	static const struct face_ops ops = {
 		.program = "owsd-influx",
 		.option = {'d', "directory", "DIR", "where batches wait, in place of Spool"},
+		.check = check,
 		.open = pushing_open,
 		.changes = pushing_changes,
 		.event = pushing_event,

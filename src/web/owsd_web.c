@@ -174,12 +174,16 @@ static void follow_addresses(struct web *web)
 
 /* --- The page -------------------------------------------------------------------------------- */
 
-/* Where Files says; else where this program was installed, or where it was built. */
-static void open_files(struct web *web)
+#define FILES_PATH 1024
+
+/*
+ * Where Files says; else where this program was installed, or where it was built. path: where they
+ * were looked for.
+ */
+static int find_files(struct files *files, const char *given, char path[FILES_PATH])
 {
 	static const char *const beside[] = {"../share/owsd/web", "../src/web/page"};
-	const char *given = web->face->config->web.files;
-	char path[1024], program[512];
+	char program[512];
 	ssize_t len = readlink("/proc/self/exe", program, sizeof(program) - 1);
 	int err = -ENOENT;
 
@@ -187,16 +191,39 @@ static void open_files(struct web *web)
 	if (strrchr(program, '/'))
 		*strrchr(program, '/') = '\0';
 	if (given) {
-		snprintf(path, sizeof(path), "%s", given);
-		err = files_open(&web->files, path);
+		snprintf(path, FILES_PATH, "%s", given);
+		err = files_open(files, path);
 	}
 	for (size_t i = 0; !given && err && i < sizeof(beside) / sizeof(beside[0]); i++) {
-		snprintf(path, sizeof(path), "%s/%s", program, beside[i]);
-		err = files_open(&web->files, path);
+		snprintf(path, FILES_PATH, "%s/%s", program, beside[i]);
+		err = files_open(files, path);
 	}
+	return err;
+}
+
+static void open_files(struct web *web)
+{
+	char path[FILES_PATH];
+	int err = find_files(&web->files, web->face->config->web.files, path);
+
 	if (err)
 		log_warning(web->face->log, "there are no files of the page in %s: %s", path,
 		            strerror(-err));
+}
+
+static int check(const struct face *face)
+{
+	struct files files = {.directory = -1};
+	char path[FILES_PATH];
+	int err = find_files(&files, face->config->web.files, path);
+
+	if (err)
+		face_complain(face->ops->program,
+		              "there are no files of the page in %s: %s; without Files those of "
+		              "the package are served",
+		              path, strerror(-err));
+	files_close(&files);
+	return err == -EACCES ? 0 : err; /* the service may be another user */
 }
 
 /* The configuration was read again: what was made of it at the start is made anew. */
@@ -429,6 +456,7 @@ int main(int argc, char **argv)
 	static const struct face_ops ops = {
 		.program = "owsd-web",
 		.option = {'l', "listen", "ADDRESS", "also serve there, in place of Listen"},
+		.check = check,
 		.open = open_web,
 		.changes = changes,
 		.event = event,

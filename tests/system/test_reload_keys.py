@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 """Each key of the blocks Web, Mqtt, Influx and Recorder counts from a reload on. KEYS is the table:
 what stands beside the key, its value, and what is seen from outside once it counts and not before;
-where that takes days, the face's own words. A key of owsd without a row fails."""
+where that takes days, the face's own words. A key of owsd without a row fails. What a key names has
+to be there: --check looks."""
 
 import contextlib
 import getpass
@@ -221,8 +222,8 @@ def published(begin):
     return linked(lambda c: any(topic.startswith(begin) for topic in c["topics"]))
 
 
-def password_file(house, name, text):
-    path = house.scene.file(name, text + "\n")
+def password_file(scene, name, text):
+    path = scene.file(name, text + "\n")
     path.chmod(0o600)
     return path
 
@@ -245,7 +246,7 @@ def web_keys(house):
 
 def influx_keys(house):
     url = house.server.url
-    token = password_file(house, "token", "abc")
+    token = password_file(house.scene, "token", "abc")
     spool = house.scene.path / "spool2"
     yield key("Url", url + "/other", pushed(lambda path, *_: path.startswith("/other")))
     yield key("Every", raw("0.2"), House.pushes, Every=raw("3600"))
@@ -279,7 +280,7 @@ def mqtt_keys(house):
     tls = {"Broker": f"mqtts://localhost:{house.tls.port}"}
     ca, client, second = (scene.path / name for name in ("ca.pem", "client.pem", "second.pem"))
     right, wrong = scene.path / "client.key", scene.path / "broker.key"
-    first, other = password_file(house, "first", "secret"), password_file(house, "second", "other")
+    first, other = password_file(house.scene, "first", "secret"), password_file(house.scene, "second", "other")
     yield key("Broker", f"mqtt://127.0.0.1:{house.second.port}", linked(lambda c: c["will"], "second"))
     yield key("User", "anna", linked(lambda c: c["user"] == "anna"))
     yield key("PasswordFile", other, linked(lambda c: c["password"] == "other"), User="anna", PasswordFile=first)
@@ -334,6 +335,42 @@ def test_each_key_of_owsd_influx_counts_from_a_reload_on(scene):
 
 def test_each_key_of_owsd_recorder_counts_from_a_reload_on(scene):
     counts(scene, "Recorder")
+
+
+CHECKED = {block: [name for name in options(block) if re.search("Files?$", name)] for block in ("Web", "Mqtt", "Influx")}
+BESIDE = {"Mqtt": {"Broker": "mqtts://localhost"}, "Influx": {"Url": "http://localhost/write"}, "Web": {}}
+PAIR = {"CertFile": "KeyFile", "KeyFile": "CertFile"}
+
+
+def checked(scene, block, **keys):
+    keys = " ".join(f'{k} "{v}"' for k, v in {**BESIDE[block], **keys}.items())
+    path = scene.file("check.rio", owsdtest.rio("null:", [], **{block: raw(f"{{ {keys} }}")}))
+    program = BUILD / f"owsd-{block.lower()}"
+    owsdtest.need(program)
+    done = scene._run([program, "-c", path, "--check"], owsdtest.PATIENCE)
+    return done.returncode, done.stderr
+
+
+def test_the_check_of_each_face_refuses_a_file_that_cannot_be_used(scene):
+    assert sorted(sum(CHECKED.values(), [])) == ["CaFile", "CertFile", "Files", "KeyFile", "PasswordFile", "TokenFile"]
+    there = password_file(scene, "there", "secret")
+    for block, names in CHECKED.items():
+        assert checked(scene, block) == (0, "")
+        for name in names:
+            pair = {PAIR[name]: there} if name in PAIR else {}
+            status, why = checked(scene, block, **{**pair, name: scene.path / "nowhere"})
+            assert status == 2 and f"{scene.path}/nowhere: No such file or directory; " in why, (name, why)
+            if name == "Files":
+                continue
+            assert name in why, why
+            # the shell has no credentials of the service
+            status, why = checked(scene, block, **{**pair, name: "nowhere"})
+            assert status == 0 and f"{name}: the service alone sees its credential nowhere" in why, (name, why)
+            assert checked(scene, block, **{**pair, name: there}) == (0, ""), name
+            there.chmod(0o644)
+            status, why = checked(scene, block, **{**pair, name: there})
+            assert (status == 2) == (name in ("PasswordFile", "TokenFile", "KeyFile") or "KeyFile" in pair), (name, why)
+            there.chmod(0o600)
 
 
 if __name__ == "__main__":

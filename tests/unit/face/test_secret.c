@@ -112,6 +112,35 @@ static void test_a_reason_is_news_until_it_is_another(void)
 	TEST_ASSERT_TRUE(secret_is_news("others may read it", &print));
 }
 
+static int checks(const char *name, enum secret_kind kind)
+{
+	return secret_check("owsd-face", "SomeFile", name, kind);
+}
+
+static void test_a_check_refuses_what_the_face_could_not_use(void)
+{
+	TEST_ASSERT_EQUAL_INT(0, checks(NULL, SECRET_TOKEN));
+	TEST_ASSERT_EQUAL_INT(-ENOENT, checks(path, SECRET_TOKEN));
+	TEST_ASSERT_EQUAL_INT(-ENOENT, checks(path, SECRET_PUBLIC));
+	read_text("\n", 0600);
+	TEST_ASSERT_EQUAL_INT(-EINVAL, checks(path, SECRET_TOKEN));
+	TEST_ASSERT_EQUAL_INT(0, checks(path, SECRET_KEY));
+	read_text("abc\n", 0644);
+	TEST_ASSERT_EQUAL_INT(-EPERM, checks(path, SECRET_TOKEN));
+	TEST_ASSERT_EQUAL_INT(-EPERM, checks(path, SECRET_KEY));
+	TEST_ASSERT_EQUAL_INT(0, checks(path, SECRET_PUBLIC));
+}
+
+/* The service has it, and the shell of a person does not. */
+static void test_a_check_without_credentials_refuses_none(void)
+{
+	TEST_ASSERT_EQUAL_INT(0, checks("token", SECRET_TOKEN));
+	TEST_ASSERT_EQUAL_INT(0, setenv("CREDENTIALS_DIRECTORY", folder_place()->path, 1));
+	TEST_ASSERT_EQUAL_INT(-ENOENT, checks("token", SECRET_TOKEN));
+	read_text("abc\n", 0600);
+	TEST_ASSERT_EQUAL_INT(0, checks("token", SECRET_TOKEN));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -120,5 +149,7 @@ int main(void)
 	RUN_TEST(test_a_file_that_others_may_read_or_that_has_no_token_is_refused);
 	RUN_TEST(test_a_name_is_that_of_a_credential_of_the_service);
 	RUN_TEST(test_a_key_has_to_be_ours_alone_and_a_certificate_has_not);
+	RUN_TEST(test_a_check_refuses_what_the_face_could_not_use);
+	RUN_TEST(test_a_check_without_credentials_refuses_none);
 	return UNITY_END();
 }
