@@ -139,8 +139,7 @@ int secret_check(const char *program, const char *key, const char *name, enum se
 		              why);
 	else if (err)
 		face_complain(program, "%s: %s%s", key, why,
-		              err == -ENOENT && name[0] == '/' ? "; make it, or name another"
-		                                               : "");
+		              err == -ENOENT && name[0] == '/' ? "; make it, or name another" : "");
 	return err == -EACCES ? 0 : err;
 }
 

@@ -10,7 +10,7 @@
 #include "src/face/backoff.h"
 #include "src/face/secret.h"
 #include "src/face/wall_clock.h"
-#include "src/history/place.h"
+#include "src/influx/options.h"
 #include "src/influx/part.h"
 #include "src/influx/pending.h"
 #include "src/influx/points.h"
@@ -20,18 +20,6 @@
 struct face;
 struct post;
 struct post_result;
-
-/* What the Influx block says, kept over the time in which the file is read again. */
-struct push_options {
-	char url[256]; /* "": there is no block */
-	char token_file[256], measurement[64], spool[HISTORY_PATH];
-	unsigned spool_mb;
-	int64_t every_ns, clock_wait_ns;
-};
-
-/* Option -d counts more than Spool. 0, -ENAMETOOLONG: the directory's path. */
-int push_options_take(struct push_options *options, const struct face *face);
-bool push_options_same(const struct push_options *a, const struct push_options *b);
 
 enum push_trouble {
 	PUSH_WELL,

@@ -58,18 +58,6 @@ static int listener_add(struct serve *s, int fd, struct listener as)
 	return 0;
 }
 
-static const char *bind_text(int err)
-{
-	switch (-err) {
-	case EADDRINUSE:
-		return " (an owserver or another owsd? end it or choose another port with Listen or -l)";
-	case EACCES:
-		return " (ports below 1024 are root's)";
-	default:
-		return "";
-	}
-}
-
 /* Bind an address that the machine may get later or never: signals do not wait for the network. */
 static int bind_later(struct serve *s, int fd, const struct listen_address *address,
                       const union address *to, socklen_t len)
@@ -198,7 +186,7 @@ static int open_configured(struct serve *s, char *why, size_t why_size)
 			continue;
 		listen_print(&config->addresses[i], text);
 		snprintf(why, why_size, "cannot listen at %s: %s%s", text, strerror(-err),
-		         bind_text(err));
+		         listen_remedy(err));
 		return err;
 	}
 	if (!config->socket)

@@ -91,6 +91,21 @@ int listen_inherited(int *fds, int most)
 	return (int)count;
 }
 
+const char *listen_remedy(int err)
+{
+	switch (-err) {
+	case EADDRINUSE:
+		return "; sudo ss -ltnp names the program that has the port: end it, or choose "
+		       "another port with Listen or -l";
+	case EACCES:
+		return "; ports below 1024 are root's: choose another with Listen or -l";
+	case EADDRNOTAVAIL:
+		return "; this machine has no such address: ip addr lists those that it has";
+	default:
+		return "";
+	}
+}
+
 int listen_accept(int listener, struct sockaddr *from, socklen_t *len)
 {
 	int fd = accept4(listener, from, len, SOCK_NONBLOCK | SOCK_CLOEXEC);

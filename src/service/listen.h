@@ -33,6 +33,9 @@ int listen_vacate(const struct sockaddr_un *at);
  */
 int listen_inherited(int *fds, int most);
 
+/* What to do when an address of Listen or -l cannot be had, to stand behind the error; or "". */
+const char *listen_remedy(int err);
+
 /*
  * Accept a connection, not blocking, closed on exec. On one of a unix socket a byte out of band
  * keeps its place, so that no look passes over its descriptors. As accept4(), with a negative

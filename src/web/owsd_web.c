@@ -14,6 +14,7 @@
 #include "hal/base/time.h"
 #include "src/face/look.h"
 #include "src/face/loop.h"
+#include "src/service/listen.h"
 #include "src/shm/place.h"
 #include "src/web/api.h"
 #include "src/web/events.h"
@@ -106,7 +107,8 @@ static int open_address(struct web *web, struct listen_address address)
 
 	listen_print(&address, text);
 	if (err)
-		log_err(web->face->log, "%s: %s", text, strerror(-err));
+		log_err(web->face->log, "the page is not at http://%s/: %s%s", text, strerror(-err),
+		        listen_remedy(err));
 	else
 		log_at(web->face->log,
 		       listen_is_loopback(&address) ? LOG_LEVEL_NOTICE : LOG_LEVEL_WARNING,
@@ -272,8 +274,10 @@ static int open_web(struct face *face)
 		face_complain(face->ops->program, "libmicrohttpd: %s", strerror(-err));
 	if (!err)
 		err = open_doors(&web);
-	if (err)
+	if (err) {
+		doors_close(&web.doors); /* with the socket that one of them may have made */
 		return err;
+	}
 	open_files(&web);
 	web.bell = bell_open();
 	if (web.bell >= 0) {

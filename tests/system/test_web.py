@@ -377,7 +377,7 @@ def test_doors_and_files_follow_the_file_at_a_reload(scene):
     assert page.json("/api/info", unix=True)["instance"] == daemon.name, "the socket stays"
     with socket.create_server(("127.0.0.1", taken)):
         reload(Listen=f"127.0.0.1:{taken}")
-        owsdtest.logged(web, f"127.0.0.1:{taken}: Address already in use")
+        owsdtest.logged(web, f"not at http://127.0.0.1:{taken}/: Address already in use; sudo ss -ltnp")
     reload(web, Listen=f"127.0.0.1:{taken}")
     until(lambda: fetched(taken), 20, "it is free, and the next reload takes it")
     other = scene.path / "other"
@@ -386,6 +386,19 @@ def test_doors_and_files_follow_the_file_at_a_reload(scene):
     reload(Listen=f"127.0.0.1:{taken}", Files=other)
     until(lambda: "another" in fetched(taken, "/"), 20, "the files of another directory are served")
     assert "cannot" not in web.log()
+
+
+def test_a_port_that_is_taken_is_named_with_its_remedy_and_leaves_nothing_behind(scene):
+    daemon = scene.owsd(text(scene))
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        for options, listen in (([], {"Listen": f"127.0.0.1:{port}"}), (["-l", f"127.0.0.1:{port}"], {})):
+            daemon.config.write_text(text(scene, **listen))
+            done = scene._run([WEB, "-n", daemon.name, "-c", daemon.config, *options], owsdtest.PATIENCE)
+            assert done.returncode == 1, done
+            assert f"http://127.0.0.1:{port}/: Address already in use" in done.stderr, done
+            assert "sudo ss -ltnp" in done.stderr and "Listen or -l" in done.stderr, done
+            assert not (place() / f"{daemon.name}.web").exists()
 
 
 def command(page, path, unix=True, headers=None, status=200, **body):

@@ -126,6 +126,14 @@ static void test_without_a_service_manager_there_is_no_socket_of_it(void)
 	TEST_ASSERT_NULL(getenv("LISTEN_FDS"));
 }
 
+static void test_an_address_that_cannot_be_had_has_a_remedy(void)
+{
+	TEST_ASSERT_NOT_NULL(strstr(listen_remedy(-EADDRINUSE), "ss -ltnp"));
+	TEST_ASSERT_NOT_NULL(strstr(listen_remedy(-EACCES), "1024"));
+	TEST_ASSERT_NOT_NULL(strstr(listen_remedy(-EADDRNOTAVAIL), "ip addr"));
+	TEST_ASSERT_EQUAL_STRING("", listen_remedy(-EMFILE));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -135,5 +143,6 @@ int main(void)
 	RUN_TEST(test_a_byte_out_of_band_keeps_its_place);
 	RUN_TEST(test_nobody_who_connects_is_no_error_of_the_listener);
 	RUN_TEST(test_without_a_service_manager_there_is_no_socket_of_it);
+	RUN_TEST(test_an_address_that_cannot_be_had_has_a_remedy);
 	return UNITY_END();
 }
