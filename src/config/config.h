@@ -78,8 +78,8 @@ struct config_item {
 	const char *points;     /* as written */
 	int decimals;           /* -1: not given */
 	struct scale scale;
-	double filter_s, deadband; /* 0: none */
-	const char *record_text;   /* as written; NULL: as the Recorder block says */
+	double filter_s, deadband, max_step; /* 0: none */
+	const char *record_text;             /* as written; NULL: as the Recorder block says */
 	struct config_record record;
 	const char *device_class; /* "light", "door"; NULL: not given */
 	int line;                 /* of Item */

@@ -104,6 +104,8 @@ OPTION(MIN, "Min", ITEM, NUMBER, RANGE(-DBL_MAX, DBL_MAX),
        .help = "a value below it is out of range")
 OPTION(MAX, "Max", ITEM, NUMBER, RANGE(-DBL_MAX, DBL_MAX),
        .help = "a value above it is out of range")
+OPTION(MAX_STEP, "MaxStep", ITEM, NUMBER, RANGE(0, DBL_MAX), .preset = "0",
+       .help = "most that the value changes in a second: a larger jump is held back; 0: no limit")
 OPTION(FILTER, "Filter", ITEM, SECONDS, RANGE(0, DAY), .preset = "0",
        .help = "time constant of a low-pass filter, seconds; 0: none")
 OPTION(DEADBAND, "Deadband", ITEM, NUMBER, RANGE(0, DBL_MAX), .preset = "0",

@@ -93,6 +93,8 @@ static void put_scaling(FILE *out, const struct config_item *item)
 		put_number(out, OPT_MIN, scale->min);
 	if (scale->has_max)
 		put_number(out, OPT_MAX, scale->max);
+	if (item->max_step > 0)
+		put_number(out, OPT_MAX_STEP, item->max_step);
 	if (item->filter_s > 0)
 		put_number(out, OPT_FILTER, item->filter_s);
 	if (item->deadband > 0)

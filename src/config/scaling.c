@@ -174,8 +174,9 @@ static void check_value(struct build *build, const struct option_value *value, b
 static void refuse_for_type(struct build *build, const struct option_value *values,
                             const struct config_item *item)
 {
-	static const enum option of_numbers[] = {OPT_DECIMALS, OPT_SCALE, OPT_OFFSET, OPT_POINTS,
-	                                         OPT_MIN,      OPT_MAX,   OPT_FILTER, OPT_DEADBAND};
+	static const enum option of_numbers[] = {OPT_DECIMALS, OPT_SCALE,  OPT_OFFSET,
+	                                         OPT_POINTS,   OPT_MIN,    OPT_MAX,
+	                                         OPT_MAX_STEP, OPT_FILTER, OPT_DEADBAND};
 
 	if (item->type != OWS_STRING && item->type != OWS_BOOL)
 		return;
@@ -192,10 +193,19 @@ static void refuse_for_type(struct build *build, const struct option_value *valu
 	}
 }
 
+/* What works on readings alone. */
+static double of_input(struct build *build, const struct option_value *value,
+                       const struct config_item *item)
+{
+	if (item->output && value->given)
+		report_warning(build->report, value->node->at,
+		               "%s does nothing: this Item is an output", value->node->key);
+	return item->output ? 0 : value->number;
+}
+
 void scaling_build(struct build *build, const struct option_value *values, bool known,
                    struct config_item *item)
 {
-	const struct option_value *filter = &values[OPT_FILTER];
 	bool number = known && item->type != OWS_STRING;
 
 	build_texts(build, values, item);
@@ -203,11 +213,9 @@ void scaling_build(struct build *build, const struct option_value *values, bool 
 		refuse_for_type(build, values, item);
 	build_scale(build, values, item);
 	build_range(build, values, item);
-	item->filter_s = item->output ? 0 : filter->number;
+	item->max_step = of_input(build, &values[OPT_MAX_STEP], item);
+	item->filter_s = of_input(build, &values[OPT_FILTER], item);
 	item->deadband = values[OPT_DEADBAND].number;
-	if (item->output && filter->given)
-		report_warning(build->report, filter->node->at,
-		               "Filter does nothing: this Item is an output");
 	check_value(build, &values[OPT_INIT_VALUE], number && item->has_init, item->init_value,
 	            item);
 	check_value(build, &values[OPT_SAFE_VALUE], number && item->has_safe, item->safe_value,

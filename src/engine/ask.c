@@ -18,13 +18,16 @@
 #include "src/engine/trace.h"
 #include "src/engine/types.h"
 
-/* Past the caches: also what is compared with its command, each ReadBack and while it differs. */
+/*
+ * Past the caches: also what is to confirm a reading that jumped, and what is compared with its
+ * command, each ReadBack and while it differs.
+ */
 static bool reads_fresh(const struct signal *s, int64_t now_ns)
 {
 	const struct signal_command *c = &s->command;
 	int64_t looked_ns = c->looked_ns > c->ended_ns ? c->looked_ns : c->ended_ns;
 
-	return s->item->fresh || c->doubted || !signal_reads(s) ||
+	return s->item->fresh || s->scaling.step.held || c->doubted || !signal_reads(s) ||
 	       (s->item->read_back_ns &&
 	        (c->differs || now_ns - looked_ns >= s->item->read_back_ns));
 }

@@ -212,8 +212,24 @@ static int take_read_value(struct lane *lane, struct signal *s, const struct slo
 	if (!err)
 		err = doubt_reading(lane, s, answer, value_number(type, raw));
 	if (!err)
-		signal_take_raw(s, raw, measured_ns, quality);
+		err = signal_take_raw(s, raw, measured_ns, quality);
 	return err;
+}
+
+/* A reading jumped. The device has answered: nothing backs off, and no fault of it counts. */
+static void hold_back(struct engine *e, struct lane *lane, struct signal *s)
+{
+	struct ows_sample *sample = &s->sample;
+	int64_t none;
+
+	lane->counters.held_back++;
+	log_debug(e->log, "%s (%s): %g jumps beyond MaxStep: it is held back", s->item->name,
+	          s->item->path, s->scaling.step.doubt);
+	sample->err = -EREMCHG;
+	if (retry_fail(&s->read.retry, e->config->max_retries, &none) &&
+	    sample->quality != OWS_Q_INITIAL &&
+	    (ows_good(sample->quality) || sample->quality < OWS_Q_LAST_USABLE))
+		sample->quality = OWS_Q_LAST_USABLE;
 }
 
 int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
@@ -240,7 +256,10 @@ int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
 		request_succeeded(e, lane, s, quality, true);
 		break;
 	case FAILURE_ITEM:
-		*wait_ns = engine_read_failed(e, lane, s, err);
+		if (err == -EREMCHG)
+			hold_back(e, lane, s);
+		else
+			*wait_ns = engine_read_failed(e, lane, s, err);
 		break;
 	case FAILURE_TARGET:
 		s->sample.err = err;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The raw values of a signal: scaling and filter of what is read, and scaling back of commands. */
+#include <errno.h>
 #include <math.h>
 #include <string.h>
 
@@ -31,15 +32,18 @@ static int64_t nearest(enum ows_type type, double number, uint8_t *quality)
 	return value;
 }
 
-void signal_take_raw(struct signal *s, int64_t raw, int64_t measured_ns, uint8_t *quality)
+int signal_take_raw(struct signal *s, int64_t raw, int64_t measured_ns, uint8_t *quality)
 {
-	double number = value_number(signal_raw_type(s), raw);
+	double read = value_number(signal_raw_type(s), raw), number = read;
 	bool filtered = s->item->filter_s > 0;
 
-	s->attrs.raw = value_of_double(number);
-	s->sample.value = raw;
 	if (*quality == OWS_Q_GOOD)
 		number = scale_value(&s->item->scale, number, quality);
+	if (*quality == OWS_Q_GOOD && s->item->max_step > 0 &&
+	    !step_passes(&s->scaling.step, s->item->max_step, number, measured_ns))
+		return -EREMCHG;
+	s->attrs.raw = value_of_double(read);
+	s->sample.value = raw;
 	/* it begins anew after all that was not good, and with this one if it is not */
 	if (*quality != OWS_Q_GOOD || !ows_good(s->sample.quality))
 		s->scaling.filter.begun = false;
@@ -47,6 +51,7 @@ void signal_take_raw(struct signal *s, int64_t raw, int64_t measured_ns, uint8_t
 		number = filter_sample(&s->scaling.filter, s->item->filter_s, number, measured_ns);
 	if (is_scaled(s) || filtered)
 		s->sample.value = nearest(s->item->type, number, quality);
+	return 0;
 }
 
 /* --- Commands -------------------------------------------------------------------------------- */
@@ -93,6 +98,7 @@ void signal_written(struct signal *s, int64_t value)
 
 	raw_of(s, value, &raw);
 	s->scaling.filter.begun = false;
+	step_begin(&s->scaling.step, value_number(s->item->type, value), s->sample.tried_ns);
 	s->scaling.written = value_of_double(raw);
 	if (s->command.differs)
 		return;
@@ -129,6 +135,7 @@ void signal_rescale(struct signal *s, const struct signal *was)
 	if (scale_same(&s->item->scale, &was->item->scale))
 		return;
 	s->scaling.filter.begun = false;
+	s->scaling.step = (struct step){0};
 	/* the value that was read last, as the new scale has it */
 	if (s->sample.count) {
 		raw = value_number(OWS_DOUBLE, s->attrs.raw);

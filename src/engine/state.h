@@ -81,6 +81,7 @@ struct slot {
 	X(unknown_answers) /* to no request, or a second time */ \
 	X(power_faults)    /* 85 and 127.94 refused */ \
 	X(out_of_range)    /* values that the chip cannot have measured, refused */ \
+	X(held_back)       /* values that jumped beyond MaxStep, not published */ \
 	X(device_returns)  /* devices that came back */ \
 	X(alarm_lists)     /* readings of /alarm */ \
 	X(alarms)          /* occurrences */ \

@@ -13,6 +13,7 @@
 #include "src/shm/force.h"
 #include "src/shm/image.h"
 #include "src/signal/filter.h"
+#include "src/signal/step.h"
 #include "src/signal/value.h"
 #include "src/text/log.h"
 
@@ -107,6 +108,7 @@ struct signal_entered {
 /* Between raw and engineering values (scaling.c). */
 struct signal_scaling {
 	struct filter filter;
+	struct step step;
 	bool whole;      /* the property takes whole numbers only */
 	int64_t written; /* the raw value that was written last, bits of a double */
 };

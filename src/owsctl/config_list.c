@@ -163,6 +163,7 @@ static void scaling_json(struct json *json, const struct config_item *item)
 	json_string(json, "points", item->points);
 	json_double(json, "min", scale->has_min ? scale->min : NAN);
 	json_double(json, "max", scale->has_max ? scale->max : NAN);
+	json_double(json, "max_step", item->max_step);
 	json_double(json, "filter", item->filter_s);
 	json_double(json, "deadband", item->deadband);
 	json_string(json, "calibrated", item->calibrated);

@@ -48,8 +48,9 @@ QUALITY(DIFFERS, "not as commanded", "The output reads otherwise than it was wri
 QUALITY(INITIAL, "initial", "The signal was never read or written.",
         "An input has its first value soon. Set an output, or give it an InitValue.")
 QUALITY(LAST_USABLE, "last usable value",
-        "Reading is disabled, or another target has not answered yet.",
-        "Wait for the new target, or set _ReadEnable to 1.")
+        "Reading is disabled, another target has not answered yet, or what is read jumps beyond "
+        "MaxStep each time.",
+        "Wait for the new target, set _ReadEnable to 1, or raise MaxStep.")
 QUALITY(RANGE, "out of range", "The value is beyond Min or Max of the configuration.",
         "Is the sensor or its wire broken? Else correct Min and Max.")
 QUALITY(LOW, "at lower limit", "The value is held at the lower end of its type or of Points.",
@@ -84,6 +85,8 @@ ERROR(EINVAL, "the target refuses this value", "write a value that the property 
 ERROR(EBADMSG, "wrong checksum", "look for a bad contact, a weak pull-up, or noise")
 ERROR(EDOM, "a value out of the chip's range",
       "look at the sensor and its supply; owsctl read shows the answer")
+ERROR(EREMCHG, "a jump beyond MaxStep, held back until it is confirmed",
+      "look for noise if there are many; MaxStep has to allow what is true")
 ERROR(ECOMM, "the wire is short",
       "data is held at ground: unplug branches until the wire lives again")
 ERROR(ERANGE, "reading of a sensor without power, or out of range",

@@ -39,7 +39,7 @@ def rio():
         '    OffDelay 0.25 StaleAfter 2.5 PerFactor 7 InitValue "1e3"\n')))
         + "\0s t LimitH=31\nu t LimitHH LimitLL\ns t InitValue=")
     put("rio", "scaled", driver % ("w1", item % ("p", "/20.000000000001/volt.A", (
-        '    Type double Points "1:0 3:2.5 5:6" Min -0.15 Max 6.15 Unit "bar" Decimals 2 Filter 2.5\n'
+        '    Type double Points "1:0 3:2.5 5:6" Min -0.15 Max 6.15 Unit "bar" Decimals 2 MaxStep 9 Filter 2.5\n'
         '    Deadband 0.1 Description "a \\"b\\"" Calibrated "2024-02-29"\n')))
         + "\0s p Unit=\u00b0C\nu p Points\ns p Scale=-0.5 Offset=1e3")
     text = driver % ("w1", item % ("l", "/23.1/memory", (

@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: MIT
 """Engineering values, from the chips of the simulator to every face: the example of the docs."""
 
+import contextlib
 import json
 import re
 import signal
+import sqlite3
 
 import owsdtest
 from owsdtest import SOURCE
@@ -70,6 +72,33 @@ def test_a_broken_wire_is_out_of_range(scene):
     assert not pressure["good"] and pressure["quality_code"] == 0x54, pressure
     assert near(pressure["value"], -1.2) and near(pressure["raw"], 0.2), pressure
     assert scene.owsctl(daemon, "get", "pressure").returncode == 3
+
+
+def test_a_spike_of_seconds_in_a_freezer_is_in_no_value_no_alarm_and_no_history(scene):
+    wire = scene.file("net.sim", "i2c speed 400\nchip DS2482-100 0x18\n"
+                      "DS18B20 28.000000000004 temperature steps 0:-16 6s:80.5625 9s:-16.5\n")
+    item = dict(Name="freezer", Path="/28.000000000004/temperature", Type="double", MaxStep=2, LimitH=-10)
+    daemon = scene.owsd(owsdtest.rio(f"sim:{wire}", [item], Period=0.05, Recorder=owsdtest.raw(
+        f'{{ Flush 1 Directory "{scene.path / "history"}" Record "raw" }}')))
+    recorder = scene.start([owsdtest.BUILD / "owsd-recorder", "-n", daemon.name, "-c", daemon.config])
+    owsdtest.logged(recorder, "recording 1 of 1")
+    watch = scene.start([owsdtest.BUILD / "owsctl", "-n", daemon.name, "watch", "-l", "freezer"])
+    seen = {}
+
+    def over():
+        row = listed(scene, daemon)["freezer"]
+        assert not row["measured"] or row["value"] < -15, row
+        seen[row["error"]] = row
+        return row["value"] == -16.5 and row["good"] and not row["error"]
+    scene.until(over, 30, lambda: listed(scene, daemon))
+    held = [row for error, row in seen.items() if error and "a jump beyond MaxStep" in error]
+    assert held and held[0]["age"] > 1, seen
+    assert scene.owsctl(daemon, "--json", "alarms", "history").stdout.strip() == "[]"
+    assert recorder.stop() == 0
+    with contextlib.closing(sqlite3.connect(scene.path / "history" / "history.sqlite")) as db:
+        kept = {value for value, quality in db.execute("select value, quality from raw") if quality == 0xC0}
+    assert kept == {-16, -16.5}, kept
+    assert "-16.5" in watch.log() and "80.5" not in watch.log(), watch.log()
 
 
 def test_a_pressure_beyond_its_limit_is_an_alarm_in_bar(scene):

@@ -12,8 +12,8 @@ const UNBOUNDED = 1e15;
 /** The keys of an item as people think of them; what a newer table has more comes last. */
 export const ITEM_GROUPS = [
 	["What it is", ["Name", "Path", "Type", "IO", "Description"]],
-	["Value", ["Unit", "Decimals", "Scale", "Offset", "Points", "Min", "Max", "Filter", "Deadband",
-		"Calibrated"]],
+	["Value", ["Unit", "Decimals", "Scale", "Offset", "Points", "Min", "Max", "MaxStep", "Filter",
+		"Deadband", "Calibrated"]],
 	["Limits", ["LimitHH", "LimitH", "LimitL", "LimitLL", "Hysteresis", "OnDelay", "OffDelay"]],
 	["Output", ["InitValue", "SafeValue", "SafeDelay", "Start", "Confirm", "ReadBack",
 		"Restore"]],

@@ -36,11 +36,12 @@ static void test_an_item_without_the_keys_is_not_scaled(void)
 	TEST_ASSERT_FALSE(item->scale.has_min || item->scale.has_max);
 	TEST_ASSERT_EQUAL_DOUBLE(0, item->filter_s);
 	TEST_ASSERT_EQUAL_DOUBLE(0, item->deadband);
+	TEST_ASSERT_EQUAL_DOUBLE(0, item->max_step);
 }
 
 #define ALL_KEYS \
 	"Unit \"m\xc2\xb3/h\" Decimals 2 Description \"Supply, \\\"cold\\\"\" Scale 0.5\n" \
-	"Offset -3 Min -3 Max 1e3 Filter 2.5 Deadband 0.25 Calibrated \"2024-02-29\""
+	"Offset -3 Min -3 Max 1e3 MaxStep 1.5 Filter 2.5 Deadband 0.25 Calibrated \"2024-02-29\""
 
 static void expect_all_keys(const struct config_item *item)
 {
@@ -53,6 +54,7 @@ static void expect_all_keys(const struct config_item *item)
 	TEST_ASSERT_TRUE(item->scale.has_min && item->scale.has_max);
 	TEST_ASSERT_EQUAL_DOUBLE(-3, item->scale.min);
 	TEST_ASSERT_EQUAL_DOUBLE(1000, item->scale.max);
+	TEST_ASSERT_EQUAL_DOUBLE(1.5, item->max_step);
 	TEST_ASSERT_EQUAL_DOUBLE(2.5, item->filter_s);
 	TEST_ASSERT_EQUAL_DOUBLE(0.25, item->deadband);
 	TEST_ASSERT_EQUAL_STRING("2024-02-29", item->calibrated);
@@ -134,6 +136,16 @@ static void test_wrong_keys_are_errors_that_say_what_to_write(void)
 	         "f:4:5: error: Max \"5\": expected more than Min, which is 5 in line 3\n"},
 		{ANALOG "Filter -1",
 	         "f:3:37: error: Filter \"-1\": expected seconds from 0 to 86400\n"},
+		{ANALOG "MaxStep -1",
+	         "f:3:38: error: MaxStep \"-1\": expected a number, not negative\n"},
+		{ANALOG "MaxStep inf",
+	         "f:3:38: error: MaxStep \"inf\": expected a number, not negative\n"},
+		{"Name x Path /a/b Type string MaxStep 3",
+	         "f:3:30: error: MaxStep: a string has none; remove it, or write a Type of "
+	         "numbers\n"},
+		{"Name x Path /a/b Type bool MaxStep 3",
+	         "f:3:28: error: MaxStep: a bool has none; remove it, or write a Type of "
+	         "numbers\n"},
 		{ANALOG "Deadband -1",
 	         "f:3:39: error: Deadband \"-1\": expected a number, not negative\n"},
 		{ANALOG "Calibrated \"2023-02-29\"",
@@ -176,6 +188,8 @@ static void test_what_does_nothing_is_warned_of(void)
 	static const struct line cases[] = {
 		{ANALOG "IO output Filter 3",
 	         "f:3:40: warning: Filter does nothing: this Item is an output\n"},
+		{ANALOG "IO output MaxStep 3",
+	         "f:3:40: warning: MaxStep does nothing: this Item is an output\n"},
 	};
 
 	expect_warnings(cases, COUNT(cases), parse_item);
