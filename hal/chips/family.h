@@ -39,9 +39,14 @@ enum {
 
 /* What most people want of a device: a property, and a word for the name of its signal. */
 struct family_scan {
-	const char *name, *word; /* "temperature12", "temperature" */
+	/*
+	 * "temperature12", "temperature". Of an array, "volts" means each element, "PIO.BYTE" all
+	 * at once. Where the chips of a family differ, "EDS0068/light" is of those that have that
+	 * directory.
+	 */
+	const char *name, *word;
 };
-#define FAMILY_SCANS 4
+#define FAMILY_SCANS 20 /* properties of one chip */
 
 struct family {
 	uint8_t code;
@@ -53,13 +58,13 @@ struct family {
 	bool several;     /* chips have this code: device.kind says which of them it is */
 	uint16_t flags;   /* FLAG_ */
 	const char *type; /* "DS18B20", the usual chip of this code */
-	const struct family_scan
-		*scan; /* FAMILY_SCANS at most, then one without a name; NULL: none */
+	const struct family_scan *scan; /* then one without a name; NULL: none */
 	/*
 	 * What each kind is called; NULL: all as `type`. [0] NULL: a request for `type` asks the
 	 * chip first.
 	 */
 	const char *const *types;
+	const char *model; /* the property that says which chip it is; NULL: type says it */
 	/*
 	 * Sets device.kind, before any property of the family (those that every device has are
 	 * none) is read or written, and before a list of its properties is made: 0 it is set,

@@ -15,8 +15,8 @@
 
 /* What most people want of a device. */
 struct scan_property {
-	const char *name; /* "temperature12" */
-	const char *word; /* for the name of its signal: "temperature" */
+	char name[PROPERTY_NAME_ROOM + 4]; /* "temperature12", "EDS0082/volts.3" */
+	char word[24];                     /* for the name of its signal: "temperature", "volt_3" */
 	enum ows_type type;
 	bool output;         /* a scan reads the present value past the cache */
 	unsigned per_factor; /* 0: owsd's default */
@@ -40,6 +40,8 @@ struct scan_device {
 	char type[SCAN_TYPE];         /* "": the target does not report it */
 	char alias[SCAN_ALIAS];       /* "": no alias */
 	char identity[SCAN_IDENTITY]; /* "DS18B20 clone, family B1"; "": the target has none */
+	int err;                      /* which chip of its family it is cannot be found out: why */
+	uint64_t has; /* a bit for each row of family.scan whose directory the chip has */
 	struct scan_value value[SCAN_PROPERTIES];
 };
 

@@ -18,37 +18,105 @@
 
 static enum ows_type property_type(const struct property *row, const char *name)
 {
-	if (row->type == PROPERTY_FLOAT || row->type == PROPERTY_TEMPERATURE)
+	switch ((enum property_type)row->type) {
+	case PROPERTY_FLOAT:
+	case PROPERTY_PRESSURE:
+	case PROPERTY_TEMPERATURE:
+	case PROPERTY_TEMPGAP:
 		return OWS_DOUBLE;
-	if (row->type == PROPERTY_UNSIGNED)
-		return OWS_DWORD;
+	case PROPERTY_INTEGER:
+		return OWS_LONG;
+	case PROPERTY_UNSIGNED:
+		return row->measures.least < 0 ? OWS_LONG : OWS_DWORD;
+	case PROPERTY_ALIAS:
+	case PROPERTY_ASCII:
+	case PROPERTY_BINARY:
+	case PROPERTY_BITS:
+	case PROPERTY_DATE:
+	case PROPERTY_DIRECTORY:
+	case PROPERTY_YESNO:
+		break;
+	}
 	return strstr(name, ".BYTE") ? OWS_BYTE : OWS_BOOL;
 }
 
-bool scan_property(uint8_t code, unsigned i, struct scan_property *property)
+static const struct property *row_of(const struct family *family, const struct family_scan *scan)
 {
-	const struct family *family = family_of(code);
-	const struct family_scan *scan = family->scan;
-	const struct property *row;
-
-	while (scan && scan->name && i--)
-		scan++;
-	if (!scan || !scan->name)
-		return false;
-	row = family_property(family, NULL, scan->name, strcspn(scan->name, "."));
-	if (!row)
-		return false;
-	*property = (struct scan_property){.name = scan->name,
-	                                   .word = scan->word,
-	                                   .type = property_type(row, scan->name),
-	                                   .output = row->access & ACCESS_WRITE};
-	property->per_factor = property->type == OWS_DOUBLE ? MEASURED : 0;
-	return true;
+	return family_property(family, NULL, scan->name, strcspn(scan->name, "."));
 }
 
-bool scan_has_identity(uint8_t code)
+/* Does only a list of the chip's properties show whether it has this one? */
+static bool is_of_a_kind(const struct family_scan *scan, const struct property *row)
 {
-	return family_property(family_of(code), NULL, "identity", strlen("identity"));
+	return row->kinds && strchr(scan->name, '/');
+}
+
+static bool asks_for_list(const struct scan_device *device)
+{
+	const struct family *family = family_of(device->family);
+
+	for (const struct family_scan *scan = family->scan; scan && scan->name; scan++)
+		if (is_of_a_kind(scan, row_of(family, scan)))
+			return true;
+	return false;
+}
+
+/* An element of an array, where the name means each of them. */
+static void set_element(struct scan_property *property, const struct property *row, unsigned i)
+{
+	size_t name = strlen(property->name), word = strlen(property->word);
+	bool letters = row->array.index == INDEX_LETTERS;
+	char element[12];
+
+	snprintf(element, sizeof(element), letters ? "%c" : "%u", letters ? 'A' + i : i);
+	snprintf(property->name + name, sizeof(property->name) - name, ".%s", element);
+	element[0] = (char)(element[0] | 0x20); /* digits stay */
+	snprintf(property->word + word, sizeof(property->word) - word, "_%s", element);
+}
+
+static void set_property(struct scan_property *property, const struct family_scan *scan,
+                         const struct property *row)
+{
+	enum ows_type type = property_type(row, scan->name);
+
+	/* a number is set by who knows what it does: amphours, a wiper */
+	*property = (struct scan_property){
+		.type = type,
+		.output = row->access & ACCESS_WRITE && (type == OWS_BOOL || type == OWS_BYTE),
+		.per_factor = type == OWS_DOUBLE || row->measures.unit[0] ? MEASURED : 0};
+	snprintf(property->name, sizeof(property->name), "%s", scan->name);
+	snprintf(property->word, sizeof(property->word), "%s", scan->word);
+}
+
+bool scan_property(const struct scan_device *device, unsigned i, struct scan_property *property)
+{
+	const struct family *family = family_of(device->family);
+	const struct family_scan *scan = family->scan;
+
+	for (unsigned n = 0; scan && scan->name; n++, scan++) {
+		const struct property *row = row_of(family, scan);
+		bool each = row && row->array.count && !strchr(scan->name, '.');
+		unsigned count = each ? row->array.count : 1;
+
+		if (!row || (is_of_a_kind(scan, row) && !(device->has >> n & 1)))
+			continue;
+		if (i < count) {
+			set_property(property, scan, row);
+			if (each)
+				set_element(property, row, i);
+			return true;
+		}
+		i -= count;
+	}
+	return false;
+}
+
+const char *scan_identity(uint8_t code)
+{
+	static const char identity[] = "identity";
+	const struct family *family = family_of(code);
+
+	return family_property(family, NULL, identity, strlen(identity)) ? identity : family->model;
 }
 
 #define LISTING_MAX (256u * 1024)
@@ -56,6 +124,7 @@ bool scan_has_identity(uint8_t code)
 #define COUPLER 0x1f /* DS2409 */
 #define COUPLERS_MAX 512
 #define SEARCHES 3
+#define DEVICE_LIST 8192
 
 /* The requests for a device besides those for the properties of its kind. */
 enum { ASK_TYPE, ASK_ALIAS, ASK_IDENTITY, ASK_PROPERTIES, ASKS = ASK_PROPERTIES + SCAN_PROPERTIES };
@@ -222,21 +291,20 @@ static void locate_devices(struct target *target, struct scan *scan, char *text)
 }
 
 /* NULL: not asked. *output: see scan_property. */
-static const char *property_of(const struct scan_device *device, unsigned ask, bool *output)
+static const char *property_of(const struct scan_device *device, unsigned ask, bool *output,
+                               struct scan_property *property)
 {
-	struct scan_property property;
-
 	*output = false;
 	if (ask == ASK_TYPE)
 		return "type";
 	if (ask == ASK_ALIAS)
 		return "alias";
 	if (ask == ASK_IDENTITY)
-		return scan_has_identity(device->family) ? "identity" : NULL;
-	if (!scan_property(device->family, ask - ASK_PROPERTIES, &property))
+		return scan_identity(device->family);
+	if (!scan_property(device, ask - ASK_PROPERTIES, property))
 		return NULL;
-	*output = property.output;
-	return property.name;
+	*output = property->output;
+	return property->name;
 }
 
 /* The type was asked for before it was known which chip it is. */
@@ -269,22 +337,82 @@ static void take_answer(struct scan_device *device, unsigned n, struct ask *ask,
 	}
 }
 
+/* What is in the list of a device decides which rows of its family it has. */
+static void take_kind(struct scan_device *device, const struct ask *ask)
+{
+	const struct family_scan *scan = family_of(device->family)->scan;
+	const char *list = (const char *)ask->req.data;
+	char entry[PROPERTY_NAME_ROOM + 2];
+
+	device->err = ask->answer.err;
+	for (unsigned n = 0; scan[n].name && !device->err; n++) {
+		int len = snprintf(entry, sizeof(entry), "/%.*s", (int)strcspn(scan[n].name, "/"),
+		                   scan[n].name);
+		const char *at = memmem(list, ask->answer.len, entry, (size_t)len);
+
+		for (; at; at = strstr(at + 1, entry))
+			if (!at[len] || at[len] == '\n' || at[len] == '/')
+				device->has |= UINT64_C(1) << n;
+	}
+}
+
+/* Where the chips of a family differ: list what each has. 0, -ENOMEM or -ETIMEDOUT. */
+static int find_kinds(struct target *target, struct scan_device *devices, unsigned device_count)
+{
+	char(*lists)[DEVICE_LIST];
+	struct ask *asks;
+	unsigned count = 0;
+
+	for (unsigned i = 0; i < device_count; i++)
+		count += asks_for_list(&devices[i]);
+	if (!count)
+		return 0;
+	lists = calloc(count, sizeof(*lists));
+	asks = calloc(count, sizeof(*asks));
+	if (!lists || !asks) {
+		free(lists);
+		free(asks);
+		return -ENOMEM;
+	}
+	count = 0;
+	for (unsigned i = 0; i < device_count; i++) {
+		if (!asks_for_list(&devices[i]))
+			continue;
+		asks[count].req = (struct bus_req){.op = BUS_DIR,
+		                                   .prio = BUS_GUEST,
+		                                   .path = devices[i].path,
+		                                   .data = (uint8_t *)lists[count],
+		                                   .len = sizeof(*lists) - 1};
+		count++;
+	}
+	target_ask(target, asks, count);
+	count = 0;
+	for (unsigned i = 0; i < device_count; i++)
+		if (asks_for_list(&devices[i]))
+			take_kind(&devices[i], &asks[count++]);
+	free(lists);
+	free(asks);
+	return target->dead ? -ETIMEDOUT : 0;
+}
+
 int scan_read(struct target *target, struct scan_device *devices, unsigned device_count, bool fresh)
 {
 	size_t room = (size_t)device_count * ASKS;
 	struct question *questions = calloc(room + 1, sizeof(*questions));
 	struct ask *asks = calloc(room + 1, sizeof(*asks));
+	struct scan_property property;
 	unsigned count = 0;
 	bool output;
+	int err = questions && asks ? find_kinds(target, devices, device_count) : -ENOMEM;
 
-	if (!questions || !asks) {
+	if (err) {
 		free(questions);
 		free(asks);
-		return -ENOMEM;
+		return err;
 	}
 	for (unsigned i = 0; i < room; i++) {
 		struct scan_device *device = &devices[i / ASKS];
-		const char *name = property_of(device, i % ASKS, &output);
+		const char *name = property_of(device, i % ASKS, &output, &property);
 		struct question *question = &questions[count];
 
 		if (!name)
@@ -301,7 +429,7 @@ int scan_read(struct target *target, struct scan_device *devices, unsigned devic
 	target_ask(target, asks, count);
 	count = 0;
 	for (unsigned i = 0; i < room; i++)
-		if (property_of(&devices[i / ASKS], i % ASKS, &output)) {
+		if (property_of(&devices[i / ASKS], i % ASKS, &output, &property)) {
 			take_answer(&devices[i / ASKS], i % ASKS, &asks[count],
 			            questions[count].text);
 			count++;

@@ -21,9 +21,10 @@ int scan_read(struct target *target, struct scan_device *devices, unsigned count
 bool scan_device_of(const char *path, struct scan_device *device);
 void scan_free(struct scan *scan);
 
-/* The properties that most people want of a device, by its family. */
-
-/* The i-th of the family; false: it has no more. */
-bool scan_property(uint8_t family, unsigned i, struct scan_property *property);
-/* Does its code not decide which chip it is? Then devices have the property "identity". */
-bool scan_has_identity(uint8_t family);
+/*
+ * The i-th of the properties that most people want of the device; false: it has no more. Where the
+ * chips of a family differ, it has none before it was read.
+ */
+bool scan_property(const struct scan_device *device, unsigned i, struct scan_property *property);
+/* The property that says which chip it is, where its family code does not; else NULL. */
+const char *scan_identity(uint8_t family);

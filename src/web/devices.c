@@ -59,11 +59,11 @@ static void put_properties(struct json *json, const struct scan_device *device)
 	char words[ERROR_WORDS];
 
 	json_array(json, "properties");
-	for (unsigned i = 0; scan_property(device->family, i, &property); i++) {
+	for (unsigned i = 0; scan_property(device, i, &property); i++) {
 		const struct scan_value *value = &device->value[i];
 
 		/* of another chip with the same family code */
-		if (value->err == -ENOENT && device->identity[0])
+		if (value->err == -ENOENT)
 			continue;
 		json_object(json, NULL);
 		json_string(json, "name", property.name);

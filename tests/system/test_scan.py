@@ -266,6 +266,32 @@ def test_every_family_has_its_place_in_the_configuration_of_a_scan(scene):
     assert rows["counter_a1"]["value"] == 7 and rows["present1"]["value"] is True
 
 
+def test_each_device_has_an_item_or_is_named(scene):
+    parts = [line for line in (owsdtest.SOURCE / "tests/system/compare/devices.sim").read_text().splitlines()
+             if line and line[0] != "#"]
+    target = sim(scene, "\n".join(parts) + "\n")
+    done = ctl(scene, target, "scan", "--rio", seconds=300)
+    check = scene.owsd_once("--check", "-c", scene.file("found.rio", done.stdout), seconds=90)
+    assert check.returncode == 0 and check.stderr == "", check
+    items = set(re.findall(r'Path +"/([^/"]+)/', done.stdout))
+    noted = dict(re.findall(r"# no signal for (\S+) \((\S+)\); owsctl -t \S+ dir /\1 lists", done.stdout))
+    for line in parts:
+        device = line.split()[1]
+        assert (device in items) != (device in noted), line
+        assert (f"no signal for {device} (" in done.stderr) == (device in noted), line
+    # memories, clocks, bridges, and what takes texts: all others measure, count or switch
+    assert not set(noted.values()) & {"DS1921", "DS1923", "DS2437", "DS2760", "EDS0068", "IBLSS", "LCD"}
+    for path in ("EDS0068/temperature", "EDS0068/humidity", "EDS0090/input.BYTE", "EDS0082/volts.7",
+                 "multitemp/temperature.5", "TH/humidity", "910/count", "amphours"):
+        assert f'/{path}"' in done.stdout, path
+    assert "/7E.C0FFEE000041/EDS0068" not in done.stdout
+    table = ctl(scene, target, "scan", seconds=300).stdout.splitlines()[1:]
+    assert len(table) == len(parts)
+    for line in table:
+        device = line.split()[0][1:]
+        assert (f"(owsctl dir /{device})" in line) == (device in noted), line
+
+
 def test_each_switch_gets_its_signal_if_it_is_asked_for(scene):
     wire = sim(scene, EVERY_FAMILY)
     rows = runs(scene, ctl(scene, wire, "scan", "--rio", "--bits").stdout)

@@ -315,6 +315,7 @@ const struct family family_1b = {
 	.code = 0x1b,
 	.proof = PROOF_PRESENCE,
 	.type = "DS2436",
+	SCAN({"temperature", "temperature"}, {"volts", "volt"}, {"counter/cycles", "cycles"}),
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

@@ -42,6 +42,7 @@ const struct family family_1e = {
 	.proof = PROOF_PRESENCE,
 	.type = "DS2437",
 	.flags = FLAG_VOLT | FLAG_TEMPERATURE,
+	SCAN({"temperature", "temperature"}, {"VDD", "vdd"}, {"VAD", "vad"}),
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

@@ -204,6 +204,8 @@ const struct family family_a6 = {
 	.proof = PROOF_PRESENCE,
 	.type = "DS2438",
 	.flags = FLAG_VOLT | FLAG_TEMPERATURE,
+	SCAN({"temperature", "temperature"}, {"humidity", "humidity"}, {"VDD", "vdd"},
+             {"VAD", "vad"}),
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

@@ -145,6 +145,8 @@ static const struct property properties[] = {
 const struct family family_2e = {.code = 0x2e,
                                  .proof = PROOF_PRESENCE,
                                  .type = "DS2770",
+                                 SCAN({"temperature", "temperature"}, {"volt", "volt"},
+                                      {"current", "current"}, {"amphours", "amphours"}),
                                  AREAS(areas),
                                  HOW(how),
                                  PROPERTIES(properties)};

@@ -73,6 +73,9 @@ static const struct property properties[] = {
 const struct family family_30 = {.code = 0x30,
                                  .proof = PROOF_PRESENCE,
                                  .type = "DS2760",
+                                 SCAN({"temperature", "temperature"}, {"volt", "volt"},
+                                      {"current", "current"}, {"amphours", "amphours"},
+                                      {"sensed", "input"}),
                                  AREAS(areas),
                                  HOW(how),
                                  PROPERTIES(properties)};

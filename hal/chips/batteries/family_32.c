@@ -47,6 +47,9 @@ static const struct property properties[] = {
 const struct family family_32 = {.code = 0x32,
                                  .proof = PROOF_PRESENCE,
                                  .type = "DS2780",
+                                 SCAN({"temperature", "temperature"}, {"volt", "volt"},
+                                      {"vis", "vis"}, {"volthours", "volthours"},
+                                      {"sensed", "input"}),
                                  AREAS(areas),
                                  HOW(how),
                                  PROPERTIES(properties)};

@@ -22,8 +22,10 @@ static const struct property properties[] = {
 	GAUGE_VOLTHOURS,
 };
 
-const struct family family_36 = {.code = 0x36,
-                                 .proof = PROOF_PRESENCE,
-                                 .type = "DS2740",
-                                 AREAS(areas),
-                                 PROPERTIES(properties)};
+const struct family family_36 = {
+	.code = 0x36,
+	.proof = PROOF_PRESENCE,
+	.type = "DS2740",
+	SCAN({"vis", "vis"}, {"volthours", "volthours"}, {"PIO", "switch"}),
+	AREAS(areas),
+	PROPERTIES(properties)};

@@ -49,6 +49,9 @@ static const struct property properties[] = {
 const struct family family_3d = {.code = 0x3d,
                                  .proof = PROOF_PRESENCE,
                                  .type = "DS2781",
+                                 SCAN({"temperature", "temperature"}, {"volt", "volt"},
+                                      {"vis", "vis"}, {"volthours", "volthours"},
+                                      {"sensed", "input"}),
                                  AREAS(areas),
                                  HOW(how),
                                  PROPERTIES(properties)};

@@ -43,6 +43,9 @@ static const struct property properties[] = {
 const struct family family_51 = {.code = 0x51,
                                  .proof = PROOF_PRESENCE,
                                  .type = "DS2751",
+                                 SCAN({"temperature", "temperature"}, {"volt", "volt"},
+                                      {"current", "current"}, {"amphours", "amphours"},
+                                      {"sensed", "input"}),
                                  AREAS(areas),
                                  HOW(how),
                                  PROPERTIES(properties)};

@@ -159,6 +159,7 @@ const struct family family_21 = {
 	.type = "DS1921",
 	.flags = FLAG_ALARM | FLAG_OVERDRIVE | FLAG_TEMPERATURE,
 	.facts = &ds1921_logger,
+	SCAN({"temperature", "temperature"}),
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

@@ -82,6 +82,7 @@ const struct family family_41 = {
 	.type = "DS1923",
 	.flags = FLAG_RESUME | FLAG_ALARM | FLAG_OVERDRIVE | FLAG_TEMPERATURE,
 	.facts = &ds1922_logger,
+	SCAN({"temperature", "temperature"}, {"humidity", "humidity"}),
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

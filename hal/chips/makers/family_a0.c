@@ -28,6 +28,7 @@ const struct family family_a0 = {
 	.code = 0xa0,
 	.proof = PROOF_PRESENCE,
 	.type = "mRS001",
+	SCAN({"RPM", "rpm"}),
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

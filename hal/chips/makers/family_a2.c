@@ -14,6 +14,7 @@ const struct family family_a2 = {
 	.code = 0xa2,
 	.proof = PROOF_PRESENCE,
 	.type = "mCM001",
+	SCAN({"current", "current"}),
 	AREAS(areas),
 	PROPERTIES(properties),
 };

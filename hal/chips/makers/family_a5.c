@@ -44,6 +44,8 @@ const struct family family_a5 = {
 	.code = 0xa5,
 	.proof = PROOF_PRESENCE,
 	.type = "mDI001",
+	SCAN({"switch_closed.BYTE", "inputs"}, {"loop_open.BYTE", "opens"},
+             {"loop_shorted.BYTE", "shorts"}),
 	AREAS(areas),
 	PROPERTIES(properties),
 };

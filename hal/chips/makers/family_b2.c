@@ -16,6 +16,7 @@ const struct family family_b2 = {
 	.code = 0xb2,
 	.proof = PROOF_PRESENCE,
 	.type = "mAM001",
+	SCAN({"volts", "volt"}, {"current", "current"}),
 	AREAS(areas),
 	PROPERTIES(properties),
 };

@@ -92,6 +92,7 @@ const struct family family_ee = {
 	.several = true,
 	.identify = hobby_identify,
 	.types = types,
+	SCAN({"UVI/UVI", "uvi"}, {"temperature", "temperature"}),
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

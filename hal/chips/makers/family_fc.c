@@ -417,6 +417,7 @@ const struct family family_fc = {
 	.flags = FLAG_RESUME | FLAG_ALARM,
 	.several = true,
 	.identify = bae_identify,
+	SCAN({"910/count", "count"}, {"911/counters/count", "count"}),
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

@@ -223,6 +223,7 @@ const struct family family_fe = {
 	.proof = PROOF_CHECKSUM,
 	.type = "IBLSS",
 	.flags = FLAG_TEMPERATURE,
+	SCAN({"TH/temperature", "temperature"}, {"TH/humidity", "humidity"}),
 	HOW(how),
 	PROPERTIES(properties),
 };

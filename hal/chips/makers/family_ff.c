@@ -326,6 +326,7 @@ const struct family family_ff = {
 	.type = "LCD",
 	.flags = FLAG_ALARM,
 	.forget = family_ff_forget,
+	SCAN({"cumulative", "count"}),
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

@@ -185,6 +185,7 @@ const struct family family_1c = {
 	.alarms = true,
 	.type = "DS28E04",
 	.flags = FLAG_RESUME | FLAG_ALARM | FLAG_OVERDRIVE,
+	SCAN({"sensed.BYTE", "inputs"}, {"PIO.BYTE", "outputs"}),
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

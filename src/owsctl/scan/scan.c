@@ -97,7 +97,7 @@ static int scan_rio_fill(struct rio **rio, struct scan_names *names, const struc
 	int err = rio_set_text(rio, rio_child(&(*rio)->root, "OwsDrv"), "TargetName", target);
 
 	for (unsigned i = 0; i < scan->count; i++)
-		scan_make_items(names, &scan->device[i], choice);
+		scan_make_some(names, &scan->device[i], choice, true);
 	if (!err)
 		err = scan_add_items(rio, names);
 	return err;
@@ -118,7 +118,7 @@ static int scan_rio(const struct scan *scan, const char *target, bool several,
 	/* several targets are written as in TargetName, so the name of a single one has neither */
 	if (!several && strpbrk(target, ",|"))
 		return ctl_fail("%s cannot be a TargetName: it holds \",\" or \"|\"", target);
-	scan_names_init(&names, (size_t)scan->count * SCAN_ITEMS);
+	scan_names_init(&names, scan_items_most(scan));
 	err = rio_parse("scan", edit_empty, strlen(edit_empty), &silent, &rio);
 	if (!err)
 		err = scan_rio_fill(&rio, &names, scan, target, choice);
@@ -172,19 +172,19 @@ static const char *alarms(const struct scan_device *device)
 	return family->alarms ? "yes" : "no";
 }
 
-/* Write the values as "temperature12=21.5 ...". */
+/* Write the values as "temperature12=21.5 ...", or the command that shows what there is. */
 static void show_values(const struct scan_device *device, char *out, size_t size)
 {
 	struct scan_property property;
 	size_t used = 0;
 
 	out[0] = '\0';
-	for (unsigned i = 0; used < size && scan_property(device->family, i, &property); i++) {
+	for (unsigned i = 0; used < size && scan_property(device, i, &property); i++) {
 		const struct scan_value *value = &device->value[i];
 		int n;
 
 		/* of another chip with the same family code */
-		if (value->err == -ENOENT && device->identity[0])
+		if (value->err == -ENOENT)
 			continue;
 		n = snprintf(out + used, size - used, "%s%s=%s%s%s", used ? " " : "", property.name,
 		             value->err ? "(" : "",
@@ -192,6 +192,8 @@ static void show_values(const struct scan_device *device, char *out, size_t size
 		             value->err ? ")" : "");
 		used += n > 0 ? (size_t)n : 0;
 	}
+	if (!used)
+		snprintf(out, size, "(owsctl dir %s)", device->path);
 }
 
 static void scan_print_table(const struct scan *scan)
@@ -223,7 +225,7 @@ static void print_values(struct json *json, const struct scan_device *device)
 	struct scan_property property;
 
 	json_object(json, "values");
-	for (unsigned i = 0; scan_property(device->family, i, &property); i++) {
+	for (unsigned i = 0; scan_property(device, i, &property); i++) {
 		const struct scan_value *value = &device->value[i];
 		const char *name = property.name;
 
@@ -271,6 +273,7 @@ static int print_rio(const struct ctl *ctl, const struct target *target,
                      const struct served *served, const struct scan *scan, struct scan_merge *merge,
                      struct scan_choice choice)
 {
+	choice.target = served->target[0] ? NULL : target->name;
 	if (merge->file)
 		return scan_merge(merge, scan, choice);
 	if (served->target[0] && served->cut)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Items of a configuration for devices that were found: their names, text and initial values. */
+#include <ctype.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,6 +26,17 @@ void scan_names_init(struct scan_names *names, size_t room)
 		names->slots *= 2;
 	names->slot = ctl_need(calloc(names->slots, sizeof(*names->slot)));
 	names->items = ctl_need(open_memstream(&names->text, &names->len));
+}
+
+size_t scan_items_most(const struct scan *scan)
+{
+	struct scan_property property;
+	size_t most = 0;
+
+	for (unsigned n = 0; n < scan->count; n++)
+		for (unsigned i = 0; scan_property(&scan->device[n], i, &property); i++)
+			most += property.type == OWS_BYTE ? SCAN_BITS : 1;
+	return most;
 }
 
 void scan_names_free(struct scan_names *names)
@@ -70,10 +82,13 @@ static unsigned *last_of(struct scan_names *names, const char *word)
 {
 	unsigned i = 0;
 
-	while (i < SCAN_WORDS - 1 && names->word[i].word && strcmp(names->word[i].word, word) != 0)
+	while (i < SCAN_WORDS - 1 && names->word[i].word[0] &&
+	       strcmp(names->word[i].word, word) != 0)
 		i++;
-	if (!names->word[i].word || strcmp(names->word[i].word, word) != 0)
-		names->word[i] = (struct scan_word){.word = word};
+	if (strcmp(names->word[i].word, word) != 0) {
+		names->word[i].last = 0;
+		snprintf(names->word[i].word, sizeof(names->word[i].word), "%s", word);
+	}
 	return &names->word[i].last;
 }
 
@@ -102,7 +117,7 @@ static bool has_several(const struct scan_device *device)
 	struct scan_property property;
 	unsigned n = 0;
 
-	for (unsigned i = 0; scan_property(device->family, i, &property); i++)
+	for (unsigned i = 0; scan_property(device, i, &property); i++)
 		n += device->value[i].err != -ENOENT;
 	return n > 1;
 }
@@ -115,6 +130,7 @@ static const char *choose_name(struct scan_names *names, const struct scan_devic
                                const struct scan_property *property, const char *element)
 {
 	bool several = *element || has_several(device);
+	bool ends_in_digit = isdigit((unsigned char)property->word[strlen(property->word) - 1]);
 	char name[SIGNAL_NAME_MAX + SCAN_ALIAS], word[48];
 
 	snprintf(word, sizeof(word), "%s%s", property->word, element);
@@ -122,7 +138,8 @@ static const char *choose_name(struct scan_names *names, const struct scan_devic
 		unsigned *last = last_of(names, property->word);
 
 		do
-			snprintf(name, sizeof(name), "%s%u", property->word, ++*last);
+			snprintf(name, sizeof(name), ends_in_digit ? "%s_%u" : "%s%u",
+			         property->word, ++*last);
 		while (!is_free(names, name));
 	}
 	scan_names_add(names, name);
@@ -186,7 +203,7 @@ static bool make_bits(struct scan_names *names, const struct scan_device *device
 {
 	const char *dot = strchr(whole->name, '.');
 	const struct property *array;
-	char name[PROPERTY_NAME_ROOM], element[12];
+	char element[12];
 	unsigned long bits = strtoul(value, NULL, 10);
 
 	if (whole->type != OWS_BYTE || !dot)
@@ -195,14 +212,13 @@ static bool make_bits(struct scan_names *names, const struct scan_device *device
 	                        (size_t)(dot - whole->name));
 	for (unsigned k = 0; array && k < array->array.count && k < SCAN_BITS; k++) {
 		bool letters = array->array.index == INDEX_LETTERS;
-		struct scan_property bit = {.name = name,
-		                            .word = whole->output ? "output" : "input",
-		                            .type = OWS_BOOL,
-		                            .output = whole->output};
+		struct scan_property bit = {.type = OWS_BOOL, .output = whole->output};
 
 		snprintf(element, sizeof(element), "%c", (char)((letters ? 'A' : '0') + (int)k));
-		snprintf(name, sizeof(name), "%.*s.%s", (int)(dot - whole->name), whole->name,
-		         element);
+		snprintf(bit.name, sizeof(bit.name), "%.*s.%s", (int)(dot - whole->name),
+		         whole->name, element);
+		snprintf(bit.word, sizeof(bit.word), "%.*s", (int)strcspn(whole->word, "s"),
+		         whole->word);
 		make_item(names, device, &bit, bits >> k & 1 ? "1" : "0", element);
 	}
 	return array != NULL;
@@ -213,10 +229,31 @@ void scan_make_items(struct scan_names *names, const struct scan_device *device,
 {
 	struct scan_property property;
 
-	for (unsigned i = 0; scan_property(device->family, i, &property); i++)
+	for (unsigned i = 0; scan_property(device, i, &property); i++)
 		if (gets_item(device, &property, &device->value[i], choice.inputs_only) &&
 		    !(choice.bits && make_bits(names, device, &property, device->value[i].text)))
 			make_item(names, device, &property, device->value[i].text, "");
+}
+
+bool scan_make_some(struct scan_names *names, const struct scan_device *device,
+                    struct scan_choice choice, bool noted)
+{
+	unsigned before = names->count;
+	char why[512];
+
+	scan_make_items(names, device, choice);
+	if (names->count != before)
+		return true;
+	snprintf(why, sizeof(why),
+	         "no signal for %s (%s)%s%s; owsctl %s%s%sdir %s lists what it has",
+	         device->path + 1, device->type[0] ? device->type : "unknown",
+	         device->err ? ", which does not say what it is: " : "",
+	         device->err ? error_text(device->err) : "", choice.target ? "-t " : "",
+	         choice.target ? choice.target : "", choice.target ? " " : "", device->path);
+	ctl_fail("%s", why);
+	if (noted)
+		fprintf(names->items, "%s# %s", ftell(names->items) > 0 ? "\n" : "", why);
+	return false;
 }
 
 int scan_add_items(struct rio **rio, struct scan_names *names)

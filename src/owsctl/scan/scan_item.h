@@ -8,15 +8,14 @@
 #include "src/scan/device.h"
 #include "src/signal/attribute.h"
 
-#define SCAN_WORDS 32
+#define SCAN_WORDS 64
 #define SCAN_BITS 8 /* of a byte, at most */
-/* Of a device: its properties, each bit an item. */
-#define SCAN_ITEMS (SCAN_PROPERTIES * SCAN_BITS)
 
 /* What is made of the devices. */
 struct scan_choice {
 	bool inputs_only;
-	bool bits; /* an item for each switch of a chip, and not one for all */
+	bool bits;          /* an item for each switch of a chip, and not one for all */
+	const char *target; /* that commands which are shown have to name; NULL: none */
 };
 
 /* The names in use, so that no name is given twice, and the items that were made. */
@@ -26,7 +25,7 @@ struct scan_names {
 	unsigned *slot; /* hash table of names: number of the name + 1, 0: free */
 	unsigned slots; /* a power of two */
 	struct scan_word {
-		const char *word;
+		char word[24];
 		unsigned last; /* the last number given for the word */
 	} word[SCAN_WORDS];
 	FILE *items;
@@ -37,6 +36,8 @@ struct scan_names {
 /* Make room for so many names. Free with scan_names_free(). */
 void scan_names_init(struct scan_names *names, size_t room);
 void scan_names_free(struct scan_names *names);
+/* So many items the devices make at most: each bit one. */
+size_t scan_items_most(const struct scan *scan);
 /* Add a name that is in use already. */
 void scan_names_add(struct scan_names *names, const char *name);
 
@@ -46,6 +47,12 @@ void scan_names_add(struct scan_names *names, const char *name);
  */
 void scan_make_items(struct scan_names *names, const struct scan_device *device,
                      struct scan_choice choice);
+/*
+ * The same. Where none is made, print that, with the command that shows what the device has, and
+ * return false; noted: it becomes a comment of the configuration, too.
+ */
+bool scan_make_some(struct scan_names *names, const struct scan_device *device,
+                    struct scan_choice choice, bool noted);
 /* Add all items that were made at the end of the configuration, once. 0 or a negative errno. */
 int scan_add_items(struct rio **rio, struct scan_names *names);
 

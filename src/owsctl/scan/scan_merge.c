@@ -130,7 +130,7 @@ static void collect_items(struct work *work)
 	work->item = ctl_need(calloc((size_t)count + 1, sizeof(*work->item)));
 	work->known = ctl_need(calloc((size_t)count + 1, sizeof(*work->known)));
 	work->found = ctl_need(calloc((size_t)work->scan->count + 1, sizeof(*work->found)));
-	scan_names_init(&work->names, count + (size_t)work->scan->count * SCAN_ITEMS);
+	scan_names_init(&work->names, count + scan_items_most(work->scan));
 	for (unsigned i = 0; i < work->scan->count; i++) {
 		const char *text = work->scan->device[i].path;
 
@@ -303,14 +303,11 @@ static void make_items(struct work *work, unsigned i, struct scan_choice choice)
 	const struct scan_device *device = &work->scan->device[i];
 	unsigned first = work->names.count, n;
 
-	scan_make_items(&work->names, device, choice);
+	if (!scan_make_some(&work->names, device, choice, false))
+		return;
 	n = work->names.count - first;
-	if (!n)
-		ctl_fail("new: %s (%s): no signal is made for it", device->path + 1, device->type);
-	else
-		ctl_fail("new: %s%s%s: %s (%s)", work->names.name[first], n > 1 ? " to " : "",
-		         n > 1 ? work->names.name[first + n - 1] : "", device->path + 1,
-		         device->type);
+	ctl_fail("new: %s%s%s: %s (%s)", work->names.name[first], n > 1 ? " to " : "",
+	         n > 1 ? work->names.name[first + n - 1] : "", device->path + 1, device->type);
 }
 
 static int merge_devices(struct work *work, struct scan_choice choice)

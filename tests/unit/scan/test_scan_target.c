@@ -100,36 +100,109 @@ static const struct property *find(const struct family *family, const char *name
 	return family_property(family, NULL, name, strcspn(name, "."));
 }
 
+/* A chip of the family; it has all that any of them has. */
+static struct scan_device chip_of(uint8_t family)
+{
+	return (struct scan_device){.family = family, .has = UINT64_MAX};
+}
+
 static void test_what_a_scan_reads_is_there_in_our_own_families(void)
 {
 	struct scan_property property;
-	unsigned properties = 0;
+	unsigned rows = 0;
 
 	for (unsigned n = 0; family_nth(n); n++) {
 		const struct family *family = family_nth(n);
+		struct scan_device device = chip_of(family->code);
 		unsigned count = 0;
 
-		for (const struct family_scan *s = family->scan; s && s->name; s++, count++) {
-			TEST_ASSERT_TRUE_MESSAGE(scan_property(family->code, count, &property),
-			                         s->name);
+		for (const struct family_scan *s = family->scan; s && s->name; s++, rows++)
+			TEST_ASSERT_NOT_NULL_MESSAGE(find(family, s->name), s->name);
+		for (; scan_property(&device, count, &property); count++) {
+			TEST_ASSERT_NOT_NULL_MESSAGE(find(family, property.name), property.name);
+			TEST_ASSERT_NOT_EQUAL_MESSAGE('\0', property.word[0], property.name);
 			if (property.output)
 				TEST_ASSERT_NOT_NULL(
-					property_writer(family, find(family, s->name)));
+					property_writer(family, find(family, property.name)));
 		}
-		TEST_ASSERT_LESS_OR_EQUAL_UINT_MESSAGE(SCAN_PROPERTIES, count, family->type);
-		TEST_ASSERT_FALSE(scan_property(family->code, count, &property));
-		properties += count;
+		TEST_ASSERT_EQUAL_MESSAGE(family->scan != NULL, count > 0, family->type);
 	}
-	TEST_ASSERT_GREATER_THAN_UINT(20, properties);
+	TEST_ASSERT_GREATER_THAN_UINT(80, rows);
+}
+
+/* A chip has what is in its directory, and no more than there is room for. */
+static void test_a_chip_of_a_family_with_kinds_has_what_its_list_has(void)
+{
+	struct scan_property property;
+
+	for (unsigned n = 0; family_nth(n); n++) {
+		const struct family *family = family_nth(n);
+
+		for (unsigned k = 0; family->scan && family->scan[k].name; k++) {
+			struct scan_device device = {.family = family->code};
+			size_t len = strcspn(family->scan[k].name, "/");
+			unsigned count = 0;
+
+			for (unsigned i = 0; family->scan[i].name; i++)
+				if (strcspn(family->scan[i].name, "/") == len &&
+				    !memcmp(family->scan[i].name, family->scan[k].name, len))
+					device.has |= UINT64_C(1) << i;
+			while (scan_property(&device, count, &property))
+				count++;
+			TEST_ASSERT_GREATER_THAN_UINT_MESSAGE(0, count, family->scan[k].name);
+			TEST_ASSERT_LESS_OR_EQUAL_UINT_MESSAGE(SCAN_PROPERTIES, count,
+			                                       family->scan[k].name);
+			TEST_ASSERT_LESS_THAN_UINT_MESSAGE(64, k, family->scan[k].name);
+		}
+	}
+	TEST_ASSERT_FALSE(scan_property(&(struct scan_device){.family = 0x7e}, 0, &property));
+}
+
+/* What a family measures is not left out of the configurations that a scan makes. */
+static void test_each_family_that_measures_has_something_to_scan(void)
+{
+	unsigned measuring = 0;
+
+	for (unsigned n = 0; family_nth(n); n++) {
+		const struct family *family = family_nth(n);
+		bool measures = false;
+
+		for (unsigned i = 0; i < family->count; i++) {
+			const struct property *row = &family->properties[i];
+
+			measures |= row->measures.unit[0] && row->measures.decimals >= 0 &&
+			            !row->hidden && !(row->access & ACCESS_WRITE) &&
+			            row->life == LIFE_VOLATILE;
+		}
+		measuring += measures;
+		if (measures)
+			TEST_ASSERT_NOT_NULL_MESSAGE(family->scan, family->type);
+	}
+	TEST_ASSERT_GREATER_THAN_UINT(25, measuring);
+}
+
+static void test_each_element_of_an_array_has_a_name(void)
+{
+	struct scan_device device = chip_of(0xef);
+	struct scan_property property;
+	unsigned i = 0;
+
+	while (scan_property(&device, i, &property) &&
+	       strcmp(property.name, "multitemp/temperature.5") != 0)
+		i++;
+	TEST_ASSERT_EQUAL_STRING("multitemp/temperature.5", property.name);
+	TEST_ASSERT_EQUAL_STRING("temperature_5", property.word);
+	TEST_ASSERT_FALSE(scan_property(&device, i + 1, &property));
 }
 
 static void check_signal(uint8_t code, const char *name, enum ows_type type, bool output,
                          unsigned per_factor)
 {
+	struct scan_device device = chip_of(code);
 	struct scan_property property;
 	unsigned i = 0;
 
-	while (scan_property(code, i, &property) && strcmp(property.name, name) != 0)
+	while (scan_property(&device, i, &property) && strcmp(property.name, name) != 0)
 		i++;
 	TEST_ASSERT_EQUAL_STRING(name, property.name);
 	TEST_ASSERT_EQUAL_INT_MESSAGE(type, property.type, name);
@@ -146,13 +219,19 @@ static void test_the_type_of_a_signal_is_that_of_the_property(void)
 	check_signal(0x3a, "sensed.BYTE", OWS_BYTE, false, 0);
 	check_signal(0x3a, "PIO.BYTE", OWS_BYTE, true, 0);
 	check_signal(0x1d, "counter.B", OWS_DWORD, false, 0);
+	check_signal(0x30, "amphours", OWS_DOUBLE, false, 10);
+	check_signal(0x7e, "EDS0068/pressure", OWS_DOUBLE, false, 10);
+	check_signal(0x7e, "EDS0068/light", OWS_DWORD, false, 10);
+	check_signal(0x7e, "EDS0090/output/set.BYTE", OWS_BYTE, true, 0);
+	check_signal(0xa0, "RPM", OWS_LONG, false, 10);
 }
 
 static void test_an_identity_is_asked_for_where_the_code_does_not_tell(void)
 {
-	TEST_ASSERT_TRUE(scan_has_identity(0x28));
-	TEST_ASSERT_FALSE(scan_has_identity(0x10));
-	TEST_ASSERT_FALSE(scan_has_identity(0xfa));
+	TEST_ASSERT_EQUAL_STRING("identity", scan_identity(0x28));
+	TEST_ASSERT_EQUAL_STRING("device_type", scan_identity(0x7e));
+	TEST_ASSERT_NULL(scan_identity(0x10));
+	TEST_ASSERT_NULL(scan_identity(0xfa));
 }
 
 int main(void)
@@ -163,6 +242,9 @@ int main(void)
 	RUN_TEST(test_numbers_are_those_that_json_has);
 	RUN_TEST(test_uncached_is_taken_from_the_path);
 	RUN_TEST(test_what_a_scan_reads_is_there_in_our_own_families);
+	RUN_TEST(test_a_chip_of_a_family_with_kinds_has_what_its_list_has);
+	RUN_TEST(test_each_family_that_measures_has_something_to_scan);
+	RUN_TEST(test_each_element_of_an_array_has_a_name);
 	RUN_TEST(test_the_type_of_a_signal_is_that_of_the_property);
 	RUN_TEST(test_an_identity_is_asked_for_where_the_code_does_not_tell);
 	return UNITY_END();
