@@ -8,11 +8,40 @@
 #include "hal/chips/find.h"
 #include "hal/owfs/path.h"
 
-const char *family_name(uint8_t code)
+/* Of which kind a chip is that has the property; 0: of any. */
+static unsigned kind_of(const struct property *row)
 {
-	const struct family *family = family_of(code);
+	unsigned kind = 0;
 
-	return family == &family_common ? bridge_type(code) : family->type;
+	for (unsigned n = 1; n < 32; n++)
+		if (row && row->kinds == KIND(n))
+			kind = n;
+	return kind;
+}
+
+const char *model_of(const char *text)
+{
+	const struct family *family;
+	const struct property *row;
+	struct path path;
+	size_t len;
+
+	if (path_split(text, strlen(text), &path) || !path.has_rom)
+		return NULL;
+	family = family_of(path.rom[0]);
+	if (family == &family_common)
+		return bridge_type(path.rom[0]);
+	len = strcspn(path.property.len ? path.property.text : "", ".");
+	row = family_property(family, NULL, path.property.text, len);
+	if (!kind_of(row))
+		return family->type;
+	if (family->types)
+		return family->types[kind_of(row)];
+	/* the directory of those of the kind has its name */
+	row = family->model ? family_property(family, NULL, path.property.text,
+	                                      strcspn(path.property.text, "/"))
+	                    : NULL;
+	return row ? row->name : family->type;
 }
 
 /* A temperature is not below this, whatever measures it. */

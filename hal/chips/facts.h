@@ -8,8 +8,12 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* "DS18B20"; NULL: not known. Other chips may have the same code: it is the usual one. */
-const char *family_name(uint8_t code);
+/*
+ * What the device of the path is called, as far as the path shows it: by its property ("EDS0068",
+ * "HB_HUB"), else by its family's usual chip ("DS18B20"). NULL: not known. It lives as long as the
+ * program.
+ */
+const char *model_of(const char *path);
 
 /* The row of property.measures. */
 struct quantity {

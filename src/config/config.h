@@ -52,7 +52,7 @@ struct config_item {
 	const char *name;
 	const char *path;   /* normalised: leading "/", without "/uncached" and "/alarm" */
 	const char *device; /* the ROM id in path; NULL: an alias, or no device */
-	const char *family; /* the kind of chip that its code means; NULL: not known */
+	const char *family; /* what the chip is called, as far as the path shows it; NULL: not known */
 	enum ows_type type;
 	bool output;
 	bool readable, writable; /* start values of _ReadEnable and _WriteEnable */

@@ -118,7 +118,7 @@ static void build_path(struct build *build, const struct rio_node *block,
 	if (!path->has_rom)
 		return;
 	item->device = build_keep(build, path->last.text, path->last.len);
-	item->family = family_name(path->rom[0]);
+	item->family = model_of(item->path);
 }
 
 /* The meaning of IOType, before the readable keys; false: its type is no type. */

@@ -121,7 +121,7 @@ static void put_item(struct json *json, const struct rio_node *item)
 	json_string(json, "name", name ? name : "");
 	json_string(json, "path", text ? text : "");
 	json_string(json, "device", known ? id : NULL);
-	json_string(json, "family", known ? family_name(path.rom[0]) : NULL);
+	json_string(json, "family", known ? model_of(text) : NULL);
 	json_int(json, "line", item->at.line);
 	put_type(json, item);
 	put_keys(json, "keys", item, OPT_NAME, OPT_PATH);

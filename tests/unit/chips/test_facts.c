@@ -150,15 +150,39 @@ static void test_the_decimals_hold_one_step_of_the_chip(void)
 	TEST_ASSERT_EQUAL_INT(2, of("/cellar/humidity").decimals);
 }
 
-static void test_a_family_is_called_as_its_usual_chip(void)
+static void test_a_device_is_called_as_its_property_or_its_family_says(void)
 {
-	TEST_ASSERT_EQUAL_STRING("DS18B20", family_name(0x28));
-	TEST_ASSERT_EQUAL_STRING("EDS", family_name(0x7e));
-	TEST_ASSERT_EQUAL_STRING("DS28E17", family_name(0x19));
-	TEST_ASSERT_NULL(family_name(0));
-	TEST_ASSERT_NULL(family_name(0xfa));
-	for (unsigned n = 0; family_nth(n); n++)
-		TEST_ASSERT_NOT_NULL(family_name(family_nth(n)->code));
+	static const struct {
+		const char *path, *model;
+	} rows[] = {
+		{"/28.112233445566/temperature12", "DS18B20"},
+		{"/bus.0/28.112233445566/temperature", "DS18B20"},
+		{"/7E.112233445566/device_id", "EDS"},
+		{"/7E.112233445566/EDS0068/temperature", "EDS0068"},
+		{"/7E.112233445566/EDS0082/volts.3", "EDS0082"},
+		{"/7E.112233445566/EDS0068", "EDS0068"},
+		{"/7E.112233445566/EDS9999/temperature", "EDS"},
+		{"/EF.112233445566/moisture/sensor.0", "HB_MOISTURE_METER"},
+		{"/EF.112233445566/version", "HobbyBoards_EF"},
+		{"/3B.112233445566/thermocouple", "MAX31850"},
+		{"/FC.112233445566/910/count", "BAE"},
+		{"/26.112233445566/temperature", "DS2438"},
+		{"/19.112233445566/1.value", "DS28E17"},
+		{"/28.112233445566", "DS18B20"},
+	};
+
+	for (size_t i = 0; i < sizeof(rows) / sizeof(rows[0]); i++)
+		TEST_ASSERT_EQUAL_STRING_MESSAGE(rows[i].model, model_of(rows[i].path),
+		                                 rows[i].path);
+	TEST_ASSERT_NULL(model_of("/FA.112233445566/present"));
+	TEST_ASSERT_NULL(model_of("/boiler/temperature"));
+	TEST_ASSERT_NULL(model_of("/"));
+	for (unsigned n = 0; family_nth(n); n++) {
+		char path[40];
+
+		snprintf(path, sizeof(path), "/%02X.112233445566/present", family_nth(n)->code);
+		TEST_ASSERT_NOT_NULL_MESSAGE(model_of(path), path);
+	}
 }
 
 int main(void)
@@ -168,6 +192,6 @@ int main(void)
 	RUN_TEST(test_the_range_is_the_chips_own);
 	RUN_TEST(test_an_alias_excludes_only_what_nothing_can_measure);
 	RUN_TEST(test_the_decimals_hold_one_step_of_the_chip);
-	RUN_TEST(test_a_family_is_called_as_its_usual_chip);
+	RUN_TEST(test_a_device_is_called_as_its_property_or_its_family_says);
 	return UNITY_END();
 }
