@@ -125,6 +125,8 @@ enum bus_supply {
  *   -EBADMSG      checksum
  *   -ECOMM        the wire is short
  *   -ERANGE       a reading that means power fault (85, 127.94)
+ *   -ENODATA      the device answers whole that it has no value: an open sensor, no supply, a
+ *                 result that a restart has taken
  *   -EBUSY        another process has it (a GPIO line)
  *   -EIO          any other device error
  *   -EMSGSIZE     the answer is longer than the room

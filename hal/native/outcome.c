@@ -157,11 +157,14 @@ void job_failed(struct native *native, struct job *job, int err)
 		return;
 	case -ERANGE:
 		native_count(native, COUNT_POWER_FAULTS);
-		if (!job->property->convert || ++job->faults >= 2) {
+		if (++job->faults >= 2) {
 			job_answer(native, job, err);
 			return;
 		}
-		thermometer_void(job->txn.device);
+		if (job->property->convert)
+			thermometer_void(job->txn.device);
+		else if (job->txn.device)
+			txn_void(&job->txn);
 		job->fresh = true;
 		job_again(native, job);
 		return;

@@ -63,10 +63,10 @@ static bool is_known_absent(const struct engine *e, const struct signal *s, int 
 	return err == -ENODEV && s->device != TABLE_NO_DEVICE && e->table.devices[s->device].absent;
 }
 
-/* How many failures the signal forgives: none where the device is known to be absent. */
+/* How many failures the signal forgives: none where asking again would say no more. */
 static unsigned retries_of(const struct engine *e, const struct signal *s, int err)
 {
-	return is_known_absent(e, s, err) ? 0 : e->config->max_retries;
+	return failure_is_verdict(err) || is_known_absent(e, s, err) ? 0 : e->config->max_retries;
 }
 
 /* A device that stays absent is one fault, however often it is looked for. */
@@ -80,14 +80,20 @@ static void count_failure(struct engine *e, struct lane *lane, const struct sign
 
 /*
  * Of a read: a fault of a device may end at any time, which is to be seen soon, if asking costs
- * little. A write has its full back-off: a memory may wear with each.
+ * little: a verdict costs what a value does, and the first ones are asked for again as after any
+ * error, for another target may know better. A write has its full back-off: a memory may wear with
+ * each.
  */
-static int64_t back_off(const struct lane *lane, uint8_t quality, int64_t wait_ns)
+static int64_t back_off(const struct lane *lane, const struct signal *s, int err, int64_t wait_ns)
 {
+	if (failure_is_verdict(err) && s->read.retry.failures <= lane->engine->config->max_retries)
+		return 0;
+	uint8_t quality = failure_quality(err);
 	bool ends = quality != OWS_Q_NO_PROPERTY && quality != OWS_Q_TYPE &&
 	            quality != OWS_Q_ACCESS;
+	bool brief = failure_is_verdict(err) || (lane->port->brief && ends);
 
-	return lane->port->brief && ends && wait_ns > RETRY_FIRST_NS ? RETRY_FIRST_NS : wait_ns;
+	return brief && wait_ns > RETRY_FIRST_NS ? RETRY_FIRST_NS : wait_ns;
 }
 
 int64_t engine_read_failed(struct engine *e, struct lane *lane, struct signal *s, int err)
@@ -107,7 +113,7 @@ int64_t engine_read_failed(struct engine *e, struct lane *lane, struct signal *s
 		s->sample.quality = quality;
 		report_failed(e, s, "", err, quality);
 	}
-	return back_off(lane, quality, wait_ns);
+	return back_off(lane, s, err, wait_ns);
 }
 
 /* Of a write. It says nothing of a value that is read. */

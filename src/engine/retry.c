@@ -26,6 +26,11 @@ enum failure failure_of(int err)
 	}
 }
 
+bool failure_is_verdict(int err)
+{
+	return err == -ENODATA || err == -ERANGE;
+}
+
 uint8_t failure_quality(int err)
 {
 	switch (-err) {

@@ -18,6 +18,11 @@ enum failure {
 };
 /* The kind of a bus_answer's err. */
 enum failure failure_of(int err);
+/*
+ * Has the device answered whole, and said that it has no value or no supply? That is in force at
+ * once. Any other item error may be of a disturbed answer, and asking again may bring the value.
+ */
+bool failure_is_verdict(int err);
 /* The quality that an error gives a signal, as enum ows_quality. */
 uint8_t failure_quality(int err);
 

@@ -26,7 +26,7 @@ QUALITY(NO_DEVICE, "device absent", "The device does not answer on its wire.",
         "data and the pull-up.")
 QUALITY(DEVICE, "device error",
         "The device answers, and the answer cannot be true: a checksum fails, or the number is "
-        "out of the chip's range.",
+        "out of the chip's range; or it reports a fault itself.",
         "Look for a bad contact, a long wire without enough pull-up, or noise. \"owsctl read\" of "
         "the same path shows the answer.")
 QUALITY(SENSOR, "sensor power fault",
@@ -91,6 +91,8 @@ ERROR(ECOMM, "the wire is short",
       "data is held at ground: unplug branches until the wire lives again")
 ERROR(ERANGE, "reading of a sensor without power, or out of range",
       "look at its supply line; parasite power may need a strong pull-up")
+ERROR(ENODATA, "the device itself reports that it has no value",
+      "an open or shorted sensor, or no supply; owsctl dir shows the flags that it has")
 ERROR(ETIME, "its turn did not come in time",
       "the bus has more to do than fits: raise Period or PerFactor")
 ERROR(ETIMEDOUT, "no answer in time", "owsctl stats shows how the target does; Timeout is the limit")

@@ -103,8 +103,9 @@ static int measure_one(struct txn *txn, enum ds2438_quantity what, double *value
 
 /*
  * A restart empties the registers, and their checksum is right: a zero may be what a restart left.
- * Of the supply it always is. A zero of another quantity is measured again between a mark that a
- * restart destroys and a look at the mark. proof: as far as that is.
+ * It is measured again, of the supply once: two zeros say that there is none. One of another
+ * quantity is measured between a mark that a restart destroys and a look at the mark. proof: as far
+ * as that is.
  */
 enum proof { FIRST, MARK, AGAIN, LOOK };
 
@@ -127,9 +128,9 @@ static int measure_and_prove(struct txn *txn, enum ds2438_quantity what, double 
 	}
 	if (err || *value != 0)
 		return err;
-	if (what == DS2438_VDD)
-		return -EIO;
-	*proof = *proof == FIRST ? MARK : LOOK;
+	if (what == DS2438_VDD && *proof == AGAIN)
+		return -ENODATA;
+	*proof = what == DS2438_VDD ? AGAIN : *proof == FIRST ? MARK : LOOK;
 	txn->phase = 0;
 	return TXN_MORE;
 }

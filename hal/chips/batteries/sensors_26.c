@@ -54,7 +54,7 @@ int sensor_read_humidity(struct txn *txn)
 	if (err)
 		return err;
 	if (sensor != HTM1735 && value[DS2438_VDD] <= 0)
-		return -EIO;
+		return -ENODATA;
 	txn->number[0] = relative_humidity(sensor, value[DS2438_TEMPERATURE], value[DS2438_VDD],
 	                                   value[DS2438_VAD]);
 	return 0;

@@ -134,7 +134,7 @@ int ds1921_read_log(struct txn *txn)
 		if (err)
 			return err;
 		if ((uint32_t)txn->element >= logger_elements(&mission))
-			return -EIO;
+			return -ENODATA;
 		*index = logger_index(&mission, (uint32_t)txn->element);
 		txn->phase = 1;
 		return TXN_MORE;

@@ -153,7 +153,7 @@ int ds1922_read_log(struct txn *txn)
 	uint32_t n = (uint32_t)txn->element;
 	if (!(mission->settings & txn->property->arg) || n >= logger_elements(&mission->common) ||
 	    ds1922_zero_of(mission->config) < 0)
-		return -EIO;
+		return -ENODATA;
 	err = area_read(txn, &ds1922_log,
 	                (data ? mission->data : 0) + size * logger_index(&mission->common, n),
 	                bytes, size);

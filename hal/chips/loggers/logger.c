@@ -286,7 +286,7 @@ int logger_read_date(struct txn *txn)
 	if (err || !txn->property->arg)
 		return err;
 	if (n >= logger_elements(mission))
-		return -EIO;
+		return -ENODATA;
 	/* a log that rolled over holds the last samples */
 	if (is_full(mission) && mission->rollover)
 		n += mission->samples - mission->room;

@@ -191,7 +191,7 @@ static int read_thermocouple(struct txn *txn)
 	if (err)
 		return err;
 	if (bytes[0] & FAULT_ANY)
-		return -EIO;
+		return -ENODATA;
 	txn->number[0] = thermocouple_raw(bytes) / 16.0;
 	return thermometer_took(txn, bytes, txn_ended(txn));
 }

@@ -155,7 +155,7 @@ static const struct sim_function functions[] = {
 
 static const struct sim_input inputs[] = {
 	[TEMPERATURE] = {SIM_TEMPERATURE_INPUT},
-	[VDD] = {.name = "vdd", .start = 5, .least = 2.4, .most = 10},
+	[VDD] = {.name = "vdd", .start = 5, .least = 0, .most = 10},
 	[VAD] = {.name = "vad"},
 	[VSENS] = {.name = "vsens"},
 	{0},

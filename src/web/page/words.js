@@ -21,7 +21,7 @@ const QUALITIES = new Map([
 		+ "Check ground, data and the pull-up."]],
 	[0x0c, ["device error",
 		"The device answers, and the answer cannot be true: a checksum fails, or the number "
-		+ "is out of the chip\u2019s range.",
+		+ "is out of the chip\u2019s range; or it reports a fault itself.",
 		"Look for a bad contact, a long wire without enough pull-up, or noise. \u201cowsctl "
 		+ "read\u201d of the same path shows the answer."]],
 	[0x10, ["sensor power fault",

@@ -146,8 +146,8 @@ static void test_a_log_that_rolls_over_begins_with_its_oldest_sample(void)
 	is("log/elements", "        4096");
 	TEST_ASSERT_EQUAL_DOUBLE(number("mission/udate") + samples - 4096, number("log/udate.0"));
 	is("log/temperature.4095", "          10");
-	fails(-EIO, "log/temperature.4096");
-	fails(-EIO, "log/humidity.0");
+	fails(-ENODATA, "log/temperature.4096");
+	fails(-ENODATA, "log/humidity.0");
 }
 
 static void test_a_mission_that_runs_keeps_its_settings(void)

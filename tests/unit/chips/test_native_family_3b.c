@@ -324,7 +324,7 @@ static void test_a_fault_of_the_thermocouple_is_told_and_its_temperature_is_not(
 	for (int which = 0; which < 3; which++) {
 		wire_set(slave, faults[which], 1);
 		TEST_ASSERT_EQUAL_INT_MESSAGE(
-			-EIO, result(BUS_READ, of(slave, "thermocouple"), NULL), faults[which]);
+			-ENODATA, result(BUS_READ, of(slave, "thermocouple"), NULL), faults[which]);
 		expect_raw(0x0191, 0);
 		expect_raw(0x1900 | 1 << which, 2);
 		expect(true, of(slave, "fault"), "1");

@@ -47,7 +47,7 @@ static void test_a_true_zero_of_a_ds2438_is_read_but_not_one_of_its_supply(void)
 	visit_begin(&visit);
 	wire_set(visited, "vdd", 0);
 	id = visit_go(&visit, &(struct trouble){.kind = TROUBLE_NONE});
-	TEST_ASSERT_EQUAL_INT(-EIO, answer_to(id)->err);
+	TEST_ASSERT_EQUAL_INT(-ENODATA, answer_to(id)->err);
 	visit_end();
 }
 

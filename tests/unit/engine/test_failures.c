@@ -77,6 +77,33 @@ static void test_a_device_that_was_not_looked_for_has_its_retries(void)
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, after_one(false, -ENODEV));
 }
 
+/* MaxRetries is for answers that may be disturbed. Asking again is cheap, and each answer counts. */
+static void test_what_a_device_says_of_itself_is_in_force_at_once(void)
+{
+	static const struct {
+		int err;
+		uint8_t quality;
+	} verdicts[] = {{-ENODATA, OWS_Q_DEVICE}, {-ERANGE, OWS_Q_SENSOR}};
+
+	two_thermometers();
+	for (size_t i = 0; i < sizeof(verdicts) / sizeof(verdicts[0]); i++) {
+		scene_put(&s, T1, NULL, verdicts[i].err);
+		scene_run(&s, 100 * SCENE_MS);
+		TEST_ASSERT_EQUAL_HEX8(verdicts[i].quality, scene_sample(&s, 1).quality);
+		scene_put(&s, T1, NULL, -EBADMSG);
+		scene_run(&s, 200 * SCENE_MS);
+		TEST_ASSERT_EQUAL_HEX8(verdicts[i].quality, scene_sample(&s, 1).quality);
+		scene_put(&s, T1, NULL, verdicts[i].err);
+		scene_run(&s, 100 * SCENE_S);
+		scene_put(&s, T1, "21.5", 0);
+		scene_run(&s, 1100 * SCENE_MS);
+		TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
+	}
+	scene_put(&s, T1, "85", 0);
+	scene_run(&s, 100 * SCENE_MS);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_SENSOR, scene_sample(&s, 1).quality);
+}
+
 /* ... and again so, once it has come back. */
 static void test_a_device_that_came_back_has_its_retries_again(void)
 {
@@ -587,6 +614,7 @@ int main(void)
 	RUN_TEST(test_a_device_that_its_bus_lost_is_bad_at_the_first_failure);
 	RUN_TEST(test_a_lost_device_that_answers_disturbed_has_its_retries);
 	RUN_TEST(test_a_device_that_was_not_looked_for_has_its_retries);
+	RUN_TEST(test_what_a_device_says_of_itself_is_in_force_at_once);
 	RUN_TEST(test_a_device_that_came_back_has_its_retries_again);
 	RUN_TEST(test_one_success_between_failures_clears_the_count);
 	RUN_TEST(test_a_missing_device_costs_ever_less_and_never_slows_the_others);

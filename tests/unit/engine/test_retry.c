@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Tests of retries: the quality after failures, and the time until the next try. */
 #include <errno.h>
+#include <string.h>
 
 #include "unity.h"
 
@@ -115,6 +116,24 @@ static void test_each_error_has_its_quality_and_none_is_good(void)
 		TEST_ASSERT_FALSE(ows_good(failure_quality(-err)));
 }
 
+/* Each error of the bus contract: is it in force at once, or may the answer have been disturbed? */
+static void test_a_verdict_is_what_the_device_says_of_itself(void)
+{
+	static const int verdicts[] = {-ENODATA, -ERANGE};
+	static const int others[] = {0,         -ENODEV,      -ENXIO,    -ENOENT,  -EACCES,
+	                             -EPERM,    -EISDIR,      -EINVAL,   -EBADMSG, -ECOMM,
+	                             -EBUSY,    -EIO,         -EDOM,     -EILSEQ,  -EPROTOTYPE,
+	                             -ENOTDIR,  -EMSGSIZE,    -ETIME,    -EPROTO,  -EOPNOTSUPP,
+	                             -ENOTCONN, -EINPROGRESS, -ECANCELED};
+
+	for (size_t i = 0; i < sizeof(verdicts) / sizeof(verdicts[0]); i++) {
+		TEST_ASSERT_TRUE(failure_is_verdict(verdicts[i]));
+		TEST_ASSERT_EQUAL(FAILURE_ITEM, failure_of(verdicts[i]));
+	}
+	for (size_t i = 0; i < sizeof(others) / sizeof(others[0]); i++)
+		TEST_ASSERT_FALSE_MESSAGE(failure_is_verdict(others[i]), strerror(-others[i]));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -127,5 +146,6 @@ int main(void)
 	RUN_TEST(test_a_slow_answer_is_an_error_of_the_item_with_the_quality_of_a_time_out);
 	RUN_TEST(test_what_was_not_begun_says_nothing);
 	RUN_TEST(test_each_error_has_its_quality_and_none_is_good);
+	RUN_TEST(test_a_verdict_is_what_the_device_says_of_itself);
 	return UNITY_END();
 }
