@@ -77,7 +77,7 @@ static void test_a_device_that_was_not_looked_for_has_its_retries(void)
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, after_one(false, -ENODEV));
 }
 
-/* MaxRetries is for answers that may be disturbed. Asking again is cheap, and each answer counts. */
+/* MaxRetries is for answers that may be disturbed. */
 static void test_what_a_device_says_of_itself_is_in_force_at_once(void)
 {
 	static const struct {
