@@ -17,6 +17,7 @@
 #define SAVED_NS NATIVE_S
 #define TOUCH_NS (2 * NATIVE_S)
 #define TRIES 3
+#define MANY_MISSED 3
 #define TRIES_LINK 6
 
 /* While a chip of the master does not answer, any device may be behind it. */
@@ -38,8 +39,26 @@ static bool is_found(struct native *native, struct job *job)
 	return true;
 }
 
+/*
+ * A branch of the wire was unplugged: of one after the other no try found anything. Then of the
+ * next one that does not answer one try is enough. On a disturbed wire some try finds something.
+ */
+static unsigned tries_of(const struct native *native, int64_t now)
+{
+	const struct locate *locate = &native->locate;
+
+	return locate->missed >= MANY_MISSED && now - locate->missed_ns < NATIVE_S ? 1 : TRIES;
+}
+
 static void missing_end(struct native *native, struct job *job)
 {
+	int64_t now = native_now(native);
+
+	native->locate.missed = now - native->locate.missed_ns >= NATIVE_S ? 1
+	                        : native->locate.missed < UINT8_MAX
+	                                ? (uint8_t)(native->locate.missed + 1)
+	                                : UINT8_MAX;
+	native->locate.missed_ns = now;
 	/* A search may have met it on another wire since then. */
 	bool moved = job->txn.device->channel != job->channel;
 
@@ -49,7 +68,7 @@ static void missing_end(struct native *native, struct job *job)
 	if (native_initial(native)) {
 		job->txn.device->astray |= !moved;
 		job->verified = false;
-		locate_wait(native, job, native_now(native));
+		locate_wait(native, job, now);
 		return;
 	}
 	if (!moved)
@@ -72,9 +91,10 @@ void locate_missing(struct native *native, struct job *job, int64_t now)
 	}
 	master_good(native, job->channel);
 	if (there) {
+		native->locate.missed = 0;
 		presence_found(native, job->path.rom, job->channel, now);
 		job->state = JOB_QUEUED;
-	} else if (++job->tries >= TRIES) {
+	} else if (++job->tries >= tries_of(native, now)) {
 		missing_end(native, job);
 	}
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The links of the native bus: opened, grown, lost and recovered. */
 #include <errno.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "hal/chips/family.h"
@@ -14,7 +15,7 @@
 #include "hal/native/state.h"
 
 #define PAUSE_MIN_NS (NATIVE_S / 5)
-#define PAUSE_MAX_NS (5 * NATIVE_S)
+#define PAUSE_MAX_NS (NATIVE_S / 2) /* one that is plugged in again is not to wait */
 #define GROW_MIN_NS NATIVE_S
 #define GROW_MAX_NS (10 * NATIVE_S)
 #define TROUBLE_NS (60 * NATIVE_S)
@@ -107,13 +108,28 @@ static void search_anew(struct native *native, int64_t now)
 	}
 }
 
+/*
+ * What a master advises for one that is missing is for the first start. One that was there was
+ * unplugged, or has lost its supply.
+ */
+static int open_master(struct native *native, char why[BUS_EVENT_TEXT])
+{
+	int err = native->master->ops->open(native->master, why, BUS_EVENT_TEXT);
+
+	if (err == -ENODEV && native->up_ns)
+		snprintf(why, BUS_EVENT_TEXT,
+		         "the adapter is gone: look at its plug and its supply; owsd takes it "
+		         "again when it is back");
+	return err;
+}
+
 int64_t master_step(struct native *native, int64_t now)
 {
 	char why[BUS_EVENT_TEXT] = "";
 
 	if (now < native->open_ns)
 		return native->open_ns;
-	int err = native->master->ops->open(native->master, why, sizeof(why));
+	int err = open_master(native, why);
 	native->down_err = err;
 	if (err) {
 		native->pause_ns = native->pause_ns ? native->pause_ns * 2 : PAUSE_MIN_NS;
@@ -170,7 +186,7 @@ static bool reopen_master(struct native *native)
 	char why[BUS_EVENT_TEXT] = "";
 
 	native->master->ops->close(native->master);
-	int err = native->master->ops->open(native->master, why, sizeof(why));
+	int err = open_master(native, why);
 	if (err) {
 		master_down(native, err, why);
 		return false;

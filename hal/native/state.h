@@ -244,6 +244,9 @@ struct locate {
 	int64_t idle_ns;    /* when no other job needs the wire: the next one */
 	int64_t took_ns;    /* the last transaction */
 	uint64_t found;     /* COUNT_FOUND when the requests were looked at last */
+	/* Devices in a row that each try to verify them missed; when the last one was. */
+	uint8_t missed;
+	int64_t missed_ns;
 };
 
 /* What /statistics tells of the requests of one kind. */
