@@ -91,7 +91,7 @@ static const struct property properties[] = {
 	IDENTITY("id", ID, 12),
 	IDENTITY("locator", LOCATOR, 16),
 	{.name = "present", .type = PROPERTY_YESNO, .life = LIFE_VOLATILE, .access = ACCESS_READ,
-	 .hidden = true, .how = WAY_PRESENT},
+	 .hidden = true, .alarm = ALARM_LATCH, .how = WAY_PRESENT},
 	IDENTITY("r_address", REVERSED_ADDRESS, 16),
 	IDENTITY("r_id", REVERSED_ID, 12),
 	IDENTITY("r_locator", LOCATOR, 16),

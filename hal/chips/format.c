@@ -398,3 +398,11 @@ bool list_fits(const struct property *property, const char *text, size_t len)
 			return false;
 	return n == property->array.count;
 }
+
+bool format_takes(const struct property *property, int extension, const char *text, size_t len)
+{
+	double number;
+
+	return extension == EXTENSION_ALL ? list_fits(property, text, len)
+	                                  : !parse_text(property, extension, text, len, &number);
+}

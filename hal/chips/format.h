@@ -55,6 +55,8 @@ int parse_value(const struct property *property, int extension, const char *text
                 struct txn *txn);
 /* The same of a number, for what is one: see format_is_number(). */
 int take_number(const struct property *property, int extension, double number, struct txn *txn);
+/* Is the text the whole of a value in the range of the property? Not for text and binary. */
+bool format_takes(const struct property *property, int extension, const char *text, size_t len);
 /* Part n of a comma list; false: there is none. */
 bool list_part(const char *text, size_t len, unsigned n, const char **part, size_t *part_len);
 /* Has the list as many elements as the property, and can the property take each of them? */

@@ -36,6 +36,14 @@ enum property_life {
 	LIFE_SECOND = 't',
 };
 
+/* What an alarm item may name the property for; bits. A family in which none has one is unsaid. */
+enum property_alarm {
+	ALARM_LATCH = 1,  /* not 0 when something has happened, or while its condition stands */
+	ALARM_STAYS = 2,  /* a latch that stays until a property that clears is written */
+	ALARM_CLEARS = 4, /* a write clears the latches */
+	ALARM_POR = 8,    /* not 0 after the chip has restarted */
+};
+
 enum property_index { INDEX_NONE, INDEX_NUMBERS, INDEX_LETTERS };
 
 /* convert: a fresh reading needs a conversion, at this resolution or that of tempres. */
@@ -55,8 +63,9 @@ struct property {
 	uint8_t how;  /* which of the family's oddities; 0: none */
 	bool hidden;  /* not listed */
 	bool offline; /* its functions use no wire */
-	bool flag;  /* tells why a chip alarms: a visit of the alarm machine reads all such once */
-	bool holds; /* reads as it was written, until another master writes or power is lost */
+	bool flag; /* tells why a chip alarms: a visit of the alarm machine reads all such once */
+	uint8_t alarm;   /* enum property_alarm */
+	bool holds;      /* reads as it was written, until another master writes or power is lost */
 	bool negative;   /* unsigned, and a write may be below zero all the same */
 	uint8_t convert; /* 9 to 12, CONVERT_TEMPRES, or 0 */
 	struct {

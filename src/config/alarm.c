@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* What the alarm machine does for an item: its keys are read, and held against each other. */
+#include <stdio.h>
 #include <string.h>
 
-#include "hal/owfs/path.h"
+#include "hal/chips/property.h"
 #include "src/config/alarm.h"
 #include "src/config/build.h"
+#include "src/config/property.h"
 
 static const char *keep_if_given(struct build *build, const struct option_value *value)
 {
@@ -19,6 +21,37 @@ static void warn_without_equals(struct build *build, const struct option_value *
 			build->report, value->node->value_at,
 			"%s \"%s\" has no '=': nothing is written%s; expected property=value",
 			value->node->key, value->text, follows);
+}
+
+const char *alarm_path(const struct config_item *item, const char *string, char path[ALARM_PATH])
+{
+	int len = string ? (int)strcspn(string, "=") : 0;
+	struct path split;
+	size_t head;
+
+	if (!len || path_split(item->path, strlen(item->path), &split) || !split.property.len)
+		return NULL;
+	head = (size_t)(split.property.text - item->path);
+	if (head + (size_t)len >= ALARM_PATH)
+		return NULL;
+	snprintf(path, ALARM_PATH, "%.*s%.*s", (int)head, item->path, len, string);
+	return path + head;
+}
+
+static bool latch_stays(const struct config_item *item)
+{
+	const char *value = item->reset_latch ? strchr(item->reset_latch, '=') : NULL;
+	char path[ALARM_PATH];
+
+	struct path_property latch;
+
+	if (!alarm_path(item, item->latch_alarm, path))
+		return false;
+	latch = property_look(path);
+	if (!latch.exists || !(latch.alarm & ALARM_STAYS))
+		return false;
+	return !value || !value[1] || !alarm_path(item, item->reset_latch, path) ||
+	       !(property_look(path).alarm & ALARM_CLEARS);
 }
 
 /*
@@ -71,6 +104,7 @@ void alarm_build(struct build *build, const struct rio_node *block,
 		check_off(build, values);
 		return;
 	}
+	item->latch_stays = latch_stays(item);
 	if (*item->path && !path->device.len)
 		report_error(build->report, place, "Alarm on: expected a device in the path \"%s\"",
 		             item->path);

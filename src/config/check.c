@@ -9,6 +9,7 @@
 #include "hal/chips/facts.h"
 #include "hal/chips/find.h"
 #include "hal/owfs/path.h"
+#include "src/config/alarm.h"
 #include "src/config/buses.h"
 #include "src/config/check.h"
 #include "src/config/config.h"
@@ -129,28 +130,6 @@ static void check_property(const struct check *check, struct place place, const 
 		               check->item->name, what, property, found.type);
 }
 
-/* The property of an alarm key, whose value may be property=value. */
-static void check_alarm(const struct check *check, enum option option, const char *value,
-                        struct config_spot at, const struct path *path, bool writes)
-{
-	struct place place = place_at(check, at);
-	size_t head = path->property.len ? (size_t)(path->property.text - check->item->path) : 0;
-	char text[PATH_LEN_MAX + 64], what[32];
-	int len = value ? (int)strcspn(value, "=") : 0;
-
-	if (!len || !head)
-		return;
-	if ((size_t)snprintf(text, sizeof(text), "%.*s%.*s", (int)head, check->item->path, len,
-	                     value) >= sizeof(text))
-		return;
-	snprintf(what, sizeof(what), "%s: ", option_table[option].key);
-	check_property(check, place, text, what, text + head);
-	if (writes && !property_look(text).writable)
-		report_warning(check->report, place,
-		               "\"%s\": %s%s cannot be written, so the alarm cannot be served",
-		               check->item->name, what, text + head);
-}
-
 static void check_direction(const struct check *check)
 {
 	const struct config_item *item = check->item;
@@ -228,6 +207,91 @@ static void check_age(const struct check *check)
 	               factor);
 }
 
+/* A property that there is and that does not fit what the key is for. */
+static void check_purpose(const struct check *check, struct place place, const char *path,
+                          const char *key, const char *property, uint8_t purpose)
+{
+	static const char *const words[] = {
+		[ALARM_LATCH] = "is no latch",
+		[ALARM_CLEARS] = "clears no latch",
+		[ALARM_POR] = "does not show a restart",
+	};
+	struct path_property found = property_look(path);
+	char like[PROPERTY_NEAREST];
+
+	bool named = purpose == ALARM_LATCH && property_of_alarm(path, ALARM_STAYS, like);
+
+	if (purpose && !(found.alarm & purpose) &&
+	    (named || property_of_alarm(path, purpose, like)))
+		report_warning(check->report, place, "\"%s\": %s: %s %s of a %s: write %s",
+		               check->item->name, key, property, words[purpose], found.type, like);
+}
+
+/* The property of a key of the alarm, whose value may be property=value. */
+static void check_alarm(const struct check *check, enum option option, const char *string,
+                        struct config_spot at, uint8_t purpose)
+{
+	const char *key = option_table[option].key, *property, *value;
+	bool writes = option != OPT_LATCH_ALARM;
+	struct place place = place_at(check, at);
+	char path[ALARM_PATH], what[32], why[PROPERTY_NEAREST];
+
+	property = alarm_path(check->item, string, path);
+	if (!property)
+		return;
+	if (*property == '/') {
+		report_warning(check->report, place,
+		               "\"%s\": %s \"%s\" is a property of the device: write it without "
+		               "the / before it",
+		               check->item->name, key, string);
+		return;
+	}
+	snprintf(what, sizeof(what), "%s: ", key);
+	check_property(check, place, path, what, property);
+	if (!property_look(path).exists)
+		return;
+	if (writes && !property_look(path).writable) {
+		report_warning(check->report, place,
+		               "\"%s\": %s%s cannot be written, so the alarm cannot be served",
+		               check->item->name, what, property);
+		return;
+	}
+	check_purpose(check, place, path, key, property, purpose);
+	value = strchr(string, '=');
+	if (value && !value[1])
+		report_warning(check->report, place,
+		               "\"%s\": %s \"%s\" has nothing behind the '=', and nothing is "
+		               "written; expected property=value",
+		               check->item->name, key, string);
+	else if (value && !property_takes(path, value + 1, why))
+		report_warning(check->report, place, "\"%s\": %s \"%s\": %s of a %s%s",
+		               check->item->name, key, string, property, property_look(path).type,
+		               why);
+}
+
+static void check_alarms(const struct check *check)
+{
+	const struct config_item *item = check->item;
+	char path[ALARM_PATH], like[PROPERTY_NEAREST];
+	const char *latch = alarm_path(item, item->latch_alarm, path);
+
+	check_alarm(check, OPT_LATCH_ALARM, item->latch_alarm, item->latch_at, ALARM_LATCH);
+	check_alarm(check, OPT_POR_ALARM, item->por_alarm, item->por_at, ALARM_POR);
+	check_alarm(check, OPT_SET_ALARM, item->set_alarm, item->set_at, 0);
+	check_alarm(check, OPT_RESET_LATCH, item->reset_latch, item->reset_at, ALARM_CLEARS);
+	if (!item->latch_stays || (item->reset_latch && *item->reset_latch))
+		return;
+	if (property_look(path).alarm & ALARM_CLEARS)
+		snprintf(like, sizeof(like), "%s=0", latch);
+	else if (!property_of_alarm(path, ALARM_CLEARS, like))
+		return;
+	report_warning(check->report,
+	               place_at(check, item->reset_latch ? item->reset_at : item->latch_at),
+	               "\"%s\": ResetLatch is %s, and %s stays set: the alarm comes once; write "
+	               "ResetLatch with %s",
+	               item->name, item->reset_latch ? "empty" : "not defined", latch, like);
+}
+
 static void check_item(const struct check *check)
 {
 	static const char simultaneous[] = "simultaneous/";
@@ -254,12 +318,8 @@ static void check_item(const struct check *check)
 			"\"%s\" is a number, and a string shows it as text: write Type double",
 			item->name);
 	check_age(check);
-	if (!item->alarm)
-		return;
-	check_alarm(check, OPT_LATCH_ALARM, item->latch_alarm, item->latch_at, &path, false);
-	check_alarm(check, OPT_POR_ALARM, item->por_alarm, item->por_at, &path, true);
-	check_alarm(check, OPT_SET_ALARM, item->set_alarm, item->set_at, &path, true);
-	check_alarm(check, OPT_RESET_LATCH, item->reset_latch, item->reset_at, &path, true);
+	if (item->alarm)
+		check_alarms(check);
 }
 
 void config_check_items(const struct config *config, const char *name, struct config_report *report)

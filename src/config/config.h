@@ -71,6 +71,7 @@ struct config_item {
 	bool alarm;
 	/* NULL: not defined, "": empty; Table 3.1 tells the two apart */
 	const char *latch_alarm, *por_alarm, *set_alarm, *reset_latch;
+	bool latch_stays; /* by the tables of the families nothing of the item clears its latch */
 	struct config_limits limits;
 	/* of engineering values; NULL: not given. An empty unit is given too */
 	const char *unit, *description;

@@ -86,6 +86,7 @@ static void take_access(const struct family *family, const struct property *prop
 	found->writable = property->access & ACCESS_WRITE;
 	found->holds = property->holds;
 	found->life = property->life;
+	found->alarm = property->alarm;
 	found->exact = property->type == PROPERTY_YESNO || property->type == PROPERTY_BITS ||
 	               property->type == PROPERTY_UNSIGNED || property->type == PROPERTY_INTEGER;
 }
@@ -150,4 +151,85 @@ struct path_property property_look(const char *path)
 		*dot = '\0';
 	find_nearest(family, name, dot ? split.property.text + (dot - name) : "", found.nearest);
 	return found;
+}
+
+/* --- What alarms ask of a property ------------------------------------------------------------ */
+
+/* The family that the tables have for the device in path; NULL: none. */
+static const struct family *family_at(const char *path, struct path *split)
+{
+	const struct family *family;
+
+	if (path_split(path, strlen(path), split) || !split->has_rom || !split->property.len)
+		return NULL;
+	family = family_of(split->rom[0]);
+	return family->code == split->rom[0] ? family : NULL;
+}
+
+/* How many characters both begin with. */
+static size_t common(const char *a, const struct path_slice *b)
+{
+	size_t n = 0;
+
+	while (n < b->len && a[n] && a[n] == b->text[n])
+		n++;
+	return n;
+}
+
+bool property_of_alarm(const char *path, uint8_t alarm, char text[PROPERTY_NEAREST])
+{
+	const struct property *property = NULL, *best = NULL;
+	struct path split;
+	const struct family *family = family_at(path, &split);
+
+	while (family && (property = family_next(family, NULL, property)))
+		if ((property->alarm & alarm) && !property->hidden &&
+		    (!best ||
+		     common(property->name, &split.property) > common(best->name, &split.property)))
+			best = property;
+	if (!best)
+		return false;
+	if (best->array.index == INDEX_NONE)
+		snprintf(text, PROPERTY_NEAREST, "%s", best->name);
+	else
+		print_elements(best, text);
+	return true;
+}
+
+static int digits_of(uint32_t number)
+{
+	return snprintf(NULL, 0, "%u", (unsigned)number);
+}
+
+bool property_takes(const char *path, const char *value, char why[PROPERTY_NEAREST])
+{
+	struct path split;
+	const struct family *family = family_at(path, &split);
+	const struct property *property = NULL;
+	size_t len = 0;
+	int extension = EXTENSION_NONE;
+
+	if (family) {
+		extension = extension_split(split.property.text, split.property.len, &len);
+		property = family_property(family, NULL, split.property.text, len);
+	}
+	if (!property || !extension_fits(property, extension))
+		return true;
+	switch (property->type) {
+	case PROPERTY_YESNO:
+	case PROPERTY_BITS:
+	case PROPERTY_UNSIGNED:
+	case PROPERTY_INTEGER:
+	case PROPERTY_FLOAT:
+	case PROPERTY_TEMPERATURE:
+		break;
+	default:
+		return true;
+	}
+	if (property->digits && (int)strlen(value) != digits_of(property->digits)) {
+		snprintf(why, PROPERTY_NEAREST, " has %d digits", digits_of(property->digits));
+		return false;
+	}
+	snprintf(why, PROPERTY_NEAREST, " does not take this value");
+	return format_takes(property, extension, value, strlen(value));
 }

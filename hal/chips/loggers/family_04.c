@@ -209,7 +209,8 @@ static const struct property_how how[] = {
 	PROPERTY(text, UNSIGNED, SECOND, BOTH, FIELD(area_, .bytes = 4), COUNTS_TO(UINT32_MAX))
 
 static const struct property properties[] = {
-	PROPERTY("alarm", UNSIGNED, VOLATILE, READ, .flag = true, .how = WAY_ALARM),
+	PROPERTY("alarm", UNSIGNED, VOLATILE, READ, .flag = true, .alarm = ALARM_LATCH,
+                 .how = WAY_ALARM),
 	FLAG("auto", 5),
 	CYCLES_OF("cycle", CYCLE),
 	DATE_OF("date", CLOCK),

@@ -55,6 +55,7 @@ static const struct property_how how[] = {
 #define BIT(text, access, where, shift_, ...) \
 	PROPERTY(text, YESNO, VOLATILE, access, __VA_ARGS__, \
 	         FIELD(REGISTERS, .at = (where), .shift = (shift_), .bits = 1))
+#define MISSION_FLAG .how = WAY_FLAG, .alarm = ALARM_LATCH | ALARM_STAYS | ALARM_CLEARS
 #define COUNT(text, where, n, ...) \
 	PROPERTY(text, UNSIGNED, VOLATILE, __VA_ARGS__, \
 	         FIELD(REGISTERS, .at = (where), .bytes = (n)))
@@ -136,9 +137,9 @@ static const struct property properties[] = {
 	BIT("mission/running", BOTH, DS1921_STATUS, 5, .how = WAY_RUNNING),
 	COUNT("mission/samples", DS1921_SAMPLES, 3, READ, COUNTS_TO(0xffffff)),
 	BIT("mission/sampling", READ, DS1921_STATUS, 4, .how = 0),
-	BIT("mission/temphigh", BOTH, DS1921_STATUS, 1, .how = WAY_FLAG),
-	BIT("mission/templow", BOTH, DS1921_STATUS, 2, .how = WAY_FLAG),
-	BIT("mission/timer", BOTH, DS1921_STATUS, 0, .how = WAY_FLAG, .hidden = true),
+	BIT("mission/temphigh", BOTH, DS1921_STATUS, 1, MISSION_FLAG),
+	BIT("mission/templow", BOTH, DS1921_STATUS, 2, MISSION_FLAG),
+	BIT("mission/timer", BOTH, DS1921_STATUS, 0, MISSION_FLAG, .hidden = true),
 	PROPERTY("mission/udate", UNSIGNED, VOLATILE, READ, .how = WAY_STAMP),
 	TIMES_BEYOND("overtemp", DS1921_HIGH_TIMES, DS1921_HIGH),
 	PROPERTY_DIR("pages"),

@@ -33,10 +33,15 @@ static const struct property_how how[] = {
 	OF(k, name, UNSIGNED, VOLATILE, access, FIELD(where, .bytes = (n), __VA_ARGS__), \
 	   .hidden = true)
 
+#define STATE(k, n, where) \
+	OF(k, "alarm/state", UNSIGNED, VOLATILE, READ, FIELD(MEMORY, .bytes = (n), .at = (where)), \
+	   .hidden = true, .alarm = ALARM_LATCH | ALARM_STAYS)
+
 /* Alarm flags, and what enables them: two bits of one or two bytes, or two of each channel. */
 #define FLAG(k, name, where, n, bit) \
 	OF(k, name, YESNO, VOLATILE, READ, \
-	   FIELD(MEMORY, .at = (where), .bytes = (n), .shift = (bit), .bits = 1), .flag = true)
+	   FIELD(MEMORY, .at = (where), .bytes = (n), .shift = (bit), .bits = 1), .flag = true, \
+	   .alarm = ALARM_LATCH | ALARM_STAYS)
 #define FLAGS(k, name, where, n, bit) \
 	FLAG(k, "alarm/" name "_hi", where, n, bit), \
 	FLAG(k, "alarm/" name "_low", where, n, (bit) + 1)
@@ -47,7 +52,8 @@ static const struct property_how how[] = {
 		.bits = 1)
 #define PAIRS(k, name, access, channels, ...) \
 	OF(k, name, BITS, VOLATILE, access, AGGREGATE(channels, NUMBERS), FIELD(__VA_ARGS__), \
-	   .how = WAY_PAIRS, .flag = ACCESS_##access == ACCESS_READ)
+	   .how = WAY_PAIRS, .flag = ACCESS_##access == ACCESS_READ, \
+	   .alarm = ACCESS_##access == ACCESS_READ ? ALARM_LATCH | ALARM_STAYS : 0)
 
 /* What all have. at: of the function of relay and LED, behind which their state stands. */
 #define HEAD(k, where, at_) \
@@ -58,7 +64,8 @@ static const struct property_how how[] = {
 	OF(k, "LED/state", YESNO, VOLATILE, BOTH, \
 	   FIELD(where, .at = (at_) + 1, .shift = 1, .bits = 1), .how = WAY_STATE), \
 	DIRECTORY_OF(k, "alarm")
-#define CLEAR(k) OF(k, "alarm/clear", YESNO, STABLE, WRITE, .how = WAY_CLEAR)
+#define CLEAR(k) \
+	OF(k, "alarm/clear", YESNO, STABLE, WRITE, .alarm = ALARM_CLEARS, .how = WAY_CLEAR)
 #define SECONDS(k, where) \
 	OF(k, "counter/seconds", UNSIGNED, SECOND, READ, MEASURES(0, UINT32_MAX, 0, "s"), \
 	   FIELD(MEMORY, .at = (where), .bytes = 4))
@@ -97,7 +104,7 @@ static const struct property_how how[] = {
 	      FLAGS(k, "humidex", 0x3a, 2, 6), FLAGS(k, "humidity", 0x3a, 2, 2)) \
 	air(FLAGS(k, "inHg", 0x3a, 2, 12)) light(FLAGS(k, "light", 0x3a, 2, 14)) \
 	air(FLAGS(k, "pressure", 0x3a, 2, 10)) \
-	HIDDEN(k, "alarm/state", READ, MEMORY, 2, .at = 0x3a), \
+	STATE(k, 2, 0x3a), \
 	FLAGS(k, "temp", 0x3a, 2, 0), DIRECTORY_OF(k, "counter"), SECONDS(k, 0x3c), \
 	water(MEASURED(k, "dew_point", TEMPERATURE, CELSIUS, .at = 0x26, SIXTEENTHS), \
 	      MEASURED(k, "heat_index", TEMPERATURE, FELT(DEGREES_C), .at = 0x2a, SIXTEENTHS), \
@@ -126,7 +133,7 @@ static const struct property_how how[] = {
 #define RTD(k, upper, lower) \
 	HEAD(k, MEMORY, 0x5e), upper(FLAGS(k, "RTD", 0x36, 1, 2)) CLEAR(k), \
 	lower(FLAGS(k, "resistance", 0x36, 1, 2)) \
-	HIDDEN(k, "alarm/state", READ, MEMORY, 1, .at = 0x36), \
+	STATE(k, 1, 0x36), \
 	FLAGS(k, "temp", 0x36, 1, 0), DIRECTORY_OF(k, "calibration"), \
 	OF(k, "calibration/constant", UNSIGNED, STABLE, READ, \
 	   FIELD(MEMORY, .at = 0x30, .bytes = 4)), \
@@ -155,7 +162,7 @@ static const struct property_how how[] = {
 	HEAD(k, MEMORY, 0x9e), CLEAR(k), \
 	currents(PAIRS(k, "alarm/" what "_hi", READ, n, MEMORY, .at = 0x2a), \
 		 PAIRS(k, "alarm/" what "_low", READ, n, MEMORY, .at = 0x2a, .shift = 1)) \
-	HIDDEN(k, "alarm/state", READ, MEMORY, 2, .at = 0x2a), \
+	STATE(k, 2, 0x2a), \
 	voltages(PAIRS(k, "alarm/" what "_hi", READ, n, MEMORY, .at = 0x2a), \
 		 PAIRS(k, "alarm/" what "_low", READ, n, MEMORY, .at = 0x2a, .shift = 1)) \
 	DIRECTORY_OF(k, "counter"), SECONDS(k, 0x2c), \
@@ -183,11 +190,13 @@ static const struct property_how how[] = {
 	CHANNELS(k, "volts", VOLATILE, READ, n, 2, 1 / 2048.0, 0x30, VOLTS)
 
 /* EDS0090 */
-#define PINS(name, life, access, ...) \
-	OF(90, name, BITS, life, access, AGGREGATE(8, NUMBERS), FIELD(__VA_ARGS__))
-#define RESET(name, where) \
+#define PINS(name, alarm_, life, access, ...) \
+	OF(90, name, BITS, life, access, AGGREGATE(8, NUMBERS), FIELD(__VA_ARGS__), \
+	   .alarm = (alarm_))
+#define RESET(name, where, alarm_) \
 	OF(90, name, BITS, VOLATILE, BOTH, AGGREGATE(8, NUMBERS), \
-	   FIELD(SWITCHES, .at = (where) - EDS_SWITCHES_AT), .how = WAY_RESET)
+	   FIELD(SWITCHES, .at = (where) - EDS_SWITCHES_AT), .alarm = (alarm_), \
+	   .how = WAY_RESET)
 
 static const struct property properties[] = {
 	ENVIRONMENT(64, NOT, NOT, NOT),
@@ -198,7 +207,7 @@ static const struct property properties[] = {
 
 	HEAD(70, MEMORY, 0x5e),
 	CLEAR(70),
-	HIDDEN(70, "alarm/state", READ, MEMORY, 1, .at = 0x36),
+	STATE(70, 1, 0x36),
 	FLAGS(70, "vib", 0x36, 1, 2),
 	DIRECTORY_OF(70, "counter"),
 	SECONDS(70, 0x3c),
@@ -225,20 +234,20 @@ static const struct property properties[] = {
 	CLEAR(90),
 	PAIRS(90, "alarm/hi", READ, 8, MEMORY, .at = 0x2a),
 	PAIRS(90, "alarm/low", READ, 8, MEMORY, .at = 0x2a, .shift = 1),
-	HIDDEN(90, "alarm/state", READ, MEMORY, 2, .at = 0x2a),
+	STATE(90, 2, 0x2a),
 	DIRECTORY_OF(90, "counter"),
 	OF(90, "counter/pulses", UNSIGNED, VOLATILE, READ, ELEMENTS(8, NUMBERS),
 	   FIELD(MEMORY, .at = 0x30, .bytes = 4, .stride = 4), COUNTS_TO(UINT32_MAX)),
-	RESET("counter/reset", 0x54),
+	RESET("counter/reset", 0x54, 0),
 	SECONDS(90, 0x2c),
-	PINS("input", STABLE, READ, MEMORY, .at = 0x22),
+	PINS("input", 0, STABLE, READ, MEMORY, .at = 0x22),
 	DIRECTORY_OF(90, "latch"),
-	RESET("latch/reset", 0x55),
-	PINS("latch/state", VOLATILE, READ, MEMORY, .at = 0x23),
+	RESET("latch/reset", 0x55, ALARM_CLEARS),
+	PINS("latch/state", ALARM_LATCH | ALARM_STAYS, VOLATILE, READ, MEMORY, .at = 0x23),
 	DIRECTORY_OF(90, "output"),
-	PINS("output/off", VOLATILE, READ, SWITCHES, .at = 12),
-	RESET("output/reset", 0x55),
-	PINS("output/set", VOLATILE, BOTH, SWITCHES, .at = 12),
+	PINS("output/off", 0, VOLATILE, READ, SWITCHES, .at = 12),
+	RESET("output/reset", 0x55, 0),
+	PINS("output/set", 0, VOLATILE, BOTH, SWITCHES, .at = 12),
 	RELAY(90, SWITCHES, 14),
 	DIRECTORY_OF(90, "set_alarm"),
 	HIDDEN(90, "set_alarm/alarm_function", BOTH, SWITCHES, 2, .at = 0),

@@ -116,9 +116,9 @@ static const struct property_how how[] = {
 	[WAY_NOT_THERE] = {.read = not_there},
 };
 
-#define BITS(text, access_, shift_, how_) \
+#define BITS(text, access_, shift_, how_, alarm_) \
 	PROPERTY(text, BITS, VOLATILE, access_, AGGREGATE(2, LETTERS), \
-	         FIELD(INFO, .shift = (shift_)), .how = (how_))
+	         FIELD(INFO, .shift = (shift_)), .how = (how_), .alarm = (alarm_))
 #define NOT_THERE(text, kind, life_, ...) \
 	PROPERTY(text, kind, life_, READ, .how = WAY_NOT_THERE, __VA_ARGS__)
 /* 10 to 1100 mbar within 15, -40 to +125 */
@@ -147,14 +147,14 @@ static const struct property properties[] = {
 	PROPERTY_BRANCH("aux", .arg = 0),
 	PROPERTY("channels", UNSIGNED, STABLE, READ,
                  FIELD(INFO, .shift = 6, .bits = 1, .offset = 1)),
-	BITS("flipflop", READ, 0, 0),
+	BITS("flipflop", READ, 0, 0, 0),
 	PROPERTY("infobyte", UNSIGNED, VOLATILE, READ, FIELD(INFO), .hidden = true),
-	BITS("latch", BOTH, 4, WAY_LATCH),
+	BITS("latch", BOTH, 4, WAY_LATCH, ALARM_LATCH | ALARM_STAYS | ALARM_CLEARS),
 	AREA_MEMORY(MEMORY, 128),
 	PROPERTY_DIR("pages"),
 	AREA_PAGES(MEMORY, 4, 32),
 	PROPERTY("power", YESNO, VOLATILE, READ, FIELD(INFO, .shift = 7)),
-	BITS("sensed", READ, 2, 0),
+	BITS("sensed", READ, 2, 0, ALARM_LATCH),
 	PROPERTY("set_alarm", UNSIGNED, STABLE, BOTH, .digits = 331, .how = WAY_ALARM),
 };
 

@@ -168,14 +168,14 @@ static const struct property properties[] = {
 	SWITCHES("PIO", STABLE, BOTH, FIELD(REGISTERS, .at = DS2408_OUTPUT, .inverted = true),
                  .holds = true, .how = WAY_PIO),
 	SWITCHES("latch", VOLATILE, BOTH, FIELD(REGISTERS, .at = DS2408_ACTIVITY), .flag = true,
-                 .how = WAY_LATCH),
+                 .alarm = ALARM_LATCH | ALARM_STAYS | ALARM_CLEARS, .how = WAY_LATCH),
 	PROPERTY("memory", BINARY, VOLATILE, BOTH, .size = 550, FIELD(MEMORY), .how = WAY_MEMORY),
 	PROPERTY_DIR("pages"),
 	AREA_PAGES(MEMORY, 16, 32),
 	FLAG("polarity", READ, BIT_POLARITY, .flag = false),
-	FLAG("por", BOTH, DS2408_POR, .flag = true, .how = WAY_POR),
+	FLAG("por", BOTH, DS2408_POR, .flag = true, .alarm = ALARM_POR, .how = WAY_POR),
 	FLAG("power", READ, DS2408_VCC, .flag = false),
-	SWITCHES("sensed", VOLATILE, READ, FIELD(REGISTERS)),
+	SWITCHES("sensed", VOLATILE, READ, FIELD(REGISTERS), .alarm = ALARM_LATCH),
 	PROPERTY("set_alarm", UNSIGNED, STABLE, BOTH, .digits = 333, .how = WAY_ALARM),
 };
 

@@ -310,9 +310,10 @@ static const struct property_how how[] = {
 #define FULL MEASURES(0, 5.12, 5, "V")
 #define HALF MEASURES(0, 2.56, 5, "V")
 /* Of the channel's second control byte. */
-#define FLAG(text, life_, shift_) \
+#define FLAG(text, life_, shift_, ...) \
 	PROPERTY(text, YESNO, life_, BOTH, ELEMENTS(4, LETTERS), .arg = ENDS_POWER_ON, \
-	         FIELD(MEMORY, .at = CONTROL + 1, .stride = 2, .shift = (shift_), .bits = 1))
+	         FIELD(MEMORY, .at = CONTROL + 1, .stride = 2, .shift = (shift_), .bits = 1), \
+	         __VA_ARGS__)
 /* Steps of 20 or 10 mV. */
 #define LIMIT(text, where, unit_) \
 	PROPERTY(text, FLOAT, STABLE, BOTH, ELEMENTS(4, LETTERS), \
@@ -333,8 +334,8 @@ static const struct property properties[] = {
 	PROPERTY("PIO", YESNO, STABLE, BOTH, ELEMENTS(4, LETTERS), .arg = ENDS_POWER_ON,
                  .holds = true, .how = WAY_PIO),
 	PROPERTY_DIR("alarm"),
-	FLAG("alarm/high", VOLATILE, 5),
-	FLAG("alarm/low", VOLATILE, 4),
+	FLAG("alarm/high", VOLATILE, 5, .alarm = ALARM_LATCH | ALARM_CLEARS),
+	FLAG("alarm/low", VOLATILE, 4, .alarm = ALARM_LATCH | ALARM_CLEARS),
 	VOLT("latestvolt", 0, WAY_LATEST, FULL),
 	VOLT("latestvolt2", HALF_RANGE, WAY_LATEST, HALF),
 	AREA_MEMORY(MEMORY, 32),
@@ -343,8 +344,8 @@ static const struct property properties[] = {
 	PROPERTY("power", YESNO, STABLE, BOTH,
                  FIELD(MEMORY, .at = SUPPLY_AT, .unit = 1.0 / SUPPLY_ON), .how = WAY_POWER),
 	PROPERTY_DIR("set_alarm"),
-	FLAG("set_alarm/high", STABLE, 3),
-	FLAG("set_alarm/low", STABLE, 2),
+	FLAG("set_alarm/high", STABLE, 3, .alarm = 0),
+	FLAG("set_alarm/low", STABLE, 2, .alarm = 0),
 	PROPERTY("set_alarm/unset", YESNO, STABLE, WRITE, .how = WAY_UNSET),
 	LIMIT("set_alarm/volt2high", 1, 0.01),
 	LIMIT("set_alarm/volt2low", 0, 0.01),

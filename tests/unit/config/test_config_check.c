@@ -75,16 +75,16 @@ static void test_what_cannot_be_meant_is_named_with_its_remedy(void)
 		{"Name x Path /28.551DDF030000/temperature Type double Unit K",
 	         AT ": Unit \"K\" is shown beside a value in °C: write Offset 273.15 too\n"},
 		{"Name x Path /29.B89115000000/sensed.BYTE Type byte Alarm on LatchAlarm \"latch.BYT\" "
-	         "PorAlarm \"porr\" SetAlarm \"set_alarm=1\" ResetLatch \"sensed.BYTE=0\"",
-	         VALUE_AT(72) ": LatchAlarm: a DS2408 has no latch.BYT; did you mean latch.BYTE?\n" VALUE_AT(
-			 93) ": PorAlarm: a DS2408 has no porr; did you mean por?\n" VALUE_AT(134) ": ResetLatch: sensed.BYTE cannot be written, so the alarm cannot be served\n"},
+	         "PorAlarm \"porr\" SetAlarm \"set_alarm=\" ResetLatch \"sensed.BYTE=0\"",
+	         VALUE_AT(72) ": LatchAlarm: a DS2408 has no latch.BYT; did you mean latch.BYTE?\n" VALUE_AT(93) ": PorAlarm: a DS2408 has no porr; did you mean por?\n" VALUE_AT(
+			 109) ": SetAlarm \"set_alarm=\" has nothing behind the '=', and nothing is written; expected property=value\n" VALUE_AT(133) ": ResetLatch: sensed.BYTE cannot be written, so the alarm cannot be served\n"},
 		{"Name x Path /29.B89115000000/sensed.BYTE Type byte Alarm on LatchAlarm latch "
 	         "PorAlarm pro SetAlarm \"set_alarm=133333333\"",
 	         VALUE_AT(72) ": LatchAlarm: a DS2408 has no latch; did you mean latch.BYTE, or "
 	                      "latch.0 to latch.7?\n" VALUE_AT(
 				      87) ": PorAlarm: a DS2408 has no pro; did you mean por?\n"},
 		{"Name x Path /29.B89115000000/sensed.BYTE Type byte Alarm on LatchAlarm latch.BYTE "
-	         "PorAlarm por SetAlarm \"set_alarm=133333333\" StaleAfter 20",
+	         "PorAlarm por SetAlarm set_alarm=133333333 ResetLatch latch.BYTE=0 StaleAfter 20",
 	         AT " is stale before it is read again, each 60 s unless its alarm comes: write "
 	            "StaleAfter 90 or more, or PerFactor 100\n"},
 		{"Name x Path /28.551DDF030000/temperature Type double PerFactor 300 StaleAfter 20",
@@ -94,6 +94,101 @@ static void test_what_cannot_be_meant_is_named_with_its_remedy(void)
 	         AT
 	         " is stale before it is read again, each 0.2 s: write StaleAfter 0.3 or more, or "
 	         "PerFactor 1\n"},
+	};
+
+	expect_warnings(cases, COUNT(cases), check);
+}
+
+/* The alarm of a DS2408 but for the strings that a case gives; these begin at column 73. */
+#define SWITCHES "Name x Path /29.B89115000000/sensed.BYTE Type byte Alarm on PorAlarm "
+#define ARMED "por SetAlarm set_alarm=133333333 "
+static void test_a_string_of_an_alarm_that_does_not_fit_its_purpose_is_named(void)
+{
+#define RESET "ResetLatch latch.BYTE=0"
+	static const struct line cases[] = {
+		{SWITCHES ARMED RESET " LatchAlarm PIO.BYTE",
+	         "f:3:138: warning: \"x\": LatchAlarm: PIO.BYTE is no latch of a DS2408: write latch.BYTE, or latch.0 to latch.7\n"},
+		{SWITCHES ARMED RESET " LatchAlarm set_alarm",
+	         "f:3:138: warning: \"x\": LatchAlarm: set_alarm is no latch of a DS2408: write latch.BYTE, or latch.0 to latch.7\n"},
+		{SWITCHES ARMED RESET " LatchAlarm latch",
+	         "f:3:138: warning: \"x\": LatchAlarm: a DS2408 has no latch; did you mean latch.BYTE, or latch.0 to latch.7?\n"},
+		{SWITCHES "strobe SetAlarm \"\" LatchAlarm latch.BYTE " RESET,
+	         "f:3:70: warning: \"x\": PorAlarm: strobe does not show a restart of a DS2408: write por\n"},
+		{SWITCHES "por LatchAlarm latch.BYTE " RESET " SetAlarm abc",
+	         "f:3:129: warning: SetAlarm \"abc\" has no '=': nothing is written, and the alarm cannot be armed after a restart of its device; expected property=value\nf:3:129: warning: \"x\": SetAlarm: owsd knows no abc of a DS2408: check its spelling\n"},
+		{SWITCHES "por LatchAlarm latch.BYTE " RESET " SetAlarm set_alarm=abc",
+	         "f:3:129: warning: \"x\": SetAlarm \"set_alarm=abc\": set_alarm of a DS2408 has 9 digits\n"},
+		{SWITCHES "por LatchAlarm latch.BYTE " RESET " SetAlarm set_alarm=13333333",
+	         "f:3:129: warning: \"x\": SetAlarm \"set_alarm=13333333\": set_alarm of a DS2408 has 9 digits\n"},
+		{SWITCHES "por LatchAlarm latch.BYTE " RESET " SetAlarm set_alarm=1333333333",
+	         "f:3:129: warning: \"x\": SetAlarm \"set_alarm=1333333333\": set_alarm of a DS2408 has 9 digits\n"},
+		{SWITCHES "por LatchAlarm latch.BYTE " RESET " SetAlarm set_alarm=943333333",
+	         "f:3:129: warning: \"x\": SetAlarm \"set_alarm=943333333\": set_alarm of a DS2408 does not take this value\n"},
+		{SWITCHES ARMED "LatchAlarm latch.BYTE ResetLatch latch.BYTE=O",
+	         "f:3:136: warning: \"x\": ResetLatch \"latch.BYTE=O\": latch.BYTE of a DS2408 does not take this value\n"},
+		{SWITCHES ARMED "LatchAlarm latch.BYTE ResetLatch /latch.BYTE=0",
+	         "f:3:136: warning: \"x\": ResetLatch \"/latch.BYTE=0\" is a property of the device: write it without the / before it\n"},
+		{SWITCHES ARMED "LatchAlarm latch.BYTE ResetLatch latch.BYTE=",
+	         "f:3:136: warning: \"x\": ResetLatch \"latch.BYTE=\" has nothing behind the '=', and nothing is written; expected property=value\n"},
+		{SWITCHES ARMED "LatchAlarm latch.BYTE ResetLatch latch.BYTE=256",
+	         "f:3:136: warning: \"x\": ResetLatch \"latch.BYTE=256\": latch.BYTE of a DS2408 does not take this value\n"},
+		{SWITCHES ARMED "LatchAlarm latch.BYTE ResetLatch por=0",
+	         "f:3:136: warning: \"x\": ResetLatch: por clears no latch of a DS2408: write latch.BYTE, or latch.0 to latch.7\n"},
+		{SWITCHES ARMED "LatchAlarm latch.BYTE ResetLatch \"\"",
+	         "f:3:136: warning: \"x\": ResetLatch is empty, and latch.BYTE stays set: the alarm comes once; write ResetLatch with latch.BYTE=0\n"},
+		{SWITCHES ARMED "LatchAlarm latch.BYTE",
+	         "f:3:114: warning: \"x\": ResetLatch is not defined, and latch.BYTE stays set: the alarm comes once; write ResetLatch with latch.BYTE=0\n"},
+		{"Name x Path /7E.000000000005/EDS0065/humidity Type double Alarm on PorAlarm \"\" "
+	         "LatchAlarm EDS0065/alarm/humidity_hi SetAlarm EDS0065/set_alarm/humidity_hi=1 "
+	         "ResetLatch EDS0065/alarm/humidity_hi=0",
+	         "f:3:169: warning: \"x\": ResetLatch: EDS0065/alarm/humidity_hi cannot be written, so the alarm cannot be served\n"},
+		{"Name x Path /7E.000000000005/EDS0065/humidity Type double Alarm on PorAlarm \"\" "
+	         "LatchAlarm EDS0065/alarm/humidity_hi SetAlarm EDS0065/set_alarm/humidity_hi=1 ",
+	         "f:3:91: warning: \"x\": ResetLatch is not defined, and EDS0065/alarm/humidity_hi stays set: the alarm comes once; write ResetLatch with EDS0065/alarm/clear\n"},
+	};
+
+	expect_warnings(cases, COUNT(cases), check);
+}
+
+/* Those of docs/alarms.md, a level, a device that owsd does not know. */
+static void test_alarms_that_fit_are_not_mentioned(void)
+{
+	static const struct line cases[] = {
+		{SWITCHES ARMED "LatchAlarm latch.BYTE ResetLatch latch.BYTE=0", ""},
+		{SWITCHES ARMED "LatchAlarm latch.ALL ResetLatch latch.ALL=0,0,0,0,0,0,0,0", ""},
+		{SWITCHES ARMED "LatchAlarm latch.3 ResetLatch latch.3=off", ""},
+		{SWITCHES ARMED "LatchAlarm sensed.BYTE ResetLatch \"\"", ""},
+		{SWITCHES ARMED "LatchAlarm present", ""},
+		{SWITCHES "\"\" SetAlarm \"\" LatchAlarm latch.BYTE ResetLatch latch.BYTE=0", ""},
+		{"Name x Path /12.000000000002/sensed.A Type bool Alarm on LatchAlarm latch.A "
+	         "PorAlarm \"\" SetAlarm set_alarm=111 ResetLatch latch.A=0",
+	         ""},
+		{"Name x Path /7E.000000000005/EDS0065/humidity Type double Alarm on PorAlarm \"\" "
+	         "LatchAlarm EDS0065/alarm/humidity_hi SetAlarm EDS0065/set_alarm/humidity_hi=1 "
+	         "ResetLatch EDS0065/alarm/clear=1",
+	         ""},
+		{"Name x Path /20.000000000003/volt.A Type double Alarm on PorAlarm \"\" LatchAlarm "
+	         "alarm/high.A SetAlarm set_alarm/high.A=1 ResetLatch alarm/high.A=0",
+	         ""},
+		{"Name x Path /20.000000000003/volt.A Type double Alarm on PorAlarm \"\" LatchAlarm "
+	         "alarm/high.A SetAlarm set_alarm/high.A=1",
+	         ""},
+		{"Name x Path /28.000000000004/temperature Type double Alarm on PorAlarm \"\" "
+	         "LatchAlarm present SetAlarm temphigh=30 ResetLatch \"\"",
+	         ""},
+		{"Name x Path /21.000000000001/mission/temphigh Type bool Alarm on PorAlarm \"\" "
+	         "LatchAlarm mission/temphigh SetAlarm set_alarm/temphigh=1 "
+	         "ResetLatch mission/temphigh=0",
+	         ""},
+		{"Name x Path /04.000000000001/auto Type bool Alarm on PorAlarm \"\" LatchAlarm alarm "
+	         "SetAlarm set_alarm=110 ResetLatch \"\"",
+	         ""},
+		{"Name x Path /05.000000000006/sensed Type bool Alarm on LatchAlarm present PorAlarm "
+	         "\"\" SetAlarm \"\" ResetLatch \"\"",
+	         ""},
+		{"Name x Path /board/sensed.BYTE Type byte Alarm on LatchAlarm PIO.BYTE PorAlarm por "
+	         "SetAlarm set_alarm=abc ResetLatch por=0",
+	         ""},
 	};
 
 	expect_warnings(cases, COUNT(cases), check);
@@ -157,7 +252,8 @@ static void test_what_may_be_meant_is_not_mentioned(void)
 		{"Name x Path /gpio/17 Type bool IO output", ""},
 		{"Name x Path /28.551DDF030000/temperature Type double StaleAfter 0.15", ""},
 		{"Name x Path /29.B89115000000/sensed.BYTE Type byte Alarm on LatchAlarm latch.BYTE "
-	         "PorAlarm por SetAlarm \"set_alarm=133333333\" StaleAfter 20 PerFactor 50",
+	         "PorAlarm por SetAlarm set_alarm=133333333 ResetLatch latch.BYTE=0 StaleAfter 20 "
+	         "PerFactor 50",
 	         ""},
 		{"Name x Path /29.B89115000000/PIO.3 Type bool IO output PerFactor 300 StaleAfter 1",
 	         ""},
@@ -258,6 +354,8 @@ int main(void)
 	RUN_TEST(test_what_cannot_be_meant_is_named_with_its_remedy);
 	RUN_TEST(test_the_age_that_a_cache_leaves_is_reckoned_with);
 	RUN_TEST(test_what_may_be_meant_is_not_mentioned);
+	RUN_TEST(test_a_string_of_an_alarm_that_does_not_fit_its_purpose_is_named);
+	RUN_TEST(test_alarms_that_fit_are_not_mentioned);
 	RUN_TEST(test_two_outputs_of_the_same_bits_are_named);
 	RUN_TEST(test_no_property_of_any_family_in_its_own_direction_is_complained_of);
 	return UNITY_END();
