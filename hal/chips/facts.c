@@ -77,13 +77,20 @@ static bool quantity_of_type(enum property_type type, struct quantity *quantity)
 	return false;
 }
 
+/* The row of the property, or of the array that it is an element of; NULL: there is none. */
+static const struct property *row_of(const struct family *family, const struct path_slice *name)
+{
+	const char *dot = memchr(name->text, '.', name->len);
+	size_t len = dot ? (size_t)(dot - name->text) : name->len;
+
+	return family_property(family, NULL, name->text, len);
+}
+
 /* The quantity of the property, or of the array that it is an element of; false: it has none. */
 static bool quantity_of_name(const struct family *family, const struct path_slice *name,
                              struct quantity *quantity)
 {
-	const char *dot = memchr(name->text, '.', name->len);
-	size_t len = dot ? (size_t)(dot - name->text) : name->len;
-	const struct property *row = family_property(family, NULL, name->text, len);
+	const struct property *row = row_of(family, name);
 
 	if (!row)
 		return false;
@@ -127,6 +134,17 @@ bool quantity_of(const char *text, struct quantity *quantity)
 		return false;
 	return path.has_rom ? quantity_of_name(family_of(path.rom[0]), &path.property, quantity)
 	                    : quantity_of_any(&path.property, quantity);
+}
+
+bool facts_shows_device(const char *text)
+{
+	const struct property *row;
+	struct path path;
+
+	if (path_split(text, strlen(text), &path) || !path.device.len || !path.property.len)
+		return false;
+	row = row_of(path.has_rom ? family_of(path.rom[0]) : &family_common, &path.property);
+	return !row || !(row->offline || strcmp(row->name, "present") == 0);
 }
 
 bool quantity_excludes(const struct quantity *quantity, double number)

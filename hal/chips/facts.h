@@ -30,5 +30,11 @@ struct quantity {
  */
 bool quantity_of(const char *path, struct quantity *quantity);
 
+/*
+ * Does a reading of the property at path show that its device is there? Not its id, nor what
+ * else is known without asking it, nor `present`, which may say 0.
+ */
+bool facts_shows_device(const char *path);
+
 /* Is the number one that the chip cannot have measured? */
 bool quantity_excludes(const struct quantity *quantity, double number);

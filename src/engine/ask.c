@@ -9,6 +9,7 @@
 #include "src/engine/ask.h"
 #include "src/engine/command/intake.h"
 #include "src/engine/command/restart.h"
+#include "src/engine/device_watch.h"
 #include "src/engine/guests.h"
 #include "src/engine/publish.h"
 #include "src/engine/routing/place.h"
@@ -150,7 +151,8 @@ static bool ask_next(struct lane *lane, struct slot *slot)
 
 	if (check >= 0)
 		return types_ask(lane, slot, (uint32_t)check);
-	if (ask_alarm(lane, slot) || engine_probe_ask(lane, slot) || engine_restart_ask(lane, slot))
+	if (ask_alarm(lane, slot) || engine_probe_ask(lane, slot) ||
+	    engine_restart_ask(lane, slot) || engine_watch_ask(lane, slot))
 		return true;
 	output = lane->lent.writes || alarm_holds(&lane->alarm) ? -1 : due_set_next(&lane->outputs);
 	input = due_set_next(&lane->inputs);
@@ -193,13 +195,15 @@ void lane_show_reads(struct lane *lane)
 
 int64_t lane_wake(const struct lane *lane)
 {
-	int64_t probe;
+	int64_t look;
 
 	if (!lane->state.up || lane->state.stuck || lane->lent.count == lane->depth)
 		return INT64_MAX;
-	probe = lane->probes.count && !lane->probing ? lane->probe_ns : INT64_MAX;
+	look = lane->probes.count && !lane->probing ? lane->probe_ns : INT64_MAX;
+	if (lane->watch.count && !lane->watching)
+		look = earlier_ns(look, lane->watch_ns);
 	/* the end of these wakes it */
 	if (lane->lent.alarm || lane->lent.writes)
-		return probe;
-	return earlier_ns(probe, alarm_wake(&lane->alarm));
+		return look;
+	return earlier_ns(look, alarm_wake(&lane->alarm));
 }

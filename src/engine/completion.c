@@ -7,9 +7,9 @@
 #include "src/engine/command/in_force.h"
 #include "src/engine/command/read_back.h"
 #include "src/engine/completion.h"
-#include "src/engine/device_back.h"
 #include "src/engine/device_facts.h"
 #include "src/engine/limits/guard.h"
+#include "src/engine/presence.h"
 #include "src/engine/retry.h"
 #include "src/engine/routing/place.h"
 #include "src/engine/scaling.h"
@@ -29,14 +29,6 @@ static void report_failed(struct engine *e, const struct signal *s, const char *
 		text = "";
 	log_warning(e->log, "%s (%s): %s%s%s%s", s->item->name, s->item->path, what, text,
 	            *text && err ? ": " : "", err ? error_words(err, words) : "");
-}
-
-static void mark_absent(struct engine *e, struct lane *lane, const struct signal *s)
-{
-	if (s->device == TABLE_NO_DEVICE)
-		return;
-	e->table.devices[s->device].absent = true;
-	engine_place(e, lane, s->device, ROUTE_ABSENT);
 }
 
 /*
@@ -105,8 +97,8 @@ int64_t engine_read_failed(struct engine *e, struct lane *lane, struct signal *s
 	s->sample.err = err;
 	if (!retry_fail(&s->read.retry, retries_of(e, s, err), &wait_ns))
 		return 0;
-	if (err == -ENODEV)
-		mark_absent(e, lane, s);
+	if (err == -ENODEV && s->device != TABLE_NO_DEVICE)
+		engine_device_lost(lane, s->device);
 	else if (s->device != TABLE_NO_DEVICE && gives_nothing(e, s))
 		engine_place(e, lane, s->device, ROUTE_FAILING);
 	if (s->sample.quality != quality) {
@@ -126,12 +118,12 @@ static int64_t fail_write(struct engine *e, struct lane *lane, struct signal *s,
 	s->command.err = err;
 	if (!retry_fail(&s->command.retry, e->config->max_retries, &wait_ns))
 		return 0;
-	if (err == -ENODEV)
-		mark_absent(e, lane, s);
 	if (s->command.retry.failures == e->config->max_retries + 1)
 		report_failed(e, s, "cannot be written: ", err, quality);
 	if (!signal_reads(s))
 		s->sample.quality = quality;
+	if (err == -ENODEV && s->device != TABLE_NO_DEVICE)
+		engine_device_lost(lane, s->device);
 	return wait_ns;
 }
 
@@ -147,13 +139,14 @@ static void request_succeeded(struct engine *e, struct lane *lane, struct signal
 		log_info(e->log, "%s (%s): good again", s->item->name, s->item->path);
 	s->sample.quality = quality;
 	s->sample.err = 0;
+	s->read.held = false;
 	s->sample.target = (uint8_t)lane->index;
 	engine_facts_good(e, s);
 	if (proven)
 		engine_place(e, lane, s->device, ROUTE_PRESENT);
 	else
 		engine_place_claimed(e, lane, s->device);
-	if (d && d->absent)
+	if (d && d->absent && s->shows_device)
 		engine_device_back(lane, d);
 }
 
@@ -259,7 +252,7 @@ int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
 		s->read.begun_ns = slot->begun_ns;
 		signal_update(s, e->time.period, measured_ns, e->time.now_ns);
 		s->sample.detail = answer->detail;
-		request_succeeded(e, lane, s, quality, true);
+		request_succeeded(e, lane, s, quality, s->shows_device);
 		break;
 	case FAILURE_ITEM:
 		if (err == -EREMCHG)
@@ -276,22 +269,13 @@ int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
 	return err;
 }
 
-/* An alarm item is read when it has something to say, and now and then to see that it lives. */
-static uint64_t reads_apart(struct engine *e, struct lane *lane, const struct signal *s)
-{
-	if (s->item->alarm && alarm_serves(&lane->alarm) && s->item->per_factor == 1 &&
-	    !(s->attrs.flags & OWS_ATTR_ALARM_UNARMED))
-		return engine_periods(e, CONFIG_ALARM_READ_NS);
-	return s->item->per_factor;
-}
-
 void engine_read_next(struct engine *e, struct lane *lane, struct signal *s,
                       const struct slot *slot)
 {
 	if (s->command.doubted || slot->begun_ns < s->command.ended_ns)
 		engine_read_now(e, s);
 	else if (signal_reads(s))
-		engine_read_at(e, s, slot->begun + reads_apart(e, lane, s));
+		engine_read_at(e, s, slot->begun + engine_reads_apart(e, lane, s));
 	else
 		engine_read_at(e, s, engine_read_back_at(e, s));
 }
@@ -323,6 +307,7 @@ static void write_succeeded(struct engine *e, struct lane *lane, const struct sl
 	/* first, for a device that comes back forgets what was written, but for this */
 	request_succeeded(e, lane, s, s->command.differs ? OWS_Q_DIFFERS : OWS_Q_GOOD, false);
 	s->command.confirmed = true;
+	s->command.lapsed = false;
 	s->command.agrees = s->command.doubted = false;
 	if (s->device != TABLE_NO_DEVICE && e->table.devices[s->device].por == POR_SET)
 		e->table.devices[s->device].por = POR_UNKNOWN; /* the write may have cleared it */

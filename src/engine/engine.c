@@ -11,6 +11,7 @@
 #include "src/engine/command/intake.h"
 #include "src/engine/counters.h"
 #include "src/engine/device_facts.h"
+#include "src/engine/device_watch.h"
 #include "src/engine/due.h"
 #include "src/engine/engine.h"
 #include "src/engine/guests.h"
@@ -76,8 +77,8 @@ int engine_create(const struct engine_setup *setup, struct engine **engine)
 	    due_wheel_init(&e->wheel, e->table.count * 2, 0) ||
 	    due_wheel_init(&e->time_wheel, e->table.count, 0) ||
 	    structure_init(&e->structure, &e->table) || engine_facts_init(e) ||
-	    alarm_items_init(&e->table, &e->alarm_items, &e->alarm_count) || make_lanes(e, setup) ||
-	    engine_groups_init(e, setup->ports) || engine_places_init(e)) {
+	    engine_watch_init(e) || alarm_items_init(&e->table, &e->alarm_items, &e->alarm_count) ||
+	    make_lanes(e, setup) || engine_groups_init(e, setup->ports) || engine_places_init(e)) {
 		engine_destroy(e);
 		return -ENOMEM;
 	}
@@ -97,6 +98,7 @@ void engine_destroy(struct engine *e)
 	engine_places_free(e);
 	structure_free(&e->structure);
 	engine_facts_free(e);
+	engine_watch_free(e);
 	free(e->alarm_items);
 	due_wheel_free(&e->wheel);
 	due_wheel_free(&e->time_wheel);
@@ -142,6 +144,7 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 	engine_look_stored(e);
 	guests_take(e);
 	if (turned) {
+		engine_watch_tick(e);
 		for (unsigned i = 0; i < e->lane_count; i++)
 			if (e->lanes[i].lent.count)
 				lane_show_reads(&e->lanes[i]);

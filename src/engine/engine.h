@@ -17,7 +17,7 @@
  *   moves                move, lane_state (a target goes up and fails)
  *   alarm and guests     alarm (the machine), alarm_step, guests
  *   controllers          controllers (they join, beat and leave)
- *   reading and writing  completion, device_back, intake, in_force, place, doubt, types
+ *   reading and writing  completion, presence, device_watch, intake, in_force, place, doubt, types
  *   reading back         read_back, restart
  *   alarm items          alarm_arm, alarm_list, alarm_effect, alarm_refused
  *   schedule, publish    schedule, publish, origin, limits, counters, device_facts

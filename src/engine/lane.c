@@ -14,6 +14,7 @@ int lane_init(struct lane *lane, struct engine *engine, const struct engine_port
 	    due_set_init(&lane->outputs, engine->table.count) ||
 	    due_set_init(&lane->checks, engine->structure.count) ||
 	    due_set_init(&lane->probes, engine->table.device_count) ||
+	    due_set_init(&lane->watch, engine->table.device_count) ||
 	    due_set_init(&lane->restarts, engine->table.device_count) ||
 	    alarm_init(&lane->alarm, engine->alarm_count, port->searches)) {
 		lane_free(lane);
@@ -29,6 +30,7 @@ void lane_free(struct lane *lane)
 	due_set_free(&lane->outputs);
 	due_set_free(&lane->checks);
 	due_set_free(&lane->probes);
+	due_set_free(&lane->watch);
 	due_set_free(&lane->restarts);
 	alarm_free(&lane->alarm);
 }

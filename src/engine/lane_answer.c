@@ -7,6 +7,7 @@
 #include "src/engine/command/restart.h"
 #include "src/engine/completion.h"
 #include "src/engine/device_facts.h"
+#include "src/engine/device_watch.h"
 #include "src/engine/guests.h"
 #include "src/engine/lane_answer.h"
 #include "src/engine/lane_state.h"
@@ -33,6 +34,9 @@ static void apply_answer(struct lane *lane, struct slot *slot, const struct bus_
 		break;
 	case FOR_RESTART:
 		engine_restart_done(lane, slot, answer);
+		break;
+	case FOR_WATCH:
+		engine_watch_done(lane, slot, answer);
 		break;
 	case FOR_READ:
 		engine_read_done(e, lane, slot, answer);
@@ -105,8 +109,10 @@ void lane_answer(struct lane *lane, const struct bus_answer *answer)
 	if (trace_is_on(e->log))
 		trace_answer(lane, slot, answer);
 	slot_give_back(lane, slot);
-	if (!slot->moved && slot_has_row(slot))
+	if (!slot->moved && slot_has_row(slot)) {
 		engine_facts_answer(e, lane, slot->row, answer);
+		engine_watch_heard(lane, slot, answer);
+	}
 	if (!slot->given_up && !slot->moved) {
 		complete_request(lane, slot, answer);
 	} else {

@@ -4,9 +4,9 @@
 
 #include "hal/base/time.h"
 #include "src/engine/command/doubt.h"
-#include "src/engine/device_back.h"
 #include "src/engine/lane_event.h"
 #include "src/engine/lane_state.h"
+#include "src/engine/presence.h"
 #include "src/engine/publish.h"
 #include "src/engine/routing/group.h"
 #include "src/engine/routing/place.h"
@@ -92,9 +92,7 @@ static void device_event(struct lane *lane, const struct bus_event *event)
 		if (event->news == BUS_LOST)
 			engine_place(e, lane, index, ROUTE_ABSENT);
 	} else if (event->news == BUS_LOST) {
-		/* its signals go bad by their own failures; what comes back may have restarted */
-		device->absent = true;
-		engine_place(e, lane, index, ROUTE_ABSENT);
+		engine_device_lost(lane, index);
 	} else if (event->news == BUS_POR || device->absent) {
 		engine_device_back(lane, device);
 	}

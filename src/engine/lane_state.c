@@ -16,10 +16,15 @@
 #include "src/engine/schedule.h"
 #include "src/text/log.h"
 
-/* All signals of the lane are read again, and written if there is something to write. */
+/*
+ * All signals of the lane are read again, and written if there is something to write. What is not
+ * read in the cycle is not good before that: the devices may have lost their supply as well.
+ */
 static void refresh_signals(struct lane *lane)
 {
 	struct engine *e = lane->engine;
+	const struct signal *first = NULL;
+	unsigned unknown = 0;
 
 	alarm_ask_again(&lane->alarm, lane);
 	for (struct signal *s = e->table.signals; s < table_end(&e->table); s++) {
@@ -30,14 +35,23 @@ static void refresh_signals(struct lane *lane)
 		due_wheel_cancel(&e->wheel, engine_row(s) * 2 + 1);
 		engine_read_now(e, s);
 		engine_write_check(e, s);
-		/* what is not read again stands as it stood */
 		if (s->read.held && !signal_reads(s) && s->sample.quality == OWS_Q_TARGET) {
-			s->sample.quality = s->read.held_quality;
-			s->sample.err = s->read.held_err;
+			signal_lapse(s);
 			engine_publish(e, s);
+			if (s->sample.quality == OWS_Q_LAST_USABLE && !signal_is_read(s) &&
+			    !signal_changed(s)) {
+				first = first ? first : s;
+				unknown++;
+			}
 		}
 		s->read.held = false;
 	}
+	if (unknown)
+		log_notice(e->log,
+		           "%s: %u of its outputs (%s%s) %s not read back: what they have after "
+		           "this is not known until they are set",
+		           lane->port->target, unknown, first->item->name,
+		           unknown > 1 ? ", ..." : "", unknown > 1 ? "are" : "is");
 }
 
 void lane_up(struct lane *lane, const char *text)
@@ -88,11 +102,8 @@ void lane_down(struct lane *lane, int err)
 		if (s->lane != lane->index ||
 		    (s->sample.quality == OWS_Q_DISABLED && !s->item->output && !signal_reads(s)))
 			continue;
-		if (!s->read.held) {
-			s->read.held = true;
-			s->read.held_quality = s->sample.quality;
-			s->read.held_err = s->sample.err;
-		}
+		signal_hold(s);
+		s->command.lapsed |= s->command.confirmed;
 		s->sample.quality = OWS_Q_TARGET;
 		s->sample.err = err;
 		engine_publish(e, s);

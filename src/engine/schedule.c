@@ -2,6 +2,7 @@
 /* When the rows of the table are read and written: the wheel of periods and what is due. */
 #include "src/engine/schedule.h"
 #include "hal/base/time.h"
+#include "src/engine/alarm/alarm_item.h"
 #include "src/engine/due.h"
 #include "src/engine/publish.h"
 #include "src/engine/retry.h"
@@ -30,6 +31,15 @@ void engine_read_never(struct engine *e, struct signal *s)
 {
 	due_wheel_cancel(&e->wheel, engine_row(s) * 2);
 	due_set_remove(&engine_lane(e, s)->inputs, engine_row(s));
+}
+
+/* An alarm item is read when it has something to say, and now and then to see that it lives. */
+uint64_t engine_reads_apart(const struct engine *e, const struct lane *lane, const struct signal *s)
+{
+	if (s->item->alarm && alarm_serves(&lane->alarm) && s->item->per_factor == 1 &&
+	    !(s->attrs.flags & OWS_ATTR_ALARM_UNARMED))
+		return engine_periods(e, CONFIG_ALARM_READ_NS);
+	return s->item->per_factor;
 }
 
 void engine_write_at(struct engine *e, struct signal *s, uint64_t period)
@@ -138,6 +148,7 @@ int64_t engine_next_tick(const struct engine *e, int64_t at_most_ns)
 
 	next = due_wheel_next(&e->wheel, period, next);
 	next = due_wheel_next(&e->time_wheel, period, next);
+	next = due_wheel_next(&e->watch_wheel, period, next);
 	next = due_wheel_next(&e->route_wheel, period, next);
 	return e->time.start_ns + (int64_t)(next - e->time.first) * e->config->period_ns;
 }

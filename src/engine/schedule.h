@@ -7,6 +7,9 @@
 void engine_read_now(struct engine *e, struct signal *s);
 void engine_read_at(struct engine *e, struct signal *s, uint64_t period);
 void engine_read_never(struct engine *e, struct signal *s);
+/* Periods between two readings in the cycle. */
+uint64_t engine_reads_apart(const struct engine *e, const struct lane *lane,
+                            const struct signal *s);
 /* When an output that is not read in the cycle is read back next, as a period. */
 uint64_t engine_read_back_at(const struct engine *e, const struct signal *s);
 void engine_write_at(struct engine *e, struct signal *s, uint64_t period);

@@ -5,9 +5,11 @@
  */
 #include <assert.h>
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/owfs/path.h"
 #include "src/engine/guest.h"
 #include "src/engine/slots.h"
 
@@ -53,6 +55,27 @@ static void slot_own_path(struct slot *slot)
 	memcpy(slot->path, slot->req.path, len);
 	slot->path[len] = '\0';
 	slot->req.path = slot->path;
+}
+
+bool slot_look_for(struct lane *lane, struct slot *slot, enum purpose purpose, uint32_t device)
+{
+	const struct table *table = &lane->engine->table;
+	const struct device *d = &table->devices[device];
+	const char *text = table->signals[table->device_rows[d->first]].item->path;
+	struct path path;
+
+	if (path_split(text, strlen(text), &path))
+		return false;
+	snprintf(slot->path, sizeof(slot->path), "%.*s",
+	         (int)(path.device.text + path.device.len - text), text);
+	slot->purpose = purpose;
+	slot->row = device;
+	slot->req = (struct bus_req){.op = BUS_PROBE,
+	                             .prio = BUS_INPUT,
+	                             .fresh = true,
+	                             .path = slot->path,
+	                             .len = sizeof(slot->data)};
+	return true;
 }
 
 bool slot_lend(struct lane *lane, struct slot *slot)

@@ -15,6 +15,8 @@ void slots_free(struct lane *lane);
 struct slot *slot_next(struct lane *lane);
 /* Give the slot's request to the bus; false: the bus takes none now. */
 bool slot_lend(struct lane *lane, struct slot *slot);
+/* Make its request a look for the device; false: its path has none. */
+bool slot_look_for(struct lane *lane, struct slot *slot, enum purpose purpose, uint32_t device);
 /* The lent slot with the request of this id, NULL: none has it. */
 struct slot *slot_of_id(struct lane *lane, uint32_t id);
 /* Does its request count for a row of the table, and which signal is that? */

@@ -32,7 +32,16 @@ struct engine_guests;
 
 /* --- A request ------------------------------------------------------------------------------- */
 
-enum purpose { FOR_READ, FOR_WRITE, FOR_STRUCTURE, FOR_ALARM, FOR_PROBE, FOR_RESTART, FOR_GUEST };
+enum purpose {
+	FOR_READ,
+	FOR_WRITE,
+	FOR_STRUCTURE,
+	FOR_ALARM,
+	FOR_PROBE,
+	FOR_RESTART,
+	FOR_WATCH,
+	FOR_GUEST
+};
 
 /*
  * A request and its room. Its id is slot | generation << 16, so that a late answer does not fit a
@@ -54,7 +63,10 @@ struct slot {
 
 	/* ask.c, guests.c and the others that ask */
 	enum purpose purpose;
-	/* of the table, of structure.checks (FOR_STRUCTURE), a device (FOR_PROBE, FOR_RESTART) */
+	/*
+	 * Of the table, of structure.checks (FOR_STRUCTURE), a device (FOR_PROBE, FOR_RESTART,
+	 * FOR_WATCH).
+	 */
 	uint32_t row;
 	int64_t value;               /* of a write */
 	uint32_t stamp;              /* of the command written, 0: owsd's */
@@ -89,6 +101,7 @@ struct slot {
 	X(moves_in)     /* signals that came from another target */ \
 	X(moves_out)    /* signals that went to another target */ \
 	X(probes)       /* looks for a device that another target does not have */ \
+	X(watches)      /* looks for a device whose signals are seldom read */ \
 	X(not_released) /* the next way was opened before this one had let go */ \
 	X(guests)       /* requests of clients of the served protocol, given to the bus */ \
 	X(guest_errors)
@@ -152,6 +165,11 @@ struct lane {
 	struct due_set probes; /* devices to be looked for here */
 	bool probing;          /* one of them is with the bus */
 	int64_t probe_ns;      /* earliest time of the next */
+
+	/* device_watch.c */
+	struct due_set watch; /* devices to be looked for */
+	bool watching;        /* one of them is with the bus */
+	int64_t watch_ns;     /* earliest time of the next */
 
 	/* alarm.c and the files below it */
 	struct alarm_machine alarm;
@@ -283,6 +301,8 @@ struct engine {
 
 	/* schedule.c */
 	struct due_wheel wheel; /* row * 2: read, row * 2 + 1: write */
+	/* device_watch.c */
+	struct due_wheel watch_wheel; /* devices */
 	/* publish.c */
 	struct due_wheel time_wheel; /* rows that change by time alone: limit alarms, StaleAfter */
 	/* limits.c */

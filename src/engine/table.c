@@ -126,6 +126,7 @@ static void init_signal(struct signal *s, const struct config_item *item, uint32
 	s->attrs.flags = (item->readable ? OWS_ATTR_READ_ENABLE : 0) |
 	                 (item->writable ? OWS_ATTR_WRITE_ENABLE : 0) |
 	                 (item->limits.any ? OWS_ATTR_LIMITS : 0);
+	s->shows_device = facts_shows_device(item->path);
 	s->measured = item->type != OWS_STRING && quantity_of(item->path, &s->quantity);
 	s->command.controller = CONTROLLER_NOBODY;
 	if (!item->has_init)
@@ -240,6 +241,29 @@ void signal_table_image(const struct config_item *item, struct image_signal *sig
 		.init_value = item->init_value,
 		.safe_value = item->safe_value,
 	};
+}
+
+void signal_hold(struct signal *s)
+{
+	if (s->read.held)
+		return;
+	s->read.held = true;
+	s->read.held_quality = s->sample.quality;
+	s->read.held_err = s->sample.err;
+}
+
+void signal_lapse(struct signal *s)
+{
+	if (s->read.held && !signal_reads(s)) {
+		s->sample.quality = s->read.held_quality;
+		s->sample.err = s->read.held_err;
+	}
+	s->read.held = false;
+	if (s->sample.quality & 0xc0)
+		s->sample.quality = OWS_Q_LAST_USABLE;
+	else if (s->sample.quality != OWS_Q_INITIAL)
+		return;
+	s->sample.err = 0;
 }
 
 static bool command_differs(const struct signal *s)

@@ -38,7 +38,7 @@ struct signal_reading {
 	int64_t begun_ns; /* of the reading that gave the last value */
 	struct retry retry;
 	struct guard guard;
-	/* quality and error as they stood when the target was lost, if held */
+	/* quality and error as they stood when the target or the device was lost, if held */
 	bool held;
 	uint8_t held_quality;
 	int32_t held_err;
@@ -50,6 +50,7 @@ struct signal_command {
 	bool confirmed; /* written is what the bus has */
 	bool agrees;    /* it was read back as it was written */
 	bool differs;   /* it reads otherwise than it was written */
+	bool lapsed;    /* its target was down since: a command goes out, the same one too */
 	bool doubted;   /* it did so once: it is read again, past the cache */
 	bool one_shot;  /* write once more, changed or not */
 	bool forced;    /* a write in doubt ended late: the present value goes out again */
@@ -116,9 +117,10 @@ struct signal_scaling {
 struct signal {
 	const struct config_item *item;
 	uint32_t record;
-	uint32_t device; /* row of table.devices, or TABLE_NO_DEVICE */
-	unsigned lane;   /* which serves it */
-	bool measured;   /* quantity says what it can be */
+	uint32_t device;   /* row of table.devices, or TABLE_NO_DEVICE */
+	unsigned lane;     /* which serves it */
+	bool shows_device; /* a reading shows that the device is there */
+	bool measured;     /* quantity says what it can be */
 	struct quantity quantity;
 
 	bool reading, writing; /* a request of the lane is with the bus */
@@ -154,11 +156,15 @@ enum device_por { POR_UNKNOWN, POR_CLEAR, POR_SET };
 struct device {
 	uint8_t rom[8];
 	bool has_rom;              /* false: an alias */
-	bool absent;               /* a signal of it went bad with "no such device" */
+	bool absent;               /* presence.c: it was looked for, and is not there */
 	uint32_t first, count;     /* rows in table.device_rows */
 	struct device_facts facts; /* device_facts.c */
 	enum device_por por; /* restart.c; void when it was away, or is written: completion.c */
 	int64_t por_ns;      /* it could not be read: while it is not known, not asked for before */
+
+	/* device_watch.c */
+	int64_t shown_ns;   /* an answer has shown last that it is there */
+	struct retry watch; /* looks for it that failed */
 
 	/* where it is served, and looked for (place.c, routing.c) */
 	unsigned group;
@@ -223,6 +229,13 @@ static inline void signal_forget_written(struct signal *s)
 {
 	s->command.confirmed &= !s->item->output;
 }
+/* Its target or its device is lost: remember how it stood. */
+void signal_hold(struct signal *s);
+/*
+ * What it shows is not known to be so any more: it stands as before the loss, but is the last
+ * usable value at best. What was bad stays bad.
+ */
+void signal_lapse(struct signal *s);
 /* Does its commanded value have to go out? */
 bool signal_changed(const struct signal *s);
 /* Is the command in force what the bus has? */

@@ -69,7 +69,7 @@ enum ows_quality {
 	OWS_Q_SHORT = 0x19,       /* the wire is short */
 	OWS_Q_DIFFERS = 0x1c,     /* an output reads otherwise than it was written */
 	OWS_Q_INITIAL = 0x20,     /* never read or written */
-	OWS_Q_LAST_USABLE = 0x44, /* moved to another target, which has not answered yet */
+	OWS_Q_LAST_USABLE = 0x44, /* a new target has not answered, or an output's was down */
 	OWS_Q_DISABLED = 0x44,    /* disabled by _ReadEnable: likewise the last usable value */
 	OWS_Q_RANGE = 0x54,       /* out of range: beyond Min or Max */
 	OWS_Q_LOW = 0x55,         /* held at the lower end of the type or of Points */

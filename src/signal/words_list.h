@@ -48,9 +48,11 @@ QUALITY(DIFFERS, "not as commanded", "The output reads otherwise than it was wri
 QUALITY(INITIAL, "initial", "The signal was never read or written.",
         "An input has its first value soon. Set an output, or give it an InitValue.")
 QUALITY(LAST_USABLE, "last usable value",
-        "Reading is disabled, another target has not answered yet, or what is read jumps beyond "
-        "MaxStep each time.",
-        "Wait for the new target, set _ReadEnable to 1, or raise MaxStep.")
+        "Reading is disabled, another target has not answered yet, what is read jumps beyond MaxStep "
+        "each time, or an output was neither read nor written since its target or its device was "
+        "away.",
+        "Wait for the new target, set _ReadEnable to 1, or raise MaxStep; set the output, or give it "
+        "ReadBack.")
 QUALITY(RANGE, "out of range", "The value is beyond Min or Max of the configuration.",
         "Is the sensor or its wire broken? Else correct Min and Max.")
 QUALITY(LOW, "at lower limit", "The value is held at the lower end of its type or of Points.",

@@ -34,6 +34,8 @@ static void mark_listed(struct alarm_machine *m, struct lane *lane, const char *
 			if (path_split(text, strlen(text), &own) || !path_same_device(&path, &own))
 				continue;
 		}
+		if (d->absent) /* it is there again */
+			engine_read_now(e, alarm_signal(e, m->items[k]));
 		m->items[k]->listed = ours = true;
 		m->items[k]->asks_por = false;
 	}

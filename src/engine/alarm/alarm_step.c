@@ -33,11 +33,15 @@ static void mark_done(const struct alarm_answer *a, enum alarm_deed deed)
 static uint32_t alarm_step_fail(const struct alarm_answer *a, int err)
 {
 	const struct alarm_step *step = alarm_step(a->m->state);
+	struct engine *e = a->lane->engine;
+	struct signal *s = alarm_signal(e, a->item);
+	int64_t wait_ns;
 
 	assert(step); /* an answer comes while one waits */
-	if (alarm_of_device(err))
-		engine_read_failed(a->lane->engine, a->lane, alarm_signal(a->lane->engine, a->item),
-		                   err);
+	if (alarm_of_device(err)) {
+		wait_ns = engine_read_failed(e, a->lane, s, err);
+		engine_read_at(e, s, e->time.period + (wait_ns ? engine_periods(e, wait_ns) : 1));
+	}
 	alarm_refused(a->lane, a->item, step->unarmed, err,
 	              alarm_string(&a->item->strings, step->property),
 	              step->op == BUS_WRITE ? " cannot be written: " : " cannot be read: ");

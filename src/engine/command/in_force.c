@@ -109,6 +109,8 @@ void engine_command(struct engine *e, struct signal *s, uint32_t controller,
 	struct ows_who who = engine_who(&e->controllers[controller], command->person);
 
 	in_force_put_value(s, command->value, text, len);
+	s->command.confirmed &= !s->command.lapsed;
+	s->command.lapsed = false;
 	s->command.stamp = command->stamp;
 	s->command.reason = OWS_REASON_SET;
 	answer_for(e, s, controller);

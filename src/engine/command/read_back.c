@@ -120,6 +120,7 @@ bool engine_compare(struct engine *e, struct lane *lane, struct signal *s, const
 	if (c->agrees && !agrees)
 		alarm_output_differs(&lane->alarm, s->device);
 	c->agrees = agrees;
+	c->lapsed &= !agrees;
 	if (s->item->read_back_ns) {
 		engine_restart_look(lane, s, agrees);
 		judge_read_back(e, s, agrees, quality);

@@ -123,6 +123,8 @@ static void take_device(struct engine *e, uint32_t index, const struct engine *o
 	                 : old->table.signals[before].device;
 	was = &old->table.devices[before];
 	d->absent = was->absent;
+	d->shown_ns = was->shown_ns;
+	d->watch = was->watch;
 	d->found = was->found;
 	d->moved_ns = was->moved_ns;
 	if (e->places)

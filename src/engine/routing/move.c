@@ -19,21 +19,6 @@
 #include "src/engine/schedule.h"
 #include "src/text/log.h"
 
-/* Old values are the last usable ones at best; what was bad stays so until something is read. */
-static void degrade_signal(struct signal *s)
-{
-	if (s->read.held && !signal_reads(s)) {
-		s->sample.quality = s->read.held_quality;
-		s->sample.err = s->read.held_err;
-	}
-	s->read.held = false;
-	if (s->sample.quality & 0xc0)
-		s->sample.quality = OWS_Q_LAST_USABLE;
-	else if (s->sample.quality != OWS_Q_INITIAL)
-		return;
-	s->sample.err = 0;
-}
-
 static void move_signal(struct engine *e, struct signal *s, struct lane *to)
 {
 	struct lane *from = engine_lane(e, s);
@@ -49,7 +34,7 @@ static void move_signal(struct engine *e, struct signal *s, struct lane *to)
 	signal_forget_written(s);
 	s->attrs.flags &= ~(uint32_t)OWS_ATTR_ALARM_POLLED;
 	s->sample.target = (uint8_t)to->index;
-	degrade_signal(s);
+	signal_lapse(s); /* until the new target has answered */
 	lane_take_row(to, row);
 	to->counters.moves_in++;
 }

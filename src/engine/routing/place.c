@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* What is known of where each device is, and the looks for devices that are nowhere. */
 #include <errno.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "hal/base/time.h"
-#include "hal/owfs/path.h"
 #include "src/engine/due.h"
 #include "src/engine/retry.h"
 #include "src/engine/routing/place.h"
@@ -90,39 +87,12 @@ void engine_places_check(struct engine *e)
 		due_set_add(&e->routes, i);
 }
 
-/* The next device to be looked for on this lane goes into the slot's request; false: none. */
-static bool next_probe(struct lane *lane, struct slot *slot)
-{
-	const struct engine *e = lane->engine;
-	int64_t device = due_set_next(&lane->probes);
-	const struct device *d;
-	const char *text;
-	struct path path;
-
-	if (device < 0)
-		return false;
-	d = &e->table.devices[device];
-	text = e->table.signals[e->table.device_rows[d->first]].item->path;
-	if (path_split(text, strlen(text), &path))
-		return false;
-	snprintf(slot->path, sizeof(slot->path), "%.*s",
-	         (int)(path.device.text + path.device.len - text), text);
-	slot->purpose = FOR_PROBE;
-	slot->row = (uint32_t)device;
-	slot->req = (struct bus_req){.op = BUS_PROBE,
-	                             .prio = BUS_INPUT,
-	                             .fresh = true,
-	                             .path = slot->path,
-	                             .len = sizeof(slot->data)};
-	return true;
-}
-
 bool engine_probe_ask(struct lane *lane, struct slot *slot)
 {
-	int64_t now_ns = lane->engine->time.now_ns;
+	int64_t now_ns = lane->engine->time.now_ns, device = due_set_next(&lane->probes);
 
-	if (lane->probing || now_ns < lane->probe_ns || !next_probe(lane, slot) ||
-	    !slot_lend(lane, slot))
+	if (device < 0 || lane->probing || now_ns < lane->probe_ns ||
+	    !slot_look_for(lane, slot, FOR_PROBE, (uint32_t)device) || !slot_lend(lane, slot))
 		return false;
 	due_set_take(&lane->probes, slot->row);
 	lane->probing = true;

@@ -53,8 +53,9 @@ struct scene_bus {
 	int64_t latency_ns;        /* the time of each answer; 1 ms unless set */
 	const char *slow;          /* answers for this path take slow_ns */
 	int64_t slow_ns;
-	bool mute;    /* the bus answers nothing */
-	bool refuses; /* submit returns -EAGAIN */
+	bool mute;     /* the bus answers nothing */
+	bool refuses;  /* submit returns -EAGAIN */
+	int probe_err; /* not 0: the error of looks for devices */
 	struct scene_pending pending[SCENE_DEPTH];
 	unsigned pending_count, most_pending;
 	struct bus_req *swallowed[SCENE_DEPTH]; /* requests taken while mute */
@@ -156,6 +157,8 @@ struct scene_bus *scene_bus(struct scene *scene, const char *name, unsigned wire
 void scene_put_on(struct scene *scene, unsigned wire, const char *path, const char *text, int err);
 /* Move all properties below path, as "/28.551DDF030000", to another wire, or to SCENE_NOWHERE. */
 void scene_plug(struct scene *scene, const char *path, unsigned wire);
+/* All properties below path answer "no such device", or as before. */
+void scene_unplug(struct scene *scene, const char *path, bool unplug);
 /* The target of a bus that holds hardware can be reached or not; the bus reports what follows. */
 void scene_reach(struct scene *scene, unsigned bus, bool there);
 /* Report a device: BUS_FOUND, BUS_LOST, BUS_POR. */

@@ -169,7 +169,9 @@ static void deliver(struct scene_bus *bus, unsigned index)
 	if (req->op != BUS_DIR && s->bus_count > 1 && !scene_has_device(s, bus->wire, req->path))
 		err = -ENODEV;
 	if (req->op == BUS_PROBE)
-		err = scene_has_device(s, bus->wire, req->path) ? 0 : -ENODEV;
+		err = bus->probe_err                              ? bus->probe_err
+		      : scene_has_device(s, bus->wire, req->path) ? 0
+		                                                  : -ENODEV;
 	if (!p || req->op == BUS_PROBE) {
 		scene_answer_on(s, number, req->id, err, NULL, req);
 		return;

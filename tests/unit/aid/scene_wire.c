@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The properties on the wires of a scene. */
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -28,7 +29,8 @@ bool scene_has_device(struct scene *s, unsigned wire, const char *path)
 	size_t len = strcspn(path + 1, "/") + 1;
 
 	for (unsigned i = 0; i < s->property_count; i++)
-		if (s->properties[i].wire == wire && below(s->properties[i].path, path, len))
+		if (s->properties[i].wire == wire && s->properties[i].err != -ENODEV &&
+		    below(s->properties[i].path, path, len))
 			return true;
 	return false;
 }
@@ -57,6 +59,13 @@ void scene_plug(struct scene *s, const char *path, unsigned wire)
 	for (unsigned i = 0; i < s->property_count; i++)
 		if (below(s->properties[i].path, path, strlen(path)))
 			s->properties[i].wire = wire;
+}
+
+void scene_unplug(struct scene *s, const char *path, bool unplug)
+{
+	for (unsigned i = 0; i < s->property_count; i++)
+		if (below(s->properties[i].path, path, strlen(path)))
+			s->properties[i].err = unplug ? -ENODEV : 0;
 }
 
 void scene_refuse_writes(struct scene *s, const char *path, int err)

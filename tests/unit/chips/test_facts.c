@@ -185,9 +185,36 @@ static void test_a_device_is_called_as_its_property_or_its_family_says(void)
 	}
 }
 
+static void test_what_is_known_without_the_device_does_not_show_it(void)
+{
+	static const char *const yes[] = {"/28.551DDF030000/temperature12",
+	                                  "/28.551DDF030000/power",
+	                                  "/29.B89115000000/sensed.BYTE",
+	                                  "/29.B89115000000/PIO.3",
+	                                  "/1F.112233445566/main/29.B89115000000/latch.ALL",
+	                                  "/boiler/temperature",
+	                                  "/29.B89115000000/no_such_thing"};
+	static const char *const no[] = {"/28.551DDF030000/address",
+	                                 "/28.551DDF030000/type",
+	                                 "/29.B89115000000/r_id",
+	                                 "/29.B89115000000/alias",
+	                                 "/29.B89115000000/present",
+	                                 "/bus.1/29B89115000000/present",
+	                                 "/boiler/family",
+	                                 "/boiler/present",
+	                                 "/simultaneous/temperature",
+	                                 "/29.B89115000000"};
+
+	for (size_t i = 0; i < sizeof(yes) / sizeof(yes[0]); i++)
+		TEST_ASSERT_TRUE_MESSAGE(facts_shows_device(yes[i]), yes[i]);
+	for (size_t i = 0; i < sizeof(no) / sizeof(no[0]); i++)
+		TEST_ASSERT_FALSE_MESSAGE(facts_shows_device(no[i]), no[i]);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
+	RUN_TEST(test_what_is_known_without_the_device_does_not_show_it);
 	RUN_TEST(test_thermometers_that_can_starve_are_known_in_every_spelling);
 	RUN_TEST(test_the_range_is_the_chips_own);
 	RUN_TEST(test_an_alias_excludes_only_what_nothing_can_measure);

@@ -240,7 +240,7 @@ static void test_a_target_that_is_down_at_the_start_makes_bad_and_then_good(void
 	TEST_ASSERT_EQUAL_INT64(0, scene_sample(&s, 0).value);
 }
 
-static void test_a_written_output_stands_as_it_stood_when_the_target_returns(void)
+static void test_a_written_output_is_not_written_again_when_the_target_returns(void)
 {
 	scene_output(&s, "out", PIO, OWS_BYTE);
 	scene_put(&s, PIO, "0", 0);
@@ -252,7 +252,7 @@ static void test_a_written_output_stands_as_it_stood_when_the_target_returns(voi
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, scene_sample(&s, 1).quality);
 	scene_up(&s);
 	scene_run(&s, SCENE_S);
-	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_LAST_USABLE, scene_sample(&s, 1).quality);
 	TEST_ASSERT_EQUAL_UINT(1, s.writes);
 }
 
@@ -624,7 +624,7 @@ int main(void)
 	RUN_TEST(test_a_lost_target_turns_all_its_signals_bad_at_once);
 	RUN_TEST(test_reconnects_count_returns_and_not_the_first_connection);
 	RUN_TEST(test_a_target_that_is_down_at_the_start_makes_bad_and_then_good);
-	RUN_TEST(test_a_written_output_stands_as_it_stood_when_the_target_returns);
+	RUN_TEST(test_a_written_output_is_not_written_again_when_the_target_returns);
 	RUN_TEST(test_a_command_given_while_the_target_is_down_goes_out_when_it_returns);
 	RUN_TEST(test_a_write_that_failed_is_tried_again_until_it_succeeds_and_then_no_more);
 	RUN_TEST(test_a_write_that_fails_does_not_make_a_value_bad_that_is_read);

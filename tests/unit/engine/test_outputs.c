@@ -206,7 +206,7 @@ static void test_an_output_in_doubt_is_not_good_when_its_target_returns(void)
 	scene_down(&s, -ECONNRESET);
 	scene_up(&s);
 	scene_run(&s, SCENE_S);
-	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_LAST_USABLE, scene_sample(&s, 1).quality);
 	s.config.max_retries = 0;
 	scene_put(&s, PIO, NULL, -EINPROGRESS);
 	scene_set(&s, 1, 4);

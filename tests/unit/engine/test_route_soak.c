@@ -232,8 +232,11 @@ static void calm(void)
 			continue;
 		snprintf(text, sizeof(text), "%d", (int)commanded[d]);
 		TEST_ASSERT_EQUAL_STRING_MESSAGE(text, scene_at(&s, output[d]), message);
-		TEST_ASSERT_EQUAL_HEX8_MESSAGE(OWS_Q_GOOD, scene_sample(&s, record_out(d)).quality,
-		                               message);
+		/* not good, where its target was away and nothing was to be written since */
+		TEST_ASSERT_TRUE_MESSAGE(scene_sample(&s, record_out(d)).quality == OWS_Q_GOOD ||
+		                                 scene_sample(&s, record_out(d)).quality ==
+		                                         OWS_Q_LAST_USABLE,
+		                         message);
 	}
 	TEST_ASSERT_EQUAL_UINT32_MESSAGE(1, scene_target_state(&s, 0), message);
 	TEST_ASSERT_EQUAL_UINT32_MESSAGE(2, scene_target_state(&s, 1), message);
