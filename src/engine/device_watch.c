@@ -56,10 +56,8 @@ static bool is_to_be_watched(struct engine *e, struct lane *lane, const struct d
 		overlooked |= is_overlooked(e, lane, s);
 		read |= signal_is_read(s);
 	}
-	/* what is tried again, or a bus that finds devices by itself, shows its return */
-	if (d->absent && (read || (lane->port->searches && d->has_rom)))
-		return false;
-	return overlooked;
+	/* the return of a lost one is shown by what is tried again */
+	return overlooked && !(d->absent && read);
 }
 
 static void watch_at(struct engine *e, uint32_t device, int64_t ns)
@@ -179,6 +177,8 @@ static int64_t watch_failed(struct lane *lane, uint32_t index, int err)
 		engine_device_lost(lane, index);
 	else
 		read_all(lane, d);
+	if (lost && lane->port->brief && wait_ns > RETRY_FIRST_NS)
+		wait_ns = RETRY_FIRST_NS;
 	return lost ? wait_ns : WATCH_APART_NS;
 }
 

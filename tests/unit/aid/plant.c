@@ -153,9 +153,22 @@ void plant_run(struct plant *p, int64_t until_ns)
 
 /* --- Beginning and end ----------------------------------------------------------------------- */
 
-static void make_bus(struct plant *p, const char *scenario)
+static void make_bus(struct plant *p, const char *target)
 {
-	char file[] = "/tmp/owsd-plant-XXXXXX", target[48], why[200] = "";
+	char why[200] = "";
+
+	p->env = (struct bus_env){.ctx = p,
+	                          .now = bus_now,
+	                          .wait = bus_wait,
+	                          .answer = bus_answers,
+	                          .event = bus_tells};
+	if (bus_create(target, &p->env, &p->bus, why, sizeof(why)))
+		broken(why);
+}
+
+static void simulate(struct plant *p, const char *scenario)
+{
+	char file[] = "/tmp/owsd-plant-XXXXXX", target[48];
 	int fd = mkstemp(file);
 	FILE *f = fd < 0 ? NULL : fdopen(fd, "w");
 
@@ -163,14 +176,8 @@ static void make_bus(struct plant *p, const char *scenario)
 		broken("no temporary file");
 	fputs(scenario, f);
 	fclose(f);
-	p->env = (struct bus_env){.ctx = p,
-	                          .now = bus_now,
-	                          .wait = bus_wait,
-	                          .answer = bus_answers,
-	                          .event = bus_tells};
 	snprintf(target, sizeof(target), "sim:%s", file);
-	if (bus_create(target, &p->env, &p->bus, why, sizeof(why)))
-		broken(why);
+	make_bus(p, target);
 	unlink(file);
 	p->net = plant_net(p->bus);
 }
@@ -221,14 +228,11 @@ static void make_memory(struct plant *p)
 	free(types);
 }
 
-void plant_begin(struct plant *p, const char *scenario, const char *rio)
+static void begin(struct plant *p, const char *rio)
 {
 	struct config_report report = {.line = say};
 	struct engine_setup setup;
 
-	memset(p, 0, sizeof(*p));
-	p->now = p->start = 1000 * PLANT_S;
-	make_bus(p, scenario);
 	if (config_parse("plant.rio", rio, strlen(rio), &report, &p->config))
 		broken("its configuration was refused");
 	make_memory(p);
@@ -249,8 +253,25 @@ void plant_begin(struct plant *p, const char *scenario, const char *rio)
 		p->engine, 0,
 		&(struct joining_controller){.memory = p->controller.memory, .who.serial = 1},
 		p->now);
-	sim_net_start(p->net, p->now);
+	if (p->net)
+		sim_net_start(p->net, p->now);
 	p->engine_ns = p->now;
+}
+
+void plant_begin(struct plant *p, const char *scenario, const char *rio)
+{
+	memset(p, 0, sizeof(*p));
+	p->now = p->start = 1000 * PLANT_S;
+	simulate(p, scenario);
+	begin(p, rio);
+}
+
+void plant_begin_on(struct plant *p, const char *target, const char *rio)
+{
+	memset(p, 0, sizeof(*p));
+	p->now = p->start = 1000 * PLANT_S;
+	make_bus(p, target);
+	begin(p, rio);
 }
 
 void plant_end(struct plant *p)

@@ -53,6 +53,8 @@ struct plant {
 
 /* The network is a scenario, the configuration a .rio text whose targets are ignored. */
 void plant_begin(struct plant *plant, const char *scenario, const char *rio);
+/* The same on any other target, without a simulation. */
+void plant_begin_on(struct plant *plant, const char *target, const char *rio);
 void plant_run(struct plant *plant, int64_t until_ns);
 void plant_end(struct plant *plant);
 
