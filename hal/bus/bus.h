@@ -127,6 +127,7 @@ enum bus_supply {
  *   -ERANGE       a reading that means power fault (85, 127.94)
  *   -ENODATA      the device answers whole that it has no value: an open sensor, no supply, a
  *                 result that a restart has taken
+ *   -EDOM         a reading that the chip cannot have measured; number has it
  *   -EBUSY        another process has it (a GPIO line)
  *   -EIO          any other device error
  *   -EMSGSIZE     the answer is longer than the room
@@ -149,7 +150,7 @@ struct bus_answer {
 	uint8_t supply;      /* enum bus_supply, of the path's device */
 	uint32_t len;        /* READ and DIR: bytes in req->data; WRITE: bytes taken, of the text */
 	int64_t measured_ns; /* when the chip latched the value, else when the answer came */
-	double number;       /* if kind is BUS_NUMBER */
+	double number;       /* if kind is BUS_NUMBER; of -EDOM */
 	/*
 	 * What a bus knows besides: nothing is asked of a device for it. Which chip the path's
 	 * device is by its behaviour ("DS18B20 clone, family B1"), a text that lives as long as the

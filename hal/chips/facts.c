@@ -6,6 +6,7 @@
 #include "hal/chips/bridges/bridge.h"
 #include "hal/chips/facts.h"
 #include "hal/chips/find.h"
+#include "hal/chips/format.h"
 #include "hal/owfs/path.h"
 
 /* Of which kind a chip is that has the property; 0: of any. */
@@ -86,14 +87,8 @@ static const struct property *row_of(const struct family *family, const struct p
 	return family_property(family, NULL, name->text, len);
 }
 
-/* The quantity of the property, or of the array that it is an element of; false: it has none. */
-static bool quantity_of_name(const struct family *family, const struct path_slice *name,
-                             struct quantity *quantity)
+static bool quantity_of_row(const struct property *row, struct quantity *quantity)
 {
-	const struct property *row = row_of(family, name);
-
-	if (!row)
-		return false;
 	if (row->measures.least >= row->measures.most)
 		return quantity_of_type(row->type, quantity);
 	*quantity = (struct quantity){.least = row->measures.least,
@@ -102,6 +97,15 @@ static bool quantity_of_name(const struct family *family, const struct path_slic
 	                              .starves = row->measures.starves,
 	                              .unit = row->measures.unit};
 	return true;
+}
+
+/* The quantity of the property, or of the array that it is an element of; false: it has none. */
+static bool quantity_of_name(const struct family *family, const struct path_slice *name,
+                             struct quantity *quantity)
+{
+	const struct property *row = row_of(family, name);
+
+	return row && quantity_of_row(row, quantity);
 }
 
 /* Of a property whose chip is not known. */
@@ -150,4 +154,24 @@ bool facts_shows_device(const char *text)
 bool quantity_excludes(const struct quantity *quantity, double number)
 {
 	return number < quantity->least || number > quantity->most;
+}
+
+bool reading_excluded(const struct property *property, int extension, struct txn *txn)
+{
+	unsigned count = extension == EXTENSION_ALL ? property->array.count : 1;
+	struct quantity quantity;
+
+	if (!quantity_of_row(property, &quantity))
+		return false;
+	for (unsigned i = 0; i < count; i++) {
+		double number = extension == EXTENSION_ALL
+		                        ? txn->number[i]
+		                        : format_as_number(property, extension, txn);
+
+		if (!quantity_excludes(&quantity, number))
+			continue;
+		txn->number[0] = number;
+		return true;
+	}
+	return false;
 }

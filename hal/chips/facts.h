@@ -8,6 +8,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+struct property;
+struct txn;
+
 /*
  * What the device of the path is called, as far as the path shows it: by its property ("EDS0068",
  * "HB_HUB"), else by its family's usual chip ("DS18B20"). NULL: not known. It lives as long as the
@@ -38,3 +41,8 @@ bool facts_shows_device(const char *path);
 
 /* Is the number one that the chip cannot have measured? */
 bool quantity_excludes(const struct quantity *quantity, double number);
+/*
+ * Is one of the numbers read, of the extension as in format_value(), such a one of the property,
+ * whose chip is known? It is txn->number[0] then.
+ */
+bool reading_excluded(const struct property *property, int extension, struct txn *txn);

@@ -76,7 +76,8 @@ void job_answer(struct native *native, struct job *job, int err)
 	struct bus_answer answer = {.id = job->req->id,
 	                            .err = err,
 	                            .kind = BUS_TEXT,
-	                            .measured_ns = native_now(native)};
+	                            .measured_ns = native_now(native),
+	                            .number = err == -EDOM ? job->txn.number[0] : 0};
 
 	job_unlock(native, job);
 	note_failure(job, err);

@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/chips/facts.h"
 #include "hal/chips/field.h"
 #include "hal/chips/format.h"
 #include "hal/chips/row.h"
@@ -112,17 +113,22 @@ static void queue_again(struct native *native, struct job *job)
 
 static void read_done(struct native *native, struct job *job)
 {
-	int more = add_element(job);
+	int more;
 
-	if (more < 0) {
-		job_answer(native, job, more);
-		return;
-	}
 	job->tries = 0;
 	if (job->txn.device) {
 		job->txn.device->settled |= !job->property->offline;
 		if (job->property->convert)
 			thermometer_unread(job->txn.device, false);
+	}
+	if (reading_excluded(job->property, job_wants_all(job) ? EXTENSION_NONE : job->extension,
+	                     &job->txn))
+		more = -EDOM;
+	else
+		more = add_element(job);
+	if (more < 0) {
+		job_answer(native, job, more);
+		return;
 	}
 	if (more) {
 		queue_again(native, job);

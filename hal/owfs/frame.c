@@ -131,3 +131,29 @@ int frame_feed(struct frame_reader *reader, const uint8_t *bytes, size_t n, size
 	}
 	return reader->got == reader->end ? FRAME_WHOLE : FRAME_MORE;
 }
+
+/* Far from any offset in a value. The place in the list is what is sent: it never changes. */
+#define CAUSE 0x6f777300
+static const int causes[] = {-EDOM, -ERANGE, -EBADMSG, -ECOMM};
+#define CAUSES (sizeof(causes) / sizeof(causes[0]))
+
+void frame_put_cause(struct frame_header *header, int err, double number)
+{
+	float bits = (float)number;
+
+	for (size_t i = 0; i < CAUSES; i++)
+		if (causes[i] == err)
+			header->offset = CAUSE + (int32_t)i;
+	if (err == -EDOM)
+		memcpy(&header->size, &bits, sizeof(header->size));
+}
+
+int frame_cause(const struct frame_header *header, double *number)
+{
+	int64_t i = (int64_t)header->offset - CAUSE;
+	float bits;
+
+	memcpy(&bits, &header->size, sizeof(bits));
+	*number = bits;
+	return i >= 0 && i < (int64_t)CAUSES ? causes[i] : 0;
+}

@@ -56,6 +56,14 @@ void frame_put_header(uint8_t bytes[FRAME_HEADER], const struct frame_header *he
 void frame_get_header(const uint8_t bytes[FRAME_HEADER], struct frame_header *header);
 
 /*
+ * Owsd's replies of -EIO to a READ have the precise error in offset, of -EDOM also the number in
+ * size; the replies of others have 0 there, and clients look at neither. err is -EDOM, -ERANGE,
+ * -EBADMSG or -ECOMM; others leave the header as it is, and are 0.
+ */
+void frame_put_cause(struct frame_header *header, int err, double number);
+int frame_cause(const struct frame_header *header, double *number);
+
+/*
  * Make a whole request in out, which has room for FRAME_REQUEST_MAX. path NULL: none (NOP). size
  * is what a READ asks for; a WRITE's is data_len. Returns its length, or -EMSGSIZE.
  */

@@ -16,6 +16,7 @@
 
 #include "hal/base/time.h"
 #include "hal/owfs/path.h"
+#include "hal/owserver/judge.h"
 #include "hal/owserver/listing.h"
 #include "hal/owserver/proof.h"
 #include "hal/owserver/server.h"
@@ -51,6 +52,7 @@ struct owserver {
 	struct bus_counter counter[COUNTERS];
 	struct talk talk;
 	struct listing listing;
+	struct judge judge;
 };
 
 static const char *const counter_names[COUNTERS] = {
@@ -350,7 +352,7 @@ static int error_of_refusal(struct owserver *server, const struct bus_req *req)
 	return err == 1 ? -ENODEV : err == 0 ? -ENOENT : err;
 }
 
-static int do_read(struct owserver *server, struct bus_req *req, uint32_t *len)
+static int do_read(struct owserver *server, struct bus_req *req, uint32_t *len, double *number)
 {
 	uint32_t room = req->len < READ_MAX ? req->len : READ_MAX;
 	struct talk_request request = {.type = FRAME_READ,
@@ -367,8 +369,10 @@ static int do_read(struct owserver *server, struct bus_req *req, uint32_t *len)
 	err = talk_exchange(&server->talk, &request, req->deadline_ns);
 	if (err)
 		return err;
-	if (reply->type < 0)
-		return error_of_refusal(server, req);
+	if (reply->type < 0) {
+		err = frame_cause(reply, number);
+		return err ? err : error_of_refusal(server, req);
+	}
 	/* either length could make a false value, as 21 of 21.5 */
 	if (reply->type != reply->payload) {
 		snprintf(server->talk.trouble, sizeof(server->talk.trouble),
@@ -422,11 +426,12 @@ static int do_probe(struct owserver *server, struct bus_req *req)
 	return err == 1 ? -ENODEV : err;
 }
 
-static int owserver_serve(struct owserver *server, struct bus_req *req, uint32_t *len)
+static int owserver_serve(struct owserver *server, struct bus_req *req, uint32_t *len,
+                          double *number)
 {
 	switch ((enum bus_op)req->op) {
 	case BUS_READ:
-		return do_read(server, req, len);
+		return do_read(server, req, len, number);
 	case BUS_WRITE:
 		return do_write(server, req, len);
 	case BUS_DIR:
@@ -451,7 +456,7 @@ static void owserver_exec(struct bus *bus, struct bus_req *req, struct bus_answe
 	server->talk.heard = false;
 	server->talk.tokens = req->tokens;
 	server->talk.token_count = req->token_count;
-	err = owserver_serve(server, req, &answer->len);
+	err = owserver_serve(server, req, &answer->len, &answer->number);
 	server->talk.token_count = 0;
 	if (err == -ECONNREFUSED)
 		err = -ECONNRESET;
@@ -459,10 +464,13 @@ static void owserver_exec(struct bus *bus, struct bus_req *req, struct bus_answe
 		go_down(server, err, server->talk.trouble);
 	else
 		server->backoff_ns = BACKOFF_MIN;
+	answer->measured_ns = server_now(server);
+	if (!err && req->op == BUS_READ)
+		err = judge_reading(&server->judge, req->path, (const char *)req->data, answer->len,
+		                    server->simulated, answer->measured_ns, &answer->number);
 	if (err)
 		answer->len = 0;
 	answer->err = err;
-	answer->measured_ns = server_now(server);
 }
 
 static const struct bus_counter *owserver_counters(struct bus *bus, size_t *n)

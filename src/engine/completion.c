@@ -8,7 +8,6 @@
 #include "src/engine/command/read_back.h"
 #include "src/engine/completion.h"
 #include "src/engine/device_facts.h"
-#include "src/engine/limits/guard.h"
 #include "src/engine/presence.h"
 #include "src/engine/retry.h"
 #include "src/engine/routing/place.h"
@@ -151,29 +150,6 @@ static void request_succeeded(struct engine *e, struct lane *lane, struct signal
 }
 
 /*
- * Can the chip have measured it? What a simulated target makes up need not be what a chip can
- * measure, and is marked.
- */
-static int doubt_reading(struct lane *lane, struct signal *s, const struct bus_answer *answer,
-                         double number)
-{
-	if (!s->measured)
-		return 0;
-	if (!(answer->detail & BUS_DETAIL_SIMULATED) && quantity_excludes(&s->quantity, number)) {
-		lane->counters.out_of_range++;
-		log_debug(lane->engine->log, "%s (%s): %g is out of the chip's range",
-		          s->item->name, s->item->path, number);
-		return -EDOM;
-	}
-	if (s->quantity.starves &&
-	    guard_refuses(&s->read.guard, number, lane->engine->time.now_ns)) {
-		lane->counters.power_faults++;
-		return -ERANGE;
-	}
-	return 0;
-}
-
-/*
  * An answer that was on its way while the engine did not run may be measured long before it came,
  * and its bus could not know: then it is as old as its request.
  */
@@ -187,7 +163,7 @@ static int64_t time_of_reading(const struct engine *e, const struct slot *slot,
 }
 
 /* The value of an answer into the sample; 0, or why it cannot be one. */
-static int take_read_value(struct lane *lane, struct signal *s, const struct slot *slot,
+static int take_read_value(struct signal *s, const struct slot *slot,
                            const struct bus_answer *answer, int64_t measured_ns, uint8_t *quality)
 {
 	enum ows_type type = signal_raw_type(s);
@@ -208,8 +184,6 @@ static int take_read_value(struct lane *lane, struct signal *s, const struct slo
 		err = value_from_number(type, answer->number, &raw, quality);
 	else
 		err = value_from_text(type, (const char *)slot->data, answer->len, &raw, quality);
-	if (!err)
-		err = doubt_reading(lane, s, answer, value_number(type, raw));
 	if (!err)
 		err = signal_take_raw(s, raw, measured_ns, quality);
 	return err;
@@ -237,7 +211,7 @@ int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
 	int64_t value = s->sample.value, raw = s->attrs.raw;
 	int64_t measured_ns = time_of_reading(e, slot, answer);
 	uint8_t quality = OWS_Q_GOOD;
-	int err = take_read_value(lane, s, slot, answer, measured_ns, &quality);
+	int err = take_read_value(s, slot, answer, measured_ns, &quality);
 
 	*wait_ns = 0;
 	switch (failure_of(err)) {

@@ -23,7 +23,7 @@
  *   schedule, publish    schedule, publish, origin, limits, counters, device_facts
  *   slots                lane, slots, disown, group, trace, alarm_item
  *   table                table, scaling, structure, due
- *   pure functions       route, adoption, limit, guard, retry, alarm_fsm, alarm_text
+ *   pure functions       route, adoption, limit, retry, alarm_fsm, alarm_text
  *
  * Room src/engine: the table of signals, lanes, alarms; no input or output. Uses src/config,
  * src/text, src/libows, src/shm, src/signal, hal/chips, hal/owfs, hal/bus, hal/base.

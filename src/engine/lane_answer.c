@@ -96,6 +96,16 @@ static void take_late_reading(struct lane *lane, const struct slot *slot,
 	engine_publish(e, s);
 }
 
+/* What a bus refuses, of signals and guests alike. */
+static void count_refused(struct lane *lane, const struct slot *slot,
+                          const struct bus_answer *answer)
+{
+	if (slot->req.op != BUS_READ)
+		return;
+	lane->counters.out_of_range += answer->err == -EDOM;
+	lane->counters.power_faults += answer->err == -ERANGE;
+}
+
 void lane_answer(struct lane *lane, const struct bus_answer *answer)
 {
 	struct slot *slot = slot_of_id(lane, answer->id);
@@ -108,6 +118,7 @@ void lane_answer(struct lane *lane, const struct bus_answer *answer)
 	}
 	if (trace_is_on(e->log))
 		trace_answer(lane, slot, answer);
+	count_refused(lane, slot, answer);
 	slot_give_back(lane, slot);
 	if (!slot->moved && slot_has_row(slot)) {
 		engine_facts_answer(e, lane, slot->row, answer);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/chips/facts.h"
 #include "hal/owfs/path.h"
 #include "src/engine/table.h"
 
@@ -127,7 +128,6 @@ static void init_signal(struct signal *s, const struct config_item *item, uint32
 	                 (item->writable ? OWS_ATTR_WRITE_ENABLE : 0) |
 	                 (item->limits.any ? OWS_ATTR_LIMITS : 0);
 	s->shows_device = facts_shows_device(item->path);
-	s->measured = item->type != OWS_STRING && quantity_of(item->path, &s->quantity);
 	s->command.controller = CONTROLLER_NOBODY;
 	if (!item->has_init)
 		return;

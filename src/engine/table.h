@@ -5,9 +5,7 @@
  */
 #pragma once
 
-#include "hal/chips/facts.h"
 #include "src/config/config.h"
-#include "src/engine/limits/guard.h"
 #include "src/engine/limits/limit.h"
 #include "src/engine/retry.h"
 #include "src/shm/force.h"
@@ -37,7 +35,6 @@ struct signal_reading {
 	int64_t updated_ns;
 	int64_t begun_ns; /* of the reading that gave the last value */
 	struct retry retry;
-	struct guard guard;
 	/* quality and error as they stood when the target or the device was lost, if held */
 	bool held;
 	uint8_t held_quality;
@@ -120,8 +117,6 @@ struct signal {
 	uint32_t device;   /* row of table.devices, or TABLE_NO_DEVICE */
 	unsigned lane;     /* which serves it */
 	bool shows_device; /* a reading shows that the device is there */
-	bool measured;     /* quantity says what it can be */
-	struct quantity quantity;
 
 	bool reading, writing; /* a request of the lane is with the bus */
 	bool alarming;         /* a request of the alarm machine counts for it */

@@ -13,6 +13,8 @@ static char text[TEXT_MAX + 1];
 static void read_print_json(struct json *json, const char *path, const struct bus_answer *answer,
                             size_t len)
 {
+	char words[ERROR_WORDS];
+
 	json_object(json, NULL);
 	json_string(json, "path", path);
 	text[len] = '\0';
@@ -23,7 +25,7 @@ static void read_print_json(struct json *json, const char *path, const struct bu
 	else
 		json_text(json, text, len);
 	if (answer->err)
-		json_string(json, "error", error_text(answer->err));
+		json_string(json, "error", error_answer_text(answer->err, answer->number, words));
 	json_bool(json, "simulated", answer->detail & BUS_DETAIL_SIMULATED);
 	json_bool(json, "cached", answer->detail & BUS_DETAIL_CACHED);
 	json_object_end(json);
@@ -58,7 +60,7 @@ static int read_path(const struct ctl *ctl, struct json *json, struct target *ta
 	/* keep the order of stderr and stdout where both go to one place */
 	if (!ctl->json)
 		fflush(stdout);
-	return ctl_fail("%s: %s%s", given, error_words(err, words),
+	return ctl_fail("%s: %s%s", given, error_answer_words(err, ask.answer.number, words),
 	                open_asked(ctl, target, served));
 }
 

@@ -26,6 +26,7 @@ struct scan_property {
 
 struct scan_value {
 	int err;
+	double refused; /* of -EDOM: the number */
 	char text[64];
 };
 

@@ -333,6 +333,7 @@ static void take_answer(struct scan_device *device, unsigned n, struct ask *ask,
 	} else {
 		value = &device->value[n - ASK_PROPERTIES];
 		value->err = ask->answer.err;
+		value->refused = ask->answer.number;
 		text_clean(text, len, sizeof(value->text), value->text, sizeof(value->text));
 	}
 }

@@ -30,7 +30,10 @@ void answer_code(struct serve *s, struct client *c, int32_t code)
 
 void answer_error(struct serve *s, struct client *c, int err)
 {
-	answer_code(s, c, code_of(err));
+	struct frame_header h = {0};
+
+	frame_put_cause(&h, err, c->guest.answer.number);
+	answer_data(s, c, code_of(err), 0, (uint32_t)h.size, h.offset);
 }
 
 void answer_value(struct serve *s, struct client *c, uint32_t len)

@@ -23,7 +23,7 @@ int32_t code_of(int err)
 		return -95;
 	case EINVAL:
 		return -22;
-	case EDOM: /* a number overflows, or a list has no room */
+	case EOVERFLOW: /* a number overflows, or a list has no room */
 		return -34;
 	case EROFS:
 		return CODE_READ_ONLY;

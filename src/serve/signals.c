@@ -191,7 +191,7 @@ static int take_text(const char *text, size_t len, bool is_string, char out[VALU
 		len--;
 	}
 	if (len > VALUE_STRING_MAX)
-		return -EDOM;
+		return -EOVERFLOW;
 	memcpy(out, text, len);
 	out[len] = '\0';
 	return 0;
@@ -259,7 +259,7 @@ static int signals_set(struct signals *signals, const char *person, struct ows_i
 	if (!err)
 		err = handle_set_text(h, id, copy, &stamp);
 	if (err == -ERANGE)
-		return -EDOM;
+		return -EOVERFLOW;
 	if (err == -EROFS)
 		return -EACCES;
 	if (err)
@@ -312,7 +312,7 @@ int signals_applied(struct signals *signals, const char *name, struct signals_co
 	if (applied && (int32_t)(applied - command->stamp) >= 0)
 		return 0;
 	if (__atomic_load_n(&own->taken, __ATOMIC_ACQUIRE) == command->stamp && own->err)
-		return own->err == -ERANGE ? -EDOM : -EIO; /* the engine refused it */
+		return own->err == -ERANGE ? -EOVERFLOW : -EIO; /* the engine refused it */
 	if (!reader_sample(map_record(&h->map, command->record), &sample))
 		return -EAGAIN;
 	if (sample.err && sample.tried_ns >= command->since_ns)

@@ -38,13 +38,13 @@ struct signals_command {
 /*
  * Command a signal or attribute for this person; image and journal show the person beside it.
  * 0; -EBUSY: owsd has still to look at the commands of others, call again soon; -ENOENT, -EACCES,
- * -EINVAL: the text is no value of its type, -EDOM: its type cannot hold the value, -EIO.
+ * -EINVAL: the text is no value of its type, -EOVERFLOW: its type cannot hold the value, -EIO.
  */
 int signals_write(struct signals *signals, const char *person, const char *name, int64_t now_ns,
                   const char *text, size_t len, struct signals_command *command);
 /*
- * Returns 0 when the bus has the command, -EAGAIN before, else the error of the write; -EDOM: owsd
- * refused it, its type cannot hold the value, or it is beyond the signal's range. name is the
+ * Returns 0 when the bus has the command, -EAGAIN before, else the error of the write; -EOVERFLOW:
+ * owsd refused it, its type cannot hold the value, or it is beyond the signal's range. name is the
  * commanded name: a reload may have given the signal another record, or (-ENOENT) none.
  */
 int signals_applied(struct signals *signals, const char *name, struct signals_command *command);

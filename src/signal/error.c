@@ -43,6 +43,24 @@ const char *error_remedy(int err)
 	return i < ERRORS ? errors[i].remedy : "";
 }
 
+const char *error_answer_text(int err, double number, char words[ERROR_WORDS])
+{
+	if (err != -EDOM)
+		return error_text(err);
+	snprintf(words, ERROR_WORDS, "%s: %.6g", error_text(err), number);
+	return words;
+}
+
+const char *error_answer_words(int err, double number, char words[ERROR_WORDS])
+{
+	const char *remedy = error_remedy(err);
+	char own[ERROR_WORDS];
+
+	snprintf(words, ERROR_WORDS, "%s%s%s", error_answer_text(err, number, own),
+	         *remedy ? ": " : "", remedy);
+	return words;
+}
+
 const char *error_words(int err, char words[ERROR_WORDS])
 {
 	const char *remedy = error_remedy(err);

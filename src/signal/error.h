@@ -11,3 +11,7 @@ const char *error_remedy(int err);
 /* Both in one: "no such property: check its spelling; ...". Returns words. */
 #define ERROR_WORDS 160
 const char *error_words(int err, char words[ERROR_WORDS]);
+
+/* The same of an answer, with the number that -EDOM refuses; and that without the remedy. */
+const char *error_answer_words(int err, double number, char words[ERROR_WORDS]);
+const char *error_answer_text(int err, double number, char words[ERROR_WORDS]);

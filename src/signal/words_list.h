@@ -86,7 +86,7 @@ ERROR(EPERM, "no permission",
 ERROR(EINVAL, "the target refuses this value", "write a value that the property takes")
 ERROR(EBADMSG, "wrong checksum", "look for a bad contact, a weak pull-up, or noise")
 ERROR(EDOM, "a value out of the chip's range",
-      "look at the sensor and its supply; owsctl read shows the answer")
+      "look at the sensor and its supply; owsctl read shows the number")
 ERROR(EREMCHG, "a jump beyond MaxStep, held back until it is confirmed",
       "look for noise if there are many; MaxStep has to allow what is true")
 ERROR(ECOMM, "the wire is short",

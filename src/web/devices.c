@@ -71,7 +71,9 @@ static void put_properties(struct json *json, const struct scan_device *device)
 		json_string(json, "type", value_type_name(property.type));
 		json_bool(json, "output", property.output);
 		json_string(json, "value", value->err ? NULL : value->text);
-		json_string(json, "why", value->err ? error_words(value->err, words) : NULL);
+		json_string(json, "why",
+		            value->err ? error_answer_words(value->err, value->refused, words)
+		                       : NULL);
 		json_object_end(json);
 	}
 	json_array_end(json);

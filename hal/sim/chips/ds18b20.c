@@ -14,6 +14,16 @@
 
 enum { READ_POWER = 0xB4 };
 
+/*
+ * All that the register holds, in sixteenths: no chip measures below -55 and above 125 degrees, and
+ * yet some answer so, with a right checksum, after a bad contact.
+ */
+#define REGISTER_LEAST (-128 * 16)
+#define REGISTER_MOST (128 * 16 - 1)
+#define REGISTER_INPUT \
+	.name = "temperature", .start = 20, .least = REGISTER_LEAST / 16.0, \
+	.most = REGISTER_MOST / 16.0
+
 #define FAMILY_S20 0x10
 #define FAMILY_1825 0x3B
 #define FAMILY_EA00 0x42
@@ -115,7 +125,8 @@ static void set_alarm(struct sim_slave *slave, double celsius)
 static void latch_temperature(struct sim_slave *slave)
 {
 	struct sim_thermometer *s = slave->state;
-	int raw = sim_within(sim_input_now(slave, SIM_TEMPERATURE) * 16, -55 * 16, 125 * 16);
+	int raw = sim_within(sim_input_now(slave, SIM_TEMPERATURE) * 16, REGISTER_LEAST,
+	                     REGISTER_MOST);
 
 	set_alarm(slave, raw / 16.0);
 	if (is_s20(slave)) {
@@ -284,11 +295,11 @@ static const struct sim_function ea00_functions[] = {
 };
 
 static const struct sim_input inputs[] = {
-	[SIM_TEMPERATURE] = {SIM_TEMPERATURE_INPUT},
+	[SIM_TEMPERATURE] = {REGISTER_INPUT},
 	{0},
 };
 static const struct sim_input ea00_inputs[] = {
-	[SIM_TEMPERATURE] = {SIM_TEMPERATURE_INPUT},
+	[SIM_TEMPERATURE] = {REGISTER_INPUT},
 	[SIM_PIN_A] = {SIM_PIN("pin.A")},
 	[SIM_PIN_B] = {SIM_PIN("pin.B")},
 	{0},

@@ -176,6 +176,7 @@ static const char *alarms(const struct scan_device *device)
 static void show_values(const struct scan_device *device, char *out, size_t size)
 {
 	struct scan_property property;
+	char words[ERROR_WORDS];
 	size_t used = 0;
 
 	out[0] = '\0';
@@ -188,7 +189,8 @@ static void show_values(const struct scan_device *device, char *out, size_t size
 			continue;
 		n = snprintf(out + used, size - used, "%s%s=%s%s%s", used ? " " : "", property.name,
 		             value->err ? "(" : "",
-		             value->err ? error_text(value->err) : value->text,
+		             value->err ? error_answer_text(value->err, value->refused, words)
+		                        : value->text,
 		             value->err ? ")" : "");
 		used += n > 0 ? (size_t)n : 0;
 	}

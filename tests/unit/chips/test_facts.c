@@ -7,6 +7,8 @@
 
 #include "hal/chips/facts.h"
 #include "hal/chips/find.h"
+#include "hal/chips/format.h"
+#include "hal/wire/txn.h"
 
 void setUp(void)
 {
@@ -104,6 +106,28 @@ static void test_the_range_is_the_chips_own(void)
 			TEST_ASSERT_TRUE_MESSAGE(quantity_excludes(&quantity, rows[i].above),
 			                         rows[i].path);
 	}
+}
+
+static void test_a_reading_is_excluded_by_any_of_its_numbers(void)
+{
+	const struct property one = {.type = PROPERTY_FLOAT, .measures = {-10, 110, "%", 2, false}};
+	const struct property list = {.type = PROPERTY_FLOAT,
+	                              .array = {4, INDEX_LETTERS, true},
+	                              .measures = {0, 5, "V", 2, false}};
+	const struct property nothing = {.type = PROPERTY_FLOAT};
+	struct txn txn = {.number = {1, 2, 278.4, 4}};
+
+	TEST_ASSERT_FALSE(reading_excluded(&one, EXTENSION_NONE, &txn));
+	TEST_ASSERT_FALSE(reading_excluded(&list, EXTENSION_LETTERS + 1, &txn));
+	TEST_ASSERT_FALSE(reading_excluded(&nothing, EXTENSION_NONE, &txn));
+	TEST_ASSERT_TRUE(reading_excluded(&list, EXTENSION_LETTERS + 2, &txn));
+	TEST_ASSERT_EQUAL_DOUBLE(278.4, txn.number[0]);
+	TEST_ASSERT_TRUE(reading_excluded(&one, EXTENSION_NONE, &txn));
+	txn.number[0] = 1;
+	TEST_ASSERT_TRUE(reading_excluded(&list, EXTENSION_ALL, &txn));
+	TEST_ASSERT_EQUAL_DOUBLE(278.4, txn.number[0]);
+	txn.number[0] = txn.number[2] = 5;
+	TEST_ASSERT_FALSE(reading_excluded(&list, EXTENSION_ALL, &txn));
 }
 
 static void test_an_alias_excludes_only_what_nothing_can_measure(void)
@@ -217,6 +241,7 @@ int main(void)
 	RUN_TEST(test_what_is_known_without_the_device_does_not_show_it);
 	RUN_TEST(test_thermometers_that_can_starve_are_known_in_every_spelling);
 	RUN_TEST(test_the_range_is_the_chips_own);
+	RUN_TEST(test_a_reading_is_excluded_by_any_of_its_numbers);
 	RUN_TEST(test_an_alias_excludes_only_what_nothing_can_measure);
 	RUN_TEST(test_the_decimals_hold_one_step_of_the_chip);
 	RUN_TEST(test_a_device_is_called_as_its_property_or_its_family_says);

@@ -372,18 +372,6 @@ static void test_a_value_outside_the_type_is_held_at_the_limit_and_says_so(void)
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_LOW, scene_sample(&s, 1).quality);
 }
 
-static void test_85_degrees_out_of_nothing_is_never_published(void)
-{
-	two_thermometers();
-	scene_put(&s, T1, "          85", 0);
-	for (int i = 0; i < 100; i++) {
-		scene_run(&s, 100 * SCENE_MS);
-		TEST_ASSERT_EQUAL_DOUBLE(21.5, scene_number(&s, 1));
-	}
-	TEST_ASSERT_EQUAL_HEX8(OWS_Q_SENSOR, scene_sample(&s, 1).quality);
-	TEST_ASSERT_GREATER_THAN(3, scene_counter(&s, "power_faults"));
-}
-
 static void test_a_bus_that_never_answers_is_given_up_and_its_signals_go_bad(void)
 {
 	two_thermometers();
@@ -631,7 +619,6 @@ int main(void)
 	RUN_TEST(test_the_error_of_a_read_goes_before_that_of_a_write);
 	RUN_TEST(test_an_answer_that_is_no_number_is_an_item_error);
 	RUN_TEST(test_a_value_outside_the_type_is_held_at_the_limit_and_says_so);
-	RUN_TEST(test_85_degrees_out_of_nothing_is_never_published);
 	RUN_TEST(test_a_slow_target_gives_its_values_late_and_not_never);
 	RUN_TEST(test_a_bus_that_never_answers_is_given_up_and_its_signals_go_bad);
 	RUN_TEST(test_a_late_value_does_not_replace_one_that_was_asked_for_later);

@@ -168,22 +168,6 @@ static void test_a_bool_is_inverted(void)
 	TEST_ASSERT_EQUAL_INT64(1, scene_sample(&s, 2).value);
 }
 
-static void test_the_chip_is_judged_by_the_raw_value(void)
-{
-	struct config_item *item = scene_input(&s, "far", "/28.000000000001/temperature",
-	                                       OWS_DOUBLE);
-
-	/* 70 degrees are 158 of Fahrenheit, beyond what a chip measures in its own unit */
-	item->scale = (struct scale){.linear = true, .factor = 1.8, .offset = 32};
-	scene_put(&s, item->path, "70", 0);
-	start();
-	TEST_ASSERT_EQUAL_DOUBLE(158, scene_number(&s, 1));
-	scene_put(&s, item->path, "158", 0);
-	scene_run(&s, 10 * SCENE_S);
-	TEST_ASSERT_EQUAL_DOUBLE(158, scene_number(&s, 1));
-	TEST_ASSERT_EQUAL_INT(-EDOM, scene_sample(&s, 1).err);
-}
-
 static void test_limits_are_of_the_engineering_value(void)
 {
 	struct config_item *item = level();
@@ -618,7 +602,6 @@ int main(void)
 	RUN_TEST(test_the_value_of_an_integer_type_is_rounded);
 	RUN_TEST(test_a_scaled_value_that_the_type_cannot_hold_is_held_at_its_end);
 	RUN_TEST(test_a_bool_is_inverted);
-	RUN_TEST(test_the_chip_is_judged_by_the_raw_value);
 	RUN_TEST(test_limits_are_of_the_engineering_value);
 	RUN_TEST(test_the_first_good_value_is_not_filtered);
 	RUN_TEST(test_a_step_is_filtered_by_the_time_that_passed);

@@ -154,6 +154,33 @@ static void test_a_reply_without_data_is_whole_with_its_header(void)
 	TEST_ASSERT_EQUAL_UINT32(FRAME_PERSIST, reader.header.flags);
 }
 
+static void test_a_refused_reading_has_its_cause_and_number_beside_the_code(void)
+{
+	static const int errs[] = {-EDOM, -ERANGE, -EBADMSG, -ECOMM, -EIO, -ENOTCONN, 0};
+	uint8_t bytes[FRAME_HEADER];
+	double number;
+
+	for (size_t i = 0; i < sizeof(errs) / sizeof(errs[0]); i++) {
+		struct frame_header header = {.type = -5};
+		int known = i < 4 ? errs[i] : 0;
+
+		frame_put_cause(&header, errs[i], -109.9375);
+		frame_put_header(bytes, &header);
+		header = (struct frame_header){0};
+		frame_get_header(bytes, &header);
+		TEST_ASSERT_EQUAL_INT(known, frame_cause(&header, &number));
+		TEST_ASSERT_EQUAL_DOUBLE(i ? 0 : -109.9375, number);
+		TEST_ASSERT_EQUAL_INT32(-5, header.type);
+		if (!known)
+			TEST_ASSERT_EQUAL_INT32(0, header.offset);
+	}
+	for (int64_t offset = INT32_MIN; offset <= INT32_MAX; offset += 0x10001) {
+		const struct frame_header other = {.type = -5, .offset = (int32_t)offset};
+
+		TEST_ASSERT_EQUAL_INT(0, frame_cause(&other, &number));
+	}
+}
+
 static void test_what_follows_a_frame_is_left(void)
 {
 	uint8_t bytes[2 * sizeof(read_reply)];
@@ -248,6 +275,7 @@ int main(void)
 	RUN_TEST(test_a_reply_is_read_from_any_split_into_fragments);
 	RUN_TEST(test_a_reply_is_read_byte_by_byte_between_keep_alives);
 	RUN_TEST(test_a_reply_without_data_is_whole_with_its_header);
+	RUN_TEST(test_a_refused_reading_has_its_cause_and_number_beside_the_code);
 	RUN_TEST(test_what_follows_a_frame_is_left);
 	RUN_TEST(test_the_limit_is_checked_before_a_byte_is_stored);
 	RUN_TEST(test_a_negative_payload_other_than_keep_alive_is_garbage);

@@ -120,6 +120,8 @@ static void test_codes_are_those_of_the_genuine_owserver(void)
 	TEST_ASSERT_EQUAL_INT(-22, code_of(-EINVAL));
 	TEST_ASSERT_EQUAL_INT(-30, code_of(-EROFS));
 	TEST_ASSERT_EQUAL_INT(-5, code_of(-ERANGE)); /* a power-fault reading */
+	TEST_ASSERT_EQUAL_INT(-5, code_of(-EDOM));   /* a reading that is none */
+	TEST_ASSERT_EQUAL_INT(-34, code_of(-EOVERFLOW));
 	TEST_ASSERT_EQUAL_INT(-5, code_of(-ENOTCONN));
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The words of errors, and that causes with different remedies can be told apart by them. */
 #include <errno.h>
+#include <float.h>
 #include <string.h>
 
 #include "unity.h"
@@ -55,6 +56,20 @@ static void test_each_error_has_a_remedy_and_fits_into_its_room(void)
 }
 
 /* What an error becomes, and what needs no error; good, and what owsd never says, have nothing. */
+static void test_of_what_the_chip_cannot_measure_the_number_is_named(void)
+{
+	char words[ERROR_WORDS];
+
+	TEST_ASSERT_EQUAL_STRING("a value out of the chip's range: -109.938",
+	                         error_answer_text(-EDOM, -109.9375, words));
+	TEST_ASSERT_EQUAL_STRING("a value out of the chip's range: 278.4: look at the sensor and "
+	                         "its supply; owsctl read shows the number",
+	                         error_answer_words(-EDOM, 278.4, words));
+	TEST_ASSERT_EQUAL_STRING(error_text(-EIO), error_answer_text(-EIO, 21.5, words));
+	TEST_ASSERT_NOT_NULL(
+		strstr(error_answer_words(-EDOM, -DBL_MAX, words), "shows the number"));
+}
+
 static void test_each_quality_that_is_not_good_has_a_cause_and_a_remedy(void)
 {
 	static const uint8_t own[] = {OWS_Q_STALE, OWS_Q_DIFFERS, OWS_Q_INITIAL, OWS_Q_LAST_USABLE,
@@ -92,6 +107,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_each_error_of_a_bus_has_words_of_its_own);
 	RUN_TEST(test_each_error_has_a_remedy_and_fits_into_its_room);
+	RUN_TEST(test_of_what_the_chip_cannot_measure_the_number_is_named);
 	RUN_TEST(test_each_quality_that_is_not_good_has_a_cause_and_a_remedy);
 	RUN_TEST(test_three_causes_have_three_qualities_with_words_of_their_own);
 	return UNITY_END();

@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "hal/base/time.h"
-#include "src/engine/limits/guard.h"
+#include "hal/owserver/guard.h"
 
 #define NEAR_DEGREES 5.0
 #define RECENT_NS (60 * NS_PER_S)

@@ -5,7 +5,7 @@
 
 #include "unity.h"
 
-#include "src/engine/limits/guard.h"
+#include "hal/owserver/guard.h"
 
 #define S 1000000000LL
 

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Readings that mean a power fault: a thermometer that lost its supply answers 85 (its power-on
- * scratchpad), one whose conversion starved 127.94. On every bus they must not pass as good. Which
- * properties are such a thermometer's stands in hal/chips (property.measures).
+ * scratchpad), one whose conversion starved 127.94. The native bus sees it by the scratchpad; of a
+ * server's reading there is the number alone. Which properties are such a thermometer's stands in
+ * hal/chips (property.measures).
  */
 #pragma once
 

@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: MIT */
+/* Readings of an owserver that no chip can have measured, and what thermometers read before. */
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "hal/chips/facts.h"
+#include "hal/chips/format.h"
+#include "hal/owfs/path.h"
+#include "hal/owserver/judge.h"
+
+#define NUMBER_ROOM 40
+
+/* What a thermometer read last, by any of its properties. An alias counts for itself. */
+static struct guard *guard_of(struct judge *judge, const char *path)
+{
+	uint64_t device = UINT64_C(0xcbf29ce484222325);
+	struct path split;
+
+	if (path_split(path, strlen(path), &split))
+		return &judge->place[0][0].guard;
+	const uint8_t *byte = split.has_rom ? split.rom : (const uint8_t *)split.last.text;
+	size_t len = split.has_rom ? sizeof(split.rom) : split.last.len;
+
+	for (size_t i = 0; i < len; i++)
+		device = (device ^ byte[i]) * UINT64_C(0x100000001b3);
+	struct judge_place *row = judge->place[(device ^ device >> 32) % JUDGE_ROWS], *oldest = row;
+
+	for (unsigned i = 0; i < JUDGE_PLACES; i++) {
+		if (row[i].device == device)
+			return &row[i].guard;
+		if (row[i].guard.last_ns < oldest->guard.last_ns)
+			oldest = &row[i];
+	}
+	*oldest = (struct judge_place){.device = device};
+	return &oldest->guard;
+}
+
+/* The number that is the whole text, but for blanks and what ends it; false: it is none. */
+static bool as_number(const char *text, size_t len, double *number)
+{
+	char copy[NUMBER_ROOM], *end;
+
+	len = text_end(text, len);
+	if (!len || len >= sizeof(copy) || memchr(text, '\0', len))
+		return false;
+	memcpy(copy, text, len);
+	copy[len] = '\0';
+	*number = strtod(copy, &end);
+	return *end == '\0';
+}
+
+int judge_reading(struct judge *judge, const char *path, const char *text, size_t len,
+                  bool simulated, int64_t now_ns, double *number)
+{
+	struct quantity quantity;
+	const char *part;
+	size_t part_len;
+
+	if (!quantity_of(path, &quantity))
+		return 0;
+	for (unsigned n = 0; list_part(text, len, n, &part, &part_len); n++) {
+		if (!as_number(part, part_len, number))
+			continue;
+		if (!simulated && quantity_excludes(&quantity, *number))
+			return -EDOM;
+		if (quantity.starves && guard_refuses(guard_of(judge, path), *number, now_ns))
+			return -ERANGE;
+	}
+	return 0;
+}
