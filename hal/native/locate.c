@@ -18,6 +18,7 @@
 #define TOUCH_NS (2 * NATIVE_S)
 #define TRIES 3
 #define MANY_MISSED 3
+#define FOUND_IN_ROW 8
 #define TRIES_LINK 6
 
 /* While a chip of the master does not answer, any device may be behind it. */
@@ -391,6 +392,8 @@ bool locate_step(struct native *native, int64_t now, bool idle, int64_t *next)
 		locate->credit_ns -= locate->took_ns;
 		locate->idle_ns = now + IDLE_SHARE * locate->took_ns;
 	}
-	native->touched = true;
+	/* Of a branch that comes back several are found before others have a turn. */
+	locate->in_row = found ? (uint8_t)((locate->in_row + 1) % FOUND_IN_ROW) : 0;
+	native->touched = !locate->in_row;
 	return true;
 }

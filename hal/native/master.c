@@ -15,7 +15,8 @@
 #include "hal/native/state.h"
 
 #define PAUSE_MIN_NS (NATIVE_S / 5)
-#define PAUSE_MAX_NS (NATIVE_S / 2) /* one that is plugged in again is not to wait */
+#define PAUSE_MAX_NS (5 * NATIVE_S)
+#define PAUSE_BACK_NS (NATIVE_S / 2) /* one that was there may be plugged in again */
 #define GROW_MIN_NS NATIVE_S
 #define GROW_MAX_NS (10 * NATIVE_S)
 #define TROUBLE_NS (60 * NATIVE_S)
@@ -132,9 +133,11 @@ int64_t master_step(struct native *native, int64_t now)
 	int err = open_master(native, why);
 	native->down_err = err;
 	if (err) {
+		int64_t most = native->up_ns ? PAUSE_BACK_NS : PAUSE_MAX_NS;
+
 		native->pause_ns = native->pause_ns ? native->pause_ns * 2 : PAUSE_MIN_NS;
-		if (native->pause_ns > PAUSE_MAX_NS)
-			native->pause_ns = PAUSE_MAX_NS;
+		if (native->pause_ns > most)
+			native->pause_ns = most;
 		native->open_ns = native_now(native) + native->pause_ns;
 		if (!native->told && err != -ECANCELED)
 			native_event(native, BUS_DOWN, NULL, err, why);

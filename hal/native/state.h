@@ -246,6 +246,7 @@ struct locate {
 	uint64_t found;     /* COUNT_FOUND when the requests were looked at last */
 	/* Devices in a row that each try to verify them missed; when the last one was. */
 	uint8_t missed;
+	uint8_t in_row; /* looks that found one, without a turn of others */
 	int64_t missed_ns;
 };
 

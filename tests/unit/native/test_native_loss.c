@@ -277,10 +277,31 @@ static void test_a_target_that_does_not_open_is_tried_again_for_ever(void)
 	expect(true, of(slave, "power"), "1");
 }
 
+/* What a master advises for a start, to switch it on or to load a module, is no help then. */
+static void test_a_target_that_was_there_is_looked_for_more_often_and_its_plug_is_named(void)
+{
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+
+	start();
+	host_run(&host, bus, host.now + HOST_S);
+	bus_suspend(bus, true);
+	wire_net.open_error = -ENODEV;
+	bus_suspend(bus, false);
+	host_run(&host, bus, host.now + 60 * HOST_S);
+	TEST_ASSERT_EQUAL_UINT(1, host_events(&host, BUS_DOWN));
+	TEST_ASSERT_NOT_NULL(strstr(host.event[host.events - 1].text, "look at its plug"));
+	wire_net.open_error = 0;
+	host_run(&host, bus, host.now + 600 * HOST_MS);
+	TEST_ASSERT_EQUAL_UINT(2, host_events(&host, BUS_UP));
+	expect(true, of(slave, "power"), "1");
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_a_short_is_told_and_gone_again);
+	RUN_TEST(test_a_target_that_was_there_is_looked_for_more_often_and_its_plug_is_named);
 	RUN_TEST(test_a_device_that_leaves_is_lost_and_found_again);
 	RUN_TEST(test_the_background_search_sees_devices_come_and_go);
 	RUN_TEST(test_an_id_on_two_wires_is_reported_once);
