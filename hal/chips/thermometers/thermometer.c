@@ -3,6 +3,7 @@
  * The thermometers' scratchpad: what it says, and how a conversion's resolution is set.
  */
 #include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "hal/chips/thermometers/clone_id.h"
@@ -20,7 +21,7 @@
 #define FAMILY_3B 0x3b
 #define CONFIG_ZERO 0x80 /* a bit that is 0 in every other chip with a resolution */
 #define NEAR_RAW (5 * 16)
-#define NEAR_NS (300 * 1000 * TXN_MS)
+#define NEAR_NS (60 * 1000 * TXN_MS) /* as the engine has it of all buses (limits/guard.h) */
 #define LOOKS_ONE 3
 #define LOOKS_ZERO 2
 
@@ -185,7 +186,7 @@ static int thermometer_guard(struct txn *txn, int raw, const uint8_t scratchpad[
 		return 0;
 	if (thermometer_of(device)->make != MAKE_GENUINE && thermometer_of(device)->raw_ns &&
 	    now - thermometer_of(device)->raw_ns < NEAR_NS &&
-	    thermometer_of(device)->raw >= RAW_POWER_ON - NEAR_RAW)
+	    abs(thermometer_of(device)->raw - RAW_POWER_ON) <= NEAR_RAW)
 		return 0;
 	txn->restarted = scratchpad[SP_REMAIN] == REMAIN_POWER_ON &&
 	                 (thermometer_of(device)->raw_ns || thermometer_of(device)->converted_ns);

@@ -280,6 +280,31 @@ static void test_the_power_on_value_is_never_good(void)
 	expect(true, of(slave, "temperature"), "          85");
 }
 
+/* The last reading counts, and no other: of a clone, which shows nothing of a restart. */
+static void test_85_is_good_near_the_last_reading_of_the_last_minute_alone(void)
+{
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+	static const struct {
+		double before;
+		int64_t wait_s;
+		bool good;
+	} cases[] = {{79.9375, 0, false}, {80, 0, true},  {84, 50, true},  {84, 62, false},
+	             {90, 0, true},       {95, 0, false}, {-16, 0, false}, {84, 0, true}};
+
+	TEST_ASSERT_EQUAL_INT(0, sim_slave_option(slave, "fixed", 1));
+	wire_set(slave, "temperature", 20.5);
+	start();
+	for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+		wire_set(slave, "temperature", cases[i].before);
+		TEST_ASSERT_EQUAL_INT(0, result(BUS_READ, of(slave, "temperature"), NULL));
+		host_run(&host, bus, host.now + cases[i].wait_s * HOST_S);
+		wire_set(slave, "temperature", 85);
+		TEST_ASSERT_EQUAL_INT(cases[i].good ? 0 : -ERANGE,
+		                      result(BUS_READ, of(slave, "temperature"), NULL));
+	}
+}
+
 static void test_a_chip_that_takes_no_resolution_is_read_all_the_same(void)
 {
 	wire_init(&host, 1, 1);
@@ -345,6 +370,7 @@ int main(void)
 	RUN_TEST(test_a_monitor_that_restarts_while_it_measures_is_measured_again);
 	RUN_TEST(test_the_power_on_value_of_the_genuine_chip_is_known_from_the_temperature);
 	RUN_TEST(test_the_power_on_value_is_never_good);
+	RUN_TEST(test_85_is_good_near_the_last_reading_of_the_last_minute_alone);
 	RUN_TEST(test_a_chip_that_takes_no_resolution_is_read_all_the_same);
 	RUN_TEST(test_one_device_serves_two_resolutions_at_once);
 	RUN_TEST(test_ones_that_noise_gave_a_right_checksum_are_no_temperature);
