@@ -111,9 +111,20 @@ static void test_a_probe_asks_for_the_device_alone(void)
 {
 	serve("");
 	TEST_ASSERT_EQUAL_INT(0, request(BUS_PROBE, TEMPERATURE, NULL, 0)->err);
-	TEST_ASSERT_EQUAL_UINT(1, peer_saw(&peer.requests));
-	TEST_ASSERT_EQUAL_STRING("/28.67C6697351FF", peer.path);
+	TEST_ASSERT_EQUAL_UINT(2, peer_saw(&peer.requests));
+	TEST_ASSERT_EQUAL_STRING("/28.67C6697351FF/present", peer.path);
 	TEST_ASSERT_EQUAL_INT(-ENODEV, request(BUS_PROBE, "/28.AABBCCDDEEFF/x", NULL, 0)->err);
+}
+
+/* Its cache has the device, the wire has not: what is read of it are the ones of the idle wire. */
+static void test_a_server_whose_cache_has_a_device_that_is_away_is_not_believed(void)
+{
+	serve("");
+	TEST_ASSERT_EQUAL_INT(-ENODEV, request(BUS_READ, "/30.000029D60100/volt", NULL, 64)->err);
+	TEST_ASSERT_EQUAL_INT(-ENODEV, request(BUS_PROBE, "/30.000029D60100/volt", NULL, 0)->err);
+	TEST_ASSERT_EQUAL_STRING("/30.000029D60100/present", peer.path);
+	/* a server without the property says all that it can by PRESENT */
+	TEST_ASSERT_EQUAL_INT(0, request(BUS_PROBE, OUTPUT, NULL, 0)->err);
 }
 
 static void lists(const char *path, const char *expected)
@@ -223,6 +234,7 @@ int main(void)
 	RUN_TEST(test_a_write_that_was_cut_is_an_error);
 	RUN_TEST(test_device_and_property_are_missed_by_different_errors);
 	RUN_TEST(test_a_probe_asks_for_the_device_alone);
+	RUN_TEST(test_a_server_whose_cache_has_a_device_that_is_away_is_not_believed);
 	RUN_TEST(test_a_device_with_an_alias_is_listed_by_its_id);
 	RUN_TEST(test_an_entry_that_is_nobody_keeps_its_name_and_bad_ones_are_left_out);
 	RUN_TEST(test_a_listing_longer_than_the_room_is_an_error);
