@@ -3,6 +3,7 @@
  * How soon each kind of signal shows on a native bus that its device was pulled off and is back,
  * by engine, bus and simulator in virtual time; alone on the wire, and among 25 of its kind.
  */
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -116,10 +117,56 @@ static void test_one_of_many(void)
 		goes_and_comes(&kinds[i / PHASES], MANY, i % PHASES * PHASE_MS);
 }
 
+/*
+ * The adapter is pulled for 4 s, and the boards lose their supply meanwhile. Returns the quality
+ * after a minute; until then none is good that was neither read nor written.
+ */
+static uint8_t adapter_goes_and_comes(const struct kind *kind)
+{
+	int64_t end_ns;
+	uint32_t count;
+
+	write_files(kind, 3, 0);
+	strcpy(strstr(scenario, "at "),
+	       "at 20s remove adapter for 4s\nat 21s brownout c0\nat 21s brownout c1\n");
+	plant_begin(&plant, scenario, rio);
+	plant_run(&plant, plant.start + 5 * PLANT_S);
+	for (unsigned r = 1; kind->output && r <= 3; r++)
+		plant_set(&plant, r, 85);
+	plant_run(&plant, plant.start + 22 * PLANT_S);
+	TEST_ASSERT_EQUAL_HEX8_MESSAGE(OWS_Q_TARGET, plant_sample(&plant, 1).quality, kind->what);
+	count = plant_sample(&plant, 1).count;
+	for (end_ns = plant.now + 60 * PLANT_S; plant.now < end_ns;) {
+		plant_run(&plant, plant.now + 5 * PLANT_MS);
+		if (ows_good(plant_sample(&plant, 1).quality))
+			TEST_ASSERT_GREATER_THAN_UINT32_MESSAGE(
+				count, plant_sample(&plant, 1).count, kind->what);
+		if (plant_sample(&plant, 1).quality != OWS_Q_TARGET)
+			TEST_ASSERT_NOT_EQUAL_MESSAGE(-ENOTCONN, plant_sample(&plant, 1).err,
+			                              kind->what);
+	}
+	return plant_sample(&plant, 1).quality;
+}
+
+static void test_no_signal_is_good_unread_after_its_adapter_was_pulled(void)
+{
+	for (size_t i = 0; i < KINDS; i++) {
+		uint8_t quality = adapter_goes_and_comes(&kinds[i]);
+
+		TEST_ASSERT_EQUAL_HEX8_MESSAGE(strstr(kinds[i].keys, "ReadBack 0")
+		                                       ? OWS_Q_LAST_USABLE
+		                               : kinds[i].output ? OWS_Q_DIFFERS
+		                                                 : OWS_Q_GOOD,
+		                               quality, kinds[i].what);
+		plant_end(&plant);
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_a_device_alone_on_its_wire);
 	RUN_TEST(test_one_of_many);
+	RUN_TEST(test_no_signal_is_good_unread_after_its_adapter_was_pulled);
 	return UNITY_END();
 }

@@ -48,7 +48,7 @@ static int64_t until(bool good)
 }
 
 /* With another signal of the device that is read in each period, or alone. */
-static void goes_and_comes(const struct kind *kind, bool alone)
+static void begin(const struct kind *kind, bool alone)
 {
 	fs_text("w1_bus_master1", "uevent", "");
 	fs_board(0xff, 0x80);
@@ -66,7 +66,11 @@ static void goes_and_comes(const struct kind *kind, bool alone)
 		plant_set(&plant, 1, 85);
 	plant_run(&plant, plant.now + 4 * PLANT_S);
 	TEST_ASSERT_EQUAL_HEX8_MESSAGE(OWS_Q_GOOD, plant_sample(&plant, 1).quality, kind->what);
+}
 
+static void goes_and_comes(const struct kind *kind, bool alone)
+{
+	begin(kind, alone);
 	fs_gone(BOARD);
 	TEST_ASSERT_LESS_THAN_INT64_MESSAGE(alone ? SOON_NS : PLANT_S, until(false), kind->what);
 	plant_run(&plant, plant.now + PLANT_S);
@@ -90,9 +94,41 @@ static void test_each_signal_shows_that_its_slave_is_gone_and_back(void)
 	}
 }
 
+/* With its master, as an adapter that is pulled; its slave may be there again before it is read. */
+static void test_no_signal_is_good_unread_after_its_master_was_away(void)
+{
+	for (size_t i = 0; i < KINDS; i++) {
+		uint32_t count;
+		int64_t end_ns;
+
+		begin(&kinds[i], true);
+		fs_gone(BOARD);
+		fs_erase("w1_bus_master1");
+		TEST_ASSERT_LESS_THAN_INT64_MESSAGE(SOON_NS, until(false), kinds[i].what);
+		plant_run(&plant, plant.now + 12 * PLANT_S);
+		TEST_ASSERT_EQUAL_HEX8_MESSAGE(OWS_Q_TARGET, plant_sample(&plant, 1).quality,
+		                               kinds[i].what);
+		count = plant_sample(&plant, 1).count;
+		fs_text("w1_bus_master1", "uevent", "");
+		fs_board(0xff, 0x80);
+		for (end_ns = plant.now + 30 * PLANT_S; plant.now < end_ns;) {
+			plant_run(&plant, plant.now + 5 * PLANT_MS);
+			if (ows_good(plant_sample(&plant, 1).quality))
+				TEST_ASSERT_GREATER_THAN_UINT32_MESSAGE(
+					count, plant_sample(&plant, 1).count, kinds[i].what);
+		}
+		TEST_ASSERT_NOT_EQUAL_MESSAGE(OWS_Q_TARGET, plant_sample(&plant, 1).quality,
+		                              kinds[i].what);
+		plant_end(&plant);
+		fs_end();
+		fs_begin();
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_each_signal_shows_that_its_slave_is_gone_and_back);
+	RUN_TEST(test_no_signal_is_good_unread_after_its_master_was_away);
 	return UNITY_END();
 }
