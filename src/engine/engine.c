@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "src/engine/alarm/alarm_item.h"
+#include "src/engine/alarm/alarm_refused.h"
 #include "src/engine/ask.h"
 #include "src/engine/command/controllers.h"
 #include "src/engine/command/in_force.h"
@@ -35,8 +36,10 @@ static void engine_begin(struct engine *e, const struct engine_setup *setup)
 		engine_read_now(e, s);
 		engine_write_check(e, s);
 	}
-	for (uint32_t i = 0; i < e->alarm_count; i++)
+	for (uint32_t i = 0; i < e->alarm_count; i++) {
 		alarm_take_item(&e->lanes[0].alarm, &e->alarm_items[i], setup->start_ns);
+		alarm_show_dead(e, &e->alarm_items[i]);
+	}
 	engine_shelves_resume(e);
 	engine_resume(e, setup->left);
 	for (uint32_t row = 0; row < e->table.count; row++)

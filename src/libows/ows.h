@@ -524,13 +524,16 @@ enum ows_limit_state {
 };
 const char *ows_limit_state_text(uint8_t state);
 
-/* Which request of owsd's for the device's alarm fails: then the alarm does not come. */
+/* Why the device's alarm does not come: a request of owsd's that fails, or what the file says. */
 enum ows_unarmed {
 	OWS_UNARMED_SET = 1,  /* cannot be armed: SetAlarm is missing or refused */
 	OWS_UNARMED_POR,      /* cannot be armed: PorAlarm cannot be set to 0 */
 	OWS_UNARMED_LATCH,    /* cannot be read: LatchAlarm */
 	OWS_UNARMED_RESET,    /* cannot be reset: ResetLatch */
 	OWS_UNARMED_POR_READ, /* cannot be read: PorAlarm */
+	OWS_UNARMED_NO_POR,   /* can do nothing: PorAlarm is not defined */
+	OWS_UNARMED_NO_LATCH, /* can do nothing: LatchAlarm is not defined, or empty */
+	OWS_UNARMED_STAYS,    /* not cleared: the latch stays set, whatever ResetLatch does */
 };
 /* How the alarms of a signal stand now. */
 struct ows_alarm_state {

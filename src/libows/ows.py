@@ -50,12 +50,15 @@ DETAIL_SIMULATED, DETAIL_CACHED = 1, 2
 
 
 class Unarmed(enum.IntEnum):
-    """Which request of owsd's for a device's alarm fails: then the alarm does not come."""
+    """Why a device's alarm does not come: a request that fails, or what the file says."""
     SET = 1       # cannot be armed: SetAlarm is missing or refused
     POR = 2       # cannot be armed: PorAlarm cannot be set to 0
     LATCH = 3     # cannot be read: LatchAlarm
     RESET = 4     # cannot be reset: ResetLatch
     POR_READ = 5  # cannot be read: PorAlarm
+    NO_POR = 6    # can do nothing: PorAlarm is not defined
+    NO_LATCH = 7  # can do nothing: LatchAlarm is not defined, or empty
+    STAYS = 8     # not cleared: the latch stays set, whatever ResetLatch does
 
 
 KEPT = 256  # entries of each journal

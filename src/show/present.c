@@ -28,28 +28,27 @@ static int64_t raised(struct ows *h, int signal, uint8_t kind)
 const char *present_unarmed(const struct ows_alarm_state *state, const struct reading *reading,
                             char words[ERROR_WORDS])
 {
-	const char *verb = unarmed_verb(state->unarmed), *key = unarmed_key(state->unarmed);
+	const char *text = unarmed_text(state->unarmed), *key = unarmed_key(state->unarmed);
 	bool reads = state->unarmed == OWS_UNARMED_LATCH || state->unarmed == OWS_UNARMED_POR_READ;
 	int error = reading_good(reading) ? reading->value.err : 0;
 
-	switch (-error) {
-	case 0:
-		snprintf(words, ERROR_WORDS, "cannot be %s: %s", verb, key);
-		break;
-	case EACCES:
-		snprintf(words, ERROR_WORDS, "cannot be %s: %s cannot be %s", verb, key,
+	if (state->unarmed == OWS_UNARMED_NO_POR)
+		snprintf(words, ERROR_WORDS, "%s: %s is not defined", text, key);
+	else if (state->unarmed == OWS_UNARMED_NO_LATCH)
+		snprintf(words, ERROR_WORDS, "%s: %s is not defined, or empty", text, key);
+	else if (state->unarmed == OWS_UNARMED_STAYS)
+		snprintf(words, ERROR_WORDS, "%s: the latch stays set", text);
+	else if (!error)
+		snprintf(words, ERROR_WORDS, "%s: %s", text, key);
+	else if (error == -EACCES)
+		snprintf(words, ERROR_WORDS, "%s: %s cannot be %s", text, key,
 		         reads ? "read" : "written");
-		break;
-	case EBADRQC:
-		snprintf(words, ERROR_WORDS, "cannot be %s: %s", verb, error_text(error));
-		break;
-	case EUCLEAN:
-		snprintf(words, ERROR_WORDS, "cannot be %s: %s is still set after 0 was written",
-		         verb, key);
-		break;
-	default:
-		snprintf(words, ERROR_WORDS, "cannot be %s: %s: %s", verb, key, error_text(error));
-	}
+	else if (error == -EBADRQC)
+		snprintf(words, ERROR_WORDS, "%s: %s", text, error_text(error));
+	else if (error == -EUCLEAN)
+		snprintf(words, ERROR_WORDS, "%s: %s is still set after 0 was written", text, key);
+	else
+		snprintf(words, ERROR_WORDS, "%s: %s: %s", text, key, error_text(error));
 	return words;
 }
 

@@ -37,7 +37,7 @@ const char *standing_text(const struct ows_alarm_state *state, char words[STANDI
 	char device[32] = "";
 
 	if (state->unarmed)
-		snprintf(device, sizeof(device), "! cannot be %s", unarmed_verb(state->unarmed));
+		snprintf(device, sizeof(device), "! %s", unarmed_text(state->unarmed));
 	else if (state->stands)
 		snprintf(device, sizeof(device), "! device");
 	if (state->limit_state == OWS_LIMIT_ACKNOWLEDGED) {
@@ -72,15 +72,12 @@ static void standing_add(struct json *json, const char *kind, const char *state,
 
 void standing_json(struct json *json, const struct ows_alarm_state *state)
 {
-	char cannot[32];
-
 	json_array(json, "alarms");
 	if (state->stands)
 		standing_add(json, ows_alarm_kind_text(OWS_ALARM_DEVICE), "stands", true);
-	if (state->unarmed) {
-		snprintf(cannot, sizeof(cannot), "cannot be %s", unarmed_verb(state->unarmed));
-		standing_add(json, ows_alarm_kind_text(OWS_ALARM_DEVICE), cannot, true);
-	}
+	if (state->unarmed)
+		standing_add(json, ows_alarm_kind_text(OWS_ALARM_DEVICE),
+		             unarmed_text(state->unarmed), true);
 	if (state->limit_state != OWS_LIMIT_NORMAL)
 		standing_add(json, ows_alarm_kind_text(state->limit_kind),
 		             ows_limit_state_text(state->limit_state), false);

@@ -7,6 +7,7 @@
 #include "hal/owfs/path.h"
 #include "src/engine/alarm/alarm_effect.h"
 #include "src/engine/alarm/alarm_list.h"
+#include "src/engine/alarm/alarm_refused.h"
 #include "src/engine/publish.h"
 #include "src/engine/schedule.h"
 #include "src/text/log.h"
@@ -79,6 +80,7 @@ void alarm_take_list(struct alarm_machine *m, struct lane *lane, const char *lis
 	for (uint32_t k = 0; k < m->count; k++)
 		if (!m->items[k]->listed) {
 			m->items[k]->restart.seen = true;
+			alarm_granted(lane->engine, m->items[k], OWS_UNARMED_STAYS);
 			engine_alarm_rests(lane->engine, m->items[k]);
 		}
 }

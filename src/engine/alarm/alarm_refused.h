@@ -10,11 +10,18 @@ uint8_t alarm_shown(const struct signal *s);
 bool alarm_is_arming(uint8_t unarmed);
 /*
  * Show that what is asked for property fails with err: in the image, and if that is new in the log
- * and the journal; why: " cannot be written: ".
+ * and the journal; why: " cannot be written: ". err 0: nothing fails, and why says all.
  */
 void alarm_show(struct engine *e, struct alarm_item *item, enum ows_unarmed unarmed, int err,
                 const char *property, const char *why);
 void alarm_hide(struct engine *e, struct alarm_item *item);
+/*
+ * The alarm of the item can never do anything by the table of the machine, as PorAlarm or
+ * LatchAlarm is missing: that is shown as long as the item is as it is. The load of the file has
+ * logged it.
+ * False: it can.
+ */
+bool alarm_show_dead(struct engine *e, const struct alarm_item *item);
 
 /* Is the error that of the whole device? Then the quality says so, and not the alarm. */
 bool alarm_of_device(int err);

@@ -106,10 +106,17 @@ int alarm_take_latch(const struct alarm_answer *a)
 
 uint32_t alarm_show_latch(struct lane *lane, struct alarm_item *i)
 {
-	if (i->set[ALARM_LATCH_WAS_READ])
-		engine_alarm_raised(lane->engine, lane, i);
-	else
-		engine_alarm_rests(lane->engine, i);
+	struct engine *e = lane->engine;
+
+	if (!i->set[ALARM_LATCH_WAS_READ]) {
+		alarm_granted(e, i, OWS_UNARMED_STAYS);
+		engine_alarm_rests(e, i);
+	} else {
+		if (alarm_signal(e, i)->item->latch_stays && i->occurrence.entered)
+			alarm_refused(lane, i, OWS_UNARMED_STAYS, 0, i->strings.latch,
+			              " stays set; owsd --check names what clears it");
+		engine_alarm_raised(e, lane, i);
+	}
 	return FACT_DONE | (i->set[ALARM_LATCH_WAS_READ] ? FACT_NON_ZERO : 0);
 }
 

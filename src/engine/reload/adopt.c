@@ -257,7 +257,7 @@ static void take_alarm(struct engine *e, struct alarm_item *item, const struct e
 	uint32_t before = plan->rows[item->row];
 	const struct alarm_item *was = alarm_before(old, before);
 	const struct config_item *before_item;
-	bool visits, arms;
+	bool visits, arms, dead = alarm_show_dead(e, item);
 
 	alarm_take_item(&lane->alarm, item, e->time.now_ns);
 	if (was)
@@ -279,7 +279,7 @@ static void take_alarm(struct engine *e, struct alarm_item *item, const struct e
 	}
 	if (arms)
 		item->arming = was->arming;
-	if (!(alarm_is_arming(alarm_shown(&old->table.signals[before])) ? arms : visits))
+	if (dead || !(alarm_is_arming(alarm_shown(&old->table.signals[before])) ? arms : visits))
 		return;
 	s->attrs.flags |= old->table.signals[before].attrs.flags &
 	                  (OWS_ATTR_ALARM_UNARMED | OWS_ATTR_ALARM_WHY);

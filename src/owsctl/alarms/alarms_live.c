@@ -37,13 +37,8 @@ static const struct table_column columns[] = {
 static void alarms_live_add_row(struct live *live, const struct present *alarm)
 {
 	char value[128], words[READING_WORDS], span[WHEN_TEXT] = "-";
-	const char *state = alarm->state;
-	char cannot[32];
+	const char *state = alarm->unarmed ? unarmed_text(alarm->unarmed) : alarm->state;
 
-	if (alarm->unarmed) {
-		snprintf(cannot, sizeof(cannot), "cannot be %s", unarmed_verb(alarm->unarmed));
-		state = cannot;
-	}
 	reading_round(live->reading, alarm->decimals);
 	reading_show(live->reading, value, sizeof(value));
 	if (alarm->since_ns)

@@ -316,6 +316,18 @@ static void test_latches_of_every_spelling_are_understood(void)
 	}
 }
 
+/* The trace without what was read in the cycle, which an alarm that can do nothing is. */
+static void drop_inputs(void)
+{
+	char *at;
+
+	while ((at = strstr(s.trace, "R " D "/sensed.BYTE\n")) != NULL) {
+		char *rest = strchr(at, '\n') + 1;
+
+		memmove(at, rest, strlen(rest) + 1);
+	}
+}
+
 /*
  * All combinations of defined, empty and not defined of the five strings (por, set, latch, reset;
  * of sSensed, which comes from the path and so is always defined: defined, and empty as of an item
@@ -365,6 +377,7 @@ static void test_every_combination_of_defined_empty_and_not_defined(void)
 			if (r != 2 && sensed)
 				strcat(expected, "r " D "/sensed.BYTE\n");
 		}
+		drop_inputs();
 		snprintf(message, sizeof(message), "por %d latch %d set %d reset %d sensed %d", p,
 		         l, t, r, sensed);
 		TEST_ASSERT_EQUAL_STRING_LEN_MESSAGE(expected, s.trace, strlen(expected), message);

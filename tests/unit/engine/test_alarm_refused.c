@@ -199,6 +199,82 @@ static void test_an_alarm_of_a_device_is_in_the_log_without_v(void)
 	TEST_ASSERT_EQUAL_UINT(1, logged("inputs: alarm, latch.BYTE is 8"));
 }
 
+static void test_an_alarm_that_can_do_nothing_is_shown_and_its_value_read_as_an_input(void)
+{
+	static const struct {
+		const char *latch, *por;
+		enum ows_unarmed unarmed;
+	} cases[] = {
+		{"latch.BYTE", NULL, OWS_UNARMED_NO_POR},
+		{NULL, NULL, OWS_UNARMED_NO_POR},
+		{NULL, "por", OWS_UNARMED_NO_LATCH},
+		{"", "", OWS_UNARMED_NO_LATCH},
+	};
+
+	for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+		alarm_item(&s, "inputs", D "/sensed.BYTE", cases[i].latch, cases[i].por,
+		           "set_alarm=133333333", "latch.BYTE=0");
+		alarm_device(&s, "0", "0");
+		alarm_begin(&s);
+		TEST_ASSERT_EQUAL_UINT8(cases[i].unarmed, shown());
+		scene_tell(&s, 0, BUS_LOST, D);
+		scene_tell(&s, 0, BUS_FOUND, D);
+		scene_run(&s, SCENE_S);
+		TEST_ASSERT_EQUAL_UINT8(cases[i].unarmed, shown());
+		scene_put(&s, D "/sensed.BYTE", "7", 0);
+		scene_run(&s, SCENE_S);
+		TEST_ASSERT_EQUAL_INT64(7, scene_sample(&s, 1).value);
+		again();
+	}
+	figure_3_3(&s);
+	alarm_device(&s, "0", "0");
+	alarm_begin(&s);
+	TEST_ASSERT_EQUAL_UINT8(0, shown());
+}
+
+/* The reset writes something else. */
+static void test_a_latch_that_nothing_clears_is_shown_until_it_is_cleared(void)
+{
+	struct config_item *item = alarm_item(&s, "inputs", D "/sensed.BYTE", "latch.BYTE", "por",
+	                                      "set_alarm=133333333", "por=0");
+
+	item->latch_stays = true;
+	alarm_device(&s, "0", "0");
+	alarm_begin(&s);
+	scene_put(&s, D "/latch.BYTE", "1", 0);
+	scene_run(&s, 60 * SCENE_MS);
+	TEST_ASSERT_EQUAL_UINT8(0, shown()); /* the first alarm */
+	scene_run(&s, 10 * SCENE_S);
+	TEST_ASSERT_EQUAL_UINT8(OWS_UNARMED_STAYS, shown());
+	TEST_ASSERT_EQUAL_UINT32(2, s.image.header->alarm_head); /* raised, and this */
+	TEST_ASSERT_EQUAL_STRING("not cleared by ResetLatch", s.image.alarms[1].text);
+	scene_clear_trace(&s);
+	scene_run(&s, 60 * SCENE_S);
+	TEST_ASSERT_LESS_THAN_UINT(10, asked("r " D "/latch.BYTE\n"));
+	scene_put(&s, D "/latch.BYTE", "0", 0);
+	scene_run(&s, 61 * SCENE_S);
+	TEST_ASSERT_EQUAL_UINT8(0, shown());
+}
+
+static void set_again(struct scene *scene, const char *path)
+{
+	if (strcmp(path, "/alarm") == 0)
+		scene_put(scene, D "/latch.BYTE", "1", 0);
+	alarm_on_read(scene, path);
+}
+
+/* A level or a busy input sets a latch again that the item does clear. */
+static void test_a_latch_that_is_always_set_again_is_no_fault(void)
+{
+	figure_3_3(&s);
+	alarm_device(&s, "0", "0");
+	alarm_begin(&s);
+	s.on_read = set_again;
+	scene_put(&s, D "/latch.BYTE", "1", 0);
+	scene_run(&s, 10 * SCENE_S);
+	TEST_ASSERT_EQUAL_UINT8(0, shown());
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -209,5 +285,8 @@ int main(void)
 	RUN_TEST(test_a_device_that_is_back_is_asked_at_once);
 	RUN_TEST(test_a_reload_keeps_what_is_shown);
 	RUN_TEST(test_an_alarm_of_a_device_is_in_the_log_without_v);
+	RUN_TEST(test_an_alarm_that_can_do_nothing_is_shown_and_its_value_read_as_an_input);
+	RUN_TEST(test_a_latch_that_nothing_clears_is_shown_until_it_is_cleared);
+	RUN_TEST(test_a_latch_that_is_always_set_again_is_no_fault);
 	return UNITY_END();
 }

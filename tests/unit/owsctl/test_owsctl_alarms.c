@@ -93,6 +93,9 @@ static void test_why_an_alarm_cannot_be_armed_names_the_key_and_stands_below_the
 		{-EACCES, OWS_UNARMED_LATCH, "cannot be read: LatchAlarm cannot be read"},
 		{-EACCES, OWS_UNARMED_POR_READ, "cannot be read: PorAlarm cannot be read"},
 		{-ENOENT, OWS_UNARMED_RESET, "cannot be reset: ResetLatch: no such property"},
+		{0, OWS_UNARMED_NO_POR, "can do nothing: PorAlarm is not defined"},
+		{0, OWS_UNARMED_NO_LATCH, "can do nothing: LatchAlarm is not defined, or empty"},
+		{0, OWS_UNARMED_STAYS, "not cleared by ResetLatch: the latch stays set"},
 	};
 	char line[128], *end;
 
