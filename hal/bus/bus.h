@@ -122,13 +122,16 @@ enum bus_supply {
  *   -EISDIR       READ or WRITE of a directory
  *   -ENOTDIR      DIR of a property
  *   -EINVAL       the target refused the value that was written
- *   -EBADMSG      checksum
+ *   -EBADMSG      a checksum was wrong
+ *   -ENOMSG       the device is there, and its answer was nothing but ones, or zeros
+ *   -EBADE        nothing shows that the answer is right, and no checksum was wrong
  *   -ECOMM        the wire is short
  *   -ERANGE       a reading that means power fault (85, 127.94)
  *   -ENODATA      the device answers whole that it has no value: an open sensor, no supply, a
  *                 result that a restart has taken
  *   -EDOM         a reading that the chip cannot have measured; number has it
  *   -EBUSY        another process has it (a GPIO line)
+ *   -EMEDIUMTYPE  the id names no known version of the chip: what its codes mean is not known
  *   -EIO          any other device error
  *   -EMSGSIZE     the answer is longer than the room
  *   -EOPNOTSUPP   this bus has no such operation (DIR of /alarm on some)

@@ -40,10 +40,10 @@ static int read_pages(struct txn *txn, const struct area *area, const uint8_t *c
 	if (err)
 		return err;
 	if (onewire_crc8(command, len) != in[0])
-		return -EBADMSG;
+		return txn_checked(txn, false);
 	for (const uint8_t *page = in + 1; n; n -= area->block, page += area->block + 1) {
 		if (onewire_crc8(page, area->block + 1u))
-			return -EBADMSG;
+			return txn_checked(txn, false);
 		txn->blank |= is_all_alike(page, area->block + 1u);
 		memcpy(bytes, page, area->block);
 		bytes += area->block;
@@ -221,7 +221,7 @@ static int check_answer(struct txn *txn, const struct area *area, const uint8_t 
 	if (err)
 		return err;
 	if (!onewire_crc16_matches(onewire_crc16(0, command, len), in))
-		return -EBADMSG;
+		return txn_checked(txn, false);
 	return area->echo && in[2] != command[len - 1] ? -EIO : 0;
 }
 

@@ -71,6 +71,14 @@ static void note_failure(struct job *job, int err)
 		device->failures++;
 }
 
+/* What a request is answered that has failed for want of a true answer: why there was none. */
+static int disturbed(const struct txn *txn)
+{
+	bool nothing = txn->misread ? txn->silent : txn->blank;
+
+	return nothing ? -ENOMSG : txn->misread ? -EBADMSG : -EBADE;
+}
+
 void job_answer(struct native *native, struct job *job, int err)
 {
 	struct bus_answer answer = {.id = job->req->id,
@@ -81,6 +89,8 @@ void job_answer(struct native *native, struct job *job, int err)
 
 	job_unlock(native, job);
 	note_failure(job, err);
+	if (err == -EBADMSG)
+		answer.err = disturbed(&job->txn);
 	if (!err && job->req->op == BUS_WRITE)
 		answer.len = (uint32_t)job->taken;
 	else if (!err)

@@ -233,6 +233,7 @@ static int identify_chip(struct job *job)
 		return err;
 	device->told_ns = txn_now(txn);
 	memset(txn->own, 0, sizeof(txn->own));
+	txn->misread = false;
 	return TXN_MORE;
 }
 

@@ -34,7 +34,7 @@ static int read_twice(struct w1_slave *slave, unsigned at, uint8_t *bytes, unsig
 
 	if (!err)
 		err = read_eeprom(slave, at, again, n);
-	return err ? err : memcmp(bytes, again, n) == 0 ? 0 : -EBADMSG;
+	return err ? err : memcmp(bytes, again, n) == 0 ? 0 : -EBADE;
 }
 
 static int write_eeprom(struct w1_slave *slave, unsigned at, const uint8_t *bytes, unsigned n)

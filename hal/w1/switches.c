@@ -29,7 +29,7 @@ static int read_register(struct w1_slave *slave, unsigned which, uint8_t *value)
 		return err;
 	if (which >= MASK)
 		slave->condition[which - MASK] = *value;
-	return which == CONTROL && *value & NEVER_SET ? -EBADMSG : 0;
+	return which == CONTROL && *value & NEVER_SET ? -EBADE : 0;
 }
 
 static int read_registers(struct w1_slave *slave, unsigned at, uint8_t *bytes, unsigned n)

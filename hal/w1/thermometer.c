@@ -128,8 +128,11 @@ static int read_new(struct w1_slave *slave, uint8_t scratchpad[9])
 			err = err == -ENOENT ? 0 : err;
 		}
 	}
-	/* What was to be converted still is: the value before it is not the one asked for. */
-	if (err)
+	/*
+	 * What was to be converted still is: the value before it is not the one asked for. Zeros
+	 * with the settings of the attributes would pass for a chip's answer.
+	 */
+	if (err || thermometer_is_blank(family_of(slave->rom[0]), scratchpad))
 		return err;
 	memcpy(slave->scratchpad, scratchpad, 9);
 	slave->due = false;

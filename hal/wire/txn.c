@@ -262,13 +262,17 @@ int txn_started(struct txn *txn)
 	return err ? err : link_was_late(late) ? 0 : -EBADMSG;
 }
 
+int txn_checked(struct txn *txn, bool fits)
+{
+	txn->misread |= !fits;
+	return fits ? 0 : -EBADMSG;
+}
+
 int txn_read_crc8(struct txn *txn, uint8_t *bytes, size_t n)
 {
 	int err = txn_read(txn, bytes, n);
 
-	if (err < 0)
-		return err;
-	return rom_crc8(bytes, n) ? -EBADMSG : 0;
+	return err < 0 ? err : txn_checked(txn, rom_crc8(bytes, n) == 0);
 }
 
 int txn_read_crc16(struct txn *txn, const uint8_t *head, size_t head_n, uint8_t *bytes, size_t n)
@@ -291,7 +295,7 @@ int txn_read_pages(struct txn *txn, const uint8_t *head, size_t head_n, uint8_t 
 		const uint8_t *page = in + i * (n + 2);
 
 		if (!onewire_crc16_matches(onewire_crc16(start, page, n), page + n))
-			return -EBADMSG;
+			return txn_checked(txn, false);
 		memcpy(bytes + i * n, page, n);
 	}
 	return 0;
@@ -324,10 +328,11 @@ int txn_driver_read(struct txn *txn, const struct area *area, unsigned at, uint8
 	bool blank = txn->blank;
 
 	txn->on_wire = true;
+	txn->misread |= err == -EBADMSG;
 	if (!err)
 		note_heard(txn, bytes, n);
 	txn->blank = blank; /* of most chips the driver has looked at a checksum: area.c knows */
-	return err;
+	return err == -EBADE ? -EBADMSG : err;
 }
 
 int txn_driver_write(struct txn *txn, const struct area *area, unsigned at, const uint8_t *bytes,

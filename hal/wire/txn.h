@@ -72,6 +72,7 @@ struct txn {
 	int link_error; /* the error is the link's, not the device's */
 	bool silent;    /* nothing but ones was read */
 	bool blank;     /* nothing but ones, or nothing but zeros, was read at some time */
+	bool misread;   /* a checksum was wrong */
 	bool asked;     /* the chip was found by its id before this reading, and will be after it */
 	bool heard;     /* the device itself answered */
 	bool restarted; /* the chip lost its state: its power was away */
@@ -113,6 +114,8 @@ int txn_bit_strong(struct txn *txn, int64_t ns);
  * -EBADMSG: it has not taken the command, and what it gives later is older than that.
  */
 int txn_started(struct txn *txn);
+/* After a comparison with a checksum: 0, or -EBADMSG, and notes that. */
+int txn_checked(struct txn *txn, bool fits);
 /* n bytes, the last of which is the CRC8 of those before. -EBADMSG. */
 int txn_read_crc8(struct txn *txn, uint8_t *bytes, size_t n);
 /*

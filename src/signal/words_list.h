@@ -85,6 +85,12 @@ ERROR(EPERM, "no permission",
 /* What happens on the way. */
 ERROR(EINVAL, "the target refuses this value", "write a value that the property takes")
 ERROR(EBADMSG, "wrong checksum", "look for a bad contact, a weak pull-up, or noise")
+ERROR(ENOMSG, "nothing but ones or zeros",
+      "the wire gives them without a chip: look at its supply, its contact, the pull-up")
+ERROR(EBADE, "nothing proves the answer",
+      "look for a bad contact, a weak pull-up, or noise, or a copy of a chip that does less")
+ERROR(EMEDIUMTYPE, "the id names no known version of the chip",
+      "is it a copy? owsctl read shows its address; memory and pages can be read")
 ERROR(EDOM, "a value out of the chip's range",
       "look at the sensor and its supply; owsctl read shows the number")
 ERROR(EREMCHG, "a jump beyond MaxStep, held back until it is confirmed",

@@ -121,12 +121,12 @@ static int bridge_look(struct txn *txn, const struct sensor *sensor, const struc
 }
 
 /* What needs no wire. */
-static int compute(const struct sensor *sensor, const struct sensor_step *step)
+static int compute(struct txn *txn, const struct sensor *sensor, const struct sensor_step *step)
 {
 	double a = evaluate(sensor, step->a, 0);
 
 	if (step->kind == SENSOR_CRC8)
-		return checksum_fits(step, sensor->place->bytes) ? 0 : -EBADMSG;
+		return txn_checked(txn, checksum_fits(step, sensor->place->bytes));
 	if (step->kind == SENSOR_LET)
 		sensor->place->names[step->name] = a;
 	return step->kind == SENSOR_SAME && a != evaluate(sensor, step->b, 0) ? -EIO : 0;
@@ -157,7 +157,7 @@ static int bridge_step(struct txn *txn, const struct sensor *sensor)
 		visit->step++;
 		return txn_wait(txn, step->wait_ns);
 	default:
-		err = compute(sensor, step);
+		err = compute(txn, sensor, step);
 		visit->step++;
 		return err;
 	}
@@ -180,7 +180,7 @@ static bool take_shared(struct txn *txn, const struct sensor *sensor)
 		const struct sensor_step *step =
 			&sensor->table->steps[sensor->kind->first_step + i];
 
-		if (step->kind >= SENSOR_CRC8 && compute(sensor, step))
+		if (step->kind >= SENSOR_CRC8 && compute(txn, sensor, step))
 			return false;
 	}
 	return n > 0;

@@ -68,7 +68,7 @@ static int function(struct txn *txn, const uint8_t *rom, const uint8_t *bytes, u
 	if (answer[0] != 0xff || answer[1] < 1 || answer[1] > 1 + room ||
 	    !onewire_crc16_matches(onewire_crc16(0, answer + 1, answer[1] + 1u),
 	                           answer + 2 + answer[1]))
-		return -EBADMSG;
+		return txn_checked(txn, false);
 	if (answer[2] == NOT_ACKNOWLEDGED)
 		return -EIO;
 	if (answer[2] != DONE || answer[1] != 1 + m)

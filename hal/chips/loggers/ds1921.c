@@ -56,7 +56,7 @@ int ds1921_read_version(struct txn *txn)
 	const struct ds1921_version *version = ds1921_version_of(txn->device);
 
 	if (!version)
-		return -EIO;
+		return -EMEDIUMTYPE;
 	switch (txn->property->arg) {
 	case DS1921_RESOLUTION:
 		txn->number[0] = version->step;
@@ -128,7 +128,7 @@ int ds1921_read_log(struct txn *txn)
 	int err;
 
 	if (!version)
-		return -EIO;
+		return -EMEDIUMTYPE;
 	if (txn->phase == 0) {
 		err = ds1921_mission(txn, &mission);
 		if (err)
@@ -206,7 +206,7 @@ int ds1921_read_limit(struct txn *txn)
 	int err = area_read(txn, &ds1921_registers, (unsigned)txn->property->arg, &code, 1);
 
 	if (!version)
-		return -EIO;
+		return -EMEDIUMTYPE;
 	txn->number[0] = ds1921_celsius(version, code);
 	return err;
 }

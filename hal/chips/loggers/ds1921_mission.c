@@ -23,7 +23,7 @@ int ds1921_read_temperature(struct txn *txn)
 	int err;
 
 	if (!version)
-		return -EIO;
+		return -EMEDIUMTYPE;
 	if (txn->phase == 0) {
 		err = logger_look(txn);
 		txn->phase = 1;
@@ -49,7 +49,7 @@ int ds1921_write_limit(struct txn *txn)
 	const struct ds1921_version *version = ds1921_version_of(txn->device);
 
 	if (!version)
-		return -EIO;
+		return -EMEDIUMTYPE;
 	double code = (txn->number[0] - version->zero) / version->step + 0.5;
 	if (!(code >= 0 && code < 256))
 		return -EINVAL;

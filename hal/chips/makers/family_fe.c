@@ -48,7 +48,7 @@ static int fetch_page(struct txn *txn, uint8_t bytes[PAGE], unsigned *covers)
 	                  ? COMMAND_AND_PAGE
 	                  : NOT_KNOWN;
 	memcpy(bytes, in, PAGE);
-	return *covers ? 0 : -EBADMSG;
+	return txn_checked(txn, *covers);
 }
 
 /* One page; TXN_MORE: which checksum it has is not known yet, and another is to be read. */
@@ -62,7 +62,7 @@ static int load_page(struct txn *txn, const struct area *area, unsigned at, uint
 
 	(void)area;
 	if (!err && (slave->covers || slave->pages) && covers != slave->learning)
-		err = -EBADMSG;
+		err = txn_checked(txn, false);
 	if (err && !slave->covers)
 		slave->pages = 0;
 	if (err)

@@ -22,7 +22,7 @@ int eprom_load(struct txn *txn, const struct area *area, unsigned at, uint8_t *b
 		return err;
 	if (!onewire_crc16_matches(onewire_crc16(onewire_crc16(0, command, 3), in, 1), in + 1) ||
 	    !onewire_crc16_matches(onewire_crc16(0, in + 3, n), in + 3 + n))
-		return -EBADMSG;
+		return txn_checked(txn, false);
 	memcpy(bytes, in + 3, n);
 	return 0;
 }

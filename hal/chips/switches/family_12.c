@@ -26,7 +26,7 @@ static int channel_info(struct txn *txn, uint8_t control, uint8_t *info)
 		/* That it was told to clear its latches: this is what they were. */
 		command[1] ^= ACCESS_RESET_LATCHES;
 		if ((control & ACCESS_RESET_LATCHES) || !is_checked(command, in))
-			err = -EBADMSG;
+			err = txn_checked(txn, false);
 	}
 	if (!err)
 		*info = in[0];

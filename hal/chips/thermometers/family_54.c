@@ -59,7 +59,7 @@ static int start_conversion(struct txn *txn)
 	if (!txn->link->passive)
 		crc[1] |= (uint8_t)(~covered >> 8 & 0x80);
 	if (!onewire_crc16_matches(covered, crc))
-		return -EBADMSG;
+		return txn_checked(txn, false);
 	return txn->link->passive ? txn_wait(txn, CONVERT_NS) : txn_bit_strong(txn, CONVERT_NS);
 }
 

@@ -17,7 +17,9 @@
 #define RAW_POWER_ON 0x0550
 #define RAW_BROKEN 0x07f8 /* 127.5 and above: no chip measures that */
 #define REMAIN_POWER_ON 0x0c
-#define PER_DEGREE 0x10 /* in every DS18S20 */
+#define PER_DEGREE 0x10       /* in every DS18S20 */
+#define PER_DEGREE_MAX 0x7f   /* in a DS1820 of the 1990s, where the chip counts them */
+#define WHOLE_POWER_ON 0x00aa /* of those without a resolution: half degrees */
 #define FAMILY_3B 0x3b
 #define CONFIG_ZERO 0x80 /* a bit that is 0 in every other chip with a resolution */
 #define NEAR_RAW (5 * 16)
@@ -65,14 +67,18 @@ static int saw_config(struct txn *txn, const uint8_t scratchpad[9])
 }
 
 /*
- * The ones of a wire on which no chip answers get a right checksum by two bits turned over. Chips
- * of family 3B are told apart by that bit.
+ * Nothing but zeros has a right checksum. The ones of a wire on which no chip answers get one by
+ * two bits turned over. Chips of family 3B are told apart by that bit.
  */
-static bool is_noise(const struct device *device, const uint8_t scratchpad[9])
+bool thermometer_is_blank(const struct family *family, const uint8_t scratchpad[9])
 {
-	if (device->family->fixed)
-		return scratchpad[SP_PER_DEGREE] > PER_DEGREE;
-	return device->family->code != FAMILY_3B && (scratchpad[SP_CONFIG] & CONFIG_ZERO);
+	uint8_t per = scratchpad[SP_PER_DEGREE];
+
+	if (scratchpad[SP_CONFIG] == 0 && per == 0)
+		return true;
+	if (family->fixed)
+		return per > PER_DEGREE && (per > PER_DEGREE_MAX || scratchpad[SP_REMAIN] > per);
+	return family->code != FAMILY_3B && (scratchpad[SP_CONFIG] & CONFIG_ZERO);
 }
 
 int thermometer_saw(struct txn *txn, unsigned at, uint8_t *scratchpad, unsigned n)
@@ -80,10 +86,12 @@ int thermometer_saw(struct txn *txn, unsigned at, uint8_t *scratchpad, unsigned 
 	/* A driver's, in part. */
 	if (at || n < SP_CRC)
 		return 0;
-	/* Nothing but zeros has a right checksum, and no such chip. */
-	if (scratchpad[SP_CONFIG] == 0 && scratchpad[SP_PER_DEGREE] == 0)
-		return -EBADMSG;
-	if (is_noise(txn->device, scratchpad))
+	const struct family *family = txn->device->family;
+	bool blank = thermometer_is_blank(family, scratchpad);
+
+	/* No chip divides a degree in none. */
+	txn->blank |= blank;
+	if (blank || (family->fixed && scratchpad[SP_PER_DEGREE] == 0))
 		return -EBADMSG;
 	thermometer_of(txn->device)->slow = txn->device->rom[0] == 0x28 && scratchpad[SP_5] != 0xff;
 	return saw_config(txn, scratchpad);
@@ -126,7 +134,7 @@ int thermometer_start(struct txn *txn)
 }
 
 /* Sixteenths of a degree at the resolution that the scratchpad states. */
-static int thermometer_raw(const struct device *device, const uint8_t scratchpad[9])
+static double sixteenths(const struct device *device, const uint8_t scratchpad[9])
 {
 	int raw = (int16_t)(scratchpad[SP_LSB] | scratchpad[SP_MSB] << 8);
 
@@ -134,13 +142,19 @@ static int thermometer_raw(const struct device *device, const uint8_t scratchpad
 		int per_degree = scratchpad[SP_PER_DEGREE];
 		int whole = raw >> 1;
 
-		if (!per_degree)
-			return raw * 8;
-		return whole * 16 - 4 + 16 * (per_degree - scratchpad[SP_REMAIN]) / per_degree;
+		return whole * 16 - 4 + 16.0 * (per_degree - scratchpad[SP_REMAIN]) / per_degree;
 	}
 	if (thermometer_of(device)->only_12)
 		return raw;
 	return raw & ~((1 << (3 - (scratchpad[SP_CONFIG] >> 5 & 3))) - 1);
+}
+
+/* Of a chip that counts what a degree has, nobody knows the counts of its restart. */
+static bool is_power_on(const struct device *device, int raw, const uint8_t scratchpad[9])
+{
+	return raw == RAW_POWER_ON ||
+	       (device->family->fixed && scratchpad[SP_PER_DEGREE] != PER_DEGREE &&
+	        (scratchpad[SP_LSB] | scratchpad[SP_MSB] << 8) == WHOLE_POWER_ON);
 }
 
 /*
@@ -179,7 +193,7 @@ static int thermometer_guard(struct txn *txn, int raw, const uint8_t scratchpad[
 
 	if (raw >= RAW_BROKEN)
 		return -ERANGE;
-	if (raw != RAW_POWER_ON)
+	if (!is_power_on(device, raw, scratchpad))
 		return 0;
 	if (thermometer_of(device)->make == MAKE_GENUINE &&
 	    scratchpad[SP_REMAIN] != REMAIN_POWER_ON)
@@ -269,7 +283,8 @@ int thermometer_read_temperature(struct txn *txn)
 	err = thermometer_ended(txn, scratchpad, now);
 	if (err)
 		return err;
-	int raw = thermometer_raw(device, scratchpad);
+	double exact = sixteenths(device, scratchpad);
+	int raw = (int)exact;
 	err = thermometer_guard(txn, raw, scratchpad, now);
 	if (err)
 		return err;
@@ -277,7 +292,7 @@ int thermometer_read_temperature(struct txn *txn)
 	learn_name(device, scratchpad);
 	err = thermometer_took(txn, scratchpad, now);
 	thermometer_of(device)->raw = (int16_t)raw;
-	txn->number[0] = raw / 16.0;
+	txn->number[0] = exact / 16;
 	return err;
 }
 

@@ -14,6 +14,8 @@
 
 void thermometer_forget(struct device *device);
 
+/* A right checksum, and yet what a wire without an answer gives, or nearly so. */
+bool thermometer_is_blank(const struct family *family, const uint8_t scratchpad[9]);
 /*
  * The nine bytes. What their configuration tells is noted; -EBADMSG: no such chip sends them,
  * -ENOENT it has not the property that is asked for.

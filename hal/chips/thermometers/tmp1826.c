@@ -131,6 +131,7 @@ static int look_again(struct txn *txn, const uint8_t in[BYTES])
 	bool same = verdict == look->verdict &&
 	            (verdict || (!blank && memcmp(in, look->bytes, BYTES) == 0));
 
+	txn->misread |= !verdict;
 	look->same = look->all && same ? look->same + 1 : !blank;
 	look->verdict = (uint8_t)verdict;
 	memcpy(look->bytes, in, BYTES);
@@ -167,10 +168,11 @@ int tmp1826_read_pad(struct txn *txn, uint8_t pad[PAD])
 
 	if (err)
 		return err;
-	if (rom_crc8(pad, FIRST) || rom_crc8(pad + FIRST, PAD - FIRST) || all_are(pad, PAD, 0))
-		return -EBADMSG;
+	err = txn_checked(txn, !rom_crc8(pad, FIRST) && !rom_crc8(pad + FIRST, PAD - FIRST));
 	/* The checksum of zeros is zero: so reads a wire that became short in between. */
 	txn->blank |= all_are(pad, FIRST, 0) || all_are(pad + FIRST, PAD - FIRST, 0);
+	if (err || all_are(pad, PAD, 0))
+		return -EBADMSG;
 	tmp1826_of(txn)->alerts |= pad[STATUS] >> ALERT_SHIFT;
 	txn->device->power = pad[STATUS] & FED_BY_BUS ? POWER_PARASITE : POWER_EXTERNAL;
 	return 0;

@@ -65,7 +65,7 @@ static int write_settings(struct txn *txn, const uint8_t settings[SETTINGS])
 	tmp1826_of(txn)->kept = false;
 	txn_void(txn);
 	int err = txn_ask(txn, command, sizeof(command), &crc, 1);
-	return err ? err : crc == onewire_crc8(settings, SETTINGS) ? 0 : -EBADMSG;
+	return err ? err : txn_checked(txn, crc == onewire_crc8(settings, SETTINGS));
 }
 
 int tmp1826_read_limit(struct txn *txn)

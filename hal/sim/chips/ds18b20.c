@@ -132,8 +132,10 @@ static void latch_temperature(struct sim_slave *slave)
 	if (is_s20(slave)) {
 		/* TEMPERATURE = TEMP_READ - 0.25 + (COUNT_PER_C - COUNT_REMAIN) / COUNT_PER_C */
 		int shifted = raw + 4, whole = shifted >> 4;
+		int counts = s->counts ? s->counts : 16;
 
-		s->scratchpad[6] = (uint8_t)(16 - (shifted & 15));
+		s->scratchpad[6] = (uint8_t)(counts - (shifted & 15) * counts / 16);
+		s->scratchpad[7] = (uint8_t)counts;
 		raw = whole * 2 + ((shifted & 15) >= 8);
 	} else {
 		raw &= ~((1 << (12 - resolution_bits(slave))) - 1);
@@ -273,7 +275,8 @@ static void set_recall(struct sim_slave *slave, int64_t knows)
 	{ \
 		"resolution", 9, 12, .set = set_resolution \
 	}
-static const struct sim_option s20_options[] = {OPTIONS, {0}};
+static const struct sim_option s20_options[] = {
+	OPTIONS, SIM_OPTION(sim_thermometer, "counts", 1, 255, counts), {0}};
 static const struct sim_option options[] = {OPTIONS, RESOLUTION, {0}};
 static const struct sim_option ds1825_options[] = {
 	OPTIONS, RESOLUTION, SIM_OPTION(sim_thermometer, "address", 0, 15, address), {0}};

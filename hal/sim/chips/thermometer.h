@@ -29,6 +29,7 @@ struct sim_thermometer {
 	uint8_t eeprom[3];             /* TH, TL, configuration */
 	uint8_t address;               /* DS1825: AD0..AD3 */
 	bool fixed;                    /* a clone: stays at 12 bits, whatever is written */
+	uint8_t counts;                /* of a degree, in a DS1820 of the 1990s; 0 means 16 */
 	uint8_t percent;               /* of the conversion time by the data sheet; 0 means 100 */
 	bool alarm, copying;
 	bool once;      /* a Convert T while it converts is ignored; else it begins anew */

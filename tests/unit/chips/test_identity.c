@@ -406,8 +406,8 @@ static void test_a_clone_that_shows_nothing_of_its_conversion_gives_no_value(voi
 	struct sim_slave *slave = plug_clone("DS18B20-F", id);
 
 	start();
-	TEST_ASSERT_EQUAL_INT(-EBADMSG, read_error(slave, "temperature"));
-	TEST_ASSERT_EQUAL_INT(-EBADMSG, read_error(slave, "identity"));
+	TEST_ASSERT_EQUAL_INT(-EBADE, read_error(slave, "temperature"));
+	TEST_ASSERT_EQUAL_INT(-EBADE, read_error(slave, "identity"));
 }
 
 /* The scratchpad of family E is after a restart as if 85 degrees had been measured. */

@@ -5,6 +5,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "hal/owfs/path.h"
 #include "tests/unit/aid/native_scene.h"
 #include "unity.h"
 
@@ -66,6 +67,26 @@ static void test_the_temperature_is_converted(void)
 	is("histogram/gap", "           2");
 	is("histogram/temperature.2", "         -36");
 	is("about/samples", "           2");
+}
+
+/* The id says what a degree is: of an unknown one no value can be good, and that is the reason. */
+static void test_an_id_of_no_known_version_gives_its_reason(void)
+{
+	static const char *const properties[] = {"temperature", "about/version", "about/resolution",
+	                                         "log/temperature.0"};
+
+	tearDown();
+	native_begin();
+	wire_init(&host, 1, 1);
+	chip = wire_add(0, "DS1921G", 1);
+	chip->rom[6] = 0x77;
+	chip->rom[7] = rom_crc8(chip->rom, 7);
+	start();
+	for (unsigned i = 0; i < sizeof(properties) / sizeof(properties[0]); i++)
+		TEST_ASSERT_EQUAL_INT_MESSAGE(-EMEDIUMTYPE,
+		                              result(BUS_READ, of(chip, properties[i]), NULL),
+		                              properties[i]);
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_READ, of(chip, "clock/date"), NULL));
 }
 
 /* TCB of the status is 0 while it converts. */
@@ -271,6 +292,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_the_temperature_is_converted);
+	RUN_TEST(test_an_id_of_no_known_version_gives_its_reason);
 	RUN_TEST(test_a_conversion_under_way_shows_as_measuring);
 	RUN_TEST(test_the_clock_has_the_date_that_was_set);
 	RUN_TEST(test_a_mission_logs_a_sample_at_each_interval);

@@ -422,7 +422,7 @@ static void test_the_application_register_of_a_ds2430a_is_written_once(void)
 	TEST_ASSERT_EQUAL_MEMORY("register", slave_data, 8);
 	reads("status", "         252");
 	go(BUS_WRITE, "application", "anything");
-	TEST_ASSERT_EQUAL_INT(-EBADMSG, host.answer[0].err);
+	TEST_ASSERT_EQUAL_INT(-EBADE, host.answer[0].err);
 }
 
 static void test_a_ds2423_counts(void)

@@ -271,7 +271,7 @@ static void test_a_locked_max31826_refuses_and_a_garbled_scratchpad_is_not_copie
 	part->locked = false;
 	part->copies = 0;
 	part->garbled = true;
-	TEST_ASSERT_EQUAL_INT(-EBADMSG, result(BUS_WRITE, of(slave, "pages/page.0"), "x"));
+	TEST_ASSERT_EQUAL_INT(-EBADE, result(BUS_WRITE, of(slave, "pages/page.0"), "x"));
 	TEST_ASSERT_EQUAL_UINT(0, part->copies);
 	TEST_ASSERT_EQUAL_HEX8(0, part->memory[0]);
 }

@@ -6,6 +6,7 @@
 #include "hal/chips/thermometers/state.h"
 #include "hal/chips/thermometers/thermometer.h"
 #include "hal/owfs/path.h"
+#include "hal/sim/chips/thermometer.h"
 #include "unity.h"
 
 #include "tests/unit/aid/native_scene.h"
@@ -256,6 +257,45 @@ static void test_the_power_on_value_of_the_genuine_chip_is_known_from_the_temper
 	TEST_ASSERT_EQUAL_INT(-ERANGE, result(BUS_READ, of(slave, "latesttemp"), NULL));
 }
 
+/* The DS1820 of the 1990s counts what a degree has; later chips have 16 for it. */
+static void test_a_ds1820_with_any_count_of_a_degree_is_read(void)
+{
+	static const unsigned counts[] = {16, 17, 64, 78, 100, 127};
+
+	for (unsigned i = 0; i < sizeof(counts) / sizeof(counts[0]); i++) {
+		setUp();
+		wire_init(&host, 1, 1);
+		struct sim_slave *slave = wire_add(0, "DS18S20", 1);
+
+		TEST_ASSERT_EQUAL_INT(0, sim_slave_option(slave, "counts", counts[i]));
+		start();
+		for (double celsius = -10; celsius < 11; celsius += 3.3125) {
+			uint32_t id = ask(BUS_READ, BUS_INPUT, true, of(slave, "temperature"),
+			                  (wire_set(slave, "temperature", celsius), NULL));
+
+			TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+			TEST_ASSERT_DOUBLE_WITHIN(1.01 / counts[i], celsius, answer_to(id)->number);
+		}
+		/* Whatever it left in the counts, a restart leaves 85. */
+		TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, "/simultaneous/temperature", "1"));
+		sim_slave_brownout(slave, wire_time());
+		((struct sim_thermometer *)slave->state)->scratchpad[7] = (uint8_t)counts[i];
+		TEST_ASSERT_EQUAL_INT(-ERANGE, result(BUS_READ, of(slave, "latesttemp"), NULL));
+		tearDown();
+	}
+	setUp();
+}
+
+static void test_counts_of_a_degree_that_no_chip_has_are_refused(void)
+{
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18S20", 1);
+
+	TEST_ASSERT_EQUAL_INT(0, sim_slave_option(slave, "counts", 200));
+	start();
+	TEST_ASSERT_EQUAL_INT(-ENOMSG, result(BUS_READ, of(slave, "temperature"), NULL));
+}
+
 /* Of a clone, whose byte 6 tells nothing. */
 
 static void test_the_power_on_value_is_never_good(void)
@@ -369,6 +409,8 @@ int main(void)
 	RUN_TEST(test_a_number_is_read_without_its_text_and_the_cache_gives_both);
 	RUN_TEST(test_a_monitor_that_restarts_while_it_measures_is_measured_again);
 	RUN_TEST(test_the_power_on_value_of_the_genuine_chip_is_known_from_the_temperature);
+	RUN_TEST(test_a_ds1820_with_any_count_of_a_degree_is_read);
+	RUN_TEST(test_counts_of_a_degree_that_no_chip_has_are_refused);
 	RUN_TEST(test_the_power_on_value_is_never_good);
 	RUN_TEST(test_85_is_good_near_the_last_reading_of_the_last_minute_alone);
 	RUN_TEST(test_a_chip_that_takes_no_resolution_is_read_all_the_same);

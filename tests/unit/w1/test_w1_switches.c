@@ -86,7 +86,7 @@ static void test_a_ds2408_that_is_silent_has_no_value(void)
 {
 	fs_board(0xff, 0xff);
 	fs_start();
-	fs_fails(-EBADMSG, BOARD_OW "/sensed.BYTE");
+	fs_fails(-EBADE, BOARD_OW "/sensed.BYTE");
 	fs_broken(BOARD, "state");
 	fs_fails(-EIO, BOARD_OW "/sensed.BYTE");
 	TEST_ASSERT_EQUAL_UINT(0, host_events(&fs.host, BUS_DOWN));

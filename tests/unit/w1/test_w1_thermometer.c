@@ -102,6 +102,39 @@ static void test_a_wrong_checksum_is_told(void)
 	fs_fails(-EIO, WARM_OW "/temperature");
 }
 
+/* The formula of the kernel, with the register of a DS1820 of the 1990s; 16 in later chips. */
+static void test_the_counts_of_a_degree_are_those_of_the_chip(void)
+{
+	fs_slave("10-0000000000c1");
+	fs_text("10-0000000000c1", "w1_slave",
+	        "32 00 ff ff ff ff 2a 4e a3 : crc=a3 YES\n"
+	        "32 00 ff ff ff ff 2a 4e a3 t=25211\n");
+	fs_start();
+	fs_reads("     25.2115", "/10.C10000000000/temperature");
+}
+
+/* What a wire gives without a chip has a right checksum, too. */
+static void test_an_answer_of_ones_or_zeros_is_called_so(void)
+{
+	static const char *const lines[] = {
+		"00 00 00 00 00 00 00 00 00 : crc=00 YES\n",
+		"ff ff ff ff ff ff ff ff c9 : crc=c9 YES\n",
+	};
+
+	fs_slave("10-0000000000c1");
+	fs_thermometer(WARM, 0x151);
+	fs_start();
+	for (unsigned i = 0; i < 2; i++) {
+		fs_text("10-0000000000c1", "w1_slave", lines[i]);
+		fs_text(WARM, "w1_slave", lines[i]);
+		fs_fails(-ENOMSG, "/10.C10000000000/temperature");
+		fs_fails(-ENOMSG, WARM_OW "/temperature");
+	}
+	/* Neither ones nor zeros, but no degree is divided in none. */
+	fs_text("10-0000000000c1", "w1_slave", "32 00 4b 46 ff ff 0c 00 f6 : crc=f6 YES\n");
+	fs_fails(-EBADE, "/10.C10000000000/temperature");
+}
+
 static int scratchpad(struct link *link, uint8_t pad[9])
 {
 	static const struct area area = {.name = "scratchpad", .size = 9};
@@ -295,6 +328,8 @@ int main(void)
 	RUN_TEST(test_a_number_that_no_chip_can_have_is_a_failed_reading);
 	RUN_TEST(test_an_empty_file_is_a_failed_reading);
 	RUN_TEST(test_a_wrong_checksum_is_told);
+	RUN_TEST(test_the_counts_of_a_degree_are_those_of_the_chip);
+	RUN_TEST(test_an_answer_of_ones_or_zeros_is_called_so);
 	RUN_TEST(test_a_reading_that_failed_is_not_made_up_by_the_one_before);
 	RUN_TEST(test_power_faults_are_never_good);
 	RUN_TEST(test_a_resolution_is_written_when_it_differs);
