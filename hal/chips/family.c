@@ -15,7 +15,7 @@ const char *family_identity(const struct device *device)
 {
 	const struct family *family = device->family;
 
-	if (family->name)
+	if (family->name || device->identity)
 		return device->identity;
 	return family->several && !device->kind ? NULL : family_type(device);
 }

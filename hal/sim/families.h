@@ -18,7 +18,7 @@
 	family(ds1921g) family(ds1921h) family(ds1921z) \
 	family(ds1923) family(ds1922l) family(ds1922t) family(ds2422) \
 	/* switches */ \
-	family(ds2405) family(ds2406) family(ds2408) family(ds2413) \
+	family(ds2405) family(ds2406) family(ds2408) family(ds2413) family(ds2413_emulated) \
 	/* couplers, bridges to I2C */ \
 	family(ds2409) family(ds28e17) family(ds28e18) \
 	/* voltages, batteries */ \

@@ -8,6 +8,12 @@
 enum { PIO_PINS, PIO_OUTPUTS, PIO_STATE };
 extern const struct area pio_status;
 
+/* What is known of a DS2413 (device.own): readings in a row that only a copy of it gives. */
+struct pio_copy {
+	uint8_t readings;
+	bool asked; /* it did not confirm a write: it is looked at before the next */
+};
+
 /* The hooks of the latches' area. */
 int pio_load(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, unsigned n);
 int pio_store(struct txn *txn, const struct area *area, unsigned at, const uint8_t *bytes,

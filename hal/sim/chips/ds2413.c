@@ -8,7 +8,30 @@ static void ds2413_power_on(struct sim_slave *slave)
 	sim_pins_start(slave, 0, 2);
 }
 
+/* A program that plays one, as OneWireHub: the status once; no confirmation of a write. */
+static void send_once(struct sim_slave *slave)
+{
+	sim_pins_send(slave);
+}
+
+static void say_nothing(struct sim_slave *slave)
+{
+	sim_end(slave);
+}
+
+static void take(struct sim_slave *slave)
+{
+	if ((slave->taken[0] ^ slave->taken[1]) == 0xFF)
+		sim_pins_write(slave, slave->taken[0] & 3);
+	sim_end(slave);
+}
+
 static const struct sim_function functions[] = {{SIM_PINS_READ(0xF5)}, {SIM_PINS_WRITE(0x5A)}, {0}};
+static const struct sim_function emulated[] = {
+	{.code = 0xF5, .start = send_once, .next = say_nothing},
+	{.code = 0x5A, .takes = 2, .start = take},
+	{0},
+};
 static const struct sim_input inputs[] = {{SIM_PIN("pin.A")}, {SIM_PIN("pin.B")}, {0}};
 
 const struct sim_family sim_ds2413 = {
@@ -18,6 +41,16 @@ const struct sim_family sim_ds2413 = {
 	.resume = true,
 	.state_size = sizeof(struct sim_pins),
 	.functions = functions,
+	.inputs = inputs,
+	.power_on = ds2413_power_on,
+	.advance = sim_pins_follow,
+};
+
+const struct sim_family sim_ds2413_emulated = {
+	.name = "DS2413-EMULATED",
+	.code = 0x3A,
+	.state_size = sizeof(struct sim_pins),
+	.functions = emulated,
 	.inputs = inputs,
 	.power_on = ds2413_power_on,
 	.advance = sim_pins_follow,
