@@ -18,6 +18,7 @@
 #include "src/config/property.h"
 #include "src/config/shared.h"
 #include "src/config/targets.h"
+#include "src/signal/unit.h"
 
 struct check {
 	struct config_report *report;
@@ -149,25 +150,30 @@ static void check_direction(const struct check *check)
 		               item->name, strrchr(item->path, '/') + 1);
 }
 
-/* A name of a temperature that is not that of the property, which nothing converts. */
+/* A unit that nothing converts to, or that other programs spell otherwise. */
 static void check_unit(const struct check *check)
 {
-	static const char *const others[] = {"F", "°F", "degF",   "Fahrenheit", "fahrenheit",
-	                                     "K", "°K", "Kelvin", "kelvin"};
 	const struct config_item *item = check->item;
+	const char *symbol = item->unit ? unit_symbol(item->unit) : NULL;
+	double factor, offset;
 	struct quantity quantity;
+	char known[128];
 
-	if (!item->unit || item->scale.linear || item->scale.count ||
-	    !quantity_of(item->path, &quantity) || strcmp(quantity.unit, "°C") != 0)
+	if (!item->unit || !*item->unit || item->type == OWS_STRING)
 		return;
-	for (size_t i = 0; i < sizeof(others) / sizeof(others[0]); i++)
-		if (!strcmp(item->unit, others[i]))
-			report_warning(check->report, check->place,
-			               "\"%s\": Unit \"%s\" is shown beside a value in °C: write "
-			               "%s too",
-			               item->name, item->unit,
-			               strpbrk(item->unit, "Ff") ? "Scale 1.8 and Offset 32"
-			                                         : "Offset 273.15");
+	if (!scale_changes(&item->scale) && quantity_of(item->path, &quantity) && *quantity.unit &&
+	    !unit_convert(quantity.unit, item->unit, &factor, &offset)) {
+		unit_list(quantity.unit, known, sizeof(known));
+		report_warning(check->report, check->place,
+		               "\"%s\": Unit \"%s\" is shown beside a value in %s: write %s, or "
+		               "Scale too",
+		               item->name, item->unit, quantity.unit,
+		               *known ? known : quantity.unit);
+	} else if (symbol && strcmp(symbol, item->unit) != 0) {
+		report_warning(check->report, check->place,
+		               "\"%s\": Unit \"%s\": other programs know it as %s", item->name,
+		               item->unit, symbol);
+	}
 }
 
 /* So long owsd's own buses give a value again that was measured (docs/semantics.md 6). */

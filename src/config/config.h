@@ -52,7 +52,8 @@ struct config_item {
 	const char *name;
 	const char *path;   /* normalised: leading "/", without "/uncached" and "/alarm" */
 	const char *device; /* the ROM id in path; NULL: an alias, or no device */
-	const char *family; /* what the chip is called, as far as the path shows it; NULL: not known */
+	const char
+		*family; /* what the chip is called, as far as the path shows it; NULL: not known */
 	enum ows_type type;
 	bool output;
 	bool readable, writable; /* start values of _ReadEnable and _WriteEnable */
@@ -79,6 +80,7 @@ struct config_item {
 	const char *points;     /* as written */
 	int decimals;           /* -1: not given */
 	struct scale scale;
+	bool converted;         /* scale is that from the unit of the chip to this one */
 	double filter_s, deadband, max_step; /* 0: none */
 	const char *record_text;             /* as written; NULL: as the Recorder block says */
 	struct config_record record;

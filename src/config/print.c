@@ -84,7 +84,7 @@ static void put_scaling(FILE *out, const struct config_item *item)
 	if (item->decimals >= 0)
 		put_word(out, OPT_DECIMALS, "%d", item->decimals);
 	put_text(out, OPT_DESCRIPTION, item->description);
-	if (scale->linear) {
+	if (scale->linear && !item->converted) {
 		put_number(out, OPT_SCALE, scale->factor);
 		put_number(out, OPT_OFFSET, scale->offset);
 	}

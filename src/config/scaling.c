@@ -5,8 +5,10 @@
 #include <string.h>
 #include <time.h>
 
+#include "hal/chips/facts.h"
 #include "src/config/build.h"
 #include "src/config/scaling.h"
+#include "src/signal/unit.h"
 #include "src/signal/utf8.h"
 #include "src/signal/value.h"
 
@@ -139,6 +141,25 @@ static void build_scale(struct build *build, const struct option_value *values,
 		             "a bool can only be inverted: expected Scale -1 and Offset 1");
 }
 
+/* --- Unit ----------------------------------------------------------------------------------- */
+
+/*
+ * A property that a chip measures in another unit of the same quantity, and that nothing scales:
+ * the scale is that from the one to the other, and the unit is spelled as other programs know it.
+ */
+static void convert_unit(struct config_item *item)
+{
+	struct scale *scale = &item->scale;
+	struct quantity quantity;
+
+	if (!item->unit || !item->path || item->type == OWS_STRING || item->type == OWS_BOOL ||
+	    scale_changes(scale) || !quantity_of(item->path, &quantity) ||
+	    !unit_convert(quantity.unit, item->unit, &scale->factor, &scale->offset))
+		return;
+	scale->linear = item->converted = scale->factor != 1 || scale->offset != 0;
+	item->unit = unit_symbol(item->unit);
+}
+
 /* --- Range ----------------------------------------------------------------------------------- */
 
 static void build_range(struct build *build, const struct option_value *values,
@@ -212,6 +233,8 @@ void scaling_build(struct build *build, const struct option_value *values, bool 
 	if (known)
 		refuse_for_type(build, values, item);
 	build_scale(build, values, item);
+	if (known)
+		convert_unit(item);
 	build_range(build, values, item);
 	item->max_step = of_input(build, &values[OPT_MAX_STEP], item);
 	item->filter_s = of_input(build, &values[OPT_FILTER], item);

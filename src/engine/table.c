@@ -188,14 +188,29 @@ static double limit_of(const struct config_limits *limits, enum config_limit lim
 	return limits->has[limit] ? limits->limit[limit] : (double)NAN;
 }
 
-/* What a chip measures has a unit and a resolution by its data sheet, until it is scaled. */
+/* The digits of a step of the chip in the unit of the item. */
+static int decimals_of(const struct config_item *item, const struct quantity *quantity)
+{
+	int fewer = item->converted ? (int)floor(log10(fabs(item->scale.factor))) : 0;
+
+	if (quantity->decimals < 0)
+		return -1;
+	return quantity->decimals > fewer ? quantity->decimals - fewer : 0;
+}
+
+/*
+ * What a chip measures has a unit and a resolution by its data sheet, until it is scaled otherwise
+ * than to another unit.
+ */
 void signal_table_meta(const struct config_item *item, struct image_meta *meta)
 {
 	const struct scale *scale = &item->scale;
 	struct quantity quantity;
-	bool known = item->type != OWS_STRING && !scale_changes(scale) &&
+	bool known = item->type != OWS_STRING && (!scale_changes(scale) || item->converted) &&
 	             quantity_of(item->path, &quantity);
-	int decimals = item->decimals >= 0 ? item->decimals : known ? quantity.decimals : -1;
+	int decimals = item->decimals >= 0 ? item->decimals
+	               : known             ? decimals_of(item, &quantity)
+	                                   : -1;
 
 	*meta = (struct image_meta){
 		.unit = item->unit ? item->unit

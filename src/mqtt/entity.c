@@ -7,6 +7,7 @@
 #include "hal/base/time.h"
 #include "src/mqtt/entity.h"
 #include "src/mqtt/plain.h"
+#include "src/signal/unit.h"
 #include "src/signal/value.h"
 
 #define GOOD_OR_NONE " if value_json.good else None }}"
@@ -27,46 +28,17 @@ static const struct {
 	[ENTITY_TEXT] = {"text", "{{ value_json.v[:255]" GOOD_OR_NONE},
 };
 
-static const struct {
-	const char *unit, *class;
-} classes[] = {
-	{"\xc2\xb0"
-         "C",
-         "temperature"},
-	{"\xc2\xb0"
-         "F",
-         "temperature"},
-	{"V", "voltage"},
-	{"mV", "voltage"},
-	{"A", "current"},
-	{"mA", "current"},
-	{"W", "power"},
-	{"kW", "power"},
-	{"Wh", "energy"},
-	{"kWh", "energy"},
-	{"Hz", "frequency"},
-	{"lx", "illuminance"},
-	{"Pa", "pressure"},
-	{"hPa", "pressure"},
-	{"kPa", "pressure"},
-	{"mbar", "pressure"},
-	{"bar", "pressure"},
-	{"psi", "pressure"},
-	{"ppm", "carbon_dioxide"},
-};
-
 static const char *class_of(const struct row *row)
 {
 	const struct ows_info *info = &row->info;
+	const char *class;
 
 	if (*row->class)
 		return row->class;
 	if (!strcmp(info->unit, "%") && strstr(row->property, "humidity"))
 		return "humidity";
-	for (size_t i = 0; i < sizeof(classes) / sizeof(classes[0]); i++)
-		if (!strcmp(classes[i].unit, info->unit))
-			return classes[i].class;
-	return "";
+	class = unit_class(info->unit);
+	return class ? class : "";
 }
 
 enum entity_kind entity_kind(const struct ows_info *info, const char *class, bool write)

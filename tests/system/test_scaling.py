@@ -57,7 +57,7 @@ def test_a_current_loop_is_shown_in_its_unit_and_the_raw_value_beside_it(scene):
     assert (pressure["unit"], pressure["decimals"], pressure["description"]) == \
         ("bar", 2, "Cold water, supply"), pressure
     assert level["value"] == 50 and near(level["raw"], 3) and level["decimals"] is None, level
-    assert near(oil["value"], 30, 0.1) and oil["unit"] == "Cel", oil
+    assert near(oil["value"], 30, 0.1) and oil["unit"] == "°C", oil
     assert near(supply["value"], 4.5) and supply["unit"] == "V" and supply["decimals"] == 5, supply
     assert scene.get(daemon, "pressure") == "3"
     assert near(float(scene.get(daemon, "pressure_Raw")), 3)
@@ -147,6 +147,39 @@ def test_a_program_in_python_has_value_unit_and_raw_value(scene):
         assert info.calibrated == "2026-11-22", info
         level = signals.info("level")
         assert (level.scale, level.offset, level.filter, level.deadband) == (25, -25, 5, 2), level
+
+
+def test_a_unit_converts_values_limits_and_commands(scene):
+    chips = scene.file("net.sim", """i2c speed 400
+chip DS2482-100 0x18
+DS18B20 28.000000000001 temperature 20
+EDS0068 7E.000000000001 temperature 20.5 humidity 45 pressure 1010 light 300
+""")
+    text = f"""OwsDrv {{
+  TargetName "sim:{chips}"
+  Period 0.05
+  Item {{ Name room Path "/28.000000000001/temperature9" Type double Unit F LimitH 67 Min -40 }}
+  Item {{ Name high Path "/28.000000000001/temphigh" Type double IO output Unit "°F" }}
+  Item {{ Name air Path "/7E.000000000001/EDS0068/pressure" Type double Unit kPa }}
+  Item {{ Name humid Path "/7E.000000000001/EDS0068/humidity" Type double }}
+}}
+"""
+    file = scene.file("plant.rio", text)
+    check = scene.owsd_once("--check", "-c", file)
+    assert check.returncode == 0 and not check.stderr, check
+    daemon = scene.owsd(file)
+    scene.until(lambda: all(listed(scene, daemon)[n]["good"] for n in ("room", "air", "humid")), 20,
+                lambda: listed(scene, daemon))
+    rows = listed(scene, daemon)
+    assert (rows["room"]["value"], rows["room"]["unit"], rows["room"]["raw"]) == (68, "°F", 20), rows["room"]
+    assert near(rows["air"]["value"], 101) and rows["air"]["unit"] == "kPa", rows["air"]
+    assert rows["humid"]["unit"] == "%" and rows["humid"]["value"] == 45, rows["humid"]
+    assert "room" in scene.owsctl(daemon, "alarms").stdout
+    scene.owsctl(daemon, "set", "high", "212")
+    scene.until(lambda: scene.owsctl(daemon, "read", "28.000000000001/temphigh").stdout.strip() == "100", 10,
+                lambda: listed(scene, daemon)["high"])
+    row = scene.until(lambda: (r := listed(scene, daemon)["high"])["good"] and r, 10, "the output is good")
+    assert row["value"] == 212 and row["unit"] == "°F" and row["raw"] == 100, row
 
 
 def test_the_served_table_has_engineering_values_and_the_served_chip_its_own(scene):

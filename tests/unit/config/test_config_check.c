@@ -66,14 +66,15 @@ static void test_what_cannot_be_meant_is_named_with_its_remedy(void)
 		{"Name x Path /simultaneous/temperature Type bool", PATH_AT
 	         ": /simultaneous/temperature begins conversions and shows no value: write IO "
 	         "output, or the Path of a device\n"},
-		{"Name x Path /28.551DDF030000/temperature Type double Unit F",
-	         AT ": Unit \"F\" is shown beside a value in °C: write Scale 1.8 and Offset 32 "
+		{"Name x Path /28.551DDF030000/temperature Type double Unit V",
+	         AT ": Unit \"V\" is shown beside a value in °C: write °C, °F, K, or Scale too\n"},
+		{"Name x Path /room/temperature Type double Unit \"degrees\"",
+	         AT ": Unit \"degrees\" is shown beside a value in °C: write °C, °F, K, or Scale "
 	            "too\n"},
-		{"Name x Path /room/temperature Type double Unit \"°F\"",
-	         AT ": Unit \"°F\" is shown beside a value in °C: write Scale 1.8 and Offset 32 "
-	            "too\n"},
-		{"Name x Path /28.551DDF030000/temperature Type double Unit K",
-	         AT ": Unit \"K\" is shown beside a value in °C: write Offset 273.15 too\n"},
+		{"Name x Path /1D.551DDF030000/counter.A Type double Unit m3",
+	         AT ": Unit \"m3\": other programs know it as m³\n"},
+		{"Name x Path /28.551DDF030000/temperature Type double Unit F Scale 1.8 Offset 32",
+	         AT ": Unit \"F\": other programs know it as °F\n"},
 		{"Name x Path /29.B89115000000/sensed.BYTE Type byte Alarm on LatchAlarm \"latch.BYT\" "
 	         "PorAlarm \"porr\" SetAlarm \"set_alarm=\" ResetLatch \"sensed.BYTE=0\"",
 	         VALUE_AT(72) ": LatchAlarm: a DS2408 has no latch.BYT; did you mean latch.BYTE?\n" VALUE_AT(93) ": PorAlarm: a DS2408 has no porr; did you mean por?\n" VALUE_AT(
@@ -237,10 +238,8 @@ static void test_what_may_be_meant_is_not_mentioned(void)
 		{"Name x Path /kitchen/temprature Type double", ""},
 		{"Name x Path /28.kitchen/temperature Type double", ""},
 		{"Name x Path /simultaneous/temperature Type bool IO output", ""},
-		{"Name x Path /28.551DDF030000/temperature Type double Unit F Scale 1.8 Offset 32",
-	         ""},
+		{"Name x Path /28.551DDF030000/temperature Type double Unit °F", ""},
 		{"Name x Path /28.551DDF030000/temperature Type double Unit K Offset 273.15", ""},
-		{"Name x Path /26.B89115000000/VAD Type double Unit K", ""},
 		{"Name x Path /ab.cdef/temperature Type double", ""},
 		{"Name x Path /28551DDF030000/temperature12 Type double", ""},
 		{"Name x Path /29.B89115000000/PIO.3 Type bool IO output", ""},

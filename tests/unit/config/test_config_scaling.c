@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The keys of an item that say what its value means: how they are read, and what is wrong. */
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -91,6 +92,64 @@ static void test_points_are_read_and_kept_as_written(void)
 	TEST_ASSERT_EQUAL_DOUBLE(50.5, scale->points[1].value);
 	TEST_ASSERT_FALSE(scale->linear);
 	TEST_ASSERT_EQUAL_STRING("", config->items[0].unit);
+}
+
+/* And so it is printed, and read again. */
+static void expect_unit(const char *keys, const char *unit, double factor, double offset)
+{
+	const struct config_item *item;
+	char *text = NULL;
+	size_t size = 0;
+	FILE *out = open_memstream(&text, &size);
+
+	TEST_ASSERT_NOT_NULL(out);
+	TEST_ASSERT_EQUAL_INT_MESSAGE(0, parse_item(keys), keys);
+	config_print(config, out);
+	fclose(out);
+	for (int again = 0; again < 2; again++) {
+		item = &config->items[0];
+		TEST_ASSERT_EQUAL_STRING_MESSAGE(unit, item->unit, keys);
+		TEST_ASSERT_EQUAL_MESSAGE(factor != 1 || offset != 0, item->scale.linear, keys);
+		TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(1e-9, factor, item->scale.factor, keys);
+		TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(1e-9, offset, item->scale.offset, keys);
+		config_case_end();
+		config_case_begin();
+		TEST_ASSERT_EQUAL_INT(0, parse(text));
+	}
+	config_case_end();
+	config_case_begin();
+	free(text);
+}
+
+static void test_a_unit_of_the_same_quantity_converts(void)
+{
+#define THERMOMETER "Name x Path /28.551DDF030000/temperature Type double "
+#define SENSOR "Name x Path /7E.551DDF030000/EDS0068/pressure Type double "
+	expect_unit(THERMOMETER "Unit F", "°F", 1.8, 32);
+	expect_unit(THERMOMETER "Unit K", "K", 1, 273.15);
+	expect_unit(THERMOMETER "Unit Cel", "°C", 1, 0);
+	expect_unit(THERMOMETER "Unit V", "V", 1, 0);
+	expect_unit(THERMOMETER "Unit \"\"", "", 1, 0);
+	expect_unit(THERMOMETER "Unit F Scale 2", "F", 2, 0);
+	expect_unit(THERMOMETER "Unit F Scale 1.8 Offset 32", "F", 1.8, 32);
+	expect_unit("Name x Path /room/temperature Type float Unit °F", "°F", 1.8, 32);
+	expect_unit("Name x Path /28.551DDF030000/temperature Type string Unit F", "F", 1, 0);
+	expect_unit(SENSOR "Unit hPa", "hPa", 1, 0);
+	expect_unit(SENSOR "Unit kPa", "kPa", 0.1, 0);
+	expect_unit("Name x Path /26.551DDF030000/VDD Type double Unit mV", "mV", 1000, 0);
+	expect_unit("Name x Path /1D.551DDF030000/counter.A Type dword Unit m3", "m3", 1, 0);
+	expect_unit("Name x Path /26.551DDF030000/tempoffset Type double Unit °F", "°F", 1.8, 0);
+}
+
+static void test_a_command_is_given_in_the_unit(void)
+{
+	double raw;
+
+	TEST_ASSERT_EQUAL_INT(0, parse_item("Name x Path /28.551DDF030000/temphigh Type double IO "
+	                                    "output Unit °F InitValue 70 Max 212"));
+	TEST_ASSERT_EQUAL_INT(0, scale_raw(&config->items[0].scale, 70, &raw));
+	TEST_ASSERT_DOUBLE_WITHIN(1e-9, 21.0 + 1 / 9.0, raw);
+	TEST_ASSERT_EQUAL_INT(-ERANGE, scale_raw(&config->items[0].scale, 213, &raw));
 }
 
 static void test_a_scale_that_changes_nothing_is_none(void)
@@ -207,6 +266,8 @@ int main(void)
 	RUN_TEST(test_an_item_without_the_keys_is_not_scaled);
 	RUN_TEST(test_all_keys_are_read_and_printed);
 	RUN_TEST(test_points_are_read_and_kept_as_written);
+	RUN_TEST(test_a_unit_of_the_same_quantity_converts);
+	RUN_TEST(test_a_command_is_given_in_the_unit);
 	RUN_TEST(test_a_scale_that_changes_nothing_is_none);
 	RUN_TEST(test_wrong_keys_are_errors_that_say_what_to_write);
 	RUN_TEST(test_a_text_and_a_bool_have_what_makes_sense);
