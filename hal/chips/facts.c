@@ -151,6 +151,35 @@ bool facts_shows_device(const char *text)
 	return !row || !(row->offline || strcmp(row->name, "present") == 0);
 }
 
+/* A sensor is good to no more, whatever its register resolves. */
+static const struct {
+	const char *unit;
+	int decimals;
+} wanted[] = {
+	{DEGREES_C, 1}, {"\u00b0F", 1}, {"K", 1}, {"%", 1},  {"mbar", 1}, {"hPa", 1},
+	{"inHg", 2},    {"psi", 2}, {"bar", 3},     {"V", 3}, {"mV", 1}, {"A", 3},    {"mA", 1},
+	{"\u00b5A", 0}, {"lx", 1},  {"m/s", 1},     {"h", 1}, {"m", 2},
+};
+
+int unit_decimals(const char *unit)
+{
+	for (size_t i = 0; i < sizeof(wanted) / sizeof(wanted[0]); i++)
+		if (strcmp(wanted[i].unit, unit) == 0)
+			return wanted[i].decimals;
+	return -1;
+}
+
+int quantity_decimals(const struct quantity *quantity)
+{
+	int decimals = unit_decimals(quantity->unit);
+
+	if (decimals < 0 || quantity->decimals < 0)
+		return quantity->decimals;
+	if (quantity->most < 1) /* volts of a shunt */
+		decimals += 2;
+	return decimals < quantity->decimals ? decimals : quantity->decimals;
+}
+
 bool quantity_excludes(const struct quantity *quantity, double number)
 {
 	return number < quantity->least || number > quantity->most;

@@ -39,6 +39,15 @@ bool quantity_of(const char *path, struct quantity *quantity);
  */
 bool facts_shows_device(const char *path);
 
+/*
+ * How many digits after the point a person wants of a number in this unit; -1: all that it has.
+ * Programs show so many where the configuration does not say how many; none stores or sends less
+ * than the whole number for it.
+ */
+int unit_decimals(const char *unit);
+/* The same of a quantity: no more than its resolution has. */
+int quantity_decimals(const struct quantity *quantity);
+
 /* Is the number one that the chip cannot have measured? */
 bool quantity_excludes(const struct quantity *quantity, double number);
 /*

@@ -188,19 +188,24 @@ static double limit_of(const struct config_limits *limits, enum config_limit lim
 	return limits->has[limit] ? limits->limit[limit] : (double)NAN;
 }
 
-/* The digits of a step of the chip in the unit of the item. */
-static int decimals_of(const struct config_item *item, const struct quantity *quantity)
+/* The digits that a person wants of it, in the unit of the item. */
+static int decimals_of(const struct config_item *item, struct quantity quantity)
 {
-	int fewer = item->converted ? (int)floor(log10(fabs(item->scale.factor))) : 0;
+	if (item->converted) {
+		double factor = fabs(item->scale.factor);
+		int fewer = (int)floor(log10(factor));
 
-	if (quantity->decimals < 0)
-		return -1;
-	return quantity->decimals > fewer ? quantity->decimals - fewer : 0;
+		if (quantity.decimals >= 0)
+			quantity.decimals = quantity.decimals > fewer ? quantity.decimals - fewer : 0;
+		quantity.most *= factor;
+		quantity.unit = item->unit;
+	}
+	return quantity_decimals(&quantity);
 }
 
 /*
- * What a chip measures has a unit and a resolution by its data sheet, until it is scaled otherwise
- * than to another unit.
+ * What a chip measures has a unit and decimals by its data sheet, until it is scaled otherwise than
+ * to another unit.
  */
 void signal_table_meta(const struct config_item *item, struct image_meta *meta)
 {
@@ -209,7 +214,8 @@ void signal_table_meta(const struct config_item *item, struct image_meta *meta)
 	bool known = item->type != OWS_STRING && (!scale_changes(scale) || item->converted) &&
 	             quantity_of(item->path, &quantity);
 	int decimals = item->decimals >= 0 ? item->decimals
-	               : known             ? decimals_of(item, &quantity)
+	               : known             ? decimals_of(item, quantity)
+	               : item->unit        ? unit_decimals(item->unit)
 	                                   : -1;
 
 	*meta = (struct image_meta){

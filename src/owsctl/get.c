@@ -26,12 +26,15 @@ static void say_command(struct ows *h, const char *name, int id, const struct re
 	         reading->value.quality == OWS_Q_DIFFERS ? "" : " yet");
 }
 
+/* No chip resolves more, and scripts compute with what it does; the rest is of the arithmetic. */
+#define CHIP_DECIMALS 6
+
 static int get_one(const struct ctl *ctl, struct ows *h, const char *name, struct reading *reading)
 {
 	char words[READING_WORDS];
 	struct ows_info info;
-	int id = ows_find(h, name);
 	bool is_value;
+	int id = ows_find(h, name);
 
 	if (id == -ENOENT)
 		return ctl_unknown(h, name);
@@ -42,7 +45,9 @@ static int get_one(const struct ctl *ctl, struct ows *h, const char *name, struc
 	if (!reading_filled(reading))
 		return ctl_fail("%s: %s", name, error_text(reading->err));
 	is_value = names_info(h, ctl->instance, name, &info);
-	reading_round(reading, is_value ? info.decimals : -1);
+	if (is_value && info.decimals >= 0)
+		reading_round(reading,
+		              info.decimals > CHIP_DECIMALS ? info.decimals : CHIP_DECIMALS);
 	ctl_value(reading->text, reading->len);
 	if (is_value)
 		say_command(h, name, id, reading);

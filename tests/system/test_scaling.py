@@ -56,14 +56,15 @@ def test_a_current_loop_is_shown_in_its_unit_and_the_raw_value_beside_it(scene):
     assert near(pressure["value"], 3) and near(pressure["raw"], 3) and pressure["good"], pressure
     assert (pressure["unit"], pressure["decimals"], pressure["description"]) == \
         ("bar", 2, "Cold water, supply"), pressure
-    assert level["value"] == 50 and near(level["raw"], 3) and level["decimals"] is None, level
+    assert level["value"] == 50 and near(level["raw"], 3) and level["decimals"] == 1, level
     assert near(oil["value"], 30, 0.1) and oil["unit"] == "°C", oil
-    assert near(supply["value"], 4.5) and supply["unit"] == "V" and supply["decimals"] == 5, supply
-    assert scene.get(daemon, "pressure") == "3"
+    assert near(supply["value"], 4.5) and supply["unit"] == "V" and supply["decimals"] == 3, supply
+    assert near(float(scene.get(daemon, "pressure")), 3, 0.001)
     assert near(float(scene.get(daemon, "pressure_Raw")), 3)
     table = scene.owsctl(daemon, "list").stdout
     assert re.search(r"^NAME +VALUE +UNIT +QUALITY", table), table
     assert re.search(r"(?m)^level +50 +% +good", table), table
+    assert re.search(r"(?m)^pressure +3 +bar +good", table), table
 
 
 def test_a_broken_wire_is_out_of_range(scene):

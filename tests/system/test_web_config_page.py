@@ -150,7 +150,7 @@ def test_what_is_found_is_ticked_named_saved_and_shown_live(scene):
                                       ".map((one) => one.textContent).join('\\n')")
         save(page)
         view(page, "live")
-        until(lambda: page.run(CELLS).get("cellar", {}).get("value") == "19.0000", 30,
+        until(lambda: page.run(CELLS).get("cellar", {}).get("value") == "19.0", 30,
               lambda: page.run(CELLS))
         assert COMMENT in on_disk(daemon)
         well(page)

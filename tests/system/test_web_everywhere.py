@@ -158,7 +158,7 @@ def test_the_page_works_below_a_prefix(scene):
         proxy.daemon_threads = True
         threading.Thread(target=proxy.serve_forever, daemon=True).start()
         page.go(f"http://127.0.0.1:{proxy.server_port}/a/prefix/")
-        until(lambda: page.run(CELLS).get("room", {}).get("value") == "21.5000", 20, "room")
+        until(lambda: page.run(CELLS).get("room", {}).get("value") == "21.5", 20, "room")
         for name in each_view(page):
             assert name in VIEWS
         assert not page.complaints()

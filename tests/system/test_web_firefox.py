@@ -11,7 +11,7 @@ from webhouse import BOILER, CELLS, ROOM, VIEWS, all_unknown, house, listed, pla
 
 def test_live_shows_what_owsctl_lists_and_nothing_after_a_loss_until_owsd_is_back(scene):
     with plant(scene, browser=firefox) as (daemon, _, page):
-        until(lambda: page.run(CELLS)["room"]["value"] == "21.5000", 20, lambda: page.run(CELLS))
+        until(lambda: page.run(CELLS)["room"]["value"] == "21.5", 20, lambda: page.run(CELLS))
         until(lambda: page.run(CELLS)["attic"]["quality"] == "device absent", 30,
               lambda: page.run(CELLS)["attic"])
         cells, rows = page.run(CELLS), listed(scene, daemon)
@@ -24,7 +24,7 @@ def test_live_shows_what_owsctl_lists_and_nothing_after_a_loss_until_owsd_is_bac
         until(lambda: all_unknown(page), 20, lambda: page.run(CELLS))
         shows(page, "#banner", "unknown since")
         house(scene, daemon.name)
-        until(lambda: page.run(CELLS)["room"]["value"] == "21.5000", 30, lambda: page.run(CELLS))
+        until(lambda: page.run(CELLS)["room"]["value"] == "21.5", 30, lambda: page.run(CELLS))
 
 
 def test_each_view_shows_what_it_is_for_also_on_a_phone(scene):
@@ -42,7 +42,7 @@ def test_each_view_shows_what_it_is_for_also_on_a_phone(scene):
                            f"{name} fits {width} pixels", width)
         view(page, "trends")
         page.find("#trends .u-over")
-        shows(page, "#trends .legend", "room", "21.5000", "good")
+        shows(page, "#trends .legend", "room", "21.5", "good")
         assert not page.complaints()
 
 

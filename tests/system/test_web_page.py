@@ -22,7 +22,7 @@ from webhouse import (BOILER, CELLS, GONE, RELAY, ROOM, SHOWN, all_unknown, hous
 
 def test_live_shows_what_owsctl_lists(scene):
     with plant(scene) as (daemon, _, page):
-        until(lambda: page.run(CELLS)["room"]["value"] == "21.5000", 20, "room has its value")
+        until(lambda: page.run(CELLS)["room"]["value"] == "21.5", 20, "room has its value")
         until(lambda: page.run(CELLS)["attic"]["quality"] == "device absent", 30,
               lambda: page.run(CELLS)["attic"])
         cells, rows = page.run(CELLS), listed(scene, daemon)
@@ -125,7 +125,7 @@ def test_a_trend_goes_on_and_a_drag_zooms(scene):
         view(page, "trends")
         page.click(".picks li:nth-child(2) label")
         page.find("#trends .u-over")
-        shows(page, "#trends .legend", "room", "21.5000", "good")
+        shows(page, "#trends .legend", "room", "21.5", "good")
         before = page.run("return location.hash")
         page.drag("#trends .u-over", 0.3, 0.6)
         page.until("return new URLSearchParams(location.hash.split('?')[1]).get('until')",
@@ -159,7 +159,7 @@ def test_a_trend_has_what_the_recorder_kept_and_the_time_without_owsd_is_a_gap(s
         house(scene, daemon.name, recorder=kept)
         until(lambda: last()[-20:].count(21.5) > 2, 30, last)
         page.go(web.address + "#trends?s=room&span=60000")
-        shows(page, "#trends .legend", "room", "21.5000", "good")
+        shows(page, "#trends .legend", "room", "21.5", "good")
         page.until("return !document.querySelector('#trends .hint').textContent", "no complaint")
         page.devtools("Browser.setDownloadBehavior", behavior="allow",
                       downloadPath=str(scene.path))
@@ -253,32 +253,32 @@ def test_of_many_rows_those_on_the_screen_come_first_and_all_are_there_in_the_en
 
 def test_the_loss_of_owsd_makes_every_value_unknown_until_it_is_back(scene):
     with plant(scene) as (daemon, _, page):
-        until(lambda: page.run(CELLS)["room"]["value"] == "21.5000", 20, "room has its value")
+        until(lambda: page.run(CELLS)["room"]["value"] == "21.5", 20, "room has its value")
         daemon.kill()
         until(lambda: all_unknown(page), 20, lambda: page.run(CELLS))
         shows(page, "#banner", "unknown since")
         again = house(scene, daemon.name)
-        until(lambda: page.run(CELLS)["room"]["value"] == "21.5000", 30, lambda: page.run(CELLS))
+        until(lambda: page.run(CELLS)["room"]["value"] == "21.5", 30, lambda: page.run(CELLS))
         assert again.running() and not page.run("return document.querySelector('#banner')"
                                                 ".checkVisibility()")
 
 
 def test_the_loss_of_the_connection_makes_every_value_unknown_until_it_is_back(scene):
     with plant(scene) as (daemon, web, page):
-        until(lambda: page.run(CELLS)["room"]["value"] == "21.5000", 20, "room has its value")
+        until(lambda: page.run(CELLS)["room"]["value"] == "21.5", 20, "room has its value")
         web.kill()
         until(lambda: all_unknown(page), 20, lambda: page.run(CELLS))
         serve(scene, daemon, port=web.port)
-        until(lambda: page.run(CELLS)["room"]["value"] == "21.5000", 30, lambda: page.run(CELLS))
+        until(lambda: page.run(CELLS)["room"]["value"] == "21.5", 30, lambda: page.run(CELLS))
 
 
 def test_a_server_that_hangs_makes_every_value_unknown(scene):
     with plant(scene) as (_, web, page):
-        until(lambda: page.run(CELLS)["room"]["value"] == "21.5000", 20, "room has its value")
+        until(lambda: page.run(CELLS)["room"]["value"] == "21.5", 20, "room has its value")
         web.freeze()
         until(lambda: all_unknown(page), 60, lambda: page.run(CELLS))
         web.thaw()
-        until(lambda: page.run(CELLS)["room"]["value"] == "21.5000", 30, lambda: page.run(CELLS))
+        until(lambda: page.run(CELLS)["room"]["value"] == "21.5", 30, lambda: page.run(CELLS))
 
 
 # --- Commands -------------------------------------------------------------------------------
@@ -322,7 +322,7 @@ def test_a_fault_of_the_simulation_is_begun_and_ended_on_the_view_wire(scene):
         assert page.run(CELLS)["boiler"]["state"] == "good", page.run(CELLS)
         page.click(f"{card} [role=switch][aria-checked=true]")
         shows(page, card, "off, no fault")
-        until(lambda: page.run(CELLS)["room"]["value"] == "21.5000", 40,
+        until(lambda: page.run(CELLS)["room"]["value"] == "21.5", 40,
               lambda: page.run(CELLS)["room"])
         assert not page.complaints()
 

@@ -96,13 +96,13 @@ def test_a_command_is_carried_out_though_the_page_is_hidden_at_once(scene):
 
 def test_a_page_that_is_shown_at_once_again_never_calls_its_values_unknown(scene):
     with plant(scene) as (_, web, page):
-        has_value(page, "room", "21.5000")
+        has_value(page, "room", "21.5")
         page.run(WITNESS)
         first, other = page.tab(), page.tab("about:blank")
         for _ in range(3):
             page.show(other)
             page.show(first)
-            assert page.run("return window.seen.every((one) => one === '21.5000')"), \
+            assert page.run("return window.seen.every((one) => one === '21.5')"), \
                 page.run("return window.seen")
         until(lambda: streams(web) == 1, 20, "one stream")
 

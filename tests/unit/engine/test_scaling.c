@@ -537,7 +537,7 @@ static void test_a_thermometer_has_unit_and_decimals_without_being_told(void)
 		{"/28.000000000001/temperature",
 	         "\xc2\xb0"
 	         "C",
-	         4},
+	         1},
 		{"/10.000000000001/temperature9",
 	         "\xc2\xb0"
 	         "C",
@@ -545,23 +545,23 @@ static void test_a_thermometer_has_unit_and_decimals_without_being_told(void)
 		{"/22.000000000001/temperature10",
 	         "\xc2\xb0"
 	         "C",
-	         2},
+	         1},
 		{"/3B.000000000001/temperature11",
 	         "\xc2\xb0"
 	         "C",
-	         3},
+	         1},
 		{"/42.000000000001/temperature12",
 	         "\xc2\xb0"
 	         "C",
-	         4},
+	         1},
 		{"/boiler/temperature",
 	         "\xc2\xb0"
 	         "C",
-	         4},
-		{"/26.000000000001/humidity", "%", 2},
+	         1},
+		{"/26.000000000001/humidity", "%", 1},
 		{"/26.000000000001/VAD", "V", 2},
-		{"/20.000000000001/volt.A", "V", 5},
-		{"/12.000000000001/TAI8570/pressure", "mbar", 2},
+		{"/20.000000000001/volt.A", "V", 3},
+		{"/12.000000000001/TAI8570/pressure", "mbar", 1},
 		{"/1D.000000000001/counter.A", "", 0},
 	};
 
@@ -615,6 +615,10 @@ static void test_what_is_scaled_has_the_unit_that_the_file_says_and_no_other(voi
 	item.scale.has_min = true;
 	meta = meta_of(item);
 	TEST_ASSERT_EQUAL_STRING("bar", meta.unit);
+	TEST_ASSERT_EQUAL_UINT32(3, meta.decimals);
+	item.unit = "furlong";
+	TEST_ASSERT_EQUAL_HEX32(UINT32_MAX, meta_of(item).decimals);
+	item.decimals = 7;
 	TEST_ASSERT_EQUAL_DOUBLE(0, meta.min);
 }
 

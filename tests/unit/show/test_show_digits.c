@@ -9,6 +9,7 @@
 
 #include "unity.h"
 
+#include "hal/chips/facts.h"
 #include "src/engine/table.h"
 #include "src/show/reading.h"
 #include "src/signal/value.h"
@@ -52,19 +53,22 @@ static void test_a_number_has_the_digits_of_its_chip(void)
 		double number;
 		const char *text;
 	} rows[] = {
-		{"/26.551DDF030000/humidity", 48.370479432335586, "48.37"},
+		{"/26.551DDF030000/humidity", 48.370479432335586, "48.4"},
 		{"/26.551DDF030000/humidity", 48.999, "49"},
 		{"/26.551DDF030000/VDD", 5.0199999999999996, "5.02"},
-		{"/26.551DDF030000/temperature", 21.03125, "21.03125"},
-		{"/28.551DDF030000/temperature", 21.1875, "21.1875"},
+		{"/26.551DDF030000/temperature", 21.03125, "21"},
+		{"/28.551DDF030000/temperature", 21.1875, "21.2"},
 		{"/28.551DDF030000/temperature", 21.5, "21.5"},
-		{"/28.551DDF030000/temperature", -0.0625, "-0.0625"},
+		{"/28.551DDF030000/temperature", -0.0625, "-0.1"},
+		{"/28.551DDF030000/temperature", -0.03, "0"},
 		{"/28.551DDF030000/temperature9", 20, "20"},
 		{"/28.551DDF030000/temperature", 100, "100"},
 		{"/26.551DDF030000/humidity", -0.001, "0"},
-		{"/cellar/humidity", 48.370479432335586, "48.37"},
+		{"/cellar/humidity", 48.370479432335586, "48.4"},
+		{"/30.551DDF030000/volt", 3.6990399999999997, "3.699"},
+		{"/26.551DDF030000/vis", 0.0249, "0.0249"},
 		{"/1D.551DDF030000/counters.A", 12000, "12000"},
-		{"/26.551DDF030000/humidity", -0.006, "-0.01"},
+		{"/26.551DDF030000/humidity", -0.06, "-0.1"},
 		{"/EF.551DDF030000/odd", 48.370479432335586, "48.370479432335586"},
 	};
 
@@ -110,15 +114,23 @@ static void test_decimals_without_end_take_no_time(void)
 	TEST_ASSERT_LESS_THAN_INT64(CLOCKS_PER_SEC, clock() - begin);
 }
 
-/* What a thermometer can say, its digits say exactly. */
-static void test_every_step_of_a_thermometer_reads_back(void)
+/* All that a person wants, and no more than the chip resolves; what is no measurement has all. */
+static void test_each_unit_has_its_decimals(void)
 {
-	for (int raw = -55 * 16; raw <= 125 * 16; raw++) {
-		be(OWS_DOUBLE, raw / 16.0);
-		reading_round(&reading, decimals_of("/28.551DDF030000/temperature"));
-		TEST_ASSERT_EQUAL_DOUBLE(raw / 16.0, strtod(reading.text, NULL));
-		TEST_ASSERT_LESS_OR_EQUAL_size_t(8, strlen(reading.text));
+	struct quantity quantity = {.least = -55, .most = 125, .unit = "\u00b0C"};
+
+	TEST_ASSERT_EQUAL_INT(1, unit_decimals("\u00b0C"));
+	TEST_ASSERT_EQUAL_INT(3, unit_decimals("V"));
+	TEST_ASSERT_EQUAL_INT(-1, unit_decimals("furlong"));
+	TEST_ASSERT_EQUAL_INT(-1, unit_decimals(""));
+	for (int decimals = -1; decimals < 6; decimals++) {
+		quantity.decimals = decimals;
+		TEST_ASSERT_EQUAL_INT(decimals < 1 ? decimals : 1, quantity_decimals(&quantity));
 	}
+	quantity = (struct quantity){.least = -0.25, .most = 0.25, .unit = "V", .decimals = 7};
+	TEST_ASSERT_EQUAL_INT(5, quantity_decimals(&quantity));
+	quantity = (struct quantity){.least = 0, .most = 100, .unit = "furlong", .decimals = 7};
+	TEST_ASSERT_EQUAL_INT(7, quantity_decimals(&quantity));
 }
 
 int main(void)
@@ -127,6 +139,6 @@ int main(void)
 	RUN_TEST(test_a_number_has_the_digits_of_its_chip);
 	RUN_TEST(test_integers_strings_and_driver_signals_stay_as_they_are);
 	RUN_TEST(test_decimals_without_end_take_no_time);
-	RUN_TEST(test_every_step_of_a_thermometer_reads_back);
+	RUN_TEST(test_each_unit_has_its_decimals);
 	return UNITY_END();
 }
