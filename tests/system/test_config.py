@@ -313,7 +313,7 @@ def test_an_edit_of_the_file_of_a_running_owsd_says_how_it_is_loaded(scene):
         done = scene.owsctl(None, "config", path, *words)
         assert done.returncode == 0, done
         return done.stderr
-    assert said(file, "set", "x", "Unit=bar") == "", "nobody runs"
+    assert said(file, "set", "x", "Unit=K") == "", "nobody runs"
     daemon = scene.owsd(file)
     hint = f"owsctl: owsd {daemon.name} runs with this file: owsctl -n {daemon.name} reload has it loaded\n"
     assert said(file, "rename", "x", "kitchen") == hint
