@@ -133,6 +133,13 @@ int thermometer_start(struct txn *txn)
 	return err ? err : txn_started(txn);
 }
 
+int thermometer_start_fed(struct txn *txn, int64_t ns)
+{
+	static const uint8_t command = THERMOMETER_CONVERT;
+
+	return txn_command_strong(txn, &command, 1, ns);
+}
+
 /* Sixteenths of a degree at the resolution that the scratchpad states. */
 static double sixteenths(const struct device *device, const uint8_t scratchpad[9])
 {

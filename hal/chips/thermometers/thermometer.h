@@ -46,6 +46,8 @@ int thermometer_recall(struct txn *txn);
 
 /* It converts; -EBADMSG: it has not taken the command. */
 int thermometer_start(struct txn *txn);
+/* ... of one that the wire feeds: TXN_MORE; the strong pull-up is on for so long. */
+int thermometer_start_fed(struct txn *txn, int64_t ns);
 
 /* Asks for the power supply and notes it: 1 external, 0 parasitic, or an error. */
 int thermometer_ask_power(struct txn *txn);

@@ -73,12 +73,13 @@ static void wait_for_end(struct native *native, unsigned n, const struct device 
 	}
 }
 
-void broadcast_started(struct native *native, struct device *device, int64_t now)
+void broadcast_started(struct native *native, struct device *device, int64_t now, bool shown)
 {
 	const struct link *link = native->channel[device->channel].link;
 
-	thermometer_showed(device, false);
-	thermometer_converts(device, now, convert_ns(link, device), false);
+	if (shown)
+		thermometer_showed(device, false);
+	thermometer_converts(device, now, convert_ns(link, device), !shown);
 	wait_for_end(native, device->channel, device);
 }
 

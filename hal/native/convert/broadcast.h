@@ -12,7 +12,10 @@
  * for longest ns. The requests that are due wait for the end then.
  */
 int broadcast_convert(struct native *native, unsigned n, bool strong, int64_t longest);
-/* This chip alone began to convert at now, and has shown it. All that wait for it wait for that. */
-void broadcast_started(struct native *native, struct device *device, int64_t now);
+/*
+ * This chip alone began to convert at now. shown: and has shown it. All that wait for it wait for
+ * that.
+ */
+void broadcast_started(struct native *native, struct device *device, int64_t now, bool shown);
 /* It was told to convert, at now at the latest, and whether it heard is not known. */
 void broadcast_told(const struct native *native, struct device *device, int64_t now);

@@ -4,7 +4,8 @@
  * with Skip ROM; the next waits until the results of the last have been read, as it would overwrite
  * them. Where it is faster each gets its own as soon as it was read (schedule.h). A parasitic one
  * needs the strong pull-up for as long as it converts, which holds the channel; on a channel that
- * has such a one, others are asked to convert one by one.
+ * has such a one, others are asked to convert one by one. A single one converts after all others
+ * were started, and while they convert. Several convert with all others, under one pull-up.
  */
 #include <errno.h>
 #include <string.h>
@@ -25,6 +26,8 @@
 
 #define GATHER_NS (3 * TXN_MS)
 #define GATHER_MAX_NS (3 * NATIVE_S)
+#define ASKED_AGAIN_NS (150 * TXN_MS)
+#define FED_MOST_NS (2 * NATIVE_S)
 #define SIMULTANEOUS_NS (2 * NATIVE_S)
 #define SINGLE_NS (60 * NATIVE_S)
 /* Conversions in a row that a chip did not make, as what it holds shows. */
@@ -192,14 +195,14 @@ static void fail_due(struct native *native, unsigned channel, int err)
 	}
 }
 
-/* Of those that are due and free the most urgent, and of these the one that waits longest. */
-static struct job *next_due(struct native *native, unsigned n)
+/* Of those that are due and free, but for fed: the most urgent, and of these the oldest. */
+static struct job *next_due(struct native *native, unsigned n, const struct job *fed)
 {
 	struct job *first = NULL;
 
 	for (struct job *job = NULL; (job = native_job(native, job));) {
 		if (job->state != JOB_DUE || job->txn.channel != n || job->txn.device->locked ||
-		    is_measuring(native, job->txn.device))
+		    job == fed || is_measuring(native, job->txn.device))
 			continue;
 		if (!first || job->req->prio < first->req->prio ||
 		    (job->req->prio == first->req->prio &&
@@ -210,9 +213,9 @@ static struct job *next_due(struct native *native, unsigned n)
 }
 
 /* One by one: the first that is due and free. False: there is none. */
-static bool convert_one(struct native *native, unsigned n)
+static bool convert_one(struct native *native, unsigned n, const struct job *fed)
 {
-	struct job *first = next_due(native, n);
+	struct job *first = next_due(native, n, fed);
 
 	if (!first)
 		return false;
@@ -231,7 +234,64 @@ static bool convert_one(struct native *native, unsigned n)
 		return true;
 	}
 	native_count(native, COUNT_CONVERSIONS);
-	broadcast_started(native, device, now);
+	broadcast_started(native, device, now, true);
+	return true;
+}
+
+/*
+ * Do all others of the channel convert, and long yet? While the pull-up of the one that the wire
+ * feeds holds it, none can be started or read. Programs ask for a value again when they have the
+ * last one. Where others are asked for without end, it has its turn after FED_MOST_NS.
+ */
+static bool may_hold(const struct native *native, unsigned n, const struct job *fed, int64_t now,
+                     int64_t *next)
+{
+	if (now - fed->since_ns >= FED_MOST_NS)
+		return true;
+	for (const struct job *job = NULL; (job = native_job(native, job));)
+		if (job->txn.device != fed->txn.device && schedule_asks(job) &&
+		    job->txn.device->channel == n &&
+		    (job->state != JOB_CONVERTING || job->ready_ns <= now))
+			return false;
+	for (struct device *device = NULL; (device = native_thermometer(native, n, device));) {
+		int64_t again_ns = device->ok_ns + ASKED_AGAIN_NS;
+
+		if (device == fed->txn.device || again_ns <= now || is_measuring(native, device))
+			continue;
+		*next = again_ns < *next ? again_ns : *next;
+		return false;
+	}
+	return true;
+}
+
+/* The only one of the channel that the wire feeds is due. False: it waits, and no other starts. */
+static bool convert_fed(struct native *native, unsigned n, const struct schedule_plan *plan,
+                        int64_t now, int64_t *next)
+{
+	struct job *job = &native->jobs[plan->fed - native->jobs];
+	struct device *device = job->txn.device;
+	int64_t ns = thermometer_convert_ns(device);
+
+	if (plan->others_due && convert_one(native, n, job))
+		return true;
+	if (plan->others_due || device->locked || is_measuring(native, device) ||
+	    !may_hold(native, n, job, now, next))
+		return false;
+	int err = txn_end(&job->txn, thermometer_start_fed(&job->txn, ns));
+
+	job->txn.strong = false;
+	job->txn.wake_ns = 0;
+	job_saw(native, job, err < 0 ? err : 0, now);
+	now = native_now(native);
+	if (err < 0) {
+		broadcast_told(native, device, now);
+		job_failed(native, job, err);
+		return true;
+	}
+	native_count(native, COUNT_CONVERSIONS);
+	native_hold(native, n, NULL, now + ns);
+	schedule_owe(&native->schedule, OWES_OTHER);
+	broadcast_started(native, device, now, false);
 	return true;
 }
 
@@ -271,7 +331,7 @@ void convert_in_turn(struct native *native, struct job *job)
 		job_failed(native, job, err);
 	} else {
 		native_count(native, COUNT_CONVERSIONS);
-		broadcast_started(native, device, txn_ended(&job->txn));
+		broadcast_started(native, device, txn_ended(&job->txn), true);
 	}
 }
 
@@ -302,7 +362,7 @@ struct job *convert_next_in_turn(struct native *native, unsigned n, int64_t now)
 
 	return plan.due && !starts_single(native, n, &plan, now) &&
 	                       schedule_in_turn(native, &plan, now)
-	               ? next_due(native, n)
+	               ? next_due(native, n, NULL)
 	               : NULL;
 }
 
@@ -330,9 +390,14 @@ bool convert_step(struct native *native, int64_t now, int64_t *next, struct job 
 		}
 		if (plan.parasitic && supply_ask_one(native, n))
 			return true;
+		if (plan.fed && !channel->link->passive) {
+			if (convert_fed(native, n, &plan, now, next))
+				return true;
+			continue;
+		}
 		if (plan.parasitic ? !plan.parasitic_due || channel->link->passive
 		                   : starts_single(native, n, &plan, now)) {
-			if (!convert_one(native, n))
+			if (!convert_one(native, n, NULL))
 				continue;
 			if (plan.due == 1)
 				channel->single_ns = now + SINGLE_NS;

@@ -42,7 +42,12 @@ static void look_at_job(struct schedule_plan *plan, const struct job *job, bool 
 		return;
 	}
 	plan->due++;
-	plan->parasitic_due |= !feeds && device->power == POWER_PARASITE;
+	if (!feeds && device->power == POWER_PARASITE) {
+		plan->parasitic_due = true;
+		plan->fed = job;
+	} else {
+		plan->others_due = true;
+	}
 	plan->due_ns = ns > plan->due_ns ? ns : plan->due_ns;
 }
 
@@ -110,12 +115,17 @@ struct schedule_plan schedule_look(const struct native *native, unsigned channel
 	if (!plan.due)
 		return plan;
 	plan.locked = native_at_work(native, channel);
+	unsigned fed = 0;
+
 	for (const struct device *device = NULL;
 	     (device = native_thermometer(native, channel, device));) {
 		int64_t ns = thermometer_convert_ns(device);
 		plan.parasitic |= !feeds && device->power != POWER_EXTERNAL;
+		fed += device->power != POWER_EXTERNAL;
 		plan.all_ns = ns > plan.all_ns ? ns : plan.all_ns;
 	}
+	if (fed != 1)
+		plan.fed = NULL;
 	return plan;
 }
 

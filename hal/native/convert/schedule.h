@@ -29,6 +29,8 @@ struct schedule_plan {
 	bool silent;    /* one of those cannot show that it converts */
 	bool driven;    /* a driver has the wire, and waits for the end of each conversion */
 	bool parasitic_due, parasitic;
+	const struct job *fed;  /* due, and of the only chip of the channel that the wire feeds */
+	bool others_due;        /* ... and others are due, too */
 	int64_t due_ns, all_ns; /* how long those that are due convert, and all */
 	int64_t longest_ns;     /* ... and those that are due, convert, or are not read yet */
 	int64_t ready_ns;       /* when the last of those that convert is ready */
