@@ -58,7 +58,6 @@ uint8_t failure_quality(int err)
 	case ETIMEDOUT:
 	case ECONNRESET:
 	case EPROTO:
-	case EINPROGRESS:
 	case ETIME:
 		return OWS_Q_TARGET;
 	default:

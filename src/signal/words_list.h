@@ -25,7 +25,7 @@ QUALITY(NO_DEVICE, "device absent", "The device does not answer on its wire.",
         "Does \"owsctl scan\" list the id? Compare it with the path of the signal. Check ground, "
         "data and the pull-up.")
 QUALITY(DEVICE, "device error",
-        "The device answers, and the answer cannot be true: a checksum fails, or the number is "
+        "The device answers too late, or what cannot be true: a checksum fails, or the number is "
         "out of the chip's range; or it reports a fault itself.",
         "Look for a bad contact, a long wire without enough pull-up, or noise. \"owsctl read\" of "
         "the same path shows the answer.")
@@ -36,8 +36,7 @@ QUALITY(STALE, "stale", "No newer value came within StaleAfter.",
         "Is the target up, and is the signal read at all? _ReadEnable or PerFactor may hold it "
         "back.")
 QUALITY(TARGET, "target down",
-        "The target does not answer, or it answers too late, or one of several bridge chips does "
-        "not answer.",
+        "The target does not answer, or one of several bridge chips does not answer.",
         "Does owserver run, and is its port right? Is the bridge chip at its address? owsd tries "
         "again by itself, and the signals come back.")
 QUALITY(SHORT, "wire short", "The data line of the wire is held at ground.",

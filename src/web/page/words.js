@@ -20,7 +20,7 @@ const QUALITIES = new Map([
 		"Does \u201cowsctl scan\u201d list the id? Compare it with the path of the signal. "
 		+ "Check ground, data and the pull-up."]],
 	[0x0c, ["device error",
-		"The device answers, and the answer cannot be true: a checksum fails, or the number "
+		"The device answers too late, or what cannot be true: a checksum fails, or the number "
 		+ "is out of the chip\u2019s range; or it reports a fault itself.",
 		"Look for a bad contact, a long wire without enough pull-up, or noise. \u201cowsctl "
 		+ "read\u201d of the same path shows the answer."]],
@@ -33,8 +33,7 @@ const QUALITIES = new Map([
 		"Is the target up, and is the signal read at all? _ReadEnable or PerFactor may hold "
 		+ "it back."]],
 	[0x18, ["target down",
-		"The target does not answer, or it answers too late, or one of several bridge chips "
-		+ "does not answer.",
+		"The target does not answer, or one of several bridge chips does not answer.",
 		"Does owserver run, and is its port right? Is the bridge chip at its address? owsd "
 		+ "tries again by itself, and the signals come back."]],
 	[0x19, ["wire short",

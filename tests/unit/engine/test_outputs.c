@@ -211,10 +211,10 @@ static void test_an_output_in_doubt_is_not_good_when_its_target_returns(void)
 	scene_put(&s, PIO, NULL, -EINPROGRESS);
 	scene_set(&s, 1, 4);
 	scene_run(&s, SCENE_S);
-	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, scene_sample(&s, 1).quality);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_DEVICE, scene_sample(&s, 1).quality);
 	scene_down(&s, -ECONNRESET);
 	scene_up(&s);
-	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, scene_sample(&s, 1).quality);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_DEVICE, scene_sample(&s, 1).quality);
 	scene_put(&s, PIO, "0", 0);
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);

@@ -81,10 +81,10 @@ static void test_a_lost_target_is_no_item_error(void)
 	}
 }
 
-static void test_a_slow_answer_is_an_error_of_the_item_with_the_quality_of_a_time_out(void)
+static void test_a_slow_answer_is_an_error_of_the_device_and_not_of_its_target(void)
 {
 	TEST_ASSERT_EQUAL_INT(FAILURE_ITEM, failure_of(-EINPROGRESS));
-	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, failure_quality(-EINPROGRESS));
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_DEVICE, failure_quality(-EINPROGRESS));
 }
 
 static void test_what_was_not_begun_says_nothing(void)
@@ -143,7 +143,7 @@ int main(void)
 	RUN_TEST(test_a_very_long_failure_does_not_wrap);
 	RUN_TEST(test_one_success_clears_all);
 	RUN_TEST(test_a_lost_target_is_no_item_error);
-	RUN_TEST(test_a_slow_answer_is_an_error_of_the_item_with_the_quality_of_a_time_out);
+	RUN_TEST(test_a_slow_answer_is_an_error_of_the_device_and_not_of_its_target);
 	RUN_TEST(test_what_was_not_begun_says_nothing);
 	RUN_TEST(test_each_error_has_its_quality_and_none_is_good);
 	RUN_TEST(test_a_verdict_is_what_the_device_says_of_itself);
