@@ -57,7 +57,7 @@ OPTION(WRITABLE, "Writable", ITEM, FLAG,
 OPTION(UNCACHED, "Uncached", ITEM, FLAG, .preset = "off", .help = "read past the cache")
 OPTION(INIT_VALUE, "InitValue", ITEM, TEXT, .preset = "",
        .help = "value until the first read; outputs: written once at start")
-OPTION(SAFE_VALUE, "SafeValue", ITEM, TEXT,
+OPTION(SAFE_VALUE, "SafeValue", ITEM, TEXT, .empty = true,
        .help = "written when the control program stops beating")
 OPTION(SAFE_DELAY, "SafeDelay", ITEM, SECONDS, RANGE(0, DAY),
        .help = "how long SafeValue waits for a control program that is lost, seconds")
@@ -74,10 +74,14 @@ OPTION(PER_FACTOR, "PerFactor", ITEM, COUNT, RANGE(1, 1e6), .preset = "1",
 OPTION(STALE_AFTER, "StaleAfter", ITEM, SECONDS, RANGE(0, 365 * DAY), .preset = "0",
        .help = "age at which a value is no longer good, seconds; 0: never")
 OPTION(ALARM, "Alarm", ITEM, FLAG, .preset = "off", .help = "watch the device by its alarms")
-OPTION(LATCH_ALARM, "LatchAlarm", ITEM, TEXT, .help = "property that shows what changed")
-OPTION(POR_ALARM, "PorAlarm", ITEM, TEXT, .help = "property that shows that the device restarted")
-OPTION(SET_ALARM, "SetAlarm", ITEM, TEXT, .help = "property=value that arms the alarm")
-OPTION(RESET_LATCH, "ResetLatch", ITEM, TEXT, .help = "property=value that clears the latch")
+OPTION(LATCH_ALARM, "LatchAlarm", ITEM, TEXT, .empty = true,
+       .help = "property that shows what changed")
+OPTION(POR_ALARM, "PorAlarm", ITEM, TEXT, .empty = true,
+       .help = "property that shows that the device restarted")
+OPTION(SET_ALARM, "SetAlarm", ITEM, TEXT, .empty = true,
+       .help = "property=value that arms the alarm")
+OPTION(RESET_LATCH, "ResetLatch", ITEM, TEXT, .empty = true,
+       .help = "property=value that clears the latch")
 OPTION(LIMIT_HH, "LimitHH", ITEM, NUMBER, RANGE(-DBL_MAX, DBL_MAX),
        .help = "alarm at or above that value, higher than LimitH")
 OPTION(LIMIT_H, "LimitH", ITEM, NUMBER, RANGE(-DBL_MAX, DBL_MAX),

@@ -42,6 +42,7 @@ struct option_def {
 	enum option_place place;
 	enum option_kind kind;
 	bool repeats;       /* may stand more than once */
+	bool empty;         /* an empty text is a value of its own, and not the same as no key */
 	double least, most; /* counts, seconds and numbers */
 	const char *preset; /* the default as it would be written; NULL: none */
 	const char *help;   /* one line */

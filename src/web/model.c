@@ -227,6 +227,7 @@ void model_keys(struct json *json)
 		put_limit(json, "most", def, def->most);
 		json_bool(json, "repeats", def->repeats);
 		json_string(json, "help", def->help);
+		json_bool(json, "empty", def->empty);
 		json_object_end(json);
 	}
 	json_array_end(json);

@@ -48,7 +48,7 @@ def test_the_page_gets_the_file_its_model_and_the_table_of_keys(scene):
     keys = {(k["place"], k["key"]): k for k in page.json("/api/config/keys")["keys"]}
     assert keys["driver", "Timeout"] == {
         "place": "driver", "key": "Timeout", "kind": "seconds", "default": "20", "least": 0.001,
-        "most": 86400, "repeats": False, "help": "time limit of a request, seconds"}
+        "most": 86400, "repeats": False, "help": "time limit of a request, seconds", "empty": False}
     assert keys["item", "LimitH"]["least"] is None and keys["bus", "Touch"]["kind"] == "flag"
     assert all(k["help"] for k in keys.values())
 

@@ -29,8 +29,16 @@ function hintOf(option) {
 		: bounded(least) ? ` ${least} or more.` : "";
 	const help = option.help ? `${option.help[0].toUpperCase()}${option.help.slice(1)}.` : "";
 	return `${help.replace(/\.\.$/, ".")}${range}`
+		+ `${option.empty ? ' "" stands for an empty text.' : ""}`
 		+ `${option.default ? ` Default: ${option.default}.` : ""}`;
 }
+
+/** What stands in the field: "" for an empty text that is a value, nothing for an absent key. */
+export const shownOf = (option, value) => (option.empty && value === "" ? '""' : value ?? "");
+
+/** The value of what was written into the field; null: the key goes. */
+export const valueOf = (option, text) =>
+	(option.empty && text === '""' ? "" : text === "" ? null : text);
 
 /** A field: label, control, hint, fault. change(text) is called when the user has changed it. */
 export class Field {
@@ -80,7 +88,7 @@ export class Field {
 	}
 
 	paint(text, problems) {
-		const value = text ?? "", {control} = this;
+		const value = shownOf(this.option, text), {control} = this;
 		this.problems = problems;
 		if (value !== this.shown) {
 			const typing = document.activeElement === control && control.value !== this.shown;
@@ -126,7 +134,7 @@ export class Form {
 			const fields = keys.map((key) => options.find((one) => one.key === key)).filter(Boolean)
 				.map((option) => {
 					const field = new Field(`${id}-${option.key}`, option,
-						(text) => this.#change(apply, option.key, text === "" ? null : text));
+						(text) => this.#change(apply, option.key, valueOf(option, text)));
 					this.fields.set(option.key, field);
 					return field;
 				});
@@ -171,7 +179,7 @@ export class Form {
 				const {key} = field.option, value = keys[key];
 				const own = problems.filter((one) => one.key === key);
 				field.paint(value, own);
-				set += value === undefined || value === "" ? 0 : 1;
+				set += shownOf(field.option, value) === "" ? 0 : 1;
 				wrong += own.length;
 			}
 			put(count, `${set ? `${set} set` : ""}`
