@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "src/config/load.h"
+#include "src/config/rio_file.h"
 #include "src/show/json.h"
 #include "src/signal/error.h"
 #include "src/web/body.h"
@@ -16,12 +17,14 @@
 #include "src/web/paths.h"
 #include "src/web/writer.h"
 
+#define SAVE_PATH 4096
 #define SAVE_FILES 256 /* the configuration refuses a longer path */
 
 struct save {
 	struct job job;
 	bool restore;
 	char instance[128], person[PERSON];
+	char file[SAVE_PATH];   /* that is saved */
 	char files[SAVE_FILES]; /* where the files of the page are; "": the program's own place */
 	struct body body;
 };
@@ -125,6 +128,18 @@ static bool moves_files(const struct save *save, const char *text)
 	return moves;
 }
 
+/* Has the file bytes that the page did not get as they are? One that is not read has none. */
+static bool loses_bytes(const struct save *save)
+{
+	struct config_report silent = {0};
+	char *text = NULL;
+	size_t len = 0;
+	bool loses = rio_read(save->file, &silent, &text, &len) == 0 && !draft_is_text(text, len);
+
+	free(text);
+	return loses;
+}
+
 static void save_run(struct job *job)
 {
 	struct save *save = (struct save *)job;
@@ -143,6 +158,8 @@ static void save_run(struct job *job)
 		job_error(job, 400, "expected \"text\": the new configuration");
 	} else if (!save->restore && strlen(text->text) > DRAFT_MAX) {
 		job_error(job, 413, "the text is longer than 1 MiB");
+	} else if (!save->restore && loses_bytes(save)) {
+		job_error(job, 409, DRAFT_NO_TEXT);
 	} else if (!save->restore && moves_files(save, text->text)) {
 		job_error(job, 403,
 		          "Files of the block Web stays as owsd-web has it: change it on that "
@@ -171,6 +188,7 @@ static int save_give(struct request *request, bool restore)
 	save->restore = restore;
 	snprintf(save->instance, sizeof(save->instance), "%s", web->face->arguments->instance);
 	memcpy(save->person, person, sizeof(person));
+	snprintf(save->file, sizeof(save->file), "%s", web->face->arguments->file);
 	snprintf(save->files, sizeof(save->files), "%s",
 	         web->face->config->web.files ? web->face->config->web.files : "");
 	return http_defer(request, http_worker(web, &web->saves), &save->job);

@@ -31,8 +31,7 @@ static void judge(struct stored *stored, const char *text, size_t len)
 	if (!stored->configurable || draft_is_text(text, len))
 		return;
 	stored->configurable = false;
-	snprintf(stored->why, sizeof(stored->why), "%s",
-	         "the file has bytes that are not UTF-8: save it as UTF-8 by an editor first");
+	snprintf(stored->why, sizeof(stored->why), "%s", DRAFT_NO_TEXT);
 }
 
 /* The file of before, which the writer keeps beside it. */

@@ -245,6 +245,8 @@ def test_a_file_that_json_would_change_is_shown_and_not_edited(scene):
     daemon.config.write_bytes(whole + b"# caf\xe9\n")
     got = page.json("/api/config")
     assert got["configurable"] is False and "UTF-8" in got["why"], got
+    refused = post(page, "config/save", 409, text=got["text"], base=got["tag"])
+    assert refused["error"] == got["why"] and b"caf\xe9" in daemon.config.read_bytes(), refused
     daemon.config.write_bytes(whole + b"#" * (1 << 20))
     assert "1 MiB" in page.json("/api/config", 500)["error"]
     daemon.config.unlink()
