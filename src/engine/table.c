@@ -196,7 +196,8 @@ static int decimals_of(const struct config_item *item, struct quantity quantity)
 		int fewer = (int)floor(log10(factor));
 
 		if (quantity.decimals >= 0)
-			quantity.decimals = quantity.decimals > fewer ? quantity.decimals - fewer : 0;
+			quantity.decimals = quantity.decimals > fewer ? quantity.decimals - fewer
+			                                              : 0;
 		quantity.most *= factor;
 		quantity.unit = item->unit;
 	}

@@ -43,6 +43,8 @@ static int config_show(const struct config *config, char *const *names, int coun
 				nearest = config->items[i].name;
 		if (i < config->item_count)
 			config_print_item(&config->items[i], true, stdout);
+		else if (!strcmp(names[k], "OwsDrv"))
+			status = ctl_fail("OwsDrv has the items: owsd --check -c FILE prints it");
 		else
 			status = ctl_fail("there is no item \"%s\"%s%s%s", names[k],
 			                  nearest ? "; did you mean \"" : "",

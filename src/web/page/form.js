@@ -12,11 +12,10 @@ const UNBOUNDED = 1e15;
 /** The keys of an item as people think of them; what a newer table has more comes last. */
 export const ITEM_GROUPS = [
 	["What it is", ["Name", "Path", "Type", "IO", "Description"]],
-	["Value", ["Unit", "Decimals", "Scale", "Offset", "Points", "Min", "Max", "MaxStep", "Filter",
-		"Deadband", "Calibrated"]],
+	["Value", ["InitValue", "Unit", "Decimals", "Scale", "Offset", "Points", "Min", "Max", "MaxStep",
+		"Filter", "Deadband", "Calibrated"]],
 	["Limits", ["LimitHH", "LimitH", "LimitL", "LimitLL", "Hysteresis", "OnDelay", "OffDelay"]],
-	["Output", ["InitValue", "SafeValue", "SafeDelay", "Start", "Confirm", "ReadBack",
-		"Restore"]],
+	["Output", ["SafeValue", "SafeDelay", "Start", "Confirm", "ReadBack", "Restore"]],
 	["Reading", ["PerFactor", "StaleAfter", "Readable", "Writable", "Uncached", "IOType"]],
 	["Alarm of the device", ["Alarm", "LatchAlarm", "PorAlarm", "SetAlarm", "ResetLatch"]],
 	["History", ["Record"]],
