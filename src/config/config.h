@@ -80,7 +80,7 @@ struct config_item {
 	const char *points;     /* as written */
 	int decimals;           /* -1: not given */
 	struct scale scale;
-	bool converted;         /* scale is that from the unit of the chip to this one */
+	bool converted; /* scale is that from the unit of the chip to this one */
 	double filter_s, deadband, max_step; /* 0: none */
 	const char *record_text;             /* as written; NULL: as the Recorder block says */
 	struct config_record record;
