@@ -53,7 +53,7 @@ const (
 	live, retired, stopped            = 1, 2, 3      // states
 	stateOff, newsOff, changeHeadOff  = 16, 128, 140 // in the header
 	alarmHeadOff, commandHeadOff      = 132, 136     // likewise
-	qualityTarget, qualityStale       = 0x18, 0x14   // what a reader lowers a quality to
+	qualityNoOwsd, qualityStale       = 0x1a, 0x14   // what a reader lowers a quality to
 	typeFloat, typeDouble, typeString = 7, 8, 12     // types whose values are read in another way
 	tries                             = 64           // rounds, before a copy is given up
 	deadNs                            = int64(2e9)   // least age of a dead heartbeat
@@ -370,7 +370,7 @@ func (m *image) printSignal(record uint32, now int64) {
 	if quality&0xc0 == 0xc0 {
 		if state != live && state != retired || !m.beats(now) ||
 			since-now > max(deadNs, 3*m.periodNs) {
-			quality = qualityTarget
+			quality = qualityNoOwsd
 		} else if staleAfter != 0 && age > staleAfter {
 			quality = qualityStale
 		}

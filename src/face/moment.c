@@ -10,7 +10,7 @@ int64_t moment_of(const struct ows_value *v, int64_t now_ns)
 	                                                 : now_ns;
 
 	/* StaleAfter is over long after the last attempt, perhaps */
-	if (v->quality == OWS_Q_STALE || v->quality == OWS_Q_TARGET)
+	if (v->quality == OWS_Q_STALE || v->quality == OWS_Q_TARGET || v->quality == OWS_Q_NO_OWSD)
 		time_ns = now_ns;
 	return time_ns < now_ns ? time_ns : now_ns;
 }

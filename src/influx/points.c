@@ -176,5 +176,5 @@ void points_repeat(struct points *points, struct ows *ows, struct pending *pendi
 
 void points_lost(struct points *points, struct pending *pending, int64_t now_ns)
 {
-	send_quality(points, pending, OWS_Q_TARGET, now_ns);
+	send_quality(points, pending, OWS_Q_NO_OWSD, now_ns);
 }

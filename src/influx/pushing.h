@@ -4,7 +4,7 @@
  * server does not take becomes a file of the spool. One batch at a time is under way.
  *
  * Room src/influx: the program owsd-influx: pushes signals to a server, and spools what it does not
- * take. Uses src/face, src/config, src/text, src/history, src/libows, src/signal, hal/base.
+ * take. Uses src/face, src/text, src/history, src/libows, src/signal, hal/base.
  */
 #pragma once
 

@@ -102,7 +102,7 @@ static int attribute_get(struct ows *h, struct ows_id *id, int64_t now_ns, struc
 	bool alive = handle_alive(h, now_ns);
 	int err = handle_state(h);
 
-	*value = (struct ows_value){.type = (uint8_t)def->type, .quality = OWS_Q_TARGET};
+	*value = (struct ows_value){.type = (uint8_t)def->type, .quality = OWS_Q_NO_OWSD};
 	if (!def->readable) {
 		value->quality = OWS_Q_NO_PROPERTY;
 		return -EACCES;
@@ -117,7 +117,7 @@ static int attribute_get(struct ows *h, struct ows_id *id, int64_t now_ns, struc
 	value->number = def->type == OWS_DOUBLE ? (double)result / NS_PER_S : (double)result;
 	value->integer = def->type == OWS_DOUBLE ? 0 : result;
 	value->len = 0;
-	value->quality = err || !alive ? OWS_Q_TARGET : OWS_Q_GOOD;
+	value->quality = err || !alive ? OWS_Q_NO_OWSD : OWS_Q_GOOD;
 	return err;
 }
 
@@ -143,7 +143,7 @@ static inline int finish_value(struct ows *h, int64_t stale_after_ns, int64_t no
 	if (ows_good(value->quality)) {
 		/* a retired image stays good until its last heartbeat is too old */
 		if (stopped(h) || !alive || handle_ahead(h, now_ns, since))
-			value->quality = OWS_Q_TARGET;
+			value->quality = OWS_Q_NO_OWSD;
 		else if (stale_after_ns > 0 && value->age_ns > stale_after_ns)
 			value->quality = OWS_Q_STALE;
 	}
@@ -157,7 +157,7 @@ static inline int get_record(struct ows *h, unsigned record, int64_t stale_after
 	struct ows_sample sample;
 
 	if (!reader_sample(r, &sample)) {
-		*value = (struct ows_value){.type = r->type, .quality = OWS_Q_TARGET};
+		*value = (struct ows_value){.type = r->type, .quality = OWS_Q_NO_OWSD};
 		return -EAGAIN;
 	}
 	value_fill(h, record, value, &sample, r->type);
@@ -171,7 +171,7 @@ static int get_raw(struct ows *h, struct ows_id *e, int64_t now_ns, struct ows_v
 	struct ows_slot slot;
 
 	if (!reader_slot(r, &slot)) {
-		*value = (struct ows_value){.type = OWS_DOUBLE, .quality = OWS_Q_TARGET};
+		*value = (struct ows_value){.type = OWS_DOUBLE, .quality = OWS_Q_NO_OWSD};
 		return -EAGAIN;
 	}
 	slot.sample.value = slot.attrs.raw;
@@ -246,7 +246,7 @@ static int get_string(struct ows *h, const struct ows_id *e, int64_t now_ns,
 
 	if (!map_has_text(&h->map, r) || !reader_text(h->map.base, r, &sample, text, size)) {
 		text[0] = '\0';
-		*value = (struct ows_value){.type = r->type, .quality = OWS_Q_TARGET};
+		*value = (struct ows_value){.type = r->type, .quality = OWS_Q_NO_OWSD};
 		return -EAGAIN;
 	}
 	value_fill(h, (uint32_t)e->record, value, &sample, r->type);

@@ -65,8 +65,9 @@ enum ows_quality {
 	OWS_Q_DEVICE = 0x0c,      /* device error: checksum, refused */
 	OWS_Q_SENSOR = 0x10,      /* power-fault reading of a thermometer (85, 127.94) */
 	OWS_Q_STALE = 0x14,       /* older than StaleAfter */
-	OWS_Q_TARGET = 0x18,      /* target down or timed out; owsd dead */
+	OWS_Q_TARGET = 0x18,      /* target down or timed out */
 	OWS_Q_SHORT = 0x19,       /* the wire is short */
+	OWS_Q_NO_OWSD = 0x1a,     /* owsd has ended, was killed or hangs; the reader sets it */
 	OWS_Q_DIFFERS = 0x1c,     /* an output reads otherwise than it was written */
 	OWS_Q_INITIAL = 0x20,     /* never read or written */
 	OWS_Q_LAST_USABLE = 0x44, /* a new target has not answered, or an output's was down */

@@ -70,7 +70,7 @@ static void plain_put_value(struct json *json, const struct stream *s, const str
 	if (v->detail & OWS_DETAIL_SIMULATED)
 		json_bool(json, "simulated", true);
 	if (!ows_good(quality))
-		json_string(json, "why", s->live ? ows_quality_text(quality) : "owsd is not there");
+		json_string(json, "why", ows_quality_text(s->live ? quality : OWS_Q_NO_OWSD));
 	put_time(json, s, moment_of(v, now.boot) + now.wall - now.boot);
 	json_object_end(json);
 }
@@ -92,7 +92,8 @@ bool plain_chip_there(const struct stream *s, const struct chip *chip)
 
 bool plain_chip_look(struct stream *s, struct row *row, uint8_t quality)
 {
-	bool away = quality == OWS_Q_NO_DEVICE || quality == OWS_Q_TARGET || quality == OWS_Q_SHORT;
+	bool away = quality == OWS_Q_NO_DEVICE || quality == OWS_Q_TARGET ||
+	            quality == OWS_Q_NO_OWSD || quality == OWS_Q_SHORT;
 	/* what is less is wrong with the configuration, and says nothing of the chip */
 	bool answers = quality > OWS_Q_NO_DEVICE && quality != OWS_Q_INITIAL && !away;
 	struct chip *chip;

@@ -345,7 +345,7 @@ static bool put_limit(struct stream *s, struct row *row, uint64_t alias, bool da
 	m.metric.alias = alias + (uint64_t)(s->count + (row - s->rows));
 	m.metric.has_timestamp = true;
 	m.metric.timestamp = ms_of(when_now().wall);
-	add_quality(&m, known ? OWS_Q_GOOD : OWS_Q_TARGET, known && row->simulated);
+	add_quality(&m, known ? OWS_Q_GOOD : OWS_Q_NO_OWSD, known && row->simulated);
 	if (!data) {
 		snprintf(m.name, sizeof(m.name), "%.240s/Alarm", row->info.name);
 		clean(m.name);

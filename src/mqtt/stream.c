@@ -57,13 +57,13 @@ bool stream_read(struct stream *s, struct row *row, struct news *news)
 
 	news->now_ns = ows_now();
 	news->text[0] = '\0';
-	*v = (struct ows_value){.quality = OWS_Q_TARGET};
+	*v = (struct ows_value){.quality = OWS_Q_NO_OWSD};
 	if (s->live) {
 		int err = ows_get_signal_text(s->h, (int)(row - s->rows), news->now_ns, v,
 		                              news->text, sizeof(news->text));
 
 		if (err && err != -ENOSPC && err != -ESTALE)
-			v->quality = OWS_Q_TARGET;
+			v->quality = OWS_Q_NO_OWSD;
 		repeat_ns = stream_repeat_ns(&row->info);
 	}
 	news->good = ows_good(v->quality);

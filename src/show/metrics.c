@@ -114,7 +114,7 @@ static bool sample_of(const struct print *p, int signal, const struct ows_info *
 	case QUALITY:
 		snprintf(text, VALUE_TEXT_MAX, "%u",
 		         !filled                                   ? 0u
-		         : p->metrics->lost && ows_good(v.quality) ? OWS_Q_TARGET
+		         : p->metrics->lost && ows_good(v.quality) ? OWS_Q_NO_OWSD
 		                                                   : v.quality);
 		return true;
 	case AGE:

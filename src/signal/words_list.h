@@ -41,6 +41,9 @@ QUALITY(TARGET, "target down",
         "again by itself, and the signals come back.")
 QUALITY(SHORT, "wire short", "The data line of the wire is held at ground.",
         "Look for a short between data and ground; unplug branches until the wire lives again.")
+QUALITY(NO_OWSD, "owsd not running",
+        "owsd has ended or hangs: no heartbeat of it comes.",
+        "Does the service run: systemctl status owsd@OWS? The values are back when owsd is.")
 QUALITY(DIFFERS, "not as commanded", "The output reads otherwise than it was written.",
         "Did the device lose its supply, or did another program switch it? Set it again; Restore "
         "in the configuration does it by itself.")

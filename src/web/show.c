@@ -33,7 +33,7 @@ static void look_at(const struct show *show, int signal, struct look *look)
 	look->good = (!err || err == -ENOSPC) && show->live && ows_good(look->code);
 	/* what was good a moment ago may be shown so for two seconds more by libows */
 	if (!show->live && ows_good(look->code))
-		look->code = OWS_Q_TARGET;
+		look->code = OWS_Q_NO_OWSD;
 }
 
 /* Beyond it a browser would round. */
@@ -73,8 +73,8 @@ static void put_quality(struct json *json, const struct show *show, const struct
 	const char *why = "", *remedy = "";
 
 	if (!show->live) {
-		why = "owsd does not run";
-		remedy = "Start it.";
+		why = quality_cause(OWS_Q_NO_OWSD);
+		remedy = quality_remedy(OWS_Q_NO_OWSD);
 	} else if (!look->good) {
 		why = look->value.err ? error_text(look->value.err) : quality_cause(look->code);
 		remedy = look->value.err ? error_remedy(look->value.err) : "";

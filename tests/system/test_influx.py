@@ -480,7 +480,7 @@ def test_a_dead_owsd_is_a_point_without_a_value_and_a_reload_is_none(scene):
         assert None not in relays[relays.index("5"):], server.points
         daemon.kill()
         until(lambda: server.values("relays")[-1] is None, 20, "no value is good any more")
-        assert "quality=24i" in str(server.points["relays"]), server.points
+        assert "quality=26i" in str(server.points["relays"]), server.points
         again = scene.owsd(daemon.config, name=daemon.name)
         set_relays(scene, again, 7)
         arrives(server, "relays", "7")

@@ -102,7 +102,7 @@ def test_a_lost_owsd_takes_all_values_back_until_it_is_there_again(scene):
     house.daemon.kill()
     house.says(STATE, "offline")
     room = house.arrives("room", lambda m: not m["good"])
-    assert room["v"] is None and room["why"] == "owsd is not there", room
+    assert room["v"] is None and room["why"] == "owsd not running", room
     house.says(f"owsd/pi7/chip/{SENSOR}", "offline")
     scene.owsd(house.daemon.config, name=house.daemon.name)
     house.arrives("room", lambda m: m["good"])

@@ -151,10 +151,10 @@ def test_watch_prints_changes_and_follows_a_killed_owsd(scene):
     lines.until(r"^\S+ room 22.5 good \(sim\)$")
     daemon.kill()
     said.until("is not running: last heartbeat")
-    lines.until(r"^\S+ room 22.5 target down \(sim\)$")
+    lines.until(r"^\S+ room 22.5 owsd not running \(sim\)$")
     scene.owsd(daemon.config, name=daemon.name)
     said.until("was started again")
-    lines.until(r"target down.*\n(.*\n)*\S+ room 22.5 good \(sim\)$", 20)
+    lines.until(r"owsd not running.*\n(.*\n)*\S+ room 22.5 good \(sim\)$", 20)
     watch.terminate()
     assert watch.wait(owsdtest.PATIENCE) == 0
 

@@ -130,7 +130,7 @@ def test_values_of_a_killed_owsd_turn_bad_and_those_of_the_next_are_read(scene):
     following = scene.start([program, "-n", daemon.name, "-f", "600"])
     scene.until(lambda: "0xc0" in following.log(), 10, following.log)
     daemon.kill()
-    scene.until(lambda: re.search("# owsd is dead\ndouble\tdouble\t21.0625\t0x18", following.log()), 10,
+    scene.until(lambda: re.search("# owsd is dead\ndouble\tdouble\t21.0625\t0x1a", following.log()), 10,
                 following.log)
     assert by_go(read(program, daemon.name))["double"] == by_owsctl(scene, daemon)["double"]
     scene.owsd(config, name=daemon.name)

@@ -75,9 +75,9 @@ def test_a_reader_of_a_killed_owsd_sees_whole_samples_that_age_and_the_next_owsd
             scene.until(lambda: reopened(signals), 10, "the new image is there")
             scene.until(lambda: good(signals, "room"), 10, "room is good again")
         daemon.kill()
-        scene.until(lambda: signals.get("room").quality == ows.Q_TARGET, 10, "owsd seems dead")
+        scene.until(lambda: signals.get("room").quality == ows.Q_NO_OWSD, 10, "owsd seems dead")
         assert signals.get("room").value == first.value
-        assert signals.get("_TRANSACTIONS").quality == ows.Q_TARGET
+        assert signals.get("_TRANSACTIONS").quality == ows.Q_NO_OWSD
 
 
 def test_after_an_orderly_end_sets_are_refused_until_the_next_start(scene):
@@ -108,14 +108,14 @@ def test_after_an_orderly_end_all_can_be_looked_at_and_nothing_set(scene):
     got = scene.owsctl(daemon, "get", "room")
     assert (got.returncode, got.stdout) == (3, value + "\n"), got
     listed = scene.owsctl(daemon, "list")
-    assert "room" in listed.stdout and "target down" in listed.stdout, listed
+    assert "room" in listed.stdout and "owsd not running" in listed.stdout, listed
     assert "was stopped" in listed.stderr, listed
     stats = scene.owsctl(daemon, "stats")
     assert "stopped" in stats.stdout, stats
     done = scene.owsctl(daemon, "set", "relays", "7")
     assert done.returncode == 1 and "owsd is not running" in done.stderr, done
     with ows.Ows(daemon.name) as signals:  # opened after the end
-        assert signals.get("room").quality == ows.Q_TARGET and signals.stale()
+        assert signals.get("room").quality == ows.Q_NO_OWSD and signals.stale()
 
 
 def test_a_removed_image_is_told(scene):

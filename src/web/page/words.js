@@ -40,6 +40,9 @@ const QUALITIES = new Map([
 		"The data line of the wire is held at ground.",
 		"Look for a short between data and ground; unplug branches until the wire lives "
 		+ "again."]],
+	[0x1a, ["owsd not running",
+		"owsd has ended or hangs: no heartbeat of it comes.",
+		"Does the service run: systemctl status owsd@OWS? The values are back when owsd is."]],
 	[0x1c, ["not as commanded",
 		"The output reads otherwise than it was written.",
 		"Did the device lose its supply, or did another program switch it? Set it again; "

@@ -121,7 +121,7 @@ static void test_a_lost_owsd_makes_each_signal_bad_once(void)
 	instance_put_double(&in, ROOM + 1, 21.5, now_ns);
 	changes(-1);
 	points_lost(&points, &pending, now_ns + 5);
-	TEST_ASSERT_EQUAL_STRING(SERIES "room quality=24i 5\n" SERIES "title quality=24i 5\n",
+	TEST_ASSERT_EQUAL_STRING(SERIES "room quality=26i 5\n" SERIES "title quality=26i 5\n",
 	                         waits(now_ns));
 	points_lost(&points, &pending, now_ns + 6);
 	TEST_ASSERT_EQUAL_STRING("", waits(now_ns));

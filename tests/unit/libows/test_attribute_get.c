@@ -206,7 +206,7 @@ static void test_attributes_of_a_dead_owsd_are_not_good(void)
 	now += 100 * INSTANCE_S;
 	TEST_ASSERT_EQUAL(0, ows_get(h, ows_find(h, "x_Age"), now, &v));
 	TEST_ASSERT_EQUAL_DOUBLE(101.0, v.number);
-	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, v.quality);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_NO_OWSD, v.quality);
 }
 
 int main(void)

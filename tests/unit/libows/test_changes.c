@@ -217,7 +217,7 @@ static void test_an_owsd_that_was_killed_changes_all_once_and_its_return_too(voi
 	instance_beat(&in, ows_now() - 1700 * MS, 0); /* of the two seconds it may stand still */
 	open_it();
 	TEST_ASSERT_EQUAL(-EOVERFLOW, ows_changes(h, &cursor, ids, ROOM, -1));
-	expect_quality(OWS_Q_TARGET);
+	expect_quality(OWS_Q_NO_OWSD);
 	TEST_ASSERT_EQUAL(0, ows_changes(h, &cursor, ids, ROOM, 10 * MS));
 	instance_beat(&in, ows_now(), 0);
 	TEST_ASSERT_EQUAL(-EOVERFLOW, ows_changes(h, &cursor, ids, ROOM, -1));
@@ -232,7 +232,7 @@ static void test_an_owsd_that_ended_changes_all_and_the_next_one_is_awaited(void
 	TEST_ASSERT_EQUAL(1, changes(ROOM));
 	image_state(&in.image, OWS_STATE_STOPPED);
 	TEST_ASSERT_EQUAL(-EOVERFLOW, ows_changes(h, &cursor, ids, ROOM, -1));
-	expect_quality(OWS_Q_TARGET);
+	expect_quality(OWS_Q_NO_OWSD);
 	TEST_ASSERT_EQUAL(0, ows_changes(h, &cursor, ids, ROOM, 10 * MS));
 	old = in;
 	instance_make(&in, "changes", 2, ows_now(), signals, COUNT);

@@ -136,7 +136,7 @@ static void test_times_at_the_ends_of_their_range_are_old_or_new(void)
 	TEST_ASSERT_EQUAL_INT64(0, value.age_ns);
 	instance_beat(&in, INT64_MIN, 0);
 	TEST_ASSERT_EQUAL(0, ows_get(h, id, ows_now(), &value));
-	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, value.quality);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_NO_OWSD, value.quality);
 }
 
 int main(void)

@@ -133,7 +133,7 @@ static void test_a_dead_owsd_has_no_good_values(void)
 	now += 2 * INSTANCE_S;
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, get("relay").quality);
 	now += 1;
-	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, get("relay").quality);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_NO_OWSD, get("relay").quality);
 	TEST_ASSERT_EQUAL_INT64(1, get("relay").integer);
 }
 
@@ -241,10 +241,10 @@ static void test_a_heart_that_beats_in_the_future_is_dead(void)
 		TEST_ASSERT_EQUAL(0, ows_daemon(h, now + (int64_t)i, &d));
 		TEST_ASSERT_EQUAL(0, d.alive);
 		ows_get_signal(h, 0, now + (int64_t)i, &v);
-		TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, v.quality);
+		TEST_ASSERT_EQUAL_HEX8(OWS_Q_NO_OWSD, v.quality);
 		ows_get_text(h, ows_find(h, "relay_PerFactor"), now + (int64_t)i, &v, text,
 		             sizeof(text));
-		TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, v.quality);
+		TEST_ASSERT_EQUAL_HEX8(OWS_Q_NO_OWSD, v.quality);
 	}
 	/* owsd published after this program had looked at its clock */
 	instance_beat(&in, now + INSTANCE_S, 100);
@@ -263,7 +263,7 @@ static void test_a_value_that_was_measured_in_the_future_is_not_good(void)
 	TEST_ASSERT_EQUAL_INT64(0, v.age_ns);
 	instance_put_double(&in, 1, 21.5, now + 3 * INSTANCE_S);
 	TEST_ASSERT_EQUAL(0, ows_get_signal(h, 0, now + 2, &v));
-	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, v.quality);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_NO_OWSD, v.quality);
 	TEST_ASSERT_EQUAL_INT64(0, v.age_ns);
 }
 

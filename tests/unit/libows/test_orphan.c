@@ -109,11 +109,11 @@ static void test_a_reader_of_an_orphan_is_led_to_the_next_owsd(void)
 
 	replace();
 	TEST_ASSERT_EQUAL_MESSAGE(0, ows_get(h, room, t0 + DEAD, &v), "a read looks at no name");
-	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, v.quality);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_NO_OWSD, v.quality);
 	TEST_ASSERT_EQUAL(-ESTALE, get(t0 + DEAD));
 	TEST_ASSERT_EQUAL(-ESTALE, ows_get(h, room, t0 + DEAD, &v));
 	TEST_ASSERT_EQUAL_DOUBLE(20, v.number);
-	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, v.quality);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_NO_OWSD, v.quality);
 	TEST_ASSERT_EQUAL(0, reopen());
 	TEST_ASSERT_EQUAL(0, ows_get(h, room, ows_now(), &v));
 	TEST_ASSERT_EQUAL_DOUBLE(21, v.number);
@@ -141,7 +141,7 @@ static void test_a_name_that_leads_nowhere_yet_is_no_reason_to_reopen(void)
 	remove_names();
 	TEST_ASSERT_EQUAL(0, get(t0 + DEAD));
 	TEST_ASSERT_EQUAL(0, ows_get(h, room, t0 + DEAD, &v));
-	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, v.quality);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_NO_OWSD, v.quality);
 	start_second();
 	TEST_ASSERT_EQUAL(-ESTALE, get(t0 + DEAD + INSTANCE_S));
 }

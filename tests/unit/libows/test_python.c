@@ -127,7 +127,7 @@ static void test_a_value_says_what_it_is_worth(void)
 	expect("s = ows.Ows(name)\nn = s[\"relay\"].measured_ns + 10**8\n"
 	       "print(s.get(\"relay\", n), repr(s[\"count\"]), s[\"room1\"].text, s[\"room1\"].good)\n"
 	       "print(s.get(\"relay\", n + 63 * 10**9).text)",
-	       "True, good, 0.1 s old <Value 0, bad, never measured> stale False\ntarget down\n");
+	       "True, good, 0.1 s old <Value 0, bad, never measured> stale False\nowsd not running\n");
 }
 
 static void test_python_computes_attributes_as_c_does(void)

@@ -73,7 +73,7 @@ static void test_ids_stay_right_over_a_reload(void)
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, v.quality);
 	TEST_ASSERT_EQUAL(-ESTALE,
 	                  ows_get(h, b, ows_now() + INSTANCE_PATIENCE + 10 * INSTANCE_S, &v));
-	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, v.quality);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_NO_OWSD, v.quality);
 	TEST_ASSERT_EQUAL(0, reopen(h));
 	instance_put(&in, 2, 0, ows_now());
 	instance_put_double(&in, 3, 2.5, ows_now());

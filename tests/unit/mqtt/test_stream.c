@@ -182,11 +182,11 @@ static void test_an_owsd_that_is_lost_takes_all_back(void)
 	stream_live(&s, false);
 	TEST_ASSERT_EQUAL_STRING("o/pi/state offline\n"
 	                         "o/pi/chip/28.000000000001 offline\n"
-	                         "o/pi/room {\"v\":null,\"good\":false,\"q\":24,"
-	                         "\"why\":\"owsd is not there\",\"t\":null}\n"
+	                         "o/pi/room {\"v\":null,\"good\":false,\"q\":26,"
+	                         "\"why\":\"owsd not running\",\"t\":null}\n"
 	                         "o/pi/chip/29.000000000001 offline\n"
-	                         "o/pi/title {\"v\":null,\"good\":false,\"q\":24,"
-	                         "\"why\":\"owsd is not there\",\"t\":null}\n",
+	                         "o/pi/title {\"v\":null,\"good\":false,\"q\":26,"
+	                         "\"why\":\"owsd not running\",\"t\":null}\n",
 	                         pump());
 	stream_live(&s, true);
 	TEST_ASSERT_NOT_NULL(strstr(pump(), "o/pi/room {\"v\":1,"));
