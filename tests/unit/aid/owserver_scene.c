@@ -18,6 +18,7 @@ static uint32_t next_id;
 
 void owserver_begin(void)
 {
+	peer_has_a_wire = false;
 	/* the time-out of a name server that does not answer */
 	setenv("RES_OPTIONS", "timeout:1 attempts:1", 1);
 	host_init_real(&host);

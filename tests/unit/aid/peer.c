@@ -41,6 +41,8 @@ static const struct {
 	{FRAME_DIRALL, "/odd", "/stranger,/bad\nentry,,/29.000029D60100"},
 };
 
+bool peer_has_a_wire;
+
 static void saw(unsigned *count)
 {
 	__atomic_add_fetch(count, 1, __ATOMIC_SEQ_CST);
@@ -122,6 +124,8 @@ static size_t make_answer(uint8_t *out, const struct frame_header *request, cons
 		if (answers[i].type == (uint32_t)request->type &&
 		    strcmp(answers[i].path, path) == 0)
 			text = answers[i].text;
+	if (peer_has_a_wire && text && strcmp(text, "Simulated-Peer") == 0)
+		text = "DS2482-800(0)";
 	if (!text && request->type != FRAME_NOP) {
 		reply.type = strstr(path, "readonly") ? -95 : strstr(path, "directory") ? -21 : -1;
 	} else if (text) {

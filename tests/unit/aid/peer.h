@@ -16,6 +16,7 @@
 #pragma once
 
 #include <pthread.h>
+#include <stdbool.h>
 #include <stdint.h>
 
 struct peer {
@@ -36,6 +37,8 @@ struct peer {
 	char path[256];
 };
 
+/* Set before the peer starts: its adapter does not call itself a simulation. */
+extern bool peer_has_a_wire;
 /* family AF_INET, AF_INET6 or AF_UNIX; plan has to stay. Fails the test when there is no port. */
 void peer_start(struct peer *peer, int family, const char *plan);
 void peer_stop(struct peer *peer);

@@ -109,6 +109,7 @@ static void test_device_and_property_are_missed_by_different_errors(void)
 
 static void test_a_probe_asks_for_the_device_alone(void)
 {
+	peer_has_a_wire = true;
 	serve("");
 	TEST_ASSERT_EQUAL_INT(0, request(BUS_PROBE, TEMPERATURE, NULL, 0)->err);
 	TEST_ASSERT_EQUAL_UINT(2, peer_saw(&peer.requests));
@@ -119,6 +120,7 @@ static void test_a_probe_asks_for_the_device_alone(void)
 /* Its cache has the device, the wire has not: what is read of it are the ones of the idle wire. */
 static void test_a_server_whose_cache_has_a_device_that_is_away_is_not_believed(void)
 {
+	peer_has_a_wire = true;
 	serve("");
 	TEST_ASSERT_EQUAL_INT(-ENODEV, request(BUS_READ, "/30.000029D60100/volt", NULL, 64)->err);
 	TEST_ASSERT_EQUAL_INT(-ENODEV, request(BUS_PROBE, "/30.000029D60100/volt", NULL, 0)->err);
