@@ -51,9 +51,9 @@ static void run(const char *chip, unsigned code, const char *property, bool unca
 	size_t n = 0, m = 0;
 
 	m += (size_t)snprintf(scenario, sizeof(scenario),
-	                      "chip DS2482-100 0x18\n%s %02X.000000000001 as it\n"
+	                      "chip DS2482-100 0x18\n%s %02X.000000000001 as it%s\n"
 	                      "at 20s corrupt it each 1 seed 7\n",
-	                      chip, code);
+	                      chip, code, code == 0x26 ? " vad 2" : "");
 	n += (size_t)snprintf(rio, sizeof(rio),
 	                      "OwsDrv {\n  TargetName \"sim:plant\"\n  Period 0.1\n  Item {\n"
 	                      "    Name \"it\"\n    Path \"/%02X.000000000001/%s\"\n"

@@ -39,8 +39,8 @@ static void test_a_liar_that_stands_first_does_not_keep_a_device(void)
 	static const struct {
 		const char *text;
 		int err;
-	} lies[] = {{"-999.9", 0}, {"85", 0},     {"abc", 0},    {"", 0},
-	            {"", -EIO},    {"", -ENOENT}, {"", -EACCES}, {"", -EINPROGRESS}};
+	} lies[] = {{"-999.9", -EDOM}, {"85", -ERANGE}, {"abc", 0},    {"", 0},
+	            {"", -EIO},        {"", -ENOENT},   {"", -EACCES}, {"", -EINPROGRESS}};
 
 	for (size_t i = 0; i < sizeof(lies) / sizeof(lies[0]); i++) {
 		tearDown();
@@ -115,7 +115,7 @@ static void test_a_device_that_fails_for_less_than_its_retries_moves_nowhere(voi
 	scene_put_on(&s, 1, T1, "22.5", 0);
 	two_wires_up(&s);
 	for (int i = 0; i < 100; i++) {
-		scene_put_on(&s, 0, T1, "-999.9", 0);
+		scene_put_on(&s, 0, T1, "-999.9", -EDOM);
 		scene_run(&s, 250 * SCENE_MS);
 		scene_put_on(&s, 0, T1, "21.5", 0);
 		scene_run(&s, 500 * SCENE_MS);
@@ -128,7 +128,7 @@ static void test_a_device_that_fails_for_less_than_its_retries_moves_nowhere(voi
 static void test_between_two_that_fail_a_device_does_not_swing(void)
 {
 	scene_input(&s, "t1", T1, OWS_DOUBLE);
-	scene_put_on(&s, 0, T1, "-999.9", 0);
+	scene_put_on(&s, 0, T1, "-999.9", -EDOM);
 	scene_put_on(&s, 1, T1, "", -EIO);
 	two_wires_up(&s);
 	run_watching(1, 3600 * SCENE_S, 9);
@@ -146,7 +146,7 @@ static void test_between_two_that_fail_a_device_does_not_swing(void)
 static void test_what_failed_on_one_wire_is_served_from_there_when_the_other_has_lost_it(void)
 {
 	scene_input(&s, "t1", T1, OWS_DOUBLE);
-	scene_put_on(&s, 0, T1, "-999.9", 0);
+	scene_put_on(&s, 0, T1, "-999.9", -EDOM);
 	scene_put_on(&s, 1, T1, "21.5", 0);
 	two_wires_up(&s);
 	scene_run(&s, 2 * SCENE_S);

@@ -232,6 +232,7 @@ static void test_a_conversion_serves_no_longer_than_a_cached_value_lives(void)
 static void test_a_value_of_several_parts_is_as_old_as_the_oldest(void)
 {
 	begin("DS2438");
+	wire_set(chip, "vad", 2);
 	int64_t humidity = measured("humidity");
 	TEST_ASSERT_LESS_OR_EQUAL_INT64(measured("temperature"), humidity);
 	TEST_ASSERT_LESS_OR_EQUAL_INT64(measured("VAD"), humidity);
@@ -244,6 +245,7 @@ static void test_a_value_of_several_parts_is_as_old_as_the_oldest(void)
 static void test_humidity_leaves_the_temperature_to_those_who_ask_next(void)
 {
 	begin("DS2438");
+	wire_set(chip, "vad", 2);
 	wire_set(chip, "temperature", 20);
 	uint32_t id = ask(BUS_READ, BUS_GUEST, false, of(chip, "humidity"), NULL);
 	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
