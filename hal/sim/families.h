@@ -22,7 +22,7 @@
 	/* couplers, bridges to I2C */ \
 	family(ds2409) family(ds28e17) family(ds28e18) \
 	/* voltages, batteries */ \
-	family(ds2436) family(ds2437) family(ds2438) family(ds2438_a6) family(tmp1826) family(tmp1827) \
+	family(ds2436) family(ds2437) family(ds2438) family(ds2438_a6) family(ds2438_emulated) family(tmp1826) family(tmp1827) \
 	family(ds2450) family(ds2720) \
 	family(ds2740) family(ds2751) family(ds2755) family(ds2760) family(ds2770) \
 	family(ds2780) family(ds2781) \

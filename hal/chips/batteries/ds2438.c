@@ -28,6 +28,9 @@
 
 #define KNOWN 0x80 /* of a configuration */
 
+/* Both marks of so many pairs, each the other's complement, outlived a recall: it has none. */
+#define COPY_KEPT 3
+
 /* As a driver gives them, which sees to all that stands below. */
 static const struct area pages = {.name = "pages", .size = 64};
 
@@ -79,6 +82,58 @@ static bool is_mark(struct txn *txn, unsigned page, uint8_t byte)
 	return ((byte ^ ds2438_visit(txn)->mark) & (page ? 0xff : DS2438_AD)) == 0;
 }
 
+bool ds2438_is_copy(const struct txn *txn)
+{
+	return ds2438_of(txn)->kept == COPY_KEPT;
+}
+
+void ds2438_is_genuine(struct txn *txn)
+{
+	ds2438_of(txn)->genuine = true;
+	ds2438_of(txn)->kept = 0;
+	txn->device->identity = NULL;
+}
+
+/* The recall of a chip may be lost, but not all of them where everything else comes over whole. */
+static int kept_marks(struct txn *txn)
+{
+	struct ds2438 *chip = ds2438_of(txn);
+
+	if (chip->genuine || ++chip->kept < COPY_KEPT)
+		return -EBADMSG;
+	txn->device->identity = "emulated: shows no conversion";
+	ds2438_visit(txn)->step = BEGIN;
+	ds2438_visit(txn)->again = false;
+	return TXN_MORE;
+}
+
+/* It is there, and two looks are the same; nothing but zeros is also what a short wire gives. */
+static int read_copy(struct txn *txn, unsigned page, uint8_t bytes[8])
+{
+	static const uint8_t zeros[8];
+	uint8_t in[9], again[9];
+	int there = 1, err;
+
+	if (ds2438_visit(txn)->step == BEGIN) {
+		there = txn_verify(txn, false);
+		ds2438_visit(txn)->step = TAKE;
+		return there > 0 ? TXN_MORE : there ? there : -ENODEV;
+	}
+	ds2438_visit(txn)->step = BEGIN;
+	err = ds2438_read_scratchpad(txn, page, in);
+	if (!err)
+		err = ds2438_read_scratchpad(txn, page, again);
+	if (!err && (memcmp(in, again, sizeof(in)) != 0 || (page == 0 && (in[0] & BUSY))))
+		err = -EBADMSG;
+	if (!err && memcmp(in, zeros, sizeof(zeros)) == 0)
+		there = txn_verify(txn, false);
+	if (err || there <= 0)
+		return err ? err : there ? there : -ENODEV;
+	ds2438_of(txn)->first[page] = page ? in[0] : KNOWN | (in[0] & CONFIGURATION);
+	memcpy(bytes, in, 8);
+	return 0;
+}
+
 /* Behind the mark. */
 static int ds2438_take(struct txn *txn, unsigned page, uint8_t bytes[8])
 {
@@ -89,7 +144,9 @@ static int ds2438_take(struct txn *txn, unsigned page, uint8_t bytes[8])
 		err = ds2438_read_scratchpad(txn, page, again);
 	if (!err && memcmp(in, again, sizeof(in)) != 0)
 		err = -EBADMSG;
-	if (!err && page == 0 && ((in[0] & BUSY) || ((in[0] ^ *note) & CONFIGURATION)))
+	/* The mark of page 0 in its place: the recall was lost, or there is none. */
+	uint8_t fixed = ds2438_of(txn)->genuine ? CONFIGURATION : CONFIGURATION & ~DS2438_AD;
+	if (!err && page == 0 && ((in[0] & BUSY) || ((in[0] ^ *note) & fixed)))
 		err = -EBADMSG;
 	if (err)
 		return err;
@@ -99,11 +156,12 @@ static int ds2438_take(struct txn *txn, unsigned page, uint8_t bytes[8])
 		ds2438_visit(txn)->step = BEGIN;
 		ds2438_visit(txn)->again = false;
 		memcpy(bytes, in, 8);
+		ds2438_is_genuine(txn);
 		return 0;
 	}
 	/* The memory may well hold the mark: with another one, once more. */
 	if (ds2438_visit(txn)->again)
-		return -EBADMSG;
+		return kept_marks(txn);
 	ds2438_visit(txn)->again = true;
 	return TXN_MORE;
 }
@@ -115,6 +173,8 @@ int ds2438_read(struct txn *txn, unsigned page, uint8_t bytes[8])
 
 	if (txn_driven(txn))
 		return txn_driver_read(txn, &pages, page * 8, bytes, 8);
+	if (ds2438_is_copy(txn))
+		return read_copy(txn, page, bytes);
 	switch ((enum step)ds2438_visit(txn)->step) {
 	case BEGIN:
 		if (page == 0 && !*note) {
@@ -122,6 +182,15 @@ int ds2438_read(struct txn *txn, unsigned page, uint8_t bytes[8])
 			if (err)
 				return err;
 			*note = KNOWN | (in[0] & CONFIGURATION);
+			ds2438_visit(txn)->step = SET_MARK;
+			return TXN_MORE;
+		}
+		/* A mark stays in a copy: the second one is what was there. */
+		if (page && !*note && !ds2438_of(txn)->genuine) {
+			err = ds2438_read_scratchpad(txn, page, in);
+			if (err)
+				return err;
+			*note = in[0];
 			ds2438_visit(txn)->step = SET_MARK;
 			return TXN_MORE;
 		}
@@ -170,6 +239,11 @@ int ds2438_read_selected(struct txn *txn, uint8_t select, uint8_t bytes[8])
 		int err = ds2438_read(txn, 0, bytes);
 
 		return err || (bytes[0] & DS2438_AD) == select ? err : -EIO;
+	}
+	if (ds2438_is_copy(txn)) {
+		int err = ds2438_read(txn, 0, bytes);
+
+		return err || (bytes[0] & DS2438_AD) == select ? err : -EBADMSG;
 	}
 	if (ds2438_visit(txn)->step == BEGIN && (ds2438_of(txn)->first[0] & DS2438_AD) != select) {
 		ds2438_visit(txn)->mark = select;
@@ -253,7 +327,8 @@ static int write_page(struct txn *txn, unsigned page, const uint8_t *bytes, unsi
 	switch (*step) {
 	case 0:
 		err = ds2438_write_scratchpad(txn, page, bytes, n);
-		*step = 1;
+		/* A copy has nothing else to keep it in. */
+		*step = ds2438_is_copy(txn) ? 5 : 1;
 		return err ? err : TXN_MORE;
 	case 1:
 	case 2:

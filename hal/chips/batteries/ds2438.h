@@ -20,6 +20,8 @@ struct ds2438 {
 	 */
 	uint8_t first[8];
 	int64_t temperature_ns; /* its last conversion of the temperature; 0: none is known */
+	bool genuine;           /* it has shown a conversion, or a recall */
+	uint8_t kept;           /* pairs of marks that outlived their recalls, before that */
 };
 static inline struct ds2438 *ds2438_of(const struct txn *txn)
 {
@@ -30,6 +32,7 @@ static inline struct ds2438 *ds2438_of(const struct txn *txn)
 struct ds2438_visit {
 	uint8_t step, mark; /* of ds2438_read() */
 	bool again;         /* ... and the memory held the mark */
+	bool probing;       /* a conversion was not shown: is it a copy? */
 	bool configuring, patching, marking;
 	uint8_t writing;       /* the step of writing a page */
 	uint8_t configuration; /* as it is to be */
@@ -66,6 +69,13 @@ int ds2438_read(struct txn *txn, unsigned page, uint8_t bytes[8]);
 int ds2438_patch(struct txn *txn, unsigned page, unsigned at, const uint8_t *bytes, unsigned n);
 /* Set the configuration's bits of mask. *before (if not NULL): the configuration as it was. */
 int ds2438_configure(struct txn *txn, uint8_t mask, uint8_t bits, uint8_t *before);
+/*
+ * A program that plays a DS2438 (OneWireHub): it shows no conversion, and has no memory behind the
+ * scratchpads, so that Recall changes nothing. Known by both, again and again.
+ */
+bool ds2438_is_copy(const struct txn *txn);
+/* It has shown what only a chip does. */
+void ds2438_is_genuine(struct txn *txn);
 /* What Convert V measures, DS2438_AD or 0, until the next ds2438_read(). */
 int ds2438_select(struct txn *txn, uint8_t select);
 /* Page 0 after that; -EBADMSG if something else was selected. */

@@ -18,14 +18,43 @@ static const struct conversion convert_t = CONVERSION("temperature", 0x44);
 static const struct conversion convert_vad = CONVERSION("VAD", 0xb4);
 static const struct conversion convert_vdd = CONVERSION("VDD", 0xb4);
 
+/*
+ * TXN_MORE: it converts, and phase is the next one; or that is not known yet. What shows no
+ * conversion may be a copy: its page 0 tells. Of a copy the longest time is waited for.
+ */
+static int convert(struct txn *txn, const struct conversion *conversion)
+{
+	bool *probing = &ds2438_visit(txn)->probing;
+	uint8_t bytes[8];
+	int err;
+
+	if (*probing) {
+		err = ds2438_read(txn, 0, bytes);
+		if (err)
+			return err;
+		*probing = false;
+		if (!ds2438_is_copy(txn))
+			return -EBADMSG;
+	}
+	err = conversion_start(txn, conversion, false);
+	txn->phase++;
+	if (err == TXN_MORE && !txn_driven(txn))
+		ds2438_is_genuine(txn);
+	if (err != -EBADMSG || txn->link_error || ds2438_of(txn)->genuine)
+		return err;
+	if (ds2438_is_copy(txn))
+		return txn_wait(txn, conversion->ns);
+	txn->phase--;
+	*probing = true;
+	return TXN_MORE;
+}
+
 static int measure_temperature(struct txn *txn, double *value)
 {
 	uint8_t bytes[8];
 
-	if (txn->phase == 0) {
-		txn->phase++;
-		return conversion_start(txn, &convert_t, false);
-	}
+	if (txn->phase == 0)
+		return convert(txn, &convert_t);
 	int err = ds2438_read(txn, 0, bytes);
 	if (err)
 		return err;
@@ -48,8 +77,7 @@ static int measure_voltage(struct txn *txn, uint8_t select, double *value)
 		txn->phase += err == 0;
 		return err ? err : TXN_MORE;
 	case 1:
-		txn->phase++;
-		return conversion_start(txn, select ? &convert_vdd : &convert_vad, false);
+		return convert(txn, select ? &convert_vdd : &convert_vad);
 	default:
 		err = ds2438_read_selected(txn, select, bytes);
 		if (err)
@@ -130,6 +158,9 @@ static int measure_and_prove(struct txn *txn, enum ds2438_quantity what, double 
 		return err;
 	if (what == DS2438_VDD && *proof == AGAIN)
 		return -ENODATA;
+	/* The mark would stay in a copy; its zero is as good as its other values. */
+	if (what != DS2438_VDD && ds2438_is_copy(txn))
+		return 0;
 	*proof = what == DS2438_VDD ? AGAIN : *proof == FIRST ? MARK : LOOK;
 	txn->phase = 0;
 	return TXN_MORE;

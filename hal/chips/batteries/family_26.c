@@ -168,14 +168,19 @@ static const struct property properties[] = {
 	MEASURED("vis", FLOAT, DS2438_VIS, DS2438_VIS_VOLTS),
 };
 
-/* The alerts of a TMP1826 stay: reading cleared them in the chip, and no client has them yet. */
+/*
+ * The alerts of a TMP1826 stay: reading cleared them in the chip, and no client has them yet. So
+ * does it that a DS2438 is no copy: one that fails again and again is none either.
+ */
 static void family_26_forget(struct device *device)
 {
 	struct tmp1826 *chip = device->own;
 	uint8_t alerts = chip->alerts;
+	bool genuine = chip->common.genuine;
 
 	memset(chip, 0, sizeof(*chip));
 	chip->alerts = alerts;
+	chip->common.genuine = genuine;
 }
 
 static const char *const types[] = {NULL, "DS2438", "TMP1826", "unknown"};

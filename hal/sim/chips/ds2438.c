@@ -153,6 +153,43 @@ static const struct sim_function functions[] = {
 	{0},
 };
 
+/*
+ * A program that plays one, as OneWireHub: the scratchpads are all the memory, what is measured
+ * stands there at once, and neither a conversion nor a copy shows that it works.
+ */
+static void play_convert(struct sim_slave *slave)
+{
+	struct ds2438 *s = slave->state;
+	unsigned source = s->scratchpad[0][0] & AD ? VDD : VAD;
+
+	if (slave->function->code == CONVERT_V)
+		sim_put(s->scratchpad[0] + 3, 2,
+		        sim_within(sim_input_now(slave, source) * 100, 0, 1023));
+	slave->conversions++;
+	sim_end(slave);
+}
+
+static void play_read(struct sim_slave *slave)
+{
+	struct ds2438 *s = slave->state;
+
+	sim_put(s->scratchpad[0] + 1, 2,
+	        sim_within(sim_input_now(slave, TEMPERATURE) * 32, -55 * 32, 125 * 32) * 8);
+	sim_put(s->scratchpad[0] + 5, 2,
+	        sim_within(sim_input_now(slave, VSENS) / CURRENT_MV, -1023, 1023));
+	sim_send_crc8(slave, s->scratchpad[page_of(slave)], 8);
+}
+
+static const struct sim_function played[] = {
+	{.code = CONVERT_T, .start = play_convert},
+	{.code = CONVERT_V, .start = play_convert},
+	{.code = 0x4E, .takes = 1, .byte = ds2438_write_scratchpad},
+	{.code = 0xBE, .takes = 1, .start = play_read},
+	{.code = COPY, .takes = 1, .start = sim_end},
+	{.code = 0xB8, .takes = 1, .start = sim_end},
+	{0},
+};
+
 static const struct sim_input inputs[] = {
 	[TEMPERATURE] = {SIM_TEMPERATURE_INPUT},
 	[VDD] = {.name = "vdd", .start = 5, .least = 0, .most = 10},
@@ -169,4 +206,14 @@ static const struct sim_input inputs[] = {
 
 const struct sim_family sim_ds2437 = {MONITOR("DS2437", 0x1E)};
 const struct sim_family sim_ds2438 = {MONITOR("DS2438", 0x26)};
+const struct sim_family sim_ds2438_emulated = {
+	.name = "DS2438-EMULATED",
+	.code = 0x26,
+	.state_size = sizeof(struct ds2438),
+	.functions = played,
+	.inputs = inputs,
+	.create = ds2438_create,
+	.power_on = ds2438_power_on,
+	SIM_MEMORY(ds2438, memory, 64),
+};
 const struct sim_family sim_ds2438_a6 = {MONITOR("DS2438-A6", 0xA6)};

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Programs on a microcontroller that play a chip, as OneWireHub's classes do: known by what a chip
- * never does, and read by a weaker proof. The simulated ones were written from what DS2413.cpp of
- * OneWireHub sends, bit for bit.
+ * never does, and read by a weaker proof. The simulated ones were compared by hand with DS2413.cpp
+ * and DS2438.cpp of OneWireHub (68e93925), compiled with a hub that hands over bytes: reads, writes,
+ * conversions, copies and recalls are answered with the same bytes.
  */
 #include <errno.h>
+#include <string.h>
 
 #include "unity.h"
 
@@ -94,6 +96,92 @@ static void test_what_shows_the_chips_own_behaviour_is_a_chip_again(void)
 	TEST_ASSERT_EQUAL_STRING("DS2413", identity_after("sensed.BYTE"));
 }
 
+static double number(const char *property)
+{
+	const struct bus_answer *answer = go(BUS_READ, property, NULL);
+
+	TEST_ASSERT_EQUAL_INT_MESSAGE(0, answer->err, property);
+	return answer->number;
+}
+
+static void check_monitor(double celsius, double vdd, double vad)
+{
+	wire_set(slave, "temperature", celsius);
+	wire_set(slave, "vdd", vdd);
+	wire_set(slave, "vad", vad);
+	TEST_ASSERT_DOUBLE_WITHIN(0.04, celsius, number("temperature"));
+	TEST_ASSERT_DOUBLE_WITHIN(0.011, vdd, number("VDD"));
+	TEST_ASSERT_DOUBLE_WITHIN(0.011, vad, number("VAD"));
+	TEST_ASSERT_DOUBLE_WITHIN(0.011, vdd, number("VDD"));
+}
+
+static void test_a_monitor_that_shows_no_conversion_is_measured_and_named(void)
+{
+	static const char *const first[] = {"temperature", "VDD", "VAD", "vis", "pages/page.3"};
+
+	for (unsigned i = 0; i < sizeof(first) / sizeof(first[0]); i++) {
+		tearDown();
+		setUp();
+		plug("DS2438-EMULATED");
+		for (unsigned tries = 0; go(BUS_READ, first[i], NULL)->err; tries++)
+			TEST_ASSERT_LESS_THAN_UINT_MESSAGE(2, tries, first[i]);
+		check_monitor(24.5, 5, 1.5);
+		check_monitor(-3, 4.2, 0);
+		check_monitor(0, 3, 2);
+		TEST_ASSERT_EQUAL_STRING("emulated: shows no conversion",
+		                         identity_after("temperature"));
+	}
+}
+
+static void test_what_is_written_to_it_is_read_back(void)
+{
+	plug("DS2438-EMULATED");
+	check_monitor(20, 5, 1);
+	writes("pages/page.3", "ABCDEFGH");
+	TEST_ASSERT_EQUAL_UINT(8, go(BUS_READ, "pages/page.3", NULL)->len);
+	TEST_ASSERT_EQUAL_MEMORY("ABCDEFGH", slave_data, 8);
+	check_monitor(21, 5, 1);
+}
+
+static void test_to_find_out_changes_no_byte_of_it(void)
+{
+	size_t size;
+
+	plug("DS2438-EMULATED");
+	uint8_t *page = sim_slave_memory(slave, &size) + 64 + 3 * 8, before[8];
+
+	memcpy(page, "12345678", 8);
+	memcpy(before, page, 8);
+	for (unsigned i = 0; i < 3; i++)
+		go(BUS_READ, "pages/page.3", NULL);
+	TEST_ASSERT_EQUAL_MEMORY(before, page, 8);
+	TEST_ASSERT_EQUAL_UINT(8, go(BUS_READ, "pages/page.3", NULL)->len);
+	TEST_ASSERT_EQUAL_MEMORY(before, slave_data, 8);
+}
+
+/* Once it has shown a conversion or a recall it is a chip, whatever is lost then. */
+static void test_a_monitor_that_has_shown_a_conversion_is_a_chip(void)
+{
+	plug("DS2438");
+	check_monitor(20, 5, 1);
+	slave->family = sim_family_find("DS2438-EMULATED", 0);
+	for (unsigned i = 0; i < 8; i++)
+		TEST_ASSERT_NOT_EQUAL_INT(0, go(BUS_READ, "temperature", NULL)->err);
+	slave->family = sim_family_find("DS2438", 0);
+	check_monitor(22, 5, 1);
+	TEST_ASSERT_EQUAL_STRING("DS2438", identity_after("temperature"));
+}
+
+static void test_a_program_that_shows_a_conversion_is_a_chip_again(void)
+{
+	plug("DS2438-EMULATED");
+	check_monitor(20, 5, 1);
+	slave->family = sim_family_find("DS2438", 0);
+	go(BUS_READ, "temperature", NULL);
+	check_monitor(22, 5, 1);
+	TEST_ASSERT_EQUAL_STRING("DS2438", identity_after("temperature"));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -101,5 +189,10 @@ int main(void)
 	RUN_TEST(test_its_first_write_is_sent_and_read_back);
 	RUN_TEST(test_an_interrupted_chip_is_not_taken_for_a_program);
 	RUN_TEST(test_what_shows_the_chips_own_behaviour_is_a_chip_again);
+	RUN_TEST(test_a_monitor_that_shows_no_conversion_is_measured_and_named);
+	RUN_TEST(test_what_is_written_to_it_is_read_back);
+	RUN_TEST(test_to_find_out_changes_no_byte_of_it);
+	RUN_TEST(test_a_monitor_that_has_shown_a_conversion_is_a_chip);
+	RUN_TEST(test_a_program_that_shows_a_conversion_is_a_chip_again);
 	return UNITY_END();
 }
