@@ -2,8 +2,8 @@
 /*
  * Programs on a microcontroller that play a chip, as OneWireHub's classes do: known by what a chip
  * never does, and read by a weaker proof. The simulated ones were compared by hand with DS2413.cpp
- * and DS2438.cpp of OneWireHub (68e93925), compiled with a hub that hands over bytes: reads, writes,
- * conversions, copies and recalls are answered with the same bytes.
+ * and DS2438.cpp of OneWireHub (68e93925), compiled with a hub that hands over bytes: reads,
+ * writes, conversions, copies and recalls are answered with the same bytes.
  */
 #include <errno.h>
 #include <string.h>
