@@ -156,8 +156,8 @@ static const struct {
 	const char *unit;
 	int decimals;
 } wanted[] = {
-	{DEGREES_C, 1}, {"\u00b0F", 1}, {"K", 1},   {"%", 1},   {"mbar", 1}, {"hPa", 1},
-	{"inHg", 2},    {"psi", 2},     {"bar", 3}, {"V", 3},   {"mV", 1},   {"A", 3},
+	{DEGREES_C, 1}, {"\u00b0F", 1}, {"K", 1},   {"%", 1},   {"mbar", 1}, {"hPa", 1}, {"Pa", 0},
+	{"kPa", 2},     {"inHg", 2},    {"psi", 2}, {"bar", 3}, {"V", 3},    {"mV", 1},  {"A", 3},
 	{"mA", 1},      {"\u00b5A", 0}, {"lx", 1},  {"m/s", 1}, {"h", 1},    {"m", 2},
 };
 

@@ -99,9 +99,6 @@ static void test_what_a_device_says_of_itself_is_in_force_at_once(void)
 		scene_run(&s, 1100 * SCENE_MS);
 		TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
 	}
-	scene_put(&s, T1, "85", 0);
-	scene_run(&s, 100 * SCENE_MS);
-	TEST_ASSERT_EQUAL_HEX8(OWS_Q_SENSOR, scene_sample(&s, 1).quality);
 }
 
 /* ... and again so, once it has come back. */

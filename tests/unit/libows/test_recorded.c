@@ -135,7 +135,7 @@ static void test_owsctl_reads_a_recorded_image(void)
 		"for n in bool byte short long word dword float room.temperature large label empty;"
 		" do %s %s/../owsctl -n %s get $n; done 2>/dev/null; true",
 		runner ? runner : "", here, instance);
-	TEST_ASSERT_EQUAL_STRING("1\n255\n-32768\n-2147483648\n65535\n4294967295\n45.5\n-21.06\n"
+	TEST_ASSERT_EQUAL_STRING("1\n255\n-32768\n-2147483648\n65535\n4294967295\n45.5\n-21.0625\n"
 	                         "-9223372036854775808\n" LONG_TEXT "\n\n",
 	                         output_of(command));
 }
