@@ -380,6 +380,17 @@ void txn_changed(struct txn *txn)
 	txn->device->base_of = NULL;
 }
 
+/*
+ * A driver may stay in the kernel for long, between two of its files as well: nobody knows when in
+ * its call the chip answered.
+ */
+static int64_t made_ns(const struct txn *txn, int64_t begun_ns)
+{
+	if (txn->measured_ns)
+		return txn->measured_ns;
+	return txn_driven(txn) ? begun_ns : txn_now(txn);
+}
+
 void txn_share(struct txn *txn, const void *what, unsigned at, const void *bytes, size_t n,
                int64_t begun_ns)
 {
@@ -403,8 +414,7 @@ void txn_share(struct txn *txn, const void *what, unsigned at, const void *bytes
 	                                 .at = (uint16_t)at,
 	                                 .n = (uint16_t)n,
 	                                 .begun_ns = begun_ns,
-	                                 .made_ns = txn->measured_ns ? txn->measured_ns
-	                                                             : txn_now(txn)};
+	                                 .made_ns = made_ns(txn, begun_ns)};
 	memcpy(place->bytes, bytes, n);
 	if (!txn->part_ns || place->made_ns < txn->part_ns)
 		txn->part_ns = place->made_ns;

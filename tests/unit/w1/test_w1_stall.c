@@ -9,8 +9,10 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "hal/chips/area.h"
 #include "hal/chips/field.h"
 #include "hal/chips/find.h"
+#include "hal/chips/switches/ds2408.h"
 #include "unity.h"
 
 #include "hal/bus/worker.h"
@@ -245,10 +247,54 @@ static void test_a_pull_up_that_a_driver_has_not_is_no_error_of_the_master(void)
 	TEST_ASSERT_EQUAL_INT(0, txn.link_error);
 }
 
+/* --- A driver that stays in the kernel between two of its files --- */
+
+static int64_t *clock_of_hang;
+
+static bool has_driver(struct link *link, const uint8_t rom[8])
+{
+	(void)link, (void)rom;
+	return true;
+}
+
+static int read_and_hang(struct link *link, const uint8_t rom[8], const struct area *area,
+                         unsigned at, uint8_t *bytes, unsigned n)
+{
+	(void)link, (void)rom, (void)area;
+	memset(bytes, at ? 0x80 : 0xff, n);
+	*clock_of_hang += at ? 100 * S : 0;
+	return 0;
+}
+
+static void test_what_a_driver_gives_is_as_old_as_the_begin_of_its_call(void)
+{
+	static const struct driver_ops driver = {.has = has_driver, .area_read = read_and_hang};
+	int64_t time = S;
+	struct bus_env env = {.ctx = &time, .now = now};
+	struct link link = {.env = &env, .driver = &driver};
+	static _Alignas(8) unsigned char own[DEVICE_OWN];
+	struct device device = {.rom = {0x29, 1}, .family = family_of(0x29), .own = own};
+	struct txn first = {
+		.link = &link, .device = &device, .since_ns = INT64_MAX, .oldest_ns = INT64_MAX};
+	struct txn next = first;
+	uint8_t pins = 0;
+
+	clock_of_hang = &time;
+	TEST_ASSERT_EQUAL_INT(0, area_read(&first, &ds2408_registers, 0, &pins, 1));
+	TEST_ASSERT_EQUAL_HEX8(0xff, pins);
+	TEST_ASSERT_EQUAL_INT64(101 * S, time);
+	TEST_ASSERT_EQUAL_INT64(S, txn_measured(&first));
+	next.oldest_ns = 100 * S;
+	TEST_ASSERT_FALSE(txn_shared(&next, &ds2408_registers, 0, &pins, 1));
+	next.oldest_ns = S;
+	TEST_ASSERT_TRUE(txn_shared(&next, &ds2408_registers, 0, &pins, 1));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_a_read_that_never_returns_stalls_its_own_bus_only);
 	RUN_TEST(test_a_pull_up_that_a_driver_has_not_is_no_error_of_the_master);
+	RUN_TEST(test_what_a_driver_gives_is_as_old_as_the_begin_of_its_call);
 	return UNITY_END();
 }
