@@ -135,7 +135,8 @@ static const struct property properties[] = {
 	PROPERTY_DIR("MultiSensor"),
 	PROPERTY("MultiSensor/type", ASCII, STABLE, READ, .size = 12, .how = WAY_SENSOR_TYPE),
 	PROPERTY_DIR("S3-R1-A"),
-	DS2438_LIGHT("S3-R1-A/current", 0, MEASURES(0, HUGE_VAL, 3, "\u00b5A")),
+	/* as the register of vis holds it, over 390 ohms: in the dark its offset may be below 0 */
+	DS2438_LIGHT("S3-R1-A/current", 0, MEASURES(-642, 642, 3, "\u00b5A")),
 	DS2438_SETTING("S3-R1-A/gain", FLOAT, S3_GAIN, IN_UNIT("")),
 	DS2438_LIGHT("S3-R1-A/illuminance", 1, MEASURES(0, HUGE_VAL, 1, "lx")),
 	MEASURED("VAD", FLOAT, DS2438_VAD, DS2438_VAD_VOLTS),

@@ -238,6 +238,7 @@ static void test_sensors_on_a_ds2438_say_what_owserver_says(void)
 	reads("S3-R1-A/illuminance", "      228.39");
 	wire_set(slave, "vsens", -3);
 	reads("S3-R1-A/illuminance", "           1");
+	reads("S3-R1-A/current", "    -7.51077");
 	writes("pages/page.3", "\x01\x01\xff\xff\xff\xff\xff\xff");
 	reads("S3-R1-A/gain", "      6553.5");
 	reads("B1-R1-A/gain", "      65.535");

@@ -56,9 +56,9 @@ static const struct {
 static const char *const plain[] = {"humidex", "UVI", "vib_", "gain"};
 
 /* Readings without an end: of a sensor of any make, or computed. */
-static const char *const endless[] = {"B1-R1-A/pressure", "S3-R1-A/current", "S3-R1-A/illuminance",
-                                      "heat_index",       "humidex",         "wind_speed",
-                                      "T8A/volt",         "altitude"};
+static const char *const endless[] = {"B1-R1-A/pressure", "S3-R1-A/illuminance", "heat_index",
+                                      "humidex",          "wind_speed",          "T8A/volt",
+                                      "altitude"};
 
 static bool has_word(const char *name, const char *const *list, size_t count)
 {
