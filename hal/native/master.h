@@ -14,7 +14,7 @@ void master_down(struct native *native, int err, const char *why);
 bool master_recover(struct native *native, unsigned channel, int err);
 /* A transaction of the channel was good: the next error begins at the foot of the ladder. */
 void master_good(struct native *native, unsigned channel);
-/* Now and then: take chips that were missing. *next as elsewhere. */
-/* While something disturbs the hardware, looks whether it still does. */
+/* While something disturbs the hardware, looks whether it still does. *next as elsewhere. */
 void master_trouble(struct native *native, int64_t now, int64_t *next);
+/* Now and then: take chips that were missing. *next as elsewhere. */
 void master_grow(struct native *native, int64_t now, int64_t *next);
