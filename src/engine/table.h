@@ -47,7 +47,7 @@ struct signal_command {
 	bool confirmed; /* written is what the bus has */
 	bool agrees;    /* it was read back as it was written */
 	bool differs;   /* it reads otherwise than it was written */
-	bool lapsed;    /* its target was down since: a command goes out, the same one too */
+	bool lapsed;    /* its target was down since: a command goes out, the same value too */
 	bool doubted;   /* it did so once: it is read again, past the cache */
 	bool one_shot;  /* write once more, changed or not */
 	bool forced;    /* a write in doubt ended late: the present value goes out again */

@@ -72,6 +72,8 @@ static void in_force_put_value(struct signal *s, int64_t value, const char *text
 {
 	s->command.given = true;
 	s->command.awaited = s->command.said = false;
+	s->command.confirmed &= !s->command.lapsed;
+	s->command.lapsed = false;
 	if (!signal_is_string(s)) {
 		s->command.value = value;
 		return;
@@ -109,8 +111,6 @@ void engine_command(struct engine *e, struct signal *s, uint32_t controller,
 	struct ows_who who = engine_who(&e->controllers[controller], command->person);
 
 	in_force_put_value(s, command->value, text, len);
-	s->command.confirmed &= !s->command.lapsed;
-	s->command.lapsed = false;
 	s->command.stamp = command->stamp;
 	s->command.reason = OWS_REASON_SET;
 	answer_for(e, s, controller);

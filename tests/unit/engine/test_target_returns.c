@@ -213,6 +213,33 @@ static void test_a_set_of_the_same_value_while_the_target_is_down_is_written(voi
 	each(a_set_while_down_is_written);
 }
 
+/* SafeValue is a command as any other: what the output has is not known. */
+static void test_safevalue_is_written_though_the_value_is_the_same(void)
+{
+	struct config_item *item = scene_output(&s, "row", PIO, OWS_BYTE);
+
+	item->has_safe = true;
+	item->safe_value = 85;
+	item->safe_text = "85";
+	scene_put(&s, PIO, "0", 0);
+	s.config.timeout_ns = 2 * SCENE_S;
+	scene_start(&s);
+	scene_up(&s);
+	scene_set(&s, ROW, 85);
+	scene_beat(&s, 1, 500, SCENE_S);
+	TEST_ASSERT_EQUAL_STRING("85", scene_at(&s, PIO));
+	scene_down(&s, -ENOTCONN);
+	scene_beat(&s, 1, 500, 4 * SCENE_S);
+	scene_put(&s, PIO, "0", 0);
+	scene_up(&s);
+	scene_beat(&s, 1, 500, SCENE_S);
+	TEST_ASSERT_EQUAL_STRING("0", scene_at(&s, PIO));
+	scene_run(&s, 2 * SCENE_S); /* the program hangs */
+	TEST_ASSERT_EQUAL_UINT64(1, scene_counter(&s, "safe_outputs"));
+	TEST_ASSERT_EQUAL_STRING("85", scene_at(&s, PIO));
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, ROW).quality);
+}
+
 static void test_a_one_shot_makes_an_output_good_again(void)
 {
 	begin(NOT_READ);
@@ -295,6 +322,7 @@ int main(void)
 	RUN_TEST(test_nothing_is_written_when_the_target_returns);
 	RUN_TEST(test_the_next_set_is_written_though_the_value_is_the_same);
 	RUN_TEST(test_a_set_of_the_same_value_while_the_target_is_down_is_written);
+	RUN_TEST(test_safevalue_is_written_though_the_value_is_the_same);
 	RUN_TEST(test_a_one_shot_makes_an_output_good_again);
 	RUN_TEST(test_a_target_that_was_stuck_proves_no_more);
 	RUN_TEST(test_a_limit_alarm_of_an_output_stays_until_it_was_written);
