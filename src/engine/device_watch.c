@@ -112,32 +112,34 @@ void engine_watch_heard(struct lane *lane, const struct slot *slot, const struct
 	struct engine *e = lane->engine;
 	const struct signal *s = slot_signal(lane, slot);
 
-	if (slot->req.op == BUS_READ && !answer->err && !(answer->detail & BUS_DETAIL_CACHED) &&
-	    (slot->req.fresh || lane->port->searches) && s->shows_device &&
-	    s->device != TABLE_NO_DEVICE)
-		e->table.devices[s->device].shown_ns = slot->begun_ns;
+	if (slot->req.op != BUS_READ || answer->err || (answer->detail & BUS_DETAIL_CACHED) ||
+	    !(slot->req.fresh || lane->port->searches) || !s->shows_device ||
+	    s->device == TABLE_NO_DEVICE)
+		return;
+	e->table.devices[s->device].shown_ns = slot->begun_ns;
+	retry_clear(&e->table.devices[s->device].watch);
 }
 
-/* The next device that is due on this lane; those that have moved are not. -1: none. */
-static int64_t next_watch(struct lane *lane)
+void engine_watch_anew(struct lane *lane, uint32_t device)
 {
 	struct engine *e = lane->engine;
-	int64_t device;
 
-	while ((device = due_set_next(&lane->watch)) >= 0 &&
-	       engine_lane(e, row_of(e, &e->table.devices[device], 0)) != lane) {
-		due_set_take(&lane->watch, (uint32_t)device);
-		watch_at(e, (uint32_t)device, e->time.now_ns + watch_ns(e));
-	}
-	return device;
+	if (device == e->table.device_count)
+		return;
+	retry_clear(&e->table.devices[device].watch);
+	if (due_set_has(&lane->watch, device))
+		due_set_remove(&lane->watch, device);
+	else if (!e->watch_wheel.wait[device].waits) /* with the bus, or never watched */
+		return;
+	watch_at(e, device, e->time.now_ns + watch_ns(e));
 }
 
 bool engine_watch_ask(struct lane *lane, struct slot *slot)
 {
 	struct engine *e = lane->engine;
-	int64_t device;
+	int64_t device = due_set_next(&lane->watch);
 
-	if (lane->watching || e->time.now_ns < lane->watch_ns || (device = next_watch(lane)) < 0 ||
+	if (device < 0 || lane->watching || e->time.now_ns < lane->watch_ns ||
 	    !slot_look_for(lane, slot, FOR_WATCH, (uint32_t)device) || !slot_lend(lane, slot))
 		return false;
 	due_set_take(&lane->watch, (uint32_t)device);

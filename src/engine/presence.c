@@ -6,6 +6,7 @@
 #include <errno.h>
 
 #include "src/engine/alarm/alarm_arm.h"
+#include "src/engine/device_watch.h"
 #include "src/engine/presence.h"
 #include "src/engine/publish.h"
 #include "src/engine/retry.h"
@@ -53,6 +54,7 @@ void engine_device_back(struct lane *lane, struct device *device)
 
 	device->absent = false;
 	device->por = POR_UNKNOWN;
+	engine_watch_anew(lane, (uint32_t)(device - e->table.devices));
 	lane->counters.device_returns++;
 	for (uint32_t i = 0; i < device->count; i++) {
 		struct signal *s = &e->table.signals[e->table.device_rows[device->first + i]];

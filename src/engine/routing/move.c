@@ -9,6 +9,7 @@
 #include "src/engine/alarm/alarm_effect.h"
 #include "src/engine/alarm/alarm_item.h"
 #include "src/engine/command/doubt.h"
+#include "src/engine/device_watch.h"
 #include "src/engine/due.h"
 #include "src/engine/lane.h"
 #include "src/engine/publish.h"
@@ -100,13 +101,15 @@ void engine_move_device(struct engine *e, struct device *d, struct lane *to, con
 {
 	const uint32_t *rows = &e->table.device_rows[d->first];
 	struct lane *from = engine_lane(e, &e->table.signals[rows[0]]);
+	uint32_t index = (uint32_t)(d - e->table.devices);
 
 	report_move(e, d, from, to, why);
 	d->absent = false;
 	for (uint32_t k = 0; k < d->count; k++)
 		move_signal(e, &e->table.signals[rows[k]], to);
+	engine_watch_anew(from, index);
 	if (has_alarms(e, d))
-		move_alarms(e, from, to, (uint32_t)(d - e->table.devices));
+		move_alarms(e, from, to, index);
 	lane_disown(from, false);
 	engine_publish_target(e, to);
 	engine_doubts(e);
@@ -126,6 +129,7 @@ void engine_move_lane(struct engine *e, struct lane *from, struct lane *to, cons
 		d->absent = false;
 		for (uint32_t k = 0; k < d->count; k++)
 			move_signal(e, &e->table.signals[e->table.device_rows[d->first + k]], to);
+		engine_watch_anew(from, i);
 		if (has_alarms(e, d))
 			move_alarms(e, from, to, i);
 		moved += d->count;

@@ -288,6 +288,74 @@ static void test_a_period_longer_than_two_seconds_is_the_time_between_looks(void
 	TEST_ASSERT_INT_WITHIN(2, 10, s.bus[0].probes);
 }
 
+/* It was away for long, and another sign than a look has brought it back. */
+static void test_a_device_that_is_back_is_looked_for_as_often_as_before(void)
+{
+	begin(NOT_READ_BACK, ALONE);
+	scene_unplug(&s, D, true);
+	scene_run(&s, 200 * SCENE_S);
+	scene_unplug(&s, D, false);
+	scene_tell(&s, 0, BUS_FOUND, D "/por");
+	until(OWS_Q_GOOD);
+	s.bus[0].probes = 0;
+	scene_run(&s, 10 * SCENE_S);
+	TEST_ASSERT_INT_WITHIN(1, 5, s.bus[0].probes);
+	scene_unplug(&s, D, true);
+	TEST_ASSERT_LESS_THAN_INT64(3 * SCENE_S, until(OWS_Q_NO_DEVICE));
+}
+
+/* The looks that failed before count no more. */
+static void test_one_look_that_finds_nothing_is_no_absence_of_a_device_that_was_away(void)
+{
+	begin(NOT_READ_BACK, ALONE);
+	scene_unplug(&s, D, true);
+	until(OWS_Q_NO_DEVICE);
+	scene_unplug(&s, D, false);
+	scene_tell(&s, 0, BUS_FOUND, D "/por");
+	until(OWS_Q_GOOD);
+	s.bus[0].probes = 0;
+	scene_unplug(&s, D, true);
+	while (!s.bus[0].probes)
+		scene_run(&s, SCENE_MS);
+	scene_run(&s, 50 * SCENE_MS); /* its answer */
+	TEST_ASSERT_EQUAL_UINT(1, s.bus[0].probes);
+	scene_unplug(&s, D, false);
+	for (unsigned ms = 0; ms < 5000; ms++) {
+		scene_run(&s, SCENE_MS);
+		TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, ROW).quality);
+	}
+}
+
+/* Looks that waited for the first way are made by the second. */
+static void test_devices_that_have_moved_to_another_way_are_looked_for(void)
+{
+	static char path[30][32], name[30][8];
+
+	s.bus[0].holds = true;
+	scene_bus(&s, "second", 0)->holds = true;
+	for (unsigned i = 0; i < 30; i++) {
+		snprintf(path[i], sizeof(path[i]), "/29.%012X/sensed.BYTE", i + 1);
+		snprintf(name[i], sizeof(name[i]), "in%u", i);
+		scene_input(&s, name[i], path[i], OWS_BYTE)->per_factor = 100000;
+		scene_put(&s, path[i], "255", 0);
+	}
+	scene_reach(&s, 0, true);
+	scene_reach(&s, 1, true);
+	scene_start(&s);
+	scene_run(&s, 5 * SCENE_S);
+	scene_reach(&s, 0, false);
+	scene_down_on(&s, 0, -ENOTCONN);
+	scene_run(&s, 10 * SCENE_S);
+	for (unsigned i = 0; i < 30; i++) {
+		scene_expect(&s, 1 + i, OWS_Q_GOOD, 1);
+		path[i][16] = '\0';
+		scene_unplug(&s, path[i], true);
+	}
+	scene_run(&s, 30 * SCENE_S);
+	for (unsigned i = 0; i < 30; i++)
+		scene_expect(&s, 1 + i, OWS_Q_NO_DEVICE, 1);
+}
+
 static void test_a_reload_goes_on_looking(void)
 {
 	begin(NOT_READ_BACK, ALONE);
@@ -317,6 +385,9 @@ int main(void)
 	RUN_TEST(test_many_devices_take_ten_looks_a_second_at_the_most);
 	RUN_TEST(test_a_device_that_stays_away_costs_ever_less);
 	RUN_TEST(test_a_period_longer_than_two_seconds_is_the_time_between_looks);
+	RUN_TEST(test_a_device_that_is_back_is_looked_for_as_often_as_before);
+	RUN_TEST(test_one_look_that_finds_nothing_is_no_absence_of_a_device_that_was_away);
+	RUN_TEST(test_devices_that_have_moved_to_another_way_are_looked_for);
 	RUN_TEST(test_a_reload_goes_on_looking);
 	return UNITY_END();
 }
