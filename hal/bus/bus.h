@@ -110,43 +110,58 @@ enum bus_supply {
 	BUS_SUPPLY_EXTERNAL,
 };
 
+/* What err of an answer may be, beside 0. */
+/* clang-format off */
+#define BUS_ERRORS(ERROR) \
+	ERROR(ENODEV)       /* no such device on this target */ \
+	ERROR(ENXIO)        /* the device was not found, and a part of the target does not \
+	                       answer: one of several bridge chips, which may be the one that \
+	                       has it */ \
+	ERROR(ENOENT)       /* the device has no such property */ \
+	ERROR(EACCES)       /* the property cannot be read, or cannot be written, by any \
+	                       process */ \
+	ERROR(EPERM)        /* no permission: for the file of the kernel, or from a server \
+	                       that refuses writes */ \
+	ERROR(EISDIR)       /* READ or WRITE of a directory */ \
+	ERROR(ENOTDIR)      /* DIR of a property */ \
+	ERROR(EINVAL)       /* the target refused the value that was written */ \
+	ERROR(EBADMSG)      /* a checksum was wrong */ \
+	ERROR(ENOMSG)       /* the device is there, and its answer was nothing but ones, or \
+	                       zeros */ \
+	ERROR(EBADE)        /* nothing shows that the answer is right, and no checksum was \
+	                       wrong */ \
+	ERROR(ECOMM)        /* the wire is short */ \
+	ERROR(ERANGE)       /* a reading that means power fault (85, 127.94) */ \
+	ERROR(ENODATA)      /* the device answers whole that it has no value: an open sensor, \
+	                       no supply, a result that a restart has taken */ \
+	ERROR(EDOM)         /* a reading that the chip cannot have measured; number has it */ \
+	ERROR(EBUSY)        /* another process has it (a GPIO line) */ \
+	ERROR(EMEDIUMTYPE)  /* the id names no known version of the chip: what its codes mean \
+	                       is not known */ \
+	ERROR(EIO)          /* any other device error */ \
+	ERROR(EMSGSIZE)     /* the answer is longer than the room */ \
+	ERROR(EOPNOTSUPP)   /* this bus has no such operation (DIR of /alarm on some) */ \
+	ERROR(ETIME)        /* not begun before its deadline, no effect */ \
+	ERROR(EINPROGRESS)  /* the target lives but had no answer by the deadline; a write is \
+	                       in doubt */ \
+	ERROR(ECANCELED)    /* the host shuts down, or the answer is not wanted \
+	                       (bus_req.unwanted) */ \
+	ERROR(ENOTCONN)     /* the target is down; nothing was sent */ \
+	ERROR(ETIMEDOUT)    /* the target fell silent; a BUS_DOWN follows; a write is in \
+	                       doubt */ \
+	ERROR(ECONNRESET)   /* the target was lost on the way; a BUS_DOWN follows; a write is \
+	                       in doubt */ \
+	ERROR(EPROTO)       /* the target answered garbage; a BUS_DOWN follows; a write is in \
+	                       doubt */
+/* clang-format on */
+
 /*
- * Exactly one for each request that was accepted. Values of err:
- *   0             done
- *   -ENODEV       no such device on this target
- *   -ENXIO        the device was not found, and a part of the target does not answer: one of
- *                 several bridge chips, which may be the one that has it
- *   -ENOENT       the device has no such property
- *   -EACCES       the property cannot be read, or cannot be written, by any process
- *   -EPERM        no permission: for the file of the kernel, or from a server that refuses writes
- *   -EISDIR       READ or WRITE of a directory
- *   -ENOTDIR      DIR of a property
- *   -EINVAL       the target refused the value that was written
- *   -EBADMSG      a checksum was wrong
- *   -ENOMSG       the device is there, and its answer was nothing but ones, or zeros
- *   -EBADE        nothing shows that the answer is right, and no checksum was wrong
- *   -ECOMM        the wire is short
- *   -ERANGE       a reading that means power fault (85, 127.94)
- *   -ENODATA      the device answers whole that it has no value: an open sensor, no supply, a
- *                 result that a restart has taken
- *   -EDOM         a reading that the chip cannot have measured; number has it
- *   -EBUSY        another process has it (a GPIO line)
- *   -EMEDIUMTYPE  the id names no known version of the chip: what its codes mean is not known
- *   -EIO          any other device error
- *   -EMSGSIZE     the answer is longer than the room
- *   -EOPNOTSUPP   this bus has no such operation (DIR of /alarm on some)
- *   -ETIME        not begun before its deadline, no effect
- *   -EINPROGRESS  the target lives but had no answer by the deadline; a write is in doubt
- *   -ECANCELED    the host shuts down, or the answer is not wanted (bus_req.unwanted)
- *   -ENOTCONN     the target is down; nothing was sent
- *   -ECONNREFUSED in a BUS_DOWN alone: nobody listens at the target's address
- *   -ETIMEDOUT    the target fell silent; a BUS_DOWN follows; a write is in doubt
- *   -ECONNRESET   the target was lost on the way; a BUS_DOWN follows; a write is in doubt
- *   -EPROTO       the target answered garbage; a BUS_DOWN follows; a write is in doubt
+ * Exactly one for each request that was accepted. In a BUS_DOWN alone, err may be -ECONNREFUSED:
+ * nobody listens at the target's address.
  */
 struct bus_answer {
 	uint32_t id;
-	int32_t err;
+	int32_t err;         /* 0: done; else a negative one of BUS_ERRORS */
 	uint8_t kind;        /* enum bus_kind */
 	uint8_t detail;      /* BUS_DETAIL_* */
 	uint8_t retries;     /* how often the bus did it again after an error; at most 255 */

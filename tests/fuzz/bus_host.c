@@ -37,12 +37,9 @@ static int wait_for(void *ctx, int fd, short events, int64_t until_ns)
 
 static bool is_listed(int err)
 {
-	static const int listed[] = {
-		0,          -ENODEV,     -ENOENT, -EACCES,      -EISDIR,    -ENOTDIR,
-		-EINVAL,    -EBADMSG,    -ECOMM,  -ERANGE,      -EBUSY,     -EIO,
-		-EMSGSIZE,  -EOPNOTSUPP, -ETIME,  -EINPROGRESS, -ECANCELED, -ENOTCONN,
-		-ETIMEDOUT, -ECONNRESET, -EPROTO, -EPERM,
-	};
+#define ERROR(name) -name,
+	static const int listed[] = {0, BUS_ERRORS(ERROR)};
+#undef ERROR
 
 	for (size_t i = 0; i < sizeof(listed) / sizeof(listed[0]); i++)
 		if (err == listed[i])

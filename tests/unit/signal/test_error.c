@@ -6,6 +6,7 @@
 
 #include "unity.h"
 
+#include "hal/bus/bus.h"
 #include "src/engine/retry.h"
 #include "src/libows/ows.h"
 #include "src/signal/error.h"
@@ -19,17 +20,27 @@ void tearDown(void)
 {
 }
 
-/* Those of struct bus_answer, and those that the engine makes. */
+/* Those that the engine makes, and those of struct bus_answer. */
+#define ERROR(name) -name,
+/* clang-format off */
 static const int errors[] = {
-	-ENODEV,   -ENOENT,    -EACCES,     -EPERM,    -EISDIR,     -ENOTDIR,    -EINVAL,
-	-EBADMSG,  -ECOMM,     -ERANGE,     -EMSGSIZE, -EOPNOTSUPP, -ETIME,      -EINPROGRESS,
-	-ENOTCONN, -ETIMEDOUT, -ECONNRESET, -EPROTO,   -EILSEQ,     -EPROTOTYPE, -ECONNREFUSED,
+	-EILSEQ, -EPROTOTYPE, -ECONNREFUSED, -EREMCHG, BUS_ERRORS(ERROR)
 };
+/* clang-format on */
+#undef ERROR
 #define ERRORS (sizeof(errors) / sizeof(errors[0]))
+
+/* The words of the system do: the quality, or the log, says the rest. */
+static bool is_plain(int err)
+{
+	return err == -EIO || err == -EBUSY || err == -ECANCELED;
+}
 
 static void test_each_error_of_a_bus_has_words_of_its_own(void)
 {
 	for (size_t i = 0; i < ERRORS; i++) {
+		if (is_plain(errors[i]))
+			continue;
 		TEST_ASSERT_NOT_NULL(error_remedy(errors[i]));
 		TEST_ASSERT_NOT_EQUAL_MESSAGE(0,
 		                              strcmp(strerror(-errors[i]), error_text(errors[i])),
@@ -48,6 +59,8 @@ static void test_each_error_has_a_remedy_and_fits_into_its_room(void)
 	char words[ERROR_WORDS];
 
 	for (size_t i = 0; i < ERRORS; i++) {
+		if (is_plain(errors[i]))
+			continue;
 		TEST_ASSERT_NOT_EQUAL_MESSAGE(0, strlen(error_remedy(errors[i])),
 		                              error_text(errors[i]));
 		error_words(errors[i], words);
