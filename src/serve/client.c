@@ -465,6 +465,9 @@ bool client_again(struct serve *s, struct client *c)
 {
 	if (c->state != CLIENT_READING || c->fd < 0 || c->lent || c->have || c->queued)
 		return false;
+	/* what had come when epoll reported last is read */
+	if (c->watched && !c->readable && c->came_ns < s->asked_ns)
+		c->came_ns = s->asked_ns;
 	c->readable = true;
 	if (!client_receive(s, c))
 		client_close(s, c);

@@ -296,5 +296,27 @@ for _unix in (False, True):
                 "_for_one_who_gave_up" if _gives_up else "")] = served_case(_unix, _gives_up, _path)
 
 
+def test_a_write_given_as_soon_as_a_long_one_is_answered_is_not_old(scene):
+    wire = scene.file("large.sim", "chip DS2482-100 0x18\nDS1977 37.000000000001\n")
+    server = served.owsd_of(scene, f"sim:{wire}", items=[])
+    until(lambda: server.has(["/37.000000000001"]), 20, "the chip is there")
+    # on one processor the client is quick enough to give it before owsd sleeps
+    cpu = {min(os.sched_getaffinity(0))}
+    for thread in os.listdir(f"/proc/{server.program.pid}/task"):
+        os.sched_setaffinity(int(thread), cpu)
+    before = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, cpu)
+    try:
+        with server.connect() as s:
+            for size in (320, 2) * 3:
+                began = time.monotonic()
+                s.sendall(served.request(served.WRITE, "/37.000000000001/memory", data=os.urandom(size),
+                                         flags=served.USUAL | served.PERSIST))
+                assert served.receive(s).ret == 0, (size, server.program.log())
+                assert size == 2 or time.monotonic() - began > STOP_S - 1, "it takes longer than 2 seconds"
+    finally:
+        os.sched_setaffinity(0, before)
+
+
 if __name__ == "__main__":
     owsdtest.main(at_once=4)
