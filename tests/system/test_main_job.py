@@ -309,10 +309,15 @@ def test_memory_and_descriptors_stay_flat(scene):
     def transactions():
         return int(scene.get(daemon, "_TRANSACTIONS") or 0)
     until(lambda: transactions() > 500, 100)
-    files, before, count = settled(lambda: len(open_files(daemon))), kib(), transactions()
-    until(lambda: transactions() > count + 4500, 300)
-    after = kib()
-    assert after - before <= 64, (before, after)
+    files, seen = settled(lambda: len(open_files(daemon))), [kib()]
+    # a sanitizer's own memory grows by steps: what leaks grows each time
+    for _turn in range(5 if owsdtest.BUILD.name in ("asan", "tsan") else 1):
+        count = transactions()
+        until(lambda: transactions() > count + 4500, 300)  # noqa: B023
+        seen.append(kib())
+        if seen[-1] - seen[-2] <= 64:
+            break
+    assert seen[-1] - seen[-2] <= 64, seen
     until(lambda: len(open_files(daemon)) == files, 10, f"descriptors {files}")
 
 
