@@ -59,7 +59,8 @@ static int measure_temperature(struct txn *txn, double *value)
 	if (err)
 		return err;
 	*value = (ds2438_word(bytes + 1) >> 3) / 32.0;
-	return *value < LOWEST || *value > HIGHEST ? -ERANGE : 0;
+	txn->number[0] = *value; /* of -EDOM, also of what would be computed from it */
+	return *value < LOWEST || *value > HIGHEST ? -EDOM : 0;
 }
 
 /*

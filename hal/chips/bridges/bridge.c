@@ -228,7 +228,7 @@ void bridge_bounds(uint8_t type, double *least, double *most)
 	*most = type == PROPERTY_INTEGER ? 2147483647.0 : type == PROPERTY_YESNO ? 1 : 4294967295.0;
 }
 
-/* The value of what was measured; -ERANGE: it is none that the sensor can mean. */
+/* The value of what was measured; -EDOM: it is none that the sensor can mean. */
 static int take_result(const struct sensor *sensor, double *number)
 {
 	const struct sensor_value *value = sensor->value;
@@ -238,10 +238,10 @@ static int take_result(const struct sensor *sensor, double *number)
 	*number = evaluate(sensor, value->formula, 0);
 	if (!isfinite(*number) ||
 	    (value->ranged && (*number < value->low || *number > value->high)))
-		return -ERANGE;
+		return -EDOM;
 	if (is_whole_type(value->type) &&
 	    (*number != floor(*number) || *number < least || *number > most))
-		return -ERANGE;
+		return -EDOM;
 	return 0;
 }
 
@@ -272,11 +272,9 @@ static int write_value(struct txn *txn)
 		return err ? err : TXN_MORE;
 	}
 	err = bridge_measure(txn, &sensor);
-	if (!err)
-		err = take_result(&sensor, &have);
 	if (err)
 		return err;
-	return have == want ? 0 : -EIO;
+	return take_result(&sensor, &have) || have != want ? -EIO : 0;
 }
 
 /* --- Bridges as families --------------------------------------------------------------------- */

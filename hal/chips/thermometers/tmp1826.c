@@ -213,8 +213,10 @@ int tmp1826_read_temperature(struct txn *txn)
 		txn->number[0] = tmp1826_celsius(pad, 0);
 		if (!fresh)
 			return -EBADMSG;
+		if (txn->number[0] < LOWEST || txn->number[0] > HIGHEST)
+			return -EDOM;
 		bool most = !(visit->config & TMP1826_PRECISE) && txn->number[0] >= END_STOP;
-		return txn->number[0] < LOWEST || txn->number[0] > HIGHEST || most ? -ERANGE : 0;
+		return most ? -ERANGE : 0;
 	}
 	visit->config = pad[CONFIG_1];
 	txn->phase = !fresh;

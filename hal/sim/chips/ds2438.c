@@ -66,7 +66,9 @@ static void ds2438_worked(struct sim_slave *slave)
 	switch (s->work) {
 	case CONVERT_T: /* 13 bits of 0.03125, left-aligned */
 		sim_put(s->memory[0] + 1, 2,
-		        sim_within(sim_input_now(slave, TEMPERATURE) * 32, -55 * 32, 125 * 32) * 8);
+		        sim_within(sim_input_now(slave, TEMPERATURE) * 32, -128 * 32,
+		                   128 * 32 - 1) *
+		                8);
 		slave->conversions++;
 		break;
 	case CONVERT_V: /* 10 bits of 10 mV */
@@ -174,7 +176,7 @@ static void play_read(struct sim_slave *slave)
 	struct ds2438 *s = slave->state;
 
 	sim_put(s->scratchpad[0] + 1, 2,
-	        sim_within(sim_input_now(slave, TEMPERATURE) * 32, -55 * 32, 125 * 32) * 8);
+	        sim_within(sim_input_now(slave, TEMPERATURE) * 32, -128 * 32, 128 * 32 - 1) * 8);
 	sim_put(s->scratchpad[0] + 5, 2,
 	        sim_within(sim_input_now(slave, VSENS) / CURRENT_MV, -1023, 1023));
 	sim_send_crc8(slave, s->scratchpad[page_of(slave)], 8);
@@ -191,7 +193,8 @@ static const struct sim_function played[] = {
 };
 
 static const struct sim_input inputs[] = {
-	[TEMPERATURE] = {SIM_TEMPERATURE_INPUT},
+	/* all that the register holds, also what no chip measures */
+	[TEMPERATURE] = {.name = "temperature", .start = 20, .least = -128, .most = 127.96875},
 	[VDD] = {.name = "vdd", .start = 5, .least = 0, .most = 10},
 	[VAD] = {.name = "vad"},
 	[VSENS] = {.name = "vsens"},

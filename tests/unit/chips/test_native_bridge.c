@@ -56,7 +56,7 @@ static int take(const char *lines, char *why, size_t why_size)
 
 static void begin(void)
 {
-	char why[160] = "", lines[300];
+	char why[160] = "", lines[400];
 
 	native_begin();
 	wire_init(&host, 1, 1);
@@ -76,9 +76,10 @@ static void begin(void)
 	wire_set(bridge, "pins", 0x1234);
 	bus = wire_open();
 	snprintf(lines, sizeof(lines),
+	         "sensor narrow\n\twrite 0x12 read 1\n\tvalue v = u8(0) range 0 to 10\n"
 	         "at %s sht4x 0x44\nat %s bme280 0x76 as air\nat %s vcnl4040 0x60\n"
-	         "at %s mcp23017 0x20 as io\n",
-	         rom_id, rom_id, rom_id, rom_id);
+	         "at %s mcp23017 0x20 as io\nat %s narrow 0x20 as narrow\n",
+	         rom_id, rom_id, rom_id, rom_id, rom_id);
 	TEST_ASSERT_EQUAL_INT_MESSAGE(0, take(lines, why, sizeof(why)), why);
 	host_run(&host, bus, host.now + 2 * HOST_S);
 	forget();
@@ -166,6 +167,15 @@ static void test_a_sensor_that_is_not_there_or_another_is_an_error(void)
 }
 
 /* Without power it has forgotten its id. */
+static void test_what_the_sensor_cannot_mean_is_refused_with_its_number(void)
+{
+	begin();
+	const struct bus_answer *answer = answer_to(
+		ask(BUS_READ, BUS_INPUT, true, path_of("narrow/v"), NULL));
+	TEST_ASSERT_EQUAL_INT(-EDOM, answer->err);
+	TEST_ASSERT_EQUAL_DOUBLE(0x34, answer->number);
+}
+
 static void test_a_bridge_that_lost_its_power_is_woken(void)
 {
 	begin();
@@ -482,6 +492,7 @@ static void over_both(void)
 	RUN_TEST(test_outputs_are_written_and_read_back);
 	RUN_TEST(test_the_values_are_listed_and_two_of_one_sensor_are_one_measurement);
 	RUN_TEST(test_a_sensor_that_is_not_there_or_another_is_an_error);
+	RUN_TEST(test_what_the_sensor_cannot_mean_is_refused_with_its_number);
 	RUN_TEST(test_a_sensor_with_checksums_gives_no_false_value);
 	RUN_TEST(test_a_sensor_with_registers_gives_no_false_value);
 	RUN_TEST(test_a_sensor_with_a_calibration_gives_no_false_value);

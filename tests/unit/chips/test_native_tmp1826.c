@@ -72,7 +72,7 @@ static void test_an_offset_makes_no_temperature_that_the_chip_does_not_measure(v
 	for (unsigned i = 0; i < sizeof(offsets) / sizeof(offsets[0]); i++) {
 		TEST_ASSERT_EQUAL_INT(0, set("tempoffset", offsets[i]));
 		TEST_ASSERT_EQUAL_INT_MESSAGE(
-			-ERANGE, result(BUS_READ, of(chip, "temperature"), NULL), offsets[i]);
+			-EDOM, result(BUS_READ, of(chip, "temperature"), NULL), offsets[i]);
 	}
 	TEST_ASSERT_EQUAL_INT(0, set("tempoffset", "0.25"));
 	expect(true, of(chip, "temperature"), "       21.75");

@@ -20,13 +20,13 @@ static const struct {
 	const char *property, *input;
 	double healthy, fault;
 	uint8_t quality;
-	const char *beside; /* another input, which stays */
+	const char *start; /* of another input */
 } rows[] = {
 	{"MAX31850", 0x3b, "thermocouple", "open_circuit", 0, 1, OWS_Q_DEVICE},
 	{"MAX31850", 0x3b, "thermocouple", "ground_short", 0, 1, OWS_Q_DEVICE},
 	{"MAX31850", 0x3b, "thermocouple", "vdd_short", 0, 1, OWS_Q_DEVICE},
 	{"DS2438", 0x26, "VDD", "vdd", 5, 0, OWS_Q_DEVICE},
-	{"DS2438", 0x26, "humidity", "vdd", 5, 0, OWS_Q_DEVICE, " vad 2.5"},
+	{"DS2438", 0x26, "humidity", "vdd", 5, 0, OWS_Q_DEVICE, "vad 2.5"},
 	{"TMP1826", 0x26, "temperature", "temperature", 20, 150, OWS_Q_SENSOR},
 	{"DS2780", 0x32, "typeS/temperature", "vis", 1, 51.1, OWS_Q_SENSOR},
 	{"DS2760", 0x30, "typeS/temperature", "vis", 1, 51.1, OWS_Q_SENSOR},
@@ -71,10 +71,10 @@ static void run(size_t row, unsigned others)
 	bad_ns = back_ns = 0;
 	reads_apart_ns = 0;
 	m += (size_t)snprintf(scenario, sizeof(scenario),
-	                      "chip DS2482-100 0x18\n%s %02X.000000000001 as it%s\n"
+	                      "chip DS2482-100 0x18\n%s %02X.000000000001 as it %s\n"
 	                      "at 0s set it %s %g\nat 20s set it %s %g\nat 40s set it %s %g\n",
 	                      rows[row].chip, rows[row].code,
-	                      rows[row].beside ? rows[row].beside : "", rows[row].input,
+	                      rows[row].start ? rows[row].start : "", rows[row].input,
 	                      rows[row].healthy, rows[row].input, rows[row].fault, rows[row].input,
 	                      rows[row].healthy);
 	n += (size_t)snprintf(rio, sizeof(rio),
@@ -110,7 +110,8 @@ static void run(size_t row, unsigned others)
 	         (int)(back_ns / PLANT_MS));
 	TEST_MESSAGE(text);
 	TEST_ASSERT_GREATER_THAN_INT64_MESSAGE(0, bad_ns, text);
-	TEST_ASSERT_LESS_THAN_INT64_MESSAGE(reads_apart_ns + 2 * PLANT_S, bad_ns, text);
+	/* the one under way may have seen it healthy, and a zero is measured twice */
+	TEST_ASSERT_LESS_THAN_INT64_MESSAGE(2 * reads_apart_ns + PLANT_S, bad_ns, text);
 	TEST_ASSERT_GREATER_THAN_INT64_MESSAGE(0, back_ns, text);
 	TEST_ASSERT_LESS_THAN_INT64_MESSAGE(reads_apart_ns + 2 * PLANT_S, back_ns, text);
 }

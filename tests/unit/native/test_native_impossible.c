@@ -100,11 +100,36 @@ static void test_a_converter_without_its_sensor_has_no_humidity(void)
 		}
 }
 
+/* Its humidity is computed from its temperature, and is none then either. */
+static void test_a_converter_whose_temperature_cannot_be_has_none_and_no_humidity(void)
+{
+	static const char *const chips[] = {"DS2438", "DS2438-A6", "DS2437", "DS2438-EMULATED"};
+
+	for (size_t c = 0; c < sizeof(chips) / sizeof(chips[0]); c++) {
+		wire_init(&host, 1, 1);
+		struct sim_slave *slave = wire_add(0, chips[c], 1);
+
+		wire_set(slave, "vad", 2.5);
+		wire_set(slave, "temperature", -109.5);
+		start();
+		refused(true, of(slave, "temperature"), -109.5);
+		refused(true, of(slave, "latesttemp"), -109.5);
+		if (strcmp(chips[c], "DS2437") != 0)
+			refused(true, of(slave, "HIH4000/humidity"), -109.5);
+		TEST_ASSERT_EQUAL_INT(0, result(BUS_READ, of(slave, "VAD"), NULL));
+		native_end();
+		native_begin();
+	}
+	wire_init(&host, 1, 1);
+	start();
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_a_temperature_that_no_chip_measures_is_refused_at_each_resolution);
 	RUN_TEST(test_what_stands_in_the_chip_can_be_read_all_the_same);
 	RUN_TEST(test_a_converter_without_its_sensor_has_no_humidity);
+	RUN_TEST(test_a_converter_whose_temperature_cannot_be_has_none_and_no_humidity);
 	return UNITY_END();
 }
