@@ -44,22 +44,24 @@ static bool is_found(struct native *native, struct job *job)
  * A branch of the wire was unplugged: of one after the other no try found anything. Then of the
  * next one that does not answer one try is enough. On a disturbed wire some try finds something.
  */
-static unsigned tries_of(const struct native *native, int64_t now)
+static unsigned tries_of(const struct channel *channel, int64_t now)
 {
-	const struct locate *locate = &native->locate;
+	return channel->missed == MANY_MISSED && now - channel->missed_ns < NATIVE_S ? 1 : TRIES;
+}
 
-	return locate->missed >= MANY_MISSED && now - locate->missed_ns < NATIVE_S ? 1 : TRIES;
+static void count_missed(struct channel *channel, int64_t now)
+{
+	if (now - channel->missed_ns >= NATIVE_S)
+		channel->missed = 0;
+	channel->missed += channel->missed < MANY_MISSED;
+	channel->missed_ns = now;
 }
 
 static void missing_end(struct native *native, struct job *job)
 {
 	int64_t now = native_now(native);
 
-	native->locate.missed = now - native->locate.missed_ns >= NATIVE_S ? 1
-	                        : native->locate.missed < UINT8_MAX
-	                                ? (uint8_t)(native->locate.missed + 1)
-	                                : UINT8_MAX;
-	native->locate.missed_ns = now;
+	count_missed(&native->channel[job->channel], now);
 	/* A search may have met it on another wire since then. */
 	bool moved = job->txn.device->channel != job->channel;
 
@@ -92,10 +94,10 @@ void locate_missing(struct native *native, struct job *job, int64_t now)
 	}
 	master_good(native, job->channel);
 	if (there) {
-		native->locate.missed = 0;
+		native->channel[job->channel].missed = 0;
 		presence_found(native, job->path.rom, job->channel, now);
 		job->state = JOB_QUEUED;
-	} else if (++job->tries >= tries_of(native, now)) {
+	} else if (++job->tries >= tries_of(&native->channel[job->channel], now)) {
 		missing_end(native, job);
 	}
 }

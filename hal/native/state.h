@@ -195,6 +195,8 @@ struct channel {
 	uint32_t passes;       /* counts those of a round, from its number on */
 	int64_t whole_ns;      /* when the last one began that was right to its end; 0: none was */
 	int64_t looked_ns;     /* ... look for those that requests name (locate.h) */
+	int64_t missed_ns;     /* when the last device was missed by all looks to verify it */
+	uint8_t missed;        /* so many in a row, as far as counting them matters */
 	uint32_t asleep_round; /* the last that found a bridge without id (DS28E18); 0: none */
 	int64_t round_ns;      /* when it began */
 	bool searching, dirty;
@@ -244,10 +246,7 @@ struct locate {
 	int64_t idle_ns;    /* when no other job needs the wire: the next one */
 	int64_t took_ns;    /* the last transaction */
 	uint64_t found;     /* COUNT_FOUND when the requests were looked at last */
-	/* Devices in a row that each try to verify them missed; when the last one was. */
-	uint8_t missed;
-	uint8_t in_row; /* looks that found one, without a turn of others */
-	int64_t missed_ns;
+	uint8_t in_row;     /* looks that found one, without a turn of others */
 };
 
 /* What /statistics tells of the requests of one kind. */

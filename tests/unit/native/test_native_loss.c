@@ -67,6 +67,39 @@ static void test_the_background_search_sees_devices_come_and_go(void)
 	TEST_ASSERT_EQUAL_UINT(3, host_events(&host, BUS_FOUND));
 }
 
+static unsigned resets_until_lost(struct sim_slave *slave, unsigned wire)
+{
+	unsigned before = wire_net.resets[wire], lost = host_events(&host, BUS_LOST);
+
+	TEST_ASSERT_EQUAL_INT(-ENODEV, result(BUS_READ, of(slave, "power"), NULL));
+	TEST_ASSERT_EQUAL_UINT(lost + 1, host_events(&host, BUS_LOST));
+	return wire_net.resets[wire] - before;
+}
+
+/* A branch that was unplugged costs its wire less; that tells nothing of another wire. */
+static void test_the_next_one_of_a_wire_that_lost_several_is_looked_for_once(void)
+{
+	struct sim_slave *slave[6];
+	unsigned first, next;
+
+	wire_init(&host, 2, 1);
+	for (unsigned i = 0; i < 6; i++)
+		slave[i] = wire_add(i == 5, "DS18B20", i + 1);
+	wire_add(0, "DS2401", 1);
+	wire_add(1, "DS2401", 2);
+	start();
+	TEST_ASSERT_TRUE(host_run_events(&host, bus, 9, host.now + 5 * HOST_S));
+	for (unsigned i = 0; i < 6; i++)
+		sim_wire_plug(&wire_net.wire[i == 5], slave[i], false, wire_time());
+	first = resets_until_lost(slave[0], 0);
+	resets_until_lost(slave[1], 0);
+	resets_until_lost(slave[2], 0);
+	next = resets_until_lost(slave[3], 0);
+	TEST_ASSERT_EQUAL_UINT(first - 2, next);
+	TEST_ASSERT_EQUAL_UINT(first, resets_until_lost(slave[5], 1));
+	TEST_ASSERT_EQUAL_UINT(next, resets_until_lost(slave[4], 0));
+}
+
 static unsigned count_twins(const char **text)
 {
 	unsigned n = 0;
@@ -304,6 +337,7 @@ int main(void)
 	RUN_TEST(test_a_target_that_was_there_is_looked_for_more_often_and_its_plug_is_named);
 	RUN_TEST(test_a_device_that_leaves_is_lost_and_found_again);
 	RUN_TEST(test_the_background_search_sees_devices_come_and_go);
+	RUN_TEST(test_the_next_one_of_a_wire_that_lost_several_is_looked_for_once);
 	RUN_TEST(test_an_id_on_two_wires_is_reported_once);
 	RUN_TEST(test_a_device_that_is_moved_and_moved_back_is_no_twin);
 	RUN_TEST(test_the_ladder_is_climbed_until_the_chip_answers);
