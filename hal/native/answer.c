@@ -65,7 +65,7 @@ static void note_failure(struct job *job, int err)
 
 	if (!device || job->kind != JOB_PROPERTY || job->property->offline)
 		return;
-	if (!err || err == -ENODATA)
+	if (!err || err == -ENODATA || err == -EDOM)
 		device->failures = 0;
 	else if ((err == -EBADMSG || err == -EIO) && device->failures < UINT8_MAX)
 		device->failures++;

@@ -124,6 +124,33 @@ static void test_a_converter_whose_temperature_cannot_be_has_none_and_no_humidit
 	start();
 }
 
+/* It has answered: what failed before does not take the second try of what comes after. */
+static void test_a_refused_reading_ends_the_failures_of_its_chip(void)
+{
+	struct trouble trouble;
+
+	trouble_none(&trouble);
+	wire_init(&host, 1, 1);
+	wire_net.trouble = &trouble;
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+
+	start();
+	wire_set(slave, "temperature", -109.9375);
+	slave->corrupt_every = 1;
+	slave->corrupt_random = 7;
+	for (unsigned i = 0; i < 5; i++)
+		TEST_ASSERT_EQUAL_INT(-EBADMSG, result(BUS_READ, of(slave, "scratchpad"), NULL));
+	slave->corrupt_every = 0;
+	refused(true, of(slave, "temperature"), -109.9375);
+	trouble_none(&trouble);
+	trouble.kind = TROUBLE_TURN;
+	trouble.at = 85; /* in the first byte of the scratchpad */
+	trouble.mask = 1;
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_READ, of(slave, "scratchpad"), NULL));
+	TEST_ASSERT_GREATER_THAN_UINT32(2 * 85, trouble.slots);
+	wire_net.trouble = NULL;
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -131,5 +158,6 @@ int main(void)
 	RUN_TEST(test_what_stands_in_the_chip_can_be_read_all_the_same);
 	RUN_TEST(test_a_converter_without_its_sensor_has_no_humidity);
 	RUN_TEST(test_a_converter_whose_temperature_cannot_be_has_none_and_no_humidity);
+	RUN_TEST(test_a_refused_reading_ends_the_failures_of_its_chip);
 	return UNITY_END();
 }
