@@ -212,6 +212,35 @@ static void test_no_thermometer_can_be_at_127_below_zero(void)
 	TEST_ASSERT_EQUAL_UINT(0, missing);
 }
 
+/* -40 degrees and 1 % make a dew point of -76; and a light sensor has an offset in the dark. */
+static void test_what_is_computed_of_true_readings_is_not_refused(void)
+{
+	static const struct {
+		const char *path;
+		double number;
+		bool excluded;
+	} rows[] = {
+		{"/7E.112233445566/EDS0065/dew_point", -76.4, false},
+		{"/7E.112233445566/EDS0068/dew_point", -76.4, false},
+		{"/7E.112233445566/EDS0068/heat_index", -93, false},
+		{"/7E.112233445566/EDS0068/humidex", -64, false},
+		{"/7E.112233445566/EDS0068/dew_point", -127, true},
+		{"/7E.112233445566/EDS0068/heat_index", -127, true},
+		{"/26.112233445566/S3-R1-A/current", -1.3, false},
+		{"/26.112233445566/S3-R1-A/current", 641, false},
+		{"/26.112233445566/S3-R1-A/current", -700, true},
+	};
+
+	for (size_t i = 0; i < sizeof(rows) / sizeof(rows[0]); i++) {
+		struct quantity quantity;
+
+		TEST_ASSERT_TRUE_MESSAGE(quantity_of(rows[i].path, &quantity), rows[i].path);
+		TEST_ASSERT_EQUAL_MESSAGE(rows[i].excluded,
+		                          quantity_excludes(&quantity, rows[i].number),
+		                          rows[i].path);
+	}
+}
+
 /* Of an alias only the name of the property is known. */
 static void test_a_name_has_the_same_unit_in_all_families(void)
 {
@@ -259,6 +288,7 @@ int main(void)
 	RUN_TEST(test_each_property_that_measures_has_a_unit);
 	RUN_TEST(test_each_reading_has_the_range_and_resolution_of_its_chip);
 	RUN_TEST(test_no_thermometer_can_be_at_127_below_zero);
+	RUN_TEST(test_what_is_computed_of_true_readings_is_not_refused);
 	RUN_TEST(test_a_name_has_the_same_unit_in_all_families);
 	RUN_TEST(test_the_type_gives_the_unit_of_a_setting);
 	return UNITY_END();
