@@ -17,16 +17,11 @@
 /* Between two looks on a lane: the signals that are read come first. */
 #define WATCH_APART_NS (100 * NS_PER_MS)
 
-static int64_t watch_ns(const struct engine *e)
-{
-	return e->config->period_ns > WATCH_NS ? e->config->period_ns : WATCH_NS;
-}
-
 /* By the file alone. */
 static bool may_be_overlooked(const struct engine *e, const struct signal *s)
 {
 	return s->item->alarm || s->item->output ||
-	       s->item->per_factor * e->config->period_ns > watch_ns(e);
+	       s->item->per_factor * e->config->period_ns > engine_watch_ns(e);
 }
 
 /* Would its own readings show too late, or never, that the device is lost? */
@@ -35,8 +30,8 @@ static bool is_overlooked(struct engine *e, struct lane *lane, const struct sign
 	int64_t back_ns = s->item->read_back_ns;
 
 	if (signal_reads(s))
-		return engine_reads_apart(e, lane, s) > engine_periods(e, watch_ns(e));
-	return s->item->output && s->sample.count && (!back_ns || back_ns > watch_ns(e));
+		return engine_reads_apart(e, lane, s) > engine_periods(e, engine_watch_ns(e));
+	return s->item->output && s->sample.count && (!back_ns || back_ns > engine_watch_ns(e));
 }
 
 static struct signal *row_of(const struct engine *e, const struct device *d, uint32_t k)
@@ -60,11 +55,6 @@ static bool is_to_be_watched(struct engine *e, struct lane *lane, const struct d
 	return overlooked && !(d->absent && read);
 }
 
-static void watch_at(struct engine *e, uint32_t device, int64_t ns)
-{
-	due_wheel_at(&e->watch_wheel, device, engine_period_at(e, ns));
-}
-
 int engine_watch_init(struct engine *e)
 {
 	if (due_wheel_init(&e->watch_wheel, e->table.device_count + 1, 0))
@@ -76,7 +66,7 @@ int engine_watch_init(struct engine *e)
 		for (uint32_t k = 0; k < d->count; k++)
 			any |= may_be_overlooked(e, row_of(e, d, k));
 		if (any)
-			watch_at(e, i, e->time.start_ns + watch_ns(e));
+			engine_watch_at(e, i, e->time.start_ns + engine_watch_ns(e));
 	}
 	return 0;
 }
@@ -91,14 +81,14 @@ static void watch_ready(void *ctx, uint32_t index)
 	struct engine *e = ctx;
 	const struct device *d = &e->table.devices[index];
 	struct lane *lane = engine_lane(e, row_of(e, d, 0));
-	int64_t due_ns = d->shown_ns + watch_ns(e);
+	int64_t due_ns = d->shown_ns + engine_watch_ns(e);
 
 	if (due_ns > e->time.now_ns)
-		watch_at(e, index, due_ns);
+		engine_watch_at(e, index, due_ns);
 	else if (lane->state.up && is_to_be_watched(e, lane, d))
 		due_set_add(&lane->watch, index);
 	else
-		watch_at(e, index, e->time.now_ns + watch_ns(e));
+		engine_watch_at(e, index, e->time.now_ns + engine_watch_ns(e));
 }
 
 void engine_watch_tick(struct engine *e)
@@ -118,20 +108,6 @@ void engine_watch_heard(struct lane *lane, const struct slot *slot, const struct
 		return;
 	e->table.devices[s->device].shown_ns = slot->begun_ns;
 	retry_clear(&e->table.devices[s->device].watch);
-}
-
-void engine_watch_anew(struct lane *lane, uint32_t device)
-{
-	struct engine *e = lane->engine;
-
-	if (device == e->table.device_count)
-		return;
-	retry_clear(&e->table.devices[device].watch);
-	if (due_set_has(&lane->watch, device))
-		due_set_remove(&lane->watch, device);
-	else if (!e->watch_wheel.wait[device].waits) /* with the bus, or never watched */
-		return;
-	watch_at(e, device, e->time.now_ns + watch_ns(e));
 }
 
 bool engine_watch_ask(struct lane *lane, struct slot *slot)
@@ -172,7 +148,7 @@ static int64_t watch_failed(struct lane *lane, uint32_t index, int err)
 
 	if (err != -ENODEV) { /* the wire, or a bridge chip: that is no absence */
 		read_all(lane, d);
-		return watch_ns(e);
+		return engine_watch_ns(e);
 	}
 	lost = retry_fail(&d->watch, d->absent ? 0 : e->config->max_retries, &wait_ns);
 	if (lost)
@@ -188,7 +164,7 @@ void engine_watch_done(struct lane *lane, const struct slot *slot, const struct 
 {
 	struct engine *e = lane->engine;
 	struct device *d = &e->table.devices[slot->row];
-	int64_t wait_ns = watch_ns(e);
+	int64_t wait_ns = engine_watch_ns(e);
 
 	lane->watching = false;
 	if (engine_lane(e, row_of(e, d, 0)) == lane && !answer->err) {
@@ -200,5 +176,5 @@ void engine_watch_done(struct lane *lane, const struct slot *slot, const struct 
 	           failure_of(answer->err) == FAILURE_ITEM) {
 		wait_ns = watch_failed(lane, slot->row, answer->err);
 	}
-	watch_at(e, slot->row, slot->begun_ns + wait_ns);
+	engine_watch_at(e, slot->row, slot->begun_ns + wait_ns);
 }

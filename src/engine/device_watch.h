@@ -4,9 +4,6 @@
 
 #include "src/engine/state.h"
 
-/* A device that has shown nothing for so long is looked for; or for a period, if that is longer. */
-#define WATCH_NS (2 * NS_PER_S)
-
 /* 0 or -ENOMEM. */
 int engine_watch_init(struct engine *e);
 void engine_watch_free(struct engine *e);
@@ -15,11 +12,6 @@ void engine_watch_tick(struct engine *e);
 /* An answer for the slot's signal came: it may show that the device is there. */
 void engine_watch_heard(struct lane *lane, const struct slot *slot,
                         const struct bus_answer *answer);
-/*
- * The device is there again, or leaves the lane: what looks for it have found counts no more, and
- * it is looked for after the usual time, on the lane that serves it then.
- */
-void engine_watch_anew(struct lane *lane, uint32_t device);
 /* Ask for the next device that is due; false: none is, or the bus takes nothing now. */
 bool engine_watch_ask(struct lane *lane, struct slot *slot);
 void engine_watch_done(struct lane *lane, const struct slot *slot, const struct bus_answer *answer);

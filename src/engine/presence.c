@@ -6,7 +6,6 @@
 #include <errno.h>
 
 #include "src/engine/alarm/alarm_arm.h"
-#include "src/engine/device_watch.h"
 #include "src/engine/presence.h"
 #include "src/engine/publish.h"
 #include "src/engine/retry.h"

@@ -9,7 +9,6 @@
 #include "src/engine/alarm/alarm_effect.h"
 #include "src/engine/alarm/alarm_item.h"
 #include "src/engine/command/doubt.h"
-#include "src/engine/device_watch.h"
 #include "src/engine/due.h"
 #include "src/engine/lane.h"
 #include "src/engine/publish.h"
