@@ -203,6 +203,7 @@ static void hold_back(struct engine *e, struct lane *lane, struct signal *s)
 	    sample->quality != OWS_Q_INITIAL &&
 	    (ows_good(sample->quality) || sample->quality < OWS_Q_LAST_USABLE))
 		sample->quality = OWS_Q_LAST_USABLE;
+	s->read.retry.doublings = 0; /* a fault of the device that follows is its first */
 }
 
 int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,

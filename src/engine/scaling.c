@@ -132,6 +132,8 @@ void signal_rescale(struct signal *s, const struct signal *was)
 
 	if (s->item->filter_s != was->item->filter_s)
 		s->scaling.filter.begun = false;
+	if (s->item->max_step != was->item->max_step)
+		s->scaling.step = (struct step){0};
 	if (scale_same(&s->item->scale, &was->item->scale))
 		return;
 	s->scaling.filter.begun = false;

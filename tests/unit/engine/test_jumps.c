@@ -215,6 +215,49 @@ static void test_a_reload_that_changes_the_scale_has_the_next_value_confirmed(vo
 	expect(OWS_Q_GOOD, 0);
 }
 
+/* The device answered whole: its first fault waits as long as a first fault does. */
+static void test_what_jumped_does_not_lengthen_the_back_off_of_a_fault(void)
+{
+	char text[16];
+	unsigned before;
+
+	freezer();
+	start();
+	for (int i = 1; i <= 12; i++) {
+		snprintf(text, sizeof(text), "%d", -16 + 5 * i);
+		freezer_reads(text);
+	}
+	expect(OWS_Q_LAST_USABLE, -EREMCHG);
+	scene_put(&s, FREEZER, NULL, -EBADMSG);
+	while (scene_sample(&s, 1).err == -EREMCHG)
+		scene_run(&s, 10 * SCENE_MS);
+	expect(OWS_Q_DEVICE, -EBADMSG);
+	before = s.reads;
+	scene_run(&s, 1500 * SCENE_MS);
+	TEST_ASSERT_EQUAL_UINT(before + 1, s.reads);
+}
+
+static void without_max_step(struct config *config)
+{
+	config->items[0].max_step = 0;
+}
+
+/* Nothing confirms it any more: it is no reason to read past the caches for ever. */
+static void test_a_reload_without_max_step_reads_from_the_caches_again(void)
+{
+	freezer();
+	start();
+	freezer_reads("80.5625");
+	expect(OWS_Q_GOOD, -EREMCHG);
+	scene_reload(&s, without_max_step);
+	freezer_reads("80.5625");
+	expect(OWS_Q_GOOD, 0);
+	TEST_ASSERT_EQUAL_DOUBLE(80.5625, scene_number(&s, 1));
+	scene_clear_trace(&s);
+	freezer_reads("-16");
+	TEST_ASSERT_EQUAL_STRING("R " FREEZER "\n", s.trace);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -227,5 +270,7 @@ int main(void)
 	RUN_TEST(test_a_jump_is_in_the_unit_of_the_value_and_does_not_bend_the_filter);
 	RUN_TEST(test_what_was_written_to_an_input_is_known_to_be_true);
 	RUN_TEST(test_a_reload_that_changes_the_scale_has_the_next_value_confirmed);
+	RUN_TEST(test_what_jumped_does_not_lengthen_the_back_off_of_a_fault);
+	RUN_TEST(test_a_reload_without_max_step_reads_from_the_caches_again);
 	return UNITY_END();
 }
