@@ -6,6 +6,7 @@
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/rows.h"
 #include "src/owsctl/verbs.h"
+#include "src/show/digits.h"
 #include "src/show/names.h"
 #include "src/show/reading.h"
 
@@ -26,9 +27,6 @@ static void say_command(struct ows *h, const char *name, int id, const struct re
 	         reading->value.quality == OWS_Q_DIFFERS ? "" : " yet");
 }
 
-/* No chip resolves more, and scripts compute with what it does; the rest is of the arithmetic. */
-#define CHIP_DECIMALS 6
-
 static int get_one(const struct ctl *ctl, struct ows *h, const char *name, struct reading *reading)
 {
 	char words[READING_WORDS];
@@ -45,9 +43,8 @@ static int get_one(const struct ctl *ctl, struct ows *h, const char *name, struc
 	if (!reading_filled(reading))
 		return ctl_fail("%s: %s", name, error_text(reading->err));
 	is_value = names_info(h, ctl->instance, name, &info);
-	if (is_value && info.decimals >= 0)
-		reading_round(reading,
-		              info.decimals > CHIP_DECIMALS ? info.decimals : CHIP_DECIMALS);
+	if (is_value)
+		reading_round(reading, digits_of_script(reading->value.number, info.decimals));
 	ctl_value(reading->text, reading->len);
 	if (is_value)
 		say_command(h, name, id, reading);

@@ -6,6 +6,8 @@
 
 #include "src/show/digits.h"
 
+#define SCRIPT_LEAST 6
+#define SCRIPT_MOST 12
 #define DECIMALS_MOST 99 /* printf() would compute as many as it is asked for */
 
 void digits_print(enum ows_type type, double number, int64_t integer, int decimals,
@@ -26,4 +28,14 @@ void digits_print(enum ows_type type, double number, int64_t integer, int decima
 		n--;
 	cut[n] = '\0';
 	snprintf(text, VALUE_TEXT_MAX, "%s", strcmp(cut, "-0") == 0 ? "0" : cut);
+}
+
+int digits_of_script(double number, int decimals)
+{
+	double size = fabs(number);
+	int wanted = SCRIPT_LEAST;
+
+	if (size > 0 && size < 1)
+		wanted = (int)fmin(SCRIPT_LEAST - 1 - floor(log10(size)), SCRIPT_MOST);
+	return decimals < 0 || decimals > wanted ? decimals : wanted;
 }

@@ -10,3 +10,9 @@
  */
 void digits_print(enum ows_type type, double number, int64_t integer, int decimals,
                   char text[VALUE_TEXT_MAX]);
+/*
+ * The decimals of a number for a script, which computes with what the chip resolves: six, and those
+ * that a person sees. A number below 1 has six digits that count, if these end within twelve
+ * decimals; what is smaller is of the arithmetic. -1 (all) stays.
+ */
+int digits_of_script(double number, int decimals);

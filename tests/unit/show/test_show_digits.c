@@ -11,6 +11,7 @@
 
 #include "hal/chips/facts.h"
 #include "src/engine/table.h"
+#include "src/show/digits.h"
 #include "src/show/reading.h"
 #include "src/signal/value.h"
 
@@ -133,6 +134,33 @@ static void test_each_unit_has_its_decimals(void)
 	TEST_ASSERT_EQUAL_INT(7, quantity_decimals(&quantity));
 }
 
+static void test_a_script_loses_no_digit_that_a_chip_resolves(void)
+{
+	static const struct {
+		double number;
+		int decimals;
+		const char *text;
+	} rows[] = {
+		{21.0625, 1, "21.0625"},
+		{-0.0625, 1, "-0.0625"},
+		{3.6990399999999997, 3, "3.69904"},
+		{0.000244140625, 3, "0.000244141"},
+		{1.25e-8, 3, "0.0000000125"},
+		{0.1 + 0.2, 1, "0.3"},
+		{1.2e-15, 1, "0"},
+		{0, 1, "0"},
+		{123456.7890627, 1, "123456.789063"},
+		{1.23456789, 8, "1.23456789"},
+		{1.23456789e-9, -1, "1.23456789e-09"},
+	};
+
+	for (size_t i = 0; i < sizeof(rows) / sizeof(rows[0]); i++) {
+		be(OWS_DOUBLE, rows[i].number);
+		reading_round(&reading, digits_of_script(rows[i].number, rows[i].decimals));
+		TEST_ASSERT_EQUAL_STRING(rows[i].text, reading.text);
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -140,5 +168,6 @@ int main(void)
 	RUN_TEST(test_integers_strings_and_driver_signals_stay_as_they_are);
 	RUN_TEST(test_decimals_without_end_take_no_time);
 	RUN_TEST(test_each_unit_has_its_decimals);
+	RUN_TEST(test_a_script_loses_no_digit_that_a_chip_resolves);
 	return UNITY_END();
 }
