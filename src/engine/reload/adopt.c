@@ -161,11 +161,7 @@ static void take_source(struct signal *s, const struct adoption *plan)
 	if (plan->port_successors[before] == (int)s->lane)
 		return;
 	signal_forget_written(s);
-	s->read.held = false;
-	if (s->sample.quality & 0xc0) {
-		s->sample.quality = OWS_Q_LAST_USABLE;
-		s->sample.err = 0;
-	}
+	signal_lapse(s);
 }
 
 static void take_schedule(struct engine *e, struct signal *s, const struct engine *old,

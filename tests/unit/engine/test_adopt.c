@@ -450,6 +450,31 @@ static void test_a_value_of_a_target_that_is_gone_is_not_good(void)
 	TEST_ASSERT_NOT_NULL(strstr(s.trace, "1: W /29.066418000000/PIO.0=1"));
 }
 
+static void other_and_not_writable(struct config *config)
+{
+	only_other(config);
+	item_of(config, "pump")->writable = false;
+}
+
+/* Nothing reads it, and nothing is to be written: the target that was down is not its own now. */
+static void test_an_output_of_a_target_that_was_down_and_is_gone_is_not_target_down(void)
+{
+	house();
+	scene_set(&s, 2, 1);
+	scene_run(&s, SCENE_S);
+	scene_down(&s, -ENOTCONN);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, scene_sample(&s, 2).quality);
+	scene_bus(&s, "other", 1);
+	s.config.target_count = 1;
+	scene_plug(&s, "/29.066418000000", 1);
+	scene_reload(&s, other_and_not_writable);
+	scene_up_on(&s, 1);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_LAST_USABLE, scene_sample(&s, 2).quality);
+	TEST_ASSERT_EQUAL_INT32(0, scene_sample(&s, 2).err);
+}
+
 static void test_a_silent_bus_stays_stuck_and_gives_back_what_it_had(void)
 {
 	house();
@@ -489,6 +514,7 @@ int main(void)
 	RUN_TEST(test_a_limit_that_is_new_knows_no_value_before_its_first);
 	RUN_TEST(test_a_target_keeps_its_signals_when_it_is_named_second);
 	RUN_TEST(test_a_value_of_a_target_that_is_gone_is_not_good);
+	RUN_TEST(test_an_output_of_a_target_that_was_down_and_is_gone_is_not_target_down);
 	RUN_TEST(test_a_silent_bus_stays_stuck_and_gives_back_what_it_had);
 	return UNITY_END();
 }
