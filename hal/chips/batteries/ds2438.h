@@ -33,6 +33,7 @@ struct ds2438_visit {
 	uint8_t step, mark; /* of ds2438_read() */
 	bool again;         /* ... and the memory held the mark */
 	bool probing;       /* a conversion was not shown: is it a copy? */
+	uint8_t converts;   /* commands to a copy to convert */
 	bool configuring, patching, marking;
 	uint8_t writing;       /* the step of writing a page */
 	uint8_t configuration; /* as it is to be */

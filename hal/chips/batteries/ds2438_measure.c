@@ -10,6 +10,9 @@
 #define LOWEST (-58)
 #define HIGHEST 128
 
+/* A copy does not show that it heard a command to convert: it gets so many. */
+#define COPY_CONVERTS 3
+
 #define CONVERSION(what, code) \
 	{ \
 		.name = (what), .command = {code}, .n = 1, .ns = 10 * TXN_MS \
@@ -20,7 +23,8 @@ static const struct conversion convert_vdd = CONVERSION("VDD", 0xb4);
 
 /*
  * TXN_MORE: it converts, and phase is the next one; or that is not known yet. What shows no
- * conversion may be a copy: its page 0 tells. Of a copy the longest time is waited for.
+ * conversion may be a copy: its page 0 tells. To a copy the command goes several times, and the
+ * longest time is waited for.
  */
 static int convert(struct txn *txn, const struct conversion *conversion)
 {
@@ -42,10 +46,12 @@ static int convert(struct txn *txn, const struct conversion *conversion)
 		ds2438_is_genuine(txn);
 	if (err != -EBADMSG || txn->link_error || ds2438_of(txn)->genuine)
 		return err;
-	if (ds2438_is_copy(txn))
+	if (ds2438_is_copy(txn) && ++ds2438_visit(txn)->converts == COPY_CONVERTS) {
+		ds2438_visit(txn)->converts = 0;
 		return txn_wait(txn, conversion->ns);
+	}
 	txn->phase--;
-	*probing = true;
+	*probing = !ds2438_is_copy(txn);
 	return TXN_MORE;
 }
 

@@ -171,17 +171,20 @@ static const struct property properties[] = {
 
 /*
  * The alerts of a TMP1826 stay: reading cleared them in the chip, and no client has them yet. So
- * does it that a DS2438 is no copy: one that fails again and again is none either.
+ * does what shows whether a DS2438 is a copy: one that has failed often has one try in a request,
+ * and would never be known as a copy again.
  */
 static void family_26_forget(struct device *device)
 {
 	struct tmp1826 *chip = device->own;
 	uint8_t alerts = chip->alerts;
 	bool genuine = chip->common.genuine;
+	uint8_t kept = chip->common.kept;
 
 	memset(chip, 0, sizeof(*chip));
 	chip->alerts = alerts;
 	chip->common.genuine = genuine;
+	chip->common.kept = kept;
 }
 
 static const char *const types[] = {NULL, "DS2438", "TMP1826", "unknown"};

@@ -182,6 +182,57 @@ static void test_a_program_that_shows_a_conversion_is_a_chip_again(void)
 	TEST_ASSERT_EQUAL_STRING("DS2438", identity_after("temperature"));
 }
 
+/* So many commands to convert are heard, then so many are lost. */
+static unsigned heard, lost;
+static struct trouble trouble;
+
+static void lose(const uint8_t *data, size_t n)
+{
+	if (n == 0 || data[n - 1] != 0xb4)
+		return;
+	trouble_none(&trouble);
+	if (heard > 0) {
+		heard--;
+	} else if (lost > 0) {
+		lost--;
+		trouble.kind = TROUBLE_DEAF;
+	}
+}
+
+static void test_a_monitor_that_missed_a_conversion_shows_no_other_voltage(void)
+{
+	plug("DS2438-EMULATED");
+	check_monitor(20, 5, 1);
+	wire_net.trouble = &trouble;
+	wire_net.sends = lose;
+	for (unsigned place = 0; place < 6; place++) {
+		heard = place % 3;
+		lost = 1 + place / 3;
+		TEST_ASSERT_DOUBLE_WITHIN(0.011, 1, number("VAD"));
+		heard = place % 3;
+		lost = 1 + place / 3;
+		TEST_ASSERT_DOUBLE_WITHIN(0.011, 5, number("VDD"));
+	}
+}
+
+/* One that has failed often has one try in a request. */
+static void test_a_monitor_is_read_again_after_a_time_of_noise(void)
+{
+	plug("DS2438-EMULATED");
+	check_monitor(20, 5, 1);
+	trouble_none(&trouble);
+	trouble.kind = TROUBLE_NOISE;
+	trouble.probability = 0.001;
+	trouble.random = 1;
+	wire_net.trouble = &trouble;
+	for (unsigned i = 0; i < 1000; i++)
+		go(BUS_READ, "VAD", NULL);
+	wire_net.trouble = NULL;
+	for (unsigned i = 0; go(BUS_READ, "temperature", NULL)->err; i++)
+		TEST_ASSERT_LESS_THAN_UINT(4, i);
+	check_monitor(21, 4, 2);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -194,5 +245,7 @@ int main(void)
 	RUN_TEST(test_to_find_out_changes_no_byte_of_it);
 	RUN_TEST(test_a_monitor_that_has_shown_a_conversion_is_a_chip);
 	RUN_TEST(test_a_program_that_shows_a_conversion_is_a_chip_again);
+	RUN_TEST(test_a_monitor_that_missed_a_conversion_shows_no_other_voltage);
+	RUN_TEST(test_a_monitor_is_read_again_after_a_time_of_noise);
 	return UNITY_END();
 }
