@@ -54,7 +54,7 @@ static bool is_known_absent(const struct engine *e, const struct signal *s, int 
 	return err == -ENODEV && s->device != TABLE_NO_DEVICE && e->table.devices[s->device].absent;
 }
 
-/* How many failures the signal forgives: none where asking again would say no more. */
+/* How many failed reads the signal forgives: none where asking again would say no more. */
 static unsigned retries_of(const struct engine *e, const struct signal *s, int err)
 {
 	return failure_is_verdict(err) || is_known_absent(e, s, err) ? 0 : e->config->max_retries;
@@ -107,17 +107,23 @@ int64_t engine_read_failed(struct engine *e, struct lane *lane, struct signal *s
 	return back_off(lane, s, err, wait_ns);
 }
 
-/* Of a write. It says nothing of a value that is read. */
+/*
+ * Of a write. It says nothing of a value that is read. A verdict forbids no write: the next may go
+ * through.
+ */
 static int64_t fail_write(struct engine *e, struct lane *lane, struct signal *s, int err)
 {
 	uint8_t quality = failure_quality(err);
 	int64_t wait_ns;
 
+	unsigned max_retries = is_known_absent(e, s, err) ? 0 : e->config->max_retries;
+	bool failed = s->command.retry.doublings;
+
 	count_failure(e, lane, s, err);
 	s->command.err = err;
-	if (!retry_fail(&s->command.retry, e->config->max_retries, &wait_ns))
+	if (!retry_fail(&s->command.retry, max_retries, &wait_ns))
 		return 0;
-	if (s->command.retry.failures == e->config->max_retries + 1)
+	if (!failed)
 		report_failed(e, s, "cannot be written: ", err, quality);
 	if (!signal_reads(s))
 		s->sample.quality = quality;
@@ -277,7 +283,7 @@ static void write_succeeded(struct engine *e, struct lane *lane, const struct sl
 	struct signal *s = &e->table.signals[slot->row];
 
 	lane->counters.writes++;
-	if (s->command.retry.failures > e->config->max_retries && signal_reads(s))
+	if (s->command.retry.doublings && signal_reads(s))
 		log_info(e->log, "%s (%s): written again", s->item->name, s->item->path);
 	/* first, for a device that comes back forgets what was written, but for this */
 	request_succeeded(e, lane, s, s->command.differs ? OWS_Q_DIFFERS : OWS_Q_GOOD, false);

@@ -232,6 +232,24 @@ static void test_an_output_that_is_not_to_be_written_is_not_good_when_its_device
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_LAST_USABLE, scene_sample(&s, ROW).quality);
 }
 
+/* The first one that is refused has its back-off, as a read has. */
+static void test_a_write_to_a_lost_device_is_not_tried_again_at_once(void)
+{
+	begin(NOT_READ_BACK, ALONE);
+	scene_unplug(&s, D, true);
+	until(OWS_Q_NO_DEVICE);
+	s.writes = 0;
+	scene_set(&s, ROW, 7);
+	scene_run(&s, 900 * SCENE_MS);
+	TEST_ASSERT_EQUAL_UINT(1, s.writes);
+	scene_run(&s, 10 * SCENE_S);
+	TEST_ASSERT_EQUAL_UINT(4, s.writes);
+	scene_unplug(&s, D, false);
+	scene_put(&s, D "/PIO.BYTE", "0", 0);
+	until(OWS_Q_GOOD);
+	TEST_ASSERT_EQUAL_STRING("7", scene_at(&s, D "/PIO.BYTE"));
+}
+
 /* --- What it costs --------------------------------------------------------------------------- */
 
 static void test_a_device_that_is_read_in_each_period_is_not_looked_for(void)
@@ -380,6 +398,7 @@ int main(void)
 	RUN_TEST(test_a_lost_device_that_is_listed_in_alarm_is_read_at_once);
 	RUN_TEST(test_a_device_lost_in_alarm_is_bad_soon);
 	RUN_TEST(test_an_output_that_is_not_to_be_written_is_not_good_when_its_device_is_back);
+	RUN_TEST(test_a_write_to_a_lost_device_is_not_tried_again_at_once);
 	RUN_TEST(test_a_device_that_is_read_in_each_period_is_not_looked_for);
 	RUN_TEST(test_a_device_alone_is_looked_for_each_two_seconds);
 	RUN_TEST(test_many_devices_take_ten_looks_a_second_at_the_most);
