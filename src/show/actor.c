@@ -18,12 +18,16 @@ const char *actor_program(const struct ows_by *who, char text[ACTOR_TEXT])
 
 const char *actor_user(const struct ows_by *who, char text[ACTOR_TEXT])
 {
-	const struct passwd *user = who->serial ? getpwuid(who->uid) : NULL;
+	struct passwd user, *found = NULL;
+	char room[4096];
 
+	/* threads of owsd-web ask at the same time */
+	if (who->serial)
+		getpwuid_r(who->uid, &user, room, sizeof(room), &found);
 	if (!who->serial)
 		snprintf(text, ACTOR_TEXT, "-");
-	else if (user)
-		snprintf(text, ACTOR_TEXT, "%s", user->pw_name);
+	else if (found)
+		snprintf(text, ACTOR_TEXT, "%s", found->pw_name);
 	else
 		snprintf(text, ACTOR_TEXT, "%u", (unsigned)who->uid);
 	return text;
