@@ -23,7 +23,7 @@ tsan:
 	@$(MAKE) --no-print-directory B=build/tsan all
 	@fixed=; setarch -R true 2>/dev/null && fixed='setarch -R'; \
 	    TSAN_OPTIONS=halt_on_error=1:handle_sigbus=0:suppressions=$(CURDIR)/tests/tsan.supp \
-	    $$fixed sh tests/both $(MAKE) --no-print-directory B=build/tsan
+	    LIMIT=$${LIMIT:-900} $$fixed sh tests/both $(MAKE) --no-print-directory B=build/tsan
 tsan: export EXTRA_CFLAGS := $(TSAN_FLAGS)
 tsan: export CFLAGS := -O1 -g1
 
