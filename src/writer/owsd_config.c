@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +12,10 @@
 #include <unistd.h>
 
 #include "hal/base/time.h"
+#include "src/config/config.h"
+#include "src/config/load.h"
 #include "src/face/arguments.h"
+#include "src/host/target.h"
 #include "src/libows/ows.h"
 #include "src/service/heap.h"
 #include "src/service/listen.h"
@@ -215,6 +219,26 @@ static int owsd_config_run(const struct face_arguments *a, struct unix_signals *
 	return 0;
 }
 
+static void report_line(void *ctx, bool is_error, const char *message)
+{
+	(void)ctx, (void)is_error;
+	fprintf(stderr, "%s\n", message);
+}
+
+/* As owsd --check does, and without printing the configuration. */
+static int check_file(const char *file)
+{
+	struct config_report report = {.line = report_line};
+	struct config *config;
+	int err;
+
+	if (config_load(file, &report, &config))
+		return FACE_EXIT_USAGE;
+	err = target_check_config(config, &report);
+	config_free(config);
+	return err ? FACE_EXIT_USAGE : EXIT_SUCCESS;
+}
+
 int main(int argc, char **argv)
 {
 	static const struct face_option listens = {
@@ -235,6 +259,8 @@ int main(int argc, char **argv)
 	status = face_arguments_parse(PROGRAM, &listens, argc, argv, &a);
 	if (status >= 0)
 		return status;
+	if (a.check)
+		return check_file(a.file);
 	status = unix_signals_open(&signals);
 	if (status) {
 		face_complain(PROGRAM, "cannot take signals: %s", strerror(-status));

@@ -7,6 +7,7 @@ import os
 import resource
 import shutil
 import socket
+import subprocess
 import time
 
 import owsdtest
@@ -73,6 +74,20 @@ def test_an_invalid_text_is_not_written_and_its_problems_have_their_places(scene
         assert any(p.startswith(where) and words in p for p in answer.problems), answer.text
     assert daemon.config.read_text() == old and writer.beside() == [daemon.config.name]
     assert "reload" not in daemon.log()
+
+
+def test_check_reports_what_is_wrong_and_serves_nothing(scene):
+    def check(text):
+        file = scene.file("check.rio", text) if text else scene.path / "none.rio"
+        return subprocess.run([writing.PROGRAM, "--check", "-n", scene.name(), "-c", file],
+                              cwd=scene.path, text=True, capture_output=True, timeout=20)
+    done = check(rio("localhost:4304", ROOM))
+    assert (done.returncode, done.stderr) == (0, ""), done.stderr
+    for text, words in (("", "none.rio: error: cannot be read"),
+                        ("OwsDrv {\n  Period 0\n}\n", "check.rio:2:"),
+                        ('OwsDrv {\n  TargetName "nowhere:1:2:3"\n}\n', "nowhere")):
+        done = check(text)
+        assert done.returncode == 2 and words in done.stderr, (done.returncode, done.stderr)
 
 
 def test_files_that_a_text_names_are_looked_for_as_owsd_does(scene):
