@@ -53,11 +53,10 @@ const char *error_answer_text(int err, double number, char words[ERROR_WORDS])
 
 const char *error_answer_words(int err, double number, char words[ERROR_WORDS])
 {
-	const char *remedy = error_remedy(err);
-	char own[ERROR_WORDS];
-
-	snprintf(words, ERROR_WORDS, "%s%s%s", error_answer_text(err, number, own),
-	         *remedy ? ": " : "", remedy);
+	if (err != -EDOM)
+		return error_words(err, words);
+	snprintf(words, ERROR_WORDS, "%s: %.6g: look at the sensor and its supply", error_text(err),
+	         number);
 	return words;
 }
 

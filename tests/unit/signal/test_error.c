@@ -76,11 +76,11 @@ static void test_of_what_the_chip_cannot_measure_the_number_is_named(void)
 	TEST_ASSERT_EQUAL_STRING("a value out of the chip's range: -109.938",
 	                         error_answer_text(-EDOM, -109.9375, words));
 	TEST_ASSERT_EQUAL_STRING("a value out of the chip's range: 278.4: look at the sensor and "
-	                         "its supply; owsctl read shows the number",
+	                         "its supply",
 	                         error_answer_words(-EDOM, 278.4, words));
 	TEST_ASSERT_EQUAL_STRING(error_text(-EIO), error_answer_text(-EIO, 21.5, words));
 	TEST_ASSERT_NOT_NULL(
-		strstr(error_answer_words(-EDOM, -DBL_MAX, words), "shows the number"));
+		strstr(error_answer_words(-EDOM, -DBL_MAX, words), "e+308: look at the sensor"));
 }
 
 static void test_each_quality_that_is_not_good_has_a_cause_and_a_remedy(void)
