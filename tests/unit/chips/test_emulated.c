@@ -215,6 +215,18 @@ static void test_a_monitor_that_missed_a_conversion_shows_no_other_voltage(void)
 	}
 }
 
+/* A chip's busy flags are read-only; a program keeps them as they were written, or disturbed. */
+static void test_a_monitor_with_a_busy_flag_in_its_memory_is_measured(void)
+{
+	size_t size;
+
+	plug("DS2438-EMULATED");
+	check_monitor(20, 5, 1);
+	sim_slave_memory(slave, &size)[64] |= 0x10;
+	TEST_ASSERT_DOUBLE_WITHIN(0.04, 20, number("temperature"));
+	check_monitor(21, 4, 2);
+}
+
 /* One that has failed often has one try in a request. */
 static void test_a_monitor_is_read_again_after_a_time_of_noise(void)
 {
@@ -246,6 +258,7 @@ int main(void)
 	RUN_TEST(test_a_monitor_that_has_shown_a_conversion_is_a_chip);
 	RUN_TEST(test_a_program_that_shows_a_conversion_is_a_chip_again);
 	RUN_TEST(test_a_monitor_that_missed_a_conversion_shows_no_other_voltage);
+	RUN_TEST(test_a_monitor_with_a_busy_flag_in_its_memory_is_measured);
 	RUN_TEST(test_a_monitor_is_read_again_after_a_time_of_noise);
 	return UNITY_END();
 }
