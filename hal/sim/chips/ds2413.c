@@ -8,7 +8,10 @@ static void ds2413_power_on(struct sim_slave *slave)
 	sim_pins_start(slave, 0, 2);
 }
 
-/* A program that plays one, as OneWireHub: the status once; no confirmation of a write. */
+/*
+ * A program that plays one, as OneWireHub: the status once; no confirmation of a write. It sends
+ * the complement itself while the master writes it, and does not compare.
+ */
 static void send_once(struct sim_slave *slave)
 {
 	sim_pins_send(slave);
@@ -19,17 +22,21 @@ static void say_nothing(struct sim_slave *slave)
 	sim_end(slave);
 }
 
+static void send_complement(struct sim_slave *slave)
+{
+	sim_send_byte(slave, (uint8_t)~slave->taken[0]);
+}
+
 static void take(struct sim_slave *slave)
 {
-	if ((slave->taken[0] ^ slave->taken[1]) == 0xFF)
-		sim_pins_write(slave, slave->taken[0] & 3);
+	sim_pins_write(slave, slave->taken[0] & 3);
 	sim_end(slave);
 }
 
 static const struct sim_function functions[] = {{SIM_PINS_READ(0xF5)}, {SIM_PINS_WRITE(0x5A)}, {0}};
 static const struct sim_function emulated[] = {
 	{.code = 0xF5, .start = send_once, .next = say_nothing},
-	{.code = 0x5A, .takes = 2, .start = take},
+	{.code = 0x5A, .takes = 1, .start = send_complement, .next = take},
 	{0},
 };
 static const struct sim_input inputs[] = {{SIM_PIN("pin.A")}, {SIM_PIN("pin.B")}, {0}};

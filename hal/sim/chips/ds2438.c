@@ -175,6 +175,10 @@ static void play_read(struct sim_slave *slave)
 {
 	struct ds2438 *s = slave->state;
 
+	if (slave->taken[0] > 7) {
+		sim_end(slave);
+		return;
+	}
 	sim_put(s->scratchpad[0] + 1, 2,
 	        sim_within(sim_input_now(slave, TEMPERATURE) * 32, -128 * 32, 128 * 32 - 1) * 8);
 	sim_put(s->scratchpad[0] + 5, 2,
@@ -182,10 +186,18 @@ static void play_read(struct sim_slave *slave)
 	sim_send_crc8(slave, s->scratchpad[page_of(slave)], 8);
 }
 
+static void play_write(struct sim_slave *slave, uint8_t byte)
+{
+	if (slave->taken[0] > 7)
+		sim_end(slave);
+	else
+		ds2438_write_scratchpad(slave, byte);
+}
+
 static const struct sim_function played[] = {
 	{.code = CONVERT_T, .start = play_convert},
 	{.code = CONVERT_V, .start = play_convert},
-	{.code = 0x4E, .takes = 1, .byte = ds2438_write_scratchpad},
+	{.code = 0x4E, .takes = 1, .byte = play_write},
 	{.code = 0xBE, .takes = 1, .start = play_read},
 	{.code = COPY, .takes = 1, .start = sim_end},
 	{.code = 0xB8, .takes = 1, .start = sim_end},

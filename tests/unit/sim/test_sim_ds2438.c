@@ -132,6 +132,18 @@ static void test_a_ds2437_answers_the_same_commands_with_its_own_family_code(voi
 	TEST_ASSERT_EQUAL_HEX16(0x1910, out[1] | out[2] << 8);
 }
 
+static void test_a_program_that_plays_one_has_no_page_8(void)
+{
+	hand_clear(&hand);
+	slave = hand_plug(&hand, &sim_ds2438_emulated, 1);
+	hand_skip(&hand, 3, 0x4E, 0x03, 0x5A);
+	hand_skip(&hand, 3, 0x4E, 0x0B, 0xA5);
+	page(3);
+	TEST_ASSERT_EQUAL_HEX8(0x5A, out[0]);
+	hand_skip(&hand, 2, 0xBE, 0x0B);
+	TEST_ASSERT_EQUAL_HEX8(0xFF, hand_byte(&hand));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -142,5 +154,6 @@ int main(void)
 	RUN_TEST(test_pages_are_kept_when_they_were_copied);
 	RUN_TEST(test_the_elapsed_time_meter_counts_seconds_from_what_was_written);
 	RUN_TEST(test_a_ds2437_answers_the_same_commands_with_its_own_family_code);
+	RUN_TEST(test_a_program_that_plays_one_has_no_page_8);
 	return UNITY_END();
 }

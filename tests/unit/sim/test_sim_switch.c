@@ -187,6 +187,21 @@ static void test_a_ds2413_reads_and_writes_two_pins(void)
 	TEST_ASSERT_EQUAL_HEX8(0x1E, hand_byte(&hand));
 }
 
+static void test_a_program_that_plays_a_ds2413_sends_the_complement_itself(void)
+{
+	hand_clear(&hand);
+	slave = hand_plug(&hand, &sim_ds2413_emulated, 1);
+	hand_skip(&hand, 2, 0x5A, 0xFC);
+	TEST_ASSERT_EQUAL_HEX8(0x03, hand_byte(&hand));
+	TEST_ASSERT_EQUAL_HEX8(0xFF, hand_byte(&hand));
+	hand_skip(&hand, 1, 0xF5);
+	TEST_ASSERT_EQUAL_HEX8(0xF0, hand_byte(&hand));
+	TEST_ASSERT_EQUAL_HEX8(0xFF, hand_byte(&hand));
+	hand_skip(&hand, 2, 0x5A, 0xFF); /* a reset before the complement: nothing is taken */
+	hand_skip(&hand, 1, 0xF5);
+	TEST_ASSERT_EQUAL_HEX8(0xF0, hand_byte(&hand));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -198,5 +213,6 @@ int main(void)
 	RUN_TEST(test_a_ds2408_answers_the_conditional_search_by_its_condition);
 	RUN_TEST(test_resume_reaches_the_one_that_was_matched);
 	RUN_TEST(test_a_ds2413_reads_and_writes_two_pins);
+	RUN_TEST(test_a_program_that_plays_a_ds2413_sends_the_complement_itself);
 	return UNITY_END();
 }
