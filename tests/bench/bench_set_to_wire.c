@@ -23,6 +23,7 @@
 
 #define SETS 500
 #define WRITE 3
+#define PRESENT 6
 
 static int64_t arrived_ns;
 
@@ -49,7 +50,9 @@ static void *serve(void *ctx)
 				break;
 			word[1] = 0;
 			word[0] = 0;
-			word[2] = type == 1 || type == WRITE ? 0 : htonl((uint32_t)-1);
+			word[2] = type == 1 || type == WRITE || type == PRESENT
+			                  ? 0
+			                  : htonl((uint32_t)-1);
 			if (send(fd, word, sizeof(word), MSG_NOSIGNAL) != sizeof(word))
 				break;
 			if (type == WRITE)
