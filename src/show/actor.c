@@ -22,8 +22,8 @@ const char *actor_user(const struct ows_by *who, char text[ACTOR_TEXT])
 	char room[4096];
 
 	/* threads of owsd-web ask at the same time */
-	if (who->serial)
-		getpwuid_r(who->uid, &user, room, sizeof(room), &found);
+	if (who->serial && getpwuid_r(who->uid, &user, room, sizeof(room), &found))
+		found = NULL;
 	if (!who->serial)
 		snprintf(text, ACTOR_TEXT, "-");
 	else if (found)

@@ -118,7 +118,7 @@ def test_a_slow_answer_with_keep_alives_is_an_error_of_that_signal_only(scene):
         until(lambda: qualities(scene, daemon)[0] != 0xC0, 20, "bad")
         count = signals(scene, daemon)["hall"]["count"]
         until(lambda: signals(scene, daemon)["hall"]["count"] > count, 20, "the other is read")
-        assert qualities(scene, daemon) == (0x18, 0xC0)
+        assert qualities(scene, daemon) == (0x0C, 0xC0)
         assert counter(scene, daemon, "target_failures") == 0, "the target itself never failed"
         server.ways.clear()
         until(lambda: good(scene, daemon), 10, "good again")

@@ -243,8 +243,12 @@ class Day:
     def witnessed(self, before):
         """What changed while it was unknown was never shown again as it was before."""
         name = "room" if self.truth["room"] != before["room"] else "others"
-        shown = self.page.run("return window.seen.splice(0, window.seen.length - 1)"
-                              ".map((one) => one[arguments[0]])", name)
+        shown = self.page.run("""
+            const frame = () => new Promise(requestAnimationFrame);
+            // what is on the screen now is seen: the next round begins with it
+            return frame().then(frame).then(() =>
+                window.seen.splice(0, window.seen.length - 1).map((one) => one[arguments[0]]));
+        """, name)
         changed = [text for n, text in enumerate(shown) if n == 0 or shown[n - 1] != text]
         good = {n: float(text) for n, text in enumerate(changed)
                 if text not in ("unknown", "\u2014")}

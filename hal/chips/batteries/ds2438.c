@@ -322,7 +322,7 @@ static bool is_written(unsigned page, const uint8_t *in, const uint8_t *bytes, u
 static int write_page(struct txn *txn, unsigned page, const uint8_t *bytes, unsigned n,
                       uint8_t *step)
 {
-	uint8_t command[] = {COPY_SCRATCHPAD, (uint8_t)page}, in[8];
+	uint8_t command[] = {COPY_SCRATCHPAD, (uint8_t)page}, in[8] = {0};
 	int err;
 
 	if (txn_driven(txn))

@@ -112,7 +112,7 @@ static unsigned sequence(const struct i2c_transfer *transfer, uint8_t *bytes, un
 static int read_result(struct txn *txn, const struct i2c_transfer *transfer, unsigned at)
 {
 	const uint8_t command[] = {READ_SEQUENCER, (uint8_t)at, (uint8_t)((transfer->m + 2) << 1)};
-	uint8_t in[2 + I2C_AT_ONCE];
+	uint8_t in[2 + I2C_AT_ONCE] = {0};
 	int err = function(txn, NULL, command, sizeof(command), OPERATION_NS, in, transfer->m + 2);
 
 	if (err)

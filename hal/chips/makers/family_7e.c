@@ -159,7 +159,7 @@ static const struct property_how how[] = {
 #define CHANNELS(k, name, life, access, n, step, unit_, where, ...) \
 	OF(k, name, FLOAT, life, access, ELEMENTS(n, NUMBERS), __VA_ARGS__, \
 	   FIELD(MEMORY, .at = (where), .bytes = 2, .stride = (step), .unit = (unit_)))
-#define ANALOG(k, what, n, unit_, range, symbol, currents, voltages) \
+#define ANALOG(k, what, n, unit_, symbol, currents, voltages, ...) \
 	HEAD(k, MEMORY, 0x9e), CLEAR(k), \
 	currents(PAIRS(k, "alarm/" what "_hi", READ, n, MEMORY, .at = 0x2a), \
 		 PAIRS(k, "alarm/" what "_low", READ, n, MEMORY, .at = 0x2a, .shift = 1)) \
@@ -167,10 +167,10 @@ static const struct property_how how[] = {
 	voltages(PAIRS(k, "alarm/" what "_hi", READ, n, MEMORY, .at = 0x2a), \
 		 PAIRS(k, "alarm/" what "_low", READ, n, MEMORY, .at = 0x2a, .shift = 1)) \
 	DIRECTORY_OF(k, "counter"), SECONDS(k, 0x2c), \
-	currents(CHANNELS(k, what, VOLATILE, READ, n, 2, unit_, 0x30, range)) \
-	CHANNELS(k, "max_" what, VOLATILE, READ, n, 2, unit_, 0x50, range), \
+	currents(CHANNELS(k, what, VOLATILE, READ, n, 2, unit_, 0x30, __VA_ARGS__)) \
+	CHANNELS(k, "max_" what, VOLATILE, READ, n, 2, unit_, 0x50, __VA_ARGS__), \
 	OF(k, "memory", BINARY, VOLATILE, BOTH, .size = 160, FIELD(MEMORY), .how = WAY_MEMORY), \
-	CHANNELS(k, "min_" what, VOLATILE, READ, n, 2, unit_, 0x40, range), DIRECTORY_OF(k, "pages"), \
+	CHANNELS(k, "min_" what, VOLATILE, READ, n, 2, unit_, 0x40, __VA_ARGS__), DIRECTORY_OF(k, "pages"), \
 	OF(k, "pages/page", BINARY, VOLATILE, BOTH, ELEMENTS(5, NUMBERS), .size = 32, \
 	   FIELD(MEMORY), .how = WAY_MEMORY), \
 	RELAY(k, MEMORY, 0x9e), DIRECTORY_OF(k, "set_alarm"), \
@@ -185,9 +185,9 @@ static const struct property_how how[] = {
 /* What the words hold. */
 #define AMPERES MEASURES(0, .032, 7, "A")
 #define VOLTS MEASURES(0, 32, 4, "V")
-#define CURRENT(k, n) ANALOG(k, "current", n, 1 / 2048000.0, AMPERES, "A", HAS, NOT)
+#define CURRENT(k, n) ANALOG(k, "current", n, 1 / 2048000.0, "A", HAS, NOT, AMPERES)
 #define VOLTAGE(k, n) \
-	ANALOG(k, "volts", n, 1 / 2048.0, VOLTS, "V", NOT, HAS), \
+	ANALOG(k, "volts", n, 1 / 2048.0, "V", NOT, HAS, VOLTS), \
 	CHANNELS(k, "volts", VOLATILE, READ, n, 2, 1 / 2048.0, 0x30, VOLTS)
 
 /* EDS0090 */

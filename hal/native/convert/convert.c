@@ -201,8 +201,8 @@ static struct job *next_due(struct native *native, unsigned n, const struct job 
 	struct job *first = NULL;
 
 	for (struct job *job = NULL; (job = native_job(native, job));) {
-		if (job->state != JOB_DUE || job->txn.channel != n || job->txn.device->locked ||
-		    job == fed || is_measuring(native, job->txn.device))
+		if (job == fed || job->state != JOB_DUE || job->txn.channel != n ||
+		    job->txn.device->locked || is_measuring(native, job->txn.device))
 			continue;
 		if (!first || job->req->prio < first->req->prio ||
 		    (job->req->prio == first->req->prio &&
