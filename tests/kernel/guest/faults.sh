@@ -88,7 +88,7 @@ does "owsd lives" kill -0 $owsd
 same "no false value was ever good" "" "$(awk '
 	$4 != "good" { next }
 	$2 == "warm" && $3 !~ /^(2[0-9]|3[01])$/ { print }
-	$2 == "cold" && $3 != "-10.125" { print }' /tmp/log/watch)"
+	$2 == "cold" && $3 != "-10.1" { print }' /tmp/log/watch)"
 owsctl stats | sed 's/^/# /'
 kill $owsd
 wait $owsd
