@@ -381,8 +381,13 @@ def test_the_example_program_reads_the_same(scene):
     done = scene._run([example, "relays", "1", scene.path / "history"], 20)
     assert done.returncode == 0 and not done.stderr, done
     lines = [line.split("  ", 1)[1] for line in done.stdout.splitlines()]
-    assert lines[:23] == ["no good value, not known throughout"] * 23, done
-    assert lines[23:] == ["1 to 9, not known throughout", "1 by owsctl", "9 by owsctl"], done
+    points, commands = lines[:24], lines[24:]
+    good = [p for p in points if p != "no good value, not known throughout"]
+    # the values may stand at both sides of an edge of two spans
+    assert good in (["1 to 9, not known throughout"], ["1 to 1, not known throughout",
+                    "9 to 9, not known throughout"], ["1 to 1, not known throughout",
+                    "1 to 9, not known throughout"]), done
+    assert commands == ["1 by owsctl", "9 by owsctl"], done
     done = scene._run([example, "nothing", "1", scene.path / "history"], 20)
     assert done.returncode == 1 and done.stderr == "nothing: No such file or directory\n", done
     done = scene._run([example, "relays", "1", scene.path / "no-history"], 20)

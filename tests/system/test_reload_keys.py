@@ -338,7 +338,8 @@ def test_each_key_of_owsd_recorder_counts_from_a_reload_on(scene):
 
 
 CHECKED = {block: [name for name in options(block) if re.search("Files?$", name)] for block in ("Web", "Mqtt", "Influx")}
-BESIDE = {"Mqtt": {"Broker": "mqtts://localhost"}, "Influx": {"Url": "http://localhost/write"}, "Web": {}}
+BESIDE = {"Mqtt": {"Broker": "mqtts://localhost"}, "Influx": {"Url": "http://localhost/write"},
+          "Web": {"Files": owsdtest.SOURCE / "src/web/page"}}
 PAIR = {"CertFile": "KeyFile", "KeyFile": "CertFile"}
 
 
