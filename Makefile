@@ -232,19 +232,19 @@ endef
 
 # --- The rooms: each is a folder, of source and of unit tests; its main header says what it is, and
 # docs/design.md which others it may use
-SOURCES  := $(wildcard src/*/*.c src/*/*/*.c hal/*/*.c hal/*/*/*.c)
+SOURCES  := $(wildcard src/*/*/*.c src/*/*/*/*.c hal/*/*.c hal/*/*/*.c)
 # Of owsd-web: what calls libmicrohttpd; its main(), and what must be in no other program
-WEB_MAIN := src/web/owsd_web.c src/web/no_tls.c src/web/wire.c
-WEB_HTTP := $(WEB_MAIN) $(patsubst %,src/web/%.c,api command devices draft events guard http lists past save stored stream)
+WEB_MAIN := src/faces/web/owsd_web.c src/faces/web/no_tls.c src/faces/web/wire.c
+WEB_HTTP := $(WEB_MAIN) $(patsubst %,src/faces/web/%.c,api command devices draft events guard http lists past save stored stream)
 # Of owsd-mqtt: what calls libmosquitto, and its main()
-MQTT_ALL := $(patsubst %,src/mqtt/%.c,owsd_mqtt mqtt broker client advice)
+MQTT_ALL := $(patsubst %,src/faces/mqtt/%.c,owsd_mqtt mqtt broker client advice)
 # The consumers' library
-LIBOWS   := $(wildcard src/libows/*.c)
+LIBOWS   := $(wildcard src/memory/libows/*.c)
 # And the one that reads history
-LIBHISTORY := $(filter-out src/libhistory/none.c,$(wildcard src/libhistory/*.c))
+LIBHISTORY := $(filter-out src/history/library/none.c,$(wildcard src/history/library/*.c))
 # What calls SQLite; and what stands in its place
-SQLITE_ALL := $(LIBHISTORY) $(patsubst %,src/history/%.c,file keep rolling schema sql statements store \
-            tables wal_lock writer) $(wildcard src/recorder/*.c)
+SQLITE_ALL := $(LIBHISTORY) $(patsubst %,src/history/file/%.c,file keep rolling schema sql statements store \
+            tables wal_lock writer) $(wildcard src/history/recorder/*.c)
 # What makes of owsd the program owsd-sim
 SIM_TABLE := hal/sim/table.c
 # Programs to start from, and configurations
@@ -252,24 +252,24 @@ EXAMPLES := $(wildcard docs/examples/*.c docs/examples/*.cpp docs/examples/*.py 
             docs/examples/*.rio docs/examples/*.rs docs/examples/*.table)
 # Those that another program builds or loads, a folder for each
 HOSTED   := $(patsubst docs/examples/%/,%,$(wildcard docs/examples/*/))
-PYTHON   := $(wildcard src/libows/*.py)
-# What the browser gets of owsd-web, as names below src/web/page
-WEBPAGE  := $(patsubst src/web/page/%,%,$(foreach e,html css js svg png webmanifest,\
-            $(wildcard src/web/page/*.$(e) src/web/page/*/*.$(e))))
+PYTHON   := $(wildcard src/memory/libows/*.py)
+# What the browser gets of owsd-web, as names below src/faces/web/page
+WEBPAGE  := $(patsubst src/faces/web/page/%,%,$(foreach e,html css js svg png webmanifest,\
+            $(wildcard src/faces/web/page/*.$(e) src/faces/web/page/*/*.$(e))))
 MAN      := $(wildcard docs/*.[1-8])
 # Tests
-UNIT_SRC := $(filter-out $(if $(PROTOBUFC),,%/test_sparkplug.c) $(if $(MOSQUITTO),,%/test_advice.c) $(if $(SQLITE),,%_past.c $(wildcard $(patsubst %,tests/unit/%/*.c,history libhistory recorder))),$(wildcard tests/unit/*/test_*.c))
+UNIT_SRC := $(filter-out $(if $(PROTOBUFC),,%/test_sparkplug.c) $(if $(MOSQUITTO),,%/test_advice.c) $(if $(SQLITE),,%_past.c $(wildcard $(patsubst %,tests/unit/%/*.c,file library recorder))),$(wildcard tests/unit/*/test_*.c))
 UNIT_AID := $(filter-out %/published.c %/past.c $(if $(SQLITE),,%/power_file.c),$(wildcard tests/unit/aid/*.c))
 ENDURANCE := $(wildcard tests/endurance/*.c)
 BENCH    := $(filter-out $(if $(SQLITE),,%/bench_history.c %/bench_recorder.c),$(wildcard tests/bench/bench_*.c))
 BENCH_AID := $(filter-out tests/bench/bench_%,$(wildcard tests/bench/*.c)) $(SIM_TABLE) tests/unit/aid/plant.c tests/unit/aid/plant_net.c tests/unit/aid/giving.c
 # ---------------------------------------------------------------------------------------------
 
-CORE     := $(filter-out src/owsd/owsd.c src/owsctl/owsctl.c src/recorder/recorder.c src/influx/influx.c \
-            src/writer/owsd_config.c $(SIM_TABLE) $(if $(SQLITE),src/libhistory/none.c,$(SQLITE_ALL)) \
-            $(if $(CURL),,src/influx/post.c) $(if $(HTTPD),$(WEB_MAIN),$(WEB_HTTP)) \
-            $(if $(MOSQUITTO),src/mqtt/owsd_mqtt.c,$(MQTT_ALL)) \
-            $(if $(PROTOBUFC),,src/mqtt/sparkplug.c),$(SOURCES))
+CORE     := $(filter-out src/daemon/owsd/owsd.c src/tool/owsctl/owsctl.c src/history/recorder/recorder.c src/faces/influx/influx.c \
+            src/faces/writer/owsd_config.c $(SIM_TABLE) $(if $(SQLITE),src/history/library/none.c,$(SQLITE_ALL)) \
+            $(if $(CURL),,src/faces/influx/post.c) $(if $(HTTPD),$(WEB_MAIN),$(WEB_HTTP)) \
+            $(if $(MOSQUITTO),src/faces/mqtt/owsd_mqtt.c,$(MQTT_ALL)) \
+            $(if $(PROTOBUFC),,src/faces/mqtt/sparkplug.c),$(SOURCES))
 obj       = $(patsubst %.c,$(B)/%.o,$(1))
 UNIT     := $(patsubst %.c,$(B)/unit/%,$(notdir $(UNIT_SRC))) $(B)/unit/test_endurance
 BENCHES  := $(patsubst tests/bench/%.c,$(B)/bench/%,$(BENCH))
@@ -309,36 +309,36 @@ $(B)/core.a: $(call obj,$(CORE)) $(PROTO:%=%.o)
 	$(Q)$(AR) rcs $@ $^
 
 # What is made of the .proto file; which files know of it
-$(B)/proto/%.pb-c.c $(B)/proto/%.pb-c.h: src/mqtt/%.proto
+$(B)/proto/%.pb-c.c $(B)/proto/%.pb-c.h: src/faces/mqtt/%.proto
 	@mkdir -p $(@D)
 	$(call show,PROTO)
-	$(Q)$(PROTOC_C) -Isrc/mqtt --c_out=$(@D) $<
+	$(Q)$(PROTOC_C) -Isrc/faces/mqtt --c_out=$(@D) $<
 $(B)/proto/%.o: $(B)/proto/%.c $(B)/with/cc
 	$(call compile,-w)
-WITH_PROTO := $(call obj,$(patsubst %,src/%.c,config/mqtt mqtt/profiles mqtt/sparkplug))
+WITH_PROTO := $(call obj,$(patsubst %,src/%.c,config/read/mqtt faces/mqtt/profiles faces/mqtt/sparkplug))
 $(WITH_PROTO): PIC := $(PROTO_FLAGS)
 $(B)/tests/unit/config/test_config_mqtt.o: UNITY_FLAGS += $(PROTO_FLAGS)
 $(WITH_PROTO) $(B)/tests/unit/config/test_config_mqtt.o: $(B)/with/libraries
-$(B)/src/mqtt/sparkplug.o: $(PROTO:%=%.h)
+$(B)/src/faces/mqtt/sparkplug.o: $(PROTO:%=%.h)
 
 $(PROGRAMS): $(B)/core.a $(B)/with/ld
 	$(call link)
 $(WITH_SIM:%=$(B)/%): $(call obj,$(SIM_TABLE))
-$(B)/owsd $(B)/owsd-sim: $(B)/src/owsd/owsd.o
-$(B)/owsctl $(B)/owsctl-sim: $(B)/src/owsctl/owsctl.o
-$(B)/owsd-recorder: $(B)/src/recorder/recorder.o
-$(B)/owsd-config $(B)/owsd-config-sim: $(B)/src/writer/owsd_config.o
-$(B)/owsd-influx: $(B)/src/influx/influx.o
+$(B)/owsd $(B)/owsd-sim: $(B)/src/daemon/owsd/owsd.o
+$(B)/owsctl $(B)/owsctl-sim: $(B)/src/tool/owsctl/owsctl.o
+$(B)/owsd-recorder: $(B)/src/history/recorder/recorder.o
+$(B)/owsd-config $(B)/owsd-config-sim: $(B)/src/faces/writer/owsd_config.o
+$(B)/owsd-influx: $(B)/src/faces/influx/influx.o
 $(B)/owsd-influx: LIBS += -lcurl
-$(B)/owsd-mqtt: $(B)/src/mqtt/owsd_mqtt.o
+$(B)/owsd-mqtt: $(B)/src/faces/mqtt/owsd_mqtt.o
 $(B)/owsd-mqtt: LIBS += -lmosquitto $(if $(PROTOBUFC),-lprotobuf-c)
 $(B)/owsd-web: $(call obj,$(WEB_MAIN))
 $(B)/owsd-web: LIBS += -lmicrohttpd -Wl,--export-dynamic-symbol=_gnutls_global_init_skip
 
 # --- libows exports ows_* and nothing else, libows-history ows_history_* -----------------------
 # Of the daemon's sources they take what they need out of these; they go into the programs as they are
-LIBOWS_AID := $(call obj,$(wildcard src/shm/*.c src/signal/*.c))
-LIBHISTORY_AID := $(call obj,$(wildcard src/history/*.c))
+LIBOWS_AID := $(call obj,$(wildcard src/memory/shm/*.c src/ground/signal/*.c))
+LIBHISTORY_AID := $(call obj,$(wildcard src/history/file/*.c))
 $(call obj,$(LIBOWS) $(LIBHISTORY)) $(LIBOWS_AID) $(LIBHISTORY_AID): PIC := -fPIC -fno-semantic-interposition
 libows_EXPORTS := ows_*
 libows-history_EXPORTS := ows_history_*
@@ -380,7 +380,7 @@ $(LIBRARIES:%=$(B)/%.a): $(B)/%.a:
 # What Python loads: ows.py, and its libraries beside it. One that this machine's Python cannot load (of
 # a sanitizer, of another processor) is compiled again, for this machine
 HOSTCC   ?= cc
-$(B)/python/ows.py: src/libows/ows.py
+$(B)/python/ows.py: src/memory/libows/ows.py
 	@mkdir -p $(@D)
 	@ln -sf $(abspath $<) $@
 $(LIBRARIES:%=$(B)/python/%.so.$(SOMAJOR)): $(B)/python/%.so.$(SOMAJOR): $(B)/%.so.$(VERSION)
@@ -392,7 +392,7 @@ $(LIBRARIES:%=$(B)/python/%.so.$(SOMAJOR)): $(B)/python/%.so.$(SOMAJOR): $(B)/%.
 python_loads = python3 -c 'import ctypes; ctypes.CDLL("$(abspath $(1))")' 2>/dev/null
 for_python   = { rm $(1) && $(HOSTCC) -std=c17 -O1 $(CPP_COMMON) -shared -fPIC -ffunction-sections \
     -Wl,--gc-sections,-z,defs -Wl,--version-script,$(B)/libows/libows.map -o $(1) $(LIBOWS) \
-    $(wildcard src/shm/*.c src/signal/*.c) -lm -pthread; }
+    $(wildcard src/memory/shm/*.c src/ground/signal/*.c) -lm -pthread; }
 
 # PREFIX may differ from one call to the next, and two makes may do this at once
 libows_SAYS := Signals of owsd, the 1-Wire daemon, in shared memory
@@ -409,12 +409,12 @@ $(LIBRARIES:%=$(B)/%.pc): $(B)/%.pc: FORCE
 examples: $(SAMPLES)
 
 $(B)/examples/%: docs/examples/%.c $(B)/libows.a $(if $(SQLITE),$(B)/libows-history.a) $(B)/with/cc $(B)/with/ld
-	$(call program,-Isrc/libows -Isrc/libhistory)
+	$(call program,-Isrc/public)
 
 $(B)/examples/%: docs/examples/%.cpp $(B)/libows.a $(B)/with/cxx $(B)/with/ld
 	@mkdir -p $(@D)
 	$(call show,CXX)
-	$(Q)$(CXX) $(ALL_CXXFLAGS) -Isrc/libows $(ALL_LDFLAGS) -MMD -MP -o $@ $(filter %.cpp %.a,$^) $(LIBS)
+	$(Q)$(CXX) $(ALL_CXXFLAGS) -Isrc/public $(ALL_LDFLAGS) -MMD -MP -o $@ $(filter %.cpp %.a,$^) $(LIBS)
 
 # --- Unit tests: Unity, one program for each file ---------------------------------------------
 # In the source only where B is
@@ -438,7 +438,7 @@ $(foreach t,$(UNIT_SRC),$(eval $(B)/unit/$(basename $(notdir $(t))): $(call obj,
 MQTT_UNITS := $(patsubst tests/unit/mqtt/%.c,$(B)/unit/%,$(wildcard tests/unit/mqtt/*.c))
 $(MQTT_UNITS): LIBS += $(PROTOBUFC:1=-lprotobuf-c) $(MOSQUITTO:1=-lmosquitto)
 $(MQTT_UNITS): $(B)/tests/unit/aid/published.o
-# It has names of src/mqtt/past.c
+# It has names of src/faces/mqtt/past.c
 $(if $(SQLITE),$(filter-out $(MQTT_UNITS) %/test_endurance,$(UNIT)): $(B)/tests/unit/aid/past.o)
 $(filter-out %/test_endurance,$(UNIT)): $(B)/unit/unity.o $(call obj,$(UNIT_AID)) $(B)/core.a $(B)/with/ld
 	$(call link)
@@ -604,19 +604,18 @@ install: all
 	    $(D)$(DATADIR)/examples $(D)$(DATADIR)/boards
 	install -m 755 $(B)/owsd $(FACES:%=$(B)/%) $(patsubst %,$(B)/%,$(filter owsd%,$(WITH_SIM))) $(D)$(PREFIX)/sbin
 	@set -e; for f in $(WEBPAGE); do d=$(D)$(DATADIR)/web/$$(dirname $$f); install -d $$d; \
-	    install -m 644 src/web/page/$$f $$d; done
+	    install -m 644 src/faces/web/page/$$f $$d; done
 	@set -e; for f in $(WEBPAGE); do d=$(COCKPIT)/$$(dirname $$f); install -d $$d; \
-	    install -m 644 src/web/page/$$f $$d; done
+	    install -m 644 src/faces/web/page/$$f $$d; done
 	sed 's,^<script type="module" async,<script src="../base1/cockpit.js"></script>\n&,' \
-	    src/web/page/index.html >$(COCKPIT)/index.html
+	    src/faces/web/page/index.html >$(COCKPIT)/index.html
 	install -m 644 board/cockpit/manifest.json $(COCKPIT)
 	install -m 755 $(B)/owsctl $(B)/owsctl-sim $(D)$(PREFIX)/bin
 	@set -e; for l in $(LIBRARIES); do so=$$l.so.$(VERSION); \
 	    install -m 644 $(B)/$$so $(B)/$$l.a $(D)$(LIBDIR); \
 	    ln -sf $$so $(D)$(LIBDIR)/$$l.so.$(SOMAJOR); ln -sf $$so $(D)$(LIBDIR)/$$l.so; \
 	    install -m 644 $(B)/$$l.pc $(D)$(LIBDIR)/pkgconfig; done
-	install -m 644 src/libows/ows.h src/libhistory/ows_history.h $(D)$(PREFIX)/include
-	install -m 644 src/shm/layout.h $(D)$(PREFIX)/include/ows_layout.h
+	install -m 644 $(wildcard src/public/*.h) $(D)$(PREFIX)/include
 	install -m 644 $(EXAMPLES) $(D)$(DATADIR)/examples
 	@set -e; for h in $(HOSTED); do d=$(D)$(DATADIR)/examples/$$h; install -d $$d; \
 	    install -m 644 docs/examples/$$h/* $$d; done

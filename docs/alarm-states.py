@@ -11,7 +11,7 @@ import pathlib
 import re
 import sys
 
-TABLE = pathlib.Path(__file__).parent.parent / "src/engine/alarm/alarm_fsm.c"
+TABLE = pathlib.Path(__file__).parent.parent / "src/daemon/engine/alarm/alarm_fsm.c"
 WIDTH, HEIGHT, PITCH = 900, 1040, 92
 BOX_W, BOX_H = 196, 38
 LEFT, RIGHT, LEFT_RAIL, RIGHT_RAIL = 170, 510, 36, 858
@@ -257,7 +257,7 @@ def draw(rows, numbers):
                                               else "drawn, not in the table") for a, b in wrong))
     out = ['<svg xmlns="http://www.w3.org/2000/svg" '
            f'viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" height="{HEIGHT}">', "<!-- SPDX-License-Identifier: MIT -->",
-           "<!-- Made of src/engine/alarm/alarm_fsm.c by docs/alarm-states.py: make diagrams -->",
+           "<!-- Made of src/daemon/engine/alarm/alarm_fsm.c by docs/alarm-states.py: make diagrams -->",
            f"<style>{STYLE}</style>",
            '<defs><marker id="head" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="8" '
            'markerHeight="8" markerUnits="userSpaceOnUse" orient="auto">'

@@ -3,7 +3,7 @@
  * The units of time: every time and every span here is in nanoseconds.
  *
  * Room hal/base: what every room may need: units of time, threads, bells, a ring of messages, the
- * text of a file. Uses no other.
+ * text of a file.
  */
 #pragma once
 

@@ -9,7 +9,7 @@
  * Times are nanoseconds of env->now() (CLOCK_BOOTTIME in production, a virtual clock in tests).
  * Errors are negative errno. A bus is used by one thread at a time, except where said.
  *
- * Room hal/bus: the bus contract, its worker threads, the list of backends. Uses hal/base.
+ * Room hal/bus: the bus contract, its worker threads, the list of backends.
  */
 #pragma once
 

@@ -8,8 +8,7 @@
  * loggers and clocks, bridges, makers other than those of the standard chips), and name it in
  * families.h.
  *
- * Room hal/chips: the chip families: areas, properties, functions; values as texts. Uses hal/wire,
- * hal/owfs.
+ * Room hal/chips: the chip families: areas, properties, functions; values as texts.
  */
 #pragma once
 

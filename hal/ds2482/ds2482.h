@@ -3,8 +3,7 @@
  * The DS2482 driver: link masters over struct i2c_adapter. One master has all chips of an adapter
  * that the target names, one link for each channel of each.
  *
- * Room hal/ds2482: DS2482 and its kin as links. Uses hal/native, hal/wire, hal/gpio, hal/bus,
- * hal/base.
+ * Room hal/ds2482: DS2482 and its kin as links.
  */
 #pragma once
 

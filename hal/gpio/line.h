@@ -4,7 +4,7 @@
  * OS). Calls do not block, but for what the chip's driver takes (a chip behind I2C: milliseconds).
  * Errors are negative errno. One thread at a time for each chip and its lines.
  *
- * Room hal/gpio: GPIO lines, alone or beside a chip. Uses hal/bus, hal/base.
+ * Room hal/gpio: GPIO lines, alone or beside a chip.
  */
 #pragma once
 

@@ -38,8 +38,7 @@
  *
  * All of it runs on the bus's thread; but the counters, which any thread may read.
  *
- * Room hal/native: the native bus: requests, conversions, searches, listings. Uses hal/chips,
- * hal/wire, hal/owfs, hal/bus, hal/base.
+ * Room hal/native: the native bus: requests, conversions, searches, listings.
  */
 #pragma once
 

@@ -2,8 +2,7 @@
 /*
  * The kernel's masters over netlink, as a link master.
  *
- * Room hal/netlink: the masters of the kernel, by netlink. Uses hal/w1, hal/native, hal/chips,
- * hal/wire.
+ * Room hal/netlink: the masters of the kernel, by netlink.
  */
 #pragma once
 

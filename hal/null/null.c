@@ -3,7 +3,7 @@
  * The null bus: a whole backend of the simple tier, to learn from and to test with. Its devices are
  * a table; a read returns what was written last. Target: `null:`, nothing after the colon.
  *
- * Room hal/null: the backend to copy. Uses hal/bus.
+ * Room hal/null: the backend to copy.
  */
 #include <errno.h>
 #include <stdio.h>

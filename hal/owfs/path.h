@@ -9,7 +9,7 @@
  * is a ROM id in one of the six formats of OWFS or an alias; below a DS2409 coupler the device has
  * several components (/1F.x/main/28.y). The property may have directories (HIH4000/humidity).
  *
- * Room hal/owfs: the paths of OWFS, and the frames of its protocol. Uses no other.
+ * Room hal/owfs: the paths of OWFS, and the frames of its protocol.
  */
 #pragma once
 

@@ -6,7 +6,7 @@
  * to idle ones, the request is repeated once on a new connection; a WRITE only if none of it was
  * sent, because a write must not happen twice.
  *
- * Room hal/owserver: a genuine owserver as a target. Uses hal/chips, hal/owfs, hal/bus, hal/base.
+ * Room hal/owserver: a genuine owserver as a target.
  */
 #pragma once
 

@@ -6,8 +6,7 @@
  * now is ns on any clock that never goes back; the simulation starts with the first call. What
  * lies between two calls is jumped over.
  *
- * Room hal/sim: a simulated I2C adapter, DS2482 and wires, in owsd-sim alone. Uses hal/ds2482,
- * hal/native, hal/wire, hal/owfs, hal/bus, hal/base.
+ * Room hal/sim: a simulated I2C adapter, DS2482 and wires, in owsd-sim alone.
  */
 #pragma once
 

@@ -15,8 +15,7 @@
  *   uevent.c   the kernel tells that slaves and masters come and go
  *   name.c     28.551DDF030000 is 28-000003df1d55
  *
- * Room hal/w1: the masters of the kernel, by sysfs: areas that its drivers give. Uses hal/native,
- * hal/chips, hal/wire, hal/owfs, hal/bus, hal/base.
+ * Room hal/w1: the masters of the kernel, by sysfs: areas that its drivers give.
  */
 #pragma once
 

@@ -15,7 +15,7 @@
  *   -EOPNOTSUPP this link has no strong pull-up, no single slots, or no write after a read
  *   -ECANCELED  the host shuts down
  *
- * Room hal/wire: links, transactions, searches, devices. Uses hal/owfs, hal/bus.
+ * Room hal/wire: links, transactions, searches, devices.
  */
 #pragma once
 

@@ -10,7 +10,7 @@
 #include <stdint.h>
 #include <sys/types.h>
 
-#include "src/shm/place.h"
+#include "src/memory/shm/place.h"
 
 int64_t bench_now(void); /* ns, monotonic */
 /* Keep this thread on one CPU; false when the machine has no such CPU. */

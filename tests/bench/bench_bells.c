@@ -10,9 +10,9 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "src/host/bells.h"
-#include "src/libows/ows.h"
-#include "src/shm/futex.h"
+#include "src/daemon/host/bells.h"
+#include "src/memory/shm/futex.h"
+#include "src/public/ows.h"
 #include "tests/bench/aid.h"
 
 #define WAKES 2000

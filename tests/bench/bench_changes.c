@@ -15,9 +15,9 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "src/libows/ows.h"
-#include "src/shm/image.h"
-#include "src/shm/segment.h"
+#include "src/memory/shm/image.h"
+#include "src/memory/shm/segment.h"
+#include "src/public/ows.h"
 #include "tests/bench/aid.h"
 
 #define CHANGES 10

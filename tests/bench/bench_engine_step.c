@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/engine/counters.h"
-#include "src/engine/engine.h"
-#include "src/engine/table.h"
+#include "src/daemon/engine/counters.h"
+#include "src/daemon/engine/engine.h"
+#include "src/daemon/engine/table.h"
 #include "tests/bench/aid.h"
 
 #define REQUESTS 200000

@@ -14,9 +14,9 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "src/history/writer.h"
-#include "src/libhistory/ows_history.h"
-#include "src/signal/value.h"
+#include "src/ground/signal/value.h"
+#include "src/history/file/writer.h"
+#include "src/public/ows_history.h"
 #include "tests/bench/aid.h"
 #include "tests/bench/readings.h"
 

@@ -4,7 +4,7 @@
  * of the other CPU's cache, a thread woken, and a request and its answer of the owserver protocol's
  * size over loopback TCP with nothing in between, by 1, 16 and 64 connections and a new one each.
  */
-#include "src/shm/futex.h"
+#include "src/memory/shm/futex.h"
 #include "tests/bench/aid.h"
 
 #include <netinet/in.h>

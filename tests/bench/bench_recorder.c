@@ -22,8 +22,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "src/history/writer.h"
-#include "src/signal/value.h"
+#include "src/ground/signal/value.h"
+#include "src/history/file/writer.h"
 #include "tests/bench/aid.h"
 #include "tests/bench/readings.h"
 

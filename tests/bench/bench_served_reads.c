@@ -14,7 +14,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "src/libows/ows.h"
+#include "src/public/ows.h"
 #include "tests/bench/aid.h"
 
 #define DEVICES 100

@@ -10,9 +10,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "src/libows/ows.h"
-#include "src/shm/image.h"
-#include "src/shm/segment.h"
+#include "src/memory/shm/image.h"
+#include "src/memory/shm/segment.h"
+#include "src/public/ows.h"
 #include "tests/bench/aid.h"
 
 #define BATCH 1000

@@ -11,11 +11,11 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "src/config/config.h"
-#include "src/control/control.h"
-#include "src/libows/ows.h"
-#include "src/shm/image.h"
-#include "src/shm/segment.h"
+#include "src/config/read/config.h"
+#include "src/memory/control/control.h"
+#include "src/memory/shm/image.h"
+#include "src/memory/shm/segment.h"
+#include "src/public/ows.h"
 #include "tests/bench/aid.h"
 
 #define SECOND INT64_C(1000000000)

@@ -2,8 +2,8 @@
 /* What must be true of requests, counters, memory. The engine's inside is looked at here alone. */
 #include <string.h>
 
-#include "src/engine/counters.h"
-#include "src/engine/state.h"
+#include "src/daemon/engine/counters.h"
+#include "src/daemon/engine/state.h"
 #include "tests/endurance/invariants.h"
 #include "tests/endurance/memory.h"
 

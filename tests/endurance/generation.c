@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/config/load.h"
-#include "src/engine/counters.h"
-#include "src/engine/table.h"
+#include "src/config/read/load.h"
+#include "src/daemon/engine/counters.h"
+#include "src/daemon/engine/table.h"
 #include "tests/endurance/memory.h"
 #include "tests/endurance/program.h"
 #include "tests/endurance/station_private.h"

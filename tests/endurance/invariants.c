@@ -4,9 +4,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "src/engine/table.h"
-#include "src/libows/ows.h"
-#include "src/signal/value.h"
+#include "src/daemon/engine/table.h"
+#include "src/ground/signal/value.h"
+#include "src/public/ows.h"
 #include "tests/endurance/invariants.h"
 
 /* A device that fails is tried again after 60 s at most, and a target has 20 s for an answer. */

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "src/engine/command/controllers.h"
+#include "src/daemon/engine/command/controllers.h"
 #include "tests/endurance/program.h"
 #include "tests/endurance/world.h"
 #include "tests/unit/aid/giving.h"

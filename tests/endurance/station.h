@@ -7,10 +7,10 @@
  */
 #pragma once
 
-#include "src/config/config.h"
-#include "src/engine/engine.h"
-#include "src/engine/reload/adopt.h"
-#include "src/shm/controller.h"
+#include "src/config/read/config.h"
+#include "src/daemon/engine/engine.h"
+#include "src/daemon/engine/reload/adopt.h"
+#include "src/memory/shm/controller.h"
 #include "tests/endurance/fiber.h"
 #include "tests/endurance/part.h"
 

@@ -35,13 +35,13 @@ FUZZ_WRAP_netlink  := getpid
 FUZZ_WRAP_owsctl   := getpid clock_gettime time exit ows_now segment_wait nanosleep \
                       ctl_reader_gone terminal_catch_signals isatty ows_open ows_open_as open_in \
                       ows_close board_look replace_file replace_lock replace_unlock rio_read bus_create
-FUZZ_WORDS_owsctl  := src/owsctl/owsctl.c src/signal/attribute.c src/config/options.c src/owsctl/watch/condition.c
-FUZZ_WORDS_values  := src/signal/attribute.c src/signal/value.c hal/owfs/path.c src/config/listen.c
-FUZZ_WORDS_web     := src/web/head.c src/web/body.c src/web/origin.c src/web/command.c
-FUZZ_WORDS_sparkplug := tests/fuzz/heap_instance.c src/mqtt/sparkplug.c
-FUZZ_WORDS_writer  := src/writer/order.c
-FUZZ_WORDS_rio     := src/config/options.c src/config/targets.c src/signal/value.c hal/native/native.c
-FUZZ_WORDS_serve   := src/serve/node.c src/serve/directory.c src/signal/attribute.c hal/owfs/path.c
+FUZZ_WORDS_owsctl  := src/tool/owsctl/owsctl.c src/ground/signal/attribute.c src/config/read/options.c src/tool/owsctl/watch/condition.c
+FUZZ_WORDS_values  := src/ground/signal/attribute.c src/ground/signal/value.c hal/owfs/path.c src/config/read/listen.c
+FUZZ_WORDS_web     := src/faces/web/head.c src/faces/web/body.c src/faces/web/origin.c src/faces/web/command.c
+FUZZ_WORDS_sparkplug := tests/fuzz/heap_instance.c src/faces/mqtt/sparkplug.c
+FUZZ_WORDS_writer  := src/faces/writer/order.c
+FUZZ_WORDS_rio     := src/config/read/options.c src/config/read/targets.c src/ground/signal/value.c hal/native/native.c
+FUZZ_WORDS_serve   := src/daemon/serve/node.c src/daemon/serve/directory.c src/ground/signal/attribute.c hal/owfs/path.c
 
 .PHONY: fuzz replays
 

@@ -12,10 +12,10 @@
 #include <sys/stat.h>
 #include <sys/un.h>
 
-#include "src/control/control.c"
+#include "src/memory/control/control.c"
 
-#include "src/libows/give.h"
-#include "src/libows/join.h"
+#include "src/memory/libows/give.h"
+#include "src/memory/libows/join.h"
 #include "tests/fuzz/fuzz.h"
 
 #define STEPS 96

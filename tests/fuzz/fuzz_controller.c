@@ -8,7 +8,7 @@
 #include <errno.h>
 #include <string.h>
 
-#include "src/signal/value.h"
+#include "src/ground/signal/value.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/unit/aid/scene.h"
 

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/libows/handle.h"
+#include "src/memory/libows/handle.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/heap_instance.h"
 

@@ -5,18 +5,18 @@
  * bus opened; time is virtual, and who waits for ever is ended.
  */
 #include "hal/bus/bus.h"
-#include "src/board/board.h"
-#include "src/config/config.h"
-#include "src/config/load.h"
-#include "src/config/replace.h"
-#include "src/signal/value.h"
+#include "src/config/edit/replace.h"
+#include "src/config/read/config.h"
+#include "src/config/read/load.h"
+#include "src/ground/board/board.h"
+#include "src/ground/signal/value.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/heap_instance.h"
 #include "tests/fuzz/json_valid.h"
 
 int owsctl_main(int argc, char **argv);
 #define main owsctl_main
-#include "src/owsctl/owsctl.c"
+#include "src/tool/owsctl/owsctl.c"
 #undef main
 
 #include <errno.h>

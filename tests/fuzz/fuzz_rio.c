@@ -10,11 +10,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/config/edit.h"
-#include "src/config/load.h"
-#include "src/config/options.h"
-#include "src/config/print.h"
-#include "src/config/rio_write.h"
+#include "src/config/edit/edit.h"
+#include "src/config/edit/print.h"
+#include "src/config/edit/rio_write.h"
+#include "src/config/read/load.h"
+#include "src/config/read/options.h"
 #include "tests/fuzz/fuzz.h"
 
 #define WORDS 8

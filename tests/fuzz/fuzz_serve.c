@@ -4,13 +4,13 @@
  * The input is a list of what happens: bytes and requests of up to four clients, answers of the
  * engine, time.
  */
-#include "src/libows/ows.h"
+#include "src/public/ows.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/heap_instance.h"
 
 static int64_t virtual_now(void);
 #define ows_now virtual_now
-#include "src/serve/serve.c"
+#include "src/daemon/serve/serve.c"
 #undef ows_now
 
 #include <sys/socket.h>

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/mqtt/profiles.h"
-#include "src/signal/value.h"
+#include "src/faces/mqtt/profiles.h"
+#include "src/ground/signal/value.h"
 #include "tests/fuzz/heap_instance.h"
 
 #define GROUP "spBv1.0/plant"

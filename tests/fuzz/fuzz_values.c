@@ -11,11 +11,11 @@
 #include <string.h>
 
 #include "hal/owfs/path.h"
-#include "src/config/listen.h"
-#include "src/signal/attribute.h"
-#include "src/signal/scale.h"
-#include "src/signal/value.h"
-#include "src/text/printable.h"
+#include "src/config/read/listen.h"
+#include "src/ground/signal/attribute.h"
+#include "src/ground/signal/scale.h"
+#include "src/ground/signal/value.h"
+#include "src/ground/text/printable.h"
 #include "tests/fuzz/fuzz.h"
 
 size_t fuzz_memory(size_t n)

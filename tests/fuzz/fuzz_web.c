@@ -9,11 +9,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/show/json.h"
-#include "src/signal/utf8.h"
-#include "src/web/body.h"
-#include "src/web/head.h"
-#include "src/web/origin.h"
+#include "src/faces/show/json.h"
+#include "src/faces/web/body.h"
+#include "src/faces/web/head.h"
+#include "src/faces/web/origin.h"
+#include "src/ground/signal/utf8.h"
 #include "tests/fuzz/fuzz.h"
 
 size_t fuzz_memory(size_t n)

@@ -7,8 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "src/config/rio.h"
-#include "src/writer/order.h"
+#include "src/config/read/rio.h"
+#include "src/faces/writer/order.h"
 #include "tests/fuzz/fuzz.h"
 
 size_t fuzz_memory(size_t n)

@@ -11,8 +11,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "src/libows/join.h"
-#include "src/shm/place.h"
+#include "src/memory/libows/join.h"
+#include "src/memory/shm/place.h"
 
 struct heap_file heap_controller_file;
 enum { CONTROLLER_FD = 1002 };
@@ -84,12 +84,12 @@ static int heap_stat(struct stat *st)
 #define close(fd) ((void)(fd))
 #define mmap(at, size, prot, flags, fd, off) ((void *)heap_controller_file.base)
 #define munmap(at, size) ((void)(at))
-#include "src/libows/give.c"
+#include "src/memory/libows/give.c"
 #undef mmap
 #undef munmap
 #define place_open(path, place) ((void)(path), (place)->fd = -1, 0)
 #define place_close(place) ((void)(place))
-#include "src/libows/meet.c"
+#include "src/memory/libows/meet.c"
 
 int join_watch(struct join *join)
 {

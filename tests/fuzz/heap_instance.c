@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/shm/entries.h"
-#include "src/signal/value.h"
+#include "src/ground/signal/value.h"
+#include "src/memory/shm/entries.h"
 #include "tests/fuzz/heap_instance.h"
 
 const struct heap_signal heap_signals[HEAP_SIGNALS] = {

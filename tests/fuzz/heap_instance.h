@@ -6,8 +6,8 @@
  */
 #pragma once
 
-#include "src/shm/controller.h"
-#include "src/shm/image.h"
+#include "src/memory/shm/controller.h"
+#include "src/memory/shm/image.h"
 #include "tests/fuzz/fuzz.h"
 
 /* What ows_open() finds; base NULL: nothing. */

@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "src/shm/place.h"
+#include "src/memory/shm/place.h"
 
 struct heap_file heap_image_file;
 enum { IMAGE_FD = 1000 };
@@ -35,4 +35,4 @@ static int heap_stat(struct stat *st)
 #define mmap(at, size, prot, flags, fd, off) ((void *)heap_image_file.base)
 #define munmap(at, size) ((void)(at))
 #define lstat(path, st) ((void)(path), heap_stat(st))
-#include "src/libows/map.c"
+#include "src/memory/libows/map.c"

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "src/libows/ows.h"
+#include "src/public/ows.h"
 
 #define SECOND INT64_C(1000000000)
 #define STALE_AFTER (30 * SECOND) /* of the items in endurance.rio */

@@ -94,7 +94,7 @@ $(B)/gpiod-2/library.o: hal/gpio/library_v2.c $(B)/with/cc
 	@mkdir -p $(@D)
 	$(call show,CC)
 	$(Q)$(CC) -isystem $(GPIOD_2)/usr/include $(ALL_CFLAGS) -UOWSD_LIBGPIOD -DOWSD_LIBGPIOD=2 -MMD -MP -c -o $@ $<
-$(B)/gpiod-2/owsd: $(B)/src/owsd/owsd.o $(call obj,$(SIM_TABLE)) $(B)/gpiod-2/library.o $(B)/core.a $(B)/with/ld
+$(B)/gpiod-2/owsd: $(B)/src/daemon/owsd/owsd.o $(call obj,$(SIM_TABLE)) $(B)/gpiod-2/library.o $(B)/core.a $(B)/with/ld
 	$(call link,-L$(GPIOD_2)/$(GPIOD_LIB))
 $(B)/owsd-gpiod-1: $(B)/owsd-sim
 	@ln -f $< $@

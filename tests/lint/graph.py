@@ -34,9 +34,11 @@ def unit_of(path):
 
 
 def room_of(unit):
-    """The folder above it that is a room: the folders of a room are its parts, except these."""
+    """The folder above it that is a room: the folders of a room are its parts, except these. Those of
+    src stand in groups."""
     folder = os.path.dirname(unit)
-    return folder if folder in ROOMS_IN_ROOMS else "/".join(folder.split("/")[:2])
+    depth = 3 if folder.startswith("src/") else 2
+    return folder if folder in ROOMS_IN_ROOMS else "/".join(folder.split("/")[:depth])
 
 
 class Graph:

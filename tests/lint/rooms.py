@@ -18,14 +18,12 @@ TOPS = ["src", "hal"]
 # dispatcher finds in the list what stands above it; that is its purpose, so it is not counted.
 TABLES = r"bus_backends|\w+_bus|family_[0-9a-f]{2}|sim_families|sim_[a-z]+[0-9]\w*" \
     r"|sim_(hb|inferno)_\w+|sim_(lcd|iblss|example_slave)"
-# The words that owsd and its consumers have in common; it includes nothing
-PUBLIC = "src/libows/ows"
 # Headers whose functions stand in many files, by design: the consumers' headers, the verbs of
 # owsctl and the paths of owsd-web, each in the file of its name
-MANY = {"src/libows/ows.h", "src/libhistory/ows_history.h", "src/owsctl/verbs.h",
-        "src/web/paths.h"}
+MANY = {"src/public/ows.h", "src/public/ows_history.h", "src/tool/owsctl/verbs.h",
+        "src/faces/web/paths.h"}
 # Lists that are included where FAMILY or BACKEND is defined: no headers of their own
-PARTS = {"hal/chips/families.h", "hal/bus/schemes.h", "src/config/option_list.h", "src/signal/words_list.h"}
+PARTS = {"hal/chips/families.h", "hal/bus/schemes.h", "src/config/read/option_list.h", "src/ground/signal/words_list.h"}
 FLAGS = ["-std=c17", "-D_GNU_SOURCE", "-D_FILE_OFFSET_BITS=64", "-I.", "-Wall", "-Wextra"]
 ROOM = re.compile(r"^- `([\w/]+)`: .*?\sUses\s(.*?)\.\n(?=- |\n)", re.M | re.S)
 # What the engine and the values may have of the C library: nothing that waits, reads or writes
@@ -57,7 +55,7 @@ def between_rooms(found):
     for here, to in found.without(TABLES).items():
         for there, why in to.items():
             a, b = graph.room_of(here), graph.room_of(there)
-            if a != b and there != PUBLIC:
+            if a != b:
                 rooms.setdefault(a, {})[b] = here, there, why[-1]
     return rooms
 
@@ -90,16 +88,6 @@ def check_a_room_uses_only_the_rooms_that_the_design_names_and_those_stand_below
                 file = found.name(here)
                 yield file, tree.line_of(file, why.removeprefix("includes ")), \
                     f"{room} may not use {other}: {found.name(there)} ({why}); go another way, or say so in {DESIGN}"
-
-
-def check_the_main_header_of_a_room_says_what_the_room_is(tree):
-    for room, text in re.findall(r"^- `([\w/]+)`: (.*?)\n(?=- |\n)", section(tree) + "\n", re.M | re.S):
-        expected = " ".join(f"Room {room}: {text}".replace("`", "").split())
-        heads = [re.sub(r"\s+\*?\s*", " ", tree.text(f).split("*/")[1]) for f in tree.ending(".c", ".h")
-                 if graph.room_of(f) == room and tree.text(f).count("*/") > 1]
-        if sum(expected in head for head in heads) != 1:
-            yield DESIGN, tree.line_of(DESIGN, f"- `{room}`: "), \
-                f"no head comment of {room}, or several, have this sentence: {expected}"
 
 
 def check_what_is_private_to_a_room_or_a_part_of_it_is_included_there_alone(tree):
@@ -142,36 +130,9 @@ def included(tree, file, sign):
 
 def check_the_engine_and_the_values_do_no_input_and_output(tree):
     for file in tree.ending(".c", ".h"):
-        if graph.room_of(file) in ("src/engine", "src/signal"):
+        if graph.room_of(file) in ("src/daemon/engine", "src/ground/signal"):
             for name in set(included(tree, file, "<")) - PURE:
                 yield file, tree.line_of(file, f"<{name}>"), f"<{name}> waits, reads or writes; do that elsewhere"
             code = re.sub(r'/\*.*?\*/|"(?:\\.|[^"\\])*"', "", tree.text(file), flags=re.S)
             for call in STREAMS.findall(code):
                 yield file, tree.line_of(file, call), f"{call}...) is input or output; do that elsewhere"
-
-
-def check_the_alarm_machine_is_a_function_of_its_own_header_alone(tree):
-    for file, may in (("src/engine/alarm/alarm_fsm.c", ["src/engine/alarm/alarm_fsm.h"]), ("src/engine/alarm/alarm_fsm.h", [])):
-        for name in included(tree, file, '"') if file in tree.files else []:
-            if name not in may:
-                yield file, tree.line_of(file, f'"{name}"'), f"the alarm machine uses {name}; give it as an argument"
-
-
-def check_the_files_of_the_engine_keep_to_the_stack_that_its_header_shows(tree):
-    main = "src/engine/engine.h"
-    if main not in tree.files:
-        return
-    lines = re.findall(r"^ \*   (\w[\w ,]*?)  +(\S.*)$", tree.text(main).split("*/")[1], re.M)
-    layer = {name.strip(): height for height, (_, files) in enumerate(reversed(lines))
-             for name in re.sub(r"\([^)]*\)", "", files).split(",")}
-    made = {pathlib.Path(f).stem: f for f in tree.ending(".c") if graph.room_of(f) == "src/engine"}
-    for name in layer.keys() - made.keys():
-        yield main, tree.line_of(main, name), f"the stack names {name}, which is not there; take it out"
-    for name in made.keys() - layer.keys():
-        yield made[name], 1, f"the stack in {main} has no {name}; put it there"
-    for file in tree.ending(".c", ".h"):
-        here = pathlib.Path(file).stem
-        for header in included(tree, file, '"') if graph.room_of(file) == "src/engine" else []:
-            there = pathlib.Path(header).stem
-            if graph.room_of(header) == "src/engine" and here in layer and layer.get(there, -1) > layer[here]:
-                yield file, tree.line_of(file, f'"{header}"'), f"uses {there}, which stands above it in {main}"

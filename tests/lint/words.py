@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The words of qualities and errors: one table, src/signal/words_list.h, and its copies.
+"""The words of qualities and errors: one table, src/ground/signal/words_list.h, and its copies.
 
 The page's script and docs/troubleshooting.md have what they show of it between two marks. `make
 format` writes them anew.
@@ -8,10 +8,10 @@ format` writes them anew.
 import re
 import textwrap
 
-TABLE = "src/signal/words_list.h"
-SCRIPT = "src/web/page/words.js"
+TABLE = "src/ground/signal/words_list.h"
+SCRIPT = "src/faces/web/page/words.js"
 PAGE = "docs/troubleshooting.md"
-PUBLIC = "src/libows/ows.h"
+PUBLIC = "src/public/ows.h"
 STRINGS = r'"(?:[^"\\]|\\.)*"'
 
 
@@ -70,9 +70,9 @@ def page_of(table):
 def copies(texts):
     """file -> its text as it should be"""
     table = texts[TABLE]
-    wanted = {SCRIPT: ("// from src/signal/words_list.h\n", "// to here\n",
+    wanted = {SCRIPT: ("// from src/ground/signal/words_list.h\n", "// to here\n",
                        script_of(table, texts[PUBLIC])),
-              PAGE: ("<!-- from src/signal/words_list.h -->\n", "<!-- to here -->\n",
+              PAGE: ("<!-- from src/ground/signal/words_list.h -->\n", "<!-- to here -->\n",
                      "\n" + page_of(table) + "\n")}
     for file, (begin, end, inner) in wanted.items():
         before, rest = texts[file].split(begin)

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "src/shm/futex.h"
+#include "src/memory/shm/futex.h"
 #include "tests/model/search.h"
 
 uint64_t read_plain(const volatile void *at, size_t size)
@@ -172,7 +172,7 @@ void access_fence(int order, struct site *site)
 		weak_fence(&x.memory, thread_number(x.running), step.order);
 }
 
-/* In the place of src/shm/futex.c; time does not pass here. */
+/* In the place of src/memory/shm/futex.c; time does not pass here. */
 int segment_wait(const uint32_t *word, uint32_t seen, int64_t timeout_ns)
 {
 	struct step step = {.kind = WAIT, .order = __ATOMIC_RELAXED, .expected = seen};

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* The ring of changes: the code of src/shm/image.c and src/libows/changes.c. */
+/* The ring of changes: the code of src/memory/shm/image.c and src/memory/libows/changes.c. */
 #include <assert.h>
 #include <errno.h>
 #include <limits.h>
 #include <string.h>
 
-#include "src/libows/handle.h"
-#include "src/shm/futex.h"
-#include "src/shm/image.h"
-#include "src/shm/reader.h"
+#include "src/memory/libows/handle.h"
+#include "src/memory/shm/futex.h"
+#include "src/memory/shm/image.h"
+#include "src/memory/shm/reader.h"
 #include "tests/model/suites.h"
 
 #define RING 4

@@ -126,7 +126,7 @@ static void run_mutants(struct tally *tally)
 		if (!(site->scenarios & ((1u << scenario_count) - 1)) ||
 		    strncmp(file_of(site), "src/", 4) != 0)
 			continue;
-		headers = headers || strcmp(file_of(site), "src/shm/reader.h") == 0;
+		headers = headers || strcmp(file_of(site), "src/memory/shm/reader.h") == 0;
 		for (; explore_way(site, mutant.way); mutant.way++)
 			run_mutant(&mutant, tally);
 	}

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Controllers command, owsd takes: the code of src/libows/set.c and command.c, of
- * src/shm/controller.c, and the sleep of src/host/engine_thread.c and bells.c.
+ * Controllers command, owsd takes: the code of src/memory/libows/set.c and command.c, of
+ * src/memory/shm/controller.c, and the sleep of src/daemon/host/engine_thread.c and bells.c.
  */
-#include "src/host/engine_thread.c"
+#include "src/daemon/host/engine_thread.c"
 
 #include <math.h>
 #include <poll.h>
 
-#include "src/control/news.h"
-#include "src/control/private.h"
-#include "src/engine/state.h"
-#include "src/libows/handle.h"
+#include "src/daemon/engine/state.h"
+#include "src/memory/control/news.h"
+#include "src/memory/control/private.h"
+#include "src/memory/libows/handle.h"
 #include "tests/model/suites.h"
 
 #define NUMBER 1 /* records */
@@ -246,7 +246,7 @@ static void nobody(void)
 
 /* --- owsd ------------------------------------------------------------------------------------- */
 
-/* As a look of src/engine/command/intake.c: the mark, the slots, their contents. */
+/* As a look of src/daemon/engine/command/intake.c: the mark, the slots, their contents. */
 static bool is_marked(unsigned controller, uint32_t record)
 {
 	controller_marked(&controllers[controller]);
@@ -295,7 +295,7 @@ static void look_at_text(void)
 		explore_fail("text '%s', which nobody set", found.text);
 }
 
-/* The loop of engine_main() in src/host/engine_thread.c, as far as commands go. */
+/* The loop of engine_main() in src/daemon/host/engine_thread.c, as far as commands go. */
 static void run_engine(void (*look)(void))
 {
 	for (;;) {

@@ -1,14 +1,17 @@
 /* SPDX-License-Identifier: MIT */
-/* owsd publishes, consumers read: the code of src/shm/image.c, src/shm/reader.h, src/libows. */
+/*
+ * owsd publishes, consumers read: the code of src/memory/shm/image.c, src/memory/shm/reader.h,
+ * src/memory/libows.
+ */
 #include <errno.h>
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "src/libows/handle.h"
-#include "src/shm/entries.h"
-#include "src/shm/futex.h"
-#include "src/shm/reader.h"
+#include "src/memory/libows/handle.h"
+#include "src/memory/shm/entries.h"
+#include "src/memory/shm/futex.h"
+#include "src/memory/shm/reader.h"
 #include "tests/model/suites.h"
 
 #define SAMPLE_WORDS 12

@@ -30,8 +30,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "src/libows/ows.h"
-#include "src/shm/layout.h"
+#include "src/public/ows.h"
+#include "src/public/ows_layout.h"
 
 #define HOUR 3600
 #define HITS 4

@@ -8,8 +8,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "src/libhistory/ows_history.h"
-#include "src/signal/value.h"
+#include "src/ground/signal/value.h"
+#include "src/public/ows_history.h"
 
 static double seconds(int64_t ns)
 {

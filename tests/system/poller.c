@@ -7,7 +7,7 @@
 #include <poll.h>
 #include <stdio.h>
 
-#include "src/libows/ows.h"
+#include "src/public/ows.h"
 
 int main(int argc, char **argv)
 {

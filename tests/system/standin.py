@@ -216,7 +216,7 @@ def pkg_config(arguments):
     if sorted(arguments)[:2] != ["--cflags", "--libs"] or not libraries \
             or set(libraries) - {"libows", "libows-history"}:
         fail(f"not for libows: {arguments}")
-    print(f"-I{SOURCE}/src/libows -I{SOURCE}/src/libhistory -L{BUILD}",
+    print(f"-I{SOURCE}/src/public -L{BUILD}",
           *(f"-l{library[3:]}" for library in libraries))
 
 

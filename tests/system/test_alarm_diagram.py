@@ -12,7 +12,7 @@ from owsdtest import SOURCE
 
 SCRIPT = SOURCE / "docs/alarm-states.py"
 PICTURE = SOURCE / "docs/img/alarm-states.svg"
-TABLE = SOURCE / "src/engine/alarm/alarm_fsm.c"
+TABLE = SOURCE / "src/daemon/engine/alarm/alarm_fsm.c"
 
 
 def drawn(scene, change=None):

@@ -41,7 +41,7 @@ HARMLESS = ("cat chmod cp cut diff env false grep head install ls mkdir mv print
 BINUTILS = "ar as ld".split()
 WARN = ["-Wall", "-Wextra", "-Werror", "-Wno-unused-variable", "-Wno-unused-but-set-variable",
         "-Wno-unused-function", *os.environ.get("EXTRA_CFLAGS", "").split()]
-FACE = '"src/face/loop.h"'
+FACE = '"src/faces/kit/loop.h"'
 OF_THE_SYSTEM = re.compile(r"(?<![\w./:@$}-])/(boot|dev(?!/(?:null|shm))|etc|sys|usr|var)/")
 COMMAND = re.compile(r"(?:sudo +)?(%s)(?: |$)" % "|".join(re.escape(p) for p in standin.PROGRAMS))
 PAGES = sorted([SOURCE / n for n in ("README.md", "CONTRIBUTING.md", "SECURITY.md", "NEWS.md")
@@ -105,7 +105,7 @@ class Stage:
             (self.root / name).mkdir(parents=True, exist_ok=True)
         for source, place in (("board/debian/OWS.rio", "etc/owsd/OWS.rio"),
                               ("board/debian/OWS.rio", "usr/share/owsd/OWS.rio"),
-                              ("src/libows/ows.py", "usr/share/owsd/ows.py")):
+                              ("src/memory/libows/ows.py", "usr/share/owsd/ows.py")):
             shutil.copy(SOURCE / source, self.root / place)
         shutil.copytree(SOURCE / "board/systemd/examples",
                         self.root / "usr/share/doc/owsd/examples")
@@ -206,8 +206,8 @@ def compiled(stage, text, compiler, suffix, flags):
     if face:
         library = [owsdtest.BUILD / "core.a",
                    *re.findall(r"-l\w+", (owsdtest.BUILD / "with/ld").read_text())]
-    done = stage.run([compiler, *flags, *WARN, "-D_GNU_SOURCE", f"-I{SOURCE}/src/libows",
-                      f"-I{SOURCE}/src/libhistory", f"-I{SOURCE}", "-isystem", HERE / "docs", source,
+    done = stage.run([compiler, *flags, *WARN, "-D_GNU_SOURCE", f"-I{SOURCE}/src/public",
+                      f"-I{SOURCE}", "-isystem", HERE / "docs", source,
                       *library, "-o", output])
     assert done.returncode == 0, done.stderr
     return output if whole else None
@@ -465,7 +465,7 @@ PLANTED = [
     ("```perl\n1\n```", "no way to check perl"),
     ("[here](nowhere.md)", "leads nowhere"),
     ("# A heading\n\n[here](#no-heading)", "no such heading"),
-    ("as in `src/engine/nothing.c`", "nothing.c in the source"),
+    ("as in `src/daemon/engine/nothing.c`", "nothing.c in the source"),
     ("by `owsctl list --colour`", "owsctl list --colour: no option --colour"),
     ("by `owsctl show NAME`", "no verb show"),
     ("by `owsd --quiet`", "no option --quiet"),

@@ -22,7 +22,7 @@ for f in lib/libows.so lib/libows.so.1 lib/libows.a lib/pkgconfig/libows.pc incl
 done
 if [ -e "$OWSD_BUILD/owsd-web" ]; then
 	"$root/opt/owsd/sbin/owsd-web" -V | grep -q '^owsd-web '
-	[ ! -e "$OWSD_SOURCE/src/web/page/index.html" ] || [ -s "$root/opt/owsd/share/owsd/web/index.html" ]
+	[ ! -e "$OWSD_SOURCE/src/faces/web/page/index.html" ] || [ -s "$root/opt/owsd/share/owsd/web/index.html" ]
 fi
 
 # Every manual page has the day of the news, and no other is in the source
@@ -40,7 +40,7 @@ page=$root/opt/owsd/share/cockpit/owsd
 python3 -c 'import json, sys; json.load(open(sys.argv[1]))' "$page/manifest.json"
 diff -r -q "$root/opt/owsd/share/owsd/web" "$page" >differences || true
 [ "$(wc -l <differences)" = 2 ] && grep -q 'index.html differ$' differences && grep -q ': manifest.json$' differences
-[ "$(diff "$OWSD_SOURCE/src/web/page/index.html" "$page/index.html" | grep -v '^[0-9]')" = '> <script src="../base1/cockpit.js"></script>' ]
+[ "$(diff "$OWSD_SOURCE/src/faces/web/page/index.html" "$page/index.html" | grep -v '^[0-9]')" = '> <script src="../base1/cockpit.js"></script>' ]
 
 for face in "$OWSD_BUILD"/owsd-*; do
 	[ -x "$root/opt/owsd/sbin/${face##*/}" ] || { echo "missing: ${face##*/}"; exit 1; }

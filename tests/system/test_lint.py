@@ -16,9 +16,9 @@ DESIGN = """# Design
 
 ## Rooms
 
-- `src/a`: first things. Uses `src/b`.
-- `src/b`: second things. Uses nothing.
-- `src/engine`: the engine. Uses nothing.
+- `src/x/a`: first things. Uses `src/x/b`.
+- `src/x/b`: second things. Uses nothing.
+- `src/daemon/engine`: the engine. Uses nothing.
 
 ## More
 """
@@ -34,36 +34,35 @@ CLEAN = {
     "docs/design.md": DESIGN,
     "tests/suites": f"# {MIT}\n{SUITES}",
     "tests/system/test_good.py": f"# {MIT}\n",
-    "src/a/a.h": f"/* {MIT} */\n/* Room src/a: first things. Uses src/b. */\n#ifndef SRC_A_A_H\n"
-                 "#define SRC_A_A_H\n\nint a(void);\n\n#endif\n",
-    "src/a/a.c": f'{HEAD}#include "src/a/a.h"\n#include "src/b/b.h"\n\nint a(void)\n{{\n\treturn b();\n}}\n',
-    "src/b/b.h": f"/* {MIT} */\n/* Room src/b: second things. Uses nothing. */\n#ifndef SRC_B_B_H\n"
-                 "#define SRC_B_B_H\n\nint b(void);\n\n#endif\n",
-    "src/b/b.c": f'{HEAD}#include "src/b/b.h"\n\nint b(void)\n{{\n\treturn 1;\n}}\n',
-    "src/a/part/state.h": f"/* {MIT} */\n/* What this part has. */\n#ifndef SRC_A_PART_STATE_H\n"
-                          "#define SRC_A_PART_STATE_H\n\nstruct part {\n\tint x;\n};\n\n#endif\n",
-    "src/a/part/p.c": f'{HEAD}#include "src/a/part/state.h"\n',
+    "src/x/a/a.h": f"/* {MIT} */\n/* Room src/x/a: first things. Uses src/x/b. */\n#ifndef SRC_X_A_A_H\n"
+                 "#define SRC_X_A_A_H\n\nint a(void);\n\n#endif\n",
+    "src/x/a/a.c": f'{HEAD}#include "src/x/a/a.h"\n#include "src/x/b/b.h"\n\nint a(void)\n{{\n\treturn b();\n}}\n',
+    "src/x/b/b.h": f"/* {MIT} */\n/* Room src/x/b: second things. Uses nothing. */\n#ifndef SRC_X_B_B_H\n"
+                 "#define SRC_X_B_B_H\n\nint b(void);\n\n#endif\n",
+    "src/x/b/b.c": f'{HEAD}#include "src/x/b/b.h"\n\nint b(void)\n{{\n\treturn 1;\n}}\n',
+    "src/x/a/part/state.h": f"/* {MIT} */\n/* What this part has. */\n#ifndef SRC_X_A_PART_STATE_H\n"
+                          "#define SRC_X_A_PART_STATE_H\n\nstruct part {\n\tint x;\n};\n\n#endif\n",
+    "src/x/a/part/p.c": f'{HEAD}#include "src/x/a/part/state.h"\n',
     "docs/a.3": f'.\\" {MIT}\n.TH A 3 "" "a" "Library functions"\n.SH NAME\na \\- first things\n'
                 ".SH SYNOPSIS\n.B #include <a.h>\n.PP\n.B int a(void);\n",
-    "src/engine/e.c": f"/* {MIT} */\n/* Room src/engine: the engine. Uses nothing. */\n\n"
+    "src/daemon/engine/e.c": f"/* {MIT} */\n/* Room src/daemon/engine: the engine. Uses nothing. */\n\n"
                       "int e(void);\n\nint e(void)\n{\n\treturn 0;\n}\n",
 }
-ODD = f"# {MIT}\n{SUITES}[odd]\nrung = none\n".replace("= src\n", "= src/a src/engine\n")
+ODD = f"# {MIT}\n{SUITES}[odd]\nrung = none\n".replace("= src\n", "= src/x/a src/daemon/engine\n")
 # file, its text or what is added to it, and the finding, as a pattern
 LONG = "word " * 20
 FAULTS = [
-    ("src/a/late.c", f'{HEAD}#include "src/a/a.h"\nint late( void );\n', r"src/a/late.c:4: not laid out"),
-    ("src/a/wide.c", f"{HEAD}/* {LONG} */\n", r"src/a/wide.c:3: 10\d columns; wrap the comment"),
-    ("docs/page.md", f"{LONG}x\n", r"docs/page.md:1: 101 columns; wrap the line"),
+    ("src/x/a/late.c", f'{HEAD}#include "src/x/a/a.h"\nint late( void );\n', r"src/x/a/late.c:4: not laid out"),
+    ("src/x/a/wide.c", f"{HEAD}/* {LONG} */\n", r"src/x/a/wide.c:3: 10\d columns; wrap the comment"),
     ("docs/blank.py", f"# {MIT}\nx = 1 \n", r"docs/blank.py:2: a blank at the end"),
     ("docs/bare.py", "x = 1\n", r"docs/bare.py:1: no SPDX lines"),
     ("docs/secret.md", "LoadCredential=x:" + "/etc/owsd/x\n", r"docs/secret.md:1: a credential in a directory"),
-    ("src/a/twice.c", f"/* {MIT} */\n{HEAD}", r"src/a/twice.c:1: 2 SPDX lines"),
-    ("src/a/headless.c", f"/* {MIT} */\n\nint x;\n", r"src/a/headless.c:2: no comment after"),
-    ("src/a/guard.h", f"/* {MIT} */\n#ifndef SRC_A_A_H\n#define SRC_A_A_H\nint g(void);\n#endif\n",
-     r"src/a/guard.h:2: SRC_A_A_H is the guard of src/a/a.h too"),
-    ("src/a/unequal.h", f"/* {MIT} */\n#ifndef SRC_A_UNEQUAL_H\n#define SRC_A_EQUAL_H\nint u(void);\n#endif\n",
-     r"src/a/unequal.h:2: #ifndef SRC_A_UNEQUAL_H, but #define SRC_A_EQUAL_H"),
+    ("src/x/a/twice.c", f"/* {MIT} */\n{HEAD}", r"src/x/a/twice.c:1: 2 SPDX lines"),
+    ("src/x/a/long.c", HEAD + "\n" * 500, r"src/x/a/long.c:500: 502 lines; split the file"),
+    ("src/x/a/guard.h", f"/* {MIT} */\n#ifndef SRC_X_A_A_H\n#define SRC_X_A_A_H\nint g(void);\n#endif\n",
+     r"src/x/a/guard.h:2: SRC_X_A_A_H is the guard of src/x/a/a.h too"),
+    ("src/x/a/unequal.h", f"/* {MIT} */\n#ifndef SRC_X_A_UNEQUAL_H\n#define SRC_X_A_EQUAL_H\nint u(void);\n#endif\n",
+     r"src/x/a/unequal.h:2: #ifndef SRC_X_A_UNEQUAL_H, but #define SRC_X_A_EQUAL_H"),
     ("tests/unit/a/aid/nap.c", f"{HEAD}\nvoid nap(void)\n{{\n\tusleep(1); /* pace */\n\tusleep(1);\n}}\n",
      r"tests/unit/a/aid/nap.c:7: a bare sleep"),
     ("tests/nap.py", f"# {MIT}\ntime.sleep(1)  # pace\ntime.sleep(1)\n", r"tests/nap.py:3: a bare sleep"),
@@ -73,32 +72,32 @@ FAULTS = [
     ("tests/unit/b/x.c", HEAD, r"tests/unit/b/x.c:1: make unit would not find it"),
     ("docs/syntax.py", f"# {MIT}\nx = = 1\n", r"docs/syntax.py:2: .*python3 cannot read it"),
     ("docs/two.py", f"# {MIT}\ndef f(): pass\ndef f(): pass\n", r"docs/two.py:3: f stands here twice"),
-    ("src/b/c.h", f"/* {MIT} */\n#ifndef SRC_B_C_H\n#define SRC_B_C_H\nenum c {{\n\tONE, /* THREE */\n\tTWO = 2,\n}};\n"
+    ("src/x/b/c.h", f"/* {MIT} */\n#ifndef SRC_X_B_C_H\n#define SRC_X_B_C_H\nenum c {{\n\tONE, /* THREE */\n\tTWO = 2,\n}};\n"
                   "int c(void);\n#endif\n", None),
     ("docs/c.3", f'.\\" {MIT}\n.TH C 3 "" "c" "Library functions"\n.SH NAME\nc \\- more\n.SH SYNOPSIS\n'
                  ".B #include <c.h>\n.SH CODES\nc() returns ONE.\n", r"docs/c.3:1: c.h has TWO: say what it is"),
     ("docs/bad.json", "{\n1}\n", r"docs/bad.json:2: .*make it JSON"),
     ("docs/bad.svg", "<svg>\n<g>\n</svg>\n", r"docs/bad.svg:3: .*make it XML"),
     ("docs/bad.sh", f"#!/bin/sh\n# {MIT}\nif true; then\n", r"docs/bad.sh:\d+: .*sh cannot read it"),
-    ("src/b/up.c", f'{HEAD}#include "src/a/a.h"\n', r"src/b/up.c:3: src/b may not use src/a"),
-    ("src/a/nosy.c", f'{HEAD}#include "src/a/part/state.h"\n',
-     r"src/a/nosy.c:3: this header is private to src/a/part"),
-    ("src/a/home.h", f"/* {MIT} */\n#ifndef SRC_A_HOME_H\n#define SRC_A_HOME_H\nint a(void);\n#endif\n",
-     r"src/a/home.h:4: a\(\) stands in src/a/a.c"),
-    ("src/a/alone.h", f"/* {MIT} */\n#ifndef SRC_A_ALONE_H\n#define SRC_A_ALONE_H\nuint8_t y(void);\n#endif\n",
-     r"src/a/alone.h:4: .*include what the header uses"),
-    ("src/a/only.h", f'/* {MIT} */\n#ifndef SRC_A_ONLY_H\n#define SRC_A_ONLY_H\n#include "src/a/a.h"\n#endif\n',
-     r"src/a/only.h:1: only includes other headers"),
-    ("src/a/loose.c", f'{HEAD}#include "a.h"\n', r"src/a/loose.c:3: a.h is no path from the top"),
-    ("src/mqtt/bare.c", f"{HEAD}\nint bare(void)\n{{\n\treturn 0;\n}}\n",
-     r"src/mqtt/bare.c:1: no unit test names a function of it, nor of 100 % of the lines of src/mqtt"),
-    ("src/c/new.c", HEAD, r"src/c/new.c:1: docs/design.md has no room src/c"),
-    ("src/engine/talk.c", f'{HEAD}#include <sys/socket.h>\n', r"src/engine/talk.c:3: <sys/socket.h> waits"),
-    ("src/engine/part/talk.c", f'{HEAD}#include <sys/socket.h>\n', r"src/engine/part/talk.c:3: <sys/socket.h> waits"),
-    ("src/engine/say.c", f'{HEAD}\nint s(void)\n{{\n\treturn printf("x");\n}}\n', r"src/engine/say.c:6: printf\(\.\.\.\) is input or output"),
+    ("src/x/b/up.c", f'{HEAD}#include "src/x/a/a.h"\n', r"src/x/b/up.c:3: src/x/b may not use src/x/a"),
+    ("src/x/a/nosy.c", f'{HEAD}#include "src/x/a/part/state.h"\n',
+     r"src/x/a/nosy.c:3: this header is private to src/x/a/part"),
+    ("src/x/a/home.h", f"/* {MIT} */\n#ifndef SRC_X_A_HOME_H\n#define SRC_X_A_HOME_H\nint a(void);\n#endif\n",
+     r"src/x/a/home.h:4: a\(\) stands in src/x/a/a.c"),
+    ("src/x/a/alone.h", f"/* {MIT} */\n#ifndef SRC_X_A_ALONE_H\n#define SRC_X_A_ALONE_H\nuint8_t y(void);\n#endif\n",
+     r"src/x/a/alone.h:4: .*include what the header uses"),
+    ("src/x/a/only.h", f'/* {MIT} */\n#ifndef SRC_X_A_ONLY_H\n#define SRC_X_A_ONLY_H\n#include "src/x/a/a.h"\n#endif\n',
+     r"src/x/a/only.h:1: only includes other headers"),
+    ("src/x/a/loose.c", f'{HEAD}#include "a.h"\n', r"src/x/a/loose.c:3: a.h is no path from the top"),
+    ("src/faces/mqtt/bare.c", f"{HEAD}\nint bare(void)\n{{\n\treturn 0;\n}}\n",
+     r"src/faces/mqtt/bare.c:1: no unit test names a function of it, nor of 100 % of the lines of src/faces/mqtt"),
+    ("src/x/c/new.c", HEAD, r"src/x/c/new.c:1: docs/design.md has no room src/x/c"),
+    ("src/daemon/engine/talk.c", f'{HEAD}#include <sys/socket.h>\n', r"src/daemon/engine/talk.c:3: <sys/socket.h> waits"),
+    ("src/daemon/engine/part/talk.c", f'{HEAD}#include <sys/socket.h>\n', r"src/daemon/engine/part/talk.c:3: <sys/socket.h> waits"),
+    ("src/daemon/engine/say.c", f'{HEAD}\nint s(void)\n{{\n\treturn printf("x");\n}}\n', r"src/daemon/engine/say.c:6: printf\(\.\.\.\) is input or output"),
     ("tests/system/test_lost.py", f"# {MIT}\n", r"tests/system/test_lost.py:1: no suite runs it"),
     ("tests/suites", ODD, r"tests/suites:9: odd stands on no rung"),
-    ("tests/suites", ODD, r"tests/suites:1: a change of src/b asks for no suite of system tests"),
+    ("tests/suites", ODD, r"tests/suites:1: a change of src/x/b asks for no suite of system tests"),
     ("tests/suites", f"# {MIT}\n{SUITES}  gone\n", r"tests/suites:2: some names the test gone"),
 ]
 
@@ -146,27 +145,27 @@ def test_each_fault_is_found_where_it_is(scene):
 
 def test_a_circle_is_told_with_what_makes_it(scene):
     tree = Made(scene)
-    tree.write("src/b/b.c", CLEAN["src/b/b.c"].replace('"\n\n', '"\n#include "src/a/a.h"\n\n').replace("1;", "a();"))
+    tree.write("src/x/b/b.c", CLEAN["src/x/b/b.c"].replace('"\n\n', '"\n#include "src/x/a/a.h"\n\n').replace("1;", "a();"))
     said, status = tree.lint()
-    assert "src/a/a.c:1: a circle: src/a/a.c -> src/b/b.c (b) -> src/a/a.c (a)" in said and status == 1, said
+    assert "src/x/a/a.c:1: a circle: src/x/a/a.c -> src/x/b/b.c (b) -> src/x/a/a.c (a)" in said and status == 1, said
 
 
 def test_data_and_headers_make_circles_too(scene):
     tree = Made(scene)
-    tree.write("src/b/one.c", f"{HEAD}int shared = 1;\nextern int other;\nint one(void)\n{{\n\treturn other;\n}}\n")
-    tree.write("src/b/two.c", f"{HEAD}int other = 1;\nextern int shared;\nint two(void)\n{{\n\treturn shared;\n}}\n")
+    tree.write("src/x/b/one.c", f"{HEAD}int shared = 1;\nextern int other;\nint one(void)\n{{\n\treturn other;\n}}\n")
+    tree.write("src/x/b/two.c", f"{HEAD}int other = 1;\nextern int shared;\nint two(void)\n{{\n\treturn shared;\n}}\n")
     said, _ = tree.lint()
-    assert "src/b/one.c -> src/b/two.c (other) -> src/b/one.c (shared)" in said, said
+    assert "src/x/b/one.c -> src/x/b/two.c (other) -> src/x/b/one.c (shared)" in said, said
 
 
 def test_mend_mends_layout_and_blanks(scene):
     tree = Made(scene)
-    tree.write("src/b/b.c", CLEAN["src/b/b.c"].replace("\treturn 1;", "  return   1; ") + "\n\n")
+    tree.write("src/x/b/b.c", CLEAN["src/x/b/b.c"].replace("\treturn 1;", "  return   1; ") + "\n\n")
     assert tree.lint()[1] == 1
     if "skip c is laid out" in tree.lint()[0]:
         owsdtest.skip("no clang-format of the right version")
     assert tree.lint("--mend")[1] == 0
-    assert (tree.path / "src/b/b.c").read_text() == CLEAN["src/b/b.c"]
+    assert (tree.path / "src/x/b/b.c").read_text() == CLEAN["src/x/b/b.c"]
     assert tree.lint()[1] == 0
 
 

@@ -56,7 +56,7 @@ says() {
 	env CC='ccache gcc' CXX='ccache g++' AR=ar OBJCOPY=objcopy \
 		make -n -C "$OWSD_SOURCE" --no-print-directory B="$PWD/cross" V=1 LIBI2C=0 LIBGPIOD=0 "$@"
 }
-says CROSS_COMPILE=other- "$PWD/cross/src/shm/futex.o" "$PWD/cross/libows.a" all >log 2>&1
+says CROSS_COMPILE=other- "$PWD/cross/src/memory/shm/futex.o" "$PWD/cross/libows.a" all >log 2>&1
 for tool in gcc ar objcopy; do
 	grep -q "^other-$tool " log || { cat log; echo "other-$tool is not called"; exit 1; }
 done
@@ -64,10 +64,10 @@ if grep -E '^(ccache |gcc |ar |objcopy )|other-(other|ccache)' log; then
 	echo "the above is not of CROSS_COMPILE"
 	exit 1
 fi
-says "$PWD/cross/src/shm/futex.o" | grep -q '^ccache gcc '
+says "$PWD/cross/src/memory/shm/futex.o" | grep -q '^ccache gcc '
 
 # Without a compiler it is said what installs one, once and before anything else
-for goal in all "$PWD/none/src/shm/futex.o"; do
+for goal in all "$PWD/none/src/memory/shm/futex.o"; do
 	if make -C "$OWSD_SOURCE" --no-print-directory B="$PWD/none" CC=no-such-cc LIBI2C=0 LIBGPIOD=0 "$goal" >log 2>&1; then
 		echo "make $goal needs no compiler"
 		exit 1
@@ -79,8 +79,8 @@ done
 # musl-gcc finds the headers of the kernel
 if command -v musl-gcc >/dev/null; then
 	make -s -C "$OWSD_SOURCE" --no-print-directory B="$PWD/musl" CC=musl-gcc LIBI2C=0 LIBGPIOD=0 \
-		"$PWD/musl/src/shm/futex.o"
-	[ -s musl/src/shm/futex.o ]
+		"$PWD/musl/src/memory/shm/futex.o"
+	[ -s musl/src/memory/shm/futex.o ]
 fi
 
 # After minutes of lines the end names what failed, and only then how much

@@ -62,7 +62,7 @@ class Tree:
         for name in MAKEFILES:
             self._copy(SOURCE / name)
             named += (SOURCE / name).read_text()
-        # as endurance_truth, fuzz/heap_map.o, src/shm/image.c
+        # as endurance_truth, fuzz/heap_map.o, src/memory/shm/image.c
         words = set(re.findall(r"\w+", named))
         for top in ("src", "hal", "tests", "docs/examples"):
             for folder, _, names in os.walk(SOURCE / top):
@@ -158,7 +158,7 @@ def test_what_a_change_touches_is_made_again_and_nothing_else(scene):
     plain = tree.made_clean()
     assert len(plain) > 100, sorted(plain)
     for suffix in ("/owsd", "/libows.a", "/unit/unity.o", "/unit/test_endurance", "/kernel/simchip", "/model/model",
-                   "/bench/bench_shm_get", "/system/bus", "/gpiod-2/library.o", "/src/shm/image.o"):
+                   "/bench/bench_shm_get", "/system/bus", "/gpiod-2/library.o", "/src/memory/shm/image.o"):
         assert any(name.endswith(suffix) for name in plain), f"no {suffix}"
     assert any(n.startswith("b/system/") and n.endswith(".so") for n in plain)
     assert not tree.make(), "nothing has changed"
@@ -197,8 +197,8 @@ def test_make_without_a_goal_makes_the_programs(scene):
 
 def test_a_warning_that_was_let_through_is_an_error_with_werror(scene):
     tree = Tree(scene)
-    (tree.path / "src/shm/warned.c").write_text("int warned(int n);\nint warned(int n) { int x; return 0; }\n")
-    command = ["make", "-s", "B=real", "CC=gcc", "LIBI2C=0", "LIBGPIOD=0", "real/src/shm/warned.o"]
+    (tree.path / "src/memory/shm/warned.c").write_text("int warned(int n);\nint warned(int n) { int x; return 0; }\n")
+    command = ["make", "-s", "B=real", "CC=gcc", "LIBI2C=0", "LIBGPIOD=0", "real/src/memory/shm/warned.o"]
     for werror, status in (("0", 0), ("1", 2), ("0", 0)):
         done = subprocess.run([*command, f"WERROR={werror}"], cwd=tree.path, capture_output=True, text=True,
                               timeout=owsdtest.PATIENCE, env={"PATH": os.environ["PATH"]})

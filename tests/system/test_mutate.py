@@ -29,10 +29,10 @@ int add(int a, int b)
 	return a - 1;
 }
 """
-MAKEFILE = """build/unit/%: tests/unit/face/%.c build/src/face/a.o
+MAKEFILE = """build/unit/%: tests/unit/kit/%.c build/src/faces/kit/a.o
 	@mkdir -p $(@D)
 	@cc -o $@ $^
-build/src/face/a.o: src/face/a.c
+build/src/faces/kit/a.o: src/faces/kit/a.c
 	@mkdir -p $(@D)
 	@cc -Werror -Wall -c -o $@ $<
 """
@@ -56,7 +56,7 @@ int main(void)
 
 def tree_with(scene, limit):
     tree = scene.path / f"tree{limit}"
-    for name, text in (("Makefile", MAKEFILE), ("src/face/a.c", ROOM), ("tests/unit/face/test_face.c", TEST % limit),
+    for name, text in (("Makefile", MAKEFILE), ("src/faces/kit/a.c", ROOM), ("tests/unit/kit/test_face.c", TEST % limit),
                        (".gitignore", "build\n")):
         (tree / name).parent.mkdir(parents=True, exist_ok=True)
         (tree / name).write_text(text)
@@ -70,7 +70,7 @@ def mutate(tree, *words):
                           timeout=owsdtest.PATIENCE)
     assert not done.stderr, done
     assert not (tree / "build/mutate").exists(), "the copy is left"
-    assert (tree / "src/face/a.c").read_text() == ROOM
+    assert (tree / "src/faces/kit/a.c").read_text() == ROOM
     return done.stdout, done.returncode
 
 
@@ -98,21 +98,21 @@ def test_faults_are_planted_in_functions_alone_and_each_is_one(scene):
 
 
 def test_a_fault_that_a_unit_test_finds_is_caught(scene):
-    said, status = mutate(tree_with(scene, 3), "face")
-    assert "survives" not in said and "ok   face: 1 of 1 faults caught, 100 %" in said, said
+    said, status = mutate(tree_with(scene, 3), "kit")
+    assert "survives" not in said and "ok   kit: 1 of 1 faults caught, 100 %" in said, said
     assert said.endswith("1 passed, 0 failed\n") and status == 0, said
 
 
 def test_a_fault_that_none_finds_survives_and_is_shown(scene):
-    said, status = mutate(tree_with(scene, 4), "face", "--seed", "2")
-    assert "--- src/face/a.c:4\n+++ survives\n@@ -1 +1 @@\n-\treturn x < 3;\n+\treturn x " in said, said
-    assert "FAIL face: 0 of 1 faults caught, 0 %, the floor is " in said and status == 1, said
+    said, status = mutate(tree_with(scene, 4), "kit", "--seed", "2")
+    assert "--- src/faces/kit/a.c:4\n+++ survives\n@@ -1 +1 @@\n-\treturn x < 3;\n+\treturn x " in said, said
+    assert "FAIL kit: 0 of 1 faults caught, 0 %, the floor is " in said and status == 1, said
     assert re.search(r"^0 passed, 1 failed$", said, re.M), said
 
 
 def test_a_room_whose_tests_fail_without_a_fault_has_failed(scene):
-    said, status = mutate(tree_with(scene, 2), "face")
-    assert "FAIL face: without any fault: test_face" in said and status == 1, said
+    said, status = mutate(tree_with(scene, 2), "kit")
+    assert "FAIL kit: without any fault: test_face" in said and status == 1, said
 
 
 if __name__ == "__main__":

@@ -81,7 +81,7 @@ while True:
 
 def commands(data):
     """What the rows of a file of last commands say, None for a row without a command: the layout of
-    src/shm/force.c."""
+    src/memory/shm/force.c."""
     found = []
     for row in range(struct.unpack_from("<I", data, 20)[0]):
         at = 64 + 112 * row

@@ -12,7 +12,7 @@ from owsdtest import SOURCE, raw, until
 
 import ows  # of owsdtest.PYTHON
 
-HEADERS = [SOURCE / "src/libows/ows.h", SOURCE / "src/libhistory/ows_history.h"]
+HEADERS = [SOURCE / "src/public/ows.h", SOURCE / "src/public/ows_history.h"]
 # Structures of the headers that ows.py reads
 STRUCTURES = {"ows_by": ows._By, "ows_value": ows._Value, "ows_origin": ows._Origin,
               "ows_controller": ows._Controller, "ows_cursor": ows._Cursor, "ows_info": ows._Info,

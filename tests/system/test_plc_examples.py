@@ -34,7 +34,7 @@ def build(name, compilers, command):
             words = shlex.split(os.environ.get(compilers[0], compilers[1]))
             program = os.path.join(tempfile.mkdtemp(prefix="plc"), name)
             done = subprocess.run([*words, "-Wall", "-Wextra", "-Werror", "-O1", "-D_GNU_SOURCE",
-                                   f"-I{SOURCE}/src/libows", *command,
+                                   f"-I{SOURCE}/src/public", *command,
                                    *os.environ.get("EXTRA_CFLAGS", "").split(), "-o", program,
                                    str(owsdtest.BUILD / "libows.a"), "-lm", "-pthread"],
                                   text=True, capture_output=True, timeout=400)

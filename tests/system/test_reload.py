@@ -208,7 +208,7 @@ def test_owsctl_reload_tells_which_faces_took_the_file_over_and_which_did_not(sc
 def test_the_reload_of_each_service_fails_for_a_file_that_is_refused(scene):
     """By the commands of its unit that stand before the signal, or in its place."""
     daemon, target = start(scene)
-    page = raw(f'{{ Files "{owsdtest.SOURCE}/src/web/page" }}')
+    page = raw(f'{{ Files "{owsdtest.SOURCE}/src/faces/web/page" }}')
     good = rio(target, ROOM, Web=page)
     units = [unit for unit in (owsdtest.SOURCE / "board/systemd").glob("owsd*@.service")
              if "ExecReload=" in unit.read_text()]

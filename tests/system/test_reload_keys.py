@@ -304,7 +304,7 @@ KEYS = {"Web": web_keys, "Mqtt": mqtt_keys, "Influx": influx_keys, "Recorder": r
 
 def options(block):
     """The keys of the block in owsd's own table."""
-    table = (SOURCE / "src/config/option_list.h").read_text()
+    table = (SOURCE / "src/config/read/option_list.h").read_text()
     return re.findall(rf'^OPTION\(\w+, "(\w+)", {block.upper()},', table, re.M)
 
 
@@ -339,7 +339,7 @@ def test_each_key_of_owsd_recorder_counts_from_a_reload_on(scene):
 
 CHECKED = {block: [name for name in options(block) if re.search("Files?$", name)] for block in ("Web", "Mqtt", "Influx")}
 BESIDE = {"Mqtt": {"Broker": "mqtts://localhost"}, "Influx": {"Url": "http://localhost/write"},
-          "Web": {"Files": owsdtest.SOURCE / "src/web/page"}}
+          "Web": {"Files": owsdtest.SOURCE / "src/faces/web/page"}}
 PAIR = {"CertFile": "KeyFile", "KeyFile": "CertFile"}
 
 

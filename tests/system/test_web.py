@@ -699,7 +699,7 @@ def test_a_command_of_another_page_is_refused(scene):
 
 def served_paths():
     """What has data: (path, whether it is posted to)."""
-    table = (owsdtest.SOURCE / "src/web/api.c").read_text()
+    table = (owsdtest.SOURCE / "src/faces/web/api.c").read_text()
     found = re.findall(r'\{"([a-z/]+)", (true|false), \w+\},', table)
     assert len(found) > 15 and ("api/devices", "false") in found, found
     return [("/" + path, posted == "true") for path, posted in found]

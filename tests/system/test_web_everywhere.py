@@ -24,7 +24,7 @@ AXE_SHA256 = "0f2b4d7dcdf7d1219df8d1959ad68e565f51d14c3f0d88bb71cd59abeb956292"
 
 
 def test_the_files_are_small_and_text_goes_in_as_text(_scene):
-    here = SOURCE / "src/web/page"
+    here = SOURCE / "src/faces/web/page"
     files = [f for f in here.glob("*.*") if f.suffix in (".js", ".css", ".html", ".svg")]
     assert len(files) > 12
     for file in files:
@@ -40,7 +40,7 @@ def test_the_files_are_small_and_text_goes_in_as_text(_scene):
 
 
 def test_the_head_names_each_module_that_the_page_begins_with(_scene):
-    here = SOURCE / "src/web/page"
+    here = SOURCE / "src/faces/web/page"
     head = (here / "index.html").read_text()
     wanted, left = set(), re.findall(r'<script type="module"[^>]* src="([^"]+)"', head)
     begun = set(left)

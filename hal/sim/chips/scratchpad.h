@@ -3,7 +3,7 @@
  * The memories that are written through a scratchpad: target address, ending offset, a copy that
  * needs both as its key. The chips differ in sizes, codes, checksums and times.
  *
- * Room hal/sim/chips: simulated chips, from their data sheets. Uses hal/sim, hal/base.
+ * Room hal/sim/chips: simulated chips, from their data sheets.
  */
 #pragma once
 

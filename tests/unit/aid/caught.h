@@ -2,7 +2,7 @@
 /* Runs verbs of owsctl and catches their stdout and stderr. */
 #pragma once
 
-#include "src/owsctl/ctl.h"
+#include "src/tool/owsctl/ctl.h"
 
 extern struct ctl caught_ctl;
 extern char *out, *err; /* of the last run */

@@ -6,7 +6,7 @@
 
 #include "unity.h"
 
-#include "src/config/load.h"
+#include "src/config/read/load.h"
 #include "tests/unit/aid/config_case.h"
 
 struct config *config;

@@ -2,7 +2,7 @@
 /* Parses configurations from texts, and compares the messages about them. */
 #pragma once
 
-#include "src/config/config.h"
+#include "src/config/read/config.h"
 #include "tests/unit/aid/said.h"
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))

@@ -20,7 +20,7 @@
 #include "unity.h"
 
 #include "hal/bus/bus.h"
-#include "src/shm/porter.h"
+#include "src/memory/shm/porter.h"
 #include "tests/unit/aid/control_scene.h"
 
 struct control *control_room;

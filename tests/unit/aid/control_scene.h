@@ -10,8 +10,8 @@
 #include <stdint.h>
 #include <sys/types.h>
 
-#include "src/config/config.h"
-#include "src/control/control.h"
+#include "src/config/read/config.h"
+#include "src/memory/control/control.h"
 
 /* Nothing here waits longer than that for something that has to come. */
 #define CONTROL_SCENE_MS 20000

@@ -7,8 +7,8 @@
 
 #include <pthread.h>
 
-#include "src/shm/controller.h"
-#include "src/shm/place.h"
+#include "src/memory/shm/controller.h"
+#include "src/memory/shm/place.h"
 
 #define DOOR_CONTROLLERS 40
 

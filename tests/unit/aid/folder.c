@@ -8,7 +8,7 @@
 
 #include "unity.h"
 
-#include "src/shm/segment.h"
+#include "src/memory/shm/segment.h"
 #include "tests/unit/aid/folder.h"
 
 static struct shm_place place = {.fd = -1};

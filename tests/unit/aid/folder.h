@@ -2,7 +2,7 @@
 /* A place of the test's own, instead of that of an owsd which may run on this machine. */
 #pragma once
 
-#include "src/shm/place.h"
+#include "src/memory/shm/place.h"
 
 /*
  * The place, made at the first call and named in OWS_DIR, for libows and for programs that the test

@@ -2,7 +2,7 @@
 /* A controller by hand: a memory on the heap, in which a test commands as libows does, or worse. */
 #pragma once
 
-#include "src/shm/controller.h"
+#include "src/memory/shm/controller.h"
 
 struct giving {
 	struct controller_memory memory; /* base NULL: not made */

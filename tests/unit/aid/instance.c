@@ -7,8 +7,8 @@
 
 #include "unity.h"
 
-#include "src/shm/futex.h"
-#include "src/signal/value.h"
+#include "src/ground/signal/value.h"
+#include "src/memory/shm/futex.h"
 #include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/instance.h"
 

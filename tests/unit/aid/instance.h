@@ -5,9 +5,9 @@
  */
 #pragma once
 
-#include "src/libows/ows.h"
-#include "src/shm/image.h"
-#include "src/shm/segment.h"
+#include "src/memory/shm/image.h"
+#include "src/memory/shm/segment.h"
+#include "src/public/ows.h"
 #include "tests/unit/aid/door.h"
 
 #define INSTANCE_TEXT 64

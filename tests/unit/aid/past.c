@@ -8,7 +8,7 @@
 
 #include "unity.h"
 
-#include "src/signal/value.h"
+#include "src/ground/signal/value.h"
 #include "tests/unit/aid/folder.h"
 
 const struct history_signal past_signals[PAST_COUNT] = {

@@ -5,8 +5,8 @@
  */
 #pragma once
 
-#include "src/history/writer.h"
-#include "src/libhistory/ows_history.h"
+#include "src/history/file/writer.h"
+#include "src/public/ows_history.h"
 
 #define PAST_S INT64_C(1000000000)
 #define PAST_DAY (86400 * PAST_S)

@@ -6,11 +6,11 @@
 #include <unistd.h>
 
 #include "hal/bus/backends.h"
-#include "src/config/load.h"
-#include "src/engine/command/controllers.h"
-#include "src/engine/counters.h"
-#include "src/engine/table.h"
-#include "src/signal/value.h"
+#include "src/config/read/load.h"
+#include "src/daemon/engine/command/controllers.h"
+#include "src/daemon/engine/counters.h"
+#include "src/daemon/engine/table.h"
+#include "src/ground/signal/value.h"
 #include "tests/unit/aid/plant.h"
 
 /* A bus that asks for so many steps without a pause does nothing useful. */

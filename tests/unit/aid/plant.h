@@ -9,8 +9,8 @@
 #pragma once
 
 #include "hal/sim/net.h"
-#include "src/config/config.h"
-#include "src/engine/engine.h"
+#include "src/config/read/config.h"
+#include "src/daemon/engine/engine.h"
 #include "tests/unit/aid/giving.h"
 
 #define PLANT_US INT64_C(1000)

@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "src/influx/disk.h"
+#include "src/faces/influx/disk.h"
 
 #define POWER_OPS 4096
 #define POWER_FILES 64

@@ -5,7 +5,7 @@
  */
 #pragma once
 
-#include "src/mqtt/profiles.h"
+#include "src/faces/mqtt/profiles.h"
 #include "tests/unit/aid/instance.h"
 
 struct published {

@@ -9,8 +9,8 @@
 
 #include "unity.h"
 
-#include "src/libows/handle.h"
-#include "src/shm/reader.h"
+#include "src/memory/libows/handle.h"
+#include "src/memory/shm/reader.h"
 #include "tests/unit/aid/needs.h"
 #include "tests/unit/aid/recorded_readers.h"
 #include "tests/unit/aid/recording.h"

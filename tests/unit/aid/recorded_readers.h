@@ -2,7 +2,7 @@
 /* The readers of a recording, and the checks of all that each has to find. */
 #pragma once
 
-#include "src/libows/ows.h"
+#include "src/public/ows.h"
 
 /* Check by libows each value, attribute, alarm, target and counter. */
 void check_all(struct ows *h);

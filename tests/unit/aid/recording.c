@@ -9,9 +9,9 @@
 
 #include "unity.h"
 
-#include "src/libows/ows.h"
-#include "src/shm/entries.h"
-#include "src/signal/value.h"
+#include "src/ground/signal/value.h"
+#include "src/memory/shm/entries.h"
+#include "src/public/ows.h"
 #include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/recording.h"
 

@@ -6,7 +6,7 @@
  */
 #pragma once
 
-#include "src/shm/image.h"
+#include "src/memory/shm/image.h"
 
 #define S INT64_C(1000000000)
 #define START_NS (1000 * S)

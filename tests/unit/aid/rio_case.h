@@ -2,7 +2,7 @@
 /* Parses .rio documents from texts, and checks what is in them. */
 #pragma once
 
-#include "src/config/rio.h"
+#include "src/config/read/rio.h"
 #include "tests/unit/aid/said.h"
 
 /* The last document that was parsed. */

@@ -2,7 +2,7 @@
 /* Keeps the messages of a report, and fails the test on a message that must not come. */
 #pragma once
 
-#include "src/config/config.h"
+#include "src/config/read/config.h"
 
 extern struct config_report report;
 /* All lines since said_begin(), each ended by '\n'. */

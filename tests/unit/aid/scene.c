@@ -5,10 +5,10 @@
 
 #include "unity.h"
 
-#include "src/engine/counters.h"
-#include "src/engine/reload/adopt.h"
-#include "src/engine/table.h"
-#include "src/shm/shelves.h"
+#include "src/daemon/engine/counters.h"
+#include "src/daemon/engine/reload/adopt.h"
+#include "src/daemon/engine/table.h"
+#include "src/memory/shm/shelves.h"
 #include "tests/unit/aid/scene_private.h"
 
 static struct config_item *add_item(struct scene *s, const char *name, const char *path,

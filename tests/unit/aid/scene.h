@@ -9,12 +9,12 @@
  */
 #pragma once
 
-#include "src/config/config.h"
-#include "src/engine/command/controllers.h"
-#include "src/engine/command/last.h"
-#include "src/engine/engine.h"
-#include "src/shm/force.h"
-#include "src/shm/image.h"
+#include "src/config/read/config.h"
+#include "src/daemon/engine/command/controllers.h"
+#include "src/daemon/engine/command/last.h"
+#include "src/daemon/engine/engine.h"
+#include "src/memory/shm/force.h"
+#include "src/memory/shm/image.h"
 #include "tests/unit/aid/giving.h"
 
 #define SCENE_MS 1000000LL

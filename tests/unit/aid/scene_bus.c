@@ -7,7 +7,7 @@
 #include "unity.h"
 
 #include "hal/owfs/path.h"
-#include "src/engine/routing/route.h"
+#include "src/daemon/engine/routing/route.h"
 #include "tests/unit/aid/scene_private.h"
 
 static void note(struct scene_bus *bus, char what, const char *path, const char *text)

@@ -4,9 +4,9 @@
 
 #include "unity.h"
 
-#include "src/engine/counters.h"
-#include "src/shm/reader.h"
-#include "src/signal/value.h"
+#include "src/daemon/engine/counters.h"
+#include "src/ground/signal/value.h"
+#include "src/memory/shm/reader.h"
 #include "tests/unit/aid/scene.h"
 
 struct ows_sample scene_sample(struct scene *s, unsigned record)

@@ -5,7 +5,7 @@
  */
 #pragma once
 
-#include "src/shm/image.h"
+#include "src/memory/shm/image.h"
 
 /* Texts have up to room - 1 bytes; 0: the record has no text. */
 void whole_publish(struct image *image, uint32_t record, uint32_t n, uint32_t room);

@@ -11,10 +11,10 @@
 
 #include "unity.h"
 
-#include "src/board/board.h"
-#include "src/board/data.h"
-#include "src/board/look.h"
-#include "src/board/report.h"
+#include "src/ground/board/board.h"
+#include "src/ground/board/data.h"
+#include "src/ground/board/look.h"
+#include "src/ground/board/report.h"
 
 #define DATA "board/boards"
 

@@ -8,7 +8,7 @@
 #include "unity.h"
 
 #include "hal/bus/backends.h"
-#include "src/signal/value.h"
+#include "src/ground/signal/value.h"
 #include "tests/unit/aid/host.h"
 
 static struct host host;

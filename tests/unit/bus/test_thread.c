@@ -5,7 +5,7 @@
 
 #include "hal/base/thread.h"
 #include "hal/base/time.h"
-#include "src/libows/ows.h"
+#include "src/public/ows.h"
 #include "unity.h"
 
 struct seen {

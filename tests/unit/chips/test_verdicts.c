@@ -7,7 +7,7 @@
 
 #include "unity.h"
 
-#include "src/shm/layout.h"
+#include "src/public/ows_layout.h"
 #include "tests/unit/aid/plant.h"
 
 #define MANY 16

@@ -7,8 +7,8 @@
 
 #include "hal/chips/find.h"
 #include "hal/chips/format.h"
-#include "src/config/check.h"
-#include "src/config/load.h"
+#include "src/config/check/check.h"
+#include "src/config/read/load.h"
 #include "tests/unit/aid/config_case.h"
 
 void setUp(void)

@@ -5,7 +5,7 @@
 
 #include "unity.h"
 
-#include "src/config/load.h"
+#include "src/config/read/load.h"
 #include "tests/unit/aid/config_case.h"
 
 void setUp(void)

@@ -12,9 +12,9 @@
 
 #include "unity.h"
 
-#include "src/config/edit.h"
-#include "src/config/edit_device.h"
-#include "src/config/replace.h"
+#include "src/config/edit/edit.h"
+#include "src/config/edit/edit_device.h"
+#include "src/config/edit/replace.h"
 #include "tests/unit/aid/said.h"
 
 static struct rio *rio;

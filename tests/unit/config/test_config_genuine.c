@@ -5,9 +5,9 @@
 
 #include "unity.h"
 
-#include "src/config/config.h"
-#include "src/config/load.h"
-#include "src/signal/value.h"
+#include "src/config/read/config.h"
+#include "src/config/read/load.h"
+#include "src/ground/signal/value.h"
 #include "tests/unit/aid/said.h"
 
 #define DATA "tests/unit/data/"

@@ -6,9 +6,9 @@
 
 #include "unity.h"
 
-#include "src/config/edit.h"
-#include "src/config/load.h"
-#include "src/config/print.h"
+#include "src/config/edit/edit.h"
+#include "src/config/edit/print.h"
+#include "src/config/read/load.h"
 #include "tests/unit/aid/config_case.h"
 
 #define URL "Url \"http://127.0.0.1:8428/write\" "

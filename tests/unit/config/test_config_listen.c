@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unity.h>
 
-#include "src/config/listen.h"
+#include "src/config/read/listen.h"
 
 static struct listen_address addresses[2];
 static const char *why;

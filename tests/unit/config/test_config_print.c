@@ -6,9 +6,9 @@
 
 #include "unity.h"
 
-#include "src/config/config.h"
-#include "src/config/load.h"
-#include "src/config/print.h"
+#include "src/config/edit/print.h"
+#include "src/config/read/config.h"
+#include "src/config/read/load.h"
 #include "tests/unit/aid/said.h"
 
 void setUp(void)

@@ -8,10 +8,10 @@
 
 #include "unity.h"
 
-#include "src/config/buses.h"
-#include "src/config/load.h"
-#include "src/config/own.h"
-#include "src/config/targets.h"
+#include "src/config/check/own.h"
+#include "src/config/read/buses.h"
+#include "src/config/read/load.h"
+#include "src/config/read/targets.h"
 #include "tests/unit/aid/config_case.h"
 
 void setUp(void)

@@ -6,9 +6,9 @@
 
 #include "unity.h"
 
-#include "src/config/load.h"
-#include "src/config/options.h"
-#include "src/config/rio_file.h"
+#include "src/config/read/load.h"
+#include "src/config/read/options.h"
+#include "src/config/read/rio_file.h"
 #include "tests/unit/aid/said.h"
 
 #define MANUAL "docs/owsd.rio.5"

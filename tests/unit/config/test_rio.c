@@ -11,9 +11,9 @@
 
 #include "unity.h"
 
-#include "src/config/rio.h"
-#include "src/config/rio_file.h"
-#include "src/config/rio_write.h"
+#include "src/config/edit/rio_write.h"
+#include "src/config/read/rio.h"
+#include "src/config/read/rio_file.h"
 #include "tests/unit/aid/rio_case.h"
 
 void setUp(void)

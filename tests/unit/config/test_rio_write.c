@@ -7,7 +7,7 @@
 
 #include "unity.h"
 
-#include "src/config/rio_write.h"
+#include "src/config/edit/rio_write.h"
 #include "tests/unit/aid/rio_case.h"
 
 void setUp(void)

@@ -10,9 +10,9 @@
 #include "unity.h"
 
 #include "hal/base/bell.h"
-#include "src/control/private.h"
-#include "src/control/welcome.h"
-#include "src/libows/ows.h"
+#include "src/memory/control/private.h"
+#include "src/memory/control/welcome.h"
+#include "src/public/ows.h"
 #include "tests/unit/aid/control_scene.h"
 
 #define ASKERS 4

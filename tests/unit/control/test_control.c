@@ -19,8 +19,8 @@
 #include "unity.h"
 
 #include "hal/base/time.h"
-#include "src/libows/ows.h"
-#include "src/shm/futex.h"
+#include "src/memory/shm/futex.h"
+#include "src/public/ows.h"
 #include "tests/unit/aid/control_scene.h"
 
 #define SEALS (F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL)

@@ -4,7 +4,7 @@
 
 #include "unity.h"
 
-#include "src/control/held.h"
+#include "src/memory/control/held.h"
 
 #define SIZE 4096
 #define SOMEBODY 54321

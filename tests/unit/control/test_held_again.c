@@ -8,7 +8,7 @@
 
 #include "unity.h"
 
-#include "src/control/private.h"
+#include "src/memory/control/private.h"
 #include "tests/unit/aid/control_scene.h"
 
 void setUp(void)

@@ -3,7 +3,7 @@
 #include "unity.h"
 
 #include "hal/base/time.h"
-#include "src/control/often.h"
+#include "src/memory/control/often.h"
 
 static struct often often;
 

@@ -6,7 +6,7 @@
 
 #include "unity.h"
 
-#include "src/control/rights.h"
+#include "src/memory/control/rights.h"
 #include "tests/unit/aid/control_scene.h"
 
 enum {

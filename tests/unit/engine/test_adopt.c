@@ -5,8 +5,8 @@
 
 #include "unity.h"
 
-#include "src/libows/ows.h"
-#include "src/signal/value.h"
+#include "src/ground/signal/value.h"
+#include "src/public/ows.h"
 #include "tests/unit/aid/scene.h"
 
 static struct scene s;

@@ -4,7 +4,7 @@
 
 #include "unity.h"
 
-#include "src/engine/state.h"
+#include "src/daemon/engine/state.h"
 #include "tests/unit/aid/alarm_scene.h"
 
 static struct scene s;

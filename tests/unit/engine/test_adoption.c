@@ -4,10 +4,10 @@
 
 #include "unity.h"
 
-#include "src/config/buses.h"
-#include "src/engine/reload/adopt_signal.h"
-#include "src/engine/reload/adoption.h"
-#include "src/engine/routing/disown.h"
+#include "src/config/read/buses.h"
+#include "src/daemon/engine/reload/adopt_signal.h"
+#include "src/daemon/engine/reload/adoption.h"
+#include "src/daemon/engine/routing/disown.h"
 
 /* A byte that is valid in every member, a bool too, and that nothing has by itself. */
 #define PATTERN 1

@@ -4,7 +4,7 @@
 
 #include "unity.h"
 
-#include "src/engine/alarm/alarm_fsm.h"
+#include "src/daemon/engine/alarm/alarm_fsm.h"
 
 void setUp(void)
 {

@@ -6,7 +6,7 @@
 
 #include "unity.h"
 
-#include "src/text/log.h"
+#include "src/ground/text/log.h"
 #include "tests/unit/aid/alarm_scene.h"
 
 static struct scene s;

@@ -5,7 +5,7 @@
 
 #include "unity.h"
 
-#include "src/libows/ows.h"
+#include "src/public/ows.h"
 #include "tests/unit/aid/scene.h"
 
 /* In the order of the ROM ids, which is not that of the file. */

@@ -6,7 +6,7 @@
 
 #include "unity.h"
 
-#include "src/engine/due.h"
+#include "src/daemon/engine/due.h"
 
 void setUp(void)
 {

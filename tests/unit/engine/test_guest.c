@@ -5,7 +5,7 @@
 
 #include "unity.h"
 
-#include "src/engine/guest.h"
+#include "src/daemon/engine/guest.h"
 #include "tests/unit/aid/scene.h"
 
 #define T1 "/28.551DDF030000/temperature12"

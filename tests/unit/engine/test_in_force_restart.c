@@ -5,8 +5,8 @@
  */
 #include "unity.h"
 
-#include "src/engine/command/intake.h"
-#include "src/engine/state.h"
+#include "src/daemon/engine/command/intake.h"
+#include "src/daemon/engine/state.h"
 #include "tests/unit/aid/force_scene.h"
 
 void setUp(void)

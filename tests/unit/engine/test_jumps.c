@@ -5,7 +5,7 @@
 
 #include "unity.h"
 
-#include "src/signal/value.h"
+#include "src/ground/signal/value.h"
 #include "tests/unit/aid/scene.h"
 
 #define FREEZER "/28.000000000004/temperature"

@@ -7,7 +7,7 @@
 
 #include "unity.h"
 
-#include "src/engine/limits/limit.h"
+#include "src/daemon/engine/limits/limit.h"
 
 #define S INT64_C(1000000000)
 

@@ -9,7 +9,7 @@
 
 #include "unity.h"
 
-#include "src/signal/value.h"
+#include "src/ground/signal/value.h"
 #include "tests/unit/aid/scene.h"
 
 #define T1 "/28.000000000001/temperature"

@@ -5,8 +5,8 @@
 
 #include "unity.h"
 
-#include "src/engine/retry.h"
-#include "src/libows/ows.h"
+#include "src/daemon/engine/retry.h"
+#include "src/public/ows.h"
 
 void setUp(void)
 {

@@ -4,7 +4,7 @@
 
 #include "unity.h"
 
-#include "src/engine/routing/route.h"
+#include "src/daemon/engine/routing/route.h"
 
 #define S 1000000000LL
 #define NOW (1000 * S)

@@ -7,8 +7,8 @@
 
 #include "unity.h"
 
-#include "src/engine/table.h"
-#include "src/signal/value.h"
+#include "src/daemon/engine/table.h"
+#include "src/ground/signal/value.h"
 #include "tests/unit/aid/scene.h"
 
 #define VOLT "/20.000000000001/volt.A"

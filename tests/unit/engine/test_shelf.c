@@ -6,9 +6,9 @@
 
 #include "unity.h"
 
-#include "src/engine/limits/limits.h"
-#include "src/engine/publish.h"
-#include "src/engine/state.h"
+#include "src/daemon/engine/limits/limits.h"
+#include "src/daemon/engine/publish.h"
+#include "src/daemon/engine/state.h"
 #include "tests/unit/aid/scene.h"
 
 #define T1 "/28.000000000001/temperature"

@@ -7,7 +7,7 @@
 
 #include "unity.h"
 
-#include "src/engine/engine.h"
+#include "src/daemon/engine/engine.h"
 #include "tests/unit/aid/scene.h"
 
 #define T1 "/28.000000000001/temperature"

@@ -5,7 +5,7 @@
 
 #include "unity.h"
 
-#include "src/engine/structure.h"
+#include "src/daemon/engine/structure.h"
 
 void setUp(void)
 {

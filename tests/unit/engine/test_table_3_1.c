@@ -13,7 +13,7 @@
 
 #include "unity.h"
 
-#include "src/engine/alarm/alarm_fsm.h"
+#include "src/daemon/engine/alarm/alarm_fsm.h"
 
 void setUp(void)
 {

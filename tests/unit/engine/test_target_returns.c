@@ -10,7 +10,7 @@
 
 #include "unity.h"
 
-#include "src/text/log.h"
+#include "src/ground/text/log.h"
 #include "tests/unit/aid/scene.h"
 
 #define D "/29.B89115000000"

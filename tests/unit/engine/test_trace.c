@@ -7,8 +7,8 @@
 
 #include "unity.h"
 
-#include "src/engine/trace.h"
-#include "src/text/log.h"
+#include "src/daemon/engine/trace.h"
+#include "src/ground/text/log.h"
 #include "tests/unit/aid/scene.h"
 
 #define T1 "/28.000000000001/temperature"

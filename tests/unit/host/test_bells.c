@@ -8,8 +8,8 @@
 #include "unity.h"
 
 #include "hal/base/time.h"
-#include "src/host/bells.h"
-#include "src/libows/ows.h"
+#include "src/daemon/host/bells.h"
+#include "src/public/ows.h"
 
 #define LONG_NS (20 * NS_PER_S)
 

@@ -6,8 +6,8 @@
 
 #include "unity.h"
 
-#include "src/host/indicator.h"
-#include "src/libows/ows.h"
+#include "src/daemon/host/indicator.h"
+#include "src/public/ows.h"
 #include "tests/unit/aid/fake_gpio.h"
 
 #define MS INT64_C(1000000)

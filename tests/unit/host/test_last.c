@@ -11,12 +11,12 @@
 #include "unity.h"
 
 #include "hal/owfs/path.h"
-#include "src/config/build.h"
-#include "src/host/last.h"
-#include "src/host/last_file.h"
-#include "src/libows/ows.h"
-#include "src/shm/force.h"
-#include "src/signal/value.h"
+#include "src/config/read/build.h"
+#include "src/daemon/host/last.h"
+#include "src/daemon/host/last_file.h"
+#include "src/ground/signal/value.h"
+#include "src/memory/shm/force.h"
+#include "src/public/ows.h"
 
 #define S 1000000000LL
 /* What a busy machine may make of a store. */

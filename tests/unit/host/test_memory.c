@@ -10,7 +10,7 @@
 
 #include "unity.h"
 
-#include "src/host/memory.h"
+#include "src/daemon/host/memory.h"
 #include "tests/unit/aid/folder.h"
 
 static char instance[32], path[PLACE_PATH + 64];

@@ -6,7 +6,7 @@
 #include "unity.h"
 
 #include "hal/bus/worker.h"
-#include "src/host/serving.h"
+#include "src/daemon/host/serving.h"
 
 #define WORKERS 2
 

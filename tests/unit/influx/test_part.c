@@ -4,7 +4,7 @@
 
 #include "unity.h"
 
-#include "src/influx/part.h"
+#include "src/faces/influx/part.h"
 
 static const char batch[] = "one 1\ntwo 22\nthree 333\nfour 4\n";
 #define LEN (sizeof(batch) - 1)

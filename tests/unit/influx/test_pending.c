@@ -5,7 +5,7 @@
 
 #include "unity.h"
 
-#include "src/influx/pending.h"
+#include "src/faces/influx/pending.h"
 
 static struct pending pending;
 static char batch[BATCH_BYTES + 1];

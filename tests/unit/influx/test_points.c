@@ -6,8 +6,8 @@
 
 #include "unity.h"
 
-#include "src/influx/points.h"
-#include "src/signal/value.h"
+#include "src/faces/influx/points.h"
+#include "src/ground/signal/value.h"
 #include "tests/unit/aid/instance.h"
 
 #define S INSTANCE_S

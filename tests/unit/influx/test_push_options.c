@@ -4,8 +4,8 @@
 
 #include "unity.h"
 
-#include "src/face/face.h"
-#include "src/influx/options.h"
+#include "src/faces/influx/options.h"
+#include "src/faces/kit/face.h"
 
 static struct face_arguments arguments;
 static const struct face_ops ops = {.program = "owsd-influx"};

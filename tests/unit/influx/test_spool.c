@@ -12,7 +12,7 @@
 
 #include "unity.h"
 
-#include "src/influx/spool.h"
+#include "src/faces/influx/spool.h"
 #include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/power_disk.h"
 

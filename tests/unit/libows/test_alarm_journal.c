@@ -6,8 +6,8 @@
 
 #include "unity.h"
 
-#include "src/shm/entries.h"
-#include "src/signal/value.h"
+#include "src/ground/signal/value.h"
+#include "src/memory/shm/entries.h"
 #include "tests/unit/aid/instance.h"
 
 static const struct instance_signal signals[] = {

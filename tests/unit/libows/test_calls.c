@@ -10,7 +10,7 @@
 
 #include "unity.h"
 
-#include "src/libows/handle.h"
+#include "src/memory/libows/handle.h"
 #include "tests/unit/aid/instance.h"
 
 static const struct instance_signal signals[] = {

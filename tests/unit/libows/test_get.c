@@ -7,7 +7,7 @@
 
 #include "unity.h"
 
-#include "src/signal/value.h"
+#include "src/ground/signal/value.h"
 #include "tests/unit/aid/instance.h"
 
 static const struct instance_signal signals[] = {

@@ -7,7 +7,7 @@
 
 #include "unity.h"
 
-#include "src/libows/join.h"
+#include "src/memory/libows/join.h"
 
 static struct join join;
 static int owsd;

@@ -6,7 +6,7 @@
 
 #include "unity.h"
 
-#include "src/shm/entries.h"
+#include "src/memory/shm/entries.h"
 #include "tests/unit/aid/instance.h"
 
 static const struct instance_signal signals[] = {

@@ -10,9 +10,9 @@
 
 #include "unity.h"
 
-#include "src/shm/entries.h"
-#include "src/shm/futex.h"
-#include "src/signal/value.h"
+#include "src/ground/signal/value.h"
+#include "src/memory/shm/entries.h"
+#include "src/memory/shm/futex.h"
 #include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/instance.h"
 #include "tests/unit/aid/needs.h"

@@ -13,7 +13,7 @@
 
 #include "unity.h"
 
-#include "src/shm/futex.h"
+#include "src/memory/shm/futex.h"
 #include "tests/unit/aid/asleep.h"
 #include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/instance.h"

@@ -7,7 +7,7 @@
 
 #include "unity.h"
 
-#include "src/mqtt/advice.h"
+#include "src/faces/mqtt/advice.h"
 
 void setUp(void)
 {

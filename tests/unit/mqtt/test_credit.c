@@ -3,7 +3,7 @@
 #include "unity.h"
 
 #include "hal/base/time.h"
-#include "src/mqtt/credit.h"
+#include "src/faces/mqtt/credit.h"
 
 #define START (100 * NS_PER_S)
 

@@ -5,8 +5,8 @@
 
 #include "unity.h"
 
-#include "src/mqtt/entity.h"
-#include "src/mqtt/health.h"
+#include "src/faces/mqtt/entity.h"
+#include "src/faces/mqtt/health.h"
 #include "tests/unit/aid/published.h"
 
 static const struct instance_signal signals[] = {

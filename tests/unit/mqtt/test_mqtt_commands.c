@@ -4,8 +4,8 @@
 
 #include "unity.h"
 
-#include "src/mqtt/commands.h"
-#include "src/mqtt/stream.h"
+#include "src/faces/mqtt/commands.h"
+#include "src/faces/mqtt/stream.h"
 
 #define START (100 * NS_PER_S)
 

@@ -5,9 +5,9 @@
 
 #include "unity.h"
 
-#include "src/face/face.h"
-#include "src/mqtt/options.h"
-#include "src/mqtt/profiles.h"
+#include "src/faces/kit/face.h"
+#include "src/faces/mqtt/options.h"
+#include "src/faces/mqtt/profiles.h"
 
 static struct config config;
 static struct face_arguments arguments;

@@ -8,10 +8,10 @@
 
 #include "unity.h"
 
-#include "src/history/writer.h"
-#include "src/mqtt/past.h"
-#include "src/mqtt/plain.h"
-#include "src/signal/value.h"
+#include "src/faces/mqtt/past.h"
+#include "src/faces/mqtt/plain.h"
+#include "src/ground/signal/value.h"
+#include "src/history/file/writer.h"
 #include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/published.h"
 

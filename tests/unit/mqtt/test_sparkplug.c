@@ -8,7 +8,7 @@
 
 #include "unity.h"
 
-#include "src/mqtt/profiles.h"
+#include "src/faces/mqtt/profiles.h"
 #include "tests/unit/aid/instance.h"
 
 #define S INSTANCE_S

@@ -2,7 +2,7 @@
 /* Tests of whether another client takes our id. */
 #include "unity.h"
 
-#include "src/mqtt/taken.h"
+#include "src/faces/mqtt/taken.h"
 
 static struct taken taken;
 

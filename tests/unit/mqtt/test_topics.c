@@ -4,7 +4,7 @@
 
 #include "unity.h"
 
-#include "src/mqtt/topics.h"
+#include "src/faces/mqtt/topics.h"
 
 void setUp(void)
 {

@@ -4,7 +4,7 @@
 
 #include "unity.h"
 
-#include "src/shm/layout.h"
+#include "src/public/ows_layout.h"
 #include "tests/unit/aid/plant.h"
 
 #define SETTLED_NS (20 * PLANT_S)

@@ -9,10 +9,10 @@
 
 #include "unity.h"
 
-#include "src/owsctl/verbs.h"
-#include "src/shm/entries.h"
-#include "src/shm/futex.h"
-#include "src/signal/value.h"
+#include "src/ground/signal/value.h"
+#include "src/memory/shm/entries.h"
+#include "src/memory/shm/futex.h"
+#include "src/tool/owsctl/verbs.h"
 #include "tests/unit/aid/caught.h"
 #include "tests/unit/aid/instance.h"
 

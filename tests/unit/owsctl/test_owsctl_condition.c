@@ -6,7 +6,7 @@
 
 #include "unity.h"
 
-#include "src/owsctl/watch/condition.h"
+#include "src/tool/owsctl/watch/condition.h"
 
 static struct condition condition;
 static struct reading reading;

@@ -4,7 +4,7 @@
 
 #include "unity.h"
 
-#include "src/owsctl/instance_state.h"
+#include "src/tool/owsctl/instance_state.h"
 
 void setUp(void)
 {

@@ -7,9 +7,9 @@
 
 #include "unity.h"
 
-#include "src/owsctl/verbs.h"
-#include "src/shm/entries.h"
-#include "src/signal/value.h"
+#include "src/ground/signal/value.h"
+#include "src/memory/shm/entries.h"
+#include "src/tool/owsctl/verbs.h"
 #include "tests/unit/aid/caught.h"
 #include "tests/unit/aid/instance.h"
 

@@ -5,7 +5,7 @@
 
 #include "unity.h"
 
-#include "src/owsctl/scan/merge.h"
+#include "src/tool/owsctl/scan/merge.h"
 
 #define MOST 8
 

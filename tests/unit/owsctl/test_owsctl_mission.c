@@ -8,8 +8,8 @@
 
 #include "unity.h"
 
-#include "src/owsctl/ctl.h"
-#include "src/owsctl/verbs.h"
+#include "src/tool/owsctl/ctl.h"
+#include "src/tool/owsctl/verbs.h"
 
 static time_t host_says;
 static char place[] = "/tmp/owsctl-mission-XXXXXX", scenario[80], target[100];

@@ -5,7 +5,7 @@
 
 #include "unity.h"
 
-#include "src/owsctl/plot.h"
+#include "src/tool/owsctl/plot.h"
 
 static struct ows_history_point points[2 * PLOT_WIDTH_MAX];
 static char text[PLOT_TEXT];

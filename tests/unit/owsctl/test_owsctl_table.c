@@ -5,8 +5,8 @@
 
 #include "unity.h"
 
-#include "src/owsctl/table.h"
-#include "src/show/text.h"
+#include "src/faces/show/text.h"
+#include "src/tool/owsctl/table.h"
 
 /* clang-format off */
 static const struct table_column columns[] = {

@@ -9,11 +9,11 @@
 
 #include "unity.h"
 
-#include "src/owsctl/ctl.h"
-#include "src/owsctl/verbs.h"
-#include "src/shm/entries.h"
-#include "src/shm/futex.h"
-#include "src/signal/value.h"
+#include "src/ground/signal/value.h"
+#include "src/memory/shm/entries.h"
+#include "src/memory/shm/futex.h"
+#include "src/tool/owsctl/ctl.h"
+#include "src/tool/owsctl/verbs.h"
 #include "tests/unit/aid/caught.h"
 #include "tests/unit/aid/instance.h"
 

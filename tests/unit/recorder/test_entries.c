@@ -4,9 +4,9 @@
 
 #include "unity.h"
 
-#include "src/recorder/entries.h"
-#include "src/recorder/series.h"
-#include "src/signal/value.h"
+#include "src/ground/signal/value.h"
+#include "src/history/recorder/entries.h"
+#include "src/history/recorder/series.h"
 
 void setUp(void)
 {

@@ -6,10 +6,10 @@
 
 #include "unity.h"
 
-#include "src/face/face.h"
-#include "src/libhistory/ows_history.h"
-#include "src/recorder/recording.h"
-#include "src/signal/value.h"
+#include "src/faces/kit/face.h"
+#include "src/ground/signal/value.h"
+#include "src/history/recorder/recording.h"
+#include "src/public/ows_history.h"
 #include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/instance.h"
 

@@ -7,8 +7,8 @@
 #include "unity.h"
 
 #include "hal/base/time.h"
-#include "src/config/recorder.h"
-#include "src/recorder/rule.h"
+#include "src/config/read/recorder.h"
+#include "src/history/recorder/rule.h"
 
 static struct config_record rule;
 static struct rule_kept kept;

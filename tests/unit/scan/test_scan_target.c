@@ -8,10 +8,10 @@
 #include "unity.h"
 
 #include "hal/chips/family.h"
-#include "src/scan/device.h"
-#include "src/scan/scan.h"
-#include "src/scan/target.h"
-#include "src/show/json.h"
+#include "src/faces/show/json.h"
+#include "src/tool/scan/device.h"
+#include "src/tool/scan/scan.h"
+#include "src/tool/scan/target.h"
 
 void setUp(void)
 {

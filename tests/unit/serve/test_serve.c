@@ -14,10 +14,10 @@
 #include "unity.h"
 
 #include "hal/owfs/frame.h"
-#include "src/serve/serve.h"
-#include "src/serve/server.h"
-#include "src/service/command_age.h"
-#include "src/shm/word.h"
+#include "src/daemon/serve/serve.h"
+#include "src/daemon/serve/server.h"
+#include "src/ground/service/command_age.h"
+#include "src/memory/shm/word.h"
 #include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/instance.h"
 

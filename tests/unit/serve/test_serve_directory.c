@@ -6,7 +6,7 @@
 #include <unity.h>
 
 #include "hal/owfs/frame.h"
-#include "src/serve/directory.h"
+#include "src/daemon/serve/directory.h"
 
 static struct directory *directory;
 static struct buses buses;

@@ -4,7 +4,7 @@
 #include <string.h>
 #include <unity.h>
 
-#include "src/serve/node.h"
+#include "src/daemon/serve/node.h"
 
 static struct node node;
 

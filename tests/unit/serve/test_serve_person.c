@@ -10,10 +10,10 @@
 
 #include "unity.h"
 
-#include "src/config/config.h"
-#include "src/serve/person.h"
-#include "src/serve/signals.h"
-#include "src/shm/word.h"
+#include "src/config/read/config.h"
+#include "src/daemon/serve/person.h"
+#include "src/daemon/serve/signals.h"
+#include "src/memory/shm/word.h"
 #include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/instance.h"
 

@@ -7,7 +7,7 @@
 #include <unity.h>
 
 #include "hal/owfs/frame.h"
-#include "src/serve/request.h"
+#include "src/daemon/serve/request.h"
 
 static uint8_t bytes[REQUEST_MAX + 64];
 static struct request request;

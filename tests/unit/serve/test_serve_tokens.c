@@ -4,8 +4,8 @@
 #include <unity.h>
 
 #include "hal/owfs/frame.h"
-#include "src/serve/request.h"
-#include "src/serve/tokens.h"
+#include "src/daemon/serve/request.h"
+#include "src/daemon/serve/tokens.h"
 
 static uint8_t here[BUS_TOKEN], there[BUS_TOKEN];
 static struct tokens passed;

@@ -4,8 +4,8 @@
 #include <string.h>
 #include <unity.h>
 
-#include "src/serve/code.h"
-#include "src/serve/units.h"
+#include "src/daemon/serve/code.h"
+#include "src/daemon/serve/units.h"
 
 #define FAHRENHEIT 0x10000u
 #define KELVIN 0x20000u

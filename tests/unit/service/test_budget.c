@@ -8,7 +8,7 @@
 #include "unity.h"
 
 #include "hal/base/time.h"
-#include "src/service/budget.h"
+#include "src/ground/service/budget.h"
 
 #define SLOW_NS (3 * NS_PER_MS)
 #define WATCHES 40000

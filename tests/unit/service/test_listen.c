@@ -9,7 +9,7 @@
 
 #include "unity.h"
 
-#include "src/service/listen.h"
+#include "src/ground/service/listen.h"
 
 static char folder[] = "/tmp/listen.XXXXXX";
 static struct sockaddr_un at = {.sun_family = AF_UNIX};

@@ -9,7 +9,7 @@
 
 #include "unity.h"
 
-#include "src/service/notify.h"
+#include "src/ground/service/notify.h"
 
 static struct notify notify;
 static int manager = -1; /* the service manager's end */

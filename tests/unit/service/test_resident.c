@@ -8,7 +8,7 @@
 
 #include "unity.h"
 
-#include "src/service/resident.h"
+#include "src/ground/service/resident.h"
 
 void setUp(void)
 {

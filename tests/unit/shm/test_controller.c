@@ -7,7 +7,7 @@
 
 #include "unity.h"
 
-#include "src/libows/ows.h"
+#include "src/public/ows.h"
 #include "tests/unit/aid/giving.h"
 
 #define NUMBER 1

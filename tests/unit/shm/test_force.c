@@ -7,8 +7,8 @@
 
 #include "unity.h"
 
-#include "src/libows/ows.h"
-#include "src/shm/force.h"
+#include "src/memory/shm/force.h"
+#include "src/public/ows.h"
 
 #define TEXT_CAP 64
 #define BOOT 7

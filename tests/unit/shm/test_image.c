@@ -7,9 +7,9 @@
 
 #include "unity.h"
 
-#include "src/libows/ows.h"
-#include "src/shm/image.h"
-#include "src/shm/reader.h"
+#include "src/memory/shm/image.h"
+#include "src/memory/shm/reader.h"
+#include "src/public/ows.h"
 
 static void *memory;
 static struct image image;

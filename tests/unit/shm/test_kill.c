@@ -18,11 +18,11 @@
 
 #include "unity.h"
 
-#include "src/host/memory.h"
-#include "src/libows/handle.h"
-#include "src/shm/entries.h"
-#include "src/shm/reader.h"
-#include "src/shm/word.h"
+#include "src/daemon/host/memory.h"
+#include "src/memory/libows/handle.h"
+#include "src/memory/shm/entries.h"
+#include "src/memory/shm/reader.h"
+#include "src/memory/shm/word.h"
 #include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/whole.h"
 

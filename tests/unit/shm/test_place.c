@@ -9,8 +9,8 @@
 
 #include "unity.h"
 
-#include "src/shm/owner.h"
-#include "src/shm/place.h"
+#include "src/memory/shm/owner.h"
+#include "src/memory/shm/place.h"
 #include "tests/unit/aid/folder.h"
 
 #define ROOM (PLACE_PATH + 40)

@@ -12,7 +12,7 @@
 #include "unity.h"
 
 #include "hal/base/time.h"
-#include "src/shm/porter.h"
+#include "src/memory/shm/porter.h"
 
 #define TRIES 20000
 

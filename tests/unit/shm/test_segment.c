@@ -13,10 +13,10 @@
 
 #include "unity.h"
 
-#include "src/libows/ows.h"
-#include "src/shm/futex.h"
-#include "src/shm/lock.h"
-#include "src/shm/segment.h"
+#include "src/memory/shm/futex.h"
+#include "src/memory/shm/lock.h"
+#include "src/memory/shm/segment.h"
+#include "src/public/ows.h"
 #include "tests/unit/aid/asleep.h"
 #include "tests/unit/aid/folder.h"
 

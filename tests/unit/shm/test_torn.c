@@ -15,7 +15,7 @@
 
 #include "unity.h"
 
-#include "src/shm/reader.h"
+#include "src/memory/shm/reader.h"
 #include "tests/unit/aid/instance.h"
 #include "tests/unit/aid/whole.h"
 

@@ -4,7 +4,7 @@
 
 #include "unity.h"
 
-#include "src/show/range.h"
+#include "src/faces/show/range.h"
 
 void setUp(void)
 {

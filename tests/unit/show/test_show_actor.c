@@ -7,7 +7,7 @@
 
 #include "unity.h"
 
-#include "src/show/actor.h"
+#include "src/faces/show/actor.h"
 
 #define TIMES 3000
 

@@ -10,10 +10,10 @@
 #include "unity.h"
 
 #include "hal/chips/facts.h"
-#include "src/engine/table.h"
-#include "src/show/digits.h"
-#include "src/show/reading.h"
-#include "src/signal/value.h"
+#include "src/daemon/engine/table.h"
+#include "src/faces/show/digits.h"
+#include "src/faces/show/reading.h"
+#include "src/ground/signal/value.h"
 
 static struct reading reading;
 

@@ -7,7 +7,7 @@
 
 #include "unity.h"
 
-#include "src/show/faces.h"
+#include "src/faces/show/faces.h"
 
 #define S INT64_C(1000000000)
 

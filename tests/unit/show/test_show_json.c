@@ -6,7 +6,7 @@
 
 #include "unity.h"
 
-#include "src/show/json.h"
+#include "src/faces/show/json.h"
 
 static char *text;
 static size_t len;

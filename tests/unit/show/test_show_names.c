@@ -5,8 +5,8 @@
 
 #include "unity.h"
 
-#include "src/show/names.h"
-#include "src/text/distance.h"
+#include "src/faces/show/names.h"
+#include "src/ground/text/distance.h"
 #include "tests/unit/aid/instance.h"
 
 static const struct instance_signal signals[] = {

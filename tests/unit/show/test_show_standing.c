@@ -4,8 +4,8 @@
 
 #include "unity.h"
 
-#include "src/owsctl/rows.h"
-#include "src/show/standing.h"
+#include "src/faces/show/standing.h"
+#include "src/tool/owsctl/rows.h"
 
 void setUp(void)
 {

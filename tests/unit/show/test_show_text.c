@@ -6,7 +6,7 @@
 
 #include "unity.h"
 
-#include "src/show/text.h"
+#include "src/faces/show/text.h"
 
 void setUp(void)
 {

@@ -6,8 +6,8 @@
 
 #include "unity.h"
 
-#include "src/libows/ows.h"
-#include "src/show/when.h"
+#include "src/faces/show/when.h"
+#include "src/public/ows.h"
 
 #define SECOND INT64_C(1000000000)
 

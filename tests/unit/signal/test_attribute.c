@@ -6,7 +6,7 @@
 
 #include "unity.h"
 
-#include "src/signal/attribute.h"
+#include "src/ground/signal/attribute.h"
 
 /* Record i + 1 has name i. */
 static const char *const *names;

@@ -7,10 +7,10 @@
 #include "unity.h"
 
 #include "hal/bus/bus.h"
-#include "src/engine/retry.h"
-#include "src/libows/ows.h"
-#include "src/signal/error.h"
-#include "src/signal/quality.h"
+#include "src/daemon/engine/retry.h"
+#include "src/ground/signal/error.h"
+#include "src/ground/signal/quality.h"
+#include "src/public/ows.h"
 
 void setUp(void)
 {

@@ -5,7 +5,7 @@
 
 #include "unity.h"
 
-#include "src/signal/filter.h"
+#include "src/ground/signal/filter.h"
 
 #define S 1000000000LL
 

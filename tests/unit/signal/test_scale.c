@@ -8,8 +8,8 @@
 
 #include "unity.h"
 
-#include "src/libows/ows.h"
-#include "src/signal/scale.h"
+#include "src/ground/signal/scale.h"
+#include "src/public/ows.h"
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 #define ROUNDS 2000

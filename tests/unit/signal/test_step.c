@@ -4,7 +4,7 @@
 
 #include "unity.h"
 
-#include "src/signal/step.h"
+#include "src/ground/signal/step.h"
 
 #define S 1000000000LL
 

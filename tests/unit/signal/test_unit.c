@@ -6,7 +6,7 @@
 
 #include "unity.h"
 
-#include "src/signal/unit.h"
+#include "src/ground/signal/unit.h"
 
 void setUp(void)
 {

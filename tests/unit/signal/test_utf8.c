@@ -4,7 +4,7 @@
 
 #include "unity.h"
 
-#include "src/signal/utf8.h"
+#include "src/ground/signal/utf8.h"
 
 void setUp(void)
 {

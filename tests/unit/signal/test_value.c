@@ -9,7 +9,7 @@
 
 #include "unity.h"
 
-#include "src/signal/value.h"
+#include "src/ground/signal/value.h"
 
 static const uint64_t seed = 0x5eed1a5eu;
 

@@ -45,7 +45,7 @@ static float comma_strtof(const char *text, char **end)
 #define strtod comma_strtod
 #undef strtof
 #define strtof comma_strtof
-#include "src/signal/value.c"
+#include "src/ground/signal/value.c"
 #undef snprintf
 #undef strtod
 #undef strtof

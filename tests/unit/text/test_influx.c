@@ -5,7 +5,7 @@
 
 #include "unity.h"
 
-#include "src/text/influx.h"
+#include "src/ground/text/influx.h"
 
 static char fields[INFLUX_FIELDS];
 

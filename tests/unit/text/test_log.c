@@ -11,7 +11,7 @@
 
 #include "unity.h"
 
-#include "src/text/log.h"
+#include "src/ground/text/log.h"
 
 static struct log *log_under_test;
 static int pipe_fd[2];

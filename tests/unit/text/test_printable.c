@@ -6,7 +6,7 @@
 
 #include "unity.h"
 
-#include "src/text/printable.h"
+#include "src/ground/text/printable.h"
 
 void setUp(void)
 {

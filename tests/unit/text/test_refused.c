@@ -5,7 +5,7 @@
 
 #include "unity.h"
 
-#include "src/text/refused.h"
+#include "src/ground/text/refused.h"
 
 enum { CHECK = 256 };
 

@@ -7,7 +7,7 @@
 
 #include "unity.h"
 
-#include "src/web/body.h"
+#include "src/faces/web/body.h"
 
 static struct body body;
 

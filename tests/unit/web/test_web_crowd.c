@@ -6,7 +6,7 @@
 
 #include "unity.h"
 
-#include "src/web/crowd.h"
+#include "src/faces/web/crowd.h"
 
 static struct crowd crowd;
 

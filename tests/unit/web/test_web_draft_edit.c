@@ -7,9 +7,9 @@
 
 #include "unity.h"
 
-#include "src/web/draft_edit.h"
-#include "src/web/model.h"
-#include "src/web/problems.h"
+#include "src/faces/web/draft_edit.h"
+#include "src/faces/web/model.h"
+#include "src/faces/web/problems.h"
 
 static struct problems problems;
 static struct config_report report;

@@ -7,7 +7,7 @@
 
 #include "unity.h"
 
-#include "src/web/head.h"
+#include "src/faces/web/head.h"
 
 void setUp(void)
 {

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "hal/base/bell.h"
-#include "src/web/jobs.h"
+#include "src/faces/web/jobs.h"
 
 static struct jobs *jobs;
 static int bell;

@@ -4,7 +4,7 @@
 
 #include "unity.h"
 
-#include "src/web/origin.h"
+#include "src/faces/web/origin.h"
 
 void setUp(void)
 {

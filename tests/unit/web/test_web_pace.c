@@ -3,7 +3,7 @@
 #include "unity.h"
 
 #include "hal/base/time.h"
-#include "src/web/pace.h"
+#include "src/faces/web/pace.h"
 
 static struct pace pace;
 static int64_t now_ns;

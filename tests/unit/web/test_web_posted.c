@@ -6,8 +6,8 @@
 #include "unity.h"
 
 #include "hal/base/time.h"
-#include "src/web/head.h"
-#include "src/web/posted.h"
+#include "src/faces/web/head.h"
+#include "src/faces/web/posted.h"
 
 #define LARGE (BODY_MAX + 1)
 

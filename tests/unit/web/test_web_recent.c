@@ -2,7 +2,7 @@
 /* Tests of the signals in the order of their last change. */
 #include "unity.h"
 
-#include "src/web/recent.h"
+#include "src/faces/web/recent.h"
 
 static struct recent recent;
 

@@ -7,7 +7,7 @@
 
 #include "unity.h"
 
-#include "src/web/writer.h"
+#include "src/faces/web/writer.h"
 
 static struct writer_answer answer;
 

@@ -6,8 +6,8 @@
 
 #include "unity.h"
 
-#include "src/config/rio.h"
-#include "src/writer/order.h"
+#include "src/config/read/rio.h"
+#include "src/faces/writer/order.h"
 
 #define FIRST "owsd-config 1\n"
 #define TAG "0123456789abcdef"

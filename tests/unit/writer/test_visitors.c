@@ -7,7 +7,7 @@
 
 #include "unity.h"
 
-#include "src/writer/visitors.h"
+#include "src/faces/writer/visitors.h"
 
 static struct visitors visitors;
 

@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: MIT */
+/* Finds the blocks that edits change, and makes those that are not there. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/config/edit/edit_block.h"
+#include "src/config/edit/rio_write.h"
+#include "src/config/read/targets.h"
+#include "src/ground/text/distance.h"
+
+struct rio_node *edit_driver(const struct rio *rio)
+{
+	struct rio_node *node = rio_child(&rio->root, EDIT_DRIVER);
+
+	return node && node->kind == RIO_BLOCK ? node : NULL;
+}
+
+struct rio_node *edit_items(const struct rio *rio)
+{
+	struct rio_node *driver = edit_driver(rio);
+
+	return driver ? rio_child(driver, option_table[OPT_ITEM].key) : NULL;
+}
+
+struct rio_node *edit_item(const struct rio *rio, const char *name)
+{
+	struct rio_node *item = edit_items(rio);
+
+	for (; item; item = rio_next(item)) {
+		const struct rio_node *found = rio_child(item, option_table[OPT_NAME].key);
+
+		if (item->kind == RIO_BLOCK && found && !strcmp(found->value, name))
+			return item;
+	}
+	return NULL;
+}
+
+/* The blocks of programs, that stand once. */
+static const struct {
+	enum option option;
+	enum option_place place;
+} single[] = {{OPT_RECORDER, PLACE_RECORDER},
+              {OPT_INFLUX, PLACE_INFLUX},
+              {OPT_WEB, PLACE_WEB},
+              {OPT_MQTT, PLACE_MQTT}};
+#define SINGLES (sizeof(single) / sizeof(single[0]))
+
+/* The number of such a block; SINGLES: it is none. */
+static size_t single_of(const char *name)
+{
+	size_t i = 0;
+
+	while (i < SINGLES && strcmp(name, option_table[single[i].option].key) != 0)
+		i++;
+	return i;
+}
+
+/* The target in "Bus:TARGET"; NULL: it is no such name. */
+static const char *bus_target(const char *name)
+{
+	return strncmp(name, EDIT_BUS, strlen(EDIT_BUS)) == 0 ? name + strlen(EDIT_BUS) : NULL;
+}
+
+static struct rio_node *find_bus(const struct rio_node *driver, const char *target)
+{
+	struct rio_node *bus = rio_child(driver, option_table[OPT_BUS].key);
+
+	for (; bus; bus = rio_next(bus)) {
+		const struct rio_node *found = rio_child(bus, option_table[OPT_BUS_TARGET].key);
+
+		if (bus->kind == RIO_BLOCK && found && target_same(found->value, target))
+			return bus;
+	}
+	return NULL;
+}
+
+void edit_no_item(const struct rio *rio, const char *name, struct config_report *report)
+{
+	const struct rio_node *item = edit_items(rio);
+	unsigned best = text_too_far(name);
+	const char *nearest = NULL;
+
+	for (; item; item = rio_next(item)) {
+		const struct rio_node *own = rio_child(item, option_table[OPT_NAME].key);
+
+		if (own && text_nearer(name, own->value, &best))
+			nearest = own->value;
+	}
+	report_error(report, (struct place){0}, "there is no item \"%s\"%s%s%s", name,
+	             nearest ? "; did you mean \"" : "", nearest ? nearest : "",
+	             nearest ? "\"?" : "");
+}
+
+struct rio_node *edit_block(const struct rio *rio, const char *name, enum option_place *place,
+                            struct config_report *report)
+{
+	struct rio_node *driver = edit_driver(rio), *block = edit_item(rio, name);
+	const char *target = bus_target(name);
+
+	*place = PLACE_ITEM;
+	if (block)
+		return block;
+	if (!strcmp(name, EDIT_DRIVER)) {
+		*place = PLACE_DRIVER;
+		block = driver;
+	} else if (driver && target) {
+		*place = PLACE_BUS;
+		block = find_bus(driver, target);
+	} else if (driver && single_of(name) < SINGLES) {
+		*place = single[single_of(name)].place;
+		block = rio_child(driver, name);
+		if (block && block->kind != RIO_BLOCK)
+			block = NULL;
+	}
+	if (!block && target)
+		report_error(report, (struct place){0}, "there is no Bus for \"%s\"", target);
+	else if (!block)
+		edit_no_item(rio, name, report);
+	return block;
+}
+
+static int make_bus(struct rio **rio, struct rio_node *driver, const char *target)
+{
+	char *quoted = rio_quote(target), *text = NULL;
+	int err = -ENOMEM;
+
+	if (quoted && asprintf(&text, "%s {\n  %-*s %s\n}", option_table[OPT_BUS].key,
+	                       RIO_KEY_WIDTH - 1, option_table[OPT_BUS_TARGET].key, quoted) >= 0) {
+		err = rio_add(rio, driver, text);
+		free(text);
+	}
+	free(quoted);
+	return err;
+}
+
+int edit_make_block(struct rio **rio, const char *name)
+{
+	struct rio_node *driver = edit_driver(*rio);
+	const char *target = bus_target(name);
+	char text[RIO_KEY_MAX + 8];
+
+	if (!driver || edit_item(*rio, name))
+		return 0;
+	if (target)
+		return *target && !find_bus(driver, target) ? make_bus(rio, driver, target) : 0;
+	if (single_of(name) == SINGLES || rio_child(driver, name))
+		return 0;
+	snprintf(text, sizeof(text), "%s {\n}", name);
+	return rio_add(rio, driver, text);
+}

@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: MIT */
+/* Reads the Bus blocks. Only the form of a value is checked here; the backend knows its meaning. */
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "src/config/read/build.h"
+#include "src/config/read/buses.h"
+#include "src/config/read/targets.h"
+#include "src/ground/signal/hash.h"
+
+static void keep_option(struct build *build, struct config_bus *bus, enum option option,
+                        const struct option_value *value)
+{
+	const char *text = value->text;
+
+	if (option == OPT_BUS_SENSORS)
+		text = relative_file(build, text, 0, &value->node->value_at);
+	/* a backend knows these two words of all that mean them */
+	if (option_table[option].kind == OPTION_FLAG)
+		text = value->number ? "on" : "off";
+	bus->options[bus->option_count++] = (struct config_option){
+		.key = option_table[option].key,
+		.text = build_keep(build, text, strlen(text)),
+		.line = value->node->value_at.line,
+		.column = value->node->value_at.column,
+	};
+}
+
+static void bus_build(struct build *build, const struct rio_node *block)
+{
+	struct config *config = &build->box->config;
+	struct config_bus *bus = &config->buses[config->bus_count];
+	struct option_value values[OPTION_COUNT_ALL];
+	const struct option_value *target = &values[OPT_BUS_TARGET];
+	const char *text;
+
+	options_read(block, PLACE_BUS, values, build->report);
+	if (!target->given || !*target->text) {
+		if (!block->broken && (!target->node || target->given))
+			report_error(build->report, block->at, "expected a Target in this Bus");
+		return;
+	}
+	text = target_of_file(build, target->text,
+	                      (struct place){.file = target->node->value_at.file});
+	if (config_bus(config, text)) {
+		report_error(build->report, target->node->value_at,
+		             "there is a Bus for \"%s\" already", target->text);
+		return;
+	}
+	bus->target = build_keep(build, text, strlen(text));
+	bus->line = target->node->value_at.line;
+	bus->column = target->node->value_at.column;
+	bus->options = build_take(build, OPTION_COUNT_ALL - OPT_BUS_TARGET, sizeof(*bus->options));
+	for (int i = OPT_BUS_TARGET + 1; bus->options && i < OPTION_COUNT_ALL; i++)
+		if (option_table[i].place == PLACE_BUS && values[i].given)
+			keep_option(build, bus, (enum option)i, &values[i]);
+	config->bus_count++;
+}
+
+void buses_build(struct build *build, const struct rio_node *driver)
+{
+	struct config *config = &build->box->config;
+	unsigned count = options_blocks(driver, OPT_BUS);
+
+	config->buses = build_take(build, count, sizeof(*config->buses));
+	for (const struct rio_node *node = driver->first; node && config->buses; node = node->next)
+		if (option_is_block(node, OPT_BUS))
+			bus_build(build, node);
+}
+
+const struct config_bus *config_bus(const struct config *config, const char *target)
+{
+	for (unsigned i = 0; i < config->bus_count; i++)
+		if (target_same(config->buses[i].target, target))
+			return &config->buses[i];
+	return NULL;
+}
+
+#define FILE_MAX 1000000
+
+static uint64_t hash_of(const char *file)
+{
+	/* O_NONBLOCK: the name may lead to a pipe by now, which must not hold a reload */
+	int fd = open(file, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+	FILE *in = fd < 0 ? NULL : fdopen(fd, "r");
+	uint64_t hash = HASH_BEGIN;
+
+	for (int i = 0, c; in && i < FILE_MAX && (c = getc(in)) != EOF; i++)
+		hash = hash_text(hash, &(char){(char)c}, 1);
+	if (in)
+		fclose(in);
+	else if (fd >= 0)
+		close(fd);
+	return hash;
+}
+
+void config_hash_files(struct config *config)
+{
+	for (unsigned i = 0; i < config->bus_count; i++)
+		for (unsigned k = 0; k < config->buses[i].option_count; k++) {
+			struct config_option *option = &config->buses[i].options[k];
+
+			if (strcmp(option->key, option_table[OPT_BUS_SENSORS].key) == 0)
+				option->contents = hash_of(option->text);
+		}
+}
+
+/* Is the target configured? With auto always, since its ways are not known here. */
+static bool is_served(const struct config *config, const char *target)
+{
+	for (unsigned i = 0; i < config->target_count; i++)
+		if (target_same(config->targets[i].text, target) ||
+		    !strncmp(config->targets[i].text, "auto", 4))
+			return true;
+	return false;
+}
+
+void config_check_buses(const struct config *config, struct config_report *report)
+{
+	for (unsigned i = 0; i < config->bus_count; i++) {
+		const struct config_bus *bus = &config->buses[i];
+
+		if (!is_served(config, bus->target))
+			report_warning(report, (struct place){config->file, bus->line, bus->column},
+			               "no target is \"%s\": this Bus has no effect", bus->target);
+	}
+}

@@ -1,0 +1,395 @@
+/* SPDX-License-Identifier: MIT */
+/* Makes an item of a block of the file, and reports what is wrong or odd about its keys. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "hal/chips/facts.h"
+#include "hal/owfs/path.h"
+#include "src/config/read/alarm.h"
+#include "src/config/read/build.h"
+#include "src/config/read/item.h"
+#include "src/config/read/limits.h"
+#include "src/config/read/mqtt.h"
+#include "src/config/read/property.h"
+#include "src/config/read/recorder.h"
+#include "src/config/read/scaling.h"
+#include "src/ground/signal/attribute.h"
+#include "src/ground/signal/value.h"
+
+/* How often a switch is read back: it costs a busy wire little. */
+#define READ_BACK_NS (10 * INT64_C(1000000000))
+
+/* Where a key's value stands, or the item if the key is absent. */
+static struct place place_of(const struct option_value *value, const struct rio_node *block)
+{
+	return value->node ? value->node->value_at : block->at;
+}
+
+/*
+ * Report that the key is missing, and which unknown one was probably meant: a warning does not come
+ * to everybody who reads the error.
+ */
+static void report_missing(struct build *build, const struct rio_node *block, const char *key,
+                           const char *what)
+{
+	char text[OPTION_NEAREST];
+
+	if (block->broken)
+		return;
+	for (const struct rio_node *child = block->first; child; child = child->next) {
+		const char *nearest = option_find(PLACE_ITEM, child->key) < 0
+		                              ? option_nearest(PLACE_ITEM, child->key, text)
+		                              : NULL;
+
+		if (!nearest || !strstr(nearest, key))
+			continue;
+		report_error(build->report, child->at,
+		             "expected %s in this Item: is %s meant to be %s?", what, child->key,
+		             nearest);
+		return;
+	}
+	report_error(build->report, block->at, "expected %s in this Item", what);
+}
+
+static void build_name(struct build *build, const struct rio_node *block,
+                       const struct option_value *values, struct config_item *item)
+{
+	const struct option_value *name = &values[OPT_NAME];
+	const char *fault;
+
+	item->name = build_keep(build, name->text, strlen(name->text));
+	if (!name->node) {
+		report_missing(build, block, "Name", "a Name");
+		return;
+	}
+	fault = name->given ? signal_name_fault(name->text) : NULL;
+	if (fault)
+		report_error(build->report, name->node->value_at, "the name \"%s\" %s", name->text,
+		             fault);
+}
+
+/* "/" bus.N, device and property, without the flags. */
+static const char *normalised(struct build *build, const char *text, size_t len,
+                              const struct path *path)
+{
+	const char *rest = path->device.len ? path->device.text : path->property.text;
+	char whole[PATH_LEN_MAX + 16], *p = whole;
+	size_t tail = (size_t)(text + len - rest);
+
+	if (path->bus >= 0)
+		p += snprintf(p, sizeof(whole), "/bus.%d", path->bus);
+	*p++ = '/';
+	memcpy(p, rest, tail);
+	return build_keep(build, whole, (size_t)(p - whole) + tail);
+}
+
+static void build_path(struct build *build, const struct rio_node *block,
+                       const struct option_value *values, struct config_item *item,
+                       struct path *path)
+{
+	const struct option_value *value = &values[OPT_PATH];
+	const char *text = value->text, *fault;
+	struct place place = place_of(value, block);
+
+	memset(path, 0, sizeof(*path));
+	item->path = "";
+	item->path_at = option_spot(value);
+	if (!value->given) {
+		if (!value->node)
+			report_missing(build, block, "Path", "a Path");
+		return;
+	}
+	fault = path_split(text, strlen(text), path);
+	if (!fault && !path->property.len)
+		fault = path->device.len ? "has no property after the device" : "has no property";
+	if (fault) {
+		report_error(build->report, place, "the path \"%s\" %s", text, fault);
+		return;
+	}
+	if (path->alarm)
+		report_warning(build->report, place,
+		               "the path \"%s\" is entered without /alarm, which is dropped; "
+		               "alarms are chosen by Alarm on",
+		               text);
+	item->path = normalised(build, text, strlen(text), path);
+	item->fresh = path->uncached;
+	if (!path->has_rom)
+		return;
+	item->device = build_keep(build, path->last.text, path->last.len);
+	item->family = model_of(item->path);
+}
+
+/* The meaning of IOType, before the readable keys; false: its type is no type. */
+static bool take_io_type(struct build *build, const struct option_value *value,
+                         struct config_item *item)
+{
+	uint32_t bits = (uint32_t)value->number, unknown = bits & ~IO_TYPE_KNOWN;
+	int code = (int)(bits & IO_TYPE_CODE);
+
+	if (unknown)
+		report_warning(build->report, value->node->value_at,
+		               "IOType %s has the unknown bits 0x%04X, which are ignored",
+		               value->text, (unsigned)unknown);
+	item->output = bits & IO_TYPE_OUTPUT;
+	item->readable = !item->output || (bits & IO_TYPE_INPUT);
+	item->writable = item->output;
+	item->fresh |= (bits & IO_TYPE_UNCACHED) != 0;
+	if (!value_type_ok(code)) {
+		report_error(
+			build->report, value->node->value_at,
+			"IOType %s: %d is not a type; expected 1 bool, 2 byte, 3 short, 4 long, "
+			"5 word, 6 dword, 7 float, 8 double, 10 large or 12 string in the "
+			"last hexadecimal digit",
+			value->text, code);
+		return false;
+	}
+	item->type = (enum ows_type)code;
+	return true;
+}
+
+/* Returns whether the type is known, so that values can be judged by it. */
+static bool build_type(struct build *build, const struct rio_node *block,
+                       const struct option_value *values, struct config_item *item)
+{
+	const struct option_value *bits = &values[OPT_IO_TYPE], *type = &values[OPT_TYPE],
+				  *io = &values[OPT_IO];
+	bool known = false;
+
+	if (bits->given) {
+		known = take_io_type(build, bits, item);
+	} else {
+		item->output = io->number != 0;
+		item->readable = !item->output;
+		item->writable = item->output;
+	}
+	if (type->given) {
+		if (known && bits->node && item->type != (enum ows_type)(int)type->number)
+			report_error(build->report, type->node->value_at,
+			             "Type %s contradicts IOType %s in line %d, which says %s",
+			             type->text, bits->text, bits->node->at.line,
+			             value_type_name(item->type));
+		item->type = (enum ows_type)(int)type->number;
+		known = true;
+	} else if (!bits->node && !type->node) {
+		report_missing(build, block, "Type", "a Type or an IOType");
+	}
+	if (bits->node && bits->given && io->given && item->output != (io->number != 0))
+		report_error(build->report, io->node->value_at,
+		             "IO %s contradicts IOType %s in line %d, which says %s", io->text,
+		             bits->text, bits->node->at.line, item->output ? "output" : "input");
+	return known;
+}
+
+static void build_flags(struct build *build, const struct option_value *values,
+                        const struct path *path, struct config_item *item)
+{
+	const struct option_value *uncached = &values[OPT_UNCACHED];
+
+	if (values[OPT_READABLE].given)
+		item->readable = values[OPT_READABLE].number != 0;
+	if (values[OPT_WRITABLE].given)
+		item->writable = values[OPT_WRITABLE].number != 0;
+	if (uncached->given && !uncached->number && path->uncached)
+		report_error(build->report, uncached->node->value_at,
+		             "Uncached %s contradicts Path, which begins with /uncached",
+		             uncached->text);
+	if (uncached->given)
+		item->fresh = uncached->number != 0;
+	item->alarm = values[OPT_ALARM].number != 0;
+}
+
+/* InitValue or SafeValue of a number type; returns whether there is one. */
+static bool build_value(struct build *build, const struct option_value *value,
+                        const struct config_item *item, int64_t *number)
+{
+	int err;
+
+	err = value_parse(item->type, value->text, number);
+	if (!err)
+		return true;
+	if (err == -ERANGE)
+		report_error(build->report, value->node->value_at,
+		             "%s \"%s\": the type %s cannot hold it", value->node->key, value->text,
+		             value_type_name(item->type));
+	else
+		report_error(build->report, value->node->value_at,
+		             "%s \"%s\": expected %s (type %s)", value->node->key, value->text,
+		             item->type == OWS_BOOL       ? "0, 1, on, off, yes, no, true or false"
+		             : value_is_float(item->type) ? "a number with a decimal point"
+		                                          : "a whole number",
+		             value_type_name(item->type));
+	return false;
+}
+
+static void check_string(struct build *build, const struct option_value *value)
+{
+	if (strlen(value->text) > VALUE_STRING_MAX)
+		report_error(build->report, value->node->value_at,
+		             "%s: a string is at most %d bytes long", value->node->key,
+		             VALUE_STRING_MAX);
+}
+
+/* What an output begins with, and how long it waits for the program that it obeyed. */
+static void build_start(struct build *build, const struct option_value *values,
+                        struct config_item *item)
+{
+	const struct option_value *start = &values[OPT_START], *delay = &values[OPT_SAFE_DELAY];
+
+	item->starts_last = start->given && strcmp(start->text, "last") == 0;
+	if (start->given && !item->starts_last && strcmp(start->text, "init") != 0)
+		report_error(build->report, start->node->value_at,
+		             "Start \"%s\": expected init or last", start->text);
+	else if (item->starts_last && !item->output)
+		report_error(build->report, start->node->value_at,
+		             "Start \"last\": expected an output, and this is an input");
+	item->has_safe_delay = delay->given;
+	item->safe_delay_ns = option_ns(delay);
+	if (delay->given && !item->has_safe)
+		report_warning(build->report, delay->node->at,
+		               "SafeDelay does nothing without SafeValue");
+	item->confirm = values[OPT_CONFIRM].number != 0;
+	if (item->confirm && !config_item_takes_sets(item))
+		report_warning(build->report, values[OPT_CONFIRM].node->at,
+		               "Confirm does nothing: nobody sets this input");
+}
+
+static bool has_por(const struct config_item *item)
+{
+	char path[PATH_LEN_MAX + 8];
+	struct path_property property;
+
+	if (!item->device)
+		return false;
+	snprintf(path, sizeof(path), "/%s/por", item->device);
+	property = property_look(path);
+	return property.type && property.exists && property.readable;
+}
+
+/* What of an output reads as it was written is read back, and the file says how often. */
+static void build_read_back(struct build *build, const struct option_value *values,
+                            struct config_item *item)
+{
+	const struct option_value *every = &values[OPT_READ_BACK], *restore = &values[OPT_RESTORE];
+	struct path_property property = property_look(item->path);
+	bool reads = property.readable && property.exact && (!property.type || property.holds);
+	const char *fault = !item->output              ? "this is an input"
+	                    : item->type == OWS_STRING ? "this is a text"
+	                    : !reads                   ? "it need not read as it was written"
+	                                               : NULL;
+
+	if (!fault)
+		item->read_back_ns = every->given     ? option_ns(every)
+		                     : property.holds ? READ_BACK_NS
+		                                      : 0;
+	else if (every->given && every->number > 0)
+		report_warning(build->report, every->node->at, "ReadBack does nothing: %s%s%s",
+		               fault, reads || !*property.held ? "" : "; write the Path of ",
+		               reads ? "" : property.held);
+	item->has_por = item->read_back_ns && has_por(item);
+	item->restores = restore->number != 0;
+	if (item->restores && !item->read_back_ns)
+		report_warning(build->report, restore->node->at,
+		               "Restore does nothing: the item is not read back (ReadBack)");
+}
+
+static void build_values(struct build *build, const struct option_value *values, bool known,
+                         struct config_item *item)
+{
+	const struct option_value *init = &values[OPT_INIT_VALUE], *safe = &values[OPT_SAFE_VALUE];
+
+	item->init_text = build_keep(build, init->text, strlen(init->text));
+	item->safe_text = build_keep(build, safe->text, strlen(safe->text));
+	if (item->type == OWS_STRING) {
+		check_string(build, init);
+		check_string(build, safe);
+		item->has_init = *init->text != '\0';
+		item->has_safe = safe->given;
+	} else if (known) {
+		item->has_init = *init->text && build_value(build, init, item, &item->init_value);
+		item->has_safe = safe->given && build_value(build, safe, item, &item->safe_value);
+	}
+	build_start(build, values, item);
+	if (item->has_safe && !item->output && !item->writable)
+		report_warning(build->report, safe->node->at,
+		               "SafeValue does nothing: this input is not Writable");
+	item->per_factor = (uint32_t)values[OPT_PER_FACTOR].number;
+	item->stale_after_ns = option_ns(&values[OPT_STALE_AFTER]);
+}
+
+/*
+ * Warn of an integer type for a property with decimals: its value would be bad at every fraction.
+ * A scaled value is rounded instead.
+ */
+static void warn_of_decimals(struct build *build, const struct rio_node *block,
+                             const struct option_value *values, const struct config_item *item)
+{
+	struct quantity quantity;
+
+	if (value_is_float(item->type) || item->type == OWS_STRING || scale_changes(&item->scale) ||
+	    !quantity_of(item->path, &quantity) || quantity.decimals <= 0)
+		return;
+	report_warning(build->report, place_of(&values[OPT_TYPE], block),
+	               "\"%s\" has decimals, and a %s has none: write Type double or float",
+	               item->path, value_type_name(item->type));
+}
+
+void item_build(struct build *build, const struct rio_node *block, struct config_item *item)
+{
+	struct option_value values[OPTION_COUNT_ALL];
+	struct path path;
+	bool known;
+
+	options_read(block, PLACE_ITEM, values, build->report);
+	item->line = block->at.line;
+	build_name(build, block, values, item);
+	build_path(build, block, values, item, &path);
+	known = build_type(build, block, values, item);
+	build_flags(build, values, &path, item);
+	build_values(build, values, known, item);
+	build_read_back(build, values, item);
+	scaling_build(build, values, known, item);
+	if (known)
+		warn_of_decimals(build, block, values, item);
+	alarm_build(build, block, values, &path, item);
+	limits_build(build, values, item);
+	record_build(build, &values[OPT_RECORD], known, item);
+	class_build(build, &values[OPT_CLASS], item);
+}
+
+struct named {
+	const char *name;
+	unsigned index;
+};
+
+static int compare_named(const void *a, const void *b)
+{
+	const struct named *x = a, *y = b;
+	int order = strcmp(x->name, y->name);
+
+	return order ? order : (x->index > y->index) - (x->index < y->index);
+}
+
+void items_check(struct build *build, const struct place *names)
+{
+	const struct config *config = &build->box->config;
+	struct named *sorted = calloc(config->item_count + 1, sizeof(*sorted));
+
+	if (!sorted) {
+		build->no_memory = true;
+		return;
+	}
+	for (unsigned i = 0; i < config->item_count; i++)
+		sorted[i] = (struct named){config->items[i].name, i};
+	qsort(sorted, config->item_count, sizeof(*sorted), compare_named);
+	for (unsigned i = 1, first = 0; i < config->item_count; i++) {
+		if (strcmp(sorted[i].name, sorted[first].name))
+			first = i;
+		else if (*sorted[i].name)
+			report_error(build->report, names[sorted[i].index],
+			             "the name \"%s\" is given twice, first in line %d",
+			             sorted[i].name, names[sorted[first].index].line);
+	}
+	free(sorted);
+}

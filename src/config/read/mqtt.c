@@ -1,0 +1,182 @@
+/* SPDX-License-Identifier: MIT */
+/* The Mqtt block: the ways to a broker, what owsd-mqtt shows there, and what it takes. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/config/read/build.h"
+#include "src/config/read/mqtt.h"
+
+#define PORT 1883
+#define PORT_TLS 8883
+#define CLASS_MAX 31u
+#define PROFILE_TEXT(name) #name,
+
+/* Names with slashes between them. */
+static const char *check_topic(const char *topic)
+{
+	size_t len = strlen(topic);
+
+	return strspn(topic, TEXT_KEY_LETTERS "/") == len && len <= TEXT_KEY_NAME &&
+	                       topic[0] != '/' && topic[len - 1] != '/' && !strstr(topic, "//")
+	               ? NULL
+	               : "expected letters, digits, '-', '_', '.' and '/' between them, at most 63";
+}
+
+static const char *check_profile(const char *profile)
+{
+	static const char *const words[] = {MQTT_PROFILES(PROFILE_TEXT)};
+
+#ifndef OWSD_PROTOBUFC
+	if (!strcmp(profile, "sparkplug"))
+		return "owsd was built without libprotobuf-c";
+#endif
+	for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++)
+		if (!strcmp(profile, words[i]))
+			return NULL;
+	return "expected one of" MQTT_PROFILES(MQTT_PROFILE_WORD);
+}
+
+static const char *check_protocol(const char *protocol)
+{
+	return !strcmp(protocol, "5") || !strcmp(protocol, "3.1.1") ? NULL : "expected 5 or 3.1.1";
+}
+
+/* ":8883", or nothing. */
+static bool take_port(const char *text, size_t len, uint16_t *port)
+{
+	unsigned long number;
+	char *end;
+
+	if (!len)
+		return true;
+	if (text[0] != ':' || len < 2 || len > 6 || text[1] < '0' || text[1] > '9')
+		return false;
+	number = strtoul(text + 1, &end, 10);
+	*port = (uint16_t)number;
+	return end == text + len && number > 0 && number <= UINT16_MAX;
+}
+
+static const char *take_way(struct build *build, const char *text, size_t len,
+                            struct config_mqtt_way *way)
+{
+	static const char wrong[] = "expected mqtt://HOST:PORT or mqtts://HOST:PORT";
+	size_t scheme = len > 7 && !strncmp(text, "mqtt://", 7)    ? 7
+	                : len > 8 && !strncmp(text, "mqtts://", 8) ? 8
+	                                                           : 0;
+	bool bracket = scheme && text[scheme] == '[';
+	const char *host = text + scheme + bracket;
+	size_t host_len = strcspn(host, bracket ? "]" : ":/| \t@?#"), after;
+
+	if (scheme && memchr(text, '@', len))
+		return "no password stands in it: User and PasswordFile are keys of their own";
+	after = scheme + host_len + 2u * bracket;
+	if (!scheme || !host_len || after > len ||
+	    strspn(host, bracket ? "0123456789abcdefABCDEF:.%" : TEXT_KEY_LETTERS) < host_len)
+		return wrong;
+	way->tls = scheme == 8;
+	way->port = way->tls ? PORT_TLS : PORT;
+	if (!take_port(text + after, len - after, &way->port))
+		return wrong;
+	way->host = build_keep(build, host, host_len);
+	return NULL;
+}
+
+static void take_ways(struct build *build, const struct rio_node *node, struct config_mqtt *mqtt)
+{
+	const struct place at = node ? node->value_at : (struct place){0};
+	const char *rest = mqtt->broker, *text, *why = NULL;
+	size_t len;
+
+	while (build_part(&rest, "|", &text, &len)) {
+		if (mqtt->way_count == CONFIG_MQTT_WAYS)
+			why = "more than 8 ways";
+		else
+			why = take_way(build, text, len, &mqtt->ways[mqtt->way_count]);
+		/* there may be a password in it */
+		if (why && strcspn(text, "@?") < len)
+			report_error(build->report, at, "Broker: %s", why);
+		else if (why)
+			report_error(build->report, at, "Broker \"%.*s\": %s", (int)len, text, why);
+		if (why)
+			return;
+		mqtt->way_count++;
+	}
+}
+
+static bool is_local(const char *host)
+{
+	return !strcmp(host, "localhost") || !strncmp(host, "127.", 4) || !strcmp(host, "::1");
+}
+
+/* Keys that need each other. */
+static void check_together(struct build *build, const struct rio_node *block,
+                           const struct config_mqtt *mqtt)
+{
+	bool tls = false;
+
+	for (unsigned i = 0; i < mqtt->way_count; i++)
+		tls = tls || mqtt->ways[i].tls;
+	if (!strcmp(mqtt->profile, "sparkplug") && strchr(mqtt->topic, '/'))
+		report_error(build->report, block->at,
+		             "Topic \"%s\": the group of Sparkplug has no '/'", mqtt->topic);
+	if (!strcmp(mqtt->profile, "sparkplug") && !strcmp(mqtt->topic, "STATE"))
+		report_error(
+			build->report, block->at,
+			"Topic \"STATE\": Sparkplug keeps this name for hosts; take another one");
+	if (mqtt->primary_host && strcmp(mqtt->profile, "sparkplug") != 0)
+		report_warning(build->report, block->at,
+		               "PrimaryHost is of the profile sparkplug alone: it is not used");
+	if (!mqtt->cert_file != !mqtt->key_file)
+		report_error(build->report, block->at, "%s: CertFile and KeyFile belong together",
+		             mqtt->cert_file ? "CertFile without KeyFile"
+		                             : "KeyFile without CertFile");
+	if ((mqtt->ca_file || mqtt->cert_file) && !tls && mqtt->way_count)
+		report_warning(build->report, block->at,
+		               "no way of Broker is mqtts://: the certificates are not used");
+	for (unsigned i = 0; mqtt->password_file && i < mqtt->way_count; i++)
+		if (!mqtt->ways[i].tls && !is_local(mqtt->ways[i].host))
+			report_warning(build->report, block->at,
+			               "the password goes to %s in the clear: mqtts:// hides it",
+			               mqtt->ways[i].host);
+}
+
+void mqtt_build(struct build *build, const struct rio_node *block)
+{
+	struct config_mqtt *mqtt = &build->box->config.mqtt;
+	struct option_value values[OPTION_COUNT_ALL];
+	const struct rio_node *broker;
+
+	options_read(block, PLACE_MQTT, values, build->report);
+	mqtt->given = block != NULL;
+	broker = values[OPT_MQTT_BROKER].node ? values[OPT_MQTT_BROKER].node : block;
+	mqtt->broker = text_key(build, values, OPT_MQTT_BROKER, text_is_short);
+	take_ways(build, broker, mqtt);
+	mqtt->user = text_key(build, values, OPT_MQTT_USER, text_is_short);
+	mqtt->password_file = text_key(build, values, OPT_MQTT_PASSWORD_FILE, text_is_file);
+	mqtt->ca_file = text_key(build, values, OPT_MQTT_CA_FILE, text_is_file);
+	mqtt->cert_file = text_key(build, values, OPT_MQTT_CERT_FILE, text_is_file);
+	mqtt->key_file = text_key(build, values, OPT_MQTT_KEY_FILE, text_is_file);
+	mqtt->mqtt5 = !strcmp(text_key(build, values, OPT_MQTT_PROTOCOL, check_protocol), "5");
+	mqtt->node = text_key(build, values, OPT_MQTT_NODE, text_is_name);
+	mqtt->topic = text_key(build, values, OPT_MQTT_TOPIC, check_topic);
+	mqtt->profile = text_key(build, values, OPT_MQTT_PROFILE, check_profile);
+	mqtt->discovery = text_key(build, values, OPT_MQTT_DISCOVERY, check_topic);
+	mqtt->primary_host = text_key(build, values, OPT_MQTT_PRIMARY_HOST, text_is_name);
+	mqtt->write = values[OPT_MQTT_WRITE].number != 0;
+	if (block)
+		check_together(build, block, mqtt);
+}
+
+void class_build(struct build *build, const struct option_value *value, struct config_item *item)
+{
+	const char *text = value->text;
+	size_t len = strlen(text);
+
+	if (!value->given || !len)
+		return;
+	if (len > CLASS_MAX || strspn(text, "abcdefghijklmnopqrstuvwxyz0123456789_") != len)
+		report_error(build->report, value->node->value_at,
+		             "Class \"%s\": expected light, cover, or a device class such as door",
+		             text);
+	item->device_class = build_keep(build, text, len);
+}

@@ -1,0 +1,285 @@
+/* SPDX-License-Identifier: MIT */
+/* The table of all keys of the configuration, and how the values of a block are read by it. */
+#include <ctype.h>
+#include <float.h>
+#include <limits.h>
+#include <string.h>
+#include <strings.h>
+
+#include "src/config/read/options.h"
+#include "src/ground/signal/value.h"
+#include "src/ground/text/distance.h"
+
+#define DAY 86400.0
+
+const struct option_def option_table[OPTION_COUNT_ALL] = {
+#define RANGE(least_, most_) .least = (least_), .most = (most_)
+#define OPTION(name, key_, place_, kind_, ...) \
+	[OPT_##name] = { \
+		.key = (key_), .place = PLACE_##place_, .kind = OPTION_##kind_, __VA_ARGS__},
+#include "src/config/read/option_list.h"
+#undef OPTION
+};
+
+static const char *const place_names[] = {"OwsDrv", "Item", "Bus", "Recorder",
+                                          "Influx", "Web",  "Mqtt"};
+
+int option_find(enum option_place place, const char *key)
+{
+	for (int i = 0; i < OPTION_COUNT_ALL; i++)
+		if (option_table[i].place == place && !strcmp(option_table[i].key, key))
+			return i;
+	return -1;
+}
+
+bool option_is_block(const struct rio_node *node, enum option option)
+{
+	return node->kind == RIO_BLOCK && !strcmp(node->key, option_table[option].key);
+}
+
+unsigned options_blocks(const struct rio_node *driver, enum option option)
+{
+	unsigned count = 0;
+
+	for (const struct rio_node *node = driver->first; node; node = node->next)
+		count += option_is_block(node, option);
+	return count;
+}
+
+/* The fields of OwsDrv's dialog whose words are far from those of the keys, as they begin. */
+static const struct {
+	const char *words;
+	enum option option;
+} dialog[] = {
+	{"Target computer", OPT_TARGET_NAME},
+	{"Maximum number of consecutive", OPT_MAX_CONS_ALARMS},
+	{"Maximum number of retries", OPT_MAX_RETRIES},
+	{"Timeout for", OPT_TIMEOUT},
+	{"REX I/O Name", OPT_NAME},
+	{"Sensor/Actuator Path", OPT_PATH},
+	{"Power-on Reset Alarm", OPT_POR_ALARM},
+};
+
+const char *option_nearest(enum option_place place, const char *key, char text[OPTION_NEAREST])
+{
+	unsigned least = UINT_MAX;
+	size_t used = 0;
+
+	for (size_t i = 0; i < sizeof(dialog) / sizeof(dialog[0]); i++)
+		if (option_table[dialog[i].option].place == place &&
+		    !strncasecmp(key, dialog[i].words, strlen(dialog[i].words)))
+			return option_table[dialog[i].option].key;
+	for (int i = 0; i < OPTION_COUNT_ALL && used < OPTION_NEAREST; i++) {
+		const char *known = option_table[i].key;
+		unsigned distance;
+
+		if (option_table[i].place != place)
+			continue;
+		distance = text_distance(key, known);
+		/* the beginning of a long key means that key */
+		if (distance > 1 + strlen(known) / 4 && strlen(key) > 2 &&
+		    !strncasecmp(known, key, strlen(key)))
+			distance = 1;
+		if (distance > 1 + strlen(known) / 4 || distance > least)
+			continue;
+		used = distance < least ? 0 : used;
+		used += (size_t)snprintf(text + used, OPTION_NEAREST - used, "%s%s",
+		                         used ? " or " : "", known);
+		least = distance;
+	}
+	return used ? text : NULL;
+}
+
+const char *option_of_alarm(const char *key, const char *value, char text[OPTION_NEAREST])
+{
+	bool sets = strchr(value, '=') && !strpbrk(value, " \t"),
+	     latch = !strncasecmp(value, "latch", 5);
+
+	if (sets)
+		return option_table[latch ? OPT_RESET_LATCH : OPT_SET_ALARM].key;
+	if (latch)
+		return option_table[OPT_LATCH_ALARM].key;
+	if (!strcasecmp(value, "por") || !strncasecmp(value, "por.", 4))
+		return option_table[OPT_POR_ALARM].key;
+	if (!strcasestr(key, "alarm"))
+		return NULL;
+	if (strcasestr(key, "latch"))
+		return option_table[OPT_LATCH_ALARM].key;
+	if (strcasestr(key, "por"))
+		return option_table[OPT_POR_ALARM].key;
+	if (strcasestr(key, "set"))
+		return option_table[OPT_SET_ALARM].key;
+	const char *near = option_nearest(PLACE_ITEM, key, text);
+
+	return near ? near : "Alarm, LatchAlarm, PorAlarm, SetAlarm or ResetLatch";
+}
+
+static void report_unknown(const struct rio_node *node, enum option_place place,
+                           struct config_report *report)
+{
+	char text[OPTION_NEAREST], alarm_text[OPTION_NEAREST];
+	const char *nearest = option_nearest(place, node->key, text);
+	const char *value = node->kind == RIO_STRING ? node->value : "";
+	const char *alarm = place == PLACE_ITEM ? option_of_alarm(node->key, value, alarm_text)
+	                                        : NULL;
+
+	if (alarm)
+		report_error(report, node->at,
+		             "unknown key %s in %s looks like part of an alarm, which would be "
+		             "off: write %s in its place",
+		             node->key, place_names[place], alarm);
+	else if (node->kind == RIO_BLOCK && option_find(PLACE_DRIVER, node->key) >= 0)
+		report_warning(report, node->at,
+		               "unknown key %s in %s is ignored; is a '}' missing before line %d?",
+		               node->key, place_names[place], node->at.line);
+	else if (nearest)
+		report_warning(report, node->at, "unknown key %s in %s is ignored; is it %s?",
+		               node->key, place_names[place], nearest);
+	else
+		report_warning(report, node->at, "unknown key %s in %s is ignored", node->key,
+		               place_names[place]);
+}
+
+static bool parse_hex(const char *text, double *number)
+{
+	uint64_t sum = 0;
+
+	if (text[0] != '0' || (text[1] != 'x' && text[1] != 'X') || !text[2])
+		return false;
+	for (text += 2; *text; text++) {
+		if (!isxdigit((unsigned char)*text) || sum > UINT32_MAX)
+			return false;
+		sum = sum * 16 + (uint64_t)(isdigit((unsigned char)*text)
+		                                    ? *text - '0'
+		                                    : tolower((unsigned char)*text) - 'a' + 10);
+	}
+	*number = (double)sum;
+	return true;
+}
+
+static bool option_number(const char *text, enum ows_type type, double *number)
+{
+	int64_t value;
+
+	if (value_parse(type, text, &value))
+		return false;
+	*number = value_number(type, value);
+	return true;
+}
+
+static bool parse_kind(const struct option_def *def, const char *text, double *number)
+{
+	int type;
+
+	switch (def->kind) {
+	case OPTION_TEXT:
+	case OPTION_BLOCK:
+		return true;
+	case OPTION_COUNT:
+		return (parse_hex(text, number) || option_number(text, OWS_LARGE, number)) &&
+		       *number >= def->least && *number <= def->most;
+	case OPTION_SECONDS:
+	case OPTION_NUMBER:
+		return option_number(text, OWS_DOUBLE, number) && *number >= def->least &&
+		       *number <= def->most;
+	case OPTION_FLAG:
+		return option_number(text, OWS_BOOL, number);
+	case OPTION_TYPE:
+		type = value_type_parse(text);
+		*number = type;
+		return type >= 0;
+	case OPTION_IO:
+		*number = !strcmp(text, "output");
+		return !strcmp(text, "output") || !strcmp(text, "input");
+	}
+	return false;
+}
+
+static void report_expected(const struct option_def *def, const struct rio_node *node,
+                            struct config_report *report)
+{
+	const char *expected = "";
+	char range[80];
+
+	switch (def->kind) {
+	case OPTION_COUNT:
+		snprintf(range, sizeof(range), "a whole number from %.0f to %.0f", def->least,
+		         def->most);
+		expected = def->most == UINT32_MAX ? "a whole number such as 0x0018" : range;
+		break;
+	case OPTION_SECONDS:
+		snprintf(range, sizeof(range), "seconds from %.10g to %.10g", def->least,
+		         def->most);
+		expected = range;
+		break;
+	case OPTION_NUMBER:
+		expected = def->least < 0 ? "a number" : "a number, not negative";
+		break;
+	case OPTION_FLAG:
+		expected = "on or off";
+		break;
+	case OPTION_TYPE:
+		expected = "bool, byte, short, long, word, dword, float, double, large or string";
+		break;
+	case OPTION_IO:
+		expected = "input or output";
+		break;
+	case OPTION_TEXT:
+	case OPTION_BLOCK:
+		return;
+	}
+	report_error(report, node->value_at, "%s \"%s\": expected %s", def->key, node->value,
+	             expected);
+}
+
+static void read_key(const struct rio_node *node, const struct option_def *def,
+                     struct option_value *value, struct config_report *report)
+{
+	double number = value->number;
+
+	if (value->node && !def->repeats) {
+		report_error(report, node->at, "%s is given twice, first in line %d", def->key,
+		             value->node->at.line);
+		return;
+	}
+	if (!value->node)
+		value->node = node;
+	if (node->broken && node->kind != RIO_BLOCK)
+		return;
+	if ((node->kind == RIO_BLOCK) != (def->kind == OPTION_BLOCK) || node->kind == RIO_LIST) {
+		report_error(report, node->value_at, "%s: expected %s", def->key,
+		             def->kind == OPTION_BLOCK ? "a block in { }" : "one value");
+		if (def->kind == OPTION_BLOCK)
+			value->node = NULL;
+		return;
+	}
+	if (def->kind == OPTION_BLOCK)
+		return;
+	if (!parse_kind(def, node->value, &number)) {
+		report_expected(def, node, report);
+		return;
+	}
+	value->text = node->value;
+	value->number = number;
+	value->given = true;
+}
+
+void options_read(const struct rio_node *block, enum option_place place,
+                  struct option_value *values, struct config_report *report)
+{
+	for (int i = 0; i < OPTION_COUNT_ALL; i++) {
+		const struct option_def *def = &option_table[i];
+
+		values[i] = (struct option_value){.text = ""};
+		if (def->preset)
+			parse_kind(def, def->preset, &values[i].number);
+	}
+	for (const struct rio_node *node = block ? block->first : NULL; node; node = node->next) {
+		int option = option_find(place, node->key);
+
+		if (option >= 0)
+			read_key(node, &option_table[option], &values[option], report);
+		else if (*node->key)
+			report_unknown(node, place, report);
+	}
+}

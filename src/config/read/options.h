@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * All keys of the configuration in one table: the reader takes types, limits and defaults from it,
+ * owsd --check and the edits their order, and a test lays the manual page beside it.
+ */
+#pragma once
+
+#include "src/config/read/arena.h"
+#include "src/config/read/config.h"
+#include "src/config/read/rio.h"
+
+enum option_place {
+	PLACE_DRIVER,
+	PLACE_ITEM,
+	PLACE_BUS,
+	PLACE_RECORDER,
+	PLACE_INFLUX,
+	PLACE_WEB,
+	PLACE_MQTT,
+};
+
+enum option_kind {
+	OPTION_TEXT,
+	OPTION_COUNT,   /* whole number, decimal or 0x hexadecimal */
+	OPTION_SECONDS, /* decimal */
+	OPTION_NUMBER,  /* decimal, not less than least */
+	OPTION_FLAG,    /* on, off */
+	OPTION_TYPE,    /* a name of value_type_name() */
+	OPTION_IO,      /* input, output */
+	OPTION_BLOCK,
+};
+
+enum option {
+#define OPTION(name, ...) OPT_##name,
+#include "src/config/read/option_list.h"
+#undef OPTION
+	OPTION_COUNT_ALL,
+};
+
+struct option_def {
+	const char *key;
+	enum option_place place;
+	enum option_kind kind;
+	bool repeats;       /* may stand more than once */
+	bool empty;         /* an empty text is a value of its own, and not the same as no key */
+	double least, most; /* counts, seconds and numbers */
+	const char *preset; /* the default as it would be written; NULL: none */
+	const char *help;   /* one line */
+};
+extern const struct option_def option_table[OPTION_COUNT_ALL];
+
+/* The option of that key, -1 if there is none. */
+int option_find(enum option_place place, const char *key);
+/*
+ * Write the nearest known keys of the place, "LimitH or LimitHH" where several are as near, into
+ * text. Returns text; NULL if none is near.
+ */
+#define OPTION_NEAREST 200
+const char *option_nearest(enum option_place place, const char *key, char text[OPTION_NEAREST]);
+/*
+ * The key of an alarm that has such a value, or such a name: the original's names of these keys are
+ * not public. NULL: it is no part of an alarm.
+ */
+const char *option_of_alarm(const char *key, const char *value, char text[OPTION_NEAREST]);
+
+/* Is the node a block of that key? */
+bool option_is_block(const struct rio_node *node, enum option option);
+/* How many of them the driver's block has. */
+unsigned options_blocks(const struct rio_node *driver, enum option option);
+
+/* The bits of IOType. */
+#define IO_TYPE_CODE 0x0fu
+#define IO_TYPE_INPUT 0x10u
+#define IO_TYPE_OUTPUT 0x20u
+#define IO_TYPE_UNCACHED 0x100u
+#define IO_TYPE_KNOWN (IO_TYPE_CODE | IO_TYPE_INPUT | IO_TYPE_OUTPUT | IO_TYPE_UNCACHED)
+
+/* A key of a block as the reader found it. */
+struct option_value {
+	const struct rio_node *node; /* NULL: absent */
+	bool given;                  /* present and valid; if not, number is the default */
+	const char *text;            /* "" if not given */
+	double number; /* counts, seconds, numbers, flags (0, 1), types, IO (1: output) */
+};
+/* Of seconds. */
+static inline int64_t option_ns(const struct option_value *value)
+{
+	return (int64_t)(value->number * 1e9 + 0.5);
+}
+/* Where the value stands; 0 and 0: the key is absent. */
+static inline struct config_spot option_spot(const struct option_value *value)
+{
+	struct config_spot none = {0, 0};
+
+	return value->node ? (struct config_spot){value->node->value_at.line,
+	                                          value->node->value_at.column}
+	                   : none;
+}
+
+/*
+ * Check the keys of a block (NULL: it is absent) against the table and put the values into values,
+ * which has OPTION_COUNT_ALL entries: unknown keys warn; keys that stand twice and values that
+ * cannot be are errors.
+ */
+void options_read(const struct rio_node *block, enum option_place place,
+                  struct option_value *values, struct config_report *report);

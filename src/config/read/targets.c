@@ -1,0 +1,212 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Targets as they are written: lists with commas and bars, auto, and which spellings are the same.
+ */
+#include <ctype.h>
+#include <limits.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "src/config/read/build.h"
+#include "src/config/read/targets.h"
+
+/* Is there such a file? What follows it in a simulated target, as :0x18, is no part of its name. */
+static bool exists(const char *name)
+{
+	const char *chip = strstr(name, ":0x");
+	char file[PATH_MAX];
+	int n = snprintf(file, sizeof(file), "%.*s", chip ? (int)(chip - name) : INT_MAX, name);
+
+	return n >= 0 && (size_t)n < sizeof(file) && access(file, F_OK) == 0;
+}
+
+/* The folder of a file: is it the working directory? Then a name stays as it is written. */
+static bool is_here(const char *file, const char *slash)
+{
+	char folder[PATH_MAX];
+	struct stat here, there;
+
+	snprintf(folder, sizeof(folder), "%.*s", (int)(slash + 1 - file), file);
+	return stat(folder, &there) == 0 && stat(".", &here) == 0 && here.st_dev == there.st_dev &&
+	       here.st_ino == there.st_ino;
+}
+
+const char *relative_file(struct build *build, const char *text, size_t prefix,
+                          const struct place *place)
+{
+	const char *file = build->box->config.file, *name = text + prefix;
+	const char *slash = strrchr(file, '/');
+	char whole[PATH_MAX];
+	int n;
+
+	if (*name == '/' || !*name || !slash || is_here(file, slash))
+		return build_keep(build, text, strlen(text));
+	n = snprintf(whole, sizeof(whole), "%.*s%.*s%s", (int)prefix, text, (int)(slash + 1 - file),
+	             file, name);
+	if (n < 0 || (size_t)n >= sizeof(whole) || (!exists(whole + prefix) && exists(name))) {
+		if (place)
+			report_warning(build->report, *place,
+			               "%s is taken from the working directory; a relative path "
+			               "counts from the folder of this file, %.*s",
+			               name, (int)(slash + 1 - file), file);
+		return build_keep(build, text, strlen(text));
+	}
+	return build_keep(build, whole, (size_t)n);
+}
+
+#define DEFAULT_TARGET "localhost:4304"
+#define DEFAULT_PORT "4304"
+#define SIMULATED "sim:"
+
+#define AUTO "auto"
+const char *const config_auto_ways[CONFIG_AUTO_WAYS] = {DEFAULT_TARGET, "i2c:auto", "w1"};
+
+/* Schemes and bare words that are no host; the scheme of an owserver may be left out. */
+static bool is_scheme(const char *text, size_t len)
+{
+	static const char *const schemes[] = {
+#define BACKEND(name) #name,
+#include "hal/bus/schemes.h"
+#undef BACKEND
+		"sim", NULL};
+
+	for (int i = 0; schemes[i]; i++)
+		if (strlen(schemes[i]) == len && !memcmp(schemes[i], text, len))
+			return true;
+	return false;
+}
+
+bool target_caches(const char *text)
+{
+	static const char *const own[] = {"i2c:", SIMULATED, "w1:netlink"};
+
+	for (size_t i = 0; i < sizeof(own) / sizeof(own[0]); i++)
+		if (!strncmp(text, own[i], strlen(own[i])))
+			return true;
+	return false;
+}
+
+void target_canonical(const char *text, char out[TARGET_CANONICAL])
+{
+	static const char prefix[] = "owserver:";
+	const char *colon, *host = text;
+
+	colon = strchr(text, ':');
+	if (!strncmp(text, prefix, strlen(prefix)))
+		host += strlen(prefix);
+	else if (is_scheme(text, colon ? (size_t)(colon - text) : strlen(text)) ||
+	         (strchr(text, '/') && *text != '['))
+		host = NULL;
+	if (!host || *host == '/') {
+		snprintf(out, TARGET_CANONICAL, "%s", text);
+		return;
+	}
+	colon = strrchr(host, ':');
+	if (*host == '[' && colon && strchr(colon, ']'))
+		colon = NULL;
+	snprintf(out, TARGET_CANONICAL, "%s%s%s", prefix, *host ? host : "localhost",
+	         colon ? "" : ":" DEFAULT_PORT);
+	for (char *p = out; *p; p++)
+		*p = (char)tolower((unsigned char)*p);
+}
+
+bool target_same(const char *a, const char *b)
+{
+	char text_a[TARGET_CANONICAL], text_b[TARGET_CANONICAL];
+
+	target_canonical(a, text_a);
+	target_canonical(b, text_b);
+	return !strcmp(text_a, text_b);
+}
+
+const char *target_of_file(struct build *build, const char *text, struct place place)
+{
+	/* on the command line the working directory counts */
+	if (!place.file || strncmp(text, SIMULATED, strlen(SIMULATED)) != 0)
+		return text;
+	return relative_file(build, text, strlen(SIMULATED), place.line ? &place : NULL);
+}
+
+static void target_add(struct build *build, const char *text, size_t len,
+                       enum config_relation relation, struct place place)
+{
+	struct config *config = &build->box->config;
+	struct config_target *target = &config->targets[config->target_count];
+
+	if (!len) {
+		report_error(build->report, place, "expected a target beside ',' or '|'");
+		return;
+	}
+	if (len > TARGET_MAX) {
+		report_error(build->report, place, "a target is longer than %d bytes", TARGET_MAX);
+		return;
+	}
+	if (config->target_count == CONFIG_TARGETS_MAX) {
+		report_error(build->report, place,
+		             "\"%.*s\" is one too many: owsd serves at most %d targets, ways "
+		             "after a bar and the %u of auto counted",
+		             (int)len, text, CONFIG_TARGETS_MAX, CONFIG_AUTO_WAYS);
+		return;
+	}
+	target->text = target_of_file(build, build_keep(build, text, len), place);
+	target->relation = config->target_count ? relation : CONFIG_FIRST;
+	target->automatic = false;
+	target->group = 0;
+	if (strlen(target->text) > TARGET_MAX) {
+		report_error(build->report, place, "a target is longer than %d bytes", TARGET_MAX);
+		return;
+	}
+	if (config->target_count)
+		target->group = target[-1].group + (relation == CONFIG_COMMA);
+	for (unsigned i = 0; i < config->target_count; i++)
+		if (target_same(config->targets[i].text, target->text)) {
+			report_error(build->report, place,
+			             "the target \"%s\" is given twice; the first is \"%s\"",
+			             target->text, config->targets[i].text);
+			return;
+		}
+	target->line = place.line;
+	target->column = place.column;
+	if (!strcmp(target->text, "owserver:"))
+		report_warning(build->report, place, "owserver: names no host: %s is taken",
+		               DEFAULT_TARGET);
+	config->target_count++;
+}
+
+/* Add a target; auto becomes its ways, joined by bars, as --check shows. */
+static void add_member(struct build *build, const char *text, size_t len,
+                       enum config_relation relation, struct place place)
+{
+	struct config *config = &build->box->config;
+	unsigned errors = build->report->errors;
+
+	if (len != strlen(AUTO) || memcmp(text, AUTO, len) != 0) {
+		target_add(build, text, len, relation, place);
+		return;
+	}
+	for (unsigned i = 0; i < CONFIG_AUTO_WAYS && build->report->errors == errors; i++) {
+		target_add(build, config_auto_ways[i], strlen(config_auto_ways[i]),
+		           i ? CONFIG_BAR : relation, place);
+		if (build->report->errors == errors)
+			config->targets[config->target_count - 1].automatic = true;
+	}
+}
+
+void targets_add(struct build *build, const char *text, struct place place)
+{
+	enum config_relation relation = CONFIG_COMMA;
+	const char *rest = text, *part;
+	size_t len;
+
+	if (!text[strspn(text, " \t")]) {
+		report_warning(build->report, place, "TargetName is empty: %s is taken",
+		               DEFAULT_TARGET);
+		rest = DEFAULT_TARGET;
+	}
+	while (build_part(&rest, ",|", &part, &len)) {
+		add_member(build, part, len, relation, place);
+		relation = rest && rest[-1] == '|' ? CONFIG_BAR : CONFIG_COMMA;
+	}
+}

@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: MIT */
+/* Compares what an output reads with what was written, and tells where they differ. */
+#include <string.h>
+
+#include "hal/base/time.h"
+#include "src/daemon/engine/alarm/alarm_item.h"
+#include "src/daemon/engine/command/read_back.h"
+#include "src/daemon/engine/command/restart.h"
+#include "src/daemon/engine/scaling.h"
+#include "src/daemon/engine/schedule.h"
+#include "src/daemon/engine/state.h"
+#include "src/ground/signal/value.h"
+#include "src/memory/shm/entries.h"
+
+/* Between two writes of a command that does not hold; doubled up to the longest. */
+#define RESTORE_FIRST_NS (5 * NS_PER_S)
+#define RESTORE_DOUBLINGS 4
+/* So long after the last one the device counts as well again. */
+#define RESTORE_WELL_NS (60 * NS_PER_S)
+
+static void read_back_enter(struct engine *e, const struct signal *s, enum ows_alarm_event event,
+                            uint8_t quality)
+{
+	struct ows_journal_entry entry = signal_entry(s, OWS_ALARM_DIFFERS, event, e->time.now_ns);
+
+	entry.quality = quality;
+	entry.before = s->command.written;
+	entry.after = s->sample.value;
+	entry.flags = OWS_JOURNAL_BEFORE | OWS_JOURNAL_AFTER;
+	image_alarm(e->image, &entry);
+	e->published = true;
+}
+
+static void begin_difference(struct engine *e, struct signal *s)
+{
+	char reads[VALUE_TEXT_MAX], written[VALUE_TEXT_MAX];
+
+	value_to_text(s->item->type, s->sample.value, reads);
+	value_to_text(s->item->type, s->command.written, written);
+	log_warning(e->log, "%s (%s): not as commanded: it reads %s, and %s was written",
+	            s->item->name, s->item->path, reads, written);
+	read_back_enter(e, s, OWS_ALARM_RAISED, OWS_Q_DIFFERS);
+}
+
+static void end_difference(struct engine *e, struct signal *s, uint8_t quality, const char *why)
+{
+	log_notice(e->log, "%s (%s): %s", s->item->name, s->item->path, why);
+	read_back_enter(e, s, OWS_ALARM_RETURNED, quality);
+}
+
+void engine_compares_no_more(struct engine *e, struct signal *s, uint8_t quality)
+{
+	end_difference(e, s, quality, "not compared with its command any more");
+}
+
+/* Write a command again that the device lost, if it was not done just now; else later. */
+static void restore_command(struct engine *e, struct signal *s)
+{
+	struct signal_restore *r = &s->restore;
+
+	if (!s->item->restores || !s->command.differs || !signal_writes(s) ||
+	    e->time.now_ns < r->not_before_ns)
+		return;
+	r->not_before_ns = e->time.now_ns + (RESTORE_FIRST_NS << r->doublings);
+	r->doublings += r->doublings < RESTORE_DOUBLINGS;
+	log_notice(e->log, "%s (%s): the command is written again", s->item->name, s->item->path);
+	s->command.confirmed = false;
+	engine_write_check(e, s);
+}
+
+static void judge_read_back(struct engine *e, struct signal *s, bool agrees, uint8_t *quality)
+{
+	bool differed = s->command.differs;
+
+	s->command.differs = !agrees;
+	if (agrees) {
+		if (differed)
+			end_difference(e, s, *quality, "as commanded again");
+		if (e->time.now_ns > s->restore.not_before_ns + RESTORE_WELL_NS)
+			s->restore.doublings = 0;
+		return;
+	}
+	*quality = OWS_Q_DIFFERS;
+	if (!differed)
+		begin_difference(e, s);
+	restore_command(e, s);
+}
+
+bool engine_compare(struct engine *e, struct lane *lane, struct signal *s, const struct slot *slot,
+                    uint8_t *quality)
+{
+	struct signal_command *c = &s->command;
+	/* one that comes back is written anew */
+	bool absent = s->device != TABLE_NO_DEVICE && e->table.devices[s->device].absent;
+	bool agrees;
+
+	if (!s->item->output || signal_is_string(s))
+		return true;
+	if (slot->begun_ns < c->ended_ns) /* it proves nothing, and may be older than the write */
+		return false;
+	if (!c->confirmed || s->writing) {
+		if (c->differs && !s->writing && !signal_changed(s)) {
+			c->differs = false;
+			engine_compares_no_more(e, s, *quality);
+		}
+		*quality = c->differs ? OWS_Q_DIFFERS : *quality;
+		return true;
+	}
+	agrees = signal_reads_as_written(s, quality);
+	if (!agrees && (signal_changed(s) || absent)) {
+		*quality = c->differs ? OWS_Q_DIFFERS : *quality;
+		return true;
+	}
+	/* it may come from a cache, or be a disturbed reading of a chip without a checksum */
+	if (s->item->read_back_ns && !agrees && !c->differs && !c->doubted) {
+		c->doubted = true;
+		return false;
+	}
+	c->doubted = false;
+	if (c->agrees && !agrees)
+		alarm_output_differs(&lane->alarm, s->device);
+	c->agrees = agrees;
+	c->lapsed &= !agrees;
+	if (s->item->read_back_ns) {
+		engine_restart_look(lane, s, agrees);
+		judge_read_back(e, s, agrees, quality);
+	}
+	return true;
+}

@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A signal moves to another lane here and nowhere else. A value from before the move is never shown
+ * as good, what was written is forgotten, and requests that the old bus still has count for
+ * nothing.
+ */
+#include <errno.h>
+
+#include "src/daemon/engine/alarm/alarm_effect.h"
+#include "src/daemon/engine/alarm/alarm_item.h"
+#include "src/daemon/engine/command/doubt.h"
+#include "src/daemon/engine/due.h"
+#include "src/daemon/engine/lane.h"
+#include "src/daemon/engine/publish.h"
+#include "src/daemon/engine/retry.h"
+#include "src/daemon/engine/routing/disown.h"
+#include "src/daemon/engine/routing/move.h"
+#include "src/daemon/engine/routing/place.h"
+#include "src/daemon/engine/schedule.h"
+#include "src/ground/text/log.h"
+
+static void move_signal(struct engine *e, struct signal *s, struct lane *to)
+{
+	struct lane *from = engine_lane(e, s);
+	uint32_t row = engine_row(s);
+
+	lane_drop_row(from, row);
+	from->counters.moves_out++;
+	due_wheel_cancel(&e->wheel, row * 2);
+	due_wheel_cancel(&e->wheel, row * 2 + 1);
+	retry_clear(&s->read.retry);
+	retry_clear(&s->command.retry);
+	s->command.err = 0;
+	signal_forget_written(s);
+	s->attrs.flags &= ~(uint32_t)OWS_ATTR_ALARM_POLLED;
+	s->sample.target = (uint8_t)to->index;
+	signal_lapse(s); /* until the new target has answered */
+	lane_take_row(to, row);
+	to->counters.moves_in++;
+}
+
+/* Call it when the old lane has disowned its requests for the signal. */
+static void signal_goes_on(struct engine *e, struct signal *s)
+{
+	if (s->doubts) {
+		s->command.err = -EINPROGRESS;
+		log_warning(e->log, "%s (%s): a write is in doubt: not written until it has ended",
+		            s->item->name, s->item->path);
+	}
+	engine_read_now(e, s);
+	engine_write_check(e, s);
+	engine_publish(e, s);
+}
+
+static void move_alarms(struct engine *e, struct lane *from, struct lane *to, uint32_t device)
+{
+	for (uint32_t i = 0; i < e->alarm_count; i++) {
+		struct alarm_item *item = &e->alarm_items[i];
+
+		if (item->device != device)
+			continue;
+		if (alarm_drop_item(&from->alarm, item) && from->lent.alarm)
+			from->lent.alarm->moved = true;
+		alarm_take_item(&to->alarm, item, e->time.now_ns);
+		if (to->alarm.list.polls)
+			engine_alarm_polled(e, item);
+	}
+}
+
+static bool has_alarms(const struct engine *e, const struct device *d)
+{
+	for (uint32_t k = 0; k < d->count; k++)
+		if (e->table.signals[e->table.device_rows[d->first + k]].item->alarm)
+			return true;
+	return false;
+}
+
+/* Is it moved only to learn whether it is there? With many targets that are many moves. */
+static bool is_looked_for(struct engine *e, const struct device *d, const struct lane *from,
+                          const struct lane *to)
+{
+	uint32_t index = (uint32_t)(d - e->table.devices);
+
+	if (!from->state.up || !e->places || index == e->table.device_count)
+		return false;
+	return !d->found || engine_places(e, index)[to->port->group].presence == ROUTE_UNKNOWN;
+}
+
+static void report_move(struct engine *e, const struct device *d, const struct lane *from,
+                        const struct lane *to, const char *why)
+{
+	const struct signal *s = &e->table.signals[e->table.device_rows[d->first]];
+
+	log_at(e->log, is_looked_for(e, d, from, to) ? LOG_LEVEL_DEBUG : LOG_LEVEL_NOTICE,
+	       "%s%s (%u signal%s): from %s to %s: %s", s->item->path, d->count > 1 ? " ..." : "",
+	       d->count, d->count == 1 ? "" : "s", from->port->target, to->port->target, why);
+}
+
+void engine_move_device(struct engine *e, struct device *d, struct lane *to, const char *why)
+{
+	const uint32_t *rows = &e->table.device_rows[d->first];
+	struct lane *from = engine_lane(e, &e->table.signals[rows[0]]);
+	uint32_t index = (uint32_t)(d - e->table.devices);
+
+	report_move(e, d, from, to, why);
+	d->absent = false;
+	for (uint32_t k = 0; k < d->count; k++)
+		move_signal(e, &e->table.signals[rows[k]], to);
+	engine_watch_anew(from, index);
+	if (has_alarms(e, d))
+		move_alarms(e, from, to, index);
+	lane_disown(from, false);
+	engine_publish_target(e, to);
+	engine_doubts(e);
+	for (uint32_t k = 0; k < d->count; k++)
+		signal_goes_on(e, &e->table.signals[rows[k]]);
+}
+
+void engine_move_lane(struct engine *e, struct lane *from, struct lane *to, const char *why)
+{
+	uint32_t moved = 0;
+
+	for (uint32_t i = 0; i <= e->table.device_count; i++) {
+		struct device *d = &e->table.devices[i];
+
+		if (!d->count || d->group != from->port->group)
+			continue;
+		d->absent = false;
+		for (uint32_t k = 0; k < d->count; k++)
+			move_signal(e, &e->table.signals[e->table.device_rows[d->first + k]], to);
+		engine_watch_anew(from, i);
+		if (has_alarms(e, d))
+			move_alarms(e, from, to, i);
+		moved += d->count;
+	}
+	log_at(e->log, engine_group(e, to)->state.quiet ? LOG_LEVEL_DEBUG : LOG_LEVEL_NOTICE,
+	       "%u signal%s: from %s to %s: %s", moved, moved == 1 ? "" : "s", from->port->target,
+	       to->port->target, why);
+	engine_probes_forget(from);
+	lane_disown(from, true);
+	alarm_restart(&from->alarm);
+	engine_publish_target(e, to);
+	engine_doubts(e);
+	for (uint32_t row = 0; row < e->table.count; row++)
+		if (e->table.signals[row].lane == to->index)
+			signal_goes_on(e, &e->table.signals[row]);
+}

@@ -1,0 +1,178 @@
+/* SPDX-License-Identifier: MIT */
+/* When the rows of the table are read and written: the wheel of periods and what is due. */
+#include "src/daemon/engine/schedule.h"
+#include "hal/base/time.h"
+#include "src/daemon/engine/alarm/alarm_item.h"
+#include "src/daemon/engine/due.h"
+#include "src/daemon/engine/publish.h"
+#include "src/daemon/engine/retry.h"
+
+void engine_read_now(struct engine *e, struct signal *s)
+{
+	if (s->reading || !signal_is_read(s))
+		return;
+	due_wheel_cancel(&e->wheel, engine_row(s) * 2);
+	due_set_add(&engine_lane(e, s)->inputs, engine_row(s));
+}
+
+void engine_read_at(struct engine *e, struct signal *s, uint64_t period)
+{
+	if (!signal_reads(s) && !s->item->read_back_ns)
+		return;
+	if (period <= e->time.period) {
+		engine_read_now(e, s);
+		return;
+	}
+	due_set_remove(&engine_lane(e, s)->inputs, engine_row(s));
+	due_wheel_at(&e->wheel, engine_row(s) * 2, period);
+}
+
+void engine_read_never(struct engine *e, struct signal *s)
+{
+	due_wheel_cancel(&e->wheel, engine_row(s) * 2);
+	due_set_remove(&engine_lane(e, s)->inputs, engine_row(s));
+}
+
+int64_t engine_watch_ns(const struct engine *e)
+{
+	return e->config->period_ns > WATCH_NS ? e->config->period_ns : WATCH_NS;
+}
+
+void engine_watch_at(struct engine *e, uint32_t device, int64_t ns)
+{
+	due_wheel_at(&e->watch_wheel, device, engine_period_at(e, ns));
+}
+
+void engine_watch_anew(struct lane *lane, uint32_t device)
+{
+	struct engine *e = lane->engine;
+
+	if (device == e->table.device_count)
+		return;
+	retry_clear(&e->table.devices[device].watch);
+	if (due_set_has(&lane->watch, device))
+		due_set_remove(&lane->watch, device);
+	else if (!e->watch_wheel.wait[device].waits) /* with the bus, or never watched */
+		return;
+	engine_watch_at(e, device, e->time.now_ns + engine_watch_ns(e));
+}
+
+/* An alarm item is read when it has something to say, and now and then to see that it lives. */
+uint64_t engine_reads_apart(const struct engine *e, const struct lane *lane, const struct signal *s)
+{
+	if (s->item->alarm && alarm_serves(&lane->alarm) && s->item->per_factor == 1 &&
+	    !(s->attrs.flags & OWS_ATTR_ALARM_UNARMED))
+		return engine_periods(e, CONFIG_ALARM_READ_NS);
+	return s->item->per_factor;
+}
+
+void engine_write_at(struct engine *e, struct signal *s, uint64_t period)
+{
+	due_set_remove(&engine_lane(e, s)->outputs, engine_row(s));
+	due_wheel_at(&e->wheel, engine_row(s) * 2 + 1, period);
+}
+
+void engine_write_check(struct engine *e, struct signal *s)
+{
+	struct due_set *outputs = &engine_lane(e, s)->outputs;
+	uint32_t row = engine_row(s);
+
+	if (!signal_changed(s)) {
+		due_wheel_cancel(&e->wheel, row * 2 + 1);
+		due_set_remove(outputs, row);
+		retry_clear(&s->command.retry);
+	} else if (s->doubts) {
+		due_set_remove(outputs, row);
+	} else if (!s->writing && !e->wheel.wait[row * 2 + 1].waits) {
+		due_set_add(outputs, row);
+	}
+}
+
+uint64_t engine_read_back_at(const struct engine *e, const struct signal *s)
+{
+	int64_t wait_ns = s->item->read_back_ns, restore_ns = s->restore.not_before_ns;
+
+	if (s->command.differs && s->item->restores && restore_ns - e->time.now_ns < wait_ns)
+		wait_ns = restore_ns - e->time.now_ns;
+	return e->time.period + (wait_ns > 0 ? engine_periods(e, wait_ns) : 1);
+}
+
+static void row_ready(void *ctx, uint32_t entry)
+{
+	struct engine *e = ctx;
+	struct signal *s = &e->table.signals[entry / 2];
+
+	if (entry % 2)
+		engine_write_check(e, s);
+	else if (signal_is_read(s))
+		engine_read_now(e, s);
+	else
+		engine_read_at(e, s, engine_read_back_at(e, s));
+}
+
+static void time_ready(void *ctx, uint32_t row)
+{
+	struct engine *e = ctx;
+
+	engine_publish(e, &e->table.signals[row]);
+}
+
+/* A call so late says that the engine did not run: the machine was suspended, or owsd stopped. */
+#define GAP_NS (2 * NS_PER_S)
+/* A call so late says that the engine did not look, and that perhaps no controller could beat. */
+#define PAUSE_NS (100 * NS_PER_MS)
+
+/* The period that has begun last at that time. */
+static uint64_t begun_period(const struct engine *e, int64_t ns)
+{
+	int64_t since_ns = ns - e->time.start_ns;
+
+	return e->time.first + (since_ns > 0 ? (uint64_t)(since_ns / e->config->period_ns) : 0);
+}
+
+void engine_begin_call(struct engine *e, int64_t now_ns)
+{
+	uint64_t period;
+	int64_t late_ns = now_ns -
+	                  (e->time.next_ns > e->time.now_ns ? e->time.next_ns : e->time.now_ns);
+
+	if (e->time.next_ns && now_ns - e->time.next_ns > GAP_NS)
+		e->time.gap_ns = now_ns;
+	/* when in the time since the last call the pause began is not known */
+	if (e->time.next_ns && late_ns > PAUSE_NS)
+		e->time.paused_ns += now_ns - e->time.now_ns;
+	e->time.now_ns = now_ns;
+	/* the last step may be periods ago */
+	period = begun_period(e, now_ns);
+	if (period > e->time.period)
+		e->time.period = period;
+}
+
+bool engine_tick(struct engine *e)
+{
+	uint64_t period = e->time.period, asked = begun_period(e, e->time.next_ns);
+
+	if (period == e->time.ticked)
+		return false;
+	if (asked <= e->time.ticked)
+		asked = e->time.ticked + 1;
+	if (period > asked)
+		e->counters.late_periods += period - asked;
+	e->counters.periods += period - e->time.ticked;
+	e->time.ticked = period;
+	due_wheel_advance(&e->wheel, period, row_ready, e);
+	due_wheel_advance(&e->time_wheel, period, time_ready, e);
+	return true;
+}
+
+int64_t engine_next_tick(const struct engine *e, int64_t at_most_ns)
+{
+	uint64_t period = e->time.period, most = (uint64_t)(at_most_ns / e->config->period_ns);
+	uint64_t next = period + (most ? most : 1);
+
+	next = due_wheel_next(&e->wheel, period, next);
+	next = due_wheel_next(&e->time_wheel, period, next);
+	next = due_wheel_next(&e->watch_wheel, period, next);
+	next = due_wheel_next(&e->route_wheel, period, next);
+	return e->time.start_ns + (int64_t)(next - e->time.first) * e->config->period_ns;
+}

@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: MIT */
+/* When the rows of the table are read and written. */
+#pragma once
+
+#include "src/daemon/engine/state.h"
+
+void engine_read_now(struct engine *e, struct signal *s);
+void engine_read_at(struct engine *e, struct signal *s, uint64_t period);
+void engine_read_never(struct engine *e, struct signal *s);
+/* Periods between two readings in the cycle. */
+uint64_t engine_reads_apart(const struct engine *e, const struct lane *lane,
+                            const struct signal *s);
+/* When an output that is not read in the cycle is read back next, as a period. */
+uint64_t engine_read_back_at(const struct engine *e, const struct signal *s);
+void engine_write_at(struct engine *e, struct signal *s, uint64_t period);
+/* Put the row among those to be written, or take it away, by signal_changed(). */
+void engine_write_check(struct engine *e, struct signal *s);
+/* Each call from outside begins with it: it sets the time, and notices a time of no calls. */
+void engine_begin_call(struct engine *e, int64_t now_ns);
+/* Go on to the present period: what waited for it becomes due. False: it is the same as before. */
+bool engine_tick(struct engine *e);
+/*
+ * When the next tick is: the beginning of the first period for which a row waits. It is at most
+ * at_most_ns (whole periods of it, but one at least) after the beginning of the present period.
+ */
+int64_t engine_next_tick(const struct engine *e, int64_t at_most_ns);
+
+/* --- Looks for devices (device_watch.c) --- */
+
+/* A device that has shown nothing for so long is looked for; or for a period, if that is longer. */
+#define WATCH_NS (2 * NS_PER_S)
+
+int64_t engine_watch_ns(const struct engine *e);
+void engine_watch_at(struct engine *e, uint32_t device, int64_t ns);
+/*
+ * The device is there again, or leaves the lane: what looks for it have found counts no more, and
+ * it is looked for after the usual time, on the lane that serves it then.
+ */
+void engine_watch_anew(struct lane *lane, uint32_t device);

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Reads that need no bus: properties that are inputs of the table and were read lately, and answers
+ * that clients got lately. The life of an answer is as in owserver's cache, but shorter where the
+ * control program may have changed the property: 2 s; and 300 s for a property that never changes.
+ */
+#pragma once
+
+#include "src/config/read/config.h"
+#include "src/daemon/serve/node.h"
+#include "src/memory/shm/image.h"
+
+#define KEPT_TEXT_MAX 104
+
+struct kept;
+
+/* Allocates. NULL: no memory. */
+struct kept *kept_create(const struct config *config);
+void kept_destroy(struct kept *kept);
+
+/* The text, as a bus would give it, or -ENOENT. image is of the same config. Returns the length. */
+int kept_find(struct kept *kept, const struct image *image, const struct node *node, int64_t now_ns,
+              char *text, size_t room);
+/* Keep the answer of a bus, if the property may be kept at all. */
+void kept_add(struct kept *kept, const struct node *node, int64_t measured_ns, const uint8_t *text,
+              size_t len);
+/*
+ * Forget the answers of a device after a write, or a try to write, to one of its properties. Inputs
+ * of the table that were measured before do not answer for it any more.
+ */
+void kept_forget(struct kept *kept, const struct node *node, int64_t now_ns);
+
+/* The record of the signal that has this path as output or input; -1: there is none. */
+int kept_signal(const struct kept *kept, const char *path, bool output);

@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: MIT */
+/* Requests to the engine: the path, the target, and the step that follows the answer. */
+#include <errno.h>
+#include <stdio.h>
+
+#include "src/daemon/serve/answer.h"
+#include "src/daemon/serve/client.h"
+#include "src/daemon/serve/work_ask.h"
+#include "src/memory/shm/word.h"
+
+/* So many bytes of a memory are given the time of a request. */
+enum { READ_PART = 1024, WRITE_PART = 256 };
+
+/* Do the targets have the same numbers as when the server asked the engine? */
+bool work_same_targets(const struct serve *s, const struct client *c)
+{
+	return c->guest.generation == s->image->header->generation;
+}
+
+unsigned work_targets(const struct serve *s)
+{
+	return s->config->target_count;
+}
+
+static bool is_up(const struct serve *s, unsigned target)
+{
+	return word_get(&s->image->targets[target].state) == 1;
+}
+
+/*
+ * A memory of some kilobytes takes longer than any other value: that of a DS1977 more than a minute
+ * to read, that of a DS1996 half a minute.
+ */
+static uint16_t parts(const struct client *c, enum client_step step, uint32_t len)
+{
+	if (step == STEP_READ)
+		return (uint16_t)(1 + c->node.bytes / READ_PART);
+	if (step == STEP_WRITE && c->node.bytes)
+		return (uint16_t)(1 + len / WRITE_PART);
+	return 1;
+}
+
+void work_ask(struct serve *s, struct client *c, enum client_step step, enum bus_op op, int lane,
+              uint8_t *data, uint32_t len)
+{
+	c->step = (uint8_t)step;
+	c->guest = (struct engine_guest){.op = (uint8_t)op,
+	                                 .fresh = c->node.fresh,
+	                                 .lane = lane,
+	                                 .generation = s->image->header->generation,
+	                                 .path = c->path,
+	                                 .data = data,
+	                                 .len = len,
+	                                 .parts = parts(c, step, len),
+	                                 .offset = op == BUS_WRITE ? (uint32_t)c->request.offset
+	                                                           : 0,
+	                                 .tokens = c->passed.bytes,
+	                                 .token_count = c->passed.count};
+	count(s, COUNT_bus_requests, 1);
+	if (c->state != CLIENT_WORKING)
+		client_enter(s, c, CLIENT_WORKING);
+	guests_ask(&s->guests, &c->guest);
+}
+
+/* Write the path with the bus number of the target; returns the lane that has to answer. */
+int work_path(struct serve *s, struct client *c)
+{
+	const struct node *node = &c->node;
+
+	if (node->bus < 0) {
+		snprintf(c->path, sizeof(c->path), "%s", node->path);
+		return GUEST_ANY_LANE;
+	}
+	snprintf(c->path, sizeof(c->path), "/bus.%u%s", s->buses.bus[node->bus].number,
+	         node->path[1] ? node->path : "");
+	return s->buses.bus[node->bus].target;
+}
+
+/* Write the path of a property of the device. */
+void work_device_path(struct client *c, const char *property)
+{
+	snprintf(c->path, sizeof(c->path), "%.*s%s", (int)c->node.device_len, c->node.path,
+	         property);
+}
+
+/* Skip the targets that are down, for a directory to which each target adds its part. */
+void work_next_target(struct serve *s, struct client *c)
+{
+	while (c->target < work_targets(s) && !is_up(s, c->target))
+		c->target++;
+}
+
+bool work_is_directory(const struct node *node)
+{
+	return node->slash || node->devices || node->kind == NODE_SIGNALS ||
+	       node->kind == NODE_CODES || (node->has_device && !node->path[node->device_len]);
+}
+
+void work_refuse_directory(struct serve *s, struct client *c)
+{
+	if (c->node.kind == NODE_TARGET && !c->node.devices &&
+	    (c->node.has_device || c->node.slash))
+		work_ask(s, c, STEP_REFUSE, BUS_PROBE, work_path(s, c), NULL, 0);
+	else
+		answer_error(s, c, -EISDIR);
+}

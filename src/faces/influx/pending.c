@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: MIT */
+/* Lines that wait in memory, one behind the other, each behind its time and its length. */
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/faces/influx/pending.h"
+
+#define TIME_TEXT 24 /* a blank, 20 letters, a line feed, NUL */
+#define FIRST_ROOM 65536u
+
+struct head {
+	int64_t time_ns;
+	uint32_t size; /* with NUL */
+};
+
+void pending_free(struct pending *pending)
+{
+	free(pending->data);
+	*pending = (struct pending){.dropped = pending->dropped};
+}
+
+/* Of the line at that place. */
+static struct head head_at(const struct pending *pending, size_t at)
+{
+	struct head head;
+
+	memcpy(&head, pending->data + at, sizeof(head));
+	return head;
+}
+
+static void remove_first(struct pending *pending, size_t bytes, unsigned lines)
+{
+	pending->len -= bytes;
+	pending->lines -= lines;
+	if (pending->len)
+		memmove(pending->data, pending->data + bytes, pending->len);
+}
+
+static void drop_quarter(struct pending *pending)
+{
+	unsigned lines = 0;
+	size_t at = 0;
+
+	for (; at < pending->len && at < pending->room / 4; lines++)
+		at += sizeof(struct head) + head_at(pending, at).size;
+	remove_first(pending, at, lines);
+	pending->dropped += lines;
+}
+
+static bool room_for_line(struct pending *pending, size_t size)
+{
+	while (pending->len + size > pending->room) {
+		size_t room = pending->room ? 2 * pending->room : FIRST_ROOM;
+		char *data = room <= PENDING_BYTES ? realloc(pending->data, room) : NULL;
+
+		if (data) {
+			pending->data = data;
+			pending->room = room;
+		} else if (pending->len) {
+			drop_quarter(pending);
+		} else {
+			return false;
+		}
+	}
+	return true;
+}
+
+void pending_add(struct pending *pending, int64_t time_ns, const char *series, const char *fields)
+{
+	size_t size = strlen(series) + 1 + strlen(fields) + 1;
+	struct head head = {.time_ns = time_ns, .size = (uint32_t)size};
+
+	if (!room_for_line(pending, sizeof(head) + size)) {
+		pending->dropped++;
+		return;
+	}
+	memcpy(pending->data + pending->len, &head, sizeof(head));
+	pending->len += sizeof(head);
+	snprintf(pending->data + pending->len, size, "%s %s", series, fields);
+	pending->len += size;
+	pending->lines++;
+}
+
+size_t pending_copy(const struct pending *pending, int64_t offset_ns, char batch[BATCH_BYTES],
+                    unsigned *lines)
+{
+	size_t len = 0, at = 0;
+
+	for (*lines = 0; at < pending->len && *lines < BATCH_LINES; ++*lines) {
+		struct head head = head_at(pending, at);
+
+		if (len + head.size + TIME_TEXT > BATCH_BYTES)
+			break;
+		at += sizeof(head);
+		len += (size_t)snprintf(batch + len, head.size + TIME_TEXT, "%s %" PRId64 "\n",
+		                        pending->data + at, head.time_ns + offset_ns);
+		at += head.size;
+	}
+	return len;
+}
+
+void pending_remove(struct pending *pending, unsigned lines)
+{
+	size_t at = 0;
+
+	for (unsigned i = 0; i < lines; i++)
+		at += sizeof(struct head) + head_at(pending, at).size;
+	remove_first(pending, at, lines);
+}
+
+size_t pending_cut(struct pending *pending, int64_t offset_ns, char batch[BATCH_BYTES])
+{
+	unsigned lines;
+	size_t len = pending_copy(pending, offset_ns, batch, &lines);
+
+	pending_remove(pending, lines);
+	return len;
+}
+
+bool pending_is_full(const struct pending *pending)
+{
+	return pending->lines >= BATCH_LINES || pending->len >= BATCH_BYTES / 2;
+}
+
+unsigned batch_lines(const char *batch, size_t len)
+{
+	unsigned lines = 0;
+
+	for (size_t i = 0; i < len; i++)
+		lines += batch[i] == '\n';
+	return lines;
+}

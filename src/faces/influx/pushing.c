@@ -1,0 +1,283 @@
+/* SPDX-License-Identifier: MIT */
+/* What owsd-influx does with the news of owsd, at its ticks and at its end. */
+#include <errno.h>
+#include <poll.h>
+#include <string.h>
+
+#include "hal/base/time.h"
+#include "src/faces/influx/disk.h"
+#include "src/faces/influx/post.h"
+#include "src/faces/influx/pushing.h"
+#include "src/faces/influx/sending.h"
+#include "src/faces/kit/look.h"
+#include "src/faces/kit/loop.h"
+
+/* Of changes of a signal that come closer together the newest is sent */
+#define PACE_NS (20 * NS_PER_MS)
+#define TICK_NS NS_PER_S
+
+static void pushing_watch(void *ctx, int fd, short events)
+{
+	face_ignore(ctx, fd);
+	if (events && face_watch(ctx, fd, events))
+		log_err(((struct face *)ctx)->log, "too many descriptors");
+}
+
+static void open_spool(struct face *face)
+{
+	struct pushing *p = face->own;
+	int err = spool_open(&p->spool, p->options.spool, (uint64_t)p->options.spool_mb * 1000000,
+	                     &spool_disk_system);
+
+	sending_report_disk(face, err);
+	p->lost_bytes = 0;
+	if (!err && spool_count(&p->spool))
+		log_notice(face->log, "%zu batches wait in %s", spool_count(&p->spool),
+		           p->options.spool);
+}
+
+static void pushing_begin(struct face *face, int64_t now_ns)
+{
+	struct pushing *p = face->own;
+
+	p->on = true;
+	p->trouble = PUSH_WELL;
+	backoff_forget(&p->backoff);
+	p->next_ns = now_ns;
+	p->cut_ns = now_ns + p->options.every_ns;
+	sending_read_token(face);
+	open_spool(face);
+	log_notice(face->log, "pushing to %.100s, spool %s", p->options.url, p->options.spool);
+	log_info(face->log, "SpoolSize %llu MB, ClockWait %lld s",
+	         (unsigned long long)(p->spool.limit / 1000000),
+	         (long long)(p->options.clock_wait_ns / NS_PER_S));
+}
+
+/* What is under way and in memory goes to the spool, if its time is known. */
+static void pushing_end(struct face *face)
+{
+	struct pushing *p = face->own;
+
+	post_cancel(p->post);
+	if (p->spooled)
+		p->batch_len = 0;
+	while (p->on && p->believed && (p->batch_len || p->pending.lines)) {
+		if (!p->batch_len)
+			sending_cut(p);
+		if (!sending_put_away(face)) {
+			log_err(face->log, "%u values are lost",
+			        batch_lines(p->batch, p->batch_len));
+			break;
+		}
+	}
+	sending_drop(p);
+	p->part.most = 0;
+	spool_close(&p->spool);
+	p->on = false;
+}
+
+static void make_points(struct face *face)
+{
+	struct pushing *p = face->own;
+
+	if (!p->on || !face->live) {
+		points_free(&p->points);
+		return;
+	}
+	if (points_make(&p->points, face->ows, p->options.measurement, face->arguments->instance,
+	                &p->pending, ows_now()))
+		log_err(face->log, "nothing is sent: no memory for %d signals",
+		        ows_count(face->ows));
+	if (p->points.left_out)
+		log_warning(face->log, "%d signals are not sent: no line can have their names",
+		            p->points.left_out);
+}
+
+/* The file may say something else than before, or have no block any more. */
+static void take_file(struct face *face, int64_t now_ns)
+{
+	struct pushing *p = face->own;
+	struct push_options options;
+
+	if (push_options_take(&options, face)) {
+		log_err(face->log, "the path of the spool is too long: it stays %s",
+		        p->options.spool);
+	} else if (!push_options_same(&options, &p->options)) {
+		pushing_end(face);
+		p->options = options;
+		if (*options.url)
+			pushing_begin(face, now_ns);
+	} else if (p->on) {
+		sending_read_token(face);
+		p->next_ns = now_ns;
+	}
+	if (!p->on)
+		log_notice(face->log, "%s has no Influx block: nothing is pushed",
+		           face->arguments->file);
+	make_points(face);
+}
+
+int pushing_open(struct face *face)
+{
+	static struct pushing pushing;
+	struct pushing *p = face->own = &pushing;
+	int64_t now_ns = ows_now();
+
+	p->spool.dir = -1;
+	p->post = post_open(pushing_watch, face);
+	if (!p->post) {
+		face_complain(face->ops->program, "libcurl cannot be used: no memory");
+		return -ENOMEM;
+	}
+	wall_clock_open(&p->clock);
+	if (p->clock.fd >= 0)
+		face_watch(face, p->clock.fd, POLLIN);
+	face->pace_ns = PACE_NS;
+	face->tick_ns = now_ns;
+	take_file(face, now_ns);
+	return 0;
+}
+
+void pushing_close(struct face *face)
+{
+	struct pushing *p = face->own;
+
+	pushing_end(face);
+	if (p->pending.lines)
+		log_err(face->log, "%u values in memory are lost%s", p->pending.lines,
+		        p->believed ? "" : ": the time is not known yet");
+	pending_free(&p->pending);
+	post_close(p->post);
+	wall_clock_close(&p->clock);
+	points_free(&p->points);
+}
+
+/* Whether lines can have wall-clock times. */
+static void believe_clock(struct face *face, int64_t now_ns)
+{
+	struct pushing *p = face->own;
+
+	wall_clock_look(&p->clock, now_ns);
+	if (p->believed || !p->on)
+		return;
+	p->believed = p->clock.trusted || now_ns >= p->options.clock_wait_ns;
+	if (p->believed && !p->clock.trusted)
+		log_warning(face->log,
+		            "nobody has set the clock %lld s after the boot: it is "
+		            "believed as it is",
+		            (long long)(now_ns / NS_PER_S));
+}
+
+static void report_dropped(struct face *face)
+{
+	struct pushing *p = face->own;
+
+	if (p->spool.dropped != p->lost_bytes)
+		log_warning(face->log, "the spool is full: the oldest batches are dropped, %llu kB",
+		            (unsigned long long)(p->spool.dropped / 1000));
+	if (p->pending.dropped != p->lost_lines)
+		log_warning(face->log, "too much waits in memory: %llu values are dropped",
+		            (unsigned long long)p->pending.dropped);
+	p->lost_bytes = p->spool.dropped;
+	p->lost_lines = p->pending.dropped;
+}
+
+static void pushing_status(struct face *face)
+{
+	struct pushing *p = face->own;
+	const char *state = !p->on                      ? "no Influx block: off"
+	                    : !p->believed              ? "waiting for the time"
+	                    : p->trouble == PUSH_AWAY   ? "the server is lost"
+	                    : p->trouble == PUSH_DENIED ? "the server refuses us"
+	                    : p->refused                ? "the server refuses lines"
+	                    : face->live                ? "pushing"
+	                                                : "waiting for owsd";
+
+	face_status(face,
+	            "%s; %llu values sent, %u in memory, %zu batches wait, %llu refused, %llu kB "
+	            "and %llu values dropped",
+	            state, (unsigned long long)p->sent, p->pending.lines, spool_count(&p->spool),
+	            (unsigned long long)p->refused_batches,
+	            (unsigned long long)(p->spool.dropped / 1000),
+	            (unsigned long long)p->pending.dropped);
+}
+
+/* fd is ready; -1: none, but something may be due. */
+static void push_on(struct face *face, int fd, short ready)
+{
+	struct pushing *p = face->own;
+	int64_t now_ns = ows_now();
+	struct post_result result;
+
+	if ((fd >= 0 || now_ns >= post_next(p->post)) && post_step(p->post, fd, ready, &result))
+		sending_finished(face, &result, now_ns);
+	sending_advance(face, now_ns);
+	face->tick_ns = now_ns + TICK_NS;
+	if (post_next(p->post) < face->tick_ns)
+		face->tick_ns = post_next(p->post);
+	if (p->on && p->cut_ns > now_ns && p->cut_ns < face->tick_ns)
+		face->tick_ns = p->cut_ns;
+}
+
+void pushing_tick(struct face *face, int64_t now_ns)
+{
+	struct pushing *p = face->own;
+
+	believe_clock(face, now_ns);
+	if (p->on && p->spool.dir < 0)
+		open_spool(face);
+	if (p->on && look_is_current(face))
+		points_repeat(&p->points, face->ows, &p->pending, now_ns);
+	push_on(face, -1, 0);
+	report_dropped(face);
+	pushing_status(face);
+}
+
+void pushing_changes(struct face *face, const int *signals, int n)
+{
+	struct pushing *p = face->own;
+
+	if (p->on)
+		points_changes(&p->points, face->ows, &p->pending, signals, n, ows_now());
+}
+
+void pushing_event(struct face *face, const struct face_event *event)
+{
+	struct pushing *p = face->own;
+	int64_t now_ns = ows_now();
+
+	switch (event->news) {
+	case FACE_FOUND:
+	case FACE_RELOADED:
+		take_file(face, now_ns);
+		break;
+	case FACE_FILE:
+		take_file(face, now_ns);
+		if (face->live)
+			pushing_changes(face, NULL, 0);
+		break;
+	case FACE_LOST:
+		points_lost(&p->points, &p->pending, now_ns);
+		log_warning(face->log, "owsd is lost: no value is good");
+		break;
+	case FACE_OVERRUN:
+		log_warning(face->log, "more changed than could be followed: some values are not "
+		                       "sent");
+		break;
+	case FACE_ALARM:
+	case FACE_COMMAND:
+	case FACE_ENTRIES_LOST:
+		break;
+	case FACE_DESCRIPTOR:
+		if (event->fd != p->clock.fd) {
+			push_on(face, event->fd, event->ready);
+			break;
+		}
+		face_ignore(face, event->fd);
+		wall_clock_rearm(&p->clock);
+		if (p->clock.fd >= 0)
+			face_watch(face, p->clock.fd, POLLIN);
+		believe_clock(face, now_ns);
+		break;
+	}
+}

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: MIT */
+/* The command line of a face: that of owsd, as far as it concerns a consumer. */
+#pragma once
+
+#include <stdbool.h>
+
+#include "src/ground/text/log.h"
+
+#define FACE_DIR "/etc/owsd"
+#define FACE_EXIT_RUN 1
+#define FACE_EXIT_USAGE 2
+
+/* An option with a value that one face alone has. */
+struct face_option {
+	char letter;
+	const char *word, *value, *help; /* "directory", "DIR", "where ..." */
+};
+
+struct face_arguments {
+	const char *program;
+	const char *file, *instance;
+	char default_file[128];
+	const char *option; /* the value of the face's own option; NULL: not given */
+	enum log_level level;
+	bool check; /* read the configuration, and end */
+};
+
+/*
+ * Returns -1: go on; else the exit status, after printing the reason. The strings in *a are those
+ * of argv.
+ */
+int face_arguments_parse(const char *program, const struct face_option *own, int argc, char **argv,
+                         struct face_arguments *a);
+/* Print a line on stderr, made printable: names come from outside and must not steer a terminal. */
+void face_complain(const char *program, const char *format, ...)
+	__attribute__((format(printf, 2, 3)));

@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: MIT */
+/* A command from outside: how old it may be, what it sets, and why it is refused. */
+#include <errno.h>
+#include <stdio.h>
+
+#include "src/faces/kit/command.h"
+#include "src/faces/show/names.h"
+#include "src/faces/show/range.h"
+#include "src/ground/service/command_age.h"
+#include "src/ground/signal/error.h"
+#include "src/ground/signal/value.h"
+
+static bool is_old(const struct face_command *command)
+{
+	return ows_now() - command->came_ns > COMMAND_OLD_NS;
+}
+
+int face_command_find(struct ows *h, const struct face_command *command, struct ows_info *info)
+{
+	struct ows_daemon daemon;
+	int id, err;
+
+	if (is_old(command))
+		return -ETIME;
+	/* names and types may be others since a reload */
+	if (ows_daemon(h, ows_now(), &daemon) == -ESTALE)
+		return -ESTALE;
+	if (!names_info(h, command->instance, command->name, info))
+		return -ENOENT;
+	id = ows_find(h, command->name);
+	err = id < 0 ? id : ows_for(h, command->person);
+	return err ? err : id;
+}
+
+int face_command_set(struct ows *h, const struct face_command *command, int id,
+                     const struct ows_info *info, uint32_t *stamp)
+{
+	enum ows_type type = (enum ows_type)info->type;
+	int64_t value;
+	int err;
+
+	/* to connect to owsd may have taken long */
+	if (is_old(command))
+		return -ETIME;
+	if (!command->text)
+		return -EINVAL;
+	if (type == OWS_STRING)
+		return ows_set_text(h, id, command->text, stamp);
+	err = value_parse(type, command->text, &value);
+	if (err)
+		return err;
+	return value_is_float(type) ? ows_set(h, id, value_number(type, value), stamp)
+	                            : ows_set_integer(h, id, value, stamp);
+}
+
+const char *face_refusal(const struct face_command *command, const struct ows_info *info, int err,
+                         char words[FACE_REFUSAL])
+{
+	char range[RANGE_WORDS], own[ERROR_WORDS];
+	const char *why = "";
+
+	switch (-err) {
+	case EACCES:
+		snprintf(words, FACE_REFUSAL,
+		         "owsd refuses %s: add its user to the group owsd-control, or name it in "
+		         "ControlAllow",
+		         command->program);
+		return words;
+	case ERANGE:
+	case EINVAL:
+		snprintf(words, FACE_REFUSAL, "\"%.60s\" is no value for it: expected %s",
+		         command->text ? command->text : "",
+		         info->name ? range_words((enum ows_type)info->type, info->min, info->max,
+		                                  range)
+		                    : "another");
+		return words;
+	case EROFS:
+		why = "it is an input: Writable is off in the configuration";
+		break;
+	case ENOENT:
+		why = "there is no such signal";
+		break;
+	case ENOSPC:
+	case EBUSY:
+	case EAGAIN:
+		why = "too many commands or programs: try again in a second";
+		break;
+	case ETIME:
+		why = "it may have waited for longer than 2 seconds: give it again";
+		break;
+	case ESTALE:
+	case ETIMEDOUT:
+		why = "owsd does not answer: does it run?";
+		break;
+	default:
+		why = error_words(err, own);
+	}
+	snprintf(words, FACE_REFUSAL, "%s", why);
+	return words;
+}

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The way from outside to an output, of all faces: the signal is found, the value is taken for its
+ * type, and what is refused is so in words. A command has an age: what may have waited for longer
+ * than COMMAND_OLD_NS is refused, whatever held it.
+ */
+#pragma once
+
+#include "src/faces/kit/face.h"
+
+struct face_command {
+	const char *program, *instance; /* of the face */
+	const char *name;               /* of the signal */
+	const char *text;               /* what to set; NULL: nothing */
+	const char *person;             /* for whom, as ows_for() takes it */
+	int64_t came_ns;                /* it came later than that: face_came() */
+};
+
+/*
+ * The id of the signal, and *info of it; -ETIME: the command may be too old, -ESTALE: owsd has
+ * ended or reloaded, else as ows_find(). What is done then is done for the person.
+ */
+int face_command_find(struct ows *h, const struct face_command *command, struct ows_info *info);
+/* Set it. As ows_set(); -ETIME as above. */
+int face_command_set(struct ows *h, const struct face_command *command, int id,
+                     const struct ows_info *info, uint32_t *stamp);
+
+#define FACE_REFUSAL 256
+/*
+ * Why it was refused, and what to do, or which values there are. info: of the signal; its name is
+ * NULL as long as that was not found. Returns words.
+ */
+const char *face_refusal(const struct face_command *command, const struct ows_info *info, int err,
+                         char words[FACE_REFUSAL]);

@@ -1,0 +1,280 @@
+/* SPDX-License-Identifier: MIT */
+/* Makes a client of libmosquitto, with its secrets, its will and what its callbacks note. */
+#include <mosquitto.h>
+#include <mqtt_protocol.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/faces/kit/face.h"
+#include "src/faces/kit/secret.h"
+#include "src/faces/mqtt/advice.h"
+#include "src/faces/mqtt/client.h"
+#include "src/faces/mqtt/stream.h"
+#include "src/ground/signal/utf8.h"
+
+#define SESSION "session"
+/* A birth of an earlier run has to come back whole, to be emptied; libmosquitto takes any length */
+#define MESSAGE_MOST (1024 * 1024)
+#define NO_KEEPALIVE 1 /* less than libmosquitto takes */
+#define CA_PATH "/etc/ssl/certs"
+
+bool client_mqtt5(const struct broker *b)
+{
+	return b->options->mqtt5 && !b->old_protocol;
+}
+
+int client_sure_qos(const struct broker *b)
+{
+	return b->options->profile->qos ? b->options->profile->qos : 1;
+}
+
+/* --- Callbacks ------------------------------------------------------------------------------- */
+
+static void on_connect(struct mosquitto *client, void *ctx, int code, int flags,
+                       const mosquitto_property *properties)
+{
+	struct broker *b = ctx;
+
+	(void)client;
+	(void)flags;
+	(void)properties;
+	if (code) {
+		b->ended = true;
+		b->end_code = advice_connack(code, !client_mqtt5(b));
+		return;
+	}
+	b->state = BROKER_CONNECTED;
+}
+
+static void on_disconnect(struct mosquitto *client, void *ctx, int code,
+                          const mosquitto_property *properties)
+{
+	struct broker *b = ctx;
+
+	(void)client;
+	(void)properties;
+	if (!b->ended)
+		b->end_code = code;
+	b->ended = true;
+}
+
+static void on_publish(struct mosquitto *client, void *ctx, int mid, int reason,
+                       const mosquitto_property *properties)
+{
+	struct broker *b = ctx;
+	char name[MQTT_WAY_NAME];
+
+	(void)client;
+	(void)mid;
+	(void)properties;
+	b->in_flight -= b->in_flight > 0;
+	if (reason < 128) {
+		b->acknowledged++;
+		return;
+	}
+	b->refusals++;
+	if (*b->refusal)
+		return;
+	snprintf(b->refusal, sizeof(b->refusal),
+	         "%.100s refuses what is published: %s; its access list has to let us write "
+	         "%.60s/# and the topics of discovery",
+	         mqtt_way_name(&b->options->ways[b->way], name), mosquitto_reason_string(reason),
+	         b->options->prefix);
+	log_err(b->face->log, "%s", b->refusal);
+}
+
+static void on_subscribe(struct mosquitto *client, void *ctx, int mid, int count,
+                         const int *granted, const mosquitto_property *properties)
+{
+	struct broker *b = ctx;
+	char name[MQTT_WAY_NAME];
+
+	(void)client;
+	(void)mid;
+	(void)properties;
+	/* of several the first is our own, if there is one; the other profiles' may be refused */
+	if (!count || granted[0] < 128 || (count > 1 && !b->options->profile->below))
+		return;
+	b->refusals++;
+	log_err(b->face->log,
+	        "%.100s refuses a subscription; its access list has to let us read %.60s/# and "
+	        "the topics of discovery",
+	        mqtt_way_name(&b->options->ways[b->way], name), b->options->prefix);
+}
+
+static void on_unsubscribe(struct mosquitto *client, void *ctx, int mid,
+                           const mosquitto_property *properties)
+{
+	struct broker *b = ctx;
+
+	(void)client;
+	(void)properties;
+	if (!b->marking || mid != b->mark)
+		return;
+	b->marking = false;
+	b->marked = true;
+}
+
+/* A user property of MQTT 5, if it can stand in a journal: a claim. */
+static void take_property(const mosquitto_property *properties, const char *key, char *text,
+                          size_t size)
+{
+	const mosquitto_property *at;
+	char *name, *value;
+
+	at = mosquitto_property_read_string_pair(properties, MQTT_PROP_USER_PROPERTY, &name, &value,
+	                                         false);
+	while (at) {
+		const char *rest = value;
+		size_t len = strlen(value);
+		bool fits = !strcmp(name, key) && len && len < size;
+
+		while (fits && len) {
+			int32_t c = utf8_next(&rest, &len);
+
+			fits = c > ' ' && !utf8_disturbs(c);
+		}
+		if (fits)
+			snprintf(text, size, "%s", value);
+		free(name);
+		free(value);
+		at = mosquitto_property_read_string_pair(at, MQTT_PROP_USER_PROPERTY, &name, &value,
+		                                         true);
+	}
+}
+
+static void on_message(struct mosquitto *client, void *ctx, const struct mosquitto_message *got,
+                       const mosquitto_property *properties)
+{
+	struct broker *b = ctx;
+	struct broker_message message = {
+		.topic = got->topic,
+		/* libmosquitto puts a NUL behind it */
+		.text = got->payload ? got->payload : "",
+		.len = got->payloadlen > 0 ? (size_t)got->payloadlen : 0,
+		.came_ns = b->came_ns,
+		.retained = got->retain,
+	};
+
+	(void)client;
+	take_property(properties, "person", message.person, BROKER_PERSON);
+	take_property(properties, SESSION, message.session, BROKER_SESSION);
+	b->ops->message(b->ctx, &message);
+}
+
+static void on_log(struct mosquitto *client, void *ctx, int level, const char *text)
+{
+	struct broker *b = ctx;
+
+	(void)client;
+	if (level == MOSQ_LOG_ERR && !*b->tls_words)
+		snprintf(b->tls_words, sizeof(b->tls_words), "%s", advice_tls(text));
+	log_at(b->face->log, LOG_LEVEL_TRACE, "libmosquitto: %s", text);
+}
+
+/* --- A new client ---------------------------------------------------------------------------- */
+
+static bool key_fails(const char *key, const char *reason, char *why, size_t size)
+{
+	snprintf(why, size, "%s: %s", key, reason);
+	return false;
+}
+
+static bool set_password(struct broker *b, char *why, size_t size)
+{
+	char password[SECRET_SIZE], reason[SECRET_PATH + 128];
+	int err;
+
+	if (!*b->options->user)
+		return true;
+	if (secret_read(*b->options->password_file ? b->options->password_file : NULL, password,
+	                reason, sizeof(reason)))
+		return key_fails("PasswordFile", reason, why, size);
+	err = mosquitto_username_pw_set(b->client, b->options->user, *password ? password : NULL);
+	explicit_bzero(password, sizeof(password));
+	snprintf(why, size, "%s", mosquitto_strerror(err));
+	return !err;
+}
+
+static bool set_tls(struct broker *b, char *why, size_t size)
+{
+	const struct mqtt_options *o = b->options;
+	char ca[SECRET_PATH], cert[SECRET_PATH], key[SECRET_PATH], reason[SECRET_PATH + 128];
+	int err;
+
+	if (!o->ways[b->way].tls)
+		return true;
+	if (*o->ca_file && secret_file(o->ca_file, false, ca, reason, sizeof(reason)))
+		return key_fails("CaFile", reason, why, size);
+	if (*o->cert_file && secret_file(o->cert_file, false, cert, reason, sizeof(reason)))
+		return key_fails("CertFile", reason, why, size);
+	if (*o->key_file && secret_file(o->key_file, true, key, reason, sizeof(reason)))
+		return key_fails("KeyFile", reason, why, size);
+	err = mosquitto_tls_set(b->client, *o->ca_file ? ca : NULL, *o->ca_file ? NULL : CA_PATH,
+	                        *o->cert_file ? cert : NULL, *o->key_file ? key : NULL, NULL);
+	snprintf(why, size, "TLS: %s", mosquitto_strerror(err));
+	return !err;
+}
+
+/* struct outlet. MQTT 5: it says of which process it is. */
+static bool set_will(void *ctx, const char *topic, const char *text, size_t len, bool retain)
+{
+	struct broker *b = ctx;
+	mosquitto_property *session = NULL;
+
+	if (client_mqtt5(b) && mosquitto_property_add_string_pair(&session, MQTT_PROP_USER_PROPERTY,
+	                                                          SESSION, b->session))
+		return false;
+	if (!mosquitto_will_set_v5(b->client, topic, (int)len, text, client_sure_qos(b), retain,
+	                           session))
+		return true;
+	mosquitto_property_free_all(&session);
+	return false;
+}
+
+/*
+ * Have the broker keep what is longer from us. No function sets a property of CONNECT alone; the
+ * one that connects and waits keeps it for all that come after, though it refuses this keep-alive.
+ * False: no memory.
+ */
+static bool bound_messages(struct broker *b)
+{
+	mosquitto_property *most = NULL;
+
+	if (!client_mqtt5(b))
+		return true;
+	if (mosquitto_property_add_int32(&most, MQTT_PROP_MAXIMUM_PACKET_SIZE, MESSAGE_MOST))
+		return false;
+	mosquitto_connect_bind_v5(b->client, "", 0, NO_KEEPALIVE, NULL, most);
+	mosquitto_property_free_all(&most);
+	return true;
+}
+
+bool client_make(struct broker *b, char *why, size_t size)
+{
+	char id[160];
+
+	snprintf(id, sizeof(id), CLIENT_ID, b->options->node);
+	b->client = mosquitto_new(id, true, b);
+	if (!b->client) {
+		snprintf(why, size, "no memory");
+		return false;
+	}
+	mosquitto_connect_v5_callback_set(b->client, on_connect);
+	mosquitto_disconnect_v5_callback_set(b->client, on_disconnect);
+	mosquitto_publish_v5_callback_set(b->client, on_publish);
+	mosquitto_subscribe_v5_callback_set(b->client, on_subscribe);
+	mosquitto_unsubscribe_v5_callback_set(b->client, on_unsubscribe);
+	mosquitto_message_v5_callback_set(b->client, on_message);
+	mosquitto_log_callback_set(b->client, on_log);
+	mosquitto_int_option(b->client, MOSQ_OPT_PROTOCOL_VERSION,
+	                     client_mqtt5(b) ? MQTT_PROTOCOL_V5 : MQTT_PROTOCOL_V311);
+	mosquitto_int_option(b->client, MOSQ_OPT_TCP_NODELAY, 1);
+	if (!bound_messages(b) ||
+	    !b->ops->will(b->ctx, false, &(struct outlet){.put = set_will, .ctx = b})) {
+		snprintf(why, size, "no memory");
+		return false;
+	}
+	return set_password(b, why, size) && set_tls(b, why, size);
+}

@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: MIT */
+/* Checks a command and hands it to owsd, or logs why not. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/faces/kit/command.h"
+#include "src/faces/mqtt/commands.h"
+#include "src/faces/mqtt/credit.h"
+#include "src/faces/mqtt/entity.h"
+#include "src/faces/mqtt/stream.h"
+#include "src/ground/signal/hash.h"
+#include "src/ground/signal/value.h"
+
+#define OPEN_NS NS_PER_S
+
+void commands_tell(struct commands *c, int64_t now_ns)
+{
+	for (size_t i = 0; i < COMMANDS_CAUSES; i++) {
+		struct commands_cause *cause = &c->causes[i];
+		char others[LOG_OTHERS];
+
+		if (!cause->lines || now_ns - cause->begun_ns < COMMANDS_SPAN_NS)
+			continue;
+		if (cause->others)
+			log_warning(c->log, "%.190s%s", cause->last,
+			            log_others(cause->others, others));
+		*cause = (struct commands_cause){0};
+	}
+}
+
+static void commands_refuse(struct commands *c, const char *name, const char *why, int64_t now_ns)
+{
+	uint64_t print = hash_text(HASH_BEGIN, why, strlen(why));
+	struct commands_cause *cause = &c->causes[print % COMMANDS_CAUSES];
+
+	commands_tell(c, now_ns);
+	c->refused++;
+	c->trouble_ns = now_ns;
+	snprintf(c->trouble, sizeof(c->trouble), "command to %.63s refused: %.150s", name, why);
+	if (!cause->lines)
+		cause->begun_ns = now_ns;
+	if (cause->lines < COMMANDS_LINES) {
+		cause->lines++;
+		log_warning(c->log, "%s", c->trouble);
+	} else {
+		cause->others++;
+		memcpy(cause->last, c->trouble, sizeof(cause->last));
+	}
+}
+
+/* 0, or a negative errno. */
+static int connect_owsd(struct commands *c, int64_t now_ns)
+{
+	int err;
+
+	if (c->h)
+		return 0;
+	if (now_ns < c->open_ns)
+		return -ESTALE;
+	err = ows_open_as(c->instance, OWS_CONTROL, c->program, &c->h);
+	if (err)
+		c->h = NULL;
+	/* to wait for one that hangs takes longer than the pause */
+	c->open_ns = ows_now() + OPEN_NS;
+	return err == -ENOENT ? -ESTALE : err;
+}
+
+/* on and off are all of a light or a cover that has a number, or nothing; else text. */
+static const char *number_of(const struct commands *c, const struct ows_info *info,
+                             const char *text, char number[VALUE_TEXT_MAX])
+{
+	const struct stream *s = c->stream;
+	enum entity_kind kind;
+	double least, most;
+
+	if (info->type == OWS_BOOL || (strcmp(text, "on") != 0 && strcmp(text, "off") != 0))
+		return text;
+	kind = entity_kind(info, s->class_of(s->class_ctx, info->name), true);
+	if (kind != ENTITY_LIGHT && kind != ENTITY_COVER)
+		return text;
+	entity_range(info, &least, &most);
+	value_to_text(OWS_DOUBLE, value_of_double(text[1] == 'n' ? most : least), number);
+	return number;
+}
+
+/* That of the signal, by its id. NULL: no memory. */
+static struct credit *credit_of(struct commands *c, int id)
+{
+	struct credit *more;
+
+	if (id < c->credit_count)
+		return &c->credits[id];
+	more = realloc(c->credits, (size_t)(id + 1) * sizeof(*more));
+	if (!more)
+		return NULL;
+	memset(more + c->credit_count, 0, (size_t)(id + 1 - c->credit_count) * sizeof(*more));
+	c->credits = more;
+	c->credit_count = id + 1;
+	return &c->credits[id];
+}
+
+/* -EDQUOT: there is no credit for it. */
+static int set(struct commands *c, struct face_command *command, struct ows_info *info)
+{
+	const char *given = command->text;
+	char number[VALUE_TEXT_MAX];
+	struct credit *credit;
+	int id = face_command_find(c->h, command, info), err;
+
+	if (id < 0)
+		return id;
+	credit = credit_of(c, id);
+	if (!credit || !credit_spend(credit, ows_now()))
+		return credit ? -EDQUOT : -ENOMEM;
+	command->text = number_of(c, info, given, number);
+	err = face_command_set(c->h, command, id, info, NULL);
+	command->text = given;
+	return err;
+}
+
+/* What is wrong with the message itself; NULL: nothing. */
+static const char *fault_of(const struct broker_message *message)
+{
+	if (message->retained && message->len)
+		return "it is retained, so nobody knows of when it is: publish it without retain";
+	if (message->len > COMMANDS_TEXT)
+		return "it is longer than 1024 bytes";
+	if (!message->len)
+		return "it is empty";
+	if (strlen(message->text) != message->len)
+		return "there is a byte 0 in it";
+	return NULL;
+}
+
+/* 0, or a negative errno. */
+static int take(struct commands *c, struct face_command *command, struct ows_info *info,
+                int64_t now_ns)
+{
+	int err = connect_owsd(c, now_ns);
+
+	if (!err)
+		err = set(c, command, info);
+	if (err == -ESTALE && c->h) {
+		/* owsd has reloaded, or was started again */
+		err = ows_reopen(c->h);
+		err = err ? -ESTALE : set(c, command, info);
+	}
+	if (err == -ESTALE && c->h) {
+		commands_close(c);
+		c->open_ns = ows_now() + OPEN_NS;
+	}
+	return err;
+}
+
+int commands_take(struct commands *c, const char *name, bool known,
+                  const struct broker_message *message, const char *place, int64_t now_ns)
+{
+	const char *fault = message->fault ? message->fault : fault_of(message);
+	char person[BROKER_PERSON], words[FACE_REFUSAL];
+	struct face_command command = {.program = c->program,
+	                               .instance = c->instance,
+	                               .name = name,
+	                               .text = message->text,
+	                               .person = person,
+	                               .came_ns = message->came_ns};
+	struct ows_info info = {0};
+	int err;
+
+	if (fault) {
+		commands_refuse(c, name, fault, now_ns);
+		return -EINVAL;
+	}
+	snprintf(person, sizeof(person), "%.*s", BROKER_PERSON - 1,
+	         *message->person ? message->person : place);
+	err = !c->stream->live ? -ESTALE : !known ? -ENOENT : take(c, &command, &info, now_ns);
+	if (err) {
+		commands_refuse(c, name,
+		                err == -EDQUOT ? "more than 50 commands in a second"
+		                               : face_refusal(&command, &info, err, words),
+		                now_ns);
+		return err;
+	}
+	c->taken++;
+	c->trouble[0] = '\0';
+	log_info(c->log, "%s set to %.60s for %s", name, message->text, person);
+	return 0;
+}
+
+const char *commands_trouble(const struct commands *c, int64_t now_ns)
+{
+	return now_ns - c->trouble_ns < COMMANDS_TROUBLE_NS ? c->trouble : "";
+}
+
+void commands_close(struct commands *c)
+{
+	ows_close(c->h);
+	c->h = NULL;
+	free(c->credits);
+	c->credits = NULL;
+	c->credit_count = 0;
+}

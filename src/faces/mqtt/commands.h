@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Commands that came from the broker: the broker decides who may publish there, owsd what owsd-mqtt
+ * may set. What is wrong with a command is a line of the log, and nothing else happens.
+ */
+#pragma once
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "hal/base/time.h"
+#include "src/faces/mqtt/client.h"
+#include "src/ground/text/log.h"
+
+struct credit;
+struct ows;
+struct stream;
+
+#define COMMANDS_TEXT 1024 /* bytes of a value */
+/* Lines of the log for each cause of refusals, in COMMANDS_SPAN_NS; the others are counted */
+#define COMMANDS_LINES 10
+#define COMMANDS_SPAN_NS (60 * NS_PER_S)
+#define COMMANDS_CAUSES 32
+#define COMMANDS_TROUBLE_NS (60 * NS_PER_S)
+
+struct commands_cause {
+	int64_t begun_ns;
+	unsigned lines; /* since then */
+	uint64_t others;
+	char last[BROKER_WORDS]; /* of the others */
+};
+
+struct commands {
+	struct log *log;
+	const char *instance, *program;
+	const struct stream *stream; /* whether owsd is there, and classes of signals */
+	struct ows *h;               /* NULL: not connected */
+	int64_t open_ns;             /* when it may be tried again */
+	struct credit *credits;      /* by ids of h */
+	int credit_count;
+	struct commands_cause causes[COMMANDS_CAUSES]; /* by a hash of their words */
+	uint64_t taken, refused;
+	char trouble[BROKER_WORDS]; /* the last refusal, and what to do */
+	int64_t trouble_ns;         /* when it was */
+};
+
+/*
+ * The command of a message for the signal name; known: it is one of those that are published.
+ * place: for whom, if the message does not name one. Waits for owsd when it connects, two seconds
+ * at most, once a second. 0, or why it was refused; -ETIME: it may be too old.
+ */
+int commands_take(struct commands *c, const char *name, bool known,
+                  const struct broker_message *message, const char *place, int64_t now_ns);
+/* Log how many refusals had no line, for each cause whose span is over by now. */
+void commands_tell(struct commands *c, int64_t now_ns);
+/* The last refusal, for a minute: then it is nothing that is wrong now. "": none. */
+const char *commands_trouble(const struct commands *c, int64_t now_ns);
+void commands_close(struct commands *c);

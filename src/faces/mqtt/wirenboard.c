@@ -1,0 +1,252 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The profile "wirenboard": the node is a device of the conventions of Wiren Board, each signal a
+ * control of it. At the topic of a bad value the last good one stays, so its error is all that
+ * tells them apart.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "src/faces/mqtt/entity.h"
+#include "src/faces/mqtt/plain.h"
+#include "src/faces/mqtt/stream.h"
+#include "src/ground/signal/value.h"
+
+#define META "meta"
+#define ERROR "meta/error"
+#define ALARM "__alarm" /* behind the topic of a signal: no slug has two in a row */
+
+static void topic_of(const struct stream *s, const struct row *row, char topic[TOPIC_SIZE])
+{
+	snprintf(topic, TOPIC_SIZE, "%s/controls/%s", s->prefix, row->level);
+}
+
+static bool put_below_row(struct stream *s, const struct row *row, const char *below,
+                          const char *text)
+{
+	char topic[TOPIC_SIZE];
+
+	snprintf(topic, sizeof(topic), "%s/%s", row->topic, below);
+	return text ? stream_put_text(s, topic, text, true) : stream_put(s, topic, true);
+}
+
+/* --- What there is --------------------------------------------------------------------------- */
+
+/* Units that the conventions write in ASCII. */
+static const char *unit_of(const struct row *row)
+{
+	static const struct {
+		const char *ours, *theirs;
+	} units[] = {
+		{"\xc2\xb0"
+	         "C",
+	         "deg C"},
+		{"\xc2\xb0", "deg"},
+		{"\xce\xa9", "Ohm"},
+		{"m\xce\xa9", "mOhm"},
+		{"m\xc2\xb3", "m^3"},
+		{"m\xc2\xb3/h", "m^3/h"},
+	};
+	const char *unit = row->info.unit;
+
+	for (size_t i = 0; i < sizeof(units) / sizeof(units[0]); i++)
+		if (!strcmp(units[i].ours, unit))
+			return units[i].theirs;
+	if (!strcmp(unit, "%") && strstr(row->property, "humidity"))
+		return "%, RH";
+	for (const char *c = unit; *c; c++)
+		if ((unsigned char)*c > 126)
+			return "";
+	return unit;
+}
+
+static void put_title(struct json *json, const char *title, bool simulated)
+{
+	char text[320];
+
+	snprintf(text, sizeof(text), "%.300s%s", title, simulated ? " (simulated)" : "");
+	json_object(json, "title");
+	json_string(json, "en", text);
+	json_object_end(json);
+}
+
+static void put_number(struct json *json, const char *key, double number)
+{
+	if (!isnan(number))
+		json_double(json, key, number);
+}
+
+static bool put_control(struct stream *s, const struct row *row)
+{
+	const struct ows_info *info = &row->info;
+	bool number = info->type != OWS_BOOL && info->type != OWS_STRING;
+	struct json json;
+
+	stream_message(s, &json);
+	json_object(&json, NULL);
+	json_string(&json, "type",
+	            info->type == OWS_BOOL     ? "switch"
+	            : info->type == OWS_STRING ? "text"
+	                                       : "value");
+	if (number && *unit_of(row))
+		json_string(&json, "units", unit_of(row));
+	if (number) {
+		put_number(&json, "min", info->min);
+		put_number(&json, "max", info->max);
+		put_number(&json, "precision",
+		           !value_is_float((enum ows_type)info->type) ? 1
+		           : info->decimals >= 0                      ? pow(10, -info->decimals)
+		                                                      : NAN);
+	}
+	json_int(&json, "order", row - s->rows + 1);
+	json_bool(&json, "readonly", !s->write || !info->output);
+	put_title(&json, *info->description ? info->description : info->name, row->simulated);
+	json_object_end(&json);
+	return put_below_row(s, row, META, NULL);
+}
+
+/* A control beside that of the signal: does its limit alarm stand? */
+static bool put_alarm_control(struct stream *s, const struct row *row)
+{
+	char topic[TOPIC_SIZE], title[320];
+	struct json json;
+
+	if (!row->alarms)
+		return true;
+	snprintf(title, sizeof(title), "%.300s: alarm",
+	         *row->info.description ? row->info.description : row->info.name);
+	stream_message(s, &json);
+	json_object(&json, NULL);
+	json_string(&json, "type", "alarm");
+	json_int(&json, "order", s->count + (row - s->rows) + 1);
+	json_bool(&json, "readonly", true);
+	put_title(&json, title, false);
+	json_object_end(&json);
+	snprintf(topic, sizeof(topic), "%s" ALARM "/" META, row->topic);
+	return stream_put(s, topic, true);
+}
+
+static bool put_device(struct stream *s)
+{
+	char title[ENTITY_ID + 8];
+	struct json json;
+
+	snprintf(title, sizeof(title), "owsd %s", s->node);
+	stream_message(s, &json);
+	json_object(&json, NULL);
+	json_string(&json, "driver", "owsd");
+	put_title(&json, title, false);
+	json_object_end(&json);
+	return stream_put_below(s, META, NULL);
+}
+
+static bool birth(struct stream *s, int number, bool *more)
+{
+	const struct row *row = number ? &s->rows[number - 1] : NULL;
+
+	*more = number < s->count && !s->announced;
+	if (!s->announced &&
+	    !(row ? put_control(s, row) && put_alarm_control(s, row) : put_device(s)))
+		return false;
+	s->announced = s->announced || !*more;
+	return true;
+}
+
+/* --- Values and states ----------------------------------------------------------------------- */
+
+/* Not read; not written as commanded; not read in time. */
+static const char *error_of(uint8_t quality)
+{
+	return quality == OWS_Q_DIFFERS ? "rw" : quality == OWS_Q_STALE ? "rp" : "r";
+}
+
+static bool wirenboard_put_value(struct stream *s, const struct row *row, const struct news *news)
+{
+	stream_value(s, news, "1", "0");
+	return stream_put(s, row->topic, true);
+}
+
+/* If it is another than was published: unknown, it rests, it stands. */
+static bool put_alarm(struct stream *s, struct row *row)
+{
+	struct ows_alarm_state state;
+	bool known = plain_limit(s, row, &state), stands = known && plain_stands(&state);
+	uint32_t print = 1u + known + stands;
+	char topic[TOPIC_SIZE], error[TOPIC_SIZE];
+
+	if (!row->alarms || print == row->alarm_print)
+		return true;
+	snprintf(topic, sizeof(topic), "%s" ALARM, row->topic);
+	snprintf(error, sizeof(error), "%s" ALARM "/" ERROR, row->topic);
+	if ((known && !stream_put_text(s, topic, stands ? "1" : "0", true)) ||
+	    !stream_put_text(s, error, known ? "" : "r", true))
+		return false;
+	row->alarm_print = print;
+	return true;
+}
+
+static bool value(struct stream *s, struct row *row)
+{
+	struct news news;
+
+	if (!put_alarm(s, row))
+		return false;
+	if (!stream_read(s, row, &news))
+		return true;
+	/* the conventions have no other place for it that a person sees */
+	if (news.good && news.simulated != row->simulated) {
+		row->simulated = news.simulated;
+		if (!put_control(s, row)) {
+			row->simulated = !news.simulated;
+			return false;
+		}
+	}
+	if (!news.good)
+		return put_below_row(s, row, ERROR, error_of(news.v.quality)) &&
+		       stream_published(row, &news);
+	/*
+	 * The conventions have the error removed before the value comes, and the old value would
+	 * count for that time. So the value comes before that, too.
+	 */
+	if (!wirenboard_put_value(s, row, &news) ||
+	    ((!row->published || !row->good) &&
+	     (!put_below_row(s, row, ERROR, "") || !wirenboard_put_value(s, row, &news))))
+		return false;
+	return stream_published(row, &news);
+}
+
+static bool wirenboard_state(struct stream *s, enum stream_node node)
+{
+	return stream_put_below(s, ERROR, node == STREAM_THERE ? "" : "r");
+}
+
+static bool writes(const struct stream *s, const char *topic, const char *below)
+{
+	const char *level = strchr(below, '/'), *end = level ? strchr(level + 1, '/') : NULL;
+	size_t len = end ? (size_t)(end - topic) : strlen(topic), tail = strlen(ALARM);
+	const struct row *row;
+
+	if (!strcmp(below, META) || !strcmp(below, ERROR))
+		return true;
+	if (len <= tail || memcmp(topic + len - tail, ALARM, tail) != 0)
+		return stream_row(s, topic, len);
+	row = stream_row(s, topic, len - tail);
+	return row && row->alarms;
+}
+
+static const char *const places[] = {
+	META, ERROR, "controls/+", "controls/+/" META, "controls/+/" ERROR, NULL};
+
+const struct profile profile_wirenboard = {
+	.name = "wirenboard",
+	.root = "/devices/owsd_",
+	.dash = '_',
+	.qos = 1,
+	.commands = "controls/+/on",
+	.below = places,
+	.writes = writes,
+	.topic = topic_of,
+	.birth = birth,
+	.value = value,
+	.state = wirenboard_state,
+};

@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: MIT */
+/* What is behind the paths. */
+#pragma once
+
+#include "src/faces/web/web.h"
+
+/* The function of a path (without the first "/"); NULL: there is none. */
+web_function api_find(const char *path, bool post);
+/*
+ * May a body be large that comes there, with the "/"? Only that of a configuration, by a person who
+ * may edit it. Looks at the head alone.
+ */
+bool api_admits(const struct request *request, const char *path);

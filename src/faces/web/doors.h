@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The doors: sockets at which owsd-web listens. A connection waits here until the head of its
+ * request is whole and right; then libmicrohttpd gets it. Each connection has one request.
+ */
+#pragma once
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <sys/socket.h>
+
+#include "src/config/read/listen.h"
+#include "src/faces/web/crowd.h"
+
+#define DOORS (LISTEN_MAX + 1)
+#define DOORS_CONNECTIONS CROWD
+#define DOORS_PER_PEER 64 /* of one user at a socket, or one TCP address */
+#define DOORS_IDLE_S 30
+
+struct log;
+struct visitor;
+
+struct doors {
+	int64_t came_ns; /* what epoll reports now came later than that */
+	int64_t head_ns; /* and the head of the visitor who is let in */
+	int epoll;       /* readable when doors_take() has something to do; -1: not open */
+	int fds[DOORS];  /* -1: the place is free */
+	struct listen_address at[DOORS]; /* as it was asked for, if by_address */
+	bool by_address[DOORS];
+	unsigned count;
+	struct visitor *visitors; /* DOORS_CONNECTIONS */
+	unsigned visitor_count;
+	int64_t paused_ns;  /* no descriptor was left: listen again then; 0: it listens */
+	int64_t watched_ns; /* epoll has all doors since then; INT64_MAX: they pause */
+	struct crowd crowd;
+	char path[108]; /* of the socket, to remove at the end; "": the manager's */
+	/* Takes a connection and closes it at the end. count: how many it has already. */
+	void (*welcome)(void *ctx, int fd, const struct sockaddr *address, socklen_t len);
+	unsigned (*count_inside)(void *ctx);
+	bool (*is_proxy)(void *ctx, int fd);
+	void *ctx;
+};
+
+/* Before the others; the functions and ctx are set. 0 or a negative errno. */
+int doors_open(struct doors *doors);
+/* Listen: at the sockets of LISTEN_FDS (sd_listen_fds(3)); how many, or a negative errno. */
+int doors_inherit(struct doors *doors);
+/* At a path, with mode 0660, in place of a socket that nobody answers. -EADDRINUSE. */
+int doors_socket(struct doors *doors, const char *path);
+/* At an address; *address gets the port that the kernel chose. */
+int doors_address(struct doors *doors, struct listen_address *address);
+/* Is there a door that doors_address() has opened for that? */
+bool doors_has(const struct doors *doors, const struct listen_address *address);
+/*
+ * Close one that doors_address() has opened and that is not among those to keep: true, and its
+ * address in *shut. Connections stay. False: there is none.
+ */
+bool doors_shut(struct doors *doors, const struct listen_address *keep, unsigned count,
+                struct listen_address *shut);
+/* At that time epoll had nothing to report: what comes now came later. */
+void doors_empty(struct doors *doors, int64_t looked_ns);
+/* Accept, read heads, refuse. Never blocks. */
+void doors_take(struct doors *doors, int64_t now_ns);
+/* One that was welcomed ends: its place is free. welcome's taker closes it when this returns. */
+void doors_leave(struct doors *doors, int fd);
+/* When doors_take() has to be called at the latest. */
+int64_t doors_next(const struct doors *doors);
+void doors_close(struct doors *doors);

@@ -1,0 +1,181 @@
+/* SPDX-License-Identifier: MIT */
+/* Edits of a draft, on the worker for them. */
+#include <errno.h>
+#include <microhttpd.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/config/check/check.h"
+#include "src/config/read/load.h"
+#include "src/faces/web/draft.h"
+#include "src/faces/web/draft_edit.h"
+#include "src/faces/web/guard.h"
+#include "src/faces/web/http.h"
+#include "src/faces/web/model.h"
+#include "src/ground/signal/utf8.h"
+
+#define NAME "draft" /* of the file, in messages, whose place the page shows itself */
+
+bool draft_is_text(const char *text, size_t len)
+{
+	while (len)
+		if (utf8_next(&text, &len) <= 0)
+			return false;
+	return true;
+}
+
+int draft_check(const char *file, const char *text, size_t len, struct problems *problems,
+                struct rio **rio)
+{
+	struct config_report report = problems_report(problems), silent = {0};
+	struct config *config = NULL;
+	int err = config_parse(file, text, len, &report, &config);
+
+	if (!err)
+		err = config_check(config, &report);
+	config_free(config);
+	*rio = NULL;
+	if (err == -ENOMEM)
+		return err;
+	return rio_parse(file, text, len, &silent, rio) == -ENOMEM ? -ENOMEM : err;
+}
+
+static void draft_answer(struct job *job, const struct rio *rio, int err,
+                         const struct problems *problems)
+{
+	struct json json;
+
+	if (!json_start(&json, &job->text, &job->len))
+		return;
+	job->status = 200;
+	json_bytes(&json, "text", rio->text, rio->len);
+	json_bool(&json, "valid", err == 0);
+	problems_json(&json, problems, rio);
+	model_json(&json, rio);
+	json_finish(&json);
+}
+
+/* An edit whose result is wrong where the text before was right. */
+static void draft_refuse(struct job *job, const struct problems *problems, const struct rio *rio)
+{
+	struct json json;
+	int line;
+
+	if (!json_start(&json, &job->text, &job->len))
+		return;
+	job->status = 422;
+	json_string(&json, "error", problems_first(problems, &line));
+	problems_json(&json, problems, rio);
+	json_finish(&json);
+}
+
+static unsigned errors_of(const struct problems *problems)
+{
+	unsigned count = 0;
+
+	for (unsigned i = 0; i < problems->count; i++)
+		count += problems->list[i].error;
+	return count;
+}
+
+/* Does the text have fewer errors than that? */
+static bool is_better(const char *text, unsigned errors)
+{
+	static const char file[] = NAME;
+	struct problems *before = calloc(1, sizeof(*before));
+	struct rio *rio = NULL;
+	bool better = false;
+
+	if (before && draft_check(file, text, strlen(text), before, &rio) != -ENOMEM)
+		better = errors_of(before) < errors;
+	if (before)
+		problems_free(before);
+	free(before);
+	rio_free(rio);
+	return better;
+}
+
+static void check(struct job *job, const struct rio *edited, const struct body *body)
+{
+	bool checks = strcmp(body_string(body, "do"), "check") == 0;
+	struct problems *problems = calloc(1, sizeof(*problems));
+	struct rio *rio = NULL;
+	int err = problems ? draft_check(NAME, edited->text, edited->len, problems, &rio) : -ENOMEM;
+
+	if (err == -ENOMEM || !rio)
+		job_error(job, 500, "no memory");
+	else if (rio->len > DRAFT_MAX)
+		job_error(job, 422, "the text would be longer than 1 MiB");
+	else if (err && !checks && is_better(body_string(body, "text"), errors_of(problems)))
+		draft_refuse(job, problems, rio);
+	else
+		draft_answer(job, rio, err, problems);
+	if (problems)
+		problems_free(problems);
+	free(problems);
+	rio_free(rio);
+}
+
+static void edit(struct job *job, struct rio **rio, const struct body *body,
+                 struct config_report *report)
+{
+	const struct problems *problems = report->ctx;
+	bool may = report->errors == 0 || strcmp(body_string(body, "do"), "check") == 0 ||
+	           strcmp(body_string(body, "do"), "new") == 0;
+	int line, err;
+
+	if (!may) {
+		const char *words = problems_first(problems, &line);
+
+		job_error(job, 422, "line %d: %s: correct the text first", line, words);
+		return;
+	}
+	report->errors = 0;
+	err = draft_edit(rio, body, report);
+	if (!err)
+		check(job, *rio, body);
+	else if (err == -EINVAL)
+		job_error(job, 422, "%s", problems_first(problems, &line));
+	else
+		job_error(job, err == -EFBIG ? 422 : 500,
+		          err == -EFBIG ? "the text would be longer than 1 MiB" : "no memory");
+}
+
+static void draft_run(struct job *job)
+{
+	struct problems *problems = calloc(1, sizeof(*problems));
+	struct config_report report = problems_report(problems);
+	struct rio *rio = NULL;
+	struct body body;
+	const char *text;
+
+	if (body_parse(job->posted.bytes, job->posted.len, &body) || !body_find(&body, "do")) {
+		job_error(job, 400,
+		          "expected a JSON object, such as {\"text\":\"...\",\"do\":\"check\"}");
+	} else {
+		text = body_string(&body, "text");
+		if (strlen(text) > DRAFT_MAX)
+			job_error(job, 413, "the text is longer than 1 MiB");
+		else if (!problems || rio_parse(NAME, text, strlen(text), &report, &rio))
+			job_error(job, 500, "no memory");
+		else
+			edit(job, &rio, &body, &report);
+	}
+	if (problems)
+		problems_free(problems);
+	free(problems);
+	rio_free(rio);
+}
+
+int draft_post(struct request *request)
+{
+	char person[PERSON], words[GUARD_WORDS];
+	unsigned status = guard_post(request, PERSON_CONFIGURE, person, words);
+
+	if (status)
+		return http_error(request, status, "%s", words);
+	if (request->posted.dropped)
+		return http_error(request, 503, DRAFT_BUSY);
+	return http_defer(request, http_worker(request->web, &request->web->drafts),
+	                  http_job(request, sizeof(struct job), draft_run));
+}

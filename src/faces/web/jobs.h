@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A thread for what takes longer than the loop may wait: it does jobs, one after another. Peers
+ * take turns, so one that asks for much delays another by one job.
+ */
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "src/faces/web/posted.h"
+
+struct request;
+struct jobs;
+
+#define JOBS 64         /* that wait */
+#define JOBS_OF_PEER 16 /* of these, of one peer */
+
+/* A job, and the answer that it makes. One side at a time has it. */
+struct job {
+	struct job *next;
+	void (*run)(struct job *job); /* on the thread: fills status, text, len */
+	struct request *request;      /* the loop's; NULL: nobody waits any more */
+	uint64_t peer;                /* who asks, as person_number() has it */
+	uint64_t turn;                /* of jobs.c: the jobs of a turn are of different peers */
+	struct posted posted;         /* the body of the request */
+	unsigned status;
+	char *text; /* JSON, allocated; NULL: no memory */
+	size_t len;
+};
+
+/* On the loop: a job that nobody has, with what it holds. */
+void job_free(struct job *job);
+
+/* bell: rung when a job is done (hal/base/bell.h). NULL: no memory, or no thread. */
+struct jobs *jobs_start(int bell);
+/* False: too many wait, or too many of that peer. */
+bool jobs_give(struct jobs *jobs, struct job *job);
+/* A job that is done; NULL: none. */
+struct job *jobs_take(struct jobs *jobs);
+/* Waits for the job that runs; all others come back as done by jobs_take(). */
+void jobs_end(struct jobs *jobs);
+void jobs_free(struct jobs *jobs);
+
+/* Answer a job with an error. */
+void job_error(struct job *job, unsigned status, const char *format, ...)
+	__attribute__((format(printf, 3, 4)));

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+// Words for qualities, numbers, ages and times: those of libows and of docs/troubleshooting.md.
+
+/** code: [words, what it means, what to do] */
+const QUALITIES = new Map([
+// from src/ground/signal/words_list.h
+	[0x04, ["no such property",
+		"The device has no property of that name.",
+		"Look for a typing error in the path after the device. \u201cowsctl dir\u201d lists "
+		+ "what the device has."]],
+	[0x05, ["wrong type",
+		"The property exists, and the type of the signal does not fit it.",
+		"Take the type that the log names; for lists (.ALL) and texts take string."]],
+	[0x06, ["access refused",
+		"The property is read-only or write-only, or owsd has no permission.",
+		"Make the item an input, or an output without Readable. For permissions look at the "
+		+ "owserver\u2019s option readonly and at the rights of the files of the kernel."]],
+	[0x08, ["device absent",
+		"The device does not answer on its wire.",
+		"Does \u201cowsctl scan\u201d list the id? Compare it with the path of the signal. "
+		+ "Check ground, data and the pull-up."]],
+	[0x0c, ["device error",
+		"The device answers too late, or what cannot be true: a checksum fails, or the number "
+		+ "is out of the chip\u2019s range; or it reports a fault itself.",
+		"Look for a bad contact, a long wire without enough pull-up, or noise. \u201cowsctl "
+		+ "read\u201d of the same path shows the answer."]],
+	[0x10, ["sensor power fault",
+		"The answer is that of a sensor without supply: a thermometer reads 85 or 127.94 "
+		+ "\u00b0C.",
+		"Check its supply line. Parasite power over a long wire needs a strong pull-up."]],
+	[0x14, ["stale",
+		"No newer value came within StaleAfter.",
+		"Is the target up, and is the signal read at all? _ReadEnable or PerFactor may hold "
+		+ "it back."]],
+	[0x18, ["target down",
+		"The target does not answer, or one of several bridge chips does not answer.",
+		"Does owserver run, and is its port right? Is the bridge chip at its address? owsd "
+		+ "tries again by itself, and the signals come back."]],
+	[0x19, ["wire short",
+		"The data line of the wire is held at ground.",
+		"Look for a short between data and ground; unplug branches until the wire lives "
+		+ "again."]],
+	[0x1a, ["owsd not running",
+		"owsd has ended or hangs: no heartbeat of it comes.",
+		"Does the service run: systemctl status owsd@OWS? The values are back when owsd is."]],
+	[0x1c, ["not as commanded",
+		"The output reads otherwise than it was written.",
+		"Did the device lose its supply, or did another program switch it? Set it again; "
+		+ "Restore in the configuration does it by itself."]],
+	[0x20, ["initial",
+		"The signal was never read or written.",
+		"An input has its first value soon. Set an output, or give it an InitValue."]],
+	[0x44, ["last usable value",
+		"Reading is disabled, another target has not answered yet, what is read jumps beyond "
+		+ "MaxStep each time, or an output was neither read nor written since its target or its "
+		+ "device was away.",
+		"Wait for the new target, set _ReadEnable to 1, or raise MaxStep; set the output, or "
+		+ "give it ReadBack."]],
+	[0x54, ["out of range",
+		"The value is beyond Min or Max of the configuration.",
+		"Is the sensor or its wire broken? Else correct Min and Max."]],
+	[0x55, ["at lower limit",
+		"The value is held at the lower end of its type or of Points.",
+		"Take a wider type, or continue Points."]],
+	[0x56, ["at upper limit",
+		"The value is held at the upper end of its type or of Points.",
+		"Take a wider type, or continue Points."]],
+	[0x58, ["cut",
+		"The text is longer than the room that it has.",
+		"Read a part of it."]],
+// to here
+]);
+
+export const UNKNOWN = -1;
+
+/** Of the quality of a value: "good", "uncertain", "bad" or "unknown". */
+export function stateOf(code) {
+	if (code === UNKNOWN)
+		return "unknown";
+	if (code === 0x20)
+		return "uncertain"; // nothing is wrong yet
+	return ["bad", "uncertain", "bad", "good"][(code & 0xc0) >> 6];
+}
+
+export function qualityWords(code) {
+	if (code === UNKNOWN)
+		return "unknown";
+	return QUALITIES.get(code)?.[0] ?? (stateOf(code) === "good" ? "good" : "bad");
+}
+
+export const meaningOf = (code) => QUALITIES.get(code)?.[1] ?? "";
+export const remedyOf = (code) => QUALITIES.get(code)?.[2] ?? "";
+
+/** The shape beside the words, so that no state is shown by colour alone. */
+export const SHAPES = {good: "", uncertain: "?", bad: "\u00d7", unknown: "?"};
+
+export function valueText(signal, value) {
+	if (value === null || value === undefined)
+		return "\u2014";
+	if (typeof value === "boolean" || signal.type === "bool")
+		return Number(value) ? "on" : "off";
+	if (typeof value !== "number")
+		return String(value);
+	if (!Number.isFinite(value))
+		return "\u2014";
+	if (Number.isInteger(value) && !(signal.decimals > 0))
+		return String(value);
+	return signal.decimals >= 0 ? value.toFixed(Math.min(signal.decimals, 9))
+		: String(Number(value.toPrecision(7)));
+}
+
+export function withUnit(signal, text) {
+	return signal.unit && text !== "\u2014" ? `${text}\u202f${signal.unit}` : text;
+}
+
+export function span(seconds) {
+	if (seconds === null || seconds === undefined || !Number.isFinite(seconds))
+		return "\u2014";
+	const s = Math.max(0, seconds);
+	if (s < 1)
+		return "now";
+	if (s < 90)
+		return `${Math.floor(s)} s`;
+	if (s < 5400)
+		return `${Math.floor(s / 60)} min`;
+	if (s < 172800)
+		return `${Math.floor(s / 3600)} h`;
+	return `${Math.floor(s / 86400)} d`;
+}
+
+/** ms, or a text of ISO 8601, as ms; NaN if it is neither. */
+export function msOf(time) {
+	return typeof time === "number" ? time : time ? Date.parse(time) : NaN;
+}
+
+const two = (n) => String(n).padStart(2, "0");
+
+export function clock(time) {
+	const at = new Date(msOf(time));
+	return Number.isNaN(at.getTime()) ? "\u2014"
+		: `${two(at.getHours())}:${two(at.getMinutes())}:${two(at.getSeconds())}`;
+}
+
+export function dateAndClock(time) {
+	const at = new Date(msOf(time));
+	return Number.isNaN(at.getTime()) ? "\u2014"
+		: `${at.getFullYear()}-${two(at.getMonth() + 1)}-${two(at.getDate())} ${clock(time)}`;
+}
+
+/** "! high, returned" as {text, open}: open wants eyes. "" and "-" are no alarm: null. */
+export function alarmOf(words) {
+	const text = String(words ?? "").trim();
+	if (!text || text === "-")
+		return null;
+	return {text: text.replaceAll("! ", ""), open: text.includes("!")};
+}

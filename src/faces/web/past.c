@@ -1,0 +1,254 @@
+/* SPDX-License-Identifier: MIT */
+/* Trends and journals, on the worker for the past. */
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "hal/base/time.h"
+#include "src/faces/show/journal_past.h"
+#include "src/faces/web/http.h"
+#include "src/faces/web/past.h"
+#include "src/public/ows_history.h"
+
+#define DIRECTORY 512
+#define POINTS 2000
+#define ENTRIES 1000
+#define RINGS 512 /* entries that owsd keeps */
+#define NAME 256
+#define DAY_MS (86400 * 1000LL)
+
+struct past_job {
+	struct job job;
+	char instance[128], directory[DIRECTORY], name[NAME];
+	int64_t from_ns, until_ns;
+	int n;
+};
+
+static bool place(const char *instance, const struct config *config, char path[DIRECTORY])
+{
+	const char *given = config->recorder.directory;
+
+	if (!given)
+		return ows_history_place(instance, path, DIRECTORY) == 0;
+	return snprintf(path, DIRECTORY, "%s", given) < DIRECTORY;
+}
+
+bool past_is_there(const char *instance, const struct config *config)
+{
+	char path[DIRECTORY];
+
+	return place(instance, config, path) && access(path, R_OK | X_OK) == 0;
+}
+
+/* A whole number of the arguments. False: it is none, or not within the limits. */
+static bool number(const struct request *request, const char *name, long long least, long long most,
+                   long long *value)
+{
+	const char *text = http_argument(request, name);
+	char *end;
+
+	if (!text)
+		return true;
+	errno = 0;
+	*value = strtoll(text, &end, 10);
+	return end != text && !*end && !errno && *value >= least && *value <= most;
+}
+
+static struct past_job *make(struct request *request, void (*run)(struct job *job))
+{
+	const struct face *face = request->web->face;
+	struct past_job *past = calloc(1, sizeof(*past));
+
+	if (!past)
+		return NULL;
+	past->job.run = run;
+	snprintf(past->instance, sizeof(past->instance), "%s", face->arguments->instance);
+	if (!place(past->instance, face->config, past->directory))
+		past->directory[0] = '\0';
+	return past;
+}
+
+/* False after answering: there is no history. */
+static bool open_history(struct past_job *past, struct ows_history **h)
+{
+	int err = *past->directory ? ows_history_open(NULL, past->directory, h) : -ENOENT;
+
+	if (err == -ENOENT)
+		job_error(&past->job, 404,
+		          "there is no history: start owsd-recorder, which keeps one");
+	else if (err)
+		job_error(&past->job, err == -EACCES ? 403 : 500, "%s: %s%s", past->directory,
+		          strerror(-err), err == -EACCES ? "; the group owsd may read it" : "");
+	return !err;
+}
+
+/* --- Trends ---------------------------------------------------------------------------------- */
+
+static void put_column(struct json *json, const char *key, const struct ows_history_point *points,
+                       int n)
+{
+	json_array(json, key);
+	for (int i = 0; i < n; i++) {
+		const struct ows_history_point *point = &points[i];
+
+		if (!strcmp(key, "from"))
+			json_int(json, NULL, point->from_ns / NS_PER_MS);
+		else if (!strcmp(key, "min"))
+			json_double(json, NULL, point->min);
+		else if (!strcmp(key, "max"))
+			json_double(json, NULL, point->max);
+		else if (!strcmp(key, "last"))
+			json_double(json, NULL, point->last);
+		else if (!strcmp(key, "quality"))
+			json_int(json, NULL, point->quality);
+		else
+			json_int(json, NULL, point->gap);
+	}
+	json_array_end(json);
+}
+
+static void put_trend(struct past_job *past, const struct ows_history_signal *signal,
+                      const struct ows_history_point *points)
+{
+	static const char *const columns[] = {"from", "min", "max", "last", "quality", "gap"};
+	struct json json;
+
+	if (!json_start(&json, &past->job.text, &past->job.len))
+		return;
+	past->job.status = 200;
+	json_string(&json, "name", signal->name);
+	json_string(&json, "unit", *signal->unit ? signal->unit : NULL);
+	json_int(&json, "until", points[past->n - 1].until_ns / NS_PER_MS);
+	for (size_t i = 0; i < sizeof(columns) / sizeof(columns[0]); i++)
+		put_column(&json, columns[i], points, past->n);
+	json_finish(&json);
+}
+
+static int read_points(struct past_job *past, struct ows_history *h,
+                       struct ows_history_signal *signal, struct ows_history_point *points)
+{
+	int index = ows_history_find(h, past->name);
+	int err = index < 0 ? index : ows_history_signal(h, index, signal);
+
+	if (err)
+		return err;
+	if (signal->type == OWS_STRING)
+		return -EOPNOTSUPP;
+	return ows_history_points(h, index, past->from_ns, past->until_ns, points, past->n);
+}
+
+static void run_trend(struct job *job)
+{
+	struct past_job *past = (struct past_job *)job;
+	struct ows_history_point *points = calloc((size_t)past->n, sizeof(*points));
+	struct ows_history_signal signal = {.name = "", .unit = ""};
+	struct ows_history *h = NULL;
+	int got;
+
+	if (points && open_history(past, &h)) {
+		got = read_points(past, h, &signal, points);
+		if (got == past->n)
+			put_trend(past, &signal, points);
+		else if (got == -ENOENT)
+			job_error(job, 404, "the history has no signal %s", past->name);
+		else if (got == -EOPNOTSUPP)
+			job_error(job, 404, "%s is a text, which has no trend", past->name);
+		else
+			job_error(job, 500, "%s: %s", past->name, strerror(-got));
+		ows_history_close(h);
+	}
+	free(points);
+}
+
+int past_trend(struct request *request)
+{
+	long long now_ms = when_now().wall / NS_PER_MS, until = now_ms, from = until - DAY_MS,
+		  n = 500;
+	const char *name = http_argument(request, "name");
+	struct past_job *past;
+
+	if (!name || !*name || strlen(name) >= NAME)
+		return http_error(request, 400, "name=: expected the name of a signal");
+	if (!number(request, "until", 1, 4000000000000LL, &until))
+		return http_error(request, 400, "until=: expected milliseconds since 1970");
+	if (!http_argument(request, "from"))
+		from = until - DAY_MS;
+	if (!number(request, "from", 0, 4000000000000LL, &from) || from >= until)
+		return http_error(request, 400,
+		                  "from=: expected milliseconds since 1970, before until");
+	if (!number(request, "points", 1, POINTS, &n))
+		return http_error(request, 400, "points=: expected a number from 1 to %d", POINTS);
+	past = make(request, run_trend);
+	if (!past)
+		return http_defer(request, request->web->past, NULL);
+	snprintf(past->name, sizeof(past->name), "%s", name);
+	past->from_ns = from * NS_PER_MS;
+	past->until_ns = until * NS_PER_MS;
+	past->n = (int)n;
+	return http_defer(request, request->web->past, &past->job);
+}
+
+/* --- Journals -------------------------------------------------------------------------------- */
+
+/* Newest first: what is asked for most. */
+static void put_journal(struct past_job *past, const struct journal_entries *entries,
+                        const struct when *now)
+{
+	unsigned count = 0;
+	struct json json;
+
+	if (!json_start(&json, &past->job.text, &past->job.len))
+		return;
+	past->job.status = 200;
+	json_array(&json, "entries");
+	for (unsigned i = entries->count; i-- > 0 && count < (unsigned)past->n;) {
+		if (now->wall - (now->boot - entries->entry[i].when_ns) < past->from_ns)
+			continue;
+		journal_json(&json, now, &entries->entry[i]);
+		count++;
+	}
+	json_array_end(&json);
+	json_finish(&json);
+}
+
+/* A history that cannot be read hides nothing of what owsd has in memory. */
+static void run_journal(struct job *job)
+{
+	struct past_job *past = (struct past_job *)job;
+	struct journal_entries entries = {0}, older = {0};
+	struct ows_history *history = NULL;
+	struct when now = when_now();
+	struct ows *h = NULL;
+
+	if (*past->directory && ows_history_open(NULL, past->directory, &history) == 0)
+		journal_past(history, &now, past->from_ns, NULL, 0, (unsigned)past->n + RINGS, NULL,
+		             NULL, &older);
+	if ((ows_open_as(past->instance, OWS_READ, "owsd-web", &h) == 0 &&
+	     !journal_look(h, NULL, 0, &entries)) ||
+	    !journal_past_drop(&older, &entries) || !journal_add(&entries, &older))
+		job_error(job, 500, "no memory");
+	else
+		put_journal(past, &entries, &now);
+	journal_free(&older);
+	journal_free(&entries);
+	ows_history_close(history);
+	ows_close(h);
+}
+
+int past_journal(struct request *request)
+{
+	long long since = when_now().wall / NS_PER_MS - 7 * DAY_MS, n = 200;
+	struct past_job *past;
+
+	if (!number(request, "since", 0, 4000000000000LL, &since))
+		return http_error(request, 400, "since=: expected milliseconds since 1970");
+	if (!number(request, "n", 1, ENTRIES, &n))
+		return http_error(request, 400, "n=: expected a number from 1 to %d", ENTRIES);
+	past = make(request, run_journal);
+	if (past) {
+		past->from_ns = since * NS_PER_MS;
+		past->n = (int)n;
+	}
+	return http_defer(request, request->web->past, past ? &past->job : NULL);
+}

@@ -1,0 +1,176 @@
+/* SPDX-License-Identifier: MIT */
+/* Rights: by the credentials of the peer, or by what a reverse proxy says. */
+#include <arpa/inet.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "src/config/read/config.h"
+#include "src/faces/web/person.h"
+#include "src/ground/signal/hash.h"
+#include "src/ground/signal/utf8.h"
+#include "src/memory/shm/owner.h"
+#include "src/memory/shm/peer.h"
+
+static void print(const struct sockaddr_storage *address, char text[PERSON_ADDRESS])
+{
+	const struct sockaddr_in *v4 = (const void *)address;
+	const struct sockaddr_in6 *v6 = (const void *)address;
+
+	text[0] = '\0';
+	if (address->ss_family == AF_INET)
+		inet_ntop(AF_INET, &v4->sin_addr, text, PERSON_ADDRESS);
+	else if (address->ss_family == AF_INET6 && IN6_IS_ADDR_V4MAPPED(&v6->sin6_addr))
+		inet_ntop(AF_INET, &v6->sin6_addr.s6_addr[12], text, PERSON_ADDRESS);
+	else if (address->ss_family == AF_INET6)
+		inet_ntop(AF_INET6, &v6->sin6_addr, text, PERSON_ADDRESS);
+}
+
+bool person_is_tcp(int fd, char local[PERSON_ADDRESS])
+{
+	struct sockaddr_storage address = {0};
+	socklen_t len = sizeof(address);
+
+	local[0] = '\0';
+	/* what cannot be asked has the stricter rules */
+	if (getsockname(fd, (struct sockaddr *)&address, &len))
+		return true;
+	print(&address, local);
+	return address.ss_family != AF_UNIX;
+}
+
+/* A name that may stand in a journal. */
+static bool is_name(const char *name)
+{
+	size_t len = name ? strlen(name) : 0;
+
+	if (!len || len >= PERSON)
+		return false;
+	while (len) {
+		int32_t c = utf8_next(&name, &len);
+
+		if (c <= ' ' || utf8_disturbs(c))
+			return false;
+	}
+	return true;
+}
+
+static void name_user(uid_t uid, char person[PERSON])
+{
+	char name[OWNER_NAME];
+
+	owner_name(uid, name);
+	snprintf(person, PERSON, "%.*s", (int)strcspn(name, " "), name);
+}
+
+/* What each deed needs. */
+static const struct {
+	const char *off, *group, *for_group;
+} deeds[] = {
+	[PERSON_WRITE] = {"writing is off: Write on in the block Web switches it on",
+                          "owsd-control", "writing is for the group owsd-control"},
+	[PERSON_CONFIGURE] = {"editing is off: Configure on in the block Web switches it on",
+                              "owsd-config", "editing is for the group owsd-config"},
+};
+
+/* At an address. True: the peer is the proxy. */
+static bool is_proxy_at(int fd, const struct config_web *options, char address[PERSON_ADDRESS])
+{
+	struct sockaddr_storage peer = {0};
+	const struct sockaddr_in *v4 = (const void *)&peer;
+	const struct sockaddr_in6 *v6 = (const void *)&peer;
+	socklen_t len = sizeof(peer);
+
+	address[0] = '\0';
+	if (getpeername(fd, (struct sockaddr *)&peer, &len))
+		return false;
+	print(&peer, address);
+	return options->proxy_at.bits &&
+	       listen_peers_have(&options->proxy_at, 1, peer.ss_family == AF_INET6,
+	                         peer.ss_family == AF_INET6 ? v6->sin6_addr.s6_addr
+	                                                    : (const uint8_t *)&v4->sin_addr);
+}
+
+static bool is_proxy_user(const struct peer *peer, const struct config_web *options)
+{
+	return options->has_proxy && peer->uid == options->proxy_uid;
+}
+
+bool person_is_proxy(int fd, const struct config_web *options)
+{
+	char text[PERSON_ADDRESS];
+	struct peer peer = {0};
+	bool is;
+
+	if (person_is_tcp(fd, text))
+		return is_proxy_at(fd, options, text);
+	is = peer_look(fd, &peer) == 0 && is_proxy_user(&peer, options);
+	peer_forget(&peer);
+	return is;
+}
+
+uint64_t person_number(int fd, const struct config_web *options, const char *named)
+{
+	char text[PERSON_ADDRESS], words[2 * PERSON_ADDRESS] = "";
+	struct peer peer = {0};
+	bool proxy;
+
+	if (person_is_tcp(fd, text)) {
+		proxy = is_proxy_at(fd, options, text);
+		snprintf(words, sizeof(words), "%s", text);
+	} else {
+		proxy = peer_look(fd, &peer) == 0 && is_proxy_user(&peer, options);
+		snprintf(words, sizeof(words), "%lu", (unsigned long)peer.uid);
+		peer_forget(&peer);
+	}
+	if (proxy && is_name(named))
+		snprintf(words, sizeof(words), "%s", named);
+	return hash_text(HASH_BEGIN, words, strlen(words));
+}
+
+/* What the proxy says. */
+static bool take_named(const char *named, const char *header, char person[PERSON], const char **why)
+{
+	*why = header;
+	if (!is_name(named))
+		return false;
+	snprintf(person, PERSON, "%s", named);
+	return true;
+}
+
+bool person_may_do(int fd, const struct config_web *options, enum person_deed deed,
+                   const char *named, char person[PERSON], const char **why)
+{
+	char address[PERSON_ADDRESS];
+	struct peer peer = {0};
+	gid_t group;
+	bool may;
+
+	*why = deeds[deed].off;
+	if (!(deed == PERSON_WRITE ? options->write : options->configure))
+		return false;
+	*why = "it cannot be seen who asks";
+	if (person_is_tcp(fd, address)) {
+		if (is_proxy_at(fd, options, address))
+			return take_named(named,
+			                  "the proxy has to name the person in X-Remote-User-Name, "
+			                  "in at most 31 bytes",
+			                  person, why);
+		snprintf(person, PERSON, "%.*s", PERSON - 1, address);
+		return *person;
+	}
+	if (peer_look(fd, &peer))
+		return false;
+	name_user(peer.uid, person);
+	may = peer.uid == 0 || peer.uid == geteuid() ||
+	      (owner_group(deeds[deed].group, &group) && peer_in_group(&peer, group));
+	*why = deeds[deed].for_group;
+	if (is_proxy_user(&peer, options))
+		may = take_named(
+			named,
+			"the proxy has to name the person in X-Remote-User, in at most 31 bytes",
+			person, why);
+	peer_forget(&peer);
+	return may;
+}

@@ -1,0 +1,185 @@
+/* SPDX-License-Identifier: MIT */
+/* Signals as JSON. */
+#include <errno.h>
+#include <math.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "hal/base/time.h"
+#include "src/faces/show/standing.h"
+#include "src/faces/show/when.h"
+#include "src/faces/web/show.h"
+#include "src/ground/signal/error.h"
+#include "src/ground/signal/quality.h"
+#include "src/ground/signal/value.h"
+
+struct look {
+	struct ows_value value;
+	bool good;
+	uint8_t code;
+	char text[VALUE_STRING_MAX + 1];
+};
+
+static void look_at(const struct show *show, int signal, struct look *look)
+{
+	int err;
+
+	look->value = (struct ows_value){0};
+	err = ows_get_signal_text(show->h, signal, show->now_ns, &look->value, look->text,
+	                          sizeof(look->text));
+	look->code = look->value.quality;
+	look->good = (!err || err == -ENOSPC) && show->live && ows_good(look->code);
+	/* what was good a moment ago may be shown so for two seconds more by libows */
+	if (!show->live && ows_good(look->code))
+		look->code = OWS_Q_NO_OWSD;
+}
+
+/* Beyond it a browser would round. */
+#define NUMBER_MOST ((INT64_C(1) << 53) - 1)
+
+static void show_put_value(struct json *json, const char *key, const struct look *look)
+{
+	enum ows_type type = (enum ows_type)look->value.type;
+
+	if (!look->good)
+		json_null(json, key);
+	else if (type == OWS_BOOL)
+		json_bool(json, key, look->value.integer != 0);
+	else if (type == OWS_STRING || look->value.integer > NUMBER_MOST ||
+	         look->value.integer < -NUMBER_MOST)
+		json_string(json, key, look->text);
+	else
+		json_number(json, key, look->text);
+}
+
+static void put_age(struct json *json, const char *key, const struct look *look)
+{
+	if (look->value.measured_ns)
+		json_seconds(json, key, look->value.age_ns);
+	else
+		json_null(json, key);
+}
+
+static void put_text(struct json *json, const char *key, const char *text)
+{
+	json_string(json, key, *text ? text : NULL);
+}
+
+/* Why the value is not good, and what to do: an error says more than its quality. */
+static void put_quality(struct json *json, const struct show *show, const struct look *look)
+{
+	const char *why = "", *remedy = "";
+
+	if (!show->live) {
+		why = quality_cause(OWS_Q_NO_OWSD);
+		remedy = quality_remedy(OWS_Q_NO_OWSD);
+	} else if (!look->good) {
+		why = look->value.err ? error_text(look->value.err) : quality_cause(look->code);
+		remedy = look->value.err ? error_remedy(look->value.err) : "";
+		remedy = *remedy ? remedy : quality_remedy(look->code);
+	}
+	json_object(json, "quality");
+	json_bool(json, "good", look->good);
+	json_int(json, "code", look->code);
+	json_string(json, "text", ows_quality_text(look->code));
+	put_text(json, "why", why);
+	put_text(json, "remedy", remedy);
+	json_object_end(json);
+}
+
+static void put_limits(struct json *json, const struct ows_info *info)
+{
+	if (isnan(info->limit_hh) && isnan(info->limit_h) && isnan(info->limit_l) &&
+	    isnan(info->limit_ll)) {
+		json_null(json, "limits");
+		return;
+	}
+	json_object(json, "limits");
+	json_double(json, "hh", info->limit_hh);
+	json_double(json, "h", info->limit_h);
+	json_double(json, "l", info->limit_l);
+	json_double(json, "ll", info->limit_ll);
+	json_object_end(json);
+}
+
+const char *show_alarm(const struct show *show, int signal, char words[SHOW_ALARM])
+{
+	struct ows_alarm_state state;
+
+	words[0] = '\0';
+	if (!show->live || !show->ids || show->ids[signal] < 0)
+		return words;
+	state = standing_of(show->h, show->ids[signal]);
+	if (standing_any(&state) || state.shelved)
+		standing_text(&state, words);
+	return words;
+}
+
+static void put_all(struct json *json, const struct show *show, const struct look *look)
+{
+	show_put_value(json, "value", look);
+	put_quality(json, show, look);
+	put_age(json, "age", look);
+	json_bool(json, "simulated", look->value.detail & OWS_DETAIL_SIMULATED);
+}
+
+void show_value(struct json *json, const struct show *show, int signal)
+{
+	struct look look;
+
+	look_at(show, signal, &look);
+	put_all(json, show, &look);
+}
+
+void show_signal(struct json *json, const struct show *show, int signal)
+{
+	char words[SHOW_ALARM];
+	struct ows_info info;
+	struct look look;
+
+	if (ows_info(show->h, signal, &info))
+		return;
+	look_at(show, signal, &look);
+	json_object(json, NULL);
+	json_int(json, "i", signal);
+	json_string(json, "name", info.name);
+	json_string(json, "type", value_type_name((enum ows_type)info.type));
+	json_bool(json, "output", info.output);
+	json_bool(json, "confirm", info.confirm);
+	put_text(json, "unit", info.unit);
+	json_known(json, "decimals", info.decimals);
+	put_text(json, "description", info.description);
+	json_string(json, "path", info.path);
+	put_text(json, "family", info.family);
+	put_text(json, "device", info.device);
+	put_text(json, "calibrated", info.calibrated);
+	json_double(json, "min", info.min);
+	json_double(json, "max", info.max);
+	put_limits(json, &info);
+	put_all(json, show, &look);
+	put_text(json, "alarm", show_alarm(show, signal, words));
+	json_object_end(json);
+}
+
+void show_row(struct json *json, const struct show *show, int signal)
+{
+	struct look look;
+
+	look_at(show, signal, &look);
+	json_array(json, NULL);
+	json_int(json, NULL, signal);
+	show_put_value(json, NULL, &look);
+	json_int(json, NULL, look.code);
+	json_bool(json, NULL, look.good);
+	put_age(json, NULL, &look);
+	json_array_end(json);
+}
+
+int64_t show_wall_ms(int64_t boot_ns)
+{
+	struct when now = when_now();
+
+	return boot_ns ? (now.wall - (now.boot - boot_ns)) / NS_PER_MS : 0;
+}

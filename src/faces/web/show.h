@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: MIT */
+/* Signals of an instance as JSON of owsd-web. A value that is not good is null. */
+#pragma once
+
+#include <stdbool.h>
+
+#include "src/faces/show/json.h"
+#include "src/public/ows.h"
+
+struct show {
+	struct ows *h;
+	int64_t now_ns;
+	bool live;      /* owsd is there */
+	const int *ids; /* of the signals that can have alarms; else negative */
+};
+
+/* An object with all that is known of the signal, but for strings that are very long. */
+void show_signal(struct json *json, const struct show *show, int signal);
+/* [signal, value, quality code, good, age] */
+void show_row(struct json *json, const struct show *show, int signal);
+/* value, quality, age as members: as show_signal() has them. */
+void show_value(struct json *json, const struct show *show, int signal);
+/* The words for its alarms: "! high", "" if it has none. */
+#define SHOW_ALARM 64
+const char *show_alarm(const struct show *show, int signal, char words[SHOW_ALARM]);
+/* The time in milliseconds since 1970 of a boot time; 0 stays 0. */
+int64_t show_wall_ms(int64_t boot_ns);

@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What the parts of owsd-web share. One thread has all of it: the loop of the face, in which
+ * libmicrohttpd runs.
+ *
+ * Room src/faces/web: the program owsd-web: the page of an instance, its signals as JSON and as
+ * events.
+ */
+#pragma once
+
+#include "src/faces/kit/face.h"
+#include "src/faces/web/doors.h"
+#include "src/faces/web/files.h"
+#include "src/faces/web/pace.h"
+#include "src/faces/web/recent.h"
+#include "src/faces/web/shared.h"
+
+#define WEB_ALARMS 64 /* the last ones, for streams that are behind */
+
+/* The function of a path; it answers the request, and returns what libmicrohttpd wants. */
+struct request;
+typedef int (*web_function)(struct request *request);
+
+struct MHD_Daemon;
+struct stream;
+struct jobs;
+
+struct web {
+	struct face *face;
+	web_function (*route)(const char *path, bool post); /* NULL: there is no such path */
+	/* May a body be large that comes to that path? */
+	bool (*admits)(const struct request *request, const char *path);
+	struct MHD_Daemon *daemon;
+	int epoll; /* of libmicrohttpd */
+	struct doors doors;
+	struct files files;
+	struct recent recent;
+	int *ids; /* for ows_alarm_state(), of signals that can have alarms; else -1 */
+	struct jobs *past, *commands, *drafts, *saves, *scans;
+	unsigned large;      /* bodies that are large */
+	size_t held;         /* bytes of answers that are being sent */
+	int bell;            /* of all */
+	uint32_t generation; /* of the table; 0: owsd was never there */
+	uint32_t refused;    /* number of the reload that owsd has refused; 0: none */
+	int64_t since_ns;    /* when owsd-web was started */
+	bool ends;
+	struct stream *streams;
+	unsigned stream_count;
+	struct pace pace; /* of changes of values */
+	struct shared shared;
+	int64_t alive_ns; /* the next line that keeps streams alive */
+	/* the last alarms, as texts of events */
+	struct {
+		uint64_t cursor;
+		char *text;
+	} alarms[WEB_ALARMS];
+	unsigned next_alarm;
+	uint64_t alarms_lost; /* the cursor up to which alarms may be missing above */
+};

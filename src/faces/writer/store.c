@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: MIT */
+/* Compares, checks and replaces the file of the configuration, and keeps the file of before. */
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "src/config/edit/replace.h"
+#include "src/config/read/config.h"
+#include "src/config/read/load.h"
+#include "src/config/read/rio_file.h"
+#include "src/daemon/host/target.h"
+#include "src/faces/writer/store.h"
+
+static void take_problem(void *ctx, bool is_error, int line, int column, const char *text)
+{
+	answer_problem(ctx, is_error, line, column, text);
+}
+
+/*
+ * Check a text as owsd --check does, as if it stood in file: tables and simulations that it names
+ * are read. Problems go to the answer. 0 or a negative errno. Blocking.
+ */
+static int check_text(const char *file, const char *text, size_t len, struct answer *answer)
+{
+	struct config_report report = {.problem = take_problem, .ctx = answer};
+	struct config *config;
+	int err = config_parse(file, text, len, &report, &config);
+
+	if (err)
+		return err;
+	err = target_check_config(config, &report);
+	config_free(config);
+	return err;
+}
+
+/* A file as it is on disk. */
+struct stored {
+	char *text; /* NULL: there is none */
+	size_t len;
+	struct stat st;
+	char tag[TAG_TEXT]; /* "": there is none */
+};
+
+static void say_unreadable(void *ctx, bool is_error, int line, int column, const char *text)
+{
+	struct answer *answer = ctx;
+
+	(void)is_error, (void)line, (void)column;
+	answer_say(answer, ANSWER_ERROR, "%s", text);
+}
+
+/* One that is not there has no text. Otherwise a negative errno is in the answer. */
+static int store_load(const char *file, struct stored *stored, struct answer *answer)
+{
+	struct config_report report = {.problem = say_unreadable, .ctx = answer};
+	char words[ANSWER_WHY];
+	int err;
+
+	*stored = (struct stored){0};
+	if (lstat(file, &stored->st) && errno == ENOENT)
+		return 0;
+	err = rio_read(file, &report, &stored->text, &stored->len);
+	if (!err && stat(file, &stored->st))
+		err = -errno;
+	if (err) {
+		memcpy(words, answer->why, sizeof(words));
+		answer_say(answer, ANSWER_ERROR, "%s: %s", file, *words ? words : strerror(-err));
+		return err;
+	}
+	tag_print(stored->text, stored->len, stored->tag);
+	return 0;
+}
+
+static void store_forget(struct stored *stored)
+{
+	free(stored->text);
+	stored->text = NULL;
+}
+
+static int name_backup(const char *file, char path[PATH_MAX], struct answer *answer)
+{
+	int n = snprintf(path, PATH_MAX, "%s.before", file);
+
+	if (n < PATH_MAX)
+		return 0;
+	answer_say(answer, ANSWER_ERROR, "the name of the configuration is too long");
+	return -ENAMETOOLONG;
+}
+
+static void show_tag(struct answer *answer, const char *tag)
+{
+	answer->has_tag = true;
+	memcpy(answer->tag, tag, TAG_TEXT);
+}
+
+static void show_backup(const char *backup, const char *tag, struct answer *answer)
+{
+	struct stat st;
+
+	if (stat(backup, &st))
+		return;
+	memcpy(answer->backup, tag, TAG_TEXT);
+	answer->backup_ms = (int64_t)st.st_mtim.tv_sec * 1000 + st.st_mtim.tv_nsec / 1000000;
+}
+
+static bool is_base(const struct stored *present, const struct order *order, struct answer *answer)
+{
+	show_tag(answer, present->tag);
+	if (strcmp(present->tag, order->base) == 0)
+		return true;
+	answer_say(answer, ANSWER_CONFLICT,
+	           *present->tag ? "the file was changed meanwhile: look at it again"
+	                         : "the file is not there any more");
+	return false;
+}
+
+static void say_failed(const char *file, int err, struct answer *answer)
+{
+	if (err == -EPERM)
+		answer_say(answer, ANSWER_ERROR,
+		           "%s: its owner or group cannot be kept, and without it a user could no "
+		           "longer read the file: chgrp owsd and chmod 640, or chmod 644",
+		           file);
+	else
+		answer_say(answer, ANSWER_ERROR, "%s cannot be written: %s", file, strerror(-err));
+}
+
+/* A link in the place of the file of before is replaced itself. */
+static int remove_link(const char *path)
+{
+	struct stat st;
+
+	if (lstat(path, &st))
+		return errno == ENOENT ? 0 : -errno;
+	return S_ISLNK(st.st_mode) && unlink(path) ? -errno : 0;
+}
+
+/*
+ * Both are on the disk before one of them is in place. What is in place first is what a writer that
+ * is killed then leaves: backup first keeps two copies of the present text, file first two of the
+ * text of before.
+ */
+static int write_both(const char *file, const char *backup, bool backup_first,
+                      const struct stored *present, const char *text, size_t len,
+                      struct answer *answer)
+{
+	struct replacement new, old;
+	int err = replace_prepare(&new, file, present->text ? &present->st : NULL, text, len);
+
+	if (err) {
+		say_failed(file, err, answer);
+		return err;
+	}
+	err = present->text ? remove_link(backup) : 0;
+	if (!err && present->text)
+		err = replace_prepare(&old, backup, &present->st, present->text, present->len);
+	if (!err && present->text && backup_first) {
+		err = replace_commit(&old);
+		if (!err)
+			show_backup(backup, present->tag, answer);
+	}
+	if (err) {
+		replace_abandon(&new);
+		say_failed(backup, err, answer);
+		return err;
+	}
+	err = replace_commit(&new);
+	if (err)
+		say_failed(file, err, answer);
+	if (present->text && !backup_first && err)
+		replace_abandon(&old);
+	else if (present->text && !backup_first && replace_commit(&old) == 0)
+		show_backup(backup, present->tag, answer);
+	return err;
+}
+
+/* Nothing is to be written: the file of before stays what it is. */
+static void leave_in_place(const char *backup, const struct stored *present, struct answer *answer)
+{
+	struct stored before;
+
+	if (store_load(backup, &before, answer) == 0 && before.text)
+		show_backup(backup, before.tag, answer);
+	store_forget(&before);
+	show_tag(answer, present->tag);
+}
+
+static void exchange_texts(const char *file, const char *backup, bool backup_first,
+                           const struct stored *present, const char *text, size_t len,
+                           struct answer *answer)
+{
+	char tag[TAG_TEXT];
+
+	if (check_text(file, text, len, answer)) {
+		answer_say(answer, ANSWER_INVALID, "the text has errors");
+		return;
+	}
+	if (present->text && present->len == len && memcmp(present->text, text, len) == 0) {
+		leave_in_place(backup, present, answer);
+	} else {
+		if (write_both(file, backup, backup_first, present, text, len, answer))
+			return;
+		tag_print(text, len, tag);
+		show_tag(answer, tag);
+	}
+	answer->status = ANSWER_DONE;
+	*answer->why = '\0';
+}
+
+static int lock_config(const char *file, struct answer *answer)
+{
+	int fd = replace_lock(file);
+
+	if (fd == -EBUSY)
+		answer_say(answer, ANSWER_ERROR,
+		           "another program keeps %s locked: try again in a moment", file);
+	else if (fd < 0)
+		say_failed(file, fd, answer);
+	return fd;
+}
+
+void store_replace(const char *file, const struct order *order, const char *text,
+                   struct answer *answer)
+{
+	struct stored present = {0};
+	char backup[PATH_MAX];
+	int fd = name_backup(file, backup, answer) ? -1 : lock_config(file, answer);
+
+	if (fd < 0)
+		return;
+	if (store_load(file, &present, answer) == 0 && is_base(&present, order, answer))
+		exchange_texts(file, backup, true, &present, text, order->length, answer);
+	store_forget(&present);
+	replace_unlock(file, fd);
+}
+
+void store_restore(const char *file, const struct order *order, struct answer *answer)
+{
+	struct stored present = {0}, before = {0};
+	char backup[PATH_MAX];
+	int fd = name_backup(file, backup, answer) ? -1 : lock_config(file, answer);
+
+	if (fd < 0)
+		return;
+	if (store_load(file, &present, answer) || !is_base(&present, order, answer) ||
+	    store_load(backup, &before, answer))
+		goto out;
+	if (before.text)
+		exchange_texts(file, backup, false, &present, before.text, before.len, answer);
+	else
+		answer_say(answer, ANSWER_REFUSED, "there is no %s: nothing was saved before",
+		           backup);
+out:
+	store_forget(&present);
+	store_forget(&before);
+	replace_unlock(file, fd);
+}

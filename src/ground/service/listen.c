@@ -1,0 +1,119 @@
+/* SPDX-License-Identifier: MIT */
+/* Makes, takes over and accepts at the sockets of a program. */
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "src/ground/service/listen.h"
+#include "src/memory/shm/peer.h"
+
+#define FIRST_FD 3 /* of sd_listen_fds(3) */
+
+/*
+ * bind() made it for this user alone. In a folder that others may write, another file may have
+ * taken its place by now; its rights are not changed.
+ */
+static int give_rights(const char *path, mode_t mode, gid_t group)
+{
+	int fd = open(path, O_PATH | O_NOFOLLOW | O_CLOEXEC), err = 0;
+	char self[32];
+	struct stat st;
+
+	if (fd < 0)
+		return -errno;
+	snprintf(self, sizeof(self), "/proc/self/fd/%d", fd);
+	if (fstat(fd, &st) < 0 || !S_ISSOCK(st.st_mode) || st.st_uid != geteuid())
+		err = -EPERM;
+	else if ((group == (gid_t)-1 || fchownat(fd, "", (uid_t)-1, group, AT_EMPTY_PATH) == 0) &&
+	         chmod(self, mode) < 0)
+		err = -errno;
+	close(fd);
+	return err;
+}
+
+int listen_local(const struct sockaddr_un *at, int type, mode_t mode, gid_t group)
+{
+	int fd = socket(AF_UNIX, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0), err;
+	mode_t mask;
+
+	if (fd < 0)
+		return -errno;
+	peer_refuse_descriptors(fd);
+	mask = umask(0177);
+	err = bind(fd, (const struct sockaddr *)at, sizeof(*at)) < 0 ? -errno : 0;
+	umask(mask);
+	if (!err)
+		err = give_rights(at->sun_path, mode, group);
+	if (!err)
+		return fd;
+	close(fd);
+	return err;
+}
+
+int listen_vacate(const struct sockaddr_un *at)
+{
+	struct stat st;
+	int fd, err;
+
+	if (lstat(at->sun_path, &st) < 0)
+		return errno == ENOENT ? 0 : -errno;
+	if (!S_ISSOCK(st.st_mode))
+		return -EEXIST;
+	fd = socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+	if (fd < 0)
+		return -errno;
+	err = connect(fd, (const struct sockaddr *)at, sizeof(*at)) < 0 ? errno : 0;
+	close(fd);
+	if (err != ECONNREFUSED)
+		return -EADDRINUSE;
+	return unlink(at->sun_path) < 0 ? -errno : 0;
+}
+
+int listen_inherited(int *fds, int most)
+{
+	const char *pid = getenv("LISTEN_PID"), *names = getenv("LISTEN_FDS");
+	long count = pid && names && strtol(pid, NULL, 10) == getpid() ? strtol(names, NULL, 10)
+	                                                               : 0;
+
+	unsetenv("LISTEN_PID");
+	unsetenv("LISTEN_FDS");
+	if (count < 0 || count > most)
+		return -EINVAL;
+	for (int i = 0; i < (int)count; i++) {
+		fds[i] = FIRST_FD + i;
+		if (fcntl(fds[i], F_SETFD, FD_CLOEXEC) || fcntl(fds[i], F_SETFL, O_NONBLOCK))
+			return -errno;
+		peer_refuse_descriptors(fds[i]);
+	}
+	return (int)count;
+}
+
+const char *listen_remedy(int err)
+{
+	switch (-err) {
+	case EADDRINUSE:
+		return "; sudo ss -ltnp names the program that has the port: end it, or choose "
+		       "another port with Listen or -l";
+	case EACCES:
+		return "; ports below 1024 are root's: choose another with Listen or -l";
+	case EADDRNOTAVAIL:
+		return "; this machine has no such address: ip addr lists those that it has";
+	default:
+		return "";
+	}
+}
+
+int listen_accept(int listener, struct sockaddr *from, socklen_t *len)
+{
+	int fd = accept4(listener, from, len, SOCK_NONBLOCK | SOCK_CLOEXEC);
+	const int one = 1;
+
+	if (fd < 0)
+		return -errno;
+	if (from->sa_family == AF_UNIX)
+		setsockopt(fd, SOL_SOCKET, SO_OOBINLINE, &one, sizeof(one));
+	return fd;
+}

@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: MIT */
+/* The pages that the start of a program leaves mapped. */
+#include <fcntl.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "src/ground/service/resident.h"
+
+struct mapping {
+	uintptr_t from, to;
+	bool of_file; /* and cannot be written */
+};
+
+static void resident_line(struct mapping *mapping, const char *line)
+{
+	unsigned long from, to, kib;
+	char rights[5], path[2];
+
+	/* NOLINTBEGIN(cert-err34-c): the kernel writes them */
+	if (sscanf(line, "%lx-%lx %4s", &from, &to, rights) == 3) {
+		mapping->from = from;
+		mapping->to = to;
+		mapping->of_file = !strchr(rights, 'w') && strchr(rights, 'p') &&
+		                   sscanf(line, "%*s %*s %*s %*s %*s %1s", path) == 1 &&
+		                   *path == '/';
+	} else if (mapping->of_file && sscanf(line, "Anonymous: %lu", &kib) == 1 && kib == 0) {
+		madvise((void *)mapping->from, mapping->to - mapping->from, MADV_DONTNEED);
+	}
+	/* NOLINTEND(cert-err34-c) */
+}
+
+void resident_drop_start(void)
+{
+	int fd = open("/proc/self/smaps", O_RDONLY | O_CLOEXEC);
+	struct mapping mapping = {0};
+	char text[4096 + 1];
+	size_t have = 0;
+	ssize_t n;
+
+	if (fd < 0)
+		return;
+	while (have < sizeof(text) - 1 &&
+	       (n = read(fd, text + have, sizeof(text) - 1 - have)) > 0) {
+		char *line = text, *end;
+
+		have += (size_t)n;
+		text[have] = '\0';
+		for (; (end = strchr(line, '\n')) != NULL; line = end + 1) {
+			*end = '\0';
+			resident_line(&mapping, line);
+		}
+		have = strlen(line);
+		memmove(text, line, have);
+	}
+	close(fd);
+}

@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * How long rows are kept. Ages are counted in ids, which stand still while no recorder runs: so
+ * nothing is deleted too early. The file does not become smaller, what is free in it is used again.
+ */
+#include "src/history/file/keep.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <sys/statvfs.h>
+
+#include "src/history/file/schema.h"
+#include "src/history/file/sql.h"
+
+#define DAY_US (24 * HOUR_US)
+#define LEAST_US (7 * DAY_US) /* stays, however little room others have */
+#define ROWS 20000            /* of each table with a commit: far more than come */
+
+/* The oldest rows before an id. */
+static int delete_before(sqlite3 *db, const char *table, int64_t before)
+{
+	char text[160];
+	sqlite3_stmt *statement;
+	int err;
+
+	sqlite3_snprintf(sizeof(text), text,
+	                 "delete from %s where id in"
+	                 " (select id from %s where id < ? order by id limit %d)",
+	                 table, table, ROWS);
+	err = sql_errno(db, sqlite3_prepare_v2(db, text, -1, &statement, NULL));
+	if (err)
+		return err;
+	sql_bind(statement, "i", before);
+	err = sql_next(statement);
+	sqlite3_finalize(statement);
+	return err;
+}
+
+static int64_t oldest_kept(int64_t last_id, uint32_t days)
+{
+	return days ? last_id - days * DAY_US : 0;
+}
+
+/* Is the file, without what is free in it, larger than it may be? */
+static int is_too_large(const struct history_keep *keep, sqlite3 *db, bool *large)
+{
+	int64_t pages = 0, spare = 0, size = 0;
+	int err = sql_ask(db, "pragma page_count", &pages);
+
+	*large = false;
+	if (!keep->bytes)
+		return 0;
+	if (err >= 0)
+		err = sql_ask(db, "pragma freelist_count", &spare);
+	if (err >= 0)
+		err = sql_ask(db, "pragma page_size", &size);
+	*large = (uint64_t)((pages - spare) * size) > keep->bytes;
+	return err < 0 ? err : 0;
+}
+
+static bool is_disk_full(const struct history_keep *keep, const char *directory)
+{
+	struct statvfs disk;
+
+	return keep->spare && statvfs(directory, &disk) == 0 &&
+	       (uint64_t)disk.f_bavail * disk.f_frsize < keep->spare;
+}
+
+static int64_t oldest(sqlite3 *db, const char *text)
+{
+	int64_t id = INT64_MAX;
+
+	return sql_ask(db, text, &id) < 0 ? INT64_MAX : id;
+}
+
+int keep_delete(const struct history_keep *keep, sqlite3 *db, const char *directory,
+                int64_t last_id)
+{
+	int64_t raw = oldest_kept(last_id, keep->days);
+	int64_t minutes = oldest_kept(last_id, keep->minutes);
+	int64_t hours = oldest_kept(last_id, keep->hours);
+	bool large;
+	int err = is_too_large(keep, db, &large);
+
+	if (err)
+		return err;
+	if (large || is_disk_full(keep, directory)) {
+		int64_t spared = last_id - (large ? DAY_US : LEAST_US);
+
+		/* values first; once there is little of them, minutes too */
+		raw = spared > raw ? spared : raw;
+		if (large && oldest(db, "select min(id) from raw") > spared - DAY_US &&
+		    minutes < last_id - LEAST_US)
+			minutes = last_id - LEAST_US;
+	}
+	err = raw > 0 ? delete_before(db, "raw", raw) : 0;
+	if (!err && minutes > 0)
+		err = delete_before(db, "minute", minutes / MINUTE_US << 16);
+	if (!err && minutes > 0)
+		err = delete_before(db, "event", minutes);
+	if (!err && hours > 0)
+		err = delete_before(db, "hour", schema_hour(hours / HOUR_US & ~INT64_C(7), 0));
+	return err;
+}

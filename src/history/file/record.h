@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What history consists of: values of signals, gaps, and events of owsd and of the recorder. Times
+ * are boot times (CLOCK_BOOTTIME), which never step, in nanoseconds; the file has microseconds.
+ *
+ * Room src/history/file: the file of history, an SQLite database: schema, writer, roll-ups, place.
+ */
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "src/public/ows.h"
+
+/* Bytes of texts, with NUL. */
+#define HISTORY_NAME 128 /* of a signal */
+#define HISTORY_UNIT 32
+#define HISTORY_WHO 32
+/* Signals that one file may have, with those of earlier tables. */
+#define HISTORY_SIGNALS 65535
+
+enum history_kind {
+	HISTORY_BEGIN = 3, /* the recorder began to look: what was before is not known */
+	HISTORY_END,       /* it ended: no recorder looks from here on */
+	HISTORY_GAP,       /* between two times no recorder looked, or what it saw is lost */
+	HISTORY_CLOCK,     /* the wall clock was set, or its time became trusted */
+	HISTORY_COMMAND,
+	HISTORY_ALARM,
+};
+
+/* Why something is not known. */
+enum history_reason {
+	HISTORY_REASON_NONE = 0,
+	HISTORY_STOPPED,   /* the recorder ended in order */
+	HISTORY_LOST,      /* the recorder, or the machine, ended without a word */
+	HISTORY_OWSD_LOST, /* owsd had ended or hung */
+	HISTORY_OVERRUN,   /* more changed than the recorder could follow */
+	HISTORY_DISK,      /* the disk took nothing, and memory was full */
+	HISTORY_NOT_ASKED, /* the signal is not recorded from here on */
+	HISTORY_REASONS
+};
+/* A few words ("recorder stopped"); never NULL. */
+const char *history_reason_text(uint8_t reason);
+
+/* Who did something, as in struct ows_by. */
+struct history_who {
+	uint32_t serial, uid;
+	int32_t pid;
+	char name[HISTORY_WHO], person[HISTORY_WHO];
+};
+
+/* An entry of the journals of owsd. */
+struct history_event {
+	uint8_t kind;    /* HISTORY_COMMAND or HISTORY_ALARM */
+	uint8_t type;    /* enum ows_type, of the signal */
+	uint8_t quality; /* enum ows_quality */
+	uint8_t reason;  /* COMMAND: enum ows_reason; ALARM: enum ows_alarm_kind */
+	uint8_t event;   /* ALARM: enum ows_alarm_event */
+	bool has_value, has_before;
+	uint32_t signal; /* its number in the table */
+	int64_t time_ns;
+	int64_t value;  /* as in src/ground/signal/value.h: the bits of a double, or an integer */
+	int64_t before; /* ALARM: likewise; value is the one after */
+	char text[160];
+	struct history_who who; /* serial 0: no program */
+};
+
+/* A line of the table of signals, as a recorder describes it. */
+struct history_signal {
+	const char *name, *unit;
+	uint8_t type; /* enum ows_type */
+	uint8_t output;
+	int8_t decimals; /* -1: not known */
+};

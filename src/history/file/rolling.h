@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The roll-ups of the minute and the hour that are under way, of all signals. Values and gaps come
+ * in the order of their ids; a minute or an hour that is over is given out once, all its signals in
+ * their order. Allocates, touches no file.
+ */
+#pragma once
+
+#include "src/history/file/rollup.h"
+
+/* begin: of the stretch, as an id; until which the sum was held. */
+struct rolling_part {
+	int64_t begin, at;
+	struct rollup sum;
+};
+struct rolling_row {
+	struct rollup_state state;
+	struct rolling_part minute, hour;
+};
+/* state: at the end of the stretch. What it returns other than 0 ends the call and is returned. */
+typedef int rolling_give(void *ctx, bool hour, int64_t bucket, uint32_t signal,
+                         const struct rollup *sum, const struct rollup_state *state);
+struct rolling {
+	rolling_give *give;
+	void *ctx;
+	/* the rest is rolling.c's */
+	struct rolling_row *rows; /* by the number of the signal */
+	uint32_t count;
+	int64_t minute; /* the one under way */
+	uint32_t known; /* signals that have a state */
+	bool minute_touched, hour_touched;
+};
+
+/* Nothing is known; the minute under way is that of the id. */
+void rolling_begin(struct rolling *rolling, int64_t id);
+void rolling_free(struct rolling *rolling);
+/* It has become so late: 0, -ENOMEM or what give() returned. So do the others. */
+int rolling_advance(struct rolling *rolling, int64_t id);
+int rolling_value(struct rolling *rolling, int64_t id, uint32_t signal,
+                  const struct rollup_state *state);
+/* signal 0: of all. */
+int rolling_gap(struct rolling *rolling, int64_t id, uint32_t signal);
+/* Would rolling_advance() give something out? */
+bool rolling_is_due(const struct rolling *rolling, int64_t id);

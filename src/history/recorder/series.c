@@ -1,0 +1,277 @@
+/* SPDX-License-Identifier: MIT */
+/* From values of libows through the rules to the writer of history. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/config/read/recorder.h"
+#include "src/faces/kit/moment.h"
+#include "src/ground/signal/hash.h"
+#include "src/ground/signal/value.h"
+#include "src/history/recorder/series.h"
+
+#define TEXT_MAX 1025 /* of a string signal, with NUL */
+
+int64_t series_bits(uint8_t type, double number, int64_t integer)
+{
+	return value_is_float((enum ows_type)type) ? value_of_double(number) : integer;
+}
+
+/* By name: the file may have changed since owsd read it. Sorted once, for a table of thousands. */
+struct named {
+	const char *name;
+	const struct config_item *item;
+};
+
+static int by_item_name(const void *a, const void *b)
+{
+	return strcmp(((const struct named *)a)->name, ((const struct named *)b)->name);
+}
+
+static struct named *sort_items(const struct config *config)
+{
+	struct named *sorted = calloc(config->item_count + 1, sizeof(*sorted));
+
+	for (unsigned i = 0; sorted && i < config->item_count; i++)
+		sorted[i] = (struct named){config->items[i].name, &config->items[i]};
+	if (sorted)
+		qsort(sorted, config->item_count, sizeof(*sorted), by_item_name);
+	return sorted;
+}
+
+/* The rule of a signal; one that the file does not have gets that of the block. */
+static struct config_record rule_of(const struct config *config, const struct named *sorted,
+                                    const struct ows_info *info)
+{
+	struct named wanted = {.name = info->name};
+	struct config_item unknown = {.type = (enum ows_type)info->type};
+	const struct named *found = bsearch(&wanted, sorted, config->item_count, sizeof(*sorted),
+	                                    by_item_name);
+
+	return config_record_of(config, found ? found->item : &unknown);
+}
+
+/* The table of the history: the signals, then the raw values. */
+struct table {
+	struct history_signal *signals;
+	char (*names)[HISTORY_NAME]; /* of the raw values */
+	uint32_t count;
+};
+
+static void add_raw(struct table *table, struct row *row, struct ows *ows,
+                    const struct ows_info *info)
+{
+	char *name = table->names[table->count - (uint32_t)ows_count(ows)];
+
+	row->raw_id = -1;
+	if (!row->rule.raw || row->rule.off || info->type == OWS_STRING ||
+	    snprintf(name, HISTORY_NAME, "%s_Raw", info->name) >= HISTORY_NAME)
+		return;
+	row->raw_id = ows_find(ows, name);
+	if (row->raw_id < 0)
+		return;
+	row->raw_row = table->count;
+	table->signals[table->count++] = (struct history_signal){
+		.name = name, .unit = "", .type = OWS_DOUBLE, .decimals = -1};
+}
+
+static void series_fill(struct series *rows, struct table *table, struct ows *ows,
+                        const struct config *config, const struct named *sorted)
+{
+	struct ows_info info;
+
+	table->count = (uint32_t)rows->count;
+	for (int i = 0; i < rows->count; i++) {
+		struct row *row = &rows->rows[i];
+
+		ows_info(ows, i, &info);
+		*row = (struct row){.rule = rule_of(config, sorted, &info)};
+		table->signals[i] = (struct history_signal){
+			.name = info.name,
+			.unit = info.unit,
+			.type = info.type,
+			.output = info.output,
+			.decimals = (int8_t)info.decimals,
+		};
+		rows->recorded += !row->rule.off;
+		rows->has_intervals |= row->rule.interval_ns > 0;
+		add_raw(table, row, ows, &info);
+	}
+}
+
+/* 0: not known, for a moment, of an owsd that died in the middle of a heartbeat. */
+static uint32_t generation_of(struct ows *ows, int64_t now_ns)
+{
+	struct ows_daemon daemon = {0};
+
+	return ows_daemon(ows, now_ns, &daemon) == -EAGAIN ? 0 : daemon.generation;
+}
+
+bool series_are_of(const struct series *rows, struct ows *ows, int64_t now_ns)
+{
+	uint32_t generation = generation_of(ows, now_ns);
+
+	return !rows->generation || !generation || rows->generation == generation;
+}
+
+int series_make(struct series *rows, struct ows *ows, const struct config *config,
+                struct history_writer *writer, int64_t now_ns)
+{
+	size_t count = (size_t)ows_count(ows);
+	struct named *sorted = sort_items(config);
+	struct table table = {
+		.signals = calloc(2 * count + 1, sizeof(*table.signals)),
+		.names = calloc(count + 1, sizeof(*table.names)),
+	};
+	int err = -ENOMEM;
+
+	series_free(rows);
+	rows->rows = calloc(count + 1, sizeof(*rows->rows));
+	if (rows->rows && sorted && table.signals && table.names) {
+		rows->count = (int)count;
+		rows->generation = generation_of(ows, now_ns);
+		series_fill(rows, &table, ows, config, sorted);
+		err = history_writer_signals(writer, table.signals, table.count, now_ns);
+	}
+	for (int i = 0; !err && i < rows->count; i++)
+		if (rows->rows[i].rule.off)
+			history_writer_forget(writer, (uint32_t)i, now_ns, HISTORY_NOT_ASKED);
+	if (err)
+		series_free(rows);
+	free(sorted);
+	free(table.signals);
+	free(table.names);
+	return err;
+}
+
+void series_free(struct series *rows)
+{
+	free(rows->rows);
+	*rows = (struct series){.last_ns = rows->last_ns, .since_ns = rows->since_ns};
+}
+
+int64_t series_time(const struct series *rows, const struct ows_value *v, int64_t now_ns)
+{
+	int64_t time_ns = moment_of(v, now_ns);
+
+	return time_ns < rows->since_ns ? rows->since_ns : time_ns;
+}
+
+/* The newest value of a row. False: it cannot be had, and the next look at the changes says why. */
+static bool series_get(struct ows *ows, int signal, int64_t now_ns, struct ows_value *v, char *text,
+                       struct rule_sample *sample)
+{
+	text[0] = '\0';
+	if (ows_get_signal(ows, signal, now_ns, v))
+		return false;
+	if (v->type == OWS_STRING && ows_get_signal_text(ows, signal, now_ns, v, text, TEXT_MAX))
+		return false;
+	*sample = (struct rule_sample){.type = v->type,
+	                               .quality = v->quality,
+	                               .number = v->number,
+	                               .integer = v->integer,
+	                               .measured_ns = v->measured_ns};
+	if (v->type == OWS_STRING)
+		sample->integer = (int64_t)hash_text(HASH_BEGIN, text, strlen(text));
+	return true;
+}
+
+static void keep_sample(struct series *rows, struct rule_kept *kept,
+                        const struct rule_sample *sample, struct history_writer *writer,
+                        uint32_t number, const struct ows_value *v, const char *text,
+                        int64_t now_ns)
+{
+	int64_t time_ns = series_time(rows, v, now_ns);
+
+	history_writer_value(writer, number, time_ns, v->quality,
+	                     series_bits(v->type, v->number, v->integer), text, strlen(text));
+	kept->any = true;
+	kept->sample = *sample;
+	if (time_ns > rows->last_ns)
+		rows->last_ns = time_ns;
+}
+
+/* The raw value goes where the value goes, by the same occasion. */
+static void keep_raw(struct series *rows, struct row *row, struct ows *ows,
+                     struct history_writer *writer, int64_t now_ns)
+{
+	struct rule_sample sample = {.type = OWS_DOUBLE};
+	struct ows_value v;
+
+	if (row->raw_id < 0 || ows_get(ows, row->raw_id, now_ns, &v))
+		return;
+	sample.quality = v.quality;
+	sample.number = v.number;
+	sample.measured_ns = v.measured_ns;
+	keep_sample(rows, &row->raw_kept, &sample, writer, row->raw_row, &v, "", now_ns);
+}
+
+/* Nothing is known of the signal from then on, or from what was kept later. */
+static void miss(struct series *rows, struct row *row, int signal, struct history_writer *writer,
+                 int64_t unseen_ns)
+{
+	history_writer_forget(writer, (uint32_t)signal, unseen_ns, HISTORY_OVERRUN);
+	if (row->raw_id >= 0)
+		history_writer_forget(writer, row->raw_row, unseen_ns, HISTORY_OVERRUN);
+	row->kept.any = row->raw_kept.any = false;
+	rows->missed++;
+}
+
+static void series_take(struct series *rows, int signal, struct ows *ows,
+                        struct history_writer *writer, bool ticked, int64_t unseen_ns,
+                        int64_t now_ns)
+{
+	struct row *row = &rows->rows[signal];
+	struct rule_sample sample;
+	char text[TEXT_MAX];
+	struct ows_value v;
+
+	if (row->rule.off || !series_get(ows, signal, now_ns, &v, text, &sample))
+		return;
+	if (rule_missed(&row->rule, &row->kept, v.count - row->count, ticked, unseen_ns, now_ns))
+		miss(rows, row, signal, writer, unseen_ns);
+	row->count = v.count;
+	if (!rule_change(&row->rule, &row->kept, &sample) &&
+	    !(ticked && rule_interval(&row->kept, &sample)))
+		return;
+	keep_sample(rows, &row->kept, &sample, writer, (uint32_t)signal, &v, text, now_ns);
+	keep_raw(rows, row, ows, writer, now_ns);
+}
+
+void series_changes(struct series *rows, struct ows *ows, struct history_writer *writer,
+                    const int *signals, int n, int64_t unseen_ns, int64_t now_ns)
+{
+	int count = signals ? n : rows->count;
+
+	for (int i = 0; i < count; i++) {
+		int signal = signals ? signals[i] : i;
+
+		if (signal >= 0 && signal < rows->count)
+			series_take(rows, signal, ows, writer, false, unseen_ns, now_ns);
+	}
+}
+
+int64_t series_tick(struct series *rows, struct ows *ows, struct history_writer *writer,
+                    int64_t unseen_ns, int64_t now_ns, int64_t wall_ns)
+{
+	int64_t next = INT64_MAX;
+
+	for (int i = 0; rows->has_intervals && i < rows->count; i++) {
+		struct row *row = &rows->rows[i];
+		int64_t due;
+
+		if (rule_tick(&row->rule, &row->kept, wall_ns))
+			series_take(rows, i, ows, writer, true, unseen_ns, now_ns);
+		due = rule_next_tick(&row->rule, wall_ns);
+		next = due < next ? due : next;
+	}
+	return next;
+}
+
+void series_forget(struct series *rows, int64_t now_ns)
+{
+	rows->since_ns = now_ns;
+	for (int i = 0; i < rows->count; i++)
+		rows->rows[i].kept.any = rows->rows[i].raw_kept.any = false;
+}

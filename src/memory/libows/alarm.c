@@ -1,0 +1,143 @@
+/* SPDX-License-Identifier: MIT */
+/* The journal of alarms, and how the alarms of a signal stand. */
+#include <errno.h>
+#include <string.h>
+
+#include "src/ground/signal/value.h"
+#include "src/memory/libows/actor.h"
+#include "src/memory/libows/alive.h"
+#include "src/memory/libows/journal.h"
+#include "src/memory/shm/reader.h"
+
+/* Fills the members of a shelved alarm; leaves them as they are if no entry is of the record. */
+static void shelved_of(struct ows *h, uint32_t record, struct ows_alarm_state *state)
+{
+	uint32_t count = map_count(&h->map, OWS_AREA_SHELVES);
+	struct ows_shelf_entry e;
+
+	for (uint32_t i = 0; i < count; i++) {
+		if (!reader_entry(map_entry(&h->map, OWS_AREA_SHELVES, i), &e, sizeof(e)) ||
+		    e.record != record)
+			continue;
+		state->since_ns = e.since_ns;
+		state->until_ns = e.until_ns;
+		state->who = actor_of(&e.who);
+		memcpy(state->why, e.why, sizeof(state->why) - 1);
+		return;
+	}
+}
+
+uint32_t ows_alarm_count(struct ows *h)
+{
+	return __atomic_load_n(&h->map.image->alarm_head, __ATOMIC_ACQUIRE);
+}
+
+static void alarm_fill(uint8_t type, int64_t value, double *number, int64_t *integer)
+{
+	*number = value_number((enum ows_type)type, value);
+	*integer = value_is_float((enum ows_type)type) ? 0 : value;
+}
+
+int ows_alarm(struct ows *h, uint32_t number, struct ows_alarm *alarm)
+{
+	struct ows_journal_entry e;
+	int err = journal_read(h, OWS_AREA_ALARMS, ows_alarm_count(h), number, &e);
+
+	if (err)
+		return err;
+	*alarm = (struct ows_alarm){
+		.signal = (int)e.record - 1,
+		.occurred_ns = e.occurred_ns,
+		.type = map_record(&h->map, e.record)->type,
+		.has_before = (e.flags & OWS_JOURNAL_BEFORE) != 0,
+		.has_after = (e.flags & OWS_JOURNAL_AFTER) != 0,
+		.kind = e.kind,
+		.event = e.event,
+		.quality = e.quality,
+		.who = actor_of(&e.who),
+	};
+	if (alarm->has_before)
+		alarm_fill(alarm->type, e.before, &alarm->before, &alarm->before_integer);
+	if (alarm->has_after)
+		alarm_fill(alarm->type, e.after, &alarm->after, &alarm->after_integer);
+	memcpy(alarm->text, e.text, sizeof(alarm->text) - 1);
+	return 0;
+}
+
+static uint8_t unarmed_of(uint32_t flags)
+{
+	if (!(flags & OWS_ATTR_ALARM_UNARMED))
+		return 0;
+	return (uint8_t)(1 + ((flags & OWS_ATTR_ALARM_WHY) >> OWS_ATTR_ALARM_WHY_SHIFT));
+}
+
+int ows_alarm_state(struct ows *h, int id, struct ows_alarm_state *state)
+{
+	uint32_t record = handle_record(h, id);
+	const struct ows_record *r = map_record(&h->map, record);
+	const struct ows_attrs *a;
+	struct ows_slot slot;
+
+	if (!record)
+		return -ENOENT;
+	if (!reader_slot(r, &slot))
+		return -EAGAIN;
+	a = &slot.attrs;
+	*state = (struct ows_alarm_state){
+		.occurrences = a->alarms,
+		.item = (r->flags & OWS_RECORD_ALARM) != 0,
+		.stands = (a->flags & OWS_ATTR_ALARM_STANDS) != 0,
+		.polled = (a->flags & OWS_ATTR_ALARM_POLLED) != 0,
+		.limits = (a->flags & OWS_ATTR_LIMITS) != 0,
+		.limit_state = a->limit_state,
+		.limit_kind = a->limit_condition,
+		.unarmed = unarmed_of(a->flags),
+		.shelved = a->shelved,
+	};
+	if (a->shelved)
+		shelved_of(h, record, state);
+	return handle_state(h);
+}
+
+const char *ows_limit_state_text(uint8_t state)
+{
+	static const char *const texts[] = {
+		[OWS_LIMIT_NORMAL] = "normal",
+		[OWS_LIMIT_UNACKNOWLEDGED] = "unacknowledged",
+		[OWS_LIMIT_ACKNOWLEDGED] = "acknowledged",
+		[OWS_LIMIT_RETURNED] = "returned to normal unacknowledged",
+	};
+
+	return state < sizeof(texts) / sizeof(texts[0]) ? texts[state] : "unknown";
+}
+
+const char *ows_alarm_kind_text(uint8_t kind)
+{
+	static const char *const texts[] = {
+		[OWS_ALARM_DEVICE] = "device",
+		[OWS_ALARM_POR] = "power-on reset",
+		[OWS_ALARM_HH] = "high high",
+		[OWS_ALARM_H] = "high",
+		[OWS_ALARM_L] = "low",
+		[OWS_ALARM_LL] = "low low",
+		[OWS_ALARM_STALE] = "stale",
+		[OWS_ALARM_BAD] = "bad",
+		[OWS_ALARM_DIFFERS] = "not as commanded",
+	};
+
+	return kind < sizeof(texts) / sizeof(texts[0]) && texts[kind] ? texts[kind] : "none";
+}
+
+const char *ows_alarm_event_text(uint8_t event)
+{
+	static const char *const texts[] = {
+		[OWS_ALARM_RAISED] = "raised",
+		[OWS_ALARM_RETURNED] = "returned",
+		[OWS_ALARM_ACKNOWLEDGED] = "acknowledged",
+		[OWS_ALARM_SHELVED] = "shelved",
+		[OWS_ALARM_UNSHELVED] = "unshelved",
+		[OWS_ALARM_FAILED] = "failed",
+	};
+
+	return event < sizeof(texts) / sizeof(texts[0]) && texts[event] ? texts[event] : "unknown";
+}

@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The memory in which a program commands (layout.h, "the memory of one controller"): mapped and
+ * checked once. Only this program and owsd have it; a forked child that writes rubbish leads the
+ * parent to no other place.
+ */
+#pragma once
+
+#include <stdbool.h>
+
+#include "src/memory/shm/word.h"
+#include "src/public/ows_layout.h"
+
+/* Do count entries of size bytes at off lie inside `room` bytes, in whole words? */
+static inline bool area_inside(size_t room, uint32_t off, uint32_t count, uint32_t size)
+{
+	return off % 8 == 0 && off <= room && (uint64_t)count * size <= room - off;
+}
+
+struct give {
+	char *base; /* NULL: none */
+	size_t size;
+	uint32_t generation, start_id, serial;
+	uint32_t slot_off, slot_size, slot_count, dirty_off;
+	uint32_t text_off, text_cap, place_off, person_off, shelf_off;
+};
+
+/* Map the memory that came with a welcome. Returns 0, or -EPROTO: it is not as promised. */
+int give_map(int fd, const struct ows_welcome *welcome, struct give *give);
+void give_unmap(struct give *give);
+/* The room of a string signal's text; NULL: it has none. */
+struct ows_command_text *give_text(const struct give *give, uint32_t record);
+/* Store len bytes of text with its check word; len is at most text_cap. */
+void give_store_text(struct ows_command_text *to, const char *text, size_t len);
+/* Store a text and fill it up with NUL to size, a multiple of 4. */
+void give_store_name(char *to, const char *text, size_t size);
+
+static inline struct ows_controller_header *give_header(const struct give *give)
+{
+	return (void *)give->base;
+}
+
+static inline struct ows_command_slot *give_slot(const struct give *give, uint32_t record)
+{
+	return (void *)(give->base + give->slot_off + (size_t)record * give->slot_size);
+}
+
+static inline struct ows_command_shelf *give_shelf(const struct give *give)
+{
+	return (void *)(give->base + give->shelf_off);
+}
+
+static inline char *give_person(const struct give *give, uint32_t person)
+{
+	return give->base + give->person_off + (size_t)person * OWS_NAME;
+}
+
+static inline uint32_t *give_dirty(const struct give *give, uint32_t record)
+{
+	return (uint32_t *)(void *)(give->base + give->dirty_off) + record / 32;
+}
+
+static inline void give_mark(const struct give *give, uint32_t record)
+{
+	__atomic_fetch_or(give_dirty(give, record), 1u << record % 32, __ATOMIC_RELEASE);
+}
+
+/* Does owsd look at this memory? Not if it was replaced, or owsd has ended. */
+static inline bool give_is_live(const struct give *give)
+{
+	return word_get(&give_header(give)->state) == OWS_STATE_LIVE;
+}

@@ -1,0 +1,231 @@
+/* SPDX-License-Identifier: MIT */
+/* owsctl config: look at a configuration file and edit it as the manual's dialog does. */
+#include <errno.h>
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "src/config/edit/edit.h"
+#include "src/config/edit/print.h"
+#include "src/config/edit/replace.h"
+#include "src/config/read/load.h"
+#include "src/config/read/property.h"
+#include "src/config/read/rio_file.h"
+#include "src/ground/text/distance.h"
+#include "src/memory/shm/segment.h"
+#include "src/tool/owsctl/config_list.h"
+#include "src/tool/owsctl/running.h"
+#include "src/tool/owsctl/verbs.h"
+
+/* All errors but -ENOMEM are already printed. */
+static int status_of(int err)
+{
+	if (!err)
+		return CTL_DONE;
+	if (err == -ENOMEM)
+		return ctl_fail("no memory");
+	return err == -EINVAL ? CTL_USAGE : CTL_FAILED;
+}
+
+/* Each item that is named, with all its fields. */
+static int config_show(const struct config *config, char *const *names, int count)
+{
+	int status = count ? CTL_DONE : ctl_fail("show which item? config FILE list has them");
+
+	for (int k = 0; k < count; k++) {
+		unsigned best = text_too_far(names[k]), i = 0;
+		const char *nearest = NULL;
+
+		for (; i < config->item_count && strcmp(config->items[i].name, names[k]) != 0; i++)
+			if (text_nearer(names[k], config->items[i].name, &best))
+				nearest = config->items[i].name;
+		if (i < config->item_count)
+			config_print_item(&config->items[i], true, stdout);
+		else if (!strcmp(names[k], "OwsDrv"))
+			status = ctl_fail("OwsDrv has the items: owsd --check -c FILE prints it");
+		else
+			status = ctl_fail("there is no item \"%s\"%s%s%s", names[k],
+			                  nearest ? "; did you mean \"" : "",
+			                  nearest ? nearest : "", nearest ? "\"?" : "");
+	}
+	return status;
+}
+
+/* list and show: both with --json are the same. */
+static int list_file(struct ctl *ctl, const char *file, bool whole, char *const *patterns,
+                     int count)
+{
+	/* warnings are the business of owsd --check, unless the file is edited */
+	struct config_report report = {.line = ctl_report};
+	struct config *config;
+	int err = config_load(file, &report, &config), status;
+
+	if (err)
+		return err == -ENOMEM ? CTL_FAILED : status_of(err);
+	status = whole && !ctl->json ? config_show(config, patterns, count)
+	                             : config_list(config, patterns, count, ctl->json);
+	config_free(config);
+	return status;
+}
+
+/* Open the document to edit; with `make`, which `add` alone sets, a missing file is empty. */
+static int open_document(const char *file, bool make, struct config_report *report,
+                         struct rio **rio)
+{
+	char *text = NULL;
+	size_t len;
+	int err;
+
+	*rio = NULL;
+	if (make && access(file, F_OK) && errno == ENOENT) {
+		ctl_tell("%s is new, with the target localhost:4304: config FILE set OwsDrv "
+		         "TargetName=... changes it",
+		         file);
+		return rio_parse(file, edit_empty, strlen(edit_empty), report, rio);
+	}
+	err = rio_read(file, report, &text, &len);
+	if (err)
+		return err == -EFBIG ? -EINVAL : err;
+	err = rio_parse(file, text, len, report, rio);
+	free(text);
+	return err ? err : report->errors ? -EINVAL : 0;
+}
+
+/*
+ * Does the device's family have the property that a new path names? A name that is nearly a
+ * property is refused. Any other name is accepted: another server may know more properties than
+ * owsd.
+ */
+static int check_path(const char *path)
+{
+	struct path_property found = property_look(path);
+
+	if (found.exists || !*found.nearest)
+		return 0;
+	ctl_fail("%s: its family has no such property; did you mean %s?", path, found.nearest);
+	return -EINVAL;
+}
+
+static int check_paths(const char *action, char **words, unsigned count)
+{
+	bool adds = !strcmp(action, "add");
+	int err = adds ? check_path(words[1]) : 0;
+
+	if (!adds && strcmp(action, "set") != 0)
+		return 0;
+	for (unsigned i = adds ? 2 : 1; i < count && !err; i++)
+		if (!strncmp(words[i], "Path=", 5))
+			err = check_path(words[i] + 5);
+	return err;
+}
+
+/* the words of commands that only read are not changed */
+static const char *const *words_of(char **argv)
+{
+	return (const char *const *)(void *)argv;
+}
+
+/* A running owsd does not notice the change by itself. */
+static void hint_at_reload(const char *file)
+{
+	char name[SEGMENT_NAME_MAX + 1];
+	bool usual;
+
+	if (!instance_of_file(file, name))
+		return;
+	usual = !strcmp(name, "OWS");
+	ctl_tell("owsd %s runs with this file: owsctl %s%s%sreload has it loaded", name,
+	         usual ? "" : "-n ", usual ? "" : name, usual ? "" : " ");
+}
+
+static int change_file(const char *file, const char *action, char **words, unsigned count)
+{
+	struct config_report report = {.line = ctl_report, .ctx = &report};
+	struct rio *rio;
+	int lock = edit_lock(file, &report), err;
+
+	if (lock < 0)
+		return CTL_FAILED;
+	err = open_document(file, !strcmp(action, "add"), &report, &rio);
+	if (!err)
+		err = check_paths(action, words, count);
+	if (!err && !strcmp(action, "move"))
+		err = edit_move(&rio, words[0], words[2], !strcmp(words[1], "--after"), &report);
+	else if (!err && !strcmp(action, "add"))
+		err = edit_add(&rio, words[0], words[1], words_of(words + 2), count - 2, &report);
+	else if (!err && !strcmp(action, "set"))
+		err = edit_set(&rio, words[0], words_of(words + 1), count - 1, &report);
+	else if (!err && !strcmp(action, "rename"))
+		err = edit_rename(&rio, words[0], words[1], &report);
+	else if (!err && !strcmp(action, "unset"))
+		err = edit_unset(&rio, words[0], words_of(words + 1), count - 1, &report);
+	else
+		for (unsigned i = 0; i < count && !err; i++)
+			err = edit_remove(&rio, words[i], &report);
+	if (!err)
+		err = edit_commit(rio, file, words[!strcmp(action, "rename")], &report);
+	rio_free(rio);
+	replace_unlock(file, lock);
+	if (!err)
+		hint_at_reload(file);
+	if (err == -EFBIG && !report.errors)
+		return ctl_fail("%s would be longer than %u bytes", file, RIO_FILE_MAX);
+	return status_of(err);
+}
+
+/* Run `list` or `show`: options may follow the word too, and patterns or names. */
+static int list_with(struct ctl *ctl, const char *file, int argc, char **argv)
+{
+	optind = 0;
+	ctl_option(ctl, argc, argv, "");
+	return list_file(ctl, file, !strcmp(argv[0], "show"), argv + optind, argc - optind);
+}
+
+int verb_config(struct ctl *ctl, int argc, char **argv)
+{
+	static const struct {
+		const char *name, *words;
+		int least;
+	} actions[] = {
+		{"list", "", 0},
+		{"show", "", 0},
+		{"add", " NAME PATH [KEY=VALUE]...", 2},
+		{"set", " NAME KEY=VALUE...", 2},
+		{"rename", " NAME NEW", 2},
+		{"unset", " NAME KEY...", 2},
+		{"remove", " NAME...", 1},
+		{"move", " NAME --before OTHER | --after OTHER", 3},
+	};
+	const char *file, *action;
+	int words;
+
+	ctl_option(ctl, argc, argv, "+");
+	for (int i = optind; i < argc; i++)
+		if (!strcmp(argv[i], "--help") || !strcmp(argv[i], "-h")) {
+			ctl_help(ctl->verb, stdout);
+			return CTL_DONE;
+		}
+	file = argv[optind];
+	if (argc - optind < 2)
+		return ctl_usage(
+			ctl,
+			"expected a file and list, show, add, set, rename, unset, remove or move");
+	action = argv[optind + 1];
+	words = argc - optind - 2;
+	for (size_t i = 0; i < sizeof(actions) / sizeof(actions[0]); i++) {
+		if (strcmp(actions[i].name, action) != 0)
+			continue;
+		if (!actions[i].least)
+			return list_with(ctl, file, argc - optind - 1, argv + optind + 1);
+		if (words < actions[i].least || (!strcmp(action, "rename") && words > 2) ||
+		    (!strcmp(action, "move") &&
+		     (words != 3 || (strcmp(argv[optind + 3], "--before") != 0 &&
+		                     strcmp(argv[optind + 3], "--after") != 0))))
+			return ctl_usage(ctl, "expected config FILE %s%s", action,
+			                 actions[i].words);
+		return change_file(file, action, argv + optind + 2, (unsigned)words);
+	}
+	return ctl_usage(ctl, "there is no config %s", action);
+}

@@ -1,0 +1,273 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * owsctl control: a controller whose program speaks to it by standard input, for languages that
+ * cannot receive descriptors. One line, one answer.
+ */
+#include <errno.h>
+#include <getopt.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/faces/show/names.h"
+#include "src/faces/show/range.h"
+#include "src/faces/show/text.h"
+#include "src/ground/signal/error.h"
+#include "src/tool/owsctl/ctl.h"
+#include "src/tool/owsctl/verbs.h"
+
+#define LINE_MAX 65536 /* the longest text a layout can hold, and a name */
+#define TRIES 10       /* naps until owsd counts as gone */
+#define QUOTED 60      /* characters of a value or a name in an answer */
+#define QUOTED_BYTES (4 * QUOTED + 1)
+
+struct control {
+	struct ows *h;
+	const char *instance;
+	int err;         /* of the line */
+	const char *why; /* what is wrong with the line itself; NULL: err says it */
+	char own[2 * QUOTED_BYTES + NAMES_MAX + RANGE_WORDS]; /* what why may be */
+	char line[LINE_MAX + 256];
+};
+
+/* The first word of *rest, ended by NUL; *rest is then what follows the blanks after it. */
+static char *next_word(char **rest)
+{
+	char *word = *rest + strspn(*rest, " \t"), *end = word + strcspn(word, " \t");
+
+	*rest = end + strspn(end, " \t");
+	*end = '\0';
+	return word;
+}
+
+static bool parse_uint32(const char *word, unsigned long most, uint32_t *number)
+{
+	char *end;
+	unsigned long value;
+
+	if (*word < '0' || *word > '9')
+		return false;
+	errno = 0;
+	value = strtoul(word, &end, 10);
+	if (errno || *end || value > most)
+		return false;
+	*number = (uint32_t)value;
+	return true;
+}
+
+static int control_find(struct control *control, const char *name)
+{
+	int id = ows_find(control->h, name);
+	char clean[QUOTED_BYTES], nearest[NAMES_MAX];
+	bool near;
+
+	if (id != -ENOENT)
+		return id;
+	near = names_nearest(control->h, name, nearest);
+	text_clean(name, strlen(name), QUOTED, clean, sizeof(clean));
+	snprintf(control->own, sizeof(control->own), "there is no such name: %s%s%s%s", clean,
+	         near ? "; did you mean " : "", near ? nearest : "", near ? "?" : "");
+	control->why = control->own;
+	return id;
+}
+
+/* Name what was sent, and which values there are. */
+static void refuse_value(struct control *control, const char *name, const char *value)
+{
+	struct ows_info info = {.min = NAN, .max = NAN};
+	char clean[QUOTED_BYTES], named[QUOTED_BYTES], range[RANGE_WORDS];
+	enum attribute attribute;
+	enum ows_type type;
+	int signal;
+
+	if (names_lookup(control->h, control->instance, name, &signal, &attribute) != 0)
+		return;
+	type = attribute_table[attribute].type;
+	if (attribute == ATTR_VALUE && ows_info(control->h, signal, &info) == 0)
+		type = (enum ows_type)info.type;
+	text_clean(value, strlen(value), QUOTED, clean, sizeof(clean));
+	text_clean(name, strlen(name), QUOTED, named, sizeof(named));
+	snprintf(control->own, sizeof(control->own), "\"%s\" is no value for %s: expected %s",
+	         clean, named, range_words(type, info.min, info.max, range));
+	control->why = control->own;
+}
+
+static int do_set(struct control *control, char *equals)
+{
+	int id, err;
+
+	*equals = '\0';
+	id = control_find(control, control->line);
+	if (id < 0)
+		return id;
+	err = ows_set_text(control->h, id, equals + 1, NULL);
+	if (err == -EINVAL || err == -ERANGE)
+		refuse_value(control, control->line, equals + 1);
+	return err;
+}
+
+static int do_beat(struct control *control, char *rest)
+{
+	uint32_t period_ms;
+
+	if (!parse_uint32(next_word(&rest), UINT32_MAX, &period_ms) || !period_ms || *rest) {
+		control->why = "beat takes a number of milliseconds";
+		return -EINVAL;
+	}
+	if (period_ms > OWS_BEAT_MOST_MS)
+		control->why = "the longest beat is 3600000 milliseconds, an hour";
+	return ows_beat(control->h, period_ms);
+}
+
+static int do_for(struct control *control, char *rest)
+{
+	return ows_for(control->h, rest);
+}
+
+static int do_ack(struct control *control, char *rest)
+{
+	struct ows_alarm_state state = {0};
+	int id = control_find(control, rest);
+	int err = id < 0 ? id : ows_alarm_state(control->h, id, &state);
+
+	if (err)
+		return err;
+	return state.limits ? ows_acknowledge(control->h, id) : -EOPNOTSUPP;
+}
+
+static int do_shelve(struct control *control, char *rest)
+{
+	char *name = next_word(&rest);
+	uint32_t seconds;
+	int id = control_find(control, name);
+
+	if (id < 0)
+		return id;
+	if (!parse_uint32(next_word(&rest), UINT32_MAX, &seconds)) {
+		control->why = "shelve takes a name, a number of seconds, and why";
+		return -EINVAL;
+	}
+	return ows_shelve(control->h, id, seconds, rest);
+}
+
+static const struct {
+	const char *word;
+	int (*run)(struct control *control, char *rest);
+} orders[] = {
+	{"beat", do_beat},
+	{"for", do_for},
+	{"ack", do_ack},
+	{"shelve", do_shelve},
+};
+
+/* NAME=VALUE, where no blank is before the '='; else an order and what belongs to it. */
+static int do_line(struct control *control)
+{
+	char *line = control->line, *equals = line + strcspn(line, "= \t"), *rest = line, *word;
+
+	control->why = NULL;
+	if (*equals == '=')
+		return do_set(control, equals);
+	word = next_word(&rest);
+	for (size_t i = 0; i < sizeof(orders) / sizeof(orders[0]); i++)
+		if (strcmp(word, orders[i].word) == 0)
+			return orders[i].run(control, rest);
+	control->why = "a line is NAME=VALUE, beat, for, ack, shelve or quit";
+	return -EINVAL;
+}
+
+/* The same, and again where owsd has just moved to another memory. */
+static void run_line(struct control *control, char *copy)
+{
+	memcpy(copy, control->line, strlen(control->line) + 1);
+	control->err = do_line(control);
+	for (int i = 0; control->err == -ESTALE && i < TRIES; i++) {
+		if (ows_reopen(control->h) != 0)
+			ctl_nap();
+		memcpy(control->line, copy, strlen(copy) + 1);
+		control->err = do_line(control);
+	}
+}
+
+static bool print_answer(const struct control *control)
+{
+	const char *why = control->why ? control->why : error_text(control->err);
+
+	if (control->err == -ESTALE)
+		why = "owsd is not running";
+	else if (control->err == -EROFS)
+		why = "the signal is an input (Writable is off in the configuration)";
+	else if (control->err == -EACCES)
+		why = "it cannot be set, or not by this user";
+	else if (!control->why && control->err == -EINVAL)
+		why = "this is no value for it";
+	else if (control->err == -EOPNOTSUPP)
+		why = "it has no limit alarms";
+	else if (!control->why && control->err == -ERANGE)
+		why = "it is too long or out of range";
+	if (control->err)
+		printf("error %s\n", why);
+	else
+		puts("ok");
+	return ctl_flush_lines();
+}
+
+/*
+ * Read a line without its newline. False: the input has ended. Of a line that is too long, or has a
+ * NUL, err is set.
+ */
+static bool read_line(struct control *control)
+{
+	size_t n = 0;
+	int c;
+
+	control->err = 0;
+	while ((c = getchar()) != EOF && c != '\n') {
+		if (c == '\0')
+			control->err = -EINVAL;
+		if (n < sizeof(control->line) - 1)
+			control->line[n++] = (char)c;
+		else
+			control->err = -EINVAL;
+	}
+	if (n > 0 && control->line[n - 1] == '\r')
+		n--;
+	control->line[n] = '\0';
+	control->why = "the line is too long, or has a NUL";
+	return c != EOF;
+}
+
+/* Returns whether the program said goodbye. */
+static bool control_follow(struct control *control, char *copy)
+{
+	while (read_line(control)) {
+		if (!control->err) {
+			if (strcmp(control->line, "quit") == 0)
+				return true;
+			run_line(control, copy);
+		}
+		if (!print_answer(control))
+			break;
+	}
+	return false;
+}
+
+int verb_control(struct ctl *ctl, int argc, char **argv)
+{
+	/* Static: to the end of the process, see below */
+	static struct control control;
+	static char copy[sizeof(control.line)];
+	const char *name = "owsctl";
+	while (ctl_option(ctl, argc, argv, "A:") != -1)
+		name = optarg;
+	if (optind < argc)
+		return ctl_usage(ctl, "control takes its orders from standard input");
+	control.instance = ctl->instance;
+	control.h = ctl_open_as(ctl, OWS_CONTROL, name);
+	if (!control_follow(&control, copy))
+		return CTL_DONE; /* Not closed: owsd takes the end for a loss, not for a goodbye */
+	ows_close(control.h);
+	puts("ok");
+	return CTL_DONE;
+}

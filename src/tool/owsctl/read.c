@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: MIT */
+/* owsctl read: the value of a path of a target. */
+#include <getopt.h>
+
+#include "src/faces/show/json.h"
+#include "src/tool/owsctl/open.h"
+#include "src/tool/owsctl/verbs.h"
+
+#define TEXT_MAX 65536
+
+static char text[TEXT_MAX + 1];
+
+static void read_print_json(struct json *json, const char *path, const struct bus_answer *answer,
+                            size_t len)
+{
+	char words[ERROR_WORDS];
+
+	json_object(json, NULL);
+	json_string(json, "path", path);
+	text[len] = '\0';
+	if (answer->err)
+		json_null(json, "value");
+	else if (json_is_number(text, len))
+		json_number(json, "value", text);
+	else
+		json_text(json, text, len);
+	if (answer->err)
+		json_string(json, "error", error_answer_text(answer->err, answer->number, words));
+	json_bool(json, "simulated", answer->detail & BUS_DETAIL_SIMULATED);
+	json_bool(json, "cached", answer->detail & BUS_DETAIL_CACHED);
+	json_object_end(json);
+}
+
+static int read_path(const struct ctl *ctl, struct json *json, struct target *target,
+                     const struct served *served, const char *given)
+{
+	char path[256];
+	bool fresh;
+	struct ask ask = {.req = {.op = BUS_READ,
+	                          .prio = BUS_GUEST,
+	                          .path = path,
+	                          .data = (uint8_t *)text,
+	                          .len = TEXT_MAX}};
+	char words[ERROR_WORDS];
+	size_t len = 0;
+	int err;
+
+	if (!target_path(given, path, &fresh))
+		return ctl_fail("%s: the path is longer than %d bytes", given, 255);
+	ask.req.fresh = fresh;
+	err = target_ask_one(target, &ask);
+	if (!err)
+		len = target_unpad(text, ask.answer.len);
+	if (ctl->json)
+		read_print_json(json, given, &ask.answer, len);
+	else if (!err)
+		ctl_value(text, len);
+	if (!err)
+		return CTL_DONE;
+	/* keep the order of stderr and stdout where both go to one place */
+	if (!ctl->json)
+		fflush(stdout);
+	return ctl_fail("%s: %s%s", given, error_answer_words(err, ask.answer.number, words),
+	                open_asked(ctl, target, served));
+}
+
+int verb_read(struct ctl *ctl, int argc, char **argv)
+{
+	int64_t timeout_ns = OPEN_TIMEOUT_NS;
+	struct target target;
+	struct served served;
+	struct json json;
+	int status;
+
+	target_option(ctl, argc, argv, "", &timeout_ns);
+	if (optind == argc)
+		return ctl_usage(ctl, "read what?");
+	status = open_target(ctl, timeout_ns, &target, &served);
+	if (status)
+		return status;
+	json_list(&json, stdout, ctl->json);
+	for (int i = optind; i < argc; i++)
+		if (read_path(ctl, &json, &target, &served, argv[i]))
+			status = CTL_FAILED;
+	json_list_end(&json);
+	target_close(&target);
+	return status;
+}

@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: MIT */
+/* The signals that patterns select, as list and watch show them. */
+#pragma once
+
+#include <stdbool.h>
+
+#include "src/faces/show/json.h"
+#include "src/faces/show/reading.h"
+#include "src/faces/show/standing.h"
+#include "src/ground/signal/value.h"
+#include "src/public/ows.h"
+
+/* What the value of a signal means: unit, decimals, description, and the raw value beside it. */
+struct meaning {
+	char *unit, *description; /* "": none */
+	int decimals;             /* -1: not known */
+	int raw;                  /* the id of _Raw; negative: none */
+};
+
+/* All of it copied, so that it outlives ows_reopen(). */
+void meaning_of(struct ows *h, const struct ows_info *info, struct meaning *meaning);
+void meaning_free(struct meaning *meaning);
+
+/* As members of a JSON object. */
+void meaning_json(struct json *json, struct ows *h, const struct meaning *meaning, int64_t now_ns);
+
+struct row {
+	int id;     /* for ows_get(); stays valid over ows_reopen() */
+	int signal; /* as in ows_info(); -1: a driver signal, which stand first */
+	char *name;
+	char *path;   /* NULL: a driver signal */
+	uint8_t type; /* enum ows_type */
+	bool output, fresh, alarm;
+	struct meaning meaning;         /* of a signal */
+	struct ows_alarm_state alarms;  /* of the last row_read() */
+	char commanded[VALUE_TEXT_MAX]; /* the last row_read(): the command; "": none or a string */
+	bool differs;   /* the last row_read(): the command differs from the value */
+	uint64_t state; /* a hash of what the last call of row_changed() saw */
+};
+struct rows {
+	struct row *row;
+	int count;
+};
+
+/* Collect the signals, with `driver` the driver signals too. Free with rows_free(). */
+void rows_collect(struct ows *h, char *const *patterns, int pattern_count, bool driver,
+                  struct rows *rows);
+void rows_free(struct rows *rows);
+
+/*
+ * Was something else commanded than what was read of the id? commanded is the command as a text,
+ * "": there is none, or it is a string.
+ */
+bool command_differs(struct ows *h, int id, const struct reading *reading,
+                     char commanded[VALUE_TEXT_MAX]);
+
+/* Read the value of a row, the state of its alarms, and its command. */
+void row_read(struct ows *h, struct row *row, int64_t now_ns, struct reading *reading);
+/* Can one of the signals have alarms? */
+bool rows_have_alarms(struct ows *h, const struct rows *rows);
+
+/* The quality in words, and the command where it differs from the value. Returns words. */
+const char *row_quality(const struct row *row, const struct reading *reading,
+                        char words[READING_WORDS]);
+
+/* Is there a value to show? The 0 of an input that was never measured is none. */
+bool row_filled(const struct row *row, const struct reading *reading);
+/* The text of the value for a table, "-": there is none. */
+void row_show(const struct row *row, const struct reading *reading, char *out, size_t size);
+
+/* Have value, quality, error or an alarm changed since the last call? */
+bool row_changed(struct row *row, const struct reading *reading);
+
+/* The unit of the value, "": none; and its decimals, -1: not known. */
+const char *row_unit(const struct row *row);
+int row_decimals(const struct row *row);
+/* Has one of the signals a unit? */
+bool rows_have_units(const struct rows *rows);
+
+/* name, output, path, alarms and the like as members of a JSON object. */
+void row_json(struct json *json, struct ows *h, const struct row *row, int64_t now_ns);
+
+/*
+ * Report each pattern that no row matches. Returns CTL_FAILED if there are patterns and no row at
+ * all, else 0.
+ */
+int rows_check(const struct rows *rows, char *const *patterns, int pattern_count);

@@ -1,0 +1,292 @@
+/* SPDX-License-Identifier: MIT */
+/* Items of a configuration for devices that were found: their names, text and initial values. */
+#include <ctype.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "hal/chips/find.h"
+#include "src/config/edit/edit_block.h"
+#include "src/config/edit/rio_write.h"
+#include "src/config/read/config.h"
+#include "src/config/read/load.h"
+#include "src/ground/signal/error.h"
+#include "src/ground/signal/hash.h"
+#include "src/ground/signal/value.h"
+#include "src/tool/owsctl/ctl.h"
+#include "src/tool/owsctl/scan/scan_item.h"
+#include "src/tool/scan/scan.h"
+
+void scan_names_init(struct scan_names *names, size_t room)
+{
+	*names = (struct scan_names){.name = ctl_need(calloc(room + 1, sizeof(*names->name))),
+	                             .room = (unsigned)room,
+	                             .slots = 2};
+	while (names->slots < 2 * room)
+		names->slots *= 2;
+	names->slot = ctl_need(calloc(names->slots, sizeof(*names->slot)));
+	names->items = ctl_need(open_memstream(&names->text, &names->len));
+}
+
+size_t scan_items_most(const struct scan *scan)
+{
+	struct scan_property property;
+	size_t most = 0;
+
+	for (unsigned n = 0; n < scan->count; n++)
+		for (unsigned i = 0; scan_property(&scan->device[n], i, &property); i++)
+			most += property.type == OWS_BYTE ? SCAN_BITS : 1;
+	return most;
+}
+
+void scan_names_free(struct scan_names *names)
+{
+	fclose(names->items);
+	free(names->text);
+	free(names->slot);
+	free(names->name);
+}
+
+/* The name's slot in the hash table, or the free slot for it. Half of the slots stay free. */
+static unsigned *scan_item_find(const struct scan_names *names, const char *name)
+{
+	unsigned at = (unsigned)hash_text(HASH_BEGIN, name, strlen(name)) & (names->slots - 1);
+
+	for (; names->slot[at]; at = (at + 1) & (names->slots - 1))
+		if (!strcmp(names->name[names->slot[at] - 1], name))
+			break;
+	return &names->slot[at];
+}
+
+void scan_names_add(struct scan_names *names, const char *name)
+{
+	char *to = names->name[names->count];
+	unsigned *slot;
+
+	if (names->count == names->room)
+		return;
+	memcpy(to, name, strnlen(name, SIGNAL_NAME_MAX)); /* the other bytes are 0 */
+	slot = scan_item_find(names, to);
+	names->count++;
+	if (!*slot)
+		*slot = names->count;
+}
+
+static bool is_free(const struct scan_names *names, const char *name)
+{
+	return !*scan_item_find(names, name) && !signal_name_fault(name);
+}
+
+/* The last number given for the word: the search for a free number goes on from there. */
+static unsigned *last_of(struct scan_names *names, const char *word)
+{
+	unsigned i = 0;
+
+	while (i < SCAN_WORDS - 1 && names->word[i].word[0] &&
+	       strcmp(names->word[i].word, word) != 0)
+		i++;
+	if (strcmp(names->word[i].word, word) != 0) {
+		names->word[i].last = 0;
+		snprintf(names->word[i].word, sizeof(names->word[i].word), "%s", word);
+	}
+	return &names->word[i].last;
+}
+
+/* A name of the alias, where a line stands for what no name may hold: "Bath_room". */
+static bool choose_alias(const struct scan_names *names, const struct scan_device *device,
+                         const char *word, char *name, size_t room)
+{
+	char number[12] = "";
+
+	if (!device->alias[0])
+		return false;
+	for (unsigned n = 2; n < 100; n++) {
+		snprintf(name, room, "%s%s%s%s", device->alias, number, word ? "_" : "",
+		         word ? word : "");
+		for (char *p = name; (p = strpbrk(p, " \"#{}\\")); p++)
+			*p = '_';
+		if (is_free(names, name))
+			return true;
+		snprintf(number, sizeof(number), "_%u", n);
+	}
+	return false;
+}
+
+static bool has_several(const struct scan_device *device)
+{
+	struct scan_property property;
+	unsigned n = 0;
+
+	for (unsigned i = 0; scan_property(device, i, &property); i++)
+		n += device->value[i].err != -ENOENT;
+	return n > 1;
+}
+
+/*
+ * The name of a signal: of the device's alias, with the property's word where it has several; else
+ * the word with the first number that is free.
+ */
+static const char *choose_name(struct scan_names *names, const struct scan_device *device,
+                               const struct scan_property *property, const char *element)
+{
+	bool several = *element || has_several(device);
+	bool ends_in_digit = isdigit((unsigned char)property->word[strlen(property->word) - 1]);
+	char name[SIGNAL_NAME_MAX + SCAN_ALIAS], word[48];
+
+	snprintf(word, sizeof(word), "%s%s", property->word, element);
+	if (!choose_alias(names, device, several ? word : NULL, name, sizeof(name))) {
+		unsigned *last = last_of(names, property->word);
+
+		do
+			snprintf(name, sizeof(name), ends_in_digit ? "%s_%u" : "%s%u",
+			         property->word, ++*last);
+		while (!is_free(names, name));
+	}
+	scan_names_add(names, name);
+	return names->name[names->count - 1];
+}
+
+/* element: what the name of a bit ends in where the device has an alias. */
+static void make_item(struct scan_names *names, const struct scan_device *device,
+                      const struct scan_property *property, const char *value, const char *element)
+{
+	const char *name = choose_name(names, device, property, element);
+	bool named = strncmp(name, device->alias, strlen(device->alias)) == 0;
+	char *described = named ? NULL : rio_quote(device->alias);
+	char rate[48] = "", init[128] = "";
+
+	if (property->per_factor)
+		snprintf(rate, sizeof(rate), "  PerFactor               %u\n",
+		         property->per_factor);
+	if (property->output)
+		snprintf(init, sizeof(init), "  InitValue               \"%s\"\n", value);
+	fprintf(names->items,
+	        "%s# %s%s%s%s%s\n"
+	        "Item {\n"
+	        "  Name                    \"%s\"\n"
+	        "  Path                    \"%s/%s\"\n"
+	        "  Type                    \"%s\"\n"
+	        "  IO                      \"%s\"\n"
+	        "%s%s%s%s%s"
+	        "}",
+	        ftell(names->items) > 0 ? "\n" : "", device->type,
+	        device->location[0] ? " on " : "", device->location,
+	        device->simulated ? " (simulated)" : "",
+	        property->output ? "; its InitValue is what it was set to when found" : "", name,
+	        device->path, property->name, value_type_name(property->type),
+	        property->output ? "output" : "input",
+	        described ? "  Description             " : "", described ? described : "",
+	        described ? "\n" : "", rate, init);
+	free(described);
+}
+
+/* Does the property get an item? Prints the reason where the answer is a surprise. */
+static bool gets_item(const struct scan_device *device, const struct scan_property *property,
+                      const struct scan_value *value, bool inputs_only)
+{
+	int64_t number;
+
+	if ((property->output && inputs_only) || value->err == -ENOENT)
+		return false;
+	if (!property->output)
+		return true;
+	if (!value->err && !value_parse(property->type, value->text, &number))
+		return true;
+	ctl_fail("left out: the output %s/%s, because it cannot be read: %s", device->path,
+	         property->name, value->err ? error_text(value->err) : value->text);
+	return false;
+}
+
+/* The bits of a property as PIO.BYTE, of which scan_property() gives "inputs" and "outputs". */
+static bool make_bits(struct scan_names *names, const struct scan_device *device,
+                      const struct scan_property *whole, const char *value)
+{
+	const char *dot = strchr(whole->name, '.');
+	const struct property *array;
+	char element[12];
+	unsigned long bits = strtoul(value, NULL, 10);
+
+	if (whole->type != OWS_BYTE || !dot)
+		return false;
+	array = family_property(family_of(device->family), NULL, whole->name,
+	                        (size_t)(dot - whole->name));
+	for (unsigned k = 0; array && k < array->array.count && k < SCAN_BITS; k++) {
+		bool letters = array->array.index == INDEX_LETTERS;
+		struct scan_property bit = {.type = OWS_BOOL, .output = whole->output};
+
+		snprintf(element, sizeof(element), "%c", (char)((letters ? 'A' : '0') + (int)k));
+		snprintf(bit.name, sizeof(bit.name), "%.*s.%s", (int)(dot - whole->name),
+		         whole->name, element);
+		snprintf(bit.word, sizeof(bit.word), "%.*s", (int)strcspn(whole->word, "s"),
+		         whole->word);
+		make_item(names, device, &bit, bits >> k & 1 ? "1" : "0", element);
+	}
+	return array != NULL;
+}
+
+void scan_make_items(struct scan_names *names, const struct scan_device *device,
+                     struct scan_choice choice)
+{
+	struct scan_property property;
+
+	for (unsigned i = 0; scan_property(device, i, &property); i++)
+		if (gets_item(device, &property, &device->value[i], choice.inputs_only) &&
+		    !(choice.bits && make_bits(names, device, &property, device->value[i].text)))
+			make_item(names, device, &property, device->value[i].text, "");
+}
+
+bool scan_make_some(struct scan_names *names, const struct scan_device *device,
+                    struct scan_choice choice, bool noted)
+{
+	unsigned before = names->count;
+	char why[512];
+
+	scan_make_items(names, device, choice);
+	if (names->count != before)
+		return true;
+	snprintf(why, sizeof(why),
+	         "no signal for %s (%s)%s%s; owsctl %s%s%sdir %s lists what it has",
+	         device->path + 1, device->type[0] ? device->type : "unknown",
+	         device->err ? ", which does not say what it is: " : "",
+	         device->err ? error_text(device->err) : "", choice.target ? "-t " : "",
+	         choice.target ? choice.target : "", choice.target ? " " : "", device->path);
+	ctl_fail("%s", why);
+	if (noted)
+		fprintf(names->items, "%s# %s", ftell(names->items) > 0 ? "\n" : "", why);
+	return false;
+}
+
+int scan_add_items(struct rio **rio, struct scan_names *names)
+{
+	if (fflush(names->items) || ferror(names->items))
+		return -ENOMEM;
+	return names->len ? rio_add(rio, edit_driver(*rio), names->text) : 0;
+}
+
+/* Why owsd would refuse the configuration; status CTL_DONE: owsd would accept it. */
+struct refusal {
+	const char *what;
+	int status;
+};
+
+static void scan_item_refuse(void *ctx, bool is_error, const char *message)
+{
+	struct refusal *refusal = ctx;
+
+	if (is_error && !refusal->status)
+		refusal->status = ctl_fail("%s makes no configuration: %s", refusal->what, message);
+}
+
+int scan_check(const struct rio *rio, const char *what)
+{
+	struct refusal refusal = {.what = what};
+	struct config_report report = {.line = scan_item_refuse, .ctx = &refusal};
+	struct config *config;
+	int err = config_parse("what was found", rio->text, rio->len, &report, &config);
+
+	if (err == -ENOMEM)
+		ctl_need(NULL);
+	if (!err)
+		config_free(config);
+	return refusal.status;
+}

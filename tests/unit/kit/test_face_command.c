@@ -1,0 +1,130 @@
+/* SPDX-License-Identifier: MIT */
+/* Tests of how old a command may be, of what it sets, and of the words of a refusal. */
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+
+#include "unity.h"
+
+#include "src/faces/kit/command.h"
+#include "src/ground/service/command_age.h"
+#include "tests/unit/aid/instance.h"
+
+static const struct instance_signal signals[] = {
+	{"relay", "/29.1/PIO.0", OWS_BOOL, true, 0, "29.000000000001"},
+	{"setting", "/29.1/set", OWS_DOUBLE, true, 0, NULL},
+};
+enum { RELAY, SETTING, COUNT };
+
+static struct instance in;
+static struct ows *ows;
+static struct face_command command;
+static struct ows_info info;
+
+void setUp(void)
+{
+	instance_start(&in, "face_command", signals, COUNT);
+	TEST_ASSERT_EQUAL_INT(0, ows_open_as(in.name, OWS_CONTROL, "test", &ows));
+	memset(&info, 0, sizeof(info));
+	command = (struct face_command){.program = "owsd-test",
+	                                .instance = in.name,
+	                                .name = "relay",
+	                                .text = "1",
+	                                .person = "anna",
+	                                .came_ns = ows_now()};
+}
+
+void tearDown(void)
+{
+	ows_close(ows);
+	instance_end(&in);
+}
+
+static int give(void)
+{
+	int id = face_command_find(ows, &command, &info);
+
+	return id < 0 ? id : face_command_set(ows, &command, id, &info, NULL);
+}
+
+static void test_a_command_of_now_is_set_and_one_that_waited_is_not(void)
+{
+	int id;
+
+	TEST_ASSERT_EQUAL_INT(0, give());
+	TEST_ASSERT_EQUAL_INT64(1, instance_command(&in, 0, RELAY + 1).value);
+	command.text = "0";
+	command.came_ns = ows_now() - COMMAND_OLD_NS - 1;
+	TEST_ASSERT_EQUAL_INT(-ETIME, give());
+	command.came_ns = 0; /* not known */
+	TEST_ASSERT_EQUAL_INT(-ETIME, give());
+	TEST_ASSERT_EQUAL_INT64(1, instance_command(&in, 0, RELAY + 1).value);
+	/* it waited behind the search */
+	command.came_ns = ows_now();
+	id = face_command_find(ows, &command, &info);
+	command.came_ns = ows_now() - COMMAND_OLD_NS - 1;
+	TEST_ASSERT_EQUAL_INT(-ETIME, face_command_set(ows, &command, id, &info, NULL));
+	TEST_ASSERT_EQUAL_INT64(1, instance_command(&in, 0, RELAY + 1).value);
+}
+
+static void test_what_is_no_value_or_no_signal_is_refused(void)
+{
+	static const char *const wrong[] = {"", "2", "toggle", "1.5", "nan", NULL};
+
+	for (size_t i = 0; i < sizeof(wrong) / sizeof(wrong[0]); i++) {
+		command.text = wrong[i];
+		TEST_ASSERT_TRUE(give() == -EINVAL || give() == -ERANGE);
+	}
+	command.text = "1";
+	command.name = "relay_WriteEnable";
+	TEST_ASSERT_EQUAL_INT(-ENOENT, give());
+	command.name = "nobody";
+	TEST_ASSERT_EQUAL_INT(-ENOENT, give());
+	command.name = "setting";
+	TEST_ASSERT_EQUAL_INT(0, give());
+}
+
+static void is(const char *expected, int err)
+{
+	char words[FACE_REFUSAL];
+
+	TEST_ASSERT_EQUAL_STRING(expected, face_refusal(&command, &info, err, words));
+}
+
+static void test_a_refusal_has_what_was_sent_and_what_holds(void)
+{
+	command.text = "toggle";
+	is("\"toggle\" is no value for it: expected another", -EINVAL);
+	info = (struct ows_info){.name = "relay", .type = OWS_BOOL, .min = NAN, .max = NAN};
+	is("\"toggle\" is no value for it: expected 0 or 1", -EINVAL);
+	info = (struct ows_info){.name = "dial", .type = OWS_BYTE, .min = NAN, .max = 200};
+	command.text = "201";
+	is("\"201\" is no value for it: expected 0 to 200", -ERANGE);
+	command.text = NULL;
+	is("\"\" is no value for it: expected 0 to 200", -EINVAL);
+}
+
+static void test_each_other_refusal_has_its_remedy(void)
+{
+	is("owsd refuses owsd-test: add its user to the group owsd-control, or name it in "
+	   "ControlAllow",
+	   -EACCES);
+	is("it may have waited for longer than 2 seconds: give it again", -ETIME);
+	is("owsd does not answer: does it run?", -ESTALE);
+	is("owsd does not answer: does it run?", -ETIMEDOUT);
+	is("there is no such signal", -ENOENT);
+	is("it is an input: Writable is off in the configuration", -EROFS);
+	is("too many commands or programs: try again in a second", -EAGAIN);
+	is("the wire is short: data is held at ground: unplug branches until the wire lives again",
+	   -ECOMM);
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_a_command_of_now_is_set_and_one_that_waited_is_not);
+	RUN_TEST(test_what_is_no_value_or_no_signal_is_refused);
+	RUN_TEST(test_a_refusal_has_what_was_sent_and_what_holds);
+	RUN_TEST(test_each_other_refusal_has_its_remedy);
+	return UNITY_END();
+}
