@@ -11,7 +11,7 @@
 #include "hal/ds2482/together.h"
 #include "hal/ds2482/visit.h"
 
-/* All others wait so long for a group of transactions, which is little more than for one. */
+/* A group may hold the I2C bus for this long, little more than one transaction does. */
 #define GROUP_NS (20 * NS_PER_MS)
 /* Bytes on the I2C bus of a transaction that reads a scratchpad, conditions included. */
 #define VISIT_BYTES 105

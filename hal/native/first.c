@@ -248,7 +248,7 @@ static void first_read(struct native *native, struct job *job, unsigned n, int64
 		struct device *device = job->txn.device;
 
 		if (!device || !device->present) {
-			/* Looked at again, if it is not there. */
+			/* The search has not found the device yet: resolve its path again. */
 			job->state = JOB_NEW;
 			read_unknown(native, job, n, now);
 			return;

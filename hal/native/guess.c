@@ -39,7 +39,7 @@ static bool gather_ids(struct native *native, struct ids *ids)
 	return ids->n > known;
 }
 
-/* Does one of them alone begin so? Not before its family is known. */
+/* True: exactly one id has this prefix of more than 8 bits. */
 static bool is_alone(void *ctx, const uint8_t prefix[8], unsigned bits, uint8_t rom[8])
 {
 	struct ids *ids = ctx;

@@ -57,7 +57,13 @@ static void look_convert(struct native *native, struct job *job)
 		job_answer(native, job, err);
 }
 
-/* What needs no wire is answered at once; the rest waits in the state that this leaves. */
+/*
+ * What needs no wire is answered at once; the rest waits in the state that this leaves. The order:
+ * what the bus answers of itself; the path resolved; then by kind. A listing or a reading of a
+ * device that is lost waits for the search of that device (locate_wait) before anything is answered
+ * from what was known of it. A probe is answered from what was seen within presence_ns. A reading
+ * is answered from the cache, or joins a conversion; a property without a wire is run to its end.
+ */
 void job_look(struct native *native, struct job *job, int64_t now)
 {
 	int err;

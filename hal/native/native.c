@@ -366,6 +366,25 @@ static bool ask_early(struct native *native, int64_t now, int64_t *next, bool *y
 	return job;
 }
 
+/*
+ * One step of the wire at most, of what goes first. The order is the rule:
+ *
+ *   1. the master's trouble, its channels, requests that are too old
+ *   2. until the first search has ended: what can be read early; then a step of that search, with
+ *      which requests that came meanwhile take turns
+ *   3. an alarm list that is awaited holds the wire
+ *   4. outputs and alarms
+ *   5. the request of a client for a device that was just touched
+ *   6. what the schedule owes: a request that long work has kept waiting
+ *   7. devices that are looked for urgently, and looks for devices
+ *   8. a step of the periodic search
+ *   9. conversions that are due
+ *   10. devices that are looked for
+ *   11. the other requests
+ *   12. idle: the ends of conversions, branches that are switched off
+ *
+ * Each of these returns when the next step is due: now, as long as there is work.
+ */
 static int64_t step_once(struct native *native, int64_t now)
 {
 	int64_t next = INT64_MAX;

@@ -12,7 +12,7 @@ struct w1_slave *w1_slave_of(struct w1_slaves *slaves, const uint8_t rom[8])
 	for (unsigned i = 0; i < slaves->count; i++)
 		if (memcmp(slaves->slave[i].rom, rom, 7) == 0)
 			return &slaves->slave[i];
-	/* Full of those that came and went: what is known of them can be read again. */
+	/* The table is full, also with slaves that are gone: forget all; they are read again. */
 	if (slaves->count == DEVICE_MAX)
 		slaves->count = 0;
 	struct w1_slave *slave = &slaves->slave[slaves->count++];

@@ -31,7 +31,7 @@
 /* Both marks of so many pairs, each the other's complement, outlived a recall: it has none. */
 #define COPY_KEPT 3
 
-/* As a driver gives them, which sees to all that stands below. */
+/* The pages as the kernel's driver reads them; it recalls them itself. */
 static const struct area pages = {.name = "pages", .size = 64};
 
 /* A page of the EEPROM: its first byte stays as it is. */

@@ -145,7 +145,7 @@ static void client_close(struct serve *s, struct client *c)
 		s->queued--;
 	if (!engine_has_it)
 		release_directory(c);
-	/* No client waits for what was to be read; what was to be written is written. */
+	/* The engine drops a read that nobody waits for; it still carries out a write. */
 	if (engine_has_it) {
 		__atomic_store_n(&c->guest.unwanted, 1, __ATOMIC_RELAXED);
 		c->state = CLIENT_LEFT;

@@ -182,7 +182,7 @@ static void take_driver_reset(struct engine *e, const struct known_controller *g
 	}
 	n = log_rate(&e->resets, e->time.now_ns);
 	if (n)
-		log_info(e->log, "diagnostics of all signals reset%s", log_others(n, others));
+		log_info(e->log, "reset the diagnostics of all signals%s", log_others(n, others));
 }
 
 static void look_at_record(struct engine *e, uint32_t controller, uint32_t record)

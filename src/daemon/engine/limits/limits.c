@@ -109,7 +109,7 @@ static void limit_raised(struct engine *e, struct signal *s, uint8_t kind)
 		            log_others(n, others));
 }
 
-/* Where the log has the one it has the other: it does not end with an alarm that is over. */
+/* Log the return only of an alarm whose raise was logged. */
 static void limit_returned(struct engine *e, struct signal *s, uint8_t kind)
 {
 	journal_limit(e, s, kind, OWS_ALARM_RETURNED);

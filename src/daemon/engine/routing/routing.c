@@ -60,7 +60,7 @@ static void open_way(struct engine *e, struct group *g, const struct route_step 
 
 	if (!engine_way(e, left)->released) {
 		left->counters.not_released++;
-		log_warning(e->log, "%s: has not released its hardware: %s is opened all the same",
+		log_warning(e->log, "%s: did not release its hardware; opening %s nevertheless",
 		            left->port->target, lane->port->target);
 	}
 	route_bar_took(&g->state.bar, g->ways, step, e->time.now_ns);
