@@ -42,6 +42,7 @@
 #   make test-kill                the writer of the shared memory killed at KILLS=10000 random points
 #   make test-power               power cuts at CUTS=500 points of what history writes
 #   make test-page                the page's own JavaScript, by node
+#   make test-emulated            owsd on the chips of OneWireHub, a common emulation
 #   make test-years               YEARS=10 of history: what is kept, its size, trends of it
 #   make model                    the protocol of the shared memory, in a weak memory model
 #   make hammer-arm64             readers and writer of the shared memory as arm64 code, in qemu
@@ -512,6 +513,14 @@ system: all examples $(SYSTEM_AIDS)
 	@OWSD_BUILD=$(abspath $(B)) python3 tests/system/run $(TESTS:%=tests/system/%)
 
 system-programs: $(SYSTEM_AIDS)
+
+# owsd on OneWireHub's own classes, behind the simulator's wire
+.PHONY: test-emulated
+JUDGE_HUB := $(B)/tests/emulated/test_hub.o $(B)/tests/emulated/wrap.o
+$(JUDGE_HUB): $(B)/tests/emulated/%.o: tests/emulated/%.c $(UNITY)/unity.h $(B)/with/cc
+	$(call compile,$(UNITY_FLAGS))
+test-emulated: $(JUDGE_HUB) $(B)/unit/unity.o $(call obj,$(UNIT_AID)) $(if $(SQLITE),$(B)/tests/unit/aid/past.o) $(B)/core.a
+	@CXX='$(CXX)' OBJCOPY='$(OBJCOPY)' sh tests/emulated/run $(B)/emulated/judge $^ $(LIBS)
 
 # The page's own JavaScript, as far as it touches no document
 .PHONY: test-page
