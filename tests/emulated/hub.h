@@ -15,7 +15,7 @@ struct hub;
 struct hub *hub_new(const char *chip, const uint8_t rom[8]);
 void hub_free(struct hub *hub);
 
-/* A reset; a slot in which the line is so; what the chip does to the line now: false pulls it low. */
+/* A reset; a slot in which the line is so; what the chip does to it now: false pulls it low. */
 void hub_reset(struct hub *hub, int64_t now_ns);
 void hub_slot(struct hub *hub, bool line, int64_t now_ns);
 bool hub_output(struct hub *hub, int64_t now_ns);

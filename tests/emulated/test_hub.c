@@ -145,8 +145,9 @@ static void test_pages_are_written_as_they_are_read(void)
 /* Which chip it is, is found out without a trace in its memory. */
 static void test_the_recognition_changes_nothing(void)
 {
-	static const char *const first[] = {"temperature", "VDD", "VAD", "vis", "pages/page.3",
-	                                    "offset", "IAD", "CA", "latesttemp", "latestvolt"};
+	static const char *const first[] = {"temperature",  "VDD",       "VAD", "vis",
+	                                    "pages/page.3", "offset",    "IAD", "CA",
+	                                    "latesttemp",   "latestvolt"};
 
 	for (unsigned i = 0; i < sizeof(first) / sizeof(*first); i++) {
 		uint8_t before[64];

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Slots of simulated slaves that OneWireHub plays reach OneWireHub. The simulator keeps the layer of
- * the ROM commands, so that search and selection are its own; the linker wraps its four functions.
+ * Slots of simulated slaves that OneWireHub plays reach OneWireHub. The simulator keeps the layer
+ * of the ROM commands, so that search and selection are its own; the linker wraps its functions.
  */
 #include <string.h>
 
