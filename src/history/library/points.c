@@ -168,13 +168,16 @@ static int read_rollup(struct draw *d, bool hour, int64_t bucket, struct rollup 
 	return 1;
 }
 
-/* One that reaches over a border is of the point, and of the run, that its middle is in. */
+/*
+ * One that reaches over a border is of the point, and of the run, that its middle is in. What is
+ * before all runs is of the first, what is after them of the last.
+ */
 static void add_rollup(struct draw *d, const struct rollup *sum, const struct rollup_state *end,
                        int64_t begin, int64_t length)
 {
-	const struct session *last = &d->h->sessions[d->h->session_count - 1];
+	const struct session *first = d->h->sessions, *last = first + d->h->session_count - 1;
 	int64_t middle = begin + length / 2;
-	bool other = middle < d->session->start ||
+	bool other = (d->session != first && middle < d->session->start) ||
 	             (d->session != last && middle >= d->session->end);
 	int i;
 

@@ -138,6 +138,40 @@ static int of(const char *name)
 	return index;
 }
 
+/* The minute that the first run begins in belongs to it, also where its middle is before that run. */
+static void test_the_first_values_of_a_history_are_in_its_points(void)
+{
+	for (int64_t second = 1; second < 61; second += 2) {
+		struct history_options options = {.boot = history_boot_present(),
+		                                  .flush_ns = SECOND};
+		struct ows_history_point points[24];
+		struct ows_history *young;
+		int64_t until = NOON + (second + 8) * SECOND;
+
+		snprintf(path, sizeof(path), "%s/young%d", folder_place()->path, folders++);
+		options.directory = path;
+		TEST_ASSERT_EQUAL_INT(
+			0, history_writer_open(&options, second * SECOND, NOON, true, &writer));
+		TEST_ASSERT_EQUAL_INT(
+			0, history_writer_signals(writer, table, COUNT, second * SECOND));
+		history_writer_begin(writer, second * SECOND);
+		for (int64_t n = 1; n < 6; n++) {
+			value(ROOM, second + n, OWS_Q_GOOD,
+			      value_of_double(temperature(second + n)), NULL);
+			TEST_ASSERT_EQUAL_INT(0,
+			                      history_writer_tick(writer, (second + n) * SECOND));
+		}
+		TEST_ASSERT_EQUAL_INT(0, history_writer_close(writer, (second + 6) * SECOND));
+		TEST_ASSERT_EQUAL_INT(0, ows_history_open(NULL, path, &young));
+		TEST_ASSERT_EQUAL_INT(24,
+		                      ows_history_points(young, ows_history_find(young, "room"),
+		                                         until - 3600 * SECOND, until, points, 24));
+		TEST_ASSERT_EQUAL_DOUBLE(temperature(second + 1), points[23].min);
+		TEST_ASSERT_EQUAL_DOUBLE(temperature(second + 5), points[23].max);
+		ows_history_close(young);
+	}
+}
+
 /* All items, got in portions. */
 static int items_of(const char *name, struct ows_history_item items[MOST], int portion)
 {
@@ -665,6 +699,7 @@ int main(void)
 	RUN_TEST(test_an_instance_is_found_by_its_name);
 	RUN_TEST(test_a_user_who_may_only_read_reads_all);
 	RUN_TEST(test_a_copy_without_its_log_is_read_too);
+	RUN_TEST(test_the_first_values_of_a_history_are_in_its_points);
 	RUN_TEST(test_points_of_sums_are_those_of_the_values);
 	RUN_TEST(test_hours_are_the_same_with_and_without_minutes);
 	RUN_TEST(test_all_rows_come_once_in_the_order_of_recording);
