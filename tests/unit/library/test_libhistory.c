@@ -138,7 +138,7 @@ static int of(const char *name)
 	return index;
 }
 
-/* The minute that the first run begins in belongs to it, also where its middle is before that run. */
+/* The minute that the first run begins in belongs to it, also if its middle is before that run. */
 static void test_the_first_values_of_a_history_are_in_its_points(void)
 {
 	for (int64_t second = 1; second < 61; second += 2) {
