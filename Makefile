@@ -316,7 +316,7 @@ $(B)/proto/%.pb-c.c $(B)/proto/%.pb-c.h: src/faces/mqtt/%.proto
 	$(Q)$(PROTOC_C) -Isrc/faces/mqtt --c_out=$(@D) $<
 $(B)/proto/%.o: $(B)/proto/%.c $(B)/with/cc
 	$(call compile,-w)
-WITH_PROTO := $(call obj,$(patsubst %,src/%.c,config/read/mqtt faces/mqtt/profiles faces/mqtt/sparkplug))
+WITH_PROTO := $(call obj,$(patsubst %,src/%.c,config/read/texts faces/mqtt/profiles faces/mqtt/sparkplug))
 $(WITH_PROTO): PIC := $(PROTO_FLAGS)
 $(B)/tests/unit/config/test_config_mqtt.o: UNITY_FLAGS += $(PROTO_FLAGS)
 $(WITH_PROTO) $(B)/tests/unit/config/test_config_mqtt.o: $(B)/with/libraries

@@ -37,26 +37,6 @@ struct rio_node *edit_item(const struct rio *rio, const char *name)
 	return NULL;
 }
 
-/* The blocks of programs, that stand once. */
-static const struct {
-	enum option option;
-	enum option_place place;
-} single[] = {{OPT_RECORDER, PLACE_RECORDER},
-              {OPT_INFLUX, PLACE_INFLUX},
-              {OPT_WEB, PLACE_WEB},
-              {OPT_MQTT, PLACE_MQTT}};
-#define SINGLES (sizeof(single) / sizeof(single[0]))
-
-/* The number of such a block; SINGLES: it is none. */
-static size_t single_of(const char *name)
-{
-	size_t i = 0;
-
-	while (i < SINGLES && strcmp(name, option_table[single[i].option].key) != 0)
-		i++;
-	return i;
-}
-
 /* The target in "Bus:TARGET"; NULL: it is no such name. */
 static const char *bus_target(const char *name)
 {
@@ -108,8 +88,8 @@ struct rio_node *edit_block(const struct rio *rio, const char *name, enum option
 	} else if (driver && target) {
 		*place = PLACE_BUS;
 		block = find_bus(driver, target);
-	} else if (driver && single_of(name) < SINGLES) {
-		*place = single[single_of(name)].place;
+	} else if (driver && option_single(name)) {
+		*place = option_single(name)->inside;
 		block = rio_child(driver, name);
 		if (block && block->kind != RIO_BLOCK)
 			block = NULL;
@@ -145,7 +125,7 @@ int edit_make_block(struct rio **rio, const char *name)
 		return 0;
 	if (target)
 		return *target && !find_bus(driver, target) ? make_bus(rio, driver, target) : 0;
-	if (single_of(name) == SINGLES || rio_child(driver, name))
+	if (!option_single(name) || rio_child(driver, name))
 		return 0;
 	snprintf(text, sizeof(text), "%s {\n}", name);
 	return rio_add(rio, driver, text);

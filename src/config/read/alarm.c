@@ -6,12 +6,8 @@
 #include "hal/chips/property.h"
 #include "src/config/read/alarm.h"
 #include "src/config/read/build.h"
+#include "src/config/read/options.h"
 #include "src/config/read/property.h"
-
-static const char *keep_if_given(struct build *build, const struct option_value *value)
-{
-	return value->given ? build_keep(build, value->text, strlen(value->text)) : NULL;
-}
 
 static void warn_without_equals(struct build *build, const struct option_value *value,
                                 const char *follows)
@@ -91,14 +87,6 @@ void alarm_build(struct build *build, const struct rio_node *block,
 	struct place place = alarm->node ? alarm->node->value_at : block->at;
 	bool latch_empty;
 
-	item->latch_alarm = keep_if_given(build, &values[OPT_LATCH_ALARM]);
-	item->por_alarm = keep_if_given(build, &values[OPT_POR_ALARM]);
-	item->set_alarm = keep_if_given(build, &values[OPT_SET_ALARM]);
-	item->reset_latch = keep_if_given(build, &values[OPT_RESET_LATCH]);
-	item->latch_at = option_spot(&values[OPT_LATCH_ALARM]);
-	item->por_at = option_spot(&values[OPT_POR_ALARM]);
-	item->set_at = option_spot(&values[OPT_SET_ALARM]);
-	item->reset_at = option_spot(&values[OPT_RESET_LATCH]);
 	latch_empty = item->latch_alarm && !*item->latch_alarm;
 	if (!item->alarm) {
 		check_off(build, values);

@@ -6,6 +6,7 @@
 
 #include "src/config/read/allow.h"
 #include "src/config/read/build.h"
+#include "src/config/read/options.h"
 #include "src/memory/shm/owner.h"
 #include "src/memory/shm/peer.h"
 

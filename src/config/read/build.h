@@ -2,7 +2,8 @@
 /* Between the files that make a struct config out of a document. */
 #pragma once
 
-#include "src/config/read/options.h"
+#include "src/config/read/arena.h"
+#include "src/config/read/config.h"
 
 #define CONFIG_ITEMS_MAX 65535
 
@@ -11,6 +12,9 @@ struct config_box {
 	struct arena arena;
 	struct config config;
 };
+
+struct option_value;
+struct rio_node;
 
 struct build {
 	struct config_box *box;
@@ -30,20 +34,6 @@ void *build_take(struct build *build, size_t count, size_t size);
  */
 bool build_part(const char **text, const char *separators, const char **part, size_t *len);
 
-/* Keys whose value is a text: checked, reported and kept. */
-#define TEXT_KEY_LETTERS "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.-"
-#define TEXT_KEY_MAX 255 /* bytes of a path or another long text */
-#define TEXT_KEY_NAME 63
-
-/* Why the text cannot be one; NULL: it can. */
-typedef const char *text_check(const char *text);
-text_check text_is_short, text_is_path, text_is_name;
-/* A path, or the name of a credential. */
-text_check text_is_file;
-
-/*
- * The text of an option, kept; its preset or NULL if it is not given, or empty. check: an error is
- * reported, without the text where that may hold a password; NULL: it may be any.
- */
-const char *text_key(struct build *build, const struct option_value *values, enum option option,
-                     text_check *check);
+/* What follows from several keys of a block, when each key by itself has been taken. */
+typedef void block_derive(struct build *build, const struct rio_node *block,
+                          const struct option_value *values);

@@ -7,6 +7,7 @@
 
 #include "src/config/read/build.h"
 #include "src/config/read/buses.h"
+#include "src/config/read/options.h"
 #include "src/config/read/targets.h"
 #include "src/ground/signal/hash.h"
 
@@ -36,7 +37,7 @@ static void bus_build(struct build *build, const struct rio_node *block)
 	const struct option_value *target = &values[OPT_BUS_TARGET];
 	const char *text;
 
-	options_read(block, PLACE_BUS, values, build->report);
+	options_read(build, block, PLACE_BUS, values, NULL);
 	if (!target->given || !*target->text) {
 		if (!block->broken && (!target->node || target->given))
 			report_error(build->report, block->at, "expected a Target in this Bus");

@@ -58,7 +58,8 @@ struct config_item {
 	bool readable, writable; /* start values of _ReadEnable and _WriteEnable */
 	bool fresh;              /* Uncached, by flag or by path */
 	bool has_init, has_safe, has_safe_delay;
-	bool starts_last;     /* Start "last"; outputs only */
+	const char *start;    /* "init" or "last" */
+	bool starts_last;     /* outputs only */
 	bool confirm;         /* pages ask a person once more before a set */
 	int64_t read_back_ns; /* outputs: how often what was written is read again; 0: never */
 	bool has_por;         /* its device has a power-on flag, which is read too */
@@ -76,6 +77,7 @@ struct config_item {
 	/* of engineering values; NULL: not given. An empty unit is given too */
 	const char *unit, *description;
 	const char *calibrated; /* "2026-11-22" */
+	double factor, offset;  /* as written */
 	const char *points;     /* as written */
 	int decimals;           /* -1: not given */
 	struct scale scale;
@@ -193,7 +195,7 @@ struct config_mqtt {
 	unsigned way_count;
 	const char *user, *password_file, *ca_file, *cert_file, *key_file; /* NULL: none */
 	const char *node; /* NULL: the program's own */
-	const char *topic, *profile, *discovery;
+	const char *protocol, *topic, *profile, *discovery;
 	const char *primary_host; /* NULL: none */
 	bool mqtt5, write;
 };

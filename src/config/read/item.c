@@ -11,7 +11,7 @@
 #include "src/config/read/build.h"
 #include "src/config/read/item.h"
 #include "src/config/read/limits.h"
-#include "src/config/read/mqtt.h"
+#include "src/config/read/options.h"
 #include "src/config/read/property.h"
 #include "src/config/read/recorder.h"
 #include "src/config/read/scaling.h"
@@ -59,7 +59,8 @@ static void build_name(struct build *build, const struct rio_node *block,
 	const struct option_value *name = &values[OPT_NAME];
 	const char *fault;
 
-	item->name = build_keep(build, name->text, strlen(name->text));
+	if (!item->name)
+		item->name = "";
 	if (!name->node) {
 		report_missing(build, block, "Name", "a Name");
 		return;
@@ -95,7 +96,6 @@ static void build_path(struct build *build, const struct rio_node *block,
 
 	memset(path, 0, sizeof(*path));
 	item->path = "";
-	item->path_at = option_spot(value);
 	if (!value->given) {
 		if (!value->node)
 			report_missing(build, block, "Path", "a Path");
@@ -197,7 +197,6 @@ static void build_flags(struct build *build, const struct option_value *values,
 		             uncached->text);
 	if (uncached->given)
 		item->fresh = uncached->number != 0;
-	item->alarm = values[OPT_ALARM].number != 0;
 }
 
 /* InitValue or SafeValue of a number type; returns whether there is one. */
@@ -235,21 +234,15 @@ static void check_string(struct build *build, const struct option_value *value)
 static void build_start(struct build *build, const struct option_value *values,
                         struct config_item *item)
 {
-	const struct option_value *start = &values[OPT_START], *delay = &values[OPT_SAFE_DELAY];
+	const struct option_value *delay = &values[OPT_SAFE_DELAY];
 
-	item->starts_last = start->given && strcmp(start->text, "last") == 0;
-	if (start->given && !item->starts_last && strcmp(start->text, "init") != 0)
-		report_error(build->report, start->node->value_at,
-		             "Start \"%s\": expected init or last", start->text);
-	else if (item->starts_last && !item->output)
-		report_error(build->report, start->node->value_at,
+	item->starts_last = strcmp(item->start, "last") == 0;
+	if (item->starts_last && !item->output)
+		report_error(build->report, values[OPT_START].node->value_at,
 		             "Start \"last\": expected an output, and this is an input");
-	item->has_safe_delay = delay->given;
-	item->safe_delay_ns = option_ns(delay);
 	if (delay->given && !item->has_safe)
 		report_warning(build->report, delay->node->at,
 		               "SafeDelay does nothing without SafeValue");
-	item->confirm = values[OPT_CONFIRM].number != 0;
 	if (item->confirm && !config_item_takes_sets(item))
 		report_warning(build->report, values[OPT_CONFIRM].node->at,
 		               "Confirm does nothing: nobody sets this input");
@@ -279,16 +272,15 @@ static void build_read_back(struct build *build, const struct option_value *valu
 	                    : !reads                   ? "it need not read as it was written"
 	                                               : NULL;
 
-	if (!fault)
-		item->read_back_ns = every->given     ? option_ns(every)
-		                     : property.holds ? READ_BACK_NS
-		                                      : 0;
-	else if (every->given && every->number > 0)
+	item->read_back_ns = fault            ? 0
+	                     : every->given   ? option_ns(every)
+	                     : property.holds ? READ_BACK_NS
+	                                      : 0;
+	if (fault && every->given && every->number > 0)
 		report_warning(build->report, every->node->at, "ReadBack does nothing: %s%s%s",
 		               fault, reads || !*property.held ? "" : "; write the Path of ",
 		               reads ? "" : property.held);
 	item->has_por = item->read_back_ns && has_por(item);
-	item->restores = restore->number != 0;
 	if (item->restores && !item->read_back_ns)
 		report_warning(build->report, restore->node->at,
 		               "Restore does nothing: the item is not read back (ReadBack)");
@@ -299,13 +291,10 @@ static void build_values(struct build *build, const struct option_value *values,
 {
 	const struct option_value *init = &values[OPT_INIT_VALUE], *safe = &values[OPT_SAFE_VALUE];
 
-	item->init_text = build_keep(build, init->text, strlen(init->text));
-	item->safe_text = build_keep(build, safe->text, strlen(safe->text));
 	if (item->type == OWS_STRING) {
 		check_string(build, init);
 		check_string(build, safe);
 		item->has_init = *init->text != '\0';
-		item->has_safe = safe->given;
 	} else if (known) {
 		item->has_init = *init->text && build_value(build, init, item, &item->init_value);
 		item->has_safe = safe->given && build_value(build, safe, item, &item->safe_value);
@@ -314,8 +303,6 @@ static void build_values(struct build *build, const struct option_value *values,
 	if (item->has_safe && !item->output && !item->writable)
 		report_warning(build->report, safe->node->at,
 		               "SafeValue does nothing: this input is not Writable");
-	item->per_factor = (uint32_t)values[OPT_PER_FACTOR].number;
-	item->stale_after_ns = option_ns(&values[OPT_STALE_AFTER]);
 }
 
 /*
@@ -341,7 +328,7 @@ void item_build(struct build *build, const struct rio_node *block, struct config
 	struct path path;
 	bool known;
 
-	options_read(block, PLACE_ITEM, values, build->report);
+	options_read(build, block, PLACE_ITEM, values, item);
 	item->line = block->at.line;
 	build_name(build, block, values, item);
 	build_path(build, block, values, item, &path);
@@ -355,7 +342,6 @@ void item_build(struct build *build, const struct rio_node *block, struct config
 	alarm_build(build, block, values, &path, item);
 	limits_build(build, values, item);
 	record_build(build, &values[OPT_RECORD], known, item);
-	class_build(build, &values[OPT_CLASS], item);
 }
 
 struct named {

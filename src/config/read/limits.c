@@ -2,6 +2,7 @@
 /* Limit alarms of an item: which limits it has, and whether they fit together. */
 #include "src/config/read/limits.h"
 #include "src/config/read/build.h"
+#include "src/config/read/options.h"
 
 const enum option limit_options[CONFIG_LIMITS] = {
 	[CONFIG_LIMIT_LL] = OPT_LIMIT_LL,
@@ -59,12 +60,8 @@ void limits_build(struct build *build, const struct option_value *values, struct
 		if (item->type == OWS_STRING)
 			report_error(build->report, limit->node->at, "%s: a string has no limits",
 			             limit->node->key);
-		limits->any = limits->has[i] = true;
-		limits->limit[i] = limit->number;
+		limits->any = true;
 	}
-	limits->hysteresis = values[OPT_HYSTERESIS].number;
-	limits->on_delay_ns = option_ns(&values[OPT_ON_DELAY]);
-	limits->off_delay_ns = option_ns(&values[OPT_OFF_DELAY]);
 	check_order(build, values);
 	check_hysteresis(build, values);
 	if (limits->any)

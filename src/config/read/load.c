@@ -11,10 +11,10 @@
 #include "src/config/read/allow.h"
 #include "src/config/read/build.h"
 #include "src/config/read/buses.h"
-#include "src/config/read/influx.h"
 #include "src/config/read/item.h"
 #include "src/config/read/load.h"
 #include "src/config/read/mqtt.h"
+#include "src/config/read/options.h"
 #include "src/config/read/recorder.h"
 #include "src/config/read/rio_file.h"
 #include "src/config/read/serve.h"
@@ -61,11 +61,6 @@ static void build_driver(struct build *build, const struct option_value *values)
 	const struct option_value *target = &values[OPT_TARGET_NAME];
 	int64_t version;
 
-	config->max_cons_alarms = (unsigned)values[OPT_MAX_CONS_ALARMS].number;
-	config->max_retries = (unsigned)values[OPT_MAX_RETRIES].number;
-	config->timeout_ns = option_ns(&values[OPT_TIMEOUT]);
-	config->period_ns = option_ns(&values[OPT_PERIOD]);
-	config->alarm_period_ns = option_ns(&values[OPT_ALARM_PERIOD]);
 	if (!config->max_cons_alarms) {
 		report_warning(build->report, values[OPT_MAX_CONS_ALARMS].node->value_at,
 		               "MaxConsAlarms 0 counts as 1");
@@ -87,15 +82,28 @@ static void build_driver(struct build *build, const struct option_value *values)
 	     value_number(OWS_DOUBLE, version) != 1))
 		report_warning(build->report, values[OPT_VERSION].node->value_at,
 		               "Version %s: only 1.00 is known", values[OPT_VERSION].text);
-	config->alarm_line = text_key(build, values, OPT_ALARM_LINE, NULL);
-	config->alarm_line_at = option_spot(&values[OPT_ALARM_LINE]);
-	config->heartbeat_line = text_key(build, values, OPT_HEARTBEAT_LINE, NULL);
-	config->heartbeat_line_at = option_spot(&values[OPT_HEARTBEAT_LINE]);
 	serve_build(build, values);
 	if (target->given)
 		targets_add(build, target->text, target->node->value_at);
 	else if (!target->node)
 		targets_add(build, option_table[OPT_TARGET_NAME].preset, (struct place){0});
+}
+
+/* A block that stands once: the keys one by one, then what follows from several of them. */
+static void build_block(struct build *build, const struct option_def *def,
+                        const struct rio_node *block)
+{
+	static block_derive *const derive[] = {
+		[PLACE_RECORDER] = recorder_derive,
+		[PLACE_INFLUX] = NULL,
+		[PLACE_WEB] = web_derive,
+		[PLACE_MQTT] = mqtt_derive,
+	};
+	struct option_value values[OPTION_COUNT_ALL];
+
+	options_read(build, block, def->inside, values, (char *)&build->box->config + def->offset);
+	if (derive[def->inside])
+		derive[def->inside](build, block, values);
 }
 
 static struct place name_place(const struct rio_node *block)
@@ -147,13 +155,12 @@ static void build_config(struct build *build, const struct rio *rio, const char 
 	driver = find_driver(rio, file, build->report);
 	if (!driver || build->no_memory)
 		return;
-	options_read(driver, PLACE_DRIVER, values, build->report);
+	options_read(build, driver, PLACE_DRIVER, values, config);
 	build_driver(build, values);
 	buses_build(build, driver);
-	recorder_build(build, values[OPT_RECORDER].node);
-	influx_build(build, values[OPT_INFLUX].node);
-	mqtt_build(build, values[OPT_MQTT].node);
-	web_build(build, values[OPT_WEB].node);
+	for (int i = 0; i < OPTION_COUNT_ALL; i++)
+		if (option_table[i].inside)
+			build_block(build, &option_table[i], values[i].node);
 	build_items(build, driver, &values[OPT_ITEM_COUNT]);
 	allow_build(build, driver);
 }

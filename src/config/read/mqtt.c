@@ -5,41 +5,11 @@
 
 #include "src/config/read/build.h"
 #include "src/config/read/mqtt.h"
+#include "src/config/read/options.h"
+#include "src/config/read/texts.h"
 
 #define PORT 1883
 #define PORT_TLS 8883
-#define CLASS_MAX 31u
-#define PROFILE_TEXT(name) #name,
-
-/* Names with slashes between them. */
-static const char *check_topic(const char *topic)
-{
-	size_t len = strlen(topic);
-
-	return strspn(topic, TEXT_KEY_LETTERS "/") == len && len <= TEXT_KEY_NAME &&
-	                       topic[0] != '/' && topic[len - 1] != '/' && !strstr(topic, "//")
-	               ? NULL
-	               : "expected letters, digits, '-', '_', '.' and '/' between them, at most 63";
-}
-
-static const char *check_profile(const char *profile)
-{
-	static const char *const words[] = {MQTT_PROFILES(PROFILE_TEXT)};
-
-#ifndef OWSD_PROTOBUFC
-	if (!strcmp(profile, "sparkplug"))
-		return "owsd was built without libprotobuf-c";
-#endif
-	for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++)
-		if (!strcmp(profile, words[i]))
-			return NULL;
-	return "expected one of" MQTT_PROFILES(MQTT_PROFILE_WORD);
-}
-
-static const char *check_protocol(const char *protocol)
-{
-	return !strcmp(protocol, "5") || !strcmp(protocol, "3.1.1") ? NULL : "expected 5 or 3.1.1";
-}
 
 /* ":8883", or nothing. */
 static bool take_port(const char *text, size_t len, uint16_t *port)
@@ -71,7 +41,7 @@ static const char *take_way(struct build *build, const char *text, size_t len,
 		return "no password stands in it: User and PasswordFile are keys of their own";
 	after = scheme + host_len + 2u * bracket;
 	if (!scheme || !host_len || after > len ||
-	    strspn(host, bracket ? "0123456789abcdefABCDEF:.%" : TEXT_KEY_LETTERS) < host_len)
+	    strspn(host, bracket ? "0123456789abcdefABCDEF:.%" : TEXT_LETTERS) < host_len)
 		return wrong;
 	way->tls = scheme == 8;
 	way->port = way->tls ? PORT_TLS : PORT;
@@ -140,43 +110,14 @@ static void check_together(struct build *build, const struct rio_node *block,
 			               mqtt->ways[i].host);
 }
 
-void mqtt_build(struct build *build, const struct rio_node *block)
+void mqtt_derive(struct build *build, const struct rio_node *block,
+                 const struct option_value *values)
 {
 	struct config_mqtt *mqtt = &build->box->config.mqtt;
-	struct option_value values[OPTION_COUNT_ALL];
-	const struct rio_node *broker;
+	const struct rio_node *broker = values[OPT_MQTT_BROKER].node;
 
-	options_read(block, PLACE_MQTT, values, build->report);
-	mqtt->given = block != NULL;
-	broker = values[OPT_MQTT_BROKER].node ? values[OPT_MQTT_BROKER].node : block;
-	mqtt->broker = text_key(build, values, OPT_MQTT_BROKER, text_is_short);
-	take_ways(build, broker, mqtt);
-	mqtt->user = text_key(build, values, OPT_MQTT_USER, text_is_short);
-	mqtt->password_file = text_key(build, values, OPT_MQTT_PASSWORD_FILE, text_is_file);
-	mqtt->ca_file = text_key(build, values, OPT_MQTT_CA_FILE, text_is_file);
-	mqtt->cert_file = text_key(build, values, OPT_MQTT_CERT_FILE, text_is_file);
-	mqtt->key_file = text_key(build, values, OPT_MQTT_KEY_FILE, text_is_file);
-	mqtt->mqtt5 = !strcmp(text_key(build, values, OPT_MQTT_PROTOCOL, check_protocol), "5");
-	mqtt->node = text_key(build, values, OPT_MQTT_NODE, text_is_name);
-	mqtt->topic = text_key(build, values, OPT_MQTT_TOPIC, check_topic);
-	mqtt->profile = text_key(build, values, OPT_MQTT_PROFILE, check_profile);
-	mqtt->discovery = text_key(build, values, OPT_MQTT_DISCOVERY, check_topic);
-	mqtt->primary_host = text_key(build, values, OPT_MQTT_PRIMARY_HOST, text_is_name);
-	mqtt->write = values[OPT_MQTT_WRITE].number != 0;
+	take_ways(build, broker ? broker : block, mqtt);
+	mqtt->mqtt5 = !strcmp(mqtt->protocol, "5");
 	if (block)
 		check_together(build, block, mqtt);
-}
-
-void class_build(struct build *build, const struct option_value *value, struct config_item *item)
-{
-	const char *text = value->text;
-	size_t len = strlen(text);
-
-	if (!value->given || !len)
-		return;
-	if (len > CLASS_MAX || strspn(text, "abcdefghijklmnopqrstuvwxyz0123456789_") != len)
-		report_error(build->report, value->node->value_at,
-		             "Class \"%s\": expected light, cover, or a device class such as door",
-		             text);
-	item->device_class = build_keep(build, text, len);
 }

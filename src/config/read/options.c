@@ -6,7 +6,8 @@
 #include <string.h>
 #include <strings.h>
 
-#include "src/config/read/options.h"
+#include "src/config/read/build.h"
+#include "src/config/read/texts.h"
 #include "src/ground/signal/value.h"
 #include "src/ground/text/distance.h"
 
@@ -14,6 +15,21 @@
 
 const struct option_def option_table[OPTION_COUNT_ALL] = {
 #define RANGE(least_, most_) .least = (least_), .most = (most_)
+#define STORE_OF(member) \
+	_Generic((member), \
+		const char *: STORE_TEXT, \
+		bool: STORE_BOOL, \
+		int: STORE_INT, \
+		unsigned: STORE_UNSIGNED, \
+		int64_t: STORE_NS, \
+		double: STORE_DOUBLE)
+#define TO(of, member) \
+	.offset = offsetof(struct of, member), .store = STORE_OF(((struct of *)0)->member)
+#define HAS(of, member) .has = offsetof(struct of, member)
+#define AT(of, member) .at = offsetof(struct of, member)
+#define INSIDE(place_, member) \
+	.inside = PLACE_##place_, .offset = offsetof(struct config, member), \
+	.has = offsetof(struct config, member.given)
 #define OPTION(name, key_, place_, kind_, ...) \
 	[OPT_##name] = { \
 		.key = (key_), .place = PLACE_##place_, .kind = OPTION_##kind_, __VA_ARGS__},
@@ -23,6 +39,11 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
 
 static const char *const place_names[] = {"OwsDrv", "Item", "Bus", "Recorder",
                                           "Influx", "Web",  "Mqtt"};
+
+const char *option_place_name(enum option_place place)
+{
+	return place_names[place];
+}
 
 int option_find(enum option_place place, const char *key)
 {
@@ -35,6 +56,13 @@ int option_find(enum option_place place, const char *key)
 bool option_is_block(const struct rio_node *node, enum option option)
 {
 	return node->kind == RIO_BLOCK && !strcmp(node->key, option_table[option].key);
+}
+
+const struct option_def *option_single(const char *name)
+{
+	int option = option_find(PLACE_DRIVER, name);
+
+	return option >= 0 && option_table[option].inside ? &option_table[option] : NULL;
 }
 
 unsigned options_blocks(const struct rio_node *driver, enum option option)
@@ -157,7 +185,7 @@ static bool parse_hex(const char *text, double *number)
 	return true;
 }
 
-static bool option_number(const char *text, enum ows_type type, double *number)
+static bool parse_number(const char *text, enum ows_type type, double *number)
 {
 	int64_t value;
 
@@ -165,6 +193,11 @@ static bool option_number(const char *text, enum ows_type type, double *number)
 		return false;
 	*number = value_number(type, value);
 	return true;
+}
+
+static bool is_any(const struct option_def *def)
+{
+	return def->least >= def->most;
 }
 
 static bool parse_kind(const struct option_def *def, const char *text, double *number)
@@ -176,14 +209,14 @@ static bool parse_kind(const struct option_def *def, const char *text, double *n
 	case OPTION_BLOCK:
 		return true;
 	case OPTION_COUNT:
-		return (parse_hex(text, number) || option_number(text, OWS_LARGE, number)) &&
+		return (parse_hex(text, number) || parse_number(text, OWS_LARGE, number)) &&
 		       *number >= def->least && *number <= def->most;
 	case OPTION_SECONDS:
 	case OPTION_NUMBER:
-		return option_number(text, OWS_DOUBLE, number) && *number >= def->least &&
-		       *number <= def->most;
+		return parse_number(text, OWS_DOUBLE, number) &&
+		       (is_any(def) || (*number >= def->least && *number <= def->most));
 	case OPTION_FLAG:
-		return option_number(text, OWS_BOOL, number);
+		return parse_number(text, OWS_BOOL, number);
 	case OPTION_TYPE:
 		type = value_type_parse(text);
 		*number = type;
@@ -213,7 +246,7 @@ static void report_expected(const struct option_def *def, const struct rio_node 
 		expected = range;
 		break;
 	case OPTION_NUMBER:
-		expected = def->least < 0 ? "a number" : "a number, not negative";
+		expected = is_any(def) ? "a number" : "a number, not negative";
 		break;
 	case OPTION_FLAG:
 		expected = "on or off";
@@ -232,8 +265,15 @@ static void report_expected(const struct option_def *def, const struct rio_node 
 	             expected);
 }
 
-static void read_key(const struct rio_node *node, const struct option_def *def,
-                     struct option_value *value, struct config_report *report)
+void option_begin(const struct option_def *def, struct option_value *value)
+{
+	*value = (struct option_value){.text = ""};
+	if (def->preset)
+		parse_kind(def, def->preset, &value->number);
+}
+
+void option_read(const struct option_def *def, const struct rio_node *node,
+                 struct option_value *value, struct config_report *report)
 {
 	double number = value->number;
 
@@ -264,22 +304,132 @@ static void read_key(const struct rio_node *node, const struct option_def *def,
 	value->given = true;
 }
 
-void options_read(const struct rio_node *block, enum option_place place,
-                  struct option_value *values, struct config_report *report)
+static const char *take_text(struct build *build, const struct option_def *def,
+                             const struct option_value *value)
 {
-	for (int i = 0; i < OPTION_COUNT_ALL; i++) {
-		const struct option_def *def = &option_table[i];
+	const char *why;
 
-		values[i] = (struct option_value){.text = ""};
-		if (def->preset)
-			parse_kind(def, def->preset, &values[i].number);
+	if (!value->given || (!*value->text && !def->empty))
+		return def->preset;
+	why = def->check && *value->text ? def->check(value->text) : NULL;
+	if (why && strpbrk(value->text, "@?")) /* as in a URL with a password */
+		report_error(build->report, value->node->value_at, "%s: %s", def->key, why);
+	else if (why)
+		report_error(build->report, value->node->value_at, "%s \"%s\": %s", def->key,
+		             value->text, why);
+	return build_keep(build, value->text, strlen(value->text));
+}
+
+/* The member at an offset of the struct of a block. */
+static void *member(void *block, size_t offset)
+{
+	return (char *)block + offset;
+}
+
+static const void *member_of(const void *block, size_t offset)
+{
+	return (const char *)block + offset;
+}
+
+void option_take(struct build *build, const struct option_def *def,
+                 const struct option_value *value, void *to)
+{
+	void *at = member(to, def->offset);
+
+	switch (def->store) {
+	case STORE_NONE:
+		break;
+	case STORE_TEXT:
+		*(const char **)at = take_text(build, def, value);
+		break;
+	case STORE_BOOL:
+		*(bool *)at = value->number != 0;
+		break;
+	case STORE_INT:
+		*(int *)at = value->given ? (int)value->number : -1;
+		break;
+	case STORE_UNSIGNED:
+		*(unsigned *)at = (unsigned)value->number;
+		break;
+	case STORE_NS:
+		*(int64_t *)at = option_ns(value);
+		break;
+	case STORE_DOUBLE:
+		*(double *)at = value->number;
+		break;
 	}
+	if (def->has)
+		*(bool *)member(to, def->has) = def->kind == OPTION_BLOCK ? value->node != NULL
+		                                                          : value->given;
+	if (def->at)
+		*(struct config_spot *)member(to, def->at) = option_spot(value);
+}
+
+double option_number(const struct option_def *def, const void *from)
+{
+	const void *at = member_of(from, def->offset);
+
+	switch (def->store) {
+	case STORE_NONE:
+	case STORE_TEXT:
+		break;
+	case STORE_BOOL:
+		return *(const bool *)at;
+	case STORE_INT:
+		return *(const int *)at;
+	case STORE_UNSIGNED:
+		return *(const unsigned *)at;
+	case STORE_NS:
+		return (double)*(const int64_t *)at / 1e9;
+	case STORE_DOUBLE:
+		return *(const double *)at;
+	}
+	return 0;
+}
+
+const char *option_text(const struct option_def *def, const void *from)
+{
+	return def->store == STORE_TEXT ? *(const char *const *)member_of(from, def->offset) : NULL;
+}
+
+bool option_is_preset(const struct option_def *def, const void *from)
+{
+	const char *text = option_text(def, from);
+	struct option_value value;
+
+	if (def->has)
+		return !*(const bool *)member_of(from, def->has);
+	if (def->store == STORE_TEXT)
+		return !text || (def->preset && !strcmp(text, def->preset));
+	option_begin(def, &value);
+	return option_number(def, from) == (def->store == STORE_INT ? -1 : value.number);
+}
+
+/* A block says what it cannot be without. */
+static void check_needed(struct build *build, const struct option_def *def,
+                         const struct option_value *value, const struct rio_node *block)
+{
+	if (block && def->needed && (!value->given || !*value->text))
+		report_error(build->report, block->at, "%s without %s: write it, as %s \"%s\"",
+		             place_names[def->place], def->key, def->key, def->needed);
+}
+
+void options_read(struct build *build, const struct rio_node *block, enum option_place place,
+                  struct option_value *values, void *to)
+{
+	for (int i = 0; i < OPTION_COUNT_ALL; i++)
+		option_begin(&option_table[i], &values[i]);
 	for (const struct rio_node *node = block ? block->first : NULL; node; node = node->next) {
 		int option = option_find(place, node->key);
 
 		if (option >= 0)
-			read_key(node, &option_table[option], &values[option], report);
+			option_read(&option_table[option], node, &values[option], build->report);
 		else if (*node->key)
-			report_unknown(node, place, report);
+			report_unknown(node, place, build->report);
 	}
+	for (int i = 0; i < OPTION_COUNT_ALL; i++)
+		if (option_table[i].place == place && to) {
+			option_take(build, &option_table[i], &values[i], to);
+			check_needed(build, &option_table[i], &values[i], block);
+		}
 }

@@ -5,7 +5,6 @@
  */
 #pragma once
 
-#include "src/config/read/arena.h"
 #include "src/config/read/config.h"
 #include "src/config/read/rio.h"
 
@@ -23,12 +22,26 @@ enum option_kind {
 	OPTION_TEXT,
 	OPTION_COUNT,   /* whole number, decimal or 0x hexadecimal */
 	OPTION_SECONDS, /* decimal */
-	OPTION_NUMBER,  /* decimal, not less than least */
+	OPTION_NUMBER,  /* decimal */
 	OPTION_FLAG,    /* on, off */
 	OPTION_TYPE,    /* a name of value_type_name() */
 	OPTION_IO,      /* input, output */
 	OPTION_BLOCK,
 };
+
+/* How its member in the struct of the block holds it: by the type of that member. */
+enum option_store {
+	STORE_NONE,     /* there is no such member: code of its own takes the value */
+	STORE_TEXT,     /* const char *; NULL: not given, and no preset */
+	STORE_BOOL,     /* bool */
+	STORE_INT,      /* int; -1: not given */
+	STORE_UNSIGNED, /* unsigned */
+	STORE_NS,       /* int64_t, nanoseconds */
+	STORE_DOUBLE,   /* double */
+};
+
+/* Why a text cannot be the value; NULL: it can. */
+typedef const char *text_check(const char *text);
 
 enum option {
 #define OPTION(name, ...) OPT_##name,
@@ -43,12 +56,21 @@ struct option_def {
 	enum option_kind kind;
 	bool repeats;       /* may stand more than once */
 	bool empty;         /* an empty text is a value of its own, and not the same as no key */
-	double least, most; /* counts, seconds and numbers */
-	const char *preset; /* the default as it would be written; NULL: none */
-	const char *help;   /* one line */
+	bool quiet;         /* printed only where it is not the default */
+	double least, most; /* counts, seconds and numbers; both 0: any number */
+	size_t offset;      /* of the member in the struct of its block */
+	enum option_store store;
+	size_t has, at; /* of the bool that it is given, of its config_spot; 0: there is none */
+	enum option_place inside; /* of a block that stands once: the place of its own keys */
+	text_check *check;        /* of a text; NULL: it may be any */
+	const char *needed;       /* an example of what a block cannot be without; NULL: it can */
+	const char *preset;       /* the default as it would be written; NULL: none */
+	const char *help;         /* one line */
 };
 extern const struct option_def option_table[OPTION_COUNT_ALL];
 
+/* How messages call a place: "OwsDrv", "Item". */
+const char *option_place_name(enum option_place place);
 /* The option of that key, -1 if there is none. */
 int option_find(enum option_place place, const char *key);
 /*
@@ -65,6 +87,8 @@ const char *option_of_alarm(const char *key, const char *value, char text[OPTION
 
 /* Is the node a block of that key? */
 bool option_is_block(const struct rio_node *node, enum option option);
+/* The row of a block of that name that stands once, such as Recorder; NULL: it is none. */
+const struct option_def *option_single(const char *name);
 /* How many of them the driver's block has. */
 unsigned options_blocks(const struct rio_node *driver, enum option option);
 
@@ -97,10 +121,25 @@ static inline struct config_spot option_spot(const struct option_value *value)
 	                   : none;
 }
 
+struct build;
+/* One key of a block, checked against its row. value: begun by option_begin(). */
+void option_begin(const struct option_def *def, struct option_value *value);
+void option_read(const struct option_def *def, const struct rio_node *node,
+                 struct option_value *value, struct config_report *report);
+/* Put the value, or the default, into its member of the struct of the block. */
+void option_take(struct build *build, const struct option_def *def,
+                 const struct option_value *value, void *to);
 /*
- * Check the keys of a block (NULL: it is absent) against the table and put the values into values,
- * which has OPTION_COUNT_ALL entries: unknown keys warn; keys that stand twice and values that
- * cannot be are errors.
+ * The same of all keys of a block (NULL: it is absent) into values, which has OPTION_COUNT_ALL
+ * entries, and into the struct of the block (NULL: none). Unknown keys warn; keys that stand twice
+ * and values that cannot be are errors.
  */
-void options_read(const struct rio_node *block, enum option_place place,
-                  struct option_value *values, struct config_report *report);
+void options_read(struct build *build, const struct rio_node *block, enum option_place place,
+                  struct option_value *values, void *to);
+
+/* The number in its member: 0 or 1 of a flag, seconds of a time. */
+double option_number(const struct option_def *def, const void *from);
+/* The text in its member; NULL: not given, or it is no text. */
+const char *option_text(const struct option_def *def, const void *from);
+/* Is the member as it would be without the key? */
+bool option_is_preset(const struct option_def *def, const void *from);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "src/config/read/build.h"
+#include "src/config/read/options.h"
 #include "src/config/read/recorder.h"
 #include "src/ground/signal/value.h"
 
@@ -133,25 +134,15 @@ static bool take_record(struct build *build, const struct option_value *value,
 	return false;
 }
 
-void recorder_build(struct build *build, const struct rio_node *block)
+void recorder_derive(struct build *build, const struct rio_node *block,
+                     const struct option_value *values)
 {
 	struct config_recorder *recorder = &build->box->config.recorder;
-	struct option_value values[OPTION_COUNT_ALL];
-	const struct option_value *record = &values[OPT_RECORDER_RECORD];
-	const char *text = option_table[OPT_RECORDER_RECORD].preset;
 
-	options_read(block, PLACE_RECORDER, values, build->report);
-	recorder->given = block != NULL;
-	recorder->directory = text_key(build, values, OPT_RECORDER_DIRECTORY, text_is_path);
-	recorder->keep_days = (unsigned)values[OPT_RECORDER_KEEP].number;
-	recorder->keep_minutes = (unsigned)values[OPT_RECORDER_KEEP_MINUTES].number;
-	recorder->keep_hours = (unsigned)values[OPT_RECORDER_KEEP_HOURS].number;
-	recorder->size_mb = (unsigned)values[OPT_RECORDER_SIZE].number;
-	recorder->flush_ns = option_ns(&values[OPT_RECORDER_FLUSH]);
+	(void)block;
 	recorder->record.change = true;
-	if (record->given && take_record(build, record, &recorder->record))
-		text = record->text;
-	recorder->record_text = build_keep(build, text, strlen(text));
+	if (values[OPT_RECORDER_RECORD].given)
+		take_record(build, &values[OPT_RECORDER_RECORD], &recorder->record);
 }
 
 static bool has_distance(const struct config_item *item)
@@ -164,7 +155,6 @@ void record_build(struct build *build, const struct option_value *value, bool kn
 {
 	if (!value->given || !take_record(build, value, &item->record))
 		return;
-	item->record_text = build_keep(build, value->text, strlen(value->text));
 	if (known && item->record.deadband > 0 && !has_distance(item))
 		report_error(build->report, value->node->value_at,
 		             "Record \"%s\": a %s has no deadband; write change", value->text,

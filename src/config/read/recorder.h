@@ -12,15 +12,7 @@
  */
 #pragma once
 
-#include <stdbool.h>
-#include <stddef.h>
-
-struct build;
-struct config;
-struct config_item;
-struct config_record;
-struct option_value;
-struct rio_node;
+#include "src/config/read/build.h"
 
 /* The longest text of a Record. */
 #define RECORD_TEXT_MAX 127
@@ -31,8 +23,7 @@ struct rio_node;
  */
 int record_parse(const char *text, struct config_record *record, char *why, size_t size);
 
-/* The block, or the defaults if it is NULL. */
-void recorder_build(struct build *build, const struct rio_node *block);
+block_derive recorder_derive;
 /* The Record of an item; known: its type is known. */
 void record_build(struct build *build, const struct option_value *value, bool known,
                   struct config_item *item);

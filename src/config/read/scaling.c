@@ -3,73 +3,13 @@
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
 #include "hal/chips/facts.h"
 #include "src/config/read/build.h"
+#include "src/config/read/options.h"
 #include "src/config/read/scaling.h"
 #include "src/ground/signal/unit.h"
-#include "src/ground/signal/utf8.h"
 #include "src/ground/signal/value.h"
-
-#define UNIT_MAX 16
-#define DESCRIPTION_MAX 255
-
-/* --- Texts ----------------------------------------------------------------------------------- */
-
-static const char *keep_utf8(struct build *build, const struct option_value *value, size_t most)
-{
-	size_t left = strlen(value->text);
-
-	if (!value->given)
-		return NULL;
-	if (left > most)
-		report_error(build->report, value->node->value_at,
-		             "%s is %zu bytes long: expected at most %zu", value->node->key, left,
-		             most);
-	for (const char *p = value->text; left > 0;) {
-		int32_t code = utf8_next(&p, &left);
-
-		if (code >= 0 && !utf8_disturbs(code))
-			continue;
-		report_error(build->report, value->node->value_at,
-		             code < 0 ? "%s is not UTF-8: convert the file, as with iconv -f "
-		                        "cp1250 -t utf-8"
-		                      : "%s holds a control character",
-		             value->node->key);
-		break;
-	}
-	return build_keep(build, value->text, strlen(value->text));
-}
-
-static bool is_date(const char *text)
-{
-	struct tm tm = {0}, day;
-	const char *end = strptime(text, "%Y-%m-%d", &tm);
-
-	/* no blanks, and no digit left out */
-	if (!end || *end || strspn(text, "0123456789-") != strlen("2026-11-22"))
-		return false;
-	/* timegm() takes the 30th of February for a day of March */
-	day = tm;
-	timegm(&day);
-	return day.tm_mday == tm.tm_mday;
-}
-
-static void build_texts(struct build *build, const struct option_value *values,
-                        struct config_item *item)
-{
-	const struct option_value *calibrated = &values[OPT_CALIBRATED];
-
-	item->unit = keep_utf8(build, &values[OPT_UNIT], UNIT_MAX);
-	item->description = keep_utf8(build, &values[OPT_DESCRIPTION], DESCRIPTION_MAX);
-	item->calibrated = keep_utf8(build, calibrated, DESCRIPTION_MAX);
-	item->decimals = values[OPT_DECIMALS].given ? (int)values[OPT_DECIMALS].number : -1;
-	if (calibrated->given && !is_date(calibrated->text))
-		report_error(build->report, calibrated->node->value_at,
-		             "Calibrated \"%s\": expected a date such as \"2026-11-22\"",
-		             calibrated->text);
-}
 
 /* --- Scale, Offset, Points ------------------------------------------------------------------- */
 
@@ -118,7 +58,6 @@ static void build_points(struct build *build, const struct option_value *values,
 	if (!kept)
 		return;
 	memcpy(kept, found, (size_t)count * sizeof(*kept));
-	item->points = build_keep(build, points->text, strlen(points->text));
 	item->scale.points = kept;
 	item->scale.count = (unsigned)count;
 }
@@ -129,9 +68,9 @@ static void build_scale(struct build *build, const struct option_value *values,
 	const struct option_value *factor = &values[OPT_SCALE], *offset = &values[OPT_OFFSET];
 	struct scale *scale = &item->scale;
 
-	scale->factor = factor->number;
-	scale->offset = offset->number;
-	scale->linear = factor->number != 1 || offset->number != 0;
+	scale->factor = item->factor;
+	scale->offset = item->offset;
+	scale->linear = scale->factor != 1 || scale->offset != 0;
 	if (factor->given && factor->number == 0)
 		report_error(build->report, factor->node->value_at,
 		             "Scale \"%s\": expected a number other than 0", factor->text);
@@ -162,15 +101,10 @@ static void convert_unit(struct config_item *item)
 
 /* --- Range ----------------------------------------------------------------------------------- */
 
-static void build_range(struct build *build, const struct option_value *values,
-                        struct config_item *item)
+static void check_range(struct build *build, const struct option_value *values)
 {
 	const struct option_value *min = &values[OPT_MIN], *max = &values[OPT_MAX];
 
-	item->scale.has_min = min->given;
-	item->scale.min = min->number;
-	item->scale.has_max = max->given;
-	item->scale.max = max->number;
 	if (min->given && max->given && max->number <= min->number)
 		report_error(build->report, max->node->value_at,
 		             "Max \"%s\": expected more than Min, which is %s in line %d",
@@ -229,16 +163,14 @@ void scaling_build(struct build *build, const struct option_value *values, bool 
 {
 	bool number = known && item->type != OWS_STRING;
 
-	build_texts(build, values, item);
 	if (known)
 		refuse_for_type(build, values, item);
 	build_scale(build, values, item);
 	if (known)
 		convert_unit(item);
-	build_range(build, values, item);
+	check_range(build, values);
 	item->max_step = of_input(build, &values[OPT_MAX_STEP], item);
 	item->filter_s = of_input(build, &values[OPT_FILTER], item);
-	item->deadband = values[OPT_DEADBAND].number;
 	check_value(build, &values[OPT_INIT_VALUE], number && item->has_init, item->init_value,
 	            item);
 	check_value(build, &values[OPT_SAFE_VALUE], number && item->has_safe, item->safe_value,

@@ -4,9 +4,8 @@
 #include <string.h>
 
 #include "src/config/read/build.h"
+#include "src/config/read/options.h"
 #include "src/config/read/serve.h"
-
-#define SOCKET_PATH_MAX 107
 
 struct addresses {
 	struct listen_address *all; /* LISTEN_MAX */
@@ -78,21 +77,10 @@ static void add_peers(struct build *build, const struct option_value *allow)
 
 void serve_build(struct build *build, const struct option_value *values)
 {
-	struct config_serve *serve = &build->box->config.serve;
-	const struct option_value *socket = &values[OPT_LISTEN_SOCKET];
-
 	if (values[OPT_LISTEN].given && *values[OPT_LISTEN].text)
 		add_listens(build, values[OPT_LISTEN].text, values[OPT_LISTEN].node->value_at);
 	if (values[OPT_LISTEN_ALLOW].given)
 		add_peers(build, &values[OPT_LISTEN_ALLOW]);
-	serve->read_only = values[OPT_LISTEN_READ_ONLY].number != 0;
-	if (!socket->given || !*socket->text)
-		return;
-	if (socket->text[0] != '/' || strlen(socket->text) > SOCKET_PATH_MAX)
-		report_error(build->report, socket->node->value_at,
-		             "ListenSocket \"%s\": expected a path from the root, at most %d bytes",
-		             socket->text, SOCKET_PATH_MAX);
-	serve->socket = build_keep(build, socket->text, strlen(socket->text));
 }
 
 int serve_listens(struct build *build, const char *const *texts, unsigned count)

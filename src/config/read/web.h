@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The Web block: what owsd-web takes from the file. owsd checks it and uses none of it. */
+/* The Web block, of which owsd-web takes its options. owsd checks it, and does not use it. */
 #pragma once
 
-struct build;
-struct rio_node;
+#include "src/config/read/build.h"
 
-/* The block, or the defaults if it is NULL. */
-void web_build(struct build *build, const struct rio_node *block);
+block_derive web_derive;

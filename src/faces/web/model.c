@@ -139,11 +139,6 @@ static void put_bus(struct json *json, const struct rio_node *bus)
 	json_object_end(json);
 }
 
-static bool is_block(const struct rio_node *node, enum option option)
-{
-	return node->kind == RIO_BLOCK && !strcmp(node->key, option_table[option].key);
-}
-
 static bool is_first(const struct rio_node *block, const struct rio_node *node)
 {
 	return rio_child(block, node->key) == node;
@@ -155,7 +150,7 @@ static void put_all(struct json *json, const char *name, const struct rio_node *
 {
 	json_array(json, name);
 	for (const struct rio_node *node = driver->first; node; node = node->next)
-		if (is_block(node, option))
+		if (option_is_block(node, option))
 			put(json, node);
 	json_array_end(json);
 }
@@ -172,9 +167,7 @@ void model_json(struct json *json, const struct rio *rio)
 	put_keys(json, "driver", driver, OPT_ITEM, OPT_ITEM);
 	json_object(json, "blocks");
 	for (const struct rio_node *node = driver->first; node; node = node->next)
-		if ((is_block(node, OPT_RECORDER) || is_block(node, OPT_INFLUX) ||
-		     is_block(node, OPT_WEB) || is_block(node, OPT_MQTT)) &&
-		    is_first(driver, node))
+		if (node->kind == RIO_BLOCK && option_single(node->key) && is_first(driver, node))
 			put_keys(json, node->key, node, OPT_ITEM, OPT_ITEM);
 	json_object_end(json);
 	put_all(json, "buses", driver, OPT_BUS, put_bus);
@@ -188,10 +181,8 @@ static void put_limit(struct json *json, const char *name, const struct option_d
                       double limit)
 {
 	char text[VALUE_TEXT_MAX];
-	bool numeric = def->kind == OPTION_COUNT || def->kind == OPTION_SECONDS ||
-	               def->kind == OPTION_NUMBER;
 
-	if (!numeric || limit <= -DBL_MAX || limit >= DBL_MAX) {
+	if (def->least >= def->most || limit >= DBL_MAX) {
 		json_null(json, name);
 		return;
 	}

@@ -73,7 +73,7 @@ static void test_what_is_printed_is_what_was_read(void)
 static void test_what_cannot_be_is_an_error_at_its_place(void)
 {
 	static const struct line blocks[] = {
-		{"Influx { }", "f:2:1: error: Influx without Url: give it the server, as Url "
+		{"Influx { }", "f:2:1: error: Influx without Url: write it, as Url "
 	                       "\"http://127.0.0.1:8428/write\"\n"},
 		{"Influx { Url \"localhost:8428\" }",
 	         "f:2:14: error: Url \"localhost:8428\": expected http://HOST:PORT/PATH or "

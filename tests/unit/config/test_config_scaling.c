@@ -162,15 +162,16 @@ static void test_wrong_keys_are_errors_that_say_what_to_write(void)
 {
 	static const struct line cases[] = {
 		{ANALOG "Unit \"12345678901234567\"",
-	         "f:3:35: error: Unit is 17 bytes long: expected at most 16\n"},
+	         "f:3:35: error: Unit \"12345678901234567\": expected at most 16 bytes\n"},
 		{ANALOG "Unit \"\xb0"
 	                "C\"",
-	         "f:3:35: error: Unit is not UTF-8: convert the file, as with iconv -f cp1250 -t "
-	         "utf-8\n"},
-		{ANALOG "Unit \"a\tb\"", "f:3:35: error: Unit holds a control character\n"},
+	         "f:3:35: error: Unit \"?C\": expected UTF-8: convert the file, as with iconv -f "
+	         "cp1250 -t utf-8\n"},
+		{ANALOG "Unit \"a\tb\"",
+	         "f:3:35: error: Unit \"a?b\": expected no control character\n"},
 		{ANALOG "Description \"a\xe2\x80\xae"
 	                "b\"",
-	         "f:3:42: error: Description holds a control character\n"},
+	         "f:3:42: error: Description \"a?b\": expected no control character\n"},
 		{ANALOG "Decimals 16",
 	         "f:3:39: error: Decimals \"16\": expected a whole number from 0 to 15\n"},
 		{ANALOG "Scale 0", "f:3:36: error: Scale \"0\": expected a number other than 0\n"},
