@@ -15,6 +15,24 @@ static const struct bus_ops *backend_of(const char *word, size_t len)
 	return NULL;
 }
 
+const struct bus_ops *bus_backend(const char *target, const char **where)
+{
+	const char *colon = strchr(target, ':');
+	size_t len = colon ? (size_t)(colon - target) : strlen(target);
+	const struct bus_ops *ops = backend_of(target, len);
+
+	*where = !ops ? target : colon ? colon + 1 : "";
+	return ops ? ops : backend_of("owserver", strlen("owserver"));
+}
+
+bool bus_caches(const char *target)
+{
+	const char *where;
+	const struct bus_ops *ops = bus_backend(target, &where);
+
+	return ops && ops->caches && strncmp(where, ops->caches, strlen(ops->caches)) == 0;
+}
+
 /* Does WORD:REST mean HOST:PORT, even with a wrong port? */
 static bool is_host_and_port(const char *target, const char *colon)
 {

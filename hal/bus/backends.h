@@ -5,6 +5,14 @@
 #include "hal/bus/bus.h"
 
 /*
+ * The backend that a target means: that of its scheme, else owserver. *where: the text after the
+ * scheme. NULL: this program has none of it.
+ */
+const struct bus_ops *bus_backend(const char *target, const char **where);
+/* Have its values the age of the chip's, by a cache of owsd's own? */
+bool bus_caches(const char *target);
+
+/*
  * Find the backend of a target ("owserver:localhost:4304", "null:") and create the bus. Bare
  * `host`, `host:port` and `[v6]:port` mean owserver, and so does an empty target (localhost). A
  * word that is a scheme means the scheme, with or without a colon. Returns as bus_ops.create;

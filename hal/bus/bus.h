@@ -228,6 +228,21 @@ static inline uint64_t bus_counted(const struct bus_counter *counter)
 
 struct bus;
 
+/*
+ * What a target names that this machine has or lacks: a GPIO chip, or a path: root and the name,
+ * which follows `after` in the target without its scheme, begins so, and ends at a colon.
+ */
+struct bus_look {
+	const char *after; /* NULL: "" */
+	const char *begin; /* NULL: the end of the list */
+	const char *root;
+	bool gpio_chip;
+	uint32_t type;      /* S_IFCHR, S_IFSOCK; 0: any */
+	unsigned major;     /* of a device; 0: any */
+	const char *wrong;  /* of another type: what it is not */
+	const char *remedy; /* it is not there */
+};
+
 struct bus_ops {
 	const char *scheme;  /* "owserver": what stands before the colon of a target */
 	const char *summary; /* one line for --version and the manual */
@@ -235,6 +250,14 @@ struct bus_ops {
 	bool testing;        /* answers without devices: a user is not offered it */
 	bool searches;       /* sends BUS_FOUND and BUS_LOST by itself */
 	bool brief; /* a device that keeps failing costs the others no more than a good one */
+	/*
+	 * Facts of the scheme. A target that goes on so after its scheme has a cache of owsd's own,
+	 * where a value has the age of the chip's; NULL: none has. parallel: several connections do
+	 * more at the same time. board_advice: it needs what `owsd --board` looks for.
+	 */
+	const char *caches;
+	bool parallel, board_advice;
+	const struct bus_look *looks; /* NULL: nothing can be looked for */
 
 	/*
 	 * Allocate everything the bus will need; never touch hardware or network, never block.

@@ -263,10 +263,13 @@ static const struct bus_counter *gpio_counters(struct bus *bus, size_t *n)
 	return ((struct gpio_bus *)bus)->count;
 }
 
+static const struct bus_look looks[] = {{.begin = "", .gpio_chip = true}, {0}};
+
 const struct bus_ops gpio_bus = {
 	.scheme = "gpio",
 	.summary = "lines of a GPIO chip",
 	.depth = DEPTH,
+	.looks = looks,
 	.create = gpio_create,
 	.destroy = gpio_destroy,
 	.option = lines_option,

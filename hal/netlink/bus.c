@@ -19,8 +19,21 @@ static int netlink_bus_create(const char *where, const struct bus_env *env, stru
 	return w1_sysfs_bus.create(where, env, bus, why, why_size);
 }
 
+static const struct bus_look looks[] = {
+	{.begin = "w1_bus_master",
+         .root = "/sys/bus/w1/devices/",
+         .remedy = "ls /sys/bus/w1/devices lists the masters"},
+	{.after = "netlink/",
+         .begin = "w1_bus_master",
+         .root = "/sys/bus/w1/devices/",
+         .remedy = "ls /sys/bus/w1/devices lists the masters"},
+	{0},
+};
+
 const struct bus_ops w1_bus = {
 	.scheme = "w1",
 	.summary = "1-Wire devices of the kernel's drivers (sysfs)",
 	.create = netlink_bus_create,
+	.caches = "netlink",
+	.looks = looks,
 };

@@ -13,6 +13,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "hal/base/time.h"
 #include "hal/owfs/path.h"
@@ -507,10 +508,21 @@ static const struct bus_counter *owserver_counters(struct bus *bus, size_t *n)
 	return ((struct owserver *)bus)->counter;
 }
 
+static const struct bus_look looks[] = {
+	{.begin = "/",
+         .root = "",
+         .type = S_IFSOCK,
+         .wrong = "no socket",
+         .remedy = "the other owsd makes the socket when it runs"},
+	{0},
+};
+
 const struct bus_ops owserver_bus = {
 	.scheme = "owserver",
 	.summary = "an owserver of OWFS, over the network",
 	.depth = 1,
+	.parallel = true,
+	.looks = looks,
 	.create = owserver_create,
 	.destroy = owserver_destroy,
 	.exec = owserver_exec,

@@ -14,5 +14,6 @@ const struct bus_ops sim_bus = {
 	.scheme = "sim",
 	.summary = "simulated 1-Wire devices, from a scenario file",
 	.create = sim_bus_create,
+	.caches = "",
 	NATIVE_BUS_SLOTS,
 };

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/config/check/know.h"
 #include "src/config/read/load.h"
 #include "src/daemon/engine/counters.h"
 #include "src/daemon/engine/table.h"
@@ -138,6 +139,7 @@ static struct generation *make_generation(const char *rio, const struct generati
 
 	if (!g || config_parse("world.rio", rio, strlen(rio), &report, &g->config))
 		world_fails("no memory", "");
+	config_know(g->config);
 	if (before && adoption_plan(plan, g->config, before->config))
 		world_fails("no memory", "");
 	make_memory(g);

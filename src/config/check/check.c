@@ -6,18 +6,19 @@
 #include <string.h>
 
 #include "hal/base/time.h"
+#include "hal/bus/backends.h"
 #include "hal/chips/facts.h"
 #include "hal/chips/find.h"
 #include "hal/owfs/path.h"
 #include "src/config/check/check.h"
+#include "src/config/check/know.h"
 #include "src/config/check/own.h"
+#include "src/config/check/property.h"
 #include "src/config/check/shared.h"
+#include "src/config/check/targets.h"
 #include "src/config/read/alarm.h"
-#include "src/config/read/buses.h"
 #include "src/config/read/config.h"
 #include "src/config/read/options.h"
-#include "src/config/read/property.h"
-#include "src/config/read/targets.h"
 #include "src/ground/signal/unit.h"
 
 struct check {
@@ -328,21 +329,25 @@ static void check_item(const struct check *check)
 		check_alarms(check);
 }
 
-void config_check_items(const struct config *config, const char *name, struct config_report *report)
+void config_check_items(struct config *config, const char *name, struct config_report *report)
 {
 	struct check check = {.report = report, .period_ns = config->period_ns, .caches = true};
+	struct config_report silent = {0};
 
 	for (unsigned i = 0; i < config->target_count; i++)
-		check.caches &= target_caches(config->targets[i].text);
+		check.caches &= bus_caches(config->targets[i].text);
 	for (unsigned i = 0; i < config->bus_count; i++)
 		for (unsigned k = 0; k < config->buses[i].option_count; k++)
 			check.tables |= !strcmp(config->buses[i].options[k].key,
 			                        option_table[OPT_BUS_SENSORS].key);
 	for (unsigned i = 0; i < config->item_count; i++) {
+		bool asked = !name || !strcmp(config->items[i].name, name);
+
+		know_item(&config->items[i], config->file, asked ? report : &silent);
 		check.item = &config->items[i];
 		check.place = (struct place){config->file, check.item->line, 0};
 		check.path_place = place_at(&check, check.item->path_at);
-		if (!name || !strcmp(check.item->name, name))
+		if (asked)
 			check_item(&check);
 	}
 	shared_check(config, name, report);
@@ -350,11 +355,12 @@ void config_check_items(const struct config *config, const char *name, struct co
 
 int config_check(struct config *config, struct config_report *report)
 {
-	int err = config_check_own(config, report);
+	int err = config_check_targets(config, report);
 
+	if (!err)
+		err = config_check_own(config, report);
 	if (err)
 		return err;
-	config_check_buses(config, report);
 	config_check_items(config, NULL, report);
 	return 0;
 }

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "src/config/check/own.h"
-#include "src/config/read/targets.h"
+#include "src/config/check/targets.h"
 
 #define SCHEME "owserver:"
 
@@ -78,8 +78,7 @@ int config_check_own(struct config *config, struct config_report *report)
 
 	for (unsigned i = 0; i < config->target_count; i++) {
 		const struct config_target *target = &config->targets[i];
-		struct place place = {target->line ? config->file : NULL, target->line,
-		                      target->column};
+		struct place place = target_place(config, target);
 
 		if (!is_own(&config->serve, target->text))
 			continue;

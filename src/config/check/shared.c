@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "hal/owfs/path.h"
+#include "src/config/check/property.h"
 #include "src/config/check/shared.h"
-#include "src/config/read/property.h"
 #include "src/config/read/report.h"
 #include "src/ground/signal/hash.h"
 

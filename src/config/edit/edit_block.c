@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/config/check/targets.h"
 #include "src/config/edit/edit_block.h"
 #include "src/config/edit/rio_write.h"
-#include "src/config/read/targets.h"
 #include "src/ground/text/distance.h"
 
 struct rio_node *edit_driver(const struct rio *rio)

@@ -3,11 +3,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "hal/chips/property.h"
 #include "src/config/read/alarm.h"
 #include "src/config/read/build.h"
 #include "src/config/read/options.h"
-#include "src/config/read/property.h"
 
 static void warn_without_equals(struct build *build, const struct option_value *value,
                                 const char *follows)
@@ -32,22 +30,6 @@ const char *alarm_path(const struct config_item *item, const char *string, char 
 		return NULL;
 	snprintf(path, ALARM_PATH, "%.*s%.*s", (int)head, item->path, len, string);
 	return path + head;
-}
-
-static bool latch_stays(const struct config_item *item)
-{
-	const char *value = item->reset_latch ? strchr(item->reset_latch, '=') : NULL;
-	char path[ALARM_PATH];
-
-	struct path_property latch;
-
-	if (!alarm_path(item, item->latch_alarm, path))
-		return false;
-	latch = property_look(path);
-	if (!latch.exists || !(latch.alarm & ALARM_STAYS))
-		return false;
-	return !value || !value[1] || !alarm_path(item, item->reset_latch, path) ||
-	       !(property_look(path).alarm & ALARM_CLEARS);
 }
 
 /*
@@ -92,7 +74,6 @@ void alarm_build(struct build *build, const struct rio_node *block,
 		check_off(build, values);
 		return;
 	}
-	item->latch_stays = latch_stays(item);
 	if (*item->path && !path->device.len)
 		report_error(build->report, place, "Alarm on: expected a device in the path \"%s\"",
 		             item->path);

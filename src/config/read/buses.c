@@ -45,11 +45,6 @@ static void bus_build(struct build *build, const struct rio_node *block)
 	}
 	text = target_of_file(build, target->text,
 	                      (struct place){.file = target->node->value_at.file});
-	if (config_bus(config, text)) {
-		report_error(build->report, target->node->value_at,
-		             "there is a Bus for \"%s\" already", target->text);
-		return;
-	}
 	bus->target = build_keep(build, text, strlen(text));
 	bus->line = target->node->value_at.line;
 	bus->column = target->node->value_at.column;
@@ -69,14 +64,6 @@ void buses_build(struct build *build, const struct rio_node *driver)
 	for (const struct rio_node *node = driver->first; node && config->buses; node = node->next)
 		if (option_is_block(node, OPT_BUS))
 			bus_build(build, node);
-}
-
-const struct config_bus *config_bus(const struct config *config, const char *target)
-{
-	for (unsigned i = 0; i < config->bus_count; i++)
-		if (target_same(config->buses[i].target, target))
-			return &config->buses[i];
-	return NULL;
 }
 
 #define FILE_MAX 1000000
@@ -106,25 +93,4 @@ void config_hash_files(struct config *config)
 			if (strcmp(option->key, option_table[OPT_BUS_SENSORS].key) == 0)
 				option->contents = hash_of(option->text);
 		}
-}
-
-/* Is the target configured? With auto always, since its ways are not known here. */
-static bool is_served(const struct config *config, const char *target)
-{
-	for (unsigned i = 0; i < config->target_count; i++)
-		if (target_same(config->targets[i].text, target) ||
-		    !strncmp(config->targets[i].text, "auto", 4))
-			return true;
-	return false;
-}
-
-void config_check_buses(const struct config *config, struct config_report *report)
-{
-	for (unsigned i = 0; i < config->bus_count; i++) {
-		const struct config_bus *bus = &config->buses[i];
-
-		if (!is_served(config, bus->target))
-			report_warning(report, (struct place){config->file, bus->line, bus->column},
-			               "no target is \"%s\": this Bus has no effect", bus->target);
-	}
 }

@@ -47,12 +47,16 @@ struct config_spot {
 	int line, column;
 };
 
+/*
+ * A row of the file. What a family decides, config_know() fills in (src/config/check): family,
+ * has_por, latch_stays, converted with the scale and the symbol of the unit, and read_back_ns where
+ * it is not given, or does nothing.
+ */
 struct config_item {
 	const char *name;
 	const char *path;   /* normalised: leading "/", without "/uncached" and "/alarm" */
 	const char *device; /* the ROM id in path; NULL: an alias, or no device */
-	const char
-		*family; /* what the chip is called, as far as the path shows it; NULL: not known */
+	const char *family; /* what the chip is called, by its path; NULL: not known */
 	enum ows_type type;
 	bool output;
 	bool readable, writable; /* start values of _ReadEnable and _WriteEnable */
@@ -61,7 +65,7 @@ struct config_item {
 	const char *start;    /* "init" or "last" */
 	bool starts_last;     /* outputs only */
 	bool confirm;         /* pages ask a person once more before a set */
-	int64_t read_back_ns; /* outputs: how often what was written is read again; 0: never */
+	int64_t read_back_ns; /* outputs: how often it is read again; 0: never; -1: not given */
 	bool has_por;         /* its device has a power-on flag, which is read too */
 	bool restores;        /* and written again if it reads otherwise */
 	int64_t safe_delay_ns;
@@ -72,7 +76,7 @@ struct config_item {
 	bool alarm;
 	/* NULL: not defined, "": empty; Table 3.1 tells the two apart */
 	const char *latch_alarm, *por_alarm, *set_alarm, *reset_latch;
-	bool latch_stays; /* by the tables of the families nothing of the item clears its latch */
+	bool latch_stays; /* nothing of the item clears its latch */
 	struct config_limits limits;
 	/* of engineering values; NULL: not given. An empty unit is given too */
 	const char *unit, *description;
@@ -87,8 +91,9 @@ struct config_item {
 	struct config_record record;
 	const char *device_class; /* "light", "door"; NULL: not given */
 	int line;                 /* of Item */
-	/* Of Path and of the keys of the alarm; line 0: not given. */
-	struct config_spot path_at, latch_at, por_at, set_at, reset_at;
+	/* Where those keys stand; line 0: not given. */
+	struct config_spot path_at, type_at, read_back_at, restore_at;
+	struct config_spot latch_at, por_at, set_at, reset_at;
 };
 /* Does the item take sets? An input with Writable off never does, whatever its _WriteEnable. */
 static inline bool config_item_takes_sets(const struct config_item *item)

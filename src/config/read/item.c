@@ -5,21 +5,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/chips/facts.h"
 #include "hal/owfs/path.h"
 #include "src/config/read/alarm.h"
 #include "src/config/read/build.h"
 #include "src/config/read/item.h"
 #include "src/config/read/limits.h"
 #include "src/config/read/options.h"
-#include "src/config/read/property.h"
 #include "src/config/read/recorder.h"
 #include "src/config/read/scaling.h"
 #include "src/ground/signal/attribute.h"
 #include "src/ground/signal/value.h"
-
-/* How often a switch is read back: it costs a busy wire little. */
-#define READ_BACK_NS (10 * INT64_C(1000000000))
 
 /* Where a key's value stands, or the item if the key is absent. */
 static struct place place_of(const struct option_value *value, const struct rio_node *block)
@@ -118,7 +113,6 @@ static void build_path(struct build *build, const struct rio_node *block,
 	if (!path->has_rom)
 		return;
 	item->device = build_keep(build, path->last.text, path->last.len);
-	item->family = model_of(item->path);
 }
 
 /* The meaning of IOType, before the readable keys; false: its type is no type. */
@@ -248,44 +242,6 @@ static void build_start(struct build *build, const struct option_value *values,
 		               "Confirm does nothing: nobody sets this input");
 }
 
-static bool has_por(const struct config_item *item)
-{
-	char path[PATH_LEN_MAX + 8];
-	struct path_property property;
-
-	if (!item->device)
-		return false;
-	snprintf(path, sizeof(path), "/%s/por", item->device);
-	property = property_look(path);
-	return property.type && property.exists && property.readable;
-}
-
-/* What of an output reads as it was written is read back, and the file says how often. */
-static void build_read_back(struct build *build, const struct option_value *values,
-                            struct config_item *item)
-{
-	const struct option_value *every = &values[OPT_READ_BACK], *restore = &values[OPT_RESTORE];
-	struct path_property property = property_look(item->path);
-	bool reads = property.readable && property.exact && (!property.type || property.holds);
-	const char *fault = !item->output              ? "this is an input"
-	                    : item->type == OWS_STRING ? "this is a text"
-	                    : !reads                   ? "it need not read as it was written"
-	                                               : NULL;
-
-	item->read_back_ns = fault            ? 0
-	                     : every->given   ? option_ns(every)
-	                     : property.holds ? READ_BACK_NS
-	                                      : 0;
-	if (fault && every->given && every->number > 0)
-		report_warning(build->report, every->node->at, "ReadBack does nothing: %s%s%s",
-		               fault, reads || !*property.held ? "" : "; write the Path of ",
-		               reads ? "" : property.held);
-	item->has_por = item->read_back_ns && has_por(item);
-	if (item->restores && !item->read_back_ns)
-		report_warning(build->report, restore->node->at,
-		               "Restore does nothing: the item is not read back (ReadBack)");
-}
-
 static void build_values(struct build *build, const struct option_value *values, bool known,
                          struct config_item *item)
 {
@@ -303,23 +259,8 @@ static void build_values(struct build *build, const struct option_value *values,
 	if (item->has_safe && !item->output && !item->writable)
 		report_warning(build->report, safe->node->at,
 		               "SafeValue does nothing: this input is not Writable");
-}
-
-/*
- * Warn of an integer type for a property with decimals: its value would be bad at every fraction.
- * A scaled value is rounded instead.
- */
-static void warn_of_decimals(struct build *build, const struct rio_node *block,
-                             const struct option_value *values, const struct config_item *item)
-{
-	struct quantity quantity;
-
-	if (value_is_float(item->type) || item->type == OWS_STRING || scale_changes(&item->scale) ||
-	    !quantity_of(item->path, &quantity) || quantity.decimals <= 0)
-		return;
-	report_warning(build->report, place_of(&values[OPT_TYPE], block),
-	               "\"%s\" has decimals, and a %s has none: write Type double or float",
-	               item->path, value_type_name(item->type));
+	if (!values[OPT_READ_BACK].given)
+		item->read_back_ns = -1;
 }
 
 void item_build(struct build *build, const struct rio_node *block, struct config_item *item)
@@ -335,10 +276,7 @@ void item_build(struct build *build, const struct rio_node *block, struct config
 	known = build_type(build, block, values, item);
 	build_flags(build, values, &path, item);
 	build_values(build, values, known, item);
-	build_read_back(build, values, item);
 	scaling_build(build, values, known, item);
-	if (known)
-		warn_of_decimals(build, block, values, item);
 	alarm_build(build, block, values, &path, item);
 	limits_build(build, values, item);
 	record_build(build, &values[OPT_RECORD], known, item);

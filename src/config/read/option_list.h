@@ -50,7 +50,7 @@ OPTION(PATH, "Path", ITEM, TEXT, TO(config_item, path), AT(config_item, path_at)
        .help = "OWFS path of the property")
 OPTION(IO_TYPE, "IOType", ITEM, COUNT, RANGE(0, UINT32_MAX),
        .help = "type, direction and Uncached as bits")
-OPTION(TYPE, "Type", ITEM, TYPE, TO(config_item, type), .help = "data type")
+OPTION(TYPE, "Type", ITEM, TYPE, TO(config_item, type), AT(config_item, type_at), .help = "data type")
 OPTION(IO, "IO", ITEM, IO, TO(config_item, output), .preset = "input",
        .help = "read cyclically, or written when changed")
 OPTION(READABLE, "Readable", ITEM, FLAG, TO(config_item, readable),
@@ -70,10 +70,11 @@ OPTION(START, "Start", ITEM, TEXT, TO(config_item, start), .check = text_is_star
        .quiet = true, .help = "what an output begins with: init (InitValue) or last (as it was)")
 OPTION(CONFIRM, "Confirm", ITEM, FLAG, TO(config_item, confirm), .preset = "off", .quiet = true,
        .help = "a person is asked once more before a set by hand")
-OPTION(READ_BACK, "ReadBack", ITEM, SECONDS, TO(config_item, read_back_ns), RANGE(0, DAY),
-       .quiet = true,
+OPTION(READ_BACK, "ReadBack", ITEM, SECONDS, TO(config_item, read_back_ns),
+       AT(config_item, read_back_at), RANGE(0, DAY), .quiet = true,
        .help = "how often an output is read back, seconds; 0: never; 10 for switches")
-OPTION(RESTORE, "Restore", ITEM, FLAG, TO(config_item, restores), .preset = "off", .quiet = true,
+OPTION(RESTORE, "Restore", ITEM, FLAG, TO(config_item, restores),
+       AT(config_item, restore_at), .preset = "off", .quiet = true,
        .help = "write a command again that the device does not have any more")
 OPTION(PER_FACTOR, "PerFactor", ITEM, COUNT, TO(config_item, per_factor), RANGE(1, 1e6),
        .preset = "1", .help = "read again no sooner than that many periods later")

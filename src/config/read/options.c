@@ -402,7 +402,11 @@ bool option_is_preset(const struct option_def *def, const void *from)
 	if (def->store == STORE_TEXT)
 		return !text || (def->preset && !strcmp(text, def->preset));
 	option_begin(def, &value);
-	return option_number(def, from) == (def->store == STORE_INT ? -1 : value.number);
+	/* below 0: not given, and its default is not of the table */
+	if (def->store == STORE_NS || def->store == STORE_INT)
+		return option_number(def, from) < 0 ||
+		       (def->store == STORE_NS && option_number(def, from) == value.number);
+	return option_number(def, from) == value.number;
 }
 
 /* A block says what it cannot be without. */

@@ -4,11 +4,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "hal/chips/facts.h"
 #include "src/config/read/build.h"
 #include "src/config/read/options.h"
 #include "src/config/read/scaling.h"
-#include "src/ground/signal/unit.h"
 #include "src/ground/signal/value.h"
 
 /* --- Scale, Offset, Points ------------------------------------------------------------------- */
@@ -80,25 +78,6 @@ static void build_scale(struct build *build, const struct option_value *values,
 		             "a bool can only be inverted: expected Scale -1 and Offset 1");
 }
 
-/* --- Unit ----------------------------------------------------------------------------------- */
-
-/*
- * A property that a chip measures in another unit of the same quantity, and that nothing scales:
- * the scale is that from the one to the other, and the unit is spelled as other programs know it.
- */
-static void convert_unit(struct config_item *item)
-{
-	struct scale *scale = &item->scale;
-	struct quantity quantity;
-
-	if (!item->unit || !item->path || item->type == OWS_STRING || item->type == OWS_BOOL ||
-	    scale_changes(scale) || !quantity_of(item->path, &quantity) ||
-	    !unit_convert(quantity.unit, item->unit, &scale->factor, &scale->offset))
-		return;
-	scale->linear = item->converted = scale->factor != 1 || scale->offset != 0;
-	item->unit = unit_symbol(item->unit);
-}
-
 /* --- Range ----------------------------------------------------------------------------------- */
 
 static void check_range(struct build *build, const struct option_value *values)
@@ -166,8 +145,6 @@ void scaling_build(struct build *build, const struct option_value *values, bool 
 	if (known)
 		refuse_for_type(build, values, item);
 	build_scale(build, values, item);
-	if (known)
-		convert_unit(item);
 	check_range(build, values);
 	item->max_step = of_input(build, &values[OPT_MAX_STEP], item);
 	item->filter_s = of_input(build, &values[OPT_FILTER], item);

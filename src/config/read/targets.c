@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/*
- * Targets as they are written: lists with commas and bars, auto, and which spellings are the same.
- */
-#include <ctype.h>
+/* Targets as they are written: lists with commas and bars, and auto. */
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
@@ -57,69 +54,10 @@ const char *relative_file(struct build *build, const char *text, size_t prefix,
 }
 
 #define DEFAULT_TARGET "localhost:4304"
-#define DEFAULT_PORT "4304"
 #define SIMULATED "sim:"
 
 #define AUTO "auto"
 const char *const config_auto_ways[CONFIG_AUTO_WAYS] = {DEFAULT_TARGET, "i2c:auto", "w1"};
-
-/* Schemes and bare words that are no host; the scheme of an owserver may be left out. */
-static bool is_scheme(const char *text, size_t len)
-{
-	static const char *const schemes[] = {
-#define BACKEND(name) #name,
-#include "hal/bus/schemes.h"
-#undef BACKEND
-		"sim", NULL};
-
-	for (int i = 0; schemes[i]; i++)
-		if (strlen(schemes[i]) == len && !memcmp(schemes[i], text, len))
-			return true;
-	return false;
-}
-
-bool target_caches(const char *text)
-{
-	static const char *const own[] = {"i2c:", SIMULATED, "w1:netlink"};
-
-	for (size_t i = 0; i < sizeof(own) / sizeof(own[0]); i++)
-		if (!strncmp(text, own[i], strlen(own[i])))
-			return true;
-	return false;
-}
-
-void target_canonical(const char *text, char out[TARGET_CANONICAL])
-{
-	static const char prefix[] = "owserver:";
-	const char *colon, *host = text;
-
-	colon = strchr(text, ':');
-	if (!strncmp(text, prefix, strlen(prefix)))
-		host += strlen(prefix);
-	else if (is_scheme(text, colon ? (size_t)(colon - text) : strlen(text)) ||
-	         (strchr(text, '/') && *text != '['))
-		host = NULL;
-	if (!host || *host == '/') {
-		snprintf(out, TARGET_CANONICAL, "%s", text);
-		return;
-	}
-	colon = strrchr(host, ':');
-	if (*host == '[' && colon && strchr(colon, ']'))
-		colon = NULL;
-	snprintf(out, TARGET_CANONICAL, "%s%s%s", prefix, *host ? host : "localhost",
-	         colon ? "" : ":" DEFAULT_PORT);
-	for (char *p = out; *p; p++)
-		*p = (char)tolower((unsigned char)*p);
-}
-
-bool target_same(const char *a, const char *b)
-{
-	char text_a[TARGET_CANONICAL], text_b[TARGET_CANONICAL];
-
-	target_canonical(a, text_a);
-	target_canonical(b, text_b);
-	return !strcmp(text_a, text_b);
-}
 
 const char *target_of_file(struct build *build, const char *text, struct place place)
 {
@@ -160,13 +98,6 @@ static void target_add(struct build *build, const char *text, size_t len,
 	}
 	if (config->target_count)
 		target->group = target[-1].group + (relation == CONFIG_COMMA);
-	for (unsigned i = 0; i < config->target_count; i++)
-		if (target_same(config->targets[i].text, target->text)) {
-			report_error(build->report, place,
-			             "the target \"%s\" is given twice; the first is \"%s\"",
-			             target->text, config->targets[i].text);
-			return;
-		}
 	target->line = place.line;
 	target->column = place.column;
 	if (!strcmp(target->text, "owserver:"))

@@ -10,7 +10,7 @@
 #include "hal/bus/bus.h"
 #include "hal/gpio/line.h"
 #include "src/config/check/check.h"
-#include "src/config/read/buses.h"
+#include "src/config/check/targets.h"
 #include "src/config/read/report.h"
 #include "src/daemon/host/target.h"
 #include "src/public/ows.h"
@@ -39,11 +39,6 @@ static void no_event(void *ctx, const struct bus_event *event)
 
 static const struct bus_env env = {
 	.now = target_now, .wait = no_wait, .answer = no_answer, .event = no_event};
-
-static struct place place_of(const struct config *config, const struct config_target *target)
-{
-	return (struct place){target->line ? config->file : NULL, target->line, target->column};
-}
 
 /* Make a bus of the target to see whether that works; reports why it does not. */
 static int try_target(const char *target, struct place place, struct bus **bus,
@@ -147,62 +142,13 @@ int target_check_config(struct config *config, struct config_report *report)
 	for (unsigned i = 0; !err && i < config->target_count; i++) {
 		const struct config_target *target = &config->targets[i];
 
-		err = try_target(target->text, place_of(config, target), &bus, report);
+		err = try_target(target->text, target_place(config, target), &bus, report);
 		if (!err)
 			bus_destroy(bus);
 	}
 	if (!err)
 		err = check_options(config, report);
 	return err ? err : config_check(config, report);
-}
-
-#define I2C_MAJOR 89 /* Linux Documentation/admin-guide/devices.txt */
-
-static bool is_adapter(const struct stat *file)
-{
-	return S_ISCHR(file->st_mode) && major(file->st_rdev) == I2C_MAJOR;
-}
-
-static bool is_socket(const struct stat *file)
-{
-	return S_ISSOCK(file->st_mode);
-}
-
-/* How a target names what it is on: the path is root and the text after the scheme. */
-static const struct way {
-	const char *scheme, *begin, *root, *remedy;
-	bool (*fits)(const struct stat *file);
-	const char *what; /* that does not fit */
-} ways[] = {
-	{"i2c:", "/", "", "ls /dev/i2c-* lists the adapters, owsd --board names what is missing",
-         is_adapter, "no I2C adapter: ls /dev/i2c-* lists them"},
-	{"w1:", "w1_bus_master", "/sys/bus/w1/devices/", "ls /sys/bus/w1/devices lists the masters",
-         NULL, NULL},
-	{"w1:netlink/", "w1_bus_master", "/sys/bus/w1/devices/",
-         "ls /sys/bus/w1/devices lists the masters", NULL, NULL},
-	{"owserver:", "/", "", "the other owsd makes the socket when it runs", is_socket,
-         "no socket"},
-};
-
-static void look_for_path(const struct config_target *target, struct place place,
-                          const struct way *way, struct config_report *report)
-{
-	const char *where = target->text + strlen(way->scheme);
-	char path[300];
-	struct stat file;
-
-	if (strncmp(target->text, way->scheme, strlen(way->scheme)) != 0 ||
-	    strncmp(where, way->begin, strlen(way->begin)) != 0)
-		return;
-	snprintf(path, sizeof(path), "%s%.*s", way->root, (int)strcspn(where, ":"), where);
-	if (stat(path, &file) == 0) {
-		if (way->fits && !way->fits(&file))
-			report_error(report, place, "target \"%s\": %s is %s", target->text, path,
-			             way->what);
-	} else if (errno == ENOENT) {
-		report_warning(report, place, "target \"%s\": %s is not on this machine: %s",
-		               target->text, path, way->remedy);
-	}
 }
 
 /* A chip has a label too, which only the chips themselves know. what: what names it. */
@@ -232,21 +178,52 @@ static void look_for_line(struct place place, const char *key, const char *text,
 		look_for_chip(key, spec.chip, place, report);
 }
 
+static void look_for_path(const struct config_target *target, const char *name, struct place place,
+                          const struct bus_look *look, struct config_report *report)
+{
+	char path[300];
+	struct stat file;
+
+	snprintf(path, sizeof(path), "%s%.*s", look->root, (int)strcspn(name, ":"), name);
+	if (stat(path, &file) == 0) {
+		if ((look->type && (file.st_mode & S_IFMT) != look->type) ||
+		    (look->major && major(file.st_rdev) != look->major))
+			report_error(report, place, "target \"%s\": %s is %s", target->text, path,
+			             look->wrong);
+	} else if (errno == ENOENT) {
+		report_warning(report, place, "target \"%s\": %s is not on this machine: %s",
+		               target->text, path, look->remedy);
+	}
+}
+
+static void look_for_target(const struct config_target *target, struct place place,
+                            struct config_report *report)
+{
+	const char *where;
+	const struct bus_ops *ops = bus_backend(target->text, &where);
+	const struct bus_look *look = ops ? ops->looks : NULL;
+	char what[300];
+
+	snprintf(what, sizeof(what), "target \"%s\"", target->text);
+	for (; look && look->begin; look++) {
+		size_t after = look->after ? strlen(look->after) : 0;
+
+		if (look->gpio_chip)
+			look_for_chip(what, where, place, report);
+		else if ((!after || !strncmp(where, look->after, after)) &&
+		         !strncmp(where + after, look->begin, strlen(look->begin)))
+			look_for_path(target, where + after, place, look, report);
+	}
+}
+
 int target_look(const struct config *config, struct config_report *report)
 {
-	static const char gpio[] = "gpio:";
 	unsigned errors = report->errors;
 
 	for (unsigned i = 0; i < config->target_count; i++) {
 		const struct config_target *target = &config->targets[i];
-		struct place place = place_of(config, target);
-		char what[300];
 
-		snprintf(what, sizeof(what), "target \"%s\"", target->text);
-		if (strncmp(target->text, gpio, strlen(gpio)) == 0)
-			look_for_chip(what, target->text + strlen(gpio), place, report);
-		for (unsigned k = 0; k < sizeof(ways) / sizeof(ways[0]); k++)
-			look_for_path(target, place, &ways[k], report);
+		look_for_target(target, target_place(config, target), report);
 	}
 	look_for_line(place_in(config, config->alarm_line_at), "AlarmLine", config->alarm_line,
 	              report);

@@ -7,11 +7,12 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "src/config/check/know.h"
+#include "src/config/check/property.h"
 #include "src/config/edit/edit.h"
 #include "src/config/edit/print.h"
 #include "src/config/edit/replace.h"
 #include "src/config/read/load.h"
-#include "src/config/read/property.h"
 #include "src/config/read/rio_file.h"
 #include "src/ground/text/distance.h"
 #include "src/memory/shm/segment.h"
@@ -64,6 +65,7 @@ static int list_file(struct ctl *ctl, const char *file, bool whole, char *const 
 
 	if (err)
 		return err == -ENOMEM ? CTL_FAILED : status_of(err);
+	config_know(config);
 	status = whole && !ctl->json ? config_show(config, patterns, count)
 	                             : config_list(config, patterns, count, ctl->json);
 	config_free(config);

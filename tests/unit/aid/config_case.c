@@ -6,6 +6,8 @@
 
 #include "unity.h"
 
+#include "src/config/check/know.h"
+#include "src/config/check/targets.h"
 #include "src/config/read/load.h"
 #include "tests/unit/aid/config_case.h"
 
@@ -26,7 +28,15 @@ void config_case_end(void)
 int parse(const char *text)
 {
 	config_case_begin();
-	return config_parse("f", text, strlen(text), &report, &config);
+	if (config_parse("f", text, strlen(text), &report, &config))
+		return -EINVAL;
+	for (unsigned i = 0; i < config->item_count; i++)
+		know_item(&config->items[i], config->file, &report);
+	if (config_check_targets(config, &report) == 0)
+		return 0;
+	config_free(config);
+	config = NULL;
+	return -EINVAL;
 }
 
 int parse_driver(const char *keys)

@@ -17,7 +17,8 @@ void config_case_begin(void);
 void config_case_end(void);
 
 /*
- * Parse the file "f": a text, keys of OwsDrv from line 2 on, keys of its one Item from line 3 on.
+ * Parse a text, and check what is given twice and what a family decides: the file "f", keys of
+ * OwsDrv from line 2 on, keys of its one Item from line 3 on.
  */
 int parse(const char *text);
 int parse_driver(const char *keys);

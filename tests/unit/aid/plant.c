@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "hal/bus/backends.h"
+#include "src/config/check/know.h"
 #include "src/config/read/load.h"
 #include "src/daemon/engine/command/controllers.h"
 #include "src/daemon/engine/counters.h"
@@ -235,6 +236,7 @@ static void begin(struct plant *p, const char *rio)
 
 	if (config_parse("plant.rio", rio, strlen(rio), &report, &p->config))
 		broken("its configuration was refused");
+	config_know(p->config);
 	make_memory(p);
 	p->port = (struct engine_port){.target = "plant",
 	                               .depth = bus_depth(p->bus),

@@ -4,6 +4,7 @@
 
 #include "unity.h"
 
+#include "src/config/read/alarm.h"
 #include "tests/unit/aid/config_case.h"
 
 void setUp(void)
@@ -149,6 +150,20 @@ static void test_absent_alarm_strings_are_not_defined_and_empty_ones_are_empty(v
 	TEST_ASSERT_FALSE(config->items[0].alarm);
 }
 
+static void test_a_string_of_an_alarm_names_a_property_of_the_item_s_device(void)
+{
+	static const struct config_item item = {.path = "/bus.0/29.000000000001/sensed.3"};
+	static const struct config_item none = {.path = "/29.000000000001"};
+	char path[ALARM_PATH];
+
+	TEST_ASSERT_EQUAL_STRING("latch.BYTE", alarm_path(&item, "latch.BYTE=1", path));
+	TEST_ASSERT_EQUAL_STRING("/bus.0/29.000000000001/latch.BYTE", path);
+	TEST_ASSERT_NULL(alarm_path(&item, "", path));
+	TEST_ASSERT_NULL(alarm_path(&item, "=1", path));
+	TEST_ASSERT_NULL(alarm_path(&item, NULL, path));
+	TEST_ASSERT_NULL(alarm_path(&none, "por", path));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -157,5 +172,6 @@ int main(void)
 	RUN_TEST(test_an_alarm_that_can_do_nothing_is_told_what_to_write);
 	RUN_TEST(test_strings_without_alarm_beside_unknown_bits_are_an_error);
 	RUN_TEST(test_absent_alarm_strings_are_not_defined_and_empty_ones_are_empty);
+	RUN_TEST(test_a_string_of_an_alarm_names_a_property_of_the_item_s_device);
 	return UNITY_END();
 }

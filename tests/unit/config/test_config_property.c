@@ -8,7 +8,7 @@
 
 #include "hal/chips/family.h"
 #include "hal/chips/format.h"
-#include "src/config/read/property.h"
+#include "src/config/check/property.h"
 
 void setUp(void)
 {

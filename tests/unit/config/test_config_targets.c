@@ -8,10 +8,11 @@
 
 #include "unity.h"
 
+#include "hal/bus/backends.h"
 #include "src/config/check/own.h"
+#include "src/config/check/targets.h"
 #include "src/config/read/buses.h"
 #include "src/config/read/load.h"
-#include "src/config/read/targets.h"
 #include "tests/unit/aid/config_case.h"
 
 void setUp(void)
@@ -64,16 +65,16 @@ static void test_the_scheme_of_each_backend_is_no_host(void)
 
 static void test_only_buses_of_owsd_s_own_have_a_cache(void)
 {
-	static const char *const own[] = {"i2c:/dev/i2c-1", "sim:house.sim", "w1:netlink",
+	static const char *const own[] = {"i2c:/dev/i2c-1", "w1:netlink",
 	                                  "w1:netlink/w1_bus_master1"};
 	static const char *const others[] = {
 		"localhost", "owserver:i2c:4304", "w1", "i2chost:4304", "w1:w1_bus_master1",
 		"null:",     "gpio:gpiochip0"};
 
 	for (size_t i = 0; i < sizeof(own) / sizeof(own[0]); i++)
-		TEST_ASSERT_TRUE_MESSAGE(target_caches(own[i]), own[i]);
+		TEST_ASSERT_TRUE_MESSAGE(bus_caches(own[i]), own[i]);
 	for (size_t i = 0; i < sizeof(others) / sizeof(others[0]); i++)
-		TEST_ASSERT_FALSE_MESSAGE(target_caches(others[i]), others[i]);
+		TEST_ASSERT_FALSE_MESSAGE(bus_caches(others[i]), others[i]);
 }
 
 static void test_a_comma_separates_two_wires_and_a_bar_two_ways(void)
@@ -96,9 +97,9 @@ static void test_auto_is_a_bar_of_three_ways(void)
 {
 	TEST_ASSERT_EQUAL_INT(0, parse_driver("TargetName \"sim:a, auto | far:4304\""));
 	TEST_ASSERT_EQUAL_UINT(5, config->target_count);
+	for (unsigned i = 0; i < CONFIG_AUTO_WAYS; i++)
+		TEST_ASSERT_EQUAL_STRING(config_auto_ways[i], config->targets[1 + i].text);
 	TEST_ASSERT_EQUAL_STRING("localhost:4304", config->targets[1].text);
-	TEST_ASSERT_EQUAL_STRING("i2c:auto", config->targets[2].text);
-	TEST_ASSERT_EQUAL_STRING("w1", config->targets[3].text);
 	TEST_ASSERT_EQUAL_INT(CONFIG_COMMA, config->targets[1].relation);
 	for (int i = 2; i < 5; i++)
 		TEST_ASSERT_EQUAL_INT(CONFIG_BAR, config->targets[i].relation);
@@ -173,12 +174,11 @@ static void test_more_than_sixty_four_targets_are_refused(void)
 
 static void test_targets_of_the_command_line_replace_those_of_the_file(void)
 {
-	static const char *const good[] = {"a | b", "c"}, *const bad[] = {"a", "a:4304"};
+	static const char *const good[] = {"a | b", "c"}, *const bad[] = {"a", "a,,b"};
+	static const char *const twice[] = {"a", "a:4304"};
 
 	parse_driver("TargetName \"x\"");
 	TEST_ASSERT_EQUAL_INT(-EINVAL, config_set_targets(config, bad, 2, &report));
-	TEST_ASSERT_EQUAL_STRING(
-		"error: the target \"a:4304\" is given twice; the first is \"a\"\n", said);
 	TEST_ASSERT_EQUAL_STRING("x", config->targets[0].text);
 	TEST_ASSERT_EQUAL_UINT(1, config->target_count);
 	TEST_ASSERT_EQUAL_INT(0, config_set_targets(config, good, 2, &report));
@@ -186,6 +186,11 @@ static void test_targets_of_the_command_line_replace_those_of_the_file(void)
 	TEST_ASSERT_EQUAL_STRING("b", config->targets[1].text);
 	TEST_ASSERT_EQUAL_INT(CONFIG_BAR, config->targets[1].relation);
 	TEST_ASSERT_EQUAL_INT(CONFIG_COMMA, config->targets[2].relation);
+	TEST_ASSERT_EQUAL_INT(0, config_set_targets(config, twice, 2, &report));
+	said[0] = '\0';
+	TEST_ASSERT_EQUAL_INT(-EINVAL, config_check_targets(config, &report));
+	TEST_ASSERT_EQUAL_STRING(
+		"error: the target \"a:4304\" is given twice; the first is \"a\"\n", said);
 }
 
 /* Load `folder`/x.rio, whose target and file of sensors are `name`, from another directory. */
@@ -210,6 +215,7 @@ static void test_a_relative_file_counts_from_the_folder_of_the_configuration(voi
 {
 	char folder[] = "/tmp/owsd-relative-XXXXXX", whole[64], target[80];
 	const char *const here = "Makefile";
+	uint64_t absent;
 
 	TEST_ASSERT_NOT_NULL(mkdtemp(folder));
 	/* in neither place, as at --check on another machine */
@@ -219,6 +225,9 @@ static void test_a_relative_file_counts_from_the_folder_of_the_configuration(voi
 	TEST_ASSERT_EQUAL_STRING("", said);
 	TEST_ASSERT_EQUAL_STRING(target, config->targets[1].text);
 	TEST_ASSERT_EQUAL_STRING(whole, config_bus(config, target)->options[0].text);
+	/* the file that it names is not there */
+	config_hash_files(config);
+	absent = config_bus(config, target)->options[0].contents;
 	/* in the working directory alone, as older files mean it */
 	TEST_ASSERT_EQUAL_INT(0, access(here, F_OK));
 	TEST_ASSERT_EQUAL_INT(0, load_with(folder, here));
@@ -228,6 +237,8 @@ static void test_a_relative_file_counts_from_the_folder_of_the_configuration(voi
 	TEST_ASSERT_NOT_NULL(strstr(said, "x.rio:2:42: warning: Makefile is taken"));
 	TEST_ASSERT_EQUAL_STRING("sim:Makefile:0x18", config->targets[1].text);
 	TEST_ASSERT_EQUAL_STRING(here, config_bus(config, "sim:Makefile:0x18")->options[0].text);
+	config_hash_files(config);
+	TEST_ASSERT_TRUE(absent != config_bus(config, "sim:Makefile:0x18")->options[0].contents);
 	snprintf(whole, sizeof(whole), "%s/x.rio", folder);
 	unlink(whole);
 	rmdir(folder);

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/config/read/buses.h"
+#include "src/config/check/targets.h"
 #include "src/daemon/engine/reload/adoption.h"
 
 static int compare_items(const struct config_item *a, const struct config_item *b)

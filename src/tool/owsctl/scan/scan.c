@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "hal/bus/backends.h"
 #include "hal/chips/family.h"
 #include "hal/chips/find.h"
 #include "hal/owfs/path.h"
@@ -137,11 +138,6 @@ static int scan_rio(const struct scan *scan, const char *target, bool several,
 	return status;
 }
 
-static bool may_be_i2c(const char *target)
-{
-	return target && (!strcmp(target, "auto") || !strncmp(target, "i2c:", 4));
-}
-
 /*
  * After a scan that found nothing: print on stderr which board this is and what is missing there.
  * For a target that needs no I2C adapter, prints nothing.
@@ -150,8 +146,10 @@ static void scan_board(const char *target)
 {
 	struct board_report report;
 	char folder[400], why[800];
+	const char *where;
+	const struct bus_ops *ops = target ? bus_backend(target, &where) : NULL;
 
-	if (!may_be_i2c(target))
+	if (!ops || !(ops->board_advice || !strcmp(target, "auto")))
 		return;
 	board_folder(folder, sizeof(folder));
 	if (board_look("", folder, NULL, &report, why, sizeof(why)) == 0)

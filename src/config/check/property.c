@@ -8,7 +8,7 @@
 #include "hal/chips/find.h"
 #include "hal/chips/format.h"
 #include "hal/owfs/path.h"
-#include "src/config/read/property.h"
+#include "src/config/check/property.h"
 #include "src/ground/text/distance.h"
 
 static bool is_below(const struct property *property, const char *name, size_t len)
