@@ -352,9 +352,10 @@ def test_a_list_shows_what_protects_a_plant_and_one_item_alone(scene):
     one = scene.owsctl(None, "config", file, "list", "x").stdout
     assert "freezer" not in one and "LIMITS" not in one and "/28.000000000001" in one, one
     told = json.loads(scene.owsctl(None, "--json", "config", file, "list", "fre*", "x").stdout)["items"]
-    assert [i["name"] for i in told] == ["freezer", "x"] and told[1]["limits"] is None
-    assert told[0]["limits"] == dict(limit_ll=-40, limit_l=None, limit_h=-15.5, limit_hh=-5, hysteresis=1,
-                                     on_delay=300, off_delay=60)
+    assert [i["Name"] for i in told] == ["freezer", "x"] and told[1]["LimitHH"] is None
+    assert {key: told[0][key] for key in told[0] if key.startswith("Limit") or key.endswith("Delay")} == dict(
+        LimitLL=-40, LimitL=None, LimitH=-15.5, LimitHH=-5, SafeDelay=None, OnDelay=300, OffDelay=60)
+    assert told[0]["Hysteresis"] == 1 and told[0]["Alarm"] is False and told[0]["IO"] == "input"
     done = scene.owsctl(None, "config", file, "list", "freezr")
     assert done.returncode == 1 and "no item matches" in done.stderr and not done.stdout
 

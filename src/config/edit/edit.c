@@ -339,34 +339,30 @@ static bool has_bits(const struct rio_node *driver)
 	return false;
 }
 
-static char *item_text(const char *name, const char *path, bool bits)
+static int add_item(struct rio **rio, const char *name, const char *path, bool bits)
 {
-	static const char as_bits[] = "  IOType                  0x0018\n"
-				      "  InitValue               \"\"\n";
-	static const char as_words[] = "  Type                    \"double\"\n"
-				       "  IO                      \"input\"\n";
-	char *quoted_name = rio_quote(name), *quoted_path = rio_quote(path), *text = NULL;
+	const struct {
+		enum option option;
+		const char *value;
+	} keys[] = {
+		{OPT_NAME, name},
+		{OPT_PATH, path},
+		{bits ? OPT_IO_TYPE : OPT_TYPE, bits ? "0x0018" : "double"},
+		{bits ? OPT_INIT_VALUE : OPT_IO, bits ? "" : "input"},
+	};
+	int err = rio_add(rio, edit_driver(*rio), "Item {\n}");
 
-	if (quoted_name && quoted_path &&
-	    asprintf(&text,
-	             "%s {\n"
-	             "  %-*s %s\n"
-	             "  %-*s %s\n"
-	             "%s}",
-	             option_table[OPT_ITEM].key, RIO_KEY_WIDTH - 1, option_table[OPT_NAME].key,
-	             quoted_name, RIO_KEY_WIDTH - 1, option_table[OPT_PATH].key, quoted_path,
-	             bits ? as_bits : as_words) < 0)
-		text = NULL;
-	free(quoted_name);
-	free(quoted_path);
-	return text;
+	for (size_t i = 0; i < sizeof(keys) / sizeof(keys[0]) && !err; i++)
+		err = (keys[i].option == OPT_IO_TYPE ? rio_set : rio_set_text)(
+			rio, edit_driver(*rio)->last, option_table[keys[i].option].key,
+			keys[i].value);
+	return err;
 }
 
 int edit_add(struct rio **rio, const char *name, const char *path, const char *const *settings,
              unsigned count, struct config_report *report)
 {
 	struct rio_node *driver = edit_driver(*rio);
-	char *text;
 	int err;
 
 	if (!driver) {
@@ -383,9 +379,7 @@ int edit_add(struct rio **rio, const char *name, const char *path, const char *c
 		report_error(report, command_line, "control characters are not allowed");
 		return -EINVAL;
 	}
-	text = item_text(name, path, has_bits(driver));
-	err = text ? rio_add(rio, driver, text) : -ENOMEM;
-	free(text);
+	err = add_item(rio, name, path, has_bits(driver));
 	if (!err && count)
 		err = edit_set(rio, name, settings, count, report);
 	return err ? err : edit_count(rio);

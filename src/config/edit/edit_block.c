@@ -101,32 +101,20 @@ struct rio_node *edit_block(const struct rio *rio, const char *name, enum option
 	return block;
 }
 
-static int make_bus(struct rio **rio, struct rio_node *driver, const char *target)
-{
-	char *quoted = rio_quote(target), *text = NULL;
-	int err = -ENOMEM;
-
-	if (quoted && asprintf(&text, "%s {\n  %-*s %s\n}", option_table[OPT_BUS].key,
-	                       RIO_KEY_WIDTH - 1, option_table[OPT_BUS_TARGET].key, quoted) >= 0) {
-		err = rio_add(rio, driver, text);
-		free(text);
-	}
-	free(quoted);
-	return err;
-}
-
 int edit_make_block(struct rio **rio, const char *name)
 {
 	struct rio_node *driver = edit_driver(*rio);
 	const char *target = bus_target(name);
 	char text[RIO_KEY_MAX + 8];
+	int err;
 
-	if (!driver || edit_item(*rio, name))
+	if (!driver || edit_item(*rio, name) ||
+	    (target ? !*target || find_bus(driver, target)
+	            : !option_single(name) || rio_child(driver, name)))
 		return 0;
-	if (target)
-		return *target && !find_bus(driver, target) ? make_bus(rio, driver, target) : 0;
-	if (!option_single(name) || rio_child(driver, name))
-		return 0;
-	snprintf(text, sizeof(text), "%s {\n}", name);
-	return rio_add(rio, driver, text);
+	snprintf(text, sizeof(text), "%s {\n}", target ? option_table[OPT_BUS].key : name);
+	err = rio_add(rio, driver, text);
+	if (err || !target)
+		return err;
+	return rio_set_text(rio, edit_driver(*rio)->last, option_table[OPT_BUS_TARGET].key, target);
 }

@@ -8,7 +8,6 @@
 #include "src/config/edit/print.h"
 #include "src/config/edit/rio_write.h"
 #include "src/config/read/options.h"
-#include "src/ground/signal/value.h"
 
 /* The key, indented by the depth of its block. */
 static void put_key(FILE *out, const struct option_def *def)
@@ -26,42 +25,21 @@ static void put_text(FILE *out, const struct option_def *def, const char *text)
 	free(quoted);
 }
 
-static const char *number_text(const struct option_def *def, double number,
-                               char text[VALUE_TEXT_MAX])
-{
-	switch (def->kind) {
-	case OPTION_FLAG:
-		return number != 0 ? "on" : "off";
-	case OPTION_IO:
-		return number != 0 ? "output" : "input";
-	case OPTION_TYPE:
-		return value_type_name((enum ows_type)(int)number);
-	case OPTION_TEXT:
-	case OPTION_COUNT:
-	case OPTION_SECONDS:
-	case OPTION_NUMBER:
-	case OPTION_BLOCK:
-		break;
-	}
-	value_to_text(OWS_DOUBLE, value_of_double(number), text);
-	return text;
-}
-
 void option_print(const struct option_def *def, const void *from, bool all, FILE *out)
 {
-	bool preset = option_is_preset(def, from);
-	char text[VALUE_TEXT_MAX];
+	char room[VALUE_TEXT_MAX];
 
-	if (def->store == STORE_TEXT && option_text(def, from)) {
-		if (!preset || !def->quiet)
-			put_text(out, def, option_text(def, from));
-	} else if (def->store == STORE_TEXT) {
+	if (!option_is_given(def, from)) {
 		/* of an alarm: what is not defined is not what is empty */
 		if (all && def->empty)
 			fprintf(out, "    # %-*s not defined\n", RIO_KEY_WIDTH - 3, def->key);
-	} else if (!preset || (!def->quiet && !def->has && def->store != STORE_INT)) {
+	} else if (def->quiet && option_is_preset(def, from)) {
+		return;
+	} else if (def->kind == OPTION_TEXT) {
+		put_text(out, def, option_text(def, from, room));
+	} else {
 		put_key(out, def);
-		fprintf(out, "%s\n", number_text(def, option_number(def, from), text));
+		fprintf(out, "%s\n", option_text(def, from, room));
 	}
 }
 
@@ -186,7 +164,7 @@ void config_print(const struct config *config, FILE *out)
 			option_print(def, config, false, out);
 		else if (!def->inside)
 			put_special(out, (enum option)i, config);
-		else if (!option_is_preset(def, config))
+		else if (option_is_given(def, config))
 			put_block(out, def, def->inside, (const char *)config + def->offset, false);
 	}
 	fputs("}\n", out);

@@ -3,12 +3,12 @@
 #include <ctype.h>
 #include <float.h>
 #include <limits.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
 #include "src/config/read/build.h"
 #include "src/config/read/texts.h"
-#include "src/ground/signal/value.h"
 #include "src/ground/text/distance.h"
 
 #define DAY 86400.0
@@ -74,29 +74,11 @@ unsigned options_blocks(const struct rio_node *driver, enum option option)
 	return count;
 }
 
-/* The fields of OwsDrv's dialog whose words are far from those of the keys, as they begin. */
-static const struct {
-	const char *words;
-	enum option option;
-} dialog[] = {
-	{"Target computer", OPT_TARGET_NAME},
-	{"Maximum number of consecutive", OPT_MAX_CONS_ALARMS},
-	{"Maximum number of retries", OPT_MAX_RETRIES},
-	{"Timeout for", OPT_TIMEOUT},
-	{"REX I/O Name", OPT_NAME},
-	{"Sensor/Actuator Path", OPT_PATH},
-	{"Power-on Reset Alarm", OPT_POR_ALARM},
-};
-
 const char *option_nearest(enum option_place place, const char *key, char text[OPTION_NEAREST])
 {
 	unsigned least = UINT_MAX;
 	size_t used = 0;
 
-	for (size_t i = 0; i < sizeof(dialog) / sizeof(dialog[0]); i++)
-		if (option_table[dialog[i].option].place == place &&
-		    !strncasecmp(key, dialog[i].words, strlen(dialog[i].words)))
-			return option_table[dialog[i].option].key;
 	for (int i = 0; i < OPTION_COUNT_ALL && used < OPTION_NEAREST; i++) {
 		const char *known = option_table[i].key;
 		unsigned distance;
@@ -170,19 +152,12 @@ static void report_unknown(const struct rio_node *node, enum option_place place,
 
 static bool parse_hex(const char *text, double *number)
 {
-	uint64_t sum = 0;
+	char *end;
 
-	if (text[0] != '0' || (text[1] != 'x' && text[1] != 'X') || !text[2])
+	if (strncasecmp(text, "0x", 2) != 0 || !isxdigit((unsigned char)text[2]))
 		return false;
-	for (text += 2; *text; text++) {
-		if (!isxdigit((unsigned char)*text) || sum > UINT32_MAX)
-			return false;
-		sum = sum * 16 + (uint64_t)(isdigit((unsigned char)*text)
-		                                    ? *text - '0'
-		                                    : tolower((unsigned char)*text) - 'a' + 10);
-	}
-	*number = (double)sum;
-	return true;
+	*number = (double)strtoull(text + 2, &end, 16);
+	return !*end;
 }
 
 static bool parse_number(const char *text, enum ows_type type, double *number)
@@ -365,7 +340,8 @@ void option_take(struct build *build, const struct option_def *def,
 		*(struct config_spot *)member(to, def->at) = option_spot(value);
 }
 
-double option_number(const struct option_def *def, const void *from)
+/* 0 or 1 of a flag, seconds of a time. */
+static double number_of(const struct option_def *def, const void *from)
 {
 	const void *at = member_of(from, def->offset);
 
@@ -387,26 +363,55 @@ double option_number(const struct option_def *def, const void *from)
 	return 0;
 }
 
-const char *option_text(const struct option_def *def, const void *from)
+static const char *text_of(const struct option_def *def, const void *from)
 {
-	return def->store == STORE_TEXT ? *(const char *const *)member_of(from, def->offset) : NULL;
+	return *(const char *const *)member_of(from, def->offset);
+}
+
+bool option_is_given(const struct option_def *def, const void *from)
+{
+	if (def->has)
+		return *(const bool *)member_of(from, def->has);
+	if (def->store == STORE_TEXT)
+		return text_of(def, from) != NULL;
+	/* below 0: not given, and its default is not of the table */
+	return (def->store != STORE_INT && def->store != STORE_NS) || number_of(def, from) >= 0;
 }
 
 bool option_is_preset(const struct option_def *def, const void *from)
 {
-	const char *text = option_text(def, from);
 	struct option_value value;
 
-	if (def->has)
-		return !*(const bool *)member_of(from, def->has);
-	if (def->store == STORE_TEXT)
-		return !text || (def->preset && !strcmp(text, def->preset));
+	if (!def->preset || def->store == STORE_TEXT)
+		return !option_is_given(def, from) ||
+		       (def->preset && !strcmp(text_of(def, from), def->preset));
 	option_begin(def, &value);
-	/* below 0: not given, and its default is not of the table */
-	if (def->store == STORE_NS || def->store == STORE_INT)
-		return option_number(def, from) < 0 ||
-		       (def->store == STORE_NS && option_number(def, from) == value.number);
-	return option_number(def, from) == value.number;
+	return number_of(def, from) == value.number;
+}
+
+const char *option_text(const struct option_def *def, const void *from, char room[VALUE_TEXT_MAX])
+{
+	double number = number_of(def, from);
+
+	if (!option_is_given(def, from))
+		return "";
+	switch (def->kind) {
+	case OPTION_TEXT:
+		return text_of(def, from);
+	case OPTION_FLAG:
+		return number != 0 ? "on" : "off";
+	case OPTION_IO:
+		return number != 0 ? "output" : "input";
+	case OPTION_TYPE:
+		return value_type_name((enum ows_type)(int)number);
+	case OPTION_COUNT:
+	case OPTION_SECONDS:
+	case OPTION_NUMBER:
+	case OPTION_BLOCK:
+		break;
+	}
+	value_to_text(OWS_DOUBLE, value_of_double(number), room);
+	return room;
 }
 
 /* A block says what it cannot be without. */

@@ -7,6 +7,7 @@
 
 #include "src/config/read/config.h"
 #include "src/config/read/rio.h"
+#include "src/ground/signal/value.h"
 
 enum option_place {
 	PLACE_DRIVER,
@@ -137,9 +138,9 @@ void option_take(struct build *build, const struct option_def *def,
 void options_read(struct build *build, const struct rio_node *block, enum option_place place,
                   struct option_value *values, void *to);
 
-/* The number in its member: 0 or 1 of a flag, seconds of a time. */
-double option_number(const struct option_def *def, const void *from);
-/* The text in its member; NULL: not given, or it is no text. */
-const char *option_text(const struct option_def *def, const void *from);
-/* Is the member as it would be without the key? */
+/* Has its member a value, of the file or by default? */
+bool option_is_given(const struct option_def *def, const void *from);
+/* Is the value the default? */
 bool option_is_preset(const struct option_def *def, const void *from);
+/* The value as it would be written, without quotes; "" if there is none. room: for numbers. */
+const char *option_text(const struct option_def *def, const void *from, char room[VALUE_TEXT_MAX]);

@@ -2,6 +2,7 @@
 /* The Recorder block and the key Record: what is kept of a signal's history, and for how long. */
 #include <errno.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -10,115 +11,98 @@
 #include "src/config/read/recorder.h"
 #include "src/ground/signal/value.h"
 
-#define BLANK " \t"
 #define DAY 86400.0
 #define EXPECTED "expected change, deadband NUMBER, interval SECONDS, raw, or off alone"
 
-/* A word of a part, NUL-terminated; "" if there is none, or if it is too long to be one. */
-static const char *take_word(const char *text, char *word, size_t size)
-{
-	size_t len;
+/* The words of a Record, and the most of the number that follows one; 0: none does. */
+enum { WORD_OFF, WORD_CHANGE, WORD_RAW, WORD_DEADBAND, WORD_INTERVAL, WORDS };
+static const struct {
+	const char *text;
+	double most;
+} words[WORDS] = {
+	[WORD_OFF] = {"off", 0},
+	[WORD_CHANGE] = {"change", 0},
+	[WORD_RAW] = {"raw", 0},
+	[WORD_DEADBAND] = {"deadband", HUGE_VAL},
+	[WORD_INTERVAL] = {"interval", DAY},
+};
 
-	text += strspn(text, BLANK);
-	len = strcspn(text, BLANK);
-	snprintf(word, size, "%.*s", len < size ? (int)len : 0, text);
-	return text + len;
+static int refuse(char *why, size_t size, const char *format, ...)
+	__attribute__((format(printf, 3, 4)));
+static int refuse(char *why, size_t size, const char *format, ...)
+{
+	va_list args;
+
+	va_start(args, format);
+	vsnprintf(why, size, format, args);
+	va_end(args);
+	return -EINVAL;
 }
 
-static bool parse_positive(const char *text, double most, double *number)
+/* The number of a word; 0: the text is none, or too large. */
+static double parse_positive(const char *text, double most)
 {
 	int64_t value;
+	double number;
 
 	if (value_parse(OWS_DOUBLE, text, &value))
-		return false;
-	*number = value_number(OWS_DOUBLE, value);
-	return *number > 0 && *number <= most;
-}
-
-static int recorder_refuse(char *why, size_t size, const char *reason)
-{
-	snprintf(why, size, "%s", reason);
-	return -EINVAL;
-}
-
-/* A part with a number; *given: it stands there already. */
-static int take_number(const char *word, const char *number, bool given, double most, double *to,
-                       char *why, size_t size)
-{
-	if (given) {
-		snprintf(why, size, "%s is given twice", word);
-		return -EINVAL;
-	}
-	if (parse_positive(number, most, to))
 		return 0;
-	if (most > 1e300)
-		snprintf(why, size, "expected a number above 0 after %s", word);
-	else
-		snprintf(why, size, "expected seconds above 0 and up to %.0f after %s", most, word);
-	return -EINVAL;
+	number = value_number(OWS_DOUBLE, value);
+	return number > 0 && number <= most ? number : 0;
 }
 
-static int take_flag(const char *word, const char *rest, bool *flag, char *why, size_t size)
+/* A part, as "deadband 0.1": the number of its word, 1 without a number, goes into given. */
+static int take_part(const char *part, double given[WORDS], char *why, size_t size)
 {
-	if (*rest || *flag) {
-		snprintf(why, size, *rest ? "%s takes no number" : "%s is given twice", word);
-		return -EINVAL;
-	}
-	*flag = true;
-	return 0;
-}
+	char word[16] = "", number[40] = "", more[2] = "";
+	int i = 0;
 
-static int take_part(const char *part, struct config_record *record, char *why, size_t size)
-{
-	char word[16], number[40];
-	double seconds = 0;
-	int err;
-
-	part = take_word(part, word, sizeof(word));
-	part = take_word(part, number, sizeof(number));
-	if (part[strspn(part, BLANK)])
-		return recorder_refuse(why, size, EXPECTED);
-	if (!strcmp(word, "off"))
-		return take_flag(word, number, &record->off, why, size);
-	if (!strcmp(word, "change"))
-		return take_flag(word, number, &record->change, why, size);
-	if (!strcmp(word, "raw"))
-		return take_flag(word, number, &record->raw, why, size);
-	if (!strcmp(word, "deadband"))
-		return take_number(word, number, record->deadband > 0, HUGE_VAL, &record->deadband,
-		                   why, size);
-	if (strcmp(word, "interval") != 0)
-		return recorder_refuse(why, size, EXPECTED);
-	err = take_number(word, number, record->interval_ns > 0, DAY, &seconds, why, size);
-	record->interval_ns = (int64_t)(seconds * 1e9 + 0.5);
-	return err;
+	sscanf(part, "%15s %39s %1s", word, number, more);
+	while (i < WORDS && strcmp(word, words[i].text) != 0)
+		i++;
+	if (i == WORDS || *more)
+		return refuse(why, size, EXPECTED);
+	if (!words[i].most && *number)
+		return refuse(why, size, "%s takes no number", word);
+	if (given[i] > 0)
+		return refuse(why, size, "%s is given twice", word);
+	given[i] = words[i].most > 0 ? parse_positive(number, words[i].most) : 1;
+	if (given[i] > 0)
+		return 0;
+	if (i == WORD_DEADBAND)
+		return refuse(why, size, "expected a number above 0 after %s", word);
+	return refuse(why, size, "expected seconds above 0 and up to %.0f after %s", DAY, word);
 }
 
 int record_parse(const char *text, struct config_record *record, char *why, size_t size)
 {
 	char part[RECORD_TEXT_MAX + 1];
-	bool occasion;
+	double given[WORDS] = {0};
 
 	*record = (struct config_record){0};
 	if (strlen(text) > RECORD_TEXT_MAX)
-		return recorder_refuse(why, size, EXPECTED);
-	for (;;) {
-		size_t len = strcspn(text, ",");
-
+		return refuse(why, size, EXPECTED);
+	for (size_t len; text; text = text[len] ? text + len + 1 : NULL) {
+		len = strcspn(text, ",");
 		snprintf(part, sizeof(part), "%.*s", (int)len, text);
-		if (take_part(part, record, why, size))
+		if (take_part(part, given, why, size))
 			return -EINVAL;
-		if (!text[len])
-			break;
-		text += len + 1;
 	}
-	occasion = record->change || record->deadband > 0 || record->interval_ns > 0;
-	if (record->off && (occasion || record->raw))
-		return recorder_refuse(why, size, "off stands alone");
-	if (record->change && record->deadband > 0)
-		return recorder_refuse(why, size, "change and deadband exclude each other");
-	if (!record->off && !occasion)
-		record->change = true; /* "raw" alone */
+	if (given[WORD_OFF] > 0 && given[WORD_OFF] + given[WORD_CHANGE] + given[WORD_RAW] +
+	                                           given[WORD_DEADBAND] + given[WORD_INTERVAL] >
+	                                   1)
+		return refuse(why, size, "off stands alone");
+	if (given[WORD_CHANGE] > 0 && given[WORD_DEADBAND] > 0)
+		return refuse(why, size, "change and deadband exclude each other");
+	*record = (struct config_record){
+		.off = given[WORD_OFF] > 0,
+		.raw = given[WORD_RAW] > 0,
+		.deadband = given[WORD_DEADBAND],
+		.interval_ns = (int64_t)(given[WORD_INTERVAL] * 1e9 + 0.5),
+	};
+	/* "raw" alone is of each change */
+	record->change = given[WORD_CHANGE] > 0 ||
+	                 !(record->off || record->deadband > 0 || record->interval_ns > 0);
 	return 0;
 }
 

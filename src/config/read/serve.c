@@ -7,32 +7,18 @@
 #include "src/config/read/options.h"
 #include "src/config/read/serve.h"
 
-struct addresses {
-	struct listen_address *all; /* LISTEN_MAX */
-	unsigned *count;
-};
-
-static void add_address(struct build *build, const struct addresses *to,
-                        const struct listen_address *address, const char *part, size_t len,
-                        struct place place)
+/* Does one of them stand there already? With port 0 the kernel chooses, each time anew. */
+static bool has_address(const struct listen_address *all, unsigned count,
+                        const struct listen_address *address)
 {
-	for (unsigned i = 0; i < *to->count; i++)
-		if (address->port && listen_same(&to->all[i], address)) {
-			report_error(build->report, place, "Listen \"%.*s\": is given twice",
-			             (int)len, part);
-			return;
-		}
-	if (*to->count == LISTEN_MAX) {
-		report_error(build->report, place, "Listen: more than %d addresses", LISTEN_MAX);
-		return;
-	}
-	to->all[(*to->count)++] = *address;
+	while (count && address->port && !listen_same(&all[count - 1], address))
+		count--;
+	return count && address->port;
 }
 
 void serve_addresses(struct build *build, const char *text, struct place place,
                      struct listen_address *all, unsigned *count)
 {
-	const struct addresses to = {.all = all, .count = count};
 	struct listen_address addresses[2];
 	const char *part, *why = "";
 	size_t len;
@@ -40,19 +26,20 @@ void serve_addresses(struct build *build, const char *text, struct place place,
 	while (build_part(&text, ",", &part, &len)) {
 		int n = listen_parse(part, len, addresses, &why);
 
+		for (int i = 0; i < n; i++)
+			if (has_address(all, *count, &addresses[i])) {
+				why = "is given twice";
+				n = -EINVAL;
+			} else if (*count == LISTEN_MAX) {
+				why = "is one address too many";
+				n = -EINVAL;
+			} else {
+				all[(*count)++] = addresses[i];
+			}
 		if (n < 0)
 			report_error(build->report, place, "Listen \"%.*s\": %s", (int)len, part,
 			             why);
-		for (int i = 0; i < n; i++)
-			add_address(build, &to, &addresses[i], part, len, place);
 	}
-}
-
-static void add_listens(struct build *build, const char *text, struct place place)
-{
-	struct config_serve *serve = &build->box->config.serve;
-
-	serve_addresses(build, text, place, serve->addresses, &serve->address_count);
 }
 
 static void add_peers(struct build *build, const struct option_value *allow)
@@ -77,18 +64,24 @@ static void add_peers(struct build *build, const struct option_value *allow)
 
 void serve_build(struct build *build, const struct option_value *values)
 {
-	if (values[OPT_LISTEN].given && *values[OPT_LISTEN].text)
-		add_listens(build, values[OPT_LISTEN].text, values[OPT_LISTEN].node->value_at);
+	struct config_serve *serve = &build->box->config.serve;
+	const struct option_value *listen = &values[OPT_LISTEN];
+
+	if (listen->given && *listen->text)
+		serve_addresses(build, listen->text, listen->node->value_at, serve->addresses,
+		                &serve->address_count);
 	if (values[OPT_LISTEN_ALLOW].given)
 		add_peers(build, &values[OPT_LISTEN_ALLOW]);
 }
 
 int serve_listens(struct build *build, const char *const *texts, unsigned count)
 {
+	struct config_serve *serve = &build->box->config.serve;
 	unsigned before = build->report->errors;
 
-	build->box->config.serve.address_count = 0;
+	serve->address_count = 0;
 	for (unsigned i = 0; i < count; i++)
-		add_listens(build, texts[i], (struct place){0});
+		serve_addresses(build, texts[i], (struct place){0}, serve->addresses,
+		                &serve->address_count);
 	return build->report->errors == before ? 0 : -EINVAL;
 }

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* owsctl config FILE list: targets, the driver's keys and the items, as a table or JSON. */
-#include <math.h>
 #include <stdio.h>
+#include <string.h>
 
+#include "src/config/read/options.h"
 #include "src/faces/show/json.h"
 #include "src/faces/show/names.h"
-#include "src/ground/signal/value.h"
 #include "src/tool/owsctl/config_list.h"
 #include "src/tool/owsctl/table.h"
 
@@ -129,67 +129,32 @@ static void config_list_print_table(const struct config *config, char *const *pa
 	table_free(&table);
 }
 
-static void limits_json(struct json *json, const struct config_limits *limits)
+/* All keys of a block, as the file calls them, with the values in force; null: there is none. */
+static void keys_json(struct json *json, enum option_place place, const void *from)
 {
-	static const char *const keys[CONFIG_LIMITS] = {
-		[CONFIG_LIMIT_LL] = "limit_ll",
-		[CONFIG_LIMIT_L] = "limit_l",
-		[CONFIG_LIMIT_H] = "limit_h",
-		[CONFIG_LIMIT_HH] = "limit_hh",
-	};
+	char room[VALUE_TEXT_MAX];
 
-	if (!limits->any) {
-		json_null(json, "limits");
-		return;
+	for (int i = 0; i < OPTION_COUNT_ALL; i++) {
+		const struct option_def *def = &option_table[i];
+		const char *text;
+
+		if (def->place != place || !def->store)
+			continue;
+		text = option_is_given(def, from) ? option_text(def, from, room) : NULL;
+		if (def->kind == OPTION_FLAG)
+			json_bool(json, def->key, !strcmp(text, "on"));
+		else if (text && (def->kind == OPTION_COUNT || def->kind == OPTION_SECONDS ||
+		                  def->kind == OPTION_NUMBER))
+			json_number(json, def->key, text);
+		else
+			json_string(json, def->key, text);
 	}
-	json_object(json, "limits");
-	for (int i = 0; i < CONFIG_LIMITS; i++)
-		json_double(json, keys[i], limits->has[i] ? limits->limit[i] : NAN);
-	json_double(json, "hysteresis", limits->hysteresis);
-	json_seconds(json, "on_delay", limits->on_delay_ns);
-	json_seconds(json, "off_delay", limits->off_delay_ns);
-	json_object_end(json);
-}
-
-static void scaling_json(struct json *json, const struct config_item *item)
-{
-	const struct scale *scale = &item->scale;
-
-	json_string(json, "unit", item->unit);
-	json_known(json, "decimals", item->decimals);
-	json_string(json, "description", item->description);
-	json_double(json, "scale", scale->linear ? scale->factor : 1);
-	json_double(json, "offset", scale->linear ? scale->offset : 0);
-	json_string(json, "points", item->points);
-	json_double(json, "min", scale->has_min ? scale->min : NAN);
-	json_double(json, "max", scale->has_max ? scale->max : NAN);
-	json_double(json, "max_step", item->max_step);
-	json_double(json, "filter", item->filter_s);
-	json_double(json, "deadband", item->deadband);
-	json_string(json, "calibrated", item->calibrated);
 }
 
 static void item_json(struct json *json, const struct config_item *item)
 {
 	json_object(json, NULL);
-	json_string(json, "name", item->name);
-	json_string(json, "path", item->path);
-	json_string(json, "type", value_type_name(item->type));
-	json_string(json, "io", item->output ? "output" : "input");
-	json_string(json, "init_value", item->has_init ? item->init_text : NULL);
-	json_string(json, "safe_value", item->has_safe ? item->safe_text : NULL);
-	json_bool(json, "readable", item->readable);
-	json_bool(json, "writable", item->writable);
-	json_bool(json, "uncached", item->fresh);
-	json_uint(json, "per_factor", item->per_factor);
-	json_seconds(json, "stale_after", item->stale_after_ns);
-	json_bool(json, "alarm", item->alarm);
-	json_string(json, "latch_alarm", item->latch_alarm);
-	json_string(json, "por_alarm", item->por_alarm);
-	json_string(json, "set_alarm", item->set_alarm);
-	json_string(json, "reset_latch", item->reset_latch);
-	limits_json(json, &item->limits);
-	scaling_json(json, item);
+	keys_json(json, PLACE_ITEM, item);
 	json_int(json, "line", item->line);
 	json_object_end(json);
 }
@@ -214,11 +179,7 @@ static void config_list_print_json(const struct config *config, char *const *pat
 		json_object_end(&json);
 	}
 	json_array_end(&json);
-	json_uint(&json, "max_cons_alarms", config->max_cons_alarms);
-	json_uint(&json, "max_retries", config->max_retries);
-	json_seconds(&json, "timeout", config->timeout_ns);
-	json_seconds(&json, "period", config->period_ns);
-	json_seconds(&json, "alarm_period", config->alarm_period_ns);
+	keys_json(&json, PLACE_DRIVER, config);
 	json_array(&json, "items");
 	for (unsigned i = 0; i < config->item_count; i++)
 		if (names_match(config->items[i].name, patterns, count))

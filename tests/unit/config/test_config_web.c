@@ -86,7 +86,6 @@ static void test_what_cannot_be_is_an_error_at_its_place(void)
 	         "f:2:14: error: Listen \"house:8080\": expected an address of this machine such as "
 	         "192.168.1.5 (0.0.0.0 and [::]: all), or localhost\n"},
 		{"Web { Listen \"8080, 8080\" }",
-	         "f:2:14: error: Listen \"8080\": is given twice\n"
 	         "f:2:14: error: Listen \"8080\": is given twice\n"},
 		{"Web { Hosts \"a:80\" }",
 	         "f:2:13: error: Hosts \"a:80\": expected names with commas between them, no "
