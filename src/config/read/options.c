@@ -8,7 +8,7 @@
 #include <strings.h>
 
 #include "src/config/read/build.h"
-#include "src/config/read/texts.h"
+#include "src/config/read/options.h"
 #include "src/ground/text/distance.h"
 
 #define DAY 86400.0

@@ -7,6 +7,7 @@
 
 #include "src/config/read/config.h"
 #include "src/config/read/rio.h"
+#include "src/config/read/texts.h"
 #include "src/ground/signal/value.h"
 
 enum option_place {
@@ -40,9 +41,6 @@ enum option_store {
 	STORE_NS,       /* int64_t, nanoseconds */
 	STORE_DOUBLE,   /* double */
 };
-
-/* Why a text cannot be the value; NULL: it can. */
-typedef const char *text_check(const char *text);
 
 enum option {
 #define OPTION(name, ...) OPT_##name,

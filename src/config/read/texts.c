@@ -3,6 +3,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "src/config/read/config.h"
 #include "src/config/read/texts.h"
 #include "src/ground/signal/utf8.h"
 

@@ -2,7 +2,8 @@
 /* What the text of a key may be: the checks of the table of keys. Pure functions. */
 #pragma once
 
-#include "src/config/read/options.h"
+/* Why the text cannot be the value; NULL: it can. */
+typedef const char *text_check(const char *text);
 
 #define TEXT_LETTERS "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.-"
 
