@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* The model of a configuration, from the tree of its document. */
+#include <ctype.h>
 #include <float.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -192,16 +194,13 @@ static void put_limit(struct json *json, const char *name, const struct option_d
 
 void model_keys(struct json *json)
 {
-	static const char *const places[] = {
-		[PLACE_DRIVER] = "driver",     [PLACE_ITEM] = "item",     [PLACE_BUS] = "bus",
-		[PLACE_RECORDER] = "recorder", [PLACE_INFLUX] = "influx", [PLACE_WEB] = "web",
-		[PLACE_MQTT] = "mqtt",
-	};
 	static const char *const kinds[] = {
 		[OPTION_TEXT] = "text",     [OPTION_COUNT] = "count", [OPTION_SECONDS] = "seconds",
 		[OPTION_NUMBER] = "number", [OPTION_FLAG] = "flag",   [OPTION_TYPE] = "type",
 		[OPTION_IO] = "io",         [OPTION_BLOCK] = NULL,
 	};
+
+	char place[RIO_KEY_MAX + 1];
 
 	json_array(json, "keys");
 	for (int i = 0; i < OPTION_COUNT_ALL; i++) {
@@ -209,8 +208,11 @@ void model_keys(struct json *json)
 
 		if (def->kind == OPTION_BLOCK)
 			continue;
+		snprintf(place, sizeof(place), "%s",
+		         def->place == PLACE_DRIVER ? "driver" : option_place_name(def->place));
+		place[0] = (char)tolower((unsigned char)place[0]);
 		json_object(json, NULL);
-		json_string(json, "place", places[def->place]);
+		json_string(json, "place", place);
 		json_string(json, "key", def->key);
 		json_string(json, "kind", kinds[def->kind]);
 		json_string(json, "default", def->preset);

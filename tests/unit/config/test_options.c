@@ -32,21 +32,40 @@ void tearDown(void)
 	manual = NULL;
 }
 
-/* The paragraph of a key, up to the next key or section; copied into section. */
-static void find_section(const char *key, char *section, size_t size)
+/* The section of the keys of a place, which ends before *end. */
+static const char *keys_of(enum option_place place, const char **end)
+{
+	static const char *const names[] = {
+		[PLACE_DRIVER] = "DRIVER",     [PLACE_ITEM] = "ITEM",     [PLACE_BUS] = "BUS",
+		[PLACE_RECORDER] = "RECORDER", [PLACE_INFLUX] = "INFLUX", [PLACE_WEB] = "WEB",
+		[PLACE_MQTT] = "MQTT",
+	};
+	char mark[40];
+	const char *begin;
+
+	snprintf(mark, sizeof(mark), "\n.Sh %s KEYS\n", names[place]);
+	begin = strstr(manual, mark);
+	TEST_ASSERT_NOT_NULL_MESSAGE(begin, mark);
+	*end = strstr(begin + 1, "\n.Sh ");
+	TEST_ASSERT_NOT_NULL_MESSAGE(*end, mark);
+	return begin;
+}
+
+/* The paragraph of a key, up to the next key or the end of the list; copied into section. */
+static void find_section(const struct option_def *def, char *section, size_t size)
 {
 	char mark[96];
-	const char *begin, *end, *other;
+	const char *begin, *end, *other, *last;
 
-	snprintf(mark, sizeof(mark), "\n.It Cm %s\n", key);
-	begin = strstr(manual, mark);
-	TEST_ASSERT_NOT_NULL_MESSAGE(begin, key);
+	snprintf(mark, sizeof(mark), "\n.It Cm %s\n", def->key);
+	begin = strstr(keys_of(def->place, &last), mark);
+	TEST_ASSERT_TRUE_MESSAGE(begin && begin < last, def->key);
 	begin += strlen(mark);
 	end = strstr(begin, "\n.It Cm ");
 	other = strstr(begin, "\n.El");
 	if (!end || other < end)
 		end = other;
-	TEST_ASSERT_NOT_NULL_MESSAGE(end, key);
+	TEST_ASSERT_NOT_NULL_MESSAGE(end, def->key);
 	snprintf(section, size, "%.*s", (int)(end - begin), begin);
 }
 
@@ -114,15 +133,30 @@ static void test_the_manual_has_every_key_with_default_and_limits(void)
 	for (int i = 0; i < OPTION_COUNT_ALL; i++) {
 		const struct option_def *def = &option_table[i];
 
-		if (def->place == PLACE_BUS)
-			continue;
-		find_section(def->key, section, sizeof(section));
+		find_section(def, section, sizeof(section));
 		if (def->preset && *def->preset)
 			TEST_ASSERT_NOT_NULL_MESSAGE(strstr(section, def->preset), def->key);
 		if ((def->kind == OPTION_COUNT && i != OPT_IO_TYPE && i != OPT_ITEM_COUNT) ||
 		    def->kind == OPTION_SECONDS) {
 			TEST_ASSERT_TRUE_MESSAGE(has_number(section, def->least), def->key);
 			TEST_ASSERT_TRUE_MESSAGE(has_number(section, def->most), def->key);
+		}
+	}
+}
+
+static void test_each_key_of_the_manual_is_a_row(void)
+{
+	static const char mark[] = "\n.It Cm ";
+
+	for (int place = PLACE_DRIVER; place <= PLACE_MQTT; place++) {
+		const char *end, *at = keys_of((enum option_place)place, &end);
+		char key[64];
+
+		while ((at = strstr(at, mark)) && at < end) {
+			at += strlen(mark);
+			snprintf(key, sizeof(key), "%.*s", (int)strcspn(at, " \n"), at);
+			TEST_ASSERT_TRUE_MESSAGE(option_find((enum option_place)place, key) >= 0,
+			                         key);
 		}
 	}
 }
@@ -145,6 +179,7 @@ int main(void)
 	RUN_TEST(test_every_key_has_a_place_a_kind_and_help);
 	RUN_TEST(test_the_nearest_key_is_near);
 	RUN_TEST(test_the_manual_has_every_key_with_default_and_limits);
+	RUN_TEST(test_each_key_of_the_manual_is_a_row);
 	RUN_TEST(test_the_example_of_the_manual_is_a_configuration);
 	return UNITY_END();
 }

@@ -5,8 +5,6 @@ import {draft} from "./draft.js";
 import {Field, Form, edits, setter} from "./form.js";
 import {problemsOf} from "./problems.js";
 
-const SINGLE = [["OwsDrv", "driver", "Driver"], ["Recorder", "recorder", "Recorder"],
-	["Influx", "influx", "Influx"], ["Web", "web", "Web"], ["Mqtt", "mqtt", "Mqtt"]];
 // Keys without a field here: of the driver, and of Web what only the machine itself may change
 const ELSEWHERE = ["TargetName", "ItemCount", "Version", "Files"];
 
@@ -30,7 +28,7 @@ function make() {
 		targets.append(field.node);
 		forms.set("TargetName", field);
 	}
-	for (const [name, place, title] of SINGLE) {
+	for (const {name, place, title} of draft.singles()) {
 		const form = new Form(place, place, setter(() => name), null, ELSEWHERE);
 		form.title = el("summary", {}, title);
 		form.box = el("details", {class: "block"}, form.title, form.node);
@@ -52,7 +50,7 @@ export function paint() {
 		driver.filter(({key}) => key === "TargetName"));
 	if (field)
 		field.control.disabled = !draft.editable;
-	for (const [name, , title] of SINGLE) {
+	for (const {name, title} of draft.singles()) {
 		const form = forms.get(name), driver_ = name === "OwsDrv";
 		const keys = driver_ ? model.driver : model.blocks[name] ?? {};
 		form.paint(keys, driver_ ? driver : problemsOf({block: name}));

@@ -44,6 +44,15 @@ class Draft extends EventTarget {
 		return this.keys.filter((key) => key.place === place);
 	}
 
+	/** The driver and the blocks of programs, which stand once: {name, place, title}. */
+	singles() {
+		return [...new Set(this.keys.map(({place}) => place))]
+			.filter((place) => place !== "item" && place !== "bus").map((place) => {
+				const title = place[0].toUpperCase() + place.slice(1);
+				return {name: place === "driver" ? "OwsDrv" : title, place, title};
+			});
+	}
+
 	go(where) {
 		this.dispatchEvent(new CustomEvent("go", {detail: where}));
 	}

@@ -4,7 +4,6 @@ import {el} from "./dom.js";
 import {draft} from "./draft.js";
 
 const SHOWN = 50;
-const PLACES = {OwsDrv: "driver", Recorder: "recorder", Influx: "influx", Web: "web", Mqtt: "mqtt"};
 const OWN = ["ItemCount", "Version", "Files"]; // keys that have no field
 const BUS = "Bus:";                   // the name of a block Bus is this and its target
 
@@ -16,7 +15,8 @@ export function placeOf({item, block, key, line}) {
 		return {part: "items", item, key};
 	if (block?.startsWith(BUS) && has("bus", key) && key !== "Target")
 		return {part: "blocks", block: "Bus", bus: block.slice(BUS.length), key};
-	if (PLACES[block] && has(PLACES[block], key) && !OWN.includes(key))
+	const single = draft.singles().find(({name}) => name === block);
+	if (single && has(single.place, key) && !OWN.includes(key))
 		return {part: "blocks", block, key};
 	return {part: "text", line};
 }
