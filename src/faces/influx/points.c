@@ -7,12 +7,10 @@
 
 #include "hal/base/time.h"
 #include "src/faces/influx/points.h"
-#include "src/faces/kit/moment.h"
-#include "src/ground/signal/hash.h"
+#include "src/faces/show/newest.h"
 #include "src/ground/text/influx.h"
 
 #define FIELDS (INFLUX_FIELDS + 16) /* and the quality */
-#define TEXT (VALUE_STRING_MAX + 1)
 /* A repetition has a time before any measurement that is still under way */
 #define REPEATED_NS (60 * NS_PER_S)
 
@@ -33,41 +31,27 @@ void points_fields(const struct ows_value *v, const char *text, char *fields, si
 	snprintf(fields, size, "%s%squality=%di", has ? value : "", has ? "," : "", v->quality);
 }
 
-static uint64_t hash_of(const char *text)
-{
-	uint64_t hash = hash_text(HASH_BEGIN, text, strlen(text));
-
-	return hash ? hash : 1;
-}
-
 static void points_send(struct point_row *row, struct pending *pending, int64_t time_ns,
-                        const char *fields, int64_t now_ns)
+                        const struct ows_value *v, const char *text, int64_t now_ns)
 {
-	uint64_t hash = hash_of(fields);
+	uint64_t hash = face_value_print(v, text);
+	char fields[FIELDS];
 
 	/* A value of before, after a time in which it was not known, is known again from now on. */
 	if (time_ns < row->time_ns || (time_ns == row->time_ns && hash != row->had))
 		time_ns = now_ns > row->time_ns ? now_ns : row->time_ns + 1;
+	points_fields(v, text, fields, sizeof(fields));
 	pending_add(pending, time_ns, row->series, fields);
 	row->time_ns = time_ns;
 	row->fields = row->had = hash;
 	row->sent_ns = now_ns;
 }
 
-/* The fields and the time of the newest value. False: the next look at the changes says why. */
-static bool points_get(struct ows *ows, int signal, int64_t now_ns, char fields[FIELDS],
-                       int64_t *time_ns)
+/* FACE_LOST, or the next look at the changes, says of the others why they are not known. */
+static bool points_get(struct ows *ows, int signal, int64_t now_ns, struct face_value *value)
 {
-	char text[TEXT] = "";
-	struct ows_value v;
-
-	if (ows_get_signal(ows, signal, now_ns, &v))
-		return false;
-	if (v.type == OWS_STRING && ows_get_signal_text(ows, signal, now_ns, &v, text, TEXT))
-		return false;
-	points_fields(&v, text, fields, FIELDS);
-	*time_ns = moment_of(&v, now_ns);
-	return true;
+	face_value(ows, signal, true, now_ns, value);
+	return value->known;
 }
 
 /* A line that has that quality alone, of each signal whose last line has something else. */
@@ -75,14 +59,13 @@ static void send_quality(struct points *points, struct pending *pending, uint8_t
                          int64_t now_ns)
 {
 	const struct ows_value v = {.quality = quality};
-	char fields[FIELDS];
+	uint64_t hash = face_value_print(&v, "");
 
-	points_fields(&v, "", fields, sizeof(fields));
 	for (int i = 0; i < points->count; i++) {
 		struct point_row *row = &points->rows[i];
 
-		if (row->series && row->fields && row->fields != hash_of(fields))
-			points_send(row, pending, now_ns, fields, now_ns);
+		if (row->series && row->fields && row->fields != hash)
+			points_send(row, pending, now_ns, &v, "", now_ns);
 	}
 }
 
@@ -141,8 +124,7 @@ void points_changes(struct points *points, struct ows *ows, struct pending *pend
                     const int *signals, int n, int64_t now_ns)
 {
 	int count = signals ? n : points->count;
-	char fields[FIELDS];
-	int64_t time_ns;
+	struct face_value value;
 
 	for (int i = 0; i < count; i++) {
 		int signal = signals ? signals[i] : i;
@@ -151,26 +133,29 @@ void points_changes(struct points *points, struct ows *ows, struct pending *pend
 		if (signal < 0 || signal >= points->count)
 			continue;
 		row = &points->rows[signal];
-		if (row->series && points_get(ows, signal, now_ns, fields, &time_ns) &&
-		    hash_of(fields) != row->fields)
-			points_send(row, pending, time_ns, fields, now_ns);
+		if (row->series && points_get(ows, signal, now_ns, &value) &&
+		    face_value_print(&value.v, value.text) != row->fields)
+			points_send(row, pending, face_value_time(&value.v, now_ns), &value.v,
+			            value.text, now_ns);
 	}
 }
 
 void points_repeat(struct points *points, struct ows *ows, struct pending *pending, int64_t now_ns)
 {
-	char fields[FIELDS];
+	struct face_value value;
 	int64_t time_ns;
 
 	for (int i = 0; i < points->count; i++) {
 		struct point_row *row = &points->rows[i];
 
 		if (!row->series || now_ns - row->sent_ns < POINTS_REPEAT_NS ||
-		    !points_get(ows, i, now_ns, fields, &time_ns))
+		    !points_get(ows, i, now_ns, &value))
 			continue;
-		if (hash_of(fields) == row->fields && time_ns < now_ns - REPEATED_NS)
+		time_ns = face_value_time(&value.v, now_ns);
+		if (face_value_print(&value.v, value.text) == row->fields &&
+		    time_ns < now_ns - REPEATED_NS)
 			time_ns = now_ns - REPEATED_NS;
-		points_send(row, pending, time_ns, fields, now_ns);
+		points_send(row, pending, time_ns, &value.v, value.text, now_ns);
 	}
 }
 

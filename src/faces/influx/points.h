@@ -15,7 +15,7 @@
 
 struct point_row {
 	char *series;    /* NULL: no line can have that name */
-	uint64_t fields; /* a hash of those that were sent last; 0: none were */
+	uint64_t fields; /* face_value_print() of those that were sent last; 0: none were */
 	int64_t sent_ns;
 	/* Of the last line of that series, also by an image before. */
 	int64_t time_ns;

@@ -174,14 +174,14 @@ static bool put_alert(struct stream *s, struct row *row, const struct news *news
 	const char *why = "", *more = "";
 	uint32_t print;
 
-	if (!news->good) {
+	if (!news->value.good) {
 		/* the state says that owsd is lost, and an output may wait for a command */
-		if (s->live && news->v.quality != OWS_Q_INITIAL)
-			why = ows_quality_text(news->v.quality);
+		if (s->live && news->value.v.quality != OWS_Q_INITIAL)
+			why = ows_quality_text(news->value.v.quality);
 	} else if (plain_limit(s, row, &state) && plain_stands(&state)) {
 		why = ows_alarm_kind_text(state.limit_kind);
 		more = " alarm";
-	} else if (news->simulated) {
+	} else if (news->value.simulated) {
 		why = "simulated";
 	}
 	if (*why)
@@ -203,13 +203,13 @@ static bool value(struct stream *s, struct row *row)
 
 	if (!stream_read(s, row, &news))
 		return put_alert(s, row, &news);
-	if (!news.good)
+	if (!news.value.good)
 		return stream_put_text(s, row->topic, "", true) && put_alert(s, row, &news) &&
 		       stream_published(row, &news);
 	stream_value(s, &news, "true", "false");
 	/* an empty text would empty the topic: it is one byte 0 */
-	put = *news.text ? stream_put(s, row->topic, true)
-	                 : s->outlet.put(s->outlet.ctx, row->topic, "", 1, true);
+	put = *news.value.text ? stream_put(s, row->topic, true)
+	                       : s->outlet.put(s->outlet.ctx, row->topic, "", 1, true);
 	return put && put_alert(s, row, &news) && stream_published(row, &news);
 }
 

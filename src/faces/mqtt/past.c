@@ -316,7 +316,7 @@ static bool had_before(const struct past *p, const struct row *row, const struct
 /* A value that holds comes again each hour. */
 static bool is_same(const struct past *p, struct row *row, const struct replay_row *r)
 {
-	uint64_t print = stream_print(&r->v, r->text),
+	uint64_t print = face_value_print(&r->v, r->text),
 		 before = row->past_print || p->count > 1 ? row->past_print : row->past_told;
 
 	row->past_print = print;

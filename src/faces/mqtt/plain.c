@@ -4,7 +4,6 @@
 #include <time.h>
 
 #include "hal/base/time.h"
-#include "src/faces/kit/moment.h"
 #include "src/faces/mqtt/plain.h"
 #include "src/faces/show/reading.h"
 #include "src/faces/show/when.h"
@@ -71,7 +70,7 @@ static void plain_put_value(struct json *json, const struct stream *s, const str
 		json_bool(json, "simulated", true);
 	if (!ows_good(quality))
 		json_string(json, "why", ows_quality_text(s->live ? quality : OWS_Q_NO_OWSD));
-	put_time(json, s, moment_of(v, now.boot) + now.wall - now.boot);
+	put_time(json, s, face_value_time(v, now.boot) + now.wall - now.boot);
 	json_object_end(json);
 }
 
@@ -195,14 +194,14 @@ bool plain_value(struct stream *s, struct row *row)
 	bool due = stream_read(s, row, &news);
 	struct json json;
 
-	if (!publish_chip(s, row, news.v.quality) || !publish_limit(s, row))
+	if (!publish_chip(s, row, news.value.v.quality) || !publish_limit(s, row))
 		return false;
-	if (s->live && plain_is_key(row) && !publish_key(s, row, &news.v))
+	if (s->live && plain_is_key(row) && !publish_key(s, row, &news.value.v))
 		return false;
 	if (!due)
 		return true;
 	stream_message(s, &json);
-	plain_put_value(&json, s, &news.v, news.text);
+	plain_put_value(&json, s, &news.value.v, news.value.text);
 	return stream_put(s, row->topic, true) && stream_published(row, &news);
 }
 

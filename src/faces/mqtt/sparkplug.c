@@ -10,7 +10,6 @@
 #include <string.h>
 
 #include "hal/base/time.h"
-#include "src/faces/kit/moment.h"
 #include "src/faces/mqtt/health.h"
 #include "src/faces/mqtt/plain.h"
 #include "src/faces/show/when.h"
@@ -379,16 +378,16 @@ static bool put_row(struct stream *s, struct row *row, uint64_t alias, bool data
 	m.metric.has_alias = true;
 	m.metric.alias = alias + (uint64_t)(row - s->rows);
 	m.metric.has_timestamp = true;
-	row->moment_ns = moment_of(&news.v, now.boot);
-	row->told = stream_print(&news.v, news.text);
+	row->moment_ns = face_value_time(&news.value.v, now.boot);
+	row->told = face_value_print(&news.value.v, news.value.text);
 	if (!data && s->clock_set && !row->born_ns)
 		row->born_ns = row->moment_ns;
 	m.metric.timestamp = ms_of(row->moment_ns + now.wall - now.boot);
-	add_quality(&m, news.v.quality, news.simulated);
+	add_quality(&m, news.value.v.quality, news.value.simulated);
 	if (!data)
 		add_description(&m, &row->info);
 	m.metric.properties = &m.set;
-	set_value(&m.metric, &news.v, row->info.type, news.text);
+	set_value(&m.metric, &news.value.v, row->info.type, news.value.text);
 	put_metric(s, &m.metric);
 	stream_published(row, &news);
 	put_limit(s, row, alias, data);
@@ -498,7 +497,7 @@ static bool birth_of_node(struct stream *s)
 	/* which chips are there is to be known before the devices are born */
 	for (int i = 0; i < s->count; i++) {
 		stream_read(s, &s->rows[i], &news);
-		plain_chip_look(s, &s->rows[i], news.v.quality);
+		plain_chip_look(s, &s->rows[i], news.value.v.quality);
 	}
 	s->seq = 0;
 	sparkplug_begin(s);
@@ -538,7 +537,7 @@ static bool value(struct stream *s, struct row *row)
 	if (!s->announced)
 		return true;
 	stream_read(s, row, &news);
-	plain_chip_look(s, row, news.v.quality);
+	plain_chip_look(s, row, news.value.v.quality);
 	if (chip && !chip->announced) {
 		if (chip->seen && plain_chip_there(s, chip))
 			s->birth = 0;

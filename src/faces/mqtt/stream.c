@@ -52,48 +52,23 @@ int64_t stream_repeat_ns(const struct ows_info *info)
 
 bool stream_read(struct stream *s, struct row *row, struct news *news)
 {
-	int64_t repeat_ns = 0;
-	struct ows_value *v = &news->v;
+	struct face_value *value = &news->value;
+	int64_t repeat_ns = s->live ? stream_repeat_ns(&row->info) : 0;
 
 	news->now_ns = ows_now();
-	news->text[0] = '\0';
-	*v = (struct ows_value){.quality = OWS_Q_NO_OWSD};
-	if (s->live) {
-		int err = ows_get_signal_text(s->h, (int)(row - s->rows), news->now_ns, v,
-		                              news->text, sizeof(news->text));
-
-		if (err && err != -ENOSPC && err != -ESTALE)
-			v->quality = OWS_Q_NO_OWSD;
-		repeat_ns = stream_repeat_ns(&row->info);
-	}
-	news->good = ows_good(v->quality);
-	news->simulated = v->detail & OWS_DETAIL_SIMULATED;
-	news->print = (uint64_t)news->simulated << 8 | v->quality;
-	if (news->good)
-		news->print = hash_text(HASH_BEGIN ^ news->print, news->text, strlen(news->text));
+	/* rows may be of an image that is no more: of an owsd that is lost none is read */
+	face_value(s->live ? s->h : NULL, (int)(row - s->rows), s->live, news->now_ns, value);
+	face_value_text(value);
+	news->print = face_value_print(&value->v, value->text) ^ (uint64_t)value->simulated << 8;
 	return !row->published || news->print != row->print ||
-	       (repeat_ns && news->good && news->now_ns - row->published_ns >= repeat_ns);
-}
-
-uint64_t stream_print(const struct ows_value *v, const char *text)
-{
-	uint64_t print = HASH_BEGIN ^ v->quality;
-
-	if (!ows_good(v->quality))
-		return print;
-	if (v->type == OWS_STRING)
-		return hash_text(print, text ? text : "", text ? strlen(text) : 0) | 1;
-	print = hash_text(print, (const char *)&v->number, sizeof(v->number));
-	return hash_text(print, (const char *)&v->integer,
-	                 v->type == OWS_FLOAT || v->type == OWS_DOUBLE ? 0 : sizeof(v->integer)) |
-	       1;
+	       (repeat_ns && value->good && news->now_ns - row->published_ns >= repeat_ns);
 }
 
 bool stream_published(struct row *row, const struct news *news)
 {
 	row->published = true;
-	row->good = news->good;
-	row->simulated = news->simulated;
+	row->good = news->value.good;
+	row->simulated = news->value.simulated;
 	row->print = news->print;
 	row->published_ns = news->now_ns;
 	return true;
@@ -101,12 +76,12 @@ bool stream_published(struct row *row, const struct news *news)
 
 void stream_value(struct stream *s, const struct news *news, const char *yes, const char *no)
 {
-	const char *text = news->text, *at;
+	const char *text = news->value.text, *at;
 	size_t len = strlen(text);
 
 	rewind(s->out);
-	if (news->v.type == OWS_BOOL) {
-		fputs(news->v.integer ? yes : no, s->out);
+	if (news->value.v.type == OWS_BOOL) {
+		fputs(news->value.v.integer ? yes : no, s->out);
 		return;
 	}
 	while (len) {
@@ -114,7 +89,7 @@ void stream_value(struct stream *s, const struct news *news, const char *yes, co
 		if (utf8_next(&text, &len) < 0)
 			fputs("\xef\xbf\xbd", s->out);
 		/* the conventions have no sign but '-' in a number: "1e+20" */
-		else if (news->v.type == OWS_STRING || *at != '+')
+		else if (news->value.v.type == OWS_STRING || *at != '+')
 			fwrite(at, 1, (size_t)(text - at), s->out);
 	}
 }

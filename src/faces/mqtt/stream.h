@@ -12,7 +12,7 @@
 #include "hal/owfs/path.h"
 #include "src/faces/mqtt/topics.h"
 #include "src/faces/show/json.h"
-#include "src/ground/signal/value.h"
+#include "src/faces/show/newest.h"
 #include "src/public/ows.h"
 
 /* What takes messages. retain: the broker keeps it for those who come later. */
@@ -83,9 +83,7 @@ struct gone {
 
 /* The value of a row, as it is now. */
 struct news {
-	struct ows_value v;
-	bool good, simulated;
-	char text[VALUE_STRING_MAX + 1];
+	struct face_value value; /* with its text, of numbers too */
 	uint64_t print;
 	int64_t now_ns;
 };
@@ -261,6 +259,4 @@ void stream_value(struct stream *s, const struct news *news, const char *yes, co
 int64_t stream_repeat_ns(const struct ows_info *info);
 /* What a row's value is. True: it has to be published, and stream_published() is due then. */
 bool stream_read(struct stream *s, struct row *row, struct news *news);
-/* A hash of a value as it is shown, never 0: of one that is not good of its quality alone. */
-uint64_t stream_print(const struct ows_value *v, const char *text);
 bool stream_published(struct row *row, const struct news *news); /* Returns true. */

@@ -194,15 +194,15 @@ static bool value(struct stream *s, struct row *row)
 	if (!stream_read(s, row, &news))
 		return true;
 	/* the conventions have no other place for it that a person sees */
-	if (news.good && news.simulated != row->simulated) {
-		row->simulated = news.simulated;
+	if (news.value.good && news.value.simulated != row->simulated) {
+		row->simulated = news.value.simulated;
 		if (!put_control(s, row)) {
-			row->simulated = !news.simulated;
+			row->simulated = !news.value.simulated;
 			return false;
 		}
 	}
-	if (!news.good)
-		return put_below_row(s, row, ERROR, error_of(news.v.quality)) &&
+	if (!news.value.good)
+		return put_below_row(s, row, ERROR, error_of(news.value.v.quality)) &&
 		       stream_published(row, &news);
 	/*
 	 * The conventions have the error removed before the value comes, and the old value would

@@ -6,6 +6,7 @@
 
 #include "src/faces/show/metrics.h"
 #include "src/faces/show/names.h"
+#include "src/faces/show/newest.h"
 #include "src/faces/show/standing.h"
 #include "src/faces/show/stats.h"
 #include "src/faces/show/when.h"
@@ -98,31 +99,25 @@ static bool sample_of(const struct print *p, int signal, const struct ows_info *
                       enum what what, char text[VALUE_TEXT_MAX], int64_t *seconds_ns)
 {
 	struct ows *h = p->metrics->h;
-	struct ows_value v = {0};
-	int err = ows_get_signal(h, signal, p->now.boot, &v);
-	bool filled = !err || err == -ESTALE;
-	enum ows_type type = (enum ows_type)v.type;
+	struct face_value value;
 	struct ows_alarm_state alarms;
 
+	face_value(h, signal, !p->metrics->lost, p->now.boot, &value);
 	switch (what) {
 	case VALUE:
-		if (err || p->metrics->lost || !ows_good(v.quality) || type == OWS_STRING)
+		if (!value.good || value.v.type == OWS_STRING)
 			return false;
-		value_to_text(type, value_is_float(type) ? value_of_double(v.number) : v.integer,
-		              text);
+		snprintf(text, VALUE_TEXT_MAX, "%s", face_value_text(&value));
 		return true;
 	case QUALITY:
-		snprintf(text, VALUE_TEXT_MAX, "%u",
-		         !filled                                   ? 0u
-		         : p->metrics->lost && ows_good(v.quality) ? OWS_Q_NO_OWSD
-		                                                   : v.quality);
+		snprintf(text, VALUE_TEXT_MAX, "%u", value.v.quality);
 		return true;
 	case AGE:
-		*seconds_ns = v.age_ns;
-		return filled && v.measured_ns != 0;
+		*seconds_ns = value.v.age_ns;
+		return value.v.measured_ns != 0;
 	case SIMULATED:
 		snprintf(text, VALUE_TEXT_MAX, "1");
-		return v.detail & OWS_DETAIL_SIMULATED;
+		return value.simulated;
 	case ALARM:
 		alarms = standing_of(h, ows_find(h, info->name));
 		snprintf(text, VALUE_TEXT_MAX, "%d", standing_any(&alarms));

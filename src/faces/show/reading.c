@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "src/faces/show/digits.h"
+#include "src/faces/show/newest.h"
 #include "src/faces/show/reading.h"
 #include "src/faces/show/text.h"
 #include "src/ground/signal/value.h"
@@ -37,7 +38,7 @@ void reading_round(struct reading *reading, int decimals)
 
 bool reading_filled(const struct reading *reading)
 {
-	return reading->err == 0 || reading->err == -ESTALE;
+	return face_value_counts(reading->err);
 }
 
 bool reading_good(const struct reading *reading)

@@ -14,6 +14,7 @@
 #include "hal/base/time.h"
 #include "src/faces/kit/look.h"
 #include "src/faces/kit/loop.h"
+#include "src/faces/show/newest.h"
 #include "src/faces/web/api.h"
 #include "src/faces/web/events.h"
 #include "src/faces/web/http.h"
@@ -290,19 +291,15 @@ static int open_web(struct face *face)
 	return 0;
 }
 
-/* A number that is another one when the signal has something else to show. */
+/* A number that is another one when the signal has something else to show, its age included. */
 static uint64_t mark_of(struct ows *h, int signal, int64_t now_ns)
 {
-	struct ows_value value = {0};
-	uint64_t mark = 0;
+	struct face_value value;
+	uint64_t mark;
 
-	ows_get_signal(h, signal, now_ns, &value);
-	memcpy(&mark, &value.number, sizeof(mark));
-	mark = (mark ^ (uint64_t)value.integer) * MIX;
-	mark = (mark ^ (uint64_t)value.measured_ns) * MIX;
-	/* strings have no number */
-	mark = (mark ^ (value.type == OWS_STRING ? value.count : 0)) * MIX;
-	return (mark ^ ((uint64_t)(uint32_t)value.err << 8 | value.quality)) * MIX;
+	face_value(h, signal, true, now_ns, &value);
+	mark = (face_value_print(&value.v, value.text) ^ (uint64_t)value.v.measured_ns) * MIX;
+	return (mark ^ (uint32_t)value.v.err) * MIX;
 }
 
 static void changes(struct face *face, const int *signals, int n)

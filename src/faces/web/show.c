@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* Signals as JSON. */
-#include <errno.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -8,56 +7,34 @@
 #include <string.h>
 
 #include "hal/base/time.h"
+#include "src/faces/show/newest.h"
 #include "src/faces/show/standing.h"
 #include "src/faces/show/when.h"
 #include "src/faces/web/show.h"
-#include "src/ground/signal/error.h"
-#include "src/ground/signal/quality.h"
 #include "src/ground/signal/value.h"
-
-struct look {
-	struct ows_value value;
-	bool good;
-	uint8_t code;
-	char text[VALUE_STRING_MAX + 1];
-};
-
-static void look_at(const struct show *show, int signal, struct look *look)
-{
-	int err;
-
-	look->value = (struct ows_value){0};
-	err = ows_get_signal_text(show->h, signal, show->now_ns, &look->value, look->text,
-	                          sizeof(look->text));
-	look->code = look->value.quality;
-	look->good = (!err || err == -ENOSPC) && show->live && ows_good(look->code);
-	/* what was good a moment ago may be shown so for two seconds more by libows */
-	if (!show->live && ows_good(look->code))
-		look->code = OWS_Q_NO_OWSD;
-}
 
 /* Beyond it a browser would round. */
 #define NUMBER_MOST ((INT64_C(1) << 53) - 1)
 
-static void show_put_value(struct json *json, const char *key, const struct look *look)
+static void show_put_value(struct json *json, const char *key, struct face_value *look)
 {
-	enum ows_type type = (enum ows_type)look->value.type;
+	enum ows_type type = (enum ows_type)look->v.type;
 
 	if (!look->good)
 		json_null(json, key);
 	else if (type == OWS_BOOL)
-		json_bool(json, key, look->value.integer != 0);
-	else if (type == OWS_STRING || look->value.integer > NUMBER_MOST ||
-	         look->value.integer < -NUMBER_MOST)
-		json_string(json, key, look->text);
+		json_bool(json, key, look->v.integer != 0);
+	else if (type == OWS_STRING || look->v.integer > NUMBER_MOST ||
+	         look->v.integer < -NUMBER_MOST)
+		json_string(json, key, face_value_text(look));
 	else
-		json_number(json, key, look->text);
+		json_number(json, key, face_value_text(look));
 }
 
-static void put_age(struct json *json, const char *key, const struct look *look)
+static void put_age(struct json *json, const char *key, const struct face_value *look)
 {
-	if (look->value.measured_ns)
-		json_seconds(json, key, look->value.age_ns);
+	if (look->v.measured_ns)
+		json_seconds(json, key, look->v.age_ns);
 	else
 		json_null(json, key);
 }
@@ -67,25 +44,14 @@ static void put_text(struct json *json, const char *key, const char *text)
 	json_string(json, key, *text ? text : NULL);
 }
 
-/* Why the value is not good, and what to do: an error says more than its quality. */
-static void put_quality(struct json *json, const struct show *show, const struct look *look)
+static void put_quality(struct json *json, const struct face_value *look)
 {
-	const char *why = "", *remedy = "";
-
-	if (!show->live) {
-		why = quality_cause(OWS_Q_NO_OWSD);
-		remedy = quality_remedy(OWS_Q_NO_OWSD);
-	} else if (!look->good) {
-		why = look->value.err ? error_text(look->value.err) : quality_cause(look->code);
-		remedy = look->value.err ? error_remedy(look->value.err) : "";
-		remedy = *remedy ? remedy : quality_remedy(look->code);
-	}
 	json_object(json, "quality");
 	json_bool(json, "good", look->good);
-	json_int(json, "code", look->code);
-	json_string(json, "text", ows_quality_text(look->code));
-	put_text(json, "why", why);
-	put_text(json, "remedy", remedy);
+	json_int(json, "code", look->v.quality);
+	json_string(json, "text", ows_quality_text(look->v.quality));
+	put_text(json, "why", face_value_why(look));
+	put_text(json, "remedy", face_value_remedy(look));
 	json_object_end(json);
 }
 
@@ -117,31 +83,31 @@ const char *show_alarm(const struct show *show, int signal, char words[SHOW_ALAR
 	return words;
 }
 
-static void put_all(struct json *json, const struct show *show, const struct look *look)
+static void put_all(struct json *json, struct face_value *look)
 {
 	show_put_value(json, "value", look);
-	put_quality(json, show, look);
+	put_quality(json, look);
 	put_age(json, "age", look);
-	json_bool(json, "simulated", look->value.detail & OWS_DETAIL_SIMULATED);
+	json_bool(json, "simulated", look->simulated);
 }
 
 void show_value(struct json *json, const struct show *show, int signal)
 {
-	struct look look;
+	struct face_value look;
 
-	look_at(show, signal, &look);
-	put_all(json, show, &look);
+	face_value(show->h, signal, show->live, show->now_ns, &look);
+	put_all(json, &look);
 }
 
 void show_signal(struct json *json, const struct show *show, int signal)
 {
 	char words[SHOW_ALARM];
 	struct ows_info info;
-	struct look look;
+	struct face_value look;
 
 	if (ows_info(show->h, signal, &info))
 		return;
-	look_at(show, signal, &look);
+	face_value(show->h, signal, show->live, show->now_ns, &look);
 	json_object(json, NULL);
 	json_int(json, "i", signal);
 	json_string(json, "name", info.name);
@@ -158,20 +124,20 @@ void show_signal(struct json *json, const struct show *show, int signal)
 	json_double(json, "min", info.min);
 	json_double(json, "max", info.max);
 	put_limits(json, &info);
-	put_all(json, show, &look);
+	put_all(json, &look);
 	put_text(json, "alarm", show_alarm(show, signal, words));
 	json_object_end(json);
 }
 
 void show_row(struct json *json, const struct show *show, int signal)
 {
-	struct look look;
+	struct face_value look;
 
-	look_at(show, signal, &look);
+	face_value(show->h, signal, show->live, show->now_ns, &look);
 	json_array(json, NULL);
 	json_int(json, NULL, signal);
 	show_put_value(json, NULL, &look);
-	json_int(json, NULL, look.code);
+	json_int(json, NULL, look.v.quality);
 	json_bool(json, NULL, look.good);
 	put_age(json, NULL, &look);
 	json_array_end(json);

@@ -6,12 +6,9 @@
 #include <string.h>
 
 #include "src/config/read/recorder.h"
-#include "src/faces/kit/moment.h"
-#include "src/ground/signal/hash.h"
+#include "src/faces/show/newest.h"
 #include "src/ground/signal/value.h"
 #include "src/history/recorder/series.h"
-
-#define TEXT_MAX 1025 /* of a string signal, with NUL */
 
 int64_t series_bits(uint8_t type, double number, int64_t integer)
 {
@@ -153,28 +150,26 @@ void series_free(struct series *rows)
 
 int64_t series_time(const struct series *rows, const struct ows_value *v, int64_t now_ns)
 {
-	int64_t time_ns = moment_of(v, now_ns);
+	int64_t time_ns = face_value_time(v, now_ns);
 
 	return time_ns < rows->since_ns ? rows->since_ns : time_ns;
 }
 
-/* The newest value of a row. False: it cannot be had, and the next look at the changes says why. */
-static bool series_get(struct ows *ows, int signal, int64_t now_ns, struct ows_value *v, char *text,
+/* FACE_LOST, or the next look at the changes, says of the others why they are not known. */
+static bool series_get(struct ows *ows, int signal, int64_t now_ns, struct face_value *value,
                        struct rule_sample *sample)
 {
-	text[0] = '\0';
-	if (ows_get_signal(ows, signal, now_ns, v))
-		return false;
-	if (v->type == OWS_STRING && ows_get_signal_text(ows, signal, now_ns, v, text, TEXT_MAX))
-		return false;
+	const struct ows_value *v = &value->v;
+
+	face_value(ows, signal, true, now_ns, value);
 	*sample = (struct rule_sample){.type = v->type,
 	                               .quality = v->quality,
 	                               .number = v->number,
 	                               .integer = v->integer,
 	                               .measured_ns = v->measured_ns};
 	if (v->type == OWS_STRING)
-		sample->integer = (int64_t)hash_text(HASH_BEGIN, text, strlen(text));
-	return true;
+		sample->integer = (int64_t)face_value_print(v, value->text);
+	return value->known;
 }
 
 static void keep_sample(struct series *rows, struct rule_kept *kept,
@@ -224,18 +219,19 @@ static void series_take(struct series *rows, int signal, struct ows *ows,
 {
 	struct row *row = &rows->rows[signal];
 	struct rule_sample sample;
-	char text[TEXT_MAX];
-	struct ows_value v;
+	struct face_value value;
 
-	if (row->rule.off || !series_get(ows, signal, now_ns, &v, text, &sample))
+	if (row->rule.off || !series_get(ows, signal, now_ns, &value, &sample))
 		return;
-	if (rule_missed(&row->rule, &row->kept, v.count - row->count, ticked, unseen_ns, now_ns))
+	if (rule_missed(&row->rule, &row->kept, value.v.count - row->count, ticked, unseen_ns,
+	                now_ns))
 		miss(rows, row, signal, writer, unseen_ns);
-	row->count = v.count;
+	row->count = value.v.count;
 	if (!rule_change(&row->rule, &row->kept, &sample) &&
 	    !(ticked && rule_interval(&row->kept, &sample)))
 		return;
-	keep_sample(rows, &row->kept, &sample, writer, (uint32_t)signal, &v, text, now_ns);
+	keep_sample(rows, &row->kept, &sample, writer, (uint32_t)signal, &value.v, value.text,
+	            now_ns);
 	keep_raw(rows, row, ows, writer, now_ns);
 }
 
