@@ -188,3 +188,20 @@ void listen_peers_print(const struct listen_peers *peers, char text[LISTEN_TEXT_
 	inet_ntop(peers->is_v6 ? AF_INET6 : AF_INET, peers->bytes, host, sizeof(host));
 	snprintf(text, LISTEN_TEXT_MAX, "%s/%u", host, peers->bits);
 }
+
+void listen_sockaddr(const struct listen_address *address, struct sockaddr_storage *to)
+{
+	struct sockaddr_in *v4 = (struct sockaddr_in *)to;
+	struct sockaddr_in6 *v6 = (struct sockaddr_in6 *)to;
+
+	memset(to, 0, sizeof(*to));
+	if (address->is_v6) {
+		v6->sin6_family = AF_INET6;
+		v6->sin6_port = htons(address->port);
+		memcpy(&v6->sin6_addr, address->bytes, sizeof(v6->sin6_addr));
+	} else {
+		v4->sin_family = AF_INET;
+		v4->sin_port = htons(address->port);
+		memcpy(&v4->sin_addr, address->bytes, sizeof(v4->sin_addr));
+	}
+}

@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <sys/socket.h>
 
 #define LISTEN_MAX 16
 #define LISTEN_PEERS_MAX 64
@@ -43,5 +44,7 @@ bool listen_peers_have(const struct listen_peers *peers, unsigned count, bool is
                        const uint8_t *bytes);
 /* "127.0.0.1:4304", "[::1]:4304" */
 #define LISTEN_TEXT_MAX 56
+/* As a socket has it. */
+void listen_sockaddr(const struct listen_address *address, struct sockaddr_storage *to);
 void listen_print(const struct listen_address *address, char text[LISTEN_TEXT_MAX]);
 void listen_peers_print(const struct listen_peers *peers, char text[LISTEN_TEXT_MAX]);

@@ -10,7 +10,6 @@
 #include <sys/epoll.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include "src/daemon/serve/client.h"
@@ -19,8 +18,6 @@
 #include "src/memory/shm/owner.h"
 #include "src/memory/shm/segment.h"
 
-/* Connections that wait for a place; the kernel's net.core.somaxconn may be less. */
-#define BACKLOG 4096
 /* Connections that the server accepts in a row before it serves clients again. */
 #define ACCEPTS 16
 
@@ -28,116 +25,84 @@ union address {
 	struct sockaddr any;
 	struct sockaddr_in v4;
 	struct sockaddr_in6 v6;
-	struct sockaddr_un local;
 };
 
-static socklen_t listener_fill(const struct listen_address *from, union address *to)
-{
-	memset(to, 0, sizeof(*to));
-	if (from->is_v6) {
-		to->v6.sin6_family = AF_INET6;
-		to->v6.sin6_port = htons(from->port);
-		memcpy(&to->v6.sin6_addr, from->bytes, 16);
-		return sizeof(to->v6);
-	}
-	to->v4.sin_family = AF_INET;
-	to->v4.sin_port = htons(from->port);
-	memcpy(&to->v4.sin_addr, from->bytes, 4);
-	return sizeof(to->v4);
-}
-
+/* fd: as listen_at_...() has returned it. */
 static int listener_add(struct serve *s, int fd, struct listener as)
 {
 	struct epoll_event event = {.events = EPOLLIN | EPOLLET};
 
 	event.data.u32 = SERVER_CLIENTS + 1 + s->listener_count;
-	if (listen(fd, BACKLOG) < 0 || epoll_ctl(s->epoll_fd, EPOLL_CTL_ADD, fd, &event) < 0)
-		return -errno;
+	if (fd < 0)
+		return fd;
+	if (epoll_ctl(s->epoll_fd, EPOLL_CTL_ADD, fd, &event) < 0) {
+		int err = -errno;
+
+		close(fd);
+		return err;
+	}
 	as.fd = fd;
 	s->listeners[s->listener_count++] = as;
 	return 0;
 }
 
-/* Bind an address that the machine may get later or never: signals do not wait for the network. */
-static int bind_later(struct serve *s, int fd, const struct listen_address *address,
-                      const union address *to, socklen_t len)
-{
-	char text[LISTEN_TEXT_MAX];
-	int one = 1;
-
-	if (setsockopt(fd, address->is_v6 ? IPPROTO_IPV6 : IPPROTO_IP,
-	               address->is_v6 ? IPV6_FREEBIND : IP_FREEBIND, &one, sizeof(one)) < 0 ||
-	    bind(fd, &to->any, len) < 0)
-		return -errno;
-	listen_print(address, text);
-	log_warning(s->log,
-	            "Listen %s: not an address of this machine now; it is served when it comes",
-	            text);
-	return 0;
-}
-
 /* The socket of [::] serves IPv4 too, unless an IPv4 address of the list has the same port. */
-static int is_v6_only(const struct config_serve *config, const struct listen_address *address)
+static bool is_v6_only(const struct config_serve *config, const struct listen_address *address)
 {
 	static const uint8_t any[16];
 
 	if (memcmp(address->bytes, any, sizeof(any)))
-		return 1;
+		return true;
 	for (unsigned i = 0; i < config->address_count; i++)
 		if (!config->addresses[i].is_v6 && config->addresses[i].port == address->port)
-			return 1;
-	return 0;
+			return true;
+	return false;
 }
 
 static int open_network(struct serve *s, const struct listen_address *address)
 {
-	union address to;
-	socklen_t len = listener_fill(address, &to);
-	int fd = socket(to.any.sa_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0), one = 1;
-	int only = is_v6_only(&s->config->serve, address), err;
+	bool only = is_v6_only(&s->config->serve, address);
+	char text[LISTEN_TEXT_MAX];
+	struct sockaddr_storage to;
+	const int one = 1;
+	int fd;
 
+	listen_sockaddr(address, &to);
+	fd = listen_at_address(&to, only, false);
+	/* the machine may get the address later or never: signals do not wait for the network */
+	if (fd == -EADDRNOTAVAIL && !listen_is_loopback(address)) {
+		fd = listen_at_address(&to, only, true);
+		listen_print(address, text);
+		if (fd >= 0)
+			log_warning(s->log,
+			            "Listen %s: not an address of this machine now; it is served "
+			            "when it comes",
+			            text);
+	}
 	if (fd < 0)
-		return -errno;
-	setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &one, sizeof(one));
-	if (address->is_v6)
-		setsockopt(fd, IPPROTO_IPV6, IPV6_V6ONLY, &only, sizeof(only));
+		return fd;
 	/* accepted sockets inherit both options */
 	setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &one, sizeof(one));
 	setsockopt(fd, SOL_SOCKET, SO_KEEPALIVE, &one, sizeof(one));
-	err = bind(fd, &to.any, len) < 0 ? -errno : 0;
-	if (err == -EADDRNOTAVAIL && !listen_is_loopback(address))
-		err = bind_later(s, fd, address, &to, len);
-	if (!err)
-		err = listener_add(s, fd, (struct listener){.network = true});
-	if (err)
-		close(fd);
-	return err;
+	return listener_add(s, fd, (struct listener){.network = true});
 }
 
-/* A socket of that path, which does not exist, for this user and the group. */
-static int bind_local(struct serve *s, const union address *to, const char *group, bool own)
+/* The mode of a socket for this user and that group, if there is one. */
+static mode_t mode_for(const char *group, gid_t *gid)
 {
-	gid_t gid;
-	bool has = owner_group(group, &gid);
-	int fd = listen_local(&to->local, SOCK_STREAM, has ? 0660 : 0600, has ? gid : (gid_t)-1);
-	int err;
+	bool has = owner_group(group, gid);
 
-	if (fd < 0)
-		return fd;
-	err = listener_add(s, fd, (struct listener){.own = own});
-	if (err)
-		close(fd);
-	return err;
+	if (!has)
+		*gid = (gid_t)-1;
+	return has ? 0660 : 0600;
 }
 
 static int open_local(struct serve *s, const char *path)
 {
-	union address to = {.local = {.sun_family = AF_UNIX}};
-	int err;
+	gid_t gid;
+	mode_t mode = mode_for("owsd-control", &gid);
 
-	snprintf(to.local.sun_path, sizeof(to.local.sun_path), "%s", path);
-	err = listen_vacate(&to.local);
-	return err ? err : bind_local(s, &to, "owsd-control", false);
+	return listener_add(s, listen_at_path(path, mode, gid), (struct listener){0});
 }
 
 /* Is ListenSocket that socket? Then it is served as the configuration has it. */
@@ -153,18 +118,16 @@ static bool is_listen_socket(const struct serve *s, const char *name)
 /* NAME.sock in the directory of owsd's files. One that is there is of an owsd that was killed. */
 static int open_own(struct serve *s)
 {
-	union address to = {.local = {.sun_family = AF_UNIX}};
 	char name[SEGMENT_FILE];
+	mode_t mode;
+	gid_t gid;
 
 	segment_file(s->instance, "sock", name);
 	if (s->directory < 0 || is_listen_socket(s, name))
 		return 0;
-	/* the path of the directory may be longer than an address has room */
-	snprintf(to.local.sun_path, sizeof(to.local.sun_path), "/proc/self/fd/%d/%s", s->directory,
-	         name);
-	if (unlinkat(s->directory, name, 0) < 0 && errno != ENOENT)
-		return -errno;
-	return bind_local(s, &to, "owsd-config", true);
+	mode = mode_for("owsd-config", &gid);
+	return listener_add(s, listen_at_name(s->directory, name, SOCK_STREAM, mode, gid),
+	                    (struct listener){.own = true});
 }
 
 /* Without IPv6 in the kernel the other loopback address serves. */
@@ -331,8 +294,7 @@ bool listeners_accept(struct serve *s)
 			if (fd == -EAGAIN)
 				s->waiting &= ~((uint32_t)1 << i);
 			/* the connection waits until a client leaves, or the next one comes */
-			if (fd == -EAGAIN || fd == -EMFILE || fd == -ENFILE || fd == -ENOBUFS ||
-			    fd == -ENOMEM)
+			if (fd == -EAGAIN || listen_is_full(fd))
 				break;
 			any = true;
 			if (fd >= 0)

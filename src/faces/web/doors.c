@@ -16,7 +16,6 @@
 #include "src/memory/shm/peer.h"
 #include "src/public/ows.h"
 
-#define BACKLOG 1024
 #define BATCH 64
 #define SEND_BUFFER (32 * 1024) /* bytes; the kernel takes twice that, with its own data */
 #define PAUSE_NS (200 * NS_PER_MS)
@@ -80,34 +79,15 @@ int doors_inherit(struct doors *doors)
 	return count;
 }
 
-/* Takes fd in any case. at: of doors_address(), else NULL. */
-static int listen_at(struct doors *doors, int fd, const struct listen_address *at)
-{
-	int err = listen(fd, BACKLOG) ? -errno : 0;
-
-	if (!err)
-		return doors_add(doors, fd, at);
-	close(fd);
-	return err;
-}
-
 int doors_socket(struct doors *doors, const char *path)
 {
-	struct sockaddr_un address = {.sun_family = AF_UNIX};
-	int fd, err;
+	int fd = listen_at_path(path, 0660, (gid_t)-1), err;
 
-	if (strlen(path) >= sizeof(address.sun_path))
-		return -ENAMETOOLONG;
-	memcpy(address.sun_path, path, strlen(path));
-	err = listen_vacate(&address);
-	if (err)
-		return err;
-	fd = listen_local(&address, SOCK_STREAM, 0660, (gid_t)-1);
 	if (fd < 0)
 		return fd;
-	err = listen_at(doors, fd, NULL);
+	err = doors_add(doors, fd, NULL);
 	if (!err)
-		memcpy(doors->path, address.sun_path, sizeof(doors->path));
+		snprintf(doors->path, sizeof(doors->path), "%s", path);
 	return err;
 }
 
@@ -124,28 +104,18 @@ static unsigned door_at(const struct doors *doors, const struct listen_address *
 
 int doors_address(struct doors *doors, struct listen_address *address)
 {
-	struct sockaddr_in6 v6 = {.sin6_family = AF_INET6, .sin6_port = htons(address->port)};
-	struct sockaddr_in v4 = {.sin_family = AF_INET, .sin_port = htons(address->port)};
-	struct sockaddr *any = address->is_v6 ? (struct sockaddr *)&v6 : (struct sockaddr *)&v4;
-	socklen_t len = address->is_v6 ? sizeof(v6) : sizeof(v4);
-	int fd = socket(any->sa_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-	int one = 1, err;
+	struct sockaddr_storage at;
+	socklen_t len = sizeof(at);
+	int fd, err;
 
+	listen_sockaddr(address, &at);
+	fd = listen_at_address(&at, true, false);
 	if (fd < 0)
-		return -errno;
-	memcpy(&v6.sin6_addr, address->bytes, sizeof(v6.sin6_addr));
-	memcpy(&v4.sin_addr, address->bytes, sizeof(v4.sin_addr));
-	setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &one, sizeof(one));
-	if (address->is_v6)
-		setsockopt(fd, IPPROTO_IPV6, IPV6_V6ONLY, &one, sizeof(one));
-	if (bind(fd, any, len)) {
-		err = -errno;
-		close(fd);
-		return err;
-	}
-	err = listen_at(doors, fd, address);
-	if (!err && getsockname(doors->fds[door_at(doors, address)], any, &len) == 0)
-		address->port = ntohs(address->is_v6 ? v6.sin6_port : v4.sin_port);
+		return fd;
+	err = doors_add(doors, fd, address);
+	/* the port stands at the same place in both */
+	if (!err && getsockname(fd, (struct sockaddr *)&at, &len) == 0)
+		address->port = ntohs(((const struct sockaddr_in *)&at)->sin_port);
 	return err;
 }
 
@@ -309,8 +279,7 @@ static bool accept_some(struct doors *doors, int door, int64_t now_ns)
 			return false;
 		}
 		new.fd = listen_accept(door, (struct sockaddr *)&new.address, &new.len);
-		if (new.fd == -EMFILE || new.fd == -ENFILE || new.fd == -ENOBUFS ||
-		    new.fd == -ENOMEM)
+		if (listen_is_full(new.fd))
 			pause_doors(doors, now_ns);
 		if (new.fd < 0)
 			return new.fd == -EAGAIN;

@@ -31,30 +31,9 @@
 
 #define PROGRAM "owsd-config"
 #define GROUP "owsd-config"
-#define BACKLOG 16
 #define LOOK_MS 100   /* how often it looks which visits have ended */
 #define IDLE_MS 30000 /* then the service manager waits in its place */
 #define PAUSE_NS (200 * NS_PER_MS)
-
-/* A socket for this user alone. */
-static int listen_at(const char *path)
-{
-	struct sockaddr_un address = {.sun_family = AF_UNIX};
-	int fd, err;
-
-	if (strlen(path) >= sizeof(address.sun_path))
-		return -ENAMETOOLONG;
-	memcpy(address.sun_path, path, strlen(path));
-	err = listen_vacate(&address);
-	if (err)
-		return err;
-	fd = listen_local(&address, SOCK_STREAM, 0600, (gid_t)-1);
-	if (fd < 0 || listen(fd, BACKLOG) == 0)
-		return fd;
-	err = -errno;
-	close(fd);
-	return err;
-}
 
 /* The socket NAME.config in this user's place. 0, or a negative errno after reporting why. */
 static int name_socket(const char *instance, char *path, size_t size)
@@ -89,7 +68,7 @@ static int writer_socket(const struct face_arguments *a, char *path, size_t size
 		snprintf(path, size, "%s", a->option);
 	else if (name_socket(a->instance, path, size))
 		return -ENOENT;
-	fd = listen_at(path);
+	fd = listen_at_path(path, 0600, (gid_t)-1); /* for this user alone */
 	if (fd < 0)
 		face_complain(PROGRAM, "%s: %s%s", path, strerror(-fd),
 		              fd == -EADDRINUSE ? "; another " PROGRAM " listens there" : "");
@@ -137,7 +116,7 @@ static void take_one(const struct writer *writer, struct visitors *visitors, int
 	bool may;
 	pid_t pid;
 
-	if (fd == -EMFILE || fd == -ENFILE || fd == -ENOMEM || fd == -ENOBUFS)
+	if (listen_is_full(fd))
 		nanosleep(&pause, NULL);
 	if (fd < 0)
 		return;

@@ -2,15 +2,21 @@
 /* Makes, takes over and accepts at the sockets of a program. */
 #include <errno.h>
 #include <fcntl.h>
+#include <netinet/in.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/stat.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include "src/ground/service/listen.h"
 #include "src/memory/shm/peer.h"
 
 #define FIRST_FD 3 /* of sd_listen_fds(3) */
+/* Connections that wait; the kernel's net.core.somaxconn may be less. */
+#define BACKLOG 4096
+#define LOCAL_BACKLOG 1024
 
 /*
  * bind() made it for this user alone. In a folder that others may write, another file may have
@@ -34,7 +40,7 @@ static int give_rights(const char *path, mode_t mode, gid_t group)
 	return err;
 }
 
-int listen_local(const struct sockaddr_un *at, int type, mode_t mode, gid_t group)
+static int listen_local(const struct sockaddr_un *at, int type, mode_t mode, gid_t group)
 {
 	int fd = socket(AF_UNIX, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0), err;
 	mode_t mask;
@@ -47,13 +53,16 @@ int listen_local(const struct sockaddr_un *at, int type, mode_t mode, gid_t grou
 	umask(mask);
 	if (!err)
 		err = give_rights(at->sun_path, mode, group);
+	if (!err && listen(fd, LOCAL_BACKLOG) < 0)
+		err = -errno;
 	if (!err)
 		return fd;
 	close(fd);
 	return err;
 }
 
-int listen_vacate(const struct sockaddr_un *at)
+/* Remove the socket of a process that was killed. */
+static int vacate(const struct sockaddr_un *at)
 {
 	struct stat st;
 	int fd, err;
@@ -70,6 +79,51 @@ int listen_vacate(const struct sockaddr_un *at)
 	if (err != ECONNREFUSED)
 		return -EADDRINUSE;
 	return unlink(at->sun_path) < 0 ? -errno : 0;
+}
+
+int listen_at_path(const char *path, mode_t mode, gid_t group)
+{
+	struct sockaddr_un at = {.sun_family = AF_UNIX};
+	int err;
+
+	if (strlen(path) >= sizeof(at.sun_path))
+		return -ENAMETOOLONG;
+	memcpy(at.sun_path, path, strlen(path));
+	err = vacate(&at);
+	return err ? err : listen_local(&at, SOCK_STREAM, mode, group);
+}
+
+int listen_at_name(int directory, const char *name, int type, mode_t mode, gid_t group)
+{
+	struct sockaddr_un at = {.sun_family = AF_UNIX};
+
+	/* the directory's own path may be longer than an address has room */
+	snprintf(at.sun_path, sizeof(at.sun_path), "/proc/self/fd/%d/%s", directory, name);
+	if (unlinkat(directory, name, 0) < 0 && errno != ENOENT)
+		return -errno;
+	return listen_local(&at, type, mode, group);
+}
+
+int listen_at_address(const struct sockaddr_storage *at, bool only, bool later)
+{
+	bool is_v6 = at->ss_family == AF_INET6;
+	socklen_t len = is_v6 ? sizeof(struct sockaddr_in6) : sizeof(struct sockaddr_in);
+	int fd = socket(at->ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0), err;
+	const int one = 1, v6_only = only;
+
+	if (fd < 0)
+		return -errno;
+	setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &one, sizeof(one));
+	if (is_v6)
+		setsockopt(fd, IPPROTO_IPV6, IPV6_V6ONLY, &v6_only, sizeof(v6_only));
+	if (later)
+		setsockopt(fd, is_v6 ? IPPROTO_IPV6 : IPPROTO_IP,
+		           is_v6 ? IPV6_FREEBIND : IP_FREEBIND, &one, sizeof(one));
+	if (bind(fd, (const struct sockaddr *)at, len) == 0 && listen(fd, BACKLOG) == 0)
+		return fd;
+	err = -errno;
+	close(fd);
+	return err;
 }
 
 int listen_inherited(int *fds, int most)
@@ -113,7 +167,12 @@ int listen_accept(int listener, struct sockaddr *from, socklen_t *len)
 
 	if (fd < 0)
 		return -errno;
-	if (from->sa_family == AF_UNIX)
+	if (from && from->sa_family == AF_UNIX)
 		setsockopt(fd, SOL_SOCKET, SO_OOBINLINE, &one, sizeof(one));
 	return fd;
+}
+
+bool listen_is_full(int err)
+{
+	return err == -EMFILE || err == -ENFILE || err == -ENOBUFS || err == -ENOMEM;
 }

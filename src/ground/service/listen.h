@@ -1,30 +1,34 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Listeners: all unix sockets at which a program listens are made here, or taken over here from the
- * service manager. On their connections the kernel refuses descriptors, where it can (from Linux
- * 6.16 on). Where it cannot, and on those that came before the program ran, peer_receive() takes
- * the bytes, and a porter closes them.
+ * Listeners: all sockets at which a program listens are made here, or taken over here from the
+ * service manager. On connections of unix sockets the kernel refuses descriptors, where it can
+ * (from Linux 6.16 on). Where it cannot, and on those that came before the program ran,
+ * peer_receive() takes the bytes, and a porter closes them.
  */
 #pragma once
 
 #include <stdbool.h>
 #include <sys/socket.h>
 #include <sys/types.h>
-#include <sys/un.h>
 
 /*
- * A socket of that type at a path that does not exist, not blocking, closed on exec. It is bound,
- * not yet listening. It has that mode, and that group unless this user may not give it that: then
- * it is for this user alone; (gid_t)-1: the user's own. A negative errno; -EPERM: another process
- * put something else in its place.
+ * Listen at a path, with a socket not blocking and closed on exec, in place of one of a process
+ * that was killed. It has that mode, and that group unless this user may not give it that: then it
+ * is for this user alone; (gid_t)-1: the user's own. A descriptor or a negative errno;
+ * -EADDRINUSE: a process listens there, -EEXIST: something else is there, -EPERM: another process
+ * put something else in its place, -ENAMETOOLONG.
  */
-int listen_local(const struct sockaddr_un *at, int type, mode_t mode, gid_t group);
-
+int listen_at_path(const char *path, mode_t mode, gid_t group);
 /*
- * Remove the socket of a process that was killed. -EADDRINUSE: a process listens there, -EEXIST: it
- * is no socket; another negative errno.
+ * The same at a name in an open directory, in place of whatever is there: only one process at a
+ * time may use that name.
  */
-int listen_vacate(const struct sockaddr_un *at);
+int listen_at_name(int directory, const char *name, int type, mode_t mode, gid_t group);
+/*
+ * Listen at a TCP address. only: [::] does not serve IPv4. later: also if the machine does not have
+ * that address yet.
+ */
+int listen_at_address(const struct sockaddr_storage *at, bool only, bool later);
 
 /*
  * The sockets that the service manager has opened for this process, as sd_listen_fds(3) has them:
@@ -37,8 +41,10 @@ int listen_inherited(int *fds, int most);
 const char *listen_remedy(int err);
 
 /*
- * Accept a connection, not blocking, closed on exec. On one of a unix socket a byte out of band
- * keeps its place, so that no look passes over its descriptors. As accept4(), with a negative
- * errno.
+ * Accept a connection, not blocking, closed on exec. On one of a unix stream a byte out of band
+ * keeps its place, so that no look passes over its descriptors. from NULL: of packets, which have
+ * none. As accept4(), with a negative errno.
  */
 int listen_accept(int listener, struct sockaddr *from, socklen_t *len);
+/* Did it say that there is no room for a connection? It waits with the kernel meanwhile. */
+bool listen_is_full(int err);

@@ -1,16 +1,20 @@
 /* SPDX-License-Identifier: MIT */
 /* The thread of the control room, its start and end, a reload, and the engine's side. */
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/epoll.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "hal/base/bell.h"
 #include "hal/base/thread.h"
 #include "hal/base/time.h"
 #include "src/config/read/config.h"
+#include "src/ground/service/listen.h"
 #include "src/memory/control/ask.h"
 #include "src/memory/control/control.h"
 #include "src/memory/control/door.h"
@@ -18,13 +22,15 @@
 #include "src/memory/control/held.h"
 #include "src/memory/control/news.h"
 #include "src/memory/control/private.h"
-#include "src/memory/control/socket.h"
 #include "src/memory/control/welcome.h"
 #include "src/memory/shm/word.h"
 #include "src/public/ows.h"
 
 #define STACK_SIZE (128 * 1024)
 #define EVENTS 64
+/* Modes of the socket: rights of those who connect are looked at afterwards, */
+#define FOR_ALL 0666
+#define FOR_OWN 0600 /* or there are none but of owsd's user and root */
 /* What stands in epoll's data; below it, a place * 2 + 1 if its process ended. */
 #define LISTENER (2 * OWS_CONTROLLERS)
 #define WAKE (LISTENER + 1)
@@ -51,6 +57,7 @@ static int control_add(struct control *c, int fd, uint32_t data)
 
 static int open_all(struct control *c)
 {
+	struct stat st;
 	int err;
 
 	c->epoll = epoll_create1(EPOLL_CLOEXEC);
@@ -58,9 +65,14 @@ static int open_all(struct control *c)
 	c->asked = c->wake < 0 ? -1 : bell_open();
 	if (c->asked < 0)
 		return -errno;
-	c->listener = socket_listen(c->directory, c->name, is_for_all(c), &c->inode);
+	/* the lock of the instance is held: what is there an owsd before has left */
+	c->listener = listen_at_name(c->directory, c->name, SOCK_SEQPACKET,
+	                             is_for_all(c) ? FOR_ALL : FOR_OWN, (gid_t)-1);
 	if (c->listener < 0)
 		return c->listener;
+	if (fstatat(c->directory, c->name, &st, AT_SYMLINK_NOFOLLOW) < 0)
+		return -errno;
+	c->inode = st.st_ino;
 	err = news_open(c);
 	if (!err)
 		err = control_add(c, c->listener, LISTENER);
@@ -170,6 +182,8 @@ static void part_with(struct control *c, int *fd)
 
 void control_stop(struct control *c)
 {
+	struct stat st;
+
 	if (!c)
 		return;
 	__atomic_store_n(&c->stop, 1, __ATOMIC_RELEASE);
@@ -187,8 +201,10 @@ void control_stop(struct control *c)
 		if (control_state_of(p) != CONTROL_FREE)
 			part_with(c, &p->fd);
 	}
-	if (c->listener >= 0)
-		socket_remove(c->directory, c->name, c->inode);
+	/* not that of another owsd which has taken the instance over */
+	if (c->listener >= 0 && fstatat(c->directory, c->name, &st, AT_SYMLINK_NOFOLLOW) == 0 &&
+	    st.st_ino == c->inode)
+		unlinkat(c->directory, c->name, 0);
 	part_with(c, &c->listener);
 	while (c->away_count)
 		part_with(c, &c->away[--c->away_count]);
@@ -411,7 +427,9 @@ void control_reloaded(struct control *c)
 {
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
 		take_next_memory(c, &c->places[i]);
-	socket_open_for(c->directory, c->name, is_for_all(c));
+	if (fchmodat(c->directory, c->name, is_for_all(c) ? FOR_ALL : FOR_OWN, 0) < 0)
+		log_warning(c->log, "who may connect to %s stays as it was: %s", c->name,
+		            strerror(errno));
 	pthread_mutex_unlock(&c->lock);
 	bell_ring(c->wake);
 }

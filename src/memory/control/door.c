@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "hal/base/time.h"
+#include "src/ground/service/listen.h"
 #include "src/memory/control/ask.h"
 #include "src/memory/control/door.h"
 #include "src/memory/control/grant.h"
@@ -440,14 +441,13 @@ static bool accept_some(struct control *c, bool *full)
 
 		if (c->away_count == PORTER_FDS && !send_away(c))
 			break;
-		fd = accept4(c->listener, NULL, NULL, SOCK_NONBLOCK | SOCK_CLOEXEC);
+		fd = listen_accept(c->listener, NULL, NULL);
 		if (fd >= 0) {
 			meet(c, fd);
-		} else if (errno == EAGAIN) {
+		} else if (fd == -EAGAIN) {
 			return false;
-		} else if (errno == EMFILE || errno == ENFILE || errno == ENOMEM ||
-		           errno == ENOBUFS) {
-			report_full(c, errno);
+		} else if (listen_is_full(fd)) {
+			report_full(c, -fd);
 			*full = true;
 			break;
 		}

@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* The sockets of a program: their rights, and what was left of another one. */
 #include <errno.h>
+#include <fcntl.h>
+#include <netinet/in.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include "unity.h"
@@ -29,10 +32,9 @@ void tearDown(void)
 
 static int make(mode_t mode)
 {
-	int fd = listen_local(&at, SOCK_STREAM, mode, (gid_t)-1);
+	int fd = listen_at_path(at.sun_path, mode, (gid_t)-1);
 
 	TEST_ASSERT_GREATER_OR_EQUAL(0, fd);
-	TEST_ASSERT_EQUAL(0, listen(fd, 4));
 	return fd;
 }
 
@@ -55,7 +57,6 @@ static void test_a_socket_has_the_mode_that_is_asked_for_whatever_the_umask(void
 		TEST_ASSERT_EQUAL(0, stat(at.sun_path, &st));
 		TEST_ASSERT_EQUAL_HEX(modes[i], st.st_mode & 0777);
 		close(fd);
-		TEST_ASSERT_EQUAL(0, listen_vacate(&at));
 	}
 }
 
@@ -63,11 +64,9 @@ static void test_what_a_process_listens_at_is_left_alone(void)
 {
 	int fd = make(0600);
 
-	TEST_ASSERT_EQUAL(-EADDRINUSE, listen_vacate(&at));
+	TEST_ASSERT_EQUAL(-EADDRINUSE, listen_at_path(at.sun_path, 0600, (gid_t)-1));
 	close(fd);
-	TEST_ASSERT_EQUAL(0, listen_vacate(&at));
-	TEST_ASSERT_EQUAL(-1, access(at.sun_path, F_OK));
-	TEST_ASSERT_EQUAL(0, listen_vacate(&at));
+	close(make(0600));
 }
 
 static void test_a_file_that_is_no_socket_is_left_alone(void)
@@ -75,8 +74,76 @@ static void test_a_file_that_is_no_socket_is_left_alone(void)
 	FILE *file = fopen(at.sun_path, "w");
 
 	fclose(file);
-	TEST_ASSERT_EQUAL(-EEXIST, listen_vacate(&at));
+	TEST_ASSERT_EQUAL(-EEXIST, listen_at_path(at.sun_path, 0600, (gid_t)-1));
 	TEST_ASSERT_EQUAL(0, access(at.sun_path, F_OK));
+}
+
+static void test_a_path_that_no_address_has_room_for_is_refused(void)
+{
+	char path[sizeof(at.sun_path) + 1];
+
+	memset(path, 'a', sizeof(path) - 1);
+	path[sizeof(path) - 1] = '\0';
+	TEST_ASSERT_EQUAL(-ENAMETOOLONG, listen_at_path(path, 0600, (gid_t)-1));
+}
+
+static void test_at_a_name_of_a_folder_it_replaces_what_is_there(void)
+{
+	int directory = open(folder, O_PATH | O_DIRECTORY | O_CLOEXEC), before = make(0600);
+	int fd = listen_at_name(directory, "socket", SOCK_STREAM, 0666, (gid_t)-1), peer;
+	struct stat st;
+
+	TEST_ASSERT_GREATER_OR_EQUAL(0, fd);
+	TEST_ASSERT_EQUAL(0, stat(at.sun_path, &st));
+	TEST_ASSERT_EQUAL_HEX(0666, st.st_mode & 0777);
+	close(before);
+	peer = dial();
+	close(peer);
+	close(fd);
+	close(directory);
+}
+
+static void test_an_address_of_another_machine_is_served_later_if_that_is_asked_for(void)
+{
+	struct sockaddr_storage to = {0};
+	struct sockaddr_in *v4 = (struct sockaddr_in *)&to;
+	int fd;
+
+	/* 192.0.2.0/24 is for documentation */
+	*v4 = (struct sockaddr_in){.sin_family = AF_INET, .sin_addr.s_addr = htonl(0xc0000201)};
+	TEST_ASSERT_EQUAL(-EADDRNOTAVAIL, listen_at_address(&to, true, false));
+	fd = listen_at_address(&to, true, true);
+	TEST_ASSERT_GREATER_OR_EQUAL(0, fd);
+	close(fd);
+}
+
+static void test_an_address_has_one_listener(void)
+{
+	struct sockaddr_storage to = {0}, from = {0};
+	struct sockaddr_in *v4 = (struct sockaddr_in *)&to;
+	socklen_t len = sizeof(to);
+	int fd, peer = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0), connection;
+
+	*v4 = (struct sockaddr_in){.sin_family = AF_INET,
+	                           .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+	fd = listen_at_address(&to, true, false);
+	TEST_ASSERT_GREATER_OR_EQUAL(0, fd);
+	TEST_ASSERT_EQUAL(0, getsockname(fd, (struct sockaddr *)&to, &len));
+	TEST_ASSERT_EQUAL(-EADDRINUSE, listen_at_address(&to, true, false));
+	TEST_ASSERT_EQUAL(0, connect(peer, (struct sockaddr *)&to, sizeof(*v4)));
+	connection = listen_accept(fd, (struct sockaddr *)&from, &len);
+	TEST_ASSERT_GREATER_OR_EQUAL(0, connection);
+	close(connection);
+	close(peer);
+	close(fd);
+}
+
+static void test_no_room_for_a_connection_is_no_error_of_it(void)
+{
+	TEST_ASSERT_TRUE(listen_is_full(-EMFILE) && listen_is_full(-ENFILE) &&
+	                 listen_is_full(-ENOMEM) && listen_is_full(-ENOBUFS));
+	TEST_ASSERT_FALSE(listen_is_full(-EAGAIN) || listen_is_full(-ECONNABORTED) ||
+	                  listen_is_full(0));
 }
 
 static void test_a_byte_out_of_band_keeps_its_place(void)
@@ -140,6 +207,11 @@ int main(void)
 	RUN_TEST(test_a_socket_has_the_mode_that_is_asked_for_whatever_the_umask);
 	RUN_TEST(test_what_a_process_listens_at_is_left_alone);
 	RUN_TEST(test_a_file_that_is_no_socket_is_left_alone);
+	RUN_TEST(test_a_path_that_no_address_has_room_for_is_refused);
+	RUN_TEST(test_at_a_name_of_a_folder_it_replaces_what_is_there);
+	RUN_TEST(test_an_address_of_another_machine_is_served_later_if_that_is_asked_for);
+	RUN_TEST(test_an_address_has_one_listener);
+	RUN_TEST(test_no_room_for_a_connection_is_no_error_of_it);
 	RUN_TEST(test_a_byte_out_of_band_keeps_its_place);
 	RUN_TEST(test_nobody_who_connects_is_no_error_of_the_listener);
 	RUN_TEST(test_without_a_service_manager_there_is_no_socket_of_it);
