@@ -23,6 +23,7 @@ import json
 import os
 import re
 import shutil
+import socket
 import struct
 import subprocess
 import sys
@@ -214,16 +215,35 @@ def compiled(stage, text, compiler, suffix, flags):
 
 
 def run_face(stage, program):
-    """It waits for owsd, prints the signals, follows a restart, and ends in order."""
+    """The face of first-face.md: it waits for owsd, serves values, takes commands, refuses what is
+    none, follows a restart, and ends in order."""
     scene, rio, name = stage.scene, stage.path / "stage.rio", stage.scene.name()
-    face = scene.start([program, "-c", rio, "-n", name])
-    for losses in (0, 1):
+    path = scene.path / "lines"
+    face = scene.start([program, "-c", rio, "-n", name, "-l", path])
+
+    def ask(*lines):
+        with socket.socket(socket.AF_UNIX) as client:
+            client.settimeout(owsdtest.PATIENCE)
+            client.connect(str(path))
+            client.sendall("".join(line + "\n" for line in lines).encode())
+            client.shutdown(socket.SHUT_WR)
+            return b"".join(iter(lambda: client.recv(4096), b"")).decode().splitlines()
+
+    scene.until(path.exists, 20, face.log)
+    assert ask("room1") == ["room1 - there is no such signal"], face.log()
+    for value in ("1", "0"):
         daemon = scene.owsd(rio, name=name)
-        scene.until(lambda: re.search("^room1 .* good$", face.log().split("owsd is lost")[losses], re.M),
-                    20, face.log)
+        scene.until(lambda: re.fullmatch(r"room1 -?[\d.]+ good", ask("room1")[0]), 20, face.log)
+        scene.until(lambda said=value: ask(f"relay={said}") == ["relay ok"], 20, face.log)
+        scene.until(lambda said=value: ask("relay") == [f"relay {said} good"], 20, face.log)
+        assert ask("relay=perhaps", "nobody", "nobody=1", "room1=1") == [
+            'relay "perhaps" is no value for it: expected 0 or 1', "nobody - there is no such signal",
+            "nobody there is no such signal",
+            "room1 it is an input: Writable is off in the configuration"], face.log()
         daemon.stop()
-        scene.until(lambda: face.log().count("owsd is lost") > losses, 20, face.log)
+        scene.until(lambda: ask("room1")[0].startswith("room1 - owsd "), 20, lambda: f"{ask('room1')} {face.log()}")
     assert face.stop() == 0 and "ends: SIGTERM" in face.log(), face.log()
+    assert not path.exists()
 
 
 def do_c(stage, text):

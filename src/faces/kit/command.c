@@ -3,12 +3,15 @@
 #include <errno.h>
 #include <stdio.h>
 
+#include "hal/base/time.h"
 #include "src/faces/kit/command.h"
 #include "src/faces/show/names.h"
 #include "src/faces/show/range.h"
 #include "src/ground/service/command_age.h"
 #include "src/ground/signal/error.h"
 #include "src/ground/signal/value.h"
+
+#define OPEN_NS NS_PER_S
 
 static bool is_old(const struct face_command *command)
 {
@@ -51,6 +54,60 @@ int face_command_set(struct ows *h, const struct face_command *command, int id,
 		return err;
 	return value_is_float(type) ? ows_set(h, id, value_number(type, value), stamp)
 	                            : ows_set_integer(h, id, value, stamp);
+}
+
+static int way_open(struct face_way *way, const struct face_command *command)
+{
+	int err;
+
+	if (way->h)
+		return 0;
+	if (ows_now() < way->open_ns)
+		return -ESTALE;
+	err = ows_open_as(command->instance, OWS_CONTROL, command->program, &way->h);
+	if (err)
+		way->h = NULL;
+	/* to wait for one that hangs takes longer than the pause */
+	way->open_ns = ows_now() + OPEN_NS;
+	return err == -ENOENT ? -ESTALE : err; /* of owsd, not of the name */
+}
+
+static int give(struct face_way *way, struct face_command *command, struct ows_info *info,
+                face_fit *fit, void *ctx)
+{
+	const char *given = command->text;
+	int id = face_command_find(way->h, command, info), err;
+
+	if (id < 0)
+		return id;
+	err = fit ? fit(ctx, id, info, command) : 0;
+	if (!err)
+		err = face_command_set(way->h, command, id, info, NULL);
+	command->text = given;
+	return err;
+}
+
+int face_command_give(struct face_way *way, struct face_command *command, struct ows_info *info,
+                      face_fit *fit, void *ctx)
+{
+	int err = way_open(way, command);
+
+	if (!err)
+		err = give(way, command, info, fit, ctx);
+	/* owsd has reloaded, or was started again */
+	if (err == -ESTALE && way->h && ows_reopen(way->h) == 0)
+		err = give(way, command, info, fit, ctx);
+	if (err == -ESTALE && way->h) {
+		face_way_close(way);
+		way->open_ns = ows_now() + OPEN_NS;
+	}
+	return err;
+}
+
+void face_way_close(struct face_way *way)
+{
+	ows_close(way->h);
+	way->h = NULL;
 }
 
 const char *face_refusal(const struct face_command *command, const struct ows_info *info, int err,

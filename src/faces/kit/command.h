@@ -25,6 +25,27 @@ int face_command_find(struct ows *h, const struct face_command *command, struct 
 int face_command_set(struct ows *h, const struct face_command *command, int id,
                      const struct ows_info *info, uint32_t *stamp);
 
+/* The way to the outputs of an instance, kept open between commands. Zeroed at first. */
+struct face_way {
+	struct ows *h;   /* NULL: not connected */
+	int64_t open_ns; /* when it may be tried again */
+};
+
+/*
+ * Before it is set: the face may give the command another text, or refuse it by returning a
+ * negative errno. id: of the signal, as long as way.h is the same.
+ */
+typedef int face_fit(void *ctx, int id, const struct ows_info *info, struct face_command *command);
+
+/*
+ * Connect if that has to be, find, and set; once more on the new image if owsd has reloaded.
+ * fit NULL: as it is. Waits for owsd when it connects, two seconds at most, once a second. 0, or as
+ * the functions above; -ESTALE: also that there is no owsd.
+ */
+int face_command_give(struct face_way *way, struct face_command *command, struct ows_info *info,
+                      face_fit *fit, void *ctx);
+void face_way_close(struct face_way *way);
+
 #define FACE_REFUSAL 256
 /*
  * Why it was refused, and what to do, or which values there are. info: of the signal; its name is

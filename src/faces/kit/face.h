@@ -2,7 +2,7 @@
 /*
  * A face: a program that shows the signals of owsd to others, or keeps them. It is a consumer of
  * libows like any other program, and a table of functions over one loop in one thread: main() gives
- * the table to face_main() (loop.h); docs/extending.md has a whole face. The loop waits for changes
+ * the table to face_main() (loop.h). docs/first-face.md has a whole one. The loop waits for changes
  * of the signals, for descriptors of the face and for its next tick; it opens the instance again
  * when owsd has reloaded, ended, died or started, reads the configuration again, ends at SIGTERM,
  * writes the log, and feeds the service manager's watchdog.

@@ -5,15 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/faces/kit/command.h"
 #include "src/faces/mqtt/commands.h"
 #include "src/faces/mqtt/credit.h"
 #include "src/faces/mqtt/entity.h"
 #include "src/faces/mqtt/stream.h"
 #include "src/ground/signal/hash.h"
 #include "src/ground/signal/value.h"
-
-#define OPEN_NS NS_PER_S
 
 void commands_tell(struct commands *c, int64_t now_ns)
 {
@@ -48,23 +45,6 @@ static void commands_refuse(struct commands *c, const char *name, const char *wh
 		cause->others++;
 		memcpy(cause->last, c->trouble, sizeof(cause->last));
 	}
-}
-
-/* 0, or a negative errno. */
-static int connect_owsd(struct commands *c, int64_t now_ns)
-{
-	int err;
-
-	if (c->h)
-		return 0;
-	if (now_ns < c->open_ns)
-		return -ESTALE;
-	err = ows_open_as(c->instance, OWS_CONTROL, c->program, &c->h);
-	if (err)
-		c->h = NULL;
-	/* to wait for one that hangs takes longer than the pause */
-	c->open_ns = ows_now() + OPEN_NS;
-	return err == -ENOENT ? -ESTALE : err;
 }
 
 /* on and off are all of a light or a cover that has a number, or nothing; else text. */
@@ -102,22 +82,22 @@ static struct credit *credit_of(struct commands *c, int id)
 }
 
 /* -EDQUOT: there is no credit for it. */
-static int set(struct commands *c, struct face_command *command, struct ows_info *info)
+static int fit(void *ctx, int id, const struct ows_info *info, struct face_command *command)
 {
-	const char *given = command->text;
-	char number[VALUE_TEXT_MAX];
-	struct credit *credit;
-	int id = face_command_find(c->h, command, info), err;
+	static char number[VALUE_TEXT_MAX];
+	struct credit *credit = credit_of(ctx, id);
 
-	if (id < 0)
-		return id;
-	credit = credit_of(c, id);
 	if (!credit || !credit_spend(credit, ows_now()))
 		return credit ? -EDQUOT : -ENOMEM;
-	command->text = number_of(c, info, given, number);
-	err = face_command_set(c->h, command, id, info, NULL);
-	command->text = given;
-	return err;
+	command->text = number_of(ctx, info, command->text, number);
+	return 0;
+}
+
+static void forget_credits(struct commands *c)
+{
+	free(c->credits);
+	c->credits = NULL;
+	c->credit_count = 0;
 }
 
 /* What is wrong with the message itself; NULL: nothing. */
@@ -132,26 +112,6 @@ static const char *fault_of(const struct broker_message *message)
 	if (strlen(message->text) != message->len)
 		return "there is a byte 0 in it";
 	return NULL;
-}
-
-/* 0, or a negative errno. */
-static int take(struct commands *c, struct face_command *command, struct ows_info *info,
-                int64_t now_ns)
-{
-	int err = connect_owsd(c, now_ns);
-
-	if (!err)
-		err = set(c, command, info);
-	if (err == -ESTALE && c->h) {
-		/* owsd has reloaded, or was started again */
-		err = ows_reopen(c->h);
-		err = err ? -ESTALE : set(c, command, info);
-	}
-	if (err == -ESTALE && c->h) {
-		commands_close(c);
-		c->open_ns = ows_now() + OPEN_NS;
-	}
-	return err;
 }
 
 int commands_take(struct commands *c, const char *name, bool known,
@@ -174,7 +134,11 @@ int commands_take(struct commands *c, const char *name, bool known,
 	}
 	snprintf(person, sizeof(person), "%.*s", BROKER_PERSON - 1,
 	         *message->person ? message->person : place);
-	err = !c->stream->live ? -ESTALE : !known ? -ENOENT : take(c, &command, &info, now_ns);
+	err = !c->stream->live ? -ESTALE
+	      : !known         ? -ENOENT
+	                       : face_command_give(&c->way, &command, &info, fit, c);
+	if (!c->way.h)
+		forget_credits(c);
 	if (err) {
 		commands_refuse(c, name,
 		                err == -EDQUOT ? "more than 50 commands in a second"
@@ -195,9 +159,6 @@ const char *commands_trouble(const struct commands *c, int64_t now_ns)
 
 void commands_close(struct commands *c)
 {
-	ows_close(c->h);
-	c->h = NULL;
-	free(c->credits);
-	c->credits = NULL;
-	c->credit_count = 0;
+	face_way_close(&c->way);
+	forget_credits(c);
 }

@@ -9,11 +9,11 @@
 #include <stdint.h>
 
 #include "hal/base/time.h"
+#include "src/faces/kit/command.h"
 #include "src/faces/mqtt/client.h"
 #include "src/ground/text/log.h"
 
 struct credit;
-struct ows;
 struct stream;
 
 #define COMMANDS_TEXT 1024 /* bytes of a value */
@@ -34,9 +34,8 @@ struct commands {
 	struct log *log;
 	const char *instance, *program;
 	const struct stream *stream; /* whether owsd is there, and classes of signals */
-	struct ows *h;               /* NULL: not connected */
-	int64_t open_ns;             /* when it may be tried again */
-	struct credit *credits;      /* by ids of h */
+	struct face_way way;
+	struct credit *credits; /* by ids of way.h */
 	int credit_count;
 	struct commands_cause causes[COMMANDS_CAUSES]; /* by a hash of their words */
 	uint64_t taken, refused;

@@ -8,6 +8,7 @@
 
 #include "src/faces/kit/command.h"
 #include "src/ground/service/command_age.h"
+#include "src/ground/signal/value.h"
 #include "tests/unit/aid/instance.h"
 
 static const struct instance_signal signals[] = {
@@ -84,6 +85,57 @@ static void test_what_is_no_value_or_no_signal_is_refused(void)
 	TEST_ASSERT_EQUAL_INT(0, give());
 }
 
+/* Of a setting one more, and of the relay none that is 0. */
+static int fit(void *ctx, int id, const struct ows_info *of, struct face_command *given)
+{
+	TEST_ASSERT_EQUAL_PTR(&in, ctx);
+	TEST_ASSERT_GREATER_OR_EQUAL_INT(0, id);
+	if (of->type == OWS_DOUBLE)
+		given->text = "4";
+	return of->type == OWS_BOOL && *given->text == '0' ? -EDQUOT : 0;
+}
+
+static void test_a_face_may_fit_a_command_to_its_signal_or_refuse_it(void)
+{
+	struct face_way way = {0};
+
+	TEST_ASSERT_EQUAL_INT(0, face_command_give(&way, &command, &info, fit, &in));
+	TEST_ASSERT_EQUAL_INT64(1, instance_command(&in, 1, RELAY + 1).value);
+	command.text = "0";
+	TEST_ASSERT_EQUAL_INT(-EDQUOT, face_command_give(&way, &command, &info, fit, &in));
+	TEST_ASSERT_EQUAL_INT64(1, instance_command(&in, 1, RELAY + 1).value);
+	command.name = "setting";
+	command.text = "3";
+	TEST_ASSERT_EQUAL_INT(0, face_command_give(&way, &command, &info, fit, &in));
+	TEST_ASSERT_EQUAL_STRING("3", command.text);
+	TEST_ASSERT_EQUAL_INT64(value_of_double(4), instance_command(&in, 1, SETTING + 1).value);
+	TEST_ASSERT_NOT_NULL(way.h);
+	face_way_close(&way);
+	TEST_ASSERT_NULL(way.h);
+}
+
+static void test_the_way_to_owsd_is_found_again_and_not_tried_all_the_time(void)
+{
+	struct face_way way = {0};
+
+	TEST_ASSERT_EQUAL_INT(0, face_command_give(&way, &command, &info, NULL, NULL));
+	instance_reload(&in, signals, COUNT);
+	command.came_ns = ows_now();
+	TEST_ASSERT_EQUAL_INT(0, face_command_give(&way, &command, &info, NULL, NULL));
+	TEST_ASSERT_NOT_NULL(way.h);
+	face_way_close(&way);
+	command.instance = "nobody-has-this-name";
+	way.open_ns = 0;
+	TEST_ASSERT_EQUAL_INT(-ESTALE, face_command_give(&way, &command, &info, NULL, NULL));
+	TEST_ASSERT_GREATER_THAN_INT64(ows_now(), way.open_ns);
+	command.instance = in.name;
+	TEST_ASSERT_EQUAL_INT(-ESTALE, face_command_give(&way, &command, &info, NULL, NULL));
+	way.open_ns = 0;
+	command.came_ns = ows_now();
+	TEST_ASSERT_EQUAL_INT(0, face_command_give(&way, &command, &info, NULL, NULL));
+	face_way_close(&way);
+}
+
 static void is(const char *expected, int err)
 {
 	char words[FACE_REFUSAL];
@@ -124,6 +176,8 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_a_command_of_now_is_set_and_one_that_waited_is_not);
 	RUN_TEST(test_what_is_no_value_or_no_signal_is_refused);
+	RUN_TEST(test_a_face_may_fit_a_command_to_its_signal_or_refuse_it);
+	RUN_TEST(test_the_way_to_owsd_is_found_again_and_not_tried_all_the_time);
 	RUN_TEST(test_a_refusal_has_what_was_sent_and_what_holds);
 	RUN_TEST(test_each_other_refusal_has_its_remedy);
 	return UNITY_END();
