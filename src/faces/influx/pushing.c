@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What owsd-influx does with the news of owsd, at its ticks and at its end. */
 #include <errno.h>
-#include <poll.h>
 #include <string.h>
 
 #include "hal/base/time.h"
@@ -130,8 +129,6 @@ int pushing_open(struct face *face)
 		return -ENOMEM;
 	}
 	wall_clock_open(&p->clock);
-	if (p->clock.fd >= 0)
-		face_watch(face, p->clock.fd, POLLIN);
 	face->pace_ns = PACE_NS;
 	face->tick_ns = now_ns;
 	take_file(face, now_ns);
@@ -148,7 +145,6 @@ void pushing_close(struct face *face)
 		        p->believed ? "" : ": the time is not known yet");
 	pending_free(&p->pending);
 	post_close(p->post);
-	wall_clock_close(&p->clock);
 	points_free(&p->points);
 }
 
@@ -209,6 +205,8 @@ static void push_on(struct face *face, int fd, short ready)
 	int64_t now_ns = ows_now();
 	struct post_result result;
 
+	/* lines get their times here */
+	believe_clock(face, now_ns);
 	if ((fd >= 0 || now_ns >= post_next(p->post)) && post_step(p->post, fd, ready, &result))
 		sending_finished(face, &result, now_ns);
 	sending_advance(face, now_ns);
@@ -223,7 +221,6 @@ void pushing_tick(struct face *face, int64_t now_ns)
 {
 	struct pushing *p = face->own;
 
-	believe_clock(face, now_ns);
 	if (p->on && p->spool.dir < 0)
 		open_spool(face);
 	if (p->on && look_is_current(face))
@@ -269,15 +266,7 @@ void pushing_event(struct face *face, const struct face_event *event)
 	case FACE_ENTRIES_LOST:
 		break;
 	case FACE_DESCRIPTOR:
-		if (event->fd != p->clock.fd) {
-			push_on(face, event->fd, event->ready);
-			break;
-		}
-		face_ignore(face, event->fd);
-		wall_clock_rearm(&p->clock);
-		if (p->clock.fd >= 0)
-			face_watch(face, p->clock.fd, POLLIN);
-		believe_clock(face, now_ns);
+		push_on(face, event->fd, event->ready);
 		break;
 	}
 }

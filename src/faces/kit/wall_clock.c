@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* How far wall clock and boot time are apart, and when that changes. */
-#include <errno.h>
-#include <sys/timerfd.h>
 #include <sys/timex.h>
 #include <time.h>
-#include <unistd.h>
 
 #include "hal/base/time.h"
 #include "src/faces/kit/wall_clock.h"
@@ -12,7 +9,6 @@
 #define STEP_NS (50 * NS_PER_MS)
 #define ASK_NS (10 * NS_PER_S)
 #define READINGS 5
-#define FAR_S (365 * 86400)
 
 /* The reading that took the least time: others may have had the processor in between. */
 static int64_t read_offset(void)
@@ -39,39 +35,11 @@ static bool is_synchronised(void)
 	return adjtimex(&t) >= 0 && !(t.status & STA_UNSYNC);
 }
 
-/* The timer is far away: only that a setting of the clock cancels it is of interest. */
-static bool arm_timer(int fd)
-{
-	struct itimerspec far = {.it_value.tv_sec = (time_t)(clock_ns(CLOCK_REALTIME) / NS_PER_S) +
-	                                            FAR_S};
-
-	return timerfd_settime(fd, TFD_TIMER_ABSTIME | TFD_TIMER_CANCEL_ON_SET, &far, NULL) == 0;
-}
-
-void wall_clock_rearm(struct wall_clock *clock)
-{
-	uint64_t count;
-
-	if (clock->fd < 0 || (read(clock->fd, &count, sizeof(count)) < 0 && errno == EAGAIN))
-		return;
-	if (!arm_timer(clock->fd))
-		wall_clock_close(clock);
-}
-
 void wall_clock_open(struct wall_clock *clock)
 {
-	*clock = (struct wall_clock){.offset_ns = read_offset(), .trusted = is_synchronised()};
-	clock->asked_ns = clock_ns(CLOCK_BOOTTIME);
-	clock->fd = timerfd_create(CLOCK_REALTIME, TFD_CLOEXEC | TFD_NONBLOCK);
-	if (clock->fd >= 0 && !arm_timer(clock->fd))
-		wall_clock_close(clock);
-}
-
-void wall_clock_close(struct wall_clock *clock)
-{
-	if (clock->fd >= 0)
-		close(clock->fd);
-	clock->fd = -1;
+	*clock = (struct wall_clock){.offset_ns = read_offset(),
+	                             .trusted = is_synchronised(),
+	                             .asked_ns = clock_ns(CLOCK_BOOTTIME)};
 }
 
 bool wall_clock_step(struct wall_clock *clock, int64_t offset_ns, bool synchronised)

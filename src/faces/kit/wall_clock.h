@@ -12,20 +12,17 @@
 struct wall_clock {
 	int64_t offset_ns; /* CLOCK_REALTIME minus CLOCK_BOOTTIME */
 	bool trusted;      /* adjtimex(2) says that it is synchronised, or it was before */
-	int fd;            /* readable when the clock was set; -1: it is only looked at */
 	int64_t asked_ns;  /* when the kernel was asked last */
 };
 
-/* Look for the first time. Does not fail: without a timer the clock is looked at each second. */
+/* Look for the first time. */
 void wall_clock_open(struct wall_clock *clock);
-void wall_clock_close(struct wall_clock *clock);
 /*
- * Look again. True: the clock was set, or is trusted now, or no longer. Two readings of the same
- * clock differ by the time between the calls; less than 50 ms is no step.
+ * Look again, each second and before a time is written. True: the clock was set, or is trusted
+ * now, or no longer. Two readings of the same clock differ by the time between the calls; less than
+ * 50 ms is no step.
  */
 bool wall_clock_look(struct wall_clock *clock, int64_t now_ns);
-/* fd is readable: wait for the next time. wall_clock_look() comes after it. */
-void wall_clock_rearm(struct wall_clock *clock);
 
 /* Pure: what a look at the two clocks says of the known relation. */
 bool wall_clock_step(struct wall_clock *clock, int64_t offset_ns, bool synchronised);

@@ -4,7 +4,6 @@
 
 #include <errno.h>
 #include <mosquitto.h>
-#include <poll.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -506,8 +505,6 @@ int mqtt_open(struct face *face)
 		return -ENOMEM;
 	}
 	wall_clock_open(&m->clock);
-	if (m->clock.fd >= 0)
-		face_watch(face, m->clock.fd, POLLIN);
 	look_at_clock(face, now_ns);
 	face->pace_ns = PACE_NS;
 	face->tick_ns = now_ns;
@@ -522,7 +519,6 @@ void mqtt_close(struct face *face)
 
 	mqtt_end(face);
 	stream_close(&m->stream);
-	wall_clock_close(&m->clock);
 	mosquitto_lib_cleanup();
 }
 
@@ -575,15 +571,7 @@ void mqtt_event(struct face *face, const struct face_event *event)
 	case FACE_ENTRIES_LOST:
 		break;
 	case FACE_DESCRIPTOR:
-		if (event->fd == m->clock.fd) {
-			face_ignore(face, event->fd);
-			wall_clock_rearm(&m->clock);
-			if (m->clock.fd >= 0)
-				face_watch(face, m->clock.fd, POLLIN);
-			look_at_clock(face, now_ns);
-		} else {
-			broker_ready(&m->broker, event->fd, event->ready, now_ns);
-		}
+		broker_ready(&m->broker, event->fd, event->ready, now_ns);
 		break;
 	}
 	go_on(face, now_ns);

@@ -2,7 +2,6 @@
 /* What the recorder does with the news of owsd, and with those of its disk. */
 #include <assert.h>
 #include <errno.h>
-#include <poll.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -131,7 +130,7 @@ int recording_open(struct face *face)
 	int64_t now_ns = ows_now();
 	int err, disk_err = 0;
 
-	*r = (struct recording){.clock = {.fd = -1}};
+	*r = (struct recording){0};
 	err = choose_directory(face, r->directory);
 	if (err) {
 		face_complain(face->ops->program, "the directory's path is too long");
@@ -139,8 +138,6 @@ int recording_open(struct face *face)
 	}
 	r->boot = history_boot_present();
 	wall_clock_open(&r->clock);
-	if (r->clock.fd >= 0)
-		face_watch(face, r->clock.fd, POLLIN);
 	err = open_writer(face, now_ns, &disk_err);
 	/* all else may be over some day, and until then it is in memory */
 	if (!err && disk_err == -EBUSY) {
@@ -336,13 +333,6 @@ void recording_event(struct face *face, const struct face_event *event)
 		            (unsigned)event->count);
 		break;
 	case FACE_DESCRIPTOR:
-		if (event->fd != r->clock.fd)
-			break;
-		face_ignore(face, event->fd);
-		wall_clock_rearm(&r->clock);
-		if (r->clock.fd >= 0)
-			face_watch(face, r->clock.fd, POLLIN);
-		note_clock(face, now_ns);
 		break;
 	}
 }
@@ -465,6 +455,5 @@ void recording_close(struct face *face)
 	if (err)
 		log_err(face->log, "%s: %s: what was in memory is lost", r->directory,
 		        strerror(-err));
-	wall_clock_close(&r->clock);
 	series_free(&r->rows);
 }
