@@ -47,13 +47,6 @@ static void points_send(struct point_row *row, struct pending *pending, int64_t 
 	row->sent_ns = now_ns;
 }
 
-/* FACE_LOST, or the next look at the changes, says of the others why they are not known. */
-static bool points_get(struct ows *ows, int signal, int64_t now_ns, struct face_value *value)
-{
-	face_value(ows, signal, true, now_ns, value);
-	return value->known;
-}
-
 /* A line that has that quality alone, of each signal whose last line has something else. */
 static void send_quality(struct points *points, struct pending *pending, uint8_t quality,
                          int64_t now_ns)
@@ -133,8 +126,11 @@ void points_changes(struct points *points, struct ows *ows, struct pending *pend
 		if (signal < 0 || signal >= points->count)
 			continue;
 		row = &points->rows[signal];
-		if (row->series && points_get(ows, signal, now_ns, &value) &&
-		    face_value_print(&value.v, value.text) != row->fields)
+		if (!row->series)
+			continue;
+		face_value(ows, signal, true, now_ns, &value);
+		/* FACE_LOST, or the next look at the changes, says why one is not known */
+		if (value.known && face_value_print(&value.v, value.text) != row->fields)
 			points_send(row, pending, face_value_time(&value.v, now_ns), &value.v,
 			            value.text, now_ns);
 	}
@@ -148,8 +144,10 @@ void points_repeat(struct points *points, struct ows *ows, struct pending *pendi
 	for (int i = 0; i < points->count; i++) {
 		struct point_row *row = &points->rows[i];
 
-		if (!row->series || now_ns - row->sent_ns < POINTS_REPEAT_NS ||
-		    !points_get(ows, i, now_ns, &value))
+		if (!row->series || now_ns - row->sent_ns < POINTS_REPEAT_NS)
+			continue;
+		face_value(ows, i, true, now_ns, &value);
+		if (!value.known)
 			continue;
 		time_ns = face_value_time(&value.v, now_ns);
 		if (face_value_print(&value.v, value.text) == row->fields &&

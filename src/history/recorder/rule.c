@@ -6,7 +6,7 @@
 #include "src/history/recorder/rule.h"
 
 /* NaN is a value like others here: the same as NaN, and far from each number. */
-static double distance(const struct rule_sample *a, const struct rule_sample *b)
+static double distance(const struct ows_value *a, const struct ows_value *b)
 {
 	/* an integer beyond 2^53 is rounded: two that differ are then at least 1 apart */
 	if (!value_is_float((enum ows_type)a->type))
@@ -20,7 +20,7 @@ static double distance(const struct rule_sample *a, const struct rule_sample *b)
 }
 
 bool rule_change(const struct config_record *rule, const struct rule_kept *kept,
-                 const struct rule_sample *sample)
+                 const struct ows_value *sample)
 {
 	double moved;
 
@@ -55,7 +55,7 @@ bool rule_tick(const struct config_record *rule, struct rule_kept *kept, int64_t
 	return true;
 }
 
-bool rule_interval(const struct rule_kept *kept, const struct rule_sample *sample)
+bool rule_interval(const struct rule_kept *kept, const struct ows_value *sample)
 {
 	return !kept->any || sample->measured_ns > kept->sample.measured_ns;
 }

@@ -9,30 +9,29 @@
 #include <stdint.h>
 
 #include "src/config/read/config.h"
+#include "src/public/ows.h"
 
-struct rule_sample {
-	uint8_t type, quality;
-	double number;       /* of float and double */
-	int64_t integer;     /* of the other number types; of a string a hash of its text */
-	int64_t measured_ns; /* CLOCK_BOOTTIME; 0: never */
-};
+/*
+ * A value, of which the rule heeds type, quality, measured_ns, number of float and double, and
+ * integer: of the other number types, and of a string a hash of its text.
+ */
 /* Of one signal. All zero: nothing is known, so that the next value is kept. */
 struct rule_kept {
 	bool any;
-	struct rule_sample sample;
+	struct ows_value sample;
 	int64_t slot; /* of Record's interval: that which was looked at last */
 };
 
 /* The signal has changed, or may have: is the sample kept? */
 bool rule_change(const struct config_record *rule, const struct rule_kept *kept,
-                 const struct rule_sample *sample);
+                 const struct ows_value *sample);
 /*
  * Has another slot of the interval begun, by the wall clock? Then *kept is in that slot; without
  * an interval never.
  */
 bool rule_tick(const struct config_record *rule, struct rule_kept *kept, int64_t wall_ns);
 /* At the tick that begins a slot: is the newest sample kept? */
-bool rule_interval(const struct rule_kept *kept, const struct rule_sample *sample);
+bool rule_interval(const struct rule_kept *kept, const struct ows_value *sample);
 /*
  * May there have been a value between the last that was kept and this one, which the rule would
  * have kept? measured: how often since the last look; changes are not counted, and of several

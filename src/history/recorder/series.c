@@ -155,34 +155,16 @@ int64_t series_time(const struct series *rows, const struct ows_value *v, int64_
 	return time_ns < rows->since_ns ? rows->since_ns : time_ns;
 }
 
-/* FACE_LOST, or the next look at the changes, says of the others why they are not known. */
-static bool series_get(struct ows *ows, int signal, int64_t now_ns, struct face_value *value,
-                       struct rule_sample *sample)
-{
-	const struct ows_value *v = &value->v;
-
-	face_value(ows, signal, true, now_ns, value);
-	*sample = (struct rule_sample){.type = v->type,
-	                               .quality = v->quality,
-	                               .number = v->number,
-	                               .integer = v->integer,
-	                               .measured_ns = v->measured_ns};
-	if (v->type == OWS_STRING)
-		sample->integer = (int64_t)face_value_print(v, value->text);
-	return value->known;
-}
-
-static void keep_sample(struct series *rows, struct rule_kept *kept,
-                        const struct rule_sample *sample, struct history_writer *writer,
-                        uint32_t number, const struct ows_value *v, const char *text,
+static void keep_sample(struct series *rows, struct rule_kept *kept, const struct ows_value *v,
+                        struct history_writer *writer, uint32_t number, const char *text,
                         int64_t now_ns)
 {
 	int64_t time_ns = series_time(rows, v, now_ns);
+	int64_t bits = v->type == OWS_STRING ? 0 : series_bits(v->type, v->number, v->integer);
 
-	history_writer_value(writer, number, time_ns, v->quality,
-	                     series_bits(v->type, v->number, v->integer), text, strlen(text));
+	history_writer_value(writer, number, time_ns, v->quality, bits, text, strlen(text));
 	kept->any = true;
-	kept->sample = *sample;
+	kept->sample = *v;
 	if (time_ns > rows->last_ns)
 		rows->last_ns = time_ns;
 }
@@ -191,15 +173,10 @@ static void keep_sample(struct series *rows, struct rule_kept *kept,
 static void keep_raw(struct series *rows, struct row *row, struct ows *ows,
                      struct history_writer *writer, int64_t now_ns)
 {
-	struct rule_sample sample = {.type = OWS_DOUBLE};
 	struct ows_value v;
 
-	if (row->raw_id < 0 || ows_get(ows, row->raw_id, now_ns, &v))
-		return;
-	sample.quality = v.quality;
-	sample.number = v.number;
-	sample.measured_ns = v.measured_ns;
-	keep_sample(rows, &row->raw_kept, &sample, writer, row->raw_row, &v, "", now_ns);
+	if (row->raw_id >= 0 && !ows_get(ows, row->raw_id, now_ns, &v))
+		keep_sample(rows, &row->raw_kept, &v, writer, row->raw_row, "", now_ns);
 }
 
 /* Nothing is known of the signal from then on, or from what was kept later. */
@@ -218,20 +195,23 @@ static void series_take(struct series *rows, int signal, struct ows *ows,
                         int64_t now_ns)
 {
 	struct row *row = &rows->rows[signal];
-	struct rule_sample sample;
 	struct face_value value;
+	struct ows_value *v = &value.v;
 
-	if (row->rule.off || !series_get(ows, signal, now_ns, &value, &sample))
+	if (row->rule.off)
 		return;
-	if (rule_missed(&row->rule, &row->kept, value.v.count - row->count, ticked, unseen_ns,
-	                now_ns))
+	face_value(ows, signal, true, now_ns, &value);
+	/* FACE_LOST, or the next look at the changes, says of the others why they are not known */
+	if (!value.known)
+		return;
+	if (v->type == OWS_STRING)
+		v->integer = (int64_t)face_value_print(v, value.text);
+	if (rule_missed(&row->rule, &row->kept, v->count - row->count, ticked, unseen_ns, now_ns))
 		miss(rows, row, signal, writer, unseen_ns);
-	row->count = value.v.count;
-	if (!rule_change(&row->rule, &row->kept, &sample) &&
-	    !(ticked && rule_interval(&row->kept, &sample)))
+	row->count = v->count;
+	if (!rule_change(&row->rule, &row->kept, v) && !(ticked && rule_interval(&row->kept, v)))
 		return;
-	keep_sample(rows, &row->kept, &sample, writer, (uint32_t)signal, &value.v, value.text,
-	            now_ns);
+	keep_sample(rows, &row->kept, v, writer, (uint32_t)signal, value.text, now_ns);
 	keep_raw(rows, row, ows, writer, now_ns);
 }
 

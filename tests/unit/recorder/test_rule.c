@@ -31,7 +31,7 @@ static void record(const char *text)
 	TEST_ASSERT_EQUAL_INT_MESSAGE(0, record_parse(text, &rule, why, sizeof(why)), text);
 }
 
-static void keep(const struct rule_sample *sample)
+static void keep(const struct ows_value *sample)
 {
 	size_t len = strlen(took);
 
@@ -43,10 +43,10 @@ static void keep(const struct rule_sample *sample)
 
 static void sample_of(double number, uint8_t quality, int64_t second)
 {
-	struct rule_sample sample = {.type = OWS_DOUBLE,
-	                             .quality = quality,
-	                             .number = number,
-	                             .measured_ns = second * NS_PER_S};
+	struct ows_value sample = {.type = OWS_DOUBLE,
+	                           .quality = quality,
+	                           .number = number,
+	                           .measured_ns = second * NS_PER_S};
 
 	if (rule_change(&rule, &kept, &sample))
 		keep(&sample);
@@ -116,7 +116,7 @@ static void test_what_is_no_number_is_one_value_and_infinities_are_two(void)
 
 static void integer(int64_t value)
 {
-	struct rule_sample sample = {.type = OWS_LARGE, .quality = OWS_Q_GOOD, .integer = value};
+	struct ows_value sample = {.type = OWS_LARGE, .quality = OWS_Q_GOOD, .integer = value};
 
 	if (rule_change(&rule, &kept, &sample))
 		keep(&sample);
@@ -151,10 +151,10 @@ static void test_a_signal_of_another_type_is_another_signal(void)
 /* A second of the clock: the newest value is offered at changes and at turns. */
 static void second(int64_t wall_s, double number)
 {
-	struct rule_sample sample = {.type = OWS_DOUBLE,
-	                             .quality = OWS_Q_GOOD,
-	                             .number = number,
-	                             .measured_ns = wall_s * NS_PER_S};
+	struct ows_value sample = {.type = OWS_DOUBLE,
+	                           .quality = OWS_Q_GOOD,
+	                           .number = number,
+	                           .measured_ns = wall_s * NS_PER_S};
 	bool ticked = rule_tick(&rule, &kept, wall_s * NS_PER_S);
 
 	if (rule_change(&rule, &kept, &sample) || (ticked && rule_interval(&kept, &sample)))
@@ -182,7 +182,7 @@ static void test_an_interval_beside_a_deadband_adds_what_stayed_within_it(void)
 
 static void test_a_value_that_was_not_read_anew_is_not_kept_again(void)
 {
-	struct rule_sample sample = {.type = OWS_DOUBLE, .quality = OWS_Q_GOOD, .measured_ns = 5};
+	struct ows_value sample = {.type = OWS_DOUBLE, .quality = OWS_Q_GOOD, .measured_ns = 5};
 
 	record("interval 10");
 	TEST_ASSERT_TRUE(rule_change(&rule, &kept, &sample));
