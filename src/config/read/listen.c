@@ -172,12 +172,18 @@ bool listen_peers_have(const struct listen_peers *peers, unsigned count, bool is
 	return false;
 }
 
+void listen_print_host(const struct listen_address *address, char text[LISTEN_TEXT_MAX])
+{
+	snprintf(text, LISTEN_TEXT_MAX, "?");
+	inet_ntop(address->is_v6 ? AF_INET6 : AF_INET, address->bytes, text, LISTEN_TEXT_MAX);
+}
+
 void listen_print(const struct listen_address *address, char text[LISTEN_TEXT_MAX])
 {
-	char host[INET6_ADDRSTRLEN] = "?";
+	char host[LISTEN_TEXT_MAX];
 
-	inet_ntop(address->is_v6 ? AF_INET6 : AF_INET, address->bytes, host, sizeof(host));
-	snprintf(text, LISTEN_TEXT_MAX, address->is_v6 ? "[%s]:%u" : "%s:%u", host,
+	listen_print_host(address, host);
+	snprintf(text, LISTEN_TEXT_MAX, address->is_v6 ? "[%.45s]:%u" : "%.15s:%u", host,
 	         (unsigned)address->port);
 }
 
@@ -204,4 +210,27 @@ void listen_sockaddr(const struct listen_address *address, struct sockaddr_stora
 		v4->sin_port = htons(address->port);
 		memcpy(&v4->sin_addr, address->bytes, sizeof(v4->sin_addr));
 	}
+}
+
+bool listen_of(const struct sockaddr *from, struct listen_address *address)
+{
+	const struct sockaddr_in *v4 = (const void *)from;
+	const struct sockaddr_in6 *v6 = (const void *)from;
+
+	*address = (struct listen_address){.is_v6 = from->sa_family == AF_INET6};
+	if (address->is_v6) {
+		address->port = ntohs(v6->sin6_port);
+		memcpy(address->bytes, &v6->sin6_addr, sizeof(v6->sin6_addr));
+	} else if (from->sa_family == AF_INET) {
+		address->port = ntohs(v4->sin_port);
+		memcpy(address->bytes, &v4->sin_addr, sizeof(v4->sin_addr));
+	} else {
+		return false;
+	}
+	if (address->is_v6 && memcmp(address->bytes, v4_mapped, sizeof(v4_mapped)) == 0) {
+		address->is_v6 = false;
+		memmove(address->bytes, address->bytes + sizeof(v4_mapped), 4);
+		memset(address->bytes + 4, 0, 12);
+	}
+	return true;
 }

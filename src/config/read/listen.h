@@ -42,9 +42,14 @@ bool listen_same_peers(const struct listen_peers *a, const struct listen_peers *
 /* Is the address among the peers? IPv4 addresses in IPv6 form count as IPv4. */
 bool listen_peers_have(const struct listen_peers *peers, unsigned count, bool is_v6,
                        const uint8_t *bytes);
-/* "127.0.0.1:4304", "[::1]:4304" */
+/* "127.0.0.1:4304", "[::1]:4304"; without the port "127.0.0.1", "::1" */
 #define LISTEN_TEXT_MAX 56
-/* As a socket has it. */
+/*
+ * As a socket has it, and back: an IPv4 address is the same whether it comes mapped or not. False:
+ * it is of another family.
+ */
 void listen_sockaddr(const struct listen_address *address, struct sockaddr_storage *to);
+bool listen_of(const struct sockaddr *from, struct listen_address *address);
 void listen_print(const struct listen_address *address, char text[LISTEN_TEXT_MAX]);
+void listen_print_host(const struct listen_address *address, char text[LISTEN_TEXT_MAX]);
 void listen_peers_print(const struct listen_peers *peers, char text[LISTEN_TEXT_MAX]);

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* Where clients connect: addresses, the unix socket; and which clients get a place. */
-#include <arpa/inet.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <netinet/in.h>
@@ -23,7 +22,6 @@
 
 union address {
 	struct sockaddr any;
-	struct sockaddr_in v4;
 	struct sockaddr_in6 v6;
 };
 
@@ -194,33 +192,19 @@ void listeners_close(struct serve *s)
 	s->held.is = false;
 }
 
-static bool is_allowed(struct serve *s, const union address *from)
+static bool is_allowed(const struct serve *s, const struct listen_address *peer)
 {
 	const struct config_serve *config = &s->config->serve;
-	struct listen_address peer = {.is_v6 = from->any.sa_family == AF_INET6};
 
-	if (!config->peer_count)
-		return true;
-	if (peer.is_v6 && IN6_IS_ADDR_V4MAPPED(&from->v6.sin6_addr)) {
-		peer.is_v6 = false;
-		memcpy(peer.bytes, from->v6.sin6_addr.s6_addr + 12, 4);
-	} else if (peer.is_v6) {
-		memcpy(peer.bytes, &from->v6.sin6_addr, 16);
-	} else {
-		memcpy(peer.bytes, &from->v4.sin_addr, 4);
-	}
-	return listen_is_loopback(&peer) ||
-	       listen_peers_have(config->peers, config->peer_count, peer.is_v6, peer.bytes);
+	return !config->peer_count || listen_is_loopback(peer) ||
+	       listen_peers_have(config->peers, config->peer_count, peer->is_v6, peer->bytes);
 }
 
-static void refuse_peer(struct serve *s, int fd, const union address *from)
+static void refuse_peer(struct serve *s, int fd, const struct listen_address *peer)
 {
-	bool is_v6 = from->any.sa_family == AF_INET6;
-	char address[INET6_ADDRSTRLEN] = "", reason[INET6_ADDRSTRLEN + 32];
+	char address[LISTEN_TEXT_MAX], reason[LISTEN_TEXT_MAX + 32];
 
-	inet_ntop(from->any.sa_family,
-	          is_v6 ? (const void *)&from->v6.sin6_addr : (const void *)&from->v4.sin_addr,
-	          address, sizeof(address));
+	listen_print_host(peer, address);
 	snprintf(reason, sizeof(reason), "%s is not in ListenAllow", address);
 	close(fd);
 	client_refused(s, COUNT_refused_peers, &s->peer_rate, reason);
@@ -253,8 +237,11 @@ static void take_client(struct serve *s, int fd, const struct listener *from,
 static void admit_client(struct serve *s, int fd, const struct listener *at,
                          const union address *from)
 {
-	if (at->network && !is_allowed(s, from))
-		refuse_peer(s, fd, from);
+	struct listen_address peer;
+
+	listen_of(&from->any, &peer);
+	if (at->network && !is_allowed(s, &peer))
+		refuse_peer(s, fd, &peer);
 	else if (s->free_count || client_evict(s))
 		take_client(s, fd, at, &from->v6);
 	else

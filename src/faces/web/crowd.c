@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Counts connections by user and by address. */
 #include <errno.h>
-#include <netinet/in.h>
 #include <string.h>
 
+#include "src/config/read/listen.h"
 #include "src/faces/web/crowd.h"
 
 struct crowd_key crowd_user(uid_t uid)
@@ -16,19 +16,12 @@ struct crowd_key crowd_user(uid_t uid)
 
 struct crowd_key crowd_address(const struct sockaddr_storage *address)
 {
-	const struct sockaddr_in *v4 = (const void *)address;
-	const struct sockaddr_in6 *v6 = (const void *)address;
+	struct listen_address from;
 	struct crowd_key key = {0};
 
-	if (address->ss_family == AF_INET6 && IN6_IS_ADDR_V4MAPPED(&v6->sin6_addr)) {
-		key.kind = AF_INET;
-		memcpy(key.bytes, &v6->sin6_addr.s6_addr[12], 4);
-	} else if (address->ss_family == AF_INET6) {
-		key.kind = AF_INET6;
-		memcpy(key.bytes, &v6->sin6_addr, sizeof(key.bytes));
-	} else if (address->ss_family == AF_INET) {
-		key.kind = AF_INET;
-		memcpy(key.bytes, &v4->sin_addr, 4);
+	if (listen_of((const struct sockaddr *)address, &from)) {
+		key.kind = from.is_v6 ? AF_INET6 : AF_INET;
+		memcpy(key.bytes, from.bytes, sizeof(key.bytes));
 	}
 	return key;
 }

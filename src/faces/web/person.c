@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* Rights: by the credentials of the peer, or by what a reverse proxy says. */
-#include <arpa/inet.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/socket.h>
@@ -15,16 +14,11 @@
 
 static void print(const struct sockaddr_storage *address, char text[PERSON_ADDRESS])
 {
-	const struct sockaddr_in *v4 = (const void *)address;
-	const struct sockaddr_in6 *v6 = (const void *)address;
+	struct listen_address at;
 
 	text[0] = '\0';
-	if (address->ss_family == AF_INET)
-		inet_ntop(AF_INET, &v4->sin_addr, text, PERSON_ADDRESS);
-	else if (address->ss_family == AF_INET6 && IN6_IS_ADDR_V4MAPPED(&v6->sin6_addr))
-		inet_ntop(AF_INET, &v6->sin6_addr.s6_addr[12], text, PERSON_ADDRESS);
-	else if (address->ss_family == AF_INET6)
-		inet_ntop(AF_INET6, &v6->sin6_addr, text, PERSON_ADDRESS);
+	if (listen_of((const struct sockaddr *)address, &at))
+		listen_print_host(&at, text);
 }
 
 bool person_is_tcp(int fd, char local[PERSON_ADDRESS])
@@ -78,18 +72,16 @@ static const struct {
 static bool is_proxy_at(int fd, const struct config_web *options, char address[PERSON_ADDRESS])
 {
 	struct sockaddr_storage peer = {0};
-	const struct sockaddr_in *v4 = (const void *)&peer;
-	const struct sockaddr_in6 *v6 = (const void *)&peer;
+	struct listen_address at;
 	socklen_t len = sizeof(peer);
 
 	address[0] = '\0';
-	if (getpeername(fd, (struct sockaddr *)&peer, &len))
+	if (getpeername(fd, (struct sockaddr *)&peer, &len) ||
+	    !listen_of((const struct sockaddr *)&peer, &at))
 		return false;
-	print(&peer, address);
+	listen_print_host(&at, address);
 	return options->proxy_at.bits &&
-	       listen_peers_have(&options->proxy_at, 1, peer.ss_family == AF_INET6,
-	                         peer.ss_family == AF_INET6 ? v6->sin6_addr.s6_addr
-	                                                    : (const uint8_t *)&v4->sin_addr);
+	       listen_peers_have(&options->proxy_at, 1, at.is_v6, at.bytes);
 }
 
 static bool is_proxy_user(const struct peer *peer, const struct config_web *options)

@@ -2,6 +2,7 @@
 /* Tests of the addresses to listen at and of ranges of peers. */
 #include <arpa/inet.h>
 #include <errno.h>
+#include <netinet/in.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unity.h>
@@ -178,6 +179,30 @@ static void test_the_same_address_is_the_same_whatever_lies_between_its_members(
 	TEST_ASSERT_FALSE(listen_same_peers(&p, &q));
 }
 
+static void test_an_address_of_a_socket_is_the_one_that_was_made_of_it(void)
+{
+	struct listen_address v4 = {.bytes = {192, 0, 2, 7}, .port = 4304},
+			      v6 = {.is_v6 = true, .bytes = {0x20, 1, [15] = 9}, .port = 80}, got;
+	struct sockaddr_storage at;
+	struct sockaddr_in6 mapped = {.sin6_family = AF_INET6};
+	char text[LISTEN_TEXT_MAX];
+
+	listen_sockaddr(&v4, &at);
+	TEST_ASSERT_TRUE(listen_of((struct sockaddr *)&at, &got) && listen_same(&v4, &got));
+	listen_print_host(&got, text);
+	TEST_ASSERT_EQUAL_STRING("192.0.2.7", text);
+	listen_sockaddr(&v6, &at);
+	TEST_ASSERT_TRUE(listen_of((struct sockaddr *)&at, &got) && listen_same(&v6, &got));
+	listen_print(&got, text);
+	TEST_ASSERT_EQUAL_STRING("[2001::9]:80", text);
+	/* ::ffff:192.0.2.7 */
+	memcpy(&mapped.sin6_addr, (const uint8_t[16]){[10] = 255, 255, 192, 0, 2, 7}, 16);
+	mapped.sin6_port = htons(4304);
+	TEST_ASSERT_TRUE(listen_of((struct sockaddr *)&mapped, &got) && listen_same(&v4, &got));
+	at.ss_family = AF_UNIX;
+	TEST_ASSERT_FALSE(listen_of((struct sockaddr *)&at, &got));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -189,5 +214,6 @@ int main(void)
 	RUN_TEST(test_ranges_have_the_peers_inside_and_no_others);
 	RUN_TEST(test_nothing_behind_the_text_is_looked_at);
 	RUN_TEST(test_ranges_that_cannot_be_are_refused);
+	RUN_TEST(test_an_address_of_a_socket_is_the_one_that_was_made_of_it);
 	return UNITY_END();
 }
