@@ -2,14 +2,18 @@
 /* The command line of a face, and the messages about it. */
 #include <errno.h>
 #include <getopt.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "src/faces/kit/arguments.h"
+#include "src/ground/service/heap.h"
+#include "src/ground/service/streams.h"
 #include "src/ground/text/printable.h"
 #include "src/ground/text/refused.h"
+#include "src/memory/shm/place.h"
 
 #define OPT_CHECK 256    /* it has no letter */
 #define INSTANCE_MAX 100 /* owsd's own limit is lower, and libows knows it */
@@ -80,8 +84,8 @@ static int arguments_check(struct face_arguments *a)
 	return -1;
 }
 
-int face_arguments_parse(const char *program, const struct face_option *own, int argc, char **argv,
-                         struct face_arguments *a)
+int face_start(const char *program, const struct face_option *own, int argc, char **argv,
+               struct face_arguments *a)
 {
 	const struct option words[] = {
 		{"config", required_argument, NULL, 'c'},
@@ -95,8 +99,16 @@ int face_arguments_parse(const char *program, const struct face_option *own, int
 	};
 	/* the leading ':' makes getopt distinguish a missing argument from an unknown option */
 	char letters[] = ":c:n:vVh?:";
-	int option;
+	int option, err;
 
+	heap_give_back();
+	err = standard_open();
+	if (err) {
+		face_complain(program, "/dev/null: %s", strerror(-err));
+		return FACE_EXIT_RUN;
+	}
+	/* a write beyond the file size limit then fails, and does not end the program */
+	signal(SIGXFSZ, SIG_IGN);
 	*a = (struct face_arguments){
 		.program = program, .instance = "OWS", .level = LOG_LEVEL_NOTICE};
 	letters[sizeof(letters) - 3] = own->letter;
@@ -128,4 +140,19 @@ int face_arguments_parse(const char *program, const struct face_option *own, int
 		return FACE_EXIT_USAGE;
 	}
 	return arguments_check(a);
+}
+
+int face_socket(const struct face_arguments *a, const char *kind, char path[FACE_PATH])
+{
+	char fault[PLACE_FAULT];
+	struct shm_place place;
+	int err = place_make(&place);
+
+	if (err) {
+		face_complain(a->program, "%s", place_fault(&place, err, fault));
+		return err;
+	}
+	snprintf(path, FACE_PATH, "%s/%s.%s", place.path, a->instance, kind);
+	place_close(&place);
+	return 0;
 }

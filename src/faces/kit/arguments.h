@@ -26,11 +26,18 @@ struct face_arguments {
 };
 
 /*
- * Returns -1: go on; else the exit status, after printing the reason. The strings in *a are those
- * of argv.
+ * What a program in the background does first, and its command line. Returns -1: go on; else the
+ * exit status, after printing the reason. The strings in *a are those of argv.
  */
-int face_arguments_parse(const char *program, const struct face_option *own, int argc, char **argv,
-                         struct face_arguments *a);
+int face_start(const char *program, const struct face_option *own, int argc, char **argv,
+               struct face_arguments *a);
+
+#define FACE_PATH 512
+/*
+ * The path of the socket INSTANCE.KIND in this user's directory for the files of owsd. 0, or a
+ * negative errno after printing why.
+ */
+int face_socket(const struct face_arguments *a, const char *kind, char path[FACE_PATH]);
 /* Print a line on stderr, made printable: names come from outside and must not steer a terminal. */
 void face_complain(const char *program, const char *format, ...)
 	__attribute__((format(printf, 2, 3)));

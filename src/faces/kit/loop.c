@@ -17,7 +17,6 @@
 #include "src/faces/kit/look.h"
 #include "src/faces/kit/loop.h"
 #include "src/ground/service/command_age.h"
-#include "src/ground/service/heap.h"
 #include "src/ground/service/resident.h"
 #include "src/ground/service/streams.h"
 #include "src/ground/service/unix_signals.h"
@@ -244,15 +243,7 @@ int face_main(const struct face_ops *ops, int argc, char **argv)
 	                    .status = "starting"};
 	int status;
 
-	heap_give_back();
-	status = standard_open();
-	if (status) {
-		face_complain(ops->program, "/dev/null: %s", strerror(-status));
-		return FACE_EXIT_RUN;
-	}
-	/* a write beyond the file size limit then fails with an error instead of ending the face */
-	signal(SIGXFSZ, SIG_IGN);
-	status = face_arguments_parse(ops->program, &ops->option, argc, argv, &arguments);
+	status = face_start(ops->program, &ops->option, argc, argv, &arguments);
 	if (status >= 0)
 		return status;
 	if (load_first(&face))

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* The files of the page. */
-#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
@@ -46,63 +45,42 @@ static bool is_plain(const char *name)
 	return *name && *name != '.';
 }
 
-/* Takes fd. below: the name of the directory with "/", "" for the first. */
-static void scan(struct files *files, int fd, const char *below)
+/* "style.css", or one directory deeper: of what a path cannot be nothing is looked for. */
+static bool is_of_page(const char *path)
 {
-	DIR *directory = fd < 0 ? NULL : fdopendir(fd);
-	struct dirent *entry;
+	const char *name = strchr(path, '/');
+	char directory[FILES_NAME];
 
-	if (!directory && fd >= 0)
-		close(fd);
-	while (directory && (entry = readdir(directory))) {
-		char name[FILES_NAME];
-		struct stat stat;
-
-		if (!is_plain(entry->d_name) || fstatat(fd, entry->d_name, &stat, 0) ||
-		    snprintf(name, sizeof(name), "%s%s%s", below, entry->d_name,
-		             S_ISDIR(stat.st_mode) ? "/" : "") >= (int)sizeof(name))
-			continue;
-		if (S_ISDIR(stat.st_mode) && !*below)
-			scan(files, openat(fd, entry->d_name, O_RDONLY | O_DIRECTORY | O_CLOEXEC),
-			     name);
-		else if (S_ISREG(stat.st_mode) && type_of(name) && files->count < FILES)
-			memcpy(files->names[files->count++], name, sizeof(name));
-	}
-	if (directory)
-		closedir(directory);
+	if (strlen(path) >= FILES_NAME || !type_of(path))
+		return false;
+	snprintf(directory, sizeof(directory), "%.*s", name ? (int)(name - path) : 0, path);
+	return name ? is_plain(directory) && is_plain(name + 1) : is_plain(path);
 }
 
-int files_open(struct files *files, const char *directory)
+int files_open(const char *directory)
 {
-	files->count = 0;
-	files->directory = open(directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-	if (files->directory < 0)
+	int fd = open(directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC), err = 0;
+
+	if (fd < 0)
 		return -errno;
-	scan(files, openat(files->directory, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC), "");
-	return files->count ? 0 : -ENOENT;
+	if (faccessat(fd, "index.html", R_OK, AT_EACCESS) < 0)
+		err = -errno;
+	if (!err)
+		return fd;
+	close(fd);
+	return err;
 }
 
-void files_close(struct files *files)
-{
-	if (files->directory >= 0)
-		close(files->directory);
-	files->directory = -1;
-	files->count = 0;
-}
-
-int files_find(const struct files *files, const char *path, uint64_t *size, const char **type,
+int files_find(int directory, const char *path, uint64_t *size, const char **type,
                char tag[FILES_TAG])
 {
 	const char *name = *path ? path : "index.html";
-	unsigned i = 0;
 	struct stat stat;
 	int fd;
 
-	while (i < files->count && strcmp(files->names[i], name) != 0)
-		i++;
-	if (i == files->count)
+	if (!is_of_page(name))
 		return -ENOENT;
-	fd = openat(files->directory, name, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+	fd = openat(directory, name, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
 	if (fd < 0)
 		return -errno;
 	if (fstat(fd, &stat) || !S_ISREG(stat.st_mode)) {

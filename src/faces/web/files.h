@@ -1,25 +1,18 @@
 /* SPDX-License-Identifier: MIT */
-/* The files of the page: those that a directory had at the start, and no others. */
+/* The files of the page: those of a directory whose names and types are those of a page. */
 #pragma once
 
 #include <stdint.h>
 
-#define FILES 128
-#define FILES_NAME 64
+#define FILES_NAME 64 /* "style.css", "plot/plot.css" */
 #define FILES_TAG 48
 
-struct files {
-	int directory; /* -1: there is none */
-	unsigned count;
-	char names[FILES][FILES_NAME]; /* "style.css", "uplot/uPlot.css" */
-};
-
-/* Take the names of the files there, and one level of directories deeper. 0 or a negative errno. */
-int files_open(struct files *files, const char *directory);
-void files_close(struct files *files);
+/* A descriptor of the directory, if it has an index.html; else a negative errno. */
+int files_open(const char *directory);
 /*
- * Open the file of a path ("" is index.html). Returns a descriptor, or -ENOENT or another negative
- * errno; with its size, its type and a tag that changes with its contents.
+ * Open the file of a path ("" is index.html), at most one directory deeper. Returns a descriptor,
+ * or -ENOENT or another negative errno; with its size, its type and a tag that changes with its
+ * contents. A directory of -1 has none.
  */
-int files_find(const struct files *files, const char *path, uint64_t *size, const char **type,
+int files_find(int directory, const char *path, uint64_t *size, const char **type,
                char tag[FILES_TAG]);

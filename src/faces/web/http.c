@@ -167,7 +167,7 @@ static int answer_file(struct request *request, const char *path)
 	struct MHD_Response *response;
 	char tag[FILES_TAG];
 	uint64_t size;
-	int fd = files_find(&request->web->files, path, &size, &type, tag);
+	int fd = files_find(request->web->files, path, &size, &type, tag);
 
 	if (fd < 0 && !*path)
 		return http_error(request, 404,

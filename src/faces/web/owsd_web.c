@@ -22,7 +22,6 @@
 #include "src/faces/web/web.h"
 #include "src/faces/web/wire.h"
 #include "src/ground/service/listen.h"
-#include "src/memory/shm/place.h"
 
 /* Connections, files that are sent, what the porter has not yet taken, and a few more */
 #define DESCRIPTORS (3 * DOORS_CONNECTIONS)
@@ -81,16 +80,11 @@ static void owsd_web_run(struct web *web)
 
 static int open_socket(struct web *web)
 {
-	char path[PLACE_PATH + 128], fault[PLACE_FAULT];
-	struct shm_place place;
-	int err = place_make(&place);
+	char path[FACE_PATH];
+	int err = face_socket(web->face->arguments, "web", path);
 
-	if (err) {
-		face_complain("owsd-web", "%s", place_fault(&place, err, fault));
+	if (err)
 		return err;
-	}
-	snprintf(path, sizeof(path), "%s/%s.web", place.path, web->face->arguments->instance);
-	place_close(&place);
 	err = doors_socket(&web->doors, path);
 	if (err)
 		face_complain("owsd-web", "%s: %s%s", path, strerror(-err),
@@ -181,59 +175,65 @@ static void follow_addresses(struct web *web)
 
 /*
  * Where Files says; else where this program was installed, or where it was built. path: where they
- * were looked for.
+ * were looked for. As files_open().
  */
-static int find_files(struct files *files, const char *given, char path[FILES_PATH])
+static int find_files(const char *given, char path[FILES_PATH])
 {
 	static const char *const beside[] = {"../share/owsd/web", "../src/faces/web/page"};
 	char program[512];
 	ssize_t len = readlink("/proc/self/exe", program, sizeof(program) - 1);
-	int err = -ENOENT;
+	int fd = -ENOENT;
 
 	program[len > 0 ? len : 0] = '\0';
 	if (strrchr(program, '/'))
 		*strrchr(program, '/') = '\0';
 	if (given) {
 		snprintf(path, FILES_PATH, "%s", given);
-		err = files_open(files, path);
+		return files_open(path);
 	}
-	for (size_t i = 0; !given && err && i < sizeof(beside) / sizeof(beside[0]); i++) {
+	for (size_t i = 0; fd < 0 && i < sizeof(beside) / sizeof(beside[0]); i++) {
 		snprintf(path, FILES_PATH, "%s/%s", program, beside[i]);
-		err = files_open(files, path);
+		fd = files_open(path);
 	}
-	return err;
+	return fd;
 }
 
 static void open_files(struct web *web)
 {
 	char path[FILES_PATH];
-	int err = find_files(&web->files, web->face->config->web.files, path);
 
-	if (err)
+	web->files = find_files(web->face->config->web.files, path);
+	if (web->files < 0)
 		log_warning(web->face->log, "there are no files of the page in %s: %s", path,
-		            strerror(-err));
+		            strerror(-web->files));
+}
+
+static void close_files(const struct web *web)
+{
+	if (web->files >= 0)
+		close(web->files);
 }
 
 static int check(const struct face *face)
 {
-	struct files files = {.directory = -1};
 	char path[FILES_PATH];
-	int err = find_files(&files, face->config->web.files, path);
+	int fd = find_files(face->config->web.files, path);
 
-	if (err)
+	if (fd < 0)
 		face_complain(face->ops->program,
 		              "there are no files of the page in %s: %s; without Files those of "
 		              "the package are served",
-		              path, strerror(-err));
-	files_close(&files);
-	return err == -EACCES ? 0 : err; /* the service may be another user */
+		              path, strerror(-fd));
+	else
+		close(fd);
+	return fd == -EACCES || fd >= 0 ? 0 : fd; /* the service may be another user */
 }
 
 /* The configuration was read again: what was made of it at the start is made anew. */
 static void follow_file(struct web *web)
 {
 	follow_addresses(web);
-	files_close(&web->files);
+	close_files(web);
 	open_files(web);
 }
 
@@ -251,7 +251,7 @@ static void raise_limit(void)
 
 static int open_web(struct face *face)
 {
-	static struct web web = {.doors = {.epoll = -1}, .files = {.directory = -1}};
+	static struct web web = {.doors = {.epoll = -1}, .files = -1};
 	int err;
 
 	web.face = face;
@@ -449,7 +449,7 @@ static void close_web(struct face *face)
 	recent_free(&web->recent);
 	free(web->ids);
 	close(web->bell);
-	files_close(&web->files);
+	close_files(web);
 }
 
 int main(int argc, char **argv)

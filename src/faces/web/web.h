@@ -33,7 +33,7 @@ struct web {
 	struct MHD_Daemon *daemon;
 	int epoll; /* of libmicrohttpd */
 	struct doors doors;
-	struct files files;
+	int files; /* the directory of the page; -1: there is none */
 	struct recent recent;
 	int *ids; /* for ows_alarm_state(), of signals that can have alarms; else -1 */
 	struct jobs *past, *commands, *drafts, *saves, *scans;

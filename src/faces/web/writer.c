@@ -3,12 +3,12 @@
 #include <ctype.h>
 #include <errno.h>
 #include <limits.h>
-#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/time.h>
 #include <sys/un.h>
 #include <unistd.h>
 
@@ -157,6 +157,7 @@ static int name_socket(const struct shm_place *place, const char *instance,
 
 static int connect_there(const char *path, const char *instance)
 {
+	static const struct timeval patience = {.tv_sec = PATIENCE_NS / NS_PER_S};
 	struct sockaddr_un address;
 	struct shm_place place;
 	int err = place_open(path, &place), fd;
@@ -164,9 +165,13 @@ static int connect_there(const char *path, const char *instance)
 	if (err)
 		return err;
 	err = name_socket(&place, instance, &address);
-	fd = err ? err : socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+	fd = err ? err : socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
 	if (!err && fd < 0)
 		fd = -errno;
+	if (fd >= 0) {
+		setsockopt(fd, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof(patience));
+		setsockopt(fd, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof(patience));
+	}
 	if (fd >= 0 && connect(fd, (const struct sockaddr *)&address, sizeof(address))) {
 		err = -errno;
 		close(fd);
@@ -219,58 +224,39 @@ void writer_remedy(const char *instance, char text[WRITER_WORDS])
 	         instance);
 }
 
-static int writer_await(int fd, short events, int64_t until_ns)
-{
-	struct pollfd poll_fd = {.fd = fd, .events = events};
-	int64_t left_ns = until_ns - ows_now();
-
-	if (left_ns <= 0)
-		return -ETIMEDOUT;
-	return poll(&poll_fd, 1, (int)(left_ns / NS_PER_MS) + 1) < 0 && errno != EINTR ? -errno : 0;
-}
-
 /* A writer that has answered before the end may hang up: its answer counts. */
-static int send_all(int fd, const char *bytes, size_t len, int64_t until_ns)
+static int send_all(int fd, const char *bytes, size_t len)
 {
-	int err = 0;
-
-	while (len && !err) {
+	while (len) {
 		ssize_t n = send(fd, bytes, len, MSG_NOSIGNAL);
 
-		if (n > 0) {
-			bytes += n;
-			len -= (size_t)n;
-		} else if (errno == EAGAIN || errno == EINTR) {
-			err = writer_await(fd, POLLOUT, until_ns);
-		} else {
+		if (n < 0 && errno != EINTR)
 			return errno == EPIPE || errno == ECONNRESET ? 0 : -errno;
-		}
+		bytes += n > 0 ? n : 0;
+		len -= n > 0 ? (size_t)n : 0;
 	}
-	return err;
+	return 0;
 }
 
+/* A writer that sends byte by byte has no longer than another. */
 static int receive_all(int fd, char *text, size_t size, size_t *len, int64_t until_ns)
 {
-	int err = 0;
-
-	*len = 0;
-	while (!err && *len < size - 1) {
+	for (*len = 0; *len < size - 1;) {
 		ssize_t n = recv(fd, text + *len, size - 1 - *len, 0);
 
 		if (n == 0 || (n < 0 && errno == ECONNRESET && *len))
 			break;
-		if (n > 0)
-			*len += (size_t)n;
-		else if (errno == EAGAIN || errno == EINTR)
-			err = writer_await(fd, POLLIN, until_ns);
-		else
-			err = -errno;
+		if (n < 0 && errno != EINTR)
+			return -errno;
+		if (ows_now() >= until_ns)
+			return -ETIMEDOUT;
+		*len += n > 0 ? (size_t)n : 0;
 	}
 	text[*len] = '\0';
-	return err;
+	return 0;
 }
 
-static int send_order(int fd, const struct writer_order *order, int64_t until_ns)
+static int send_order(int fd, const struct writer_order *order)
 {
 	size_t len = order->text ? strlen(order->text) : 0;
 	char head[256], length[32] = "";
@@ -282,8 +268,8 @@ static int send_order(int fd, const struct writer_order *order, int64_t until_ns
 	             order->text ? "replace" : "restore", order->base, order->person, length);
 	if (n >= (int)sizeof(head))
 		return -EINVAL;
-	err = send_all(fd, head, (size_t)n, until_ns);
-	return err || !len ? err : send_all(fd, order->text, len, until_ns);
+	err = send_all(fd, head, (size_t)n);
+	return err || !len ? err : send_all(fd, order->text, len);
 }
 
 int writer_ask(const struct writer_order *order, struct writer_answer *answer)
@@ -294,7 +280,7 @@ int writer_ask(const struct writer_order *order, struct writer_answer *answer)
 	size_t len = 0;
 
 	*answer = (struct writer_answer){.reload = "none"};
-	err = fd < 0 ? fd : text ? send_order(fd, order, until_ns) : -ENOMEM;
+	err = fd < 0 ? fd : text ? send_order(fd, order) : -ENOMEM;
 	if (!err && receive_all(fd, text, ANSWER_MAX, &len, until_ns))
 		err = -EINPROGRESS;
 	if (!err)

@@ -18,7 +18,6 @@
 #include "src/faces/kit/arguments.h"
 #include "src/faces/writer/visit.h"
 #include "src/faces/writer/visitors.h"
-#include "src/ground/service/heap.h"
 #include "src/ground/service/listen.h"
 #include "src/ground/service/notify.h"
 #include "src/ground/service/streams.h"
@@ -26,7 +25,6 @@
 #include "src/ground/text/log.h"
 #include "src/memory/shm/owner.h"
 #include "src/memory/shm/peer.h"
-#include "src/memory/shm/place.h"
 #include "src/public/ows.h"
 
 #define PROGRAM "owsd-config"
@@ -35,24 +33,8 @@
 #define IDLE_MS 30000 /* then the service manager waits in its place */
 #define PAUSE_NS (200 * NS_PER_MS)
 
-/* The socket NAME.config in this user's place. 0, or a negative errno after reporting why. */
-static int name_socket(const char *instance, char *path, size_t size)
-{
-	struct shm_place place;
-	char fault[PLACE_FAULT];
-	int err = place_make(&place);
-
-	if (err) {
-		face_complain(PROGRAM, "%s", place_fault(&place, err, fault));
-		return err;
-	}
-	snprintf(path, size, "%s/%s.config", place.path, instance);
-	place_close(&place);
-	return 0;
-}
-
 /* The socket of the service manager, path then is ""; else that of -l, or in this user's place. */
-static int writer_socket(const struct face_arguments *a, char *path, size_t size)
+static int writer_socket(const struct face_arguments *a, char path[FACE_PATH])
 {
 	int fd, count = listen_inherited(&fd, 1);
 
@@ -65,8 +47,8 @@ static int writer_socket(const struct face_arguments *a, char *path, size_t size
 	if (count)
 		return fd;
 	if (a->option)
-		snprintf(path, size, "%s", a->option);
-	else if (name_socket(a->instance, path, size))
+		snprintf(path, FACE_PATH, "%s", a->option);
+	else if (face_socket(a, "config", path))
 		return -ENOENT;
 	fd = listen_at_path(path, 0600, (gid_t)-1); /* for this user alone */
 	if (fd < 0)
@@ -166,7 +148,7 @@ static int owsd_config_run(const struct face_arguments *a, struct unix_signals *
 	struct visitors visitors = {0};
 	struct writer writer = {.file = a->file, .instance = a->instance};
 	int prefix = journal_is_stderr(), listener;
-	char path[PLACE_PATH + 128];
+	char path[FACE_PATH];
 	struct notify notify;
 
 	writer.log = log_create(a->level);
@@ -174,7 +156,7 @@ static int owsd_config_run(const struct face_arguments *a, struct unix_signals *
 		face_complain(PROGRAM, "no memory or no descriptor for the log");
 		return FACE_EXIT_RUN;
 	}
-	listener = writer_socket(a, path, sizeof(path));
+	listener = writer_socket(a, path);
 	if (listener < 0) {
 		log_destroy(writer.log);
 		return FACE_EXIT_RUN;
@@ -227,15 +209,7 @@ int main(int argc, char **argv)
 	struct unix_signals signals;
 	int status;
 
-	heap_give_back();
-	status = standard_open();
-	if (status) {
-		face_complain(PROGRAM, "/dev/null: %s", strerror(-status));
-		return FACE_EXIT_RUN;
-	}
-	/* a write beyond the limit of a file then fails, and the file stays as it was */
-	signal(SIGXFSZ, SIG_IGN);
-	status = face_arguments_parse(PROGRAM, &listens, argc, argv, &a);
+	status = face_start(PROGRAM, &listens, argc, argv, &a);
 	if (status >= 0)
 		return status;
 	if (a.check)
