@@ -368,7 +368,9 @@ struct ows_info {
 	double filter_s, deadband; /* 0 without */
 	int32_t decimals;       /* -1: not known */
 	uint8_t confirm;        /* 1 ask a person once more before a set */
-	uint64_t spare[4]; /* 0: room for later members */
+	/* What the signal was when it began: the same over a rename and over a replaced device. */
+	const char *identity;
+	uint64_t spare[3]; /* 0: room for later members */
 };
 int ows_info(const struct ows *h, int signal, struct ows_info *info);
 /* Get the value of a signal by its index (not an id of ows_find()); otherwise as ows_get(). */

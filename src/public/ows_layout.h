@@ -26,7 +26,7 @@
 #include <stdint.h>
 
 #define OWS_LAYOUT_MAJOR 2
-#define OWS_LAYOUT_MINOR 0
+#define OWS_LAYOUT_MINOR 1
 
 #define OWS_IMAGE_MAGIC   0x4953574fu /* "OWSI" */
 #define OWS_CONTROLLER_MAGIC   0x4753574fu /* "OWSG" */
@@ -145,7 +145,8 @@ struct ows_info_entry { /* 192 bytes */
 	double min, max;         /* Min and Max */
 	double limit_hh, limit_h, limit_l, limit_ll;
 	double filter_s, deadband; /* 0 without */
-	uint32_t spare[10];
+	uint32_t identity_off; /* the path, or Identity; 0, before minor version 1: the path */
+	uint32_t spare[9];
 };
 #define OWS_INFO_INIT   0x01
 #define OWS_INFO_SAFE   0x02

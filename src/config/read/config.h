@@ -54,9 +54,11 @@ struct config_spot {
  */
 struct config_item {
 	const char *name;
-	const char *path;   /* normalised: leading "/", without "/uncached" and "/alarm" */
-	const char *device; /* the ROM id in path; NULL: an alias, or no device */
-	const char *family; /* what the chip is called, by its path; NULL: not known */
+	const char *path;          /* normalised: leading "/", without "/uncached" and "/alarm" */
+	const char *identity;      /* what history and faces know the signal by; each has another */
+	const char *identity_text; /* as written; NULL: identity is made of the path */
+	const char *device;        /* the ROM id in path; NULL: an alias, or no device */
+	const char *family;        /* what the chip is called, by its path; NULL: not known */
 	enum ows_type type;
 	bool output;
 	bool readable, writable; /* start values of _ReadEnable and _WriteEnable */

@@ -8,6 +8,7 @@
 #include "hal/owfs/path.h"
 #include "src/config/read/alarm.h"
 #include "src/config/read/build.h"
+#include "src/config/read/identity.h"
 #include "src/config/read/item.h"
 #include "src/config/read/limits.h"
 #include "src/config/read/options.h"
@@ -280,40 +281,4 @@ void item_build(struct build *build, const struct rio_node *block, struct config
 	alarm_build(build, block, values, &path, item);
 	limits_build(build, values, item);
 	record_build(build, &values[OPT_RECORD], known, item);
-}
-
-struct named {
-	const char *name;
-	unsigned index;
-};
-
-static int compare_named(const void *a, const void *b)
-{
-	const struct named *x = a, *y = b;
-	int order = strcmp(x->name, y->name);
-
-	return order ? order : (x->index > y->index) - (x->index < y->index);
-}
-
-void items_check(struct build *build, const struct place *names)
-{
-	const struct config *config = &build->box->config;
-	struct named *sorted = calloc(config->item_count + 1, sizeof(*sorted));
-
-	if (!sorted) {
-		build->no_memory = true;
-		return;
-	}
-	for (unsigned i = 0; i < config->item_count; i++)
-		sorted[i] = (struct named){config->items[i].name, i};
-	qsort(sorted, config->item_count, sizeof(*sorted), compare_named);
-	for (unsigned i = 1, first = 0; i < config->item_count; i++) {
-		if (strcmp(sorted[i].name, sorted[first].name))
-			first = i;
-		else if (*sorted[i].name)
-			report_error(build->report, names[sorted[i].index],
-			             "the name \"%s\" is given twice, first in line %d",
-			             sorted[i].name, names[sorted[first].index].line);
-	}
-	free(sorted);
 }

@@ -4,10 +4,7 @@
 
 struct build;
 struct config_item;
-struct place;
 struct rio_node;
 
 /* One Item block. */
 void item_build(struct build *build, const struct rio_node *block, struct config_item *item);
-/* What concerns items together: names. */
-void items_check(struct build *build, const struct place *names);

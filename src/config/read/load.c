@@ -11,6 +11,7 @@
 #include "src/config/read/allow.h"
 #include "src/config/read/build.h"
 #include "src/config/read/buses.h"
+#include "src/config/read/identity.h"
 #include "src/config/read/item.h"
 #include "src/config/read/load.h"
 #include "src/config/read/mqtt.h"

@@ -50,6 +50,8 @@ OPTION(PATH, "Path", ITEM, TEXT, TO(config_item, path), AT(config_item, path_at)
        .help = "OWFS path of the property")
 OPTION(IO_TYPE, "IOType", ITEM, COUNT, RANGE(0, UINT32_MAX),
        .help = "type, direction and Uncached as bits")
+OPTION(IDENTITY, "Identity", ITEM, TEXT, TO(config_item, identity_text), .check = text_is_identity,
+       .help = "the path that the signal began with, where its device was replaced")
 OPTION(TYPE, "Type", ITEM, TYPE, TO(config_item, type), AT(config_item, type_at), .help = "data type")
 OPTION(IO, "IO", ITEM, IO, TO(config_item, output), .preset = "input",
        .help = "read cyclically, or written when changed")

@@ -164,3 +164,16 @@ const char *text_is_protocol(const char *protocol)
 {
 	return !strcmp(protocol, "5") || !strcmp(protocol, "3.1.1") ? NULL : "expected 5 or 3.1.1";
 }
+
+const char *text_is_identity(const char *text)
+{
+	size_t left = strlen(text);
+	bool ok = *text == '/' && left <= LONG_MAX_BYTES;
+
+	while (ok && left) {
+		int32_t code = utf8_next(&text, &left);
+
+		ok = code >= 0 && !utf8_disturbs(code);
+	}
+	return ok ? NULL : "expected the path that the signal had, such as /28.FF01/temperature";
+}

@@ -12,6 +12,6 @@ text_check text_is_short, text_is_path, text_is_name, text_is_socket, text_is_ur
 text_check text_is_file;
 /* Of a signal: UTF-8 without what disturbs a terminal. */
 text_check text_is_unit, text_is_line;
-text_check text_is_date, text_is_start, text_is_class;
+text_check text_is_date, text_is_start, text_is_class, text_is_identity;
 /* Of owsd-mqtt. */
 text_check text_is_topic, text_is_profile, text_is_protocol;

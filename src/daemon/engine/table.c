@@ -247,6 +247,7 @@ void signal_table_image(const struct config_item *item, struct image_signal *sig
 	*signal = (struct image_signal){
 		.name = item->name,
 		.path = item->path,
+		.identity = item->identity,
 		.type = (uint8_t)item->type,
 		.flags = (uint8_t)((item->output ? OWS_RECORD_OUTPUT : 0) |
 	                           (item->fresh ? OWS_RECORD_FRESH : 0) |

@@ -118,6 +118,7 @@ void show_signal(struct json *json, const struct show *show, int signal)
 	json_known(json, "decimals", info.decimals);
 	put_text(json, "description", info.description);
 	json_string(json, "path", info.path);
+	json_string(json, "identity", info.identity);
 	put_text(json, "family", info.family);
 	put_text(json, "device", info.device);
 	put_text(json, "calibrated", info.calibrated);

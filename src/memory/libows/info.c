@@ -56,6 +56,8 @@ int ows_info(const struct ows *h, int signal, struct ows_info *info)
 		.deadband = entry->deadband,
 		.decimals = entry->decimals <= DECIMALS_MOST ? (int32_t)entry->decimals : -1,
 		.confirm = (entry->flags & OWS_INFO_CONFIRM) != 0,
+		.identity = map_string(&h->map,
+	                               entry->identity_off ? entry->identity_off : entry->path_off),
 	};
 	return 0;
 }

@@ -126,7 +126,7 @@ _Cursor = _structure("uint32 number start_id generation flags; int64 looked_ns")
 _Info = _structure("char_p name path; uint8 type; bool output fresh alarm; uint32 per_factor; "
                    "int64 stale_after_ns; char_p unit description family device calibrated points; "
                    "double scale offset min max limit_hh limit_h limit_l limit_ll filter_s "
-                   "deadband; int32 decimals; bool confirm; uint64 spare[4]")
+                   "deadband; int32 decimals; bool confirm; char_p identity; uint64 spare[3]")
 _Daemon = _structure("int32 pid; uint32 state generation; int64 start_ns beat_age_ns period_ns; "
                      "int alive; uint64 spare[4]")
 _Target = _structure("char_p name; uint32 state reconnects group moves; uint64 spare[4]")
@@ -218,6 +218,7 @@ class Info(NamedTuple):
     filter: float
     deadband: float
     confirm: bool
+    identity: str    # the path that it began with: the same over a rename or a new device
 
 
 class Origin(NamedTuple):

@@ -75,6 +75,7 @@ AT(ows_info_entry, limit_l, 120, 8);
 AT(ows_info_entry, limit_ll, 128, 8);
 AT(ows_info_entry, filter_s, 136, 8);
 AT(ows_info_entry, deadband, 144, 8);
+AT(ows_info_entry, identity_off, 152, 4);
 
 AT(ows_name_entry, name_off, 0, 4);
 AT(ows_name_entry, record, 4, 4);

@@ -50,6 +50,12 @@ static uint64_t string_bytes(const char *text)
 	return text && *text ? strlen(text) + 1 : 0;
 }
 
+/* Most signals have their path, which then stands in the pool once. */
+static bool has_identity(const struct image_signal *signal)
+{
+	return signal->identity && strcmp(signal->identity, signal->path) != 0;
+}
+
 static uint64_t pool_bytes(const struct image_plan *plan)
 {
 	uint64_t n = 2 + string_bytes(plan->served); /* 2: name and path of record 0 */
@@ -58,6 +64,8 @@ static uint64_t pool_bytes(const struct image_plan *plan)
 		const struct image_meta *meta = meta_of(&plan->signals[i]);
 
 		n += strlen(plan->signals[i].name) + 1 + strlen(plan->signals[i].path) + 1;
+		if (has_identity(&plan->signals[i]))
+			n += strlen(plan->signals[i].identity) + 1;
 		n += string_bytes(meta->unit) + string_bytes(meta->description) +
 		     string_bytes(meta->family) + string_bytes(meta->device) +
 		     string_bytes(meta->calibrated) + string_bytes(meta->points);
@@ -248,6 +256,7 @@ static void fill_info(const struct image_signal *s, char *base, uint64_t *pool,
 		.deadband = meta->deadband,
 	};
 	info->path_off = add_string(base, pool, s->path);
+	info->identity_off = has_identity(s) ? add_string(base, pool, s->identity) : info->path_off;
 	info->unit_off = add_optional(base, pool, meta->unit);
 	info->description_off = add_optional(base, pool, meta->description);
 	info->family_off = add_optional(base, pool, meta->family);

@@ -35,6 +35,7 @@ struct image_signal {
 	bool starts_last; /* Start "last" */
 	bool confirm;
 	const struct image_meta *meta; /* NULL: image_no_meta */
+	const char *identity;          /* NULL: the path */
 };
 struct image_counter {
 	const char *name;

@@ -71,6 +71,7 @@ static void rows_add(struct ows *h, struct rows *rows, const char *name, int sig
 	row->fresh = info->fresh;
 	row->alarm = info->alarm;
 	row->path = ctl_need(strdup(info->path));
+	row->identity = ctl_need(strdup(info->identity));
 	meaning_of(h, info, &row->meaning);
 }
 
@@ -118,6 +119,7 @@ void rows_free(struct rows *rows)
 	for (int i = 0; i < rows->count; i++) {
 		free(rows->row[i].name);
 		free(rows->row[i].path);
+		free(rows->row[i].identity);
 		meaning_free(&rows->row[i].meaning);
 	}
 	free(rows->row);
@@ -225,6 +227,7 @@ void row_json(struct json *json, struct ows *h, const struct row *row, int64_t n
 	json_string(json, "path", row->path);
 	if (!row->path)
 		return;
+	json_string(json, "identity", row->identity);
 	json_string(json, "io", row->output ? "output" : "input");
 	json_bool(json, "uncached", row->fresh);
 	json_bool(json, "alarm", row->alarm);

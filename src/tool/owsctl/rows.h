@@ -28,8 +28,9 @@ struct row {
 	int id;     /* for ows_get(); stays valid over ows_reopen() */
 	int signal; /* as in ows_info(); -1: a driver signal, which stand first */
 	char *name;
-	char *path;   /* NULL: a driver signal */
-	uint8_t type; /* enum ows_type */
+	char *path;     /* NULL: a driver signal */
+	char *identity; /* likewise */
+	uint8_t type;   /* enum ows_type */
 	bool output, fresh, alarm;
 	struct meaning meaning;         /* of a signal */
 	struct ows_alarm_state alarms;  /* of the last row_read() */

@@ -60,6 +60,9 @@ static void check_signal(struct ows *h, uint32_t record)
 	TEST_ASSERT_EQUAL(0, ows_info(h, (int)record - 1, &info));
 	TEST_ASSERT_EQUAL_STRING(name, info.name);
 	TEST_ASSERT_EQUAL_STRING(signals[record - 1].path, info.path);
+	TEST_ASSERT_EQUAL_STRING(signals[record - 1].identity ? signals[record - 1].identity
+	                                                      : signals[record - 1].path,
+	                         info.identity);
 	TEST_ASSERT_EQUAL(signals[record - 1].per_factor, info.per_factor);
 	TEST_ASSERT_EQUAL_INT64(signals[record - 1].stale_after_ns, info.stale_after_ns);
 	TEST_ASSERT_EQUAL((signals[record - 1].flags & OWS_RECORD_OUTPUT) != 0, info.output);

@@ -48,7 +48,7 @@ const struct image_signal signals[COUNT] = {
 	{"dword", "/1D.000000000001/counters.A", OWS_DWORD, 0, 0, 6, 16, 0},
 	{"float", "/26.000000000001/humidity", OWS_FLOAT, 0, 0, 7, 17, 0},
 	{"room.temperature", "/28.000000000001/temperature", OWS_DOUBLE, 0, 0, 4294967295u, 18,
-         20 * S, .starts_last = true, .meta = &room},
+         20 * S, .starts_last = true, .meta = &room, .identity = "/28.0000000000FF/temperature"},
 	{"large", "/null", OWS_LARGE, OWS_RECORD_OUTPUT, 0, 9, 19, 0},
 	{"label", "/23.000000000001/memory", OWS_STRING, OWS_RECORD_OUTPUT, TEXT_CAP, 10, 20, 0},
 	{"empty", "/23.000000000002/memory", OWS_STRING, 0, TEXT_CAP, 11, 21, 0},

@@ -14,7 +14,7 @@
 #define TEXT_CAP 64
 #define SIZE_MAX_ 262144
 /* The file in tests/unit/data. */
-#define RECORDED "image-2.0"
+#define RECORDED "image-2.1"
 #define LONG_TEXT \
 	"K\xc3\xbchlraum 3, Verdampfer \xc2\xb0" \
 	"C: text of sixty-four bytes, all used!"

@@ -58,6 +58,24 @@ static void test_todays_writer_lays_the_same_out_in_the_same_way(void)
 	TEST_ASSERT_EQUAL_MEMORY(recorded, image_memory, size);
 }
 
+static void test_in_an_image_of_an_earlier_minor_version_a_signal_is_its_path(void)
+{
+	static _Alignas(8) char recorded[SIZE_MAX_];
+	const struct ows_area_entry *infos;
+	uint32_t size = read_recording(RECORDED, recorded);
+	struct ows_info info;
+	struct ows *h;
+
+	infos = (const struct ows_area_entry *)(const void *)(recorded + 256) + OWS_AREA_INFOS - 1;
+	for (uint32_t i = 0; i < infos->count; i++)
+		((struct ows_info_entry *)(void *)(recorded + infos->off))[i].identity_off = 0;
+	show("image", recorded, size);
+	TEST_ASSERT_EQUAL(0, ows_open(instance, OWS_READ, &h));
+	TEST_ASSERT_EQUAL(0, ows_info(h, DOUBLE_ - 1, &info));
+	TEST_ASSERT_EQUAL_STRING("/28.000000000001/temperature", info.identity);
+	ows_close(h);
+}
+
 static void test_todays_readers_refuse_the_layout_of_another_major_version(void)
 {
 	static _Alignas(8) char recorded[SIZE_MAX_];
@@ -110,7 +128,8 @@ static void test_python_reads_a_recorded_image(void)
 		" alarm=False, per_factor=4, stale_after_ns=2000000000, unit=None,"
 		" description=None, family=None, device=None, calibrated=None, points=None,"
 		" decimals=None, scale=1.0, offset=0.0, min=None, max=None, limit_hh=None,"
-		" limit_h=None, limit_l=None, limit_ll=None, filter=0.0, deadband=0.0, confirm=False)\n",
+		" limit_h=None, limit_l=None, limit_ll=None, filter=0.0, deadband=0.0, confirm=False,"
+		" identity=\"/1D.000000000001/a\")\n",
 		python("s = ows.Ows(sys.argv[1])\nN = 1010 * 10**9\n"
 	               "print(*(s.get(\"byte_\" + a, N).value for a in (\"TRANSACTIONS\", \"Period\", \"Age\","
 	               " \"AgeMax\", \"PerCount\", \"PerMax\", \"PendCount\", \"PendLast\", \"PendMax\","
@@ -152,6 +171,7 @@ int main(int argc, char **argv)
 	}
 	UNITY_BEGIN();
 	RUN_TEST(test_libows_reads_a_recorded_image);
+	RUN_TEST(test_in_an_image_of_an_earlier_minor_version_a_signal_is_its_path);
 	RUN_TEST(test_todays_readers_refuse_the_layout_of_another_major_version);
 	RUN_TEST(test_python_reads_a_recorded_image);
 	RUN_TEST(test_owsctl_reads_a_recorded_image);
