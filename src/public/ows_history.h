@@ -78,11 +78,12 @@ struct ows_history_signal {
 	uint8_t type;      /* enum ows_type */
 	uint8_t output;    /* 1 output, 0 input */
 	int32_t decimals;  /* -1: not known */
-	uint64_t spare[4]; /* 0: room for later members */
+	const char *identity; /* as of struct ows_info; "": recorded before there was one */
+	uint64_t spare[3]; /* 0: room for later members */
 };
 /* As it was last. -EINVAL: no such index. */
 int ows_history_signal(struct ows_history *h, int index, struct ows_history_signal *signal);
-/* The index of a name; -ENOENT. */
+/* The index of a name; else of an identity, or of a name that a signal had before; -ENOENT. */
 int ows_history_find(struct ows_history *h, const char *name);
 /* The first and the last moment of which something is known. -ENODATA: there is none. */
 int ows_history_span(struct ows_history *h, int64_t *from_ns, int64_t *until_ns);

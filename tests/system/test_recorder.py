@@ -19,8 +19,8 @@ import faulty
 import owsdtest
 import sandbox
 from owsdtest import BUILD, SOURCE, raw, until
-from recorded import (RECORDER, RELAY, RELAYS, ROOM, Past, boot, distinct, item, record, recorded,
-                      set_relays, text)
+from recorded import (RECORDER, RELAY, RELAYS, ROOM, SENSOR, Past, boot, distinct, item, record,
+                      recorded, set_relays, text)
 
 
 def test_changes_commands_and_alarms_are_recorded(scene):
@@ -156,6 +156,27 @@ def test_a_reload_is_no_gap_and_brings_the_rules_anew(scene):
     assert 2 <= len(kept) <= took / 0.5 + 3, (took, past.signals)
     assert [float(raw) * 2 for raw in distinct(past.good("other_Raw"))] == [float(v) for v in kept]
     assert past.signals["room"][-1][1] is None, past.signals
+
+
+def test_a_history_goes_on_over_another_name_and_another_chip(scene):
+    config = text(scene)
+    with (scene.path / "house.sim").open("a") as wire:
+        wire.write("DS18B20 28.A0B1C2000002 temperature 23.5\n")
+    daemon = scene.owsd(config)
+    recorder = record(scene, daemon)
+    recorded(scene, "room", "21.5")
+    moved = item("hall", "/28.A0B1C2000002/temperature", Identity=SENSOR + "/temperature")
+    for signals, value in ((dict(ROOM, Name="hall"), "21.5"), (moved, "23.5")):
+        daemon.config.write_text(text(scene, signals))
+        daemon.signal(signal.SIGHUP)
+        recorded(scene, "hall", value)
+    assert recorder.stop() == 0
+    past = Past(scene)
+    assert distinct(past.good("hall")) == ["21.5", "23.5"] and set(past.signals) == {
+        "hall", "relays", "title"}, past.signals
+    trend = ("trend", "-d", scene.path / "history", "--since", "5m", "--csv")
+    now, old = (scene.owsctl(daemon, *trend, name) for name in ("hall", "room"))
+    assert old.returncode == 0 and old.stdout == now.stdout and "23.5" in old.stdout, old
 
 
 def test_it_waits_for_an_owsd_and_tells_what_is_wrong_with_its_command_line(scene):

@@ -163,11 +163,11 @@ static bool open_history(struct past *p)
 	return !err;
 }
 
-static int by_name(const void *a, const void *b)
+static int by_identity(const void *a, const void *b)
 {
 	const struct row *x = *(const struct row *const *)a, *y = *(const struct row *const *)b;
 
-	return strcmp(x->name, y->name);
+	return strcmp(x->info.identity, y->info.identity);
 }
 
 /* False: no memory. */
@@ -175,15 +175,15 @@ static bool map_rows(struct past *p)
 {
 	int signals = ows_history_signals(p->history), count = p->stream->count;
 
-	free(p->by_name);
+	free(p->by_identity);
 	free(p->rows);
-	p->by_name = calloc((size_t)count + 1, sizeof(struct row *));
+	p->by_identity = calloc((size_t)count + 1, sizeof(struct row *));
 	p->rows = calloc((size_t)signals + 1, sizeof(*p->rows));
-	if (!p->by_name || !p->rows)
+	if (!p->by_identity || !p->rows)
 		return false;
 	for (int i = 0; i < count; i++)
-		p->by_name[i] = &p->stream->rows[i];
-	qsort(p->by_name, (size_t)count, sizeof(struct row *), by_name);
+		p->by_identity[i] = &p->stream->rows[i];
+	qsort(p->by_identity, (size_t)count, sizeof(struct row *), by_identity);
 	for (int i = 0; i < signals; i++)
 		p->rows[i] = -2;
 	return true;
@@ -201,9 +201,9 @@ static struct row *row_of(struct past *p, const struct replay_row *r)
 		const struct row *wanted = &key, **found = NULL;
 
 		if (!ows_history_signal(p->history, r->signal, &signal)) {
-			key.name = (char *)(uintptr_t)signal.name;
-			found = bsearch(&wanted, p->by_name, (size_t)p->stream->count,
-			                sizeof(struct row *), by_name);
+			key.info.identity = signal.identity;
+			found = bsearch(&wanted, p->by_identity, (size_t)p->stream->count,
+			                sizeof(struct row *), by_identity);
 		}
 		*index = found ? (int)(*found - p->stream->rows) : -1;
 	}
@@ -243,10 +243,10 @@ static void drop_batch(struct past *p)
 	for (int i = 0; i < p->value_count; i++)
 		free(p->values[i].text);
 	free(p->values);
-	free(p->by_name);
+	free(p->by_identity);
 	free(p->rows);
 	p->values = NULL;
-	p->by_name = NULL;
+	p->by_identity = NULL;
 	p->rows = NULL;
 	p->value_count = p->put = 0;
 	p->read = false;
@@ -403,7 +403,7 @@ static int read_batch(struct past *p, int64_t now_ns)
 	int most = p->stream->count > BATCH ? p->stream->count : BATCH, n = 0;
 	int64_t from, until, end;
 
-	if ((!p->history || !p->by_name) &&
+	if ((!p->history || !p->by_identity) &&
 	    (!(p->history ? ows_history_refresh(p->history) == 0 : open_history(p)) ||
 	     !map_rows(p))) {
 		p->there = true; /* it was, and may be again */

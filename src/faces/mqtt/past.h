@@ -44,7 +44,7 @@ struct past {
 	int64_t marked_ns;
 	uint64_t mark_published;
 	struct ows_history *history;
-	const struct row **by_name; /* rows of the stream */
+	const struct row **by_identity; /* rows of the stream */
 	int *rows;                 /* of signals of the history: the row; -1: none, -2: not known */
 	struct past_value *values; /* under way, by chip */
 	int value_count, put;

@@ -15,6 +15,7 @@
 
 /* Bytes of texts, with NUL. */
 #define HISTORY_NAME 128 /* of a signal */
+#define HISTORY_IDENTITY 304
 #define HISTORY_UNIT 32
 #define HISTORY_WHO 32
 /* Signals that one file may have, with those of earlier tables. */
@@ -71,5 +72,10 @@ struct history_signal {
 	const char *name, *unit;
 	uint8_t type; /* enum ows_type */
 	uint8_t output;
-	int8_t decimals; /* -1: not known */
+	int8_t decimals;      /* -1: not known */
+	const char *identity; /* what it is known by over another name; NULL: its name */
 };
+static inline const char *history_identity(const struct history_signal *signal)
+{
+	return signal->identity ? signal->identity : signal->name;
+}

@@ -48,7 +48,8 @@
 
 #define HOURS ROLLUP("hour", "3600000000", SCHEMA_HOUR("t.id"), "(t.id >> 3)")
 
-/* An empty file becomes one of this version. */
+/* An empty file becomes one of version 3. */
+#define CREATED 3
 static const char create[] =
 	/* clang-format off */
 	"create table session (start integer primary key, boot integer not null,"
@@ -86,6 +87,13 @@ static const char *const steps[HISTORY_SCHEMA] = {
 	      "drop table hours;",
 	/* of an event there was no word for what it is */
 	[2] = "drop view trend_event; " EVENTS,
+	/*
+         * A signal was its name: the recorder gives it an identity when it finds it by that. former
+         * has the names before, as " hall attic ".
+         */
+	[3] = "alter table signal add column identity text;"
+	      "alter table signal add column former text not null default ' ';"
+	      "create unique index signal_identity on signal (identity);",
 };
 
 _Static_assert(HISTORY_CLOCK == 6 && HISTORY_COMMAND == 7 && HISTORY_ALARM == 8,
@@ -129,12 +137,12 @@ static int migrate(sqlite3 *db, int64_t version)
 
 	if (!err && version == 0)
 		err = sql_exec(db, create);
-	for (int64_t i = version ? version : HISTORY_SCHEMA; !err && i < HISTORY_SCHEMA; i++)
+	for (int64_t i = version ? version : CREATED; !err && i < HISTORY_SCHEMA; i++)
 		err = sql_exec(db, steps[i]);
 	if (!err)
 		err = add_words(db);
 	if (!err)
-		err = sql_exec(db, "pragma application_id = 1870099300; pragma user_version = 3");
+		err = sql_exec(db, "pragma application_id = 1870099300; pragma user_version = 4");
 	if (!err)
 		err = sql_exec(db, "commit");
 	if (err)
@@ -142,7 +150,7 @@ static int migrate(sqlite3 *db, int64_t version)
 	return err;
 }
 
-_Static_assert(HISTORY_APPLICATION == 1870099300 && HISTORY_SCHEMA == 3,
+_Static_assert(HISTORY_APPLICATION == 1870099300 && HISTORY_SCHEMA == 4,
                "migrate() says these in words");
 
 static int schema_check(sqlite3 *db)

@@ -9,7 +9,9 @@
  * which a card survives. Without an error of the clock ids are microseconds since 1970.
  *
  *     session  a run of the recorder: from which id, in which boot, and the date
- *     signal   names and units
+ *     signal   names and units; what each is known by over another name (identity), and the names
+ *              that it had (former). A signal of an earlier table whose name another has now has
+ *              its identity for a name
  *     raw      a signal has a value from id on; repeated each hour, so that what held at a time is
  *              found in the hour before it
  *     gap      nothing is known from start on, of a signal or (0) of all
@@ -28,8 +30,9 @@
 #include <stdint.h>
 
 #define HISTORY_FILE "history.sqlite"
-#define HISTORY_SCHEMA 3               /* user_version */
+#define HISTORY_SCHEMA 4               /* user_version */
 #define HISTORY_SCHEMA_READ 2          /* what a reader needs is the same since then */
+#define HISTORY_SCHEMA_IDENTITY 4      /* since then a signal has one */
 #define HISTORY_APPLICATION 0x6f777364 /* application_id: "owsd" */
 
 #define MINUTE_US INT64_C(60000000)

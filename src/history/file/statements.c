@@ -12,10 +12,18 @@ static const char *const texts[S_COUNT] = {
 	[S_BEGIN] = "begin immediate",
 	[S_COMMIT] = "commit",
 	[S_ROLLBACK] = "rollback",
-	[S_FIND] = "select signal from signal where name = ?",
-	[S_NAME] = "insert into signal (name, unit, type, output, decimals) values (?, ?, ?, ?, ?)",
-	[S_RENEW] = "update signal set unit = ?2, type = ?3, output = ?4, decimals = ?5"
-		    " where name = ?1 and (unit, type, output, decimals) <> (?2, ?3, ?4, ?5)",
+	/* a file that was made before there were identities has names alone */
+	[S_FIND] = "select signal from signal where identity = ?1 union all"
+		   " select signal from signal where identity is null and name = ?2 limit 1",
+	[S_TAKE] = "update signal set name = coalesce(identity, '/' || signal)"
+		   " where name = ?1 and signal <> ?2",
+	[S_NAME] = "insert into signal (name, unit, type, output, decimals, identity)"
+		   " values (?, ?, ?, ?, ?, ?)",
+	[S_RENEW] = "update signal set former = former || case when name = ?1 or name like '/%'"
+		    " or instr(former, ' ' || name || ' ') then '' else name || ' ' end,"
+		    " name = ?1, unit = ?2, type = ?3, output = ?4, decimals = ?5, identity = ?6"
+		    " where signal = ?7 and (name, unit, type, output, decimals, identity)"
+		    " is not (?1, ?2, ?3, ?4, ?5, ?6)",
 	[S_VALUE] = "insert into raw values (?, ?, ?, ?)",
 	[S_GAP] = "insert into gap values (?, ?, ?, ?) on conflict do nothing",
 	[S_LONGER] = "update gap set until = ?1 where start = ?2 and signal = 0",

@@ -9,6 +9,7 @@ enum statement {
 	S_COMMIT,
 	S_ROLLBACK,
 	S_FIND,
+	S_TAKE,
 	S_NAME,
 	S_RENEW,
 	S_VALUE,

@@ -233,12 +233,17 @@ static int name_key(struct history_store *store, struct history_key *key)
 
 	if (key->number)
 		return 0;
-	sql_bind(store->statements[S_FIND], "t", key->name);
+	sql_bind(store->statements[S_FIND], "tt", key->identity, key->name);
 	got = sql_number(store->statements[S_FIND], &number);
 	if (got < 0)
 		return got;
-	sql_bind(store->statements[both[!number]], "ttiii", key->name, key->unit,
-	         (int64_t)key->type, (int64_t)key->output, (int64_t)key->decimals);
+	sql_bind(store->statements[S_TAKE], "ti", key->name, number);
+	got = sql_next(store->statements[S_TAKE]);
+	if (got)
+		return got;
+	sql_bind(store->statements[both[!number]], number ? "ttiiiti" : "ttiiit", key->name,
+	         key->unit, (int64_t)key->type, (int64_t)key->output, (int64_t)key->decimals,
+	         key->identity, number);
 	got = sql_next(store->statements[both[!number]]);
 	if (got)
 		return got;

@@ -11,9 +11,9 @@
 #include "src/history/file/rolling.h"
 #include "src/history/file/statements.h"
 
-/* A signal, by its name; its number is that of the file, 0: not looked up. */
+/* A signal, by its identity; its number is that of the file, 0: not looked up. */
 struct history_key {
-	char name[HISTORY_NAME], unit[HISTORY_UNIT];
+	char identity[HISTORY_IDENTITY], name[HISTORY_NAME], unit[HISTORY_UNIT];
 	uint8_t type, output;
 	int8_t decimals;
 	uint32_t number;

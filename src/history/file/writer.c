@@ -187,17 +187,19 @@ static void writer_add(struct history_writer *w, struct history_row row)
  * --- What the recorder says --------------------------------------------------------------------
  */
 
-/* Among the first keys. */
-static int find_key(const struct history_writer *w, const char *name, uint32_t count)
+/* Among the first keys; mostly it is the one that is guessed. */
+static int find_key(const struct history_writer *w, const char *identity, uint32_t count,
+                    uint32_t guess)
 {
 	for (uint32_t i = 0; i < count; i++)
-		if (strcmp(w->keys[i].name, name) == 0)
-			return (int)i;
+		if (strcmp(w->keys[(guess + i) % count].identity, identity) == 0)
+			return (int)((guess + i) % count);
 	return -ENOENT;
 }
 
 static void set_key(struct history_key *key, const struct history_signal *signal)
 {
+	snprintf(key->identity, sizeof(key->identity), "%s", history_identity(signal));
 	snprintf(key->name, sizeof(key->name), "%s", signal->name);
 	snprintf(key->unit, sizeof(key->unit), "%s", signal->unit);
 	key->type = signal->type;
@@ -242,10 +244,8 @@ int history_writer_signals(struct history_writer *w, const struct history_signal
 	if (!err && w->key_count + count > HISTORY_SIGNALS)
 		err = -E2BIG;
 	for (uint32_t i = 0; !err && i < count; i++) {
-		/* mostly it is where it was */
-		int at = i < w->count && !strcmp(w->keys[w->table[i]].name, signals[i].name)
-		                 ? (int)w->table[i]
-		                 : find_key(w, signals[i].name, before);
+		int at = find_key(w, history_identity(&signals[i]), before,
+		                  i < w->count ? w->table[i] : 0);
 
 		if (at < 0) {
 			at = (int)w->key_count++;

@@ -37,7 +37,7 @@ int history_writer_close(struct history_writer *writer, int64_t now_ns);
 
 /*
  * The table: signal i of the calls below is signals[i]. Again after a reload: values of signals
- * with the same name stay known, of those that are gone nothing is known from now on. -ENOMEM,
+ * with the same identity stay known, of those that are gone nothing is known from now on. -ENOMEM,
  * -E2BIG: too many; the table is as before.
  */
 int history_writer_signals(struct history_writer *writer, const struct history_signal *signals,

@@ -29,7 +29,8 @@ struct session {
 	uint8_t reason; /* of the gap before it */
 };
 struct known_signal {
-	char *name, *unit;
+	char *name, *unit, *identity;
+	char *former; /* names that it had: " hall attic " */
 	uint32_t number;
 	uint8_t type, output;
 	int8_t decimals;
@@ -69,6 +70,7 @@ struct ows_history {
 	ino_t inode;
 	int64_t size;     /* in bytes, when it was opened or refreshed */
 	int64_t boot;     /* that this machine is in */
+	int64_t version;  /* of the file's tables */
 	int64_t until_ns; /* of the thread's processor time: then a call gives up */
 	struct session *sessions;
 	int session_count;

@@ -120,7 +120,7 @@ static int check_files(const struct ows_history *h)
 static int try_open(struct ows_history *h, bool frozen)
 {
 	char uri[URI] = "file:"; /* and zeros */
-	int64_t version = 0, application = 0;
+	int64_t application = 0;
 	size_t at = strlen(uri);
 	int err;
 
@@ -136,13 +136,13 @@ static int try_open(struct ows_history *h, bool frozen)
 	err = sql_errno(h->db, err);
 	if (!err) {
 		open_armed(h);
-		err = sql_ask(h->db, "pragma user_version", &version);
+		err = sql_ask(h->db, "pragma user_version", &h->version);
 	}
 	if (err >= 0)
 		err = sql_ask(h->db, "pragma application_id", &application);
 	if (err >= 0)
 		err = application != HISTORY_APPLICATION ? -EBADMSG
-		      : version < HISTORY_SCHEMA_READ || version > HISTORY_SCHEMA
+		      : h->version < HISTORY_SCHEMA_READ || h->version > HISTORY_SCHEMA
 		              ? -EPROTONOSUPPORT
 		              : tables_check(h->db);
 	for (int i = 0; !err && i < H_COUNT; i++)
@@ -204,6 +204,8 @@ static void open_forget(struct ows_history *h)
 	for (int i = 0; i < h->signal_count; i++) {
 		free(h->signals[i].name);
 		free(h->signals[i].unit);
+		free(h->signals[i].identity);
+		free(h->signals[i].former);
 	}
 	free(h->signals);
 	free(h->sessions);
@@ -260,17 +262,22 @@ static int take_session(sqlite3_stmt *from, void *to)
 
 static int take_signal(sqlite3_stmt *from, void *to)
 {
-	const char *name = (const char *)sqlite3_column_text(from, 1);
-	const char *unit = (const char *)sqlite3_column_text(from, 2);
 	struct known_signal *signal = to;
+	char **const texts_of[] = {&signal->name, &signal->unit, &signal->identity,
+	                           &signal->former};
+	bool all = true;
 
 	signal->number = (uint32_t)sqlite3_column_int64(from, 0);
-	signal->name = strdup(name ? name : "");
-	signal->unit = strdup(unit ? unit : "");
-	signal->type = (uint8_t)sqlite3_column_int(from, 3);
-	signal->output = (uint8_t)sqlite3_column_int(from, 4);
-	signal->decimals = (int8_t)sqlite3_column_int(from, 5);
-	return signal->name && signal->unit ? 0 : -ENOMEM;
+	for (int i = 0; i < 4; i++) {
+		const char *text = (const char *)sqlite3_column_text(from, 1 + i);
+
+		*texts_of[i] = strdup(text ? text : "");
+		all = all && *texts_of[i];
+	}
+	signal->type = (uint8_t)sqlite3_column_int(from, 5);
+	signal->output = (uint8_t)sqlite3_column_int(from, 6);
+	signal->decimals = (int8_t)sqlite3_column_int(from, 7);
+	return all ? 0 : -ENOMEM;
 }
 
 static int read_places(struct ows_history *h)
@@ -334,7 +341,12 @@ static int open_look(struct ows_history *h)
 			(void **)&h->sessions, sizeof(*h->sessions), take_session);
 	if (err >= 0)
 		err = h->signal_count = read_rows(
-			h, "select signal, name, unit, type, output, decimals from signal",
+			h,
+			h->version < HISTORY_SCHEMA_IDENTITY
+				? "select signal, name, unit, null, null, type, output, decimals"
+				  " from signal"
+				: "select signal, name, unit, identity, former, type, output,"
+				  " decimals from signal",
 			(void **)&h->signals, sizeof(*h->signals), take_signal);
 	sqlite3_exec(h->db, "commit", NULL, NULL, NULL);
 	if (err < 0) {

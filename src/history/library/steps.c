@@ -2,6 +2,7 @@
 /* The signals of a history, and the values of one of them. */
 #include <errno.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -40,14 +41,22 @@ int ows_history_signal(struct ows_history *h, int index, struct ows_history_sign
 		.type = known->type,
 		.output = known->output,
 		.decimals = known->decimals,
+		.identity = known->identity,
 	};
 	return 0;
 }
 
 int ows_history_find(struct ows_history *h, const char *name)
 {
+	char former[HISTORY_NAME + 3];
+
 	for (int i = 0; i < h->signal_count; i++)
 		if (strcmp(h->signals[i].name, name) == 0)
+			return i;
+	snprintf(former, sizeof(former), " %.*s ", HISTORY_NAME, name);
+	for (int i = h->signal_count - 1; i >= 0; i--)
+		if (*name && (strcmp(h->signals[i].identity, name) == 0 ||
+		              strstr(h->signals[i].former, former)))
 			return i;
 	return -ENOENT;
 }

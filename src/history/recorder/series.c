@@ -52,25 +52,31 @@ static struct config_record rule_of(const struct config *config, const struct na
 /* The table of the history: the signals, then the raw values. */
 struct table {
 	struct history_signal *signals;
-	char (*names)[HISTORY_NAME]; /* of the raw values */
+	struct raw_words {
+		char name[HISTORY_NAME], identity[HISTORY_IDENTITY];
+	} * words; /* of the raw values */
 	uint32_t count;
 };
 
 static void add_raw(struct table *table, struct row *row, struct ows *ows,
                     const struct ows_info *info)
 {
-	char *name = table->names[table->count - (uint32_t)ows_count(ows)];
+	struct raw_words *raw = &table->words[table->count - (uint32_t)ows_count(ows)];
 
 	row->raw_id = -1;
 	if (!row->rule.raw || row->rule.off || info->type == OWS_STRING ||
-	    snprintf(name, HISTORY_NAME, "%s_Raw", info->name) >= HISTORY_NAME)
+	    snprintf(raw->name, HISTORY_NAME, "%s_Raw", info->name) >= HISTORY_NAME)
 		return;
-	row->raw_id = ows_find(ows, name);
+	snprintf(raw->identity, HISTORY_IDENTITY, "%s_Raw", info->identity);
+	row->raw_id = ows_find(ows, raw->name);
 	if (row->raw_id < 0)
 		return;
 	row->raw_row = table->count;
-	table->signals[table->count++] = (struct history_signal){
-		.name = name, .unit = "", .type = OWS_DOUBLE, .decimals = -1};
+	table->signals[table->count++] = (struct history_signal){.name = raw->name,
+	                                                         .unit = "",
+	                                                         .type = OWS_DOUBLE,
+	                                                         .decimals = -1,
+	                                                         .identity = raw->identity};
 }
 
 static void series_fill(struct series *rows, struct table *table, struct ows *ows,
@@ -90,6 +96,7 @@ static void series_fill(struct series *rows, struct table *table, struct ows *ow
 			.type = info.type,
 			.output = info.output,
 			.decimals = (int8_t)info.decimals,
+			.identity = info.identity,
 		};
 		rows->recorded += !row->rule.off;
 		rows->has_intervals |= row->rule.interval_ns > 0;
@@ -119,13 +126,13 @@ int series_make(struct series *rows, struct ows *ows, const struct config *confi
 	struct named *sorted = sort_items(config);
 	struct table table = {
 		.signals = calloc(2 * count + 1, sizeof(*table.signals)),
-		.names = calloc(count + 1, sizeof(*table.names)),
+		.words = calloc(count + 1, sizeof(*table.words)),
 	};
 	int err = -ENOMEM;
 
 	series_free(rows);
 	rows->rows = calloc(count + 1, sizeof(*rows->rows));
-	if (rows->rows && sorted && table.signals && table.names) {
+	if (rows->rows && sorted && table.signals && table.words) {
 		rows->count = (int)count;
 		rows->generation = generation_of(ows, now_ns);
 		series_fill(rows, &table, ows, config, sorted);
@@ -138,7 +145,7 @@ int series_make(struct series *rows, struct ows *ows, const struct config *confi
 		series_free(rows);
 	free(sorted);
 	free(table.signals);
-	free(table.names);
+	free(table.words);
 	return err;
 }
 

@@ -813,6 +813,10 @@ static void test_an_older_file_is_brought_up_to_date(void)
 	TEST_ASSERT_EQUAL_STRING("", past.said);
 }
 
+#define WITHOUT_IDENTITY \
+	"drop index signal_identity; alter table signal drop column identity;" \
+	"alter table signal drop column former;"
+
 /* Version 1 numbered the hours as it did the minutes. */
 static void test_hours_of_the_first_version_are_numbered_anew(void)
 {
@@ -823,7 +827,7 @@ static void test_hours_of_the_first_version_are_numbered_anew(void)
 	    " most, mean, last, good, known, count, quality, worst);"
 	    "create view trend_hour as select * from hour;"
 	    "insert into hour values (21 << 16 | 5, 1, 3, 2.5, 3, 3600, 3600, 7, 192, 192);"
-	    "insert into hour values (22 << 16 | 5, 4, 4, 4, 4, 3600, 3600, 1, 192, 192);"
+	    "insert into hour values (22 << 16 | 5, 4, 4, 4, 4, 3600, 3600, 1, 192, 192);" WITHOUT_IDENTITY
 	    "pragma user_version = 1");
 	past_begin(&past, 9 * PAST_S, PAST_NOON, true);
 	past_room(&past, 10 * PAST_S, 5);
@@ -846,7 +850,7 @@ static void test_events_of_the_second_version_get_words_and_its_readers_need_non
 
 	record_events();
 	sql("drop view trend_event; drop table alarm_kind; drop table alarm_event;"
-	    "drop table command_reason; create view trend_event as select * from event;"
+	    "drop table command_reason; create view trend_event as select * from event;" WITHOUT_IDENTITY
 	    "pragma user_version = 2");
 	TEST_ASSERT_EQUAL_INT(0, ows_history_open(NULL, past.directory, &h));
 	ows_history_close(h);
@@ -855,6 +859,67 @@ static void test_events_of_the_second_version_get_words_and_its_readers_need_non
 	TEST_ASSERT_EQUAL_INT(0, history_writer_flush(past.writer, 32 * PAST_S));
 	TEST_ASSERT_EQUAL_INT64(HISTORY_SCHEMA, past_ask(&past, "pragma user_version"));
 	check_events();
+}
+
+/* A table with the room alone, by another name. */
+static void rename_room(const char *name, const char *identity, int64_t now_ns)
+{
+	const struct history_signal table[] = {
+		{.name = name, .unit = "", .type = OWS_DOUBLE, .identity = identity}};
+
+	TEST_ASSERT_EQUAL_INT(0, history_writer_signals(past.writer, table, 1, now_ns));
+}
+
+static int found(const char *name)
+{
+	struct ows_history *h;
+	int index;
+
+	TEST_ASSERT_EQUAL_INT(0, ows_history_open(NULL, past.directory, &h));
+	index = ows_history_find(h, name);
+	ows_history_close(h);
+	return index;
+}
+
+/* In version 3 a signal was its name: it goes on, and over another name from then on. */
+static void test_a_signal_of_the_third_version_gets_an_identity_by_its_name(void)
+{
+	record_one();
+	sql(WITHOUT_IDENTITY "pragma user_version = 3");
+	TEST_ASSERT_EQUAL_INT(0, found("room"));
+	past_begin(&past, 9 * PAST_S, PAST_NOON, true);
+	rename_room("room", "/28/t", 9 * PAST_S);
+	past_room(&past, 10 * PAST_S, 5);
+	TEST_ASSERT_EQUAL_INT(0, history_writer_flush(past.writer, 11 * PAST_S));
+	rename_room("hall", "/28/t", 12 * PAST_S);
+	past_room(&past, 13 * PAST_S, 6);
+	TEST_ASSERT_EQUAL_INT(0, history_writer_flush(past.writer, 14 * PAST_S));
+	TEST_ASSERT_EQUAL_INT64(1, past_ask(&past, "select count(*) from signal where type = 8"));
+	TEST_ASSERT_EQUAL_INT(found("hall"), found("room"));
+	TEST_ASSERT_EQUAL_INT(found("hall"), found("/28/t"));
+	TEST_ASSERT_EQUAL_INT64(1, past_ask(&past, "select count(*) from trend where name = 'hall'"
+	                                           " and value = 6"));
+}
+
+static void test_a_name_that_another_signal_takes_is_of_that_one_from_then_on(void)
+{
+	past_begin(&past, 5 * PAST_S, PAST_NOON, true);
+	rename_room("room", "/28/a", 5 * PAST_S);
+	past_room(&past, 6 * PAST_S, 1);
+	TEST_ASSERT_EQUAL_INT(0, history_writer_flush(past.writer, 7 * PAST_S));
+	rename_room("room", "/28/b", 8 * PAST_S);
+	past_room(&past, 9 * PAST_S, 2);
+	TEST_ASSERT_EQUAL_INT(0, history_writer_flush(past.writer, 10 * PAST_S));
+	TEST_ASSERT_EQUAL_INT(found("/28/b"), found("room"));
+	TEST_ASSERT_NOT_EQUAL(found("/28/b"), found("/28/a"));
+	/* the first again, and the second is left */
+	rename_room("room", "/28/a", 11 * PAST_S);
+	past_room(&past, 12 * PAST_S, 3);
+	TEST_ASSERT_EQUAL_INT(0, history_writer_flush(past.writer, 13 * PAST_S));
+	TEST_ASSERT_EQUAL_INT(found("/28/a"), found("room"));
+	TEST_ASSERT_EQUAL_INT64(2, past_ask(&past, "select count(*) from trend where name = 'room'"
+	                                           " and value in (1, 3)"));
+	TEST_ASSERT_EQUAL_INT(-ENOENT, found("attic"));
 }
 
 static void test_what_an_earlier_run_of_the_boot_has_of_the_journals_is_known(void)
@@ -914,6 +979,8 @@ int main(void)
 	RUN_TEST(test_an_older_file_is_brought_up_to_date);
 	RUN_TEST(test_hours_of_the_first_version_are_numbered_anew);
 	RUN_TEST(test_events_of_the_second_version_get_words_and_its_readers_need_none);
+	RUN_TEST(test_a_signal_of_the_third_version_gets_an_identity_by_its_name);
+	RUN_TEST(test_a_name_that_another_signal_takes_is_of_that_one_from_then_on);
 	RUN_TEST(test_what_an_earlier_run_of_the_boot_has_of_the_journals_is_known);
 	return UNITY_END();
 }

@@ -75,8 +75,10 @@ static void record(void)
 {
 	const struct history_options options = {
 		.directory = history, .boot = history_boot_present(), .flush_ns = 60 * S};
-	static const struct history_signal table[] = {{"room", "", OWS_DOUBLE, 0, 2},
-	                                              {"lamp", "", OWS_BOOL, 1, -1}};
+	/* of the room with the name that it had then */
+	static const struct history_signal table[] = {
+		{"hall", "", OWS_DOUBLE, 0, 2, "/28.1/temperature"},
+		{"lamp", "", OWS_BOOL, 1, -1, "/29.1/PIO.0"}};
 
 	TEST_ASSERT_EQUAL_INT(0, history_writer_open(&options, start_ns, offset(), true, &writer));
 	TEST_ASSERT_EQUAL_INT(0, history_writer_signals(writer, table, 2, start_ns));
