@@ -114,6 +114,19 @@ def test_a_rename_keeps_the_entity_and_moves_its_topic(scene):
     assert said[-1] == "" and json.loads(said[-2])["v"] is None, said
 
 
+def test_a_chip_that_is_replaced_keeps_its_device_and_entities(scene):
+    house = House(scene, ROOM, RELAY)
+    first = device(house, CHIP)
+    other = item("room", f"/{SWITCH}/sensed.BYTE", Identity=ROOM["Path"])
+    house.daemon.config.write_text(house.text(other, RELAY))
+    house.daemon.signal(signal.SIGHUP)
+    house.arrives("room", lambda m: m["good"] and m["v"] != 21.5)
+    second = device(house, CHIP)
+    assert list(first["cmps"]) == list(second["cmps"]) == ["owsd_28_A0B1C2000001_temperature"], second
+    assert first["dev"]["ids"] == second["dev"]["ids"] == [SENSOR], second
+    assert f"owsd/pi7/chip/{SENSOR}" in house.kept()
+
+
 def test_what_went_while_owsd_mqtt_was_down_is_emptied_and_nothing_of_others(scene):
     house = House(scene, {**ROOM, "LimitH": 30}, RELAY, item("type", f"/{SENSOR}/type", "string"))
     device(house, PORTS)

@@ -31,7 +31,9 @@ static void name_chip(const struct stream *s, const struct chip *chip, char *nam
 	if (chip->rows == 1)
 		snprintf(name, size, "%s", *info->description ? info->description : info->name);
 	else
-		snprintf(name, size, "%s %s", *chip->family ? chip->family : "1-Wire", chip->id);
+		/* the device that is there now */
+		snprintf(name, size, "%s %s", *chip->family ? chip->family : "1-Wire",
+		         *info->device ? info->device : chip->id);
 }
 
 static void device_topic(const struct stream *s, const struct chip *chip, char owner[ENTITY_ID],

@@ -154,13 +154,26 @@ void stream_close(struct stream *s)
 	s->text = NULL;
 }
 
-static const char *property_of(const struct ows_info *info)
+/* The device and the property that the row began with: others know it by them. */
+static void identify(struct row *row)
 {
-	const char *device = *info->device ? strstr(info->path, info->device) : NULL;
-	const char *property = device ? device + strlen(info->device) : info->path;
+	const struct ows_info *info = &row->info;
+	const char *identity = info->identity;
+	const char *device = *info->device ? strstr(identity, info->device) : NULL;
+	size_t len = strlen(info->device);
+	struct path path;
+	uint8_t rom[ROM_LEN];
 
-	property += *property == '/';
-	return *property ? property : info->name;
+	if (!device && !path_split(identity, strlen(identity), &path) && path.has_rom) {
+		device = path.last.text;
+		len = path.last.len;
+	}
+	row->property = device ? device + len : identity;
+	row->property += *row->property == '/';
+	if (!*row->property)
+		row->property = info->name;
+	if (!rom_parse(device ? device : info->device, len, rom))
+		rom_print(rom, ROM_F_I, row->chip_id);
 }
 
 /* By chip, then by property: rows that have both in common stand together, in their order. */
@@ -190,7 +203,6 @@ static bool make_row(struct stream *s, int signal)
 	struct ows_alarm_state state = {0};
 	char level[TOPIC_NAME];
 	char dash = s->profile->dash;
-	uint8_t rom[ROM_LEN];
 
 	row->chip = -1;
 	if (ows_info(s->h, signal, &row->info))
@@ -203,12 +215,10 @@ static bool make_row(struct stream *s, int signal)
 	row->level = strdup(level);
 	if (!row->name || !row->level)
 		return false;
-	row->property = property_of(&row->info);
+	identify(row);
 	row->id = ows_find(s->h, row->info.name);
 	row->alarms = row->id >= 0 && !ows_alarm_state(s->h, row->id, &state) && state.limits;
 	row->class = s->class_of ? s->class_of(s->class_ctx, row->info.name) : "";
-	if (!rom_parse(row->info.device, strlen(row->info.device), rom))
-		rom_print(rom, ROM_F_I, row->chip_id);
 	s->by_topic[signal] = s->by_chip[signal] = row;
 	return true;
 }

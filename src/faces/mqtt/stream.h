@@ -23,15 +23,16 @@ struct outlet {
 };
 
 struct row {
-	struct ows_info info;       /* its texts count while the image of stream_make() does */
-	char chip_id[ROM_TEXT_MAX]; /* "": none; else in the one form that a chip has here */
-	const char *property;       /* what stands after the device in the path */
-	const char *class;          /* the key Class; "": none */
-	char *name;                 /* a copy, which counts longer than info */
-	char *level;                /* what stands for it in topics */
-	char *topic;                /* of its value */
-	int id;                     /* of ows_find() */
-	int chip;                   /* its chip; -1: none */
+	struct ows_info info; /* its texts count while the image of stream_make() does */
+	char chip_id
+		[ROM_TEXT_MAX]; /* of the identity, in the one form that it has here; "": none */
+	const char *property;   /* what stands after the device in the identity */
+	const char *class;      /* the key Class; "": none */
+	char *name;             /* a copy, which counts longer than info */
+	char *level;            /* what stands for it in topics */
+	char *topic;            /* of its value */
+	int id;                 /* of ows_find() */
+	int chip;               /* its chip; -1: none */
 	bool queued, away, answers, alarms;
 	bool twin;            /* another name has the same slug */
 	bool twice;           /* another row before it has its chip and property */
