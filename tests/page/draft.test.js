@@ -109,12 +109,16 @@ test("a draft is kept for the time that the page is loaded anew, and not when it
 	assert.equal(sessionStorage.getItem("owsd-draft /"), null);
 });
 
-test("signals that vanish with a save are named, with the one that takes over the path", () => {
-	const items = (...given) => ({...model(""), items: given.map(([name, path]) => ({name, path}))});
+test("signals that vanish with a save are named, and those whose history goes on or ends", () => {
+	const items = (...given) => ({...model(""),
+		items: given.map(([name, path, keys]) => ({name, path, keys}))});
 	draft.saved = items(["return", "/28/t"], ["gone", "/29/t"], ["stays", "/30/t"]);
 	draft.model = items(["return_flow", "/28/t"], ["stays", "/31/t"]);
 	assert.equal(vanished(),
-		"Signals that vanish with this save: return (return_flow has its path), gone.");
+		"Signals that vanish with this save: gone. Their history goes on: return is return_flow now. "
+		+ "Their history begins anew: stays (with Identity /30/t it goes on).");
+	draft.model = items(["return", "/32/t", {Identity: "/28/t"}], ["gone", "/29/t"], ["stays", "/30/t"]);
+	assert.equal(vanished(), "Their history goes on: return has another path.");
 	draft.model = draft.saved;
 	assert.equal(vanished(), "");
 	draft.saved = items(...Array.from({length: 23}, (_, n) => [`s${n}`, `/${n}`]));

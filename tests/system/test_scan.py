@@ -548,7 +548,9 @@ def test_a_device_is_replaced_only_when_it_is_asked_for(scene):
         assert "owsctl: replaced: temperature2: 28.4AEC29CDBAAB by 28.7777777777AB\n" in done.stderr
         assert "missing" not in done.stderr, done.stderr
         expected = text[:text.rindex("}")].replace("/28.4AEC29CDBAAB/", "/28.7777777777AB/")
-        assert without(done.stdout, "ItemCount").startswith(without(expected, "ItemCount"))
+        assert without(done.stdout, "ItemCount", "Identity").startswith(without(expected, "ItemCount"))
+        # its history goes on
+        assert re.findall(r'Identity +"(.*)"', done.stdout) == ["/28.4AEC29CDBAAB/temperature12"], done
 
 
 def test_a_replacement_keeps_the_form_of_the_path(scene):
@@ -561,6 +563,8 @@ def test_a_replacement_keeps_the_form_of_the_path(scene):
     done = ctl(scene, sim(scene, chips), "scan", "--rio", "--merge", file, "--replace",
                "t1=28.7777777777AB")
     assert re.findall(r'Path +"(.*)"', done.stdout) == list(paths.values()), done
+    assert re.findall(r'Identity +"(.*)"', done.stdout) == [
+        "/28.4AEC29CDBAAB/temperature9", "/284aec29cdbaab/temperature", "/bus.3/28.4AEC29CDBAAB/temperature"], done
 
 
 def test_what_cannot_be_merged_is_refused_and_nothing_is_printed(scene):

@@ -367,7 +367,7 @@ def test_a_save_that_ends_the_editing_asks_first(scene):
         draft_is(page, "not saved")
         part(page, "save")
         shows(page, "#save-lock", "edit nothing more", f"{daemon.config}.before", "owsctl reload")
-        shows(page, "#save-loss", "attic (roof has its path)")
+        shows(page, "#save-loss", "attic is roof now")
         page.click("[data-action=save]:enabled")
         shows(page, "dialog", "edit nothing more")
         assert on_disk(daemon) == before

@@ -8,6 +8,7 @@
 #include "src/config/edit/edit_block.h"
 #include "src/config/edit/edit_device.h"
 #include "src/config/edit/rio_write.h"
+#include "src/config/read/identity.h"
 
 /* The path of an item, as it is written and in parts. */
 struct item_path {
@@ -74,15 +75,59 @@ static bool new_path(const struct item_path *in, const uint8_t rom[ROM_LEN], con
 	return n >= 0 && (size_t)n < size;
 }
 
-static int replace_in(struct rio **rio, struct rio_node *item, const struct item_path *in,
-                      const uint8_t after[ROM_LEN], const char *location,
-                      struct config_report *report)
+/* The identity of an item that has no Identity; the file may have errors yet. */
+static void find_identity(const struct rio *rio, const struct rio_node *item,
+                          const struct item_path *in, char identity[IDENTITY_MAX])
 {
-	char text[PATH_LEN_MAX + 64];
+	bool before = true;
+	unsigned number = 1;
 
-	if (!new_path(in, after, location, text, sizeof(text))) {
+	identity_of_path(&in->path, identity);
+	for (const struct rio_node *i = edit_items(rio); i; i = rio_next(i)) {
+		const struct rio_node *given = rio_child(i, option_table[OPT_IDENTITY].key);
+		const struct rio_node *path = rio_child(i, option_table[OPT_PATH].key);
+		char other[IDENTITY_MAX] = "";
+		struct path parts;
+
+		before = before && i != item;
+		if (given)
+			snprintf(other, sizeof(other), "%s", given->value);
+		else if (before && path && !path_split(path->value, strlen(path->value), &parts))
+			identity_of_path(&parts, other);
+		number += !strcmp(identity, other);
+	}
+	identity_number(number, identity);
+}
+
+/* The item with the device gets an Identity, if it has none: others know it on by that. */
+static int keep_identity(struct rio **rio, const uint8_t rom[ROM_LEN])
+{
+	const char *key = option_table[OPT_IDENTITY].key;
+	char identity[IDENTITY_MAX];
+	struct item_path in;
+	struct rio_node *item = edit_device_find(*rio, rom, &in);
+
+	if (rio_child(item, key))
+		return 0;
+	find_identity(*rio, item, &in, identity);
+	return rio_set_text(rio, item, key, identity);
+}
+
+/* In the first item that has it. */
+static int replace_in(struct rio **rio, const uint8_t before[ROM_LEN], const uint8_t after[ROM_LEN],
+                      const char *location, struct config_report *report)
+{
+	int err = keep_identity(rio, before);
+	char text[PATH_LEN_MAX + 64];
+	struct rio_node *item;
+	struct item_path in;
+
+	if (err)
+		return err;
+	item = edit_device_find(*rio, before, &in);
+	if (!new_path(&in, after, location, text, sizeof(text))) {
 		report_error(report, (struct place){0}, "the path \"%s\" would be too long",
-		             in->text);
+		             in.text);
 		return -EINVAL;
 	}
 	return rio_set_text(rio, item, option_table[OPT_PATH].key, text);
@@ -92,13 +137,12 @@ int edit_replace(struct rio **rio, const uint8_t before[ROM_LEN], const uint8_t 
                  const char *location, struct config_report *report)
 {
 	struct item_path in, taken;
-	struct rio_node *item = edit_device_find(*rio, before, &in);
 	char old[ROM_TEXT_MAX], new[ROM_TEXT_MAX];
 	int err = -EINVAL;
 
 	rom_print(before, ROM_F_I, old);
 	rom_print(after, ROM_F_I, new);
-	if (!item)
+	if (!edit_device_find(*rio, before, &in))
 		report_error(report, (struct place){0}, "no item has the device %s", old);
 	else if (edit_device_find(*rio, after, &taken))
 		report_error(report, (struct place){0}, "the device %s has items already", new);
@@ -111,7 +155,7 @@ int edit_replace(struct rio **rio, const uint8_t before[ROM_LEN], const uint8_t 
 		             EDIT_REPLACE_MAX, old);
 	else
 		do
-			err = replace_in(rio, item, &in, after, location, report);
-		while (!err && (item = edit_device_find(*rio, before, &in)));
+			err = replace_in(rio, before, after, location, report);
+		while (!err && edit_device_find(*rio, before, &in));
 	return err;
 }

@@ -7,7 +7,8 @@
 
 /*
  * Put the device after in the place of before, in the paths of all items that have it: in the
- * format in which the old id stands there. Names and all else stay. location: the "bus.1" of the
+ * format in which the old id stands there. An item without Identity gets the one that it has, so
+ * that its history goes on; names and all else stay. location: the "bus.1" of the
  * new device, for paths that have one; "": they keep theirs. 0, -EINVAL (reported: no item has the
  * old one, or more than EDIT_REPLACE_MAX have it; an item has the new one; they are of different
  * families), -ENOMEM or -EFBIG.

@@ -7,6 +7,24 @@
 #include "hal/owfs/path.h"
 #include "src/config/read/identity.h"
 
+void identity_of_path(const struct path *path, char out[IDENTITY_MAX])
+{
+	const char *rest = path->device.len ? path->device.text : path->property.text;
+	char bus[16] = "";
+
+	if (path->bus >= 0)
+		snprintf(bus, sizeof(bus), "/bus.%d", path->bus);
+	snprintf(out, IDENTITY_MAX, "%s/%s", bus, rest);
+}
+
+void identity_number(unsigned number, char identity[IDENTITY_MAX])
+{
+	size_t len = strlen(identity);
+
+	if (number > 1)
+		snprintf(identity + len, IDENTITY_MAX - len, "#%u", number);
+}
+
 struct named {
 	const char *name;
 	unsigned index;
@@ -56,15 +74,14 @@ static void give_identities(struct build *build, struct named *sorted)
 	qsort(sorted, count, sizeof(*sorted), compare_named);
 	for (unsigned i = 0, first = 0; i < count; i++) {
 		const char *identity = sorted[i].name;
-		char numbered[PATH_LEN_MAX + 48];
+		char numbered[IDENTITY_MAX];
 
 		if (strcmp(identity, sorted[first].name))
 			first = i;
 		if (i > first && *identity && sorted[i].index >= count) {
-			int len = snprintf(numbered, sizeof(numbered), "%s#%u", identity,
-			                   i - first + 1);
-
-			identity = build_keep(build, numbered, (size_t)len);
+			snprintf(numbered, sizeof(numbered), "%s", identity);
+			identity_number(i - first + 1, numbered);
+			identity = build_keep(build, numbered, strlen(numbered));
 		}
 		config->items[sorted[i].index % count].identity = identity;
 	}

@@ -67,21 +67,6 @@ static void build_name(struct build *build, const struct rio_node *block,
 		             fault);
 }
 
-/* "/" bus.N, device and property, without the flags. */
-static const char *normalised(struct build *build, const char *text, size_t len,
-                              const struct path *path)
-{
-	const char *rest = path->device.len ? path->device.text : path->property.text;
-	char whole[PATH_LEN_MAX + 16], *p = whole;
-	size_t tail = (size_t)(text + len - rest);
-
-	if (path->bus >= 0)
-		p += snprintf(p, sizeof(whole), "/bus.%d", path->bus);
-	*p++ = '/';
-	memcpy(p, rest, tail);
-	return build_keep(build, whole, (size_t)(p - whole) + tail);
-}
-
 static void build_path(struct build *build, const struct rio_node *block,
                        const struct option_value *values, struct config_item *item,
                        struct path *path)
@@ -89,6 +74,7 @@ static void build_path(struct build *build, const struct rio_node *block,
 	const struct option_value *value = &values[OPT_PATH];
 	const char *text = value->text, *fault;
 	struct place place = place_of(value, block);
+	char whole[IDENTITY_MAX];
 
 	memset(path, 0, sizeof(*path));
 	item->path = "";
@@ -109,7 +95,8 @@ static void build_path(struct build *build, const struct rio_node *block,
 		               "the path \"%s\" is entered without /alarm, which is dropped; "
 		               "alarms are chosen by Alarm on",
 		               text);
-	item->path = normalised(build, text, strlen(text), path);
+	identity_of_path(path, whole);
+	item->path = build_keep(build, whole, strlen(whole));
 	item->fresh = path->uncached;
 	if (!path->has_rom)
 		return;

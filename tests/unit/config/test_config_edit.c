@@ -489,12 +489,35 @@ static void test_a_replaced_device_changes_the_paths_of_its_items_only(void)
 	TEST_ASSERT_EQUAL_INT(0, replace("28.551DDF030000", "28.67C6697351FF", "bus.0"));
 	expect_text("OwsDrv {\n"
 	            "  Item { Name \"a\" # warm\n"
-	            "    Path \"/28.67C6697351FF/temperature\" Unit \"K\" }\n"
-	            "  Item { Name b Path \"/bus.0/2867C6697351FF/power\" }\n"
+	            "    Path \"/28.67C6697351FF/temperature\" Unit \"K\" "
+	            "Identity                \"/28.551DDF030000/temperature\" }\n"
+	            "  Item { Name b Path \"/bus.0/2867C6697351FF/power\" "
+	            "Identity                \"/bus.1/28551ddf030000/power\" }\n"
 	            "}\n");
 	TEST_ASSERT_EQUAL_INT(0, replace("28.67C6697351FF", "28.551DDF030000", ""));
 	TEST_ASSERT_NOT_NULL(strstr(rio->text, "/bus.0/28551DDF030000/power"));
 	TEST_ASSERT_EQUAL_STRING("", said);
+}
+
+static void test_items_of_one_path_keep_their_identities_when_the_device_is_replaced(void)
+{
+	const char *second = "Identity                \"/28.551DDF030000/power#2\"";
+
+	parse("OwsDrv {\n"
+	      "Item { Name a Path /uncached/28.551DDF030000/power }\n"
+	      "Item { Name b Path /28.551DDF030000/power }\n"
+	      "Item { Name c Path /28.551DDF030000/power Identity \"/old\" }\n"
+	      "}\n");
+	TEST_ASSERT_EQUAL_INT(0, replace("28.551DDF030000", "28.67C6697351FF", ""));
+	TEST_ASSERT_NOT_NULL(
+		strstr(rio->text, "Identity                \"/28.551DDF030000/power\""));
+	TEST_ASSERT_NOT_NULL(strstr(rio->text, second));
+	TEST_ASSERT_NOT_NULL(strstr(rio->text, "Identity \"/old\""));
+	/* the next replacement changes none */
+	TEST_ASSERT_EQUAL_INT(0, replace("28.67C6697351FF", "28.000000000001", ""));
+	TEST_ASSERT_NOT_NULL(strstr(rio->text, second));
+	TEST_ASSERT_NULL(strstr(strstr(rio->text, second) + 1, second));
+	TEST_ASSERT_NULL(strstr(rio->text, "67C6697351FF"));
 }
 
 static void test_a_replacement_that_cannot_be_meant_is_refused(void)
@@ -615,6 +638,7 @@ int main(void)
 	RUN_TEST(test_only_who_may_replace_the_file_can_open_its_lock);
 	RUN_TEST(test_a_bus_block_is_made_changed_and_removed_by_its_target);
 	RUN_TEST(test_a_replaced_device_changes_the_paths_of_its_items_only);
+	RUN_TEST(test_items_of_one_path_keep_their_identities_when_the_device_is_replaced);
 	RUN_TEST(test_a_replacement_that_cannot_be_meant_is_refused);
 	RUN_TEST(test_a_device_with_more_items_than_any_has_is_not_replaced);
 	RUN_TEST(test_the_words_of_the_dialog_lead_to_the_keys);

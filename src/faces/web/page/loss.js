@@ -5,16 +5,32 @@ import {draft} from "./draft.js";
 const NAMED = 20;
 const DOORS = ["Listen", "Hosts", "Proxy"]; // keys of Web that say how the page is reached
 
-/** The signals of the file that the draft has not, in words; "": there are none. */
+const identityOf = ({path, keys}) => keys?.Identity ?? path;
+
+const list = (words, of) => (of.length ? `${words}: ${of.slice(0, NAMED).join(", ")}`
+	+ `${of.length > NAMED ? ` and ${of.length - NAMED} more` : ""}.` : "");
+
+/** What a save does to signals of the file and to their history, in words; "": nothing. */
 export function vanished() {
-	const had = new Set(draft.saved.items.map((item) => item.name));
-	const has = new Set(draft.model.items.map((item) => item.name));
+	const saved = draft.saved.items.filter((item) => item.name);
+	const had = new Set(saved.map((item) => item.name));
+	const has = new Map(draft.model.items.map((item) => [item.name, item]));
 	const fresh = new Map(draft.model.items.filter((item) => !had.has(item.name))
-		.map((item) => [item.path, item.name]));
-	const gone = draft.saved.items.filter((item) => item.name && !has.has(item.name))
-		.map(({name, path}) => fresh.has(path) ? `${name} (${fresh.get(path)} has its path)` : name);
-	return gone.length ? `Signals that vanish with this save: ${gone.slice(0, NAMED).join(", ")}`
-		+ `${gone.length > NAMED ? ` and ${gone.length - NAMED} more` : ""}.` : "";
+		.map((item) => [identityOf(item), item.name]));
+	const gone = [], goesOn = [], begins = [];
+	for (const item of saved) {
+		const {name, path} = item, now = has.get(name), identity = identityOf(item);
+		if (!now && fresh.has(identity))
+			goesOn.push(`${name} is ${fresh.get(identity)} now`);
+		else if (!now)
+			gone.push(name);
+		else if (identityOf(now) !== identity)
+			begins.push(`${name} (with Identity ${identity} it goes on)`);
+		else if (now.path !== path)
+			goesOn.push(`${name} has another path`);
+	}
+	return [list("Signals that vanish with this save", gone), list("Their history goes on", goesOn),
+		list("Their history begins anew", begins)].filter(Boolean).join(" ");
 }
 
 /** Why the page could edit nothing after a save, and what helps then; "": it could. */

@@ -58,7 +58,7 @@ function row(id, items, free) {
 
 async function replace(old, {id, location}, names) {
 	if (!await ask(`Replace ${old}?`, "Replace", [el("p", {}, `${id} takes its place for the `
-		+ `signals ${names}. They keep their names, settings and history. Undo brings back what `
+		+ `signals ${names}. They keep their names and settings, and their history goes on. Undo brings back what `
 		+ "was.")]))
 		return;
 	try {
