@@ -96,6 +96,9 @@ struct area {
 	void (*adjust)(struct txn *txn, uint8_t *want);
 };
 
+/* An area that functions name too: static AREA_NAMED(status, "status", .size = 1, ...); */
+#define AREA_NAMED(area_, text, ...) const struct area area_ = {.name = (text), __VA_ARGS__}
+
 /* An area that only the list of its family names: [STATUS] = AREA(.name = "status", ...). */
 #define AREA(...) \
 	&(const struct area) \

@@ -121,6 +121,10 @@ extern const struct family family_common;
 #include "hal/chips/families.h"
 #undef FAMILY
 
+/* A family, its lists among what follows: CHIP_FAMILY(01, "DS2401", NONE_READ, SCAN(...)); */
+#define CHIP_FAMILY(code_, part, proof_, ...) \
+	const struct family family_##code_ = { \
+		.code = 0x##code_, .type = (part), .proof = PROOF_##proof_, __VA_ARGS__}
 #define SCAN(...) \
 	.scan = (const struct family_scan[]) \
 	{ \

@@ -32,7 +32,7 @@
 #define COPY_KEPT 3
 
 /* The pages as the kernel's driver reads them; it recalls them itself. */
-static const struct area pages = {.name = "pages", .size = 64};
+static AREA_NAMED(pages, "pages", .size = 64);
 
 /* A page of the EEPROM: its first byte stays as it is. */
 #define MARKED_PAGE 3
@@ -409,7 +409,7 @@ static int load_page(struct txn *txn, const struct area *area, unsigned at, uint
 	return ds2438_read(txn, at / 8, bytes);
 }
 
-const struct area ds2438_pages = {.name = "pages", .size = 64, .block = 8, .load = load_page};
+AREA_NAMED(ds2438_pages, "pages", .size = 64, .block = 8, .load = load_page);
 
 int ds2438_write_field(struct txn *txn)
 {

@@ -22,18 +22,9 @@ static const struct {
 	uint8_t size, recall, copy;
 } pages[PAGES_OF_CHIP] = {{24, 0x71, 0x22}, {8, 0x77, 0x25}, {8, 0x7a, 0x28}};
 
-static const struct area registers = {
-	.name = "registers",
-	.size = 0x84,
-	.address_bytes = 1,
-	.read = 0xb2,
-};
-static const struct area scratchpads = {
-	.name = "scratchpads",
-	.size = PAGES_OF_CHIP * PAGE,
-	.address_bytes = 1,
-	.read = 0x11,
-};
+static AREA_NAMED(registers, "registers", .size = 0x84, .address_bytes = 1, .read = 0xb2);
+static AREA_NAMED(scratchpads, "scratchpads", .size = PAGES_OF_CHIP * PAGE, .address_bytes = 1,
+                  .read = 0x11);
 
 struct visit {
 	uint8_t step, looks, mark;
@@ -78,8 +69,7 @@ static int load_page(struct txn *txn, const struct area *area, unsigned at, uint
 	return 0;
 }
 
-static const struct area memory = {
-	.name = "pages", .size = PAGES_OF_CHIP * PAGE, .block = PAGE, .load = load_page};
+static AREA_NAMED(memory, "pages", .size = PAGES_OF_CHIP * PAGE, .block = PAGE, .load = load_page);
 
 /* And read back. */
 static int family_1b_write_scratchpad(struct txn *txn, unsigned at, const uint8_t *bytes,
@@ -311,12 +301,6 @@ static const struct property properties[] = {
 	PROPERTY("volts", FLOAT, VOLATILE, READ, MEASURES(2, 10.23, 2, "V"), .how = WAY_VOLTS),
 };
 
-const struct family family_1b = {
-	.code = 0x1b,
-	.proof = PROOF_PRESENCE,
-	.type = "DS2436",
-	SCAN({"temperature", "temperature"}, {"volts", "volt"}, {"counter/cycles", "cycles"}),
-	AREAS(areas),
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(1b, "DS2436", PRESENCE,
+            SCAN({"temperature", "temperature"}, {"volts", "volt"}, {"counter/cycles", "cycles"}),
+            AREAS(areas), HOW(how), PROPERTIES(properties));

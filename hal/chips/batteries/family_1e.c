@@ -37,13 +37,6 @@ static const struct property properties[] = {
 	MEASURED("vis", FLOAT, DS2438_VIS, DS2438_VIS_VOLTS),
 };
 
-const struct family family_1e = {
-	.code = 0x1e,
-	.proof = PROOF_PRESENCE,
-	.type = "DS2437",
-	.flags = FLAG_VOLT | FLAG_TEMPERATURE,
-	SCAN({"temperature", "temperature"}, {"VDD", "vdd"}, {"VAD", "vad"}),
-	AREAS(areas),
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(1e, "DS2437", PRESENCE, .flags = FLAG_VOLT | FLAG_TEMPERATURE,
+            SCAN({"temperature", "temperature"}, {"VDD", "vdd"}, {"VAD", "vad"}), AREAS(areas),
+            HOW(how), PROPERTIES(properties));

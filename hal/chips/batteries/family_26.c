@@ -189,33 +189,15 @@ static void family_26_forget(struct device *device)
 
 static const char *const types[] = {NULL, "DS2438", "TMP1826", "unknown"};
 
-const struct family family_26 = {
-	.code = 0x26,
-	.proof = PROOF_PRESENCE,
-	.type = "DS2438",
-	.flags = FLAG_VOLT | FLAG_TEMPERATURE,
-	SCAN({"temperature", "temperature"}, {"humidity", "humidity"}, {"VDD", "vdd"},
-             {"VAD", "vad"}),
-	.several = true,
-	.types = types,
-	.identify = tmp1826_identify,
-	.forget = family_26_forget,
-	.doubted = KIND(IS_NEITHER),
-	.plain = KIND(IS_DS2438),
-	AREAS(areas),
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(26, "DS2438", PRESENCE, .flags = FLAG_VOLT | FLAG_TEMPERATURE,
+            SCAN({"temperature", "temperature"}, {"humidity", "humidity"}, {"VDD", "vdd"},
+                 {"VAD", "vad"}),
+            .several = true, .types = types, .identify = tmp1826_identify,
+            .forget = family_26_forget, .doubted = KIND(IS_NEITHER), .plain = KIND(IS_DS2438),
+            AREAS(areas), HOW(how), PROPERTIES(properties));
 
 /* The same chip with a family code that owserver knows besides. */
-const struct family family_a6 = {
-	.code = 0xa6,
-	.proof = PROOF_PRESENCE,
-	.type = "DS2438",
-	.flags = FLAG_VOLT | FLAG_TEMPERATURE,
-	SCAN({"temperature", "temperature"}, {"humidity", "humidity"}, {"VDD", "vdd"},
-             {"VAD", "vad"}),
-	AREAS(areas),
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(a6, "DS2438", PRESENCE, .flags = FLAG_VOLT | FLAG_TEMPERATURE,
+            SCAN({"temperature", "temperature"}, {"humidity", "humidity"}, {"VDD", "vdd"},
+                 {"VAD", "vad"}),
+            AREAS(areas), HOW(how), PROPERTIES(properties));

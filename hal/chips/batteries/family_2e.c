@@ -10,14 +10,9 @@
 enum { DEFAULTS_AT = 0x31, STATUS_AT = 0x01, CHARGING = 0x40, CHARGE_STATUS = 0xc0 };
 #define REFRESHED 0x33 /* bits of the status that Refresh takes from the EEPROM */
 
-static const struct area status = {.name = "status", .at = STATUS_AT, .size = 1, GAUGE_WRITE(1)};
-static const struct area timer = {
-	.name = "timer",
-	.at = 0x02,
-	.size = 2,
-	GAUGE_WRITE(2),
-	.is_written = gauge_is_counted,
-};
+static AREA_NAMED(status, "status", .at = STATUS_AT, .size = 1, GAUGE_WRITE(1));
+static AREA_NAMED(timer, "timer", .at = 0x02, .size = 2, GAUGE_WRITE(2),
+                  .is_written = gauge_is_counted);
 
 static int family_2e_command(struct txn *txn, uint8_t code)
 {
@@ -142,11 +137,7 @@ static const struct property properties[] = {
 	GAUGE_VOLTHOURS,
 };
 
-const struct family family_2e = {.code = 0x2e,
-                                 .proof = PROOF_PRESENCE,
-                                 .type = "DS2770",
-                                 SCAN({"temperature", "temperature"}, {"volt", "volt"},
-                                      {"current", "current"}, {"amphours", "amphours"}),
-                                 AREAS(areas),
-                                 HOW(how),
-                                 PROPERTIES(properties)};
+CHIP_FAMILY(2e, "DS2770", PRESENCE,
+            SCAN({"temperature", "temperature"}, {"volt", "volt"}, {"current", "current"},
+                 {"amphours", "amphours"}),
+            AREAS(areas), HOW(how), PROPERTIES(properties));

@@ -70,12 +70,7 @@ static const struct property properties[] = {
 	GAUGE_VOLTHOURS,
 };
 
-const struct family family_30 = {.code = 0x30,
-                                 .proof = PROOF_PRESENCE,
-                                 .type = "DS2760",
-                                 SCAN({"temperature", "temperature"}, {"volt", "volt"},
-                                      {"current", "current"}, {"amphours", "amphours"},
-                                      {"sensed", "input"}),
-                                 AREAS(areas),
-                                 HOW(how),
-                                 PROPERTIES(properties)};
+CHIP_FAMILY(30, "DS2760", PRESENCE,
+            SCAN({"temperature", "temperature"}, {"volt", "volt"}, {"current", "current"},
+                 {"amphours", "amphours"}, {"sensed", "input"}),
+            AREAS(areas), HOW(how), PROPERTIES(properties));

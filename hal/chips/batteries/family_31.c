@@ -35,12 +35,5 @@ static const struct property properties[] = {
 	FLAG("uv", PROTECTION, 6),
 };
 
-const struct family family_31 = {
-	.code = 0x31,
-	.proof = PROOF_PRESENCE,
-	.type = "DS2720",
-	SCAN({"present", "present"}),
-	AREAS(areas),
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(31, "DS2720", PRESENCE, SCAN({"present", "present"}), AREAS(areas), HOW(how),
+            PROPERTIES(properties));

@@ -44,12 +44,7 @@ static const struct property properties[] = {
 	GAUGE_VOLTHOURS,
 };
 
-const struct family family_32 = {.code = 0x32,
-                                 .proof = PROOF_PRESENCE,
-                                 .type = "DS2780",
-                                 SCAN({"temperature", "temperature"}, {"volt", "volt"},
-                                      {"vis", "vis"}, {"volthours", "volthours"},
-                                      {"sensed", "input"}),
-                                 AREAS(areas),
-                                 HOW(how),
-                                 PROPERTIES(properties)};
+CHIP_FAMILY(32, "DS2780", PRESENCE,
+            SCAN({"temperature", "temperature"}, {"volt", "volt"}, {"vis", "vis"},
+                 {"volthours", "volthours"}, {"sensed", "input"}),
+            AREAS(areas), HOW(how), PROPERTIES(properties));

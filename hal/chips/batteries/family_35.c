@@ -48,13 +48,7 @@ static const struct property properties[] = {
 	GAUGE_VOLTHOURS,
 };
 
-const struct family family_35 = {.code = 0x35,
-                                 .proof = PROOF_PRESENCE,
-                                 .type = "DS2755",
-                                 .flags = FLAG_ALARM,
-                                 SCAN({"temperature", "temperature"}, {"volt", "volt"},
-                                      {"vis", "vis"}, {"volthours", "volthours"},
-                                      {"sensed", "input"}),
-                                 AREAS(areas),
-                                 HOW(how),
-                                 PROPERTIES(properties)};
+CHIP_FAMILY(35, "DS2755", PRESENCE, .flags = FLAG_ALARM,
+            SCAN({"temperature", "temperature"}, {"volt", "volt"}, {"vis", "vis"},
+                 {"volthours", "volthours"}, {"sensed", "input"}),
+            AREAS(areas), HOW(how), PROPERTIES(properties));

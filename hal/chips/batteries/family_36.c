@@ -22,10 +22,6 @@ static const struct property properties[] = {
 	GAUGE_VOLTHOURS,
 };
 
-const struct family family_36 = {
-	.code = 0x36,
-	.proof = PROOF_PRESENCE,
-	.type = "DS2740",
-	SCAN({"vis", "vis"}, {"volthours", "volthours"}, {"PIO", "switch"}),
-	AREAS(areas),
-	PROPERTIES(properties)};
+CHIP_FAMILY(36, "DS2740", PRESENCE,
+            SCAN({"vis", "vis"}, {"volthours", "volthours"}, {"PIO", "switch"}), AREAS(areas),
+            PROPERTIES(properties));

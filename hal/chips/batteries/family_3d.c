@@ -46,12 +46,7 @@ static const struct property properties[] = {
 	GAUGE_VOLTHOURS,
 };
 
-const struct family family_3d = {.code = 0x3d,
-                                 .proof = PROOF_PRESENCE,
-                                 .type = "DS2781",
-                                 SCAN({"temperature", "temperature"}, {"volt", "volt"},
-                                      {"vis", "vis"}, {"volthours", "volthours"},
-                                      {"sensed", "input"}),
-                                 AREAS(areas),
-                                 HOW(how),
-                                 PROPERTIES(properties)};
+CHIP_FAMILY(3d, "DS2781", PRESENCE,
+            SCAN({"temperature", "temperature"}, {"volt", "volt"}, {"vis", "vis"},
+                 {"volthours", "volthours"}, {"sensed", "input"}),
+            AREAS(areas), HOW(how), PROPERTIES(properties));

@@ -40,12 +40,7 @@ static const struct property properties[] = {
 	GAUGE_VOLTHOURS,
 };
 
-const struct family family_51 = {.code = 0x51,
-                                 .proof = PROOF_PRESENCE,
-                                 .type = "DS2751",
-                                 SCAN({"temperature", "temperature"}, {"volt", "volt"},
-                                      {"current", "current"}, {"amphours", "amphours"},
-                                      {"sensed", "input"}),
-                                 AREAS(areas),
-                                 HOW(how),
-                                 PROPERTIES(properties)};
+CHIP_FAMILY(51, "DS2751", PRESENCE,
+            SCAN({"temperature", "temperature"}, {"volt", "volt"}, {"current", "current"},
+                 {"amphours", "amphours"}, {"sensed", "input"}),
+            AREAS(areas), HOW(how), PROPERTIES(properties));

@@ -7,13 +7,12 @@
 #define VIS 0x0e             /* the voltage across the resistor */
 #define PROTECTION_PINS 0x0c /* of the protection register: CC and DC mirror the pins */
 
-const struct area gauge_memory = {.name = "memory", .size = 256, .block = 32, GAUGE_READ};
-const struct area gauge_words = {.name = "words", .size = 256, .block = 2, GAUGE_READ};
-const struct area gauge_bytes = {.name = "bytes", .size = 256, GAUGE_READ};
-const struct area gauge_eeprom = {.name = "EEPROM", .size = 128, GAUGE_STORED(16)};
+AREA_NAMED(gauge_memory, "memory", .size = 256, .block = 32, GAUGE_READ);
+AREA_NAMED(gauge_words, "words", .size = 256, .block = 2, GAUGE_READ);
+AREA_NAMED(gauge_bytes, "bytes", .size = 256, GAUGE_READ);
+AREA_NAMED(gauge_eeprom, "EEPROM", .size = 128, GAUGE_STORED(16));
 /* A copy takes the whole block, so all of it is written. */
-const struct area gauge_parameters = {
-	.name = "parameters", .at = 0x60, .size = 32, GAUGE_STORED(32)};
+AREA_NAMED(gauge_parameters, "parameters", .at = 0x60, .size = 32, GAUGE_STORED(32));
 
 bool gauge_is_counted(struct txn *txn, const uint8_t *have, const uint8_t *want, unsigned n)
 {
@@ -23,13 +22,8 @@ bool gauge_is_counted(struct txn *txn, const uint8_t *have, const uint8_t *want,
 	return change >= -2 && change <= 2;
 }
 
-const struct area gauge_charge = {
-	.name = "accumulated current",
-	.at = 0x10,
-	.size = 2,
-	GAUGE_WRITE(2),
-	.is_written = gauge_is_counted,
-};
+AREA_NAMED(gauge_charge, "accumulated current", .at = 0x10, .size = 2, GAUGE_WRITE(2),
+           .is_written = gauge_is_counted);
 
 /* The pins follow at once, and are nothing that was written. */
 static int saw_protection(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
@@ -39,13 +33,8 @@ static int saw_protection(struct txn *txn, unsigned at, uint8_t *bytes, unsigned
 	return 0;
 }
 
-const struct area gauge_protection = {
-	.name = "protection",
-	.size = 1,
-	GAUGE_WRITE(1),
-	.saw = saw_protection,
-};
-const struct area gauge_pins = {.name = "pins", .size = 1, GAUGE_READ};
+AREA_NAMED(gauge_protection, "protection", .size = 1, GAUGE_WRITE(1), .saw = saw_protection);
+AREA_NAMED(gauge_pins, "pins", .size = 1, GAUGE_READ);
 
 int gauge_read_lock(struct txn *txn)
 {

@@ -16,8 +16,8 @@
 #define TRIES 20
 #define WAIT_NS (20 * TXN_MS)
 
-static const struct area memory = {
-	.name = "station", .size = 256, .address_bytes = 1, .read = 0x69, .row = 1, .write = 0x6c};
+static AREA_NAMED(memory, "station", .size = 256, .address_bytes = 1, .read = 0x69, .row = 1,
+                  .write = 0x6c);
 
 enum step { CLEAR, ASK, TAKE };
 

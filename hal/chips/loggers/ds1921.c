@@ -9,21 +9,12 @@
 
 #define CHECKED .address_bytes = 2, .read = 0xa5, .block = DS1921_PAGE, .check = AREA_CRC16
 
-const struct area ds1921_memory = {
-	.name = "memory",
-	.size = 512,
-	CHECKED,
-	.row = DS1921_PAGE,
-	.write = 0x0f,
-	.verify = 0xaa,
-	.copy = 0x55,
-	.write_crc16 = true,
-	.copy_ns = TXN_MS,
-};
-const struct area ds1921_registers = {
-	.name = "registers", .at = LOGGER_REGISTERS, .size = DS1921_REGISTERS_END, CHECKED};
-const struct area ds1921_histogram = {.name = "histogram", .at = 0x800, .size = 128, CHECKED};
-const struct area ds1921_log = {.name = "log", .at = 0x1000, .size = DS1921_LOG_ROOM, CHECKED};
+AREA_NAMED(ds1921_memory, "memory", .size = 512, CHECKED, .row = DS1921_PAGE, .write = 0x0f,
+           .verify = 0xaa, .copy = 0x55, .write_crc16 = true, .copy_ns = TXN_MS);
+AREA_NAMED(ds1921_registers, "registers", .at = LOGGER_REGISTERS, .size = DS1921_REGISTERS_END,
+           CHECKED);
+AREA_NAMED(ds1921_histogram, "histogram", .at = 0x800, .size = 128, CHECKED);
+AREA_NAMED(ds1921_log, "log", .at = 0x1000, .size = DS1921_LOG_ROOM, CHECKED);
 
 const struct ds1921_version *ds1921_version_of(const struct device *device)
 {

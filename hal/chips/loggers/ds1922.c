@@ -18,17 +18,10 @@ int ds1922_load(struct txn *txn, const struct area *area, unsigned at, uint8_t *
 	return err ? err : txn_read_crc16(txn, command, 3, bytes, n);
 }
 
-const struct area ds1922_memory = {.name = "memory",
-                                   .size = DS1922_PAGES * DS1922_PAGE,
-                                   .block = DS1922_PAGE,
-                                   .read = 0x69,
-                                   .load = ds1922_load};
-const struct area ds1922_log = {.name = "log",
-                                .at = DS1922_LOG,
-                                .size = DS1922_LOG_SIZE,
-                                .block = DS1922_PAGE,
-                                .read = 0x69,
-                                .load = ds1922_load};
+AREA_NAMED(ds1922_memory, "memory", .size = DS1922_PAGES * DS1922_PAGE, .block = DS1922_PAGE,
+           .read = 0x69, .load = ds1922_load);
+AREA_NAMED(ds1922_log, "log", .at = DS1922_LOG, .size = DS1922_LOG_SIZE, .block = DS1922_PAGE,
+           .read = 0x69, .load = ds1922_load);
 
 /* Of the configuration; -1: not known. */
 double ds1922_zero_of(uint8_t config)

@@ -30,8 +30,8 @@ struct looks {
 	uint8_t stage, status;
 };
 
-static const struct area registers = {
-	.name = "registers", .at = 0x202, .size = 28, .address_bytes = 2, .read = 0xf0};
+static AREA_NAMED(registers, "registers", .at = 0x202, .size = 28, .address_bytes = 2,
+                  .read = 0xf0);
 
 /* The flags whose counter has passed its alarm a moment ago. */
 static uint8_t just_set(const uint8_t *bytes)
@@ -127,15 +127,8 @@ static void adjust_time(struct txn *txn, uint8_t *want)
 	want[0] = 0; /* of a second */
 }
 
-static const struct area status = {
-	.name = "status",
-	.at = 0x200,
-	.size = 1,
-	.row = 1,
-	RAM,
-	.load = load_status,
-	.is_written = status_is_written,
-};
+static AREA_NAMED(status, "status", .at = 0x200, .size = 1, .row = 1, RAM, .load = load_status,
+                  .is_written = status_is_written);
 
 /* Three bits as three decimal digits. */
 static double digits_of(unsigned bits)
@@ -238,13 +231,5 @@ static const struct property properties[] = {
 	SECONDS_OF("udate", CLOCK),
 };
 
-const struct family family_04 = {
-	.code = 0x04,
-	.proof = PROOF_PRESENCE,
-	.alarms = true,
-	.type = "DS2404",
-	.flags = FLAG_ALARM,
-	AREAS(areas),
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(04, "DS2404", PRESENCE, .alarms = true, .flags = FLAG_ALARM, AREAS(areas), HOW(how),
+            PROPERTIES(properties));

@@ -153,15 +153,6 @@ static const struct property properties[] = {
 	TIMES_BEYOND("undertemp", DS1921_LOW_TIMES, DS1921_LOW),
 };
 
-const struct family family_21 = {
-	.code = 0x21,
-	.proof = PROOF_PRESENCE,
-	.alarms = true,
-	.type = "DS1921",
-	.flags = FLAG_ALARM | FLAG_OVERDRIVE | FLAG_TEMPERATURE,
-	.facts = &ds1921_logger,
-	SCAN({"temperature", "temperature"}),
-	AREAS(areas),
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(21, "DS1921", PRESENCE, .alarms = true,
+            .flags = FLAG_ALARM | FLAG_OVERDRIVE | FLAG_TEMPERATURE, .facts = &ds1921_logger,
+            SCAN({"temperature", "temperature"}), AREAS(areas), HOW(how), PROPERTIES(properties));

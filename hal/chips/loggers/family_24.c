@@ -22,24 +22,11 @@ static void adjust(struct txn *txn, uint8_t *want)
 }
 
 /* A write of the control byte alone leaves the counter as it is. */
-static const struct area control = {
-	.name = "control",
-	.size = 1,
-	.read = READ_CLOCK,
-	.row = 1,
-	.write = WRITE_CLOCK,
-	.adjust = adjust,
-};
-static const struct area clock_area = {
-	.name = "clock",
-	.size = 5,
-	.block = 5,
-	.read = READ_CLOCK,
-	.row = 5,
-	.write = WRITE_CLOCK,
-	.load = steady_clock_load,
-	.is_written = steady_clock_is_written,
-};
+static AREA_NAMED(control, "control", .size = 1, .read = READ_CLOCK, .row = 1, .write = WRITE_CLOCK,
+                  .adjust = adjust);
+static AREA_NAMED(clock_area, "clock", .size = 5, .block = 5, .read = READ_CLOCK, .row = 5,
+                  .write = WRITE_CLOCK, .load = steady_clock_load,
+                  .is_written = steady_clock_is_written);
 
 static int family_24_put(struct txn *txn, uint8_t bits, uint8_t mask)
 {
@@ -111,15 +98,5 @@ static const struct property ds2417[] = {
 	TIME("udate", UNSIGNED, SECOND),
 };
 
-const struct family family_24 = {.code = 0x24,
-                                 .proof = PROOF_PRESENCE,
-                                 .type = "DS2415",
-                                 AREAS(areas),
-                                 HOW(how),
-                                 PROPERTIES(ds2415)};
-const struct family family_27 = {.code = 0x27,
-                                 .proof = PROOF_PRESENCE,
-                                 .type = "DS2417",
-                                 AREAS(areas),
-                                 HOW(how),
-                                 PROPERTIES(ds2417)};
+CHIP_FAMILY(24, "DS2415", PRESENCE, AREAS(areas), HOW(how), PROPERTIES(ds2415));
+CHIP_FAMILY(27, "DS2417", PRESENCE, AREAS(areas), HOW(how), PROPERTIES(ds2417));

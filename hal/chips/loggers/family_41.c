@@ -75,15 +75,7 @@ static const struct property properties[] = {
                  .arg = DS1922_LOG_TEMP),
 };
 
-const struct family family_41 = {
-	.code = 0x41,
-	.proof = PROOF_CHECKSUM,
-	.alarms = true,
-	.type = "DS1923",
-	.flags = FLAG_RESUME | FLAG_ALARM | FLAG_OVERDRIVE | FLAG_TEMPERATURE,
-	.facts = &ds1922_logger,
-	SCAN({"temperature", "temperature"}, {"humidity", "humidity"}),
-	AREAS(areas),
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(41, "DS1923", CHECKSUM, .alarms = true,
+            .flags = FLAG_RESUME | FLAG_ALARM | FLAG_OVERDRIVE | FLAG_TEMPERATURE,
+            .facts = &ds1922_logger, SCAN({"temperature", "temperature"}, {"humidity", "humidity"}),
+            AREAS(areas), HOW(how), PROPERTIES(properties));

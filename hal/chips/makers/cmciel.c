@@ -5,10 +5,4 @@
  */
 #include "hal/chips/makers/cmciel.h"
 
-const struct area cmciel_reading = {
-	.name = "reading",
-	.size = 3,
-	.block = 3,
-	.read = 0xbe,
-	.check = AREA_CRC8,
-};
+AREA_NAMED(cmciel_reading, "reading", .size = 3, .block = 3, .read = 0xbe, .check = AREA_CRC8);

@@ -134,26 +134,11 @@ static void reset_nothing_else(struct txn *txn, uint8_t *want)
 	.address_bytes = 2, .read = 0xa5, .check = AREA_CRC16, .write = 0x0f, .verify = 0xaa, \
 	.copy = 0x55, .write_crc16 = true, .copy_ns = 700 * TXN_MS
 
-const struct area eds_memory = {
-	.name = "memory",
-	.size = 5 * PAGE,
-	.block = PAGE,
-	.row = PAGE,
-	PAGES,
-	.saw = saw_page,
-	.is_written = page_is_written,
-};
+AREA_NAMED(eds_memory, "memory", .size = 5 * PAGE, .block = PAGE, .row = PAGE, PAGES,
+           .saw = saw_page, .is_written = page_is_written);
 
-const struct area eds_switches = {
-	.name = "switches",
-	.at = EDS_SWITCHES_AT,
-	.size = 16,
-	.block = 16,
-	.row = 16,
-	PAGES,
-	.is_written = switches_are_written,
-	.adjust = reset_nothing_else,
-};
+AREA_NAMED(eds_switches, "switches", .at = EDS_SWITCHES_AT, .size = 16, .block = 16, .row = 16,
+           PAGES, .is_written = switches_are_written, .adjust = reset_nothing_else);
 
 /* The text without the blanks and zeros behind it. */
 int eds_read_tag(struct txn *txn)

@@ -24,12 +24,5 @@ static const struct property properties[] = {
 	CMCIEL_READING,
 };
 
-const struct family family_a0 = {
-	.code = 0xa0,
-	.proof = PROOF_PRESENCE,
-	.type = "mRS001",
-	SCAN({"RPM", "rpm"}),
-	AREAS(areas),
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(a0, "mRS001", PRESENCE, SCAN({"RPM", "rpm"}), AREAS(areas), HOW(how),
+            PROPERTIES(properties));

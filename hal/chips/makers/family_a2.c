@@ -10,11 +10,5 @@ static const struct property properties[] = {
 	CMCIEL_READING,
 };
 
-const struct family family_a2 = {
-	.code = 0xa2,
-	.proof = PROOF_PRESENCE,
-	.type = "mCM001",
-	SCAN({"current", "current"}),
-	AREAS(areas),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(a2, "mCM001", PRESENCE, SCAN({"current", "current"}), AREAS(areas),
+            PROPERTIES(properties));

@@ -11,14 +11,8 @@ static int saw_status(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
 	return (bytes[1] & 0xf0) == 0x80 ? 0 : -EIO;
 }
 
-static const struct area status = {
-	.name = "status",
-	.size = 3,
-	.block = 3,
-	.read = 0xbe,
-	.check = AREA_CRC8,
-	.saw = saw_status,
-};
+static AREA_NAMED(status, "status", .size = 3, .block = 3, .read = 0xbe, .check = AREA_CRC8,
+                  .saw = saw_status);
 
 enum { STATUS = READING + 1 };
 static const struct area *const areas[] = {CMCIEL_AREAS, [STATUS] = &status};
@@ -40,12 +34,7 @@ static const struct property properties[] = {
 	CONTACTS("switch_closed", 0),
 };
 
-const struct family family_a5 = {
-	.code = 0xa5,
-	.proof = PROOF_PRESENCE,
-	.type = "mDI001",
-	SCAN({"switch_closed.BYTE", "inputs"}, {"loop_open.BYTE", "opens"},
-             {"loop_shorted.BYTE", "shorts"}),
-	AREAS(areas),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(a5, "mDI001", PRESENCE,
+            SCAN({"switch_closed.BYTE", "inputs"}, {"loop_open.BYTE", "opens"},
+                 {"loop_shorted.BYTE", "shorts"}),
+            AREAS(areas), PROPERTIES(properties));

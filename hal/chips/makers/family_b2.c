@@ -12,11 +12,5 @@ static const struct property properties[] = {
                  MEASURES(0, 65.536, 3, "V")),
 };
 
-const struct family family_b2 = {
-	.code = 0xb2,
-	.proof = PROOF_PRESENCE,
-	.type = "mAM001",
-	SCAN({"volts", "volt"}, {"current", "current"}),
-	AREAS(areas),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(b2, "mAM001", PRESENCE, SCAN({"volts", "volt"}, {"current", "current"}), AREAS(areas),
+            PROPERTIES(properties));

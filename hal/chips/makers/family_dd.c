@@ -44,11 +44,4 @@ static const struct property properties[] = {
 	PROPERTY("read_number", INTEGER, STABLE, READ, .offline = true, .how = WAY_EXAMPLE),
 };
 
-const struct family family_dd = {
-	.code = 0xdd,
-	.proof = PROOF_PRESENCE,
-	.type = "Example_slave",
-	.flags = FLAG_ALARM,
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(dd, "Example_slave", PRESENCE, .flags = FLAG_ALARM, HOW(how), PROPERTIES(properties));

@@ -106,14 +106,5 @@ static const struct property properties[] = {
 };
 /* clang-format on */
 
-const struct family family_ed = {
-	.code = 0xed,
-	.proof = PROOF_PRESENCE,
-	.type = "InfernoEmbedded",
-	.flags = FLAG_RESUME,
-	.several = true,
-	.identify = inferno_identify,
-	AREAS(areas),
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(ed, "InfernoEmbedded", PRESENCE, .flags = FLAG_RESUME, .several = true,
+            .identify = inferno_identify, AREAS(areas), HOW(how), PROPERTIES(properties));

@@ -24,15 +24,8 @@ static int saw_in_case(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
 }
 
 static const struct area uvi_offset = {HOBBY_SETTING("UVI offset", 1, 0x26, 0x25)};
-static const struct area in_case = {
-	.name = "in case",
-	.size = 1,
-	.block = 1,
-	.read = 0x28,
-	.row = 1,
-	.write = 0x27,
-	.saw = saw_in_case,
-};
+static AREA_NAMED(in_case, "in case", .size = 1, .block = 1, .read = 0x28, .row = 1, .write = 0x27,
+                  .saw = saw_in_case);
 
 /* A disturbed read of it may have written the offset that the chip adds. */
 static int read_uvi(struct txn *txn)
@@ -85,15 +78,6 @@ static const struct property properties[] = {
 
 static const char *const types[] = HOBBY_TYPES("HobbyBoards_EE");
 
-const struct family family_ee = {
-	.code = 0xee,
-	.proof = PROOF_PRESENCE,
-	.type = "HobbyBoards_EE",
-	.several = true,
-	.identify = hobby_identify,
-	.types = types,
-	SCAN({"UVI/UVI", "uvi"}, {"temperature", "temperature"}),
-	AREAS(areas),
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(ee, "HobbyBoards_EE", PRESENCE, .several = true, .identify = hobby_identify,
+            .types = types, SCAN({"UVI/UVI", "uvi"}, {"temperature", "temperature"}), AREAS(areas),
+            HOW(how), PROPERTIES(properties));

@@ -41,15 +41,8 @@ static int store_branches(struct txn *txn, const struct area *area, unsigned at,
 	return err ? err : txn_command(txn, off, sizeof(off));
 }
 
-static const struct area branches = {
-	.name = "branches",
-	.size = 1,
-	.block = 1,
-	.read = 0x22,
-	.row = 1,
-	.store = store_branches,
-	.saw = saw_branches,
-};
+static AREA_NAMED(branches, "branches", .size = 1, .block = 1, .read = 0x22, .row = 1,
+                  .store = store_branches, .saw = saw_branches);
 
 /* Several at once take the hub out of its mode with one alone. */
 static int write_branches(struct txn *txn)
@@ -282,17 +275,10 @@ static const struct property properties[] = {
 
 static const char *const types[] = HOBBY_TYPES("HobbyBoards_EF");
 
-const struct family family_ef = {
-	.code = 0xef,
-	.proof = PROOF_PRESENCE,
-	.type = "HobbyBoards_EF",
-	.several = true,
-	.identify = hobby_identify,
-	.types = types,
-	SCAN({"barometer/pressure", "pressure"}, {"barometer/temperature", "temperature"},
-             {"humidity/humidity_corrected", "humidity"}, {"humidity/temperature", "temperature"},
-             {"moisture/sensor", "moisture"}, {"multitemp/temperature", "temperature"}),
-	AREAS(areas),
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(ef, "HobbyBoards_EF", PRESENCE, .several = true, .identify = hobby_identify,
+            .types = types,
+            SCAN({"barometer/pressure", "pressure"}, {"barometer/temperature", "temperature"},
+                 {"humidity/humidity_corrected", "humidity"},
+                 {"humidity/temperature", "temperature"}, {"moisture/sensor", "moisture"},
+                 {"multitemp/temperature", "temperature"}),
+            AREAS(areas), HOW(how), PROPERTIES(properties));

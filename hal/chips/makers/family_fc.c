@@ -410,15 +410,6 @@ static const struct property properties[] = {
 };
 /* clang-format on */
 
-const struct family family_fc = {
-	.code = 0xfc,
-	.proof = PROOF_PRESENCE,
-	.type = "BAE",
-	.flags = FLAG_RESUME | FLAG_ALARM,
-	.several = true,
-	.identify = bae_identify,
-	SCAN({"910/count", "count"}, {"911/counters/count", "count"}),
-	AREAS(areas),
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(fc, "BAE", PRESENCE, .flags = FLAG_RESUME | FLAG_ALARM, .several = true,
+            .identify = bae_identify, SCAN({"910/count", "count"}, {"911/counters/count", "count"}),
+            AREAS(areas), HOW(how), PROPERTIES(properties));

@@ -75,9 +75,9 @@ static int load_page(struct txn *txn, const struct area *area, unsigned at, uint
 	return 0;
 }
 
-static const struct area page = {.name = "page", .size = PAGE, .block = PAGE, .load = load_page};
+static AREA_NAMED(page, "page", .size = PAGE, .block = PAGE, .load = load_page);
 /* The page of a conversion that was verified. */
-static const struct area measured = {.name = "measured", .size = PAGE, .block = PAGE};
+static AREA_NAMED(measured, "measured", .size = PAGE, .block = PAGE);
 
 static bool is_busy(const uint8_t bytes[PAGE])
 {
@@ -218,12 +218,6 @@ static const struct property properties[] = {
 	PROPERTY("subtype", ASCII, STABLE, READ, .size = 2, .arg = SUBTYPE, .how = WAY_TEXT),
 };
 
-const struct family family_fe = {
-	.code = 0xfe,
-	.proof = PROOF_CHECKSUM,
-	.type = "IBLSS",
-	.flags = FLAG_TEMPERATURE,
-	SCAN({"TH/temperature", "temperature"}, {"TH/humidity", "humidity"}),
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(fe, "IBLSS", CHECKSUM, .flags = FLAG_TEMPERATURE,
+            SCAN({"TH/temperature", "temperature"}, {"TH/humidity", "humidity"}), HOW(how),
+            PROPERTIES(properties));

@@ -114,16 +114,9 @@ static int store_eeprom(struct txn *txn, const struct area *area, unsigned at, c
 	return lcd_swart_fill(txn, pad, 1 + n);
 }
 
-static const struct area eeprom = {
-	.name = "EEPROM",
-	.size = 112,
-	.block = LCD_PAD,
-	.row = LCD_PAD,
-	.copy = WRITE_EEPROM,
-	.copy_ns = EEPROM_NS,
-	.load = load_eeprom,
-	.store = store_eeprom,
-};
+static AREA_NAMED(eeprom, "EEPROM", .size = 112, .block = LCD_PAD, .row = LCD_PAD,
+                  .copy = WRITE_EEPROM, .copy_ns = EEPROM_NS, .load = load_eeprom,
+                  .store = store_eeprom);
 
 static int read_version(struct txn *txn)
 {
@@ -322,14 +315,5 @@ static const struct property properties[] = {
 };
 /* clang-format on */
 
-const struct family family_ff = {
-	.code = 0xff,
-	.proof = PROOF_PRESENCE,
-	.type = "LCD",
-	.flags = FLAG_ALARM,
-	.forget = family_ff_forget,
-	SCAN({"cumulative", "count"}),
-	AREAS(areas),
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(ff, "LCD", PRESENCE, .flags = FLAG_ALARM, .forget = family_ff_forget,
+            SCAN({"cumulative", "count"}), AREAS(areas), HOW(how), PROPERTIES(properties));

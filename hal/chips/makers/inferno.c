@@ -36,7 +36,7 @@ struct asked {
 	uint8_t seen[CHANNELS];
 };
 
-static const struct area identification = {.name = "device", .size = 4, .block = 4, .read = DEVICE};
+static AREA_NAMED(identification, "device", .size = 4, .block = 4, .read = DEVICE);
 
 static struct inferno *inferno_of(const struct txn *txn)
 {

@@ -21,7 +21,7 @@ static int counter_load(struct txn *txn, const struct area *area, unsigned at, u
 	return err;
 }
 
-const struct area counter_area = {.name = "counters", .size = 64, .block = 4, .load = counter_load};
+AREA_NAMED(counter_area, "counters", .size = 64, .block = 4, .load = counter_load);
 
 int counter_read_page(struct txn *txn)
 {

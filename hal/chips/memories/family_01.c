@@ -5,6 +5,5 @@
  */
 #include "hal/chips/family.h"
 
-const struct family family_01 = {
-	.code = 0x01, .proof = PROOF_NONE_READ, .type = "DS2401", SCAN({"present", "present"})};
-const struct family family_81 = {.code = 0x81, .proof = PROOF_NONE_READ, .type = "DS1420"};
+CHIP_FAMILY(01, "DS2401", NONE_READ, SCAN({"present", "present"}));
+CHIP_FAMILY(81, "DS1420", NONE_READ, .flags = 0);

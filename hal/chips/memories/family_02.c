@@ -23,12 +23,8 @@ static int family_02_load(struct txn *txn, const struct area *area, unsigned at,
 	return err ? err : steady(txn, bytes, n);
 }
 
-static const struct area identifiers = {
-	.name = "identifiers",
-	.size = 3 * IDENTIFIER_BYTES,
-	.block = IDENTIFIER_BYTES,
-	.load = family_02_load,
-};
+static AREA_NAMED(identifiers, "identifiers", .size = 3 * IDENTIFIER_BYTES,
+                  .block = IDENTIFIER_BYTES, .load = family_02_load);
 
 enum { IDENTIFIERS = 1 };
 static const struct area *const areas[] = {[IDENTIFIERS] = &identifiers};
@@ -57,15 +53,5 @@ static const struct property properties[] = {
 	SUBKEY("subkey2", 2),
 };
 
-const struct family family_02 = {.code = 0x02,
-                                 .proof = PROOF_PRESENCE,
-                                 .type = "DS1991",
-                                 AREAS(areas),
-                                 HOW(how),
-                                 PROPERTIES(properties)};
-const struct family family_82 = {.code = 0x82,
-                                 .proof = PROOF_PRESENCE,
-                                 .type = "DS1425",
-                                 AREAS(areas),
-                                 HOW(how),
-                                 PROPERTIES(properties)};
+CHIP_FAMILY(02, "DS1991", PRESENCE, AREAS(areas), HOW(how), PROPERTIES(properties));
+CHIP_FAMILY(82, "DS1425", PRESENCE, AREAS(areas), HOW(how), PROPERTIES(properties));

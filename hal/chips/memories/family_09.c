@@ -7,14 +7,8 @@
  */
 #include "hal/chips/family.h"
 
-static const struct area memory = {
-	.name = "memory",
-	.size = 128,
-	.address_bytes = 2,
-	.read = 0xc3,
-	.block = 32,
-	.check = AREA_CRC8_PAGES,
-};
+static AREA_NAMED(memory, "memory", .size = 128, .address_bytes = 2, .read = 0xc3, .block = 32,
+                  .check = AREA_CRC8_PAGES);
 
 enum { MEMORY = 1 };
 static const struct area *const areas[] = {[MEMORY] = &memory};
@@ -25,12 +19,8 @@ static const struct property properties[] = {
 	AREA_PAGES(MEMORY, 4, 32),
 };
 
-const struct family family_09 = {.code = 0x09,
-                                 .proof = PROOF_PRESENCE,
-                                 .type = "DS2502",
-                                 SCAN({"present", "present"}),
-                                 AREAS(areas),
-                                 PROPERTIES(properties)};
+CHIP_FAMILY(09, "DS2502", PRESENCE, SCAN({"present", "present"}), AREAS(areas),
+            PROPERTIES(properties));
 
 #define PART(text, at_, bytes_) \
 	PROPERTY(text, BINARY, STABLE, READ, .size = (bytes_), FIELD(MEMORY, .at = (at_)))
@@ -40,8 +30,4 @@ static const struct property written_properties[] = {
 	PROPERTY_DIR("pages"), AREA_PAGES(MEMORY, 4, 32), PART("project", 0, 4),
 };
 
-const struct family family_89 = {.code = 0x89,
-                                 .proof = PROOF_PRESENCE,
-                                 .type = "DS1982U",
-                                 AREAS(areas),
-                                 PROPERTIES(written_properties)};
+CHIP_FAMILY(89, "DS1982U", PRESENCE, AREAS(areas), PROPERTIES(written_properties));

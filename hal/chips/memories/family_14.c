@@ -4,19 +4,9 @@
 
 #define KEY 0xa5
 
-static const struct area memory = {
-	.name = "memory",
-	.size = 32,
-	.address_bytes = 1,
-	.read = 0xf0,
-	.row = 32,
-	.write = 0x0f,
-	.verify = 0xaa,
-	.copy = 0x55,
-	.key = KEY,
-	.strong = true,
-	.copy_ns = 10 * TXN_MS,
-};
+static AREA_NAMED(memory, "memory", .size = 32, .address_bytes = 1, .read = 0xf0, .row = 32,
+                  .write = 0x0f, .verify = 0xaa, .copy = 0x55, .key = KEY, .strong = true,
+                  .copy_ns = 10 * TXN_MS);
 static const struct area application = {
 	.name = "application",
 	.size = 8,
@@ -44,9 +34,5 @@ static const struct property properties[] = {
 	PROPERTY("status", UNSIGNED, STABLE, READ, FIELD(STATUS)),
 };
 
-const struct family family_14 = {.code = 0x14,
-                                 .proof = PROOF_PRESENCE,
-                                 .type = "DS2430A",
-                                 SCAN({"present", "present"}),
-                                 AREAS(areas),
-                                 PROPERTIES(properties)};
+CHIP_FAMILY(14, "DS2430A", PRESENCE, SCAN({"present", "present"}), AREAS(areas),
+            PROPERTIES(properties));

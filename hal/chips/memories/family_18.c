@@ -22,18 +22,9 @@ static int store_row(struct txn *txn, const struct area *area, unsigned at, cons
 	return err ? err : txn_command(txn, command, 3 + n);
 }
 
-static const struct area memory = {
-	.name = "memory",
-	.size = 512,
-	.address_bytes = 2,
-	.read = 0xf0,
-	.row = 32,
-	.write = 0x0f,
-	.verify = 0xaa,
-	.copy = 0x55,
-	.copy_ns = TXN_MS,
-	.store = store_row,
-};
+static AREA_NAMED(memory, "memory", .size = 512, .address_bytes = 2, .read = 0xf0, .row = 32,
+                  .write = 0x0f, .verify = 0xaa, .copy = 0x55, .copy_ns = TXN_MS,
+                  .store = store_row);
 
 enum { MEMORY = 1, COUNTS };
 static const struct area *const areas[] = {[MEMORY] = &memory, [COUNTS] = &counter_area};
@@ -55,10 +46,5 @@ static const struct property properties[] = {
 	SECRET("password"),
 };
 
-const struct family family_18 = {.code = 0x18,
-                                 .proof = PROOF_PRESENCE,
-                                 .type = "DS1963S",
-                                 .flags = FLAG_RESUME | FLAG_OVERDRIVE,
-                                 AREAS(areas),
-                                 HOW(how),
-                                 PROPERTIES(properties)};
+CHIP_FAMILY(18, "DS1963S", PRESENCE, .flags = FLAG_RESUME | FLAG_OVERDRIVE, AREAS(areas), HOW(how),
+            PROPERTIES(properties));

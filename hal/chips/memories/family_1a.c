@@ -5,17 +5,8 @@
 
 #define FIRST_COUNTED 12
 
-static const struct area memory = {
-	.name = "memory",
-	.size = 512,
-	.address_bytes = 2,
-	.read = 0xf0,
-	.row = 32,
-	.write = 0x0f,
-	.verify = 0xaa,
-	.copy = 0x5a,
-	.copy_ns = TXN_MS,
-};
+static AREA_NAMED(memory, "memory", .size = 512, .address_bytes = 2, .read = 0xf0, .row = 32,
+                  .write = 0x0f, .verify = 0xaa, .copy = 0x5a, .copy_ns = TXN_MS);
 
 enum { MEMORY = 1, COUNTS };
 static const struct area *const areas[] = {[MEMORY] = &memory, [COUNTS] = &counter_area};
@@ -30,10 +21,5 @@ static const struct property properties[] = {
 	AREA_PAGES(MEMORY, 16, 32),
 };
 
-const struct family family_1a = {.code = 0x1a,
-                                 .proof = PROOF_PRESENCE,
-                                 .type = "DS1963L",
-                                 .flags = FLAG_OVERDRIVE,
-                                 AREAS(areas),
-                                 HOW(how),
-                                 PROPERTIES(properties)};
+CHIP_FAMILY(1a, "DS1963L", PRESENCE, .flags = FLAG_OVERDRIVE, AREAS(areas), HOW(how),
+            PROPERTIES(properties));

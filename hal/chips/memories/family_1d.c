@@ -8,17 +8,8 @@
 #define FIRST_COUNTED 12
 #define EXTERNAL_A 14
 
-static const struct area memory = {
-	.name = "memory",
-	.size = 512,
-	.address_bytes = 2,
-	.read = 0xf0,
-	.row = 32,
-	.write = 0x0f,
-	.verify = 0xaa,
-	.copy = 0x5a,
-	.copy_ns = TXN_MS,
-};
+static AREA_NAMED(memory, "memory", .size = 512, .address_bytes = 2, .read = 0xf0, .row = 32,
+                  .write = 0x0f, .verify = 0xaa, .copy = 0x5a, .copy_ns = TXN_MS);
 
 static int read_minimum(struct txn *txn)
 {
@@ -63,13 +54,6 @@ static const struct property properties[] = {
 	AREA_PAGES(MEMORY, 16, 32),
 };
 
-const struct family family_1d = {
-	.code = 0x1d,
-	.proof = PROOF_PRESENCE,
-	.type = "DS2423",
-	.flags = FLAG_OVERDRIVE,
-	SCAN({"counter.A", "counter_a"}, {"counter.B", "counter_b"}),
-	AREAS(areas),
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(1d, "DS2423", PRESENCE, .flags = FLAG_OVERDRIVE,
+            SCAN({"counter.A", "counter_a"}, {"counter.B", "counter_b"}), AREAS(areas), HOW(how),
+            PROPERTIES(properties));

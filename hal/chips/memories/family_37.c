@@ -55,20 +55,9 @@ static int family_37_load(struct txn *txn, const struct area *area, unsigned at,
 	return err;
 }
 
-static const struct area memory = {
-	.name = "memory",
-	.size = 32704,
-	.block = 32,
-	.row = 32,
-	.address_bytes = 2,
-	.write = 0x0f,
-	.verify = 0xaa,
-	.copy = 0x99,
-	.password = PASSWORD_BYTES,
-	.strong = true,
-	.copy_ns = 10 * TXN_MS,
-	.load = family_37_load,
-};
+static AREA_NAMED(memory, "memory", .size = 32704, .block = 32, .row = 32, .address_bytes = 2,
+                  .write = 0x0f, .verify = 0xaa, .copy = 0x99, .password = PASSWORD_BYTES,
+                  .strong = true, .copy_ns = 10 * TXN_MS, .load = family_37_load);
 
 /* The byte that switches the passwords on has no checksum. */
 static int load_control(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,
@@ -82,8 +71,7 @@ static int load_control(struct txn *txn, const struct area *area, unsigned at, u
 	return err ? err : steady(txn, bytes, n);
 }
 
-static const struct area control = {
-	.name = "control", .at = 0x7fd0, .size = 1, .load = load_control};
+static AREA_NAMED(control, "control", .at = 0x7fd0, .size = 1, .load = load_control);
 
 /* The chip sends it twice. */
 static int saw_version(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
@@ -92,14 +80,8 @@ static int saw_version(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
 	return bytes[0] == bytes[1] ? 0 : -EBADMSG;
 }
 
-static const struct area version = {
-	.name = "version",
-	.size = 2,
-	.block = 2,
-	.address_bytes = 2,
-	.read = 0xcc,
-	.saw = saw_version,
-};
+static AREA_NAMED(version, "version", .size = 2, .block = 2, .address_bytes = 2, .read = 0xcc,
+                  .saw = saw_version);
 
 static int read_enabled(struct txn *txn)
 {
@@ -136,10 +118,5 @@ static const struct property properties[] = {
 	PROPERTY("version", UNSIGNED, STABLE, READ, FIELD(VERSION)),
 };
 
-const struct family family_37 = {.code = 0x37,
-                                 .proof = PROOF_PRESENCE,
-                                 .type = "DS1977",
-                                 .flags = FLAG_RESUME | FLAG_OVERDRIVE,
-                                 AREAS(areas),
-                                 HOW(how),
-                                 PROPERTIES(properties)};
+CHIP_FAMILY(37, "DS1977", PRESENCE, .flags = FLAG_RESUME | FLAG_OVERDRIVE, AREAS(areas), HOW(how),
+            PROPERTIES(properties));

@@ -46,17 +46,9 @@ static int saw_registers(struct txn *txn, unsigned at, uint8_t *value, unsigned 
 	return 0;
 }
 
-const struct area ds2408_registers = {
-	.name = "registers",
-	.at = 0x88,
-	.size = DS2408_REGISTERS,
-	.block = DS2408_REGISTERS,
-	.parts = true,
-	.address_bytes = 2,
-	.read = 0xf0,
-	.check = AREA_CRC16,
-	.saw = saw_registers,
-};
+AREA_NAMED(ds2408_registers, "registers", .at = 0x88, .size = DS2408_REGISTERS,
+           .block = DS2408_REGISTERS, .parts = true, .address_bytes = 2, .read = 0xf0,
+           .check = AREA_CRC16, .saw = saw_registers);
 
 /* A part of the registers that is written by itself. */
 static int load_part(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,
@@ -122,16 +114,8 @@ static int saw_latch(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
 	return bytes[0] == 0xff && txn_driven(txn) ? read_control(txn) : 0;
 }
 
-const struct area ds2408_output = {
-	.name = "output",
-	.at = 0x88 + DS2408_OUTPUT,
-	.size = 1,
-	.row = 1,
-	.hidden = true,
-	.load = load_part,
-	.store = store_output,
-	.saw = saw_latch,
-};
+AREA_NAMED(ds2408_output, "output", .at = 0x88 + DS2408_OUTPUT, .size = 1, .row = 1, .hidden = true,
+           .load = load_part, .store = store_output, .saw = saw_latch);
 
 static int store_condition(struct txn *txn, const struct area *area, unsigned at,
                            const uint8_t *bytes, unsigned n)
@@ -167,16 +151,9 @@ bool ds2408_condition_is_written(struct txn *txn, const uint8_t *have, const uin
 }
 
 /* Mask, polarity and control. */
-const struct area ds2408_condition = {
-	.name = "condition",
-	.at = 0x88 + DS2408_MASK,
-	.size = 3,
-	.row = 3,
-	.load = load_part,
-	.store = store_condition,
-	.saw = saw_condition,
-	.is_written = ds2408_condition_is_written,
-};
+AREA_NAMED(ds2408_condition, "condition", .at = 0x88 + DS2408_MASK, .size = 3, .row = 3,
+           .load = load_part, .store = store_condition, .saw = saw_condition,
+           .is_written = ds2408_condition_is_written);
 
 int ds2408_strobe(struct txn *txn)
 {
@@ -188,7 +165,7 @@ int ds2408_strobe(struct txn *txn)
 
 int ds2408_write_latch(struct txn *txn)
 {
-	static const struct area latches = {.name = "latches", .size = 1};
+	static AREA_NAMED(latches, "latches", .size = 1);
 	static const uint8_t command = RESET_LATCHES;
 	uint8_t answer;
 

@@ -100,14 +100,6 @@ static const struct property properties[] = {
 	PROPERTY("sensed", YESNO, VOLATILE, READ, FIELD(PIN), .how = WAY_PIN),
 };
 
-const struct family family_05 = {
-	.code = 0x05,
-	.proof = PROOF_PRESENCE,
-	.alarms = true,
-	.type = "DS2405",
-	.flags = FLAG_ALARM,
-	SCAN({"sensed", "contact"}, {"PIO", "switch"}),
-	AREAS(areas),
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(05, "DS2405", PRESENCE, .alarms = true, .flags = FLAG_ALARM,
+            SCAN({"sensed", "contact"}, {"PIO", "switch"}), AREAS(areas), HOW(how),
+            PROPERTIES(properties));

@@ -56,27 +56,11 @@ static int saw_status(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
 }
 
 /* EPROM takes pulses of 12 V, which no master here gives: it has no row. */
-static const struct area memory = {
-	.name = "memory",
-	.size = 128,
-	.address_bytes = 2,
-	.read = 0xf0,
-};
-static const struct area info = {.name = "info", .size = 1, .load = load_info};
-static const struct area status = {
-	.name = "status",
-	.at = 7,
-	.size = 1,
-	.address_bytes = 2,
-	.read = 0xaa,
-	.block = 1,
-	.check = AREA_CRC16,
-	.saw = saw_status,
-	.row = 1,
-	.write = 0x55,
-	.write_crc16 = true,
-	.hidden = true,
-};
+static AREA_NAMED(memory, "memory", .size = 128, .address_bytes = 2, .read = 0xf0);
+static AREA_NAMED(info, "info", .size = 1, .load = load_info);
+static AREA_NAMED(status, "status", .at = 7, .size = 1, .address_bytes = 2, .read = 0xaa,
+                  .block = 1, .check = AREA_CRC16, .saw = saw_status, .row = 1, .write = 0x55,
+                  .write_crc16 = true, .hidden = true);
 
 /* Three digits: channels, source, polarity. */
 static int read_alarm(struct txn *txn)
@@ -158,14 +142,6 @@ static const struct property properties[] = {
 	PROPERTY("set_alarm", UNSIGNED, STABLE, BOTH, .digits = 331, .how = WAY_ALARM),
 };
 
-const struct family family_12 = {
-	.code = 0x12,
-	.proof = PROOF_PRESENCE,
-	.alarms = true,
-	.type = "DS2406",
-	.flags = FLAG_ALARM,
-	SCAN({"sensed.BYTE", "inputs"}, {"PIO.BYTE", "outputs"}),
-	AREAS(areas),
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(12, "DS2406", PRESENCE, .alarms = true, .flags = FLAG_ALARM,
+            SCAN({"sensed.BYTE", "inputs"}, {"PIO.BYTE", "outputs"}), AREAS(areas), HOW(how),
+            PROPERTIES(properties));

@@ -62,49 +62,17 @@ static void adjust_condition(struct txn *txn, uint8_t *want)
 }
 
 #define READ_MEMORY .address_bytes = 2, .read = 0xf0
-static const struct area memory = {
-	.name = "memory",
-	.size = 0x226,
-	READ_MEMORY,
-	.row = 32,
-	.write = 0x0f,
-	.verify = 0xaa,
-	.copy = 0x55,
-	.write_crc16 = true,
-	.strong = true,
-	.copy_ns = 10 * TXN_MS,
-};
-static const struct area registers = {
-	.name = "registers",
-	.at = 0x220,
-	.size = REGISTERS_N,
-	.block = REGISTERS_N,
-	READ_MEMORY,
-	.saw = saw_registers,
-};
-static const struct area output = {
-	.name = "output",
-	.at = 0x220 + DS2408_OUTPUT,
-	.size = 1,
-	READ_MEMORY,
-	.row = 1,
-	.hidden = true,
-	.store = store_output,
-	.saw = saw_latch,
-};
+static AREA_NAMED(memory, "memory", .size = 0x226, READ_MEMORY, .row = 32, .write = 0x0f,
+                  .verify = 0xaa, .copy = 0x55, .write_crc16 = true, .strong = true,
+                  .copy_ns = 10 * TXN_MS);
+static AREA_NAMED(registers, "registers", .at = 0x220, .size = REGISTERS_N, .block = REGISTERS_N,
+                  READ_MEMORY, .saw = saw_registers);
+static AREA_NAMED(output, "output", .at = 0x220 + DS2408_OUTPUT, .size = 1, READ_MEMORY, .row = 1,
+                  .hidden = true, .store = store_output, .saw = saw_latch);
 /* Mask, polarity and control. */
-static const struct area condition = {
-	.name = "condition",
-	.at = 0x220 + DS2408_MASK,
-	.size = 3,
-	.block = 3,
-	READ_MEMORY,
-	.row = 3,
-	.write = 0xcc,
-	.saw = saw_condition,
-	.is_written = ds2408_condition_is_written,
-	.adjust = adjust_condition,
-};
+static AREA_NAMED(condition, "condition", .at = 0x220 + DS2408_MASK, .size = 3, .block = 3,
+                  READ_MEMORY, .row = 3, .write = 0xcc, .saw = saw_condition,
+                  .is_written = ds2408_condition_is_written, .adjust = adjust_condition);
 
 /* No host sets it. */
 static int write_por(struct txn *txn)
@@ -179,14 +147,7 @@ static const struct property properties[] = {
 	PROPERTY("set_alarm", UNSIGNED, STABLE, BOTH, .digits = 333, .how = WAY_ALARM),
 };
 
-const struct family family_1c = {
-	.code = 0x1c,
-	.proof = PROOF_PRESENCE,
-	.alarms = true,
-	.type = "DS28E04",
-	.flags = FLAG_RESUME | FLAG_ALARM | FLAG_OVERDRIVE,
-	SCAN({"sensed.BYTE", "inputs"}, {"PIO.BYTE", "outputs"}),
-	AREAS(areas),
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(1c, "DS28E04", PRESENCE, .alarms = true,
+            .flags = FLAG_RESUME | FLAG_ALARM | FLAG_OVERDRIVE,
+            SCAN({"sensed.BYTE", "inputs"}, {"PIO.BYTE", "outputs"}), AREAS(areas), HOW(how),
+            PROPERTIES(properties));

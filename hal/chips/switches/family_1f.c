@@ -15,8 +15,7 @@
 #define DISCHARGE_NS (100 * TXN_MS)
 
 /* Behind the command stands a byte that is not to be written, in the place of an address. */
-static const struct area status = {
-	.name = "status", .at = 0x18, .size = 1, .address_bytes = 1, .read = STATUS};
+static AREA_NAMED(status, "status", .at = 0x18, .size = 1, .address_bytes = 1, .read = STATUS);
 
 /* Bits n and n + 2 of the status are those of the two branches. */
 static uint32_t pair(uint8_t byte, unsigned shift)
@@ -166,11 +165,4 @@ static const struct property properties[] = {
 	PAIR("sensed", READ, WAY_SENSED),
 };
 
-const struct family family_1f = {
-	.code = COUPLER_FAMILY,
-	.proof = PROOF_PRESENCE,
-	.alarms = true,
-	.type = "DS2409",
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(1f, "DS2409", PRESENCE, .alarms = true, HOW(how), PROPERTIES(properties));

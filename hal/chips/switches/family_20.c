@@ -59,21 +59,9 @@ static void end_power_on(struct txn *txn, uint8_t *want)
  * Pages that are read in one transaction are of the time between two restarts: a chip that restarts
  * meanwhile is silent from there on. The results are read-only.
  */
-static const struct area memory = {
-	.name = "memory",
-	.size = 32,
-	.block = 8,
-	.row = 1,
-	.fixed = 8,
-	.address_bytes = 2,
-	.read = 0xaa,
-	.check = AREA_CRC16,
-	.write = 0x55,
-	.write_crc16 = true,
-	.echo = true,
-	.saw = saw_pages,
-	.adjust = end_power_on,
-};
+static AREA_NAMED(memory, "memory", .size = 32, .block = 8, .row = 1, .fixed = 8,
+                  .address_bytes = 2, .read = 0xaa, .check = AREA_CRC16, .write = 0x55,
+                  .write_crc16 = true, .echo = true, .saw = saw_pages, .adjust = end_power_on);
 
 /* At 80 us for each bit of each channel, and 160 us. */
 const struct conversion ds2450_conversion = {
@@ -355,15 +343,8 @@ static const struct property properties[] = {
 	VOLT("volt2", HALF_RANGE, WAY_VOLT, HALF),
 };
 
-const struct family family_20 = {
-	.code = 0x20,
-	.proof = PROOF_CHECKSUM,
-	.alarms = true,
-	.type = "DS2450",
-	.flags = FLAG_ALARM | FLAG_OVERDRIVE | FLAG_VOLT,
-	SCAN({"volt.A", "volt_a"}, {"volt.B", "volt_b"}, {"volt.C", "volt_c"},
-             {"volt.D", "volt_d"}),
-	AREAS(areas),
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(20, "DS2450", CHECKSUM, .alarms = true,
+            .flags = FLAG_ALARM | FLAG_OVERDRIVE | FLAG_VOLT,
+            SCAN({"volt.A", "volt_a"}, {"volt.B", "volt_b"}, {"volt.C", "volt_c"},
+                 {"volt.D", "volt_d"}),
+            AREAS(areas), HOW(how), PROPERTIES(properties));

@@ -72,14 +72,7 @@ static const struct property properties[] = {
 	FLAG("strobe", STABLE, BOTH, DS2408_STROBE, .how = WAY_STROBE),
 };
 
-const struct family family_29 = {
-	.code = 0x29,
-	.proof = PROOF_PRESENCE,
-	.alarms = true,
-	.type = "DS2408",
-	.flags = FLAG_RESUME | FLAG_ALARM | FLAG_OVERDRIVE,
-	SCAN({"sensed.BYTE", "inputs"}, {"PIO.BYTE", "outputs"}),
-	AREAS(areas),
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(29, "DS2408", PRESENCE, .alarms = true,
+            .flags = FLAG_RESUME | FLAG_ALARM | FLAG_OVERDRIVE,
+            SCAN({"sensed.BYTE", "inputs"}, {"PIO.BYTE", "outputs"}), AREAS(areas), HOW(how),
+            PROPERTIES(properties));

@@ -40,9 +40,5 @@ static const struct property properties[] = {
 	PROPERTY("wiper", UNSIGNED, STABLE, BOTH, FIELD(POSITION, .at = 1), .holds = true),
 };
 
-const struct family family_2c = {.code = 0x2c,
-                                 .proof = PROOF_PRESENCE,
-                                 .type = "DS2890",
-                                 .flags = FLAG_RESUME | FLAG_ALARM | FLAG_OVERDRIVE,
-                                 AREAS(areas),
-                                 PROPERTIES(properties)};
+CHIP_FAMILY(2c, "DS2890", PRESENCE, .flags = FLAG_RESUME | FLAG_ALARM | FLAG_OVERDRIVE,
+            AREAS(areas), PROPERTIES(properties));

@@ -22,13 +22,6 @@ static const struct property properties[] = {
 	PIO_BITS("sensed", READ, PIO_READ(STATUS, PIO_PINS, false)),
 };
 
-const struct family family_3a = {
-	.code = 0x3a,
-	.proof = PROOF_CHECKSUM,
-	.type = "DS2413",
-	.flags = FLAG_RESUME | FLAG_OVERDRIVE,
-	SCAN({"sensed.BYTE", "inputs"}, {"PIO.BYTE", "outputs"}),
-	AREAS(areas),
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(3a, "DS2413", CHECKSUM, .flags = FLAG_RESUME | FLAG_OVERDRIVE,
+            SCAN({"sensed.BYTE", "inputs"}, {"PIO.BYTE", "outputs"}), AREAS(areas), HOW(how),
+            PROPERTIES(properties));

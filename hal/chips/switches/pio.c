@@ -86,7 +86,7 @@ static int load_status(struct txn *txn, const struct area *area, unsigned at, ui
 	return err;
 }
 
-const struct area pio_status = {.name = "status", .size = 3, .block = 3, .load = load_status};
+AREA_NAMED(pio_status, "status", .size = 3, .block = 3, .load = load_status);
 
 int pio_load(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, unsigned n)
 {

@@ -25,15 +25,6 @@ static const struct property properties[] = {
 	THERMOMETER_LIMIT("templow", SP_LOW),
 };
 
-const struct family family_10 = {
-	.code = 0x10,
-	.proof = PROOF_PRESENCE,
-	.fixed = true,
-	.type = "DS18S20",
-	.flags = FLAG_ALARM | FLAG_TEMPERATURE,
-	SCAN({"temperature", "temperature"}),
-	THERMOMETER_FAMILY,
-	AREAS(areas),
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(10, "DS18S20", PRESENCE, .fixed = true, .flags = FLAG_ALARM | FLAG_TEMPERATURE,
+            SCAN({"temperature", "temperature"}), THERMOMETER_FAMILY, AREAS(areas), HOW(how),
+            PROPERTIES(properties));

@@ -118,15 +118,6 @@ static const struct property properties[] = {
 	THERMOMETER_TEMPERATURES,
 };
 
-const struct family family_28 = {
-	.code = 0x28,
-	.proof = PROOF_PRESENCE,
-	.type = "DS18B20",
-	.flags = FLAG_ALARM | FLAG_TEMPERATURE,
-	SCAN({"temperature12", "temperature"}),
-	.name = clone_name,
-	THERMOMETER_FAMILY,
-	AREAS(areas),
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(28, "DS18B20", PRESENCE, .flags = FLAG_ALARM | FLAG_TEMPERATURE,
+            SCAN({"temperature12", "temperature"}), .name = clone_name, THERMOMETER_FAMILY,
+            AREAS(areas), HOW(how), PROPERTIES(properties));

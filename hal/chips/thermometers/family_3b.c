@@ -73,15 +73,8 @@ static int saw_scratchpad(struct txn *txn, unsigned at, uint8_t *bytes, unsigned
 	return err ? err : refuse_absent(txn);
 }
 
-static const struct area scratchpad = {
-	.name = "scratchpad",
-	.size = 9,
-	.block = 9,
-	.read = 0xbe,
-	.check = AREA_CRC8,
-	.begin = refuse_absent,
-	.saw = saw_scratchpad,
-};
+static AREA_NAMED(scratchpad, "scratchpad", .size = 9, .block = 9, .read = 0xbe, .check = AREA_CRC8,
+                  .begin = refuse_absent, .saw = saw_scratchpad);
 
 static int scratchpad_now(struct txn *txn, uint8_t bytes[9])
 {
@@ -287,21 +280,9 @@ static int begin_memory(struct txn *txn)
 	return err ? err : thermometer_rest(txn);
 }
 
-static const struct area memory = {
-	.name = "memory",
-	.size = 128,
-	.address_bytes = 1,
-	.read = 0xf0,
-	.block = 8,
-	.begin = begin_memory,
-	.row = 8,
-	.write = 0x0f,
-	.verify = 0xaa,
-	.copy = 0x55,
-	.key = 0xa5,
-	.strong = true,
-	.copy_ns = 25 * TXN_MS,
-};
+static AREA_NAMED(memory, "memory", .size = 128, .address_bytes = 1, .read = 0xf0, .block = 8,
+                  .begin = begin_memory, .row = 8, .write = 0x0f, .verify = 0xaa, .copy = 0x55,
+                  .key = 0xa5, .strong = true, .copy_ns = 25 * TXN_MS);
 
 /* The functions of all thermometers see which chip it is too. */
 enum { OWN = SCRATCHPAD, MEMORY };
@@ -374,17 +355,7 @@ static const struct property properties[] = {
 
 static const char *const types[] = {NULL, "DS1825", "MAX31826", "MAX31850", "MAX31825"};
 
-const struct family family_3b = {
-	.code = 0x3b,
-	.proof = PROOF_PRESENCE,
-	.type = "DS1825",
-	.flags = FLAG_ALARM | FLAG_TEMPERATURE,
-	SCAN({"temperature12", "temperature"}, {"thermocouple", "thermocouple"}),
-	.several = true,
-	.tell = tell_kind,
-	.types = types,
-	THERMOMETER_FAMILY,
-	AREAS(areas),
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(3b, "DS1825", PRESENCE, .flags = FLAG_ALARM | FLAG_TEMPERATURE,
+            SCAN({"temperature12", "temperature"}, {"thermocouple", "thermocouple"}),
+            .several = true, .tell = tell_kind, .types = types, THERMOMETER_FAMILY, AREAS(areas),
+            HOW(how), PROPERTIES(properties));

@@ -26,14 +26,6 @@ static const struct property properties[] = {
 	THERMOMETER_TEMPERATURES,
 };
 
-const struct family family_42 = {
-	.code = 0x42,
-	.proof = PROOF_PRESENCE,
-	.type = "DS28EA00",
-	.flags = FLAG_ALARM | FLAG_CHAIN | FLAG_TEMPERATURE,
-	SCAN({"temperature12", "temperature"}),
-	THERMOMETER_FAMILY,
-	AREAS(areas),
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(42, "DS28EA00", PRESENCE, .flags = FLAG_ALARM | FLAG_CHAIN | FLAG_TEMPERATURE,
+            SCAN({"temperature12", "temperature"}), THERMOMETER_FAMILY, AREAS(areas), HOW(how),
+            PROPERTIES(properties));

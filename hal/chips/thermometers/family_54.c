@@ -105,13 +105,7 @@ static int load_limits(struct txn *txn, const struct area *area, unsigned at, ui
 }
 
 /* Read-only: a disturbed address of a write would reach another register, and act at once. */
-static const struct area limits = {
-	.name = "limits",
-	.at = LIMITS_AT,
-	.size = 4,
-	.block = 4,
-	.load = load_limits,
-};
+static AREA_NAMED(limits, "limits", .at = LIMITS_AT, .size = 4, .block = 4, .load = load_limits);
 
 enum { LIMITS = 1 };
 static const struct area *const areas[] = {[LIMITS] = &limits};
@@ -131,12 +125,5 @@ static const struct property properties[] = {
 	LIMIT("templow", 2),
 };
 
-const struct family family_54 = {
-	.code = 0x54,
-	.proof = PROOF_CHECKSUM,
-	.type = "MAX31888",
-	SCAN({"temperature", "temperature"}),
-	AREAS(areas),
-	HOW(how),
-	PROPERTIES(properties),
-};
+CHIP_FAMILY(54, "MAX31888", CHECKSUM, SCAN({"temperature", "temperature"}), AREAS(areas), HOW(how),
+            PROPERTIES(properties));

@@ -97,15 +97,8 @@ int thermometer_saw(struct txn *txn, unsigned at, uint8_t *scratchpad, unsigned 
 	return saw_config(txn, scratchpad);
 }
 
-const struct area thermometer_area = {
-	.name = "scratchpad",
-	.size = 9,
-	.block = 9,
-	.parts = true,
-	.read = 0xbe,
-	.check = AREA_CRC8,
-	.saw = thermometer_saw,
-};
+AREA_NAMED(thermometer_area, "scratchpad", .size = 9, .block = 9, .parts = true, .read = 0xbe,
+           .check = AREA_CRC8, .saw = thermometer_saw);
 
 int thermometer_scratchpad(struct txn *txn, uint8_t scratchpad[9])
 {
@@ -340,7 +333,7 @@ int thermometer_read_tempres(struct txn *txn)
 /* Eight slots, which are all alike. */
 static int look_at_supply(struct txn *txn, uint8_t *slots)
 {
-	static const struct area supply = {.name = "supply", .size = 1};
+	static AREA_NAMED(supply, "supply", .size = 1);
 	static const uint8_t command = THERMOMETER_READ_POWER;
 	int err;
 

@@ -74,7 +74,7 @@ static int recall_settings(struct txn *txn, uint8_t scratchpad[9])
 
 static int copy_settings(struct txn *txn)
 {
-	static const struct area eeprom = {.name = "eeprom", .size = 3};
+	static AREA_NAMED(eeprom, "eeprom", .size = 3);
 	static const uint8_t copy = COPY_SCRATCHPAD;
 
 	/* A driver's word for it is all there is. */

@@ -44,18 +44,6 @@ static int tmp1826_memory_load(struct txn *txn, const struct area *area, unsigne
 	return steady(txn, in, n);
 }
 
-const struct area tmp1826_memory = {
-	.name = "memory",
-	.size = 256,
-	.address_bytes = 2,
-	.high_first = true,
-	.block = BLOCK,
-	.row = BLOCK,
-	.write = 0x0f,
-	.verify = 0xaa,
-	.copy = 0x55,
-	.key = 0xa5,
-	.strong = true,
-	.copy_ns = PROGRAM_NS,
-	.load = tmp1826_memory_load,
-};
+AREA_NAMED(tmp1826_memory, "memory", .size = 256, .address_bytes = 2, .high_first = true,
+           .block = BLOCK, .row = BLOCK, .write = 0x0f, .verify = 0xaa, .copy = 0x55, .key = 0xa5,
+           .strong = true, .copy_ns = PROGRAM_NS, .load = tmp1826_memory_load);
