@@ -1,29 +1,39 @@
 /* SPDX-License-Identifier: MIT */
-/* The battery gauges with 256 addresses: what several families do alike. */
+/*
+ * The battery gauges with 256 addresses: what several families do alike, and what a DS2770 does
+ * (gauges.c has the tables and the data sheets).
+ */
 #include <errno.h>
 
 #include "hal/chips/batteries/gauge.h"
+#include "hal/chips/batteries/ws603.h"
+#include "hal/chips/thermometers/thermocouple.h"
 
 #define VIS 0x0e             /* the voltage across the resistor */
 #define PROTECTION_PINS 0x0c /* of the protection register: CC and DC mirror the pins */
+enum { DEFAULTS_AT = 0x31, STATUS_AT = 0x01, CHARGING = 0x40, CHARGE_STATUS = 0xc0 };
+#define REFRESHED 0x33 /* bits of the status that Refresh takes from the EEPROM */
 
-AREA_NAMED(gauge_memory, "memory", .size = 256, .block = 32, GAUGE_READ);
-AREA_NAMED(gauge_words, "words", .size = 256, .block = 2, GAUGE_READ);
-AREA_NAMED(gauge_bytes, "bytes", .size = 256, GAUGE_READ);
-AREA_NAMED(gauge_eeprom, "EEPROM", .size = 128, GAUGE_STORED(16));
-/* A copy takes the whole block, so all of it is written. */
-AREA_NAMED(gauge_parameters, "parameters", .at = 0x60, .size = 32, GAUGE_STORED(32));
+/* Read Data, Write Data, Recall Data, Copy Data. */
+#define GAUGE_READ .address_bytes = 1, .read = 0x69
+#define GAUGE_WRITE(row_) GAUGE_READ, .row = (row_), .write = 0x6c
+/* Read and written by way of its shadow RAM, in blocks. */
+#define GAUGE_STORED(block_) \
+	.block = (block_), GAUGE_WRITE(block_), .recall = 0xb8, .copy = 0x48, .copy_ns = 10 * TXN_MS
+#define REGISTER(text, where) AREA(.name = (text), .at = (where), .size = 1, GAUGE_WRITE(1))
 
-bool gauge_is_counted(struct txn *txn, const uint8_t *have, const uint8_t *want, unsigned n)
+static AREA_NAMED(words, "words", .size = 256, .block = 2, GAUGE_READ);
+static AREA_NAMED(bytes_of, "bytes", .size = 256, GAUGE_READ);
+static AREA_NAMED(eeprom, "EEPROM", .size = 128, GAUGE_STORED(16));
+
+/* A number of two bytes that goes on counting while it is written. */
+static bool is_counted(struct txn *txn, const uint8_t *have, const uint8_t *want, unsigned n)
 {
 	int change = (int16_t)((have[0] - want[0]) * 256 + have[1] - want[1]);
 
 	(void)txn, (void)n;
 	return change >= -2 && change <= 2;
 }
-
-AREA_NAMED(gauge_charge, "accumulated current", .at = 0x10, .size = 2, GAUGE_WRITE(2),
-           .is_written = gauge_is_counted);
 
 /* The pins follow at once, and are nothing that was written. */
 static int saw_protection(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
@@ -33,20 +43,38 @@ static int saw_protection(struct txn *txn, unsigned at, uint8_t *bytes, unsigned
 	return 0;
 }
 
-AREA_NAMED(gauge_protection, "protection", .size = 1, GAUGE_WRITE(1), .saw = saw_protection);
-AREA_NAMED(gauge_pins, "pins", .size = 1, GAUGE_READ);
+const struct area *const gauge_areas[GAUGE_AREAS] = {
+	[MEMORY] = AREA(.name = "memory", .size = 256, .block = 32, GAUGE_READ),
+	[WORDS] = &words,
+	[BYTES] = &bytes_of,
+	[CHARGE] = AREA(.name = "accumulated current", .at = 0x10, .size = 2, GAUGE_WRITE(2),
+                        .is_written = is_counted),
+	[EEPROM] = &eeprom,
+	[EEPROM4] = AREA(.name = "EEPROM", .size = 0x34, GAUGE_STORED(4)),
+	[EEPROM32] = AREA(.name = "EEPROM", .size = 128, GAUGE_STORED(32)),
+	/* A copy takes the whole block, so all of it is written. */
+	[PARAMETERS] = AREA(.name = "parameters", .at = 0x60, .size = 32, GAUGE_STORED(32)),
+	[PROTECTION] = AREA(.name = "protection", .size = 1, GAUGE_WRITE(1), .saw = saw_protection),
+	[PINS_OF] = AREA(.name = "pins", .size = 1, GAUGE_READ),
+	[STATUS] = REGISTER("status", STATUS_AT),
+	[SPECIAL_08] = REGISTER("special", 0x08),
+	[SPECIAL_15] = REGISTER("special", 0x15),
+	[ALARM] = REGISTER("alarm", 0x85),
+	[TIMER] = AREA(.name = "timer", .at = 0x02, .size = 2, GAUGE_WRITE(2),
+                       .is_written = is_counted),
+};
 
-int gauge_read_lock(struct txn *txn)
+static int read_lock(struct txn *txn)
 {
 	uint8_t byte = 0;
-	int err = area_read(txn, &gauge_bytes, txn->property->arg & 0xff, &byte, 1);
+	int err = area_read(txn, &bytes_of, txn->property->arg & 0xff, &byte, 1);
 
 	txn->number[0] = byte >> txn->element & 1;
 	return err;
 }
 
 /* For good: the enabling bit, and the command that has to follow it at once. */
-int gauge_write_lock(struct txn *txn)
+static int write_lock(struct txn *txn)
 {
 	uint32_t places = (uint32_t)txn->property->arg;
 	const uint8_t enable[] = {0x6c, (uint8_t)places, 0x40};
@@ -64,7 +92,7 @@ int gauge_write_lock(struct txn *txn)
 			return err;
 		txn->phase = 1;
 	}
-	err = gauge_read_lock(txn);
+	err = read_lock(txn);
 	return err ? err : txn->number[0] != 0 ? 0 : -EIO;
 }
 
@@ -74,7 +102,7 @@ static int signed_word(const uint8_t *bytes)
 }
 
 /* The voltage across the resistor is the thermocouple's; the chip is its cold end. */
-int gauge_read_couple(struct txn *txn)
+static int read_couple(struct txn *txn)
 {
 	unsigned arg = (unsigned)txn->property->arg;
 	double *mv = txn_own(txn, double);
@@ -82,14 +110,14 @@ int gauge_read_couple(struct txn *txn)
 	int err;
 
 	if (txn->phase == 0) {
-		err = area_read(txn, &gauge_words, VIS, bytes, 2);
+		err = area_read(txn, &words, VIS, bytes, 2);
 		if (err)
 			return err;
 		*mv = signed_word(bytes) * 1000 * (arg >> 16 ? GAUGE_FINE : GAUGE_COARSE);
 		txn->phase = 1;
 		return TXN_MORE;
 	}
-	err = area_read(txn, &gauge_words, arg >> 8 & 0xff, bytes, 2);
+	err = area_read(txn, &words, arg >> 8 & 0xff, bytes, 2);
 	if (err)
 		return err;
 	return thermocouple_celsius((enum thermocouple)(arg & 0xff), *mv,
@@ -98,14 +126,107 @@ int gauge_read_couple(struct txn *txn)
 	               : -ERANGE;
 }
 
-int gauge_couple_low(struct txn *txn)
+static int read_couple_low(struct txn *txn)
 {
 	txn->number[0] = thermocouple_low((enum thermocouple)txn->property->arg);
 	return 0;
 }
 
-int gauge_couple_high(struct txn *txn)
+static int read_couple_high(struct txn *txn)
 {
 	txn->number[0] = thermocouple_high((enum thermocouple)txn->property->arg);
 	return 0;
 }
+
+/* --- Of a DS2770 --- */
+
+static int command_ds2770(struct txn *txn, uint8_t code)
+{
+	txn_void(txn);
+	return txn_command(txn, &code, 1);
+}
+
+/* Start Charge, Stop Charge; then the status says what it is. */
+static int write_charge(struct txn *txn)
+{
+	bool on = txn->number[0] != 0;
+	uint8_t byte;
+	int err;
+
+	if (txn->phase == 0) {
+		err = command_ds2770(txn, on ? 0xb5 : 0xbe);
+		if (err)
+			return err;
+		txn->phase = 1;
+	}
+	err = area_read(txn, &bytes_of, STATUS_AT, &byte, 1);
+	if (err)
+		return err;
+	return ((byte & CHARGE_STATUS) == CHARGING) == on ? 0 : -EIO;
+}
+
+/* The phases from first on: what the EEPROM holds, Refresh, the status. */
+static int refresh(struct txn *txn, unsigned first)
+{
+	uint8_t *stored = txn_own(txn, uint8_t), byte;
+	int err;
+
+	if (txn->phase == first) {
+		err = area_read(txn, &eeprom, DEFAULTS_AT, stored, 1);
+		if (err)
+			return err;
+		txn->phase++;
+		return TXN_MORE;
+	}
+	if (txn->phase == first + 1) {
+		err = command_ds2770(txn, 0x63);
+		if (err)
+			return err;
+		txn->phase++;
+	}
+	err = area_read(txn, &bytes_of, STATUS_AT, &byte, 1);
+	if (err)
+		return err;
+	return ((byte ^ *stored) & REFRESHED) == 0 ? 0 : -EIO;
+}
+
+static int write_refresh(struct txn *txn)
+{
+	return txn->number[0] != 0 ? refresh(txn, 0) : 0;
+}
+
+/* The status has it from the EEPROM, when it is refreshed. */
+static int write_setting(struct txn *txn)
+{
+	const uint8_t mask = (uint8_t)(1 << txn->property->field.shift);
+	const uint8_t byte = txn->number[0] != 0 ? mask : 0;
+	int err;
+
+	if (txn->phase > 0)
+		return refresh(txn, 1);
+	err = area_write(txn, &eeprom, DEFAULTS_AT, &byte, &mask, 1);
+	if (err)
+		return err;
+	txn->phase = 1;
+	return TXN_MORE;
+}
+
+const struct property_how gauge_how[GAUGE_WAYS] = {
+	[WAY_LOCK] = {.read = read_lock, .write = write_lock},
+	[WAY_COUPLE] = {.read = read_couple},
+	[WAY_COUPLE_LOW] = {.read = read_couple_low},
+	[WAY_COUPLE_HIGH] = {.read = read_couple_high},
+	[WAY_BESIDE_PIO] = {.write = property_refuse},
+	[WAY_CHARGE] = {.write = write_charge},
+	[WAY_REFRESH] = {.write = write_refresh},
+	[WAY_SETTING] = {.write = write_setting},
+	[WAY_PAGE] = {SET(EEPROM, .at = 0x20)},
+	[WAY_PMOD] = {SET(EEPROM, .at = 0x31, .shift = 5, .bits = 1)},
+	[WAY_SWEN] = {SET(EEPROM, .at = 0x31, .shift = 3, .bits = 1)},
+	[WAY_CURRENTBIAS] = {SET(EEPROM, GAUGE_BIAS(GAUGE_RESISTOR))},
+	[WAY_VBIAS] = {SET(EEPROM, GAUGE_BIAS(1))},
+	[WAY_WS603_BYTE] = {.read = ws603_read_byte, .write = ws603_write_byte},
+	[WAY_WS603_BYTES] = {.read = ws603_read_bytes},
+	[WAY_WS603_WIND] = {.read = ws603_read_wind},
+	[WAY_WS603_LIGHTS] = {.write = ws603_write_lights},
+};
