@@ -2,7 +2,7 @@
 /* A DS2438: its pages and its configuration. */
 #pragma once
 
-#include "hal/chips/area.h"
+#include "hal/chips/property.h"
 
 /* Bits of the status/configuration register, page 0 byte 0. */
 #define DS2438_IAD 0x01
@@ -60,9 +60,7 @@ static inline int16_t ds2438_word(const uint8_t *bytes)
 /* For fields; they are written by ds2438_write_field() (of four bytes) and ds2438_patch(). */
 extern const struct area ds2438_pages;
 /* For properties: of four bytes, of a flag of the configuration, of a page. */
-int ds2438_write_field(struct txn *txn);
-int ds2438_write_flag(struct txn *txn);
-int ds2438_write_page(struct txn *txn);
+property_function ds2438_write_field, ds2438_write_flag, ds2438_write_page;
 
 /* A page of the memory as it is now. */
 int ds2438_read(struct txn *txn, unsigned page, uint8_t bytes[8]);

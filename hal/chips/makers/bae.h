@@ -13,16 +13,9 @@ enum bae_kind { BAE_910 = 1, BAE_911, BAE_OTHER };
 struct bae {
 	uint32_t sector; /* of the card */
 };
-/* family.identify */
-int bae_identify(struct txn *txn);
-
-/* Areas: blocks of memory, read and written by address. */
-int bae_load(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, unsigned n);
-int bae_store(struct txn *txn, const struct area *area, unsigned at, const uint8_t *bytes,
-              unsigned n);
 /* A command of n bytes, its checksum, the confirmation. */
 int bae_confirmed(struct txn *txn, const uint8_t *command, unsigned n);
 
-/* What runs in a 0911: the expander on its I2C, the card, texts (bae_run.c). */
+/* What runs in a 0911: the expander on its I2C, the card, texts. */
 property_function bae_read_expander, bae_write_expander, bae_read_sector, bae_write_sector;
 property_function bae_read_sector_number, bae_write_sector_number, bae_write_text;

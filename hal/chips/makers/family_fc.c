@@ -19,7 +19,47 @@
 #define LATE_S 2 /* a clock may be so much ahead of the time since it was written */
 #define S_NS (1000 * TXN_MS)
 
-enum { READ_VERSION = 0x11, READ_TYPE, EXTENDED, ERASE = 0x16 };
+enum { READ_VERSION = 0x11, READ_TYPE, EXTENDED, READ_BLOCK, WRITE_BLOCK, ERASE };
+
+#define EEPROM_910 0xe000
+
+static int bae_identify(struct txn *txn)
+{
+	static const uint8_t command = READ_TYPE;
+	uint8_t type[2];
+	int err = txn_ask_crc16(txn, &command, 1, type, sizeof(type));
+
+	if (!err)
+		txn->device->kind = type[0] == 2 ? BAE_910 : type[0] == 3 ? BAE_911 : BAE_OTHER;
+	return err;
+}
+
+/* The EEPROM of a 0910 stands elsewhere. */
+static unsigned bae_address(const struct txn *txn, const struct area *area, unsigned at)
+{
+	bool moved = area->size > 0x3000 && txn->device->kind == BAE_910;
+
+	return area->at + at + (moved ? EEPROM_910 : 0);
+}
+
+static int bae_load(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,
+                    unsigned n)
+{
+	unsigned where = bae_address(txn, area, at);
+	const uint8_t command[] = {READ_BLOCK, (uint8_t)where, (uint8_t)(where >> 8), (uint8_t)n};
+	return txn_ask_crc16(txn, command, sizeof(command), bytes, n);
+}
+
+static int bae_store(struct txn *txn, const struct area *area, unsigned at, const uint8_t *bytes,
+                     unsigned n)
+{
+	unsigned where = bae_address(txn, area, at);
+	uint8_t command[4 + AREA_UNIT] = {WRITE_BLOCK, (uint8_t)where, (uint8_t)(where >> 8),
+	                                  (uint8_t)n};
+
+	memcpy(command + 4, bytes, n);
+	return bae_confirmed(txn, command, 4 + n);
+}
 
 #define MEMORY(text, at_, size_, block_) \
 	.name = (text), .at = (at_), .size = (size_), .block = (block_), .row = (block_), \

@@ -1,21 +1,22 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * LCD controller by Louis Swart: four pins with counters, EEPROM, and a display (lcd_swart.c). Its
- * data sheet could not be had: the commands are those of OWFS's driver. All that is read goes by
- * way of a scratchpad without a checksum.
+ * LCD controller by Louis Swart: four pins with counters, EEPROM, and a display. Its data sheet
+ * could not be had: the commands are those of OWFS's driver. All that is read goes by way of a
+ * scratchpad without a checksum. Nothing shows that a command to the display was taken: all of them
+ * are sent twice, which changes nothing.
  */
 #include <errno.h>
 #include <string.h>
 
-#include "hal/chips/makers/lcd_swart.h"
+#include "hal/chips/family.h"
 
-#define PINS 4
-#define ROUNDS 2
-#define BLANK_ROUNDS 5 /* where nothing but ones is read */
-#define SOON_NS (1 * TXN_MS)
-#define EEPROM_NS (17 * 4 * TXN_MS)
-#define LOOKS 3
-#define TRIES 2 /* of the bus, after a device error */
+#define LCD_PAD 16 /* bytes of the scratchpad that can be read */
+
+#define WIDTH_MAX 40
+#define SENT 2              /* times */
+#define CHUNK (LCD_PAD - 1) /* letters, so that all of them are read back */
+#define PRINT_NS (2 * TXN_MS)
+#define CLEAR_NS (3 * TXN_MS)
 
 enum {
 	WRITE_INSTRUCTION = 0x10,
@@ -28,8 +29,137 @@ enum {
 	READ_EEPROM = 0x37,
 	WRITE_EEPROM = 0x39,
 	READ_VERSION = 0x41,
+	PRINT = 0x48,
+	CLEAR,
+	WRITE_PAD = 0x4e,
 	READ_PAD = 0xbe,
 };
+
+struct shown {
+	uint8_t cleared, row, chunk, filled, printed;
+};
+
+/* Write n bytes to the scratchpad, and read them back. */
+static int lcd_swart_fill(struct txn *txn, const uint8_t *bytes, unsigned n)
+{
+	static const uint8_t read = READ_PAD;
+	uint8_t command[2 + LCD_PAD] = {WRITE_PAD}, in[LCD_PAD];
+	int err;
+
+	memcpy(command + 1, bytes, n);
+	err = txn_command(txn, command, 1 + n);
+	if (!err)
+		err = txn_command(txn, &read, 1);
+	if (!err)
+		err = txn_read_slots(txn, in, sizeof(in));
+	if (err)
+		return err;
+	return memcmp(in, bytes, n < LCD_PAD ? n : LCD_PAD) == 0 ? 0 : -EBADMSG;
+}
+
+static int lcd_swart_switch(struct txn *txn)
+{
+	int arg = txn->property->arg;
+	const uint8_t command = (uint8_t)(txn->number[0] != 0 ? arg >> 8 : arg);
+	int err = txn_command(txn, &command, 1);
+
+	return err ? err : ++txn->phase < SENT ? txn_wait(txn, CLEAR_NS) : 0;
+}
+
+static int lcd_swart_send(struct txn *txn, uint8_t command, int64_t ns)
+{
+	int err = txn_command(txn, &command, 1);
+
+	return err ? err : txn_wait(txn, ns);
+}
+
+/* A line goes to the display in chunks, each with its place ahead. 0: all are there. */
+static int print_line(struct txn *txn, unsigned row, const char *line)
+{
+	struct shown *shown = txn_own(txn, struct shown);
+	unsigned width = (unsigned)txn->property->arg, from = shown->chunk * CHUNK;
+	unsigned n = width - from < CHUNK ? width - from : CHUNK;
+	uint8_t pad[1 + LCD_PAD] = {(uint8_t)((row & 1) * 0x40 + (row >> 1) * width + from)};
+	int err;
+
+	if (from >= width) {
+		shown->chunk = 0;
+		return 0;
+	}
+	if (!shown->filled) {
+		memcpy(pad + 1, line + from, n);
+		err = lcd_swart_fill(txn, pad, 1 + n);
+		shown->filled = true;
+		return err ? err : TXN_MORE;
+	}
+	err = lcd_swart_send(txn, PRINT, PRINT_NS);
+	if (++shown->printed == SENT) {
+		shown->filled = shown->printed = 0;
+		shown->chunk++;
+	}
+	return err;
+}
+
+static int lcd_swart_line(struct txn *txn)
+{
+	char line[WIDTH_MAX];
+
+	memset(line, ' ', sizeof(line));
+	if (txn->at + txn->len > (unsigned)txn->property->arg)
+		return -EINVAL;
+	memcpy(line + txn->at, txn->data, txn->len);
+	return print_line(txn, (unsigned)txn->element, line);
+}
+
+/* The row's text, which ends with a line end or where the display does; false: there is none. */
+static bool line_of(const struct txn *txn, unsigned row, char line[WIDTH_MAX])
+{
+	size_t width = (size_t)txn->property->arg, at = 0, n = 0;
+
+	for (unsigned i = 0; i <= row; i++) {
+		if (i && at >= txn->len)
+			return false;
+		for (n = 0; n < width && at + n < txn->len && txn->data[at + n] != '\n';)
+			n++;
+		if (i == row)
+			break;
+		at += n;
+		at += at < txn->len && n < width && txn->data[at] == '\n';
+	}
+	memset(line, ' ', WIDTH_MAX);
+	memcpy(line, txn->data + at, n);
+	return true;
+}
+
+static int lcd_swart_screen(struct txn *txn)
+{
+	struct shown *shown = txn_own(txn, struct shown);
+	unsigned rows = txn->property->arg == WIDTH_MAX ? 2 : 4;
+	char line[WIDTH_MAX];
+	int err;
+
+	if (txn->at)
+		return -EINVAL;
+	if (shown->cleared < SENT) {
+		shown->cleared++;
+		return lcd_swart_send(txn, CLEAR, CLEAR_NS);
+	}
+	if (shown->row == rows || !line_of(txn, shown->row, line))
+		return 0;
+	err = print_line(txn, shown->row, line);
+	if (err)
+		return err;
+	shown->row++;
+	return TXN_MORE;
+}
+
+#define PINS 4
+#define ROUNDS 2
+#define BLANK_ROUNDS 5 /* where nothing but ones is read */
+#define SOON_NS (1 * TXN_MS)
+#define EEPROM_NS (17 * 4 * TXN_MS)
+#define LOOKS 3
+#define TRIES 2 /* of the bus, after a device error */
 
 /* What a command has put into the scratchpad, from call to call. */
 struct pad {
@@ -283,9 +413,11 @@ static void family_ff_forget(struct device *device)
 enum { EEPROM = 1 };
 static const struct area *const areas[] = {[EEPROM] = &eeprom};
 
-enum { WAY_VERSION = AFTER_LCD_SWART_WAYS, WAY_BYTE, WAY_PINS, WAY_COUNTS, WAY_SUM };
+enum { WAY_SWITCH = 1, WAY_LINE, WAY_SCREEN, WAY_VERSION, WAY_BYTE, WAY_PINS, WAY_COUNTS, WAY_SUM };
 static const struct property_how how[] = {
-	LCD_SWART_WAYS,
+	[WAY_SWITCH] = {.write = lcd_swart_switch},
+	[WAY_LINE] = {.write = lcd_swart_line},
+	[WAY_SCREEN] = {.write = lcd_swart_screen},
 	[WAY_VERSION] = {.read = read_version},
 	[WAY_BYTE] = {.read = read_lcd_byte, .write = write_lcd_byte},
 	[WAY_PINS] = {.read = read_pins, .write = write_pins, .merge = merge_pins},
@@ -294,23 +426,32 @@ static const struct property_how how[] = {
 };
 
 /* clang-format off */
+/* arg: the commands, or the width of the display. */
+#define SWITCH(text, on, off) \
+	PROPERTY(text, YESNO, STABLE, WRITE, .arg = (on) << 8 | (off), .how = WAY_SWITCH)
+#define LINE(text, lines, width) \
+	PROPERTY(text, ASCII, STABLE, WRITE, ELEMENTS(lines, NUMBERS), .size = (width), \
+	         .arg = (width), .how = WAY_LINE)
+#define SCREEN(text, width) \
+	PROPERTY(text, ASCII, STABLE, WRITE, .size = 128, .arg = (width), .how = WAY_SCREEN)
+
 static const struct property properties[] = {
-	LCD_SWART_SWITCH("LCDon", 0x03, 0x05),
-	LCD_SWART_SWITCH("backlight", 0x08, 0x07),
+	SWITCH("LCDon", 0x03, 0x05),
+	SWITCH("backlight", 0x08, 0x07),
 	PROPERTY("counters", UNSIGNED, VOLATILE, READ, AGGREGATE(PINS, NUMBERS),
 	         COUNTS_TO(UINT16_MAX), .how = WAY_COUNTS),
 	PROPERTY("cumulative", UNSIGNED, VOLATILE, BOTH, AGGREGATE(PINS, NUMBERS),
 	         COUNTS_TO(HUGE_VAL), .how = WAY_SUM),
 	PROPERTY("data", UNSIGNED, VOLATILE, BOTH, .arg = READ_DATA, .how = WAY_BYTE),
 	PROPERTY("gpio", BITS, VOLATILE, BOTH, AGGREGATE(PINS, NUMBERS), .how = WAY_PINS),
-	LCD_SWART_LINE("line16", 4, 16),
-	LCD_SWART_LINE("line20", 4, 20),
-	LCD_SWART_LINE("line40", 2, 40),
+	LINE("line16", 4, 16),
+	LINE("line20", 4, 20),
+	LINE("line40", 2, 40),
 	PROPERTY("memory", BINARY, STABLE, BOTH, .size = 112, FIELD(EEPROM)),
 	PROPERTY("register", UNSIGNED, VOLATILE, BOTH, .arg = READ_REGISTER, .how = WAY_BYTE),
-	LCD_SWART_SCREEN("screen16", 16),
-	LCD_SWART_SCREEN("screen20", 20),
-	LCD_SWART_SCREEN("screen40", 40),
+	SCREEN("screen16", 16),
+	SCREEN("screen20", 20),
+	SCREEN("screen40", 40),
 	PROPERTY("version", ASCII, STABLE, READ, .size = LCD_PAD, .how = WAY_VERSION),
 };
 /* clang-format on */

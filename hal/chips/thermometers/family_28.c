@@ -16,10 +16,8 @@
 #include <string.h>
 
 #include "hal/chips/identity.h"
-#include "hal/chips/thermometers/clone_id.h"
 #include "hal/chips/thermometers/state.h"
 #include "hal/chips/thermometers/thermometer.h"
-#include "hal/chips/thermometers/thermometer_store.h"
 
 #define CLONE "DS18B20 clone"
 #define FAMILY_ CLONE ", family "

@@ -20,7 +20,6 @@
 #include "hal/chips/thermometers/state.h"
 #include "hal/chips/thermometers/thermometer.h"
 #include "hal/chips/thermometers/thermometer_proof.h"
-#include "hal/chips/thermometers/thermometer_store.h"
 
 enum { UNKNOWN, DS1825, MAX31826, MAX31850, MAX31825 }; /* device.kind */
 

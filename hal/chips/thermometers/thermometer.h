@@ -6,8 +6,7 @@
 #pragma once
 
 #include "hal/chips/family.h"
-#include "hal/chips/thermometers/scratchpad.h"
-#include "hal/chips/thermometers/thermometer_trim.h"
+#include "hal/chips/thermometers/thermometer_proof.h"
 
 #define THERMOMETER_CONVERT 0x44
 #define THERMOMETER_READ_POWER 0xb4
@@ -52,9 +51,12 @@ int thermometer_start_fed(struct txn *txn, int64_t ns);
 /* Asks for the power supply and notes it: 1 external, 0 parasitic, or an error. */
 int thermometer_ask_power(struct txn *txn);
 
-int thermometer_read_temperature(struct txn *txn);
-int thermometer_read_tempres(struct txn *txn);
-int thermometer_read_power(struct txn *txn);
+property_function thermometer_read_temperature, thermometer_read_tempres, thermometer_read_power;
+/* The user's settings go to the EEPROM (thermometer_store.c): the field's byte, the resolution. */
+property_function thermometer_write_limit, thermometer_write_tempres;
+/* What `errata` has (thermometer_trim.c). */
+property_function thermometer_read_die, thermometer_read_trim, thermometer_refuse_trim;
+property_function thermometer_read_trim_valid, thermometer_read_trim_blanket;
 
 /* What stands first in the lists of their families; those with more begin behind the last. */
 enum { SCRATCHPAD = 1, AFTER_THERMOMETER_AREAS };

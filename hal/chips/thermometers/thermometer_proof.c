@@ -4,8 +4,6 @@
 #include <string.h>
 
 #include "hal/chips/family.h"
-#include "hal/chips/thermometers/clone_id.h"
-#include "hal/chips/thermometers/scratchpad.h"
 #include "hal/chips/thermometers/state.h"
 #include "hal/chips/thermometers/thermometer_proof.h"
 

@@ -12,6 +12,9 @@
 
 #include "hal/wire/txn.h"
 
+/* The nine bytes of the scratchpad. */
+enum { SP_LSB, SP_MSB, SP_HIGH, SP_LOW, SP_CONFIG, SP_5, SP_REMAIN, SP_PER_DEGREE, SP_CRC };
+
 /* It did not show so many starts in a row: it cannot, as some clones, or has no supply. */
 #define THERMOMETER_SILENT 3
 

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "hal/chips/property.h"
-#include "hal/chips/thermometers/thermometer_trim.h"
+#include "hal/chips/thermometers/thermometer.h"
 
 #define READ_TRIM_1 0x93
 #define READ_TRIM_2 0x68

@@ -15,8 +15,10 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/chips/steady.h"
 #include "hal/chips/thermometers/tmp1826.h"
 #include "hal/owfs/path.h"
+#include "hal/wire/crc.h"
 
 #define READ_SCRATCHPAD 0xbe
 #define CONVERT 0x44
@@ -26,8 +28,10 @@
 #define FIRST 9  /* bytes of a page with its CRC8 */
 #define BYTES 17 /* behind the page's number */
 
-#define PAD TMP1826_PAD
-enum { STATUS = TMP1826_STATUS, RESERVED_3, CONFIG_1 = TMP1826_SETTINGS };
+/* The scratchpad: temperature, status, 3 bytes of settings, limits and offset; 2 checksums. */
+#define PAD 18
+enum { STATUS = 2, RESERVED_3, CONFIG_1 };
+#define PRECISE 0x80 /* of the first byte of the settings: 1/128 degrees, not 1/16 */
 enum { RESERVED_7 = 7, RESERVED_15 = 15, RESERVED_16 };
 enum { DATA_VALID = 0x08, FED_BY_BUS = 0x04, ALERT_SHIFT = 6 }; /* of the status */
 enum { AVERAGES = 0x08 };                                       /* of CONFIG_1 */
@@ -161,7 +165,11 @@ struct measurement {
 	uint8_t config, looks;
 };
 
-int tmp1826_read_pad(struct txn *txn, uint8_t pad[PAD])
+/*
+ * To read the status clears its flags: that there is a new result, and the alerts, which are kept
+ * in tmp1826.alerts. -EBADMSG: a checksum is wrong.
+ */
+static int read_pad(struct txn *txn, uint8_t pad[PAD])
 {
 	static const uint8_t command = READ_SCRATCHPAD;
 	int err = txn_ask(txn, &command, 1, pad, PAD);
@@ -178,11 +186,12 @@ int tmp1826_read_pad(struct txn *txn, uint8_t pad[PAD])
 	return 0;
 }
 
-double tmp1826_celsius(const uint8_t pad[PAD], unsigned at)
+/* Degrees of a register. */
+static double celsius_of(const uint8_t pad[PAD], unsigned at)
 {
 	int raw = (int16_t)(pad[at] | pad[at + 1] << 8);
 
-	return pad[CONFIG_1] & TMP1826_PRECISE ? raw / 128.0 : raw / 16.0;
+	return pad[CONFIG_1] & PRECISE ? raw / 128.0 : raw / 16.0;
 }
 
 /*
@@ -205,17 +214,17 @@ int tmp1826_read_temperature(struct txn *txn)
 		err = txn_command(txn, &command, 1);
 		return err ? err : txn_wait(txn, ns);
 	}
-	err = tmp1826_read_pad(txn, pad);
+	err = read_pad(txn, pad);
 	if (err)
 		return err;
 	bool fresh = pad[STATUS] & DATA_VALID;
 	if (txn->phase == 2) {
-		txn->number[0] = tmp1826_celsius(pad, 0);
+		txn->number[0] = celsius_of(pad, 0);
 		if (!fresh)
 			return -EBADMSG;
 		if (txn->number[0] < LOWEST || txn->number[0] > HIGHEST)
 			return -EDOM;
-		bool most = !(visit->config & TMP1826_PRECISE) && txn->number[0] >= END_STOP;
+		bool most = !(visit->config & PRECISE) && txn->number[0] >= END_STOP;
 		return most ? -ERANGE : 0;
 	}
 	visit->config = pad[CONFIG_1];
@@ -226,7 +235,7 @@ int tmp1826_read_temperature(struct txn *txn)
 int tmp1826_read_power(struct txn *txn)
 {
 	uint8_t pad[PAD];
-	int err = tmp1826_read_pad(txn, pad);
+	int err = read_pad(txn, pad);
 
 	if (!err)
 		txn->number[0] = (pad[STATUS] & FED_BY_BUS) == 0;
@@ -236,9 +245,185 @@ int tmp1826_read_power(struct txn *txn)
 int tmp1826_read_format(struct txn *txn)
 {
 	uint8_t pad[PAD];
-	int err = tmp1826_read_pad(txn, pad);
+	int err = read_pad(txn, pad);
 
 	if (!err)
-		txn->number[0] = pad[CONFIG_1] & TMP1826_PRECISE ? 16 : 12;
+		txn->number[0] = pad[CONFIG_1] & PRECISE ? 16 : 12;
 	return err;
 }
+
+/*
+ * --- Limits and offset ---
+ *
+ * The facts are those of the maker's pages of the data sheets; the times (tPROG 21 ms, tREADIDLE
+ * 0.56 ms at most) are those that a published driver cites.
+ *
+ * Write Scratchpad-1 (4Eh) takes all nine settings, which the chip answers with their CRC8, and
+ * uses at once. Copy Scratchpad-1 (48h) keeps them over a loss of power. Nothing shows that it did:
+ * there is no command that reads what is kept.
+ */
+#define WRITE_SCRATCHPAD_1 0x4e
+#define COPY_SCRATCHPAD_1 0x48
+#define PROGRAM_NS (25 * TXN_MS)
+
+#define SETTINGS 9
+#define FIRST_HALF 3 /* settings that stand ahead of the scratchpad's first CRC8 */
+
+static const char base[] = "settings"; /* for txn_keep() */
+
+/* All settings, in the order in which they are written. */
+static void settings_of_pad(const uint8_t pad[PAD], uint8_t settings[SETTINGS])
+{
+	memcpy(settings, pad + CONFIG_1, FIRST_HALF);
+	memcpy(settings + FIRST_HALF, pad + TMP1826_LOW, SETTINGS - FIRST_HALF);
+}
+
+static int in_range(double raw, int16_t *out)
+{
+	if (!(raw > -32768.5 && raw < 32767.5))
+		return -EINVAL;
+	*out = (int16_t)(raw < 0 ? raw - 0.5 : raw + 0.5);
+	return 0;
+}
+
+/* What the settings are to be; of a write that failed before, from those before it. */
+static int wanted_settings(struct txn *txn, const uint8_t have[SETTINGS], uint8_t want[SETTINGS])
+{
+	unsigned at = FIRST_HALF + (unsigned)txn->property->arg - TMP1826_LOW;
+	int16_t raw = 0;
+
+	memcpy(want, have, SETTINGS);
+	if (!txn->restarted)
+		txn_base(txn, base, want, SETTINGS);
+	int err = in_range(txn->number[0] * (want[0] & PRECISE ? 128 : 16), &raw);
+	want[at] = (uint8_t)raw;
+	want[at + 1] = (uint8_t)((uint16_t)raw >> 8);
+	return err;
+}
+
+struct visit {
+	uint8_t want[SETTINGS];
+};
+
+static int write_settings(struct txn *txn, const uint8_t settings[SETTINGS])
+{
+	uint8_t command[1 + SETTINGS] = {WRITE_SCRATCHPAD_1}, crc;
+
+	memcpy(command + 1, settings, SETTINGS);
+	tmp1826_of(txn)->kept = false;
+	txn_void(txn);
+	int err = txn_ask(txn, command, sizeof(command), &crc, 1);
+	return err ? err : txn_checked(txn, crc == onewire_crc8(settings, SETTINGS));
+}
+
+int tmp1826_read_limit(struct txn *txn)
+{
+	uint8_t pad[PAD];
+	int err = read_pad(txn, pad);
+
+	if (!err)
+		txn->number[0] = celsius_of(pad, (unsigned)txn->property->arg);
+	return err;
+}
+
+enum { LOOK, VERIFY, CHECK };
+
+int tmp1826_write_limit(struct txn *txn)
+{
+	static const uint8_t copy = COPY_SCRATCHPAD_1;
+	struct visit *visit = txn_own(txn, struct visit);
+	uint8_t pad[PAD], have[SETTINGS];
+	int err = read_pad(txn, pad);
+
+	if (err)
+		return err;
+	settings_of_pad(pad, have);
+	if (txn->phase == LOOK) {
+		err = wanted_settings(txn, have, visit->want);
+		if (err)
+			return err;
+		bool equal = memcmp(have, visit->want, SETTINGS) == 0;
+		if (equal && tmp1826_of(txn)->kept)
+			return 0;
+		txn->phase = VERIFY;
+		if (equal)
+			return TXN_MORE;
+		txn_keep(txn, base, have, SETTINGS);
+		err = write_settings(txn, visit->want);
+		return err ? err : TXN_MORE;
+	}
+	/* A chip whose settings are locked takes none. */
+	if (memcmp(have, visit->want, SETTINGS) != 0)
+		return -EIO;
+	if (txn->phase == VERIFY) {
+		txn_changed(txn);
+		txn->phase = CHECK;
+		return txn_command_strong(txn, &copy, 1, PROGRAM_NS);
+	}
+	tmp1826_of(txn)->kept = true;
+	return 0;
+}
+
+/* Alerts are of a conversion: one is made, so that they are not older than the request. */
+int tmp1826_read_alert(struct txn *txn)
+{
+	int err = tmp1826_read_temperature(txn);
+
+	if (!err)
+		txn->number[0] = (tmp1826_of(txn)->alerts & txn->property->arg) != 0;
+	return err;
+}
+
+/* A chip whose next conversion is beyond its limit says so again. */
+int tmp1826_write_alert(struct txn *txn)
+{
+	uint8_t pad[PAD];
+	int err;
+
+	if (txn->number[0] != 0)
+		return -EOPNOTSUPP;
+	err = read_pad(txn, pad);
+	if (!err)
+		tmp1826_of(txn)->alerts &= (uint8_t)~txn->property->arg;
+	return err;
+}
+
+/*
+ * --- EEPROM ---
+ *
+ * It is read by blocks of 8 bytes. The maker's pages say that a CRC8 follows each block, published
+ * drivers read none. So a block is read alone, until three looks are the same, and what follows it
+ * is not looked at. But it is read: a chip that has sent a block fetches the next one, and hears no
+ * reset meanwhile (a report in the maker's forum).
+ */
+#define READ_EEPROM 0xf0
+#define READ_IDLE_NS TXN_MS
+
+#define BLOCK 8
+#define BEHIND 2 /* bytes that are read after a block: longer than tREADIDLE */
+
+static int load_memory(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,
+                       unsigned n)
+{
+	static const uint8_t command = READ_EEPROM;
+	const uint8_t where[] = {0, (uint8_t)at};
+	uint8_t in[BLOCK + BEHIND];
+	int err;
+
+	(void)area;
+	if (n != BLOCK || at % BLOCK)
+		return -EINVAL;
+	err = txn_command(txn, &command, 1);
+	if (!err)
+		err = txn_write_paused(txn, where, sizeof(where), READ_IDLE_NS);
+	if (!err)
+		err = txn_read(txn, in, sizeof(in));
+	if (err)
+		return err;
+	memcpy(bytes, in, n);
+	return steady(txn, in, n);
+}
+
+AREA_NAMED(tmp1826_memory, "memory", .size = 256, .address_bytes = 2, .high_first = true,
+           .block = BLOCK, .row = BLOCK, .write = 0x0f, .verify = 0xaa, .copy = 0x55, .key = 0xa5,
+           .strong = true, .copy_ns = PROGRAM_NS, .load = load_memory);

@@ -26,26 +26,16 @@ static inline struct tmp1826 *tmp1826_of(const struct txn *txn)
 
 /* family.identify of family 26. */
 int tmp1826_identify(struct txn *txn);
-
-/* Of the scratchpad: temperature, status, 3 bytes of settings, limits and offset; 2 checksums. */
-#define TMP1826_PAD 18
-enum { TMP1826_STATUS = 2, TMP1826_SETTINGS = 4 };
-enum { TMP1826_PRECISE = 0x80 }; /* of the first byte of the settings: 1/128 degrees, not 1/16 */
-
-/*
- * To read the status clears its flags: that there is a new result, and the alerts, which are kept
- * in tmp1826.alerts. -EBADMSG: a checksum is wrong.
- */
-int tmp1826_read_pad(struct txn *txn, uint8_t pad[TMP1826_PAD]);
-/* Degrees of a register. */
-double tmp1826_celsius(const uint8_t pad[TMP1826_PAD], unsigned at);
-int tmp1826_read_temperature(struct txn *txn);
-int tmp1826_read_power(struct txn *txn);
 /* Bits of the format: 12 or 16. */
-int tmp1826_read_format(struct txn *txn);
-
-/* Places in the scratchpad. */
-#define TMP1826_LOW 9
-#define TMP1826_HIGH 11
-#define TMP1826_OFFSET 13
+property_function tmp1826_read_temperature, tmp1826_read_power, tmp1826_read_format;
+/*
+ * A limit, or the offset: to write it has the chip keep it in its EEPROM. arg: where the register
+ * begins in the scratchpad.
+ */
+enum { TMP1826_LOW = 9, TMP1826_HIGH = 11, TMP1826_OFFSET = 13 };
+property_function tmp1826_read_limit, tmp1826_write_limit;
+/* Has a conversion been beyond the limit? arg: the bit of tmp1826.alerts. 0 clears it. */
 enum { TMP1826_ALERT_LOW = 1, TMP1826_ALERT_HIGH = 2 };
+property_function tmp1826_read_alert, tmp1826_write_alert;
+/* 256 bytes. -EOPNOTSUPP: the link makes no pause within a transaction (txn_write_paused). */
+extern const struct area tmp1826_memory;
