@@ -136,3 +136,12 @@ extern const struct family family_common;
 #define PROPERTIES(table) .properties = (table), .count = sizeof(table) / sizeof((table)[0])
 #define AREAS(list) .areas = (list), .area_count = sizeof(list) / sizeof((list)[0])
 #define HOW(list) .how = (list), .how_count = sizeof(list) / sizeof((list)[0])
+
+/*
+ * The hidden property "identity" of families whose code does not decide which chip it is: the
+ * chip's name by its behaviour, with what is odd about it ("DS18B20 clone, family B1"), or
+ * "unknown". The function of the way ends with property_text().
+ */
+#define IDENTITY_ROW(way, ...) \
+	PROPERTY("identity", ASCII, STABLE, READ, .size = 48, .hidden = true, .how = (way), \
+	         __VA_ARGS__)

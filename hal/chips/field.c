@@ -3,10 +3,30 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/chips/family.h"
 #include "hal/chips/field.h"
-#include "hal/chips/row.h"
 
 #define BYTES_MAX 4
+
+const struct family *family_owner(const struct family *family, const struct property *property)
+{
+	uintptr_t row = (uintptr_t)property, first = (uintptr_t)family->properties;
+
+	return row >= first && row - first < family->count * sizeof(*property) ? family
+	                                                                       : &family_common;
+}
+
+const struct property_how *family_how(const struct family *family, const struct property *property)
+{
+	static const struct property_how none;
+
+	return property->how ? &family_owner(family, property)->how[property->how] : &none;
+}
+
+const struct area *family_area(const struct txn *txn)
+{
+	return family_owner(txn->device->family, txn->property)->areas[txn->property->field.area];
+}
 
 static unsigned bytes_of(const struct field *field)
 {

@@ -16,3 +16,10 @@ int field_write(struct txn *txn);
 /* What reads it, and what writes it: the property's function, or the field's; NULL: nothing. */
 property_function *property_reader(const struct family *family, const struct property *property);
 property_function *property_writer(const struct family *family, const struct property *property);
+
+/* The family whose row it is: this one or family_common. */
+const struct family *family_owner(const struct family *family, const struct property *property);
+/* What no field can say of the property; never NULL. */
+const struct property_how *family_how(const struct family *family, const struct property *property);
+/* The area of the field of txn->property. */
+const struct area *family_area(const struct txn *txn);

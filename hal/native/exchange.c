@@ -6,7 +6,6 @@
 #include "hal/chips/facts.h"
 #include "hal/chips/field.h"
 #include "hal/chips/format.h"
-#include "hal/chips/row.h"
 #include "hal/chips/thermometers/thermometer_proof.h"
 #include "hal/native/answer.h"
 #include "hal/native/convert/convert.h"

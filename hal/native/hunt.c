@@ -14,7 +14,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "hal/chips/bridges/ds28e18.h"
+#include "hal/chips/bridges/i2c.h"
 #include "hal/native/answer.h"
 #include "hal/native/branches.h"
 #include "hal/native/hunt.h"

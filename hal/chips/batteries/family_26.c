@@ -14,7 +14,6 @@
 
 #include "hal/chips/batteries/ds2438_measure.h"
 #include "hal/chips/family.h"
-#include "hal/chips/identity.h"
 #include "hal/chips/thermometers/tmp1826.h"
 
 #define OFFSET_AT 13 /* page 1, byte 5 */

@@ -11,8 +11,7 @@
 #include <string.h>
 
 #include "hal/chips/bridges/bridge.h"
-#include "hal/chips/bridges/ds28e17.h"
-#include "hal/chips/bridges/ds28e18.h"
+#include "hal/chips/bridges/i2c.h"
 #include "hal/chips/find.h"
 
 #define LOOKS 3

@@ -46,7 +46,6 @@ enum { DS1921_PAGE = 32, DS1921_LOG_ROOM = 2048, DS1921_BINS = 63, DS1921_TIMES 
 enum { DS1921_CLEAR_MEMORY = 0x3c, DS1921_CONVERT = 0x44 };
 
 extern const struct logger ds1921_logger;
-extern const struct area ds1921_memory, ds1921_registers, ds1921_histogram, ds1921_log;
 
 /* Of the upper 12 bits of the serial number; owserver knows these as well. */
 struct ds1921_version {
@@ -58,17 +57,6 @@ struct ds1921_version {
 /* NULL: owserver does not know it either. */
 const struct ds1921_version *ds1921_version_of(const struct device *device);
 double ds1921_celsius(const struct ds1921_version *version, unsigned code);
-
-/* arg of what is read of the version. */
-enum { DS1921_RESOLUTION, DS1921_LEAST, DS1921_MOST, DS1921_GAP, DS1921_BIN, DS1921_NAME };
-
-/* arg of the times beyond a limit: where they begin, and what of them. */
-enum { DS1921_TIMES_COUNT, DS1921_TIMES_BEGIN, DS1921_TIMES_END, DS1921_TIMES_HOW_MANY };
-#define DS1921_TIMES_ARG(first, what) ((first) << 8 | (what))
-
-/* property.arg of the limits: their register. */
-property_function ds1921_read_version, ds1921_read_bins, ds1921_read_log, ds1921_read_times;
-property_function ds1921_read_limit, ds1921_read_trigger;
 
 /*
  * Conversions, settings, clock and missions (ds1921_mission.c). A write to the registers ends a

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* DS1922, DS1923, DS2422: areas, what registers mean, clock, missions and logs. */
+/*
+ * DS1922L, DS1922T, DS1923 and DS2422, loggers of a temperature and a second quantity: areas, what
+ * registers mean, clock, missions and logs, and the table.
+ */
 #include "hal/chips/loggers/ds1922.h"
 
 #include <errno.h>
@@ -20,8 +23,8 @@ int ds1922_load(struct txn *txn, const struct area *area, unsigned at, uint8_t *
 
 AREA_NAMED(ds1922_memory, "memory", .size = DS1922_PAGES * DS1922_PAGE, .block = DS1922_PAGE,
            .read = 0x69, .load = ds1922_load);
-AREA_NAMED(ds1922_log, "log", .at = DS1922_LOG, .size = DS1922_LOG_SIZE, .block = DS1922_PAGE,
-           .read = 0x69, .load = ds1922_load);
+static AREA_NAMED(ds1922_log, "log", .at = DS1922_LOG, .size = DS1922_LOG_SIZE,
+                  .block = DS1922_PAGE, .read = 0x69, .load = ds1922_load);
 
 /* Of the configuration; -1: not known. */
 double ds1922_zero_of(uint8_t config)
@@ -133,7 +136,7 @@ const struct logger ds1922_logger = {
 };
 
 /* A sample of one quantity; arg: LOG_TEMP or LOG_DATA. */
-int ds1922_read_log(struct txn *txn)
+static int ds1922_read_log(struct txn *txn)
 {
 	struct mission *mission = txn_own(txn, struct mission);
 	bool data = txn->property->arg == DS1922_LOG_DATA;
@@ -156,7 +159,7 @@ int ds1922_read_log(struct txn *txn)
 	return err;
 }
 
-int ds1922_read_interval(struct txn *txn)
+static int ds1922_read_interval(struct txn *txn)
 {
 	uint8_t page[DS1922_PAGE];
 	int err = area_read(txn, &ds1922_memory, DS1922_CLOCK, page, DS1922_PAGE);
@@ -165,3 +168,82 @@ int ds1922_read_interval(struct txn *txn)
 		txn->number[0] = ds1922_interval_of(page);
 	return err;
 }
+
+/* --- The table --- */
+
+enum { MEMORY = 1 };
+static const struct area *const areas[] = {[MEMORY] = &ds1922_memory};
+
+enum {
+	WAY_DATE = 1,
+	WAY_UDATE,
+	WAY_STAMP,
+	WAY_FIELD,
+	WAY_RUNNING,
+	WAY_INTERVAL,
+	WAY_ELEMENTS,
+	WAY_LOG,
+	WAY_NOW,
+	WAY_PAGE,
+};
+static const struct property_how how[] = {
+	[WAY_DATE] = {.read = logger_read_clock, .write = ds1922_write_date},
+	[WAY_UDATE] = {.read = logger_read_clock, .write = ds1922_write_udate},
+	[WAY_STAMP] = {.read = logger_read_date},
+	[WAY_FIELD] = {.write = logger_write_field},
+	[WAY_RUNNING] = {.write = ds1922_write_running},
+	[WAY_INTERVAL] = {.read = ds1922_read_interval, .write = ds1922_write_interval},
+	[WAY_ELEMENTS] = {.read = logger_read_elements},
+	[WAY_LOG] = {.read = ds1922_read_log},
+	[WAY_NOW] = {.read = ds1922_read_now},
+	[WAY_PAGE] = {.write = ds1922_write_page},
+};
+
+#define BIT(text, life, access, where, shift_, way) \
+	PROPERTY(text, YESNO, life, access, .how = (way), \
+	         FIELD(MEMORY, .at = (where), .shift = (shift_), .bits = 1))
+/* What owserver does not have: hidden. */
+#define OWN(text, type, access, ...) \
+	PROPERTY(text, type, VOLATILE, access, .hidden = true, __VA_ARGS__)
+#define SAMPLES_OF(text, type, way, what, ...) \
+	OWN(text, type, READ, ELEMENTS(DS1922_LOG_SIZE, NUMBERS), .how = (way), .arg = (what), \
+	    __VA_ARGS__)
+
+/* 0 to 100 %RH within 5, and as much again for its ageing in wet air */
+#define PERCENT MEASURES(-10, 110, 2, "%")
+/* L: -40 to +85, T to +125, E to +140, within 2; 0.0625 */
+#define CELSIUS MEASURES(-42, 142, 4, DEGREES_C)
+
+static const struct property properties[] = {
+	PROPERTY_DIR("clock"),
+	PROPERTY("clock/date", DATE, SECOND, BOTH, .how = WAY_DATE),
+	BIT("clock/running", STABLE, BOTH, DS1922_OSCILLATOR, 0, WAY_FIELD),
+	PROPERTY("clock/udate", UNSIGNED, SECOND, BOTH, .how = WAY_UDATE),
+	PROPERTY("humidity", FLOAT, VOLATILE, READ, PERCENT, .how = WAY_NOW,
+                 .arg = DS1922_LOG_DATA),
+	OWN("log/elements", UNSIGNED, READ, .how = WAY_ELEMENTS),
+	SAMPLES_OF("log/humidity", FLOAT, WAY_LOG, DS1922_LOG_DATA, PERCENT),
+	SAMPLES_OF("log/temperature", TEMPERATURE, WAY_LOG, DS1922_LOG_TEMP, CELSIUS),
+	SAMPLES_OF("log/udate", UNSIGNED, WAY_STAMP, 1, .size = 0),
+	PROPERTY_DIR("mission"),
+	PROPERTY("mission/delay", UNSIGNED, VOLATILE, BOTH, .how = WAY_FIELD,
+                 FIELD(MEMORY, .at = DS1922_DELAY, .bytes = 3)),
+	OWN("mission/interval", UNSIGNED, BOTH, .how = WAY_INTERVAL),
+	BIT("mission/rollover", STABLE, BOTH, DS1922_MISSION, 4, WAY_FIELD),
+	BIT("mission/running", VOLATILE, BOTH, DS1922_STATUS, 1, WAY_RUNNING),
+	OWN("mission/samples", UNSIGNED, READ, COUNTS_TO(0xffffff),
+            FIELD(MEMORY, .at = DS1922_SAMPLES, .bytes = 3)),
+	BIT("mission/samplinghumidity", VOLATILE, READ, DS1922_MISSION, 1, 0),
+	BIT("mission/samplingtemp", VOLATILE, READ, DS1922_MISSION, 0, 0),
+	OWN("mission/udate", UNSIGNED, READ, .how = WAY_STAMP),
+	PROPERTY_DIR("pages"),
+	PROPERTY("pages/page", BINARY, VOLATILE, BOTH, ELEMENTS(DS1922_PAGES, NUMBERS),
+                 .size = DS1922_PAGE, .how = WAY_PAGE, FIELD(MEMORY)),
+	PROPERTY("temperature", TEMPERATURE, VOLATILE, READ, CELSIUS, .how = WAY_NOW,
+                 .arg = DS1922_LOG_TEMP),
+};
+
+CHIP_FAMILY(41, "DS1923", CHECKSUM, .alarms = true,
+            .flags = FLAG_RESUME | FLAG_ALARM | FLAG_OVERDRIVE | FLAG_TEMPERATURE,
+            .facts = &ds1922_logger, SCAN({"temperature", "temperature"}, {"humidity", "humidity"}),
+            AREAS(areas), HOW(how), PROPERTIES(properties));

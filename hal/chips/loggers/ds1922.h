@@ -42,7 +42,7 @@ enum {
 };
 
 extern const struct logger ds1922_logger;
-extern const struct area ds1922_memory, ds1922_log;
+extern const struct area ds1922_memory;
 
 /* One transaction: n bytes from byte `at` of the area to the end of a page, their CRC16 checked. */
 int ds1922_load(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, unsigned n);
@@ -56,7 +56,6 @@ double ds1922_humidity(uint8_t high, uint8_t low);
 /* Seconds between two samples, by the first page of the registers. */
 double ds1922_interval_of(const uint8_t *page);
 
-property_function ds1922_read_log, ds1922_read_interval;
 /*
  * Conversions, settings, clock and missions (ds1922_mission.c). While a mission runs its settings
  * cannot be written (-EBUSY).

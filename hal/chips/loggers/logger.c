@@ -6,9 +6,8 @@
 #include <string.h>
 #include <time.h>
 
-#include "hal/chips/family.h"
+#include "hal/chips/field.h"
 #include "hal/chips/loggers/host_clock.h"
-#include "hal/chips/row.h"
 
 #define PAGE LOGGER_PAGE
 #define COPIED 0x80 /* E/S: the scratchpad was copied */

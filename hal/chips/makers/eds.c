@@ -8,9 +8,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "hal/chips/family.h"
+#include "hal/chips/field.h"
 #include "hal/chips/makers/eds.h"
-#include "hal/chips/row.h"
 
 enum { PAGE = 32, ID_AT = 0x1e };
 enum { LATCHES_AT = 0x23, PULSES_AT = 0x30, COUNTERS = 8 };

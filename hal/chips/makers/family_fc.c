@@ -9,7 +9,6 @@
 
 #include "hal/chips/field.h"
 #include "hal/chips/makers/bae.h"
-#include "hal/chips/row.h"
 
 #define BLOCK 32
 #define PAGE 512

@@ -10,9 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "hal/chips/family.h"
 #include "hal/chips/field.h"
-#include "hal/chips/row.h"
 
 /* The kinds (device.kind) are the numbers that the boards have themselves. */
 enum hobby_kind {

@@ -15,7 +15,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "hal/chips/identity.h"
+#include "hal/chips/family.h"
 #include "hal/chips/thermometers/state.h"
 #include "hal/chips/thermometers/thermometer.h"
 

@@ -16,7 +16,7 @@
 #include <errno.h>
 #include <stdlib.h>
 
-#include "hal/chips/identity.h"
+#include "hal/chips/family.h"
 #include "hal/chips/thermometers/state.h"
 #include "hal/chips/thermometers/thermometer.h"
 #include "hal/chips/thermometers/thermometer_proof.h"
