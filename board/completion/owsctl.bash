@@ -10,18 +10,13 @@ _owsctl() {
 	COMPREPLY=()
 	for ((i = 1; i < COMP_CWORD; i++)); do
 		case ${COMP_WORDS[i]} in
-		-n) [[ ${COMP_WORDS[i + 1]} = @ ]] || name=(-n "${COMP_WORDS[++i]}") ;;
-		@) name=(-n @) && ((i++)) ;; # readline ends a word there: NAME, @, HOST
+		-n) name=(-n "${COMP_WORDS[++i]}") ;;
 		-t) ((i++)) ;;
 		-*) ;;
 		*) verb=${COMP_WORDS[i]} at=$i && break ;;
 		esac
 	done
-	# of another machine no names are looked up: ssh may ask for a password
-	[[ ${name[*]} != *@* ]] || name=(-n '')
-	if [[ $before = @ && -z $verb ]]; then
-		words=$(compgen -A hostname)
-	elif [[ $before = -n && -z $verb || $verb = remove ]]; then
+	if [[ $before = -n && -z $verb || $verb = remove ]]; then
 		words=$(owsctl instances 2>/dev/null | awk 'NR > 1 { print $1 }')
 	elif [[ -z $verb || $verb = help ]]; then
 		words=$(owsctl --help 2>/dev/null | awk '/^  [a-z]/ { print $1 }')

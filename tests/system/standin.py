@@ -47,6 +47,7 @@ LOOKED_AT = {
     "hostnamectl": [r"hostname pi-[0-9a-f]{8}"],
     "ansible-playbook": [r"-i inventory site\.yml( --check --diff| --limit \w+| -e owsd_state=latest)?"],
     "reboot": [""],
+    "ssh": [r"(-[nt] )?pi\d owsctl (list|watch|reload|--json stats)"],
     "i2cdetect": [r"-y \d"],
     "gpiodetect": [""], "gpioinfo": [""], "lsusb": [""],
     "halcompile": [r"--install --userspace --extra-link-args=-lows owsd_hal\.c"],

@@ -1,14 +1,18 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""owsctl mission: the mission of a logger that an owsd serves."""
+"""docs/examples/mission.py: the mission of a logger that an owsd serves."""
 
 import json
+import os
 import re
 import subprocess
+import sys
 
 import owsdtest
 import peer
-from owsdtest import OWSCTL, until
+from owsdtest import OWSCTL, SOURCE, until
+
+PROGRAM = SOURCE / "docs/examples/mission.py"
 
 WIRE = """
 chip DS2482-100 0x18
@@ -19,25 +23,29 @@ DS18B20 28.000000000001 as room
 FRIDGE, CRATE, ROOM = "41.000000000001", "/21.000000000001", "28.000000000001"
 
 
+def run(target, *words):
+    return subprocess.run([sys.executable, PROGRAM, "-t", target, *words], capture_output=True, text=True,
+                          env={**os.environ, "OWSCTL": str(OWSCTL)}, timeout=120, check=False)
+
+
 def served(scene):
     """owsd on the simulated loggers; how they are asked."""
     port = owsdtest.free_port()
     scene.owsd(None, "-t", f"sim:{scene.file('loggers.sim', WIRE)}", "-l", f"127.0.0.1:{port}")
 
-    def mission(*words, options=()):
-        return subprocess.run([OWSCTL, "-t", f"127.0.0.1:{port}", *options, "mission", *words],
-                              capture_output=True, text=True, timeout=120, check=False)
+    def mission(*words):
+        return run(f"127.0.0.1:{port}", *words)
 
     def write(path, value):
         return subprocess.run([OWSCTL, "-t", f"127.0.0.1:{port}", "write", path, value],
                               capture_output=True, text=True, timeout=20, check=False)
-    mission.set = write
+    mission.set, mission.target = write, f"127.0.0.1:{port}"
     until(lambda: mission("status", FRIDGE).returncode == 0, 20, "the logger is found")
     return mission
 
 
 def status(mission, device):
-    done = mission("status", device, options=["--json"])
+    done = mission("status", "--json", device)
     assert done.returncode == 0, done
     return json.loads(done.stdout)
 
@@ -61,7 +69,7 @@ def test_a_mission_is_started_followed_stopped_and_downloaded(scene):
         assert re.fullmatch(r"20\d\d-\d\d-\d\dT\d\d:\d\d:\d\dZ", when), line
         assert temperature == "4.5" and abs(float(humidity) - 60) < 0.1, line
     assert lines[1].startswith(now["begin"]), (lines, now)
-    samples = json.loads(mission("download", FRIDGE, options=["--json"]).stdout)
+    samples = json.loads(mission("download", "--json", FRIDGE).stdout)
     assert len(samples) == now["logged"] and samples[0]["temperature"] == 4.5, samples
     assert [s["time"] for s in samples] == sorted({s["time"] for s in samples}), samples
 
@@ -125,11 +133,22 @@ def test_a_start_that_another_program_spoiled_is_an_error(_scene):
                                    ("rollover", b"1", "an interval of 60 s, with rollover"),
                                    ("delay", b"0", None)):
         server = Spoiled(f"{CRATE}/mission/{setting}", theirs)
-        done = subprocess.run([OWSCTL, "-t", server.target, "mission", "start", "-i", "60", CRATE],
-                              capture_output=True, text=True, timeout=60, check=False)
+        done = run(server.target, "start", "-i", "60", CRATE)
         server.down()
         assert done.returncode == (1 if words else 0), done
         assert words is None or words in done.stderr, done
+
+
+def test_a_mission_starts_only_where_the_time_is_known(scene):
+    """A board without a battery has the time of its last end, or of 1970, until it hears of it."""
+    mission = served(scene)
+    early = "import runpy, sys, time; time.time = lambda: 1e9; sys.argv[:] = sys.argv[1:]; runpy.run_path(sys.argv[0], run_name='__main__')"
+    for device in (FRIDGE, CRATE):
+        done = subprocess.run([sys.executable, "-c", early, PROGRAM, "-t", mission.target, "start", "-i", "60", device],
+                              capture_output=True, text=True, env={**os.environ, "OWSCTL": str(OWSCTL)}, timeout=60,
+                              check=False)
+        assert done.returncode == 1 and "the clock of this computer is not set" in done.stderr, done
+        assert status(mission, device)["running"] is False
 
 
 def test_what_is_no_logger_and_what_is_no_word_is_refused(scene):

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: MIT
 """owsd-recorder beside a real owsd: what is read back is what was there, and gaps are gaps."""
 
-import contextlib
 import csv
 import datetime
 import json
@@ -10,7 +9,6 @@ import os
 import re
 import shutil
 import signal
-import sqlite3
 import subprocess
 import sys
 import time
@@ -243,11 +241,6 @@ def test_trend_draws_and_lists_what_was_recorded(scene):
         assert done.returncode in (1, 2) and done.stderr.startswith("owsctl: "), done
 
 
-def pyarrow_here():
-    return subprocess.run(["python3", "-c", "import pyarrow.parquet"], capture_output=True,
-                          timeout=60, check=False).returncode == 0
-
-
 def test_trend_and_journal_find_the_directory_of_the_configuration(scene):
     owsdtest.need(RECORDER)
     kept = scene.path / "kept"
@@ -265,78 +258,6 @@ def test_trend_and_journal_find_the_directory_of_the_configuration(scene):
     scene.owsd(text(scene), name=daemon.name)  # that of another owsd is not asked for
     done = scene.owsctl(daemon, "trend", "--csv", "relays")
     assert done.returncode == 1 and str(kept) not in done.stderr, done
-
-
-def test_trend_writes_a_table_for_other_programs(scene):
-    daemon = scene.owsd(text(scene))
-    recorder = record(scene, daemon)
-    for value in (1, 9):
-        set_relays(scene, daemon, value)
-        recorded(scene, "relays", str(value))  # a busy machine keeps the newest of two alone
-    recorded(scene, "title", '"DS18B20"')
-    assert recorder.stop() == 0
-    trend = ("trend", "-d", scene.path / "history", "--since", "1m")
-    listed = scene.owsctl(daemon, "--json", *trend, "relays", "title")
-    expected = []
-    for signal_ in json.loads(listed.stdout):
-        for r in signal_["records"]:
-            good = r["value"] if r.get("quality") == "good" else None
-            is_text = isinstance(good, str)
-            expected.append((signal_["name"], None if is_text else good, good if is_text else None,
-                             r.get("quality") or r["reason"]))
-    assert {row[1] for row in expected} >= {1, 9, None}, expected
-    assert {row[2] for row in expected} == {"DS18B20", None}, expected
-    assert [row[3] for row in expected].count("recorder stopped") == 2, expected
-    now = time.time_ns()
-    for kind in ("sqlite", "parquet"):
-        if kind == "parquet" and not pyarrow_here():
-            print("parquet is not looked at: no pyarrow")
-            continue
-        file = scene.path / f"past.{kind}"
-        done = scene.owsctl(daemon, *trend, f"--{kind}", file, "relays", "title")
-        assert done.returncode == 0 and not done.stdout + done.stderr, done
-        if kind == "sqlite":
-            with contextlib.closing(sqlite3.connect(file)) as db:
-                rows = db.execute("select * from history order by rowid").fetchall()
-                types = {t for t, in db.execute("select typeof(value) from history")}
-                assert types == {"real", "null"}, types
-        else:
-            code = ("import json, pyarrow.parquet, sys; t = pyarrow.parquet.read_table(sys.argv[1])\n"
-                    "assert str(t.schema.field('time').type) == 'timestamp[ns, tz=UTC]', t.schema\n"
-                    "t = t.set_column(0, 'time', t['time'].cast('int64'))\n"
-                    "print(json.dumps(list(zip(*t.to_pydict().values()))))")
-            done = scene._run(["python3", "-c", code, file], 60)
-            assert done.returncode == 0, done
-            rows = json.loads(done.stdout)
-        assert [tuple(row[1:]) for row in rows] == expected, rows
-        assert all(now - 120 * 10**9 < row[0] < now for row in rows), rows
-        before = file.read_bytes()
-        done = scene.owsctl(daemon, *trend, f"--{kind}", file, "relays")
-        assert done.returncode == 1 and "is there already" in done.stderr, done
-        assert file.read_bytes() == before
-    other = scene.path / "other"
-    for words, why in ((("nothing",), "has no signal nothing"), (("relays", "nothing"), "no signal")):
-        done = scene.owsctl(daemon, *trend, "--sqlite", other, *words)
-        assert done.returncode == 1 and why in done.stderr, done
-    done = scene.owsctl(daemon, *trend, "--sqlite", scene.path / "no" / "other", "relays")
-    assert done.returncode == 1 and "unable to open" in done.stderr, done
-    done = scene.owsctl(daemon, *trend, "--csv", "--sqlite", other, "relays")
-    assert done.returncode == 2 and "exclude" in done.stderr, done
-    # a python3 without the module; none at all
-    (scene.path / "bin").mkdir()
-    paths = {"python3 needs pyarrow": "#!/bin/sh\nshift\nscript=$1; shift\nexec "
-             f"{sys.executable} -c 'import sys\nsys.modules[\"pyarrow\"] = None\n'\"$script\" \"$@\"\n",
-             "No such file or directory": None}
-    for why, program in paths.items():
-        (scene.path / "bin" / "python3").unlink(missing_ok=True)
-        if program:
-            (scene.path / "bin" / "python3").write_text(program)
-            (scene.path / "bin" / "python3").chmod(0o755)
-        done = scene._run(["env", f"PATH={scene.path}/bin", BUILD / "owsctl", "-n", daemon.name, *trend,
-                           "--parquet", other, "relays"], 30)
-        assert done.returncode == 1 and why in done.stderr, done
-        assert "pyarrow" in done.stderr or "python3" in done.stderr, done
-    assert not [f.name for f in scene.path.iterdir() if f.name.startswith("other")]
 
 
 def test_the_journal_is_one_over_a_restart_and_without_owsd(scene):

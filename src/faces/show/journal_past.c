@@ -9,7 +9,6 @@
 #include "src/faces/show/journal_past.h"
 #include "src/faces/show/names.h"
 
-#define DAY_NS (86400 * NS_PER_S) /* of which one is read after the other */
 #define FIRST 64
 
 /* The last entries that were read, oldest first from `at` on. */
@@ -21,8 +20,6 @@ struct reading {
 	unsigned most, size, at;
 	uint32_t number;
 	struct journal_entries *to;
-	journal_progress *progress;
-	void *ctx;
 };
 
 static struct ows_by past_by(const struct ows_history_who *who)
@@ -123,10 +120,10 @@ static int journal_past_take(struct reading *r, const struct ows_history_event *
 	return 0;
 }
 
-static int read_between(struct reading *r, int64_t from_ns, int64_t until_ns)
+static int read_from(struct reading *r, int64_t from_ns)
 {
 	struct ows_history_event event;
-	int err = ows_history_events(r->history, from_ns, until_ns,
+	int err = ows_history_events(r->history, from_ns, INT64_MAX,
 	                             1u << OWS_HISTORY_COMMAND | 1u << OWS_HISTORY_ALARM);
 	int got = 0;
 
@@ -135,45 +132,19 @@ static int read_between(struct reading *r, int64_t from_ns, int64_t until_ns)
 	return err ? err : got;
 }
 
-/* Day by day: there is progress where nothing happened. What the clock calls future is last. */
-static int read_days(struct reading *r, int64_t from_ns)
-{
-	int64_t first_ns, end_ns, until_ns;
-	int err = ows_history_span(r->history, &first_ns, &end_ns);
-
-	if (!err && from_ns < first_ns)
-		from_ns = first_ns;
-	first_ns = from_ns;
-	while (!err && from_ns <= end_ns) {
-		until_ns = (from_ns / DAY_NS + 1) * DAY_NS;
-		if (until_ns > end_ns)
-			until_ns = INT64_MAX;
-		err = read_between(r, from_ns, until_ns);
-		from_ns = until_ns;
-		if (r->progress)
-			r->progress(r->ctx, from_ns - first_ns, end_ns - first_ns);
-		if (until_ns == INT64_MAX)
-			break;
-	}
-	return err == -ENODATA ? 0 : err;
-}
-
 int journal_past(struct ows_history *history, const struct when *now, int64_t from_ns,
-                 char *const *patterns, int count, unsigned most, journal_progress *progress,
-                 void *ctx, struct journal_entries *past)
+                 char *const *patterns, int count, unsigned most, struct journal_entries *past)
 {
 	struct reading r = {.history = history,
 	                    .now = now,
 	                    .patterns = patterns,
 	                    .count = count,
 	                    .most = most,
-	                    .to = past,
-	                    .progress = progress,
-	                    .ctx = ctx};
+	                    .to = past};
 	int err;
 
 	*past = (struct journal_entries){0};
-	err = read_days(&r, from_ns);
+	err = read_from(&r, from_ns);
 	if (err)
 		journal_free(past);
 	else if (past->count)

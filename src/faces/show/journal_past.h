@@ -5,17 +5,14 @@
 #include "src/faces/show/journal_entry.h"
 #include "src/public/ows_history.h"
 
-/* Of a long reading so much is done, of all. */
-typedef void journal_progress(void *ctx, int64_t done, int64_t all);
 /*
  * Read the entries from from_ns on (wall clock) into *past, at most the last `most` of them: oldest
- * first, in the order of time, those of earlier boots of the machine in front. progress may be
- * NULL. 0, or a negative errno of libows-history. Names are valid until the history is refreshed or
+ * first, in the order of time, those of earlier boots of the machine in front. 0, or a negative
+ * errno of libows-history. Names are valid until the history is refreshed or
  * closed.
  */
 int journal_past(struct ows_history *history, const struct when *now, int64_t from_ns,
-                 char *const *patterns, int count, unsigned most, journal_progress *progress,
-                 void *ctx, struct journal_entries *past);
+                 char *const *patterns, int count, unsigned most, struct journal_entries *past);
 
 /*
  * Drop from *past what is among `entries` too. The disk has times in whole milliseconds and no

@@ -222,8 +222,8 @@ static void run_journal(struct job *job)
 	struct ows *h = NULL;
 
 	if (*past->directory && ows_history_open(NULL, past->directory, &history) == 0)
-		journal_past(history, &now, past->from_ns, NULL, 0, (unsigned)past->n + RINGS, NULL,
-		             NULL, &older);
+		journal_past(history, &now, past->from_ns, NULL, 0, (unsigned)past->n + RINGS,
+		             &older);
 	if ((ows_open_as(past->instance, OWS_READ, "owsd-web", &h) == 0 &&
 	     !journal_look(h, NULL, 0, &entries)) ||
 	    !journal_past_drop(&older, &entries) || !journal_add(&entries, &older))

@@ -104,8 +104,6 @@ static const struct option *longs_of(const char *options)
 		{"since", required_argument, NULL, 's'},
 		{"until", required_argument, NULL, 'u'},
 		{"csv", no_argument, NULL, 'C'},
-		{"sqlite", required_argument, NULL, 'S'},
-		{"parquet", required_argument, NULL, 'P'},
 		{"influx", no_argument, NULL, 'I'},
 		{"directory", required_argument, NULL, 'd'},
 	};

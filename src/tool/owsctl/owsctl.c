@@ -14,7 +14,6 @@
 #include "src/ground/text/refused.h"
 #include "src/memory/shm/segment.h"
 #include "src/tool/owsctl/ctl.h"
-#include "src/tool/owsctl/remote.h"
 #include "src/tool/owsctl/running.h"
 #include "src/tool/owsctl/verbs.h"
 
@@ -73,15 +72,12 @@ static const struct verb verbs[] = {
                     "  -s TIME   since when (--since), as 2h, 7d, today\n"
                     "  -d DIR    where owsd-recorder keeps the history (--directory)\n",
          .example = "journal -s 1d boiler", .finds = true},
-	{"trend",
-         "[-s TIME] [-u TIME] [-d DIR] [--csv | --influx | --sqlite FILE | --parquet FILE] "
-         "NAME...",
+	{"trend", "[-s TIME] [-u TIME] [-d DIR] [--csv | --influx] NAME...",
          "draw what signals had, from the history of owsd-recorder", verb_trend,
          .options = "  -s TIME         from when (--since): 24h, yesterday, 2026-11-26T14:30\n"
                     "  -u TIME         until when (--until), likewise; else until now\n"
                     "  -d DIR          where owsd-recorder keeps the history (--directory)\n"
-                    "  --csv --influx  each record in a line; --json too\n"
-                    "  --sqlite FILE   a table in a new file; --parquet FILE, with pyarrow\n",
+                    "  --csv --influx  each record in a line; --json too\n",
          .example = "trend -s 7d room1"},
 	{"stats", "", "owsd itself, its targets and counters", verb_stats, .example = "stats",
          .finds = true},
@@ -116,14 +112,6 @@ static const struct verb verbs[] = {
 	{"write", "[-t TARGET] [-w SECONDS] PATH VALUE", "write a property of a device", verb_write,
          .options = TARGET_OPTIONS, .example = "write /29.B89115000000/PIO.0 1", .opens = true,
          .writes = true},
-	{"mission",
-         "[-t TARGET] [-w SECONDS] start [-o] -i SECONDS | stop | status | download DEVICE",
-         "the mission of a logger: DS1921, DS1922, DS1923", verb_mission,
-         .options = TARGET_OPTIONS
-         "  start -i SECONDS DEVICE  begin one, a sample every SECONDS; -o: the oldest\n"
-         "                           samples make room\n"
-         "  stop, status, download DEVICE\n",
-         .example = "mission download /41.551DDF030000", .opens = true, .writes = true},
 	{"scan",
          "[-t TARGET] [-w SECONDS] [--alias FILE] [--rio [-i] [--bits] [--merge FILE [--replace OLD=NEW]...]]",
          "list the devices, or print a configuration for them", verb_scan,
@@ -148,8 +136,7 @@ static void print_verbs(FILE *out)
 		fprintf(out, "  %-9s %s\n", verbs[i].name, verbs[i].brief);
 	fputs("owsctl help VERB shows what a verb takes; before the verb there may be:\n"
 	      "  -n NAME    instance; default: OWS_NAME of the environment, else OWS;\n"
-	      "             NAME@HOST: the same verb on another machine, over ssh\n"
-	      "  -t TARGET  what dir, read, write, mission and scan open\n"
+	      "  -t TARGET  what dir, read, write and scan open\n"
 	      "  --json     print JSON\n"
 	      "  -V -h      print the version; this help\n"
 	      "exit status: 0 done, 1 failed, 2 wrong usage, 3 a value is not good,\n"
@@ -317,11 +304,8 @@ int main(int argc, char **argv)
 	if (ctl.target && !ctl.verb->opens)
 		return ctl_usage(
 			&ctl,
-			"-t TARGET is for dir, read, write, mission and scan; %s looks at a "
-			"running owsd",
+			"-t TARGET is for dir, read, write and scan; %s looks at a running owsd",
 			ctl.verb->name);
-	if (strchr(ctl.instance, '@') && ctl.verb->run != verb_help)
-		return ctl_flush(remote_run(&ctl, argc, argv));
 	if (ctl.verb->finds)
 		find_instance(&ctl, argc, argv);
 	return ctl_flush(ctl_run(&ctl, argc, argv));

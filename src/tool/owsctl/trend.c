@@ -18,8 +18,6 @@
 #include "src/tool/owsctl/ctl.h"
 #include "src/tool/owsctl/past.h"
 #include "src/tool/owsctl/plot.h"
-#include "src/tool/owsctl/progress.h"
-#include "src/tool/owsctl/table_file.h"
 #include "src/tool/owsctl/verbs.h"
 
 #define SINCE "24h"
@@ -34,7 +32,6 @@ struct trend {
 	struct when now;
 	int64_t from_ns, until_ns; /* wall clock */
 	bool csv, influx;
-	struct table_file table;
 	unsigned left_out; /* good values that a line of InfluxDB cannot have */
 	struct json json;
 };
@@ -162,26 +159,18 @@ static void print_influx(struct trend *t, const char *series, const struct ows_h
 /* Print each item of a signal. 0, or what is wrong. */
 static int print_items(struct trend *t, int signal, const char *name, const char *series)
 {
-	struct progress progress = progress_begin(name, ows_now());
 	struct ows_history_item item;
 	int got = ows_history_read(t->h, signal, t->from_ns, t->until_ns);
 
 	while (!got && (got = ows_history_next(t->h, &item, 1)) == 1) {
-		if (t->table.to)
-			table_file_put(&t->table, name, &item);
-		else if (t->ctl->json)
+		if (t->ctl->json)
 			trend_print_json(t, &item);
 		else if (t->influx)
 			print_influx(t, series, &item);
 		else
 			print_csv(t, name, &item);
-		progress_show(&progress, ows_now(), item.time_ns - t->from_ns,
-		              t->until_ns - t->from_ns);
-		if (t->table.to && table_file_broken(&t->table))
-			break;
 		got = 0;
 	}
-	progress_end(&progress);
 	return got;
 }
 
@@ -211,7 +200,7 @@ static int trend_list(struct trend *t, int signal, const struct ows_history_sign
 /* Is each record printed, rather than a picture? */
 static bool lists(const struct trend *t)
 {
-	return t->csv || t->influx || t->ctl->json || t->table.to;
+	return t->csv || t->influx || t->ctl->json;
 }
 
 static int trend_show(struct trend *t, const char *name)
@@ -255,20 +244,16 @@ static int show_all(struct trend *t, char **names, int count)
 int verb_trend(struct ctl *ctl, int argc, char **argv)
 {
 	struct trend t = {.ctl = ctl, .now = when_now()};
-	const char *directory = NULL, *sqlite = NULL, *parquet = NULL;
+	const char *directory = NULL;
 	int c, status;
 
 	when_moment(&t.now, SINCE, &t.from_ns);
 	t.until_ns = t.now.wall;
-	while ((c = ctl_option(ctl, argc, argv, "s:u:d:CIS:P:")) != -1) {
+	while ((c = ctl_option(ctl, argc, argv, "s:u:d:CI")) != -1) {
 		if (c == 'C')
 			t.csv = true;
 		else if (c == 'I')
 			t.influx = true;
-		else if (c == 'S')
-			sqlite = optarg;
-		else if (c == 'P')
-			parquet = optarg;
 		else if (c == 'd')
 			directory = optarg;
 		else if (c == 's')
@@ -280,19 +265,12 @@ int verb_trend(struct ctl *ctl, int argc, char **argv)
 		return ctl_usage(ctl, "expected the name of a signal");
 	if (t.from_ns >= t.until_ns)
 		return ctl_usage(ctl, "the time has to begin before it ends");
-	if (t.csv + t.influx + ctl->json + !!sqlite + !!parquet > 1)
-		return ctl_usage(ctl, "--csv, --influx, --json, --sqlite and --parquet exclude "
-		                      "each other");
+	if (t.csv + t.influx + ctl->json > 1)
+		return ctl_usage(ctl, "--csv, --influx and --json exclude each other");
 	status = past_open(ctl, directory, &t.h);
 	if (status)
 		return status;
-	if (sqlite || parquet)
-		status = table_file_begin(&t.table, sqlite ? "sqlite" : "parquet",
-		                          sqlite ? sqlite : parquet);
-	if (!status)
-		status = show_all(&t, argv + optind, argc - optind);
-	if (t.table.to)
-		status = table_file_end(&t.table, status);
+	status = show_all(&t, argv + optind, argc - optind);
 	ows_history_close(t.h);
 	return status;
 }

@@ -23,5 +23,4 @@ int verb_config(struct ctl *ctl, int argc, char **argv);
 int verb_dir(struct ctl *ctl, int argc, char **argv);
 int verb_read(struct ctl *ctl, int argc, char **argv);
 int verb_write(struct ctl *ctl, int argc, char **argv);
-int verb_mission(struct ctl *ctl, int argc, char **argv);
 int verb_scan(struct ctl *ctl, int argc, char **argv);

@@ -13,7 +13,6 @@
 #include "src/history/file/writer.h"
 #include "src/memory/shm/entries.h"
 #include "src/tool/owsctl/past.h"
-#include "src/tool/owsctl/progress.h"
 #include "src/tool/owsctl/verbs.h"
 #include "tests/unit/aid/caught.h"
 #include "tests/unit/aid/folder.h"
@@ -407,43 +406,6 @@ static void test_the_times_of_a_list_can_be_asked_for(void)
 	holds(err, "owsctl: -u 2200-01-01: only the years 1970 to 2114");
 }
 
-static int too_early(struct ctl *ctl, int argc, char **argv)
-{
-	struct progress progress = progress_on("room1", 0, true);
-
-	(void)ctl, (void)argc, (void)argv;
-	progress_show(&progress, SECOND - 1, 1, 2);
-	progress_end(&progress);
-	progress_show(&progress, 9 * SECOND, 1, 2); /* it has ended */
-	progress = progress_on("room1", 0, false);
-	progress_show(&progress, 9 * SECOND, 1, 2);
-	progress_end(&progress);
-	return 0;
-}
-
-static int long_enough(struct ctl *ctl, int argc, char **argv)
-{
-	struct progress progress = progress_on("room1", 0, true);
-
-	(void)ctl, (void)argc, (void)argv;
-	progress_show(&progress, SECOND, 1, 2);
-	progress_show(&progress, SECOND + SECOND / 10, 3, 4); /* too soon after the first */
-	progress_show(&progress, 2 * SECOND, 3, 2);
-	progress_end(&progress);
-	return 0;
-}
-
-static void test_a_bar_is_shown_from_the_second_second_on_and_taken_away(void)
-{
-	run(too_early, "x");
-	TEST_ASSERT_EQUAL_STRING("", err);
-	run(long_enough, "x");
-	TEST_ASSERT_EQUAL_STRING("\rroom1 [###############...............]  50 %\33[K"
-	                         "\rroom1 [##############################] 100 %\33[K\r\33[K",
-	                         err);
-	TEST_ASSERT_EQUAL_STRING("", out);
-}
-
 int main(void)
 {
 	UNITY_BEGIN();
@@ -460,6 +422,5 @@ int main(void)
 	RUN_TEST(test_of_a_signal_that_owsd_has_nothing_may_be_written_yet);
 	RUN_TEST(test_a_name_may_have_the_instance_in_front);
 	RUN_TEST(test_the_times_of_a_list_can_be_asked_for);
-	RUN_TEST(test_a_bar_is_shown_from_the_second_second_on_and_taken_away);
 	return UNITY_END();
 }

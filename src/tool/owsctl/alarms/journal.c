@@ -16,7 +16,6 @@
 #include "src/tool/owsctl/alarms/alarms_live.h"
 #include "src/tool/owsctl/ctl.h"
 #include "src/tool/owsctl/past.h"
-#include "src/tool/owsctl/progress.h"
 #include "src/tool/owsctl/table.h"
 #include "src/tool/owsctl/verbs.h"
 #include "src/tool/owsctl/watch/terminal.h"
@@ -125,24 +124,17 @@ static void drop_older(struct journal_entries *entries, int64_t since_ns)
 		        entries->count * sizeof(*entries->entry));
 }
 
-static void show_progress(void *ctx, int64_t done, int64_t all)
-{
-	progress_show(ctx, ows_now(), done, all);
-}
-
 /* Those of the disk first: what is entered meanwhile is then in memory. 0 or -errno. */
 static int look_at_both(struct journal *j)
 {
 	unsigned most = j->most < 0 ? MOST : (unsigned)j->most;
 	struct when now = when_now();
-	struct progress progress = progress_begin("journal", ows_now());
 	struct journal_entries past = {0};
 	int err = 0;
 
 	if (j->history)
 		err = journal_past(j->history, &now, j->since_ns, j->patterns, j->pattern_count,
-		                   most ? most + RINGS : 0, show_progress, &progress, &past);
-	progress_end(&progress);
+		                   most ? most + RINGS : 0, &past);
 	if ((j->h && !journal_look(j->h, j->patterns, j->pattern_count, &j->entries)) ||
 	    !journal_past_drop(&past, &j->entries))
 		ctl_need(NULL);
