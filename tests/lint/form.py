@@ -69,7 +69,7 @@ LONG = {"src/public/ows.h": "the interface of libows", "src/public/ows_layout.h"
         "src/faces/mqtt/sparkplug.c": "a profile", "src/faces/mqtt/past.c": "what a broker missed",
         "src/faces/mqtt/mqtt.c": "to be split", "src/faces/mqtt/stream.c": "to be split",
         "src/faces/mqtt/broker.c": "to be split", "src/daemon/serve/client.c": "to be split",
-        "src/memory/control/door.c": "to be split", "src/tool/owsctl/watch/watch_screen.c": "to be split",
+        "src/memory/control/door.c": "to be split",
         "hal/owserver/owserver.c": "to be split", "hal/sim/slave.c": "a simulated chip"}
 
 

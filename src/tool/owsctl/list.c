@@ -2,52 +2,20 @@
 /* owsctl list: a line for each signal. */
 #include <getopt.h>
 
-#include "src/ground/signal/value.h"
 #include "src/tool/owsctl/ctl.h"
 #include "src/tool/owsctl/rows.h"
-#include "src/tool/owsctl/table.h"
 #include "src/tool/owsctl/verbs.h"
-
-/* clang-format off */
-static const struct table_column columns[] = {
-	{"NAME"}, {"VALUE", .right = true, .most = 40}, {"UNIT"}, {"QUALITY"}, {"ALARM"},
-	{"AGE", .right = true}, {"TYPE"}, {"IO"}, {"TARGET"}, {"PATH"},
-};
-/* clang-format on */
-enum { UNIT = 2, ALARM = 4 };
-
-static void list_add_row(struct table *table, struct ows *h, const struct row *row,
-                         const struct reading *reading)
-{
-	char value[128], words[READING_WORDS], alarm[STANDING_WORDS], span[WHEN_TEXT] = "-";
-	struct ows_target target = {.name = "-"};
-
-	row_show(row, reading, value, sizeof(value));
-	if (reading->value.measured_ns)
-		when_span(reading->value.age_ns, span);
-	if (row->path)
-		ows_target(h, reading->value.target, &target);
-	table_add(table, (const char *const[]){row->name, value, row_unit(row),
-	                                       row_quality(row, reading, words),
-	                                       standing_text(&row->alarms, alarm), span,
-	                                       value_type_name((enum ows_type)reading->value.type),
-	                                       !row->path    ? ""
-	                                       : row->output ? "out"
-	                                                     : "in",
-	                                       target.name, row->path ? row->path : ""});
-}
 
 static void list_print_table(struct ows *h, struct rows *rows, struct reading *reading)
 {
 	struct table table;
 
-	table_init(&table, columns, sizeof(columns) / sizeof(columns[0]));
-	table.absent[UNIT] = !rows_have_units(rows);
-	table.absent[ALARM] = !rows_have_alarms(h, rows);
+	table_init(&table, rows_columns, ROWS_COLUMNS);
+	rows_absent(h, rows, &table);
 	for (int i = 0; i < rows->count; i++) {
 		row_read(h, &rows->row[i], ows_now(), reading);
 		reading_round(reading, row_decimals(&rows->row[i]));
-		list_add_row(&table, h, &rows->row[i], reading);
+		rows_add_cells(&table, h, &rows->row[i], reading, false);
 	}
 	table_print(&table, true);
 	table_free(&table);

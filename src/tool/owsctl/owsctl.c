@@ -45,12 +45,11 @@ static const struct verb verbs[] = {
          .example = "who", .finds = true},
 	{"watch", "[-al] [-c COUNT] [-t SECONDS] [PATTERN...]", "follow values as they change",
          verb_watch,
-         .options =
-                 "  -a          the readable signals of the driver too\n"
-                 "  -l          lines, not a table; in a pipe always\n"
-                 "  -c COUNT    end after so many lines\n"
-                 "  -t SECONDS  end after that time\n"
-                 "  keys: arrows and page keys move, / searches, s sorts, !: bad first, q ends\n",
+         .options = "  -a          the readable signals of the driver too\n"
+                    "  -l          lines, not a table; in a pipe always\n"
+                    "  -c COUNT    end after so many lines\n"
+                    "  -t SECONDS  end after that time\n"
+                    "  keys: arrows and page keys move, / searches, !: bad first, q ends\n",
          .example = "watch -l 'temp*'", .finds = true},
 	{"wait", "[-t SECONDS] NAME [OP VALUE]", "sleep until a value changes or a condition holds",
          verb_wait,

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/base/time.h"
 #include "src/faces/show/names.h"
 #include "src/ground/signal/hash.h"
 #include "src/tool/owsctl/ctl.h"
@@ -151,29 +152,11 @@ void row_read(struct ows *h, struct row *row, int64_t now_ns, struct reading *re
 	row->differs = command_differs(h, row->id, reading, row->commanded);
 }
 
-const char *row_quality(const struct row *row, const struct reading *reading,
-                        char words[READING_WORDS])
-{
-	size_t len = strlen(reading_quality(reading, words));
-
-	if (row->differs)
-		snprintf(words + len, READING_WORDS - len, "; commanded %s", row->commanded);
-	return words;
-}
-
 bool row_filled(const struct row *row, const struct reading *reading)
 {
 	bool input = row->path && !row->output;
 
 	return reading_filled(reading) && (!input || reading->value.measured_ns);
-}
-
-void row_show(const struct row *row, const struct reading *reading, char *out, size_t size)
-{
-	if (row_filled(row, reading))
-		reading_show(reading, out, size);
-	else
-		snprintf(out, size, "-");
 }
 
 bool rows_have_alarms(struct ows *h, const struct rows *rows)
@@ -203,22 +186,71 @@ bool row_changed(struct row *row, const struct reading *reading)
 	return row->state != before;
 }
 
-const char *row_unit(const struct row *row)
-{
-	return row->path ? row->meaning.unit : "";
-}
-
 int row_decimals(const struct row *row)
 {
 	return row->path ? row->meaning.decimals : -1;
 }
 
-bool rows_have_units(const struct rows *rows)
+const struct table_column rows_columns[ROWS_COLUMNS] = {
+	[ROWS_NAME] = {"NAME", .shrink = 24},
+	[ROWS_VALUE] = {"VALUE", .right = true, .most = 40},
+	[ROWS_UNIT] = {"UNIT", .drop = 4},
+	[ROWS_QUALITY] = {"QUALITY", .shrink = 13}, /* "device absent" */
+	[ROWS_ALARM] = {"ALARM", .shrink = 8},
+	[ROWS_AGE] = {"AGE", .right = true, .drop = 2},
+	[ROWS_TYPE] = {"TYPE"},
+	[ROWS_IO] = {"IO"},
+	[ROWS_TARGET] = {"TARGET", .drop = 3, .spare = true},
+	[ROWS_PATH] = {"PATH", .drop = 1, .shrink = 16}, /* "/28.551DDF030000" */
+};
+
+void rows_absent(struct ows *h, const struct rows *rows, struct table *table)
 {
+	table->absent[ROWS_UNIT] = true;
 	for (int i = 0; i < rows->count; i++)
-		if (*row_unit(&rows->row[i]))
-			return true;
-	return false;
+		table->absent[ROWS_UNIT] &= !rows->row[i].path || !*rows->row[i].meaning.unit;
+	table->absent[ROWS_ALARM] = !rows_have_alarms(h, rows);
+}
+
+const char *rows_span(int64_t ns, char text[WHEN_TEXT])
+{
+	if (ns < 0 || ns >= 60 * NS_PER_S)
+		return when_span(ns, text);
+	snprintf(text, WHEN_TEXT, "%ds", (int)(ns / NS_PER_S));
+	return text;
+}
+
+void rows_add_cells(struct table *table, struct ows *h, const struct row *row,
+                    const struct reading *reading, bool whole)
+{
+	char value[128] = "-", words[READING_WORDS], alarm[STANDING_WORDS], span[WHEN_TEXT] = "-";
+	size_t len = strlen(reading_quality(reading, words));
+	struct ows_target target = {.name = "-"};
+
+	if (row->differs)
+		snprintf(words + len, sizeof(words) - len, "; commanded %s", row->commanded);
+	if (row_filled(row, reading))
+		reading_show(reading, value, sizeof(value));
+	if (reading->value.measured_ns && whole)
+		rows_span(reading->value.age_ns, span);
+	else if (reading->value.measured_ns)
+		when_span(reading->value.age_ns, span);
+	if (row->path)
+		ows_target(h, reading->value.target, &target);
+	table_add(table, (const char *const[ROWS_COLUMNS]){
+				 [ROWS_NAME] = row->name,
+				 [ROWS_VALUE] = value,
+				 [ROWS_UNIT] = row->path ? row->meaning.unit : "",
+				 [ROWS_QUALITY] = words,
+				 [ROWS_ALARM] = standing_text(&row->alarms, alarm),
+				 [ROWS_AGE] = span,
+				 [ROWS_TYPE] = value_type_name((enum ows_type)reading->value.type),
+				 [ROWS_IO] = !row->path    ? ""
+	                                     : row->output ? "out"
+	                                                   : "in",
+				 [ROWS_TARGET] = target.name,
+				 [ROWS_PATH] = row->path ? row->path : "",
+			 });
 }
 
 void row_json(struct json *json, struct ows *h, const struct row *row, int64_t now_ns)

@@ -9,6 +9,7 @@
 #include "src/faces/show/standing.h"
 #include "src/ground/signal/value.h"
 #include "src/public/ows.h"
+#include "src/tool/owsctl/table.h"
 
 /* What the value of a signal means: unit, decimals, description, and the raw value beside it. */
 struct meaning {
@@ -60,23 +61,36 @@ void row_read(struct ows *h, struct row *row, int64_t now_ns, struct reading *re
 /* Can one of the signals have alarms? */
 bool rows_have_alarms(struct ows *h, const struct rows *rows);
 
-/* The quality in words, and the command where it differs from the value. Returns words. */
-const char *row_quality(const struct row *row, const struct reading *reading,
-                        char words[READING_WORDS]);
-
 /* Is there a value to show? The 0 of an input that was never measured is none. */
 bool row_filled(const struct row *row, const struct reading *reading);
-/* The text of the value for a table, "-": there is none. */
-void row_show(const struct row *row, const struct reading *reading, char *out, size_t size);
+/* The table that list and watch show. */
+enum {
+	ROWS_NAME,
+	ROWS_VALUE,
+	ROWS_UNIT,
+	ROWS_QUALITY,
+	ROWS_ALARM,
+	ROWS_AGE,
+	ROWS_TYPE,
+	ROWS_IO,
+	ROWS_TARGET,
+	ROWS_PATH,
+	ROWS_COLUMNS,
+};
+extern const struct table_column rows_columns[ROWS_COLUMNS];
+/* Leave out the columns that have nothing for any row. */
+void rows_absent(struct ows *h, const struct rows *rows, struct table *table);
+/* Add a row to it; whole: the age is in whole seconds. */
+void rows_add_cells(struct table *table, struct ows *h, const struct row *row,
+                    const struct reading *reading, bool whole);
+/* A span in whole seconds: a picture changes no more often. Returns text. */
+const char *rows_span(int64_t ns, char text[WHEN_TEXT]);
 
 /* Have value, quality, error or an alarm changed since the last call? */
 bool row_changed(struct row *row, const struct reading *reading);
 
-/* The unit of the value, "": none; and its decimals, -1: not known. */
-const char *row_unit(const struct row *row);
+/* The decimals of the value, -1: not known. */
 int row_decimals(const struct row *row);
-/* Has one of the signals a unit? */
-bool rows_have_units(const struct rows *rows);
 
 /* name, output, path, alarms and the like as members of a JSON object. */
 void row_json(struct json *json, struct ows *h, const struct row *row, int64_t now_ns);

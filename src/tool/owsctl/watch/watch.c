@@ -12,18 +12,10 @@
 #include "src/tool/owsctl/watch/terminal.h"
 #include "src/tool/owsctl/watch/watch_screen.h"
 
-#define SHORTEST_SLEEP (10 * NS_PER_MS)
+#define LONGEST_SLEEP (500 * NS_PER_MS) /* an age sends no wake-up, nor does a closed pipe */
 
-static void print_event(struct watch *watch, enum watch_event event)
+static void print_event(struct watch *watch, const struct watch_event *event)
 {
-	static const struct {
-		const char *word, *told;
-	} events[] = {
-		[WATCH_RESTARTED] = {"restarted", "was started again"},
-		[WATCH_RELOADED] = {"reloaded", "has reloaded its file"},
-		[WATCH_LOST] = {"lost", NULL},
-		[WATCH_BACK] = {"back", "is back"},
-	};
 	char text[WHEN_TEXT];
 	struct when now = when_now();
 	struct json json;
@@ -32,14 +24,14 @@ static void print_event(struct watch *watch, enum watch_event event)
 		json_open(&json, stdout);
 		json_object(&json, NULL);
 		json_string(&json, "time", when_iso(&now, now.boot, text));
-		json_string(&json, "event", events[event].word);
+		json_string(&json, "event", event->word);
 		json_uint(&json, "generation", watch->generation);
 		json_object_end(&json);
 		json_end(&json);
-	} else if (event == WATCH_LOST) {
+	} else if (!*event->told) {
 		ctl_alive(watch->ctl, watch->h, ows_now());
 	} else {
-		ctl_tell("owsd %s %s", watch->ctl->instance, events[event].told);
+		ctl_tell("owsd %s %s", watch->ctl->instance, event->told);
 	}
 }
 
@@ -71,73 +63,37 @@ static void print_change(struct watch *watch, const struct row *row, const struc
 	putchar('\n');
 }
 
-static void print_if_changed(struct watch *watch, struct row *row, const struct when *now)
-{
-	if (watch->left == 0)
-		return;
-	row_read(watch->h, row, now->boot, watch->reading);
-	if (!watch->ctl->json)
-		reading_round(watch->reading, row_decimals(row));
-	if (!row_changed(row, watch->reading))
-		return;
-	print_change(watch, row, now);
-	if (watch->left > 0)
-		watch->left--;
-}
-
 static void print_changes(struct watch *watch)
 {
-	bool all = watch->changed_count < 0;
 	struct when now = when_now();
 
-	for (int i = 0; i < watch->rows.count; i++) {
+	for (int i = 0; i < watch->rows.count && watch->left != 0; i++) {
 		struct row *row = &watch->rows.row[i];
 
-		if (!all && row->signal >= 0)
-			break;
-		print_if_changed(watch, row, &now);
-	}
-	for (int i = 0; i < watch->changed_count; i++) {
-		int row = watch->row_of[watch->changed[i]];
-
-		if (row >= 0)
-			print_if_changed(watch, &watch->rows.row[row], &now);
+		row_read(watch->h, row, now.boot, watch->reading);
+		if (!watch->ctl->json)
+			reading_round(watch->reading, row_decimals(row));
+		if (!row_changed(row, watch->reading))
+			continue;
+		print_change(watch, row, &now);
+		watch->left -= watch->left > 0;
 	}
 }
 
 static void watch_lines(struct watch *watch)
 {
+	const struct watch_event *event = watch->alive ? NULL : &watch_lost;
+
 	/* write round by round, so that errno shows why a write failed */
 	setvbuf(stdout, NULL, _IOFBF, BUFSIZ);
-	if (!watch->alive)
-		print_event(watch, WATCH_LOST);
 	for (;;) {
-		enum watch_event event;
-
+		if (event)
+			print_event(watch, event);
 		print_changes(watch);
 		if (watch_over(watch) || !ctl_flush_lines() || ctl_reader_gone())
 			return;
-		event = watch_sleep(watch, SHORTEST_SLEEP, INT64_MAX);
-		if (event != WATCH_NOTHING)
-			print_event(watch, event);
+		event = watch_sleep(watch, LONGEST_SLEEP);
 	}
-}
-
-static int watch_begin(struct watch *watch, bool screen)
-{
-	struct ows_daemon daemon = {0};
-	int status;
-
-	ows_daemon(watch->h, ows_now(), &daemon);
-	watch_collect(watch, &daemon);
-	status = rows_check(&watch->rows, watch->patterns, watch->pattern_count);
-	terminal_catch_signals();
-	if (!status && screen)
-		watch_screen(watch);
-	else if (!status)
-		watch_lines(watch);
-	watch_free(watch);
-	return status;
 }
 
 /* A terminal that knows no escape sequences gets lines, as a pipe does. */
@@ -152,34 +108,36 @@ int verb_watch(struct ctl *ctl, int argc, char **argv)
 {
 	static struct reading reading;
 	struct watch watch = {.ctl = ctl, .left = -1, .end_ns = INT64_MAX, .reading = &reading};
+	struct ows_daemon daemon = {0};
 	bool screen = has_screen();
 	int64_t limit_ns = -1;
 	int c, status;
 
 	while ((c = ctl_option(ctl, argc, argv, "alc:t:")) != -1) {
-		switch (c) {
-		case 'a':
+		if (c == 'a')
 			watch.driver = true;
-			break;
-		case 'l':
+		else if (c == 'l')
 			screen = false;
-			break;
-		case 'c':
-			if (!ctl_count(optarg, 1, INT64_MAX, &watch.left))
-				return ctl_usage(ctl, "-c wants a number above 0, not %s",
-				                 ctl_word(optarg));
-			break;
-		case 't':
+		else if (c == 't')
 			limit_ns = ctl_option_seconds(ctl, c);
-			break;
-		}
+		else if (!ctl_count(optarg, 1, INT64_MAX, &watch.left))
+			return ctl_usage(ctl, "-c wants a number above 0, not %s",
+			                 ctl_word(optarg));
 	}
 	watch.patterns = argv + optind;
 	watch.pattern_count = argc - optind;
 	watch.h = ctl_open(ctl, OWS_READ);
 	if (limit_ns >= 0)
 		watch.end_ns = ows_now() + limit_ns;
-	status = watch_begin(&watch, screen && !ctl->json);
+	ows_daemon(watch.h, ows_now(), &daemon);
+	watch_collect(&watch, &daemon);
+	status = rows_check(&watch.rows, watch.patterns, watch.pattern_count);
+	terminal_catch_signals();
+	if (!status && screen && !ctl->json)
+		watch_screen(&watch);
+	else if (!status)
+		watch_lines(&watch);
+	rows_free(&watch.rows);
 	ows_close(watch.h);
 	return status;
 }
