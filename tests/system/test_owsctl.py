@@ -220,13 +220,13 @@ def test_nothing_is_set_at_an_owsd_that_was_just_killed(scene):
 class Terminal:
     """owsctl on a terminal of our own; screen() is its present picture, line by line."""
 
-    def __init__(self, daemon, lines, columns, *arguments, term="xterm", locale="C.UTF-8"):
+    def __init__(self, daemon, lines, columns, *arguments, term="xterm"):
         go, begin = os.pipe()
         self.pid, self.fd = pty.fork()
         if self.pid == 0:
             os.read(go, 1)  # not before the terminal has been looked at
             os.execve(owsdtest.OWSCTL, [str(owsdtest.OWSCTL), "-n", daemon.name, *arguments],
-                      dict(os.environ, TERM=term, LC_ALL=locale))
+                      dict(os.environ, TERM=term, LC_ALL="C.UTF-8"))
         self.before = termios.tcgetattr(self.fd)
         self.output = b""
         self.resize(lines, columns)
@@ -273,33 +273,6 @@ class Terminal:
         restored = (termios.tcgetattr(self.fd)[3] == self.before[3]
                     and self.output.endswith(b"\x1b[?1049l"))
         return status, restored
-
-
-def test_a_terminal_gets_utf8_by_its_locale_and_a_pipe_always(scene):
-    daemon = scene.owsd(owsdtest.rio("null:", [dict(
-        Name="k\u00fcche", Path="/28.000000000001/temperature", Type="double", IO="input",
-        Unit="\u00b0C")], Period=0.05))
-    owsdtest.until(lambda: "k\u00fcche" in scene.owsctl(daemon, "list").stdout, 20, "the table")
-    for locale, name, unit in (("C", b"k?che", b"oC"), ("C.UTF-8", "k\u00fcche".encode(), "\u00b0C".encode())):
-        for words in (("list",), ("watch",), ("watch", "-l", "-c", "1"), ("list", "k*")):
-            terminal = Terminal(daemon, 24, 120, *words, locale=locale)
-
-            def shown():
-                terminal.read()
-                return name in terminal.output
-            owsdtest.until(shown, 10, lambda: terminal.output)
-            if words == ("watch",):
-                owsdtest.until(lambda: terminal.read() or unit in terminal.output, 10, lambda: terminal.output)
-                os.write(terminal.fd, b"q")
-            terminal.end()
-            assert terminal.output.isascii() == (locale == "C"), terminal.output
-        for words in (("metrics",), ("--json", "list")):
-            terminal = Terminal(daemon, 24, 120, *words, locale=locale)
-            terminal.end()
-            assert "k\u00fcche".encode() in terminal.output, terminal.output
-        done = subprocess.run([owsdtest.OWSCTL, "-n", daemon.name, "list"], capture_output=True, check=True,
-                              env=dict(os.environ, LC_ALL=locale), timeout=owsdtest.PATIENCE)
-        assert "k\u00fcche".encode() in done.stdout, done
 
 
 def test_what_is_said_of_a_wrong_option_cannot_steer_the_terminal(scene):

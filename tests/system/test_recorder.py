@@ -211,7 +211,7 @@ def test_trend_draws_and_lists_what_was_recorded(scene):
     lines = done.stdout.splitlines()
     assert done.returncode == 0 and lines[0] == "relays", done
     assert lines[1].split()[0] == "9" and lines[8].split()[0] == "1", done
-    assert any("\u2801" <= c <= "\u28ff" for c in lines[1]), done
+    assert any("\u2581" <= c <= "\u2588" for c in lines[1]), done
     assert lines[12] == "room (°C)" and len(lines) > 20, done
     done = scene.owsctl(daemon, *trend, "--csv", "relays", "title")
     rows = list(csv.DictReader(done.stdout.splitlines()))

@@ -220,7 +220,7 @@ def test_it_records_and_trend_draws_what_was(scene):
 
         def drawn():
             done = scene.owsctl(terminal.name, "trend", "-d", history, "boiler")
-            return done.returncode == 0 and any("\u2801" <= c <= "\u28ff" for c in done.stdout)
+            return done.returncode == 0 and any("\u2581" <= c <= "\u2588" for c in done.stdout)
         scene.until(drawn, 20, "trend draws the boiler")
     finally:
         os.write(terminal.master, b"\x03")

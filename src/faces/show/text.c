@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* The columns that a text takes on a terminal, and the removal of what must not reach one. */
-#include <stdlib.h>
 #include <string.h>
 
 #include "src/faces/show/text.h"
@@ -39,42 +38,6 @@ static unsigned text_columns_of(int32_t c)
 	return in_ranges(wide, sizeof(wide) / sizeof(wide[0]), c) ? 2 : 1;
 }
 
-static bool only_ascii;
-
-void text_only_ascii(bool only)
-{
-	only_ascii = only;
-}
-
-bool text_locale_is_ascii(void)
-{
-	static const char *const names[] = {"LC_ALL", "LC_CTYPE", "LANG"};
-	const char *set = NULL;
-
-	for (size_t i = 0; i < sizeof(names) / sizeof(names[0]) && (!set || !*set); i++)
-		set = getenv(names[i]);
-	return set && *set && !strcasestr(set, "UTF-8") && !strcasestr(set, "UTF8");
-}
-
-/* The one character of ASCII that stands for c. */
-static const char *as_ascii(int32_t c)
-{
-	static const struct {
-		int32_t first, last;
-		const char *text;
-	} known[] = {
-		{0xb0, 0xb0, "o"},     {0xb2, 0xb2, "2"},     {0xb3, 0xb3, "3"},
-		{0xb5, 0xb5, "u"},     {0x3bc, 0x3bc, "u"},   {0xd7, 0xd7, "x"},
-		{0x3a9, 0x3a9, "O"},   {0x2126, 0x2126, "O"}, {0x2010, 0x2015, "-"},
-		{0x2500, 0x2500, "-"}, {0x2800, 0x2800, " "}, {0x2801, 0x28ff, "*"},
-	};
-
-	for (size_t i = 0; i < sizeof(known) / sizeof(known[0]); i++)
-		if (c >= known[i].first && c <= known[i].last)
-			return known[i].text;
-	return text_columns_of(c) ? "?" : "";
-}
-
 unsigned text_columns(const char *text)
 {
 	size_t len = strlen(text);
@@ -102,10 +65,6 @@ unsigned text_clean(const char *text, size_t len, unsigned columns, char *out, s
 			at = "?";
 			bytes = 1;
 			c = '?';
-		} else if (only_ascii && c > '~') {
-			at = as_ascii(c);
-			bytes = strlen(at);
-			c = *at ? *at : c;
 		}
 		width = text_columns_of(c);
 		if (used + width > columns || size + bytes + 1 > room) {

@@ -16,11 +16,3 @@ unsigned text_columns(const char *text);
  * characters and what is not UTF-8 become '?'. What does not fit ends in '~'. Returns the columns.
  */
 unsigned text_clean(const char *text, size_t len, unsigned columns, char *out, size_t room);
-
-/*
- * From now on text_clean() leaves nothing but ASCII, for a terminal that shows no UTF-8: "oC", "u",
- * "?". Before the first thread. false: as at the start.
- */
-void text_only_ascii(bool only);
-/* Does the environment name a character set that is not UTF-8? Not if it names no locale at all. */
-bool text_locale_is_ascii(void);

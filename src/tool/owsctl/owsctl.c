@@ -8,7 +8,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "src/faces/show/text.h"
 #include "src/ground/service/streams.h"
 #include "src/ground/text/distance.h"
 #include "src/ground/text/refused.h"
@@ -251,8 +250,6 @@ int main(int argc, char **argv)
 	char why[1024];
 	int c;
 
-	/* a file or a program gets the bytes as they are, whatever the locale is */
-	text_only_ascii(isatty(STDOUT_FILENO) && text_locale_is_ascii());
 	/* a write to a pipe without reader fails with EPIPE */
 	signal(SIGPIPE, SIG_IGN);
 	c = standard_open();

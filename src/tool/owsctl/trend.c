@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <getopt.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,13 +18,13 @@
 #include "src/ground/text/influx.h"
 #include "src/tool/owsctl/ctl.h"
 #include "src/tool/owsctl/past.h"
-#include "src/tool/owsctl/plot.h"
 #include "src/tool/owsctl/verbs.h"
 
 #define SINCE "24h"
 #define HEIGHT 8
-#define WIDTH 64 /* where there is no terminal */
-#define WIDTH_LEAST 20
+#define WIDTH 64       /* where there is no terminal */
+#define WIDTH_LEAST 34 /* of the two times below */
+#define WIDTH_MOST 400
 #define MARGIN 11 /* the numbers on the left */
 
 struct trend {
@@ -49,48 +50,72 @@ static int columns(void)
 	if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0)
 		width = size.ws_col - 1;
 	width -= MARGIN;
-	return width < WIDTH_LEAST ? WIDTH_LEAST : width > PLOT_WIDTH_MAX ? PLOT_WIDTH_MAX : width;
+	return width < WIDTH_LEAST ? WIDTH_LEAST : width > WIDTH_MOST ? WIDTH_MOST : width;
+}
+
+/* The least and the greatest of all; false: there is no good value. */
+static bool find_range(const struct ows_history_point *points, int n, double *low, double *high)
+{
+	*low = INFINITY;
+	*high = -INFINITY;
+	for (int i = 0; i < n; i++) {
+		*low = fmin(*low, points[i].min);
+		*high = fmax(*high, points[i].max);
+	}
+	return *low <= *high && isfinite(*low) && isfinite(*high);
+}
+
+/* Draw each column as a bar up to its greatest value, in eighths of a line. */
+static void print_bars(const struct ows_history_point *points, int width, double low, double high)
+{
+	static const char *const eighths[] = {" ", "▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
+	/* halves: the difference of two doubles may be none */
+	double range = high / 2 - low / 2;
+
+	for (int line = HEIGHT - 1; line >= 0; line--) {
+		if (line == HEIGHT - 1 || (line == 0 && high > low))
+			printf("%*.6g ", MARGIN - 1, line ? high : low);
+		else
+			printf("%*s", MARGIN, "");
+		for (int i = 0; i < width; i++) {
+			double part = range > 0 ? (points[i].max / 2 - low / 2) / range : 0.5;
+			double full = 1 + part * (HEIGHT * 8 - 1) - line * 8;
+
+			fputs(eighths[full > 0 ? (int)fmin(full, 8) : 0], stdout);
+		}
+		putchar('\n');
+	}
 }
 
 static void print_picture(const struct trend *t, const struct ows_history_signal *known,
                           const struct ows_history_point *points, int width)
 {
-	static char picture[PLOT_TEXT];
-	char from[WHEN_TEXT], until[WHEN_TEXT], row[3 * PLOT_WIDTH_MAX + 1], name[256], unit[64];
+	char from[WHEN_TEXT], until[WHEN_TEXT], name[256], unit[64];
 	double low, high;
-	int line = 0;
 
 	text_clean(known->name, strlen(known->name), sizeof(name), name, sizeof(name));
 	text_clean(known->unit, strlen(known->unit), sizeof(unit), unit, sizeof(unit));
 	printf("%s%s%s%s\n", name, *unit ? " (" : "", unit, *unit ? ")" : "");
-	if (!plot_draw(points, width, HEIGHT, &low, &high, picture)) {
+	if (!find_range(points, width, &low, &high)) {
 		puts("  no good value in that time");
 		return;
 	}
-	for (char *at = picture; *at; line++) {
-		size_t len = strcspn(at, "\n");
-
-		if ((line == 0 || line == HEIGHT - 1) && (line == 0 || high > low))
-			printf("%*.*g ", MARGIN - 1, 6, line == 0 ? high : low);
-		else
-			printf("%*s", MARGIN, "");
-		text_clean(at, len, PLOT_WIDTH_MAX, row, sizeof(row));
-		puts(row);
-		at += len + 1;
-	}
-	printf("%*s%.16s%*s%.16s\n", MARGIN, "", iso(t, points[0].from_ns, from),
-	       width > 33 ? width - 32 : 1, "", iso(t, points[2 * width - 1].until_ns, until));
+	print_bars(points, width, low, high);
+	printf("%*s", MARGIN, "");
+	for (int i = 0; i < width; i++)
+		fputs(points[i].good_ns > 0 ? "─" : points[i].known_ns > 0 ? "×" : " ", stdout);
+	printf("\n%*s%.16s%*s%.16s\n", MARGIN, "", iso(t, points[0].from_ns, from), width - 32, "",
+	       iso(t, points[width - 1].until_ns, until));
 }
 
 static int draw(struct trend *t, int signal, const struct ows_history_signal *known)
 {
-	int width = columns(), got;
-	struct ows_history_point *points = ctl_need(calloc((size_t)width * 2, sizeof(*points)));
+	struct ows_history_point points[WIDTH_MOST];
+	int width = columns();
+	int got = ows_history_points(t->h, signal, t->from_ns, t->until_ns, points, width);
 
-	got = ows_history_points(t->h, signal, t->from_ns, t->until_ns, points, 2 * width);
 	if (got >= 0)
 		print_picture(t, known, points, width);
-	free(points);
 	return got < 0 ? past_fail(known->name, got) : CTL_DONE;
 }
 

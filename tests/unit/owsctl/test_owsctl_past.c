@@ -320,6 +320,26 @@ static void has_point(const char *line)
 	TEST_ASSERT_EQUAL_CHAR('\n', at[19]);
 }
 
+static void test_a_trend_is_drawn_in_bars_above_what_is_known(void)
+{
+	value(ROOM, 1, OWS_Q_GOOD, value_of_double(-8), NULL);
+	value(ROOM, 20, OWS_Q_GOOD, value_of_double(8), NULL);
+	value(ROOM, 40, OWS_Q_DEVICE, value_of_double(85), NULL);
+	value(PUMP, 1, OWS_Q_DEVICE, 1, NULL);
+	written();
+	TEST_ASSERT_EQUAL(CTL_DONE, trend("--since 2m room1"));
+	holds(out, "room1 (°C)\n         8 ");
+	holds(out, "\n        -8 ");
+	/* the least value is an eighth of a line high, the greatest eight lines */
+	holds(out, "▁▁▁▁");
+	TEST_ASSERT_EQUAL_INT(0, times("█") % 8);
+	TEST_ASSERT_GREATER_THAN_INT(8, times("█"));
+	holds(out, "  ──");
+	holds(out, "─××");
+	TEST_ASSERT_EQUAL(CTL_DONE, trend("--since 2m pump"));
+	TEST_ASSERT_EQUAL_STRING("pump\n  no good value in that time\n", out);
+}
+
 static void test_good_values_are_points_of_the_line_protocol(void)
 {
 	value(ROOM, 1, OWS_Q_GOOD, value_of_double(-21.125), NULL);
@@ -417,6 +437,7 @@ int main(void)
 	RUN_TEST(test_of_many_the_last_ones_are_shown);
 	RUN_TEST(test_without_owsd_the_disk_is_shown_alone);
 	RUN_TEST(test_a_damaged_file_is_named);
+	RUN_TEST(test_a_trend_is_drawn_in_bars_above_what_is_known);
 	RUN_TEST(test_good_values_are_points_of_the_line_protocol);
 	RUN_TEST(test_a_name_that_the_history_has_not_is_answered_with_the_nearest);
 	RUN_TEST(test_of_a_signal_that_owsd_has_nothing_may_be_written_yet);

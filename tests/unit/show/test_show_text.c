@@ -94,52 +94,6 @@ static void test_the_room_is_never_exceeded(void)
 	}
 }
 
-static void test_a_terminal_without_utf8_gets_ascii(void)
-{
-	text_only_ascii(true);
-	TEST_ASSERT_EQUAL(7, clean("21.5 \u00b0C", 20));
-	TEST_ASSERT_EQUAL_STRING("21.5 oC", out);
-	TEST_ASSERT_EQUAL(7, clean("\u00b5m\u00b3 a\u0308\u00fc\u6e29", 20));
-	TEST_ASSERT_EQUAL_STRING("um3 a??", out);
-	TEST_ASSERT_EQUAL(4, clean("\u2500\u00d7\u2801\u28ff", 20));
-	TEST_ASSERT_EQUAL_STRING("-x**", out);
-	TEST_ASSERT_EQUAL(2, clean("\u00fc\u00fc\u00fc", 2));
-	TEST_ASSERT_EQUAL_STRING("?~", out);
-	text_only_ascii(false);
-	TEST_ASSERT_EQUAL(2, clean("\u00b0C", 20));
-	TEST_ASSERT_EQUAL_STRING("\u00b0C", out);
-}
-
-static void test_the_first_variable_that_is_set_names_the_locale(void)
-{
-	static const struct {
-		const char *all, *ctype, *lang;
-		bool ascii;
-	} cases[] = {
-		{NULL, NULL, NULL, false},
-		{"", "", "", false},
-		{NULL, NULL, "C", true},
-		{NULL, NULL, "de_DE.ISO-8859-1", true},
-		{NULL, NULL, "de_DE.UTF-8", false},
-		{NULL, NULL, "C.utf8", false},
-		{"C", NULL, "de_DE.UTF-8", true},
-		{NULL, "de_DE.UTF-8", "C", false},
-		{"", "POSIX", "C.UTF-8", true},
-	};
-
-	for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
-		const char *const set[] = {"LC_ALL",       cases[i].all, "LC_CTYPE",
-		                           cases[i].ctype, "LANG",       cases[i].lang};
-
-		for (int k = 0; k < 6; k += 2)
-			if (set[k + 1])
-				setenv(set[k], set[k + 1], 1);
-			else
-				unsetenv(set[k]);
-		TEST_ASSERT_EQUAL(cases[i].ascii, text_locale_is_ascii());
-	}
-}
-
 int main(void)
 {
 	UNITY_BEGIN();
@@ -149,7 +103,5 @@ int main(void)
 	RUN_TEST(test_a_wide_character_is_not_cut_in_half);
 	RUN_TEST(test_nothing_that_controls_the_terminal_gets_through);
 	RUN_TEST(test_the_room_is_never_exceeded);
-	RUN_TEST(test_a_terminal_without_utf8_gets_ascii);
-	RUN_TEST(test_the_first_variable_that_is_set_names_the_locale);
 	return UNITY_END();
 }
