@@ -177,6 +177,18 @@ const struct ows_by *journal_by(const struct journal_entry *entry)
 	return entry->is_command ? &entry->command.who : &entry->alarm.who;
 }
 
+/* What an alarm had before and after it. */
+static void json_number_of(struct json *json, const char *key, const struct ows_alarm *alarm,
+                           bool has, double number, int64_t integer)
+{
+	char text[VALUE_TEXT_MAX];
+
+	has &= alarm->type != OWS_STRING;
+	if (has)
+		digits_print((enum ows_type)alarm->type, number, integer, -1, text);
+	json_number(json, key, has ? text : NULL);
+}
+
 static void json_value(struct json *json, const struct journal_entry *entry)
 {
 	char value[VALUE_TEXT_MAX];
@@ -194,6 +206,7 @@ static void json_value(struct json *json, const struct journal_entry *entry)
 void journal_json(struct json *json, const struct when *now, const struct journal_entry *entry)
 {
 	static const struct ows_by none;
+	const struct ows_alarm *alarm = &entry->alarm;
 	char time[WHEN_TEXT];
 
 	json_object(json, NULL);
@@ -208,17 +221,22 @@ void journal_json(struct json *json, const struct when *now, const struct journa
 		json_null(json, "alarm");
 		json_string(json, "event", ows_reason_text(entry->command.reason));
 	} else {
-		json_string(json, "alarm",
-		            entry->alarm.kind ? ows_alarm_kind_text(entry->alarm.kind) : NULL);
-		json_string(json, "event", ows_alarm_event_text(entry->alarm.event));
+		json_string(json, "alarm", alarm->kind ? ows_alarm_kind_text(alarm->kind) : NULL);
+		json_string(json, "event", ows_alarm_event_text(alarm->event));
 	}
 	json_value(json, entry);
+	if (!entry->is_command) {
+		json_number_of(json, "before", alarm, alarm->has_before, alarm->before,
+		               alarm->before_integer);
+		json_number_of(json, "after", alarm, alarm->has_after, alarm->after,
+		               alarm->after_integer);
+		json_string(json, "quality", ows_quality_text(alarm->quality));
+	}
 	actor_json(json, journal_is_deed(entry) ? journal_by(entry) : &none);
 	if (entry->past && entry->is_command)
 		json_null(json, "more");
 	else
 		json_uint(json, "more", entry->is_command ? entry->command.more : 0);
-	json_string(json, "remark",
-	            !entry->is_command && *entry->alarm.text ? entry->alarm.text : NULL);
+	json_string(json, "remark", !entry->is_command && *alarm->text ? alarm->text : NULL);
 	json_object_end(json);
 }

@@ -222,22 +222,18 @@ static void test_history_shows_what_was_entered_in_its_order(void)
 	enter(LABEL, OWS_ALARM_POR, OWS_ALARM_RAISED, 0);
 	enter(BOILER, OWS_ALARM_BAD, OWS_ALARM_ACKNOWLEDGED, 0);
 	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_alarms, "alarms history"));
-	holds(out,
-	      "  NAME    ALARM           EVENT         BEFORE  AFTER  QUALITY  BY    REMARK\n");
-	first = strstr(
-		out,
-		"  door    device          raised             3      7  good     -     0,?[2J0,1\n");
-	second = strstr(out,
-	                "  boiler  bad             acknowledged       -      -  good     owsd\n");
+	holds(out, "  NAME    EVENT                  VALUE  PROGRAM  USER  FOR  REMARK\n");
+	first = strstr(out,
+	               "  door    device raised              7  -        -     -    0,?[2J0,1\n");
+	second = strstr(out, "  boiler  bad acknowledged           -  owsd     -     -\n");
 	TEST_ASSERT_TRUE(first && second && first < second);
-	holds(out, "  label   power-on reset  raised             -      -  good     -\n");
+	holds(out, "  label   power-on reset raised      -  -        -     -\n");
 	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_alarms, "alarms history --json do* bo*"));
-	holds(out, "[{\"number\":0,\"time\":\"");
-	holds(out,
-	      "\"name\":\"door\",\"alarm\":\"device\",\"event\":\"raised\",\"before\":3,\"after\":7,"
-	      "\"quality\":\"good\",\"by\":null,\"remark\":\"0,\\u001b[2J0,1\"},{\"number\":2,");
-	holds(out,
-	      "\"before\":null,\"after\":null,\"quality\":\"good\",\"by\":null,\"remark\":null}]\n");
+	holds(out, "\"journal\":\"alarms\",\"number\":0,\"name\":\"door\",\"alarm\":\"device\","
+	           "\"event\":\"raised\",\"value\":7,\"before\":3,\"after\":7,\"quality\":\"good\","
+	           "\"by\":null,\"more\":0,\"remark\":\"0,\\u001b[2J0,1\"},{\"time\":");
+	holds(out, "\"before\":null,\"after\":null,\"quality\":\"good\",\"by\":null,\"more\":0,"
+	           "\"remark\":null}]\n");
 }
 
 static void test_history_shows_what_the_ring_keeps(void)

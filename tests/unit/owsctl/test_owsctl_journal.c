@@ -153,7 +153,7 @@ static void test_every_member_is_in_the_json(void)
 	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_journal, "journal --json"));
 	holds(out,
 	      "\"journal\":\"alarms\",\"number\":0,\"name\":\"room1\",\"alarm\":\"high\",\"event\":"
-	      "\"raised\",\"value\":31.5,\"by\":null,\"more\":0,\"remark\":null},");
+	      "\"raised\",\"value\":31.5,\"before\":null,\"after\":31.5,\"quality\":\"good\",\"by\":null,\"more\":0,\"remark\":null},");
 	holds(out,
 	      "\"journal\":\"commands\",\"number\":0,\"name\":\"pump\",\"alarm\":null,\"event\":"
 	      "\"set\",\"value\":true,\"by\":{\"program\":\"plc\",\"pid\":4711,"

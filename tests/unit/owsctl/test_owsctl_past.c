@@ -178,9 +178,9 @@ static void test_what_is_in_memory_and_on_disk_is_shown_once(void)
 	TEST_ASSERT_EQUAL(3, times("\"time\""));
 	holds(out, "\"journal\":\"alarms\",\"number\":0,\"name\":\"room1\",\"alarm\":\"high\","
 	           "\"event\":\"raised\",\"value\":31,");
-	holds(out,
-	      "\"journal\":\"alarms\",\"number\":null,\"name\":\"room1\",\"alarm\":\"high\","
-	      "\"event\":\"returned\",\"value\":20,\"by\":null,\"more\":0,\"remark\":\"why\"}");
+	holds(out, "\"journal\":\"alarms\",\"number\":null,\"name\":\"room1\",\"alarm\":\"high\","
+	           "\"event\":\"returned\",\"value\":20,\"before\":null,\"after\":20,"
+	           "\"quality\":\"good\",\"by\":null,\"more\":0,\"remark\":\"why\"}");
 	holds(out, "\"journal\":\"commands\",\"number\":0,\"name\":\"pump\"");
 	TEST_ASSERT_EQUAL_STRING("", err);
 }

@@ -9,15 +9,11 @@
 #include <string.h>
 
 #include "hal/base/time.h"
-#include "src/faces/show/actor.h"
-#include "src/faces/show/digits.h"
-#include "src/faces/show/json.h"
-#include "src/faces/show/names.h"
 #include "src/faces/show/when.h"
 #include "src/public/ows.h"
 #include "src/tool/owsctl/alarms/alarms_live.h"
+#include "src/tool/owsctl/alarms/journal.h"
 #include "src/tool/owsctl/ctl.h"
-#include "src/tool/owsctl/table.h"
 #include "src/tool/owsctl/verbs.h"
 
 /* --- Acknowledge ----------------------------------------------------------------------------- */
@@ -118,110 +114,6 @@ static int alarms_ack(struct ctl *ctl, int argc, char **argv)
 	return status;
 }
 
-/* --- History: the journal of alarms ---------------------------------------------------------- */
-
-/* clang-format off */
-static const struct table_column columns[] = {
-	{"TIME"}, {"NAME"}, {"ALARM"}, {"EVENT"}, {"BEFORE", .right = true}, {"AFTER", .right = true},
-	{"QUALITY"}, {"BY"}, {"REMARK"},
-};
-/* clang-format on */
-
-static const char *value_text(const struct ows_alarm *alarm, bool after, int decimals,
-                              char text[VALUE_TEXT_MAX])
-{
-	enum ows_type type = (enum ows_type)alarm->type;
-	double number = after ? alarm->after : alarm->before;
-	int64_t integer = after ? alarm->after_integer : alarm->before_integer;
-
-	if (!(after ? alarm->has_after : alarm->has_before) || type == OWS_STRING)
-		return NULL;
-	digits_print(type, number, integer, decimals, text);
-	return text;
-}
-
-static void alarms_history_add_row(struct table *table, const struct when *now,
-                                   const struct ows_info *info, const struct ows_alarm *alarm)
-{
-	char before[VALUE_TEXT_MAX], after[VALUE_TEXT_MAX], time[WHEN_TEXT];
-	const char *left = value_text(alarm, false, info->decimals, before);
-	const char *right = value_text(alarm, true, info->decimals, after);
-	char by[ACTOR_LINE] = "-";
-
-	if (alarm->event != OWS_ALARM_RAISED && alarm->event != OWS_ALARM_RETURNED &&
-	    alarm->event != OWS_ALARM_FAILED)
-		actor_line(&alarm->who, by);
-	table_add(table, (const char *const[]){when_iso(now, alarm->occurred_ns, time), info->name,
-	                                       ows_alarm_kind_text(alarm->kind),
-	                                       ows_alarm_event_text(alarm->event),
-	                                       left ? left : "-", right ? right : "-",
-	                                       ows_quality_text(alarm->quality), by, alarm->text});
-}
-
-static void add_json(struct json *json, const struct when *now, uint32_t number, const char *name,
-                     const struct ows_alarm *alarm)
-{
-	char text[VALUE_TEXT_MAX], time[WHEN_TEXT];
-
-	json_object(json, NULL);
-	json_uint(json, "number", number);
-	json_string(json, "time", when_iso(now, alarm->occurred_ns, time));
-	json_string(json, "name", name);
-	json_string(json, "alarm", ows_alarm_kind_text(alarm->kind));
-	json_string(json, "event", ows_alarm_event_text(alarm->event));
-	json_number(json, "before", value_text(alarm, false, -1, text));
-	json_number(json, "after", value_text(alarm, true, -1, text));
-	json_string(json, "quality", ows_quality_text(alarm->quality));
-	actor_json(json, &alarm->who);
-	json_string(json, "remark", *alarm->text ? alarm->text : NULL);
-	json_object_end(json);
-}
-
-/* Print all entries of the journal, the oldest first. */
-static void print_history(struct ows *h, char *const *patterns, int count, bool as_json)
-{
-	uint32_t head = ows_alarm_count(h), first = head;
-	struct when now = when_now();
-	struct ows_alarm alarm;
-	struct ows_info info;
-	struct table table;
-	struct json json;
-
-	table_init(&table, columns, sizeof(columns) / sizeof(columns[0]));
-	json_list(&json, stdout, as_json);
-	while (ows_alarm(h, first - 1, &alarm) != -ENOENT)
-		first--;
-	for (uint32_t number = first; number != head; number++) {
-		if (ows_alarm(h, number, &alarm) != 0 || ows_info(h, alarm.signal, &info) != 0 ||
-		    !names_match(info.name, patterns, count))
-			continue;
-		if (as_json)
-			add_json(&json, &now, number, info.name, &alarm);
-		else
-			alarms_history_add_row(&table, &now, &info, &alarm);
-	}
-	json_list_end(&json);
-	if (!as_json)
-		table_print(&table, true);
-	table_free(&table);
-}
-
-static int alarms_history(struct ctl *ctl, int argc, char **argv)
-{
-	struct ows *h;
-	int status = CTL_DONE;
-
-	ctl_option(ctl, argc, argv, "");
-	h = ctl_open(ctl, OWS_READ);
-	ctl_alive(ctl, h, ows_now());
-	if (alarms_known(h, argv + optind, argc - optind))
-		print_history(h, argv + optind, argc - optind, ctl->json);
-	else
-		status = CTL_FAILED;
-	ows_close(h);
-	return status;
-}
-
 /* --- Shelve and unshelve --------------------------------------------------------------------- */
 
 static int alarms_shelve_fail(const char *name, bool shelve, int err)
@@ -290,7 +182,7 @@ static int alarms_unshelve(struct ctl *ctl, int argc, char **argv)
 /* --- The word -------------------------------------------------------------------------------- */
 
 const struct alarms_word alarms_words[] = {
-	{"history", alarms_history},
+	{"history", journal_alarms},
 	{"ack", alarms_ack},
 	{"shelve", alarms_shelve},
 	{"unshelve", alarms_unshelve},

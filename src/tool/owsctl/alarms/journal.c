@@ -14,6 +14,7 @@
 #include "src/faces/show/journal_past.h"
 #include "src/faces/show/names.h"
 #include "src/tool/owsctl/alarms/alarms_live.h"
+#include "src/tool/owsctl/alarms/journal.h"
 #include "src/tool/owsctl/ctl.h"
 #include "src/tool/owsctl/past.h"
 #include "src/tool/owsctl/table.h"
@@ -66,6 +67,7 @@ struct journal {
 	int pattern_count;
 	int64_t most; /* of the entries that are there; -1: all */
 	bool follows;
+	bool alarms_alone;
 	struct journal_entries entries;
 	struct table table;
 };
@@ -112,6 +114,16 @@ static void print_news(struct journal *j)
 	print_from(j, 0, false);
 }
 
+static void drop_commands(struct journal_entries *entries)
+{
+	unsigned count = 0;
+
+	for (unsigned i = 0; i < entries->count; i++)
+		if (!entries->entry[i].is_command)
+			entries->entry[count++] = entries->entry[i];
+	entries->count = count;
+}
+
 static void drop_older(struct journal_entries *entries, int64_t since_ns)
 {
 	unsigned old = 0;
@@ -138,6 +150,8 @@ static int look_at_both(struct journal *j)
 	if ((j->h && !journal_look(j->h, j->patterns, j->pattern_count, &j->entries)) ||
 	    !journal_past_drop(&past, &j->entries))
 		ctl_need(NULL);
+	if (j->alarms_alone)
+		drop_commands(&j->entries);
 	if (j->has_since)
 		drop_older(&j->entries, now.boot - (now.wall - j->since_ns));
 	if (!journal_add(&j->entries, &past))
@@ -228,6 +242,20 @@ static int journal_show(struct journal *j)
 		journal_follow(j);
 	table_free(&j->table);
 	journal_free(&j->entries);
+	return status;
+}
+
+int journal_alarms(struct ctl *ctl, int argc, char **argv)
+{
+	struct journal j = {.ctl = ctl, .most = -1, .alarms_alone = true};
+	int status;
+
+	ctl_option(ctl, argc, argv, "");
+	j.patterns = argv + optind;
+	j.pattern_count = argc - optind;
+	j.h = ctl_open(ctl, OWS_READ);
+	status = journal_show(&j);
+	ows_close(j.h);
 	return status;
 }
 
