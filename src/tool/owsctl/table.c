@@ -74,34 +74,18 @@ static int to_drop(const struct table *table, bool spare_only)
 	return found;
 }
 
-/* The width to which a column may be cut before another one is left out. */
-static unsigned shrunk(const struct table *table, unsigned i)
-{
-	unsigned to = table->columns[i].shrink;
-
-	return to > 0 && to < table->width[i] ? to : table->width[i];
-}
-
-/* The columns that cutting can gain. */
-static unsigned slack(const struct table *table)
-{
-	unsigned sum = 0;
-
-	for (unsigned i = 0; i < table->count; i++)
-		if (table->shown[i])
-			sum += table->width[i] - shrunk(table, i);
-	return sum;
-}
-
 /* The widest column that may be cut (gently: not below its shrink), or -1. */
 static int widest(const struct table *table, bool gently)
 {
 	int found = -1;
 
-	for (unsigned i = 0; i < table->count; i++)
-		if (table->shown[i] && table->width[i] > (gently ? shrunk(table, i) : LEAST) &&
+	for (unsigned i = 0; i < table->count; i++) {
+		unsigned to = !gently ? LEAST : table->columns[i].shrink;
+
+		if (table->shown[i] && to && table->width[i] > to &&
 		    (found < 0 || table->width[i] > table->width[found]))
 			found = (int)i;
+	}
 	return found;
 }
 
@@ -149,22 +133,26 @@ static void table_measure(struct table *table, unsigned i)
 
 void table_fit(struct table *table, unsigned columns)
 {
-	int i;
+	int i, k;
 
-	for (unsigned k = 0; k < table->count; k++) {
-		table->shown[k] = !table->absent[k];
-		table_measure(table, k);
+	for (unsigned n = 0; n < table->count; n++) {
+		table->shown[n] = !table->absent[n];
+		table_measure(table, n);
 	}
-	if (columns == 0)
-		return;
-	while (total(table) > columns && (i = to_drop(table, true)) >= 0)
+	while (columns && total(table) > columns) {
+		i = to_drop(table, true);
+		while (i < 0 && total(table) > columns && (k = widest(table, true)) >= 0)
+			table->width[k]--;
+		if (i < 0 && total(table) > columns)
+			i = to_drop(table, false);
+		if (i < 0)
+			break;
 		table->shown[i] = false;
-	while (total(table) > columns + slack(table) && (i = to_drop(table, false)) >= 0)
-		table->shown[i] = false;
-	while (total(table) > columns && (i = widest(table, true)) >= 0)
-		table->width[i]--;
-	while (total(table) > columns && (i = widest(table, false)) >= 0)
-		table->width[i]--;
+		/* there is room again: the others are cut no more than they have to be */
+		memcpy(table->width, table->natural, sizeof(table->width));
+	}
+	while (columns && total(table) > columns && (k = widest(table, false)) >= 0)
+		table->width[k]--;
 }
 
 /* Blanks after a cell of a right column, so that the decimal points stand below each other. */

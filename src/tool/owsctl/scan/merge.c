@@ -15,29 +15,29 @@ static int merge_find(const struct merge_device *list, unsigned count, const uin
 	return -1;
 }
 
-static enum merge_fault merge_replace(struct merge_device *known, unsigned known_count,
-                                      struct merge_device *found, unsigned found_count,
-                                      const struct merge_pair *pair)
+static const char *merge_replace(struct merge_device *known, unsigned known_count,
+                                 struct merge_device *found, unsigned found_count,
+                                 const struct merge_pair *pair)
 {
 	int old = merge_find(known, known_count, pair->old_rom);
 	int new = merge_find(found, found_count, pair->new_rom);
 
 	if (old < 0)
-		return MERGE_OLD_UNKNOWN;
+		return "no item of the file has this device";
 	if (known[old].fate == MERGE_STAYS)
-		return MERGE_OLD_FOUND;
+		return "the old device is still there";
 	if (new < 0)
-		return MERGE_NEW_ABSENT;
+		return "the new device was not found";
 	if (found[new].fate == MERGE_STAYS)
-		return MERGE_NEW_KNOWN;
+		return "the new device has items in the file already";
 	if (known[old].rom[0] != found[new].rom[0])
-		return MERGE_FAMILY;
+		return "they are of different families, which have different properties";
 	if (known[old].fate == MERGE_REPLACED || found[new].fate == MERGE_REPLACED)
-		return MERGE_TWICE;
+		return "one of the two is in another --replace too";
 	known[old].fate = found[new].fate = MERGE_REPLACED;
 	known[old].other = new;
 	found[new].other = old;
-	return MERGE_RIGHT;
+	return NULL;
 }
 
 static unsigned merge_count(const struct merge_device *list, unsigned n, uint8_t family,
@@ -68,9 +68,9 @@ static void pair_up(struct merge_device *known, unsigned known_count, struct mer
 	}
 }
 
-enum merge_fault merge_decide(struct merge_device *known, unsigned known_count,
-                              struct merge_device *found, unsigned found_count,
-                              const struct merge_pair *pairs, unsigned pair_count, unsigned *wrong)
+const char *merge_decide(struct merge_device *known, unsigned known_count,
+                         struct merge_device *found, unsigned found_count,
+                         const struct merge_pair *pairs, unsigned pair_count, unsigned *wrong)
 {
 	for (unsigned i = 0; i < known_count; i++) {
 		bool there = merge_find(found, found_count, known[i].rom) >= 0;
@@ -87,12 +87,12 @@ enum merge_fault merge_decide(struct merge_device *known, unsigned known_count,
 		found[i].pairs = 0;
 	}
 	for (*wrong = 0; *wrong < pair_count; ++*wrong) {
-		enum merge_fault fault = merge_replace(known, known_count, found, found_count,
-		                                       &pairs[*wrong]);
+		const char *fault = merge_replace(known, known_count, found, found_count,
+		                                  &pairs[*wrong]);
 
-		if (fault != MERGE_RIGHT)
+		if (fault)
 			return fault;
 	}
 	pair_up(known, known_count, found, found_count);
-	return MERGE_RIGHT;
+	return NULL;
 }

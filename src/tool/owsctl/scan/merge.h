@@ -29,21 +29,11 @@ struct merge_pair {
 	uint8_t old_rom[ROM_LEN], new_rom[ROM_LEN];
 };
 
-enum merge_fault {
-	MERGE_RIGHT,
-	MERGE_OLD_UNKNOWN, /* no item of the file has OLD */
-	MERGE_OLD_FOUND,   /* OLD is still there */
-	MERGE_NEW_ABSENT,  /* NEW was not found */
-	MERGE_NEW_KNOWN,   /* NEW has items in the file */
-	MERGE_FAMILY,      /* the two have other properties */
-	MERGE_TWICE,       /* OLD or NEW stands in two pairs */
-};
-
 /*
  * Fill in the fates of the devices in the file (known) and of those found; each list has a device
- * once. A device is replaced only where a pair asks for it. Returns what is wrong with the first
- * wrong pair; *wrong gets its index, and the lists are then without meaning.
+ * once. A device is replaced only where a pair asks for it. Returns NULL; or what is
+ * wrong with the first wrong pair: *wrong gets its index, and the lists are then without meaning.
  */
-enum merge_fault merge_decide(struct merge_device *known, unsigned known_count,
-                              struct merge_device *found, unsigned found_count,
-                              const struct merge_pair *pairs, unsigned pair_count, unsigned *wrong);
+const char *merge_decide(struct merge_device *known, unsigned known_count,
+                         struct merge_device *found, unsigned found_count,
+                         const struct merge_pair *pairs, unsigned pair_count, unsigned *wrong);

@@ -11,7 +11,6 @@
 #include "src/config/read/config.h"
 #include "src/config/read/load.h"
 #include "src/ground/signal/error.h"
-#include "src/ground/signal/hash.h"
 #include "src/ground/signal/value.h"
 #include "src/tool/owsctl/ctl.h"
 #include "src/tool/owsctl/scan/scan_item.h"
@@ -20,11 +19,9 @@
 void scan_names_init(struct scan_names *names, size_t room)
 {
 	*names = (struct scan_names){.name = ctl_need(calloc(room + 1, sizeof(*names->name))),
-	                             .room = (unsigned)room,
-	                             .slots = 2};
-	while (names->slots < 2 * room)
-		names->slots *= 2;
-	names->slot = ctl_need(calloc(names->slots, sizeof(*names->slot)));
+	                             .room = (unsigned)room};
+	if (!hcreate_r(2 * room + 1, &names->used))
+		ctl_need(NULL);
 	names->items = ctl_need(open_memstream(&names->text, &names->len));
 }
 
@@ -43,38 +40,28 @@ void scan_names_free(struct scan_names *names)
 {
 	fclose(names->items);
 	free(names->text);
-	free(names->slot);
+	hdestroy_r(&names->used);
 	free(names->name);
-}
-
-/* The name's slot in the hash table, or the free slot for it. Half of the slots stay free. */
-static unsigned *scan_item_find(const struct scan_names *names, const char *name)
-{
-	unsigned at = (unsigned)hash_text(HASH_BEGIN, name, strlen(name)) & (names->slots - 1);
-
-	for (; names->slot[at]; at = (at + 1) & (names->slots - 1))
-		if (!strcmp(names->name[names->slot[at] - 1], name))
-			break;
-	return &names->slot[at];
 }
 
 void scan_names_add(struct scan_names *names, const char *name)
 {
 	char *to = names->name[names->count];
-	unsigned *slot;
+	ENTRY *entered;
 
 	if (names->count == names->room)
 		return;
 	memcpy(to, name, strnlen(name, SIGNAL_NAME_MAX)); /* the other bytes are 0 */
-	slot = scan_item_find(names, to);
 	names->count++;
-	if (!*slot)
-		*slot = names->count;
+	hsearch_r((ENTRY){.key = to}, ENTER, &entered, &names->used);
 }
 
-static bool is_free(const struct scan_names *names, const char *name)
+static bool is_free(struct scan_names *names, char *name)
 {
-	return !*scan_item_find(names, name) && !signal_name_fault(name);
+	ENTRY *found;
+
+	return !hsearch_r((ENTRY){.key = name}, FIND, &found, &names->used) &&
+	       !signal_name_fault(name);
 }
 
 /* The last number given for the word: the search for a free number goes on from there. */
@@ -93,7 +80,7 @@ static unsigned *last_of(struct scan_names *names, const char *word)
 }
 
 /* A name of the alias, where a line stands for what no name may hold: "Bath_room". */
-static bool choose_alias(const struct scan_names *names, const struct scan_device *device,
+static bool choose_alias(struct scan_names *names, const struct scan_device *device,
                          const char *word, char *name, size_t room)
 {
 	char number[12] = "";

@@ -2,6 +2,7 @@
 /* Makes items of a configuration for devices that were found, with names that are free. */
 #pragma once
 
+#include <search.h>
 #include <stdio.h>
 
 #include "src/config/read/rio.h"
@@ -22,8 +23,7 @@ struct scan_choice {
 struct scan_names {
 	char (*name)[SIGNAL_NAME_MAX + 1];
 	unsigned count, room;
-	unsigned *slot; /* hash table of names: number of the name + 1, 0: free */
-	unsigned slots; /* a power of two */
+	struct hsearch_data used;
 	struct scan_word {
 		char word[24];
 		unsigned last; /* the last number given for the word */

@@ -195,24 +195,10 @@ static bool parse_pair(struct work *work, const char *text, struct merge_pair *p
 	return false;
 }
 
-static int scan_merge_refuse(const char *pair, enum merge_fault fault)
-{
-	static const char *const reasons[] = {
-		[MERGE_OLD_UNKNOWN] = "no item of the file has this device",
-		[MERGE_OLD_FOUND] = "the old device is still there",
-		[MERGE_NEW_ABSENT] = "the new device was not found",
-		[MERGE_NEW_KNOWN] = "the new device has items in the file already",
-		[MERGE_FAMILY] = "they are of different families, which have different properties",
-		[MERGE_TWICE] = "one of the two is in another --replace too",
-	};
-
-	return ctl_fail("--replace %s: %s", pair, reasons[fault]);
-}
-
 static int decide(struct work *work)
 {
 	const struct scan_merge *merge = work->merge;
-	enum merge_fault fault;
+	const char *fault;
 	unsigned wrong;
 
 	for (unsigned i = 0; i < merge->pair_count; i++)
@@ -220,7 +206,7 @@ static int decide(struct work *work)
 			return CTL_USAGE;
 	fault = merge_decide(work->known, work->known_count, work->found, work->scan->count,
 	                     work->pair, merge->pair_count, &wrong);
-	return fault == MERGE_RIGHT ? CTL_DONE : scan_merge_refuse(merge->pair[wrong], fault);
+	return fault ? ctl_fail("--replace %s: %s", merge->pair[wrong], fault) : CTL_DONE;
 }
 
 /* "room1, room2 and 3 more": the signals of a device of the file. */
