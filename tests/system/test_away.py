@@ -74,7 +74,7 @@ class Beside:
             "owsd-recorder": recorded.record(scene, daemon),
             "owsd-web": webhouse.serve(scene, daemon),
             "owsd-mqtt": self.face("owsd-mqtt"),
-            "owsd-influx": self.face("owsd-influx", "-d", scene.path / "spool"),
+            "owsd-influx": self.face("owsd-influx"),
             "owsd-config": scene.start([writer, "-n", self.name, "-c", daemon.config]),
             "owsctl": scene.start([OWSCTL, "-n", self.name, "watch", "-l"]),
             "poller": scene.start([POLLER, self.name]),
@@ -257,9 +257,8 @@ def test_a_broker_and_a_database_that_were_away_for_a_minute_are_found_within_15
     faces = {}
     for n in range(4):
         config = scene.file(f"house{n}.rio", daemon.config.read_text().replace('"pi7"', f'"pi{n}"'))
-        for program, more in (("owsd-mqtt", []), ("owsd-influx", ["-d", scene.path / f"spool{n}"])):
-            faces[program, n] = scene.start([BUILD / program, "-n", daemon.name, "-c", config, *more],
-                                            {"no_proxy": "*"})
+        for program in ("owsd-mqtt", "owsd-influx"):
+            faces[program, n] = scene.start([BUILD / program, "-n", daemon.name, "-c", config], {"no_proxy": "*"})
 
     def back():
         return sum(faces["owsd-mqtt", n].log().count("connected to") > 1 for n in range(4))

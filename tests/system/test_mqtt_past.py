@@ -218,9 +218,8 @@ def test_what_was_after_a_boot_that_a_new_history_does_not_know_is_sent(scene):
     plant.has(1)
     assert plant.house.face.stop() == 0
     # the power was cut there, and the recorder began a new file
-    head, reached, *rest = plant.reached.read_text().splitlines()
-    boot, *moment = reached.split()
-    plant.reached.write_text("\n".join([head, " ".join([str(int(boot) ^ 1), *moment]), *rest, ""]))
+    name, version, key, count, boot, *moments = plant.reached.read_text().split()
+    plant.reached.write_text(" ".join([name, version, key, count, str(int(boot) ^ 1), *moments]) + "\n")
     plant.turn(2, 3)
     plant.recorded(2, 3)
     plant.house.face = plant.house.start(plant.env)

@@ -68,7 +68,7 @@ def test_a_reload_costs_no_descriptor_no_memory_and_no_place(scene):
     programs = {"owsd": daemon, "mqtt": house.face, "web": web, "recorder": recorder}
     if "owsd-influx left-out" not in (BUILD / "with/libraries").read_text():
         programs["influx"] = scene.start([BUILD / "owsd-influx", "-n", daemon.name, "-c",
-                                          daemon.config, "-d", scene.path / "spool"])
+                                          daemon.config])
     for name, text in (("idle", IDLE), ("busy", BUSY)):
         programs[name] = scene.start(["python3", "-c", text, daemon.name], {"PYTHONPATH": str(PYTHON)})
     # owsd-mqtt has commanded once, and is idle then

@@ -139,8 +139,7 @@ class House:
         self.base = {
             "Web": {"Files": self.page},
             "Mqtt": {"Broker": f"mqtt://127.0.0.1:{self.broker.port}", "Node": "pi7"},
-            "Influx": {"Url": self.server.url + "/write", "Every": raw("0.2"),
-                       "Spool": scene.path / "spool", "ClockWait": raw("0")},
+            "Influx": {"Url": self.server.url + "/write", "Every": raw("0.2"), "ClockWait": raw("0")},
             "Recorder": {"Directory": scene.path / "history", "Flush": raw("1")},
         }
         self.wire = scene.file("house.sim", "chip DS2482-100 0x18\n"
@@ -247,13 +246,10 @@ def web_keys(house):
 def influx_keys(house):
     url = house.server.url
     token = password_file(house.scene, "token", "abc")
-    spool = house.scene.path / "spool2"
     yield key("Url", url + "/other", pushed(lambda path, *_: path.startswith("/other")))
     yield key("Every", raw("0.2"), House.pushes, Every=raw("3600"))
     yield key("TokenFile", token, pushed(lambda _, got, __: got and "abc" in got))
     yield key("Measurement", "plant", pushed(lambda _, __, body: "\nplant," in f"\n{body}"))
-    yield key("Spool", spool, lambda _: spool.is_dir())
-    yield key("SpoolSize", raw("7"), said("SpoolSize 7 MB"))
     yield key("ClockWait", raw("77"), said("ClockWait 77 s"))
 
 

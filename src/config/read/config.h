@@ -160,8 +160,7 @@ struct config_recorder {
 struct config_influx {
 	bool given;
 	const char *url; /* NULL only without the block, or with an error in it */
-	const char *token_file, *measurement, *spool;
-	unsigned spool_mb;
+	const char *token_file, *measurement;
 	int64_t every_ns, clock_wait_ns;
 };
 

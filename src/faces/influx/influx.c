@@ -14,7 +14,6 @@ int main(int argc, char **argv)
 {
 	static const struct face_ops ops = {
 		.program = "owsd-influx",
-		.option = {'d', "directory", "DIR", "where batches wait, in place of Spool"},
 		.check = check,
 		.open = pushing_open,
 		.changes = pushing_changes,

@@ -5,17 +5,13 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "src/history/file/place.h"
-
 struct face;
 
 struct push_options {
 	char url[256]; /* "": there is no block */
-	char token_file[256], measurement[64], spool[HISTORY_PATH];
-	unsigned spool_mb;
+	char token_file[256], measurement[64];
 	int64_t every_ns, clock_wait_ns;
 };
 
-/* Option -d counts more than Spool. 0, -ENAMETOOLONG: the directory's path. */
-int push_options_take(struct push_options *options, const struct face *face);
+void push_options_take(struct push_options *options, const struct face *face);
 bool push_options_same(const struct push_options *a, const struct push_options *b);

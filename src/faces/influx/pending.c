@@ -18,7 +18,9 @@ struct head {
 void pending_free(struct pending *pending)
 {
 	free(pending->data);
-	*pending = (struct pending){.dropped = pending->dropped};
+	*pending = (struct pending){.first = pending->first + pending->lines,
+	                            .dropped = pending->dropped,
+	                            .dropped_ns = pending->dropped_ns};
 }
 
 /* Of the line at that place. */
@@ -34,6 +36,7 @@ static void remove_first(struct pending *pending, size_t bytes, unsigned lines)
 {
 	pending->len -= bytes;
 	pending->lines -= lines;
+	pending->first += lines;
 	if (pending->len)
 		memmove(pending->data, pending->data + bytes, pending->len);
 }
@@ -43,8 +46,13 @@ static void drop_quarter(struct pending *pending)
 	unsigned lines = 0;
 	size_t at = 0;
 
-	for (; at < pending->len && at < pending->room / 4; lines++)
-		at += sizeof(struct head) + head_at(pending, at).size;
+	for (; at < pending->len && at < pending->room / 4; lines++) {
+		struct head head = head_at(pending, at);
+
+		at += sizeof(head) + head.size;
+		if (head.time_ns > pending->dropped_ns)
+			pending->dropped_ns = head.time_ns;
+	}
 	remove_first(pending, at, lines);
 	pending->dropped += lines;
 }
@@ -83,15 +91,17 @@ void pending_add(struct pending *pending, int64_t time_ns, const char *series, c
 	pending->lines++;
 }
 
-size_t pending_copy(const struct pending *pending, int64_t offset_ns, char batch[BATCH_BYTES],
-                    unsigned *lines)
+size_t pending_copy(const struct pending *pending, int64_t offset_ns, size_t most,
+                    char batch[BATCH_BYTES], unsigned *lines)
 {
 	size_t len = 0, at = 0;
 
+	if (most > BATCH_BYTES)
+		most = BATCH_BYTES;
 	for (*lines = 0; at < pending->len && *lines < BATCH_LINES; ++*lines) {
 		struct head head = head_at(pending, at);
 
-		if (len + head.size + TIME_TEXT > BATCH_BYTES)
+		if (*lines && len + head.size + TIME_TEXT > most)
 			break;
 		at += sizeof(head);
 		len += (size_t)snprintf(batch + len, head.size + TIME_TEXT, "%s %" PRId64 "\n",
@@ -101,34 +111,17 @@ size_t pending_copy(const struct pending *pending, int64_t offset_ns, char batch
 	return len;
 }
 
-void pending_remove(struct pending *pending, unsigned lines)
+void pending_remove(struct pending *pending, uint64_t before)
 {
+	unsigned lines = 0;
 	size_t at = 0;
 
-	for (unsigned i = 0; i < lines; i++)
+	for (; at < pending->len && pending->first + lines < before; lines++)
 		at += sizeof(struct head) + head_at(pending, at).size;
 	remove_first(pending, at, lines);
-}
-
-size_t pending_cut(struct pending *pending, int64_t offset_ns, char batch[BATCH_BYTES])
-{
-	unsigned lines;
-	size_t len = pending_copy(pending, offset_ns, batch, &lines);
-
-	pending_remove(pending, lines);
-	return len;
 }
 
 bool pending_is_full(const struct pending *pending)
 {
 	return pending->lines >= BATCH_LINES || pending->len >= BATCH_BYTES / 2;
-}
-
-unsigned batch_lines(const char *batch, size_t len)
-{
-	unsigned lines = 0;
-
-	for (size_t i = 0; i < len; i++)
-		lines += batch[i] == '\n';
-	return lines;
 }

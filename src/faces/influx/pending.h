@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Lines that wait in memory to be sent, with boot times, as the wall clock may not be known yet. A
- * batch is lines with their wall-clock times. Bounded; allocates in pending_add() alone.
+ * batch is a copy of the oldest lines with their wall-clock times; they stay until the server has
+ * them. Bounded; allocates in pending_add() alone.
  */
 #pragma once
 
@@ -18,22 +19,22 @@ struct pending {
 	char *data;
 	size_t len, room;
 	unsigned lines;
-	uint64_t dropped; /* lines: the oldest ones, for which there was no room */
+	uint64_t first;     /* the number of the oldest line */
+	uint64_t dropped;   /* lines: the oldest ones, for which there was no room */
+	int64_t dropped_ns; /* the newest time of these */
 };
 
 void pending_free(struct pending *pending);
 /* A line without its time: series, blank, fields. Without room the oldest quarter goes. */
 void pending_add(struct pending *pending, int64_t time_ns, const char *series, const char *fields);
 /*
- * Move the oldest lines to a batch, as many as one may have. Returns its length; 0: nothing waits.
- * offset_ns: wall clock minus boot time.
+ * Copy the oldest lines, whole ones, at most most bytes of them (and BATCH_BYTES), but one at
+ * least. Returns the length; 0: nothing waits. *lines is how many there are. offset_ns: wall clock
+ * minus boot time.
  */
-size_t pending_cut(struct pending *pending, int64_t offset_ns, char batch[BATCH_BYTES]);
-/* The same, and they stay: *lines is how many there are, for pending_remove(). */
-size_t pending_copy(const struct pending *pending, int64_t offset_ns, char batch[BATCH_BYTES],
-                    unsigned *lines);
-/* Remove the oldest lines. */
-void pending_remove(struct pending *pending, unsigned lines);
+size_t pending_copy(const struct pending *pending, int64_t offset_ns, size_t most,
+                    char batch[BATCH_BYTES], unsigned *lines);
+/* Remove what is there yet of the lines before that number. */
+void pending_remove(struct pending *pending, uint64_t before);
 /* There is a whole batch. */
 bool pending_is_full(const struct pending *pending);
-unsigned batch_lines(const char *batch, size_t len);

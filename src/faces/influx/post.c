@@ -184,10 +184,23 @@ static void finish_post(struct post *post, CURLcode code, struct post_result *re
 	post_cancel(post);
 }
 
+/* There is one transfer, so the first message that one is done is of it, and the last. */
+static bool is_over(struct post *post, struct post_result *result)
+{
+	CURLMsg *message;
+	int left;
+
+	while ((message = curl_multi_info_read(post->multi, &left)))
+		if (message->msg == CURLMSG_DONE && post->busy) {
+			finish_post(post, message->data.result, result);
+			return true;
+		}
+	return false;
+}
+
 bool post_step(struct post *post, int fd, short ready, struct post_result *result)
 {
-	int flags = 0, running, left;
-	CURLMsg *message;
+	int flags = 0, running;
 
 	if (ready & (POLLIN | POLLHUP))
 		flags |= CURL_CSELECT_IN;
@@ -198,11 +211,19 @@ bool post_step(struct post *post, int fd, short ready, struct post_result *resul
 	if (fd < 0)
 		post->next_ns = INT64_MAX;
 	curl_multi_socket_action(post->multi, fd < 0 ? CURL_SOCKET_TIMEOUT : fd, flags, &running);
-	while ((message = curl_multi_info_read(post->multi, &left)))
-		if (message->msg == CURLMSG_DONE && post->busy) {
-			finish_post(post, message->data.result, result);
+	return is_over(post, result);
+}
+
+bool post_wait(struct post *post, int64_t until_ns, struct post_result *result)
+{
+	int running;
+
+	while (post->busy && ows_now() < until_ns) {
+		curl_multi_poll(post->multi, NULL, 0, 50, NULL);
+		curl_multi_perform(post->multi, &running);
+		if (is_over(post, result))
 			return true;
-		}
+	}
 	return false;
 }
 

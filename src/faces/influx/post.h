@@ -33,6 +33,8 @@ bool post_is_busy(const struct post *post);
  * says how.
  */
 bool post_step(struct post *post, int fd, short ready, struct post_result *result);
+/* Wait for the end, at the end of the program. True: it is over before that time, with *result. */
+bool post_wait(struct post *post, int64_t until_ns, struct post_result *result);
 /* When to go on if no descriptor is ready: CLOCK_BOOTTIME; INT64_MAX: never. */
 int64_t post_next(const struct post *post);
 /* Give up. The server may have got the data, or not. */

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "hal/base/time.h"
-#include "src/faces/influx/disk.h"
 #include "src/faces/influx/post.h"
 #include "src/faces/influx/pushing.h"
 #include "src/faces/influx/sending.h"
@@ -14,6 +13,7 @@
 /* Of changes of a signal that come closer together the newest is sent */
 #define PACE_NS (20 * NS_PER_MS)
 #define TICK_NS NS_PER_S
+#define END_NS (5 * NS_PER_S)
 
 static void pushing_watch(void *ctx, int fd, short events)
 {
@@ -22,17 +22,18 @@ static void pushing_watch(void *ctx, int fd, short events)
 		log_err(((struct face *)ctx)->log, "too many descriptors");
 }
 
-static void open_spool(struct face *face)
+/* missed.identity */
+static const char *identity_of(void *ctx, int row, uint8_t *type)
 {
-	struct pushing *p = face->own;
-	int err = spool_open(&p->spool, p->options.spool, (uint64_t)p->options.spool_mb * 1000000,
-	                     &spool_disk_system);
+	struct face *face = ctx;
+	const struct pushing *p = face->own;
+	struct ows_info info;
 
-	sending_report_disk(face, err);
-	p->lost_bytes = 0;
-	if (!err && spool_count(&p->spool))
-		log_notice(face->log, "%zu batches wait in %s", spool_count(&p->spool),
-		           p->options.spool);
+	if (row >= p->points.count || !p->points.rows[row].series ||
+	    ows_info(face->ows, row, &info))
+		return NULL;
+	*type = info.type;
+	return info.identity;
 }
 
 static void pushing_begin(struct face *face, int64_t now_ns)
@@ -44,34 +45,40 @@ static void pushing_begin(struct face *face, int64_t now_ns)
 	backoff_forget(&p->backoff);
 	p->next_ns = now_ns;
 	p->cut_ns = now_ns + p->options.every_ns;
+	p->most = BATCH_BYTES;
 	sending_read_token(face);
-	open_spool(face);
-	log_notice(face->log, "pushing to %.100s, spool %s", p->options.url, p->options.spool);
-	log_info(face->log, "SpoolSize %llu MB, ClockWait %lld s",
-	         (unsigned long long)(p->spool.limit / 1000000),
-	         (long long)(p->options.clock_wait_ns / NS_PER_S));
+	p->missed = (struct missed){.face = face,
+	                            .peer = "the server",
+	                            .what = "influx",
+	                            .identity = identity_of,
+	                            .ctx = face,
+	                            .dated = p->clock.trusted};
+	/* one key: what a server could not take goes to the one that another Url names */
+	missed_begin(&p->missed, 1, now_ns);
+	p->missed_ns = now_ns;
+	p->rows_end = 0;
+	log_notice(face->log, "pushing to %.100s", p->options.url);
+	log_info(face->log, "ClockWait %lld s", (long long)(p->options.clock_wait_ns / NS_PER_S));
 }
 
-/* What is under way and in memory goes to the spool, if its time is known. */
+/* What is in memory goes out, if the server takes it at once; else the history has to have it. */
 static void pushing_end(struct face *face)
 {
 	struct pushing *p = face->own;
+	int64_t until_ns = ows_now() + END_NS;
+	struct post_result result;
 
-	post_cancel(p->post);
-	if (p->spooled)
-		p->batch_len = 0;
-	while (p->on && p->believed && (p->batch_len || p->pending.lines)) {
-		if (!p->batch_len)
-			sending_cut(p);
-		if (!sending_put_away(face)) {
-			log_err(face->log, "%u values are lost",
-			        batch_lines(p->batch, p->batch_len));
+	while (p->on && p->trouble == PUSH_WELL && ows_now() < until_ns) {
+		sending_advance(face, true, ows_now());
+		if (!post_wait(p->post, until_ns, &result))
 			break;
-		}
+		sending_finished(face, &result, ows_now());
 	}
-	sending_drop(p);
-	p->part.most = 0;
-	spool_close(&p->spool);
+	post_cancel(p->post);
+	if (p->on) {
+		missed_keep(&p->missed, 0, ows_now());
+		missed_drop(&p->missed);
+	}
 	p->on = false;
 }
 
@@ -79,6 +86,7 @@ static void make_points(struct face *face)
 {
 	struct pushing *p = face->own;
 
+	missed_drop(&p->missed); /* its rows are those of the image */
 	if (!p->on || !face->live) {
 		points_free(&p->points);
 		return;
@@ -98,10 +106,8 @@ static void take_file(struct face *face, int64_t now_ns)
 	struct pushing *p = face->own;
 	struct push_options options;
 
-	if (push_options_take(&options, face)) {
-		log_err(face->log, "the path of the spool is too long: it stays %s",
-		        p->options.spool);
-	} else if (!push_options_same(&options, &p->options)) {
+	push_options_take(&options, face);
+	if (!push_options_same(&options, &p->options)) {
 		pushing_end(face);
 		p->options = options;
 		if (*options.url)
@@ -122,7 +128,6 @@ int pushing_open(struct face *face)
 	struct pushing *p = face->own = &pushing;
 	int64_t now_ns = ows_now();
 
-	p->spool.dir = -1;
 	p->post = post_open(pushing_watch, face);
 	if (!p->post) {
 		face_complain(face->ops->program, "libcurl cannot be used: no memory");
@@ -140,9 +145,12 @@ void pushing_close(struct face *face)
 	struct pushing *p = face->own;
 
 	pushing_end(face);
-	if (p->pending.lines)
-		log_err(face->log, "%u values in memory are lost%s", p->pending.lines,
-		        p->believed ? "" : ": the time is not known yet");
+	if (p->pending.lines && !p->believed)
+		log_err(face->log, "%u values in memory are lost: the time is not known yet",
+		        p->pending.lines);
+	else if (p->pending.lines)
+		log_notice(face->log, "%u values in memory %s", p->pending.lines,
+		           p->missed.there ? "will come from the history" : "are lost");
 	pending_free(&p->pending);
 	post_close(p->post);
 	points_free(&p->points);
@@ -154,6 +162,7 @@ static void believe_clock(struct face *face, int64_t now_ns)
 	struct pushing *p = face->own;
 
 	wall_clock_look(&p->clock, now_ns);
+	p->missed.dated = p->clock.trusted;
 	if (p->believed || !p->on)
 		return;
 	p->believed = p->clock.trusted || now_ns >= p->options.clock_wait_ns;
@@ -162,20 +171,6 @@ static void believe_clock(struct face *face, int64_t now_ns)
 		            "nobody has set the clock %lld s after the boot: it is "
 		            "believed as it is",
 		            (long long)(now_ns / NS_PER_S));
-}
-
-static void report_dropped(struct face *face)
-{
-	struct pushing *p = face->own;
-
-	if (p->spool.dropped != p->lost_bytes)
-		log_warning(face->log, "the spool is full: the oldest batches are dropped, %llu kB",
-		            (unsigned long long)(p->spool.dropped / 1000));
-	if (p->pending.dropped != p->lost_lines)
-		log_warning(face->log, "too much waits in memory: %llu values are dropped",
-		            (unsigned long long)p->pending.dropped);
-	p->lost_bytes = p->spool.dropped;
-	p->lost_lines = p->pending.dropped;
 }
 
 static void pushing_status(struct face *face)
@@ -190,11 +185,10 @@ static void pushing_status(struct face *face)
 	                                                : "waiting for owsd";
 
 	face_status(face,
-	            "%s; %llu values sent, %u in memory, %zu batches wait, %llu refused, %llu kB "
-	            "and %llu values dropped",
-	            state, (unsigned long long)p->sent, p->pending.lines, spool_count(&p->spool),
-	            (unsigned long long)p->refused_batches,
-	            (unsigned long long)(p->spool.dropped / 1000),
+	            "%s; %llu values sent, %u in memory, %llu from the history, %llu refused, "
+	            "%llu dropped",
+	            state, (unsigned long long)p->sent, p->pending.lines,
+	            (unsigned long long)p->missed.sent, (unsigned long long)p->refused_lines,
 	            (unsigned long long)p->pending.dropped);
 }
 
@@ -209,7 +203,7 @@ static void push_on(struct face *face, int fd, short ready)
 	believe_clock(face, now_ns);
 	if ((fd >= 0 || now_ns >= post_next(p->post)) && post_step(p->post, fd, ready, &result))
 		sending_finished(face, &result, now_ns);
-	sending_advance(face, now_ns);
+	sending_advance(face, false, now_ns);
 	face->tick_ns = now_ns + TICK_NS;
 	if (post_next(p->post) < face->tick_ns)
 		face->tick_ns = post_next(p->post);
@@ -221,12 +215,10 @@ void pushing_tick(struct face *face, int64_t now_ns)
 {
 	struct pushing *p = face->own;
 
-	if (p->on && p->spool.dir < 0)
-		open_spool(face);
 	if (p->on && look_is_current(face))
 		points_repeat(&p->points, face->ows, &p->pending, now_ns);
 	push_on(face, -1, 0);
-	report_dropped(face);
+	sending_look_at_dropped(face);
 	pushing_status(face);
 }
 

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The face that pushes: lines wait in memory, become a batch each few seconds, and a batch that the
- * server does not take becomes a file of the spool. One batch at a time is under way.
+ * The face that pushes: lines wait in memory, and go as a batch each few seconds; what a server has
+ * missed comes from the history of owsd-recorder. One batch at a time is under way.
  *
- * Room src/faces/influx: the program owsd-influx: pushes signals to a server, and spools what it
- * does not take.
+ * Room src/faces/influx: the program owsd-influx: pushes signals to a server.
  */
 #pragma once
 

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /* Makes batches, sends them, and does what the answer of the server asks for. */
-#include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "hal/base/time.h"
 #include "src/faces/influx/post.h"
 #include "src/faces/influx/sending.h"
 #include "src/faces/kit/face.h"
+#include "src/faces/kit/look.h"
+#include "src/ground/text/influx.h"
 
-/* A server that answers sooner costs no file, whatever Every is */
-#define ANSWER_NS NS_PER_S
-#define UNREAD_NS (10 * NS_PER_S)
+#define ROWS 500 /* of the history at a time */
 
 void sending_read_token(struct face *face)
 {
@@ -24,77 +24,61 @@ void sending_read_token(struct face *face)
 		log_err(face->log, "without a token: %s", why);
 }
 
-/* Once when it begins, once when it is over. */
-void sending_report_disk(struct face *face, int err)
+/* --- What the server has missed -------------------------------------------------------------- */
+
+void sending_look_at_dropped(struct face *face)
 {
 	struct pushing *p = face->own;
 
-	if (err && err != p->disk_err)
-		log_err(face->log, "%s cannot be written: %s%s; what waits is in memory alone",
-		        p->options.spool, strerror(-err),
-		        err == -EBUSY ? "; another owsd-influx writes there: end it, or give one "
-		                        "of the two another Spool"
-		                      : "");
-	if (!err && p->disk_err)
-		log_notice(face->log, "%s is written again", p->options.spool);
-	p->disk_err = err;
+	if (p->pending.dropped == p->lost_lines)
+		return;
+	log_warning(face->log, "too much waits in memory: %llu values are dropped%s",
+	            (unsigned long long)(p->pending.dropped - p->lost_lines),
+	            p->missed.there ? ", and will come from the history" : "");
+	p->lost_lines = p->pending.dropped;
+	p->missed_ns = p->pending.dropped_ns + 1;
+	p->rows_end = 0; /* they are read once more */
 }
 
-static bool put(struct face *face, const char *lines, size_t len)
+/* A row of the history as a line; a gap of all is one of each signal, with its quality alone. */
+static void add_row(struct pushing *p, const struct replay_row *row)
+{
+	bool gap = row->signal == -1;
+	int first = gap ? 0 : row->signal, end = gap ? p->points.count : row->signal + 1;
+	struct ows_value v = row->v;
+	char fields[INFLUX_FIELDS + 16];
+
+	if (gap)
+		v = (struct ows_value){.quality = OWS_Q_STALE};
+	points_fields(&v, row->text ? row->text : "", fields, sizeof(fields));
+	for (int i = first; i >= 0 && i < end; i++)
+		if (p->points.rows[i].series)
+			pending_add(&p->pending, row->wall_us * 1000 - p->clock.offset_ns,
+			            p->points.rows[i].series, fields);
+}
+
+static void take_rows(struct face *face, int64_t now_ns)
 {
 	struct pushing *p = face->own;
-	int err;
+	struct replay_row rows[ROWS];
+	int n = 0;
 
-	err = spool_put(&p->spool, lines, len);
-	/* the directory has gone, or was never there: it is opened again */
-	if (err == -ENOENT)
-		spool_close(&p->spool);
-	if (err != -EBADF)
-		sending_report_disk(face, err);
-	return !err;
+	if (!p->rows_end && !p->missed_ns && p->pending.lines < BATCH_LINES / 2 &&
+	    missed_look(&p->missed, now_ns))
+		n = missed_read(&p->missed, p->points.count, rows, ROWS, now_ns);
+	for (int i = 0; i < n; i++) {
+		add_row(p, &rows[i]);
+		free(rows[i].text);
+	}
+	if (!n)
+		return;
+	p->rows = n;
+	p->at = rows[n - 1].at;
+	p->rows_end = p->pending.first + p->pending.lines;
+	p->cut_ns = now_ns;
 }
 
-bool sending_put_away(struct face *face)
-{
-	struct pushing *p = face->own;
-
-	if (!put(face, p->batch, p->batch_len))
-		return false;
-	p->batch_len = 0;
-	return true;
-}
-
-/* The server does not answer in time: what is under way, and what has come since, may be lost. */
-static void put_behind(struct face *face)
-{
-	struct pushing *p = face->own;
-	unsigned lines;
-	size_t len;
-
-	if (!p->spooled && !spool_count(&p->spool) && put(face, p->batch, p->batch_len))
-		p->spooled = spool_oldest(&p->spool);
-	len = p->spooled ? pending_copy(&p->pending, p->clock.offset_ns, p->later, &lines) : 0;
-	if (len && put(face, p->later, len))
-		pending_remove(&p->pending, lines);
-}
-
-void sending_cut(struct pushing *p)
-{
-	p->batch_len = pending_cut(&p->pending, p->clock.offset_ns, p->batch);
-	p->spooled = 0;
-}
-
-/* Is the batch the oldest of the spool still? A full one may have dropped it. */
-static bool is_oldest(const struct pushing *p)
-{
-	return p->spooled && p->spooled == spool_oldest(&p->spool);
-}
-
-void sending_drop(struct pushing *p)
-{
-	part_begin(&p->part);
-	p->batch_len = 0;
-}
+/* --- The answer ------------------------------------------------------------------------------ */
 
 static const char *advice_on_status(long status)
 {
@@ -129,11 +113,7 @@ static void sending_fail(struct face *face, const struct post_result *result, in
 		            result->words);
 	p->trouble = trouble;
 	p->next_ns = now_ns + backoff_pause(&p->backoff, why_of(result), backoff_random());
-	part_begin(&p->part);
-	if (p->spooled)
-		p->batch_len = 0;
-	else
-		sending_put_away(face);
+	p->cut_ns = now_ns;
 }
 
 /* The server has understood what it got. */
@@ -142,138 +122,96 @@ static void server_answered(struct face *face)
 	struct pushing *p = face->own;
 
 	if (p->trouble != PUSH_WELL)
-		log_notice(face->log, "%.100s is back; %zu batches wait", p->options.url,
-		           spool_count(&p->spool) - is_oldest(p));
+		log_notice(face->log, "%.100s is back; %u values wait", p->options.url,
+		           p->pending.lines);
 	p->trouble = PUSH_WELL;
 	backoff_forget(&p->backoff);
 }
 
-/* The part is done with; after the last one the batch is. */
-static void part_over(struct pushing *p)
-{
-	part_taken(&p->part);
-	if (p->part.at < p->batch_len)
-		return;
-	if (is_oldest(p))
-		spool_remove(&p->spool);
-	sending_drop(p);
-}
-
-static void batch_arrived(struct face *face)
+/* The batch is done with, and the server gets what changes. */
+static void batch_over(struct face *face, int64_t now_ns)
 {
 	struct pushing *p = face->own;
+	struct replay_point point;
 
-	server_answered(face);
-	p->refused = false;
-	p->sent += batch_lines(p->batch + p->part.at, p->part.len);
-	part_over(p);
+	sending_look_at_dropped(face);
+	pending_remove(&p->pending, p->batch_end);
+	if (p->missed_ns) {
+		point = missed_point(&p->missed, p->missed_ns);
+		missed_resume(&p->missed, &point, now_ns);
+		p->missed_ns = 0;
+	}
+	if (p->batch_all) {
+		point = missed_point(&p->missed, p->looked_ns);
+		missed_has(&p->missed, &point);
+	}
+	if (p->rows_end && p->pending.first >= p->rows_end) {
+		missed_given(&p->missed, &p->at, p->rows, now_ns);
+		p->rows_end = 0;
+	}
+	missed_keep(&p->missed, MISSED_KEEP_NS, now_ns);
 }
 
 /* The server does not want these lines: others may be better. */
-static void batch_refused(struct face *face, const struct post_result *result)
+static void batch_refused(struct face *face, const struct post_result *result, int64_t now_ns)
 {
 	struct pushing *p = face->own;
 
 	server_answered(face);
 	if (!p->refused)
-		log_err(face->log, "%.100s refuses lines: %s; the spool has them as *.refused",
-		        p->options.url, result->words);
+		log_err(face->log, "%.60s refuses %u lines: %s; the first: %.*s", p->options.url,
+		        p->batch_lines, result->words, (int)strcspn(p->batch, "\n"), p->batch);
 	p->refused = true;
-	p->refused_batches++;
-	if (p->part.len < p->batch_len) {
-		spool_refuse(&p->spool, p->batch + p->part.at, p->part.len);
-		part_over(p);
-		return;
-	}
-	spool_refuse(&p->spool, is_oldest(p) ? NULL : p->batch, p->batch_len);
-	sending_drop(p);
+	p->refused_lines += p->batch_lines;
+	batch_over(face, now_ns);
 }
 
-/* The same lines in smaller parts; a line that is too large alone is refused. */
-static void batch_too_large(struct face *face, const struct post_result *result)
-{
-	struct pushing *p = face->own;
-
-	if (!part_halve(&p->part, p->batch)) {
-		batch_refused(face, result);
-		return;
-	}
-	server_answered(face);
-	log_notice(face->log, "%.100s takes less at once: %s; parts of %zu bytes follow",
-	           p->options.url, result->words, p->part.most);
-}
-
+/*
+ * By the status of HTTP: taken; too large (the same lines go in smaller batches, and one line that
+ * is too large alone is refused); lines that the server does not want; a server that takes nothing.
+ */
 void sending_finished(struct face *face, const struct post_result *result, int64_t now_ns)
 {
+	struct pushing *p = face->own;
+
 	log_debug(face->log, "%s", result->words);
-	if (result->status >= 200 && result->status < 300)
-		batch_arrived(face);
-	else if (result->status == 413)
-		batch_too_large(face, result);
-	else if (result->status == 400 || result->status == 422)
-		batch_refused(face, result);
-	else
+	if (result->status >= 200 && result->status < 300) {
+		server_answered(face);
+		p->refused = false;
+		p->sent += p->batch_lines;
+		batch_over(face, now_ns);
+	} else if (result->status == 413 && p->batch_lines > 1) {
+		server_answered(face);
+		p->most = p->batch_len / 2;
+		p->cut_ns = now_ns;
+		log_notice(face->log, "%.100s takes less at once: %s; %zu bytes follow",
+		           p->options.url, result->words, p->most);
+	} else if (result->status == 413 || result->status == 400 || result->status == 422) {
+		batch_refused(face, result, now_ns);
+	} else {
 		sending_fail(face, result, now_ns);
+	}
 }
 
-/* The oldest file as the batch. One that cannot be read is left out. */
-static void take_spooled(struct face *face, int64_t now_ns)
-{
-	char name[SPOOL_NAME], others[LOG_OTHERS];
-	struct pushing *p = face->own;
-	int64_t len = spool_read(&p->spool, p->batch, sizeof(p->batch));
-	uint64_t unread;
-	bool later;
-
-	if (len > 0) {
-		p->batch_len = (size_t)len;
-		p->spooled = spool_oldest(&p->spool);
-		return;
-	}
-	/* What the disk, or this process, cannot do now it may do later. */
-	later = len && len != -EFBIG && len != -ENOENT && len != -ELOOP;
-	spool_name(&p->spool, name);
-	unread = log_rate(&p->unread, now_ns);
-	if (unread)
-		log_err(face->log, "%s/%s %s: %s%s", p->options.spool, name,
-		        later ? "cannot be read yet" : "is passed over",
-		        len ? strerror((int)-len) : "it is empty", log_others(unread, others));
-	if (later) {
-		p->next_ns = now_ns + UNREAD_NS;
-		return;
-	}
-	spool_refuse(&p->spool, NULL, 0);
-}
-
-/* Make a batch and send one, if it is time to. */
-void sending_advance(struct face *face, int64_t now_ns)
+void sending_advance(struct face *face, bool ending, int64_t now_ns)
 {
 	struct pushing *p = face->own;
-	bool busy = post_is_busy(p->post), waits = p->pending.lines || (busy && !p->spooled);
-	bool due = waits && (now_ns >= p->cut_ns || pending_is_full(&p->pending));
 
-	if (!p->on || !p->believed)
+	if (!p->on || !p->believed || post_is_busy(p->post) || now_ns < p->next_ns)
 		return;
-	if (due && busy && now_ns >= p->begun_ns + ANSWER_NS) {
-		p->cut_ns = now_ns + p->options.every_ns;
-		put_behind(face);
-	} else if (due && !p->batch_len) {
-		p->cut_ns = now_ns + p->options.every_ns;
-		sending_cut(p);
-		/* nothing overtakes what waits */
-		if (spool_count(&p->spool) || now_ns < p->next_ns)
-			sending_put_away(face);
-	}
-	if (busy || now_ns < p->next_ns)
-		return;
-	if (!p->batch_len && spool_count(&p->spool))
-		take_spooled(face, now_ns);
-	if (!p->batch_len)
+	if (p->trouble == PUSH_WELL && !ending && look_is_current(face))
+		take_rows(face, now_ns);
+	if (!p->pending.lines || (!ending && now_ns < p->cut_ns && !pending_is_full(&p->pending)))
 		return;
 	if (p->trouble == PUSH_DENIED)
 		sending_read_token(face);
-	part_next(&p->part, p->batch, p->batch_len);
-	p->begun_ns = now_ns;
-	if (post_begin(p->post, p->options.url, p->token, p->batch + p->part.at, p->part.len))
+	p->batch_len = pending_copy(&p->pending, p->clock.offset_ns, p->most, p->batch,
+	                            &p->batch_lines);
+	p->batch_end = p->pending.first + p->batch_lines;
+	p->batch_all = p->batch_lines == p->pending.lines;
+	p->looked_ns = face->looked_ns;
+	if (p->batch_all)
+		p->cut_ns = now_ns + p->options.every_ns;
+	if (post_begin(p->post, p->options.url, p->token, p->batch, p->batch_len))
 		sending_fail(face, &(struct post_result){.words = "no memory"}, now_ns);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Batches on their way: cut from memory, put into the spool, sent, refused. face->own is a pushing.
+ * Batches on their way: copied from memory, sent, taken, refused; and what the server has missed,
+ * from the history. face->own is a pushing.
  */
 #pragma once
 
@@ -8,14 +9,12 @@
 #include <stdint.h>
 
 #include "src/faces/influx/options.h"
-#include "src/faces/influx/part.h"
 #include "src/faces/influx/pending.h"
 #include "src/faces/influx/points.h"
-#include "src/faces/influx/spool.h"
 #include "src/faces/kit/backoff.h"
+#include "src/faces/kit/missed.h"
 #include "src/faces/kit/secret.h"
 #include "src/faces/kit/wall_clock.h"
-#include "src/ground/text/log.h"
 
 struct face;
 struct post;
@@ -28,43 +27,39 @@ enum push_trouble {
 };
 
 struct pushing {
-	bool on; /* the file has the block, and the spool is open */
+	bool on; /* the file has the block */
 	struct push_options options;
 	struct wall_clock clock;
 	bool believed; /* the wall clock, since it was trusted, or was not set for too long */
 	struct points points;
 	struct pending pending;
-	struct spool spool;
+	struct missed missed;
+	int64_t missed_ns;      /* in memory is all since then; 0: missed knows of that */
+	struct replay_point at; /* of the last row of the history in memory */
+	uint64_t rows_end;      /* the number behind its line; 0: there is none */
+	int rows;               /* how many */
 	struct post *post;
 	char token[SECRET_SIZE], batch[BATCH_BYTES];
-	uint64_t token_print;    /* of why there is no token, as it was logged last */
-	char later[BATCH_BYTES]; /* goes into the spool while the batch is under way */
-	size_t batch_len;        /* of what is sent or has to be sent next; 0: nothing */
-	struct part part;        /* of the batch: what is sent now */
-	uint64_t spooled;        /* the number of the file of the spool that has it, too; 0: none */
+	uint64_t token_print; /* of why there is no token, as it was logged last */
+	size_t batch_len;     /* of what is under way */
+	unsigned batch_lines;
+	uint64_t batch_end; /* the number behind its last line */
+	bool batch_all;     /* it is all that there was in memory */
+	int64_t looked_ns;  /* when it was copied: of all that changed before memory had a line */
+	size_t most;        /* bytes that the server takes at once */
 	enum push_trouble trouble;
-	int disk_err;            /* as it was logged last */
-	struct log_rate unread;  /* files of the spool that could not be read */
 	bool refused;            /* the server refused lines, and has taken none since */
 	int64_t cut_ns, next_ns; /* when to make a batch; when to send one */
-	int64_t begun_ns;        /* when the last one was begun */
 	struct backoff backoff;
-	uint64_t sent;                   /* lines that arrived */
-	uint64_t refused_batches;        /* also those of which no file is kept any more */
-	uint64_t lost_bytes, lost_lines; /* dropped, as it was logged last */
+	uint64_t sent, refused_lines; /* lines that arrived; that the server did not want */
+	uint64_t lost_lines;          /* dropped, as it was logged last */
 };
 
-/* Read the token's file again, log an error once. Blocking, as a disk does; so do the others. */
+/* Read the token's file again, log an error once. Blocking, as a disk does. */
 void sending_read_token(struct face *face);
-/* err is that of the spool's directory, 0: it works. Logs it once. */
-void sending_report_disk(struct face *face, int err);
-/* The oldest lines of the memory become the batch. */
-void sending_cut(struct pushing *p);
-/* The batch goes into the spool. False: it stays in memory. */
-bool sending_put_away(struct face *face);
-/* The batch has arrived, or is lost. */
-void sending_drop(struct pushing *p);
-/* Make a batch and send one, if it is time to. */
-void sending_advance(struct face *face, int64_t now_ns);
+/* Lines may have been dropped: the history has to have them. */
+void sending_look_at_dropped(struct face *face);
+/* Make a batch and send it, if it is time to; ending: it is. */
+void sending_advance(struct face *face, bool ending, int64_t now_ns);
 /* The server has answered, or will not. */
 void sending_finished(struct face *face, const struct post_result *result, int64_t now_ns);

@@ -390,7 +390,7 @@ static void look_at_clock(struct face *face, int64_t now_ns)
 	bool before = m->stream.clock_set;
 
 	wall_clock_look(&m->clock, now_ns);
-	m->past.dated = m->stream.clock_right = m->clock.trusted;
+	m->past.missed.dated = m->stream.clock_right = m->clock.trusted;
 	m->stream.clock_set = m->clock.trusted || now_ns >= CLOCK_WAIT_NS;
 	/* where a message has to have a time it had a wrong one */
 	if (m->stream.clock_set && !before && m->stream.live && m->stream.profile->session)
@@ -410,7 +410,7 @@ void mqtt_report(struct face *face, FILE *out)
 		{"messages_acknowledged", b->acknowledged},
 		{"messages_refused", b->refusals},
 		{"messages_under_way", b->in_flight},
-		{"values_sent_again", m->past.sent},
+		{"values_sent_again", m->past.missed.sent},
 		{"connects", b->connects},
 		{"connects_failed", b->failures},
 		{"commands_taken", m->commands.taken},

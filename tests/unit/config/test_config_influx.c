@@ -38,8 +38,6 @@ static void test_the_block_has_defaults_but_for_the_server(void)
 	TEST_ASSERT_EQUAL_INT64(10000000000, config->influx.every_ns);
 	TEST_ASSERT_EQUAL_STRING("ows", config->influx.measurement);
 	TEST_ASSERT_NULL(config->influx.token_file);
-	TEST_ASSERT_NULL(config->influx.spool);
-	TEST_ASSERT_EQUAL_UINT(64, config->influx.spool_mb);
 	TEST_ASSERT_EQUAL_INT64(600000000000, config->influx.clock_wait_ns);
 }
 
@@ -53,7 +51,7 @@ static void test_what_is_printed_is_what_was_read(void)
 	TEST_ASSERT_EQUAL_INT(
 		0, parse_driver("Influx { Url \"https://[::1]/api/v2/write?org=a&precision=ns\"\n"
 	                        "Every 2.5 TokenFile \"token\" Measurement \"house.1\"\n"
-	                        "Spool \"/mnt/s\" SpoolSize 5 ClockWait 0 }"));
+	                        "ClockWait 0 }"));
 	config_print(config, out);
 	TEST_ASSERT_EQUAL_INT(0, fclose(out));
 	config_free(config);
@@ -65,8 +63,6 @@ static void test_what_is_printed_is_what_was_read(void)
 	TEST_ASSERT_EQUAL_INT64(2500000000, config->influx.every_ns);
 	TEST_ASSERT_EQUAL_STRING("token", config->influx.token_file);
 	TEST_ASSERT_EQUAL_STRING("house.1", config->influx.measurement);
-	TEST_ASSERT_EQUAL_STRING("/mnt/s", config->influx.spool);
-	TEST_ASSERT_EQUAL_UINT(5, config->influx.spool_mb);
 	TEST_ASSERT_EQUAL_INT64(0, config->influx.clock_wait_ns);
 }
 
@@ -101,10 +97,6 @@ static void test_what_cannot_be_is_an_error_at_its_place(void)
 		{"Influx { " URL "Measurement \"a b\" }",
 	         "f:2:56: error: Measurement \"a b\": expected letters, digits, '-', '_' and '.', "
 	         "at most 63\n"},
-		{"Influx { " URL "Spool \"s\" }",
-	         "f:2:50: error: Spool \"s\": expected a path from the root, at most 255 bytes\n"},
-		{"Influx { " URL "SpoolSize 0 }",
-	         "f:2:54: error: SpoolSize \"0\": expected a whole number from 1 to 100000\n"},
 		{"Influx { " URL "ClockWait -1 }",
 	         "f:2:54: error: ClockWait \"-1\": expected seconds from 0 to 86400\n"},
 	};

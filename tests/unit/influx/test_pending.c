@@ -20,14 +20,23 @@ void tearDown(void)
 	pending_free(&pending);
 }
 
-static size_t cut(int64_t offset_ns)
+static unsigned lines;
+
+/* A batch of at most so many bytes; the server has it. */
+static size_t cut_part(int64_t offset_ns, size_t most)
 {
-	size_t len = pending_cut(&pending, offset_ns, batch);
+	size_t len = pending_copy(&pending, offset_ns, most, batch, &lines);
 
 	TEST_ASSERT_TRUE(len <= BATCH_BYTES);
 	batch[len] = '\0';
 	TEST_ASSERT_EQUAL_size_t(len, strlen(batch));
+	pending_remove(&pending, pending.first + lines);
 	return len;
+}
+
+static size_t cut(int64_t offset_ns)
+{
+	return cut_part(offset_ns, BATCH_BYTES);
 }
 
 static void test_a_batch_has_the_time_that_is_known_when_it_is_made(void)
@@ -42,24 +51,37 @@ static void test_a_batch_has_the_time_that_is_known_when_it_is_made(void)
 	TEST_ASSERT_EQUAL_UINT(0, pending.lines);
 }
 
-static void test_a_copy_leaves_the_lines_until_they_are_removed(void)
+static void test_lines_stay_until_they_are_removed_by_their_numbers(void)
 {
-	unsigned lines;
-	size_t len;
+	uint64_t end;
 
 	for (int i = 0; i < 3; i++)
 		pending_add(&pending, i, "s", "value=1");
-	len = pending_copy(&pending, 5, batch, &lines);
+	pending_copy(&pending, 5, BATCH_BYTES, batch, &lines);
 	TEST_ASSERT_EQUAL_UINT(3, lines);
-	TEST_ASSERT_EQUAL_UINT(3, batch_lines(batch, len));
 	TEST_ASSERT_EQUAL_UINT(3, pending.lines);
+	end = pending.first + 2;
 	pending_add(&pending, 3, "s", "value=2");
-	pending_remove(&pending, 2);
+	pending_remove(&pending, end);
+	pending_remove(&pending, end); /* those that are gone do not count */
 	cut(5);
 	TEST_ASSERT_EQUAL_STRING("s value=1 7\ns value=2 8\n", batch);
-	len = pending_copy(&pending, 5, batch, &lines);
+	TEST_ASSERT_EQUAL_size_t(0, cut(5));
 	TEST_ASSERT_EQUAL_UINT(0, lines);
-	TEST_ASSERT_EQUAL_size_t(0, len);
+	pending_add(&pending, 3, "s", "value=2");
+	end = pending.first + 1;
+	pending_free(&pending);
+	TEST_ASSERT_EQUAL_UINT64(end, pending.first);
+}
+
+static void test_a_server_that_takes_less_gets_whole_lines_and_one_at_least(void)
+{
+	for (int i = 1; i < 4; i++)
+		pending_add(&pending, i, "s", "value=1");
+	cut_part(0, 50);
+	TEST_ASSERT_EQUAL_STRING("s value=1 1\ns value=1 2\n", batch);
+	cut_part(0, 1);
+	TEST_ASSERT_EQUAL_STRING("s value=1 3\n", batch);
 }
 
 static void test_a_batch_has_at_most_5000_lines_and_the_rest_comes_next(void)
@@ -67,7 +89,8 @@ static void test_a_batch_has_at_most_5000_lines_and_the_rest_comes_next(void)
 	for (int i = 0; i < 5001; i++)
 		pending_add(&pending, i, "s", "value=1");
 	TEST_ASSERT_TRUE(pending_is_full(&pending));
-	TEST_ASSERT_EQUAL_UINT(BATCH_LINES, batch_lines(batch, cut(0)));
+	cut(0);
+	TEST_ASSERT_EQUAL_UINT(BATCH_LINES, lines);
 	TEST_ASSERT_FALSE(pending_is_full(&pending));
 	cut(0);
 	TEST_ASSERT_EQUAL_STRING("s value=1 5000\n", batch);
@@ -76,18 +99,18 @@ static void test_a_batch_has_at_most_5000_lines_and_the_rest_comes_next(void)
 static void test_a_batch_has_at_most_a_megabyte(void)
 {
 	char fields[2000], last[16];
-	unsigned lines = 0, batches = 0;
+	unsigned all = 0, batches = 0;
 
 	memset(fields, 'x', sizeof(fields) - 1);
 	fields[sizeof(fields) - 1] = '\0';
 	for (int i = 0; i < 1200; i++)
 		pending_add(&pending, i, "s", fields);
 	for (size_t len; (len = cut(0)) > 0; batches++) {
-		lines += batch_lines(batch, len);
-		snprintf(last, sizeof(last), " %u\n", lines - 1);
+		all += lines;
+		snprintf(last, sizeof(last), " %u\n", all - 1);
 		TEST_ASSERT_EQUAL_STRING(last, batch + len - strlen(last));
 	}
-	TEST_ASSERT_EQUAL_UINT(1200, lines);
+	TEST_ASSERT_EQUAL_UINT(1200, all);
 	TEST_ASSERT_EQUAL_UINT(3, batches);
 }
 
@@ -103,6 +126,8 @@ static void test_the_oldest_go_when_memory_is_full_and_they_are_counted(void)
 	TEST_ASSERT_TRUE(pending.room <= PENDING_BYTES && pending.len <= pending.room);
 	TEST_ASSERT_EQUAL_UINT64(10000, pending.dropped + pending.lines);
 	TEST_ASSERT_TRUE(pending.lines > 2000);
+	TEST_ASSERT_EQUAL_UINT64(pending.dropped, pending.first);
+	TEST_ASSERT_EQUAL_INT64(pending.dropped - 1, pending.dropped_ns);
 	len = cut(0);
 	snprintf(first, sizeof(first), " %u\n", (unsigned)pending.dropped);
 	TEST_ASSERT_TRUE(len > 0);
@@ -113,7 +138,8 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_a_batch_has_the_time_that_is_known_when_it_is_made);
-	RUN_TEST(test_a_copy_leaves_the_lines_until_they_are_removed);
+	RUN_TEST(test_lines_stay_until_they_are_removed_by_their_numbers);
+	RUN_TEST(test_a_server_that_takes_less_gets_whole_lines_and_one_at_least);
 	RUN_TEST(test_a_batch_has_at_most_5000_lines_and_the_rest_comes_next);
 	RUN_TEST(test_a_batch_has_at_most_a_megabyte);
 	RUN_TEST(test_the_oldest_go_when_memory_is_full_and_they_are_counted);

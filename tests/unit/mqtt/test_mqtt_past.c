@@ -124,7 +124,7 @@ static void settle(void)
 	history_writer_value(writer, LAMP, now_ns, OWS_Q_GOOD, ++lamp % 2, NULL, 0);
 	written(now_ns);
 	pump(40);
-	TEST_ASSERT_EQUAL_INT(0, past.count);
+	TEST_ASSERT_EQUAL_INT(0, past.missed.count);
 }
 
 void setUp(void)
@@ -194,7 +194,7 @@ static void test_what_the_recorder_has_not_written_yet_is_waited_for(void)
 	now_ns += 60 * S;
 	pump(10);
 	TEST_ASSERT_EQUAL_STRING("", again);
-	TEST_ASSERT_EQUAL_INT(1, past.count);
+	TEST_ASSERT_EQUAL_INT(1, past.missed.count);
 	TEST_ASSERT_TRUE(past_next(&past) > now_ns && past_next(&past) <= now_ns + 30 * S);
 	settle();
 	TEST_ASSERT_EQUAL_STRING("room=21 ", again);
@@ -233,25 +233,24 @@ static void test_a_profile_that_shows_only_what_is_does_nothing(void)
 
 /* --- What is kept --- */
 
-/* The first kept moment, and how many windows. */
-static int64_t kept_us(int *windows)
+static int64_t kept_us(void)
 {
 	FILE *f = fopen(kept, "r");
 	unsigned long long key;
-	long long boot, us, wall;
+	long long boot, us;
+	int count;
 
 	TEST_ASSERT_NOT_NULL(f);
-	TEST_ASSERT_EQUAL_INT(5, fscanf(f, "owsd-mqtt 2 %llx %d %lld %lld %lld", &key, windows,
-	                                &boot, &us, &wall));
+	TEST_ASSERT_EQUAL_INT(4, fscanf(f, "owsd 3 %llx %d %lld %lld", &key, &count, &boot, &us));
 	fclose(f);
 	TEST_ASSERT_EQUAL_UINT64(KEY, key);
+	TEST_ASSERT_EQUAL_INT(0, count);
 	return us;
 }
 
 static void test_up_to_where_the_broker_has_all_is_kept_over_a_restart(void)
 {
 	int64_t us;
-	int windows;
 
 	record();
 	room(now_ns, 20);
@@ -259,15 +258,14 @@ static void test_up_to_where_the_broker_has_all_is_kept_over_a_restart(void)
 	begin();
 	settle();
 	past_end(&past);
-	us = kept_us(&windows);
-	TEST_ASSERT_EQUAL_INT(0, windows);
+	us = kept_us();
 	TEST_ASSERT_INT64_WITHIN(2000000, now_ns / 1000, us);
 	/* while it does not run */
 	again[0] = '\0';
 	room(now_ns + 20 * S, 21);
 	now_ns += 60 * S;
 	begin();
-	TEST_ASSERT_EQUAL_INT64(us, past.reached.us);
+	TEST_ASSERT_EQUAL_INT64(us, past.missed.reached.us);
 	settle();
 	TEST_ASSERT_EQUAL_STRING("room=21 ", again);
 }
@@ -275,15 +273,15 @@ static void test_up_to_where_the_broker_has_all_is_kept_over_a_restart(void)
 static void test_what_was_kept_for_another_broker_or_is_damaged_does_not_count(void)
 {
 	static const char *const files[] = {
-		"owsd-mqtt 2 0000000000000008 0\n1 5 6\nend\n", /* another key */
-		"owsd-mqtt 1 0000000000000007 0\n1 5 6\nend\n", /* another version */
-		"owsd-mqtt 2 0000000000000007 0\n1 5 6\n",      /* cut */
-		"owsd-mqtt 2 0000000000000007 1\n1 5 6\nend\n", /* a window is missing */
-		"owsd-mqtt 2 0000000000000007 17\n1 5 6\nend\n",
-		"owsd-mqtt 2 0000000000000007 -1\n1 5 6\nend\n",
+		"owsd 3 0000000000000008 0 1 5 6 end\n", /* another key */
+		"owsd 2 0000000000000007 0 1 5 6 end\n", /* another version */
+		"owsd 3 0000000000000007 0 1 5 6\n",     /* cut */
+		"owsd 3 0000000000000007 1 1 5 6 end\n", /* a stretch is missing */
+		"owsd 3 0000000000000007 17 1 5 6 end\n",
+		"owsd 3 0000000000000007 -1 1 5 6 end\n",
 		"",
 	};
-	static const char good[] = "owsd-mqtt 2 0000000000000007 1\n1 5 6\n1 2 3\n1 4 5\nend\n";
+	static const char good[] = "owsd 3 0000000000000007 1 1 5 6 1 2 3 1 4 5 end\n";
 
 	record();
 	written(now_ns + S);
@@ -298,34 +296,37 @@ static void test_what_was_kept_for_another_broker_or_is_damaged_does_not_count(v
 		fclose(f);
 		begin();
 		if (last)
-			TEST_ASSERT_EQUAL_INT64(5, past.reached.us);
+			TEST_ASSERT_EQUAL_INT64(5, past.missed.reached.us);
 		else
-			TEST_ASSERT_GREATER_THAN_INT64_MESSAGE(1000, past.reached.us, files[i]);
-		TEST_ASSERT_EQUAL_INT(last, past.count);
+			TEST_ASSERT_GREATER_THAN_INT64_MESSAGE(1000, past.missed.reached.us,
+			                                       files[i]);
+		TEST_ASSERT_EQUAL_INT(last, past.missed.count);
 	}
-	TEST_ASSERT_EQUAL_INT64(2, past.windows[0].from.us);
-	TEST_ASSERT_EQUAL_INT64(4, past.windows[0].until.us);
+	TEST_ASSERT_EQUAL_INT64(2, past.missed.stretches[0].from.us);
+	TEST_ASSERT_EQUAL_INT64(4, past.missed.stretches[0].until.us);
 }
 
-/* A broker that throws out again and again makes no more windows than there is room for. */
-static void test_more_outages_than_windows_are_one_at_the_end(void)
+/* A broker that throws out again and again makes no more stretches than there is room for. */
+static void test_more_outages_than_stretches_are_one_at_the_end(void)
 {
 	record();
 	room(now_ns, 20);
 	written(now_ns + S);
 	begin();
 	pump(10);
-	for (unsigned i = 0; i < 3 * PAST_WINDOWS; i++) {
+	for (unsigned i = 0; i < 3 * MISSED_STRETCHES; i++) {
 		past_lost(&past);
 		broker.marking = broker.marked = false;
 		now_ns += 20 * S;
 		pump(1);
-		TEST_ASSERT_LESS_OR_EQUAL(PAST_WINDOWS, past.count);
+		TEST_ASSERT_LESS_OR_EQUAL(MISSED_STRETCHES, past.missed.count);
 	}
-	TEST_ASSERT_EQUAL_INT(PAST_WINDOWS, past.count);
-	TEST_ASSERT_INT64_WITHIN(2000000, now_ns / 1000, past.windows[PAST_WINDOWS - 1].until.us);
-	for (int i = 1; i < past.count; i++)
-		TEST_ASSERT_TRUE(past.windows[i].from.us >= past.windows[i - 1].until.us - 2000000);
+	TEST_ASSERT_EQUAL_INT(MISSED_STRETCHES, past.missed.count);
+	TEST_ASSERT_INT64_WITHIN(2000000, now_ns / 1000,
+	                         past.missed.stretches[MISSED_STRETCHES - 1].until.us);
+	for (int i = 1; i < past.missed.count; i++)
+		TEST_ASSERT_TRUE(past.missed.stretches[i].from.us >=
+		                 past.missed.stretches[i - 1].until.us - 2000000);
 }
 
 int main(void)
@@ -337,6 +338,6 @@ int main(void)
 	RUN_TEST(test_a_profile_that_shows_only_what_is_does_nothing);
 	RUN_TEST(test_up_to_where_the_broker_has_all_is_kept_over_a_restart);
 	RUN_TEST(test_what_was_kept_for_another_broker_or_is_damaged_does_not_count);
-	RUN_TEST(test_more_outages_than_windows_are_one_at_the_end);
+	RUN_TEST(test_more_outages_than_stretches_are_one_at_the_end);
 	return UNITY_END();
 }
