@@ -66,19 +66,20 @@ static int64_t offset(void)
 	return wall.tv_sec * S + wall.tv_nsec - ows_now();
 }
 
-static const char *name_of(void *ctx, int row, uint8_t *type)
+static const char *identity_of(void *ctx, int row, uint8_t *type)
 {
 	(void)ctx;
 	*type = signals[row].type;
-	return signals[row].name;
+	return signals[row].path;
 }
 
 static void record(void)
 {
 	const struct history_options options = {
 		.directory = history, .boot = history_boot_present(), .flush_ns = 60 * S};
-	static const struct history_signal table[] = {{"room", "", OWS_DOUBLE, 0, 2},
-	                                              {"lamp", "", OWS_BOOL, 1, -1}};
+	static const struct history_signal table[] = {
+		{"room", "", OWS_DOUBLE, 0, 2, "/28.1/temperature"},
+		{"lamp", "", OWS_BOOL, 1, -1, "/29.1/PIO.0"}};
 
 	TEST_ASSERT_EQUAL_INT(0, history_writer_open(&options, start_ns, offset(), true, &writer));
 	TEST_ASSERT_EQUAL_INT(0, history_writer_signals(writer, table, COUNT, start_ns));
@@ -101,8 +102,11 @@ static void written(void)
 
 static void begin(void)
 {
-	p->missed = (struct missed){
-		.face = &face, .peer = "the server", .what = "influx", .name = name_of, .ctx = p};
+	p->missed = (struct missed){.face = &face,
+	                            .peer = "the server",
+	                            .what = "influx",
+	                            .identity = identity_of,
+	                            .ctx = p};
 	missed_begin(&p->missed, 1, now_ns);
 	p->missed_ns = now_ns;
 }
