@@ -238,7 +238,7 @@ SOURCES  := $(wildcard src/*/*/*.c src/*/*/*/*.c hal/*/*.c hal/*/*/*.c)
 WEB_MAIN := src/faces/web/owsd_web.c src/faces/web/no_tls.c src/faces/web/wire.c
 WEB_HTTP := $(WEB_MAIN) $(patsubst %,src/faces/web/%.c,api command devices draft events guard http lists past save stored stream)
 # Of owsd-mqtt: what calls libmosquitto, and its main()
-MQTT_ALL := $(patsubst %,src/faces/mqtt/%.c,owsd_mqtt mqtt broker client advice)
+MQTT_ALL := $(patsubst %,src/faces/mqtt/%.c,owsd_mqtt mqtt arrivals broker client advice)
 # The consumers' library
 LIBOWS   := $(wildcard src/memory/libows/*.c)
 # And the one that reads history

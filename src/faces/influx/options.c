@@ -10,7 +10,7 @@ void push_options_take(struct push_options *options, const struct face *face)
 {
 	const struct config_influx *influx = &face->config->influx;
 
-	*options = (struct push_options){0};
+	memset(options, 0, sizeof(*options));
 	if (!influx->given)
 		return;
 	options->every_ns = influx->every_ns;
@@ -19,11 +19,4 @@ void push_options_take(struct push_options *options, const struct face *face)
 	snprintf(options->token_file, sizeof(options->token_file), "%s",
 	         influx->token_file ? influx->token_file : "");
 	snprintf(options->measurement, sizeof(options->measurement), "%s", influx->measurement);
-}
-
-bool push_options_same(const struct push_options *a, const struct push_options *b)
-{
-	return !strcmp(a->url, b->url) && !strcmp(a->token_file, b->token_file) &&
-	       !strcmp(a->measurement, b->measurement) && a->every_ns == b->every_ns &&
-	       a->clock_wait_ns == b->clock_wait_ns;
 }

@@ -2,11 +2,11 @@
 /* What stands in the Influx block, kept over the time in which the file is read again. */
 #pragma once
 
-#include <stdbool.h>
 #include <stdint.h>
 
 struct face;
 
+/* All zero but for what is set: two can be compared as memory. */
 struct push_options {
 	char url[256]; /* "": there is no block */
 	char token_file[256], measurement[64];
@@ -14,4 +14,3 @@ struct push_options {
 };
 
 void push_options_take(struct push_options *options, const struct face *face);
-bool push_options_same(const struct push_options *a, const struct push_options *b);

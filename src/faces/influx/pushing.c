@@ -107,7 +107,8 @@ static void take_file(struct face *face, int64_t now_ns)
 	struct push_options options;
 
 	push_options_take(&options, face);
-	if (!push_options_same(&options, &p->options)) {
+	/* NOLINTNEXTLINE(bugprone-suspicious-memory-comparison,cert-exp42-c,cert-flp37-c) */
+	if (memcmp(&options, &p->options, sizeof(options)) != 0) {
 		pushing_end(face);
 		p->options = options;
 		if (*options.url)

@@ -181,24 +181,27 @@ bool missed_look(struct missed *m, int64_t now_ns)
 	return true;
 }
 
-/* The row of a signal of the history; mostly both have the same order. */
-static int row_of(struct missed *m, int signal, int count)
+/*
+ * The row of the face; mostly both have the same order. What was written when the signal had
+ * another type is none of it.
+ */
+static int row_of(struct missed *m, const struct replay_row *r, int count)
 {
 	struct ows_history_signal known;
-	int *row = &m->rows[signal];
+	int *row = &m->rows[r->signal];
 
+	if (ows_history_signal(m->history, r->signal, &known) || r->v.type != known.type)
+		return MISSED_NONE;
 	if (*row != -1)
 		return *row;
 	*row = MISSED_NONE;
-	for (int k = 0; k < count && !ows_history_signal(m->history, signal, &known); k++) {
-		int i = (signal + k) % count;
+	for (int k = 0; k < count && *row < 0; k++) {
+		int i = (r->signal + k) % count;
 		uint8_t type;
 		const char *identity = m->identity(m->ctx, i, &type);
 
-		if (!identity || type != known.type || strcmp(identity, known.identity) != 0)
-			continue;
-		*row = i;
-		break;
+		if (identity && type == known.type && !strcmp(identity, known.identity))
+			*row = i;
 	}
 	return *row;
 }
@@ -310,7 +313,7 @@ int missed_read(struct missed *m, int count, struct replay_row *rows, int most, 
 		if (undated)
 			rows[i].signal = MISSED_NONE;
 		else if (rows[i].signal >= 0)
-			rows[i].signal = row_of(m, rows[i].signal, count);
+			rows[i].signal = row_of(m, &rows[i], count);
 		m->undated += undated;
 		/* the recorder may not know yet that the clock was set, as we do */
 		if (rows[i].at.boot == m->boot)

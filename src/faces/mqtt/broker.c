@@ -3,10 +3,8 @@
 #include <arpa/inet.h>
 #include <errno.h>
 #include <mosquitto.h>
-#include <mqtt_protocol.h>
 #include <poll.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
 
@@ -314,6 +312,12 @@ static int read_all(struct broker *b)
 	return code;
 }
 
+/*
+ * One turn of a connection: libmosquitto writes, reads and tends; the first error ends the turn.
+ * What comes of it is the first of: what the broker holds is too old (connect anew); an error, or
+ * an end that libmosquitto reports (it is over, even if its CONNACK came in this turn); no CONNACK
+ * in time (likewise); else it waits for the socket.
+ */
 static void work(struct broker *b, short ready, int64_t now_ns)
 {
 	bool was_connected = b->state == BROKER_CONNECTED;
@@ -396,7 +400,6 @@ void broker_begin(struct broker *b, int64_t now_ns)
 	b->next_ns = now_ns;
 	b->state = BROKER_WAITING;
 	forget_trouble(b);
-	b->drained = true;
 	if (!*b->session)
 		snprintf(b->session, sizeof(b->session), "%016llx",
 		         (unsigned long long)backoff_random());
@@ -494,25 +497,4 @@ bool broker_mark(struct broker *b)
 	b->marked = false;
 	b->marking = !mosquitto_unsubscribe(b->client, &b->mark, topic);
 	return b->marking;
-}
-
-static int subscribe_options(const struct broker *b)
-{
-	return client_mqtt5(b) ? MQTT_SUB_OPT_RETAIN_AS_PUBLISHED | MQTT_SUB_OPT_NO_LOCAL : 0;
-}
-
-void broker_subscribe(struct broker *b, const char *topic)
-{
-	if (b->client)
-		mosquitto_subscribe_v5(b->client, NULL, topic, client_sure_qos(b),
-		                       subscribe_options(b), NULL);
-}
-
-void broker_look(struct broker *b, char *const *topics, int count, bool begin)
-{
-	if (b->client && begin)
-		mosquitto_subscribe_multiple(b->client, NULL, count, topics, 0,
-		                             subscribe_options(b), NULL);
-	else if (b->client)
-		mosquitto_unsubscribe_multiple(b->client, NULL, count, topics, NULL);
 }

@@ -54,10 +54,3 @@ bool broker_put(void *ctx, const char *topic, const char *text, size_t len, bool
  * proof. False: not now.
  */
 bool broker_mark(struct broker *b);
-/* A refusal is logged when it comes. What we publish there ourselves does not come, by MQTT 5. */
-void broker_subscribe(struct broker *b, const char *topic);
-/*
- * The same for several at once, QoS 0, or their end. Only a refusal of the first is logged: whether
- * there is something at the others nobody knows.
- */
-void broker_look(struct broker *b, char *const *topics, int count, bool begin);

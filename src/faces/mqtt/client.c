@@ -278,3 +278,26 @@ bool client_make(struct broker *b, char *why, size_t size)
 	}
 	return set_password(b, why, size) && set_tls(b, why, size);
 }
+
+/* --- Subscriptions --------------------------------------------------------------------------- */
+
+static int subscribe_options(const struct broker *b)
+{
+	return client_mqtt5(b) ? MQTT_SUB_OPT_RETAIN_AS_PUBLISHED | MQTT_SUB_OPT_NO_LOCAL : 0;
+}
+
+void client_subscribe(struct broker *b, const char *topic)
+{
+	if (b->client)
+		mosquitto_subscribe_v5(b->client, NULL, topic, client_sure_qos(b),
+		                       subscribe_options(b), NULL);
+}
+
+void client_look(struct broker *b, char *const *topics, int count, bool begin)
+{
+	if (b->client && begin)
+		mosquitto_subscribe_multiple(b->client, NULL, count, topics, 0,
+		                             subscribe_options(b), NULL);
+	else if (b->client)
+		mosquitto_unsubscribe_multiple(b->client, NULL, count, topics, NULL);
+}

@@ -13,7 +13,7 @@
 #define BROKER_WORDS 384
 #define BROKER_SESSION 20
 #define CLIENT_ID "owsd-%s"
-#define BROKER_PLACES 24 /* that broker_look() takes */
+#define BROKER_PLACES 24 /* that client_look() takes */
 #define BROKER_PERSON 32 /* as ows_for() takes it */
 
 struct face;
@@ -95,3 +95,10 @@ bool client_make(struct broker *b, char *why, size_t size);
 bool client_mqtt5(const struct broker *b);
 /* The QoS of what has to come: the will and commands. */
 int client_sure_qos(const struct broker *b);
+/* A refusal is logged when it comes. What we publish there ourselves does not come, by MQTT 5. */
+void client_subscribe(struct broker *b, const char *topic);
+/*
+ * The same for several at once, QoS 0, or their end. Only a refusal of the first is logged: whether
+ * there is something at the others nobody knows.
+ */
+void client_look(struct broker *b, char *const *topics, int count, bool begin);

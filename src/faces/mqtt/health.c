@@ -11,8 +11,6 @@
 static void put_targets(struct json *json, struct stream *s)
 {
 	struct ows_target target;
-	uint32_t reconnects = 0;
-	int down = 0;
 
 	json_array(json, "targets");
 	for (int i = 0; i < STATS_TARGETS && !ows_target(s->h, i, &target); i++) {
@@ -20,12 +18,8 @@ static void put_targets(struct json *json, struct stream *s)
 		json_string(json, "name", target.name);
 		json_string(json, "state", stats_target_state(target.state));
 		json_object_end(json);
-		down += target.state == 0;
-		reconnects += target.reconnects;
 	}
 	json_array_end(json);
-	json_int(json, "down", down);
-	json_uint(json, "reconnects", reconnects);
 }
 
 static uint64_t count_errors(struct stream *s)
@@ -55,15 +49,19 @@ void health_count(struct stream *s, int64_t numbers[HEALTH_NUMBERS])
 bool health_publish(struct stream *s, const struct health *health)
 {
 	struct ows_log_line refused = {.number = 0};
+	int64_t numbers[HEALTH_NUMBERS];
 	struct json json;
 
+	health_count(s, numbers);
 	ows_refused_reload(s->h, &refused);
 	stream_message(s, &json);
 	json_object(&json, NULL);
 	json_int(&json, "signals", s->count);
-	json_int(&json, "bad", stats_not_good(s->h, ows_now()));
-	json_uint(&json, "errors", count_errors(s));
+	json_int(&json, "bad", numbers[HEALTH_BAD]);
+	json_int(&json, "errors", numbers[HEALTH_ERRORS]);
 	put_targets(&json, s);
+	json_int(&json, "down", numbers[HEALTH_DOWN]);
+	json_int(&json, "reconnects", numbers[HEALTH_RECONNECTS]);
 	json_uint(&json, "connects", health->connects);
 	json_uint(&json, "refused", health->refused_messages);
 	json_uint(&json, "commands", health->commands);

@@ -36,144 +36,6 @@ static struct mqtt *mqtt_own(struct face *face)
 	return face->own;
 }
 
-/* --- What the broker asks -------------------------------------------------------------------- */
-
-static bool will(void *ctx, bool ending, const struct outlet *to)
-{
-	struct mqtt *m = ctx;
-	struct stream *s = &m->stream;
-	struct outlet outlet = s->outlet;
-	bool put;
-
-	if (m->broker.state != BROKER_CONNECTED)
-		s->bdseq = (uint8_t)m->broker.sent; /* before this one */
-	s->outlet = *to;
-	put = s->profile->state(s, ending ? STREAM_ENDED : STREAM_KILLED);
-	s->outlet = outlet;
-	return put;
-}
-
-static void on_connected(void *ctx)
-{
-	struct mqtt *m = ctx;
-	char topic[TOPIC_SIZE];
-
-	past_lost(&m->past);
-	if (m->stream.profile->listen) {
-		m->stream.profile->listen(&m->stream, topic);
-		broker_subscribe(&m->broker, topic);
-	}
-	m->stream.host_there = m->stream.born = false;
-	m->stream.host_ms = 0; /* the clock of the host may have been set back */
-	if (m->stream.host) {
-		m->stream.profile->listen_host(&m->stream, topic);
-		broker_subscribe(&m->broker, topic);
-		if (m->broker.connects < 2)
-			log_notice(m->broker.face->log,
-			           "nothing is published until the primary host %s is online",
-			           m->stream.host);
-	}
-	/* without Write they are refused, with a reason */
-	if (m->stream.profile->listen_write)
-		m->stream.profile->listen_write(&m->stream, topic);
-	else
-		snprintf(topic, sizeof(topic), "%.300s/%s", m->options.prefix,
-		         m->options.profile->commands);
-	broker_subscribe(&m->broker, topic);
-	m->health_ns = m->sweep_ns = 0;
-	m->sweep = true;
-	stream_begin(&m->stream);
-}
-
-static void mqtt_command(struct mqtt *m, const char *name, bool known,
-                         const struct broker_message *message)
-{
-	struct broker_message one = *message;
-	char place[OPTION_SIZE + 8];
-
-	if (!m->options.write)
-		one.fault = "Write is off in the block Mqtt: set it to on there, and reload owsd";
-	snprintf(place, sizeof(place), "mqtt:%s", m->options.ways[m->broker.way].host);
-	if (commands_take(&m->commands, name, known, &one, place, ows_now()) == -ETIME)
-		broker_forget(&m->broker);
-}
-
-/* A message that has commands, and who takes them. */
-struct several {
-	struct mqtt *m;
-	const struct broker_message *message;
-};
-
-static void mqtt_take(void *ctx, const char *name, const char *text, const char *fault)
-{
-	const struct several *several = ctx;
-	struct broker_message one = *several->message;
-
-	one.text = text;
-	one.len = strlen(text);
-	one.fault = fault;
-	mqtt_command(several->m, name, true, &one);
-}
-
-static void on_commands(struct mqtt *m, const struct broker_message *message)
-{
-	struct several several = {.m = m, .message = message};
-
-	if (!look_is_current(m->broker.face))
-		mqtt_take(&several, m->options.node, "", "owsd is away, or reloads: try again");
-	else if (m->stream.profile->take(&m->stream, message->topic, message->text, message->len,
-	                                 mqtt_take, &several))
-		m->asked = m->asked || !message->retained;
-}
-
-/* struct outlet: true if it is the topic of ctx. */
-static bool is_topic(void *ctx, const char *topic, const char *text, size_t len, bool retain)
-{
-	(void)text;
-	(void)len;
-	(void)retain;
-	return !strcmp(topic, ctx);
-}
-
-/*
- * By its topic a message is a command of a session, or one of a signal, and nothing else. Any other
- * may be several things, looked for in this order: the will of another process of this node,
- * something that was kept and is no more, a word that asks for the birth.
- */
-static void on_message(void *ctx, const struct broker_message *message)
-{
-	struct mqtt *m = ctx;
-	const struct profile *profile = m->stream.profile;
-	char name[TOPIC_SIZE];
-	const struct row *row;
-
-	if (profile->take && stream_below(message->topic, m->stream.prefix)) {
-		on_commands(m, message);
-		return;
-	}
-	if (profile->commands && stream_command(&m->stream, message->topic, &row, name)) {
-		mqtt_command(m, name, row, message);
-		return;
-	}
-	snprintf(name, sizeof(name), "%s", message->topic);
-	/* that of the first connection may be of a run of yesterday */
-	if (message->retained && *message->session && m->broker.again &&
-	    strcmp(message->session, m->broker.session) != 0 &&
-	    will(m, false, &(struct outlet){.put = is_topic, .ctx = name}))
-		broker_taken(&m->broker);
-	if (message->retained && m->sweep_ns && look_is_current(m->broker.face))
-		profiles_kept(&m->stream, message->topic, message->len ? message->text : NULL);
-	if (profile->heard &&
-	    profile->heard(&m->stream, message->topic, message->text, message->len))
-		m->asked = true;
-}
-
-static const struct broker_ops broker_ops = {
-	.connected = on_connected,
-	.message = on_message,
-	.will = will,
-};
-
 /* struct stream.class_of */
 static const char *class_of(void *ctx, const char *name)
 {
@@ -221,7 +83,6 @@ static void mqtt_begin(struct face *face, int64_t now_ns)
 	m->stream.class_ctx = face;
 	m->broker.face = face;
 	m->broker.options = &m->options;
-	m->broker.ops = &broker_ops;
 	m->broker.ctx = m;
 	m->commands.log = face->log;
 	m->commands.instance = face->arguments->instance;
@@ -296,7 +157,7 @@ static void sweep(struct mqtt *m, int64_t now_ns)
 			break;
 		all[count] = topics[count];
 	}
-	broker_look(&m->broker, all, count, begins);
+	client_look(&m->broker, all, count, begins);
 	m->sweep = false;
 	m->sweep_ns = begins ? now_ns + SWEEP_NS : 0;
 }

@@ -2,11 +2,12 @@
 /* owsd-mqtt: publishes the signals of an owsd to an MQTT broker. */
 #include "src/faces/kit/loop.h"
 #include "src/faces/kit/secret.h"
+#include "src/faces/mqtt/arrivals.h"
 #include "src/faces/mqtt/mqtt.h"
 
 static int open_mqtt(struct face *face)
 {
-	static struct mqtt mqtt;
+	static struct mqtt mqtt = {.broker.ops = &arrivals_ops};
 
 	face->own = &mqtt;
 	return mqtt_open(face);

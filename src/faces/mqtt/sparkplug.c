@@ -206,12 +206,46 @@ static void add_quality(struct metric *m, uint8_t quality, bool simulated)
 		add_flag(m, "Simulated", true);
 }
 
-static void metric_init(struct metric *m)
+/* Its alias, 0: none, and its time. */
+static void metric_begin(struct metric *m, uint64_t alias, int64_t wall_ns)
 {
 	spb__metric__init(&m->metric);
 	spb__property_set__init(&m->set);
 	m->set.keys = m->keys;
 	m->set.values = m->list;
+	m->metric.has_alias = alias;
+	m->metric.alias = alias;
+	m->metric.has_timestamp = true;
+	m->metric.timestamp = ms_of(wall_ns);
+}
+
+/* What a birth has of it. */
+static void metric_describe(struct metric *m, const char *name, uint32_t datatype)
+{
+	snprintf(m->name, sizeof(m->name), "%s", name);
+	clean(m->name);
+	m->metric.name = m->name;
+	m->metric.has_datatype = true;
+	m->metric.datatype = datatype;
+}
+
+static void metric_put(struct stream *s, struct metric *m)
+{
+	if (m->set.n_keys)
+		m->metric.properties = &m->set;
+	put_metric(s, &m->metric);
+}
+
+static void set_bool(struct metric *m, bool value)
+{
+	m->metric.value_case = SPB__METRIC__VALUE_BOOLEAN_VALUE;
+	m->metric.boolean_value = value;
+}
+
+static void set_long(struct metric *m, int64_t value)
+{
+	m->metric.value_case = SPB__METRIC__VALUE_LONG_VALUE;
+	m->metric.long_value = (uint64_t)value;
 }
 
 static uint32_t datatype_of(uint8_t type)
@@ -242,16 +276,18 @@ static uint32_t datatype_of(uint8_t type)
 }
 
 /* A bad value has no number. */
-static void set_value(Spb__Metric *metric, const struct ows_value *v, uint8_t type, char *text)
+static void set_value(struct metric *m, const struct ows_value *v, uint8_t type, char *text)
 {
+	Spb__Metric *metric = &m->metric;
+	uint32_t datatype = datatype_of(type);
+
 	if (!ows_good(v->quality)) {
 		metric->has_is_null = metric->is_null = true;
 		return;
 	}
-	switch (datatype_of(type)) {
+	switch (datatype) {
 	case BOOLEAN:
-		metric->value_case = SPB__METRIC__VALUE_BOOLEAN_VALUE;
-		metric->boolean_value = v->integer != 0;
+		set_bool(m, v->integer != 0);
 		return;
 	case FLOAT:
 		metric->value_case = SPB__METRIC__VALUE_FLOAT_VALUE;
@@ -262,12 +298,7 @@ static void set_value(Spb__Metric *metric, const struct ows_value *v, uint8_t ty
 		metric->double_value = v->number;
 		return;
 	case INT64:
-		metric->value_case = SPB__METRIC__VALUE_LONG_VALUE;
-		metric->long_value = (uint64_t)v->integer;
-		return;
-	case INT16:
-		metric->value_case = SPB__METRIC__VALUE_INT_VALUE;
-		metric->int_value = (uint16_t)v->integer;
+		set_long(m, v->integer);
 		return;
 	case STRING:
 		clean(text);
@@ -276,7 +307,7 @@ static void set_value(Spb__Metric *metric, const struct ows_value *v, uint8_t ty
 		return;
 	default:
 		metric->value_case = SPB__METRIC__VALUE_INT_VALUE;
-		metric->int_value = (uint32_t)v->integer;
+		metric->int_value = datatype == INT16 ? (uint16_t)v->integer : (uint32_t)v->integer;
 	}
 }
 
@@ -292,11 +323,7 @@ static void add_description(struct metric *m, const struct ows_info *info)
 {
 	Spb__PropertyValue *value;
 
-	snprintf(m->name, sizeof(m->name), "%s", info->name);
-	clean(m->name);
-	m->metric.name = m->name;
-	m->metric.has_datatype = true;
-	m->metric.datatype = datatype_of(info->type);
+	metric_describe(m, info->name, datatype_of(info->type));
 	add_flag(m, "readOnly", !info->output);
 	if (!*info->unit)
 		return;
@@ -336,30 +363,21 @@ static bool put_limit(struct stream *s, struct row *row, uint64_t alias, bool da
 	uint32_t limit = limit_of(s, row);
 	bool known = limit != LIMIT_UNKNOWN;
 	struct metric m;
+	char name[256];
 
 	if (!row->alarms || (data && limit == row->alarm_print))
 		return false;
-	metric_init(&m);
-	m.metric.has_alias = true;
-	m.metric.alias = alias + (uint64_t)(s->count + (row - s->rows));
-	m.metric.has_timestamp = true;
-	m.metric.timestamp = ms_of(when_now().wall);
+	metric_begin(&m, alias + (uint64_t)(s->count + (row - s->rows)), when_now().wall);
 	add_quality(&m, known ? OWS_Q_GOOD : OWS_Q_NO_OWSD, known && row->simulated);
 	if (!data) {
-		snprintf(m.name, sizeof(m.name), "%.240s/Alarm", row->info.name);
-		clean(m.name);
-		m.metric.name = m.name;
-		m.metric.has_datatype = true;
-		m.metric.datatype = BOOLEAN;
+		snprintf(name, sizeof(name), "%.240s/Alarm", row->info.name);
+		metric_describe(&m, name, BOOLEAN);
 		add_flag(&m, "readOnly", true);
 	}
-	m.metric.properties = &m.set;
 	m.metric.has_is_null = m.metric.is_null = !known;
-	if (known) {
-		m.metric.value_case = SPB__METRIC__VALUE_BOOLEAN_VALUE;
-		m.metric.boolean_value = limit == LIMIT_STANDS;
-	}
-	put_metric(s, &m.metric);
+	if (known)
+		set_bool(&m, limit == LIMIT_STANDS);
+	metric_put(s, &m);
 	row->alarm_print = limit;
 	return true;
 }
@@ -374,21 +392,16 @@ static bool put_row(struct stream *s, struct row *row, uint64_t alias, bool data
 	stream_read(s, row, &news);
 	if (data && !is_new(row, &news))
 		return put_limit(s, row, alias, data);
-	metric_init(&m);
-	m.metric.has_alias = true;
-	m.metric.alias = alias + (uint64_t)(row - s->rows);
-	m.metric.has_timestamp = true;
 	row->moment_ns = face_value_time(&news.value.v, now.boot);
 	row->told = face_value_print(&news.value.v, news.value.text);
 	if (!data && s->clock_set && !row->born_ns)
 		row->born_ns = row->moment_ns;
-	m.metric.timestamp = ms_of(row->moment_ns + now.wall - now.boot);
+	metric_begin(&m, alias + (uint64_t)(row - s->rows), row->moment_ns + now.wall - now.boot);
 	add_quality(&m, news.value.v.quality, news.value.simulated);
 	if (!data)
 		add_description(&m, &row->info);
-	m.metric.properties = &m.set;
-	set_value(&m.metric, &news.value.v, row->info.type, news.value.text);
-	put_metric(s, &m.metric);
+	set_value(&m, &news.value.v, row->info.type, news.value.text);
+	metric_put(s, &m);
 	stream_published(row, &news);
 	put_limit(s, row, alias, data);
 	return true;
@@ -414,29 +427,20 @@ static void put_bdseq(struct stream *s, uint64_t alias)
 {
 	struct metric m;
 
-	metric_init(&m);
-	m.metric.name = lent("bdSeq");
-	m.metric.has_alias = alias;
-	m.metric.alias = alias;
-	m.metric.has_timestamp = m.metric.has_datatype = true;
-	m.metric.timestamp = ms_of(when_now().wall);
-	m.metric.datatype = INT64;
-	m.metric.value_case = SPB__METRIC__VALUE_LONG_VALUE;
-	m.metric.long_value = s->bdseq;
-	put_metric(s, &m.metric);
+	metric_begin(&m, alias, when_now().wall);
+	metric_describe(&m, "bdSeq", INT64);
+	set_long(&m, s->bdseq);
+	metric_put(s, &m);
 }
 
 static void put_rebirth(struct stream *s)
 {
 	struct metric m;
 
-	metric_init(&m);
-	m.metric.name = lent(REBIRTH);
-	m.metric.has_timestamp = m.metric.has_datatype = true;
-	m.metric.timestamp = ms_of(when_now().wall);
-	m.metric.datatype = BOOLEAN;
-	m.metric.value_case = SPB__METRIC__VALUE_BOOLEAN_VALUE;
-	put_metric(s, &m.metric);
+	metric_begin(&m, 0, when_now().wall);
+	metric_describe(&m, REBIRTH, BOOLEAN);
+	set_bool(&m, false);
+	metric_put(s, &m);
 }
 
 /* Metrics of the node, with aliases behind those of all rows; data: those that have changed. */
@@ -457,20 +461,14 @@ static bool put_health(struct stream *s, bool data)
 
 		if (data && numbers[i] == s->numbers[i])
 			continue;
-		metric_init(&m);
-		m.metric.has_alias = m.metric.has_timestamp = any = true;
-		m.metric.alias = first_alias(s) + (uint64_t)(2 * s->count + i);
-		m.metric.timestamp = ms_of(when_now().wall);
-		m.metric.value_case = SPB__METRIC__VALUE_LONG_VALUE;
-		m.metric.long_value = (uint64_t)numbers[i];
+		metric_begin(&m, first_alias(s) + (uint64_t)(2 * s->count + i), when_now().wall);
+		set_long(&m, numbers[i]);
 		if (!data) {
-			m.metric.name = lent(names[i]);
-			m.metric.has_datatype = true;
-			m.metric.datatype = INT64;
+			metric_describe(&m, names[i], INT64);
 			add_flag(&m, "readOnly", true);
-			m.metric.properties = &m.set;
 		}
-		put_metric(s, &m.metric);
+		metric_put(s, &m);
+		any = true;
 		s->numbers[i] = numbers[i];
 	}
 	return any;
@@ -592,15 +590,11 @@ static bool sparkplug_past(struct stream *s, const struct past_value *values, in
 		const struct past_value *value = &values[i];
 		struct metric m;
 
-		metric_init(&m);
-		m.metric.has_alias = m.metric.has_timestamp = true;
-		m.metric.alias = alias + (uint64_t)(value->row - s->rows);
-		m.metric.timestamp = ms_of(value->wall_us * 1000);
+		metric_begin(&m, alias + (uint64_t)(value->row - s->rows), value->wall_us * 1000);
 		m.metric.has_is_historical = m.metric.is_historical = true;
 		add_quality(&m, value->v.quality, value->row->simulated);
-		m.metric.properties = &m.set;
-		set_value(&m.metric, &value->v, value->row->info.type, value->text);
-		put_metric(s, &m.metric);
+		set_value(&m, &value->v, value->row->info.type, value->text);
+		metric_put(s, &m);
 	}
 	s->parts = parts;
 	return put_numbered(s, "DATA", chip);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The rows of an instance, and which of them have to be published. */
 #include <errno.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -287,21 +286,16 @@ static bool make_chips(struct stream *s)
 	return true;
 }
 
+static int by_id(const void *id, const void *chip)
+{
+	return strcmp(id, ((const struct chip *)chip)->id);
+}
+
 struct chip *stream_chip(const struct stream *s, const char *id)
 {
-	int low = 0, high = s->chip_count;
-
-	while (low < high) {
-		int middle = (low + high) / 2, order = strcmp(id, s->chips[middle].id);
-
-		if (!order)
-			return &s->chips[middle];
-		if (order < 0)
-			high = middle;
-		else
-			low = middle + 1;
-	}
-	return NULL;
+	return s->chip_count
+	               ? bsearch(id, s->chips, (size_t)s->chip_count, sizeof(*s->chips), by_id)
+	               : NULL;
 }
 
 int stream_make(struct stream *s, struct ows *h)

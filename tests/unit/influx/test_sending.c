@@ -73,13 +73,13 @@ static const char *identity_of(void *ctx, int row, uint8_t *type)
 	return signals[row].path;
 }
 
+static const struct history_signal table[] = {{"room", "", OWS_DOUBLE, 0, 2, "/28.1/temperature"},
+                                              {"lamp", "", OWS_BOOL, 1, -1, "/29.1/PIO.0"}};
+
 static void record(void)
 {
 	const struct history_options options = {
 		.directory = history, .boot = history_boot_present(), .flush_ns = 60 * S};
-	static const struct history_signal table[] = {
-		{"room", "", OWS_DOUBLE, 0, 2, "/28.1/temperature"},
-		{"lamp", "", OWS_BOOL, 1, -1, "/29.1/PIO.0"}};
 
 	TEST_ASSERT_EQUAL_INT(0, history_writer_open(&options, start_ns, offset(), true, &writer));
 	TEST_ASSERT_EQUAL_INT(0, history_writer_signals(writer, table, COUNT, start_ns));
@@ -320,6 +320,33 @@ static void test_what_was_not_running_is_a_stretch_and_a_gap_has_a_quality_alone
 	free(text);
 }
 
+static void test_what_was_written_when_a_signal_had_another_type_is_not_sent(void)
+{
+	static const struct history_signal other[] = {
+		{"room", "", OWS_LARGE, 0, -1, "/28.1/temperature"},
+		{"lamp", "", OWS_BOOL, 1, -1, "/29.1/PIO.0"}};
+	char *text;
+
+	record();
+	written();
+	begin();
+	missed_keep(&p->missed, 0, now_ns);
+	history_writer_signals(writer, other, COUNT, now_ns);
+	history_writer_value(writer, ROOM, now_ns + 10 * S, OWS_Q_GOOD, 7, NULL, 0);
+	history_writer_flush(writer, now_ns + 15 * S);
+	history_writer_signals(writer, table, COUNT, now_ns + 19 * S);
+	room(now_ns + 20 * S, 21);
+	now_ns += 60 * S;
+	written();
+	begin();
+	add(1);
+	text = taken(60);
+	has(text, "signal=room value=21,quality=192i ");
+	TEST_ASSERT_NULL_MESSAGE(strstr(text, "signal=room value=7"), text);
+	TEST_ASSERT_NULL_MESSAGE(strstr(text, "signal=room value=0"), text);
+	free(text);
+}
+
 /* Rows of the history that are dropped on their way are read again. */
 static void test_rows_that_memory_drops_are_read_again(void)
 {
@@ -356,6 +383,7 @@ int main(void)
 	RUN_TEST(test_lines_that_are_refused_are_dropped_and_counted);
 	RUN_TEST(test_what_memory_could_not_hold_comes_from_the_history);
 	RUN_TEST(test_what_was_not_running_is_a_stretch_and_a_gap_has_a_quality_alone);
+	RUN_TEST(test_what_was_written_when_a_signal_had_another_type_is_not_sent);
 	RUN_TEST(test_rows_that_memory_drops_are_read_again);
 	return UNITY_END();
 }
