@@ -259,7 +259,7 @@ WEBPAGE  := $(patsubst src/faces/web/page/%,%,$(foreach e,html css js svg png we
             $(wildcard src/faces/web/page/*.$(e) src/faces/web/page/*/*.$(e))))
 MAN      := $(wildcard docs/*.[1-8])
 # Tests
-UNIT_SRC := $(filter-out $(if $(PROTOBUFC),,%/test_sparkplug.c) $(if $(MOSQUITTO),,%/test_advice.c) $(if $(SQLITE),,%_past.c $(wildcard $(patsubst %,tests/unit/%/*.c,file library recorder))),$(wildcard tests/unit/*/test_*.c))
+UNIT_SRC := $(filter-out $(if $(PROTOBUFC),,%/test_sparkplug.c) $(if $(MOSQUITTO),,%/test_advice.c) $(if $(SQLITE),,%_past.c %/test_sending.c $(wildcard $(patsubst %,tests/unit/%/*.c,file library recorder))),$(wildcard tests/unit/*/test_*.c))
 UNIT_AID := $(filter-out %/published.c %/past.c $(if $(SQLITE),,%/power_file.c),$(wildcard tests/unit/aid/*.c))
 ENDURANCE := $(wildcard tests/endurance/*.c)
 BENCH    := $(filter-out $(if $(SQLITE),,%/bench_history.c %/bench_recorder.c),$(wildcard tests/bench/bench_*.c))
