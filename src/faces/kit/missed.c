@@ -291,6 +291,7 @@ static int up_to_gap(struct replay_row *rows, int n)
 
 int missed_read(struct missed *m, int count, struct replay_row *rows, int most, int64_t now_ns)
 {
+	int64_t offset_us = missed_point(m, 0).wall_us;
 	int n;
 
 	if (!m->count || now_ns < m->next_ns)
@@ -317,7 +318,7 @@ int missed_read(struct missed *m, int count, struct replay_row *rows, int most, 
 		m->undated += undated;
 		/* the recorder may not know yet that the clock was set, as we do */
 		if (rows[i].at.boot == m->boot)
-			rows[i].wall_us = missed_point(m, rows[i].at.us * NS_PER_US).wall_us;
+			rows[i].wall_us = rows[i].at.us + offset_us;
 	}
 	return n;
 }
