@@ -174,6 +174,11 @@ LIBMICROHTTPD ?= $(shell printf '\043include <stdint.h>\n\043include <microhttpd
 LIBMICROHTTPD := $(LIBMICROHTTPD)
 HTTPD    := $(filter 1,$(LIBMICROHTTPD))
 
+# The plots of its page, where the package libjs-dygraphs is; DYGRAPHS= leaves them out
+DYGRAPHS ?= $(wildcard /usr/share/javascript/dygraphs/dygraph.min.js)
+DYGRAPHS := $(DYGRAPHS)
+DYGRAPHS_LICENCE ?= /usr/share/doc/libjs-dygraphs/copyright
+
 # owsd-mqtt, where libmosquitto is there for this compiler; LIBMOSQUITTO=0 leaves it out
 LIBMOSQUITTO ?= $(shell printf '\043include <stdint.h>\n\043include <mosquitto.h>\nint main(void) { return mosquitto_lib_init(); }\n' | \
               $(CC) $(CPPFLAGS) $(CFLAGS) $(EXTRA_CFLAGS) $(LDFLAGS) -x c -o /dev/null - -lmosquitto 2>/dev/null && echo 1)
@@ -200,7 +205,7 @@ with_ld  := $(CC): $(ALL_LDFLAGS) $(LIBS)
 with_libraries := libi2c $(if $(filter 1,$(LIBI2C)),yes,no) libgpiod $(or $(filter 1 2,$(LIBGPIOD)),no) \
     libsqlite3 $(if $(SQLITE),yes,no owsd-recorder left-out) libcurl $(if $(CURL),yes,no owsd-influx left-out) \
     libmicrohttpd $(if $(HTTPD),yes,no owsd-web left-out) libmosquitto $(if $(MOSQUITTO),yes,no owsd-mqtt left-out) \
-    libprotobuf-c $(if $(PROTOBUFC),yes,no)
+    dygraphs $(if $(DYGRAPHS),yes,no plots left-out) libprotobuf-c $(if $(PROTOBUFC),yes,no)
 compiler := $(firstword $(filter-out ccache,$(CC)))
 WITH     := $(patsubst %,$(B)/with/%,cc cxx ld libraries)
 same      = $(and $(findstring x$(1)x,x$(2)x),$(findstring x$(2)x,x$(1)x))
@@ -254,9 +259,8 @@ EXAMPLES := $(wildcard docs/examples/*.c docs/examples/*.cpp docs/examples/*.py 
 # Those that another program builds or loads, a folder for each
 HOSTED   := $(patsubst docs/examples/%/,%,$(wildcard docs/examples/*/))
 PYTHON   := $(wildcard src/memory/libows/*.py)
-# What the browser gets of owsd-web, as names below src/faces/web/page
-WEBPAGE  := $(patsubst src/faces/web/page/%,%,$(foreach e,html css js svg png webmanifest,\
-            $(wildcard src/faces/web/page/*.$(e) src/faces/web/page/*/*.$(e))))
+# What the browser gets of owsd-web: the files of src/faces/web/page, and the library of its plots
+WEBPAGE  := $(notdir $(wildcard src/faces/web/page/*)) $(notdir $(DYGRAPHS))
 MAN      := $(wildcard docs/*.[1-8])
 # Tests
 UNIT_SRC := $(filter-out $(if $(PROTOBUFC),,%/test_sparkplug.c) $(if $(MOSQUITTO),,%/test_advice.c) $(if $(SQLITE),,%_past.c %/test_sending.c $(wildcard $(patsubst %,tests/unit/%/*.c,file library recorder))),$(wildcard tests/unit/*/test_*.c))
@@ -289,7 +293,7 @@ LIBRARY  := $(foreach l,$(LIBRARIES),$(B)/$(l).so.$(VERSION) $(B)/$(l).a $(B)/$(
         deb test-package test-service test-fresh dist test-dist clean \
         examples unit-programs benches system-programs diagrams compare properties-page check check-all \
         touched mutate help FORCE
-all: $(PROGRAMS) $(LIBRARY) $(PYTHON_MADE) $(B)/core.a $(B)/with/libraries
+all: $(PROGRAMS) $(LIBRARY) $(PYTHON_MADE) $(WEBPAGE:%=$(B)/page/%) $(B)/core.a $(B)/with/libraries
 
 # Two makes may do this at once
 $(WITH): $(B)/with/%:
@@ -301,6 +305,14 @@ $(WITH): $(B)/with/%:
 
 $(B)/%.o: %.c $(B)/with/cc
 	$(call compile,$(PIC))
+
+# The page as owsd-web serves it from the build: links, so that a change shows at the next reload
+$(B)/page/%: src/faces/web/page/%
+	@mkdir -p $(@D)
+	@ln -sf $(abspath $<) $@
+$(DYGRAPHS:%=$(B)/page/$(notdir $(DYGRAPHS))): $(DYGRAPHS)
+	@mkdir -p $(@D)
+	@ln -sf $(abspath $<) $@
 
 # Everything but main(): what the programs and the unit tests link
 $(B)/core.a: $(call obj,$(CORE)) $(PROTO:%=%.o)
@@ -612,10 +624,10 @@ install: all
 	install -d $(D)$(PREFIX)/bin $(D)$(PREFIX)/sbin $(D)$(PREFIX)/include $(D)$(LIBDIR)/pkgconfig \
 	    $(D)$(DATADIR)/examples $(D)$(DATADIR)/boards
 	install -m 755 $(B)/owsd $(FACES:%=$(B)/%) $(patsubst %,$(B)/%,$(filter owsd%,$(WITH_SIM))) $(D)$(PREFIX)/sbin
-	@set -e; for f in $(WEBPAGE); do d=$(D)$(DATADIR)/web/$$(dirname $$f); install -d $$d; \
-	    install -m 644 src/faces/web/page/$$f $$d; done
-	@set -e; for f in $(WEBPAGE); do d=$(COCKPIT)/$$(dirname $$f); install -d $$d; \
-	    install -m 644 src/faces/web/page/$$f $$d; done
+	install -d $(D)$(DATADIR)/web $(COCKPIT)
+	install -m 644 $(WEBPAGE:%=$(B)/page/%) $(D)$(DATADIR)/web
+	install -m 644 $(WEBPAGE:%=$(B)/page/%) $(COCKPIT)
+	$(if $(DYGRAPHS),install -m 644 $(DYGRAPHS_LICENCE) $(D)$(DATADIR)/dygraphs.copyright)
 	sed 's,^<script type="module" async,<script src="../base1/cockpit.js"></script>\n&,' \
 	    src/faces/web/page/index.html >$(COCKPIT)/index.html
 	install -m 644 board/cockpit/manifest.json $(COCKPIT)

@@ -6,7 +6,7 @@ import {beforeEach, test} from "node:test";
 import {server} from "./browser.js";
 import {UNKNOWN} from "./page/words.js";
 
-const {continued, csvOf, goodCode, pastOf} = await import("./page/series.js");
+const {continued, csvOf, extremes, goodCode, padded, pastOf} = await import("./page/series.js");
 const {store} = await import("./page/store.js");
 const GOOD = 0xc0, UNCERTAIN = 0x54, ABSENT = 0x08;
 const signal = {name: "room", type: "double", unit: "\u00b0C", recent: []};
@@ -103,4 +103,18 @@ test("a table for spreadsheets has no formula and no broken line", () => {
 		"1970-01-01T00:00:01.000Z,'=1+1,\"a,\"\"b\"\"\",,,,unknown", ""]);
 	for (const sign of "+-@")
 		assert.match(csvOf([{signal: {name: `${sign}x`}, past: one}]), new RegExp(`,'\\${sign}x,`));
+});
+
+test("the least and the greatest are those of good columns in the window", () => {
+	const all = {x: [0, 10, 20, 30], min: [-50, 2, null, 1], max: [90, 3, null, 7]};
+	assert.deepEqual(extremes(all, [10, 30]), [1, 7]);
+	assert.deepEqual(extremes(all, [10, 29]), [2, 3]);
+	assert.equal(extremes(all, [15, 25]), null);
+});
+
+test("an axis has a margin, also around one value and none", () => {
+	assert.deepEqual(padded([[0, 5], [-10, 10]]), [-12, 12]);
+	assert.deepEqual(padded([[20, 20]]), [18, 22]);
+	assert.deepEqual(padded([[0, 0]]), [-0.1, 0.1]);
+	assert.deepEqual(padded([]), [0, 1]);
 });

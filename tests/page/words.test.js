@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import {readFileSync} from "node:fs";
 import {test} from "node:test";
-import {UNKNOWN, alarmOf, clock, dateAndClock, meaningOf, msOf, qualityWords, remedyOf, span, stateOf,
+import {UNKNOWN, alarmOf, clock, dateAndClock, meaningOf, msOf, qualityWords, remedyOf, span, stateOf, tickText,
 	valueText, withUnit} from "./page/words.js";
 
 const source = (path) => readFileSync(`${process.env.PAGE_SOURCE}/${path}`, "utf8");
@@ -88,6 +88,13 @@ test("a time is ms or a text, and what is neither is a dash", () => {
 	assert.equal(dateAndClock("2026-02-03T04:05:06Z"), "2026-02-03 04:05:06");
 	for (const none of [null, undefined, "", "soon", NaN])
 		assert.equal(clock(none), "\u2014", String(none));
+});
+
+test("a mark of an axis of time has what is new at it", () => {
+	for (const [time, text] of [["2026-02-03T04:05:06Z", "04:05:06"], ["2026-02-03T04:05:00Z", "04:05"],
+		["2026-02-03T00:05:00Z", "00:05"], ["2026-02-03T00:00:00Z", "02-03"],
+		["2026-01-01T00:00:00Z", "2026"]])
+		assert.equal(tickText(new Date(time)), text);
 });
 
 test("an alarm with an exclamation mark wants eyes, and a dash is none", () => {

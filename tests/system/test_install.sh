@@ -24,6 +24,10 @@ if [ -e "$OWSD_BUILD/owsd-web" ]; then
 	"$root/opt/owsd/sbin/owsd-web" -V | grep -q '^owsd-web '
 	[ ! -e "$OWSD_SOURCE/src/faces/web/page/index.html" ] || [ -s "$root/opt/owsd/share/owsd/web/index.html" ]
 fi
+if grep -q 'dygraphs yes' "$OWSD_BUILD/with/libraries"; then
+	[ -s "$root/opt/owsd/share/owsd/web/dygraph.min.js" ]
+	grep -q 'Permission is hereby granted' "$root/opt/owsd/share/owsd/dygraphs.copyright"
+fi
 
 # Every manual page has the day of the news, and no other is in the source
 day=$(sh "$OWSD_SOURCE/board/make-deb" --day)

@@ -41,7 +41,7 @@ def test_each_view_shows_what_it_is_for_also_on_a_phone(scene):
                 page.until("return document.documentElement.scrollWidth <= arguments[0]",
                            f"{name} fits {width} pixels", width)
         view(page, "trends")
-        page.find("#trends .u-over")
+        page.find("#trends .chart canvas")
         shows(page, "#trends .legend", "room", "21.5", "good")
         assert not page.complaints()
 

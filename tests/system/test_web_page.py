@@ -6,6 +6,7 @@ the docs."""
 
 import json
 import os
+import shutil
 import time
 import urllib.error
 import urllib.request
@@ -124,15 +125,64 @@ def test_a_trend_goes_on_and_a_drag_zooms(scene):
     with plant(scene) as (_, _, page):
         view(page, "trends")
         page.click(".picks li:nth-child(2) label")
-        page.find("#trends .u-over")
+        page.find("#trends .chart canvas")
         shows(page, "#trends .legend", "room", "21.5", "good")
         before = page.run("return location.hash")
-        page.drag("#trends .u-over", 0.3, 0.6)
+        page.drag("#trends .chart canvas", 0.3, 0.6)
         page.until("return new URLSearchParams(location.hash.split('?')[1]).get('until')",
                    lambda: f"another window than {before}")
         span = page.run("return new URLSearchParams(location.hash.split('?')[1]).get('span')")
         assert 150_000 < float(span) < 220_000, span
+        assert not page.complaints(), page.complaints()
+
+
+GESTURE = """const canvas = document.querySelector("#trends .chart canvas:last-of-type");
+    const {left, top, width, height} = canvas.getBoundingClientRect();
+    const at = (x, y = 0.5) => ({clientX: left + x * width, clientY: top + y * height,
+        pageX: left + x * width, pageY: top + scrollY + y * height, bubbles: true});
+    const mouse = (type, where, on = document) => on.dispatchEvent(new MouseEvent(type,
+        {...where, shiftKey: true}));
+    const touch = (type, ...all) => canvas.dispatchEvent(new TouchEvent(type, {bubbles: true,
+        cancelable: true, touches: all.map((where, identifier) => new Touch({...where, identifier,
+        target: canvas}))}));
+    """
+WINDOW = """const q = new URLSearchParams(location.hash.split("?")[1]);
+    return [Number(q.get("span")), Number(q.get("until"))]"""
+
+
+def test_a_trend_is_moved_with_shift_and_by_a_finger_and_widened_by_two(scene):
+    with plant(scene) as (_, _, page):
+        view(page, "trends")
+        page.find("#trends .chart canvas")
+
+        def moved(gesture):
+            before = page.run(WINDOW)
+            page.run(GESTURE + gesture)
+            until(lambda: page.run(WINDOW) != before, 10, lambda: (gesture, page.run(WINDOW)))
+            return page.run(WINDOW)
+        now = time.time() * 1000
+        span, end = moved("mouse('mousedown', at(0.4), canvas); mouse('mousemove', at(0.6));"
+                          "mouse('mouseup', at(0.6))")
+        assert abs(span - 600_000) < 10 and 100_000 < now - end < 160_000, (span, now - end)
+        span, again = moved("touch('touchstart', at(0.5)); touch('touchmove', at(0.6, 0.9))")
+        assert abs(span - 600_000) < 10 and 50_000 < end - again < 80_000, (span, end - again)
+        span, _ = moved("touch('touchstart', at(0.4), at(0.6)); touch('touchmove', at(0.3), at(0.7))")
+        assert abs(span - 300_000) < 3_000, span
         assert not page.complaints()
+
+
+def test_without_dygraphs_a_trend_has_figures_and_says_why_there_is_no_plot(scene):
+    with browser.open_one(scene) as page:
+        daemon = house(scene)
+        files = scene.path / "page"
+        shutil.copytree(BUILD / "page", files, ignore=shutil.ignore_patterns("dygraph*"))
+        config = scene.path / "figures.rio"
+        config.write_text(daemon.config.read_text().replace("{ Write off", f'{{ Files "{files}" Write off'))
+        web = serve(scene, daemon, config=config)
+        page.go(web.address + "#trends?s=room&span=60000")
+        shows(page, "#trends", "without dygraphs", "libjs-dygraphs")
+        shows(page, "#trends .legend", "room", "21.5", "good")
+        assert not page.run("return document.querySelector('#trends canvas')")
 
 
 def test_a_trend_has_what_the_recorder_kept_and_the_time_without_owsd_is_a_gap(scene):

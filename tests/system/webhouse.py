@@ -73,10 +73,10 @@ def plant(scene, write=False, browser=browser):
         yield daemon, web, page
 
 
-def serve(scene, daemon, port=None):
+def serve(scene, daemon, port=None, config=None):
     owsdtest.need(BUILD / "owsd-web")
     port = port or owsdtest.free_port()
-    web = scene.start([BUILD / "owsd-web", "-n", daemon.name, "-c", daemon.config,
+    web = scene.start([BUILD / "owsd-web", "-n", daemon.name, "-c", config or daemon.config,
                        "-l", f"127.0.0.1:{port}"])
     web.address, web.port = f"http://127.0.0.1:{port}/", port
     until(lambda: answers(web), 20, web.log)

@@ -179,7 +179,7 @@ static void follow_addresses(struct web *web)
  */
 static int find_files(const char *given, char path[FILES_PATH])
 {
-	static const char *const beside[] = {"../share/owsd/web", "../src/faces/web/page"};
+	static const char *const beside[] = {"../share/owsd/web", "page"};
 	char program[512];
 	ssize_t len = readlink("/proc/self/exe", program, sizeof(program) - 1);
 	int fd = -ENOENT;

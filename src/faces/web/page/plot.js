@@ -1,33 +1,55 @@
 // SPDX-License-Identifier: MIT
 // A plot of signals that have one unit: the last value as a line of steps in a band from the least
-// to the greatest, gaps as gaps, and below it the quality of each signal as a band.
-import uPlot from "./uplot/uPlot.esm.js";
-import {el, put, wide} from "./dom.js";
-import {UNKNOWN, clock, dateAndClock, qualityWords, stateOf, valueText, withUnit} from "./words.js";
+// to the greatest, gaps as gaps, and below it the quality of each signal as a band. dygraphs has the
+// axes and the gestures; without it there are the figures alone.
+import {el, later, put, wide} from "./dom.js";
+import {extremes, padded} from "./series.js";
+import {UNKNOWN, clock, dateAndClock, qualityWords, stateOf, tickText, valueText, withUnit}
+	from "./words.js";
 
-const HEIGHT = 220, AXIS = 64, BAND = 12, SPACE = 4;
+const AXIS = 56, BAND = 12, SPACE = 4, SETTLED_MS = 250;
 const DASHES = [[], [6, 3], [2, 2], [10, 3, 2, 3], [12, 4], [1, 4]];
+const SWITCH = [-0.2, 1.2]; // of the values off and on
 
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-const stepped = uPlot.paths.stepped({align: 1});
+const same = (a, b) => a[0] === b[0] && a[1] === b[1];
 
 export class Plot {
-	/** signals: of one unit; zoom(from, until): the user has dragged. */
-	constructor(signals, numbers, zoom) {
+	/**
+	 * signals: of one unit; numbers: which line each has, 0 ..; zoom(from, until): the user has
+	 * chosen a window; point(time): the user points at it, or null.
+	 */
+	constructor(signals, numbers, zoom, point) {
 		this.signals = signals;
-		this.zoom = zoom;
-		this.numbers = numbers; // which line each signal has, 0 ..
+		this.numbers = numbers;
 		this.pasts = [];
+		this.time = null;
+		this.chosen = null; // the least and the greatest value that the user has dragged to
+		this.moving = false; // a gesture goes on, or has just ended
+		this.settle = later(() => {
+			this.moving = false;
+			if (this.graph)
+				zoom(...this.graph.xAxisRange());
+		}, SETTLED_MS);
 		this.band = el("canvas", {class: "band", "aria-hidden": "true"});
+		this.hair = el("div", {class: "hair", hidden: true});
 		this.at = el("th", {scope: "col", class: "right"}, "Last");
 		this.cells = signals.map(() => ({value: el("td", {class: "right"}), range: el("td", {
 			class: "right"}), quality: el("td", {})}));
 		const names = signals.map((signal) => signal.name).join(", ");
-		this.plot = el("div", {class: "plot", role: "img",
-			"aria-label": `Trend of ${names}; the table below has figures`});
-		this.node = el("figure", {class: "trend"}, this.plot, this.band);
 		const figures = wide(`Figures of ${names}`);
 		figures.append(this.#legend());
+		this.node = el("figure", {class: "trend"});
+		if (globalThis.Dygraph) {
+			this.chart = el("div", {class: "chart",
+				onpointermove: ({clientX, currentTarget}) => this.graph && point(
+					this.graph.toDataXCoord(clientX - currentTarget.getBoundingClientRect().left)),
+				onpointerleave: () => point(null)});
+			this.node.append(el("p", {class: "unit"}, signals[0].unit || ""),
+				el("div", {class: "plot", role: "img",
+					"aria-label": `Trend of ${names}; the table below has figures`},
+				this.chart, this.hair), this.band);
+		}
 		this.node.append(figures);
 	}
 
@@ -43,77 +65,76 @@ export class Plot {
 				this.cells[n].value, this.cells[n].range, this.cells[n].quality))));
 	}
 
-	#options(width) {
-		const ink = css("--ink-2"), grid = css("--rule");
-		const axis = {stroke: ink, grid: {stroke: grid, width: 1}, ticks: {stroke: grid, width: 1},
-			font: "12px system-ui, sans-serif"};
-		const switches = this.signals.every((signal) => signal.type === "bool");
-		const dates = ["\n{YYYY}-{MM}-{DD}", null, "\n{MM}-{DD}", null, null, null, 1];
-		const series = [{}], bands = [];
-		for (const n of this.numbers) {
-			const stroke = css(`--line-${n}`);
-			const edge = {paths: stepped, stroke: "transparent", points: {show: false}, width: 0};
-			bands.push({series: [series.length + 1, series.length], fill: `${stroke}33`});
-			series.push({...edge}, {...edge}, {paths: stepped, stroke, width: 1.75, dash: DASHES[n],
-				points: {show: false}});
-		}
+	#options() {
+		const {dateTicker, defaultInteractionModel: gestures} = globalThis.Dygraph;
+		const rule = css("--rule");
+		const y = this.#switches() ? {ticker: () => [{v: 0, label: "off"}, {v: 1, label: "on"}]} : {};
 		return {
-			width, height: HEIGHT, ms: 1, series, bands, legend: {show: false},
-			scales: {x: {time: true, range: () => this.window},
-				y: switches ? {range: [-0.2, 1.2]} : {}},
-			axes: [{...axis, values: [
-				[31536000000, "{YYYY}", null, null, null, null, null, null, 1],
-				[86400000, "{YYYY}-{MM}-{DD}", null, null, null, null, null, null, 1],
-				[60000, "{HH}:{mm}", ...dates],
-				[1, "{HH}:{mm}:{ss}", ...dates],
-			]}, {...axis, size: AXIS, label: this.signals[0].unit || " ", labelSize: 18,
-				labelFont: axis.font, ...switches ? {splits: () => [0, 1],
-					values: () => ["off", "on"]} : {}}],
-			cursor: {drag: {x: true, y: false, setScale: false}, points: {show: false},
-				sync: {key: "trends"}},
-			hooks: {
-				setSelect: [(u) => this.#selected(u)],
-				setCursor: [(u) => this.#figures(u.cursor.idx)],
-				draw: [() => this.#drawBand()],
-			},
+			labels: ["time", "all"], highlightCircleSize: 0, gridLineColor: rule,
+			axisLineColor: rule, axisLabelFontSize: 12, plotter: (all) => this.#drawAll(all),
+			drawCallback: (graph) => this.#drawn(graph),
+			axes: {x: {ticker: dateTicker, axisLabelFormatter: (time) => tickText(new Date(time))},
+				y: {axisLabelWidth: AXIS, ...y}},
+			// Time alone is moved; a drag up or down chooses values, until a double click
+			interactionModel: {...gestures, mousedown: (event, graph, context) => {
+				gestures.mousedown(event, graph, context);
+				context.is2DPan = false;
+			}, touchstart: (event, graph, context) => {
+				// One finger up or down scrolls the page
+				gestures.touchstart({touches: event.touches, preventDefault: () =>
+					event.touches.length > 1 && event.preventDefault()}, graph, context);
+				context.touchDirections = {x: true, y: false};
+			}, dblclick: () => {
+				this.chosen = null;
+				this.show(this.pasts, this.window);
+			}},
 		};
 	}
 
-	#selected(u) {
-		const {left, width} = u.select;
-		if (width < 4)
-			return;
-		const from = u.posToVal(left, "x"), until = u.posToVal(left + width, "x");
-		u.setSelect({left: 0, width: 0, top: 0, height: 0}, false);
-		this.zoom(from, until);
+	#switches() {
+		return this.signals.every((signal) => signal.type === "bool");
 	}
 
 	/** Show these pasts, one for each signal, in the window [from, until] (ms). */
 	show(pasts, window) {
 		this.pasts = pasts;
 		this.window = window;
-		const data = uPlot.join(pasts.map((past) => past.x.length
-			? [past.x, past.min, past.max, past.last] : [window.slice(), [null, null], [null, null],
-				[null, null]]));
-		const width = Math.max(240, this.plot.clientWidth);
-		if (this.u) {
-			if (this.u.width !== width)
-				this.u.setSize({width, height: HEIGHT});
-			this.u.setData(data);
-		} else {
-			this.u = new uPlot(this.#options(width), data, this.plot);
+		this.#figures();
+		if (!this.chart?.clientWidth || this.moving)
+			return;
+		this.range = this.chosen ?? (this.#switches() ? SWITCH
+			: padded(pasts.map((past) => extremes(past, window)).filter(Boolean)));
+		const wanted = {file: window.map((time) => [time, null]), dateWindow: window,
+			valueRange: this.range};
+		if (!this.graph) {
+			const {Dygraph} = globalThis;
+			// Its legend sets an attribute style, which the policy of the page refuses
+			Dygraph.PLUGINS = Dygraph.PLUGINS.filter((one) => one !== Dygraph.Plugins.Legend);
+			this.graph = new Dygraph(this.chart, wanted.file, {...this.#options(), ...wanted});
+			return;
 		}
-		this.#figures(this.u.cursor.idx);
+		if (this.width !== this.chart.clientWidth)
+			this.graph.resize();
+		this.graph.updateOptions(wanted);
+	}
+
+	/** The user points at this time in one of the plots, or at none: null. */
+	point(time) {
+		this.time = time;
+		this.#figures();
+		this.hair.hidden = time === null || !this.graph;
+		if (!this.hair.hidden)
+			this.hair.style.left = `${this.graph.toDomXCoord(time)}px`;
 	}
 
 	end() {
-		this.u?.destroy();
-		this.u = null;
+		this.graph?.destroy();
+		this.graph = null;
 	}
 
-	#figures(index) {
-		const time = index === null || index === undefined ? null : this.u.data[0][index];
-		put(this.at, time === null ? "Last" : this.window[1] - this.window[0] > 86400000
+	#figures() {
+		const {time, window} = this;
+		put(this.at, time === null ? "Last" : window[1] - window[0] > 86400000
 			? dateAndClock(time) : clock(time));
 		this.signals.forEach((signal, n) => {
 			const past = this.pasts[n], cells = this.cells[n];
@@ -124,24 +145,58 @@ export class Plot {
 			put(cells.value, withUnit(signal, valueText(signal, at < 0 ? null : past.last[at])));
 			put(cells.quality, code === UNKNOWN ? "unknown" : qualityWords(code)
 				+ (past.gap[at] ? ", with a gap" : ""));
-			const inside = (_, k) => past.x[k] >= this.window[0] && past.x[k] <= this.window[1];
-			const least = past.min.filter(inside).filter((v) => v !== null);
-			const most = past.max.filter(inside).filter((v) => v !== null);
-			put(cells.range, least.length ? [Math.min(...least), Math.max(...most)]
-				.map((value) => valueText(signal, value)).join(" to ") : "\u2014");
+			put(cells.range, extremes(past, window)?.map((value) => valueText(signal, value))
+				.join(" to ") ?? "\u2014");
+		});
+	}
+
+	/* What the graph shows is what was wanted, or a gesture has moved it. */
+	#drawn(graph) {
+		this.graph ??= graph; // the first time, its constructor has not returned
+		this.width = this.chart.clientWidth;
+		if (!same(graph.yAxisRange(), this.range))
+			this.chosen = graph.yAxisRange();
+		if (!same(graph.xAxisRange(), this.window)) {
+			this.moving = true;
+			this.settle();
+		}
+		this.#drawBand();
+	}
+
+	/* Not by the lines of dygraphs: their dashes begin anew at each step. */
+	#drawAll({drawingContext: pen, dygraph: graph}) {
+		const y = (value) => graph.toDomYCoord(value);
+		this.pasts.forEach(({x: times, min, max, last}, n) => {
+			const x = times.map((time) => graph.toDomXCoord(time));
+			const stroke = css(`--line-${this.numbers[n]}`);
+			pen.save();
+			pen.fillStyle = `${stroke}33`;
+			for (let k = 0; k + 1 < x.length; k++)
+				if (min[k] !== null && max[k] !== null)
+					pen.fillRect(x[k], y(max[k]), x[k + 1] - x[k], y(min[k]) - y(max[k]));
+			pen.strokeStyle = stroke;
+			pen.lineWidth = 1.75;
+			pen.setLineDash(DASHES[this.numbers[n]]);
+			pen.beginPath();
+			for (let k = 0; k < x.length; k++) {
+				if (k && last[k - 1] !== null)
+					pen.lineTo(x[k], y(last[k - 1]));
+				if (last[k] !== null)
+					pen[k && last[k - 1] !== null ? "lineTo" : "moveTo"](x[k], y(last[k]));
+			}
+			pen.stroke();
+			pen.restore();
 		});
 	}
 
 	/* Good: a bar in the colour of the line. Not good: hatched. Nothing known: a dotted line. */
 	#drawBand() {
-		const {u, band} = this;
-		if (!u)
-			return;
-		const ratio = devicePixelRatio, left = u.bbox.left / ratio, width = u.bbox.width / ratio;
+		const {graph, band} = this, {x: left, w: width} = graph.getArea();
+		const ratio = devicePixelRatio;
 		const height = this.signals.length * (BAND + SPACE) + SPACE;
-		band.width = u.width * ratio;
+		band.width = this.width * ratio;
 		band.height = height * ratio;
-		band.style.width = `${u.width}px`;
+		band.style.width = `${this.width}px`;
 		band.style.height = `${height}px`;
 		const pen = band.getContext("2d");
 		pen.scale(ratio, ratio);
@@ -156,9 +211,8 @@ export class Plot {
 				while (end < past.x.length && past.code[end] === past.code[k]
 					&& past.gap[end] === past.gap[k])
 					end++;
-				const a = left + u.valToPos(past.x[k], "x");
-				const b = left + (end < past.x.length ? u.valToPos(past.x[end], "x")
-					: u.valToPos(past.x.at(-1), "x"));
+				const a = graph.toDomXCoord(past.x[k]);
+				const b = graph.toDomXCoord(past.x[Math.min(end, past.x.length - 1)]);
 				if (k === 0)
 					dotted(pen, reached, a, top);
 				paintPart(pen, past.gap[k] ? UNKNOWN : past.code[k], a, b, top, this.numbers[n]);

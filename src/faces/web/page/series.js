@@ -69,6 +69,24 @@ export function continued(past, signal, from, until) {
 	return all;
 }
 
+/** The least and the greatest good value of the columns that begin in the window, or null. */
+export function extremes(past, [from, until]) {
+	const good = (values) => values.filter((value, n) => value !== null && past.x[n] >= from
+		&& past.x[n] <= until);
+	const least = good(past.min), most = good(past.max);
+	return least.length ? [Math.min(...least), Math.max(...most)] : null;
+}
+
+/** The values that an axis shows for these pairs of a least and a greatest: all, and a margin. */
+export function padded(pairs) {
+	if (!pairs.length)
+		return [0, 1];
+	const least = Math.min(...pairs.map(([value]) => value));
+	const most = Math.max(...pairs.map(([, value]) => value));
+	const margin = (most - least || Math.abs(most) || 1) / 10;
+	return [least - margin, most + margin];
+}
+
 const quoted = (text) => /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
 // A text that a spreadsheet would take for a formula is kept one
 const harmless = (text) => /^[=+@-]/.test(text) ? `'${text}` : text;

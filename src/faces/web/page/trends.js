@@ -2,6 +2,7 @@
 // The view Trends: the signals that the user picks, in a window of time that is moved by buttons or
 // by dragging, and that follows the present until it is.
 import {announce, el, later, put} from "./dom.js";
+import {Plot} from "./plot.js";
 import {continued, csvOf, pastOf, save} from "./series.js";
 import {store} from "./store.js";
 import {dateAndClock} from "./words.js";
@@ -12,8 +13,9 @@ const LINES = 6; // at most, in one colour each: that many --line-N has style.cs
 const LEAST_MS = 2000, FRAME_MS = 1000, FETCH_MS = 5000, POINTS = 600;
 
 const state = {picked: [], span: 600000, until: null}; // until null: follows the present
-let Plot = null; // plot.js comes when it is needed: uPlot is as large as all else
-let shown = false, list, filter, plots = [], area, hint, times, live, pasts = new Map(), asked = 0;
+const LIBRARY = "dygraph.min.js"; // comes when it is needed: it is as large as all else
+let shown = false, ready = false, list, filter, plots = [], area, hint, absent, times, live;
+let pasts = new Map(), asked = 0;
 
 export function build(root) {
 	filter = el("input", {type: "search", placeholder: "Search",
@@ -22,6 +24,7 @@ export function build(root) {
 	const picker = el("details", {class: "picker"}, el("summary", {}, "Signals"), filter, list);
 	picker.open = matchMedia("(min-width: 44rem)").matches;
 	hint = el("p", {class: "hint", role: "status"});
+	absent = el("p", {class: "note", role: "status", hidden: true});
 	times = el("p", {class: "times"});
 	area = el("div", {class: "plots"});
 	live = el("button", {type: "button", "aria-pressed": "true", onclick: () => move(null)},
@@ -38,7 +41,7 @@ export function build(root) {
 		...spans, button("\u2190", "Earlier", () => move_by(-0.5)),
 		button("\u2192", "Later", () => move_by(0.5)),
 		button("+", "Zoom in", () => zoom(0.5)), button("\u2212", "Zoom out", () => zoom(2)), live,
-		el("button", {type: "button", onclick: exported}, "Save as CSV")), times, hint,
+		el("button", {type: "button", onclick: exported}, "Save as CSV")), times, hint, absent,
 	el("div", {class: "columns"}, picker, area));
 	store.addEventListener("signals", renewed);
 	setInterval(frame, FRAME_MS);
@@ -56,19 +59,26 @@ export function show(query) {
 		state.span = Number(given.get("span"));
 	if (given.has("until"))
 		state.until = Number(given.get("until")) || null;
-	if (Plot)
-		renewed();
-	else
-		load();
+	load().then(renewed);
 }
 
+/* Without the library there are figures and no plots; the next look at the view asks again. */
 async function load() {
-	try {
-		({Plot} = await import("./plot.js"));
-		renewed();
-	} catch {
-		put(hint, "The page cannot get its plots from owsd-web. Choose the view again.");
-	}
+	const came = globalThis.Dygraph || await new Promise((done) => {
+		document.head.append(el("script", {src: LIBRARY, onload: () => done(true),
+			onerror: () => done(false)}));
+	});
+	if (!came)
+		put(absent, await missing());
+	absent.hidden = Boolean(came);
+	ready = true;
+}
+
+async function missing() {
+	const answer = await fetch(LIBRARY).catch(() => null);
+	return answer?.status === 404 ? "This owsd-web has no plots, only figures: it was built without "
+		+ "dygraphs (package libjs-dygraphs)."
+		: "The page cannot get its plots from owsd-web. Choose the view again.";
 }
 
 export const hide = () => { shown = false; };
@@ -86,7 +96,7 @@ const numeric = () => store.signals.filter((signal) => signal.type !== "string")
 const picked = () => state.picked.map((name) => store.find(name)).filter(Boolean);
 
 function renewed() {
-	if (!shown || !Plot)
+	if (!shown || !ready)
 		return;
 	if (!state.picked.length)
 		state.picked = numeric().filter((signal) => signal.unit).slice(0, 2)
@@ -140,6 +150,11 @@ function zoom(factor) {
 	move(state.until === null ? null : middle + state.span / 2);
 }
 
+function point(time) {
+	for (const {plot} of plots)
+		plot.point(time);
+}
+
 function zoomTo(from, until) {
 	state.span = Math.max(LEAST_MS, until - from);
 	move(until);
@@ -158,7 +173,7 @@ function arrange() {
 		units.set(key, [...units.get(key) ?? [], {signal, n}]);
 	});
 	plots = [...units.values()].map((members) => ({members, plot: new Plot(
-		members.map(({signal}) => signal), members.map(({n}) => n), zoomTo)}));
+		members.map(({signal}) => signal), members.map(({n}) => n), zoomTo, point)}));
 	area.replaceChildren(...(plots.length ? plots.map(({plot}) => plot.node)
 		: [el("p", {class: "note"}, "Pick signals to see what they had.")]));
 	fetchAll();

@@ -147,6 +147,16 @@ export function dateAndClock(time) {
 		: `${at.getFullYear()}-${two(at.getMonth() + 1)}-${two(at.getDate())} ${clock(time)}`;
 }
 
+/** A mark of an axis of time: "12:30:05", "12:30"; at midnight "11-29", at that of a year "2026". */
+export function tickText(at) {
+	const date = `${two(at.getMonth() + 1)}-${two(at.getDate())}`;
+	if (at.getSeconds())
+		return clock(at.getTime());
+	if (at.getHours() || at.getMinutes())
+		return clock(at.getTime()).slice(0, 5);
+	return date === "01-01" ? String(at.getFullYear()) : date;
+}
+
 /** "! high, returned" as {text, open}: open wants eyes. "" and "-" are no alarm: null. */
 export function alarmOf(words) {
 	const text = String(words ?? "").trim();
