@@ -20,10 +20,10 @@ def rio():
     data = HERE.parent / "unit" / "data"
     driver = 'OwsDrv {\n  TargetName "%s"\n%s}\n'
     item = '  Item {\n    Name "%s"\n    Path "%s"\n%s  }\n'
-    genuine = (data / "temperature_logger.rio").read_text()
+    shaped = (data / "four_thermometers.rio").read_text()
     edits = ('a new /28.000000000001/temperature Type=float PerFactor=3\ns new Name=newer\n'
              's newer Uncached=on\nu newer InitValue\nr newer\ns OwsDrv Timeout=7 Period=0.2')
-    put("rio", "genuine", genuine[:1500] + "\0" + edits)
+    put("rio", "shaped", shaped[:1500] + "\0" + edits)
     put("rio", "small", driver % ("localhost:4304", item % ("t", "/28.1/temperature12",
                                                             "    IOType 0x0018\n")) + "\0" +
         "s t IO=output Type=byte\ns t InitValue=3\nr t")

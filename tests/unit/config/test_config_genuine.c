@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The four configurations published with the REXYGEN example projects load as they are. */
+/* Configurations of the shapes that REXYGEN's example projects have load as they are. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -64,7 +64,7 @@ void tearDown(void)
 
 static void test_a_relay_and_an_input_of_a_ds2408(void)
 {
-	load(DATA "emo_1wr4di4.rio");
+	load(DATA "relay_and_inputs.rio");
 	TEST_ASSERT_EQUAL_STRING("localhost:4304", config->targets[0].text);
 	TEST_ASSERT_EQUAL_UINT(5, config->max_cons_alarms);
 	TEST_ASSERT_EQUAL_UINT(3, config->max_retries);
@@ -72,39 +72,38 @@ static void test_a_relay_and_an_input_of_a_ds2408(void)
 	TEST_ASSERT_EQUAL_INT64(100000000, config->period_ns);
 	TEST_ASSERT_EQUAL_INT64(50000000, config->alarm_period_ns);
 	TEST_ASSERT_EQUAL_UINT(2, config->item_count);
-	expect_item(0, "extRLY", "/29.B89115000000/PIO.BYTE", OWS_BYTE, true, false, "0");
-	expect_item(1, "extDI", "/29.B89115000000/sensed.BYTE", OWS_BYTE, false, false, "0");
+	expect_item(0, "pumps", "/29.4C0A17000000/PIO.BYTE", OWS_BYTE, true, false, "0");
+	expect_item(1, "floats", "/29.4C0A17000000/sensed.BYTE", OWS_BYTE, false, false, "0");
 	TEST_ASSERT_EQUAL_INT(8, config->items[0].line);
 	TEST_ASSERT_EQUAL_INT(14, config->items[1].line);
 }
 
 static void test_a_target_without_port(void)
 {
-	load(DATA "rpimulti_1wire.rio");
+	load(DATA "one_thermometer.rio");
 	TEST_ASSERT_EQUAL_STRING("localhost", config->targets[0].text);
 	TEST_ASSERT_EQUAL_INT64(20000000000, config->timeout_ns);
 	TEST_ASSERT_EQUAL_UINT(1, config->item_count);
-	expect_item(0, "temperature", "/28.14A750050000/temperature12", OWS_DOUBLE, false, false,
-	            "22");
+	expect_item(0, "greenhouse", "/28.6E2B90040000/temperature12", OWS_DOUBLE, false, false,
+	            "18");
 }
 
 static void test_four_thermometers(void)
 {
-	load(DATA "temperature_logger.rio");
+	load(DATA "four_thermometers.rio");
 	TEST_ASSERT_EQUAL_UINT(4, config->item_count);
-	expect_item(0, "sensor1", "/28.551DDF030000/temperature12", OWS_DOUBLE, false, false,
-	            "-4.7");
-	expect_item(3, "sensor4", "/28.3F11C8040000/temperature12", OWS_DOUBLE, false, false,
-	            "44.87");
+	expect_item(0, "yard", "/28.2A71C5060000/temperature12", OWS_DOUBLE, false, false, "-6.3");
+	expect_item(3, "boiler", "/28.7E62AB030000/temperature12", OWS_DOUBLE, false, false,
+	            "51.62");
 }
 
 static void test_uncached_in_path_and_flag_mean_the_same_once(void)
 {
-	load(DATA "unica_u1wtvs.rio");
+	load(DATA "light_and_humidity.rio");
 	TEST_ASSERT_EQUAL_UINT(1, config->max_retries);
 	TEST_ASSERT_EQUAL_UINT(5, config->item_count);
-	expect_item(0, "lightIntensity", "/26.0CBEEA010000/vis", OWS_DOUBLE, false, true, "0");
-	expect_item(4, "VAD", "/26.0CBEEA010000/VAD", OWS_DOUBLE, false, true, "0");
+	expect_item(0, "daylight", "/26.5D93E2010000/vis", OWS_DOUBLE, false, true, "0");
+	expect_item(4, "sensor", "/26.5D93E2010000/VAD", OWS_DOUBLE, false, true, "0");
 }
 
 int main(void)

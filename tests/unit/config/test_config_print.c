@@ -134,11 +134,11 @@ static void test_an_empty_configuration_survives(void)
 	survives("OwsDrv{}", 8);
 }
 
-static void test_genuine_files_survive(void)
+static void test_files_of_genuine_shape_survive(void)
 {
 	static const char *const files[] = {
-		"tests/unit/data/emo_1wr4di4.rio", "tests/unit/data/rpimulti_1wire.rio",
-		"tests/unit/data/temperature_logger.rio", "tests/unit/data/unica_u1wtvs.rio"};
+		"tests/unit/data/relay_and_inputs.rio", "tests/unit/data/one_thermometer.rio",
+		"tests/unit/data/four_thermometers.rio", "tests/unit/data/light_and_humidity.rio"};
 
 	for (size_t i = 0; i < sizeof(files) / sizeof(files[0]); i++) {
 		FILE *in = fopen(files[i], "r");
@@ -158,6 +158,6 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_every_key_survives_being_printed_and_read);
 	RUN_TEST(test_an_empty_configuration_survives);
-	RUN_TEST(test_genuine_files_survive);
+	RUN_TEST(test_files_of_genuine_shape_survive);
 	return UNITY_END();
 }

@@ -233,11 +233,11 @@ static void test_errors_are_reported_fifty_at_most_and_all_counted(void)
 		strstr(said, "f:51:1: error: more than 50 errors, the rest is not shown"));
 }
 
-static void test_genuine_files_come_back_byte_for_byte(void)
+static void test_files_of_genuine_shape_come_back_byte_for_byte(void)
 {
 	static const char *const files[] = {
-		"tests/unit/data/emo_1wr4di4.rio", "tests/unit/data/rpimulti_1wire.rio",
-		"tests/unit/data/temperature_logger.rio", "tests/unit/data/unica_u1wtvs.rio"};
+		"tests/unit/data/relay_and_inputs.rio", "tests/unit/data/one_thermometer.rio",
+		"tests/unit/data/four_thermometers.rio", "tests/unit/data/light_and_humidity.rio"};
 
 	for (size_t i = 0; i < sizeof(files) / sizeof(files[0]); i++) {
 		struct rio_node *driver, *version;
@@ -380,7 +380,7 @@ int main(void)
 	RUN_TEST(test_limits_are_refused_plainly);
 	RUN_TEST(test_a_text_beyond_the_size_limit_is_refused_unread);
 	RUN_TEST(test_errors_are_reported_fifty_at_most_and_all_counted);
-	RUN_TEST(test_genuine_files_come_back_byte_for_byte);
+	RUN_TEST(test_files_of_genuine_shape_come_back_byte_for_byte);
 	RUN_TEST(test_a_file_that_cannot_be_read_is_said);
 	RUN_TEST(test_only_a_regular_file_of_a_size_is_read_at_all);
 	RUN_TEST(test_random_bytes_are_survived);
