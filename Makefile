@@ -280,8 +280,12 @@ UNIT     := $(patsubst %.c,$(B)/unit/%,$(notdir $(UNIT_SRC))) $(B)/unit/test_end
 BENCHES  := $(patsubst tests/bench/%.c,$(B)/bench/%,$(BENCH))
 SAMPLES  := $(patsubst docs/examples/%.c,$(B)/examples/%,$(filter-out $(if $(SQLITE),,%/past.c),$(filter %.c,$(EXAMPLES)))) \
             $(patsubst docs/examples/%.cpp,$(B)/examples/%,$(filter %.cpp,$(EXAMPLES)))
-FACES    := owsd-config $(if $(SQLITE),owsd-recorder) $(if $(CURL),owsd-influx) $(if $(HTTPD),owsd-web) \
-            $(if $(MOSQUITTO),owsd-mqtt)
+# Programs beside owsd, by their table: name:library:socket, the last of those that a socket starts
+FACE_ROWS := $(shell awk -F ' *[|] *' '/^owsd/ { print $$1 ":" $$2 ":" ($$5 == "-" ? "socket" : "") }' board/faces)
+ALL_FACES := $(foreach f,$(FACE_ROWS),$(firstword $(subst :, ,$(f))))
+FACES    := $(foreach f,$(FACE_ROWS),$(if $(filter -,$(word 2,$(subst :, ,$(f))))$($(word 2,$(subst :, ,$(f)))),$(firstword $(subst :, ,$(f)))))
+# Started by their sockets
+SOCKETED := $(foreach f,$(FACE_ROWS),$(if $(word 3,$(subst :, ,$(f))),$(firstword $(subst :, ,$(f)))))
 # Those that open targets, each again as NAME-sim: the same with the scheme sim
 WITH_SIM := owsd-sim owsd-config-sim owsctl-sim
 PROGRAMS := $(B)/owsd $(B)/owsctl $(FACES:%=$(B)/%) $(WITH_SIM:%=$(B)/%)
@@ -652,7 +656,7 @@ install: all
 	$(if $(D),,-@ldconfig 2>/dev/null || true)
 
 uninstall:
-	rm -f $(addprefix $(D)$(PREFIX)/sbin/,owsd owsd-recorder owsd-config owsd-influx owsd-web owsd-mqtt owsd-sim owsd-config-sim) \
+	rm -f $(addprefix $(D)$(PREFIX)/sbin/,owsd $(ALL_FACES) owsd-sim owsd-config-sim) \
 	    $(D)$(PREFIX)/bin/owsctl $(D)$(PREFIX)/bin/owsctl-sim \
 	    $(foreach l,$(LIBRARIES),$(foreach s,so.$(VERSION) so.$(SOMAJOR) so a,$(D)$(LIBDIR)/$(l).$(s)) \
 	    $(D)$(LIBDIR)/pkgconfig/$(l).pc) \
@@ -665,12 +669,8 @@ uninstall:
 # The unit names the owsd of PREFIX; what has to be done once is said
 SERVICE   := systemd/system/owsd@.service systemd/system/owsd.service sysusers.d/owsd.conf \
              tmpfiles.d/owsd.conf modules-load.d/owsd.conf udev/rules.d/60-owsd.rules \
-             $(foreach f,owsd-recorder owsd-influx owsd-mqtt,systemd/system/$f@.service systemd/system/$f.service \
-             sysusers.d/$f.conf) \
-             $(foreach f,owsd-config owsd-web,systemd/system/$f@.service systemd/system/$f@.socket \
-             sysusers.d/$f.conf) tmpfiles.d/owsd-config.conf
-# Started by their sockets
-SOCKETED  := owsd-config owsd-web
+             $(foreach f,$(ALL_FACES),systemd/system/$f@.service sysusers.d/$f.conf \
+             systemd/system/$(if $(filter $(SOCKETED),$f),$f@.socket,$f.service)) tmpfiles.d/owsd-config.conf
 SERVICE_PREFIX := $(abspath $(PREFIX))
 SERVICE_IN := $(D)$(if $(filter /usr /usr/local,$(SERVICE_PREFIX)),$(SERVICE_PREFIX)/lib,/etc)
 install-service:
@@ -682,16 +682,14 @@ install-service:
 	    echo "install-service: PREFIX is '$(PREFIX)': the service sees no home and no /tmp; take another, as /opt"; \
 	    exit 1; esac
 	install -d $(addprefix $(SERVICE_IN)/,$(sort $(dir $(SERVICE)))) $(D)/etc/owsd
-	@set -e; for u in owsd $(filter-out $(SOCKETED),$(FACES)); do f=$(SERVICE_IN)/systemd/system/$$u; \
+	@set -e; for u in owsd $(FACES); do f=$(SERVICE_IN)/systemd/system/$$u; \
 	    sed 's,@SBINDIR@,$(SERVICE_PREFIX:/=)/sbin,; s,@BINDIR@,$(SERVICE_PREFIX:/=)/bin,' \
-	    board/systemd/$$u@.service >$$f@.service; \
-	    chmod 644 $$f@.service; install -m 644 board/systemd/$$u.service $$f.service; done
+	    board/systemd/$$u@.service >$$f@.service; chmod 644 $$f@.service; done
+	install -m 644 $(wildcard $(foreach f,$(FACES),board/systemd/$f@.socket)) board/systemd/owsd.service $(SERVICE_IN)/systemd/system
 	install -m 644 board/systemd/sysusers.conf $(SERVICE_IN)/sysusers.d/owsd.conf
-	@set -e; for f in $(FACES); do \
-	    install -m 644 board/systemd/$$f-sysusers.conf $(SERVICE_IN)/sysusers.d/$$f.conf; done
-	@set -e; for f in $(filter $(SOCKETED),$(FACES)); do u=$(SERVICE_IN)/systemd/system/$$f; \
-	    sed 's,@SBINDIR@,$(SERVICE_PREFIX:/=)/sbin,' board/systemd/$$f@.service >$$u@.service; \
-	    chmod 644 $$u@.service; install -m 644 board/systemd/$$f@.socket $$u@.socket; done
+	sh board/face-files $(B)/faces
+	@set -e; for f in $(FACES); do install -m 644 $(B)/faces/$$f.sysusers $(SERVICE_IN)/sysusers.d/$$f.conf; \
+	    [ ! -e $(B)/faces/$$f.service ] || install -m 644 $(B)/faces/$$f.service $(SERVICE_IN)/systemd/system; done
 	install -m 644 board/systemd/tmpfiles.conf $(SERVICE_IN)/tmpfiles.d/owsd.conf
 	install -m 644 board/systemd/owsd-config-tmpfiles.conf $(SERVICE_IN)/tmpfiles.d/owsd-config.conf
 	install -m 644 board/systemd/modules-load.conf $(SERVICE_IN)/modules-load.d/owsd.conf

@@ -1,0 +1,63 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""board/faces is the table of the faces: what is made of it is whole, and what is written by hand
+names each of them."""
+
+import re
+import subprocess
+
+import owsdtest
+from owsdtest import SOURCE
+
+TABLE = [re.split(r" *\| *", line) for line in (SOURCE / "board/faces").read_text().splitlines()
+         if not line.startswith("#")]
+
+
+def units(program):
+    return {end: SOURCE / "board/systemd" / f"{program}@.{end}" for end in ("service", "socket")}
+
+
+def test_each_face_is_where_a_person_or_a_test_looks_for_it(_scene):
+    for program, _, package, *_ in TABLE:
+        has = [("README.md", f"`{program}(8)`"), (f"docs/{program}.8", program),
+               ("board/debian/control", f"Package: {package}\n"), ("tests/system/standin.py", f'"{program}"'),
+               ("tests/system/handbook.py", f'"{program}.8"'), ("tests/package/booted.sh", program),
+               *[(place, package) for place in ("tests/package/run", "tests/package/booted",
+                                                "tests/package/lifecycle.sh")]]
+        for file, text in has:
+            assert text in (SOURCE / file).read_text(), f"{file} lacks {text}"
+
+
+def test_the_units_of_an_instance_are_those_of_the_table(_scene):
+    for program, _, _, _, signals in TABLE:
+        unit = units(program)["service"].read_text()
+        assert f"ExecStart=@SBINDIR@/{program} -n %i\n" in unit, program
+        assert f"\nUser={program}\n" in unit and f"man:{program}(8)" in unit, program
+        assert (f"PartOf={program}.service" in unit) == (signals != "-"), program
+        assert units(program)["socket"].exists() == (signals == "-"), program
+    named = {file.name.split("@")[0] for file in (SOURCE / "board/systemd").glob("owsd-*@*")}
+    assert named == {row[0] for row in TABLE}, named
+
+
+def test_the_table_makes_users_units_and_what_the_packages_hold(scene):
+    made = scene.path / "made"
+    for more in ([], [], ["--debian"]):
+        subprocess.run(["sh", SOURCE / "board/face-files", *more, made / "".join(more)], check=True,
+                       timeout=owsdtest.PATIENCE)
+    for program, _, package, user, signals in TABLE:
+        lines = (made / f"{program}.sysusers").read_text().splitlines()
+        assert f'u {program} - "{user}" /nonexistent' in lines and f"m {program} owsd" in lines, lines
+        assert lines.count(f"g {program} -") == 1, lines
+        unit = made / f"{program}.service"
+        assert unit.exists() == (signals != "-")
+        assert signals == "-" or f"Description={signals}\n" in unit.read_text()
+        of = made / "--debian"
+        assert f"usr/sbin/{program}\n" in (of / f"{package}.install").read_text()
+        assert f"usr/share/man/man8/{program}.8\n" in (of / f"{package}.manpages").read_text()
+        assert f"\nu {program} " in (of / f"{package}.sysusers").read_text()
+        assert (of / f"{package}.postrm").exists() == (signals != "-")
+        assert signals == "-" or f"rm -rf /var/lib/{program}\n" in (of / f"{package}.postrm").read_text()
+
+
+if __name__ == "__main__":
+    owsdtest.main()
