@@ -271,7 +271,7 @@ BENCH_AID := $(filter-out tests/bench/bench_%,$(wildcard tests/bench/*.c)) $(SIM
 # ---------------------------------------------------------------------------------------------
 
 CORE     := $(filter-out src/daemon/owsd/owsd.c src/tool/owsctl/owsctl.c src/history/recorder/recorder.c src/faces/influx/influx.c \
-            src/faces/writer/owsd_config.c $(SIM_TABLE) $(if $(SQLITE),src/history/library/none.c,$(SQLITE_ALL)) \
+            src/faces/writer/owsd_writer.c $(SIM_TABLE) $(if $(SQLITE),src/history/library/none.c,$(SQLITE_ALL)) \
             $(if $(CURL),,src/faces/influx/post.c) $(if $(HTTPD),$(WEB_MAIN),$(WEB_HTTP)) \
             $(if $(MOSQUITTO),src/faces/mqtt/owsd_mqtt.c,$(MQTT_ALL)) \
             $(if $(PROTOBUFC),,src/faces/mqtt/sparkplug.c),$(SOURCES))
@@ -281,13 +281,13 @@ BENCHES  := $(patsubst tests/bench/%.c,$(B)/bench/%,$(BENCH))
 SAMPLES  := $(patsubst docs/examples/%.c,$(B)/examples/%,$(filter-out $(if $(SQLITE),,%/past.c),$(filter %.c,$(EXAMPLES)))) \
             $(patsubst docs/examples/%.cpp,$(B)/examples/%,$(filter %.cpp,$(EXAMPLES)))
 # Programs beside owsd, by their table: name:library:socket, the last of those that a socket starts
-FACE_ROWS := $(shell awk -F ' *[|] *' '/^owsd/ { print $$1 ":" $$2 ":" ($$5 == "-" ? "socket" : "") }' board/faces)
+FACE_ROWS := $(shell awk -F ' *[|] *' '/^owsd/ { print $$1 ":" $$2 ":" ($$6 == "-" ? "socket" : "") }' board/faces)
 ALL_FACES := $(foreach f,$(FACE_ROWS),$(firstword $(subst :, ,$(f))))
 FACES    := $(foreach f,$(FACE_ROWS),$(if $(filter -,$(word 2,$(subst :, ,$(f))))$($(word 2,$(subst :, ,$(f)))),$(firstword $(subst :, ,$(f)))))
 # Started by their sockets
 SOCKETED := $(foreach f,$(FACE_ROWS),$(if $(word 3,$(subst :, ,$(f))),$(firstword $(subst :, ,$(f)))))
 # Those that open targets, each again as NAME-sim: the same with the scheme sim
-WITH_SIM := owsd-sim owsd-config-sim owsctl-sim
+WITH_SIM := owsd-sim owsd-writer-sim owsctl-sim
 PROGRAMS := $(B)/owsd $(B)/owsctl $(FACES:%=$(B)/%) $(WITH_SIM:%=$(B)/%)
 LIBRARIES := libows $(if $(SQLITE),libows-history)
 PYTHON_MADE := $(if $(PYTHON),$(B)/python/ows.py $(LIBRARIES:%=$(B)/python/%.so.$(SOMAJOR)))
@@ -344,7 +344,7 @@ $(WITH_SIM:%=$(B)/%): $(call obj,$(SIM_TABLE))
 $(B)/owsd $(B)/owsd-sim: $(B)/src/daemon/owsd/owsd.o
 $(B)/owsctl $(B)/owsctl-sim: $(B)/src/tool/owsctl/owsctl.o
 $(B)/owsd-recorder: $(B)/src/history/recorder/recorder.o
-$(B)/owsd-config $(B)/owsd-config-sim: $(B)/src/faces/writer/owsd_config.o
+$(B)/owsd-writer $(B)/owsd-writer-sim: $(B)/src/faces/writer/owsd_writer.o
 $(B)/owsd-influx: $(B)/src/faces/influx/influx.o
 $(B)/owsd-influx: LIBS += -lcurl
 $(B)/owsd-mqtt: $(B)/src/faces/mqtt/owsd_mqtt.o
@@ -656,7 +656,7 @@ install: all
 	$(if $(D),,-@ldconfig 2>/dev/null || true)
 
 uninstall:
-	rm -f $(addprefix $(D)$(PREFIX)/sbin/,owsd $(ALL_FACES) owsd-sim owsd-config-sim) \
+	rm -f $(addprefix $(D)$(PREFIX)/sbin/,owsd $(ALL_FACES) owsd-sim owsd-writer-sim) \
 	    $(D)$(PREFIX)/bin/owsctl $(D)$(PREFIX)/bin/owsctl-sim \
 	    $(foreach l,$(LIBRARIES),$(foreach s,so.$(VERSION) so.$(SOMAJOR) so a,$(D)$(LIBDIR)/$(l).$(s)) \
 	    $(D)$(LIBDIR)/pkgconfig/$(l).pc) \
@@ -670,7 +670,7 @@ uninstall:
 SERVICE   := systemd/system/owsd@.service systemd/system/owsd.service sysusers.d/owsd.conf \
              tmpfiles.d/owsd.conf modules-load.d/owsd.conf udev/rules.d/60-owsd.rules \
              $(foreach f,$(ALL_FACES),systemd/system/$f@.service sysusers.d/$f.conf \
-             systemd/system/$(if $(filter $(SOCKETED),$f),$f@.socket,$f.service)) tmpfiles.d/owsd-config.conf
+             systemd/system/$(if $(filter $(SOCKETED),$f),$f@.socket,$f.service)) tmpfiles.d/owsd-writer.conf
 SERVICE_PREFIX := $(abspath $(PREFIX))
 SERVICE_IN := $(D)$(if $(filter /usr /usr/local,$(SERVICE_PREFIX)),$(SERVICE_PREFIX)/lib,/etc)
 install-service:
@@ -691,7 +691,7 @@ install-service:
 	@set -e; for f in $(FACES); do install -m 644 $(B)/faces/$$f.sysusers $(SERVICE_IN)/sysusers.d/$$f.conf; \
 	    [ ! -e $(B)/faces/$$f.service ] || install -m 644 $(B)/faces/$$f.service $(SERVICE_IN)/systemd/system; done
 	install -m 644 board/systemd/tmpfiles.conf $(SERVICE_IN)/tmpfiles.d/owsd.conf
-	install -m 644 board/systemd/owsd-config-tmpfiles.conf $(SERVICE_IN)/tmpfiles.d/owsd-config.conf
+	install -m 644 board/systemd/owsd-writer-tmpfiles.conf $(SERVICE_IN)/tmpfiles.d/owsd-writer.conf
 	install -m 644 board/systemd/modules-load.conf $(SERVICE_IN)/modules-load.d/owsd.conf
 	install -m 644 board/udev/owsd.rules $(SERVICE_IN)/udev/rules.d/60-owsd.rules
 	[ -e $(D)/etc/owsd/OWS.rio ] || install -m 644 board/debian/OWS.rio $(D)/etc/owsd/OWS.rio

@@ -138,7 +138,7 @@ int bus_create(const char *target, const struct bus_env *env, struct bus **bus, 
 	if (!ops && word_len == 3 && memcmp(target, "sim", word_len) == 0) {
 		snprintf(why, why_size,
 		         "simulated devices: this target needs owsd-sim in place of owsd "
-		         "(and owsctl-sim, owsd-config-sim)");
+		         "(and owsctl-sim, owsd-writer-sim)");
 		return -EPROTONOSUPPORT;
 	}
 	if (!ops && !(colon && is_host_and_port(target, colon)) &&

@@ -33,7 +33,7 @@ sanitize:
 
 # All C as a compiler reads it, which makes no code of it: make syntax CC=clang WERROR=1. The model and
 # what is preloaded have flags of their own
-SYNTAX := $(sort $(CORE) $(wildcard $(foreach p,daemon/owsd/owsd tool/owsctl/owsctl history/recorder/recorder faces/writer/owsd_config,\
+SYNTAX := $(sort $(CORE) $(wildcard $(foreach p,daemon/owsd/owsd tool/owsctl/owsctl history/recorder/recorder faces/writer/owsd_writer,\
           src/$p.c) $(filter-out tests/model/%,$(wildcard docs/examples/*.c tests/*/*.c tests/unit/*/*.c))))
 SYNTAX_FLAGS := $(UNITY_FLAGS) -Isrc/public $(PROTO_FLAGS) -fsyntax-only
 syntax: $(UNITY)/unity.h $(PROTO:%=%.h)

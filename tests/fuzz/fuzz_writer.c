@@ -35,7 +35,7 @@ static void check_again(const struct order *order)
 
 	if (order->kind == ORDER_REPLACE)
 		snprintf(length, sizeof(length), "length: %zu\n", order->length);
-	n = snprintf(text, sizeof(text), "owsd-config 1\ndo: %s\nbase: %s\nfor: %s\n%s\n",
+	n = snprintf(text, sizeof(text), "owsd-writer 1\ndo: %s\nbase: %s\nfor: %s\n%s\n",
 	             order->kind == ORDER_REPLACE ? "replace" : "restore", order->base,
 	             order->person, length);
 	TEST_ASSERT_EQUAL_INT_MESSAGE(n, order_parse(text, (size_t)n, &again, &why), text);

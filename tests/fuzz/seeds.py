@@ -361,7 +361,7 @@ def values():
 
 
 def writer():
-    head, tag = b"owsd-config 1\n", b"base: 9f3a00c417d2e5b1\n"
+    head, tag = b"owsd-writer 1\n", b"base: 9f3a00c417d2e5b1\n"
     put("writer", "replace", head + b"do: replace\n" + tag + b"for: anna\nlength: 11\n\nOwsDrv {\n}\n")
     put("writer", "first", head + b"do:replace\nbase:\nlength:0\n\n")
     put("writer", "restore", head + tag + b"do: restore\n\n")

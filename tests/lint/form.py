@@ -99,7 +99,7 @@ def check_no_line_ends_with_a_blank_and_each_file_with_a_line(tree):
 # --- Secrets ----------------------------------------------------------------------------------------
 
 def check_no_credential_is_read_where_another_user_than_root_makes_files(tree):
-    """/etc/owsd may belong to owsd-config, and root follows a link that it makes there."""
+    """/etc/owsd may belong to owsd-writer, and root follows a link that it makes there."""
     for file in tree.files:
         for n, line in enumerate(tree.text(file).split("\n"), 1):
             if re.search(r"LoadCredential(Encrypted)?=[^:\s]+:\S*/owsd/", line):

@@ -13,7 +13,7 @@ packages='owsd owsd-recorder owsd-influx owsd-mqtt owsd-web'
 # units PACKAGE: what is enabled of it. HOUSE is a second instance
 units() {
 	case $1 in
-	owsd-web) echo owsd-web@OWS.socket owsd-web@OWS.service owsd-config@OWS.socket ;;
+	owsd-web) echo owsd-web@OWS.socket owsd-web@OWS.service owsd-writer@OWS.socket ;;
 	*) echo "$1@OWS.service $1@HOUSE.service" ;;
 	esac
 }
@@ -48,7 +48,7 @@ sys.exit(not s.recv(1))' "$1"
 }
 writer_comes() {
 	python3 -c 'import socket; s = socket.socket(socket.AF_UNIX); s.connect("/run/owsd/OWS.config")' &&
-		within 20 serving owsd-config@OWS.service
+		within 20 serving owsd-writer@OWS.service
 }
 # broker TEXT: a client sends it first
 broker() {
@@ -68,7 +68,7 @@ secrets() {
 	broker=$!
 	systemctl restart owsd-mqtt@OWS.service
 	does 'the service hands the password over' wait $broker
-	for user in owsd owsd-config owsd-mqtt owsd-web owsd-influx owsd-recorder; do
+	for user in owsd owsd-writer owsd-mqtt owsd-web owsd-influx owsd-recorder; do
 		does "$user makes no file among the secrets" sh -c "! setpriv --reuid $user --regid owsd \
 			--init-groups ln -s /etc/shadow /etc/credstore/owsd-mqtt.$user && ! setpriv --reuid $user \
 			--regid owsd --init-groups cat /etc/credstore/owsd-mqtt.mqtt-password"
@@ -129,7 +129,7 @@ gone() {
 		done
 		same "$what: no program of $g runs" '' "$(programs | grep -E "/$g( |\$)")"
 		case $g in owsd-web)
-			same "$what: no writer runs" '' "$(programs | grep /owsd-config)"
+			same "$what: no writer runs" '' "$(programs | grep /owsd-writer)"
 			same "$what: nothing listens" '' "$(listening | grep -E '\.web$|\.config$|8080')"
 			;;
 		esac

@@ -92,15 +92,15 @@ same 'owsd-influx has a user of its own, who may look' owsd "$(id -nG owsd-influ
 does 'a service of it is enabled' test -L /etc/systemd/system/owsd-influx.service.wants/owsd-influx@OWS.service
 does 'it runs' pushes
 does 'and pushes nothing, as no server is named' grep -q 'no Influx block: nothing is pushed' /tmp/influx
-same 'owsd-config has a user of its own, who may read' 'owsd owsd-config' \
-	"$(id -nG owsd-config | tr ' ' '\n' | sort | tr '\n' ' ' | sed 's/ $//')"
+same 'owsd-writer has a user of its own, who may read' 'owsd owsd-config owsd-writer' \
+	"$(id -nG owsd-writer | tr ' ' '\n' | sort | tr '\n' ' ' | sed 's/ $//')"
 same 'owsd-mqtt has a user of its own, who may look' owsd "$(id -nG owsd-mqtt | tr ' ' '\n' | grep -x owsd)"
 does 'and is off until somebody enables it' refused test -L /etc/systemd/system/owsd-mqtt.service.wants/owsd-mqtt@OWS.service
 does 'the page may not write the configuration' refused sh -c 'id -nG owsd-web | grep -q -w owsd-config'
 for u in service socket; do
-	does "its $u is there" test -e /usr/lib/systemd/system/owsd-config@.$u
+	does "its $u is there" test -e /usr/lib/systemd/system/owsd-writer@.$u
 done
-does 'and nothing of it is enabled' refused sh -c 'find /etc/systemd/system | grep owsd-config'
+does 'and nothing of it is enabled' refused sh -c 'find /etc/systemd/system | grep owsd-writer'
 does 'its directory gets its user at the next start' test -e /usr/lib/tmpfiles.d/owsd-web.conf
 does 'Python reads it' python3 -c 'import ows
 with ows.Ows() as signals:

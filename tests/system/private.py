@@ -31,7 +31,7 @@ USERS = {
     "setter": (64723, (64723, CONTROL)),
     "stranger": (64724, (64724,)),
     "editor": (64725, (64725, CONFIG)),
-    "owsd-config": (64726, (CONFIG, OWSD)),
+    "owsd-writer": (64726, (CONFIG, OWSD)),
 }
 
 

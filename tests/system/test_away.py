@@ -68,14 +68,14 @@ class Beside:
         self.text = text(scene, port, free_port())
         self.daemon = daemon = scene.owsd(self.text)
         self.name, python = daemon.name, {"PYTHONPATH": str(owsdtest.PYTHON)}
-        writer = owsdtest.with_sim(BUILD / "owsd-config", daemon.config, cwd=scene.path)
+        writer = owsdtest.with_sim(BUILD / "owsd-writer", daemon.config, cwd=scene.path)
         keeper = scene.file("keeper.py", KEEPER)
         self.programs = {
             "owsd-recorder": recorded.record(scene, daemon),
             "owsd-web": webhouse.serve(scene, daemon),
             "owsd-mqtt": self.face("owsd-mqtt"),
             "owsd-influx": self.face("owsd-influx"),
-            "owsd-config": scene.start([writer, "-n", self.name, "-c", daemon.config]),
+            "owsd-writer": scene.start([writer, "-n", self.name, "-c", daemon.config]),
             "owsctl": scene.start([OWSCTL, "-n", self.name, "watch", "-l"]),
             "poller": scene.start([POLLER, self.name]),
             "follow.py": scene.start([sys.executable, SOURCE / "docs/examples/follow.py", self.name], python),
@@ -99,7 +99,7 @@ class Beside:
         """Those that have not found owsd: they are not connected, or print nothing of it."""
         connected, lines = self.connected(), self.lines()
         by_lines = {name for name in ("owsctl", "poller", "follow.py", "keeper.py") if lines[name] <= before[name]}
-        return (set(self.programs) - {"owsd-config", "owsctl"} - connected) | by_lines
+        return (set(self.programs) - {"owsd-writer", "owsctl"} - connected) | by_lines
 
     def all_there(self, before):
         until(lambda: not self.missing(before), 20, lambda: f"all find owsd: {self.missing(before)}", step=0.05)

@@ -159,7 +159,7 @@ def test_the_same_at_the_sockets_of_the_served_protocol(scene):
 
 
 REQUEST = "GET /api/info HTTP/1.1\r\nHost: localhost\r\n\r\n"
-ORDER = "owsd-config 1\ndo: restore\nbase: 0000000000000000\n\n"
+ORDER = "owsd-writer 1\ndo: restore\nbase: 0000000000000000\n\n"
 
 
 def doors_of(scene, program, user, daemon, env, *options):
@@ -170,7 +170,7 @@ def doors_of(scene, program, user, daemon, env, *options):
     command = [*filtered, reached(owsdtest.BUILD / program), "-n", daemon.name, "-c", daemon.config, *options]
     own, handed = owsdtest.segment(daemon.name, "web"), scene.path / "handed.sock"
     alone = command
-    if program == "owsd-config":  # the place of the sockets is that of the user of owsd
+    if program == "owsd-writer":  # the place of the sockets is that of the user of owsd
         own = scene.path / "own.sock"
         alone = [*command, "-l", own]
     for path, start in ((own, alone), (handed, writing.activated(handed, *command))):
@@ -200,7 +200,7 @@ def test_the_same_at_the_page_and_at_the_writer(scene):
         port = owsdtest.free_port()
         for program, user, enemy, text, expected, options in (
                 ("owsd-web", "owsd", "reader", REQUEST, '"signals"', ("-l", f"127.0.0.1:{port}")),
-                ("owsd-config", "owsd-config", "editor", ORDER, "conflict", ())):
+                ("owsd-writer", "owsd-writer", "editor", ORDER, "conflict", ())):
             for face, path in doors_of(scene, program, user, daemon, env, *options):
                 lasts(lambda: asked(path, text, expected), "the first request")
                 held = attack(scene, enemy, "stream", path, text)

@@ -29,7 +29,7 @@ def test_each_face_is_where_a_person_or_a_test_looks_for_it(_scene):
 
 
 def test_the_units_of_an_instance_are_those_of_the_table(_scene):
-    for program, _, _, _, signals in TABLE:
+    for program, *_, signals in TABLE:
         unit = units(program)["service"].read_text()
         assert f"ExecStart=@SBINDIR@/{program} -n %i\n" in unit, program
         assert f"\nUser={program}\n" in unit and f"man:{program}(8)" in unit, program
@@ -44,9 +44,10 @@ def test_the_table_makes_users_units_and_what_the_packages_hold(scene):
     for more in ([], [], ["--debian"]):
         subprocess.run(["sh", SOURCE / "board/face-files", *more, made / "".join(more)], check=True,
                        timeout=owsdtest.PATIENCE)
-    for program, _, package, user, signals in TABLE:
+    for program, _, package, user, groups, signals in TABLE:
         lines = (made / f"{program}.sysusers").read_text().splitlines()
-        assert f'u {program} - "{user}" /nonexistent' in lines and f"m {program} owsd" in lines, lines
+        assert f'u {program} - "{user}" /nonexistent' in lines, lines
+        assert all({f"g {group} -", f"m {program} {group}"} <= set(lines) for group in groups.split())
         assert lines.count(f"g {program} -") == 1, lines
         unit = made / f"{program}.service"
         assert unit.exists() == (signals != "-")

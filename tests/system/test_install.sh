@@ -125,8 +125,8 @@ for prefix in /usr/local /usr /opt /opt/owsd/ /; do
 	on_copy install-service PREFIX=$prefix >said
 	for f in systemd/system/owsd.service sysusers.d/owsd.conf tmpfiles.d/owsd.conf \
 		systemd/system/owsd-web@.socket sysusers.d/owsd-web.conf \
-		systemd/system/owsd-config@.service systemd/system/owsd-config@.socket \
-		sysusers.d/owsd-config.conf tmpfiles.d/owsd-config.conf \
+		systemd/system/owsd-writer@.service systemd/system/owsd-writer@.socket \
+		sysusers.d/owsd-writer.conf tmpfiles.d/owsd-writer.conf \
 		modules-load.d/owsd.conf udev/rules.d/60-owsd.rules; do
 		[ -s "$in/$f" ] || { echo "PREFIX=$prefix: missing: $in/$f"; exit 1; }
 	done
@@ -140,7 +140,7 @@ for prefix in /usr/local /usr /opt /opt/owsd/ /; do
 	if command -v systemd-sysusers >/dev/null; then
 		systemd-sysusers --root="$root" --cat-config | grep -q '^u owsd '
 		systemd-tmpfiles --root="$root" --cat-config | grep -q '^d /run/owsd 0755 owsd owsd'
-		systemd-tmpfiles --root="$root" --cat-config | grep -q '^d /etc/owsd 0755 owsd-config root'
+		systemd-tmpfiles --root="$root" --cat-config | grep -q '^d /etc/owsd 0755 owsd-writer root'
 	fi
 	on_copy uninstall-service PREFIX=$prefix
 	rm "$root/etc/owsd/OWS.rio"

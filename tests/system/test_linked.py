@@ -81,7 +81,7 @@ def test_sqlite_is_linked_by_what_has_to_do_with_history_alone(scene):
     assert (BUILD / "owsd-recorder").exists() == has, found()
     if os.path.exists("/usr/include/sqlite3.h"):
         assert has, "sqlite3.h is here; was LIBSQLITE3=0 given?"
-    for name in ("owsd", "owsctl", "owsd-config", *(["owsd-recorder"] if has else [])):
+    for name in ("owsd", "owsctl", "owsd-writer", *(["owsd-recorder"] if has else [])):
         links = any(n.startswith("libsqlite3") for n in needed(BUILD / name))
         assert links == (has and name in ("owsctl", "owsd-recorder")), f"{name}: {needed(BUILD / name)}"
 

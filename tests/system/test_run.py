@@ -305,7 +305,7 @@ def test_each_fault_on_demand_is_seen_and_survived(scene):
 
 
 def test_its_page_edits_a_copy_of_the_configuration(scene):
-    for program in ("owsd-web", "owsd-config"):
+    for program in ("owsd-web", "owsd-writer"):
         owsdtest.need(owsdtest.BUILD / program)
     demo = owsdtest.SOURCE / "board/demo/house.rio"
     before = demo.read_bytes()

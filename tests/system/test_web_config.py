@@ -310,9 +310,9 @@ def test_the_writer_is_asked_to_save_and_its_answer_is_passed_on(scene):
     daemon, page = editor(scene)
     got = page.json("/api/config")
     base, new, text = got["tag"], "0123456789abcdef", got["text"] + "# \u00e4\n" + "#" * 600000 + "\n"
-    assert "owsd-config@" in got["writer"], got
+    assert "owsd-writer@" in got["writer"], got
     refused = post(page, "config/save", 503, text=text, base=base)
-    assert f"systemctl enable --now owsd-config@{daemon.name}.socket" in refused["error"]
+    assert f"systemctl enable --now owsd-writer@{daemon.name}.socket" in refused["error"]
     fake = Fake(daemon,
                 f"status: done\ntag: {new}\nreload: done\nbackup: {base} 1764000000123\nlater: x\n\n",
                 f"status: done\ntag: {new}\nreload: refused\nwhy: no \u001b target\n\n",
@@ -342,7 +342,7 @@ def test_the_writer_is_asked_to_save_and_its_answer_is_passed_on(scene):
     assert "not known whether" in post(page, "config/save", 504, text="x", base="")["error"]
     fake.thread.join(20)
     first, fields, body = fake.orders[0]
-    assert first == "owsd-config 1" and body == text, (first, fields)
+    assert first == "owsd-writer 1" and body == text, (first, fields)
     assert fields == {"do": "replace", "base": base, "for": "127.0.0.1",
                       "length": str(len(text.encode()))}, fields
     assert fake.orders[1][1:] == ({"do": "restore", "base": new, "for": "127.0.0.1"}, "")

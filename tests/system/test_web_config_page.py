@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """The view Configuration of owsd-web's page in headless Chromium: scan, edit, save, reload, restore,
-on a simulated house with owsd, owsd-web and owsd-config."""
+on a simulated house with owsd, owsd-web and owsd-writer."""
 
 import contextlib
 import json
@@ -32,7 +32,7 @@ def house_text(scene, *more, configure=True):
 
 @contextlib.contextmanager
 def dialog(scene, text=None, part="items"):
-    """owsd, owsd-web, owsd-config, and a page that shows a part of the dialog."""
+    """owsd, owsd-web, owsd-writer, and a page that shows a part of the dialog."""
     with browser.open_one(scene) as page:
         scene.file("house.sim", f"chip DS2482-100 0x18\n"
                    f"DS18B20 {BOILER} as boiler temperature sine 60 6 40s\n"

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""owsd-config: a new configuration is checked, kept, put in place whole, and served."""
+"""owsd-writer: a new configuration is checked, kept, put in place whole, and served."""
 
 import concurrent.futures
 import os
@@ -190,9 +190,9 @@ def test_what_is_no_request_is_refused_and_changes_nothing(scene):
     writer = alone(scene, "OwsDrv {\n}\n")
     base, text = tag_of(writer.file), b"OwsDrv {\n  Period 2\n}\n"
     for data, words in (
-            (b"GET / HTTP/1.1\r\nHost: a\r\n\r\n", "owsd-config 1"),
-            (b"\0" * 4096, "owsd-config 1"),
-            (b"owsd-config 1\n" + b"x" * 4096, "longer than 1024"),
+            (b"GET / HTTP/1.1\r\nHost: a\r\n\r\n", "owsd-writer 1"),
+            (b"\0" * 4096, "owsd-writer 1"),
+            (b"owsd-writer 1\n" + b"x" * 4096, "longer than 1024"),
             (order(base, text) + b"more", "more bytes came"),
             (order(base, text).replace(b"length: 22", b"length: 99999999"), "longer than"),
             (order(base, text, do="remove"), "replace or restore")):
@@ -218,7 +218,7 @@ def test_a_peer_that_is_slow_keeps_nobody_waiting_and_is_refused_after_ten_secon
     writer = alone(scene, "OwsDrv {\n}\n")
     slow = [writing.connect(writer.socket) for _ in range(2)]  # a user has four places
     for door in slow:
-        door.sendall(b"owsd-config 1\ndo: rep")
+        door.sendall(b"owsd-writer 1\ndo: rep")
     begun = time.monotonic()
     done = writer.replace("OwsDrv {\n  Period 2\n}\n")
     assert done.status == "done" and time.monotonic() - begun < 8, done.text
@@ -281,7 +281,7 @@ def test_without_descriptors_for_a_process_it_serves_again_when_there_are_some(s
 def test_the_end_waits_for_no_request(scene):
     writer = alone(scene, "OwsDrv {\n}\n")
     slow = writing.connect(writer.socket)
-    slow.sendall(b"owsd-config 1\ndo: rep")
+    slow.sendall(b"owsd-writer 1\ndo: rep")
     assert writer.replace("OwsDrv {\n  Period 2\n}\n").status == "done"
     begun = time.monotonic()
     assert writer.stop() == 0 and time.monotonic() - begun < 5, writer.log()
@@ -383,7 +383,7 @@ def test_the_service_managers_socket_is_used_and_left_when_nobody_asks(scene):
 def test_two_writers_of_one_socket_and_wrong_usage_are_refused(scene):
     writer = alone(scene, "OwsDrv {\n}\n")
     second = scene._run([writing.PROGRAM, "-n", writer.name, "-c", writer.file], 20)
-    assert second.returncode == 1 and "another owsd-config listens there" in second.stderr, second
+    assert second.returncode == 1 and "another owsd-writer listens there" in second.stderr, second
     assert writer.replace("OwsDrv {\n  Period 2\n}\n").status == "done"
     for words, status in ((["-n", "a/b"], 2), (["file"], 2), (["-x"], 2), (["-h"], 0), (["-V"], 0)):
         assert scene._run([writing.PROGRAM, *words], 20).returncode == status, words

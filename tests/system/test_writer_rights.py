@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""owsd-config as its service runs it, under the unit's filter, beside an owsd as its service runs it:
+"""owsd-writer as its service runs it, under the unit's filter, beside an owsd as its service runs it:
 who may ask, and who may read the file afterwards. As genuine users."""
 
 import os
@@ -18,9 +18,9 @@ from test_privilege import as_user, daemon_of, good, programs
 from writing import activated, ask, order, tag, tag_of
 
 CONFIG, OWSD = private.CONFIG, private.OWSD
-WRITER, STRANGER = private.USERS["owsd-config"][0], private.USERS["stranger"][0]
+WRITER, STRANGER = private.USERS["owsd-writer"][0], private.USERS["stranger"][0]
 EDITOR = private.USERS["editor"][0]
-UNIT = sandbox.UNITS / "owsd-config@.service"
+UNIT = sandbox.UNITS / "owsd-writer@.service"
 ASK = """
 import socket, sys
 door = socket.socket(socket.AF_UNIX)
@@ -51,13 +51,13 @@ class Service:
         self.daemon.config.unlink()
         self.daemon.config.symlink_to(self.file)
         self.socket = scene.path / f"config{mode:o}"
-        self.program = programs() / "owsd-config"
+        self.program = programs() / "owsd-writer"
         shutil.copy(owsdtest.with_sim(writing.PROGRAM, self.file), self.program)
         filtered = sandbox.command(UNIT)
         shutil.copy(filtered[0], programs())
         filtered[0] = str(programs() / "sandbox")
         self.writer = scene.start([
-            *activated(self.socket, *private.as_user("owsd-config"), "sh", "-c",
+            *activated(self.socket, *private.as_user("owsd-writer"), "sh", "-c",
                        'umask 0022; LISTEN_PID=$$ exec "$@"', "sh", *filtered, self.program,
                        "-n", self.daemon.name, "-c", self.file)])
         until(self.socket.exists, 20, self.writer.log)
@@ -91,7 +91,7 @@ def test_who_may_ask_and_who_may_not(scene):
     assert service.file.read_text() == text
     until(lambda: f"by user {EDITOR} (process" in service.writer.log() and
           "for anna: done" in service.writer.log(), 20, service.writer.log)
-    until(lambda: re.search(rf"asked for by owsd-config \(process \d+, user {WRITER}\)", service.daemon.log()),
+    until(lambda: re.search(rf"asked for by owsd-writer \(process \d+, user {WRITER}\)", service.daemon.log()),
           20, service.daemon.log)
 
 
@@ -100,7 +100,7 @@ import socket, sys, time
 doors = [socket.socket(socket.AF_UNIX) for _ in range(20)]
 for door in doors:
     door.connect(sys.argv[1])
-    door.sendall(b"owsd-config 1\\n")
+    door.sendall(b"owsd-writer 1\\n")
 print("there", flush=True)
 answers = [door.recv(4096).decode() for door in doors]
 print("over", sum("too many requests" in text for text in answers),
@@ -113,7 +113,7 @@ def test_slow_requests_of_a_user_keep_no_other_user_waiting(scene):
     slow = scene.start([*private.as_user("editor"), "/usr/bin/python3", "-c", SLOW, service.socket])
     until(lambda: "there" in slow.log(), 20, slow.log)
     begun = time.monotonic()
-    answer = writing.Answer(service.ask_as("owsd-config", order(tag_of(service.file), b"nonsense")).stdout)
+    answer = writing.Answer(service.ask_as("owsd-writer", order(tag_of(service.file), b"nonsense")).stdout)
     assert answer.status == "invalid" and time.monotonic() - begun < 8, answer.text
     until(lambda: "over 16 4" in slow.log(), 60, slow.log)
 
@@ -126,7 +126,7 @@ def test_at_a_socket_that_is_open_to_all_the_kernels_word_decides(scene):
         answer = writing.Answer(service.ask_as(who, data).stdout)
         assert answer.status == "refused" and "no right to change" in answer.why, (who, answer.text)
     assert service.file.read_text() == old and "reload" not in service.daemon.log()
-    for who in ("editor", "owsd-config"):
+    for who in ("editor", "owsd-writer"):
         data = order(tag_of(service.file), (service.file.read_text() + "#\n").encode())
         assert writing.Answer(service.ask_as(who, data).stdout).status == "done", who
 

@@ -84,8 +84,8 @@ def serve(scene, daemon, port=None, config=None):
 
 
 def configured(scene, daemon):
-    """owsd-web, and owsd-config for it."""
-    program = owsdtest.with_sim(BUILD / "owsd-config", daemon.config, cwd=scene.path)
+    """owsd-web, and owsd-writer for it."""
+    program = owsdtest.with_sim(BUILD / "owsd-writer", daemon.config, cwd=scene.path)
     owsdtest.need(program)
     writer = scene.start([program, "-n", daemon.name, "-c", daemon.config])
     until(lambda: owsdtest.segment(daemon.name, "config").exists() or not writer.running(), 20,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""owsd-config beside an owsd, and programs that ask it.
+"""owsd-writer beside an owsd, and programs that ask it.
 
     writer = writing.Writer(scene, file, name)
     answer = writer.replace(text)           # for the file as it is
@@ -12,7 +12,7 @@ import sys
 
 import owsdtest
 
-PROGRAM = owsdtest.BUILD / "owsd-config"
+PROGRAM = owsdtest.BUILD / "owsd-writer"
 
 
 def tag(data):
@@ -57,7 +57,7 @@ def answer_of(door):
 
 
 def order(base, body=None, person=None, do="replace"):
-    lines = ["owsd-config 1", f"do: {do}", f"base: {base}"]
+    lines = ["owsd-writer 1", f"do: {do}", f"base: {base}"]
     lines += [f"for: {person}"] if person else []
     lines += [f"length: {len(body)}"] if body is not None else []
     return "\n".join(lines).encode() + b"\n\n" + (body or b"")

@@ -97,16 +97,16 @@ static void save_ask(struct save *save, const struct writer_order *order)
 		          "and start it again");
 	} else if (err == -EPROTO) {
 		job_error(&save->job, 502,
-		          "owsd-config answers what owsd-web does not understand (are they of the "
+		          "owsd-writer answers what owsd-web does not understand (are they of the "
 		          "same version?): it is not known whether the file was saved");
 	} else if (err == -EINPROGRESS) {
 		job_error(&save->job, 504,
-		          "owsd-config has the order and gave no answer: it is not known whether "
+		          "owsd-writer has the order and gave no answer: it is not known whether "
 		          "the file was saved");
 	} else if (err == -EAGAIN) {
 		job_error(&save->job, 503, "the writer is busy: try again in a minute");
 	} else {
-		job_error(&save->job, 503, "owsd-config: %s", error_words(err, error));
+		job_error(&save->job, 503, "owsd-writer: %s", error_words(err, error));
 	}
 	free(answer);
 }

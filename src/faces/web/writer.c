@@ -220,7 +220,7 @@ void writer_remedy(const char *instance, char text[WRITER_WORDS])
 {
 	snprintf(text, WRITER_WORDS,
 	         "the writer of the configuration does not run: systemctl enable --now "
-	         "owsd-config@%s.socket; without a service start owsd-config",
+	         "owsd-writer@%s.socket; without a service start owsd-writer",
 	         instance);
 }
 
@@ -264,7 +264,7 @@ static int send_order(int fd, const struct writer_order *order)
 
 	if (order->text)
 		snprintf(length, sizeof(length), "length: %zu\n", len);
-	n = snprintf(head, sizeof(head), "owsd-config 1\ndo: %s\nbase: %s\nfor: %s\n%s\n",
+	n = snprintf(head, sizeof(head), "owsd-writer 1\ndo: %s\nbase: %s\nfor: %s\n%s\n",
 	             order->text ? "replace" : "restore", order->base, order->person, length);
 	if (n >= (int)sizeof(head))
 		return -EINVAL;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * owsd-config, the writer: owsd-web cannot write the configuration, and asks it. One request for
+ * owsd-writer, the writer: owsd-web cannot write the configuration, and asks it. One request for
  * each connection to the socket NAME.config in the directory of owsd's files.
  */
 #pragma once

@@ -11,7 +11,7 @@
 #include "src/faces/writer/order.h"
 #include "src/ground/text/printable.h"
 
-#define FIRST "owsd-config 1\n"
+#define FIRST "owsd-writer 1\n"
 
 enum key {
 	KEY_DO,
@@ -136,7 +136,7 @@ int order_parse(const char *text, size_t len, struct order *order, const char **
 	*why = NULL;
 	*order = (struct order){0};
 	if (memcmp(text, FIRST, len < first ? len : first) != 0) {
-		*why = "expected \"owsd-config 1\" and a line end";
+		*why = "expected \"owsd-writer 1\" and a line end";
 		return -EINVAL;
 	}
 	end = memmem(text, room, "\n\n", 2);

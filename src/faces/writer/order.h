@@ -2,7 +2,7 @@
 /*
  * The head of a request to the writer, which ends with an empty line:
  *
- *     owsd-config 1
+ *     owsd-writer 1
  *     do: replace
  *     base: 9f3a00c417d2e5b1
  *     for: anna

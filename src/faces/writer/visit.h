@@ -2,7 +2,7 @@
 /*
  * A connection to the writer: looks which user it is, takes one order, answers, and hangs up.
  *
- * Room src/faces/writer: the program owsd-config: replaces the configuration of an instance, and
+ * Room src/faces/writer: the program owsd-writer: replaces the configuration of an instance, and
  * has owsd reload.
  */
 #pragma once

@@ -9,7 +9,7 @@
 #include "src/config/read/rio.h"
 #include "src/faces/writer/order.h"
 
-#define FIRST "owsd-config 1\n"
+#define FIRST "owsd-writer 1\n"
 #define TAG "0123456789abcdef"
 
 static struct order order;
@@ -61,11 +61,11 @@ static void test_a_restore_has_a_base_and_no_length(void)
 
 static void test_another_version_is_refused_at_its_first_byte(void)
 {
-	refuses("G", "owsd-config 1");
-	refuses("owsd-config 2", "owsd-config 1");
-	refuses("owsd-config 1\r", "owsd-config 1");
-	refuses("owsd-config 12", "owsd-config 1");
-	refuses("\n", "owsd-config 1");
+	refuses("G", "owsd-writer 1");
+	refuses("owsd-writer 2", "owsd-writer 1");
+	refuses("owsd-writer 1\r", "owsd-writer 1");
+	refuses("owsd-writer 12", "owsd-writer 1");
+	refuses("\n", "owsd-writer 1");
 }
 
 static void test_what_is_missing_or_twice_is_said(void)

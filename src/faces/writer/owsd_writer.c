@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* owsd-config: the one program that may write the configuration of an owsd for others. */
+/* owsd-writer: the one program that may write the configuration of an owsd for others. */
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
@@ -27,7 +27,7 @@
 #include "src/memory/shm/peer.h"
 #include "src/public/ows.h"
 
-#define PROGRAM "owsd-config"
+#define PROGRAM "owsd-writer"
 #define GROUP "owsd-config"
 #define LOOK_MS 100   /* how often it looks which visits have ended */
 #define IDLE_MS 30000 /* then the service manager waits in its place */
@@ -79,7 +79,7 @@ static _Noreturn void attend(const struct writer *writer, int fd, int begin, boo
 	sigaddset(&ends, SIGTERM);
 	sigaddset(&ends, SIGINT);
 	sigprocmask(SIG_UNBLOCK, &ends, NULL);
-	/* owsd-config closes its copy first: none of those of this process is closed before */
+	/* owsd-writer closes its copy first: none of those of this process is closed before */
 	while (read(begin, &byte, 1) < 0 && errno == EINTR)
 		;
 	visit(writer, fd, may);
@@ -143,7 +143,7 @@ static void serve(struct writer *writer, struct visitors *visitors, int listener
 	}
 }
 
-static int owsd_config_run(const struct face_arguments *a, struct unix_signals *signals)
+static int owsd_writer_run(const struct face_arguments *a, struct unix_signals *signals)
 {
 	struct visitors visitors = {0};
 	struct writer writer = {.file = a->file, .instance = a->instance};
@@ -219,5 +219,5 @@ int main(int argc, char **argv)
 		face_complain(PROGRAM, "cannot take signals: %s", strerror(-status));
 		return FACE_EXIT_RUN;
 	}
-	return owsd_config_run(&a, &signals);
+	return owsd_writer_run(&a, &signals);
 }
