@@ -85,7 +85,8 @@ struct config_item {
 	const char *calibrated; /* "2026-11-22" */
 	double factor, offset;  /* as written */
 	const char *points;     /* as written */
-	int decimals;           /* -1: not given */
+	unsigned decimals;
+	bool has_decimals;
 	struct scale scale;
 	bool converted; /* scale is that from the unit of the chip to this one */
 	double filter_s, deadband, max_step; /* 0: none */

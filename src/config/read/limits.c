@@ -4,7 +4,7 @@
 #include "src/config/read/build.h"
 #include "src/config/read/options.h"
 
-const enum option limit_options[CONFIG_LIMITS] = {
+static const enum option limit_options[CONFIG_LIMITS] = {
 	[CONFIG_LIMIT_LL] = OPT_LIMIT_LL,
 	[CONFIG_LIMIT_L] = OPT_LIMIT_L,
 	[CONFIG_LIMIT_H] = OPT_LIMIT_H,

@@ -19,20 +19,26 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
 	_Generic((member), \
 		const char *: STORE_TEXT, \
 		bool: STORE_BOOL, \
-		int: STORE_INT, \
 		unsigned: STORE_UNSIGNED, \
 		int64_t: STORE_NS, \
 		double: STORE_DOUBLE)
-#define TO(of, member) \
-	.offset = offsetof(struct of, member), .store = STORE_OF(((struct of *)0)->member)
+#define OF_DRIVER struct config
+#define OF_ITEM struct config_item
+#define OF_RECORDER struct config_recorder
+#define OF_INFLUX struct config_influx
+#define OF_WEB struct config_web
+#define OF_MQTT struct config_mqtt
 #define HAS(of, member) .has = offsetof(struct of, member)
 #define AT(of, member) .at = offsetof(struct of, member)
 #define INSIDE(place_, member) \
 	.inside = PLACE_##place_, .offset = offsetof(struct config, member), \
 	.has = offsetof(struct config, member.given)
-#define OPTION(name, key_, place_, kind_, ...) \
+#define OTHER(name, key_, place_, kind_, ...) \
 	[OPT_##name] = { \
 		.key = (key_), .place = PLACE_##place_, .kind = OPTION_##kind_, __VA_ARGS__},
+#define OPTION(name, key_, place_, kind_, member, ...) \
+	OTHER(name, key_, place_, kind_, .offset = offsetof(OF_##place_, member), \
+	      .store = STORE_OF(((OF_##place_ *)0)->member), __VA_ARGS__)
 #include "src/config/read/option_list.h"
 #undef OPTION
 };
@@ -320,9 +326,6 @@ void option_take(struct build *build, const struct option_def *def,
 	case STORE_BOOL:
 		*(bool *)at = value->number != 0;
 		break;
-	case STORE_INT:
-		*(int *)at = value->given ? (int)value->number : -1;
-		break;
 	case STORE_UNSIGNED:
 		*(unsigned *)at = (unsigned)value->number;
 		break;
@@ -351,8 +354,6 @@ static double number_of(const struct option_def *def, const void *from)
 		break;
 	case STORE_BOOL:
 		return *(const bool *)at;
-	case STORE_INT:
-		return *(const int *)at;
 	case STORE_UNSIGNED:
 		return *(const unsigned *)at;
 	case STORE_NS:
@@ -372,10 +373,9 @@ bool option_is_given(const struct option_def *def, const void *from)
 {
 	if (def->has)
 		return *(const bool *)member_of(from, def->has);
-	if (def->store == STORE_TEXT)
-		return text_of(def, from) != NULL;
-	/* below 0: not given, and its default is not of the table */
-	return (def->store != STORE_INT && def->store != STORE_NS) || number_of(def, from) >= 0;
+	/* a time below 0: not given, and its default is not of the table */
+	return def->store == STORE_TEXT ? text_of(def, from) != NULL
+	                                : def->store != STORE_NS || number_of(def, from) >= 0;
 }
 
 bool option_is_preset(const struct option_def *def, const void *from)

@@ -36,16 +36,17 @@ enum option_store {
 	STORE_NONE,     /* there is no such member: code of its own takes the value */
 	STORE_TEXT,     /* const char *; NULL: not given, and no preset */
 	STORE_BOOL,     /* bool */
-	STORE_INT,      /* int; -1: not given */
 	STORE_UNSIGNED, /* unsigned */
 	STORE_NS,       /* int64_t, nanoseconds */
 	STORE_DOUBLE,   /* double */
 };
 
 enum option {
-#define OPTION(name, ...) OPT_##name,
+#define OTHER(name, ...) OPT_##name,
+#define OPTION OTHER
 #include "src/config/read/option_list.h"
 #undef OPTION
+#undef OTHER
 	OPTION_COUNT_ALL,
 };
 

@@ -214,10 +214,10 @@ void signal_table_meta(const struct config_item *item, struct image_meta *meta)
 	struct quantity quantity;
 	bool known = item->type != OWS_STRING && (!scale_changes(scale) || item->converted) &&
 	             quantity_of(item->path, &quantity);
-	int decimals = item->decimals >= 0 ? item->decimals
-	               : known             ? decimals_of(item, quantity)
-	               : item->unit        ? unit_decimals(item->unit)
-	                                   : -1;
+	int decimals = item->has_decimals ? (int)item->decimals
+	               : known            ? decimals_of(item, quantity)
+	               : item->unit       ? unit_decimals(item->unit)
+	                                  : -1;
 
 	*meta = (struct image_meta){
 		.unit = item->unit ? item->unit

@@ -32,7 +32,7 @@ static void test_an_item_without_the_keys_is_not_scaled(void)
 	TEST_ASSERT_NULL(item->unit);
 	TEST_ASSERT_NULL(item->description);
 	TEST_ASSERT_NULL(item->calibrated);
-	TEST_ASSERT_EQUAL_INT(-1, item->decimals);
+	TEST_ASSERT_FALSE(item->has_decimals);
 	TEST_ASSERT_FALSE(scale_changes(&item->scale));
 	TEST_ASSERT_FALSE(item->scale.has_min || item->scale.has_max);
 	TEST_ASSERT_EQUAL_DOUBLE(0, item->filter_s);
@@ -47,7 +47,7 @@ static void test_an_item_without_the_keys_is_not_scaled(void)
 static void expect_all_keys(const struct config_item *item)
 {
 	TEST_ASSERT_EQUAL_STRING("m\xc2\xb3/h", item->unit);
-	TEST_ASSERT_EQUAL_INT(2, item->decimals);
+	TEST_ASSERT_EQUAL_UINT(2, item->decimals);
 	TEST_ASSERT_EQUAL_STRING("Supply, \"cold\"", item->description);
 	TEST_ASSERT_TRUE(item->scale.linear);
 	TEST_ASSERT_EQUAL_DOUBLE(0.5, item->scale.factor);

@@ -39,11 +39,10 @@ void tearDown(void)
 
 struct house {
 	const char *street;
-	int floor;
-	unsigned doors;
+	unsigned floor, doors;
 	int64_t age_ns;
 	double height;
-	bool garden, has_height;
+	bool garden, has_floor, has_height;
 	struct config_spot street_at;
 };
 
@@ -65,7 +64,8 @@ static const struct option_def rows[] = {
          .place = PLACE_INFLUX,
          .kind = OPTION_COUNT,
          .offset = offsetof(struct house, floor),
-         .store = STORE_INT,
+         .store = STORE_UNSIGNED,
+         .has = offsetof(struct house, has_floor),
          .most = 9},
 	{.key = "Doors",
          .place = PLACE_INFLUX,
@@ -137,7 +137,8 @@ static void test_rows_read_what_is_given(void)
 	TEST_ASSERT_EQUAL_STRING("High 7", house.street);
 	TEST_ASSERT_EQUAL_INT(2, house.street_at.line);
 	TEST_ASSERT_EQUAL_INT(8, house.street_at.column);
-	TEST_ASSERT_EQUAL_INT(0, house.floor);
+	TEST_ASSERT_TRUE(house.has_floor);
+	TEST_ASSERT_EQUAL_UINT(0, house.floor);
 	TEST_ASSERT_EQUAL_UINT(16, house.doors);
 	TEST_ASSERT_EQUAL_INT64(500000000, house.age_ns);
 	TEST_ASSERT_EQUAL_DOUBLE(-1.5, house.height);
@@ -158,7 +159,7 @@ static void test_rows_have_defaults(void)
 	TEST_ASSERT_EQUAL_STRING("", said);
 	TEST_ASSERT_EQUAL_STRING("Main 1", house.street);
 	TEST_ASSERT_EQUAL_INT(0, house.street_at.line);
-	TEST_ASSERT_EQUAL_INT(-1, house.floor);
+	TEST_ASSERT_FALSE(house.has_floor);
 	TEST_ASSERT_EQUAL_UINT(2, house.doors);
 	TEST_ASSERT_EQUAL_INT64(7000000000, house.age_ns);
 	TEST_ASSERT_FALSE(house.has_height || house.garden);
