@@ -190,12 +190,14 @@ static bool parse_kind(const struct option_def *def, const char *text, double *n
 	case OPTION_BLOCK:
 		return true;
 	case OPTION_COUNT:
-		return (parse_hex(text, number) || parse_number(text, OWS_LARGE, number)) &&
-		       *number >= def->least && *number <= def->most;
+		if (!parse_hex(text, number) && !parse_number(text, OWS_LARGE, number))
+			return false;
+		break;
 	case OPTION_SECONDS:
 	case OPTION_NUMBER:
-		return parse_number(text, OWS_DOUBLE, number) &&
-		       (is_any(def) || (*number >= def->least && *number <= def->most));
+		if (!parse_number(text, OWS_DOUBLE, number))
+			return false;
+		break;
 	case OPTION_FLAG:
 		return parse_number(text, OWS_BOOL, number);
 	case OPTION_TYPE:
@@ -206,7 +208,7 @@ static bool parse_kind(const struct option_def *def, const char *text, double *n
 		*number = !strcmp(text, "output");
 		return !strcmp(text, "output") || !strcmp(text, "input");
 	}
-	return false;
+	return is_any(def) || (*number >= def->least && *number <= def->most);
 }
 
 static void report_expected(const struct option_def *def, const struct rio_node *node,

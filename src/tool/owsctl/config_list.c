@@ -9,68 +9,22 @@
 #include "src/tool/owsctl/config_list.h"
 #include "src/tool/owsctl/table.h"
 
-enum {
-	NAME,
-	TYPE,
-	IO,
-	INIT,
-	SAFE,
-	READ,
-	WRITE,
-	UNCACHED,
-	PER_FACTOR,
-	STALE_AFTER,
-	ALARM,
-	LIMITS,
-	PATH,
-	COLUMNS,
-};
-/* clang-format off */
-static const struct table_column columns[COLUMNS] = {
-	[NAME] = {"NAME"}, [TYPE] = {"TYPE"}, [IO] = {"IO"}, [INIT] = {"INIT"}, [SAFE] = {"SAFE"},
-	[READ] = {"READ"}, [WRITE] = {"WRITE"}, [UNCACHED] = {"UNCACHED"},
-	[PER_FACTOR] = {"PERFACTOR", .right = true}, [STALE_AFTER] = {"STALE", .right = true},
-	[ALARM] = {"ALARM"}, [LIMITS] = {"LIMITS"}, [PATH] = {"PATH"},
-};
-/* clang-format on */
+/* The keys that have columns; each where an item has it otherwise than by default. */
+static const enum option shown[] = {OPT_NAME,       OPT_TYPE,        OPT_IO,       OPT_INIT_VALUE,
+                                    OPT_SAFE_VALUE, OPT_READABLE,    OPT_WRITABLE, OPT_UNCACHED,
+                                    OPT_PER_FACTOR, OPT_STALE_AFTER, OPT_ALARM,    OPT_LIMIT_LL,
+                                    OPT_LIMIT_L,    OPT_LIMIT_H,     OPT_LIMIT_HH, OPT_PATH};
+#define COLUMNS (sizeof(shown) / sizeof(shown[0]))
 
-static const char *yes(bool flag)
+static bool is_number(const struct option_def *def)
 {
-	return flag ? "on" : "off";
+	return def->kind == OPTION_COUNT || def->kind == OPTION_SECONDS ||
+	       def->kind == OPTION_NUMBER;
 }
 
 static double seconds(int64_t ns)
 {
 	return (double)ns / 1e9;
-}
-
-#define LIMITS_TEXT 320
-/* "LL -40, H -15; hysteresis 1, on delay 300 s"; "-" without limits. Returns text. */
-static const char *limits_text(const struct config_limits *limits, char text[LIMITS_TEXT])
-{
-	static const char *const names[CONFIG_LIMITS] = {
-		[CONFIG_LIMIT_LL] = "LL",
-		[CONFIG_LIMIT_L] = "L",
-		[CONFIG_LIMIT_H] = "H",
-		[CONFIG_LIMIT_HH] = "HH",
-	};
-	int used = 0;
-
-	snprintf(text, LIMITS_TEXT, "-");
-	for (int i = 0; i < CONFIG_LIMITS; i++)
-		if (limits->has[i])
-			used += snprintf(text + used, LIMITS_TEXT - (size_t)used, "%s%s %.10g",
-			                 used ? ", " : "", names[i], limits->limit[i]);
-	if (used && limits->hysteresis > 0)
-		used += snprintf(text + used, LIMITS_TEXT - (size_t)used, ", hysteresis %.10g",
-		                 limits->hysteresis);
-	if (used && limits->on_delay_ns)
-		used += snprintf(text + used, LIMITS_TEXT - (size_t)used, ", on delay %g s",
-		                 seconds(limits->on_delay_ns));
-	if (used && limits->off_delay_ns)
-		snprintf(text + used, LIMITS_TEXT - (size_t)used, ", off delay %g s",
-		         seconds(limits->off_delay_ns));
-	return text;
 }
 
 static void print_driver(const struct config *config)
@@ -88,40 +42,29 @@ static void print_driver(const struct config *config)
 
 static void config_list_add_row(struct table *table, const struct config_item *item)
 {
-	char per_factor[16], stale[32] = "-", limits[LIMITS_TEXT];
+	char rooms[COLUMNS][VALUE_TEXT_MAX];
+	const char *cells[COLUMNS];
 
-	snprintf(per_factor, sizeof(per_factor), "%u", (unsigned)item->per_factor);
-	if (item->stale_after_ns)
-		snprintf(stale, sizeof(stale), "%gs", seconds(item->stale_after_ns));
-	/* leave out columns that have nothing for any item */
-	table->absent[SAFE] &= !item->has_safe;
-	table->absent[PER_FACTOR] &= item->per_factor == 1;
-	table->absent[STALE_AFTER] &= !item->stale_after_ns;
-	table->absent[LIMITS] &= !item->limits.any;
-	table_add(table,
-	          (const char *const[COLUMNS]){[NAME] = item->name,
-	                                       [TYPE] = value_type_name(item->type),
-	                                       [IO] = item->output ? "output" : "input",
-	                                       [INIT] = item->init_text,
-	                                       [SAFE] = item->has_safe ? item->safe_text : "-",
-	                                       [READ] = yes(item->readable),
-	                                       [WRITE] = yes(item->writable),
-	                                       [UNCACHED] = yes(item->fresh),
-	                                       [PER_FACTOR] = per_factor,
-	                                       [STALE_AFTER] = stale,
-	                                       [ALARM] = yes(item->alarm),
-	                                       [LIMITS] = limits_text(&item->limits, limits),
-	                                       [PATH] = item->path});
+	for (size_t i = 0; i < COLUMNS; i++) {
+		const struct option_def *def = &option_table[shown[i]];
+
+		table->absent[i] &= option_is_preset(def, item);
+		cells[i] = option_is_given(def, item) ? option_text(def, item, rooms[i]) : "-";
+	}
+	table_add(table, cells);
 }
 
 static void config_list_print_table(const struct config *config, char *const *patterns, int count)
 {
+	struct table_column columns[COLUMNS] = {0};
 	struct table table;
 
 	print_driver(config);
+	for (size_t i = 0; i < COLUMNS; i++)
+		columns[i] = (struct table_column){.title = option_table[shown[i]].key,
+		                                   .right = is_number(&option_table[shown[i]])};
 	table_init(&table, columns, COLUMNS);
-	table.absent[SAFE] = table.absent[PER_FACTOR] = table.absent[STALE_AFTER] =
-		table.absent[LIMITS] = true;
+	memset(table.absent, true, sizeof(table.absent));
 	for (unsigned i = 0; i < config->item_count; i++)
 		if (names_match(config->items[i].name, patterns, count))
 			config_list_add_row(&table, &config->items[i]);
@@ -143,8 +86,7 @@ static void keys_json(struct json *json, enum option_place place, const void *fr
 		text = option_is_given(def, from) ? option_text(def, from, room) : NULL;
 		if (def->kind == OPTION_FLAG)
 			json_bool(json, def->key, !strcmp(text, "on"));
-		else if (text && (def->kind == OPTION_COUNT || def->kind == OPTION_SECONDS ||
-		                  def->kind == OPTION_NUMBER))
+		else if (text && is_number(def))
 			json_number(json, def->key, text);
 		else
 			json_string(json, def->key, text);
