@@ -148,11 +148,11 @@ def test_what_cannot_be_shelved_is_refused(scene):
 
 
 def test_control_answers_each_line_and_acknowledges_only_what_has_limits(scene):
-    answers = {"pump=1": "ok", "pump=on": "ok", "pump=maybe": 'error "maybe" is no value for pump: expected 0 or 1',
-               "pump=300": 'error "300" is no value for pump: expected 0 or 1',
-               "pump_WE=x": 'error "x" is no value for pump_WE: expected 0 or 1',
+    answers = {"pump=1": "ok", "pump=on": "ok", "pump=maybe": 'error "maybe" is no value for it: expected 0 or 1',
+               "pump=300": 'error "300" is no value for it: expected 0 or 1',
+               "pump_WE=x": 'error "x" is no value for it: expected 0 or 1',
                "pumpe=1": "error there is no such name: pumpe; did you mean pump?",
-               "freezer=1": "error the signal is an input (Writable is off in the configuration)",
+               "freezer=1": "error it is an input: Writable is off in the configuration",
                "beat soon": "error beat takes a number of milliseconds", "beat 3600000": "ok",
                "beat 3600001": "error the longest beat is 3600000 milliseconds, an hour",
                "ack freezer": "ok", "ack pump": "error it has no limit alarms",

@@ -350,13 +350,13 @@ def test_a_value_that_cannot_be_set_is_told_why(scene):
         dict(Name="back", Path=sensor + "/temperature", Type="double", IO="input",
              Writable=owsdtest.raw("on"))]))
     assert scene.owsctl(daemon, "set", "-w", "60", "back_WE", "off").returncode == 0
-    cannot = "{} cannot be set: the signal is an input (Writable is off in the configuration)"
+    cannot = "{}: it is an input: Writable is off in the configuration"
     done = scene.owsctl(daemon, "get", "OTHER__room")
     assert done.returncode == 1 and "did you mean room, or -n OTHER?" in done.stderr, done
     for words, reason in (
-            (("relay", "1.5"), "relay: 1.5 is not a whole number, as byte wants it (0 to 255)"),
-            (("relay", "on"), 'relay: "on" is not a value for byte (0 to 255)'),
-            (("relay", "256"), "relay: 256 is out of range for byte (0 to 255)"),
+            (("relay", "1.5"), 'relay: "1.5" is no value for it: expected 0 to 255'),
+            (("relay", "on"), 'relay: "on" is no value for it: expected 0 to 255'),
+            (("relay", "256"), 'relay: "256" is no value for it: expected 0 to 255'),
             (("room", "5"), cannot.format("room")), (("room_WE", "on"), cannot.format("room_WE")),
             (("room_WriteOneShot", "1"), cannot.format("room_WriteOneShot")),
             (("back", "5"), "back is not writable: it is an input, and its _WriteEnable is 0")):

@@ -180,10 +180,6 @@ OPTION(INFLUX_TOKEN_FILE, "TokenFile", INFLUX, TEXT, token_file, .check = text_i
        .help = "file with the token, or name of a credential")
 OPTION(INFLUX_MEASUREMENT, "Measurement", INFLUX, TEXT, measurement, .check = text_is_name,
        .preset = "ows", .help = "measurement of all points")
-OPTION(INFLUX_SPOOL, "Spool", INFLUX, TEXT, spool, .check = text_is_path,
-       .help = "where batches wait for a server that is not there")
-OPTION(INFLUX_SPOOL_SIZE, "SpoolSize", INFLUX, COUNT, spool_mb, RANGE(1, 100000), .preset = "64",
-       .help = "most megabytes that wait, the oldest are dropped")
 OPTION(INFLUX_CLOCK_WAIT, "ClockWait", INFLUX, SECONDS, clock_wait_ns, RANGE(0, DAY),
        .preset = "600", .help = "uptime from which a clock that nobody set is believed")
 

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* The user of a client, by the kernel's word, and what ControlAllow lets that user write. */
-#include <arpa/inet.h>
+#include <netinet/in.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "src/config/read/allow.h"
 #include "src/config/read/config.h"
+#include "src/config/read/listen.h"
 #include "src/daemon/serve/person.h"
 #include "src/memory/shm/peer.h"
 
@@ -14,21 +15,12 @@
 
 void person_address(const struct sockaddr *from, char name[OWS_NAME])
 {
-	const struct sockaddr_in6 *v6 = (const void *)from;
-	const void *bytes = &((const struct sockaddr_in *)(const void *)from)->sin_addr;
-	int family = from->sa_family;
-	char text[INET6_ADDRSTRLEN] = "unknown";
+	struct listen_address address;
+	char text[LISTEN_TEXT_MAX] = "unknown";
 	size_t len;
 
-	if (family == AF_INET6) {
-		bytes = &v6->sin6_addr;
-		if (IN6_IS_ADDR_V4MAPPED(&v6->sin6_addr)) {
-			family = AF_INET;
-			bytes = v6->sin6_addr.s6_addr + 12;
-		}
-	}
-	if (family == AF_INET || family == AF_INET6)
-		inet_ntop(family, bytes, text, sizeof(text));
+	if (listen_of(from, &address))
+		listen_print_host(&address, text);
 	len = strlen(text);
 	/* the end says which machine it is */
 	if (len < OWS_NAME) {

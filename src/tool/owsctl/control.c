@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/faces/kit/command.h"
 #include "src/faces/show/names.h"
-#include "src/faces/show/range.h"
 #include "src/faces/show/text.h"
 #include "src/ground/signal/error.h"
 #include "src/tool/owsctl/ctl.h"
@@ -27,7 +27,7 @@ struct control {
 	const char *instance;
 	int err;         /* of the line */
 	const char *why; /* what is wrong with the line itself; NULL: err says it */
-	char own[2 * QUOTED_BYTES + NAMES_MAX + RANGE_WORDS]; /* what why may be */
+	char own[2 * FACE_REFUSAL + NAMES_MAX]; /* what why may be */
 	char line[LINE_MAX + 256];
 };
 
@@ -72,29 +72,26 @@ static int control_find(struct control *control, const char *name)
 	return id;
 }
 
-/* Name what was sent, and which values there are. */
-static void refuse_value(struct control *control, const char *name, const char *value)
+/* Which values there are. */
+static struct ows_info values_of(struct control *control, const char *name)
 {
 	struct ows_info info = {.min = NAN, .max = NAN};
-	char clean[QUOTED_BYTES], named[QUOTED_BYTES], range[RANGE_WORDS];
 	enum attribute attribute;
-	enum ows_type type;
 	int signal;
 
 	if (names_lookup(control->h, control->instance, name, &signal, &attribute) != 0)
-		return;
-	type = attribute_table[attribute].type;
-	if (attribute == ATTR_VALUE && ows_info(control->h, signal, &info) == 0)
-		type = (enum ows_type)info.type;
-	text_clean(value, strlen(value), QUOTED, clean, sizeof(clean));
-	text_clean(name, strlen(name), QUOTED, named, sizeof(named));
-	snprintf(control->own, sizeof(control->own), "\"%s\" is no value for %s: expected %s",
-	         clean, named, range_words(type, info.min, info.max, range));
-	control->why = control->own;
+		return info;
+	if (attribute != ATTR_VALUE || ows_info(control->h, signal, &info) != 0)
+		info.type = (uint8_t)attribute_table[attribute].type;
+	info.name = name;
+	return info;
 }
 
 static int do_set(struct control *control, char *equals)
 {
+	struct face_command command = {.program = "owsctl", .text = equals + 1};
+	char words[FACE_REFUSAL];
+	struct ows_info info;
 	int id, err;
 
 	*equals = '\0';
@@ -102,8 +99,12 @@ static int do_set(struct control *control, char *equals)
 	if (id < 0)
 		return id;
 	err = ows_set_text(control->h, id, equals + 1, NULL);
-	if (err == -EINVAL || err == -ERANGE)
-		refuse_value(control, control->line, equals + 1);
+	if (!err || err == -ESTALE)
+		return err;
+	info = values_of(control, control->line);
+	face_refusal(&command, &info, err, words);
+	text_clean(words, strlen(words), FACE_REFUSAL, control->own, sizeof(control->own));
+	control->why = control->own;
 	return err;
 }
 
@@ -192,20 +193,17 @@ static void run_line(struct control *control, char *copy)
 
 static bool print_answer(const struct control *control)
 {
-	const char *why = control->why ? control->why : error_text(control->err);
+	const struct face_command command = {.program = "owsctl"};
+	const struct ows_info none = {.type = OWS_BOOL};
+	char words[FACE_REFUSAL];
+	const char *why = control->why;
 
-	if (control->err == -ESTALE)
-		why = "owsd is not running";
-	else if (control->err == -EROFS)
-		why = "the signal is an input (Writable is off in the configuration)";
-	else if (control->err == -EACCES)
-		why = "it cannot be set, or not by this user";
-	else if (!control->why && control->err == -EINVAL)
-		why = "this is no value for it";
-	else if (control->err == -EOPNOTSUPP)
+	if (control->err == -EOPNOTSUPP)
 		why = "it has no limit alarms";
-	else if (!control->why && control->err == -ERANGE)
+	else if (!why && (control->err == -EINVAL || control->err == -ERANGE))
 		why = "it is too long or out of range";
+	else if (!why)
+		why = face_refusal(&command, &none, control->err, words);
 	if (control->err)
 		printf("error %s\n", why);
 	else

@@ -8,9 +8,9 @@
 #include <string.h>
 
 #include "hal/base/time.h"
+#include "src/faces/kit/command.h"
 #include "src/faces/show/actor.h"
 #include "src/faces/show/names.h"
-#include "src/faces/show/range.h"
 #include "src/faces/show/reading.h"
 #include "src/ground/signal/value.h"
 #include "src/tool/owsctl/ctl.h"
@@ -22,8 +22,8 @@ struct order {
 	int id;
 	enum attribute attribute;
 	enum ows_type type;
-	char range[RANGE_WORDS]; /* what it takes */
-	int64_t value;           /* numbers */
+	struct ows_info info; /* its name, and which values it takes */
+	int64_t value;        /* numbers */
 	uint32_t stamp;
 	bool input; /* the value of one */
 	bool confirmed;
@@ -34,12 +34,20 @@ static bool is_edge(enum attribute attribute)
 	return attribute_table[attribute].writable && !attribute_table[attribute].readable;
 }
 
+/* In the words of all programs that command. Returns words. */
+static const char *refusal_of(const struct order *order, int err, char words[FACE_REFUSAL])
+{
+	const struct face_command command = {.program = "owsctl", .text = order->text};
+
+	return face_refusal(&command, &order->info, err, words);
+}
+
 /* Check all orders before the first value is set. */
 static int check_order(const struct ctl *ctl, struct ows *h, struct order *order)
 {
+	struct ows_info *info = &order->info;
 	const struct attribute_def *def;
-	struct ows_info info = {.min = NAN, .max = NAN};
-	const char *type;
+	char words[FACE_REFUSAL];
 	int signal, err;
 
 	if (names_lookup(h, ctl->instance, order->name, &signal, &order->attribute) != 0)
@@ -50,28 +58,18 @@ static int check_order(const struct ctl *ctl, struct ows *h, struct order *order
 	def = &attribute_table[order->attribute];
 	if (!def->writable)
 		return ctl_fail("%s cannot be set, only read", order->name);
-	order->type = def->type;
+	*info = (struct ows_info){.type = (uint8_t)def->type, .min = NAN, .max = NAN};
 	if (order->attribute == ATTR_VALUE) {
-		if (ows_info(h, signal, &info) != 0)
+		if (ows_info(h, signal, info) != 0)
 			return ctl_fail("%s is not there any more", order->name);
-		order->type = (enum ows_type)info.type;
-		order->input = !info.output;
+		order->input = !info->output;
 	}
-	range_words(order->type, info.min, info.max, order->range);
+	info->name = order->name;
+	order->type = (enum ows_type)info->type;
 	if (order->type == OWS_STRING)
 		return CTL_DONE;
-	type = value_type_name(order->type);
 	err = value_parse(order->type, order->text, &order->value);
-	if (err == -ERANGE)
-		return ctl_fail("%s: %s is out of range for %s (%s)", order->name, order->text,
-		                type, order->range);
-	if (err && value_parse(OWS_DOUBLE, order->text, &order->value) == 0)
-		return ctl_fail("%s: %s is not a whole number, as %s wants it (%s)", order->name,
-		                order->text, type, order->range);
-	if (err)
-		return ctl_fail("%s: \"%s\" is not a value for %s (%s)", order->name, order->text,
-		                type, order->range);
-	return CTL_DONE;
+	return err ? ctl_fail("%s: %s", order->name, refusal_of(order, err, words)) : CTL_DONE;
 }
 
 static int set_put(struct ows *h, struct order *order)
@@ -87,19 +85,9 @@ static int set_put(struct ows *h, struct order *order)
 	return ows_set_integer(h, order->id, order->value, &order->stamp);
 }
 
-/* Is it an input, or has this user no right to it? */
-static int refuse_access(const struct order *order)
-{
-	if (order->input)
-		return ctl_fail("%s is not writable: it is an input, and its _WriteEnable is 0",
-		                order->name);
-	return ctl_fail("no right to set %s: ControlAllow in the configuration says who has it",
-	                order->name);
-}
-
 static int set_send(struct ows *h, struct order *order)
 {
-	struct ows_daemon daemon = {0};
+	char words[FACE_REFUSAL];
 	int err = set_put(h, order);
 
 	/* owsd has just moved to new memory: set the value there */
@@ -108,25 +96,10 @@ static int set_send(struct ows *h, struct order *order)
 		if (ows_reopen(h) == 0)
 			err = set_put(h, order);
 	}
-	switch (-err) {
-	case 0:
-		return CTL_DONE;
-	case ESTALE:
-		ows_daemon(h, ows_now(), &daemon);
-		return daemon.alive
-		               ? ctl_fail("%s: owsd is just starting again, try again", order->name)
-		               : ctl_fail("%s was not set: owsd is not running", order->name);
-	case EACCES:
-		return refuse_access(order);
-	case EROFS:
-		return ctl_fail("%s cannot be set: the signal is an input (Writable is off in the "
-		                "configuration)",
+	if (err == -EACCES && order->input)
+		return ctl_fail("%s is not writable: it is an input, and its _WriteEnable is 0",
 		                order->name);
-	case ERANGE:
-		return ctl_fail("%s: %s is too long, or beyond the signal's range: expected %s",
-		                order->name, order->text, order->range);
-	}
-	return ctl_fail("%s: %s", order->name, error_text(err));
+	return err ? ctl_fail("%s: %s", order->name, refusal_of(order, err, words)) : CTL_DONE;
 }
 
 /* Has the bus, or for the enables the engine, taken what was set, and does it read so? */
@@ -200,18 +173,14 @@ static bool print_lost(struct ows *h, const struct order *order)
 {
 	struct ows_command command = {0};
 	struct ows_origin origin = {0};
-	char words[ERROR_WORDS], who[ACTOR_LINE];
+	char words[FACE_REFUSAL], who[ACTOR_LINE];
 
 	if (order->attribute != ATTR_VALUE)
 		return false;
 	ows_command(h, order->id, &command);
 	if (command.taken == order->stamp && command.refused) {
-		if (command.refused == -ERANGE)
-			ctl_fail("%s was refused: %s is beyond the signal's range: expected %s",
-			         order->name, order->text, order->range);
-		else
-			ctl_fail("%s was refused: %s", order->name,
-			         error_words(command.refused, words));
+		ctl_fail("%s was refused: %s", order->name,
+		         refusal_of(order, command.refused, words));
 		return true;
 	}
 	ows_origin(h, order->id, &origin);

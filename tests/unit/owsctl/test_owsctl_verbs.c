@@ -169,9 +169,9 @@ static void test_set_commands_outputs(void)
 static void test_set_sets_nothing_when_one_of_its_values_is_wrong(void)
 {
 	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_set, "set relay 1 level 256"));
-	holds(err, "level: 256 is out of range for byte (0 to 255)");
+	holds(err, "level: \"256\" is no value for it: expected 0 to 255");
 	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_set, "set relay 1 level high"));
-	holds(err, "level: \"high\" is not a value for byte");
+	holds(err, "level: \"high\" is no value for it: expected 0 to 255");
 	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_set, "set relay 1 room1_Age 0"));
 	holds(err, "room1_Age cannot be set, only read");
 	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_set, "set relay 1 rely 0"));
@@ -203,9 +203,9 @@ static void test_set_needs_names_and_values_in_pairs(void)
 static void test_set_takes_options_behind_values_and_values_with_a_minus(void)
 {
 	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_set, "set level -5"));
-	holds(err, "level: -5 is out of range for byte (0 to 255)");
+	holds(err, "level: \"-5\" is no value for it: expected 0 to 255");
 	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_set, "set -- level -w"));
-	holds(err, "level: \"-w\" is not a value for byte");
+	holds(err, "level: \"-w\" is no value for it: expected 0 to 255");
 	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_set, "set relay 0 --json level 7"));
 	holds(out, "{\"name\":\"level\",\"set\":\"7\"");
 	TEST_ASSERT_EQUAL_INT64(7, commanded(5)->value);
