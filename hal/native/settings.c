@@ -17,7 +17,7 @@ static int read_scale(struct txn *txn)
 {
 	char text[2] = {txn->native->temperature_scale, '\0'};
 
-	return virtual_put(txn, txn->property->arg ? txn->native->pressure_scale : text);
+	return property_text(txn, txn->property->arg ? txn->native->pressure_scale : text);
 }
 
 /*

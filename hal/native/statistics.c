@@ -3,7 +3,7 @@
  * /statistics: what was asked of the bus, and how it went, under the names that owserver gives
  * them. Clients of owserver read numbers of 32 bits: a count wraps.
  */
-#include <errno.h>
+#include <stddef.h>
 #include <string.h>
 
 #include "hal/native/state.h"
@@ -71,111 +71,63 @@ void tally_end(struct native *native, struct job *job, const struct bus_answer *
 		count_entries(tally, job, answer->len);
 }
 
-enum { CALLS, SUCCESS, BYTES, NOW, MAX, SUM, BUS_LISTS, BUS_ENTRIES, LISTS, ENTRIES };
-#define OF(kind, what) ((kind) << 8 | (what))
-
-static int read_tally(struct txn *txn)
-{
-	const struct tally *tally = &txn->native->tally[txn->property->arg >> 8];
-	const uint64_t values[] = {
-		[CALLS] = tally->calls,
-		[SUCCESS] = tally->success,
-		[BYTES] = tally->bytes,
-		[NOW] = tally->now,
-		[MAX] = tally->max,
-		[SUM] = tally->sum,
-		[BUS_LISTS] = tally->lists[0],
-		[BUS_ENTRIES] = tally->entries[0],
-		[LISTS] = tally->lists[1],
-		[ENTRIES] = tally->entries[1],
-	};
-
-	return virtual_count(txn, values[txn->property->arg & 0xff]);
-}
-
-static int read_tries(struct txn *txn)
-{
-	return virtual_count(txn, txn->native->tally[txn->property->arg].tries[txn->element]);
-}
-
-static int read_statistics_count(struct txn *txn)
-{
-	return virtual_count(txn, txn->native->count[txn->property->arg]);
-}
-
-enum { TRIES, HITS, ADDED, EXPIRED, DELETED, HELD, HIT_BYTES };
-
-static int read_cache(struct txn *txn)
-{
-	const struct cache *cache = &txn->native->cache;
-	const uint64_t values[] = {
-		[TRIES] = cache->tries,         [HITS] = cache->hits,       [ADDED] = cache->added,
-		[EXPIRED] = cache->expired,     [DELETED] = cache->deleted, [HELD] = cache->held,
-		[HIT_BYTES] = cache->hit_bytes,
-	};
-
-	return virtual_count(txn, values[txn->property->arg]);
-}
-
 static int read_delay(struct txn *txn)
 {
 	txn->number[0] = (double)txn->native->delay_ns / 1e9;
 	return 0;
 }
 
-enum { WAY_TALLY = 1, WAY_TRIES, WAY_COUNT, WAY_CACHE, WAY_DELAY, WAY_ZERO };
+enum { WAY_COUNT = 1, WAY_DELAY, WAY_ZERO };
 static const struct property_how how[] = {
-	[WAY_TALLY] = {.read = read_tally},
-	[WAY_TRIES] = {.read = read_tries},
-	[WAY_COUNT] = {.read = read_statistics_count},
-	[WAY_CACHE] = {.read = read_cache},
+	[WAY_COUNT] = {.read = virtual_count},
 	[WAY_DELAY] = {.read = read_delay},
-	[WAY_ZERO] = {.read = virtual_zero},
+	[WAY_ZERO] = {.read = virtual_arg},
 };
 
-#define TALLY(text, kind, what) VIRTUAL_NUMBER(text, WAY_TALLY, OF(kind, what))
+#define COUNT(text, member) VIRTUAL_NUMBER(text, WAY_COUNT, offsetof(struct native, member))
 #define TRIES(text, kind) \
 	PROPERTY(text, UNSIGNED, VOLATILE, READ, .offline = true, ELEMENTS(3, NUMBERS), \
-	         .arg = (kind), .how = WAY_TRIES)
+	         .arg = offsetof(struct native, tally[kind].tries), .how = WAY_COUNT)
 #define THREADS(text, kind) \
-	PROPERTY_DIR(text), TALLY(text "/max", kind, MAX), TALLY(text "/now", kind, NOW), \
-		TALLY(text "/num", kind, CALLS), TALLY(text "/sum", kind, SUM)
+	PROPERTY_DIR(text), COUNT(text "/max", tally[kind].max), \
+		COUNT(text "/now", tally[kind].now), COUNT(text "/num", tally[kind].calls), \
+		COUNT(text "/sum", tally[kind].sum)
 
 static const struct property properties[] = {
 	PROPERTY_DIR("cache"),
-	VIRTUAL_NUMBER("cache/additions", WAY_CACHE, ADDED),
+	COUNT("cache/additions", cache.added),
 	PROPERTY_DIR("cache/external"),
-	VIRTUAL_NUMBER("cache/external/added", WAY_CACHE, ADDED),
-	VIRTUAL_NUMBER("cache/external/deleted", WAY_CACHE, DELETED),
-	VIRTUAL_NUMBER("cache/external/expired", WAY_CACHE, EXPIRED),
-	VIRTUAL_NUMBER("cache/external/hits", WAY_CACHE, HITS),
-	VIRTUAL_NUMBER("cache/external/tries", WAY_CACHE, TRIES),
+	COUNT("cache/external/added", cache.added),
+	COUNT("cache/external/deleted", cache.deleted),
+	COUNT("cache/external/expired", cache.expired),
+	COUNT("cache/external/hits", cache.hits),
+	COUNT("cache/external/tries", cache.tries),
 	VIRTUAL_NUMBER("cache/flips", WAY_ZERO, 0),
 	PROPERTY_DIR("cache/primary"),
-	VIRTUAL_NUMBER("cache/primary/max", WAY_CACHE, HELD),
-	VIRTUAL_NUMBER("cache/primary/now", WAY_CACHE, HELD),
+	COUNT("cache/primary/max", cache.held),
+	COUNT("cache/primary/now", cache.held),
 	PROPERTY_DIR("directory"),
 	PROPERTY_DIR("directory/bus"),
-	TALLY("directory/bus/calls", TALLY_DIRECTORY, BUS_LISTS),
-	TALLY("directory/bus/entries", TALLY_DIRECTORY, BUS_ENTRIES),
+	COUNT("directory/bus/calls", tally[TALLY_DIRECTORY].lists[0]),
+	COUNT("directory/bus/entries", tally[TALLY_DIRECTORY].entries[0]),
 	PROPERTY_DIR("directory/device"),
-	TALLY("directory/device/calls", TALLY_DIRECTORY, LISTS),
-	TALLY("directory/device/entries", TALLY_DIRECTORY, ENTRIES),
+	COUNT("directory/device/calls", tally[TALLY_DIRECTORY].lists[1]),
+	COUNT("directory/device/entries", tally[TALLY_DIRECTORY].entries[1]),
 	VIRTUAL_NUMBER("directory/maxdepth", WAY_ZERO, 0),
 	PROPERTY_DIR("errors"),
 	/* owserver's names, which openHAB asks for: of checksums of 16 bits too */
-	VIRTUAL_NUMBER("errors/CRC8_errors", WAY_COUNT, COUNT_CHECKSUMS),
-	VIRTUAL_NUMBER("errors/CRC8_tries", WAY_COUNT, COUNT_TRANSACTIONS),
-	VIRTUAL_NUMBER("errors/checksum", WAY_COUNT, COUNT_CHECKSUMS),
-	VIRTUAL_NUMBER("errors/link", WAY_COUNT, COUNT_LINK_ERRORS),
+	COUNT("errors/CRC8_errors", count[COUNT_CHECKSUMS]),
+	COUNT("errors/CRC8_tries", count[COUNT_TRANSACTIONS]),
+	COUNT("errors/checksum", count[COUNT_CHECKSUMS]),
+	COUNT("errors/link", count[COUNT_LINK_ERRORS]),
 	VIRTUAL("errors/max_delay", PROPERTY_FLOAT, LIFE_VOLATILE, ACCESS_READ, 0, WAY_DELAY),
-	VIRTUAL_NUMBER("errors/shorts", WAY_COUNT, COUNT_SHORTS),
+	COUNT("errors/shorts", count[COUNT_SHORTS]),
 	PROPERTY_DIR("read"),
-	TALLY("read/bytes", TALLY_READ, BYTES),
-	VIRTUAL_NUMBER("read/cachebytes", WAY_CACHE, HIT_BYTES),
-	VIRTUAL_NUMBER("read/cachesuccess", WAY_COUNT, COUNT_CACHE_HITS),
-	TALLY("read/calls", TALLY_READ, CALLS),
-	TALLY("read/success", TALLY_READ, SUCCESS),
+	COUNT("read/bytes", tally[TALLY_READ].bytes),
+	COUNT("read/cachebytes", cache.hit_bytes),
+	COUNT("read/cachesuccess", count[COUNT_CACHE_HITS]),
+	COUNT("read/calls", tally[TALLY_READ].calls),
+	COUNT("read/success", tally[TALLY_READ].success),
 	TRIES("read/tries", TALLY_READ),
 	PROPERTY_DIR("threads"),
 	THREADS("threads/directory", TALLY_DIRECTORY),
@@ -183,9 +135,9 @@ static const struct property properties[] = {
 	THREADS("threads/read", TALLY_READ),
 	THREADS("threads/write", TALLY_WRITE),
 	PROPERTY_DIR("write"),
-	TALLY("write/bytes", TALLY_WRITE, BYTES),
-	TALLY("write/calls", TALLY_WRITE, CALLS),
-	TALLY("write/success", TALLY_WRITE, SUCCESS),
+	COUNT("write/bytes", tally[TALLY_WRITE].bytes),
+	COUNT("write/calls", tally[TALLY_WRITE].calls),
+	COUNT("write/success", tally[TALLY_WRITE].success),
 	TRIES("write/tries", TALLY_WRITE),
 };
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The directories of OWFS that belong to no device: simultaneous, interface, system. */
 #include <errno.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
@@ -25,12 +26,6 @@ static int write_nothing(struct txn *txn)
 	return 0;
 }
 
-static int read_arg(struct txn *txn)
-{
-	txn->number[0] = txn->property->arg;
-	return 0;
-}
-
 static int read_pid(struct txn *txn)
 {
 	txn->number[0] = getpid();
@@ -45,7 +40,7 @@ static int read_buses(struct txn *txn)
 
 static int read_version(struct txn *txn)
 {
-	return virtual_put(txn, OWSD_VERSION);
+	return property_text(txn, OWSD_VERSION);
 }
 
 static int read_empty(struct txn *txn)
@@ -88,7 +83,7 @@ static int read_single(struct txn *txn)
 	if (!onewire_rom_valid(rom))
 		return 0;
 	rom_print(rom, ROM_F_I_C, name);
-	return virtual_put(txn, name);
+	return property_text(txn, name);
 }
 
 static int read_name(struct txn *txn)
@@ -99,12 +94,12 @@ static int read_name(struct txn *txn)
 	snprintf(name, sizeof(name), "%s%s",
 	         txn->native->master->ops->simulated ? "Simulated-" : "",
 	         txn->link ? txn->link->ops->name : "");
-	return virtual_put(txn, name);
+	return property_text(txn, name);
 }
 
 static int read_address(struct txn *txn)
 {
-	return virtual_put(txn, txn->native->where);
+	return property_text(txn, txn->native->where);
 }
 
 static int read_elapsed(struct txn *txn)
@@ -124,36 +119,27 @@ static int read_cost(struct txn *txn)
 	if (txn->link && txn->link->ops->cost)
 		txn->link->ops->cost(txn->link, &cost);
 	if (txn->property->arg == RESETS)
-		return virtual_count(txn, cost.resets);
-	txn->number[0] = (double)cost.wire_ns / 1e9;
+		txn->number[0] = (double)(uint32_t)cost.resets;
+	else
+		txn->number[0] = (double)cost.wire_ns / 1e9;
 	return 0;
 }
 
-enum { ERRORS, SHORTS, CHECKSUMS, TRANSACTIONS };
-
+/* arg: where the count stands in struct channel. */
 static int read_channel(struct txn *txn)
 {
-	const struct channel *channel = &txn->native->channel[txn->channel];
-	const uint64_t values[] = {
-		[ERRORS] = channel->errors,
-		[SHORTS] = channel->shorts,
-		[CHECKSUMS] = channel->checksums,
-		[TRANSACTIONS] = channel->transactions,
-	};
+	uint64_t count;
 
-	return virtual_count(txn, values[txn->property->arg]);
-}
-
-/* Of the master, which all its channels share. */
-static int read_count(struct txn *txn)
-{
-	return virtual_count(txn, txn->native->count[txn->property->arg]);
+	memcpy(&count, (const char *)&txn->native->channel[txn->channel] + txn->property->arg,
+	       sizeof(count));
+	txn->number[0] = (double)(uint32_t)count;
+	return 0;
 }
 
 /* The ways in which all three tables answer: index of how[]. */
 enum {
 	WAY_ADDRESS = 1,
-	WAY_ZERO,
+	WAY_ARG,
 	WAY_NAME,
 	WAY_COST,
 	WAY_ELAPSED,
@@ -163,7 +149,6 @@ enum {
 	WAY_PRESENT,
 	WAY_SINGLE,
 	WAY_NOTHING,
-	WAY_ARG,
 	WAY_VERSION,
 	WAY_BUSES,
 	WAY_PID,
@@ -171,45 +156,48 @@ enum {
 };
 static const struct property_how how[] = {
 	[WAY_ADDRESS] = {.read = read_address},
-	[WAY_ZERO] = {.read = virtual_zero},
+	[WAY_ARG] = {.read = virtual_arg},
 	[WAY_NAME] = {.read = read_name},
 	[WAY_COST] = {.read = read_cost},
 	[WAY_ELAPSED] = {.read = read_elapsed},
 	[WAY_CHANNEL] = {.read = read_channel},
-	[WAY_COUNT] = {.read = read_count},
+	[WAY_COUNT] = {.read = virtual_count},
 	[WAY_SIMULTANEOUS] = {.read = read_simultaneous},
 	[WAY_PRESENT] = {.read = read_present},
 	[WAY_SINGLE] = {.read = read_single},
-	[WAY_NOTHING] = {.read = virtual_zero, .write = write_nothing},
-	[WAY_ARG] = {.read = read_arg},
+	[WAY_NOTHING] = {.read = virtual_arg, .write = write_nothing},
 	[WAY_VERSION] = {.read = read_version},
 	[WAY_BUSES] = {.read = read_buses},
 	[WAY_PID] = {.read = read_pid},
 	[WAY_EMPTY] = {.read = read_empty},
 };
 
+#define CHANNEL(text, member) VIRTUAL_NUMBER(text, WAY_CHANNEL, offsetof(struct channel, member))
+
 static const struct property interface[] = {
 	PROPERTY_DIR("settings"),
 	VIRTUAL_TEXT("settings/address", 512, WAY_ADDRESS),
-	VIRTUAL("settings/ds2404_found", PROPERTY_YESNO, LIFE_STATIC, ACCESS_READ, 0, WAY_ZERO),
+	VIRTUAL("settings/ds2404_found", PROPERTY_YESNO, LIFE_STATIC, ACCESS_READ, 0, WAY_ARG),
 	VIRTUAL_TEXT("settings/name", 128, WAY_NAME),
-	VIRTUAL("settings/overdrive", PROPERTY_YESNO, LIFE_STATIC, ACCESS_READ, 0, WAY_ZERO),
-	VIRTUAL("settings/version", PROPERTY_UNSIGNED, LIFE_STATIC, ACCESS_READ, 0, WAY_ZERO),
+	VIRTUAL("settings/overdrive", PROPERTY_YESNO, LIFE_STATIC, ACCESS_READ, 0, WAY_ARG),
+	VIRTUAL("settings/version", PROPERTY_UNSIGNED, LIFE_STATIC, ACCESS_READ, 0, WAY_ARG),
 	PROPERTY_DIR("statistics"),
 	VIRTUAL("statistics/bus_time", PROPERTY_FLOAT, LIFE_VOLATILE, ACCESS_READ, WIRE_TIME,
                 WAY_COST),
 	VIRTUAL_NUMBER("statistics/elapsed_time", WAY_ELAPSED, 0),
-	VIRTUAL_NUMBER("statistics/errors", WAY_CHANNEL, ERRORS),
-	VIRTUAL_NUMBER("statistics/locks", WAY_CHANNEL, TRANSACTIONS),
+	CHANNEL("statistics/errors", errors),
+	CHANNEL("statistics/locks", transactions),
 	PROPERTY_DIR("statistics/overdrive"),
-	VIRTUAL_NUMBER("statistics/overdrive/attempts", WAY_ZERO, 0),
-	VIRTUAL_NUMBER("statistics/overdrive/failures", WAY_ZERO, 0),
-	VIRTUAL_NUMBER("statistics/read_errors", WAY_CHANNEL, CHECKSUMS),
-	VIRTUAL_NUMBER("statistics/reconnects", WAY_COUNT, COUNT_REOPENS),
+	VIRTUAL_NUMBER("statistics/overdrive/attempts", WAY_ARG, 0),
+	VIRTUAL_NUMBER("statistics/overdrive/failures", WAY_ARG, 0),
+	CHANNEL("statistics/read_errors", checksums),
+	VIRTUAL_NUMBER("statistics/reconnects", WAY_COUNT,
+                       offsetof(struct native, count[COUNT_REOPENS])),
 	VIRTUAL_NUMBER("statistics/resets", WAY_COST, RESETS),
-	VIRTUAL_NUMBER("statistics/shorts", WAY_CHANNEL, SHORTS),
-	VIRTUAL_NUMBER("statistics/timeouts", WAY_COUNT, COUNT_CHIP_RESETS),
-	VIRTUAL_NUMBER("statistics/unlocks", WAY_CHANNEL, TRANSACTIONS),
+	CHANNEL("statistics/shorts", shorts),
+	VIRTUAL_NUMBER("statistics/timeouts", WAY_COUNT,
+                       offsetof(struct native, count[COUNT_CHIP_RESETS])),
+	CHANNEL("statistics/unlocks", transactions),
 };
 
 #define CONVERTS(text, which) \
@@ -243,7 +231,7 @@ static const struct property systems[] = {
 	DRIVES("configuration/zeroconf", 0),
 	PROPERTY_DIR("connections"),
 	VIRTUAL_NUMBER("connections/count_current_buses", WAY_BUSES, 0),
-	VIRTUAL_NUMBER("connections/count_outbound_connections", WAY_ZERO, 0),
+	VIRTUAL_NUMBER("connections/count_outbound_connections", WAY_ARG, 0),
 	PROPERTY_DIR("process"),
 	VIRTUAL_NUMBER("process/pid", WAY_PID, 0),
 	VIRTUAL_TEXT("process/pidfile", 128, WAY_EMPTY),

@@ -1,29 +1,21 @@
 /* SPDX-License-Identifier: MIT */
 /* What the functions of properties without a device have in common. */
-#include <errno.h>
 #include <string.h>
 
 #include "hal/native/virtual.h"
 
-int virtual_put(struct txn *txn, const char *text)
+int virtual_arg(struct txn *txn)
 {
-	size_t len = strlen(text);
-
-	if (len > txn->room)
-		return -EMSGSIZE;
-	memcpy(txn->data, text, len);
-	txn->len = len;
+	txn->number[0] = txn->property->arg;
 	return 0;
 }
 
-int virtual_zero(struct txn *txn)
+int virtual_count(struct txn *txn)
 {
-	txn->number[0] = 0;
-	return 0;
-}
+	size_t at = (size_t)txn->property->arg + (size_t)txn->element * sizeof(uint64_t);
+	uint64_t count;
 
-int virtual_count(struct txn *txn, uint64_t count)
-{
+	memcpy(&count, (const char *)txn->native + at, sizeof(count));
 	txn->number[0] = (double)(uint32_t)count;
 	return 0;
 }

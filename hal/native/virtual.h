@@ -4,10 +4,13 @@
 
 #include "hal/chips/family.h"
 
-int virtual_put(struct txn *txn, const char *text);
-int virtual_zero(struct txn *txn);
-/* A count modulo 2^32, as the text of an unsigned has it. */
-int virtual_count(struct txn *txn, uint64_t count);
+/* arg is the value. */
+int virtual_arg(struct txn *txn);
+/*
+ * arg is where a count stands (uint64_t) in struct native, or the first one of an array. Its value
+ * modulo 2^32, as the text of an unsigned has it.
+ */
+int virtual_count(struct txn *txn);
 
 /* NOLINTBEGIN(bugprone-macro-parentheses): a string in parentheses fills no array */
 /* clang-format off */
