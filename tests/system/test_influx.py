@@ -24,7 +24,7 @@ from owsdtest import BUILD, SOURCE, free_port, logged, raw, until
 
 INFLUX, RECORDER = BUILD / "owsd-influx", BUILD / "owsd-recorder"
 SENSOR, RELAY = "/28.A0B1C2000001", "/29.A0B1C2000004"
-LINE = re.compile(r"^(\w+),instance=(\w+),signal=(\w+)(?:,unit=(\S+))? (\S+|text=\".*\",\S+) (\d+)$")
+LINE = re.compile(r"^(\w+),identity=[^ ,]+,instance=(\w+),signal=(\w+)(?:,unit=(\S+))? (\S+|text=\".*\",\S+) (\d+)$")
 DIRECT = {"no_proxy": "*"}  # whatever this machine's environment says
 VICTORIA = BUILD / "victoria"
 
@@ -293,7 +293,7 @@ def test_lines_that_the_server_refuses_are_shown_and_counted_and_the_others_go_o
 
 
 def test_a_server_that_takes_little_at_once_gets_smaller_batches(scene):
-    with Server(answer="drop", most=100) as server:
+    with Server(answer="drop", most=150) as server:
         daemon = scene.owsd(text(scene, server.url))
         face = push(scene, daemon)
         logged(face, "is lost")

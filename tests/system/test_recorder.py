@@ -222,7 +222,7 @@ def test_trend_draws_and_lists_what_was_recorded(scene):
     assert [r["value"] for r in records if r.get("quality") == "good"] == [1, 2, 9], records
     assert records[-1]["value"] is None and records[-1]["reason"] == "recorder stopped", records
     points = scene.owsctl(daemon, *trend, "--influx", "relays", "room").stdout.splitlines()
-    room = [re.fullmatch(rf"ows,instance={daemon.name},signal=room,unit=°C value=21\.5 \d{{19}}", p)
+    room = [re.fullmatch(rf"ows,identity={SENSOR}/temperature,instance={daemon.name},signal=room,unit=°C value=21\.5 \d{{19}}", p)
             for p in points[3:]]
     assert [p.split()[1] for p in points[:3]] == ["value=1", "value=2", "value=9"] and all(room)
     assert len(room) == 1, points

@@ -95,7 +95,8 @@ int points_make(struct points *points, struct ows *ows, const char *measurement,
 	points->count = count;
 	for (int i = 0; i < count && !err; i++) {
 		ows_info(ows, i, &info);
-		if (!influx_series(measurement, instance, info.name, info.unit, series)) {
+		if (!influx_series(measurement, info.identity, instance, info.name, info.unit,
+		                   series)) {
 			points->left_out++;
 			continue;
 		}

@@ -46,12 +46,13 @@ static char *put_tag(char *at, const char *last, const char *key, const char *te
 	return at;
 }
 
-bool influx_series(const char *measurement, const char *instance, const char *signal,
-                   const char *unit, char series[INFLUX_SERIES])
+bool influx_series(const char *measurement, const char *identity, const char *instance,
+                   const char *signal, const char *unit, char series[INFLUX_SERIES])
 {
 	const char *last = &series[INFLUX_SERIES - 1];
 	char *at = influx_put(series, last, measurement);
 
+	at = put_tag(at, last, ",identity=", identity);
 	at = put_tag(at, last, ",instance=", instance);
 	at = put_tag(at, last, ",signal=", signal);
 	return put_tag(at, last, ",unit=", unit) && is_tag(signal);

@@ -4,7 +4,7 @@
  * of its documentation ("Line protocol"): comma, blank and equals sign are escaped in tags, quote
  * and backslash in texts; a line ends with a line feed, so none can be in it. Pure.
  *
- *     ows,instance=OWS,signal=room1,unit=°C value=21.5 1700000000000000000
+ *     ows,identity=/28.FF01/power,instance=OWS,signal=a,unit=V value=21.5 1700000000000000000
  */
 #pragma once
 
@@ -23,8 +23,8 @@
  * control character; a backslash, which would take the next one with it), is left out. measurement
  * has nothing to be escaped. false: it does not fit, or there is no tag `signal`.
  */
-bool influx_series(const char *measurement, const char *instance, const char *signal,
-                   const char *unit, char series[INFLUX_SERIES]);
+bool influx_series(const char *measurement, const char *identity, const char *instance,
+                   const char *signal, const char *unit, char series[INFLUX_SERIES]);
 
 /*
  * The fields of a good value: `value`, a float for each type of number, as a field has one type in

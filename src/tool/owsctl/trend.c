@@ -205,8 +205,8 @@ static int trend_list(struct trend *t, int signal, const struct ows_history_sign
 	char series[INFLUX_SERIES];
 	int err;
 
-	if (t->influx &&
-	    !influx_series(INFLUX_MEASUREMENT, t->ctl->instance, known->name, known->unit, series))
+	if (t->influx && !influx_series(INFLUX_MEASUREMENT, known->identity, t->ctl->instance,
+	                                known->name, known->unit, series))
 		return ctl_fail("%s cannot be a tag of InfluxDB", known->name);
 	if (t->ctl->json) {
 		json_object(&t->json, NULL);

@@ -11,7 +11,7 @@
 #include "tests/unit/aid/instance.h"
 
 #define S INSTANCE_S
-#define SERIES "ows,instance=OWS,signal="
+#define LINE(property) "ows,identity=/28.1/" property ",instance=OWS,signal="
 
 static const struct instance_signal signals[] = {
 	{"room", "/28.1/temperature", OWS_DOUBLE, false, 0},
@@ -64,14 +64,15 @@ static void test_a_value_is_sent_once_with_the_time_of_its_measurement(void)
 {
 	instance_put_double(&in, ROOM + 1, 21.5, now_ns - 7);
 	instance_put_text(&in, TITLE + 1, "a \"b\"", now_ns - 5);
-	TEST_ASSERT_EQUAL_STRING(SERIES "room value=21.5,quality=192i -7\n" SERIES
-	                                "title text=\"a \\\"b\\\"\",quality=192i -5\n",
+	TEST_ASSERT_EQUAL_STRING(LINE("temperature") "room value=21.5,quality=192i -7\n" LINE(
+					 "type") "title text=\"a \\\"b\\\"\",quality=192i -5\n",
 	                         changes(-1));
 	TEST_ASSERT_EQUAL_STRING("", changes(-1));
 	instance_put_double(&in, ROOM + 1, 21.5, now_ns - 3);
 	TEST_ASSERT_EQUAL_STRING("", changes(ROOM));
 	instance_put_double(&in, ROOM + 1, 22, now_ns - 2);
-	TEST_ASSERT_EQUAL_STRING(SERIES "room value=22,quality=192i -2\n", changes(ROOM));
+	TEST_ASSERT_EQUAL_STRING(LINE("temperature") "room value=22,quality=192i -2\n",
+	                         changes(ROOM));
 	TEST_ASSERT_EQUAL_STRING("", changes(COUNT));
 	TEST_ASSERT_EQUAL_INT(1, points.left_out);
 }
@@ -81,8 +82,9 @@ static void test_what_is_not_good_has_its_quality_alone(void)
 	struct ows_value v = {.type = OWS_DOUBLE, .number = 85, .quality = OWS_Q_SENSOR};
 	char fields[64];
 
-	TEST_ASSERT_EQUAL_STRING(SERIES "room quality=0i 0\n" SERIES "title quality=0i 0\n",
-	                         changes(-1));
+	TEST_ASSERT_EQUAL_STRING(
+		LINE("temperature") "room quality=0i 0\n" LINE("type") "title quality=0i 0\n",
+		changes(-1));
 	points_fields(&v, "", fields, sizeof(fields));
 	TEST_ASSERT_EQUAL_STRING("quality=16i", fields);
 	v.quality = OWS_Q_GOOD;
@@ -124,20 +126,21 @@ static void test_a_lost_owsd_makes_each_signal_bad_once(void)
 	instance_put_double(&in, ROOM + 1, 21.5, now_ns);
 	changes(-1);
 	points_lost(&points, &pending, now_ns + 5);
-	TEST_ASSERT_EQUAL_STRING(SERIES "room quality=26i 5\n" SERIES "title quality=26i 5\n",
-	                         waits(now_ns));
+	TEST_ASSERT_EQUAL_STRING(
+		LINE("temperature") "room quality=26i 5\n" LINE("type") "title quality=26i 5\n",
+		waits(now_ns));
 	points_lost(&points, &pending, now_ns + 6);
 	TEST_ASSERT_EQUAL_STRING("", waits(now_ns));
 	/* known again since now, though measured before: else the lost one would be the newest */
-	TEST_ASSERT_EQUAL_STRING(SERIES "room value=21.5,quality=192i 6\n" SERIES
-	                                "title quality=0i 6\n",
+	TEST_ASSERT_EQUAL_STRING(LINE("temperature") "room value=21.5,quality=192i 6\n" LINE(
+					 "type") "title quality=0i 6\n",
 	                         changes(-1));
 	/* nor does a time go back over a new image */
 	TEST_ASSERT_EQUAL_INT(0, points_make(&points, ows, "ows", "OWS", &pending, now_ns));
 	points_lost(&points, &pending, now_ns + 7);
 	TEST_ASSERT_EQUAL_STRING("", waits(now_ns));
-	TEST_ASSERT_EQUAL_STRING(SERIES "room value=21.5,quality=192i 7\n" SERIES
-	                                "title quality=0i 7\n",
+	TEST_ASSERT_EQUAL_STRING(LINE("temperature") "room value=21.5,quality=192i 7\n" LINE(
+					 "type") "title quality=0i 7\n",
 	                         changes(-1));
 }
 

@@ -354,7 +354,7 @@ static void test_good_values_are_points_of_the_line_protocol(void)
 	caught_ctl.instance = "a=b, c";
 	TEST_ASSERT_EQUAL(CTL_DONE, trend("--influx room1 pump steps label"));
 	TEST_ASSERT_EQUAL(6, times("\n"));
-	has_point("ows,instance=a\\=b\\,\\ c,signal=room1,unit=°C value=-21.125 ");
+	has_point("ows,identity=room1,instance=a\\=b\\,\\ c,signal=room1,unit=°C value=-21.125 ");
 	has_point("signal=room1,unit=°C value=1e-07 ");
 	has_point("signal=pump value=1 ");
 	has_point("signal=steps value=9007199254740993,integer=9007199254740993i ");

@@ -26,19 +26,20 @@ static void test_a_tag_that_no_line_can_have_is_left_out(void)
 {
 	char series[INFLUX_SERIES], name[INFLUX_SERIES];
 
-	TEST_ASSERT_TRUE(influx_series("ows", "a=b, c", "a", "°C", series));
-	TEST_ASSERT_EQUAL_STRING("ows,instance=a\\=b\\,\\ c,signal=a,unit=°C", series);
-	TEST_ASSERT_TRUE(influx_series("ows", "OWS", "a", "m\\", series));
+	TEST_ASSERT_TRUE(influx_series("ows", "/28/t=", "a=b, c", "a", "°C", series));
+	TEST_ASSERT_EQUAL_STRING("ows,identity=/28/t\\=,instance=a\\=b\\,\\ c,signal=a,unit=°C",
+	                         series);
+	TEST_ASSERT_TRUE(influx_series("ows", "", "OWS", "a", "m\\", series));
 	TEST_ASSERT_EQUAL_STRING("ows,instance=OWS,signal=a", series);
-	TEST_ASSERT_TRUE(influx_series("house", "x\ny", "a", "m s", series));
+	TEST_ASSERT_TRUE(influx_series("house", "", "x\ny", "a", "m s", series));
 	TEST_ASSERT_EQUAL_STRING("house,signal=a,unit=m\\ s", series);
-	TEST_ASSERT_FALSE(influx_series("ows", "OWS", "a\nb", "", series));
-	TEST_ASSERT_FALSE(influx_series("ows", "OWS", "", "", series));
+	TEST_ASSERT_FALSE(influx_series("ows", "", "OWS", "a\nb", "", series));
+	TEST_ASSERT_FALSE(influx_series("ows", "", "OWS", "", "", series));
 	memset(name, 'n', sizeof(name));
 	name[INFLUX_SERIES - 13] = '\0'; /* one more than fits behind "ows,signal=" */
-	TEST_ASSERT_FALSE(influx_series("ows", "", name, "x", series));
+	TEST_ASSERT_FALSE(influx_series("ows", "", "", name, "x", series));
 	name[INFLUX_SERIES - 12 - 7] = '\0';
-	TEST_ASSERT_TRUE(influx_series("ows", "", name, "x", series));
+	TEST_ASSERT_TRUE(influx_series("ows", "", "", name, "x", series));
 	TEST_ASSERT_EQUAL_size_t(INFLUX_SERIES - 1, strlen(series));
 }
 
