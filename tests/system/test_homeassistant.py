@@ -85,6 +85,16 @@ def test_it_takes_each_kind_of_entity_and_moves_outputs(scene):
     judge.act("switch.turn_on", f"switch.{BOARD}_relay")
     house.arrives("pump", lambda m: m["v"] is True)
     judge.shows(f"switch.{BOARD}_relay", "on")
+    # so is another chip in the place of the first, by Identity
+    other = {**RELAY, "Name": "pump", "Path": f"/{PORTS[3]}/PIO.0", "Identity": RELAY["Path"]}
+    house.daemon.config.write_text(house.text(*[other if i is RELAY else i for i in KINDS]))
+    house.daemon.signal(signal.SIGHUP)
+    until(lambda: json.loads(scene.owsctl(house.daemon, "--json", "list", "pump").stdout)[0]["path"] == other["Path"],
+          20, "the other chip is served")
+    for action, state, value in (("turn_off", "off", False), ("turn_on", "on", True)):
+        judge.act(f"switch.{action}", f"switch.{BOARD}_relay")
+        house.arrives("pump", lambda m, v=value: m["good"] and m["v"] is v)
+        judge.shows(f"switch.{BOARD}_relay", state)
     assert judge.states()[f"switch.{BOARD}_relay"][1] == device
     assert not [e for e in judge.states() if "pump" in e], judge.states()
     assert not judge.complaints(), "\n".join(judge.complaints())

@@ -66,14 +66,14 @@ def test_it_finds_the_device_follows_it_and_commands_it(scene):
     def notices(*lines):
         until(lambda: set(lines) <= set(judge.log().split(";\n")), 30, lambda: f"{lines}: {judge.log()}")
     with open(orders, "w", encoding="ascii") as order:
-        notices("found owsd-pi7", "28-a0b1c2000001/room=21.5")
+        notices("found owsd-pi7", "28-a0b1c2000001/temperature=21.5")
         house.set("pull", 1)
-        notices("28-a0b1c2000001/room=", "$alert/room=room: device absent")
+        notices("28-a0b1c2000001/temperature=", "$alert/room=room: device absent")
         house.set("pull", 0)
-        until(lambda: judge.log().split("=room: device absent;")[-1].count("room=21.5;"), 30, judge.log)
-        order.write("owsd-pi7 29-a0b1c2000004 relay true\n")
+        until(lambda: judge.log().split("=room: device absent;")[-1].count("temperature=21.5;"), 30, judge.log)
+        order.write("owsd-pi7 29-a0b1c2000004 pio-0 true\n")
         order.flush()
-        notices("relay boolean True", "29-a0b1c2000004/relay=true")
+        notices("pio-0 boolean True", "29-a0b1c2000004/pio-0=true")
         assert scene.get(house.daemon, "relay") == "1"
 
 

@@ -25,11 +25,24 @@ static const char *node_id(const struct row *row, char id[ENTITY_ID])
 	return id;
 }
 
+/* By the identity: a name is a label. */
+static const char *property_id(const struct row *row, char id[ENTITY_ID])
+{
+	size_t len;
+
+	topic_slug(row->property, DASH, id, ENTITY_ID);
+	len = strlen(id);
+	if (row->twice)
+		snprintf(id + len, ENTITY_ID - len, "%c%s", DASH, row->level);
+	return id;
+}
+
 static void topic_of(const struct stream *s, const struct row *row, char topic[TOPIC_SIZE])
 {
-	char id[ENTITY_ID];
+	char node[ENTITY_ID], property[ENTITY_ID];
 
-	snprintf(topic, TOPIC_SIZE, "%s/%s/%s", s->prefix, node_id(row, id), row->level);
+	snprintf(topic, TOPIC_SIZE, "%.300s/%s/%s", s->prefix, node_id(row, node),
+	         property_id(row, property));
 }
 
 /* --- The description ------------------------------------------------------------------------- */
@@ -81,8 +94,9 @@ static void put_property(struct json *json, const struct stream *s, const struct
 {
 	const struct ows_info *info = &row->info;
 	bool settable = s->write && info->output;
+	char id[ENTITY_ID];
 
-	json_object(json, row->level);
+	json_object(json, property_id(row, id));
 	json_string(json, "name", *info->description ? info->description : info->name);
 	json_string(json, "datatype", datatype(info));
 	put_format(json, info, settable);

@@ -319,7 +319,7 @@ int stream_make(struct stream *s, struct ows *h)
 		made = make_row(s, i);
 	if (made) {
 		qsort(s->by_chip, (size_t)count, sizeof(struct row *), by_chip);
-		made = make_topics(s) && make_chips(s);
+		made = make_chips(s) && make_topics(s);
 	}
 	for (int i = 0; made && i < old.chip_count; i++) {
 		struct chip *chip = stream_chip(s, old.chips[i].id);

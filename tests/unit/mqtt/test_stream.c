@@ -11,8 +11,8 @@
 #define S INSTANCE_S
 
 static const struct instance_signal signals[] = {
-	{"room", "/28.1/temperature", OWS_DOUBLE, false, 4 * S, "28.000000000001"},
-	{"title", "/29.1/type", OWS_STRING, false, 0, "29.000000000001"},
+	{"room", "/28.000000000001/temperature", OWS_DOUBLE, false, 4 * S, "28.000000000001"},
+	{"title", "/29.000000000001/type", OWS_STRING, false, 0, "29.000000000001"},
 };
 enum { ROOM, TITLE, COUNT };
 
@@ -306,19 +306,19 @@ static void test_homie_has_no_value_that_is_bad_and_an_alert_instead(void)
 	TEST_ASSERT_EQUAL_STRING_LEN("homie/5/owsd-pi/$state init\n"
 	                             "homie/5/owsd-pi/$description {\"homie\":\"5.0\",",
 	                             said, 72);
-	TEST_ASSERT_NOT_NULL(strstr(said, "/28-000000000001/room 1e20\n"
+	TEST_ASSERT_NOT_NULL(strstr(said, "/28-000000000001/temperature 1e20\n"
 	                                  "homie/5/owsd-pi/$alert/room \n"));
-	TEST_ASSERT_NOT_NULL(strstr(said, "/29-000000000001/title "));
+	TEST_ASSERT_NOT_NULL(strstr(said, "/29-000000000001/type "));
 	TEST_ASSERT_EQUAL_STRING("homie/5/owsd-pi/$state ready\n",
 	                         strstr(said, "homie/5/owsd-pi/$state r"));
 	instance_put_double(&in, ROOM + 1, 85, ows_now() - 10 * S);
 	stream_changes(&s, &signal, 1);
-	TEST_ASSERT_EQUAL_STRING("homie/5/owsd-pi/28-000000000001/room \n"
+	TEST_ASSERT_EQUAL_STRING("homie/5/owsd-pi/28-000000000001/temperature \n"
 	                         "homie/5/owsd-pi/$alert/room room: stale\n",
 	                         pump());
 	instance_put_double(&in, ROOM + 1, 21, ows_now());
 	stream_changes(&s, &signal, 1);
-	TEST_ASSERT_EQUAL_STRING("homie/5/owsd-pi/28-000000000001/room 21\n"
+	TEST_ASSERT_EQUAL_STRING("homie/5/owsd-pi/28-000000000001/temperature 21\n"
 	                         "homie/5/owsd-pi/$alert/room \n",
 	                         pump());
 }
@@ -392,7 +392,7 @@ static void test_a_simulated_value_is_no_value_of_a_plant_in_any_profile(void)
 	in.detail = 0;
 	instance_put_double(&in, ROOM + 1, 21, ows_now());
 	stream_changes(&s, &signal, 1);
-	TEST_ASSERT_EQUAL_STRING("homie/5/owsd-pi/28-000000000001/room 21\n"
+	TEST_ASSERT_EQUAL_STRING("homie/5/owsd-pi/28-000000000001/temperature 21\n"
 	                         "homie/5/owsd-pi/$alert/room \n",
 	                         pump());
 
