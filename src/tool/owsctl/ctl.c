@@ -117,33 +117,9 @@ static const struct option *longs_of(const char *options)
 	return had;
 }
 
-#define SCREEN 80
-/* A line that is continued with an indentation where it is too wide for the screen. */
-static void print_wrapped(FILE *out, const char *line)
-{
-	size_t room = SCREEN;
-
-	while (strlen(line) > room) {
-		size_t at = room;
-
-		while (at && line[at] != ' ')
-			at--;
-		if (!at)
-			break;
-		fprintf(out, "%.*s\n         ", (int)at, line);
-		line += at + 1;
-		room = SCREEN - 9;
-	}
-	fprintf(out, "%s\n", line);
-}
-
 void ctl_help(const struct verb *verb, FILE *out)
 {
-	char line[256];
-
-	snprintf(line, sizeof(line), "usage: owsctl %s%s%s", verb->name, *verb->usage ? " " : "",
-	         verb->usage);
-	print_wrapped(out, line);
+	fprintf(out, "usage: owsctl %s%s%s\n", verb->name, *verb->usage ? " " : "", verb->usage);
 	fprintf(out, "%s\n%s", verb->brief, verb->options ? verb->options : "");
 	if (verb->example)
 		fprintf(out, "example: owsctl %s\n", verb->example);

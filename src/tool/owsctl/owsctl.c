@@ -86,7 +86,7 @@ static const struct verb verbs[] = {
          .example = "instances"},
 	{"remove", "NAME...", "remove the files of an instance that has ended", verb_remove,
          .example = "remove demo-sim"},
-	{"config", "FILE list | show | add | set | rename | unset | remove | move ...",
+	{"config", "FILE list|show|add|set|rename|unset|remove|move ...",
          "look at a configuration and edit it", verb_config,
          .options =
                  "  list [PATTERN...]                     a table of the items\n"
@@ -110,8 +110,7 @@ static const struct verb verbs[] = {
 	{"write", "[-t TARGET] [-w SECONDS] PATH VALUE", "write a property of a device", verb_write,
          .options = TARGET_OPTIONS, .example = "write /29.B89115000000/PIO.0 1", .opens = true,
          .writes = true},
-	{"scan",
-         "[-t TARGET] [-w SECONDS] [--alias FILE] [--rio [-i] [--bits] [--merge FILE [--replace OLD=NEW]...]]",
+	{"scan", "[-t TARGET] [-w SECONDS] [--alias FILE] [--rio [OPTION]...]",
          "list the devices, or print a configuration for them", verb_scan,
          .options = TARGET_OPTIONS
          "  --alias FILE       names from an alias file of OWFS\n"
