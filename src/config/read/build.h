@@ -14,7 +14,6 @@ struct config_box {
 };
 
 struct option_value;
-struct rio_node;
 
 struct build {
 	struct config_box *box;
@@ -35,5 +34,4 @@ void *build_take(struct build *build, size_t count, size_t size);
 bool build_part(const char **text, const char *separators, const char **part, size_t *len);
 
 /* What follows from several keys of a block, when each key by itself has been taken. */
-typedef void block_derive(struct build *build, const struct rio_node *block,
-                          const struct option_value *values);
+typedef void block_derive(struct build *build, const struct option_value *values);

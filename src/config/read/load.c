@@ -104,7 +104,7 @@ static void build_block(struct build *build, const struct option_def *def,
 
 	options_read(build, block, def->inside, values, (char *)&build->box->config + def->offset);
 	if (derive[def->inside])
-		derive[def->inside](build, block, values);
+		derive[def->inside](build, values);
 }
 
 static struct place name_place(const struct rio_node *block)

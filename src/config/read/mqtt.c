@@ -78,46 +78,46 @@ static bool is_local(const char *host)
 	return !strcmp(host, "localhost") || !strncmp(host, "127.", 4) || !strcmp(host, "::1");
 }
 
-/* Keys that need each other. */
-static void check_together(struct build *build, const struct rio_node *block,
+/* Keys that need each other. What is not so by default is given, and has a place. */
+static void check_together(struct build *build, const struct option_value *values,
                            const struct config_mqtt *mqtt)
 {
-	bool tls = false;
+	struct config_report *report = build->report;
+	bool sparkplug = !strcmp(mqtt->profile, "sparkplug"), tls = false;
+	enum option pair = mqtt->cert_file ? OPT_MQTT_CERT_FILE : OPT_MQTT_KEY_FILE;
+	enum option certificate = mqtt->ca_file ? OPT_MQTT_CA_FILE : OPT_MQTT_CERT_FILE;
 
 	for (unsigned i = 0; i < mqtt->way_count; i++)
 		tls = tls || mqtt->ways[i].tls;
-	if (!strcmp(mqtt->profile, "sparkplug") && strchr(mqtt->topic, '/'))
-		report_error(build->report, block->at,
+	if (sparkplug && strchr(mqtt->topic, '/'))
+		report_error(report, values[OPT_MQTT_TOPIC].node->value_at,
 		             "Topic \"%s\": the group of Sparkplug has no '/'", mqtt->topic);
-	if (!strcmp(mqtt->profile, "sparkplug") && !strcmp(mqtt->topic, "STATE"))
+	if (sparkplug && !strcmp(mqtt->topic, "STATE"))
 		report_error(
-			build->report, block->at,
+			report, values[OPT_MQTT_TOPIC].node->value_at,
 			"Topic \"STATE\": Sparkplug keeps this name for hosts; take another one");
-	if (mqtt->primary_host && strcmp(mqtt->profile, "sparkplug") != 0)
-		report_warning(build->report, block->at,
+	if (mqtt->primary_host && !sparkplug)
+		report_warning(report, values[OPT_MQTT_PRIMARY_HOST].node->at,
 		               "PrimaryHost is of the profile sparkplug alone: it is not used");
 	if (!mqtt->cert_file != !mqtt->key_file)
-		report_error(build->report, block->at, "%s: CertFile and KeyFile belong together",
-		             mqtt->cert_file ? "CertFile without KeyFile"
-		                             : "KeyFile without CertFile");
+		report_error(
+			report, values[pair].node->at, "%s: CertFile and KeyFile belong together",
+			mqtt->cert_file ? "CertFile without KeyFile" : "KeyFile without CertFile");
 	if ((mqtt->ca_file || mqtt->cert_file) && !tls && mqtt->way_count)
-		report_warning(build->report, block->at,
+		report_warning(report, values[certificate].node->at,
 		               "no way of Broker is mqtts://: the certificates are not used");
 	for (unsigned i = 0; mqtt->password_file && i < mqtt->way_count; i++)
 		if (!mqtt->ways[i].tls && !is_local(mqtt->ways[i].host))
-			report_warning(build->report, block->at,
+			report_warning(report, values[OPT_MQTT_PASSWORD_FILE].node->at,
 			               "the password goes to %s in the clear: mqtts:// hides it",
 			               mqtt->ways[i].host);
 }
 
-void mqtt_derive(struct build *build, const struct rio_node *block,
-                 const struct option_value *values)
+void mqtt_derive(struct build *build, const struct option_value *values)
 {
 	struct config_mqtt *mqtt = &build->box->config.mqtt;
-	const struct rio_node *broker = values[OPT_MQTT_BROKER].node;
 
-	take_ways(build, broker ? broker : block, mqtt);
+	take_ways(build, values[OPT_MQTT_BROKER].node, mqtt);
 	mqtt->mqtt5 = !strcmp(mqtt->protocol, "5");
-	if (block)
-		check_together(build, block, mqtt);
+	check_together(build, values, mqtt);
 }

@@ -118,12 +118,10 @@ static bool take_record(struct build *build, const struct option_value *value,
 	return false;
 }
 
-void recorder_derive(struct build *build, const struct rio_node *block,
-                     const struct option_value *values)
+void recorder_derive(struct build *build, const struct option_value *values)
 {
 	struct config_recorder *recorder = &build->box->config.recorder;
 
-	(void)block;
 	recorder->record.change = true;
 	if (values[OPT_RECORDER_RECORD].given)
 		take_record(build, &values[OPT_RECORDER_RECORD], &recorder->record);

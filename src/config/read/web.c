@@ -33,12 +33,10 @@ static void take_proxy(struct build *build, const struct option_value *value,
 		               "Proxy: there is no user %s here", web->proxy);
 }
 
-void web_derive(struct build *build, const struct rio_node *block,
-                const struct option_value *values)
+void web_derive(struct build *build, const struct option_value *values)
 {
 	struct config_web *web = &build->box->config.web;
 
-	(void)block;
 	if (web->listen)
 		serve_addresses(build, web->listen, values[OPT_WEB_LISTEN].node->value_at,
 		                web->addresses, &web->address_count);

@@ -116,7 +116,7 @@ static void test_what_cannot_be_is_an_error_at_its_place(void)
 	         "f:2:15: error: Broker: no password stands in it: User and PasswordFile are keys "
 	         "of their own\n"},
 		{"Mqtt { Broker \"mqtts://a\" KeyFile k }",
-	         "f:2:1: error: KeyFile without CertFile: CertFile and KeyFile belong together\n"},
+	         "f:2:27: error: KeyFile without CertFile: CertFile and KeyFile belong together\n"},
 		{"Mqtt { Protocol 4 }", "f:2:17: error: Protocol \"4\": expected 5 or 3.1.1\n"},
 		{"Mqtt { Node \"a/b\" }", "f:2:13: error: Node \"a/b\": expected letters, digits, "
 	                                  "'-', '_' and '.', at most 63\n"},
@@ -130,9 +130,9 @@ static void test_what_cannot_be_is_an_error_at_its_place(void)
 	         "sparkplug homie5 wirenboard\n"},
 #ifdef OWSD_PROTOBUFC
 		{"Mqtt { Profile sparkplug Topic a/b }",
-	         "f:2:1: error: Topic \"a/b\": the group of Sparkplug has no '/'\n"},
+	         "f:2:32: error: Topic \"a/b\": the group of Sparkplug has no '/'\n"},
 		{"Mqtt { Profile sparkplug Topic STATE }",
-	         "f:2:1: error: Topic \"STATE\": Sparkplug keeps this name for hosts; take "
+	         "f:2:32: error: Topic \"STATE\": Sparkplug keeps this name for hosts; take "
 	         "another one\n"},
 #else
 		{"Mqtt { Profile sparkplug }",
@@ -148,10 +148,10 @@ static void test_a_password_in_the_clear_and_idle_keys_are_warnings(void)
 {
 	static const struct line blocks[] = {
 		{"Mqtt { Broker \"mqtt://a.example\" User u PasswordFile p }",
-	         "f:2:1: warning: the password goes to a.example in the clear: mqtts:// hides it\n"},
-		{"Mqtt { CaFile \"/ca\" }", "f:2:1: warning: no way of Broker is mqtts://: the "
+	         "f:2:41: warning: the password goes to a.example in the clear: mqtts:// hides it\n"},
+		{"Mqtt { CaFile \"/ca\" }", "f:2:8: warning: no way of Broker is mqtts://: the "
 	                                    "certificates are not used\n"},
-		{"Mqtt { PrimaryHost scada }", "f:2:1: warning: PrimaryHost is of the profile "
+		{"Mqtt { PrimaryHost scada }", "f:2:8: warning: PrimaryHost is of the profile "
 	                                       "sparkplug alone: it is not used\n"},
 		{"Mqtt { User u PasswordFile p }", ""},
 		{"Mqtt { PasswordFile p }", ""},
