@@ -131,6 +131,7 @@ def test_json_is_json(scene):
     _, daemon, _, _ = house(scene)
     table = json.loads(scene.owsctl(daemon, "list", "-a", "--json").stdout)
     assert [s["name"] for s in table if s["path"]] == ["room", "relay", "nobody"]
+    assert all(s["identity"] == s["path"] for s in table if s["path"])
     room = next(s for s in table if s["name"] == "room")
     assert room["value"] == 21.5 and room["good"] and 0 <= room["age"] < 300
 

@@ -531,6 +531,15 @@ def test_trends_come_from_the_recorder(scene):
         assert page.json(f"/api/trend?name=room&{wrong}", 400)["error"], wrong
     assert page.json("/api/trend", 400)["error"]
     assert "commands" in {e["journal"] for e in page.json("/api/journal")["entries"]}
+    # another name has its history at once, also before the recorder has written it
+    assert recorder.stop() == 0
+    renamed = daemon.config.read_text().replace('"relays"', '"ports"')
+    assert renamed.count('"ports"') == 1, renamed
+    daemon.config.write_text(renamed)
+    assert scene.owsctl(daemon, "reload").returncode == 0
+    until(lambda: page.ask("/api/trend?name=ports")[1] == 200, 20, "the page has seen the reload")
+    got = trend("ports")
+    assert got["name"] == "ports" and max(v for v in got["max"] if v is not None) == 9, got
 
 
 def test_writing_is_off_unless_the_block_says_write_on(scene):

@@ -21,6 +21,7 @@
 struct past_job {
 	struct job job;
 	char instance[128], directory[DIRECTORY], name[NAME];
+	char identity[2 * NAME]; /* of the signal that has the name now; else the name */
 	int64_t from_ns, until_ns;
 	int n;
 };
@@ -117,7 +118,7 @@ static void put_trend(struct past_job *past, const struct ows_history_signal *si
 	if (!json_start(&json, &past->job.text, &past->job.len))
 		return;
 	past->job.status = 200;
-	json_string(&json, "name", signal->name);
+	json_string(&json, "name", past->name);
 	json_string(&json, "unit", *signal->unit ? signal->unit : NULL);
 	json_int(&json, "until", points[past->n - 1].until_ns / NS_PER_MS);
 	for (size_t i = 0; i < sizeof(columns) / sizeof(columns[0]); i++)
@@ -128,8 +129,12 @@ static void put_trend(struct past_job *past, const struct ows_history_signal *si
 static int read_points(struct past_job *past, struct ows_history *h,
                        struct ows_history_signal *signal, struct ows_history_point *points)
 {
-	int index = ows_history_find(h, past->name);
-	int err = index < 0 ? index : ows_history_signal(h, index, signal);
+	int index = ows_history_find(h, past->identity), err;
+
+	/* of a file without identities */
+	if (index < 0)
+		index = ows_history_find(h, past->name);
+	err = index < 0 ? index : ows_history_signal(h, index, signal);
 
 	if (err)
 		return err;
@@ -161,6 +166,16 @@ static void run_trend(struct job *job)
 	free(points);
 }
 
+static const char *identity_of(struct ows *h, const char *name)
+{
+	struct ows_info info;
+
+	for (int i = 0; h && !ows_info(h, i, &info); i++)
+		if (!strcmp(info.name, name))
+			return info.identity;
+	return name;
+}
+
 int past_trend(struct request *request)
 {
 	long long now_ms = when_now().wall / NS_PER_MS, until = now_ms, from = until - DAY_MS,
@@ -183,6 +198,8 @@ int past_trend(struct request *request)
 	if (!past)
 		return http_defer(request, request->web->past, NULL);
 	snprintf(past->name, sizeof(past->name), "%s", name);
+	snprintf(past->identity, sizeof(past->identity), "%s",
+	         identity_of(request->web->face->ows, name));
 	past->from_ns = from * NS_PER_MS;
 	past->until_ns = until * NS_PER_MS;
 	past->n = (int)n;
