@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* /settings: what can be changed while the bus runs. */
 #include <errno.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -9,9 +10,7 @@
 #include "hal/native/state.h"
 #include "hal/native/virtual.h"
 
-enum { STABLE, VOLATILE, PRESENCE };
 enum { DIRECTORY, FTP, HA7, NETWORK, SERIAL, SERVER, USB, W1 };
-enum { UNCACHED, UNALIASED };
 
 static int read_scale(struct txn *txn)
 {
@@ -42,17 +41,15 @@ static int write_scale(struct txn *txn)
 	return -EINVAL;
 }
 
-static int64_t *timeout_of(struct txn *txn)
+/* arg: where it stands in struct native. */
+static void *member_of(struct txn *txn)
 {
-	struct native *native = txn->native;
-	int64_t *const values[] = {&native->stable_ns, &native->volatile_ns, &native->presence_ns};
-
-	return values[txn->property->arg];
+	return (char *)txn->native + txn->property->arg;
 }
 
 static int read_timeout(struct txn *txn)
 {
-	int64_t seconds = *timeout_of(txn) / NATIVE_S;
+	int64_t seconds = *(int64_t *)member_of(txn) / NATIVE_S;
 
 	txn->number[0] = (double)seconds;
 	return 0;
@@ -62,7 +59,7 @@ static int write_timeout(struct txn *txn)
 {
 	if (txn->number[0] > 1e6)
 		return -EINVAL;
-	*timeout_of(txn) = (int64_t)txn->number[0] * NATIVE_S;
+	*(int64_t *)member_of(txn) = (int64_t)txn->number[0] * NATIVE_S;
 	return 0;
 }
 
@@ -91,20 +88,15 @@ static int write_idle(struct txn *txn)
 	return 0;
 }
 
-static bool *flag_of(struct txn *txn)
-{
-	return txn->property->arg == UNCACHED ? &txn->native->uncached : &txn->native->unaliased;
-}
-
 static int read_flag(struct txn *txn)
 {
-	txn->number[0] = *flag_of(txn);
+	txn->number[0] = *(bool *)member_of(txn);
 	return 0;
 }
 
 static int write_flag(struct txn *txn)
 {
-	*flag_of(txn) = txn->number[0] != 0;
+	*(bool *)member_of(txn) = txn->number[0] != 0;
 	return 0;
 }
 
@@ -142,11 +134,14 @@ static const struct property_how how[] = {
 };
 
 #define TIMEOUT(text, which) \
-	VIRTUAL(text, PROPERTY_UNSIGNED, LIFE_STATIC, ACCESS_BOTH, which, WAY_TIMEOUT)
+	VIRTUAL(text, PROPERTY_UNSIGNED, LIFE_STATIC, ACCESS_BOTH, offsetof(struct native, which), \
+	        WAY_TIMEOUT)
 /* Of masters and servers that this bus has not: a client reads what it wrote, without effect. */
 #define IDLE(text, which) \
 	VIRTUAL(text, PROPERTY_UNSIGNED, LIFE_STATIC, ACCESS_BOTH, which, WAY_IDLE)
-#define FLAG(text, which) VIRTUAL(text, PROPERTY_YESNO, LIFE_STATIC, ACCESS_BOTH, which, WAY_FLAG)
+#define FLAG(text, which) \
+	VIRTUAL(text, PROPERTY_YESNO, LIFE_STATIC, ACCESS_BOTH, offsetof(struct native, which), \
+	        WAY_FLAG)
 #define SCALE(text, bytes, which) \
 	PROPERTY(text, ASCII, STATIC, BOTH, .offline = true, .size = (bytes), .arg = (which), \
 	         .how = WAY_SCALE)
@@ -154,19 +149,19 @@ static const struct property_how how[] = {
 static const struct property properties[] = {
 	PROPERTY_DIR("alias"),
 	VIRTUAL_TEXT("alias/list", UINT16_MAX, WAY_ALIASES),
-	FLAG("alias/unaliased", UNALIASED),
+	FLAG("alias/unaliased", unaliased),
 	PROPERTY_DIR("timeout"),
 	IDLE("timeout/directory", DIRECTORY),
 	IDLE("timeout/ftp", FTP),
 	IDLE("timeout/ha7", HA7),
 	IDLE("timeout/network", NETWORK),
-	TIMEOUT("timeout/presence", PRESENCE),
+	TIMEOUT("timeout/presence", presence_ns),
 	IDLE("timeout/serial", SERIAL),
 	IDLE("timeout/server", SERVER),
-	TIMEOUT("timeout/stable", STABLE),
-	FLAG("timeout/uncached", UNCACHED),
+	TIMEOUT("timeout/stable", stable_ns),
+	FLAG("timeout/uncached", uncached),
 	IDLE("timeout/usb", USB),
-	TIMEOUT("timeout/volatile", VOLATILE),
+	TIMEOUT("timeout/volatile", volatile_ns),
 	IDLE("timeout/w1", W1),
 	PROPERTY_DIR("units"),
 	SCALE("units/pressure_scale", 12, 1),

@@ -63,6 +63,6 @@ double ds1921_celsius(const struct ds1921_version *version, unsigned code);
  * mission, so it is refused (-EBUSY) while one runs.
  */
 property_function ds1921_read_temperature, ds1921_write_limit, ds1921_write_trigger;
-property_function ds1921_write_status, ds1921_write_flag, ds1921_write_date, ds1921_write_udate;
+property_function ds1921_write_status, ds1921_write_flag, ds1921_write_clock;
 property_function ds1921_clear_memory, ds1921_write_frequency, ds1921_write_running;
 property_function ds1921_write_easystart;

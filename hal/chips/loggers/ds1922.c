@@ -175,8 +175,7 @@ enum { MEMORY = 1 };
 static const struct area *const areas[] = {[MEMORY] = &ds1922_memory};
 
 enum {
-	WAY_DATE = 1,
-	WAY_UDATE,
+	WAY_CLOCK = 1,
 	WAY_STAMP,
 	WAY_FIELD,
 	WAY_RUNNING,
@@ -187,8 +186,7 @@ enum {
 	WAY_PAGE,
 };
 static const struct property_how how[] = {
-	[WAY_DATE] = {.read = logger_read_clock, .write = ds1922_write_date},
-	[WAY_UDATE] = {.read = logger_read_clock, .write = ds1922_write_udate},
+	[WAY_CLOCK] = {.read = logger_read_clock, .write = ds1922_write_clock},
 	[WAY_STAMP] = {.read = logger_read_date},
 	[WAY_FIELD] = {.write = logger_write_field},
 	[WAY_RUNNING] = {.write = ds1922_write_running},
@@ -216,9 +214,9 @@ static const struct property_how how[] = {
 
 static const struct property properties[] = {
 	PROPERTY_DIR("clock"),
-	PROPERTY("clock/date", DATE, SECOND, BOTH, .how = WAY_DATE),
+	PROPERTY("clock/date", DATE, SECOND, BOTH, .how = WAY_CLOCK),
 	BIT("clock/running", STABLE, BOTH, DS1922_OSCILLATOR, 0, WAY_FIELD),
-	PROPERTY("clock/udate", UNSIGNED, SECOND, BOTH, .how = WAY_UDATE),
+	PROPERTY("clock/udate", UNSIGNED, SECOND, BOTH, .how = WAY_CLOCK),
 	PROPERTY("humidity", FLOAT, VOLATILE, READ, PERCENT, .how = WAY_NOW,
                  .arg = DS1922_LOG_DATA),
 	OWN("log/elements", UNSIGNED, READ, .how = WAY_ELEMENTS),

@@ -60,5 +60,5 @@ double ds1922_interval_of(const uint8_t *page);
  * Conversions, settings, clock and missions (ds1922_mission.c). While a mission runs its settings
  * cannot be written (-EBUSY).
  */
-property_function ds1922_read_now, ds1922_write_page, ds1922_write_date, ds1922_write_udate;
+property_function ds1922_read_now, ds1922_write_page, ds1922_write_clock;
 property_function ds1922_write_interval, ds1922_write_running;

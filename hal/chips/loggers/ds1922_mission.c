@@ -223,14 +223,10 @@ static int do_steps(struct txn *txn, unsigned wanted)
 	return -EIO;
 }
 
-int ds1922_write_date(struct txn *txn)
+/* A date has the clock run from there on. */
+int ds1922_write_clock(struct txn *txn)
 {
-	return do_steps(txn, SETS_CLOCK | RUNS_CLOCK);
-}
-
-int ds1922_write_udate(struct txn *txn)
-{
-	return do_steps(txn, SETS_CLOCK);
+	return do_steps(txn, SETS_CLOCK | (txn->property->type == PROPERTY_DATE ? RUNS_CLOCK : 0));
 }
 
 int ds1922_write_interval(struct txn *txn)

@@ -22,7 +22,7 @@
 #define FAMILY_3B 0x3b
 #define CONFIG_ZERO 0x80 /* a bit that is 0 in every other chip with a resolution */
 #define NEAR_RAW (5 * 16)
-#define NEAR_NS (60 * 1000 * TXN_MS) /* as for an owserver: hal/owserver/guard.h */
+#define NEAR_NS (60 * 1000 * TXN_MS) /* as for an owserver: hal/owserver/judge.h */
 #define LOOKS_ONE 3
 #define LOOKS_ZERO 2
 

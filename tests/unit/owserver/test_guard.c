@@ -5,7 +5,7 @@
 
 #include "unity.h"
 
-#include "hal/owserver/guard.h"
+#include "hal/owserver/judge.h"
 
 #define S 1000000000LL
 
