@@ -125,11 +125,12 @@ static void family_sizes(const char *folder)
 	double shared[256], all_shared = 0, all_own = 0, own = 0;
 	size_t n = parts(folder, "*.o", part, 256);
 
+	n += parts(folder, "*/*.o", part + n, 256 - n);
 	for (size_t i = 0; i < n; i++) {
 		all_shared += part[i].shared;
 		all_own += part[i].own;
 	}
-	n = parts(folder, "family_*.o", part, 256);
+	n = parts(folder, "*/*.o", part, 256);
 	if (!n) {
 		bench_note("families' sizes left out: no objects of them, or no program size");
 		return;
