@@ -11,6 +11,7 @@
 
 #define NS_PER_US 1000
 #define US_PER_MS 1000
+#define US_PER_S INT64_C(1000000)
 /* After an outage of a broker a thousand nodes send again at once: 500 rows of each in a second */
 #define BATCH 256
 #define PACE_NS (500 * NS_PER_MS)
@@ -103,8 +104,8 @@ static void add_value(struct past *p, struct row *row, struct replay_row *r)
 	struct past_value *value = &p->values[p->value_count++];
 
 	*value = (struct past_value){.row = row, .wall_us = r->wall_us, .v = r->v, .text = r->text};
-	/* who keeps values by their milliseconds keeps both */
-	if (value->wall_us >= row->past_us && value->wall_us < row->past_us + US_PER_MS)
+	/* who keeps values by their milliseconds keeps all of a burst, in their order */
+	if (value->wall_us < row->past_us + US_PER_MS && value->wall_us > row->past_us - US_PER_S)
 		value->wall_us = row->past_us + US_PER_MS;
 	row->past_us = value->wall_us;
 	value->place = p->value_count;

@@ -35,6 +35,7 @@ static struct history_writer *writer;
 static char state[300], kept[320], history[300];
 static char again[2000]; /* "room=21 " of each value that goes out again */
 static int64_t wall_us;  /* of the last of them */
+static bool orderly;     /* each is a millisecond behind the one before it, at least */
 static int64_t now_ns, start_ns;
 
 /* In place of the broker's: it answers when the test says so. */
@@ -55,6 +56,7 @@ static bool send_past(struct stream *s, const struct past_value *values, int n)
 	for (int i = 0; i < n; i++, at = strlen(again)) {
 		snprintf(again + at, sizeof(again) - at, "%s=%g ", values[i].row->name,
 		         ows_good(values[i].v.quality) ? values[i].v.number : -1);
+		orderly = orderly && values[i].wall_us >= wall_us + 1000;
 		wall_us = values[i].wall_us;
 	}
 	return true;
@@ -178,6 +180,28 @@ static void test_what_was_recorded_while_the_broker_was_away_goes_out_again(void
 	again[0] = '\0';
 	pump(20);
 	TEST_ASSERT_EQUAL_STRING("", again);
+}
+
+static void test_a_burst_keeps_its_order_by_the_millisecond(void)
+{
+	int64_t away_ns;
+
+	record();
+	room(now_ns, 20);
+	written(now_ns + S);
+	begin();
+	settle();
+	again[0] = '\0';
+	wall_us = 0;
+	orderly = true;
+	away_ns = now_ns;
+	past_lost(&past);
+	for (int i = 1; i <= 20; i++)
+		room(away_ns + 20 * S + i * (S / 3000), 20 + i);
+	now_ns = away_ns + 60 * S;
+	settle();
+	TEST_ASSERT_NOT_NULL(strstr(again, "room=21 room=22 room=23 "));
+	TEST_ASSERT_TRUE(orderly);
 }
 
 /* It is waited for, and nothing is taken for missing. */
@@ -333,6 +357,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_what_was_recorded_while_the_broker_was_away_goes_out_again);
+	RUN_TEST(test_a_burst_keeps_its_order_by_the_millisecond);
 	RUN_TEST(test_what_the_recorder_has_not_written_yet_is_waited_for);
 	RUN_TEST(test_without_a_right_clock_or_a_birth_nothing_goes_out);
 	RUN_TEST(test_a_profile_that_shows_only_what_is_does_nothing);
