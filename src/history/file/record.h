@@ -12,6 +12,7 @@
 #include <stdint.h>
 
 #include "src/public/ows.h"
+#include "src/public/ows_history.h"
 
 /* Bytes of texts, with NUL. */
 #define HISTORY_NAME 128 /* of a signal */
@@ -21,26 +22,7 @@
 /* Signals that one file may have, with those of earlier tables. */
 #define HISTORY_SIGNALS 65535
 
-enum history_kind {
-	HISTORY_BEGIN = 3, /* the recorder began to look: what was before is not known */
-	HISTORY_END,       /* it ended: no recorder looks from here on */
-	HISTORY_GAP,       /* between two times no recorder looked, or what it saw is lost */
-	HISTORY_CLOCK,     /* the wall clock was set, or its time became trusted */
-	HISTORY_COMMAND,
-	HISTORY_ALARM,
-};
-
-/* Why something is not known. */
-enum history_reason {
-	HISTORY_REASON_NONE = 0,
-	HISTORY_STOPPED,   /* the recorder ended in order */
-	HISTORY_LOST,      /* the recorder, or the machine, ended without a word */
-	HISTORY_OWSD_LOST, /* owsd had ended or hung */
-	HISTORY_OVERRUN,   /* more changed than the recorder could follow */
-	HISTORY_DISK,      /* the disk took nothing, and memory was full */
-	HISTORY_NOT_ASKED, /* the signal is not recorded from here on */
-	HISTORY_REASONS
-};
+#define HISTORY_REASONS (OWS_HISTORY_NOT_ASKED + 1)
 /* A few words ("recorder stopped"); never NULL. */
 const char *history_reason_text(uint8_t reason);
 
@@ -53,7 +35,7 @@ struct history_who {
 
 /* An entry of the journals of owsd. */
 struct history_event {
-	uint8_t kind;    /* HISTORY_COMMAND or HISTORY_ALARM */
+	uint8_t kind;    /* OWS_HISTORY_COMMAND or OWS_HISTORY_ALARM */
 	uint8_t type;    /* enum ows_type, of the signal */
 	uint8_t quality; /* enum ows_quality */
 	uint8_t reason;  /* COMMAND: enum ows_reason; ALARM: enum ows_alarm_kind */

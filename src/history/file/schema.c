@@ -96,7 +96,7 @@ static const char *const steps[HISTORY_SCHEMA] = {
 	      "create unique index signal_identity on signal (identity);",
 };
 
-_Static_assert(HISTORY_CLOCK == 6 && HISTORY_COMMAND == 7 && HISTORY_ALARM == 8,
+_Static_assert(OWS_HISTORY_CLOCK == 6 && OWS_HISTORY_COMMAND == 7 && OWS_HISTORY_ALARM == 8,
                "trend_event has these numbers");
 
 static const struct {

@@ -212,7 +212,7 @@ static int begin_run(struct history_store *store, const struct store_batch *batc
 	sql_bind(store->statements[S_END_GAP], "i", start);
 	got = sql_next(store->statements[S_END_GAP]);
 	if (!got && any && !sqlite3_changes(store->file.db))
-		got = add_gap(store, last + 1, 0, start, HISTORY_LOST);
+		got = add_gap(store, last + 1, 0, start, OWS_HISTORY_LOST);
 	if (got)
 		return got;
 	store->start = start;
@@ -311,7 +311,7 @@ static int put_gap(struct history_store *store, struct history_key *key,
 	store->gap_us = row->us;
 	store->gap_start = start;
 	store->gap_reason = row->reason;
-	if (row->reason == HISTORY_STOPPED)
+	if (row->reason == OWS_HISTORY_STOPPED)
 		until = 0;
 	else if (until < start)
 		until = start;
@@ -327,7 +327,7 @@ static int put_event(struct history_store *store, const struct history_key *key,
 	bool who = event && event->who.serial;
 
 	sql_bind(to, "iiinnnnnnnnnnnnn", id, store->base + row->us,
-	         (int64_t)(event ? event->kind : HISTORY_CLOCK));
+	         (int64_t)(event ? event->kind : OWS_HISTORY_CLOCK));
 	store->last_id = id;
 	if (!event || !key)
 		return event ? -EINVAL : sql_next(to);
@@ -435,7 +435,7 @@ int store_commit(struct history_store *store, struct store_batch *batch)
 
 int store_known(struct history_store *store, int64_t *alarms_ns, int64_t *commands_ns)
 {
-	static const int kinds[] = {HISTORY_ALARM, HISTORY_COMMAND};
+	static const int kinds[] = {OWS_HISTORY_ALARM, OWS_HISTORY_COMMAND};
 	int64_t *to[] = {alarms_ns, commands_ns};
 	int err = store_ready(store);
 

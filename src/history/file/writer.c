@@ -134,7 +134,7 @@ static void remove_rows(struct history_writer *w, uint32_t count)
 static void drop_half(struct history_writer *w)
 {
 	uint32_t half, left = 0, *last = calloc(w->key_count + 1, sizeof(*last));
-	struct history_row gap = {.kind = ROW_GAP, .key = ALL, .reason = HISTORY_DISK};
+	struct history_row gap = {.kind = ROW_GAP, .key = ALL, .reason = OWS_HISTORY_DISK};
 
 	sort_rows(w);
 	half = w->row_count / 2;
@@ -258,7 +258,7 @@ int history_writer_signals(struct history_writer *w, const struct history_signal
 	}
 	for (uint32_t i = 0; !err && i < w->key_count; i++)
 		if (!there[i] && w->kept[i].known)
-			writer_forget(w, i, now_ns / NS_PER_US, HISTORY_NOT_ASKED);
+			writer_forget(w, i, now_ns / NS_PER_US, OWS_HISTORY_NOT_ASKED);
 	free(there);
 	if (err) {
 		free(table);
@@ -294,7 +294,7 @@ static void gap_of_all(struct history_writer *w, int64_t from_us, int64_t until_
 }
 
 void history_writer_gap(struct history_writer *w, int64_t from_ns, int64_t until_ns,
-                        enum history_reason reason)
+                        enum ows_history_reason reason)
 {
 	gap_of_all(w, from_ns / NS_PER_US, until_ns / NS_PER_US, (uint8_t)reason);
 }
@@ -305,7 +305,7 @@ void history_writer_begin(struct history_writer *w, int64_t now_ns)
 }
 
 void history_writer_forget(struct history_writer *w, uint32_t signal, int64_t from_ns,
-                           enum history_reason reason)
+                           enum ows_history_reason reason)
 {
 	if (signal < w->count)
 		writer_forget(w, w->table[signal], from_ns / NS_PER_US, (uint8_t)reason);
@@ -461,7 +461,7 @@ int history_writer_close(struct history_writer *w, int64_t now_ns)
 	if (!w)
 		return 0;
 	if (w->files || w->row_count) {
-		gap_of_all(w, now_ns / NS_PER_US, now_ns / NS_PER_US, HISTORY_STOPPED);
+		gap_of_all(w, now_ns / NS_PER_US, now_ns / NS_PER_US, OWS_HISTORY_STOPPED);
 		err = commit_rows(w, now_ns / NS_PER_US, INT64_MAX);
 	}
 	store_close(&w->store);

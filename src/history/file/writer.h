@@ -53,10 +53,10 @@ void history_writer_value(struct history_writer *writer, uint32_t signal, int64_
                           uint8_t quality, int64_t value, const char *text, size_t len);
 /* Nothing is known of the signal from that time on. */
 void history_writer_forget(struct history_writer *writer, uint32_t signal, int64_t from_ns,
-                           enum history_reason reason);
+                           enum ows_history_reason reason);
 /* Between two times no recorder looked. All values are unknown after it: record each anew. */
 void history_writer_gap(struct history_writer *writer, int64_t from_ns, int64_t until_ns,
-                        enum history_reason reason);
+                        enum ows_history_reason reason);
 /* The wall clock was set, or is trusted now. */
 void history_writer_clock(struct history_writer *writer, int64_t now_ns, int64_t offset_ns,
                           bool trusted);

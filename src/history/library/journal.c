@@ -9,14 +9,6 @@
 #include "src/history/library/open.h"
 #include "src/history/library/steps.h"
 
-_Static_assert((int)OWS_HISTORY_BEGIN == (int)HISTORY_BEGIN &&
-                       (int)OWS_HISTORY_END == (int)HISTORY_END &&
-                       (int)OWS_HISTORY_GAP == (int)HISTORY_GAP &&
-                       (int)OWS_HISTORY_CLOCK == (int)HISTORY_CLOCK &&
-                       (int)OWS_HISTORY_COMMAND == (int)HISTORY_COMMAND &&
-                       (int)OWS_HISTORY_ALARM == (int)HISTORY_ALARM,
-               "the kinds of the library are those of the file");
-
 /* Columns of H_EVENTS */
 enum {
 	ID,

@@ -13,11 +13,6 @@
 #include "src/history/library/open.h"
 #include "src/history/library/steps.h"
 
-_Static_assert((int)OWS_HISTORY_STOPPED == (int)HISTORY_STOPPED &&
-                       (int)OWS_HISTORY_NOT_ASKED == (int)HISTORY_NOT_ASKED &&
-                       (int)OWS_HISTORY_NOT_ASKED + 1 == (int)HISTORY_REASONS,
-               "the reasons of the library are those of the file");
-
 const char *ows_history_reason_text(uint8_t reason)
 {
 	return history_reason_text(reason);

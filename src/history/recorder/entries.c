@@ -17,7 +17,7 @@ static void put_rest(struct history_event *event, const struct ows_by *by, const
 struct history_event entries_alarm(const struct ows_alarm *alarm)
 {
 	struct history_event event = {
-		.kind = HISTORY_ALARM,
+		.kind = OWS_HISTORY_ALARM,
 		.type = alarm->type,
 		.quality = alarm->quality,
 		.reason = alarm->kind,
@@ -37,7 +37,7 @@ struct history_event entries_alarm(const struct ows_alarm *alarm)
 struct history_event entries_command(const struct ows_commanded *command)
 {
 	struct history_event event = {
-		.kind = HISTORY_COMMAND,
+		.kind = OWS_HISTORY_COMMAND,
 		.type = command->type,
 		.quality = command->quality,
 		.reason = command->reason,

@@ -165,7 +165,7 @@ static void make_series(struct face *face, int64_t now_ns)
 
 	if (err) {
 		/* what was known would be repeated, and look constant */
-		history_writer_gap(r->writer, now_ns, now_ns, HISTORY_NOT_ASKED);
+		history_writer_gap(r->writer, now_ns, now_ns, OWS_HISTORY_NOT_ASKED);
 		log_err(face->log, "%d signals cannot be recorded: %s", ows_count(face->ows),
 		        strerror(-err));
 	} else {
@@ -186,7 +186,7 @@ static void owsd_found(struct face *face, int64_t now_ns)
 		history_writer_begin(r->writer, now_ns);
 	else
 		history_writer_gap(r->writer, r->lost_ns ? r->lost_ns : now_ns, now_ns,
-		                   HISTORY_OWSD_LOST);
+		                   OWS_HISTORY_OWSD_LOST);
 	r->begun = true;
 	r->lost_ns = 0;
 	series_forget(&r->rows, now_ns);
@@ -210,7 +210,7 @@ static void owsd_lost(struct face *face, int64_t now_ns)
 	if (from_ns > now_ns)
 		from_ns = now_ns;
 	r->lost_ns = from_ns;
-	history_writer_gap(r->writer, from_ns, now_ns, HISTORY_OWSD_LOST);
+	history_writer_gap(r->writer, from_ns, now_ns, OWS_HISTORY_OWSD_LOST);
 	series_forget(&r->rows, now_ns);
 	log_warning(face->log, "owsd is lost: a gap in the history, since %.1f s ago",
 	            (double)(now_ns - from_ns) / 1e9);
@@ -220,7 +220,7 @@ static void changes_missed(struct face *face, int64_t now_ns)
 {
 	struct recording *r = face->own;
 
-	history_writer_gap(r->writer, face->looked_ns, now_ns, HISTORY_OVERRUN);
+	history_writer_gap(r->writer, face->looked_ns, now_ns, OWS_HISTORY_OVERRUN);
 	series_forget(&r->rows, now_ns);
 	log_warning(face->log, "more changed than could be followed: a gap of %.1f s",
 	            (double)(now_ns - face->looked_ns) / 1e9);

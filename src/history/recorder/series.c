@@ -140,7 +140,7 @@ int series_make(struct series *rows, struct ows *ows, const struct config *confi
 	}
 	for (int i = 0; !err && i < rows->count; i++)
 		if (rows->rows[i].rule.off)
-			history_writer_forget(writer, (uint32_t)i, now_ns, HISTORY_NOT_ASKED);
+			history_writer_forget(writer, (uint32_t)i, now_ns, OWS_HISTORY_NOT_ASKED);
 	if (err)
 		series_free(rows);
 	free(sorted);
@@ -190,9 +190,9 @@ static void keep_raw(struct series *rows, struct row *row, struct ows *ows,
 static void miss(struct series *rows, struct row *row, int signal, struct history_writer *writer,
                  int64_t unseen_ns)
 {
-	history_writer_forget(writer, (uint32_t)signal, unseen_ns, HISTORY_OVERRUN);
+	history_writer_forget(writer, (uint32_t)signal, unseen_ns, OWS_HISTORY_OVERRUN);
 	if (row->raw_id >= 0)
-		history_writer_forget(writer, row->raw_row, unseen_ns, HISTORY_OVERRUN);
+		history_writer_forget(writer, row->raw_row, unseen_ns, OWS_HISTORY_OVERRUN);
 	row->kept.any = row->raw_kept.any = false;
 	rows->missed++;
 }

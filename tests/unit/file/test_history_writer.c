@@ -114,7 +114,7 @@ static void check_words(const char *kind, const char *what)
 
 static void record_events(void)
 {
-	struct history_event event = {.kind = HISTORY_ALARM, .time_ns = 7 * PAST_S};
+	struct history_event event = {.kind = OWS_HISTORY_ALARM, .time_ns = 7 * PAST_S};
 
 	past_begin(&past, 5 * PAST_S, PAST_NOON, true);
 	event.reason = OWS_ALARM_DIFFERS;
@@ -126,7 +126,7 @@ static void record_events(void)
 	event.reason = 0;
 	event.event = OWS_ALARM_SHELVED;
 	history_writer_event(past.writer, &event);
-	event.kind = HISTORY_COMMAND;
+	event.kind = OWS_HISTORY_COMMAND;
 	event.reason = OWS_REASON_NONE;
 	history_writer_event(past.writer, &event);
 	event.reason = OWS_REASON_LAST;
@@ -251,11 +251,11 @@ static void test_a_gap_at_the_time_of_values_after_a_gap_is_another(void)
 		past_make(&past);
 		past_begin(&past, 10 * PAST_S, PAST_NOON, true);
 		past_room(&past, 10 * PAST_S, 19);
-		history_writer_gap(past.writer, 11 * PAST_S, 12 * PAST_S, HISTORY_OWSD_LOST);
-		history_writer_gap(past.writer, 11 * PAST_S, 12 * PAST_S, HISTORY_OWSD_LOST);
+		history_writer_gap(past.writer, 11 * PAST_S, 12 * PAST_S, OWS_HISTORY_OWSD_LOST);
+		history_writer_gap(past.writer, 11 * PAST_S, 12 * PAST_S, OWS_HISTORY_OWSD_LOST);
 		if (values)
 			past_room(&past, 11 * PAST_S, 20);
-		history_writer_gap(past.writer, 11 * PAST_S, 15 * PAST_S, HISTORY_OWSD_LOST);
+		history_writer_gap(past.writer, 11 * PAST_S, 15 * PAST_S, OWS_HISTORY_OWSD_LOST);
 		past_room(&past, 15 * PAST_S, 21);
 		past_end(&past, 20 * PAST_S);
 		TEST_ASSERT_EQUAL_INT64(
@@ -271,10 +271,10 @@ static void test_gaps_are_read_as_gaps_and_values_after_them_are_new(void)
 	past_begin(&past, 5 * PAST_S, PAST_NOON, true);
 	past_room(&past, 7 * PAST_S, 1);
 	past_lamp(&past, 7 * PAST_S, 1);
-	history_writer_gap(past.writer, 10 * PAST_S, 12 * PAST_S, HISTORY_OWSD_LOST);
+	history_writer_gap(past.writer, 10 * PAST_S, 12 * PAST_S, OWS_HISTORY_OWSD_LOST);
 	past_room(&past, 9 * PAST_S, 2); /* measured before it, and known after it */
 	TEST_ASSERT_EQUAL_INT(0, history_writer_flush(past.writer, 14 * PAST_S));
-	history_writer_forget(past.writer, PAST_ROOM, 13 * PAST_S, HISTORY_OVERRUN);
+	history_writer_forget(past.writer, PAST_ROOM, 13 * PAST_S, OWS_HISTORY_OVERRUN);
 	past_room(&past, 15 * PAST_S, 3);
 	TEST_ASSERT_EQUAL_INT(0, history_writer_signals(past.writer, past_signals, 1, 18 * PAST_S));
 	past_end(&past, 20 * PAST_S);
@@ -297,7 +297,7 @@ static void test_a_value_that_holds_is_repeated_each_hour_and_one_of_a_gone_sign
 	for (int64_t second = 0; second < 5 * 3600; second += 10) {
 		if (second == 2 * 3600)
 			history_writer_forget(past.writer, PAST_TITLE, second * PAST_S,
-			                      HISTORY_NOT_ASKED);
+			                      OWS_HISTORY_NOT_ASKED);
 		TEST_ASSERT_EQUAL_INT(0, history_writer_tick(past.writer, second * PAST_S));
 	}
 	past_end(&past, 5 * 3600 * PAST_S);
@@ -357,7 +357,7 @@ static void test_values_are_kept_for_days_minutes_for_more_and_hours_for_ever(vo
 
 static void test_the_journal_is_kept_as_long_as_minutes(void)
 {
-	struct history_event event = {.kind = HISTORY_COMMAND};
+	struct history_event event = {.kind = OWS_HISTORY_COMMAND};
 
 	past.options.flush_ns = 1800 * PAST_S;
 	past.options.keep.days = 1;
@@ -924,7 +924,7 @@ static void test_a_name_that_another_signal_takes_is_of_that_one_from_then_on(vo
 
 static void test_what_an_earlier_run_of_the_boot_has_of_the_journals_is_known(void)
 {
-	struct history_event alarm = {.kind = HISTORY_ALARM,
+	struct history_event alarm = {.kind = OWS_HISTORY_ALARM,
 	                              .type = OWS_DOUBLE,
 	                              .signal = PAST_ROOM,
 	                              .time_ns = 7 * PAST_S};
@@ -933,7 +933,7 @@ static void test_what_an_earlier_run_of_the_boot_has_of_the_journals_is_known(vo
 	past_begin(&past, 5 * PAST_S, PAST_NOON, true);
 	history_writer_event(past.writer, &alarm);
 	/* before the run: it keeps its time */
-	alarm.kind = HISTORY_COMMAND;
+	alarm.kind = OWS_HISTORY_COMMAND;
 	alarm.time_ns = 2 * PAST_S;
 	history_writer_event(past.writer, &alarm);
 	past_end(&past, 9 * PAST_S);

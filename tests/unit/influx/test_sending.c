@@ -305,7 +305,7 @@ static void test_what_was_not_running_is_a_stretch_and_a_gap_has_a_quality_alone
 	begin();
 	missed_keep(&p->missed, 0, now_ns);
 	room(now_ns + 20 * S, 21);
-	history_writer_gap(writer, now_ns + 30 * S, now_ns + 40 * S, HISTORY_OWSD_LOST);
+	history_writer_gap(writer, now_ns + 30 * S, now_ns + 40 * S, OWS_HISTORY_OWSD_LOST);
 	room(now_ns + 41 * S, 22);
 	now_ns += 60 * S;
 	written();

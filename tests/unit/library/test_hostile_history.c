@@ -24,7 +24,7 @@ static struct past past;
 
 void setUp(void)
 {
-	struct history_event event = {.kind = HISTORY_ALARM, .time_ns = 7 * PAST_S};
+	struct history_event event = {.kind = OWS_HISTORY_ALARM, .time_ns = 7 * PAST_S};
 
 	past_make(&past);
 	past_begin(&past, 5 * PAST_S, PAST_NOON, true);
@@ -34,7 +34,7 @@ void setUp(void)
 	}
 	past_title(&past, 12000 * PAST_S, "text");
 	history_writer_event(past.writer, &event);
-	history_writer_gap(past.writer, 12001 * PAST_S, 12002 * PAST_S, HISTORY_OVERRUN);
+	history_writer_gap(past.writer, 12001 * PAST_S, 12002 * PAST_S, OWS_HISTORY_OVERRUN);
 	past_end(&past, 12003 * PAST_S);
 	past_begin(&past, 12010 * PAST_S, PAST_NOON, true);
 	past_room(&past, 12011 * PAST_S, 1);

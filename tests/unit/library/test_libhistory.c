@@ -71,7 +71,7 @@ static void pass(int64_t second)
 {
 	if (second == LOST_FROM)
 		history_writer_gap(writer, LOST_FROM * SECOND, LOST_UNTIL * SECOND,
-		                   HISTORY_OWSD_LOST);
+		                   OWS_HISTORY_OWSD_LOST);
 	if (second >= LOST_FROM && second < LOST_UNTIL)
 		return;
 	room(second);
@@ -82,7 +82,7 @@ static void pass(int64_t second)
 	if (second == 1 || second == LOST_UNTIL)
 		value(STEPS, second, OWS_Q_GOOD, BEYOND_DOUBLE, NULL);
 	if (second == 20)
-		event((struct history_event){.kind = HISTORY_COMMAND,
+		event((struct history_event){.kind = OWS_HISTORY_COMMAND,
 		                             .type = OWS_BOOL,
 		                             .quality = OWS_Q_GOOD,
 		                             .reason = OWS_REASON_SET,
@@ -92,7 +92,7 @@ static void pass(int64_t second)
 		                             .who = somebody},
 		      second);
 	if (second == 60)
-		event((struct history_event){.kind = HISTORY_ALARM,
+		event((struct history_event){.kind = OWS_HISTORY_ALARM,
 		                             .type = OWS_DOUBLE,
 		                             .quality = OWS_Q_GOOD,
 		                             .has_value = true,
@@ -507,7 +507,7 @@ static void record_days(void)
 		for (int i = 0; i < 3000; i++) {
 			now += (1 + (i * 7919) % 59) * SECOND + 1000000;
 			if (i % 397 == 396)
-				history_writer_gap(writer, now, now, HISTORY_OWSD_LOST);
+				history_writer_gap(writer, now, now, OWS_HISTORY_OWSD_LOST);
 			else
 				history_writer_value(writer, ROOM, now, OWS_Q_GOOD,
 				                     value_of_double((double)((i * 31) % 500) / 8),

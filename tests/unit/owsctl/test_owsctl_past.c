@@ -97,7 +97,7 @@ static void test_a_trend_of_a_directory_that_is_not_there_names_the_option_and_t
 
 static void on_disk(unsigned signal, int64_t value, int64_t at_ns)
 {
-	struct history_event event = {.kind = HISTORY_COMMAND,
+	struct history_event event = {.kind = OWS_HISTORY_COMMAND,
 	                              .type = table[signal].type,
 	                              .quality = OWS_Q_GOOD,
 	                              .reason = OWS_REASON_SET,
@@ -112,7 +112,7 @@ static void on_disk(unsigned signal, int64_t value, int64_t at_ns)
 
 static void alarm_on_disk(uint8_t event, double after, int64_t at_ns)
 {
-	struct history_event entry = {.kind = HISTORY_ALARM,
+	struct history_event entry = {.kind = OWS_HISTORY_ALARM,
 	                              .type = OWS_DOUBLE,
 	                              .quality = OWS_Q_GOOD,
 	                              .has_value = true,

@@ -31,7 +31,7 @@ static void test_an_alarm_is_whole(void)
 	                          .who = {.serial = 7, .uid = 1000, .pid = 42, .name = "plc"}};
 	struct history_event event = entries_alarm(&alarm);
 
-	TEST_ASSERT_EQUAL_INT(HISTORY_ALARM, event.kind);
+	TEST_ASSERT_EQUAL_INT(OWS_HISTORY_ALARM, event.kind);
 	TEST_ASSERT_EQUAL_INT(OWS_ALARM_H, event.reason);
 	TEST_ASSERT_EQUAL_INT(OWS_ALARM_RAISED, event.event);
 	TEST_ASSERT_TRUE(event.has_value && !event.has_before);
@@ -52,7 +52,7 @@ static void test_a_command_has_its_number_or_its_text(void)
 	                                .taken_ns = 5};
 	struct history_event event = entries_command(&command);
 
-	TEST_ASSERT_EQUAL_INT(HISTORY_COMMAND, event.kind);
+	TEST_ASSERT_EQUAL_INT(OWS_HISTORY_COMMAND, event.kind);
 	TEST_ASSERT_TRUE(event.has_value);
 	TEST_ASSERT_EQUAL_INT64((INT64_C(1) << 53) + 1, event.value);
 	TEST_ASSERT_EQUAL_UINT32(0, event.who.serial);
