@@ -8,6 +8,7 @@
 
 #include "hal/base/time.h"
 #include "src/faces/show/newest.h"
+#include "src/faces/show/reading.h"
 #include "src/faces/show/standing.h"
 #include "src/faces/show/when.h"
 #include "src/faces/web/show.h"
@@ -18,17 +19,14 @@
 
 static void show_put_value(struct json *json, const char *key, struct face_value *look)
 {
-	enum ows_type type = (enum ows_type)look->v.type;
+	const char *text = face_value_text(look);
 
 	if (!look->good)
 		json_null(json, key);
-	else if (type == OWS_BOOL)
-		json_bool(json, key, look->v.integer != 0);
-	else if (type == OWS_STRING || look->v.integer > NUMBER_MOST ||
-	         look->v.integer < -NUMBER_MOST)
-		json_string(json, key, face_value_text(look));
+	else if (look->v.integer > NUMBER_MOST || look->v.integer < -NUMBER_MOST)
+		json_string(json, key, text);
 	else
-		json_number(json, key, face_value_text(look));
+		reading_json_number(json, key, &look->v, text);
 }
 
 static void put_age(struct json *json, const char *key, const struct face_value *look)
