@@ -252,11 +252,11 @@ struct bus_ops {
 	bool brief; /* a device that keeps failing costs the others no more than a good one */
 	/*
 	 * Facts of the scheme. A target that goes on so after its scheme has a cache of owsd's own,
-	 * where a value has the age of the chip's; NULL: none has. parallel: several connections do
-	 * more at the same time. board_advice: it needs what `owsd --board` looks for.
+	 * where a value has the age of the chip's; NULL: none has. board_advice: it needs what
+	 * `owsd --board` looks for.
 	 */
 	const char *caches;
-	bool parallel, board_advice;
+	bool board_advice;
 	const struct bus_look *looks; /* NULL: nothing can be looked for */
 
 	/*

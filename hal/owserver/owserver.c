@@ -521,7 +521,6 @@ const struct bus_ops owserver_bus = {
 	.scheme = "owserver",
 	.summary = "an owserver of OWFS, over the network",
 	.depth = 1,
-	.parallel = true,
 	.looks = looks,
 	.create = owserver_create,
 	.destroy = owserver_destroy,

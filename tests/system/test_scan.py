@@ -175,9 +175,13 @@ def test_scan_shows_every_device_with_its_values(scene):
     assert found["/10.0000000000C1"]["values"] == {"temperature": 12.5}
     assert found["/26.F2FBE3467CC2"]["type"] == "DS2438"
     assert set(found["/26.F2FBE3467CC2"]["values"]) == {"temperature", "humidity", "VDD", "VAD"}
-    assert found["/01.000000000001"] == dict(path="/01.000000000001", family="01", type="DS2401",
-                                             identity=None, alias=None, bus="bus.0", alarm=False,
-                                             simulated=True, values={"present": 1})
+    single = found["/01.000000000001"]
+    assert single.pop("id") == "01.000000000001" and single.pop("signals") == []
+    present, = single.pop("properties")
+    assert (present["name"], present["value"], present["why"]) == ("present", "1", None), present
+    assert single == dict(path="/01.000000000001", family="01", type="DS2401",
+                          identity=None, alias=None, bus="bus.0", alarm=False,
+                          simulated=True, values={"present": 1})
 
 
 def runs(scene, text):

@@ -40,8 +40,8 @@ def test_the_page_gets_the_file_its_model_and_the_table_of_keys(scene):
     assert model["targets"] == [f"sim:{scene.path / 'house.sim'}"] and model["driver"]["Timeout"] == "3"
     assert model["blocks"]["Web"]["Configure"] == "on" and model["buses"] == []
     room = model["items"][0]
-    assert (room["name"], room["path"], room["device"], room["family"]) == (
-        "room", SENSOR + "/temperature", SENSOR[1:], "DS18B20")
+    assert (room["name"], room["path"], room["device"]) == (
+        "room", SENSOR + "/temperature", SENSOR[1:])
     assert room["keys"] == {"Type": "double", "IO": "input", "LimitH": "20", "Unit": "\u00b0C"}
     assert (room["type"], room["io"], room["uncached"]) == ("double", "input", False)
     assert got["text"].splitlines()[room["line"] - 1].strip() == "Item {"
@@ -389,7 +389,7 @@ def test_all_devices_are_found_with_their_signals_and_present_values(scene):
     sensor, relay = got["devices"]
     assert (sensor["id"], sensor["path"], sensor["family"], sensor["type"]) == (
         SENSOR[1:], SENSOR, "28", "DS18B20"), sensor
-    assert sensor["location"] == "bus.0" and sensor["simulated"] and sensor["signals"] == ["room"]
+    assert sensor["bus"] == "bus.0" and sensor["simulated"] and sensor["signals"] == ["room"]
     assert sensor["alias"] is None and sensor["identity"]
     assert sensor["properties"] == [
         {"name": "temperature12", "word": "temperature", "type": "double", "output": False,
@@ -405,7 +405,7 @@ def test_all_devices_are_found_with_their_signals_and_present_values(scene):
         status = 200 if wrong.endswith(",") and wrong else 400
         devices(page, f"?ids={wrong}", status)
     daemon.stop()
-    assert "does it run" in devices(page, status=503)["error"]
+    assert "is not running" in devices(page, status=503)["error"]
 
 
 def test_a_scan_of_a_hundred_devices_takes_seconds(scene):

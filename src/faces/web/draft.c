@@ -5,15 +5,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/config/check/check.h"
+#include "hal/base/time.h"
+#include "src/config/check/own.h"
+#include "src/config/check/targets.h"
 #include "src/config/read/load.h"
+#include "src/faces/web/child.h"
 #include "src/faces/web/draft.h"
 #include "src/faces/web/draft_edit.h"
 #include "src/faces/web/guard.h"
 #include "src/faces/web/http.h"
 #include "src/faces/web/model.h"
+#include "src/faces/web/writer.h"
 #include "src/ground/signal/utf8.h"
 
+#define CHECK_NS (10 * NS_PER_S)
 #define NAME "draft" /* of the file, in messages, whose place the page shows itself */
 
 bool draft_is_text(const char *text, size_t len)
@@ -24,6 +29,33 @@ bool draft_is_text(const char *text, size_t len)
 	return true;
 }
 
+/* owsd-writer knows what the chips have, and warns of what no item can have of them. */
+static void check_items(const char *text, size_t len, struct config_report *report)
+{
+	static const char *const argv[] = {"owsd-writer", "--draft", NULL};
+	struct child child = {
+		.argv = argv, .input = text, .input_len = len, .until_ns = ows_now() + CHECK_NS};
+	struct writer_answer *answer = calloc(1, sizeof(*answer));
+	int err = answer ? child_run(&child) : -ENOMEM;
+
+	if (!err)
+		err = writer_parse(child.out, child.out_len, answer);
+	if (err)
+		report_warning(report, (struct place){0},
+		               "owsd-writer does not check the items against their chips: %s",
+		               *child.why ? child.why : strerror(-err));
+	for (unsigned i = 0; answer && i < answer->problems.count; i++) {
+		const struct problem *problem = &answer->problems.list[i];
+
+		report->problem(report->ctx, problem->error, problem->line, problem->column,
+		                problem->text);
+	}
+	if (answer)
+		problems_free(&answer->problems);
+	free(answer);
+	free(child.out);
+}
+
 int draft_check(const char *file, const char *text, size_t len, struct problems *problems,
                 struct rio **rio)
 {
@@ -32,8 +64,12 @@ int draft_check(const char *file, const char *text, size_t len, struct problems 
 	int err = config_parse(file, text, len, &report, &config);
 
 	if (!err)
-		err = config_check(config, &report);
+		err = config_check_targets(config, &report);
+	if (!err)
+		err = config_check_own(config, &report);
 	config_free(config);
+	if (!err)
+		check_items(text, len, &report);
 	*rio = NULL;
 	if (err == -ENOMEM)
 		return err;

@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/chips/facts.h"
 #include "hal/owfs/path.h"
 #include "src/config/edit/edit_block.h"
 #include "src/config/read/options.h"
@@ -123,7 +122,6 @@ static void put_item(struct json *json, const struct rio_node *item)
 	json_string(json, "name", name ? name : "");
 	json_string(json, "path", text ? text : "");
 	json_string(json, "device", known ? id : NULL);
-	json_string(json, "family", known ? model_of(text) : NULL);
 	json_int(json, "line", item->at.line);
 	put_type(json, item);
 	put_keys(json, "keys", item, OPT_NAME, OPT_PATH);

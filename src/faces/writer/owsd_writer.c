@@ -14,8 +14,10 @@
 #include "hal/base/time.h"
 #include "src/config/read/config.h"
 #include "src/config/read/load.h"
+#include "src/config/read/rio.h"
 #include "src/daemon/host/target.h"
 #include "src/faces/kit/arguments.h"
+#include "src/faces/writer/store.h"
 #include "src/faces/writer/visit.h"
 #include "src/faces/writer/visitors.h"
 #include "src/ground/service/listen.h"
@@ -200,6 +202,29 @@ static int check_file(const char *file)
 	return err ? FACE_EXIT_USAGE : EXIT_SUCCESS;
 }
 
+/*
+ * For owsd-web, which runs this as itself: a configuration at standard input, and its warnings of
+ * items at standard output, as an answer. Nothing that it names is read.
+ */
+static int check_draft(void)
+{
+	struct answer answer = {.status = ANSWER_ERROR};
+	char *text = malloc(RIO_FILE_MAX + 1), *printed = NULL;
+	size_t len = text ? fread(text, 1, RIO_FILE_MAX + 1, stdin) : 0, printed_len = 0;
+
+	if (text && len <= RIO_FILE_MAX) {
+		answer.status = ANSWER_DONE;
+		store_check_items(text, len, &answer);
+		printed = answer_print(&answer, &printed_len);
+	}
+	if (printed)
+		fwrite(printed, 1, printed_len, stdout);
+	free(printed);
+	free(text);
+	answer_free(&answer);
+	return printed_len && fflush(stdout) == 0 ? EXIT_SUCCESS : FACE_EXIT_RUN;
+}
+
 int main(int argc, char **argv)
 {
 	static const struct face_option listens = {
@@ -209,6 +234,8 @@ int main(int argc, char **argv)
 	struct unix_signals signals;
 	int status;
 
+	if (argc == 2 && strcmp(argv[1], "--draft") == 0)
+		return check_draft();
 	status = face_start(PROGRAM, &listens, argc, argv, &a);
 	if (status >= 0)
 		return status;

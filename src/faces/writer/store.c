@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "src/config/check/check.h"
 #include "src/config/edit/replace.h"
 #include "src/config/read/config.h"
 #include "src/config/read/load.h"
@@ -37,6 +38,17 @@ static int check_text(const char *file, const char *text, size_t len, struct ans
 	err = target_check_config(config, &report);
 	config_free(config);
 	return err;
+}
+
+void store_check_items(const char *text, size_t len, struct answer *answer)
+{
+	struct config_report report = {.problem = take_problem, .ctx = answer}, silent = {0};
+	struct config *config;
+
+	if (config_parse("draft", text, len, &silent, &config))
+		return;
+	config_check_items(config, NULL, &report);
+	config_free(config);
 }
 
 /* A file as it is on disk. */

@@ -10,6 +10,8 @@
 #include "src/faces/writer/answer.h"
 #include "src/faces/writer/order.h"
 
+/* Check the items of a text against what is known of their chips: the warnings go to answer. */
+void store_check_items(const char *text, size_t len, struct answer *answer);
 /*
  * Put text in place of the file if that is still the one of the request's base. If the file has
  * this text already, both files stay as they are, and the answer is that of a replace.

@@ -9,6 +9,7 @@
 
 #include "src/config/check/know.h"
 #include "src/config/check/property.h"
+#include "src/config/edit/commit.h"
 #include "src/config/edit/edit.h"
 #include "src/config/edit/print.h"
 #include "src/config/edit/replace.h"

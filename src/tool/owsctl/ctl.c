@@ -99,6 +99,7 @@ static const struct option *longs_of(const char *options)
 		{"bits", no_argument, NULL, 'B'},
 		{"merge", required_argument, NULL, 'M'},
 		{"replace", required_argument, NULL, 'R'},
+		{"within", required_argument, NULL, 'W'},
 		{"as", required_argument, NULL, 'A'},
 		{"follow", no_argument, NULL, 'f'},
 		{"since", required_argument, NULL, 's'},

@@ -27,6 +27,7 @@ struct ctl {
 	bool named;         /* the user gave the instance with -n */
 	const char *target; /* the target of -t; NULL: none was given */
 	bool json;
+	int64_t until_ns;        /* of scan --within, CLOCK_BOOTTIME; 0: no limit */
 	const struct verb *verb; /* the verb that runs */
 };
 

@@ -61,8 +61,10 @@ int open_target(const struct ctl *ctl, int64_t timeout_ns, struct target *target
 	char why[700] = "";
 	int status;
 
-	*target = (struct target){
-		.timeout_ns = timeout_ns, .create = bus_create, .progress = print_progress};
+	*target = (struct target){.timeout_ns = timeout_ns,
+	                          .until_ns = ctl->until_ns,
+	                          .create = bus_create,
+	                          .progress = print_progress};
 	*served = (struct served){0};
 	if (!name && served_find(ctl, served))
 		return CTL_FAILED;

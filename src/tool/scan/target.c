@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "src/faces/show/json.h"
 #include "src/tool/scan/target.h"
@@ -93,7 +94,7 @@ static int64_t deadline(const struct target *target)
 	return target->until_ns && until_ns > target->until_ns ? target->until_ns : until_ns;
 }
 
-int target_connect(struct target *target, char *why, size_t why_size)
+static int connect_once(struct target *target, char *why, size_t why_size)
 {
 	int64_t until_ns = deadline(target);
 	int err;
@@ -119,6 +120,18 @@ int target_connect(struct target *target, char *why, size_t why_size)
 	         target->down ? target->loss.text : "no answer in time");
 	target_close(target);
 	return -ENOTCONN;
+}
+
+int target_connect(struct target *target, char *why, size_t why_size)
+{
+	int64_t left_ns = target->until_ns ? target->until_ns - boottime(NULL) : 0;
+	int64_t again_ns = boottime(NULL) + left_ns / 4 * 3;
+	int err;
+
+	do
+		err = connect_once(target, why, why_size);
+	while (err == -ENOTCONN && boottime(NULL) < again_ns && usleep(200 * 1000) == 0);
+	return err;
 }
 
 void target_close(struct target *target)

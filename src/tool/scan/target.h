@@ -35,8 +35,10 @@ struct ask {
 };
 
 /*
- * Open target->name by target->create; timeout_ns is set. 0; -ENOTCONN: it is not there; or a
- * negative errno of create(); with the reason in why.
+ * Open target->name by target->create; timeout_ns is set. With until_ns, try again for three
+ * quarters of that time: while owsd finds out what its chips are, an answer takes longer than a
+ * connection waits. 0; -ENOTCONN: it is not there; or a negative errno of create(); with the reason
+ * in why.
  */
 int target_connect(struct target *target, char *why, size_t why_size);
 void target_close(struct target *target);

@@ -12,6 +12,7 @@
 
 #include "unity.h"
 
+#include "src/config/edit/commit.h"
 #include "src/config/edit/edit.h"
 #include "src/config/edit/edit_device.h"
 #include "src/config/edit/replace.h"

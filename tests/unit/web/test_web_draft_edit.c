@@ -78,9 +78,9 @@ static void test_the_model_has_what_stands_in_the_text(void)
 	has("\"targets\":[\"sim:a\",\"b\",\"c\"]");
 	has("\"ControlAllow\":\"x: y\"}");
 	has("\"name\":\"a\\\"\",\"path\":\"/uncached/28551ddf030000/power\","
-	    "\"device\":\"28.551DDF030000\",\"family\":\"DS18B20\",\"line\":4,\"type\":\"bool\","
+	    "\"device\":\"28.551DDF030000\",\"line\":4,\"type\":\"bool\","
 	    "\"io\":\"output\",\"uncached\":true,\"keys\":{\"IOType\":\"0x121\"}");
-	has("\"device\":null,\"family\":null,\"line\":5,\"type\":\"word\",\"io\":\"input\","
+	has("\"device\":null,\"line\":5,\"type\":\"word\",\"io\":\"input\","
 	    "\"uncached\":true,\"keys\":{\"Type\":\"word\",\"Uncached\":\"on\"}");
 }
 

@@ -3,6 +3,8 @@
 // calls that edit, check and save it. Events: "change" (anything below), "go" (show a place of it).
 import {get, isUnknown, post} from "./api.js";
 import {hunks, merge} from "./diff.js";
+import {idOf} from "./names.js";
+import {store} from "./store.js";
 
 const STEPS = 200;            // of undo
 const CHARACTERS = 32 << 20;  // of all texts that undo keeps
@@ -100,7 +102,11 @@ class Draft extends EventTarget {
 			this.#take(await post("config/draft", {do: "check", text}));
 	}
 
+	/* What a chip is called is known of owsd's signals. */
 	#take({text, model, problems, valid}) {
+		const families = new Map(store.signals.map(({device, family}) => [idOf(device), family]));
+		for (const item of model.items)
+			item.family = item.device ? families.get(idOf(item.device)) : null;
 		Object.assign(this, {text, model, problems, valid});
 	}
 

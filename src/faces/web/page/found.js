@@ -66,7 +66,7 @@ async function scan() {
 function deviceRow(device) {
 	const moving = el("span", {class: "moving", hidden: true});
 	const signals = el("p", {class: "hint"});
-	const facts = [device.identity, device.alias ? `alias ${device.alias}` : "", device.location,
+	const facts = [device.identity, device.alias ? `alias ${device.alias}` : "", device.bus,
 		device.simulated ? "simulated" : ""].filter(Boolean).join(", ");
 	const row = {device, moving, signals, was: 0};
 	row.properties = device.properties.map((property) => propertyRow(row, property));

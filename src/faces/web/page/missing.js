@@ -31,7 +31,7 @@ export function paint(devices) {
 	const free = devices.filter((device) => !used.has(idOf(device.id)) && !device.signals.length);
 	box.hidden = !gone.size;
 	// drawn anew only when something has changed: the choice of the user stays
-	const now = JSON.stringify([[...gone.keys()], free.map(({id, location}) => [id, location]), draft.editable]);
+	const now = JSON.stringify([[...gone.keys()], free.map(({id, bus}) => [id, bus]), draft.editable]);
 	if (now === last)
 		return;
 	last = now;
@@ -56,13 +56,13 @@ function row(id, items, free) {
 		+ "has no signal."));
 }
 
-async function replace(old, {id, location}, names) {
+async function replace(old, {id, bus}, names) {
 	if (!await ask(`Replace ${old}?`, "Replace", [el("p", {}, `${id} takes its place for the `
 		+ `signals ${names}. They keep their names and settings, and their history goes on. Undo brings back what `
 		+ "was.")]))
 		return;
 	try {
-		await draft.edit({do: "replace", old, new: id, location: location ?? ""});
+		await draft.edit({do: "replace", old, new: id, location: bus ?? ""});
 		put(fault, "");
 		announce(`${id} takes the place of ${old} in the draft.`);
 	} catch (error) {

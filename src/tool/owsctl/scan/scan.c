@@ -20,6 +20,7 @@
 #include "src/ground/board/board.h"
 #include "src/ground/board/look.h"
 #include "src/ground/board/report.h"
+#include "src/ground/signal/value.h"
 #include "src/tool/owsctl/ctl.h"
 #include "src/tool/owsctl/open.h"
 #include "src/tool/owsctl/scan/scan_item.h"
@@ -27,6 +28,7 @@
 #include "src/tool/owsctl/table.h"
 #include "src/tool/owsctl/verbs.h"
 #include "src/tool/scan/device.h"
+#include "src/tool/scan/parallel.h"
 #include "src/tool/scan/scan.h"
 
 /* --- Names of an alias file of OWFS: "28.551DDF030000 = kitchen" in each line ---------------- */
@@ -239,7 +241,53 @@ static void print_values(struct json *json, const struct scan_device *device)
 	json_object_end(json);
 }
 
-static void scan_print_json(const struct scan *scan)
+/* All that is known of the properties that most people want, to choose from. */
+static void print_properties(struct json *json, const struct scan_device *device)
+{
+	struct scan_property property;
+	char words[ERROR_WORDS];
+
+	json_array(json, "properties");
+	for (unsigned i = 0; scan_property(device, i, &property); i++) {
+		const struct scan_value *value = &device->value[i];
+
+		/* of another chip with the same family code */
+		if (value->err == -ENOENT)
+			continue;
+		json_object(json, NULL);
+		json_string(json, "name", property.name);
+		json_string(json, "word", property.word);
+		json_string(json, "type", value_type_name(property.type));
+		json_bool(json, "output", property.output);
+		json_string(json, "value", value->err ? NULL : value->text);
+		json_string(json, "why",
+		            value->err ? error_answer_words(value->err, value->refused, words)
+		                       : NULL);
+		json_object_end(json);
+	}
+	json_array_end(json);
+}
+
+/* The id, and the signals of owsd that are of it; another way to it is the same device. */
+static void print_signals(struct json *json, struct ows *h, const struct scan_device *device)
+{
+	char id[ROM_TEXT_MAX];
+	struct ows_info info;
+	struct path own, path;
+
+	if (path_split(device->path, strlen(device->path), &own) || !own.has_rom)
+		return;
+	rom_print(own.rom, ROM_F_I, id);
+	json_string(json, "id", id);
+	json_array(json, "signals");
+	for (int i = 0; h && ows_info(h, i, &info) == 0; i++)
+		if (!path_split(info.path, strlen(info.path), &path) && path.has_rom &&
+		    !memcmp(path.rom, own.rom, ROM_LEN))
+			json_string(json, NULL, info.name);
+	json_array_end(json);
+}
+
+static void scan_print_json(const struct scan *scan, struct ows *h)
 {
 	struct json json;
 
@@ -262,7 +310,9 @@ static void scan_print_json(const struct scan *scan)
 		else
 			json_null(&json, "alarm");
 		json_bool(&json, "simulated", device->simulated);
+		print_signals(&json, h, device);
 		print_values(&json, device);
+		print_properties(&json, device);
 		json_object_end(&json);
 	}
 	json_list_end(&json);
@@ -294,10 +344,31 @@ static void warn_of_empty_file(void)
 		ctl_fail("no configuration was made: the file that the output goes to is empty");
 }
 
-static int find_devices(struct target *target, struct scan *scan)
+/* The devices that are named, without a listing. */
+static int take_named(char *const *names, unsigned count, struct scan *scan)
 {
-	int err = scan_find(target, scan);
+	char path[128];
 
+	*scan = (struct scan){.device = calloc(count, sizeof(*scan->device))};
+	if (!scan->device)
+		return -ENOMEM;
+	for (unsigned i = 0; i < count; i++) {
+		snprintf(path, sizeof(path), "%s%s", *names[i] == '/' ? "" : "/", names[i]);
+		if (!scan_device_of(path, &scan->device[scan->count++]))
+			return ctl_fail("%s is no id of a device, such as 28.551DDF030000",
+			                ctl_word(names[i]));
+	}
+	return 0;
+}
+
+/* An owsd serves several connections at the same time. */
+static int find_devices(struct target *target, bool of_owsd, struct scan *scan, char *const *names,
+                        unsigned count)
+{
+	int err = count ? take_named(names, count, scan) : scan_find(target, scan);
+
+	if (err > 0)
+		return err;
 	if (err == -E2BIG)
 		return ctl_fail("%s: more than 512 couplers", target->name);
 	if (err && err != -ENOMEM)
@@ -307,32 +378,47 @@ static int find_devices(struct target *target, struct scan *scan)
 		         "and devices may be missing",
 		         target->name, error_text(-EBADMSG));
 	if (!err)
-		err = scan_read(target, scan->device, scan->count, false);
+		err = of_owsd ? scan_read_parallel(target, scan, count > 0)
+		              : scan_read(target, scan->device, scan->count, count > 0);
 	if (err == -ENOMEM)
 		return ctl_fail("no memory");
 	return err ? ctl_fail("%s does not answer any more", target->name) : CTL_DONE;
 }
 
-static int scan_look(struct ctl *ctl, int64_t timeout_ns, const char *aliases, bool rio,
-                     struct scan_choice choice, struct scan_merge *merge)
+/* What is asked of a scan. */
+struct scan_order {
+	int64_t timeout_ns;
+	const char *aliases;
+	bool rio;
+	char *const *names; /* of devices; none: all */
+	unsigned name_count;
+};
+
+static int scan_look(struct ctl *ctl, const struct scan_order *order, struct scan_choice choice,
+                     struct scan_merge *merge)
 {
 	struct target target;
 	struct served served;
 	struct scan scan;
-	int status = open_target(ctl, timeout_ns, &target, &served);
+	struct ows *h = NULL;
+	int status = open_target(ctl, order->timeout_ns, &target, &served);
 
 	if (status) {
 		scan_board(target.name);
 		return status;
 	}
-	status = find_devices(&target, &scan);
-	if (!status && aliases)
-		status = scan_aliases(aliases, &scan);
-	if (!status && rio && scan.count)
+	status = find_devices(&target, served.target[0], &scan, order->names, order->name_count);
+	if (!status && order->aliases)
+		status = scan_aliases(order->aliases, &scan);
+	if (!order->rio && ctl->json && (!status || scan.count)) {
+		if (served.target[0])
+			h = ctl_open(ctl, OWS_READ);
+		scan_print_json(&scan, h);
+		ows_close(h);
+	}
+	if (!status && order->rio && scan.count)
 		status = print_rio(ctl, &target, &served, &scan, merge, choice);
-	else if (!status && !rio && ctl->json)
-		scan_print_json(&scan);
-	else if (!status && !rio && scan.count)
+	else if (!status && !order->rio && !ctl->json && scan.count)
 		scan_print_table(&scan);
 	if (!status && !scan.count) {
 		status = ctl_say(CTL_NOTHING,
@@ -348,22 +434,22 @@ static int scan_look(struct ctl *ctl, int64_t timeout_ns, const char *aliases, b
 
 int verb_scan(struct ctl *ctl, int argc, char **argv)
 {
-	int64_t timeout_ns = OPEN_TIMEOUT_NS;
-	bool rio = false;
+	struct scan_order order = {.timeout_ns = OPEN_TIMEOUT_NS};
 	struct scan_choice choice = {0};
 	struct scan_merge merge = {0};
-	const char *aliases = NULL;
 	int c, status = CTL_DONE;
 
-	while ((c = target_option(ctl, argc, argv, "riBL:M:R:", &timeout_ns)) != -1) {
+	while ((c = target_option(ctl, argc, argv, "riBL:M:R:W:", &order.timeout_ns)) != -1) {
 		if (c == 'r')
-			rio = true;
+			order.rio = true;
+		else if (c == 'W')
+			ctl->until_ns = ows_now() + ctl_option_seconds(ctl, c);
 		else if (c == 'i')
 			choice.inputs_only = true;
 		else if (c == 'B')
 			choice.bits = true;
 		else if (c == 'L')
-			aliases = optarg;
+			order.aliases = optarg;
 		else if (c == 'M' && !merge.file)
 			merge.file = optarg;
 		else if (c == 'M')
@@ -374,13 +460,15 @@ int verb_scan(struct ctl *ctl, int argc, char **argv)
 			return ctl_usage(ctl, "at most %d devices are replaced at once",
 			                 SCAN_PAIRS);
 	}
-	if (optind < argc)
-		return ctl_usage(ctl, "%s: scan looks at all of a target", argv[optind]);
-	if (rio ? ctl->json : choice.inputs_only || choice.bits)
-		return ctl_usage(ctl, rio           ? "--rio prints no JSON"
+	order.names = argv + optind;
+	order.name_count = (unsigned)(argc - optind);
+	if (order.name_count && order.rio)
+		return ctl_usage(ctl, "%s: --rio looks at all of a target", argv[optind]);
+	if (order.rio ? ctl->json : choice.inputs_only || choice.bits)
+		return ctl_usage(ctl, order.rio     ? "--rio prints no JSON"
 		                      : choice.bits ? "--bits goes with --rio"
 		                                    : "-i goes with --rio");
-	if (merge.file && !rio)
+	if (merge.file && !order.rio)
 		return ctl_usage(ctl, "--merge goes with --rio: it makes a configuration");
 	if (merge.pair_count && !merge.file)
 		return ctl_usage(ctl,
@@ -388,8 +476,8 @@ int verb_scan(struct ctl *ctl, int argc, char **argv)
 	if (merge.file)
 		status = scan_merge_open(&merge);
 	if (!status)
-		status = scan_look(ctl, timeout_ns, aliases, rio, choice, &merge);
-	if (status && rio)
+		status = scan_look(ctl, &order, choice, &merge);
+	if (status && order.rio)
 		warn_of_empty_file();
 	scan_merge_close(&merge);
 	return status;

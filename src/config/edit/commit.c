@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: MIT */
+/* A document that was edited is checked, and takes the place of its file. */
+#include <errno.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "src/config/check/check.h"
+#include "src/config/edit/commit.h"
+#include "src/config/edit/replace.h"
+#include "src/config/read/load.h"
+#include "src/config/read/report.h"
+
+int edit_lock(const char *file, struct config_report *report)
+{
+	const struct place place = {file, 0, 0};
+	int fd = replace_lock(file);
+
+	if (fd == -EBUSY)
+		report_error(report, place, "another program has been editing here for 5 s");
+	else if (fd < 0)
+		report_error(
+			report, place, "cannot be locked: %s%s", strerror(-fd),
+			fd == -EACCES || fd == -EPERM
+				? "; edit it as its owner, with sudo, or on the page of owsd-web"
+				: "");
+	return fd;
+}
+
+static bool is_dangling(const char *file)
+{
+	struct stat st;
+
+	return !lstat(file, &st) && S_ISLNK(st.st_mode) && stat(file, &st) && errno == ENOENT;
+}
+
+int edit_commit(const struct rio *rio, const char *file, const char *edited,
+                struct config_report *report)
+{
+	struct config *config;
+	int err = config_parse(file, rio->text, rio->len, report, &config);
+
+	if (err)
+		return err;
+	if (edited)
+		config_check_items(config, edited, report);
+	config_free(config);
+	err = replace_file(file, rio->text, rio->len);
+	if (err == -ENOENT && is_dangling(file))
+		report_error(report, (struct place){file, 0, 0},
+		             "is a symbolic link to a file that is not there");
+	else if (err)
+		report_error(report, (struct place){file, 0, 0}, "cannot be %s: %s",
+		             access(file, F_OK) ? "made" : "replaced", strerror(-err));
+	return err;
+}

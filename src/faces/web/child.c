@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: MIT */
+/* Runs another program of owsd for a worker, until a deadline. */
+#include <errno.h>
+#include <limits.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "hal/base/time.h"
+#include "src/faces/web/child.h"
+#include "src/ground/text/printable.h"
+#include "src/public/ows.h"
+
+#define FILES 3
+
+/* What it reads, prints and says: files in memory, so that nothing has to be passed on. */
+static int spawn(const struct child *child, const char *path, const int files[FILES], pid_t *pid)
+{
+	posix_spawn_file_actions_t actions;
+	posix_spawnattr_t attributes;
+	sigset_t none, usual;
+	int err;
+
+	sigemptyset(&none);
+	sigemptyset(&usual);
+	sigaddset(&usual, SIGPIPE);
+	posix_spawn_file_actions_init(&actions);
+	for (int i = 0; i < FILES; i++)
+		posix_spawn_file_actions_adddup2(&actions, files[i], i);
+	posix_spawnattr_init(&attributes);
+	posix_spawnattr_setsigmask(&attributes, &none);
+	posix_spawnattr_setsigdefault(&attributes, &usual);
+	posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+	err = posix_spawn(pid, path, &actions, &attributes, (char *const *)(uintptr_t)child->argv,
+	                  environ);
+	posix_spawnattr_destroy(&attributes);
+	posix_spawn_file_actions_destroy(&actions);
+	return -err;
+}
+
+/* In the folder of this program, as it is built and installed, else in bin beside that. */
+static int spawn_beside(const struct child *child, const int files[FILES], pid_t *pid)
+{
+	static const char *const folders[] = {"", "../bin/"};
+	char self[PATH_MAX / 2], path[PATH_MAX];
+	ssize_t len = readlink("/proc/self/exe", self, sizeof(self) - 1);
+	int err = -ENOENT;
+
+	if (len < 0)
+		return -errno;
+	while (len && self[len - 1] != '/')
+		len--;
+	for (int i = 0; i < 2 && err == -ENOENT; i++) {
+		snprintf(path, sizeof(path), "%.*s%s%s", (int)len, self, folders[i],
+		         child->argv[0]);
+		err = spawn(child, path, files, pid);
+	}
+	return err;
+}
+
+static int make_files(const struct child *child, int files[FILES])
+{
+	size_t len = child->input_len;
+
+	for (int i = 0; i < FILES; i++)
+		files[i] = memfd_create("child", MFD_CLOEXEC);
+	for (int i = 0; i < FILES; i++)
+		if (files[i] < 0)
+			return -errno;
+	return len && pwrite(files[0], child->input, len, 0) != (ssize_t)len ? -ENOMEM : 0;
+}
+
+/* All of the file, with NUL behind it; NULL: no memory, or it is too long. */
+static char *read_all(int file, size_t *len)
+{
+	off_t size = lseek(file, 0, SEEK_END);
+	char *text = size < 0 || size > CHILD_OUT ? NULL : malloc((size_t)size + 1);
+
+	*len = 0;
+	if (text && pread(file, text, (size_t)size, 0) == size)
+		*len = (size_t)size;
+	if (text)
+		text[*len] = '\0';
+	return text;
+}
+
+/* The pauses grow: a check takes milliseconds, a scan seconds. */
+static int await(struct child *child, pid_t pid)
+{
+	struct timespec pause = {.tv_nsec = NS_PER_MS};
+	int status, err = 0;
+	pid_t ended;
+
+	while ((ended = waitpid(pid, &status, err ? 0 : WNOHANG)) == 0) {
+		if (ows_now() >= child->until_ns) {
+			err = -ETIMEDOUT;
+			kill(pid, SIGKILL);
+		} else {
+			nanosleep(&pause, NULL);
+			pause.tv_nsec += pause.tv_nsec < 20 * NS_PER_MS ? pause.tv_nsec / 4 : 0;
+		}
+	}
+	child->status = ended == pid && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+	return err;
+}
+
+/* "owsctl: the reason" */
+static void take_why(struct child *child, char *words)
+{
+	size_t name = strlen(child->argv[0]), len = strlen(words);
+	char *line;
+
+	while (len && words[len - 1] == '\n')
+		words[--len] = '\0';
+	line = strrchr(words, '\n');
+	line = line ? line + 1 : words;
+	if (!strncmp(line, child->argv[0], name) && !strncmp(line + name, ": ", 2))
+		line += name + 2;
+	snprintf(child->why, sizeof(child->why), "%s", line);
+	child->why[printable(child->why, strlen(child->why))] = '\0';
+}
+
+int child_run(struct child *child)
+{
+	int files[FILES], err = make_files(child, files);
+	size_t words_len;
+	char *words;
+	pid_t pid;
+
+	child->status = -1;
+	child->why[0] = '\0';
+	child->out = NULL;
+	if (!err)
+		err = spawn_beside(child, files, &pid);
+	if (!err)
+		err = await(child, pid);
+	if (!err) {
+		child->out = read_all(files[1], &child->out_len);
+		words = read_all(files[2], &words_len);
+		if (words)
+			take_why(child, words);
+		free(words);
+		err = child->out ? 0 : -E2BIG;
+	}
+	for (int i = 0; i < FILES; i++)
+		if (files[i] >= 0)
+			close(files[i]);
+	return err;
+}
