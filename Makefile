@@ -77,6 +77,7 @@ ZSHDIR   ?= $(PREFIX)/share/zsh/site-functions
 
 # make takes a name with a blank for two, and clean and uninstall would remove those two
 blank    := $() $()
+comma    := ,
 $(foreach v,CURDIR B PREFIX DESTDIR LIBDIR MANDIR DATADIR,$(if $(findstring $(blank),$($(v))),\
     $(error $(v) is '$($(v))': a folder with a blank in its name cannot be used here)))
 $(foreach v,B DATADIR,$(if $($(v)),,$(error $(v) is empty: name a folder)))
@@ -116,14 +117,17 @@ FORTIFY  :=
 endif
 HARDEN   := -fstack-protector-strong $(FORTIFY) -fPIE $(call has,-fstack-clash-protection) \
             $(or $(call has,-fcf-protection),$(call has,-mbranch-protection=standard))
+# A program has the functions and tables that it uses, and no others of the files that it needs. A
+# sanitizer keeps books of its own of all of them
+SECTIONS := $(if $(findstring -fsanitize,$(CFLAGS) $(EXTRA_CFLAGS)),,-ffunction-sections -fdata-sections)
 CPP_COMMON = -D_GNU_SOURCE -D_FILE_OFFSET_BITS=64 -I. -DOWSD_VERSION='"$(VERSION)"'
-ALL_CFLAGS = -std=c17 $(CPP_COMMON) $(WARN) $(HARDEN) $(CPPFLAGS) $(CFLAGS) $(EXTRA_CFLAGS)
+ALL_CFLAGS = -std=c17 $(CPP_COMMON) $(WARN) $(HARDEN) $(SECTIONS) $(CPPFLAGS) $(CFLAGS) $(EXTRA_CFLAGS)
 ALL_CXXFLAGS = -std=c++11 $(CPP_COMMON) $(CXXWARN) $(HARDEN) $(CPPFLAGS) $(CXXFLAGS) $(EXTRA_CFLAGS)
 # Relocations as a bitmap, a twentieth of the table, where the C library reads them (glibc 2.36)
 RELR     := -Wl,-z,pack-relative-relocs
 RELR     := $(shell printf '\043include <stdint.h>\n\043if !defined __GLIBC__ || !__GLIBC_PREREQ(2, 36)\n\043error\n\043endif\nint main(void) { return 0; }\n' | \
               $(CC) $(filter -m%,$(CFLAGS) $(EXTRA_CFLAGS)) -fPIE -pie -Wl,--fatal-warnings $(RELR) -x c -o /dev/null - 2>/dev/null && echo '$(RELR)')
-ALL_LDFLAGS = -pie -Wl,-z,relro,-z,now $(RELR) $(LDFLAGS) $(EXTRA_CFLAGS)
+ALL_LDFLAGS = -pie -Wl,-z,relro,-z,now $(RELR) $(if $(SECTIONS),-Wl$(comma)--gc-sections) $(LDFLAGS) $(EXTRA_CFLAGS)
 LIBS     := -Wl,--as-needed -lm -pthread
 # Debian's musl-gcc knows its own headers alone; those of the kernel are beside glibc's
 ifneq ($(findstring musl-gcc,$(CC)),)
@@ -193,8 +197,6 @@ LIBPROTOBUFC := $(LIBPROTOBUFC)
 PROTOBUFC := $(filter 1,$(LIBPROTOBUFC))
 PROTO    := $(if $(PROTOBUFC),$(B)/proto/sparkplug.pb-c)
 PROTO_FLAGS := $(if $(PROTOBUFC),-isystem $(B)/proto -DOWSD_PROTOBUFC)
-
-comma    := ,
 
 # With what is compiled and linked: a file for each, written when that has changed, and never else.
 # What depends on it is made again then

@@ -95,6 +95,38 @@ def test_owsd_web_alone_links_a_library_for_the_network(scene):
         assert has == (program == "owsd-web"), (program, needed(BUILD / program))
 
 
+# KiB of text and data of a face, as size counts; and the most that it may be
+FACES = {"owsd-influx": 200, "owsd-recorder": 200, "owsd-mqtt": 300, "owsd-web": 400}
+
+
+def test_a_face_has_no_family_of_chips_and_no_bus(_scene):
+    def symbols(kinds, *files):
+        lines = output("nm", "--defined-only", *files).splitlines()
+        return {w[-1] for w in map(str.split, lines) if len(w) == 3 and w[1] in kinds}
+    rooms = [o for part in ("chips", "bus", "native", "owserver", "w1", "netlink", "ds2482", "gpio")
+             for o in (BUILD / "hal" / part).rglob("*.o")]
+    below = symbols("TDRBVW", *rooms)
+    assert {"family_of", "bus_create", "bus_backends", "owserver_bus", "i2c_bus"} <= below, len(below)
+    assert below & symbols("TDRBVW", owsdtest.OWSD) >= {"family_of", "bus_create"}
+    faces = [BUILD / name for name in FACES if (BUILD / name).exists()]
+    assert faces
+    for face in faces:
+        assert not below & symbols("TDRBVW", face), (face.name, sorted(below & symbols("TDRBVW", face)))
+
+
+def test_a_face_is_small(_scene):
+    """As it is compiled for a user: a sanitizer, another rule of optimizing make it another size."""
+    flags = (BUILD / "with/cc").read_text().split()
+    if "-O2" not in flags or any(f.startswith(("-fsanitize", "-O0", "--coverage", "-m32")) for f in flags):
+        skip("compiled otherwise than for a user")
+    if not shutil.which("size"):
+        skip("no size here (package binutils)")
+    for name, most in FACES.items():
+        if (BUILD / name).exists():
+            text, data = map(int, output("size", BUILD / name).splitlines()[1].split()[:2])
+            assert text + data <= most * 1024, f"{name}: {text + data} bytes, at most {most} KiB"
+
+
 def test_the_tables_of_the_chip_families_stand_in_read_only_memory(scene):
     """A pointer in a row would move the whole table to memory that each process has for itself."""
     tables = 0
