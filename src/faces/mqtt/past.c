@@ -48,8 +48,10 @@ static void let_die(struct past *p)
 /* Nothing has gone out yet of what is sent next. */
 static void begin_anew(struct past *p)
 {
-	for (int i = 0; i < p->stream->count; i++)
+	for (int i = 0; i < p->stream->count; i++) {
 		p->stream->rows[i].past_print = 0;
+		p->stream->rows[i].past_us = 0; /* the same may come once more */
+	}
 	for (int i = 0; i < p->stream->chip_count; i++)
 		p->stream->chips[i].filled = false;
 }
