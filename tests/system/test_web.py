@@ -38,10 +38,10 @@ def text(scene, *items, **web):
     wire = scene.file("house.sim", "chip DS2482-100 0x18\nDS18B20 28.A0B1C2000001 temperature 21.5\n"
                       "DS2408 29.A0B1C2000004\n")
     page = scene.path / "page"
-    (page / "deeper" / "more").mkdir(parents=True, exist_ok=True)
+    (page / "deeper").mkdir(parents=True, exist_ok=True)
     (page / "index.html").write_text("<!doctype html><title>owsd</title>\n")
-    (page / "deeper" / "plot.js").write_text("export const a = 1;\n")
-    (page / "deeper" / "more" / "no.js").write_text("no\n")
+    (page / "plot.js").write_text("export const a = 1;\n")
+    (page / "deeper" / "plot.js").write_text("no\n")
     (page / ".hidden.js").write_text("no\n")
     (page / "notes.txt").write_text("no\n")
     keys = " ".join(f'{k} "{v}"' for k, v in {"Files": page, **web}.items())
@@ -193,10 +193,10 @@ def test_the_files_of_the_page_are_served_and_no_others(scene):
     assert "camera=()" in answer.getheader("Permissions-Policy")
     again = page.ask("/", If_None_Match=answer.getheader("ETag"))
     assert again[1:] == (304, b""), again
-    answer, status, body = page.ask("/deeper/plot.js")
+    answer, status, body = page.ask("/plot.js")
     assert (status, body) == (200, b"export const a = 1;\n")
     assert answer.getheader("Content-Type") == "text/javascript; charset=utf-8"
-    for path in ("/notes.txt", "/.hidden.js", "/deeper/more/no.js", "/deeper", "/deeper/",
+    for path in ("/notes.txt", "/.hidden.js", "/deeper/plot.js", "/deeper", "/deeper/",
                  "/../house.sim", "/deeper/../index.html", "/%2e%2e/house.sim", "//etc/passwd",
                  "/api/", "/api/infos"):
         assert page.json(path, 404)["error"], path

@@ -36,6 +36,7 @@ static const char *type_of(const char *name)
 	return NULL;
 }
 
+/* No name of another directory, and none that is hidden. */
 static bool is_plain(const char *name)
 {
 	for (const char *at = name; *at; at++)
@@ -43,18 +44,6 @@ static bool is_plain(const char *name)
 		      (*at >= 'A' && *at <= 'Z') || strchr("._-", *at)))
 			return false;
 	return *name && *name != '.';
-}
-
-/* "style.css", or one directory deeper: of what a path cannot be nothing is looked for. */
-static bool is_of_page(const char *path)
-{
-	const char *name = strchr(path, '/');
-	char directory[FILES_NAME];
-
-	if (strlen(path) >= FILES_NAME || !type_of(path))
-		return false;
-	snprintf(directory, sizeof(directory), "%.*s", name ? (int)(name - path) : 0, path);
-	return name ? is_plain(directory) && is_plain(name + 1) : is_plain(path);
 }
 
 int files_open(const char *directory)
@@ -78,7 +67,7 @@ int files_find(int directory, const char *path, uint64_t *size, const char **typ
 	struct stat stat;
 	int fd;
 
-	if (!is_of_page(name))
+	if (!is_plain(name) || !type_of(name))
 		return -ENOENT;
 	fd = openat(directory, name, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
 	if (fd < 0)
