@@ -106,7 +106,7 @@ def test_a_pressure_beyond_its_limit_is_an_alarm_in_bar(scene):
     daemon = plant(scene, "4.5")
     scene.until(lambda: "! high" in scene.owsctl(daemon, "list").stdout, 10, "the alarm")
     history = scene.owsctl(daemon, "alarms", "history").stdout
-    assert re.search(r"pressure +high +raised +- +5\.25 +good", history), history
+    assert re.search(r"pressure +high raised +5\.25 ", history), history
 
 
 def test_a_command_goes_out_as_its_raw_value_and_comes_back(scene):

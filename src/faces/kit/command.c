@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* A command from outside: how old it may be, what it sets, and why it is refused. */
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 
 #include "hal/base/time.h"
@@ -124,6 +125,14 @@ const char *face_refusal(const struct face_command *command, const struct ows_in
 		         command->program);
 		return words;
 	case ERANGE:
+		/* neither its type nor Min and Max say which: the scale and the device do */
+		if (value_is_float((enum ows_type)info->type) && isnan(info->min) &&
+		    isnan(info->max)) {
+			snprintf(words, FACE_REFUSAL, "\"%.60s\" is beyond the signal's range",
+			         command->text ? command->text : "");
+			return words;
+		}
+		/* fallthrough */
 	case EINVAL:
 		snprintf(words, FACE_REFUSAL, "\"%.60s\" is no value for it: expected %s",
 		         command->text ? command->text : "",

@@ -739,6 +739,7 @@ class Recorded(NamedTuple):
     type: int
     output: bool
     decimals: int
+    identity: str
 
 
 def _frame(columns: Any) -> Any:
@@ -805,7 +806,8 @@ class Event(NamedTuple):
 
 HISTORY_BEGIN, HISTORY_END, HISTORY_GAP, HISTORY_CLOCK, HISTORY_COMMAND, HISTORY_ALARM = range(3, 9)
 
-_Signal = _structure("char_p name unit; uint8 type; bool output; int32 decimals; uint64 spare[4]")
+_Signal = _structure("char_p name unit; uint8 type; bool output; int32 decimals; char_p identity; "
+                     "uint64 spare[3]")
 _Item = _structure("int64 time_ns boot_ns; double number; int64 integer; void_p text; uint32 len; "
                    "bool known; uint8 type quality reason; bool trusted; uint64 spare[4]")
 _Point = _structure("int64 from_ns until_ns; double min max mean last; int64 good_ns known_ns; "
