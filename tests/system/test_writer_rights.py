@@ -124,7 +124,7 @@ def test_at_a_socket_that_is_open_to_all_the_kernels_word_decides(scene):
     data = order(tag_of(service.file), (old + "#\n").encode())
     for who in ("reader", "plc", "setter", "stranger", "owsd"):
         answer = writing.Answer(service.ask_as(who, data).stdout)
-        assert answer.status == "refused" and "no right to change" in answer.why, (who, answer.text)
+        assert answer.status == "refused" and "the group owsd-config" in answer.why, (who, answer.text)
     assert service.file.read_text() == old and "reload" not in service.daemon.log()
     for who in ("editor", "owsd-writer"):
         data = order(tag_of(service.file), (service.file.read_text() + "#\n").encode())

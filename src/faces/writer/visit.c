@@ -155,7 +155,7 @@ static void ask_reload(const struct writer *writer, struct answer *answer)
 		answer_say(
 			answer, ANSWER_DONE,
 			"owsd does not let this writer ask for a reload: is its user in the group "
-			"owsd-writer?");
+			"owsd-config?");
 	else
 		answer_say(answer, ANSWER_DONE, "owsd did not reload: %s", strerror(-err));
 }
@@ -213,7 +213,7 @@ void visit(const struct writer *writer, int fd, bool may)
 	else if (!may_write(writer, &peer))
 		answer_say(&answer, ANSWER_REFUSED,
 		           "no right to change the configuration: that is for root and the group "
-		           "owsd-writer");
+		           "owsd-config");
 	else if (!may)
 		answer_say(&answer, ANSWER_REFUSED,
 		           "too many requests of this user wait: try again when one has ended");
