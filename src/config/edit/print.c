@@ -149,7 +149,11 @@ static void put_special(FILE *out, enum option option, const struct config *conf
 
 void config_print_item(const struct config_item *item, bool all, FILE *out)
 {
-	put_block(out, &option_table[OPT_ITEM], PLACE_ITEM, item, all);
+	struct config_item shown = *item;
+
+	if (!item->output)
+		shown.read_back_ns = -1; /* outputs alone are read back */
+	put_block(out, &option_table[OPT_ITEM], PLACE_ITEM, &shown, all);
 }
 
 void config_print(const struct config *config, FILE *out)

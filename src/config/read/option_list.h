@@ -74,7 +74,7 @@ OPTION(START, "Start", ITEM, TEXT, start, .check = text_is_start, .preset = "ini
 OPTION(CONFIRM, "Confirm", ITEM, FLAG, confirm, .preset = "off", .quiet = true,
        .help = "a person is asked once more before a set by hand")
 OPTION(READ_BACK, "ReadBack", ITEM, SECONDS, read_back_ns, AT(config_item, read_back_at),
-       RANGE(0, DAY), .quiet = true,
+       RANGE(0, DAY),
        .help = "how often an output is read back, seconds; 0: never; 10 for switches")
 OPTION(RESTORE, "Restore", ITEM, FLAG, restores, AT(config_item, restore_at), .preset = "off",
        .quiet = true,

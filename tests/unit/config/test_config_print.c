@@ -6,6 +6,7 @@
 
 #include "unity.h"
 
+#include "src/config/check/know.h"
 #include "src/config/edit/print.h"
 #include "src/config/read/config.h"
 #include "src/config/read/load.h"
@@ -129,6 +130,28 @@ static void test_every_key_survives_being_printed_and_read(void)
 	survives(text, sizeof(text) - 1);
 }
 
+/* An input has none: 0 there would be a key that means nothing. */
+static void test_how_often_it_is_read_back_is_printed_of_outputs_alone(void)
+{
+	static const char text[] =
+		"OwsDrv { Item { Name i Path /29.B89115000000/sensed.0 Type bool }\n"
+		"Item { Name o Path /29.B89115000000/PIO.0 Type bool IO output }\n"
+		"Item { Name n Path /29.B89115000000/PIO.1 Type bool IO output ReadBack 0 } }";
+	struct config *config = parse(text, sizeof(text) - 1);
+	char *printed, *second;
+
+	config_know(config);
+	printed = print(config);
+	second = strstr(printed, "\"o\"");
+	TEST_ASSERT_NOT_NULL(second);
+	TEST_ASSERT_NOT_NULL(strstr(second, "    ReadBack                10\n"));
+	TEST_ASSERT_NOT_NULL(strstr(second, "    ReadBack                0\n"));
+	*second = '\0';
+	TEST_ASSERT_NULL(strstr(printed, "ReadBack"));
+	free(printed);
+	config_free(config);
+}
+
 static void test_an_empty_configuration_survives(void)
 {
 	survives("OwsDrv{}", 8);
@@ -157,6 +180,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_every_key_survives_being_printed_and_read);
+	RUN_TEST(test_how_often_it_is_read_back_is_printed_of_outputs_alone);
 	RUN_TEST(test_an_empty_configuration_survives);
 	RUN_TEST(test_files_of_genuine_shape_survive);
 	return UNITY_END();
