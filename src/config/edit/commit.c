@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "src/config/check/check.h"
+#include "src/config/check/targets.h"
 #include "src/config/edit/commit.h"
 #include "src/config/edit/replace.h"
 #include "src/config/read/load.h"
@@ -42,9 +43,12 @@ int edit_commit(const struct rio *rio, const char *file, const char *edited,
 
 	if (err)
 		return err;
-	if (edited)
+	err = config_check_targets(config, report);
+	if (!err && edited)
 		config_check_items(config, edited, report);
 	config_free(config);
+	if (err)
+		return err;
 	err = replace_file(file, rio->text, rio->len);
 	if (err == -ENOENT && is_dangling(file))
 		report_error(report, (struct place){file, 0, 0},

@@ -354,6 +354,25 @@ static void test_a_result_that_is_no_configuration_never_reaches_the_file(void)
 	TEST_ASSERT_EQUAL_UINT(1, entries(false));
 }
 
+static void test_a_target_or_a_bus_that_is_there_already_never_reaches_the_file(void)
+{
+	static const char bus[] = "OwsDrv { TargetName host\n"
+				  "  Bus { Target host } Bus { Target \"HOST:4304\" } }\n";
+	char text[2048];
+
+	TEST_ASSERT_EQUAL_INT(0, replace_file(file, genuine, strlen(genuine)));
+	parse(genuine);
+	TEST_ASSERT_EQUAL_INT(0, set("OwsDrv", "TargetName=host, HOST:4304"));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, edit_commit(rio, file, "OwsDrv", &report));
+	TEST_ASSERT_NOT_NULL(strstr(said, "the target \"HOST:4304\" is given twice"));
+	said_begin();
+	parse(bus);
+	TEST_ASSERT_EQUAL_INT(-EINVAL, edit_commit(rio, file, NULL, &report));
+	TEST_ASSERT_NOT_NULL(strstr(said, "there is a Bus for \"HOST:4304\" already"));
+	read_back(file, text, sizeof(text));
+	TEST_ASSERT_EQUAL_STRING(genuine, text);
+}
+
 static void test_a_replaced_file_keeps_its_mode_and_is_a_new_one(void)
 {
 	struct stat before, after;
@@ -632,6 +651,7 @@ int main(void)
 	RUN_TEST(test_every_edit_keeps_the_line_ends_of_the_file);
 	RUN_TEST(test_what_cannot_be_edited_is_said);
 	RUN_TEST(test_a_result_that_is_no_configuration_never_reaches_the_file);
+	RUN_TEST(test_a_target_or_a_bus_that_is_there_already_never_reaches_the_file);
 	RUN_TEST(test_a_replaced_file_keeps_its_mode_and_is_a_new_one);
 	RUN_TEST(test_a_symbolic_link_stays_and_its_target_is_replaced);
 	RUN_TEST(test_when_writing_fails_the_old_file_stays_and_nothing_is_left_over);
