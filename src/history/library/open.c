@@ -332,7 +332,10 @@ static int open_look(struct ows_history *h)
 
 	if (err)
 		return err;
-	err = read_places(h);
+	/* the recorder may have brought its tables up to date */
+	err = sql_ask(h->db, "pragma user_version", &h->version);
+	if (err >= 0)
+		err = read_places(h);
 	if (!err)
 		err = h->session_count = read_rows(
 			h,

@@ -901,6 +901,27 @@ static void test_a_signal_of_the_third_version_gets_an_identity_by_its_name(void
 	                                           " and value = 6"));
 }
 
+/* A reader has the file open meanwhile. */
+static void test_a_reader_sees_the_identities_when_the_file_is_brought_up_to_date(void)
+{
+	struct ows_history_signal signal;
+	struct ows_history *h;
+
+	record_one();
+	sql(WITHOUT_IDENTITY "pragma user_version = 3");
+	TEST_ASSERT_EQUAL_INT(0, ows_history_open(NULL, past.directory, &h));
+	TEST_ASSERT_EQUAL_INT(0, ows_history_signal(h, 0, &signal));
+	TEST_ASSERT_EQUAL_STRING("", signal.identity);
+	past_begin(&past, 9 * PAST_S, PAST_NOON, true);
+	rename_room("room", "/28/t", 9 * PAST_S);
+	past_room(&past, 10 * PAST_S, 5);
+	TEST_ASSERT_EQUAL_INT(0, history_writer_flush(past.writer, 11 * PAST_S));
+	TEST_ASSERT_EQUAL_INT(0, ows_history_refresh(h));
+	TEST_ASSERT_EQUAL_INT(0, ows_history_signal(h, 0, &signal));
+	TEST_ASSERT_EQUAL_STRING("/28/t", signal.identity);
+	ows_history_close(h);
+}
+
 static void test_a_name_that_another_signal_takes_is_of_that_one_from_then_on(void)
 {
 	past_begin(&past, 5 * PAST_S, PAST_NOON, true);
@@ -980,6 +1001,7 @@ int main(void)
 	RUN_TEST(test_hours_of_the_first_version_are_numbered_anew);
 	RUN_TEST(test_events_of_the_second_version_get_words_and_its_readers_need_none);
 	RUN_TEST(test_a_signal_of_the_third_version_gets_an_identity_by_its_name);
+	RUN_TEST(test_a_reader_sees_the_identities_when_the_file_is_brought_up_to_date);
 	RUN_TEST(test_a_name_that_another_signal_takes_is_of_that_one_from_then_on);
 	RUN_TEST(test_what_an_earlier_run_of_the_boot_has_of_the_journals_is_known);
 	return UNITY_END();
