@@ -22,18 +22,14 @@ static void pushing_watch(void *ctx, int fd, short events)
 		log_err(((struct face *)ctx)->log, "too many descriptors");
 }
 
-/* missed.identity */
-static const char *identity_of(void *ctx, int row, uint8_t *type)
+/* missed.info */
+static bool info_of(void *ctx, int row, struct ows_info *info)
 {
 	struct face *face = ctx;
 	const struct pushing *p = face->own;
-	struct ows_info info;
 
-	if (row >= p->points.count || !p->points.rows[row].series ||
-	    ows_info(face->ows, row, &info))
-		return NULL;
-	*type = info.type;
-	return info.identity;
+	return row < p->points.count && p->points.rows[row].series &&
+	       !ows_info(face->ows, row, info);
 }
 
 static void pushing_begin(struct face *face, int64_t now_ns)
@@ -50,7 +46,7 @@ static void pushing_begin(struct face *face, int64_t now_ns)
 	p->missed = (struct missed){.face = face,
 	                            .peer = "the server",
 	                            .what = "influx",
-	                            .identity = identity_of,
+	                            .info = info_of,
 	                            .ctx = face,
 	                            .dated = p->clock.trusted};
 	/* one key: what a server could not take goes to the one that another Url names */

@@ -181,6 +181,13 @@ bool missed_look(struct missed *m, int64_t now_ns)
 	return true;
 }
 
+/* What was recorded before there were identities has names alone. */
+static bool is_same(const struct ows_info *info, const struct ows_history_signal *known)
+{
+	return *known->identity ? !strcmp(info->identity, known->identity)
+	                        : !strcmp(info->name, known->name);
+}
+
 /*
  * The row of the face; mostly both have the same order. What was written when the signal had
  * another type is none of it.
@@ -197,10 +204,9 @@ static int row_of(struct missed *m, const struct replay_row *r, int count)
 	*row = MISSED_NONE;
 	for (int k = 0; k < count && *row < 0; k++) {
 		int i = (r->signal + k) % count;
-		uint8_t type;
-		const char *identity = m->identity(m->ctx, i, &type);
+		struct ows_info info;
 
-		if (identity && type == known.type && !strcmp(identity, known.identity))
+		if (m->info(m->ctx, i, &info) && info.type == known.type && is_same(&info, &known))
 			*row = i;
 	}
 	return *row;

@@ -26,8 +26,8 @@ struct missed {
 	struct face *face;
 	const char *peer; /* "the broker" */
 	const char *what; /* of the directory of its own: "mqtt" */
-	/* The identity and type of a row of the face; a batch has its number as its signal. */
-	const char *(*identity)(void *ctx, int row, uint8_t *type);
+	/* Of a row of the face; false: it gets nothing. A batch has its number as its signal. */
+	bool (*info)(void *ctx, int row, struct ows_info *info);
 	void *ctx;
 	bool dated; /* the clock of this boot is known to be right */
 

@@ -20,13 +20,11 @@
 /* In the history rows of the same time are microseconds apart */
 #define SAME_NS NS_PER_MS
 
-/* missed.identity */
-static const char *identity_of(void *ctx, int row, uint8_t *type)
+/* missed.info */
+static bool info_of(void *ctx, int row, struct ows_info *info)
 {
-	const struct stream *s = ((struct past *)ctx)->stream;
-
-	*type = s->rows[row].info.type;
-	return s->rows[row].info.identity;
+	*info = ((struct past *)ctx)->stream->rows[row].info;
+	return true;
 }
 
 /* --- A batch --------------------------------------------------------------------------------- */
@@ -216,7 +214,7 @@ void past_begin(struct past *p, uint64_t key)
 	p->missed.face = p->face;
 	p->missed.peer = "the broker";
 	p->missed.what = "mqtt";
-	p->missed.identity = identity_of;
+	p->missed.info = info_of;
 	p->missed.ctx = p;
 	if (p->on)
 		missed_begin(&p->missed, key, ows_now());

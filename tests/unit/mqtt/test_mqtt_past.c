@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Tests of what a broker has missed: what of the history goes out again, and what is kept. */
+#include <sqlite3.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -182,6 +183,32 @@ static void test_what_was_recorded_while_the_broker_was_away_goes_out_again(void
 	TEST_ASSERT_EQUAL_STRING("", again);
 }
 
+/* A file of version 3, before the recorder has found its signals in it. */
+static void test_rows_without_an_identity_are_of_the_signal_of_their_name(void)
+{
+	char path[400];
+	sqlite3 *db;
+
+	record();
+	room(now_ns, 20);
+	written(now_ns + S);
+	snprintf(path, sizeof(path), "%s/history.sqlite", history);
+	TEST_ASSERT_EQUAL_INT(SQLITE_OK, sqlite3_open(path, &db));
+	TEST_ASSERT_EQUAL_INT(SQLITE_OK, sqlite3_exec(db,
+	                                              "update signal set identity = null,"
+	                                              " name = 'room' where name = 'hall'",
+	                                              NULL, NULL, NULL));
+	sqlite3_close(db);
+	begin();
+	settle();
+	again[0] = '\0';
+	past_lost(&past);
+	room(now_ns + 20 * S, 21);
+	now_ns += 60 * S;
+	settle();
+	TEST_ASSERT_EQUAL_STRING("room=21 ", again);
+}
+
 static void test_a_burst_keeps_its_order_by_the_millisecond(void)
 {
 	int64_t away_ns;
@@ -357,6 +384,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_what_was_recorded_while_the_broker_was_away_goes_out_again);
+	RUN_TEST(test_rows_without_an_identity_are_of_the_signal_of_their_name);
 	RUN_TEST(test_a_burst_keeps_its_order_by_the_millisecond);
 	RUN_TEST(test_what_the_recorder_has_not_written_yet_is_waited_for);
 	RUN_TEST(test_without_a_right_clock_or_a_birth_nothing_goes_out);
