@@ -132,18 +132,24 @@ static bool publish_chip(struct stream *s, struct row *row, uint8_t quality)
 	return true;
 }
 
-/* A key came: its ROM id, for those who are there now. */
+/* A key came: the ROM id of the one that is there, for those who are there now. */
 static bool publish_key(struct stream *s, struct row *row, const struct ows_value *v)
 {
 	bool here = ows_good(v->quality) && v->integer != 0;
-	char topic[TOPIC_SIZE];
+	char topic[TOPIC_SIZE], id[ROM_TEXT_MAX];
+	const char *device = row->info.device;
+	uint8_t rom[ROM_LEN];
 
 	/* one that was there before we looked did not come */
 	if (!ows_good(v->quality) && v->quality != OWS_Q_NO_DEVICE)
 		return true;
 	if (here && row->key_away) {
 		snprintf(topic, sizeof(topic), "%s/tag", row->topic);
-		if (!stream_put_text(s, topic, row->chip_id, false))
+		if (!rom_parse(device, strlen(device), rom))
+			rom_print(rom, ROM_F_I, id);
+		else
+			snprintf(id, sizeof(id), "%s", row->chip_id);
+		if (!stream_put_text(s, topic, id, false))
 			return false;
 	}
 	row->key_away = !here;

@@ -51,6 +51,7 @@ void instance_make(struct instance *in, const char *name, uint32_t generation, i
 		image[i] = (struct image_signal){
 			.name = signals[i].name,
 			.path = signals[i].path,
+			.identity = signals[i].identity,
 			.type = signals[i].type,
 			.flags = signals[i].output ? OWS_RECORD_OUTPUT : 0,
 			.text_cap = text ? INSTANCE_TEXT : 0,

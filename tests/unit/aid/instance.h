@@ -18,7 +18,8 @@ struct instance_signal {
 	uint8_t type;
 	bool output;
 	int64_t stale_after_ns;
-	const char *device; /* a ROM id, of no other signal; NULL: none */
+	const char *device;   /* a ROM id, of no other signal; NULL: none */
+	const char *identity; /* NULL: the path */
 };
 
 struct instance {

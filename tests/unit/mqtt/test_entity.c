@@ -16,7 +16,9 @@ static const struct instance_signal signals[] = {
 	{"lamp", "/29.000000000001/PIO.0", OWS_BOOL, true, 0, "29.000000000001"},
 	{"door", "/29000000000001/sensed.0", OWS_BOOL, false, 0, "29000000000001"},
 	{"text", "/settings/x", OWS_STRING, true, 0, ""},
-	{"key", "/01.000000000007/present", OWS_BOOL, false, 0, "01.000000000007"},
+	/* it is in the place of one that was lost */
+	{"key", "/01.000000000008/present", OWS_BOOL, false, 0, "01.000000000008",
+         "/01.000000000007/present"},
 };
 enum { ROOM, DIMMER, LAMP, DOOR, TEXT, KEY, COUNT };
 
@@ -237,9 +239,9 @@ static void test_a_key_is_a_tag_too(void)
 	    "\"p\":\"binary_sensor\"");
 	has(published_at(&p, CHIP("01_000000000007")),
 	    "\"owsd_01_000000000007_present_tag\":{\"p\":\"tag\",\"t\":\"o/pi/key/tag\"}");
-	/* it comes while we look: its id goes to those who are there, once */
+	/* it comes while we look: its own id goes to those who are there, once */
 	instance_put(&p.in, KEY + 1, 1, ows_now());
-	has(published_change(&p, KEY), "o/pi/key/tag (once) 01.000000000007\n");
+	has(published_change(&p, KEY), "o/pi/key/tag (once) 01.000000000008\n");
 	instance_put(&p.in, KEY + 1, 1, ows_now());
 	TEST_ASSERT_NULL(strstr(published_change(&p, KEY), "tag"));
 }
