@@ -943,6 +943,24 @@ static void test_a_name_that_another_signal_takes_is_of_that_one_from_then_on(vo
 	TEST_ASSERT_EQUAL_INT(-ENOENT, found("attic"));
 }
 
+/* What is written after it is of the time before it. */
+static void test_a_name_stays_with_the_signal_that_took_it_before_the_other_was_written(void)
+{
+	static const struct history_signal both[] = {
+		{.name = "hall", .unit = "", .type = OWS_DOUBLE, .identity = "/28/a"},
+		{.name = "attic", .unit = "", .type = OWS_DOUBLE, .identity = "/28/b"}};
+
+	past_begin(&past, 5 * PAST_S, PAST_NOON, true);
+	TEST_ASSERT_EQUAL_INT(0, history_writer_signals(past.writer, both, 2, 5 * PAST_S));
+	history_writer_value(past.writer, 0, 6 * PAST_S, OWS_Q_GOOD, 0, NULL, 0);
+	history_writer_value(past.writer, 1, 7 * PAST_S, OWS_Q_GOOD, 0, NULL, 0);
+	rename_room("attic", "/28/a", 8 * PAST_S);
+	past_room(&past, 9 * PAST_S, 2);
+	TEST_ASSERT_EQUAL_INT(0, history_writer_flush(past.writer, 10 * PAST_S));
+	TEST_ASSERT_EQUAL_INT(found("/28/a"), found("attic"));
+	TEST_ASSERT_NOT_EQUAL(found("/28/a"), found("/28/b"));
+}
+
 static void test_what_an_earlier_run_of_the_boot_has_of_the_journals_is_known(void)
 {
 	struct history_event alarm = {.kind = OWS_HISTORY_ALARM,
@@ -1003,6 +1021,7 @@ int main(void)
 	RUN_TEST(test_a_signal_of_the_third_version_gets_an_identity_by_its_name);
 	RUN_TEST(test_a_reader_sees_the_identities_when_the_file_is_brought_up_to_date);
 	RUN_TEST(test_a_name_that_another_signal_takes_is_of_that_one_from_then_on);
+	RUN_TEST(test_a_name_stays_with_the_signal_that_took_it_before_the_other_was_written);
 	RUN_TEST(test_what_an_earlier_run_of_the_boot_has_of_the_journals_is_known);
 	return UNITY_END();
 }
