@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <math.h>
+#include <string.h>
 
 #include "src/ground/signal/value.h"
 #include "src/history/file/schema.h"
@@ -451,4 +452,16 @@ int store_known(struct history_store *store, int64_t *alarms_ns, int64_t *comman
 			*to[i] = us * 1000 + 999;
 	}
 	return err;
+}
+
+void history_key_leave(struct history_key *key, const struct history_signal *signals,
+                       uint32_t count)
+{
+	size_t size = strlen(key->identity) + 1;
+
+	for (uint32_t i = 0; i < count && size <= sizeof(key->name); i++)
+		if (!strcmp(signals[i].name, key->name)) {
+			memcpy(key->name, key->identity, size);
+			return;
+		}
 }

@@ -20,6 +20,10 @@ struct history_key {
 	int64_t last_id; /* of its newest row */
 };
 
+/* Of a signal that is no more: what is left of it is not to take a name back that another has. */
+void history_key_leave(struct history_key *key, const struct history_signal *signals,
+                       uint32_t count);
+
 enum history_row_kind { ROW_VALUE, ROW_GAP, ROW_EVENT, ROW_CLOCK };
 struct history_row {
 	int64_t us;                  /* boot time */

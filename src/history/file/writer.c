@@ -208,19 +208,6 @@ static void set_key(struct history_key *key, const struct history_signal *signal
 	key->number = 0; /* the file may have something else of it */
 }
 
-/* Of a signal that is no more: what is left of it is not to take a name back that another has. */
-static void leave_name(struct history_key *key, const struct history_signal *signals,
-                       uint32_t count)
-{
-	size_t size = strlen(key->identity) + 1;
-
-	for (uint32_t i = 0; i < count && size <= sizeof(key->name); i++)
-		if (!strcmp(signals[i].name, key->name)) {
-			memcpy(key->name, key->identity, size);
-			return;
-		}
-}
-
 static int room_for_keys(struct history_writer *w, uint32_t count)
 {
 	struct history_key *keys = reallocarray(w->keys, count + 1, sizeof(*keys));
@@ -271,16 +258,14 @@ int history_writer_signals(struct history_writer *w, const struct history_signal
 	}
 	for (uint32_t i = 0; !err && i < w->key_count; i++) {
 		if (!there[i])
-			leave_name(&w->keys[i], signals, count);
+			history_key_leave(&w->keys[i], signals, count);
 		if (!there[i] && w->kept[i].known)
 			writer_forget(w, i, now_ns / NS_PER_US, OWS_HISTORY_NOT_ASKED);
 	}
 	free(there);
-	if (err) {
-		free(table);
+	free(err ? table : w->table);
+	if (err)
 		return err;
-	}
-	free(w->table);
 	w->table = table;
 	w->count = count;
 	return 0;
