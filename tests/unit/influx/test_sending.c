@@ -66,11 +66,13 @@ static int64_t offset(void)
 	return wall.tv_sec * S + wall.tv_nsec - ows_now();
 }
 
-static const char *identity_of(void *ctx, int row, uint8_t *type)
+static bool info_of(void *ctx, int row, struct ows_info *info)
 {
 	(void)ctx;
-	*type = signals[row].type;
-	return signals[row].path;
+	*info = (struct ows_info){.name = signals[row].name,
+	                          .identity = signals[row].path,
+	                          .type = signals[row].type};
+	return true;
 }
 
 static const struct history_signal table[] = {{"room", "", OWS_DOUBLE, 0, 2, "/28.1/temperature"},
@@ -102,11 +104,8 @@ static void written(void)
 
 static void begin(void)
 {
-	p->missed = (struct missed){.face = &face,
-	                            .peer = "the server",
-	                            .what = "influx",
-	                            .identity = identity_of,
-	                            .ctx = p};
+	p->missed = (struct missed){
+		.face = &face, .peer = "the server", .what = "influx", .info = info_of, .ctx = p};
 	missed_begin(&p->missed, 1, now_ns);
 	p->missed_ns = now_ns;
 }
