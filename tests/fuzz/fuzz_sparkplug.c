@@ -70,6 +70,8 @@ static void make(struct ows *h)
 	TEST_ASSERT_EQUAL_INT(0, stream_open(&s));
 	TEST_ASSERT_EQUAL_INT(0, stream_make(&s, h));
 	TEST_ASSERT_EQUAL_INT(HEAP_SIGNALS, s.count);
+	while (s.chip_count)
+		free(s.chips[--s.chip_count].topic);
 	s.chips[0] = (struct chip){.id = CHIP, .family = ""};
 	s.chip_count = 1;
 	s.rows[1].chip = s.rows[4].chip = 0;
