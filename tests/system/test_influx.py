@@ -281,7 +281,7 @@ def test_lines_that_the_server_refuses_are_shown_and_counted_and_the_others_go_o
         daemon = scene.owsd(text(scene, server.url))
         daemon.notify.setblocking(False)
         face = push(scene, daemon, env={"NOTIFY_SOCKET": daemon.notify.getsockname()})
-        logged(face, "lines: HTTP 400: unable to ?[31mparse; the first: ows,instance=")
+        logged(face, "lines: HTTP 400: unable to ?[31mparse; the first: ows,identity=")
         set_relays(scene, daemon, 1)
         tells(daemon, r"STATUS=the server refuses lines; .* [1-9]\d* refused")
         time.sleep(1)  # longer than Every: 1 goes, too
@@ -309,12 +309,12 @@ def test_a_server_that_takes_little_at_once_gets_smaller_batches(scene):
             set_relays(scene, daemon, value)
         arrives(server, "relays", "8")
         arrives(server, "relays", "6")
-        logged(face, "refuses 1 lines: HTTP 400: disliked; the first: ows,instance=")
+        logged(face, "refuses 1 lines: HTTP 400: disliked; the first: ows,identity=")
         server.dislikes, server.most = None, 10
         before = len(server.requests)
         set_relays(scene, daemon, 4)
         until(lambda: len(server.requests) > before, 20, "it is asked")
-        server.most = 100
+        server.most = 200
         set_relays(scene, daemon, 5)
         arrives(server, "relays", "5")  # a line that is too large alone stops nothing
         assert not {"4", "7"} & set(server.values("relays")), server.points

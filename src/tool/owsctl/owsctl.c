@@ -110,7 +110,7 @@ static const struct verb verbs[] = {
 	{"write", "[-t TARGET] [-w SECONDS] PATH VALUE", "write a property of a device", verb_write,
          .options = TARGET_OPTIONS, .example = "write /29.B89115000000/PIO.0 1", .opens = true,
          .writes = true},
-	{"scan", "[-t TARGET] [-w SECONDS] [OPTION]... [DEVICE... | --rio [OPTION]...]",
+	{"scan", "[-t TARGET] [OPTION]... [DEVICE... | --rio [OPTION]...]",
          "list the devices, or print a configuration for them", verb_scan,
          .options = TARGET_OPTIONS
          "  --within SECONDS   end after that with what was read\n"
