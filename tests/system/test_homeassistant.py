@@ -68,7 +68,7 @@ def test_it_takes_each_kind_of_entity_and_moves_outputs(scene):
         judge.shows(entity, state)
     assert "mqtt:127.0.0.1" in scene.owsctl(house.daemon, "journal").stdout
     # events and keys
-    until(lambda: judge.states()["event.inputs_device_event"][3] in ("raised", "gone"), 30, lambda: judge.states())
+    until(lambda: judge.states()["event.inputs_device_event"][3] in ("raised", "returned"), 30, lambda: judge.states())
     until(lambda: judge.listener.last("judge/tag") == f"tag {KEY}", 30, "the key is a tag")
     assert not judge.complaints(), "\n".join(judge.complaints())
     # every component that was announced became an entity, but the tag

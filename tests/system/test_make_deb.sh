@@ -10,7 +10,7 @@ mkdir tree bin
 tree=$PWD/tree
 (cd "$OWSD_SOURCE" && cp -r Makefile LICENSE ./*.md board "$tree" &&
 	find tests src \( -name '*.mk' -o -name LICENSE \) -exec cp --parents '{}' "$tree" ';')
-mkdir tree/hal tree/docs
+mkdir -p tree/hal tree/docs tree/src
 # Nothing is installed, and the clean system is this one that says what it was given
 mv tree/board/install-deps bin
 cat >tree/board/install-deps <<END

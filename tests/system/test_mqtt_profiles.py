@@ -210,7 +210,7 @@ def test_commands_have_the_way_and_the_rights_of_all_commands(scene):
         command(house, profile, "relay", profile.off, "-r")
         logged(house.face, "command to relay refused: it is retained")
         command(house, profile, "nobody", profile.on)
-        logged(house.face, "nobody refused: there is no such signal")
+        logged(house.face, " refused: there is no such signal")
         assert house.listener.last(profile.topic("relay")) == profile.on
         assert scene.get(house.daemon, "relay") == "1"
         house.face.stop()

@@ -198,7 +198,8 @@ def test_a_sensor_that_was_replaced_gives_its_signal_to_the_new_one(scene):
         page.click("dialog button.primary")
         shows(page, f"[data-id='{NEW}']", "In the draft: attic")
         text = draft_text(page)
-        assert f'"/bus.0/{NEW}/temperature12"' in text and GONE not in text, text
+        assert f'Path                    "/bus.0/{NEW}/temperature12"' in text, text
+        assert f'Identity                "/bus.7/{GONE}/temperature12"' in text and text.count(GONE) == 1, text
         page.until("return !document.querySelector(arguments[0])", "nothing is missing",
                    f"[data-id='{GONE}']")
         well(page)

@@ -79,6 +79,7 @@ static const struct {
 	{"alert bad certificate", "look at CertFile and KeyFile"},
 	{"alert unknown ca", "look at CertFile, and cafile of the broker"},
 	{"wrong version number", "is that a port without TLS: mqtt://?"},
+	{"unexpected eof", "is that a port without TLS: mqtt://?"},
 };
 
 static const char *tls_remedy(const char *tls)

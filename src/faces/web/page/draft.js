@@ -5,11 +5,11 @@ import {get, isUnknown, post} from "./api.js";
 import {hunks, merge} from "./diff.js";
 import {idOf} from "./names.js";
 import {store} from "./store.js";
+import {recall, remember} from "./kept.js";
 
 const STEPS = 200;            // of undo
 const CHARACTERS = 32 << 20;  // of all texts that undo keeps
 const SAVE_MS = 60000;        // a reload waits for what is on the bus
-const KEY = `owsd-draft ${location.pathname}`;
 const PROGRAMS = ["Web", "Recorder", "Influx", "Mqtt"]; // that have a block
 const EMPTY = {targets: [], driver: {}, blocks: {}, buses: [], items: []};
 
@@ -281,32 +281,6 @@ class Draft extends EventTarget {
 	/** Lines that the draft changes in the file. */
 	get changes() {
 		return hunks(this.base.text.split("\n"), this.text.split("\n")).length;
-	}
-}
-
-// --- A draft survives that the page is loaded anew ------------------------------------------
-
-function remember(draft) {
-	if (!draft.ready)
-		return;
-	try {
-		if (draft.dirty)
-			sessionStorage.setItem(KEY, JSON.stringify({file: draft.info.file, base: draft.base,
-				text: draft.text}));
-		else
-			sessionStorage.removeItem(KEY);
-	} catch {
-		// no room: the warning before the page is left has to do
-	}
-}
-
-function recall(file) {
-	try {
-		const kept = JSON.parse(sessionStorage.getItem(KEY));
-		return kept.file === file && typeof kept.text === "string"
-			&& typeof kept.base.text === "string" ? kept : null;
-	} catch {
-		return null;
 	}
 }
 
