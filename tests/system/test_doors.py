@@ -291,6 +291,7 @@ def porter_of(daemon):
 def test_a_porter_of_the_page_that_is_killed_comes_back(scene):
     daemon = plant(scene)
     page, path, _ = page_of(scene, daemon)
+    until(lambda: porter_of(page), 10, "the porter")
     killed = porter_of(page)
     os.kill(killed, signal.SIGKILL)
     until(lambda: "owsd-porter, was killed" in page.log(), 20, page.log)

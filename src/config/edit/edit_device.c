@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Replaces a device in the paths of its items. */
+#include <assert.h>
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
@@ -125,6 +126,7 @@ static int replace_in(struct rio **rio, const uint8_t before[ROM_LEN], const uin
 	if (err)
 		return err;
 	item = edit_device_find(*rio, before, &in);
+	assert(item); /* it was there, and has its path still */
 	if (!new_path(&in, after, location, text, sizeof(text))) {
 		report_error(report, (struct place){0}, "the path \"%s\" would be too long",
 		             in.text);

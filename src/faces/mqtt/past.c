@@ -2,6 +2,7 @@
 /* The batches of rows that fill what a broker has missed. */
 #include "src/faces/mqtt/past.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -56,7 +57,7 @@ static void begin_anew(struct past *p)
 
 static void drop_batch(struct past *p)
 {
-	for (int i = 0; i < p->value_count; i++)
+	for (int i = 0; p->values && i < p->value_count; i++)
 		free(p->values[i].text);
 	free(p->values);
 	p->values = NULL;
@@ -115,6 +116,7 @@ static void add_value(struct past *p, struct row *row, struct replay_row *r)
 /* From then on nothing is known: no number, of no row that is there. */
 static void add_gap(struct past *p, struct replay_row *r)
 {
+	assert(p->stream->rows);
 	r->v = (struct ows_value){.quality = OWS_Q_STALE};
 	for (int i = 0; i < p->stream->count; i++) {
 		struct row *row = &p->stream->rows[i];

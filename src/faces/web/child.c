@@ -131,7 +131,7 @@ int child_run(struct child *child)
 	int files[FILES], err = make_files(child, files);
 	size_t words_len;
 	char *words;
-	pid_t pid;
+	pid_t pid = -1;
 
 	child->status = -1;
 	child->why[0] = '\0';

@@ -85,7 +85,7 @@ static void keys_json(struct json *json, enum option_place place, const void *fr
 			continue;
 		text = option_is_given(def, from) ? option_text(def, from, room) : NULL;
 		if (def->kind == OPTION_FLAG)
-			json_bool(json, def->key, !strcmp(text, "on"));
+			json_bool(json, def->key, text && !strcmp(text, "on"));
 		else if (text && is_number(def))
 			json_number(json, def->key, text);
 		else
