@@ -102,18 +102,19 @@ static void exec_next(struct bus *bus)
 
 	if (bus_req_unwanted(req))
 		answer.err = -ECANCELED;
-	else if (bus->env->now(bus->env->ctx) >= req->deadline_ns)
+	else if (bus_now(bus->env) >= req->deadline_ns)
 		answer.err = -ETIME;
 	else
 		bus->ops->exec(bus, req, &answer);
 	bus->env->answer(bus->env->ctx, &answer);
 }
 
-static void report_news(struct bus *bus, enum bus_news news)
+void bus_report(const struct bus_env *env, enum bus_news news, int err, const char *text)
 {
-	const struct bus_event event = {.news = (uint8_t)news};
+	struct bus_event event = {.news = (uint8_t)news, .err = err};
 
-	bus->env->event(bus->env->ctx, &event);
+	snprintf(event.text, sizeof(event.text), "%s", text);
+	env->event(env->ctx, &event);
 }
 
 /* Report BUS_UP for a bus without a step, which cannot be down. */
@@ -122,7 +123,7 @@ static void report_up(struct bus *bus)
 	if (bus->told_up || bus->ops->step)
 		return;
 	bus->told_up = true;
-	report_news(bus, BUS_UP);
+	bus_report(bus->env, BUS_UP, 0, "");
 }
 
 static void refuse_all(struct bus *bus)
@@ -145,9 +146,9 @@ static int64_t look_for_target(struct bus *bus, int64_t now)
 	if (visible == -EAGAIN)
 		return now;
 	if (visible > 0 && !bus->visible)
-		report_news(bus, BUS_BACK);
+		bus_report(bus->env, BUS_BACK, 0, "");
 	bus->visible = visible > 0;
-	bus->look_ns = bus->env->now(bus->env->ctx) + LOOK_NS;
+	bus->look_ns = bus_now(bus->env) + LOOK_NS;
 	return bus->look_ns;
 }
 
@@ -189,7 +190,7 @@ void bus_suspend(struct bus *bus, bool yes)
 		return;
 	if (bus->ops->exec)
 		refuse_all(bus);
-	report_news(bus, BUS_RELEASED);
+	bus_report(bus->env, BUS_RELEASED, 0, "");
 	bus->visible = false;
 	bus->look_ns = 0;
 }

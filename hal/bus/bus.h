@@ -207,6 +207,12 @@ struct bus_env {
 	void (*event)(void *ctx, const struct bus_event *event);
 };
 
+static inline int64_t bus_now(const struct bus_env *env)
+{
+	return env->now(env->ctx);
+}
+void bus_report(const struct bus_env *env, enum bus_news news, int err, const char *text);
+
 /* A running total that `owsctl stats` shows; name is a literal such as "keepalives". */
 struct bus_counter {
 	const char *name;

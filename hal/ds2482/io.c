@@ -20,9 +20,7 @@
 
 int64_t ds2482_now(const struct ds2482_master *master)
 {
-	const struct bus_env *env = master->master.env;
-
-	return env->now(env->ctx);
+	return bus_now(master->master.env);
 }
 
 int ds2482_wait_until(const struct ds2482_master *master, int64_t t)

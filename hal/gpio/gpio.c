@@ -26,19 +26,6 @@ static const char *const names[GPIO_COUNTS] = {
 	[GPIO_OPENS] = "chip_opened",
 };
 
-static int64_t gpio_now(const struct gpio_bus *gpio)
-{
-	return gpio->bus.env->now(gpio->bus.env->ctx);
-}
-
-static void report_news(struct gpio_bus *gpio, enum bus_news news, int err, const char *text)
-{
-	struct bus_event event = {.news = (uint8_t)news, .err = err};
-
-	snprintf(event.text, sizeof(event.text), "%s", text);
-	gpio->bus.env->event(gpio->bus.env->ctx, &event);
-}
-
 static void gpio_destroy(struct bus *bus)
 {
 	struct gpio_bus *gpio = (struct gpio_bus *)bus;
@@ -81,9 +68,9 @@ static void go_down_chip(struct gpio_bus *gpio, int err, const char *why)
 	lines_release(gpio);
 	gpio_close(gpio->chip);
 	gpio->chip = NULL;
-	gpio->next_ns = gpio_now(gpio) + AGAIN_NS;
+	gpio->next_ns = bus_now(gpio->bus.env) + AGAIN_NS;
 	if (!gpio->told)
-		report_news(gpio, BUS_DOWN, err, why);
+		bus_report(gpio->bus.env, BUS_DOWN, err, why);
 	gpio->told = true;
 }
 
@@ -135,7 +122,7 @@ static int64_t gpio_step(struct bus *bus, int64_t now)
 	gpio->told = false;
 	gpio->next_ns = now + LOOK_NS;
 	bus_count(&gpio->count[GPIO_OPENS], 1);
-	report_news(gpio, BUS_UP, 0, "");
+	bus_report(gpio->bus.env, BUS_UP, 0, "");
 	return gpio->next_ns;
 }
 
@@ -219,7 +206,7 @@ static void gpio_exec(struct bus *bus, struct bus_req *req, struct bus_answer *a
 	int line;
 
 	answer->kind = BUS_TEXT;
-	answer->measured_ns = gpio_now(gpio);
+	answer->measured_ns = bus_now(gpio->bus.env);
 	if (!gpio->chip) {
 		answer->err = -ENOTCONN;
 		return;
@@ -240,7 +227,7 @@ static void gpio_exec(struct bus *bus, struct bus_req *req, struct bus_answer *a
 		go_down_chip(gpio, -ENODEV, "the chip is gone");
 		answer->err = -ECONNRESET;
 	} else if (*why) {
-		report_news(gpio, BUS_NOTE, answer->err, why);
+		bus_report(gpio->bus.env, BUS_NOTE, answer->err, why);
 	}
 }
 

@@ -141,13 +141,13 @@ static const char *refusal_text(const struct w1_netlink *netlink, int err)
 
 static int serve_sysfs(struct w1_netlink *netlink, int err)
 {
-	struct bus_event event = {.news = BUS_NOTE, .err = err};
+	char text[BUS_EVENT_TEXT];
 
 	netlink->refused = true;
-	snprintf(event.text, sizeof(event.text),
-	         "netlink refused: %s; served by files as target w1", refusal_text(netlink, err));
+	snprintf(text, sizeof(text), "netlink refused: %s; served by files as target w1",
+	         refusal_text(netlink, err));
 	if (!netlink->told)
-		netlink->master.env->event(netlink->master.env->ctx, &event);
+		bus_report(netlink->master.env, BUS_NOTE, err, text);
 	netlink->told = true;
 	return 0;
 }

@@ -281,12 +281,12 @@ static int receive_reply(struct w1_talk *talk, uint32_t master, int64_t until)
 	int n;
 
 	do {
-		int64_t look = talk->env->now(talk->env->ctx) + LOOK_NS;
+		int64_t look = bus_now(talk->env) + LOOK_NS;
 
 		n = receive_datagram(talk, look < until ? look : until);
 		if (n == -ETIMEDOUT && !talk->has_master(talk->ctx, master))
 			return -ENODEV;
-	} while (n == -ETIMEDOUT && talk->env->now(talk->env->ctx) < until);
+	} while (n == -ETIMEDOUT && bus_now(talk->env) < until);
 	return n;
 }
 
@@ -294,7 +294,7 @@ int w1_request_run(struct w1_talk *talk, struct w1_request *request)
 {
 	struct progress progress = {.request = request};
 	bool search = request->count && request->command[0].code == W1_SEARCH;
-	int64_t until = talk->env->now(talk->env->ctx) + (search ? SEARCH_NS : REPLY_NS);
+	int64_t until = bus_now(talk->env) + (search ? SEARCH_NS : REPLY_NS);
 	int n = send_request(talk, request, MASTER_COMMAND);
 
 	if (n)
@@ -338,7 +338,7 @@ int w1_talk_masters(struct w1_talk *talk, uint32_t *numbers, unsigned room)
 {
 	struct list list = {.numbers = numbers, .room = room};
 	struct w1_request request;
-	int64_t until = talk->env->now(talk->env->ctx) + LIST_NS;
+	int64_t until = bus_now(talk->env) + LIST_NS;
 	int n;
 
 	w1_request_begin(&request, 0);

@@ -165,7 +165,7 @@ static void null_exec(struct bus *bus, struct bus_req *req, struct bus_answer *a
 {
 	answer->kind = BUS_TEXT;
 	answer->detail = BUS_DETAIL_SIMULATED;
-	answer->measured_ns = bus->env->now(bus->env->ctx);
+	answer->measured_ns = bus_now(bus->env);
 	answer->err = null_serve((struct null_bus *)bus, req, &answer->len);
 }
 

@@ -168,9 +168,7 @@ static int try_next(struct connection *connection)
 		if (connection->fd >= 0) {
 			connection->give_up_ns = INT64_MAX;
 			if (connection->next)
-				connection->give_up_ns = connection->env->now(
-								 connection->env->ctx) +
-				                         ADDRESS_NS;
+				connection->give_up_ns = bus_now(connection->env) + ADDRESS_NS;
 			setsockopt(connection->fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
 			if (connect(connection->fd, address->ai_addr, address->ai_addrlen) == 0 ||
 			    errno == EINPROGRESS || errno == EINTR)

@@ -39,7 +39,7 @@ static int find_id(struct listing *listing, struct talk *talk, const char *alias
                    int64_t deadline_ns, char id[ROM_TEXT_MAX])
 {
 	const struct bus_env *env = talk->connection.env;
-	const struct listing_name *name = known_name(listing, alias, len, env->now(env->ctx));
+	const struct listing_name *name = known_name(listing, alias, len, bus_now(env));
 	struct listing_name *place = &listing->name[listing->next];
 	char path[FRAME_PATH_MAX + 1];
 	uint8_t address[ADDRESS_LEN];
@@ -67,7 +67,7 @@ static int find_id(struct listing *listing, struct talk *talk, const char *alias
 		memcpy(place->alias, alias, len);
 		place->alias[len] = '\0';
 		memcpy(place->id, id, sizeof(place->id));
-		place->until_ns = env->now(env->ctx) + KEEP_NS;
+		place->until_ns = bus_now(env) + KEEP_NS;
 		listing->next = (listing->next + 1) % LISTING_NAMES;
 	}
 	return 0;

@@ -19,11 +19,6 @@
 #define PIECES 16u
 #define PAUSE_NS NS_PER_MS
 
-static int64_t talk_now(const struct talk *talk)
-{
-	return talk->connection.env->now(talk->connection.env->ctx);
-}
-
 static int talk_fail(struct talk *talk, int err, const char *reason)
 {
 	snprintf(talk->trouble, sizeof(talk->trouble), "%.60s: %.48s", talk->connection.peer,
@@ -64,7 +59,7 @@ static int make_request(struct talk *talk, const struct talk_request *request)
 
 static void expect_reply(struct talk *talk, const struct talk_request *request)
 {
-	talk->asked_ns = talk_now(talk);
+	talk->asked_ns = bus_now(talk->connection.env);
 	talk->alives = talk->pieces = 0;
 	if (request->room)
 		frame_begin(&talk->reader, request->room, request->limit);
@@ -100,7 +95,7 @@ static int end_reply(struct talk *talk, size_t left_over)
 /* Does the peer send more keep-alives than any owserver does? They cost time and carry nothing. */
 static bool is_flood(struct talk *talk)
 {
-	int64_t waited_ns = talk_now(talk) - talk->asked_ns;
+	int64_t waited_ns = bus_now(talk->connection.env) - talk->asked_ns;
 
 	bus_count(&talk->counter[TALK_KEEPALIVES], 1);
 	return ++talk->alives > ALIVE_BURST + (uint64_t)(waited_ns * ALIVE_PER_S / NS_PER_S);
@@ -113,7 +108,7 @@ static bool is_flood(struct talk *talk)
 static int pause_after_pieces(struct talk *talk, int64_t until_ns)
 {
 	const struct bus_env *env = talk->connection.env;
-	int64_t end_ns = talk_now(talk) + PAUSE_NS;
+	int64_t end_ns = bus_now(talk->connection.env) + PAUSE_NS;
 
 	if (++talk->pieces <= PIECES)
 		return 0;
@@ -154,7 +149,7 @@ int talk_receive(struct talk *talk, int64_t until_ns)
 			else if (state < 0)
 				return talk_fail(talk, -EPROTO, "this is not an owserver");
 		}
-	} while (talk_now(talk) < until_ns);
+	} while (bus_now(talk->connection.env) < until_ns);
 	return -EAGAIN;
 }
 

@@ -248,7 +248,7 @@ static bool is_offered_raw(struct w1_slave *slave)
 		return true;
 	if (!slave->told_driver) {
 		snprintf(text, sizeof(text), "%s: no driver that owsd uses has it", name);
-		w1_note(slave->tree, -ENOENT, text);
+		bus_report(slave->tree->env, BUS_NOTE, -ENOENT, text);
 	}
 	slave->told_driver = true;
 	return false;

@@ -101,11 +101,11 @@ static int ds2408_alarm(struct w1_slave *slave)
 		slave->condition_ns = 0;
 		return 1;
 	}
-	if (!slave->condition_ns || w1_now(slave->tree) - slave->condition_ns > OLD_NS) {
+	if (!slave->condition_ns || bus_now(slave->tree->env) - slave->condition_ns > OLD_NS) {
 		err = read_register(slave, MASK, &level);
 		if (!err)
 			err = read_register(slave, POLARITY, &level);
-		slave->condition_ns = err ? 0 : w1_now(slave->tree);
+		slave->condition_ns = err ? 0 : bus_now(slave->tree->env);
 	}
 	if (!err)
 		err = read_register(slave, control & LATCHES ? ACTIVITY : PINS, &level);

@@ -137,7 +137,7 @@ static int read_new(struct w1_slave *slave, uint8_t scratchpad[9])
 	memcpy(slave->scratchpad, scratchpad, 9);
 	slave->due = false;
 	slave->known = true;
-	slave->read_ns = w1_now(slave->tree);
+	slave->read_ns = bus_now(slave->tree->env);
 	return 0;
 }
 
@@ -147,7 +147,7 @@ static int read_now(struct w1_slave *slave, bool due, uint8_t scratchpad[9])
 	bool settings = w1_slave_has(slave, "alarms");
 
 	if (due || (!slave->known && (!settings || slave->rom[0] == 0x3b)) ||
-	    (!settings && w1_now(slave->tree) - slave->read_ns > OLD_NS))
+	    (!settings && bus_now(slave->tree->env) - slave->read_ns > OLD_NS))
 		return read_new(slave, scratchpad);
 	if (slave->known)
 		memcpy(scratchpad, slave->scratchpad, 9);
@@ -268,16 +268,16 @@ void w1_convert_all(struct w1_slaves *slaves, struct w1_bulk *bulk)
 	 * Where it fails, or is not there, each converts when it is read. What the driver refuses,
 	 * it tells its log.
 	 */
-	if (w1_now(tree) >= bulk->refused_ns && w1_exists(tree, name, "therm_bulk_read") &&
+	if (bus_now(tree->env) >= bulk->refused_ns && w1_exists(tree, name, "therm_bulk_read") &&
 	    converts_at_once(slaves, bulk, name) &&
 	    w1_write(tree, name, "therm_bulk_read", 0, trigger, sizeof(trigger)))
-		bulk->refused_ns = w1_now(tree) + REFUSED_NS;
+		bulk->refused_ns = bus_now(tree->env) + REFUSED_NS;
 }
 
 bool w1_alarm_converts(const struct w1_slave *slave)
 {
 	return family_of(slave->rom[0])->thermometer &&
-	       (!slave->known || w1_now(slave->tree) - slave->read_ns > OLD_NS);
+	       (!slave->known || bus_now(slave->tree->env) - slave->read_ns > OLD_NS);
 }
 
 /* The chip compares whole degrees, after each conversion. */

@@ -28,19 +28,6 @@ bool w1_exists(const struct w1_tree *tree, const char *directory, const char *na
 	return access(path, F_OK) == 0;
 }
 
-int64_t w1_now(const struct w1_tree *tree)
-{
-	return tree->env->now(tree->env->ctx);
-}
-
-void w1_note(struct w1_tree *tree, int err, const char *text)
-{
-	struct bus_event event = {.news = BUS_NOTE, .err = err};
-
-	snprintf(event.text, sizeof(event.text), "%s", text);
-	tree->env->event(tree->env->ctx, &event);
-}
-
 /* Drivers have attributes that no user can write, root included. */
 static bool may_be_written(const struct w1_tree *tree, const char *directory, const char *name)
 {
@@ -70,7 +57,7 @@ static int meaning(struct w1_tree *tree, const char *directory, const char *name
 			snprintf(text, sizeof(text),
 			         "no right to open %s/%s: run as root, or see docs/w1.md for udev",
 			         directory, name);
-			w1_note(tree, -EPERM, text);
+			bus_report(tree->env, BUS_NOTE, -EPERM, text);
 		}
 		tree->told_rights = true;
 		return -EPERM;

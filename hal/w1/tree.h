@@ -34,6 +34,3 @@ bool w1_exists(const struct w1_tree *tree, const char *directory, const char *na
  * the readers of its attributes, and both hang for good.
  */
 int w1_slaves(struct w1_tree *tree, const char *directory);
-/* A line for the log. */
-void w1_note(struct w1_tree *tree, int err, const char *text);
-int64_t w1_now(const struct w1_tree *tree);

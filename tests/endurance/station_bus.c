@@ -14,7 +14,7 @@ static void broken(const char *what)
 		station.broken = what;
 }
 
-static int64_t bus_now(void *ctx)
+static int64_t station_now(void *ctx)
 {
 	(void)ctx;
 	return station.now;
@@ -152,7 +152,7 @@ struct station_bus *station_bus_open(const struct config_target *target, bool su
 		world_fails("no such part", target->text);
 	*b = (struct station_bus){.part = part, .fd = -1, .wake_ns = station.now};
 	b->env = (struct bus_env){.ctx = b,
-	                          .now = bus_now,
+	                          .now = station_now,
 	                          .wait = bus_wait,
 	                          .answer = bus_answers,
 	                          .event = bus_tells};

@@ -93,7 +93,7 @@ static void pass(struct plant *p, int64_t until_ns, bool till_order)
 
 /* --- The bus's environment ------------------------------------------------------------------- */
 
-static int64_t bus_now(void *ctx)
+static int64_t plant_bus_now(void *ctx)
 {
 	return ((struct plant *)ctx)->now;
 }
@@ -159,7 +159,7 @@ static void make_bus(struct plant *p, const char *target)
 	char why[200] = "";
 
 	p->env = (struct bus_env){.ctx = p,
-	                          .now = bus_now,
+	                          .now = plant_bus_now,
 	                          .wait = bus_wait,
 	                          .answer = bus_answers,
 	                          .event = bus_tells};
