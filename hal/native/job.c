@@ -38,9 +38,8 @@ static void look_read(struct native *native, struct job *job, int64_t now)
 
 static void look_structure(struct native *native, struct job *job)
 {
-	const char *path = job->path.property.text + strlen("structure/");
-	int n = structure_read(path, job->path.property.len - strlen("structure/"),
-	                       (char *)job->req->data, job->req->len);
+	int n = structure_print(job->property, job->extension, (char *)job->req->data,
+	                        job->req->len);
 
 	if (n > 0)
 		job->out = (size_t)n;

@@ -4,14 +4,12 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 
 #include "hal/chips/find.h"
 #include "hal/chips/format.h"
 #include "hal/native/branches.h"
 #include "hal/native/listing.h"
 #include "hal/native/state.h"
-#include "hal/native/structure.h"
 #include "hal/wire/driver.h"
 
 static int __attribute__((format(printf, 2, 3))) add(struct job *job, const char *format, ...)
@@ -174,27 +172,6 @@ static int list_families(struct job *job)
 	return err;
 }
 
-static int list_structure(struct native *native, struct job *job)
-{
-	struct path_slice below = job->path.property;
-	char path[PATH_LEN_MAX + 2];
-	size_t used = 0;
-
-	below.text += strlen("structure");
-	below.len -= strlen("structure");
-	if (!job->table)
-		return list_families(job);
-	structure_family(below.text + 1, below.len - 1, &used);
-	snprintf(path, sizeof(path), "/structure/%.*s/", (int)used, below.text + 1);
-	below.text += 1 + used;
-	below.len -= 1 + used;
-	if (below.len) {
-		below.text++;
-		below.len--;
-	}
-	return list_table(native, job, job->table, NULL, path, below.text, below.len);
-}
-
 int listing(struct native *native, struct job *job)
 {
 	struct path_slice name = job->path.property;
@@ -204,8 +181,13 @@ int listing(struct native *native, struct job *job)
 
 	if (job->inside || (!job->table && !name.len))
 		return list_root(native, job);
-	if (!job->path.device.len && name.len >= 9 && strncasecmp(name.text, "structure", 9) == 0)
-		return list_structure(native, job);
+	/* /structure has no table itself; below it they are those of families */
+	if (!job->table)
+		return list_families(job);
+	if (!job->path.device.len && !job->table->is_virtual) {
+		snprintf(path, sizeof(path), "/structure/%02X/", job->table->code);
+		return list_table(native, job, job->table, NULL, path, name.text, name.len);
+	}
 	if (!job->path.device.len) {
 		/* The first word names the table, the rest is a directory of it. */
 		const char *slash = memchr(name.text, '/', name.len);

@@ -221,33 +221,35 @@ static int resolve_directory(struct job *job)
 	return 0;
 }
 
+/* "structure/28/errata/die": path.property becomes what stands below the family. */
 static int resolve_structure(struct job *job)
 {
-	struct path_slice below = job->path.property;
-	char text[64];
-	size_t used;
+	struct path_slice *rest = &job->path.property, below = *rest;
+	bool reads = job->req->op == BUS_READ;
+	size_t name_len;
 
-	below.text += strlen("structure");
-	below.len -= strlen("structure");
-	if (job->req->op == BUS_READ)
-		job->kind = JOB_STRUCTURE;
-	else if (job->req->op == BUS_WRITE)
+	if (job->req->op == BUS_WRITE)
 		return -EACCES;
-	else
-		job->kind = JOB_LISTING;
-	if (below.len <= 1)
-		return job->req->op == BUS_READ ? -EISDIR : 0;
-	job->table = structure_family(below.text + 1, below.len - 1, &used);
-	if (!job->table)
-		return -ENOENT;
-	if (job->kind == JOB_STRUCTURE)
+	job->kind = reads ? JOB_STRUCTURE : JOB_LISTING;
+	take_word(&below);
+	if (below.len) {
+		job->table = structure_family(below.text, below.len, &name_len);
+		if (!job->table)
+			return -ENOENT;
+		take_word(&below);
+		*rest = below;
+	}
+	if (!below.len)
+		return reads ? -EISDIR : 0;
+	if (!reads && is_directory(job->table, NULL, rest->text, rest->len))
 		return 0;
-	if (used == below.len - 1 ||
-	    is_directory(job->table, NULL, below.text + 1 + used + 1, below.len - 1 - used - 1))
-		return 0;
-	if (structure_read(below.text + 1, below.len - 1, text, sizeof(text)) < 0)
+	job->extension = extension_split(rest->text, rest->len, &name_len);
+	job->property = family_property(job->table, NULL, rest->text, name_len);
+	if (!job->property || !extension_fits(job->property, job->extension))
 		return -ENOENT;
-	return job->req->op == BUS_PROBE ? 0 : -ENOTDIR;
+	if (property_has_entries(job->property))
+		return -EISDIR;
+	return job->req->op == BUS_DIR ? -ENOTDIR : 0;
 }
 
 static int resolve_virtual(struct job *job)

@@ -45,24 +45,9 @@ static int elements(const struct property *property)
 	return property->array.count;
 }
 
-int structure_read(const char *path, size_t len, char *text, size_t room)
+int structure_print(const struct property *property, int extension, char *text, size_t room)
 {
 	static const char *const access[] = {"oo", "ro", "wo", "rw"};
-	size_t used, name_len;
-	const struct family *family = structure_family(path, len, &used);
-
-	if (!family)
-		return -ENOENT;
-	if (used == len)
-		return -EISDIR;
-	path += used + 1;
-	len -= used + 1;
-	int extension = extension_split(path, len, &name_len);
-	const struct property *property = family_property(family, NULL, path, name_len);
-	if (!property || !extension_fits(property, extension))
-		return -ENOENT;
-	if (property_has_entries(property))
-		return -EISDIR;
 	char type = property->type == PROPERTY_BITS ? 'y' : (char)property->type;
 	int n = snprintf(text, room, "%c,%.6d,%.6d,%s,%.6u,%c,", type,
 	                 extension == EXTENSION_NONE   ? 0

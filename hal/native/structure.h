@@ -2,11 +2,9 @@
 /* /structure: what properties a family has. */
 #pragma once
 
-#include <stddef.h>
+#include "hal/chips/family.h"
 
-struct family;
-
-/* Reading a path in /structure. The text's length or an error. */
-int structure_read(const char *path, size_t len, char *text, size_t room);
-/* The family that the path begins with, in *used bytes; NULL: none. */
+/* "t,000000,000001,ro,000012,v,": its length, or -EMSGSIZE. */
+int structure_print(const struct property *property, int extension, char *text, size_t room);
+/* The family that a path below /structure begins with, in *used bytes; NULL: none. */
 const struct family *structure_family(const char *path, size_t len, size_t *used);
