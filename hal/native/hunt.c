@@ -66,11 +66,8 @@ static void end_round(struct native *native, unsigned n, bool whole, int64_t now
 		channel->whole_ns = channel->round_ns;
 	bool cuts = channel->cuts;
 	channel->cuts = !native->touch;
-	for (unsigned i = 0; i < native->table.count; i++) {
-		struct device *device = &native->table.devices[i];
-
-		if (!device->present || device->channel != n || device->seen == channel->round ||
-		    device->ok_ns >= channel->round_ns)
+	for (struct device *device = NULL; (device = native_device(native, n, device));) {
+		if (device->seen == channel->round || device->ok_ns >= channel->round_ns)
 			continue;
 		if (++device->missed >= MISSED_MAX && !cuts) {
 			presence_lost(native, device);
@@ -171,26 +168,32 @@ struct known {
 	struct device *device; /* at which the pass was cut */
 };
 
+/* The only device of the channel that begins so (that can be in alarm); NULL: none or several. */
+static struct device *only_device(const struct native *native, unsigned n, const uint8_t prefix[8],
+                                  unsigned bits, bool alarms)
+{
+	struct device *only = NULL;
+
+	for (struct device *device = NULL; (device = native_device(native, n, device));) {
+		if ((alarms && !device->family->alarms) || !search_same(device->rom, prefix, bits))
+			continue;
+		if (only)
+			return NULL;
+		only = device;
+	}
+	return only;
+}
+
 static bool is_known(void *ctx, const uint8_t prefix[8], unsigned bits, uint8_t rom[8])
 {
 	struct known *known = ctx;
 	const struct native *native = known->native;
 	unsigned branch = native->channel[known->n].search.branch;
-	struct device *only = NULL;
 
 	/* A pass that went to the end may have found a branch behind many bits. */
 	if (bits < APART + (branch > FAMILY_BITS ? branch : FAMILY_BITS))
 		return false;
-	for (unsigned i = 0; i < native->table.count; i++) {
-		struct device *device = &native->table.devices[i];
-
-		if (!device->present || device->channel != known->n ||
-		    !search_same(device->rom, prefix, bits - APART))
-			continue;
-		if (only)
-			return false;
-		only = device;
-	}
+	struct device *only = only_device(native, known->n, prefix, bits - APART, false);
 	/* An astray device has to answer; a restarted bridge has some bits of its id alone. */
 	if (!only || only->astray || only->rom[0] == DS28E18_CODE ||
 	    !search_same(only->rom, prefix, bits) || locate_wants(native, prefix, bits))
@@ -315,26 +318,11 @@ bool hunt_step(struct native *native, int64_t now, bool idle, int64_t *next)
 	return false;
 }
 
-struct lone {
-	const struct native *native;
-	unsigned n;
-};
-
 static bool is_lone(void *ctx, const uint8_t prefix[8], unsigned bits, uint8_t rom[8])
 {
-	const struct lone *lone = ctx;
-	const struct device *only = NULL;
+	const struct known *known = ctx;
+	const struct device *only = only_device(known->native, known->n, prefix, bits, true);
 
-	for (unsigned i = 0; i < lone->native->table.count; i++) {
-		const struct device *device = &lone->native->table.devices[i];
-
-		if (!device->present || device->channel != lone->n || !device->family->alarms ||
-		    !search_same(device->rom, prefix, bits))
-			continue;
-		if (only)
-			return false;
-		only = device;
-	}
 	if (only)
 		memcpy(rom, only->rom, sizeof(only->rom));
 	return only;
@@ -367,7 +355,7 @@ static void scan_on(struct native *native, struct job *job)
 void hunt_scan(struct native *native, struct job *job, int64_t now)
 {
 	struct channel *channel = &native->channel[job->channel];
-	struct lone ctx = {.native = native, .n = job->channel};
+	struct known ctx = {.native = native, .n = job->channel};
 
 	if (!job->searching) {
 		search_begin(&job->search, job->kind == JOB_ALARM, job->families[job->family_i]);

@@ -7,7 +7,7 @@
 
 int64_t native_now(const struct native *native)
 {
-	return native->bus.env->now(native->bus.env->ctx);
+	return bus_now(native->bus.env);
 }
 
 void native_count(struct native *native, enum native_count what)
@@ -98,15 +98,25 @@ struct job *native_job(const struct native *native, const struct job *after)
 	return NULL;
 }
 
-struct device *native_thermometer(const struct native *native, unsigned channel,
-                                  const struct device *after)
+struct device *native_device(const struct native *native, unsigned channel,
+                             const struct device *after)
 {
 	struct device *device = native->table.devices, *end = device + native->table.count;
 
 	for (device = after ? device + (after - device) + 1 : device; device < end; device++)
-		if (device->present && device->channel == channel && device->family->thermometer)
+		if (device->present && device->channel == channel)
 			return device;
 	return NULL;
+}
+
+struct device *native_thermometer(const struct native *native, unsigned channel,
+                                  const struct device *after)
+{
+	struct device *device = native_device(native, channel, after);
+
+	while (device && !device->family->thermometer)
+		device = native_device(native, channel, device);
+	return device;
 }
 
 struct link *native_abreast(const struct native *native, unsigned channel)

@@ -366,8 +366,13 @@ bool native_has(const struct native *native, unsigned channel);
 void native_open_channel(struct native *native, unsigned channel, struct link *link, unsigned wire);
 /* The first channel from n on, a wire or a branch; NATIVE_ALL: there is none. */
 unsigned native_next(const struct native *native, unsigned n);
-/* The first request, or the next one; and so the thermometers of a channel. NULL: no more. */
+/*
+ * The first request, or the next one; and so the devices of a channel that are there, and its
+ * thermometers. NULL: no more.
+ */
 struct job *native_job(const struct native *native, const struct job *after);
+struct device *native_device(const struct native *native, unsigned channel,
+                             const struct device *after);
 struct device *native_thermometer(const struct native *native, unsigned channel,
                                   const struct device *after);
 /* The link of a channel, if it takes part in transactions at the same time (link_ops.together). */

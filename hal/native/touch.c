@@ -39,11 +39,6 @@
 static const uint8_t families[] = {0x01, 0x81};
 #define FAMILIES (sizeof(families) / sizeof(families[0]))
 
-static bool is_key(const struct device *device, unsigned n, uint8_t family)
-{
-	return device->present && device->channel == n && device->rom[0] == family;
-}
-
 static bool is_branch(unsigned n)
 {
 	return n >= NATIVE_CHANNELS;
@@ -57,10 +52,9 @@ static bool is_under_way(const struct touch *touch)
 
 static bool has_key(const struct native *native, unsigned n)
 {
-	for (unsigned i = 0; i < native->table.count; i++)
-		for (size_t k = 0; k < FAMILIES; k++)
-			if (is_key(&native->table.devices[i], n, families[k]))
-				return true;
+	for (struct device *device = NULL; (device = native_device(native, n, device));)
+		if (memchr(families, device->rom[0], FAMILIES))
+			return true;
 	return false;
 }
 
@@ -68,7 +62,7 @@ static bool has_key(const struct native *native, unsigned n)
 static bool found_key(struct native *native, unsigned n, const uint8_t rom[8], int64_t now)
 {
 	const struct device *device = device_find(&native->table, rom);
-	bool known = device && is_key(device, n, rom[0]);
+	bool known = device && device->present && device->channel == n;
 	char text[BUS_EVENT_TEXT], name[ROM_TEXT_MAX];
 
 	presence_found(native, rom, n, now);
@@ -118,13 +112,11 @@ static void end_family(struct native *native, unsigned n, int64_t now)
 	struct channel *channel = &native->channel[n];
 	struct touch *touch = &channel->touch;
 
-	for (unsigned i = 0; touch->family < FAMILIES && i < native->table.count; i++) {
-		struct device *device = &native->table.devices[i];
-
-		if (is_key(device, n, families[touch->family]) && device->ok_ns < touch->begun_ns &&
+	for (struct device *device = NULL;
+	     touch->family < FAMILIES && (device = native_device(native, n, device));)
+		if (device->rom[0] == families[touch->family] && device->ok_ns < touch->begun_ns &&
 		    ++device->missed >= MISSED_MAX)
 			presence_lost(native, device);
-	}
 	touch->searching = false;
 	touch->family++;
 	/* Couplers in alarm come after the keys. */
@@ -203,11 +195,7 @@ static void touch_pass(struct native *native, unsigned n, int64_t now)
 
 bool touch_seeks(const struct native *native, const uint8_t rom[8])
 {
-	bool key = false;
-
-	for (size_t i = 0; i < FAMILIES; i++)
-		key |= rom[0] == families[i];
-	return native->touch && key;
+	return native->touch && memchr(families, rom[0], FAMILIES);
 }
 
 bool touch_knows(const struct native *native, const struct device *device, int64_t now)

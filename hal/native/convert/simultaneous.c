@@ -13,9 +13,15 @@
 
 #define SKIP_ROM 0xcc
 
-static bool is_ds2450(const struct device *device, unsigned n)
+/* The first DS2450 of a channel, or the next one. */
+static struct device *next_ds2450(const struct native *native, unsigned n,
+                                  const struct device *after)
 {
-	return device->channel == n && device->family == &family_20;
+	struct device *device = native_device(native, n, after);
+
+	while (device && device->family != &family_20)
+		device = native_device(native, n, device);
+	return device;
 }
 
 /* All DS2450 of a channel at once. Their checksum is one: they were told the same. */
@@ -40,12 +46,8 @@ static int convert_voltage(struct native *native, unsigned n)
 	if (err < 0)
 		return txn.link_error ? txn.link_error : err;
 	master_good(native, n);
-	for (unsigned i = 0; i < native->table.count; i++) {
-		struct device *device = &native->table.devices[i];
-
-		if (device->present && is_ds2450(device, n))
-			ds2450_of(device)->measured_ns = begun;
-	}
+	for (struct device *device = NULL; (device = next_ds2450(native, n, device));)
+		ds2450_of(device)->measured_ns = begun;
 	channel->simultaneous_ns[SIMULTANEOUS_VOLTAGE] = native_now(native) + conversion->ns;
 	native_hold(native, n, NULL, channel->simultaneous_ns[SIMULTANEOUS_VOLTAGE]);
 	return 0;
@@ -86,24 +88,13 @@ static int convert_temperature(struct native *native, unsigned n)
 	return 0;
 }
 
-static bool has_ds2450(const struct native *native, unsigned n)
-{
-	for (unsigned i = 0; i < native->table.count; i++)
-		if (native->table.devices[i].present && is_ds2450(&native->table.devices[i], n))
-			return true;
-	return false;
-}
-
 /* What was read before is not of this conversion. */
 static void forget_kept(struct native *native, unsigned n, bool temperature)
 {
-	for (unsigned i = 0; i < native->table.count; i++) {
-		struct device *device = &native->table.devices[i];
-
-		if (temperature ? device->channel == n && device->family->thermometer
-		                : is_ds2450(device, n))
-			device->changes++;
-	}
+	for (struct device *device = NULL;
+	     (device = temperature ? native_thermometer(native, n, device)
+	                           : next_ds2450(native, n, device));)
+		device->changes++;
 }
 
 void convert_all(struct native *native, struct job *job)
@@ -117,9 +108,9 @@ void convert_all(struct native *native, struct job *job)
 	if (err == TXN_MORE)
 		return;
 	if (!err)
-		err = temperature             ? convert_temperature(native, n)
-		      : has_ds2450(native, n) ? convert_voltage(native, n)
-		                              : 0;
+		err = temperature                    ? convert_temperature(native, n)
+		      : next_ds2450(native, n, NULL) ? convert_voltage(native, n)
+		                                     : 0;
 	forget_kept(native, n, temperature);
 	if (err < 0 && err != -ENODEV) {
 		job->txn.link_error = err == -EBADMSG || err == -EOPNOTSUPP ? 0 : err;
