@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "hal/chips/area.h"
+#include "hal/owfs/path.h"
 #include "hal/wire/crc.h"
 
 #define BLANK_LOOKS 3 /* more, where nothing but ones was read */
@@ -39,10 +40,10 @@ static int read_pages(struct txn *txn, const struct area *area, const uint8_t *c
 
 	if (err)
 		return err;
-	if (onewire_crc8(command, len) != in[0])
+	if (rom_crc8(command, len) != in[0])
 		return txn_checked(txn, false);
 	for (const uint8_t *page = in + 1; n; n -= area->block, page += area->block + 1) {
-		if (onewire_crc8(page, area->block + 1u))
+		if (rom_crc8(page, area->block + 1u))
 			return txn_checked(txn, false);
 		txn->blank |= is_all_alike(page, area->block + 1u);
 		memcpy(bytes, page, area->block);

@@ -18,11 +18,6 @@ bool onewire_crc16_matches(uint16_t crc, const uint8_t sent[2])
 	return (crc ^ 0xffff) == (sent[0] | sent[1] << 8);
 }
 
-uint8_t onewire_crc8(const uint8_t *data, size_t n)
-{
-	return rom_crc8(data, n);
-}
-
 bool onewire_rom_valid(const uint8_t rom[8])
 {
 	return rom[0] != 0 && rom_crc8(rom, 7) == rom[7];

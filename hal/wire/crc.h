@@ -13,7 +13,5 @@
 uint16_t onewire_crc16(uint16_t crc, const uint8_t *data, size_t n);
 /* The chip sends the complement, low byte first: is it that of crc? */
 bool onewire_crc16_matches(uint16_t crc, const uint8_t sent[2]);
-/* Of scratchpads and pages: that of ids. */
-uint8_t onewire_crc8(const uint8_t *data, size_t n);
 /* A family that is not 0, and a right CRC8. */
 bool onewire_rom_valid(const uint8_t rom[8]);

@@ -27,25 +27,6 @@ enum link_after {
 };
 
 /*
- * Eight read slots behind a command that takes time: the chip holds all of them low while it is at
- * work. Some begin up to 1 ms late (clones of the DS18B20, family A3): then the first slots are
- * ones, and LINK_LATE bytes more are worth a look. All but two of them have to be low: no id has
- * so many zeros (after a disturbed Skip ROM a chip sends its id).
- */
-#define LINK_LATE 10
-static inline bool link_may_be_late(uint8_t slots)
-{
-	return (slots & (slots + 1)) == 0;
-}
-static inline bool link_was_late(const uint8_t slots[LINK_LATE])
-{
-	for (unsigned i = 2; i < LINK_LATE; i++)
-		if (slots[i])
-			return false;
-	return true;
-}
-
-/*
  * What a link can do for a wire that fails. The native bus makes the transaction again first, then
  * climbs these rungs, and closes and opens the master last (hal/native/master.c).
  */

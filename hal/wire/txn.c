@@ -12,10 +12,12 @@
 
 #define MATCH_ROM 0x55
 #define BYTES_MAX 64
+/* Some chips begin up to 1 ms late (clones of the DS18B20, family A3): so many bytes more. */
+#define LATE 10
 
 int64_t txn_now(const struct txn *txn)
 {
-	return txn->link->env->now(txn->link->env->ctx);
+	return bus_now(txn->link->env);
 }
 
 static int of_link(struct txn *txn, int result)
@@ -105,11 +107,16 @@ static int begin_transaction(struct txn *txn)
 	return -ENODEV;
 }
 
-int txn_raw(struct txn *txn, const uint8_t *bytes, size_t n)
+int txn_raw_then(struct txn *txn, const uint8_t *bytes, size_t n, enum link_after after)
 {
 	int err = begin_transaction(txn);
 
-	return err ? err : txn_write(txn, bytes, n);
+	return err ? err : of_link(txn, txn->link->ops->write(txn->link, bytes, n, after));
+}
+
+int txn_raw(struct txn *txn, const uint8_t *bytes, size_t n)
+{
+	return txn_raw_then(txn, bytes, n, LINK_IDLE);
 }
 
 size_t txn_select(const struct device *device, const uint8_t *bytes, size_t n, uint8_t *out)
@@ -187,7 +194,7 @@ int txn_write_paused(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns
 
 	if (!err)
 		err = of_link(txn, txn->link->ops->write(txn->link, bytes, n, after));
-	if (!err && env->wait(env->ctx, -1, 0, env->now(env->ctx) + ns) < 0)
+	if (!err && env->wait(env->ctx, -1, 0, bus_now(env) + ns) < 0)
 		err = -ECANCELED;
 	return err;
 }
@@ -245,9 +252,21 @@ int txn_bit_strong(struct txn *txn, int64_t ns)
 	return hold_pullup(txn, err, ns);
 }
 
+/*
+ * The first of eight slots were ones, the rest is low. All but two bytes after that have to be low:
+ * no id has so many zeros (after a disturbed Skip ROM a chip sends its id).
+ */
+static bool began_late(const uint8_t late[LATE])
+{
+	for (unsigned i = 2; i < LATE; i++)
+		if (late[i])
+			return false;
+	return true;
+}
+
 int txn_started(struct txn *txn)
 {
-	uint8_t busy, late[LINK_LATE];
+	uint8_t busy, late[LATE];
 
 	/* A driver has waited for the end, or tells the error. */
 	if (txn->link->driver)
@@ -255,11 +274,11 @@ int txn_started(struct txn *txn)
 	int err = txn_read_slots(txn, &busy, 1);
 	if (err || !busy)
 		return err;
-	if (!link_may_be_late(busy))
+	if (busy & (busy + 1))
 		return -EBADMSG;
 	memset(late, 0xff, sizeof(late));
 	err = txn_read_slots(txn, late, sizeof(late));
-	return err ? err : link_was_late(late) ? 0 : -EBADMSG;
+	return err ? err : began_late(late) ? 0 : -EBADMSG;
 }
 
 int txn_checked(struct txn *txn, bool fits)

@@ -92,8 +92,9 @@ int txn_command(struct txn *txn, const uint8_t *bytes, size_t n);
  * thermometer that is known to be fed by the wire.
  */
 int txn_command_strong(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns);
-/* Reset and n bytes, without selecting the device. */
+/* Reset and n bytes, without selecting the device; the second: and what follows them. */
 int txn_raw(struct txn *txn, const uint8_t *bytes, size_t n);
+int txn_raw_then(struct txn *txn, const uint8_t *bytes, size_t n, enum link_after after);
 int txn_write(struct txn *txn, const uint8_t *bytes, size_t n);
 /*
  * The same where the chip answers after it in the same transaction: it returns after ns, which are
@@ -110,7 +111,7 @@ int txn_bit(struct txn *txn);
 /* One read slot with the strong pull-up after it; as txn_command_strong(). */
 int txn_bit_strong(struct txn *txn, int64_t ns);
 /*
- * After a command that takes time: the chip holds read slots low while it is at work (link.h).
+ * After a command that takes time: the chip holds read slots low while it is at work.
  * -EBADMSG: it has not taken the command, and what it gives later is older than that.
  */
 int txn_started(struct txn *txn);

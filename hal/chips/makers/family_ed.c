@@ -14,7 +14,7 @@
 
 #include "hal/chips/family.h"
 #include "hal/chips/format.h"
-#include "hal/wire/crc.h"
+#include "hal/owfs/path.h"
 
 /* device.kind */
 enum { IS_UNKNOWN, IS_LIGHTS, IS_UPDATER, IS_SWITCHES, IS_OTHER };
@@ -80,7 +80,7 @@ static int inferno_exchange(struct txn *txn, uint8_t code, const uint8_t *args, 
 	bytes[8] = code;
 	if (n)
 		memcpy(bytes + 9, args, n);
-	bytes[9 + n] = onewire_crc8(bytes, 9 + n);
+	bytes[9 + n] = rom_crc8(bytes, 9 + n);
 	err = txn_command(txn, bytes + 8, 2 + n);
 	if (err || code == BOOT_UPDATER)
 		return err;

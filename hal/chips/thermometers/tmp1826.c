@@ -18,7 +18,6 @@
 #include "hal/chips/steady.h"
 #include "hal/chips/thermometers/tmp1826.h"
 #include "hal/owfs/path.h"
-#include "hal/wire/crc.h"
 
 #define READ_SCRATCHPAD 0xbe
 #define CONVERT 0x44
@@ -313,7 +312,7 @@ static int write_settings(struct txn *txn, const uint8_t settings[SETTINGS])
 	tmp1826_of(txn)->kept = false;
 	txn_void(txn);
 	int err = txn_ask(txn, command, sizeof(command), &crc, 1);
-	return err ? err : txn_checked(txn, crc == onewire_crc8(settings, SETTINGS));
+	return err ? err : txn_checked(txn, crc == rom_crc8(settings, SETTINGS));
 }
 
 int tmp1826_read_limit(struct txn *txn)

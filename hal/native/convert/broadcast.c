@@ -18,29 +18,18 @@
  * alone did not hear is hidden by the others; the rounds one by one find it. Under the strong
  * pull-up no chip can show it: thermometer_proof.c looks at what each chip latched.
  */
-static int send_convert_all(struct link *link, enum link_after after)
+static int send_convert_all(struct native *native, unsigned n, bool strong)
 {
 	static const uint8_t command[] = {SKIP_ROM, THERMOMETER_CONVERT};
-	uint8_t busy, late[LINK_LATE];
+	struct txn txn = {.native = native, .link = native->channel[n].link, .channel = n};
 
-	if (link->driver)
-		return link->driver->convert(link, NULL, "temperature");
-	int err = link->ops->reset(link);
+	if (txn.link->driver)
+		return txn.link->driver->convert(txn.link, NULL, "temperature");
+	int err = txn_raw_then(&txn, command, sizeof(command), strong ? LINK_STRONG : LINK_IDLE);
 
-	if (err <= 0)
-		return err ? err : -ENODEV;
-	err = link->ops->write(link, command, sizeof(command), after);
-	if (!err && after == LINK_IDLE) {
-		err = link->ops->read(link, &busy, 1);
-		bool maybe = !err && busy && link_may_be_late(busy);
-		if (maybe)
-			err = link->ops->read(link, late, sizeof(late));
-		if (!err && busy && !(maybe && link_was_late(late)))
-			err = -EBADMSG;
-	}
-	if (!err && link->ops->flush)
-		err = link->ops->flush(link);
-	return err == -EHOSTDOWN ? -ENODEV : err;
+	if (!err && !strong)
+		err = txn_started(&txn);
+	return txn_end(&txn, err);
 }
 
 /* How long after the command: a driver waits for the end itself. */
@@ -107,7 +96,7 @@ int broadcast_convert(struct native *native, unsigned n, bool strong, int64_t lo
 	int err = -EBADMSG;
 
 	for (int try = 0; try < TRIES && err == -EBADMSG; try++) {
-		err = send_convert_all(link, strong ? LINK_STRONG : LINK_IDLE);
+		err = send_convert_all(native, n, strong);
 		native_count(native, COUNT_TRANSACTIONS);
 		if (err == -EBADMSG)
 			native_count(native, COUNT_CHECKSUMS);

@@ -12,23 +12,20 @@
 #define TRIES 3
 
 /* Read Power Supply of all at once: ones mean that no chip is parasitic, or that none heard. */
-static int look_at_supply(struct link *link)
+static int look_at_supply(struct native *native, unsigned n)
 {
 	static const uint8_t command[] = {SKIP_ROM, THERMOMETER_READ_POWER};
+	struct txn txn = {.native = native, .link = native->channel[n].link, .channel = n};
 	uint8_t slots;
 
 	/* A driver sees to those that are fed by the wire. */
-	if (link->driver)
+	if (txn.link->driver)
 		return 1;
-	int err = link->ops->reset(link);
+	int err = txn_raw(&txn, command, sizeof(command));
 
-	if (err > 0)
-		err = link->ops->write(link, command, sizeof(command), LINK_IDLE);
-	else if (!err)
-		return -ENODEV;
 	if (!err)
-		err = link->ops->read(link, &slots, 1);
-	return err == -EHOSTDOWN ? -ENODEV : err ? err : slots == 0xff;
+		err = txn_read(&txn, &slots, 1);
+	return err ? err : slots == 0xff;
 }
 
 int supply_look(struct native *native, unsigned n)
@@ -36,7 +33,7 @@ int supply_look(struct native *native, unsigned n)
 	int external = 1;
 
 	for (int look = 0; look < LOOKS && external > 0; look++)
-		external = look_at_supply(native->channel[n].link);
+		external = look_at_supply(native, n);
 	return external;
 }
 
