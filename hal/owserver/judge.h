@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Judges what an owserver answers to a READ: its readings come without the chip's bytes, so only
- * their number shows that they are none.
+ * their number shows that they are none, and only a search that the chip was there.
  */
 #pragma once
 
@@ -45,3 +45,8 @@ struct judge {
  */
 int judge_reading(struct judge *judge, const char *path, const char *text, size_t len,
                   bool simulated, int64_t now_ns, double *number);
+/*
+ * May the server's answer to a READ of path be what the idle wire gives for a chip that is away?
+ * Then only a search for the device shows that it was there.
+ */
+bool proof_is_needed(const char *path);

@@ -19,7 +19,6 @@
 #include "hal/owfs/path.h"
 #include "hal/owserver/judge.h"
 #include "hal/owserver/listing.h"
-#include "hal/owserver/proof.h"
 #include "hal/owserver/server.h"
 #include "hal/owserver/status.h"
 #include "hal/owserver/talk.h"

@@ -9,53 +9,30 @@
  * /settings/return_codes/text.ALL. A code with two meanings stands for the one that servers send.
  */
 static const struct {
-	int32_t code;
-	int err, write_err; /* write_err 0: the same as err */
+	int err;
+	int32_t codes[12]; /* 0 behind the last */
 } meanings[] = {
-	{1, 1},
-	{2, 1},
-	{19, -ENODEV},
-	{29, -ENODEV},
-	{41, -ENODEV},
-	{70, -ENODEV},
-	{20, -ENOTDIR},
-	{21, -EISDIR},
-	{27, -ENOENT},
-	{32, -ENOENT},
-	{33, -ENOENT},
-	{35, -ENOENT},
-	{37, -ENOENT},
-	{38, -ENOENT},
-	{39, -ENOENT},
-	{59, -ENOENT},
-	{64, -ENOENT},
-	{69, -ENOENT},
-	{13, -EPERM},
-	{30, -EPERM},
-	{66, -EPERM},
-	{60, -EACCES},
-	{65, -EACCES},
-	{95, -EACCES},
-	{14, -EINVAL},
-	{22, -EINVAL},
-	{61, -EINVAL},
-	{62, -EINVAL},
-	{63, -EINVAL},
-	{34, -EMSGSIZE, -EINVAL}, /* the room is too small for .ALL, or the number is too large */
-	{57, -EMSGSIZE},
-	{90, -EMSGSIZE},
-	{28, -EBADMSG},
-	{44, -ECOMM},
+	{1, {1, 2}},
+	{-ENODEV, {19, 29, 41, 70}},
+	{-ENOTDIR, {20}},
+	{-EISDIR, {21}},
+	{-ENOENT, {27, 32, 33, 35, 37, 38, 39, 59, 64, 69}},
+	{-EPERM, {13, 30, 66}},
+	{-EACCES, {60, 65, 95}},
+	{-EINVAL, {14, 22, 61, 62, 63}},
+	{-EMSGSIZE, {34, 57, 90}},
+	{-EBADMSG, {28}},
+	{-ECOMM, {44}},
 };
+#define NUMBER_TOO_LARGE 34 /* of a write; else the room is too small for .ALL */
 
 int status_of(int32_t code, enum bus_op op)
 {
-	for (unsigned i = 0; i < sizeof(meanings) / sizeof(meanings[0]); i++) {
-		if (code != -meanings[i].code)
-			continue;
-		if (op == BUS_WRITE && meanings[i].write_err)
-			return meanings[i].write_err;
-		return meanings[i].err;
-	}
+	if (op == BUS_WRITE && code == -NUMBER_TOO_LARGE)
+		return -EINVAL;
+	for (unsigned i = 0; i < sizeof(meanings) / sizeof(meanings[0]); i++)
+		for (const int32_t *known = meanings[i].codes; *known; known++)
+			if (code == -*known)
+				return meanings[i].err;
 	return -EIO;
 }

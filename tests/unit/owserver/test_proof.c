@@ -2,7 +2,7 @@
 /* What owserver 3.2p4 reads as ones of a chip that was pulled out while another stayed. */
 #include "unity.h"
 
-#include "hal/owserver/proof.h"
+#include "hal/owserver/judge.h"
 
 void setUp(void)
 {
