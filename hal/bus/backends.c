@@ -63,40 +63,28 @@ static bool is_i2c_word(const char *word, size_t len)
 	return number == end;
 }
 
-/*
- * Is the word a chip, or an adapter of OWFS, that owsd reaches by another target? Then why has the
- * remedy.
- */
-static bool is_others_adapter(const char *word, size_t len, char *why, size_t why_size)
-{
-	static const char *const usb[] = {"usb", "ds9490", "ds9490r", "ds2490"};
-	static const char *const serial[] = {"serial", "link",    "linkusb",
-	                                     "ds9097", "ds9097u", "ds2480b"};
-	bool found = is_i2c_word(word, len);
+/* Chips and adapters of OWFS that owsd reaches by another target: what each is, and the remedy. */
+static const struct {
+	const char *words[7];
+	const char *remedy;
+} others[] = {
+	{{"usb", "ds9490", "ds9490r", "ds2490"},
+         "is a USB adapter: take target w1, which has a DS9490R by the kernel's ds2490, or an "
+         "owserver"},
+	{{"serial", "link", "linkusb", "ds9097", "ds9097u", "ds2480b"},
+         "is a serial adapter: let an owserver have it, and name that: localhost:4304"},
+};
 
-	if (found)
-		snprintf(
-			why, why_size,
-			"%.*s is a chip or an adapter of I2C: write i2c:/dev/i2c-1, or i2c:auto (a "
-			"host: owserver:%.*s)",
-			(int)(len > 40 ? 40 : len), word, (int)(len > 40 ? 40 : len), word);
-	for (size_t i = 0; i < sizeof(usb) / sizeof(usb[0]) && !found; i++) {
-		found = strlen(usb[i]) == len && strncasecmp(word, usb[i], len) == 0;
-		if (found)
-			snprintf(why, why_size,
-			         "%s is a USB adapter: take target w1, which has a DS9490R "
-			         "by the kernel's ds2490, or an owserver (a host: owserver:%s)",
-			         usb[i], usb[i]);
-	}
-	for (size_t i = 0; i < sizeof(serial) / sizeof(serial[0]) && !found; i++) {
-		found = strlen(serial[i]) == len && strncasecmp(word, serial[i], len) == 0;
-		if (found)
-			snprintf(why, why_size,
-			         "%s is a serial adapter: let an owserver have it, and "
-			         "name that: localhost:4304 (a host: owserver:%s)",
-			         serial[i], serial[i]);
-	}
-	return found;
+/* NULL: the word is none of these. */
+static const char *remedy_of(const char *word, size_t len)
+{
+	if (is_i2c_word(word, len))
+		return "is a chip or an adapter of I2C: write i2c:/dev/i2c-1, or i2c:auto";
+	for (size_t i = 0; i < sizeof(others) / sizeof(others[0]); i++)
+		for (const char *const *known = others[i].words; *known; known++)
+			if (strlen(*known) == len && strncasecmp(word, *known, len) == 0)
+				return others[i].remedy;
+	return NULL;
 }
 
 static int no_backend(const char *word, size_t word_len, char *why, size_t why_size)
@@ -126,8 +114,8 @@ int bus_create(const char *target, const struct bus_env *env, struct bus **bus, 
 	const char *colon = strchr(target, ':');
 	size_t word_len = colon ? (size_t)(colon - target) : strlen(target);
 	const struct bus_ops *ops = backend_of(target, word_len);
-	const char *where = colon ? colon + 1 : "";
-	int err;
+	const char *where = colon ? colon + 1 : "", *remedy;
+	int err, shown = (int)(word_len > 40 ? 40 : word_len);
 
 	if (why_size)
 		why[0] = '\0';
@@ -141,9 +129,12 @@ int bus_create(const char *target, const struct bus_env *env, struct bus **bus, 
 		         "(and owsctl-sim, owsd-writer-sim)");
 		return -EPROTONOSUPPORT;
 	}
-	if (!ops && !(colon && is_host_and_port(target, colon)) &&
-	    is_others_adapter(target, word_len, why, why_size))
+	remedy = remedy_of(target, word_len);
+	if (!ops && remedy && !(colon && is_host_and_port(target, colon))) {
+		snprintf(why, why_size, "%.*s %s (a host: owserver:%.*s)", shown, target, remedy,
+		         shown, target);
 		return -EINVAL;
+	}
 	if (!ops) {
 		if (target[0] != '[' && colon && is_bare_ipv6(target, colon)) {
 			snprintf(why, why_size,
