@@ -32,8 +32,6 @@ struct gpio_edge {
 struct gpio_info {
 	char name[GPIO_NAME_MAX];     /* "" when the board gave none */
 	char consumer[GPIO_NAME_MAX]; /* the name of the line's holder; "": unknown or none */
-	bool used;
-	bool output;
 };
 
 struct gpio_chip;
@@ -56,7 +54,6 @@ struct gpio_api {
 	int (*set)(struct gpio_line *line, bool value);
 	int (*get)(struct gpio_line *line); /* 0, 1; -ENODEV the chip is gone */
 	int (*edge)(struct gpio_line *line, struct gpio_edge *edge); /* 1 one, 0 none is kept */
-	int (*fd)(struct gpio_line *line); /* readable while an edge is kept */
 	/* The chip's driver decides the level of an output afterwards. */
 	void (*release)(struct gpio_line *line);
 };
@@ -69,6 +66,9 @@ struct gpio_api {
  * that is there and is no GPIO chip (libgpiod 2): -ENOTTY then, else err.
  */
 int gpio_open_error(const char *path, int err);
+
+/* A time of the kernel's, of CLOCK_MONOTONIC, which stands still in suspend, of CLOCK_BOOTTIME. */
+int64_t gpio_boottime(int64_t monotonic_ns);
 
 /* The library of this build; NULL: none (LIBGPIOD=0). */
 extern const struct gpio_api *const gpio_library;

@@ -9,7 +9,6 @@
 #include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 struct gpio_chip {
 	struct gpiod_chip *chip;
@@ -72,8 +71,6 @@ static int line_info(struct gpio_chip *chip, unsigned offset, struct gpio_info *
 	consumer = gpiod_line_consumer(line);
 	snprintf(info->name, sizeof(info->name), "%s", name ? name : "");
 	snprintf(info->consumer, sizeof(info->consumer), "%s", consumer ? consumer : "");
-	info->used = gpiod_line_is_used(line);
-	info->output = gpiod_line_direction(line) == GPIOD_LINE_DIRECTION_OUTPUT;
 	return 0;
 }
 
@@ -151,33 +148,21 @@ static int get_line(struct gpio_line *line)
 	return value < 0 ? library_error() : value;
 }
 
-static int edge_fd(struct gpio_line *line)
-{
-	return line->edges ? gpiod_line_event_get_fd(line->line) : -1;
-}
-
-/* The kernel's times (5.7 and later) are of CLOCK_MONOTONIC, which stands still in suspend. */
-static int64_t boottime_of(const struct timespec *ts)
-{
-	struct timespec boot, mono;
-
-	clock_gettime(CLOCK_BOOTTIME, &boot);
-	clock_gettime(CLOCK_MONOTONIC, &mono);
-	return ((int64_t)ts->tv_sec + boot.tv_sec - mono.tv_sec) * NS_PER_S + ts->tv_nsec +
-	       boot.tv_nsec - mono.tv_nsec;
-}
-
 static int next_edge(struct gpio_line *line, struct gpio_edge *edge)
 {
-	struct pollfd ready = {.fd = edge_fd(line), .events = POLLIN};
+	struct pollfd ready = {.events = POLLIN};
 	struct gpiod_line_event event;
 
-	if (!line->edges || poll(&ready, 1, 0) <= 0)
+	if (!line->edges)
+		return 0;
+	ready.fd = gpiod_line_event_get_fd(line->line);
+	if (poll(&ready, 1, 0) <= 0)
 		return 0;
 	errno = 0;
 	if (!(ready.revents & POLLIN) || gpiod_line_event_read_fd(ready.fd, &event))
 		return ready.revents & POLLIN ? library_error() : -ENODEV;
-	edge->at_ns = boottime_of(&event.ts);
+	/* of CLOCK_MONOTONIC from kernel 5.7 on */
+	edge->at_ns = gpio_boottime(event.ts.tv_sec * NS_PER_S + event.ts.tv_nsec);
 	edge->value = event.event_type == GPIOD_LINE_EVENT_RISING_EDGE;
 	return 1;
 }
@@ -199,7 +184,6 @@ static const struct gpio_api library = {
 	.set = set_line,
 	.get = get_line,
 	.edge = next_edge,
-	.fd = edge_fd,
 	.release = release_line,
 };
 const struct gpio_api *const gpio_library = &library;

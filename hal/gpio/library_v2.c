@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* The GPIO calls by libgpiod 2.x. */
-#include "hal/base/time.h"
 #include "hal/gpio/api.h"
 
 #if defined(OWSD_LIBGPIOD) && OWSD_LIBGPIOD == 2
@@ -8,7 +7,6 @@
 #include <gpiod.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 struct gpio_chip {
 	struct gpiod_chip *chip;
@@ -79,8 +77,6 @@ static int line_info(struct gpio_chip *chip, unsigned offset, struct gpio_info *
 	consumer = gpiod_line_info_get_consumer(line);
 	snprintf(info->name, sizeof(info->name), "%s", name ? name : "");
 	snprintf(info->consumer, sizeof(info->consumer), "%s", consumer ? consumer : "");
-	info->used = gpiod_line_info_is_used(line);
-	info->output = gpiod_line_info_get_direction(line) == GPIOD_LINE_DIRECTION_OUTPUT;
 	gpiod_line_info_free(line);
 	return 0;
 }
@@ -204,22 +200,6 @@ static int get_line(struct gpio_line *line)
 	return library_error();
 }
 
-static int edge_fd(struct gpio_line *line)
-{
-	return line->edges ? gpiod_line_request_get_fd(line->request) : -1;
-}
-
-/* The kernel's times are of CLOCK_MONOTONIC, which stands still in suspend. */
-static int64_t boottime_of(uint64_t monotonic_ns)
-{
-	struct timespec boot, mono;
-
-	clock_gettime(CLOCK_BOOTTIME, &boot);
-	clock_gettime(CLOCK_MONOTONIC, &mono);
-	return (int64_t)monotonic_ns + ((int64_t)boot.tv_sec - mono.tv_sec) * NS_PER_S +
-	       boot.tv_nsec - mono.tv_nsec;
-}
-
 static int next_edge(struct gpio_line *line, struct gpio_edge *edge)
 {
 	struct gpiod_edge_event *event;
@@ -232,7 +212,7 @@ static int next_edge(struct gpio_line *line, struct gpio_edge *edge)
 	if (n <= 0)
 		return n < 0 ? library_error() : 0;
 	event = gpiod_edge_event_buffer_get_event(line->edges, 0);
-	edge->at_ns = boottime_of(gpiod_edge_event_get_timestamp_ns(event));
+	edge->at_ns = gpio_boottime((int64_t)gpiod_edge_event_get_timestamp_ns(event));
 	edge->value = gpiod_edge_event_get_event_type(event) == GPIOD_EDGE_EVENT_RISING_EDGE;
 	return 1;
 }
@@ -248,7 +228,6 @@ static const struct gpio_api library = {
 	.set = set_line,
 	.get = get_line,
 	.edge = next_edge,
-	.fd = edge_fd,
 	.release = release_line,
 };
 const struct gpio_api *const gpio_library = &library;

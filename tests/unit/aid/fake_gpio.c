@@ -64,8 +64,6 @@ static int info(struct gpio_chip *chip, unsigned offset, struct gpio_info *info)
 		return -ENODEV;
 	memcpy(info->name, line->name, sizeof(info->name));
 	memcpy(info->consumer, line->consumer, sizeof(info->consumer));
-	info->used = line->consumer[0];
-	info->output = line->setup.direction == GPIO_OUTPUT;
 	return 0;
 }
 
@@ -127,12 +125,6 @@ static int edge(struct gpio_line *handle, struct gpio_edge *edge)
 	return 1;
 }
 
-static int fd(struct gpio_line *handle)
-{
-	(void)handle;
-	return -1;
-}
-
 static void release(struct gpio_line *handle)
 {
 	TEST_ASSERT_TRUE(handle->line->held);
@@ -151,7 +143,6 @@ static const struct gpio_api api = {
 	.set = set,
 	.get = get,
 	.edge = edge,
-	.fd = fd,
 	.release = release,
 };
 
