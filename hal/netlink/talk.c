@@ -186,10 +186,12 @@ static int error_of_status(const struct w1_head *head)
 	return head->status == ENODEV ? -ENODEV : head->status == ENOMEM ? -EIO : -EPROTO;
 }
 
+typedef int take(void *ctx, const struct w1_head *head, const uint8_t *data, bool is_status);
+
 /* One w1 message; a status alone is about the whole request. */
-static int take_message(struct progress *progress, const struct w1_head *head, const uint8_t *data,
-                        bool is_status)
+static int take_message(void *ctx, const struct w1_head *head, const uint8_t *data, bool is_status)
 {
+	struct progress *progress = ctx;
 	size_t n = head->len;
 	int err = 0;
 
@@ -211,14 +213,6 @@ static int take_message(struct progress *progress, const struct w1_head *head, c
 		n -= sizeof(command) + command.len;
 	}
 	return err;
-}
-
-typedef int take(void *ctx, const struct w1_head *head, const uint8_t *data, bool is_status);
-
-static int take_for_request(void *ctx, const struct w1_head *head, const uint8_t *data,
-                            bool is_status)
-{
-	return take_message(ctx, head, data, is_status);
 }
 
 static int walk_messages(const uint8_t *data, size_t n, bool is_status, take *one, void *ctx)
@@ -303,7 +297,7 @@ int w1_request_run(struct w1_talk *talk, struct w1_request *request)
 		n = receive_reply(talk, request->master, until);
 		if (n < 0)
 			return n;
-		n = walk_datagram(talk, (size_t)n, take_for_request, &progress);
+		n = walk_datagram(talk, (size_t)n, take_message, &progress);
 		if (n < 0)
 			return n;
 	}

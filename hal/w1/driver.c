@@ -14,7 +14,6 @@
 #include "hal/chips/find.h"
 #include "hal/chips/format.h"
 #include "hal/w1/driver.h"
-#include "hal/w1/name.h"
 #include "hal/w1/switches.h"
 #include "hal/w1/thermometer.h"
 
@@ -240,14 +239,14 @@ static bool fits_rw(const struct w1_slave *slave)
 
 static bool is_offered_raw(struct w1_slave *slave)
 {
-	char text[96], name[W1_NAME_MAX];
+	char text[96];
 
-	w1_name(slave->rom, name);
 	/* Gone: the command will tell. */
-	if (!w1_exists(slave->tree, name, "") || (w1_slave_has(slave, "rw") && fits_rw(slave)))
+	if (!w1_exists(slave->tree, slave->name, "") ||
+	    (w1_slave_has(slave, "rw") && fits_rw(slave)))
 		return true;
 	if (!slave->told_driver) {
-		snprintf(text, sizeof(text), "%s: no driver that owsd uses has it", name);
+		snprintf(text, sizeof(text), "%s: no driver that owsd uses has it", slave->name);
 		bus_report(slave->tree->env, BUS_NOTE, -ENOENT, text);
 	}
 	slave->told_driver = true;

@@ -14,13 +14,6 @@ void w1_name(const uint8_t rom[8], char name[W1_NAME_MAX])
 	         rom[3], rom[2], rom[1]);
 }
 
-static int hex(char c)
-{
-	if (c >= '0' && c <= '9')
-		return c - '0';
-	return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
-}
-
 bool w1_name_parse(const char *name, size_t len, uint8_t rom[8])
 {
 	static const uint8_t place[] = {0, 6, 5, 4, 3, 2, 1};
@@ -29,7 +22,7 @@ bool w1_name_parse(const char *name, size_t len, uint8_t rom[8])
 		return false;
 	for (unsigned i = 0; i < sizeof(place); i++) {
 		const char *digits = name + 2 * i + (i > 0);
-		int high = hex(digits[0]), low = hex(digits[1]);
+		int high = hex_digit(digits[0]), low = hex_digit(digits[1]);
 
 		if (high < 0 || low < 0)
 			return false;

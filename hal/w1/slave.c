@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/w1/name.h"
 #include "hal/w1/slave.h"
 
 struct w1_slave *w1_slave_of(struct w1_slaves *slaves, const uint8_t rom[8])
@@ -18,41 +17,31 @@ struct w1_slave *w1_slave_of(struct w1_slaves *slaves, const uint8_t rom[8])
 	struct w1_slave *slave = &slaves->slave[slaves->count++];
 	*slave = (struct w1_slave){.tree = slaves->tree};
 	memcpy(slave->rom, rom, 8);
+	w1_name(rom, slave->name);
 	return slave;
 }
 
 bool w1_slave_has(const struct w1_slave *slave, const char *name)
 {
-	char directory[W1_NAME_MAX];
-
-	w1_name(slave->rom, directory);
-	return w1_exists(slave->tree, directory, name);
+	return w1_exists(slave->tree, slave->name, name);
 }
 
 int w1_slave_read(struct w1_slave *slave, const char *name, unsigned at, void *data, size_t n)
 {
-	char directory[W1_NAME_MAX];
-
-	w1_name(slave->rom, directory);
-	int got = w1_read(slave->tree, directory, name, at, data, n);
+	int got = w1_read(slave->tree, slave->name, name, at, data, n);
 	return got < 0 ? got : (size_t)got == n ? 0 : -EIO;
 }
 
 int w1_slave_write(struct w1_slave *slave, const char *name, unsigned at, const void *data,
                    size_t n)
 {
-	char directory[W1_NAME_MAX];
-
-	w1_name(slave->rom, directory);
-	return w1_write(slave->tree, directory, name, at, data, n);
+	return w1_write(slave->tree, slave->name, name, at, data, n);
 }
 
 int w1_slave_text(struct w1_slave *slave, const char *name)
 {
-	char directory[W1_NAME_MAX], *text = slave->tree->text;
-
-	w1_name(slave->rom, directory);
-	int n = w1_read(slave->tree, directory, name, 0, text, W1_TEXT_MAX - 1);
+	char *text = slave->tree->text;
+	int n = w1_read(slave->tree, slave->name, name, 0, text, W1_TEXT_MAX - 1);
 	text[n > 0 ? n : 0] = '\0';
 	return n < 0 ? n : n ? 0 : -EIO;
 }

@@ -2,12 +2,14 @@
 /* The slaves that the kernel has: what is remembered of each, and its attributes (tree.h). */
 #pragma once
 
+#include "hal/w1/name.h"
 #include "hal/w1/tree.h"
 #include "hal/wire/device.h"
 
 struct w1_slave {
 	struct w1_tree *tree;
 	uint8_t rom[8];
+	char name[W1_NAME_MAX]; /* of its directory */
 	uint8_t channel;
 	bool told_driver;      /* the log says that no driver has it */
 	bool due;              /* thermometer: told to convert, not read since */
