@@ -66,7 +66,7 @@ static int prove(struct ds2482_chip *chip)
 	return -ETIMEDOUT;
 }
 
-static int find_part(struct ds2482_chip *chip)
+static void find_part(struct ds2482_chip *chip)
 {
 	if (ds2482_write2(chip, DS2482_READ_POINTER, DS2482_AT_CHANNEL) == 0)
 		chip->part = DS2482_800;
@@ -75,19 +75,13 @@ static int find_part(struct ds2482_chip *chip)
 	else
 		chip->part = DS2482_100;
 	chip->channels = chip->part == DS2482_800 ? 8 : 1;
-	return 0;
-}
-
-static bool passing(int err)
-{
-	return err == -EIO || err == -ENXIO;
 }
 
 int ds2482_detect(struct ds2482_chip *chip)
 {
 	int status = -ENXIO;
 
-	for (unsigned i = 0; i < TRIES && passing(status); i++)
+	for (unsigned i = 0; i < TRIES && ds2482_is_refused(status); i++)
 		status = device_reset(chip);
 	if (status < 0)
 		return status;
@@ -99,7 +93,8 @@ int ds2482_detect(struct ds2482_chip *chip)
 	status = device_reset(chip);
 	if (!just_reset(status))
 		return status < 0 ? status : -ENXIO;
-	return find_part(chip);
+	find_part(chip);
+	return 0;
 }
 
 int ds2482_configure(struct ds2482_chip *chip, uint8_t config)
@@ -125,10 +120,10 @@ int ds2482_setup(struct ds2482_chip *chip)
 {
 	int status = -EIO, err;
 
-	for (unsigned i = 0; i < TRIES && passing(status); i++)
+	for (unsigned i = 0; i < TRIES && ds2482_is_refused(status); i++)
 		status = device_reset(chip);
 	if (status < 0)
-		return passing(status) ? -EIO : status;
+		return ds2482_is_refused(status) ? -EIO : status;
 	if (status & DS2482_1WB)
 		return -ETIMEDOUT;
 	if (!just_reset(status))
