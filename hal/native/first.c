@@ -10,7 +10,6 @@
 #include "hal/native/convert/together.h"
 #include "hal/native/first.h"
 #include "hal/native/first_asked.h"
-#include "hal/native/first_wire.h"
 #include "hal/native/guess.h"
 #include "hal/native/job.h"
 #include "hal/native/job_txn.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Which requests are served before the first search of all wires has ended (first.h). */
+/* What the first conversions (first.h) are to requests and to devices that are found later. */
 #pragma once
 
 #include "hal/native/state.h"
@@ -15,3 +15,13 @@ bool first_asks(const struct native *native, const struct job *job);
 bool first_hurries(const struct native *native);
 /* A wire that was not searched yet, and on which all can be told to convert. */
 bool first_fits(const struct native *native, unsigned n);
+
+/* The longest conversion, of a chip whose resolution is not known. */
+#define FIRST_LONGEST_NS (750 * TXN_MS)
+
+/* A device was found on a channel: it converts with the others, if it is a thermometer. */
+void first_found(struct native *native, struct device *device);
+/* Did it convert with all others of its wire, while the search went on? */
+bool first_took_part(const struct native *native, const struct device *device);
+/* The conversions of all channels are void: their wires had no supply. */
+void first_void(struct native *native);

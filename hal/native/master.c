@@ -8,7 +8,7 @@
 #include "hal/chips/thermometers/thermometer_proof.h"
 #include "hal/native/answer.h"
 #include "hal/native/branches.h"
-#include "hal/native/first_wire.h"
+#include "hal/native/first_asked.h"
 #include "hal/native/limits.h"
 #include "hal/native/master.h"
 #include "hal/native/presence.h"

@@ -12,7 +12,6 @@
 #include "hal/native/convert/ending.h"
 #include "hal/native/convert/schedule.h"
 #include "hal/native/convert/together.h"
-#include "hal/native/cost.h"
 #include "hal/native/first.h"
 #include "hal/native/first_asked.h"
 #include "hal/native/hunt.h"

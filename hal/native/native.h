@@ -8,9 +8,8 @@
  *   hunt.c     searches: background, directories, alarms
  *   locate.c   devices that requests name and no search has found
  *   first.c    first values, before the first search has ended
- *   first_asked.c  ... for which requests
+ *   first_asked.c  ... for which requests, and of devices that are found meanwhile
  *   guess.c    ... on which of several wires
- *   first_wire.c  ... of devices that are found meanwhile
  *   touch.c    keys that touch a wire
  *   exchange.c properties read and written
  *   convert/   when thermometers convert, and what a result is worth
@@ -34,7 +33,7 @@
  *   presence.c devices found, lost, restarted
  *   sensors.c  the file that names the sensors behind bridges
  *   cache.c    what was read lately
- *   state.c    the state on which all work
+ *   state.c    the state on which all work, and what the work has cost
  *
  * All of it runs on the bus's thread; but the counters, which any thread may read.
  *

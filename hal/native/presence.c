@@ -5,7 +5,7 @@
 
 #include "hal/chips/family.h"
 #include "hal/native/branches.h"
-#include "hal/native/first_wire.h"
+#include "hal/native/first_asked.h"
 #include "hal/native/presence.h"
 #include "hal/native/sensors.h"
 #include "hal/native/state.h"

@@ -66,26 +66,15 @@ static int write_timeout(struct txn *txn)
 /* As owserver has them at its start. */
 void native_settings(struct native *native)
 {
-	static const uint32_t seconds[NATIVE_IDLE_TIMEOUTS] = {
+	static const int64_t seconds[NATIVE_IDLE_TIMEOUTS] = {
 		[DIRECTORY] = 60, [FTP] = 900,   [HA7] = 60, [NETWORK] = 1,
 		[SERIAL] = 5,     [SERVER] = 10, [USB] = 5,  [W1] = 30,
 	};
 
-	memcpy(native->idle_timeouts, seconds, sizeof(seconds));
+	for (unsigned i = 0; i < NATIVE_IDLE_TIMEOUTS; i++)
+		native->idle_ns[i] = seconds[i] * NATIVE_S;
 	native->temperature_scale = 'C';
 	memcpy(native->pressure_scale, "mbar", sizeof("mbar"));
-}
-
-static int read_idle(struct txn *txn)
-{
-	txn->number[0] = txn->native->idle_timeouts[txn->property->arg];
-	return 0;
-}
-
-static int write_idle(struct txn *txn)
-{
-	txn->native->idle_timeouts[txn->property->arg] = (uint32_t)txn->number[0];
-	return 0;
 }
 
 static int read_flag(struct txn *txn)
@@ -124,11 +113,10 @@ static int read_aliases(struct txn *txn)
 	return 0;
 }
 
-enum { WAY_SCALE = 1, WAY_TIMEOUT, WAY_IDLE, WAY_FLAG, WAY_ALIASES };
+enum { WAY_SCALE = 1, WAY_TIMEOUT, WAY_FLAG, WAY_ALIASES };
 static const struct property_how how[] = {
 	[WAY_SCALE] = {.read = read_scale, .write = write_scale},
 	[WAY_TIMEOUT] = {.read = read_timeout, .write = write_timeout},
-	[WAY_IDLE] = {.read = read_idle, .write = write_idle},
 	[WAY_FLAG] = {.read = read_flag, .write = write_flag},
 	[WAY_ALIASES] = {.read = read_aliases},
 };
@@ -137,8 +125,7 @@ static const struct property_how how[] = {
 	VIRTUAL(text, PROPERTY_UNSIGNED, LIFE_STATIC, ACCESS_BOTH, offsetof(struct native, which), \
 	        WAY_TIMEOUT)
 /* Of masters and servers that this bus has not: a client reads what it wrote, without effect. */
-#define IDLE(text, which) \
-	VIRTUAL(text, PROPERTY_UNSIGNED, LIFE_STATIC, ACCESS_BOTH, which, WAY_IDLE)
+#define IDLE(text, which) TIMEOUT(text, idle_ns[which])
 #define FLAG(text, which) \
 	VIRTUAL(text, PROPERTY_YESNO, LIFE_STATIC, ACCESS_BOTH, offsetof(struct native, which), \
 	        WAY_FLAG)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The state of a native bus: the time, what it reports and counts, whether a channel is held. */
+/* The state of a native bus: the time, what it reports and counts, its cost, held channels. */
 #include <stdio.h>
 #include <string.h>
 
@@ -124,4 +124,39 @@ struct link *native_abreast(const struct native *native, unsigned channel)
 	struct link *link = channel < native->channels ? native->channel[channel].link : NULL;
 
 	return link && link->ops->together && !native->channel[channel].trunk ? link : NULL;
+}
+
+/* What a wire has done since it was looked at last, ns of its slots. */
+static uint64_t take_wire(struct native *native, unsigned wire)
+{
+	struct link *link = native->channel[wire].link;
+	struct link_cost cost = {0};
+	uint64_t grown;
+
+	if (link->ops->cost)
+		link->ops->cost(link, &cost);
+	/* The master may open with fewer channels than before, or begin anew to count. */
+	grown = cost.wire_ns -
+	        (cost.wire_ns < native->wire_seen_ns[wire] ? 0 : native->wire_seen_ns[wire]);
+	native->wire_ns += grown;
+	native->wire_seen_ns[wire] = cost.wire_ns;
+	return grown;
+}
+
+void cost_of_job(struct native *native, struct job *job)
+{
+	job->wire_ns += take_wire(native, native->channel[job->txn.channel].wire);
+}
+
+void cost_take(struct native *native)
+{
+	struct link_master_cost shared = {0};
+
+	for (unsigned i = 0; i < native->channels; i++)
+		take_wire(native, i);
+	if (native->master->ops->cost)
+		native->master->ops->cost(native->master, &shared);
+	__atomic_store_n(&native->count[COUNT_WIRE_US], native->wire_ns / 1000, __ATOMIC_RELAXED);
+	__atomic_store_n(&native->count[COUNT_I2C_TRANSFERS], shared.transfers, __ATOMIC_RELAXED);
+	__atomic_store_n(&native->count[COUNT_SYSCALLS], shared.syscalls, __ATOMIC_RELAXED);
 }

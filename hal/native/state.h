@@ -120,7 +120,7 @@ struct job {
 	uint32_t order; /* lower came earlier, or has waited longer for its next part */
 	uint8_t steps;  /* transactions since then */
 	int64_t since_ns;
-	uint64_t wire_ns;  /* slots of its own transactions (cost.h) */
+	uint64_t wire_ns;  /* slots of its own transactions (cost_of_job) */
 	int64_t locate_ns; /* LOCATE: since then */
 	int64_t late_ns;   /* native's, when the request came */
 	const struct property *property;
@@ -279,7 +279,7 @@ struct native {
 	char where[NATIVE_WHERE_MAX];
 	struct bus_counter counters[COUNTS];
 
-	/* cost.c */
+	/* state.c */
 	uint64_t wire_ns,
 		wire_seen_ns[NATIVE_CHANNELS]; /* of all links so far; what each said last */
 
@@ -345,7 +345,7 @@ struct native {
 	int64_t presence_ns; /* how long a device that answered is present without being asked */
 	bool uncached;       /* no request is answered from what is kept */
 	bool unaliased;      /* listings show ids, not aliases */
-	uint32_t idle_timeouts[NATIVE_IDLE_TIMEOUTS]; /* settings without effect */
+	int64_t idle_ns[NATIVE_IDLE_TIMEOUTS]; /* settings without effect */
 	char temperature_scale;
 	char pressure_scale[8];
 
@@ -386,3 +386,10 @@ int64_t native_held(const struct native *native, unsigned channel, const struct 
                     int64_t now);
 /* ... it is on until then, for this job or (NULL) for several. */
 void native_hold(struct native *native, unsigned channel, struct job *job, int64_t until_ns);
+/*
+ * What the job's wire did since it was looked at last was a transaction of this job. For what
+ * serves several devices (searches, Convert T for all) this function is not called.
+ */
+void cost_of_job(struct native *native, struct job *job);
+/* At the end of a step: the counters have all that was done. */
+void cost_take(struct native *native);

@@ -6,7 +6,6 @@
 #include "hal/native/convert/broadcast.h"
 #include "hal/native/convert/convert.h"
 #include "hal/native/convert/schedule.h"
-#include "hal/native/cost.h"
 #include "hal/native/job.h"
 
 #define READ_SCRATCHPAD 0xbe
