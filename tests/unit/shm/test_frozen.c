@@ -3,7 +3,17 @@
  * The layout of major version 2, field by field: offset and size in bytes. Programs in other
  * languages are written against these numbers. A new field is added here too; no line is changed.
  */
+#include "unity.h"
+
 #include "src/public/ows_layout.h"
+
+void setUp(void)
+{
+}
+
+void tearDown(void)
+{
+}
 
 #define AT(what, field, offset, size) \
 	_Static_assert(offsetof(struct what, field) == (offset) && \
@@ -265,3 +275,20 @@ _Static_assert(OWS_AREA_RECORDS == 1 && OWS_AREA_INFOS == 2 && OWS_AREA_NAMES ==
                        OWS_AREA_CHANGES == 13 && OWS_AREA_DEVICES == 14 && OWS_AREA_LOG == 15 &&
                        OWS_AREA_REFUSED == 16 && OWS_AREA_NOTES == 17,
                "published");
+
+static void test_check_words_are_as_published(void)
+{
+	static const uint32_t words[] = {1, 0xffffffffu, 0x4953574fu};
+
+	TEST_ASSERT_EQUAL_HEX32(0x9e3779b9u, ows_check(words, 0));
+	TEST_ASSERT_EQUAL_HEX32(0x111bc231u, ows_check(words, 3));
+	TEST_ASSERT_EQUAL_HEX32(0x9e3779b9u, ows_check_bytes("", 0));
+	TEST_ASSERT_EQUAL_HEX32(0x52210f29u, ows_check_bytes("boiler", 6));
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_check_words_are_as_published);
+	return UNITY_END();
+}
