@@ -174,7 +174,7 @@ static int bus_number(struct path_slice part)
 	return number;
 }
 
-static bool take_flag(struct path_slice part, struct path *path)
+static bool parse_flag(struct path_slice part, struct path *path)
 {
 	int bus = bus_number(part);
 
@@ -190,7 +190,7 @@ static bool take_flag(struct path_slice part, struct path *path)
 }
 
 /* Take part as the last component of the device. -EBADMSG as rom_parse(). */
-static int take_device(struct path_slice part, struct path *path)
+static int parse_device(struct path_slice part, struct path *path)
 {
 	int err = rom_parse(part.text, part.len, path->rom);
 
@@ -231,14 +231,14 @@ const char *path_split(const char *text, size_t len, struct path *path)
 	while (here < len) {
 		pos = here;
 		part = component(text, len, &pos);
-		if (!take_flag(part, path))
+		if (!parse_flag(part, path))
 			break;
 		here = pos;
 	}
 	while (here < len && !slice_in(part, no_device)) {
 		struct path_slice next;
 
-		if (take_device(part, path))
+		if (parse_device(part, path))
 			return "has a device id with a wrong checksum";
 		here = pos;
 		if (here == len)

@@ -48,7 +48,7 @@ int bench_cpus(void)
 	return (int)sysconf(_SC_NPROCESSORS_ONLN);
 }
 
-static struct shm_place place = {.fd = -1};
+static struct shm_dir dir = {.fd = -1};
 static pid_t maker;
 
 static int remove_one(const char *path, const struct stat *st, int kind, struct FTW *at)
@@ -62,22 +62,22 @@ static int remove_one(const char *path, const struct stat *st, int kind, struct 
 static void remove_place(void)
 {
 	if (getpid() == maker)
-		nftw(place.path, remove_one, 4, FTW_DEPTH | FTW_PHYS);
+		nftw(dir.path, remove_one, 4, FTW_DEPTH | FTW_PHYS);
 }
 
-const struct shm_place *bench_place(void)
+const struct shm_dir *bench_dir(void)
 {
 	char path[] = "/dev/shm/owsd-bench-XXXXXX";
 
-	if (place.fd >= 0)
-		return &place;
-	if (!mkdtemp(path) || setenv("OWS_DIR", path, 1) || place_make(&place)) {
+	if (dir.fd >= 0)
+		return &dir;
+	if (!mkdtemp(path) || setenv("OWS_DIR", path, 1) || dir_make(&dir)) {
 		perror(path);
 		exit(1);
 	}
 	maker = getpid();
 	atexit(remove_place);
-	return &place;
+	return &dir;
 }
 
 void bench_line(const char *name, double value, const char *unit)

@@ -10,7 +10,7 @@
 #include <stdint.h>
 #include <sys/types.h>
 
-#include "src/memory/shm/place.h"
+#include "src/memory/shm/dir.h"
 
 int64_t bench_now(void); /* ns, monotonic */
 /* Keep this thread on one CPU; false when the machine has no such CPU. */
@@ -31,7 +31,7 @@ int64_t bench_cpu_ns(pid_t pid);
  * A place of the bench's own for owsd and libows, in memory as a real one; removed with all that is
  * in it when the bench ends.
  */
-const struct shm_place *bench_place(void);
+const struct shm_dir *bench_dir(void);
 
 struct bench_peer {
 	pid_t pid;

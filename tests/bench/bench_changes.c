@@ -118,7 +118,7 @@ static bool open_instance(struct segment *segment, char *name, struct ows **h)
 		                                   .per_factor = 1};
 	}
 	sprintf(name, "bench-%d", (int)getpid());
-	if (segment_create(bench_place(), name, SEGMENT_IMAGE, image_size(&plan), segment))
+	if (segment_create(bench_dir(), name, SEGMENT_IMAGE, image_size(&plan), segment))
 		return false;
 	image_build(&plan, segment->base, &image);
 	for (uint32_t i = 0; i <= rows; i++)
@@ -165,7 +165,7 @@ static void measure(uint32_t count)
 	__atomic_store_n(&stop, true, __ATOMIC_RELAXED);
 	pthread_join(writer, NULL);
 	ows_close(h);
-	segment_remove(bench_place(), name, SEGMENT_IMAGE);
+	segment_remove(bench_dir(), name, SEGMENT_IMAGE);
 	segment_close(&segment);
 	if (missed || sum <= 0)
 		fprintf(stderr, "changes: %d rounds did not give %d changes\n", missed, CHANGES);
@@ -306,7 +306,7 @@ static void wait_beside_an_idle_one(void)
 	__atomic_store_n(&stop, true, __ATOMIC_RELAXED);
 	pthread_join(heart, NULL);
 	ows_close(h);
-	segment_remove(bench_place(), name, SEGMENT_IMAGE);
+	segment_remove(bench_dir(), name, SEGMENT_IMAGE);
 	segment_close(&segment);
 }
 

@@ -290,7 +290,7 @@ int main(int argc, char **argv)
 	int fd;
 
 	(void)argc;
-	bench_place();
+	bench_dir();
 	snprintf(program, sizeof(program), "%.*s/../owsd-sim", slash ? (int)(slash - argv[0]) : 1,
 	         slash ? argv[0] : ".");
 	snprintf(scenario, sizeof(scenario), "/tmp/owsd-bench-XXXXXX");

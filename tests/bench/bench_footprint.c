@@ -252,7 +252,7 @@ int main(int argc, char **argv)
 	struct bench_peer peer;
 
 	(void)argc;
-	bench_place();
+	bench_dir();
 	snprintf(program, sizeof(program), "%.*s/../owsd", slash ? (int)(slash - argv[0]) : 1,
 	         slash ? argv[0] : ".");
 	bench_line("text_size", text_size(program) / 1024, "KiB");

@@ -306,7 +306,7 @@ static bool run(const char *program, const char *folder, const struct size *size
 
 	snprintf(file, sizeof(file), "%s/bench.rio", folder);
 	snprintf(instance, sizeof(instance), "bench-%d", (int)getpid());
-	snprintf(image, sizeof(image), "%s/%s.image", bench_place()->path, instance);
+	snprintf(image, sizeof(image), "%s/%s.image", bench_dir()->path, instance);
 	unlink(image);
 	if (!write_file(file, size, ports, APART))
 		return false;
@@ -334,7 +334,7 @@ int main(int argc, char **argv)
 	pid_t peer;
 
 	(void)argc;
-	bench_place();
+	bench_dir();
 	snprintf(program, sizeof(program), "%.*s/../owsd", slash ? (int)(slash - argv[0]) : 1,
 	         slash ? argv[0] : ".");
 	if (!mkdtemp(folder) || !start_peer(ports, &peer))

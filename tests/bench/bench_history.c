@@ -28,7 +28,7 @@
 #define RUNS 15
 #define POINTS 1000
 
-static char directory[PLACE_PATH + 16], path[PLACE_PATH + 48];
+static char directory[DIR_PATH + 16], path[DIR_PATH + 48];
 
 static double cpu_ms(void)
 {
@@ -164,7 +164,7 @@ int main(int argc, char **argv)
 		fputs("usage: bench_history [YEARS [SIGNALS [SECONDS [DIRECTORY]]]]\n", stderr);
 		return 2;
 	}
-	snprintf(directory, sizeof(directory), "%s%s", argc > 4 ? argv[4] : bench_place()->path,
+	snprintf(directory, sizeof(directory), "%s%s", argc > 4 ? argv[4] : bench_dir()->path,
 	         argc > 4 ? "" : "/history");
 	snprintf(path, sizeof(path), "%s/history.sqlite", directory);
 	if (access(path, F_OK) != 0) {

@@ -99,7 +99,7 @@ static bool start_page(struct page *page)
 	snprintf(program, sizeof(program), "%.*s/../owsd-web", slash ? (int)(slash - self) : 1,
 	         slash ? self : ".");
 	snprintf(file, sizeof(file), "%s/bench.rio", root);
-	snprintf(page->socket, sizeof(page->socket), "%.60s/%s.web", bench_place()->path,
+	snprintf(page->socket, sizeof(page->socket), "%.60s/%s.web", bench_dir()->path,
 	         many_instance());
 	page->port = bench_port();
 	snprintf(address, sizeof(address), "127.0.0.1:%d", page->port);

@@ -33,7 +33,7 @@
 #define RRD_DATE 1700000000
 #define KERNEL 30 /* seconds after which it writes what is dirty */
 
-static char disk[PLACE_PATH + 64];
+static char disk[DIR_PATH + 64];
 
 static void want(bool good, const char *what)
 {
@@ -75,7 +75,7 @@ static void sync_disk(void)
 static bool make_disk(void)
 {
 	char command[4 * sizeof(disk)];
-	const char *place = bench_place()->path;
+	const char *place = bench_dir()->path;
 
 	snprintf(disk, sizeof(disk), "%s/disk", place);
 	if (unshare(CLONE_NEWNS) || mount("none", "/", NULL, MS_REC | MS_PRIVATE, NULL) ||

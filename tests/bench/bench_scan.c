@@ -39,7 +39,7 @@
 
 /* Temperatures that stay, or chips that take four fifths of the longest time. */
 enum kind { PLAIN, QUICK };
-struct place {
+struct rio_position {
 	struct bus_env env;
 	struct bus *bus;
 	char file[32];
@@ -60,12 +60,12 @@ struct place {
 
 static int64_t place_now(void *ctx)
 {
-	return ((struct place *)ctx)->now;
+	return ((struct rio_position *)ctx)->now;
 }
 
 static int place_wait(void *ctx, int fd, short events, int64_t until_ns)
 {
-	struct place *p = ctx;
+	struct rio_position *p = ctx;
 
 	(void)fd;
 	(void)events;
@@ -77,7 +77,7 @@ static int place_wait(void *ctx, int fd, short events, int64_t until_ns)
 
 static void place_answer(void *ctx, const struct bus_answer *answer)
 {
-	struct place *p = ctx;
+	struct rio_position *p = ctx;
 
 	p->answers++;
 	p->failures += answer->err != 0;
@@ -95,12 +95,12 @@ static void place_answer(void *ctx, const struct bus_answer *answer)
 
 static void place_event(void *ctx, const struct bus_event *event)
 {
-	struct place *p = ctx;
+	struct rio_position *p = ctx;
 
 	p->up |= event->news == BUS_UP;
 }
 
-static void run(struct place *p, unsigned answers, int64_t until_ns)
+static void run(struct rio_position *p, unsigned answers, int64_t until_ns)
 {
 	while (p->answers < answers && p->now < until_ns) {
 		int64_t next = bus_step(p->bus, p->now);
@@ -133,7 +133,7 @@ static void describe(FILE *f, unsigned thermometers, unsigned channels, unsigned
 	}
 }
 
-static void begin(struct place *p, unsigned thermometers, unsigned channels, unsigned chips,
+static void begin(struct rio_position *p, unsigned thermometers, unsigned channels, unsigned chips,
                   int khz, const char *combine, enum kind kind)
 {
 	char target[48], why[200] = "";
@@ -165,7 +165,7 @@ static void begin(struct place *p, unsigned thermometers, unsigned channels, uns
 	unlink(p->file);
 }
 
-static uint64_t counter(struct place *p, const char *name)
+static uint64_t counter(struct rio_position *p, const char *name)
 {
 	size_t n;
 	const struct bus_counter *counters = bus_counters(p->bus, &n);
@@ -176,7 +176,7 @@ static uint64_t counter(struct place *p, const char *name)
 	exit(1);
 }
 
-static void ask(struct place *p, unsigned i, const char *property)
+static void ask(struct rio_position *p, unsigned i, const char *property)
 {
 	snprintf(p->path[i], sizeof(p->path[i]), "/28.%08X%04X/%s", (i + 1) * 2654435761u, i,
 	         property);
@@ -192,7 +192,7 @@ static void ask(struct place *p, unsigned i, const char *property)
 		exit(1);
 }
 
-static double scan(struct place *p)
+static double scan(struct rio_position *p)
 {
 	int64_t begun = p->now;
 
@@ -211,7 +211,7 @@ static double scan(struct place *p)
 /* From the opening of the bus to the last answer of all that are asked for as soon as it is up. */
 static void measure_first(unsigned thermometers, unsigned channels)
 {
-	static struct place p;
+	static struct rio_position p;
 	char line[64], wires[16];
 
 	begin(&p, thermometers, channels, 1, 400, "any", PLAIN);
@@ -230,7 +230,7 @@ static void measure_first(unsigned thermometers, unsigned channels)
 }
 
 /* Each thermometer again as soon as it was answered. */
-static double steady(struct place *p)
+static double steady(struct rio_position *p)
 {
 	int64_t end = p->now + STEADY_NS;
 	double longest = 0;
@@ -268,14 +268,14 @@ static double steady(struct place *p)
 	return longest;
 }
 
-static double limit(const struct place *p)
+static double limit(const struct rio_position *p)
 {
 	return p->channels * (RESET_NS + 2 * 8 * SLOT_NS) + CONVERT_NS +
 	       p->thermometers * (RESET_NS + 19 * 8 * SLOT_NS);
 }
 
 /* Cost of one reading of a scratchpad: the median, as a background search may come between. */
-static void scratchpad(struct place *p, const char *name)
+static void scratchpad(struct rio_position *p, const char *name)
 {
 	double transfers[SCANS], calls[SCANS];
 	char line[64];
@@ -301,7 +301,7 @@ static void scratchpad(struct place *p, const char *name)
 static void measure(unsigned thermometers, unsigned channels, unsigned chips, int khz,
                     const char *combine, bool cost, bool quick)
 {
-	static struct place p;
+	static struct rio_position p;
 	double sum = 0;
 	char name[40], line[64], wires[16];
 

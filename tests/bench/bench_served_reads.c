@@ -194,7 +194,7 @@ int main(int argc, char **argv)
 	struct side sides[2];
 
 	(void)argc;
-	bench_place();
+	bench_dir();
 	if (!bench_peer_start(&peer, DEVICES, 0))
 		return 0;
 	snprintf(program, sizeof(program), "%.*s/../owsd", slash ? (int)(slash - argv[0]) : 1,

@@ -144,7 +144,7 @@ int main(int argc, char **argv)
 	pid_t pid;
 
 	(void)argc;
-	bench_place();
+	bench_dir();
 	a.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
 	if (bind(listener, (void *)&a, sizeof(a)) || listen(listener, 4) ||
 	    getsockname(listener, (void *)&a, &len) || !mkdtemp(folder))

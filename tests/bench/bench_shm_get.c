@@ -62,7 +62,7 @@ static bool open_instance(struct segment *segment, char *name, struct ows **h)
 	size_t size = image_size(&plan);
 
 	sprintf(name, "bench-%d", (int)getpid());
-	if (segment_create(bench_place(), name, SEGMENT_IMAGE, size, segment))
+	if (segment_create(bench_dir(), name, SEGMENT_IMAGE, size, segment))
 		return false;
 	image_build(&plan, segment->base, &image);
 	publish(0);

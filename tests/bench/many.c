@@ -156,7 +156,7 @@ static bool open_control(const uint8_t *types)
 	                                     .generation = 1,
 	                                     .start_id = 1};
 	struct control_setup setup = {.config = &many.config,
-	                              .directory = bench_place()->fd,
+	                              .directory = bench_dir()->fd,
 	                              .instance = many.name,
 	                              .ring = ring};
 	char why[200];
@@ -177,8 +177,7 @@ static bool open_image(const struct image_signal *signals)
 	                          .start_ns = ows_now(),
 	                          .period_ns = SECOND / PARTS};
 
-	if (segment_create(bench_place(), many.name, SEGMENT_IMAGE, image_size(&plan),
-	                   &many.segment))
+	if (segment_create(bench_dir(), many.name, SEGMENT_IMAGE, image_size(&plan), &many.segment))
 		return false;
 	image_build(&plan, many.segment.base, &many.image);
 	for (uint32_t i = 0; i <= many.count; i++)
@@ -231,7 +230,7 @@ void many_close(void)
 	pthread_join(many.thread, NULL);
 	control_destroy(many.control);
 	controller_layout_free(&many.layout);
-	segment_remove(bench_place(), many.name, SEGMENT_IMAGE);
+	segment_remove(bench_dir(), many.name, SEGMENT_IMAGE);
 	segment_close(&many.segment);
 	sem_destroy(&many.bell);
 }

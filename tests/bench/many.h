@@ -16,7 +16,7 @@ struct many_pace {
 	bool probe;        /* publish the time, each 50 to 250 ms */
 };
 
-/* In bench_place(). One at a time. False: the reason was noted. */
+/* In bench_dir(). One at a time. False: the reason was noted. */
 bool many_open(uint32_t count);
 void many_pace(struct many_pace pace);
 void many_close(void);

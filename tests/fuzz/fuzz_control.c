@@ -135,13 +135,13 @@ static void turn_engine(unsigned most)
 static void reload(void)
 {
 	struct control_message message;
-	unsigned place = 0, prepared = 0;
+	unsigned seat = 0, prepared = 0;
 
 	control_asked(room);
 	control_take_askers(room);
 	control_prepare(room, &config, make_layout());
 	turn_engine(OWS_CONTROLLERS + 1);
-	for (; control_prepared(room, &place, &message); prepared++)
+	for (; control_prepared(room, &seat, &message); prepared++)
 		TEST_ASSERT_EQUAL_PTR(&layouts[generation % 2], message.controller.memory.layout);
 	TEST_ASSERT_TRUE(prepared <= inside);
 	control_reloaded(room);
@@ -153,7 +153,7 @@ static void check_room(void)
 	unsigned connections = 0;
 
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
-		connections += room->places[i].state != CONTROL_FREE;
+		connections += room->seats[i].state != CONTROL_FREE;
 	TEST_ASSERT_EQUAL_UINT(connections,
 	                       (unsigned)bus_counted(&room->counters[CONTROL_connections]));
 	TEST_ASSERT_TRUE(inside <= connections);

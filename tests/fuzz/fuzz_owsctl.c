@@ -153,14 +153,14 @@ int __wrap_ows_open_as(const char *instance, enum ows_mode mode, const char *nam
 	            h);
 }
 
-int __real_open_in(const char *place, const char *instance, enum ows_mode mode, const char *name,
+int __real_open_in(const char *dir, const char *instance, enum ows_mode mode, const char *name,
                    struct ows **h);
-int __wrap_open_in(const char *place, const char *instance, enum ows_mode mode, const char *name,
+int __wrap_open_in(const char *dir, const char *instance, enum ows_mode mode, const char *name,
                    struct ows **h);
-int __wrap_open_in(const char *place, const char *instance, enum ows_mode mode, const char *name,
+int __wrap_open_in(const char *dir, const char *instance, enum ows_mode mode, const char *name,
                    struct ows **h)
 {
-	return keep(__real_open_in(place, instance, mode, name, h), h);
+	return keep(__real_open_in(dir, instance, mode, name, h), h);
 }
 
 void __real_ows_close(struct ows *h);

@@ -319,11 +319,8 @@ static void begin(void)
 	static struct config_target targets[] = {{.text = "null:"}, {.text = "w1"}};
 	static const struct config config = {
 		.targets = targets, .target_count = 2, .items = items, .item_count = HEAP_SIGNALS};
-	struct serve_setup setup = {.config = &config,
-	                            .instance = "OWS",
-	                            .place = "/",
-	                            .directory = -1,
-	                            .ring = no_ring};
+	struct serve_setup setup = {
+		.config = &config, .instance = "OWS", .dir = "/", .directory = -1, .ring = no_ring};
 	char why[128];
 
 	for (unsigned i = 0; i < HEAP_SIGNALS; i++)

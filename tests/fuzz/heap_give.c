@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "src/memory/libows/join.h"
-#include "src/memory/shm/place.h"
+#include "src/memory/shm/dir.h"
 
 struct heap_file heap_controller_file;
 enum { CONTROLLER_FD = 1002 };
@@ -87,8 +87,8 @@ static int heap_stat(struct stat *st)
 #include "src/memory/libows/give.c"
 #undef mmap
 #undef munmap
-#define place_open(path, place) ((void)(path), (place)->fd = -1, 0)
-#define place_close(place) ((void)(place))
+#define dir_open(path, dir) ((void)(path), (dir)->fd = -1, 0)
+#define dir_close(dir) ((void)(dir))
 #include "src/memory/libows/meet.c"
 
 int join_watch(struct join *join)

@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "src/memory/shm/place.h"
+#include "src/memory/shm/dir.h"
 
 struct heap_file heap_image_file;
 enum { IMAGE_FD = 1000 };
@@ -27,9 +27,9 @@ static int heap_stat(struct stat *st)
 	return 0;
 }
 
-#define openat(place, path, flags) ((void)(place), heap_open(path, flags))
-#define place_open(path, place) ((void)(path), (place)->fd = -1, 0)
-#define place_close(place) ((void)(place))
+#define openat(dir, path, flags) ((void)(dir), heap_open(path, flags))
+#define dir_open(path, dir) ((void)(path), (dir)->fd = -1, 0)
+#define dir_close(dir) ((void)(dir))
 #define fstat(fd, st) ((void)(fd), heap_stat(st))
 #define close(fd) ((void)(fd))
 #define mmap(at, size, prot, flags, fd, off) ((void *)heap_image_file.base)

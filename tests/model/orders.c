@@ -154,7 +154,7 @@ static void setup(void)
 		make_handle(i);
 		engine.controllers[i].is = CONTROLLER_CONNECTED;
 		engine.controllers[i].as.memory = controllers[i];
-		engine.place_end = i + 1;
+		engine.seat_end = i + 1;
 	}
 	serving.engine = &engine;
 	serving.memory.image.header = &header;

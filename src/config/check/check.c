@@ -24,7 +24,7 @@
 struct check {
 	struct config_report *report;
 	const struct config_item *item;
-	struct place place, path_place; /* of the item, of its Path */
+	struct rio_position position, path_position; /* of the item, of its Path */
 	int64_t period_ns;
 	bool caches; /* all targets are owsd's own buses, whose values have the age of the chip's */
 	bool tables; /* a Bus names a file of sensors: devices may have more properties */
@@ -81,16 +81,16 @@ static void check_component(const struct check *check, const char *text, size_t 
 	digits = digits_of(rest, left);
 	if (text[2] == '-' && left == ID_DIGITS && digits == left) {
 		from_kernel(code, rest, right);
-		report_warning(check->report, check->path_place,
+		report_warning(check->report, check->path_position,
 		               "\"%s\": %.*s is the kernel's spelling of a device: write %s", name,
 		               (int)len, text, right);
 	} else if (digits == left && left >= 4) {
-		report_warning(check->report, check->path_place,
+		report_warning(check->report, check->path_position,
 		               "\"%s\": %.*s has %zu digits after its family and counts as an "
 		               "alias; an id has %d: owsctl scan shows them",
 		               name, (int)len, text, left, ID_DIGITS);
 	} else if (left == ID_DIGITS && text[2] == '.' && digits >= left / 2) {
-		report_warning(check->report, check->path_place,
+		report_warning(check->report, check->path_position,
 		               "\"%s\": %.*s counts as an alias; an id has no digit '%c', only 0 "
 		               "to 9 and A to F",
 		               name, (int)len, text, rest[digits]);
@@ -110,24 +110,26 @@ static void check_ids(const struct check *check)
 }
 
 /* Where that stands, or the item if its key is absent. */
-static struct place place_at(const struct check *check, struct config_spot at)
+static struct rio_position position_at(const struct check *check, struct config_spot at)
 {
-	return at.line ? (struct place){check->place.file, at.line, at.column} : check->place;
+	return at.line ? (struct rio_position){check->position.file, at.line, at.column}
+	               : check->position;
 }
 
 /* A property that is named at `what`: "" or the key of an alarm, with a blank behind it. */
-static void check_property(const struct check *check, struct place place, const char *path,
-                           const char *what, const char *property)
+static void check_property(const struct check *check, struct rio_position position,
+                           const char *path, const char *what, const char *property)
 {
 	struct path_property found = property_look(path);
 
 	if (found.exists)
 		return;
 	if (*found.nearest)
-		report_warning(check->report, place, "\"%s\": %sa %s has no %s; did you mean %s?",
-		               check->item->name, what, found.type, property, found.nearest);
+		report_warning(check->report, position,
+		               "\"%s\": %sa %s has no %s; did you mean %s?", check->item->name,
+		               what, found.type, property, found.nearest);
 	else if (!check->tables)
-		report_warning(check->report, place,
+		report_warning(check->report, position,
 		               "\"%s\": %sowsd knows no %s of a %s: check its spelling",
 		               check->item->name, what, property, found.type);
 }
@@ -138,15 +140,15 @@ static void check_direction(const struct check *check)
 	struct path_property found = property_look(item->path);
 
 	if (item->output && !found.writable)
-		report_warning(check->report, check->path_place,
+		report_warning(check->report, check->path_position,
 		               "\"%s\" is an output, but %s cannot be written: write IO input",
 		               item->name, strrchr(item->path, '/') + 1);
 	else if (item->writable && !found.writable)
-		report_warning(check->report, check->path_place,
+		report_warning(check->report, check->path_position,
 		               "\"%s\" is Writable, but %s cannot be written: write Writable off",
 		               item->name, strrchr(item->path, '/') + 1);
 	else if (item->readable && !found.readable)
-		report_warning(check->report, check->path_place,
+		report_warning(check->report, check->path_position,
 		               "\"%s\" is read, but %s can only be written: write IO output",
 		               item->name, strrchr(item->path, '/') + 1);
 }
@@ -165,13 +167,13 @@ static void check_unit(const struct check *check)
 	if (!scale_changes(&item->scale) && quantity_of(item->path, &quantity) && *quantity.unit &&
 	    !unit_convert(quantity.unit, item->unit, &factor, &offset)) {
 		unit_list(quantity.unit, known, sizeof(known));
-		report_warning(check->report, check->place,
+		report_warning(check->report, check->position,
 		               "\"%s\": Unit \"%s\" is shown beside a value in %s: write %s, or "
 		               "Scale too",
 		               item->name, item->unit, quantity.unit,
 		               *known ? known : quantity.unit);
 	} else if (symbol && strcmp(symbol, item->unit) != 0) {
-		report_warning(check->report, check->place,
+		report_warning(check->report, check->position,
 		               "\"%s\": Unit \"%s\": other programs know it as %s", item->name,
 		               item->unit, symbol);
 	}
@@ -206,7 +208,7 @@ static void check_age(const struct check *check)
 	else if (by_alarm || often < item->per_factor)
 		snprintf(factor, sizeof(factor), ", or PerFactor %lld%s", (long long)often,
 		         every_ns > due_ns ? " and Uncached on" : "");
-	report_warning(check->report, check->place,
+	report_warning(check->report, check->position,
 	               "\"%s\" is stale before it is read again, each %g s%s: write StaleAfter %g "
 	               "or more%s",
 	               item->name, (double)every_ns / 1e9,
@@ -215,7 +217,7 @@ static void check_age(const struct check *check)
 }
 
 /* A property that there is and that does not fit what the key is for. */
-static void check_purpose(const struct check *check, struct place place, const char *path,
+static void check_purpose(const struct check *check, struct rio_position position, const char *path,
                           const char *key, const char *property, uint8_t purpose)
 {
 	static const char *const words[] = {
@@ -230,7 +232,7 @@ static void check_purpose(const struct check *check, struct place place, const c
 
 	if (purpose && !(found.alarm & purpose) &&
 	    (named || property_of_alarm(path, purpose, like)))
-		report_warning(check->report, place, "\"%s\": %s: %s %s of a %s: write %s",
+		report_warning(check->report, position, "\"%s\": %s: %s %s of a %s: write %s",
 		               check->item->name, key, property, words[purpose], found.type, like);
 }
 
@@ -240,38 +242,38 @@ static void check_alarm(const struct check *check, enum option option, const cha
 {
 	const char *key = option_table[option].key, *property, *value;
 	bool writes = option != OPT_LATCH_ALARM;
-	struct place place = place_at(check, at);
+	struct rio_position position = position_at(check, at);
 	char path[ALARM_PATH], what[32], why[PROPERTY_NEAREST];
 
 	property = alarm_path(check->item, string, path);
 	if (!property)
 		return;
 	if (*property == '/') {
-		report_warning(check->report, place,
+		report_warning(check->report, position,
 		               "\"%s\": %s \"%s\" is a property of the device: write it without "
 		               "the / before it",
 		               check->item->name, key, string);
 		return;
 	}
 	snprintf(what, sizeof(what), "%s: ", key);
-	check_property(check, place, path, what, property);
+	check_property(check, position, path, what, property);
 	if (!property_look(path).exists)
 		return;
 	if (writes && !property_look(path).writable) {
-		report_warning(check->report, place,
+		report_warning(check->report, position,
 		               "\"%s\": %s%s cannot be written, so the alarm cannot be served",
 		               check->item->name, what, property);
 		return;
 	}
-	check_purpose(check, place, path, key, property, purpose);
+	check_purpose(check, position, path, key, property, purpose);
 	value = strchr(string, '=');
 	if (value && !value[1])
-		report_warning(check->report, place,
+		report_warning(check->report, position,
 		               "\"%s\": %s \"%s\" has nothing behind the '=', and nothing is "
 		               "written; expected property=value",
 		               check->item->name, key, string);
 	else if (value && !property_takes(path, value + 1, why))
-		report_warning(check->report, place, "\"%s\": %s \"%s\": %s of a %s%s",
+		report_warning(check->report, position, "\"%s\": %s \"%s\": %s of a %s%s",
 		               check->item->name, key, string, property, property_look(path).type,
 		               why);
 }
@@ -293,7 +295,7 @@ static void check_alarms(const struct check *check)
 	else if (!property_of_alarm(path, ALARM_CLEARS, like))
 		return;
 	report_warning(check->report,
-	               place_at(check, item->reset_latch ? item->reset_at : item->latch_at),
+	               position_at(check, item->reset_latch ? item->reset_at : item->latch_at),
 	               "\"%s\": ResetLatch is %s, and %s stays set: the alarm comes once; write "
 	               "ResetLatch with %s",
 	               item->name, item->reset_latch ? "empty" : "not defined", latch, like);
@@ -310,10 +312,10 @@ static void check_item(const struct check *check)
 		return;
 	check_ids(check);
 	if (path.property.len)
-		check_property(check, check->path_place, item->path, "", path.property.text);
+		check_property(check, check->path_position, item->path, "", path.property.text);
 	if (!path.device.len && item->readable &&
 	    !strncmp(path.property.text, simultaneous, strlen(simultaneous)))
-		report_warning(check->report, check->path_place,
+		report_warning(check->report, check->path_position,
 		               "\"%s\": %s begins conversions and shows no value: write IO output, "
 		               "or the Path of a device",
 		               item->name, item->path);
@@ -321,7 +323,7 @@ static void check_item(const struct check *check)
 	check_unit(check);
 	if (item->type == OWS_STRING && quantity_of(item->path, &quantity))
 		report_warning(
-			check->report, check->place,
+			check->report, check->position,
 			"\"%s\" is a number, and a string shows it as text: write Type double",
 			item->name);
 	check_age(check);
@@ -345,8 +347,8 @@ void config_check_items(struct config *config, const char *name, struct config_r
 
 		know_item(&config->items[i], config->file, asked ? report : &silent);
 		check.item = &config->items[i];
-		check.place = (struct place){config->file, check.item->line, 0};
-		check.path_place = place_at(&check, check.item->path_at);
+		check.position = (struct rio_position){config->file, check.item->line, 0};
+		check.path_position = position_at(&check, check.item->path_at);
 		if (asked)
 			check_item(&check);
 	}

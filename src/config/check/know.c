@@ -17,10 +17,10 @@
 #define READ_BACK_NS (10 * INT64_C(1000000000))
 
 /* Where a key stands, or the item if the key is absent. */
-static struct place place_of(const struct config_item *item, const char *file,
-                             struct config_spot at)
+static struct rio_position position_of(const struct config_item *item, const char *file,
+                                       struct config_spot at)
 {
-	return (struct place){file, at.line ? at.line : item->line, at.column};
+	return (struct rio_position){file, at.line ? at.line : item->line, at.column};
 }
 
 /*
@@ -52,7 +52,7 @@ static void warn_of_decimals(const struct config_item *item, const char *file,
 	if (value_is_float(item->type) || item->type == OWS_STRING || scale_changes(&item->scale) ||
 	    !quantity_of(item->path, &quantity) || quantity.decimals <= 0)
 		return;
-	report_warning(report, place_of(item, file, item->type_at),
+	report_warning(report, position_of(item, file, item->type_at),
 	               "\"%s\" has decimals, and a %s has none: write Type double or float",
 	               item->path, value_type_name(item->type));
 }
@@ -80,7 +80,7 @@ static void know_read_back(struct config_item *item, const char *file, struct co
 	                                               : NULL;
 
 	if (fault && item->read_back_ns > 0)
-		report_warning(report, place_of(item, file, item->read_back_at),
+		report_warning(report, position_of(item, file, item->read_back_at),
 		               "ReadBack does nothing: %s%s%s", fault,
 		               reads || !*property.held ? "" : "; write the Path of ",
 		               reads ? "" : property.held);
@@ -90,7 +90,7 @@ static void know_read_back(struct config_item *item, const char *file, struct co
 		item->read_back_ns = property.holds ? READ_BACK_NS : 0;
 	item->has_por = item->read_back_ns && has_por(item);
 	if (item->restores && !item->read_back_ns)
-		report_warning(report, place_of(item, file, item->restore_at),
+		report_warning(report, position_of(item, file, item->restore_at),
 		               "Restore does nothing: the item is not read back (ReadBack)");
 }
 

@@ -78,16 +78,16 @@ int config_check_own(struct config *config, struct config_report *report)
 
 	for (unsigned i = 0; i < config->target_count; i++) {
 		const struct config_target *target = &config->targets[i];
-		struct place place = target_place(config, target);
+		struct rio_position position = target_position(config, target);
 
 		if (!is_own(&config->serve, target->text))
 			continue;
 		if (!target->automatic) {
-			report_error(report, place, "the target \"%s\" is where this owsd listens",
-			             target->text);
+			report_error(report, position,
+			             "the target \"%s\" is where this owsd listens", target->text);
 			continue;
 		}
-		report_warning(report, place,
+		report_warning(report, position,
 		               "auto looks for no owserver at %s: this owsd listens "
 		               "there",
 		               target->text);

@@ -92,7 +92,7 @@ void shared_check(const struct config *config, const char *name, struct config_r
 
 		if (!other || (name && strcmp(item->name, name) && strcmp(other->name, name)))
 			continue;
-		report_warning(report, (struct place){config->file, item->line, 0},
+		report_warning(report, (struct rio_position){config->file, item->line, 0},
 		               "\"%s\" and \"%s\" in line %d set the same bits, and %s", item->name,
 		               other->name, other->line,
 		               is_restored(item) || is_restored(other)

@@ -57,9 +57,10 @@ bool target_same(const char *a, const char *b)
 	return !strcmp(text_a, text_b);
 }
 
-struct place target_place(const struct config *config, const struct config_target *target)
+struct rio_position target_position(const struct config *config, const struct config_target *target)
 {
-	return (struct place){target->line ? config->file : NULL, target->line, target->column};
+	return (struct rio_position){target->line ? config->file : NULL, target->line,
+	                             target->column};
 }
 
 const struct config_bus *config_bus(const struct config *config, const char *target)
@@ -86,7 +87,7 @@ static void check_target(const struct config *config, unsigned n, struct config_
 
 	for (unsigned i = 0; i < n; i++)
 		if (target_same(config->targets[i].text, target->text)) {
-			report_error(report, target_place(config, target),
+			report_error(report, target_position(config, target),
 			             "the target \"%s\" is given twice; the first is \"%s\"",
 			             target->text, config->targets[i].text);
 			return;
@@ -101,14 +102,14 @@ int config_check_targets(const struct config *config, struct config_report *repo
 		check_target(config, i, report);
 	for (unsigned i = 0; i < config->bus_count; i++) {
 		const struct config_bus *bus = &config->buses[i];
-		struct place place = {config->file, bus->line, bus->column};
+		struct rio_position position = {config->file, bus->line, bus->column};
 
 		if (config_bus(config, bus->target) != bus)
-			report_error(report, place, "there is a Bus for \"%s\" already",
+			report_error(report, position, "there is a Bus for \"%s\" already",
 			             bus->target);
 		if (!is_served(config, bus->target))
-			report_warning(report, place, "no target is \"%s\": this Bus has no effect",
-			               bus->target);
+			report_warning(report, position,
+			               "no target is \"%s\": this Bus has no effect", bus->target);
 	}
 	return report->errors == before ? 0 : -EINVAL;
 }

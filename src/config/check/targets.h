@@ -16,7 +16,8 @@ void target_canonical(const char *text, char out[TARGET_CANONICAL]);
 /* Do they mean the same target? */
 bool target_same(const char *a, const char *b);
 /* Where it stands in the file; no file: the command line. */
-struct place target_place(const struct config *config, const struct config_target *target);
+struct rio_position target_position(const struct config *config,
+                                    const struct config_target *target);
 
 /* The Bus block of a target, however it is spelt; NULL: it has none. */
 const struct config_bus *config_bus(const struct config *config, const char *target);

@@ -14,14 +14,14 @@
 
 int edit_lock(const char *file, struct config_report *report)
 {
-	const struct place place = {file, 0, 0};
+	const struct rio_position position = {file, 0, 0};
 	int fd = replace_lock(file);
 
 	if (fd == -EBUSY)
-		report_error(report, place, "another program has been editing here for 5 s");
+		report_error(report, position, "another program has been editing here for 5 s");
 	else if (fd < 0)
 		report_error(
-			report, place, "cannot be locked: %s%s", strerror(-fd),
+			report, position, "cannot be locked: %s%s", strerror(-fd),
 			fd == -EACCES || fd == -EPERM
 				? "; edit it as its owner, with sudo, or on the page of owsd-web"
 				: "");
@@ -51,10 +51,10 @@ int edit_commit(const struct rio *rio, const char *file, const char *edited,
 		return err;
 	err = replace_file(file, rio->text, rio->len);
 	if (err == -ENOENT && is_dangling(file))
-		report_error(report, (struct place){file, 0, 0},
+		report_error(report, (struct rio_position){file, 0, 0},
 		             "is a symbolic link to a file that is not there");
 	else if (err)
-		report_error(report, (struct place){file, 0, 0}, "cannot be %s: %s",
+		report_error(report, (struct rio_position){file, 0, 0}, "cannot be %s: %s",
 		             access(file, F_OK) ? "made" : "replaced", strerror(-err));
 	return err;
 }

@@ -17,7 +17,7 @@ const char edit_empty[] = "OwsDrv {\n"
 			  "}\n";
 
 /* The place of errors in edits: the command line, not a place in the file. */
-static const struct place command_line;
+static const struct rio_position command_line;
 
 static bool has_control(const char *text)
 {

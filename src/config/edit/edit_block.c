@@ -68,7 +68,7 @@ void edit_no_item(const struct rio *rio, const char *name, struct config_report 
 		if (own && text_nearer(name, own->value, &best))
 			nearest = own->value;
 	}
-	report_error(report, (struct place){0}, "there is no item \"%s\"%s%s%s", name,
+	report_error(report, (struct rio_position){0}, "there is no item \"%s\"%s%s%s", name,
 	             nearest ? "; did you mean \"" : "", nearest ? nearest : "",
 	             nearest ? "\"?" : "");
 }
@@ -95,7 +95,8 @@ struct rio_node *edit_block(const struct rio *rio, const char *name, enum option
 			block = NULL;
 	}
 	if (!block && target)
-		report_error(report, (struct place){0}, "there is no Bus for \"%s\"", target);
+		report_error(report, (struct rio_position){0}, "there is no Bus for \"%s\"",
+		             target);
 	else if (!block)
 		edit_no_item(rio, name, report);
 	return block;

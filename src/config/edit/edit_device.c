@@ -128,7 +128,7 @@ static int replace_in(struct rio **rio, const uint8_t before[ROM_LEN], const uin
 	item = edit_device_find(*rio, before, &in);
 	assert(item); /* it was there, and has its path still */
 	if (!new_path(&in, after, location, text, sizeof(text))) {
-		report_error(report, (struct place){0}, "the path \"%s\" would be too long",
+		report_error(report, (struct rio_position){0}, "the path \"%s\" would be too long",
 		             in.text);
 		return -EINVAL;
 	}
@@ -145,16 +145,17 @@ int edit_replace(struct rio **rio, const uint8_t before[ROM_LEN], const uint8_t 
 	rom_print(before, ROM_F_I, old);
 	rom_print(after, ROM_F_I, new);
 	if (!edit_device_find(*rio, before, &in))
-		report_error(report, (struct place){0}, "no item has the device %s", old);
+		report_error(report, (struct rio_position){0}, "no item has the device %s", old);
 	else if (edit_device_find(*rio, after, &taken))
-		report_error(report, (struct place){0}, "the device %s has items already", new);
+		report_error(report, (struct rio_position){0}, "the device %s has items already",
+		             new);
 	else if (before[0] != after[0])
-		report_error(report, (struct place){0},
+		report_error(report, (struct rio_position){0},
 		             "%s and %s are of different families, which have different properties",
 		             old, new);
 	else if (are_too_many(*rio, before))
-		report_error(report, (struct place){0}, "more than %d items have the device %s",
-		             EDIT_REPLACE_MAX, old);
+		report_error(report, (struct rio_position){0},
+		             "more than %d items have the device %s", EDIT_REPLACE_MAX, old);
 	else
 		do
 			err = replace_in(rio, before, after, location, report);

@@ -66,7 +66,7 @@ void alarm_build(struct build *build, const struct rio_node *block,
                  struct config_item *item)
 {
 	const struct option_value *alarm = &values[OPT_ALARM];
-	struct place place = alarm->node ? alarm->node->value_at : block->at;
+	struct rio_position position = alarm->node ? alarm->node->value_at : block->at;
 	bool latch_empty;
 
 	latch_empty = item->latch_alarm && !*item->latch_alarm;
@@ -75,22 +75,22 @@ void alarm_build(struct build *build, const struct rio_node *block,
 		return;
 	}
 	if (*item->path && !path->device.len)
-		report_error(build->report, place, "Alarm on: expected a device in the path \"%s\"",
-		             item->path);
+		report_error(build->report, position,
+		             "Alarm on: expected a device in the path \"%s\"", item->path);
 	if (!values[OPT_POR_ALARM].node)
 		report_warning(
-			build->report, place,
+			build->report, position,
 			"this alarm can never do anything: PorAlarm is not defined; write "
 			"PorAlarm \"por\", or PorAlarm \"\" if the device has no such property");
 	if (!values[OPT_LATCH_ALARM].node || latch_empty)
-		report_warning(build->report, place,
+		report_warning(build->report, position,
 		               "this alarm never reads anything: LatchAlarm is %s; write the "
 		               "device's latch such as LatchAlarm \"latch.BYTE\", or LatchAlarm "
 		               "\"present\" if it has none",
 		               latch_empty ? "empty" : "not defined");
 	if (item->por_alarm && *item->por_alarm && !item->set_alarm)
 		report_warning(
-			build->report, place,
+			build->report, position,
 			"this alarm cannot be armed after a restart of its device: SetAlarm is "
 			"not defined, so %s is never cleared; write SetAlarm "
 			"\"property=value\", or SetAlarm \"\" if nothing has to be set",

@@ -36,7 +36,7 @@ static bool find_id(const char *name, bool group, uint32_t *id)
 
 /* Adds user:NAME or group:NAME; one that this machine does not know has no rights. */
 static void add_holder(struct build *build, struct config_allow *allow, const char *word,
-                       size_t len, struct place place)
+                       size_t len, struct rio_position position)
 {
 	char name[HOLDER_MAX + 1] = "";
 	bool user = !strncmp(word, "user:", 5), group = !strncmp(word, "group:", 6);
@@ -44,7 +44,7 @@ static void add_holder(struct build *build, struct config_allow *allow, const ch
 	uint32_t id;
 
 	if ((!user && !group) || len <= prefix || len - prefix > HOLDER_MAX) {
-		report_error(build->report, place,
+		report_error(build->report, position,
 		             "ControlAllow \"%.*s\": expected user:NAME or group:NAME", (int)len,
 		             word);
 		return;
@@ -54,7 +54,7 @@ static void add_holder(struct build *build, struct config_allow *allow, const ch
 		allow->holders[allow->holder_count++] = (struct config_holder){.group = group,
 		                                                               .id = id};
 	else
-		report_warning(build->report, place, "ControlAllow: there is no %s %s here",
+		report_warning(build->report, position, "ControlAllow: there is no %s %s here",
 		               group ? "group" : "user", name);
 }
 

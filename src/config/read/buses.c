@@ -44,7 +44,7 @@ static void bus_build(struct build *build, const struct rio_node *block)
 		return;
 	}
 	text = target_of_file(build, target->text,
-	                      (struct place){.file = target->node->value_at.file});
+	                      (struct rio_position){.file = target->node->value_at.file});
 	bus->target = build_keep(build, text, strlen(text));
 	bus->line = target->node->value_at.line;
 	bus->column = target->node->value_at.column;

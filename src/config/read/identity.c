@@ -39,7 +39,7 @@ static int compare_named(const void *a, const void *b)
 }
 
 /* Sort, and report what is there twice; "" was refused already. */
-static void check_twice(struct build *build, struct named *sorted, const struct place *names,
+static void check_twice(struct build *build, struct named *sorted, const struct rio_position *names,
                         const char *what)
 {
 	unsigned count = build->box->config.item_count;
@@ -87,7 +87,7 @@ static void give_identities(struct build *build, struct named *sorted)
 	}
 }
 
-void items_check(struct build *build, const struct place *names)
+void items_check(struct build *build, const struct rio_position *names)
 {
 	const struct config *config = &build->box->config;
 	struct named *sorted = calloc(config->item_count + 1, sizeof(*sorted));

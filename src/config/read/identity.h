@@ -14,4 +14,4 @@ void identity_of_path(const struct path *path, char out[IDENTITY_MAX]);
 void identity_number(unsigned number, char identity[IDENTITY_MAX]);
 
 /* Give each item its identity; report names and identities that two have. */
-void items_check(struct build *build, const struct place *names);
+void items_check(struct build *build, const struct rio_position *names);

@@ -18,7 +18,8 @@
 #include "src/ground/signal/value.h"
 
 /* Where a key's value stands, or the item if the key is absent. */
-static struct place place_of(const struct option_value *value, const struct rio_node *block)
+static struct rio_position position_of(const struct option_value *value,
+                                       const struct rio_node *block)
 {
 	return value->node ? value->node->value_at : block->at;
 }
@@ -73,7 +74,7 @@ static void build_path(struct build *build, const struct rio_node *block,
 {
 	const struct option_value *value = &values[OPT_PATH];
 	const char *text = value->text, *fault;
-	struct place place = place_of(value, block);
+	struct rio_position position = position_of(value, block);
 	char whole[IDENTITY_MAX];
 
 	memset(path, 0, sizeof(*path));
@@ -87,11 +88,11 @@ static void build_path(struct build *build, const struct rio_node *block,
 	if (!fault && !path->property.len)
 		fault = path->device.len ? "has no property after the device" : "has no property";
 	if (fault) {
-		report_error(build->report, place, "the path \"%s\" %s", text, fault);
+		report_error(build->report, position, "the path \"%s\" %s", text, fault);
 		return;
 	}
 	if (path->alarm)
-		report_warning(build->report, place,
+		report_warning(build->report, position,
 		               "the path \"%s\" is entered without /alarm, which is dropped; "
 		               "alarms are chosen by Alarm on",
 		               text);

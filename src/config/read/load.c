@@ -52,7 +52,7 @@ static const struct rio_node *find_driver(const struct rio *rio, const char *fil
 		}
 	}
 	if (!driver && !report->errors)
-		report_error(report, (struct place){file, 1, 1}, "expected " DRIVER " {");
+		report_error(report, (struct rio_position){file, 1, 1}, "expected " DRIVER " {");
 	return driver;
 }
 
@@ -87,7 +87,7 @@ static void build_driver(struct build *build, const struct option_value *values)
 	if (target->given)
 		targets_add(build, target->text, target->node->value_at);
 	else if (!target->node)
-		targets_add(build, option_table[OPT_TARGET_NAME].preset, (struct place){0});
+		targets_add(build, option_table[OPT_TARGET_NAME].preset, (struct rio_position){0});
 }
 
 /* A block that stands once: the keys one by one, then what follows from several of them. */
@@ -107,7 +107,7 @@ static void build_block(struct build *build, const struct option_def *def,
 		derive[def->inside](build, values);
 }
 
-static struct place name_place(const struct rio_node *block)
+static struct rio_position name_position(const struct rio_node *block)
 {
 	const struct rio_node *name = rio_child(block, option_table[OPT_NAME].key);
 
@@ -119,7 +119,7 @@ static void build_items(struct build *build, const struct rio_node *driver,
 {
 	struct config *config = &build->box->config;
 	unsigned items = options_blocks(driver, OPT_ITEM);
-	struct place *names;
+	struct rio_position *names;
 
 	if (items > CONFIG_ITEMS_MAX) {
 		report_error(build->report, driver->at, "more than %d items", CONFIG_ITEMS_MAX);
@@ -134,7 +134,7 @@ static void build_items(struct build *build, const struct rio_node *driver,
 	}
 	for (const struct rio_node *node = driver->first; node; node = node->next)
 		if (option_is_block(node, OPT_ITEM)) {
-			names[config->item_count] = name_place(node);
+			names[config->item_count] = name_position(node);
 			item_build(build, node, &config->items[config->item_count++]);
 		}
 	items_check(build, names);
@@ -206,7 +206,7 @@ int config_load(const char *file, struct config_report *report, struct config **
 	err = config_parse(file, text, len, report, config);
 	free(text);
 	if (err == -ENOMEM)
-		report_error(report, (struct place){file, 0, 0}, "no memory");
+		report_error(report, (struct rio_position){file, 0, 0}, "no memory");
 	return err;
 }
 
@@ -225,7 +225,7 @@ int config_set_targets(struct config *config, const char *const *texts, unsigned
 	config->target_count = 0;
 	config->targets = build_take(&build, CONFIG_TARGETS_MAX, sizeof(*config->targets));
 	for (unsigned i = 0; i < count && !build.no_memory; i++)
-		targets_add(&build, texts[i], (struct place){0});
+		targets_add(&build, texts[i], (struct rio_position){0});
 	if (!build.no_memory && report->errors == before)
 		return 0;
 	config->targets = old;

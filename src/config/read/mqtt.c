@@ -53,7 +53,7 @@ static const char *take_way(struct build *build, const char *text, size_t len,
 
 static void take_ways(struct build *build, const struct rio_node *node, struct config_mqtt *mqtt)
 {
-	const struct place at = node ? node->value_at : (struct place){0};
+	const struct rio_position at = node ? node->value_at : (struct rio_position){0};
 	const char *rest = mqtt->broker, *text, *why = NULL;
 	size_t len;
 
@@ -78,7 +78,7 @@ static bool is_local(const char *host)
 	return !strcmp(host, "localhost") || !strncmp(host, "127.", 4) || !strcmp(host, "::1");
 }
 
-/* Keys that need each other. What is not so by default is given, and has a place. */
+/* Keys that need each other. What is not so by default is given, and has a position. */
 static void check_together(struct build *build, const struct option_value *values,
                            const struct config_mqtt *mqtt)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Errors and warnings about a configuration, formatted with their place and passed on. */
+/* Errors and warnings about a configuration, formatted with their position and passed on. */
 #include <limits.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -11,9 +11,9 @@
 
 #define MESSAGE_MAX (PRINTABLE_LINE + 300)
 
-static void put_line(struct config_report *report, struct place place, bool is_error,
+static void put_line(struct config_report *report, struct rio_position position, bool is_error,
                      const char *format, va_list args) __attribute__((format(printf, 4, 0)));
-static void put_line(struct config_report *report, struct place place, bool is_error,
+static void put_line(struct config_report *report, struct rio_position position, bool is_error,
                      const char *format, va_list args)
 {
 	unsigned *count = is_error ? &report->errors : &report->warnings;
@@ -23,17 +23,17 @@ static void put_line(struct config_report *report, struct place place, bool is_e
 
 	if (++*count > REPORT_MAX + 1 || (!report->line && !report->problem))
 		return;
-	report->at_line = *count > REPORT_MAX ? INT_MAX : place.line;
+	report->at_line = *count > REPORT_MAX ? INT_MAX : position.line;
 	if (report->problem)
 		n = 0;
-	else if (place.file && place.line && !place.column)
-		n = snprintf(message, sizeof(message), "%.200s:%d: %s: ", place.file, place.line,
-		             kind);
-	else if (place.file && place.line)
-		n = snprintf(message, sizeof(message), "%.200s:%d:%d: %s: ", place.file, place.line,
-		             place.column, kind);
-	else if (place.file)
-		n = snprintf(message, sizeof(message), "%.200s: %s: ", place.file, kind);
+	else if (position.file && position.line && !position.column)
+		n = snprintf(message, sizeof(message), "%.200s:%d: %s: ", position.file,
+		             position.line, kind);
+	else if (position.file && position.line)
+		n = snprintf(message, sizeof(message), "%.200s:%d:%d: %s: ", position.file,
+		             position.line, position.column, kind);
+	else if (position.file)
+		n = snprintf(message, sizeof(message), "%.200s: %s: ", position.file, kind);
 	else
 		n = snprintf(message, sizeof(message), "%s: ", kind);
 	if (*count > REPORT_MAX)
@@ -49,23 +49,25 @@ static void put_line(struct config_report *report, struct place place, bool is_e
 	else if (*count > REPORT_MAX)
 		report->problem(report->ctx, is_error, 0, 0, message);
 	else
-		report->problem(report->ctx, is_error, place.line, place.column, message);
+		report->problem(report->ctx, is_error, position.line, position.column, message);
 }
 
-void report_error(struct config_report *report, struct place place, const char *format, ...)
+void report_error(struct config_report *report, struct rio_position position, const char *format,
+                  ...)
 {
 	va_list args;
 
 	va_start(args, format);
-	put_line(report, place, true, format, args);
+	put_line(report, position, true, format, args);
 	va_end(args);
 }
 
-void report_warning(struct config_report *report, struct place place, const char *format, ...)
+void report_warning(struct config_report *report, struct rio_position position, const char *format,
+                    ...)
 {
 	va_list args;
 
 	va_start(args, format);
-	put_line(report, place, false, format, args);
+	put_line(report, position, false, format, args);
 	va_end(args);
 }

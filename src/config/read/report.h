@@ -9,12 +9,12 @@
 
 #define REPORT_MAX 50
 
-struct place {
+struct rio_position {
 	const char *file; /* NULL: the command line */
 	int line, column; /* from 1; column counts characters; 0: none. Line 0: all of it */
 };
 
-void report_error(struct config_report *report, struct place place, const char *format, ...)
-	__attribute__((format(printf, 3, 4)));
-void report_warning(struct config_report *report, struct place place, const char *format, ...)
-	__attribute__((format(printf, 3, 4)));
+void report_error(struct config_report *report, struct rio_position position, const char *format,
+                  ...) __attribute__((format(printf, 3, 4)));
+void report_warning(struct config_report *report, struct rio_position position, const char *format,
+                    ...) __attribute__((format(printf, 3, 4)));

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The reader of .rio files: bytes become a document of nodes with their places. After an error the
- * reader goes on where the next key may begin, and marks the block as broken: then a key that seems
- * to be missing is no second error.
+ * The reader of .rio files: bytes become a document of nodes with their positions. After an error
+ * the reader goes on where the next key may begin, and marks the block as broken: then a key that
+ * seems to be missing is no second error.
  */
 #include <errno.h>
 #include <stdlib.h>
@@ -35,11 +35,11 @@ size_t rio_line_end_length(const char *p, const char *end)
 	return *p == '\n';
 }
 
-static struct place place_here(struct parser *p)
+static struct rio_position position_here(struct parser *p)
 {
 	for (; p->at.counted < p->at.p; p->at.counted++)
 		p->at.column += ((unsigned char)*p->at.counted & 0xc0) != 0x80;
-	return (struct place){p->file, p->at.line, p->at.column};
+	return (struct rio_position){p->file, p->at.line, p->at.column};
 }
 
 static size_t offset_here(const struct parser *p)
@@ -62,7 +62,7 @@ static bool at_line_end(const struct parser *p)
 	return !at_end(p) && rio_line_end_length(p->at.p, p->end);
 }
 
-static void take_line_end(struct parser *p)
+static void skip_line_end(struct parser *p)
 {
 	p->at.p += rio_line_end_length(p->at.p, p->end);
 	p->at.line++;
@@ -81,7 +81,7 @@ static void skip_blanks(struct parser *p)
 {
 	while (!at_end(p)) {
 		if (at_line_end(p))
-			take_line_end(p);
+			skip_line_end(p);
 		else if (*p->at.p == '#')
 			skip_line(p);
 		else if (*p->at.p == ' ' || *p->at.p == '\t')
@@ -120,7 +120,7 @@ static struct rio_node *node_make(struct parser *p, struct rio_node *parent)
 		return NULL;
 	}
 	node->key = node->value = "";
-	node->at = node->value_at = place_here(p);
+	node->at = node->value_at = position_here(p);
 	node->begin = offset_here(p);
 	node->parent = parent;
 	if (parent->last)
@@ -148,7 +148,7 @@ static void add_to_value(struct parser *p, char c)
 }
 
 /* Store in the node what add_to_value() collected; reports an error when it was too long. */
-static void take_value(struct parser *p, struct rio_node *node)
+static void parse_value(struct parser *p, struct rio_node *node)
 {
 	if (p->used > sizeof(p->value)) {
 		report_error(p->report, node->value_at, "the value of %s is longer than %d bytes",
@@ -161,7 +161,7 @@ static void take_value(struct parser *p, struct rio_node *node)
 
 static void refuse_control(struct parser *p, struct rio_node *node)
 {
-	struct place here = place_here(p);
+	struct rio_position here = position_here(p);
 
 	if (!node->broken)
 		report_error(p->report, here, "a control character (byte 0x%02X) is not allowed",
@@ -171,7 +171,7 @@ static void refuse_control(struct parser *p, struct rio_node *node)
 
 static void parse_piece(struct parser *p, struct rio_node *node)
 {
-	struct place begin = place_here(p);
+	struct rio_position begin = position_here(p);
 
 	for (p->at.p++; !at_end(p) && !at_line_end(p) && *p->at.p != '"'; p->at.p++) {
 		char c = *p->at.p, next = p->at.p + 1 < p->end ? p->at.p[1] : '\0';
@@ -204,7 +204,7 @@ static void parse_string(struct parser *p, struct rio_node *node)
 		skip_blanks(p);
 	} while (peek_byte(p) == '"' && !node->broken);
 	p->at = behind;
-	take_value(p, node);
+	parse_value(p, node);
 }
 
 static void parse_word(struct parser *p, struct rio_node *node)
@@ -216,7 +216,7 @@ static void parse_word(struct parser *p, struct rio_node *node)
 			refuse_control(p, node);
 		add_to_value(p, *p->at.p);
 	}
-	take_value(p, node);
+	parse_value(p, node);
 }
 
 static void parse_list(struct parser *p, struct rio_node *node)
@@ -260,7 +260,7 @@ static void parse_block(struct parser *p, struct rio_node *node, int depth)
 	if (peek_byte(p) == '}') {
 		p->at.p++;
 	} else if (!p->stopped) {
-		report_error(p->report, place_here(p), "expected '}' to end %s of line %d",
+		report_error(p->report, position_here(p), "expected '}' to end %s of line %d",
 		             *node->key ? node->key : "the block", node->at.line);
 		node->broken = true;
 	}
@@ -299,7 +299,7 @@ static void parse_entry(struct parser *p, struct rio_node *block, int depth)
 	behind = p->at;
 	line = p->at.line;
 	skip_blanks(p);
-	node->value_at = place_here(p);
+	node->value_at = position_here(p);
 	node->value_begin = offset_here(p);
 	if (peek_byte(p) == '{') {
 		parse_block(p, node, depth);
@@ -313,7 +313,7 @@ static void parse_entry(struct parser *p, struct rio_node *block, int depth)
 		} else {
 			p->at = behind;
 			node->value_begin = offset_here(p);
-			report_error(p->report, place_here(p), "expected a value after %s",
+			report_error(p->report, position_here(p), "expected a value after %s",
 			             node->key);
 			node->broken = true;
 		}
@@ -329,15 +329,15 @@ static void refuse_here(struct parser *p, struct rio_node *block, int depth)
 	char c = *p->at.p;
 
 	if (c == '{')
-		report_error(p->report, place_here(p), "expected a key before '{'");
+		report_error(p->report, position_here(p), "expected a key before '{'");
 	else if (is_control(c))
-		report_error(p->report, place_here(p), "expected a key%s, found the byte 0x%02X",
+		report_error(p->report, position_here(p), "expected a key%s, found the byte 0x%02X",
 		             inside, (unsigned char)c);
 	else if ((unsigned char)c >= 0x80)
-		report_error(p->report, place_here(p), "expected a key%s", inside);
+		report_error(p->report, position_here(p), "expected a key%s", inside);
 	else
-		report_error(p->report, place_here(p), "expected a key%s, found '%c'%s", inside, c,
-		             c == '/' || c == ';' ? "; comments begin with #" : "");
+		report_error(p->report, position_here(p), "expected a key%s, found '%c'%s", inside,
+		             c, c == '/' || c == ';' ? "; comments begin with #" : "");
 	block->broken = true;
 }
 
@@ -381,7 +381,7 @@ int rio_parse(const char *file, const char *text, size_t len, struct config_repo
 
 	*rio = NULL;
 	if (len > RIO_FILE_MAX) {
-		report_error(report, (struct place){file, 0, 0}, "longer than %u bytes",
+		report_error(report, (struct rio_position){file, 0, 0}, "longer than %u bytes",
 		             RIO_FILE_MAX);
 		return -EFBIG;
 	}

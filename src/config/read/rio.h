@@ -37,7 +37,7 @@ struct rio_node {
 	bool broken;       /* the block has a syntax error: a missing key may have been there */
 	const char *key;   /* "" for the document itself */
 	const char *value; /* word, string: NUL-terminated; list: as written; block: "" */
-	struct place at, value_at;
+	struct rio_position at, value_at;
 	size_t begin, end;             /* bytes of the text, from the key to the end of the value */
 	size_t value_begin, value_end; /* blocks: the byte after "{", and that of "}" */
 	struct rio_node *parent, *first, *last, *next;

@@ -71,49 +71,51 @@ static const char *file_kind(mode_t mode)
 }
 
 /* Refuse all but regular files: a pipe may have no writer, and a device any number of bytes. */
-static int rio_file_check(const struct stat *st, struct place place, struct config_report *report)
+static int rio_file_check(const struct stat *st, struct rio_position position,
+                          struct config_report *report)
 {
 	if (!S_ISREG(st->st_mode)) {
-		report_error(report, place, "is a %s: only a regular file is read",
+		report_error(report, position, "is a %s: only a regular file is read",
 		             file_kind(st->st_mode));
 		return -EINVAL;
 	}
 	if (st->st_size > (off_t)RIO_FILE_MAX) {
-		report_error(report, place, "longer than %u bytes", RIO_FILE_MAX);
+		report_error(report, position, "longer than %u bytes", RIO_FILE_MAX);
 		return -EFBIG;
 	}
 	return 0;
 }
 
-static int cannot_read(struct config_report *report, struct place place, int err)
+static int cannot_read(struct config_report *report, struct rio_position position, int err)
 {
-	report_error(report, place, "cannot be read: %s", strerror(-err));
+	report_error(report, position, "cannot be read: %s", strerror(-err));
 	return err;
 }
 
 /* Returns a descriptor, or a negative errno after reporting why. */
 static int open_file(const char *file, struct config_report *report)
 {
-	const struct place place = {file, 0, 0};
+	const struct rio_position position = {file, 0, 0};
 	struct stat st;
 	int fd, err;
 
 	if (!*file) {
-		report_error(report, (struct place){0}, "the name of the configuration is empty");
+		report_error(report, (struct rio_position){0},
+		             "the name of the configuration is empty");
 		return -EINVAL;
 	}
 	/* check before opening, which has an effect on some devices */
 	if (stat(file, &st) < 0)
-		return cannot_read(report, place, -errno);
-	err = rio_file_check(&st, place, report);
+		return cannot_read(report, position, -errno);
+	err = rio_file_check(&st, position, report);
 	if (err)
 		return err;
 	fd = open(file, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
 	if (fd < 0)
-		return cannot_read(report, place, -errno);
+		return cannot_read(report, position, -errno);
 	/* check again, since another file may have taken its place */
-	err = fstat(fd, &st) < 0 ? cannot_read(report, place, -errno)
-	                         : rio_file_check(&st, place, report);
+	err = fstat(fd, &st) < 0 ? cannot_read(report, position, -errno)
+	                         : rio_file_check(&st, position, report);
 	if (err)
 		close(fd);
 	return err ? err : fd;
@@ -121,7 +123,7 @@ static int open_file(const char *file, struct config_report *report)
 
 int rio_read(const char *file, struct config_report *report, char **text, size_t *len)
 {
-	const struct place place = {file, 0, 0};
+	const struct rio_position position = {file, 0, 0};
 	int fd = open_file(file, report);
 	int err;
 
@@ -131,13 +133,13 @@ int rio_read(const char *file, struct config_report *report, char **text, size_t
 	*text = read_whole(fd, len, &err);
 	close(fd);
 	if (!*text)
-		return cannot_read(report, place, err);
+		return cannot_read(report, position, err);
 	err = 0;
 	if (*len > RIO_FILE_MAX) {
-		report_error(report, place, "longer than %u bytes", RIO_FILE_MAX);
+		report_error(report, position, "longer than %u bytes", RIO_FILE_MAX);
 		err = -EFBIG;
 	} else if (is_utf16(*text, *len)) {
-		report_error(report, place, "is UTF-16: save it as UTF-8");
+		report_error(report, position, "is UTF-16: save it as UTF-8");
 		err = -EILSEQ;
 	}
 	if (err) {

@@ -16,7 +16,7 @@ static bool has_address(const struct listen_address *all, unsigned count,
 	return count && address->port;
 }
 
-void serve_addresses(struct build *build, const char *text, struct place place,
+void serve_addresses(struct build *build, const char *text, struct rio_position position,
                      struct listen_address *all, unsigned *count)
 {
 	struct listen_address addresses[2];
@@ -37,7 +37,7 @@ void serve_addresses(struct build *build, const char *text, struct place place,
 				all[(*count)++] = addresses[i];
 			}
 		if (n < 0)
-			report_error(build->report, place, "Listen \"%.*s\": %s", (int)len, part,
+			report_error(build->report, position, "Listen \"%.*s\": %s", (int)len, part,
 			             why);
 	}
 }
@@ -81,7 +81,7 @@ int serve_listens(struct build *build, const char *const *texts, unsigned count)
 
 	serve->address_count = 0;
 	for (unsigned i = 0; i < count; i++)
-		serve_addresses(build, texts[i], (struct place){0}, serve->addresses,
+		serve_addresses(build, texts[i], (struct rio_position){0}, serve->addresses,
 		                &serve->address_count);
 	return build->report->errors == before ? 0 : -EINVAL;
 }

@@ -31,7 +31,7 @@ static bool is_here(const char *file, const char *slash)
 }
 
 const char *relative_file(struct build *build, const char *text, size_t prefix,
-                          const struct place *place)
+                          const struct rio_position *position)
 {
 	const char *file = build->box->config.file, *name = text + prefix;
 	const char *slash = strrchr(file, '/');
@@ -43,8 +43,8 @@ const char *relative_file(struct build *build, const char *text, size_t prefix,
 	n = snprintf(whole, sizeof(whole), "%.*s%.*s%s", (int)prefix, text, (int)(slash + 1 - file),
 	             file, name);
 	if (n < 0 || (size_t)n >= sizeof(whole) || (!exists(whole + prefix) && exists(name))) {
-		if (place)
-			report_warning(build->report, *place,
+		if (position)
+			report_warning(build->report, *position,
 			               "%s is taken from the working directory; a relative path "
 			               "counts from the folder of this file, %.*s",
 			               name, (int)(slash + 1 - file), file);
@@ -59,85 +59,87 @@ const char *relative_file(struct build *build, const char *text, size_t prefix,
 #define AUTO "auto"
 const char *const config_auto_ways[CONFIG_AUTO_WAYS] = {DEFAULT_TARGET, "i2c:auto", "w1"};
 
-const char *target_of_file(struct build *build, const char *text, struct place place)
+const char *target_of_file(struct build *build, const char *text, struct rio_position position)
 {
 	/* on the command line the working directory counts */
-	if (!place.file || strncmp(text, SIMULATED, strlen(SIMULATED)) != 0)
+	if (!position.file || strncmp(text, SIMULATED, strlen(SIMULATED)) != 0)
 		return text;
-	return relative_file(build, text, strlen(SIMULATED), place.line ? &place : NULL);
+	return relative_file(build, text, strlen(SIMULATED), position.line ? &position : NULL);
 }
 
 static void target_add(struct build *build, const char *text, size_t len,
-                       enum config_relation relation, struct place place)
+                       enum config_relation relation, struct rio_position position)
 {
 	struct config *config = &build->box->config;
 	struct config_target *target = &config->targets[config->target_count];
 
 	if (!len) {
-		report_error(build->report, place, "expected a target beside ',' or '|'");
+		report_error(build->report, position, "expected a target beside ',' or '|'");
 		return;
 	}
 	if (len > TARGET_MAX) {
-		report_error(build->report, place, "a target is longer than %d bytes", TARGET_MAX);
+		report_error(build->report, position, "a target is longer than %d bytes",
+		             TARGET_MAX);
 		return;
 	}
 	if (config->target_count == CONFIG_TARGETS_MAX) {
-		report_error(build->report, place,
+		report_error(build->report, position,
 		             "\"%.*s\" is one too many: owsd serves at most %d targets, ways "
 		             "after a bar and the %u of auto counted",
 		             (int)len, text, CONFIG_TARGETS_MAX, CONFIG_AUTO_WAYS);
 		return;
 	}
-	target->text = target_of_file(build, build_keep(build, text, len), place);
+	target->text = target_of_file(build, build_keep(build, text, len), position);
 	target->relation = config->target_count ? relation : CONFIG_FIRST;
 	target->automatic = false;
 	target->group = 0;
 	if (strlen(target->text) > TARGET_MAX) {
-		report_error(build->report, place, "a target is longer than %d bytes", TARGET_MAX);
+		report_error(build->report, position, "a target is longer than %d bytes",
+		             TARGET_MAX);
 		return;
 	}
 	if (config->target_count)
 		target->group = target[-1].group + (relation == CONFIG_COMMA);
-	target->line = place.line;
-	target->column = place.column;
+	target->line = position.line;
+	target->column = position.column;
 	if (!strcmp(target->text, "owserver:"))
-		report_warning(build->report, place, "owserver: names no host: %s is taken",
+		report_warning(build->report, position, "owserver: names no host: %s is taken",
 		               DEFAULT_TARGET);
 	config->target_count++;
 }
 
 /* Add a target; auto becomes its ways, joined by bars, as --check shows. */
 static void add_member(struct build *build, const char *text, size_t len,
-                       enum config_relation relation, struct place place)
+                       enum config_relation relation, struct rio_position position)
 {
 	struct config *config = &build->box->config;
 	unsigned errors = build->report->errors;
 
 	if (len != strlen(AUTO) || memcmp(text, AUTO, len) != 0) {
-		target_add(build, text, len, relation, place);
+		target_add(build, text, len, relation, position);
 		return;
 	}
 	for (unsigned i = 0; i < CONFIG_AUTO_WAYS && build->report->errors == errors; i++) {
 		target_add(build, config_auto_ways[i], strlen(config_auto_ways[i]),
-		           i ? CONFIG_BAR : relation, place);
+		           i ? CONFIG_BAR : relation, position);
 		if (build->report->errors == errors)
 			config->targets[config->target_count - 1].automatic = true;
 	}
 }
 
-void targets_add(struct build *build, const char *text, struct place place)
+void targets_add(struct build *build, const char *text, struct rio_position position)
 {
 	enum config_relation relation = CONFIG_COMMA;
 	const char *rest = text, *part;
 	size_t len;
 
 	if (!text[strspn(text, " \t")]) {
-		report_warning(build->report, place, "TargetName is empty: %s is taken",
+		report_warning(build->report, position, "TargetName is empty: %s is taken",
 		               DEFAULT_TARGET);
 		rest = DEFAULT_TARGET;
 	}
 	while (build_part(&rest, ",|", &part, &len)) {
-		add_member(build, part, len, relation, place);
+		add_member(build, part, len, relation, position);
 		relation = rest && rest[-1] == '|' ? CONFIG_BAR : CONFIG_COMMA;
 	}
 }

@@ -12,16 +12,16 @@ extern const char *const config_auto_ways[CONFIG_AUTO_WAYS];
 
 #define TARGET_MAX 255
 
-/* The target with the file of sim:FILE as relative_file() has it; warns if place has a line. */
-const char *target_of_file(struct build *build, const char *text, struct place place);
-/* Parse "a, b | c" and append the targets. Errors are reported at place. */
-void targets_add(struct build *build, const char *text, struct place place);
+/* The target with the file of sim:FILE as relative_file() has it; warns if position has a line. */
+const char *target_of_file(struct build *build, const char *text, struct rio_position position);
+/* Parse "a, b | c" and append the targets. Errors are reported at position. */
+void targets_add(struct build *build, const char *text, struct rio_position position);
 
 /*
  * text, whose first `prefix` bytes precede the name of a file, with that name as it is to be
  * opened. A relative one counts from the folder of the configuration; one that is only in the
- * working directory is taken from there, with a warning at *place unless place is NULL. In the
- * arena.
+ * working directory is taken from there, with a warning at *position unless position is NULL. In
+ * the arena.
  */
 const char *relative_file(struct build *build, const char *text, size_t prefix,
-                          const struct place *place);
+                          const struct rio_position *position);

@@ -12,7 +12,7 @@
 #include "src/daemon/engine/device_watch.h"
 #include "src/daemon/engine/guests.h"
 #include "src/daemon/engine/publish.h"
-#include "src/daemon/engine/routing/place.h"
+#include "src/daemon/engine/routing/known.h"
 #include "src/daemon/engine/scaling.h"
 #include "src/daemon/engine/schedule.h"
 #include "src/daemon/engine/slots.h"

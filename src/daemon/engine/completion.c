@@ -10,7 +10,7 @@
 #include "src/daemon/engine/device_facts.h"
 #include "src/daemon/engine/presence.h"
 #include "src/daemon/engine/retry.h"
-#include "src/daemon/engine/routing/place.h"
+#include "src/daemon/engine/routing/known.h"
 #include "src/daemon/engine/scaling.h"
 #include "src/daemon/engine/schedule.h"
 #include "src/ground/signal/error.h"
@@ -99,7 +99,7 @@ int64_t engine_read_failed(struct engine *e, struct lane *lane, struct signal *s
 	if (err == -ENODEV && s->device != TABLE_NO_DEVICE)
 		engine_device_lost(lane, s->device);
 	else if (s->device != TABLE_NO_DEVICE && gives_nothing(e, s))
-		engine_place(e, lane, s->device, ROUTE_FAILING);
+		engine_presence(e, lane, s->device, ROUTE_FAILING);
 	if (s->sample.quality != quality) {
 		s->sample.quality = quality;
 		report_failed(e, s, "", err, quality);
@@ -148,9 +148,9 @@ static void request_succeeded(struct engine *e, struct lane *lane, struct signal
 	s->sample.target = (uint8_t)lane->index;
 	engine_facts_good(e, s);
 	if (proven)
-		engine_place(e, lane, s->device, ROUTE_PRESENT);
+		engine_presence(e, lane, s->device, ROUTE_PRESENT);
 	else
-		engine_place_claimed(e, lane, s->device);
+		engine_presence_claimed(e, lane, s->device);
 	if (d && d->absent && s->shows_device)
 		engine_device_back(lane, d);
 }

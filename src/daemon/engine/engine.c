@@ -22,7 +22,7 @@
 #include "src/daemon/engine/limits/limits.h"
 #include "src/daemon/engine/publish.h"
 #include "src/daemon/engine/routing/group.h"
-#include "src/daemon/engine/routing/place.h"
+#include "src/daemon/engine/routing/known.h"
 #include "src/daemon/engine/routing/routing.h"
 #include "src/daemon/engine/schedule.h"
 #include "src/daemon/engine/state.h"
@@ -81,7 +81,8 @@ int engine_create(const struct engine_setup *setup, struct engine **engine)
 	    due_wheel_init(&e->time_wheel, e->table.count, 0) ||
 	    structure_init(&e->structure, &e->table) || engine_facts_init(e) ||
 	    engine_watch_init(e) || alarm_items_init(&e->table, &e->alarm_items, &e->alarm_count) ||
-	    make_lanes(e, setup) || engine_groups_init(e, setup->ports) || engine_places_init(e)) {
+	    make_lanes(e, setup) || engine_groups_init(e, setup->ports) ||
+	    engine_presences_init(e)) {
 		engine_destroy(e);
 		return -ENOMEM;
 	}
@@ -98,7 +99,7 @@ void engine_destroy(struct engine *e)
 		lane_free(&e->lanes[i]);
 	free(e->lanes);
 	engine_groups_free(e);
-	engine_places_free(e);
+	engine_presences_free(e);
 	structure_free(&e->structure);
 	engine_facts_free(e);
 	engine_watch_free(e);

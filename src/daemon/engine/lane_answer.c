@@ -13,7 +13,7 @@
 #include "src/daemon/engine/lane_state.h"
 #include "src/daemon/engine/publish.h"
 #include "src/daemon/engine/retry.h"
-#include "src/daemon/engine/routing/place.h"
+#include "src/daemon/engine/routing/known.h"
 #include "src/daemon/engine/slots.h"
 #include "src/daemon/engine/trace.h"
 #include "src/daemon/engine/types.h"

@@ -9,7 +9,7 @@
 #include "src/daemon/engine/presence.h"
 #include "src/daemon/engine/publish.h"
 #include "src/daemon/engine/routing/group.h"
-#include "src/daemon/engine/routing/place.h"
+#include "src/daemon/engine/routing/known.h"
 #include "src/ground/text/log.h"
 #include "src/ground/text/printable.h"
 
@@ -87,10 +87,10 @@ static void device_event(struct lane *lane, const struct bus_event *event)
 		return;
 	device = &e->table.devices[index];
 	if (event->news == BUS_FOUND)
-		engine_place_found(e, lane, index);
+		engine_presence_found(e, lane, index);
 	if (engine_open_lane(e, device->group) != lane) {
 		if (event->news == BUS_LOST)
-			engine_place(e, lane, index, ROUTE_ABSENT);
+			engine_presence(e, lane, index, ROUTE_ABSENT);
 	} else if (event->news == BUS_LOST) {
 		engine_device_lost(lane, index);
 	} else if (event->news == BUS_POR || device->absent) {

@@ -12,7 +12,7 @@
 #include "src/daemon/engine/retry.h"
 #include "src/daemon/engine/routing/disown.h"
 #include "src/daemon/engine/routing/group.h"
-#include "src/daemon/engine/routing/place.h"
+#include "src/daemon/engine/routing/known.h"
 #include "src/daemon/engine/schedule.h"
 #include "src/ground/text/log.h"
 

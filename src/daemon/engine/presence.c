@@ -9,7 +9,7 @@
 #include "src/daemon/engine/presence.h"
 #include "src/daemon/engine/publish.h"
 #include "src/daemon/engine/retry.h"
-#include "src/daemon/engine/routing/place.h"
+#include "src/daemon/engine/routing/known.h"
 #include "src/daemon/engine/schedule.h"
 #include "src/ground/text/log.h"
 
@@ -34,7 +34,7 @@ void engine_device_lost(struct lane *lane, uint32_t index)
 	bool known = device->absent;
 
 	device->absent = true;
-	engine_place(e, lane, index, ROUTE_ABSENT);
+	engine_presence(e, lane, index, ROUTE_ABSENT);
 	for (uint32_t i = 0; i < device->count; i++) {
 		struct signal *s = &e->table.signals[e->table.device_rows[device->first + i]];
 

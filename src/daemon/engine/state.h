@@ -161,7 +161,7 @@ struct lane {
 	/* types.c */
 	struct due_set checks; /* of the engine's structure: to be asked here */
 
-	/* place.c, and routing.c puts in what is to be looked for */
+	/* known.c, and routing.c puts in what is to be looked for */
 	struct due_set probes; /* devices to be looked for here */
 	bool probing;          /* one of them is with the bus */
 	int64_t probe_ns;      /* earliest time of the next */
@@ -202,7 +202,7 @@ struct lane {
 	X(safe_outputs)      /* outputs put to SafeValue */ \
 	X(reloads)           /* changed configurations that were taken over */
 
-/* What the engine knows of a controller; below OWS_CONTROLLERS the index is its place. */
+/* What the engine knows of a controller; below OWS_CONTROLLERS the index is its seat. */
 struct known_controller {
 	/* controllers.c */
 	enum controller_is {
@@ -320,9 +320,9 @@ struct engine {
 	bool bars;       /* a group has several ways */
 	/* routing.c: when time alone leads to a step of a group; 0: not known */
 	int64_t group_step_ns;
-	/* place.c, and routing.c takes the devices out that it routes */
-	struct route_place *places; /* device * group_count + group; NULL: one group */
-	struct due_set routes;      /* devices of which something became known, as in route_wheel */
+	/* known.c, and routing.c takes the devices out that it routes */
+	struct known_presence *known; /* device * group_count + group; NULL: one group */
+	struct due_set routes; /* devices of which something became known, as in route_wheel */
 	struct due_wheel
 		route_wheel; /* devices to be routed again, the one of no device behind them */
 
@@ -334,9 +334,9 @@ struct engine {
 	/* publish.c, limits.c, alarm_effect.c */
 	bool published;
 
-	/* controllers.c, in_force.c, intake.c: the places, and after them those that it awaits */
+	/* controllers.c, in_force.c, intake.c: the seats, and after them those that it awaits */
 	struct known_controller controllers[ENGINE_CONTROLLERS];
-	unsigned place_end; /* one past the last place that is taken; controllers.c */
+	unsigned seat_end; /* one past the last seat that is taken; controllers.c */
 	/* intake.c */
 	unsigned greedy; /* controllers that have used up their looks */
 	/*
@@ -406,8 +406,8 @@ static inline struct lane *engine_open_lane(struct engine *e, unsigned group)
 	return &e->lanes[e->groups[group].first + e->groups[group].state.bar.open];
 }
 
-/* All places of the device, one for each group. */
-static inline struct route_place *engine_places(struct engine *e, uint32_t device)
+/* What is known of the device, one for each group. */
+static inline struct known_presence *engine_presences(struct engine *e, uint32_t device)
 {
-	return &e->places[(size_t)device * e->group_count];
+	return &e->known[(size_t)device * e->group_count];
 }

@@ -161,7 +161,7 @@ struct device {
 	int64_t shown_ns;   /* an answer has shown last that it is there */
 	struct retry watch; /* looks for it that failed */
 
-	/* where it is served, and looked for (place.c, routing.c) */
+	/* where it is served, and looked for (known.c, routing.c) */
 	unsigned group;
 	bool found; /* a target had it once */
 	int64_t moved_ns;

@@ -57,29 +57,29 @@ void bells_ring(struct bells *bells)
 	bell_ring(bells->own);
 }
 
-void bells_add(struct bells *bells, unsigned place, int fd)
+void bells_add(struct bells *bells, unsigned seat, int fd)
 {
-	bells->controllers[place].fd = fd;
-	bells->controllers[place].rings = 0;
-	bells->controllers[place].muted = bells_watch(bells, fd, place) != 0;
-	bells->muted += bells->controllers[place].muted;
+	bells->controllers[seat].fd = fd;
+	bells->controllers[seat].rings = 0;
+	bells->controllers[seat].muted = bells_watch(bells, fd, seat) != 0;
+	bells->muted += bells->controllers[seat].muted;
 }
 
-static void leave_out(struct bells *bells, unsigned place)
+static void leave_out(struct bells *bells, unsigned seat)
 {
-	epoll_ctl(bells->epoll, EPOLL_CTL_DEL, bells->controllers[place].fd, NULL);
+	epoll_ctl(bells->epoll, EPOLL_CTL_DEL, bells->controllers[seat].fd, NULL);
 }
 
-void bells_remove(struct bells *bells, unsigned place)
+void bells_remove(struct bells *bells, unsigned seat)
 {
-	if (bells->controllers[place].fd < 0)
+	if (bells->controllers[seat].fd < 0)
 		return;
-	if (bells->controllers[place].muted)
+	if (bells->controllers[seat].muted)
 		bells->muted--;
 	else
-		leave_out(bells, place);
-	bells->controllers[place].fd = -1;
-	bells->controllers[place].muted = false;
+		leave_out(bells, seat);
+	bells->controllers[seat].fd = -1;
+	bells->controllers[seat].muted = false;
 }
 
 void bells_look(struct bells *bells)
@@ -117,15 +117,15 @@ static int wait_for(int epoll, struct epoll_event *events, int64_t ns)
 	return ppoll(&poll, 1, &coarse, NULL) > 0 ? epoll_wait(epoll, events, EVENTS, 0) : 0;
 }
 
-static void count_ring(struct bells *bells, unsigned place)
+static void count_ring(struct bells *bells, unsigned seat)
 {
 	unsigned most = bells->all < BELLS_ALL ? BELLS_MAX : BELLS_SHARE;
 
 	bells->all++;
-	if (bells->controllers[place].fd < 0 || ++bells->controllers[place].rings < most)
+	if (bells->controllers[seat].fd < 0 || ++bells->controllers[seat].rings < most)
 		return;
-	leave_out(bells, place);
-	bells->controllers[place].muted = true;
+	leave_out(bells, seat);
+	bells->controllers[seat].muted = true;
 	bells->muted++;
 	bells->mutes++;
 }

@@ -38,8 +38,8 @@ void bells_close(struct bells *bells);
 void bells_ring(struct bells *bells);
 
 /* The others are for the engine's thread. fd: an eventfd that is never read. */
-void bells_add(struct bells *bells, unsigned place, int fd);
-void bells_remove(struct bells *bells, unsigned place);
+void bells_add(struct bells *bells, unsigned seat, int fd);
+void bells_remove(struct bells *bells, unsigned seat);
 /* The engine looks at everything now: what rang before counts no more. */
 void bells_look(struct bells *bells);
 /*

@@ -111,12 +111,12 @@ static bool take_controllers(struct host *h, int64_t now_ns)
 		if (!control_next(h->control, &message))
 			return false;
 		if (message.joins) {
-			bells_add(&h->bells, message.place, message.bell);
-			engine_controller_join(h->now->engine, message.place, &message.controller,
+			bells_add(&h->bells, message.seat, message.bell);
+			engine_controller_join(h->now->engine, message.seat, &message.controller,
 			                       now_ns);
 		} else {
-			bells_remove(&h->bells, message.place);
-			engine_controller_left(h->now->engine, message.place, now_ns);
+			bells_remove(&h->bells, message.seat);
+			engine_controller_left(h->now->engine, message.seat, now_ns);
 		}
 		control_done(h->control, &message);
 	}
@@ -127,11 +127,11 @@ static bool take_controllers(struct host *h, int64_t now_ns)
 static void hand_over_controllers(struct host *h, struct engine *next, int64_t now_ns)
 {
 	struct control_message message;
-	unsigned place = 0;
+	unsigned seat = 0;
 
 	take_controllers(h, now_ns);
-	while (control_prepared(h->control, &place, &message))
-		engine_controller_join(next, message.place, &message.controller, now_ns);
+	while (control_prepared(h->control, &seat, &message))
+		engine_controller_join(next, message.seat, &message.controller, now_ns);
 }
 
 /* --- The thread ------------------------------------------------------------------------------- */

@@ -38,8 +38,8 @@ static int create_serve(struct host *h, const struct config *config, char *why, 
 	const struct serve_setup setup = {
 		.config = config,
 		.instance = h->instance,
-		.place = h->place->path,
-		.directory = h->place->fd,
+		.dir = h->dir->path,
+		.directory = h->dir->fd,
 		.log = h->log,
 		.porter = h->porter,
 		.ring = host_ring,
@@ -59,7 +59,7 @@ static int create_control(struct host *h, const struct config *config, char *why
 {
 	const struct control_setup setup = {
 		.config = config,
-		.directory = h->place->fd,
+		.directory = h->dir->fd,
 		.instance = h->instance,
 		.log = h->log,
 		.porter = h->porter,
@@ -107,7 +107,7 @@ int host_start(const struct host_setup *setup, struct host **host, char *why, si
 	}
 	h->log = setup->log;
 	h->instance = setup->instance;
-	h->place = setup->place;
+	h->dir = setup->dir;
 	h->porter = setup->porter;
 	err = bells_open(&h->bells);
 	if (err)

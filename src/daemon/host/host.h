@@ -16,7 +16,7 @@ struct porter;
 struct host_setup {
 	struct config *config; /* the host owns it from here on, also if host_start() fails */
 	const char *instance;
-	const struct shm_place *place; /* stays open as long as the host */
+	const struct shm_dir *dir; /* stays open as long as the host */
 	struct log *log;
 	struct porter *porter; /* likewise */
 	int rt_priority;       /* 0: ordinary scheduling */

@@ -10,8 +10,8 @@
 
 #include "src/config/edit/replace.h"
 #include "src/daemon/host/last_file.h"
+#include "src/memory/shm/dir.h"
 #include "src/memory/shm/owner.h"
-#include "src/memory/shm/place.h"
 #include "src/public/ows_layout.h"
 
 #define SERVICE_STATE "/var/lib/owsd"
@@ -48,13 +48,13 @@ static int find_directory(char *path)
 
 int last_directory(char path[LAST_WHERE])
 {
-	struct shm_place directory = {.fd = -1};
+	struct shm_dir directory = {.fd = -1};
 	int err = find_directory(path);
 
 	if (!err && mkdir(path, 0700) < 0 && errno != EEXIST)
 		err = -errno;
 	if (!err)
-		err = place_open(path, &directory);
+		err = dir_open(path, &directory);
 	return err ? err : directory.fd;
 }
 

@@ -20,7 +20,7 @@ int host_make_serving(struct host *h, struct config *config, const struct adopti
 	struct serving_setup setup = {
 		.config = config,
 		.instance = h->instance,
-		.place = h->place,
+		.dir = h->dir,
 		.log = h->log,
 		.porter = h->porter,
 		.ring = host_ring,

@@ -37,7 +37,7 @@ static bool open_image_before(const struct memory *m, struct segment *before)
 {
 	const struct ows_image_header *h;
 
-	if (segment_open_old(m->place, m->instance, SEGMENT_IMAGE, before))
+	if (segment_open_old(m->dir, m->instance, SEGMENT_IMAGE, before))
 		return false;
 	h = (const void *)before->base;
 	if (before->size >= sizeof(*h) && h->magic == OWS_IMAGE_MAGIC)
@@ -115,7 +115,7 @@ static int make_image(struct memory *m, const struct image_counter *counters,
 			groups[i] = config->targets[i].group;
 		}
 		size = image_size(&plan);
-		err = size ? segment_create(m->place, m->instance, SEGMENT_IMAGE, size,
+		err = size ? segment_create(m->dir, m->instance, SEGMENT_IMAGE, size,
 		                            &m->image_segment)
 		           : -EFBIG;
 	}
@@ -161,7 +161,7 @@ static int make_force(struct memory *m, uint64_t boot)
 		                                   .path = config->items[i].path,
 		                                   .type = (uint8_t)config->items[i].type};
 	size = force_size(&plan);
-	err = size ? segment_create(m->place, m->instance, SEGMENT_FORCE, size, &m->force_segment)
+	err = size ? segment_create(m->dir, m->instance, SEGMENT_FORCE, size, &m->force_segment)
 	           : -EFBIG;
 	if (!err)
 		force_build(&plan, m->force_segment.base, &m->force);
@@ -194,7 +194,7 @@ static int make_layout(struct memory *m)
 /* What the owsd before has left; nothing after a boot. */
 static void open_left(struct memory *m, uint64_t boot, struct log *log)
 {
-	int err = segment_open_old(m->place, m->instance, SEGMENT_FORCE, &m->left_segment);
+	int err = segment_open_old(m->dir, m->instance, SEGMENT_FORCE, &m->left_segment);
 
 	if (err == -ENOENT)
 		return;
@@ -227,7 +227,7 @@ int memory_make(struct memory *m, const struct memory_setup *setup, char *why, s
 	int err;
 
 	*m = (struct memory){.instance = setup->instance,
-	                     .place = setup->place,
+	                     .dir = setup->dir,
 	                     .config = setup->config,
 	                     .porter = setup->porter};
 	m->image_segment.fd = m->force_segment.fd = m->left_segment.fd = -1;
@@ -251,7 +251,7 @@ int memory_make(struct memory *m, const struct memory_setup *setup, char *why, s
 		segment_close(&before);
 	if (err) {
 		snprintf(why, why_size, "cannot make the shared memory: %s%s", strerror(-err),
-		         segment_hint(m->place, m->instance, err, hint));
+		         segment_hint(m->dir, m->instance, err, hint));
 		memory_end(m);
 		return err;
 	}
@@ -333,7 +333,7 @@ int memory_show(struct memory *m, struct log *log, char *why, size_t why_size)
 	if (err)
 		snprintf(why, why_size,
 		         "no program sees the values: cannot put the shared memory in place: %s%s",
-		         strerror(-err), segment_hint(m->place, m->instance, err, hint));
+		         strerror(-err), segment_hint(m->dir, m->instance, err, hint));
 	m->shown = !err;
 	if (!err)
 		report_private(m, log);

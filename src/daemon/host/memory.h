@@ -16,7 +16,7 @@ struct porter;
 
 struct memory {
 	const char *instance;
-	const struct shm_place *place;
+	const struct shm_dir *dir;
 	const struct config *config;
 	struct porter *porter;
 	struct segment image_segment;
@@ -35,7 +35,7 @@ struct memory {
 
 struct memory_setup {
 	const char *instance;
-	const struct shm_place *place;
+	const struct shm_dir *dir;
 	const struct config *config;
 	const struct image_counter *counters; /* as in struct image_plan */
 	uint32_t counter_count;

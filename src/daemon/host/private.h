@@ -26,7 +26,7 @@ struct host {
 	struct log *log;
 	struct porter *porter;
 	const char *instance;
-	const struct shm_place *place;
+	const struct shm_dir *dir;
 	struct serve *serve; /* NULL: the owserver protocol is not served */
 
 	struct indicator *indicator;

@@ -121,7 +121,7 @@ static int make_memory(struct serving *s, const struct serving_setup *setup, cha
 	err = memory_make(&s->memory,
 	                  &(struct memory_setup){
 				  .instance = setup->instance,
-				  .place = setup->place,
+				  .dir = setup->dir,
 				  .config = s->config,
 				  .counters = plan,
 				  .counter_count = count,

@@ -37,7 +37,7 @@ struct porter;
 struct serving_setup {
 	struct config *config;
 	const char *instance;
-	const struct shm_place *place;
+	const struct shm_dir *dir;
 	struct log *log;
 	struct porter *porter;
 	void (*ring)(void *ctx); /* wakes the engine; any thread */

@@ -41,14 +41,14 @@ static const struct bus_env env = {
 	.now = target_now, .wait = no_wait, .answer = no_answer, .event = no_event};
 
 /* Make a bus of the target to see whether that works; reports why it does not. */
-static int try_target(const char *target, struct place place, struct bus **bus,
+static int try_target(const char *target, struct rio_position position, struct bus **bus,
                       struct config_report *report)
 {
 	char why[256] = "";
 	int err = bus_create(target, &env, bus, why, sizeof(why));
 
 	if (err)
-		report_error(report, place, "target \"%s\": %s", target,
+		report_error(report, position, "target \"%s\": %s", target,
 		             *why ? why : strerror(-err));
 	return err;
 }
@@ -78,7 +78,7 @@ static int check_bus(const struct config *config, const struct config_bus *block
 	char why[160];
 	int worst = 0;
 	int err = try_target(block->target,
-	                     (struct place){config->file, block->line, block->column}, &bus,
+	                     (struct rio_position){config->file, block->line, block->column}, &bus,
 	                     report);
 
 	if (err)
@@ -88,21 +88,22 @@ static int check_bus(const struct config *config, const struct config_bus *block
 
 		err = bus_option(bus, option->key, option->text, why, sizeof(why));
 		if (err)
-			report_error(report,
-			             (struct place){config->file, option->line, option->column},
-			             "%s: %s", option->key, why);
+			report_error(
+				report,
+				(struct rio_position){config->file, option->line, option->column},
+				"%s: %s", option->key, why);
 		worst = err ? err : worst;
 	}
 	bus_destroy(bus);
 	return worst;
 }
 
-static struct place place_in(const struct config *config, struct config_spot spot)
+static struct rio_position position_in(const struct config *config, struct config_spot spot)
 {
-	return (struct place){config->file, spot.line, spot.column};
+	return (struct rio_position){config->file, spot.line, spot.column};
 }
 
-static int check_line(struct place place, const char *key, const char *text,
+static int check_line(struct rio_position position, const char *key, const char *text,
                       struct config_report *report)
 {
 	struct gpio_spec spec;
@@ -110,14 +111,14 @@ static int check_line(struct place place, const char *key, const char *text,
 	int err = text ? gpio_spec_parse(text, &spec, why, sizeof(why)) : 0;
 
 	if (err)
-		report_error(report, place, "%s: %s", key, why);
+		report_error(report, position, "%s: %s", key, why);
 	return err;
 }
 
 static int check_options(const struct config *config, struct config_report *report)
 {
-	struct place alarm = place_in(config, config->alarm_line_at);
-	struct place heartbeat = place_in(config, config->heartbeat_line_at);
+	struct rio_position alarm = position_in(config, config->alarm_line_at);
+	struct rio_position heartbeat = position_in(config, config->heartbeat_line_at);
 	int err = check_line(alarm, "AlarmLine", config->alarm_line, report);
 	int other = check_line(heartbeat, "HeartbeatLine", config->heartbeat_line, report);
 
@@ -142,7 +143,7 @@ int target_check_config(struct config *config, struct config_report *report)
 	for (unsigned i = 0; !err && i < config->target_count; i++) {
 		const struct config_target *target = &config->targets[i];
 
-		err = try_target(target->text, target_place(config, target), &bus, report);
+		err = try_target(target->text, target_position(config, target), &bus, report);
 		if (!err)
 			bus_destroy(bus);
 	}
@@ -152,7 +153,7 @@ int target_check_config(struct config *config, struct config_report *report)
 }
 
 /* A chip has a label too, which only the chips themselves know. what: what names it. */
-static void look_for_chip(const char *what, const char *name, struct place place,
+static void look_for_chip(const char *what, const char *name, struct rio_position position,
                           struct config_report *report)
 {
 	struct gpio_chip *chip;
@@ -161,25 +162,26 @@ static void look_for_chip(const char *what, const char *name, struct place place
 
 	gpio_close(chip);
 	if (err == -ENOTTY)
-		report_error(report, place, "%s: %s", what, why);
+		report_error(report, position, "%s: %s", what, why);
 	else if (err == -ENODEV)
-		report_warning(report, place,
+		report_warning(report, position,
 		               "%s: %s is not on this machine: gpiodetect lists the chips", what,
 		               name);
 }
 
-static void look_for_line(struct place place, const char *key, const char *text,
+static void look_for_line(struct rio_position position, const char *key, const char *text,
                           struct config_report *report)
 {
 	struct gpio_spec spec;
 	char why[160];
 
 	if (text && gpio_spec_parse(text, &spec, why, sizeof(why)) == 0)
-		look_for_chip(key, spec.chip, place, report);
+		look_for_chip(key, spec.chip, position, report);
 }
 
-static void look_for_path(const struct config_target *target, const char *name, struct place place,
-                          const struct bus_look *look, struct config_report *report)
+static void look_for_path(const struct config_target *target, const char *name,
+                          struct rio_position position, const struct bus_look *look,
+                          struct config_report *report)
 {
 	char path[300];
 	struct stat file;
@@ -188,15 +190,15 @@ static void look_for_path(const struct config_target *target, const char *name, 
 	if (stat(path, &file) == 0) {
 		if ((look->type && (file.st_mode & S_IFMT) != look->type) ||
 		    (look->major && major(file.st_rdev) != look->major))
-			report_error(report, place, "target \"%s\": %s is %s", target->text, path,
-			             look->wrong);
+			report_error(report, position, "target \"%s\": %s is %s", target->text,
+			             path, look->wrong);
 	} else if (errno == ENOENT) {
-		report_warning(report, place, "target \"%s\": %s is not on this machine: %s",
+		report_warning(report, position, "target \"%s\": %s is not on this machine: %s",
 		               target->text, path, look->remedy);
 	}
 }
 
-static void look_for_target(const struct config_target *target, struct place place,
+static void look_for_target(const struct config_target *target, struct rio_position position,
                             struct config_report *report)
 {
 	const char *where;
@@ -209,10 +211,10 @@ static void look_for_target(const struct config_target *target, struct place pla
 		size_t after = look->after ? strlen(look->after) : 0;
 
 		if (look->gpio_chip)
-			look_for_chip(what, where, place, report);
+			look_for_chip(what, where, position, report);
 		else if ((!after || !strncmp(where, look->after, after)) &&
 		         !strncmp(where + after, look->begin, strlen(look->begin)))
-			look_for_path(target, where + after, place, look, report);
+			look_for_path(target, where + after, position, look, report);
 	}
 }
 
@@ -223,11 +225,11 @@ int target_look(const struct config *config, struct config_report *report)
 	for (unsigned i = 0; i < config->target_count; i++) {
 		const struct config_target *target = &config->targets[i];
 
-		look_for_target(target, target_place(config, target), report);
+		look_for_target(target, target_position(config, target), report);
 	}
-	look_for_line(place_in(config, config->alarm_line_at), "AlarmLine", config->alarm_line,
+	look_for_line(position_in(config, config->alarm_line_at), "AlarmLine", config->alarm_line,
 	              report);
-	look_for_line(place_in(config, config->heartbeat_line_at), "HeartbeatLine",
+	look_for_line(position_in(config, config->heartbeat_line_at), "HeartbeatLine",
 	              config->heartbeat_line, report);
 	return report->errors == errors ? 0 : -EINVAL;
 }

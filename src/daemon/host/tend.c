@@ -28,7 +28,7 @@ static void look_for_image(struct host *h, int64_t now_ns)
 	log_err(h->log,
 	        "%s/%s.image was removed or replaced and programs that start now do not find it: "
 	        "reload or restart owsd",
-	        h->place->path, h->instance);
+	        h->dir->path, h->instance);
 }
 
 static void report_unfinished(struct host *h, const char *why)

@@ -24,14 +24,14 @@
 static const char *const kinds[] = {"image", "force", "control", "lock"};
 #define KINDS (sizeof(kinds) / sizeof(kinds[0]))
 
-static unsigned look_before(const struct shm_place *place, const char *name)
+static unsigned look_before(const struct shm_dir *dir, const char *name)
 {
 	unsigned before = 0;
 	char file[SEGMENT_FILE];
 
 	for (unsigned i = 0; i < KINDS; i++) {
 		segment_file(name, kinds[i], file);
-		if (faccessat(place->fd, file, F_OK, AT_SYMLINK_NOFOLLOW) == 0 || errno != ENOENT)
+		if (faccessat(dir->fd, file, F_OK, AT_SYMLINK_NOFOLLOW) == 0 || errno != ENOENT)
 			before |= 1u << i;
 	}
 	return before;
@@ -41,12 +41,12 @@ static unsigned look_before(const struct shm_place *place, const char *name)
  * Does an owsd listen there for programs that command? Its control socket takes packets: the kernel
  * refuses a stream with another error where nobody listens, and connects in no case.
  */
-static bool is_served(const char *place, const char *name)
+static bool is_served(const char *dir, const char *name)
 {
 	struct sockaddr_un address = {.sun_family = AF_UNIX};
 	int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
 	char file[SEGMENT_FILE];
-	int len = snprintf(address.sun_path, sizeof(address.sun_path), "%s/%s", place,
+	int len = snprintf(address.sun_path, sizeof(address.sun_path), "%s/%s", dir,
 	                   segment_file(name, "control", file));
 	bool is = fd >= 0 && len < (int)sizeof(address.sun_path) &&
 	          connect(fd, (const struct sockaddr *)&address, sizeof(address)) &&
@@ -60,34 +60,33 @@ static bool is_served(const char *place, const char *name)
 /* Programs of this user find the one or the other, and both may write to the same devices. */
 static void warn_of_namesakes(const struct instance *instance, struct log *log)
 {
-	char places[PLACES][PLACE_PATH];
-	int count = place_list(places);
+	char dirs[DIRS][DIR_PATH];
+	int count = dir_list(dirs);
 
 	for (int i = 0; i < count; i++)
-		if (strcmp(places[i], instance->place.path) != 0 &&
-		    is_served(places[i], instance->name))
+		if (strcmp(dirs[i], instance->dir.path) != 0 && is_served(dirs[i], instance->name))
 			log_warning(log,
 			            "another owsd %s runs, in %s: owsctl of this user sees the one "
 			            "in %s; end one of them, or name this one otherwise with -n",
-			            instance->name, places[i], instance->place.path);
+			            instance->name, dirs[i], instance->dir.path);
 }
 
 int instance_take(struct instance *instance, const char *name, struct log *log, char *why,
                   size_t why_size)
 {
-	char hint[SEGMENT_HINT], fault[PLACE_FAULT];
+	char hint[SEGMENT_HINT], fault[DIR_FAULT];
 	bool stolen = false;
 	pid_t owner = 0;
 	int lock, err;
 
 	*instance = (struct instance){.name = name, .lock = -1};
-	err = place_make(&instance->place);
+	err = dir_make(&instance->dir);
 	if (err) {
-		snprintf(why, why_size, "%s", place_fault(&instance->place, err, fault));
+		snprintf(why, why_size, "%s", dir_fault(&instance->dir, err, fault));
 		return err;
 	}
-	instance->before = look_before(&instance->place, name);
-	lock = segment_lock(&instance->place, name, &owner, &stolen);
+	instance->before = look_before(&instance->dir, name);
+	lock = segment_lock(&instance->dir, name, &owner, &stolen);
 	if (lock >= 0)
 		instance->lock = lock;
 	if (lock == -EBUSY)
@@ -97,7 +96,7 @@ int instance_take(struct instance *instance, const char *name, struct log *log, 
 		         name, (int)owner);
 	else if (lock < 0)
 		snprintf(why, why_size, "cannot lock instance %s: %s%s", name, strerror(-lock),
-		         segment_hint(&instance->place, name, lock, hint));
+		         segment_hint(&instance->dir, name, lock, hint));
 	if (stolen)
 		log_warning(
 			log,
@@ -106,14 +105,14 @@ int instance_take(struct instance *instance, const char *name, struct log *log, 
 		warn_of_namesakes(instance, log);
 		return 0;
 	}
-	place_close(&instance->place);
+	dir_close(&instance->dir);
 	return lock;
 }
 
 bool instance_keep(struct instance *instance, struct log *log)
 {
 	int64_t now_ns = ows_now();
-	const struct shm_place *place = &instance->place;
+	const struct shm_dir *dir = &instance->dir;
 	char hint[SEGMENT_HINT];
 	bool stolen;
 	pid_t owner = 0;
@@ -122,22 +121,22 @@ bool instance_keep(struct instance *instance, struct log *log)
 	if (now_ns < instance->look_ns)
 		return true;
 	instance->look_ns = now_ns + LOOK_NS;
-	if (segment_lock_held(&instance->place, instance->lock, instance->name))
+	if (segment_lock_held(&instance->dir, instance->lock, instance->name))
 		return true;
-	lock = segment_lock(place, instance->name, &owner, &stolen);
+	lock = segment_lock(dir, instance->name, &owner, &stolen);
 	if (lock >= 0) {
 		close(instance->lock);
 		instance->lock = lock;
 		instance->rate = (struct log_rate){0};
-		log_warning(log, "%s/%s.lock was removed: made again", place->path, instance->name);
+		log_warning(log, "%s/%s.lock was removed: made again", dir->path, instance->name);
 	} else if (lock == -EBUSY && owner != getpid()) {
 		log_err(log, "%s/%s.lock was removed, and process %d serves the instance now",
-		        place->path, instance->name, (int)owner);
+		        dir->path, instance->name, (int)owner);
 		return false;
 	} else if (log_rate(&instance->rate, now_ns)) {
-		log_err(log, "%s/%s.lock was removed and cannot be made again: %s%s", place->path,
+		log_err(log, "%s/%s.lock was removed and cannot be made again: %s%s", dir->path,
 		        instance->name, strerror(-lock),
-		        segment_hint(place, instance->name, lock, hint));
+		        segment_hint(dir, instance->name, lock, hint));
 	}
 	return true;
 }
@@ -147,7 +146,7 @@ void instance_leave(struct instance *instance)
 	if (instance->lock >= 0)
 		close(instance->lock);
 	instance->lock = -1;
-	place_close(&instance->place);
+	dir_close(&instance->dir);
 }
 
 void instance_abandon(struct instance *instance)
@@ -155,11 +154,11 @@ void instance_abandon(struct instance *instance)
 	char file[SEGMENT_FILE];
 
 	if (instance->lock >= 0 &&
-	    segment_lock_held(&instance->place, instance->lock, instance->name))
+	    segment_lock_held(&instance->dir, instance->lock, instance->name))
 		for (unsigned i = 0; i < KINDS; i++) {
 			segment_file(instance->name, kinds[i], file);
 			if (!(instance->before & 1u << i))
-				unlinkat(instance->place.fd, file, 0);
+				unlinkat(instance->dir.fd, file, 0);
 		}
 	instance_leave(instance);
 }

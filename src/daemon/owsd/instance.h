@@ -9,19 +9,19 @@
 #include <stdint.h>
 
 #include "src/ground/text/log.h"
-#include "src/memory/shm/place.h"
+#include "src/memory/shm/dir.h"
 
 struct instance {
 	const char *name;
-	struct shm_place place; /* open as long as the lock is held */
-	int lock;               /* -1: not held */
-	unsigned before;        /* a bit for each file that was there before the start */
-	int64_t look_ns;        /* not sooner */
+	struct shm_dir dir; /* open as long as the lock is held */
+	int lock;           /* -1: not held */
+	unsigned before;    /* a bit for each file that was there before the start */
+	int64_t look_ns;    /* not sooner */
 	struct log_rate rate;
 };
 
 /*
- * Open the place, made if it is missing, and take the lock. Returns 0, or a negative errno with the
+ * Open the directory, made if missing, and take the lock. Returns 0, or a negative errno with the
  * reason in why. Does not wait.
  */
 int instance_take(struct instance *instance, const char *name, struct log *log, char *why,

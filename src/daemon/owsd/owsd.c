@@ -326,7 +326,7 @@ static int owsd_run(const struct arguments *a, struct config *config, struct ins
 	struct host_setup setup = {
 		.config = config,
 		.instance = a->instance,
-		.place = &instance->place,
+		.dir = &instance->dir,
 		.log = log,
 		.porter = porter,
 		.rt_priority = a->rt_priority,

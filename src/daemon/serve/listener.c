@@ -170,7 +170,7 @@ int listeners_open(struct serve *s, char *why, size_t why_size)
 		return err;
 	err = open_own(s);
 	if (err)
-		snprintf(why, why_size, "cannot listen at %s/%s.sock: %s", s->place, s->instance,
+		snprintf(why, why_size, "cannot listen at %s/%s.sock: %s", s->dir, s->instance,
 		         strerror(-err));
 	return err;
 }

@@ -87,7 +87,7 @@ int serve_create(const struct serve_setup *setup, struct serve **serve, char *wh
 		return err;
 	s->config = setup->config;
 	s->instance = setup->instance;
-	s->place = setup->place;
+	s->dir = setup->dir;
 	s->directory = setup->directory;
 	s->log = setup->log;
 	s->porter = setup->porter;
@@ -303,7 +303,7 @@ int serve_start(struct serve *s, const struct image *image)
 	s->now_ns = s->asked_ns = s->came_ns = ows_now();
 	s->look_ns = INT64_MAX;
 	s->kept = kept_create(s->config);
-	err = s->kept ? signals_open(s->place, s->instance, &s->signals) : -ENOMEM;
+	err = s->kept ? signals_open(s->dir, s->instance, &s->signals) : -ENOMEM;
 	if (err)
 		return err;
 	unlock(s->areas, (size_t)SERVER_CLIENTS * AREA_SIZE);

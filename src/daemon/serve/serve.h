@@ -21,8 +21,8 @@ struct serve;
 struct serve_setup {
 	const struct config *config;
 	const char *instance;
-	const char *place; /* the directory of its files */
-	int directory;     /* the same, open, where NAME.sock is made; -1: none is made */
+	const char *dir; /* the directory of its files */
+	int directory;   /* the same, open, where NAME.sock is made; -1: none is made */
 	struct log *log;
 	struct porter *porter;   /* stays as long as the server */
 	void (*ring)(void *ctx); /* wakes the engine, from any thread */

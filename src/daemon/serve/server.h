@@ -132,8 +132,8 @@ enum serve_counter {
 struct serve {
 	const struct config *config;
 	const struct image *image;
-	const char *instance, *place;
-	int directory; /* the place, open */
+	const char *instance, *dir;
+	int directory; /* the same, open */
 	struct log *log;
 	struct porter *porter;
 	/* Unix sockets that end, until the porter takes them; owsd accepts none with too many. */

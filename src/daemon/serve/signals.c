@@ -59,10 +59,10 @@ static void signals_follow(struct signals *signals)
 		room_for_alarms(signals);
 }
 
-int signals_open(const char *place, const char *instance, struct signals **out)
+int signals_open(const char *dir, const char *instance, struct signals **out)
 {
 	struct signals *signals = calloc(1, sizeof(*signals));
-	int err = signals ? open_in(place, instance, OWS_READ, NAME, &signals->h) : -ENOMEM;
+	int err = signals ? open_in(dir, instance, OWS_READ, NAME, &signals->h) : -ENOMEM;
 
 	/* _DGNRESET is the only name for which a handle keeps state; it is reset for each client */
 	if (!err && ows_find(signals->h, "_DGNRESET") < 0)

@@ -14,7 +14,7 @@ struct signals;
  * Open the image of this instance, which is in place in that directory. It connects to the control
  * room at the first write. Allocates; no function below does. 0 or a negative errno.
  */
-int signals_open(const char *place, const char *instance, struct signals **signals);
+int signals_open(const char *dir, const char *instance, struct signals **signals);
 void signals_close(struct signals *signals);
 
 /* The signal's own name, also of an attribute, "" of the driver's; NULL: there is none. */

@@ -13,7 +13,7 @@
 #include "src/ground/service/streams.h"
 #include "src/ground/text/printable.h"
 #include "src/ground/text/refused.h"
-#include "src/memory/shm/place.h"
+#include "src/memory/shm/dir.h"
 
 #define OPT_CHECK 256    /* it has no letter */
 #define INSTANCE_MAX 100 /* owsd's own limit is lower, and libows knows it */
@@ -144,15 +144,15 @@ int face_start(const char *program, const struct face_option *own, int argc, cha
 
 int face_socket(const struct face_arguments *a, const char *kind, char path[FACE_PATH])
 {
-	char fault[PLACE_FAULT];
-	struct shm_place place;
-	int err = place_make(&place);
+	char fault[DIR_FAULT];
+	struct shm_dir dir;
+	int err = dir_make(&dir);
 
 	if (err) {
-		face_complain(a->program, "%s", place_fault(&place, err, fault));
+		face_complain(a->program, "%s", dir_fault(&dir, err, fault));
 		return err;
 	}
-	snprintf(path, FACE_PATH, "%s/%s.%s", place.path, a->instance, kind);
-	place_close(&place);
+	snprintf(path, FACE_PATH, "%s/%s.%s", dir.path, a->instance, kind);
+	dir_close(&dir);
 	return 0;
 }

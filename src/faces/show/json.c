@@ -196,7 +196,7 @@ void json_seconds(struct json *json, const char *key, int64_t ns)
 	        (unsigned)imaxabs(ms % 1000));
 }
 
-static bool take_digits(const char **at, const char *end)
+static bool skip_digits(const char **at, const char *end)
 {
 	const char *first = *at;
 
@@ -211,17 +211,17 @@ bool json_is_number(const char *at, size_t len)
 
 	at += at < end && *at == '-';
 	first = at;
-	if (!take_digits(&at, end) || (*first == '0' && at - first > 1))
+	if (!skip_digits(&at, end) || (*first == '0' && at - first > 1))
 		return false;
 	if (at < end && *at == '.') {
 		at++;
-		if (!take_digits(&at, end))
+		if (!skip_digits(&at, end))
 			return false;
 	}
 	if (at < end && (*at == 'e' || *at == 'E')) {
 		at++;
 		at += at < end && (*at == '+' || *at == '-');
-		if (!take_digits(&at, end))
+		if (!skip_digits(&at, end))
 			return false;
 	}
 	return at == end;

@@ -32,7 +32,7 @@ static bool body_take(struct text *t, char c)
 }
 
 /* Four hexadecimal digits; -1: they are none. */
-static int32_t take_hex(struct text *t)
+static int32_t parse_hex(struct text *t)
 {
 	int32_t value = 0;
 
@@ -47,9 +47,9 @@ static int32_t take_hex(struct text *t)
 }
 
 /* After \u: a character, of one or two units. -1: it is none, or NUL. */
-static int32_t take_unicode(struct text *t)
+static int32_t parse_unicode(struct text *t)
 {
-	int32_t high = take_hex(t), low;
+	int32_t high = parse_hex(t), low;
 
 	if (high <= 0 || (high >= 0xdc00 && high < 0xe000))
 		return -1;
@@ -58,7 +58,7 @@ static int32_t take_unicode(struct text *t)
 	if (t->end - t->at < 2 || t->at[0] != '\\' || t->at[1] != 'u')
 		return -1;
 	t->at += 2;
-	low = take_hex(t);
+	low = parse_hex(t);
 	if (low < 0xdc00 || low >= 0xe000)
 		return -1;
 	return 0x10000 + ((high - 0xd800) << 10) + (low - 0xdc00);
@@ -89,7 +89,7 @@ static size_t encode(int32_t c, char bytes[4])
 }
 
 /* After the backslash. */
-static int take_escape(struct text *t, char **to)
+static int parse_escape(struct text *t, char **to)
 {
 	static const char from[] = "\"\\/bfnrt", into[] = "\"\\/\b\f\n\r\t";
 	const char *known;
@@ -99,7 +99,7 @@ static int take_escape(struct text *t, char **to)
 		return -EINVAL;
 	if (*t->at == 'u') {
 		t->at++;
-		c = take_unicode(t);
+		c = parse_unicode(t);
 		if (c < 0)
 			return -EINVAL;
 		*to += encode(c, *to);
@@ -114,7 +114,7 @@ static int take_escape(struct text *t, char **to)
 }
 
 /* A character as it stands. */
-static int take_character(struct text *t, char **to)
+static int parse_character(struct text *t, char **to)
 {
 	const char *next = t->at;
 	size_t left = (size_t)(t->end - t->at), len;
@@ -128,7 +128,7 @@ static int take_character(struct text *t, char **to)
 	return 0;
 }
 
-static int take_string(struct text *t, const char **text)
+static int parse_string(struct text *t, const char **text)
 {
 	char *to;
 	int err = 0;
@@ -139,9 +139,9 @@ static int take_string(struct text *t, const char **text)
 	while (!err && t->at < t->end && *t->at != '"') {
 		if (*t->at == '\\') {
 			t->at++;
-			err = take_escape(t, &to);
+			err = parse_escape(t, &to);
 		} else {
-			err = take_character(t, &to);
+			err = parse_character(t, &to);
 		}
 	}
 	if (err || t->at == t->end)
@@ -161,7 +161,7 @@ static bool digits(struct text *t)
 }
 
 /* As RFC 8259 has it: no leading 0 or +, digits on both sides of the point. */
-static int take_number(struct text *t, struct body_member *member)
+static int parse_number(struct text *t, struct body_member *member)
 {
 	char *first = t->at;
 
@@ -191,7 +191,7 @@ static int take_number(struct text *t, struct body_member *member)
 	return 0;
 }
 
-static int take_value(struct text *t, struct body_member *member)
+static int parse_value(struct text *t, struct body_member *member)
 {
 	static const struct {
 		const char *word;
@@ -203,7 +203,7 @@ static int take_value(struct text *t, struct body_member *member)
 		return -EINVAL;
 	if (*t->at == '"') {
 		member->kind = BODY_STRING;
-		return take_string(t, &member->text);
+		return parse_string(t, &member->text);
 	}
 	for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++) {
 		size_t len = strlen(words[i].word);
@@ -215,22 +215,22 @@ static int take_value(struct text *t, struct body_member *member)
 		member->text = words[i].word;
 		return 0;
 	}
-	return *t->at == '-' || isdigit((unsigned char)*t->at) ? take_number(t, member) : -EINVAL;
+	return *t->at == '-' || isdigit((unsigned char)*t->at) ? parse_number(t, member) : -EINVAL;
 }
 
-static int take_member(struct text *t, struct body *body)
+static int parse_member(struct text *t, struct body *body)
 {
 	struct body_member *member = &body->members[body->count];
 	int err;
 
 	if (body->count == BODY_MEMBERS)
 		return -E2BIG;
-	err = take_string(t, &member->key);
+	err = parse_string(t, &member->key);
 	if (err)
 		return err;
 	if (body_find(body, member->key) || !body_take(t, ':'))
 		return -EINVAL;
-	err = take_value(t, member);
+	err = parse_value(t, member);
 	if (!err)
 		body->count++;
 	return err;
@@ -246,7 +246,7 @@ int body_parse(char *text, size_t len, struct body *body)
 		return -EINVAL;
 	if (!body_take(&t, '}')) {
 		do
-			err = take_member(&t, body);
+			err = parse_member(&t, body);
 		while (!err && body_take(&t, ','));
 		if (err || !body_take(&t, '}'))
 			return err ? err : -EINVAL;

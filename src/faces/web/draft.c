@@ -41,7 +41,7 @@ static void check_items(const char *text, size_t len, struct config_report *repo
 	if (!err)
 		err = writer_parse(child.out, child.out_len, answer);
 	if (err)
-		report_warning(report, (struct place){0},
+		report_warning(report, (struct rio_position){0},
 		               "owsd-writer does not check the items against their chips: %s",
 		               *child.why ? child.why : strerror(-err));
 	for (unsigned i = 0; answer && i < answer->problems.count; i++) {

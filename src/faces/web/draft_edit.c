@@ -45,7 +45,8 @@ static int move(struct rio **rio, const struct order *order, struct config_repor
 	const char *where = body_string(order->body, "where");
 
 	if (strcmp(where, "before") != 0 && strcmp(where, "after") != 0) {
-		report_error(report, (struct place){0}, "expected \"where\": before or after");
+		report_error(report, (struct rio_position){0},
+		             "expected \"where\": before or after");
 		return -EINVAL;
 	}
 	return edit_move(rio, order->name, body_string(order->body, "other"),
@@ -59,7 +60,7 @@ static bool take_id(const struct body *body, const char *key, uint8_t rom[ROM_LE
 
 	if (rom_parse(text, strlen(text), rom) == 0)
 		return true;
-	report_error(report, (struct place){0},
+	report_error(report, (struct rio_position){0},
 	             "\"%s\": \"%s\" is no id of a device, such as 28.551DDF030000", key, text);
 	return false;
 }
@@ -134,7 +135,7 @@ static const struct edit {
 
 static int draft_edit_refuse(struct config_report *report, const char *what)
 {
-	report_error(report, (struct place){0}, "%s", what);
+	report_error(report, (struct rio_position){0}, "%s", what);
 	return -EINVAL;
 }
 

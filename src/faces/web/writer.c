@@ -15,7 +15,7 @@
 #include "hal/base/time.h"
 #include "src/faces/web/writer.h"
 #include "src/ground/text/printable.h"
-#include "src/memory/shm/place.h"
+#include "src/memory/shm/dir.h"
 #include "src/memory/shm/segment.h"
 
 /* The writer waits 10 s for a request, 5 s for a lock and 30 s for owsd; others may be before it */
@@ -45,7 +45,7 @@ bool writer_is_tag(const char *text)
 }
 
 /* Digits and a blank, or the end: *text is behind them then. False: no number up to most. */
-static bool take_number(const char **text, int64_t most, int64_t *number)
+static bool parse_number(const char **text, int64_t most, int64_t *number)
 {
 	char *end;
 
@@ -60,7 +60,7 @@ static bool take_number(const char **text, int64_t most, int64_t *number)
 }
 
 /* "E 12 3 words" */
-static int take_problem(const char *value, struct problems *problems)
+static int parse_problem(const char *value, struct problems *problems)
 {
 	struct config_report report = problems_report(problems);
 	bool error = *value == 'E';
@@ -69,7 +69,7 @@ static int take_problem(const char *value, struct problems *problems)
 	if ((!error && *value != 'W') || value[1] != ' ')
 		return -EPROTO;
 	value += 2;
-	if (!take_number(&value, INT_MAX, &line) || !take_number(&value, INT_MAX, &column))
+	if (!parse_number(&value, INT_MAX, &line) || !parse_number(&value, INT_MAX, &column))
 		return -EPROTO;
 	report.problem(report.ctx, error, (int)line, (int)column, value);
 	return 0;
@@ -83,14 +83,14 @@ static int take_backup(const char *value, struct writer_answer *answer)
 		return -EPROTO;
 	snprintf(answer->backup, sizeof(answer->backup), "%.*s", (int)len, value);
 	value += len + 1;
-	if (!writer_is_tag(answer->backup) || !take_number(&value, INT64_MAX, &answer->backup_ms) ||
-	    *value)
+	if (!writer_is_tag(answer->backup) ||
+	    !parse_number(&value, INT64_MAX, &answer->backup_ms) || *value)
 		return -EPROTO;
 	return 0;
 }
 
 /* A key that is not known is of a later writer. */
-static int take_line(const char *key, char *value, struct writer_answer *answer, bool *has_status)
+static int parse_line(const char *key, char *value, struct writer_answer *answer, bool *has_status)
 {
 	int status;
 
@@ -112,7 +112,7 @@ static int take_line(const char *key, char *value, struct writer_answer *answer,
 	} else if (strcmp(key, "backup") == 0) {
 		return take_backup(value, answer);
 	} else if (strcmp(key, "problem") == 0) {
-		return take_problem(value, &answer->problems);
+		return parse_problem(value, &answer->problems);
 	}
 	return 0;
 }
@@ -135,22 +135,21 @@ int writer_parse(char *text, size_t len, struct writer_answer *answer)
 		if (!colon || colon >= end)
 			return -EPROTO;
 		*colon = '\0';
-		err = take_line(line, colon + 1 + (colon[1] == ' '), answer, &has_status);
+		err = parse_line(line, colon + 1 + (colon[1] == ' '), answer, &has_status);
 	}
 	return -EPROTO;
 }
 
 /* --- The connection -------------------------------------------------------------------------- */
 
-/* A path of the socket in that place, by its descriptor: a long name of the place has room, too. */
-static int name_socket(const struct shm_place *place, const char *instance,
-                       struct sockaddr_un *address)
+/* The path of the socket, by the descriptor of its directory: a long name has room, too. */
+static int name_socket(const struct shm_dir *dir, const char *instance, struct sockaddr_un *address)
 {
 	char name[SEGMENT_FILE];
 	int n;
 
 	*address = (struct sockaddr_un){.sun_family = AF_UNIX};
-	n = snprintf(address->sun_path, sizeof(address->sun_path), "/proc/self/fd/%d/%s", place->fd,
+	n = snprintf(address->sun_path, sizeof(address->sun_path), "/proc/self/fd/%d/%s", dir->fd,
 	             segment_file(instance, "config", name));
 	return n < (int)sizeof(address->sun_path) ? 0 : -ENAMETOOLONG;
 }
@@ -159,12 +158,12 @@ static int connect_there(const char *path, const char *instance)
 {
 	static const struct timeval patience = {.tv_sec = PATIENCE_NS / NS_PER_S};
 	struct sockaddr_un address;
-	struct shm_place place;
-	int err = place_open(path, &place), fd;
+	struct shm_dir dir;
+	int err = dir_open(path, &dir), fd;
 
 	if (err)
 		return err;
-	err = name_socket(&place, instance, &address);
+	err = name_socket(&dir, instance, &address);
 	fd = err ? err : socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
 	if (!err && fd < 0)
 		fd = -errno;
@@ -177,17 +176,17 @@ static int connect_there(const char *path, const char *instance)
 		close(fd);
 		fd = err;
 	}
-	place_close(&place);
+	dir_close(&dir);
 	return fd;
 }
 
 static int connect_first(const char *instance)
 {
-	char places[PLACES][PLACE_PATH];
-	int count = place_list(places), err = count < 0 ? count : -ENOENT;
+	char dirs[DIRS][DIR_PATH];
+	int count = dir_list(dirs), err = count < 0 ? count : -ENOENT;
 
 	for (int i = 0; i < count; i++) {
-		int fd = connect_there(places[i], instance);
+		int fd = connect_there(dirs[i], instance);
 
 		if (fd >= 0)
 			return fd;
@@ -199,19 +198,19 @@ static int connect_first(const char *instance)
 
 bool writer_is_there(const char *instance)
 {
-	char places[PLACES][PLACE_PATH], name[SEGMENT_FILE];
-	int count = place_list(places);
+	char dirs[DIRS][DIR_PATH], name[SEGMENT_FILE];
+	int count = dir_list(dirs);
 	bool is = false;
 
 	segment_file(instance, "config", name);
 	for (int i = 0; i < count && !is; i++) {
-		struct shm_place place;
+		struct shm_dir dir;
 		struct stat st;
 
-		if (place_open(places[i], &place))
+		if (dir_open(dirs[i], &dir))
 			continue;
-		is = fstatat(place.fd, name, &st, 0) == 0 && S_ISSOCK(st.st_mode);
-		place_close(&place);
+		is = fstatat(dir.fd, name, &st, 0) == 0 && S_ISSOCK(st.st_mode);
+		dir_close(&dir);
 	}
 	return is;
 }

@@ -31,7 +31,7 @@ static bool is_word(struct word word, const char *text)
 	return word.len == strlen(text) && memcmp(word.at, text, word.len) == 0;
 }
 
-static const char *take_kind(struct word value, struct order *order)
+static const char *parse_kind(struct word value, struct order *order)
 {
 	if (is_word(value, "replace"))
 		order->kind = ORDER_REPLACE;
@@ -42,7 +42,7 @@ static const char *take_kind(struct word value, struct order *order)
 	return NULL;
 }
 
-static const char *take_base(struct word value, struct order *order)
+static const char *parse_base(struct word value, struct order *order)
 {
 	if (value.len != 0 && value.len != TAG_TEXT - 1)
 		return "base: expected a tag of 16 digits, or nothing where there is no file";
@@ -53,7 +53,7 @@ static const char *take_base(struct word value, struct order *order)
 	return NULL;
 }
 
-static const char *take_person(struct word value, struct order *order)
+static const char *parse_person(struct word value, struct order *order)
 {
 	if (value.len >= sizeof(order->person))
 		return "for: longer than 63 bytes";
@@ -62,7 +62,7 @@ static const char *take_person(struct word value, struct order *order)
 	return NULL;
 }
 
-static const char *take_length(struct word value, struct order *order)
+static const char *parse_length(struct word value, struct order *order)
 {
 	size_t length = 0;
 
@@ -83,14 +83,14 @@ static const struct {
 	const char *name;
 	const char *(*take)(struct word value, struct order *order);
 } keys[KEYS] = {
-	[KEY_DO] = {"do", take_kind},
-	[KEY_BASE] = {"base", take_base},
-	[KEY_FOR] = {"for", take_person},
-	[KEY_LENGTH] = {"length", take_length},
+	[KEY_DO] = {"do", parse_kind},
+	[KEY_BASE] = {"base", parse_base},
+	[KEY_FOR] = {"for", parse_person},
+	[KEY_LENGTH] = {"length", parse_length},
 };
 
 /* had: a bit for each key that came before. Returns what is wrong, or NULL. */
-static const char *take_head_line(struct word line, unsigned *had, struct order *order)
+static const char *parse_head_line(struct word line, unsigned *had, struct order *order)
 {
 	const char *colon = memchr(line.at, ':', line.len);
 	struct word name = {line.at, colon ? (size_t)(colon - line.at) : 0}, value;
@@ -149,7 +149,7 @@ int order_parse(const char *text, size_t len, struct order *order, const char **
 	for (line = text + first; line <= end && !*why;) {
 		const char *next = memchr(line, '\n', (size_t)(end + 1 - line));
 
-		*why = take_head_line((struct word){line, (size_t)(next - line)}, &had, order);
+		*why = parse_head_line((struct word){line, (size_t)(next - line)}, &had, order);
 		line = next + 1;
 	}
 	if (!*why)

@@ -8,19 +8,19 @@
 #include "src/ground/text/printable.h"
 #include "src/memory/control/ask.h"
 
-bool ask_waits(const struct control_place *p)
+bool ask_waits(const struct control_seat *p)
 {
 	enum control_state state = control_state_of(p);
 
 	return state == CONTROL_ASKING || state == CONTROL_ASKED;
 }
 
-int ask_begin(struct control *c, struct control_place *p, const struct ows_hello *hello)
+int ask_begin(struct control *c, struct control_seat *p, const struct ows_hello *hello)
 {
 	unsigned waiting = 0;
 
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
-		waiting += ask_waits(&c->places[i]);
+		waiting += ask_waits(&c->seats[i]);
 	if (waiting >= CONTROL_ASKERS)
 		return -ENOSPC;
 	p->who = (struct ows_who){.uid = p->peer.uid, .pid = p->peer.pid};
@@ -31,7 +31,7 @@ int ask_begin(struct control *c, struct control_place *p, const struct ows_hello
 	return 0;
 }
 
-void ask_answer(const struct control *c, const struct control_place *p, int err, const char *why)
+void ask_answer(const struct control *c, const struct control_seat *p, int err, const char *why)
 {
 	struct ows_welcome answer = {
 		.magic = OWS_WELCOME_MAGIC,

@@ -31,7 +31,7 @@
 /* Modes of the socket: rights of those who connect are looked at afterwards, */
 #define FOR_ALL 0666
 #define FOR_OWN 0600 /* or there are none but of owsd's user and root */
-/* What stands in epoll's data; below it, a place * 2 + 1 if its process ended. */
+/* What stands in epoll's data; below it, a seat * 2 + 1 if its process ended. */
 #define LISTENER (2 * OWS_CONTROLLERS)
 #define WAKE (LISTENER + 1)
 
@@ -125,9 +125,9 @@ static void take_event(struct control *c, uint32_t data)
 	if (data == LISTENER)
 		c->accepts = true;
 	else if (data < LISTENER && data % 2)
-		door_died(c, &c->places[data / 2]);
+		door_died(c, &c->seats[data / 2]);
 	else if (data < LISTENER)
-		door_event(c, &c->places[data / 2]);
+		door_event(c, &c->seats[data / 2]);
 }
 
 static int wait_ms(const struct control *c, int64_t next_ns)
@@ -194,7 +194,7 @@ void control_stop(struct control *c)
 	}
 	news_stop(c);
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++) {
-		struct control_place *p = &c->places[i];
+		struct control_seat *p = &c->seats[i];
 
 		if (p->now.memory.base)
 			controller_state(&p->now.memory, OWS_STATE_STOPPED);
@@ -216,8 +216,8 @@ void control_destroy(struct control *c)
 		return;
 	control_stop(c);
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
-		if (control_state_of(&c->places[i]) != CONTROL_FREE)
-			door_release(c, &c->places[i]);
+		if (control_state_of(&c->seats[i]) != CONTROL_FREE)
+			door_release(c, &c->seats[i]);
 	held_forget(c);
 	news_close(c);
 	if (c->asked >= 0)
@@ -232,13 +232,13 @@ void control_destroy(struct control *c)
 
 /* --- The engine's thread ---------------------------------------------------------------------- */
 
-static void make_message(struct control_message *message, const struct control *c, unsigned place,
+static void make_message(struct control_message *message, const struct control *c, unsigned seat,
                          const struct control_grant *grant)
 {
-	const struct control_place *p = &c->places[place];
+	const struct control_seat *p = &c->seats[seat];
 
 	*message = (struct control_message){
-		.place = place,
+		.seat = seat,
 		.joins = true,
 		.controller = {.memory = grant->memory, .rights = grant->rights, .who = p->who},
 		.bell = p->bell,
@@ -255,15 +255,15 @@ bool control_next(struct control *c, struct control_message *message)
 		c->engine.at = 0;
 	}
 	while (c->engine.at < OWS_CONTROLLERS) {
-		unsigned place = c->engine.at++;
-		struct control_place *p = &c->places[place];
+		unsigned seat = c->engine.at++;
+		struct control_seat *p = &c->seats[seat];
 		uint32_t state = CONTROL_JOINING;
 
 		bool joins = __atomic_compare_exchange_n(&p->state, &state, CONTROL_TAKEN, false,
 		                                         __ATOMIC_ACQ_REL, __ATOMIC_ACQUIRE);
 
 		if (joins || state == CONTROL_LEAVING) {
-			make_message(message, c, place, &p->now);
+			make_message(message, c, seat, &p->now);
 			message->joins = joins;
 			return true;
 		}
@@ -273,14 +273,14 @@ bool control_next(struct control *c, struct control_message *message)
 
 void control_done(struct control *c, const struct control_message *message)
 {
-	c->engine.memories[message->place] = message->joins ? message->controller.memory
-	                                                    : (struct controller_memory){0};
-	if (message->joins && c->engine.end <= message->place)
-		c->engine.end = message->place + 1;
+	c->engine.memories[message->seat] = message->joins ? message->controller.memory
+	                                                   : (struct controller_memory){0};
+	if (message->joins && c->engine.end <= message->seat)
+		c->engine.end = message->seat + 1;
 	while (c->engine.end && !c->engine.memories[c->engine.end - 1].base)
 		c->engine.end--;
-	__atomic_store_n(&c->places[message->place].state,
-	                 message->joins ? CONTROL_IN : CONTROL_LEFT, __ATOMIC_RELEASE);
+	__atomic_store_n(&c->seats[message->seat].state, message->joins ? CONTROL_IN : CONTROL_LEFT,
+	                 __ATOMIC_RELEASE);
 	bell_ring(c->wake);
 }
 
@@ -322,7 +322,7 @@ bool control_asked(struct control *c)
 
 	bell_clear(c->asked);
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
-		asked |= control_state_of(&c->places[i]) == CONTROL_ASKING;
+		asked |= control_state_of(&c->seats[i]) == CONTROL_ASKING;
 	return asked;
 }
 
@@ -330,7 +330,7 @@ void control_take_askers(struct control *c)
 {
 	control_lock(c);
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++) {
-		struct control_place *p = &c->places[i];
+		struct control_seat *p = &c->seats[i];
 
 		if (control_state_of(p) != CONTROL_ASKING)
 			continue;
@@ -345,7 +345,7 @@ void control_answer(struct control *c, int err, const char *why)
 {
 	control_lock(c);
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++) {
-		struct control_place *p = &c->places[i];
+		struct control_seat *p = &c->seats[i];
 
 		if (control_state_of(p) != CONTROL_ASKED)
 			continue;
@@ -359,15 +359,15 @@ void control_answer(struct control *c, int err, const char *why)
  * The limits of a user hold for the new memory too, and the old one counts until it is empty. A
  * controller for which there is no room goes on without a memory, and leaves.
  */
-static void prepare_grant(struct control *c, struct control_place *p,
+static void prepare_grant(struct control *c, struct control_seat *p,
                           const struct controller_layout *layout, const struct rights *rights)
 {
 	size_t has = 0, bytes;
 	int err = -ENOSPC;
 
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
-		if (c->places[i].peer.uid == p->peer.uid)
-			has += c->places[i].next.size;
+		if (c->seats[i].peer.uid == p->peer.uid)
+			has += c->seats[i].next.size;
 	if (!p->peer.uid || ((!has || has + layout->size <= CONTROL_MEMORY) &&
 	                     held_of(c, p->peer.uid, &bytes) < CONTROL_HELD && !held_full(c)))
 		err = grant_make(&p->next, layout, rights, p);
@@ -384,18 +384,18 @@ void control_prepare(struct control *c, const struct config *config,
 	c->config = config;
 	c->layout = layout;
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++) {
-		struct control_place *p = &c->places[i];
+		struct control_seat *p = &c->seats[i];
 
 		if (control_belongs(p))
 			prepare_grant(c, p, layout, &c->rights);
 	}
 }
 
-bool control_prepared(struct control *c, unsigned *place, struct control_message *message)
+bool control_prepared(struct control *c, unsigned *seat, struct control_message *message)
 {
-	while (*place < OWS_CONTROLLERS) {
-		unsigned i = (*place)++;
-		const struct control_grant *next = &c->places[i].next;
+	while (*seat < OWS_CONTROLLERS) {
+		unsigned i = (*seat)++;
+		const struct control_grant *next = &c->seats[i].next;
 
 		if (!c->engine.memories[i].base)
 			continue;
@@ -408,8 +408,8 @@ bool control_prepared(struct control *c, unsigned *place, struct control_message
 	return false;
 }
 
-/* The engine has the new memory by now; until then the place needed both. */
-static void take_next_memory(struct control *c, struct control_place *p)
+/* The engine has the new memory by now; until then the seat needed both. */
+static void take_next_memory(struct control *c, struct control_seat *p)
 {
 	if (control_state_of(p) != CONTROL_IN) {
 		held_free(c, p->peer.uid, &p->next, false);
@@ -426,7 +426,7 @@ static void take_next_memory(struct control *c, struct control_place *p)
 void control_reloaded(struct control *c)
 {
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
-		take_next_memory(c, &c->places[i]);
+		take_next_memory(c, &c->seats[i]);
 	if (fchmodat(c->directory, c->name, is_for_all(c) ? FOR_ALL : FOR_OWN, 0) < 0)
 		log_warning(c->log, "who may connect to %s stays as it was: %s", c->name,
 		            strerror(errno));
@@ -438,7 +438,7 @@ void control_replaced(struct control *c)
 {
 	control_lock(c);
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
-		if (control_state_of(&c->places[i]) == CONTROL_IN)
+		if (control_state_of(&c->seats[i]) == CONTROL_IN)
 			news_due(c, i);
 	news_ring(c, NULL);
 	pthread_mutex_unlock(&c->lock);

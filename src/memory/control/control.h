@@ -47,7 +47,7 @@ const struct bus_counter *control_counters(const struct control *control, size_t
 
 /* A controller joins or leaves; what it has is valid until control_done() of its leaving. */
 struct control_message {
-	unsigned place;
+	unsigned seat;
 	bool joins; /* else it leaves */
 	struct joining_controller controller;
 	int bell; /* eventfd, never read: for edge-triggered epoll */
@@ -85,10 +85,10 @@ void control_prepare(struct control *control, const struct config *config,
                      const struct controller_layout *layout);
 /*
  * The engine's thread, after control_next() had no more and before it adopts: the next controller
- * at or after *place that has joined, with its new memory and rights; *place is then the one after
+ * at or after *seat that has joined, with its new memory and rights; *seat is then the one after
  * it. A controller for whom there was no room is not among them, and owsd hangs up on it.
  */
-bool control_prepared(struct control *control, unsigned *place, struct control_message *message);
+bool control_prepared(struct control *control, unsigned *seat, struct control_message *message);
 /* The engine has adopted, and uses the old memories no more: send the controllers the new ones. */
 void control_reloaded(struct control *control);
 /*

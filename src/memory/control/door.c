@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Connections: which get a place, what was sent over them, and how they end. */
+/* Connections: which get a seat, what was sent over them, and how they end. */
 #include <errno.h>
 #include <poll.h>
 #include <string.h>
@@ -43,8 +43,8 @@ static void count(struct control *c, enum control_counter what)
 /* How long owsd waits for a porter that has too much to do. */
 #define PORTER_NS (10 * NS_PER_MS)
 
-/* Give away what the place has of the peer's. False: later. */
-static bool give_away(struct control *c, struct control_place *p, bool with_connection)
+/* Give away what the seat has of the peer's. False: later. */
+static bool give_away(struct control *c, struct control_seat *p, bool with_connection)
 {
 	int *fds[] = {&p->bell, &p->news, &p->news_end, with_connection ? &p->fd : NULL};
 	struct porter_order order = {.slot = PORTER_NO_SLOT};
@@ -68,13 +68,13 @@ static bool give_away(struct control *c, struct control_place *p, bool with_conn
 	return true;
 }
 
-static void door_enter(struct control_place *p, enum control_state state)
+static void door_enter(struct control_seat *p, enum control_state state)
 {
 	__atomic_store_n(&p->state, state, __ATOMIC_RELEASE);
 }
 
 /* Once. */
-static void hang_up_on(struct control *c, struct control_place *p)
+static void hang_up_on(struct control *c, struct control_seat *p)
 {
 	if (!p->connected || p->fd < 0)
 		return;
@@ -82,7 +82,7 @@ static void hang_up_on(struct control *c, struct control_place *p)
 	c->later |= p->connected;
 }
 
-void door_release(struct control *c, struct control_place *p)
+void door_release(struct control *c, struct control_seat *p)
 {
 	bool unread;
 
@@ -95,7 +95,7 @@ void door_release(struct control *c, struct control_place *p)
 	hang_up_on(c, p);
 	/*
 	 * what lies unread in the socket of a living process counts among owsd's descriptors: its
-	 * user has one place less until then
+	 * user has one seat less until then
 	 */
 	unread = p->sent && welcome_unread(c, p);
 	if ((p->connected && p->fd >= 0) || !give_away(c, p, !unread)) {
@@ -116,13 +116,13 @@ static void let_engine_look(struct control *c)
 	c->ring(c->ring_ctx);
 }
 
-static void begin_leaving(struct control *c, struct control_place *p)
+static void begin_leaving(struct control *c, struct control_seat *p)
 {
 	door_enter(p, CONTROL_LEAVING);
 	let_engine_look(c);
 }
 
-void door_drop(struct control *c, struct control_place *p, enum control_counter why)
+void door_drop(struct control *c, struct control_seat *p, enum control_counter why)
 {
 	uint32_t joining = CONTROL_JOINING;
 
@@ -142,13 +142,13 @@ void door_drop(struct control *c, struct control_place *p, enum control_counter 
 	/* else the engine's thread takes it this moment: door_look() goes on */
 }
 
-void door_died(struct control *c, struct control_place *p)
+void door_died(struct control *c, struct control_seat *p)
 {
 	if (control_belongs(p))
 		door_drop(c, p, CONTROL_died);
 }
 
-static void door_refuse(struct control *c, struct control_place *p, int err,
+static void door_refuse(struct control *c, struct control_seat *p, int err,
                         enum control_counter why)
 {
 	welcome_report(c, &p->peer, p->deed, err);
@@ -159,27 +159,27 @@ static void door_refuse(struct control *c, struct control_place *p, int err,
 /* --- The hello -------------------------------------------------------------------------------- */
 
 /* The first controller of a user has a memory of any size; the others of this generation count. */
-static bool has_room(struct control *c, const struct control_place *p)
+static bool has_room(struct control *c, const struct control_seat *p)
 {
 	size_t has;
 
 	held_of(c, p->peer.uid, &has);
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
-		if (c->places[i].peer.uid == p->peer.uid)
-			has += c->places[i].now.size;
+		if (c->seats[i].peer.uid == p->peer.uid)
+			has += c->seats[i].now.size;
 	return !p->peer.uid || !has || has + c->layout->size <= CONTROL_MEMORY;
 }
 
-static int door_watch(struct control *c, const struct control_place *p, int fd, uint32_t what)
+static int door_watch(struct control *c, const struct control_seat *p, int fd, uint32_t what)
 {
 	struct epoll_event event = {.events = EPOLLIN | EPOLLOUT | EPOLLRDHUP | EPOLLET};
 
-	event.data.u32 = (uint32_t)(p - c->places) * 2 + what;
+	event.data.u32 = (uint32_t)(p - c->seats) * 2 + what;
 	return epoll_ctl(c->epoll, EPOLL_CTL_ADD, fd, &event) < 0 ? -errno : 0;
 }
 
 /* 0, -ESRCH: the process has ended, or another negative errno. */
-static int open_descriptors(struct control *c, struct control_place *p)
+static int open_descriptors(struct control *c, struct control_seat *p)
 {
 	const int least = 0;
 	int ends[2];
@@ -205,7 +205,7 @@ static int open_descriptors(struct control *c, struct control_place *p)
 	return 0;
 }
 
-static int identify_controller(struct control *c, struct control_place *p,
+static int identify_controller(struct control *c, struct control_seat *p,
                                const struct ows_hello *hello)
 {
 	static const uint8_t none[sizeof(hello->token)];
@@ -221,7 +221,7 @@ static int identify_controller(struct control *c, struct control_place *p,
 	return 0;
 }
 
-static void join_controller(struct control *c, struct control_place *p,
+static void join_controller(struct control *c, struct control_seat *p,
                             const struct ows_hello *hello)
 {
 	int err = identify_controller(c, p, hello);
@@ -245,7 +245,7 @@ static void join_controller(struct control *c, struct control_place *p,
 	let_engine_look(c);
 }
 
-static void door_ask(struct control *c, struct control_place *p, const struct ows_hello *hello)
+static void door_ask(struct control *c, struct control_seat *p, const struct ows_hello *hello)
 {
 	if (!rights_reload(&c->rights, &p->peer))
 		door_refuse(c, p, -EACCES, CONTROL_refused_rights);
@@ -253,14 +253,14 @@ static void door_ask(struct control *c, struct control_place *p, const struct ow
 		door_refuse(c, p, -ENOSPC, CONTROL_refused_limits);
 }
 
-static bool may_join(const struct control *c, const struct control_place *p,
+static bool may_join(const struct control *c, const struct control_seat *p,
                      const struct ows_hello *hello)
 {
 	return rights_set_any(&c->rights, &p->peer) ||
 	       (!(hello->flags & OWS_HELLO_COMMAND) && rights_read(&c->rights, &p->peer));
 }
 
-static void admit(struct control *c, struct control_place *p, const struct ows_hello *hello)
+static void admit(struct control *c, struct control_seat *p, const struct ows_hello *hello)
 {
 	p->deed = hello->flags & OWS_HELLO_RELOAD    ? WELCOME_RELOAD
 	          : hello->flags & OWS_HELLO_COMMAND ? WELCOME_COMMAND
@@ -275,7 +275,7 @@ static void admit(struct control *c, struct control_place *p, const struct ows_h
 		join_controller(c, p, hello);
 }
 
-static void take_hello(struct control *c, struct control_place *p)
+static void take_hello(struct control *c, struct control_seat *p)
 {
 	struct ows_hello hello;
 	ptrdiff_t n = peer_receive(p->fd, &hello, sizeof(hello), false);
@@ -294,7 +294,7 @@ static void take_hello(struct control *c, struct control_place *p)
 /* --- Connections ------------------------------------------------------------------------------ */
 
 /* A program sends nothing after its hello, which lies unread where it came. */
-static void look_for_end(struct control *c, struct control_place *p)
+static void look_for_end(struct control *c, struct control_seat *p)
 {
 	struct pollfd end = {.fd = p->fd, .events = POLLRDHUP};
 	int bytes = 0;
@@ -305,7 +305,7 @@ static void look_for_end(struct control *c, struct control_place *p)
 		door_drop(c, p, CONTROL_hung_up);
 }
 
-void door_event(struct control *c, struct control_place *p)
+void door_event(struct control *c, struct control_seat *p)
 {
 	if (control_state_of(p) == CONTROL_HALF)
 		take_hello(c, p);
@@ -323,7 +323,7 @@ void door_event(struct control *c, struct control_place *p)
 }
 
 /* Programs of many users, and such as only want to hear of news, lock no other program out. */
-static unsigned most_places(const struct control *c, const struct peer *peer)
+static unsigned most_seats(const struct control *c, const struct peer *peer)
 {
 	if (!peer->uid || peer->uid == c->rights.own)
 		return OWS_CONTROLLERS;
@@ -331,15 +331,15 @@ static unsigned most_places(const struct control *c, const struct peer *peer)
 	       (rights_set_any(&c->rights, peer) ? CONTROL_KEPT : CONTROL_KEPT_FROM_READERS);
 }
 
-/* A free place for that user; NULL: all are taken, or as many as a user may have. */
-static struct control_place *find_place(struct control *c, const struct peer *peer)
+/* A free seat for that user; NULL: all are taken, or as many as a user may have. */
+static struct control_seat *find_seat(struct control *c, const struct peer *peer)
 {
-	struct control_place *found = NULL;
+	struct control_seat *found = NULL;
 	size_t bytes;
 	unsigned of_user = 0, taken = 0, held = held_of(c, peer->uid, &bytes);
 
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++) {
-		struct control_place *p = &c->places[i];
+		struct control_seat *p = &c->seats[i];
 
 		if (control_state_of(p) == CONTROL_FREE) {
 			found = found ? found : p;
@@ -348,20 +348,20 @@ static struct control_place *find_place(struct control *c, const struct peer *pe
 		taken++;
 		of_user += p->who.uid == peer->uid;
 	}
-	if (taken >= most_places(c, peer) || (peer->uid && held_full(c)))
+	if (taken >= most_seats(c, peer) || (peer->uid && held_full(c)))
 		return NULL;
 	return peer->uid && (of_user >= CONTROL_OF_USER || held >= CONTROL_HELD) ? NULL : found;
 }
 
-/* All of the place is new but its state, at which the engine's thread may look meanwhile. */
-static void begin_place(struct control_place *p, const struct control_place *fresh)
+/* All of the seat is new but its state, at which the engine's thread may look meanwhile. */
+static void begin_seat(struct control_seat *p, const struct control_seat *fresh)
 {
-	size_t from = offsetof(struct control_place, fd);
+	size_t from = offsetof(struct control_seat, fd);
 
 	memcpy((char *)p + from, (const char *)fresh + from, sizeof(*p) - from);
 }
 
-/* Hang up on those that have no place. False: the porter has no time. */
+/* Hang up on those that have no seat. False: the porter has no time. */
 static bool send_away(struct control *c)
 {
 	if (c->away_count && welcome_end(c, c->away, c->away_count, c->away_err, false))
@@ -377,26 +377,26 @@ static bool comes_too_often(struct control *c, uid_t uid)
 
 static void meet(struct control *c, int fd)
 {
-	struct control_place *p;
+	struct control_seat *p;
 	struct peer peer;
 	int err = peer_look(fd, &peer);
 
-	p = err ? NULL : find_place(c, &peer);
+	p = err ? NULL : find_seat(c, &peer);
 	if (!err && !rights_set_any(&c->rights, &peer) && !rights_read(&c->rights, &peer) &&
 	    !rights_reload(&c->rights, &peer))
 		err = -EACCES;
 	else if (!err && (!p || comes_too_often(c, peer.uid)))
 		err = -ENOSPC;
 	if (!err) {
-		begin_place(p, &(struct control_place){.fd = fd,
-		                                       .death = -1,
-		                                       .bell = -1,
-		                                       .news = -1,
-		                                       .news_end = -1,
-		                                       .peer = peer,
-		                                       .connected = true,
-		                                       .who.uid = peer.uid,
-		                                       .until_ns = c->now_ns + CONTROL_HELLO_NS});
+		begin_seat(p, &(struct control_seat){.fd = fd,
+		                                     .death = -1,
+		                                     .bell = -1,
+		                                     .news = -1,
+		                                     .news_end = -1,
+		                                     .peer = peer,
+		                                     .connected = true,
+		                                     .who.uid = peer.uid,
+		                                     .until_ns = c->now_ns + CONTROL_HELLO_NS});
 		err = door_watch(c, p, fd, 0);
 	}
 	if (!err) {
@@ -466,7 +466,7 @@ void door_accept(struct control *c)
 	c->accept_ns = c->now_ns + (full || rest_ns > REST_MOST_NS ? REST_MOST_NS : rest_ns);
 }
 
-static void look_at_place(struct control *c, struct control_place *p)
+static void look_at_seat(struct control *c, struct control_seat *p)
 {
 	switch (control_state_of(p)) {
 	case CONTROL_HALF:
@@ -502,9 +502,9 @@ int64_t door_look(struct control *c)
 	c->later = false;
 	held_look(c);
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++) {
-		struct control_place *p = &c->places[i];
+		struct control_seat *p = &c->seats[i];
 
-		look_at_place(c, p);
+		look_at_seat(c, p);
 		if ((control_state_of(p) == CONTROL_HALF || ask_waits(p)) && p->until_ns < next_ns)
 			next_ns = p->until_ns;
 	}

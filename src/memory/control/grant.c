@@ -8,7 +8,7 @@
 #include "src/memory/control/sealed.h"
 
 int grant_make(struct control_grant *grant, const struct controller_layout *layout,
-               const struct rights *rights, const struct control_place *place)
+               const struct rights *rights, const struct control_seat *seat)
 {
 	*grant = (struct control_grant){
 		.memory.layout = layout,
@@ -28,9 +28,9 @@ int grant_make(struct control_grant *grant, const struct controller_layout *layo
 		grant_free(grant);
 		return err;
 	}
-	if (place->commands)
-		grant->allowed = rights_fill(rights, &place->peer, grant->rights);
-	controller_build(&grant->memory, place->who.serial);
+	if (seat->commands)
+		grant->allowed = rights_fill(rights, &seat->peer, grant->rights);
+	controller_build(&grant->memory, seat->who.serial);
 	for (uint32_t i = 0; i < layout->slot_count; i++)
 		controller_allow(&grant->memory, i, grant->rights[i / 32] >> i % 32 & 1);
 	controller_state(&grant->memory, OWS_STATE_LIVE);

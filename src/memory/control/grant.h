@@ -6,6 +6,6 @@
 
 /* For the controller with that serial. 0 or a negative errno. */
 int grant_make(struct control_grant *grant, const struct controller_layout *layout,
-               const struct rights *rights, const struct control_place *place);
+               const struct rights *rights, const struct control_seat *seat);
 /* An empty grant stays as it is. */
 void grant_free(struct control_grant *grant);

@@ -17,7 +17,7 @@
 #define LOCKED_NS (NS_PER_S / 2)
 /* When a memory is emptied again in which a process has written meanwhile. */
 #define AGAIN_NS (NS_PER_S / 2)
-/* Before them stand those of the places; PORTER_SLOTS has room for both. */
+/* Before them stand those of the seats; PORTER_SLOTS has room for both. */
 #define FIRST_SLOT OWS_CONTROLLERS
 
 void held_open(struct control *c)

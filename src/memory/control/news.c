@@ -40,9 +40,9 @@ void news_close(struct control *c)
 	c->news.bell = -1;
 }
 
-void news_due(struct control *c, unsigned place)
+void news_due(struct control *c, unsigned seat)
 {
-	__atomic_fetch_or(&c->news.due[place / 32], 1u << place % 32, __ATOMIC_RELEASE);
+	__atomic_fetch_or(&c->news.due[seat / 32], 1u << seat % 32, __ATOMIC_RELEASE);
 }
 
 void news_ring(struct control *c, const uint32_t *word)
@@ -68,12 +68,12 @@ bool news_wake(struct control *c, const uint32_t *word)
 	return woken == WOKEN_HERE;
 }
 
-void news_begin(struct control_place *p)
+void news_begin(struct control_seat *p)
 {
 	__atomic_store_n(&p->news_state, NEWS_IDLE, __ATOMIC_RELEASE);
 }
 
-bool news_end(struct control_place *p)
+bool news_end(struct control_seat *p)
 {
 	uint32_t idle = NEWS_IDLE;
 
@@ -85,7 +85,7 @@ bool news_end(struct control_place *p)
 /* --- The thread ------------------------------------------------------------------------------- */
 
 /* A socket that is full rings already; without a reader the controller is about to leave. */
-static void ring_place(struct control_place *p)
+static void ring_seat(struct control_seat *p)
 {
 	uint32_t idle = NEWS_IDLE;
 
@@ -119,7 +119,7 @@ static void ring_one(struct control *c, unsigned i)
 	if (i == NEWS_IMAGE)
 		segment_wake(__atomic_load_n(&c->news.word, __ATOMIC_RELAXED), INT_MAX);
 	else
-		ring_place(&c->places[i]);
+		ring_seat(&c->seats[i]);
 	took_ns = ows_now() - begun_ns;
 	if (was_slow)
 		c->news.slow--;

@@ -21,11 +21,11 @@ int64_t news_turn(struct control *c);
  * thread of news has to wake. For a second after a wake that took long it wakes none, and is true.
  */
 bool news_wake(struct control *c, const uint32_t *word);
-/* Any thread: the place is to be rung; news_ring() has to follow. */
-void news_due(struct control *c, unsigned place);
+/* Any thread: the seat is to be rung; news_ring() has to follow. */
+void news_due(struct control *c, unsigned seat);
 /* Any thread, never blocks; word: of an image with sleepers to be woken too, or NULL. */
 void news_ring(struct control *c, const uint32_t *word);
-/* The socket at the place may be rung from now on. */
-void news_begin(struct control_place *p);
+/* The socket at the seat may be rung from now on. */
+void news_begin(struct control_seat *p);
 /* It is rung no more. False: it is being rung this moment. */
-bool news_end(struct control_place *p);
+bool news_end(struct control_seat *p);

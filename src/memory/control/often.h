@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * How often users connect. Each connection that may get a place costs a memory, a bell and more;
+ * How often users connect. Each connection that may get a seat costs a memory, a bell and more;
  * users that connect without end cost no more than a small part of a core.
  */
 #pragma once

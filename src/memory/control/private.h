@@ -16,7 +16,7 @@
 
 /* Limits of a user, which do not hold for root. */
 #define CONTROL_OF_USER 32
-/* Places that are kept for root and owsd's user, and of the rest for users that may command. */
+/* Seats that are kept for root and owsd's user, and of the rest for users that may command. */
 #define CONTROL_KEPT 8
 #define CONTROL_KEPT_FROM_READERS 64
 /* A program has, beside its own, for two seconds those of the reloads before. */
@@ -48,7 +48,7 @@ enum control_counter {
 		CONTROL_COUNTER_COUNT
 };
 
-/* The engine's thread may touch a place from JOINING to IN and from LEAVING to LEFT. */
+/* The engine's thread may touch a seat from JOINING to IN and from LEAVING to LEFT. */
 enum control_state {
 	CONTROL_FREE,
 	CONTROL_HALF,   /* connected; its hello has not come */
@@ -85,7 +85,7 @@ struct control_held {
 	uint32_t slot;    /* of the porter */
 };
 
-struct control_place {
+struct control_seat {
 	uint32_t state;           /* enum control_state */
 	uint32_t news_state;      /* of news.c: may its thread use the socket news? */
 	int fd, death;            /* the connection; the process's pidfd, -1 unknown */
@@ -104,26 +104,26 @@ struct control_place {
 	struct control_grant now, next;
 };
 
-static inline enum control_state control_state_of(const struct control_place *p)
+static inline enum control_state control_state_of(const struct control_seat *p)
 {
 	return (enum control_state)__atomic_load_n(&p->state, __ATOMIC_ACQUIRE);
 }
 
-/* Does the place belong to a controller that joins or has joined? */
-static inline bool control_belongs(const struct control_place *p)
+/* Does the seat belong to a controller that joins or has joined? */
+static inline bool control_belongs(const struct control_seat *p)
 {
 	enum control_state state = control_state_of(p);
 
 	return state == CONTROL_JOINING || state == CONTROL_TAKEN || state == CONTROL_IN;
 }
 
-/* The places, and the sleepers of the image. */
+/* The seats, and the sleepers of the image. */
 #define NEWS_IMAGE OWS_CONTROLLERS
 #define NEWS_PACES (OWS_CONTROLLERS + 1)
 #define NEWS_WORDS ((NEWS_PACES + 31) / 32)
 
 struct control {
-	pthread_mutex_t lock; /* places, but for what belongs to the engine's thread; config */
+	pthread_mutex_t lock; /* seats, but for what belongs to the engine's thread; config */
 	const struct config *config;
 	const struct controller_layout *layout;
 	struct rights rights;
@@ -139,7 +139,7 @@ struct control {
 	uint32_t stop;
 	int epoll, listener, wake;
 	struct porter *porter;
-	int away[PORTER_FDS]; /* connections without a place that are refused, all with away_err */
+	int away[PORTER_FDS]; /* connections without a seat that are refused, all with away_err */
 	unsigned away_count;
 	int away_err;
 	bool later; /* the porter had no time for something */
@@ -148,12 +148,12 @@ struct control {
 	int64_t now_ns;    /* when a thread took the lock; see control_lock() */
 	int64_t accept_ns; /* not sooner */
 	uint32_t serial;
-	struct control_place places[OWS_CONTROLLERS];
+	struct control_seat seats[OWS_CONTROLLERS];
 	struct control_held held[CONTROL_HELD_ALL];
 	unsigned held_count;
 	struct often often;
 	int64_t held_ns;  /* when to look next */
-	uint32_t changes; /* counts places that are for the engine's thread to look at */
+	uint32_t changes; /* counts seats that are for the engine's thread to look at */
 	struct {
 		uint32_t seen;
 		unsigned at;
@@ -166,7 +166,7 @@ struct control {
 		bool running;
 		uint32_t stop;
 		int bell;
-		uint32_t due[NEWS_WORDS]; /* a bit for each place and for the image */
+		uint32_t due[NEWS_WORDS]; /* a bit for each seat and for the image */
 		const uint32_t *word;     /* of the image, on which programs sleep */
 		/* of the thread */
 		uint32_t taken[NEWS_WORDS]; /* what was due and is not rung yet */

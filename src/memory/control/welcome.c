@@ -55,12 +55,12 @@ int welcome_end(struct control *c, const int *fds, unsigned count, int err, bool
 	return porter_give(c->porter, PORTER_AWAY, &order);
 }
 
-static uint32_t porter_slot(const struct control *c, const struct control_place *p)
+static uint32_t porter_slot(const struct control *c, const struct control_seat *p)
 {
-	return (uint32_t)(p - c->places);
+	return (uint32_t)(p - c->seats);
 }
 
-bool welcome_unread(struct control *c, const struct control_place *p)
+bool welcome_unread(struct control *c, const struct control_seat *p)
 {
 	int bytes = 0;
 
@@ -73,7 +73,7 @@ bool welcome_unread(struct control *c, const struct control_place *p)
 	return ioctl(p->fd, SIOCOUTQ, &bytes) == 0 && bytes > 0;
 }
 
-void welcome_send(struct control *c, struct control_place *p)
+void welcome_send(struct control *c, struct control_seat *p)
 {
 	const struct controller_layout *layout = p->now.memory.layout;
 	struct ows_welcome welcome = {

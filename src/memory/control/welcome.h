@@ -17,6 +17,6 @@ int welcome_end(struct control *c, const int *fds, unsigned count, int err, bool
  * Send the controller its memory, and the first time the bell and the news; or later, when the
  * controller has read what was sent before.
  */
-void welcome_send(struct control *c, struct control_place *p);
+void welcome_send(struct control *c, struct control_seat *p);
 /* Is there something that the controller has not read, or that the porter has not sent? */
-bool welcome_unread(struct control *c, const struct control_place *p);
+bool welcome_unread(struct control *c, const struct control_seat *p);

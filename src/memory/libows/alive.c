@@ -27,7 +27,7 @@ int alive_look(struct ows *h, int64_t now_ns)
 	if (!handle_alive(h, now_ns) &&
 	    (now_ns < h->looked_ns || handle_age(now_ns, h->looked_ns) >= ALIVE_LOOK_NS)) {
 		h->looked_ns = now_ns;
-		h->orphan = map_is_elsewhere(&h->map, h->place, h->instance);
+		h->orphan = map_is_elsewhere(&h->map, h->dir, h->instance);
 		errno = saved;
 	}
 	return handle_state(h);

@@ -57,7 +57,7 @@ static int look_at_all(const struct ows *h, struct ows_cursor *cursor, int64_t n
 static bool is_elsewhere(const struct ows *h)
 {
 	int saved = errno;
-	bool elsewhere = map_is_elsewhere(&h->map, h->place, h->instance);
+	bool elsewhere = map_is_elsewhere(&h->map, h->dir, h->instance);
 
 	errno = saved;
 	return elsewhere;

@@ -12,7 +12,7 @@
 #include "src/ground/signal/attribute.h"
 #include "src/memory/libows/give.h"
 #include "src/memory/libows/join.h"
-#include "src/memory/shm/place.h"
+#include "src/memory/shm/dir.h"
 #include "src/memory/shm/segment.h"
 #include "src/public/ows.h"
 
@@ -87,7 +87,7 @@ struct ows {
 
 	enum ows_mode mode;
 	char instance[SEGMENT_NAME_MAX + 1];
-	char place[PLACE_PATH]; /* the directory that it was found in */
+	char dir[DIR_PATH]; /* the directory that it was found in */
 };
 
 /* Does the handle's connection belong to the process that this one was forked from? */

@@ -15,14 +15,14 @@
 #include "src/memory/shm/owner.h"
 #include "src/memory/shm/word.h"
 
-static int map_file(const struct shm_place *place, const char *instance, void **base, size_t *size,
+static int map_file(const struct shm_dir *dir, const char *instance, void **base, size_t *size,
                     struct ows_file *file)
 {
 	char name[SEGMENT_FILE];
 	struct stat st;
 	int fd, err = 0;
 
-	fd = openat(place->fd, segment_file(instance, "image", name),
+	fd = openat(dir->fd, segment_file(instance, "image", name),
 	            O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
 	if (fd < 0)
 		return errno == ELOOP ? -EPERM : -errno;
@@ -153,16 +153,16 @@ static int check_image(struct ows_map *map)
 
 int map_open(const char *path, const char *instance, struct ows_map *map)
 {
-	struct shm_place place;
+	struct shm_dir dir;
 	void *base = NULL;
 	int err;
 
 	*map = (struct ows_map){0};
-	err = place_open(path, &place);
+	err = dir_open(path, &dir);
 	if (err)
 		return err;
-	err = map_file(&place, instance, &base, &map->image_size, &map->image_file);
-	place_close(&place);
+	err = map_file(&dir, instance, &base, &map->image_size, &map->image_file);
+	dir_close(&dir);
 	if (err)
 		return err;
 	map->base = base;
@@ -218,12 +218,12 @@ int map_find(void *ctx, const char *name, size_t len)
 	return -1;
 }
 
-bool map_is_elsewhere(const struct ows_map *map, const char *place, const char *instance)
+bool map_is_elsewhere(const struct ows_map *map, const char *dir, const char *instance)
 {
-	char path[PLACE_PATH + SEGMENT_FILE], name[SEGMENT_FILE];
+	char path[DIR_PATH + SEGMENT_FILE], name[SEGMENT_FILE];
 	struct stat st;
 
-	snprintf(path, sizeof(path), "%s/%s", place, segment_file(instance, "image", name));
+	snprintf(path, sizeof(path), "%s/%s", dir, segment_file(instance, "image", name));
 	/* False while there is none: the next owsd makes it */
 	return lstat(path, &st) == 0 &&
 	       (st.st_ino != map->image_file.inode || st.st_dev != map->image_file.device);

@@ -13,7 +13,7 @@
 struct ows_map;
 struct ows_record;
 
-/* path: of the place. */
+/* path: of the directory. */
 int map_open(const char *path, const char *instance, struct ows_map *map);
 void map_close(struct ows_map *map);
 /* The string at an offset of the image; "" for an offset outside the strings. */
@@ -24,4 +24,4 @@ bool map_has_text(const struct ows_map *map, const struct ows_record *record);
 /* Record of a signal's name, -1 if there is none; as attribute_find, map is a struct ows_map. */
 int map_find(void *map, const char *name, size_t len);
 /* Does the name lead to another file than the mapped one? One system call. */
-bool map_is_elsewhere(const struct ows_map *map, const char *place, const char *instance);
+bool map_is_elsewhere(const struct ows_map *map, const char *dir, const char *instance);

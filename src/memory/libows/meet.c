@@ -141,18 +141,18 @@ static bool fits_image(const struct give *give, const struct ows_map *map)
 static int connect_again(struct ows *h)
 {
 	char name[SEGMENT_FILE];
-	struct shm_place place;
+	struct shm_dir dir;
 	int err;
 
 	if (h->give.base != NULL)
 		word_set(&give_header(&h->give)->state, OWS_STATE_STOPPED);
 	give_unmap(&h->next);
-	err = place_open(h->place, &place);
+	err = dir_open(h->dir, &dir);
 	if (err)
 		return err;
-	err = join_begin(&h->join, place.fd, segment_file(h->instance, "control", name), h->program,
+	err = join_begin(&h->join, dir.fd, segment_file(h->instance, "control", name), h->program,
 	                 h->mode == OWS_CONTROL ? OWS_HELLO_COMMAND : 0);
-	place_close(&place);
+	dir_close(&dir);
 	return err;
 }
 

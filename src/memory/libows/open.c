@@ -11,7 +11,7 @@
 #include "src/memory/libows/map.h"
 #include "src/memory/libows/meet.h"
 #include "src/memory/libows/open.h"
-#include "src/memory/shm/place.h"
+#include "src/memory/shm/dir.h"
 
 /* --- Names that a program looks up ----------------------------------------------------------- */
 
@@ -143,7 +143,7 @@ static int open_joined(struct ows *h)
 			return -ETIMEDOUT;
 		if (h->join.connection < 0)
 			nanosleep(&nap, NULL);
-		err = map_open(h->place, h->instance, &map);
+		err = map_open(h->dir, h->instance, &map);
 		if (!err) {
 			map_close(&h->map);
 			take_map(h, &map);
@@ -154,26 +154,26 @@ static int open_joined(struct ows *h)
 	return err;
 }
 
-static int try_place(struct ows *h, const char *place)
+static int try_dir(struct ows *h, const char *dir)
 {
 	struct ows_map map;
-	int err = map_open(place, h->instance, &map);
+	int err = map_open(dir, h->instance, &map);
 
 	if (err)
 		return err;
-	memcpy(h->place, place, strlen(place) + 1);
+	memcpy(h->dir, dir, strlen(dir) + 1);
 	take_map(h, &map);
 	return 0;
 }
 
-/* The first place with a living owsd, else the first with an image. */
-static int map_first_place(struct ows *h, char places[PLACES][PLACE_PATH], int count)
+/* The first directory with a living owsd, else the first with an image. */
+static int map_first_dir(struct ows *h, char dirs[DIRS][DIR_PATH], int count)
 {
 	int why = -ENOENT;
 
 	for (int any = count == 1; any < 2; any++)
 		for (int i = 0; i < count; i++) {
-			int err = try_place(h, places[i]);
+			int err = try_dir(h, dirs[i]);
 
 			if (!err && (any || (alive_find(h, ows_now()) && !handle_state(h))))
 				return 0;
@@ -185,8 +185,8 @@ static int map_first_place(struct ows *h, char places[PLACES][PLACE_PATH], int c
 	return why;
 }
 
-static int open_one(char places[PLACES][PLACE_PATH], int count, const char *instance,
-                    enum ows_mode mode, const char *program, struct ows **handle)
+static int open_one(char dirs[DIRS][DIR_PATH], int count, const char *instance, enum ows_mode mode,
+                    const char *program, struct ows **handle)
 {
 	int saved = errno, err;
 	struct ows *h;
@@ -200,7 +200,7 @@ static int open_one(char places[PLACES][PLACE_PATH], int count, const char *inst
 	memcpy(h->program, program, strnlen(program, sizeof(h->program) - 1));
 	h->mode = mode;
 	join_none(&h->join);
-	err = map_first_place(h, places, count);
+	err = map_first_dir(h, dirs, count);
 	if (!err && mode == OWS_CONTROL)
 		err = open_joined(h);
 	errno = saved;
@@ -213,12 +213,12 @@ static int open_one(char places[PLACES][PLACE_PATH], int count, const char *inst
 
 int ows_open_as(const char *instance, enum ows_mode mode, const char *name, struct ows **handle)
 {
-	char places[PLACES][PLACE_PATH];
-	int count = place_list(places);
+	char dirs[DIRS][DIR_PATH];
+	int count = dir_list(dirs);
 
 	*handle = NULL;
 	return count < 0 ? count
-	                 : open_one(places, count, instance ? instance : "OWS", mode, name, handle);
+	                 : open_one(dirs, count, instance ? instance : "OWS", mode, name, handle);
 }
 
 int ows_open(const char *instance, enum ows_mode mode, struct ows **handle)
@@ -226,21 +226,21 @@ int ows_open(const char *instance, enum ows_mode mode, struct ows **handle)
 	return ows_open_as(instance, mode, program_invocation_short_name, handle);
 }
 
-int open_in(const char *place, const char *instance, enum ows_mode mode, const char *name,
+int open_in(const char *dir, const char *instance, enum ows_mode mode, const char *name,
             struct ows **handle)
 {
-	char places[PLACES][PLACE_PATH];
+	char dirs[DIRS][DIR_PATH];
 
 	*handle = NULL;
-	if (strlen(place) >= PLACE_PATH)
+	if (strlen(dir) >= DIR_PATH)
 		return -EINVAL;
-	memcpy(places[0], place, strlen(place) + 1);
-	return open_one(places, 1, instance, mode, name, handle);
+	memcpy(dirs[0], dir, strlen(dir) + 1);
+	return open_one(dirs, 1, instance, mode, name, handle);
 }
 
-const char *open_place(const struct ows *h)
+const char *open_dir(const struct ows *h)
 {
-	return h->place;
+	return h->dir;
 }
 
 void ows_close(struct ows *h)
@@ -260,7 +260,7 @@ void ows_close(struct ows *h)
 /* Map the present image, and get the memory that belongs to it. */
 static int open_present(struct ows *h, struct ows_map *map)
 {
-	int err = map_open(h->place, h->instance, map);
+	int err = map_open(h->dir, h->instance, map);
 
 	if (err)
 		return err;

@@ -5,7 +5,7 @@
 #include <sys/socket.h>
 
 #include "src/memory/libows/join.h"
-#include "src/memory/shm/place.h"
+#include "src/memory/shm/dir.h"
 #include "src/memory/shm/segment.h"
 #include "src/public/ows.h"
 
@@ -51,26 +51,26 @@ static int reload_take(int connection, char *why, size_t size)
 static int reload_ask(const char *path, const char *instance, struct join *join)
 {
 	char name[SEGMENT_FILE];
-	struct shm_place place;
-	int err = place_open(path, &place);
+	struct shm_dir dir;
+	int err = dir_open(path, &dir);
 
 	if (err)
 		return err;
-	err = join_begin(join, place.fd, segment_file(instance, "control", name),
+	err = join_begin(join, dir.fd, segment_file(instance, "control", name),
 	                 program_invocation_short_name, OWS_HELLO_RELOAD);
-	place_close(&place);
+	dir_close(&dir);
 	return err;
 }
 
 static int ask_first(const char *instance, struct join *join)
 {
-	char places[PLACES][PLACE_PATH];
-	int count = place_list(places), why = -ENOENT;
+	char dirs[DIRS][DIR_PATH];
+	int count = dir_list(dirs), why = -ENOENT;
 
 	if (count < 0)
 		return count;
 	for (int i = 0; i < count; i++) {
-		int err = reload_ask(places[i], instance, join);
+		int err = reload_ask(dirs[i], instance, join);
 
 		if (!err)
 			return 0;

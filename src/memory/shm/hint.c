@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The cause of an error of the place, for the log: it is full, or a file is in the way. */
+/* The cause of an error of the directory, for the log: it is full, or a file is in the way. */
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -34,7 +34,7 @@ static bool belongs_to_another(const struct stat *st)
 	return S_ISREG(st->st_mode) && (!ours || owner_trusted(st->st_uid));
 }
 
-const char *segment_hint(const struct shm_place *place, const char *instance, int err,
+const char *segment_hint(const struct shm_dir *dir, const char *instance, int err,
                          char text[SEGMENT_HINT])
 {
 	static const char *const kinds[] = {"lock", "image", "command", "force"};
@@ -42,14 +42,14 @@ const char *segment_hint(const struct shm_place *place, const char *instance, in
 	struct stat st;
 
 	if (err == -ENOSPC) {
-		snprintf(text, SEGMENT_HINT, ": %s is full", place->path);
+		snprintf(text, SEGMENT_HINT, ": %s is full", dir->path);
 		return text;
 	}
 	if (!segment_name_ok(instance))
 		return "";
 	for (size_t i = 0; i < sizeof(kinds) / sizeof(kinds[0]); i++) {
 		segment_file(instance, kinds[i], name);
-		if (fstatat(place->fd, name, &st, AT_SYMLINK_NOFOLLOW) < 0 || !is_in_the_way(&st))
+		if (fstatat(dir->fd, name, &st, AT_SYMLINK_NOFOLLOW) < 0 || !is_in_the_way(&st))
 			continue;
 		owner_name(st.st_uid, user);
 		if (belongs_to_another(&st))
@@ -64,7 +64,7 @@ const char *segment_hint(const struct shm_place *place, const char *instance, in
 		else
 			snprintf(text, SEGMENT_HINT,
 			         ": a %s of user %s is in the way: as root, rm -r %s/%s",
-			         file_kind(&st), user, place->path, name);
+			         file_kind(&st), user, dir->path, name);
 		return text;
 	}
 	return "";

@@ -37,20 +37,20 @@ static int lock_bytes(int fd, short type, off_t start, off_t len)
 }
 
 /* Opening without O_CREAT first: the kernel refuses O_CREAT on files of others even to root. */
-static int open_lock(int place, const char *name)
+static int open_lock(int dir, const char *name)
 {
 	struct stat st;
-	int fd = openat(place, name, O_RDWR | O_NOFOLLOW | O_CLOEXEC);
+	int fd = openat(dir, name, O_RDWR | O_NOFOLLOW | O_CLOEXEC);
 
 	if (fd < 0 && errno == ENOENT) {
-		fd = openat(place, name, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
+		fd = openat(dir, name, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
 		if (fd < 0 && errno == EEXIST)
 			return -EAGAIN;
 	}
 	if (fd < 0) {
 		int err = -errno;
 
-		if (err == -EACCES && fstatat(place, name, &st, AT_SYMLINK_NOFOLLOW) == 0 &&
+		if (err == -EACCES && fstatat(dir, name, &st, AT_SYMLINK_NOFOLLOW) == 0 &&
 		    st.st_uid != geteuid())
 			return -EPERM;
 		/* a link, a directory, a socket */
@@ -63,11 +63,11 @@ static int open_lock(int place, const char *name)
 	return fd;
 }
 
-static bool is_still_named(int fd, int place, const char *name)
+static bool is_still_named(int fd, int dir, const char *name)
 {
 	struct stat a, b;
 
-	return fstat(fd, &a) == 0 && fstatat(place, name, &b, AT_SYMLINK_NOFOLLOW) == 0 &&
+	return fstat(fd, &a) == 0 && fstatat(dir, name, &b, AT_SYMLINK_NOFOLLOW) == 0 &&
 	       a.st_ino == b.st_ino && a.st_dev == b.st_dev;
 }
 
@@ -117,23 +117,23 @@ static bool is_corpse(pid_t pid)
 /*
  * Replace the file that a corpse has locked; byte 1 of fd, which is locked, keeps other owsds out.
  */
-static int replace_lock(int fd, int place, const char *name)
+static int replace_lock(int fd, int dir, const char *name)
 {
 	if (lock_bytes(fd, F_WRLCK, BYTE_PID, 1) < 0 || !is_corpse(read_pid(fd)))
 		return -EBUSY;
-	if (is_still_named(fd, place, name) && unlinkat(place, name, 0) < 0)
+	if (is_still_named(fd, dir, name) && unlinkat(dir, name, 0) < 0)
 		return -errno;
 	return 0;
 }
 
-bool segment_lock_held(const struct shm_place *place, int lock, const char *instance)
+bool segment_lock_held(const struct shm_dir *dir, int lock, const char *instance)
 {
 	char name[SEGMENT_FILE];
 
-	return segment_leads_to(place->fd, segment_file(instance, "lock", name), lock);
+	return segment_leads_to(dir->fd, segment_file(instance, "lock", name), lock);
 }
 
-int segment_lock(const struct shm_place *place, const char *instance, pid_t *pid, bool *stolen)
+int segment_lock(const struct shm_dir *dir, const char *instance, pid_t *pid, bool *stolen)
 {
 	char name[SEGMENT_FILE];
 
@@ -143,25 +143,25 @@ int segment_lock(const struct shm_place *place, const char *instance, pid_t *pid
 		return -EINVAL;
 	segment_file(instance, "lock", name);
 	for (int i = 0; i < LOCK_TRIES; i++) {
-		int err, fd = open_lock(place->fd, name);
+		int err, fd = open_lock(dir->fd, name);
 
 		if (fd == -EAGAIN)
 			continue;
 		if (fd < 0)
 			return fd;
 		err = lock_bytes(fd, F_WRLCK, BYTE_INSTANCE, 2);
-		if (err == 0 && is_still_named(fd, place->fd, name)) {
+		if (err == 0 && is_still_named(fd, dir->fd, name)) {
 			err = write_pid(fd);
 			lock_bytes(fd, F_UNLCK, BYTE_PID, 1);
 			if (err == 0)
 				return fd;
-			unlinkat(place->fd, name,
+			unlinkat(dir->fd, name,
 			         0); /* no owsd holds it, and a waiter checks that it exists */
 		} else if (err == -EAGAIN || err == -EACCES) {
 			*pid = read_pid(fd);
 			err = -EBUSY;
 			if (*pid > 0 && is_corpse(*pid)) {
-				err = replace_lock(fd, place->fd, name);
+				err = replace_lock(fd, dir->fd, name);
 				*stolen = err == 0;
 			}
 		}
@@ -172,7 +172,7 @@ int segment_lock(const struct shm_place *place, const char *instance, pid_t *pid
 	return -EBUSY;
 }
 
-int segment_lock_look(const struct shm_place *place, const char *instance, pid_t *pid)
+int segment_lock_look(const struct shm_dir *dir, const char *instance, pid_t *pid)
 {
 	char name[SEGMENT_FILE];
 	struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET, .l_len = 1};
@@ -182,7 +182,7 @@ int segment_lock_look(const struct shm_place *place, const char *instance, pid_t
 	*pid = 0;
 	if (!segment_name_ok(instance))
 		return -EINVAL;
-	fd = openat(place->fd, segment_file(instance, "lock", name),
+	fd = openat(dir->fd, segment_file(instance, "lock", name),
 	            O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
 	if (fd < 0)
 		return errno == ELOOP || errno == ENXIO ? -EPERM : -errno;
@@ -198,7 +198,7 @@ int segment_lock_look(const struct shm_place *place, const char *instance, pid_t
 	return held;
 }
 
-int segment_lock_any(const struct shm_place *place, const char *instance, pid_t *pid)
+int segment_lock_any(const struct shm_dir *dir, const char *instance, pid_t *pid)
 {
 	char name[SEGMENT_FILE];
 	struct stat st;
@@ -208,7 +208,7 @@ int segment_lock_any(const struct shm_place *place, const char *instance, pid_t 
 	if (!segment_name_ok(instance))
 		return -EINVAL;
 	segment_file(instance, "lock", name);
-	fd = openat(place->fd, name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+	fd = openat(dir->fd, name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
 	if (fd < 0)
 		return errno == ELOOP || errno == EISDIR || errno == ENXIO ? -EPERM : -errno;
 	if (fstat(fd, &st) < 0 || !S_ISREG(st.st_mode)) {
@@ -220,7 +220,7 @@ int segment_lock_any(const struct shm_place *place, const char *instance, pid_t 
 		*pid = read_pid(fd);
 		/* a corpse creates no files any more */
 		err = *pid > 0 && is_corpse(*pid) ? 0 : -EBUSY;
-	} else if (!err && !is_still_named(fd, place->fd, name)) {
+	} else if (!err && !is_still_named(fd, dir->fd, name)) {
 		err = -EBUSY; /* another process replaces or removes the file */
 	}
 	if (err) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The files that instances have in a place: found by their names, and removed under the lock. */
+/* The files that instances have in their directory, found by name and removed under the lock. */
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -44,9 +44,9 @@ static void sort_instances(struct remains *remains)
 	remains->count = kept + 1;
 }
 
-int remains_list(const struct shm_place *place, struct remains *remains)
+int remains_list(const struct shm_dir *dir, struct remains *remains)
 {
-	int fd = openat(place->fd, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+	int fd = openat(dir->fd, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
 	DIR *folder = fd < 0 ? NULL : fdopendir(fd);
 	const struct dirent *entry;
 	int err = 0;
@@ -90,25 +90,25 @@ static const char *const others[] = {
 };
 #define OTHERS (sizeof(others) / sizeof(others[0]))
 
-static bool has_other(const struct shm_place *place, const char *instance)
+static bool has_other(const struct shm_dir *dir, const char *instance)
 {
 	char name[SEGMENT_FILE];
 	bool has = false;
 
 	for (unsigned i = 0; i < OTHERS && !has; i++)
-		has = faccessat(place->fd, segment_file(instance, others[i], name), F_OK,
+		has = faccessat(dir->fd, segment_file(instance, others[i], name), F_OK,
 		                AT_SYMLINK_NOFOLLOW) == 0;
 	return has;
 }
 
-static int remove_file(const struct shm_place *place, const char *instance, const char *what,
+static int remove_file(const struct shm_dir *dir, const char *instance, const char *what,
                        unsigned *files)
 {
 	char name[SEGMENT_FILE];
 
 	segment_file(instance, what, name);
-	if (unlinkat(place->fd, name, 0) == 0 ||
-	    (errno == EISDIR && unlinkat(place->fd, name, AT_REMOVEDIR) == 0))
+	if (unlinkat(dir->fd, name, 0) == 0 ||
+	    (errno == EISDIR && unlinkat(dir->fd, name, AT_REMOVEDIR) == 0))
 		++*files;
 	else if (errno != ENOENT)
 		return -errno;
@@ -116,25 +116,25 @@ static int remove_file(const struct shm_place *place, const char *instance, cons
 }
 
 /* The lock is the last: as long as it exists, no owsd creates the files that are being removed. */
-static int remove_all(const struct shm_place *place, const char *instance, bool lock_is_new,
+static int remove_all(const struct shm_dir *dir, const char *instance, bool lock_is_new,
                       unsigned *files)
 {
 	unsigned locks = 0;
 	int err = 0;
 
 	for (unsigned i = 0; i < OTHERS && !err; i++)
-		err = remove_file(place, instance, others[i], files);
+		err = remove_file(dir, instance, others[i], files);
 	if (lock_is_new)
-		remove_file(place, instance, "lock", &locks);
+		remove_file(dir, instance, "lock", &locks);
 	else if (!err)
-		err = remove_file(place, instance, "lock", files);
+		err = remove_file(dir, instance, "lock", files);
 	return err;
 }
 
-int remains_remove(const struct shm_place *place, const char *instance, pid_t *pid, unsigned *files)
+int remains_remove(const struct shm_dir *dir, const char *instance, pid_t *pid, unsigned *files)
 {
 	bool stolen;
-	int lock = segment_lock_any(place, instance, pid), err;
+	int lock = segment_lock_any(dir, instance, pid), err;
 	bool has_none = lock == -ENOENT;
 
 	*files = 0;
@@ -145,12 +145,12 @@ int remains_remove(const struct shm_place *place, const char *instance, pid_t *p
 	if (lock < 0 && !has_none && lock != -EPERM)
 		return lock;
 	if (has_none) {
-		lock = has_other(place, instance) ? segment_lock(place, instance, pid, &stolen)
-		                                  : -ENOENT;
+		lock = has_other(dir, instance) ? segment_lock(dir, instance, pid, &stolen)
+		                                : -ENOENT;
 		if (lock < 0)
 			return lock;
 	}
-	err = remove_all(place, instance, has_none, files);
+	err = remove_all(dir, instance, has_none, files);
 	if (lock >= 0)
 		close(lock);
 	return err;

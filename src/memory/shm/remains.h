@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The files that owsds have left in a place: lists the instances, removes one that has ended. */
+/* Files that owsds have left in a directory: lists the instances, removes one that has ended. */
 #pragma once
 
 #include "src/memory/shm/segment.h"
@@ -10,7 +10,7 @@ struct remains {
 };
 
 /* List all instances that have a file there. 0, -ENOMEM, or the error of reading the directory. */
-int remains_list(const struct shm_place *place, struct remains *remains);
+int remains_list(const struct shm_dir *dir, struct remains *remains);
 void remains_free(struct remains *remains);
 
 /*
@@ -19,5 +19,4 @@ void remains_free(struct remains *remains);
  * -ENOTEMPTY: one of the names is a directory with files. Afterwards the instance is as if it had
  * never run. Judges by the lock alone: the caller has to check that no owsd runs without it.
  */
-int remains_remove(const struct shm_place *place, const char *instance, pid_t *pid,
-                   unsigned *files);
+int remains_remove(const struct shm_dir *dir, const char *instance, pid_t *pid, unsigned *files);

@@ -96,8 +96,8 @@ static int open_temporary(const char *instance, struct segment *segment)
 
 	snprintf(what, sizeof(what), "%s.new", roles[segment->kind].name);
 	segment_file(instance, what, segment->temporary);
-	unlinkat(segment->place, segment->temporary, 0);
-	segment->fd = openat(segment->place, segment->temporary,
+	unlinkat(segment->dir, segment->temporary, 0);
+	segment->fd = openat(segment->dir, segment->temporary,
 	                     O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
 	if (segment->fd >= 0)
 		return 0;
@@ -105,12 +105,12 @@ static int open_temporary(const char *instance, struct segment *segment)
 	return errno == EEXIST ? -EPERM : -errno;
 }
 
-int segment_create(const struct shm_place *place, const char *instance, enum segment_kind kind,
+int segment_create(const struct shm_dir *dir, const char *instance, enum segment_kind kind,
                    size_t size, struct segment *segment)
 {
 	int err;
 
-	*segment = (struct segment){.fd = -1, .place = place->fd, .kind = kind, .size = size};
+	*segment = (struct segment){.fd = -1, .dir = dir->fd, .kind = kind, .size = size};
 	if (!segment_name_ok(instance) || size < SEGMENT_MIN || size > SEGMENT_MAX)
 		return -EINVAL;
 	err = open_temporary(instance, segment);
@@ -134,7 +134,7 @@ int segment_show(const char *instance, struct segment *segment)
 	if (segment->temporary[0] == '\0')
 		return 0;
 	final_name(instance, segment->kind, name);
-	if (renameat(segment->place, segment->temporary, segment->place, name) < 0)
+	if (renameat(segment->dir, segment->temporary, segment->dir, name) < 0)
 		return errno == EACCES ? -EPERM : -errno;
 	segment->temporary[0] = '\0';
 	return 0;
@@ -145,22 +145,22 @@ bool segment_named(const char *instance, const struct segment *segment)
 	char name[SEGMENT_FILE];
 
 	return segment->temporary[0] != '\0' ||
-	       segment_leads_to(segment->place, final_name(instance, segment->kind, name),
+	       segment_leads_to(segment->dir, final_name(instance, segment->kind, name),
 	                        segment->fd);
 }
 
-int segment_open_old(const struct shm_place *place, const char *instance, enum segment_kind kind,
+int segment_open_old(const struct shm_dir *dir, const char *instance, enum segment_kind kind,
                      struct segment *segment)
 {
 	struct stat st;
 	char name[SEGMENT_FILE];
 	int err;
 
-	*segment = (struct segment){.fd = -1, .place = place->fd, .kind = kind};
+	*segment = (struct segment){.fd = -1, .dir = dir->fd, .kind = kind};
 	if (!segment_name_ok(instance))
 		return -EINVAL;
 	final_name(instance, kind, name);
-	segment->fd = openat(place->fd, name, O_RDWR | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
+	segment->fd = openat(dir->fd, name, O_RDWR | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
 	if (segment->fd < 0)
 		return errno == EACCES || errno == ELOOP ? -EPERM : -errno;
 	if (fstat(segment->fd, &st) < 0)
@@ -187,18 +187,18 @@ void segment_close(struct segment *segment)
 	if (segment->fd >= 0)
 		close(segment->fd);
 	if (segment->temporary[0] != '\0')
-		unlinkat(segment->place, segment->temporary, 0);
+		unlinkat(segment->dir, segment->temporary, 0);
 	segment->base = NULL;
 	segment->fd = -1;
 	segment->temporary[0] = '\0';
 }
 
-int segment_remove(const struct shm_place *place, const char *instance, enum segment_kind kind)
+int segment_remove(const struct shm_dir *dir, const char *instance, enum segment_kind kind)
 {
 	char name[SEGMENT_FILE];
 
 	if (!segment_name_ok(instance))
 		return -EINVAL;
 	final_name(instance, kind, name);
-	return unlinkat(place->fd, name, 0) < 0 ? -errno : 0;
+	return unlinkat(dir->fd, name, 0) < 0 ? -errno : 0;
 }

@@ -12,7 +12,7 @@
 #include <stdint.h>
 #include <sys/types.h>
 
-#include "src/memory/shm/place.h"
+#include "src/memory/shm/dir.h"
 
 /* NAME.image, and NAME.force, which only owsd itself may open. */
 enum segment_kind { SEGMENT_IMAGE, SEGMENT_FORCE };
@@ -36,18 +36,18 @@ struct segment {
 	char *base;
 	size_t size;
 	int fd;
-	int place;                    /* the descriptor of its place */
+	int dir;                      /* the descriptor of its directory */
 	char temporary[SEGMENT_FILE]; /* name until segment_show() */
 	enum segment_kind kind;
 };
 
 /*
  * Make a segment of size zeroed bytes under a temporary name, with all pages allocated (-ENOSPC now
- * instead of a SIGBUS later when the file system is full). The place stays open as long as the
+ * instead of a SIGBUS later when the file system is full). The directory stays open as long as the
  * segment. Mode 0640 group owsd where that group exists and the caller may give files to it;
  * else 0600.
  */
-int segment_create(const struct shm_place *place, const char *instance, enum segment_kind kind,
+int segment_create(const struct shm_dir *dir, const char *instance, enum segment_kind kind,
                    size_t size, struct segment *segment);
 /* Rename the segment to its final name, in one step; does nothing if it has that name already. */
 int segment_show(const char *instance, struct segment *segment);
@@ -57,8 +57,8 @@ int segment_show(const char *instance, struct segment *segment);
  */
 bool segment_named(const char *instance, const struct segment *segment);
 /* Map a segment that an earlier owsd left, writable. -ENOENT: none; -EPERM: another user's. */
-int segment_open_old(const struct shm_place *place, const char *instance, enum segment_kind kind,
+int segment_open_old(const struct shm_dir *dir, const char *instance, enum segment_kind kind,
                      struct segment *segment);
 void segment_close(struct segment *segment);
 /* Remove the name. */
-int segment_remove(const struct shm_place *place, const char *instance, enum segment_kind kind);
+int segment_remove(const struct shm_dir *dir, const char *instance, enum segment_kind kind);

@@ -21,7 +21,7 @@
 #include "src/ground/text/printable.h"
 #include "src/ground/text/refused.h"
 #include "src/memory/libows/open.h"
-#include "src/memory/shm/place.h"
+#include "src/memory/shm/dir.h"
 #include "src/memory/shm/segment.h"
 #include "src/tool/owsctl/ctl.h"
 #include "src/tool/owsctl/running.h"
@@ -211,19 +211,19 @@ bool ctl_count(const char *text, int64_t least, int64_t most, int64_t *count)
 	return end != text && !*end && !errno && *count >= least && *count <= most;
 }
 
-/* Print what is wrong with the places where instances are; CTL_DONE: nothing is. */
-static int check_places(int err)
+/* Print what is wrong with the directories where instances are; CTL_DONE: nothing is. */
+static int check_dirs(int err)
 {
-	char places[PLACES][PLACE_PATH], fault[PLACE_FAULT];
-	struct shm_place place = {.fd = -1};
-	int count = place_list(places);
+	char dirs[DIRS][DIR_PATH], fault[DIR_FAULT];
+	struct shm_dir dir = {.fd = -1};
+	int count = dir_list(dirs);
 
 	if (count < 0)
-		return ctl_fail("%s", place_fault(&place, count, fault));
+		return ctl_fail("%s", dir_fault(&dir, count, fault));
 	for (int i = 0; i < count; i++) {
-		if (place_open(places[i], &place) == err)
-			return ctl_fail("%s", place_fault(&place, err, fault));
-		place_close(&place);
+		if (dir_open(dirs[i], &dir) == err)
+			return ctl_fail("%s", dir_fault(&dir, err, fault));
+		dir_close(&dir);
 	}
 	return CTL_DONE;
 }
@@ -261,7 +261,7 @@ static int refuse_open(const struct ctl *ctl, enum ows_mode mode, int err)
 
 	if (mode == OWS_CONTROL && check_control(name, err))
 		return CTL_FAILED;
-	if (err != -ENOENT && check_places(err))
+	if (err != -ENOENT && check_dirs(err))
 		return CTL_FAILED;
 	switch (-err) {
 	case ENOENT:
@@ -313,13 +313,13 @@ bool ctl_alive(const struct ctl *ctl, struct ows *h, int64_t now_ns)
 		return true;
 	if (daemon.state == 3)
 		ctl_fail("owsd %s of %s was stopped %s ago; these are its last values",
-		         ctl->instance, open_place(h), when_span(daemon.beat_age_ns, span));
+		         ctl->instance, open_dir(h), when_span(daemon.beat_age_ns, span));
 	else if (!daemon.beat_age_ns)
 		ctl_fail("owsd %s of %s is not running: its heartbeat lies in the future",
-		         ctl->instance, open_place(h));
+		         ctl->instance, open_dir(h));
 	else
 		ctl_fail("owsd %s of %s is not running: last heartbeat %s ago", ctl->instance,
-		         open_place(h), when_span(daemon.beat_age_ns, span));
+		         open_dir(h), when_span(daemon.beat_age_ns, span));
 	return false;
 }
 

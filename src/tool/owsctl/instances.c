@@ -36,12 +36,12 @@ static void instances_add_row(struct table *table, const struct instance_info *i
 		snprintf(signals, sizeof(signals), "%d", info->signals);
 	if (info->since_ns)
 		when_span(now->boot - info->since_ns, span);
-	table_add(table, (const char *const[]){info->name, instance_state_text(info->state), pid,
-	                                       span, signals,
-	                                       info->targets[0] ? info->targets : "-", info->place,
-	                                       info->why         ? info->why
-	                                       : info->config[0] ? info->config
-	                                                         : "-"});
+	table_add(table,
+	          (const char *const[]){info->name, instance_state_text(info->state), pid, span,
+	                                signals, info->targets[0] ? info->targets : "-", info->dir,
+	                                info->why         ? info->why
+	                                : info->config[0] ? info->config
+	                                                  : "-"});
 }
 
 static void add_json(struct json *json, const struct instance_info *info, const struct when *now)
@@ -50,7 +50,7 @@ static void add_json(struct json *json, const struct instance_info *info, const 
 
 	json_object(json, NULL);
 	json_string(json, "instance", info->name);
-	json_string(json, "place", info->place);
+	json_string(json, "place", info->dir);
 	json_string(json, "state", instance_state_text(info->state));
 	json_known(json, "pid", info->pid ? info->pid : -1);
 	json_string(json, "since", info->since_ns ? when_iso(now, info->since_ns, text) : NULL);
@@ -61,43 +61,43 @@ static void add_json(struct json *json, const struct instance_info *info, const 
 	json_object_end(json);
 }
 
-/* The places that are there, each with its instances. */
+/* The directories that are there, each with its instances. */
 struct found {
-	struct shm_place place[PLACES];
-	struct remains remains[PLACES];
+	struct shm_dir dir[DIRS];
+	struct remains remains[DIRS];
 	unsigned count;
 };
 
-static void close_places(struct found *found)
+static void close_dirs(struct found *found)
 {
 	for (unsigned i = 0; i < found->count; i++) {
 		remains_free(&found->remains[i]);
-		place_close(&found->place[i]);
+		dir_close(&found->dir[i]);
 	}
 }
 
-/* CTL_DONE, or CTL_FAILED after printing why. One place that is refused hides no other. */
-static int open_places(struct found *found)
+/* CTL_DONE, or CTL_FAILED after printing why. One directory that is refused hides no other. */
+static int open_dirs(struct found *found)
 {
-	char paths[PLACES][PLACE_PATH], fault[PLACE_FAULT];
-	int count = place_list(paths), status = CTL_DONE;
+	char paths[DIRS][DIR_PATH], fault[DIR_FAULT];
+	int count = dir_list(paths), status = CTL_DONE;
 
 	*found = (struct found){0};
 	if (count < 0)
-		return ctl_fail("%s", place_fault(&found->place[0], count, fault));
+		return ctl_fail("%s", dir_fault(&found->dir[0], count, fault));
 	for (int i = 0; i < count; i++) {
-		struct shm_place *place = &found->place[found->count];
-		int err = place_open(paths[i], place);
+		struct shm_dir *dir = &found->dir[found->count];
+		int err = dir_open(paths[i], dir);
 
 		if (err == -ENOENT)
 			continue;
 		if (err) {
-			status = ctl_fail("%s", place_fault(place, err, fault));
+			status = ctl_fail("%s", dir_fault(dir, err, fault));
 			continue;
 		}
-		err = remains_list(place, &found->remains[found->count++]);
+		err = remains_list(dir, &found->remains[found->count++]);
 		if (err)
-			status = ctl_fail("%s: %s", place->path, strerror(-err));
+			status = ctl_fail("%s: %s", dir->path, strerror(-err));
 	}
 	return status;
 }
@@ -114,7 +114,7 @@ static void instances_show(const struct found *found, bool as_json)
 	json_list(&json, stdout, as_json);
 	for (unsigned k = 0; k < found->count; k++)
 		for (unsigned i = 0; i < found->remains[k].count; i++) {
-			instance_look(&found->place[k], found->remains[k].name[i], now.boot, &info);
+			instance_look(&found->dir[k], found->remains[k].name[i], now.boot, &info);
 			if (as_json)
 				add_json(&json, &info, &now);
 			else
@@ -134,15 +134,15 @@ int verb_instances(struct ctl *ctl, int argc, char **argv)
 	ctl_option(ctl, argc, argv, "");
 	if (optind < argc)
 		return ctl_usage(ctl, "instances takes no operands");
-	status = open_places(&found);
+	status = open_dirs(&found);
 	if (status == CTL_DONE && !found.remains[0].count && !found.remains[1].count)
 		ctl_fail("no owsd has run here");
 	instances_show(&found, ctl->json);
-	close_places(&found);
+	close_dirs(&found);
 	return status;
 }
 
-/* Remove the instance from the first place that has files of it. */
+/* Remove the instance from the first directory that has files of it. */
 static int remove_one(const struct found *found, const char *name, unsigned *files, int *pid)
 {
 	int err = -ENOENT;
@@ -152,9 +152,9 @@ static int remove_one(const struct found *found, const char *name, unsigned *fil
 	for (unsigned i = 0; i < found->count && err == -ENOENT; i++) {
 		pid_t holder = 0;
 
-		if (instance_runs(&found->place[i], name, pid))
+		if (instance_runs(&found->dir[i], name, pid))
 			return -EBUSY;
-		err = remains_remove(&found->place[i], name, &holder, files);
+		err = remains_remove(&found->dir[i], name, &holder, files);
 		if (holder)
 			*pid = (int)holder;
 	}
@@ -195,7 +195,7 @@ int verb_remove(struct ctl *ctl, int argc, char **argv)
 	ctl_option(ctl, argc, argv, "");
 	if (optind == argc)
 		return ctl_usage(ctl, "remove which instance? owsctl instances lists them");
-	status = open_places(&found);
+	status = open_dirs(&found);
 	if (status && !found.count)
 		return status;
 	json_list(&json, stdout, ctl->json);
@@ -217,6 +217,6 @@ int verb_remove(struct ctl *ctl, int argc, char **argv)
 		}
 	}
 	json_list_end(&json);
-	close_places(&found);
+	close_dirs(&found);
 	return status;
 }

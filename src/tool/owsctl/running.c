@@ -69,17 +69,17 @@ static void find_targets(struct ows *h, struct instance_info *info)
 		                         i ? ", " : "", target.name);
 }
 
-void instance_look(const struct shm_place *place, const char *name, int64_t now_ns,
+void instance_look(const struct shm_dir *dir, const char *name, int64_t now_ns,
                    struct instance_info *info)
 {
 	struct ows_daemon daemon = {0};
 	struct ows *h;
 	pid_t holder = 0;
-	int err = open_in(place->path, name, OWS_READ, "owsctl", &h);
-	int lock = segment_lock_look(place, name, &holder);
+	int err = open_in(dir->path, name, OWS_READ, "owsctl", &h);
+	int lock = segment_lock_look(dir, name, &holder);
 
 	*info = (struct instance_info){
-		.name = name, .place = place->path, .pid = (int)holder, .signals = -1};
+		.name = name, .dir = dir->path, .pid = (int)holder, .signals = -1};
 	if (err && err != -ENOENT) {
 		info->state = INSTANCE_HIDDEN;
 		info->why = err == -EACCES  ? "no right to see it: that is for group owsd"
@@ -112,11 +112,11 @@ void instance_look(const struct shm_place *place, const char *name, int64_t now_
 		info->pid = 0;
 }
 
-bool instance_runs(const struct shm_place *place, const char *name, int *pid)
+bool instance_runs(const struct shm_dir *dir, const char *name, int *pid)
 {
 	struct instance_info info;
 
-	instance_look(place, name, ows_now(), &info);
+	instance_look(dir, name, ows_now(), &info);
 	*pid = info.pid;
 	return instance_is_up(info.state);
 }
@@ -139,16 +139,16 @@ static void default_config(struct instance_info *info)
 
 void instance_config(const char *name, char config[INSTANCE_FIELD])
 {
-	char paths[PLACES][PLACE_PATH];
-	int places = place_list(paths);
+	char paths[DIRS][DIR_PATH];
+	int dirs = dir_list(paths);
 	struct instance_info info = {.name = name};
-	struct shm_place place;
+	struct shm_dir dir;
 
-	for (int i = 0; i < places && !info.config[0]; i++) {
-		if (place_open(paths[i], &place) != 0)
+	for (int i = 0; i < dirs && !info.config[0]; i++) {
+		if (dir_open(paths[i], &dir) != 0)
 			continue;
-		instance_look(&place, name, ows_now(), &info);
-		place_close(&place);
+		instance_look(&dir, name, ows_now(), &info);
+		dir_close(&dir);
 	}
 	default_config(&info);
 	snprintf(config, INSTANCE_FIELD, "%s", info.config);
@@ -157,23 +157,23 @@ void instance_config(const char *name, char config[INSTANCE_FIELD])
 /* file NULL: whatever configuration they have. */
 static unsigned running(const char *file, char *name, char *names, size_t size)
 {
-	char paths[PLACES][PLACE_PATH];
-	int places = place_list(paths);
+	char paths[DIRS][DIR_PATH];
+	int dirs = dir_list(paths);
 	unsigned count = 0;
 	size_t used = 0;
 
-	for (int i = 0; i < places; i++) {
-		struct shm_place place;
+	for (int i = 0; i < dirs; i++) {
+		struct shm_dir dir;
 		struct remains remains = {0};
 
-		if (place_open(paths[i], &place) != 0)
+		if (dir_open(paths[i], &dir) != 0)
 			continue;
-		if (remains_list(&place, &remains) != 0)
+		if (remains_list(&dir, &remains) != 0)
 			remains.count = 0;
 		for (unsigned k = 0; k < remains.count; k++) {
 			struct instance_info info;
 
-			instance_look(&place, remains.name[k], ows_now(), &info);
+			instance_look(&dir, remains.name[k], ows_now(), &info);
 			default_config(&info);
 			if (!instance_is_up(info.state) ||
 			    (file && !is_same_file(info.config, file)))
@@ -185,7 +185,7 @@ static unsigned running(const char *file, char *name, char *names, size_t size)
 			count++;
 		}
 		remains_free(&remains);
-		place_close(&place);
+		dir_close(&dir);
 	}
 	return count;
 }

@@ -4,13 +4,13 @@
 
 #include <stddef.h>
 
-#include "src/memory/shm/place.h"
+#include "src/memory/shm/dir.h"
 #include "src/tool/owsctl/instance_state.h"
 
 #define INSTANCE_FIELD 400
 
 struct instance_info {
-	const char *name, *place;
+	const char *name, *dir;
 	enum instance_state state;
 	int pid;          /* 0: not known */
 	int64_t since_ns; /* when this state began; 0: not known */
@@ -19,14 +19,14 @@ struct instance_info {
 	const char *why; /* hidden: the reason; up: the fault of its lock; else NULL */
 };
 
-/* name and place have to outlive info. */
-void instance_look(const struct shm_place *place, const char *name, int64_t now_ns,
+/* name and dir have to outlive info. */
+void instance_look(const struct shm_dir *dir, const char *name, int64_t now_ns,
                    struct instance_info *info);
 /*
  * Does it run? Looks at the heart and the process too: the lock may have been removed or replaced.
  * *pid is 0 where it is not known.
  */
-bool instance_runs(const struct shm_place *place, const char *name, int *pid);
+bool instance_runs(const struct shm_dir *dir, const char *name, int *pid);
 /*
  * How many instances run here; one of them in `name` (SEGMENT_NAME_MAX + 1 bytes), and with `names`
  * all, with commas between.

@@ -49,7 +49,7 @@ static const char *own_path(const struct served *served)
 /* NAME.sock of an owsd that serves nothing else. False: this user may not use it. */
 static bool find_own(const struct ctl *ctl, const struct ows *h, struct served *served)
 {
-	int n = snprintf(served->target, sizeof(served->target), SCHEME "%s/%s.sock", open_place(h),
+	int n = snprintf(served->target, sizeof(served->target), SCHEME "%s/%s.sock", open_dir(h),
 	                 ctl->instance);
 
 	if (n >= 0 && (size_t)n < sizeof(served->target) &&

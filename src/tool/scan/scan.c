@@ -186,7 +186,7 @@ static bool room_for_device(struct scan *scan)
 }
 
 /* The devices of a listing. */
-static int take_list(struct scan *scan, char *text)
+static int parse_list(struct scan *scan, char *text)
 {
 	struct scan_device device;
 	char *rest;
@@ -232,7 +232,7 @@ static int find_behind(struct target *target, struct scan *scan, char *text)
 		for (unsigned n = 0; n < 2 && !err; n++) {
 			snprintf(path, sizeof(path), "%s/%s", scan->device[i].path, branches[n]);
 			if (scan_list(target, path, true, text) == 0)
-				err = take_list(scan, text);
+				err = parse_list(scan, text);
 		}
 	}
 	return err;
@@ -255,7 +255,7 @@ static int find_all(struct target *target, struct scan *scan, char *text)
 	int err = list_all(target, scan, text);
 
 	if (!err)
-		err = take_list(scan, text);
+		err = parse_list(scan, text);
 	if (!err)
 		err = find_behind(target, scan, text);
 	if (err || !scan->count)

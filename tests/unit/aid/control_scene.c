@@ -49,12 +49,12 @@ static void ring(void *ctx)
 static void take_reload(void)
 {
 	struct control_message message;
-	unsigned place = 0;
+	unsigned seat = 0;
 
 	if (!__atomic_load_n(&reloads, __ATOMIC_ACQUIRE))
 		return;
-	while (control_prepared(control_room, &place, &message))
-		messages[message.place] = message;
+	while (control_prepared(control_room, &seat, &message))
+		messages[message.seat] = message;
 	__atomic_store_n(&reloads, false, __ATOMIC_RELEASE);
 }
 
@@ -75,8 +75,8 @@ static void *run(void *arg)
 		sem_wait(&bell);
 		while (control_next(control_room, &message)) {
 			if (message.joins)
-				messages[message.place] = message;
-			__atomic_store_n(&serials[message.place],
+				messages[message.seat] = message;
+			__atomic_store_n(&serials[message.seat],
 			                 message.joins ? message.controller.who.serial : 0,
 			                 __ATOMIC_RELEASE);
 			__atomic_fetch_add(message.joins ? &joined : &left, 1, __ATOMIC_SEQ_CST);

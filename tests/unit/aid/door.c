@@ -202,11 +202,10 @@ void door_open(struct door *door, const char *instance, uint32_t generation, uin
 
 	*door = (struct door){.lock = PTHREAD_MUTEX_INITIALIZER};
 	make_layout(door, generation, start_id, types, count, text_cap);
-	TEST_ASSERT_EQUAL(0, place_make(&door->place));
+	TEST_ASSERT_EQUAL(0, dir_make(&door->dir));
 	snprintf(door->file, sizeof(door->file), "%s.control", instance);
-	unlinkat(door->place.fd, door->file, 0);
-	snprintf(to.sun_path, sizeof(to.sun_path), "/proc/self/fd/%d/%s", door->place.fd,
-	         door->file);
+	unlinkat(door->dir.fd, door->file, 0);
+	snprintf(to.sun_path, sizeof(to.sun_path), "/proc/self/fd/%d/%s", door->dir.fd, door->file);
 	door->listener = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
 	TEST_ASSERT_EQUAL(0, bind(door->listener, (struct sockaddr *)&to, sizeof(to)));
 	TEST_ASSERT_EQUAL(0, listen(door->listener, DOOR_CONTROLLERS));
@@ -238,8 +237,8 @@ void door_close(struct door *door)
 		close(controller->bell);
 		close(controller->news);
 	}
-	unlinkat(door->place.fd, door->file, 0);
-	place_close(&door->place);
+	unlinkat(door->dir.fd, door->file, 0);
+	dir_close(&door->dir);
 	controller_layout_free(&door->layout);
 	TEST_ASSERT_TRUE_MESSAGE(woken, strerror(err));
 	TEST_ASSERT_EQUAL_INT_MESSAGE(0, err, strerror(err));

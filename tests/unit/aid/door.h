@@ -8,7 +8,7 @@
 #include <pthread.h>
 
 #include "src/memory/shm/controller.h"
-#include "src/memory/shm/place.h"
+#include "src/memory/shm/dir.h"
 
 #define DOOR_CONTROLLERS 40
 
@@ -41,7 +41,7 @@ struct door_controller {
 
 /* The thread and the test share it: lie, controllers and count are looked at with the lock held. */
 struct door {
-	struct shm_place place;
+	struct shm_dir dir;
 	char file[64];
 	int listener, wake;
 	bool stop;
@@ -53,7 +53,7 @@ struct door {
 	unsigned count; /* of all that were ever welcomed */
 };
 
-/* Listen as NAME.control in this user's place, with memories for signals of these types. */
+/* Listen as NAME.control in this user's directory, with memories for signals of these types. */
 void door_open(struct door *door, const char *instance, uint32_t generation, uint32_t start_id,
                const uint8_t *types, uint32_t count, uint16_t text_cap);
 /* Hang up on all, and listen no more: as an owsd that is killed. */

@@ -11,7 +11,7 @@
 #include "src/memory/shm/segment.h"
 #include "tests/unit/aid/folder.h"
 
-static struct shm_place place = {.fd = -1};
+static struct shm_dir dir = {.fd = -1};
 static pid_t maker;
 
 static int remove_one(const char *path, const struct stat *st, int kind, struct FTW *at)
@@ -26,29 +26,29 @@ static int remove_one(const char *path, const struct stat *st, int kind, struct 
 static void remove_folder(void)
 {
 	if (getpid() == maker)
-		nftw(place.path, remove_one, 4, FTW_DEPTH | FTW_PHYS);
+		nftw(dir.path, remove_one, 4, FTW_DEPTH | FTW_PHYS);
 }
 
-const struct shm_place *folder_place(void)
+const struct shm_dir *folder_dir(void)
 {
-	char path[PLACE_PATH];
+	char path[DIR_PATH];
 	const char *tmp = getenv("TMPDIR");
 
-	if (place.fd >= 0)
-		return &place;
+	if (dir.fd >= 0)
+		return &dir;
 	snprintf(path, sizeof(path), "%s/owsd-unit-XXXXXX", tmp ? tmp : "/tmp");
 	TEST_ASSERT_NOT_NULL(mkdtemp(path));
 	TEST_ASSERT_EQUAL(0, setenv("OWS_DIR", path, 1));
-	TEST_ASSERT_EQUAL(0, place_make(&place));
+	TEST_ASSERT_EQUAL(0, dir_make(&dir));
 	maker = getpid();
 	atexit(remove_folder);
-	return &place;
+	return &dir;
 }
 
 const char *folder_file(const char *instance, const char *what)
 {
-	static char path[PLACE_PATH + SEGMENT_FILE + 8];
+	static char path[DIR_PATH + SEGMENT_FILE + 8];
 
-	snprintf(path, sizeof(path), "%s/%s.%s", folder_place()->path, instance, what);
+	snprintf(path, sizeof(path), "%s/%s.%s", folder_dir()->path, instance, what);
 	return path;
 }

@@ -41,10 +41,10 @@ void start_outputs(void)
 	scene_run(&s, SCENE_S);
 }
 
-void set_all(unsigned place, int64_t value)
+void set_all(unsigned seat, int64_t value)
 {
 	for (unsigned i = 1; i <= OUTPUTS; i++)
-		scene_set_by(&s, place, i, value);
+		scene_set_by(&s, seat, i, value);
 	scene_run(&s, 200 * SCENE_MS);
 }
 
@@ -93,7 +93,7 @@ const struct row lost = {NOTHING, INIT, SAFE, SAFE, NEXT, NEXT, SAFE, SAFE};
 /* The controller is lost while owsd runs. */
 const struct row lost_running = {NOTHING, NOTHING, SAFE, SAFE, NOTHING, NOTHING, SAFE, SAFE};
 
-/* A controller at place 1 with token 2 has set all. */
+/* A controller at seat 1 with token 2 has set all. */
 void controller_set_all(bool beats)
 {
 	start_outputs();

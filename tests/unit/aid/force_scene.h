@@ -27,12 +27,12 @@ struct row {
 
 /* The outputs as the configuration has them, with a target that is up. */
 void start_outputs(void);
-void set_all(unsigned place, int64_t value);
+void set_all(unsigned seat, int64_t value);
 /* These writes, each once at most, since the trace was cleared. */
 void expect_outputs(struct row row);
 extern const struct row nothing, command, ended, lost, lost_running;
 
-/* A controller at place 1 with token 2 has set all; it promises a beat or not. */
+/* A controller at seat 1 with token 2 has set all; it promises a beat or not. */
 void controller_set_all(bool beats);
 /* owsd is killed, or ends in order: for the next one that is the same. */
 void restart_owsd(void);

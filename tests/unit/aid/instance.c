@@ -65,7 +65,7 @@ void instance_make(struct instance *in, const char *name, uint32_t generation, i
 		if (signals[i].device)
 			devices[plan.device_count++] = i;
 	}
-	TEST_ASSERT_EQUAL(0, segment_create(folder_place(), in->name, SEGMENT_IMAGE,
+	TEST_ASSERT_EQUAL(0, segment_create(folder_dir(), in->name, SEGMENT_IMAGE,
 	                                    image_size(&plan), &in->image_memory));
 	image_build(&plan, in->image_memory.base, &in->image);
 	free(image);
@@ -158,7 +158,7 @@ void instance_leave(struct instance *in)
 void instance_end(struct instance *in)
 {
 	instance_leave(in);
-	segment_remove(folder_place(), in->name, SEGMENT_IMAGE);
+	segment_remove(folder_dir(), in->name, SEGMENT_IMAGE);
 }
 
 struct controller_memory *instance_controller(struct instance *in, unsigned i)

@@ -31,7 +31,7 @@ void past_make(struct past *past)
 	*past = (struct past){.options = {.boot = 1, .flush_ns = 10 * PAST_S, .say = hear}};
 	past->options.ctx = past;
 	past->options.directory = past->directory;
-	snprintf(past->directory, sizeof(past->directory), "%s/past%d", folder_place()->path,
+	snprintf(past->directory, sizeof(past->directory), "%s/past%d", folder_dir()->path,
 	         folders++);
 }
 

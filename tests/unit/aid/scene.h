@@ -115,12 +115,12 @@ struct scene {
 	size_t force_size;
 	struct force *force;                          /* of the engine, on the heap */
 	struct controller_layout *layout;             /* of the controllers, on the heap */
-	struct giving controllers[SCENE_CONTROLLERS]; /* by their places */
+	struct giving controllers[SCENE_CONTROLLERS]; /* by their seats */
 	uint32_t tokens[SCENE_CONTROLLERS];
 	uint32_t serials;
 	uint32_t rights[SCENE_CONTROLLERS][SCENE_ITEMS / 32 + 1];
 	bool limited; /* scene_allow() was called: rights count */
-	bool dropped; /* at a reload there is no room for the memory of place 1 */
+	bool dropped; /* at a reload there is no room for the memory of seat 1 */
 	uint32_t uid; /* of controllers that join; 1000 unless set */
 	struct scene_disk disk;
 	int64_t now_ns;
@@ -194,7 +194,7 @@ void scene_clear_trace(struct scene *scene);
 void scene_end(struct scene *scene);
 
 /*
- * The controller at place 0 is there from scene_start() on; it promises no beat. record: 1 is the
+ * The controller at seat 0 is there from scene_start() on; it promises no beat. record: 1 is the
  * first item.
  */
 void scene_set(struct scene *scene, unsigned record, int64_t value);
@@ -207,18 +207,18 @@ void scene_enable_writes(struct scene *scene, unsigned record, bool on);
 /* The stamp of the last command that was applied, as this controller gets to know it. */
 uint32_t scene_applied(struct scene *scene, unsigned record);
 
-/* A controller takes a place; with the token of one that was there before it comes back as that
+/* A controller takes a seat; with the token of one that was there before it comes back as that
  * one. */
-void scene_join(struct scene *scene, unsigned place, uint32_t token);
-/* Before scene_join(): the controller of this place may command this record, and those named so
+void scene_join(struct scene *scene, unsigned seat, uint32_t token);
+/* Before scene_join(): the controller of this seat may command this record, and those named so
  * far. */
-void scene_allow(struct scene *scene, unsigned place, unsigned record);
-/* The controller of the place hangs up, or is dead: with its last command taken. */
-void scene_leave(struct scene *scene, unsigned place);
+void scene_allow(struct scene *scene, unsigned seat, unsigned record);
+/* The controller of the seat hangs up, or is dead: with its last command taken. */
+void scene_leave(struct scene *scene, unsigned seat);
 /* The same with a goodbye. */
-void scene_goodbye(struct scene *scene, unsigned place);
-void scene_set_by(struct scene *scene, unsigned place, unsigned record, int64_t value);
-/* Let time pass in which the controllers of the first n places beat. */
+void scene_goodbye(struct scene *scene, unsigned seat);
+void scene_set_by(struct scene *scene, unsigned seat, unsigned record, int64_t value);
+/* Let time pass in which the controllers of the first n seats beat. */
 void scene_beat(struct scene *scene, unsigned n, uint32_t period_ms, int64_t ns);
 
 struct ows_origin_entry scene_origin(struct scene *scene, unsigned record);

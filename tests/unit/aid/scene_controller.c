@@ -8,45 +8,45 @@
 
 #include "tests/unit/aid/scene_private.h"
 
-void scene_allow(struct scene *s, unsigned place, unsigned record)
+void scene_allow(struct scene *s, unsigned seat, unsigned record)
 {
 	s->limited = true;
-	s->rights[place][record / 32] |= 1u << record % 32;
+	s->rights[seat][record / 32] |= 1u << record % 32;
 }
 
-void scene_join_again(struct scene *s, unsigned place)
+void scene_join_again(struct scene *s, unsigned seat)
 {
 	struct joining_controller controller = {
-		.who = {.serial = s->tokens[place] ? s->tokens[place] : 1000 + place,
+		.who = {.serial = s->tokens[seat] ? s->tokens[seat] : 1000 + seat,
 	                .uid = s->uid,
-	                .pid = 100 + (int32_t)place},
-		.rights = s->limited ? s->rights[place] : NULL,
+	                .pid = 100 + (int32_t)seat},
+		.rights = s->limited ? s->rights[seat] : NULL,
 	};
 
-	snprintf(controller.who.name, sizeof(controller.who.name), "controller%u", place);
-	memcpy(controller.token, &s->tokens[place], sizeof(s->tokens[place]));
-	giving_make(&s->controllers[place], s->layout, controller.who.serial);
-	controller.memory = s->controllers[place].memory;
-	engine_controller_join(s->engine, place, &controller, s->now_ns);
+	snprintf(controller.who.name, sizeof(controller.who.name), "controller%u", seat);
+	memcpy(controller.token, &s->tokens[seat], sizeof(s->tokens[seat]));
+	giving_make(&s->controllers[seat], s->layout, controller.who.serial);
+	controller.memory = s->controllers[seat].memory;
+	engine_controller_join(s->engine, seat, &controller, s->now_ns);
 }
 
-void scene_join(struct scene *s, unsigned place, uint32_t token)
+void scene_join(struct scene *s, unsigned seat, uint32_t token)
 {
-	TEST_ASSERT_NULL(s->controllers[place].memory.base);
-	s->tokens[place] = token;
-	scene_join_again(s, place);
+	TEST_ASSERT_NULL(s->controllers[seat].memory.base);
+	s->tokens[seat] = token;
+	scene_join_again(s, seat);
 }
 
-void scene_leave(struct scene *s, unsigned place)
+void scene_leave(struct scene *s, unsigned seat)
 {
-	engine_controller_left(s->engine, place, s->now_ns);
-	giving_free(&s->controllers[place]);
+	engine_controller_left(s->engine, seat, s->now_ns);
+	giving_free(&s->controllers[seat]);
 }
 
-void scene_goodbye(struct scene *s, unsigned place)
+void scene_goodbye(struct scene *s, unsigned seat)
 {
-	giving_header(&s->controllers[place])->goodbye = 1;
-	scene_leave(s, place);
+	giving_header(&s->controllers[seat])->goodbye = 1;
+	scene_leave(s, seat);
 }
 
 struct ows_command_slot *scene_slot(struct scene *s, unsigned record)
@@ -64,9 +64,9 @@ void scene_set(struct scene *s, unsigned record, int64_t value)
 	giving_set(&s->controllers[0], record, value);
 }
 
-void scene_set_by(struct scene *s, unsigned place, unsigned record, int64_t value)
+void scene_set_by(struct scene *s, unsigned seat, unsigned record, int64_t value)
 {
-	giving_set(&s->controllers[place], record, value);
+	giving_set(&s->controllers[seat], record, value);
 }
 
 void scene_set_text(struct scene *s, unsigned record, const char *text)

@@ -10,9 +10,9 @@ bool scene_has_device(struct scene *scene, unsigned wire, const char *path);
 
 /* The disk of Start "last". */
 const struct engine_last *scene_disk(struct scene *scene);
-/* The controller of the place joins the scene's engine with a new memory; the old one stays as it
+/* The controller of the seat joins the scene's engine with a new memory; the old one stays as it
  * is. */
-void scene_join_again(struct scene *scene, unsigned place);
+void scene_join_again(struct scene *scene, unsigned seat);
 
 /* The submit of an engine's port; ctx is the bus. */
 int scene_submit(void *ctx, struct bus_req *req);

@@ -198,7 +198,7 @@ static void test_an_asker_waits_for_a_time_that_ends(void)
 	wait_asked();
 	pthread_mutex_lock(&control_room->lock);
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
-		control_room->places[i].until_ns = 1;
+		control_room->seats[i].until_ns = 1;
 	pthread_mutex_unlock(&control_room->lock);
 	bell_ring(control_room->wake);
 	for (int i = 0; i < 2; i++)

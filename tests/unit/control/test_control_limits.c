@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The limits of the control room: places, places and memory of a user, and crowds. */
+/* The limits of the control room: seats, seats and memory of a user, and crowds. */
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>

@@ -32,7 +32,7 @@ static bool free_one(uid_t uid)
 	return control.held_count == before + 1;
 }
 
-/* All places, each with the memory before a reload and that after it. */
+/* All seats, each with the memory before a reload and that after it. */
 static void test_while_there_is_room_the_memories_of_all_places_are_kept(void)
 {
 	while (!held_full(&control))

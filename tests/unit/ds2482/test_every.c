@@ -15,7 +15,7 @@
 
 #define ADAPTERS 3
 
-struct place {
+struct rio_position {
 	struct sim_net net;
 	struct sim_adapter adapter;
 	bool listed, taken;
@@ -24,7 +24,7 @@ struct place {
 };
 
 static struct host host;
-static struct place place[ADAPTERS];
+static struct rio_position place[ADAPTERS];
 static struct link_master *every;
 static struct i2c_adapter_ops taken_ops;
 static char why[BUS_EVENT_TEXT];
@@ -35,10 +35,10 @@ static int claim_in_vain(struct i2c_adapter *adapter, uint8_t address)
 	return address == 0x18 ? -EBUSY : 0;
 }
 
-static int open_place(void *ctx, const struct bus_env *env, struct i2c_adapter **out, char *text,
-                      size_t size)
+static int open_dir(void *ctx, const struct bus_env *env, struct i2c_adapter **out, char *text,
+                    size_t size)
 {
-	struct place *p = ctx;
+	struct rio_position *p = ctx;
 
 	(void)text, (void)size;
 	p->opens++;
@@ -54,7 +54,7 @@ static int open_place(void *ctx, const struct bus_env *env, struct i2c_adapter *
 
 static int see_place(void *ctx, const struct bus_env *env, uint8_t chips, uint64_t *mark)
 {
-	struct place *p = ctx;
+	struct rio_position *p = ctx;
 
 	(void)env, (void)chips;
 	*mark += p->mark;
@@ -90,7 +90,7 @@ static unsigned list(void *ctx, unsigned *numbers, unsigned max)
 
 static int make(void *ctx, unsigned number, const struct bus_env *env, struct link_master **master)
 {
-	const struct ds2482_source source = {.open = open_place,
+	const struct ds2482_source source = {.open = open_dir,
 	                                     .visible = see_place,
 	                                     .destroy = forget,
 	                                     .name = "test",

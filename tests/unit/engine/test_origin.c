@@ -45,9 +45,9 @@ static const struct ows_journal_entry *entry(unsigned back)
 	return &s.image.commands[(entered() - 1 - back) % OWS_JOURNAL];
 }
 
-static void set(unsigned place, unsigned record, int64_t value)
+static void set(unsigned seat, unsigned record, int64_t value)
 {
-	scene_set_by(&s, place, record, value);
+	scene_set_by(&s, seat, record, value);
 	scene_run(&s, 100 * SCENE_MS);
 }
 

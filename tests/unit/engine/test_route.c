@@ -18,18 +18,18 @@ void tearDown(void)
 
 /* --- A comma --------------------------------------------------------------------------------- */
 
-static struct route_place places[3];
+static struct known_presence known[3];
 static struct route_group groups[3];
 
 /* "P?F-": presence on each group, "UD.": state of each, since long ago. */
 static void facts(const char *presence, const char *state)
 {
 	for (unsigned g = 0; g < 3 && presence[g]; g++) {
-		places[g].presence = presence[g] == 'P'   ? ROUTE_PRESENT
-		                     : presence[g] == 'F' ? ROUTE_FAILING
-		                     : presence[g] == '-' ? ROUTE_ABSENT
-		                                          : ROUTE_UNKNOWN;
-		places[g].since_ns = NOW - 100 * S;
+		known[g].presence = presence[g] == 'P'   ? ROUTE_PRESENT
+		                    : presence[g] == 'F' ? ROUTE_FAILING
+		                    : presence[g] == '-' ? ROUTE_ABSENT
+		                                         : ROUTE_UNKNOWN;
+		known[g].since_ns = NOW - 100 * S;
 		groups[g].state = state[g] == 'U'   ? ROUTE_UP
 		                  : state[g] == 'D' ? ROUTE_DOWN
 		                                    : ROUTE_OPENING;
@@ -39,7 +39,7 @@ static void facts(const char *presence, const char *state)
 
 static unsigned choice(unsigned count, unsigned current)
 {
-	return route_device(places, groups, count, current, NOW - 100 * S, NOW).group;
+	return route_device(known, groups, count, current, NOW - 100 * S, NOW).group;
 }
 
 static void test_the_rules_of_a_comma(void)
@@ -162,15 +162,15 @@ static void test_no_choice_breaks_a_promise(void)
 static void test_a_return_waits_for_the_latest_of_three(void)
 {
 	facts("PPP", "UUU");
-	places[0].since_ns = NOW - 3 * S;
-	TEST_ASSERT_EQUAL_INT64(NOW + 7 * S, route_device(places, groups, 2, 1, 0, NOW).again_ns);
+	known[0].since_ns = NOW - 3 * S;
+	TEST_ASSERT_EQUAL_INT64(NOW + 7 * S, route_device(known, groups, 2, 1, 0, NOW).again_ns);
 	groups[0].since_ns = NOW - 2 * S;
-	TEST_ASSERT_EQUAL_INT64(NOW + 8 * S, route_device(places, groups, 2, 1, 0, NOW).again_ns);
+	TEST_ASSERT_EQUAL_INT64(NOW + 8 * S, route_device(known, groups, 2, 1, 0, NOW).again_ns);
 	TEST_ASSERT_EQUAL_INT64(NOW + 9 * S,
-	                        route_device(places, groups, 2, 1, NOW - S, NOW).again_ns);
-	TEST_ASSERT_EQUAL_UINT(1, route_device(places, groups, 2, 1, NOW - S, NOW).group);
-	TEST_ASSERT_EQUAL_UINT(0, route_device(places, groups, 2, 1, NOW - S, NOW + 9 * S).group);
-	TEST_ASSERT_EQUAL_INT64(INT64_MAX, route_device(places, groups, 2, 0, 0, NOW).again_ns);
+	                        route_device(known, groups, 2, 1, NOW - S, NOW).again_ns);
+	TEST_ASSERT_EQUAL_UINT(1, route_device(known, groups, 2, 1, NOW - S, NOW).group);
+	TEST_ASSERT_EQUAL_UINT(0, route_device(known, groups, 2, 1, NOW - S, NOW + 9 * S).group);
+	TEST_ASSERT_EQUAL_INT64(INT64_MAX, route_device(known, groups, 2, 0, 0, NOW).again_ns);
 }
 
 static void test_a_path_without_a_device_follows_the_targets_alone(void)
@@ -193,29 +193,29 @@ static void test_a_path_without_a_device_follows_the_targets_alone(void)
 static void test_a_lost_device_is_looked_for_on_the_other_targets_in_turn(void)
 {
 	facts("---", "UUU");
-	TEST_ASSERT_EQUAL_INT(1, route_probe(places, groups, 3, 0, 0));
-	TEST_ASSERT_EQUAL_INT(2, route_probe(places, groups, 3, 0, 1));
-	TEST_ASSERT_EQUAL_INT(1, route_probe(places, groups, 3, 0, 2));
+	TEST_ASSERT_EQUAL_INT(1, route_probe(known, groups, 3, 0, 0));
+	TEST_ASSERT_EQUAL_INT(2, route_probe(known, groups, 3, 0, 1));
+	TEST_ASSERT_EQUAL_INT(1, route_probe(known, groups, 3, 0, 2));
 	facts("---", "UDU");
-	TEST_ASSERT_EQUAL_INT(2, route_probe(places, groups, 3, 0, 2));
+	TEST_ASSERT_EQUAL_INT(2, route_probe(known, groups, 3, 0, 2));
 	facts("---", "UDD");
-	TEST_ASSERT_EQUAL_INT(-1, route_probe(places, groups, 3, 0, 2));
+	TEST_ASSERT_EQUAL_INT(-1, route_probe(known, groups, 3, 0, 2));
 	/* one that fails too */
 	facts("F?-", "UUU");
-	TEST_ASSERT_EQUAL_INT(1, route_probe(places, groups, 3, 0, 0));
-	TEST_ASSERT_EQUAL_INT(2, route_probe(places, groups, 3, 0, 1));
+	TEST_ASSERT_EQUAL_INT(1, route_probe(known, groups, 3, 0, 0));
+	TEST_ASSERT_EQUAL_INT(2, route_probe(known, groups, 3, 0, 1));
 	facts("FP-", "UUU");
-	TEST_ASSERT_EQUAL_INT(-1, route_probe(places, groups, 3, 1, 0));
+	TEST_ASSERT_EQUAL_INT(-1, route_probe(known, groups, 3, 1, 0));
 	/* one that is served is asked for only where an earlier target was never tried */
 	facts("P?-", "UUU");
-	TEST_ASSERT_EQUAL_INT(-1, route_probe(places, groups, 3, 0, 0));
+	TEST_ASSERT_EQUAL_INT(-1, route_probe(known, groups, 3, 0, 0));
 	facts("?-P", "UUU");
-	TEST_ASSERT_EQUAL_INT(0, route_probe(places, groups, 3, 2, 0));
+	TEST_ASSERT_EQUAL_INT(0, route_probe(known, groups, 3, 2, 0));
 	facts("--P", "UUU");
-	TEST_ASSERT_EQUAL_INT(-1, route_probe(places, groups, 3, 2, 0));
+	TEST_ASSERT_EQUAL_INT(-1, route_probe(known, groups, 3, 2, 0));
 	/* nor one whose target is only out of reach */
 	facts("P--", "DUU");
-	TEST_ASSERT_EQUAL_INT(-1, route_probe(places, groups, 3, 0, 0));
+	TEST_ASSERT_EQUAL_INT(-1, route_probe(known, groups, 3, 0, 0));
 }
 
 /* --- A bar ----------------------------------------------------------------------------------- */

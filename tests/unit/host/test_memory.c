@@ -13,7 +13,7 @@
 #include "src/daemon/host/memory.h"
 #include "tests/unit/aid/folder.h"
 
-static char instance[32], path[PLACE_PATH + 64];
+static char instance[32], path[DIR_PATH + 64];
 static struct config_target target = {.text = "null:"};
 static struct config_item item = {.name = "out",
                                   .path = "/29.000000000002/PIO.BYTE",
@@ -52,9 +52,8 @@ void tearDown(void)
 static int make(void)
 {
 	return memory_make(&memory,
-	                   &(struct memory_setup){.instance = instance,
-	                                          .place = folder_place(),
-	                                          .config = &config},
+	                   &(struct memory_setup){
+				   .instance = instance, .dir = folder_dir(), .config = &config},
 	                   why, sizeof(why));
 }
 
@@ -91,7 +90,7 @@ static void test_a_file_that_cannot_be_made_leaves_nothing_behind(void)
 
 static void test_a_directory_under_a_name_is_named_with_its_remedy(void)
 {
-	char remedy[PLACE_PATH + 100];
+	char remedy[DIR_PATH + 100];
 
 	TEST_ASSERT_EQUAL_INT(0, mkdir(file("image"), 0700));
 	TEST_ASSERT_EQUAL_INT(0, make());

@@ -115,8 +115,8 @@ void setUp(void)
 	static int folders;
 	struct ows *ows;
 
-	snprintf(state, sizeof(state), "%s/state%d", folder_place()->path, folders);
-	snprintf(history, sizeof(history), "%s/history%d", folder_place()->path, folders++);
+	snprintf(state, sizeof(state), "%s/state%d", folder_dir()->path, folders);
+	snprintf(history, sizeof(history), "%s/history%d", folder_dir()->path, folders++);
 	setenv("STATE_DIRECTORY", state, 1);
 	instance_start(&in, "sending", signals, COUNT);
 	TEST_ASSERT_EQUAL_INT(0, ows_open(in.name, OWS_READ, &ows));

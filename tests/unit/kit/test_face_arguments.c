@@ -15,7 +15,7 @@ static struct face_arguments a;
 
 void setUp(void)
 {
-	folder_place();
+	folder_dir();
 }
 
 void tearDown(void)

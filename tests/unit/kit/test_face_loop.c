@@ -68,11 +68,11 @@ static int check(const struct face *of)
 static int check_file(const char *text)
 {
 	static const struct face_ops ops = {.program = "owsd-test", .check = check};
-	char config[] = "-c", only[] = "--check", program[] = "owsd-test", path[PLACE_PATH + 32];
+	char config[] = "-c", only[] = "--check", program[] = "owsd-test", path[DIR_PATH + 32];
 	char *argv[] = {program, only, config, path, NULL};
 	FILE *file;
 
-	snprintf(path, sizeof(path), "%s/face.rio", folder_place()->path);
+	snprintf(path, sizeof(path), "%s/face.rio", folder_dir()->path);
 	file = fopen(path, "w");
 	TEST_ASSERT_NOT_NULL(file);
 	fputs(text, file);

@@ -16,7 +16,7 @@ static char path[300], token[SECRET_SIZE], why[400];
 
 void setUp(void)
 {
-	snprintf(path, sizeof(path), "%s/token", folder_place()->path);
+	snprintf(path, sizeof(path), "%s/token", folder_dir()->path);
 	unsetenv("CREDENTIALS_DIRECTORY");
 }
 
@@ -68,14 +68,14 @@ static void test_a_file_that_others_may_read_or_that_has_no_token_is_refused(voi
 	TEST_ASSERT_EQUAL_STRING("", token);
 	unlink(path);
 	TEST_ASSERT_EQUAL_INT(-ENOENT, secret_read(path, token, why, sizeof(why)));
-	TEST_ASSERT_EQUAL_INT(-EINVAL, secret_read(folder_place()->path, token, why, sizeof(why)));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, secret_read(folder_dir()->path, token, why, sizeof(why)));
 }
 
 static void test_a_name_is_that_of_a_credential_of_the_service(void)
 {
 	TEST_ASSERT_EQUAL_INT(-ENOENT, secret_read("token", token, why, sizeof(why)));
 	TEST_ASSERT_NOT_NULL(strstr(why, "LoadCredential="));
-	setenv("CREDENTIALS_DIRECTORY", folder_place()->path, 1);
+	setenv("CREDENTIALS_DIRECTORY", folder_dir()->path, 1);
 	TEST_ASSERT_EQUAL_INT(-ENOENT, secret_read("another", token, why, sizeof(why)));
 	TEST_ASSERT_NOT_NULL(strstr(why, "/etc/credstore"));
 	read_text("abc\n", 0440);
@@ -95,7 +95,7 @@ static void test_a_key_has_to_be_ours_alone_and_a_certificate_has_not(void)
 	TEST_ASSERT_EQUAL_INT(0, chmod(path, 0600));
 	TEST_ASSERT_EQUAL_INT(0, secret_file(path, true, found, why, sizeof(why)));
 	TEST_ASSERT_EQUAL_INT(-ENOENT, secret_file("/no/key", false, found, why, sizeof(why)));
-	setenv("CREDENTIALS_DIRECTORY", folder_place()->path, 1);
+	setenv("CREDENTIALS_DIRECTORY", folder_dir()->path, 1);
 	TEST_ASSERT_EQUAL_INT(0, secret_file("token", true, found, why, sizeof(why)));
 	TEST_ASSERT_EQUAL_STRING(path, found);
 }
@@ -135,7 +135,7 @@ static void test_a_check_refuses_what_the_face_could_not_use(void)
 static void test_a_check_without_credentials_refuses_none(void)
 {
 	TEST_ASSERT_EQUAL_INT(0, checks("token", SECRET_TOKEN));
-	TEST_ASSERT_EQUAL_INT(0, setenv("CREDENTIALS_DIRECTORY", folder_place()->path, 1));
+	TEST_ASSERT_EQUAL_INT(0, setenv("CREDENTIALS_DIRECTORY", folder_dir()->path, 1));
 	TEST_ASSERT_EQUAL_INT(-ENOENT, checks("token", SECRET_TOKEN));
 	read_text("abc\n", 0600);
 	TEST_ASSERT_EQUAL_INT(0, checks("token", SECRET_TOKEN));

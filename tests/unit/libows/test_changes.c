@@ -269,7 +269,7 @@ static void test_errno_stays_as_it_was(void)
 	errno = 77;
 	ows_changes(h, &cursor, ids, ROOM, MS);
 	image_state(&in.image, OWS_STATE_STOPPED);
-	segment_remove(folder_place(), in.name, SEGMENT_IMAGE);
+	segment_remove(folder_dir(), in.name, SEGMENT_IMAGE);
 	ows_changes(h, &cursor, ids, ROOM, MS);
 	TEST_ASSERT_EQUAL(77, errno);
 }

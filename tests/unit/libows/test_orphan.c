@@ -58,7 +58,7 @@ void tearDown(void)
 
 static void remove_names(void)
 {
-	TEST_ASSERT_EQUAL(0, segment_remove(folder_place(), first.name, SEGMENT_IMAGE));
+	TEST_ASSERT_EQUAL(0, segment_remove(folder_dir(), first.name, SEGMENT_IMAGE));
 	instance_kill(&first);
 }
 

@@ -120,7 +120,7 @@ static void record(int64_t boot)
 
 void setUp(void)
 {
-	snprintf(path, sizeof(path), "%s/history%d", folder_place()->path, folders++);
+	snprintf(path, sizeof(path), "%s/history%d", folder_dir()->path, folders++);
 	record(history_boot_present());
 	TEST_ASSERT_EQUAL_INT(0, ows_history_open(NULL, path, &h));
 }
@@ -148,7 +148,7 @@ static void test_the_first_values_of_a_history_are_in_its_points(void)
 		struct ows_history *young;
 		int64_t until = NOON + (second + 8) * SECOND;
 
-		snprintf(path, sizeof(path), "%s/young%d", folder_place()->path, folders++);
+		snprintf(path, sizeof(path), "%s/young%d", folder_dir()->path, folders++);
 		options.directory = path;
 		TEST_ASSERT_EQUAL_INT(
 			0, history_writer_open(&options, second * SECOND, NOON, true, &writer));
@@ -367,7 +367,7 @@ static void test_the_journal_has_commands_alarms_and_what_the_recorder_met(void)
 static void test_another_boot_is_told_from_this_one(void)
 {
 	ows_history_close(h);
-	snprintf(path, sizeof(path), "%s/history%d", folder_place()->path, folders++);
+	snprintf(path, sizeof(path), "%s/history%d", folder_dir()->path, folders++);
 	record(history_boot_present() + 1);
 	TEST_ASSERT_EQUAL_INT(0, ows_history_open("OWS", path, &h));
 	check_events(false);
@@ -525,7 +525,7 @@ static void open_days(void)
 {
 	ows_history_close(h);
 	h = NULL;
-	snprintf(path, sizeof(path), "%s/history%d", folder_place()->path, folders++);
+	snprintf(path, sizeof(path), "%s/history%d", folder_dir()->path, folders++);
 	record_days();
 	TEST_ASSERT_EQUAL_INT(0, ows_history_open(NULL, path, &h));
 }

@@ -134,9 +134,9 @@ void setUp(void)
 {
 	static int folders;
 
-	snprintf(state, sizeof(state), "%s/state%d", folder_place()->path, folders);
+	snprintf(state, sizeof(state), "%s/state%d", folder_dir()->path, folders);
 	snprintf(kept, sizeof(kept), "%s/reached", state);
-	snprintf(history, sizeof(history), "%s/history%d", folder_place()->path, folders++);
+	snprintf(history, sizeof(history), "%s/history%d", folder_dir()->path, folders++);
 	setenv("STATE_DIRECTORY", state, 1);
 	published_start(&p, signals, COUNT, &profile);
 	p.s.clock_set = p.s.announced = true;

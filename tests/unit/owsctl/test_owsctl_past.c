@@ -64,7 +64,7 @@ void setUp(void)
 {
 	instance_start(&in, "ctlpast", signals, 2);
 	caught_begin(in.name);
-	snprintf(path, sizeof(path), "%s/past%d", folder_place()->path, folders++);
+	snprintf(path, sizeof(path), "%s/past%d", folder_dir()->path, folders++);
 	write_from(history_boot_present(), ows_now());
 }
 

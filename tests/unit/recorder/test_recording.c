@@ -34,8 +34,8 @@ static int folders;
 
 static void new_directories(void)
 {
-	snprintf(directory, sizeof(directory), "%s/recording%d", folder_place()->path, folders);
-	snprintf(other, sizeof(other), "%s/other%d", folder_place()->path, folders++);
+	snprintf(directory, sizeof(directory), "%s/recording%d", folder_dir()->path, folders);
+	snprintf(other, sizeof(other), "%s/other%d", folder_dir()->path, folders++);
 }
 
 void setUp(void)

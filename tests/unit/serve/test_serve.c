@@ -115,8 +115,8 @@ static void target_is_up(void)
 void setUp(void)
 {
 	struct serve_setup setup = {.config = &config,
-	                            .place = folder_place()->path,
-	                            .directory = folder_place()->fd,
+	                            .dir = folder_dir()->path,
+	                            .directory = folder_dir()->fd,
 	                            .ring = no_ring};
 	char name[24], why[128];
 

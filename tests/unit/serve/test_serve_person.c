@@ -50,7 +50,7 @@ static void start(void)
 	snprintf(name, sizeof(name), "person-%d", (int)getpid());
 	instance_start(&in, name, relay, 1);
 	image_publish(&in.image, RELAY, &sample, &attrs, NULL);
-	TEST_ASSERT_EQUAL_INT(0, signals_open(folder_place()->path, in.name, &signals));
+	TEST_ASSERT_EQUAL_INT(0, signals_open(folder_dir()->path, in.name, &signals));
 }
 
 static void end(void)

@@ -64,7 +64,7 @@ static uint32_t last[OUTPUT], generation;
 
 void setUp(void)
 {
-	folder_place();
+	folder_dir();
 	snprintf(instance, sizeof(instance), "kill-%ld", (long)getpid());
 	memset(&saw, 0, sizeof(saw));
 	force = mmap(NULL, sizeof(*force), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1,
@@ -114,7 +114,7 @@ static void publish_all(struct image *image, uint32_t n)
 	image_news(image);
 }
 
-/* What a writer without a protocol does: into the place that readers look at. */
+/* What a writer without a protocol does: into the directory that readers look at. */
 static void publish_in_place(struct image *image, uint32_t n)
 {
 	struct ows_record *r = &image->records[NUMBER];
@@ -162,7 +162,7 @@ static void write_until_killed(void (*publish)(struct image *image, uint32_t n))
 	prctl(PR_SET_PDEATHSIG, SIGKILL);
 	if (memory_make(&memory,
 	                &(struct memory_setup){
-				.instance = instance, .place = folder_place(), .config = &config},
+				.instance = instance, .dir = folder_dir(), .config = &config},
 	                why, sizeof(why)))
 		_exit(1);
 	command = find_remembered(&memory);

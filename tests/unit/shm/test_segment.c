@@ -28,13 +28,13 @@ static struct segment segment;
 void setUp(void)
 {
 	snprintf(name, sizeof(name), "segment.%d", (int)getpid());
-	TEST_ASSERT_EQUAL(0, segment_create(folder_place(), name, SEGMENT_IMAGE, SIZE, &segment));
+	TEST_ASSERT_EQUAL(0, segment_create(folder_dir(), name, SEGMENT_IMAGE, SIZE, &segment));
 }
 
 void tearDown(void)
 {
 	segment_close(&segment);
-	segment_remove(folder_place(), name, SEGMENT_IMAGE);
+	segment_remove(folder_dir(), name, SEGMENT_IMAGE);
 	unlink(folder_file(name, "lock"));
 }
 
@@ -56,11 +56,11 @@ static void test_names_that_would_leave_the_directory_are_refused(void)
 	for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++) {
 		TEST_ASSERT_FALSE(segment_name_ok(bad[i]));
 		TEST_ASSERT_EQUAL(-EINVAL,
-		                  segment_create(folder_place(), bad[i], SEGMENT_IMAGE, SIZE, &s));
+		                  segment_create(folder_dir(), bad[i], SEGMENT_IMAGE, SIZE, &s));
 		TEST_ASSERT_EQUAL(-EINVAL,
-		                  segment_open_old(folder_place(), bad[i], SEGMENT_IMAGE, &s));
-		TEST_ASSERT_EQUAL(-EINVAL, segment_remove(folder_place(), bad[i], SEGMENT_IMAGE));
-		TEST_ASSERT_EQUAL(-EINVAL, segment_lock(folder_place(), bad[i], &pid, &stolen));
+		                  segment_open_old(folder_dir(), bad[i], SEGMENT_IMAGE, &s));
+		TEST_ASSERT_EQUAL(-EINVAL, segment_remove(folder_dir(), bad[i], SEGMENT_IMAGE));
+		TEST_ASSERT_EQUAL(-EINVAL, segment_lock(folder_dir(), bad[i], &pid, &stolen));
 	}
 	TEST_ASSERT_TRUE(segment_name_ok("OWS"));
 	TEST_ASSERT_TRUE(segment_name_ok("Boiler-2_x.y"));
@@ -101,7 +101,7 @@ static void test_what_owsd_keeps_for_itself_is_closed_to_every_group(void)
 	struct segment force;
 	struct stat st;
 
-	TEST_ASSERT_EQUAL(0, segment_create(folder_place(), name, SEGMENT_FORCE, SIZE, &force));
+	TEST_ASSERT_EQUAL(0, segment_create(folder_dir(), name, SEGMENT_FORCE, SIZE, &force));
 	TEST_ASSERT_EQUAL(0, fstat(force.fd, &st));
 	TEST_ASSERT_EQUAL(0600, st.st_mode & 07777);
 	segment_close(&force);
@@ -112,7 +112,7 @@ static void test_what_a_killed_start_left_is_no_obstacle(void)
 {
 	struct segment other;
 
-	TEST_ASSERT_EQUAL(0, segment_create(folder_place(), name, SEGMENT_IMAGE, SIZE, &other));
+	TEST_ASSERT_EQUAL(0, segment_create(folder_dir(), name, SEGMENT_IMAGE, SIZE, &other));
 	segment_close(&other);
 }
 
@@ -120,15 +120,15 @@ static void test_an_old_segment_is_found_with_what_it_held(void)
 {
 	struct segment old;
 
-	TEST_ASSERT_EQUAL(-ENOENT, segment_open_old(folder_place(), name, SEGMENT_IMAGE, &old));
+	TEST_ASSERT_EQUAL(-ENOENT, segment_open_old(folder_dir(), name, SEGMENT_IMAGE, &old));
 	strcpy(segment.base + 100, "kept");
 	TEST_ASSERT_EQUAL(0, segment_show(name, &segment));
-	TEST_ASSERT_EQUAL(0, segment_open_old(folder_place(), name, SEGMENT_IMAGE, &old));
+	TEST_ASSERT_EQUAL(0, segment_open_old(folder_dir(), name, SEGMENT_IMAGE, &old));
 	TEST_ASSERT_EQUAL(SIZE, old.size);
 	TEST_ASSERT_EQUAL_STRING("kept", old.base + 100);
 	segment_close(&old);
 	TEST_ASSERT_EQUAL(0, ftruncate(segment.fd, 0));
-	TEST_ASSERT_EQUAL(-EPROTO, segment_open_old(folder_place(), name, SEGMENT_IMAGE, &old));
+	TEST_ASSERT_EQUAL(-EPROTO, segment_open_old(folder_dir(), name, SEGMENT_IMAGE, &old));
 }
 
 static void test_a_link_or_pipe_in_the_way_is_not_opened(void)
@@ -137,10 +137,10 @@ static void test_a_link_or_pipe_in_the_way_is_not_opened(void)
 	const char *path = folder_file(name, "image");
 
 	TEST_ASSERT_EQUAL(0, symlink("/etc/passwd", path));
-	TEST_ASSERT_EQUAL(-EPERM, segment_open_old(folder_place(), name, SEGMENT_IMAGE, &old));
+	TEST_ASSERT_EQUAL(-EPERM, segment_open_old(folder_dir(), name, SEGMENT_IMAGE, &old));
 	TEST_ASSERT_EQUAL(0, unlink(path));
 	TEST_ASSERT_EQUAL(0, mkfifo(path, 0600));
-	TEST_ASSERT_EQUAL(-EPERM, segment_open_old(folder_place(), name, SEGMENT_IMAGE, &old));
+	TEST_ASSERT_EQUAL(-EPERM, segment_open_old(folder_dir(), name, SEGMENT_IMAGE, &old));
 }
 
 static void test_one_owsd_for_each_name(void)
@@ -149,13 +149,13 @@ static void test_one_owsd_for_each_name(void)
 	pid_t pid;
 	int first, second;
 
-	first = segment_lock(folder_place(), name, &pid, &stolen);
+	first = segment_lock(folder_dir(), name, &pid, &stolen);
 	TEST_ASSERT_GREATER_OR_EQUAL(0, first);
-	TEST_ASSERT_EQUAL(-EBUSY, segment_lock(folder_place(), name, &pid, &stolen));
+	TEST_ASSERT_EQUAL(-EBUSY, segment_lock(folder_dir(), name, &pid, &stolen));
 	TEST_ASSERT_EQUAL(getpid(), pid);
 	TEST_ASSERT_FALSE(stolen);
 	close(first);
-	second = segment_lock(folder_place(), name, &pid, &stolen);
+	second = segment_lock(folder_dir(), name, &pid, &stolen);
 	TEST_ASSERT_GREATER_OR_EQUAL(0, second);
 	TEST_ASSERT_FALSE(stolen);
 	close(second);
@@ -167,17 +167,17 @@ static void test_a_lock_whose_file_was_removed_or_replaced_is_not_held(void)
 	pid_t pid;
 	int first, second;
 
-	first = segment_lock(folder_place(), name, &pid, &stolen);
+	first = segment_lock(folder_dir(), name, &pid, &stolen);
 	TEST_ASSERT_GREATER_OR_EQUAL(0, first);
-	TEST_ASSERT_TRUE(segment_lock_held(folder_place(), first, name));
-	TEST_ASSERT_TRUE_MESSAGE(segment_lock_held(folder_place(), -1, name),
+	TEST_ASSERT_TRUE(segment_lock_held(folder_dir(), first, name));
+	TEST_ASSERT_TRUE_MESSAGE(segment_lock_held(folder_dir(), -1, name),
 	                         "a look that fails is no loss");
 	TEST_ASSERT_EQUAL(0, unlink(folder_file(name, "lock")));
-	TEST_ASSERT_FALSE(segment_lock_held(folder_place(), first, name));
-	second = segment_lock(folder_place(), name, &pid, &stolen);
+	TEST_ASSERT_FALSE(segment_lock_held(folder_dir(), first, name));
+	second = segment_lock(folder_dir(), name, &pid, &stolen);
 	TEST_ASSERT_GREATER_OR_EQUAL(0, second);
-	TEST_ASSERT_FALSE(segment_lock_held(folder_place(), first, name));
-	TEST_ASSERT_TRUE(segment_lock_held(folder_place(), second, name));
+	TEST_ASSERT_FALSE(segment_lock_held(folder_dir(), first, name));
+	TEST_ASSERT_TRUE(segment_lock_held(folder_dir(), second, name));
 	close(first);
 	close(second);
 }
@@ -207,7 +207,7 @@ static void test_a_corpses_lock_is_left_behind(void)
 		pthread_t thread;
 
 		close(hold[1]);
-		if (segment_lock(folder_place(), name, &pid, &stolen) < 0 ||
+		if (segment_lock(folder_dir(), name, &pid, &stolen) < 0 ||
 		    pthread_create(&thread, NULL, outlive, &hold[0]) != 0 ||
 		    write(ready[1], "x", 1) != 1)
 			_exit(1);
@@ -217,11 +217,11 @@ static void test_a_corpses_lock_is_left_behind(void)
 	TEST_ASSERT_EQUAL(1, read(ready[0], &c, 1));
 	fd = -1;
 	for (int64_t until = ows_now() + INT64_C(60000000000); fd < 0 && ows_now() < until;)
-		fd = segment_lock(folder_place(), name, &pid, &stolen);
+		fd = segment_lock(folder_dir(), name, &pid, &stolen);
 	TEST_ASSERT_GREATER_OR_EQUAL(0, fd);
 	TEST_ASSERT_TRUE(stolen);
 	TEST_ASSERT_EQUAL(child, pid);
-	TEST_ASSERT_EQUAL(-EBUSY, segment_lock(folder_place(), name, &other, &stolen_twice));
+	TEST_ASSERT_EQUAL(-EBUSY, segment_lock(folder_dir(), name, &other, &stolen_twice));
 	TEST_ASSERT_EQUAL(getpid(), other);
 	TEST_ASSERT_FALSE(stolen_twice);
 	TEST_ASSERT_EQUAL(1, write(hold[1], "x", 1));
@@ -240,10 +240,10 @@ static void test_a_dead_owners_lock_is_free(void)
 	int fd, status;
 
 	if (child == 0)
-		_exit(segment_lock(folder_place(), name, &pid, &stolen) < 0);
+		_exit(segment_lock(folder_dir(), name, &pid, &stolen) < 0);
 	TEST_ASSERT_EQUAL(child, waitpid(child, &status, 0));
 	TEST_ASSERT_EQUAL(0, status);
-	fd = segment_lock(folder_place(), name, &pid, &stolen);
+	fd = segment_lock(folder_dir(), name, &pid, &stolen);
 	TEST_ASSERT_GREATER_OR_EQUAL(0, fd);
 	TEST_ASSERT_FALSE(stolen);
 	close(fd);
@@ -317,7 +317,7 @@ static void ask_for_too_much(void)
 	signal(SIGXFSZ, SIG_IGN);
 	if (setrlimit(RLIMIT_FSIZE, &limit) < 0)
 		_exit(1);
-	_exit(segment_create(folder_place(), name, SEGMENT_FORCE, SIZE, &other) == -EFBIG &&
+	_exit(segment_create(folder_dir(), name, SEGMENT_FORCE, SIZE, &other) == -EFBIG &&
 	                      other.fd < 0
 	              ? 7
 	              : 8);

@@ -168,11 +168,11 @@ static void show_problems(struct json *json, const struct rio *of)
 static void test_a_problem_knows_what_stands_at_its_place(void)
 {
 	parse(house);
-	report_error(&report, (struct place){"f", 4, 0}, "line");
-	report_warning(&report, (struct place){"f", 5, 45}, "key");
-	report_error(&report, (struct place){"f", 0, 0}, "whole");
-	report_error(&report, (struct place){"f", 2, 14}, "driver");
-	report_error(&report, (struct place){"f", 99, 99}, "beyond");
+	report_error(&report, (struct rio_position){"f", 4, 0}, "line");
+	report_warning(&report, (struct rio_position){"f", 5, 45}, "key");
+	report_error(&report, (struct rio_position){"f", 0, 0}, "whole");
+	report_error(&report, (struct rio_position){"f", 2, 14}, "driver");
+	report_error(&report, (struct rio_position){"f", 99, 99}, "beyond");
 	show(show_problems);
 	has("{\"error\":true,\"line\":4,\"column\":0,\"text\":\"line\",\"item\":\"a\\\"\","
 	    "\"block\":null,\"key\":null}");

@@ -15,9 +15,9 @@
 #include "src/ground/text/log.h"
 #include "src/memory/shm/entries.h"
 
-static void show_controller(struct engine *e, uint32_t place)
+static void show_controller(struct engine *e, uint32_t seat)
 {
-	struct known_controller *g = &e->controllers[place];
+	struct known_controller *g = &e->controllers[seat];
 	struct ows_controller_entry entry = {0};
 
 	if (g->is == CONTROLLER_CONNECTED)
@@ -31,7 +31,7 @@ static void show_controller(struct engine *e, uint32_t place)
 			.commands = g->commands,
 			.refused = g->refused,
 		};
-	image_controller(e->image, place, &entry);
+	image_controller(e->image, seat, &entry);
 	g->shown = g->commands + g->refused;
 }
 
@@ -59,21 +59,21 @@ static void controllers_forget(struct engine *e, uint32_t controller)
 	engine_remember_controller(e, controller);
 }
 
-static void look_at_beat(struct engine *e, uint32_t place, int64_t awake_ns)
+static void look_at_beat(struct engine *e, uint32_t seat, int64_t awake_ns)
 {
-	struct known_controller *g = &e->controllers[place];
+	struct known_controller *g = &e->controllers[seat];
 	bool changes, late;
 
-	engine_hear(e, place);
+	engine_hear(e, seat);
 	late = g->period_ms && awake_ns - g->heard_ns > g->period_ms * NS_PER_MS;
 	if (late && !g->late)
 		e->counters.lost_controllers++;
-	changes = late != g->late || g->period_ms != e->image->controllers[place].period_ms;
+	changes = late != g->late || g->period_ms != e->image->controllers[seat].period_ms;
 	g->late = late;
 	if (late && g->rows && awake_ns > g->lose_ns)
-		lose_outputs(e, place, awake_ns);
+		lose_outputs(e, seat, awake_ns);
 	if (changes || g->shown != g->commands + g->refused)
-		show_controller(e, place);
+		show_controller(e, seat);
 }
 
 static void look_at_absent(struct engine *e, uint32_t index, int64_t awake_ns)
@@ -93,7 +93,7 @@ void engine_look_controllers(struct engine *e)
 
 	if (e->controllers_quiet)
 		return;
-	for (uint32_t i = 0; i < e->place_end; i++) {
+	for (uint32_t i = 0; i < e->seat_end; i++) {
 		if (e->controllers[i].is != CONTROLLER_CONNECTED)
 			continue;
 		look_at_beat(e, i, awake_ns);
@@ -127,14 +127,14 @@ static bool may_set(const struct joining_controller *controller)
 }
 
 /* The controller that it was before, which has commands in force. */
-static uint32_t find_former(const struct engine *e, uint32_t place)
+static uint32_t find_former(const struct engine *e, uint32_t seat)
 {
-	const struct known_controller *g = &e->controllers[place];
+	const struct known_controller *g = &e->controllers[seat];
 
 	for (uint32_t i = 0; i < ENGINE_CONTROLLERS && has_token(g); i++) {
 		const struct known_controller *f = &e->controllers[i];
 
-		if (i != place && f->is != CONTROLLER_FREE && f->rows &&
+		if (i != seat && f->is != CONTROLLER_FREE && f->rows &&
 		    f->as.who.uid == g->as.who.uid &&
 		    memcmp(f->as.token, g->as.token, sizeof(g->as.token)) == 0)
 			return i;
@@ -142,15 +142,15 @@ static uint32_t find_former(const struct engine *e, uint32_t place)
 	return CONTROLLER_NOBODY;
 }
 
-static void come_back(struct engine *e, uint32_t place, uint32_t former)
+static void come_back(struct engine *e, uint32_t seat, uint32_t former)
 {
-	struct known_controller *g = &e->controllers[place], *f = &e->controllers[former];
+	struct known_controller *g = &e->controllers[seat], *f = &e->controllers[former];
 
 	if (!g->period_ms)
 		g->period_ms = f->period_ms; /* until it says more: at its first beat */
-	engine_remember_controller(e, place);
-	engine_hand_over(e, former, place);
-	engine_come_back(e, place);
+	engine_remember_controller(e, seat);
+	engine_hand_over(e, former, seat);
+	engine_come_back(e, seat);
 	log_info(e->log, "%s (process %d) came back: its command%s of %u output%s in force",
 	         g->as.who.name, (int)g->as.who.pid, g->rows == 1 ? "" : "s", g->rows,
 	         g->rows == 1 ? " is" : "s are");
@@ -158,14 +158,14 @@ static void come_back(struct engine *e, uint32_t place, uint32_t former)
 		controllers_forget(e, former);
 }
 
-void engine_controller_join(struct engine *e, unsigned place,
+void engine_controller_join(struct engine *e, unsigned seat,
                             const struct joining_controller *controller, int64_t now_ns)
 {
-	struct known_controller *g = &e->controllers[place];
+	struct known_controller *g = &e->controllers[seat];
 	struct controller_beat beat;
 	uint32_t former;
 
-	assert(place < OWS_CONTROLLERS && g->is == CONTROLLER_FREE);
+	assert(seat < OWS_CONTROLLERS && g->is == CONTROLLER_FREE);
 	engine_begin_call(e, now_ns);
 	e->controllers_quiet = false;
 	controller_beat(&controller->memory, &beat);
@@ -179,13 +179,13 @@ void engine_controller_join(struct engine *e, unsigned place,
 		.heard_ns = engine_awake_ns(e),
 		.looks_ns = INT64_MIN / 2, /* all are left */
 	};
-	if (e->place_end <= place)
-		e->place_end = place + 1;
-	engine_remember_controller(e, place);
-	former = find_former(e, place);
+	if (e->seat_end <= seat)
+		e->seat_end = seat + 1;
+	engine_remember_controller(e, seat);
+	former = find_former(e, seat);
 	if (former != CONTROLLER_NOBODY)
-		come_back(e, place, former);
-	show_controller(e, place);
+		come_back(e, seat, former);
+	show_controller(e, seat);
 	e->published = true;
 }
 
@@ -200,9 +200,9 @@ static uint32_t free_absent(const struct engine *e)
 }
 
 /* It promised a beat and said no goodbye: it may come back until its time is over. */
-static void begin_absence(struct engine *e, uint32_t place, int64_t awake_ns)
+static void begin_absence(struct engine *e, uint32_t seat, int64_t awake_ns)
 {
-	struct known_controller *g = &e->controllers[place];
+	struct known_controller *g = &e->controllers[seat];
 	uint32_t to = free_absent(e);
 
 	e->counters.lost_controllers += !g->late;
@@ -211,47 +211,47 @@ static void begin_absence(struct engine *e, uint32_t place, int64_t awake_ns)
 	g->lose_ns = 0;
 	if (to == CONTROLLER_NOBODY) {
 		g->heard_ns = g->left_ns = INT64_MIN / 2; /* all of its time is over */
-		lose_outputs(e, place, awake_ns);
+		lose_outputs(e, seat, awake_ns);
 		return;
 	}
-	lose_outputs(e, place, awake_ns); /* what has SafeDelay 0 */
+	lose_outputs(e, seat, awake_ns); /* what has SafeDelay 0 */
 	e->controllers[to] = *g;
 	e->controllers[to].rows = 0;
 	e->controllers[to].as.memory = (struct controller_memory){0};
 	e->controllers[to].as.rights = NULL;
 	engine_remember_controller(e, to);
-	engine_hand_over(e, place, to);
+	engine_hand_over(e, seat, to);
 	if (!e->controllers[to].rows)
 		controllers_forget(e, to);
 }
 
-void engine_controller_left(struct engine *e, unsigned place, int64_t now_ns)
+void engine_controller_left(struct engine *e, unsigned seat, int64_t now_ns)
 {
-	struct known_controller *g = &e->controllers[place];
+	struct known_controller *g = &e->controllers[seat];
 
-	assert(place < OWS_CONTROLLERS);
+	assert(seat < OWS_CONTROLLERS);
 	if (g->is != CONTROLLER_CONNECTED)
 		return;
 	engine_begin_call(e, now_ns);
 	e->controllers_quiet = false;
-	engine_intake(e, place);
-	engine_hear(e, place);
+	engine_intake(e, seat);
+	engine_hear(e, seat);
 	if (g->more)
 		e->greedy--;
 	if (g->period_ms && g->rows)
-		begin_absence(e, place, engine_awake_ns(e));
+		begin_absence(e, seat, engine_awake_ns(e));
 	else
-		engine_hand_over(e, place, CONTROLLER_NOBODY);
-	controllers_forget(e, place);
-	while (e->place_end && e->controllers[e->place_end - 1].is != CONTROLLER_CONNECTED)
-		e->place_end--;
-	show_controller(e, place);
+		engine_hand_over(e, seat, CONTROLLER_NOBODY);
+	controllers_forget(e, seat);
+	while (e->seat_end && e->controllers[e->seat_end - 1].is != CONTROLLER_CONNECTED)
+		e->seat_end--;
+	show_controller(e, seat);
 	e->published = true;
 }
 
 bool engine_controllers_marked(const struct engine *e)
 {
-	for (uint32_t i = 0; i < e->place_end; i++) {
+	for (uint32_t i = 0; i < e->seat_end; i++) {
 		const struct known_controller *g = &e->controllers[i];
 
 		if (g->is == CONTROLLER_CONNECTED && !g->more &&

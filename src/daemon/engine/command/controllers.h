@@ -15,18 +15,18 @@ struct engine;
 struct signal;
 
 /*
- * A controller takes a place (below OWS_CONTROLLERS) that is free. With the token of a controller
+ * A controller takes a seat (below OWS_CONTROLLERS) that is free. With the token of a controller
  * that has commands in force it comes back as that one. A reload: each controller joins the new
- * engine at its place with its serial and new memory, before engine_adopt(), which copies what the
+ * engine at its seat with its serial and new memory, before engine_adopt(), which copies what the
  * old memory had.
  */
-void engine_controller_join(struct engine *e, unsigned place,
+void engine_controller_join(struct engine *e, unsigned seat,
                             const struct joining_controller *controller, int64_t now_ns);
 /*
  * A controller hung up or is dead: the engine looks at its commands for the last time, and touches
  * its memory and rights no more after that.
  */
-void engine_controller_left(struct engine *e, unsigned place, int64_t now_ns);
+void engine_controller_left(struct engine *e, unsigned seat, int64_t now_ns);
 /*
  * Has some controller marked commands at which engine_step() would look? The engine's thread clears
  * awake in the image, then asks this, and sleeps only if not. Controllers that have used up their

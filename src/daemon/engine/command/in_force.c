@@ -119,9 +119,9 @@ void engine_command(struct engine *e, struct signal *s, uint32_t controller,
 	remember_command(e, s);
 }
 
-void engine_hear(struct engine *e, uint32_t place)
+void engine_hear(struct engine *e, uint32_t seat)
 {
-	struct known_controller *g = &e->controllers[place];
+	struct known_controller *g = &e->controllers[seat];
 	struct controller_beat beat;
 	bool changes;
 
@@ -138,7 +138,7 @@ void engine_hear(struct engine *e, uint32_t place)
 	g->beat = beat.beat;
 	g->period_ms = beat.period_ms;
 	if (changes)
-		engine_remember_controller(e, place);
+		engine_remember_controller(e, seat);
 }
 
 /* A command of owsd itself. who: the lost controller that is the reason, else owsd. */

@@ -24,7 +24,7 @@ struct ows_who engine_who(const struct known_controller *g, uint32_t person);
  * Take the beat of a connected controller, and what it promised: before its commands, so that the
  * next owsd knows it with them. A promise begins with a beat.
  */
-void engine_hear(struct engine *e, uint32_t place);
+void engine_hear(struct engine *e, uint32_t seat);
 /* If the bus has the command in force, and the disk if it has to: its controller gets to know. */
 void engine_settle(struct engine *e, struct signal *s);
 /* A write has ended well, and its command is no longer the one in force. */

@@ -311,7 +311,7 @@ int64_t engine_intake_limited(struct engine *e)
 {
 	int64_t next = INT64_MAX;
 
-	for (uint32_t i = 0; i < e->place_end; i++) {
+	for (uint32_t i = 0; i < e->seat_end; i++) {
 		struct known_controller *g = &e->controllers[i];
 
 		if (g->is != CONTROLLER_CONNECTED)

@@ -22,7 +22,7 @@
 #include "src/daemon/engine/reload/adopt.h"
 #include "src/daemon/engine/reload/adopt_signal.h"
 #include "src/daemon/engine/routing/disown.h"
-#include "src/daemon/engine/routing/place.h"
+#include "src/daemon/engine/routing/known.h"
 #include "src/daemon/engine/schedule.h"
 #include "src/daemon/engine/state.h"
 #include "src/memory/shm/entries.h"
@@ -91,17 +91,17 @@ static void serve_device(struct engine *e, uint32_t index, struct lane *lane)
 }
 
 /* Groups that stay keep what they know of the device; the others have not been asked. */
-static void take_places(struct engine *e, uint32_t index, const struct engine *old, uint32_t before,
-                        const struct adoption *plan)
+static void adopt_presences(struct engine *e, uint32_t index, const struct engine *old,
+                            uint32_t before, const struct adoption *plan)
 {
-	struct route_place *to = &e->places[(size_t)index * e->group_count];
+	struct known_presence *to = &e->known[(size_t)index * e->group_count];
 
-	for (unsigned g = 0; g < e->group_count && old->places; g++) {
+	for (unsigned g = 0; g < e->group_count && old->known; g++) {
 		int port = plan->ports[e->groups[g].first];
 
 		if (port >= 0)
-			to[g] = old->places[(size_t)before * old->group_count +
-			                    old->lanes[port].port->group];
+			to[g] = old->known[(size_t)before * old->group_count +
+			                   old->lanes[port].port->group];
 	}
 }
 
@@ -127,8 +127,8 @@ static void take_device(struct engine *e, uint32_t index, const struct engine *o
 	d->watch = was->watch;
 	d->found = was->found;
 	d->moved_ns = was->moved_ns;
-	if (e->places)
-		take_places(e, index, old, before, plan);
+	if (e->known)
+		adopt_presences(e, index, old, before, plan);
 	lane = plan->port_successors[old->groups[was->group].first];
 	if (lane >= 0)
 		d->group = e->lanes[lane].port->group;
@@ -145,7 +145,7 @@ static void take_devices(struct engine *e, const struct engine *old, const struc
 		take_device(e, i, old, plan);
 		serve_device(e, i, engine_open_lane(e, d->group));
 	}
-	engine_places_check(e);
+	engine_presences_check(e);
 }
 
 /* --- Signals --------------------------------------------------------------------------------- */

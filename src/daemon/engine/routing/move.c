@@ -14,8 +14,8 @@
 #include "src/daemon/engine/publish.h"
 #include "src/daemon/engine/retry.h"
 #include "src/daemon/engine/routing/disown.h"
+#include "src/daemon/engine/routing/known.h"
 #include "src/daemon/engine/routing/move.h"
-#include "src/daemon/engine/routing/place.h"
 #include "src/daemon/engine/schedule.h"
 #include "src/ground/text/log.h"
 
@@ -81,9 +81,9 @@ static bool is_looked_for(struct engine *e, const struct device *d, const struct
 {
 	uint32_t index = (uint32_t)(d - e->table.devices);
 
-	if (!from->state.up || !e->places || index == e->table.device_count)
+	if (!from->state.up || !e->known || index == e->table.device_count)
 		return false;
-	return !d->found || engine_places(e, index)[to->port->group].presence == ROUTE_UNKNOWN;
+	return !d->found || engine_presences(e, index)[to->port->group].presence == ROUTE_UNKNOWN;
 }
 
 static void report_move(struct engine *e, const struct device *d, const struct lane *from,

@@ -10,16 +10,16 @@ static int64_t later_ns(int64_t a, int64_t b)
 /* --- A comma --------------------------------------------------------------------------------- */
 
 /* The first other group on which the device may be; one where it fails only for want of another. */
-static int elsewhere(const struct route_place *places, const struct route_group *groups,
+static int elsewhere(const struct known_presence *known, const struct route_group *groups,
                      unsigned count, unsigned current)
 {
 	int failing = -1;
 
 	for (unsigned g = 0; g < count; g++) {
 		if (g == current || groups[g].state != ROUTE_UP ||
-		    places[g].presence == ROUTE_ABSENT)
+		    known[g].presence == ROUTE_ABSENT)
 			continue;
-		if (places[g].presence != ROUTE_FAILING)
+		if (known[g].presence != ROUTE_FAILING)
 			return (int)g;
 		if (failing < 0)
 			failing = (int)g;
@@ -28,18 +28,18 @@ static int elsewhere(const struct route_place *places, const struct route_group 
 }
 
 /* The first other group that says to have it. */
-static int claimed(const struct route_place *places, const struct route_group *groups,
+static int claimed(const struct known_presence *known, const struct route_group *groups,
                    unsigned count, unsigned current)
 {
 	for (unsigned g = 0; g < count; g++)
 		if (g != current && groups[g].state == ROUTE_UP &&
-		    places[g].presence == ROUTE_PRESENT)
+		    known[g].presence == ROUTE_PRESENT)
 			return (int)g;
 	return -1;
 }
 
 /* It may well be on the current group: only good evidence on an earlier one takes it back. */
-static struct route_choice give_back(const struct route_place *places,
+static struct route_choice give_back(const struct known_presence *known,
                                      const struct route_group *groups, unsigned current,
                                      int64_t moved_ns, int64_t now_ns)
 {
@@ -48,10 +48,10 @@ static struct route_choice give_back(const struct route_place *places,
 	for (unsigned g = 0; g < current; g++) {
 		int64_t at;
 
-		if (groups[g].state != ROUTE_UP || places[g].presence != ROUTE_PRESENT)
+		if (groups[g].state != ROUTE_UP || known[g].presence != ROUTE_PRESENT)
 			continue;
 		at = ROUTE_HOLD_NS +
-		     later_ns(later_ns(places[g].since_ns, groups[g].since_ns), moved_ns);
+		     later_ns(later_ns(known[g].since_ns, groups[g].since_ns), moved_ns);
 		if (now_ns >= at)
 			return (struct route_choice){g, INT64_MAX, "its device is there again"};
 		choice.again_ns = earlier_ns(choice.again_ns, at);
@@ -59,23 +59,24 @@ static struct route_choice give_back(const struct route_place *places,
 	return choice;
 }
 
-struct route_choice route_device(const struct route_place *places, const struct route_group *groups,
-                                 unsigned count, unsigned current, int64_t moved_ns, int64_t now_ns)
+struct route_choice route_device(const struct known_presence *known,
+                                 const struct route_group *groups, unsigned count, unsigned current,
+                                 int64_t moved_ns, int64_t now_ns)
 {
-	enum route_presence here = places[current].presence;
+	enum route_presence here = known[current].presence;
 	bool down = groups[current].state == ROUTE_DOWN;
-	int other = elsewhere(places, groups, count, current);
+	int other = elsewhere(known, groups, count, current);
 
 	if (here == ROUTE_ABSENT && other >= 0)
 		return (struct route_choice){(unsigned)other, INT64_MAX,
 		                             "its device is absent there"};
-	if (here == ROUTE_FAILING && claimed(places, groups, count, current) >= 0)
-		return (struct route_choice){(unsigned)claimed(places, groups, count, current),
+	if (here == ROUTE_FAILING && claimed(known, groups, count, current) >= 0)
+		return (struct route_choice){(unsigned)claimed(known, groups, count, current),
 		                             INT64_MAX, "its device gives no good value there"};
 	if ((here == ROUTE_UNKNOWN || here == ROUTE_FAILING) && down && other >= 0)
 		return (struct route_choice){(unsigned)other, INT64_MAX, "the target is down"};
 	if (here != ROUTE_ABSENT)
-		return give_back(places, groups, current, moved_ns, now_ns);
+		return give_back(known, groups, current, moved_ns, now_ns);
 	/* absent everywhere: the first one's */
 	for (unsigned g = 0; g < current; g++)
 		if (groups[g].state == ROUTE_UP)
@@ -105,12 +106,12 @@ struct route_choice route_path(const struct route_group *groups, unsigned count,
 	return choice;
 }
 
-int route_probe(const struct route_place *places, const struct route_group *groups, unsigned count,
-                unsigned current, unsigned last)
+int route_probe(const struct known_presence *known, const struct route_group *groups,
+                unsigned count, unsigned current, unsigned last)
 {
-	bool lost = places[current].presence == ROUTE_ABSENT ||
-	            places[current].presence == ROUTE_FAILING ||
-	            (places[current].presence == ROUTE_UNKNOWN &&
+	bool lost = known[current].presence == ROUTE_ABSENT ||
+	            known[current].presence == ROUTE_FAILING ||
+	            (known[current].presence == ROUTE_UNKNOWN &&
 	             groups[current].state == ROUTE_DOWN);
 
 	for (unsigned i = 1; i <= count; i++) {
@@ -118,7 +119,7 @@ int route_probe(const struct route_place *places, const struct route_group *grou
 
 		if (g == current || groups[g].state != ROUTE_UP)
 			continue;
-		if (lost || (g < current && places[g].presence == ROUTE_UNKNOWN))
+		if (lost || (g < current && known[g].presence == ROUTE_UNKNOWN))
 			return (int)g;
 	}
 	return -1;

@@ -29,7 +29,7 @@ enum route_presence {
 	ROUTE_FAILING, /* a target lists it, and no reading of it was good */
 	ROUTE_ABSENT,
 };
-struct route_place { /* a device on a group */
+struct known_presence { /* a device on a group */
 	enum route_presence presence;
 	int64_t since_ns; /* when it became so */
 };
@@ -51,15 +51,15 @@ struct route_choice {
 };
 
 /* moved_ns: of the device's last move. */
-struct route_choice route_device(const struct route_place *places, const struct route_group *groups,
-                                 unsigned count, unsigned current, int64_t moved_ns,
-                                 int64_t now_ns);
+struct route_choice route_device(const struct known_presence *known,
+                                 const struct route_group *groups, unsigned count, unsigned current,
+                                 int64_t moved_ns, int64_t now_ns);
 /* A path without a device. */
 struct route_choice route_path(const struct route_group *groups, unsigned count, unsigned current,
                                int64_t now_ns);
 /* The group on which the device is to be looked for next after it was on `last`; -1: on none. */
-int route_probe(const struct route_place *places, const struct route_group *groups, unsigned count,
-                unsigned current, unsigned last);
+int route_probe(const struct known_presence *known, const struct route_group *groups,
+                unsigned count, unsigned current, unsigned last);
 
 /* --- A bar: which way of a group is open ------------------------------------------------------ */
 

@@ -10,8 +10,8 @@
 #include "src/daemon/engine/lane_state.h"
 #include "src/daemon/engine/publish.h"
 #include "src/daemon/engine/retry.h"
+#include "src/daemon/engine/routing/known.h"
 #include "src/daemon/engine/routing/move.h"
-#include "src/daemon/engine/routing/place.h"
 #include "src/daemon/engine/routing/route.h"
 #include "src/daemon/engine/routing/routing.h"
 #include "src/daemon/engine/state.h"
@@ -96,7 +96,7 @@ static void see_group_state(struct engine *e, unsigned group)
 	if (state == e->states[group].state)
 		return;
 	e->states[group] = (struct route_group){state, e->time.now_ns};
-	engine_places_check(e);
+	engine_presences_check(e);
 }
 
 /* What another way did not take over goes bad. */
@@ -156,7 +156,7 @@ int64_t engine_route_groups(struct engine *e)
 static int64_t look_for_device(struct engine *e, uint32_t index)
 {
 	struct device *d = &e->table.devices[index];
-	int group = route_probe(engine_places(e, index), e->states, e->group_count, d->group,
+	int group = route_probe(engine_presences(e, index), e->states, e->group_count, d->group,
 	                        d->probed);
 
 	if (d->probing)
@@ -169,7 +169,7 @@ static int64_t look_for_device(struct engine *e, uint32_t index)
 	/* what was never tried is tried at once */
 	if (!d->probe_ns)
 		d->probe_ns = e->time.now_ns +
-		              (engine_places(e, index)[group].presence == ROUTE_UNKNOWN
+		              (engine_presences(e, index)[group].presence == ROUTE_UNKNOWN
 		                       ? 0
 		                       : RETRY_FIRST_NS);
 	if (e->time.now_ns < d->probe_ns)
@@ -186,7 +186,7 @@ static struct route_choice choose_group(struct engine *e, uint32_t index)
 
 	if (index == e->table.device_count)
 		return route_path(e->states, e->group_count, d->group, e->time.now_ns);
-	return route_device(engine_places(e, index), e->states, e->group_count, d->group,
+	return route_device(engine_presences(e, index), e->states, e->group_count, d->group,
 	                    d->moved_ns, e->time.now_ns);
 }
 
@@ -227,7 +227,7 @@ static bool route_devices(struct engine *e)
 	bool any = false;
 	int64_t device;
 
-	if (!e->places || (!e->routes.count && e->route_wheel.period == e->time.period))
+	if (!e->known || (!e->routes.count && e->route_wheel.period == e->time.period))
 		return false;
 	due_wheel_advance(&e->route_wheel, e->time.period, device_ready, e);
 	while ((device = due_set_next(&e->routes)) >= 0) {

@@ -8,8 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "src/memory/shm/dir.h"
 #include "src/memory/shm/owner.h"
-#include "src/memory/shm/place.h"
 
 #define OTHERS_WRITE (S_IWGRP | S_IWOTH)
 
@@ -22,22 +22,22 @@ static const char *environment(const char *name)
 }
 
 /* Behind a slash at the end O_NOFOLLOW would follow a link, and so it would in front of a dot. */
-static int take_path(const char *from, const char *more, char path[PLACE_PATH])
+static int take_path(const char *from, const char *more, char path[DIR_PATH])
 {
 	size_t len = strlen(from);
 	const char *last;
 
 	while (len > 1 && from[len - 1] == '/')
 		len--;
-	if (*from != '/' || len + strlen(more) >= PLACE_PATH)
+	if (*from != '/' || len + strlen(more) >= DIR_PATH)
 		return -EINVAL;
-	snprintf(path, PLACE_PATH, "%s", from);
-	snprintf(path + len, PLACE_PATH - len, "%s", more);
+	snprintf(path, DIR_PATH, "%s", from);
+	snprintf(path + len, DIR_PATH - len, "%s", more);
 	last = strrchr(path, '/') + 1;
 	return strcmp(last, "") && strcmp(last, ".") && strcmp(last, "..") ? 0 : -EINVAL;
 }
 
-int place_own(char path[PLACE_PATH])
+int dir_own(char path[DIR_PATH])
 {
 	const char *named = environment("OWS_DIR"), *runtime = environment("XDG_RUNTIME_DIR");
 
@@ -45,38 +45,38 @@ int place_own(char path[PLACE_PATH])
 	if (named)
 		return take_path(named, "", path);
 	if (geteuid() == 0 || owner_is_service())
-		return take_path(PLACE_SERVICE, "", path);
+		return take_path(DIR_SERVICE, "", path);
 	if (runtime && take_path(runtime, "/owsd", path) == 0)
 		return 0;
-	snprintf(path, PLACE_PATH, "/dev/shm/owsd-%lu", (unsigned long)geteuid());
+	snprintf(path, DIR_PATH, "/dev/shm/owsd-%lu", (unsigned long)geteuid());
 	return 0;
 }
 
-int place_list(char path[PLACES][PLACE_PATH])
+int dir_list(char path[DIRS][DIR_PATH])
 {
-	int err = place_own(path[0]);
+	int err = dir_own(path[0]);
 
 	if (err)
 		return err;
-	if (environment("OWS_DIR") || strcmp(path[0], PLACE_SERVICE) == 0)
+	if (environment("OWS_DIR") || strcmp(path[0], DIR_SERVICE) == 0)
 		return 1;
-	return take_path(PLACE_SERVICE, "", path[1]) == 0 ? 2 : 1;
+	return take_path(DIR_SERVICE, "", path[1]) == 0 ? 2 : 1;
 }
 
-int place_open(const char *path, struct shm_place *place)
+int dir_open(const char *path, struct shm_dir *dir)
 {
 	struct stat st;
 
-	*place = (struct shm_place){.fd = -1};
-	if (strlen(path) >= sizeof(place->path))
+	*dir = (struct shm_dir){.fd = -1};
+	if (strlen(path) >= sizeof(dir->path))
 		return -EINVAL;
-	memcpy(place->path, path, strlen(path) + 1);
-	place->fd = open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-	if (place->fd < 0)
+	memcpy(dir->path, path, strlen(path) + 1);
+	dir->fd = open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+	if (dir->fd < 0)
 		return errno == ELOOP || errno == ENOTDIR ? -EPERM : -errno;
-	if (fstat(place->fd, &st) == 0 && owner_trusted(st.st_uid) && !(st.st_mode & OTHERS_WRITE))
+	if (fstat(dir->fd, &st) == 0 && owner_trusted(st.st_uid) && !(st.st_mode & OTHERS_WRITE))
 		return 0;
-	place_close(place);
+	dir_close(dir);
 	return -EPERM;
 }
 
@@ -88,56 +88,55 @@ static int make_directory(const char *path)
 	return errno == EEXIST ? 0 : -errno;
 }
 
-int place_make(struct shm_place *place)
+int dir_make(struct shm_dir *dir)
 {
-	char path[PLACE_PATH];
-	int err = place_own(path);
+	char path[DIR_PATH];
+	int err = dir_own(path);
 
-	*place = (struct shm_place){.fd = -1};
-	snprintf(place->path, sizeof(place->path), "%s", path);
+	*dir = (struct shm_dir){.fd = -1};
+	snprintf(dir->path, sizeof(dir->path), "%s", path);
 	if (!err)
 		err = make_directory(path);
-	return err ? err : place_open(path, place);
+	return err ? err : dir_open(path, dir);
 }
 
-void place_close(struct shm_place *place)
+void dir_close(struct shm_dir *dir)
 {
-	if (place->fd >= 0)
-		close(place->fd);
-	place->fd = -1;
+	if (dir->fd >= 0)
+		close(dir->fd);
+	dir->fd = -1;
 }
 
-const char *place_fault(const struct shm_place *place, int err, char text[PLACE_FAULT])
+const char *dir_fault(const struct shm_dir *dir, int err, char text[DIR_FAULT])
 {
 	char user[OWNER_NAME];
-	const char *path = place->path;
+	const char *path = dir->path;
 	struct stat st;
 
 	if (err == -EINVAL)
 		snprintf(
-			text, PLACE_FAULT,
+			text, DIR_FAULT,
 			"OWS_DIR has to be the absolute path of a directory, of less than %d bytes",
-			PLACE_PATH);
+			DIR_PATH);
 	else if (lstat(path, &st) < 0 && errno == ENOENT)
-		snprintf(text, PLACE_FAULT,
+		snprintf(text, DIR_FAULT,
 		         "cannot make the directory %s: %s: OWS_DIR names another%s", path,
 		         strerror(-err),
-		         strcmp(path, PLACE_SERVICE) ? ""
-		                                     : ", or as root: systemd-tmpfiles --create");
+		         strcmp(path, DIR_SERVICE) ? ""
+		                                   : ", or as root: systemd-tmpfiles --create");
 	else if (err != -EPERM)
-		snprintf(text, PLACE_FAULT, "cannot open the directory %s: %s", path,
-		         strerror(-err));
+		snprintf(text, DIR_FAULT, "cannot open the directory %s: %s", path, strerror(-err));
 	else if (!S_ISDIR(st.st_mode))
-		snprintf(text, PLACE_FAULT, "%s is %s: owsd needs a directory there, of its own",
+		snprintf(text, DIR_FAULT, "%s is %s: owsd needs a directory there, of its own",
 		         path, S_ISLNK(st.st_mode) ? "a link" : "no directory");
 	else if (st.st_mode & OTHERS_WRITE)
-		snprintf(text, PLACE_FAULT,
+		snprintf(text, DIR_FAULT,
 		         "others may write into %s (mode %04o): OWS_DIR names a directory that is "
 		         "owsd's alone",
 		         path, (unsigned)st.st_mode & 07777);
 	else
 		snprintf(
-			text, PLACE_FAULT,
+			text, DIR_FAULT,
 			"the directory %s belongs to user %s, who is neither root nor owsd nor you",
 			path, owner_name(st.st_uid, user));
 	return text;

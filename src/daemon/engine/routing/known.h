@@ -4,18 +4,18 @@
 
 #include "src/daemon/engine/state.h"
 
-int engine_places_init(struct engine *e); /* 0 or -ENOMEM */
-void engine_places_free(struct engine *e);
+int engine_presences_init(struct engine *e); /* 0 or -ENOMEM */
+void engine_presences_free(struct engine *e);
 
 /* What an answer or the search of a bus says of a device; TABLE_NO_DEVICE is ignored. */
-void engine_place(struct engine *e, const struct lane *lane, uint32_t device,
-                  enum route_presence presence);
+void engine_presence(struct engine *e, const struct lane *lane, uint32_t device,
+                     enum route_presence presence);
 /* Somebody says that the device is there, which is less than a good value of it. */
-void engine_place_claimed(struct engine *e, const struct lane *lane, uint32_t device);
+void engine_presence_claimed(struct engine *e, const struct lane *lane, uint32_t device);
 /* A bus has found the device: what is known of it elsewhere is old. */
-void engine_place_found(struct engine *e, const struct lane *lane, uint32_t device);
+void engine_presence_found(struct engine *e, const struct lane *lane, uint32_t device);
 /* A group has gone up or down: every device may be concerned. */
-void engine_places_check(struct engine *e);
+void engine_presences_check(struct engine *e);
 
 /* Ask the bus for the next device to be looked for here; false: there is none, or not now. */
 bool engine_probe_ask(struct lane *lane, struct slot *slot);

@@ -6,29 +6,29 @@
 #include "hal/base/time.h"
 #include "src/daemon/engine/due.h"
 #include "src/daemon/engine/retry.h"
-#include "src/daemon/engine/routing/place.h"
+#include "src/daemon/engine/routing/known.h"
 #include "src/daemon/engine/routing/route.h"
 #include "src/daemon/engine/slots.h"
 
 /* Between two looks for devices that are not there: the signals that are come first. */
 #define PROBE_APART_NS (200 * NS_PER_MS)
 
-int engine_places_init(struct engine *e)
+int engine_presences_init(struct engine *e)
 {
 	uint32_t devices = e->table.device_count;
 
 	if (e->group_count == 1)
 		return 0;
-	e->places = calloc((size_t)(devices + 1) * e->group_count, sizeof(*e->places));
-	if (!e->places || due_set_init(&e->routes, devices + 1) ||
+	e->known = calloc((size_t)(devices + 1) * e->group_count, sizeof(*e->known));
+	if (!e->known || due_set_init(&e->routes, devices + 1) ||
 	    due_wheel_init(&e->route_wheel, devices + 1, 0))
 		return -ENOMEM;
 	return 0;
 }
 
-void engine_places_free(struct engine *e)
+void engine_presences_free(struct engine *e)
 {
-	free(e->places);
+	free(e->known);
 	due_set_free(&e->routes);
 	due_wheel_free(&e->route_wheel);
 }
@@ -36,52 +36,53 @@ void engine_places_free(struct engine *e)
 static void know_presence(struct engine *e, uint32_t device, unsigned group,
                           enum route_presence presence)
 {
-	struct route_place *place = engine_places(e, device) + group;
+	struct known_presence *known = engine_presences(e, device) + group;
 
 	if (presence == ROUTE_PRESENT)
 		e->table.devices[device].found = true;
-	if (place->presence == presence)
+	if (known->presence == presence)
 		return;
-	*place = (struct route_place){presence, e->time.now_ns};
+	*known = (struct known_presence){presence, e->time.now_ns};
 	due_set_add(&e->routes, device);
 }
 
-void engine_place(struct engine *e, const struct lane *lane, uint32_t device,
-                  enum route_presence presence)
+void engine_presence(struct engine *e, const struct lane *lane, uint32_t device,
+                     enum route_presence presence)
 {
-	if (e->places && device != TABLE_NO_DEVICE)
+	if (e->known && device != TABLE_NO_DEVICE)
 		know_presence(e, device, lane->port->group, presence);
 }
 
 static bool is_doubted(struct engine *e, uint32_t device, unsigned group)
 {
-	const struct route_place *place = engine_places(e, device) + group;
+	const struct known_presence *known = engine_presences(e, device) + group;
 
-	return place->presence == ROUTE_FAILING &&
-	       e->time.now_ns < place->since_ns + ROUTE_DOUBT_NS;
+	return known->presence == ROUTE_FAILING &&
+	       e->time.now_ns < known->since_ns + ROUTE_DOUBT_NS;
 }
 
 /* A claim is no evidence: it does not bring a device back that was seen to fail just now. */
-void engine_place_claimed(struct engine *e, const struct lane *lane, uint32_t device)
+void engine_presence_claimed(struct engine *e, const struct lane *lane, uint32_t device)
 {
-	if (e->places && device != TABLE_NO_DEVICE && !is_doubted(e, device, lane->port->group))
+	if (e->known && device != TABLE_NO_DEVICE && !is_doubted(e, device, lane->port->group))
 		know_presence(e, device, lane->port->group, ROUTE_PRESENT);
 }
 
 /* One wire has a device: what another group was known to have of it may be old. */
-void engine_place_found(struct engine *e, const struct lane *lane, uint32_t device)
+void engine_presence_found(struct engine *e, const struct lane *lane, uint32_t device)
 {
-	if (!e->places || device == TABLE_NO_DEVICE || is_doubted(e, device, lane->port->group))
+	if (!e->known || device == TABLE_NO_DEVICE || is_doubted(e, device, lane->port->group))
 		return;
 	for (unsigned g = 0; g < e->group_count; g++)
-		if (g != lane->port->group && engine_places(e, device)[g].presence == ROUTE_PRESENT)
+		if (g != lane->port->group &&
+		    engine_presences(e, device)[g].presence == ROUTE_PRESENT)
 			know_presence(e, device, g, ROUTE_UNKNOWN);
 	know_presence(e, device, lane->port->group, ROUTE_PRESENT);
 }
 
-void engine_places_check(struct engine *e)
+void engine_presences_check(struct engine *e)
 {
-	if (!e->places)
+	if (!e->known)
 		return;
 	for (uint32_t i = 0; i <= e->table.device_count; i++)
 		due_set_add(&e->routes, i);
@@ -112,9 +113,9 @@ void engine_probe_done(struct engine *e, struct lane *lane, const struct slot *s
 	retry_fail(&d->probe, 0, &wait_ns);
 	d->probe_ns = e->time.now_ns + wait_ns;
 	if (!answer->err)
-		engine_place_claimed(e, lane, slot->row);
+		engine_presence_claimed(e, lane, slot->row);
 	else if (answer->err == -ENODEV)
-		engine_place(e, lane, slot->row, ROUTE_ABSENT);
+		engine_presence(e, lane, slot->row, ROUTE_ABSENT);
 	due_set_add(&e->routes, slot->row);
 }
 
