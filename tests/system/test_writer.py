@@ -262,11 +262,24 @@ def test_a_text_that_names_an_endless_file_keeps_nobody_waiting(scene):
     assert writer.stop() == 0
 
 
+def still_open(pid):
+    """The descriptors that a process has open for longer than a moment."""
+    def seen():
+        return {int(fd) for fd in os.listdir(f"/proc/{pid}/fd")}
+    before = seen()
+    while True:
+        time.sleep(0.2)  # what is open for a moment is closed again
+        now = seen()
+        if now == before:
+            return now
+        before = now
+
+
 def test_without_descriptors_for_a_process_it_serves_again_when_there_are_some(scene):
     writer = alone(scene, "OwsDrv {\n}\n")
     pid = writer.process.pid
     before = resource.prlimit(pid, resource.RLIMIT_NOFILE)
-    used = {int(fd) for fd in os.listdir(f"/proc/{pid}/fd")}
+    used = still_open(pid)
     free = next(n for n in range(len(used) + 1) if n not in used)
     for more in (1, 2):  # for the connection alone, and for one end of the pipe to its process
         resource.prlimit(pid, resource.RLIMIT_NOFILE, (free + more, before[1]))

@@ -19,10 +19,10 @@
 #define GAUGE_LOCK(n, register_, blocks) \
 	PROPERTY("lock", YESNO, STABLE, BOTH, ELEMENTS(n, NUMBERS), \
 	         .arg = (register_) | (blocks) << 8, .how = WAY_LOCK)
-#define GAUGE_WORD(text, where, unit_, measures_) \
+#define GAUGE_WORD(text, where, unit_, ...) \
 	PROPERTY(text, FLOAT, VOLATILE, READ, \
 	         FIELD(WORDS, .at = (where), .bytes = 2, .big_endian = true, .is_signed = true, \
-	               .unit = (unit_)), measures_)
+	               .unit = (unit_)), __VA_ARGS__)
 /* What the register of the voltage across the resistor holds, in V and, inside, in A. */
 #define GAUGE_VIS_COARSE MEASURES(-0.064, 0.064, 6, "V")
 #define GAUGE_VIS_FINE MEASURES(-0.0512, 0.0512, 7, "V")

@@ -30,10 +30,11 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
 #define OF_MQTT struct config_mqtt
 #define HAS(of, member) .has = offsetof(struct of, member)
 #define AT(of, member) .at = offsetof(struct of, member)
-/* NOLINTNEXTLINE(bugprone-macro-parentheses): the names of members */
+/* NOLINTBEGIN(bugprone-macro-parentheses): the names of members */
 #define INSIDE(place_, member) \
 	.inside = PLACE_##place_, .offset = offsetof(struct config, member), \
 	.has = offsetof(struct config, member.given)
+/* NOLINTEND(bugprone-macro-parentheses) */
 #define OTHER(name, key_, place_, kind_, ...) \
 	[OPT_##name] = { \
 		.key = (key_), .place = PLACE_##place_, .kind = OPTION_##kind_, __VA_ARGS__},
