@@ -149,26 +149,24 @@ int gpio_request(struct gpio_chip *chip, unsigned offset, const struct gpio_setu
 	return err;
 }
 
+const struct gpio_option gpio_options[GPIO_OPTIONS] = {
+	{"active-low", "ActiveLow", .active_low = true},
+	{"pull-up", "PullUp", .bias = GPIO_PULL_UP},
+	{"pull-down", "PullDown", .bias = GPIO_PULL_DOWN},
+	{"open-drain", "OpenDrain", .drive = GPIO_OPEN_DRAIN},
+	{"open-source", "OpenSource", .drive = GPIO_OPEN_SOURCE},
+};
+
 static bool apply_word(struct gpio_setup *setup, const char *word, size_t len)
 {
-	static const struct {
-		const char *word;
-		bool active_low;
-		uint8_t bias, drive;
-	} words[] = {
-		{"active-low", .active_low = true},
-		{"pull-up", .bias = GPIO_PULL_UP},
-		{"pull-down", .bias = GPIO_PULL_DOWN},
-		{"open-drain", .drive = GPIO_OPEN_DRAIN},
-		{"open-source", .drive = GPIO_OPEN_SOURCE},
-	};
+	for (size_t i = 0; i < GPIO_OPTIONS; i++) {
+		const struct gpio_option *option = &gpio_options[i];
 
-	for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++) {
-		if (strlen(words[i].word) != len || memcmp(words[i].word, word, len) != 0)
+		if (strlen(option->word) != len || memcmp(option->word, word, len) != 0)
 			continue;
-		setup->active_low |= words[i].active_low;
-		setup->bias |= words[i].bias;
-		setup->drive |= words[i].drive;
+		setup->active_low |= option->active_low;
+		setup->bias |= option->bias;
+		setup->drive |= option->drive;
 		return true;
 	}
 	return false;

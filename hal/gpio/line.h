@@ -30,6 +30,16 @@ int gpio_offset(struct gpio_chip *chip, const char *text, size_t len);
 int gpio_request(struct gpio_chip *chip, unsigned offset, const struct gpio_setup *setup,
                  struct gpio_line **line, char *why, size_t why_size);
 
+/* What a line can be, in the same order everywhere. */
+struct gpio_option {
+	const char *word; /* of a line with its chip */
+	const char *key;  /* of a Bus block: a list of lines */
+	bool active_low;
+	uint8_t bias, drive;
+};
+#define GPIO_OPTIONS 5
+extern const struct gpio_option gpio_options[GPIO_OPTIONS];
+
 /*
  * One line with its chip, as options name it: CHIP/LINE, and behind it, each after a comma,
  * active-low, pull-up, pull-down, open-drain, open-source: "gpiochip0/22,active-low".

@@ -7,18 +7,12 @@
 
 #include "hal/gpio/lines.h"
 
-static const char *const option_names[GPIO_OPTIONS] = {
-	[GPIO_OPTION_ACTIVE_LOW] = "ActiveLow",   [GPIO_OPTION_PULL_UP] = "PullUp",
-	[GPIO_OPTION_PULL_DOWN] = "PullDown",     [GPIO_OPTION_OPEN_DRAIN] = "OpenDrain",
-	[GPIO_OPTION_OPEN_SOURCE] = "OpenSource",
-};
-
 int lines_option(struct bus *bus, const char *key, const char *text, char *why, size_t why_size)
 {
 	struct gpio_bus *gpio = (struct gpio_bus *)bus;
 
 	for (int i = 0; i < GPIO_OPTIONS; i++) {
-		if (strcmp(option_names[i], key) != 0)
+		if (strcmp(gpio_options[i].key, key) != 0)
 			continue;
 		if (!text[strspn(text, ", \t")]) {
 			snprintf(why, why_size, "expected lines, as \"17,27\"");
@@ -31,31 +25,16 @@ int lines_option(struct bus *bus, const char *key, const char *text, char *why, 
 	return -ENOENT;
 }
 
-static void set_option(struct gpio_setup *setup, enum gpio_option option)
+/* The last of two that exclude each other counts. */
+static void set_option(struct gpio_setup *setup, const struct gpio_option *option)
 {
-	switch (option) {
-	case GPIO_OPTION_ACTIVE_LOW:
-		setup->active_low = true;
-		break;
-	case GPIO_OPTION_PULL_UP:
-		setup->bias = GPIO_PULL_UP;
-		break;
-	case GPIO_OPTION_PULL_DOWN:
-		setup->bias = GPIO_PULL_DOWN;
-		break;
-	case GPIO_OPTION_OPEN_DRAIN:
-		setup->drive = GPIO_OPEN_DRAIN;
-		break;
-	case GPIO_OPTION_OPEN_SOURCE:
-		setup->drive = GPIO_OPEN_SOURCE;
-		break;
-	case GPIO_OPTIONS:
-		break;
-	}
+	setup->active_low |= option->active_low;
+	setup->bias = option->bias ? option->bias : setup->bias;
+	setup->drive = option->drive ? option->drive : setup->drive;
 }
 
 /* Refuse an unknown name: its line would work with the wrong sense. */
-static int apply_option(struct gpio_bus *gpio, enum gpio_option option, char *why, size_t why_size)
+static int apply_option(struct gpio_bus *gpio, unsigned option, char *why, size_t why_size)
 {
 	const char *text = gpio->option[option];
 
@@ -65,12 +44,12 @@ static int apply_option(struct gpio_bus *gpio, enum gpio_option option, char *wh
 
 		if (len && line < 0) {
 			snprintf(why, why_size, "%s: %s has no line %.*s; gpioinfo lists them",
-			         option_names[option], gpio->where, (int)(len < 32 ? len : 32),
+			         gpio_options[option].key, gpio->where, (int)(len < 32 ? len : 32),
 			         text);
 			return -EINVAL;
 		}
 		if (len)
-			set_option(&gpio->line[line].setup, option);
+			set_option(&gpio->line[line].setup, &gpio_options[option]);
 		text += len + (text[len] != '\0');
 	}
 	return 0;
@@ -91,8 +70,8 @@ int lines_create(struct gpio_bus *gpio, char *why, size_t why_size)
 		if (gpio_api()->info(gpio->chip, i, &info) == 0)
 			memcpy(gpio->line[i].name, info.name, sizeof(info.name));
 	}
-	for (int i = 0; i < GPIO_OPTIONS && !err; i++)
-		err = apply_option(gpio, (enum gpio_option)i, why, why_size);
+	for (unsigned i = 0; i < GPIO_OPTIONS && !err; i++)
+		err = apply_option(gpio, i, why, why_size);
 	return err;
 }
 

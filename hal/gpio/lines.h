@@ -7,15 +7,6 @@
 
 #define GPIO_DEVICE "gpio" /* of /gpio/17 */
 
-enum gpio_option {
-	GPIO_OPTION_ACTIVE_LOW,
-	GPIO_OPTION_PULL_UP,
-	GPIO_OPTION_PULL_DOWN,
-	GPIO_OPTION_OPEN_DRAIN,
-	GPIO_OPTION_OPEN_SOURCE,
-	GPIO_OPTIONS,
-};
-
 enum gpio_count {
 	GPIO_EDGES,        /* all that came */
 	GPIO_PULSES,       /* shorter than the time between two reads, and shown */
