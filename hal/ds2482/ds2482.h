@@ -7,6 +7,7 @@
  */
 #pragma once
 
+#include "hal/base/time.h"
 #include "hal/ds2482/codes.h"
 #include "hal/ds2482/ends.h"
 #include "hal/ds2482/i2c.h"
@@ -16,6 +17,16 @@
 
 #define DS2482_FIRST_ADDRESS 0x18
 #define DS2482_ADDRESSES 8
+
+#define DS2482_NO_PARAMETER (-1)
+
+/* How long a wire is without supply, so that all slaves forget their state. */
+#define DS2482_POWER_OFF_NS (500 * NS_PER_MS)
+#define DS2482_POWER_ON_NS (10 * NS_PER_MS)
+
+/* A chip that is busy for so much longer than it may be stays so; and how often to look. */
+#define DS2482_STUCK_NS (10 * NS_PER_MS)
+#define DS2482_POLL_NS INT64_C(200000)
 
 enum ds2482_part {
 	DS2482_100, /* or a -101, which the bus cannot tell apart */

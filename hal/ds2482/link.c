@@ -2,8 +2,8 @@
 /* One channel of a chip as a link. */
 #include <errno.h>
 
-#include "hal/ds2482/chip.h"
 #include "hal/ds2482/detect.h"
+#include "hal/ds2482/ds2482.h"
 #include "hal/ds2482/io.h"
 #include "hal/ds2482/link.h"
 #include "hal/ds2482/power.h"

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/ds2482/chip.h"
 #include "hal/ds2482/detect.h"
+#include "hal/ds2482/ds2482.h"
 #include "hal/ds2482/link.h"
 #include "hal/ds2482/master.h"
 #include "hal/ds2482/power.h"

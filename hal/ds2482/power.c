@@ -8,9 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/base/time.h"
-#include "hal/ds2482/chip.h"
 #include "hal/ds2482/detect.h"
+#include "hal/ds2482/ds2482.h"
 #include "hal/ds2482/io.h"
 #include "hal/ds2482/power.h"
 

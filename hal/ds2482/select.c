@@ -6,8 +6,8 @@
  */
 #include <errno.h>
 
-#include "hal/ds2482/chip.h"
 #include "hal/ds2482/detect.h"
+#include "hal/ds2482/ds2482.h"
 #include "hal/ds2482/io.h"
 #include "hal/ds2482/run.h"
 #include "hal/ds2482/select.h"

@@ -3,8 +3,6 @@
 #include <assert.h>
 #include <errno.h>
 
-#include "hal/base/time.h"
-#include "hal/ds2482/chip.h"
 #include "hal/ds2482/ds2482.h"
 #include "hal/ds2482/io.h"
 #include "hal/ds2482/select.h"

@@ -5,7 +5,7 @@
 
 #include <errno.h>
 
-#include "hal/ds2482/chip.h"
+#include "hal/ds2482/ds2482.h"
 #include "hal/ds2482/ends.h"
 #include "hal/ds2482/io.h"
 #include "hal/ds2482/run.h"
