@@ -93,14 +93,6 @@ int w1_netlink_verify(struct link *base, const uint8_t rom[8], bool alarm)
 	return 1;
 }
 
-static bool begins_with(const uint8_t rom[8], const struct prefix *prefix)
-{
-	for (unsigned i = 0; i < prefix->bits; i++)
-		if (bit_of(rom, i) != bit_of(prefix->rom, i))
-			return false;
-	return true;
-}
-
 static unsigned common_bits(const uint8_t a[8], const uint8_t b[8])
 {
 	unsigned i = 0;
@@ -126,7 +118,7 @@ static const uint8_t *guess_known(const struct walk *walk, const struct prefix *
 		const struct w1_seen *seen = &netlink->seen[i];
 
 		if (seen->channel != channel || !family_of(seen->rom[0])->alarms ||
-		    !begins_with(seen->rom, prefix))
+		    !search_same(seen->rom, prefix->rom, prefix->bits))
 			continue;
 		if (!rom) {
 			rom = seen->rom;

@@ -197,20 +197,19 @@ static int begin_local(struct connection *connection)
 	return set_trouble(connection);
 }
 
+static int begin_remote(struct connection *connection)
+{
+	int err = resolve(connection);
+
+	return err ? err : try_next(connection);
+}
+
 int connection_begin(struct connection *connection)
 {
 	int err;
 
 	connection_close(connection);
-	if (connection->host[0] == '/') {
-		err = begin_local(connection);
-		if (err)
-			connection_close(connection);
-		return err;
-	}
-	err = resolve(connection);
-	if (!err)
-		err = try_next(connection);
+	err = connection->host[0] == '/' ? begin_local(connection) : begin_remote(connection);
 	if (err)
 		connection_close(connection);
 	return err;
