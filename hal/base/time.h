@@ -18,6 +18,11 @@ static inline int64_t earlier_ns(int64_t a, int64_t b)
 	return a < b ? a : b;
 }
 
+static inline int64_t later_ns(int64_t a, int64_t b)
+{
+	return a > b ? a : b;
+}
+
 /* What a clock of clock_gettime() has. */
 static inline int64_t clock_ns(clockid_t clock)
 {

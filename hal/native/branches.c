@@ -141,32 +141,31 @@ int branches_look(struct native *native, const uint8_t rom[8])
 	               : 0;
 }
 
-bool branches_has_news(const struct native *native, unsigned channel)
+bool branches_has_news(struct native *native, unsigned channel)
 {
-	return !native->coupler[(channel - NATIVE_CHANNELS) / COUPLER_BRANCHES].parent;
+	return !branch_of(native->coupler, channel)->coupler->parent;
 }
 
-bool branches_news(const struct native *native, unsigned channel)
+bool branches_news(struct native *native, unsigned channel)
 {
-	unsigned n = channel - NATIVE_CHANNELS;
+	const struct branch *branch = branch_of(native->coupler, channel);
 
-	return native->coupler[n / COUPLER_BRANCHES].seen->news >> n % COUPLER_BRANCHES & 1;
+	return branch->coupler->seen->news >> branch->number & 1;
 }
 
 void branches_news_end(struct native *native, unsigned channel)
 {
-	unsigned n = channel - NATIVE_CHANNELS;
+	struct branch *branch = branch_of(native->coupler, channel);
 
-	native->coupler[n / COUPLER_BRANCHES].seen->news &= (uint8_t) ~(1u << n % COUPLER_BRANCHES);
+	branch->coupler->seen->news &= (uint8_t) ~(1u << branch->number);
 }
 
-bool branches_is_on(const struct native *native, unsigned channel)
+bool branches_is_on(struct native *native, unsigned channel)
 {
-	unsigned n = channel - NATIVE_CHANNELS;
-	const struct coupler *coupler = &native->coupler[n / COUPLER_BRANCHES];
-	const struct branch *on = coupler->trunk->on;
+	const struct branch *branch = branch_of(native->coupler, channel);
+	const struct branch *on = branch->coupler->trunk->on;
 
-	while (on && on != &coupler->branch[n % COUPLER_BRANCHES])
+	while (on && on != branch)
 		on = on->coupler->parent;
 	return on;
 }

@@ -18,12 +18,12 @@ int branches_channel(const struct native *native, const struct device *coupler,
  */
 int branches_look(struct native *native, const uint8_t rom[8]);
 /* Can there be such news of this branch? Not of one that is behind another. */
-bool branches_has_news(const struct native *native, unsigned channel);
+bool branches_has_news(struct native *native, unsigned channel);
 /* Are there such news of this branch? */
-bool branches_news(const struct native *native, unsigned channel);
+bool branches_news(struct native *native, unsigned channel);
 void branches_news_end(struct native *native, unsigned channel);
 /* Is this branch on now? */
-bool branches_is_on(const struct native *native, unsigned channel);
+bool branches_is_on(struct native *native, unsigned channel);
 /*
  * "1F.000000000001/main/" with all couplers on the way; "" of a wire. 0, or -EMSGSIZE: text has the
  * last ones only.

@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/base/time.h"
 #include "hal/native/answer.h"
 #include "hal/native/cache.h"
 #include "hal/native/convert/convert.h"
@@ -125,12 +126,6 @@ void job_look(struct native *native, struct job *job, int64_t now)
 		locate_wait(native, job, now);
 }
 
-static void look_again(int64_t when, int64_t *next)
-{
-	if (when < *next)
-		*next = when;
-}
-
 static unsigned channel_of(const struct job *job)
 {
 	if (job->state == JOB_LOCATE || job->kind == JOB_SCAN || job->kind == JOB_ALARM ||
@@ -187,9 +182,9 @@ bool job_ready(const struct native *native, const struct job *job, int64_t now, 
 	}
 	int64_t held = native_has(native, channel) ? native_held(native, channel, job, now) : 0;
 
-	when = held > when ? held : when;
+	when = later_ns(when, held);
 	if (when > now) {
-		look_again(when, next);
+		*next = earlier_ns(*next, when);
 		return false;
 	}
 	return true;

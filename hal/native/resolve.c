@@ -22,6 +22,15 @@ static bool slice_starts(struct path_slice slice, const char *word)
 	       (slice.len == n || slice.text[n] == '/');
 }
 
+/* What is asked of a directory: a list, or whether it is there. */
+static int take_directory(struct job *job, enum job_kind list, enum job_kind probe)
+{
+	if (job->req->op == BUS_READ || job->req->op == BUS_WRITE)
+		return -EISDIR;
+	job->kind = job->req->op == BUS_DIR ? list : probe;
+	return 0;
+}
+
 /* Is `name` a directory of the table: does a property stand below it? */
 static bool is_directory(const struct family *family, const struct device *device, const char *name,
                          size_t len)
@@ -61,12 +70,8 @@ static int resolve_property(struct job *job, const struct family *family,
 	                          : is_directory(family, device, name, len);
 	if ((!property && !directory) || (directory && extension != EXTENSION_NONE))
 		return -ENOENT;
-	if (directory) {
-		if (job->req->op == BUS_READ || job->req->op == BUS_WRITE)
-			return -EISDIR;
-		job->kind = job->req->op == BUS_DIR ? JOB_LISTING : JOB_PROBE;
-		return 0;
-	}
+	if (directory)
+		return take_directory(job, JOB_LISTING, JOB_PROBE);
 	if (!extension_fits(property, extension))
 		return -ENOENT;
 	job->property = property;
@@ -126,7 +131,7 @@ static int resolve_follow(struct native *native, struct path_slice way, int *bus
 	return 0;
 }
 
-static uint8_t kind_of_list(const struct job *job)
+static enum job_kind kind_of_list(const struct job *job)
 {
 	return job->path.alarm ? JOB_ALARM : job->fresh ? JOB_SCAN : JOB_LISTING;
 }
@@ -183,10 +188,7 @@ static int resolve_device(struct native *native, struct job *job)
 	if (path->property.len)
 		return resolve_property(job, device->family, device, path->property.text,
 		                        path->property.len);
-	if (job->req->op == BUS_READ || job->req->op == BUS_WRITE)
-		return -EISDIR;
-	job->kind = job->req->op == BUS_DIR ? JOB_LISTING : JOB_PROBE;
-	return 0;
+	return take_directory(job, JOB_LISTING, JOB_PROBE);
 }
 
 /* "/alarm/29,12": only the devices of these families. False: no such list. */
@@ -207,18 +209,6 @@ static bool take_families(struct job *job)
 		job->families[n] = (uint8_t)(high << 4 | low);
 	}
 	return true;
-}
-
-static int resolve_directory(struct job *job)
-{
-	if (job->req->op == BUS_PROBE) {
-		job->kind = JOB_LISTING;
-		return 0;
-	}
-	if (job->req->op != BUS_DIR)
-		return -EISDIR;
-	job->kind = kind_of_list(job);
-	return 0;
 }
 
 /* "structure/28/errata/die": path.property becomes what stands below the family. */
@@ -265,12 +255,8 @@ static int resolve_virtual(struct job *job)
 	job->table = virtual_family(name.text, len);
 	if (!job->table)
 		return -ENOENT;
-	if (len == name.len) {
-		if (job->req->op == BUS_READ || job->req->op == BUS_WRITE)
-			return -EISDIR;
-		job->kind = JOB_LISTING;
-		return 0;
-	}
+	if (len == name.len)
+		return take_directory(job, JOB_LISTING, JOB_LISTING);
 	return resolve_property(job, job->table, NULL, slash + 1, name.len - len - 1);
 }
 
@@ -293,5 +279,5 @@ int resolve(struct native *native, struct job *job)
 		return resolve_device(native, job);
 	if (job->path.property.len)
 		return resolve_virtual(job);
-	return resolve_directory(job);
+	return take_directory(job, kind_of_list(job), JOB_LISTING);
 }

@@ -18,6 +18,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "hal/base/time.h"
 #include "hal/native/branches.h"
 #include "hal/native/limits.h"
 #include "hal/native/master.h"
@@ -79,11 +80,6 @@ static bool found_key(struct native *native, unsigned n, const uint8_t rom[8], i
 	return true;
 }
 
-static int64_t later_of(int64_t a, int64_t b)
-{
-	return a > b ? a : b;
-}
-
 /* While a key is there a search takes longer: others get half of the time even so. */
 static void end_round(struct native *native, unsigned n, int64_t now)
 {
@@ -99,11 +95,11 @@ static void end_round(struct native *native, unsigned n, int64_t now)
 		return;
 	touch->holds = has_key(native, n);
 	touch->ended_ns = now;
-	touch->next_ns = now + later_of(HOLDS_NS, took);
+	touch->next_ns = now + later_ns(HOLDS_NS, took);
 	touch->turn_ns = now + (branches_has_news(native, n) ? QUIET_NS : TURN_NS);
 	touch->used = false;
 	native->touch_ns = now + took;
-	native->touch_in_turn_ns = now + later_of(TURN_NS, (TURN_SHARE - 1) * took);
+	native->touch_in_turn_ns = now + later_ns(TURN_NS, (TURN_SHARE - 1) * took);
 }
 
 /* The family is through; on to the next, or a pause. */
@@ -219,8 +215,8 @@ static int64_t when_due(struct native *native, unsigned n, int64_t now)
 	if (branches_news(native, n))
 		return native->touch_ns;
 	if (touch->holds || touch->used)
-		return later_of(touch->next_ns, native->touch_ns);
-	return later_of(touch->turn_ns, native->touch_in_turn_ns);
+		return later_ns(touch->next_ns, native->touch_ns);
+	return later_ns(touch->turn_ns, native->touch_in_turn_ns);
 }
 
 static bool try_channel(struct native *native, unsigned n, int64_t now, int64_t *next)

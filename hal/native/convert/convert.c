@@ -212,6 +212,20 @@ static struct job *next_due(struct native *native, unsigned n, const struct job 
 	return first;
 }
 
+/* A job has told its chip to convert, at now at the latest. shown: the chip has shown it. */
+static void told_one(struct native *native, struct job *job, int err, int64_t now, bool shown)
+{
+	struct device *device = job->txn.device;
+
+	if (err < 0) {
+		broadcast_told(native, device, now);
+		job_failed(native, job, err);
+		return;
+	}
+	native_count(native, COUNT_CONVERSIONS);
+	broadcast_started(native, device, now, shown);
+}
+
 /* One by one: the first that is due and free. False: there is none. */
 static bool convert_one(struct native *native, unsigned n, const struct job *fed)
 {
@@ -228,13 +242,7 @@ static bool convert_one(struct native *native, unsigned n, const struct job *fed
 	int64_t now = native_now(native);
 
 	job_saw(native, first, err, now);
-	if (err < 0) {
-		broadcast_told(native, device, now);
-		job_failed(native, first, err);
-		return true;
-	}
-	native_count(native, COUNT_CONVERSIONS);
-	broadcast_started(native, device, now, true);
+	told_one(native, first, err, now, true);
 	return true;
 }
 
@@ -283,15 +291,11 @@ static bool convert_fed(struct native *native, unsigned n, const struct schedule
 	job->txn.wake_ns = 0;
 	job_saw(native, job, err < 0 ? err : 0, now);
 	now = native_now(native);
-	if (err < 0) {
-		broadcast_told(native, device, now);
-		job_failed(native, job, err);
-		return true;
+	if (err >= 0) {
+		native_hold(native, n, NULL, now + ns);
+		schedule_owe(&native->schedule, OWES_OTHER);
 	}
-	native_count(native, COUNT_CONVERSIONS);
-	native_hold(native, n, NULL, now + ns);
-	schedule_owe(&native->schedule, OWES_OTHER);
-	broadcast_started(native, device, now, false);
+	told_one(native, job, err, now, false);
 	return true;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Which thermometers are asked for, what that costs, and which way is faster. */
 #include "hal/native/convert/schedule.h"
+#include "hal/base/time.h"
 #include "hal/chips/thermometers/thermometer_proof.h"
 #include "hal/native/state.h"
 
@@ -129,11 +130,6 @@ struct schedule_plan schedule_look(const struct native *native, unsigned channel
 	return plan;
 }
 
-static int64_t longer(int64_t a, int64_t b)
-{
-	return a > b ? a : b;
-}
-
 /* Of a reading, or the start of one chip. */
 static int64_t mean_cost(const struct schedule *schedule, enum schedule_work what)
 {
@@ -145,7 +141,7 @@ static int64_t mean_cost(const struct schedule *schedule, enum schedule_work wha
 /* Of WINDOW_NS. */
 static int64_t left_by_others(const struct schedule *schedule)
 {
-	int64_t others = longer(schedule->others_ns, schedule->last_ns);
+	int64_t others = later_ns(schedule->others_ns, schedule->last_ns);
 
 	return others < WINDOW_NS ? WINDOW_NS - others : 0;
 }
@@ -179,11 +175,11 @@ bool schedule_in_turn(const struct native *native, const struct schedule_plan *p
 	/* A driver waits for the end of a conversion, and the thread for the driver. */
 	if (!plan->reading || plan->driven || plan->parasitic || plan->silent || left < LEAST_NS)
 		return false;
-	int64_t at_once = longer(plan->longest_ns + (plan->due + plan->reading) * read,
-	                         plan->rounds * read * FINE / (left / (WINDOW_NS / FINE)));
+	int64_t at_once = later_ns(plan->longest_ns + (plan->due + plan->reading) * read,
+	                           plan->rounds * read * FINE / (left / (WINDOW_NS / FINE)));
 	int64_t round = plan->rounds * (read + start) * FINE / (left / (WINDOW_NS / FINE));
-	int64_t in_turn = longer(plan->longest_ns + start + read, round + round / GAIN);
-	return in_turn < at_once && plan->due * start <= longer(plan->ready_ns - now, wait);
+	int64_t in_turn = later_ns(plan->longest_ns + start + read, round + round / GAIN);
+	return in_turn < at_once && plan->due * start <= later_ns(plan->ready_ns - now, wait);
 }
 
 bool schedule_reads(const struct job *job)

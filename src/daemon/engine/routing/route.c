@@ -2,11 +2,6 @@
 /* The rules that choose which wire serves a device, and which way of a wire is open. */
 #include "src/daemon/engine/routing/route.h"
 
-static int64_t later_ns(int64_t a, int64_t b)
-{
-	return a > b ? a : b;
-}
-
 /* --- A comma --------------------------------------------------------------------------------- */
 
 /* The first other group on which the device may be; one where it fails only for want of another. */
