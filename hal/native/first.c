@@ -159,7 +159,8 @@ static void read_unknown(struct native *native, struct job *job, unsigned n, int
 	                  .device = &stranger};
 	uint8_t out[TXN_SELECT + 1], in[SCRATCHPAD_SIZE];
 	struct link_visit visit = {.link = txn.link, .out = out, .in = in, .in_n = sizeof(in)};
-	bool whole = txn.link->ops->visits(txn.link);
+	/* a coupler may have been found on the wire meanwhile */
+	bool whole = native_abreast(native, n) && txn.link->ops->visits(txn.link);
 	int err = 0;
 
 	memcpy(stranger.rom, job->path.rom, sizeof(stranger.rom));

@@ -302,6 +302,17 @@ static void test_wires_are_guessed_while_they_convert(void)
 	TEST_ASSERT_EQUAL_UINT64(0, counter("devices_lost"));
 }
 
+/* A coupler that is found while they convert stands in front of its wire from then on. */
+static void test_a_coupler_may_be_found_on_a_guessed_wire(void)
+{
+	spread = true;
+	begin(80, 8, "", "channel 0\nDS2409 1F.000000000001");
+	for (unsigned i = 0; i < 80; i++)
+		ask_thermometer(i, true);
+	run(80);
+	check_all(80);
+}
+
 /* Strangers that begin as those that are asked for: the search for all finds who is where. */
 static void test_a_wrong_guess_is_put_right(void)
 {
@@ -671,6 +682,7 @@ int main(void)
 	RUN_TEST(test_wires_convert_while_they_are_searched);
 	RUN_TEST(test_an_id_that_is_not_there_is_no_device);
 	RUN_TEST(test_wires_are_guessed_while_they_convert);
+	RUN_TEST(test_a_coupler_may_be_found_on_a_guessed_wire);
 	RUN_TEST(test_a_wrong_guess_is_put_right);
 	RUN_TEST(test_a_bridge_that_is_guessed_is_woken);
 	RUN_TEST(test_a_bridge_that_is_asked_for_is_woken);
