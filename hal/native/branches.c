@@ -57,11 +57,11 @@ static struct trunk *trunk_of(struct native *native, unsigned wire)
 	for (unsigned i = 0; !channel->trunk && i < NATIVE_COUPLERS; i++) {
 		struct trunk *trunk = &native->trunk[i];
 
-		if (trunk->relay.under || !trunk_fits(channel->link))
+		if (trunk->link.wire || !trunk_fits(channel->link))
 			continue;
 		trunk_set(trunk, channel->link);
 		channel->trunk = trunk;
-		channel->link = &trunk->relay.link;
+		channel->link = &trunk->link;
 	}
 	return channel->trunk;
 }
@@ -92,7 +92,7 @@ void branches_found(struct native *native, struct device *device)
 	for (unsigned i = 0; i < COUPLER_BRANCHES; i++) {
 		struct channel *channel = &native->channel[channel_of(n, i)];
 
-		native_open_channel(native, channel_of(n, i), &coupler->branch[i].relay.link, wire);
+		native_open_channel(native, channel_of(n, i), &coupler->branch[i].link, wire);
 		channel->listed = running;
 		channel->search_ns = native_now(native);
 	}
@@ -117,7 +117,7 @@ struct link *branches_wire(struct native *native, unsigned n, struct link *link)
 	if (!trunk)
 		return link;
 	trunk_set(trunk, link);
-	return &trunk->relay.link;
+	return &trunk->link;
 }
 
 int branches_channel(const struct native *native, const struct device *coupler,

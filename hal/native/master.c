@@ -229,7 +229,7 @@ static bool recover_link(struct native *native, unsigned n)
 
 	while (link->ops->recover && channel->rung < REOPEN) {
 		enum link_rung rung = (enum link_rung)(channel->rung++ - OF_LINK);
-		int done = link->ops->recover(link, rung);
+		int done = link->ops->recover(link_wire(link), rung);
 
 		if (done == -EOPNOTSUPP)
 			continue;

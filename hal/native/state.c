@@ -129,12 +129,9 @@ struct link *native_abreast(const struct native *native, unsigned channel)
 /* What a wire has done since it was looked at last, ns of its slots. */
 static uint64_t take_wire(struct native *native, unsigned wire)
 {
-	struct link *link = native->channel[wire].link;
-	struct link_cost cost = {0};
+	struct link_cost cost = link_cost_of(native->channel[wire].link);
 	uint64_t grown;
 
-	if (link->ops->cost)
-		link->ops->cost(link, &cost);
 	/* The master may open with fewer channels than before, or begin anew to count. */
 	grown = cost.wire_ns -
 	        (cost.wire_ns < native->wire_seen_ns[wire] ? 0 : native->wire_seen_ns[wire]);

@@ -114,10 +114,8 @@ enum { WIRE_TIME, RESETS };
 
 static int read_cost(struct txn *txn)
 {
-	struct link_cost cost = {0};
+	struct link_cost cost = txn->link ? link_cost_of(txn->link) : (struct link_cost){0};
 
-	if (txn->link && txn->link->ops->cost)
-		txn->link->ops->cost(txn->link, &cost);
 	if (txn->property->arg == RESETS)
 		txn->number[0] = (double)(uint32_t)cost.resets;
 	else

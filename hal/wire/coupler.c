@@ -25,7 +25,7 @@
 
 static struct link *under(const struct trunk *trunk)
 {
-	return trunk->relay.under;
+	return trunk->link.wire;
 }
 
 static struct branch *outer_branch(const struct branch *branch)
@@ -236,41 +236,6 @@ static int branch_reset(struct link *link)
 	return err == -EHOSTDOWN ? -EBADMSG : err;
 }
 
-static struct link *link_beyond(const struct link *link)
-{
-	return ((const struct relay *)link)->under;
-}
-
-static int relay_write(struct link *link, const uint8_t *data, size_t n, enum link_after after)
-{
-	return link_beyond(link)->ops->write(link_beyond(link), data, n, after);
-}
-
-static int relay_read(struct link *link, uint8_t *data, size_t n)
-{
-	return link_beyond(link)->ops->read(link_beyond(link), data, n);
-}
-
-static int relay_bit(struct link *link, bool out, enum link_after after)
-{
-	return link_beyond(link)->ops->bit(link_beyond(link), out, after);
-}
-
-static int relay_triplet(struct link *link, bool direction)
-{
-	return link_beyond(link)->ops->triplet(link_beyond(link), direction);
-}
-
-static int relay_recover(struct link *link, enum link_rung rung)
-{
-	return link_beyond(link)->ops->recover(link_beyond(link), rung);
-}
-
-static void relay_cost(const struct link *link, struct link_cost *cost)
-{
-	link_beyond(link)->ops->cost(link_beyond(link), cost);
-}
-
 bool trunk_fits(const struct link *link)
 {
 	const struct link_ops *ops = link->ops;
@@ -278,32 +243,25 @@ bool trunk_fits(const struct link *link)
 	return !link->driver && !ops->search && !ops->verify && !ops->flush;
 }
 
+/* It stands in front of the link of the wire. */
+static void set_front(struct link *front, struct link *wire, const struct link_ops *ops)
+{
+	*front = *wire;
+	front->ops = ops;
+	front->wire = wire;
+}
+
 static void set_branch(const struct trunk *trunk, struct branch *branch)
 {
-	branch->relay.link = *under(trunk);
-	branch->relay.link.ops = &trunk->branch_ops;
-	branch->relay.under = under(trunk);
+	set_front(&branch->link, under(trunk), &trunk->branch_ops);
 }
 
 void trunk_set(struct trunk *trunk, struct link *link)
 {
-	const struct link_ops *ops = link->ops;
-
-	trunk->ops = (struct link_ops){
-		.name = ops->name,
-		.reset = trunk_reset,
-		.write = relay_write,
-		.read = relay_read,
-		.bit = relay_bit,
-		.triplet = ops->triplet ? relay_triplet : NULL,
-		.recover = ops->recover ? relay_recover : NULL,
-		.cost = ops->cost ? relay_cost : NULL,
-	};
-	trunk->branch_ops = trunk->ops;
+	trunk->ops = trunk->branch_ops = *link->ops;
+	trunk->ops.reset = trunk_reset;
 	trunk->branch_ops.reset = branch_reset;
-	trunk->relay.link = *link;
-	trunk->relay.link.ops = &trunk->ops;
-	trunk->relay.under = link;
+	set_front(&trunk->link, link, &trunk->ops);
 	for (struct coupler *coupler = trunk->first; coupler; coupler = coupler->next) {
 		coupler->unsure = true;
 		for (unsigned i = 0; i < COUPLER_BRANCHES; i++)

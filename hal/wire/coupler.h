@@ -26,22 +26,16 @@ struct coupler_seen {
 	uint8_t news; /* flags that the look before did not show; the bus clears each as it acts */
 };
 
-/* The calls that go on to the link of the wire; first member of trunk and branch. */
-struct relay {
-	struct link link;
-	struct link *under;
-};
-
 struct coupler;
 struct branch {
-	struct relay relay;
+	struct link link; /* first */
 	struct coupler *coupler;
 	uint8_t number; /* enum coupler_branch */
 };
 
 struct trunk {
-	struct relay relay;
-	struct link_ops ops, branch_ops; /* as many as the link of the wire has */
+	struct link link;                /* first */
+	struct link_ops ops, branch_ops; /* those of the link of the wire, but for reset */
 	struct coupler *first;
 	struct branch *on; /* the innermost that is on, or may be; NULL: none */
 };

@@ -152,11 +152,32 @@ struct link {
 	unsigned chip;
 	const struct driver_ops *driver; /* of the kernel's drivers (driver.h); NULL: a wire */
 	/*
+	 * Of a link that stands in front of another (coupler.h), which does all but reset(): its
+	 * ops are those of that one. NULL: there is none.
+	 */
+	struct link *wire;
+	/*
 	 * There is no strong pull-up: LINK_STRONG is refused. EEPROMs are then written by the
 	 * wire's resistor, thermometers fed by the wire do not convert.
 	 */
 	bool passive;
 };
+
+/* What the functions of ops get, but for reset(). */
+static inline struct link *link_wire(struct link *link)
+{
+	return link->wire ? link->wire : link;
+}
+
+/* Zero where the link does not count. */
+static inline struct link_cost link_cost_of(struct link *link)
+{
+	struct link_cost cost = {0};
+
+	if (link->ops->cost)
+		link->ops->cost(link_wire(link), &cost);
+	return cost;
+}
 
 struct link_master;
 struct link_master_ops {

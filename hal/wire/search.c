@@ -18,18 +18,18 @@ void search_begin(struct search *search, bool alarm, uint8_t family)
 static int triplet(struct link *link, bool direction)
 {
 	if (link->ops->triplet)
-		return link->ops->triplet(link, direction);
+		return link->ops->triplet(link_wire(link), direction);
 
-	int id = link->ops->bit(link, true, LINK_IDLE);
+	int id = link->ops->bit(link_wire(link), true, LINK_IDLE);
 	if (id < 0)
 		return id;
-	int complement = link->ops->bit(link, true, LINK_IDLE);
+	int complement = link->ops->bit(link_wire(link), true, LINK_IDLE);
 	if (complement < 0)
 		return complement;
 	if (id && complement)
 		return 7;
 	bool taken = id == complement ? direction : id;
-	int err = link->ops->bit(link, taken, LINK_IDLE);
+	int err = link->ops->bit(link_wire(link), taken, LINK_IDLE);
 	return err < 0 ? err : id | complement << 1 | taken << 2;
 }
 
@@ -39,7 +39,7 @@ static int begin_search(struct link *link, uint8_t command)
 
 	if (present <= 0)
 		return present;
-	int err = link->ops->write(link, &command, 1, LINK_IDLE);
+	int err = link->ops->write(link_wire(link), &command, 1, LINK_IDLE);
 	return err < 0 ? err : 1;
 }
 

@@ -111,7 +111,8 @@ int txn_raw_then(struct txn *txn, const uint8_t *bytes, size_t n, enum link_afte
 {
 	int err = begin_transaction(txn);
 
-	return err ? err : of_link(txn, txn->link->ops->write(txn->link, bytes, n, after));
+	return err ? err
+	           : of_link(txn, txn->link->ops->write(link_wire(txn->link), bytes, n, after));
 }
 
 int txn_raw(struct txn *txn, const uint8_t *bytes, size_t n)
@@ -141,7 +142,7 @@ static int send_command(struct txn *txn, const uint8_t *bytes, size_t n, enum li
 	int err = begin_transaction(txn);
 	if (err)
 		return err;
-	return of_link(txn, txn->link->ops->write(txn->link, out, out_n, after));
+	return of_link(txn, txn->link->ops->write(link_wire(txn->link), out, out_n, after));
 }
 
 /* The strong pull-up, or what takes its place. */
@@ -178,7 +179,8 @@ int txn_write(struct txn *txn, const uint8_t *bytes, size_t n)
 {
 	int err = leave_done(txn);
 
-	return err ? err : of_link(txn, txn->link->ops->write(txn->link, bytes, n, LINK_IDLE));
+	return err ? err
+	           : of_link(txn, txn->link->ops->write(link_wire(txn->link), bytes, n, LINK_IDLE));
 }
 
 int txn_write_paused(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns)
@@ -193,7 +195,7 @@ int txn_write_paused(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns
 	int err = leave_done(txn);
 
 	if (!err)
-		err = of_link(txn, txn->link->ops->write(txn->link, bytes, n, after));
+		err = of_link(txn, txn->link->ops->write(link_wire(txn->link), bytes, n, after));
 	if (!err && env->wait(env->ctx, -1, 0, bus_now(env) + ns) < 0)
 		err = -ECANCELED;
 	return err;
@@ -219,7 +221,7 @@ int txn_read(struct txn *txn, uint8_t *bytes, size_t n)
 	if (!was_read(txn, bytes, n)) {
 		err = leave_done(txn);
 		if (!err)
-			err = of_link(txn, txn->link->ops->read(txn->link, bytes, n));
+			err = of_link(txn, txn->link->ops->read(link_wire(txn->link), bytes, n));
 	}
 	if (err < 0)
 		return err;
@@ -240,7 +242,7 @@ int txn_bit(struct txn *txn)
 {
 	int err = leave_done(txn);
 
-	return err ? err : of_link(txn, txn->link->ops->bit(txn->link, true, LINK_IDLE));
+	return err ? err : of_link(txn, txn->link->ops->bit(link_wire(txn->link), true, LINK_IDLE));
 }
 
 int txn_bit_strong(struct txn *txn, int64_t ns)
@@ -248,7 +250,7 @@ int txn_bit_strong(struct txn *txn, int64_t ns)
 	int err = leave_done(txn);
 
 	if (!err)
-		err = of_link(txn, txn->link->ops->bit(txn->link, true, LINK_STRONG));
+		err = of_link(txn, txn->link->ops->bit(link_wire(txn->link), true, LINK_STRONG));
 	return hold_pullup(txn, err, ns);
 }
 

@@ -12,15 +12,6 @@
 #define AGAIN_NS (10 * TXN_MS)
 #define BEFORE_SHARE 16
 
-static uint64_t resets(const struct link *link)
-{
-	struct link_cost cost = {0};
-
-	if (link->ops->cost)
-		link->ops->cost(link, &cost);
-	return cost.resets;
-}
-
 static bool is_early(const struct job *job, unsigned n, int64_t now)
 {
 	const struct device *device = job->txn.device;
@@ -37,7 +28,7 @@ void ending_begin(struct native *native, unsigned n, int64_t longest)
 	struct ending *ending = &channel->ending;
 	int64_t now = native_now(native), before = ending->took_ns / BEFORE_SHARE;
 
-	ending->resets = resets(channel->link);
+	ending->resets = link_cost_of(channel->link).resets;
 	ending->asks = ending->resets && !channel->trunk && !channel->link->ops->flush &&
 	               n < NATIVE_CHANNELS;
 	ending->begun_ns = now;
@@ -64,7 +55,7 @@ static void ending_ask(struct native *native, unsigned n)
 	struct link *link = native->channel[n].link;
 	struct ending *ending = &native->channel[n].ending;
 	uint8_t busy;
-	int err = link->ops->read(link, &busy, 1);
+	int err = link->ops->read(link_wire(link), &busy, 1);
 	int64_t now = native_now(native);
 
 	native_count(native, COUNT_TRANSACTIONS);
@@ -99,7 +90,7 @@ bool ending_step(struct native *native, int64_t now, int64_t *next)
 			*next = held < *next ? held : *next;
 			continue;
 		}
-		ending->asks = resets(native->channel[n].link) == ending->resets &&
+		ending->asks = link_cost_of(native->channel[n].link).resets == ending->resets &&
 		               has_early(native, n, now);
 		if (!ending->asks)
 			continue;

@@ -41,7 +41,7 @@ static int convert_voltage(struct native *native, unsigned n)
 		err = txn_read_crc16(&txn, conversion->command, conversion->n, &none, 0);
 	/* One more slot arms the pull-up, for those without a supply. */
 	if (!err)
-		err = channel->link->ops->bit(channel->link, true, LINK_STRONG);
+		err = channel->link->ops->bit(link_wire(channel->link), true, LINK_STRONG);
 	native_count(native, COUNT_TRANSACTIONS);
 	if (err < 0)
 		return txn.link_error ? txn.link_error : err;

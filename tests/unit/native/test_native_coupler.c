@@ -261,7 +261,7 @@ static void test_a_coupler_that_a_short_kept_from_being_told_is_told_after_it(vo
 	struct trunk on_bare = {0};
 	struct coupler_seen seen = {0};
 	struct coupler only;
-	struct link *link = &on_bare.relay.link;
+	struct link *link = &on_bare.link;
 
 	bare_offs = 0;
 	trunk_set(&on_bare, &bare);
