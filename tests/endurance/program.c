@@ -126,8 +126,8 @@ void program_scribbles(void)
 	scribble_slots(g, n);
 	for (unsigned i = 0; i < 4; i++)
 		words[world_random(256 / 4)] = world_random(1 << 24);
-	words[g->memory.layout->dirty_off / 4] = world_random(1 << 24);
-	words[g->memory.layout->shelf_off / 4 + world_random(24)] = world_random(1 << 24);
+	words[g->memory.layout->header.dirty_off / 4] = world_random(1 << 24);
+	words[g->memory.layout->header.shelf_off / 4 + world_random(24)] = world_random(1 << 24);
 	giving_header(g)->marked = 1;
 	station_ring();
 	station_run(station.now + (1 + world_random(30)) * FIELD_S);

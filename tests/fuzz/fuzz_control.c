@@ -240,7 +240,7 @@ static void scribble(int memory, size_t size)
 		if (n)
 			memcpy(base + off, bytes, n < size - off ? n : size - off);
 	}
-	memset(base + layouts[generation % 2].dirty_off, 0xff, 4);
+	memset(base + layouts[generation % 2].header.dirty_off, 0xff, 4);
 	munmap(base, size);
 }
 
@@ -396,13 +396,14 @@ static int make_memory(uint8_t how, size_t size)
 /* What libows does with a memory that it has taken for right. */
 static void use(const struct give *give)
 {
-	for (uint32_t i = 0; i < give->slot_count && i < 4096; i++) {
+	for (uint32_t i = 0; i < give->header.slot_count && i < 4096; i++) {
 		struct ows_command_text *text = give_text(give, i);
 
 		give_slot(give, i)->stamp++;
 		give_mark(give, i);
 		if (text)
-			give_store_text(text, "text", give->text_cap < 4 ? give->text_cap : 4);
+			give_store_text(text, "text",
+			                give->header.text_cap < 4 ? give->header.text_cap : 4);
 	}
 	give_store_name(give_person(give, OWS_PERSONS - 1), "somebody", OWS_NAME);
 	give_store_name(give_shelf(give)->why, "why", OWS_TEXT);

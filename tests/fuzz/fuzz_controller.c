@@ -100,7 +100,7 @@ static void run(int64_t ns)
 static void put_text(uint32_t record)
 {
 	struct ows_command_text *text = giving_text(&scene.controllers[0], record);
-	uint32_t cap = layout->text_cap;
+	uint32_t cap = layout->header.text_cap;
 	uint8_t how = fuzz_byte(&fuzz);
 	size_t n;
 	const uint8_t *bytes = fuzz_bytes(&fuzz, 255, &n);
@@ -162,18 +162,19 @@ static void shelve(void)
 
 static void overlay(void)
 {
-	uint32_t off = fuzz_word(&fuzz) % layout->size;
+	uint32_t off = fuzz_word(&fuzz) % layout->header.size;
 	char *base = scene.controllers[0].memory.base;
 	size_t n;
 	const uint8_t *bytes = fuzz_bytes(&fuzz, 255, &n);
 
-	if (n > layout->size - off)
-		n = layout->size - off;
+	if (n > layout->header.size - off)
+		n = layout->header.size - off;
 	if (n)
 		memcpy(base + off, bytes, n);
 	/* all of it would be too much of what is not looked at */
 	if (off % 3 == 0)
-		memset(base + layout->dirty_off, 0xff, 4 * (size_t)layout->dirty_words);
+		memset(base + layout->header.dirty_off, 0xff,
+		       4 * (size_t)layout->header.dirty_words);
 	giving_header(&scene.controllers[0])->marked = 1;
 }
 

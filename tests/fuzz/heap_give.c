@@ -56,8 +56,8 @@ int join_receive(struct join *join, int64_t until_ns, struct ows_welcome *welcom
 	*welcome = (struct ows_welcome){
 		.magic = OWS_WELCOME_MAGIC,
 		.major = OWS_LAYOUT_MAJOR,
-		.generation = heap.layout.generation,
-		.start_id = heap.layout.start_id,
+		.generation = heap.layout.header.generation,
+		.start_id = heap.layout.header.start_id,
 		.serial = 1,
 		.size = (uint32_t)heap_controller_file.size,
 	};

@@ -98,7 +98,7 @@ static void make(void)
 	}
 	heap.image_size = image_size(&image);
 	TEST_ASSERT_EQUAL_INT(0, controller_layout_make(&heap.layout, &plan));
-	heap.controller_size = heap.layout.size;
+	heap.controller_size = heap.layout.header.size;
 	heap.image_memory = zeroed(heap.image_size);
 	heap.controller_memory = controller.base = zeroed(heap.controller_size);
 	image_build(&image, heap.image_memory, &heap.image);

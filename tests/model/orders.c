@@ -82,7 +82,7 @@ static struct ows_controller_header *header_of(unsigned controller)
 
 static struct ows_command_slot *slot_of(char *memory, uint32_t record)
 {
-	return (struct ows_command_slot *)(void *)(memory + layout.slot_off) + record;
+	return (struct ows_command_slot *)(void *)(memory + layout.header.slot_off) + record;
 }
 
 static void make_layout(void)
@@ -91,7 +91,8 @@ static void make_layout(void)
 	static const struct controller_plan plan = {
 		.types = types, .signal_count = 2, .text_cap = TEXT};
 
-	if (!layout.size && (controller_layout_make(&layout, &plan) || layout.size > 4096))
+	if (!layout.header.size &&
+	    (controller_layout_make(&layout, &plan) || layout.header.size > 4096))
 		abort();
 }
 
@@ -109,17 +110,7 @@ static void make_handle(unsigned i)
 {
 	handles[i] = (struct ows){
 		.map = {.image = &header, .base = (char *)&header, .count = RECORDS},
-		.give = {.base = memories[i],
-	                 .size = layout.size,
-	                 .slot_off = layout.slot_off,
-	                 .slot_size = sizeof(struct ows_command_slot),
-	                 .slot_count = RECORDS,
-	                 .dirty_off = layout.dirty_off,
-	                 .text_off = layout.text_off,
-	                 .text_cap = TEXT,
-	                 .place_off = layout.place_off,
-	                 .person_off = layout.person_off,
-	                 .shelf_off = layout.shelf_off},
+		.give = {.base = memories[i], .header = layout.header},
 		.join = {.connection = -1, .bell = ACCESS_BELL, .news = -1},
 		.mode = OWS_CONTROL,
 		.alive_now = -1,

@@ -38,8 +38,8 @@ void ask_answer(const struct control *c, const struct control_seat *p, int err, 
 		.major = OWS_LAYOUT_MAJOR,
 		.minor = OWS_LAYOUT_MINOR,
 		.err = err,
-		.generation = c->layout->generation,
-		.start_id = c->layout->start_id,
+		.generation = c->layout->header.generation,
+		.start_id = c->layout->header.start_id,
 	};
 	char bytes[sizeof(answer) + OWS_WHY];
 	size_t len = printable_cut(why, OWS_WHY);

@@ -368,7 +368,7 @@ static void prepare_grant(struct control *c, struct control_seat *p,
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
 		if (c->seats[i].peer.uid == p->peer.uid)
 			has += c->seats[i].next.size;
-	if (!p->peer.uid || ((!has || has + layout->size <= CONTROL_MEMORY) &&
+	if (!p->peer.uid || ((!has || has + layout->header.size <= CONTROL_MEMORY) &&
 	                     held_of(c, p->peer.uid, &bytes) < CONTROL_HELD && !held_full(c)))
 		err = grant_make(&p->next, layout, rights, p);
 	if (err)

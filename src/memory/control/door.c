@@ -167,7 +167,7 @@ static bool has_room(struct control *c, const struct control_seat *p)
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
 		if (c->seats[i].peer.uid == p->peer.uid)
 			has += c->seats[i].now.size;
-	return !p->peer.uid || !has || has + c->layout->size <= CONTROL_MEMORY;
+	return !p->peer.uid || !has || has + c->layout->header.size <= CONTROL_MEMORY;
 }
 
 static int door_watch(struct control *c, const struct control_seat *p, int fd, uint32_t what)

@@ -12,8 +12,8 @@ int grant_make(struct control_grant *grant, const struct controller_layout *layo
 {
 	*grant = (struct control_grant){
 		.memory.layout = layout,
-		.size = layout->size,
-		.rights = calloc((size_t)layout->slot_count / 32 + 1, sizeof(uint32_t)),
+		.size = layout->header.size,
+		.rights = calloc((size_t)layout->header.slot_count / 32 + 1, sizeof(uint32_t)),
 		.memfd = -1,
 		.own = -1,
 	};
@@ -31,7 +31,7 @@ int grant_make(struct control_grant *grant, const struct controller_layout *layo
 	if (seat->commands)
 		grant->allowed = rights_fill(rights, &seat->peer, grant->rights);
 	controller_build(&grant->memory, seat->who.serial);
-	for (uint32_t i = 0; i < layout->slot_count; i++)
+	for (uint32_t i = 0; i < layout->header.slot_count; i++)
 		controller_allow(&grant->memory, i, grant->rights[i / 32] >> i % 32 & 1);
 	controller_state(&grant->memory, OWS_STATE_LIVE);
 	return 0;

@@ -80,10 +80,10 @@ void welcome_send(struct control *c, struct control_seat *p)
 		.magic = OWS_WELCOME_MAGIC,
 		.major = OWS_LAYOUT_MAJOR,
 		.minor = OWS_LAYOUT_MINOR,
-		.generation = layout->generation,
-		.start_id = layout->start_id,
+		.generation = layout->header.generation,
+		.start_id = layout->header.start_id,
 		.serial = p->who.serial,
-		.size = layout->size,
+		.size = layout->header.size,
 	};
 	struct porter_order order = {
 		.what = PORTER_SEND,

@@ -19,10 +19,8 @@ static inline bool area_inside(size_t room, uint32_t off, uint32_t count, uint32
 
 struct give {
 	char *base; /* NULL: none */
-	size_t size;
-	uint32_t generation, start_id, serial;
-	uint32_t slot_off, slot_size, slot_count, dirty_off;
-	uint32_t text_off, text_cap, place_off, person_off, shelf_off;
+	/* as it began, checked, and with the serial of the welcome; what is there now is not read */
+	struct ows_controller_header header;
 };
 
 /* Map the memory that came with a welcome. Returns 0, or -EPROTO: it is not as promised. */
@@ -42,22 +40,23 @@ static inline struct ows_controller_header *give_header(const struct give *give)
 
 static inline struct ows_command_slot *give_slot(const struct give *give, uint32_t record)
 {
-	return (void *)(give->base + give->slot_off + (size_t)record * give->slot_size);
+	return (void *)(give->base + give->header.slot_off +
+	                (size_t)record * give->header.slot_size);
 }
 
 static inline struct ows_command_shelf *give_shelf(const struct give *give)
 {
-	return (void *)(give->base + give->shelf_off);
+	return (void *)(give->base + give->header.shelf_off);
 }
 
 static inline char *give_person(const struct give *give, uint32_t person)
 {
-	return give->base + give->person_off + (size_t)person * OWS_NAME;
+	return give->base + give->header.person_off + (size_t)person * OWS_NAME;
 }
 
 static inline uint32_t *give_dirty(const struct give *give, uint32_t record)
 {
-	return (uint32_t *)(void *)(give->base + give->dirty_off) + record / 32;
+	return (uint32_t *)(void *)(give->base + give->header.dirty_off) + record / 32;
 }
 
 static inline void give_mark(const struct give *give, uint32_t record)

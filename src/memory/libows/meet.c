@@ -25,7 +25,7 @@ static uint32_t in_use(const struct give *give)
 	const struct ows_command_shelf *shelf = give_shelf(give);
 	uint32_t used = 0;
 
-	for (uint32_t i = 0; i < give->slot_count; i++) {
+	for (uint32_t i = 0; i < give->header.slot_count; i++) {
 		const struct ows_command_slot *slot = give_slot(give, i);
 		uint32_t person = word_get(&slot->person);
 
@@ -133,8 +133,9 @@ static int make_mine(struct ows *h)
 
 static bool fits_image(const struct give *give, const struct ows_map *map)
 {
-	return give->base != NULL && give_is_live(give) && give->slot_count == map->count &&
-	       give->generation == map->image->generation && give->start_id == map->image->start_id;
+	return give->base != NULL && give_is_live(give) && give->header.slot_count == map->count &&
+	       give->header.generation == map->image->generation &&
+	       give->header.start_id == map->image->start_id;
 }
 
 /* Connect; owsd no longer looks at the memory of the connection before. */

@@ -21,7 +21,7 @@ int ows_origin(struct ows *h, int id, struct ows_origin *origin)
 		.who = actor_of(&e.who),
 		.taken_ns = e.taken_ns,
 		.reason = e.reason <= UINT8_MAX ? (uint8_t)e.reason : OWS_REASON_NONE,
-		.own = e.who.serial != 0 && e.who.serial == h->give.serial,
+		.own = e.who.serial != 0 && e.who.serial == h->give.header.serial,
 	};
 	return handle_state(h);
 }

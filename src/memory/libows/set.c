@@ -202,7 +202,7 @@ static int set_string(struct ows *h, const struct ows_id *id, const char *text, 
 	uint32_t got;
 	int err;
 
-	if (len > h->give.text_cap)
+	if (len > h->give.header.text_cap)
 		return -ERANGE;
 	err = command_ready(h);
 	if (err)

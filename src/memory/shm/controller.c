@@ -38,18 +38,25 @@ int controller_layout_make(struct controller_layout *layout, const struct contro
 	layout->places = malloc(slots * sizeof(*layout->places));
 	if (!layout->places)
 		return -ENOMEM;
-	layout->size = (uint32_t)end;
-	layout->generation = plan->generation;
-	layout->start_id = plan->start_id;
-	layout->slot_off = sizeof(struct ows_controller_header);
-	layout->slot_count = (uint32_t)slots;
-	layout->text_off = (uint32_t)text;
-	layout->text_cap = plan->text_cap;
-	layout->place_off = (uint32_t)place;
-	layout->dirty_off = (uint32_t)dirty;
-	layout->dirty_words = (uint32_t)words;
-	layout->person_off = (uint32_t)person;
-	layout->shelf_off = (uint32_t)shelf;
+	layout->header = (struct ows_controller_header){
+		.magic = OWS_CONTROLLER_MAGIC,
+		.major = OWS_LAYOUT_MAJOR,
+		.minor = OWS_LAYOUT_MINOR,
+		.size = (uint32_t)end,
+		.generation = plan->generation,
+		.start_id = plan->start_id,
+		.slot_off = sizeof(struct ows_controller_header),
+		.slot_size = sizeof(struct ows_command_slot),
+		.slot_count = (uint32_t)slots,
+		.text_off = (uint32_t)text,
+		.text_cap = plan->text_cap,
+		.place_off = (uint32_t)place,
+		.dirty_off = (uint32_t)dirty,
+		.dirty_words = (uint32_t)words,
+		.person_off = (uint32_t)person,
+		.shelf_off = (uint32_t)shelf,
+		.state = OWS_STATE_BUILDING,
+	};
 	layout->places[0] = CONTROLLER_NO_TEXT;
 	texts = 0;
 	for (uint32_t i = 0; i < plan->signal_count; i++)
@@ -70,8 +77,8 @@ static struct ows_controller_header *header_of(const struct controller_memory *m
 
 static struct ows_command_slot *slot_at(const struct controller_memory *memory, uint32_t record)
 {
-	assert(record < memory->layout->slot_count);
-	return (void *)(memory->base + memory->layout->slot_off +
+	assert(record < memory->layout->header.slot_count);
+	return (void *)(memory->base + memory->layout->header.slot_off +
 	                (size_t)record * sizeof(struct ows_command_slot));
 }
 
@@ -79,47 +86,30 @@ static struct ows_command_text *text_at(const struct controller_memory *memory, 
 {
 	const struct controller_layout *l = memory->layout;
 
-	assert(record < l->slot_count && l->places[record] != CONTROLLER_NO_TEXT);
-	return (void *)(memory->base + l->text_off +
+	assert(record < l->header.slot_count && l->places[record] != CONTROLLER_NO_TEXT);
+	return (void *)(memory->base + l->header.text_off +
 	                (size_t)l->places[record] *
-	                        (sizeof(struct ows_command_text) + l->text_cap));
+	                        (sizeof(struct ows_command_text) + l->header.text_cap));
 }
 
 static char *person_at(const struct controller_memory *memory, uint32_t index)
 {
-	return memory->base + memory->layout->person_off + (size_t)index * OWS_NAME;
+	return memory->base + memory->layout->header.person_off + (size_t)index * OWS_NAME;
 }
 
 static struct ows_command_shelf *shelf_of(const struct controller_memory *memory)
 {
-	return (void *)(memory->base + memory->layout->shelf_off);
+	return (void *)(memory->base + memory->layout->header.shelf_off);
 }
 
 void controller_build(const struct controller_memory *memory, uint32_t serial)
 {
 	const struct controller_layout *l = memory->layout;
 
-	*header_of(memory) = (struct ows_controller_header){
-		.magic = OWS_CONTROLLER_MAGIC,
-		.major = OWS_LAYOUT_MAJOR,
-		.minor = OWS_LAYOUT_MINOR,
-		.size = l->size,
-		.generation = l->generation,
-		.start_id = l->start_id,
-		.serial = serial,
-		.slot_off = l->slot_off,
-		.slot_size = sizeof(struct ows_command_slot),
-		.slot_count = l->slot_count,
-		.text_off = l->text_off,
-		.text_cap = l->text_cap,
-		.place_off = l->place_off,
-		.dirty_off = l->dirty_off,
-		.dirty_words = l->dirty_words,
-		.person_off = l->person_off,
-		.shelf_off = l->shelf_off,
-		.state = OWS_STATE_BUILDING,
-	};
-	memcpy(memory->base + l->place_off, l->places, l->slot_count * sizeof(*l->places));
+	*header_of(memory) = l->header;
+	header_of(memory)->serial = serial;
+	memcpy(memory->base + l->header.place_off, l->places,
+	       l->header.slot_count * sizeof(*l->places));
 }
 
 void controller_allow(const struct controller_memory *memory, uint32_t record, bool allowed)
@@ -204,7 +194,7 @@ int controller_text(const struct controller_memory *memory, uint32_t record, cha
 	const char *from = (const char *)(t + 1);
 	uint32_t len = word_get(&t->len), check = word_get(&t->check), word;
 
-	if (len > memory->layout->text_cap)
+	if (len > memory->layout->header.text_cap)
 		return -EBADMSG;
 	for (uint32_t i = 0; i < len; i += 4) {
 		words_load(&word, from + i, 1);
@@ -256,9 +246,9 @@ bool controller_marked(const struct controller_memory *memory)
 int controller_next_dirty(const struct controller_memory *memory, uint32_t from)
 {
 	const struct controller_layout *l = memory->layout;
-	uint32_t *words = (void *)(memory->base + l->dirty_off);
+	uint32_t *words = (void *)(memory->base + l->header.dirty_off);
 
-	for (uint32_t w = from / 32; w < l->dirty_words; w++) {
+	for (uint32_t w = from / 32; w < l->header.dirty_words; w++) {
 		uint32_t bits = word_get(&words[w]), record;
 
 		if (w == from / 32)
@@ -266,7 +256,7 @@ int controller_next_dirty(const struct controller_memory *memory, uint32_t from)
 		if (bits == 0)
 			continue;
 		record = w * 32 + (uint32_t)__builtin_ctz(bits);
-		if (record >= l->slot_count)
+		if (record >= l->header.slot_count)
 			return -1;
 		__atomic_fetch_and(&words[w], ~(1u << record % 32), __ATOMIC_ACQUIRE);
 		return (int)record;
@@ -315,7 +305,7 @@ bool controller_shelf(const struct controller_memory *memory, struct controller_
 
 	shelf->count = __atomic_load_n(&from->count, __ATOMIC_ACQUIRE);
 	shelf->record = word_get(&from->record);
-	if (shelf->record >= memory->layout->slot_count)
+	if (shelf->record >= memory->layout->header.slot_count)
 		shelf->record = 0;
 	shelf->seconds = word_get(&from->seconds);
 	shelf->person = word_get(&from->person);
@@ -341,8 +331,9 @@ static void copy_text(const struct controller_memory *to, uint32_t record,
 {
 	const struct ows_command_text *f = text_at(from, was);
 	struct ows_command_text *t = text_at(to, record);
-	uint32_t cap = to->layout->text_cap < from->layout->text_cap ? to->layout->text_cap
-	                                                             : from->layout->text_cap;
+	uint32_t cap = to->layout->header.text_cap < from->layout->header.text_cap
+	                       ? to->layout->header.text_cap
+	                       : from->layout->header.text_cap;
 
 	words_load(t, f, (sizeof(*t) + cap) / 4);
 }
@@ -381,7 +372,7 @@ void controller_copy(const struct controller_memory *to, const struct controller
 	struct ows_command_shelf *shelf = shelf_of(to);
 
 	copy_slot(to, 0, from, 0);
-	for (uint32_t i = 1; i < to->layout->slot_count; i++)
+	for (uint32_t i = 1; i < to->layout->header.slot_count; i++)
 		if (rows[i - 1] != UINT32_MAX)
 			copy_slot(to, i, from, rows[i - 1] + 1);
 	words_load(person_at(to, 0), person_at(from, 0), OWS_PERSONS * OWS_NAME / 4);

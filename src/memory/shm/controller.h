@@ -13,12 +13,7 @@
 
 /* The layout of all memories of one generation. */
 struct controller_layout {
-	uint32_t size; /* bytes of a memory */
-	uint32_t generation, start_id;
-	uint32_t slot_off, slot_count; /* one slot for each record, record 0 included */
-	uint32_t text_off, text_cap, place_off;
-	uint32_t dirty_off, dirty_words;
-	uint32_t person_off, shelf_off;
+	struct ows_controller_header header; /* as each memory begins, but for the serial */
 	uint32_t *places; /* of each record among the texts; CONTROLLER_NO_TEXT: it is no string */
 };
 #define CONTROLLER_NO_TEXT UINT32_MAX
@@ -34,7 +29,7 @@ int controller_layout_make(struct controller_layout *layout, const struct contro
 void controller_layout_free(struct controller_layout *layout);
 
 struct controller_memory {
-	char *base; /* layout->size bytes, aligned to 64 */
+	char *base; /* layout->header.size bytes, aligned to 64 */
 	const struct controller_layout *layout;
 };
 /* A controller as it joins; owsd copies it. */

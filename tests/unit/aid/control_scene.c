@@ -161,7 +161,7 @@ void control_reload(void)
 {
 	int64_t left_ms = CONTROL_SCENE_MS;
 
-	make_layout(layouts[layout_at].generation + 1);
+	make_layout(layouts[layout_at].header.generation + 1);
 	control_prepare(control_room, &control_config, &layouts[layout_at]);
 	__atomic_store_n(&reloads, true, __ATOMIC_RELEASE);
 	sem_post(&bell);

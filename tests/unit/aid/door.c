@@ -43,7 +43,7 @@ static void must(bool held)
 /* Make the memory of a controller; a lie may be in it. */
 static void make_memory(struct door *door, struct door_controller *controller, uint32_t serial)
 {
-	size_t size = door->layout.size;
+	size_t size = door->layout.header.size;
 	struct ows_controller_header *header;
 	int fd = memfd_create("door", MFD_CLOEXEC | MFD_ALLOW_SEALING);
 
@@ -55,7 +55,7 @@ static void make_memory(struct door *door, struct door_controller *controller, u
 	controller->memory = (struct controller_memory){.base = (char *)header,
 	                                                .layout = &door->layout};
 	controller_build(&controller->memory, serial);
-	for (uint32_t i = 0; i < door->layout.slot_count; i++)
+	for (uint32_t i = 0; i < door->layout.header.slot_count; i++)
 		controller_allow(&controller->memory, i, true);
 	controller_state(&controller->memory, OWS_STATE_LIVE);
 	if (door->lie == DOOR_OTHER_MEMORY)
@@ -70,13 +70,13 @@ static void make_memory(struct door *door, struct door_controller *controller, u
 
 static size_t fill_welcome(const struct door *door, uint32_t serial, struct ows_welcome *welcome)
 {
-	size_t size = door->layout.size;
+	size_t size = door->layout.header.size;
 
 	*welcome = (struct ows_welcome){
 		.magic = door->lie == DOOR_OTHER_MAGIC ? 1 : OWS_WELCOME_MAGIC,
 		.major = door->lie == DOOR_OTHER_MAJOR ? OWS_LAYOUT_MAJOR + 1 : OWS_LAYOUT_MAJOR,
-		.generation = door->layout.generation,
-		.start_id = door->layout.start_id,
+		.generation = door->layout.header.generation,
+		.start_id = door->layout.header.start_id,
 		.serial = serial,
 		.size = (uint32_t)(door->lie == DOOR_OTHER_SIZE ? 2 * size
 	                           : door->lie == DOOR_SMALL    ? 128
@@ -232,7 +232,7 @@ void door_close(struct door *door)
 		struct door_controller *controller = &door->controllers[i];
 
 		hang_up(controller);
-		munmap(controller->memory.base, door->layout.size);
+		munmap(controller->memory.base, door->layout.header.size);
 		close(controller->memory_fd);
 		close(controller->bell);
 		close(controller->news);
@@ -261,7 +261,7 @@ void door_reload(struct door *door, uint32_t generation, uint32_t start_id, cons
 		close(controller->memory_fd);
 		make_memory(door, controller, i + 1);
 		controller_copy(&controller->memory, &old, rows);
-		munmap(old.base, before.size);
+		munmap(old.base, before.header.size);
 		if (!controller->gone)
 			send_welcome(door, controller, i + 1, 1);
 	}

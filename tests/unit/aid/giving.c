@@ -21,14 +21,14 @@ void giving_layout(struct controller_layout *layout, const uint8_t *types, uint3
 
 void giving_make(struct giving *g, const struct controller_layout *layout, uint32_t serial)
 {
-	size_t room = ((size_t)layout->size + 63) / 64 * 64;
+	size_t room = ((size_t)layout->header.size + 63) / 64 * 64;
 
 	g->memory = (struct controller_memory){aligned_alloc(64, room), layout};
 	if (!g->memory.base)
 		abort();
 	memset(g->memory.base, 0, room);
 	controller_build(&g->memory, serial);
-	for (uint32_t i = 0; i < layout->slot_count; i++)
+	for (uint32_t i = 0; i < layout->header.slot_count; i++)
 		controller_allow(&g->memory, i, true);
 	controller_state(&g->memory, OWS_STATE_LIVE);
 }
@@ -46,7 +46,8 @@ struct ows_controller_header *giving_header(struct giving *g)
 
 struct ows_command_slot *giving_slot(struct giving *g, uint32_t record)
 {
-	return (struct ows_command_slot *)(void *)(g->memory.base + g->memory.layout->slot_off) +
+	return (struct ows_command_slot *)(void *)(g->memory.base +
+	                                           g->memory.layout->header.slot_off) +
 	       record;
 }
 
@@ -54,19 +55,19 @@ struct ows_command_text *giving_text(struct giving *g, uint32_t record)
 {
 	const struct controller_layout *l = g->memory.layout;
 
-	return (void *)(g->memory.base + l->text_off +
+	return (void *)(g->memory.base + l->header.text_off +
 	                (size_t)l->places[record] *
-	                        (sizeof(struct ows_command_text) + l->text_cap));
+	                        (sizeof(struct ows_command_text) + l->header.text_cap));
 }
 
 struct ows_command_shelf *giving_shelf(struct giving *g)
 {
-	return (void *)(g->memory.base + g->memory.layout->shelf_off);
+	return (void *)(g->memory.base + g->memory.layout->header.shelf_off);
 }
 
 void giving_mark(struct giving *g, uint32_t record)
 {
-	uint32_t *dirty = (void *)(g->memory.base + g->memory.layout->dirty_off);
+	uint32_t *dirty = (void *)(g->memory.base + g->memory.layout->header.dirty_off);
 
 	dirty[record / 32] |= 1u << record % 32;
 	giving_header(g)->marked = 1;
@@ -97,7 +98,8 @@ void giving_enable(uint32_t *word, bool on)
 
 void giving_name_person(struct giving *g, unsigned index, const char *name)
 {
-	strncpy(g->memory.base + g->memory.layout->person_off + index * OWS_NAME, name, OWS_NAME);
+	strncpy(g->memory.base + g->memory.layout->header.person_off + index * OWS_NAME, name,
+	        OWS_NAME);
 }
 
 void giving_beat(struct giving *g, uint32_t period_ms)

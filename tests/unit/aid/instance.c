@@ -178,7 +178,7 @@ struct ows_command_slot *instance_slot(struct instance *in, unsigned i, uint32_t
 {
 	struct controller_memory *memory = instance_controller(in, i);
 
-	return (struct ows_command_slot *)(void *)(memory->base + memory->layout->slot_off) +
+	return (struct ows_command_slot *)(void *)(memory->base + memory->layout->header.slot_off) +
 	       record;
 }
 

@@ -155,7 +155,7 @@ static void test_a_memory_full_of_rubbish_harms_no_other_controller(void)
 	words = (void *)s.controllers[1].memory.base;
 	srand(1);
 	for (int round = 0; round < 300; round++) {
-		for (uint32_t i = 0; i < s.layout->size / 4; i++)
+		for (uint32_t i = 0; i < s.layout->header.size / 4; i++)
 			words[i] = (uint32_t)rand() << 16 ^ (uint32_t)rand();
 		giving_header(&s.controllers[1])->marked = 1;
 		scene_set(&s, 2, round & 255);

@@ -296,7 +296,7 @@ static void test_a_memory_of_zeros_commands_nothing(void)
 	scene_run(&s, 300 * SCENE_MS);
 	TEST_ASSERT_EQUAL_STRING("3", scene_at(&s, PIO));
 	scene_clear_trace(&s);
-	memset(s.controllers[0].memory.base, 0, s.layout->size);
+	memset(s.controllers[0].memory.base, 0, s.layout->header.size);
 	scene_ring(&s, 0);
 	scene_ring(&s, 2);
 	scene_run(&s, SCENE_S);

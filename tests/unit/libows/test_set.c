@@ -349,7 +349,7 @@ static void test_the_memory_of_a_stopped_owsd_takes_no_sets(void)
 /* owsd gives the pages of a memory back when it ends. */
 static void test_an_emptied_memory_takes_no_sets(void)
 {
-	memset(instance_controller(&in, 0)->base, 0, in.door->layout.size);
+	memset(instance_controller(&in, 0)->base, 0, in.door->layout.header.size);
 	expect_void();
 }
 

@@ -49,21 +49,22 @@ static void test_the_areas_of_a_memory_lie_apart_and_inside(void)
 {
 	const uint32_t area[][2] = {
 		{0, sizeof(struct ows_controller_header)},
-		{layout.slot_off, (SIGNALS + 1) * sizeof(struct ows_command_slot)},
-		{layout.dirty_off, 4 * layout.dirty_words},
-		{layout.place_off, 4 * (SIGNALS + 1)},
-		{layout.person_off, OWS_PERSONS * OWS_NAME},
-		{layout.shelf_off, sizeof(struct ows_command_shelf)},
-		{layout.text_off, 2 * (sizeof(struct ows_command_text) + layout.text_cap)},
+		{layout.header.slot_off, (SIGNALS + 1) * sizeof(struct ows_command_slot)},
+		{layout.header.dirty_off, 4 * layout.header.dirty_words},
+		{layout.header.place_off, 4 * (SIGNALS + 1)},
+		{layout.header.person_off, OWS_PERSONS * OWS_NAME},
+		{layout.header.shelf_off, sizeof(struct ows_command_shelf)},
+		{layout.header.text_off,
+	         2 * (sizeof(struct ows_command_text) + layout.header.text_cap)},
 	};
 
 	for (size_t i = 0; i < sizeof(area) / sizeof(area[0]); i++) {
 		TEST_ASSERT_EQUAL_UINT32(0, area[i][0] % 8);
-		TEST_ASSERT_TRUE(area[i][0] + area[i][1] <= layout.size);
+		TEST_ASSERT_TRUE(area[i][0] + area[i][1] <= layout.header.size);
 		if (i)
 			TEST_ASSERT_TRUE(area[i][0] >= area[i - 1][0] + area[i - 1][1]);
 	}
-	TEST_ASSERT_TRUE(layout.dirty_words * 32 > SIGNALS);
+	TEST_ASSERT_TRUE(layout.header.dirty_words * 32 > SIGNALS);
 	TEST_ASSERT_EQUAL_UINT32(CONTROLLER_NO_TEXT, layout.places[0]);
 	TEST_ASSERT_EQUAL_UINT32(CONTROLLER_NO_TEXT, layout.places[NUMBER]);
 	TEST_ASSERT_EQUAL_UINT32(0, layout.places[STRING]);
@@ -152,7 +153,7 @@ static void test_marks_are_found_in_order_and_once(void)
 
 static void test_marks_of_slots_that_do_not_exist_are_nothing(void)
 {
-	uint32_t *dirty = (void *)(controller.memory.base + layout.dirty_off);
+	uint32_t *dirty = (void *)(controller.memory.base + layout.header.dirty_off);
 
 	dirty[1] = 0xffffffffu << (SIGNALS + 1) % 32;
 	TEST_ASSERT_EQUAL_INT(-1, controller_next_dirty(&controller.memory, 0));
@@ -165,7 +166,7 @@ static void test_a_text_with_a_wrong_length_or_check_is_refused(void)
 	TEST_ASSERT_EQUAL_STRING("boiler", text);
 	giving_text(&controller, STRING)->len = 5;
 	TEST_ASSERT_EQUAL_INT(-EBADMSG, controller_text(&controller.memory, STRING, text));
-	giving_text(&controller, STRING)->len = layout.text_cap + 1;
+	giving_text(&controller, STRING)->len = layout.header.text_cap + 1;
 	TEST_ASSERT_EQUAL_INT(-EBADMSG, controller_text(&controller.memory, STRING, text));
 	giving_text(&controller, STRING)->len = UINT32_MAX;
 	TEST_ASSERT_EQUAL_INT(-EBADMSG, controller_text(&controller.memory, STRING, text));
@@ -178,7 +179,7 @@ static void test_names_are_cut_and_without_control_characters(void)
 	giving_name_person(&controller, 2, "anna\n\033[2J");
 	controller_person(&controller.memory, 3, name);
 	TEST_ASSERT_EQUAL_STRING("anna??[2J", name);
-	memset(controller.memory.base + layout.person_off, 'x', OWS_NAME);
+	memset(controller.memory.base + layout.header.person_off, 'x', OWS_NAME);
 	controller_person(&controller.memory, 1, name);
 	TEST_ASSERT_EQUAL_UINT(OWS_NAME - 1, strlen(name));
 	controller_person(&controller.memory, 0, name);
@@ -260,7 +261,7 @@ static void test_rubbish_in_the_memory_harms_nothing(void)
 	for (uint32_t i = 0; i < SIGNALS; i++)
 		rows[i] = i;
 	for (int round = 0; round < 500; round++) {
-		for (uint32_t i = 0; i < layout.size; i += 4)
+		for (uint32_t i = 0; i < layout.header.size; i += 4)
 			((uint32_t *)(void *)controller.memory.base)[i / 4] =
 				round % 2 ? random_number() : random_number() % 70;
 		for (int i = 0, at = 0; i < 3 * SIGNALS && at >= 0; i++)
@@ -273,14 +274,14 @@ static void test_rubbish_in_the_memory_harms_nothing(void)
 			TEST_ASSERT_TRUE(strnlen(name, OWS_NAME) < OWS_NAME);
 			if (layout.places[i] != CONTROLLER_NO_TEXT)
 				TEST_ASSERT_TRUE(controller_text(&controller.memory, i, text) <=
-				                 (int)layout.text_cap);
+				                 (int)layout.header.text_cap);
 		}
 		controller_shelf(&controller.memory, &shelf);
 		TEST_ASSERT_TRUE(shelf.record <= SIGNALS && shelf.person <= OWS_PERSONS);
 		controller_beat(&controller.memory, &beat);
 		controller_copy(&next.memory, &controller.memory, rows);
 		TEST_ASSERT_EQUAL_HEX32(OWS_CONTROLLER_MAGIC, giving_header(&next)->magic);
-		TEST_ASSERT_EQUAL_UINT32(layout.size, giving_header(&next)->size);
+		TEST_ASSERT_EQUAL_UINT32(layout.header.size, giving_header(&next)->size);
 	}
 }
 

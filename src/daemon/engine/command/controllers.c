@@ -121,7 +121,7 @@ static bool may_set(const struct joining_controller *controller)
 	const struct controller_layout *l = controller->memory.layout;
 	uint32_t any = 0;
 
-	for (uint32_t i = 0; controller->rights && i < l->dirty_words; i++)
+	for (uint32_t i = 0; controller->rights && i < l->header.dirty_words; i++)
 		any |= controller->rights[i];
 	return !controller->rights || any;
 }

@@ -272,7 +272,7 @@ static void refill_looks(struct engine *e, struct known_controller *g)
 static bool look_round(struct engine *e, uint32_t controller)
 {
 	struct known_controller *g = &e->controllers[controller];
-	uint32_t begin = g->look_from, cost = 1 + g->as.memory.layout->dirty_words / 64;
+	uint32_t begin = g->look_from, cost = 1 + g->as.memory.layout->header.dirty_words / 64;
 
 	if (g->looks <= cost)
 		return false;
