@@ -69,29 +69,17 @@ struct ows_command_text *give_text(const struct give *give, uint32_t record)
 	return (void *)(give->base + give->header.text_off + place * each);
 }
 
-static void store_bytes(char *to, const char *text, size_t len)
-{
-	for (size_t i = 0; i < len; i += 4) {
-		uint32_t word = 0;
-
-		memcpy(&word, text + i, len - i < 4 ? len - i : 4);
-		words_store(to + i, &word, 1);
-	}
-}
-
 void give_store_text(struct ows_command_text *to, const char *text, size_t len)
 {
 	word_set(&to->len, (uint32_t)len);
-	store_bytes((char *)(to + 1), text, len);
+	words_store_text((char *)(to + 1), text, len);
 	word_set(&to->check, ows_check_bytes(text, len));
 }
 
 void give_store_name(char *to, const char *text, size_t size)
 {
-	size_t len = strnlen(text, size - 1), whole = (len + 3) / 4 * 4;
-	const uint32_t nothing = 0;
+	char whole[OWS_TEXT] = "";
 
-	store_bytes(to, text, len);
-	for (size_t i = whole; i < size; i += 4)
-		words_store(to + i, &nothing, 1);
+	memcpy(whole, text, strnlen(text, size - 1));
+	words_store(to, whole, size / 4);
 }

@@ -30,7 +30,7 @@ void give_unmap(struct give *give);
 struct ows_command_text *give_text(const struct give *give, uint32_t record);
 /* Store len bytes of text with its check word; len is at most text_cap. */
 void give_store_text(struct ows_command_text *to, const char *text, size_t len);
-/* Store a text and fill it up with NUL to size, a multiple of 4. */
+/* Store a text and fill it up with NUL to size, a multiple of 4 and at most OWS_TEXT. */
 void give_store_name(char *to, const char *text, size_t size);
 
 static inline struct ows_controller_header *give_header(const struct give *give)

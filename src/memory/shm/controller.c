@@ -191,15 +191,11 @@ void controller_load(const struct controller_memory *memory, uint32_t record,
 int controller_text(const struct controller_memory *memory, uint32_t record, char *text)
 {
 	const struct ows_command_text *t = text_at(memory, record);
-	const char *from = (const char *)(t + 1);
-	uint32_t len = word_get(&t->len), check = word_get(&t->check), word;
+	uint32_t len = word_get(&t->len), check = word_get(&t->check);
 
 	if (len > memory->layout->header.text_cap)
 		return -EBADMSG;
-	for (uint32_t i = 0; i < len; i += 4) {
-		words_load(&word, from + i, 1);
-		memcpy(text + i, &word, len - i < 4 ? len - i : 4);
-	}
+	words_load_text(text, (const char *)(t + 1), len);
 	text[len] = '\0';
 	return check == ows_check_bytes(text, len) ? (int)len : -EBADMSG;
 }

@@ -322,17 +322,6 @@ void image_build(const struct image_plan *plan, void *memory, struct image *imag
 	}
 }
 
-static void store_text(char *to, const char *from, uint32_t len)
-{
-	uint32_t word;
-
-	for (uint32_t i = 0; i < len; i += 4) {
-		word = 0;
-		memcpy(&word, from + i, len - i < 4 ? len - i : 4);
-		words_store(to + i, &word, 1);
-	}
-}
-
 void image_publish(struct image *image, uint32_t record, const struct ows_sample *sample,
                    const struct ows_attrs *attrs, const char *text)
 {
@@ -350,8 +339,8 @@ void image_publish(struct image *image, uint32_t record, const struct ows_sample
 	word_fence(__ATOMIC_RELEASE);
 	words_store(slot, &whole, SAMPLE_WORDS + ATTRS_WORDS);
 	if (sample->len != 0)
-		store_text(image->base + r->text_off + (size_t)(n & 1) * r->text_cap, text,
-		           sample->len);
+		words_store_text(image->base + r->text_off + (size_t)(n & 1) * r->text_cap, text,
+		                 sample->len);
 	__atomic_store_n(&r->seq, 2 * n, __ATOMIC_RELEASE);
 }
 

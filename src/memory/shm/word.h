@@ -7,6 +7,7 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #if __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
 #error "the layout is little-endian and so must be the machine"
@@ -79,4 +80,26 @@ static inline void words_store(void *to, const void *from, size_t n)
 
 	for (size_t i = 0; i < n; i++)
 		__atomic_store_n(&t[i], f[i], WORD_STORE);
+}
+
+/* Copy len bytes of text out of shared memory, word by word: it has room up to a whole one. */
+static inline void words_load_text(char *to, const char *from, size_t len)
+{
+	uint32_t word;
+
+	for (size_t i = 0; i < len; i += 4) {
+		words_load(&word, from + i, 1);
+		memcpy(to + i, &word, len - i < 4 ? len - i : 4);
+	}
+}
+
+/* The same into shared memory; NUL fills the last word up. */
+static inline void words_store_text(char *to, const char *from, size_t len)
+{
+	for (size_t i = 0; i < len; i += 4) {
+		uint32_t word = 0;
+
+		memcpy(&word, from + i, len - i < 4 ? len - i : 4);
+		words_store(to + i, &word, 1);
+	}
 }
