@@ -6,8 +6,8 @@
  * connects to owsd's control socket, and gets a memory of its own for that.
  *
  * A handle belongs to one thread at a time. C11, C++11 and later. Real-time threads may call
- * ows_get(), ows_get_text(), ows_get_signal(), ows_get_signal_text(), ows_snapshot(),
- * ows_command(), ows_alarm_state(), ows_origin(), ows_now(): no system call, no lock, no wait, no
+ * ows_get(), ows_get_text(), ows_get_signal(), ows_get_signal_text(), ows_command(),
+ * ows_alarm_state(), ows_origin(), ows_now(): no system call, no lock, no wait, no
  * allocation, bounded, even when owsd dies in the middle of a write; and ows_set() with its
  * relatives, ows_acknowledge(), ows_beat(): the same, but for one write() to an eventfd when owsd
  * sleeps. They never open anything again. (ows_now() and what commands read the clock by the
@@ -378,11 +378,6 @@ int ows_get_signal(struct ows *h, int signal, int64_t now_ns, struct ows_value *
 /* The same with the text of the value, as ows_get_text(). */
 int ows_get_signal_text(struct ows *h, int signal, int64_t now_ns, struct ows_value *value,
                         char *text, size_t size);
-/*
- * Get the values of the first n signals; returns how many. Each value is whole in itself; the
- * values may be of different moments.
- */
-int ows_snapshot(struct ows *h, int64_t now_ns, struct ows_value *values, int n);
 
 /* owsd itself. */
 struct ows_daemon {

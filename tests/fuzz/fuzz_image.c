@@ -173,7 +173,7 @@ static void look_around(void)
 
 static void read_all(void)
 {
-	struct ows_value value, values[16];
+	struct ows_value value;
 	struct ows_alarm_state state = {0};
 	struct ows_origin origin;
 	struct ows_command told;
@@ -194,7 +194,8 @@ static void read_all(void)
 		ows_origin(h, id, &origin);
 		ows_command(h, id, &told);
 	}
-	ows_snapshot(h, now_ns, values, 16);
+	for (int i = 0; i < 16; i++)
+		ows_get_signal(h, i, now_ns, &value);
 	ows_get_signal(h, (int)fuzz_byte(&fuzz), now_ns, &value);
 	free(text);
 }

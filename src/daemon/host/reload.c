@@ -131,24 +131,9 @@ bool host_may_reload(const struct host *h)
 	return !h->unshown;
 }
 
-int host_asked_bell(const struct host *h)
+struct control *host_control(const struct host *h)
 {
-	return control_asked_bell(h->control);
-}
-
-bool host_asked(struct host *h)
-{
-	return control_asked(h->control);
-}
-
-void host_take_askers(struct host *h)
-{
-	control_take_askers(h->control);
-}
-
-void host_answer(struct host *h, int err, const char *why)
-{
-	control_answer(h->control, err, why);
+	return h->control;
 }
 
 void host_refused(struct host *h, const char *why)

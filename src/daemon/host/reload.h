@@ -6,21 +6,13 @@
 #include <stddef.h>
 
 struct config;
+struct control;
 struct host;
 
 /* False until the image of the reload before is in place. Supervisor only. */
 bool host_may_reload(const struct host *host);
-/* A bell (hal/base/bell.h) that rings when a program asks for a reload at the control socket. */
-int host_asked_bell(const struct host *host);
-/* Does a program wait for a reload? Silences the bell. Supervisor only. */
-bool host_asked(struct host *host);
-/*
- * Around a reload, for the programs that ask for one before it begins: host_answer() reports them
- * what came of it: 0, and warnings in why ("": none), or a negative errno with the reason in why.
- * Supervisor only.
- */
-void host_take_askers(struct host *host);
-void host_answer(struct host *host, int err, const char *why);
+/* Where programs ask for a reload, and are answered. Supervisor only. */
+struct control *host_control(const struct host *host);
 /*
  * A configuration was refused: consumers see why until one is taken over or owsd ends. Supervisor
  * only.

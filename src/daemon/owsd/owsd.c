@@ -22,6 +22,7 @@
 #include "src/ground/service/streams.h"
 #include "src/ground/service/unix_signals.h"
 #include "src/ground/text/log.h"
+#include "src/memory/control/control.h"
 #include "src/memory/shm/porter.h"
 #include "src/public/ows.h"
 #include <signal.h>
@@ -254,7 +255,7 @@ static void reload(struct host *host, const struct arguments *a, struct log *log
 	int err;
 
 	notify_send(notify, NOTIFY_RELOADING);
-	host_take_askers(host);
+	control_take_askers(host_control(host));
 	err = reload_file(host, a, log, why, sizeof(why));
 	if (!err) {
 		report_served(host, a, log, notify);
@@ -262,7 +263,7 @@ static void reload(struct host *host, const struct arguments *a, struct log *log
 		host_refused(host, why);
 		notify_status(notify, "reload refused, all goes on as before: %s", why);
 	}
-	host_answer(host, err, why);
+	control_answer(host_control(host), err, why);
 	notify_send(notify, NOTIFY_READY);
 }
 
@@ -284,7 +285,7 @@ static bool supervise(struct host *host, const struct arguments *a, struct insta
                       struct log *log, const struct notify *notify, int prefix,
                       struct unix_signals *signals)
 {
-	const int bells[] = {log_bell(log), host_asked_bell(host)};
+	const int bells[] = {log_bell(log), control_asked_bell(host_control(host))};
 	int64_t fed_ns = 0, reload_ns = 0, wait_ns = SUPERVISE_NS, drop_ns = ows_now() + SETTLED_NS;
 	bool wanted;
 
@@ -293,7 +294,7 @@ static bool supervise(struct host *host, const struct arguments *a, struct insta
 	while (!signals->end) {
 		int64_t now_ns = ows_now();
 
-		wanted = host_asked(host) || signals->reload;
+		wanted = control_asked(host_control(host)) || signals->reload;
 		if (wanted && now_ns >= reload_ns && host_may_reload(host)) {
 			signals->reload = wanted = false;
 			reload(host, a, log, notify);

@@ -209,17 +209,6 @@ int ows_get_signal(struct ows *h, int signal, int64_t now_ns, struct ows_value *
 	                  map_info(&h->map, (unsigned)signal + 1)->stale_after_ns, now_ns, value);
 }
 
-int ows_snapshot(struct ows *h, int64_t now_ns, struct ows_value *values, int n)
-{
-	int count = ows_count(h);
-
-	if (n > count)
-		n = count;
-	for (int i = 0; i < n; i++)
-		ows_get_signal(h, i, now_ns, &values[i]);
-	return n > 0 ? n : 0;
-}
-
 static int print_number(const struct ows_value *value, char *text, size_t size)
 {
 	char room[VALUE_TEXT_MAX];

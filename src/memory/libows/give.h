@@ -19,7 +19,7 @@ static inline bool area_inside(size_t room, uint32_t off, uint32_t count, uint32
 
 struct give {
 	char *base; /* NULL: none */
-	/* as it began, checked, and with the serial of the welcome; what is there now is not read */
+	/* as it began, checked, with the serial of the welcome; never read again */
 	struct ows_controller_header header;
 };
 

@@ -101,7 +101,6 @@ int ows_target(struct ows *h, int index, struct ows_target *target)
 		.name = entry->name,
 		.state = word_get(&entry->state),
 		.reconnects = word_get(&entry->reconnects),
-		/* Before layout 1.2 owsd had one target, and these words were 0. */
 		.group = entry->group,
 		.moves = word_get(&entry->moves),
 	};
@@ -148,55 +147,44 @@ int ows_device(struct ows *h, int index, struct ows_device *device)
 	return 0;
 }
 
-static int line_entry(struct ows *h, uint32_t area, uint32_t place, struct ows_log_entry *entry)
+/* The line at this place of an area; number 0: none was written. */
+static int placed_line(struct ows *h, enum ows_area area, uint32_t place, struct ows_log_line *line)
 {
-	return reader_entry(map_entry(&h->map, area, place), entry, sizeof(*entry)) ? 0 : -EIO;
+	struct ows_log_entry e;
+
+	if (place >= map_count(&h->map, area))
+		return -ENOENT;
+	if (!reader_entry(map_entry(&h->map, area, place), &e, sizeof(e)))
+		return -EIO;
+	if (!e.number)
+		return -ENOENT;
+	*line = (struct ows_log_line){.number = e.number, .level = e.level, .time_ns = e.time_ns};
+	memcpy(line->text, e.text, sizeof(line->text) - 1);
+	return 0;
 }
 
 uint32_t ows_log_last(struct ows *h)
 {
 	uint32_t last = 0;
-	struct ows_log_entry e;
+	struct ows_log_line line;
 
 	for (uint32_t i = 0; i < map_count(&h->map, OWS_AREA_LOG); i++)
-		if (line_entry(h, OWS_AREA_LOG, i, &e) == 0 && e.number > last)
-			last = e.number;
+		if (placed_line(h, OWS_AREA_LOG, i, &line) == 0 && line.number > last)
+			last = line.number;
 	return last;
 }
 
 int ows_log_line(struct ows *h, uint32_t number, struct ows_log_line *line)
 {
 	uint32_t count = map_count(&h->map, OWS_AREA_LOG);
-	struct ows_log_entry e;
-	int err;
+	struct ows_log_line there;
+	int err = count ? placed_line(h, OWS_AREA_LOG, number % count, &there) : -ENOENT;
 
-	if (!count || !number)
-		return -ENOENT;
-	err = line_entry(h, OWS_AREA_LOG, number % count, &e);
 	if (err)
 		return err;
-	if (e.number != number)
+	if (there.number != number)
 		return -ENOENT;
-	*line = (struct ows_log_line){.number = number, .level = e.level, .time_ns = e.time_ns};
-	memcpy(line->text, e.text, sizeof(line->text) - 1);
-	return 0;
-}
-
-/* The entry at this place of an area; number 0: none was written. */
-static int placed_line(struct ows *h, uint32_t area, uint32_t place, struct ows_log_line *line)
-{
-	struct ows_log_entry e;
-	int err;
-
-	if (place >= map_count(&h->map, area))
-		return -ENOENT;
-	err = line_entry(h, area, place, &e);
-	if (err)
-		return err;
-	if (!e.number)
-		return -ENOENT;
-	*line = (struct ows_log_line){.number = e.number, .level = e.level, .time_ns = e.time_ns};
-	memcpy(line->text, e.text, sizeof(line->text) - 1);
+	*line = there;
 	return 0;
 }
 

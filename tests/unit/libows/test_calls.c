@@ -61,14 +61,14 @@ static void read_all(int64_t now_ns)
 	struct ows_command command;
 	struct ows_alarm_state state;
 	struct ows_origin origin;
-	struct ows_value values[3];
+	struct ows_value value;
 	char text[80];
 
 	for (int i = 0; i < 1000; i++) {
-		ows_get(h, room, now_ns + i, &values[0]);
-		ows_get(h, age, now_ns + i, &values[0]);
-		ows_get_text(h, label, now_ns + i, &values[0], text, sizeof(text));
-		ows_snapshot(h, now_ns + i, values, 3);
+		ows_get(h, room, now_ns + i, &value);
+		ows_get(h, age, now_ns + i, &value);
+		ows_get_text(h, label, now_ns + i, &value, text, sizeof(text));
+		ows_get_signal(h, 1, now_ns + i, &value);
 		ows_command(h, valve, &command);
 		ows_alarm_state(h, room, &state);
 		ows_origin(h, valve, &origin);
