@@ -9,6 +9,7 @@
 #include "src/config/edit/edit.h"
 #include "src/config/edit/edit_block.h"
 #include "src/config/edit/rio_write.h"
+#include "src/config/edit/steady.h"
 #include "src/ground/signal/value.h"
 
 const char edit_empty[] = "OwsDrv {\n"
@@ -230,8 +231,8 @@ static void warn_of_patterns(const struct rio *rio, const char *from, const char
 	}
 }
 
-int edit_set(struct rio **rio, const char *name, const char *const *settings, unsigned count,
-             struct config_report *report)
+static int set_all(struct rio **rio, const char *name, const char *const *settings, unsigned count,
+                   struct config_report *report)
 {
 	char current[RIO_VALUE_MAX + sizeof(EDIT_BUS)];
 	int err = check_once(settings, count, report);
@@ -271,6 +272,15 @@ int edit_set(struct rio **rio, const char *name, const char *const *settings, un
 	return err;
 }
 
+int edit_set(struct rio **rio, const char *name, const char *const *settings, unsigned count,
+             struct config_report *report)
+{
+	struct steady steady;
+	int err = steady_begin(*rio, &steady);
+
+	return err ? err : steady_end(rio, &steady, set_all(rio, name, settings, count, report));
+}
+
 int edit_rename(struct rio **rio, const char *name, const char *to, struct config_report *report)
 {
 	const char *setting;
@@ -293,8 +303,8 @@ int edit_rename(struct rio **rio, const char *name, const char *to, struct confi
 	return err;
 }
 
-int edit_unset(struct rio **rio, const char *name, const char *const *keys, unsigned count,
-               struct config_report *report)
+static int unset_all(struct rio **rio, const char *name, const char *const *keys, unsigned count,
+                     struct config_report *report)
 {
 	int err = 0;
 
@@ -312,6 +322,15 @@ int edit_unset(struct rio **rio, const char *name, const char *const *keys, unsi
 		err = rio_remove(rio, node);
 	}
 	return err;
+}
+
+int edit_unset(struct rio **rio, const char *name, const char *const *keys, unsigned count,
+               struct config_report *report)
+{
+	struct steady steady;
+	int err = steady_begin(*rio, &steady);
+
+	return err ? err : steady_end(rio, &steady, unset_all(rio, name, keys, count, report));
 }
 
 int edit_count(struct rio **rio)
@@ -358,6 +377,7 @@ int edit_add(struct rio **rio, const char *name, const char *path, const char *c
              unsigned count, struct config_report *report)
 {
 	struct rio_node *driver = edit_driver(*rio);
+	struct steady steady;
 	int err;
 
 	if (!driver) {
@@ -374,9 +394,13 @@ int edit_add(struct rio **rio, const char *name, const char *path, const char *c
 		report_error(report, command_line, "control characters are not allowed");
 		return -EINVAL;
 	}
+	err = steady_begin(*rio, &steady);
+	if (err)
+		return err;
 	err = add_item(rio, name, path, has_bits(driver));
 	if (!err && count)
-		err = edit_set(rio, name, settings, count, report);
+		err = set_all(rio, name, settings, count, report);
+	err = steady_end(rio, &steady, err);
 	return err ? err : edit_count(rio);
 }
 
@@ -394,13 +418,31 @@ int edit_remove(struct rio **rio, const char *name, struct config_report *report
 {
 	enum option_place place;
 	struct rio_node *block = edit_block(*rio, name, &place, report);
-	int err = -EINVAL;
+	struct steady steady;
+	int err;
 
 	if (block && place == PLACE_DRIVER)
 		report_error(report, command_line, EDIT_DRIVER " cannot be removed");
-	else if (block)
-		err = rio_remove(rio, block);
+	if (!block || place == PLACE_DRIVER)
+		return -EINVAL;
+	err = steady_begin(*rio, &steady);
+	if (err)
+		return err;
+	if (place == PLACE_ITEM)
+		steady_remove(&steady, steady_index(*rio, block));
+	err = steady_end(rio, &steady, rio_remove(rio, block));
 	return err ? err : edit_count(rio);
+}
+
+static int move_item(struct rio **rio, struct rio_node *item, struct rio_node *there, bool behind)
+{
+	struct steady steady;
+	int err = steady_begin(*rio, &steady);
+
+	if (err)
+		return err;
+	steady_move(&steady, steady_index(*rio, item), steady_index(*rio, there) + behind);
+	return steady_end(rio, &steady, rio_move(rio, item, there, behind));
 }
 
 int edit_move(struct rio **rio, const char *name, const char *other, bool behind,
@@ -408,7 +450,7 @@ int edit_move(struct rio **rio, const char *name, const char *other, bool behind
 {
 	struct rio_node *item = find_item_or_report(*rio, name, report);
 	struct rio_node *there = item ? find_item_or_report(*rio, other, report) : NULL;
-	int err = there ? rio_move(rio, item, there, behind) : -EINVAL;
+	int err = there ? move_item(rio, item, there, behind) : -EINVAL;
 
 	if (there && err == -EINVAL)
 		report_error(report, command_line,

@@ -9,7 +9,7 @@
 #include "src/config/edit/edit_block.h"
 #include "src/config/edit/edit_device.h"
 #include "src/config/edit/rio_write.h"
-#include "src/config/read/identity.h"
+#include "src/config/edit/steady.h"
 
 /* The path of an item, as it is written and in parts. */
 struct item_path {
@@ -76,56 +76,14 @@ static bool new_path(const struct item_path *in, const uint8_t rom[ROM_LEN], con
 	return n >= 0 && (size_t)n < size;
 }
 
-/* The identity of an item that has no Identity; the file may have errors yet. */
-static void find_identity(const struct rio *rio, const struct rio_node *item,
-                          const struct item_path *in, char identity[IDENTITY_MAX])
-{
-	bool before = true;
-	unsigned number = 1;
-
-	identity_of_path(&in->path, identity);
-	for (const struct rio_node *i = edit_items(rio); i; i = rio_next(i)) {
-		const struct rio_node *given = rio_child(i, option_table[OPT_IDENTITY].key);
-		const struct rio_node *path = rio_child(i, option_table[OPT_PATH].key);
-		char other[IDENTITY_MAX] = "";
-		struct path parts;
-
-		before = before && i != item;
-		if (given)
-			snprintf(other, sizeof(other), "%s", given->value);
-		else if (before && path && !path_split(path->value, strlen(path->value), &parts))
-			identity_of_path(&parts, other);
-		number += !strcmp(identity, other);
-	}
-	identity_number(number, identity);
-}
-
-/* The item with the device gets an Identity, if it has none: others know it on by that. */
-static int keep_identity(struct rio **rio, const uint8_t rom[ROM_LEN])
-{
-	const char *key = option_table[OPT_IDENTITY].key;
-	char identity[IDENTITY_MAX];
-	struct item_path in;
-	struct rio_node *item = edit_device_find(*rio, rom, &in);
-
-	if (rio_child(item, key))
-		return 0;
-	find_identity(*rio, item, &in, identity);
-	return rio_set_text(rio, item, key, identity);
-}
-
 /* In the first item that has it. */
 static int replace_in(struct rio **rio, const uint8_t before[ROM_LEN], const uint8_t after[ROM_LEN],
                       const char *location, struct config_report *report)
 {
-	int err = keep_identity(rio, before);
 	char text[PATH_LEN_MAX + 64];
-	struct rio_node *item;
 	struct item_path in;
+	struct rio_node *item = edit_device_find(*rio, before, &in);
 
-	if (err)
-		return err;
-	item = edit_device_find(*rio, before, &in);
 	assert(item); /* it was there, and has its path still */
 	if (!new_path(&in, after, location, text, sizeof(text))) {
 		report_error(report, (struct rio_position){0}, "the path \"%s\" would be too long",
@@ -133,6 +91,22 @@ static int replace_in(struct rio **rio, const uint8_t before[ROM_LEN], const uin
 		return -EINVAL;
 	}
 	return rio_set_text(rio, item, option_table[OPT_PATH].key, text);
+}
+
+static int replace_all(struct rio **rio, const uint8_t before[ROM_LEN],
+                       const uint8_t after[ROM_LEN], const char *location,
+                       struct config_report *report)
+{
+	struct steady steady;
+	struct item_path in;
+	int err = steady_begin(*rio, &steady);
+
+	if (err)
+		return err;
+	do
+		err = replace_in(rio, before, after, location, report);
+	while (!err && edit_device_find(*rio, before, &in));
+	return steady_end(rio, &steady, err);
 }
 
 int edit_replace(struct rio **rio, const uint8_t before[ROM_LEN], const uint8_t after[ROM_LEN],
@@ -157,8 +131,6 @@ int edit_replace(struct rio **rio, const uint8_t before[ROM_LEN], const uint8_t 
 		report_error(report, (struct rio_position){0},
 		             "more than %d items have the device %s", EDIT_REPLACE_MAX, old);
 	else
-		do
-			err = replace_in(rio, before, after, location, report);
-		while (!err && edit_device_find(*rio, before, &in));
+		err = replace_all(rio, before, after, location, report);
 	return err;
 }

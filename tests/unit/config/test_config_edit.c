@@ -14,6 +14,7 @@
 
 #include "src/config/edit/commit.h"
 #include "src/config/edit/edit.h"
+#include "src/config/edit/edit_block.h"
 #include "src/config/edit/edit_device.h"
 #include "src/config/edit/replace.h"
 #include "tests/unit/aid/said.h"
@@ -540,6 +541,84 @@ static void test_items_of_one_path_keep_their_identities_when_the_device_is_repl
 	TEST_ASSERT_NULL(strstr(rio->text, "67C6697351FF"));
 }
 
+#define THREE \
+	"OwsDrv {\n" \
+	"Item {\nName a\nPath /x/y\nType double\n}\n" \
+	"Item {\nName b\nPath /x/y\nType double\n}\n" \
+	"Item {\nName c\nPath /x/y\nType double\n}\n" \
+	"}\n"
+
+/* The Identity of the item; "": it has none. */
+static const char *identity_of(const char *name)
+{
+	const struct rio_node *item = edit_item(rio, name);
+	const struct rio_node *node = item ? rio_child(item, "Identity") : NULL;
+
+	return node ? node->value : "";
+}
+
+static void expect_identities(const char *a, const char *b, const char *c)
+{
+	TEST_ASSERT_EQUAL_STRING(a, identity_of("a"));
+	TEST_ASSERT_EQUAL_STRING(b, identity_of("b"));
+	TEST_ASSERT_EQUAL_STRING(c, identity_of("c"));
+	TEST_ASSERT_EQUAL_STRING("", said);
+}
+
+static void test_an_item_that_stays_has_the_same_identity_after_every_edit(void)
+{
+	static const char *const key[] = {"Identity"};
+	static const char *const others[] = {"Path=/q/y", "Identity=/x/y#3"};
+
+	parse(THREE);
+	TEST_ASSERT_EQUAL_INT(0, edit_remove(&rio, "a", &report));
+	expect_identities("", "/x/y#2", "/x/y#3");
+	parse(THREE);
+	TEST_ASSERT_EQUAL_INT(0, edit_remove(&rio, "c", &report));
+	expect_identities("", "", "");
+
+	parse(THREE);
+	TEST_ASSERT_EQUAL_INT(0, edit_move(&rio, "a", "b", true, &report));
+	expect_identities("", "/x/y#2", "");
+	parse(THREE);
+	TEST_ASSERT_EQUAL_INT(0, edit_move(&rio, "c", "a", false, &report));
+	expect_identities("", "", "/x/y#3");
+
+	parse(THREE);
+	TEST_ASSERT_EQUAL_INT(0, set("b", "Path=/q/y"));
+	expect_identities("", "/x/y#2", "");
+	TEST_ASSERT_EQUAL_INT(0, set("b", "Path=/r/y"));
+	expect_identities("", "/x/y#2", "");
+	/* what is given by hand stays, and is refused where another has it */
+	parse(THREE);
+	TEST_ASSERT_EQUAL_INT(0, edit_set(&rio, "b", others, 2, &report));
+	expect_identities("", "/x/y#3", "/x/y#3");
+	/* without it the item is counted after those that have theirs */
+	parse(THREE);
+	TEST_ASSERT_EQUAL_INT(0, set("a", "Identity=/o/y"));
+	expect_identities("/o/y", "/x/y#2", "/x/y#3");
+	TEST_ASSERT_EQUAL_INT(0, edit_unset(&rio, "b", key, 1, &report));
+	expect_identities("/o/y", "", "/x/y#3");
+}
+
+static void test_an_identity_is_written_only_where_it_would_change(void)
+{
+	static const char *const path[] = {"Path"};
+
+	parse(THREE);
+	TEST_ASSERT_EQUAL_INT(0, set("a", "Path=/uncached/x/y"));
+	TEST_ASSERT_EQUAL_INT(0, set("b", "Name=d"));
+	TEST_ASSERT_EQUAL_INT(0, set("c", "Unit=K"));
+	TEST_ASSERT_EQUAL_INT(0, edit_add(&rio, "e", "/x/y", NULL, 0, &report));
+	TEST_ASSERT_NULL(strstr(rio->text, "Identity"));
+	/* a new item has none that stays */
+	TEST_ASSERT_EQUAL_INT(
+		0, edit_add(&rio, "f", "/x/y", (const char *const[]){"Path=/q/y"}, 1, &report));
+	TEST_ASSERT_NULL(strstr(rio->text, "Identity"));
+	TEST_ASSERT_EQUAL_INT(0, edit_unset(&rio, "e", path, 1, &report));
+	TEST_ASSERT_NULL(strstr(rio->text, "Identity"));
+}
+
 static void test_a_replacement_that_cannot_be_meant_is_refused(void)
 {
 	parse(genuine);
@@ -660,6 +739,8 @@ int main(void)
 	RUN_TEST(test_a_bus_block_is_made_changed_and_removed_by_its_target);
 	RUN_TEST(test_a_replaced_device_changes_the_paths_of_its_items_only);
 	RUN_TEST(test_items_of_one_path_keep_their_identities_when_the_device_is_replaced);
+	RUN_TEST(test_an_item_that_stays_has_the_same_identity_after_every_edit);
+	RUN_TEST(test_an_identity_is_written_only_where_it_would_change);
 	RUN_TEST(test_a_replacement_that_cannot_be_meant_is_refused);
 	RUN_TEST(test_a_device_with_more_items_than_any_has_is_not_replaced);
 	RUN_TEST(test_the_words_of_the_dialog_lead_to_the_keys);

@@ -44,11 +44,19 @@ static void test_items_of_one_path_are_counted_in_the_order_of_the_file(void)
 	                  (const char *const[]){"/x/y#2", "/x/y"}, 2);
 }
 
+static void test_a_number_that_is_given_is_passed_over(void)
+{
+	expect_identities(OF("a", "/x/y", "") OF("b", "/x/y", "")
+	                          OF("c", "/q/y", "Identity \"/x/y#2\"") OF("d", "/x/y", "")
+	                                  OF("e", "/r/y", "Identity \"/x/y#4\""),
+	                  (const char *const[]){"/x/y", "/x/y#3", "/x/y#2", "/x/y#5", "/x/y#4"}, 5);
+}
+
 static void test_an_identity_is_given_once_and_is_a_path(void)
 {
 	static const struct line cases[] = {
 		{OF("a", "/x/y", "Identity /o/y") "\n" OF("b", "/q/y", "Identity /o/y"),
-	         "f:3:13: error: the identity \"/o/y\" is given twice, first in line 2\n"},
+	         "f:3:13: error: the identity \"/o/y\" is given twice, first in line 2: give one of them another Identity\n"},
 		{OF("a", "/x/y", "Identity room"),
 	         "f:2:46: error: Identity \"room\": expected the path that the signal had, such "
 	         "as /28.FF01/temperature\n"},
@@ -74,6 +82,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_an_item_is_its_path_unless_identity_says_otherwise);
 	RUN_TEST(test_items_of_one_path_are_counted_in_the_order_of_the_file);
+	RUN_TEST(test_a_number_that_is_given_is_passed_over);
 	RUN_TEST(test_an_identity_is_given_once_and_is_a_path);
 	RUN_TEST(test_an_identity_is_utf8_without_control_characters);
 	return UNITY_END();

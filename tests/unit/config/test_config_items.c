@@ -105,7 +105,7 @@ static void test_wrong_items_are_errors_with_what_was_expected(void)
 	         "f:3:82: error: Alarm on: expected a device in the path "
 	         "\"/simultaneous/temperature\"\n"},
 		{"Name x Path /a/b Type bool }\nItem { Name x Path /a/c Type bool",
-	         "f:4:13: error: the name \"x\" is given twice, first in line 3\n"},
+	         "f:4:13: error: the name \"x\" is given twice, first in line 3: give one of them another Name\n"},
 	};
 
 	expect_errors(cases, COUNT(cases), parse_item);
@@ -115,9 +115,10 @@ static void test_three_items_of_one_name_all_name_the_first(void)
 {
 	parse_driver("Item { Name x Path a/b Type bool }\nItem { Name y Path a/b Type bool }\n"
 	             "Item { Name x Path a/b Type bool }\nItem { Name x Path a/b Type bool }");
-	TEST_ASSERT_EQUAL_STRING("f:4:13: error: the name \"x\" is given twice, first in line 2\n"
-	                         "f:5:13: error: the name \"x\" is given twice, first in line 2\n",
-	                         said);
+	TEST_ASSERT_EQUAL_STRING(
+		"f:4:13: error: the name \"x\" is given twice, first in line 2: give one of them another Name\n"
+		"f:5:13: error: the name \"x\" is given twice, first in line 2: give one of them another Name\n",
+		said);
 }
 
 static void test_items_that_can_be_understood_are_only_warned_about(void)
