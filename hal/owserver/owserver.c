@@ -440,32 +440,22 @@ static int do_write(struct owserver *server, struct bus_req *req, uint32_t *len)
 	return 0;
 }
 
-static int do_dir(struct owserver *server, struct bus_req *req, uint32_t *len)
-{
-	int err = listing_read(&server->listing, &server->talk, req, len);
-
-	return err == 1 ? error_of_refusal(server, req) : err;
-}
-
-static int do_probe(struct owserver *server, struct bus_req *req)
-{
-	int err = present(server, req, req->fresh);
-
-	return err == 1 ? -ENODEV : err;
-}
-
 static int owserver_serve(struct owserver *server, struct bus_req *req, uint32_t *len,
                           double *number)
 {
+	int err;
+
 	switch ((enum bus_op)req->op) {
 	case BUS_READ:
 		return do_read(server, req, len, number);
 	case BUS_WRITE:
 		return do_write(server, req, len);
 	case BUS_DIR:
-		return do_dir(server, req, len);
+		err = listing_read(&server->listing, &server->talk, req, len);
+		return err == 1 ? error_of_refusal(server, req) : err;
 	case BUS_PROBE:
-		return do_probe(server, req);
+		err = present(server, req, req->fresh);
+		return err == 1 ? -ENODEV : err;
 	}
 	return -EOPNOTSUPP;
 }

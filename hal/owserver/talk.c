@@ -57,27 +57,31 @@ static int make_request(struct talk *talk, const struct talk_request *request)
 	return frame_add_tokens(talk->out, len, talk->tokens, talk->token_count);
 }
 
-static void expect_reply(struct talk *talk, const struct talk_request *request)
+/* 0, or the error of connection_send(). */
+static int send_request(struct talk *talk, const struct talk_request *request, size_t len,
+                        int64_t until_ns, size_t *sent)
 {
+	int err;
+
 	talk->asked_ns = bus_now(talk->connection.env);
 	talk->alives = talk->pieces = 0;
 	if (request->room)
 		frame_begin(&talk->reader, request->room, request->limit);
 	else
 		frame_begin(&talk->reader, talk->scrap, sizeof(talk->scrap));
+	err = connection_send(&talk->connection, talk->out, len, until_ns, sent);
+	bus_count(&talk->counter[TALK_BYTES_OUT], *sent);
+	return err;
 }
 
 int talk_send(struct talk *talk, const struct talk_request *request, int64_t until_ns)
 {
-	int len = make_request(talk, request);
+	int len = make_request(talk, request), err;
 	size_t sent;
-	int err;
 
 	if (len < 0)
 		return len;
-	expect_reply(talk, request);
-	err = connection_send(&talk->connection, talk->out, (size_t)len, until_ns, &sent);
-	bus_count(&talk->counter[TALK_BYTES_OUT], sent);
+	err = send_request(talk, request, (size_t)len, until_ns, &sent);
 	return err == -ETIMEDOUT ? time_is_over(talk) : err ? fail_socket(talk, err) : 0;
 }
 
@@ -193,9 +197,7 @@ static int talk_once(struct talk *talk, const struct talk_request *request, size
 		if (err)
 			return err;
 	}
-	expect_reply(talk, request);
-	err = connection_send(&talk->connection, talk->out, len, deadline_ns, &sent);
-	bus_count(&talk->counter[TALK_BYTES_OUT], sent);
+	err = send_request(talk, request, len, deadline_ns, &sent);
 	if (err == -ETIMEDOUT)
 		return time_is_over(talk);
 	if (err) {
