@@ -116,11 +116,11 @@ static void check_row(char *column[COLUMNS])
 	                              property->kinds != 0 && !property->hidden, name);
 	if (directory)
 		return;
-	const char *extension = property->array.index == INDEX_NONE      ? ""
-	                        : property->array.index == INDEX_LETTERS ? ".A"
-	                                                                 : ".0";
-	snprintf(name, sizeof(name), "%s/%s%s", column[FAMILY], column[NAME], extension);
-	int n = structure_read(name, strlen(name), text, sizeof(text));
+	int extension = property->array.index == INDEX_NONE      ? EXTENSION_NONE
+	                : property->array.index == INDEX_LETTERS ? EXTENSION_LETTERS
+	                                                         : 0;
+	TEST_ASSERT_TRUE_MESSAGE(extension_fits(property, extension), name);
+	int n = structure_print(property, extension, text, sizeof(text));
 	TEST_ASSERT_GREATER_THAN_INT_MESSAGE(0, n, name);
 	TEST_ASSERT_EQUAL_STRING_MESSAGE(column[RAW], text, name);
 	TEST_ASSERT_TRUE_MESSAGE(
