@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import {readFileSync} from "node:fs";
 import {test} from "node:test";
-import {UNKNOWN, alarmOf, clock, dateAndClock, meaningOf, msOf, qualityWords, remedyOf, span, stateOf, tickText,
+import {UNKNOWN, alarmOf, clock, dateAndClock, dayText, meaningOf, moment, msOf, qualityWords, remedyOf, span, stateOf, tickText,
 	valueText, withUnit} from "./page/words.js";
 
 const source = (path) => readFileSync(`${process.env.PAGE_SOURCE}/${path}`, "utf8");
@@ -97,9 +97,23 @@ test("a mark of an axis of time has what is new at it", () => {
 		assert.equal(tickText(new Date(time)), text);
 });
 
+test("a time is said with as much of its date as it needs", () => {
+	const now = Date.parse("2026-11-28T14:48:03Z");
+	for (const [time, text] of [["2026-11-28T14:02:09Z", "14:02"],
+		["2026-11-26T21:14:00Z", "Thu 21:14"], ["2026-11-29T08:00:00Z", "Sun 08:00"],
+		["2026-11-12T08:30:00Z", "12 Nov 08:30"], ["2025-11-27T08:30:00Z", "2025-11-27"],
+		[null, "\u2014"]])
+		assert.equal(moment(time, now), text);
+	assert.equal(dayText(now), "Sat 28 Nov");
+});
+
 test("an alarm with an exclamation mark wants eyes, and a dash is none", () => {
-	assert.deepEqual(alarmOf("! high, returned"), {text: "high, returned", open: true});
-	assert.deepEqual(alarmOf("high"), {text: "high", open: false});
+	for (const [words, text, open, turn, very] of [
+		["! high, returned", "high, returned", true, "up", false],
+		["high", "high", false, "up", false], ["! high high", "very high", true, "up", true],
+		["! low low", "very low", true, "down", true], ["low", "low", false, "down", false],
+		["! stale", "stale", true, "", false]])
+		assert.deepEqual(alarmOf(words), {text, open, turn, very});
 	for (const none of ["", "-", " ", null, undefined])
 		assert.equal(alarmOf(none), null);
 });

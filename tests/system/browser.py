@@ -97,9 +97,13 @@ class Page:
                 self.ask("POST", f"{self.base}/element/{self.find(selector)[ELEMENT]}/click", {})
                 return True
             except Fault as fault:
-                if "stale" in str(fault) or "intercepted" in str(fault):
-                    return False
-                raise
+                if "intercepted" in str(fault):
+                    # the bar of a phone lies over it
+                    self.run("[...document.querySelectorAll(arguments[0])].find((one) =>"
+                             "one.checkVisibility())?.scrollIntoView({block: 'center'})", selector)
+                elif "stale" not in str(fault):
+                    raise
+                return False
         owsdtest.until(done, 20, f"a click at {selector}", step=0.1)
 
     def type(self, selector, text):

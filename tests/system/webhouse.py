@@ -107,6 +107,10 @@ def listed(scene, daemon, *names):
 
 
 def view(page, name):
+    # on a phone some are behind "More"
+    if not page.run("return document.querySelector(arguments[0]).checkVisibility()",
+                    f"nav a[href='#{name}']"):
+        page.click("#more")
     page.click(f"nav a[href='#{name}']")
     page.until("return document.querySelector('main > section:not([hidden])').id === arguments[0]",
                name, name)

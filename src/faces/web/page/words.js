@@ -157,10 +157,41 @@ export function tickText(at) {
 	return date === "01-01" ? String(at.getFullYear()) : date;
 }
 
-/** "! high, returned" as {text, open}: open wants eyes. "" and "-" are no alarm: null. */
+const DAYS = ["Sun", "Mon", "Tue", "Wed", "Thu", "Fri", "Sat"];
+const MONTHS = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
+const WEEK_MS = 6 * 86400000;
+
+/** A time as people say it now (ms): 14:02, Thu 21:14, 12 Nov 21:14, 2025-11-27. */
+export function moment(time, now) {
+	const at = new Date(msOf(time)), today = new Date(now);
+	if (Number.isNaN(at.getTime()))
+		return "\u2014";
+	const minute = clock(at.getTime()).slice(0, 5);
+	if (at.toDateString() === today.toDateString())
+		return minute;
+	if (Math.abs(now - at) < WEEK_MS)
+		return `${DAYS[at.getDay()]} ${minute}`;
+	return at.getFullYear() === today.getFullYear()
+		? `${at.getDate()} ${MONTHS[at.getMonth()]} ${minute}` : dateAndClock(time).slice(0, 10);
+}
+
+/** Of a day: "Sat 28 Nov". */
+export function dayText(time) {
+	const at = new Date(time);
+	return `${DAYS[at.getDay()]} ${at.getDate()} ${MONTHS[at.getMonth()]}`;
+}
+
+const PLAIN = {"high high": "very high", "low low": "very low"};
+
+/**
+ * "! high high, returned" as {text, open, turn, very}: open wants eyes; turn is "up", "down" or "".
+ * "" and "-" are no alarm: null.
+ */
 export function alarmOf(words) {
 	const text = String(words ?? "").trim();
 	if (!text || text === "-")
 		return null;
-	return {text: text.replaceAll("! ", ""), open: text.includes("!")};
+	const plain = text.replaceAll("! ", "").replace(/high high|low low/g, (kind) => PLAIN[kind]);
+	return {text: plain, open: text.includes("!"), very: plain.startsWith("very "),
+		turn: /^(very )?high/.test(plain) ? "up" : /^(very )?low/.test(plain) ? "down" : ""};
 }
