@@ -29,7 +29,7 @@ def test_live_shows_what_owsctl_lists_and_nothing_after_a_loss_until_owsd_is_bac
 
 def test_each_view_shows_what_it_is_for_also_on_a_phone(scene):
     words = {"live": ["room", "good, simulated", "device absent"],
-             "alarms": ["boiler", "high", "unacknowledged"], "trends": ["Signals", "room"],
+             "alarms": ["boiler", "high", "waits for you"], "trends": ["Signals", "room"],
              "wire": [ROOM, BOILER, "device absent", "Remedy:"], "config": ["room", "boiler"],
              "about": ["Version", "Generation"]}
     with plant(scene, browser=firefox) as (_, _, page):
@@ -55,7 +55,7 @@ def test_a_switch_commands(scene):
         assert scene.get(daemon, "light") == "1"
         view(page, "alarms")
         page.click("[data-action='acknowledge boiler']")
-        shows(page, "#alarms table", "boiler", "acknowledged")
+        shows(page, "#alarms .standing", "boiler", "acknowledged")
         assert not page.complaints()
 
 

@@ -77,16 +77,80 @@ def test_an_age_counts_up_while_nothing_comes(scene):
 
 def test_an_alarm_is_acknowledged_and_the_journal_says_by_whom(scene):
     with plant(scene, write=True) as (daemon, _, page):
+        page.until("return document.title.startsWith('(1) boiler high')", "the title has it")
+        page.find("#alarm-count")
+        assert page.run("return document.querySelector('#icon').getAttribute('href')"
+                        ) == "icon-waits.svg"
         view(page, "alarms")
-        shows(page, "#alarms table", "boiler", "high", "unacknowledged")
+        shows(page, "#h-alarms", "1 alarm waits for you")
+        shows(page, "#alarms .edge-alarm", "boiler", "high", "Limit 40.0, over it by", "since")
         page.click("[data-action='acknowledge boiler']")
-        shows(page, "#alarms table", "boiler", "acknowledged")
+        shows(page, "#h-alarms", "No alarm waits for you")
+        shows(page, "#alarms .standing", "boiler", "acknowledged")
         page.until("return !document.querySelector(\"[data-action='acknowledge boiler']\")",
                    "nothing is left to acknowledge")
+        focus = page.run("return document.activeElement.dataset.action")
+        assert focus == "shelve boiler", focus
         row, = json.loads(scene.owsctl(daemon, "alarms", "--json").stdout)
         assert row["name"] == "boiler" and row["state"] == "acknowledged", row
-        shows(page, "#alarms table:last-of-type", "Standing")
-        shows(page, "#alarms", "high, acknowledged", "high, raised", "owsd-web")
+        shows(page, "#alarms table", "boiler", "high", "stands", "acknowledged by", "owsd-web",
+              "outputs took their first value")
+        page.until("return document.title === `Alarms \u00b7 ${arguments[0]}`", "the title",
+                   daemon.name)
+        assert not page.complaints()
+
+
+def test_what_happened_is_searched_by_words_kinds_and_hours(scene):
+    with plant(scene, write=True) as (daemon, _, page):
+        scene.owsctl(daemon, "set", "pump", "1")
+        view(page, "alarms")
+        shows(page, "#alarms table", "boiler", "pump", "set on")
+        page.press("/")
+        page.press(*"pump set")
+        page.until("return document.querySelectorAll('#alarms tbody tr').length === 1",
+                   lambda: text_of(page, "#alarms table"))
+        page.press("escape")
+        shows(page, "#alarms table", "boiler")
+        page.click("[data-kind=alarms]")
+        page.until("return !document.querySelector('#alarms table').innerText.includes('pump')",
+                   "alarms alone")
+        page.click("#alarms .hours button:enabled")
+        shows(page, "#alarms table", "boiler")
+        page.type("#journal-search", "nobody")
+        shows(page, "#alarms table", "Nothing matches.")
+        assert not page.complaints()
+
+
+def test_keys_choose_views_and_can_be_switched_off(scene):
+    with plant(scene) as (_, _, page):
+        shown = "return document.querySelector('main > section:not([hidden])').id"
+        page.press("g", "a")
+        page.until(f"{shown} === 'alarms'", "alarms")
+        page.press("?")
+        shows(page, "dialog", "Keys", "Trends")
+        page.click("#keys-on")
+        page.click("dialog .primary")
+        page.press("g", "l")
+        page.press("?")
+        shows(page, "dialog", "Keys")
+        assert page.run(shown) == "alarms"
+        assert not page.complaints()
+
+
+def test_a_browser_that_was_told_so_tells_of_an_alarm(scene):
+    with plant(scene, write=True) as (daemon, _, page):
+        view(page, "alarms")
+        page.run("window.told = []; window.Notification = class { static permission = 'granted';"
+                 "static requestPermission = async () => 'granted'; constructor(title, {body}) {"
+                 "told.push([title, body]); } };"
+                 "navigator.serviceWorker.getRegistration = async () => undefined;")
+        page.click(".tell button:first-of-type[aria-pressed=false]")
+        shows(page, ".tell", "while this page is open")
+        page.click("[data-action='acknowledge boiler']")
+        page.until("return document.title.startsWith('Alarms')", "none waits")
+        scene.owsctl(daemon, "alarms", "shelve", "boiler", "1s")
+        page.until("return JSON.stringify(told) === '[[\"boiler\",\"high\"]]'",
+                   lambda: page.run("return told"))
         assert not page.complaints()
 
 
@@ -96,7 +160,7 @@ def test_an_alarm_is_shelved_for_a_time_with_a_reason(scene):
         page.click("[data-action='shelve boiler']")
         page.type("#shelve-why", "pump is being changed")
         page.click("dialog button.primary")
-        shows(page, "#alarms table", "shelved", "until", "pump is being changed")
+        shows(page, "#alarms .standing", "shelved until", "pump is being changed")
         row, = json.loads(scene.owsctl(daemon, "alarms", "--json").stdout)
         assert row["state"] == "shelved" and row["why"] == "pump is being changed", row
         page.click("[data-action='unshelve boiler']")

@@ -1,30 +1,31 @@
 // SPDX-License-Identifier: MIT
-// The view Alarms: those that stand, to acknowledge or to shelve, and who did what and when.
+// The view Alarms: what waits first, then what was acknowledged or shelved, then what happened.
 import {get, post} from "./api.js";
+import {AlarmCard} from "./card.js";
 import {ask} from "./command.js";
-import {announce, el, later, put, table, wide} from "./dom.js";
+import {announce, el, later, put} from "./dom.js";
+import * as journal from "./journal.js";
 import {store} from "./store.js";
-import {clock, dateAndClock, msOf, span, valueText, withUnit} from "./words.js";
+import * as tell from "./tell.js";
+import {alarmOf, moment, msOf} from "./words.js";
 
-const DAY_MS = 86400000, ENTRIES = 300;
 const SPANS = [[900, "15 minutes"], [3600, "1 hour"], [28800, "8 hours"], [86400, "1 day"],
 	[604800, "7 days"]];
-const KINDS = [["all", "all"], ["alarms", "alarms"], ["commands", "commands"]];
 
-let shown = false, standing, past, fault, kind, entries = [];
+let shown = false, title, aside, list, fault, cards = new Map();
 
 export function build(root) {
-	standing = wide("Standing alarms");
-	past = wide("Who did what");
+	title = root.querySelector("h1");
+	title.tabIndex = -1;
+	aside = el("p", {class: "aside"});
 	fault = el("p", {class: "fault", role: "alert"});
-	kind = el("select", {id: "kind", onchange: drawPast},
-		...KINDS.map(([value, text]) => el("option", {value}, text)));
-	root.append(fault, standing, el("div", {class: "tools"},
-		el("label", {for: "kind"}, "History of"), kind,
-		el("button", {type: "button", onclick: look}, "Look again")), past);
+	list = el("ul", {class: "standing", "aria-label": "Standing alarms"});
+	root.append(el("div", {class: "top"}, title, aside, tell.build()), fault, list);
+	journal.build(root);
 	const soon = later(() => shown && look(), 300);
 	store.addEventListener("alarm", soon);
 	store.addEventListener("trust", soon);
+	store.addEventListener("values", later(() => shown && paint(), 1000));
 	setInterval(() => shown && !document.hidden && look(), 10000);
 }
 
@@ -35,80 +36,68 @@ export function show() {
 
 export const hide = () => { shown = false; };
 
-const listOf = (data, key) => Array.isArray(data) ? data : data?.[key] ?? [];
+const paint = () => cards.forEach((card) => card.paint());
+/** 0: waits for somebody; 1: was acknowledged; 2: is shelved, or cannot be armed. */
+function rank({name, device, state, until}) {
+	if (device)
+		return alarmOf(store.find(name)?.alarm)?.open && state === "stands" ? 0 : 2;
+	return until || state === "shelved" ? 2 : state === "acknowledged" ? 1 : 0;
+}
 
 async function look() {
 	if (store.unknown) {
-		standing.replaceChildren(el("p", {class: "note"},
-			"Which alarms stand is unknown now: ", store.unknown));
+		put(title, "Which alarms stand is unknown now");
+		put(aside, store.unknown);
+		list.replaceChildren();
+		cards.clear();
 		return;
 	}
 	try {
-		const [alarms, journal] = await Promise.all([get("alarms"),
-			get("journal", {since: Math.round(store.now() - 7 * DAY_MS), n: ENTRIES})]);
+		const [{alarms = []}] = await Promise.all([get("alarms"), journal.look()]);
 		if (store.unknown)
 			return; // it was lost meanwhile
 		put(fault, "");
-		drawStanding(listOf(alarms, "alarms"));
-		entries = listOf(journal, "entries").sort((a, b) => msOf(b.time) - msOf(a.time));
-		drawPast();
+		draw(alarms.sort((a, b) => rank(a) - rank(b)));
+		journal.draw(alarms);
 	} catch (error) {
 		put(fault, `The alarms cannot be shown: ${error.message}.`);
 	}
 }
 
-// --- Standing -------------------------------------------------------------------------------
-
-const numberOf = (name, value) => {
-	const signal = store.find(name) ?? {};
-	return withUnit(signal, valueText(signal, value));
-};
-const good = (alarm) => alarm.good ?? true;
-
-function drawStanding(alarms) {
-	const focused = document.activeElement?.dataset.action;
-	const rows = alarms.map((alarm) => {
-		const since = msOf(alarm.since);
-		const open = !["acknowledged", "shelved"].includes(alarm.state);
-		return [
-			el("span", {class: "name"}, alarm.name),
-			el("span", {class: open ? "alarm open" : "alarm"}, alarm.alarm || "shelved"),
-			el("span", {}, alarm.state, shelvedWords(alarm)),
-			numberOf(alarm.name, good(alarm) ? alarm.value : null),
-			Number.isNaN(since) ? "\u2014"
-				: el("span", {}, `${dateAndClock(since)} (${span((store.now() - since) / 1000)})`),
-			actions(alarm),
-		];
-	});
-	const scroll = standing.scrollLeft;
-	standing.replaceChildren(table("Standing", ["Signal", "Alarm", "State", ["Value", "right"],
-		"Since", "Action"], rows, "No alarm stands."));
-	standing.scrollLeft = scroll;
-	if (focused)
-		standing.querySelector(`[data-action="${CSS.escape(focused)}"]`)?.focus();
+function sentences(alarms) {
+	const [open, seen] = [0, 1].map((n) => alarms.filter((one) => rank(one) === n).length);
+	const last = journal.last();
+	put(title, open ? `${open} alarm${open > 1 ? "s wait" : " waits"} for you`
+		: alarms.length ? "No alarm waits for you" : "No alarm stands");
+	const shelved = alarms.filter(({until}) => until).map(({until}) => msOf(until));
+	put(aside, alarms.length ? [seen ? `${seen} acknowledged` : "",
+		shelved.length ? `${shelved.length} shelved until ${moment(Math.min(...shelved), store.now())}`
+			: ""].filter(Boolean).join(", ")
+		: last ? `The last one was ${last.name}, ${moment(last.time, store.now())}.` : "");
 }
 
-function shelvedWords(alarm) {
-	if (!alarm.until)
-		return null;
-	const until = msOf(alarm.until);
-	const far = until - store.now() > DAY_MS ? dateAndClock(until) : clock(until);
-	return el("span", {class: "description"}, `until ${far}`,
-		alarm.by ? `, by ${controller(alarm.by)}` : null, alarm.why ? `: ${alarm.why}` : null);
-}
-
-function actions(alarm) {
-	if (alarm.device)
-		return el("span", {class: "hint"}, "Ends with its cause");
-	const button = (action, text, act) => el("button", {type: "button",
-		disabled: !store.info?.writable, "data-action": `${action} ${alarm.name}`,
-		"aria-label": `${text} ${alarm.name}`, onclick: act}, text);
-	if (alarm.state === "shelved" || alarm.until)
-		return button("unshelve", "Unshelve", () => send(alarm.name, "unshelve"));
-	return el("span", {class: "buttons"},
-		alarm.state === "acknowledged" ? null
-			: button("acknowledge", "Acknowledge", () => send(alarm.name, "acknowledge")),
-		button("shelve", "Shelve\u2026", () => shelve(alarm)));
+function draw(alarms) {
+	const focused = document.activeElement;
+	const had = list.contains(focused) ? [...cards.values()].findIndex(({node}) =>
+		node.contains(focused)) : -1;
+	const old = cards;
+	cards = new Map();
+	for (const alarm of alarms) {
+		const key = `${alarm.name} ${alarm.alarm} ${alarm.unarmed ?? alarm.device}`;
+		const card = old.get(key) ?? new AlarmCard({send, shelve});
+		card.take(alarm, !rank(alarm));
+		cards.set(key, card);
+	}
+	sentences(alarms);
+	const nodes = [...cards.values()].map(({node}) => node);
+	if (nodes.some((node, n) => list.children[n] !== node) || nodes.length !== list.children.length)
+		list.replaceChildren(...nodes);
+	if (had < 0 || document.activeElement === focused && list.contains(focused))
+		return;
+	// what had the focus is gone: the same, the next one, or the head of the part
+	const action = focused.dataset.action;
+	(list.querySelector(`[data-action="${CSS.escape(action)}"]`)
+		?? nodes[Math.min(had, nodes.length - 1)]?.querySelector("button:enabled") ?? title).focus();
 }
 
 async function send(name, action, more = {}) {
@@ -123,38 +112,13 @@ async function send(name, action, more = {}) {
 	look();
 }
 
-async function shelve(alarm) {
+async function shelve({name}) {
 	const time = el("select", {id: "shelve-time"},
 		...SPANS.map(([value, text]) => el("option", {value}, text)));
 	const why = el("input", {id: "shelve-why", type: "text", maxlength: 63, autocomplete: "off"});
-	if (await ask(`Shelve the alarm of ${alarm.name}?`, "Shelve", [
+	if (await ask(`Shelve the alarm of ${name}?`, "Shelve", [
 		el("p", {}, "It is not raised for that time. Then it is, if its condition is active."),
 		el("label", {for: "shelve-time"}, "For"), time,
 		el("label", {for: "shelve-why"}, "Why (others see it)"), why]))
-		send(alarm.name, "shelve", {seconds: Number(time.value), why: why.value});
-}
-
-// --- Who did what ---------------------------------------------------------------------------
-
-function controller(by) {
-	if (!by)
-		return "";
-	if (typeof by === "string")
-		return by;
-	const program = `${by.program ?? ""}${by.pid ? ` (${by.pid})` : ""}`;
-	return [by.person, by.user, program].filter(Boolean).join(", ");
-}
-
-function drawPast() {
-	const wanted = entries.filter((entry) => kind.value === "all" || entry.journal === kind.value);
-	const rows = wanted.map((entry) => [
-		dateAndClock(entry.time),
-		el("span", {class: "name"}, entry.name ?? ""),
-		[entry.alarm, entry.event].filter(Boolean).join(", "),
-		numberOf(entry.name, entry.value),
-		controller(entry.by) || "owsd",
-		[entry.more ? `${entry.more} more before` : "", entry.remark].filter(Boolean).join("; "),
-	]);
-	past.replaceChildren(table("Who did what, newest first", [["Time", "time"], "Signal", "Event",
-		["Value", "right"], "By", "Remark"], rows, "Nothing in the last seven days."));
+		send(name, "shelve", {seconds: Number(time.value), why: why.value});
 }

@@ -45,14 +45,18 @@ function fetched(load) {
 	};
 }
 
-/** The rules of a view, which come with it. */
-const styled = (name) => new Promise((resolve) => document.head.append(el("link",
-	{rel: "stylesheet", href: name, onload: resolve, onerror: resolve})));
-const CONFIG = () => Promise.all([import("./config.js"), styled("config.css")])
-	.then(([made]) => made);
-const LATER = [() => import("./alarms.js"), () => import("./trends.js"), () => import("./wire.js"),
-	() => import("./about.js")];
-const [alarms, trends, wire, about, config] = [...LATER, CONFIG].map(fetched);
+/** A module, and the rules of its view. */
+const both = (module, name) => Promise.all([module, new Promise((resolve) => {
+	if (document.querySelector(`link[href="${name}"]`))
+		resolve();
+	else
+		document.head.append(el("link", {rel: "stylesheet", href: name, onload: resolve,
+			onerror: resolve}));
+})]).then(([made]) => made);
+const LATER = [() => both(import("./alarms.js"), "alarms.css"), () => import("./trends.js"),
+	() => import("./wire.js"), () => import("./about.js")];
+const [alarms, trends, wire, about, config] = [...LATER,
+	() => both(import("./config.js"), "config.css")].map(fetched);
 const VIEWS = {live, alarms, trends, wire, config, about};
 const LOADING_MS = 300; // until a view that is not there yet says so
 const LATER_MS = 1000; // after the first values: then a lost connection leaves views to look at
@@ -85,7 +89,8 @@ head.build();
 keys.listen();
 store.addEventListener("signals", show);
 store.addEventListener("signals", () => setTimeout(() =>
-	LATER.forEach((load) => load().catch(() => {})), LATER_MS), {once: true});
+	[...LATER, async () => (await import("./tell.js")).begin()]
+		.forEach((load) => load().catch(() => {})), LATER_MS), {once: true});
 document.querySelector(".skip").addEventListener("click", (event) => {
 	event.preventDefault(); // the part behind # names the view
 	$("main").focus();

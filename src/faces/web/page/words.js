@@ -191,7 +191,8 @@ export function alarmOf(words) {
 	const text = String(words ?? "").trim();
 	if (!text || text === "-")
 		return null;
-	const plain = text.replaceAll("! ", "").replace(/high high|low low/g, (kind) => PLAIN[kind]);
+	const plain = text.replaceAll("! ", "")
+		.replace(/high high|low low/g, (kind) => PLAIN[kind]);
 	return {text: plain, open: text.includes("!"), very: plain.startsWith("very "),
 		turn: /^(very )?high/.test(plain) ? "up" : /^(very )?low/.test(plain) ? "down" : ""};
 }

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+// What happened, a part of the view Alarms: search, kinds, a day, how much in each hour.
+import {get} from "./api.js";
+import {badge} from "./badge.js";
+import {el, put, table} from "./dom.js";
+import {happenings, hoursOf, isLost, matches} from "./happened.js";
+import {store} from "./store.js";
+import {alarmOf, clock, dateAndClock, dayText, span, valueText, withUnit} from "./words.js";
+
+const DAY_MS = 86400000, DAYS = 7, ENTRIES = 1000, PAGE = 50;
+const KINDS = [["", "All"], ["alarms", "Alarms"], ["commands", "Commands"]];
+const COLUMNS = [["Time", "time"], "Signal", "What", ["Value", "right"], ["Lasted", "right"], "By"];
+
+const state = {words: [], kind: "", day: null, hour: null, pages: 1};
+let kinds, day, hours, lines, foot, all = [], cut = false, standing = new Set();
+
+const midnight = (time) => new Date(time).setHours(0, 0, 0, 0);
+
+/** The alarm that was raised last. */
+export const last = () => all.find(({what}) => what === "raised");
+
+function change(values) {
+	Object.assign(state, {pages: 1}, values);
+	paint();
+}
+
+export function build(root) {
+	const search = el("input", {type: "search", id: "journal-search", autocomplete: "off",
+		placeholder: "Name, person, words", "aria-label": "Search what happened",
+		oninput: () => change({words: search.value.toLowerCase().split(/\s+/).filter(Boolean)})});
+	kinds = KINDS.map(([value, text]) => el("button", {type: "button", class: "chip",
+		"aria-pressed": "false", "data-kind": value, onclick: () => change({kind: value})}, text));
+	day = el("select", {id: "day", "aria-label": "Day",
+		onchange: () => change({day: Number(day.value), hour: null})});
+	hours = el("div", {class: "hours", role: "group", "aria-label": "How much in each hour"});
+	lines = el("div", {});
+	foot = el("p", {class: "hint"});
+	root.append(el("div", {class: "tools past"}, el("h2", {id: "h-past"}, "What happened"), search,
+		...kinds, day), el("div", {class: "sheet happened"}, hours, lines, foot));
+}
+
+export async function look() {
+	const now = store.now(), {entries = []} = await get("journal",
+		{since: midnight(now - (DAYS - 1) * DAY_MS), n: ENTRIES});
+	all = happenings(entries, (name) => store.find(name));
+	cut = entries.length >= ENTRIES;
+	const today = midnight(now);
+	if (Number(day.lastChild?.value) === midnight(now - (DAYS - 1) * DAY_MS))
+		return;
+	state.day = today;
+	day.replaceChildren(...Array.from({length: DAYS}, (_, n) => {
+		const at = midnight(today + DAY_MS / 2 - n * DAY_MS);
+		return el("option", {value: at}, n ? dayText(at) : `${dayText(at)}, today`);
+	}));
+}
+
+export function draw(alarms) {
+	standing = new Set(alarms.map(({name, alarm}) => `${name} ${alarm}`));
+	paint();
+}
+
+const stands = ({what, name, alarm, ended}) =>
+	what === "raised" && ended === null && standing.has(`${name} ${alarm}`);
+
+function paint() {
+	for (const chip of kinds)
+		chip.setAttribute("aria-pressed", String(chip.dataset.kind === state.kind));
+	const from = state.day, until = midnight(from + 1.5 * DAY_MS);
+	const wanted = all.filter((one) => one.time >= from && one.time < until
+		&& (!state.kind || one.journal === state.kind) && matches(one, state.words));
+	paintHours(hoursOf(wanted, from));
+	const start = from + state.hour * 3600000;
+	paintLines(state.hour === null ? wanted
+		: wanted.filter(({time}) => time >= start && time < start + 3600000));
+}
+
+function paintHours(counts) {
+	const most = Math.max(1, ...counts);
+	if (!hours.firstChild)
+		hours.append(...counts.map((_, n) => el("button", {type: "button",
+			onclick: () => change({hour: state.hour === n ? null : n})},
+		el("i", {}), el("span", {class: "range", "aria-hidden": "true"},
+			n % 3 ? "" : `${String(n).padStart(2, "0")}:00`))));
+	for (const [n, count] of counts.entries()) {
+		const bar = hours.children[n];
+		bar.disabled = !count && state.hour !== n;
+		bar.setAttribute("aria-pressed", String(state.hour === n));
+		bar.setAttribute("aria-label", `${n} to ${n + 1} o'clock: ${count}`);
+		bar.firstChild.style.height = count ? `${Math.max(8, count / most * 100)}%` : "0";
+	}
+}
+
+function whatOf(one) {
+	const {alarm, what, ended, seen, more} = one;
+	if (!alarm)
+		return what;
+	const mark = badge(alarmOf(`${stands(one) && !seen ? "! " : ""}${alarm}`));
+	return el("span", {}, mark, el("span", {class: "hint"}, " ", [
+		what === "raised" ? ended === null ? "" : "and returned" : what,
+		seen ? `acknowledged by ${seen.by}, ${clock(seen.time).slice(0, 5)}` : "", more]
+		.filter(Boolean).join(", ")));
+}
+
+function lastedOf(one) {
+	if (one.ended !== null)
+		return span((one.ended - one.time) / 1000);
+	return stands(one) ? `${span((store.now() - one.time) / 1000)}, stands` : "";
+}
+
+function paintLines(wanted) {
+	const some = wanted.slice(0, state.pages * PAGE);
+	const made = table("What happened", COLUMNS, some.map((one) => {
+		const signal = store.find(one.name) ?? {};
+		return [el("span", {title: dateAndClock(one.time)}, clock(one.time)),
+			el("b", {class: "name"}, one.name), whatOf(one),
+			one.value === null || one.value === undefined ? ""
+				: withUnit(signal, valueText(signal, one.value)), lastedOf(one), one.by];
+	}), state.words.length || state.kind || state.hour !== null ? "Nothing matches."
+		: "Nothing happened on this day.");
+	for (const [n, one] of some.entries())
+		if (stands(one))
+			made.tBodies[0].rows[n].firstChild.classList.add(isLost(one.alarm) ? "edge-bad" : "edge-alarm");
+	lines.replaceChildren(made);
+	const left = wanted.length - some.length;
+	const focused = foot.contains(document.activeElement);
+	foot.replaceChildren(left ? el("button", {type: "button",
+		onclick: () => change({pages: state.pages + 1})}, `Older, ${left} more`)
+		: "Each line is a whole happening: raised and returned are one.",
+	cut ? ` Of the last ${DAYS} days the newest ${ENTRIES} entries are here.` : "");
+	if (focused)
+		foot.querySelector("button")?.focus();
+}
