@@ -634,7 +634,8 @@ install: all
 	install -m 644 $(WEBPAGE:%=$(B)/page/%) $(D)$(DATADIR)/web
 	install -m 644 $(WEBPAGE:%=$(B)/page/%) $(COCKPIT)
 	$(if $(DYGRAPHS),install -m 644 $(DYGRAPHS_LICENCE) $(D)$(DATADIR)/dygraphs.copyright)
-	sed 's,^<script type="module" async,<script src="../base1/cockpit.js"></script>\n&,' \
+	sed -e 's,^<script type="module" async,<script src="../base1/cockpit.js"></script>\n&,' \
+	    -e '/rel="manifest"/d' \
 	    src/faces/web/page/index.html >$(COCKPIT)/index.html
 	install -m 644 board/cockpit/manifest.json $(COCKPIT)
 	install -m 755 $(B)/owsctl $(B)/owsctl-sim $(D)$(PREFIX)/bin

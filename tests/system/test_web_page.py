@@ -395,6 +395,26 @@ def test_a_server_that_hangs_makes_every_value_unknown(scene):
         until(lambda: page.run(CELLS)["room"]["value"] == "21.5", 30, lambda: page.run(CELLS))
 
 
+def test_the_page_opens_without_owsd_web_and_says_that_it_is_not_there(scene):
+    with plant(scene) as (_, web, page):
+        manifest = json.load(urllib.request.urlopen(web.address + "manifest.webmanifest"))
+        assert manifest["display"] == "standalone" and manifest["icons"], manifest
+        page.until("return navigator.serviceWorker.controller", "the worker")
+        kept = "return caches.keys().then((names) => caches.open(names[0])).then((cache) =>" \
+               "cache.keys()).then((all) => all.map(({url}) => url))"
+        page.go(web.address + "#alarms")  # with the worker, which keeps what it fetches
+        page.run("location.reload()")
+        shows(page, "#h-alarms", "1 alarm waits for you")
+        until(lambda: any(url.endswith("/tell.js") for url in page.run(kept)), 20,
+              lambda: page.run(kept))
+        assert web.address in page.run(kept), page.run(kept)
+        assert not [url for url in page.run(kept) if "/api/" in url], page.run(kept)
+        web.kill()
+        page.run("location.reload()")
+        shows(page, "#banner", "no connection to owsd-web")
+        shows(page, "#h-alarms", "unknown now")
+
+
 # --- Commands -------------------------------------------------------------------------------
 
 

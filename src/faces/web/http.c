@@ -18,7 +18,8 @@
 #define HELD (64u << 20)   /* sum of the answers that are being sent */
 #define POLICY \
 	"default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; " \
-	"connect-src 'self'; frame-ancestors 'self'; base-uri 'none'; form-action 'none'"
+	"connect-src 'self'; manifest-src 'self'; worker-src 'self'; frame-ancestors 'self'; " \
+	"base-uri 'none'; form-action 'none'"
 /* of a browser; the page needs none */
 #define FEATURES \
 	"camera=(), display-capture=(), geolocation=(), microphone=(), midi=(), payment=(), " \

@@ -83,13 +83,20 @@ function show() {
 	VIEWS[wanted].show(query ?? "");
 }
 
+/**
+ * Where the browser lets it, at https or localhost, a worker keeps the files. Within Cockpit or
+ * another page, whose addresses change, it would keep them for nobody.
+ */
+const keep = async () => window.cockpit || window.parent !== window
+	|| navigator.serviceWorker?.register("worker.js");
+
 for (const [key, view] of Object.entries(VIEWS))
 	view.build($(key));
 head.build();
 keys.listen();
 store.addEventListener("signals", show);
 store.addEventListener("signals", () => setTimeout(() =>
-	[...LATER, async () => (await import("./tell.js")).begin()]
+	[...LATER, async () => (await import("./tell.js")).begin(), keep]
 		.forEach((load) => load().catch(() => {})), LATER_MS), {once: true});
 document.querySelector(".skip").addEventListener("click", (event) => {
 	event.preventDefault(); // the part behind # names the view
