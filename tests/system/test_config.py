@@ -402,7 +402,7 @@ def test_a_mistyped_item_has_the_nearest_one(scene):
 
 def test_an_item_is_moved_and_nothing_else_changes(scene):
     items = {name: f"  # about {name}\n  Item {{\n    Name \"{name}\"   # mine\n"
-                   f"    Path \"/28.000000000001/temperature\"\n    Type double\n  }}\n" for name in "abc"}
+                   f"    Path \"/28.00000000000{name}/temperature\"\n    Type double\n  }}\n" for name in "abc"}
     head, tail = 'OwsDrv {\n  TargetName "localhost"\n', "  # the end\n}\n"
     file = scene.file("a.rio", head + "".join(items.values()) + tail)
     for words, order in ((("c", "--before", "a"), "cab"), (("c", "--after", "b"), "abc"),
