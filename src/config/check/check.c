@@ -326,6 +326,10 @@ static void check_item(const struct check *check)
 			check->report, check->position,
 			"\"%s\" is a number, and a string shows it as text: write Type double",
 			item->name);
+	if (item->type != OWS_STRING && property_look(item->path).text)
+		report_warning(check->report, check->place,
+		               "\"%s\" is a text or a list, and no %s: write Type string",
+		               item->name, value_type_name(item->type));
 	check_age(check);
 	if (item->alarm)
 		check_alarms(check);

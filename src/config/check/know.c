@@ -113,6 +113,7 @@ void know_item(struct config_item *item, const char *file, struct config_report 
 {
 	item->family = item->device ? model_of(item->path) : NULL;
 	item->latch_stays = latch_stays(item);
+	item->whole = property_look(item->path).whole;
 	know_read_back(item, file, report);
 	convert_unit(item);
 	warn_of_decimals(item, file, report);

@@ -89,6 +89,9 @@ static void take_access(const struct family *family, const struct property *prop
 	found->alarm = property->alarm;
 	found->exact = property->type == PROPERTY_YESNO || property->type == PROPERTY_BITS ||
 	               property->type == PROPERTY_UNSIGNED || property->type == PROPERTY_INTEGER;
+	found->whole = found->exact;
+	found->text = property->type == PROPERTY_ASCII || property->type == PROPERTY_BINARY ||
+	              property->type == PROPERTY_DATE || property->type == PROPERTY_ALIAS;
 }
 
 /* What of a property can be named: "latch.BYTE, or latch.0 to latch.7", "por". */
@@ -143,6 +146,7 @@ struct path_property property_look(const char *path)
 			print_elements(property, found.nearest);
 		return found;
 	}
+	found.text |= property && extension == EXTENSION_ALL;
 	if (property || has_name(family, name, strlen(name)) ||
 	    (dot && has_name(family, name, (size_t)(dot - name))))
 		return found;

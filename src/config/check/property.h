@@ -16,6 +16,8 @@ struct path_property {
 	uint8_t life;             /* enum property_life; 0: not known */
 	uint8_t alarm;            /* enum property_alarm; 0: nothing, or not known */
 	bool exact;               /* a whole number, or on and off; true too likewise */
+	bool whole;               /* so by the tables */
+	bool text;                /* a text, or a list; false too of what the tables do not have */
 	char held[PROPERTY_NAME]; /* its name, or of the one that shows what it sets; "": none */
 	char nearest[PROPERTY_NEAREST]; /* does not exist: what was probably meant, or "" */
 };

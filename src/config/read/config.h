@@ -49,8 +49,8 @@ struct config_spot {
 
 /*
  * A row of the file. What a family decides, config_know() fills in (src/config/check): family,
- * has_por, latch_stays, converted with the scale and the symbol of the unit, and read_back_ns where
- * it is not given, or does nothing.
+ * has_por, latch_stays, whole, converted with the scale and the symbol of the unit; read_back_ns
+ * too where it is not given, or does nothing.
  */
 struct config_item {
 	const char *name;
@@ -79,6 +79,7 @@ struct config_item {
 	/* NULL: not defined, "": empty; Table 3.1 tells the two apart */
 	const char *latch_alarm, *por_alarm, *set_alarm, *reset_latch;
 	bool latch_stays; /* nothing of the item clears its latch */
+	bool whole;       /* its property takes whole numbers only */
 	struct config_limits limits;
 	/* of engineering values; NULL: not given. An empty unit is given too */
 	const char *unit, *description;

@@ -17,7 +17,6 @@
 #include "src/daemon/engine/schedule.h"
 #include "src/daemon/engine/slots.h"
 #include "src/daemon/engine/trace.h"
-#include "src/daemon/engine/types.h"
 
 /*
  * Past the caches: also what is to confirm a reading that jumped, and what is compared with its
@@ -141,16 +140,11 @@ static bool ask_alarm(struct lane *lane, struct slot *slot)
 	return true;
 }
 
-/*
- * The order of a lane: what the bus is made of, alarms, one changed output, the next due input,
- * guests.
- */
+/* The order of a lane: alarms, looks for devices, one changed output, the next input, guests. */
 static bool ask_next(struct lane *lane, struct slot *slot)
 {
-	int64_t output, input, check = types_next(lane);
+	int64_t output, input;
 
-	if (check >= 0)
-		return types_ask(lane, slot, (uint32_t)check);
 	if (ask_alarm(lane, slot) || engine_probe_ask(lane, slot) ||
 	    engine_restart_ask(lane, slot) || engine_watch_ask(lane, slot))
 		return true;

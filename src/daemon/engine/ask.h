@@ -11,8 +11,8 @@
 static inline bool lane_rests(const struct lane *lane)
 {
 	return !lane->lent.count && !lane->inputs.count && !lane->outputs.count &&
-	       !lane->checks.count && !lane->probes.count && !lane->watch.count &&
-	       !lane->guests.first && lane->alarm.state == NOT_USED;
+	       !lane->probes.count && !lane->watch.count && !lane->guests.first &&
+	       lane->alarm.state == NOT_USED;
 }
 
 /* Submit as much as the order of the lane and the depth of its bus allow. */

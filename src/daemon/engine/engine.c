@@ -78,8 +78,7 @@ int engine_create(const struct engine_setup *setup, struct engine **engine)
 	e->time.now_ns = setup->start_ns;
 	if (signal_table_init(&e->table, e->config) ||
 	    due_wheel_init(&e->wheel, e->table.count * 2, 0) ||
-	    due_wheel_init(&e->time_wheel, e->table.count, 0) ||
-	    structure_init(&e->structure, &e->table) || engine_facts_init(e) ||
+	    due_wheel_init(&e->time_wheel, e->table.count, 0) || engine_facts_init(e) ||
 	    engine_watch_init(e) || alarm_items_init(&e->table, &e->alarm_items, &e->alarm_count) ||
 	    make_lanes(e, setup) || engine_groups_init(e, setup->ports) ||
 	    engine_presences_init(e)) {
@@ -100,7 +99,6 @@ void engine_destroy(struct engine *e)
 	free(e->lanes);
 	engine_groups_free(e);
 	engine_presences_free(e);
-	structure_free(&e->structure);
 	engine_facts_free(e);
 	engine_watch_free(e);
 	free(e->alarm_items);
@@ -132,8 +130,7 @@ static bool waits_for_period(const struct lane *lane)
 	if (lane->guests.first || (lane->lent.count && lane->lent.unshown))
 		return true;
 	return lane->state.up && !lane->lent.count &&
-	       (lane->inputs.count || lane->outputs.count || lane->checks.count ||
-	        lane->restarts.count);
+	       (lane->inputs.count || lane->outputs.count || lane->restarts.count);
 }
 
 int64_t engine_step(struct engine *e, int64_t now_ns)

@@ -17,12 +17,12 @@
  *   moves                move, lane_state (a target goes up and fails)
  *   alarm and guests     alarm (the machine), alarm_step, guests
  *   controllers          controllers (they join, beat and leave)
- *   reading and writing  completion, presence, device_watch, intake, in_force, place, doubt, types
+ *   reading and writing  completion, presence, device_watch, intake, in_force, place, doubt
  *   reading back         read_back, restart
  *   alarm items          alarm_arm, alarm_list, alarm_effect, alarm_refused
  *   schedule, publish    schedule, publish, origin, limits, counters, device_facts
  *   slots                lane, slots, disown, group, trace, alarm_item
- *   table                table, scaling, structure, due
+ *   table                table, scaling, due
  *   pure functions       route, adoption, limit, retry, alarm_fsm, alarm_text
  *
  * Room src/daemon/engine: the table of signals, lanes, alarms; no input or output.

@@ -12,7 +12,6 @@ int lane_init(struct lane *lane, struct engine *engine, const struct engine_port
 	*lane = (struct lane){.engine = engine, .port = port, .index = index};
 	if (slots_init(lane) || due_set_init(&lane->inputs, engine->table.count) ||
 	    due_set_init(&lane->outputs, engine->table.count) ||
-	    due_set_init(&lane->checks, engine->structure.count) ||
 	    due_set_init(&lane->probes, engine->table.device_count) ||
 	    due_set_init(&lane->watch, engine->table.device_count) ||
 	    due_set_init(&lane->restarts, engine->table.device_count) ||
@@ -28,7 +27,6 @@ void lane_free(struct lane *lane)
 	slots_free(lane);
 	due_set_free(&lane->inputs);
 	due_set_free(&lane->outputs);
-	due_set_free(&lane->checks);
 	due_set_free(&lane->probes);
 	due_set_free(&lane->watch);
 	due_set_free(&lane->restarts);
@@ -37,13 +35,10 @@ void lane_free(struct lane *lane)
 
 void lane_take_row(struct lane *lane, uint32_t row)
 {
-	struct engine *e = lane->engine;
-	struct signal *s = &e->table.signals[row];
+	struct signal *s = &lane->engine->table.signals[row];
 
 	s->lane = lane->index;
 	lane->writers += signal_writes(s);
-	if (e->structure.check_of[row] != STRUCTURE_NONE)
-		due_set_add(&lane->checks, e->structure.check_of[row]);
 }
 
 void lane_drop_row(struct lane *lane, uint32_t row)

@@ -9,8 +9,6 @@ int lane_init(struct lane *lane, struct engine *engine, const struct engine_port
               unsigned index);
 void lane_free(struct lane *lane);
 
-/*
- * The lane serves the row from now on, no longer: rows that are due, writers, checks of its type.
- */
+/* The lane serves the row from now on, no longer: rows that are due, writers. */
 void lane_take_row(struct lane *lane, uint32_t row);
 void lane_drop_row(struct lane *lane, uint32_t row);

@@ -16,7 +16,6 @@
 #include "src/daemon/engine/routing/known.h"
 #include "src/daemon/engine/slots.h"
 #include "src/daemon/engine/trace.h"
-#include "src/daemon/engine/types.h"
 
 static void apply_answer(struct lane *lane, struct slot *slot, const struct bus_answer *answer)
 {
@@ -25,9 +24,6 @@ static void apply_answer(struct lane *lane, struct slot *slot, const struct bus_
 	switch (slot->purpose) {
 	case FOR_GUEST:
 		guest_done(e, lane, slot, answer);
-		break;
-	case FOR_STRUCTURE:
-		types_done(lane, slot, answer);
 		break;
 	case FOR_PROBE:
 		engine_probe_done(e, lane, slot, answer);

@@ -60,7 +60,7 @@ static int raw_of(const struct signal *s, int64_t value, double *raw)
 {
 	int err = scale_raw(&s->item->scale, value_number(s->item->type, value), raw);
 
-	if (!err && is_scaled(s) && s->scaling.whole)
+	if (!err && is_scaled(s) && s->item->whole)
 		*raw = round(*raw) + 0.0; /* no negative zero */
 	return err;
 }

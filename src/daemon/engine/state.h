@@ -11,7 +11,6 @@
 #include "src/daemon/engine/due.h"
 #include "src/daemon/engine/port.h"
 #include "src/daemon/engine/routing/route.h"
-#include "src/daemon/engine/structure.h"
 #include "src/daemon/engine/table.h"
 #include "src/ground/text/log.h"
 #include "src/memory/shm/controller.h"
@@ -32,16 +31,7 @@ struct engine_guests;
 
 /* --- A request ------------------------------------------------------------------------------- */
 
-enum purpose {
-	FOR_READ,
-	FOR_WRITE,
-	FOR_STRUCTURE,
-	FOR_ALARM,
-	FOR_PROBE,
-	FOR_RESTART,
-	FOR_WATCH,
-	FOR_GUEST
-};
+enum purpose { FOR_READ, FOR_WRITE, FOR_ALARM, FOR_PROBE, FOR_RESTART, FOR_WATCH, FOR_GUEST };
 
 /*
  * A request and its room. Its id is slot | generation << 16, so that a late answer does not fit a
@@ -63,11 +53,7 @@ struct slot {
 
 	/* ask.c, guests.c and the others that ask */
 	enum purpose purpose;
-	/*
-	 * Of the table, of structure.checks (FOR_STRUCTURE), a device (FOR_PROBE, FOR_RESTART,
-	 * FOR_WATCH).
-	 */
-	uint32_t row;
+	uint32_t row;                /* of the table; of FOR_PROBE, _RESTART, _WATCH a device */
 	int64_t value;               /* of a write */
 	uint32_t stamp;              /* of the command written, 0: owsd's */
 	uint32_t controller, serial; /* that gave it */
@@ -158,8 +144,6 @@ struct lane {
 	uint32_t writers; /* rows that are enabled for writing */
 	/* restart.c */
 	struct due_set restarts; /* devices with a power-on flag that is to be read */
-	/* types.c */
-	struct due_set checks; /* of the engine's structure: to be asked here */
 
 	/* known.c, and routing.c puts in what is to be looked for */
 	struct due_set probes; /* devices to be looked for here */
@@ -295,7 +279,6 @@ struct engine {
 	struct engine_time time;
 
 	struct table table;
-	struct structure structure;
 	struct alarm_item *alarm_items; /* all of the table, in its order */
 	uint32_t alarm_count;
 

@@ -107,7 +107,6 @@ struct signal_entered {
 struct signal_scaling {
 	struct filter filter;
 	struct step step;
-	bool whole;      /* the property takes whole numbers only */
 	int64_t written; /* the raw value that was written last, bits of a double */
 };
 

@@ -127,7 +127,7 @@ struct scene {
 
 	char trace[16384]; /* "R /path\n" (r: fresh), "W /path=text\n"; "1: " before bus 1's */
 	bool no_trace;
-	unsigned reads, writes, structure_reads, lists;
+	unsigned reads, writes, lists;
 	bool trace_lists; /* the trace has "D /alarm" too */
 	/* called at a read or write, for what else happens to the devices; may use scene_put() */
 	void (*on_write)(struct scene *scene, const char *path, const char *data, uint32_t len);

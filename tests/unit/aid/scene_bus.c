@@ -24,10 +24,8 @@ static void note(struct scene_bus *bus, char what, const char *path, const char 
 	         what == 'W' ? "=" : "", text);
 }
 
-static int64_t latency_of(const struct scene_bus *bus, const char *path, bool structure)
+static int64_t latency_of(const struct scene_bus *bus, const char *path)
 {
-	if (structure)
-		return 0;
 	return bus->slow && strcmp(path, bus->slow) == 0 ? bus->slow_ns : bus->latency_ns;
 }
 
@@ -35,17 +33,13 @@ int scene_submit(void *ctx, struct bus_req *req)
 {
 	struct scene_bus *bus = ctx;
 	struct scene *s = bus->scene;
-	bool structure = strncmp(req->path, "/structure/", 11) == 0;
 	char text[128] = "";
-	unsigned values = 0;
 
 	TEST_ASSERT_FALSE_MESSAGE(bus->holds && (bus->released || bus->asked),
 	                          "asked though it was to let go");
 	if (bus->refuses || bus->pending_count + bus->swallowed_count == bus->depth)
 		return -EAGAIN;
-	if (structure) {
-		s->structure_reads++;
-	} else if (req->op == BUS_DIR) {
+	if (req->op == BUS_DIR) {
 		s->lists++;
 		bus->lists++;
 		if (s->trace_lists)
@@ -63,16 +57,14 @@ int scene_submit(void *ctx, struct bus_req *req)
 		bus->reads++;
 		note(bus, req->fresh ? 'r' : 'R', req->path, text);
 	}
-	if (bus->mute && !structure) {
+	if (bus->mute) {
 		bus->swallowed[bus->swallowed_count++] = req;
 		return 0;
 	}
 	bus->pending[bus->pending_count++] = (struct scene_pending){
-		req, s->now_ns + latency_of(bus, req->path, structure)};
-	for (unsigned i = 0; i < bus->pending_count; i++)
-		values += strncmp(bus->pending[i].req->path, "/structure/", 11) != 0;
-	if (values > bus->most_pending)
-		bus->most_pending = values;
+		req, s->now_ns + latency_of(bus, req->path)};
+	if (bus->pending_count > bus->most_pending)
+		bus->most_pending = bus->pending_count;
 	return 0;
 }
 
@@ -192,22 +184,10 @@ static void deliver(struct scene_bus *bus, unsigned index)
 	scene_answer_on(s, number, req->id, p->err, p->text, req);
 }
 
-static bool deliver_structure(struct scene_bus *bus)
-{
-	for (unsigned i = 0; i < bus->pending_count; i++)
-		if (strncmp(bus->pending[i].req->path, "/structure/", 11) == 0) {
-			deliver(bus, i);
-			return true;
-		}
-	return false;
-}
-
 void scene_up_on(struct scene *s, unsigned bus)
 {
 	tell(s, bus, BUS_UP, 0);
-	do {
-		engine_step(s->engine, s->now_ns);
-	} while (deliver_structure(&s->bus[bus]));
+	engine_step(s->engine, s->now_ns);
 }
 
 void scene_up(struct scene *s)

@@ -63,6 +63,10 @@ static void test_what_cannot_be_meant_is_named_with_its_remedy(void)
 	         PATH_AT " is Writable, but temperature cannot be written: write Writable off\n"},
 		{"Name x Path /28.551DDF030000/temperature Type string",
 	         AT " is a number, and a string shows it as text: write Type double\n"},
+		{"Name x Path /28.551DDF030000/type Type double",
+	         AT " is a text or a list, and no double: write Type string\n"},
+		{"Name x Path /29.B89115000000/sensed.ALL Type byte",
+	         AT " is a text or a list, and no byte: write Type string\n"},
 		{"Name x Path /simultaneous/temperature Type bool", PATH_AT
 	         ": /simultaneous/temperature begins conversions and shows no value: write IO "
 	         "output, or the Path of a device\n"},
@@ -291,7 +295,8 @@ static void test_two_outputs_of_the_same_bits_are_named(void)
 		{"Path /29.B89115000000/PIO.3;Path /bus.0/29b89115000000/PIO.BYTE Restore on",
 	         FIGHT},
 		{"Path /29.B89115000000/PIO.3 Restore on;Path /29.B89115000000/PIO.3", FIGHT},
-		{"Path /29.B89115000000/PIO.ALL;Path /29.B89115000000/PIO.3 Restore on", FIGHT},
+		{"Path /29.B89115000000/PIO.ALL;Path /29.B89115000000/PIO.3 Restore on",
+	         "f:2: warning: \"a\" is a text or a list, and no byte: write Type string\n" FIGHT},
 		{"Path /42.B89115000000/latch.A Restore on;Path /42.B89115000000/PIO.A", FIGHT},
 		{"Path /05.B89115000000/PIO Restore on;Path /05.B89115000000/PIO", FIGHT},
 		{ALIAS " Restore on;Path /lamp/PIO.BYTE", FIGHT},

@@ -367,25 +367,6 @@ static void test_a_bus_that_takes_nothing_is_asked_again_later(void)
 	TEST_ASSERT_GREATER_THAN(20, s.reads);
 }
 
-static void test_types_are_checked_before_the_first_value(void)
-{
-	scene_input(&s, "type", "/28.551DDF030000/type", OWS_DOUBLE);
-	scene_input(&s, "t1", T1, OWS_DOUBLE);
-	scene_put(&s, "/structure/28/type", "a,000000,000001,ro,000032,f,", 0);
-	scene_put(&s, "/structure/28/temperature12", "t,000000,000001,ro,000012,v,", 0);
-	scene_put(&s, T1, "1", 0);
-	scene_put(&s, "/28.551DDF030000/type", "DS18B20", 0);
-	scene_start(&s);
-	scene_up(&s);
-	TEST_ASSERT_EQUAL_UINT(2, s.structure_reads);
-	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TYPE, scene_sample(&s, 1).quality);
-	TEST_ASSERT_EQUAL_INT32(-EPROTOTYPE, scene_sample(&s, 1).err);
-	scene_run(&s, SCENE_S);
-	TEST_ASSERT_EQUAL_UINT(2, s.structure_reads);
-	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TYPE, scene_sample(&s, 1).quality);
-	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 2).quality);
-}
-
 int main(void)
 {
 	UNITY_BEGIN();
@@ -412,6 +393,5 @@ int main(void)
 	RUN_TEST(test_the_time_of_the_last_attempt_does_not_go_back_to_a_read_before_a_write);
 	RUN_TEST(test_texts_are_read_written_and_cut_where_they_are_too_long);
 	RUN_TEST(test_a_bus_that_takes_nothing_is_asked_again_later);
-	RUN_TEST(test_types_are_checked_before_the_first_value);
 	return UNITY_END();
 }

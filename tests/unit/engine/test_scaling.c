@@ -319,8 +319,7 @@ static void test_a_command_goes_to_the_bus_as_the_number_that_it_is(void)
 
 static void test_a_property_of_whole_numbers_gets_the_nearest(void)
 {
-	valve();
-	scene_put(&s, "/structure/2C/wiper", "u,000000,000001,rw,000012,s,", 0);
+	valve()->whole = true;
 	start();
 	scene_clear_trace(&s);
 	command(1, 50);
@@ -338,7 +337,7 @@ static void test_what_the_nearest_raw_value_gives_is_the_command_when_it_is_read
 	/* the nearest to 99.9 is 255, which is 100 and out of range by itself */
 	item->readable = item->scale.has_max = true;
 	item->scale.max = 99.9;
-	scene_put(&s, "/structure/2C/wiper", "u,000000,000001,rw,000012,s,", 0);
+	item->whole = true;
 	start();
 	command(1, 99.9);
 	scene_run(&s, SCENE_S);

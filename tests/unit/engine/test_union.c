@@ -348,18 +348,6 @@ static void test_a_stuck_target_delays_no_other(void)
 	TEST_ASSERT_UINT_WITHIN(3, 300, s.bus[1].reads);
 }
 
-static void test_types_are_checked_on_the_target_that_serves_a_signal(void)
-{
-	scene_input(&s, "t1", T1, OWS_DOUBLE);
-	scene_put_on(&s, 0, "/structure/28/temperature12", "t,000000,000001,ro,000012,v,", 0);
-	scene_put_on(&s, 1, "/structure/28/temperature12", "D,000000,000001,ro,000012,v,", 0);
-	scene_put_on(&s, 1, T1, NULL, -EISDIR);
-	two_wires_up(&s);
-	scene_run(&s, SCENE_S);
-	scene_expect(&s, 1, OWS_Q_NO_PROPERTY, 1);
-	TEST_ASSERT_EQUAL_UINT(2, s.structure_reads);
-}
-
 int main(void)
 {
 	UNITY_BEGIN();
@@ -380,6 +368,5 @@ int main(void)
 	RUN_TEST(test_a_path_without_a_device_goes_to_the_first_target_that_is_up);
 	RUN_TEST(test_a_device_known_by_its_alias_is_found_by_answers_alone);
 	RUN_TEST(test_a_stuck_target_delays_no_other);
-	RUN_TEST(test_types_are_checked_on_the_target_that_serves_a_signal);
 	return UNITY_END();
 }
