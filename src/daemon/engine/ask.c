@@ -8,14 +8,14 @@
 #include "src/daemon/engine/alarm/alarm.h"
 #include "src/daemon/engine/ask.h"
 #include "src/daemon/engine/command/intake.h"
-#include "src/daemon/engine/command/restart.h"
-#include "src/daemon/engine/device_watch.h"
+#include "src/daemon/engine/command/read_back.h"
 #include "src/daemon/engine/guests.h"
+#include "src/daemon/engine/lane.h"
+#include "src/daemon/engine/presence.h"
 #include "src/daemon/engine/publish.h"
 #include "src/daemon/engine/routing/known.h"
 #include "src/daemon/engine/scaling.h"
 #include "src/daemon/engine/schedule.h"
-#include "src/daemon/engine/slots.h"
 #include "src/daemon/engine/trace.h"
 
 /*

@@ -11,17 +11,17 @@
  * defines. alarm, limits, routing, command and reload are folders; what stands in none of them is
  * the table and the lanes.
  *
- *   step                 engine (makes it, and takes the calls), adopt, adopt_signal (a reload)
- *   events and answers   lane_event, lane_answer (record what happened), ask (chooses what is next)
+ *   step                 engine (makes it, and takes the calls), adopt (a reload)
+ *   events and answers   lane_answer (what happened), ask (chooses what is next)
  *   routing              routing (acts on the facts: opens ways, moves devices)
- *   moves                move, lane_state (a target goes up and fails)
+ *   targets              lane_state (a target goes up and fails, and what its bus reports)
+ *   moves                move (of signals to another lane; writes in doubt)
  *   alarm and guests     alarm (the machine), alarm_step, guests
  *   controllers          controllers (they join, beat and leave)
- *   reading and writing  completion, presence, device_watch, intake, in_force, place, doubt
- *   reading back         read_back, restart
- *   alarm items          alarm_arm, alarm_list, alarm_effect, alarm_refused
+ *   reading and writing  completion, presence, intake, in_force, place
+ *   alarm items          read_back, alarm_arm, alarm_effect
  *   schedule, publish    schedule, publish, origin, limits, counters, device_facts
- *   slots                lane, slots, disown, group, trace, alarm_item
+ *   lanes                lane, trace, alarm_item
  *   table                table, scaling, due
  *   pure functions       route, adoption, limit, retry, alarm_fsm, alarm_text
  *

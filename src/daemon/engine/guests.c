@@ -10,10 +10,10 @@
 #include "hal/owfs/path.h"
 #include "src/daemon/engine/guest.h"
 #include "src/daemon/engine/guests.h"
+#include "src/daemon/engine/lane.h"
 #include "src/daemon/engine/publish.h"
 #include "src/daemon/engine/retry.h"
 #include "src/daemon/engine/schedule.h"
-#include "src/daemon/engine/slots.h"
 
 /* So many requests of a busy table go before a guest that waits. */
 #define GUEST_PASSED 4

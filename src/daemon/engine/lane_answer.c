@@ -3,18 +3,18 @@
 #include <errno.h>
 
 #include "src/daemon/engine/alarm/alarm.h"
-#include "src/daemon/engine/command/doubt.h"
-#include "src/daemon/engine/command/restart.h"
+#include "src/daemon/engine/command/read_back.h"
 #include "src/daemon/engine/completion.h"
 #include "src/daemon/engine/device_facts.h"
-#include "src/daemon/engine/device_watch.h"
 #include "src/daemon/engine/guests.h"
+#include "src/daemon/engine/lane.h"
 #include "src/daemon/engine/lane_answer.h"
 #include "src/daemon/engine/lane_state.h"
+#include "src/daemon/engine/presence.h"
 #include "src/daemon/engine/publish.h"
 #include "src/daemon/engine/retry.h"
+#include "src/daemon/engine/routing/move.h"
 #include "src/daemon/engine/routing/known.h"
-#include "src/daemon/engine/slots.h"
 #include "src/daemon/engine/trace.h"
 
 static void apply_answer(struct lane *lane, struct slot *slot, const struct bus_answer *answer)

@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* A lane whose target goes up and fails. */
+/* A lane whose target goes up and fails, and what its bus reports by itself. */
 #pragma once
 
 #include "src/daemon/engine/state.h"
 
 /* The target of an open lane went up; the bus has reported that now or before. */
 void lane_up(struct lane *lane, const char *text);
-/* The target failed. Its signals stay as they are until routing has acted on that. */
-void lane_fail(struct lane *lane, int err);
 /* The signals that no other lane has taken over go bad. */
 void lane_down(struct lane *lane, int err);
 /*
@@ -16,3 +14,5 @@ void lane_down(struct lane *lane, int err);
  */
 void lane_stuck(struct lane *lane);
 void lane_unstuck(struct lane *lane);
+/* What the bus reports by itself. */
+void lane_event(struct lane *lane, const struct bus_event *event);

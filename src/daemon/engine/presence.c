@@ -2,16 +2,50 @@
 /*
  * Presence belongs to the device: whatever has shown that it is lost, or is there again, comes here
  * and counts for all its signals.
+ *
+ * A signal that is read in each period shows by itself when its device is lost. One that is read
+ * seldom (by alarms, with a large PerFactor) or never (an output without ReadBack) does not: its
+ * device is looked for when nothing has shown it for WATCH_NS. A look is a search for one id; it
+ * reads no value, so it converts nothing and clears nothing, and costs as much as one reading.
  */
 #include <errno.h>
 
+#include "hal/base/time.h"
 #include "src/daemon/engine/alarm/alarm_arm.h"
+#include "src/daemon/engine/lane.h"
 #include "src/daemon/engine/presence.h"
 #include "src/daemon/engine/publish.h"
 #include "src/daemon/engine/retry.h"
 #include "src/daemon/engine/routing/known.h"
 #include "src/daemon/engine/schedule.h"
 #include "src/ground/text/log.h"
+
+/* A device that has shown nothing for so long is looked for; or for a period, if that is longer. */
+#define WATCH_NS (2 * NS_PER_S)
+
+static int64_t watch_ns(const struct engine *e)
+{
+	return e->config->period_ns > WATCH_NS ? e->config->period_ns : WATCH_NS;
+}
+
+static void watch_at(struct engine *e, uint32_t device, int64_t ns)
+{
+	due_wheel_at(&e->watch_wheel, device, engine_period_at(e, ns));
+}
+
+void engine_watch_anew(struct lane *lane, uint32_t device)
+{
+	struct engine *e = lane->engine;
+
+	if (device == e->table.device_count)
+		return;
+	retry_clear(&e->table.devices[device].watch);
+	if (due_set_has(&lane->watch, device))
+		due_set_remove(&lane->watch, device);
+	else if (!e->watch_wheel.wait[device].waits) /* with the bus, or never watched */
+		return;
+	watch_at(e, device, e->time.now_ns + watch_ns(e));
+}
 
 /* Nothing else would show it of an output that is not read. */
 static void lose_output(struct engine *e, struct signal *s)
@@ -74,4 +108,169 @@ void engine_device_back(struct lane *lane, struct device *device)
 			engine_publish(e, s);
 		}
 	}
+}
+
+/* Between two looks on a lane: the signals that are read come first. */
+#define WATCH_APART_NS (100 * NS_PER_MS)
+
+/* By the file alone. */
+static bool may_be_overlooked(const struct engine *e, const struct signal *s)
+{
+	return s->item->alarm || s->item->output ||
+	       s->item->per_factor * e->config->period_ns > watch_ns(e);
+}
+
+/* Would its own readings show too late, or never, that the device is lost? */
+static bool is_overlooked(struct engine *e, struct lane *lane, const struct signal *s)
+{
+	int64_t back_ns = s->item->read_back_ns;
+
+	if (signal_reads(s))
+		return engine_reads_apart(e, lane, s) > engine_periods(e, watch_ns(e));
+	return s->item->output && s->sample.count && (!back_ns || back_ns > watch_ns(e));
+}
+
+static struct signal *row_of(const struct engine *e, const struct device *d, uint32_t k)
+{
+	return &e->table.signals[e->table.device_rows[d->first + k]];
+}
+
+static bool is_to_be_watched(struct engine *e, struct lane *lane, const struct device *d)
+{
+	bool overlooked = false, read = false;
+
+	for (uint32_t k = 0; k < d->count; k++) {
+		const struct signal *s = row_of(e, d, k);
+
+		if (s->lane != lane->index)
+			continue;
+		overlooked |= is_overlooked(e, lane, s);
+		read |= signal_is_read(s);
+	}
+	/* the return of a lost one is shown by what is tried again */
+	return overlooked && !(d->absent && read);
+}
+
+int engine_watch_init(struct engine *e)
+{
+	if (due_wheel_init(&e->watch_wheel, e->table.device_count + 1, 0))
+		return -ENOMEM;
+	for (uint32_t i = 0; i < e->table.device_count; i++) {
+		const struct device *d = &e->table.devices[i];
+		bool any = false;
+
+		for (uint32_t k = 0; k < d->count; k++)
+			any |= may_be_overlooked(e, row_of(e, d, k));
+		if (any)
+			watch_at(e, i, e->time.start_ns + watch_ns(e));
+	}
+	return 0;
+}
+
+void engine_watch_free(struct engine *e)
+{
+	due_wheel_free(&e->watch_wheel);
+}
+
+static void watch_ready(void *ctx, uint32_t index)
+{
+	struct engine *e = ctx;
+	const struct device *d = &e->table.devices[index];
+	struct lane *lane = engine_lane(e, row_of(e, d, 0));
+	int64_t due_ns = d->shown_ns + watch_ns(e);
+
+	if (due_ns > e->time.now_ns)
+		watch_at(e, index, due_ns);
+	else if (lane->state.up && is_to_be_watched(e, lane, d))
+		due_set_add(&lane->watch, index);
+	else
+		watch_at(e, index, e->time.now_ns + watch_ns(e));
+}
+
+void engine_watch_tick(struct engine *e)
+{
+	due_wheel_advance(&e->watch_wheel, e->time.period, watch_ready, e);
+}
+
+/* What a cache has says nothing of the device as it is now; nor does a write. */
+void engine_watch_heard(struct lane *lane, const struct slot *slot, const struct bus_answer *answer)
+{
+	struct engine *e = lane->engine;
+	const struct signal *s = slot_signal(lane, slot);
+
+	if (slot->req.op != BUS_READ || answer->err || (answer->detail & BUS_DETAIL_CACHED) ||
+	    !(slot->req.fresh || lane->port->searches) || !s->shows_device ||
+	    s->device == TABLE_NO_DEVICE)
+		return;
+	e->table.devices[s->device].shown_ns = slot->begun_ns;
+	retry_clear(&e->table.devices[s->device].watch);
+}
+
+bool engine_watch_ask(struct lane *lane, struct slot *slot)
+{
+	struct engine *e = lane->engine;
+	int64_t device = due_set_next(&lane->watch);
+
+	if (device < 0 || lane->watching || e->time.now_ns < lane->watch_ns ||
+	    !slot_look_for(lane, slot, FOR_WATCH, (uint32_t)device) || !slot_lend(lane, slot))
+		return false;
+	due_set_take(&lane->watch, (uint32_t)device);
+	lane->watching = true;
+	lane->watch_ns = e->time.now_ns + WATCH_APART_NS;
+	lane->counters.watches++;
+	return true;
+}
+
+/* Signals that are read show by themselves what the matter is. */
+static void read_all(struct lane *lane, const struct device *d)
+{
+	struct engine *e = lane->engine;
+
+	for (uint32_t k = 0; k < d->count; k++) {
+		struct signal *s = row_of(e, d, k);
+
+		if (s->lane == lane->index && !s->read.retry.failures)
+			engine_read_now(e, s);
+	}
+}
+
+/* Returns when the device is looked for again. */
+static int64_t watch_failed(struct lane *lane, uint32_t index, int err)
+{
+	struct engine *e = lane->engine;
+	struct device *d = &e->table.devices[index];
+	int64_t wait_ns;
+	bool lost;
+
+	if (err != -ENODEV) { /* the wire, or a bridge chip: that is no absence */
+		read_all(lane, d);
+		return watch_ns(e);
+	}
+	lost = retry_fail(&d->watch, d->absent ? 0 : e->config->max_retries, &wait_ns);
+	if (lost)
+		engine_device_lost(lane, index);
+	else
+		read_all(lane, d);
+	if (lost && lane->port->brief && wait_ns > RETRY_FIRST_NS)
+		wait_ns = RETRY_FIRST_NS;
+	return lost ? wait_ns : WATCH_APART_NS;
+}
+
+void engine_watch_done(struct lane *lane, const struct slot *slot, const struct bus_answer *answer)
+{
+	struct engine *e = lane->engine;
+	struct device *d = &e->table.devices[slot->row];
+	int64_t wait_ns = watch_ns(e);
+
+	lane->watching = false;
+	if (engine_lane(e, row_of(e, d, 0)) == lane && !answer->err) {
+		d->shown_ns = slot->begun_ns;
+		retry_clear(&d->watch);
+		if (d->absent)
+			engine_device_back(lane, d);
+	} else if (engine_lane(e, row_of(e, d, 0)) == lane &&
+	           failure_of(answer->err) == FAILURE_ITEM) {
+		wait_ns = watch_failed(lane, slot->row, answer->err);
+	}
+	watch_at(e, slot->row, slot->begun_ns + wait_ns);
 }

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* A device that is lost, or there again: what that means to all its signals. */
+/*
+ * A device that is lost, or there again: what that means to all its signals; and looks for devices
+ * whose signals would not show in time that it is lost.
+ */
 #pragma once
 
 #include "src/daemon/engine/state.h"
@@ -14,3 +17,21 @@ void engine_device_lost(struct lane *lane, uint32_t device);
  * outputs again and arm its alarms.
  */
 void engine_device_back(struct lane *lane, struct device *device);
+
+/*
+ * The device is there again, or leaves the lane: what looks for it have found counts no more, and
+ * it is looked for after the usual time, on the lane that serves it then.
+ */
+void engine_watch_anew(struct lane *lane, uint32_t device);
+
+/* 0 or -ENOMEM. */
+int engine_watch_init(struct engine *e);
+void engine_watch_free(struct engine *e);
+/* A new period: what was silent for too long becomes due. */
+void engine_watch_tick(struct engine *e);
+/* An answer for the slot's signal came: it may show that the device is there. */
+void engine_watch_heard(struct lane *lane, const struct slot *slot,
+                        const struct bus_answer *answer);
+/* Ask for the next device that is due; false: none is, or the bus takes nothing now. */
+bool engine_watch_ask(struct lane *lane, struct slot *slot);
+void engine_watch_done(struct lane *lane, const struct slot *slot, const struct bus_answer *answer);

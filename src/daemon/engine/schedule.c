@@ -33,30 +33,6 @@ void engine_read_never(struct engine *e, struct signal *s)
 	due_set_remove(&engine_lane(e, s)->inputs, engine_row(s));
 }
 
-int64_t engine_watch_ns(const struct engine *e)
-{
-	return e->config->period_ns > WATCH_NS ? e->config->period_ns : WATCH_NS;
-}
-
-void engine_watch_at(struct engine *e, uint32_t device, int64_t ns)
-{
-	due_wheel_at(&e->watch_wheel, device, engine_period_at(e, ns));
-}
-
-void engine_watch_anew(struct lane *lane, uint32_t device)
-{
-	struct engine *e = lane->engine;
-
-	if (device == e->table.device_count)
-		return;
-	retry_clear(&e->table.devices[device].watch);
-	if (due_set_has(&lane->watch, device))
-		due_set_remove(&lane->watch, device);
-	else if (!e->watch_wheel.wait[device].waits) /* with the bus, or never watched */
-		return;
-	engine_watch_at(e, device, e->time.now_ns + engine_watch_ns(e));
-}
-
 /* An alarm item is read when it has something to say, and now and then to see that it lives. */
 uint64_t engine_reads_apart(const struct engine *e, const struct lane *lane, const struct signal *s)
 {

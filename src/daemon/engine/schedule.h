@@ -24,16 +24,3 @@ bool engine_tick(struct engine *e);
  * at_most_ns (whole periods of it, but one at least) after the beginning of the present period.
  */
 int64_t engine_next_tick(const struct engine *e, int64_t at_most_ns);
-
-/* --- Looks for devices (device_watch.c) --- */
-
-/* A device that has shown nothing for so long is looked for; or for a period, if that is longer. */
-#define WATCH_NS (2 * NS_PER_S)
-
-int64_t engine_watch_ns(const struct engine *e);
-void engine_watch_at(struct engine *e, uint32_t device, int64_t ns);
-/*
- * The device is there again, or leaves the lane: what looks for it have found counts no more, and
- * it is looked for after the usual time, on the lane that serves it then.
- */
-void engine_watch_anew(struct lane *lane, uint32_t device);

@@ -25,7 +25,7 @@
 
 /*
  * A reload carries over what stands in sample, attrs and in the structures of a signal that have a
- * name, each of them whole (adopt_signal.c). What stands beside them is of one engine: the place in
+ * name, each of them whole (adopt.c). What stands beside them is of one engine: the place in
  * its table, what its buses have, and what its image's ring has.
  */
 
@@ -153,10 +153,10 @@ struct device {
 	bool absent;               /* presence.c: it was looked for, and is not there */
 	uint32_t first, count;     /* rows in table.device_rows */
 	struct device_facts facts; /* device_facts.c */
-	enum device_por por; /* restart.c; void when it was away, or is written: completion.c */
+	enum device_por por; /* read_back.c; void when it was away, or is written: completion.c */
 	int64_t por_ns;      /* it could not be read: while it is not known, not asked for before */
 
-	/* device_watch.c */
+	/* presence.c */
 	int64_t shown_ns;   /* an answer has shown last that it is there */
 	struct retry watch; /* looks for it that failed */
 

@@ -5,9 +5,9 @@
 #include "unity.h"
 
 #include "src/config/read/buses.h"
-#include "src/daemon/engine/reload/adopt_signal.h"
+#include "src/daemon/engine/lane.h"
+#include "src/daemon/engine/reload/adopt.h"
 #include "src/daemon/engine/reload/adoption.h"
-#include "src/daemon/engine/routing/disown.h"
 
 /* A byte that is valid in every member, a bool too, and that nothing has by itself. */
 #define PATTERN 1

@@ -4,6 +4,9 @@
 
 #include "src/daemon/engine/state.h"
 
+/* The target is back, and may be another or have another driver: has it an alarm search now? */
+void alarm_ask_again(struct alarm_machine *m, struct lane *lane);
+
 /* Does the lane hold writes back for the machine? */
 bool alarm_holds(const struct alarm_machine *m);
 /*

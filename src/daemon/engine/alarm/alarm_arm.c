@@ -9,7 +9,6 @@
 #include "src/daemon/engine/alarm/alarm_arm.h"
 #include "src/daemon/engine/alarm/alarm_effect.h"
 #include "src/daemon/engine/alarm/alarm_item.h"
-#include "src/daemon/engine/alarm/alarm_refused.h"
 #include "src/daemon/engine/alarm/alarm_text.h"
 #include "src/daemon/engine/retry.h"
 #include "src/ground/text/log.h"

@@ -7,7 +7,6 @@
 #include "src/daemon/engine/alarm/alarm_arm.h"
 #include "src/daemon/engine/alarm/alarm_effect.h"
 #include "src/daemon/engine/alarm/alarm_item.h"
-#include "src/daemon/engine/alarm/alarm_refused.h"
 #include "src/daemon/engine/alarm/alarm_step.h"
 #include "src/daemon/engine/alarm/alarm_text.h"
 #include "src/daemon/engine/completion.h"

@@ -8,8 +8,15 @@
 #include <stdint.h>
 
 #include "src/daemon/engine/reload/adoption.h"
+#include "src/daemon/engine/table.h"
 
 struct engine;
+
+/*
+ * The signal s, new of the changed configuration, goes on where `was` of the old one stands. What
+ * the file says counts where it was changed.
+ */
+bool signal_adopt(struct signal *s, const struct signal *was);
 
 /*
  * e is as engine_create() made it, its image not shown and its commands empty; old has run until

@@ -5,10 +5,10 @@
 
 #include "hal/base/time.h"
 #include "src/daemon/engine/due.h"
+#include "src/daemon/engine/lane.h"
 #include "src/daemon/engine/retry.h"
 #include "src/daemon/engine/routing/known.h"
 #include "src/daemon/engine/routing/route.h"
-#include "src/daemon/engine/slots.h"
 
 /* Between two looks for devices that are not there: the signals that are come first. */
 #define PROBE_APART_NS (200 * NS_PER_MS)
