@@ -39,10 +39,9 @@ static bool gives_nothing(const struct engine *e, const struct signal *failed)
 	const struct device *d = &e->table.devices[failed->device];
 
 	for (uint32_t i = 0; i < d->count; i++) {
-		const struct signal *s = &e->table.signals[e->table.device_rows[d->first + i]];
+		const struct signal *s = d->signals[i];
 
-		if (s->lane == failed->lane && signal_is_read(s) &&
-		    s->read.retry.failures <= e->config->max_retries)
+		if (signal_is_read(s) && s->read.retry.failures <= e->config->max_retries)
 			return false;
 	}
 	return true;

@@ -76,14 +76,14 @@ int engine_create(const struct engine_setup *setup, struct engine **engine)
 	e->time.start_ns = setup->start_ns;
 	e->time.now_ns = setup->start_ns;
 	if (signal_table_init(&e->table, e->config) ||
-	    due_wheel_init(&e->wheel, e->table.count * 2, 0) ||
-	    due_wheel_init(&e->time_wheel, e->table.count, 0) || engine_facts_init(e) ||
-	    engine_watch_init(e) || alarm_items_init(&e->table, &e->alarm_items, &e->alarm_count) ||
-	    make_lanes(e, setup) || engine_groups_init(e, setup->ports) ||
-	    engine_presences_init(e)) {
+	    due_wheel_init(&e->wheel, engine_device_wait(e, e->table.device_count + 1, WAIT_WATCH),
+	                   0) ||
+	    engine_facts_init(e) || alarm_items_init(&e->table, &e->alarm_items, &e->alarm_count) ||
+	    make_lanes(e, setup) || engine_groups_init(e, setup->ports) || engine_presences_init(e)) {
 		engine_destroy(e);
 		return -ENOMEM;
 	}
+	engine_watch_begin(e);
 	engine_begin(e, setup);
 	*engine = e;
 	return 0;
@@ -99,10 +99,8 @@ void engine_destroy(struct engine *e)
 	engine_groups_free(e);
 	engine_presences_free(e);
 	engine_facts_free(e);
-	engine_watch_free(e);
 	free(e->alarm_items);
 	due_wheel_free(&e->wheel);
-	due_wheel_free(&e->time_wheel);
 	signal_table_free(&e->table);
 	free(e);
 }
@@ -132,6 +130,21 @@ static bool waits_for_period(const struct lane *lane)
 	       (lane->inputs.count || lane->outputs.count || lane->restarts.count);
 }
 
+static void entry_ready(void *ctx, uint32_t entry)
+{
+	struct engine *e = ctx;
+	uint32_t rows = engine_device_wait(e, 0, WAIT_WATCH),
+		 device = (entry - rows) / DEVICE_WAITS;
+
+	if (entry < rows)
+		engine_row_due(e, &e->table.signals[entry / ROW_WAITS],
+		               (enum row_wait)(entry % ROW_WAITS));
+	else if ((entry - rows) % DEVICE_WAITS == WAIT_WATCH)
+		engine_watch_due(e, device);
+	else
+		due_set_add(&e->routes, device);
+}
+
 int64_t engine_step(struct engine *e, int64_t now_ns)
 {
 	int64_t next;
@@ -139,12 +152,11 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 
 	engine_begin_call(e, now_ns);
 	e->counters.steps++;
-	turned = engine_tick(e);
+	turned = engine_tick(e, entry_ready);
 	next = engine_intake_limited(e);
 	engine_look_stored(e);
 	guests_take(e);
 	if (turned) {
-		engine_watch_tick(e);
 		for (unsigned i = 0; i < e->lane_count; i++)
 			if (e->lanes[i].lent.count)
 				lane_show_reads(&e->lanes[i]);

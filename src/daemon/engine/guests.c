@@ -110,7 +110,7 @@ static unsigned lane_of_path(const struct engine *e, const char *path)
 	device = table_device(&e->table, split.rom);
 	if (device == TABLE_NO_DEVICE)
 		return 0;
-	return e->table.signals[e->table.device_rows[e->table.devices[device].first]].lane;
+	return e->table.devices[device].signals[0]->lane;
 }
 
 static void look_at_waiting(struct engine *e, struct lane *lane)

@@ -57,7 +57,7 @@ bool slot_look_for(struct lane *lane, struct slot *slot, enum purpose purpose, u
 {
 	const struct table *table = &lane->engine->table;
 	const struct device *d = &table->devices[device];
-	const char *text = table->signals[table->device_rows[d->first]].item->path;
+	const char *text = d->signals[0]->item->path;
 	struct path path;
 
 	if (path_split(text, strlen(text), &path))

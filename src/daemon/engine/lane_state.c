@@ -45,7 +45,7 @@ static void refresh_signals(struct lane *lane)
 			continue;
 		retry_clear(&s->read.retry);
 		retry_clear(&s->command.retry);
-		due_wheel_cancel(&e->wheel, engine_row(s) * 2 + 1);
+		due_wheel_cancel(&e->wheel, engine_row_wait(s, WAIT_WRITE));
 		engine_read_now(e, s);
 		engine_write_check(e, s);
 		if (s->read.held && !signal_reads(s) && s->sample.quality == OWS_Q_TARGET) {

@@ -30,7 +30,7 @@ static int64_t watch_ns(const struct engine *e)
 
 static void watch_at(struct engine *e, uint32_t device, int64_t ns)
 {
-	due_wheel_at(&e->watch_wheel, device, engine_period_at(e, ns));
+	due_wheel_at(&e->wheel, engine_device_wait(e, device, WAIT_WATCH), engine_period_at(e, ns));
 }
 
 void engine_watch_anew(struct lane *lane, uint32_t device)
@@ -42,7 +42,8 @@ void engine_watch_anew(struct lane *lane, uint32_t device)
 	retry_clear(&e->table.devices[device].watch);
 	if (due_set_has(&lane->watch, device))
 		due_set_remove(&lane->watch, device);
-	else if (!e->watch_wheel.wait[device].waits) /* with the bus, or never watched */
+	else if (!e->wheel.wait[engine_device_wait(e, device, WAIT_WATCH)]
+	                  .waits) /* with the bus, or never watched */
 		return;
 	watch_at(e, device, e->time.now_ns + watch_ns(e));
 }
@@ -70,10 +71,8 @@ void engine_device_lost(struct lane *lane, uint32_t index)
 	device->absent = true;
 	engine_presence(e, lane, index, ROUTE_ABSENT);
 	for (uint32_t i = 0; i < device->count; i++) {
-		struct signal *s = &e->table.signals[e->table.device_rows[device->first + i]];
+		struct signal *s = device->signals[i];
 
-		if (s->lane != lane->index)
-			continue;
 		if (!signal_is_read(s))
 			lose_output(e, s);
 		else if (!known)
@@ -90,13 +89,11 @@ void engine_device_back(struct lane *lane, struct device *device)
 	engine_watch_anew(lane, (uint32_t)(device - e->table.devices));
 	lane->counters.device_returns++;
 	for (uint32_t i = 0; i < device->count; i++) {
-		struct signal *s = &e->table.signals[e->table.device_rows[device->first + i]];
+		struct signal *s = device->signals[i];
 
-		if (s->lane != lane->index)
-			continue;
 		retry_clear(&s->read.retry);
 		retry_clear(&s->command.retry);
-		due_wheel_cancel(&e->wheel, engine_row(s) * 2 + 1);
+		due_wheel_cancel(&e->wheel, engine_row_wait(s, WAIT_WRITE));
 		alarm_rearm(&lane->alarm, e, s->device);
 		signal_forget_written(s);
 		engine_read_now(e, s);
@@ -130,53 +127,35 @@ static bool is_overlooked(struct engine *e, struct lane *lane, const struct sign
 	return s->item->output && s->sample.count && (!back_ns || back_ns > watch_ns(e));
 }
 
-static struct signal *row_of(const struct engine *e, const struct device *d, uint32_t k)
-{
-	return &e->table.signals[e->table.device_rows[d->first + k]];
-}
-
 static bool is_to_be_watched(struct engine *e, struct lane *lane, const struct device *d)
 {
 	bool overlooked = false, read = false;
 
 	for (uint32_t k = 0; k < d->count; k++) {
-		const struct signal *s = row_of(e, d, k);
-
-		if (s->lane != lane->index)
-			continue;
-		overlooked |= is_overlooked(e, lane, s);
-		read |= signal_is_read(s);
+		overlooked |= is_overlooked(e, lane, d->signals[k]);
+		read |= signal_is_read(d->signals[k]);
 	}
 	/* the return of a lost one is shown by what is tried again */
 	return overlooked && !(d->absent && read);
 }
 
-int engine_watch_init(struct engine *e)
+void engine_watch_begin(struct engine *e)
 {
-	if (due_wheel_init(&e->watch_wheel, e->table.device_count + 1, 0))
-		return -ENOMEM;
 	for (uint32_t i = 0; i < e->table.device_count; i++) {
 		const struct device *d = &e->table.devices[i];
 		bool any = false;
 
 		for (uint32_t k = 0; k < d->count; k++)
-			any |= may_be_overlooked(e, row_of(e, d, k));
+			any |= may_be_overlooked(e, d->signals[k]);
 		if (any)
 			watch_at(e, i, e->time.start_ns + watch_ns(e));
 	}
-	return 0;
 }
 
-void engine_watch_free(struct engine *e)
+void engine_watch_due(struct engine *e, uint32_t index)
 {
-	due_wheel_free(&e->watch_wheel);
-}
-
-static void watch_ready(void *ctx, uint32_t index)
-{
-	struct engine *e = ctx;
 	const struct device *d = &e->table.devices[index];
-	struct lane *lane = engine_lane(e, row_of(e, d, 0));
+	struct lane *lane = engine_lane(e, d->signals[0]);
 	int64_t due_ns = d->shown_ns + watch_ns(e);
 
 	if (due_ns > e->time.now_ns)
@@ -185,11 +164,6 @@ static void watch_ready(void *ctx, uint32_t index)
 		due_set_add(&lane->watch, index);
 	else
 		watch_at(e, index, e->time.now_ns + watch_ns(e));
-}
-
-void engine_watch_tick(struct engine *e)
-{
-	due_wheel_advance(&e->watch_wheel, e->time.period, watch_ready, e);
 }
 
 /* What a cache has says nothing of the device as it is now; nor does a write. */
@@ -222,16 +196,11 @@ bool engine_watch_ask(struct lane *lane, struct slot *slot)
 }
 
 /* Signals that are read show by themselves what the matter is. */
-static void read_all(struct lane *lane, const struct device *d)
+static void read_all(struct engine *e, const struct device *d)
 {
-	struct engine *e = lane->engine;
-
-	for (uint32_t k = 0; k < d->count; k++) {
-		struct signal *s = row_of(e, d, k);
-
-		if (s->lane == lane->index && !s->read.retry.failures)
-			engine_read_now(e, s);
-	}
+	for (uint32_t k = 0; k < d->count; k++)
+		if (!d->signals[k]->read.retry.failures)
+			engine_read_now(e, d->signals[k]);
 }
 
 /* Returns when the device is looked for again. */
@@ -243,14 +212,14 @@ static int64_t watch_failed(struct lane *lane, uint32_t index, int err)
 	bool lost;
 
 	if (err != -ENODEV) { /* the wire, or a bridge chip: that is no absence */
-		read_all(lane, d);
+		read_all(e, d);
 		return watch_ns(e);
 	}
 	lost = retry_fail(&d->watch, d->absent ? 0 : e->config->max_retries, &wait_ns);
 	if (lost)
 		engine_device_lost(lane, index);
 	else
-		read_all(lane, d);
+		read_all(e, d);
 	if (lost && lane->port->brief && wait_ns > RETRY_FIRST_NS)
 		wait_ns = RETRY_FIRST_NS;
 	return lost ? wait_ns : WATCH_APART_NS;
@@ -263,12 +232,12 @@ void engine_watch_done(struct lane *lane, const struct slot *slot, const struct 
 	int64_t wait_ns = watch_ns(e);
 
 	lane->watching = false;
-	if (engine_lane(e, row_of(e, d, 0)) == lane && !answer->err) {
+	if (engine_lane(e, d->signals[0]) == lane && !answer->err) {
 		d->shown_ns = slot->begun_ns;
 		retry_clear(&d->watch);
 		if (d->absent)
 			engine_device_back(lane, d);
-	} else if (engine_lane(e, row_of(e, d, 0)) == lane &&
+	} else if (engine_lane(e, d->signals[0]) == lane &&
 	           failure_of(answer->err) == FAILURE_ITEM) {
 		wait_ns = watch_failed(lane, slot->row, answer->err);
 	}

@@ -24,11 +24,10 @@ void engine_device_back(struct lane *lane, struct device *device);
  */
 void engine_watch_anew(struct lane *lane, uint32_t device);
 
-/* 0 or -ENOMEM. */
-int engine_watch_init(struct engine *e);
-void engine_watch_free(struct engine *e);
-/* A new period: what was silent for too long becomes due. */
-void engine_watch_tick(struct engine *e);
+/* Devices that may have to be looked for wait for that. */
+void engine_watch_begin(struct engine *e);
+/* The device has waited for that: if it was silent for too long it becomes due. */
+void engine_watch_due(struct engine *e, uint32_t device);
 /* An answer for the slot's signal came: it may show that the device is there. */
 void engine_watch_heard(struct lane *lane, const struct slot *slot,
                         const struct bus_answer *answer);

@@ -61,16 +61,16 @@ static void enter_change(struct engine *e, struct signal *s, const struct ows_sa
 /* Look again when the row changes by time alone. A look too soon does no harm. */
 static void look_again(struct engine *e, const struct signal *s, int64_t when_ns)
 {
-	const struct due_wait *wait = &e->time_wheel.wait[engine_row(s)];
+	const struct due_wait *wait = &e->wheel.wait[engine_row_wait(s, WAIT_TIME)];
 	uint64_t period;
 
 	if (when_ns == INT64_MAX) {
-		due_wheel_cancel(&e->time_wheel, engine_row(s));
+		due_wheel_cancel(&e->wheel, engine_row_wait(s, WAIT_TIME));
 		return;
 	}
 	period = engine_period_at(e, when_ns);
 	if (!wait->waits || wait->period > period)
-		due_wheel_at(&e->time_wheel, engine_row(s), period);
+		due_wheel_at(&e->wheel, engine_row_wait(s, WAIT_TIME), period);
 }
 
 void engine_publish(struct engine *e, struct signal *s)

@@ -11,7 +11,7 @@ void engine_read_now(struct engine *e, struct signal *s)
 {
 	if (s->reading || !signal_is_read(s))
 		return;
-	due_wheel_cancel(&e->wheel, engine_row(s) * 2);
+	due_wheel_cancel(&e->wheel, engine_row_wait(s, WAIT_READ));
 	due_set_add(&engine_lane(e, s)->inputs, engine_row(s));
 }
 
@@ -24,12 +24,12 @@ void engine_read_at(struct engine *e, struct signal *s, uint64_t period)
 		return;
 	}
 	due_set_remove(&engine_lane(e, s)->inputs, engine_row(s));
-	due_wheel_at(&e->wheel, engine_row(s) * 2, period);
+	due_wheel_at(&e->wheel, engine_row_wait(s, WAIT_READ), period);
 }
 
 void engine_read_never(struct engine *e, struct signal *s)
 {
-	due_wheel_cancel(&e->wheel, engine_row(s) * 2);
+	due_wheel_cancel(&e->wheel, engine_row_wait(s, WAIT_READ));
 	due_set_remove(&engine_lane(e, s)->inputs, engine_row(s));
 }
 
@@ -45,7 +45,7 @@ uint64_t engine_reads_apart(const struct engine *e, const struct lane *lane, con
 void engine_write_at(struct engine *e, struct signal *s, uint64_t period)
 {
 	due_set_remove(&engine_lane(e, s)->outputs, engine_row(s));
-	due_wheel_at(&e->wheel, engine_row(s) * 2 + 1, period);
+	due_wheel_at(&e->wheel, engine_row_wait(s, WAIT_WRITE), period);
 }
 
 void engine_write_check(struct engine *e, struct signal *s)
@@ -54,12 +54,12 @@ void engine_write_check(struct engine *e, struct signal *s)
 	uint32_t row = engine_row(s);
 
 	if (!signal_changed(s)) {
-		due_wheel_cancel(&e->wheel, row * 2 + 1);
+		due_wheel_cancel(&e->wheel, engine_row_wait(s, WAIT_WRITE));
 		due_set_remove(outputs, row);
 		retry_clear(&s->command.retry);
 	} else if (s->doubts) {
 		due_set_remove(outputs, row);
-	} else if (!s->writing && !e->wheel.wait[row * 2 + 1].waits) {
+	} else if (!s->writing && !e->wheel.wait[engine_row_wait(s, WAIT_WRITE)].waits) {
 		due_set_add(outputs, row);
 	}
 }
@@ -73,24 +73,16 @@ uint64_t engine_read_back_at(const struct engine *e, const struct signal *s)
 	return e->time.period + (wait_ns > 0 ? engine_periods(e, wait_ns) : 1);
 }
 
-static void row_ready(void *ctx, uint32_t entry)
+void engine_row_due(struct engine *e, struct signal *s, enum row_wait wait)
 {
-	struct engine *e = ctx;
-	struct signal *s = &e->table.signals[entry / 2];
-
-	if (entry % 2)
+	if (wait == WAIT_TIME)
+		engine_publish(e, s);
+	else if (wait == WAIT_WRITE)
 		engine_write_check(e, s);
 	else if (signal_is_read(s))
 		engine_read_now(e, s);
 	else
 		engine_read_at(e, s, engine_read_back_at(e, s));
-}
-
-static void time_ready(void *ctx, uint32_t row)
-{
-	struct engine *e = ctx;
-
-	engine_publish(e, &e->table.signals[row]);
 }
 
 /* A call so late says that the engine did not run: the machine was suspended, or owsd stopped. */
@@ -124,7 +116,7 @@ void engine_begin_call(struct engine *e, int64_t now_ns)
 		e->time.period = period;
 }
 
-bool engine_tick(struct engine *e)
+bool engine_tick(struct engine *e, due_ready *ready)
 {
 	uint64_t period = e->time.period, asked = begun_period(e, e->time.next_ns);
 
@@ -136,8 +128,7 @@ bool engine_tick(struct engine *e)
 		e->counters.late_periods += period - asked;
 	e->counters.periods += period - e->time.ticked;
 	e->time.ticked = period;
-	due_wheel_advance(&e->wheel, period, row_ready, e);
-	due_wheel_advance(&e->time_wheel, period, time_ready, e);
+	due_wheel_advance(&e->wheel, period, ready, e);
 	return true;
 }
 
@@ -147,8 +138,5 @@ int64_t engine_next_tick(const struct engine *e, int64_t at_most_ns)
 	uint64_t next = period + (most ? most : 1);
 
 	next = due_wheel_next(&e->wheel, period, next);
-	next = due_wheel_next(&e->time_wheel, period, next);
-	next = due_wheel_next(&e->watch_wheel, period, next);
-	next = due_wheel_next(&e->route_wheel, period, next);
 	return e->time.start_ns + (int64_t)(next - e->time.first) * e->config->period_ns;
 }

@@ -17,8 +17,13 @@ void engine_write_at(struct engine *e, struct signal *s, uint64_t period);
 void engine_write_check(struct engine *e, struct signal *s);
 /* Each call from outside begins with it: it sets the time, and notices a time of no calls. */
 void engine_begin_call(struct engine *e, int64_t now_ns);
-/* Go on to the present period: what waited for it becomes due. False: it is the same as before. */
-bool engine_tick(struct engine *e);
+/*
+ * Go on to the present period, and call ready() for all that waited for it in the wheel. False: it
+ * is the same as before.
+ */
+bool engine_tick(struct engine *e, due_ready *ready);
+/* The row has waited for that. */
+void engine_row_due(struct engine *e, struct signal *s, enum row_wait wait);
 /*
  * When the next tick is: the beginning of the first period for which a row waits. It is at most
  * at_most_ns (whole periods of it, but one at least) after the beginning of the present period.

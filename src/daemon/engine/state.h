@@ -283,11 +283,7 @@ struct engine {
 	uint32_t alarm_count;
 
 	/* schedule.c */
-	struct due_wheel wheel; /* row * 2: read, row * 2 + 1: write */
-	/* device_watch.c */
-	struct due_wheel watch_wheel; /* devices */
-	/* publish.c */
-	struct due_wheel time_wheel; /* rows that change by time alone: limit alarms, StaleAfter */
+	struct due_wheel wheel; /* all that waits for a period: engine_row_wait(), _device_wait() */
 	/* limits.c */
 	struct {
 		uint32_t done; /* requests to shelve; one a second is forgotten */
@@ -303,11 +299,9 @@ struct engine {
 	bool bars;       /* a group has several ways */
 	/* routing.c: when time alone leads to a step of a group; 0: not known */
 	int64_t group_step_ns;
-	/* known.c, and routing.c takes the devices out that it routes */
-	struct known_presence *known; /* device * group_count + group; NULL: one group */
-	struct due_set routes; /* devices of which something became known, as in route_wheel */
-	struct due_wheel
-		route_wheel; /* devices to be routed again, the one of no device behind them */
+	/* place.c, and routing.c takes the devices out that it routes */
+	struct known_presence *places; /* device * group_count + group; NULL: one group */
+	struct due_set routes;      /* devices to be routed, and the one of no device behind them */
 
 	/* device_facts.c */
 	struct due_set facts; /* devices with facts that the image does not show yet */
@@ -353,6 +347,26 @@ static inline struct lane *engine_lane(struct engine *e, const struct signal *s)
 static inline uint32_t engine_row(const struct signal *s)
 {
 	return s->record - 1;
+}
+
+/* What waits in the wheel: three entries for each row, and two behind them for each device. */
+enum row_wait {
+	WAIT_READ,
+	WAIT_WRITE,
+	WAIT_TIME, /* it changes by time alone: limit alarms, StaleAfter */
+	ROW_WAITS
+};
+enum device_wait { WAIT_WATCH, WAIT_ROUTE, DEVICE_WAITS };
+
+static inline uint32_t engine_row_wait(const struct signal *s, enum row_wait wait)
+{
+	return engine_row(s) * ROW_WAITS + wait;
+}
+
+static inline uint32_t engine_device_wait(const struct engine *e, uint32_t device,
+                                          enum device_wait wait)
+{
+	return e->table.count * ROW_WAITS + device * DEVICE_WAITS + wait;
 }
 
 static inline uint64_t engine_periods(const struct engine *e, int64_t ns)

@@ -87,6 +87,7 @@ int table_image_devices(const struct config *config, uint32_t *first)
  */
 static int find_devices(struct table *table, const struct config *config)
 {
+	struct device *rest;
 	uint32_t n;
 	struct device_key *keys = keys_of(config, &n);
 
@@ -101,19 +102,19 @@ static int find_devices(struct table *table, const struct config *config)
 			d = &table->devices[table->device_count++];
 			d->has_rom = keys[i].has_rom;
 			memcpy(d->rom, keys[i].rom, sizeof(d->rom));
-			d->first = i;
+			d->signals = &table->device_signals[i];
 			table->rom_count += d->has_rom;
 		}
 		d = &table->devices[table->device_count - 1];
 		d->count++;
-		table->device_rows[i] = keys[i].row;
+		table->device_signals[i] = &table->signals[keys[i].row];
 		table->signals[keys[i].row].device = table->device_count - 1;
 	}
-	table->devices[table->device_count].first = n;
+	rest = &table->devices[table->device_count];
+	rest->signals = &table->device_signals[n];
 	for (uint32_t row = 0; row < table->count; row++)
 		if (table->signals[row].device == TABLE_NO_DEVICE)
-			table->device_rows[n++] = row;
-	table->devices[table->device_count].count = n - table->devices[table->device_count].first;
+			rest->signals[rest->count++] = &table->signals[row];
 	free(keys);
 	return 0;
 }
@@ -152,9 +153,9 @@ int signal_table_init(struct table *table, const struct config *config)
 		strings += config->items[row].type == OWS_STRING;
 	table->signals = calloc((size_t)table->count + 1, sizeof(*table->signals));
 	table->devices = calloc((size_t)table->count + 1, sizeof(*table->devices));
-	table->device_rows = calloc((size_t)table->count + 1, sizeof(*table->device_rows));
+	table->device_signals = calloc((size_t)table->count + 1, sizeof(*table->device_signals));
 	table->texts = calloc((size_t)strings * 3 + 1, TABLE_TEXT_CAP);
-	if (!table->signals || !table->devices || !table->device_rows || !table->texts ||
+	if (!table->signals || !table->devices || !table->device_signals || !table->texts ||
 	    find_devices(table, config)) {
 		signal_table_free(table);
 		return -ENOMEM;
@@ -178,7 +179,7 @@ void signal_table_free(struct table *table)
 {
 	free(table->signals);
 	free(table->devices);
-	free(table->device_rows);
+	free(table->device_signals);
 	free(table->texts);
 	*table = (struct table){0};
 }

@@ -149,9 +149,10 @@ enum device_por { POR_UNKNOWN, POR_CLEAR, POR_SET };
 
 struct device {
 	uint8_t rom[8];
-	bool has_rom;              /* false: an alias */
-	bool absent;               /* presence.c: it was looked for, and is not there */
-	uint32_t first, count;     /* rows in table.device_rows */
+	bool has_rom;            /* false: an alias */
+	bool absent;             /* presence.c: it was looked for, and is not there */
+	struct signal **signals; /* in the order of the table; one lane serves them all */
+	uint32_t count;
 	struct device_facts facts; /* device_facts.c */
 	enum device_por por; /* read_back.c; void when it was away, or is written: completion.c */
 	int64_t por_ns;      /* it could not be read: while it is not known, not asked for before */
@@ -175,7 +176,7 @@ struct table {
 	uint32_t count;
 	struct device *devices; /* one more than device_count: the rows without a device */
 	uint32_t device_count, rom_count; /* those with a ROM id stand first, in its order */
-	uint32_t *device_rows;
+	struct signal **device_signals;
 	char *texts;
 };
 

@@ -96,10 +96,8 @@ void engine_power_on_reset(struct lane *lane, const struct device *d, const stru
 	       "%s (%s): the device has restarted%s", shown->item->name, shown->item->path,
 	       seen ? "" : " before owsd looked at it first");
 	for (uint32_t k = 0; k < d->count; k++) {
-		struct signal *s = &e->table.signals[e->table.device_rows[d->first + k]];
+		struct signal *s = d->signals[k];
 
-		if (s->lane != lane->index)
-			continue;
 		/* after a restart before owsd's first look it got its command, and no InitValue */
 		if (!seen && s->command.confirmed && s->item->output)
 			s->command.forced = true;

@@ -239,13 +239,12 @@ int64_t alarm_next_init(struct engine *e, struct alarm_machine *m)
 		return -1;
 	d = &e->table.devices[current->device];
 	for (uint32_t k = 0; k < d->count; k++) {
-		uint32_t row = e->table.device_rows[d->first + k];
-		const struct signal *s = &e->table.signals[row];
+		const struct signal *s = d->signals[k];
 
-		if ((int64_t)row > m->init_position && s->item->output && s->item->has_init &&
+		if (engine_row(s) > m->init_position && s->item->output && s->item->has_init &&
 		    !s->item->starts_last && !s->command.confirmed && signal_writes(s) &&
-		    !s->doubts && s->lane == e->table.signals[current->row].lane)
-			return row;
+		    !s->doubts)
+			return engine_row(s);
 	}
 	return -1;
 }

@@ -48,14 +48,13 @@ static void look_for_restart(struct lane *lane, const struct signal *s, bool agr
 
 bool engine_restart_ask(struct lane *lane, struct slot *slot)
 {
-	const struct table *table = &lane->engine->table;
 	int64_t device = due_set_next(&lane->restarts);
 	const struct signal *s;
 	struct path path;
 
 	if (device < 0)
 		return false;
-	s = &table->signals[table->device_rows[table->devices[device].first]];
+	s = lane->engine->table.devices[device].signals[0];
 	if (s->lane != lane->index || path_split(s->item->path, strlen(s->item->path), &path)) {
 		due_set_take(&lane->restarts, (uint32_t)device);
 		return false;
@@ -88,8 +87,7 @@ void engine_restart_done(struct lane *lane, const struct slot *slot,
 	}
 	d->por = set ? POR_SET : POR_CLEAR;
 	for (uint32_t k = 0; set && was_clear && k < d->count; k++) {
-		const struct table *table = &lane->engine->table;
-		const struct signal *s = &table->signals[table->device_rows[d->first + k]];
+		const struct signal *s = d->signals[k];
 
 		if (s->lane == lane->index && s->item->output) {
 			engine_power_on_reset(lane, d, s, true);

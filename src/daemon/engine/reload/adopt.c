@@ -95,9 +95,11 @@ bool signal_adopt(struct signal *s, const struct signal *was)
 	return goes_on;
 }
 
-static uint64_t wait_of(const struct due_wheel *wheel, uint32_t entry)
+static uint64_t wait_of(const struct engine *e, const struct signal *s, enum row_wait wait)
 {
-	return wheel->wait[entry].waits ? wheel->wait[entry].period : 0;
+	const struct due_wait *w = &e->wheel.wait[engine_row_wait(s, wait)];
+
+	return w->waits ? w->period : 0;
 }
 
 /* The count of periods goes on, though a period may be longer or shorter than before. */
@@ -109,9 +111,7 @@ static void take_time(struct engine *e, const struct engine *old, int64_t now_ns
 		e->time.start_ns = now_ns;
 		e->time.first = old->time.period;
 	}
-	for (uint32_t row = 0; row < e->table.count; row++)
-		due_wheel_cancel(&e->time_wheel, row);
-	e->wheel.period = e->time_wheel.period = e->route_wheel.period = e->time.period;
+	/* the wheel stands at 0 still: all that waits is ready at the next period */
 }
 
 static void take_counts(struct engine *e, const struct engine *old)
@@ -150,10 +150,8 @@ static void serve_device(struct engine *e, uint32_t index, struct lane *lane)
 	const struct device *d = &e->table.devices[index];
 
 	for (uint32_t k = 0; k < d->count; k++) {
-		uint32_t row = e->table.device_rows[d->first + k];
-
-		lane_drop_row(engine_lane(e, &e->table.signals[row]), row);
-		lane_take_row(lane, row);
+		lane_drop_row(engine_lane(e, d->signals[k]), engine_row(d->signals[k]));
+		lane_take_row(lane, engine_row(d->signals[k]));
 	}
 }
 
@@ -182,7 +180,7 @@ static void take_device(struct engine *e, uint32_t index, const struct engine *o
 	int lane;
 
 	for (uint32_t k = 0; k < d->count && before == ADOPT_NEW; k++)
-		before = plan->rows[e->table.device_rows[d->first + k]];
+		before = plan->rows[engine_row(d->signals[k])];
 	if (before == ADOPT_NEW)
 		return;
 	before = old->table.signals[before].device == TABLE_NO_DEVICE
@@ -235,11 +233,11 @@ static void take_schedule(struct engine *e, struct signal *s, const struct engin
                           uint32_t before)
 {
 	uint32_t row = engine_row(s);
-	uint64_t read = wait_of(&old->wheel, before * 2),
-		 write = wait_of(&old->wheel, before * 2 + 1);
+	const struct signal *was = &old->table.signals[before];
+	uint64_t read = wait_of(old, was, WAIT_READ), write = wait_of(old, was, WAIT_WRITE);
 
 	engine_read_never(e, s);
-	if (read && s->item->per_factor == old->table.signals[before].item->per_factor)
+	if (read && s->item->per_factor == was->item->per_factor)
 		engine_read_at(e, s, read);
 	else
 		engine_read_now(e, s);

@@ -20,17 +20,13 @@ int engine_presences_init(struct engine *e)
 	if (e->group_count == 1)
 		return 0;
 	e->known = calloc((size_t)(devices + 1) * e->group_count, sizeof(*e->known));
-	if (!e->known || due_set_init(&e->routes, devices + 1) ||
-	    due_wheel_init(&e->route_wheel, devices + 1, 0))
-		return -ENOMEM;
-	return 0;
+	return e->known ? due_set_init(&e->routes, devices + 1) : -ENOMEM;
 }
 
 void engine_presences_free(struct engine *e)
 {
 	free(e->known);
 	due_set_free(&e->routes);
-	due_wheel_free(&e->route_wheel);
 }
 
 static void know_presence(struct engine *e, uint32_t device, unsigned group,

@@ -87,8 +87,8 @@ static void move_signal(struct engine *e, struct signal *s, struct lane *to)
 
 	lane_drop_row(from, row);
 	from->counters.moves_out++;
-	due_wheel_cancel(&e->wheel, row * 2);
-	due_wheel_cancel(&e->wheel, row * 2 + 1);
+	due_wheel_cancel(&e->wheel, engine_row_wait(s, WAIT_READ));
+	due_wheel_cancel(&e->wheel, engine_row_wait(s, WAIT_WRITE));
 	retry_clear(&s->read.retry);
 	retry_clear(&s->command.retry);
 	s->command.err = 0;
@@ -128,10 +128,10 @@ static void move_alarms(struct engine *e, struct lane *from, struct lane *to, ui
 	}
 }
 
-static bool has_alarms(const struct engine *e, const struct device *d)
+static bool has_alarms(const struct device *d)
 {
 	for (uint32_t k = 0; k < d->count; k++)
-		if (e->table.signals[e->table.device_rows[d->first + k]].item->alarm)
+		if (d->signals[k]->item->alarm)
 			return true;
 	return false;
 }
@@ -150,31 +150,36 @@ static bool is_looked_for(struct engine *e, const struct device *d, const struct
 static void report_move(struct engine *e, const struct device *d, const struct lane *from,
                         const struct lane *to, const char *why)
 {
-	const struct signal *s = &e->table.signals[e->table.device_rows[d->first]];
+	const struct signal *s = d->signals[0];
 
 	log_at(e->log, is_looked_for(e, d, from, to) ? LOG_LEVEL_DEBUG : LOG_LEVEL_NOTICE,
 	       "%s%s (%u signal%s): from %s to %s: %s", s->item->path, d->count > 1 ? " ..." : "",
 	       d->count, d->count == 1 ? "" : "s", from->port->target, to->port->target, why);
 }
 
-void engine_move_device(struct engine *e, struct device *d, struct lane *to, const char *why)
+static void move_signals(struct engine *e, struct device *d, struct lane *from, struct lane *to)
 {
-	const uint32_t *rows = &e->table.device_rows[d->first];
-	struct lane *from = engine_lane(e, &e->table.signals[rows[0]]);
 	uint32_t index = (uint32_t)(d - e->table.devices);
 
-	report_move(e, d, from, to, why);
 	d->absent = false;
 	for (uint32_t k = 0; k < d->count; k++)
-		move_signal(e, &e->table.signals[rows[k]], to);
+		move_signal(e, d->signals[k], to);
 	engine_watch_anew(from, index);
-	if (has_alarms(e, d))
+	if (has_alarms(d))
 		move_alarms(e, from, to, index);
+}
+
+void engine_move_device(struct engine *e, struct device *d, struct lane *to, const char *why)
+{
+	struct lane *from = engine_lane(e, d->signals[0]);
+
+	report_move(e, d, from, to, why);
+	move_signals(e, d, from, to);
 	lane_disown(from, false);
 	engine_publish_target(e, to);
 	engine_doubts(e);
 	for (uint32_t k = 0; k < d->count; k++)
-		signal_goes_on(e, &e->table.signals[rows[k]]);
+		signal_goes_on(e, d->signals[k]);
 }
 
 void engine_move_lane(struct engine *e, struct lane *from, struct lane *to, const char *why)
@@ -186,12 +191,7 @@ void engine_move_lane(struct engine *e, struct lane *from, struct lane *to, cons
 
 		if (!d->count || d->group != from->port->group)
 			continue;
-		d->absent = false;
-		for (uint32_t k = 0; k < d->count; k++)
-			move_signal(e, &e->table.signals[e->table.device_rows[d->first + k]], to);
-		engine_watch_anew(from, i);
-		if (has_alarms(e, d))
-			move_alarms(e, from, to, i);
+		move_signals(e, d, from, to);
 		moved += d->count;
 	}
 	log_at(e->log, engine_group(e, to)->state.quiet ? LOG_LEVEL_DEBUG : LOG_LEVEL_NOTICE,

@@ -250,16 +250,10 @@ static void route_one(struct engine *e, uint32_t index)
 	if (index < e->table.device_count)
 		next = earlier_ns(next, look_for_device(e, index));
 	if (next == INT64_MAX)
-		due_wheel_cancel(&e->route_wheel, index);
+		due_wheel_cancel(&e->wheel, engine_device_wait(e, index, WAIT_ROUTE));
 	else
-		due_wheel_at(&e->route_wheel, index, engine_period_at(e, next));
-}
-
-static void device_ready(void *ctx, uint32_t device)
-{
-	struct engine *e = ctx;
-
-	due_set_add(&e->routes, device);
+		due_wheel_at(&e->wheel, engine_device_wait(e, index, WAIT_ROUTE),
+		             engine_period_at(e, next));
 }
 
 static bool route_devices(struct engine *e)
@@ -267,9 +261,6 @@ static bool route_devices(struct engine *e)
 	bool any = false;
 	int64_t device;
 
-	if (!e->known || (!e->routes.count && e->route_wheel.period == e->time.period))
-		return false;
-	due_wheel_advance(&e->route_wheel, e->time.period, device_ready, e);
 	while ((device = due_set_next(&e->routes)) >= 0) {
 		due_set_take(&e->routes, (uint32_t)device);
 		route_one(e, (uint32_t)device);
