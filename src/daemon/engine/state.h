@@ -38,7 +38,7 @@ enum purpose { FOR_READ, FOR_WRITE, FOR_ALARM, FOR_PROBE, FOR_RESTART, FOR_WATCH
  * new request.
  */
 struct slot {
-	/* slots.c */
+	/* lane.c */
 	struct bus_req req;
 	bool lent; /* the bus has it */
 	uint16_t generation;
@@ -47,7 +47,7 @@ struct slot {
 
 	/* lane_answer.c */
 	bool given_up; /* its time is over; a late answer only frees the slot */
-	/* disown.c */
+	/* lane.c, move.c */
 	bool moved; /* another lane serves its signal now; an answer only frees the slot */
 	bool kept;  /* while a reload goes on: a reading that was in flight before it */
 
@@ -105,7 +105,7 @@ struct lane_state {
 	int fell; /* the target failed with this: routing.c has to act on it */
 	/* routing.c */
 	bool open; /* the lane is the one way of its group that is open */
-	/* lane_event.c; heard_ns: lane_answer.c too */
+	/* lane_state.c; heard_ns: lane_answer.c too */
 	bool reported_up; /* the last report of the bus was BUS_UP */
 	int down_err; /* of its last BUS_DOWN; the log of a way that is tried again has a new one */
 	struct lane_note why_down, trouble; /* shown while it is down; while it is up */
@@ -114,7 +114,7 @@ struct lane_state {
 
 /* What the bus has, and room for it; a reload carries it over. */
 struct lane_lent {
-	/* slots.c */
+	/* lane.c */
 	struct slot *slots;
 	uint16_t *free; /* slots that are not lent */
 	unsigned free_count, count;
@@ -142,7 +142,7 @@ struct lane {
 	uint32_t writes_in_row; /* since the last read was begun */
 	/* lane.c, intake.c */
 	uint32_t writers; /* rows that are enabled for writing */
-	/* restart.c */
+	/* read_back.c */
 	struct due_set restarts; /* devices with a power-on flag that is to be read */
 
 	/* known.c, and routing.c puts in what is to be looked for */
@@ -150,7 +150,7 @@ struct lane {
 	bool probing;          /* one of them is with the bus */
 	int64_t probe_ns;      /* earliest time of the next */
 
-	/* device_watch.c */
+	/* presence.c */
 	struct due_set watch; /* devices to be looked for */
 	bool watching;        /* one of them is with the bus */
 	int64_t watch_ns;     /* earliest time of the next */
@@ -233,7 +233,7 @@ struct group_state {
 /* The ways to one wire; lanes[first ..] in the order in which they are written. */
 struct group {
 	unsigned first;
-	/* group.c; routing.c: a fact of its ways changed, and routing.c has to act on it */
+	/* lane_state.c: a fact of its ways changed, and routing.c has to act on it */
 	bool asks;
 	struct route_way *ways;
 	struct group_state state;
@@ -290,7 +290,7 @@ struct engine {
 		int64_t since_ns;
 	} shelvings;
 
-	/* group.c makes, routing.c changes; facts in ways: lane_state.c, lane_event.c */
+	/* routing.c; facts in ways: lane_state.c */
 	struct group *groups;
 	struct route_group *states; /* of the groups */
 	unsigned group_count;
