@@ -108,7 +108,7 @@ def test_a_signal_that_cannot_work_is_reported_at_start_and_the_others_live(scen
     until(lambda: quality() == ["wrong type", "access refused", "access refused",
                                 "no such property", "device absent"], 5, "each has its reason")
     for name in ("text", "readonly", "writeonly"):
-        owsdtest.logged(daemon, f"{name} (line")
+        owsdtest.logged(daemon, f'warning: "{name}" is')
     owsdtest.logged(daemon, "no such property: check its spelling")
     owsdtest.logged(daemon, "access refused: it can only be read, or only be written: IO input")
     until(lambda: scene.get(daemon, "good"), 10, "the good one is still good")
