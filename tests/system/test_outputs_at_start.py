@@ -131,7 +131,7 @@ class Plant:
                 file.unlink()
         self.server.requests.clear()
         self.daemon = self.scene.owsd(self.config, name=self.daemon.name, env=self.environment)
-        owsdtest.until(lambda: self.server.requests, 20, "it asks the server")
+        owsdtest.logged(self.daemon, "from down to up")
 
     def writes(self, expected, what):
         """These writes, each once, and nothing after them."""
