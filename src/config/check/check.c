@@ -327,7 +327,7 @@ static void check_item(const struct check *check)
 			"\"%s\" is a number, and a string shows it as text: write Type double",
 			item->name);
 	if (item->type != OWS_STRING && property_look(item->path).text)
-		report_warning(check->report, check->place,
+		report_warning(check->report, check->position,
 		               "\"%s\" is a text or a list, and no %s: write Type string",
 		               item->name, value_type_name(item->type));
 	check_age(check);

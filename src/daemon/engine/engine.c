@@ -79,7 +79,8 @@ int engine_create(const struct engine_setup *setup, struct engine **engine)
 	    due_wheel_init(&e->wheel, engine_device_wait(e, e->table.device_count + 1, WAIT_WATCH),
 	                   0) ||
 	    engine_facts_init(e) || alarm_items_init(&e->table, &e->alarm_items, &e->alarm_count) ||
-	    make_lanes(e, setup) || engine_groups_init(e, setup->ports) || engine_presences_init(e)) {
+	    make_lanes(e, setup) || engine_groups_init(e, setup->ports) ||
+	    engine_presences_init(e)) {
 		engine_destroy(e);
 		return -ENOMEM;
 	}

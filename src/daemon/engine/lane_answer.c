@@ -13,8 +13,8 @@
 #include "src/daemon/engine/presence.h"
 #include "src/daemon/engine/publish.h"
 #include "src/daemon/engine/retry.h"
-#include "src/daemon/engine/routing/move.h"
 #include "src/daemon/engine/routing/known.h"
+#include "src/daemon/engine/routing/move.h"
 #include "src/daemon/engine/trace.h"
 
 static void apply_answer(struct lane *lane, struct slot *slot, const struct bus_answer *answer)

@@ -299,9 +299,9 @@ struct engine {
 	bool bars;       /* a group has several ways */
 	/* routing.c: when time alone leads to a step of a group; 0: not known */
 	int64_t group_step_ns;
-	/* place.c, and routing.c takes the devices out that it routes */
-	struct known_presence *places; /* device * group_count + group; NULL: one group */
-	struct due_set routes;      /* devices to be routed, and the one of no device behind them */
+	/* known.c, and routing.c takes the devices out that it routes */
+	struct known_presence *known; /* device * group_count + group; NULL: one group */
+	struct due_set routes; /* devices to be routed, and the one of no device behind them */
 
 	/* device_facts.c */
 	struct due_set facts; /* devices with facts that the image does not show yet */

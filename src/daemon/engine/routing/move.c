@@ -17,6 +17,7 @@
 #include "src/daemon/engine/presence.h"
 #include "src/daemon/engine/publish.h"
 #include "src/daemon/engine/retry.h"
+#include "src/daemon/engine/routing/known.h"
 #include "src/daemon/engine/routing/move.h"
 #include "src/daemon/engine/schedule.h"
 #include "src/ground/text/log.h"
