@@ -547,13 +547,13 @@ static void setup_news(void)
 	memset(&control, 0, sizeof(control));
 	control.engine.memories[0] = controllers[0];
 	control.engine.end = 1;
-	control.places[0].news = ACCESS_NEWS;
-	news_begin(&control.places[0]);
+	control.seats[0].news = ACCESS_NEWS;
+	news_begin(&control.seats[0]);
 	control.news.bell = ACCESS_ORDERING;
 	explore_track("due", &control.news.due[0], 4);
 	explore_track("due image", &control.news.due[NEWS_IMAGE / 32], 4);
 	explore_keep(&control.news.taken, sizeof(control.news.taken));
-	explore_keep(&control.places[0].news_state, sizeof(control.places[0].news_state));
+	explore_keep(&control.seats[0].news_state, sizeof(control.seats[0].news_state));
 	host.control = &control;
 }
 

@@ -39,12 +39,14 @@ done
 [ "$(SOURCE_DATE_EPOCH=86400 sh "$OWSD_SOURCE/board/make-deb" --day)" = 1970-01-02 ] ||
 	! grep -q '^## .*not yet' "$OWSD_SOURCE/NEWS.md" || { echo "the day is not that of the epoch"; exit 1; }
 
-# Cockpit gets the same files; its own library stands in index.html alone
+# Cockpit gets the same files; in index.html stands its library in place of the manifest
 page=$root/opt/owsd/share/cockpit/owsd
 python3 -c 'import json, sys; json.load(open(sys.argv[1]))' "$page/manifest.json"
 diff -r -q "$root/opt/owsd/share/owsd/web" "$page" >differences || true
 [ "$(wc -l <differences)" = 2 ] && grep -q 'index.html differ$' differences && grep -q ': manifest.json$' differences
-[ "$(diff "$OWSD_SOURCE/src/faces/web/page/index.html" "$page/index.html" | grep -v '^[0-9]')" = '> <script src="../base1/cockpit.js"></script>' ]
+diff "$OWSD_SOURCE/src/faces/web/page/index.html" "$page/index.html" | grep '^[<>]' >differences || true
+[ "$(grep -c '^>' differences)" = 1 ] && grep -q '^> <script src="../base1/cockpit.js"></script>$' differences
+[ "$(grep -c '^<' differences)" = 1 ] && grep -q '^< <link rel="manifest" ' differences
 
 for face in "$OWSD_BUILD"/owsd-*; do
 	[ -x "$root/opt/owsd/sbin/${face##*/}" ] || { echo "missing: ${face##*/}"; exit 1; }
