@@ -19,14 +19,18 @@ static unsigned channel_of(unsigned coupler, unsigned number)
 	return NATIVE_CHANNELS + coupler * COUPLER_BRANCHES + number;
 }
 
-/* NULL: a wire. */
+/* Of a channel that is no wire. */
 static struct branch *branch_of(struct coupler *couplers, unsigned channel)
 {
 	unsigned n = channel - NATIVE_CHANNELS;
 
-	return channel < NATIVE_CHANNELS
-	               ? NULL
-	               : &couplers[n / COUPLER_BRANCHES].branch[n % COUPLER_BRANCHES];
+	return &couplers[n / COUPLER_BRANCHES].branch[n % COUPLER_BRANCHES];
+}
+
+/* What a device of that channel is behind; NULL: it is at a wire. */
+static struct branch *parent_of(struct coupler *couplers, unsigned channel)
+{
+	return channel < NATIVE_CHANNELS ? NULL : branch_of(couplers, channel);
 }
 
 /* The slot of a coupler; NATIVE_COUPLERS: it has none. */
@@ -87,7 +91,7 @@ void branches_found(struct native *native, struct device *device)
 	coupler = &native->coupler[n];
 	if (coupler->trunk)
 		coupler_remove(coupler);
-	coupler_add(trunk, branch_of(native->coupler, device->channel), coupler, device->rom,
+	coupler_add(trunk, parent_of(native->coupler, device->channel), coupler, device->rom,
 	            device->own);
 	for (unsigned i = 0; i < COUPLER_BRANCHES; i++) {
 		struct channel *channel = &native->channel[channel_of(n, i)];
@@ -172,7 +176,7 @@ bool branches_is_on(struct native *native, unsigned channel)
 
 int branches_print(struct native *native, unsigned channel, char *text, size_t room)
 {
-	const struct branch *branch = branch_of(native->coupler, channel);
+	const struct branch *branch = parent_of(native->coupler, channel);
 	char part[ROM_TEXT_MAX + 8], name[ROM_TEXT_MAX];
 	size_t len = 0;
 
