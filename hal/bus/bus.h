@@ -177,6 +177,7 @@ struct bus_answer {
 	 */
 	const char *identity;
 	uint32_t wire_us;
+	uint8_t wire; /* N + 1 of the bus.N on which that device is; 0: not known */
 };
 
 #define BUS_DETAIL_SIMULATED 0x01 /* the device is not real */

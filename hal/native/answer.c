@@ -52,6 +52,8 @@ static void answer_give(struct native *native, struct job *job, struct bus_answe
 	if (device) {
 		answer->supply = supply_of(native, device);
 		answer->identity = family_identity(device);
+		if (device->channel != NATIVE_ALL)
+			answer->wire = (uint8_t)(native->channel[device->channel].wire + 1);
 	}
 	job->req = NULL;
 	native->lent--;

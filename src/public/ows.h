@@ -370,7 +370,8 @@ struct ows_info {
 	uint8_t confirm;        /* 1 ask a person once more before a set */
 	/* What the signal was when it began: the same over a rename and over a replaced device. */
 	const char *identity;
-	uint64_t spare[3]; /* 0: room for later members */
+	const char *group; /* where people look for the signal: "Heating"; "": nowhere */
+	uint64_t spare[2]; /* 0: room for later members */
 };
 int ows_info(const struct ows *h, int signal, struct ows_info *info);
 /* Get the value of a signal by its index (not an id of ows_find()); otherwise as ows_get(). */
@@ -439,7 +440,8 @@ struct ows_device {
 	uint64_t retries;   /* how often the target did it again after an error */
 	uint64_t wire_us;   /* what the requests took of the wire; without what served several */
 	int64_t ok_ns;      /* last good answer; 0: none */
-	uint64_t spare[4];  /* 0: room for later members */
+	uint64_t wire;      /* N + 1 of the bus.N of the target where it is; 0: not known */
+	uint64_t spare[3];  /* 0: room for later members */
 };
 int ows_device(struct ows *h, int index, struct ows_device *device);
 

@@ -146,7 +146,8 @@ struct ows_info_entry { /* 192 bytes */
 	double limit_hh, limit_h, limit_l, limit_ll;
 	double filter_s, deadband; /* 0 without */
 	uint32_t identity_off; /* the path, or Identity; 0, before minor version 1: the path */
-	uint32_t spare[9];
+	uint32_t group_off;    /* where people look for it: "Heating" */
+	uint32_t spare[8];
 };
 #define OWS_INFO_INIT   0x01
 #define OWS_INFO_SAFE   0x02
@@ -250,7 +251,7 @@ struct ows_device_entry { /* 128 bytes */
 	uint64_t wire_us;    /* what its requests took of the wire, as far as the bus knows */
 	int64_t ok_ns;       /* last good answer; 0: none */
 	uint32_t power;      /* enum ows_power (ows.h) */
-	uint32_t spare;
+	uint32_t wire;       /* N + 1 of the bus.N of the target; 0: not known */
 	char identity[OWS_IDENTITY]; /* which chip it is by its behaviour; "": not known */
 	uint32_t spare2[3];
 	uint32_t check;

@@ -59,6 +59,7 @@ def test_stats_has_identity_supply_and_costs_of_each_device(scene):
     assert known[CLONE]["identity"] == "DS18B20 clone, family B1", known[CLONE]
     assert known[CLONE]["family"] == "DS18B20"
     assert known[RELAYS]["identity"] == "DS2408", known[RELAYS]
+    assert known[FED]["channel"] == known[CLONE]["channel"] == 0, known
     assert known[FED]["power"] == "parasite" and known[CLONE]["power"] == "external", known
     for device in (CLONE, FED, NOISY, RELAYS):
         assert known[device]["target"] == target and known[device]["answers"] > 0, known

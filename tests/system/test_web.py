@@ -206,7 +206,8 @@ def test_the_files_of_the_page_are_served_and_no_others(scene):
 
 
 def test_signals_come_in_the_order_of_the_file_with_all_that_is_known_of_them(scene):
-    odd = item("odd", SENSOR + "/temperature", Description=STARS.replace('"', "").replace("\\", ""),
+    odd = item("odd", SENSOR + "/temperature", Group="Ground & <i>",
+               Description=STARS.replace('"', "").replace("\\", ""),
                Min=raw("-10"), Max=raw("50"))
     daemon, page = both(scene, RELAYS, ROOM, odd,
                         item("gone", "/28.A0B1C20000FF/temperature"), item("text", SENSOR + "/type", "string"))
@@ -224,6 +225,10 @@ def test_signals_come_in_the_order_of_the_file_with_all_that_is_known_of_them(sc
     assert 0 <= room["age"] < 60, room
     assert (signals[2]["min"], signals[2]["max"], signals[2]["limits"]) == (-10, 50, None), signals[2]
     assert signals[2]["description"] == "*/<b>\u00b0", signals[2]
+    assert signals[2]["group"] == "Ground & <i>", signals[2]
+    assert room["terminal"]["channel"] == 0 and room["terminal"]["adapter"].startswith("sim:"), room
+    assert room["interval"] is None or 0.01 < room["interval"] < 20, room
+    assert signals[0]["interval"] is None, signals[0]
     gone = signals[3]
     assert gone["value"] is None and not gone["quality"]["good"], gone
     assert gone["quality"]["why"] == "no such device there" and "owsctl scan" in gone["quality"]["remedy"], gone

@@ -82,7 +82,7 @@ struct config_item {
 	bool whole;       /* its property takes whole numbers only */
 	struct config_limits limits;
 	/* of engineering values; NULL: not given. An empty unit is given too */
-	const char *unit, *description;
+	const char *unit, *description, *group;
 	const char *calibrated; /* "2026-11-22" */
 	double factor, offset;  /* as written */
 	const char *points;     /* as written */

@@ -116,6 +116,8 @@ OPTION(DECIMALS, "Decimals", ITEM, COUNT, decimals,
        .help = "most digits after the point, where people read the value")
 OPTION(DESCRIPTION, "Description", ITEM, TEXT, description, .check = text_is_line,
        .help = "what the signal is, for people")
+OPTION(GROUP, "Group", ITEM, TEXT, group, .check = text_is_line,
+       .help = "where people look for the signal, such as a room")
 OPTION(SCALE, "Scale", ITEM, NUMBER, factor, .preset = "1", .quiet = true,
        .help = "value = raw value * Scale + Offset")
 OPTION(OFFSET, "Offset", ITEM, NUMBER, offset, .preset = "0", .quiet = true, .help = "see Scale")

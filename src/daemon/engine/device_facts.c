@@ -45,7 +45,11 @@ void engine_facts_answer(struct engine *e, const struct lane *lane, uint32_t row
 	facts->answers += failure_of(answer->err) != FAILURE_VOID;
 	facts->retries += answer->retries;
 	facts->wire_us += answer->wire_us;
+	if (facts->lane != lane->index)
+		facts->wire = 0;
 	facts->lane = lane->index;
+	if (answer->wire)
+		facts->wire = answer->wire;
 	if (answer->identity)
 		facts->identity = answer->identity;
 	if (answer->supply != BUS_SUPPLY_UNKNOWN)
@@ -100,6 +104,7 @@ static void publish(struct engine *e, uint32_t device)
 		.wire_us = facts->wire_us,
 		.ok_ns = facts->ok_ns,
 		.power = facts->supply,
+		.wire = facts->wire,
 	};
 	const char *identity = facts->identity ? facts->identity : "";
 	size_t len = strlen(identity);

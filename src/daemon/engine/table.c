@@ -225,6 +225,7 @@ void signal_table_meta(const struct config_item *item, struct image_meta *meta)
 	                : known    ? quantity.unit
 	                           : NULL,
 		.description = item->description,
+		.group = item->group,
 		.family = item->family,
 		.device = item->device,
 		.calibrated = item->calibrated,

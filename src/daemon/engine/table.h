@@ -139,6 +139,7 @@ struct signal {
 struct device_facts {
 	const char *identity; /* NULL: not known; else as in struct bus_answer */
 	uint8_t supply;       /* enum bus_supply */
+	uint8_t wire;         /* N + 1 of its bus.N; 0: not known */
 	uint32_t lane;        /* which answered last; UINT32_MAX: none */
 	uint64_t answers, errors, retries, wire_us;
 	int64_t ok_ns; /* last good answer; 0: none */

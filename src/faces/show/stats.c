@@ -85,6 +85,7 @@ static void device_json(struct json *json, struct ows *h, const struct ows_devic
 	json_string(json, "power", stats_power(device->power));
 	json_string(json, "target",
 	            ows_target(h, device->target, &target) == 0 ? target.name : NULL);
+	json_known(json, "channel", (int32_t)device->wire - 1);
 	json_uint(json, "answers", device->answers);
 	json_uint(json, "errors", device->errors);
 	cost_json(json, "retries", device, device->retries);

@@ -122,6 +122,7 @@ static enum stream_more put_signals(struct stream *stream, FILE *out)
 	struct show show = {
 		.h = web->face->ows, .now_ns = ows_now(), .live = web->face->live, .ids = web->ids};
 	struct json json = {.out = out, .inner = stream->row > 0};
+	struct ows_daemon daemon;
 
 	/* indexes of signals mean others now: the client has to ask again */
 	if (stream->position.generation != web->generation ||
@@ -135,6 +136,8 @@ static enum stream_more put_signals(struct stream *stream, FILE *out)
 		json_int(&json, "now", show_wall_ms(show.now_ns));
 		json_array(&json, "signals");
 	}
+	if (ows_daemon(web->face->ows, show.now_ns, &daemon) == 0)
+		show.start_ns = daemon.start_ns;
 	for (int i = 0; i < PIECE && stream->row < web->recent.count; i++)
 		show_signal(&json, &show, stream->row++);
 	if (stream->row < web->recent.count)

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Signals as JSON. */
+#include <errno.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 #include "hal/base/time.h"
 #include "src/faces/show/newest.h"
@@ -97,11 +99,53 @@ void show_value(struct json *json, const struct show *show, int signal)
 	put_all(json, &look);
 }
 
+bool show_device(struct ows *h, const char *id, struct ows_device *device)
+{
+	int low = 0, high = 1;
+
+	while (high < ows_count(h) && ows_device(h, high, device) != -ENOENT)
+		high *= 2;
+	while (low < high) {
+		int middle = low + (high - low) / 2, err = ows_device(h, middle, device);
+		int order = err == -ENOENT ? 1 : err ? -1 : strcasecmp(device->id, id);
+
+		if (!order)
+			return true;
+		if (order < 0)
+			low = middle + 1;
+		else
+			high = middle;
+	}
+	return false;
+}
+
+static void put_terminal(struct json *json, struct ows *h, const char *id)
+{
+	struct ows_device device;
+	struct ows_target target;
+
+	if (!*id || !show_device(h, id, &device) || ows_target(h, device.target, &target)) {
+		json_null(json, "terminal");
+		return;
+	}
+	json_object(json, "terminal");
+	json_string(json, "adapter", target.name);
+	json_known(json, "channel", (int)device.wire - 1);
+	json_object_end(json);
+}
+
+int64_t show_interval(int64_t start_ns, int64_t measured_ns, uint32_t count)
+{
+	return start_ns && count > 1 && measured_ns > start_ns ? (measured_ns - start_ns) / count
+	                                                       : 0;
+}
+
 void show_signal(struct json *json, const struct show *show, int signal)
 {
 	char words[SHOW_ALARM];
 	struct ows_info info;
 	struct face_value look;
+	int64_t interval;
 
 	if (ows_info(show->h, signal, &info))
 		return;
@@ -112,13 +156,20 @@ void show_signal(struct json *json, const struct show *show, int signal)
 	json_string(json, "type", value_type_name((enum ows_type)info.type));
 	json_bool(json, "output", info.output);
 	json_bool(json, "confirm", info.confirm);
+	interval = show_interval(show->start_ns, look.v.measured_ns, look.v.count);
+	if (interval && !info.output)
+		json_seconds(json, "interval", interval);
+	else
+		json_null(json, "interval");
 	put_text(json, "unit", info.unit);
 	json_known(json, "decimals", info.decimals);
 	put_text(json, "description", info.description);
+	put_text(json, "group", info.group);
 	json_string(json, "path", info.path);
 	json_string(json, "identity", info.identity);
 	put_text(json, "family", info.family);
 	put_text(json, "device", info.device);
+	put_terminal(json, show->h, info.device);
 	put_text(json, "calibrated", info.calibrated);
 	json_double(json, "min", info.min);
 	json_double(json, "max", info.max);

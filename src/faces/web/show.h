@@ -10,8 +10,9 @@
 struct show {
 	struct ows *h;
 	int64_t now_ns;
-	bool live;      /* owsd is there */
-	const int *ids; /* of the signals that can have alarms; else negative */
+	bool live;        /* owsd is there */
+	int64_t start_ns; /* owsd's; 0: not known */
+	const int *ids;   /* of the signals that can have alarms; else negative */
 };
 
 /* An object with all that is known of the signal, but for strings that are very long. */
@@ -23,5 +24,9 @@ void show_value(struct json *json, const struct show *show, int signal);
 /* The words for its alarms: "! high", "" if it has none. */
 #define SHOW_ALARM 64
 const char *show_alarm(const struct show *show, int signal, char words[SHOW_ALARM]);
+/* The device of that id; they stand in the order of their ids. */
+bool show_device(struct ows *h, const char *id, struct ows_device *device);
+/* How often it was read until now, a time in ns; 0: not known. */
+int64_t show_interval(int64_t start_ns, int64_t measured_ns, uint32_t count);
 /* The time in milliseconds since 1970 of a boot time; 0 stays 0. */
 int64_t show_wall_ms(int64_t boot_ns);

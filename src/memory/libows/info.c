@@ -42,6 +42,7 @@ int ows_info(const struct ows *h, int signal, struct ows_info *info)
 		.description = map_string(&h->map, entry->description_off),
 		.family = map_string(&h->map, entry->family_off),
 		.device = map_string(&h->map, entry->device_off),
+		.group = map_string(&h->map, entry->group_off),
 		.calibrated = map_string(&h->map, entry->calibrated_off),
 		.points = map_string(&h->map, entry->points_off),
 		.scale = entry->scale,
@@ -141,6 +142,7 @@ int ows_device(struct ows *h, int index, struct ows_device *device)
 		.retries = e.retries,
 		.wire_us = e.wire_us,
 		.ok_ns = e.ok_ns,
+		.wire = e.wire,
 	};
 	memcpy(device->identity, e.identity, sizeof(device->identity));
 	device->identity[sizeof(device->identity) - 1] = '\0';

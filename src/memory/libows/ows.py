@@ -126,13 +126,13 @@ _Cursor = _structure("uint32 number start_id generation flags; int64 looked_ns")
 _Info = _structure("char_p name path; uint8 type; bool output fresh alarm; uint32 per_factor; "
                    "int64 stale_after_ns; char_p unit description family device calibrated points; "
                    "double scale offset min max limit_hh limit_h limit_l limit_ll filter_s "
-                   "deadband; int32 decimals; bool confirm; char_p identity; uint64 spare[3]")
+                   "deadband; int32 decimals; bool confirm; char_p identity group; uint64 spare[2]")
 _Daemon = _structure("int32 pid; uint32 state generation; int64 start_ns beat_age_ns period_ns; "
                      "int alive; uint64 spare[4]")
 _Target = _structure("char_p name; uint32 state reconnects group moves; uint64 spare[4]")
 _LogLine = _structure("uint32 number level; int64 time_ns; char text[256]; uint64 spare[2]")
 _Device = _structure("char_p id family; char identity[48]; int target; uint32 power; "
-                     "uint64 answers errors retries wire_us; int64 ok_ns; uint64 spare[4]")
+                     "uint64 answers errors retries wire_us; int64 ok_ns; uint64 wire spare[3]")
 _Alarm = _structure("int signal; int64 occurred_ns; double before after; "
                     "int64 before_integer after_integer; uint8 type; bool has_before has_after; "
                     "uint8 kind event quality; char text[64]; by who; uint64 spare[4]")
@@ -219,6 +219,7 @@ class Info(NamedTuple):
     deadband: float
     confirm: bool
     identity: str    # the path that it began with: the same over a rename or a new device
+    group: str | None  # where people look for it
 
 
 class Origin(NamedTuple):
@@ -439,7 +440,8 @@ class Ows:
         found, infos = _Info(), []
         for i in range(_lib.ows_count(self._handle())):
             _lib.ows_info(self._h, i, ctypes.byref(found))
-            texts = {name: _text(getattr(found, name)) or None for name in Info._fields[8:14]}
+            texts = {name: _text(getattr(found, name)) or None
+                     for name in (*Info._fields[8:14], "group")}
             limits = {name: None if math.isnan(getattr(found, name)) else getattr(found, name)
                       for name in Info._fields[17:23]}
             infos.append(_row(Info, found, **texts, **limits, filter=found.filter_s,

@@ -68,7 +68,8 @@ static uint64_t pool_bytes(const struct image_plan *plan)
 			n += strlen(plan->signals[i].identity) + 1;
 		n += string_bytes(meta->unit) + string_bytes(meta->description) +
 		     string_bytes(meta->family) + string_bytes(meta->device) +
-		     string_bytes(meta->calibrated) + string_bytes(meta->points);
+		     string_bytes(meta->calibrated) + string_bytes(meta->points) +
+		     string_bytes(meta->group);
 	}
 	return n;
 }
@@ -263,6 +264,7 @@ static void fill_info(const struct image_signal *s, char *base, uint64_t *pool,
 	info->device_off = add_optional(base, pool, meta->device);
 	info->calibrated_off = add_optional(base, pool, meta->calibrated);
 	info->points_off = add_optional(base, pool, meta->points);
+	info->group_off = add_optional(base, pool, meta->group);
 }
 
 /* Fill records, infos and names, and with them the pool. */

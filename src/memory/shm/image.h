@@ -12,6 +12,7 @@
 /* What people say of a signal: it describes, and changes nothing. */
 struct image_meta {
 	const char *unit, *description, *family, *device, *calibrated, *points; /* NULL: none */
+	const char *group;                                                      /* likewise */
 	uint32_t decimals;    /* UINT32_MAX: not known */
 	double scale, offset; /* 1 and 0 without */
 	double min, max;      /* NAN: not set, like the limits */

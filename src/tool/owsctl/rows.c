@@ -22,6 +22,7 @@ void meaning_of(struct ows *h, const struct ows_info *info, struct meaning *mean
 	*meaning = (struct meaning){
 		.unit = ctl_need(strdup(info->unit)),
 		.description = ctl_need(strdup(info->description)),
+		.group = ctl_need(strdup(info->group)),
 		.decimals = info->decimals,
 		.raw = info->type == OWS_STRING ? -1 : ows_find(h, raw),
 	};
@@ -31,6 +32,7 @@ void meaning_free(struct meaning *meaning)
 {
 	free(meaning->unit);
 	free(meaning->description);
+	free(meaning->group);
 	*meaning = (struct meaning){0};
 }
 
@@ -53,6 +55,7 @@ void meaning_json(struct json *json, struct ows *h, const struct meaning *meanin
 	json_string(json, "unit", *meaning->unit ? meaning->unit : NULL);
 	json_known(json, "decimals", meaning->decimals);
 	json_string(json, "description", *meaning->description ? meaning->description : NULL);
+	json_string(json, "group", *meaning->group ? meaning->group : NULL);
 	raw_json(json, h, meaning->raw, now_ns);
 }
 

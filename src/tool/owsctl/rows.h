@@ -13,9 +13,9 @@
 
 /* What the value of a signal means: unit, decimals, description, and the raw value beside it. */
 struct meaning {
-	char *unit, *description; /* "": none */
-	int decimals;             /* -1: not known */
-	int raw;                  /* the id of _Raw; negative: none */
+	char *unit, *description, *group; /* "": none */
+	int decimals;                     /* -1: not known */
+	int raw;                          /* the id of _Raw; negative: none */
 };
 
 /* All of it copied, so that it outlives ows_reopen(). */

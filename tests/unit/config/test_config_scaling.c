@@ -42,13 +42,15 @@ static void test_an_item_without_the_keys_is_not_scaled(void)
 
 #define ALL_KEYS \
 	"Unit \"m\xc2\xb3/h\" Decimals 2 Description \"Supply, \\\"cold\\\"\" Scale 0.5\n" \
-	"Offset -3 Min -3 Max 1e3 MaxStep 1.5 Filter 2.5 Deadband 0.25 Calibrated \"2024-02-29\""
+	"Offset -3 Min -3 Max 1e3 MaxStep 1.5 Filter 2.5 Deadband 0.25 Calibrated \"2024-02-29\"\n" \
+	"Group \"Ground floor\""
 
 static void expect_all_keys(const struct config_item *item)
 {
 	TEST_ASSERT_EQUAL_STRING("m\xc2\xb3/h", item->unit);
 	TEST_ASSERT_EQUAL_UINT(2, item->decimals);
 	TEST_ASSERT_EQUAL_STRING("Supply, \"cold\"", item->description);
+	TEST_ASSERT_EQUAL_STRING("Ground floor", item->group);
 	TEST_ASSERT_TRUE(item->scale.linear);
 	TEST_ASSERT_EQUAL_DOUBLE(0.5, item->scale.factor);
 	TEST_ASSERT_EQUAL_DOUBLE(-3, item->scale.offset);

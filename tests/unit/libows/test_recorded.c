@@ -129,7 +129,7 @@ static void test_python_reads_a_recorded_image(void)
 		" description=None, family=None, device=None, calibrated=None, points=None,"
 		" decimals=None, scale=1.0, offset=0.0, min=None, max=None, limit_hh=None,"
 		" limit_h=None, limit_l=None, limit_ll=None, filter=0.0, deadband=0.0, confirm=False,"
-		" identity=\"/1D.000000000001/a\")\n",
+		" identity=\"/1D.000000000001/a\", group=None)\n",
 		python("s = ows.Ows(sys.argv[1])\nN = 1010 * 10**9\n"
 	               "print(*(s.get(\"byte_\" + a, N).value for a in (\"TRANSACTIONS\", \"Period\", \"Age\","
 	               " \"AgeMax\", \"PerCount\", \"PerMax\", \"PendCount\", \"PendLast\", \"PendMax\","

@@ -86,6 +86,7 @@ AT(ows_info_entry, limit_ll, 128, 8);
 AT(ows_info_entry, filter_s, 136, 8);
 AT(ows_info_entry, deadband, 144, 8);
 AT(ows_info_entry, identity_off, 152, 4);
+AT(ows_info_entry, group_off, 156, 4);
 
 AT(ows_name_entry, name_off, 0, 4);
 AT(ows_name_entry, record, 4, 4);
@@ -140,6 +141,7 @@ AT(ows_device_entry, retries, 32, 8);
 AT(ows_device_entry, wire_us, 40, 8);
 AT(ows_device_entry, ok_ns, 48, 8);
 AT(ows_device_entry, power, 56, 4);
+AT(ows_device_entry, wire, 60, 4);
 AT(ows_device_entry, identity, 64, 48);
 AT(ows_device_entry, check, 124, 4);
 

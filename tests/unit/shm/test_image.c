@@ -164,6 +164,7 @@ static void test_what_people_say_of_a_signal_is_in_its_info(void)
 		.device = "28.0123456789AB",
 		.calibrated = "2026-11-22",
 		.points = "0:0 10:10.5",
+		.group = "Heating",
 		.decimals = 1,
 		.scale = 2,
 		.offset = -3,
@@ -197,6 +198,7 @@ static void test_what_people_say_of_a_signal_is_in_its_info(void)
 	TEST_ASSERT_EQUAL_STRING(meta.device, text_at(info->device_off));
 	TEST_ASSERT_EQUAL_STRING(meta.calibrated, text_at(info->calibrated_off));
 	TEST_ASSERT_EQUAL_STRING(meta.points, text_at(info->points_off));
+	TEST_ASSERT_EQUAL_STRING(meta.group, text_at(info->group_off));
 	TEST_ASSERT_EQUAL_STRING("owserver:/s", text_at(image.header->served_off));
 	TEST_ASSERT_EQUAL(1, info->decimals);
 	TEST_ASSERT_EQUAL_HEX32(OWS_INFO_LAST | OWS_INFO_SCALED | OWS_INFO_CONFIRM, info->flags);

@@ -11,7 +11,7 @@ const UNBOUNDED = 1e15;
 
 /** The keys of an item as people think of them; what a newer table has more comes last. */
 export const ITEM_GROUPS = [
-	["What it is", ["Name", "Path", "Identity", "Type", "IO", "Description"]],
+	["What it is", ["Name", "Path", "Identity", "Type", "IO", "Description", "Group"]],
 	["Value", ["InitValue", "Unit", "Decimals", "Scale", "Offset", "Points", "Min", "Max", "MaxStep",
 		"Filter", "Deadband", "Calibrated"]],
 	["Limits", ["LimitHH", "LimitH", "LimitL", "LimitLL", "Hysteresis", "OnDelay", "OffDelay"]],
