@@ -251,7 +251,7 @@ class Day:
         """, name)
         changed = [text for n, text in enumerate(shown) if n == 0 or shown[n - 1] != text]
         good = {n: float(text) for n, text in enumerate(changed)
-                if text not in ("unknown", "\u2014")}
+                if text not in ("unknown", "")}
         allowed = {before[name], self.truth[name], *(self.had if name == "others" else [])}
         assert set(good.values()) <= allowed, (name, changed, allowed)
         if before[name] != self.truth[name] and not self.hung:

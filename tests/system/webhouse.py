@@ -21,12 +21,12 @@ GONE = "28.0102030405FF"
 CELLS = """return Object.fromEntries([...document.querySelectorAll("#live tbody .row")].map((row) =>
     [row.querySelector(".name").textContent, {
         value: row.querySelector(".number").textContent,
-        unit: row.querySelector(".unit").checkVisibility()
-            ? row.querySelector(".unit").textContent : "",
-        quality: [...row.querySelectorAll(".c-quality > *")].find((one) => !one.hidden)
-            .querySelector(".words")?.textContent ?? row.querySelector(".fine").textContent,
+        unit: row.querySelector(".unit").hidden ? "" : row.querySelector(".unit").textContent,
+        quality: row.querySelector(".words").textContent,
         alarm: row.querySelector(".alarm").hidden ? "" : row.querySelector(".alarm").textContent,
-        state: [...row.classList].find((name) => name.startsWith("is-")).slice(3),
+        state: [...row.classList].find((name) => name.startsWith("is-")
+            && name !== "is-late").slice(3),
+        edge: [...row.classList].find((name) => name.startsWith("edge-")).slice(5),
         age: row.querySelector(".c-age").textContent,
     }]))"""
 

@@ -5,9 +5,10 @@ import {announce, el, put} from "./dom.js";
 import {store} from "./store.js";
 import {valueText, withUnit} from "./words.js";
 
-const RESULT_MS = 20000; // so long the result of a command is shown
+const RESULT_MS = 8000; // so long the page says that a command was taken
 
 const RANGES = {byte: [0, 255], short: [-32768, 32767], word: [0, 65535]};
+const DIFFERS = 0x1c;  // the quality "not as commanded"
 const WHOLE = ["byte", "short", "long", "word", "dword", "large"];
 
 /** The bounds of a number: of the configuration, else of a small type; null: none. */
@@ -20,12 +21,14 @@ function bounds(signal) {
 const step = (signal) => WHOLE.includes(signal.type) ? 1
 	: signal.decimals > 0 ? 10 ** -Math.min(signal.decimals, 6) : 0.1;
 
-/** The cell of an output: {node, paint(value)}. */
+/** The control of an output: {node, result, paint(value)}; result is in node at first. */
 export function control(signal) {
 	const result = el("span", {class: "result"});
 	const send = async (value) => {
 		const text = withUnit(signal, valueText(signal, value));
-		say(signal.name, result, "pending", `${text}: pending`);
+		signal.wanted = signal.type === "bool" ? value : null;
+		say(signal.name, result, "pending", `setting ${text} \u2026`);
+		node.classList.add("is-pending");
 		try {
 			const answer = await post("set", {name: signal.name, value});
 			const taken = answer.result !== "pending";
@@ -36,10 +39,11 @@ export function control(signal) {
 				? `${text}: refused: ${error.message}`
 				: `${text}: not known whether it was set: ${error.message}`);
 		}
+		node.classList.remove("is-pending");
 	};
 	const made = signal.type === "bool" ? switchOf(signal, send) : buttonOf(signal, send);
 	const node = el("div", {class: "control"}, ...made.nodes, result);
-	return {node, paint(value) {
+	return {node, result, paint(value) {
 		const able = Boolean(store.info?.writable) && !store.unknown;
 		for (const one of made.nodes)
 			one.disabled = !able;
@@ -52,11 +56,14 @@ function say(name, result, state, text) {
 	put(result, text);
 	announce(`${name} ${text}`);
 	clearTimeout(result.timer);
-	if (state !== "pending")
+	if (state === "taken") // a refusal stays until the next act
 		result.timer = setTimeout(() => put(result, ""), RESULT_MS);
 }
 
-/* A switch shows what is; where that is not known it would lie, and two buttons take its place. */
+/*
+ * A switch shows what is; where that is not known it would lie, and two buttons take its place. Where
+ * what this page has set is not there, it is a hollow one of what was set.
+ */
 function switchOf(signal, send) {
 	const set = async (value) => {
 		if (await confirmed(signal, value))
@@ -70,9 +77,12 @@ function switchOf(signal, send) {
 	const on = el("button", {type: "button", "aria-label": `Set ${signal.name} on`,
 		onclick: () => set(true)}, "Set on");
 	return {nodes: [toggle, off, on], paint(value) {
-		toggle.hidden = value === null;
-		off.hidden = on.hidden = value !== null;
-		toggle.setAttribute("aria-checked", String(Boolean(Number(value))));
+		const missed = value === null && !store.unknown && signal.code === DIFFERS
+			&& typeof signal.wanted === "boolean";
+		toggle.hidden = value === null && !missed;
+		off.hidden = on.hidden = !toggle.hidden;
+		toggle.classList.toggle("is-missed", missed);
+		toggle.setAttribute("aria-checked", String(missed ? signal.wanted : Boolean(Number(value))));
 	}};
 }
 

@@ -1,27 +1,25 @@
 // SPDX-License-Identifier: MIT
-// Fills the groups of the live table and paints their rows: what is on the screen at once, the rest
+// Fills the groups or the list of the view Live and paints their rows: what is on the screen at once, the rest
 // in short turns, so that thousands of rows hold up neither the first frame nor a click.
 
-const CHUNK = 32;      // rows of a group at most
-const ROW_HEIGHT = 34; // of a row that was not painted yet, px
+const CHUNK = 32;      // rows of a part at most
+const ROW_HEIGHT = 35; // of a row that was not painted yet, px
 const TURN_MS = 6;     // of a turn; a frame has 16
 const LATER_MS = 50;   // the first turn; the first frame is on the screen by then
 
-/** Split long groups: what a group has off the screen the browser does not lay out. */
-export function chunked(groups) {
-	return groups.flatMap(({members, title}) => {
-		const parts = [];
-		for (let n = 0; n < members.length; n += CHUNK)
-			parts.push({members: members.slice(n, n + CHUNK), title: n ? null : title});
-		return parts;
-	});
+/** Rows in parts: what is off the screen the browser does not lay out. */
+export function chunked(rows) {
+	const parts = [];
+	for (let n = 0; n < rows.length; n += CHUNK)
+		parts.push(rows.slice(n, n + CHUNK));
+	return parts;
 }
 
 /** Have a body keep the place of its rows until it is filled. */
-export function reserve(body, members, titled) {
+export function reserve(body, members) {
 	body.rows_ = members;
 	body.filled_ = false;
-	const height = `${ROW_HEIGHT * (members.length + titled)}px`;
+	const height = `${ROW_HEIGHT * members.length}px`;
 	body.style.containIntrinsicSize = `auto ${height}`;
 	body.style.minHeight = height;
 }
@@ -70,7 +68,7 @@ export class Painter {
 	#visible;
 	#done;
 
-	/** visible(): the bodies that can be seen; done(turned): some were painted, and look other. */
+	/** visible(): the bodies that can be seen; done(): some were painted. */
 	constructor(visible, done) {
 		this.#visible = visible;
 		this.#done = done;
@@ -89,12 +87,9 @@ export class Painter {
 
 	#paint() {
 		const end = performance.now() + TURN_MS;
-		let turned = false;
 		const one = (row) => {
-			const before = row.node.className;
 			this.#dirty.delete(row);
 			row.paint();
-			turned ||= row.node.className !== before;
 		};
 		this.#frame = 0;
 		for (const body of this.#visible())
@@ -108,6 +103,6 @@ export class Painter {
 		}
 		if (this.#dirty.size)
 			this.#frame = requestAnimationFrame(() => this.#paint());
-		this.#done(turned);
+		this.#done();
 	}
 }

@@ -8,6 +8,8 @@ import {askAll} from "./early.js";
 import {keep} from "./spark.js";
 import {UNKNOWN, qualityWords} from "./words.js";
 
+const GAP_LEAST_MS = 100; // measurements that are nearer are one, in another event
+
 class Store extends EventTarget {
 	info = null;
 	signals = [];
@@ -141,7 +143,7 @@ class Store extends EventTarget {
 	#take(list) {
 		const now = this.now();
 		const shape = (signals) => JSON.stringify(signals.map((s) => [s.i, s.name, s.type, s.output,
-			s.unit, s.decimals, s.device, s.path, s.description, s.min, s.max]));
+			s.unit, s.decimals, s.device, s.path, s.description, s.min, s.max, s.group, s.terminal]));
 		const same = this.#generation === list.generation
 			|| (this.signals.length === list.signals.length
 				&& shape(this.signals) === shape(list.signals));
@@ -161,10 +163,13 @@ class Store extends EventTarget {
 	}
 
 	#set(signal, value, code, good, age, now) {
+		const before = signal.measured;
 		signal.value = value;
 		signal.code = code;
 		signal.good = Boolean(good);
 		signal.measured = age === null || age === undefined ? null : now - age * 1000;
+		if (before && signal.measured > before + GAP_LEAST_MS && !signal.output)
+			signal.gap = Math.max((signal.measured - before) / 1000, 0.9 * (signal.gap ?? 0));
 		this.#keep(signal, good && value !== null ? Number(value) : null, code);
 		return signal;
 	}
