@@ -240,12 +240,15 @@ function open(name) {
 // --- Painting -------------------------------------------------------------------------------
 
 const summary = () => {
+	for (const row of rows)
+		row.now = null; // what was not painted may be late meanwhile
 	headline.paint(rows);
 	chips.paint(rows, state, mode() === "list");
 	if (mode() === "list")
 		measure();
 };
-const summarySoon = later(summary, 200);
+const [soon, lessSoon] = [200, 1000].map((ms) => later(summary, ms));
+const summarySoon = () => rows.length > MANY ? lessSoon() : soon();
 let ordered = 0;
 
 /* Not while somebody points at a row, or has the focus in one. */

@@ -124,7 +124,7 @@ export function sentenceOf(looks, ages) {
 	if (late)
 		words.push(`${late} late`);
 	else if (known.length)
-		words.push(`All at most ${span(Math.max(1, ...known.map(Math.ceil)))} old`);
+		words.push(`All at most ${span(known.reduce((most, age) => Math.max(most, Math.ceil(age)), 1))} old`);
 	return [needs ? `${needs} of ${n} need${needs === 1 ? "s" : ""} you` : initial
 		? `${good} of ${n} good` : n === 1 ? "The one signal is good" : `All ${n} good`,
 	words.filter(Boolean).map((one) => `${one}.`).join(" ")];

@@ -68,7 +68,8 @@ export const showOf = (asked, rows) => ["groups", "list", "wall"].includes(asked
 
 // --- Order ----------------------------------------------------------------------------------
 
-const byName = (a, b) => a.signal.name.localeCompare(b.signal.name, "en", {numeric: true});
+const words = new Intl.Collator("en", {numeric: true}); // localeCompare() is ten times as slow
+const byName = (a, b) => words.compare(a.signal.name, b.signal.name);
 const spread = ({signal}) => {
 	const all = signal.recent.filter(({v}) => v !== null);
 	return all.length ? Math.max(...all.map(({high}) => high)) - Math.min(...all.map(({low}) => low))
@@ -94,7 +95,7 @@ export function sorted(rows, order) {
 	if (!of)
 		return [...rows];
 	const all = rows.map((row) => ({row, key: of(row)}));
-	const compare = (a, b) => typeof a === "string" ? a.localeCompare(b, "en", {numeric: true}) : a - b;
+	const compare = (a, b) => typeof a === "string" ? words.compare(a, b) : a - b;
 	return all.sort((a, b) => (a.key === null) - (b.key === null)
 		|| (a.key === null ? 0 : down * compare(a.key, b.key)) || byName(a.row, b.row))
 		.map(({row}) => row);
@@ -121,14 +122,18 @@ export function passes(row, {only, unit, group, from, to}) {
 
 /** What can be chosen: [{words, count, choice}], the first: all. listed: groups, too. */
 export function choicesOf(rows, listed) {
-	const count = (choice) => rows.filter((row) => passes(row, {from: null, ...choice})).length;
-	const values = (key) => [...new Set(rows.map(({signal}) => signal[key]).filter(Boolean))];
-	const units = values("unit"), groups = listed ? values("group") : [];
-	return [["All", {}], ["Not good", {only: "bad"}],
-		...units.map((unit) => [unit, {unit}]), ["Outputs", {only: "output"}],
-		["on / off", {only: "bool"}],
-		...(groups.length <= TAGS ? groups.map((group) => [group, {group}]) : [])]
-		.map(([words, choice]) => ({words, choice, count: count(choice)}))
+	const counted = (key) => {
+		const counts = new Map();
+		for (const {signal} of rows)
+			if (signal[key])
+				counts.set(signal[key], (counts.get(signal[key]) ?? 0) + 1);
+		return [...counts].map(([value, count]) => ({words: value, count, choice: {[key]: value}}));
+	};
+	const plain = (words_, only) => ({words: words_, choice: {only},
+		count: rows.filter(PLAIN[only]).length});
+	const units = counted("unit"), groups = listed ? counted("group") : [];
+	return [{words: "All", count: rows.length, choice: {}}, plain("Not good", "bad"), ...units,
+		plain("Outputs", "output"), plain("on / off", "bool"), ...groups.length <= TAGS ? groups : []]
 		.filter(({count: n, choice}) => !Object.keys(choice).length || choice.only === "bad"
 			|| n > 0 && n < rows.length && (n > 1 || units.length <= UNITS || !choice.unit));
 }

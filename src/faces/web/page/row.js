@@ -19,11 +19,11 @@ export const shared = {scale: null, mixed: false};
 export class Parts {
 	constructor(signal) {
 		this.signal = signal;
-		this.now = null; // how it looks
+		this.now = null; // how it looks; null: to be found
 	}
 
 	get look() {
-		return this.now ?? lookOf(this.signal, store.unknown, this.age);
+		return this.now ??= lookOf(this.signal, store.unknown, this.age);
 	}
 
 	get age() {

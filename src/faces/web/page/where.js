@@ -8,11 +8,19 @@ import {valueText} from "./words.js";
 const COLUMNS = 60, WIDTH = 900, HEIGHT = 110, GAP = 3, BLOCK = 8;
 const ENOUGH = 12; // signals for which it is worth a picture
 
+const texts = new WeakMap(); // of limits, which are another object when they are others
+
+function textOf(limits) {
+	if (!texts.has(limits))
+		texts.set(limits, JSON.stringify(limits));
+	return texts.get(limits);
+}
+
 /** The limits that most of the rows have: {l, h, ...}. */
 export function limitsOf(rows) {
 	const counts = new Map();
 	for (const {signal: {limits}} of rows) {
-		const key = JSON.stringify(limits ?? {});
+		const key = limits ? textOf(limits) : "{}";
 		counts.set(key, (counts.get(key) ?? 0) + 1);
 	}
 	const [most] = [...counts].sort(([, a], [, b]) => b - a);
@@ -64,8 +72,8 @@ export class Where {
 		const values = known.map(({value}) => Number(value)), limits = limitsOf(rows);
 		const counts = buckets(values, scale, COLUMNS), most = Math.max(...counts);
 		const blind = rows.length - known.length;
-		const key = JSON.stringify([counts, scale, limits, unit, blind, Math.min(...values),
-			Math.max(...values)]);
+		const [least, greatest] = [Math.min, Math.max].map((of) => values.reduce((a, b) => of(a, b)));
+		const key = JSON.stringify([counts, scale, limits, unit, blind, least, greatest]);
 		if (key === this.#key)
 			return;
 		this.#key = key;
@@ -81,7 +89,7 @@ export class Where {
 		counts.forEach((count, n) => { paths[kinds[n]] += columnPath(n, count, most); });
 		this.#paths.forEach((path, n) => path.setAttribute("d", paths[n]));
 		this.#paintAxis(scale, limits, known[0].signal);
-		this.#paintFacts(known, values, blind);
+		this.#paintFacts(known, values, least, greatest, blind);
 	}
 
 	#paintAxis(scale, limits, signal) {
@@ -99,7 +107,7 @@ export class Where {
 			...inside.map((v) => put_(v, "limit", `limit ${text(v)}`)));
 	}
 
-	#paintFacts(known, values, blind) {
+	#paintFacts(known, values, least, greatest, blind) {
 		const at = (value) => known[values.indexOf(value)];
 		const warm = known[0].signal.unit === "\u00b0C";
 		const figure = (row, value, unit) => el("dd", {class: "figure"},
@@ -111,8 +119,8 @@ export class Where {
 			return [title, link(signal.name, () => this.open(signal.name)),
 				figure(at(value), value, signal.unit)];
 		};
-		const all = [one(warm ? "Hottest" : "Greatest", Math.max(...values)),
-			one(warm ? "Coldest" : "Least", Math.min(...values)),
+		const all = [one(warm ? "Hottest" : "Greatest", greatest),
+			one(warm ? "Coldest" : "Least", least),
 			["Middle", `of ${known.length}`, figure(known[0], middleOf(values), known[0].signal.unit)],
 			["Without a value", blind ? link("show them", this.blind) : "none",
 				figure(null, blind, "")]];
