@@ -299,7 +299,7 @@ LIBRARY  := $(foreach l,$(LIBRARIES),$(B)/$(l).so.$(VERSION) $(B)/$(l).a $(B)/$(
         deb test-package test-service test-fresh dist test-dist clean \
         examples unit-programs benches system-programs diagrams compare properties-page check check-all \
         touched mutate help FORCE
-all: $(PROGRAMS) $(LIBRARY) $(PYTHON_MADE) $(WEBPAGE:%=$(B)/page/%) $(B)/core.a $(B)/with/libraries
+all: $(PROGRAMS) $(LIBRARY) $(PYTHON_MADE) $(WEBPAGE:%=$(B)/page/%) $(WEBPAGE:%=$(B)/page/%.gz) $(B)/core.a $(B)/with/libraries
 
 # Two makes may do this at once
 $(WITH): $(B)/with/%:
@@ -319,6 +319,10 @@ $(B)/page/%: src/faces/web/page/%
 $(DYGRAPHS:%=$(B)/page/$(notdir $(DYGRAPHS))): $(DYGRAPHS)
 	@mkdir -p $(@D)
 	@ln -sf $(abspath $<) $@
+
+# What a browser gets in place of them
+$(B)/page/%.gz: $(B)/page/%
+	@gzip -9n <$< >$@.new && mv $@.new $@
 
 # Everything but main(): what the programs and the unit tests link
 $(B)/core.a: $(call obj,$(CORE)) $(PROTO:%=%.o)
@@ -631,7 +635,7 @@ install: all
 	    $(D)$(DATADIR)/examples $(D)$(DATADIR)/boards
 	install -m 755 $(B)/owsd $(FACES:%=$(B)/%) $(patsubst %,$(B)/%,$(filter owsd%,$(WITH_SIM))) $(D)$(PREFIX)/sbin
 	install -d $(D)$(DATADIR)/web $(COCKPIT)
-	install -m 644 $(WEBPAGE:%=$(B)/page/%) $(D)$(DATADIR)/web
+	install -m 644 $(WEBPAGE:%=$(B)/page/%) $(WEBPAGE:%=$(B)/page/%.gz) $(D)$(DATADIR)/web
 	install -m 644 $(WEBPAGE:%=$(B)/page/%) $(COCKPIT)
 	$(if $(DYGRAPHS),install -m 644 $(DYGRAPHS_LICENCE) $(D)$(DATADIR)/dygraphs.copyright)
 	sed -e 's,^<script type="module" async,<script src="../base1/cockpit.js"></script>\n&,' \

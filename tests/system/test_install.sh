@@ -39,10 +39,15 @@ done
 [ "$(SOURCE_DATE_EPOCH=86400 sh "$OWSD_SOURCE/board/make-deb" --day)" = 1970-01-02 ] ||
 	! grep -q '^## .*not yet' "$OWSD_SOURCE/NEWS.md" || { echo "the day is not that of the epoch"; exit 1; }
 
+# The page has each file a second time, as a browser takes it
+for f in "$root"/opt/owsd/share/owsd/web/*.gz; do
+	gzip -dc "$f" | cmp - "${f%.gz}"
+	[ ! "${f%.gz}" -nt "$f" ] || { echo "older than what it is made of: $f"; exit 1; }
+done
 # Cockpit gets the same files; in index.html stands its library in place of the manifest
 page=$root/opt/owsd/share/cockpit/owsd
 python3 -c 'import json, sys; json.load(open(sys.argv[1]))' "$page/manifest.json"
-diff -r -q "$root/opt/owsd/share/owsd/web" "$page" >differences || true
+diff -r -q -x "*.gz" "$root/opt/owsd/share/owsd/web" "$page" >differences || true
 [ "$(wc -l <differences)" = 2 ] && grep -q 'index.html differ$' differences && grep -q ': manifest.json$' differences
 diff "$OWSD_SOURCE/src/faces/web/page/index.html" "$page/index.html" | grep '^[<>]' >differences || true
 [ "$(grep -c '^>' differences)" = 1 ] && grep -q '^> <script src="../base1/cockpit.js"></script>$' differences

@@ -6,6 +6,7 @@ import base64
 import contextlib
 import getpass
 import grp
+import gzip
 import http.client
 import json
 import os
@@ -203,6 +204,29 @@ def test_the_files_of_the_page_are_served_and_no_others(scene):
     assert page.json("/index.html%00.js", 400)["error"]
     (scene.path / "page" / "index.html").write_text("another\n")
     assert page.ask("/", If_None_Match=answer.getheader("ETag"))[2] == b"another\n"
+
+
+def test_a_packed_file_goes_to_the_browser_that_takes_it(scene):
+    _, page = both(scene)
+    plain = b"export const a = 1;\n"
+    (scene.path / "page" / "plot.js.gz").write_bytes(gzip.compress(plain * 1000))
+    for takes, encoding in (("br", None), ("gzip;q=0", None), ("gzip, deflate, br", "gzip")):
+        answer, status, body = page.ask("/plot.js", Accept_Encoding=takes)
+        assert status == 200 and answer.getheader("Content-Encoding") == encoding, (takes, status)
+        assert (gzip.decompress(body) == plain * 1000) if encoding else body == plain, takes
+        assert answer.getheader("Content-Type") == "text/javascript; charset=utf-8"
+        assert answer.getheader("Vary") == "Accept-Encoding"
+        head, status, none = page.ask("/plot.js", "HEAD", Accept_Encoding=takes)
+        assert (status, none) == (200, b""), takes
+        assert head.getheader("Content-Length") == str(len(body)), head.getheaders()
+        again, status, none = page.ask("/plot.js", Accept_Encoding=takes,
+                                       If_None_Match=answer.getheader("ETag"))
+        assert (status, none) == (304, b"") and again.getheader("Vary") == "Accept-Encoding", takes
+    # the tag of one encoding is none of another
+    assert page.ask("/plot.js", If_None_Match=answer.getheader("ETag"))[1:] == (200, plain)
+    assert page.json("/plot.js.gz", 404)["error"]
+    until(lambda: (scene.path / "page" / "plot.js").write_text("2;\n") and
+          page.ask("/plot.js", Accept_Encoding="gzip")[2] == b"2;\n", 5, "what is newer is served")
 
 
 def test_signals_come_in_the_order_of_the_file_with_all_that_is_known_of_them(scene):

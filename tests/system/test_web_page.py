@@ -405,6 +405,20 @@ def test_about_shows_the_state_the_log_and_the_counters_of_owsctl_stats(scene):
         assert not page.complaints()
 
 
+def test_the_view_live_weighs_at_most_60_kb_as_it_is_served(scene):
+    with plant(scene) as (_, _, page):
+        name = "return performance.getEntriesByType('resource').find((r) => r.name.endsWith('/alarms.js'))"
+        page.until(name, "modules of other views")
+        files = page.run("""const all = performance.getEntriesByType('resource'),
+            later = all.find((r) => r.name.endsWith('/alarms.js')).startTime;
+            return [...performance.getEntriesByType('navigation'),
+                ...all.filter((r) => r.startTime < later)].map((r) =>
+                [r.name.split('/').pop(), r.encodedBodySize, r.decodedBodySize]);""")
+        assert {"live.js", "live.css", "signals"} <= {name for name, *_ in files}, files
+        assert sum(served for _, served, _ in files) < 60_000, files
+        assert all(0 < served < whole for name, served, whole in files if "." in name), files
+
+
 def test_of_many_rows_those_on_the_screen_come_first_and_all_are_there_in_the_end(scene):
     with browser.open_one(scene) as page:
         scene.file("many.sim", f"chip DS2482-100 0x18\nDS2408 {RELAY}\n")

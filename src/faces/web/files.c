@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -60,25 +61,70 @@ int files_open(const char *directory)
 	return err;
 }
 
-int files_find(int directory, const char *path, uint64_t *size, const char **type,
-               char tag[FILES_TAG])
+bool files_takes_gzip(const char *accepts)
+{
+	const char *at = accepts;
+
+	while (at && *at) {
+		at += strspn(at, ", \t");
+		if (!strncasecmp(at, "gzip", 4)) {
+			at += 4 + strspn(at + 4, " \t");
+			if (!*at || *at == ',')
+				return true;
+			at += strspn(at, "; \t");
+			if (!strncasecmp(at, "q=", 2)) {
+				at += 2 + strspn(at + 2, "0.");
+				return *at >= '1' && *at <= '9';
+			}
+		}
+		at = strchr(at, ',');
+	}
+	return false;
+}
+
+static int open_regular(int directory, const char *name, struct stat *stat)
+{
+	int fd = openat(directory, name, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+
+	if (fd < 0)
+		return -errno;
+	if (!fstat(fd, stat) && S_ISREG(stat->st_mode))
+		return fd;
+	close(fd);
+	return -ENOENT;
+}
+
+static int64_t changed_ns(const struct stat *stat)
+{
+	return (int64_t)stat->st_mtim.tv_sec * 1000000000 + stat->st_mtim.tv_nsec;
+}
+
+int files_find(int directory, const char *path, bool gzip, struct file *file)
 {
 	const char *name = *path ? path : "index.html";
-	struct stat stat;
-	int fd;
+	struct stat stat, packed;
+	char beside[256 + 3];
+	int fd, other = -1;
 
 	if (!is_plain(name) || !type_of(name))
 		return -ENOENT;
-	fd = openat(directory, name, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+	fd = open_regular(directory, name, &stat);
 	if (fd < 0)
-		return -errno;
-	if (fstat(fd, &stat) || !S_ISREG(stat.st_mode)) {
-		close(fd);
-		return -ENOENT;
+		return fd;
+	snprintf(beside, sizeof(beside), "%s.gz", name);
+	if (gzip)
+		other = open_regular(directory, beside, &packed);
+	/* else it was made of an older one */
+	file->gzip = other >= 0 && changed_ns(&packed) >= changed_ns(&stat);
+	if (other >= 0)
+		close(file->gzip ? fd : other);
+	if (file->gzip) {
+		fd = other;
+		stat = packed;
 	}
-	*size = (uint64_t)stat.st_size;
-	*type = type_of(name);
-	snprintf(tag, FILES_TAG, "\"%" PRIx64 "-%" PRIx64 "\"", *size,
-	         (uint64_t)stat.st_mtim.tv_sec * 1000000000 + (uint64_t)stat.st_mtim.tv_nsec);
+	file->size = (uint64_t)stat.st_size;
+	file->type = type_of(name);
+	snprintf(file->tag, sizeof(file->tag), "\"%" PRIx64 "-%" PRIx64 "%s\"", file->size,
+	         (uint64_t)changed_ns(&stat), file->gzip ? "-gzip" : "");
 	return fd;
 }

@@ -164,11 +164,12 @@ static int answer_job(struct request *request)
 
 static int answer_file(struct request *request, const char *path)
 {
-	const char *type, *known = http_header(request, "If-None-Match");
+	bool gzip = files_takes_gzip(http_header(request, "Accept-Encoding"));
+	const char *known = http_header(request, "If-None-Match");
 	struct MHD_Response *response;
-	char tag[FILES_TAG];
-	uint64_t size;
-	int fd = files_find(request->web->files, path, &size, &type, tag);
+	unsigned status = 200;
+	struct file file;
+	int fd = files_find(request->web->files, path, gzip, &file);
 
 	if (fd < 0 && !*path)
 		return http_error(request, 404,
@@ -176,21 +177,24 @@ static int answer_file(struct request *request, const char *path)
 		                  "or name their directory by Files in Web { }");
 	if (fd < 0)
 		return http_error(request, 404, "there is no such path");
-	if (known && strcmp(known, tag) == 0) {
+	if (known && strcmp(known, file.tag) == 0) {
+		status = 304;
 		close(fd);
 		response = MHD_create_response_from_buffer(0, NULL, MHD_RESPMEM_PERSISTENT);
-		if (response)
-			MHD_add_response_header(response, "ETag", tag);
-		return http_answer(request, 304, response);
+	} else {
+		response = MHD_create_response_from_fd64(file.size, fd);
+		if (!response)
+			close(fd);
 	}
-	response = MHD_create_response_from_fd64(size, fd);
-	if (!response) {
-		close(fd);
+	if (!response)
 		return MHD_NO;
-	}
-	MHD_add_response_header(response, "Content-Type", type);
-	MHD_add_response_header(response, "ETag", tag);
-	return http_answer(request, 200, response);
+	MHD_add_response_header(response, "ETag", file.tag);
+	MHD_add_response_header(response, "Vary", "Accept-Encoding");
+	if (status == 200)
+		MHD_add_response_header(response, "Content-Type", file.type);
+	if (status == 200 && file.gzip)
+		MHD_add_response_header(response, "Content-Encoding", "gzip");
+	return http_answer(request, status, response);
 }
 
 /* --- Requests -------------------------------------------------------------------------------- */
