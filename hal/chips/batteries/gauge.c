@@ -225,8 +225,8 @@ const struct property_how gauge_how[GAUGE_WAYS] = {
 	[WAY_SWEN] = {SET(EEPROM, .at = 0x31, .shift = 3, .bits = 1)},
 	[WAY_CURRENTBIAS] = {SET(EEPROM, GAUGE_BIAS(GAUGE_RESISTOR))},
 	[WAY_VBIAS] = {SET(EEPROM, GAUGE_BIAS(1))},
-	[WAY_WS603_BYTE] = {.read = ws603_read_byte, .write = ws603_write_byte},
+	[WAY_WS603_BYTE] = {.read = ws603_read_byte, .write = property_refuse},
 	[WAY_WS603_BYTES] = {.read = ws603_read_bytes},
 	[WAY_WS603_WIND] = {.read = ws603_read_wind},
-	[WAY_WS603_LIGHTS] = {.write = ws603_write_lights},
+	[WAY_WS603_LIGHTS] = {.write = property_refuse},
 };

@@ -92,14 +92,12 @@
 	PROPERTY_DIR("WS603"), \
 	PROPERTY_DIR("WS603/LED"), \
 	PROPERTY("WS603/LED/control", UNSIGNED, STABLE, WRITE, AGGREGATE(4, NUMBERS), \
-	         .arg = WS603_LIGHTS << 16, .how = WAY_WS603_LIGHTS), \
+	         .how = WAY_WS603_LIGHTS), \
 	WS603_BYTE("WS603/LED/model", READ, WS603_PARAMETERS), \
 	WS603_BYTE("WS603/LED/status", READ, WS603_DATA | 2 << 8), \
 	PROPERTY_DIR("WS603/calibration"), \
-	WS603_BYTE("WS603/calibration/direction", BOTH, \
-	           WS603_PARAMETERS | 2 << 8 | WS603_SET_DIRECTION << 16), \
-	WS603_BYTE("WS603/calibration/wind_speed", BOTH, \
-	           WS603_PARAMETERS | 1 << 8 | WS603_SET_WIND << 16), \
+	WS603_BYTE("WS603/calibration/direction", BOTH, WS603_PARAMETERS | 2 << 8), \
+	WS603_BYTE("WS603/calibration/wind_speed", BOTH, WS603_PARAMETERS | 1 << 8), \
 	WS603_BYTES("WS603/data_string", VOLATILE, WS603_DATA), \
 	WS603_BYTE("WS603/direction", READ, WS603_DATA | 1 << 8), \
 	PROPERTY_DIR("WS603/light"), \

@@ -2,7 +2,8 @@
 /*
  * WS603: a weather station. The host leaves a command in the memory of its DS2760, and the station
  * its answer behind it. There is no data sheet: commands and scales are those of OWFS. Both stay
- * until the next ones, so they are cleared before a command is given.
+ * until the next ones, so they are cleared before a command is given. Nothing shows whether the
+ * station took a setting: none is written.
  */
 #include <errno.h>
 #include <string.h>
@@ -52,22 +53,13 @@ static int ws603_put(struct txn *txn, uint8_t at, const uint8_t *bytes, unsigned
 	return memcmp(in, bytes, n) == 0 ? 0 : -EBADMSG;
 }
 
-/* The command's n bytes, their sum, and an end that follows from the first. */
-static int ws603_give(struct txn *txn, const uint8_t *bytes, unsigned n)
-{
-	uint8_t command[8];
-
-	memcpy(command, bytes, n);
-	command[n] = sum_of(bytes, n);
-	command[n + 1] = (uint8_t)(bytes[0] << 4 | 0x0e);
-	return ws603_put(txn, COMMAND, command, n + 2);
-}
-
 /* The five bytes that the station answers; several calls. */
 static int ws603_ask(struct txn *txn, uint8_t what, uint8_t bytes[5])
 {
 	static const uint8_t nothing[ANSWER - COMMAND + ANSWER_BYTES] = {0};
 	struct visit *visit = txn_own(txn, struct visit);
+	/* the command, its sum, an end that follows from it */
+	const uint8_t command[] = {what, what, (uint8_t)(what << 4 | 0x0e)};
 	uint8_t in[ANSWER_BYTES];
 	int err;
 
@@ -77,7 +69,7 @@ static int ws603_ask(struct txn *txn, uint8_t what, uint8_t bytes[5])
 		visit->step = ASK;
 		return err ? err : TXN_MORE;
 	case ASK:
-		err = ws603_give(txn, &what, 1);
+		err = ws603_put(txn, COMMAND, command, sizeof(command));
 		visit->step = TAKE;
 		visit->tries = 0;
 		return err ? err : txn_wait(txn, WAIT_NS);
@@ -134,23 +126,4 @@ int ws603_read_wind(struct txn *txn)
 	}
 	txn->number[0] = bytes[0] * 2.453 * 1.069 * 1000 * visit->calibration / (3600 * 100.);
 	return 0;
-}
-
-int ws603_write_byte(struct txn *txn)
-{
-	const uint8_t bytes[] = {(uint8_t)(txn->property->arg >> 16), (uint8_t)txn->number[0]};
-
-	return txn->number[0] > 255 ? -EINVAL : ws603_give(txn, bytes, sizeof(bytes));
-}
-
-int ws603_write_lights(struct txn *txn)
-{
-	uint8_t bytes[5] = {WS603_LIGHTS};
-
-	for (unsigned i = 0; i < 4; i++) {
-		if (txn->number[i] > 255)
-			return -EINVAL;
-		bytes[1 + i] = (uint8_t)txn->number[i];
-	}
-	return ws603_give(txn, bytes, sizeof(bytes));
 }

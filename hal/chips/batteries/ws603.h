@@ -10,7 +10,5 @@
 
 /* arg: what is asked for, and from bit 8 on which byte of the answer. */
 property_function ws603_read_byte, ws603_read_bytes, ws603_read_wind;
-/* arg, from bit 16 on: the command. */
-property_function ws603_write_byte, ws603_write_lights;
 
-enum { WS603_PARAMETERS = 0xa0, WS603_DATA, WS603_LIGHTS, WS603_SET_WIND, WS603_SET_DIRECTION };
+enum { WS603_PARAMETERS = 0xa0, WS603_DATA };

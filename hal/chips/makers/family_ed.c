@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Soft devices of Inferno Embedded: lights, switches, relays, and the updater of their firmware. A
- * command ends with the CRC8 of the ROM id and of itself; the device answers 0 if it has taken it,
- * then bytes without a checksum, which are read AREA_LOOKS times. What a command does is proved by
- * the device's own answer, for it checks the command. No data sheet could be had: the commands are
- * those of OWFS's driver.
+ * Soft devices of Inferno Embedded: lights, switches, relays. Of the updater of their firmware owsd
+ * says what it is, and refuses the rest: half a firmware leaves no device. A command ends with the
+ * CRC8 of the ROM id and of itself; the device answers 0 if it has taken it, then bytes without a
+ * checksum, which are read AREA_LOOKS times. What a command does is proved by the device's own
+ * answer, for it checks the command. No data sheet could be had: the commands are those of OWFS's
+ * driver.
  */
 #include <ctype.h>
 #include <errno.h>
@@ -17,7 +18,7 @@
 #include "hal/owfs/path.h"
 
 /* device.kind */
-enum { IS_UNKNOWN, IS_LIGHTS, IS_UPDATER, IS_SWITCHES, IS_OTHER };
+enum { IS_LIGHTS = 1, IS_UPDATER, IS_SWITCHES, IS_OTHER };
 
 enum inferno_port { INFERNO_SWITCH, INFERNO_LED, INFERNO_STATE, INFERNO_MODE, INFERNO_TIMEOUT };
 #define INFERNO_PORT(what, port) ((what) << 8 | (port))
@@ -25,9 +26,8 @@ enum inferno_port { INFERNO_SWITCH, INFERNO_LED, INFERNO_STATE, INFERNO_MODE, IN
 #define PORTS_MOST 8
 #define CHANNELS 32
 #define ARGS 8
-#define BOOT_NS (1000 * TXN_MS)
 
-enum { BOOTLOADER_SIZE = 0x00, RANGE = 0x04, BOOT_UPDATER = 0xfc, DEVICE = 0xff };
+#define DEVICE 0xff
 enum { SET_LIGHT = 0x03, GET_LIGHT, COMMIT };
 enum { COUNT_SWITCHES = 0x01, COUNT_LEDS, COUNT_RELAYS, SET_TYPE, GET_ACTIVATED = 0x06 };
 
@@ -82,9 +82,8 @@ static int inferno_exchange(struct txn *txn, uint8_t code, const uint8_t *args, 
 		memcpy(bytes + 9, args, n);
 	bytes[9 + n] = rom_crc8(bytes, 9 + n);
 	err = txn_command(txn, bytes + 8, 2 + n);
-	if (err || code == BOOT_UPDATER)
-		return err;
-	err = txn_read(txn, answer, 1 + in_n);
+	if (!err)
+		err = txn_read(txn, answer, 1 + in_n);
 	if (err)
 		return err;
 	if (in_n)
@@ -186,7 +185,6 @@ static int put_bits(struct txn *txn, uint32_t bits, unsigned n)
 	return put_list(txn, values, n);
 }
 
-/* arg: INFERNO_PORT(what, port); a count: INFERNO_PORT(what, 0: ports, 1: channels). */
 static int inferno_read_port(struct txn *txn)
 {
 	static const uint8_t codes[] = {0, 0x08, 0x0c, 0x0d, 0x0e};
@@ -330,7 +328,6 @@ static int inferno_read_light(struct txn *txn)
 	return property_text(txn, text);
 }
 
-/* arg: INFERNO_PORT(what, port); a count: INFERNO_PORT(what, 0: ports, 1: channels). */
 static int inferno_write_light(struct txn *txn)
 {
 	struct asked *asked = txn_own(txn, struct asked);
@@ -354,15 +351,10 @@ static int inferno_write_light(struct txn *txn)
 	return err ? err : TXN_MORE;
 }
 
-/* arg: INFERNO_PORT(what, port); a count: INFERNO_PORT(what, 0: ports, 1: channels). */
-/* arg: the command, which has no bytes. An updater comes up as what its firmware makes of it. */
+/* arg: the command, which has no bytes. */
 static int inferno_command(struct txn *txn)
 {
-	int err = txn->number[0] != 0 ? inferno_send(txn, (uint8_t)txn->property->arg, NULL, 0) : 0;
-
-	if (!err && txn->number[0] != 0 && txn->device->kind == IS_UPDATER)
-		family_forget(txn->device);
-	return err;
+	return txn->number[0] != 0 ? inferno_send(txn, (uint8_t)txn->property->arg, NULL, 0) : 0;
 }
 
 static int inferno_read_device(struct txn *txn)
@@ -374,52 +366,6 @@ static int inferno_read_device(struct txn *txn)
 	return property_text(txn, names[txn->device->kind]);
 }
 
-/* It does not answer: the device that comes up shows it. */
-static int inferno_enter_update(struct txn *txn)
-{
-	struct asked *asked = txn_own(txn, struct asked);
-	int err;
-
-	if (txn->number[0] == 0)
-		return 0;
-	if (asked->stage == 0) {
-		asked->stage = 1;
-		memset(inferno_of(txn), 0, sizeof(struct inferno));
-		err = inferno_send(txn, BOOT_UPDATER, NULL, 0);
-		/* Also if this request ends here, the way out of the updater must stay open. */
-		txn->device->kind = err ? IS_UNKNOWN : IS_UPDATER;
-		return err ? err : txn_wait(txn, BOOT_NS);
-	}
-	err = inferno_identify(txn);
-	if (err < 0)
-		txn->device->kind = IS_UNKNOWN;
-	return err ? err : txn->device->kind == IS_UPDATER ? 0 : -EIO;
-}
-
-/* arg: INFERNO_PORT(what, port); a count: INFERNO_PORT(what, 0: ports, 1: channels). */
-static int inferno_read_size(struct txn *txn)
-{
-	const struct asked *asked = txn_own(txn, struct asked);
-	int err = inferno_ask(txn, BOOTLOADER_SIZE, NULL, 0, 0, 4);
-
-	txn->number[0] = area_le32(asked->seen);
-	return err;
-}
-
-/* arg: INFERNO_PORT(what, port); a count: INFERNO_PORT(what, 0: ports, 1: channels). */
-static int inferno_read_range(struct txn *txn)
-{
-	const struct asked *asked = txn_own(txn, struct asked);
-	char text[40];
-	int err = inferno_ask(txn, RANGE, NULL, 0, 0, 8);
-
-	if (err)
-		return err;
-	snprintf(text, sizeof(text), "0x%08x,0x%08x", area_le32(asked->seen),
-	         area_le32(asked->seen + 4));
-	return property_text(txn, text);
-}
-
 /* Numbers have their low byte first. */
 enum { STATUS = 1, VERSION };
 static const struct area *const areas[] = {
@@ -428,15 +374,11 @@ static const struct area *const areas[] = {
 };
 
 /* clang-format off */
-enum { WAY_DEVICE = 1, WAY_ENTER, WAY_FIRMWARE, WAY_SIZE, WAY_RANGE, WAY_COUNT, WAY_PORT, WAY_TYPE,
-       WAY_REFRESH, WAY_LIGHT, WAY_COMMAND };
+enum { WAY_DEVICE = 1, WAY_FIRMWARE, WAY_COUNT, WAY_PORT, WAY_TYPE, WAY_REFRESH, WAY_LIGHT,
+       WAY_COMMAND };
 static const struct property_how how[] = {
 	[WAY_DEVICE] = {.read = inferno_read_device},
-	[WAY_ENTER] = {.write = inferno_enter_update},
-	/* half a firmware leaves no device: not over a wire that may fail */
-	[WAY_FIRMWARE] = {.write = property_refuse},
-	[WAY_SIZE] = {.read = inferno_read_size},
-	[WAY_RANGE] = {.read = inferno_read_range},
+	[WAY_FIRMWARE] = {.read = property_refuse, .write = property_refuse},
 	[WAY_COUNT] = {.read = inferno_read_count},
 	[WAY_PORT] = {.read = inferno_read_port, .write = inferno_write_port},
 	[WAY_TYPE] = {.write = inferno_set_type},
@@ -465,11 +407,11 @@ static const struct property_how how[] = {
 
 static const struct property properties[] = {
 	PROPERTY("device", ASCII, VOLATILE, READ, .size = 64, .how = WAY_DEVICE),
-	PROPERTY("enter_firmware_update", YESNO, STATIC, WRITE, .how = WAY_ENTER),
+	PROPERTY("enter_firmware_update", YESNO, STATIC, WRITE, .how = WAY_FIRMWARE),
 	PROPERTY("erase_firmware", YESNO, VOLATILE, WRITE, UPDATER, .how = WAY_FIRMWARE),
-	PROPERTY("exit_firmware_update", YESNO, VOLATILE, WRITE, UPDATER, .arg = 0x05, .how = WAY_COMMAND),
-	PROPERTY("firmware_bootloader_size", UNSIGNED, VOLATILE, READ, UPDATER, .how = WAY_SIZE),
-	PROPERTY("firmware_range", ASCII, VOLATILE, READ, UPDATER, .size = 22, .how = WAY_RANGE),
+	PROPERTY("exit_firmware_update", YESNO, VOLATILE, WRITE, UPDATER, .how = WAY_FIRMWARE),
+	PROPERTY("firmware_bootloader_size", UNSIGNED, VOLATILE, READ, UPDATER, .how = WAY_FIRMWARE),
+	PROPERTY("firmware_range", ASCII, VOLATILE, READ, UPDATER, .size = 22, .how = WAY_FIRMWARE),
 	COUNT("led_channels", LED, 1),
 	PORTS("led_port", BOTH, 129, LED),
 	COUNT("led_ports", LED, 0),

@@ -1,26 +1,31 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * BAE 0910 and 0911 (bae.h). No data sheet could be had: commands and registers are those of OWFS's
- * driver.
+ * BAE 0910 and 0911 by Pascal Baerten: microcontrollers whose functions are registers. What a
+ * command gives has a CRC16; a command that writes is acknowledged with one, and acts when the
+ * master confirms it. Nothing but what is read back shows whether the confirmation was heard.
+ *
+ * No data sheet could be had: commands and registers are those of OWFS's driver. Registers are read
+ * and written, and the EEPROM is read. What no register shows is refused: the programs that run in
+ * a 0911 (I2C, card, texts), raw commands, what writes EEPROM and firmware.
  */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "hal/chips/field.h"
-#include "hal/chips/makers/bae.h"
 
 #define BLOCK 32
 #define PAGE 512
 #define REGISTERS 0x7800 /* of the 0911 */
 #define GLOBALS 64
-#define ERASE_NS (25 * TXN_MS)
 #define LATE_S 2 /* a clock may be so much ahead of the time since it was written */
 #define S_NS (1000 * TXN_MS)
 
-enum { READ_VERSION = 0x11, READ_TYPE, EXTENDED, READ_BLOCK, WRITE_BLOCK, ERASE };
-
 #define EEPROM_910 0xe000
+#define CONFIRM 0xbc
+
+enum { READ_VERSION = 0x11, READ_TYPE, READ_BLOCK = 0x14, WRITE_BLOCK };
+enum { BAE_910 = 1, BAE_911, BAE_OTHER }; /* device.kind */
 
 static int bae_identify(struct txn *txn)
 {
@@ -31,6 +36,16 @@ static int bae_identify(struct txn *txn)
 	if (!err)
 		txn->device->kind = type[0] == 2 ? BAE_910 : type[0] == 3 ? BAE_911 : BAE_OTHER;
 	return err;
+}
+
+/* A command of n bytes, its checksum, the confirmation. */
+static int bae_confirmed(struct txn *txn, const uint8_t *command, unsigned n)
+{
+	static const uint8_t confirm = CONFIRM;
+	uint8_t none;
+	int err = txn_ask_crc16(txn, command, n, &none, 0);
+
+	return err ? err : txn_write(txn, &confirm, 1);
 }
 
 /* The EEPROM of a 0910 stands elsewhere. */
@@ -63,7 +78,6 @@ static int bae_store(struct txn *txn, const struct area *area, unsigned at, cons
 #define MEMORY(text, at_, size_, block_) \
 	.name = (text), .at = (at_), .size = (size_), .block = (block_), .row = (block_), \
 	.load = bae_load, .store = bae_store
-static const struct area eeprom = {MEMORY("EEPROM", 0, 32 * PAGE, BLOCK)};
 
 static uint32_t big_endian_of(const uint8_t *bytes, unsigned n)
 {
@@ -169,57 +183,12 @@ static int read_page(struct txn *txn)
 	return err ? err : field_read(txn);
 }
 
-static int write_page(struct txn *txn)
-{
-	int err = check_page(txn);
-
-	return err ? err : field_write(txn);
-}
-
-/* All of the page is looked at after that. */
-static int erase_page(struct txn *txn)
-{
-	unsigned where = (unsigned)txn->element * PAGE, n = 0;
-	unsigned moved = txn->device->kind == BAE_910 ? 0xe000 : 0;
-	const uint8_t command[] = {ERASE, (uint8_t)(where + moved),
-	                           (uint8_t)((where + moved) >> 8)};
-	uint8_t block[BLOCK];
-	int err = check_page(txn);
-
-	if (err || txn->number[0] == 0)
-		return err;
-	if (txn->phase == 0) {
-		txn->phase = 1;
-		err = bae_confirmed(txn, command, sizeof(command));
-		return err ? err : txn_wait(txn, ERASE_NS);
-	}
-	err = bae_load(txn, &eeprom, where + (txn->phase - 1) * BLOCK, block, BLOCK);
-	if (err)
-		return err;
-	while (n < BLOCK && block[n] == 0xff)
-		n++;
-	if (n < BLOCK)
-		return -EIO;
-	return txn->phase++ < PAGE / BLOCK ? TXN_MORE : 0;
-}
-
-/* Its checksum was right; nothing shows what it did. */
-static int write_command(struct txn *txn)
-{
-	uint8_t command[2 + 255] = {EXTENDED, (uint8_t)(txn->len - 1)};
-
-	if (txn->at || txn->len == 0 || txn->len > 255)
-		return -EINVAL;
-	memcpy(command + 2, txn->data, txn->len);
-	return bae_confirmed(txn, command, (unsigned)(2 + txn->len));
-}
-
 enum { REGISTERS_910 = 1, REGISTERS_911, GENERIC, EEPROM, VERSION, TYPE };
 static const struct area *const areas[] = {
 	[REGISTERS_910] = AREA(MEMORY("registers", 0, 128, 1)),
 	[REGISTERS_911] = AREA(MEMORY("registers", REGISTERS, 0x800, 1)),
 	[GENERIC] = AREA(MEMORY("memory", 0, 128, BLOCK)),
-	[EEPROM] = &eeprom,
+	[EEPROM] = AREA(MEMORY("EEPROM", 0, 32 * PAGE, BLOCK)),
 	[VERSION] = AREA(.name = "version", .size = 2, .block = 2, .read = READ_VERSION,
                          .check = AREA_CRC16),
 	[TYPE] = AREA(.name = "type", .size = 2, .block = 2, .read = READ_TYPE,
@@ -233,13 +202,7 @@ enum {
 	WAY_GLOBAL,
 	WAY_WORDS,
 	WAY_PAGE,
-	WAY_ERASE,
-	WAY_COMMAND,
-	WAY_FIRMWARE,
-	WAY_EXPANDER,
-	WAY_TEXT,
-	WAY_SECTOR,
-	WAY_SECTOR_NUMBER,
+	WAY_REFUSED,
 };
 static const struct property_how how[] = {
 	[KEPT] = {.write = write_kept},
@@ -247,15 +210,8 @@ static const struct property_how how[] = {
 	[CLOCK] = {.write = write_clock},
 	[WAY_GLOBAL] = {.read = read_global, .write = write_global},
 	[WAY_WORDS] = {.read = read_words},
-	[WAY_PAGE] = {.read = read_page, .write = write_page},
-	[WAY_ERASE] = {.write = erase_page},
-	[WAY_COMMAND] = {.write = write_command},
-	/* half a firmware leaves no device: not over a wire that may fail */
-	[WAY_FIRMWARE] = {.write = property_refuse},
-	[WAY_EXPANDER] = {.read = bae_read_expander, .write = bae_write_expander},
-	[WAY_TEXT] = {.write = bae_write_text},
-	[WAY_SECTOR] = {.read = bae_read_sector, .write = bae_write_sector},
-	[WAY_SECTOR_NUMBER] = {.read = bae_read_sector_number, .write = bae_write_sector_number},
+	[WAY_PAGE] = {.read = read_page, .write = property_refuse},
+	[WAY_REFUSED] = {.read = property_refuse, .write = property_refuse},
 };
 
 /* clang-format off */
@@ -276,8 +232,8 @@ static const struct property_how how[] = {
 	PROPERTY(text, kind, VOLATILE, access_, ELEMENTS(n, NUMBERS), .kinds = NEW, \
 	         FIELD(REGISTERS_911, .at = (at_) - REGISTERS, .bytes = (bytes_), \
 	               .stride = (bytes_), .big_endian = true), .how = __VA_ARGS__)
-#define RUNS(text, kind, life_, access_, way, ...) \
-	PROPERTY(text, kind, life_, access_, .kinds = NEW, .how = (way), __VA_ARGS__)
+#define REFUSED(text, kind, life_, access_, ...) \
+	PROPERTY(text, kind, life_, access_, .kinds = NEW, .how = WAY_REFUSED, __VA_ARGS__)
 #define PWM(folder, duty0, duty1, mode0, mode1, period, clock) \
 	FOLDER(folder, NEW), \
 	REGISTER_911(folder "/duty_ch0", UNSIGNED, VOLATILE, BOTH, duty0, 2, KEPT), \
@@ -391,12 +347,12 @@ static const struct property properties[] = {
 	REGISTER_911("911/counters/enable_encoder9", YESNO, VOLATILE, BOTH, 0x799d, 1, KEPT),
 	FOLDER("911/iic", NEW),
 	FOLDER("911/iic/cat9554", NEW),
-	RUNS("911/iic/cat9554/direction", UNSIGNED, VOLATILE, BOTH, WAY_EXPANDER, .arg = 3),
-	RUNS("911/iic/cat9554/pio", UNSIGNED, VOLATILE, BOTH, WAY_EXPANDER, .arg = 1),
+	REFUSED("911/iic/cat9554/direction", UNSIGNED, VOLATILE, BOTH, .arg = 0),
+	REFUSED("911/iic/cat9554/pio", UNSIGNED, VOLATILE, BOTH, .arg = 0),
 	REGISTER_911("911/iic/init", UNSIGNED, VOLATILE, BOTH, 0x7e00, 1, LIVE),
 	FOLDER("911/lcd", NEW),
 	REGISTER_911("911/lcd/init", UNSIGNED, VOLATILE, BOTH, 0x7e01, 1, LIVE),
-	RUNS("911/lcd/text", ASCII, VOLATILE, WRITE, WAY_TEXT, .size = 255, .arg = 0),
+	REFUSED("911/lcd/text", ASCII, VOLATILE, WRITE, .size = 255),
 	FOLDER("911/pio", NEW),
 	ARRAY_911("911/pio/direction", YESNO, BOTH, 22, 0x7916, 1, KEPT),
 	ARRAY_911("911/pio/pio", YESNO, BOTH, 22, 0x7900, 1, KEPT),
@@ -407,11 +363,11 @@ static const struct property properties[] = {
 	PWM("911/pwm2", 0x7a0a, 0x7a0c, 0x7a10, 0x7a11, 0x7a04, 0x7a01),
 	FOLDER("911/sdcard", NEW),
 	REGISTER_911("911/sdcard/init", UNSIGNED, VOLATILE, BOTH, 0x7e04, 1, LIVE),
-	RUNS("911/sdcard/sector_data", BINARY, STABLE, BOTH, WAY_SECTOR, .size = 512),
-	RUNS("911/sdcard/sector_nr", UNSIGNED, STABLE, BOTH, WAY_SECTOR_NUMBER, .offline = true),
+	REFUSED("911/sdcard/sector_data", BINARY, STABLE, BOTH, .size = 512),
+	REFUSED("911/sdcard/sector_nr", UNSIGNED, STABLE, BOTH, .arg = 0),
 	FOLDER("911/serial", NEW),
 	REGISTER_911("911/serial/baud_divisor", UNSIGNED, VOLATILE, BOTH, 0x7a13, 2, KEPT),
-	RUNS("911/serial/dataout", ASCII, VOLATILE, WRITE, WAY_TEXT, .size = 255, .arg = 4),
+	REFUSED("911/serial/dataout", ASCII, VOLATILE, WRITE, .size = 255),
 	REGISTER_911("911/serial/scic", UNSIGNED, VOLATILE, BOTH, 0x7e0a, 1, KEPT),
 	FOLDER("911/system", NEW),
 	REGISTER_911("911/system/owidletime", UNSIGNED, VOLATILE, BOTH, 0x7f79, 1, KEPT),
@@ -428,17 +384,17 @@ static const struct property properties[] = {
 	ARRAY_911("911/user_registers/word", UNSIGNED, BOTH, 16, 0x7fbb, 2, KEPT),
 	WORD("bootstrap_version", VERSION, 1),
 	WORD("chip_type", TYPE, 1),
-	PROPERTY("command", BINARY, STABLE, WRITE, .size = 255, .how = WAY_COMMAND),
+	PROPERTY("command", BINARY, STABLE, WRITE, .size = 255, .how = WAY_REFUSED),
 	WORD("device_type", TYPE, 0),
 	WORD("device_version", VERSION, 0),
 	PROPERTY_DIR("eeprom"),
 	PROPERTY("eeprom/erase", YESNO, VOLATILE, WRITE, ELEMENTS(32, NUMBERS), .kinds = OLD | NEW,
-		 .how = WAY_ERASE),
+		 .how = WAY_REFUSED),
 	PROPERTY("eeprom/page", BINARY, VOLATILE, BOTH, ELEMENTS(32, NUMBERS), .size = 512,
 		 .kinds = OLD | NEW, FIELD(EEPROM), .how = WAY_PAGE),
 	REGISTER_911("eeprom/pagecrc", UNSIGNED, VOLATILE, BOTH, 0x7e0b, 2, LIVE),
 	PROPERTY_DIR("firmware"),
-	PROPERTY("firmware/function", BINARY, STABLE, WRITE, .size = 16384, .how = WAY_FIRMWARE),
+	PROPERTY("firmware/function", BINARY, STABLE, WRITE, .size = 16384, .how = WAY_REFUSED),
 	FOLDER("generic", UNKNOWN_KIND),
 	PROPERTY("generic/memory", BINARY, VOLATILE, BOTH, .size = 128, .kinds = UNKNOWN_KIND,
 		 FIELD(GENERIC)),

@@ -5,9 +5,7 @@
  *
  * That driver takes a page if the CRC16 of the page alone does not fit, and refuses it if it does.
  * So what a real one computes is not known. The memory chips of 1-Wire start their CRC16 with the
- * command and the address. A page is good with either of both checksums, but of one chip always
- * with the same: it is learned from LEARNS pages in a row. So what noise may do to get past the
- * checksum is as rare as with one. A page with neither is refused.
+ * command and the address. A page is good with either of both checksums, and refused with neither.
  */
 #include <errno.h>
 #include <stdio.h>
@@ -24,55 +22,26 @@ enum { SUBTYPE, VERSION, BUSY, TEMPERATURE_AT = 4, HUMIDITY_AT = 6, VALID = 8 };
 #define CONVERT_NS (1000 * TXN_MS)
 #define SOON_NS (5 * TXN_MS)
 #define LOOKS 4
-#define LEARNS 3
 
-/* What the CRC16 covers; device.own. */
-enum { NOT_KNOWN, PAGE_ALONE, COMMAND_AND_PAGE };
 struct smart_slave {
-	uint8_t covers;
-	uint8_t learning, pages; /* what that seems to be; of how many pages in a row */
-	int64_t measured_ns;     /* its last conversion that was verified; 0: none is known */
+	int64_t measured_ns; /* its last conversion that was verified; 0: none is known */
 };
 
-static int fetch_page(struct txn *txn, uint8_t bytes[PAGE], unsigned *covers)
-{
-	static const uint8_t command[] = {0xf0, 0};
-	uint8_t in[PAGE + 2];
-	int err = txn_ask(txn, command, sizeof(command), in, sizeof(in));
-
-	if (err)
-		return err;
-	uint16_t head = onewire_crc16(0, command, sizeof(command));
-	*covers = onewire_crc16_matches(onewire_crc16(0, in, PAGE), in + PAGE) ? PAGE_ALONE
-	          : onewire_crc16_matches(onewire_crc16(head, in, PAGE), in + PAGE)
-	                  ? COMMAND_AND_PAGE
-	                  : NOT_KNOWN;
-	memcpy(bytes, in, PAGE);
-	return txn_checked(txn, *covers);
-}
-
-/* One page; TXN_MORE: which checksum it has is not known yet, and another is to be read. */
 static int load_page(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,
                      unsigned n)
 {
-	struct smart_slave *slave = txn->device->own;
-	unsigned covers = NOT_KNOWN;
-	uint8_t page[PAGE];
-	int err = fetch_page(txn, page, &covers);
+	static const uint8_t command[] = {0xf0, 0};
+	uint16_t head = onewire_crc16(0, command, sizeof(command));
+	uint8_t in[PAGE + 2];
+	int err = txn_ask(txn, command, sizeof(command), in, sizeof(in));
 
 	(void)area;
-	if (!err && (slave->covers || slave->pages) && covers != slave->learning)
-		err = txn_checked(txn, false);
-	if (err && !slave->covers)
-		slave->pages = 0;
 	if (err)
 		return err;
-	slave->learning = (uint8_t)covers;
-	if (!slave->covers && ++slave->pages < LEARNS)
-		return TXN_MORE;
-	slave->covers = (uint8_t)covers;
-	memcpy(bytes, page + at, n);
-	return 0;
+	memcpy(bytes, in + at, n);
+	return txn_checked(txn,
+	                   onewire_crc16_matches(onewire_crc16(0, in, PAGE), in + PAGE) ||
+	                           onewire_crc16_matches(onewire_crc16(head, in, PAGE), in + PAGE));
 }
 
 static AREA_NAMED(page, "page", .size = PAGE, .block = PAGE, .load = load_page);
@@ -107,13 +76,11 @@ static int family_fe_convert(struct txn *txn, uint8_t bytes[PAGE])
 		return err ? err : txn_wait(txn, SOON_NS);
 	case 1:
 		err = page_now(txn, bytes);
-		txn->phase -= err == TXN_MORE;
 		if (err)
 			return err;
 		return is_busy(bytes) ? txn_wait(txn, CONVERT_NS) : -EBADMSG;
 	default:
 		err = page_now(txn, bytes);
-		txn->phase -= err == TXN_MORE;
 		if (err)
 			return err;
 		if (is_busy(bytes))

@@ -19,10 +19,6 @@
 #define CLEAR_NS (3 * TXN_MS)
 
 enum {
-	WRITE_INSTRUCTION = 0x10,
-	READ_REGISTER,
-	WRITE_DATA,
-	READ_DATA,
 	WRITE_PINS = 0x21,
 	READ_PINS,
 	READ_COUNTERS,
@@ -159,7 +155,6 @@ static int lcd_swart_screen(struct txn *txn)
 #define SOON_NS (1 * TXN_MS)
 #define EEPROM_NS (17 * 4 * TXN_MS)
 #define LOOKS 3
-#define TRIES 2 /* of the bus, after a device error */
 
 /* What a command has put into the scratchpad, from call to call. */
 struct pad {
@@ -170,7 +165,6 @@ struct pad {
 struct lcd {
 	double sum[PINS]; /* of all counts that were read */
 	bool pending;     /* counts may be in the scratchpad that were not read yet */
-	uint8_t doubted;  /* so many tries to read a byte are refused */
 };
 
 static int family_ff_send(struct txn *txn, uint8_t code, const uint8_t *bytes, unsigned n)
@@ -260,39 +254,6 @@ static int read_version(struct txn *txn)
 	memcpy(txn->data, bytes, LCD_PAD);
 	txn->len = LCD_PAD;
 	return 0;
-}
-
-/*
- * arg: the command. A disturbed one may have changed the display: no second try hides that. A
- * display that counts on with each read gives no two equal ones.
- */
-static int read_lcd_byte(struct txn *txn)
-{
-	struct lcd *lcd = txn->device->own;
-	uint8_t byte = 0;
-	int err;
-
-	if (lcd->doubted) {
-		lcd->doubted--;
-		return -EIO;
-	}
-	err = fetch_by_pad(txn, (uint8_t)txn->property->arg, NULL, 0, &byte, 1);
-	if (!err)
-		txn->number[0] = byte;
-	if (err != -EBADMSG)
-		return err;
-	lcd->doubted = TRIES - 1;
-	return -EIO;
-}
-
-/* The command beside that which reads it. Nothing shows that it was taken. */
-static int write_lcd_byte(struct txn *txn)
-{
-	const uint8_t byte = (uint8_t)txn->number[0];
-
-	if (txn->number[0] > 0xff)
-		return -EINVAL;
-	return family_ff_send(txn, (uint8_t)(txn->property->arg - 1), &byte, 1);
 }
 
 /* 1: the pin is low. */
@@ -419,7 +380,8 @@ static const struct property_how how[] = {
 	[WAY_LINE] = {.write = lcd_swart_line},
 	[WAY_SCREEN] = {.write = lcd_swart_screen},
 	[WAY_VERSION] = {.read = read_version},
-	[WAY_BYTE] = {.read = read_lcd_byte, .write = write_lcd_byte},
+	/* each read changes the display: what a disturbed one has left cannot be told */
+	[WAY_BYTE] = {.read = property_refuse, .write = property_refuse},
 	[WAY_PINS] = {.read = read_pins, .write = write_pins, .merge = merge_pins},
 	[WAY_COUNTS] = {.read = read_counts},
 	[WAY_SUM] = {.read = read_sum, .write = write_sum},
@@ -442,13 +404,13 @@ static const struct property properties[] = {
 	         COUNTS_TO(UINT16_MAX), .how = WAY_COUNTS),
 	PROPERTY("cumulative", UNSIGNED, VOLATILE, BOTH, AGGREGATE(PINS, NUMBERS),
 	         COUNTS_TO(HUGE_VAL), .how = WAY_SUM),
-	PROPERTY("data", UNSIGNED, VOLATILE, BOTH, .arg = READ_DATA, .how = WAY_BYTE),
+	PROPERTY("data", UNSIGNED, VOLATILE, BOTH, .how = WAY_BYTE),
 	PROPERTY("gpio", BITS, VOLATILE, BOTH, AGGREGATE(PINS, NUMBERS), .how = WAY_PINS),
 	LINE("line16", 4, 16),
 	LINE("line20", 4, 20),
 	LINE("line40", 2, 40),
 	PROPERTY("memory", BINARY, STABLE, BOTH, .size = 112, FIELD(EEPROM)),
-	PROPERTY("register", UNSIGNED, VOLATILE, BOTH, .arg = READ_REGISTER, .how = WAY_BYTE),
+	PROPERTY("register", UNSIGNED, VOLATILE, BOTH, .how = WAY_BYTE),
 	SCREEN("screen16", 16),
 	SCREEN("screen20", 20),
 	SCREEN("screen40", 40),

@@ -320,6 +320,15 @@ int thermometer_recall(struct txn *txn)
 	return err ? err : TXN_MORE;
 }
 
+/*
+ * Of the dies that OWFS tells apart only the last is still around: B6 and B7 left the market before
+ * 2001.
+ */
+int thermometer_read_die(struct txn *txn)
+{
+	return property_text(txn, "C2");
+}
+
 int thermometer_read_tempres(struct txn *txn)
 {
 	uint8_t scratchpad[9];

@@ -54,9 +54,7 @@ int thermometer_ask_power(struct txn *txn);
 property_function thermometer_read_temperature, thermometer_read_tempres, thermometer_read_power;
 /* The user's settings go to the EEPROM (thermometer_store.c): the field's byte, the resolution. */
 property_function thermometer_write_limit, thermometer_write_tempres;
-/* What `errata` has (thermometer_trim.c). */
-property_function thermometer_read_die, thermometer_read_trim, thermometer_refuse_trim;
-property_function thermometer_read_trim_valid, thermometer_read_trim_blanket;
+property_function thermometer_read_die;
 
 /* What stands first in the lists of their families; those with more begin behind the last. */
 enum { SCRATCHPAD = 1, AFTER_THERMOMETER_AREAS };
@@ -69,8 +67,6 @@ enum {
 	WAY_POWER,
 	WAY_DIE,
 	WAY_TRIM,
-	WAY_TRIM_BLANKET,
-	WAY_TRIM_VALID,
 	AFTER_THERMOMETER_WAYS,
 };
 /* clang-format off */
@@ -80,10 +76,7 @@ enum {
 	[WAY_TEMPRES] = {.read = thermometer_read_tempres, .write = thermometer_write_tempres}, \
 	[WAY_POWER] = {.read = thermometer_read_power}, \
 	[WAY_DIE] = {.read = thermometer_read_die}, \
-	[WAY_TRIM] = {.read = thermometer_read_trim, .write = thermometer_refuse_trim}, \
-	[WAY_TRIM_BLANKET] = {.read = thermometer_read_trim_blanket, \
-	                      .write = thermometer_refuse_trim}, \
-	[WAY_TRIM_VALID] = {.read = thermometer_read_trim_valid}
+	[WAY_TRIM] = {.read = property_refuse, .write = property_refuse}
 /* clang-format on */
 
 /* -55 to +125, at the ends within 2 degrees, a DS1822 within 3; 9 to 12 bits, 0.5 to 0.0625 */
@@ -97,14 +90,14 @@ enum {
 
 /*
  * Parts of the families' tables, sorted: what all have first, then (a scratchpad) and what all have
- * last.
+ * last. The commands of the factory's trim stand in no data sheet: it is refused.
  */
 #define THERMOMETER_ERRATA \
 	PROPERTY_DIR("errata"), \
 		PROPERTY("errata/die", ASCII, STATIC, READ, .size = 2, .how = WAY_DIE), \
 		PROPERTY("errata/trim", UNSIGNED, VOLATILE, BOTH, .how = WAY_TRIM), \
-		PROPERTY("errata/trimblanket", YESNO, VOLATILE, BOTH, .how = WAY_TRIM_BLANKET), \
-		PROPERTY("errata/trimvalid", YESNO, VOLATILE, READ, .how = WAY_TRIM_VALID)
+		PROPERTY("errata/trimblanket", YESNO, VOLATILE, BOTH, .how = WAY_TRIM), \
+		PROPERTY("errata/trimvalid", YESNO, VOLATILE, READ, .how = WAY_TRIM)
 #define THERMOMETER_LATEST THERMOMETER_TEMPERATURE("latesttemp", 0, 4)
 #define THERMOMETER_POWER PROPERTY("power", YESNO, VOLATILE, READ, .how = WAY_POWER)
 #define THERMOMETER_SCRATCHPAD \

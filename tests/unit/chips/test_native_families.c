@@ -166,12 +166,13 @@ static void test_a_ds18s20_resolves_sixteenths(void)
 	}
 }
 
-static void test_a_trim_that_no_chip_told_is_not_valid(void)
+static void test_the_trim_of_the_factory_is_refused(void)
 {
 	start("DS18S20");
-	reads("errata/trim", "       65535");
-	reads("errata/trimvalid", "0");
-	reads("errata/trimblanket", "0");
+	reads("errata/die", "C2");
+	refuses(-EOPNOTSUPP, BUS_READ, "errata/trim", NULL);
+	refuses(-EOPNOTSUPP, BUS_WRITE, "errata/trim", "100");
+	refuses(-EOPNOTSUPP, BUS_READ, "errata/trimvalid", NULL);
 }
 
 static void test_a_ds2438_measures_and_keeps_time(void)
@@ -587,7 +588,7 @@ int main(void)
 	RUN_TEST(test_a_ds28ea00_measures_and_switches);
 	RUN_TEST(test_a_ds1825_has_its_place);
 	RUN_TEST(test_a_ds18s20_resolves_sixteenths);
-	RUN_TEST(test_a_trim_that_no_chip_told_is_not_valid);
+	RUN_TEST(test_the_trim_of_the_factory_is_refused);
 	RUN_TEST(test_a_ds2438_measures_and_keeps_time);
 	RUN_TEST(test_sensors_on_a_ds2438_say_what_owserver_says);
 	RUN_TEST(test_a_ds2405_is_not_turned_over_by_looking);

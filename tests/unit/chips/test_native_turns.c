@@ -57,7 +57,7 @@ static void test_a_ds1977_is_read_on_a_host_that_is_late(void)
 	TEST_ASSERT_EQUAL_UINT64(0, counted("checksum_errors"));
 }
 
-/* A page takes 25 ms of the wire; which checksum it has is learned from three. */
+/* A page takes 25 ms of the wire. */
 static void test_no_look_at_an_iblss_holds_the_wire_for_more_than_one_page(void)
 {
 	static const char *const properties[] = {"TH/temperature", "subtype"};
