@@ -3,13 +3,9 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/chips/family.h"
 #include "hal/chips/format.h"
 #include "hal/native/answer.h"
-#include "hal/native/cache.h"
 #include "hal/native/job_txn.h"
-#include "hal/native/state.h"
-#include "hal/native/statistics.h"
 
 #define FOLLOW_NS 500000
 
@@ -44,7 +40,6 @@ static void answer_give(struct native *native, struct job *job, struct bus_answe
 	const struct device *device = job->txn.device;
 	uint64_t us = job->wire_ns / 1000;
 
-	tally_end(native, job, answer);
 	if (native->master->ops->simulated)
 		answer->detail |= BUS_DETAIL_SIMULATED;
 	answer->retries = job->retries;
@@ -140,7 +135,6 @@ void job_answer_cached(struct native *native, struct job *job, const struct cach
 		}
 		answer.len = (uint32_t)n;
 	}
-	native->cache.hit_bytes += answer.len;
 	native_count(native, COUNT_CACHE_HITS);
 	answer_give(native, job, &answer);
 }

@@ -43,16 +43,10 @@ const struct cache_entry *cache_find(struct cache *cache, const struct device *d
 {
 	struct cache_entry *entry = set_of(cache, device, property, extension);
 
-	cache->tries++;
 	for (int way = 0; way < WAYS; way++, entry++) {
 		if (!cache_is(entry, device, property, extension))
 			continue;
-		if (entry->changes != device->changes || now >= entry->until_ns) {
-			cache->expired++;
-			return NULL;
-		}
-		cache->hits++;
-		return entry;
+		return entry->changes == device->changes && now < entry->until_ns ? entry : NULL;
 	}
 	return NULL;
 }
@@ -71,9 +65,6 @@ struct cache_entry *cache_add(struct cache *cache, const struct device *device,
 			best = &set[way];
 	}
 	assert(device);
-	cache->added++;
-	cache->held += !best->device;
-	cache->deleted += best->device && !cache_is(best, device, property, extension);
 	best->device = device;
 	best->property = property;
 	best->extension = extension;

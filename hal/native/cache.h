@@ -27,9 +27,6 @@ struct cache_entry {
 
 struct cache {
 	struct cache_entry *entries;
-	uint64_t hits, tries, added;
-	uint64_t expired, deleted; /* found too old; given up for another */
-	uint64_t held, hit_bytes;
 };
 
 int cache_create(struct cache *cache);

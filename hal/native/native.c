@@ -7,7 +7,6 @@
 
 #include "hal/chips/bridges/sensor_table.h"
 #include "hal/native/answer.h"
-#include "hal/native/cache.h"
 #include "hal/native/convert/convert.h"
 #include "hal/native/convert/ending.h"
 #include "hal/native/convert/schedule.h"
@@ -16,14 +15,12 @@
 #include "hal/native/first_asked.h"
 #include "hal/native/hunt.h"
 #include "hal/native/job.h"
-#include "hal/native/limits.h"
 #include "hal/native/locate.h"
 #include "hal/native/master.h"
 #include "hal/native/native.h"
 #include "hal/native/sensors.h"
-#include "hal/native/settings.h"
 #include "hal/native/state.h"
-#include "hal/native/statistics.h"
+#include "hal/native/tables.h"
 #include "hal/native/touch.h"
 
 #define VOLATILE_NS (2 * NATIVE_S)
@@ -138,7 +135,7 @@ int native_submit(struct bus *bus, struct bus_req *req)
 		job->late_ns = native->late_ns;
 		job->bus = -1;
 		native->lent++;
-		tally_begin(native, job);
+		job->since_ns = native_now(native);
 		return 0;
 	}
 	return -EAGAIN;

@@ -26,9 +26,7 @@
  *   job_txn.c  the transactions of a request
  *   listing.c  directories
  *   structure.c  /structure
- *   tables.c   the directories that belong to no device: simultaneous, interface, system
- *   settings.c, statistics.c  /settings, /statistics
- *   virtual.c  what their functions have in common
+ *   tables.c   the directories that belong to no device: settings, statistics, system and so on
  *   branches.c the branches of couplers as channels
  *   presence.c devices found, lost, restarted
  *   sensors.c  the file that names the sensors behind bridges

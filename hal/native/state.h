@@ -249,16 +249,6 @@ struct locate {
 	uint8_t in_row;     /* looks that found one, without a turn of others */
 };
 
-/* What /statistics tells of the requests of one kind. */
-enum tally_kind { TALLY_READ, TALLY_WRITE, TALLY_DIRECTORY, TALLY_OVERALL, TALLIES };
-
-struct tally {
-	uint64_t calls, success, bytes;
-	uint64_t tries[3];             /* taken up a first, a second, a third time */
-	uint64_t now, max, sum;        /* under way; the most; summed up at each call */
-	uint64_t entries[2], lists[2]; /* DIR: of the root and its like, of devices */
-};
-
 #define NATIVE_WHERE_MAX 128
 
 /* The file that writes a member stands before it; all may read. */
@@ -340,7 +330,7 @@ struct native {
 	/* answer.c */
 	struct cache cache;
 
-	/* settings.c */
+	/* tables.c */
 	int64_t volatile_ns, stable_ns; /* how long cached values live */
 	int64_t presence_ns; /* how long a device that answered is present without being asked */
 	bool uncached;       /* no request is answered from what is kept */
@@ -348,10 +338,6 @@ struct native {
 	int64_t idle_ns[NATIVE_IDLE_TIMEOUTS]; /* settings without effect */
 	char temperature_scale;
 	char pressure_scale[8];
-
-	/* statistics.c */
-	struct tally tally[TALLIES];
-	int64_t delay_ns; /* the longest that a request took */
 
 	/* native_count(), and native.c what the links count themselves: whole for any thread */
 	uint64_t count[COUNTS];

@@ -1,5 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* The directories of OWFS that belong to no device: simultaneous, interface, system. */
+/*
+ * The directories of OWFS that belong to no device: settings, statistics, simultaneous, interface,
+ * system. Their functions use no wire, but for `simultaneous`. Of /statistics they have what tells
+ * of the wire and the chips, under the names that owserver gives it. Clients of owserver read
+ * numbers of 32 bits: a count wraps.
+ */
 #include <errno.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -7,17 +12,31 @@
 #include <strings.h>
 #include <unistd.h>
 
-#include "hal/native/limits.h"
-#include "hal/native/settings.h"
 #include "hal/native/state.h"
-#include "hal/native/statistics.h"
 #include "hal/native/tables.h"
-#include "hal/native/virtual.h"
-#include "hal/owfs/path.h"
 #include "hal/wire/crc.h"
 
 #define READ_ROM 0x33
 #define READ_ROM_DS2400 0x0f
+
+/* arg is the value. */
+static int read_arg(struct txn *txn)
+{
+	txn->number[0] = txn->property->arg;
+	return 0;
+}
+
+/* arg: where it stands in struct native. */
+static void *member_of(struct txn *txn)
+{
+	return (char *)txn->native + txn->property->arg;
+}
+
+static int read_count(struct txn *txn)
+{
+	txn->number[0] = (double)(uint32_t) * (uint64_t *)member_of(txn);
+	return 0;
+}
 
 /* For devices that this bus does not know, whatever is there. */
 static int write_nothing(struct txn *txn)
@@ -134,7 +153,108 @@ static int read_channel(struct txn *txn)
 	return 0;
 }
 
-/* The ways in which all three tables answer: index of how[]. */
+/* --- Settings --- */
+
+enum { DIRECTORY, FTP, HA7, NETWORK, SERIAL, SERVER, USB, W1 };
+
+static int read_scale(struct txn *txn)
+{
+	char text[2] = {txn->native->temperature_scale, '\0'};
+
+	return property_text(txn, txn->property->arg ? txn->native->pressure_scale : text);
+}
+
+/*
+ * As in owserver the setting is what a client gets that states no scale of its own. The bus itself
+ * answers in degrees Celsius and mbar always.
+ */
+static int write_scale(struct txn *txn)
+{
+	static const char *const pressure[] = {"mbar", "atm", "mmHg", "inHg", "psi", "Pa"};
+
+	if (!txn->property->arg) {
+		if (txn->len == 0 || !strchr("CFKR", txn->data[0]) || !txn->data[0])
+			return -EINVAL;
+		txn->native->temperature_scale = (char)txn->data[0];
+		return 0;
+	}
+	for (size_t i = 0; i < sizeof(pressure) / sizeof(pressure[0]); i++)
+		if (strlen(pressure[i]) == txn->len && !memcmp(pressure[i], txn->data, txn->len)) {
+			memcpy(txn->native->pressure_scale, pressure[i], txn->len + 1);
+			return 0;
+		}
+	return -EINVAL;
+}
+
+static int read_timeout(struct txn *txn)
+{
+	int64_t seconds = *(int64_t *)member_of(txn) / NATIVE_S;
+
+	txn->number[0] = (double)seconds;
+	return 0;
+}
+
+static int write_timeout(struct txn *txn)
+{
+	if (txn->number[0] > 1e6)
+		return -EINVAL;
+	*(int64_t *)member_of(txn) = (int64_t)txn->number[0] * NATIVE_S;
+	return 0;
+}
+
+/* As owserver has them at its start. */
+void native_settings(struct native *native)
+{
+	static const int64_t seconds[NATIVE_IDLE_TIMEOUTS] = {
+		[DIRECTORY] = 60, [FTP] = 900,   [HA7] = 60, [NETWORK] = 1,
+		[SERIAL] = 5,     [SERVER] = 10, [USB] = 5,  [W1] = 30,
+	};
+
+	for (unsigned i = 0; i < NATIVE_IDLE_TIMEOUTS; i++)
+		native->idle_ns[i] = seconds[i] * NATIVE_S;
+	native->temperature_scale = 'C';
+	memcpy(native->pressure_scale, "mbar", sizeof("mbar"));
+}
+
+static int read_flag(struct txn *txn)
+{
+	txn->number[0] = *(bool *)member_of(txn);
+	return 0;
+}
+
+static int write_flag(struct txn *txn)
+{
+	*(bool *)member_of(txn) = txn->number[0] != 0;
+	return 0;
+}
+
+/* One line for each alias: the whole id, '=', the alias. */
+static int read_aliases(struct txn *txn)
+{
+	const struct device_table *table = &txn->native->table;
+	char line[16 + 1 + DEVICE_ALIAS_MAX + 2 + 1];
+
+	for (unsigned i = 0; i < table->count; i++) {
+		const struct device *device = &table->devices[i];
+		const char *alias = device_alias(device);
+		size_t len = 0;
+
+		if (!alias[0])
+			continue;
+		for (int byte = 0; byte < 8; byte++, len += 2)
+			snprintf(line + len, sizeof(line) - len, "%02X", device->rom[byte]);
+		len += (size_t)snprintf(line + len, sizeof(line) - len, "=%s\r\n", alias);
+		if (len > txn->room - txn->len)
+			return -EMSGSIZE;
+		memcpy(txn->data + txn->len, line, len);
+		txn->len += len;
+	}
+	return 0;
+}
+
+/* --- The tables --- */
+
+/* The ways in which all tables answer: index of how[]. */
 enum {
 	WAY_ADDRESS = 1,
 	WAY_ARG,
@@ -151,37 +271,52 @@ enum {
 	WAY_BUSES,
 	WAY_PID,
 	WAY_EMPTY,
+	WAY_SCALE,
+	WAY_TIMEOUT,
+	WAY_FLAG,
+	WAY_ALIASES,
 };
 static const struct property_how how[] = {
 	[WAY_ADDRESS] = {.read = read_address},
-	[WAY_ARG] = {.read = virtual_arg},
+	[WAY_ARG] = {.read = read_arg},
 	[WAY_NAME] = {.read = read_name},
 	[WAY_COST] = {.read = read_cost},
 	[WAY_ELAPSED] = {.read = read_elapsed},
 	[WAY_CHANNEL] = {.read = read_channel},
-	[WAY_COUNT] = {.read = virtual_count},
+	[WAY_COUNT] = {.read = read_count},
 	[WAY_SIMULTANEOUS] = {.read = read_simultaneous},
 	[WAY_PRESENT] = {.read = read_present},
 	[WAY_SINGLE] = {.read = read_single},
-	[WAY_NOTHING] = {.read = virtual_arg, .write = write_nothing},
+	[WAY_NOTHING] = {.read = read_arg, .write = write_nothing},
 	[WAY_VERSION] = {.read = read_version},
 	[WAY_BUSES] = {.read = read_buses},
 	[WAY_PID] = {.read = read_pid},
 	[WAY_EMPTY] = {.read = read_empty},
+	[WAY_SCALE] = {.read = read_scale, .write = write_scale},
+	[WAY_TIMEOUT] = {.read = read_timeout, .write = write_timeout},
+	[WAY_FLAG] = {.read = read_flag, .write = write_flag},
+	[WAY_ALIASES] = {.read = read_aliases},
 };
+
+#define VIRTUAL(text, kind, life_, access_, what, how_) \
+	PROPERTY(text, kind, life_, access_, .offline = true, .arg = (what), .how = (how_))
+#define VIRTUAL_NUMBER(text, how_, what) VIRTUAL(text, UNSIGNED, VOLATILE, READ, what, how_)
+#define VIRTUAL_TEXT(text, bytes, how_) \
+	PROPERTY(text, ASCII, STATIC, READ, .offline = true, .size = (bytes), .how = (how_))
+#define COUNT(text, which) \
+	VIRTUAL_NUMBER(text, WAY_COUNT, offsetof(struct native, count[COUNT_##which]))
 
 #define CHANNEL(text, member) VIRTUAL_NUMBER(text, WAY_CHANNEL, offsetof(struct channel, member))
 
 static const struct property interface[] = {
 	PROPERTY_DIR("settings"),
 	VIRTUAL_TEXT("settings/address", 512, WAY_ADDRESS),
-	VIRTUAL("settings/ds2404_found", PROPERTY_YESNO, LIFE_STATIC, ACCESS_READ, 0, WAY_ARG),
+	VIRTUAL("settings/ds2404_found", YESNO, STATIC, READ, 0, WAY_ARG),
 	VIRTUAL_TEXT("settings/name", 128, WAY_NAME),
-	VIRTUAL("settings/overdrive", PROPERTY_YESNO, LIFE_STATIC, ACCESS_READ, 0, WAY_ARG),
-	VIRTUAL("settings/version", PROPERTY_UNSIGNED, LIFE_STATIC, ACCESS_READ, 0, WAY_ARG),
+	VIRTUAL("settings/overdrive", YESNO, STATIC, READ, 0, WAY_ARG),
+	VIRTUAL("settings/version", UNSIGNED, STATIC, READ, 0, WAY_ARG),
 	PROPERTY_DIR("statistics"),
-	VIRTUAL("statistics/bus_time", PROPERTY_FLOAT, LIFE_VOLATILE, ACCESS_READ, WIRE_TIME,
-                WAY_COST),
+	VIRTUAL("statistics/bus_time", FLOAT, VOLATILE, READ, WIRE_TIME, WAY_COST),
 	VIRTUAL_NUMBER("statistics/elapsed_time", WAY_ELAPSED, 0),
 	CHANNEL("statistics/errors", errors),
 	CHANNEL("statistics/locks", transactions),
@@ -189,12 +324,10 @@ static const struct property interface[] = {
 	VIRTUAL_NUMBER("statistics/overdrive/attempts", WAY_ARG, 0),
 	VIRTUAL_NUMBER("statistics/overdrive/failures", WAY_ARG, 0),
 	CHANNEL("statistics/read_errors", checksums),
-	VIRTUAL_NUMBER("statistics/reconnects", WAY_COUNT,
-                       offsetof(struct native, count[COUNT_REOPENS])),
+	COUNT("statistics/reconnects", REOPENS),
 	VIRTUAL_NUMBER("statistics/resets", WAY_COST, RESETS),
 	CHANNEL("statistics/shorts", shorts),
-	VIRTUAL_NUMBER("statistics/timeouts", WAY_COUNT,
-                       offsetof(struct native, count[COUNT_CHIP_RESETS])),
+	COUNT("statistics/timeouts", CHIP_RESETS),
 	CHANNEL("statistics/unlocks", transactions),
 };
 
@@ -206,7 +339,7 @@ static const struct property interface[] = {
 	PROPERTY(text, ASCII, VOLATILE, READ, .size = 18, .arg = (command), .how = WAY_SINGLE)
 
 static const struct property simultaneous[] = {
-	VIRTUAL("iblss", PROPERTY_YESNO, LIFE_VOLATILE, ACCESS_BOTH, 0, WAY_NOTHING),
+	VIRTUAL("iblss", YESNO, VOLATILE, BOTH, 0, WAY_NOTHING),
 	PRESENT("present"),
 	PRESENT("present_ds2400"),
 	SINGLE("single", READ_ROM),
@@ -216,7 +349,7 @@ static const struct property simultaneous[] = {
 };
 
 /* What this build can drive. */
-#define DRIVES(text, yes) VIRTUAL(text, PROPERTY_INTEGER, LIFE_STATIC, ACCESS_READ, yes, WAY_ARG)
+#define DRIVES(text, yes) VIRTUAL(text, INTEGER, STATIC, READ, yes, WAY_ARG)
 
 static const struct property systems[] = {
 	PROPERTY_DIR("configuration"),
@@ -224,7 +357,7 @@ static const struct property systems[] = {
 	DRIVES("configuration/USB", 0),
 	DRIVES("configuration/i2c", 1),
 	DRIVES("configuration/parport", 0),
-	VIRTUAL("configuration/trim", PROPERTY_YESNO, LIFE_STATIC, ACCESS_READ, 0, WAY_ARG),
+	VIRTUAL("configuration/trim", YESNO, STATIC, READ, 0, WAY_ARG),
 	VIRTUAL_TEXT("configuration/version", 20, WAY_VERSION),
 	DRIVES("configuration/zeroconf", 0),
 	PROPERTY_DIR("connections"),
@@ -235,26 +368,72 @@ static const struct property systems[] = {
 	VIRTUAL_TEXT("process/pidfile", 128, WAY_EMPTY),
 };
 
-static const struct family family_interface = {.is_virtual = true, HOW(how), PROPERTIES(interface)};
-static const struct family family_simultaneous = {
-	.is_virtual = true, HOW(how), PROPERTIES(simultaneous)};
-static const struct family family_system = {.is_virtual = true, HOW(how), PROPERTIES(systems)};
+#define TIMEOUT(text, which) \
+	VIRTUAL(text, UNSIGNED, STATIC, BOTH, offsetof(struct native, which), WAY_TIMEOUT)
+/* Of masters and servers that this bus has not: a client reads what it wrote, without effect. */
+#define IDLE(text, which) TIMEOUT(text, idle_ns[which])
+#define FLAG(text, which) \
+	VIRTUAL(text, YESNO, STATIC, BOTH, offsetof(struct native, which), WAY_FLAG)
+#define SCALE(text, bytes, which) \
+	PROPERTY(text, ASCII, STATIC, BOTH, .offline = true, .size = (bytes), .arg = (which), \
+	         .how = WAY_SCALE)
 
+static const struct property settings[] = {
+	PROPERTY_DIR("alias"),
+	VIRTUAL_TEXT("alias/list", UINT16_MAX, WAY_ALIASES),
+	FLAG("alias/unaliased", unaliased),
+	PROPERTY_DIR("timeout"),
+	IDLE("timeout/directory", DIRECTORY),
+	IDLE("timeout/ftp", FTP),
+	IDLE("timeout/ha7", HA7),
+	IDLE("timeout/network", NETWORK),
+	TIMEOUT("timeout/presence", presence_ns),
+	IDLE("timeout/serial", SERIAL),
+	IDLE("timeout/server", SERVER),
+	TIMEOUT("timeout/stable", stable_ns),
+	FLAG("timeout/uncached", uncached),
+	IDLE("timeout/usb", USB),
+	TIMEOUT("timeout/volatile", volatile_ns),
+	IDLE("timeout/w1", W1),
+	PROPERTY_DIR("units"),
+	SCALE("units/pressure_scale", 12, 1),
+	SCALE("units/temperature_scale", 1, 0),
+};
+
+static const struct property statistics[] = {
+	PROPERTY_DIR("errors"),
+	/* owserver's names, which openHAB asks for: of checksums of 16 bits too */
+	COUNT("errors/CRC8_errors", CHECKSUMS),
+	COUNT("errors/CRC8_tries", TRANSACTIONS),
+	COUNT("errors/checksum", CHECKSUMS),
+	COUNT("errors/link", LINK_ERRORS),
+	COUNT("errors/shorts", SHORTS),
+	PROPERTY_DIR("read"),
+	COUNT("read/cachesuccess", CACHE_HITS),
+	COUNT("read/calls", READS),
+	PROPERTY_DIR("write"),
+	COUNT("write/calls", WRITES),
+};
+
+#define TABLE(rows) \
+	{ \
+		.is_virtual = true, HOW(how), PROPERTIES(rows) \
+	}
 static const struct {
 	const char *name;
-	const struct family *family;
+	struct family family;
 } tables[] = {
-	{"interface", &family_interface},
-	{"settings", &virtual_settings},
-	{"simultaneous", &family_simultaneous},
-	{"statistics", &virtual_statistics},
-	{"system", &family_system},
+	{"interface", TABLE(interface)},
+	{"settings", TABLE(settings)},
+	{"simultaneous", TABLE(simultaneous)},
+	{"statistics", TABLE(statistics)},
+	{"system", TABLE(systems)},
 };
 
 const struct family *virtual_family(const char *name, size_t len)
 {
 	for (size_t i = 0; i < sizeof(tables) / sizeof(tables[0]); i++)
 		if (strlen(tables[i].name) == len && strncasecmp(tables[i].name, name, len) == 0)
-			return tables[i].family;
+			return &tables[i].family;
 	return NULL;
 }

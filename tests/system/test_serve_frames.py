@@ -184,7 +184,7 @@ def test_directories(scene):
         pair.entries(device)
         pair.entries("/uncached" + device)
     for path in ("/settings/units", "/settings/alias", "/settings/timeout", "/system",
-                 "/settings/return_codes", "/statistics/read", "/system/process", "/structure/28",
+                 "/settings/return_codes", "/system/process", "/structure/28",
                  "/bus.0" + T, "/bus.0/interface", T + "/errata", "/text" + T,
                  "/text/settings/units"):
         pair.entries(path)
@@ -235,7 +235,7 @@ def test_the_directories_beside_the_devices_are_read(scene):
         pair.same(READ, "/settings/timeout/" + name)
     for path in ("/settings/timeout/volatile", "/settings/timeout/presence", "/system/process/pid",
                  "/system/connections/count_current_buses",
-                 "/statistics/read/calls", "/statistics/read/tries.ALL", "/statistics/errors/max_delay",
+                 "/statistics/read/calls", "/statistics/write/calls",
                  "/simultaneous/temperature", "/simultaneous/present"):
         pair.alike(READ, path)
     for flags in (USUAL | 1 << 16, USUAL | 3 << 16, USUAL | 1 << 18):

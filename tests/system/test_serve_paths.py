@@ -16,7 +16,7 @@ T = THERMOMETER
 PLAIN = ("/", "/uncached", "/alarm", "/bus.0", "/bus.0/interface", "/bus.0/interface/settings",
          "/bus.0/interface/settings/name", "/settings", "/settings/units",
          "/settings/units/temperature_scale", "/settings/return_codes",
-         "/settings/return_codes/text.1", "/statistics", "/statistics/cache", "/system",
+         "/settings/return_codes/text.1", "/statistics", "/statistics/read", "/system",
          "/system/process", "/system/process/pidfile", "/structure", "/structure/28",
          "/structure/28/type", "/structure/29/PIO.ALL", "/simultaneous", "/simultaneous/temperature",
          "/simultaneous/iblss", T, T + "/type", T + "/errata", T + "/errata/die", SWITCH + "/PIO.0",
