@@ -3,7 +3,6 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/chips/family.h"
 #include "hal/chips/field.h"
 
 #define BYTES_MAX 4

@@ -14,7 +14,6 @@
 #include "hal/native/listing.h"
 #include "hal/native/outcome.h"
 #include "hal/native/resolve.h"
-#include "hal/native/state.h"
 #include "hal/native/touch.h"
 
 /* Transactions of one request until others of its rank have their turn. */

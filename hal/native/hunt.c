@@ -18,14 +18,12 @@
 #include "hal/native/answer.h"
 #include "hal/native/branches.h"
 #include "hal/native/hunt.h"
-#include "hal/native/limits.h"
 #include "hal/native/listing.h"
 #include "hal/native/locate.h"
 #include "hal/native/master.h"
 #include "hal/native/outcome.h"
 #include "hal/native/presence.h"
 #include "hal/native/sensors.h"
-#include "hal/native/state.h"
 
 #define PASS_NS (NATIVE_S * 12 / 100)
 #define PASS_TOUCH_NS (NATIVE_S / 10)

@@ -5,7 +5,6 @@
 
 #include "hal/base/time.h"
 #include "hal/native/answer.h"
-#include "hal/native/cache.h"
 #include "hal/native/convert/convert.h"
 #include "hal/native/convert/simultaneous.h"
 #include "hal/native/exchange.h"
@@ -16,7 +15,6 @@
 #include "hal/native/locate.h"
 #include "hal/native/outcome.h"
 #include "hal/native/resolve.h"
-#include "hal/native/state.h"
 #include "hal/native/structure.h"
 
 static bool is_away(const struct native *native, const struct device *device)

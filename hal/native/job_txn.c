@@ -6,8 +6,6 @@
 #include "hal/chips/field.h"
 #include "hal/chips/format.h"
 #include "hal/native/job_txn.h"
-#include "hal/native/limits.h"
-#include "hal/native/state.h"
 #include "hal/wire/driver.h"
 
 #define VISIT_NS (2 * TXN_MS)

@@ -9,7 +9,6 @@
 #include "hal/chips/format.h"
 #include "hal/native/branches.h"
 #include "hal/native/listing.h"
-#include "hal/native/state.h"
 #include "hal/wire/driver.h"
 
 static int __attribute__((format(printf, 2, 3))) add(struct job *job, const char *format, ...)

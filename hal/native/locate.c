@@ -4,12 +4,10 @@
 #include <string.h>
 
 #include "hal/native/answer.h"
-#include "hal/native/limits.h"
 #include "hal/native/locate.h"
 #include "hal/native/master.h"
 #include "hal/native/outcome.h"
 #include "hal/native/presence.h"
-#include "hal/native/state.h"
 #include "hal/native/touch.h"
 
 #define SHARE 10 /* looks take one part in so many of the time */

@@ -4,15 +4,12 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "hal/chips/family.h"
 #include "hal/chips/thermometers/thermometer_proof.h"
 #include "hal/native/answer.h"
 #include "hal/native/branches.h"
 #include "hal/native/first_asked.h"
-#include "hal/native/limits.h"
 #include "hal/native/master.h"
 #include "hal/native/presence.h"
-#include "hal/native/state.h"
 
 #define PAUSE_MIN_NS (NATIVE_S / 5)
 #define PAUSE_MAX_NS (5 * NATIVE_S)

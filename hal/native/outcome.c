@@ -2,15 +2,12 @@
 /* How a transaction of a job ended: what that shows of link and device, and what follows. */
 #include <errno.h>
 
-#include "hal/chips/family.h"
 #include "hal/chips/thermometers/thermometer_proof.h"
 #include "hal/native/answer.h"
 #include "hal/native/convert/schedule.h"
-#include "hal/native/limits.h"
 #include "hal/native/master.h"
 #include "hal/native/outcome.h"
 #include "hal/native/presence.h"
-#include "hal/native/state.h"
 
 #define TRIES_CHECKSUM 3
 #define TRIES_SHORT 2

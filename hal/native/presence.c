@@ -3,12 +3,10 @@
 #include <errno.h>
 #include <stdio.h>
 
-#include "hal/chips/family.h"
 #include "hal/native/branches.h"
 #include "hal/native/first_asked.h"
 #include "hal/native/presence.h"
 #include "hal/native/sensors.h"
-#include "hal/native/state.h"
 
 /* More than the time between two searches of idle wires. A plug is seldom moved so often. */
 #define RETURN_NS (60 * NATIVE_S)

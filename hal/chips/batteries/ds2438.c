@@ -14,7 +14,6 @@
 #include <string.h>
 
 #include "hal/chips/batteries/ds2438.h"
-#include "hal/chips/property.h"
 
 #define RECALL 0xb8
 #define READ_SCRATCHPAD 0xbe

@@ -8,7 +8,6 @@
 
 #include "hal/chips/thermometers/state.h"
 #include "hal/chips/thermometers/thermometer.h"
-#include "hal/chips/thermometers/thermometer_proof.h"
 
 #define WRITE_SCRATCHPAD 0x4e
 #define RECALL 0xb8

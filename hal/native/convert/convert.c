@@ -19,10 +19,8 @@
 #include "hal/native/convert/schedule.h"
 #include "hal/native/convert/supply.h"
 #include "hal/native/job_txn.h"
-#include "hal/native/limits.h"
 #include "hal/native/master.h"
 #include "hal/native/outcome.h"
-#include "hal/native/state.h"
 
 #define GATHER_NS (3 * TXN_MS)
 #define GATHER_MAX_NS (3 * NATIVE_S)

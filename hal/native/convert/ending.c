@@ -5,7 +5,6 @@
 #include "hal/chips/thermometers/thermometer_proof.h"
 #include "hal/native/convert/ending.h"
 #include "hal/native/master.h"
-#include "hal/native/state.h"
 
 /* The first question, and the next ones; earlier than the last end was, as it varies a little. */
 #define FIRST_SHARE 2 /* of the longest time */

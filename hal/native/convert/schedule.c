@@ -3,7 +3,6 @@
 #include "hal/native/convert/schedule.h"
 #include "hal/base/time.h"
 #include "hal/chips/thermometers/thermometer_proof.h"
-#include "hal/native/state.h"
 
 /*
  * Before anything was measured: the slots by the data sheets of the DS2482. A reading is a reset,

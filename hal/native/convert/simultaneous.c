@@ -9,7 +9,6 @@
 #include "hal/native/convert/supply.h"
 #include "hal/native/master.h"
 #include "hal/native/outcome.h"
-#include "hal/native/state.h"
 
 #define SKIP_ROM 0xcc
 

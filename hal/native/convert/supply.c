@@ -5,7 +5,6 @@
 #include "hal/chips/thermometers/thermometer.h"
 #include "hal/native/convert/supply.h"
 #include "hal/native/master.h"
-#include "hal/native/state.h"
 
 #define SKIP_ROM 0xcc
 #define LOOKS 3
