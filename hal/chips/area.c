@@ -109,6 +109,17 @@ static int area_load(struct txn *txn, const struct area *area, unsigned at, uint
 	                                      : area_fetch(txn, area, at, bytes, n);
 }
 
+/* What was read of the chip: does it count, and what does it say of the device? */
+static int area_saw(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,
+                    unsigned n)
+{
+	if (area->ones_lie && bytes[0] == 0xff && is_all_alike(bytes, n))
+		return -EIO;
+	for (unsigned i = 0; area->counts && i < n; i++)
+		bytes[i] &= area->counts;
+	return area->saw ? area->saw(txn, at, bytes, n) : 0;
+}
+
 /*
  * To visit->have; TXN_MORE until enough looks agree. So long as nothing but ones is read, the
  * chip may not have heard: if it was found by its id, the last look is made again.
@@ -136,7 +147,7 @@ static int area_look(struct txn *txn, const struct area *area, unsigned at, unsi
 	/* It is read again, or no request gets it: it shows nothing of the chip. */
 	if (txn->blank && !txn->asked)
 		return 0;
-	return area->saw ? area->saw(txn, at, visit->have, n) : 0;
+	return area_saw(txn, area, at, visit->have, n);
 }
 
 /* The blocks that n bytes from `at` on touch. */
@@ -301,8 +312,8 @@ static int check_unit(struct txn *txn, const struct area *area, struct unit unit
 	int err = area_load(txn, area, unit.at, in, unit.n);
 
 	txn->silent = false;
-	if (!err && area->saw)
-		err = area->saw(txn, unit.at, in, unit.n);
+	if (!err)
+		err = area_saw(txn, area, unit.at, in, unit.n);
 	if (err)
 		return err;
 	bool written = area->is_written ? area->is_written(txn, in, visit->want, unit.n)

@@ -72,6 +72,8 @@ struct area {
 	uint8_t recall;   /* command that makes read give what is stored, not written; 0: none */
 	uint8_t key;      /* behind copy; 0: address and ending offset as verify gives them */
 	uint8_t password; /* bytes of zeros behind these, AREA_PASSWORD at most */
+	uint8_t counts;   /* of each byte that is read the bits that count; 0: all */
+	bool ones_lie;    /* nothing but ones is no answer of the chip: -EIO */
 	bool write_crc16; /* the chip answers what is written, and verify, with CRC16 */
 	bool echo;        /* ... and then with the byte that it has taken */
 	bool strong;      /* the copy needs the strong pull-up */

@@ -9,8 +9,7 @@
 #include "hal/chips/batteries/ws603.h"
 #include "hal/chips/thermometers/thermocouple.h"
 
-#define VIS 0x0e             /* the voltage across the resistor */
-#define PROTECTION_PINS 0x0c /* of the protection register: CC and DC mirror the pins */
+#define VIS 0x0e /* the voltage across the resistor */
 enum { DEFAULTS_AT = 0x31, STATUS_AT = 0x01, CHARGING = 0x40, CHARGE_STATUS = 0xc0 };
 #define REFRESHED 0x33 /* bits of the status that Refresh takes from the EEPROM */
 
@@ -35,14 +34,6 @@ static bool is_counted(struct txn *txn, const uint8_t *have, const uint8_t *want
 	return change >= -2 && change <= 2;
 }
 
-/* The pins follow at once, and are nothing that was written. */
-static int saw_protection(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
-{
-	(void)txn, (void)at, (void)n;
-	bytes[0] &= (uint8_t)~PROTECTION_PINS;
-	return 0;
-}
-
 const struct area *const gauge_areas[GAUGE_AREAS] = {
 	[MEMORY] = AREA(.name = "memory", .size = 256, .block = 32, GAUGE_READ),
 	[WORDS] = &words,
@@ -54,7 +45,8 @@ const struct area *const gauge_areas[GAUGE_AREAS] = {
 	[EEPROM32] = AREA(.name = "EEPROM", .size = 128, GAUGE_STORED(32)),
 	/* A copy takes the whole block, so all of it is written. */
 	[PARAMETERS] = AREA(.name = "parameters", .at = 0x60, .size = 32, GAUGE_STORED(32)),
-	[PROTECTION] = AREA(.name = "protection", .size = 1, GAUGE_WRITE(1), .saw = saw_protection),
+	/* CC and DC mirror the pins, which follow at once: they are nothing that was written */
+	[PROTECTION] = AREA(.name = "protection", .size = 1, GAUGE_WRITE(1), .counts = 0xf3),
 	[PINS_OF] = AREA(.name = "pins", .size = 1, GAUGE_READ),
 	[STATUS] = REGISTER("status", STATUS_AT),
 	[SPECIAL_08] = REGISTER("special", 0x08),

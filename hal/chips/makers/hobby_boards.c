@@ -35,12 +35,16 @@ struct hobby {
 		own, "HB_UVI_METER", "HB_MOISTURE_METER", "HB_MOISTURE_METER_DATALOGGER", \
 			"HB_SNIFFER", "HB_HUB", own, own, own, "HB_MULTITEMP", own \
 	}
-/* Areas: what is read, and a setting. */
+/*
+ * Areas: what is read, and a setting. A read command that loses one bit on its way is the command
+ * that writes the same setting, and the read slots after it are ones. So a setting that is all ones
+ * proves nothing.
+ */
 #define HOBBY_VALUE(text, bytes_, command) \
 	.name = (text), .size = (bytes_), .block = (bytes_), .read = (command)
 #define HOBBY_SETTING(text, bytes_, get, put) \
 	.name = (text), .size = (bytes_), .block = (bytes_), .read = (get), .row = (bytes_), \
-	.write = (put), .saw = hobby_saw_setting
+	.write = (put), .ones_lie = true
 /* Semiconductors: as widely as any of them measures. */
 #define HOBBY_CELSIUS MEASURES(-58, 128, 1, DEGREES_C)
 
@@ -59,20 +63,6 @@ static int hobby_identify(struct txn *txn)
 		return -EBADMSG;
 	txn->device->kind = kind > 0 && kind < HOBBY_OTHER ? kind : HOBBY_OTHER;
 	return 0;
-}
-
-/*
- * A read command that loses one bit on its way is the command that writes the same setting, and the
- * read slots after it are ones. So a setting that is all ones proves nothing: -EIO.
- */
-static int hobby_saw_setting(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
-{
-	unsigned ones = 0;
-
-	(void)txn, (void)at;
-	while (ones < n && bytes[ones] == 0xff)
-		ones++;
-	return ones == n ? -EIO : 0;
 }
 
 static int hobby_read_text(struct txn *txn)
@@ -112,13 +102,6 @@ static int hobby_read_version(struct txn *txn)
 		return err;
 	snprintf(text, sizeof(text), "%u.%u", version[1], version[0]);
 	return property_text(txn, text);
-}
-
-/* All ones: there is no measurement. */
-static int saw_uvi(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
-{
-	(void)txn, (void)at, (void)n;
-	return bytes[0] == 0xff ? -EIO : 0;
 }
 
 /* Written as all ones or zeros; any bit is a yes. */
@@ -161,15 +144,6 @@ static const struct area leaf_min[] = {{HOBBY_SETTING("leaf minimum", 2, 0x27, 0
 
 static const struct area hub_config = {HOBBY_SETTING("hub config", 1, 0x61, 0x60)};
 
-static int saw_branches(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
-{
-	(void)txn, (void)at, (void)n;
-	if (bytes[0] == 0xff)
-		return -EIO;
-	bytes[0] &= 0x0f;
-	return 0;
-}
-
 /* Some are switched on, the others off. */
 static int store_branches(struct txn *txn, const struct area *area, unsigned at,
                           const uint8_t *bytes, unsigned n)
@@ -183,7 +157,7 @@ static int store_branches(struct txn *txn, const struct area *area, unsigned at,
 }
 
 static AREA_NAMED(branches, "branches", .size = 1, .block = 1, .read = 0x22, .row = 1,
-                  .store = store_branches, .saw = saw_branches);
+                  .store = store_branches, .counts = 0x0f, .ones_lie = true);
 
 /* Several at once take the hub out of its mode with one alone. */
 static int write_branches(struct txn *txn)
@@ -314,7 +288,8 @@ static const struct area *const areas[] = {
 	[VERSION] = &hobby_version,
 	[UVI_TEMPERATURE] = AREA(HOBBY_VALUE("temperature", 2, 0x21)),
 	[TEMPERATURE_OFFSET] = AREA(HOBBY_SETTING("temperature offset", 2, 0x23, 0x22)),
-	[UVI_VALUE] = AREA(.name = "UVI", .size = 1, .block = 1, .read = 0x24, .saw = saw_uvi),
+	/* all ones: there is no measurement */
+	[UVI_VALUE] = AREA(HOBBY_VALUE("UVI", 1, 0x24), .ones_lie = true),
 	[UVI_OFFSET] = &uvi_offset,
 	[IN_CASE] = &in_case,
 	[POLLING] = AREA(HOBBY_SETTING("polling frequency", 1, 0x14, 0x94)),

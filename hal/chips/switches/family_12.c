@@ -10,7 +10,7 @@
 #define ACCESS_READ_A 0x45
 #define ACCESS_RESET_LATCHES 0x80
 
-#define STATUS_SUPPLY 0x80
+#define STATUS_SUPPLY 0x80 /* is no setting */
 
 static bool is_checked(const uint8_t command[3], const uint8_t in[4])
 {
@@ -47,20 +47,12 @@ static int write_latch(struct txn *txn)
 	return channel_info(txn, ACCESS_READ_A | ACCESS_RESET_LATCHES, &info);
 }
 
-/* The supply is no setting. */
-static int saw_status(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
-{
-	(void)txn, (void)at, (void)n;
-	bytes[0] &= (uint8_t)~STATUS_SUPPLY;
-	return 0;
-}
-
 /* EPROM takes pulses of 12 V, which no master here gives: it has no row. */
 static AREA_NAMED(memory, "memory", .size = 128, .address_bytes = 2, .read = 0xf0);
 static AREA_NAMED(info, "info", .size = 1, .load = load_info);
 static AREA_NAMED(status, "status", .at = 7, .size = 1, .address_bytes = 2, .read = 0xaa,
-                  .block = 1, .check = AREA_CRC16, .saw = saw_status, .row = 1, .write = 0x55,
-                  .write_crc16 = true, .hidden = true);
+                  .block = 1, .check = AREA_CRC16, .counts = (uint8_t)~STATUS_SUPPLY, .row = 1,
+                  .write = 0x55, .write_crc16 = true, .hidden = true);
 
 /* Three digits: channels, source, polarity. */
 static int read_alarm(struct txn *txn)

@@ -25,13 +25,6 @@ static int saw_registers(struct txn *txn, unsigned at, uint8_t *bytes, unsigned 
 	return 0;
 }
 
-static int saw_latch(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
-{
-	(void)txn, (void)at, (void)n;
-	bytes[0] &= PINS;
-	return 0;
-}
-
 static int store_output(struct txn *txn, const struct area *area, unsigned at, const uint8_t *bytes,
                         unsigned n)
 {
@@ -68,7 +61,7 @@ static AREA_NAMED(memory, "memory", .size = 0x226, READ_MEMORY, .row = 32, .writ
 static AREA_NAMED(registers, "registers", .at = 0x220, .size = REGISTERS_N, .block = REGISTERS_N,
                   READ_MEMORY, .saw = saw_registers);
 static AREA_NAMED(output, "output", .at = 0x220 + DS2408_OUTPUT, .size = 1, READ_MEMORY, .row = 1,
-                  .hidden = true, .store = store_output, .saw = saw_latch);
+                  .hidden = true, .store = store_output, .counts = PINS);
 /* Mask, polarity and control. */
 static AREA_NAMED(condition, "condition", .at = 0x220 + DS2408_MASK, .size = 3, .block = 3,
                   READ_MEMORY, .row = 3, .write = 0xcc, .saw = saw_condition,
