@@ -19,9 +19,8 @@ struct ds2438 {
 	 * Of each page its first byte as it was; of page 0 the configuration and 80h. 0: not known.
 	 */
 	uint8_t first[8];
-	int64_t temperature_ns; /* its last conversion of the temperature; 0: none is known */
-	bool genuine;           /* it has shown a conversion, or a recall */
-	uint8_t kept;           /* pairs of marks that outlived their recalls, before that */
+	bool genuine; /* it has shown a conversion, or a recall */
+	uint8_t kept; /* pairs of marks that outlived their recalls, before that */
 };
 static inline struct ds2438 *ds2438_of(const struct txn *txn)
 {
@@ -40,7 +39,6 @@ struct ds2438_visit {
 	uint8_t page[8];       /* as it is to be */
 	uint8_t proof_mark;    /* of ds2438_mark() */
 	uint8_t proof;         /* of the quantity that is measured */
-	bool measuring;        /* latesttemp was nothing */
 	uint8_t before;        /* the configuration before the visit */
 	uint8_t stage;         /* quantities that are done, or a step of the caller */
 	int64_t begun_ns;      /* of the quantity; 0: it is to be begun */

@@ -196,8 +196,6 @@ int ds2438_measure(struct txn *txn, unsigned what)
 		if (err)
 			return err;
 		txn_share(txn, &quantities[one], 0, value, sizeof(*value), visit->begun_ns);
-		if (one == DS2438_TEMPERATURE)
-			ds2438_of(txn)->temperature_ns = visit->begun_ns;
 		visit->begun_ns = 0;
 		visit->proof = FIRST;
 		txn->phase = 0;
@@ -214,29 +212,4 @@ int ds2438_read_measured(struct txn *txn)
 
 	txn->number[0] = ds2438_visit(txn)->value[txn->property->arg];
 	return err;
-}
-
-/*
- * A zero may be what a restart left, and the time of a result that the bus did not ask for is not
- * known: then it is measured.
- */
-int ds2438_read_latest(struct txn *txn)
-{
-	struct ds2438_visit *visit = ds2438_visit(txn);
-	uint8_t bytes[8];
-	int err;
-
-	if (visit->measuring || !ds2438_of(txn)->temperature_ns) {
-		visit->measuring = true;
-		err = ds2438_measure(txn, 1 << DS2438_TEMPERATURE);
-		txn->number[0] = visit->value[DS2438_TEMPERATURE];
-		return err;
-	}
-	err = area_read(txn, &ds2438_pages, 0, bytes, sizeof(bytes));
-	if (err)
-		return err;
-	txn->number[0] = (ds2438_word(bytes + 1) >> 3) / 32.0;
-	txn->measured_ns = ds2438_of(txn)->temperature_ns;
-	visit->measuring = txn->number[0] == 0;
-	return visit->measuring ? TXN_MORE : 0;
 }

@@ -6,5 +6,5 @@
 
 /* Measure a set of quantities, or take what has been measured for others: to value[]. */
 int ds2438_measure(struct txn *txn, unsigned what);
-/* For properties: the quantity that arg says; the temperature that was measured last. */
-property_function ds2438_read_measured, ds2438_read_latest;
+/* For properties: the quantity that arg says. */
+property_function ds2438_read_measured;

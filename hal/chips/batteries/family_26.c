@@ -230,7 +230,6 @@ enum {
 	WAY_SENSOR_TYPE,
 	WAY_RESET_DATANAB,
 	WAY_MEASURED,
-	WAY_LATEST,
 	WAY_FLAG,
 	WAY_TIME,
 	WAY_PAGE,
@@ -257,7 +256,6 @@ static const struct property_how how[] = {
 	[WAY_SENSOR_TYPE] = {.read = sensor_read_type},
 	[WAY_RESET_DATANAB] = {.write = property_refuse},
 	[WAY_MEASURED] = {.read = ds2438_read_measured},
-	[WAY_LATEST] = {.read = ds2438_read_latest},
 	[WAY_FLAG] = {.write = ds2438_write_flag},
 	[WAY_TIME] = {.write = ds2438_write_field},
 	[WAY_PAGE] = {.write = ds2438_write_page},
@@ -280,8 +278,9 @@ static const struct property_how how[] = {
 #define DS2438_VDD_VOLTS MEASURES(2, 10.23, 2, "V")
 /* 10 bits and sign of 0.2441 mV */
 #define DS2438_VIS_VOLTS MEASURES(-0.25, 0.25, 5, "V")
+/* A conversion takes 10 ms: what a restart may have left is not looked for. */
 #define DS2438_LATEST(most) \
-	PROPERTY("latesttemp", TEMPERATURE, VOLATILE, READ, DS2438_CELSIUS(most), .how = WAY_LATEST)
+	MEASURED("latesttemp", TEMPERATURE, DS2438_TEMPERATURE, DS2438_CELSIUS(most))
 #define FLAG(text, bit) \
 	PROPERTY(text, YESNO, STABLE, BOTH, FIELD(PAGES, .shift = (bit), .bits = 1), \
 	         .how = WAY_FLAG)

@@ -23,10 +23,6 @@ enum { SUBTYPE, VERSION, BUSY, TEMPERATURE_AT = 4, HUMIDITY_AT = 6, VALID = 8 };
 #define SOON_NS (5 * TXN_MS)
 #define LOOKS 4
 
-struct smart_slave {
-	int64_t measured_ns; /* its last conversion that was verified; 0: none is known */
-};
-
 static int load_page(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,
                      unsigned n)
 {
@@ -88,7 +84,6 @@ static int family_fe_convert(struct txn *txn, uint8_t bytes[PAGE])
 		if (!bytes[VALID])
 			return -EBADMSG; /* it restarted */
 		txn_share(txn, &measured, 0, bytes, PAGE, *begun);
-		((struct smart_slave *)txn->device->own)->measured_ns = *begun;
 		return 0;
 	}
 }
@@ -98,7 +93,7 @@ static double th_value(const uint8_t *bytes)
 	return (int16_t)(bytes[0] << 8 | bytes[1]) / 128.0;
 }
 
-/* arg: where in the page. */
+/* arg: where in the page. Of what was not asked for the time is not known: it converts. */
 static int read_measured(struct txn *txn)
 {
 	uint8_t bytes[PAGE];
@@ -107,32 +102,6 @@ static int read_measured(struct txn *txn)
 	if (!err)
 		txn->number[0] = th_value(bytes + txn->property->arg);
 	return err;
-}
-
-/*
- * The time of a conversion that the bus did not ask for is not known, and a restart takes the
- * result: then it converts.
- */
-static int read_latest(struct txn *txn)
-{
-	struct smart_slave *slave = txn->device->own;
-	uint8_t bytes[PAGE];
-
-	if (!slave->measured_ns)
-		return read_measured(txn);
-	int err = area_read(txn, &page, 0, bytes, PAGE);
-
-	if (err)
-		return err;
-	if (bytes[SUBTYPE] != SUBTYPE_TH)
-		return -ENOENT;
-	if (!bytes[VALID] || is_busy(bytes)) {
-		slave->measured_ns = 0;
-		return TXN_MORE;
-	}
-	txn->number[0] = th_value(bytes + txn->property->arg);
-	txn->measured_ns = slave->measured_ns;
-	return 0;
 }
 
 static int read_text(struct txn *txn)
@@ -158,10 +127,9 @@ static int write_led(struct txn *txn)
 	return txn_command(txn, command, sizeof(command));
 }
 
-enum { WAY_MEASURED = 1, WAY_LATEST, WAY_TEXT, WAY_LED };
+enum { WAY_MEASURED = 1, WAY_TEXT, WAY_LED };
 static const struct property_how how[] = {
 	[WAY_MEASURED] = {.read = read_measured},
-	[WAY_LATEST] = {.read = read_latest},
 	[WAY_TEXT] = {.read = read_text},
 	[WAY_LED] = {.write = write_led},
 };
@@ -175,9 +143,9 @@ static const struct property properties[] = {
 	PROPERTY("TH/humidity", FLOAT, VOLATILE, READ, PERCENT, .arg = HUMIDITY_AT,
                  .how = WAY_MEASURED),
 	PROPERTY("TH/latesthumidity", FLOAT, VOLATILE, READ, PERCENT, .arg = HUMIDITY_AT,
-                 .how = WAY_LATEST),
+                 .how = WAY_MEASURED),
 	PROPERTY("TH/latesttemp", TEMPERATURE, VOLATILE, READ, CELSIUS, .arg = TEMPERATURE_AT,
-                 .how = WAY_LATEST),
+                 .how = WAY_MEASURED),
 	PROPERTY("TH/led", YESNO, STABLE, WRITE, .how = WAY_LED),
 	PROPERTY("TH/temperature", TEMPERATURE, VOLATILE, READ, CELSIUS, .arg = TEMPERATURE_AT,
                  .how = WAY_MEASURED),

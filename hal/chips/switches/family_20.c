@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "hal/chips/family.h"
-#include "hal/chips/switches/ds2450.h"
 
 enum { RESULTS = 0, CONTROL = 8, LIMITS = 16 }; /* pages of 8 bytes */
 #define SUPPLY_AT 0x1c
@@ -22,10 +21,14 @@ enum { RESULTS = 0, CONTROL = 8, LIMITS = 16 }; /* pages of 8 bytes */
 /* arg of settings: they end what the power-on flags tell. */
 #define ENDS_POWER_ON 4
 
+/* What is known of the chip (device.own). */
+struct ds2450 {
+	bool por_clear; /* no channel's power-on flag is set */
+};
+
 struct visit {
 	bool set;     /* the settings of a conversion are as wanted */
 	bool started; /* it is under way or over */
-	bool latest;  /* the latest result is of no use: a conversion is made */
 	uint8_t supply;
 	int64_t begun_ns;
 };
@@ -37,7 +40,7 @@ static bool power_on_flags(const uint8_t control[8])
 
 static int saw_pages(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
 {
-	struct ds2450 *chip = ds2450_of(txn->device);
+	struct ds2450 *chip = txn->device->own;
 
 	if (at > CONTROL || at + n < CONTROL + 8)
 		return 0;
@@ -63,8 +66,8 @@ static AREA_NAMED(memory, "memory", .size = 32, .block = 8, .row = 1, .fixed = 8
                   .address_bytes = 2, .read = 0xaa, .check = AREA_CRC16, .write = 0x55,
                   .write_crc16 = true, .echo = true, .saw = saw_pages, .adjust = end_power_on);
 
-/* At 80 us for each bit of each channel, and 160 us. */
-const struct conversion ds2450_conversion = {
+/* All four channels with 16 bits, at 80 us for each bit of each channel, and 160 us. */
+static const struct conversion ds2450_conversion = {
 	.command = {0x3c, 0x0f, 0x00},
 	.n = 3,
 	.crc16 = true,
@@ -99,16 +102,6 @@ static bool is_set_for(int arg, const uint8_t control[8])
 	for (int i = 0; i < 8; i++)
 		set &= ((control[i] ^ want[i]) & which[i]) == 0;
 	return set;
-}
-
-/* The results are fractions of it. */
-static bool is_range(int arg, const uint8_t control[8])
-{
-	bool is = true;
-
-	for (int i = 1; i < 8; i += 2)
-		is &= (control[i] & RANGE_HIGH) == (arg & HALF_RANGE ? 0 : RANGE_HIGH);
-	return is;
 }
 
 static int look_at_settings(struct txn *txn)
@@ -157,7 +150,10 @@ static int family_20_convert(struct txn *txn)
 	return 0;
 }
 
-/* One conversion serves all requests for its volts in the same way. */
+/*
+ * One conversion, of 6 ms, serves all requests for its volts in the same way. The latest result is
+ * never taken: nothing tells it from what a restart left.
+ */
 static int read_volt(struct txn *txn)
 {
 	static const char conversions[4];
@@ -173,37 +169,7 @@ static int read_volt(struct txn *txn)
 	err = family_20_convert(txn);
 	if (!err)
 		txn_share(txn, what, 0, txn->number, 4 * sizeof(txn->number[0]), visit->begun_ns);
-	if (!err)
-		ds2450_of(txn->device)->measured_ns = visit->begun_ns;
 	return err;
-}
-
-/*
- * A conversion gives the truth where the bus did not ask for the result, so that its time is not
- * known; where its range was another, so that it would be twice as much or half; and where it is
- * what a restart left. That is zeros, whether the power-on flags are set, or a setting has cleared
- * them since.
- */
-static int read_latest(struct txn *txn)
-{
-	struct visit *visit = txn_own(txn, struct visit);
-	uint8_t bytes[16];
-
-	if (visit->latest)
-		return read_volt(txn);
-	int err = area_read(txn, &memory, RESULTS, bytes, sizeof(bytes));
-	if (err)
-		return err;
-	take_volts(txn, bytes);
-	txn->measured_ns = ds2450_of(txn->device)->measured_ns;
-	bool known = txn->measured_ns && !power_on_flags(bytes + CONTROL) &&
-	             is_range(txn->property->arg, bytes + CONTROL);
-	for (int i = 0; i < 8 && known; i++)
-		if (bytes[i] != 0)
-			return 0;
-	txn->measured_ns = 0;
-	visit->latest = true;
-	return TXN_MORE;
 }
 
 /* As owserver has it, and against its manual: 0 conducts, 1 does not, enabled or not. */
@@ -272,7 +238,6 @@ static const struct area *const areas[] = {[MEMORY] = &memory};
 
 enum {
 	WAY_VOLT = 1,
-	WAY_LATEST,
 	WAY_PIO,
 	WAY_POWER,
 	WAY_UNSET,
@@ -282,7 +247,6 @@ enum {
 };
 static const struct property_how how[] = {
 	[WAY_VOLT] = {.read = read_volt},
-	[WAY_LATEST] = {.read = read_latest},
 	[WAY_PIO] = {.read = read_pio, .write = write_pio},
 	[WAY_POWER] = {.read = read_power},
 	[WAY_UNSET] = {.write = write_unset},
@@ -310,8 +274,8 @@ static const struct property_how how[] = {
 
 static const struct property properties[] = {
 	PROPERTY_DIR("8bit"),
-	VOLT("8bit/latestvolt", EIGHT_BIT, WAY_LATEST, FULL),
-	VOLT("8bit/latestvolt2", EIGHT_BIT | HALF_RANGE, WAY_LATEST, HALF),
+	VOLT("8bit/latestvolt", EIGHT_BIT, WAY_VOLT, FULL),
+	VOLT("8bit/latestvolt2", EIGHT_BIT | HALF_RANGE, WAY_VOLT, HALF),
 	VOLT("8bit/volt", EIGHT_BIT, WAY_VOLT, FULL),
 	VOLT("8bit/volt2", EIGHT_BIT | HALF_RANGE, WAY_VOLT, HALF),
 	PROPERTY_DIR("CO2"),
@@ -324,8 +288,8 @@ static const struct property properties[] = {
 	PROPERTY_DIR("alarm"),
 	FLAG("alarm/high", VOLATILE, 5, .alarm = ALARM_LATCH | ALARM_CLEARS),
 	FLAG("alarm/low", VOLATILE, 4, .alarm = ALARM_LATCH | ALARM_CLEARS),
-	VOLT("latestvolt", 0, WAY_LATEST, FULL),
-	VOLT("latestvolt2", HALF_RANGE, WAY_LATEST, HALF),
+	VOLT("latestvolt", 0, WAY_VOLT, FULL),
+	VOLT("latestvolt2", HALF_RANGE, WAY_VOLT, HALF),
 	AREA_MEMORY(MEMORY, 32),
 	PROPERTY_DIR("pages"),
 	AREA_PAGES(MEMORY, 4, 8),

@@ -2,55 +2,12 @@
 /* Writes to /simultaneous: all chips of a kind on one channel or on all convert. */
 #include <errno.h>
 
-#include "hal/chips/switches/ds2450.h"
 #include "hal/native/answer.h"
 #include "hal/native/convert/broadcast.h"
 #include "hal/native/convert/simultaneous.h"
 #include "hal/native/convert/supply.h"
 #include "hal/native/master.h"
 #include "hal/native/outcome.h"
-
-#define SKIP_ROM 0xcc
-
-/* The first DS2450 of a channel, or the next one. */
-static struct device *next_ds2450(const struct native *native, unsigned n,
-                                  const struct device *after)
-{
-	struct device *device = native_device(native, n, after);
-
-	while (device && device->family != &family_20)
-		device = native_device(native, n, device);
-	return device;
-}
-
-/* All DS2450 of a channel at once. Their checksum is one: they were told the same. */
-static int convert_voltage(struct native *native, unsigned n)
-{
-	static const uint8_t skip = SKIP_ROM;
-	const struct conversion *conversion = &ds2450_conversion;
-	struct channel *channel = &native->channel[n];
-	struct txn txn = {.native = native, .link = channel->link, .channel = n};
-	uint8_t none;
-	int64_t begun = native_now(native);
-	int err = txn_raw(&txn, &skip, 1);
-
-	if (!err)
-		err = txn_write(&txn, conversion->command, conversion->n);
-	if (!err)
-		err = txn_read_crc16(&txn, conversion->command, conversion->n, &none, 0);
-	/* One more slot arms the pull-up, for those without a supply. */
-	if (!err)
-		err = channel->link->ops->bit(link_wire(channel->link), true, LINK_STRONG);
-	native_count(native, COUNT_TRANSACTIONS);
-	if (err < 0)
-		return txn.link_error ? txn.link_error : err;
-	master_good(native, n);
-	for (struct device *device = NULL; (device = next_ds2450(native, n, device));)
-		ds2450_of(device)->measured_ns = begun;
-	channel->simultaneous_ns[SIMULTANEOUS_VOLTAGE] = native_now(native) + conversion->ns;
-	native_hold(native, n, NULL, channel->simultaneous_ns[SIMULTANEOUS_VOLTAGE]);
-	return 0;
-}
 
 /*
  * A chip whose supply is not known would get the strong pull-up, and could not show that it
@@ -87,12 +44,10 @@ static int convert_temperature(struct native *native, unsigned n)
 	return 0;
 }
 
-/* What was read before is not of this conversion. */
-static void forget_kept(struct native *native, unsigned n, bool temperature)
+/* What was read before is not of this conversion. A DS2450 converts when it is read next. */
+static void forget_kept(struct native *native, unsigned n)
 {
-	for (struct device *device = NULL;
-	     (device = temperature ? native_thermometer(native, n, device)
-	                           : next_ds2450(native, n, device));)
+	for (struct device *device = NULL; (device = native_device(native, n, device));)
 		device->changes++;
 }
 
@@ -106,11 +61,11 @@ void convert_all(struct native *native, struct job *job)
 
 	if (err == TXN_MORE)
 		return;
-	if (!err)
-		err = temperature                    ? convert_temperature(native, n)
-		      : next_ds2450(native, n, NULL) ? convert_voltage(native, n)
-		                                     : 0;
-	forget_kept(native, n, temperature);
+	if (!temperature)
+		native->channel[n].simultaneous_ns[SIMULTANEOUS_VOLTAGE] = native_now(native);
+	else if (!err)
+		err = convert_temperature(native, n);
+	forget_kept(native, n);
 	if (err < 0 && err != -ENODEV) {
 		job->txn.link_error = err == -EBADMSG || err == -EOPNOTSUPP ? 0 : err;
 		job_failed(native, job, err);

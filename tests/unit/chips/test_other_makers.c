@@ -111,7 +111,6 @@ static void test_a_room_is_measured(void)
 	reads("TH/latesttemp", "       -12.5");
 	reads("TH/latesthumidity", "       61.25");
 	wire_set(slave, "temperature", 30);
-	reads("TH/latesttemp", "       -12.5");
 	reads("TH/temperature", "          30");
 	reads("firmware", "1.2");
 	reads("subtype", "TH");

@@ -161,7 +161,7 @@ static void test_one_device_alone_tells_its_id(void)
 	TEST_ASSERT_EQUAL_INT(-EACCES, result(BUS_WRITE, "/simultaneous/single", "1"));
 }
 
-static void test_all_voltages_are_converted_at_once(void)
+static void test_voltages_are_new_after_all_were_told_to_convert(void)
 {
 	wire_init(&host, 1, 1);
 	struct sim_slave *a = wire_add(0, "DS2450", 1), *b = wire_add(0, "DS2450", 2);
@@ -193,6 +193,6 @@ int main(void)
 	RUN_TEST(test_the_cache_can_be_switched_off);
 	RUN_TEST(test_aliases_are_listed_and_can_be_left_out);
 	RUN_TEST(test_one_device_alone_tells_its_id);
-	RUN_TEST(test_all_voltages_are_converted_at_once);
+	RUN_TEST(test_voltages_are_new_after_all_were_told_to_convert);
 	return UNITY_END();
 }
