@@ -283,6 +283,10 @@ def test_each_device_has_an_item_or_is_named(scene):
         device = line.split()[1]
         assert (device in items) != (device in noted), line
         assert (f"no signal for {device} (" in done.stderr) == (device in noted), line
+    left = dict(re.findall(r"# left out of (\S+) \(\S+\): (.+); owsctl -t \S+ dir /\1 lists", done.stdout))
+    assert left["26.C0FFEE000033"] == "B1-R1-A/pressure, S3-R1-A/current, S3-R1-A/illuminance, vis", left
+    assert set(left) <= items and all(f"left out of {device} (" in done.stderr for device in left), done.stderr
+    assert not {device for device in left if device[:2] in ("28", "29", "3A")}, left
     # memories, clocks, bridges, and what takes texts: all others measure, count or switch
     assert not set(noted.values()) & {"DS1921", "DS1923", "DS2437", "DS2760", "EDS0068", "IBLSS", "LCD"}
     for path in ("EDS0068/temperature", "EDS0068/humidity", "EDS0090/input.BYTE", "EDS0082/volts.7",

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Paths and texts of the verbs that open a target. */
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -195,6 +196,41 @@ static void test_each_element_of_an_array_has_a_name(void)
 	TEST_ASSERT_FALSE(scan_property(&device, i + 1, &property));
 }
 
+static void check_left_out(struct scan_device device, const char *expected)
+{
+	char names[512];
+
+	scan_left_out(&device, names, sizeof(names));
+	TEST_ASSERT_EQUAL_STRING(expected, names);
+}
+
+/* Other forms of what has a signal are not named: temperature9, latesttemp, HIH4000/humidity. */
+static void test_what_measures_and_has_no_signal_is_named(void)
+{
+	struct scan_device chip = chip_of(0x26);
+
+	check_left_out(chip, "B1-R1-A/pressure, S3-R1-A/current, S3-R1-A/illuminance, vis");
+	check_left_out(chip_of(0x28), "");
+	check_left_out(chip_of(0x29), "");
+	check_left_out(chip_of(0x42), "PIO, latch, sensed");
+	/* a TMP1826: it has temperature alone */
+	for (unsigned i = 1; i < SCAN_PROPERTIES; i++)
+		chip.value[i].err = -ENOENT;
+	check_left_out(chip, "");
+	/* the sixth row is of an EDS0066, and what is left out is so, too */
+	check_left_out((struct scan_device){.family = 0x7e, .has = 1 << 6},
+	               "EDS0066/inHg, EDS0066/pressure");
+}
+
+static void test_names_that_have_no_room_are_cut(void)
+{
+	struct scan_device chip = chip_of(0x42);
+	char names[8];
+
+	scan_left_out(&chip, names, sizeof(names));
+	TEST_ASSERT_EQUAL_STRING("PIO, la", names);
+}
+
 static void check_signal(uint8_t code, const char *name, enum ows_type type, bool output,
                          unsigned per_factor)
 {
@@ -245,6 +281,8 @@ int main(void)
 	RUN_TEST(test_a_chip_of_a_family_with_kinds_has_what_its_list_has);
 	RUN_TEST(test_each_family_that_measures_has_something_to_scan);
 	RUN_TEST(test_each_element_of_an_array_has_a_name);
+	RUN_TEST(test_what_measures_and_has_no_signal_is_named);
+	RUN_TEST(test_names_that_have_no_room_are_cut);
 	RUN_TEST(test_the_type_of_a_signal_is_that_of_the_property);
 	RUN_TEST(test_an_identity_is_asked_for_where_the_code_does_not_tell);
 	return UNITY_END();

@@ -100,7 +100,7 @@ static int scan_rio_fill(struct rio **rio, struct scan_names *names, const struc
 	int err = rio_set_text(rio, rio_child(&(*rio)->root, "OwsDrv"), "TargetName", target);
 
 	for (unsigned i = 0; i < scan->count; i++)
-		scan_make_some(names, &scan->device[i], choice, true);
+		scan_make_items(names, &scan->device[i], choice);
 	if (!err)
 		err = scan_add_items(rio, names);
 	return err;
@@ -324,6 +324,7 @@ static int print_rio(const struct ctl *ctl, const struct target *target,
                      struct scan_choice choice)
 {
 	choice.target = served->target[0] ? NULL : target->name;
+	choice.noted = !merge->file;
 	if (merge->file)
 		return scan_merge(merge, scan, choice);
 	if (served->target[0] && served->cut)

@@ -2,6 +2,7 @@
 /* Items of a configuration for devices that were found: their names, text and initial values. */
 #include <ctype.h>
 #include <errno.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -167,20 +168,37 @@ static void make_item(struct scan_names *names, const struct scan_device *device
 	free(described);
 }
 
-/* Does the property get an item? Prints the reason where the answer is a surprise. */
-static bool gets_item(const struct scan_device *device, const struct scan_property *property,
-                      const struct scan_value *value, bool inputs_only)
+/* Print what gets no item; it becomes a comment of the configuration, too. */
+__attribute__((format(printf, 3, 4))) static void report(struct scan_names *names,
+                                                         struct scan_choice choice, const char *fmt,
+                                                         ...)
+{
+	char text[1024];
+	va_list args;
+
+	va_start(args, fmt);
+	vsnprintf(text, sizeof(text), fmt, args);
+	va_end(args);
+	ctl_fail("%s", text);
+	if (choice.noted)
+		fprintf(names->items, "%s# %s", ftell(names->items) > 0 ? "\n" : "", text);
+}
+
+/* Does the property get an item? Reports the reason where the answer is a surprise. */
+static bool gets_item(struct scan_names *names, const struct scan_device *device,
+                      const struct scan_property *property, const struct scan_value *value,
+                      struct scan_choice choice)
 {
 	int64_t number;
 
-	if ((property->output && inputs_only) || value->err == -ENOENT)
+	if ((property->output && choice.inputs_only) || value->err == -ENOENT)
 		return false;
 	if (!property->output)
 		return true;
 	if (!value->err && !value_parse(property->type, value->text, &number))
 		return true;
-	ctl_fail("left out: the output %s/%s, because it cannot be read: %s", device->path,
-	         property->name, value->err ? error_text(value->err) : value->text);
+	report(names, choice, "left out: the output %s/%s, because it cannot be read: %s",
+	       device->path, property->name, value->err ? error_text(value->err) : value->text);
 	return false;
 }
 
@@ -211,36 +229,32 @@ static bool make_bits(struct scan_names *names, const struct scan_device *device
 	return array != NULL;
 }
 
-void scan_make_items(struct scan_names *names, const struct scan_device *device,
+bool scan_make_items(struct scan_names *names, const struct scan_device *device,
                      struct scan_choice choice)
 {
+	unsigned before = names->count;
 	struct scan_property property;
+	char dir[256], left_out[512];
 
+	snprintf(dir, sizeof(dir), "owsctl %s%s%sdir %s lists what it has",
+	         choice.target ? "-t " : "", choice.target ? choice.target : "",
+	         choice.target ? " " : "", device->path);
 	for (unsigned i = 0; scan_property(device, i, &property); i++)
-		if (gets_item(device, &property, &device->value[i], choice.inputs_only) &&
+		if (gets_item(names, device, &property, &device->value[i], choice) &&
 		    !(choice.bits && make_bits(names, device, &property, device->value[i].text)))
 			make_item(names, device, &property, device->value[i].text, "");
-}
-
-bool scan_make_some(struct scan_names *names, const struct scan_device *device,
-                    struct scan_choice choice, bool noted)
-{
-	unsigned before = names->count;
-	char why[512];
-
-	scan_make_items(names, device, choice);
-	if (names->count != before)
-		return true;
-	snprintf(why, sizeof(why),
-	         "no signal for %s (%s)%s%s; owsctl %s%s%sdir %s lists what it has",
-	         device->path + 1, device->type[0] ? device->type : "unknown",
-	         device->err ? ", which does not say what it is: " : "",
-	         device->err ? error_text(device->err) : "", choice.target ? "-t " : "",
-	         choice.target ? choice.target : "", choice.target ? " " : "", device->path);
-	ctl_fail("%s", why);
-	if (noted)
-		fprintf(names->items, "%s# %s", ftell(names->items) > 0 ? "\n" : "", why);
-	return false;
+	if (names->count == before) {
+		report(names, choice, "no signal for %s (%s)%s%s; %s", device->path + 1,
+		       device->type[0] ? device->type : "unknown",
+		       device->err ? ", which does not say what it is: " : "",
+		       device->err ? error_text(device->err) : "", dir);
+		return false;
+	}
+	scan_left_out(device, left_out, sizeof(left_out));
+	if (left_out[0])
+		report(names, choice, "left out of %s (%s): %s; %s", device->path + 1, device->type,
+		       left_out, dir);
+	return true;
 }
 
 int scan_add_items(struct rio **rio, struct scan_names *names)

@@ -16,6 +16,7 @@
 struct scan_choice {
 	bool inputs_only;
 	bool bits;          /* an item for each switch of a chip, and not one for all */
+	bool noted;         /* what gets no item becomes a comment of the configuration */
 	const char *target; /* that commands which are shown have to name; NULL: none */
 };
 
@@ -42,17 +43,12 @@ size_t scan_items_most(const struct scan *scan);
 void scan_names_add(struct scan_names *names, const char *name);
 
 /*
- * Make an item for each property of the device's kind, as was chosen. An output
- * that cannot be read gets no item, and owsctl prints that.
+ * Make an item for each property of the device's kind, as was chosen; false: none was made. What
+ * the device measures or switches and gets no item is printed, with the command that shows what the
+ * device has.
  */
-void scan_make_items(struct scan_names *names, const struct scan_device *device,
+bool scan_make_items(struct scan_names *names, const struct scan_device *device,
                      struct scan_choice choice);
-/*
- * The same. Where none is made, print that, with the command that shows what the device has, and
- * return false; noted: it becomes a comment of the configuration, too.
- */
-bool scan_make_some(struct scan_names *names, const struct scan_device *device,
-                    struct scan_choice choice, bool noted);
 /* Add all items that were made at the end of the configuration, once. 0 or a negative errno. */
 int scan_add_items(struct rio **rio, struct scan_names *names);
 

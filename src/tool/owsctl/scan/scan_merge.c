@@ -289,7 +289,7 @@ static void make_items(struct work *work, unsigned i, struct scan_choice choice)
 	const struct scan_device *device = &work->scan->device[i];
 	unsigned first = work->names.count, n;
 
-	if (!scan_make_some(&work->names, device, choice, false))
+	if (!scan_make_items(&work->names, device, choice))
 		return;
 	n = work->names.count - first;
 	ctl_fail("new: %s%s%s: %s (%s)", work->names.name[first], n > 1 ? " to " : "",
