@@ -40,7 +40,6 @@ uint8_t failure_quality(int err)
 	case EOPNOTSUPP:
 		return OWS_Q_NO_PROPERTY;
 	case EILSEQ:
-	case EPROTOTYPE:
 	case EMSGSIZE:
 		return OWS_Q_TYPE;
 	case EACCES:

@@ -43,7 +43,7 @@ QUALITY(SHORT, "wire short", "The data line of the wire is held at ground.",
         "Look for a short between data and ground; unplug branches until the wire lives again.")
 QUALITY(NO_OWSD, "owsd not running",
         "owsd has ended or hangs: no heartbeat of it comes.",
-        "Does the service run: systemctl status owsd@OWS? The values are back when owsd is.")
+        "Does the service run: systemctl status owsd@*? The values are back when owsd is.")
 QUALITY(DIFFERS, "not as commanded", "The output reads otherwise than it was written.",
         "Did the device lose its supply, or did another program switch it? Set it again; Restore "
         "in the configuration does it by itself.")
@@ -71,7 +71,6 @@ ERROR(EISDIR, "it is a directory", "owsctl dir shows the properties in it")
 ERROR(ENOTDIR, "it is no directory", "owsctl read shows its value")
 ERROR(EILSEQ, "the answer is not a value of this type",
       "choose another Type; string takes any text")
-ERROR(EPROTOTYPE, "the type does not fit the property", "the log says which Type fits")
 ERROR(EMSGSIZE, "the answer is longer than the room for it",
       "choose a property that answers less")
 ERROR(EACCES, "it can only be read, or only be written",

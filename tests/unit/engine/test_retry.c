@@ -101,11 +101,11 @@ static void test_each_error_has_its_quality_and_none_is_good(void)
 	} table[] = {
 		{-ENODEV, OWS_Q_NO_DEVICE},   {-ENOENT, OWS_Q_NO_PROPERTY},
 		{-EISDIR, OWS_Q_NO_PROPERTY}, {-ENOTDIR, OWS_Q_NO_PROPERTY},
-		{-EILSEQ, OWS_Q_TYPE},        {-EPROTOTYPE, OWS_Q_TYPE},
-		{-EMSGSIZE, OWS_Q_TYPE},      {-EACCES, OWS_Q_ACCESS},
-		{-EPERM, OWS_Q_ACCESS},       {-EBADMSG, OWS_Q_DEVICE},
-		{-EIO, OWS_Q_DEVICE},         {-EINVAL, OWS_Q_DEVICE},
-		{-ECOMM, OWS_Q_SHORT},        {-ERANGE, OWS_Q_SENSOR},
+		{-EILSEQ, OWS_Q_TYPE},        {-EMSGSIZE, OWS_Q_TYPE},
+		{-EACCES, OWS_Q_ACCESS},      {-EPERM, OWS_Q_ACCESS},
+		{-EBADMSG, OWS_Q_DEVICE},     {-EIO, OWS_Q_DEVICE},
+		{-EINVAL, OWS_Q_DEVICE},      {-ECOMM, OWS_Q_SHORT},
+		{-ERANGE, OWS_Q_SENSOR},
 	};
 
 	for (unsigned i = 0; i < sizeof(table) / sizeof(table[0]); i++) {
@@ -120,11 +120,11 @@ static void test_each_error_has_its_quality_and_none_is_good(void)
 static void test_a_verdict_is_what_the_device_says_of_itself(void)
 {
 	static const int verdicts[] = {-ENODATA, -ERANGE};
-	static const int others[] = {0,         -ENODEV,      -ENXIO,    -ENOENT,  -EACCES,
-	                             -EPERM,    -EISDIR,      -EINVAL,   -EBADMSG, -ECOMM,
-	                             -EBUSY,    -EIO,         -EDOM,     -EILSEQ,  -EPROTOTYPE,
-	                             -ENOTDIR,  -EMSGSIZE,    -ETIME,    -EPROTO,  -EOPNOTSUPP,
-	                             -ENOTCONN, -EINPROGRESS, -ECANCELED};
+	static const int others[] = {
+		0,           -ENODEV,   -ENXIO,       -ENOENT,   -EACCES, -EPERM,
+		-EISDIR,     -EINVAL,   -EBADMSG,     -ECOMM,    -EBUSY,  -EIO,
+		-EDOM,       -EILSEQ,   -ENOTDIR,     -EMSGSIZE, -ETIME,  -EPROTO,
+		-EOPNOTSUPP, -ENOTCONN, -EINPROGRESS, -ECANCELED};
 
 	for (size_t i = 0; i < sizeof(verdicts) / sizeof(verdicts[0]); i++) {
 		TEST_ASSERT_TRUE(failure_is_verdict(verdicts[i]));

@@ -42,7 +42,7 @@ const QUALITIES = new Map([
 		+ "again."]],
 	[0x1a, ["owsd not running",
 		"owsd has ended or hangs: no heartbeat of it comes.",
-		"Does the service run: systemctl status owsd@OWS? The values are back when owsd is."]],
+		"Does the service run: systemctl status owsd@*? The values are back when owsd is."]],
 	[0x1c, ["not as commanded",
 		"The output reads otherwise than it was written.",
 		"Did the device lose its supply, or did another program switch it? Set it again; "
