@@ -370,7 +370,9 @@ def test_a_trend_has_what_the_recorder_kept_and_the_time_without_owsd_is_a_gap(s
 def test_wire_names_what_is_wrong_and_what_to_do(scene):
     with plant(scene) as (daemon, _, page):
         view(page, "wire")
-        shows(page, "#wire .faults", "device absent: 1 signal", "Remedy:", "attic")
+        shows(page, "#wire .faults", "attic does not answer", "Do:", "The device does not answer")
+        shows(page, "#wire .strip", "1 terminal", "room", "21.5")
+        assert page.run("return document.querySelector('#wire .screws').textContent") == "0"
         target, = json.loads(scene.owsctl(daemon, "stats", "--json").stdout)["targets"]
         shows(page, "#wire", target["name"], ROOM, BOILER, GONE, "up")
         page.until("return [...document.querySelectorAll('#wire meter')].some((m) => m.value > 0)",
@@ -535,13 +537,14 @@ def test_a_fault_of_the_simulation_is_begun_and_ended_on_the_view_wire(scene):
         card = "#wire [data-fault=fault_unplug]"
         until(lambda: page.run(CELLS)["room"]["state"] == "good", 30, lambda: page.run(CELLS))
         view(page, "wire")
+        page.click("#wire .simulation summary")
         shows(page, card, "pulls the thermometer of the room off", "off, no fault",
               "device absent")
         page.click(f"{card} [role=switch][aria-checked=false]:enabled")
         shows(page, card, "on, the fault lasts")
         until(lambda: page.run(CELLS)["room"]["quality"] == "device absent", 40,
               lambda: page.run(CELLS)["room"])
-        shows(page, "#wire .faults", "device absent", "room", "attic")
+        shows(page, "#wire .faults", "do not answer", "room", "attic")
         assert page.run(CELLS)["boiler"]["state"] == "good", page.run(CELLS)
         page.click(f"{card} [role=switch][aria-checked=true]")
         shows(page, card, "off, no fault")
@@ -557,7 +560,7 @@ def test_a_house_without_a_fault_on_demand_shows_no_faults_of_a_simulation(scene
             item("room", f"/{ROOM}/temperature12")], Web=owsdtest.raw("{ Write on }")))
         page.go(serve(scene, daemon).address)
         view(page, "wire")
-        shows(page, "#wire", "Targets and wires", ROOM)
+        shows(page, "#wire", "Adapters and terminals", "All wires are good", ROOM)
         assert not page.run("return document.querySelector('#wire .simulation').checkVisibility()")
 
 
@@ -568,11 +571,12 @@ def test_a_target_that_is_down_has_its_reason_on_the_view_wire(scene):
             item("room", f"/{ROOM}/temperature12")]))
         page.go(serve(scene, daemon).address)
         view(page, "wire")
-        shows(page, "#wire", "i2c:/dev/i2c-77", "\u00d7 down")
+        shows(page, "#wire .faults", "i2c:/dev/i2c-77 is down", "Do:")
+        shows(page, "#wire .strips", "i2c:/dev/i2c-77", "\u00d7 down")
         targets = json.loads(scene.owsctl(daemon, "stats", "--json").stdout)["targets"]
         notes = {target["name"]: target["note"] for target in targets}
         assert notes["sim:house.sim"] is None and "/dev/i2c-77" in notes["i2c:/dev/i2c-77"], notes
-        shows(page, "#wire table", notes["i2c:/dev/i2c-77"])
+        shows(page, "#wire .faults", notes["i2c:/dev/i2c-77"])
 
 
 def test_a_number_is_entered_by_slider_or_field_and_checked(scene):

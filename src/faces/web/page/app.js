@@ -54,7 +54,7 @@ const both = (module, name) => Promise.all([module, new Promise((resolve) => {
 			onerror: resolve}));
 })]).then(([made]) => made);
 const LATER = [() => both(import("./alarms.js"), "alarms.css"), () => import("./trends.js"),
-	() => import("./wire.js"), () => import("./about.js")];
+	() => both(import("./wire.js"), "wire.css"), () => import("./about.js")];
 const [alarms, trends, wire, about, config] = [...LATER,
 	() => both(import("./config.js"), "config.css")].map(fetched);
 const VIEWS = {live, alarms, trends, wire, config, about};

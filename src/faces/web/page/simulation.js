@@ -25,8 +25,8 @@ let section, cards, switches = [];
 /** The part of the view, which follows the signals by itself. */
 export function simulation() {
 	cards = el("div", {class: "faults"});
-	section = el("div", {class: "simulation", hidden: true},
-		el("h2", {}, "Faults of the simulation"),
+	section = el("details", {class: "simulation", hidden: true},
+		el("summary", {}, el("h2", {}, "Faults of the simulation")),
 		el("p", {class: "hint"}, "These switches disturb the simulated wire. Watch above what owsd "
 			+ "makes of it, and that it survives."), cards);
 	store.addEventListener("signals", make);

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: MIT
-// The view Wire: what is wrong and what to do, the targets with the load and the errors of their
-// wires, what owsd does to recover, and the devices.
+// The view Wire: what is wrong and what to do, the adapters as strips of terminals, what was
+// counted, what owsd does to recover. Faults of the simulation and the devices are last.
 import {get} from "./api.js";
 import {el, later, put, table, wide} from "./dom.js";
+import {faultCards} from "./faults.js";
 import {simulation} from "./simulation.js";
 import {store} from "./store.js";
-import {SHAPES, clock, meaningOf, qualityWords, remedyOf, span, stateOf} from "./words.js";
+import {chipNames, percent, redraw, stripsOf} from "./strip.js";
+import {faultsOf, plural, terminalsOf} from "./terminals.js";
+import {SHAPES, clock, qualityWords, span, stateOf} from "./words.js";
 
 const EVERY_MS = 2000, STEPS = 50;
 const LOOKS = 16; // over which the share of a device is shown: half a minute
-const NAMED = 12; // signals of a fault that are named
+const ROWS = 12; // devices that the table shows at once
 
 /** Counters that a wire's user wants to see: [name, heading, what it means]. */
 const COUNTS = [
@@ -37,33 +40,64 @@ const STEPS_OF = new Map([
 	["moves_in", "took signals over from another target"],
 ]);
 
-let shown = false, faults, targets, steps, devices, fault, before = null, seen = [], last = null;
+let shown = false, sentence, aside, faults, strips, figures, steps, devices, heading, search, fault;
+let before = null, seen = [], last = null, chosen = null, asTable = false;
 let looks = []; // {now, generation, wire: by device, microseconds}
 
 export function build(root) {
-	[targets, steps, devices] = ["Targets", "Recovery", "Devices"].map(wide);
-	faults = el("div", {class: "faults"});
+	[figures, steps, devices] = ["Figures", "Recovery", "Devices"].map(wide);
+	sentence = root.querySelector("h1");
+	aside = el("p", {class: "aside"});
 	fault = el("p", {class: "fault", role: "alert"});
-	root.append(fault, el("h2", {}, "What is wrong, and what to do"), faults, simulation(),
-		el("h2", {}, "Targets and wires"), targets, el("h2", {}, "Recovery"), steps,
-		el("h2", {}, "Devices"), devices);
-	const soon = later(() => shown && drawSignals(), 1000);
+	faults = el("div", {class: "faults"});
+	strips = el("div", {class: "strips", onclick: choose});
+	heading = el("h2", {});
+	search = el("input", {type: "search", "aria-label": "Search devices by id, kind or signal",
+		placeholder: "Search devices", oninput: draw});
+	const turn = el("button", {type: "button", "aria-pressed": "false", onclick: () => {
+		asTable = !asTable;
+		turn.setAttribute("aria-pressed", String(asTable));
+		draw();
+	}}, "As a table");
+	root.append(el("div", {class: "wire-top"}, sentence, aside), fault, faults,
+		el("div", {class: "tools"}, el("h2", {}, "Adapters and terminals"), turn), strips, figures,
+		steps, simulation(), el("div", {class: "tools"}, heading, search), devices);
+	const soon = later(() => shown && draw(), 1000);
 	store.addEventListener("signals", soon);
 	store.addEventListener("values", soon);
-	store.addEventListener("trust", () => {
-		if (!shown)
-			return;
-		drawTargets();
-		drawSignals();
-	});
+	store.addEventListener("trust", () => shown && draw());
 	setInterval(() => !document.hidden && (shown || before) && look(), EVERY_MS);
+}
+
+function choose({target}) {
+	const {key} = target.closest("[data-key]")?.dataset ?? {};
+	if (key === undefined)
+		return;
+	chosen = key === chosen ? null : key;
+	draw();
+}
+
+function draw() {
+	const terminals = store.unknown ? [] : terminalsOf(store.signals, last);
+	const wrong = store.unknown ? [] : faultsOf(store.signals, last?.targets ?? [], terminals);
+	const chips = terminals.flatMap((one) => one.chips);
+	const answer = chips.filter((one) => one.answers).length;
+	put(sentence, store.unknown ? "The state of the wires is unknown"
+		: wrong.length ? `${plural(wrong.length, "thing")} ${wrong.length === 1 ? "is" : "are"} wrong`
+			: "All wires are good");
+	put(aside, store.unknown ? `${store.unknown} Is the service running? Try: systemctl status `
+		+ `owsd@${store.info?.instance ?? "OWS"}` : answer === chips.length
+		? "All chips answer." : `${answer} of ${chips.length} chips answer.`);
+	redraw(faults, faultCards(wrong));
+	redraw(strips, stripsOf(terminals, last, chosen, asTable));
+	drawFigures();
+	drawSteps();
+	drawDevices(terminals, chips);
 }
 
 export function show() {
 	shown = true;
-	drawTargets();
-	drawSteps();
-	drawSignals();
+	draw();
 	look();
 }
 
@@ -81,14 +115,11 @@ async function look() {
 		put(fault, `The state of the wires cannot be shown: ${error.message}.`);
 		return;
 	}
-	if (shown) {
-		drawTargets();
-		drawSteps();
-		drawSignals();
-	}
+	if (shown)
+		draw();
 }
 
-// --- Targets --------------------------------------------------------------------------------
+// --- What was counted ------------------------------------------------------------------------
 
 function countsOf(stats) {
 	const counts = new Map();
@@ -133,120 +164,66 @@ function compareDevices(stats, now, generation) {
 	}
 }
 
-function drawTargets() {
+function drawFigures() {
 	if (store.unknown || !last) {
-		targets.replaceChildren(el("p", {class: "note"}, "The state of the targets is unknown now."));
+		redraw(figures, []);
 		return;
 	}
-	const counts = countsOf(last);
-	const known = COUNTS.filter(([name]) =>
-		(last.targets ?? []).some((target) => counts.has(`${target.name} ${name}`)));
-	const rows = (last.targets ?? []).map((target) => {
-		const load = last.load.get(target.name);
-		return [
-			el("span", {}, el("code", {}, target.name),
-				target.note ? el("p", {class: "hint"}, target.note) : null),
-			el("span", {class: `pill is-${target.state === "up" ? "good" : "bad"}`},
-				target.state === "up" ? "up" : `\u00d7 ${target.state}`),
-			String(target.wire ?? ""),
-			String(target.signals ?? ""),
-			load === undefined ? "\u2014" : el("span", {class: "load"},
-				el("meter", {min: 0, max: 100, high: 90, value: load.toFixed(1),
-					"aria-label": `Load of ${target.name}`}), ` ${load.toFixed(0)} %`),
-			String(target.reconnects ?? 0),
-			...known.map(([name]) => String(counts.get(`${target.name} ${name}`) ?? "\u2014")),
-		];
-	});
+	const counts = countsOf(last), {targets = []} = last;
+	const known = COUNTS.filter(([name]) => targets.some((one) => counts.has(`${one.name} ${name}`)));
 	const right = (text) => [text, "right"];
-	targets.replaceChildren(table("Targets, and what was counted since the start", ["Target",
-		"State", right("Wire"), right("Signals"), "Load of the wire", right("Reconnects"),
-		...known.map(([, heading]) => right(heading))], rows, "owsd has no target."),
-	el("p", {class: "hint"}, known.map(([, heading, words]) => `${heading}: ${words}.`).join(" ")));
+	redraw(figures, [table("Adapters, and what was counted since owsd started", ["Adapter",
+		right("Wire"), right("Signals"), right("Reconnects"),
+		...known.map(([, words]) => right(words))], targets.map((target) => [target.name,
+		...[target.wire, target.signals, target.reconnects].map((n) => String(n ?? "\u2014")),
+		...known.map(([name]) => String(counts.get(`${target.name} ${name}`) ?? "\u2014"))]),
+	"owsd has no target."),
+	el("p", {class: "hint"}, known.map(([, words, meaning]) => `${words}: ${meaning}.`).join(" "))]);
 }
 
 function drawSteps() {
-	steps.replaceChildren(table("Recovery since this page was opened",
-		[["Time", "time"], "Target", "What owsd did"],
-		seen.map(({time, target, words, times}) => [clock(time), el("code", {}, target),
-			`${words}${times > 1 ? `, ${times} times` : ""}`]), "Nothing had to be recovered."));
+	redraw(steps, [table("Recovery since this page was opened", [["Time", "time"], "Adapter",
+		"What owsd did"], seen.map(({time, target, words, times}) => [clock(time), target,
+		`${words}${times > 1 ? `, ${times} times` : ""}`]), "Nothing had to be recovered.")]);
 }
 
-// --- Devices and faults ---------------------------------------------------------------------
+// --- Devices ---------------------------------------------------------------------------------
 
-const RANK = {good: 0, uncertain: 1, bad: 2, unknown: 3};
-
-/* What is known of a device, where it is: [heading, cell, is it known?]. */
+/** What is known of a device, where it is: [heading, cell, is it known?]. */
 const DEVICE_COLUMNS = [
 	["Identity", ({identity}) => identity, ({identity}) => identity],
 	["Power", ({power}) => power, ({power}) => power],
 	[["Errors", "right"], ({errors, answers}) => `${errors} of ${answers}`,
 		({answers, errors}) => answers + errors > 0],
 	[["Retries", "right"], ({retries}) => String(retries), ({retries}) => retries !== null],
-	["Share of the wire", (device, id) => share(id, last.share.get(id)),
-		(device, id) => last.share.has(id)],
+	["Share of the wire", ({id}) => percent(last.share.get(id), `Share of ${id}`),
+		({id}) => last.share.has(id)],
 ];
 const DEVICE_HINT = "Identity: which chip it is by its behaviour. Power: parasite is from the data "
 	+ "line. Errors and retries: since owsd started; retries: owsd asked again after an error. Share: "
 	+ "the time of the wire that the device took in the last half minute; a conversion that all "
 	+ "thermometers begin together belongs to none.";
 
-const share = (id, part) => el("span", {class: "load"},
-	el("meter", {min: 0, max: 100, value: part.toFixed(2), "aria-label": `Share of ${id}`}),
-	part && part < 0.1 ? " < 0.1 %" : ` ${part.toFixed(1)} %`);
-
-function drawSignals() {
-	drawFaults();
-	const found = new Map();
-	for (const signal of store.signals)
-		if (signal.device)
-			found.set(signal.device, [...found.get(signal.device) ?? [], signal]);
-	const known = new Map((last?.devices ?? []).map((device) => [device.id, device]));
+function drawDevices(terminals, chips) {
+	const words = search.value.trim().toLowerCase();
+	const of = words ? null : terminals.find(({key}) => key === chosen);
+	put(heading, of ? `Chips of ${of.name}` : "Devices");
+	const found = (of ? of.chips : chips).filter(({id, family, signals}) => !words
+		|| `${id} ${family}`.toLowerCase().includes(words)
+		|| signals.some(({name}) => name.toLowerCase().includes(words)));
 	const columns = DEVICE_COLUMNS.filter(([, , has]) =>
-		[...known].some(([id, device]) => has(device, id)));
-	const rows = [...found].map(([id, signals]) => {
-		const worst = signals.reduce((a, b) => RANK[stateOf(store.quality(b))]
-			> RANK[stateOf(store.quality(a))] ? b : a);
-		const code = store.quality(worst);
-		const ages = signals.map((signal) => store.age(signal)).filter((age) => age !== null);
-		return [el("code", {}, id), signals[0].family || "\u2014",
-			el("span", {class: `pill is-${stateOf(code)}`},
-				`${SHAPES[stateOf(code)]} ${qualityWords(code)}`.trim()),
-			span(known.get(id)?.last_ok_age ?? (ages.length ? Math.min(...ages) : null)),
-			...columns.map(([, show, has]) => known.has(id) && has(known.get(id), id)
-				? show(known.get(id), id) : "\u2014"),
-			signals.map((signal) => signal.name).join(", ")];
-	});
-	devices.replaceChildren(table("Devices that have signals", ["Device", "Family", "State",
-		["Last answer", "right"], ...columns.map(([heading]) => heading), "Signals"], rows,
-	"No signal has a device."), ...(columns.length ? [el("p", {class: "hint"}, DEVICE_HINT)] : []));
-}
-
-function drawFaults() {
-	if (store.unknown) {
-		faults.replaceChildren(el("p", {class: "note"}, store.unknown,
-			" Is the service running? Try: systemctl status owsd@", store.info?.instance ?? "OWS"));
-		return;
-	}
-	const kinds = new Map();
-	for (const signal of store.signals)
-		if (!signal.good)
-			kinds.set(signal.code, [...kinds.get(signal.code) ?? [], signal]);
-	const cards = [...kinds].sort(([, a], [, b]) => b.length - a.length).map(([code, signals]) => {
-		const whys = [...new Set(signals.map((signal) => signal.why).filter(Boolean))].slice(0, 3);
-		return el("article", {class: `card is-${stateOf(code)}`},
-			el("h3", {}, el("span", {class: "shape", "aria-hidden": "true"}, SHAPES[stateOf(code)]),
-				`${signals[0].text || qualityWords(code)}: ${signals.length} `
-				+ `signal${signals.length === 1 ? "" : "s"}`),
-			el("p", {}, meaningOf(code)),
-			whys.length ? el("p", {}, `Reason: ${whys.join("; ")}`) : null,
-			remedyOf(code) ? el("p", {}, el("strong", {}, "Remedy: "), remedyOf(code)) : null,
-			el("p", {class: "names"}, ...signals.slice(0, NAMED).flatMap((signal) =>
-				[el("a", {href: `#live?q=${encodeURIComponent(signal.name)}`}, signal.name), " "]),
-			signals.length > NAMED ? `and ${signals.length - NAMED} more` : null));
-	});
-	// A link that has the focus stays, while nothing has changed
-	if (cards.length && faults.textContent === cards.map((card) => card.textContent).join(""))
-		return;
-	faults.replaceChildren(...(cards.length ? cards
-		: [el("p", {class: "fine"}, "All signals are good.")]));
+		found.some(({device}) => device && has(device)));
+	const place = new Map(terminals.flatMap((one) => one.chips.map(({id}) => [id, one.name])));
+	const rows = found.slice(0, ROWS).map((chip) => [el("code", {}, chip.id), chip.family || "\u2014",
+		place.get(chip.id), el("span", {class: `pill is-${stateOf(chip.code)}`},
+			`${SHAPES[stateOf(chip.code)]} ${qualityWords(chip.code)}`.trim()),
+		span(chip.device?.last_ok_age),
+		...columns.map(([, show, has]) =>
+			chip.device && has(chip.device) ? show(chip.device) : "\u2014"),
+		chipNames(chip)]);
+	redraw(devices, [table("Devices that have signals", ["Device", "Family", "Place", "State",
+		["Last answer", "right"], ...columns.map(([words]) => words), "Signals"], rows,
+	words ? "No device matches." : "No signal has a device."),
+	...(found.length > ROWS ? [el("p", {}, `and ${found.length - ROWS} more: search for one`)] : []),
+	...(columns.length ? [el("p", {class: "hint"}, DEVICE_HINT)] : [])]);
 }
