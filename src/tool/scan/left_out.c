@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* What a device measures or switches besides the properties that most people want of it. */
+/* The rows of a family that are no reading of scan_property(). */
+#include "src/tool/scan/left_out.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "hal/chips/find.h"
-#include "src/tool/scan/scan.h"
 
 /* The chips of the family that have the row, as bits. */
 static uint32_t chips_of(const struct family *family, const struct property *row)

@@ -26,10 +26,5 @@ void scan_free(struct scan *scan);
  * chips of a family differ, it has none before it was read.
  */
 bool scan_property(const struct scan_device *device, unsigned i, struct scan_property *property);
-/*
- * The properties of the device that measure or switch, and are neither of those that most people
- * want nor another form of one, as "vis, B1-R1-A/pressure".
- */
-void scan_left_out(const struct scan_device *device, char *out, size_t size);
 /* The property that says which chip it is, where its family code does not; else NULL. */
 const char *scan_identity(uint8_t family);
