@@ -3,7 +3,12 @@
 #include "src/history/file/schema.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stddef.h>
+#include <stdio.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
 
 #include "src/history/file/record.h"
 #include "src/history/file/sql.h"
@@ -11,6 +16,9 @@
 #include "src/history/file/wal_lock.h"
 
 #define BUSY_MS 200
+#define LOG_BYTES 4194304
+#define LOG_ROOM (64u << 20) /* on the disk */
+#define LOG_PATH 400
 
 #define ISO(id) "strftime('%Y-%m-%dT%H:%M:%fZ', (" id " + date) / 1000000.0, 'unixepoch')"
 #define SESSION(id) \
@@ -152,6 +160,7 @@ static int migrate(sqlite3 *db, int64_t version)
 
 _Static_assert(HISTORY_APPLICATION == 1870099300 && HISTORY_SCHEMA == 4,
                "migrate() says these in words");
+_Static_assert(LOG_BYTES == 4194304, "schema_check() says this in words");
 
 static int schema_check(sqlite3 *db)
 {
@@ -180,6 +189,37 @@ static int schema_check(sqlite3 *db)
 	return err ? err : tables_check(db);
 }
 
+/*
+ * SQLite's log of commits has its full size from the begin: a commit that makes it longer costs
+ * five blocks of ext4's journal more. SQLite takes zeros for the end of the log, and empties it where it
+ * closes the file. On a disk that is nearly full it grows as it would without.
+ */
+static void fill_log(const char *path)
+{
+	static const char zeros[1 << 16];
+	char name[LOG_PATH];
+	struct statvfs disk;
+	struct stat seen;
+	int fd = -1;
+
+	if (snprintf(name, sizeof(name), "%s-wal", path) < (int)sizeof(name))
+		fd = open(name, O_WRONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+	if (fd < 0)
+		return;
+	if (fstat(fd, &seen) == 0 && S_ISREG(seen.st_mode) && fstatvfs(fd, &disk) == 0 &&
+	    disk.f_bavail > LOG_ROOM / disk.f_frsize)
+		while (seen.st_size < LOG_BYTES) {
+			size_t left = (size_t)(LOG_BYTES - seen.st_size);
+			ssize_t n = pwrite(fd, zeros, left < sizeof(zeros) ? left : sizeof(zeros),
+			                   seen.st_size);
+
+			if (n <= 0)
+				break;
+			seen.st_size += n;
+		}
+	close(fd);
+}
+
 int schema_open(const char *path, sqlite3 **db)
 {
 	int err, keep = 1;
@@ -194,6 +234,8 @@ int schema_open(const char *path, sqlite3 **db)
 		sqlite3_file_control(*db, "main", SQLITE_FCNTL_PERSIST_WAL, &keep);
 		err = schema_check(*db);
 	}
+	if (!err)
+		fill_log(path);
 	if (err) {
 		sqlite3_close(*db);
 		*db = NULL;

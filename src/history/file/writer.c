@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Rows in memory, and when they go to the file. */
+/* What signals have, and when rows go to the file. */
 #include "src/history/file/writer.h"
 
 #include <errno.h>
@@ -7,18 +7,23 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/history/file/rows.h"
 #include "src/history/file/schema.h"
 #include "src/history/file/store.h"
 
 #define NS_PER_US 1000
 #define SECOND_US INT64_C(1000000)
-#define FLUSH_US MINUTE_US
+#define FLUSH_US (5 * MINUTE_US)
+/* Who has a long Flush has it for the card: so much in the file is worth a commit a minute */
+#define ENOUGH (64u << 10)
+#define ROW_BYTES 27
+/* What is no value goes to the file at once, and no more often than that */
+#define URGENT_US (10 * SECOND_US)
 #define MEMORY (4u << 20)
 /* Values of the same time reach the recorder one after the other: so long they wait for others */
 #define LATE_US SECOND_US
 #define RETRY_US SECOND_US
 #define RETRY_MOST_US (60 * SECOND_US)
-#define ALL UINT32_MAX
 
 /* What a signal has, beside its key. */
 struct kept {
@@ -38,17 +43,15 @@ struct history_writer {
 	uint32_t key_count;
 	uint32_t *table; /* a signal's key */
 	uint32_t count;
-	struct history_row *rows;
-	uint32_t row_count, row_most, seq;
-	size_t text_bytes, text_most;
+	struct history_rows rows;
 	int64_t offset_us;
 	bool trusted;
 	int64_t newest_us; /* no gap of all begins before it: of all rows, and after a value */
 	int64_t floor_us;  /* the end of the last gap of all */
 	int64_t begin_us, flushed_us, retry_us, step_us, repeat_us;
-	uint32_t files; /* begun so far; another number: the present one has nothing of before */
+	int64_t urgent_us; /* of the oldest row that is no value; INT64_MAX: none */
+	uint32_t files;    /* begun so far; another number: the present one has nothing of before */
 	int error;
-	uint64_t dropped;
 };
 
 int history_writer_open(const struct history_options *options, int64_t now_ns, int64_t offset_ns,
@@ -60,12 +63,9 @@ int history_writer_open(const struct history_options *options, int64_t now_ns, i
 	*writer = NULL;
 	if (!w)
 		return -ENOMEM;
-	w->row_most = bytes / (uint32_t)sizeof(*w->rows) + 2;
-	w->text_most = bytes;
-	w->rows = calloc(w->row_most, sizeof(*w->rows));
 	w->directory = strdup(options->directory);
-	if (!w->rows || !w->directory) {
-		free(w->rows);
+	if (rows_open(&w->rows, bytes) || !w->directory) {
+		rows_close(&w->rows);
 		free(w->directory);
 		free(w);
 		return -ENOMEM;
@@ -79,108 +79,20 @@ int history_writer_open(const struct history_options *options, int64_t now_ns, i
 	w->flush_us = options->flush_ns > 0 ? options->flush_ns / NS_PER_US : FLUSH_US;
 	w->begin_us = w->flushed_us = w->repeat_us = now_ns / NS_PER_US;
 	w->floor_us = w->newest_us = w->begin_us;
+	w->urgent_us = INT64_MAX;
 	w->offset_us = offset_ns / NS_PER_US;
 	w->trusted = trusted;
 	*writer = w;
 	return 0;
 }
 
-/*
- * --- Memory ------------------------------------------------------------------------------------
- */
-
-static void free_row(struct history_writer *w, struct history_row *row)
-{
-	if (row->text)
-		w->text_bytes -= strlen(row->text) + 1;
-	if (row->event)
-		w->text_bytes -= sizeof(*row->event);
-	free(row->text);
-	free(row->event);
-	row->text = NULL;
-	row->event = NULL;
-}
-
-static int by_time(const void *a, const void *b)
-{
-	const struct history_row *left = a, *right = b;
-
-	if (left->us != right->us)
-		return left->us < right->us ? -1 : 1;
-	return left->seq < right->seq ? -1 : left->seq > right->seq;
-}
-
-static void sort_rows(struct history_writer *w)
-{
-	qsort(w->rows, w->row_count, sizeof(*w->rows), by_time);
-	for (uint32_t i = 0; i < w->row_count; i++)
-		w->rows[i].seq = i;
-	w->seq = w->row_count;
-}
-
-/* The first rows are not needed any more. */
-static void remove_rows(struct history_writer *w, uint32_t count)
-{
-	for (uint32_t i = 0; i < count; i++)
-		free_row(w, &w->rows[i]);
-	w->row_count -= count;
-	memmove(w->rows, w->rows + count, w->row_count * sizeof(*w->rows));
-}
-
-/*
- * Memory is full: the oldest half becomes a gap, after which each signal has what it had at its
- * end. Signals that are too many for that are known again when they are repeated.
- */
-static void drop_half(struct history_writer *w)
-{
-	uint32_t half, left = 0, *last = calloc(w->key_count + 1, sizeof(*last));
-	struct history_row gap = {.kind = ROW_GAP, .key = ALL, .reason = OWS_HISTORY_DISK};
-
-	sort_rows(w);
-	half = w->row_count / 2;
-	gap.us = w->rows[0].us;
-	gap.value = w->rows[half].us;
-	for (uint32_t i = 0; last && i < half; i++) {
-		const struct history_row *row = &w->rows[i];
-
-		if (row->kind == ROW_VALUE)
-			last[row->key] = i + 1;
-		else if (row->kind == ROW_GAP && row->key == ALL)
-			memset(last, 0, w->key_count * sizeof(*last));
-		else if (row->kind == ROW_GAP)
-			last[row->key] = 0;
-	}
-	for (uint32_t i = 0; i < half; i++) {
-		struct history_row *row = &w->rows[i];
-
-		if (last && row->kind == ROW_VALUE && last[row->key] == i + 1 && left < half / 2) {
-			w->rows[left] = *row;
-			w->rows[left++].us = gap.value;
-		} else {
-			free_row(w, row);
-		}
-	}
-	free(last);
-	w->dropped += half - left;
-	w->rows[left++] = gap;
-	memmove(w->rows + left, w->rows + half, (w->row_count - half) * sizeof(*w->rows));
-	w->row_count -= half - left;
-	sort_rows(w);
-}
-
-/* Texts and events count too. The row's memory belongs to the writer now. */
 static void writer_add(struct history_writer *w, struct history_row row)
 {
-	size_t bytes = row.text ? strlen(row.text) + 1 : row.event ? sizeof(*row.event) : 0;
-
-	while (w->row_count > 8 &&
-	       (w->row_count + 1 >= w->row_most || w->text_bytes + bytes > w->text_most))
-		drop_half(w);
-	row.seq = w->seq++;
-	w->text_bytes += bytes;
-	w->rows[w->row_count++] = row;
+	rows_add(&w->rows, row, w->key_count);
 	if (row.us >= w->newest_us && row.kind != ROW_EVENT)
 		w->newest_us = row.us + (row.kind == ROW_VALUE);
+	if (row.kind != ROW_VALUE && row.us < w->urgent_us)
+		w->urgent_us = row.us;
 }
 
 /*
@@ -290,7 +202,7 @@ static void gap_of_all(struct history_writer *w, int64_t from_us, int64_t until_
 	writer_add(w, (struct history_row){.kind = ROW_GAP,
 	                                   .us = from_us,
 	                                   .value = until_us,
-	                                   .key = ALL,
+	                                   .key = ROW_OF_ALL,
 	                                   .reason = reason});
 }
 
@@ -303,6 +215,7 @@ void history_writer_gap(struct history_writer *w, int64_t from_ns, int64_t until
 void history_writer_begin(struct history_writer *w, int64_t now_ns)
 {
 	forget_all(w, now_ns / NS_PER_US);
+	w->urgent_us = now_ns / NS_PER_US; /* that a run begins, and what it finds */
 }
 
 void history_writer_forget(struct history_writer *w, uint32_t signal, int64_t from_ns,
@@ -370,8 +283,8 @@ void history_writer_clock(struct history_writer *w, int64_t now_ns, int64_t offs
 		return;
 	w->offset_us = offset_ns / NS_PER_US;
 	w->trusted = trusted;
-	writer_add(w,
-	           (struct history_row){.kind = ROW_CLOCK, .us = now_ns / NS_PER_US, .key = ALL});
+	writer_add(w, (struct history_row){
+			      .kind = ROW_CLOCK, .us = now_ns / NS_PER_US, .key = ROW_OF_ALL});
 }
 
 /*
@@ -407,7 +320,7 @@ static int commit_rows(struct history_writer *w, int64_t now_us, int64_t until_u
 	struct store_batch batch = {
 		.keys = w->keys,
 		.key_count = w->key_count,
-		.rows = w->rows,
+		.rows = w->rows.rows,
 		.begin_us = w->begin_us,
 		.seen_us = until_us < INT64_MAX ? until_us : now_us,
 		.offset_us = w->offset_us,
@@ -416,14 +329,18 @@ static int commit_rows(struct history_writer *w, int64_t now_us, int64_t until_u
 	uint32_t files;
 	int err;
 
-	sort_rows(w);
-	while (batch.count < w->row_count && w->rows[batch.count].us <= until_us)
+	rows_sort(&w->rows);
+	while (batch.count < w->rows.count && w->rows.rows[batch.count].us <= until_us)
 		batch.count++;
 	err = store_commit(&w->store, &batch);
 	note_commit(w, err, now_us);
 	if (err)
 		return err;
-	remove_rows(w, batch.count);
+	rows_remove(&w->rows, batch.count);
+	w->urgent_us = INT64_MAX;
+	for (uint32_t i = w->rows.count; i--;)
+		if (w->rows.rows[i].kind != ROW_VALUE)
+			w->urgent_us = w->rows.rows[i].us;
 	files = w->store.begun + (w->store.begun && !w->store.start);
 	if (w->files && files != w->files)
 		repeat_values(w, now_us,
@@ -432,20 +349,32 @@ static int commit_rows(struct history_writer *w, int64_t now_us, int64_t until_u
 	return 0;
 }
 
+static bool is_worth_a_commit(const struct history_writer *w, int64_t now_us)
+{
+	int64_t since_us = now_us - w->flushed_us;
+
+	if (w->rows.count > w->rows.most / 4 || w->rows.text_bytes > w->rows.text_most / 4)
+		return true;
+	if (w->urgent_us <= now_us - LATE_US && since_us >= URGENT_US)
+		return true;
+	if (since_us >= MINUTE_US && w->rows.count * ROW_BYTES + w->rows.text_bytes >= ENOUGH)
+		return true;
+	return since_us >= w->flush_us;
+}
+
 int history_writer_tick(struct history_writer *w, int64_t now_ns)
 {
 	int64_t now_us = now_ns / NS_PER_US;
-	bool full = w->row_count > w->row_most / 4 || w->text_bytes > w->text_most / 4;
 
 	if (now_us - w->repeat_us >= MINUTE_US)
 		repeat_values(w, now_us, false);
 	if (w->error) {
 		if (now_us < w->retry_us)
 			return w->error;
-	} else if (!full && now_us - w->flushed_us < w->flush_us) {
+	} else if (!is_worth_a_commit(w, now_us)) {
 		return 0;
 	}
-	if (!w->row_count && !w->error && !store_is_due(&w->store, now_us - LATE_US))
+	if (!w->rows.count && !w->error && !store_is_due(&w->store, now_us - LATE_US))
 		return 0;
 	return commit_rows(w, now_us, now_us - LATE_US);
 }
@@ -461,15 +390,14 @@ int history_writer_close(struct history_writer *w, int64_t now_ns)
 
 	if (!w)
 		return 0;
-	if (w->files || w->row_count) {
+	if (w->files || w->rows.count) {
 		gap_of_all(w, now_ns / NS_PER_US, now_ns / NS_PER_US, OWS_HISTORY_STOPPED);
 		err = commit_rows(w, now_ns / NS_PER_US, INT64_MAX);
 	}
 	store_close(&w->store);
-	remove_rows(w, w->row_count);
 	for (uint32_t i = 0; i < w->key_count; i++)
 		free(w->kept[i].text);
-	free(w->rows);
+	rows_close(&w->rows);
 	free(w->keys);
 	free(w->kept);
 	free(w->table);
@@ -491,8 +419,8 @@ void history_writer_state(const struct history_writer *w, struct history_state *
 {
 	*state = (struct history_state){
 		.error = w->error,
-		.waiting = (uint32_t)(w->row_count * sizeof(*w->rows) + w->text_bytes),
-		.dropped = w->dropped,
+		.waiting = (uint32_t)(w->rows.count * sizeof(*w->rows.rows) + w->rows.text_bytes),
+		.dropped = w->rows.dropped,
 		.rows = w->store.rows,
 		.commits = w->store.commits,
 		.files = w->files,

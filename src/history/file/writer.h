@@ -19,7 +19,7 @@ struct history_writer;
 struct history_options {
 	const char *directory; /* made if it is missing; its parent has to be there */
 	int64_t boot;          /* history_boot_present() */
-	int64_t flush_ns;      /* from one commit to the next; 0: a minute */
+	int64_t flush_ns;      /* from one commit to the next at most; 0: five minutes */
 	uint32_t memory_bytes; /* kept while the disk fails; 0: 4 MiB */
 	struct history_keep keep;
 	void (*say)(void *ctx, const char *text); /* of a damaged file; NULL: it is not reported */
@@ -63,7 +63,9 @@ void history_writer_clock(struct history_writer *writer, int64_t now_ns, int64_t
 void history_writer_event(struct history_writer *writer, const struct history_event *event);
 
 /*
- * The recorder has looked until now_ns. Commits what is due; tries a failed disk again (after 1 s,
+ * The recorder has looked until now_ns. Commits what is due: alarms, commands, gaps and the begin
+ * of a run at once, but ten seconds after the last commit at the soonest; values as flush_ns says,
+ * or after a minute if there are 64 kB of them. Tries a failed disk again (after 1 s,
  * then twice as long each time, 60 s at most). Returns 0, or the error of the disk that it met.
  */
 int history_writer_tick(struct history_writer *writer, int64_t now_ns);

@@ -109,8 +109,8 @@ int past_unknown(const struct ctl *ctl, struct ows_history *h, const char *name)
 				nearest = info.name;
 		}
 	if (known)
-		ctl_fail("the history has nothing of %s yet: owsd-recorder writes each minute, or "
-		         "as Flush says",
+		ctl_fail("the history has nothing of %s yet: owsd-recorder writes every five "
+		         "minutes, or as Flush says",
 		         name);
 	else if (nearest)
 		ctl_fail("the history has no signal %s; did you mean %s?", name, nearest);

@@ -47,6 +47,35 @@ static const char *file(const char *more)
 	return path;
 }
 
+/* Commits since the last question. */
+static int new_commits(void)
+{
+	static uint64_t before;
+	struct history_state state;
+	uint64_t was = before;
+
+	history_writer_state(past.writer, &state);
+	before = state.commits;
+	return (int)(before - (was > before ? 0 : was));
+}
+
+/* Each second, with that many changes. */
+static void seconds(int from, int until, int changes)
+{
+	for (int s = from; s < until; s++) {
+		for (int i = 0; i < changes; i++)
+			past_room(&past, s * PAST_S + i, s + i);
+		TEST_ASSERT_EQUAL_INT(0, history_writer_tick(past.writer, s * PAST_S));
+	}
+}
+
+static void alarm_at(int s)
+{
+	history_writer_event(past.writer, &(struct history_event){.kind = OWS_HISTORY_ALARM,
+	                                                          .signal = PAST_ROOM,
+	                                                          .time_ns = s * PAST_S});
+}
+
 /* Rows of the same time are microseconds apart. */
 static void expect(int i, int64_t boot_ns, double value)
 {
@@ -308,6 +337,80 @@ static void test_a_value_that_holds_is_repeated_each_hour_and_one_of_a_gone_sign
 	TEST_ASSERT_EQUAL_INT(3, count_of(PAST_TITLE));
 	TEST_ASSERT_EQUAL_INT64(
 		3, past_ask(&past, "select count(*) from hour where id >> 3 & 65535 = 2"));
+}
+
+/*
+ * --- Commits -----------------------------------------------------------------------------------
+ */
+
+static void test_values_are_committed_in_five_minutes_and_the_begin_of_a_run_at_once(void)
+{
+	past.options.flush_ns = 0;
+	past_begin(&past, 0, PAST_NOON, true);
+	new_commits();
+	seconds(1, 10, 1);
+	TEST_ASSERT_EQUAL_INT(0, new_commits());
+	seconds(10, 12, 1);
+	TEST_ASSERT_EQUAL_INT(1, new_commits());
+	seconds(12, 310, 1);
+	TEST_ASSERT_EQUAL_INT(0, new_commits());
+	seconds(310, 311, 1);
+	TEST_ASSERT_EQUAL_INT(1, new_commits());
+}
+
+static void test_an_alarm_and_a_gap_are_committed_at_once_and_many_of_them_each_ten_seconds(void)
+{
+	past.options.flush_ns = 0;
+	past_begin(&past, 0, PAST_NOON, true);
+	seconds(1, 100, 1);
+	new_commits();
+	alarm_at(100);
+	seconds(100, 102, 1);
+	TEST_ASSERT_EQUAL_INT(1, new_commits());
+	TEST_ASSERT_EQUAL(1, past_ask(&past, "select count(*) from event where kind = 8"));
+	TEST_ASSERT_TRUE(past_ask(&past, "select count(*) from raw") >= 99);
+	history_writer_gap(past.writer, 120 * PAST_S, 121 * PAST_S, OWS_HISTORY_OVERRUN);
+	seconds(121, 123, 1);
+	TEST_ASSERT_EQUAL_INT(1, new_commits());
+	for (int s = 200; s < 260; s++) {
+		alarm_at(s);
+		seconds(s, s + 1, 1);
+	}
+	TEST_ASSERT_EQUAL_INT(6, new_commits());
+}
+
+static void test_from_a_minute_on_64_kb_of_values_are_worth_a_commit(void)
+{
+	past.options.flush_ns = 0;
+	past_begin(&past, 0, PAST_NOON, true);
+	seconds(1, 12, 30);
+	new_commits();
+	seconds(12, 70, 30);
+	TEST_ASSERT_EQUAL_INT(0, new_commits());
+	seconds(70, 100, 30);
+	TEST_ASSERT_EQUAL_INT(1, new_commits());
+}
+
+static off_t size_of_log(void)
+{
+	struct stat seen;
+
+	TEST_ASSERT_EQUAL_INT(0, stat(file("-wal"), &seen));
+	return seen.st_size;
+}
+
+static void test_the_log_of_commits_has_its_size_from_the_begin(void)
+{
+	off_t size;
+
+	past_begin(&past, 0, PAST_NOON, true);
+	seconds(1, 20, 1);
+	size = size_of_log();
+	TEST_ASSERT_EQUAL_INT(4 << 20, size);
+	seconds(20, 4000, 20);
+	TEST_ASSERT_EQUAL_INT(size, size_of_log());
+	TEST_ASSERT_EQUAL(0, past_ask(&past, "select count(*) from pragma_integrity_check"
+	                                     " where integrity_check <> 'ok'"));
 }
 
 /*
@@ -998,6 +1101,10 @@ int main(void)
 	RUN_TEST(test_a_gap_at_the_time_of_values_after_a_gap_is_another);
 	RUN_TEST(test_gaps_are_read_as_gaps_and_values_after_them_are_new);
 	RUN_TEST(test_a_value_that_holds_is_repeated_each_hour_and_one_of_a_gone_signal_is_not);
+	RUN_TEST(test_values_are_committed_in_five_minutes_and_the_begin_of_a_run_at_once);
+	RUN_TEST(test_an_alarm_and_a_gap_are_committed_at_once_and_many_of_them_each_ten_seconds);
+	RUN_TEST(test_from_a_minute_on_64_kb_of_values_are_worth_a_commit);
+	RUN_TEST(test_the_log_of_commits_has_its_size_from_the_begin);
 	RUN_TEST(test_values_are_kept_for_days_minutes_for_more_and_hours_for_ever);
 	RUN_TEST(test_the_journal_is_kept_as_long_as_minutes);
 	RUN_TEST(test_a_value_that_was_measured_before_the_last_one_comes_after_it);
