@@ -167,20 +167,11 @@ struct lcd {
 	bool pending;     /* counts may be in the scratchpad that were not read yet */
 };
 
-static int family_ff_send(struct txn *txn, uint8_t code, const uint8_t *bytes, unsigned n)
-{
-	uint8_t command[1 + 1 + LCD_PAD] = {code};
-
-	if (n)
-		memcpy(command + 1, bytes, n);
-	return txn_command(txn, command, 1 + n);
-}
-
 static int read_pad(struct txn *txn, uint8_t bytes[LCD_PAD])
 {
-	int err = family_ff_send(txn, READ_PAD, NULL, 0);
+	static const uint8_t read = READ_PAD;
 
-	return err ? err : txn_read(txn, bytes, LCD_PAD);
+	return txn_ask(txn, &read, 1, bytes, LCD_PAD);
 }
 
 /*
@@ -202,8 +193,7 @@ static int fetch_by_pad(struct txn *txn, uint8_t code, const uint8_t *setup, uns
 		err = lcd_swart_fill(txn, fill, sizeof(fill));
 		return err ? err : TXN_MORE;
 	case 1:
-		err = family_ff_send(txn, code, NULL, 0);
-		return err ? err : txn_wait(txn, SOON_NS);
+		return lcd_swart_send(txn, code, SOON_NS);
 	}
 	err = read_pad(txn, in);
 	if (err)
@@ -279,13 +269,14 @@ static int merge_pins(struct txn *txn)
 /* Twice, for a pin that is low from outside does not show that it was released. */
 static int write_pins(struct txn *txn)
 {
-	const uint8_t bits = txn->bits & 0x0f, byte = (uint8_t)(0x80 | (~bits & 0x0f));
+	const uint8_t bits = txn->bits & 0x0f;
+	const uint8_t command[] = {WRITE_PINS, (uint8_t)(0x80 | (~bits & 0x0f))};
 	int err;
 
 	if (txn->phase < 2) {
 		txn->phase++;
 		txn->device->shadow_known = false;
-		err = family_ff_send(txn, WRITE_PINS, &byte, 1);
+		err = txn_command(txn, command, sizeof(command));
 		return err ? err : TXN_MORE;
 	}
 	err = read_pins(txn);
@@ -332,8 +323,7 @@ static int read_counts(struct txn *txn)
 	case 1:
 		pad->step = 2;
 		lcd->pending = true;
-		err = family_ff_send(txn, READ_COUNTERS, NULL, 0);
-		return err ? err : txn_wait(txn, SOON_NS);
+		return lcd_swart_send(txn, READ_COUNTERS, SOON_NS);
 	}
 	err = read_pad(txn, in);
 	if (err)
