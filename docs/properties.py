@@ -43,7 +43,7 @@ MASTER = "w1_bus_master1"
 
 INTRO = """# Properties, one by one
 
-owserver 3.2p4 states {all} properties of {families} families in its `/structure`. Each was asked
+owserver 3.2p4 states {all} properties of {families} families of devices in its `/structure`. Each was asked
 for twice: of the genuine owserver and of owsd, with the same simulated chip, alone on its wire.
 owserver reached the chip by a serial adapter (a DS9097 on a pseudo-terminal), owsd by its DS2482
 driver. `make properties-page` writes this page, and a test fails when it is not what it would be.

@@ -61,7 +61,6 @@ FAMILY(a2) /* mCM001 */
 FAMILY(a5) /* mDI001 */
 FAMILY(a6) /* DS2438 */
 FAMILY(b2) /* mAM001 */
-FAMILY(dd) /* Example_slave */
 FAMILY(ed) /* Inferno Embedded */
 FAMILY(ee) /* Hobby Boards: UVI meter */
 FAMILY(ef) /* Hobby Boards: moisture meter, hub, barometer, ... */

@@ -43,7 +43,7 @@
 	family(hb_uvi_meter) family(hb_moisture_meter) family(hb_hub) family(hb_barometer) \
 	family(hb_humidity) family(hb_multitemp) family(lcd) family(bae0910) family(bae0911) \
 	family(inferno_switches) family(inferno_rgbw) family(inferno_updater) family(iblss) \
-	family(mrs001) family(mcm001) family(mdi001) family(mam001) family(example_slave)
+	family(mrs001) family(mcm001) family(mdi001) family(mam001)
 /* clang-format on */
 
 #define SIM_FAMILY_DECLARE(part) extern const struct sim_family sim_##part;

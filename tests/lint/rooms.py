@@ -17,7 +17,7 @@ TOPS = ["src", "hal"]
 # Lists of tables of operations, and the tables in them: backends, families, simulated families. A
 # dispatcher finds in the list what stands above it; that is its purpose, so it is not counted.
 TABLES = r"bus_backends|\w+_bus|family_[0-9a-f]{2}|sim_families|sim_[a-z]+[0-9]\w*" \
-    r"|sim_(hb|inferno)_\w+|sim_(lcd|iblss|example_slave)"
+    r"|sim_(hb|inferno)_\w+|sim_(lcd|iblss)"
 # Headers whose functions stand in many files, by design: the consumers' headers, the verbs of
 # owsctl and the paths of owsd-web, each in the file of its name
 MANY = {"src/public/ows.h", "src/public/ows_history.h", "src/tool/owsctl/verbs.h",

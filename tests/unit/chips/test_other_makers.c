@@ -84,21 +84,6 @@ static void test_contacts_are_open_closed_shorted_or_interrupted(void)
 	refuses(-EACCES, BUS_WRITE, "switch_closed.0", "1");
 }
 
-static void test_the_example_of_owfs_answers_without_the_wire(void)
-{
-	begin("Example_slave");
-	start();
-	reads("read_number", "          42");
-	reads("bits.BYTE", "          42");
-	reads("bits.1", "1");
-	reads("is_index_prime.3", "1");
-	reads("is_index_prime.97", "1");
-	reads("is_index_prime.91", "0");
-	reads("is_index_prime.1", "0");
-	refuses(-EINVAL, BUS_READ, "is_index_prime.0", NULL);
-	refuses(-EOPNOTSUPP, BUS_READ, "extension_characters.abc", NULL);
-}
-
 static void test_a_room_is_measured(void)
 {
 	begin("IBLSS");
@@ -585,7 +570,6 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_sensors_with_one_word_are_read);
 	RUN_TEST(test_contacts_are_open_closed_shorted_or_interrupted);
-	RUN_TEST(test_the_example_of_owfs_answers_without_the_wire);
 	RUN_TEST(test_a_room_is_measured);
 	RUN_TEST(test_a_room_whose_checksum_covers_the_command_is_measured);
 	RUN_TEST(test_a_room_with_another_checksum_has_no_value);

@@ -101,13 +101,6 @@ static void test_the_smart_slave_has_a_light(void)
 	TEST_ASSERT_EQUAL_HEX8(1, *sim_slave_memory(slave, &size));
 }
 
-static void test_the_example_has_an_id_only(void)
-{
-	slave = hand_plug(&hand, &sim_example_slave, 1);
-	hand_skip(&hand, 1, 0xF0);
-	TEST_ASSERT_EQUAL_HEX8(0xFF, hand_byte(&hand));
-}
-
 int main(void)
 {
 	UNITY_BEGIN();
@@ -115,6 +108,5 @@ int main(void)
 	RUN_TEST(test_a_contact_is_closed_shorted_or_interrupted);
 	RUN_TEST(test_the_smart_slave_is_busy_until_it_has_converted);
 	RUN_TEST(test_the_smart_slave_has_a_light);
-	RUN_TEST(test_the_example_has_an_id_only);
 	return UNITY_END();
 }
