@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The battery gauges with 256 addresses: what several families do alike, and what a DS2770 does
- * (gauges.c has the tables and the data sheets).
+ * The battery gauges with 256 addresses: what several families do alike (gauges.c has the
+ * tables and the data sheets).
  */
 #include <errno.h>
 
@@ -10,8 +10,7 @@
 #include "hal/chips/thermometers/thermocouple.h"
 
 #define VIS 0x0e /* the voltage across the resistor */
-enum { DEFAULTS_AT = 0x31, STATUS_AT = 0x01, CHARGING = 0x40, CHARGE_STATUS = 0xc0 };
-#define REFRESHED 0x33 /* bits of the status that Refresh takes from the EEPROM */
+enum { STATUS_AT = 0x01, CHARGING = 0x40, CHARGE_STATUS = 0xc0 };
 
 /* Read Data, Write Data, Recall Data, Copy Data. */
 #define GAUGE_READ .address_bytes = 1, .read = 0x69
@@ -23,7 +22,6 @@ enum { DEFAULTS_AT = 0x31, STATUS_AT = 0x01, CHARGING = 0x40, CHARGE_STATUS = 0x
 
 static AREA_NAMED(words, "words", .size = 256, .block = 2, GAUGE_READ);
 static AREA_NAMED(bytes_of, "bytes", .size = 256, GAUGE_READ);
-static AREA_NAMED(eeprom, "EEPROM", .size = 128, GAUGE_STORED(16));
 
 /* A number of two bytes that goes on counting while it is written. */
 static bool is_counted(struct txn *txn, const uint8_t *have, const uint8_t *want, unsigned n)
@@ -40,7 +38,7 @@ const struct area *const gauge_areas[GAUGE_AREAS] = {
 	[BYTES] = &bytes_of,
 	[CHARGE] = AREA(.name = "accumulated current", .at = 0x10, .size = 2, GAUGE_WRITE(2),
                         .is_written = is_counted),
-	[EEPROM] = &eeprom,
+	[EEPROM] = AREA(.name = "EEPROM", .size = 128, GAUGE_STORED(16)),
 	[EEPROM4] = AREA(.name = "EEPROM", .size = 0x34, GAUGE_STORED(4)),
 	[EEPROM32] = AREA(.name = "EEPROM", .size = 128, GAUGE_STORED(32)),
 	/* A copy takes the whole block, so all of it is written. */
@@ -59,33 +57,10 @@ const struct area *const gauge_areas[GAUGE_AREAS] = {
 static int read_lock(struct txn *txn)
 {
 	uint8_t byte = 0;
-	int err = area_read(txn, &bytes_of, txn->property->arg & 0xff, &byte, 1);
+	int err = area_read(txn, &bytes_of, (unsigned)txn->property->arg, &byte, 1);
 
 	txn->number[0] = byte >> txn->element & 1;
 	return err;
-}
-
-/* For good: the enabling bit, and the command that has to follow it at once. */
-static int write_lock(struct txn *txn)
-{
-	uint32_t places = (uint32_t)txn->property->arg;
-	const uint8_t enable[] = {0x6c, (uint8_t)places, 0x40};
-	const uint8_t lock[] = {0x6a, (uint8_t)(places >> (8 * (1 + txn->element)))};
-	int err = 0;
-
-	if (txn->phase == 0) {
-		if (txn->number[0] == 0)
-			return -EOPNOTSUPP;
-		txn_void(txn);
-		err = txn_command(txn, enable, sizeof(enable));
-		if (!err)
-			err = txn_command(txn, lock, sizeof(lock));
-		if (err)
-			return err;
-		txn->phase = 1;
-	}
-	err = read_lock(txn);
-	return err ? err : txn->number[0] != 0 ? 0 : -EIO;
 }
 
 static int signed_word(const uint8_t *bytes)
@@ -130,23 +105,16 @@ static int read_couple_high(struct txn *txn)
 	return 0;
 }
 
-/* --- Of a DS2770 --- */
-
-static int command_ds2770(struct txn *txn, uint8_t code)
-{
-	txn_void(txn);
-	return txn_command(txn, &code, 1);
-}
-
-/* Start Charge, Stop Charge; then the status says what it is. */
+/* Of a DS2770: Start Charge, Stop Charge; then the status says what it is. */
 static int write_charge(struct txn *txn)
 {
-	bool on = txn->number[0] != 0;
+	const uint8_t command = txn->number[0] != 0 ? 0xb5 : 0xbe;
 	uint8_t byte;
 	int err;
 
 	if (txn->phase == 0) {
-		err = command_ds2770(txn, on ? 0xb5 : 0xbe);
+		txn_void(txn);
+		err = txn_command(txn, &command, 1);
 		if (err)
 			return err;
 		txn->phase = 1;
@@ -154,64 +122,17 @@ static int write_charge(struct txn *txn)
 	err = area_read(txn, &bytes_of, STATUS_AT, &byte, 1);
 	if (err)
 		return err;
-	return ((byte & CHARGE_STATUS) == CHARGING) == on ? 0 : -EIO;
-}
-
-/* The phases from first on: what the EEPROM holds, Refresh, the status. */
-static int refresh(struct txn *txn, unsigned first)
-{
-	uint8_t *stored = txn_own(txn, uint8_t), byte;
-	int err;
-
-	if (txn->phase == first) {
-		err = area_read(txn, &eeprom, DEFAULTS_AT, stored, 1);
-		if (err)
-			return err;
-		txn->phase++;
-		return TXN_MORE;
-	}
-	if (txn->phase == first + 1) {
-		err = command_ds2770(txn, 0x63);
-		if (err)
-			return err;
-		txn->phase++;
-	}
-	err = area_read(txn, &bytes_of, STATUS_AT, &byte, 1);
-	if (err)
-		return err;
-	return ((byte ^ *stored) & REFRESHED) == 0 ? 0 : -EIO;
-}
-
-static int write_refresh(struct txn *txn)
-{
-	return txn->number[0] != 0 ? refresh(txn, 0) : 0;
-}
-
-/* The status has it from the EEPROM, when it is refreshed. */
-static int write_setting(struct txn *txn)
-{
-	const uint8_t mask = (uint8_t)(1 << txn->property->field.shift);
-	const uint8_t byte = txn->number[0] != 0 ? mask : 0;
-	int err;
-
-	if (txn->phase > 0)
-		return refresh(txn, 1);
-	err = area_write(txn, &eeprom, DEFAULTS_AT, &byte, &mask, 1);
-	if (err)
-		return err;
-	txn->phase = 1;
-	return TXN_MORE;
+	return ((byte & CHARGE_STATUS) == CHARGING) == (command == 0xb5) ? 0 : -EIO;
 }
 
 const struct property_how gauge_how[GAUGE_WAYS] = {
-	[WAY_LOCK] = {.read = read_lock, .write = write_lock},
+	/* a lock is for good */
+	[WAY_LOCK] = {.read = read_lock, .write = property_refuse},
 	[WAY_COUPLE] = {.read = read_couple},
 	[WAY_COUPLE_LOW] = {.read = read_couple_low},
 	[WAY_COUPLE_HIGH] = {.read = read_couple_high},
-	[WAY_BESIDE_PIO] = {.write = property_refuse},
+	[WAY_REFUSED] = {.write = property_refuse},
 	[WAY_CHARGE] = {.write = write_charge},
-	[WAY_REFRESH] = {.write = write_refresh},
-	[WAY_SETTING] = {.write = write_setting},
 	[WAY_PAGE] = {SET(EEPROM, .at = 0x20)},
 	[WAY_PMOD] = {SET(EEPROM, .at = 0x31, .shift = 5, .bits = 1)},
 	[WAY_SWEN] = {SET(EEPROM, .at = 0x31, .shift = 3, .bits = 1)},

@@ -29,15 +29,12 @@ enum {
 extern const struct area *const gauge_areas[GAUGE_AREAS];
 
 enum {
-	WAY_LOCK = 1,   /* arg: the EEPROM register, and from bit 8 on the address of each block */
+	WAY_LOCK = 1,   /* arg: the EEPROM register */
 	WAY_COUPLE,     /* arg: its type, the temperature's address, how fine the voltage is */
 	WAY_COUPLE_LOW, /* arg: its type */
 	WAY_COUPLE_HIGH,
-	WAY_BESIDE_PIO,
-	/* of a DS2770 */
-	WAY_CHARGE,
-	WAY_REFRESH,
-	WAY_SETTING,
+	WAY_REFUSED,
+	WAY_CHARGE, /* of a DS2770 */
 	/* of a DS2760 */
 	WAY_PAGE,
 	WAY_PMOD,

@@ -16,9 +16,9 @@
 #include "hal/chips/thermometers/thermocouple.h"
 
 /* clang-format off */
-#define GAUGE_LOCK(n, register_, blocks) \
-	PROPERTY("lock", YESNO, STABLE, BOTH, ELEMENTS(n, NUMBERS), \
-	         .arg = (register_) | (blocks) << 8, .how = WAY_LOCK)
+#define GAUGE_LOCK(n, register_) \
+	PROPERTY("lock", YESNO, STABLE, BOTH, ELEMENTS(n, NUMBERS), .arg = (register_), \
+	         .how = WAY_LOCK)
 #define GAUGE_WORD(text, where, unit_, ...) \
 	PROPERTY(text, FLOAT, VOLATILE, READ, \
 	         FIELD(WORDS, .at = (where), .bytes = 2, .big_endian = true, .is_signed = true, \
@@ -51,9 +51,10 @@
 #define GAUGE_BIT(text, life_, access_, area_, where, bit) \
 	PROPERTY(text, YESNO, life_, access_, \
 	         FIELD(area_, .at = (where), .shift = (bit), .bits = 1))
+/* To write a bit beside that of PIO is to switch the output to what the pin shows. */
 #define GAUGE_BESIDE_PIO(text, life_, area_, bit) \
 	PROPERTY(text, YESNO, life_, BOTH, FIELD(area_, .shift = (bit), .bits = 1), \
-	         .how = WAY_BESIDE_PIO)
+	         .how = WAY_REFUSED)
 /* Each type ends inside the range of all of them; range_low and range_high have its own. */
 #define GAUGE_COUPLE(text, type_, where, fine) \
 	PROPERTY_DIR(text), \
@@ -131,7 +132,7 @@ static const struct property ds2720[] = {
 	FLAG("dc", PINS_OF, 2),
 	FLAG("de", PROTECTION, 0),
 	FLAG("doc", PROTECTION, 4),
-	GAUGE_LOCK(2, 0x07, 0x3020),
+	GAUGE_LOCK(2, 0x07),
 	AREA_MEMORY(MEMORY, 256),
 	FLAG("ot", SPECIAL_08, 0),
 	FLAG("ov", PROTECTION, 7),
@@ -160,7 +161,7 @@ static const struct property ds2751[] = {
 	GAUGE_WORD("current", 0x0e, GAUGE_COARSE / GAUGE_RESISTOR, GAUGE_CURRENT_COARSE),
 	GAUGE_OFFSET("currentbias", VOLATILE, "A", EEPROM, GAUGE_BIAS(GAUGE_RESISTOR)),
 	GAUGE_BIT("defaultpmod", STABLE, BOTH, EEPROM, 0x31, 5),
-	GAUGE_LOCK(2, 0x07, 0x3020),
+	GAUGE_LOCK(2, 0x07),
 	AREA_MEMORY(MEMORY, 256),
 	GAUGE_PAGES(2, 16, EEPROM, .at = 0x20),
 	READ_ONLY("pmod", 0x01, 5),
@@ -184,7 +185,7 @@ static const struct property ds2755[] = {
 	PROPERTY("alarm_set", FLOAT, VOLATILE, BOTH, FIELD(ALARM, .is_signed = true)),
 	SETTING("defaultpmod", 5),
 	SETTING("ios", 2),
-	GAUGE_LOCK(3, 0x07, 0x604020),
+	GAUGE_LOCK(3, 0x07),
 	AREA_MEMORY(MEMORY, 256),
 	SETTING("ovd", 0),
 	GAUGE_PAGES(3, 32, EEPROM32, .at = 0x20),
@@ -229,7 +230,7 @@ static const struct property ds2760[] = {
 	SHADOW("defaultpmod", 5, WAY_PMOD),
 	SHADOW("defaultswen", 3, WAY_SWEN),
 	FLAG("doc", PROTECTION, 4),
-	GAUGE_LOCK(2, 0x07, 0x3020),
+	GAUGE_LOCK(2, 0x07),
 	AREA_MEMORY(MEMORY, 256),
 	GAUGE_BIT("mstr", VOLATILE, READ, BYTES, 0x08, 5),
 	FLAG("ov", PROTECTION, 7),
@@ -251,9 +252,10 @@ static const struct property ds2760[] = {
 };
 CHIP_FAMILY(30, "DS2760", PRESENCE, SCAN(SCAN_CURRENT, {"sensed", "input"}), LISTS(ds2760));
 
+/* In the status, which takes it from the EEPROM: pages/page.1 is written. */
 #define REFRESHED(text, bit) \
 	PROPERTY(text, YESNO, STABLE, BOTH, FIELD(BYTES, .at = 0x01, .shift = (bit), .bits = 1), \
-	         .how = WAY_SETTING)
+	         .how = WAY_REFUSED)
 #define BIAS_FINE(resistor) \
 	.at = 0x32, .bytes = 2, .big_endian = true, .is_signed = true, \
 	.unit = GAUGE_FINE / (resistor)
@@ -267,11 +269,11 @@ static const struct property ds2770[] = {
 	GAUGE_WORD("current", 0x0e, GAUGE_FINE / GAUGE_RESISTOR, GAUGE_CURRENT_FINE),
 	GAUGE_OFFSET("currentbias", VOLATILE, "A", EEPROM, BIAS_FINE(GAUGE_RESISTOR)),
 	GAUGE_BIT("defaultpmod", STABLE, BOTH, EEPROM, 0x31, 5),
-	GAUGE_LOCK(3, 0x07, 0x403020),
+	GAUGE_LOCK(3, 0x07),
 	AREA_MEMORY(MEMORY, 256),
 	GAUGE_PAGES(3, 16, EEPROM, .at = 0x20),
 	REFRESHED("pmod", 5),
-	PROPERTY("refresh", YESNO, STABLE, WRITE, .how = WAY_REFRESH),
+	PROPERTY("refresh", YESNO, STABLE, WRITE, .how = WAY_REFUSED),
 	GAUGE_TEMPERATURE(0x18),
 	PROPERTY("timer", FLOAT, VOLATILE, BOTH,
 	         FIELD(TIMER, .bytes = 2, .big_endian = true, .unit = .015625),
@@ -300,7 +302,7 @@ static const struct property ds2780[] = {
 	FLAG("chgtf", STATUS, 7),
 	CONTROL("dc", 3),
 	FLAG("learnf", STATUS, 4),
-	GAUGE_LOCK(2, 0x1f, 0x6020),
+	GAUGE_LOCK(2, 0x1f),
 	AREA_MEMORY(MEMORY, 256),
 	CONTROL("nben", 7),
 	FUEL_PAGES,
@@ -324,7 +326,7 @@ CHIP_FAMILY(32, "DS2780", PRESENCE, SCAN(SCAN_VIS), LISTS(ds2780));
 static const struct property ds2781[] = {
 	GAUGE_PIO(WRITE, SPECIAL_15, 0),
 	FLAG("aef", STATUS, 6),
-	GAUGE_LOCK(2, 0x1f, 0x6020),
+	GAUGE_LOCK(2, 0x1f),
 	AREA_MEMORY(MEMORY, 256),
 	FUEL_PAGES,
 	CONTROL("pmod", 5),

@@ -16,7 +16,6 @@ static const struct visit writes[] = {
 	{.chip = "DS2720", .property = "uv", .write = "0"},
 	{.chip = "DS2720", .property = "psf", .write = "1"},
 	{.chip = "DS2720", .property = "pages/page.1", .write = "wxyz"},
-	{.chip = "DS2720", .property = "lock.0", .write = "1"},
 	{.chip = "DS2740", .property = "PIO", .write = "1"},
 	{.chip = "DS2740", .property = "smod", .write = "1"},
 	{.chip = "DS2740", .property = "volthours", .write = "0.1"},
