@@ -166,7 +166,7 @@ LIBSQLITE3 := $(LIBSQLITE3)
 SQLITE   := $(filter 1,$(LIBSQLITE3))
 LIBS     += $(if $(SQLITE),-lsqlite3)
 
-# owsd-influx, where libcurl is there for this compiler; LIBCURL=0 leaves it out
+# owsd-influx and owsd-notify, where libcurl is there for this compiler; LIBCURL=0 leaves it out
 LIBCURL  ?= $(shell printf '\043include <stdint.h>\n\043include <curl/curl.h>\nint main(void) { return !curl_multi_init(); }\n' | \
               $(CC) $(CPPFLAGS) $(CFLAGS) $(EXTRA_CFLAGS) $(LDFLAGS) -x c -o /dev/null - -lcurl 2>/dev/null && echo 1)
 LIBCURL  := $(LIBCURL)
@@ -205,7 +205,7 @@ with_cc  := $(CC): $(call version_of,$(CC)): $(ALL_CFLAGS)
 with_cxx := $(CXX): $(call version_of,$(CXX)): $(ALL_CXXFLAGS)
 with_ld  := $(CC): $(ALL_LDFLAGS) $(LIBS)
 with_libraries := libi2c $(if $(filter 1,$(LIBI2C)),yes,no) libgpiod $(or $(filter 1 2,$(LIBGPIOD)),no) \
-    libsqlite3 $(if $(SQLITE),yes,no owsd-recorder left-out) libcurl $(if $(CURL),yes,no owsd-influx left-out) \
+    libsqlite3 $(if $(SQLITE),yes,no owsd-recorder left-out) libcurl $(if $(CURL),yes,no owsd-influx left-out owsd-notify left-out) \
     libmicrohttpd $(if $(HTTPD),yes,no owsd-web left-out) libmosquitto $(if $(MOSQUITTO),yes,no owsd-mqtt left-out) \
     dygraphs $(if $(DYGRAPHS),yes,no plots left-out) libprotobuf-c $(if $(PROTOBUFC),yes,no)
 compiler := $(firstword $(filter-out ccache,$(CC)))
@@ -265,7 +265,7 @@ PYTHON   := $(wildcard src/memory/libows/*.py)
 WEBPAGE  := $(notdir $(wildcard src/faces/web/page/*)) $(notdir $(DYGRAPHS))
 MAN      := $(wildcard docs/*.[1-8])
 # Tests
-UNIT_SRC := $(filter-out $(if $(PROTOBUFC),,%/test_sparkplug.c) $(if $(MOSQUITTO),,%/test_advice.c) $(if $(SQLITE),,%_past.c %/test_sending.c $(wildcard $(patsubst %,tests/unit/%/*.c,file library recorder))),$(wildcard tests/unit/*/test_*.c))
+UNIT_SRC := $(filter-out $(if $(CURL),,%/test_post.c $(wildcard tests/unit/notify/*.c)) $(if $(PROTOBUFC),,%/test_sparkplug.c) $(if $(MOSQUITTO),,%/test_advice.c) $(if $(SQLITE),,%_past.c %/test_sending.c $(wildcard $(patsubst %,tests/unit/%/*.c,file library recorder))),$(wildcard tests/unit/*/test_*.c))
 UNIT_AID := $(filter-out %/published.c %/past.c $(if $(SQLITE),,%/power_file.c),$(wildcard tests/unit/aid/*.c))
 ENDURANCE := $(wildcard tests/endurance/*.c)
 BENCH    := $(filter-out $(if $(SQLITE),,%/bench_history.c %/bench_recorder.c),$(wildcard tests/bench/bench_*.c))
@@ -273,8 +273,9 @@ BENCH_AID := $(filter-out tests/bench/bench_%,$(wildcard tests/bench/*.c)) $(SIM
 # ---------------------------------------------------------------------------------------------
 
 CORE     := $(filter-out src/daemon/owsd/owsd.c src/tool/owsctl/owsctl.c src/history/recorder/recorder.c src/faces/influx/influx.c \
+            src/faces/notify/owsd_notify.c \
             src/faces/writer/owsd_writer.c $(SIM_TABLE) $(if $(SQLITE),src/history/library/none.c,$(SQLITE_ALL)) \
-            $(if $(CURL),,src/faces/influx/post.c) $(if $(HTTPD),$(WEB_MAIN),$(WEB_HTTP)) \
+            $(if $(CURL),,src/faces/kit/post.c) $(if $(HTTPD),$(WEB_MAIN),$(WEB_HTTP)) \
             $(if $(MOSQUITTO),src/faces/mqtt/owsd_mqtt.c,$(MQTT_ALL)) \
             $(if $(PROTOBUFC),,src/faces/mqtt/sparkplug.c),$(SOURCES))
 obj       = $(patsubst %.c,$(B)/%.o,$(1))
@@ -353,6 +354,8 @@ $(B)/owsd-recorder: $(B)/src/history/recorder/recorder.o
 $(B)/owsd-writer $(B)/owsd-writer-sim: $(B)/src/faces/writer/owsd_writer.o
 $(B)/owsd-influx: $(B)/src/faces/influx/influx.o
 $(B)/owsd-influx: LIBS += -lcurl
+$(B)/owsd-notify: $(B)/src/faces/notify/owsd_notify.o
+$(B)/owsd-notify: LIBS += -lcurl
 $(B)/owsd-mqtt: $(B)/src/faces/mqtt/owsd_mqtt.o
 $(B)/owsd-mqtt: LIBS += -lmosquitto $(if $(PROTOBUFC),-lprotobuf-c)
 $(B)/owsd-web: $(call obj,$(WEB_MAIN))
@@ -465,6 +468,8 @@ $(MQTT_UNITS): $(B)/tests/unit/aid/published.o
 $(if $(SQLITE),$(filter-out $(MQTT_UNITS) %/test_endurance,$(UNIT)): $(B)/tests/unit/aid/past.o)
 $(filter-out %/test_endurance,$(UNIT)): $(B)/unit/unity.o $(call obj,$(UNIT_AID)) $(B)/core.a $(B)/with/ld
 	$(call link)
+
+$(B)/unit/test_post $(patsubst tests/unit/notify/%.c,$(B)/unit/%,$(wildcard tests/unit/notify/*.c)): LIBS += -lcurl
 
 $(patsubst %,$(B)/unit/test_%,python recorded recorded_later): | $(PYTHON_MADE)
 
@@ -704,7 +709,7 @@ install-service:
 	[ -e $(D)/etc/owsd/OWS.rio ] || install -m 644 board/debian/OWS.rio $(D)/etc/owsd/OWS.rio
 	@echo 'now: systemd-sysusers; systemd-tmpfiles --create; modprobe i2c-dev; udevadm trigger;'
 	@echo '     systemctl daemon-reload; systemctl enable --now owsd      (its configuration: /etc/owsd/OWS.rio)'
-	@echo '     and for the history: systemctl enable --now owsd-recorder; for a database: owsd-influx; for a broker: owsd-mqtt'
+	@echo '     and for the history: systemctl enable --now owsd-recorder; for a database: owsd-influx; for a broker: owsd-mqtt; for mails of alarms: owsd-notify'
 	@echo '     and for the page: systemctl enable --now owsd-web@OWS.socket'
 
 uninstall-service:

@@ -10,7 +10,7 @@ import re
 
 # file: the name by which the page calls it, as in "`first.c`:" before it, or None
 Block = collections.namedtuple("Block", "page line language text file")
-MAN_LANGUAGE = {"owsctl.1": "sh", "owsd.8": "sh", "owsd-recorder.8": "sh", "owsd-influx.8": "sh", "owsd-mqtt.8": "sh",
+MAN_LANGUAGE = {"owsctl.1": "sh", "owsd.8": "sh", "owsd-recorder.8": "sh", "owsd-influx.8": "sh", "owsd-mqtt.8": "sh", "owsd-notify.8": "sh",
                 "owsd-sim.8": "sh", "owsd-web.8": "sh", "owsd-writer.8": "sh", "owsd.rio.5": "rio", "libows.3": "c", "libows-history.3": "c"}
 FENCE = re.compile(r"^( *)```(.*)$")
 

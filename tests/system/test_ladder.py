@@ -175,7 +175,7 @@ def test_the_table_asks_for_what_a_change_can_break(scene):
     """Of the table itself."""
     for file, wanted in (("hal/w1/w1.c", {"kernel"}), ("src/public/ows_layout.h", {"model", "kill", "tsan"}),
                          ("Makefile", {"fresh", "deb", "dist"}), ("board/install-deps", {"fresh", "deb", "dist"}),
-                         ("src/history/file/keep.c", {"system", "mqtt"}), ("src/faces/influx/post.c", {"system"}),
+                         ("src/history/file/keep.c", {"system", "mqtt"}), ("src/faces/kit/post.c", {"system"}),
                          ("hal/base/time.h", {"system", "units"}), ("src/ground/signal/value.c", {"system"}),
                          ("hal/gpio/gpio.c", {"gpio", "gpio-pi"}), ("docs/design.md", {"docs"})):
         done = subprocess.run([sys.executable, "-c", "import importlib.machinery, importlib.util, sys\n"

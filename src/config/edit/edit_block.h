@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The blocks of a configuration by the names that edits have for them: an item's own name;
- * "OwsDrv"; and, where no item is called so, "Recorder", "Influx", "Web", "Mqtt", and "Bus:TARGET".
+ * "OwsDrv"; and, where no item is called so, "Recorder", "Influx", "Web", "Mqtt", "Notify", and
+ * "Bus:TARGET".
  */
 #pragma once
 

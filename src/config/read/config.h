@@ -208,6 +208,17 @@ struct config_mqtt {
 	bool mqtt5, write;
 };
 
+/* The Notify block, for owsd-notify; the texts are NULL where the file has none. */
+struct config_notify {
+	bool given;
+	const char *mail, *mail_from, *sendmail, *escalate_mail; /* addresses: with commas */
+	const char *url, *fields, *token_file, *command, *link;
+	const char *signals, *least, *quiet;
+	int64_t bad_after_ns, gather_ns, every_ns, escalate_ns;
+	bool returns, quiet_all;
+	struct config_spot at;
+};
+
 /* A user or a group of ControlAllow. */
 struct config_holder {
 	bool group;
@@ -241,6 +252,7 @@ struct config {
 	struct config_influx influx;
 	struct config_web web;
 	struct config_mqtt mqtt;
+	struct config_notify notify;
 };
 
 /* Receives the errors and warnings; a message is a whole line ("house.rio:12:26: error: ..."). */

@@ -90,15 +90,29 @@ static void build_driver(struct build *build, const struct option_value *values)
 		targets_add(build, option_table[OPT_TARGET_NAME].preset, (struct rio_position){0});
 }
 
+static void notify_derive(struct build *build, const struct option_value *values)
+{
+	const struct config_notify *notify = &build->box->config.notify;
+	const struct option_value *mail = &values[OPT_NOTIFY_ESCALATE_MAIL];
+
+	if (notify->given && !notify->mail && !notify->url && !notify->command)
+		report_error(build->report,
+		             (struct rio_position){build->box->config.file, notify->at.line,
+		                                   notify->at.column},
+		             "Notify tells nobody: write Mail, Url or Command");
+	if (notify->escalate_mail && !notify->escalate_ns)
+		report_error(build->report, mail->node->value_at,
+		             "EscalateMail without EscalateAfter: write after how many seconds");
+}
+
 /* A block that stands once: the keys one by one, then what follows from several of them. */
 static void build_block(struct build *build, const struct option_def *def,
                         const struct rio_node *block)
 {
 	static block_derive *const derive[] = {
-		[PLACE_RECORDER] = recorder_derive,
-		[PLACE_INFLUX] = NULL,
-		[PLACE_WEB] = web_derive,
-		[PLACE_MQTT] = mqtt_derive,
+		[PLACE_RECORDER] = recorder_derive, [PLACE_INFLUX] = NULL,
+		[PLACE_WEB] = web_derive,           [PLACE_MQTT] = mqtt_derive,
+		[PLACE_NOTIFY] = notify_derive,
 	};
 	struct option_value values[OPTION_COUNT_ALL];
 

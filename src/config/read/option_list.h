@@ -44,6 +44,8 @@ OTHER(WEB, "Web", DRIVER, BLOCK, INSIDE(WEB, web),
       .help = "options of owsd-web, which shows the signals in a browser")
 OTHER(MQTT, "Mqtt", DRIVER, BLOCK, INSIDE(MQTT, mqtt),
       .help = "options of owsd-mqtt, which publishes the signals to a broker")
+OTHER(NOTIFY, "Notify", DRIVER, BLOCK, INSIDE(NOTIFY, notify), AT(config, notify.at),
+      .help = "options of owsd-notify, which tells people of alarms")
 OTHER(ITEM, "Item", DRIVER, BLOCK, .repeats = true, .help = "one signal")
 
 /* Of an item */
@@ -184,6 +186,45 @@ OPTION(INFLUX_MEASUREMENT, "Measurement", INFLUX, TEXT, measurement, .check = te
        .preset = "ows", .help = "measurement of all points")
 OPTION(INFLUX_CLOCK_WAIT, "ClockWait", INFLUX, SECONDS, clock_wait_ns, RANGE(0, DAY),
        .preset = "600", .help = "uptime from which a clock that nobody set is believed")
+
+/* Of the Notify block */
+OPTION(NOTIFY_MAIL, "Mail", NOTIFY, TEXT, mail, .check = text_is_mail,
+       .help = "addresses that get a mail, with commas between them")
+OPTION(NOTIFY_MAIL_FROM, "MailFrom", NOTIFY, TEXT, mail_from, .check = text_is_mail,
+       .help = "sender of the mails")
+OPTION(NOTIFY_SENDMAIL, "Sendmail", NOTIFY, TEXT, sendmail, .check = text_is_path,
+       .preset = "/usr/sbin/sendmail", .help = "program that takes a mail, as sendmail does")
+OPTION(NOTIFY_URL, "Url", NOTIFY, TEXT, url, .check = text_is_url,
+       .help = "where a server takes a message as JSON: http or https")
+OPTION(NOTIFY_FIELDS, "Fields", NOTIFY, TEXT, fields, .check = text_is_fields,
+       .help = "more members of that JSON: NAME=TEXT, with blanks between them")
+OPTION(NOTIFY_TOKEN_FILE, "TokenFile", NOTIFY, TEXT, token_file, .check = text_is_file,
+       .help = "file with the token of that server, or name of a credential")
+OPTION(NOTIFY_COMMAND, "Command", NOTIFY, TEXT, command, .check = text_is_path,
+       .help = "program that is run with title and text of a message")
+OPTION(NOTIFY_SIGNALS, "Signals", NOTIFY, TEXT, signals, .preset = "*",
+       .help = "patterns of the signals that count, with commas; !PATTERN: not these")
+OPTION(NOTIFY_LEAST, "Least", NOTIFY, TEXT, least, .check = text_is_severity,
+       .preset = "warning", .help = "least severity that is told: warning or critical")
+OPTION(NOTIFY_RETURNS, "Returns", NOTIFY, FLAG, returns, .preset = "off",
+       .help = "tell also that an alarm has returned")
+OPTION(NOTIFY_BAD_AFTER, "BadAfter", NOTIFY, SECONDS, bad_after_ns, RANGE(0, 365 * DAY),
+       .preset = "0", .help = "tell of a value that is bad for so many seconds; 0: never")
+OPTION(NOTIFY_GATHER, "Gather", NOTIFY, SECONDS, gather_ns, RANGE(0, 3600), .preset = "10",
+       .help = "how long an alarm waits for others in the same message, seconds")
+OPTION(NOTIFY_EVERY, "Every", NOTIFY, SECONDS, every_ns, RANGE(0, DAY), .preset = "60",
+       .help = "least time from one message to the next, seconds")
+OPTION(NOTIFY_QUIET, "Quiet", NOTIFY, TEXT, quiet, .check = text_is_hours,
+       .help = "hours in which warnings wait, such as 22:00-06:30")
+OPTION(NOTIFY_QUIET_ALL, "QuietAll", NOTIFY, FLAG, quiet_all, .preset = "off",
+       .help = "in these hours also critical alarms wait")
+OPTION(NOTIFY_ESCALATE_AFTER, "EscalateAfter", NOTIFY, SECONDS, escalate_ns, RANGE(0, DAY),
+       .preset = "0",
+       .help = "tell once more of an alarm that nobody acknowledges for so long, seconds; 0: no")
+OPTION(NOTIFY_ESCALATE_MAIL, "EscalateMail", NOTIFY, TEXT, escalate_mail, .check = text_is_mail,
+       .help = "addresses that get a mail then")
+OPTION(NOTIFY_LINK, "Link", NOTIFY, TEXT, link, .check = text_is_url,
+       .help = "address of the page, for the messages")
 
 /* Of the Web block */
 OPTION(WEB_LISTEN, "Listen", WEB, TEXT, listen,

@@ -28,6 +28,7 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
 #define OF_INFLUX struct config_influx
 #define OF_WEB struct config_web
 #define OF_MQTT struct config_mqtt
+#define OF_NOTIFY struct config_notify
 #define HAS(of, member) .has = offsetof(struct of, member)
 #define AT(of, member) .at = offsetof(struct of, member)
 /* NOLINTBEGIN(bugprone-macro-parentheses): the names of members */
@@ -45,8 +46,8 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
 #undef OPTION
 };
 
-static const char *const place_names[] = {"OwsDrv", "Item", "Bus", "Recorder",
-                                          "Influx", "Web",  "Mqtt"};
+static const char *const place_names[] = {"OwsDrv", "Item", "Bus",  "Recorder",
+                                          "Influx", "Web",  "Mqtt", "Notify"};
 
 const char *option_place_name(enum option_place place)
 {

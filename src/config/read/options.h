@@ -18,6 +18,7 @@ enum option_place {
 	PLACE_INFLUX,
 	PLACE_WEB,
 	PLACE_MQTT,
+	PLACE_NOTIFY,
 };
 
 enum option_kind {

@@ -76,6 +76,74 @@ const char *text_is_url(const char *url)
 	return NULL;
 }
 
+/* No blank and no line end: the addresses stand in the header of a mail. */
+const char *text_is_mail(const char *text)
+{
+	static const char why[] = "expected ADDRESS, or several with commas, at most 255 bytes";
+
+	for (const char *one = text;; one += strspn(one, " ")) {
+		size_t user = strspn(one, TEXT_LETTERS "+%="), host = 0;
+
+		if (one[user] == '@')
+			host = 1 + strspn(one + user + 1, TEXT_LETTERS);
+		/* nor what a program would take for an option */
+		if (!user || host == 1 || *one == '-')
+			return why;
+		one += user + host;
+		if (!*one)
+			return strlen(text) <= LONG_MAX_BYTES ? NULL : why;
+		if (*one++ != ',')
+			return why;
+	}
+}
+
+const char *text_is_fields(const char *text)
+{
+	const char *why = text_is_line(text);
+
+	for (const char *one = text + strspn(text, " "); !why && *one; one += strspn(one, " ")) {
+		size_t len = strcspn(one, " "), name = strcspn(one, "= ");
+
+		if (!name || name == len)
+			why = "expected NAME=TEXT, with blanks between them and none in TEXT";
+		one += len;
+	}
+	return why;
+}
+
+const char *text_is_severity(const char *text)
+{
+	return !strcmp(text, "warning") || !strcmp(text, "critical")
+	               ? NULL
+	               : "expected warning or critical";
+}
+
+static bool take_minutes(const char *text, unsigned *minutes)
+{
+	static const char digits[] = "0123456789";
+
+	if (strspn(text, digits) != 2 || text[2] != ':' || strspn(text + 3, digits) != 2)
+		return false;
+	*minutes = (unsigned)(((text[0] - '0') * 10 + text[1] - '0') * 60 + (text[3] - '0') * 10 +
+	                      text[4] - '0');
+	return text[3] < '6' && *minutes <= 24 * 60;
+}
+
+bool text_hours(const char *text, unsigned *from, unsigned *until)
+{
+	return strlen(text) == strlen("22:00-06:30") && text[5] == '-' &&
+	       take_minutes(text, from) && take_minutes(text + 6, until);
+}
+
+const char *text_is_hours(const char *text)
+{
+	unsigned from, until;
+
+	return text_hours(text, &from, &until) && from != until
+	               ? NULL
+	               : "expected two times of a day, such as \"22:00-06:30\"";
+}
+
 const char *text_is_hosts(const char *hosts)
 {
 	return is_of(hosts, HOST_CHARS, SIZE_MAX)

@@ -4,11 +4,11 @@
 #include <string.h>
 
 #include "hal/base/time.h"
-#include "src/faces/influx/post.h"
 #include "src/faces/influx/pushing.h"
 #include "src/faces/influx/sending.h"
 #include "src/faces/kit/look.h"
 #include "src/faces/kit/loop.h"
+#include "src/faces/kit/post.h"
 
 /* Of changes of a signal that come closer together the newest is sent */
 #define PACE_NS (20 * NS_PER_MS)

@@ -5,10 +5,10 @@
 #include <string.h>
 
 #include "hal/base/time.h"
-#include "src/faces/influx/post.h"
 #include "src/faces/influx/sending.h"
 #include "src/faces/kit/face.h"
 #include "src/faces/kit/look.h"
+#include "src/faces/kit/post.h"
 #include "src/ground/text/influx.h"
 
 #define ROWS 500 /* of the history at a time */
@@ -212,6 +212,11 @@ void sending_advance(struct face *face, bool ending, int64_t now_ns)
 	p->looked_ns = face->looked_ns;
 	if (p->batch_all)
 		p->cut_ns = now_ns + p->options.every_ns;
-	if (post_begin(p->post, p->options.url, p->token, p->batch, p->batch_len))
+	if (post_begin(p->post, &(struct post_what){.url = p->options.url,
+	                                            .type = "text/plain; charset=utf-8",
+	                                            .scheme = "Token",
+	                                            .token = p->token,
+	                                            .data = p->batch,
+	                                            .len = p->batch_len}))
 		sending_fail(face, &(struct post_result){.words = "no memory"}, now_ns);
 }

@@ -33,14 +33,18 @@ void face_complain(const char *program, const char *format, ...)
 static void print_usage(FILE *out, const char *program, const struct face_option *own)
 {
 	fprintf(out, "usage: %s [-c FILE] [-n NAME]", program);
-	if (own->letter)
+	if (own->letter && own->value)
 		fprintf(out, " [-%c %s]", own->letter, own->value);
+	else if (own->letter)
+		fprintf(out, " [--%s]", own->word);
 	fputs(" [--check] [-v] [-V] [-h]\n"
 	      "  -c, --config FILE   configuration, that of owsd (" FACE_DIR "/NAME.rio)\n"
 	      "  -n, --name NAME     instance of owsd (OWS)\n",
 	      out);
-	if (own->letter)
+	if (own->letter && own->value)
 		fprintf(out, "  -%c, --%s %s %s\n", own->letter, own->word, own->value, own->help);
+	else if (own->letter)
+		fprintf(out, "  -%c, --%-13s %s\n", own->letter, own->word, own->help);
 	fputs("      --check         report what is wrong with the configuration, and end\n"
 	      "  -v, --verbose       log more; twice: debugging\n"
 	      "  -V, --version       version\n"
@@ -94,11 +98,11 @@ int face_start(const char *program, const struct face_option *own, int argc, cha
 		{"verbose", no_argument, NULL, 'v'},
 		{"version", no_argument, NULL, 'V'},
 		{"help", no_argument, NULL, 'h'},
-		{own->word, required_argument, NULL, own->letter},
+		{own->word, own->value ? required_argument : no_argument, NULL, own->letter},
 		{0},
 	};
 	/* the leading ':' makes getopt distinguish a missing argument from an unknown option */
-	char letters[] = ":c:n:vVh?:";
+	char letters[] = ":c:n:vVh?:"; /* '?': the letter of the face */
 	int option, err;
 
 	heap_give_back();
@@ -112,10 +116,12 @@ int face_start(const char *program, const struct face_option *own, int argc, cha
 	*a = (struct face_arguments){
 		.program = program, .instance = "OWS", .level = LOG_LEVEL_NOTICE};
 	letters[sizeof(letters) - 3] = own->letter;
+	if (!own->value)
+		letters[sizeof(letters) - 2] = '\0';
 	opterr = 0;
 	while ((option = getopt_long(argc, argv, letters, words, NULL)) != -1) {
 		if (own->letter && option == own->letter)
-			a->option = optarg;
+			a->option = own->value ? optarg : "";
 		else if (option == OPT_CHECK)
 			a->check = true;
 		else if (option == 'c')

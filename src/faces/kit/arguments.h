@@ -10,7 +10,7 @@
 #define FACE_EXIT_RUN 1
 #define FACE_EXIT_USAGE 2
 
-/* An option with a value that one face alone has. */
+/* An option that one face alone has; value NULL: none, and the program ends after check(). */
 struct face_option {
 	char letter;
 	const char *word, *value, *help; /* "directory", "DIR", "where ..." */
@@ -20,7 +20,8 @@ struct face_arguments {
 	const char *program;
 	const char *file, *instance;
 	char default_file[128];
-	const char *option; /* the value of the face's own option; NULL: not given */
+	const char
+		*option; /* the value of the face's own option, "" without one; NULL: not given */
 	enum log_level level;
 	bool check; /* read the configuration, and end */
 };

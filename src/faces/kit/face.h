@@ -60,7 +60,8 @@ struct face_ops {
 	/*
 	 * Of --check, besides the text of the file: may what the block names be used? face->config
 	 * is there, and no more. Returns 0, or a negative errno after reporting why not with
-	 * face_complain(). NULL: it names nothing.
+	 * face_complain(). NULL: it names nothing. Also of the face's own option if that has no
+	 * value: arguments->option is set then.
 	 */
 	int (*check)(const struct face *face);
 	/*

@@ -248,7 +248,7 @@ int face_main(const struct face_ops *ops, int argc, char **argv)
 		return status;
 	if (load_first(&face))
 		return FACE_EXIT_USAGE;
-	if (arguments.check) {
+	if (arguments.check || (arguments.option && !ops->option.value)) {
 		status = ops->check && ops->check(&face) ? FACE_EXIT_USAGE : EXIT_SUCCESS;
 		config_free(face.config);
 		return status;

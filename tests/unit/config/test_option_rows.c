@@ -187,8 +187,8 @@ static void test_rows_refuse_what_cannot_be(void)
 
 /* --- The rows of owsd ------------------------------------------------------------------------ */
 
-static const char base[] = "OwsDrv { Influx { Url \"http://127.0.0.1/write\" } Item { Name i "
-			   "Path /a/b Type double } }";
+static const char base[] = "OwsDrv { Influx { Url \"http://127.0.0.1/write\" } Notify { Mail a } "
+			   "Item { Name i Path /a/b Type double } }";
 
 static char *print_document(void)
 {
@@ -219,7 +219,8 @@ static bool shows(const char *printed, const struct option_def *def, const char 
 /* Is a block without the key an error? */
 static bool is_missed(const struct option_def *def)
 {
-	return def->needed || def == &option_table[OPT_PATH] || def == &option_table[OPT_TYPE];
+	return def->needed || def == &option_table[OPT_NOTIFY_MAIL] ||
+	       def == &option_table[OPT_PATH] || def == &option_table[OPT_TYPE];
 }
 
 /* Set the key in a file, and take it out again: what is printed follows. */
@@ -256,9 +257,10 @@ static bool goes_through(const struct option_def *def, const char *value)
 /* Is there a value that goes through? */
 static bool some_goes_through(const struct option_def *def)
 {
-	static const char *const texts[] = {"/x/y",       "ab",    "http://h/w", "mqtt://h",
-	                                    "2026-11-22", "3.1.1", "plain",      "interval 5",
-	                                    "4:0 20:100", "root",  "8080"};
+	static const char *const texts[] = {"/x/y",       "ab",         "http://h/w", "mqtt://h",
+	                                    "2026-11-22", "3.1.1",      "plain",      "interval 5",
+	                                    "4:0 20:100", "root",       "8080",       "a=b",
+	                                    "critical",   "22:00-06:30"};
 	char number[40];
 
 	switch (def->kind) {
@@ -291,9 +293,10 @@ static void test_each_row_is_read_printed_and_edited(void)
 	for (int i = 0; i < OPTION_COUNT_ALL; i++) {
 		const struct option_def *def = &option_table[i];
 
-		/* two are of outputs, two belong together, and a block is found by its name */
+		/* two are of outputs, some belong together, and a block is found by its name */
 		if (!def->store || i == OPT_START || i == OPT_READ_BACK || i == OPT_NAME ||
-		    i == OPT_MQTT_CERT_FILE || i == OPT_MQTT_KEY_FILE)
+		    i == OPT_MQTT_CERT_FILE || i == OPT_MQTT_KEY_FILE ||
+		    i == OPT_NOTIFY_ESCALATE_MAIL)
 			continue;
 		said_begin();
 		TEST_ASSERT_TRUE_MESSAGE(some_goes_through(def), def->key);

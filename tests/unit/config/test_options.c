@@ -38,7 +38,7 @@ static const char *keys_of(enum option_place place, const char **end)
 	static const char *const names[] = {
 		[PLACE_DRIVER] = "DRIVER",     [PLACE_ITEM] = "ITEM",     [PLACE_BUS] = "BUS",
 		[PLACE_RECORDER] = "RECORDER", [PLACE_INFLUX] = "INFLUX", [PLACE_WEB] = "WEB",
-		[PLACE_MQTT] = "MQTT",
+		[PLACE_MQTT] = "MQTT",         [PLACE_NOTIFY] = "NOTIFY",
 	};
 	char mark[40];
 	const char *begin;

@@ -7,10 +7,10 @@
 
 #include "unity.h"
 
-#include "src/faces/influx/post.h"
 #include "src/faces/influx/sending.h"
 #include "src/faces/kit/face.h"
 #include "src/faces/kit/look.h"
+#include "src/faces/kit/post.h"
 #include "src/ground/signal/value.h"
 #include "src/history/file/writer.h"
 #include "tests/unit/aid/folder.h"
@@ -43,11 +43,11 @@ bool post_is_busy(const struct post *post)
 	return busy;
 }
 
-int post_begin(struct post *post, const char *url, const char *token, const char *data, size_t len)
+int post_begin(struct post *post, const struct post_what *what)
 {
-	(void)post, (void)url, (void)token;
-	memcpy(posted, data, len);
-	posted[len] = '\0';
+	(void)post;
+	memcpy(posted, what->data, what->len);
+	posted[what->len] = '\0';
 	busy = true;
 	return 0;
 }

@@ -10,7 +10,7 @@ import {recall, remember} from "./kept.js";
 const STEPS = 200;            // of undo
 const CHARACTERS = 32 << 20;  // of all texts that undo keeps
 const SAVE_MS = 60000;        // a reload waits for what is on the bus
-const PROGRAMS = ["Web", "Recorder", "Influx", "Mqtt"]; // that have a block
+const PROGRAMS = ["Web", "Recorder", "Influx", "Mqtt", "Notify"]; // that have a block
 const EMPTY = {targets: [], driver: {}, blocks: {}, buses: [], items: []};
 
 class Draft extends EventTarget {

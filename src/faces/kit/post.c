@@ -11,13 +11,12 @@
 #include <string.h>
 
 #include "hal/base/time.h"
-#include "src/faces/influx/post.h"
+#include "src/faces/kit/post.h"
 #include "src/ground/text/printable.h"
 #include "src/public/ows.h"
 
 #define CONNECT_S 10L
 #define ANSWER_S 20L
-#define HEADER 1100
 
 struct post {
 	void (*watch)(void *ctx, int fd, short events);
@@ -83,7 +82,7 @@ static bool set_up(struct post *post)
 #endif
 	return !curl_easy_setopt(e, CURLOPT_NOSIGNAL, 1L) &&
 	       !curl_easy_setopt(e, CURLOPT_POST, 1L) &&
-	       !curl_easy_setopt(e, CURLOPT_USERAGENT, "owsd-influx/" OWSD_VERSION) &&
+	       !curl_easy_setopt(e, CURLOPT_USERAGENT, "owsd/" OWSD_VERSION) &&
 	       !curl_easy_setopt(e, CURLOPT_CONNECTTIMEOUT, CONNECT_S) &&
 	       !curl_easy_setopt(e, CURLOPT_TIMEOUT, ANSWER_S) &&
 	       !curl_easy_setopt(e, CURLOPT_ERRORBUFFER, post->error) &&
@@ -134,27 +133,30 @@ static bool add_header(struct post *post, const char *text)
 	return more;
 }
 
-static bool make_headers(struct post *post, const char *token)
+static bool make_headers(struct post *post, const struct post_what *what)
 {
-	char authorization[HEADER];
+	char line[POST_HEADER];
+	bool made;
 
 	curl_slist_free_all(post->headers);
 	post->headers = NULL;
-	snprintf(authorization, sizeof(authorization), "Authorization: Token %s", token);
-	return add_header(post, "Content-Type: text/plain; charset=utf-8") &&
-	       add_header(post, "Expect:") && (!*token || add_header(post, authorization));
+	snprintf(line, sizeof(line), "Content-Type: %s", what->type);
+	made = add_header(post, line) && add_header(post, "Expect:");
+	snprintf(line, sizeof(line), "Authorization: %s %s", what->scheme, what->token);
+	return made && (!*what->token || add_header(post, line));
 }
 
-int post_begin(struct post *post, const char *url, const char *token, const char *data, size_t len)
+int post_begin(struct post *post, const struct post_what *what)
 {
 	CURL *e = post->easy;
 
 	post->len = 0;
 	post->error[0] = '\0';
-	if (!make_headers(post, token) || curl_easy_setopt(e, CURLOPT_URL, url) ||
+	if (!make_headers(post, what) || curl_easy_setopt(e, CURLOPT_URL, what->url) ||
 	    curl_easy_setopt(e, CURLOPT_HTTPHEADER, post->headers) ||
-	    curl_easy_setopt(e, CURLOPT_POSTFIELDSIZE_LARGE, (curl_off_t)len) ||
-	    curl_easy_setopt(e, CURLOPT_POSTFIELDS, data) || curl_multi_add_handle(post->multi, e))
+	    curl_easy_setopt(e, CURLOPT_POSTFIELDSIZE_LARGE, (curl_off_t)what->len) ||
+	    curl_easy_setopt(e, CURLOPT_POSTFIELDS, what->data) ||
+	    curl_multi_add_handle(post->multi, e))
 		return -ENOMEM;
 	post->busy = true;
 	return 0;

@@ -10,6 +10,7 @@
 #include <stdint.h>
 
 #define POST_WORDS 160
+#define POST_HEADER 1100
 
 struct post;
 struct post_result {
@@ -22,11 +23,14 @@ struct post_result {
 struct post *post_open(void (*watch)(void *ctx, int fd, short events), void *ctx);
 void post_close(struct post *post);
 
-/*
- * Begin. data has to stay until the end. token "": none. The answer has to be there within 20 s.
- * 0 or -ENOMEM.
- */
-int post_begin(struct post *post, const char *url, const char *token, const char *data, size_t len);
+struct post_what {
+	const char *url, *type;     /* of the content */
+	const char *scheme, *token; /* of Authorization; token "": none */
+	const char *data;           /* has to stay until the end */
+	size_t len;
+};
+/* Begin. The answer has to be there within 20 s. 0 or -ENOMEM. */
+int post_begin(struct post *post, const struct post_what *what);
 bool post_is_busy(const struct post *post);
 /*
  * Go on: fd is ready, as poll(2) has it; or -1: the time has come. True: it is over, and *result

@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: MIT */
+/* What survives an end of owsd-notify. */
+#include <errno.h>
+#include <inttypes.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "hal/base/time.h"
+#include "src/faces/notify/kept.h"
+
+#define LOOKED_NS (60 * NS_PER_S) /* so much of it may be looked at again */
+
+void kept_read(struct kept *kept, const char *program, const char *instance, int64_t now_ns,
+               int64_t *told_ns, int64_t *looked_ns)
+{
+	char directory[HISTORY_PATH];
+	int64_t boot, told, looked;
+	FILE *in;
+
+	*kept = (struct kept){.boot = history_boot_present()};
+	if (history_place_state(program, "notify", instance, directory))
+		return;
+	snprintf(kept->path, sizeof(kept->path), "%s/told", directory);
+	history_make_above(kept->path);
+	in = fopen(kept->path, "re");
+	if (!in)
+		return;
+	/* NOLINTNEXTLINE(cert-err34-c): its own */
+	if (fscanf(in, "%" SCNd64 " %" SCNd64 " %" SCNd64, &boot, &told, &looked) == 3) {
+		bool here = boot == kept->boot && told <= now_ns && looked <= now_ns;
+
+		*told_ns = here ? told : 0;
+		*looked_ns = here ? looked : 0;
+	}
+	fclose(in);
+}
+
+void kept_write(struct kept *kept, struct log *log, int64_t told_ns, int64_t looked_ns,
+                int64_t now_ns)
+{
+	char fresh[sizeof(kept->path) + 4];
+	FILE *out;
+
+	if (!*kept->path || (kept->at_ns && now_ns - kept->at_ns < NS_PER_S) ||
+	    (told_ns == kept->told_ns && looked_ns - kept->looked_ns < LOOKED_NS))
+		return;
+	kept->at_ns = now_ns;
+	snprintf(fresh, sizeof(fresh), "%s.new", kept->path);
+	out = fopen(fresh, "we");
+	if (out)
+		fprintf(out, "%" PRId64 " %" PRId64 " %" PRId64 "\n", kept->boot, told_ns,
+		        looked_ns);
+	if (!out || fclose(out) || rename(fresh, kept->path)) {
+		log_err(log, "%s: %s; after a restart alarms may be told again", kept->path,
+		        strerror(errno));
+		kept->at_ns = now_ns + 3600 * NS_PER_S;
+		return;
+	}
+	kept->told_ns = told_ns;
+	kept->looked_ns = looked_ns;
+}

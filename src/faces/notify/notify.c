@@ -1,0 +1,445 @@
+/* SPDX-License-Identifier: MIT */
+/* What owsd-notify makes of the news of owsd: lines that are told. */
+#include <errno.h>
+#include <inttypes.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "hal/base/time.h"
+#include "src/faces/kit/look.h"
+#include "src/faces/kit/loop.h"
+#include "src/faces/kit/secret.h"
+#include "src/faces/notify/kept.h"
+#include "src/faces/notify/message.h"
+#include "src/faces/notify/notify.h"
+#include "src/faces/notify/rules.h"
+#include "src/faces/notify/ways.h"
+#include "src/faces/show/digits.h"
+#include "src/faces/show/newest.h"
+#include "src/faces/show/standing.h"
+#include "src/ground/signal/hash.h"
+
+#define AFTER_NS (2 * NS_PER_S) /* the value after a device's alarm */
+
+/* A signal of the image. */
+struct row {
+	uint64_t print;    /* of its identity */
+	int64_t bad_ns;    /* since when it is bad; 0: it is not */
+	int64_t raised_ns; /* its limit alarm, last */
+	bool chosen, told; /* told: that it is bad */
+};
+
+static struct notifying {
+	struct ways ways;
+	struct row *rows;
+	int count;
+	int64_t lost_ns; /* since when there is no owsd; 0: it is there */
+	bool lost_told;
+	int64_t known_ns;  /* entries of the journal up to there were told before this start */
+	int64_t seen_ns;   /* and up to there are in the queue */
+	int64_t looked_ns; /* alarms that were raised up to there were looked at for escalation */
+	struct kept kept;
+} notify;
+
+static const struct config_notify *file_of(const struct face *face)
+{
+	return &face->config->notify;
+}
+
+/* All that was entered in the journal up to then every way has told, or need not. */
+static int64_t all_told(const struct face *face)
+{
+	int64_t oldest = INT64_MAX;
+
+	for (int i = 0; i < WAYS; i++)
+		if (ways_has(file_of(face), (enum way_kind)i)) {
+			int64_t ns = queue_oldest(&notify.ways.queue, notify.ways.way[i].next);
+
+			oldest = ns < oldest ? ns : oldest;
+		}
+	return oldest <= notify.seen_ns ? oldest - 1 : notify.seen_ns;
+}
+
+/* --- What is told ---------------------------------------------------------------------------- */
+
+static void put(struct face *face, const struct entry *entry)
+{
+	const struct config_notify *file = file_of(face);
+	struct entry *one;
+
+	if (!file->given || (!entry->critical && !strcmp(file->least, "critical")))
+		return;
+	one = queue_add(&notify.ways.queue);
+	*one = *entry;
+	one->came_ns = ows_now();
+	log_info(face->log, "to be told: %s", entry->text);
+}
+
+static void take_alarm(struct face *face, const struct ows_alarm *alarm)
+{
+	struct when now = when_now();
+	struct entry entry = {.critical = rules_critical(alarm)};
+	struct ows_info info;
+	struct row *row;
+
+	if (alarm->occurred_ns > notify.seen_ns)
+		notify.seen_ns = alarm->occurred_ns;
+	if (alarm->signal < 0 || alarm->signal >= notify.count)
+		return;
+	row = &notify.rows[alarm->signal];
+	if (!row->chosen || ows_info(face->ows, alarm->signal, &info))
+		return;
+	if (alarm->event == OWS_ALARM_RAISED && alarm->kind >= OWS_ALARM_HH &&
+	    alarm->kind <= OWS_ALARM_BAD)
+		row->raised_ns = alarm->occurred_ns;
+	if (alarm->occurred_ns <= notify.known_ns ||
+	    (alarm->event != OWS_ALARM_RAISED && alarm->event != OWS_ALARM_FAILED &&
+	     !(alarm->event == OWS_ALARM_RETURNED && file_of(face)->returns)))
+		return;
+	message_alarm(&entry, &info, alarm, &now);
+	put(face, &entry);
+}
+
+static void escalate(struct face *face, int signal, const struct when *now)
+{
+	struct face_value value;
+	struct entry entry = {0};
+	struct ows_alarm_state state;
+	struct ows_info info;
+	int id;
+
+	if (ows_info(face->ows, signal, &info) || (id = ows_find(face->ows, info.name)) < 0)
+		return;
+	state = standing_of(face->ows, id);
+	if (state.limit_state != OWS_LIMIT_UNACKNOWLEDGED)
+		return;
+	face_value(face->ows, signal, face->live, now->boot, &value);
+	if (value.good && value.v.type != OWS_STRING)
+		digits_print((enum ows_type)value.v.type, value.v.number, value.v.integer,
+		             info.decimals, value.text);
+	else
+		value.text[0] = '\0';
+	entry.critical = rules_critical(&(struct ows_alarm){.kind = state.limit_kind});
+	message_escalated(&entry, &info, state.limit_kind, notify.rows[signal].raised_ns,
+	                  value.text, now);
+	put(face, &entry);
+}
+
+/* Alarms of the time that is over now, each once. */
+static void look_for_escalation(struct face *face)
+{
+	struct when now = when_now();
+	int64_t until_ns = now.boot - file_of(face)->escalate_ns;
+
+	if (!file_of(face)->escalate_ns || !look_is_current(face) || until_ns <= notify.looked_ns)
+		return;
+	for (int i = 0; i < notify.count; i++)
+		if (notify.rows[i].raised_ns > notify.looked_ns &&
+		    notify.rows[i].raised_ns <= until_ns)
+			escalate(face, i, &now);
+	notify.looked_ns = until_ns;
+}
+
+static void tell_bad(struct face *face, int signal, struct row *row, const struct when *now)
+{
+	char span[WHEN_TEXT], since[WHEN_TEXT];
+	struct entry entry = {0};
+	struct face_value value;
+	struct ows_info info;
+
+	if (ows_info(face->ows, signal, &info))
+		return;
+	face_value(face->ows, signal, face->live, now->boot, &value);
+	row->told = true;
+	message_line(&entry, "%s bad: %s; for %s; since %s%s%s", info.name, face_value_why(&value),
+	             when_span(now->boot - row->bad_ns, span), when_iso(now, row->bad_ns, since),
+	             *info.description ? "; " : "", info.description);
+	put(face, &entry);
+}
+
+static void tell_owsd(struct face *face, bool critical, const char *words)
+{
+	struct entry entry = {.critical = critical};
+
+	message_line(&entry, "owsd %s %s", face->arguments->instance, words);
+	put(face, &entry);
+}
+
+static void look_for_bad(struct face *face, int64_t now_ns)
+{
+	int64_t after_ns = file_of(face)->bad_after_ns;
+	struct when now = when_now();
+
+	if (!after_ns)
+		return;
+	if (notify.lost_ns && !notify.lost_told && now_ns - notify.lost_ns >= after_ns) {
+		tell_owsd(face, true, "does not run; no value is known");
+		notify.lost_told = true;
+	}
+	for (int i = 0; look_is_current(face) && i < notify.count; i++)
+		if (notify.rows[i].bad_ns && !notify.rows[i].told &&
+		    now_ns - notify.rows[i].bad_ns >= after_ns)
+			tell_bad(face, i, &notify.rows[i], &now);
+}
+
+/* --- The signals ----------------------------------------------------------------------------- */
+
+/* What was known of the signals of the image before, by their identity. */
+static void carry(const struct row *old, int count)
+{
+	for (int i = 0; i < count; i++)
+		for (int k = 0; (old[i].bad_ns || old[i].raised_ns) && k < notify.count; k++)
+			if (notify.rows[k].print == old[i].print) {
+				notify.rows[k].bad_ns = old[i].bad_ns;
+				notify.rows[k].raised_ns = old[i].raised_ns;
+				notify.rows[k].told = old[i].told;
+			}
+}
+
+static void make_rows(struct face *face)
+{
+	const struct config_notify *file = file_of(face);
+	struct row *old = notify.rows;
+	int old_count = notify.count, count = ows_count(face->ows);
+	struct ows_info info;
+
+	notify.rows = calloc((size_t)count + 1, sizeof(*notify.rows));
+	notify.count = notify.rows ? count : 0;
+	if (!notify.rows)
+		log_err(face->log, "no memory for %d signals: nothing is told", count);
+	for (int i = 0; i < notify.count; i++)
+		if (!ows_info(face->ows, i, &info)) {
+			notify.rows[i].chosen = file->given &&
+			                        rules_chosen(file->signals, info.name);
+			notify.rows[i].print = hash_text(HASH_BEGIN, info.identity,
+			                                 strlen(info.identity));
+		}
+	carry(old, old_count);
+	free(old);
+}
+
+static void look_at(struct face *face, int signal, int64_t now_ns)
+{
+	struct row *row = &notify.rows[signal];
+	struct face_value value;
+	struct entry entry = {0};
+	struct ows_info info;
+	bool bad;
+
+	if (!row->chosen)
+		return;
+	face_value(face->ows, signal, face->live, now_ns, &value);
+	bad = value.known && !(value.v.quality & 0xc0) && value.v.quality != OWS_Q_INITIAL;
+	if (bad && !row->bad_ns)
+		row->bad_ns = now_ns;
+	if (bad || !value.known)
+		return;
+	if (row->told && file_of(face)->returns && !ows_info(face->ows, signal, &info)) {
+		message_line(&entry, "%s no longer bad%s%s", info.name,
+		             *info.description ? "; " : "", info.description);
+		put(face, &entry);
+	}
+	row->bad_ns = 0;
+	row->told = false;
+}
+
+/* --- The table of the face ------------------------------------------------------------------- */
+
+static void notify_watch(void *ctx, int fd, short events)
+{
+	face_ignore(ctx, fd);
+	if (events && face_watch(ctx, fd, events))
+		log_err(((struct face *)ctx)->log, "too many descriptors");
+}
+
+static void test_watch(void *ctx, int fd, short events)
+{
+	(void)ctx, (void)fd, (void)events;
+}
+
+/* Each way by itself, with what it says. Waits as long as a way may take. */
+static int test_ways(const struct face *face)
+{
+	struct config_notify file = *file_of(face);
+	struct ways *ways = &notify.ways;
+	struct entry entry = {.critical = true};
+	int failed = 0;
+
+	if (!file.given) {
+		face_complain(face->ops->program, "%s has no Notify block", face->arguments->file);
+		return -ENOENT;
+	}
+	ways_open(ways, NULL, face->arguments->instance, test_watch, NULL);
+	file.gather_ns = 0;
+	file.quiet = NULL;
+	for (int second = 0; second < 2; second++) {
+		entry.escalated = second;
+		message_line(&entry, "%s", "test; owsd-notify --test has sent this");
+		*queue_add(&ways->queue) = entry;
+	}
+	for (int i = 0; i < WAYS; i++) {
+		struct way *way = &ways->way[i];
+
+		if (!ways_has(&file, (enum way_kind)i))
+			continue;
+		do {
+			ways_wait(ways, &file);
+		} while (!way->told && !way->failed);
+		failed += !way->told;
+		if (way->told)
+			printf("%s: told\n", ways_name((enum way_kind)i));
+		else
+			face_complain(face->ops->program, "%s: %s", ways_name((enum way_kind)i),
+			              way->why);
+	}
+	ways_close(ways);
+	return failed ? -EIO : 0;
+}
+
+int notify_check(const struct face *face)
+{
+	const struct config_notify *file = file_of(face);
+	const char *const programs[] = {file->mail || file->escalate_mail ? file->sendmail : NULL,
+	                                file->command};
+	int err = secret_check(face->ops->program, "TokenFile", file->token_file, SECRET_TOKEN);
+
+	for (int i = 0; !err && i < 2; i++)
+		if (programs[i] && (err = run_check(programs[i])))
+			face_complain(face->ops->program, "%s %s: %s; install it, or name another",
+			              i ? "Command" : "Sendmail", programs[i], run_why(err));
+	return err || !face->arguments->option ? err : test_ways(face);
+}
+
+int notify_start(struct face *face)
+{
+	int64_t now_ns = ows_now();
+
+	ways_open(&notify.ways, face->log, face->arguments->instance, notify_watch, face);
+	if (!notify.ways.post) {
+		face_complain(face->ops->program, "libcurl cannot be used: no memory");
+		return -ENOMEM;
+	}
+	notify.seen_ns = notify.looked_ns = now_ns;
+	kept_read(&notify.kept, face->ops->program, face->arguments->instance, now_ns,
+	          &notify.seen_ns, &notify.looked_ns);
+	notify.known_ns = notify.seen_ns;
+	/* those that were told may be the ones that nobody acknowledges */
+	face->alarms_after_ns = notify.seen_ns < notify.looked_ns ? notify.seen_ns
+	                                                          : notify.looked_ns;
+	face->after_ns = AFTER_NS;
+	face->tick_ns = notify.lost_ns = now_ns;
+	if (!file_of(face)->given)
+		log_notice(face->log, "%s has no Notify block: nobody is told",
+		           face->arguments->file);
+	return 0;
+}
+
+void notify_changes(struct face *face, const int *signals, int n)
+{
+	int64_t now_ns = ows_now();
+
+	for (int i = 0; i < (signals ? n : notify.count); i++)
+		look_at(face, signals ? signals[i] : i, now_ns);
+}
+
+/* fd is ready; -1: none, but something may be due. */
+static void go_on(struct face *face, int fd, short ready)
+{
+	int64_t now_ns = ows_now();
+
+	ways_step(&notify.ways, file_of(face), fd, ready, now_ns);
+	face->tick_ns = ways_next(&notify.ways, now_ns);
+	kept_write(&notify.kept, face->log, all_told(face), notify.looked_ns, now_ns);
+}
+
+static const char *trouble_of(void)
+{
+	for (int i = 0; i < WAYS; i++)
+		if (*notify.ways.way[i].why)
+			return notify.ways.way[i].why;
+	return NULL;
+}
+
+void notify_tick(struct face *face, int64_t now_ns)
+{
+	look_for_escalation(face);
+	look_for_bad(face, now_ns);
+	go_on(face, -1, 0);
+	face_status(face, "%s",
+	            !file_of(face)->given ? "no Notify block: off"
+	            : trouble_of()        ? trouble_of()
+	            : face->live          ? "telling of alarms"
+	                                  : "waiting for owsd");
+}
+
+void notify_event(struct face *face, const struct face_event *event)
+{
+	switch (event->news) {
+	case FACE_FOUND:
+	case FACE_RELOADED:
+		if (notify.lost_told && file_of(face)->returns)
+			tell_owsd(face, false, "runs again");
+		notify.lost_ns = 0;
+		notify.lost_told = false;
+		make_rows(face);
+		ways_again(&notify.ways);
+		break;
+	case FACE_FILE:
+		if (face->live && look_is_current(face))
+			make_rows(face);
+		ways_again(&notify.ways);
+		break;
+	case FACE_LOST:
+		notify.lost_ns = ows_now();
+		log_warning(face->log, "owsd is lost");
+		break;
+	case FACE_ENTRIES_LOST: {
+		struct entry entry = {.critical = true};
+
+		message_line(&entry, "%u entries of owsd's journals came too fast to be read",
+		             event->count);
+		put(face, &entry);
+		break;
+	}
+	case FACE_ALARM:
+		take_alarm(face, event->alarm);
+		break;
+	case FACE_OVERRUN:
+	case FACE_COMMAND:
+		break;
+	case FACE_DESCRIPTOR:
+		go_on(face, event->fd, event->ready);
+		break;
+	}
+}
+
+void notify_report(struct face *face, FILE *out)
+{
+	uint64_t told = 0, failed = 0, lost = 0, waiting = 0;
+
+	for (int i = 0; i < WAYS; i++) {
+		const struct way *way = &notify.ways.way[i];
+
+		told += way->told;
+		failed += way->failed;
+		lost += way->lost;
+		if (ways_has(file_of(face), (enum way_kind)i))
+			waiting += notify.ways.queue.end - way->next;
+	}
+	if (trouble_of())
+		fprintf(out, "trouble %s\ntroubled %" PRId64 "\n", trouble_of(), ows_now());
+	fprintf(out, "count alarms %" PRIu64 "\ncount messages %" PRIu64 "\n",
+	        notify.ways.queue.end, told);
+	fprintf(out,
+	        "count failed %" PRIu64 "\ncount waiting %" PRIu64 "\ncount lost %" PRIu64 "\n",
+	        failed, waiting, lost);
+}
+
+void notify_end(struct face *face)
+{
+	notify.kept.at_ns = 0;
+	kept_write(&notify.kept, face->log, all_told(face), notify.looked_ns, ows_now());
+	ways_close(&notify.ways);
+	free(notify.rows);
+}

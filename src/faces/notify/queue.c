@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: MIT */
+/* What is to be told. */
+#include <stddef.h>
+
+#include "src/faces/notify/queue.h"
+
+struct entry *queue_add(struct queue *queue)
+{
+	struct entry *entry = &queue->entries[queue->end++ % QUEUE_ENTRIES];
+
+	if (queue->end - queue->first > QUEUE_ENTRIES)
+		queue->first++;
+	*entry = (struct entry){0};
+	return entry;
+}
+
+const struct entry *queue_at(const struct queue *queue, uint64_t number)
+{
+	return number >= queue->first && number < queue->end
+	               ? &queue->entries[number % QUEUE_ENTRIES]
+	               : NULL;
+}
+
+int64_t queue_oldest(const struct queue *queue, uint64_t number)
+{
+	int64_t oldest = INT64_MAX;
+
+	if (number < queue->first)
+		number = queue->first;
+	for (; number < queue->end; number++) {
+		int64_t ns = queue_at(queue, number)->entered_ns;
+
+		if (ns && ns < oldest)
+			oldest = ns;
+	}
+	return oldest;
+}

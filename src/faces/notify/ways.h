@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The ways to people. Each goes through the queue by itself: what it has not told waits for it, and
+ * what comes meanwhile is in the same message as soon as the way works again.
+ */
+#pragma once
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "src/config/read/config.h"
+#include "src/faces/kit/backoff.h"
+#include "src/faces/kit/post.h"
+#include "src/faces/kit/secret.h"
+#include "src/faces/notify/queue.h"
+#include "src/faces/notify/run.h"
+#include "src/ground/text/log.h"
+
+enum way_kind {
+	WAY_MAIL,
+	WAY_ESCALATE, /* mail to the second addresses */
+	WAY_POST,
+	WAY_COMMAND,
+	WAYS,
+};
+
+struct way {
+	uint64_t next;     /* the first entry that it has not told */
+	bool busy;         /* a message is under way: */
+	uint64_t end, out; /* the entry after it, and those before it that are not kept */
+	int64_t sent_ns, retry_ns;
+	struct backoff backoff;
+	struct run run;
+	char *data;                  /* what is under way */
+	char why[RUN_WORDS + 32];    /* why it does not work; "": it does */
+	uint64_t told, failed, lost; /* messages that went, attempts that did not; entries */
+};
+struct ways {
+	struct queue queue;
+	struct way way[WAYS];
+	struct post *post; /* NULL: there is none */
+	struct log *log;   /* NULL: none */
+	const char *instance;
+	char host[64], url[1400], token[SECRET_SIZE];
+};
+
+void ways_open(struct ways *ways, struct log *log, const char *instance,
+               void (*watch)(void *ctx, int fd, short events), void *ctx);
+/* Is there something to be told by that way in the file? */
+bool ways_has(const struct config_notify *notify, enum way_kind kind);
+const char *ways_name(enum way_kind kind);
+/* Look at what is under way, and begin what is due. fd: ready for the POST; -1: none. */
+void ways_step(struct ways *ways, const struct config_notify *notify, int fd, short ready,
+               int64_t now_ns);
+/* Wait a moment for what is under way, and step: of a program without the loop of the face. */
+void ways_wait(struct ways *ways, const struct config_notify *notify);
+/* Try all at once again: the file is another. */
+void ways_again(struct ways *ways);
+/* When to look again. */
+int64_t ways_next(const struct ways *ways, int64_t now_ns);
+/* What is under way is given up. */
+void ways_close(struct ways *ways);
