@@ -191,8 +191,8 @@ static int schema_check(sqlite3 *db)
 
 /*
  * SQLite's log of commits has its full size from the begin: a commit that makes it longer costs
- * five blocks of ext4's journal more. SQLite takes zeros for the end of the log, and empties it where it
- * closes the file. On a disk that is nearly full it grows as it would without.
+ * five blocks of ext4's journal more. SQLite takes zeros for the end of the log, and empties it
+ * where it closes the file. On a disk that is nearly full it grows as it would without.
  */
 static void fill_log(const char *path)
 {
