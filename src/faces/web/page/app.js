@@ -53,8 +53,9 @@ const both = (module, name) => Promise.all([module, new Promise((resolve) => {
 		document.head.append(el("link", {rel: "stylesheet", href: name, onload: resolve,
 			onerror: resolve}));
 })]).then(([made]) => made);
-const LATER = [() => both(import("./alarms.js"), "alarms.css"), () => import("./trends.js"),
-	() => both(import("./wire.js"), "wire.css"), () => import("./about.js")];
+const LATER = [() => both(import("./alarms.js"), "alarms.css"),
+	() => both(import("./trends.js"), "trends.css"), () => both(import("./wire.js"), "wire.css"),
+	() => import("./about.js")];
 const [alarms, trends, wire, about, config] = [...LATER,
 	() => both(import("./config.js"), "config.css")].map(fetched);
 const VIEWS = {live, alarms, trends, wire, config, about};

@@ -1,130 +1,161 @@
 // SPDX-License-Identifier: MIT
 // A plot of signals that have one unit: the last value as a line of steps in a band from the least
-// to the greatest, gaps as gaps, and below it the quality of each signal as a band. dygraphs has the
-// axes and the gestures; without it there are the figures alone.
-import {el, later, put, wide} from "./dom.js";
-import {extremes, padded} from "./series.js";
-import {UNKNOWN, clock, dateAndClock, qualityWords, stateOf, tickText, valueText, withUnit}
-	from "./words.js";
+// to the greatest, gaps as gaps, and names at the end of the curves; or of signals that are on or
+// off: a bar each. dygraphs has the axes and the gestures.
+import {el, later, put} from "./dom.js";
+import * as paint from "./paint.js";
+import {apart, numberTicks, timeTicks} from "./axes.js";
+import {extremes, heldAt, padded} from "./series.js";
 
-const AXIS = 56, BAND = 12, SPACE = 4, SETTLED_MS = 250;
-const DASHES = [[], [6, 3], [2, 2], [10, 3, 2, 3], [12, 4], [1, 4]];
-const SWITCH = [-0.2, 1.2]; // of the values off and on
-
-const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+const SETTLED_MS = 250, LANE = 24, NAME = 16, TAPS_MS = 350;
 const same = (a, b) => a[0] === b[0] && a[1] === b[1];
 
 export class Plot {
 	/**
-	 * signals: of one unit; numbers: which line each has, 0 ..; zoom(from, until): the user has
-	 * chosen a window; point(time): the user points at it, or null.
+	 * signals: of one unit; numbers: which line each has, 0 ..; moving(window): a gesture moves it
+	 * now; zoom(from, until): the user has chosen a window; back(): wants the one before.
 	 */
-	constructor(signals, numbers, zoom, point) {
-		this.signals = signals;
-		this.numbers = numbers;
+	constructor(signals, numbers, {moving, zoom, back}) {
+		Object.assign(this, {signals, numbers, back, lanes: signals[0].type === "bool"});
 		this.pasts = [];
-		this.time = null;
+		this.olds = []; // the same of days before, null: none
 		this.chosen = null; // the least and the greatest value that the user has dragged to
-		this.moving = false; // a gesture goes on, or has just ended
+		this.busy = false; // a gesture goes on, or has just ended
+		this.gesture = (window) => {
+			this.busy = true;
+			this.settle();
+			moving(window);
+		};
 		this.settle = later(() => {
-			this.moving = false;
+			this.busy = false;
 			if (this.graph)
 				zoom(...this.graph.xAxisRange());
 		}, SETTLED_MS);
-		this.band = el("canvas", {class: "band", "aria-hidden": "true"});
-		this.hair = el("div", {class: "hair", hidden: true});
-		this.at = el("th", {scope: "col", class: "right"}, "Last");
-		this.cells = signals.map(() => ({value: el("td", {class: "right"}), range: el("td", {
-			class: "right"}), quality: el("td", {})}));
-		const names = signals.map((signal) => signal.name).join(", ");
-		const figures = wide(`Figures of ${names}`);
-		figures.append(this.#legend());
-		this.node = el("figure", {class: "trend"});
-		if (globalThis.Dygraph) {
-			this.chart = el("div", {class: "chart",
-				onpointermove: ({clientX, currentTarget}) => this.graph && point(
-					this.graph.toDataXCoord(clientX - currentTarget.getBoundingClientRect().left)),
-				onpointerleave: () => point(null)});
-			this.node.append(el("p", {class: "unit"}, signals[0].unit || ""),
-				el("div", {class: "plot", role: "img",
-					"aria-label": `Trend of ${names}; the table below has figures`},
-				this.chart, this.hair), this.band);
-		}
-		this.node.append(figures);
+		this.chart = el("div", {class: "chart"});
+		this.names = signals.map((signal, n) => el("span", {class: `end ink-${this.#ink(n)}`},
+			signal.name));
+		this.dots = signals.map((_, n) => el("i", {class: `dot ink-${this.#ink(n)}`, hidden: true}));
+		this.unit = el("span", {class: "unit"}, this.lanes ? "" : signals[0].unit || "");
+		this.node = el("div", {class: this.lanes ? "plot lanes" : "plot"}, this.unit, this.chart, ...this.names, ...this.dots);
 	}
 
-	#legend() {
-		return el("table", {class: "data legend"},
-			el("caption", {class: "unseen"}, "Figures of the trend"),
-			el("thead", {}, el("tr", {}, el("th", {scope: "col"}, "Signal"), this.at,
-				el("th", {scope: "col", class: "right"}, "Least to greatest"),
-				el("th", {scope: "col"}, "Quality"))),
-			el("tbody", {}, ...this.signals.map((signal, n) => el("tr", {},
-				el("th", {scope: "row"}, el("span", {class: `key line-${this.numbers[n]}`,
-					"aria-hidden": "true"}), ` ${signal.name}`),
-				this.cells[n].value, this.cells[n].range, this.cells[n].quality))));
+	#ink(n) {
+		return this.lanes ? "bar" : this.numbers[n];
+	}
+
+	colour(n) {
+		return paint.css(this.lanes ? "--edge" : `--line-${this.numbers[n]}`);
+	}
+
+	/** The height that lanes need; 0: a plot takes what there is. */
+	get wanted() {
+		return this.lanes ? this.signals.length * LANE : 0;
+	}
+
+	/** Characters of the widest figure of the axis. */
+	get figures() {
+		return this.lanes ? 0 : Math.max(0, ...numberTicks(...this.#range(), this.height ?? 200)
+			.map(({label}) => label.length));
 	}
 
 	#options() {
-		const {dateTicker, defaultInteractionModel: gestures} = globalThis.Dygraph;
-		const rule = css("--rule");
-		const y = this.#switches() ? {ticker: () => [{v: 0, label: "off"}, {v: 1, label: "on"}]} : {};
+		const {defaultInteractionModel: gestures} = globalThis.Dygraph;
+		const rule = paint.css("--rule");
+		let tapped = -Infinity;
 		return {
-			labels: ["time", "all"], highlightCircleSize: 0, gridLineColor: rule,
-			axisLineColor: rule, axisLabelFontSize: 12, plotter: (all) => this.#drawAll(all),
-			drawCallback: (graph) => this.#drawn(graph),
-			axes: {x: {ticker: dateTicker, axisLabelFormatter: (time) => tickText(new Date(time))},
-				y: {axisLabelWidth: AXIS, ...y}},
+			labels: ["time", "all"], highlightCircleSize: 0, gridLineColor: rule, gridLineWidth: 1, axisTickSize: 4,
+			axisLineColor: "transparent", axisLabelFontSize: 12,
+			plotter: (all) => this.#draw(all), drawCallback: (graph) => this.#drawn(graph),
+			axes: {x: {drawAxis: false, ticker: (from, until, width) => timeTicks(from, until, width)},
+				y: {drawGrid: !this.lanes, ticker: (from, until, height) => this.lanes ? []
+					: numberTicks(from, until, height)}},
 			// Time alone is moved; a drag up or down chooses values, until a double click
 			interactionModel: {...gestures, mousedown: (event, graph, context) => {
 				gestures.mousedown(event, graph, context);
 				context.is2DPan = false;
 			}, touchstart: (event, graph, context) => {
-				// One finger up or down scrolls the page
-				gestures.touchstart({touches: event.touches, preventDefault: () =>
-					event.touches.length > 1 && event.preventDefault()}, graph, context);
+				if (event.touches.length < 2)
+					return; // one finger has the cursor, or scrolls the page
+				gestures.touchstart(event, graph, context);
 				context.touchDirections = {x: true, y: false};
-			}, dblclick: () => {
-				this.chosen = null;
-				this.show(this.pasts, this.window);
-			}},
+			}, touchmove: (event, graph, context) =>
+				event.touches.length > 1 && gestures.touchmove(event, graph, context),
+			touchend: (event) => {
+				if (event.touches.length)
+					return;
+				if (event.timeStamp - tapped < TAPS_MS)
+					this.#reset();
+				tapped = event.timeStamp;
+			}, dblclick: () => this.#reset()},
 		};
 	}
 
-	#switches() {
-		return this.signals.every((signal) => signal.type === "bool");
+	/* To all values, or, where those are shown, to the window of before. */
+	#reset() {
+		if (!this.chosen)
+			this.back();
+		this.chosen = null;
+		this.graph.updateOptions({valueRange: this.range = this.#range()});
 	}
 
-	/** Show these pasts, one for each signal, in the window [from, until] (ms). */
-	show(pasts, window) {
+	#range() {
+		return this.lanes ? [0, this.signals.length] : this.chosen
+			?? padded([...this.pasts, ...this.olds].filter(Boolean).map((past) => extremes(past, this.window)).filter(Boolean));
+	}
+
+	take(pasts, olds, window) {
 		this.pasts = pasts;
+		this.olds = olds;
 		this.window = window;
-		this.#figures();
-		if (!this.chart?.clientWidth || this.moving)
+	}
+
+	/** Draw what was taken, so high, with so much room at the left and at the right (px). */
+	show(height, left, right) {
+		if (this.busy)
 			return;
-		this.range = this.chosen ?? (this.#switches() ? SWITCH
-			: padded(pasts.map((past) => extremes(past, window)).filter(Boolean)));
-		const wanted = {file: window.map((time) => [time, null]), dateWindow: window,
-			valueRange: this.range};
+		this.range = this.#range();
+		const wanted = {file: this.window.map((time) => [time, null]), dateWindow: this.window,
+			valueRange: this.range, rightGap: right, axes: {y: {axisLabelWidth: left - 8}}};
+		if (this.height !== height)
+			this.chart.style.height = `${height}px`;
+		this.height = height;
+		this.right = right;
+		this.unit.style.minWidth = `${left - 4}px`;
 		if (!this.graph) {
 			const {Dygraph} = globalThis;
 			// Its legend sets an attribute style, which the policy of the page refuses
 			Dygraph.PLUGINS = Dygraph.PLUGINS.filter((one) => one !== Dygraph.Plugins.Legend);
-			this.graph = new Dygraph(this.chart, wanted.file, {...this.#options(), ...wanted});
+			const options = this.#options();
+			this.graph = new Dygraph(this.chart, wanted.file, {...options, ...wanted,
+				axes: {x: options.axes.x, y: {...options.axes.y, ...wanted.axes.y}}});
 			return;
 		}
-		if (this.width !== this.chart.clientWidth)
+		const resized = this.size !== `${this.chart.clientWidth} ${height}`;
+		this.graph.updateOptions(wanted, resized);
+		if (resized)
 			this.graph.resize();
-		this.graph.updateOptions(wanted);
 	}
 
-	/** The user points at this time in one of the plots, or at none: null. */
+	/** Another plot of the stack is moved by a gesture. */
+	follow(window) {
+		this.window = window;
+		this.graph?.updateOptions({dateWindow: window});
+	}
+
+	/** The user points at this time, or at none: null. */
 	point(time) {
-		this.time = time;
-		this.#figures();
-		this.hair.hidden = time === null || !this.graph;
-		if (!this.hair.hidden)
-			this.hair.style.left = `${this.graph.toDomXCoord(time)}px`;
+		this.dots.forEach((dot, n) => {
+			const past = this.pasts[n], at = time === null ? -1 : heldAt(past, time);
+			dot.hidden = this.lanes || at < 0 || past.last[at] === null || !this.graph;
+			if (!dot.hidden) {
+				dot.style.left = `${this.graph.toDomXCoord(time)}px`;
+				dot.style.top = `${this.#y(past.last[at])}px`;
+			}
+		});
+	}
+
+	#y(value) {
+		return this.chart.offsetTop + this.graph.toDomYCoord(value);
 	}
 
 	end() {
@@ -132,134 +163,49 @@ export class Plot {
 		this.graph = null;
 	}
 
-	#figures() {
-		const {time, window} = this;
-		put(this.at, time === null ? "Last" : window[1] - window[0] > 86400000
-			? dateAndClock(time) : clock(time));
-		this.signals.forEach((signal, n) => {
-			const past = this.pasts[n], cells = this.cells[n];
-			let at = past.x.length - 1;
-			while (time !== null && at >= 0 && past.x[at] > time)
-				at--;
-			const code = at < 0 ? UNKNOWN : past.code[at];
-			put(cells.value, withUnit(signal, valueText(signal, at < 0 ? null : past.last[at])));
-			put(cells.quality, code === UNKNOWN ? "unknown" : qualityWords(code)
-				+ (past.gap[at] ? ", with a gap" : ""));
-			put(cells.range, extremes(past, window)?.map((value) => valueText(signal, value))
-				.join(" to ") ?? "\u2014");
-		});
-	}
-
 	/* What the graph shows is what was wanted, or a gesture has moved it. */
 	#drawn(graph) {
 		this.graph ??= graph; // the first time, its constructor has not returned
-		this.width = this.chart.clientWidth;
-		if (!same(graph.yAxisRange(), this.range))
+		this.size = `${this.chart.clientWidth} ${this.height}`;
+		if (!this.lanes && !same(graph.yAxisRange(), this.range))
 			this.chosen = graph.yAxisRange();
 		if (!same(graph.xAxisRange(), this.window)) {
-			this.moving = true;
-			this.settle();
+			this.window = graph.xAxisRange();
+			this.gesture(this.window);
 		}
-		this.#drawBand();
+		this.#nameEnds(graph.getArea());
 	}
 
-	/* Not by the lines of dygraphs: their dashes begin anew at each step. */
-	#drawAll({drawingContext: pen, dygraph: graph}) {
-		const y = (value) => graph.toDomYCoord(value);
-		this.pasts.forEach(({x: times, min, max, last}, n) => {
-			const x = times.map((time) => graph.toDomXCoord(time));
-			const stroke = css(`--line-${this.numbers[n]}`);
-			pen.save();
-			pen.fillStyle = `${stroke}33`;
-			for (let k = 0; k + 1 < x.length; k++)
-				if (min[k] !== null && max[k] !== null)
-					pen.fillRect(x[k], y(max[k]), x[k + 1] - x[k], y(min[k]) - y(max[k]));
-			pen.strokeStyle = stroke;
-			pen.lineWidth = 1.75;
-			pen.setLineDash(DASHES[this.numbers[n]]);
-			pen.beginPath();
-			for (let k = 0; k < x.length; k++) {
-				if (k && last[k - 1] !== null)
-					pen.lineTo(x[k], y(last[k - 1]));
-				if (last[k] !== null)
-					pen[k && last[k - 1] !== null ? "lineTo" : "moveTo"](x[k], y(last[k]));
-			}
-			pen.stroke();
-			pen.restore();
+	#nameEnds({x, w}) {
+		const ends = this.pasts.map((past, n) => this.lanes ? this.#y(this.#lane(n))
+			: this.#y(past.last.findLast((value) => value !== null) ?? this.range[1]));
+		const places = apart(ends.map((y) => y - NAME / 2), NAME,
+			this.chart.offsetTop + this.height - NAME);
+		this.names.forEach((name, n) => {
+			name.hidden = this.right < 60;
+			name.style.left = `${x + w + 8}px`;
+			name.style.maxWidth = `${this.right - 8}px`;
+			name.style.top = `${places[n]}px`;
+			put(name, this.signals[n].name);
 		});
 	}
 
-	/* Good: a bar in the colour of the line. Not good: hatched. Nothing known: a dotted line. */
-	#drawBand() {
-		const {graph, band} = this, {x: left, w: width} = graph.getArea();
-		const ratio = devicePixelRatio;
-		const height = this.signals.length * (BAND + SPACE) + SPACE;
-		band.width = this.width * ratio;
-		band.height = height * ratio;
-		band.style.width = `${this.width}px`;
-		band.style.height = `${height}px`;
-		const pen = band.getContext("2d");
-		pen.scale(ratio, ratio);
-		pen.beginPath();
-		pen.rect(left, 0, width, height);
-		pen.clip();
+	#lane(n) {
+		return this.signals.length - n - 0.5;
+	}
+
+	#draw({drawingContext: pen, dygraph: graph}) {
+		const x = (time) => graph.toDomXCoord(time), y = (value) => graph.toDomYCoord(value);
+		for (const old of this.lanes ? [] : this.olds.filter(Boolean))
+			paint.line(pen, old, x, y, {stroke: paint.css("--edge"), width: 1});
 		this.pasts.forEach((past, n) => {
-			const top = SPACE + n * (BAND + SPACE);
-			let reached = left;
-			for (let k = 0; k < past.x.length;) {
-				let end = k + 1;
-				while (end < past.x.length && past.code[end] === past.code[k]
-					&& past.gap[end] === past.gap[k])
-					end++;
-				const a = graph.toDomXCoord(past.x[k]);
-				const b = graph.toDomXCoord(past.x[Math.min(end, past.x.length - 1)]);
-				if (k === 0)
-					dotted(pen, reached, a, top);
-				paintPart(pen, past.gap[k] ? UNKNOWN : past.code[k], a, b, top, this.numbers[n]);
-				reached = b;
-				k = end;
+			const stroke = this.colour(n);
+			if (this.lanes) {
+				paint.bars(pen, past, x, y(this.#lane(n)));
+				return;
 			}
-			dotted(pen, reached, left + width, top);
+			paint.spread(pen, past, x, y, stroke);
+			paint.line(pen, past, x, y, {stroke, number: this.numbers[n]});
 		});
 	}
-}
-
-function paintPart(pen, code, a, b, top, number) {
-	const state = stateOf(code);
-	if (state === "unknown") {
-		dotted(pen, a, b, top);
-		return;
-	}
-	if (state === "good") {
-		pen.fillStyle = css(`--line-${number}`);
-		pen.fillRect(a, top + BAND / 2 - 2, b - a, 4);
-		return;
-	}
-	pen.save();
-	pen.beginPath();
-	pen.rect(a, top, Math.max(1, b - a), BAND);
-	pen.clip();
-	pen.strokeStyle = pen.fillStyle = css("--bad");
-	pen.lineWidth = 1.5;
-	pen.strokeRect(a, top, Math.max(1, b - a), BAND);
-	for (let x = a - BAND - (a % 6); x < b; x += 6) {
-		pen.beginPath();
-		pen.moveTo(x, top + BAND);
-		pen.lineTo(x + BAND, top);
-		pen.stroke();
-	}
-	pen.restore();
-}
-
-function dotted(pen, a, b, top) {
-	if (b <= a)
-		return;
-	pen.save();
-	pen.strokeStyle = css("--ink-2");
-	pen.setLineDash([1, 4]);
-	pen.beginPath();
-	pen.moveTo(a, top + BAND / 2);
-	pen.lineTo(b, top + BAND / 2);
-	pen.stroke();
-	pen.restore();
 }

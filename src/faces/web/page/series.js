@@ -4,6 +4,8 @@ import {get} from "./api.js";
 import {store} from "./store.js";
 import {UNKNOWN, qualityWords, stateOf} from "./words.js";
 
+const UNWRITTEN_MS = 60000; // at most, unless the configuration has a longer Flush
+
 export const goodCode = (code) => code !== UNKNOWN && stateOf(code) === "good";
 
 /**
@@ -41,6 +43,8 @@ function take(past, data) {
 	while (past.x.length && past.code.at(-1) === UNKNOWN)
 		for (const column of [past.x, past.min, past.max, past.last, past.code, past.gap])
 			column.pop();
+	if (past.x.length < from.length && past.x.length)
+		past.gap[past.x.length - 1] = false;
 }
 
 /** The past with what the page has heard since, until the time (ms). */
@@ -58,8 +62,11 @@ export function continued(past, signal, from, until) {
 	const end = Math.min(until, store.now());
 	// Where the last column ends; what comes then, only the page can know
 	const start = all.x.length ? all.x.at(-1) + (all.x[1] - all.x[0] || 0) : from;
-	const held = signal.recent.findLast(({t}) => t <= start);
+	const known = signal.recent.findLast(({t}) => t <= start);
 	const heard = signal.recent.filter(({t}) => t > start && t <= end);
+	// Until the recorder has written what came just before the page was opened, that held on
+	const held = known ?? (all.x.length && heard[0]?.t - start <= UNWRITTEN_MS
+		? {v: all.last.at(-1), code: all.code.at(-1)} : null);
 	if (start < end)
 		add(start, held?.v ?? null, held?.code ?? UNKNOWN);
 	for (const {t, v, code, low, high} of heard)
@@ -75,6 +82,27 @@ export function extremes(past, [from, until]) {
 		&& past.x[n] <= until);
 	const least = good(past.min), most = good(past.max);
 	return least.length ? [Math.min(...least), Math.max(...most)] : null;
+}
+
+/** The number of the column that holds at a time; null: the last one; -1: none. */
+export function heldAt(past, time) {
+	let at = past.x.length - 1;
+	while (time !== null && at >= 0 && past.x[at] > time)
+		at--;
+	return at;
+}
+
+/** For which part of the time in the window of which something is known it was on; or null. */
+export function onPart({x, last}, [from, until]) {
+	let known = 0, on = 0;
+	for (let n = 0; n + 1 < x.length; n++) {
+		const time = Math.min(x[n + 1], until) - Math.max(x[n], from);
+		if (time <= 0 || last[n] === null)
+			continue;
+		known += time;
+		on += last[n] ? time : 0;
+	}
+	return known ? on / known : null;
 }
 
 /** The values that an axis shows for these pairs of a least and a greatest: all, and a margin. */

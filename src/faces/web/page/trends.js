@@ -1,64 +1,58 @@
 // SPDX-License-Identifier: MIT
-// The view Trends: the signals that the user picks, in a window of time that is moved by buttons or
-// by dragging, and that follows the present until it is.
+// The view Trends: the signals that the user picks, in a window of time that is moved by buttons, by
+// dragging, by the wheel or by keys, and that follows the present until it is.
 import {announce, el, later, put} from "./dom.js";
-import {Plot} from "./plot.js";
-import {continued, csvOf, pastOf, save} from "./series.js";
+import {Picker} from "./picker.js";
+import {continued, csvOf, heldAt, pastOf, save} from "./series.js";
+import {Stack} from "./stack.js";
 import {store} from "./store.js";
-import {dateAndClock} from "./words.js";
+import {Tools} from "./tools.js";
+import {besideOf, daysLater} from "./when.js";
+import {moment, qualityWords, valueText, withUnit} from "./words.js";
 
-const SPANS = [[600, "10 min"], [3600, "1 h"], [28800, "8 h"], [86400, "1 d"], [604800, "7 d"],
-	[2592000, "30 d"]];
 const LINES = 6; // at most, in one colour each: that many --line-N has style.css
-const LEAST_MS = 2000, FRAME_MS = 1000, FETCH_MS = 5000, POINTS = 600;
+const LEAST_MS = 2000, FRAME_MS = 1000, FETCH_MS = 5000, POINTS = 600, BACK = 20;
 
-const state = {picked: [], span: 600000, until: null}; // until null: follows the present
+// until null: follows the present; given: the user has picked, not the page; beside: the same time
+// of days before is drawn, too
+const state = {picked: [], span: 600000, until: null, given: false, beside: false};
 const LIBRARY = "dygraph.min.js"; // comes when it is needed: it is as large as all else
-let shown = false, ready = false, list, filter, plots = [], area, hint, absent, times, live;
-let pasts = new Map(), asked = 0;
+let shown = false, ready = false, picker, stack, hint, told, absent, tools, before = [];
+let pasts = new Map(), olds = new Map(), asked = 0, cursor = null;
 
 export function build(root) {
-	filter = el("input", {type: "search", placeholder: "Search",
-		"aria-label": "Search signals to pick", oninput: drawList});
-	list = el("ul", {class: "picks"});
-	const picker = el("details", {class: "picker"}, el("summary", {}, "Signals"), filter, list);
-	picker.open = matchMedia("(min-width: 44rem)").matches;
 	hint = el("p", {class: "hint", role: "status"});
+	told = el("p", {class: "hint", role: "status"});
 	absent = el("p", {class: "note", role: "status", hidden: true});
-	times = el("p", {class: "times"});
-	area = el("div", {class: "plots"});
-	live = el("button", {type: "button", "aria-pressed": "true", onclick: () => move(null)},
-		"Follow");
-	const move_by = (part) => move((state.until ?? store.now()) + part * state.span);
-	const button = (text, label, act) => el("button", {type: "button", "aria-label": label,
-		onclick: act}, text);
-	const spans = SPANS.map(([seconds, text]) => el("button", {type: "button", class: "span",
-		"data-span": seconds * 1000, onclick: () => {
-			state.span = seconds * 1000;
-			move(null);
-		}}, text));
-	root.append(el("div", {class: "tools", role: "group", "aria-label": "Window of time"},
-		...spans, button("\u2190", "Earlier", () => move_by(-0.5)),
-		button("\u2192", "Later", () => move_by(0.5)),
-		button("+", "Zoom in", () => zoom(0.5)), button("\u2212", "Zoom out", () => zoom(2)), live,
-		el("button", {type: "button", onclick: exported}, "Save as CSV")), times, hint, absent,
-	el("div", {class: "columns"}, picker, area));
+	picker = new Picker({add, remove: (name) => pick(state.picked.filter((one) => one !== name)),
+		has: (name) => state.given && state.picked.includes(name)});
+	stack = new Stack({zoom: (from, until) => goTo([from, until]), factor: zoom, back, point,
+		words: wordsAt});
+	tools = new Tools({span, shift, go: goTo, follow: () => move(null), beside, link, table: exported,
+		fault: (words) => put(told, words)}, root.querySelector("h1"));
+	root.append(tools.node, told, hint, absent, el("div", {class: "columns"}, picker.node,
+		el("figure", {class: "trend sheet"}, stack.node)));
 	store.addEventListener("signals", renewed);
 	setInterval(frame, FRAME_MS);
 	setInterval(() => shown && state.until === null && !document.hidden && fetchAll(), FETCH_MS);
-	new ResizeObserver(later(() => shown && draw(), 200)).observe(area);
+	const soon = later(() => shown && draw(), 200);
+	new ResizeObserver(soon).observe(stack.node);
+	window.addEventListener("resize", soon);
 	matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => shown && arrange());
 }
 
 export function show(query) {
 	const given = new URLSearchParams(query);
 	shown = true;
-	if (given.has("s"))
+	if (given.has("s")) {
 		state.picked = given.getAll("s").slice(0, LINES);
+		state.given = true;
+	}
 	if (Number(given.get("span")) >= LEAST_MS)
 		state.span = Number(given.get("span"));
 	if (given.has("until"))
 		state.until = Number(given.get("until")) || null;
+	state.beside = given.has("beside");
 	load().then(renewed);
 }
 
@@ -71,6 +65,7 @@ async function load() {
 	if (!came)
 		put(absent, await missing());
 	absent.hidden = Boolean(came);
+	stack.node.parentNode.hidden = !came;
 	ready = true;
 }
 
@@ -84,12 +79,27 @@ async function missing() {
 export const hide = () => { shown = false; };
 
 /* The choice stands in the address, so that it can be kept and sent. */
-function remember() {
+function address(until) {
 	const query = new URLSearchParams(state.picked.map((name) => ["s", name]));
 	query.set("span", String(Math.round(state.span)));
-	if (state.until !== null)
-		query.set("until", String(Math.round(state.until)));
-	history.replaceState(null, "", `#trends?${query}`);
+	if (until !== null)
+		query.set("until", String(Math.round(until)));
+	if (state.beside)
+		query.set("beside", "1");
+	return `#trends?${query}`;
+}
+
+const remember = () => history.replaceState(null, "", address(state.until));
+
+/* With the time of now, so that it shows the same picture tomorrow. */
+async function link() {
+	const link = new URL(address(window_()[1]), location.href).href;
+	try {
+		await navigator.clipboard.writeText(link);
+		put(told, "The link to this picture is copied.");
+	} catch {
+		put(told, `The browser lets the page copy nothing here. The link: ${link}`);
+	}
 }
 
 const numeric = () => store.signals.filter((signal) => signal.type !== "string");
@@ -98,36 +108,28 @@ const picked = () => state.picked.map((name) => store.find(name)).filter(Boolean
 function renewed() {
 	if (!shown || !ready)
 		return;
-	if (!state.picked.length)
+	if (!state.picked.length && !state.given)
 		state.picked = numeric().filter((signal) => signal.unit).slice(0, 2)
 			.map((signal) => signal.name);
-	drawList();
 	arrange();
 }
 
-function drawList() {
-	const words = filter.value.toLowerCase().split(/\s+/).filter(Boolean);
-	const found = numeric().filter(({name, description, device}) => words.every((word) =>
-		`${name} ${description ?? ""} ${device ?? ""}`.toLowerCase().includes(word)));
-	list.replaceChildren(...found.map((signal) => {
-		const box = el("input", {type: "checkbox", onchange: () => pick(signal.name, box)});
-		box.checked = state.picked.includes(signal.name);
-		return el("li", {}, el("label", {}, box, ` ${signal.name}`,
-			signal.unit ? el("span", {class: "unit"}, ` ${signal.unit}`) : null));
-	}));
-}
-
-function pick(name, box) {
-	state.picked = state.picked.filter((one) => one !== name);
-	if (box.checked && state.picked.length >= LINES) {
-		box.checked = false;
-		announce(`At most ${LINES} signals.`);
-		put(hint, `A trend has at most ${LINES} signals.`);
-	} else if (box.checked) {
-		state.picked.push(name);
-	}
+function pick(names) {
+	state.picked = names;
+	state.given = true;
+	put(told, "");
 	remember();
 	arrange();
+}
+
+/* What the page has picked by itself goes when the user does. */
+function add(name) {
+	const names = state.given ? state.picked : [];
+	if (names.length < LINES) {
+		pick([...names.filter((one) => one !== name), name]);
+		return;
+	}
+	put(told, `A trend has at most ${LINES} signals. Remove one first.`);
 }
 
 // --- The window of time ---------------------------------------------------------------------
@@ -139,56 +141,89 @@ const window_ = () => {
 
 function move(until) {
 	state.until = until === null || until >= store.now() ? null : until;
+	put(told, "");
 	remember();
 	fetchAll();
 	draw();
 }
 
-function zoom(factor) {
-	const [from, until] = window_(), middle = (from + until) / 2;
-	state.span = Math.max(LEAST_MS, state.span * factor);
-	move(state.until === null ? null : middle + state.span / 2);
+function span(ms) {
+	keep();
+	state.span = ms;
+	move(state.until);
 }
 
-function point(time) {
-	for (const {plot} of plots)
-		plot.point(time);
+const shift = (part) => move((state.until ?? store.now()) + part * state.span);
+
+function beside() {
+	state.beside = !state.beside;
+	remember();
+	fetchAll();
 }
 
-function zoomTo(from, until) {
+function goTo([from, until]) {
+	keep();
 	state.span = Math.max(LEAST_MS, until - from);
 	move(until);
 }
 
+/* For the way back. */
+function keep() {
+	before = [...before.slice(1 - BACK), [state.span, state.until]];
+}
+
+function back() {
+	if (!before.length)
+		return;
+	[state.span, state.until] = before.pop();
+	move(state.until);
+}
+
+function zoom(factor) {
+	const [from, until] = window_(), middle = (from + until) / 2;
+	keep();
+	state.span = Math.max(LEAST_MS, state.span * factor);
+	move(state.until === null ? null : middle + state.span / 2);
+}
+
+
 // --- Plots ----------------------------------------------------------------------------------
 
-/** A plot for each unit. */
+/** A plot for each unit; those that are on or off are below. */
 function arrange() {
-	for (const {plot} of plots)
-		plot.end();
-	const units = new Map();
-	picked().forEach((signal, n) => {
+	const units = new Map(), all = picked().map((signal, number) => ({signal, number}));
+	for (const {signal, number} of all) {
 		signal.watched = true; // longer kept
-		const key = signal.type === "bool" ? "on or off" : signal.unit || "";
-		units.set(key, [...units.get(key) ?? [], {signal, n}]);
-	});
-	plots = [...units.values()].map((members) => ({members, plot: new Plot(
-		members.map(({signal}) => signal), members.map(({n}) => n), zoomTo, point)}));
-	area.replaceChildren(...(plots.length ? plots.map(({plot}) => plot.node)
-		: [el("p", {class: "note"}, "Pick signals to see what they had.")]));
+		const key = signal.type === "bool" ? null : signal.unit || "";
+		const group = units.get(key) ?? {signals: [], numbers: []};
+		group.signals.push(signal);
+		group.numbers.push(number);
+		units.set(key, group);
+	}
+	picker.take(numeric(), all);
+	const switches = units.get(null);
+	units.delete(null);
+	if (globalThis.Dygraph)
+		stack.arrange([...units.values(), ...switches ? [switches] : []]);
 	fetchAll();
 	draw();
 }
 
+const days = () => besideOf(state.span)[0];
+
 async function fetchAll() {
 	const mine = ++asked, [from, until] = window_();
-	const points = Math.min(POINTS, Math.max(60, Math.round(area.clientWidth / 2)));
+	const points = Math.min(POINTS, Math.max(60, Math.round(stack.node.clientWidth / 2)));
 	try {
-		const all = await Promise.all(picked().map((signal) =>
-			pastOf(signal, from, until, points)));
+		const all = (start, end) => Promise.all(picked().map((signal) =>
+			pastOf(signal, start, end, points)));
+		const [now, old] = await Promise.all([all(from, until),
+			state.beside ? all(daysLater(from, -days()), daysLater(until, -days())) : []]);
 		if (mine !== asked)
 			return;
-		pasts = new Map(all.map((past) => [past.name, past]));
+		pasts = new Map(now.map((past) => [past.name, past]));
+		olds = new Map(old.map((past) => [past.name, {...past, x: past.x.map((time) =>
+			daysLater(time, days()))}]));
 		put(hint, store.info?.history ? "" : "Nothing is recorded (owsd-recorder does not run): "
 			+ "this is what the page has seen since it was opened.");
 	} catch (error) {
@@ -199,30 +234,50 @@ async function fetchAll() {
 }
 
 const EMPTY = {x: [], min: [], max: [], last: [], code: [], gap: []};
+const pastNow = (signal) => continued(pasts.get(signal.name) ?? {name: signal.name, ...EMPTY},
+	signal, ...window_());
 
 function draw() {
-	if (!shown)
+	if (!shown || !ready)
 		return;
-	const [from, until] = window_();
-	live.setAttribute("aria-pressed", String(state.until === null));
-	for (const button of live.parentNode.querySelectorAll(".span"))
-		button.setAttribute("aria-pressed", String(Number(button.dataset.span) === state.span));
-	put(times, `${dateAndClock(from)} to ${state.until === null ? "now" : dateAndClock(until)}`);
-	for (const {members, plot} of plots)
-		plot.show(members.map(({signal}) => continued(pasts.get(signal.name)
-			?? {name: signal.name, ...EMPTY}, signal, from, until)), [from, until]);
+	const [from, until] = window_(), all = new Map(picked().map((signal) =>
+		[signal, pastNow(signal)]));
+	tools.draw({from, until: state.until, span: state.span, beside: state.beside});
+	stack.show([from, until], (signal) => all.get(signal), (signal) => state.beside
+		? olds.get(signal.name) : null);
+	figures([...all.values()]);
+}
+
+function figures(all = picked().map(pastNow)) {
+	picker.figures(all, window_(), cursor, cursor === null
+		? state.until === null ? "of now" : `at the end, ${moment(state.until, store.now())}`
+		: `at the cursor, ${moment(cursor, store.now(), state.span < 3600000)}`);
+}
+
+function point(time) {
+	cursor = time;
+	stack.point(time);
+	figures();
+}
+
+/** For a reader: the time, and what each signal had. */
+function wordsAt(time) {
+	return [moment(time, store.now(), true), ...picked().map((signal) => {
+		const past = pastNow(signal), at = heldAt(past, time);
+		const value = at < 0 ? null : past.last[at];
+		return `${signal.name} ${value === null ? at < 0 ? "unknown" : qualityWords(past.code[at])
+			: withUnit(signal, valueText(signal, value))}`;
+	})].join("; ");
 }
 
 function frame() {
-	if (shown && state.until === null && !document.hidden && plots.length)
+	if (shown && state.until === null && !document.hidden)
 		draw();
 }
 
 function exported() {
-	const [from, until] = window_();
-	const all = picked().map((signal) => ({signal, past: continued(pasts.get(signal.name)
-		?? {name: signal.name, ...EMPTY}, signal, from, until)}));
-	const stamp = new Date(until).toISOString().slice(0, 19).replaceAll(":", "");
+	const all = picked().map((signal) => ({signal, past: pastNow(signal)}));
+	const stamp = new Date(window_()[1]).toISOString().slice(0, 19).replaceAll(":", "");
 	save(`${store.info?.instance ?? "owsd"}-${stamp}.csv`, csvOf(all));
 	announce("The table is saved.");
 }

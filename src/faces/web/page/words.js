@@ -147,26 +147,28 @@ export function dateAndClock(time) {
 		: `${at.getFullYear()}-${two(at.getMonth() + 1)}-${two(at.getDate())} ${clock(time)}`;
 }
 
-/** A mark of an axis of time: "12:30:05", "12:30"; at midnight "11-29", at that of a year "2026". */
-export function tickText(at) {
-	const date = `${two(at.getMonth() + 1)}-${two(at.getDate())}`;
-	if (at.getSeconds())
-		return clock(at.getTime());
-	if (at.getHours() || at.getMinutes())
-		return clock(at.getTime()).slice(0, 5);
-	return date === "01-01" ? String(at.getFullYear()) : date;
-}
-
 const DAYS = ["Sun", "Mon", "Tue", "Wed", "Thu", "Fri", "Sat"];
 const MONTHS = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
 const WEEK_MS = 6 * 86400000;
 
-/** A time as people say it now (ms): 14:02, Thu 21:14, 12 Nov 21:14, 2025-11-27. */
-export function moment(time, now) {
+/** A mark of an axis of time: 12:30:05, 12:30; at midnight 29 Nov, at that of a year 2026. */
+export function tickText(at) {
+	if (at.getSeconds())
+		return clock(at.getTime());
+	if (at.getHours() || at.getMinutes())
+		return clock(at.getTime()).slice(0, 5);
+	return at.getMonth() || at.getDate() > 1 ? `${at.getDate()} ${MONTHS[at.getMonth()]}`
+		: String(at.getFullYear());
+}
+
+/**
+ * A time as people say it now (ms): 14:02, Thu 21:14, 12 Nov 21:14, 2025-11-27; exact: 14:02:34.
+ */
+export function moment(time, now, exact = false) {
 	const at = new Date(msOf(time)), today = new Date(now);
 	if (Number.isNaN(at.getTime()))
 		return "\u2014";
-	const minute = clock(at.getTime()).slice(0, 5);
+	const minute = clock(at.getTime()).slice(0, exact ? 8 : 5);
 	if (at.toDateString() === today.toDateString())
 		return minute;
 	if (Math.abs(now - at) < WEEK_MS)

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+// Windows of time in the words of people: "yesterday 18:00", "Fri 18:00 - 20:00", "last night". All
+// in local time.
+import {dayText, moment} from "./words.js";
+
+const DAYS = ["sun", "mon", "tue", "wed", "thu", "fri", "sat"];
+const MONTHS = ["jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec"];
+const NIGHT = [18, 8]; // begins and ends at these hours
+const DAY_MS = 86400000, WEEK_MS = 7 * DAY_MS;
+
+const same = (a, b) => new Date(a).toDateString() === new Date(b).toDateString();
+/** So many days later, at the same time of the day. */
+export const daysLater = (time, days) => new Date(time).setDate(new Date(time).getDate() + days);
+const midnight = (time) => new Date(time).setHours(0, 0, 0, 0);
+
+/** From yesterday evening to this morning, or until now: [from, until]. */
+export const lastNight = (now) => [new Date(daysLater(now, -1)).setHours(NIGHT[0], 0, 0, 0),
+	Math.min(now, new Date(now).setHours(NIGHT[1], 0, 0, 0))];
+
+/** "Fri 27 Nov 18:00 – Sat 18:00"; until null: "– now". */
+export function windowText(from, until, now) {
+	const end = until ?? now, exact = end - from < 600000;
+	const year = new Date(from).getFullYear();
+	const first = same(from, now) && same(end, now) ? moment(from, now, exact)
+		: `${dayText(from)} ${year === new Date(now).getFullYear() ? "" : `${year} `}`
+			+ moment(from, from, exact);
+	const last = until === null ? "now" : same(from, end) ? moment(end, end, exact)
+		: end - from < WEEK_MS ? moment(end, end + DAY_MS, exact)
+			: `${dayText(end)} ${moment(end, end, exact)}`;
+	return `${first} \u2013 ${last}`;
+}
+
+/* What day a text names, as its midnight; null: none. near: where a day without a year is sought. */
+function dayOf(text, now) {
+	const days = ["today", "yesterday"].indexOf(text);
+	if (days >= 0)
+		return midnight(daysLater(now, -days));
+	const week = /^[a-z]{3,9}$/.test(text) ? DAYS.indexOf(text.slice(0, 3)) : -1;
+	if (week >= 0)
+		return midnight(daysLater(now, -((new Date(now).getDay() - week + 7) % 7)));
+	const [, year, month, day] = /^(\d{4})-(\d{1,2})-(\d{1,2})$/.exec(text)?.map(Number) ?? [];
+	if (year)
+		return dateOf(year, month - 1, day);
+	const named = /^(?:[a-z]{3,9}\.?,? )?(\d{1,2})\.? ([a-z]{3,9})\.?(?: (\d{4}))?$/.exec(text);
+	const at = named ? MONTHS.indexOf(named[2].slice(0, 3)) : -1;
+	if (at < 0)
+		return null;
+	const here = new Date(now).getFullYear();
+	const found = dateOf(Number(named[3] ?? here), at, Number(named[1]));
+	return found > now && !named[3] ? dateOf(here - 1, at, Number(named[1])) : found;
+}
+
+function dateOf(year, month, day) {
+	const date = new Date(year, month, day);
+	return date.getMonth() === month && date.getDate() === day ? date.getTime() : null;
+}
+
+/* One moment; day: the midnight that is meant if the text has a time alone. */
+function momentOf(text, now, day) {
+	if (!text || text === "now")
+		return text ? {time: now, whole: false} : null;
+	const clock = /(?:^|[ t])(\d{1,2})(?::(\d{2}))?(?::(\d{2}))? ?(?:h|o'clock)?$/.exec(text);
+	const rest = clock ? text.slice(0, clock.index).trim() : text;
+	const isDate = clock && !clock[2] && dayOf(text, now) !== null;
+	const wanted = isDate ? text : rest;
+	const start = wanted ? dayOf(wanted, now) : day;
+	if (start === null)
+		return null;
+	if (!clock || isDate)
+		return {time: start, whole: true};
+	const [hour, minute, second] = clock.slice(1).map((one) => Number(one ?? 0));
+	if (hour > 24 || minute > 59 || second > 59)
+		return null;
+	return {time: new Date(start).setHours(hour, minute, second), whole: false};
+}
+
+/**
+ * The window that a text names, as [from, until]: "yesterday", "yesterday 18:00", "Fri 18:00 - Sat
+ * 6:00", "last night". A moment alone is its begin; it is so long then (ms), a day whole. null: no
+ * window.
+ */
+export function windowOf(text, now, span) {
+	const plain = text.toLowerCase().replace(/\s+/g, " ").trim();
+	if (plain === "last night")
+		return lastNight(now);
+	const [, first, second] = /^(.+?)(?: ?\u2013 ?| - | to | until )(.+)$/.exec(plain) ?? [];
+	const from = momentOf(first ?? plain, now, midnight(now));
+	if (!from)
+		return null;
+	if (!second)
+		return [from.time, from.whole ? daysLater(from.time, 1) : from.time + span];
+	const until = momentOf(second, now, midnight(from.time));
+	if (!until)
+		return null;
+	let end = until.whole ? daysLater(until.time, 1) : until.time;
+	if (end <= from.time && !until.whole)
+		end = daysLater(end, end + DAY_MS > from.time ? 1 : 7); // past midnight; a day of the week
+	return end > from.time ? [from.time, end] : null;
+}
+
+/** With what a window is compared, in days before, and the words for it. */
+export function besideOf(span) {
+	return span <= DAY_MS ? [1, "yesterday"] : span <= WEEK_MS ? [7, "the week before"]
+		: [28, "4 weeks before"];
+}
