@@ -64,7 +64,7 @@ def test_it_finds_the_device_follows_it_and_commands_it(scene):
                          orders])
 
     def notices(*lines):
-        until(lambda: set(lines) <= set(judge.log().split(";\n")), 30, lambda: f"{lines}: {judge.log()}")
+        until(lambda: set(lines) <= {line.rstrip(";") for line in judge.log().splitlines()}, 30, lambda: f"{lines}: {judge.log()}")
     with open(orders, "w", encoding="ascii") as order:
         notices("found owsd-pi7", "28-a0b1c2000001/temperature=21.5")
         house.set("pull", 1)

@@ -175,7 +175,7 @@ def test_a_refused_reload_stays_visible_until_one_is_taken_over(scene):
         assert "€€" in found["json"]["why"] and "\ufffd" not in found["json"]["why"], found
     daemon.config.write_text(good)
     assert scene.owsctl(daemon, "reload").returncode == 0
-    assert said(daemon)[-1].startswith("STATUS=3 signals")
+    until(lambda: any(line.startswith("STATUS=3 signals") for line in said(daemon)), 10, "it tells its state")
     until(lambda: refusal(scene, daemon) == {**fine, "counter": 5}, 10, lambda: refusal(scene, daemon))
 
 
