@@ -54,8 +54,8 @@ def part(page, name):
 
 
 def open_item(page, name):
-    page.run("""const b = [...document.querySelectorAll('.pick')].find((one) =>
-        one.querySelector('.name').textContent === arguments[0]); b.click();
+    page.run("""const b = [...document.querySelectorAll('.grid-row .name')].find((one) =>
+        one.textContent === arguments[0]).closest('[data-key]'); b.focus(); b.click();
         document.querySelectorAll('.editor details').forEach((one) => { one.open = true; })""", name)
     shows(page, ".editor h2", name)
 
@@ -78,7 +78,7 @@ def paste(page, text):
 
 
 def names(page):
-    return page.run("return [...document.querySelectorAll('.pick .name')]"
+    return page.run("return [...document.querySelectorAll('.grid-row .name')]"
                     ".map((one) => one.textContent)")
 
 
@@ -267,11 +267,11 @@ def test_items_are_added_renamed_moved_and_removed_and_all_is_undone(scene):
         shows(page, ".editor h2", "garage")
         page.click("[data-action=up]:enabled")
         until(lambda: names(page)[2] == "garage", 20, lambda: names(page))
-        page.run("[...document.querySelectorAll('.pick')][2].focus()")
+        page.run("document.querySelectorAll('.grid [role=rowheader]')[2].focus()")
         page.chord("alt", "up")
         until(lambda: names(page) == ["room", "garage", "boiler", "attic"], 20,
               lambda: names(page))
-        page.until("return document.activeElement.textContent.startsWith('garage')",
+        page.until("return document.activeElement.closest('.grid-row')?.row.item.name === 'garage'",
                    "the focus goes with the item")
         open_item(page, "boiler")
         page.click("[data-action=remove]")
@@ -282,9 +282,111 @@ def test_items_are_added_renamed_moved_and_removed_and_all_is_undone(scene):
         page.find("[data-action=undo]:disabled")
         assert names(page) == ["room", "boiler", "attic"] and draft_text(page) == on_disk(daemon)
         page.type("#config-search", "attic")
-        page.until("return [...document.querySelectorAll('.pick')].filter((one) =>"
+        page.until("return [...document.querySelectorAll('.grid-row .name')].filter((one) =>"
                    "one.checkVisibility()).length === 1", "the search")
         well(page)
+
+
+def cell(page, name, key):
+    """Put the focus into a cell of the grid."""
+    page.run("[...document.querySelectorAll('.grid-row [data-key]')].find((one) =>"
+             "one.closest('.grid-row').row?.item.name === arguments[0] &&"
+             "one.dataset.key === arguments[1]).focus()", name, key)
+
+
+def at(page, name, key):
+    """Wait until the focus is in that cell."""
+    page.until("const c = document.activeElement.closest('[data-key]');"
+               "return c?.closest('.grid-row')?.row.item.name === arguments[0] &&"
+               "c.dataset.key === arguments[1]", f"the focus is in {key} of {name}", name, key)
+
+
+def test_cells_are_edited_in_place_by_the_keyboard(scene):
+    with dialog(scene) as (_, _, page):
+        cell(page, "room", "LimitH")
+        page.press("enter", *"hot", "enter")
+        shows(page, "#grid-fault", "room, LimitH", "expected a number", "draft does not have it")
+        page.find(".grid [aria-invalid=true]")
+        page.press("escape")
+        at(page, "room", "LimitH")
+        draft_is(page, "As on disk")
+        page.press("enter", *"30", "enter")
+        draft_is(page, "1 change, not saved")
+        at(page, "room", "LimitH")
+        assert page.run("return document.activeElement.textContent") == "none \u2192 30"
+        page.press("down", "enter", *"95", "enter")
+        draft_is(page, "2 changes")
+        at(page, "boiler", "LimitH")
+        assert page.run("return document.activeElement.textContent") == "90 \u2192 95"
+        page.chord("\ue009", "z")
+        draft_is(page, "1 change,")
+        cell(page, "attic", "Unit")
+        page.press("enter", "K", "tab")
+        at(page, "attic", "LimitH")
+        draft_is(page, "2 changes")
+        cell(page, "attic", "Name")
+        page.press("enter", *"room", "enter")
+        shows(page, "#grid-fault", "Another item")
+        page.run("document.activeElement.select()")
+        page.press(*"roof", "enter")
+        until(lambda: names(page) == ["room", "boiler", "roof"], 20, lambda: names(page))
+        at(page, "roof", "Name")
+        shows(page, ".editor h2", "roof")
+        well(page)
+
+
+def test_several_items_are_set_duplicated_and_removed_as_one_step(scene):
+    with dialog(scene) as (daemon, _, page):
+        for name in ("room", "boiler"):
+            cell(page, name, "Name")
+            page.press(" ")
+        page.click("[data-action=set-key]")
+        page.run("const k = document.querySelector('#set-key'); k.value = 'Unit';"
+                 "k.dispatchEvent(new Event('change'))")
+        page.type("#set-value", "K")
+        page.click("dialog button.primary")
+        draft_is(page, "2 changes")
+        page.until("return document.activeElement.dataset.action === 'set-key'", "the focus stays")
+        page.click("[data-action=duplicate]")
+        until(lambda: names(page) == ["room", "room2", "boiler", "boiler2", "attic"], 20,
+              lambda: names(page))
+        at(page, "room2", "Name")
+        assert draft_text(page).count('"K"') == 4, draft_text(page)
+        page.click("[data-action=undo]")
+        until(lambda: names(page) == ["room", "boiler", "attic"], 20, lambda: names(page))
+        page.click("[data-action=remove]")
+        page.click("dialog button.primary")
+        until(lambda: names(page) == ["attic"], 20, lambda: names(page))
+        at(page, "attic", "Name")
+        for _ in range(2):
+            page.click("[data-action=undo]:enabled")
+        draft_is(page, "As on disk")
+        well(page)
+
+
+def test_the_grid_has_the_values_of_now_and_is_sorted_by_them(scene):
+    with dialog(scene) as (_, _, page):
+        page.until("return document.querySelector('.grid .c-now:not([role=columnheader])')"
+                   ".textContent.startsWith('21.5')", "the value of room")
+        shows(page, ".grid", "device absent")
+        page.click(".grid-head .c-now button")
+        assert names(page) == ["room", "boiler", "attic"]
+        page.click(".grid-head .c-now button")
+        assert names(page) == ["boiler", "room", "attic"]
+        assert page.run("return document.querySelector('.grid-head .c-now').ariaSort") == "descending"
+        page.click(".grid-head .c-now button")
+        assert names(page) == ["room", "boiler", "attic"]
+
+
+def test_a_phone_has_a_list_of_names_and_the_form_as_a_page(scene):
+    with dialog(scene) as (_, _, page):
+        page.size(360, 740, mobile=True)
+        page.until("return !document.querySelector('.side').checkVisibility()", "no form")
+        page.click(".grid-row:nth-child(2) .c-Name")
+        shows(page, ".editor h2", "boiler")
+        assert not page.run("return document.querySelector('.grid').checkVisibility()")
+        page.click("[data-action=back]")
+        at(page, "boiler", "Name")
 
 
 def test_targets_and_blocks_have_forms_too(scene):
@@ -506,8 +608,9 @@ def test_without_the_right_all_can_be_looked_at_and_nothing_changed(scene):
             part(page, name)
             able = page.run("return [...document.querySelectorAll(arguments[0])].filter((one) =>"
                             "!one.matches(':disabled, [readonly], [type=search], #only-new') &&"
-                            "!['theirs', 'export'].includes(one.dataset.action) &&"
-                            "!one.matches('.pick')).map((one) => one.outerHTML)",
+                            "!['theirs', 'export', 'back'].includes(one.dataset.action) &&"
+                            "!one.matches('[role=columnheader] *, .c-choose *, #also'))"
+                            ".map((one) => one.outerHTML)",
                             f"#part-{name} :is(input, select, textarea, button)")
             assert not able, (name, able)
         well(page)

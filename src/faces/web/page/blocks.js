@@ -29,7 +29,7 @@ function make() {
 		forms.set("TargetName", field);
 	}
 	for (const {name, place, title} of draft.singles()) {
-		const form = new Form(place, place, setter(() => name), null, ELSEWHERE);
+		const form = new Form(place, place, setter(() => name), {without: ELSEWHERE});
 		form.title = el("summary", {}, title);
 		form.box = el("details", {class: "block"}, form.title, form.node);
 		forms.set(name, form);
@@ -97,7 +97,7 @@ let serial = 0;
 
 function busForm(target) {
 	const form = new Form(`bus${serial++}`, "bus", (values) =>
-		draft.edit(...edits(values, "bus-set", "bus-unset", {target})), null, ["Target"]);
+		draft.edit(...edits(values, "bus-set", "bus-unset", {target})), {without: ["Target"]});
 	form.words = el("span", {class: "hint"});
 	form.remove = el("button", {type: "button", onclick: async () => {
 		try {

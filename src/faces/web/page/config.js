@@ -2,7 +2,7 @@
 // The view Configuration: its parts, the state of the draft, undo, import and export.
 import * as blocks from "./blocks.js";
 import {ask} from "./command.js";
-import {announce, el, put} from "./dom.js";
+import {able, announce, el, put} from "./dom.js";
 import {draft} from "./draft.js";
 import * as found from "./found.js";
 import * as items from "./items.js";
@@ -23,7 +23,7 @@ let part = "items", shown = false, file, state, why, fault, notice, taken, butto
 
 export function build(root) {
 	file = el("code", {});
-	state = el("p", {class: "count", id: "draft-state"});
+	state = el("p", {class: "count", id: "draft-state", tabindex: -1});
 	why = el("p", {class: "note", id: "draft-why", hidden: true});
 	fault = el("p", {class: "fault", role: "alert"});
 	notice = el("p", {class: "note", hidden: true});
@@ -147,9 +147,10 @@ function paint() {
 	put(notice, draft.overtaken && draft.dirty ? "Somebody else has saved the file since this "
 		+ "draft began. \u201cReview and save\u201d shows the difference and what you can do."
 		: draft.restored ? "This draft is of before the page was loaded anew. It is not saved." : "");
-	buttons.undo.disabled = !draft.editable || !draft.undoable;
-	buttons.redo.disabled = !draft.editable || !draft.redoable;
-	buttons.drop.disabled = !draft.dirty;
+	buttons.redo.disabled &&= !draft.editable || !draft.redoable; // it may get the focus
+	able(buttons.undo, draft.editable && draft.undoable, buttons.redo);
+	able(buttons.redo, draft.editable && draft.redoable, buttons.undo);
+	able(buttons.drop, draft.dirty, state);
 	buttons.empty.disabled = buttons.take.disabled = !draft.editable;
 	put(tabs.get("save"), draft.dirty ? "Review and save \u2022" : "Review and save");
 	for (const [, , view] of PARTS)

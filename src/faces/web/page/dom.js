@@ -69,6 +69,13 @@ export function table(caption, columns, rows, empty = "None.") {
 export const wide = (label) =>
 	el("div", {class: "wide", role: "group", tabindex: 0, "aria-label": label});
 
+/** Let a button act or not. One that has the focus, and acts no more, hands it on. */
+export function able(button, yes, next) {
+	if (!yes && document.activeElement === button)
+		next.focus();
+	button.disabled = !yes;
+}
+
 /** The live region: few words, and only what the user waits for or must know. */
 export function announce(text) {
 	const region = document.getElementById("announce");

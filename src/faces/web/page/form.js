@@ -9,19 +9,24 @@ const TYPES = ["bool", "byte", "short", "long", "word", "dword", "large", "float
 const CHOICES = {flag: ["on", "off"], type: TYPES, io: ["input", "output"]};
 const UNBOUNDED = 1e15;
 
-/** The keys of an item as people think of them; what a newer table has more comes last. */
-export const ITEM_GROUPS = [
-	["What it is", ["Name", "Path", "Identity", "Type", "IO", "Description", "Group"]],
-	["Value", ["InitValue", "Unit", "Decimals", "Scale", "Offset", "Points", "Min", "Max", "MaxStep",
-		"Filter", "Deadband", "Calibrated"]],
-	["Limits", ["LimitHH", "LimitH", "LimitL", "LimitLL", "Hysteresis", "OnDelay", "OffDelay"]],
+/** What most want of an item, as people call it; of an output also the second list. */
+export const FIRST = [["Name"], ["Description", "What it is"], ["Group"], ["Unit"], ["Decimals"],
+	["LimitL", "Too low at"], ["LimitH", "Too high at"], ["Path"]];
+export const OUTPUT = [["InitValue", "First value"], ["SafeValue", "Safe value"]];
+
+/** The other keys of an item; what a newer table has more comes last. */
+export const MORE = [
+	["What it is", ["Identity", "Type", "IO", "Class"]],
+	["Value", ["InitValue", "Scale", "Offset", "Points", "Min", "Max", "MaxStep", "Filter", "Deadband",
+		"Calibrated"]],
+	["Limits", ["LimitHH", "LimitLL", "Hysteresis", "OnDelay", "OffDelay"]],
 	["Output", ["SafeValue", "SafeDelay", "Start", "Confirm", "ReadBack", "Restore"]],
 	["Reading", ["PerFactor", "StaleAfter", "Readable", "Writable", "Uncached", "IOType"]],
 	["Alarm of the device", ["Alarm", "LatchAlarm", "PorAlarm", "SetAlarm", "ResetLatch"]],
 	["History", ["Record"]],
 ];
 
-function hintOf(option) {
+export function hintOf(option) {
 	const bounded = (n) => n !== null && n !== undefined && Math.abs(n) < UNBOUNDED;
 	const {least, most} = option;
 	const range = bounded(least) && bounded(most) ? ` From ${least} to ${most}.`
@@ -39,23 +44,37 @@ export const shownOf = (option, value) => (option.empty && value === "" ? '""' :
 export const valueOf = (option, text) =>
 	(option.empty && text === '""' ? "" : text === "" ? null : text);
 
+/** The control of a key, with these attributes and that text in it. */
+export function controlOf(option, attributes, text = "") {
+	const choices = CHOICES[option.kind];
+	const control = choices
+		? el("select", attributes, el("option", {value: ""}, option.default
+			? `not set (${option.default})` : "not set"),
+		...choices.map((value) => el("option", {value}, value)))
+		: el("input", {...attributes, type: "text", autocomplete: "off", spellcheck: "false",
+			placeholder: option.default ?? "",
+			inputmode: option.kind === "text" ? "text" : "decimal"});
+	write(control, text);
+	return control;
+}
+
+function write(control, value) {
+	if (control.tagName === "SELECT" && ![...control.options].some((one) => one.value === value))
+		control.append(el("option", {value}, value));
+	control.value = value;
+}
+
 /** A field: label, control, hint, fault. change(text) is called when the user has changed it. */
 export class Field {
-	constructor(id, option, change) {
+	constructor(id, option, change, word = option.key) {
 		Object.assign(this, {option, change, shown: "", refused: "", problems: []});
-		const choices = CHOICES[option.kind];
-		const attributes = {id, "aria-describedby": `${id}-hint ${id}-fault`,
-			"data-key": option.key, onchange: () => this.#changed()};
-		this.control = choices
-			? el("select", attributes, el("option", {value: ""}, option.default
-				? `not set (${option.default})` : "not set"),
-			...choices.map((value) => el("option", {value}, value)))
-			: el("input", {...attributes, type: "text", autocomplete: "off", spellcheck: "false",
-				placeholder: option.default ?? "",
-				inputmode: option.kind === "text" ? "text" : "decimal"});
+		this.control = controlOf(option, {id, "aria-describedby": `${id}-hint ${id}-fault`,
+			"data-key": option.key, onchange: () => this.#changed()});
+		this.old = el("span", {class: "old"});
 		this.fault = el("p", {class: "problem", id: `${id}-fault`});
-		this.node = el("div", {class: "field"}, el("label", {for: id}, option.key), this.control,
-			el("p", {class: "hint", id: `${id}-hint`}, hintOf(option)), this.fault);
+		this.node = el("div", {class: "field"}, el("label", {for: id}, word), this.control,
+			el("p", {class: "hint", id: `${id}-hint`}, word === option.key ? "" : `${option.key}: `,
+				hintOf(option), this.old), this.fault);
 	}
 
 	async #changed() {
@@ -86,16 +105,16 @@ export class Field {
 		this.#report(this.problems);
 	}
 
-	paint(text, problems) {
+	/** old: what the file has, if that is another text. */
+	paint(text, problems, old = null) {
+		put(this.old, old === null ? "" : ` The file has ${old}.`);
+		this.node.classList.toggle("is-changed", old !== null);
 		const value = shownOf(this.option, text), {control} = this;
 		this.problems = problems;
 		if (value !== this.shown) {
 			const typing = document.activeElement === control && control.value !== this.shown;
-			if (control.tagName === "SELECT" && ![...control.options].some((one) =>
-				one.value === value))
-				control.append(el("option", {value}, value));
 			if (!typing)
-				control.value = value;
+				write(control, value);
 			this.refused = "";
 			this.shown = value;
 		}
@@ -116,36 +135,40 @@ export class Field {
 	}
 }
 
+let opened = false; // the part More, of the item before
+
 /**
- * The fields of a place. groups: [[title, keys], ...], null: one group. apply(values) changes the
- * keys of an object and returns a promise; the value is null to remove a key.
+ * The fields of a place: first those of [key, word], and behind More the others, in groups
+ * [title, keys]; without a first list all of them. apply(values) changes the keys of an object and
+ * returns a promise; the value is null to remove a key.
  */
 export class Form {
-	#painted = false;
 	#refused = {}; // values that were refused, and may be right together: LimitH before LimitHH
 
-	constructor(id, place, apply, groups = null, without = []) {
+	constructor(id, place, apply, {first = null, groups = [], without = []} = {}) {
 		const options = draft.options(place).filter(({key}) => !without.includes(key));
-		const named = new Set((groups ?? []).flatMap(([, keys]) => keys));
-		const rest = options.map(({key}) => key).filter((key) => !named.has(key));
 		this.fields = new Map();
-		this.parts = [...groups ?? [], [groups ? "More" : null, rest]].map(([title, keys]) => {
-			const fields = keys.map((key) => options.find((one) => one.key === key)).filter(Boolean)
-				.map((option) => {
-					const field = new Field(`${id}-${option.key}`, option,
-						(text) => this.#change(apply, option.key, valueOf(option, text)));
-					this.fields.set(option.key, field);
-					return field;
-				});
-			return {title, fields};
-		}).filter(({fields}) => fields.length);
-		for (const part of this.parts) {
-			const inside = el("div", {class: "fields"}, ...part.fields.map((field) => field.node));
-			part.count = el("span", {class: "hint"});
-			part.node = part.title ? el("details", {}, el("summary", {}, part.title, " ",
-				part.count), inside) : inside;
-		}
-		this.node = el("fieldset", {class: "plain"}, ...this.parts.map(({node}) => node));
+		const fieldsOf = (keys) => el("div", {class: "fields"}, ...keys.map(([key, word]) => {
+			const option = options.find((one) => one.key === key);
+			if (!option || this.fields.has(key))
+				return null;
+			const field = new Field(`${id}-${key}`, option,
+				(text) => this.#change(apply, key, valueOf(option, text)), word);
+			this.fields.set(key, field);
+			return field.node;
+		}));
+		const all = options.map(({key}) => [key]);
+		this.node = el("fieldset", {class: "plain"}, fieldsOf(first ?? all));
+		this.behind = all.filter(([key]) => !this.fields.has(key)).length;
+		if (!this.behind)
+			return;
+		const parts = [...groups, ["Others", all.flat()]].map(([title, keys]) =>
+			[title, fieldsOf(keys.map((key) => [key]))]).filter(([, box]) => box.childElementCount);
+		this.count = el("span", {class: "hint"});
+		this.more = el("details", {open: opened, ontoggle: () => { opened = this.more.open; }},
+			el("summary", {}, "More ", this.count),
+			...parts.flatMap(([title, box]) => [el("h3", {}, title), box]));
+		this.node.append(this.more);
 	}
 
 	/* What was refused before is tried again after a change, or with it: that may be right. */
@@ -168,25 +191,26 @@ export class Form {
 		}
 	}
 
-	/** Show these keys, and the problems at their fields. */
-	paint(keys, problems) {
+	/** Show these keys, and the problems at their fields; was: the keys of the file, if it has them. */
+	paint(keys, problems, was = null) {
+		const set = [];
+		let wrong = 0;
 		this.node.disabled = !draft.editable;
-		const first = !this.#painted;
-		for (const [n, {fields, count, node, title}] of this.parts.entries()) {
-			let set = 0, wrong = 0;
-			for (const field of fields) {
-				const {key} = field.option, value = keys[key];
-				const own = problems.filter((one) => one.key === key);
-				field.paint(value, own);
-				set += shownOf(field.option, value) === "" ? 0 : 1;
-				wrong += own.length;
-			}
-			put(count, `${set ? `${set} set` : ""}`
-				+ `${wrong ? `, \u00d7 ${wrong} problem${wrong > 1 ? "s" : ""}` : ""}`);
-			if (title && (wrong || (first && (set || n < 2))))
-				node.open = true;
+		for (const [key, field] of this.fields) {
+			const own = problems.filter((one) => one.key === key), {option} = field;
+			const [now, old] = [keys, was ?? keys].map((of) => shownOf(option, of[key]));
+			field.paint(keys[key], own, now === old ? null : old || "none");
+			if (!this.more?.contains(field.node))
+				continue;
+			wrong += own.length;
+			if (now !== "")
+				set.push(key);
 		}
-		this.#painted = true;
+		if (!this.more)
+			return;
+		this.more.open ||= wrong > 0;
+		put(this.count, `${this.behind} keys${set.length ? `, ${set.length} set: ${set.join(", ")}` : ""}`
+			+ `${wrong ? `, \u00d7 ${wrong} problem${wrong > 1 ? "s" : ""}` : ""}`);
 	}
 
 	/** Put the focus into the field of a key. */

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
-// The items of the draft: their list in the order of the file, and the form of one of them.
-import {ask} from "./command.js";
-import {announce, el, put} from "./dom.js";
+// The items of the draft: the grid of all, what is done with the chosen ones, the form of one.
+import {announce, el, later, put} from "./dom.js";
 import {draft} from "./draft.js";
-import {Form, ITEM_GROUPS, setter} from "./form.js";
+import {FIRST, Form, MORE, OUTPUT, setter} from "./form.js";
+import {Grid} from "./grid.js";
 import {problemsOf} from "./problems.js";
+import * as several from "./several.js";
+import {store} from "./store.js";
+import {qualityWords, valueText, withUnit} from "./words.js";
 
-const state = {query: "", selected: null, at: -1, of: 0}; // selected is number at of so many
-const rows = [];
-let search, count, list, editor, empty, form = null, head, fault, double, buttons;
-let wrong = new Map(), shown = [];
+const state = {query: "", group: null, selected: null, at: -1, of: 0}; // selected: at of so many
+let search, groups, count, grid, view, editor, empty, form = null, head, place, value, double, also;
+let fault, buttons;
 
 export function build(root) {
 	search = el("input", {type: "search", id: "config-search", placeholder: "Search",
@@ -18,220 +20,238 @@ export function build(root) {
 			state.query = search.value;
 			filter();
 		}});
+	groups = el("div", {class: "buttons", role: "group", "aria-label": "Groups"});
 	count = el("p", {class: "count"});
-	list = el("ol", {class: "items", "aria-label": "Items, in the order of the file",
-		onkeydown: keys});
-	head = el("h2", {tabindex: -1});
-	fault = el("p", {class: "fault", role: "alert"});
-	double = el("p", {class: "problem"}, "Two items have this name. Correct that in the text.");
+	also = el("select", {id: "also", onchange: () => {
+		grid.also = also.value;
+		paint();
+	}});
 	const button = (text, act, action) => el("button", {type: "button", onclick: act,
 		"data-action": action}, text);
 	buttons = {
+		set: button("Set a key\u2026", () => attempt(several.setKey), "set-key"),
+		copy: button("Duplicate", () => attempt(several.duplicate), "duplicate"),
+		remove: button("Remove\u2026", () => attempt(several.remove), "remove"),
+		add: button("Add an item\u2026", () => attempt(several.add), "add"),
 		up: button("Move up", () => move(state.selected, -1), "up"),
 		down: button("Move down", () => move(state.selected, 1), "down"),
-		remove: button("Remove\u2026", remove, "remove"),
-		add: button("Add an item\u2026", add, "add"),
+		back: button("\u2190 All items", back, "back"),
 	};
-	editor = el("div", {class: "editor", hidden: true}, head, el("div", {class: "tools"},
-		buttons.up, buttons.down, buttons.remove), double);
+	grid = new Grid({edit: (name, values) => apply(name, values), select, open: (name) => {
+		select(name);
+		view.classList.add("is-open");
+		head.focus();
+	}, choose: paintTools, move: (name, by) => move(name, by, true),
+	remove: () => attempt(several.remove), undo: (what) => draft[what]()});
+	head = el("h2", {tabindex: -1});
+	place = el("span", {class: "hint"});
+	value = el("span", {class: "value-now"});
+	fault = el("p", {class: "fault", role: "alert"});
+	double = el("p", {class: "problem"}, "Two items have this name. Correct that in the text.");
+	editor = el("div", {class: "editor sheet", hidden: true}, buttons.back,
+		el("div", {class: "editor-head"}, head, place, value),
+		el("div", {class: "tools"}, buttons.up, buttons.down), double);
 	empty = el("p", {class: "note"});
-	root.append(fault, el("div", {class: "columns items-view"},
-		el("div", {class: "picker"}, el("div", {class: "tools", role: "search"}, search,
-			buttons.add, count), list,
-		el("p", {class: "hint"}, "Arrow keys go through the list, Enter opens an item; with Alt "
-			+ "they move it.")),
-		el("div", {}, empty, editor)));
+	view = el("div", {class: "items-view"}, el("div", {class: "items-list"},
+		el("div", {class: "tools", role: "search"}, search, groups, count, el("span",
+			{class: "spread"}, buttons.set, buttons.copy, buttons.remove, buttons.add,
+			el("label", {for: "also"}, "Also show ", also))),
+		grid.node, el("p", {class: "hint"}, "Arrows go from cell to cell, Enter edits, Esc leaves, "
+			+ "Space chooses, Ctrl+Z takes back. With Alt, arrows move the item in the file.")),
+	el("div", {class: "side"}, empty, editor));
+	root.append(fault, view);
+	store.addEventListener("values", later(() => {
+		if (view.checkVisibility()) {
+			grid.paintValues();
+			paintValue();
+		}
+	}, 500));
 }
 
 /** Open an item, and put the focus into the field of a key. */
 export function open({item, key}) {
-	if (item !== undefined && draft.item(item))
+	if (item !== undefined && draft.item(item)) {
 		select(item);
+		view.classList.add("is-open");
+	}
 	if (key && form)
 		form.focus(key);
 	else if (item !== undefined && !editor.hidden)
 		head.focus();
 }
 
+function back() {
+	view.classList.remove("is-open");
+	grid.focus(state.selected);
+}
+
 export function paint() {
 	const {items} = draft.model;
+	if (!draft.keys.length)
+		return;
 	if (state.selected !== null && !draft.item(state.selected)) // renamed, or gone
 		state.selected = items.length === state.of ? items[state.at]?.name ?? null : null;
 	state.at = items.findIndex((item) => item.name === state.selected);
 	state.of = items.length;
-	wrong = new Map();
-	for (const problem of draft.problems)
-		if (problem.item)
-			wrong.set(problem.item, [...wrong.get(problem.item) ?? [], problem]);
-	while (rows.length < items.length)
-		rows.push(row(rows.length));
-	items.forEach((item, n) => paintRow(rows[n], item));
-	if (list.childElementCount !== items.length)
-		list.replaceChildren(...rows.slice(0, items.length).map(({node}) => node));
-	buttons.add.disabled = !draft.editable;
+	if (!also.childElementCount)
+		also.append(...draft.options("item").map(({key}) => el("option", {}, key)));
+	also.value = grid.also;
+	grid.current = state.selected;
 	filter();
+	paintGroups();
 	paintEditor();
 }
 
-// --- The list -------------------------------------------------------------------------------
-
-function row(n) {
-	const name = el("span", {class: "name"}), mark = el("span", {class: "alarm", hidden: true});
-	const path = el("span", {class: "description"});
-	const button = el("button", {type: "button", class: "pick", tabindex: -1,
-		onclick: () => {
-			select(rows[n].item.name);
-			head.focus();
-		}}, name, " ", mark, path);
-	return {n, name, mark, path, button, node: el("li", {}, button)};
-}
-
-function paintRow(one, item) {
-	const {keys} = item, problems = item.name ? wrong.get(item.name)?.length ?? 0 : 1;
-	one.item = item;
-	put(one.name, item.name || "(without a name)");
-	put(one.path, `${item.path} \u00b7 ${item.type ?? "no type"}`
-		+ `${item.io === "output" ? " output" : ""}`
-		+ `${keys.Unit ? ` \u00b7 ${keys.Unit}` : ""}`);
-	one.mark.hidden = !problems;
-	put(one.mark, problems ? `\u00d7 ${problems} problem${problems > 1 ? "s" : ""}` : "");
-	one.text = [item.name, item.path, item.family, item.type, item.io, ...Object.values(keys),
-		problems ? "problem" : ""].join(" ").toLowerCase();
-	if (item.name === state.selected)
-		one.button.setAttribute("aria-current", "true");
-	else
-		one.button.removeAttribute("aria-current");
-}
+// --- The grid -------------------------------------------------------------------------------
 
 function filter() {
-	const words = state.query.toLowerCase().split(/\s+/).filter(Boolean);
-	const all = rows.slice(0, draft.model.items.length);
-	for (const one of all)
-		one.node.hidden = !words.every((word) => one.text.includes(word));
-	shown = all.filter((one) => !one.node.hidden);
-	const at = shown.find((one) => one.item.name === state.selected) ?? shown[0];
-	for (const one of all)
-		one.button.tabIndex = one === at ? 0 : -1;
-	put(count, `${shown.length < all.length ? `${shown.length} of ` : ""}${all.length} item`
-		+ `${all.length === 1 ? "" : "s"}`);
+	const words = state.query.toLowerCase().split(/\s+/).filter(Boolean), {items} = draft.model;
+	grid.keep = (item, {text}) => words.every((word) => text.includes(word))
+		&& (state.group === null || (item.keys.Group ?? "") === state.group);
+	grid.paint();
+	const shown = grid.shown.length;
+	put(count, `${shown < items.length ? `${shown} of ` : ""}${items.length} item`
+		+ `${items.length === 1 ? "" : "s"}`);
+	paintTools();
 }
 
-function keys(event) {
-	const at = shown.findIndex((one) => one.button === document.activeElement);
-	const by = {ArrowUp: -1, ArrowDown: 1, Home: -at, End: shown.length - 1 - at}[event.key];
-	if (at < 0 || by === undefined)
-		return;
-	event.preventDefault();
-	if (event.altKey && Math.abs(by) === 1) {
-		move(shown[at].item.name, by, true);
-		return;
-	}
-	const next = shown[Math.min(Math.max(at + by, 0), shown.length - 1)];
-	shown[at].button.tabIndex = -1;
-	next.button.tabIndex = 0;
-	next.button.focus();
+/* A chip for each group, where there is one. */
+function paintGroups() {
+	const {items} = draft.model, counts = new Map();
+	for (const {keys} of items)
+		counts.set(keys.Group ?? "", (counts.get(keys.Group ?? "") ?? 0) + 1);
+	const names = [...counts.keys()].filter(Boolean).sort();
+	if (state.group !== null && !counts.has(state.group))
+		state.group = null;
+	const chip = (text, group, of) => el("button", {type: "button", class: "chip",
+		"data-group": group ?? "*", "aria-pressed": String(state.group === group), onclick: () => {
+			state.group = group;
+			paint();
+			groups.querySelector("[aria-pressed=true]").focus();
+		}}, text, el("span", {class: "hint"}, String(of)));
+	groups.hidden = !names.length;
+	const drawn = JSON.stringify([state.group, ...counts]);
+	if (groups.drawn !== drawn)
+		groups.replaceChildren(chip("All", null, items.length),
+			...names.map((name) => chip(name, name, counts.get(name))));
+	groups.drawn = drawn;
+}
+
+/** The items that are chosen, in their order; else the one that is open. */
+const wanted = () => {
+	const chosen = draft.model.items.filter(({name}) => grid.chosen.has(name));
+	return chosen.length ? chosen : [draft.item(state.selected)].filter(Boolean);
+};
+
+function paintTools() {
+	const {size} = grid.chosen, able = draft.editable && wanted().length > 0;
+	put(buttons.set, size ? `Set a key of ${size}\u2026` : "Set a key\u2026");
+	put(buttons.copy, size ? `Duplicate ${size}` : "Duplicate");
+	put(buttons.remove, size ? `Remove ${size}\u2026` : "Remove\u2026");
+	buttons.set.disabled = buttons.copy.disabled = buttons.remove.disabled = !able;
+	buttons.add.disabled = !draft.editable;
+}
+
+// --- The form -------------------------------------------------------------------------------
+
+/* Refuses what the checker would only find in the whole. */
+function apply(name, values) {
+	if (values.Name === null)
+		throw new Error("A signal needs a name.");
+	if (values.Name && draft.item(values.Name))
+		throw new Error("Another item has this name.");
+	return setter(() => name)(values);
+}
+
+/* An output has two fields more among the first. */
+function makeForm(io) {
+	form?.node.remove();
+	form = new Form("item", "item", async (values) => apply(state.selected, values),
+		{first: io === "output" ? [...FIRST, ...OUTPUT] : FIRST, groups: MORE});
+	form.io = io;
+	editor.append(form.node);
 }
 
 function select(name) {
 	if (state.selected === name && form)
 		return;
 	state.selected = name;
-	form?.node.remove();
-	const set = setter(() => state.selected);
-	form = new Form("item", "item", async (values) => {
-		if (values.Name === null)
-			throw new Error("A signal needs a name.");
-		if (values.Name && draft.item(values.Name))
-			throw new Error("Another item has this name.");
-		await set(values);
-	}, ITEM_GROUPS);
-	editor.append(form.node);
-	paint();
+	makeForm(draft.item(name)?.io);
+	state.at = draft.model.items.findIndex((item) => item.name === name);
+	grid.mark(name);
+	paintEditor();
+	paintTools();
 }
 
 function paintEditor() {
 	const item = state.selected === null ? null : draft.item(state.selected);
 	editor.hidden = !item;
 	empty.hidden = Boolean(item);
+	if (!item)
+		view.classList.remove("is-open");
 	put(empty, draft.model.items.length ? "Choose an item of the list."
 		: "The draft has no item. Scan for devices, or add an item.");
 	if (!item)
 		return;
+	const at = grid.shown.findIndex((row) => row.item.name === item.name);
 	put(head, item.name);
+	put(place, `${state.at + 1} of ${state.of}`);
 	double.hidden = !twins(item.name);
-	form.paint({Name: item.name, Path: item.path, ...bitsOf(item), ...item.keys},
-		problemsOf({part: "items", item: item.name}));
+	if (form.io !== item.io && !form.node.contains(document.activeElement))
+		makeForm(item.io);
+	const was = grid.was.get(item.name);
+	form.paint(keysOf(item), problemsOf({part: "items", item: item.name}), was && keysOf(was));
 	form.node.disabled ||= twins(item.name);
-	const at = shown.findIndex((one) => one.item.name === item.name);
-	buttons.up.disabled = !draft.editable || at <= 0;
-	buttons.down.disabled = !draft.editable || at < 0 || at === shown.length - 1;
-	buttons.remove.disabled = !draft.editable;
+	buttons.up.disabled = !draft.editable || !grid.plain || at <= 0;
+	buttons.down.disabled = !draft.editable || !grid.plain || at < 0 || at === grid.shown.length - 1;
+	paintValue();
+}
+
+function paintValue() {
+	const signal = store.find(state.selected), now = signal ? store.value(signal) : null;
+	put(value, !signal ? "" : now === null ? qualityWords(store.quality(signal))
+		: withUnit(signal, valueText(signal, now)));
 }
 
 /* What IOType has as bits is shown in words. */
 const bitsOf = ({keys: {IOType}, type, io, uncached}) => IOType === undefined ? {}
 	: {Type: type, IO: io, Uncached: uncached ? "on" : undefined};
 
+const keysOf = (item) => ({Name: item.name, Path: item.path, ...bitsOf(item), ...item.keys});
+
 const twins = (name) => draft.model.items.filter((one) => one.name === name).length > 1;
 
 // --- Edits ----------------------------------------------------------------------------------
 
-async function attempt(act, words) {
+/* act(items) returns {words, focus, form}: what to announce, and where the focus goes; null: no. */
+async function attempt(act) {
 	try {
-		await act();
+		const done = await act(wanted());
 		put(fault, "");
-		announce(words());
+		if (!done)
+			return;
+		if (done.form) {
+			open({item: done.form, key: "Description"});
+		} else if (done.focus !== undefined) {
+			grid.focus(done.focus);
+			if (!grid.shown.length)
+				search.focus();
+		}
+		announce(done.words);
 	} catch (error) {
 		put(fault, error.message);
 	}
 }
 
 function move(name, by, stay = false) {
-	const at = shown.findIndex((one) => one.item.name === name);
-	const other = shown[at + by]?.item.name;
-	if (!draft.editable || at < 0 || !other)
+	const at = grid.shown.findIndex(({item}) => item.name === name);
+	const other = grid.shown[at + by]?.item.name;
+	if (!draft.editable || at < 0 || !other || !grid.plain)
 		return;
 	attempt(async () => {
 		await draft.edit({do: "move", name, other, where: by < 0 ? "before" : "after"});
-		if (stay) {
-			const there = shown.find((one) => one.item.name === name);
-			for (const one of shown)
-				one.button.tabIndex = one === there ? 0 : -1;
-			there?.button.focus();
-		}
-	}, () => `${name} is now number ${draft.model.items.findIndex((one) => one.name === name) + 1}`
-		+ ` of ${draft.model.items.length}.`);
-}
-
-async function remove() {
-	const name = state.selected;
-	if (!await ask(`Remove ${name}?`, "Remove", [el("p", {}, "Undo brings it back. Its history "
-		+ "stays on disk.")]))
-		return;
-	attempt(async () => {
-		await draft.edit({do: "remove", name});
-		search.focus();
-	}, () => `${name} is removed.`);
-}
-
-async function add() {
-	const name = el("input", {id: "add-name", required: true, autocomplete: "off"});
-	const path = el("input", {id: "add-path", required: true, autocomplete: "off",
-		placeholder: "/28.0123456789AB/temperature12"});
-	const refusal = el("p", {class: "fault", role: "alert"});
-	const yes = await ask("Add an item", "Add", [el("label", {for: "add-name"}, "Name"), name,
-		el("label", {for: "add-path"}, "Path"), path,
-		el("p", {class: "hint"}, "An input of type double; the form changes it. A scan adds "
-			+ "devices with less typing."), refusal], () => {
-		put(refusal, draft.item(name.value.trim()) ? "Another item has this name." : "");
-		return !refusal.textContent;
+		return {focus: stay ? name : undefined, words: `${name} is now number `
+			+ `${draft.model.items.findIndex((one) => one.name === name) + 1} of `
+			+ `${draft.model.items.length}.`};
 	});
-	if (!yes)
-		return;
-	const wanted = name.value.trim();
-	attempt(async () => {
-		await draft.edit({do: "add", name: wanted, path: path.value.trim()});
-		select(wanted);
-		form.focus("Description");
-	}, () => `${wanted} is added.`);
 }

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 // What a save would take away: signals, and the editing by this page.
+import {identityOf} from "./cells.js";
 import {draft} from "./draft.js";
 
 const NAMED = 20;
 const DOORS = ["Listen", "Hosts", "Proxy"]; // keys of Web that say how the page is reached
-
-const identityOf = ({path, keys}) => keys?.Identity ?? path;
 
 const list = (words, of) => (of.length ? `${words}: ${of.slice(0, NAMED).join(", ")}`
 	+ `${of.length > NAMED ? ` and ${of.length - NAMED} more` : ""}.` : "");

@@ -4,7 +4,7 @@
 import {isUnknown} from "./api.js";
 import {ask} from "./command.js";
 import {compare} from "./diff.js";
-import {announce, el, put} from "./dom.js";
+import {able, announce, el, put} from "./dom.js";
 import {draft} from "./draft.js";
 import {lockout, vanished} from "./loss.js";
 import {countWords, problemList} from "./problems.js";
@@ -15,7 +15,7 @@ const WATCH_MS = 30000;
 const LINES = 1000; // of a difference that are shown
 const NAMED = 10;
 
-let problems, loss, lock, difference, theirs, conflict, fault, result, back, running, buttons;
+let problems, loss, lock, heading, difference, theirs, conflict, fault, result, back, running, buttons;
 let timer = 0, shown = false, clean = true, quiet = false;
 
 export function build(root) {
@@ -36,10 +36,11 @@ export function build(root) {
 	problems = el("div", {});
 	loss = el("p", {class: "note", id: "save-loss"});
 	lock = el("p", {class: "note is-bad", id: "save-lock", hidden: true});
+	heading = el("h2", {});
 	difference = el("div", {});
 	theirs = el("div", {hidden: true});
 	fault = el("p", {class: "fault", role: "alert"});
-	result = el("p", {class: "note", id: "save-result", hidden: true});
+	result = el("p", {class: "note", id: "save-result", tabindex: -1, hidden: true});
 	back = el("p", {class: "hint"});
 	running = el("p", {class: "hint"});
 	conflict = el("section", {class: "conflict", hidden: true, "aria-labelledby": "h-conflict"},
@@ -49,7 +50,7 @@ export function build(root) {
 			+ "back). Or put your changes on top of it, and look at the difference."),
 		el("div", {class: "tools"}, buttons.look, buttons.drop, buttons.top), theirs);
 	root.append(conflict, el("h2", {}, "Problems"), problems, lock, loss,
-		el("h2", {}, "Difference to the file on disk"), difference, running, back,
+		heading, difference, running, back,
 	el("div", {class: "bar"}, fault, result, el("div", {class: "tools"}, buttons.save,
 		buttons.restore)));
 }
@@ -66,7 +67,7 @@ export function paint() {
 		result.hidden ||= quiet = !result.classList.contains("is-bad");
 	clean = !draft.dirty;
 	conflict.hidden = !draft.overtaken;
-	buttons.save.disabled = !draft.editable || !draft.dirty || !draft.valid || draft.overtaken;
+	able(buttons.save, draft.editable && draft.dirty && draft.valid && !draft.overtaken, result);
 	buttons.drop.disabled = buttons.top.disabled = !draft.editable;
 	buttons.restore.hidden = !backup;
 	buttons.restore.disabled = !draft.editable;
@@ -83,6 +84,8 @@ export function paint() {
 	loss.hidden = !loss.textContent;
 	put(lock, draft.dirty ? lockout() : "");
 	lock.hidden = !lock.textContent;
+	put(heading, draft.overtaken ? "Difference to the file that your draft began with"
+		: "Difference to the file on disk");
 	difference.replaceChildren(differenceOf(draft.overtaken ? draft.base.text : draft.disk.text,
 		draft.text, "The draft is the same as the file."));
 	theirs.replaceChildren(theirs.hidden ? "" : differenceOf(draft.base.text, draft.disk.text,

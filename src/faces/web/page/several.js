@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// Edits of several items at once, each one step of undo. They return {words, focus, form}: what was
+// done, and the item that gets the focus, in the grid or in the form; null: nothing was done.
+import {copyName, copyOf, textOf} from "./cells.js";
+import {ask} from "./command.js";
+import {el, put} from "./dom.js";
+import {draft} from "./draft.js";
+import {controlOf, edits, hintOf, shownOf, valueOf} from "./form.js";
+
+const OWN = ["Name", "Identity"]; // what two items cannot share
+const NAMED = 5;
+
+const namesOf = (items) => items.slice(0, NAMED).map(({name}) => name).join(", ")
+	+ (items.length > NAMED ? ` and ${items.length - NAMED} more` : "");
+
+export async function duplicate(items) {
+	const taken = new Set(draft.model.items.map(({name}) => name)), steps = [];
+	let first = null;
+	for (const item of items) {
+		const name = copyName(item.name, taken);
+		taken.add(name);
+		first ??= name;
+		steps.push(...copyOf(item, name));
+	}
+	await draft.edit(...steps);
+	return {focus: first, words: `${namesOf(items)}: duplicated. Each copy needs a path of its own.`};
+}
+
+export async function remove(items) {
+	const left = draft.model.items, at = left.findLastIndex((item) => items.includes(item));
+	const next = left.slice(at + 1).concat(left.slice(0, at).reverse())
+		.find((item) => !items.includes(item));
+	if (!await ask(items.length > 1 ? `Remove ${items.length} items?` : `Remove ${items[0].name}?`,
+		"Remove", [el("p", {}, `${items.length > 1 ? `${namesOf(items)}. ` : ""}Undo brings back what is `
+			+ "removed. Its history stays on disk.")]))
+		return null;
+	await draft.edit(...items.map(({name}) => ({do: "remove", name})));
+	return {focus: next?.name ?? null, words: `${namesOf(items)}: removed.`};
+}
+
+let last = "LimitH"; // the key that was set last
+
+/* One key for all of them. */
+export async function setKey(items) {
+	const options = draft.options("item").filter(({key}) => !OWN.includes(key));
+	const key = el("select", {id: "set-key", onchange: () => show()},
+		...options.map((option) => el("option", {}, option.key)));
+	const field = el("div", {}), hint = el("p", {class: "hint"});
+	let option, control;
+	const show = () => {
+		const texts = new Set(items.map((item) => textOf(item, key.value)));
+		option = options.find((one) => one.key === key.value);
+		control = controlOf(option, {id: "set-value"}, texts.size > 1 ? ""
+			: shownOf(option, items[0].keys[key.value] ?? textOf(items[0], key.value)));
+		field.replaceChildren(control);
+		put(hint, `${hintOf(option)}${texts.size > 1 ? " They differ now." : ""} `
+			+ "An empty field takes the key out.");
+	};
+	key.value = options.some((one) => one.key === last) ? last : options[0].key;
+	show();
+	if (!await ask(`Set a key of ${items.length > 1 ? `${items.length} items` : items[0].name}`, "Set",
+		[el("p", {}, namesOf(items)), el("label", {for: "set-key"}, "Key"), key,
+			el("label", {for: "set-value"}, "Value"), field, hint]))
+		return null;
+	last = option.key;
+	const value = valueOf(option, control.value.trim());
+	const steps = items.filter((item) => value !== null || item.keys[last] !== undefined)
+		.flatMap(({name}) => edits({[last]: value}, "set", "unset", {name}));
+	if (!steps.length)
+		return null;
+	await draft.edit(...steps);
+	return {words: `${last} of ${namesOf(items)}: ${value ?? "not set"}.`};
+}
+
+export async function add() {
+	const name = el("input", {id: "add-name", required: true, autocomplete: "off"});
+	const path = el("input", {id: "add-path", required: true, autocomplete: "off",
+		placeholder: "/28.0123456789AB/temperature12"});
+	const refusal = el("p", {class: "fault", role: "alert"});
+	const yes = await ask("Add an item", "Add", [el("label", {for: "add-name"}, "Name"), name,
+		el("label", {for: "add-path"}, "Path"), path,
+		el("p", {class: "hint"}, "An input of type double; the form changes it. A scan adds "
+			+ "devices with less typing."), refusal], () => {
+		put(refusal, draft.item(name.value.trim()) ? "Another item has this name." : "");
+		return !refusal.textContent;
+	});
+	const wanted = name.value.trim();
+	if (!yes)
+		return null;
+	await draft.edit({do: "add", name: wanted, path: path.value.trim()});
+	return {form: wanted, words: `${wanted} is added.`};
+}
