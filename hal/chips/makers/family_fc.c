@@ -17,8 +17,7 @@
 #define BLOCK 32
 #define PAGE 512
 #define REGISTERS 0x7800 /* of the 0911 */
-#define GLOBALS 64
-#define LATE_S 2 /* a clock may be so much ahead of the time since it was written */
+#define LATE_S 2         /* a clock may be so much ahead of the time since it was written */
 #define S_NS (1000 * TXN_MS)
 
 #define EEPROM_910 0xe000
@@ -88,26 +87,21 @@ static uint32_t big_endian_of(const uint8_t *bytes, unsigned n)
 	return number;
 }
 
-/* How what is read back shows that a register was written. */
-enum proof {
-	SAME,
-	SECONDS, /* it counts seconds, and may have gone on */
-	NONE,    /* it changes by itself, or by being written: a lost confirmation is not seen */
-};
-
-/* Other requests may come between the write and the look. */
-struct written {
-	int64_t ns;
-};
+/*
+ * The ways. KEPT, LIVE and CLOCK also say how what is read back shows that a register was written:
+ * it is the same; it changes by itself, or by being written, so that a lost confirmation is not
+ * seen; it counts seconds, and may have gone on.
+ */
+enum { KEPT = 1, LIVE, CLOCK, WAY_WORDS, WAY_PAGE, WAY_REFUSED };
 
 /* All bytes of a register at once; then they are read back. */
-static int write_register(struct txn *txn, enum proof proof)
+static int write_register(struct txn *txn)
 {
 	const struct field *field = &txn->property->field;
 	const struct area *area = family_area(txn);
 	unsigned n = field->bytes, at = field->at + (unsigned)txn->element * field->stride;
 	uint8_t bytes[4], in[4];
-	struct written *written = txn_own(txn, struct written);
+	int64_t *written_ns = txn_own(txn, int64_t); /* other requests may come before the look */
 	double left = txn->number[0];
 	int err;
 
@@ -118,42 +112,18 @@ static int write_register(struct txn *txn, enum proof proof)
 	if (txn->phase == 0) {
 		txn_void(txn);
 		txn->phase = 1;
-		written->ns = txn_now(txn);
+		*written_ns = txn_now(txn);
 		err = bae_store(txn, area, at, bytes, n);
-		return err ? err : proof == NONE ? 0 : TXN_MORE;
+		return err ? err : txn->property->how == LIVE ? 0 : TXN_MORE;
 	}
 	err = bae_load(txn, area, at, in, n);
 	if (err)
 		return err;
-	uint32_t gone = proof == SECONDS ? (uint32_t)((txn_now(txn) - written->ns) / S_NS) + LATE_S
-	                                 : 0;
+	uint32_t gone = txn->property->how == CLOCK
+	                        ? (uint32_t)((txn_now(txn) - *written_ns) / S_NS) + LATE_S
+	                        : 0;
 
 	return big_endian_of(in, n) - (uint32_t)left <= gone ? 0 : -EIO;
-}
-
-static int write_kept(struct txn *txn)
-{
-	return write_register(txn, SAME);
-}
-
-static int write_clock(struct txn *txn)
-{
-	return write_register(txn, SECONDS);
-}
-
-static int write_live(struct txn *txn)
-{
-	return write_register(txn, NONE);
-}
-
-static int read_global(struct txn *txn)
-{
-	return txn->element < GLOBALS ? field_read(txn) : -EINVAL;
-}
-
-static int write_global(struct txn *txn)
-{
-	return txn->element < GLOBALS ? write_kept(txn) : -EINVAL;
 }
 
 /* Two bytes, as text the second is first. */
@@ -170,17 +140,11 @@ static int read_words(struct txn *txn)
 	return property_text(txn, text);
 }
 
-/* 0: there is such a page. */
-static int check_page(struct txn *txn)
-{
-	return txn->element < (txn->device->kind == BAE_910 ? 2 : 8) ? 0 : -ENOENT;
-}
-
 static int read_page(struct txn *txn)
 {
-	int err = check_page(txn);
+	bool there = txn->element < (txn->device->kind == BAE_910 ? 2 : 8);
 
-	return err ? err : field_read(txn);
+	return there ? field_read(txn) : -ENOENT;
 }
 
 enum { REGISTERS_910 = 1, REGISTERS_911, GENERIC, EEPROM, VERSION, TYPE };
@@ -195,20 +159,10 @@ static const struct area *const areas[] = {
                       .check = AREA_CRC16),
 };
 
-enum {
-	KEPT = 1,
-	LIVE,
-	CLOCK,
-	WAY_GLOBAL,
-	WAY_WORDS,
-	WAY_PAGE,
-	WAY_REFUSED,
-};
 static const struct property_how how[] = {
-	[KEPT] = {.write = write_kept},
-	[LIVE] = {.write = write_live},
-	[CLOCK] = {.write = write_clock},
-	[WAY_GLOBAL] = {.read = read_global, .write = write_global},
+	[KEPT] = {.write = write_register},
+	[LIVE] = {.write = write_register},
+	[CLOCK] = {.write = write_register},
 	[WAY_WORDS] = {.read = read_words},
 	[WAY_PAGE] = {.read = read_page, .write = property_refuse},
 	[WAY_REFUSED] = {.read = property_refuse, .write = property_refuse},
@@ -331,9 +285,7 @@ static const struct property properties[] = {
 	REGISTER_911("911/analog/comparator/out_state", YESNO, VOLATILE, READ, 0x79af, 1, KEPT),
 	FOLDER("911/automation_engine", NEW),
 	ARRAY_911("911/automation_engine/global_mem", UNSIGNED, BOTH, 64, 0x7c00, 1, KEPT),
-	PROPERTY("911/automation_engine/global_memory", UNSIGNED, VOLATILE, BOTH, SPARSE(NUMBERS),
-	         .kinds = NEW, .how = WAY_GLOBAL,
-	         FIELD(REGISTERS_911, .at = 0x7c00 - REGISTERS, .bytes = 1, .stride = 1)),
+	REFUSED("911/automation_engine/global_memory", UNSIGNED, VOLATILE, BOTH, SPARSE(NUMBERS)),
 	REGISTER_911("911/automation_engine/pc0", UNSIGNED, VOLATILE, BOTH, 0x7e07, 2, LIVE),
 	FOLDER("911/counters", NEW),
 	ARRAY_911("911/counters/count", UNSIGNED, BOTH, 18, 0x7f20, 4, LIVE,
