@@ -25,12 +25,16 @@ int lines_option(struct bus *bus, const char *key, const char *text, char *why, 
 	return -ENOENT;
 }
 
-/* The last of two that exclude each other counts. */
-static void set_option(struct gpio_setup *setup, const struct gpio_option *option)
+/* False: a line has one pull and one drive, and the setup has another. */
+static bool set_option(struct gpio_setup *setup, const struct gpio_option *option)
 {
+	if ((option->bias && setup->bias && option->bias != setup->bias) ||
+	    (option->drive && setup->drive && option->drive != setup->drive))
+		return false;
 	setup->active_low |= option->active_low;
-	setup->bias = option->bias ? option->bias : setup->bias;
-	setup->drive = option->drive ? option->drive : setup->drive;
+	setup->bias |= option->bias;
+	setup->drive |= option->drive;
+	return true;
 }
 
 /* Refuse an unknown name: its line would work with the wrong sense. */
@@ -48,8 +52,13 @@ static int apply_option(struct gpio_bus *gpio, unsigned option, char *why, size_
 			         text);
 			return -EINVAL;
 		}
-		if (len)
-			set_option(&gpio->line[line].setup, &gpio_options[option]);
+		if (len && !set_option(&gpio->line[line].setup, &gpio_options[option])) {
+			snprintf(why, why_size,
+			         "%s: line %.*s of %s has another pull or drive: name it once",
+			         gpio_options[option].key, (int)(len < 32 ? len : 32), text,
+			         gpio->where);
+			return -EINVAL;
+		}
 		text += len + (text[len] != '\0');
 	}
 	return 0;

@@ -190,6 +190,20 @@ static void test_options_that_cannot_be_are_refused_with_a_reason(void)
 	                         host.event[0].text);
 }
 
+static void test_a_line_with_two_pulls_is_refused(void)
+{
+	strcpy(fake_gpio.line[6].name, "DOOR");
+	bus = host_bus(&host, "gpio:gpiochip0");
+	TEST_ASSERT_EQUAL_INT(0, bus_option(bus, "PullUp", "5, DOOR", why, sizeof(why)));
+	TEST_ASSERT_EQUAL_INT(0, bus_option(bus, "OpenDrain", "DOOR", why, sizeof(why)));
+	TEST_ASSERT_EQUAL_INT(0, bus_option(bus, "PullDown", "4, 6", why, sizeof(why)));
+	start();
+	TEST_ASSERT_EQUAL_UINT8(BUS_DOWN, host.event[0].news);
+	TEST_ASSERT_EQUAL_STRING(
+		"PullDown: line 6 of gpiochip0 has another pull or drive: name it once",
+		host.event[0].text);
+}
+
 static void test_lines_are_listed_and_probed(void)
 {
 	start();
@@ -386,6 +400,7 @@ int main(void)
 	RUN_TEST(test_an_output_is_driven_once_requested_and_then_set);
 	RUN_TEST(test_options_give_lines_their_sense_bias_and_drive);
 	RUN_TEST(test_options_that_cannot_be_are_refused_with_a_reason);
+	RUN_TEST(test_a_line_with_two_pulls_is_refused);
 	RUN_TEST(test_lines_are_listed_and_probed);
 	RUN_TEST(test_a_guest_looks_and_changes_nothing);
 	RUN_TEST(test_a_guest_takes_no_edge_away);
