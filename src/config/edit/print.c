@@ -25,13 +25,18 @@ static void put_text(FILE *out, const struct option_def *def, const char *text)
 	free(quoted);
 }
 
+/* The strings of an alarm: what is not defined is not what is empty. */
+static bool is_of_alarm(const struct option_def *def)
+{
+	return def >= &option_table[OPT_LATCH_ALARM] && def <= &option_table[OPT_RESET_LATCH];
+}
+
 void option_print(const struct option_def *def, const void *from, bool all, FILE *out)
 {
 	char room[VALUE_TEXT_MAX];
 
 	if (!option_is_given(def, from)) {
-		/* of an alarm: what is not defined is not what is empty */
-		if (all && def->empty)
+		if (all && is_of_alarm(def))
 			fprintf(out, "    # %-*s not defined\n", RIO_KEY_WIDTH - 3, def->key);
 	} else if (def->quiet && option_is_preset(def, from)) {
 		return;

@@ -130,6 +130,23 @@ static void test_every_key_survives_being_printed_and_read(void)
 	survives(text, sizeof(text) - 1);
 }
 
+static void test_an_item_alone_shows_which_strings_of_an_alarm_are_missing(void)
+{
+	static const char text[] =
+		"OwsDrv { Item { Name i Path /29.B89115000000/sensed.0 Type bool } }";
+	struct config *config = parse(text, sizeof(text) - 1);
+	char printed[4096] = "";
+	FILE *out = fmemopen(printed, sizeof(printed), "w");
+
+	config_print_item(&config->items[0], true, out);
+	fclose(out);
+	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(printed, "    # PorAlarm              not defined\n"),
+	                             printed);
+	TEST_ASSERT_NULL_MESSAGE(strstr(printed, "# SafeValue"), printed);
+	TEST_ASSERT_NULL_MESSAGE(strstr(printed, "# Unit"), printed);
+	config_free(config);
+}
+
 /* An input has none: 0 there would be a key that means nothing. */
 static void test_how_often_it_is_read_back_is_printed_of_outputs_alone(void)
 {
@@ -180,6 +197,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_every_key_survives_being_printed_and_read);
+	RUN_TEST(test_an_item_alone_shows_which_strings_of_an_alarm_are_missing);
 	RUN_TEST(test_how_often_it_is_read_back_is_printed_of_outputs_alone);
 	RUN_TEST(test_an_empty_configuration_survives);
 	RUN_TEST(test_files_of_genuine_shape_survive);
