@@ -198,11 +198,17 @@ static int take_read_value(struct signal *s, const struct slot *slot,
 static void hold_back(struct engine *e, struct lane *lane, struct signal *s)
 {
 	struct ows_sample *sample = &s->sample;
+	char others[LOG_OTHERS];
 	int64_t none;
+	uint64_t n;
 
 	lane->counters.held_back++;
-	log_debug(e->log, "%s (%s): %g jumps beyond MaxStep: it is held back", s->item->name,
-	          s->item->path, s->scaling.step.doubt);
+	/* the first value of all is held back too, and is no jump */
+	n = s->scaling.step.begun ? log_rate(&e->held_back, e->time.now_ns) : 0;
+	if (n)
+		log_notice(e->log, "%s (%s): %g after %g jumps beyond MaxStep: it is held back%s",
+		           s->item->name, s->item->path, s->scaling.step.doubt,
+		           s->scaling.step.good, log_others(n, others));
 	sample->err = -EREMCHG;
 	if (retry_fail(&s->read.retry, e->config->max_retries, &none) &&
 	    sample->quality != OWS_Q_INITIAL &&

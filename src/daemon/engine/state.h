@@ -322,7 +322,7 @@ struct engine {
 	 * functions that change a controller clear it.
 	 */
 	bool controllers_quiet;
-	struct log_rate refused, resets;
+	struct log_rate refused, resets, held_back;
 	/* in_force.c: what was last seen of engine_last, and how many rows wait for it */
 	uint32_t stored;
 	int store_err;

@@ -2,10 +2,12 @@
 /* MaxStep in the engine: a reading that jumps is held back until it is confirmed. */
 #include <errno.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "unity.h"
 
 #include "src/ground/signal/value.h"
+#include "src/ground/text/log.h"
 #include "tests/unit/aid/scene.h"
 
 #define FREEZER "/28.000000000004/temperature"
@@ -115,6 +117,42 @@ static void test_the_first_value_is_initial_until_a_second_reading_confirms_it(v
 	expect(OWS_Q_INITIAL, -EREMCHG);
 	freezer_reads("-16");
 	expect(OWS_Q_GOOD, 0);
+}
+
+/* The log as a text. */
+static void drain(struct log *log, char *text, size_t size)
+{
+	FILE *out = tmpfile();
+	size_t n;
+
+	log_drain(log, fileno(out), 0);
+	rewind(out);
+	n = fread(text, 1, size - 1, out);
+	text[n] = '\0';
+	fclose(out);
+}
+
+static void test_the_log_has_what_is_held_back_and_not_the_first_value(void)
+{
+	struct log *log = log_create(LOG_LEVEL_NOTICE);
+	char text[2048];
+
+	s.log = log;
+	freezer();
+	start();
+	drain(log, text, sizeof(text));
+	TEST_ASSERT_NULL_MESSAGE(strstr(text, "MaxStep"), text);
+	freezer_reads("80.5625");
+	freezer_reads("-16");
+	drain(log, text, sizeof(text));
+	TEST_ASSERT_NOT_NULL_MESSAGE(
+		strstr(text, "freezer (" FREEZER
+	                     "): 80.5625 after -16 jumps beyond MaxStep: it is held back"),
+		text);
+	s.log = NULL;
+	scene_end(&s);
+	log_destroy(log);
+	scene_init(&s);
 }
 
 static void test_what_jumps_each_time_is_the_last_usable_value_and_read_as_often(void)
@@ -264,6 +302,7 @@ int main(void)
 	RUN_TEST(test_a_spike_is_not_published_and_the_value_before_grows_old);
 	RUN_TEST(test_the_reading_that_confirms_comes_at_once_and_past_the_caches);
 	RUN_TEST(test_the_first_value_is_initial_until_a_second_reading_confirms_it);
+	RUN_TEST(test_the_log_has_what_is_held_back_and_not_the_first_value);
 	RUN_TEST(test_what_jumps_each_time_is_the_last_usable_value_and_read_as_often);
 	RUN_TEST(test_a_device_that_comes_back_is_compared_with_its_last_good_value);
 	RUN_TEST(test_out_of_range_shows_at_once_and_is_no_value_to_compare_with);
