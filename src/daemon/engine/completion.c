@@ -50,7 +50,7 @@ static bool gives_nothing(const struct engine *e, const struct signal *failed)
 /* Does the error say no more than what is known, by the signals of the device or by its bus? */
 static bool is_known_absent(const struct engine *e, const struct signal *s, int err)
 {
-	return err == -ENODEV && s->device != TABLE_NO_DEVICE && e->table.devices[s->device].absent;
+	return err == -ENODEV && signal_has_device(s) && e->table.devices[s->device].absent;
 }
 
 /* How many failed reads the signal forgives: none where asking again would say no more. */
@@ -95,9 +95,9 @@ int64_t engine_read_failed(struct engine *e, struct lane *lane, struct signal *s
 	s->sample.err = err;
 	if (!retry_fail(&s->read.retry, retries_of(e, s, err), &wait_ns))
 		return 0;
-	if (err == -ENODEV && s->device != TABLE_NO_DEVICE)
+	if (err == -ENODEV && signal_has_device(s))
 		engine_device_lost(lane, s->device);
-	else if (s->device != TABLE_NO_DEVICE && gives_nothing(e, s))
+	else if (signal_has_device(s) && gives_nothing(e, s))
 		engine_presence(e, lane, s->device, ROUTE_FAILING);
 	if (s->sample.quality != quality) {
 		s->sample.quality = quality;
@@ -126,7 +126,7 @@ static int64_t fail_write(struct engine *e, struct lane *lane, struct signal *s,
 		report_failed(e, s, "cannot be written: ", err, quality);
 	if (!signal_reads(s))
 		s->sample.quality = quality;
-	if (err == -ENODEV && s->device != TABLE_NO_DEVICE)
+	if (err == -ENODEV && signal_has_device(s))
 		engine_device_lost(lane, s->device);
 	return wait_ns;
 }
@@ -135,7 +135,7 @@ static int64_t fail_write(struct engine *e, struct lane *lane, struct signal *s,
 static void request_succeeded(struct engine *e, struct lane *lane, struct signal *s,
                               uint8_t quality, bool proven)
 {
-	struct device *d = s->device == TABLE_NO_DEVICE ? NULL : &e->table.devices[s->device];
+	struct device *d = !signal_has_device(s) ? NULL : &e->table.devices[s->device];
 
 	if (!ows_good(s->sample.quality) && s->sample.quality != OWS_Q_INITIAL &&
 	    s->sample.quality != OWS_Q_LAST_USABLE && s->sample.quality != OWS_Q_DIFFERS &&
@@ -168,7 +168,7 @@ static int64_t time_of_reading(const struct engine *e, const struct slot *slot,
 }
 
 /* The value of an answer into the sample; 0, or why it cannot be one. */
-static int take_read_value(struct signal *s, const struct slot *slot,
+static int value_of_answer(struct signal *s, const struct slot *slot,
                            const struct bus_answer *answer, int64_t measured_ns, uint8_t *quality)
 {
 	enum ows_type type = signal_raw_type(s);
@@ -190,7 +190,7 @@ static int take_read_value(struct signal *s, const struct slot *slot,
 	else
 		err = value_from_text(type, (const char *)slot->data, answer->len, &raw, quality);
 	if (!err)
-		err = signal_take_raw(s, raw, measured_ns, quality);
+		err = signal_scale_raw(s, raw, measured_ns, quality);
 	return err;
 }
 
@@ -217,13 +217,13 @@ static void hold_back(struct engine *e, struct lane *lane, struct signal *s)
 	s->read.retry.doublings = 0; /* a fault of the device that follows is its first */
 }
 
-int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
-                        const struct slot *slot, const struct bus_answer *answer, int64_t *wait_ns)
+int engine_apply_reading(struct engine *e, struct lane *lane, struct signal *s,
+                         const struct slot *slot, const struct bus_answer *answer, int64_t *wait_ns)
 {
 	int64_t value = s->sample.value, raw = s->attrs.raw;
 	int64_t measured_ns = time_of_reading(e, slot, answer);
 	uint8_t quality = OWS_Q_GOOD;
-	int err = take_read_value(s, slot, answer, measured_ns, &quality);
+	int err = value_of_answer(s, slot, answer, measured_ns, &quality);
 
 	*wait_ns = 0;
 	switch (failure_of(err)) {
@@ -276,7 +276,7 @@ void engine_read_done(struct engine *e, struct lane *lane, const struct slot *sl
 		engine_read_at(e, s, engine_read_back_at(e, s));
 		return;
 	}
-	if (engine_take_reading(e, lane, s, slot, answer, &wait_ns) == 0)
+	if (engine_apply_reading(e, lane, s, slot, answer, &wait_ns) == 0)
 		engine_read_next(e, lane, s, slot);
 	else
 		engine_read_at(e, s, e->time.period + (wait_ns ? engine_periods(e, wait_ns) : 1));
@@ -295,7 +295,7 @@ static void write_succeeded(struct engine *e, struct lane *lane, const struct sl
 	s->command.confirmed = true;
 	s->command.lapsed = false;
 	s->command.agrees = s->command.doubted = false;
-	if (s->device != TABLE_NO_DEVICE && e->table.devices[s->device].por == POR_SET)
+	if (signal_has_device(s) && e->table.devices[s->device].por == POR_SET)
 		e->table.devices[s->device].por = POR_UNKNOWN; /* the write may have cleared it */
 	s->command.written = slot->value;
 	s->sample.detail = answer->detail;

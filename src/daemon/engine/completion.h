@@ -12,8 +12,9 @@ void engine_write_done(struct engine *e, struct lane *lane, const struct slot *s
  * The value of a read into the table; 0, or why it cannot be one (counted as item error). *wait_ns
  * is the back-off, 0: none.
  */
-int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
-                        const struct slot *slot, const struct bus_answer *answer, int64_t *wait_ns);
+int engine_apply_reading(struct engine *e, struct lane *lane, struct signal *s,
+                         const struct slot *slot, const struct bus_answer *answer,
+                         int64_t *wait_ns);
 /* When it is read again, after a good reading. */
 void engine_read_next(struct engine *e, struct lane *lane, struct signal *s,
                       const struct slot *slot);

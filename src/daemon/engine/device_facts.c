@@ -29,7 +29,7 @@ void engine_facts_free(struct engine *e)
 
 static struct device_facts *facts_of(struct engine *e, const struct signal *s)
 {
-	if (s->device == TABLE_NO_DEVICE)
+	if (!signal_has_device(s))
 		return NULL;
 	due_set_add(&e->facts, s->device);
 	return &e->table.devices[s->device].facts;

@@ -75,8 +75,8 @@ static void complete_request(struct lane *lane, struct slot *slot, const struct 
  * A reading that was given up may be newer than what the signal has: a slow machine gets its values
  * late, not never. Its bus may have stamped it when it came: what was asked for later is newer.
  */
-static void take_late_reading(struct lane *lane, const struct slot *slot,
-                              const struct bus_answer *answer)
+static void apply_late_reading(struct lane *lane, const struct slot *slot,
+                               const struct bus_answer *answer)
 {
 	struct engine *e = lane->engine;
 	struct signal *s;
@@ -88,7 +88,7 @@ static void take_late_reading(struct lane *lane, const struct slot *slot,
 	if (!signal_reads(s) || s->lane != lane->index || slot->begun_ns < s->read.begun_ns ||
 	    (answer->measured_ns && answer->measured_ns <= s->sample.measured_ns))
 		return;
-	engine_take_reading(e, lane, s, slot, answer, &wait_ns);
+	engine_apply_reading(e, lane, s, slot, answer, &wait_ns);
 	engine_publish(e, s);
 }
 
@@ -124,7 +124,7 @@ void lane_answer(struct lane *lane, const struct bus_answer *answer)
 		complete_request(lane, slot, answer);
 	} else {
 		lane->counters.late_answers += slot->given_up;
-		take_late_reading(lane, slot, answer);
+		apply_late_reading(lane, slot, answer);
 		if (!slot->given_up && slot->purpose == FOR_WRITE)
 			lane->lent.writes--;
 		if (slot->purpose == FOR_GUEST)

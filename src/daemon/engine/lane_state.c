@@ -161,7 +161,7 @@ static void report_cached(const struct lane *lane, int64_t cache_ns)
 	unsigned count = 0;
 
 	for (const struct signal *s = e->table.signals; s < table_end(&e->table); s++) {
-		if (s->lane != lane->index || s->device == TABLE_NO_DEVICE || !signal_reads(s) ||
+		if (s->lane != lane->index || !signal_has_device(s) || !signal_reads(s) ||
 		    s->item->fresh || s->item->alarm ||
 		    e->config->period_ns >= cache_ns / s->item->per_factor)
 			continue;
@@ -177,7 +177,7 @@ static void report_cached(const struct lane *lane, int64_t cache_ns)
 		           first->item->name, count > 1 ? ", ..." : "");
 }
 
-static void take_note(struct lane *lane, struct lane_note *note, const char *text)
+static void keep_note(struct lane *lane, struct lane_note *note, const char *text)
 {
 	size_t len = printable_cut(text, sizeof(note->text) - 1);
 
@@ -196,7 +196,7 @@ static void trouble_event(struct lane *lane, const char *text)
 	else
 		log_notice(lane->engine->log, "%s: this is over: %s", lane->port->target,
 		           note->text);
-	take_note(lane, note, text);
+	keep_note(lane, note, text);
 }
 
 static void down_event(struct lane *lane, int err, const char *text)
@@ -210,7 +210,7 @@ static void down_event(struct lane *lane, int err, const char *text)
 	       *text ? text : strerror(-err));
 	lane->state.up = false;
 	lane->counters.target_failures++;
-	take_note(lane, &lane->state.why_down, *text ? text : strerror(-err));
+	keep_note(lane, &lane->state.why_down, *text ? text : strerror(-err));
 	lane_fail(lane, err);
 }
 
@@ -264,7 +264,7 @@ static void suspended_event(struct lane *lane, const struct bus_event *event)
 	if (event->news == BUS_BACK) {
 		way->back = true;
 		way->back_ns = e->time.now_ns;
-		take_note(lane, &lane->state.why_down, "");
+		keep_note(lane, &lane->state.why_down, "");
 		log_debug(e->log, "%s: can be reached, and is kept closed", lane->port->target);
 	} else if (!way->released) {
 		way->released = true;

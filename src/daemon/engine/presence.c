@@ -173,8 +173,7 @@ void engine_watch_heard(struct lane *lane, const struct slot *slot, const struct
 	const struct signal *s = slot_signal(lane, slot);
 
 	if (slot->req.op != BUS_READ || answer->err || (answer->detail & BUS_DETAIL_CACHED) ||
-	    !(slot->req.fresh || lane->port->searches) || !s->shows_device ||
-	    s->device == TABLE_NO_DEVICE)
+	    !(slot->req.fresh || lane->port->searches) || !s->shows_device || !signal_has_device(s))
 		return;
 	e->table.devices[s->device].shown_ns = slot->begun_ns;
 	retry_clear(&e->table.devices[s->device].watch);

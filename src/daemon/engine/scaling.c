@@ -32,7 +32,7 @@ static int64_t nearest(enum ows_type type, double number, uint8_t *quality)
 	return value;
 }
 
-int signal_take_raw(struct signal *s, int64_t raw, int64_t measured_ns, uint8_t *quality)
+int signal_scale_raw(struct signal *s, int64_t raw, int64_t measured_ns, uint8_t *quality)
 {
 	double read = value_number(signal_raw_type(s), raw), number = read;
 	bool filtered = s->item->filter_s > 0;

@@ -17,7 +17,7 @@ enum ows_type signal_raw_type(const struct signal *s);
  * judged by the range, filtered, rounded to the type. *quality: what reading it found; good, it
  * becomes what scale and range say. Returns 0; -EREMCHG: it jumps: the sample is unchanged.
  */
-int signal_take_raw(struct signal *s, int64_t raw, int64_t measured_ns, uint8_t *quality);
+int signal_scale_raw(struct signal *s, int64_t raw, int64_t measured_ns, uint8_t *quality);
 
 /* May it be commanded: does it fit the type, lie in the range, and have a raw value? */
 bool signal_accepts(const struct signal *s, int64_t value);

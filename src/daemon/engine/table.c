@@ -113,7 +113,7 @@ static int find_devices(struct table *table, const struct config *config)
 	rest = &table->devices[table->device_count];
 	rest->signals = &table->device_signals[n];
 	for (uint32_t row = 0; row < table->count; row++)
-		if (table->signals[row].device == TABLE_NO_DEVICE)
+		if (!signal_has_device(&table->signals[row]))
 			rest->signals[rest->count++] = &table->signals[row];
 	free(keys);
 	return 0;

@@ -237,6 +237,12 @@ bool signal_changed(const struct signal *s);
 /* Is the command in force what the bus has? */
 bool signal_settled(const struct signal *s);
 
+/* Is its path that of a device with a ROM id, so that .device is a row? */
+static inline bool signal_has_device(const struct signal *s)
+{
+	return s->device != TABLE_NO_DEVICE;
+}
+
 /* Is it to be read: in the cycle, or to see whether what was written holds? */
 bool signal_is_read(const struct signal *s);
 

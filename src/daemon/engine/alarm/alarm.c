@@ -54,7 +54,7 @@ static void mark_listed(struct alarm_machine *m, struct lane *lane, const char *
 	         entry);
 }
 
-static void take_list(struct alarm_machine *m, struct lane *lane, const char *list, size_t len)
+static void parse_list(struct alarm_machine *m, struct lane *lane, const char *list, size_t len)
 {
 	m->list.cycle++;
 	lane->counters.alarm_lists++;
@@ -282,7 +282,7 @@ static uint32_t facts_after(const struct alarm_answer *a)
 	if (m->state == ALARM_DIR && err)
 		list_failed(m, a->lane, err);
 	else if (m->state == ALARM_DIR)
-		take_list(m, a->lane, a->lane->lent.list, a->answer->len);
+		parse_list(m, a->lane, a->lane->lent.list, a->answer->len);
 	else if (m->state != ALARM_INIT_WRITE_WAIT)
 		return alarm_step(m->state)->take(a);
 	else
@@ -341,7 +341,7 @@ void alarm_answered(struct alarm_machine *m, struct lane *lane, const struct slo
 		a.item = m->collecting;
 		/* what cannot be read now is asked for again by its own item */
 		a.item->cycle_of[ALARM_WAS_COLLECTED] = m->list.cycle;
-		alarm_take_latch(&a);
+		alarm_keep_latch(&a);
 		m->collecting = alarm_to_collect(m, alarm_current(m));
 		if (!m->collecting)
 			enter_state(m, lane, alarm_next(m->state, m->held));

@@ -64,7 +64,7 @@ int alarm_items_init(const struct table *table, struct alarm_item **items, uint3
 	*count = 0;
 	for (uint32_t row = 0; row < table->count; row++)
 		*count += table->signals[row].item->alarm &&
-		          table->signals[row].device != TABLE_NO_DEVICE;
+		          signal_has_device(&table->signals[row]);
 	if (!*count)
 		return 0;
 	*items = calloc(*count, sizeof(**items));
@@ -75,7 +75,7 @@ int alarm_items_init(const struct table *table, struct alarm_item **items, uint3
 		const struct signal *s = &table->signals[row];
 		struct alarm_item *item = &(*items)[*count];
 
-		if (!s->item->alarm || s->device == TABLE_NO_DEVICE)
+		if (!s->item->alarm || !signal_has_device(s))
 			continue;
 		item->row = row;
 		item->device = s->device;

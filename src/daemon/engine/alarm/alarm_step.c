@@ -47,7 +47,7 @@ static uint32_t alarm_step_fail(const struct alarm_answer *a, int err)
 	return FACT_FAILED;
 }
 
-static uint32_t take_por(const struct alarm_answer *a)
+static uint32_t por_answer(const struct alarm_answer *a)
 {
 	struct engine *e = a->lane->engine;
 	int set = alarm_flag(a);
@@ -65,7 +65,7 @@ static uint32_t take_por(const struct alarm_answer *a)
 	return FACT_DONE | (set ? FACT_NON_ZERO : 0);
 }
 
-static uint32_t take_set(const struct alarm_answer *a)
+static uint32_t set_answer(const struct alarm_answer *a)
 {
 	if (a->answer->err) {
 		alarm_set_failed(a->lane, a->item, a->answer->err);
@@ -80,7 +80,7 @@ static uint32_t take_set(const struct alarm_answer *a)
 	return 0; /* the first output is asked for from here */
 }
 
-static uint32_t take_por_reset(const struct alarm_answer *a)
+static uint32_t por_reset_answer(const struct alarm_answer *a)
 {
 	a->m->proving = !a->answer->err;
 	if (!a->answer->err)
@@ -89,7 +89,7 @@ static uint32_t take_por_reset(const struct alarm_answer *a)
 	return FACT_FAILED;
 }
 
-int alarm_take_latch(const struct alarm_answer *a)
+int alarm_keep_latch(const struct alarm_answer *a)
 {
 	struct alarm_occurrence *o = &a->item->occurrence;
 	int set = alarm_flag(a);
@@ -119,9 +119,9 @@ uint32_t alarm_show_latch(struct lane *lane, struct alarm_item *i)
 	return FACT_DONE | (i->set[ALARM_LATCH_WAS_READ] ? FACT_NON_ZERO : 0);
 }
 
-static uint32_t take_latch(const struct alarm_answer *a)
+static uint32_t latch_answer(const struct alarm_answer *a)
 {
-	int err = alarm_take_latch(a);
+	int err = alarm_keep_latch(a);
 
 	if (err)
 		return alarm_step_fail(a, err);
@@ -130,7 +130,7 @@ static uint32_t take_latch(const struct alarm_answer *a)
 }
 
 /* The value read under an alarm. */
-static uint32_t take_alarm_value(const struct alarm_answer *a)
+static uint32_t alarm_value_answer(const struct alarm_answer *a)
 {
 	struct engine *e = a->lane->engine;
 	struct alarm_item *i = a->item;
@@ -140,7 +140,7 @@ static uint32_t take_alarm_value(const struct alarm_answer *a)
 
 	if (!signal_reads(s))
 		return FACT_DONE;
-	err = engine_take_reading(e, a->lane, s, a->slot, a->answer, &wait_ns);
+	err = engine_apply_reading(e, a->lane, s, a->slot, a->answer, &wait_ns);
 	if (wait_ns)
 		i->visit.not_before_ns = e->time.now_ns + wait_ns;
 	if (!err && i->occurrence.wants_after && !signal_is_string(s)) {
@@ -155,7 +155,7 @@ static uint32_t take_alarm_value(const struct alarm_answer *a)
 	return err ? FACT_FAILED : FACT_DONE;
 }
 
-static uint32_t take_latch_reset(const struct alarm_answer *a)
+static uint32_t latch_reset_answer(const struct alarm_answer *a)
 {
 	if (a->answer->err)
 		return alarm_step_fail(a, a->answer->err);
@@ -171,19 +171,19 @@ static uint32_t take_latch_reset(const struct alarm_answer *a)
 
 static const struct alarm_step steps[] = {
 	{ALARM_POR_READ, ALARM_POR_READ_WAIT, BUS_READ, "", OF(por), OF(por), ALARM_POR_WAS_READ,
-         OWS_UNARMED_POR_READ, take_por},
+         OWS_UNARMED_POR_READ, por_answer},
 	{ALARM_SET, ALARM_SET_WAIT, BUS_WRITE, "", OF(set), OF(set_value), ALARM_WAS_SET, 0,
-         take_set},
+         set_answer},
 	{ALARM_POR_RESET, ALARM_POR_RESET_WAIT, BUS_WRITE, "", OF(por), 0, ALARM_POR_WAS_RESET, 0,
-         take_por_reset},
+         por_reset_answer},
 	{ALARM_LATCH, ALARM_LATCH_WAIT, BUS_READ, "", OF(latch), OF(latch), ALARM_LATCH_WAS_READ,
-         OWS_UNARMED_LATCH, take_latch},
+         OWS_UNARMED_LATCH, latch_answer},
 	{ALARM_SENSED, ALARM_SENSED_WAIT, BUS_READ, "/alarm", OF(sensed), OF(sensed),
-         ALARM_VALUE_WAS_READ, 0, take_alarm_value},
+         ALARM_VALUE_WAS_READ, 0, alarm_value_answer},
 	{ALARM_LATCH_RESET, ALARM_LATCH_RESET_WAIT, BUS_WRITE, "/alarm", OF(reset), OF(reset_value),
-         ALARM_LATCH_WAS_RESET, OWS_UNARMED_RESET, take_latch_reset},
+         ALARM_LATCH_WAS_RESET, OWS_UNARMED_RESET, latch_reset_answer},
 	{SENSED, SENSED_WAIT, BUS_READ, "", OF(sensed), OF(sensed), ALARM_VALUE_WAS_READ, 0,
-         take_alarm_value},
+         alarm_value_answer},
 };
 
 const struct alarm_step *alarm_step(enum alarm_state state)

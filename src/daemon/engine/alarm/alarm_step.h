@@ -34,8 +34,8 @@ const struct alarm_item *alarm_done(const struct alarm_machine *m, const struct 
                                     const struct alarm_step *step);
 /* Is the flag that was read set? 1, 0, or the negative errno of the answer. */
 int alarm_flag(const struct alarm_answer *a);
-/* Take the latch for the item of the answer; 0 or a negative errno. */
-int alarm_take_latch(const struct alarm_answer *a);
+/* Keep the latch that was read for the item of the answer; 0 or a negative errno. */
+int alarm_keep_latch(const struct alarm_answer *a);
 /* The item has the latch that was read: the alarm is raised, or over. Returns the facts. */
 uint32_t alarm_show_latch(struct lane *lane, struct alarm_item *item);
 /* The next item of the device with a latch that was not read in this cycle; NULL: none. */

@@ -51,7 +51,7 @@ static bool may_command(const struct known_controller *g, uint32_t record)
 /*
  * Returns the length, -EBUSY: the controller may be just storing it, look again; -EBADMSG.
  */
-static int take_text(struct known_controller *g, uint32_t record, char *text, int64_t now_ns)
+static int copy_text(struct known_controller *g, uint32_t record, char *text, int64_t now_ns)
 {
 	int len = controller_text(&g->as.memory, record, text);
 
@@ -79,7 +79,7 @@ static void take_command(struct engine *e, uint32_t controller, struct signal *s
 	} else if (!may_command(g, s->record)) {
 		err = -EACCES;
 	} else if (signal_is_string(s)) {
-		len = take_text(g, s->record, text, e->time.now_ns);
+		len = copy_text(g, s->record, text, e->time.now_ns);
 		err = len < 0 ? len : 0;
 	} else if (!signal_accepts(s, c->value)) {
 		err = -ERANGE;

@@ -37,7 +37,7 @@ static void look_for_restart(struct lane *lane, const struct signal *s, bool agr
 {
 	const struct device *d;
 
-	if (!s->item->has_por || s->device == TABLE_NO_DEVICE)
+	if (!s->item->has_por || !signal_has_device(s))
 		return;
 	d = &lane->engine->table.devices[s->device];
 	if (agrees && lane->engine->time.now_ns < d->por_ns)
@@ -175,7 +175,7 @@ bool engine_compare(struct engine *e, struct lane *lane, struct signal *s, const
 {
 	struct signal_command *c = &s->command;
 	/* one that comes back is written anew */
-	bool absent = s->device != TABLE_NO_DEVICE && e->table.devices[s->device].absent;
+	bool absent = signal_has_device(s) && e->table.devices[s->device].absent;
 	bool agrees;
 
 	if (!s->item->output || signal_is_string(s))
