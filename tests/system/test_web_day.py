@@ -297,7 +297,7 @@ def test_a_day_of_faults_shows_what_is_true_or_unknown_and_needs_no_more_memory(
         for name in VIEWS:
             page.run("location.hash = arguments[0]", name)
             page.until("return document.querySelector('main > section:not([hidden])')"
-                       ".querySelector('td, canvas, li')", name)
+                       ".querySelector('td, canvas, li, [role=gridcell]')", name)
         weights = []
         for n in range(ROUNDS + 1):
             kind = KINDS[n % len(KINDS)]

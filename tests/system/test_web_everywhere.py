@@ -56,7 +56,7 @@ def each_view(page):
     for name in VIEWS:
         view(page, name)
         page.until("return document.querySelector('main > section:not([hidden])')"
-                   ".querySelector('td, canvas, li')", name)
+                   ".querySelector('td, canvas, li, [role=gridcell]')", name)
         yield name
 
 

@@ -120,11 +120,10 @@ static void test_a_mail_is_whole(void)
 
 static void test_no_line_end_makes_a_header_or_a_second_line(void)
 {
-	static const char *const evil[] = {"x\r\nBcc: eve@evil", "x\nBcc: eve@evil",
-	                                   "x\rBcc: eve@evil",
-	                                   "x\xe2\x80\xa8"
-	                                   "Bcc: eve@evil",
-	                                   "x\v\fBcc: eve@evil\n\n.\n"};
+	static const char separator[] = "x\xe2\x80\xa8"
+					"Bcc: eve@evil";
+	const char *const evil[] = {"x\r\nBcc: eve@evil", "x\nBcc: eve@evil", "x\rBcc: eve@evil",
+	                            separator, "x\v\fBcc: eve@evil\n\n.\n"};
 	struct message message = one();
 
 	for (size_t i = 0; i < sizeof(evil) / sizeof(evil[0]); i++) {
