@@ -333,8 +333,10 @@ def test_each_key_of_owsd_recorder_counts_from_a_reload_on(scene):
     counts(scene, "Recorder")
 
 
-CHECKED = {block: [name for name in options(block) if re.search("Files?$", name)] for block in ("Web", "Mqtt", "Influx")}
+CHECKED = {block: [name for name in options(block) if re.search("Files?$", name)]
+           for block in ("Web", "Mqtt", "Influx", "Notify")}
 BESIDE = {"Mqtt": {"Broker": "mqtts://localhost"}, "Influx": {"Url": "http://localhost/write"},
+          "Notify": {"Url": "http://localhost/hook"},
           "Web": {"Files": owsdtest.SOURCE / "src/faces/web/page"}}
 PAIR = {"CertFile": "KeyFile", "KeyFile": "CertFile"}
 
@@ -349,7 +351,8 @@ def checked(scene, block, **keys):
 
 
 def test_the_check_of_each_face_refuses_a_file_that_cannot_be_used(scene):
-    assert sorted(sum(CHECKED.values(), [])) == ["CaFile", "CertFile", "Files", "KeyFile", "PasswordFile", "TokenFile"]
+    assert sorted(sum(CHECKED.values(), [])) == ["CaFile", "CertFile", "Files", "KeyFile", "PasswordFile", "TokenFile",
+                                              "TokenFile"]
     there = password_file(scene, "there", "secret")
     for block, names in CHECKED.items():
         assert checked(scene, block) == (0, "")
