@@ -41,6 +41,11 @@ bool reading_filled(const struct reading *reading)
 	return face_value_counts(reading->err);
 }
 
+bool reading_has_value(const struct reading *reading)
+{
+	return reading_filled(reading) && (reading->value.measured_ns || reading_good(reading));
+}
+
 bool reading_good(const struct reading *reading)
 {
 	return reading->err == 0 && ows_good(reading->value.quality);
@@ -130,7 +135,9 @@ void reading_json(struct json *json, struct ows *h, const struct reading *readin
 		json_string(json, "error", error_text(reading->err));
 		return;
 	}
-	if (reading->value.type == OWS_STRING)
+	if (!reading_has_value(reading))
+		json_null(json, "value");
+	else if (reading->value.type == OWS_STRING)
 		json_text(json, reading->text, reading->len);
 	else
 		reading_json_number(json, "value", &reading->value, reading->text);

@@ -16,14 +16,17 @@ static int worse(int a, int b)
 }
 
 /* A set takes a moment: say what is on its way, while the value is still the one before. */
-static void say_command(struct ows *h, const char *name, int id, const struct reading *reading)
+static void say_command(struct ows *h, const struct ows_info *info, int id,
+                        const struct reading *reading)
 {
-	char text[VALUE_TEXT_MAX];
+	char commanded[VALUE_TEXT_MAX], text[COMMANDED_WORDS];
 
-	if (reading->err || !command_differs(h, id, reading, text))
+	if (reading->err || !command_differs(h, id, reading, commanded))
 		return;
 	ctl_flush_lines();
-	ctl_tell("%s: commanded %s, and the device does not have it%s", name, text,
+	ctl_tell("%s: commanded %s, and the device does not have it%s", info->name,
+	         commanded_text((enum ows_type)info->type, commanded, info->decimals, info->unit,
+	                        text),
 	         reading->value.quality == OWS_Q_DIFFERS ? "" : " yet");
 }
 
@@ -31,7 +34,7 @@ static int get_one(const struct ctl *ctl, struct ows *h, const char *name, struc
 {
 	char words[READING_WORDS];
 	struct ows_info info;
-	bool is_value;
+	bool is_value, has_value;
 	int id = ows_find(h, name);
 
 	if (id == -ENOENT)
@@ -45,14 +48,17 @@ static int get_one(const struct ctl *ctl, struct ows *h, const char *name, struc
 	is_value = names_info(h, ctl->instance, name, &info);
 	if (is_value)
 		reading_round(reading, digits_of_script(reading->value.number, info.decimals));
-	ctl_value(reading->text, reading->len);
+	/* an empty line, so that each name keeps its own */
+	has_value = !is_value || reading_has_value(reading);
+	ctl_value(reading->text, has_value ? reading->len : 0);
 	if (is_value)
-		say_command(h, name, id, reading);
+		say_command(h, &info, id, reading);
 	if (reading_good(reading))
 		return CTL_DONE;
 	/* keep the order of stderr and stdout where both go to one place */
 	ctl_flush_lines();
-	ctl_fail("%s is not good: %s", name, reading_why(reading, words));
+	ctl_fail("%s %s: %s", name, has_value ? "is not good" : "has no value",
+	         reading_why(reading, words));
 	return CTL_NOT_GOOD;
 }
 

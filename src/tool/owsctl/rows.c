@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "hal/base/time.h"
+#include "src/faces/show/digits.h"
 #include "src/faces/show/names.h"
 #include "src/ground/signal/hash.h"
 #include "src/tool/owsctl/ctl.h"
@@ -148,6 +149,18 @@ bool command_differs(struct ows *h, int id, const struct reading *reading,
 	                            : command.integer != reading->value.integer;
 }
 
+const char *commanded_text(enum ows_type type, const char *commanded, int decimals,
+                           const char *unit, char text[COMMANDED_WORDS])
+{
+	char number[VALUE_TEXT_MAX];
+
+	snprintf(number, sizeof(number), "%s", commanded);
+	if (value_is_float(type))
+		digits_print(type, strtod(commanded, NULL), 0, decimals, number);
+	snprintf(text, COMMANDED_WORDS, "%s%s%s", number, *unit ? " " : "", unit);
+	return text;
+}
+
 void row_read(struct ows *h, struct row *row, int64_t now_ns, struct reading *reading)
 {
 	reading_get(h, row->id, now_ns, reading);
@@ -157,9 +170,7 @@ void row_read(struct ows *h, struct row *row, int64_t now_ns, struct reading *re
 
 bool row_filled(const struct row *row, const struct reading *reading)
 {
-	bool input = row->path && !row->output;
-
-	return reading_filled(reading) && (!input || reading->value.measured_ns);
+	return row->path ? reading_has_value(reading) : reading_filled(reading);
 }
 
 bool rows_have_alarms(struct ows *h, const struct rows *rows)
@@ -226,12 +237,15 @@ const char *rows_span(int64_t ns, char text[WHEN_TEXT])
 void rows_add_cells(struct table *table, struct ows *h, const struct row *row,
                     const struct reading *reading, bool whole)
 {
+	char commanded[COMMANDED_WORDS];
 	char value[128] = "-", words[READING_WORDS], alarm[STANDING_WORDS], span[WHEN_TEXT] = "-";
 	size_t len = strlen(reading_quality(reading, words));
 	struct ows_target target = {.name = "-"};
 
 	if (row->differs)
-		snprintf(words + len, sizeof(words) - len, "; commanded %s", row->commanded);
+		snprintf(words + len, sizeof(words) - len, "; commanded %s",
+		         commanded_text((enum ows_type)row->type, row->commanded,
+		                        row->meaning.decimals, row->meaning.unit, commanded));
 	if (row_filled(row, reading))
 		reading_show(reading, value, sizeof(value));
 	if (reading->value.measured_ns && whole)

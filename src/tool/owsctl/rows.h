@@ -56,6 +56,11 @@ void rows_free(struct rows *rows);
 bool command_differs(struct ows *h, int id, const struct reading *reading,
                      char commanded[VALUE_TEXT_MAX]);
 
+/* The same for a person, as the value is shown: "50.7 °C". Returns text. */
+#define COMMANDED_WORDS (VALUE_TEXT_MAX + 64)
+const char *commanded_text(enum ows_type type, const char *commanded, int decimals,
+                           const char *unit, char text[COMMANDED_WORDS]);
+
 /* Read the value of a row, the state of its alarms, and its command. */
 void row_read(struct ows *h, struct row *row, int64_t now_ns, struct reading *reading);
 /* Can one of the signals have alarms? */

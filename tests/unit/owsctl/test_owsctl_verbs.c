@@ -13,6 +13,7 @@
 #include "src/memory/shm/entries.h"
 #include "src/memory/shm/futex.h"
 #include "src/tool/owsctl/ctl.h"
+#include "src/tool/owsctl/rows.h"
 #include "src/tool/owsctl/verbs.h"
 #include "tests/unit/aid/caught.h"
 #include "tests/unit/aid/instance.h"
@@ -65,9 +66,20 @@ static void test_get_writes_strings_into_a_pipe_as_they_are(void)
 static void test_get_of_a_value_that_is_not_good_is_status_3(void)
 {
 	TEST_ASSERT_EQUAL(CTL_NOT_GOOD, run(verb_get, "get level room1"));
-	TEST_ASSERT_EQUAL_STRING("0\n21.5\n", out);
-	holds(err, "level is not good: ");
+	TEST_ASSERT_EQUAL_STRING("\n21.5\n", out);
+	holds(err, "level has no value: ");
 	holds(err, "never measured");
+}
+
+static void test_what_was_commanded_is_shown_as_the_value_is(void)
+{
+	char text[COMMANDED_WORDS];
+
+	TEST_ASSERT_EQUAL_STRING("50.7 \u00b0C",
+	                         commanded_text(OWS_DOUBLE, "50.7125", 1, "\u00b0C", text));
+	TEST_ASSERT_EQUAL_STRING("50.7125", commanded_text(OWS_DOUBLE, "50.7125", -1, "", text));
+	TEST_ASSERT_EQUAL_STRING("9007199254740993 l",
+	                         commanded_text(OWS_LARGE, "9007199254740993", 1, "l", text));
 }
 
 static void test_get_of_an_unknown_name_is_status_1_and_suggests(void)
@@ -397,6 +409,7 @@ int main(void)
 	RUN_TEST(test_get_prints_the_values_alone);
 	RUN_TEST(test_get_writes_strings_into_a_pipe_as_they_are);
 	RUN_TEST(test_get_of_a_value_that_is_not_good_is_status_3);
+	RUN_TEST(test_what_was_commanded_is_shown_as_the_value_is);
 	RUN_TEST(test_get_of_an_unknown_name_is_status_1_and_suggests);
 	RUN_TEST(test_get_of_a_dead_owsd_says_that_it_is_dead);
 	RUN_TEST(test_get_of_an_owsd_whose_heart_beats_in_the_future_says_so);
