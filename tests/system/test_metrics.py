@@ -21,6 +21,8 @@ def plant(scene):
         dict(Name="room", Path=SENSOR + "/temperature", Type="double", IO="input", Unit="\\°",
              LimitH=owsdtest.raw("20")),
         dict(Name="relays", Path=RELAY + "/PIO.BYTE", Type="byte", IO="input"),
+        dict(Name="latched", Path=RELAY + "/sensed.BYTE", Type="byte", IO="input",
+             Alarm=owsdtest.raw("on"), LatchAlarm="latch.BYTE"),
         dict(Name="kind", Path=SENSOR + "/type", Type="string", IO="input", PerFactor=20),
         dict(Name="nobody", Path="/28.0102030405FF/temperature", Type="double", IO="input"),
     ], Period=0.05, Timeout=3)
@@ -59,6 +61,9 @@ def test_values_quality_and_age_of_good_and_of_bad_signals(scene):
     assert 0 <= of(found["ows_age_seconds"], "room")[0].value < 20
     assert of(found["ows_simulated"], "room")[0].value == 1
     assert of(found["ows_alarm"], "room")[0].value == 1 and not of(found["ows_alarm"], "relays")
+    # without PorAlarm it does nothing
+    scene.until(lambda: of(families(scene, daemon)["ows_alarm_unarmed"], "latched")[0].value == 1, 15, "unarmed")
+    assert not of(found["ows_alarm_unarmed"], "room")
     assert found["ows_up"].samples[0].value == 1 and found["ows_target_up"].samples[0].value == 1
 
 

@@ -80,7 +80,7 @@ static void end_count(const struct print *p, uint64_t value, bool us)
 		fprintf(p->out, "} %" PRIu64 "\n", value);
 }
 
-enum what { VALUE, QUALITY, AGE, SIMULATED, ALARM, WHATS };
+enum what { VALUE, QUALITY, AGE, SIMULATED, ALARM, UNARMED, WHATS };
 static const struct {
 	const char *name, *help;
 } whats[] = {
@@ -92,6 +92,8 @@ static const struct {
 	[SIMULATED] = {"ows_simulated",
                        "1 for a signal whose value is simulated. Absent for others."},
 	[ALARM] = {"ows_alarm", "1 while an alarm of a signal stands. Absent if it can have none."},
+	[UNARMED] = {"ows_alarm_unarmed",
+                     "1 while the alarm of a device can do nothing. Absent of others."},
 };
 
 /* The value of a sample; false: the signal has no such sample. */
@@ -122,6 +124,10 @@ static bool sample_of(const struct print *p, int signal, const struct ows_info *
 		alarms = standing_of(h, ows_find(h, info->name));
 		snprintf(text, VALUE_TEXT_MAX, "%d", standing_any(&alarms));
 		return standing_possible(&alarms);
+	case UNARMED:
+		alarms = standing_of(h, ows_find(h, info->name));
+		snprintf(text, VALUE_TEXT_MAX, "%d", alarms.unarmed != 0);
+		return alarms.item;
 	case WHATS:
 		break;
 	}

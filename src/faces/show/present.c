@@ -112,6 +112,18 @@ static void look_at_limit(struct present alarm, const struct ows_alarm_state *st
 	}
 }
 
+/* Nobody acknowledges it: it ends when the output reads as it was written. */
+static void look_at_output(struct present alarm, const struct reading *reading, struct ows *h,
+                           present_add *add, void *ctx)
+{
+	if (!reading_filled(reading) || reading->value.quality != OWS_Q_DIFFERS)
+		return;
+	alarm.kind = ows_alarm_kind_text(OWS_ALARM_DIFFERS);
+	alarm.state = "stands";
+	alarm.since_ns = raised(h, alarm.signal, OWS_ALARM_DIFFERS);
+	add(ctx, &alarm);
+}
+
 void present_each(struct ows *h, int signal, int id, int64_t now_ns, struct reading *reading,
                   present_add *add, void *ctx)
 {
@@ -125,5 +137,6 @@ void present_each(struct ows *h, int signal, int id, int64_t now_ns, struct read
 	alarm.name = info.name;
 	alarm.decimals = info.decimals;
 	look_at_device(alarm, &state, reading, h, add, ctx);
+	look_at_output(alarm, reading, h, add, ctx);
 	look_at_limit(alarm, &state, h, add, ctx);
 }

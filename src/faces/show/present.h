@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The alarms of a signal that are present: that stand, are shelved, or cannot be armed. */
+/* The alarms of a signal that are present: that stand, are shelved, or cannot be armed, and an output that reads otherwise. */
 #pragma once
 
 #include <stdbool.h>

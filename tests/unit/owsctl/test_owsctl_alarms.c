@@ -125,7 +125,7 @@ static void test_why_an_alarm_cannot_be_armed_names_the_key_and_stands_below_the
 	}
 }
 
-static void test_an_output_that_reads_otherwise_stands_below_the_table(void)
+static void test_an_output_that_reads_otherwise_stands_in_the_table(void)
 {
 	struct ows_sample sample = {
 		.value = 5, .measured_ns = ows_now(), .quality = OWS_Q_DIFFERS, .count = 1};
@@ -133,7 +133,9 @@ static void test_an_output_that_reads_otherwise_stands_below_the_table(void)
 	image_publish(&in.image, DOOR, &sample, &(struct ows_attrs){0}, NULL);
 	image_news(&in.image);
 	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_alarms, "alarms"));
-	holds(out, "\ndoor: not as commanded: owsctl list shows what it reads\n");
+	holds(out, "\ndoor  not as commanded  stands ");
+	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_alarms, "alarms --json"));
+	holds(out, "{\"name\":\"door\",\"alarm\":\"not as commanded\",\"state\":\"stands\",");
 	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_alarms, "alarms room1"));
 	TEST_ASSERT_NULL(strstr(out, "door"));
 }
@@ -373,7 +375,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_without_alarms_there_are_only_the_titles);
 	RUN_TEST(test_why_an_alarm_cannot_be_armed_names_the_key_and_stands_below_the_table);
-	RUN_TEST(test_an_output_that_reads_otherwise_stands_below_the_table);
+	RUN_TEST(test_an_output_that_reads_otherwise_stands_in_the_table);
 	RUN_TEST(test_a_word_that_no_signal_matches_is_refused);
 	RUN_TEST(test_alarms_that_stand_are_shown_with_the_time_they_were_raised);
 	RUN_TEST(test_an_item_that_is_read_as_an_input_says_so);

@@ -94,16 +94,9 @@ static void print_reasons(struct live *live, const struct rows *rows, char *cons
 			continue;
 		if (state.shelved)
 			print_shelved(live, rows->row[i].name, &state);
-		reading_get(live->h, rows->row[i].id, live->now.boot, live->reading);
-		/* the journal has it; the table above has only what can be acknowledged */
-		if (reading_filled(live->reading) &&
-		    live->reading->value.quality == OWS_Q_DIFFERS) {
-			snprintf(line, sizeof(line), "%s: %s: owsctl list shows what it reads",
-			         rows->row[i].name, ows_quality_text(OWS_Q_DIFFERS));
-			print_line(line);
-		}
 		if (!state.unarmed)
 			continue;
+		reading_get(live->h, rows->row[i].id, live->now.boot, live->reading);
 		snprintf(line, sizeof(line), "%s: %s", rows->row[i].name,
 		         present_unarmed(&state, live->reading, words));
 		print_line(line);
