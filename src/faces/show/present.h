@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* The alarms of a signal that are present: that stand, are shelved, or cannot be armed, and an output that reads otherwise. */
+/*
+ * The alarms of a signal that are present: that stand, are shelved, or cannot be armed; and that an
+ * output reads otherwise than it was written.
+ */
 #pragma once
 
 #include <stdbool.h>
