@@ -71,12 +71,12 @@ def test_a_value_that_is_not_good_is_shown_with_its_reason(scene):
     _, daemon, _, _ = house(scene, MaxRetries=0)
     done = owsdtest.until(lambda: (d := scene.owsctl(daemon, "get", "room", "nobody"))
                           .returncode == 3 and "absent" in d.stderr and d, 15, "nobody is absent")
-    assert done.stdout == "21.5\n0\n"
-    assert "nobody is not good: device absent" in done.stderr
+    assert done.stdout == "21.5\n\n"
+    assert "nobody has no value: device absent" in done.stderr
     shown = [line.split()[:3] for line in scene.owsctl(daemon, "list").stdout.splitlines()[1:]]
     assert ["room", "21.5", "°C"] in shown and ["nobody", "-", "°C"] in shown, shown
     done = scene.owsctl(daemon, "list", "--json", "nobody")
-    assert json.loads(done.stdout)[0]["value"] == 0, done
+    assert json.loads(done.stdout)[0]["value"] is None, done
 
 
 def test_an_output_is_confirmed_on_the_bus(scene):
