@@ -366,6 +366,13 @@ def test_a_scan_looks_behind_each_coupler_once(scene):
         assert len(behind) == 2 * server.couplers, behind
 
 
+def test_a_scan_of_an_owsd_whose_target_is_down_says_so(scene):
+    daemon = scene.owsd(owsdtest.rio("127.0.0.1:9", [dict(Name="x", Path="/28.000000000001/temperature", Type="double")]))
+    done = scene.owsctl(daemon, "scan")
+    assert done.returncode == 1, done
+    assert "no target of this owsd lists devices: owsctl stats shows how they do" in done.stderr, done
+
+
 def test_a_scan_of_couplers_without_end_fails(scene):
     with Maze({"/1F.000000000001/type": "DS2409"}) as server:
         server.couplers, server.new = 40, True

@@ -372,6 +372,10 @@ static int find_devices(struct target *target, bool of_owsd, struct scan *scan, 
 		return err;
 	if (err == -E2BIG)
 		return ctl_fail("%s: more than 512 couplers", target->name);
+	if (err == -EIO && of_owsd)
+		return ctl_fail("%s: no target of this owsd lists devices: owsctl stats shows how "
+		                "they do",
+		                target->name);
 	if (err && err != -ENOMEM)
 		return ctl_fail("%s: %s", target->name, error_text(err));
 	if (scan->disturbed)
