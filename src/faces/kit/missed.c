@@ -38,6 +38,8 @@ struct replay_point missed_point(const struct missed *m, int64_t ns)
 
 /* --- What is kept ---------------------------------------------------------------------------- */
 
+#define KEPT_VERSION 3
+
 static void complain(struct missed *m, const char *what, int err)
 {
 	if (!m->logged)
@@ -89,7 +91,7 @@ void missed_keep(struct missed *m, int64_t least_ns, int64_t now_ns)
 		complain(m, part, bad ? -bad : errno);
 		return;
 	}
-	fprintf(f, "owsd 3 %016" PRIx64 " %d", m->key, m->count);
+	fprintf(f, "owsd %d %016" PRIx64 " %d", KEPT_VERSION, m->key, m->count);
 	print_point(f, &m->reached);
 	for (int i = 0; i < m->count; i++) {
 		print_point(f, &m->stretches[i].from);
@@ -106,15 +108,22 @@ static bool read_kept(struct missed *m)
 {
 	FILE *f = fopen(m->path, "re");
 	struct missed old = *m;
+	const char *fault = "damaged";
 	char end[4] = "";
+	int version, found;
 	uint64_t key;
 	bool good;
 
 	if (!f)
 		return false;
 	/* NOLINTNEXTLINE(cert-err34-c): a number out of range is neither the key nor a count */
-	good = fscanf(f, "owsd 3 %" SCNx64 " %d", &key, &old.count) == 2 && key == m->key &&
-	       old.count >= 0 && old.count <= MISSED_STRETCHES && scan_point(f, &old.reached);
+	found = fscanf(f, "owsd %d %" SCNx64 " %d", &version, &key, &old.count);
+	if (found >= 1 && version != KEPT_VERSION)
+		fault = "of another version of owsd";
+	else if (found == 3 && key != m->key)
+		fault = "of another peer";
+	good = found == 3 && version == KEPT_VERSION && key == m->key && old.count >= 0 &&
+	       old.count <= MISSED_STRETCHES && scan_point(f, &old.reached);
 	for (int i = 0; good && i < old.count; i++)
 		good = scan_point(f, &old.stretches[i].from) &&
 		       scan_point(f, &old.stretches[i].until);
@@ -123,9 +132,8 @@ static bool read_kept(struct missed *m)
 	if (good)
 		*m = old;
 	else
-		log_notice(m->face->log,
-		           "%s is of another peer or damaged: what was missed before is not sent",
-		           m->path);
+		log_notice(m->face->log, "%s is %s: what was missed before is not sent", m->path,
+		           fault);
 	return good;
 }
 
