@@ -295,15 +295,18 @@ static const char *take_text(struct build *build, const struct option_def *def,
 {
 	const char *why;
 
-	if (!value->given || (!*value->text && !def->empty))
+	if (!value->given)
 		return def->preset;
-	why = def->check && *value->text ? def->check(value->text) : NULL;
+	/* an empty text that is no value of its own has to pass, too, and then means no key */
+	why = def->check && (*value->text || !(def->empty || def->needed)) ? def->check(value->text)
+	                                                                   : NULL;
 	if (why && strpbrk(value->text, "@?")) /* as in a URL with a password */
 		report_error(build->report, value->node->value_at, "%s: %s", def->key, why);
 	else if (why)
 		report_error(build->report, value->node->value_at, "%s \"%s\": %s", def->key,
 		             value->text, why);
-	return build_keep(build, value->text, strlen(value->text));
+	return *value->text || def->empty ? build_keep(build, value->text, strlen(value->text))
+	                                  : def->preset;
 }
 
 /* The member at an offset of the struct of a block. */

@@ -208,7 +208,7 @@ const char *text_is_class(const char *text)
 /* Names with slashes between them. */
 const char *text_is_topic(const char *topic)
 {
-	return is_of(topic, TEXT_LETTERS "/", NAME_MAX_BYTES) && topic[0] != '/' &&
+	return is_of(topic, TEXT_LETTERS "/", NAME_MAX_BYTES) && *topic && *topic != '/' &&
 	                       topic[strlen(topic) - 1] != '/' && !strstr(topic, "//")
 	               ? NULL
 	               : "expected letters, digits, '-', '_', '.' and '/' between them, at most 63";
