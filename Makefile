@@ -243,7 +243,7 @@ endef
 SOURCES  := $(wildcard src/*/*/*.c src/*/*/*/*.c hal/*/*.c hal/*/*/*.c)
 # Of owsd-web: what calls libmicrohttpd; its main(), and what must be in no other program
 WEB_MAIN := src/faces/web/owsd_web.c src/faces/web/no_tls.c src/faces/web/wire.c
-WEB_HTTP := $(WEB_MAIN) $(patsubst %,src/faces/web/%.c,api command devices draft events guard http lists past save stored stream)
+WEB_HTTP := $(WEB_MAIN) $(patsubst %,src/faces/web/%.c,api command devices draft events guard http lists past save special stored stream)
 # Of owsd-mqtt: what calls libmosquitto, and its main()
 MQTT_ALL := $(patsubst %,src/faces/mqtt/%.c,owsd_mqtt mqtt arrivals broker client advice)
 # The consumers' library

@@ -599,6 +599,27 @@ def test_writing_is_off_unless_the_block_says_write_on(scene):
         assert command(page, "/api/alarm", status=status, **body)["error"], body
 
 
+def test_special_signals_are_read_and_those_that_can_be_are_set(scene):
+    daemon, page = both(scene, Write="on")
+
+    def special():
+        signals = page.json("/api/special?name=room")["signals"]
+        return {one["name"]: one for one in signals}
+
+    until(lambda: float(special()["_Age"]["value"]) < 60, 20, special)
+    assert special()["_ReadEnable"] == {"name": "_ReadEnable", "flag": True, "readable": True,
+                                        "writable": True, "value": "1"}
+    assert special()["_DGNRESET"]["value"] is None and "_Alarm" not in special()
+    assert command(page, "/api/set", name="room_ReadEnable", value=False)["result"] == "taken"
+    until(lambda: special()["_ReadEnable"]["value"] == "0", 20, special)
+    assert command(page, "/api/set", name="room_DGNRESET", value=True)["result"] == "taken"
+    command(page, "/api/set", status=404, name="room_Age", value=1)
+    command(page, "/api/set", status=400, name="room_ReadEnable", value="maybe")
+    command(page, "/api/alarm", status=400, name="room_ReadEnable", do="ack")
+    page.json("/api/special?name=nobody", 404)
+    page.json("/api/special", 404)
+
+
 def test_only_the_proxy_of_the_block_names_a_person(scene):
     me = getpass.getuser()
     daemon, page = both(scene, **{"Write": "on", "Proxy": me})

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Commands, on the worker for them: libows waits for owsd's answer. */
 #include <errno.h>
+#include <math.h>
 #include <microhttpd.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,6 +10,7 @@
 #include "hal/base/time.h"
 #include "src/faces/kit/command.h"
 #include "src/faces/show/json.h"
+#include "src/faces/show/names.h"
 #include "src/faces/web/body.h"
 #include "src/faces/web/guard.h"
 #include "src/faces/web/http.h"
@@ -25,6 +27,7 @@ struct order {
 	struct body body;
 	struct ows *h;
 	int id;
+	bool special; /* it is no value of a signal: no device confirms it */
 	struct ows_info info;
 };
 
@@ -88,6 +91,25 @@ static void command_refuse(struct order *order, int err)
 	                             : face_refusal(&command, &order->info, err, words));
 }
 
+/* A special signal that may be set, such as room_WriteEnable: info is that of a signal like it. */
+static int find_special(struct order *order)
+{
+	enum attribute attribute;
+	int signal, id, err;
+
+	if (names_lookup(order->h, order->instance, body_string(&order->body, "name"), &signal,
+	                 &attribute) ||
+	    attribute_table[attribute].driver || !attribute_table[attribute].writable ||
+	    ows_info(order->h, signal, &order->info))
+		return -ENOENT;
+	order->special = true;
+	order->info.type = attribute_table[attribute].type;
+	order->info.min = order->info.max = NAN;
+	id = ows_find(order->h, body_string(&order->body, "name"));
+	err = id < 0 ? id : ows_for(order->h, order->person);
+	return err ? err : id;
+}
+
 /* Connect, and find the signal. False after answering. */
 static bool command_begin(struct order *order)
 {
@@ -104,6 +126,8 @@ static bool command_begin(struct order *order)
 		err = -ESTALE; /* of owsd, not of the name */
 	if (!err) {
 		order->id = face_command_find(order->h, &command, &order->info);
+		if (order->id == -ENOENT)
+			order->id = find_special(order);
 		err = order->id < 0 ? order->id : 0;
 	}
 	if (err)
@@ -124,7 +148,7 @@ static void run_set(struct job *job)
 
 	if (command_begin(order)) {
 		err = face_command_set(order->h, &given, order->id, &order->info, &stamp);
-		while (!err && ows_now() < until_ns) {
+		while (!err && !order->special && ows_now() < until_ns) {
 			err = ows_command(order->h, order->id, &command);
 			if (err || (int32_t)(command.applied - stamp) >= 0)
 				break;
@@ -136,8 +160,10 @@ static void run_set(struct job *job)
 		if (err)
 			command_refuse(order, err);
 		else
-			command_answer(order, (int32_t)(command.applied - stamp) >= 0 ? "taken"
-			                                                              : "pending");
+			command_answer(order,
+			               order->special || (int32_t)(command.applied - stamp) >= 0
+			                       ? "taken"
+			                       : "pending");
 	}
 	ows_close(order->h);
 }
@@ -185,7 +211,9 @@ static void run_alarm(struct job *job)
 	int err;
 
 	if (command_begin(order)) {
-		if (*what == 'a')
+		if (order->special)
+			err = -EOPNOTSUPP;
+		else if (*what == 'a')
 			err = acknowledge(order);
 		else
 			err = ows_shelve(order->h, order->id,

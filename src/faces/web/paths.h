@@ -9,6 +9,9 @@ int lists_alarms(struct request *request);
 int lists_stats(struct request *request);
 int lists_log(struct request *request);
 
+/* GET api/special?name=: the special signals of a signal. */
+int special_get(struct request *request);
+
 /* What a person may do: set outputs, acknowledge and shelve alarms. */
 int command_set(struct request *request);
 int command_alarm(struct request *request);

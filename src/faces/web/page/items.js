@@ -5,13 +5,14 @@ import {draft} from "./draft.js";
 import {FIRST, Form, MORE, OUTPUT, setter} from "./form.js";
 import {Grid} from "./grid.js";
 import {problemsOf} from "./problems.js";
+import {Special} from "./special.js";
 import * as several from "./several.js";
 import {store} from "./store.js";
 import {qualityWords, valueText, withUnit} from "./words.js";
 
 const state = {query: "", group: null, selected: null, at: -1, of: 0}; // selected: at of so many
 let search, groups, count, grid, view, editor, empty, form = null, head, place, value, double, also;
-let fault, buttons;
+let fault, buttons, special;
 
 export function build(root) {
 	search = el("input", {type: "search", id: "config-search", placeholder: "Search",
@@ -52,6 +53,7 @@ export function build(root) {
 		el("div", {class: "editor-head"}, head, place, value),
 		el("div", {class: "tools"}, buttons.up, buttons.down), double);
 	empty = el("p", {class: "note"});
+	special = new Special();
 	view = el("div", {class: "items-view"}, el("div", {class: "items-list"},
 		el("div", {class: "tools", role: "search"}, search, groups, count, el("span",
 			{class: "spread"}, buttons.set, buttons.copy, buttons.remove, buttons.add,
@@ -169,7 +171,7 @@ function makeForm(io) {
 	form = new Form("item", "item", async (values) => apply(state.selected, values),
 		{first: io === "output" ? [...FIRST, ...OUTPUT] : FIRST, groups: MORE});
 	form.io = io;
-	editor.append(form.node);
+	editor.append(form.node, special.node);
 }
 
 function select(name) {
@@ -208,7 +210,9 @@ function paintEditor() {
 }
 
 function paintValue() {
-	const signal = store.find(state.selected), now = signal ? store.value(signal) : null;
+	const signal = store.find(state.selected);
+	special.show(store.unknown ? null : signal ?? null);
+	const now = signal ? store.value(signal) : null;
 	put(value, !signal ? "" : now === null ? qualityWords(store.quality(signal))
 		: withUnit(signal, valueText(signal, now)));
 }
