@@ -5,6 +5,7 @@
 import json
 import re
 import socket
+import subprocess
 import threading
 
 import faulty
@@ -425,6 +426,31 @@ def test_a_scan_of_a_hundred_devices_takes_seconds(scene):
 def test_only_who_may_configure_has_the_wires_scanned(scene):
     _, page = both(scene)
     assert "Configure on" in devices(page, status=403)["error"]
+
+
+
+def test_a_file_is_begun_and_saved_without_an_owsd(scene):
+    file, port = scene.path / "begun.rio", owsdtest.free_port()
+    web = scene.start([owsdtest.BUILD / "owsd-web", "--edit", file, "-l", f"127.0.0.1:{port}"])
+    page = Page.__new__(Page)
+    page.port = port
+    socket_of_writer = place() / "begun.config"
+    until(lambda: socket_of_writer.exists() and "configuration" in web.log(), 20, web.log)
+    got = page.json("/api/config")
+    assert got["configurable"] and got["file"] == str(file), got
+    assert got["model"]["blocks"]["Web"] == {"Configure": "on"}
+    edited = draft(page, got["text"], "add", name="room", path="/28.FF/temperature")
+    saved = post(page, "config/save", text=edited["text"], base=got["tag"])
+    assert saved["reload"] == "none" and '"room"' in file.read_text(), saved
+    # the file says that nobody configures, and still --edit may
+    closed = edited["text"].replace("Configure             on", "Configure off")
+    post(page, "config/save", text=closed, base=saved["tag"])
+    assert page.json("/api/config")["configurable"]
+    web.stop()
+    until(lambda: not socket_of_writer.exists(), 20, "the writer ends with owsd-web")
+    refused = subprocess.run([owsdtest.BUILD / "owsd-web", "--edit", scene.path / "no" / "x.rio"],
+                             capture_output=True, text=True, check=False)
+    assert refused.returncode == 2 and "No such file" in refused.stderr, refused
 
 
 if __name__ == "__main__":

@@ -45,6 +45,7 @@ static void print_usage(FILE *out, const char *program, const struct face_option
 		fprintf(out, "  -%c, --%s %s %s\n", own->letter, own->word, own->value, own->help);
 	else if (own->letter)
 		fprintf(out, "  -%c, --%-13s %s\n", own->letter, own->word, own->help);
+	fputs(own->more ? own->more : "", out);
 	fputs("      --check         report what is wrong with the configuration, and end\n"
 	      "  -v, --verbose       log more; twice: debugging\n"
 	      "  -V, --version       version\n"

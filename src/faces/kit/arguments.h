@@ -14,6 +14,7 @@
 struct face_option {
 	char letter;
 	const char *word, *value, *help; /* "directory", "DIR", "where ..." */
+	const char *more;                /* lines of the help on what main() takes itself; NULL */
 };
 
 struct face_arguments {

@@ -19,8 +19,8 @@
 
 #define FILES 3
 
-/* What it reads, prints and says: files in memory, so that nothing has to be passed on. */
-static int spawn(const struct child *child, const char *path, const int files[FILES], pid_t *pid)
+/* What it reads, prints and says: files in memory, so that nothing has to be passed on, or NULL. */
+static int spawn(const struct child *child, const char *path, const int *files, pid_t *pid)
 {
 	posix_spawn_file_actions_t actions;
 	posix_spawnattr_t attributes;
@@ -31,7 +31,7 @@ static int spawn(const struct child *child, const char *path, const int files[FI
 	sigemptyset(&usual);
 	sigaddset(&usual, SIGPIPE);
 	posix_spawn_file_actions_init(&actions);
-	for (int i = 0; i < FILES; i++)
+	for (int i = 0; files && i < FILES; i++)
 		posix_spawn_file_actions_adddup2(&actions, files[i], i);
 	posix_spawnattr_init(&attributes);
 	posix_spawnattr_setsigmask(&attributes, &none);
@@ -45,7 +45,7 @@ static int spawn(const struct child *child, const char *path, const int files[FI
 }
 
 /* In the folder of this program, as it is built and installed, else in bin beside that. */
-static int spawn_beside(const struct child *child, const int files[FILES], pid_t *pid)
+static int spawn_beside(const struct child *child, const int *files, pid_t *pid)
 {
 	static const char *const folders[] = {"", "../bin/"};
 	char self[PATH_MAX / 2], path[PATH_MAX];
@@ -62,6 +62,11 @@ static int spawn_beside(const struct child *child, const int files[FILES], pid_t
 		err = spawn(child, path, files, pid);
 	}
 	return err;
+}
+
+int child_start(const char *const *argv, pid_t *pid)
+{
+	return spawn_beside(&(struct child){.argv = argv}, NULL, pid);
 }
 
 static int make_files(const struct child *child, int files[FILES])

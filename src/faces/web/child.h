@@ -7,6 +7,7 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <sys/types.h>
 
 #define CHILD_OUT (8u << 20) /* bytes of an output */
 #define CHILD_WHY 512
@@ -22,5 +23,7 @@ struct child {
 	char why[CHILD_WHY]; /* its last line on stderr, without its name; "": none */
 };
 
+/* Start one that goes on beside this program, with its streams. 0, or a negative errno. */
+int child_start(const char *const *argv, pid_t *pid);
 /* 0: it ended by itself, with a status; -ETIMEDOUT, -E2BIG, or why it cannot run. Blocking. */
 int child_run(struct child *child);

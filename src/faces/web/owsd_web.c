@@ -16,6 +16,7 @@
 #include "src/faces/kit/loop.h"
 #include "src/faces/show/newest.h"
 #include "src/faces/web/api.h"
+#include "src/faces/web/edit.h"
 #include "src/faces/web/events.h"
 #include "src/faces/web/http.h"
 #include "src/faces/web/stream.h"
@@ -232,6 +233,7 @@ static int check(const struct face *face)
 /* The configuration was read again: what was made of it at the start is made anew. */
 static void follow_file(struct web *web)
 {
+	web->face->config->web.configure |= edit_is_on();
 	follow_addresses(web);
 	close_files(web);
 	open_files(web);
@@ -280,6 +282,7 @@ static int open_web(struct face *face)
 		return err;
 	}
 	open_files(&web);
+	face->config->web.configure |= edit_is_on();
 	web.bell = bell_open();
 	if (web.bell >= 0) {
 		web.past = jobs_start(web.bell);
@@ -456,7 +459,8 @@ int main(int argc, char **argv)
 {
 	static const struct face_ops ops = {
 		.program = "owsd-web",
-		.option = {'l', "listen", "ADDRESS", "also serve there, in place of Listen"},
+		.option = {'l', "listen", "ADDRESS", "also serve there, in place of Listen",
+	                   .more = EDIT_HELP},
 		.check = check,
 		.open = open_web,
 		.changes = changes,
@@ -465,5 +469,5 @@ int main(int argc, char **argv)
 		.close = close_web,
 	};
 
-	return face_main(&ops, argc, argv);
+	return edit_begin(&argc, &argv) ? face_main(&ops, argc, argv) : FACE_EXIT_USAGE;
 }

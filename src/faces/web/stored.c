@@ -10,6 +10,7 @@
 #include "src/config/edit/tag.h"
 #include "src/config/read/rio_file.h"
 #include "src/faces/web/draft.h"
+#include "src/faces/web/edit.h"
 #include "src/faces/web/guard.h"
 #include "src/faces/web/http.h"
 #include "src/faces/web/model.h"
@@ -73,6 +74,7 @@ static void stored_answer(struct stored *stored, const char *text, size_t len,
 	json_string(&json, "writer", writer_is_there(stored->instance) ? NULL : remedy);
 	json_string(&json, "why", stored->configurable ? NULL : stored->why);
 	put_backup(&json, stored->file);
+	json_bool(&json, "edit", edit_is_on());
 	json_null(&json, "running_tag");
 	model_json(&json, rio);
 	json_finish(&json);

@@ -35,7 +35,7 @@ export function vanished() {
 /** Why the page could edit nothing after a save, and what helps then; "": it could. */
 export function lockout() {
 	const had = draft.saved.blocks.Web ?? {}, has = draft.model.blocks.Web ?? {};
-	if (!draft.editable)
+	if (!draft.editable || draft.info.edit) // owsd-web --edit
 		return "";
 	const doors = DOORS.filter((key) => had[key] !== has[key]);
 	const why = has.Configure !== "on" ? "this page can edit nothing more, and cannot put the file of "
