@@ -69,7 +69,8 @@ static void test_an_instance_has_the_name_of_its_file(void)
 
 static void test_without_the_option_the_command_line_stays(void)
 {
-	char *given[] = {"owsd-web", "-v", NULL}, **argv = given;
+	char program[] = "owsd-web", verbose[] = "-v";
+	char *given[] = {program, verbose, NULL}, **argv = given;
 	int argc = 2;
 
 	TEST_ASSERT_TRUE(edit_begin(&argc, &argv));
