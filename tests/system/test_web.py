@@ -537,6 +537,7 @@ def test_trends_come_from_the_recorder(scene):
     until(lambda: page.json("/api/info")["live"], 20, "it has found owsd")
     assert page.json("/api/info")["history"] is False
     assert "owsd-recorder" in page.json("/api/trend?name=room", 404)["error"]
+    assert "owsd-recorder" in page.json("/api/hour", 404)["error"]
     recorder = scene.start([BUILD / "owsd-recorder", "-n", daemon.name, "-c", daemon.config])
     until(lambda: "recording " in recorder.log(), 20, "it records")
     for value in (5, 9, 7):
@@ -554,6 +555,12 @@ def test_trends_come_from_the_recorder(scene):
     assert (got["min"][-1], got["max"][-1], got["last"][-1]) == (5, 9, 7), got
     assert got["quality"][-1] == 192 and got["min"][0] is None and got["gap"][0] == 1, got
     assert got["from"] == sorted(got["from"]) and got["from"][1] - got["from"][0] == 360000, got
+    hour = page.json("/api/hour")
+    assert hour["step"] == 120_000 and set(hour["signals"]) == {"room", "relays"}, hour
+    relays = hour["signals"]["relays"]
+    assert all(len(relays[c]) == 30 for c in ("min", "max", "last", "quality")), relays
+    assert [v for v in relays["last"] if v is not None][-1] == 7 and relays["quality"][-1] == 192
+    assert 9 in relays["max"] and relays["min"][0] is None and relays["quality"][0] == 0, relays
     assert trend("room")["unit"] == "\u00b0C"
     assert "nothing" in page.json("/api/trend?name=nothing", 404)["error"]
     for wrong in ("points=0", "points=2001", "points=x", "from=x", "from=9&until=8", "until=0"):

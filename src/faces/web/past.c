@@ -17,6 +17,8 @@
 #define RINGS 512 /* entries that owsd keeps */
 #define NAME 256
 #define DAY_MS (86400 * 1000LL)
+#define HOUR_SIGNALS 200
+#define HOUR_POINTS 30 /* of two minutes, which come from sums */
 
 struct past_job {
 	struct job job;
@@ -109,10 +111,18 @@ static void put_column(struct json *json, const char *key, const struct ows_hist
 	json_array_end(json);
 }
 
+static void put_columns(struct json *json, const struct ows_history_point *points, int n,
+                        bool with_times)
+{
+	static const char *const columns[] = {"min", "max", "last", "quality", "from", "gap"};
+
+	for (size_t i = 0; i < (with_times ? 6 : 4); i++)
+		put_column(json, columns[i], points, n);
+}
+
 static void put_trend(struct past_job *past, const struct ows_history_signal *signal,
                       const struct ows_history_point *points)
 {
-	static const char *const columns[] = {"from", "min", "max", "last", "quality", "gap"};
 	struct json json;
 
 	if (!json_start(&json, &past->job.text, &past->job.len))
@@ -121,8 +131,7 @@ static void put_trend(struct past_job *past, const struct ows_history_signal *si
 	json_string(&json, "name", past->name);
 	json_string(&json, "unit", *signal->unit ? signal->unit : NULL);
 	json_int(&json, "until", points[past->n - 1].until_ns / NS_PER_MS);
-	for (size_t i = 0; i < sizeof(columns) / sizeof(columns[0]); i++)
-		put_column(&json, columns[i], points, past->n);
+	put_columns(&json, points, past->n, true);
 	json_finish(&json);
 }
 
@@ -204,6 +213,62 @@ int past_trend(struct request *request)
 	past->until_ns = until * NS_PER_MS;
 	past->n = (int)n;
 	return http_defer(request, request->web->past, &past->job);
+}
+
+/* --- The last hour ---------------------------------------------------------------------------- */
+
+static void put_hour(struct past_job *past, struct ows *ows, struct ows_history *h)
+{
+	struct ows_history_point points[HOUR_POINTS];
+	struct ows_history_signal signal;
+	struct ows_info info;
+	struct json json;
+
+	if (!json_start(&json, &past->job.text, &past->job.len))
+		return;
+	past->job.status = 200;
+	json_int(&json, "from", past->from_ns / NS_PER_MS);
+	json_int(&json, "step", (past->until_ns - past->from_ns) / HOUR_POINTS / NS_PER_MS);
+	json_object(&json, "signals");
+	for (int i = 0; i < HOUR_SIGNALS && !ows_info(ows, i, &info); i++) {
+		snprintf(past->name, sizeof(past->name), "%s", info.name);
+		snprintf(past->identity, sizeof(past->identity), "%s", info.identity);
+		if (read_points(past, h, &signal, points) != HOUR_POINTS)
+			continue;
+		json_object(&json, info.name);
+		put_columns(&json, points, HOUR_POINTS, false);
+		json_object_end(&json);
+	}
+	json_object_end(&json);
+	json_finish(&json);
+}
+
+static void run_hour(struct job *job)
+{
+	struct past_job *past = (struct past_job *)job;
+	struct ows_history *h = NULL;
+	struct ows *ows = NULL;
+
+	if (!open_history(past, &h))
+		return;
+	if (ows_open_as(past->instance, OWS_READ, "owsd-web", &ows))
+		job_error(job, 503, "owsd %s has not run yet: start it", past->instance);
+	else
+		put_hour(past, ows, h);
+	ows_close(ows);
+	ows_history_close(h);
+}
+
+int past_hour(struct request *request)
+{
+	struct past_job *past = make(request, run_hour);
+
+	if (past) {
+		past->until_ns = when_now().wall;
+		past->from_ns = past->until_ns - 3600 * NS_PER_S;
+		past->n = HOUR_POINTS;
+	}
+	return http_defer(request, request->web->past, past ? &past->job : NULL);
 }
 
 /* --- Journals -------------------------------------------------------------------------------- */

@@ -97,7 +97,7 @@ head.build();
 keys.listen();
 store.addEventListener("signals", show);
 store.addEventListener("signals", () => setTimeout(() =>
-	[...LATER, async () => (await import("./tell.js")).begin(), keep]
+	[async () => (await import("./hour.js")).begin(), ...LATER, async () => (await import("./tell.js")).begin(), keep]
 		.forEach((load) => load().catch(() => {})), LATER_MS), {once: true});
 document.querySelector(".skip").addEventListener("click", (event) => {
 	event.preventDefault(); // the part behind # names the view

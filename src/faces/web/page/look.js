@@ -14,7 +14,8 @@ export function isLate(signal, age) {
 
 /** Since when it is as it is, ms: as the page saw it, else its last measurement; null: unknown. */
 export function sinceOf({recent, measured}) {
-	return recent?.length > 1 ? recent.at(-1).t : measured ?? null;
+	const [before, last] = recent?.slice(-2) ?? [];
+	return last && !before.old && !last.old ? last.t : measured ?? null; // old: hour.js
 }
 
 function wordsOf(signal, age) {

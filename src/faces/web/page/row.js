@@ -12,8 +12,15 @@ import {drawSpark, rangeOf, sparkline} from "./spark.js";
 import {store} from "./store.js";
 import {clock, span, valueText, withUnit} from "./words.js";
 
+const BEYOND = 0x54; // the quality "out of range"
+
 /** What all rows know: the one scale of the list; whether some signals are simulated, not all. */
 export const shared = {scale: null, mixed: false};
+
+/** What is beyond Min or Max has no value: these say what was allowed. */
+const rangeWords = ({code, min, max, unit}) => code !== BEYOND ? "" : [["Min", min], ["Max", max]]
+	.filter(([, limit]) => Number.isFinite(limit ?? NaN))
+	.map(([name, limit]) => `${name} ${limit}${unit ? `\u202f${unit}` : ""}`).join(", ");
 
 /** What a row and a tile have in common. */
 export class Parts {
@@ -58,6 +65,7 @@ export class Parts {
 		put(this.number, store.unknown ? "unknown" : value === null ? "" : valueText(s, value));
 		this.unit.hidden = value === null || !s.unit;
 		put(this.words, store.unknown ? "" : look.words);
+		this.words.title = rangeWords(s);
 		put(this.shape, look.shape);
 		mark(this.node, "is-", look.state);
 		mark(this.node, "edge-", look.edge);
