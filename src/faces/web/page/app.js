@@ -54,10 +54,11 @@ const both = (module, name) => Promise.all([module, new Promise((resolve) => {
 			onerror: resolve}));
 })]).then(([made]) => made);
 const LATER = [() => both(import("./alarms.js"), "alarms.css"),
-	() => both(import("./trends.js"), "trends.css"), () => both(import("./wire.js"), "wire.css"),
-	() => import("./about.js")];
+	() => both(import("./trends.js"), "trends.css"),
+	() => both(both(import("./wire.js"), "views.css"), "wire.css"),
+	() => both(import("./about.js"), "views.css")];
 const [alarms, trends, wire, about, config] = [...LATER,
-	() => both(import("./config.js"), "config.css")].map(fetched);
+	() => both(both(import("./config.js"), "views.css"), "config.css")].map(fetched);
 const VIEWS = {live, alarms, trends, wire, config, about};
 const LOADING_MS = 300; // until a view that is not there yet says so
 const LATER_MS = 1000; // after the first values: then a lost connection leaves views to look at
@@ -97,7 +98,8 @@ head.build();
 keys.listen();
 store.addEventListener("signals", show);
 store.addEventListener("signals", () => setTimeout(() =>
-	[async () => (await import("./hour.js")).begin(), ...LATER, async () => (await import("./tell.js")).begin(), keep]
+	[...LATER, ...["./hour.js", "./tell.js"].map((name) =>
+		async () => (await import(name)).begin()), keep]
 		.forEach((load) => load().catch(() => {})), LATER_MS), {once: true});
 document.querySelector(".skip").addEventListener("click", (event) => {
 	event.preventDefault(); // the part behind # names the view
