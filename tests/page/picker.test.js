@@ -20,9 +20,9 @@ test("a search finds words anywhere, and names that begin with it first", () => 
 
 test("ten of 10 000 are shown, and all are counted, within 100 ms", () => {
 	const texts = searched(named(...Array.from({length: 10000}, (_, n) => `sensor_${n}_flow`)));
-	const begun = process.hrtime.bigint();
+	const begun = process.cpuUsage();
 	const {count, signals} = found(texts, "sensor flow 99");
-	assert.ok(Number(process.hrtime.bigint() - begun) < 100e6);
+	assert.ok(process.cpuUsage(begun).user < 100e3); // of the processor's time, us
 	assert.equal(signals.length, 10);
 	assert.equal(count, texts.filter(({text}) => text.includes("99")).length);
 });

@@ -6,7 +6,7 @@ import {beforeEach, test} from "node:test";
 import {server} from "./browser.js";
 import {UNKNOWN} from "./page/words.js";
 
-const {continued, csvOf, extremes, goodCode, padded, pastOf} = await import("./page/series.js");
+const {continued, extremes, goodCode, heldAt, onPart, padded, pastOf} = await import("./page/series.js");
 const {store} = await import("./page/store.js");
 const GOOD = 0xc0, UNCERTAIN = 0x54, ABSENT = 0x08;
 const signal = {name: "room", type: "double", unit: "\u00b0C", recent: []};
@@ -94,17 +94,6 @@ test("what is continued leaves the columns as they were", () => {
 	assert.deepEqual(columns.x, [1]);
 });
 
-test("a table for spreadsheets has no formula and no broken line", () => {
-	const one = {...EMPTY, x: [0, 1000], min: [1, null], max: [2, null], last: [1.5, null],
-		code: [GOOD, UNKNOWN], gap: [false, false]};
-	const csv = csvOf([{signal: {name: "=1+1", unit: 'a,"b"'}, past: one}]);
-	assert.deepEqual(csv.split("\r\n"), ["time,signal,unit,min,max,last,quality",
-		"1970-01-01T00:00:00.000Z,'=1+1,\"a,\"\"b\"\"\",1,2,1.5,good",
-		"1970-01-01T00:00:01.000Z,'=1+1,\"a,\"\"b\"\"\",,,,unknown", ""]);
-	for (const sign of "+-@")
-		assert.match(csvOf([{signal: {name: `${sign}x`}, past: one}]), new RegExp(`,'\\${sign}x,`));
-});
-
 test("the least and the greatest are those of good columns in the window", () => {
 	const all = {x: [0, 10, 20, 30], min: [-50, 2, null, 1], max: [90, 3, null, 7]};
 	assert.deepEqual(extremes(all, [10, 30]), [1, 7]);
@@ -117,4 +106,25 @@ test("an axis has a margin, also around one value and none", () => {
 	assert.deepEqual(padded([[20, 20]]), [18, 22]);
 	assert.deepEqual(padded([[0, 0]]), [-0.1, 0.1]);
 	assert.deepEqual(padded([]), [0, 1]);
+});
+
+test("what holds at a time is the last column that has begun", () => {
+	const all = {x: [10, 20, 30]};
+	assert.deepEqual([5, 10, 25, 99, null].map((time) => heldAt(all, time)), [-1, 0, 1, 2, 2]);
+});
+
+test("of a switch it is known for which part of the window it was on", () => {
+	const all = {x: [0, 10, 20, 30, 40], last: [1, 0, null, 1, 1]};
+	assert.equal(onPart(all, [0, 40]), 20 / 30);
+	assert.equal(onPart(all, [5, 15]), 0.5);
+	assert.equal(onPart(all, [20, 30]), null);
+});
+
+test("between the last record and the first value that is heard the value held, if not for long", () => {
+	const end = now(), columns = {...EMPTY, x: [end - 9000, end - 8000], min: [1, 1], max: [1, 1],
+		last: [1, 1], code: [GOOD, GOOD], gap: [false, false]};
+	signal.recent = [{t: end - 2000, v: 2, low: 2, high: 2, code: GOOD}];
+	assert.deepEqual(points(continued(columns, signal, end - 9000, end))[2], [end - 7000, 1, GOOD]);
+	const long = {...columns, x: [end - 190000, end - 189000]};
+	assert.deepEqual(points(continued(long, signal, end - 190000, end))[2], [end - 188000, null, UNKNOWN]);
 });

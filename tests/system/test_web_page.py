@@ -405,17 +405,21 @@ def test_a_trend_has_what_the_recorder_kept_and_the_time_without_owsd_is_a_gap(s
         page.devtools("Browser.setDownloadBehavior", behavior="allow",
                       downloadPath=str(scene.path))
         page.click("#trends .csv")
+        page.click("dialog .primary")
         saved = until(lambda: list(scene.path.glob("*.csv")), 20, "the table")
-        lines = saved[0].read_text().splitlines()
-        assert lines[0] == "time,signal,unit,min,max,last,quality", lines[0]
-        rows = [line.split(",") for line in lines[1:]]
-        assert all(row[1] == "room" for row in rows), rows
-        good = [n for n, row in enumerate(rows) if row[6] == "good"]
-        between = [row for row in rows[good[0]:good[-1]] if row[6] != "good"]
-        # of the part in which owsd ended, the least and the most of its good time are known
-        assert all(row[5] == "" for row in between), rows
-        assert ["", "", ""] in [row[3:6] for row in between], rows
-        assert {row[5] for row in rows if row[6] == "good"} == {"21.5"}, rows
+        def rows(file):
+            lines = file.read_text(encoding="utf-8-sig").splitlines()
+            assert lines[0] == "time,room (\u00b0C)", lines[0]
+            return [line.split(",")[1] for line in lines[1:]]
+        values = rows(saved[0])
+        good = [n for n, value in enumerate(values) if value]
+        assert "" in values[good[0]:good[-1]], values  # the part in which owsd had ended
+        assert {value for value in values if value} == {"21.5"}, values
+        page.click("#trends .csv")
+        page.click("#csv-raw")
+        page.click("dialog .primary")
+        other = until(lambda: set(scene.path.glob("*.csv")) - set(saved), 20, "the records")
+        assert "21.5" in rows(other.pop()), "a record"
         assert not page.complaints()
 
 

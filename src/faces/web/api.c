@@ -167,25 +167,16 @@ static const struct {
 	bool post;
 	web_function function;
 } paths[] = {
-	{"api/info", false, answer_info},
-	{"api/signals", false, answer_signals},
-	{"api/events", false, events_answer},
-	{"api/alarms", false, lists_alarms},
-	{"api/stats", false, lists_stats},
-	{"api/log", false, lists_log},
-	{"api/special", false, special_get},
-	{"api/journal", false, past_journal},
-	{"api/trend", false, past_trend},
-	{"api/hour", false, past_hour},
-	{"api/set", true, command_set},
-	{"api/alarm", true, command_alarm},
-	{"api/config", false, stored_get},
-	{"api/config/keys", false, stored_keys},
-	{"api/config/draft", true, draft_post},
-	{"api/config/save", true, save_post},
-	{"api/config/restore", true, save_restore},
-	{"metrics", false, answer_metrics},
-	{"api/devices", false, devices_get},
+	{"api/info", false, answer_info},        {"api/signals", false, answer_signals},
+	{"api/events", false, events_answer},    {"api/alarms", false, lists_alarms},
+	{"api/stats", false, lists_stats},       {"api/log", false, lists_log},
+	{"api/special", false, special_get},     {"api/journal", false, past_journal},
+	{"api/trend", false, past_trend},        {"api/hour", false, past_hour},
+	{"api/records", false, past_records},    {"api/set", true, command_set},
+	{"api/alarm", true, command_alarm},      {"api/config", false, stored_get},
+	{"api/config/keys", false, stored_keys}, {"api/config/draft", true, draft_post},
+	{"api/config/save", true, save_post},    {"api/config/restore", true, save_restore},
+	{"metrics", false, answer_metrics},      {"api/devices", false, devices_get},
 };
 
 bool api_admits(const struct request *request, const char *path)

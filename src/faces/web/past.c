@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Trends and journals, on the worker for the past. */
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -14,7 +15,8 @@
 #define DIRECTORY 512
 #define POINTS 2000
 #define ENTRIES 1000
-#define RINGS 512 /* entries that owsd keeps */
+#define RECORDS 20000 /* in one answer: 1 MB */
+#define RINGS 512     /* entries that owsd keeps */
 #define NAME 256
 #define DAY_MS (86400 * 1000LL)
 #define HOUR_SIGNALS 200
@@ -135,8 +137,8 @@ static void put_trend(struct past_job *past, const struct ows_history_signal *si
 	json_finish(&json);
 }
 
-static int read_points(struct past_job *past, struct ows_history *h,
-                       struct ows_history_signal *signal, struct ows_history_point *points)
+/* The index of a signal that has numbers. */
+static int find(struct past_job *past, struct ows_history *h, struct ows_history_signal *signal)
 {
 	int index = ows_history_find(h, past->identity), err;
 
@@ -147,9 +149,27 @@ static int read_points(struct past_job *past, struct ows_history *h,
 
 	if (err)
 		return err;
-	if (signal->type == OWS_STRING)
-		return -EOPNOTSUPP;
-	return ows_history_points(h, index, past->from_ns, past->until_ns, points, past->n);
+	return signal->type == OWS_STRING ? -EOPNOTSUPP : index;
+}
+
+static int read_points(struct past_job *past, struct ows_history *h,
+                       struct ows_history_signal *signal, struct ows_history_point *points)
+{
+	int index = find(past, h, signal);
+
+	return index < 0 ? index
+	                 : ows_history_points(h, index, past->from_ns, past->until_ns, points,
+	                                      past->n);
+}
+
+static void refuse(struct past_job *past, int err)
+{
+	if (err == -ENOENT)
+		job_error(&past->job, 404, "the history has no signal %s", past->name);
+	else if (err == -EOPNOTSUPP)
+		job_error(&past->job, 404, "%s is a text, which has no trend", past->name);
+	else
+		job_error(&past->job, 500, "%s: %s", past->name, strerror(-err));
 }
 
 static void run_trend(struct job *job)
@@ -164,15 +184,63 @@ static void run_trend(struct job *job)
 		got = read_points(past, h, &signal, points);
 		if (got == past->n)
 			put_trend(past, &signal, points);
-		else if (got == -ENOENT)
-			job_error(job, 404, "the history has no signal %s", past->name);
-		else if (got == -EOPNOTSUPP)
-			job_error(job, 404, "%s is a text, which has no trend", past->name);
 		else
-			job_error(job, 500, "%s: %s", past->name, strerror(-got));
+			refuse(past, got);
 		ows_history_close(h);
 	}
 	free(points);
+}
+
+static void put_record(struct json *json, const struct ows_history_item *item)
+{
+	json_array(json, NULL);
+	json_int(json, NULL, item->time_ns / NS_PER_MS);
+	json_double(json, NULL, item->known && ows_good(item->quality) ? item->number : NAN);
+	json_int(json, NULL, item->known ? item->quality : 0);
+	json_array_end(json);
+}
+
+/* What was recorded, one by one; "next": where the rest begins, null if this is all. */
+static void put_records(struct past_job *past, struct ows_history *h)
+{
+	struct ows_history_item item;
+	struct json json;
+	int got, count = 0;
+
+	if (!json_start(&json, &past->job.text, &past->job.len))
+		return;
+	past->job.status = 200;
+	json_string(&json, "name", past->name);
+	json_array(&json, "records");
+	while ((got = ows_history_next(h, &item, 1)) > 0 && count++ < RECORDS)
+		put_record(&json, &item);
+	json_array_end(&json);
+	if (got > 0)
+		json_int(&json, "next", item.time_ns / NS_PER_MS);
+	else
+		json_null(&json, "next");
+	json_finish(&json);
+	if (got < 0)
+		refuse(past, got);
+}
+
+static void run_records(struct job *job)
+{
+	struct past_job *past = (struct past_job *)job;
+	struct ows_history_signal signal = {.name = ""};
+	struct ows_history *h = NULL;
+	int got;
+
+	if (!open_history(past, &h))
+		return;
+	got = find(past, h, &signal);
+	if (got >= 0)
+		got = ows_history_read(h, got, past->from_ns, past->until_ns);
+	if (got < 0)
+		refuse(past, got);
+	else
+		put_records(past, h);
+	ows_history_close(h);
 }
 
 static const char *identity_of(struct ows *h, const char *name)
@@ -185,7 +253,7 @@ static const char *identity_of(struct ows *h, const char *name)
 	return name;
 }
 
-int past_trend(struct request *request)
+static int past_stretch(struct request *request, void (*run)(struct job *job))
 {
 	long long now_ms = when_now().wall / NS_PER_MS, until = now_ms, from = until - DAY_MS,
 		  n = 500;
@@ -203,7 +271,7 @@ int past_trend(struct request *request)
 		                  "from=: expected milliseconds since 1970, before until");
 	if (!number(request, "points", 1, POINTS, &n))
 		return http_error(request, 400, "points=: expected a number from 1 to %d", POINTS);
-	past = make(request, run_trend);
+	past = make(request, run);
 	if (!past)
 		return http_defer(request, request->web->past, NULL);
 	snprintf(past->name, sizeof(past->name), "%s", name);
@@ -213,6 +281,16 @@ int past_trend(struct request *request)
 	past->until_ns = until * NS_PER_MS;
 	past->n = (int)n;
 	return http_defer(request, request->web->past, &past->job);
+}
+
+int past_trend(struct request *request)
+{
+	return past_stretch(request, run_trend);
+}
+
+int past_records(struct request *request)
+{
+	return past_stretch(request, run_records);
 }
 
 /* --- The last hour ---------------------------------------------------------------------------- */

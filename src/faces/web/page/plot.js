@@ -3,11 +3,14 @@
 // to the greatest, gaps as gaps, and names at the end of the curves; or of signals that are on or
 // off: a bar each. dygraphs has the axes and the gestures.
 import {el, later, put} from "./dom.js";
+import {gapsOf, limitsOf} from "./marks.js";
 import * as paint from "./paint.js";
 import {apart, numberTicks, timeTicks} from "./axes.js";
 import {extremes, heldAt, padded} from "./series.js";
+import {UNKNOWN} from "./words.js";
 
 const SETTLED_MS = 250, LANE = 24, NAME = 16, TAPS_MS = 350;
+const SHAPES = {up: "\u25b2", down: "\u25bc"};
 const same = (a, b) => a[0] === b[0] && a[1] === b[1];
 
 export class Plot {
@@ -99,11 +102,21 @@ export class Plot {
 	}
 
 	#range() {
-		return this.lanes ? [0, this.signals.length] : this.chosen
-			?? padded([...this.pasts, ...this.olds].filter(Boolean).map((past) => extremes(past, this.window)).filter(Boolean));
+		if (this.lanes || this.chosen)
+			return this.chosen ?? [0, this.signals.length];
+		const limits = this.#limits().map(({value}) => [value, value]);
+		return padded([...limits, ...[...this.pasts, ...this.olds].filter(Boolean).map((past) =>
+			extremes(past, this.window)).filter(Boolean)]);
 	}
 
-	take(pasts, olds, window) {
+	#limits() {
+		const all = this.pasts.map((past) => extremes(past, this.window)).filter(Boolean);
+		return this.lanes || !all.length ? [] : this.signals.flatMap((signal) => limitsOf(signal,
+			[Math.min(...all.map(([least]) => least)), Math.max(...all.map(([, most]) => most))]));
+	}
+
+	take(pasts, olds, window, alarms) {
+		this.alarms = alarms;
 		this.pasts = pasts;
 		this.olds = olds;
 		this.window = window;
@@ -196,6 +209,14 @@ export class Plot {
 
 	#draw({drawingContext: pen, dygraph: graph}) {
 		const x = (time) => graph.toDomXCoord(time), y = (value) => graph.toDomYCoord(value);
+		const {x: left, w, y: top, h} = graph.getArea();
+		const area = {left, right: left + w, bottom: top + h};
+		for (const {name, kind, turn, from, until} of this.alarms.filter(({name}) =>
+			this.signals.some((signal) => signal.name === name)))
+			paint.alarm(pen, area, x(from), x(until ?? from), `${SHAPES[turn] ?? ""} ${
+				this.signals.length > 1 ? `${name} ` : ""}${kind}`);
+		for (const {value, words} of this.#limits())
+			paint.limit(pen, area.left, area.right, y(value), words);
 		for (const old of this.lanes ? [] : this.olds.filter(Boolean))
 			paint.line(pen, old, x, y, {stroke: paint.css("--edge"), width: 1});
 		this.pasts.forEach((past, n) => {
@@ -206,6 +227,9 @@ export class Plot {
 			}
 			paint.spread(pen, past, x, y, stroke);
 			paint.line(pen, past, x, y, {stroke, number: this.numbers[n]});
+			for (const {from, until, value, code, words} of gapsOf(past))
+				paint.gap(pen, Math.max(area.left, x(from)), Math.min(area.right, x(until)), y(value),
+					words, code !== UNKNOWN);
 		});
 	}
 }

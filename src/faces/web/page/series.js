@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What signals had: columns of the recorder, continued by what the page has heard; and as CSV.
+// What signals had: columns of the recorder, continued by what the page has heard.
 import {get} from "./api.js";
 import {store} from "./store.js";
-import {UNKNOWN, qualityWords, stateOf} from "./words.js";
+import {UNKNOWN, stateOf} from "./words.js";
 
 const UNWRITTEN_MS = 60000; // at most, unless the configuration has a longer Flush
 
@@ -113,21 +113,6 @@ export function padded(pairs) {
 	const most = Math.max(...pairs.map(([, value]) => value));
 	const margin = (most - least || Math.abs(most) || 1) / 10;
 	return [least - margin, most + margin];
-}
-
-const quoted = (text) => /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
-// A text that a spreadsheet would take for a formula is kept one
-const harmless = (text) => /^[=+@-]/.test(text) ? `'${text}` : text;
-
-/** One line for each column of each signal. */
-export function csvOf(pasts) {
-	const lines = ["time,signal,unit,min,max,last,quality"];
-	for (const {signal, past} of pasts)
-		for (let n = 0; n < past.x.length; n++)
-			lines.push([new Date(past.x[n]).toISOString(), quoted(harmless(signal.name)),
-				quoted(signal.unit || ""), past.min[n] ?? "", past.max[n] ?? "", past.last[n] ?? "",
-				past.code[n] === UNKNOWN ? "unknown" : qualityWords(past.code[n])].join(","));
-	return `${lines.join("\r\n")}\r\n`;
 }
 
 export function save(name, text, type = "text/csv") {

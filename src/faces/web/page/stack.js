@@ -45,12 +45,12 @@ export class Stack {
 	}
 
 	/** Draw the window; of(signal): its past; old(signal): what it is compared with, or null. */
-	show(window, of, old) {
+	show(window, of, old, alarms) {
 		if (!this.node.clientWidth || !this.plots.length)
 			return;
 		this.window = window;
 		for (const plot of this.plots)
-			plot.take(plot.signals.map(of), plot.signals.map(old), window);
+			plot.take(plot.signals.map(of), plot.signals.map(old), window, alarms);
 		const phone = matchMedia("(max-width: 37.5rem)").matches;
 		const heights = this.#heights(phone);
 		const figures = Math.max(...this.plots.map((plot) => plot.figures));

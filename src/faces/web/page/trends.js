@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The view Trends: the signals that the user picks, in a window of time that is moved by buttons, by
 // dragging, by the wheel or by keys, and that follows the present until it is.
+import {get} from "./api.js";
+import {saveTable} from "./csv.js";
 import {announce, el, later, put} from "./dom.js";
+import {alarmsOf} from "./marks.js";
 import {Picker} from "./picker.js";
-import {continued, csvOf, heldAt, pastOf, save} from "./series.js";
+import {continued, heldAt, pastOf} from "./series.js";
 import {Stack} from "./stack.js";
 import {store} from "./store.js";
 import {Tools} from "./tools.js";
@@ -12,13 +15,14 @@ import {moment, qualityWords, valueText, withUnit} from "./words.js";
 
 const LINES = 6; // at most, in one colour each: that many --line-N has style.css
 const LEAST_MS = 2000, FRAME_MS = 1000, FETCH_MS = 5000, POINTS = 600, BACK = 20;
+const BEFORE_MS = 86400000, ENTRIES = 1000; // of the journal, for alarms that began before
 
 // until null: follows the present; given: the user has picked, not the page; beside: the same time
 // of days before is drawn, too
 const state = {picked: [], span: 600000, until: null, given: false, beside: false};
 const LIBRARY = "dygraph.min.js"; // comes when it is needed: it is as large as all else
 let shown = false, ready = false, picker, stack, hint, told, absent, tools, before = [];
-let pasts = new Map(), olds = new Map(), asked = 0, cursor = null;
+let pasts = new Map(), olds = new Map(), entries = [], asked = 0, cursor = null;
 
 export function build(root) {
 	hint = el("p", {class: "hint", role: "status"});
@@ -217,10 +221,12 @@ async function fetchAll() {
 	try {
 		const all = (start, end) => Promise.all(picked().map((signal) =>
 			pastOf(signal, start, end, points)));
-		const [now, old] = await Promise.all([all(from, until),
+		const [journal, now, old] = await Promise.all([
+			get("journal", {since: Math.round(from - BEFORE_MS), n: ENTRIES}), all(from, until),
 			state.beside ? all(daysLater(from, -days()), daysLater(until, -days())) : []]);
 		if (mine !== asked)
 			return;
+		entries = journal.entries ?? [];
 		pasts = new Map(now.map((past) => [past.name, past]));
 		olds = new Map(old.map((past) => [past.name, {...past, x: past.x.map((time) =>
 			daysLater(time, days()))}]));
@@ -244,7 +250,7 @@ function draw() {
 		[signal, pastNow(signal)]));
 	tools.draw({from, until: state.until, span: state.span, beside: state.beside});
 	stack.show([from, until], (signal) => all.get(signal), (signal) => state.beside
-		? olds.get(signal.name) : null);
+		? olds.get(signal.name) : null, alarmsOf(entries, picked(), [from, until], store.now()));
 	figures([...all.values()]);
 }
 
@@ -275,9 +281,11 @@ function frame() {
 		draw();
 }
 
-function exported() {
-	const all = picked().map((signal) => ({signal, past: pastNow(signal)}));
-	const stamp = new Date(window_()[1]).toISOString().slice(0, 19).replaceAll(":", "");
-	save(`${store.info?.instance ?? "owsd"}-${stamp}.csv`, csvOf(all));
-	announce("The table is saved.");
+async function exported() {
+	try {
+		if (await saveTable(picked().map((signal) => ({signal, past: pastNow(signal)})), window_()))
+			announce("The table is saved.");
+	} catch (error) {
+		put(told, `The table cannot be made: ${error.message}.`);
+	}
 }
