@@ -563,6 +563,10 @@ def test_trends_come_from_the_recorder(scene):
     assert 9 in relays["max"] and relays["min"][0] is None and relays["quality"][0] == 0, relays
     assert trend("room")["unit"] == "\u00b0C"
     assert "nothing" in page.json("/api/trend?name=nothing", 404)["error"]
+    records = page.json("/api/records?name=relays")
+    assert records["next"] is None and 7 in [value for _, value, _ in records["records"]], records
+    assert all(value is None or quality >= 0xc0 for _, value, quality in records["records"]), records
+    assert "nothing" in page.json("/api/records?name=nothing", 404)["error"]
     for wrong in ("points=0", "points=2001", "points=x", "from=x", "from=9&until=8", "until=0"):
         assert page.json(f"/api/trend?name=room&{wrong}", 400)["error"], wrong
     assert page.json("/api/trend", 400)["error"]

@@ -39,7 +39,8 @@ export class Plot {
 			signal.name));
 		this.dots = signals.map((_, n) => el("i", {class: `dot ink-${this.#ink(n)}`, hidden: true}));
 		this.unit = el("span", {class: "unit"}, this.lanes ? "" : signals[0].unit || "");
-		this.node = el("div", {class: this.lanes ? "plot lanes" : "plot"}, this.unit, this.chart, ...this.names, ...this.dots);
+		this.node = el("div", {class: this.lanes ? "plot lanes" : "plot"}, this.unit, this.chart,
+			...this.names, ...this.dots);
 	}
 
 	#ink(n) {
