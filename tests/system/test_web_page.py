@@ -275,7 +275,7 @@ def test_a_trend_goes_on_and_a_drag_zooms(scene):
         page.until("return new URLSearchParams(location.hash.split('?')[1]).get('until')",
                    lambda: f"another window than {before}")
         span = page.run("return new URLSearchParams(location.hash.split('?')[1]).get('span')")
-        assert 150_000 < float(span) < 240_000, span
+        assert 150_000 < float(span) < 260_000, span  # of the plot, which names narrow
         assert not page.complaints(), page.complaints()
 
 

@@ -133,6 +133,9 @@ export class Plot {
 		if (this.height !== height)
 			this.chart.style.height = `${height}px`;
 		this.height = height;
+		if (this.sides !== `${left} ${right}`)
+			this.end(); // dygraphs clears only its area: what was drawn beside it would stay
+		this.sides = `${left} ${right}`;
 		this.right = right;
 		this.unit.style.minWidth = `${left - 4}px`;
 		if (!this.graph) {
