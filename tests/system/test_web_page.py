@@ -415,6 +415,7 @@ def test_a_trend_has_what_the_recorder_kept_and_the_time_without_owsd_is_a_gap(s
         good = [n for n, value in enumerate(values) if value]
         assert "" in values[good[0]:good[-1]], values  # the part in which owsd had ended
         assert {value for value in values if value} == {"21.5"}, values
+        time.sleep(1)  # the second stands in the name of the file
         page.click("#trends .csv")
         page.click("#csv-raw")
         page.click("dialog .primary")
