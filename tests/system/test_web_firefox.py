@@ -30,7 +30,7 @@ def test_live_shows_what_owsctl_lists_and_nothing_after_a_loss_until_owsd_is_bac
 def test_each_view_shows_what_it_is_for_also_on_a_phone(scene):
     words = {"live": ["2 of 9 need you", "room", "21.5", "device absent"],
              "alarms": ["boiler", "high", "waits for you"], "trends": ["Following", "room"],
-             "wire": [ROOM, BOILER, "device absent", "Remedy:"], "config": ["room", "boiler"],
+             "wire": [ROOM, BOILER, "device absent", "Do:"], "config": ["room", "boiler"],
              "about": ["Version", "Generation"]}
     with plant(scene, browser=firefox) as (_, _, page):
         for width in (1280, 360):
