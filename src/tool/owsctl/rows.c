@@ -170,7 +170,9 @@ void row_read(struct ows *h, struct row *row, int64_t now_ns, struct reading *re
 
 bool row_filled(const struct row *row, const struct reading *reading)
 {
-	return row->path ? reading_has_value(reading) : reading_filled(reading);
+	if (!row->path)
+		return reading_filled(reading);
+	return reading_has_value(reading) && (row->output || reading->value.measured_ns);
 }
 
 bool rows_have_alarms(struct ows *h, const struct rows *rows)
