@@ -28,7 +28,7 @@ int64_t queue_oldest(const struct queue *queue, uint64_t number)
 	if (number < queue->first)
 		number = queue->first;
 	for (; number < queue->end; number++) {
-		int64_t ns = queue_at(queue, number)->entered_ns;
+		int64_t ns = queue->entries[number % QUEUE_ENTRIES].entered_ns;
 
 		if (ns && ns < oldest)
 			oldest = ns;
