@@ -8,7 +8,7 @@ const LATE_LEAST = 3;   // s: a page hears of a value within a second or two
 
 /** Is the value older than its signal usually gets? */
 export function isLate(signal, age) {
-	const usual = signal.interval ?? signal.gap;
+	const usual = signal.gap ?? signal.interval; // that of owsd is from its start on
 	return usual > 0 && age !== null && age > Math.max(LATE_AFTER * usual, LATE_LEAST);
 }
 

@@ -2,10 +2,12 @@
 // The special signals of a signal, beside its value: ages and counters, read while they are seen,
 // and what can be done by hand: reading and writing off and on, a write at once, counters reset.
 import {get, post} from "./api.js";
+import {ask} from "./command.js";
 import {announce, el, put} from "./dom.js";
 import {store} from "./store.js";
 
 const EVERY_MS = 2000;
+const WRITES = ["_WriteEnable", "_WriteOneShot"]; // what moves an output
 const WORDS = {
 	_Age: "seconds since it was measured", _AgeMax: "the greatest age since the reset",
 	_PerFactor: "periods between two reads", _PerCount: "periods since the last update",
@@ -88,9 +90,12 @@ export class Special {
 	}
 
 	async #set({name, act}, one) {
-		const value = act === "button" || !one.on;
+		const value = act === "button" || !one.on, signal = this.#signal;
+		if (value && signal.confirm && WRITES.includes(name) && !await ask(
+			`${signal.name}${name}?`, "Do it", [el("p", {}, `${WORDS[name]}.`)]))
+			return;
 		try {
-			await post("set", {name: `${this.#signal.name}${name}`, value});
+			await post("set", {name: `${signal.name}${name}`, value});
 			put(this.fault, "");
 			announce(`${name}: ${act === "button" ? "done" : value ? "on" : "off"}`);
 		} catch (error) {
