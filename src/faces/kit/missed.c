@@ -16,7 +16,7 @@
 #define NS_PER_US 1000
 #define US_PER_S INT64_C(1000000)
 #define BATCHES_NS (10 * NS_PER_S) /* ... while batches go out */
-/* The recorder writes once in a minute, and at least each ten minutes */
+/* The recorder writes in five minutes, or what Flush says, ten minutes at most */
 #define WAIT_NS (2 * NS_PER_S)
 #define WAIT_MOST_NS (30 * NS_PER_S)
 #define LATE_NS (660 * NS_PER_S)
