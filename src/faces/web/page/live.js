@@ -114,7 +114,7 @@ function make() {
 	rowOf.clear();
 	painter.clear();
 	const {signals} = store;
-	shared.mixed = signals.some((s) => s.simulated) && !signals.every((s) => s.simulated);
+	shared.mixed = new Set(signals.filter((s) => s.good).map((s) => s.simulated)).size > 1;
 	rows = signals.map((signal) => {
 		const row = new Row(signal);
 		rowOf.set(signal, row);

@@ -71,7 +71,7 @@ function terminalOf(terminal, chosen) {
 			: chips.length ? loadOf(terminal) : el("span", {class: "description"}, "empty"),
 		chips.length ? el("span", {class: terminal.errors ? "description errors" : "description"},
 			errorsOf(terminal)) : null),
-		chips.length ? el("ul", {class: "chips"}, ...chips.slice(0, CHIPS).map(node),
+		chips.length ? el("ul", {class: "nodes"}, ...chips.slice(0, CHIPS).map(node),
 			more > 0 ? el("li", {class: "description"}, `and ${more} more`) : null) : null);
 }
 
