@@ -230,10 +230,13 @@ static void look_at(struct face *face, int signal, int64_t now_ns)
 	if (!row->chosen)
 		return;
 	face_value(face->ows, signal, face->live, now_ns, &value);
-	bad = value.known && !(value.v.quality & 0xc0) && value.v.quality != OWS_Q_INITIAL;
+	/* a fresh owsd has not read it yet: it may be as bad as it was */
+	if (!value.known || value.v.quality == OWS_Q_INITIAL)
+		return;
+	bad = !(value.v.quality & 0xc0);
 	if (bad && !row->bad_ns)
 		row->bad_ns = now_ns;
-	if (bad || !value.known)
+	if (bad)
 		return;
 	if (row->told && file_of(face)->returns && !ows_info(face->ows, signal, &info)) {
 		message_line(&entry, "%s no longer bad%s%s", info.name,
