@@ -248,6 +248,20 @@ def test_a_value_that_stays_bad_is_told_with_its_reason_and_that_it_is_back(scen
         until(lambda: "freezer no longer bad" in web.texts(), 30, "that is told")
 
 
+def test_of_a_signal_that_is_no_longer_chosen_nothing_is_told(scene):
+    with peer.Peer({FREEZER: "20"}) as house, Web() as web:
+        daemon, program_ = notify(scene, house.target, dict(Url=web.url, Gather=0, Every=0, BadAfter=3, EscalateAfter=3,
+                                  EscalateMail="anna", Signals="*"))
+        until(lambda: scene.get(daemon, "freezer") == "20", 10, "a value")
+        house[FREEZER] = "31"
+        until(lambda: web.got, 20, "an alarm is told")
+        del house.values[FREEZER]
+        daemon.config.write_text(daemon.config.read_text().replace('"*"', '"!freezer"'))
+        program_.process.send_signal(signal.SIGHUP)
+        time.sleep(5)  # both times are over
+        assert len(web.texts()) == 1, web.texts()
+
+
 def test_warnings_wait_in_the_quiet_hours_and_critical_alarms_do_not(scene):
     hour = time.gmtime().tm_hour
     quiet = f"{(hour + 23) % 24:02}:00-{(hour + 2) % 24:02}:00"

@@ -185,12 +185,12 @@ static void look_for_bad(struct face *face, int64_t now_ns)
 
 /* --- The signals ----------------------------------------------------------------------------- */
 
-/* What was known of the signals of the image before, by their identity. */
+/* What was known of the signals of the image before, by their identity, if they are chosen. */
 static void carry(const struct row *old, int count)
 {
 	for (int i = 0; i < count; i++)
 		for (int k = 0; (old[i].bad_ns || old[i].raised_ns) && k < notify.count; k++)
-			if (notify.rows[k].print == old[i].print) {
+			if (notify.rows[k].chosen && notify.rows[k].print == old[i].print) {
 				notify.rows[k].bad_ns = old[i].bad_ns;
 				notify.rows[k].raised_ns = old[i].raised_ns;
 				notify.rows[k].told = old[i].told;
