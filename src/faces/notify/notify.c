@@ -342,8 +342,10 @@ void notify_changes(struct face *face, const int *signals, int n)
 {
 	int64_t now_ns = ows_now();
 
+	/* there are no rows if there was no memory for them */
 	for (int i = 0; i < (signals ? n : notify.count); i++)
-		look_at(face, signals ? signals[i] : i, now_ns);
+		if (!signals || signals[i] < notify.count)
+			look_at(face, signals ? signals[i] : i, now_ns);
 }
 
 /* fd is ready; -1: none, but something may be due. */
