@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <signal.h>
 #include <spawn.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -17,6 +18,7 @@
 
 #define LIVES_NS (60 * NS_PER_S)
 #define VARIABLES 128
+#define WORDS_MAX (1 << 20) /* they are in memory, and only the last line is wanted */
 
 static int spawn(struct run *run, const char *const *argv, int input, char **variables)
 {
@@ -117,14 +119,18 @@ int run_step(struct run *run, int64_t now_ns, char why[RUN_WORDS])
 {
 	int status, err = 0;
 	pid_t ended = waitpid(run->pid, &status, WNOHANG);
+	struct stat st = {0};
+	bool late = now_ns >= run->until_ns;
 
-	if (!ended && now_ns < run->until_ns)
+	if (!ended && !late && (fstat(run->words, &st) || st.st_size <= WORDS_MAX))
 		return -EINPROGRESS;
 	*why = '\0';
 	if (!ended) {
-		snprintf(why, RUN_WORDS, "it did not end within a minute, and was killed");
+		snprintf(why, RUN_WORDS,
+		         late ? "it did not end within a minute, and was killed"
+		              : "it says too much, more than a megabyte, and was killed");
 		run_kill(run);
-		return -ETIMEDOUT;
+		return late ? -ETIMEDOUT : -EFBIG;
 	}
 	if (ended < 0 || !WIFEXITED(status) || WEXITSTATUS(status)) {
 		err = -EIO;

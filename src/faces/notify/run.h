@@ -30,7 +30,7 @@ int run_begin(struct run *run, const char *const *argv, const char *input, size_
               const char *const *more);
 /*
  * Has it ended? 0: with 0; -EINPROGRESS: no; else it failed: why has its last words, or how it
- * ended. After a minute it is killed, with what it started.
+ * ended. After a minute, or a megabyte of words, it is killed, with what it started.
  */
 int run_step(struct run *run, int64_t now_ns, char why[RUN_WORDS]);
 void run_kill(struct run *run);

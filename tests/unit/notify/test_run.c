@@ -67,6 +67,13 @@ static void test_one_that_hangs_is_killed(void)
 	TEST_ASSERT_EQUAL_INT(0, run.pid);
 }
 
+static void test_one_that_says_too_much_is_killed(void)
+{
+	TEST_ASSERT_EQUAL_INT(-EFBIG, ends("yes"));
+	TEST_ASSERT_EQUAL_STRING("it says too much, more than a megabyte, and was killed", why);
+	TEST_ASSERT_EQUAL_INT(0, run.pid);
+}
+
 static void test_one_that_is_not_there_is_an_error(void)
 {
 	const char *const argv[] = {"/nowhere/sms", NULL}, *const more[] = {NULL};
@@ -100,6 +107,7 @@ int main(void)
 	RUN_TEST(test_a_program_gets_its_input_and_variables);
 	RUN_TEST(test_its_last_words_say_why_it_failed);
 	RUN_TEST(test_one_that_hangs_is_killed);
+	RUN_TEST(test_one_that_says_too_much_is_killed);
 	RUN_TEST(test_one_that_is_not_there_is_an_error);
 	RUN_TEST(test_a_program_of_others_is_refused);
 	return UNITY_END();
