@@ -63,12 +63,13 @@ static int64_t all_told(const struct face *face)
 
 /* --- What is told ---------------------------------------------------------------------------- */
 
-static void put(struct face *face, const struct entry *entry)
+/* critical: it is told with Least "critical" too */
+static void put(struct face *face, const struct entry *entry, bool critical)
 {
 	const struct config_notify *file = file_of(face);
 	struct entry *one;
 
-	if (!file->given || (!entry->critical && !strcmp(file->least, "critical")))
+	if (!file->given || (!critical && !strcmp(file->least, "critical")))
 		return;
 	one = queue_add(&notify.ways.queue);
 	*one = *entry;
@@ -79,7 +80,7 @@ static void put(struct face *face, const struct entry *entry)
 static void take_alarm(struct face *face, const struct ows_alarm *alarm)
 {
 	struct when now = when_now();
-	struct entry entry = {.critical = rules_critical(alarm)};
+	struct entry entry = {.critical = rules_urgent(alarm)};
 	struct ows_info info;
 	struct row *row;
 
@@ -98,7 +99,7 @@ static void take_alarm(struct face *face, const struct ows_alarm *alarm)
 	     !(alarm->event == OWS_ALARM_RETURNED && file_of(face)->returns)))
 		return;
 	message_alarm(&entry, &info, alarm, &now);
-	put(face, &entry);
+	put(face, &entry, rules_critical(alarm));
 }
 
 static void escalate(struct face *face, int signal, const struct when *now)
@@ -123,7 +124,7 @@ static void escalate(struct face *face, int signal, const struct when *now)
 	entry.critical = rules_critical(&(struct ows_alarm){.kind = state.limit_kind});
 	message_escalated(&entry, &info, state.limit_kind, notify.rows[signal].raised_ns,
 	                  value.text, now);
-	put(face, &entry);
+	put(face, &entry, entry.critical);
 }
 
 /* Alarms of the time that is over now, each once. */
@@ -155,7 +156,7 @@ static void tell_bad(struct face *face, int signal, struct row *row, const struc
 	message_line(&entry, "%s bad: %s; for %s; since %s%s%s", info.name, face_value_why(&value),
 	             when_span(now->boot - row->bad_ns, span), when_iso(now, row->bad_ns, since),
 	             *info.description ? "; " : "", info.description);
-	put(face, &entry);
+	put(face, &entry, entry.critical);
 }
 
 static void tell_owsd(struct face *face, bool critical, const char *words)
@@ -163,7 +164,7 @@ static void tell_owsd(struct face *face, bool critical, const char *words)
 	struct entry entry = {.critical = critical};
 
 	message_line(&entry, "owsd %s %s", face->arguments->instance, words);
-	put(face, &entry);
+	put(face, &entry, entry.critical);
 }
 
 static void look_for_bad(struct face *face, int64_t now_ns)
@@ -241,7 +242,7 @@ static void look_at(struct face *face, int signal, int64_t now_ns)
 	if (row->told && file_of(face)->returns && !ows_info(face->ows, signal, &info)) {
 		message_line(&entry, "%s no longer bad%s%s", info.name,
 		             *info.description ? "; " : "", info.description);
-		put(face, &entry);
+		put(face, &entry, entry.critical);
 	}
 	row->bad_ns = 0;
 	row->told = false;
@@ -404,7 +405,7 @@ void notify_event(struct face *face, const struct face_event *event)
 
 		message_line(&entry, "%u entries of owsd's journals came too fast to be read",
 		             event->count);
-		put(face, &entry);
+		put(face, &entry, entry.critical);
 		break;
 	}
 	case FACE_ALARM:

@@ -8,6 +8,8 @@
 
 /* Above LimitHH, below LimitLL, and what a device reports by itself. */
 bool rules_critical(const struct ows_alarm *alarm);
+/* Does it wake people? That a critical one has returned does not. */
+bool rules_urgent(const struct ows_alarm *alarm);
 /* Is the signal meant? The last pattern that fits decides; !PATTERN: it is not. */
 bool rules_chosen(const char *patterns, const char *name);
 /* Is that minute of the day in the hours, which may go over midnight? NULL: there are none. */

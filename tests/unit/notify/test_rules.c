@@ -21,6 +21,14 @@ static void test_the_outer_limits_and_a_device_are_critical(void)
 			alarm.kind == OWS_ALARM_DEVICE || alarm.kind == OWS_ALARM_POR ||
 				alarm.kind == OWS_ALARM_HH || alarm.kind == OWS_ALARM_LL,
 			rules_critical(&alarm));
+	alarm = (struct ows_alarm){.kind = OWS_ALARM_HH, .event = OWS_ALARM_RAISED};
+	TEST_ASSERT_TRUE(rules_urgent(&alarm));
+	alarm.kind = OWS_ALARM_H;
+	TEST_ASSERT_FALSE(rules_urgent(&alarm));
+	/* its return is told to who wants critical ones alone, but wakes nobody */
+	alarm = (struct ows_alarm){.kind = OWS_ALARM_HH, .event = OWS_ALARM_RETURNED};
+	TEST_ASSERT_FALSE(rules_urgent(&alarm));
+	TEST_ASSERT_TRUE(rules_critical(&alarm));
 	TEST_ASSERT_FALSE(rules_critical(
 		&(struct ows_alarm){.kind = OWS_ALARM_DEVICE, .event = OWS_ALARM_FAILED}));
 }
