@@ -9,8 +9,6 @@
 #include "hal/base/time.h"
 #include "src/faces/notify/kept.h"
 
-#define LOOKED_NS (60 * NS_PER_S) /* so much of it may be looked at again */
-
 void kept_read(struct kept *kept, const char *program, const char *instance, int64_t now_ns,
                int64_t *told_ns, int64_t *looked_ns)
 {
@@ -43,7 +41,7 @@ void kept_write(struct kept *kept, struct log *log, int64_t told_ns, int64_t loo
 	FILE *out;
 
 	if (!*kept->path || (kept->at_ns && now_ns - kept->at_ns < NS_PER_S) ||
-	    (told_ns == kept->told_ns && looked_ns - kept->looked_ns < LOOKED_NS))
+	    (told_ns == kept->told_ns && looked_ns == kept->looked_ns))
 		return;
 	kept->at_ns = now_ns;
 	snprintf(fresh, sizeof(fresh), "%s.new", kept->path);

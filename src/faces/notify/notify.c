@@ -39,6 +39,7 @@ static struct notifying {
 	int64_t known_ns;  /* entries of the journal up to there were told before this start */
 	int64_t seen_ns;   /* and up to there are in the queue */
 	int64_t looked_ns; /* alarms that were raised up to there were looked at for escalation */
+	int64_t found_ns;  /* the same, when there was one last: to be kept */
 	struct kept kept;
 } notify;
 
@@ -137,8 +138,10 @@ static void look_for_escalation(struct face *face)
 		return;
 	for (int i = 0; i < notify.count; i++)
 		if (notify.rows[i].raised_ns > notify.looked_ns &&
-		    notify.rows[i].raised_ns <= until_ns)
+		    notify.rows[i].raised_ns <= until_ns) {
 			escalate(face, i, &now);
+			notify.found_ns = until_ns;
+		}
 	notify.looked_ns = until_ns;
 }
 
@@ -328,6 +331,7 @@ int notify_start(struct face *face)
 	kept_read(&notify.kept, face->ops->program, face->arguments->instance, now_ns,
 	          &notify.seen_ns, &notify.looked_ns);
 	notify.known_ns = notify.seen_ns;
+	notify.found_ns = notify.looked_ns;
 	/* those that were told may be the ones that nobody acknowledges */
 	face->alarms_after_ns = notify.seen_ns < notify.looked_ns ? notify.seen_ns
 	                                                          : notify.looked_ns;
@@ -356,7 +360,7 @@ static void go_on(struct face *face, int fd, short ready)
 
 	ways_step(&notify.ways, file_of(face), fd, ready, now_ns);
 	face->tick_ns = ways_next(&notify.ways, now_ns);
-	kept_write(&notify.kept, face->log, all_told(face), notify.looked_ns, now_ns);
+	kept_write(&notify.kept, face->log, all_told(face), notify.found_ns, now_ns);
 }
 
 static const char *trouble_of(void)
