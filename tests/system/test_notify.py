@@ -227,6 +227,22 @@ def test_an_alarm_that_nobody_acknowledges_goes_to_another_person_and_one_that_i
         assert "cellar" not in second.read_text() and "boss" not in first.read_text()
 
 
+def test_an_escalation_that_waits_survives_an_end(scene):
+    with peer.Peer({FREEZER: "20"}) as house, Web() as web:
+        daemon, one = notify(scene, house.target, dict(Url=web.url, Gather=0, Every=0, EscalateAfter=3))
+        until(lambda: scene.get(daemon, "freezer") == "20", 10, "a value")
+        house[FREEZER] = "31"
+        until(lambda: web.got, 20, "the alarm is told")
+        web.answer = 503
+        until(lambda: web.tries > 1, 20, "the escalation is refused")
+        one.process.terminate()
+        one.process.wait()
+        web.answer = 200
+        face(scene, daemon)
+        until(lambda: len(web.got) > 1, 20, "it is told")
+        assert len(web.texts()) == 2 and "nobody has acknowledged" in web.texts()[1], web.texts()
+
+
 def test_a_value_that_stays_bad_is_told_with_its_reason_and_that_it_is_back(scene):
     with peer.Peer({FREEZER: "20"}) as house, Web() as web:
         daemon, program_ = notify(scene, house.target, dict(Url=web.url, Gather=0, Every=0, BadAfter=2,

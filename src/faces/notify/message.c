@@ -101,6 +101,7 @@ void message_escalated(struct entry *entry, const struct ows_info *info, uint8_t
 	char since[WHEN_TEXT], span[WHEN_TEXT];
 
 	entry->escalated = true;
+	entry->entered_ns = raised_ns;
 	message_line(entry, "%s %s: %s%s%s; nobody has acknowledged this for %s; since %s%s%s",
 	             info->name, ows_alarm_kind_text(kind), text, *info->unit && *text ? " " : "",
 	             *text ? info->unit : "", when_span(now->boot - raised_ns, span),

@@ -48,18 +48,29 @@ static const struct config_notify *file_of(const struct face *face)
 	return &face->config->notify;
 }
 
-/* All that was entered in the journal up to then every way has told, or need not. */
-static int64_t all_told(const struct face *face)
+/*
+ * All that was entered in the journal up to then, until_ns at most, every way has told, or need
+ * not: as escalated, or for the first time.
+ */
+static int64_t all_told(const struct face *face, bool escalated, int64_t until_ns)
 {
 	int64_t oldest = INT64_MAX;
 
 	for (int i = 0; i < WAYS; i++)
-		if (ways_has(file_of(face), (enum way_kind)i)) {
-			int64_t ns = queue_oldest(&notify.ways.queue, notify.ways.way[i].next);
+		if (ways_has(file_of(face), (enum way_kind)i) &&
+		    ways_tells((enum way_kind)i, escalated)) {
+			int64_t ns = queue_oldest(&notify.ways.queue, notify.ways.way[i].next,
+			                          escalated);
 
 			oldest = ns < oldest ? ns : oldest;
 		}
-	return oldest <= notify.seen_ns ? oldest - 1 : notify.seen_ns;
+	return oldest <= until_ns ? oldest - 1 : until_ns;
+}
+
+static void keep(struct face *face, int64_t looked_ns, int64_t now_ns)
+{
+	kept_write(&notify.kept, face->log, all_told(face, false, notify.seen_ns),
+	           all_told(face, true, looked_ns), now_ns);
 }
 
 /* --- What is told ---------------------------------------------------------------------------- */
@@ -360,7 +371,7 @@ static void go_on(struct face *face, int fd, short ready)
 
 	ways_step(&notify.ways, file_of(face), fd, ready, now_ns);
 	face->tick_ns = ways_next(&notify.ways, now_ns);
-	kept_write(&notify.kept, face->log, all_told(face), notify.found_ns, now_ns);
+	keep(face, notify.found_ns, now_ns);
 }
 
 static const char *trouble_of(void)
@@ -449,7 +460,7 @@ void notify_report(struct face *face, FILE *out)
 void notify_end(struct face *face)
 {
 	notify.kept.at_ns = 0;
-	kept_write(&notify.kept, face->log, all_told(face), notify.looked_ns, ows_now());
+	keep(face, notify.looked_ns, ows_now());
 	ways_close(&notify.ways);
 	free(notify.rows);
 }

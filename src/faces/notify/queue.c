@@ -21,17 +21,18 @@ const struct entry *queue_at(const struct queue *queue, uint64_t number)
 	               : NULL;
 }
 
-int64_t queue_oldest(const struct queue *queue, uint64_t number)
+int64_t queue_oldest(const struct queue *queue, uint64_t number, bool escalated)
 {
 	int64_t oldest = INT64_MAX;
 
 	if (number < queue->first)
 		number = queue->first;
 	for (; number < queue->end; number++) {
-		int64_t ns = queue->entries[number % QUEUE_ENTRIES].entered_ns;
+		const struct entry *entry = &queue->entries[number % QUEUE_ENTRIES];
 
-		if (ns && ns < oldest)
-			oldest = ns;
+		if (entry->escalated == escalated && entry->entered_ns &&
+		    entry->entered_ns < oldest)
+			oldest = entry->entered_ns;
 	}
 	return oldest;
 }

@@ -12,7 +12,7 @@
 #define ENTRY_TEXT 512
 
 struct entry {
-	int64_t came_ns, entered_ns; /* here; in owsd's journal, 0: it has no entry there */
+	int64_t came_ns, entered_ns; /* here; it, or what it escalates, in owsd's journal; 0: no */
 	bool critical, escalated;
 	unsigned head;         /* bytes of text up to its first ';', for a title */
 	char text[ENTRY_TEXT]; /* one line, printable */
@@ -26,5 +26,8 @@ struct queue {
 struct entry *queue_add(struct queue *queue);
 /* NULL: not there yet, or not kept. */
 const struct entry *queue_at(const struct queue *queue, uint64_t number);
-/* When the oldest entry from number on was entered in the journal; INT64_MAX: none was. */
-int64_t queue_oldest(const struct queue *queue, uint64_t number);
+/*
+ * When the oldest entry from number on was entered in the journal; INT64_MAX: none was. Of those
+ * that are escalated, or of the others.
+ */
+int64_t queue_oldest(const struct queue *queue, uint64_t number, bool escalated);

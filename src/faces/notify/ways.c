@@ -45,11 +45,9 @@ const char *ways_name(enum way_kind kind)
 	return names[kind];
 }
 
-static bool is_for(enum way_kind kind, const struct entry *entry)
+bool ways_tells(enum way_kind kind, bool escalated)
 {
-	return kind == WAY_MAIL       ? !entry->escalated
-	       : kind == WAY_ESCALATE ? entry->escalated
-	                              : true;
+	return kind == WAY_MAIL ? !escalated : kind == WAY_ESCALATE ? escalated : true;
 }
 
 /* --- The end of a message -------------------------------------------------------------------- */
@@ -203,7 +201,7 @@ static bool gather(struct ways *ways, const struct config_notify *notify, enum w
 		for (uint64_t n = way->next + way->out; n < way->end; n++) {
 			const struct entry *entry = queue_at(queue, n);
 
-			if (entry->critical != critical || !is_for(kind, entry))
+			if (entry->critical != critical || !ways_tells(kind, entry->escalated))
 				continue;
 			message_add(message, entry);
 			if (entry->came_ns < came_ns)

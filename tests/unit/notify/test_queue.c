@@ -29,14 +29,17 @@ static void test_the_oldest_go_and_numbers_stay(void)
 
 static void test_the_oldest_of_the_journal_is_found(void)
 {
-	TEST_ASSERT_EQUAL_INT64(INT64_MAX, queue_oldest(&queue, 0));
+	TEST_ASSERT_EQUAL_INT64(INT64_MAX, queue_oldest(&queue, 0, false));
 	queue_add(&queue)->entered_ns = 5;
 	queue_add(&queue);
 	queue_add(&queue)->entered_ns = 9;
 	queue_add(&queue)->entered_ns = 8;
-	TEST_ASSERT_EQUAL_INT64(5, queue_oldest(&queue, 0));
-	TEST_ASSERT_EQUAL_INT64(8, queue_oldest(&queue, 1));
-	TEST_ASSERT_EQUAL_INT64(INT64_MAX, queue_oldest(&queue, 4));
+	*queue_add(&queue) = (struct entry){.entered_ns = 4, .escalated = true};
+	TEST_ASSERT_EQUAL_INT64(5, queue_oldest(&queue, 0, false));
+	TEST_ASSERT_EQUAL_INT64(8, queue_oldest(&queue, 1, false));
+	TEST_ASSERT_EQUAL_INT64(INT64_MAX, queue_oldest(&queue, 4, false));
+	TEST_ASSERT_EQUAL_INT64(4, queue_oldest(&queue, 0, true));
+	TEST_ASSERT_EQUAL_INT64(INT64_MAX, queue_oldest(&queue, 5, true));
 }
 
 int main(void)
