@@ -83,7 +83,7 @@ static void put(struct face *face, const struct entry *entry, bool critical)
 
 	if (!file->given || (!critical && !strcmp(file->least, "critical")))
 		return;
-	one = queue_add(&notify.ways.queue);
+	one = ways_add(&notify.ways);
 	*one = *entry;
 	one->came_ns = ows_now();
 	log_info(face->log, "to be told: %s", entry->text);
@@ -294,7 +294,7 @@ static int test_ways(const struct face *face)
 	for (int second = 0; second < 2; second++) {
 		entry.escalated = second;
 		message_line(&entry, "%s", "test; owsd-notify --test has sent this");
-		*queue_add(&ways->queue) = entry;
+		*ways_add(ways) = entry;
 	}
 	for (int i = 0; i < WAYS; i++) {
 		struct way *way = &ways->way[i];

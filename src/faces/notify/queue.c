@@ -4,12 +4,27 @@
 
 #include "src/faces/notify/queue.h"
 
+uint64_t queue_leaves(const struct queue *queue)
+{
+	if (queue->end - queue->first < QUEUE_ENTRIES)
+		return queue->end;
+	for (uint64_t n = queue->first; n < queue->end; n++)
+		if (!queue_at(queue, n)->critical)
+			return n;
+	return queue->first;
+}
+
 struct entry *queue_add(struct queue *queue)
 {
-	struct entry *entry = &queue->entries[queue->end++ % QUEUE_ENTRIES];
+	uint64_t leaves = queue_leaves(queue);
+	struct entry *entry;
 
-	if (queue->end - queue->first > QUEUE_ENTRIES)
+	if (leaves < queue->end) {
+		for (; leaves > queue->first; leaves--)
+			queue->entries[leaves % QUEUE_ENTRIES] = *queue_at(queue, leaves - 1);
 		queue->first++;
+	}
+	entry = &queue->entries[queue->end++ % QUEUE_ENTRIES];
 	*entry = (struct entry){0};
 	return entry;
 }

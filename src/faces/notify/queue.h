@@ -22,7 +22,12 @@ struct queue {
 	uint64_t first, end; /* the oldest that is kept; the next one */
 };
 
-/* Place for one more; the oldest goes if there is none. */
+/*
+ * The number of the one that goes if one more comes: the oldest that is not critical, or the
+ * oldest. end: there is place.
+ */
+uint64_t queue_leaves(const struct queue *queue);
+/* Place for one more. Of those older than the one that goes each gets the next number. */
 struct entry *queue_add(struct queue *queue);
 /* NULL: not there yet, or not kept. */
 const struct entry *queue_at(const struct queue *queue, uint64_t number);

@@ -50,6 +50,30 @@ bool ways_tells(enum way_kind kind, bool escalated)
 	return kind == WAY_MAIL ? !escalated : kind == WAY_ESCALATE ? escalated : true;
 }
 
+struct entry *ways_add(struct ways *ways)
+{
+	struct queue *queue = &ways->queue;
+	uint64_t told = queue->end, leaves;
+
+	/* what every way has told needs no place */
+	for (int i = 0; i < WAYS; i++)
+		told = ways->way[i].next < told ? ways->way[i].next : told;
+	queue->first = told > queue->first ? told : queue->first;
+	leaves = queue_leaves(queue);
+	for (int i = 0; leaves < queue->end && i < WAYS; i++) {
+		struct way *way = &ways->way[i];
+		bool under_way = way->busy && leaves < way->end;
+
+		if (leaves < way->next)
+			continue;
+		way->next++;
+		way->end += way->busy && !under_way;
+		if (ways_tells((enum way_kind)i, queue_at(queue, leaves)->escalated))
+			*(under_way ? &way->gone : &way->missed) += 1;
+	}
+	return queue_add(queue);
+}
+
 /* --- The end of a message -------------------------------------------------------------------- */
 
 static void way_over(struct way *way)
@@ -67,6 +91,8 @@ static void told(struct ways *ways, struct way *way, int64_t now_ns)
 	way->why[0] = '\0';
 	way->told++;
 	way->lost += way->out;
+	way->missed -= way->out;
+	way->gone = 0;
 	way->next = way->end;
 	way->sent_ns = now_ns;
 	backoff_forget(&way->backoff);
@@ -85,6 +111,8 @@ static void not_told(struct ways *ways, struct way *way, enum backoff_why kind, 
 	if (news)
 		snprintf(way->why, sizeof(way->why), "%s", why);
 	way->failed++;
+	way->missed += way->gone;
+	way->gone = 0;
 	way->retry_ns = now_ns + backoff_pause(&way->backoff, kind, backoff_random());
 	way_over(way);
 }
@@ -194,11 +222,11 @@ static bool gather(struct ways *ways, const struct config_notify *notify, enum w
 	const struct queue *queue = &ways->queue;
 	int64_t came_ns = INT64_MAX;
 
-	way->out = way->next < queue->first ? queue->first - way->next : 0;
+	way->out = way->missed;
 	way->end = queue->end;
 	message->others = way->out;
 	for (int critical = 1; critical >= 0; critical--)
-		for (uint64_t n = way->next + way->out; n < way->end; n++) {
+		for (uint64_t n = way->next; n < way->end; n++) {
 			const struct entry *entry = queue_at(queue, n);
 
 			if (entry->critical != critical || !ways_tells(kind, entry->escalated))
@@ -257,10 +285,12 @@ void ways_step(struct ways *ways, const struct config_notify *notify, int fd, sh
 
 		if (way->busy && way->run.pid)
 			run_over(ways, way, now_ns);
-		if (!way->busy && !ways_has(notify, (enum way_kind)i))
+		if (!way->busy && !ways_has(notify, (enum way_kind)i)) {
 			way->next = ways->queue.end;
-		else if (!way->busy)
+			way->missed = 0;
+		} else if (!way->busy) {
 			begin(ways, notify, (enum way_kind)i, now_ns);
+		}
 	}
 }
 

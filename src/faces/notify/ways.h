@@ -28,7 +28,9 @@ enum way_kind {
 struct way {
 	uint64_t next;     /* the first entry that it has not told */
 	bool busy;         /* a message is under way: */
-	uint64_t end, out; /* the entry after it, and those before it that are not kept */
+	uint64_t end, out; /* the entry after it, and how many lost ones it counts */
+	uint64_t gone;     /* entries of it that are not kept any more */
+	uint64_t missed;   /* entries of its kind that went untold, and that it has to count */
 	int64_t sent_ns, retry_ns;
 	struct backoff backoff;
 	struct run run;
@@ -47,6 +49,8 @@ struct ways {
 
 void ways_open(struct ways *ways, struct log *log, const char *instance,
                void (*watch)(void *ctx, int fd, short events), void *ctx);
+/* Place for an entry. If there is none, one goes: the ways that would have told it count it. */
+struct entry *ways_add(struct ways *ways);
 /* Is there something to be told by that way in the file? */
 bool ways_has(const struct config_notify *notify, enum way_kind kind);
 const char *ways_name(enum way_kind kind);

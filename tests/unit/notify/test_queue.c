@@ -3,6 +3,7 @@
 #include "unity.h"
 
 #include "src/faces/notify/queue.h"
+#include "src/faces/notify/ways.h"
 
 static struct queue queue;
 
@@ -27,6 +28,39 @@ static void test_the_oldest_go_and_numbers_stay(void)
 	TEST_ASSERT_NULL(queue_at(&queue, queue.end));
 }
 
+static void test_critical_ones_stay_before_others(void)
+{
+	for (int i = 0; i < QUEUE_ENTRIES; i++)
+		*queue_add(&queue) = (struct entry){.came_ns = i, .critical = i != 2};
+	TEST_ASSERT_EQUAL_UINT64(2, queue_leaves(&queue));
+	queue_add(&queue)->critical = true;
+	TEST_ASSERT_EQUAL_INT64(0, queue_at(&queue, 1)->came_ns);
+	TEST_ASSERT_EQUAL_INT64(1, queue_at(&queue, 2)->came_ns);
+	TEST_ASSERT_EQUAL_INT64(3, queue_at(&queue, 3)->came_ns);
+	TEST_ASSERT_EQUAL_UINT64(1, queue_leaves(&queue));
+}
+
+static void test_a_way_counts_those_that_it_would_have_told(void)
+{
+	static struct ways ways;
+	struct way *mail = &ways.way[WAY_MAIL], *post = &ways.way[WAY_POST];
+
+	for (int i = 0; i < QUEUE_ENTRIES; i++)
+		*ways_add(&ways) = (struct entry){.came_ns = i, .critical = i != 2};
+	post->next = 1; /* it has told the first one */
+	ways_add(&ways)->critical = true;
+	TEST_ASSERT_EQUAL_UINT64(1, mail->missed);
+	TEST_ASSERT_EQUAL_UINT64(0, ways.way[WAY_ESCALATE].missed);
+	TEST_ASSERT_EQUAL_UINT64(1, mail->next);
+	TEST_ASSERT_EQUAL_UINT64(2, post->next);
+	TEST_ASSERT_EQUAL_INT64(1, queue_at(&ways.queue, post->next)->came_ns);
+	/* all have told all: there is place, and none is lost */
+	for (int i = 0; i < WAYS; i++)
+		ways.way[i].next = ways.queue.end;
+	ways_add(&ways);
+	TEST_ASSERT_EQUAL_UINT64(1, mail->missed);
+}
+
 static void test_the_oldest_of_the_journal_is_found(void)
 {
 	TEST_ASSERT_EQUAL_INT64(INT64_MAX, queue_oldest(&queue, 0, false));
@@ -46,6 +80,8 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_the_oldest_go_and_numbers_stay);
+	RUN_TEST(test_critical_ones_stay_before_others);
+	RUN_TEST(test_a_way_counts_those_that_it_would_have_told);
 	RUN_TEST(test_the_oldest_of_the_journal_is_found);
 	return UNITY_END();
 }
