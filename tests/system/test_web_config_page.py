@@ -367,7 +367,7 @@ def test_several_items_are_set_duplicated_and_removed_as_one_step(scene):
 def test_the_grid_has_the_values_of_now_and_is_sorted_by_them(scene):
     with dialog(scene) as (_, _, page):
         page.until("return document.querySelector('.grid .c-now:not([role=columnheader])')"
-                   ".textContent.startsWith('21.5')", "the value of room")
+                   "?.textContent.startsWith('21.5')", "the value of room")
         shows(page, ".grid", "device absent")
         page.click(".grid-head .c-now button")
         assert names(page) == ["room", "boiler", "attic"]
@@ -376,6 +376,12 @@ def test_the_grid_has_the_values_of_now_and_is_sorted_by_them(scene):
         assert page.run("return document.querySelector('.grid-head .c-now').ariaSort") == "descending"
         page.click(".grid-head .c-now button")
         assert names(page) == ["room", "boiler", "attic"]
+        page.click(".grid-head .c-Name button")
+        page.run("const a = document.querySelector('#also'); a.value = 'Description';"
+                 "a.dispatchEvent(new Event('change'))")  # sorted rows are made anew, too
+        assert names(page) == ["attic", "boiler", "room"]
+        cell(page, "room", "Description")
+        at(page, "room", "Description")
 
 
 def test_a_phone_has_a_list_of_names_and_the_form_as_a_page(scene):

@@ -113,6 +113,7 @@ export class Grid {
 		if (now !== this.#heads) {
 			this.#heads = now;
 			this.#rows = [];
+			this.#order = [];
 			this.heads = this.columns.map(({key, title}) => el("div", {role: "columnheader",
 				class: `c-${key}`, "data-key": key}, el("button", {type: "button",
 				onclick: () => this.#sortBy(key)}, title)));
