@@ -335,6 +335,22 @@ def test_cells_are_edited_in_place_by_the_keyboard(scene):
         well(page)
 
 
+def test_an_answer_that_comes_late_leaves_the_cell_that_is_edited_meanwhile(scene):
+    with dialog(scene) as (_, _, page):
+        page.run("const get = window.fetch; window.fetch = async (...all) => {"
+                 "await new Promise((done) => setTimeout(done, 1500)); return get(...all); }")
+        cell(page, "room", "LimitH")
+        page.press("enter", *"30", "enter", "escape")  # too late to leave
+        cell(page, "boiler", "Unit")
+        page.press("enter", "K")
+        draft_is(page, "1 change, not saved")
+        assert page.run("return document.activeElement.value") == "K"
+        page.press("enter")
+        draft_is(page, "2 changes, not saved")
+        at(page, "boiler", "Unit")
+        well(page)
+
+
 def test_several_items_are_set_duplicated_and_removed_as_one_step(scene):
     with dialog(scene) as (daemon, _, page):
         for name in ("room", "boiler"):

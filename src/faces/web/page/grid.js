@@ -199,16 +199,17 @@ export class Grid {
 	}
 
 	#key(event) {
-		const {key, altKey, ctrlKey, metaKey, shiftKey} = event, editing = this.#editing;
+		const {key, altKey, ctrlKey, metaKey, shiftKey} = event;
 		const row = event.target.closest(".grid-row")?.row;
 		const cell = event.target.closest("[data-key]"), n = this.shown.indexOf(row);
 		const k = row?.cells.indexOf(cell), with_ = ctrlKey || metaKey;
+		const editing = cell && cell === this.#editing?.cell ? this.#editing : null;
 		if (editing) {
 			if (key === "Enter" || key === "Tab")
 				this.#commit(true, key === "Tab" ? shiftKey ? -1 : 1 : 0);
 			else if (key !== "Escape")
 				return;
-			else
+			else if (!editing.busy)
 				this.#leave();
 		} else if (with_ && key.toLowerCase() === "z" || with_ && key === "y") {
 			this.does.undo(key === "y" || shiftKey ? "redo" : "undo");
@@ -266,23 +267,25 @@ export class Grid {
 			control.setAttribute("aria-invalid", "true");
 			put(this.fault, `${name}, ${key}: ${error.message}`
 				+ `${/[.?]$/.test(error.message) ? "" : "."} The draft does not have it.`);
-			if (stay)
+			if (stay && this.#editing === editing)
 				return;
 		}
-		this.#close(stay, by);
+		this.#close(editing, stay, by);
 	}
 
 	#leave() {
 		put(this.fault, "");
-		this.#close(true);
+		this.#close(this.#editing, true);
 	}
 
-	#close(stay, by = 0) {
-		const {row, cell} = this.#editing;
-		this.#editing = null;
+	/* Another cell may be edited meanwhile; that one goes on. */
+	#close(editing, stay, by = 0) {
+		const {row, cell} = editing, present = this.#editing === editing;
+		if (present)
+			this.#editing = null;
 		cell.shown = null;
 		this.#paintRow(row, row.item);
-		if (stay)
+		if (stay && present)
 			(row.cells[row.cells.indexOf(cell) + by] ?? cell).focus();
 	}
 }
