@@ -351,6 +351,22 @@ def test_an_answer_that_comes_late_leaves_the_cell_that_is_edited_meanwhile(scen
         well(page)
 
 
+def test_an_edit_is_of_the_item_in_whose_row_it_began(scene):
+    with dialog(scene) as (_, _, page):
+        page.run("const get = window.fetch; window.fetch = async (...all) => {"
+                 "await new Promise((done) => setTimeout(done, 1500)); return get(...all); }")
+        cell(page, "boiler", "Unit")
+        page.chord("alt", "up")
+        page.press("enter", "K")
+        until(lambda: names(page) == ["boiler", "room", "attic"], 20, lambda: names(page))
+        draft_is(page, "not saved")
+        until(lambda: '"K"' in draft_text(page), 20, lambda: draft_text(page))
+        page.until("return import('./draft.js').then(({draft}) =>"
+                   "draft.item('boiler').keys.Unit === 'K' && !draft.item('room').keys.Unit)",
+                   "the unit of boiler")
+        well(page)
+
+
 def test_several_items_are_set_duplicated_and_removed_as_one_step(scene):
     with dialog(scene) as (daemon, _, page):
         for name in ("room", "boiler"):

@@ -100,6 +100,8 @@ export class Grid {
 			if (this.chosen.delete(name))
 				this.chosen.add(items[n].name);
 			this.#active.name = items[n].name;
+			if (this.#editing?.name === name)
+				this.#editing.name = items[n].name;
 		}
 		this.count = items.length;
 		this.chosen = new Set([...this.chosen].filter((one) => has.has(one)));
@@ -244,7 +246,7 @@ export class Grid {
 		const shown = shownOf(option, item.keys[key] ?? textOf(item, key));
 		const control = controlOf(option, {"aria-label": `${key} of ${item.name}`,
 			"aria-describedby": "grid-fault", onfocusout: () => this.#commit(false, 0)}, shown);
-		this.#editing = {row, cell, key, option, shown, control};
+		this.#editing = {row, name: item.name, cell, key, option, shown, control};
 		put(this.fault, "");
 		cell.replaceChildren(control);
 		control.focus();
@@ -253,12 +255,14 @@ export class Grid {
 
 	/* stay: the focus stays in the grid, so many columns further on. */
 	async #commit(stay, by) {
-		const editing = this.#editing, {row, key, option, shown, control} = editing ?? {};
+		const editing = this.#editing, {name, key, option, shown, control} = editing ?? {};
 		if (!editing || editing.busy)
 			return;
-		const text = control.value.trim(), {name} = row.item;
+		const text = control.value.trim(); // the row may be of another item by now
 		editing.busy = true;
 		try {
+			if (text !== shown && !draft.item(name))
+				throw new Error("There is no such item any more");
 			if (text !== shown)
 				await this.does.edit(name, {[key]: valueOf(option, text)});
 			put(this.fault, "");
