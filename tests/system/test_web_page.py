@@ -362,6 +362,28 @@ def test_one_cursor_goes_through_all_plots_by_keys_too(scene):
         assert not page.complaints()
 
 
+def test_a_turn_of_the_wheel_is_one_step_back_and_asks_once(scene):
+    with plant(scene) as (_, web, page):
+        page.go(web.address + "#trends?s=room&until=1000000000000&span=600000")
+        page.find("#trends .chart canvas")
+        asked = ("return performance.getEntriesByType('resource').filter(({name}) =>"
+                 "name.includes('api/journal?')).length")
+        page.until(asked, "it has asked")
+        page.run("return new Promise((done) => setTimeout(done, 500))")
+        before = page.run(asked)
+        page.run("const {left, top} = document.querySelector('#trends .stack').getBoundingClientRect();"
+                 "for (let n = 0; n < 30; n++) document.querySelector('#trends .stack').dispatchEvent("
+                 "new WheelEvent('wheel', {deltaY: 100, ctrlKey: true, clientX: left + 200,"
+                 "clientY: top + 9, cancelable: true}))")
+        page.run("return new Promise((done) => setTimeout(done, 1000))")
+        assert page.run(asked) == before + 1, (before, page.run(asked))
+        assert page.run(WINDOW)[0] > 5_000_000, page.run(WINDOW)
+        page.run("document.querySelector('#trends .stack').focus()")
+        page.press("0")
+        until(lambda: page.run(WINDOW)[0] == 600_000, 10, lambda: page.run(WINDOW))
+        assert not page.complaints(), page.complaints()
+
+
 def test_without_dygraphs_a_trend_has_figures_and_says_why_there_is_no_plot(scene):
     with browser.open_one(scene) as page:
         daemon = house(scene)

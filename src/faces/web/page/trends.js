@@ -14,7 +14,7 @@ import {besideOf, daysLater} from "./when.js";
 import {moment, qualityWords, valueText, withUnit} from "./words.js";
 
 const LINES = 6; // at most, in one colour each: that many --line-N has style.css
-const LEAST_MS = 2000, FRAME_MS = 1000, FETCH_MS = 5000, POINTS = 600, BACK = 20;
+const LEAST_MS = 2000, FRAME_MS = 1000, FETCH_MS = 5000, REST_MS = 250, POINTS = 600, BACK = 20;
 const BEFORE_MS = 86400000, ENTRIES = 1000; // of the journal, for alarms that began before
 
 // until null: follows the present; given: the user has picked, not the page; beside: the same time
@@ -23,6 +23,7 @@ const state = {picked: [], span: 600000, until: null, given: false, beside: fals
 const LIBRARY = "dygraph.min.js"; // comes when it is needed: it is as large as all else
 let shown = false, ready = false, picker, stack, hint, told, absent, tools, before = [];
 let pasts = new Map(), olds = new Map(), entries = [], asked = 0, cursor = null;
+let resting = 0; // a timer: the window has not moved for a while
 
 export function build(root) {
 	hint = el("p", {class: "hint", role: "status"});
@@ -30,7 +31,7 @@ export function build(root) {
 	absent = el("p", {class: "note", role: "status", hidden: true});
 	picker = new Picker({add, remove: (name) => pick(state.picked.filter((one) => one !== name)),
 		has: (name) => state.given && state.picked.includes(name)});
-	stack = new Stack({zoom: (from, until) => goTo([from, until]), factor: zoom, back, point,
+	stack = new Stack({zoom: (from, until) => goTo([from, until], true), factor: zoom, back, point,
 		words: wordsAt});
 	tools = new Tools({span, shift, go: goTo, follow: () => move(null), beside, link, table: exported,
 		fault: (words) => put(told, words)}, root.querySelector("h1"));
@@ -146,8 +147,13 @@ const window_ = () => {
 function move(until) {
 	state.until = until === null || until >= store.now() ? null : until;
 	put(told, "");
+	asked++; // an answer for the window of before comes too late
+	clearTimeout(resting);
+	resting = setTimeout(() => {
+		resting = 0;
+		fetchAll();
+	}, REST_MS);
 	remember();
-	fetchAll();
 	draw();
 }
 
@@ -165,15 +171,16 @@ function beside() {
 	fetchAll();
 }
 
-function goTo([from, until]) {
-	keep();
+function goTo([from, until], series = false) {
+	keep(series);
 	state.span = Math.max(LEAST_MS, until - from);
 	move(until);
 }
 
-/* For the way back. */
-function keep() {
-	before = [...before.slice(1 - BACK), [state.span, state.until]];
+/* For the way back: where a series of moves began. */
+function keep(series = false) {
+	if (!series || !resting)
+		before = [...before.slice(1 - BACK), [state.span, state.until]];
 }
 
 function back() {
