@@ -125,6 +125,8 @@ test("between the last record and the first value that is heard the value held, 
 		last: [1, 1], code: [GOOD, GOOD], gap: [false, false]};
 	signal.recent = [{t: end - 2000, v: 2, low: 2, high: 2, code: GOOD}];
 	assert.deepEqual(points(continued(columns, signal, end - 9000, end))[2], [end - 7000, 1, GOOD]);
-	const long = {...columns, x: [end - 190000, end - 189000]};
-	assert.deepEqual(points(continued(long, signal, end - 190000, end))[2], [end - 188000, null, UNKNOWN]);
+	const long = {...columns, x: [end - 790000, end - 789000]};
+	assert.deepEqual(points(continued(long, signal, end - 790000, end))[2], [end - 788000, null, UNKNOWN]);
+	const flushed = {...columns, x: [end - 302000, end - 301000]};
+	assert.deepEqual(points(continued(flushed, signal, end - 302000, end))[2], [end - 300000, 1, GOOD]);
 });

@@ -63,7 +63,9 @@ export async function saveTable(drawn, [from, until]) {
 	if (!await ask("Save a table", "Save", [
 		el("p", {}, "It has a column for each signal, and local time. A cell is empty where the value "
 			+ "was not good."),
-		el("label", {for: "csv-raw", class: "check"}, raw, "Each recorded value, not what is drawn")]))
+		el("label", {for: "csv-raw", class: "check"}, raw, "Each recorded value, not what is drawn"),
+		el("p", {class: "hint"}, "Recorded values end at what owsd-recorder has written: the last "
+			+ "minutes may not be among them.")]))
 		return false;
 	const all = raw.checked ? await Promise.all(drawn.map(async ({signal}) =>
 		({signal, past: await recordsOf(signal, from, until)}))) : drawn;

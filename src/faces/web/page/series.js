@@ -4,7 +4,7 @@ import {get} from "./api.js";
 import {store} from "./store.js";
 import {UNKNOWN, stateOf} from "./words.js";
 
-const UNWRITTEN_MS = 60000; // at most, unless the configuration has a longer Flush
+const UNWRITTEN_MS = 660000; // at most: the longest Flush, and a little
 
 export const goodCode = (code) => code !== UNKNOWN && stateOf(code) === "good";
 
