@@ -36,3 +36,17 @@ test("records come in several answers, and the one that held at the begin has it
 	assert.deepEqual([x, last], [[100, 150, 200, 250], [1, 2, null, null]]);
 	assert.equal(server.asked.length, 2);
 });
+
+test("all digits are all digits", () => {
+	const past = {x: [1, 2], last: [1234567890123, 0.1234567890123]};
+	assert.match(csvOf([{signal: room, past}], true), /,1234567890123\r\n.*,0\.1234567890123\r/);
+});
+
+test("a table that is too long says where it is cut, and its cells are empty from there on", async () => {
+	server.answers["api/records"] = (query) => {
+		const from = Number(query.get("from"));
+		return {records: Array.from({length: 100000}, (_, n) => [from + n, 7, GOOD]), next: from + 100000};
+	};
+	const {cut, x, last} = await recordsOf(room, 1, 1e9);
+	assert.deepEqual([cut, x.at(-1), last.at(-2), last.at(-1)], [500001, 500001, 7, null]);
+});

@@ -16,8 +16,7 @@ const harmless = (text) => /^[=+@-]/.test(text) ? `'${text}` : text;
 function cell(signal, value, exact) {
 	if (value === null || value === undefined)
 		return "";
-	return signal.type === "bool" || exact ? String(Number(Number(value).toPrecision(12)))
-		: valueText(signal, value);
+	return signal.type === "bool" || exact ? String(Number(value)) : valueText(signal, value);
 }
 
 /**
@@ -45,7 +44,8 @@ export function csvOf(all, exact = false) {
 /** What the recorder has of a signal in the window, as a past with a column for each record. */
 export async function recordsOf(signal, from, until) {
 	const past = {name: signal.name, x: [], last: []};
-	for (let next = Math.round(from); next && past.x.length < MOST;) {
+	let next = Math.round(from);
+	while (next && past.x.length < MOST) {
 		const answer = await get("records", {name: signal.name, from: next,
 			until: Math.round(until)});
 		for (const [time, value, quality] of answer.records) {
@@ -54,10 +54,15 @@ export async function recordsOf(signal, from, until) {
 		}
 		next = answer.next > next ? answer.next : null;
 	}
+	if (next) {
+		past.cut = next;
+		past.x.push(next);
+		past.last.push(null); // nobody knows here how it goes on
+	}
 	return past;
 }
 
-/** Ask for the kind of table, and save it; drawn: [{signal, past}]. False: the user does not. */
+/** Ask for the kind of table, and save it; drawn: [{signal, past}]. What to tell; null: it is not. */
 export async function saveTable(drawn, [from, until]) {
 	const raw = el("input", {type: "checkbox", id: "csv-raw", disabled: !store.info?.history});
 	if (!await ask("Save a table", "Save", [
@@ -66,10 +71,13 @@ export async function saveTable(drawn, [from, until]) {
 		el("label", {for: "csv-raw", class: "check"}, raw, "Each recorded value, not what is drawn"),
 		el("p", {class: "hint"}, "Recorded values end at what owsd-recorder has written: the last "
 			+ "minutes may not be among them.")]))
-		return false;
+		return null;
 	const all = raw.checked ? await Promise.all(drawn.map(async ({signal}) =>
 		({signal, past: await recordsOf(signal, from, until)}))) : drawn;
 	const stamp = new Date(until).toISOString().slice(0, 19).replaceAll(":", "");
 	save(`${store.info?.instance ?? "owsd"}-${stamp}.csv`, csvOf(all, raw.checked));
-	return true;
+	const cut = all.filter(({past}) => past.cut).map(({signal, past}) =>
+		`${signal.name} is cut at ${dateAndClock(past.cut)}`);
+	return cut.length ? `The table is too long: ${cut.join(", ")}. Save a shorter time.`
+		: "The table is saved.";
 }

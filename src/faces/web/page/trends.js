@@ -3,7 +3,7 @@
 // dragging, by the wheel or by keys, and that follows the present until it is.
 import {get} from "./api.js";
 import {saveTable} from "./csv.js";
-import {announce, el, later, put} from "./dom.js";
+import {el, later, put} from "./dom.js";
 import {alarmsOf} from "./marks.js";
 import {Picker} from "./picker.js";
 import {continued, heldAt, pastOf} from "./series.js";
@@ -290,8 +290,10 @@ function frame() {
 
 async function exported() {
 	try {
-		if (await saveTable(picked().map((signal) => ({signal, past: pastNow(signal)})), window_()))
-			announce("The table is saved.");
+		const words = await saveTable(picked().map((signal) => ({signal, past: pastNow(signal)})),
+			window_());
+		if (words)
+			put(told, words);
 	} catch (error) {
 		put(told, `The table cannot be made: ${error.message}.`);
 	}
