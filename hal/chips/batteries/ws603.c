@@ -98,7 +98,7 @@ int ws603_read_byte(struct txn *txn)
 
 int ws603_read_bytes(struct txn *txn)
 {
-	uint8_t bytes[5];
+	uint8_t bytes[5] = {0};
 	int err = ws603_ask(txn, txn->property->arg & 0xff, bytes);
 
 	if (err)

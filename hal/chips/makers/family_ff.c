@@ -234,7 +234,7 @@ static AREA_NAMED(eeprom, "EEPROM", .size = 112, .block = LCD_PAD, .row = LCD_PA
 
 static int read_version(struct txn *txn)
 {
-	uint8_t bytes[LCD_PAD];
+	uint8_t bytes[LCD_PAD] = {0};
 	int err = fetch_by_pad(txn, READ_VERSION, NULL, 0, bytes, LCD_PAD);
 
 	if (err)

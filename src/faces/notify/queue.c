@@ -4,12 +4,18 @@
 
 #include "src/faces/notify/queue.h"
 
+/* It is there. */
+static const struct entry *entry_of(const struct queue *queue, uint64_t number)
+{
+	return &queue->entries[number % QUEUE_ENTRIES];
+}
+
 uint64_t queue_leaves(const struct queue *queue)
 {
 	if (queue->end - queue->first < QUEUE_ENTRIES)
 		return queue->end;
 	for (uint64_t n = queue->first; n < queue->end; n++)
-		if (!queue_at(queue, n)->critical)
+		if (!entry_of(queue, n)->critical)
 			return n;
 	return queue->first;
 }
@@ -21,7 +27,7 @@ struct entry *queue_add(struct queue *queue)
 
 	if (leaves < queue->end) {
 		for (; leaves > queue->first; leaves--)
-			queue->entries[leaves % QUEUE_ENTRIES] = *queue_at(queue, leaves - 1);
+			queue->entries[leaves % QUEUE_ENTRIES] = *entry_of(queue, leaves - 1);
 		queue->first++;
 	}
 	entry = &queue->entries[queue->end++ % QUEUE_ENTRIES];
@@ -31,9 +37,7 @@ struct entry *queue_add(struct queue *queue)
 
 const struct entry *queue_at(const struct queue *queue, uint64_t number)
 {
-	return number >= queue->first && number < queue->end
-	               ? &queue->entries[number % QUEUE_ENTRIES]
-	               : NULL;
+	return number >= queue->first && number < queue->end ? entry_of(queue, number) : NULL;
 }
 
 int64_t queue_oldest(const struct queue *queue, uint64_t number, bool escalated)
@@ -43,7 +47,7 @@ int64_t queue_oldest(const struct queue *queue, uint64_t number, bool escalated)
 	if (number < queue->first)
 		number = queue->first;
 	for (; number < queue->end; number++) {
-		const struct entry *entry = &queue->entries[number % QUEUE_ENTRIES];
+		const struct entry *entry = entry_of(queue, number);
 
 		if (entry->escalated == escalated && entry->entered_ns &&
 		    entry->entered_ns < oldest)

@@ -77,7 +77,8 @@ static void drop_half(struct history_rows *r, uint32_t key_count)
 		if (row->kind == ROW_VALUE)
 			last[row->key] = i + 1;
 		else if (row->kind == ROW_GAP && row->key == ROW_OF_ALL)
-			memset(last, 0, key_count * sizeof(*last));
+			for (uint32_t k = 0; k < key_count; k++)
+				last[k] = 0;
 		else if (row->kind == ROW_GAP)
 			last[row->key] = 0;
 	}
