@@ -97,6 +97,10 @@ def test_tiles_are_chosen_by_the_star_moved_by_keys_and_kept_in_the_address(scen
         moved = [*first[:-1], "door", first[-1]]
         until(lambda: page.run(TILES) == moved, 10, lambda: page.run(TILES))
         assert page.run("return document.activeElement.textContent") == "door", "it keeps the focus"
+        page.run("document.querySelector('#search').value = ''; document.querySelector('#search')"
+                 ".dispatchEvent(new Event('input', {bubbles: true}))")
+        until(lambda: len(page.run(SHOWN)) > 1, 10, lambda: page.run(SHOWN))
+        assert page.run("return document.activeElement.textContent") == "door", "and in a filter"
         address = page.run("return location.href")
         assert f"tiles={','.join(moved)}" in address, address
         page.go("about:blank")

@@ -75,7 +75,9 @@ export class Tiles {
 			return old?.signal === signal ? old : new Tile(signal, this.acts);
 		});
 		this.#tiles = new Map(tiles.map((tile) => [tile.signal.name, tile]));
-		this.node.replaceChildren(...tiles.map(({node}) => node));
+		const nodes = tiles.map(({node}) => node), had = this.node.children;
+		if (nodes.length !== had.length || nodes.some((one, n) => one !== had[n]))
+			this.node.replaceChildren(...nodes); // which loses the focus
 		this.node.hidden = !tiles.length;
 		this.paint();
 		this.paintLines();
