@@ -230,7 +230,8 @@ const twins = (name) => draft.model.items.filter((one) => one.name === name).len
 /* act(items) returns {words, focus, form}: what to announce, and where the focus goes; null: no. */
 async function attempt(act) {
 	try {
-		const done = await act(wanted());
+		const items = wanted(), shown = new Set(grid.shown.map(({item}) => item));
+		const done = await act(items, items.filter((item) => !shown.has(item)).length);
 		put(fault, "");
 		if (!done)
 			return;

@@ -13,6 +13,10 @@ const NAMED = 5;
 const namesOf = (items) => items.slice(0, NAMED).map(({name}) => name).join(", ")
 	+ (items.length > NAMED ? ` and ${items.length - NAMED} more` : "");
 
+/* What a filter hides is changed, too. */
+const hiddenOf = ({length}, hidden) => !hidden ? ""
+	: length > 1 ? `${hidden} of them not shown. ` : "It is not shown. ";
+
 export async function duplicate(items) {
 	const taken = new Set(draft.model.items.map(({name}) => name)), steps = [];
 	let first = null;
@@ -26,13 +30,13 @@ export async function duplicate(items) {
 	return {focus: first, words: `${namesOf(items)}: duplicated. Each copy needs a path of its own.`};
 }
 
-export async function remove(items) {
+export async function remove(items, hidden) {
 	const left = draft.model.items, at = left.findLastIndex((item) => items.includes(item));
 	const next = left.slice(at + 1).concat(left.slice(0, at).reverse())
 		.find((item) => !items.includes(item));
 	if (!await ask(items.length > 1 ? `Remove ${items.length} items?` : `Remove ${items[0].name}?`,
-		"Remove", [el("p", {}, `${items.length > 1 ? `${namesOf(items)}. ` : ""}Undo brings back what is `
-			+ "removed. Its history stays on disk.")]))
+		"Remove", [el("p", {}, `${items.length > 1 ? `${namesOf(items)}. ` : ""}${hiddenOf(items, hidden)}Undo `
+			+ "brings back what is removed. Its history stays on disk.")]))
 		return null;
 	await draft.edit(...items.map(({name}) => ({do: "remove", name})));
 	return {focus: next?.name ?? null, words: `${namesOf(items)}: removed.`};
@@ -41,7 +45,7 @@ export async function remove(items) {
 let last = "LimitH"; // the key that was set last
 
 /* One key for all of them. */
-export async function setKey(items) {
+export async function setKey(items, hidden) {
 	const options = draft.options("item").filter(({key}) => !OWN.includes(key));
 	const key = el("select", {id: "set-key", onchange: () => show()},
 		...options.map((option) => el("option", {}, option.key)));
@@ -59,7 +63,7 @@ export async function setKey(items) {
 	key.value = options.some((one) => one.key === last) ? last : options[0].key;
 	show();
 	if (!await ask(`Set a key of ${items.length > 1 ? `${items.length} items` : items[0].name}`, "Set",
-		[el("p", {}, namesOf(items)), el("label", {for: "set-key"}, "Key"), key,
+		[el("p", {}, `${namesOf(items)}. ${hiddenOf(items, hidden)}`), el("label", {for: "set-key"}, "Key"), key,
 			el("label", {for: "set-value"}, "Value"), field, hint]))
 		return null;
 	last = option.key;
