@@ -58,6 +58,22 @@ void rows_remove(struct history_rows *r, uint32_t count)
 	memmove(r->rows, r->rows + count, r->count * sizeof(*r->rows));
 }
 
+/* Of each key the row that has its value after the first `count`: its number plus 1; 0: none. */
+static void find_last(const struct history_rows *r, uint32_t count, uint32_t *last,
+                      uint32_t key_count)
+{
+	for (uint32_t i = 0; i < count; i++) {
+		const struct history_row *row = &r->rows[i];
+
+		if (row->kind == ROW_VALUE)
+			last[row->key] = i + 1;
+		else if (row->kind == ROW_GAP && row->key == ROW_OF_ALL)
+			memset(last, 0, key_count * sizeof(*last));
+		else if (row->kind == ROW_GAP)
+			last[row->key] = 0;
+	}
+}
+
 /*
  * Memory is full: the oldest half becomes a gap, after which each signal has what it had at its
  * end. Signals that are too many for that are known again when they are repeated.
@@ -71,17 +87,8 @@ static void drop_half(struct history_rows *r, uint32_t key_count)
 	half = r->count / 2;
 	gap.us = r->rows[0].us;
 	gap.value = r->rows[half].us;
-	for (uint32_t i = 0; last && i < half; i++) {
-		const struct history_row *row = &r->rows[i];
-
-		if (row->kind == ROW_VALUE)
-			last[row->key] = i + 1;
-		else if (row->kind == ROW_GAP && row->key == ROW_OF_ALL)
-			for (uint32_t k = 0; k < key_count; k++)
-				last[k] = 0;
-		else if (row->kind == ROW_GAP)
-			last[row->key] = 0;
-	}
+	if (last)
+		find_last(r, half, last, key_count);
 	for (uint32_t i = 0; i < half; i++) {
 		struct history_row *row = &r->rows[i];
 
