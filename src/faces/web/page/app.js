@@ -92,14 +92,20 @@ function show() {
 const keep = async () => window.cockpit || window.parent !== window
 	|| navigator.serviceWorker?.register("worker.js");
 
+/** What comes later, by itself; if it fails, with the next signals anew. */
+const begin = (name, again = false) => import(name).then((made) => made.begin()).catch((error) => {
+	if (!again)
+		console.warn(`${name}: ${error.message}`);
+	store.addEventListener("signals", () => begin(name, true), {once: true});
+});
+
 for (const [key, view] of Object.entries(VIEWS))
 	view.build($(key));
 head.build();
 keys.listen();
 store.addEventListener("signals", show);
 store.addEventListener("signals", () => setTimeout(() =>
-	[...LATER, ...["./hour.js", "./tell.js"].map((name) =>
-		async () => (await import(name)).begin()), keep]
+	[...LATER, ...["./hour.js", "./tell.js"].map((name) => () => begin(name)), keep]
 		.forEach((load) => load().catch(() => {})), LATER_MS), {once: true});
 document.querySelector(".skip").addEventListener("click", (event) => {
 	event.preventDefault(); // the part behind # names the view
