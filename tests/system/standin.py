@@ -28,7 +28,7 @@ SIMULATED = f"sim:{STAGE}/stage.sim"
 HARDWARE = re.compile(r"^(i2c:(auto|/dev/i2c-\d(:0x[0-9a-f]{2}(\.\d)?)?)|w1(:.*)?|auto|gpio:.*)$")
 OURS = set(re.findall(r"^Package: (\S+)$", (SOURCE / "board/debian/control").read_text(), re.M))
 DEBIAN = {"owserver", "ow-shell", "mosquitto", "libgpiod-dev", "i2c-tools", "linuxcnc-uspace",
-          "linuxcnc-uspace-dev"} | OURS
+          "linuxcnc-uspace-dev", "msmtp-mta"} | OURS
 UNIT = r"(owsd(-firstboot|-recorder|-influx|-mqtt|-notify|@\w+|-(recorder|influx|mqtt|notify)@\w+|-(web|writer)@\w+(\.socket|\.service)?)?|owserver(\.socket|\.service)?)"
 GROUPS = "(i2c|gpio|owsd|owsd-control|owsd-config)"
 
@@ -47,6 +47,7 @@ LOOKED_AT = {
     "hostnamectl": [r"hostname pi-[0-9a-f]{8}"],
     "ansible-playbook": [r"-i inventory site\.yml( --check --diff| --limit \w+| -e owsd_state=latest)?"],
     "reboot": [""],
+    "setpriv": ["--reuid owsd-notify --regid owsd --init-groups owsd-notify --test"],
     "ssh": [r"(-[nt] )?pi\d owsctl (list|watch|reload|--json stats)"],
     "i2cdetect": [r"-y \d"],
     "gpiodetect": [""], "gpioinfo": [""], "lsusb": [""],
@@ -120,6 +121,8 @@ def face(program):
         words = [place(a) for a in arguments]
         if "-n" not in words:
             words += ["-n", NAME + "r"]
+        if "--check" in words:
+            os.execv(BUILD / program, [program, *words])
         sys.exit(until_ready([str(BUILD / program), *words], owsdtest.PATIENCE))
     return run
 
