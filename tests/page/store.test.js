@@ -259,6 +259,13 @@ test("a change is shown at once, and its reason in words is fetched within a sec
 	assert.equal(asked("api/signals"), 1);
 });
 
+test("of a first good value the rest is fetched too: whether it is simulated", async () => {
+	values([1, 7, GOOD, 1, 0]);
+	assert.equal(store.value(store.find("attic")), 7);
+	await pass(1100);
+	assert.equal(asked("api/signals"), 1);
+});
+
 test("values that were long under way do not look new", () => {
 	streams.at(-1).sends("values", {now: Date.now() - 4000, generation: list.generation,
 		v: [[0, 22, GOOD, 1, 0]]});

@@ -192,8 +192,8 @@ class Store extends EventTarget {
 			if (signal.code !== code) {
 				signal.text = qualityWords(code);
 				signal.why = null;
-				if (!good)
-					this.#details(); // the reason in words comes with the list
+				if (!good || !signal.good)
+					this.#details(); // with the list come the reason in words, and "simulated"
 			}
 			changed.add(this.#set(signal, value, code, good, age, now));
 		}
