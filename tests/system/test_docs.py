@@ -224,7 +224,7 @@ def run_face(stage, program):
     def ask(*lines):
         with socket.socket(socket.AF_UNIX) as client:
             client.settimeout(owsdtest.PATIENCE)
-            client.connect(str(path))
+            scene.until(lambda: client.connect_ex(str(path)) == 0, 20, "it listens")
             client.sendall("".join(line + "\n" for line in lines).encode())
             client.shutdown(socket.SHUT_WR)
             return b"".join(iter(lambda: client.recv(4096), b"")).decode().splitlines()

@@ -196,7 +196,7 @@ static int schema_check(sqlite3 *db)
  */
 static void fill_log(const char *path)
 {
-	static const char zeros[1 << 16];
+	const char zeros[1 << 12] = {0};
 	char name[LOG_PATH];
 	struct statvfs disk;
 	struct stat seen;
