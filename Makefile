@@ -250,9 +250,8 @@ MQTT_ALL := $(patsubst %,src/faces/mqtt/%.c,owsd_mqtt mqtt arrivals broker clien
 LIBOWS   := $(wildcard src/memory/libows/*.c)
 # And the one that reads history
 LIBHISTORY := $(filter-out src/history/library/none.c,$(wildcard src/history/library/*.c))
-# What calls SQLite; and what stands in its place
-SQLITE_ALL := $(LIBHISTORY) $(patsubst %,src/history/file/%.c,file keep rolling schema sql statements store \
-            tables wal_lock writer) $(wildcard src/history/recorder/*.c)
+# What is of use with SQLite alone; faces without it keep files of theirs by place.c
+SQLITE_ALL := $(LIBHISTORY) $(filter-out %/place.c,$(wildcard src/history/file/*.c)) $(wildcard src/history/recorder/*.c)
 # What makes of owsd the program owsd-sim
 SIM_TABLE := hal/sim/table.c
 # Programs to start from, and configurations

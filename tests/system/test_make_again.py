@@ -116,7 +116,7 @@ class Tree:
 
     def made(self):
         return {str(p.relative_to(self.path)): p.read_text() for p in (self.path / "b").rglob("*")
-                if p.is_file() and not p.is_symlink() and p.suffix not in (".dict", ".pc")}
+                if p.is_file() and not p.is_symlink() and p.suffix not in (".dict", ".pc", ".gz")}
 
     def made_clean(self, *variables):
         shutil.rmtree(self.path / "b", ignore_errors=True)

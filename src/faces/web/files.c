@@ -102,7 +102,7 @@ static int64_t changed_ns(const struct stat *stat)
 int files_find(int directory, const char *path, bool gzip, struct file *file)
 {
 	const char *name = *path ? path : "index.html";
-	struct stat stat, packed;
+	struct stat stat = {0}, packed = {0};
 	char beside[256 + 3];
 	int fd, other = -1;
 
