@@ -393,16 +393,20 @@ def test_victoriametrics_has_each_change_once_after_an_hour_without_a_broker(sce
         broker.process.kill()
         machine.turn(was, 3)
         for half_hour in (4, 5):
+            time.sleep(0.5)  # pace: the recorder takes a change by the clock that stands when it comes
             clock.jump(wall=1800, boot=1800)
             machine.ahead += 1800
+            until(lambda: faulty.ctl(scene, machine.daemon, machine.env, "get", "dial").returncode == 0, 10, "owsd beats")
             machine.turn(was, half_hour)
         broker.start()
         machine.turn(was, 6)
         has_each(historian, was, machine, stored)
-        # a value that comes again was not known in between, as when the clock jumped
+        # a value that comes again was not known in between, as when the clock jumped; but for that of the birth
+        # after the hour: it says once more what came before it, as it was read last
         values, bad = stored("dial"), [when for when, quality in stored("dial", "quality") if quality != 192]
-        for (a, before), (b, after) in zip(values, values[1:]):
-            assert before != after or any(a < when < b for when in bad), (values, bad)
+        again = [(b, after) for (a, before), (b, after) in zip(values, values[1:])
+                 if before == after and not any(a < when < b for when in bad)]
+        assert len(again) <= 1, (values, bad)
 
 
 if __name__ == "__main__":

@@ -72,8 +72,8 @@ def by_go(lines):
         if kind in ("float", "double"):
             return float(text)
         return text if kind == "string" else text == "1" if kind == "bool" else int(text)
-    return {name: (kind, value(kind, text), int(quality, 16), int(err))
-            for name, kind, text, quality, _, err, _ in lines}
+    return {name: (kind, value(kind, text) if int(changes) else None, int(quality, 16), int(err))
+            for name, kind, text, quality, _, err, changes in lines}
 
 
 def test_it_reads_every_type_as_owsctl_does(scene):
