@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/chips/bridges/i2c.h"
 #include "hal/native/answer.h"
 #include "hal/native/locate.h"
 #include "hal/native/master.h"
@@ -18,6 +19,9 @@
 #define MANY_MISSED 3
 #define FOUND_IN_ROW 8
 #define TRIES_LINK 6
+#define FAMILY_BITS 8
+#define ALL_BITS 64
+#define APART 6 /* bits that are read after its id differs from all others */
 
 /* While a chip of the master does not answer, any device may be behind it. */
 static int not_found(const struct native *native)
@@ -308,6 +312,32 @@ static void locate_failed(struct native *native, int err)
 	}
 }
 
+/*
+ * So many bits of the id of the job are searched for. The answer of the chip will prove which one
+ * it is: so bits that set the id apart from all others that are known, or asked for, and some more
+ * are enough, once. All, if it did not answer after that, if nothing is to be read of the chip, and
+ * for a bridge, which has some of these bits alone before it was woken.
+ */
+static unsigned bits_to_read(struct native *native, const struct job *job,
+                             const uint8_t *const roms[], unsigned n)
+{
+	const uint8_t *rom = job->path.rom;
+	const struct device *device = device_find(&native->table, rom);
+	unsigned common = FAMILY_BITS;
+
+	if (!device || device->likely || rom[0] == DS28E18_CODE || job->kind != JOB_PROPERTY ||
+	    job->req->op != BUS_READ || job->property->offline)
+		return ALL_BITS;
+	for (unsigned i = 0; i < native->table.count + n; i++) {
+		const uint8_t *other = i < n ? roms[i] : native->table.devices[i - n].rom;
+		unsigned same = search_common(rom, other);
+
+		if (same < ALL_BITS && same > common)
+			common = same;
+	}
+	return common + 1 + APART < ALL_BITS ? common + 1 + APART : ALL_BITS;
+}
+
 /* One search, for all that are not decided yet. True: it found one. */
 static bool locate_look(struct native *native, int64_t now)
 {
@@ -328,7 +358,8 @@ static bool locate_look(struct native *native, int64_t now)
 		return false;
 	}
 	native_count(native, COUNT_TRANSACTIONS);
-	int there = search_among(native->channel[locate->channel].link, roms, away, n);
+	unsigned bits = bits_to_read(native, jobs[0], roms, n);
+	int there = search_among(native->channel[locate->channel].link, roms, away, n, bits);
 	if (there < 0) {
 		locate_failed(native, there);
 		return false;
@@ -337,6 +368,11 @@ static bool locate_look(struct native *native, int64_t now)
 	master_good(native, locate->channel);
 	if (there)
 		presence_found(native, roms[0], locate->channel, now);
+	if (there && bits < ALL_BITS) {
+		device_find(&native->table, roms[0])->likely = true;
+		/* what came back waits no whole turn of the others for its first value */
+		jobs[0]->soon = true;
+	}
 	for (unsigned i = 0; i < n; i++) {
 		if (there && memcmp(roms[i], roms[0], ROM_LEN) == 0 && !is_found(native, jobs[i]))
 			job_answer(native, jobs[i], -ENODEV); /* the table is full */

@@ -18,7 +18,7 @@ void presence_seen(struct device *device, int64_t now)
 {
 	device->ok_ns = now;
 	device->missed = 0;
-	device->astray = false;
+	device->astray = device->likely = false;
 }
 
 /* A device that is found here and there in turn, round after round, is two with one id. */

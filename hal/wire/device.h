@@ -39,6 +39,7 @@ struct device {
 	int64_t moved_ns; /* when it answered on another channel */
 	bool present;
 	bool astray;      /* did not answer where it was: the search for all wires will tell */
+	bool likely;      /* found by the first bits of its id, and has not answered since */
 	bool settled;     /* was read or written since it came or restarted */
 	bool locked;      /* a job of several transactions is at work with it */
 	uint8_t failures; /* requests in a row that it failed */

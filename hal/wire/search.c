@@ -119,6 +119,15 @@ bool search_same(const uint8_t a[8], const uint8_t b[8], unsigned bits)
 	return bits % 8 == 0 || ((a[bytes] ^ b[bytes]) & ((1 << bits % 8) - 1)) == 0;
 }
 
+unsigned search_common(const uint8_t a[8], const uint8_t b[8])
+{
+	unsigned bits = 0;
+
+	while (bits < 64 && rom_bit(a, bits + 1) == rom_bit(b, bits + 1))
+		bits++;
+	return bits;
+}
+
 /* Those that begin like roms[0], and whose next bit no chip has. */
 static void exclude(const uint8_t *const roms[], bool away[], unsigned n, unsigned position,
                     int bits)
@@ -129,11 +138,11 @@ static void exclude(const uint8_t *const roms[], bool away[], unsigned n, unsign
 }
 
 /*
- * The path of roms[0], bit by bit: 1 the search has ended at that device, 0 it is not there, or an
- * error.
+ * The path of roms[0], so many bits of it: 1 the search has ended at a device that begins so, 0
+ * none is there, or an error.
  */
 static int follow(struct link *link, uint8_t command, const uint8_t *const roms[], bool away[],
-                  unsigned n)
+                  unsigned n, unsigned length)
 {
 	int present = begin_search(link, command);
 
@@ -142,7 +151,7 @@ static int follow(struct link *link, uint8_t command, const uint8_t *const roms[
 			away[i] = true;
 	if (present <= 0)
 		return present;
-	for (unsigned position = 1; position <= 64; position++) {
+	for (unsigned position = 1; position <= length; position++) {
 		int bits = triplet(link, rom_bit(roms[0], position));
 
 		if (bits < 0)
@@ -157,10 +166,11 @@ static int follow(struct link *link, uint8_t command, const uint8_t *const roms[
 	return 1;
 }
 
-int search_among(struct link *link, const uint8_t *const roms[], bool away[], unsigned n)
+int search_among(struct link *link, const uint8_t *const roms[], bool away[], unsigned n,
+                 unsigned bits)
 {
 	if (!link->ops->verify)
-		return follow(link, ONEWIRE_SEARCH, roms, away, n);
+		return follow(link, ONEWIRE_SEARCH, roms, away, n, bits);
 	int present = link->ops->verify(link, roms[0], false);
 	away[0] |= present == 0;
 	return present;
@@ -172,5 +182,5 @@ int search_verify(struct link *link, const uint8_t rom[8], bool alarm)
 
 	if (link->ops->verify)
 		return link->ops->verify(link, rom, alarm);
-	return follow(link, alarm ? ONEWIRE_ALARM_SEARCH : ONEWIRE_SEARCH, &rom, &away, 1);
+	return follow(link, alarm ? ONEWIRE_ALARM_SEARCH : ONEWIRE_SEARCH, &rom, &away, 1, 64);
 }

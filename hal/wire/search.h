@@ -28,6 +28,8 @@ struct search {
 
 /* Are the first bits of two ids the same? */
 bool search_same(const uint8_t a[8], const uint8_t b[8], unsigned bits);
+/* How many of their first bits are the same: up to 64. */
+unsigned search_common(const uint8_t a[8], const uint8_t b[8]);
 void search_begin(struct search *search, bool alarm, uint8_t family);
 /*
  * 1 and the device in search->rom; 0 when there is no further one; -EBADMSG the id's checksum is
@@ -40,8 +42,9 @@ int search_next(struct search *search, struct link *link);
  */
 int search_verify(struct link *link, const uint8_t rom[8], bool alarm);
 /*
- * The same of roms[0], of n; away[i] becomes true for each that this one search shows not to be
- * there, roms[0] included: ids that no chip is near to are decided together. What is true already
- * stays. It leaves nothing selected.
+ * The same of the first bits of roms[0], of n, all 64 or less; away[i] becomes true for each that
+ * this one search shows not to be there, roms[0] included: ids that no chip is near to are decided
+ * together. What is true already stays. It leaves nothing selected.
  */
-int search_among(struct link *link, const uint8_t *const roms[], bool away[], unsigned n);
+int search_among(struct link *link, const uint8_t *const roms[], bool away[], unsigned n,
+                 unsigned bits);

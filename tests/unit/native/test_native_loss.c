@@ -100,6 +100,39 @@ static void test_the_next_one_of_a_wire_that_lost_several_is_looked_for_once(voi
 	TEST_ASSERT_EQUAL_UINT(next, resets_until_lost(slave[4], 0));
 }
 
+static unsigned found_again(const struct sim_slave *slave)
+{
+	unsigned n = 0;
+
+	for (unsigned i = 0; i < host.events; i++)
+		n += host.event[i].news == BUS_FOUND &&
+		     memcmp(host.event[i].rom, slave->rom, sizeof(slave->rom)) == 0;
+	return n;
+}
+
+/* What came back is looked for by the first bits of its id: its answer shows whether it is that. */
+static void test_a_stranger_whose_id_begins_the_same_passes_for_a_lost_device_once(void)
+{
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 0x0001), *stranger;
+
+	wire_add(0, "DS2401", 9);
+	start();
+	expect(true, of(slave, "power"), "1");
+	sim_wire_plug(&wire_net.wire[0], slave, false, wire_time());
+	TEST_ASSERT_EQUAL_INT(-ENODEV, result(BUS_READ, of(slave, "power"), NULL));
+	TEST_ASSERT_EQUAL_UINT(1, found_again(slave));
+	stranger = wire_add(0, "DS18B20", 0x8001);
+	for (unsigned i = 0; i < 5; i++) {
+		TEST_ASSERT_EQUAL_INT(-ENODEV, result(BUS_READ, of(slave, "power"), NULL));
+		TEST_ASSERT_EQUAL_UINT(2, found_again(slave));
+	}
+	TEST_ASSERT_EQUAL_UINT(0, found_again(stranger));
+	sim_wire_plug(&wire_net.wire[0], slave, true, wire_time());
+	expect(true, of(slave, "power"), "1");
+	TEST_ASSERT_EQUAL_UINT(3, found_again(slave));
+}
+
 static unsigned count_twins(const char **text)
 {
 	unsigned n = 0;
@@ -338,6 +371,7 @@ int main(void)
 	RUN_TEST(test_a_device_that_leaves_is_lost_and_found_again);
 	RUN_TEST(test_the_background_search_sees_devices_come_and_go);
 	RUN_TEST(test_the_next_one_of_a_wire_that_lost_several_is_looked_for_once);
+	RUN_TEST(test_a_stranger_whose_id_begins_the_same_passes_for_a_lost_device_once);
 	RUN_TEST(test_an_id_on_two_wires_is_reported_once);
 	RUN_TEST(test_a_device_that_is_moved_and_moved_back_is_no_twin);
 	RUN_TEST(test_the_ladder_is_climbed_until_the_chip_answers);

@@ -4,6 +4,7 @@
 
 #include "unity.h"
 
+#include "hal/wire/search.h"
 #include "tests/unit/aid/native_scene.h"
 
 #define DEVICES 30
@@ -76,10 +77,25 @@ static void test_all_devices_of_a_noisy_wire_are_found(void)
 	TEST_ASSERT_EQUAL_UINT64(0, counted("devices_lost"));
 }
 
+static void test_what_two_ids_have_in_common_is_counted_from_the_first_bit(void)
+{
+	uint8_t a[8] = {0x28, 0x01, 0x00, 0xff, 0, 0, 0, 0x5a}, b[8];
+
+	memcpy(b, a, sizeof(b));
+	TEST_ASSERT_EQUAL_UINT(64, search_common(a, b));
+	b[7] ^= 0x80;
+	TEST_ASSERT_EQUAL_UINT(63, search_common(a, b));
+	b[1] ^= 0x10;
+	TEST_ASSERT_EQUAL_UINT(12, search_common(a, b));
+	b[0] ^= 0x01;
+	TEST_ASSERT_EQUAL_UINT(0, search_common(a, b));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_a_noisy_wire_can_be_listed);
 	RUN_TEST(test_all_devices_of_a_noisy_wire_are_found);
+	RUN_TEST(test_what_two_ids_have_in_common_is_counted_from_the_first_bit);
 	return UNITY_END();
 }
