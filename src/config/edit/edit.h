@@ -15,8 +15,7 @@ int edit_add(struct rio **rio, const char *name, const char *path, const char *c
              unsigned count, struct config_report *report);
 /*
  * Change an item, or the driver's own keys: name "OwsDrv"; or, if no item is called so, those of
- * a block: "Recorder", "Influx", "Web", "Mqtt", "Notify" or "Bus:TARGET", which is made if there is
- * none.
+ * a block: that of a program, such as "Web", or "Bus:TARGET", which is made if there is none.
  */
 int edit_set(struct rio **rio, const char *name, const char *const *settings, unsigned count,
              struct config_report *report);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The blocks of a configuration by the names that edits have for them: an item's own name;
- * "OwsDrv"; and, where no item is called so, "Recorder", "Influx", "Web", "Mqtt", "Notify", and
+ * "OwsDrv"; and, where no item is called so, that of a program's block, such as "Web", and
  * "Bus:TARGET".
  */
 #pragma once

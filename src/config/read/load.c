@@ -109,9 +109,10 @@ static void notify_derive(struct build *build, const struct option_value *values
 static void build_block(struct build *build, const struct option_def *def,
                         const struct rio_node *block)
 {
-	static block_derive *const derive[] = {
-		[PLACE_RECORDER] = recorder_derive, [PLACE_INFLUX] = NULL,
-		[PLACE_WEB] = web_derive,           [PLACE_MQTT] = mqtt_derive,
+	static block_derive *const derive[PLACE_COUNT] = {
+		[PLACE_RECORDER] = recorder_derive,
+		[PLACE_WEB] = web_derive,
+		[PLACE_MQTT] = mqtt_derive,
 		[PLACE_NOTIFY] = notify_derive,
 	};
 	struct option_value values[OPTION_COUNT_ALL];

@@ -2,8 +2,9 @@
 /*
  * All keys of the configuration: name in enum option, key, block, kind of value, the member that
  * holds it in the struct of the block, and the other members of struct option_def. OTHER() has no
- * such member: it is a block, or code of its own takes the value. Included where the two say what
- * is made of each.
+ * such member: code of its own takes the value. BLOCK() is a block of a program, which stands once:
+ * its place, its name, its member of struct config, which is a struct config_MEMBER. Included where
+ * the three say what is made of each.
  */
 /* clang-format off */
 OTHER(VERSION, "Version", DRIVER, TEXT, .preset = "1.00", .help = "version of the file format")
@@ -36,15 +37,15 @@ OPTION(ALARM_LINE, "AlarmLine", DRIVER, TEXT, alarm_line, AT(config, alarm_line_
 OPTION(HEARTBEAT_LINE, "HeartbeatLine", DRIVER, TEXT, heartbeat_line, AT(config, heartbeat_line_at),
        .help = "GPIO line that blinks while owsd is well")
 OTHER(BUS, "Bus", DRIVER, BLOCK, .repeats = true, .help = "options of one target")
-OTHER(RECORDER, "Recorder", DRIVER, BLOCK, INSIDE(RECORDER, recorder),
+BLOCK(RECORDER, "Recorder", recorder,
       .help = "options of owsd-recorder, which keeps the history")
-OTHER(INFLUX, "Influx", DRIVER, BLOCK, INSIDE(INFLUX, influx),
+BLOCK(INFLUX, "Influx", influx,
       .help = "options of owsd-influx, which pushes values to a server")
-OTHER(WEB, "Web", DRIVER, BLOCK, INSIDE(WEB, web),
+BLOCK(WEB, "Web", web,
       .help = "options of owsd-web, which shows the signals in a browser")
-OTHER(MQTT, "Mqtt", DRIVER, BLOCK, INSIDE(MQTT, mqtt),
+BLOCK(MQTT, "Mqtt", mqtt,
       .help = "options of owsd-mqtt, which publishes the signals to a broker")
-OTHER(NOTIFY, "Notify", DRIVER, BLOCK, INSIDE(NOTIFY, notify), AT(config, notify.at),
+BLOCK(NOTIFY, "Notify", notify, AT(config, notify.at),
       .help = "options of owsd-notify, which tells people of alarms")
 OTHER(ITEM, "Item", DRIVER, BLOCK, .repeats = true, .help = "one signal")
 

@@ -13,6 +13,17 @@
 
 #define DAY 86400.0
 
+/* The struct of each place. */
+typedef struct config of_DRIVER;
+typedef struct config_item of_ITEM;
+#define OTHER(...)
+#define OPTION(...)
+#define BLOCK(name, key, member, ...) typedef struct config_##member of_##name;
+#include "src/config/read/option_list.h"
+#undef BLOCK
+#undef OPTION
+#undef OTHER
+
 const struct option_def option_table[OPTION_COUNT_ALL] = {
 #define RANGE(least_, most_) .least = (least_), .most = (most_)
 #define STORE_OF(member) \
@@ -22,36 +33,39 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
 		unsigned: STORE_UNSIGNED, \
 		int64_t: STORE_NS, \
 		double: STORE_DOUBLE)
-#define OF_DRIVER struct config
-#define OF_ITEM struct config_item
-#define OF_RECORDER struct config_recorder
-#define OF_INFLUX struct config_influx
-#define OF_WEB struct config_web
-#define OF_MQTT struct config_mqtt
-#define OF_NOTIFY struct config_notify
 #define HAS(of, member) .has = offsetof(struct of, member)
 #define AT(of, member) .at = offsetof(struct of, member)
-/* NOLINTBEGIN(bugprone-macro-parentheses): the names of members */
-#define INSIDE(place_, member) \
-	.inside = PLACE_##place_, .offset = offsetof(struct config, member), \
-	.has = offsetof(struct config, member.given)
-/* NOLINTEND(bugprone-macro-parentheses) */
 #define OTHER(name, key_, place_, kind_, ...) \
 	[OPT_##name] = { \
 		.key = (key_), .place = PLACE_##place_, .kind = OPTION_##kind_, __VA_ARGS__},
+/* NOLINTBEGIN(bugprone-macro-parentheses): the names of members */
+#define BLOCK(name, key_, member, ...) \
+	OTHER(name, key_, DRIVER, BLOCK, .inside = PLACE_##name, \
+	      .offset = offsetof(struct config, member), \
+	      .has = offsetof(struct config, member.given), __VA_ARGS__)
+/* NOLINTEND(bugprone-macro-parentheses) */
 #define OPTION(name, key_, place_, kind_, member, ...) \
-	OTHER(name, key_, place_, kind_, .offset = offsetof(OF_##place_, member), \
-	      .store = STORE_OF(((OF_##place_ *)0)->member), __VA_ARGS__)
+	OTHER(name, key_, place_, kind_, .offset = offsetof(of_##place_, member), \
+	      .store = STORE_OF(((of_##place_ *)0)->member), __VA_ARGS__)
 #include "src/config/read/option_list.h"
+#undef BLOCK
 #undef OPTION
+#undef OTHER
 };
-
-static const char *const place_names[] = {"OwsDrv", "Item", "Bus",  "Recorder",
-                                          "Influx", "Web",  "Mqtt", "Notify"};
 
 const char *option_place_name(enum option_place place)
 {
-	return place_names[place];
+	static const char *const names[PLACE_COUNT] = {
+		[PLACE_DRIVER] = "OwsDrv",
+		[PLACE_ITEM] = "Item",
+		[PLACE_BUS] = "Bus",
+#define OTHER(...)
+#define OPTION(...)
+#define BLOCK(name, key, ...) [PLACE_##name] = (key),
+#include "src/config/read/option_list.h"
+	};
+
+	return names[place];
 }
 
 int option_find(enum option_place place, const char *key)
@@ -146,17 +160,17 @@ static void report_unknown(const struct rio_node *node, enum option_place place,
 		report_error(report, node->at,
 		             "unknown key %s in %s looks like part of an alarm, which would be "
 		             "off: write %s in its place",
-		             node->key, place_names[place], alarm);
+		             node->key, option_place_name(place), alarm);
 	else if (node->kind == RIO_BLOCK && option_find(PLACE_DRIVER, node->key) >= 0)
 		report_warning(report, node->at,
 		               "unknown key %s in %s is ignored; is a '}' missing before line %d?",
-		               node->key, place_names[place], node->at.line);
+		               node->key, option_place_name(place), node->at.line);
 	else if (nearest)
 		report_warning(report, node->at, "unknown key %s in %s is ignored; is it %s?",
-		               node->key, place_names[place], nearest);
+		               node->key, option_place_name(place), nearest);
 	else
 		report_warning(report, node->at, "unknown key %s in %s is ignored", node->key,
-		               place_names[place]);
+		               option_place_name(place));
 }
 
 static bool parse_hex(const char *text, double *number)
@@ -428,7 +442,7 @@ static void check_needed(struct build *build, const struct option_def *def,
 {
 	if (block && def->needed && (!value->given || !*value->text))
 		report_error(build->report, block->at, "%s without %s: write it, as %s \"%s\"",
-		             place_names[def->place], def->key, def->key, def->needed);
+		             option_place_name(def->place), def->key, def->key, def->needed);
 }
 
 void options_read(struct build *build, const struct rio_node *block, enum option_place place,

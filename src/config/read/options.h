@@ -14,11 +14,14 @@ enum option_place {
 	PLACE_DRIVER,
 	PLACE_ITEM,
 	PLACE_BUS,
-	PLACE_RECORDER,
-	PLACE_INFLUX,
-	PLACE_WEB,
-	PLACE_MQTT,
-	PLACE_NOTIFY,
+#define OTHER(...)
+#define OPTION(...)
+#define BLOCK(name, ...) PLACE_##name,
+#include "src/config/read/option_list.h"
+#undef BLOCK
+#undef OPTION
+#undef OTHER
+	PLACE_COUNT,
 };
 
 enum option_kind {
@@ -45,7 +48,9 @@ enum option_store {
 enum option {
 #define OTHER(name, ...) OPT_##name,
 #define OPTION OTHER
+#define BLOCK OTHER
 #include "src/config/read/option_list.h"
+#undef BLOCK
 #undef OPTION
 #undef OTHER
 	OPTION_COUNT_ALL,

@@ -10,7 +10,6 @@ import {recall, remember} from "./kept.js";
 const STEPS = 200;            // of undo
 const CHARACTERS = 32 << 20;  // of all texts that undo keeps
 const SAVE_MS = 60000;        // a reload waits for what is on the bus
-const PROGRAMS = ["Web", "Recorder", "Influx", "Mqtt", "Notify"]; // that have a block
 const EMPTY = {targets: [], driver: {}, blocks: {}, buses: [], items: []};
 
 class Draft extends EventTarget {
@@ -139,8 +138,8 @@ class Draft extends EventTarget {
 		return this.#queue(async () => {
 			let answer = await post("config/draft", step);
 			const kept = [], lost = [];
-			for (const name of PROGRAMS) {
-				const keys = Object.entries(this.saved.blocks[name] ?? {});
+			for (const [name, block] of Object.entries(this.saved.blocks)) {
+				const keys = Object.entries(block);
 				if (!keys.length || answer.model.blocks[name])
 					continue;
 				try {
