@@ -241,11 +241,11 @@ endef
 # --- The rooms: each is a folder, of source and of unit tests; its main header says what it is, and
 # docs/design.md which others it may use
 SOURCES  := $(wildcard src/*/*/*.c src/*/*/*/*.c hal/*/*.c hal/*/*/*.c)
-# Of owsd-web: what calls libmicrohttpd; its main(), and what must be in no other program
-WEB_MAIN := src/faces/web/owsd_web.c src/faces/web/no_tls.c src/faces/web/wire.c
-WEB_HTTP := $(WEB_MAIN) $(patsubst %,src/faces/web/%.c,api command devices draft events guard http lists past save special stored stream)
-# Of owsd-mqtt: what calls libmosquitto, and its main()
-MQTT_ALL := $(patsubst %,src/faces/mqtt/%.c,owsd_mqtt mqtt arrivals broker client advice)
+# Of owsd-web: what must be in no other program; and what calls libmicrohttpd
+WEB_ALONE := src/faces/web/no_tls.c src/faces/web/wire.c
+WEB_HTTP := $(WEB_ALONE) $(patsubst %,src/faces/web/%.c,api command devices draft events guard http lists past save special stored stream)
+# Of owsd-mqtt: what calls libmosquitto
+MQTT_ALL := $(patsubst %,src/faces/mqtt/%.c,mqtt arrivals broker client advice)
 # The consumers' library
 LIBOWS   := $(wildcard src/memory/libows/*.c)
 # And the one that reads history
@@ -271,11 +271,10 @@ BENCH    := $(filter-out $(if $(SQLITE),,%/bench_history.c %/bench_recorder.c),$
 BENCH_AID := $(filter-out tests/bench/bench_%,$(wildcard tests/bench/*.c)) $(SIM_TABLE) tests/unit/aid/plant.c tests/unit/aid/plant_net.c tests/unit/aid/giving.c
 # ---------------------------------------------------------------------------------------------
 
-CORE     := $(filter-out src/daemon/owsd/owsd.c src/tool/owsctl/owsctl.c src/history/recorder/recorder.c src/faces/influx/influx.c \
-            src/faces/notify/owsd_notify.c \
-            src/faces/writer/owsd_writer.c $(SIM_TABLE) $(if $(SQLITE),src/history/library/none.c,$(SQLITE_ALL)) \
-            $(if $(CURL),,src/faces/kit/post.c) $(if $(HTTPD),$(WEB_MAIN),$(WEB_HTTP)) \
-            $(if $(MOSQUITTO),src/faces/mqtt/owsd_mqtt.c,$(MQTT_ALL)) \
+# With main()
+FACE_MAIN := $(wildcard src/*/*/owsd_*.c)
+CORE     := $(filter-out src/daemon/owsd/owsd.c src/tool/owsctl/owsctl.c $(FACE_MAIN) $(SIM_TABLE) $(if $(SQLITE),src/history/library/none.c,$(SQLITE_ALL)) \
+            $(if $(CURL),,src/faces/kit/post.c) $(if $(HTTPD),$(WEB_ALONE),$(WEB_HTTP)) $(if $(MOSQUITTO),,$(MQTT_ALL)) \
             $(if $(PROTOBUFC),,src/faces/mqtt/sparkplug.c),$(SOURCES))
 obj       = $(patsubst %.c,$(B)/%.o,$(1))
 UNIT     := $(patsubst %.c,$(B)/unit/%,$(notdir $(UNIT_SRC))) $(B)/unit/test_endurance
@@ -349,15 +348,11 @@ $(PROGRAMS): $(B)/core.a $(B)/with/ld
 $(WITH_SIM:%=$(B)/%): $(call obj,$(SIM_TABLE))
 $(B)/owsd $(B)/owsd-sim: $(B)/src/daemon/owsd/owsd.o
 $(B)/owsctl $(B)/owsctl-sim: $(B)/src/tool/owsctl/owsctl.o
-$(B)/owsd-recorder: $(B)/src/history/recorder/recorder.o
-$(B)/owsd-writer $(B)/owsd-writer-sim: $(B)/src/faces/writer/owsd_writer.o
-$(B)/owsd-influx: $(B)/src/faces/influx/influx.o
-$(B)/owsd-influx: LIBS += -lcurl
-$(B)/owsd-notify: $(B)/src/faces/notify/owsd_notify.o
-$(B)/owsd-notify: LIBS += -lcurl
-$(B)/owsd-mqtt: $(B)/src/faces/mqtt/owsd_mqtt.o
+$(foreach f,$(FACES),$(eval $(B)/$f: $(call obj,$(filter %/$(subst -,_,$f).c,$(FACE_MAIN)))))
+$(B)/owsd-writer-sim: $(B)/src/faces/writer/owsd_writer.o
+$(B)/owsd-influx $(B)/owsd-notify: LIBS += -lcurl
 $(B)/owsd-mqtt: LIBS += -lmosquitto $(if $(PROTOBUFC),-lprotobuf-c)
-$(B)/owsd-web: $(call obj,$(WEB_MAIN))
+$(B)/owsd-web: $(call obj,$(WEB_ALONE))
 $(B)/owsd-web: LIBS += -lmicrohttpd -Wl,--export-dynamic-symbol=_gnutls_global_init_skip
 
 # --- libows exports ows_* and nothing else, libows-history ows_history_* -----------------------

@@ -8,7 +8,7 @@ exec >>/root/test/lines 2>&1
 cd /root/test || exit 1
 . ./lib.sh
 export DEBIAN_FRONTEND=noninteractive LC_ALL=C
-packages='owsd owsd-recorder owsd-influx owsd-notify owsd-mqtt owsd-web'
+packages=$(for p in owsd*_*.deb; do echo "${p%%_*}"; done)
 
 # units PACKAGE: what is enabled of it. HOUSE is a second instance
 units() {
@@ -68,7 +68,7 @@ secrets() {
 	broker=$!
 	systemctl restart owsd-mqtt@OWS.service
 	does 'the service hands the password over' wait $broker
-	for user in owsd owsd-writer owsd-mqtt owsd-web owsd-influx owsd-notify owsd-recorder; do
+	for user in $packages owsd-writer; do
 		does "$user makes no file among the secrets" sh -c "! setpriv --reuid $user --regid owsd \
 			--init-groups ln -s /etc/shadow /etc/credstore/owsd-mqtt.$user && ! setpriv --reuid $user \
 			--regid owsd --init-groups cat /etc/credstore/owsd-mqtt.mqtt-password"
@@ -79,7 +79,7 @@ secrets() {
 }
 # reloads: no unit says yes to a broken file and does nothing; each takes over a good one
 reloads() {
-	services='owsd@OWS owsd-recorder@OWS owsd-influx@OWS owsd-notify@OWS owsd-mqtt@OWS owsd-web@OWS'
+	services=$(for p in $packages; do echo "$p@OWS"; done)
 	before=$(pids "$services")
 	echo 'OwsDrv { Period wrong }' >/etc/owsd/OWS.rio
 	for s in $services; do

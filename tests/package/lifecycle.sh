@@ -25,14 +25,13 @@ as_user() { user=$1 && shift && setpriv --reuid "$user" --regid nogroup --init-g
 refused() { ! "$@"; }
 
 # The libraries first, so that what is compared is ours
-libraries=$(for p in owsd_*.deb owsd-sim_*.deb owsd-influx_*.deb owsd-notify_*.deb owsd-mqtt_*.deb owsd-web_*.deb owsd-cockpit_*.deb; do dpkg-deb -f "$p" Depends; done |
+libraries=$(for p in *.deb; do dpkg-deb -f "$p" Depends; done |
 	tr ',' '\n' | sed -n 's/^ *\(lib[a-z0-9.+-]*\|cockpit-bridge\).*/\1/p' | grep -v '^libows\|^libc6$' | sort -u | tr '\n' ' ')
 does "what it needs is in the system's archive ($libraries)" \
 	sh -c "apt-get -q update && $apt install $libraries"
 everything >/tmp/before
 
-does 'the packages are installed' $apt install ./libows1_*.deb ./libows-history1_*.deb ./libows-dev_*.deb \
-	./python3-ows_*.deb ./owsd_*.deb ./owsd-sim_*.deb ./owsd-recorder_*.deb ./owsd-influx_*.deb ./owsd-notify_*.deb ./owsd-mqtt_*.deb ./owsd-web_*.deb ./owsd-cockpit_*.deb
+does 'the packages are installed' $apt install ./*.deb
 version=$(dpkg-query -W -f '${Version}' owsd)
 same 'their user is in the groups that it needs' 'gpio i2c owsd owsd-control' \
 	"$(id -nG owsd | tr ' ' '\n' | sort | tr '\n' ' ' | sed 's/ $//')"
@@ -137,9 +136,9 @@ does 'a configuration that was deleted stays deleted' test ! -e /etc/owsd/OWS.ri
 cp /tmp/OWS.rio /etc/owsd/OWS.rio
 cp /tmp/OWS.rio /etc/owsd/HOUSE.rio
 service owsd restart
-does 'all are purged' $apt purge owsd owsd-sim owsd-recorder owsd-influx owsd-notify owsd-mqtt owsd-web owsd-cockpit libows1 libows-history1 libows-dev python3-ows
+does 'all are purged' $apt purge $(for p in *.deb; do echo "${p%%_*}"; done)
 does 'nothing runs' refused pgrep -x owsd
-same 'no segment and no history stays' '' "$(find /run/owsd /var/lib/owsd /var/lib/owsd-recorder /var/lib/owsd-influx /var/lib/owsd-notify /var/lib/owsd-mqtt 2>/dev/null)"
+same 'no segment and no history stays' '' "$(find /run/owsd /var/lib/owsd* 2>/dev/null)"
 does 'what its owner has made does' test -e /etc/owsd/HOUSE.rio
 rm -r /etc/owsd
 kill $simulator

@@ -10,8 +10,7 @@ import re
 
 # file: the name by which the page calls it, as in "`first.c`:" before it, or None
 Block = collections.namedtuple("Block", "page line language text file")
-MAN_LANGUAGE = {"owsctl.1": "sh", "owsd.8": "sh", "owsd-recorder.8": "sh", "owsd-influx.8": "sh", "owsd-mqtt.8": "sh", "owsd-notify.8": "sh",
-                "owsd-sim.8": "sh", "owsd-web.8": "sh", "owsd-writer.8": "sh", "owsd.rio.5": "rio", "libows.3": "c", "libows-history.3": "c"}
+MAN_LANGUAGE = {".1": "sh", ".3": "c", ".5": "rio", ".8": "sh"}
 FENCE = re.compile(r"^( *)```(.*)$")
 
 
@@ -55,7 +54,7 @@ def man_blocks(path):
     section = re.split(r"^\.S[Hh] ", text[heading.end():], maxsplit=1, flags=re.M)[0]
     line = text[:heading.end()].count("\n") + 1
     found = re.findall(r"^\.(?:nf|EX|Bd .*)\n(.*?)^\.(?:fi|EE|Ed)$", section, re.M | re.S)
-    return [Block(path.name, line, MAN_LANGUAGE[path.name], plain(t), None) for t in found]
+    return [Block(path.name, line, MAN_LANGUAGE[path.suffix], plain(t), None) for t in found]
 
 
 def plain(text):

@@ -29,7 +29,11 @@ HARDWARE = re.compile(r"^(i2c:(auto|/dev/i2c-\d(:0x[0-9a-f]{2}(\.\d)?)?)|w1(:.*)
 OURS = set(re.findall(r"^Package: (\S+)$", (SOURCE / "board/debian/control").read_text(), re.M))
 DEBIAN = {"owserver", "ow-shell", "mosquitto", "libgpiod-dev", "i2c-tools", "linuxcnc-uspace",
           "linuxcnc-uspace-dev", "msmtp-mta"} | OURS
-UNIT = r"(owsd(-firstboot|-recorder|-influx|-mqtt|-notify|@\w+|-(recorder|influx|mqtt|notify)@\w+|-(web|writer)@\w+(\.socket|\.service)?)?|owserver(\.socket|\.service)?)"
+FACES = [re.split(" *[|] *", line) for line in (SOURCE / "board/faces").read_text().splitlines()
+         if not line.startswith("#")]
+SOCKETED = "|".join(row[0] for row in FACES if row[-1] == "-")
+OTHERS = "|".join(row[0] for row in FACES if row[-1] != "-")
+UNIT = rf"(owsd(-firstboot|@\w+)?|({OTHERS})(@\w+)?|({SOCKETED})@\w+(\.socket|\.service)?|owserver(\.socket|\.service)?)"
 GROUPS = "(i2c|gpio|owsd|owsd-control|owsd-config)"
 
 # What may be said to programs that are not run: the whole of their arguments
@@ -243,9 +247,8 @@ def man(arguments):
         fail(f"no page {page}")
 
 
-RUN = {"owsctl": owsctl, "owsctl-sim": owsctl, "owsd": owsd, "owsd-sim": owsd, "owsd-recorder": face("owsd-recorder"),
-       "owsd-influx": face("owsd-influx"), "owsd-mqtt": face("owsd-mqtt"), "owsd-notify": face("owsd-notify"),
-       "owsd-writer": face("owsd-writer"), "owsd-web": owsd_web, "sudo": sudo, "make": make, "apt": apt, "apt-get": apt,
+RUN = {"owsctl": owsctl, "owsctl-sim": owsctl, "owsd": owsd, "owsd-sim": owsd,
+       **{row[0]: face(row[0]) for row in FACES}, "owsd-web": owsd_web, "sudo": sudo, "make": make, "apt": apt, "apt-get": apt,
        "pkg-config": pkg_config, "jq": jq, "man": man, "cc": compiler("gcc"), "c++": compiler("g++")}
 SHELL = ["owdir", "owread", "owwrite"]
 OWFS = ["owserver", "owfs", "owhttpd"]
