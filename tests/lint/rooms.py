@@ -73,7 +73,9 @@ def check_a_room_uses_only_the_rooms_that_the_design_names_and_those_stand_below
     taken = between_rooms(found)
     rooms = {graph.room_of(graph.unit_of(f)): f for f in found.files}
     for room in rooms.keys() - may.keys():
-        yield rooms[room], 1, f"{DESIGN} has no room {room}; say there what it is and what it may use"
+        uses = ", ".join(f"`{other}`" for other in order if other in taken.get(room, {}))
+        yield rooms[room], 1, f"{DESIGN} has no room {room}; say there, above those that it uses: " \
+            f"- `{room}`: WHAT IT IS. Uses {uses or 'no other'}."
     for room, used in may.items():
         line = tree.line_of(DESIGN, f"- `{room}`: ")
         if room not in rooms:
