@@ -209,6 +209,18 @@ def test_what_waits_survives_a_kill_and_what_was_told_is_not_told_again(scene):
         assert [t.split(";")[0] for t in web.texts()] == ["freezer high: 31 °C", "freezer high high: 41 °C"], web.texts()
 
 
+def test_a_second_one_of_the_instance_is_refused_and_names_what_the_first_keeps(scene):
+    with peer.Peer({FREEZER: "20"}) as house, Web() as web:
+        daemon, one = notify(scene, house.target, dict(Url=web.url))
+        command = [NOTIFY, "-n", daemon.name, "-c", daemon.config]
+        place = {**os.environ, **DIRECT, "STATE_DIRECTORY": str(scene.path / "state")}
+        done = subprocess.run(command, env=place, capture_output=True, text=True, timeout=20, check=False)
+        assert done.returncode and f"{scene.path}/state/told is kept by another owsd-notify of {daemon.name}" in done.stderr, done
+        one.process.kill()
+        one.process.wait()
+        face(scene, daemon)  # a killed one holds nothing
+
+
 def test_an_alarm_that_nobody_acknowledges_goes_to_another_person_and_one_that_is_does_not(scene):
     first, second = scene.path / "first", scene.path / "second"
     sendmail = program(scene, "sendmail", f'mail=$(cat); case $mail in *boss@*) echo "$mail" >> {second} ;;'

@@ -1,29 +1,45 @@
 /* SPDX-License-Identifier: MIT */
 /* What survives an end of owsd-notify. */
 #include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "hal/base/time.h"
 #include "src/faces/notify/kept.h"
 
-void kept_read(struct kept *kept, const char *program, const char *instance, int64_t now_ns,
-               int64_t *told_ns, int64_t *looked_ns)
+/* The lock's descriptor or a negative errno. */
+static int lock_directory(const char *path)
+{
+	int directory = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+	int lock = directory < 0 ? -errno : history_lock(directory);
+
+	if (directory >= 0)
+		close(directory);
+	return lock;
+}
+
+int kept_open(struct kept *kept, const char *program, const char *instance, int64_t now_ns,
+              int64_t *told_ns, int64_t *looked_ns)
 {
 	char directory[HISTORY_PATH];
 	int64_t boot, told, looked;
 	FILE *in;
 
-	*kept = (struct kept){.boot = history_boot_present()};
+	*kept = (struct kept){.boot = history_boot_present(), .lock = -1};
 	if (history_place_state(program, "notify", instance, directory))
-		return;
+		return 0;
 	snprintf(kept->path, sizeof(kept->path), "%s/told", directory);
 	history_make_above(kept->path);
+	kept->lock = lock_directory(directory);
+	if (kept->lock == -EBUSY)
+		return -EBUSY;
 	in = fopen(kept->path, "re");
 	if (!in)
-		return;
+		return 0;
 	/* NOLINTNEXTLINE(cert-err34-c): its own */
 	if (fscanf(in, "%" SCNd64 " %" SCNd64 " %" SCNd64, &boot, &told, &looked) == 3) {
 		bool here = boot == kept->boot && told <= now_ns && looked <= now_ns;
@@ -32,6 +48,7 @@ void kept_read(struct kept *kept, const char *program, const char *instance, int
 		*looked_ns = here ? looked : 0;
 	}
 	fclose(in);
+	return 0;
 }
 
 void kept_write(struct kept *kept, struct log *log, int64_t told_ns, int64_t looked_ns,
@@ -57,4 +74,11 @@ void kept_write(struct kept *kept, struct log *log, int64_t told_ns, int64_t loo
 	}
 	kept->told_ns = told_ns;
 	kept->looked_ns = looked_ns;
+}
+
+void kept_close(struct kept *kept)
+{
+	if (kept->lock >= 0)
+		close(kept->lock);
+	kept->lock = -1;
 }

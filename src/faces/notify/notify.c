@@ -339,8 +339,15 @@ int notify_start(struct face *face)
 		return -ENOMEM;
 	}
 	notify.seen_ns = notify.looked_ns = now_ns;
-	kept_read(&notify.kept, face->ops->program, face->arguments->instance, now_ns,
-	          &notify.seen_ns, &notify.looked_ns);
+	if (kept_open(&notify.kept, face->ops->program, face->arguments->instance, now_ns,
+	              &notify.seen_ns, &notify.looked_ns)) {
+		face_complain(face->ops->program,
+		              "%s is kept by another owsd-notify of %s, which tells the same "
+		              "alarms: end it, or this one",
+		              notify.kept.path, face->arguments->instance);
+		ways_close(&notify.ways);
+		return -EBUSY;
+	}
 	notify.known_ns = notify.seen_ns;
 	notify.found_ns = notify.looked_ns;
 	/* those that were told may be the ones that nobody acknowledges */
@@ -461,6 +468,7 @@ void notify_end(struct face *face)
 {
 	notify.kept.at_ns = 0;
 	keep(face, notify.looked_ns, ows_now());
+	kept_close(&notify.kept);
 	ways_close(&notify.ways);
 	free(notify.rows);
 }

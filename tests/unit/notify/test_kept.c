@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: MIT */
+/* Tests of what owsd-notify keeps over its end. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "unity.h"
+
+#include "src/faces/notify/kept.h"
+
+#define NOW 1000
+
+static char directory[] = "/tmp/owsd-kept-XXXXXX", path[sizeof(directory) + 8];
+static struct kept kept, other;
+static int64_t told, looked;
+
+void setUp(void)
+{
+	TEST_ASSERT_NOT_NULL(mkdtemp(directory));
+	setenv("STATE_DIRECTORY", directory, 1);
+	told = looked = NOW;
+	TEST_ASSERT_EQUAL_INT(0, kept_open(&kept, "owsd-notify", "T", NOW, &told, &looked));
+}
+
+void tearDown(void)
+{
+	kept_close(&kept);
+	snprintf(path, sizeof(path), "%s/told", directory);
+	remove(path);
+	snprintf(path, sizeof(path), "%s/lock", directory);
+	remove(path);
+	rmdir(directory);
+	snprintf(directory + sizeof(directory) - 7, 7, "XXXXXX");
+}
+
+static void test_a_second_one_is_refused_until_the_first_is_closed(void)
+{
+	TEST_ASSERT_EQUAL_INT(-EBUSY, kept_open(&other, "owsd-notify", "T", NOW, &told, &looked));
+	kept_close(&other); /* it closes nothing of the first */
+	TEST_ASSERT_EQUAL_INT(-EBUSY, kept_open(&other, "owsd-notify", "T", NOW, &told, &looked));
+	kept_close(&kept);
+	TEST_ASSERT_EQUAL_INT(0, kept_open(&other, "owsd-notify", "T", NOW, &told, &looked));
+	kept_close(&other);
+}
+
+static void test_what_is_written_is_read_and_that_of_another_boot_is_not(void)
+{
+	TEST_ASSERT_EQUAL_INT64(NOW, told); /* there was no file */
+	kept_write(&kept, NULL, 700, 600, NOW);
+	kept_close(&kept);
+	TEST_ASSERT_EQUAL_INT(0, kept_open(&kept, "owsd-notify", "T", NOW, &told, &looked));
+	TEST_ASSERT_EQUAL_INT64(700, told);
+	TEST_ASSERT_EQUAL_INT64(600, looked);
+	kept.boot++;
+	kept_write(&kept, NULL, 800, 600, NOW);
+	kept_close(&kept);
+	TEST_ASSERT_EQUAL_INT(0, kept_open(&kept, "owsd-notify", "T", NOW, &told, &looked));
+	TEST_ASSERT_EQUAL_INT64(0, told);
+	TEST_ASSERT_EQUAL_INT64(0, looked);
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_a_second_one_is_refused_until_the_first_is_closed);
+	RUN_TEST(test_what_is_written_is_read_and_that_of_another_boot_is_not);
+	return UNITY_END();
+}
