@@ -12,12 +12,13 @@ TABLE = "src/ground/signal/words_list.h"
 SCRIPT = "src/faces/web/page/words.js"
 PAGE = "docs/troubleshooting.md"
 PUBLIC = "src/public/ows.h"
+MACROS = ("QUALITY", "ERROR", "ALARM")
 STRINGS = r'"(?:[^"\\]|\\.)*"'
 
 
 def rows(text, macro):
     """The arguments of each row, of which the first is a name and the others are texts."""
-    for found in re.finditer(rf"^{macro}\((\w+),((?:\s*{STRINGS},?)+)\)$", text, re.M):
+    for found in re.finditer(rf"^{macro}\((\w+(?:, \w+)?),((?:\s*{STRINGS},?)+)\)$", text, re.M):
         texts, joined = [], ""
         for piece, end in re.findall(rf"({STRINGS})(,|\s*)", found[2] + ","):
             joined += piece[1:-1].replace('\\"', '"')
@@ -47,7 +48,7 @@ def script_of(table, public):
 
 
 def page_of(table):
-    """Two lists: of qualities with cause and remedy, of errors with the remedy."""
+    """Three lists: of qualities and of alarms with cause and remedy, of errors with the remedy."""
     def entry(texts):
         lines = []
         for depth, text in enumerate(texts):
@@ -57,8 +58,11 @@ def page_of(table):
                                    subsequent_indent=["  ", "    "][depth])
         return lines
 
-    out = [line for _, word, cause, remedy in rows(table, "QUALITY")
-           for line in entry([f"`{word}`: {cause}", f"Remedy: {remedy}"])]
+    out = []
+    for macro, title in (("QUALITY", None), ("ALARM", "The alarms of devices:")):
+        out += ["", title, ""] if title else []
+        out += [line for _, word, cause, remedy in rows(table, macro)
+                for line in entry([f"`{word}`: {cause}", f"Remedy: {remedy}"])]
     out += ["", "The errors:", ""]
     errors = {}
     for _, word, remedy in rows(table, "ERROR"):
@@ -83,8 +87,8 @@ def check_the_words_of_qualities_and_errors_are_those_of_the_table(tree):
     if TABLE not in tree.files:
         return
     texts = {file: tree.text(file) for file in (TABLE, SCRIPT, PAGE, PUBLIC)}
-    count = sum(len(re.findall(rf"^{macro}\(", texts[TABLE], re.M)) for macro in ("QUALITY", "ERROR"))
-    read = sum(len(list(rows(texts[TABLE], macro))) for macro in ("QUALITY", "ERROR"))
+    count = sum(len(re.findall(rf"^{macro}\(", texts[TABLE], re.M)) for macro in MACROS)
+    read = sum(len(list(rows(texts[TABLE], macro))) for macro in MACROS)
     if read != count:
         yield TABLE, 1, f"{count - read} rows have another form; see the head of the table"
         return

@@ -312,6 +312,27 @@ def test_warnings_wait_in_the_quiet_hours_and_critical_alarms_do_not(scene):
         assert web.texts()[2].startswith("freezer high: 32 °C;"), web.texts()
 
 
+def test_an_escalation_that_waited_is_not_told_when_somebody_has_acknowledged(scene):
+    quiet = 'Quiet "00:00-23:59" QuietAll on'
+    with peer.Peer({FREEZER: "20", CELLAR: "20"}) as house, Web() as web:
+        daemon, program_ = notify(scene, house.target, dict(Url=web.url, Gather=0, Every=0, EscalateAfter=2,
+                                  Quiet="00:00-23:59", QuietAll=raw("on")),
+                                  item(LimitH=30), item("cellar", CELLAR, LimitH=30))
+        until(lambda: scene.get(daemon, "cellar") == "20", 10, "a value")
+        house[FREEZER] = house[CELLAR] = "31"
+        until(lambda: counters(scene, daemon).get("waiting") == 4, 20, "two alarms and two escalations wait")
+        assert scene.owsctl(daemon, "alarms", "ack", "cellar").returncode == 0
+        until(lambda: "acknowledged" in scene.owsctl(daemon, "alarms", "history").stdout, 20, "it is acknowledged")
+        daemon.config.write_text(daemon.config.read_text().replace(quiet, ""))
+        program_.process.send_signal(signal.SIGHUP)
+        until(lambda: web.got, 20, "the hours are over")
+        cellar = [t for t in web.texts() if t.startswith("cellar")]
+        freezer = [t for t in web.texts() if t.startswith("freezer")]
+        assert len(cellar) == 1 and "; acknowledged at 20" in cellar[0], cellar
+        assert len(freezer) == 2 and "nobody has acknowledged" in freezer[1], freezer
+        assert "acknowledged at" not in freezer[0], freezer
+
+
 def test_a_test_message_goes_each_way_and_says_which_fails(scene):
     token = scene.file("token", "12:ab\n")
     token.chmod(0o600)

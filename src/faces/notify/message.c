@@ -11,25 +11,86 @@
 #include "src/faces/notify/message.h"
 #include "src/faces/show/digits.h"
 #include "src/faces/show/json.h"
+#include "src/ground/signal/quality.h"
 #include "src/ground/signal/value.h"
 #include "src/ground/text/printable.h"
 
 #define BYTES_MAX 3500 /* Telegram takes 4096 letters, ntfy as many bytes */
 #define WORD_BYTES 20  /* of a header: each is three letters, and RFC 2047 wants 75 at most */
 
-void message_line(struct entry *entry, const char *format, ...)
+#define UNIT_TEXT 32
+#define ENDED 64 /* bytes of a text for how it ended */
+
+static void add(struct entry *entry, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void add_args(struct entry *entry, const char *format, va_list args)
+{
+	size_t len = strlen(entry->text);
+
+	vsnprintf(entry->text + len, sizeof(entry->text) - ENDED - len, format, args);
+}
+
+static void add(struct entry *entry, const char *format, ...)
 {
 	va_list args;
-	size_t len;
 
 	va_start(args, format);
-	vsnprintf(entry->text, sizeof(entry->text), format, args);
+	add_args(entry, format, args);
 	va_end(args);
-	len = printable_cut(entry->text, strlen(entry->text));
-	entry->text[printable(entry->text, len)] = '\0';
+}
+
+/* What was added is a line now. */
+static void make_line(struct entry *entry)
+{
+	size_t len = printable_cut(entry->text, strlen(entry->text));
+
+	entry->len = (unsigned)printable(entry->text, len);
+	entry->text[entry->len] = '\0';
 	if (*entry->text == '-')
 		*entry->text = '?';
 	entry->head = (unsigned)strcspn(entry->text, ";");
+}
+
+void message_line(struct entry *entry, const char *format, ...)
+{
+	va_list args;
+
+	entry->text[0] = '\0';
+	va_start(args, format);
+	add_args(entry, format, args);
+	va_end(args);
+	make_line(entry);
+}
+
+/* Seconds are enough, and the offset is that of this machine. */
+static const char *moment(const struct when *now, int64_t boot_ns, char text[WHEN_TEXT])
+{
+	when_iso(now, boot_ns, text);
+	text[strcspn(text, ".")] = '\0';
+	return text;
+}
+
+static void add_since(struct entry *entry, const char *word, int64_t since_ns,
+                      const struct when *now)
+{
+	char since[WHEN_TEXT];
+
+	entry->since_ns = since_ns;
+	add(entry, "; %s ", word);
+	entry->at = (unsigned)strlen(entry->text);
+	add(entry, "%s", moment(now, since_ns, since));
+}
+
+void message_renew(struct entry *entry, const struct when *now)
+{
+	char text[WHEN_TEXT];
+
+	moment(now, entry->since_ns, text);
+	if (entry->at && entry->at + strlen(text) <= entry->len)
+		memcpy(entry->text + entry->at, text, strlen(text));
+	entry->text[entry->len] = '\0';
+	if (entry->ended)
+		snprintf(entry->text + entry->len, ENDED, "; %s at %s", entry->ended,
+		         moment(now, entry->ended_ns, text));
 }
 
 static const struct {
@@ -42,71 +103,153 @@ static const struct {
 	[OWS_ALARM_LL] = {"LimitLL", offsetof(struct ows_info, limit_ll)},
 };
 
-/* "10 °C below LimitLL -30 °C"; "": it has no limit, or no number. */
-static void limit_words(const struct ows_info *info, uint8_t kind, double number, char words[192])
+static bool is_value_limit(uint8_t kind)
+{
+	return kind < sizeof(limits) / sizeof(limits[0]) && limits[kind].name;
+}
+
+/* "10 °C below LimitLL -30 °C", if it has a limit, and there is a number. */
+static void add_limit(struct entry *entry, const struct ows_info *info, uint8_t kind, double number)
 {
 	const char *blank = *info->unit ? " " : "";
 	char by[VALUE_TEXT_MAX], at[VALUE_TEXT_MAX];
 	double limit;
 
-	*words = '\0';
-	if (kind >= sizeof(limits) / sizeof(limits[0]) || !limits[kind].name)
+	if (!is_value_limit(kind))
 		return;
 	memcpy(&limit, (const char *)info + limits[kind].at, sizeof(limit));
 	if (isnan(limit) || isnan(number))
 		return;
 	digits_print(OWS_DOUBLE, fabs(number - limit), 0, info->decimals, by);
 	digits_print(OWS_DOUBLE, limit, 0, info->decimals, at);
-	snprintf(words, 192, "; %s%s%s %s %s %s%s%s", by, blank, info->unit,
-	         number >= limit ? "above" : "below", limits[kind].name, at, blank, info->unit);
+	add(entry, "; %s%s%s %s %s %s%s%s", by, blank, info->unit,
+	    number >= limit ? "above" : "below", limits[kind].name, at, blank, info->unit);
 }
 
-/* Seconds are enough, and the offset is that of this machine. */
-static const char *moment(const struct when *now, int64_t boot_ns, char text[WHEN_TEXT])
+/* Where it is, and what it is. chip: for what a person has to look at there. */
+static void add_place(struct entry *entry, const struct ows_info *info, bool chip)
 {
-	when_iso(now, boot_ns, text);
-	text[strcspn(text, ".")] = '\0';
+	if (chip && *info->device)
+		add(entry, "; %s%s%s", info->family, *info->family ? " " : "", info->device);
+	if (*info->group)
+		add(entry, "; %s", info->group);
+	if (*info->description)
+		add(entry, "; %s", info->description);
+}
+
+/* "high", "no longer high", "device alarm is over" */
+static void add_kind(struct entry *entry, const struct ows_alarm *alarm)
+{
+	const char *word = alarm_word(alarm->kind, alarm->event);
+	bool back = alarm->event == OWS_ALARM_RETURNED;
+
+	if (back && alarm->kind == OWS_ALARM_DEVICE)
+		word = "device alarm is over";
+	else if (back && alarm->kind == OWS_ALARM_DIFFERS)
+		word = "as commanded again";
+	if (*word)
+		add(entry, "%s", word);
+	else
+		add(entry, "%s%s", back ? "no longer " : "", ows_alarm_kind_text(alarm->kind));
+}
+
+/* The value before or after it, with the unit. Returns text. */
+static const char *number_text(const struct ows_info *info, const struct ows_alarm *alarm,
+                               bool after, char text[VALUE_TEXT_MAX + UNIT_TEXT])
+{
+	size_t len;
+
+	digits_print((enum ows_type)alarm->type, after ? alarm->after : alarm->before,
+	             after ? alarm->after_integer : alarm->before_integer, info->decimals, text);
+	len = strlen(text);
+	snprintf(text + len, UNIT_TEXT, "%s%s", *info->unit ? " " : "", info->unit);
 	return text;
+}
+
+/* The value that it is about; of one that is not good there is no number. */
+static void add_value(struct entry *entry, const struct ows_info *info,
+                      const struct ows_alarm *alarm)
+{
+	char text[VALUE_TEXT_MAX + UNIT_TEXT], other[sizeof(text)];
+	bool raised = alarm->event == OWS_ALARM_RAISED, after = alarm->has_after;
+	bool number = alarm->type != OWS_STRING && (after || (raised && alarm->has_before));
+
+	if (raised && alarm->kind == OWS_ALARM_DIFFERS && number && alarm->has_before) {
+		add(entry, ": %s, written %s", number_text(info, alarm, after, text),
+		    number_text(info, alarm, false, other));
+	} else if (ows_good(alarm->quality) && number) {
+		add(entry, ": %s", number_text(info, alarm, after, text));
+		if (raised)
+			add_limit(entry, info, alarm->kind, after ? alarm->after : alarm->before);
+	} else if (raised && alarm->kind == OWS_ALARM_BAD) {
+		add(entry, ": %s", ows_quality_text(alarm->quality));
+	} else if (raised && !ows_good(alarm->quality)) {
+		add(entry, "; value not good");
+	}
+	if (*alarm->text)
+		add(entry, alarm->event == OWS_ALARM_FAILED ? ": %s" : "; its latch reads %s",
+		    alarm->text);
+}
+
+/* What it means, and what to do: of a limit the words say it all. */
+static void add_meaning(struct entry *entry, const struct ows_alarm *alarm)
+{
+	uint8_t quality = alarm->kind == OWS_ALARM_DIFFERS ? OWS_Q_DIFFERS
+	                  : alarm->kind == OWS_ALARM_STALE ? OWS_Q_STALE
+	                  : alarm->kind == OWS_ALARM_BAD   ? alarm->quality
+	                                                   : OWS_Q_GOOD;
+	const char *cause = alarm_cause(alarm->kind, alarm->event);
+
+	if (*cause)
+		add(entry, "; %s %s", cause, alarm_remedy(alarm->kind, alarm->event));
+	else if (alarm->event == OWS_ALARM_RAISED && *quality_cause(quality))
+		add(entry, "; %s %s", quality_cause(quality), quality_remedy(quality));
 }
 
 void message_alarm(struct entry *entry, const struct ows_info *info, const struct ows_alarm *alarm,
                    const struct when *now)
 {
-	const char *kind = ows_alarm_kind_text(alarm->kind), *blank = *info->unit ? " " : "";
-	bool back = alarm->event == OWS_ALARM_RETURNED, whole = alarm->has_after;
-	bool has = alarm->has_after || (alarm->event == OWS_ALARM_RAISED && alarm->has_before);
-	bool good = ows_good(alarm->quality);
-	char value[VALUE_TEXT_MAX] = "", limit[192] = "", since[WHEN_TEXT];
-
 	entry->entered_ns = alarm->occurred_ns;
-	/* of a value that is not good there is no number */
-	if (has && good && alarm->type != OWS_STRING)
-		digits_print((enum ows_type)alarm->type, whole ? alarm->after : alarm->before,
-		             whole ? alarm->after_integer : alarm->before_integer, info->decimals,
-		             value);
-	if (alarm->event == OWS_ALARM_RAISED && *value)
-		limit_words(info, alarm->kind, whole ? alarm->after : alarm->before, limit);
-	message_line(entry, "%s %s%s%s%s%s%s%s%s%s; %s %s%s%s%s%s", info->name,
-	             back ? "no longer " : "", kind,
-	             alarm->event == OWS_ALARM_FAILED ? " alarm does not work" : "",
-	             *value ? ": " : "", value, *value ? blank : "", *value ? info->unit : "",
-	             limit, good || back ? "" : "; value not good", back ? "at" : "since",
-	             moment(now, alarm->occurred_ns, since), *alarm->text ? "; " : "", alarm->text,
-	             *info->description ? "; " : "", info->description);
+	entry->kind = alarm->event == OWS_ALARM_RAISED ? alarm->kind : 0;
+	add(entry, "%s ", info->name);
+	add_kind(entry, alarm);
+	add_value(entry, info, alarm);
+	add_since(entry, alarm->event == OWS_ALARM_RETURNED ? "at" : "since", alarm->occurred_ns,
+	          now);
+	add_place(entry, info, !is_value_limit(alarm->kind));
+	add_meaning(entry, alarm);
+	make_line(entry);
+}
+
+void message_bad(struct entry *entry, const struct ows_info *info, int64_t bad_ns, const char *why,
+                 const char *remedy, const struct when *now)
+{
+	char span[WHEN_TEXT];
+
+	entry->kind = ENTRY_BAD;
+	add(entry, "%s bad: %s; for %s", info->name, why, when_span(now->boot - bad_ns, span));
+	add_since(entry, "since", bad_ns, now);
+	add_place(entry, info, true);
+	if (*remedy)
+		add(entry, "; %s", remedy);
+	make_line(entry);
 }
 
 void message_escalated(struct entry *entry, const struct ows_info *info, uint8_t kind,
                        int64_t raised_ns, const char *text, const struct when *now)
 {
-	char since[WHEN_TEXT], span[WHEN_TEXT];
+	char span[WHEN_TEXT];
 
 	entry->escalated = true;
 	entry->entered_ns = raised_ns;
-	message_line(entry, "%s %s: %s%s%s; nobody has acknowledged this for %s; since %s%s%s",
-	             info->name, ows_alarm_kind_text(kind), text, *info->unit && *text ? " " : "",
-	             *text ? info->unit : "", when_span(now->boot - raised_ns, span),
-	             moment(now, raised_ns, since), *info->description ? "; " : "",
-	             info->description);
+	entry->kind = kind;
+	entry->text[0] = '\0'; /* it may be said anew */
+	add(entry, "%s %s: %s%s%s; nobody has acknowledged this for %s", info->name,
+	    ows_alarm_kind_text(kind), text, *info->unit && *text ? " " : "",
+	    *text ? info->unit : "", when_span(now->boot - raised_ns, span));
+	add_since(entry, "since", raised_ns, now);
+	add_place(entry, info, !is_value_limit(kind));
+	make_line(entry);
 }
 
 void message_add(struct message *message, const struct entry *entry)

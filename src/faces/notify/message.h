@@ -11,9 +11,14 @@
 /* "freezer low low: -40 °C; 10 °C below LimitLL -30 °C; since 2026-11-29T02:13:05; Cellar" */
 void message_alarm(struct entry *entry, const struct ows_info *info, const struct ows_alarm *alarm,
                    const struct when *now);
-/* The same of an alarm that nobody has acknowledged; text: its value. */
+/* Of a value that stays bad since then. */
+void message_bad(struct entry *entry, const struct ows_info *info, int64_t bad_ns, const char *why,
+                 const char *remedy, const struct when *now);
+/* Of an alarm that nobody has acknowledged, also once more; text: its value. */
 void message_escalated(struct entry *entry, const struct ows_info *info, uint8_t kind,
                        int64_t raised_ns, const char *text, const struct when *now);
+/* Before it is told: its time by the clock as it is now, and how it ended. */
+void message_renew(struct entry *entry, const struct when *now);
 /* Make the line printable, and no option of a program that gets it; find its head. */
 void message_line(struct entry *entry, const char *format, ...)
 	__attribute__((format(printf, 2, 3)));

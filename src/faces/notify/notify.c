@@ -13,27 +13,18 @@
 #include "src/faces/notify/kept.h"
 #include "src/faces/notify/message.h"
 #include "src/faces/notify/notify.h"
+#include "src/faces/notify/rows.h"
 #include "src/faces/notify/rules.h"
 #include "src/faces/notify/ways.h"
 #include "src/faces/show/digits.h"
 #include "src/faces/show/newest.h"
 #include "src/faces/show/standing.h"
-#include "src/ground/signal/hash.h"
 
 #define AFTER_NS (2 * NS_PER_S) /* the value after a device's alarm */
 
-/* A signal of the image. */
-struct row {
-	uint64_t print;    /* of its identity */
-	int64_t bad_ns;    /* since when it is bad; 0: it is not */
-	int64_t raised_ns; /* its limit alarm, last */
-	bool chosen, told; /* told: that it is bad */
-};
-
 static struct notifying {
 	struct ways ways;
-	struct row *rows;
-	int count;
+	struct rows rows;
 	int64_t lost_ns; /* since when there is no owsd; 0: it is there */
 	bool lost_told;
 	int64_t known_ns;  /* entries of the journal up to there were told before this start */
@@ -75,68 +66,87 @@ static void keep(struct face *face, int64_t looked_ns, int64_t now_ns)
 
 /* --- What is told ---------------------------------------------------------------------------- */
 
-/* critical: it is told with Least "critical" too */
-static void put(struct face *face, const struct entry *entry, bool critical)
+/* signal: that it is about; -1: none */
+static void put(struct face *face, int signal, const struct entry *entry)
 {
 	const struct config_notify *file = file_of(face);
 	struct entry *one;
 
-	if (!file->given || (!critical && !strcmp(file->least, "critical")))
+	if (!file->given || (!entry->severe && !strcmp(file->least, "critical")))
 		return;
 	one = ways_add(&notify.ways);
 	*one = *entry;
 	one->came_ns = ows_now();
+	one->signal = signal;
+	one->print = signal < 0 ? 0 : notify.rows.row[signal].print;
 	log_info(face->log, "to be told: %s", entry->text);
+}
+
+/* Since when nobody acknowledges it: what is raised anew meanwhile is no new beginning. */
+static void follow(struct row *row, const struct ows_alarm *alarm)
+{
+	bool deed = alarm->event == OWS_ALARM_ACKNOWLEDGED || alarm->event == OWS_ALARM_SHELVED;
+
+	if (alarm->event != OWS_ALARM_RAISED && alarm->event != OWS_ALARM_RETURNED && !deed)
+		return;
+	if (alarm->event != OWS_ALARM_RAISED)
+		queue_ended(&notify.ways.queue, alarm->signal, deed ? OWS_ALARM_H : alarm->kind,
+		            ows_alarm_event_text(alarm->event), alarm->occurred_ns);
+	if (!deed && !rules_of_limit(alarm->kind))
+		return;
+	if (alarm->event != OWS_ALARM_RAISED)
+		row->raised_ns = 0;
+	else if (row->raised_ns <= notify.looked_ns)
+		row->raised_ns = alarm->occurred_ns;
 }
 
 static void take_alarm(struct face *face, const struct ows_alarm *alarm)
 {
 	struct when now = when_now();
-	struct entry entry = {.critical = rules_urgent(alarm)};
+	struct entry entry = {.critical = rules_urgent(alarm), .severe = rules_critical(alarm)};
 	struct ows_info info;
 	struct row *row;
 
 	if (alarm->occurred_ns > notify.seen_ns)
 		notify.seen_ns = alarm->occurred_ns;
-	if (alarm->signal < 0 || alarm->signal >= notify.count)
+	if (alarm->signal < 0 || alarm->signal >= notify.rows.count)
 		return;
-	row = &notify.rows[alarm->signal];
+	row = &notify.rows.row[alarm->signal];
 	if (!row->chosen || ows_info(face->ows, alarm->signal, &info))
 		return;
-	if (alarm->event == OWS_ALARM_RAISED && alarm->kind >= OWS_ALARM_HH &&
-	    alarm->kind <= OWS_ALARM_BAD)
-		row->raised_ns = alarm->occurred_ns;
+	follow(row, alarm);
 	if (alarm->occurred_ns <= notify.known_ns ||
 	    (alarm->event != OWS_ALARM_RAISED && alarm->event != OWS_ALARM_FAILED &&
 	     !(alarm->event == OWS_ALARM_RETURNED && file_of(face)->returns)))
 		return;
 	message_alarm(&entry, &info, alarm, &now);
-	put(face, &entry, rules_critical(alarm));
+	put(face, alarm->signal, &entry);
 }
 
-static void escalate(struct face *face, int signal, const struct when *now)
+/* The words for an alarm that nobody acknowledges. False: it is none, or not any more. */
+static bool write_escalated(struct face *face, int signal, int64_t raised_ns,
+                            const struct when *now, struct entry *entry)
 {
 	struct face_value value;
-	struct entry entry = {0};
 	struct ows_alarm_state state;
 	struct ows_info info;
 	int id;
 
 	if (ows_info(face->ows, signal, &info) || (id = ows_find(face->ows, info.name)) < 0)
-		return;
+		return false;
 	state = standing_of(face->ows, id);
 	if (state.limit_state != OWS_LIMIT_UNACKNOWLEDGED)
-		return;
+		return false;
 	face_value(face->ows, signal, face->live, now->boot, &value);
 	if (value.good && value.v.type != OWS_STRING)
 		digits_print((enum ows_type)value.v.type, value.v.number, value.v.integer,
 		             info.decimals, value.text);
 	else
 		value.text[0] = '\0';
-	entry.critical = rules_critical(&(struct ows_alarm){.kind = state.limit_kind});
-	message_escalated(&entry, &info, state.limit_kind, notify.rows[signal].raised_ns,
-	                  value.text, now);
-	put(face, &entry, entry.critical);
+	entry->severe = entry->critical = rules_critical(
+		&(struct ows_alarm){.kind = state.limit_kind});
+	message_escalated(entry, &info, state.limit_kind, raised_ns, value.text, now);
+	return true;
 }
 
 /* Alarms of the time that is over now, each once. */
@@ -147,18 +157,41 @@ static void look_for_escalation(struct face *face)
 
 	if (!file_of(face)->escalate_ns || !look_is_current(face) || until_ns <= notify.looked_ns)
 		return;
-	for (int i = 0; i < notify.count; i++)
-		if (notify.rows[i].raised_ns > notify.looked_ns &&
-		    notify.rows[i].raised_ns <= until_ns) {
-			escalate(face, i, &now);
-			notify.found_ns = until_ns;
-		}
+	for (int i = 0; i < notify.rows.count; i++) {
+		int64_t raised_ns = notify.rows.row[i].raised_ns;
+		struct entry entry = {0};
+
+		if (raised_ns <= notify.looked_ns || raised_ns > until_ns)
+			continue;
+		if (write_escalated(face, i, raised_ns, &now, &entry))
+			put(face, i, &entry);
+		notify.found_ns = until_ns;
+	}
 	notify.looked_ns = until_ns;
+}
+
+/*
+ * Is what waits still to be told, now that it can be? What has happened is, and says how it ended;
+ * that something is to be done only if it still is.
+ */
+static bool judge(void *ctx, struct entry *entry)
+{
+	struct face *face = ctx;
+	const struct config_notify *file = file_of(face);
+	struct when now = when_now();
+
+	if (entry->signal >= 0 && !notify.rows.row[entry->signal].chosen)
+		return false;
+	if (entry->escalated &&
+	    (!file->escalate_ns || entry->signal < 0 || entry->ended_ns ||
+	     (face->live && !write_escalated(face, entry->signal, entry->entered_ns, &now, entry))))
+		return false;
+	message_renew(entry, &now);
+	return entry->severe || strcmp(file->least, "critical") != 0;
 }
 
 static void tell_bad(struct face *face, int signal, struct row *row, const struct when *now)
 {
-	char span[WHEN_TEXT], since[WHEN_TEXT];
 	struct entry entry = {0};
 	struct face_value value;
 	struct ows_info info;
@@ -167,18 +200,17 @@ static void tell_bad(struct face *face, int signal, struct row *row, const struc
 		return;
 	face_value(face->ows, signal, face->live, now->boot, &value);
 	row->told = true;
-	message_line(&entry, "%s bad: %s; for %s; since %s%s%s", info.name, face_value_why(&value),
-	             when_span(now->boot - row->bad_ns, span), when_iso(now, row->bad_ns, since),
-	             *info.description ? "; " : "", info.description);
-	put(face, &entry, entry.critical);
+	message_bad(&entry, &info, row->bad_ns, face_value_why(&value), face_value_remedy(&value),
+	            now);
+	put(face, signal, &entry);
 }
 
-static void tell_owsd(struct face *face, bool critical, const char *words)
+static void tell_owsd(struct face *face, uint8_t kind, const char *words)
 {
-	struct entry entry = {.critical = critical};
+	struct entry entry = {.kind = kind, .severe = true, .critical = kind == ENTRY_NO_OWSD};
 
 	message_line(&entry, "owsd %s %s", face->arguments->instance, words);
-	put(face, &entry, entry.critical);
+	put(face, -1, &entry);
 }
 
 static void look_for_bad(struct face *face, int64_t now_ns)
@@ -189,54 +221,29 @@ static void look_for_bad(struct face *face, int64_t now_ns)
 	if (!after_ns)
 		return;
 	if (notify.lost_ns && !notify.lost_told && now_ns - notify.lost_ns >= after_ns) {
-		tell_owsd(face, true, "does not run; no value is known");
+		tell_owsd(face, ENTRY_NO_OWSD, "does not run; no value is known");
 		notify.lost_told = true;
 	}
-	for (int i = 0; look_is_current(face) && i < notify.count; i++)
-		if (notify.rows[i].bad_ns && !notify.rows[i].told &&
-		    now_ns - notify.rows[i].bad_ns >= after_ns)
-			tell_bad(face, i, &notify.rows[i], &now);
+	for (int i = 0; look_is_current(face) && i < notify.rows.count; i++) {
+		struct row *row = &notify.rows.row[i];
+
+		if (row->bad_ns && !row->told && now_ns - row->bad_ns >= after_ns)
+			tell_bad(face, i, row, &now);
+	}
 }
 
 /* --- The signals ----------------------------------------------------------------------------- */
 
-/* What was known of the signals of the image before, by their identity, if they are chosen. */
-static void carry(const struct row *old, int count)
-{
-	for (int i = 0; i < count; i++)
-		for (int k = 0; (old[i].bad_ns || old[i].raised_ns) && k < notify.count; k++)
-			if (notify.rows[k].chosen && notify.rows[k].print == old[i].print) {
-				notify.rows[k].bad_ns = old[i].bad_ns;
-				notify.rows[k].raised_ns = old[i].raised_ns;
-				notify.rows[k].told = old[i].told;
-			}
-}
-
 static void make_rows(struct face *face)
 {
-	const struct config_notify *file = file_of(face);
-	struct row *old = notify.rows;
-	int old_count = notify.count, count = ows_count(face->ows);
-	struct ows_info info;
-
-	notify.rows = calloc((size_t)count + 1, sizeof(*notify.rows));
-	notify.count = notify.rows ? count : 0;
-	if (!notify.rows)
-		log_err(face->log, "no memory for %d signals: nothing is told", count);
-	for (int i = 0; i < notify.count; i++)
-		if (!ows_info(face->ows, i, &info)) {
-			notify.rows[i].chosen = file->given &&
-			                        rules_chosen(file->signals, info.name);
-			notify.rows[i].print = hash_text(HASH_BEGIN, info.identity,
-			                                 strlen(info.identity));
-		}
-	carry(old, old_count);
-	free(old);
+	if (!rows_make(&notify.rows, face->ows, file_of(face), &notify.ways.queue))
+		log_err(face->log, "no memory for %d signals: nothing is told",
+		        ows_count(face->ows));
 }
 
 static void look_at(struct face *face, int signal, int64_t now_ns)
 {
-	struct row *row = &notify.rows[signal];
+	struct row *row = &notify.rows.row[signal];
 	struct face_value value;
 	struct entry entry = {0};
 	struct ows_info info;
@@ -253,10 +260,12 @@ static void look_at(struct face *face, int signal, int64_t now_ns)
 		row->bad_ns = now_ns;
 	if (bad)
 		return;
+	if (row->told)
+		queue_ended(&notify.ways.queue, signal, ENTRY_BAD, "good again", now_ns);
 	if (row->told && file_of(face)->returns && !ows_info(face->ows, signal, &info)) {
 		message_line(&entry, "%s no longer bad%s%s", info.name,
 		             *info.description ? "; " : "", info.description);
-		put(face, &entry, entry.critical);
+		put(face, signal, &entry);
 	}
 	row->bad_ns = 0;
 	row->told = false;
@@ -281,7 +290,7 @@ static int test_ways(const struct face *face)
 {
 	struct config_notify file = *file_of(face);
 	struct ways *ways = &notify.ways;
-	struct entry entry = {.critical = true};
+	struct entry entry = {.critical = true, .signal = -1};
 	int failed = 0;
 
 	if (!file.given) {
@@ -334,6 +343,8 @@ int notify_start(struct face *face)
 	int64_t now_ns = ows_now();
 
 	ways_open(&notify.ways, face->log, face->arguments->instance, notify_watch, face);
+	notify.ways.judge = judge;
+	notify.ways.judge_ctx = face;
 	if (!notify.ways.post) {
 		face_complain(face->ops->program, "libcurl cannot be used: no memory");
 		return -ENOMEM;
@@ -366,8 +377,8 @@ void notify_changes(struct face *face, const int *signals, int n)
 	int64_t now_ns = ows_now();
 
 	/* there are no rows if there was no memory for them */
-	for (int i = 0; i < (signals ? n : notify.count); i++)
-		if (!signals || signals[i] < notify.count)
+	for (int i = 0; i < (signals ? n : notify.rows.count); i++)
+		if (!signals || signals[i] < notify.rows.count)
 			look_at(face, signals ? signals[i] : i, now_ns);
 }
 
@@ -376,6 +387,8 @@ static void go_on(struct face *face, int fd, short ready)
 {
 	int64_t now_ns = ows_now();
 
+	/* in the middle of a reload nobody knows what still is */
+	notify.ways.held = face->live && !look_is_current(face);
 	ways_step(&notify.ways, file_of(face), fd, ready, now_ns);
 	face->tick_ns = ways_next(&notify.ways, now_ns);
 	keep(face, notify.found_ns, now_ns);
@@ -406,8 +419,11 @@ void notify_event(struct face *face, const struct face_event *event)
 	switch (event->news) {
 	case FACE_FOUND:
 	case FACE_RELOADED:
+		if (notify.lost_told)
+			queue_ended(&notify.ways.queue, -1, ENTRY_NO_OWSD, "it runs again",
+			            ows_now());
 		if (notify.lost_told && file_of(face)->returns)
-			tell_owsd(face, false, "runs again");
+			tell_owsd(face, 0, "runs again");
 		notify.lost_ns = 0;
 		notify.lost_told = false;
 		make_rows(face);
@@ -423,11 +439,11 @@ void notify_event(struct face *face, const struct face_event *event)
 		log_warning(face->log, "owsd is lost");
 		break;
 	case FACE_ENTRIES_LOST: {
-		struct entry entry = {.critical = true};
+		struct entry entry = {.critical = true, .severe = true};
 
 		message_line(&entry, "%u entries of owsd's journals came too fast to be read",
 		             event->count);
-		put(face, &entry, entry.critical);
+		put(face, -1, &entry);
 		break;
 	}
 	case FACE_ALARM:
@@ -470,5 +486,5 @@ void notify_end(struct face *face)
 	keep(face, notify.looked_ns, ows_now());
 	kept_close(&notify.kept);
 	ways_close(&notify.ways);
-	free(notify.rows);
+	free(notify.rows.row);
 }

@@ -3,6 +3,7 @@
 #include <stddef.h>
 
 #include "src/faces/notify/queue.h"
+#include "src/faces/notify/rules.h"
 
 /* It is there. */
 static const struct entry *entry_of(const struct queue *queue, uint64_t number)
@@ -35,9 +36,11 @@ struct entry *queue_add(struct queue *queue)
 	return entry;
 }
 
-const struct entry *queue_at(const struct queue *queue, uint64_t number)
+struct entry *queue_at(struct queue *queue, uint64_t number)
 {
-	return number >= queue->first && number < queue->end ? entry_of(queue, number) : NULL;
+	return number >= queue->first && number < queue->end
+	               ? &queue->entries[number % QUEUE_ENTRIES]
+	               : NULL;
 }
 
 int64_t queue_oldest(const struct queue *queue, uint64_t number, bool escalated)
@@ -54,4 +57,18 @@ int64_t queue_oldest(const struct queue *queue, uint64_t number, bool escalated)
 			oldest = entry->entered_ns;
 	}
 	return oldest;
+}
+
+void queue_ended(struct queue *queue, int signal, uint8_t kind, const char *how, int64_t ended_ns)
+{
+	for (uint64_t n = queue->first; n < queue->end; n++) {
+		struct entry *entry = queue_at(queue, n);
+		bool same = entry->kind == kind ||
+		            (rules_of_limit(entry->kind) && rules_of_limit(kind));
+
+		if (entry->signal != signal || !entry->kind || !same || entry->ended_ns)
+			continue;
+		entry->ended = how;
+		entry->ended_ns = ended_ns;
+	}
 }

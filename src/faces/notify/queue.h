@@ -9,12 +9,25 @@
 #include <stdint.h>
 
 #define QUEUE_ENTRIES 256
-#define ENTRY_TEXT 512
+#define ENTRY_TEXT 768
+
+/* What an entry tells that may end before it is told: an enum ows_alarm_kind, or */
+#define ENTRY_BAD 64     /* a value that stays bad */
+#define ENTRY_NO_OWSD 65 /* no owsd runs */
 
 struct entry {
 	int64_t came_ns, entered_ns; /* here; it, or what it escalates, in owsd's journal; 0: no */
+	int64_t since_ns;            /* the time in its text */
+	int64_t ended_ns;            /* when it ended; 0: it has not, as far as is known */
+	const char *ended;           /* how: "returned" */
+	uint64_t print;              /* of the signal's identity */
+	int signal;                  /* its index; -1: it is about none */
+	uint8_t kind;                /* of what may end; 0: nothing does */
 	bool critical, escalated;
+	bool severe;           /* it is told with Least "critical" too */
 	unsigned head;         /* bytes of text up to its first ';', for a title */
+	unsigned at;           /* where since_ns stands in the text; 0: nowhere */
+	unsigned len;          /* bytes of text without how it ended */
 	char text[ENTRY_TEXT]; /* one line, printable */
 };
 struct queue {
@@ -30,9 +43,14 @@ uint64_t queue_leaves(const struct queue *queue);
 /* Place for one more. Of those older than the one that goes each gets the next number. */
 struct entry *queue_add(struct queue *queue);
 /* NULL: not there yet, or not kept. */
-const struct entry *queue_at(const struct queue *queue, uint64_t number);
+struct entry *queue_at(struct queue *queue, uint64_t number);
 /*
  * When the oldest entry from number on was entered in the journal; INT64_MAX: none was. Of those
  * that are escalated, or of the others.
  */
 int64_t queue_oldest(const struct queue *queue, uint64_t number, bool escalated);
+/*
+ * What entries of that signal (-1: of none) and kind tell has ended so and then. The kinds of
+ * limits end together.
+ */
+void queue_ended(struct queue *queue, int signal, uint8_t kind, const char *how, int64_t ended_ns);

@@ -14,6 +14,11 @@ bool rules_critical(const struct ows_alarm *alarm)
 	        alarm->kind == OWS_ALARM_DEVICE || alarm->kind == OWS_ALARM_POR);
 }
 
+bool rules_of_limit(uint8_t kind)
+{
+	return kind >= OWS_ALARM_HH && kind <= OWS_ALARM_BAD;
+}
+
 bool rules_urgent(const struct ows_alarm *alarm)
 {
 	return alarm->event == OWS_ALARM_RAISED && rules_critical(alarm);

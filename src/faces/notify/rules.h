@@ -8,6 +8,8 @@
 
 /* Above LimitHH, below LimitLL, and what a device reports by itself. */
 bool rules_critical(const struct ows_alarm *alarm);
+/* Is it a kind of limit alarm, of which a signal has one? */
+bool rules_of_limit(uint8_t kind);
 /* Does it wake people? That a critical one has returned does not. */
 bool rules_urgent(const struct ows_alarm *alarm);
 /* Is the signal meant? The last pattern that fits decides; !PATTERN: it is not. */

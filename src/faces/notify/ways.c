@@ -219,7 +219,7 @@ static bool gather(struct ways *ways, const struct config_notify *notify, enum w
                    int64_t now_ns, struct message *message)
 {
 	struct way *way = &ways->way[kind];
-	const struct queue *queue = &ways->queue;
+	struct queue *queue = &ways->queue;
 	int64_t came_ns = INT64_MAX;
 
 	way->out = way->missed;
@@ -227,9 +227,10 @@ static bool gather(struct ways *ways, const struct config_notify *notify, enum w
 	message->others = way->out;
 	for (int critical = 1; critical >= 0; critical--)
 		for (uint64_t n = way->next; n < way->end; n++) {
-			const struct entry *entry = queue_at(queue, n);
+			struct entry *entry = queue_at(queue, n);
 
-			if (entry->critical != critical || !ways_tells(kind, entry->escalated))
+			if (entry->critical != critical || !ways_tells(kind, entry->escalated) ||
+			    (ways->judge && !ways->judge(ways->judge_ctx, entry)))
 				continue;
 			message_add(message, entry);
 			if (entry->came_ns < came_ns)
@@ -253,7 +254,7 @@ static void begin(struct ways *ways, const struct config_notify *notify, enum wa
 	char why[SECRET_PATH + 128] = "";
 	int err = 0;
 
-	if (!gather(ways, notify, kind, now_ns, &message))
+	if (ways->held || !gather(ways, notify, kind, now_ns, &message))
 		return;
 	if (kind == WAY_POST)
 		err = begin_post(ways, &message, notify, why, sizeof(why));
@@ -288,6 +289,7 @@ void ways_step(struct ways *ways, const struct config_notify *notify, int fd, sh
 		if (!way->busy && !ways_has(notify, (enum way_kind)i)) {
 			way->next = ways->queue.end;
 			way->missed = 0;
+			way->why[0] = '\0';
 		} else if (!way->busy) {
 			begin(ways, notify, (enum way_kind)i, now_ns);
 		}

@@ -42,7 +42,11 @@ struct ways {
 	struct queue queue;
 	struct way way[WAYS];
 	struct post *post; /* NULL: there is none */
-	struct log *log;   /* NULL: none */
+	/* Is the entry, whose words it may renew, to be told now? NULL: each is. */
+	bool (*judge)(void *ctx, struct entry *entry);
+	void *judge_ctx;
+	bool held;       /* that cannot be said now: no message begins */
+	struct log *log; /* NULL: none */
 	const char *instance;
 	char host[64], url[1400], token[SECRET_SIZE];
 };

@@ -14,7 +14,9 @@ static const struct {
 	{0, "no error", ""},
 #define ERROR(err, word, remedy) {err, word, remedy},
 #define QUALITY(code, word, cause, remedy)
+#define ALARM(kind, event, word, cause, remedy)
 #include "src/ground/signal/words_list.h"
+#undef ALARM
 #undef QUALITY
 #undef ERROR
 };

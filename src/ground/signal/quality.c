@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What a quality that is not good means, and what to do. */
+/* What a quality that is not good means, or an alarm of a device, and what to do. */
 #include <stddef.h>
 
 #include "src/ground/signal/quality.h"
@@ -11,7 +11,9 @@ static const struct {
 } table[] = {
 #define QUALITY(code, word, cause, remedy) {OWS_Q_##code, cause, remedy},
 #define ERROR(err, word, remedy)
+#define ALARM(kind, event, word, cause, remedy)
 #include "src/ground/signal/words_list.h"
+#undef ALARM
 #undef ERROR
 #undef QUALITY
 };
@@ -38,4 +40,49 @@ const char *quality_remedy(uint8_t quality)
 	size_t i = quality_find(quality);
 
 	return i < QUALITIES ? table[i].remedy : "";
+}
+
+static const struct {
+	uint8_t kind, event;
+	const char *word, *cause, *remedy;
+} alarms[] = {
+#define QUALITY(code, word, cause, remedy)
+#define ERROR(err, word, remedy)
+#define ALARM(kind, event, word, cause, remedy) \
+	{OWS_ALARM_##kind, OWS_ALARM_##event, word, cause, remedy},
+#include "src/ground/signal/words_list.h"
+#undef ALARM
+#undef ERROR
+#undef QUALITY
+};
+#define ALARMS (sizeof(alarms) / sizeof(alarms[0]))
+
+static size_t alarm_find(uint8_t kind, uint8_t event)
+{
+	size_t i = 0;
+
+	while (i < ALARMS && (alarms[i].kind != kind || alarms[i].event != event))
+		i++;
+	return i;
+}
+
+const char *alarm_word(uint8_t kind, uint8_t event)
+{
+	size_t i = alarm_find(kind, event);
+
+	return i < ALARMS ? alarms[i].word : "";
+}
+
+const char *alarm_cause(uint8_t kind, uint8_t event)
+{
+	size_t i = alarm_find(kind, event);
+
+	return i < ALARMS ? alarms[i].cause : "";
+}
+
+const char *alarm_remedy(uint8_t kind, uint8_t event)
+{
+	size_t i = alarm_find(kind, event);
+
+	return i < ALARMS ? alarms[i].remedy : "";
 }

@@ -10,3 +10,10 @@
  */
 const char *quality_cause(uint8_t quality);
 const char *quality_remedy(uint8_t quality);
+/*
+ * The same about an alarm that no limit and no quality explains (enum ows_alarm_kind, enum
+ * ows_alarm_event), and its words; "" else.
+ */
+const char *alarm_word(uint8_t kind, uint8_t event);
+const char *alarm_cause(uint8_t kind, uint8_t event);
+const char *alarm_remedy(uint8_t kind, uint8_t event);

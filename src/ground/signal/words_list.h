@@ -2,11 +2,13 @@
 /*
  * The words of owsd for what is wrong, once for C, the page's script and the documentation
  * (tests/lint/words.py, which compares them, and with --write copies them). No guard: each
- * includer defines QUALITY and ERROR.
+ * includer defines QUALITY, ERROR and ALARM.
  *
  * QUALITY(code, word, cause, remedy): a quality of ows.h that is not good.
  * ERROR(errno, word, remedy): an error of the bus contract (hal/bus/bus.h) or of libows. Its word
  * is the cause. It is printed as "word: remedy".
+ *
+ * ALARM(kind, event, word, cause, remedy): an alarm of a device, which no limit explains.
  *
  * A cause is what owsd has seen, and no more. A remedy says what to look at or to do.
  */
@@ -62,6 +64,16 @@ QUALITY(LOW, "at lower limit", "The value is held at the lower end of its type o
 QUALITY(HIGH, "at upper limit", "The value is held at the upper end of its type or of Points.",
         "Take a wider type, or continue Points.")
 QUALITY(CUT, "cut", "The text is longer than the room that it has.", "Read a part of it.")
+
+/* What a device reports by itself. */
+ALARM(DEVICE, RAISED, "device alarm", "The device itself reports it: what it watches has happened.",
+      "Look at what the device watches. The alarm ends when owsd can clear its latch.")
+ALARM(DEVICE, FAILED, "device alarm does not work",
+      "Until that is corrected the device's own alarm does not come.",
+      "\"owsctl alarms\" names the key and the reason, the log the property; correct it in the "
+      "file.")
+ALARM(POR, RAISED, "power-on reset", "The device has lost its power, and has started again.",
+      "Look at its supply and its contacts if it comes again. owsd writes its outputs again.")
 
 /* What a path can be wrong in. */
 ERROR(ENODEV, "no such device there",

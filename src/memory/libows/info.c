@@ -210,7 +210,9 @@ const char *ows_quality_text(uint8_t quality)
 	} texts[] = {
 #define QUALITY(code, word, cause, remedy) {OWS_Q_##code, word},
 #define ERROR(err, word, remedy)
+#define ALARM(kind, event, word, cause, remedy)
 #include "src/ground/signal/words_list.h"
+#undef ALARM
 #undef ERROR
 #undef QUALITY
 	};

@@ -22,6 +22,9 @@ void setUp(void)
 	info = (struct ows_info){.name = "freezer",
 	                         .unit = "°C",
 	                         .description = "In the cellar",
+	                         .family = "",
+	                         .device = "",
+	                         .group = "",
 	                         .decimals = 1,
 	                         .limit_hh = NAN,
 	                         .limit_h = 30,
@@ -61,7 +64,10 @@ static void test_an_alarm_that_is_bad_has_no_number(void)
 	bad.quality = OWS_Q_NO_DEVICE;
 	info.description = "";
 	message_alarm(&entry, &info, &bad, &now);
-	TEST_ASSERT_EQUAL_STRING("freezer bad; value not good; since 2023-11-14T22:13:19",
+	TEST_ASSERT_EQUAL_STRING("freezer bad: device absent; since 2023-11-14T22:13:19; The "
+	                         "device does not answer on its wire. Does \"owsctl scan\" list "
+	                         "the id? Compare it with the path of the signal. Check ground, "
+	                         "data and the pull-up.",
 	                         entry.text);
 }
 
@@ -75,6 +81,123 @@ static void test_one_that_is_back_says_so(void)
 	TEST_ASSERT_EQUAL_STRING(
 		"freezer no longer low low: -20 °C; at 2023-11-14T22:13:19; In the cellar",
 		entry.text);
+}
+
+static void test_an_alarm_of_a_device_says_where_it_is_what_it_means_and_what_to_do(void)
+{
+	struct ows_alarm own = {.kind = OWS_ALARM_DEVICE,
+	                        .event = OWS_ALARM_RAISED,
+	                        .occurred_ns = 999 * NS_PER_S,
+	                        .after_integer = 1,
+	                        .has_after = 1,
+	                        .type = OWS_BOOL,
+	                        .quality = OWS_Q_GOOD,
+	                        .text = "2"};
+
+	info = (struct ows_info){.name = "door",
+	                         .unit = "",
+	                         .family = "DS2406",
+	                         .device = "12.000000000001",
+	                         .group = "Entrance",
+	                         .description = "Behind the shed"};
+	message_alarm(&entry, &info, &own, &now);
+	TEST_ASSERT_EQUAL_STRING(
+		"door device alarm: 1; its latch reads 2; since 2023-11-14T22:13:19; DS2406 "
+		"12.000000000001; Entrance; Behind the shed; The device itself reports it: what it "
+		"watches has happened. Look at what the device watches. The alarm ends when owsd "
+		"can clear its latch.",
+		entry.text);
+	TEST_ASSERT_EQUAL_UINT8(OWS_ALARM_DEVICE, entry.kind);
+
+	entry = (struct entry){0};
+	own.event = OWS_ALARM_RETURNED;
+	own.text[0] = '\0';
+	message_alarm(&entry, &info, &own, &now);
+	TEST_ASSERT_EQUAL_STRING("door device alarm is over: 1; at 2023-11-14T22:13:19; DS2406 "
+	                         "12.000000000001; Entrance; Behind the shed",
+	                         entry.text);
+	TEST_ASSERT_EQUAL_UINT8(0, entry.kind);
+}
+
+static void test_an_alarm_of_a_device_that_does_not_work_says_why(void)
+{
+	struct ows_alarm fails = {.kind = OWS_ALARM_DEVICE,
+	                          .event = OWS_ALARM_FAILED,
+	                          .occurred_ns = 999 * NS_PER_S,
+	                          .quality = OWS_Q_GOOD,
+	                          .text = "cannot be armed: SetAlarm: no permission"};
+
+	message_alarm(&entry, &info, &fails, &now);
+	TEST_ASSERT_EQUAL_STRING_LEN("freezer device alarm does not work: cannot be armed: "
+	                             "SetAlarm: no permission; since 2023-11-14T22:13:19; In the "
+	                             "cellar; Until that is corrected",
+	                             entry.text, 138);
+	TEST_ASSERT_EQUAL_UINT8(0, entry.kind);
+}
+
+static void test_an_output_that_reads_otherwise_has_both_values(void)
+{
+	struct ows_alarm differs = {.kind = OWS_ALARM_DIFFERS,
+	                            .event = OWS_ALARM_RAISED,
+	                            .occurred_ns = 999 * NS_PER_S,
+	                            .before_integer = 1,
+	                            .has_before = 1,
+	                            .has_after = 1,
+	                            .type = OWS_BOOL,
+	                            .quality = OWS_Q_DIFFERS};
+
+	info.unit = info.description = "";
+	message_alarm(&entry, &info, &differs, &now);
+	TEST_ASSERT_EQUAL_STRING_LEN("freezer not as commanded: 0, written 1; since "
+	                             "2023-11-14T22:13:19; The output reads otherwise than it was "
+	                             "written. Did the device",
+	                             entry.text, 126);
+}
+
+static void test_a_value_that_stays_bad_has_its_reason_and_a_remedy(void)
+{
+	message_bad(&entry, &info, 400 * NS_PER_S, "no answer", "Look there.", &now);
+	TEST_ASSERT_EQUAL_STRING("freezer bad: no answer; for 10m; since 2023-11-14T22:03:20; In "
+	                         "the cellar; Look there.",
+	                         entry.text);
+	TEST_ASSERT_EQUAL_UINT8(ENTRY_BAD, entry.kind);
+}
+
+static void test_when_it_is_told_its_time_is_that_of_the_clock_as_it_is_then(void)
+{
+	struct when set = now;
+
+	message_alarm(&entry, &info, &low, &now);
+	set.wall += 3600 * NS_PER_S;
+	message_renew(&entry, &set);
+	TEST_ASSERT_NOT_NULL(strstr(entry.text, "; since 2023-11-14T23:13:19; In the cellar"));
+}
+
+static void test_what_ended_before_it_is_told_says_so_once(void)
+{
+	message_alarm(&entry, &info, &low, &now);
+	entry.ended = "returned";
+	entry.ended_ns = 999 * NS_PER_S + 500;
+	message_renew(&entry, &now);
+	message_renew(&entry, &now);
+	TEST_ASSERT_EQUAL_STRING("freezer low low: -40.3 °C; 10.3 °C below LimitLL -30 °C; since "
+	                         "2023-11-14T22:13:19; In the cellar; returned at "
+	                         "2023-11-14T22:13:19",
+	                         entry.text);
+}
+
+static void test_the_longest_line_keeps_room_for_its_end(void)
+{
+	static char much[ENTRY_TEXT + 100];
+
+	memset(much, 'x', sizeof(much) - 1);
+	info.description = much;
+	message_alarm(&entry, &info, &low, &now);
+	entry.ended = "returned";
+	entry.ended_ns = 999 * NS_PER_S;
+	message_renew(&entry, &now);
+	TEST_ASSERT_EQUAL_STRING("x; returned at 2023-11-14T22:13:19",
+	                         strchr(entry.text, '\0') - 34);
 }
 
 static void test_an_escalation_says_for_how_long(void)
@@ -228,6 +351,13 @@ int main(void)
 	RUN_TEST(test_an_alarm_has_value_limit_time_and_what_it_is);
 	RUN_TEST(test_an_alarm_that_is_bad_has_no_number);
 	RUN_TEST(test_one_that_is_back_says_so);
+	RUN_TEST(test_an_alarm_of_a_device_says_where_it_is_what_it_means_and_what_to_do);
+	RUN_TEST(test_an_alarm_of_a_device_that_does_not_work_says_why);
+	RUN_TEST(test_an_output_that_reads_otherwise_has_both_values);
+	RUN_TEST(test_a_value_that_stays_bad_has_its_reason_and_a_remedy);
+	RUN_TEST(test_when_it_is_told_its_time_is_that_of_the_clock_as_it_is_then);
+	RUN_TEST(test_what_ended_before_it_is_told_says_so_once);
+	RUN_TEST(test_the_longest_line_keeps_room_for_its_end);
 	RUN_TEST(test_an_escalation_says_for_how_long);
 	RUN_TEST(test_a_mail_is_whole);
 	RUN_TEST(test_no_line_end_makes_a_header_or_a_second_line);

@@ -103,6 +103,22 @@ static void test_each_quality_that_is_not_good_has_a_cause_and_a_remedy(void)
 	TEST_ASSERT_EQUAL_STRING("", quality_remedy(0x3c));
 }
 
+static void test_an_alarm_of_a_device_has_words_a_cause_and_a_remedy(void)
+{
+	static const uint8_t own[][2] = {{OWS_ALARM_DEVICE, OWS_ALARM_RAISED},
+	                                 {OWS_ALARM_DEVICE, OWS_ALARM_FAILED},
+	                                 {OWS_ALARM_POR, OWS_ALARM_RAISED}};
+
+	for (size_t i = 0; i < sizeof(own) / sizeof(own[0]); i++) {
+		TEST_ASSERT_NOT_EQUAL(0, strlen(alarm_word(own[i][0], own[i][1])));
+		TEST_ASSERT_NOT_EQUAL(0, strlen(alarm_cause(own[i][0], own[i][1])));
+		TEST_ASSERT_NOT_EQUAL(0, strlen(alarm_remedy(own[i][0], own[i][1])));
+	}
+	TEST_ASSERT_EQUAL_STRING("", alarm_word(OWS_ALARM_H, OWS_ALARM_RAISED));
+	TEST_ASSERT_EQUAL_STRING("", alarm_cause(OWS_ALARM_DEVICE, OWS_ALARM_RETURNED));
+	TEST_ASSERT_EQUAL_STRING("", alarm_remedy(OWS_ALARM_H, OWS_ALARM_RAISED));
+}
+
 /* A typing error, a wrong type and a refused access look alike in no table. */
 static void test_three_causes_have_three_qualities_with_words_of_their_own(void)
 {
@@ -122,6 +138,7 @@ int main(void)
 	RUN_TEST(test_each_error_has_a_remedy_and_fits_into_its_room);
 	RUN_TEST(test_of_what_the_chip_cannot_measure_the_number_is_named);
 	RUN_TEST(test_each_quality_that_is_not_good_has_a_cause_and_a_remedy);
+	RUN_TEST(test_an_alarm_of_a_device_has_words_a_cause_and_a_remedy);
 	RUN_TEST(test_three_causes_have_three_qualities_with_words_of_their_own);
 	return UNITY_END();
 }
