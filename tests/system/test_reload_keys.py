@@ -240,6 +240,7 @@ def web_keys(house):
     yield key("Write", raw("on"), lambda h: h.info()["writable"])
     yield key("Configure", raw("on"), lambda h: h.info()["configurable"])
     yield key("Proxy", getpass.getuser(), lambda h: h.info(**PERSON)["person"] == "anna", Write=raw("on"))
+    yield key("Others", f"pi http://127.0.0.1:{first}/", lambda h: h.info()["others"] == 1)
     yield key("Files", other, lambda h: "another" in h.ask("/")[1])
 
 

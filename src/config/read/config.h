@@ -175,6 +175,7 @@ struct config_web {
 	const char *hosts;            /* a list with commas; NULL: none */
 	const char *proxy;            /* a user or an address; NULL: none */
 	const char *files;            /* NULL: the program's own */
+	const char *others;           /* a list, as others.h has it; NULL: none */
 	uint32_t proxy_uid;           /* if has_proxy: this machine knows the user */
 	struct listen_peers proxy_at; /* one address; bits 0: it is a user, or none */
 	bool has_proxy, write, configure;

@@ -240,6 +240,8 @@ OPTION(WEB_PROXY, "Proxy", WEB, TEXT, proxy,
        .help = "user or address of the reverse proxy that names the person")
 OPTION(WEB_FILES, "Files", WEB, TEXT, files, .check = text_is_path,
        .help = "where the files of the page are")
+OPTION(WEB_OTHERS, "Others", WEB, TEXT, others,
+       .help = "pages of other machines: NAME ADDRESS, with commas between them")
 
 /* Of the Mqtt block */
 OPTION(MQTT_BROKER, "Broker", MQTT, TEXT, broker, .check = text_is_short,

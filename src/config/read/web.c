@@ -4,6 +4,7 @@
 
 #include "src/config/read/build.h"
 #include "src/config/read/options.h"
+#include "src/config/read/others.h"
 #include "src/config/read/serve.h"
 #include "src/config/read/web.h"
 #include "src/memory/shm/owner.h"
@@ -33,6 +34,37 @@ static void take_proxy(struct build *build, const struct option_value *value,
 		               "Proxy: there is no user %s here", web->proxy);
 }
 
+/* Is there one of that name before this part of the list? */
+static bool is_among(const char *text, const char *part, const char *name)
+{
+	struct other_place before;
+	const char *why;
+
+	while (other_next(&text, &before, &why) && text && text <= part)
+		if (!strcmp(before.name, name))
+			return true;
+	return false;
+}
+
+static void check_others(struct build *build, const char *all, struct rio_position position)
+{
+	const char *text = all, *part, *why;
+	struct other_place place;
+	unsigned count = 0;
+	size_t len;
+
+	while (build_part(&text, ",", &part, &len)) {
+		why = other_parse(part, len, &place);
+		if (!why && is_among(all, part, place.name))
+			why = "a machine before it has that name";
+		if (!why && count++ == OTHERS_MAX)
+			why = "is one machine too many, there may be 32";
+		if (why)
+			report_error(build->report, position, "Others \"%.*s\": %s", (int)len, part,
+			             why);
+	}
+}
+
 void web_derive(struct build *build, const struct option_value *values)
 {
 	struct config_web *web = &build->box->config.web;
@@ -40,5 +72,7 @@ void web_derive(struct build *build, const struct option_value *values)
 	if (web->listen)
 		serve_addresses(build, web->listen, values[OPT_WEB_LISTEN].node->value_at,
 		                web->addresses, &web->address_count);
+	if (web->others)
+		check_others(build, web->others, values[OPT_WEB_OTHERS].node->value_at);
 	take_proxy(build, &values[OPT_WEB_PROXY], web);
 }

@@ -8,12 +8,14 @@
 #include "src/faces/kit/look.h"
 #include "src/faces/show/json.h"
 #include "src/faces/show/metrics.h"
+#include "src/faces/show/stats.h"
 #include "src/faces/web/api.h"
 #include "src/faces/web/draft.h"
 #include "src/faces/web/events.h"
 #include "src/faces/web/guard.h"
 #include "src/faces/web/head.h"
 #include "src/faces/web/http.h"
+#include "src/faces/web/others.h"
 #include "src/faces/web/past.h"
 #include "src/faces/web/paths.h"
 #include "src/faces/web/person.h"
@@ -62,7 +64,7 @@ static int answer_info(struct request *request)
 		return MHD_NO;
 	if (web->face->live)
 		ows_daemon(web->face->ows, now_ns, &daemon);
-	json_string(&json, "instance", web->face->arguments->instance);
+	stats_whose(&json, web->face->arguments->instance);
 	json_string(&json, "version", OWSD_VERSION);
 	put_machine(&json);
 	json_bool(&json, "live", web->face->live);
@@ -84,6 +86,7 @@ static int answer_info(struct request *request)
 	json_bool(&json, "history",
 	          past_is_there(web->face->arguments->instance, web->face->config));
 	json_int(&json, "signals", web->recent.count);
+	json_uint(&json, "others", others_count(web->others));
 	json_finish(&json);
 	return http_json(request, 200, text, len);
 }
@@ -167,16 +170,17 @@ static const struct {
 	bool post;
 	web_function function;
 } paths[] = {
-	{"api/info", false, answer_info},        {"api/signals", false, answer_signals},
-	{"api/events", false, events_answer},    {"api/alarms", false, lists_alarms},
-	{"api/stats", false, lists_stats},       {"api/log", false, lists_log},
-	{"api/special", false, special_get},     {"api/journal", false, past_journal},
-	{"api/trend", false, past_trend},        {"api/hour", false, past_hour},
-	{"api/records", false, past_records},    {"api/set", true, command_set},
-	{"api/alarm", true, command_alarm},      {"api/config", false, stored_get},
-	{"api/config/keys", false, stored_keys}, {"api/config/draft", true, draft_post},
-	{"api/config/save", true, save_post},    {"api/config/restore", true, save_restore},
-	{"metrics", false, answer_metrics},      {"api/devices", false, devices_get},
+	{"api/info", false, answer_info},         {"api/signals", false, answer_signals},
+	{"api/events", false, events_answer},     {"api/alarms", false, lists_alarms},
+	{"api/stats", false, lists_stats},        {"api/log", false, lists_log},
+	{"api/special", false, special_get},      {"api/journal", false, past_journal},
+	{"api/trend", false, past_trend},         {"api/hour", false, past_hour},
+	{"api/records", false, past_records},     {"api/set", true, command_set},
+	{"api/alarm", true, command_alarm},       {"api/config", false, stored_get},
+	{"api/config/keys", false, stored_keys},  {"api/config/draft", true, draft_post},
+	{"api/config/save", true, save_post},     {"api/config/restore", true, save_restore},
+	{"api/summary", false, machines_summary}, {"api/others", false, machines_others},
+	{"metrics", false, answer_metrics},       {"api/devices", false, devices_get},
 };
 
 bool api_admits(const struct request *request, const char *path)

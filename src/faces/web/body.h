@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* The body of a POST: one JSON object of texts, numbers and flags, and nothing deeper. */
+/*
+ * The body of a POST, or the summary of another page: one JSON object of texts, numbers and flags,
+ * and nothing deeper.
+ */
 #pragma once
 
 #include <stddef.h>
 
-#define BODY_MEMBERS 8
+#define BODY_MEMBERS 16
 
 enum body_kind {
 	BODY_NULL,

@@ -19,6 +19,7 @@
 #include "src/faces/web/edit.h"
 #include "src/faces/web/events.h"
 #include "src/faces/web/http.h"
+#include "src/faces/web/others.h"
 #include "src/faces/web/stream.h"
 #include "src/faces/web/web.h"
 #include "src/faces/web/wire.h"
@@ -230,11 +231,23 @@ static int check(const struct face *face)
 	return fd == -EACCES || fd >= 0 ? 0 : fd; /* the service may be another user */
 }
 
+/* The machines that Others names now. */
+static void follow_others(struct web *web)
+{
+	const char *list = web->face->config->web.others;
+
+	if (others_has(web->others, list))
+		return;
+	others_end(web->others);
+	web->others = others_begin(list);
+}
+
 /* The configuration was read again: what was made of it at the start is made anew. */
 static void follow_file(struct web *web)
 {
 	web->face->config->web.configure |= edit_is_on();
 	follow_addresses(web);
+	follow_others(web);
 	close_files(web);
 	open_files(web);
 }
@@ -282,6 +295,7 @@ static int open_web(struct face *face)
 		return err;
 	}
 	open_files(&web);
+	follow_others(&web);
 	face->config->web.configure |= edit_is_on();
 	web.bell = bell_open();
 	if (web.bell >= 0) {
@@ -443,6 +457,7 @@ static void close_web(struct face *face)
 	end_jobs(web->scans);
 	web->past = web->commands = web->drafts = web->saves = web->scans =
 		NULL; /* a request whose body comes now is refused */
+	others_end(web->others);
 	doors_close(&web->doors);
 	end_streams(web);
 	http_close(web);

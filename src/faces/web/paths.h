@@ -9,6 +9,10 @@ int lists_alarms(struct request *request);
 int lists_stats(struct request *request);
 int lists_log(struct request *request);
 
+/* This machine in a line, and what the pages of others say of theirs. */
+int machines_summary(struct request *request);
+int machines_others(struct request *request);
+
 /* GET api/special?name=: the special signals of a signal. */
 int special_get(struct request *request);
 

@@ -24,6 +24,7 @@ typedef int (*web_function)(struct request *request);
 struct MHD_Daemon;
 struct stream;
 struct jobs;
+struct others;
 
 struct web {
 	struct face *face;
@@ -35,7 +36,8 @@ struct web {
 	struct doors doors;
 	int files; /* the directory of the page; -1: there is none */
 	struct recent recent;
-	int *ids; /* for ows_alarm_state(), of signals that can have alarms; else -1 */
+	int *ids;              /* for ows_alarm_state(), of signals that can have alarms; else -1 */
+	struct others *others; /* NULL: none are named */
 	struct jobs *past, *commands, *drafts, *saves, *scans;
 	unsigned large;      /* bodies that are large */
 	size_t held;         /* bytes of answers that are being sent */

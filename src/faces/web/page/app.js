@@ -105,7 +105,7 @@ head.build();
 keys.listen();
 store.addEventListener("signals", show);
 store.addEventListener("signals", () => setTimeout(() =>
-	[...LATER, ...["./hour.js", "./tell.js"].map((name) => () => begin(name)), keep]
+	[...LATER, ...["./hour.js", "./tell.js", "./machines.js"].map((name) => () => begin(name)), keep]
 		.forEach((load) => load().catch(() => {})), LATER_MS), {once: true});
 document.querySelector(".skip").addEventListener("click", (event) => {
 	event.preventDefault(); // the part behind # names the view
