@@ -26,7 +26,8 @@ INSTALL_SECONDS = 1500
 READY_SECONDS = 300
 # Of each entity, with nothing in it that makes a list or a number of it
 LOOK = "{% for s in states %}{{ s.entity_id }}={{ s.state }}={{ device_id(s.entity_id) }}=" \
-       "{{ state_attr(s.entity_id, 'quality') }}={{ state_attr(s.entity_id, 'event_type') }};{% endfor %}"
+       "{{ state_attr(s.entity_id, 'quality') }}={{ state_attr(s.entity_id, 'event_type') }}=" \
+       "{{ state_attr(s.entity_id, 'why') }};{% endfor %}"
 CONFIGURATION = """
 homeassistant: {{name: judge, latitude: 50, longitude: 14, elevation: 200, unit_system: metric,
                  time_zone: UTC, country: CZ}}
@@ -117,17 +118,30 @@ class HomeAssistant:
                  "source": "user", "subentries": [], "title": "judge", "unique_id": None, "version": 1}
         (where / ".storage/core.config_entries").write_text(json.dumps(
             {"version": 1, "minor_version": 5, "key": "core.config_entries", "data": {"entries": [entry]}}))
+        self.registry = where / ".storage/core.device_registry"
         self.listener = mqtthouse.Listener(scene, port, "judge/#")
         self.process = scene.start([python(), "-m", "homeassistant", "-c", where, "--skip-pip"], {"HOME": str(where), "PYTHONPATH": ""})
         until(self.states, READY_SECONDS, lambda: f"Home Assistant is ready: {self.process.log()[-3000:]}", step=0.2)
 
     def states(self):
-        """{entity: (state, device, quality, event)}"""
+        """{entity: (state, device, quality, event, why)}"""
         text = self.listener.last("judge/states") or ""
         return {name: tuple(rest) for name, *rest in (e.split("=") for e in text.split(";") if e.strip())}
 
     def state(self, entity):
         return self.states().get(entity, (None,))[0]
+
+    def reason(self, entity):
+        return self.states()[entity][4]
+
+    def device(self, identifier):
+        """What its file of devices has of the one of this id; it writes it some seconds later."""
+        def found():
+            if not self.registry.exists():
+                return None
+            devices = json.loads(self.registry.read_text())["data"]["devices"]
+            return next((d for d in devices if ["mqtt", identifier] in d["identifiers"]), None)
+        return until(found, 60, lambda: f"{identifier} is in {self.registry}", step=0.5)
 
     def shows(self, entity, state, seconds=30):
         until(lambda: self.state(entity) == state, seconds,

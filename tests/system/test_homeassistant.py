@@ -41,10 +41,14 @@ BOARD = "ds2408_29_a0b1c2000004"
 
 
 def test_it_takes_each_kind_of_entity_and_moves_outputs(scene):
-    house = House(scene, *KINDS, wire=WIRE, Write=raw("on"))
+    house = House(scene, *KINDS, wire=WIRE, Write=raw("on"), Link="http://pi7.local:8080/")
     judge = HomeAssistant(scene, house.broker.port)
     judge.shows("sensor.room", "21.5")
     judge.shows("binary_sensor.room_limit_alarm", "off")
+    judge.shows("binary_sensor.room_problem", "off")
+    registry = judge.device(SENSOR)
+    assert (registry["manufacturer"], registry["model"], registry["serial_number"], registry["configuration_url"]) == (
+        "Maxim Integrated", "DS18B20", SENSOR, "http://pi7.local:8080/"), registry
     judge.shows(f"binary_sensor.{BOARD}_door", "on")
     judge.shows("binary_sensor.owsd_pi7_bus", "on")
     judge.shows("sensor.ds2431_2d_a0b1c2000009_kind", "DS2431")
@@ -74,7 +78,7 @@ def test_it_takes_each_kind_of_entity_and_moves_outputs(scene):
     # every component that was announced became an entity, but the tag
     announced = [c["p"] for topic, text in house.kept("homeassistant/device/#").items()
                  for c in json.loads(text)["cmps"].values()]
-    kinds = sorted(e.split(".")[0] for e, (_, device, _, _) in judge.states().items() if device != "None" and "backup" not in e)
+    kinds = sorted(e.split(".")[0] for e, (_, device, *_) in judge.states().items() if device != "None" and "backup" not in e)
     assert kinds == sorted(kind for kind in announced if kind != "tag"), (kinds, announced)
     assert set(announced) == {"sensor", "binary_sensor", "switch", "number", "light", "cover", "event", "tag", "text"}
     # another name of a signal is the same entity of the same device
@@ -111,6 +115,8 @@ def test_what_is_lost_is_unavailable_within_its_time(scene):
     house.says(chip, "online")
     until(lambda: house.listener.last(chip) == "offline", 60, "it is pulled off")
     judge.shows("sensor.attic", "unavailable", 4)
+    judge.shows("binary_sensor.attic_problem", "on", 4)
+    assert judge.reason("binary_sensor.attic_problem") == "device absent", judge.states()
     assert judge.state("sensor.room") == "21.5", judge.states()
     judge.shows("sensor.attic", "18.25", 60)
     # owsd-mqtt hangs: the broker knows nothing of it yet

@@ -20,6 +20,7 @@ ALLOWED = {"p", "uniq_id", "name", "stat_t", "val_tpl", "dev_cla", "unit_of_meas
            "mode", "stat_val_tpl", "on_cmd_type", "bri_cmd_t", "bri_stat_t", "bri_val_tpl", "bri_scl",
            "pl_open", "pl_cls", "pl_stop", "set_pos_t", "pos_t", "pos_tpl", "pos_clsd", "pos_open", "avty",
            "evt_typ", "t", "ent_cat"}
+PROBLEM = f"owsd/pi7/chip/{SENSOR}/problem"
 
 
 def device(house, topic):
@@ -37,9 +38,11 @@ def publish(house, topic, text, *options):
 
 
 def test_each_chip_that_was_there_is_a_device_by_its_id_behind_the_node(scene):
-    house = House(scene, {**ROOM, "StaleAfter": 10, "LimitH": 30, "Decimals": 1}, RELAY, ABSENT)
+    house = House(scene, {**ROOM, "StaleAfter": 10, "LimitH": 30, "Decimals": 1}, RELAY, ABSENT, Link="http://pi7:8080/")
     message = device(house, CHIP)
-    assert message["dev"] == {"ids": [SENSOR], "name": "room", "mdl": "DS18B20", "via_device": "owsd_pi7"}, message
+    assert message["dev"] == {
+        "ids": [SENSOR], "name": "room", "mdl": "DS18B20", "mf": "Maxim Integrated", "sn": SENSOR,
+        "via_device": "owsd_pi7", "cu": "http://pi7:8080/"}, message
     assert message["o"]["name"] == "owsd"
     assert [a["t"] for a in message["avty"]] == ["owsd/pi7/state", f"owsd/pi7/chip/{SENSOR}"]
     assert message["avty_mode"] == "all" and message["qos"] == 1
@@ -52,6 +55,9 @@ def test_each_chip_that_was_there_is_a_device_by_its_id_behind_the_node(scene):
     assert "value_json.simulated | default(false)" in room["json_attr_tpl"], room
     alarm = message["cmps"]["owsd_28_A0B1C2000001_temperature_alarm"]
     assert (alarm["p"], alarm["dev_cla"], alarm["stat_t"]) == ("binary_sensor", "problem", "owsd/pi7/room/alarm")
+    problem = message["cmps"]["owsd_28_A0B1C2000001_problem"]
+    assert (problem["dev_cla"], problem["stat_t"], problem["avty"]) == ("problem", PROBLEM, [{"t": "owsd/pi7/state"}])
+    house.says(PROBLEM, '{"problem":false,"why":null,"signal":null,"bad":0}')
     node = device(house, NODE)
     assert node["dev"]["ids"] == ["owsd_pi7"] and [a["t"] for a in node["avty"]] == ["owsd/pi7/state"]
     assert {c["stat_t"] for c in node["cmps"].values()} == {"owsd/pi7/health"}
@@ -73,6 +79,7 @@ def test_outputs_are_what_their_class_says_once_writing_is_on(scene):
                   item("door", f"/{SWITCH}/sensed.4", "bool", Class="door"),
                   item("kind", f"/{SWITCH}/type", "string"), Write=raw("on"))
     found = device(house, PORTS)
+    assert found["cmps"].pop("owsd_29_A0B1C2000004_problem")["stat_t"].endswith("/problem")
     parts = {c["stat_t"].rsplit("/", 1)[1]: c for c in found["cmps"].values()}
     assert {n: c["p"] for n, c in parts.items()} == {
         "o0": "switch", "o1": "light", "o2": "cover", "all": "number", "door": "binary_sensor",
@@ -83,7 +90,7 @@ def test_outputs_are_what_their_class_says_once_writing_is_on(scene):
     assert parts["door"]["dev_cla"] == "door" and "dev_cla" not in parts["o1"]
     assert parts["o2"]["pl_stop"] is None
     # of energy Home Assistant takes no measurement
-    assert [c["stat_cla"] for c in device(house, CHIP)["cmps"].values()] == ["total_increasing"]
+    assert [c["stat_cla"] for c in device(house, CHIP)["cmps"].values() if c["p"] == "sensor"] == ["total_increasing"]
 
 
 def test_all_is_announced_again_when_home_assistant_starts_and_no_more_often(scene):
@@ -122,8 +129,11 @@ def test_a_chip_that_is_replaced_keeps_its_device_and_entities(scene):
     house.daemon.signal(signal.SIGHUP)
     house.arrives("room", lambda m: m["good"] and m["v"] != 21.5)
     second = device(house, CHIP)
-    assert list(first["cmps"]) == list(second["cmps"]) == ["owsd_28_A0B1C2000001_temperature"], second
+    assert list(first["cmps"]) == list(second["cmps"]) == [
+        "owsd_28_A0B1C2000001_temperature", "owsd_28_A0B1C2000001_problem"], second
     assert first["dev"]["ids"] == second["dev"]["ids"] == [SENSOR], second
+    # the number on it is that of the chip that is there
+    assert (first["dev"]["sn"], second["dev"]["sn"]) == (SENSOR, SWITCH), second
     assert f"owsd/pi7/chip/{SENSOR}" in house.kept()
 
 
@@ -142,11 +152,11 @@ def test_what_went_while_owsd_mqtt_was_down_is_emptied_and_nothing_of_others(sce
     house.daemon.signal(signal.SIGHUP)
     until(lambda: scene.get(house.daemon, "cellar"), 20, "owsd has reloaded")
     house.face = house.start()
-    gone = {"owsd/pi7/room", "owsd/pi7/room/alarm", "owsd/pi7/relay", f"owsd/pi7/chip/{SWITCH}", PORTS}
+    gone = {"owsd/pi7/room", "owsd/pi7/room/alarm", "owsd/pi7/relay", f"owsd/pi7/chip/{SWITCH}", f"owsd/pi7/chip/{SWITCH}/problem", PORTS}
     until(lambda: not gone & set(house.kept()), 30, lambda: gone & set(house.kept()), step=0.5)
     kept = house.kept()
     assert {t: kept.get(t) for t in others} == others, kept
-    assert {CHIP, NODE, "owsd/pi7/cellar", "owsd/pi7/type", f"owsd/pi7/chip/{SENSOR}", "owsd/pi7/health"} <= set(kept), kept
+    assert {CHIP, NODE, "owsd/pi7/cellar", "owsd/pi7/type", f"owsd/pi7/chip/{SENSOR}", PROBLEM, "owsd/pi7/health"} <= set(kept), kept
     assert kept["owsd/pi7/state"] == "online", kept
 
 
@@ -159,13 +169,42 @@ def test_an_entity_that_is_no_more_is_removed_and_its_device_stays(scene):
     house.daemon.signal(signal.SIGHUP)
 
     def removal():
-        return [json.loads(p)["cmps"] for _, t, p in house.listener.all(PORTS) if p and len(p) < 400]
+        # Home Assistant takes a platform alone for the end
+        return [{i for i, c in json.loads(p)["cmps"].items() if c == {"p": "switch"}}
+                for _, t, p in house.listener.all(PORTS) if p and '{"p":"switch"}' in p]
     until(removal, 30, lambda: house.listener.all(PORTS))
-    # Home Assistant takes a platform alone for the end; a switch that becomes a sensor is another entity
-    assert removal()[0] == {"owsd_29_A0B1C2000004_PIO_0": {"p": "switch"}, "owsd_29_A0B1C2000004_PIO_1": {"p": "switch"}}
-    until(lambda: {c["p"] for c in device(house, PORTS)["cmps"].values()} == {"binary_sensor"}, 20,
-          lambda: device(house, PORTS))
-    assert len(device(house, PORTS)["cmps"]) == 1
+    # a switch that becomes a sensor is another entity
+    assert "owsd_29_A0B1C2000004_PIO_1" in removal()[0], removal()
+    until(lambda: '{"p":"switch"}' not in house.listener.last(PORTS), 20, lambda: device(house, PORTS))
+    assert {c["p"] for c in device(house, PORTS)["cmps"].values()} == {"binary_sensor"}, device(house, PORTS)
+    assert len(device(house, PORTS)["cmps"]) == 2
+    # no message of the device was without its name
+    assert {json.loads(p)["dev"]["name"] for _, _, p in house.listener.all(PORTS)} <= {f"DS2408 {SWITCH}", "relay"}
+
+
+def test_a_reload_announces_what_is_another_alone_and_empties_nothing(scene):
+    house = House(scene, ROOM, RELAY)
+    device(house, PORTS)
+    house.says("owsd/pi7/state", "online")
+    before = {topic: len(house.listener.all(topic)) for topic in (CHIP, PORTS, NODE)}
+    looks = house.broker.process.log().count("Received UNSUBSCRIBE")
+    house.daemon.config.write_text(house.text({**ROOM, "Description": "the room"}, RELAY))
+    house.daemon.signal(signal.SIGHUP)
+    until(lambda: device(house, CHIP)["dev"]["name"] == "the room", 20, lambda: device(house, CHIP))
+    # the look at what the broker keeps is over, too
+    until(lambda: house.broker.process.log().count("Received UNSUBSCRIBE") > looks, 30, "the look is over")
+    assert len(house.listener.all(CHIP)) == before[CHIP] + 1, house.listener.all(CHIP)
+    assert {t: len(house.listener.all(t)) for t in (PORTS, NODE)} == {t: before[t] for t in (PORTS, NODE)}
+    assert all(text for topic in before for _, _, text in house.listener.all(topic))
+
+
+def test_a_chip_that_is_away_has_a_problem_with_its_reason(scene):
+    house = House(scene, ROOM, item("attic", "/28.A0B1C2000002/temperature"),
+                  wire="DS18B20 28.A0B1C2000002 as attic temperature 18\nat 4s unplug attic\n")
+    topic = PROBLEM.replace(SENSOR, "28.A0B1C2000002")
+    house.says(topic, '{"problem":false,"why":null,"signal":null,"bad":0}')
+    house.says(topic, '{"problem":true,"why":"device absent","signal":"attic","bad":1}')
+    assert json.loads(house.listener.last(PROBLEM))["problem"] is False
 
 
 def test_a_chip_that_is_written_in_two_ways_is_one_device(scene):
@@ -173,11 +212,11 @@ def test_a_chip_that_is_written_in_two_ways_is_one_device(scene):
                   item("again", f"/uncached/{SENSOR}/temperature"))
     house.says("owsd/pi7/state", "online")
     message = device(house, CHIP)
-    assert message["dev"]["ids"] == [SENSOR] and len(message["cmps"]) == 3, message
-    assert {c["stat_t"] for c in message["cmps"].values()} == {f"owsd/pi7/{n}" for n in ("room", "coarse", "again")}
+    assert message["dev"]["ids"] == [SENSOR] and len(message["cmps"]) == 4, message
+    assert {c["stat_t"] for c in message["cmps"].values()} - {PROBLEM} == {f"owsd/pi7/{n}" for n in ("room", "coarse", "again")}
     kept = house.kept()
     assert {t for t in kept if t.startswith("homeassistant/")} == {CHIP, NODE}, kept
-    assert [t for t in kept if "/chip/" in t] == [f"owsd/pi7/chip/{SENSOR}"], kept
+    assert {t for t in kept if "/chip/" in t} == {f"owsd/pi7/chip/{SENSOR}", PROBLEM}, kept
 
 
 def test_a_key_is_a_tag_each_time_it_comes(scene):

@@ -205,7 +205,7 @@ struct config_mqtt {
 	const char *user, *password_file, *ca_file, *cert_file, *key_file; /* NULL: none */
 	const char *node; /* NULL: the program's own */
 	const char *protocol, *topic, *profile, *discovery;
-	const char *primary_host; /* NULL: none */
+	const char *primary_host, *link; /* NULL: none */
 	bool mqtt5, write;
 };
 

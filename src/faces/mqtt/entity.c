@@ -105,6 +105,22 @@ void entity_available_json(struct json *json, const struct stream *s, const stru
 	json_string(json, "avty_mode", "all");
 }
 
+const char *entity_maker(const char *family)
+{
+	static const struct {
+		const char *begin, *maker;
+	} makers[] = {
+		{"DS", "Maxim Integrated"},       {"MAX", "Maxim Integrated"},
+		{"EDS", "Embedded Data Systems"}, {"TMP", "Texas Instruments"},
+		{"Hobby", "Hobby Boards"},        {"Inferno", "Inferno Embedded"},
+	};
+
+	for (size_t i = 0; i < sizeof(makers) / sizeof(makers[0]); i++)
+		if (!strncmp(family, makers[i].begin, strlen(makers[i].begin)))
+			return makers[i].maker;
+	return NULL;
+}
+
 void entity_device_json(struct json *json, const struct stream *s, const struct chip *chip,
                         const char *name)
 {
@@ -117,10 +133,19 @@ void entity_device_json(struct json *json, const struct stream *s, const struct 
 	json_array_end(json);
 	json_string(json, "name", name);
 	json_string(json, "mdl", chip && *chip->family ? chip->family : chip ? "1-Wire" : "owsd");
-	if (chip)
+	if (chip) {
+		const struct ows_info *info = &s->by_chip[chip->first]->info;
+
+		if (entity_maker(chip->family))
+			json_string(json, "mf", entity_maker(chip->family));
+		/* of the device that is there now */
+		json_string(json, "sn", *info->device ? info->device : chip->id);
 		json_string(json, "via_device", node);
-	else
+	} else {
 		json_string(json, "sw", OWSD_VERSION);
+	}
+	if (s->link && *s->link)
+		json_string(json, "cu", s->link);
 	json_object_end(json);
 	json_object(json, "o");
 	json_string(json, "name", "owsd");
@@ -335,4 +360,23 @@ void entity_json(struct json *json, const struct stream *s, const struct row *ro
 		put_topic(json, "t", row, "/tag");
 		json_object_end(json);
 	}
+}
+
+void entity_problem_json(struct json *json, const struct stream *s, const struct chip *chip,
+                         const char *owner)
+{
+	char id[2 * ENTITY_ID], topic[TOPIC_SIZE];
+
+	/* no signal has a property of that name */
+	snprintf(id, sizeof(id), "owsd_%s", owner);
+	entity_begin(json, id, "_problem", "binary_sensor", "Problem");
+	json_string(json, "dev_cla", "problem");
+	json_string(json, "ent_cat", "diagnostic");
+	snprintf(topic, sizeof(topic), "%.480s/" TOPIC_PROBLEM, chip->topic);
+	json_string(json, "stat_t", topic);
+	json_string(json, "val_tpl", "{{ 'ON' if value_json.problem else 'OFF' }}");
+	json_string(json, "json_attr_t", topic);
+	/* a chip that is away has a problem, and is not what says so */
+	put_availables(json, s, NULL, NULL);
+	json_object_end(json);
 }

@@ -31,6 +31,11 @@ void entity_range(const struct ows_info *info, double *least, double *most);
  */
 void entity_json(struct json *json, const struct stream *s, const struct row *row,
                  const char *owner, bool alone);
+/* The component of a chip that says whether something is wrong with it. */
+void entity_problem_json(struct json *json, const struct stream *s, const struct chip *chip,
+                         const char *owner);
+/* Who makes a device of that family: "DS18B20"; NULL: not known. Pure. */
+const char *entity_maker(const char *family);
 /* The device of a message: the node, or a chip, which is behind the node. */
 void entity_device_json(struct json *json, const struct stream *s, const struct chip *chip,
                         const char *name);

@@ -10,6 +10,7 @@
 #include "src/faces/mqtt/entity.h"
 #include "src/faces/mqtt/health.h"
 #include "src/faces/mqtt/plain.h"
+#include "src/ground/signal/hash.h"
 
 /* The components of all rows of a chip; NULL: of those without one. */
 static void put_rows(struct json *json, const struct stream *s, const struct chip *chip,
@@ -60,7 +61,9 @@ static void make_device(struct stream *s, struct chip *chip, char topic[TOPIC_SI
 	json_int(&json, "qos", 1);
 	json_object(&json, "cmps");
 	put_rows(&json, s, chip, owner);
-	if (!chip)
+	if (chip)
+		entity_problem_json(&json, s, chip, owner);
+	else
 		health_entities_json(&json, s, owner);
 	json_object_end(&json);
 	json_object_end(&json);
@@ -70,14 +73,19 @@ static bool birth(struct stream *s, int number, bool *more)
 {
 	struct chip *chip = number ? &s->chips[number - 1] : NULL;
 	bool *announced = chip ? &chip->announced : &s->announced;
+	uint64_t *had = chip ? &chip->birth_print : &s->birth_print, print;
 	char topic[TOPIC_SIZE];
 
 	*more = number < s->chip_count;
 	if (*announced || (chip && !chip->seen))
 		return true;
 	make_device(s, chip, topic);
-	if (!stream_put(s, topic, true))
+	if (fflush(s->out))
 		return false;
+	print = hash_text(HASH_BEGIN, s->text, s->len);
+	if (print != *had && !stream_put(s, topic, true))
+		return false;
+	*had = print;
 	*announced = true;
 	return true;
 }
@@ -160,7 +168,6 @@ static const char *outlived(struct stream *s, const char *topic, const char *tex
 {
 	char id[ENTITY_ID], present[TOPIC_SIZE], *parts, *mark;
 	struct chip *chip = NULL;
-	struct json json;
 	bool node;
 
 	if (strnlen(text, BIRTH_MOST) == BIRTH_MOST || !is_ours(s, topic, text, id, &node))
@@ -183,13 +190,11 @@ static const char *outlived(struct stream *s, const char *topic, const char *tex
 	parts = removed(s, text);
 	if (!parts)
 		return NULL;
-	stream_message(s, &json);
-	json_object(&json, NULL);
-	entity_device_json(&json, s, chip, chip ? chip->id : s->node);
-	json_key(&json, "cmps");
-	fprintf(s->out, "{%s}", parts);
-	json_object_end(&json);
+	/* all that stays, and behind it what goes: nothing of the device is missing meanwhile */
+	fseek(s->out, (long)s->len - 2, SEEK_SET);
+	fprintf(s->out, ",%s}}", parts);
 	free(parts);
+	*(chip ? &chip->birth_print : &s->birth_print) = 0;
 	return fflush(s->out) ? NULL : s->text;
 }
 

@@ -77,6 +77,7 @@ static void mqtt_begin(struct face *face, int64_t now_ns)
 	                         ? m->options.primary_host
 	                         : NULL;
 	m->stream.host_ms = 0;
+	m->stream.link = m->options.link;
 	m->stream.write = m->options.write;
 	m->stream.outlet = (struct outlet){.put = broker_put, .ctx = &m->broker};
 	m->stream.class_of = class_of;
@@ -202,7 +203,7 @@ static const char *pump(struct face *face, int64_t now_ns)
 	if (face->live && m->stream.count)
 		sweep(m, now_ns);
 	if (m->asked && (face->live || !session) && now_ns >= announce_ns(m)) {
-		stream_announce(&m->stream);
+		stream_announce(&m->stream, true);
 		m->announced_ns = now_ns;
 		m->asked = false;
 	}
@@ -255,7 +256,7 @@ static void look_at_clock(struct face *face, int64_t now_ns)
 	m->stream.clock_set = m->clock.trusted || now_ns >= CLOCK_WAIT_NS;
 	/* where a message has to have a time it had a wrong one */
 	if (m->stream.clock_set && !before && m->stream.live && m->stream.profile->session)
-		stream_announce(&m->stream);
+		stream_announce(&m->stream, true);
 }
 
 void mqtt_report(struct face *face, FILE *out)

@@ -35,6 +35,28 @@ static void name_node(struct mqtt_options *options, const struct face *face)
 			*c = '_';
 }
 
+/*
+ * Where a person finds the page of this instance: as a block says; else where the page listens, if
+ * that is an address which others reach by its number.
+ */
+static void name_page(struct mqtt_options *options, const struct config *config)
+{
+	static const uint8_t any[sizeof(config->web.addresses[0].bytes)];
+	const char *link = config->mqtt.link ? config->mqtt.link : config->notify.link;
+	char text[LISTEN_TEXT_MAX];
+
+	options_copy(options->link, sizeof(options->link), link);
+	for (unsigned i = 0; i < config->web.address_count && !*options->link; i++) {
+		const struct listen_address *address = &config->web.addresses[i];
+
+		if (!address->port || listen_is_loopback(address) ||
+		    !memcmp(address->bytes, any, address->is_v6 ? 16 : 4))
+			continue;
+		listen_print(address, text);
+		snprintf(options->link, sizeof(options->link), "http://%s/", text);
+	}
+}
+
 void mqtt_options_take(struct mqtt_options *options, const struct face *face)
 {
 	const struct config_mqtt *mqtt = &face->config->mqtt;
@@ -59,6 +81,7 @@ void mqtt_options_take(struct mqtt_options *options, const struct face *face)
 	profiles_prefix(options->profile, options->topic, options->node, options->prefix);
 	options_copy(options->discovery, sizeof(options->discovery), mqtt->discovery);
 	options_copy(options->primary_host, sizeof(options->primary_host), mqtt->primary_host);
+	name_page(options, face->config);
 	options->mqtt5 = mqtt->mqtt5;
 	options->write = mqtt->write;
 }

@@ -22,7 +22,8 @@ struct mqtt_options {
 	char user[OPTION_SIZE], password_file[OPTION_SIZE]; /* "": none */
 	char ca_file[OPTION_SIZE], cert_file[OPTION_SIZE], key_file[OPTION_SIZE];
 	char node[128], topic[64], prefix[TOPIC_SIZE], discovery[64];
-	char primary_host[64]; /* "": none */
+	char primary_host[64];  /* "": none */
+	char link[OPTION_SIZE]; /* of the page; "": not known */
 	const struct profile *profile;
 	bool mqtt5, write;
 };

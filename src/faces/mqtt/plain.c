@@ -30,9 +30,12 @@ bool plain_writes(const struct stream *s, const char *topic, const char *below)
 {
 	const char *level = strchr(below, '/');
 	const struct row *row;
+	char id[ROM_TEXT_MAX];
 
-	if (level && !strncmp(below, TOPIC_CHIP "/", strlen(TOPIC_CHIP) + 1))
-		return stream_chip(s, level + 1);
+	if (level && !strncmp(below, TOPIC_CHIP "/", strlen(TOPIC_CHIP) + 1)) {
+		snprintf(id, sizeof(id), "%.*s", (int)strcspn(level + 1, "/"), level + 1);
+		return stream_chip(s, id);
+	}
 	if (level && strcmp(level, "/alarm") != 0)
 		return true;
 	if (!level && (!strcmp(below, TOPIC_STATE) || !strcmp(below, TOPIC_HEALTH)))
@@ -194,6 +197,49 @@ static bool publish_limit(struct stream *s, struct row *row)
 	return true;
 }
 
+/* What is wrong with a chip, if it is another than was published; once all its rows are. */
+static bool publish_problem(struct stream *s, const struct row *row)
+{
+	const struct row *first = NULL;
+	char topic[TOPIC_SIZE];
+	struct chip *chip;
+	struct json json;
+	uint64_t print;
+	int bad = 0;
+
+	if (row->chip < 0 || !s->live)
+		return true;
+	chip = &s->chips[row->chip];
+	for (int i = chip->first; i < chip->first + chip->rows; i++) {
+		const struct row *one = s->by_chip[i];
+
+		if (!one->published)
+			return true;
+		/* what nobody has set yet, and a key that is away, are as they should be */
+		if (one->good || one->quality == OWS_Q_INITIAL || plain_is_key(one))
+			continue;
+		first = first ? first : one;
+		bad++;
+	}
+	print = first ? (uint64_t)(first - s->rows) << 32 | (unsigned)bad << 9 | first->quality << 1
+	              : 0;
+	print |= 1;
+	if (print == chip->problem_print)
+		return true;
+	stream_message(s, &json);
+	json_object(&json, NULL);
+	json_bool(&json, "problem", first);
+	json_string(&json, "why", first ? ows_quality_text(first->quality) : NULL);
+	json_string(&json, "signal", first ? first->name : NULL);
+	json_int(&json, "bad", bad);
+	json_object_end(&json);
+	snprintf(topic, sizeof(topic), "%.480s/" TOPIC_PROBLEM, chip->topic);
+	if (!stream_put(s, topic, true))
+		return false;
+	chip->problem_print = print;
+	return true;
+}
+
 bool plain_value(struct stream *s, struct row *row)
 {
 	struct news news;
@@ -204,11 +250,14 @@ bool plain_value(struct stream *s, struct row *row)
 		return false;
 	if (s->live && plain_is_key(row) && !publish_key(s, row, &news.value.v))
 		return false;
-	if (!due)
-		return true;
-	stream_message(s, &json);
-	plain_put_value(&json, s, &news.value.v, news.value.text);
-	return stream_put(s, row->topic, true) && stream_published(row, &news);
+	if (due) {
+		stream_message(s, &json);
+		plain_put_value(&json, s, &news.value.v, news.value.text);
+		if (!stream_put(s, row->topic, true))
+			return false;
+		stream_published(row, &news);
+	}
+	return publish_problem(s, row);
 }
 
 /* --- The rest -------------------------------------------------------------------------------- */
@@ -232,7 +281,8 @@ void plain_alarm(struct stream *s, const struct ows_alarm *alarm)
 	stream_put(s, topic, false);
 }
 
-const char *const plain_below[] = {"+", "+/alarm", TOPIC_CHIP "/+", NULL};
+const char *const plain_below[] = {"+", "+/alarm", TOPIC_CHIP "/+", TOPIC_CHIP "/+/" TOPIC_PROBLEM,
+                                   NULL};
 
 const struct profile profile_plain = {
 	PLAIN,

@@ -67,6 +67,7 @@ bool stream_published(struct row *row, const struct news *news)
 {
 	row->published = true;
 	row->good = news->value.good;
+	row->quality = news->value.v.quality;
 	row->simulated = news->value.simulated;
 	row->print = news->print;
 	row->published_ns = news->now_ns;
@@ -298,6 +299,47 @@ struct chip *stream_chip(const struct stream *s, const char *id)
 	               : NULL;
 }
 
+void stream_announce(struct stream *s, bool all)
+{
+	for (int i = 0; i < s->chip_count; i++) {
+		struct chip *chip = &s->chips[i];
+
+		chip->announced = chip->lent = false;
+		if (all)
+			chip->birth_print = 0;
+	}
+	if (all)
+		s->birth_print = 0;
+	s->announced = false;
+	s->birth = s->profile->birth ? 0 : -1;
+}
+
+/* All is to be published, but for births that the broker has. */
+static void begin(struct stream *s)
+{
+	free_gone(s);
+	for (int i = 0; i < s->count; i++) {
+		s->rows[i].published = false;
+		s->rows[i].alarm_print = 0;
+		s->rows[i].born_ns = 0;
+	}
+	for (int i = 0; i < s->chip_count; i++) {
+		s->chips[i].published = false;
+		s->chips[i].problem_print = 0;
+	}
+	free(s->health);
+	s->health = NULL;
+	s->online = !s->live;
+	stream_announce(s, false);
+	stream_changes(s, NULL, 0);
+}
+
+void stream_begin(struct stream *s)
+{
+	begin(s);
+	stream_announce(s, true);
+}
+
 int stream_make(struct stream *s, struct ows *h)
 {
 	int count = ows_count(h);
@@ -324,13 +366,15 @@ int stream_make(struct stream *s, struct ows *h)
 	for (int i = 0; made && i < old.chip_count; i++) {
 		struct chip *chip = stream_chip(s, old.chips[i].id);
 
-		if (chip)
-			chip->seen = old.chips[i].seen;
+		if (!chip)
+			continue;
+		chip->seen = old.chips[i].seen;
+		chip->birth_print = old.chips[i].birth_print;
 	}
 	if (!made)
 		stream_clear(s);
 	stream_clear(&old);
-	stream_begin(s);
+	begin(s);
 	return made ? 0 : -ENOMEM;
 }
 
@@ -410,31 +454,6 @@ void stream_changes(struct stream *s, const int *signals, int n)
 			queue_row(s, signals ? signals[i] : i);
 }
 
-void stream_announce(struct stream *s)
-{
-	for (int i = 0; i < s->chip_count; i++)
-		s->chips[i].announced = s->chips[i].lent = false;
-	s->announced = false;
-	s->birth = s->profile->birth ? 0 : -1;
-}
-
-void stream_begin(struct stream *s)
-{
-	free_gone(s);
-	for (int i = 0; i < s->count; i++) {
-		s->rows[i].published = false;
-		s->rows[i].alarm_print = 0;
-		s->rows[i].born_ns = 0;
-	}
-	for (int i = 0; i < s->chip_count; i++)
-		s->chips[i].published = false;
-	free(s->health);
-	s->health = NULL;
-	s->online = !s->live;
-	stream_announce(s);
-	stream_changes(s, NULL, 0);
-}
-
 void stream_live(struct stream *s, bool live)
 {
 	if (s->live == live)
@@ -455,9 +474,9 @@ static bool pump_gone(struct stream *s)
 		if ((value && !stream_put_text(s, topic, s->profile->none, true)) ||
 		    !stream_put_text(s, topic, last->text, true))
 			return false;
-		/* it names what is gone alone: what there is follows */
+		/* it names what is gone, too: what there is follows */
 		if (*last->text)
-			stream_announce(s);
+			stream_announce(s, false);
 		free(last->topic);
 		free(last->text);
 		s->gone_count--;

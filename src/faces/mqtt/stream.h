@@ -38,6 +38,7 @@ struct row {
 	bool twice;           /* another row before it has its chip and property */
 	bool published;       /* once at least since the birth */
 	bool good, simulated; /* what was published */
+	uint8_t quality;      /* the same */
 	uint64_t print;       /* a hash of what was published */
 	int64_t published_ns; /* when */
 	uint32_t alarm_print; /* of its limit alarm; 0: not published */
@@ -72,6 +73,8 @@ struct chip {
 	int rows, inputs, away, answers; /* signals; of them that cannot reach it, that do */
 	bool seen;                       /* it was there once, since owsd-mqtt has started */
 	bool announced;                  /* by the birth */
+	uint64_t birth_print;            /* a hash of it, if the broker has it; 0: it may not */
+	uint64_t problem_print;          /* of what is wrong with it; 0: not published */
 	bool filled;                     /* what was missed has had values of it that were good */
 	bool lent;                       /* announced for what was missed alone: a death is due */
 	bool published;
@@ -110,7 +113,7 @@ struct stream {
 	const struct profile *profile;
 	struct outlet outlet;
 	/* What all topics begin with; the keys. The texts belong to the caller. */
-	const char *prefix, *topic, *node, *discovery;
+	const char *prefix, *topic, *node, *discovery, *link;
 	bool write;
 	struct ows *h;
 	/* The key Class of a signal; "": none. The text counts until the next stream_make(). */
@@ -128,8 +131,9 @@ struct stream {
 	bool live;      /* owsd is there: else no value is good */
 	int birth;      /* the next message of the birth; -1: all is published */
 	bool announced; /* the node itself, by the birth */
-	bool online;    /* it was published that the node is there */
-	char *health;   /* as it was published last */
+	uint64_t birth_print;            /* as of chips */
+	bool online;                     /* it was published that the node is there */
+	char *health;                    /* as it was published last */
 	int64_t numbers[HEALTH_NUMBERS]; /* the same, of a session */
 	bool clock_set;                  /* wall-clock times can be believed */
 	bool clock_right;                /* they are those of others, too: it is synchronised */
@@ -241,8 +245,8 @@ void stream_gone(struct stream *s, const char *topic, const char *text);
 void stream_changes(struct stream *s, const int *signals, int n);
 /* All is to be published, as to a broker that knows nothing. */
 void stream_begin(struct stream *s);
-/* What there is is to be announced again. */
-void stream_announce(struct stream *s);
+/* What there is is to be announced again; all: also what the broker has, as it is now. */
+void stream_announce(struct stream *s, bool all);
 /* owsd is there, or not. */
 void stream_live(struct stream *s, bool live);
 /* Put what waits, as much as the outlet takes. True: nothing waits. */

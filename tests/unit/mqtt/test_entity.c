@@ -130,6 +130,7 @@ static const char *component(const char *topic, const char *id)
 
 	p.s.class_of = class_of;
 	TEST_ASSERT_EQUAL_INT(0, stream_make(&p.s, p.h));
+	stream_announce(&p.s, true);
 	instance_put_double(&p.in, ROOM + 1, 21, ows_now());
 	instance_put(&p.in, DIMMER + 1, 3, ows_now());
 	instance_put(&p.in, LAMP + 1, 1, ows_now());
@@ -259,7 +260,9 @@ static void test_a_component_that_is_no_more_is_removed_and_the_birth_follows(vo
 	         "\"owsd_28_000000000001_gone\":{\"p\":\"number\"}}}");
 	profiles_kept(&p.s, CHIP("28_000000000001"), old);
 	published_pump(&p);
-	has(p.said, "\"cmps\":{\"owsd_28_000000000001_gone\":{\"p\":\"number\"}}}\n");
+	/* all that stays comes along: the name of the device, too */
+	has(p.said, "\"name\":\"room\"");
+	has(p.said, ",\"owsd_28_000000000001_gone\":{\"p\":\"number\"}}}\n");
 	TEST_ASSERT_NULL(
 		strstr(p.said, "temperature\":{\"p\":\"sensor\"},\"owsd_28_000000000001_gone"));
 	/* of a chip that no signal names any more nothing is left */
@@ -269,6 +272,73 @@ static void test_a_component_that_is_no_more_is_removed_and_the_birth_follows(vo
 	snprintf(old, sizeof(old), "{\"dev\":{\"via_device\":\"owsd_pi2\"},\"cmps\":{}}");
 	profiles_kept(&p.s, CHIP("28_0000000000AA"), old);
 	TEST_ASSERT_EQUAL_STRING("", published_pump(&p));
+}
+
+static void test_at_a_reload_only_what_is_another_is_announced(void)
+{
+	component(CHIP("28_000000000001"), "owsd_28_000000000001_temperature");
+	/* as a configuration has it that was only read again: rows are as at first */
+	for (int i = 0; i < 2; i++) {
+		TEST_ASSERT_EQUAL_INT(0, stream_make(&p.s, p.h));
+		published_pump(&p);
+	}
+	TEST_ASSERT_NULL_MESSAGE(strstr(p.said, "/config {"), p.said);
+	TEST_ASSERT_NOT_NULL(published_at(&p, "o/pi/room"));
+	/* one that is another, alone */
+	TEST_ASSERT_EQUAL_INT(0, stream_make(&p.s, p.h));
+	p.s.rows[ROOM].info.decimals = 2;
+	published_pump(&p);
+	TEST_ASSERT_NOT_NULL(published_at(&p, CHIP("28_000000000001")));
+	TEST_ASSERT_NULL(published_at(&p, CHIP("29_000000000001")));
+	/* another broker knows nothing */
+	stream_begin(&p.s);
+	published_pump(&p);
+	TEST_ASSERT_NOT_NULL(published_at(&p, CHIP("29_000000000001")));
+}
+
+static void test_a_device_names_its_maker_its_chip_and_the_page(void)
+{
+	p.s.link = "http://pi7:8080/";
+	component(CHIP("01_000000000007"), "owsd_01_000000000007_present");
+	/* the chip that is there, not the one that it began with */
+	has(published_at(&p, CHIP("01_000000000007")),
+	    "\"sn\":\"01.000000000008\",\"via_device\":\"owsd_pi\",\"cu\":\"http://pi7:8080/\"}");
+	has(published_at(&p, CHIP("pi")), "\"cu\":\"http://pi7:8080/\"}");
+	TEST_ASSERT_EQUAL_STRING("Maxim Integrated", entity_maker("DS18B20"));
+	TEST_ASSERT_EQUAL_STRING("Embedded Data Systems", entity_maker("EDS0068"));
+	TEST_ASSERT_EQUAL_STRING("Hobby Boards", entity_maker("HobbyBoards_EF"));
+	TEST_ASSERT_NULL(entity_maker("LCD"));
+	TEST_ASSERT_NULL(entity_maker(""));
+}
+
+static void lose(int signal)
+{
+	struct ows_sample sample = {.quality = OWS_Q_NO_DEVICE};
+	struct ows_attrs attrs = {0};
+
+	image_publish(&p.in.image, (uint32_t)signal + 1, &sample, &attrs, NULL);
+	published_change(&p, signal);
+}
+
+static void test_a_chip_has_a_problem_with_its_reason_also_while_it_is_away(void)
+{
+	static const char topic[] = "o/pi/chip/29.000000000001/problem";
+	const char *c;
+
+	instance_put(&p.in, DOOR + 1, 1, ows_now());
+	c = component(CHIP("29_000000000001"), "owsd_29_000000000001_problem");
+	has(c, "\"dev_cla\":\"problem\",\"ent_cat\":\"diagnostic\",\"stat_t\":");
+	has(c, "\"avty\":[{\"t\":\"o/pi/state\"}]");
+	TEST_ASSERT_EQUAL_STRING("{\"problem\":false,\"why\":null,\"signal\":null,\"bad\":0}",
+	                         published_at(&p, topic));
+	lose(DOOR);
+	has(published_at(&p, topic), "{\"problem\":true,\"why\":\"");
+	has(published_at(&p, topic), "\"signal\":\"door\",\"bad\":1}");
+	published_change(&p, DOOR);
+	TEST_ASSERT_NULL(published_at(&p, topic));
+	/* a key that is away is away */
+	lose(KEY);
+	TEST_ASSERT_NULL(published_at(&p, "o/pi/chip/01.000000000007/problem"));
 }
 
 static void test_home_assistant_that_comes_is_told_all_again_and_nobody_else(void)
@@ -332,6 +402,9 @@ int main(void)
 	RUN_TEST(test_what_has_no_chip_and_the_health_are_of_the_node);
 	RUN_TEST(test_a_key_is_a_tag_too);
 	RUN_TEST(test_a_component_that_is_no_more_is_removed_and_the_birth_follows);
+	RUN_TEST(test_at_a_reload_only_what_is_another_is_announced);
+	RUN_TEST(test_a_device_names_its_maker_its_chip_and_the_page);
+	RUN_TEST(test_a_chip_has_a_problem_with_its_reason_also_while_it_is_away);
 	RUN_TEST(test_home_assistant_that_comes_is_told_all_again_and_nobody_else);
 	RUN_TEST(test_health_is_published_when_it_is_another_and_has_the_trouble);
 	RUN_TEST(test_signals_that_are_not_good_are_counted);

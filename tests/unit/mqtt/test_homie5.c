@@ -95,7 +95,7 @@ static void test_an_output_is_settable_where_commands_are_taken_alone(void)
 	says("temperature", "\"settable\":false,\"retained\":true");
 	says("pio-0", "\"settable\":true");
 	p.s.write = false;
-	stream_announce(&p.s);
+	stream_announce(&p.s, true);
 	says("pio-0", "\"settable\":false");
 }
 

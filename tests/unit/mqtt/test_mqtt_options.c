@@ -45,6 +45,29 @@ static void test_a_way_is_shown_as_the_key_broker_has_it(void)
 		TEST_ASSERT_EQUAL_STRING(ways[i].name, mqtt_way_name(&ways[i].way, text));
 }
 
+static void test_the_page_is_where_a_block_says_or_where_it_listens_for_others(void)
+{
+	static const uint8_t lan[] = {10, 0, 0, 7};
+
+	mqtt_options_take(&options, &face);
+	TEST_ASSERT_EQUAL_STRING("", options.link);
+	/* an address of all, and one that only this machine reaches, help nobody */
+	config.web.address_count = 2;
+	config.web.addresses[0].port = 8080;
+	config.web.addresses[1] = (struct listen_address){.port = 81, .bytes = {127, 0, 0, 1}};
+	mqtt_options_take(&options, &face);
+	TEST_ASSERT_EQUAL_STRING("", options.link);
+	memcpy(config.web.addresses[1].bytes, lan, sizeof(lan));
+	mqtt_options_take(&options, &face);
+	TEST_ASSERT_EQUAL_STRING("http://10.0.0.7:81/", options.link);
+	config.notify.link = "https://plant.example/";
+	mqtt_options_take(&options, &face);
+	TEST_ASSERT_EQUAL_STRING("https://plant.example/", options.link);
+	config.mqtt.link = "https://pi7.example/";
+	mqtt_options_take(&options, &face);
+	TEST_ASSERT_EQUAL_STRING("https://pi7.example/", options.link);
+}
+
 static void test_the_node_is_the_key_as_it_is(void)
 {
 	config.mqtt.node = "House 7.b";
@@ -124,6 +147,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_a_way_is_shown_as_the_key_broker_has_it);
+	RUN_TEST(test_the_page_is_where_a_block_says_or_where_it_listens_for_others);
 	RUN_TEST(test_the_node_is_the_key_as_it_is);
 	RUN_TEST(test_without_the_key_the_node_is_the_machine_and_another_instance_has_its_name);
 	RUN_TEST(test_a_password_without_a_user_is_of_the_node);

@@ -214,7 +214,7 @@ static void test_numbers_end_at_255_and_a_birth_begins_at_0(void)
 	room = 100;
 	change(ROOM, 1);
 	TEST_ASSERT_EQUAL_STRING("DDATA/pi/28.000000000001 0\n", pump());
-	stream_announce(&s);
+	stream_announce(&s, true);
 	TEST_ASSERT_EQUAL_STRING_LEN("NBIRTH/pi 0\nDBIRTH/pi/28.000000000001 1\n", pump(), 40);
 }
 

@@ -66,6 +66,8 @@ void tearDown(void)
 	instance_end(&in);
 }
 
+#define WELL "{\"problem\":false,\"why\":null,\"signal\":null,\"bad\":0}\n"
+
 static const char *pump(void)
 {
 	said[0] = '\0';
@@ -80,9 +82,9 @@ static void test_the_birth_has_all_and_the_state_is_last(void)
 	TEST_ASSERT_EQUAL_STRING(
 		"o/pi/chip/28.000000000001 online\n"
 		"o/pi/room {\"v\":21.5,\"good\":true,\"q\":192,\"t\":null}\n"
-		"o/pi/chip/29.000000000001 online\n"
+		"o/pi/chip/28.000000000001/problem " WELL "o/pi/chip/29.000000000001 online\n"
 		"o/pi/title {\"v\":\"a\\\"b\",\"good\":true,\"q\":192,\"t\":null}\n"
-		"o/pi/state online\n",
+		"o/pi/chip/29.000000000001/problem " WELL "o/pi/state online\n",
 		pump());
 	TEST_ASSERT_EQUAL_STRING("", pump());
 }
@@ -137,7 +139,7 @@ static void test_what_has_no_room_comes_later_with_its_newest_value_and_nothing_
 	pump();
 	TEST_ASSERT_NOT_NULL(strstr(said, "o/pi/room {\"v\":49,"));
 	TEST_ASSERT_NULL(strstr(said, "\"v\":48"));
-	TEST_ASSERT_NULL(strstr(said, "28.000000000001"));
+	TEST_ASSERT_NULL(strstr(said, "28.000000000001 "));
 	TEST_ASSERT_NOT_NULL(strstr(said, "o/pi/title {\"v\":\"x\""));
 }
 
@@ -242,7 +244,7 @@ static const char *places(void)
 static void test_the_topics_of_all_profiles_are_looked_at_our_own_first(void)
 {
 	TEST_ASSERT_EQUAL_STRING(
-		"o/pi/+\no/pi/+/alarm\no/pi/chip/+\nha/device/+/config\n"
+		"o/pi/+\no/pi/+/alarm\no/pi/chip/+\no/pi/chip/+/problem\nha/device/+/config\n"
 		"homie/5/owsd-pi/+\nhomie/5/owsd-pi/+/+\n"
 		"/devices/owsd_pi/meta\n/devices/owsd_pi/meta/error\n/devices/owsd_pi/controls/+\n"
 		"/devices/owsd_pi/controls/+/meta\n/devices/owsd_pi/controls/+/meta/error\n\n",
@@ -250,7 +252,7 @@ static void test_the_topics_of_all_profiles_are_looked_at_our_own_first(void)
 	take_profile(&profile_homie5);
 	TEST_ASSERT_EQUAL_STRING(
 		"homie/5/owsd-pi/+\nhomie/5/owsd-pi/+/+\n"
-		"o/pi/+\no/pi/+/alarm\no/pi/chip/+\nha/device/+/config\n"
+		"o/pi/+\no/pi/+/alarm\no/pi/chip/+\no/pi/chip/+/problem\nha/device/+/config\n"
 		"/devices/owsd_pi/meta\n/devices/owsd_pi/meta/error\n/devices/owsd_pi/controls/+\n"
 		"/devices/owsd_pi/controls/+/meta\n/devices/owsd_pi/controls/+/meta/error\n\n",
 		places());
