@@ -69,6 +69,82 @@ static void make_device(struct stream *s, struct chip *chip, char topic[TOPIC_SI
 	json_object_end(&json);
 }
 
+/* --- A message for each entity, as Home Assistant before 2024.11 takes them ------------------- */
+
+#define PLATFORM "\":{\"p\":\""
+
+/* Behind the object at which a text of ours is. */
+static const char *object_end(const char *at)
+{
+	bool text = false;
+	int depth = 0;
+
+	for (; *at; at++) {
+		if (*at == '\\' && at[1])
+			at++;
+		else if (*at == '"')
+			text = !text;
+		else if (!text && *at == '{')
+			depth++;
+		else if (!text && *at == '}' && !--depth)
+			return at + 1;
+	}
+	return at;
+}
+
+static size_t platform_len(const char *platform)
+{
+	return strspn(platform, "abcdefghijklmnopqrstuvwxyz_");
+}
+
+/* The topics of all entities of this node, with wildcards, or of one. */
+static void entity_topic(const struct stream *s, const char *platform, size_t len, const char *id,
+                         size_t id_len, char topic[TOPIC_SIZE])
+{
+	char node[ENTITY_ID];
+
+	topic_id(s->node, node, sizeof(node));
+	snprintf(topic, TOPIC_SIZE, "%s/%.*s/owsd_%s/%.*s/config", s->discovery, (int)len, platform,
+	         node, (int)id_len, id);
+}
+
+/* The message of a device as those of its components, each with what they have in common. */
+static bool put_each(struct stream *s)
+{
+	char *all = strndup(s->text, s->len), topic[TOPIC_SIZE];
+	const char *there = all ? strstr(all, ",\"avty\":[") : NULL;
+	const char *mode = there ? strstr(there, ",\"avty_mode\"") : NULL;
+	const char *parts = mode ? strstr(mode, ",\"cmps\":{") : NULL;
+	bool put = parts;
+	int number = 0;
+
+	for (const char *at = parts ? strchr(parts, '{') + 1 : ""; put && *at == '"'; at++) {
+		const char *id = at + 1, *part, *platform;
+		size_t id_len = strcspn(id, "\"");
+
+		part = id + id_len + 2;
+		platform = id + id_len + strlen(PLATFORM);
+		at = object_end(part);
+		/* the outlet has taken it before */
+		if (number++ < s->each)
+			continue;
+		rewind(s->out);
+		fwrite(all, 1, (size_t)(there - all), s->out);
+		/* it may have one of its own */
+		if (!memmem(part, (size_t)(at - part), "\"avty\":[", 8))
+			fwrite(there, 1, (size_t)(mode - there), s->out);
+		fwrite(mode, 1, (size_t)(parts - mode), s->out);
+		fprintf(s->out, ",%.*s", (int)(at - part - 1), part + 1);
+		entity_topic(s, platform, platform_len(platform), id, id_len, topic);
+		put = stream_put(s, topic, true);
+		s->each += put;
+	}
+	if (put)
+		s->each = 0;
+	free(all);
+	return put;
+}
+
 static bool birth(struct stream *s, int number, bool *more)
 {
 	struct chip *chip = number ? &s->chips[number - 1] : NULL;
@@ -83,7 +159,7 @@ static bool birth(struct stream *s, int number, bool *more)
 	if (fflush(s->out))
 		return false;
 	print = hash_text(HASH_BEGIN, s->text, s->len);
-	if (print != *had && !stream_put(s, topic, true))
+	if (print != *had && !(s->each_entity ? put_each(s) : stream_put(s, topic, true)))
 		return false;
 	*had = print;
 	*announced = true;
@@ -103,9 +179,13 @@ static bool heard(struct stream *s, const char *topic, const char *text, size_t 
 	return !strcmp(topic, status) && len == 6 && !memcmp(text, "online", 6);
 }
 
-static void births(const struct stream *s, char topic[TOPIC_SIZE])
+static bool births(const struct stream *s, int number, char topic[TOPIC_SIZE])
 {
-	snprintf(topic, TOPIC_SIZE, "%s/device/+/config", s->discovery);
+	if (number)
+		entity_topic(s, "+", 1, "+", 1, topic);
+	else
+		snprintf(topic, TOPIC_SIZE, "%s/device/+/config", s->discovery);
+	return number < 2;
 }
 
 /* Of what a text of the broker names no more is removed at a time; the next look takes the rest. */
@@ -118,7 +198,7 @@ static void births(const struct stream *s, char topic[TOPIC_SIZE])
  */
 static char *removed(const struct stream *s, const char *old)
 {
-	static const char mark[] = "\":{\"p\":\"";
+	static const char mark[] = PLATFORM;
 	char part[2 * ENTITY_ID + 64], *parts = NULL;
 	size_t len, count = 0;
 	FILE *out = open_memstream(&parts, &len);
@@ -132,7 +212,7 @@ static char *removed(const struct stream *s, const char *old)
 		while (id > old && (isalnum((unsigned char)id[-1]) || strchr("_-", id[-1])))
 			id--;
 		snprintf(part, sizeof(part), "\"%.*s%s%.*s\"", (int)(at - id), id, mark,
-		         (int)strspn(platform, "abcdefghijklmnopqrstuvwxyz_"), platform);
+		         (int)platform_len(platform), platform);
 		if (memmem(s->text, s->len, part, strlen(part)))
 			continue;
 		fprintf(out, "%s%s}", count++ ? "," : "", part);
@@ -164,26 +244,82 @@ static bool is_ours(const struct stream *s, const char *topic, const char *text,
 	return true;
 }
 
+static const char *outlived(struct stream *s, const char *topic, const char *text);
+
+/* The chip that an id of a birth begins with, "28_A0B1C2000001"; NULL: none of ours. */
+static struct chip *chip_of(const struct stream *s, const char *id)
+{
+	char text[ROM_TEXT_MAX], *mark;
+
+	/* as it stands there it has 15 letters */
+	snprintf(text, sizeof(text), "%.15s", id);
+	mark = strchr(text, '_');
+	if (!mark)
+		return NULL;
+	*mark = '.';
+	return stream_chip(s, text);
+}
+
+/* An entity of this node: *is_one. "" if it is no more, or stands in the message of its device. */
+static const char *entity_outlived(struct stream *s, const char *topic, bool *is_one)
+{
+	char present[TOPIC_SIZE], part[2 * ENTITY_ID + 64];
+	size_t prefix = strlen(s->discovery) + 1, len, id_len;
+	const char *platform, *id;
+	struct chip *chip;
+
+	*is_one = false;
+	if (strncmp(topic, s->discovery, prefix - 1) != 0 || strlen(topic) <= prefix)
+		return NULL;
+	platform = topic + prefix;
+	len = platform_len(platform);
+	id = strrchr(topic, '/');
+	if (!id || strcmp(id, "/config") != 0)
+		return NULL;
+	while (id > platform && id[-1] != '/')
+		id--;
+	id_len = strcspn(id, "/");
+	entity_topic(s, platform, len, id, id_len, present);
+	*is_one = !strcmp(topic, present);
+	if (!*is_one)
+		return NULL;
+	chip = chip_of(s, id + strcspn(id, "_") + 1);
+	if (!s->each_entity || s->profile->outlived != outlived) {
+		*(chip ? &chip->birth_print : &s->birth_print) = 0;
+		return "";
+	}
+	if (chip)
+		chip->seen = true; /* it is published, so it was there */
+	make_device(s, chip, present);
+	snprintf(part, sizeof(part), "\"%.*s" PLATFORM "%.*s\"", (int)id_len, id, (int)len,
+	         platform);
+	return fflush(s->out) || memmem(s->text, s->len, part, strlen(part)) ? NULL : "";
+}
+
 static const char *outlived(struct stream *s, const char *topic, const char *text)
 {
-	char id[ENTITY_ID], present[TOPIC_SIZE], *parts, *mark;
+	char id[ENTITY_ID], present[TOPIC_SIZE], *parts;
 	struct chip *chip = NULL;
-	bool node;
+	const char *entity;
+	bool node, is_one;
 
+	entity = entity_outlived(s, topic, &is_one);
+	if (is_one)
+		return entity;
 	if (strnlen(text, BIRTH_MOST) == BIRTH_MOST || !is_ours(s, topic, text, id, &node))
 		return NULL;
 	if (s->profile->outlived != outlived)
 		return "";
-	if (!node) {
-		mark = strchr(id, '_');
-		if (mark) {
-			*mark = '.';
-			chip = stream_chip(s, id);
-		}
-		if (!chip)
-			return "";
-		chip->seen = true; /* it is published, so it was there */
+	if (!node)
+		chip = chip_of(s, id);
+	if (!node && !chip)
+		return "";
+	if (s->each_entity) {
+		*(chip ? &chip->birth_print : &s->birth_print) = 0;
+		return "";
 	}
+	if (chip)
+		chip->seen = true; /* it is published, so it was there */
 	make_device(s, chip, present);
 	if (fflush(s->out))
 		return NULL;

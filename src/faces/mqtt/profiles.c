@@ -71,10 +71,10 @@ void profiles_place(const struct stream *s, int number, char topic[TOPIC_SIZE])
 				snprintf(topic, TOPIC_SIZE, "%.300s/%s", prefix, *below);
 				return;
 			}
-		if (p->births && (!i || p != s->profile) && !number--) {
-			p->births(s, topic);
-			return;
-		}
+		for (int n = 0; p->births && (!i || p != s->profile) && p->births(s, n, topic); n++)
+			if (!number--)
+				return;
+		topic[0] = '\0';
 	}
 }
 

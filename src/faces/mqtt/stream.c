@@ -311,6 +311,7 @@ void stream_announce(struct stream *s, bool all)
 	if (all)
 		s->birth_print = 0;
 	s->announced = false;
+	s->each = 0;
 	s->birth = s->profile->birth ? 0 : -1;
 }
 
@@ -474,8 +475,8 @@ static bool pump_gone(struct stream *s)
 		if ((value && !stream_put_text(s, topic, s->profile->none, true)) ||
 		    !stream_put_text(s, topic, last->text, true))
 			return false;
-		/* it names what is gone, too: what there is follows */
-		if (*last->text)
+		/* it names what is gone, too, or made room: what there is follows */
+		if (*last->text || (!below && s->profile->outlived))
 			stream_announce(s, false);
 		free(last->topic);
 		free(last->text);

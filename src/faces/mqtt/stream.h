@@ -114,7 +114,7 @@ struct stream {
 	struct outlet outlet;
 	/* What all topics begin with; the keys. The texts belong to the caller. */
 	const char *prefix, *topic, *node, *discovery, *link;
-	bool write;
+	bool write, each_entity;
 	struct ows *h;
 	/* The key Class of a signal; "": none. The text counts until the next stream_make(). */
 	const char *(*class_of)(void *ctx, const char *name);
@@ -130,6 +130,7 @@ struct stream {
 	bool settled;   /* what the broker keeps of the node is ours alone, and can be emptied */
 	bool live;      /* owsd is there: else no value is good */
 	int birth;      /* the next message of the birth; -1: all is published */
+	int each;       /* how many entities of it are */
 	bool announced; /* the node itself, by the birth */
 	uint64_t birth_print;            /* as of chips */
 	bool online;                     /* it was published that the node is there */
@@ -211,8 +212,8 @@ struct profile {
 	             stream_take *take, void *ctx);
 	/* What came there or of the host. True: the birth has to be published again. */
 	bool (*heard)(struct stream *s, const char *topic, const char *text, size_t len);
-	/* Where retained births of ours may stand. */
-	void (*births)(const struct stream *s, char topic[TOPIC_SIZE]);
+	/* Where retained births of ours may stand, by a number from 0. False: there is no more. */
+	bool (*births)(const struct stream *s, int number, char topic[TOPIC_SIZE]);
 	/*
 	 * What has to be published there because something of one of these is no more: "" if
 	 * nothing of it is left, as of all when s has another profile; else s->text, and the birth

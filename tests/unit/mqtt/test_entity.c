@@ -341,6 +341,70 @@ static void test_a_chip_has_a_problem_with_its_reason_also_while_it_is_away(void
 	TEST_ASSERT_NULL(published_at(&p, "o/pi/chip/01.000000000007/problem"));
 }
 
+static void test_each_entity_has_a_message_of_its_own_if_that_is_wanted(void)
+{
+	static const char topic[] = "ha/switch/owsd_pi/owsd_29_000000000001_PIO_0/config";
+	const char *c;
+	int count = 0;
+
+	p.s.each_entity = true;
+	stream_announce(&p.s, true);
+	instance_put(&p.in, LAMP + 1, 1, ows_now());
+	/* the outlet takes little at a time, and no entity is left out or comes twice */
+	for (int i = 0; i < 30; i++) {
+		p.room = 3;
+		published_pump(&p);
+		count += published_at(&p, topic) != NULL;
+	}
+	TEST_ASSERT_EQUAL_INT(1, count);
+	p.room = 1000;
+	stream_announce(&p.s, true);
+	published_pump(&p);
+	TEST_ASSERT_NULL(strstr(p.said, "/device/"));
+	c = published_at(&p, topic);
+	has(c, "{\"dev\":{\"ids\":[\"29.000000000001\"]");
+	has(c, ",\"avty\":[{\"t\":\"o/pi/state\"},{\"t\":\"o/pi/chip/29.000000000001\",");
+	has(c,
+	    "\"avty_mode\":\"all\",\"qos\":1,\"p\":\"switch\",\"uniq_id\":\"owsd_29_000000000001_PIO_0\"");
+	TEST_ASSERT_NULL(strstr(c, "cmps"));
+	/* what is there while the chip is away says so alone */
+	c = published_at(&p, "ha/binary_sensor/owsd_pi/owsd_29_000000000001_problem/config");
+	has(c, "\"avty\":[{\"t\":\"o/pi/state\"}]}");
+	TEST_ASSERT_NULL(strstr(c, "chip/29.000000000001\",\"val"));
+	has(published_at(&p, "ha/text/owsd_pi/owsd_pi_settings_x/config"), "\"p\":\"text\"");
+}
+
+static void test_entities_and_devices_of_the_other_way_are_emptied(void)
+{
+	char at[TOPIC_SIZE];
+
+	TEST_ASSERT_TRUE(p.s.profile->births(&p.s, 1, at));
+	TEST_ASSERT_EQUAL_STRING("ha/+/owsd_pi/+/config", at);
+	TEST_ASSERT_FALSE(p.s.profile->births(&p.s, 2, at));
+	instance_put(&p.in, LAMP + 1, 1, ows_now());
+	published_pump(&p);
+	/* those of devices follow an entity that stood there */
+	profiles_kept(&p.s, "ha/switch/owsd_pi/owsd_29_000000000001_PIO_0/config", "{}");
+	published_pump(&p);
+	has(p.said, "ha/switch/owsd_pi/owsd_29_000000000001_PIO_0/config \nha/device/owsd_29");
+	p.s.each_entity = true;
+	profiles_kept(&p.s, "ha/switch/owsd_pi/owsd_29_000000000001_PIO_0/config", "{}");
+	profiles_kept(&p.s, "ha/switch/owsd_pi/owsd_29_000000000001_PIO_1/config", "{}");
+	profiles_kept(&p.s, "ha/switch/owsd_pi2/owsd_29_000000000001_PIO_1/config", "{}");
+	profiles_kept(&p.s, "ha/sensor/owsd_pi/owsd_29_000000000001_PIO_0/config", "{}");
+	profiles_kept(&p.s, "ha/sensor/lamp/config", "{}");
+	profiles_kept(&p.s, CHIP("29_000000000001"), "{\"dev\":{\"via_device\":\"owsd_pi\"}}");
+	published_pump(&p);
+	TEST_ASSERT_EQUAL_STRING(
+		"", published_at(&p, "ha/switch/owsd_pi/owsd_29_000000000001_PIO_1/config"));
+	TEST_ASSERT_EQUAL_STRING(
+		"", published_at(&p, "ha/sensor/owsd_pi/owsd_29_000000000001_PIO_0/config"));
+	TEST_ASSERT_EQUAL_STRING("", published_at(&p, CHIP("29_000000000001")));
+	has(published_at(&p, "ha/switch/owsd_pi/owsd_29_000000000001_PIO_0/config"), "{\"dev\"");
+	TEST_ASSERT_NULL(published_at(&p, "ha/sensor/lamp/config"));
+	TEST_ASSERT_NULL(published_at(&p, "ha/switch/owsd_pi2/owsd_29_000000000001_PIO_1/config"));
+}
+
 static void test_home_assistant_that_comes_is_told_all_again_and_nobody_else(void)
 {
 	char topic[TOPIC_SIZE];
@@ -405,6 +469,8 @@ int main(void)
 	RUN_TEST(test_at_a_reload_only_what_is_another_is_announced);
 	RUN_TEST(test_a_device_names_its_maker_its_chip_and_the_page);
 	RUN_TEST(test_a_chip_has_a_problem_with_its_reason_also_while_it_is_away);
+	RUN_TEST(test_each_entity_has_a_message_of_its_own_if_that_is_wanted);
+	RUN_TEST(test_entities_and_devices_of_the_other_way_are_emptied);
 	RUN_TEST(test_home_assistant_that_comes_is_told_all_again_and_nobody_else);
 	RUN_TEST(test_health_is_published_when_it_is_another_and_has_the_trouble);
 	RUN_TEST(test_signals_that_are_not_good_are_counted);
