@@ -37,7 +37,7 @@ FUZZ_WRAP_owsctl   := getpid clock_gettime time exit ows_now segment_wait nanosl
                       ows_close board_look replace_file replace_lock replace_unlock rio_read bus_create
 FUZZ_WORDS_owsctl  := src/tool/owsctl/owsctl.c src/ground/signal/attribute.c src/config/read/options.c src/tool/owsctl/watch/condition.c
 FUZZ_WORDS_values  := src/ground/signal/attribute.c src/ground/signal/value.c hal/owfs/path.c src/config/read/listen.c
-FUZZ_WORDS_web     := src/faces/web/head.c src/faces/web/body.c src/faces/web/origin.c src/faces/web/command.c
+FUZZ_WORDS_web     := src/faces/web/head.c src/faces/kit/body.c src/faces/web/origin.c src/faces/web/command.c
 FUZZ_WORDS_sparkplug := tests/fuzz/heap_instance.c src/faces/mqtt/sparkplug.c
 FUZZ_WORDS_writer  := src/faces/writer/order.c
 FUZZ_WORDS_rio     := src/config/read/options.c src/config/read/targets.c src/ground/signal/value.c hal/native/native.c

@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/faces/kit/body.h"
 #include "src/faces/show/json.h"
-#include "src/faces/web/body.h"
 #include "src/faces/web/head.h"
 #include "src/faces/web/origin.h"
 #include "src/ground/signal/utf8.h"

@@ -4,6 +4,7 @@
 of all others nothing is left but a line of the log."""
 
 import contextlib
+import json
 import pathlib
 import re
 import signal
@@ -66,6 +67,58 @@ def test_a_command_sets_the_output_and_the_journal_has_for_whom(scene):
     assert "a b" not in journal(house)
 
 
+def test_a_command_has_an_answer_and_so_has_a_question(scene):
+    house = ready(scene, ROOM, RELAY, LAMP)
+    result = "owsd/pi7/relay/result"
+    for text, answer in (("on", {"taken": True, "set": "on"}), ('{"v":false,"id":7}', {"taken": True, "set": "false", "id": 7}),
+                         ("toggle", {"taken": True, "set": "toggle"}),
+                         ("maybe", {"taken": False, "set": "maybe", "why": '"maybe" is no value for it: expected 0 or 1'})):
+        command(house, "relay", text)
+        until(lambda a=answer: json.loads(house.listener.last(result) or "{}") == a, 20, lambda: house.listener.all(result))
+        # a toggle goes by the value that stands
+        if text.startswith("{"):
+            house.arrives("relay", lambda m: m["v"] is False)
+    house.arrives("relay", lambda m: m["v"] is True)
+    assert not any(retained for retained, _, _ in house.listener.all(result))
+    # a light that is a number has two ends, but no other one before it was set
+    command(house, "dial", "toggle")
+    until(lambda: "nothing says which the other one is" in (house.listener.last("owsd/pi7/dial/result") or ""), 20, "it is refused")
+    command(house, "dial", "on")
+    house.arrives("dial", lambda m: m["v"] == 200)
+    command(house, "dial", "toggle")
+    house.arrives("dial", lambda m: m["v"] == 0)
+    publish(house, "owsd/pi7/nobody/set", "1")
+    until(lambda: "there is no such signal" in (house.listener.last("owsd/pi7/nobody/result") or ""), 20, "it is refused")
+    # who asks gets the newest value
+    house.arrives("room", lambda m: m["good"])
+    publish(house, "owsd/pi7/room/get", '{"id":"a1"}')
+    until(lambda: house.listener.last("owsd/pi7/room/result"), 20, "the value")
+    value = json.loads(house.listener.last("owsd/pi7/room/result"))
+    assert (value["v"], value["good"], value["id"]) == (21.5, True, "a1") and value["t"], value
+    publish(house, "owsd/pi7/nobody/get", "")
+    until(lambda: json.loads(house.listener.last("owsd/pi7/nobody/result")) == {"why": "there is no such signal"}, 20, "no value")
+
+
+def test_by_mqtt_5_who_asks_names_the_topic_of_the_answer(scene):
+    house = ready(scene)
+
+    def ask(topic, text, reply):
+        done = subprocess.run([program("mosquitto_rr"), "-V", "5", "-p", str(house.broker.port), "-W", "10", "-t", topic, "-e", reply,
+                               "-m", text, "-D", "publish", "correlation-data", "c7", "-F", "%D %p"],
+                              capture_output=True, text=True, timeout=owsdtest.PATIENCE, check=False)
+        return done.stdout.strip()
+    correlation, text = ask("owsd/pi7/relay/set", "on", "hmi/answers").split(" ", 1)
+    assert (correlation, json.loads(text)) == ("c7", {"taken": True, "set": "on"})
+    house.arrives("room", lambda m: m["good"])
+    correlation, text = ask("owsd/pi7/room/get", "", "hmi/answers").split(" ", 1)
+    assert correlation == "c7" and json.loads(text)["v"] == 21.5, text
+    # who may command must not have owsd-mqtt publish where only that may
+    for reply in ("owsd/pi8/relay/set", "homeassistant/device/x/config", "$SYS/x"):
+        command(house, "relay", "off", "-V", "5", "-D", "publish", "response-topic", reply)
+    until(lambda: len(house.listener.all("owsd/pi7/relay/result")) == 4, 20, lambda: house.listener.all())
+    assert not [t for _, t, _ in house.listener.all() if t in ("owsd/pi8/relay/set", "homeassistant/device/x/config")]
+
+
 def test_without_write_a_command_sets_nothing_and_the_log_says_why_and_what_to_do(scene):
     house = ready(scene, Write=raw("off"))
     house.set("relay", 0)
@@ -81,15 +134,15 @@ def test_what_is_no_command_is_a_line_of_the_log_and_nothing_else(scene):
     house.set("relay", 0)
     house.set("dial", 7)
     house.arrives("dial", lambda m: m["v"] == 7)
-    cases = [("relay", "2"), ("relay", "toggle"), ("dial", "201"), ("dial", "1.5"), ("dial", "on"), ("dial", "off"),
-             ("dial", "nan"), ("dial", '{"v":1}'), ("room", "20"), ("nobody", "1"), ("relay_WriteEnable", "1"),
+    cases = [("relay", "2"), ("relay", "maybe"), ("dial", "toggle"), ("dial", "201"), ("dial", "1.5"), ("dial", "on"), ("dial", "off"),
+             ("dial", "nan"), ("dial", '{"v":1'), ("dial", '{"id":1}'), ("room", "20"), ("nobody", "1"), ("relay_WriteEnable", "1"),
              ("_DGNRESET", "1"), ("dial", "9" * 2000), ("dial", b"1\0002"), ("dial", b"\xff\xfe"), ("relay", "")]
     for name, text in cases:
         command(house, name, text)
     health = house.arrives("health", lambda m: m["commands"] + m["commands_refused"] == len(cases))
     assert health["commands"] == 0, health
     assert "it is empty" in health["trouble"], health
-    assert "command to relay refused: \"toggle\" is no value for it: expected 0 or 1" in house.face.log(), house.face.log()
+    assert "command to relay refused: \"maybe\" is no value for it: expected 0 or 1" in house.face.log(), house.face.log()
     # nobody has to guess which of them was refused
     assert "command to dial refused: \"201\" is no value for it: expected 0 to 200" in house.face.log(), house.face.log()
     until(lambda: house.face.log().count(" refused: ") == len(cases), 20, lambda: house.face.log())

@@ -7,6 +7,7 @@
 
 #include "src/faces/kit/look.h"
 #include "src/faces/mqtt/mqtt.h"
+#include "src/faces/mqtt/plain.h"
 #include "src/faces/mqtt/profiles.h"
 
 static bool will(void *ctx, bool ending, const struct outlet *to)
@@ -51,12 +52,39 @@ static void on_connected(void *ctx)
 		snprintf(topic, sizeof(topic), "%.300s/%s", m->options.prefix,
 		         m->options.profile->commands);
 	client_subscribe(&m->broker, topic);
+	if (m->stream.profile->asks) {
+		snprintf(topic, sizeof(topic), "%.300s/%s", m->options.prefix,
+		         m->options.profile->asks);
+		client_subscribe(&m->broker, topic);
+	}
 	m->health_ns = m->sweep_ns = 0;
 	m->sweep = true;
 	stream_begin(&m->stream);
 }
 
-static void mqtt_command(struct mqtt *m, const char *name, bool known,
+/*
+ * The message that was begun is the answer: to all at the topic RESULT, and to whom the question
+ * names. That one must not be a topic of the nodes, or of discovery: not every sender may publish
+ * there, as we may.
+ */
+static void answer(struct mqtt *m, struct json *json, const struct broker_message *message)
+{
+	struct stream *s = &m->stream;
+	const char *reply = message->reply;
+	char topic[TOPIC_SIZE];
+
+	json_object_end(json);
+	if (fflush(s->out))
+		return;
+	snprintf(topic, sizeof(topic), "%.*s/" TOPIC_RESULT,
+	         (int)(strrchr(message->topic, '/') - message->topic), message->topic);
+	client_answer(&m->broker, topic, s->text, s->len, &(struct broker_message){0});
+	if (reply && *reply != '$' && !stream_below(reply, s->topic) &&
+	    !stream_below(reply, s->discovery))
+		client_answer(&m->broker, reply, s->text, s->len, message);
+}
+
+static void mqtt_command(struct mqtt *m, const char *name, bool known, bool plain,
                          const struct broker_message *message)
 {
 	struct broker_message one = *message;
@@ -65,8 +93,45 @@ static void mqtt_command(struct mqtt *m, const char *name, bool known,
 	if (!m->options.write)
 		one.fault = "Write is off in the block Mqtt: set it to on there, and reload owsd";
 	snprintf(place, sizeof(place), "mqtt:%s", m->options.ways[m->broker.way].host);
-	if (commands_take(&m->commands, name, known, &one, place, ows_now()) == -ETIME)
+	if (commands_take(&m->commands, name, known, plain, &one, place, ows_now()) == -ETIME)
 		broker_forget(&m->broker);
+}
+
+static void on_command(struct mqtt *m, const char *name, const struct row *row,
+                       const struct broker_message *message)
+{
+	const struct commands *c = &m->commands;
+	struct json json;
+
+	mqtt_command(m, name, row, row && row->info.type == OWS_STRING, message);
+	if (!m->stream.profile->asks)
+		return;
+	stream_message(&m->stream, &json);
+	json_object(&json, NULL);
+	ask_answer_json(&json, &c->ask, *c->why ? c->why : NULL);
+	answer(m, &json, message);
+}
+
+/* Somebody asks for a value: the newest one that owsd has. */
+static void on_question(struct mqtt *m, const struct row *row, const struct broker_message *message)
+{
+	struct stream *s = &m->stream;
+	struct json json;
+	struct ask ask;
+
+	if (message->retained)
+		return;
+	ask_read(&ask, message->text, message->len, false);
+	stream_message(s, &json);
+	json_object(&json, NULL);
+	if (row && look_is_current(m->broker.face))
+		plain_value_json(&json, s, &s->rows[row - s->rows]);
+	else
+		json_string(&json, "why",
+		            row ? "owsd is away, or reloads: try again"
+		                : "there is no such signal");
+	ask_id_json(&json, &ask);
+	answer(m, &json, message);
 }
 
 /* A message that has commands, and who takes them. */
@@ -83,7 +148,7 @@ static void mqtt_take(void *ctx, const char *name, const char *text, const char 
 	one.text = text;
 	one.len = strlen(text);
 	one.fault = fault;
-	mqtt_command(several->m, name, true, &one);
+	mqtt_command(several->m, name, true, true, &one);
 }
 
 static void on_commands(struct mqtt *m, const struct broker_message *message)
@@ -109,7 +174,7 @@ static bool is_topic(void *ctx, const char *topic, const char *text, size_t len,
 /*
  * What a message is, by its topic. Two cases end it:
  *   below the prefix, of a profile that reads them itself: commands of a session
- *   the topic of a row, with the last level of commands: a command of that row
+ *   the topic of a row, with the last level of commands: a command of that row, or a question
  * Any other may be several of these:
  *   the will of this node, kept: of another process, which had our id meanwhile
  *   kept, while the broker is asked what it keeps: something of ours that may be no more
@@ -121,15 +186,19 @@ static void on_message(void *ctx, const struct broker_message *message)
 	const struct profile *profile = m->stream.profile;
 	char name[TOPIC_SIZE];
 	const struct row *row;
+	enum stream_ask ask;
 
 	if (profile->take && stream_below(message->topic, m->stream.prefix)) {
 		on_commands(m, message);
 		return;
 	}
-	if (profile->commands && stream_command(&m->stream, message->topic, &row, name)) {
-		mqtt_command(m, name, row, message);
+	ask = stream_command(&m->stream, message->topic, &row, name);
+	if (ask == STREAM_SET)
+		on_command(m, name, row, message);
+	if (ask == STREAM_GET)
+		on_question(m, row, message);
+	if (ask)
 		return;
-	}
 	snprintf(name, sizeof(name), "%s", message->topic);
 	/* that of the first connection may be of a run of yesterday */
 	if (message->retained && *message->session && m->broker.again &&

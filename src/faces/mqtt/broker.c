@@ -21,7 +21,6 @@
 #define ANSWER_NS (15 * NS_PER_S) /* for TCP, TLS and CONNACK together */
 #define GOOD_NS (60 * NS_PER_S)
 #define TEND_NS (5 * NS_PER_S)
-#define IN_FLIGHT_MOST 100
 #define READS 64 /* packets at a time */
 #define END_NS (2 * NS_PER_S)
 /* The step of one whose place another client takes each time; it has to last longer than a pause */
@@ -428,7 +427,7 @@ static bool publish(struct broker *b, const char *topic, const char *text, size_
 {
 	int err;
 
-	if (b->state != BROKER_CONNECTED || b->ended || b->in_flight >= IN_FLIGHT_MOST)
+	if (b->state != BROKER_CONNECTED || b->ended || b->in_flight >= BROKER_IN_FLIGHT)
 		return false;
 	b->in_flight++; /* of QoS 0 it may have gone when that returns */
 	err = mosquitto_publish_v5(b->client, NULL, topic, (int)len, text, qos, retain, NULL);

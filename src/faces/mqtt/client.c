@@ -157,10 +157,41 @@ static void on_message(struct mosquitto *client, void *ctx, const struct mosquit
 		.retained = got->retain,
 	};
 
+	char *reply = NULL;
+	void *correlation = NULL;
+
 	(void)client;
 	take_property(properties, "person", message.person, BROKER_PERSON);
 	take_property(properties, SESSION, message.session, BROKER_SESSION);
+	mosquitto_property_read_string(properties, MQTT_PROP_RESPONSE_TOPIC, &reply, false);
+	mosquitto_property_read_binary(properties, MQTT_PROP_CORRELATION_DATA, &correlation,
+	                               &message.correlation_len, false);
+	message.reply = reply;
+	message.correlation = correlation;
 	b->ops->message(b->ctx, &message);
+	free(reply);
+	free(correlation);
+}
+
+void client_answer(struct broker *b, const char *topic, const char *text, size_t len,
+                   const struct broker_message *message)
+{
+	mosquitto_property *properties = NULL;
+
+	/* who asks all the time leaves room for values */
+	if (b->state != BROKER_CONNECTED || b->ended || b->in_flight >= BROKER_IN_FLIGHT / 2)
+		return;
+	if (client_mqtt5(b) && message->correlation &&
+	    mosquitto_property_add_binary(&properties, MQTT_PROP_CORRELATION_DATA,
+	                                  message->correlation, message->correlation_len))
+		return;
+	b->in_flight++;
+	if (mosquitto_publish_v5(b->client, NULL, topic, (int)len, text, client_sure_qos(b), false,
+	                         properties))
+		b->in_flight--;
+	else
+		b->published++;
+	mosquitto_property_free_all(&properties);
 }
 
 static void on_log(struct mosquitto *client, void *ctx, int level, const char *text)

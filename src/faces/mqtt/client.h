@@ -13,8 +13,9 @@
 #define BROKER_WORDS 384
 #define BROKER_SESSION 20
 #define CLIENT_ID "owsd-%s"
-#define BROKER_PLACES 24 /* that client_look() takes */
-#define BROKER_PERSON 32 /* as ows_for() takes it */
+#define BROKER_IN_FLIGHT 100 /* messages that the broker has not taken yet, at most */
+#define BROKER_PLACES 24     /* that client_look() takes */
+#define BROKER_PERSON 32     /* as ows_for() takes it */
 
 struct face;
 struct outlet;
@@ -29,6 +30,10 @@ struct broker_message {
 	const char *fault;            /* what is wrong with it as a command; NULL: not known */
 	char person[BROKER_PERSON];   /* who sent it, as it claims; "": nothing is claimed */
 	char session[BROKER_SESSION]; /* of a will of owsd-mqtt: of which process; "": it is none */
+	/* By MQTT 5: where an answer is wanted, NULL: nowhere; and what it has to bring along */
+	const char *reply;
+	const void *correlation;
+	uint16_t correlation_len;
 };
 
 struct broker_ops {
@@ -95,6 +100,9 @@ bool client_make(struct broker *b, char *why, size_t size);
 bool client_mqtt5(const struct broker *b);
 /* The QoS of what has to come: the will and commands. */
 int client_sure_qos(const struct broker *b);
+/* Publish an answer to a message, once; one that the broker does not take now is lost. */
+void client_answer(struct broker *b, const char *topic, const char *text, size_t len,
+                   const struct broker_message *message);
 /* A refusal is logged when it comes. What we publish there ourselves does not come, by MQTT 5. */
 void client_subscribe(struct broker *b, const char *topic);
 /*

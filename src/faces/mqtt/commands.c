@@ -34,6 +34,7 @@ static void commands_refuse(struct commands *c, const char *name, const char *wh
 
 	commands_tell(c, now_ns);
 	c->refused++;
+	snprintf(c->why, sizeof(c->why), "%s", why);
 	c->trouble_ns = now_ns;
 	snprintf(c->trouble, sizeof(c->trouble), "command to %.63s refused: %.150s", name, why);
 	if (!cause->lines)
@@ -47,20 +48,31 @@ static void commands_refuse(struct commands *c, const char *name, const char *wh
 	}
 }
 
-/* on and off are all of a light or a cover that has a number, or nothing; else text. */
-static const char *number_of(const struct commands *c, const struct ows_info *info,
+/*
+ * on and off are all of a light or a cover that has a number, or nothing, and toggle is the other
+ * one of them; else text. NULL: nothing says which is the other one.
+ */
+static const char *number_of(const struct commands *c, int id, const struct ows_info *info,
                              const char *text, char number[VALUE_TEXT_MAX])
 {
 	const struct stream *s = c->stream;
+	bool toggle = !strcmp(text, "toggle"), is_bool = info->type == OWS_BOOL;
+	double least = 0, most = 1;
 	enum entity_kind kind;
-	double least, most;
+	struct ows_value v;
 
-	if (info->type == OWS_BOOL || (strcmp(text, "on") != 0 && strcmp(text, "off") != 0))
+	if (!toggle && (is_bool || (strcmp(text, "on") != 0 && strcmp(text, "off") != 0)))
 		return text;
 	kind = entity_kind(info, s->class_of(s->class_ctx, info->name), true);
-	if (kind != ENTITY_LIGHT && kind != ENTITY_COVER)
+	if (!is_bool && kind != ENTITY_LIGHT && kind != ENTITY_COVER)
 		return text;
-	entity_range(info, &least, &most);
+	if (!is_bool)
+		entity_range(info, &least, &most);
+	if (toggle) {
+		if (ows_get(c->way.h, id, ows_now(), &v) || !ows_good(v.quality))
+			return NULL;
+		text = v.number > least ? "off" : "on";
+	}
 	value_to_text(OWS_DOUBLE, value_of_double(text[1] == 'n' ? most : least), number);
 	return number;
 }
@@ -89,8 +101,8 @@ static int fit(void *ctx, int id, const struct ows_info *info, struct face_comma
 
 	if (!credit || !credit_spend(credit, ows_now()))
 		return credit ? -EDQUOT : -ENOMEM;
-	command->text = number_of(ctx, info, command->text, number);
-	return 0;
+	command->text = number_of(ctx, id, info, command->text, number);
+	return command->text ? 0 : -ENODATA;
 }
 
 static void forget_credits(struct commands *c)
@@ -105,8 +117,6 @@ static const char *fault_of(const struct broker_message *message)
 {
 	if (message->retained && message->len)
 		return "it is retained, so nobody knows of when it is: publish it without retain";
-	if (message->len > COMMANDS_TEXT)
-		return "it is longer than 1024 bytes";
 	if (!message->len)
 		return "it is empty";
 	if (strlen(message->text) != message->len)
@@ -114,20 +124,38 @@ static const char *fault_of(const struct broker_message *message)
 	return NULL;
 }
 
-int commands_take(struct commands *c, const char *name, bool known,
+/* What the kit's words do not have: reasons of this door. */
+static const char *refusal_of(int err)
+{
+	switch (-err) {
+	case EDQUOT:
+		return "more than 50 commands in a second";
+	case ENODATA:
+		return "its value is not good, so nothing says which the other one is: on or off";
+	default:
+		return NULL;
+	}
+}
+
+int commands_take(struct commands *c, const char *name, bool known, bool plain,
                   const struct broker_message *message, const char *place, int64_t now_ns)
 {
+	const char *wrong = ask_read(&c->ask, message->text, message->len, plain);
 	const char *fault = message->fault ? message->fault : fault_of(message);
 	char person[BROKER_PERSON], words[FACE_REFUSAL];
 	struct face_command command = {.program = c->program,
 	                               .instance = c->instance,
 	                               .name = name,
-	                               .text = message->text,
+	                               .text = c->ask.value,
 	                               .person = person,
 	                               .came_ns = message->came_ns};
 	struct ows_info info = {0};
 	int err;
 
+	c->why[0] = '\0';
+	fault = fault ? fault : wrong;
+	if (!fault && !*c->ask.value)
+		fault = "it has no \"v\"";
 	if (fault) {
 		commands_refuse(c, name, fault, now_ns);
 		return -EINVAL;
@@ -140,15 +168,14 @@ int commands_take(struct commands *c, const char *name, bool known,
 	if (!c->way.h)
 		forget_credits(c);
 	if (err) {
-		commands_refuse(c, name,
-		                err == -EDQUOT ? "more than 50 commands in a second"
-		                               : face_refusal(&command, &info, err, words),
+		fault = refusal_of(err);
+		commands_refuse(c, name, fault ? fault : face_refusal(&command, &info, err, words),
 		                now_ns);
 		return err;
 	}
 	c->taken++;
 	c->trouble[0] = '\0';
-	log_info(c->log, "%s set to %.60s for %s", name, message->text, person);
+	log_info(c->log, "%s set to %.60s for %s", name, c->ask.value, person);
 	return 0;
 }
 

@@ -10,13 +10,13 @@
 
 #include "hal/base/time.h"
 #include "src/faces/kit/command.h"
+#include "src/faces/mqtt/ask.h"
 #include "src/faces/mqtt/client.h"
 #include "src/ground/text/log.h"
 
 struct credit;
 struct stream;
 
-#define COMMANDS_TEXT 1024 /* bytes of a value */
 /* Lines of the log for each cause of refusals, in COMMANDS_SPAN_NS; the others are counted */
 #define COMMANDS_LINES 10
 #define COMMANDS_SPAN_NS (60 * NS_PER_S)
@@ -39,16 +39,19 @@ struct commands {
 	int credit_count;
 	struct commands_cause causes[COMMANDS_CAUSES]; /* by a hash of their words */
 	uint64_t taken, refused;
+	struct ask ask;             /* the last one */
+	char why[FACE_REFUSAL];     /* it was refused; "": it was not */
 	char trouble[BROKER_WORDS]; /* the last refusal, and what to do */
 	int64_t trouble_ns;         /* when it was */
 };
 
 /*
- * The command of a message for the signal name; known: it is one of those that are published.
- * place: for whom, if the message does not name one. Waits for owsd when it connects, two seconds
- * at most, once a second. 0, or why it was refused; -ETIME: it may be too old.
+ * The command of a message for the signal name; known: it is one of those that are published;
+ * plain: no text of it is JSON. place: for whom, if the message does not name one. Waits for owsd
+ * when it connects, two seconds at most, once a second. 0, or why it was refused; -ETIME: it may be
+ * too old.
  */
-int commands_take(struct commands *c, const char *name, bool known,
+int commands_take(struct commands *c, const char *name, bool known, bool plain,
                   const struct broker_message *message, const char *place, int64_t now_ns);
 /* Log how many refusals had no line, for each cause whose span is over by now. */
 void commands_tell(struct commands *c, int64_t now_ns);

@@ -62,7 +62,6 @@ static void plain_put_value(struct json *json, const struct stream *s, const str
 	uint8_t quality = v->quality;
 	struct when now = when_now();
 
-	json_object(json, NULL);
 	if (ows_good(quality))
 		reading_json_number(json, "v", v, text);
 	else
@@ -74,7 +73,14 @@ static void plain_put_value(struct json *json, const struct stream *s, const str
 	if (!ows_good(quality))
 		json_string(json, "why", ows_quality_text(s->live ? quality : OWS_Q_NO_OWSD));
 	put_time(json, s, face_value_time(v, now.boot) + now.wall - now.boot);
-	json_object_end(json);
+}
+
+void plain_value_json(struct json *json, struct stream *s, struct row *row)
+{
+	struct news news;
+
+	stream_read(s, row, &news);
+	plain_put_value(json, s, &news.value.v, news.value.text);
 }
 
 /* One of its signals that answers is enough. */
@@ -252,7 +258,9 @@ bool plain_value(struct stream *s, struct row *row)
 		return false;
 	if (due) {
 		stream_message(s, &json);
+		json_object(&json, NULL);
 		plain_put_value(&json, s, &news.value.v, news.value.text);
+		json_object_end(&json);
 		if (!stream_put(s, row->topic, true))
 			return false;
 		stream_published(row, &news);

@@ -22,12 +22,14 @@ bool plain_limit(const struct stream *s, const struct row *row, struct ows_alarm
 /* Does it stand? */
 bool plain_stands(const struct ows_alarm_state *state);
 bool plain_value(struct stream *s, struct row *row);
+/* The members of a value as it is now, without the object around them. */
+void plain_value_json(struct json *json, struct stream *s, struct row *row);
 bool plain_state(struct stream *s, enum stream_node node);
 void plain_alarm(struct stream *s, const struct ows_alarm *alarm);
 
 /* What the profiles that are built on it have of it. */
 #define PLAIN \
-	.qos = 1, .health = true, .commands = "+/set", .below = plain_below, \
+	.qos = 1, .health = true, .commands = "+/set", .asks = "+/get", .below = plain_below, \
 	.none = "{\"v\":null,\"good\":false,\"q\":4,\"why\":\"not configured\"}", \
 	.writes = plain_writes, .topic = plain_topic, .value = plain_value, .state = plain_state, \
 	.alarm = plain_alarm

@@ -399,20 +399,26 @@ const struct row *stream_row(const struct stream *s, const char *topic, size_t l
 	return found ? *found : NULL;
 }
 
-bool stream_command(const struct stream *s, const char *topic, const struct row **row,
-                    char name[TOPIC_SIZE])
+enum stream_ask stream_command(const struct stream *s, const char *topic, const struct row **row,
+                               char name[TOPIC_SIZE])
 {
 	const char *below = stream_below(topic, s->prefix),
 		   *last = below ? strrchr(below, '/') : NULL;
+	const char *commands = s->profile->commands, *asks = s->profile->asks;
+	enum stream_ask ask = STREAM_NO_ASK;
 
-	if (!last || strcmp(last, strrchr(s->profile->commands, '/')) != 0)
-		return false;
+	if (last && commands && !strcmp(last, strrchr(commands, '/')))
+		ask = STREAM_SET;
+	if (last && asks && !strcmp(last, strrchr(asks, '/')))
+		ask = STREAM_GET;
+	if (!ask)
+		return ask;
 	*row = stream_row(s, topic, (size_t)(last - topic));
 	if (*row)
 		snprintf(name, TOPIC_SIZE, "%s", (*row)->name);
 	else
 		snprintf(name, TOPIC_SIZE, "%.*s", (int)(last - below), below);
-	return true;
+	return ask;
 }
 
 void stream_gone(struct stream *s, const char *topic, const char *text)

@@ -178,6 +178,8 @@ struct profile {
 	const char *none; /* what is published last at the topic of a signal that is no more */
 	/* Below the prefix, with wildcards; the last level has none. NULL: listen_write, take */
 	const char *commands;
+	/* Likewise, where values are asked for; NULL: nowhere, and no command has an answer */
+	const char *asks;
 	/* Where retained messages may stand, likewise; NULL at the end, or in its place: nowhere */
 	const char *const *below;
 	/* Is the topic, which ends with below, one of what there is now? */
@@ -235,9 +237,14 @@ void stream_clear(struct stream *s);
 struct chip *stream_chip(const struct stream *s, const char *id);
 /* The row whose value the first len bytes of topic are for; NULL: none. */
 const struct row *stream_row(const struct stream *s, const char *topic, size_t len);
-/* Is topic that of a command? *row is whose, or NULL; name gets what to call it. */
-bool stream_command(const struct stream *s, const char *topic, const struct row **row,
-                    char name[TOPIC_SIZE]);
+enum stream_ask {
+	STREAM_NO_ASK,
+	STREAM_SET, /* a command */
+	STREAM_GET, /* a question for the value */
+};
+/* What is topic of? *row is whose, or NULL; name gets what to call it. */
+enum stream_ask stream_command(const struct stream *s, const char *topic, const struct row **row,
+                               char name[TOPIC_SIZE]);
 /* What follows prefix and a slash in topic; NULL: it begins otherwise. */
 const char *stream_below(const char *topic, const char *prefix);
 /* The text is to be published once, retained, at a topic of what is no more. It is copied. */

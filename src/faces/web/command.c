@@ -8,10 +8,10 @@
 #include <sys/socket.h>
 
 #include "hal/base/time.h"
+#include "src/faces/kit/body.h"
 #include "src/faces/kit/command.h"
 #include "src/faces/show/json.h"
 #include "src/faces/show/names.h"
-#include "src/faces/web/body.h"
 #include "src/faces/web/guard.h"
 #include "src/faces/web/http.h"
 #include "src/faces/web/paths.h"

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "src/config/read/rio.h"
-#include "src/faces/web/body.h"
+#include "src/faces/kit/body.h"
 
 #define DRAFT_SETTINGS 64 /* keys of one edit */
 

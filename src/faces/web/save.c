@@ -8,8 +8,8 @@
 
 #include "src/config/read/load.h"
 #include "src/config/read/rio_file.h"
+#include "src/faces/kit/body.h"
 #include "src/faces/show/json.h"
-#include "src/faces/web/body.h"
 #include "src/faces/web/draft.h"
 #include "src/faces/web/guard.h"
 #include "src/faces/web/http.h"

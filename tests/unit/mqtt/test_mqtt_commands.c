@@ -25,7 +25,8 @@ static void test_a_refused_command_is_trouble_for_a_minute(void)
 
 	TEST_ASSERT_EQUAL_STRING("", commands_trouble(&c, START));
 	c.log = log_create(LOG_LEVEL_ERR);
-	TEST_ASSERT_EQUAL_INT(-EINVAL, commands_take(&c, "relay", true, &empty, "mqtt:x", START));
+	TEST_ASSERT_EQUAL_INT(-EINVAL,
+	                      commands_take(&c, "relay", true, false, &empty, "mqtt:x", START));
 	TEST_ASSERT_EQUAL_STRING("command to relay refused: it is empty",
 	                         commands_trouble(&c, START));
 	TEST_ASSERT_EQUAL_STRING("command to relay refused: it is empty",

@@ -9,7 +9,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "src/faces/web/body.h"
+#include "src/faces/kit/body.h"
 #include "src/ground/signal/utf8.h"
 
 struct text {

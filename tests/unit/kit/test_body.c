@@ -7,7 +7,7 @@
 
 #include "unity.h"
 
-#include "src/faces/web/body.h"
+#include "src/faces/kit/body.h"
 
 static struct body body;
 
