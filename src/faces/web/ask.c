@@ -62,7 +62,7 @@ static int status_of(const char *bytes, size_t len)
 	return status;
 }
 
-bool ask_read(char *bytes, size_t len, struct summary *summary, char why[ASK_WORDS])
+bool ask_parse(char *bytes, size_t len, struct summary *summary, char why[ASK_WORDS])
 {
 	static const char end[] = "\r\n\r\n";
 	char *body = memmem(bytes, len, end, strlen(end));
@@ -203,5 +203,5 @@ bool ask_summary(const struct other_place *place, int64_t until_ns, struct summa
 	close(fd);
 	if (len == -EFBIG)
 		return fail(why, "its answer is longer than 16 KiB");
-	return len < 0 ? fail_with(why, -len) : ask_read(bytes, (size_t)len, summary, why);
+	return len < 0 ? fail_with(why, -len) : ask_parse(bytes, (size_t)len, summary, why);
 }

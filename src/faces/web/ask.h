@@ -18,4 +18,4 @@
 bool ask_summary(const struct other_place *place, int64_t until_ns, struct summary *summary,
                  char why[ASK_WORDS]);
 /* What came, up to the end of the connection, as a summary; as ask_summary(). Pure. */
-bool ask_read(char *bytes, size_t len, struct summary *summary, char why[ASK_WORDS]);
+bool ask_parse(char *bytes, size_t len, struct summary *summary, char why[ASK_WORDS]);

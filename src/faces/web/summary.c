@@ -6,8 +6,8 @@
 #include <unistd.h>
 
 #include "hal/base/time.h"
+#include "src/faces/kit/body.h"
 #include "src/faces/show/standing.h"
-#include "src/faces/web/body.h"
 #include "src/faces/web/summary.h"
 #include "src/ground/signal/utf8.h"
 

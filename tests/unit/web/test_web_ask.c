@@ -31,7 +31,7 @@ static bool ask(const char *status, const char *body)
 	int len = snprintf(bytes, sizeof(bytes), "HTTP/1.1 %s\r\nA: b\r\n\r\n%s", status, body);
 
 	*why = '\0';
-	return ask_read(bytes, (size_t)len, &summary, why);
+	return ask_parse(bytes, (size_t)len, &summary, why);
 }
 
 /* The answer with one text in place of another. */
@@ -159,10 +159,10 @@ static void test_each_cut_of_an_answer_is_refused(void)
 
 	for (size_t len = 0; len < sizeof(whole) - 3; len++) {
 		memcpy(bytes, whole, len);
-		TEST_ASSERT_FALSE(ask_read(bytes, len, &summary, why));
+		TEST_ASSERT_FALSE(ask_parse(bytes, len, &summary, why));
 	}
 	memcpy(bytes, whole, sizeof(whole));
-	TEST_ASSERT_TRUE(ask_read(bytes, sizeof(whole) - 1, &summary, why));
+	TEST_ASSERT_TRUE(ask_parse(bytes, sizeof(whole) - 1, &summary, why));
 }
 
 int main(void)
