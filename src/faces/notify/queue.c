@@ -62,7 +62,7 @@ int64_t queue_oldest(const struct queue *queue, uint64_t number, bool escalated)
 void queue_ended(struct queue *queue, int signal, uint8_t kind, const char *how, int64_t ended_ns)
 {
 	for (uint64_t n = queue->first; n < queue->end; n++) {
-		struct entry *entry = queue_at(queue, n);
+		struct entry *entry = &queue->entries[n % QUEUE_ENTRIES];
 		bool same = entry->kind == kind ||
 		            (rules_of_limit(entry->kind) && rules_of_limit(kind));
 
