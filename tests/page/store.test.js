@@ -279,3 +279,14 @@ test("a reload that changes no signal keeps what the page had seen of them", asy
 	await settle();
 	assert.equal(store.find("room"), before);
 });
+
+test("what a cache answers again and again is not late, what nothing is heard of is", async () => {
+	const {isLate} = await import("./page/look.js");
+	Object.assign(store.find("room"), {interval: 1, gap: undefined});
+	for (let age = 1; age <= 20; age++) {
+		await pass(1000);
+		values([0, 21, GOOD, 1, age]);
+		assert.ok(!isLate(store.find("room"), store.age(store.find("room"))), `${age} s old`);
+	}
+	assert.ok(!isLate(store.find("room"), 60) && isLate(store.find("room"), 61));
+});

@@ -134,10 +134,14 @@ static void put_terminal(struct json *json, struct ows *h, const char *id)
 	json_object_end(json);
 }
 
-int64_t show_interval(int64_t start_ns, int64_t measured_ns, uint32_t count)
+int64_t show_interval(int64_t start_ns, const struct ows_value *v)
 {
-	return start_ns && count > 1 && measured_ns > start_ns ? (measured_ns - start_ns) / count
-	                                                       : 0;
+	int64_t mean, cached = v->detail & OWS_DETAIL_CACHED ? v->tried_ns - v->measured_ns : 0;
+
+	if (!start_ns || v->count < 2 || v->measured_ns <= start_ns)
+		return 0;
+	mean = (v->measured_ns - start_ns) / v->count;
+	return mean > cached ? mean : cached;
 }
 
 void show_signal(struct json *json, const struct show *show, int signal)
@@ -156,7 +160,7 @@ void show_signal(struct json *json, const struct show *show, int signal)
 	json_string(json, "type", value_type_name((enum ows_type)info.type));
 	json_bool(json, "output", info.output);
 	json_bool(json, "confirm", info.confirm);
-	interval = show_interval(show->start_ns, look.v.measured_ns, look.v.count);
+	interval = show_interval(show->start_ns, &look.v);
 	if (interval && !info.output)
 		json_seconds(json, "interval", interval);
 	else

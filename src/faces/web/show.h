@@ -26,7 +26,10 @@ void show_value(struct json *json, const struct show *show, int signal);
 const char *show_alarm(const struct show *show, int signal, char words[SHOW_ALARM]);
 /* The device of that id; they stand in the order of their ids. */
 bool show_device(struct ows *h, const char *id, struct ows_device *device);
-/* How often it was read until now, a time in ns; 0: not known. */
-int64_t show_interval(int64_t start_ns, int64_t measured_ns, uint32_t count);
+/*
+ * How far apart its measurements usually are, ns; 0: not known. A cache answers many times with
+ * one: that is no older than usual then.
+ */
+int64_t show_interval(int64_t start_ns, const struct ows_value *v);
 /* The time in milliseconds since 1970 of a boot time; 0 stays 0. */
 int64_t show_wall_ms(int64_t boot_ns);

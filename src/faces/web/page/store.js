@@ -162,14 +162,17 @@ class Store extends EventTarget {
 			this.#tell("alarm");
 	}
 
-	#set(signal, value, code, good, age, now) {
+	/* heard: owsd has the value again. One that is not newer comes from a cache, in time. */
+	#set(signal, value, code, good, age, now, heard = false) {
 		const before = signal.measured;
 		signal.value = value;
 		signal.code = code;
 		signal.good = Boolean(good);
 		signal.measured = age === null || age === undefined ? null : now - age * 1000;
-		if (before && signal.measured > before + GAP_LEAST_MS && !signal.output)
-			signal.gap = Math.max((signal.measured - before) / 1000, 0.9 * (signal.gap ?? 0));
+		const newer = signal.measured > before + GAP_LEAST_MS;
+		if (before && !signal.output && (newer || (heard && good)))
+			signal.gap = Math.max(newer ? (signal.measured - before) / 1000 : age,
+				0.9 * (signal.gap ?? 0));
 		this.#keep(signal, good && value !== null ? Number(value) : null, code);
 		return signal;
 	}
@@ -195,7 +198,7 @@ class Store extends EventTarget {
 				if (!good || !signal.good)
 					this.#details(); // with the list come the reason in words, and "simulated"
 			}
-			changed.add(this.#set(signal, value, code, good, age, now));
+			changed.add(this.#set(signal, value, code, good, age, now, true));
 		}
 		if (changed.size)
 			this.#tell("values", changed);
