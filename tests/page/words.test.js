@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import {readFileSync} from "node:fs";
 import {test} from "node:test";
-import {UNKNOWN, alarmOf, clock, dateAndClock, dayText, meaningOf, moment, msOf, qualityWords, remedyOf, span, stateOf, tickText,
+import {UNKNOWN, alarmOf, clock, dateAndClock, dayText, kindOf, meaningOf, moment, msOf, qualityWords, remedyOf, span, stateOf, tickText,
 	valueText, withUnit} from "./page/words.js";
 
 const source = (path) => readFileSync(`${process.env.PAGE_SOURCE}/${path}`, "utf8");
@@ -116,4 +116,10 @@ test("an alarm with an exclamation mark wants eyes, and a dash is none", () => {
 		assert.deepEqual(alarmOf(words), {text, open, turn, very});
 	for (const none of ["", "-", " ", null, undefined])
 		assert.equal(alarmOf(none), null);
+});
+
+test("a chip of which no family is known is one of the code in its id", () => {
+	assert.equal(kindOf({family: "DS18B20", device: "28.0123456789AB"}), "DS18B20");
+	for (const family of [undefined, null, ""])
+		assert.equal(kindOf({family, device: "28.0123456789AB"}), "Family 28");
 });

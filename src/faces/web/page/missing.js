@@ -5,6 +5,7 @@ import {announce, el, put} from "./dom.js";
 import {draft} from "./draft.js";
 import {readingOf} from "./moving.js";
 import {idOf} from "./names.js";
+import {kindOf} from "./words.js";
 
 let box, list, fault, last = "";
 
@@ -49,7 +50,7 @@ function row(id, items, free) {
 			free.find((device) => device.id === choice.value), names)},
 	"Replace\u2026");
 	return el("li", {"data-id": id}, el("p", {class: "title"}, el("span", {class: "shape",
-		"aria-hidden": "true"}, "\u00d7"), " ", el("b", {}, items[0].family || "Device"), " ",
+		"aria-hidden": "true"}, "\u00d7"), " ", el("b", {}, kindOf(items[0])), " ",
 	el("code", {}, id)), el("p", {class: "hint"}, `Signals: ${names}`),
 	free.length ? el("div", {class: "tools"}, el("label", {for: choice.id}, "Take its place"),
 		choice, button) : el("p", {class: "hint"}, "The scan found no device of this family that "

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Groups of signals, their order, the filters of the view Live, and what of it the address keeps.
+import {kindOf} from "./words.js";
+
 export const SIMULATOR = "/simulator/"; // paths of outputs that disturb a simulated wire
 const TAIL = 8; // characters at the end of a name that are never cut
 const MANY = 60; // signals from which they are a list at first
@@ -40,7 +42,7 @@ export function groupsOf(rows) {
 		if (grouped || placed)
 			groups.push({title: key, members});
 		else if (members.length > 1)
-			groups.push({title: `${members[0].signal.family || "Device"} ${key}`, members});
+			groups.push({title: `${kindOf(members[0].signal)} ${key}`, members});
 		else
 			few.push(...members);
 	if (few.length)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Where the chips are, and what is wrong there, for the view Wire: terminals of adapters, faults.
 // It touches no document.
-import {meaningOf, qualityWords, remedyOf, stateOf} from "./words.js";
+import {kindOf, meaningOf, qualityWords, remedyOf, stateOf} from "./words.js";
 
 const ABSENT = 0x08, WRONG = 0x0c, DOWN = 0x18, SHORT = 0x19, INITIAL = 0x20;
 const RANK = {good: 0, uncertain: 1, bad: 2, unknown: 3};
@@ -85,7 +85,7 @@ function faultOf(signals, terminal) {
 			: ids.length === 1 ? `${signals[0].name} does not answer`
 				: `${ids.length} chips do not answer`;
 	const place = code === SHORT || !terminal ? "" : code === ABSENT
-		? `${ids.length === 1 ? `${signals[0].family ?? "Chip"} ${ids[0]}` : "They belong"} on ${where}.`
+		? `${ids.length === 1 ? `${kindOf(signals[0])} ${ids[0]}` : "They belong"} on ${where}.`
 			+ neighbours(terminal.chips, ids.length) : `On ${where}.`;
 	return {title, state: stateOf(code) === "uncertain" ? "uncertain" : "bad", signals,
 		sentences: [meaningOf(code), place, whys.filter(Boolean).slice(0, 3).map((why) =>

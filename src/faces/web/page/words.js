@@ -91,6 +91,9 @@ export function qualityWords(code) {
 export const meaningOf = (code) => QUALITIES.get(code)?.[1] ?? "";
 export const remedyOf = (code) => QUALITIES.get(code)?.[2] ?? "";
 
+/** What kind of chip a device is: the name of its family, else the code with which its id begins. */
+export const kindOf = ({family, device}) => family || `Family ${(device ?? "").slice(0, 2)}`;
+
 /** The shape beside the words, so that no state is shown by colour alone. */
 export const SHAPES = {good: "", uncertain: "?", bad: "\u00d7", unknown: "?"};
 
