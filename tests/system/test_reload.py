@@ -98,6 +98,28 @@ def test_signals_that_stay_go_on_and_others_come_and_go(scene):
     until(lambda: get(scene, daemon, "room") == "21.5", 10, "room goes on")
 
 
+def totals(scene, daemon):
+    """All that was counted: {(target or device, what): number}, of the counters and of the devices."""
+    stats = json.loads(scene.owsctl(daemon, "--json", "stats").stdout)
+    found = {(row["target"], row["name"]): row["value"] for row in stats["counters"]}
+    return found | {(row["id"], key): row[key] for row in stats["devices"]
+                    for key in ("answers", "errors", "retries", "wire_us") if row[key] is not None}
+
+
+def test_no_total_falls_at_a_reload(scene):
+    target = house(scene)
+    daemon = scene.owsd(rio(target, ROOM, RELAYS, BACK, Period=3))
+    until(lambda: totals(scene, daemon).get((target, "bus_reads"), 0) > 3, 20, "reads are counted")
+    for items in ((ROOM, RELAYS, BACK, CELLAR), (ROOM, CELLAR)):
+        daemon.config.write_text(rio(target, *items, Period=3))
+        before = totals(scene, daemon)
+        assert scene.owsctl(daemon, "reload").returncode == 0
+        after = totals(scene, daemon)  # within a period: nothing has been published since
+        fell = {key: (value, after.get(key)) for key, value in before.items()
+                if key[0] != RELAY[1:] and after.get(key, 0) < value}
+        assert not fell, fell
+
+
 def test_owsctl_asks_for_a_reload_and_knows_when_it_is_done(scene):
     daemon, target = start(scene)
     daemon.config.write_text(rio(target, ROOM, CELLAR))

@@ -86,7 +86,7 @@ static void publish_counters(struct host *h)
 	image_counter(image, index + COUNTER_DROPPED_EVENTS, lost.dropped);
 	image_counter(image, index + COUNTER_UNFINISHED,
 	              __atomic_load_n(&h->unfinished, __ATOMIC_RELAXED));
-	image_counter(image, index + COUNTER_UNSTORED, last_failures(h->now->last));
+	image_counter(image, index + COUNTER_UNSTORED, lost.unstored);
 	image_counter(image, index + COUNTER_REFUSED,
 	              __atomic_load_n(&h->refused_reloads, __ATOMIC_RELAXED));
 	list = control_counters(h->control, &n);
@@ -148,6 +148,7 @@ static void take_next(struct host *h, int64_t now_ns)
 		serving_keep_counts(next, h->now, h->plan);
 		image_awake(&next->memory.image, true);
 		__atomic_store_n(&h->now, next, __ATOMIC_RELEASE);
+		publish_counters(h); /* before anybody sees the image: no total falls */
 		__atomic_store_n(&h->next, NULL, __ATOMIC_RELEASE);
 	}
 	if (ended) {

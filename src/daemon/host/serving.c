@@ -206,6 +206,7 @@ struct serving_counts serving_counts(const struct serving *s)
 {
 	struct serving_counts counts = s->before;
 
+	counts.unstored += last_failures(s->last);
 	for (unsigned i = 0; i < s->worker_count; i++)
 		add_counts(&counts, s->workers[i]);
 	return counts;
@@ -215,6 +216,7 @@ void serving_keep_counts(struct serving *s, const struct serving *before,
                          const struct adoption *plan)
 {
 	s->before = before->before;
+	s->before.unstored += last_failures(before->last);
 	for (unsigned i = 0; i < before->worker_count; i++)
 		if (plan->port_successors[i] < 0)
 			add_counts(&s->before, before->workers[i]);

@@ -13,9 +13,9 @@
 struct last;
 struct worker;
 
-/* Messages that had to wait, and events that were dropped, of workers. */
+/* Messages that had to wait, and events that were dropped, of workers; commands not stored. */
 struct serving_counts {
-	uint64_t stalls, dropped;
+	uint64_t stalls, dropped, unstored;
 };
 
 struct serving {
@@ -29,7 +29,7 @@ struct serving {
 	unsigned worker_count;
 	unsigned *bus_counters; /* how many each worker's bus has */
 	unsigned own_counters;  /* index of the first counter that belongs to no bus and no lane */
-	struct serving_counts before; /* of workers that reloads have ended */
+	struct serving_counts before; /* of what reloads have ended */
 };
 
 struct porter;
@@ -61,9 +61,9 @@ int serving_make(struct serving *serving, const struct serving_setup *setup, cha
  * on.
  */
 void serving_publish(struct serving *serving);
-/* Of all workers, including those that reloads have ended. */
+/* Of all, including what reloads have ended. */
 struct serving_counts serving_counts(const struct serving *serving);
-/* Keep the counts of the workers that do not stay. Called by the engine's thread at a reload. */
+/* Keep the counts of what does not stay. Called by the engine's thread at a reload. */
 void serving_keep_counts(struct serving *serving, const struct serving *before,
                          const struct adoption *plan);
 /* End the workers that are not taken. Blocks; false: a worker did not end within timeout_ns. */

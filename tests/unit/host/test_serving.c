@@ -75,8 +75,10 @@ static void test_counts_of_workers_that_stay_are_counted_once(void)
 	/* and kept over a second one */
 	before = after;
 	before.before.stalls += 7;
+	before.before.unstored = 3;
 	keep_counts((int[]){0});
 	TEST_ASSERT_EQUAL_UINT64(stalls + 7, serving_counts(&after).stalls);
+	TEST_ASSERT_EQUAL_UINT64(3, serving_counts(&after).unstored);
 }
 
 int main(void)

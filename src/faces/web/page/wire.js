@@ -178,7 +178,8 @@ function drawFigures() {
 		...[target.wire, target.signals, target.reconnects].map((n) => String(n ?? "\u2014")),
 		...known.map(([name]) => String(counts.get(`${target.name} ${name}`) ?? "\u2014"))]),
 	"owsd has no target."),
-	el("p", {class: "hint"}, known.map(([, words, meaning]) => `${words}: ${meaning}.`).join(" "))]);
+	el("p", {class: "hint"}, known.map(([, words, meaning]) => `${words}: ${meaning}.`).join(" "),
+		" A target that a reload adds, or whose block Bus it changes, counts from then on.")]);
 }
 
 function drawSteps() {
