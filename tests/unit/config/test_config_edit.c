@@ -17,6 +17,7 @@
 #include "src/config/edit/edit_block.h"
 #include "src/config/edit/edit_device.h"
 #include "src/config/edit/replace.h"
+#include "src/config/read/load.h"
 #include "tests/unit/aid/said.h"
 
 static struct rio *rio;
@@ -619,6 +620,30 @@ static void test_an_identity_is_written_only_where_it_would_change(void)
 	TEST_ASSERT_NULL(strstr(rio->text, "Identity"));
 }
 
+/* What the item called so, the last one, is known by in the end. */
+static void expect_last_identity(const char *name, const char *identity)
+{
+	struct config *config;
+
+	TEST_ASSERT_EQUAL_INT(0, config_parse("f", rio->text, rio->len, &report, &config));
+	TEST_ASSERT_EQUAL_STRING(name, config->items[config->item_count - 1].name);
+	TEST_ASSERT_EQUAL_STRING(identity, config->items[config->item_count - 1].identity);
+	config_free(config);
+}
+
+static void test_what_has_the_path_of_a_removed_item_is_that_signal_again(void)
+{
+	static const char *const apart[] = {"Identity=/x/y#oven"};
+
+	parse(THREE);
+	TEST_ASSERT_EQUAL_INT(0, edit_remove(&rio, "a", &report));
+	TEST_ASSERT_EQUAL_INT(0, edit_add(&rio, "again", "/x/y", NULL, 0, &report));
+	expect_last_identity("again", "/x/y");
+	TEST_ASSERT_EQUAL_INT(0, edit_remove(&rio, "again", &report));
+	TEST_ASSERT_EQUAL_INT(0, edit_add(&rio, "oven", "/x/y", apart, 1, &report));
+	expect_last_identity("oven", "/x/y#oven");
+}
+
 static void test_a_replacement_that_cannot_be_meant_is_refused(void)
 {
 	parse(genuine);
@@ -741,6 +766,7 @@ int main(void)
 	RUN_TEST(test_items_of_one_path_keep_their_identities_when_the_device_is_replaced);
 	RUN_TEST(test_an_item_that_stays_has_the_same_identity_after_every_edit);
 	RUN_TEST(test_an_identity_is_written_only_where_it_would_change);
+	RUN_TEST(test_what_has_the_path_of_a_removed_item_is_that_signal_again);
 	RUN_TEST(test_a_replacement_that_cannot_be_meant_is_refused);
 	RUN_TEST(test_a_device_with_more_items_than_any_has_is_not_replaced);
 	RUN_TEST(test_the_words_of_the_dialog_lead_to_the_keys);

@@ -36,7 +36,8 @@ export async function remove(items, hidden) {
 		.find((item) => !items.includes(item));
 	if (!await ask(items.length > 1 ? `Remove ${items.length} items?` : `Remove ${items[0].name}?`,
 		"Remove", [el("p", {}, `${items.length > 1 ? `${namesOf(items)}. ` : ""}${hiddenOf(items, hidden)}Undo `
-			+ "brings back what is removed. Its history stays on disk.")]))
+			+ "brings back what is removed. Its history stays on disk; an item "
+			+ "with the same path goes on with it.")]))
 		return null;
 	await draft.edit(...items.map(({name}) => ({do: "remove", name})));
 	return {focus: next?.name ?? null, words: `${namesOf(items)}: removed.`};
