@@ -14,7 +14,6 @@
 #define MEASURE_TIMES 12
 #define MEASURE_MESSAGES 8
 #define LEAST_NS 9000 /* 1 MHz; no wire is faster */
-#define MOST_MESSAGES 42
 #define SOON_NS (60 * NS_PER_S)
 #define SOON_DOUBLINGS 16
 
@@ -146,7 +145,7 @@ static int try_messages(struct ds2482_chip *chip, size_t writes, size_t reads)
 {
 	struct i2c_adapter *adapter = chip->master->adapter;
 	uint8_t out[2] = {DS2482_READ_POINTER, DS2482_AT_STATUS}, in;
-	struct i2c_message messages[MOST_MESSAGES];
+	struct i2c_message messages[DS2482_MAX_MESSAGES];
 	size_t n = 0;
 
 	while (writes-- > 0)
@@ -196,8 +195,8 @@ int ds2482_learn(struct ds2482_chip *chip)
 	unsigned room = adapter->max_messages;
 	int err = 0;
 
-	if (room > MOST_MESSAGES)
-		room = MOST_MESSAGES;
+	if (room > DS2482_MAX_MESSAGES)
+		room = DS2482_MAX_MESSAGES;
 	if (adapter->combine == I2C_ANY) {
 		err = try_messages(chip, 0, room);
 		if (err == -EOPNOTSUPP)

@@ -7,6 +7,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* Of one message, and of one transfer. */
+#define DS2482_MAX_BYTES 180
+#define DS2482_MAX_MESSAGES 42
+
 struct ds2482_chip;
 struct ds2482_master;
 

@@ -23,9 +23,8 @@ static int arm_pullup(struct ds2482_chip *chip)
 	return ds2482_configure(chip, chip->config | DS2482_SPU);
 }
 
-static int link_reset(struct link *base)
+static int link_reset(struct ds2482_link *link)
 {
-	struct ds2482_link *link = ds2482_link_of(base);
 	int status = ds2482_claimed(link->chip) ? ds2482_select(link) : -ENXIO;
 
 	if (status < 0)
@@ -39,13 +38,13 @@ static int link_reset(struct link *base)
 	if (status & DS2482_SD)
 		return -ECOMM;
 	if (status & DS2482_PPD)
-		return 1;
-	return status & DS2482_LL ? 0 : -ECOMM;
+		return 0;
+	return status & DS2482_LL ? -EHOSTDOWN : -ECOMM;
 }
 
-static int link_write(struct link *base, const uint8_t *data, size_t n, enum link_after after)
+static int link_write(struct ds2482_link *link, const uint8_t *data, size_t n,
+                      enum link_after after)
 {
-	struct ds2482_link *link = ds2482_link_of(base);
 	size_t before = after == LINK_STRONG && n > 0 ? n - 1 : n;
 	int err = ds2482_select(link);
 
@@ -66,12 +65,11 @@ static int link_write(struct link *base, const uint8_t *data, size_t n, enum lin
 	return err;
 }
 
-static int link_read(struct link *base, uint8_t *data, size_t n)
+static int link_read(struct ds2482_link *link, uint8_t *data, size_t n)
 {
-	struct ds2482_link *link = ds2482_link_of(base);
 	int err = ds2482_select(link);
 
-	if (!err && n > 0)
+	if (!err)
 		err = ds2482_read_block(link->chip, data, n);
 	if (err)
 		return err;
@@ -80,7 +78,23 @@ static int link_read(struct link *base, uint8_t *data, size_t n)
 	return 0;
 }
 
-static int link_bit(struct link *base, bool out, enum link_after after)
+static int link_run(struct link *base, const struct link_part *part)
+{
+	struct ds2482_link *link = ds2482_link_of(base);
+	int err = 0;
+
+	if (part->reset && part->in_n && ds2482_visits(link))
+		return ds2482_visit(link, part);
+	if (part->reset)
+		err = link_reset(link);
+	if (!err && part->out_n)
+		err = link_write(link, part->out, part->out_n, part->after);
+	if (!err && part->in_n)
+		err = link_read(link, part->in, part->in_n);
+	return err;
+}
+
+static int link_slot_of(struct link *base, bool out, enum link_after after)
 {
 	struct ds2482_link *link = ds2482_link_of(base);
 	int status = ds2482_select(link);
@@ -144,8 +158,8 @@ static int link_recover(struct link *base, enum link_rung rung)
 		return -ENODEV;
 	switch (rung) {
 	case LINK_BUS_RESET:
-		err = link_reset(base);
-		return err < 0 ? err : 0;
+		err = link_reset(link);
+		return err == -EHOSTDOWN ? 0 : err;
 	case LINK_CHIP_RESET:
 		/* a kernel driver may have taken the chip, whose reset looks like this */
 		err = chip->master->adapter->ops->claim(chip->master->adapter, chip->address);
@@ -168,17 +182,16 @@ static void link_cost(const struct link *base, struct link_cost *cost)
 
 static const struct link_ops link_ops = {
 	.name = "DS2482",
-	.reset = link_reset,
-	.write = link_write,
-	.read = link_read,
-	.bit = link_bit,
+	.run = link_run,
+	.slot = link_slot_of,
 	.triplet = link_triplet,
-	.together = ds2482_together,
-	.abreast = ds2482_abreast,
-	.visits = ds2482_visits,
+	.run_many = ds2482_together,
+	.many = ds2482_many,
 	.recover = link_recover,
 	.cost = link_cost,
 };
+
+static const struct link_facts facts = {.strong = true, .splits = true};
 
 /*
  * A link that is opened again keeps its chip number, which the master of several adapters may have
@@ -191,6 +204,7 @@ void ds2482_link_init(struct ds2482_chip *chip, unsigned number)
 
 	chip->link[number] = (struct ds2482_link){
 		.link = {.ops = &link_ops,
+	                 .facts = &facts,
 	                 .env = chip->master->master.env,
 	                 .chip = before->ops ? before->chip : own},
 		.chip = chip,

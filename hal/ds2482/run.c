@@ -24,8 +24,6 @@
 /* Reading on pays with bytes of at most 45 us (200 kHz). */
 #define FAST_BYTE_NS 45000
 #define BETWEEN_NS 100000
-#define MAX_BYTES DS2482_MAX_BYTES
-#define MAX_MESSAGES DS2482_MAX_MESSAGES
 
 /* What the adapter takes between messages is left out: it may take less. */
 unsigned ds2482_reading_on(const struct ds2482_chip *chip, long max_ns, unsigned between)
@@ -35,7 +33,7 @@ unsigned ds2482_reading_on(const struct ds2482_chip *chip, long max_ns, unsigned
 
 	if (max_ns <= between * byte)
 		return 1;
-	return n > MAX_BYTES ? MAX_BYTES : (unsigned)n;
+	return n > DS2482_MAX_BYTES ? DS2482_MAX_BYTES : (unsigned)n;
 }
 
 /* The status shows whether that was too early. */
@@ -129,7 +127,7 @@ static void ends_within(struct ds2482_chip *chip, long max_ns)
 
 int ds2482_run(struct ds2482_chip *chip, uint8_t command, int parameter, long max_ns)
 {
-	uint8_t out[2] = {command, (uint8_t)parameter}, in[MAX_BYTES];
+	uint8_t out[2] = {command, (uint8_t)parameter}, in[DS2482_MAX_BYTES];
 	int err = wait_free(chip, 0);
 
 	if (err)
@@ -176,15 +174,15 @@ bool ds2482_is_refused(int err)
 static int write_combined(struct ds2482_chip *chip, const uint8_t *data, size_t n, bool last)
 {
 	const long max_ns = ds2482_byte_max_ns;
-	struct i2c_message messages[MAX_MESSAGES];
-	uint8_t out[MAX_MESSAGES][2], in[MAX_BYTES];
+	struct i2c_message messages[DS2482_MAX_MESSAGES];
+	uint8_t out[DS2482_MAX_MESSAGES][2], in[DS2482_MAX_BYTES];
 	unsigned between = ds2482_reading_on(chip, max_ns, 4),
 		 end = ds2482_reading_status(chip, max_ns);
 	bool slow = ds2482_is_slow(chip, max_ns);
 	size_t count = 0;
 	int err;
 
-	assert(slow ? n < MAX_MESSAGES : n <= MAX_MESSAGES / 2);
+	assert(slow ? n < DS2482_MAX_MESSAGES : n <= DS2482_MAX_MESSAGES / 2);
 	for (size_t i = 0; i < n; i++) {
 		bool whole = last && i + 1 == n;
 
@@ -226,7 +224,8 @@ static int write_timed(struct ds2482_chip *chip, uint8_t byte)
 size_t ds2482_batch(const struct ds2482_chip *chip, unsigned messages_each)
 {
 	const struct i2c_adapter *adapter = chip->master->adapter;
-	unsigned room = adapter->max_messages < MAX_MESSAGES ? adapter->max_messages : MAX_MESSAGES;
+	unsigned room = adapter->max_messages < DS2482_MAX_MESSAGES ? adapter->max_messages
+	                                                            : DS2482_MAX_MESSAGES;
 
 	return adapter->combine == I2C_ANY && room > messages_each ? room / messages_each : 1;
 }
@@ -277,13 +276,13 @@ static int read_combined(struct ds2482_chip *chip, uint8_t *data, size_t n, bool
 {
 	uint8_t read = DS2482_READ, at_data[] = {DS2482_READ_POINTER, DS2482_AT_DATA};
 	uint8_t at_status[] = {DS2482_READ_POINTER, DS2482_AT_STATUS};
-	struct i2c_message messages[MAX_MESSAGES];
-	uint8_t in[MAX_MESSAGES / 3][MAX_BYTES], status = 0;
+	struct i2c_message messages[DS2482_MAX_MESSAGES];
+	uint8_t in[DS2482_MAX_MESSAGES / 3][DS2482_MAX_BYTES], status = 0;
 	unsigned wait = ds2482_reading_on(chip, ds2482_byte_max_ns, 4);
 	size_t count = 0;
 	int err;
 
-	assert(3 * n + 2 <= MAX_MESSAGES);
+	assert(3 * n + 2 <= DS2482_MAX_MESSAGES);
 	for (size_t i = 0; i < n; i++) {
 		messages[count++] = i2c_to_write(&read, 1);
 		messages[count++] = i2c_to_write(at_data, 2);
@@ -316,7 +315,7 @@ static int read_timed(struct ds2482_chip *chip, uint8_t *byte)
 
 int ds2482_read_block(struct ds2482_chip *chip, uint8_t *data, size_t n)
 {
-	size_t most = (MAX_MESSAGES - 2) / 3;
+	size_t most = (DS2482_MAX_MESSAGES - 2) / 3;
 	bool any = ds2482_batch(chip, 3) > 1;
 	int err = 0, status;
 
@@ -325,7 +324,7 @@ int ds2482_read_block(struct ds2482_chip *chip, uint8_t *data, size_t n)
 			err = read_timed(chip, data++);
 		return err;
 	}
-	if (any && chip->master->adapter->max_messages < MAX_MESSAGES)
+	if (any && chip->master->adapter->max_messages < DS2482_MAX_MESSAGES)
 		most = (chip->master->adapter->max_messages - 2) / 3;
 	if (!any || most == 0)
 		most = 1;

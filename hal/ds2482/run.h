@@ -6,9 +6,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define DS2482_MAX_BYTES 180
-#define DS2482_MAX_MESSAGES 42
-
 struct ds2482_chip;
 
 /* Run one operation of max_ns at most. Returns the status, or a negative errno. */

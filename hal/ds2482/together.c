@@ -7,7 +7,6 @@
 #include "hal/ds2482/io.h"
 #include "hal/ds2482/select.h"
 #include "hal/ds2482/together.h"
-#include "hal/ds2482/visit.h"
 
 /* A group may hold the I2C bus for this long, little more than one transaction does. */
 #define GROUP_NS (20 * NS_PER_MS)
@@ -21,7 +20,7 @@ enum step { STEP_BEGIN, STEP_PRESENCE, STEP_WRITE, STEP_READ, STEP_FETCH, STEP_D
 
 /* A transaction on its way, from step to step. */
 struct course {
-	struct link_visit *visit;
+	struct link_run *run;
 	struct ds2482_link *link;
 	enum step step;
 	unsigned at;      /* bytes written, then bytes read */
@@ -32,14 +31,14 @@ struct course {
 
 static void together_end(struct course *course, int err)
 {
-	course->visit->err = err;
-	course->visit->ended_ns = ds2482_now(course->link->chip->master);
+	course->run->err = err;
+	course->run->ended_ns = ds2482_now(course->link->chip->master);
 	course->step = STEP_DONE;
 }
 
 /*
  * One message, with its address: the SMBus calls of i2c-dev would have the address set anew for
- * each other chip. Adapters that have nothing else take no group (ds2482_abreast()).
+ * each other chip. Adapters that have nothing else take no group (ds2482_many()).
  */
 static int transfer_one(const struct ds2482_chip *chip, uint16_t flags, uint8_t *data, uint16_t n)
 {
@@ -88,13 +87,13 @@ static int together_begin(struct course *course)
 static int write_byte_next(struct course *course)
 {
 	struct ds2482_link *link = course->link;
-	const struct link_visit *visit = course->visit;
-	uint8_t bytes[2] = {DS2482_WRITE, visit->out[course->at]};
+	const struct link_part *part = &course->run->part;
+	uint8_t bytes[2] = {DS2482_WRITE, part->out[course->at]};
 	int err = transfer_one(link->chip, 0, bytes, sizeof(bytes));
 
 	if (err)
 		return err;
-	bool last = ++course->at == visit->out_n;
+	bool last = ++course->at == part->out_n;
 	set_ready(course, last ? STEP_READ : STEP_WRITE, ds2482_byte_max_ns, 2);
 	if (last)
 		course->at = 0;
@@ -138,13 +137,13 @@ static int look_for_presence(struct course *course)
 static int fetch_byte(struct course *course)
 {
 	struct ds2482_link *link = course->link;
-	struct link_visit *visit = course->visit;
+	const struct link_part *part = &course->run->part;
 	int byte = ds2482_write_read(link->chip, DS2482_READ_POINTER, DS2482_AT_DATA), status;
 
 	if (byte < 0)
 		return byte;
-	visit->in[course->at++] = (uint8_t)byte;
-	if (course->at < visit->in_n)
+	part->in[course->at++] = (uint8_t)byte;
+	if (course->at < part->in_n)
 		return begin_read(course);
 	status = ds2482_write_read(link->chip, DS2482_READ_POINTER, DS2482_AT_STATUS);
 	if (status < 0)
@@ -152,7 +151,7 @@ static int fetch_byte(struct course *course)
 	if (status & (DS2482_1WB | DS2482_RST))
 		return -EIO;
 	link->chip->free_at = 0;
-	link->cost.wire_ns += 8u * (visit->out_n + visit->in_n) * (uint64_t)ds2482_slot_ns;
+	link->cost.wire_ns += 8 * (part->out_n + part->in_n) * (uint64_t)ds2482_slot_ns;
 	together_end(course, 0);
 	return 0;
 }
@@ -215,7 +214,7 @@ static void end_others(struct course *courses, unsigned n, const struct course *
 	for (unsigned i = 0; i < n; i++)
 		if (courses[i].step != STEP_DONE &&
 		    courses[i].link->chip->master == failed->link->chip->master)
-			together_end(&courses[i], failed->visit->err);
+			together_end(&courses[i], failed->run->err);
 }
 
 static bool is_of_adapter(int err)
@@ -223,19 +222,14 @@ static bool is_of_adapter(int err)
 	return err == -ETIMEDOUT || err == -ENODEV || err == -ECANCELED;
 }
 
-void ds2482_together(struct link_visit *visits, unsigned n)
+void ds2482_together(struct link_run *runs, unsigned n)
 {
-	struct course courses[LINK_TOGETHER], *course;
+	struct course courses[LINK_MANY], *course;
 
-	assert(n > 0 && n <= LINK_TOGETHER);
-	if (n == 1 && ds2482_visits(visits->link)) {
-		ds2482_visit(visits);
-		return;
-	}
+	assert(n > 0 && n <= LINK_MANY);
 	for (unsigned i = 0; i < n; i++) {
-		assert(visits[i].out_n > 0 && visits[i].in_n > 0);
-		courses[i] = (struct course){.visit = &visits[i],
-		                             .link = ds2482_link_of(visits[i].link)};
+		assert(runs[i].part.out_n > 0 && runs[i].part.in_n > 0);
+		courses[i] = (struct course){.run = &runs[i], .link = ds2482_link_of(runs[i].link)};
 	}
 	while ((course = soonest(courses, n))) {
 		const struct ds2482_master *master = course->link->chip->master;
@@ -247,11 +241,11 @@ void ds2482_together(struct link_visit *visits, unsigned n)
 		else
 			make_step(course);
 		course->busy_ns += ds2482_now(master) - begun_ns;
-		if (course->step == STEP_DONE && is_of_adapter(course->visit->err))
+		if (course->step == STEP_DONE && is_of_adapter(course->run->err))
 			end_others(courses, n, course);
 	}
 	for (unsigned i = 0; i < n; i++)
-		if (!visits[i].err)
+		if (!runs[i].err)
 			learn_visit_time(&courses[i]);
 }
 
@@ -259,7 +253,7 @@ void ds2482_together(struct link_visit *visits, unsigned n)
  * As many as take no more of the I2C bus than GROUP_NS. What the calls take is not known before
  * there was a group; where bytes and messages alone leave room for two, two are always worth it.
  */
-unsigned ds2482_abreast(const struct link *link)
+unsigned ds2482_many(const struct link *link)
 {
 	const struct ds2482_chip *chip = ((const struct ds2482_link *)link)->chip;
 	const struct ds2482_master *master = chip->master;
@@ -271,5 +265,5 @@ unsigned ds2482_abreast(const struct link *link)
 	n = GROUP_NS / (master->visit_ns > least_ns ? master->visit_ns : least_ns);
 	if (n < 2)
 		return 2;
-	return n > LINK_TOGETHER ? LINK_TOGETHER : (unsigned)n;
+	return n > LINK_MANY ? LINK_MANY : (unsigned)n;
 }

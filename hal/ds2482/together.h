@@ -8,8 +8,8 @@
 #pragma once
 
 struct link;
-struct link_visit;
+struct link_run;
 
-/* As link_ops.together and link_ops.abreast. */
-void ds2482_together(struct link_visit *visits, unsigned n);
-unsigned ds2482_abreast(const struct link *link);
+/* As link_ops.run_many and link_ops.many. */
+void ds2482_together(struct link_run *runs, unsigned n);
+unsigned ds2482_many(const struct link *link);

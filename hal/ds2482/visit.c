@@ -31,9 +31,8 @@ struct train {
 	bool read_last; /* the last message is a read */
 };
 
-bool ds2482_visits(const struct link *base)
+bool ds2482_visits(const struct ds2482_link *link)
 {
-	const struct ds2482_link *link = (const struct ds2482_link *)base;
 	const struct ds2482_chip *chip = link->chip;
 	const struct i2c_adapter *adapter = chip->master->adapter;
 
@@ -135,7 +134,7 @@ static int visit_read(struct train *train, uint8_t *byte)
 	return 0;
 }
 
-/* Was the chip idle, is it still set up, and did a slave answer the reset? */
+/* The status: was the chip idle, is it still set up, and did a slave answer the reset? */
 static int visit_look(struct train *train)
 {
 	uint8_t status;
@@ -150,52 +149,55 @@ static int visit_look(struct train *train)
 		return err;
 	if (status & DS2482_1WB)
 		ds2482_was_early(train->chip);
-	if (status & (DS2482_1WB | DS2482_RST))
-		return -EIO;
-	if (status & DS2482_SD)
-		return -ECOMM;
-	return status & DS2482_PPD ? 0 : -EHOSTDOWN;
+	return status & (DS2482_1WB | DS2482_RST) ? -EIO : status;
 }
 
-static int visit_run(struct train *train, const struct link_visit *visit)
+static int visit_run(struct train *train, const struct link_part *part)
 {
-	bool few = train->slow || visit->in_n <= FEW_READS;
+	bool few = train->slow || part->in_n <= FEW_READS;
 	int err = 0;
 
 	append_write(train, DS2482_RESET, DS2482_NO_PARAMETER);
 	pass_time(train, DS2482_OF_RESET, ds2482_reset_min_ns, ds2482_reset_max_ns);
-	for (unsigned i = 0; !err && i < visit->out_n; i++)
-		err = visit_write(train, visit->out[i]);
+	for (size_t i = 0; !err && i < part->out_n; i++)
+		err = visit_write(train, part->out[i]);
 	if (!err && !few)
 		err = visit_send(train);
-	for (unsigned i = 0; !err && i < visit->in_n; i++)
-		err = visit_read(train, &visit->in[i]);
+	for (size_t i = 0; !err && i < part->in_n; i++)
+		err = visit_read(train, &part->in[i]);
 	return err ? err : visit_look(train);
 }
 
 /* The adapter is open: ds2482_visits() has looked. */
-void ds2482_visit(struct link_visit *visit)
+int ds2482_visit(struct ds2482_link *link, const struct link_part *part)
 {
-	struct ds2482_link *link = (struct ds2482_link *)visit->link;
 	struct ds2482_chip *chip = link->chip;
 	struct train train;
 	int err = ds2482_claimed(chip) ? ds2482_select(link) : -ENXIO;
 
+	if (err)
+		return err;
 	train.chip = chip;
 	train.count = train.reads = 0;
 	train.max_ns = 0;
 	train.any = chip->master->adapter->combine == I2C_ANY;
 	train.slow = ds2482_is_slow(chip, ds2482_byte_max_ns);
 	train.wait = ds2482_reading_on(chip, ds2482_byte_max_ns, TO_COMMAND);
-	if (!err)
-		err = visit_run(&train, visit);
-	chip->free_at = err ? ds2482_now(chip->master) + ds2482_reset_max_ns : 0;
-	if (!err) {
-		link->cost.resets++;
-		link->cost.wire_ns += (uint64_t)ds2482_reset_ns;
-		link->cost.wire_ns += 8u * (visit->out_n + visit->in_n) * (uint64_t)ds2482_slot_ns;
-	}
+	int status = visit_run(&train, part);
+
 	ds2482_began(chip);
-	visit->err = err;
-	visit->ended_ns = ds2482_now(chip->master);
+	chip->free_at = 0;
+	/* a chip that has refused a command is at work, which is no sign of its being stuck */
+	if (status < 0)
+		err = ds2482_wait(chip->master, ds2482_reset_max_ns);
+	if (status < 0)
+		return err ? err : ds2482_diagnose(chip, status);
+	link->cost.resets++;
+	link->cost.wire_ns += (uint64_t)ds2482_reset_ns;
+	if (status & DS2482_SD)
+		return -ECOMM;
+	if (!(status & DS2482_PPD))
+		return status & DS2482_LL ? -EHOSTDOWN : -ECOMM;
+	link->cost.wire_ns += 8 * (part->out_n + part->in_n) * (uint64_t)ds2482_slot_ns;
+	return 0;
 }

@@ -15,10 +15,10 @@
 
 #include <stdbool.h>
 
-struct link;
-struct link_visit;
+struct ds2482_link;
+struct link_part;
 
-/* As link_ops.visits: can the adapter do that? */
-bool ds2482_visits(const struct link *link);
-/* As link_ops.together, of one. Blocks for the time of the transaction, some 15 ms at 400 kHz. */
-void ds2482_visit(struct link_visit *visit);
+/* Can the adapter do that? */
+bool ds2482_visits(const struct ds2482_link *link);
+/* As link_ops.run, of a part with all three. Blocks for some 15 ms at 400 kHz. */
+int ds2482_visit(struct ds2482_link *link, const struct link_part *part);

@@ -158,26 +158,18 @@ static void read_unknown(struct native *native, struct job *job, unsigned n, int
 	                  .channel = n,
 	                  .device = &stranger};
 	uint8_t out[TXN_SELECT + 1], in[SCRATCHPAD_SIZE];
-	struct link_visit visit = {.link = txn.link, .out = out, .in = in, .in_n = sizeof(in)};
-	/* a coupler may have been found on the wire meanwhile */
-	bool whole = native_abreast(native, n) && txn.link->ops->visits(txn.link);
-	int err = 0;
 
 	memcpy(stranger.rom, job->path.rom, sizeof(stranger.rom));
 	stranger.family = sensors_family(&native->sensors, stranger.rom);
-	visit.out_n = (uint8_t)txn_select(&stranger, &command, 1, out);
 	native_count(native, COUNT_TRANSACTIONS);
-	if (whole) {
-		visit.link->ops->together(&visit, 1);
-		err = visit.err;
-		txn_done(&txn, err ? NULL : &visit);
-	}
-	if (!err)
-		err = txn_command(&txn, &command, 1);
+	int err = txn_command(&txn, &command, 1);
+
 	if (!err)
 		err = txn_read_crc8(&txn, in, sizeof(in));
 	if (!err)
 		err = thermometer_saw(&txn, 0, in, sizeof(in));
+	int64_t ended_ns = native_now(native);
+
 	if (err) {
 		if (txn.silent || ++job->tries == TRIES) {
 			/* It was another one that begins so: the search may still find it. */
@@ -195,9 +187,13 @@ static void read_unknown(struct native *native, struct job *job, unsigned n, int
 	}
 	job->tries = 0;
 	attach(native, job, device);
-	if (!whole)
-		return;
-	txn_done(&job->txn, &visit);
+	const struct link_run run = {.part = {.reset = true,
+	                                      .out = out,
+	                                      .out_n = txn_select(&stranger, &command, 1, out),
+	                                      .in = in,
+	                                      .in_n = sizeof(in)},
+	                             .ended_ns = ended_ns};
+	txn_done(&job->txn, &run);
 	job_step(native, job, native_now(native));
 	/* After its step the slot may be another request's. */
 	txn_done(&job->txn, NULL);

@@ -64,7 +64,7 @@ bool first_fits(const struct native *native, unsigned n)
 	const struct channel *channel = &native->channel[n];
 
 	return !channel->listed && native_abreast(native, n) && !channel->link->driver &&
-	       !channel->link->passive;
+	       channel->link->facts->strong;
 }
 
 void first_found(struct native *native, struct device *device)

@@ -123,7 +123,7 @@ struct link *native_abreast(const struct native *native, unsigned channel)
 {
 	struct link *link = channel < native->channels ? native->channel[channel].link : NULL;
 
-	return link && link->ops->together && !native->channel[channel].trunk ? link : NULL;
+	return link && link->ops->run_many && !native->channel[channel].trunk ? link : NULL;
 }
 
 /* What a wire has done since it was looked at last, ns of its slots. */

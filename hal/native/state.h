@@ -361,7 +361,7 @@ struct device *native_device(const struct native *native, unsigned channel,
                              const struct device *after);
 struct device *native_thermometer(const struct native *native, unsigned channel,
                                   const struct device *after);
-/* The link of a channel, if it takes part in transactions at the same time (link_ops.together). */
+/* The link of a channel, if it takes part in transactions at the same time (link_ops.run_many). */
 struct link *native_abreast(const struct native *native, unsigned channel);
 /* Has some channel not been searched yet since the bus came up? */
 bool native_initial(const struct native *native);

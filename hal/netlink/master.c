@@ -62,6 +62,8 @@ static bool has_link(const struct w1_netlink *netlink, uint32_t number)
 	return false;
 }
 
+static const struct link_facts facts;
+
 /* What the kernel has, each with a channel. Returns how many masters that are, or an error. */
 static int add_links(struct w1_netlink *netlink)
 {
@@ -73,13 +75,12 @@ static int add_links(struct w1_netlink *netlink)
 			continue;
 		struct w1_netlink_link *link = &netlink->links[netlink->count];
 		*link = (struct w1_netlink_link){.link = {.ops = &w1_netlink_link_ops,
+		                                          .facts = &facts,
 		                                          .env = netlink->master.env,
-		                                          .chip = netlink->count,
-		                                          .passive = true},
+		                                          .chip = netlink->count},
 		                                 .netlink = netlink,
 		                                 .number = numbers[i],
 		                                 .next_slot = -1};
-		w1_request_begin(&link->request, link->number);
 		netlink->count++;
 	}
 	return n;

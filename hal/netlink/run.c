@@ -22,18 +22,14 @@ int w1_netlink_run(struct w1_netlink_link *link, struct w1_request *request)
 	bool resets = request->count && request->command[0].code == W1_RESET;
 	int err = w1_request_run(&link->netlink->talk, request);
 
-	unsigned count = request->count;
-
 	link->cost.resets += resets;
-	link->sent = true;
-	w1_request_begin(request, link->number);
 	if (err == -ENODEV)
 		return error_of_lost(link->netlink);
 	if (err)
 		return err == -EPROTO ? -EIO : err;
 	if (resets && request->command[0].status == W1_STATUS_NOBODY)
 		return -EHOSTDOWN;
-	for (unsigned i = 0; i < count; i++)
+	for (unsigned i = 0; i < request->count; i++)
 		if (request->command[i].status)
 			return -EIO;
 	return 0;

@@ -5,7 +5,7 @@
  *
  *   bus.c     the target "w1" of both, masters that come later
  *   master.c  the masters there are; sysfs in place of a refused netlink
- *   link.c    one master as a link: a transaction is gathered into one request
+ *   link.c    one master as a link: each part is one request
  *   search.c  searches, made of slots; their direction is chosen before
  *   run.c     a request of a link, and the errno that its reply means
  *   talk.c    the socket; requests of several commands and their replies
@@ -33,10 +33,8 @@ struct w1_netlink_link {
 	struct link link;
 	struct w1_netlink *netlink;
 	uint32_t number; /* of w1_bus_masterN */
-	bool sent;       /* since the last reset a request went out */
 	int next_slot;   /* verify() has read it already; -1: not */
 	unsigned alarm_searches;
-	struct w1_request request;
 	struct link_cost cost;
 };
 
@@ -53,7 +51,7 @@ struct w1_netlink {
 };
 
 /*
- * Runs a request, which is empty afterwards. -EHOSTDOWN no chip answered its reset,
+ * Runs a request. -EHOSTDOWN no chip answered its reset,
  * -EIO also a command that the kernel refused; else as w1_request_run.
  */
 int w1_netlink_run(struct w1_netlink_link *link, struct w1_request *request);

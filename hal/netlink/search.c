@@ -53,15 +53,20 @@ static int search_along(struct w1_netlink_link *link, bool alarm, const uint8_t 
 {
 	const uint8_t command = alarm ? ONEWIRE_ALARM_SEARCH : ONEWIRE_SEARCH;
 	uint8_t out[25];
-	int err = link->link.ops->reset(&link->link);
+	struct w1_request request;
 
 	memset(out, 0xff, sizeof(out));
 	for (unsigned i = 0; i < 8 * n; i++)
 		set_bit(out, 3 * i + 2, bit_of(path, i));
-	err = err < 0 ? err : w1_request_add(&link->request, W1_WRITE, &command, 1, NULL);
+	link->next_slot = -1;
+	w1_request_begin(&request, link->number);
+	int err = w1_request_add(&request, W1_RESET, NULL, 0, NULL);
+
 	if (!err)
-		err = w1_request_add(&link->request, W1_TOUCH, out, n < 8 ? 3 * n : 25, slots);
-	return err ? err : w1_netlink_run(link, &link->request);
+		err = w1_request_add(&request, W1_WRITE, &command, 1, NULL);
+	if (!err)
+		err = w1_request_add(&request, W1_TOUCH, out, n < 8 ? 3 * n : 25, slots);
+	return err ? err : w1_netlink_run(link, &request);
 }
 
 /* The bit that the devices have: 0 or 1 all have that, 2 there are both, 3 none is left. */

@@ -28,36 +28,30 @@ static struct w1_slave *slave_of(struct link *link, const uint8_t rom[8])
 
 /* --- Raw access --- */
 
-static int w1_link_reset(struct link *base)
+static int raw_write(struct w1_link *link, const uint8_t *bytes, size_t n)
 {
-	w1_link_of(base)->slave = NULL;
-	return 1;
-}
-
-static int w1_link_write(struct link *base, const uint8_t *bytes, size_t n, enum link_after after)
-{
-	struct w1_link *link = w1_link_of(base);
-
-	if (link->slave || n < 9 || bytes[0] != MATCH_ROM || after == LINK_STRONG)
+	if (link->slave || n < 9 || bytes[0] != MATCH_ROM)
 		return -EOPNOTSUPP;
-	struct w1_slave *slave = slave_of(base, bytes + 1);
+	struct w1_slave *slave = slave_of(&link->link, bytes + 1);
 	if (w1_driver_of(slave))
 		return -EOPNOTSUPP;
 	link->slave = slave;
 	return w1_slave_write(slave, "rw", 0, bytes + 9, n - 9);
 }
 
-static int w1_link_read(struct link *base, uint8_t *bytes, size_t n)
+static int w1_link_run(struct link *base, const struct link_part *part)
 {
-	struct w1_slave *slave = w1_link_of(base)->slave;
+	struct w1_link *link = w1_link_of(base);
+	int err = part->after == LINK_STRONG ? -EOPNOTSUPP : 0;
 
-	return slave ? w1_slave_read(slave, "rw", 0, bytes, n) : -EOPNOTSUPP;
-}
-
-static int w1_link_bit(struct link *link, bool out, enum link_after after)
-{
-	(void)link, (void)out, (void)after;
-	return -EOPNOTSUPP;
+	if (part->reset)
+		link->slave = NULL;
+	if (!err && part->out_n)
+		err = raw_write(link, part->out, part->out_n);
+	if (err || !part->in_n)
+		return err;
+	return link->slave ? w1_slave_read(link->slave, "rw", 0, part->in, part->in_n)
+	                   : -EOPNOTSUPP;
 }
 
 /* --- Drivers --- */
@@ -206,13 +200,13 @@ static int w1_link_verify(struct link *base, const uint8_t rom[8], bool alarm)
 
 const struct link_ops w1_link_ops = {
 	.name = "w1",
-	.reset = w1_link_reset,
-	.write = w1_link_write,
-	.read = w1_link_read,
-	.bit = w1_link_bit,
+	.run = w1_link_run,
 	.search = w1_link_search,
 	.verify = w1_link_verify,
 };
+
+/* The kernel's drivers see to the pull-up: those without one of their own are asked for none. */
+const struct link_facts w1_link_facts = {.strong = true};
 
 const struct driver_ops w1_driver_ops = {
 	.has = has_driver,

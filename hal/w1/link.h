@@ -8,4 +8,5 @@
 #include "hal/wire/driver.h"
 
 extern const struct link_ops w1_link_ops;
+extern const struct link_facts w1_link_facts;
 extern const struct driver_ops w1_driver_ops;

@@ -109,6 +109,7 @@ static int w1_grow(struct link_master *base, char *why, size_t why_size)
 			continue;
 		struct w1_link *link = &master->links[master->count];
 		*link = (struct w1_link){.link = {.ops = &w1_link_ops,
+		                                  .facts = &w1_link_facts,
 		                                  .env = master->master.env,
 		                                  .chip = master->count,
 		                                  .driver = &w1_driver_ops},

@@ -49,14 +49,18 @@ static int coupler_command(const struct coupler *coupler, const uint8_t *bytes, 
 {
 	struct link *link = under(coupler->trunk);
 	uint8_t out[11] = {MATCH_ROM};
-	int present = coupler->parent ? coupler_enter(coupler->parent) : link->ops->reset(link);
+	const struct link_part part = {.reset = !coupler->parent,
+	                               .out = out,
+	                               .out_n = 9 + n,
+	                               .in = answer,
+	                               .in_n = answer_n};
+	int present = coupler->parent ? coupler_enter(coupler->parent) : 1;
 
 	if (present <= 0)
 		return present ? present : -EHOSTDOWN;
 	memcpy(out + 1, coupler->rom, 8);
 	memcpy(out + 9, bytes, n);
-	int err = link->ops->write(link, out, 9 + n, LINK_IDLE);
-	return err ? err : link->ops->read(link, answer, answer_n);
+	return link->ops->run(link, &part);
 }
 
 /* 1: a chip is there, 0: none is. -EHOSTDOWN: a coupler does not answer. */
@@ -211,19 +215,18 @@ int trunk_rest(struct trunk *trunk)
 	return leave_branches(trunk, NULL);
 }
 
-static int trunk_reset(struct link *link)
+static int trunk_run(struct link *link, const struct link_part *part)
 {
 	struct trunk *trunk = (struct trunk *)link;
-	int err = leave_branches(trunk, NULL);
+	int err = part->reset ? leave_branches(trunk, NULL) : 0;
 
-	if (!err)
+	if (!err && part->reset)
 		err = make_sure(trunk, NULL);
-	return err ? err : under(trunk)->ops->reset(under(trunk));
+	return err ? err : under(trunk)->ops->run(under(trunk), part);
 }
 
-static int branch_reset(struct link *link)
+static int branch_reset(struct branch *branch)
 {
-	struct branch *branch = (struct branch *)link;
 	struct trunk *trunk = branch->coupler->trunk;
 	int err = leave_branches(trunk, branch);
 
@@ -236,11 +239,23 @@ static int branch_reset(struct link *link)
 	return err == -EHOSTDOWN ? -EBADMSG : err;
 }
 
+static int branch_run(struct link *link, const struct link_part *part)
+{
+	struct branch *branch = (struct branch *)link;
+	struct link_part rest = *part;
+	int present = part->reset ? branch_reset(branch) : 1;
+
+	if (present <= 0)
+		return present ? present : -EHOSTDOWN;
+	rest.reset = false;
+	return link->wire->ops->run(link->wire, &rest);
+}
+
 bool trunk_fits(const struct link *link)
 {
 	const struct link_ops *ops = link->ops;
 
-	return !link->driver && !ops->search && !ops->verify && !ops->flush;
+	return !link->driver && !ops->search && !ops->verify && link->facts->splits;
 }
 
 /* It stands in front of the link of the wire. */
@@ -259,8 +274,8 @@ static void set_branch(const struct trunk *trunk, struct branch *branch)
 void trunk_set(struct trunk *trunk, struct link *link)
 {
 	trunk->ops = trunk->branch_ops = *link->ops;
-	trunk->ops.reset = trunk_reset;
-	trunk->branch_ops.reset = branch_reset;
+	trunk->ops.run = trunk_run;
+	trunk->branch_ops.run = branch_run;
 	set_front(&trunk->link, link, &trunk->ops);
 	for (struct coupler *coupler = trunk->first; coupler; coupler = coupler->next) {
 		coupler->unsure = true;

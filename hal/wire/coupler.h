@@ -35,7 +35,7 @@ struct branch {
 
 struct trunk {
 	struct link link;                /* first */
-	struct link_ops ops, branch_ops; /* those of the link of the wire, but for reset */
+	struct link_ops ops, branch_ops; /* those of the link of the wire, but for run */
 	struct coupler *first;
 	struct branch *on; /* the innermost that is on, or may be; NULL: none */
 };

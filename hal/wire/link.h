@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The link contract: a link moves bits on one 1-Wire wire. A master owns its links, 1 to 8 of each
- * chip. What the kernel's drivers do in place of a wire is a contract of its own: driver.h.
+ * The link contract: a link makes transactions on one 1-Wire wire. A master owns its links, 1 to 8
+ * of each chip. What the kernel's drivers do in place of a wire is a contract of its own: driver.h.
  *
  * Blocking: each call is at most one bus operation, or several at the same time, and bounded; all
  * waits go through the environment the master was created with. One thread: the native bus calls
@@ -11,13 +11,15 @@
  *   -EIO        the way to the chip failed once (refused byte, refused address)
  *   -ENXIO      the chip was reset or changed under us: recover(LINK_CHIP_RESET)
  *   -ENODEV     the adapter is gone: close the master
- *   -EHOSTDOWN  no chip answered the reset; a later call reports it (see flush)
- *   -EOPNOTSUPP this link has no strong pull-up, no single slots, or no write after a read
+ *   -EHOSTDOWN  no chip answered the reset
+ *   -EOPNOTSUPP this link has no strong pull-up, no single slots, or no such part
  *   -ECANCELED  the host shuts down
  *
  * Room hal/wire: links, transactions, searches, devices.
  */
 #pragma once
+
+#include <errno.h>
 
 #include "hal/bus/bus.h"
 
@@ -54,24 +56,44 @@ struct driver_ops;
 /* One ROM id found by a search, family first. Return not 0 to end the search. */
 typedef int link_found(void *ctx, const uint8_t rom[8]);
 
-#define LINK_TOGETHER 8 /* transactions of one group (link_ops.together) */
-
 /*
- * A whole transaction: a reset, out_n bytes written, in_n bytes read; neither is 0. err: 0, or
- * an error by which nothing is judged: the transaction is made again by the functions below.
+ * What one call does on the wire, in this order: a reset, or the transaction before goes on; out_n
+ * bytes written; in_n bytes read, each byte from its lowest bit on. Each may be left out. What
+ * follows is LINK_IDLE where bytes are read.
  */
-struct link_visit {
-	struct link *link;
+struct link_part {
 	const uint8_t *out;
 	uint8_t *in;
-	uint8_t out_n, in_n;
+	size_t out_n, in_n;
+	bool reset;
+	enum link_after after;
+};
+
+#define LINK_MANY 8 /* transactions of one group (link_ops.run_many) */
+
+/* A whole transaction: neither out_n nor in_n is 0. */
+struct link_run {
+	struct link *link;
+	struct link_part part;
 	int err;
 	int64_t ended_ns; /* env time after the last byte */
 };
 
+/* What is always so of a link. */
+struct link_facts {
+	/*
+	 * LINK_STRONG is not refused. Without it EEPROMs are written by the wire's resistor,
+	 * thermometers fed by the wire do not convert.
+	 */
+	bool strong;
+	/* A transaction may write after it has read: no other user of the wire comes between. */
+	bool splits;
+};
+
 /*
- * A transaction is a reset() and the calls after it. After an error of one of them nothing else is
- * known of the wire: the next call is reset() or recover(). The errors stand above.
+ * A transaction is a part with a reset and the calls after it. After an error of one of them
+ * nothing else is known of the wire: the next call begins with a reset or is recover(). The errors
+ * stand above.
  */
 struct link_ops {
 	const char *name;
@@ -88,58 +110,41 @@ struct link_ops {
 	 */
 	int (*recover)(struct link *link, enum link_rung rung);
 	/*
-	 * Ends the transaction before it. 1: a chip is there, and all listen for a ROM command; 0:
-	 * none is; or an error.
+	 * 0, or an error: then how many bytes were written is not known, and what was read means
+	 * nothing. Only what a chip answers shows that it took what was written. Where no chip
+	 * answers, ones are read, which is no error: the caller looks for a proof.
 	 */
-	int (*reset)(struct link *link);
+	int (*run)(struct link *link, const struct link_part *part);
 	/*
-	 * n bytes, each from its lowest bit on. 0, or an error, and how many were sent is not
-	 * known. Only what a chip answers later shows that it took them.
+	 * One slot: 0 or 1 as read back, or an error; writing 1 is reading. NULL: there are no
+	 * single slots.
 	 */
-	int (*write)(struct link *link, const uint8_t *data, size_t n, enum link_after after);
-	/*
-	 * n bytes. 0, or an error, and data means nothing. Where no chip answers they are ones,
-	 * which is no error: the caller looks for a proof.
-	 */
-	int (*read)(struct link *link, uint8_t *data, size_t n);
-	/* One slot: 0 or 1 as read back, or an error; writing 1 is reading. */
-	int (*bit)(struct link *link, bool out, enum link_after after);
+	int (*slot)(struct link *link, bool out, enum link_after after);
 	/*
 	 * Two read slots and one write slot: of the id's bit, its complement, and the direction,
 	 * which is the bit where the two differ. Returns bit 0: the id bit read, bit 1: its
-	 * complement, bit 2: the direction taken; or an error. NULL: made of bit().
+	 * complement, bit 2: the direction taken; or an error. NULL: made of slot().
 	 */
 	int (*triplet)(struct link *link, bool direction);
 	/*
-	 * n transactions at the same time, LINK_TOGETHER at most, on links with this function,
-	 * each of another chip. None waits for another beyond what it takes of the way to the
-	 * chips. After any error the transaction is made again by the functions above, which
-	 * judge it. NULL, together with abreast and visits: there is no such thing.
+	 * n transactions at the same time, LINK_MANY at most, on links with this function, each of
+	 * another chip. None waits for another beyond what it takes of the way to the chips. An
+	 * error of one is not judged: the transaction is made again by run(). NULL, together with
+	 * many: there is no such thing.
 	 */
-	void (*together)(struct link_visit *visits, unsigned n);
-	/* How many at most do not take much longer than one does; 1: do not use it for more. */
-	unsigned (*abreast)(const struct link *link);
-	/* Does together() make one alone quicker than the functions above do? */
-	bool (*visits)(const struct link *link);
+	void (*run_many)(struct link_run *runs, unsigned n);
+	/* How many of them at most do not take much longer than one does; 1: run() is as quick. */
+	unsigned (*many)(const struct link *link);
 	/*
 	 * A whole search, of one family or (0) of all: 0, what found returned, or an error. NULL:
-	 * made of reset, write and triplet (hal/wire/search.h).
+	 * made of run and triplet (hal/wire/search.h).
 	 */
 	int (*search)(struct link *link, bool alarm, uint8_t family, link_found *found, void *ctx);
 	/*
 	 * Is rom there (alarm: and in alarm)? 1, 0 or an error, -EBADMSG: the search was disturbed.
-	 * Leaves it selected: the next bit() is its next slot. NULL: made as search.
+	 * Leaves it selected: the next slot() is its next one. NULL: made as search.
 	 */
 	int (*verify)(struct link *link, const uint8_t rom[8], bool alarm);
-	/*
-	 * For links that share their wire, and hold it for one request at a time: such a one keeps
-	 * what is written until something is read, so that a transaction is one request. reset()
-	 * returns 1 then, and read(), bit() or flush() -EHOSTDOWN if no chip was there; a write()
-	 * after a read() of the same transaction would be a request of its own and is refused.
-	 * This sends what is kept, and so does the next reset(); 0 or an error. NULL: nothing is
-	 * ever kept.
-	 */
-	int (*flush)(struct link *link);
 	/* Optional; also while the master is closed. Touches nothing. */
 	void (*cost)(const struct link *link, struct link_cost *cost);
 };
@@ -147,26 +152,27 @@ struct link_ops {
 /* First member of a backend's own struct; the master fills it, with the rest zero. */
 struct link {
 	const struct link_ops *ops;
+	const struct link_facts *facts;
 	const struct bus_env *env;
 	/* Links with one number share a chip: a call on one ends the strong pull-up of another. */
 	unsigned chip;
 	const struct driver_ops *driver; /* of the kernel's drivers (driver.h); NULL: a wire */
 	/*
-	 * Of a link that stands in front of another (coupler.h), which does all but reset(): its
+	 * Of a link that stands in front of another (coupler.h), which does all but run(): its
 	 * ops are those of that one. NULL: there is none.
 	 */
 	struct link *wire;
-	/*
-	 * There is no strong pull-up: LINK_STRONG is refused. EEPROMs are then written by the
-	 * wire's resistor, thermometers fed by the wire do not convert.
-	 */
-	bool passive;
 };
 
-/* What the functions of ops get, but for reset(). */
+/* What the functions of ops get, but for run(). */
 static inline struct link *link_wire(struct link *link)
 {
 	return link->wire ? link->wire : link;
+}
+
+static inline int link_slot(struct link *link, bool out, enum link_after after)
+{
+	return link->ops->slot ? link->ops->slot(link_wire(link), out, after) : -EOPNOTSUPP;
 }
 
 /* Zero where the link does not count. */

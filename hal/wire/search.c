@@ -20,27 +20,25 @@ static int triplet(struct link *link, bool direction)
 	if (link->ops->triplet)
 		return link->ops->triplet(link_wire(link), direction);
 
-	int id = link->ops->bit(link_wire(link), true, LINK_IDLE);
+	int id = link_slot(link, true, LINK_IDLE);
 	if (id < 0)
 		return id;
-	int complement = link->ops->bit(link_wire(link), true, LINK_IDLE);
+	int complement = link_slot(link, true, LINK_IDLE);
 	if (complement < 0)
 		return complement;
 	if (id && complement)
 		return 7;
 	bool taken = id == complement ? direction : id;
-	int err = link->ops->bit(link_wire(link), taken, LINK_IDLE);
+	int err = link_slot(link, taken, LINK_IDLE);
 	return err < 0 ? err : id | complement << 1 | taken << 2;
 }
 
 static int begin_search(struct link *link, uint8_t command)
 {
-	int present = link->ops->reset(link);
+	const struct link_part part = {.reset = true, .out = &command, .out_n = 1};
+	int err = link->ops->run(link, &part);
 
-	if (present <= 0)
-		return present;
-	int err = link->ops->write(link_wire(link), &command, 1, LINK_IDLE);
-	return err < 0 ? err : 1;
+	return err == -EHOSTDOWN ? 0 : err ? err : 1;
 }
 
 static bool rom_bit(const uint8_t rom[8], unsigned position)

@@ -32,17 +32,54 @@ static int of_link(struct txn *txn, int result)
 	return result;
 }
 
+/* Is it what was made already? Then what it has read is taken. */
+static bool take_done(struct txn *txn, const struct link_part *part)
+{
+	const struct link_run *done = txn->done;
+
+	txn->done = NULL;
+	txn->done_ns = 0;
+	if (!done || !part->reset || part->after != LINK_IDLE || part->in_n != done->part.in_n ||
+	    part->out_n != done->part.out_n || memcmp(part->out, done->part.out, part->out_n) != 0)
+		return false;
+	memcpy(part->in, done->part.in, part->in_n);
+	txn->done_ns = done->ended_ns;
+	txn->on_wire = true;
+	return true;
+}
+
+/* What is kept, and what is read and follows. */
+static int run_part(struct txn *txn, uint8_t *in, size_t in_n, enum link_after after)
+{
+	const struct link_part part = {.reset = txn->resets,
+	                               .out = txn->out,
+	                               .out_n = txn->out_n,
+	                               .in = in,
+	                               .in_n = in_n,
+	                               .after = after};
+
+	txn->resets = false;
+	txn->out_n = 0;
+	txn->has_read |= in_n > 0;
+	return take_done(txn, &part) ? 0 : of_link(txn, txn->link->ops->run(txn->link, &part));
+}
+
+/* As txn_end(), where something else of the transaction follows. */
+static int send_kept(struct txn *txn)
+{
+	return txn->resets || txn->out_n ? run_part(txn, NULL, 0, LINK_IDLE) : 0;
+}
+
 int txn_end(struct txn *txn, int err)
 {
-	if (!txn->on_wire || !txn->link->ops->flush)
-		return err;
-	int sent = of_link(txn, txn->link->ops->flush(txn->link));
+	int sent = send_kept(txn);
+
 	return sent < 0 && err >= 0 ? sent : err;
 }
 
 int txn_wait(struct txn *txn, int64_t ns)
 {
-	int err = txn_end(txn, 0);
+	int err = send_kept(txn);
 
 	if (err)
 		return err;
@@ -52,67 +89,47 @@ int txn_wait(struct txn *txn, int64_t ns)
 	return TXN_MORE;
 }
 
-void txn_done(struct txn *txn, const struct link_visit *done)
+void txn_done(struct txn *txn, const struct link_run *done)
 {
 	txn->done = done;
-	txn->done_begun = false;
-	txn->done_in = 0;
+	txn->done_ns = 0;
 }
 
 int64_t txn_ended(const struct txn *txn)
 {
-	return txn->done && txn->done_begun ? txn->done->ended_ns : txn_now(txn);
+	return txn->done_ns ? txn->done_ns : txn_now(txn);
 }
 
-/* What follows goes to the wire. Bytes that were read and are left over are not to be believed. */
-static int leave_done(struct txn *txn)
+static int keep(struct txn *txn, const uint8_t *bytes, size_t n)
 {
-	bool left = txn->done && txn->done_begun && txn->done_in < txn->done->in_n;
+	if (n > sizeof(txn->out))
+		return -EINVAL;
+	int err = n > sizeof(txn->out) - txn->out_n ? send_kept(txn) : 0;
 
-	txn->done = NULL;
-	return left ? -EBADMSG : 0;
+	if (err)
+		return err;
+	if (n)
+		memcpy(txn->out + txn->out_n, bytes, n);
+	txn->out_n = (uint8_t)(txn->out_n + n);
+	return 0;
 }
 
-static bool was_sent(struct txn *txn, const uint8_t *out, size_t n, enum link_after after)
+static int begin_transaction(struct txn *txn, const uint8_t *bytes, size_t n)
 {
-	const struct link_visit *done = txn->done;
+	int err = send_kept(txn);
 
-	if (!done || txn->done_begun || after != LINK_IDLE || done->out_n != n ||
-	    memcmp(done->out, out, n) != 0)
-		return false;
-	txn->done_begun = txn->on_wire = true;
-	return true;
-}
-
-static bool was_read(struct txn *txn, uint8_t *bytes, size_t n)
-{
-	const struct link_visit *done = txn->done;
-
-	if (!done || !txn->done_begun || n > (size_t)(done->in_n - txn->done_in))
-		return false;
-	memcpy(bytes, done->in + txn->done_in, n);
-	txn->done_in = (uint8_t)(txn->done_in + n);
-	return true;
-}
-
-static int begin_transaction(struct txn *txn)
-{
-	/* It is over, or another comes first. */
-	txn->done = NULL;
-	int present = of_link(txn, txn->link->ops->reset(txn->link));
-
-	if (present)
-		return present < 0 ? present : 0;
-	txn->silent = true;
-	return -ENODEV;
+	if (err)
+		return err;
+	txn->resets = true;
+	txn->has_read = false;
+	return keep(txn, bytes, n);
 }
 
 int txn_raw_then(struct txn *txn, const uint8_t *bytes, size_t n, enum link_after after)
 {
-	int err = begin_transaction(txn);
+	int err = begin_transaction(txn, bytes, n);
 
-	return err ? err
-	           : of_link(txn, txn->link->ops->write(link_wire(txn->link), bytes, n, after));
+	return err || after == LINK_IDLE ? err : run_part(txn, NULL, 0, after);
 }
 
 int txn_raw(struct txn *txn, const uint8_t *bytes, size_t n)
@@ -136,29 +153,23 @@ static int send_command(struct txn *txn, const uint8_t *bytes, size_t n, enum li
 	assert(txn->device);
 	if (n > BYTES_MAX)
 		return -EINVAL;
-	size_t out_n = txn_select(txn->device, bytes, n, out);
-	if (was_sent(txn, out, out_n, after))
-		return 0;
-	int err = begin_transaction(txn);
-	if (err)
-		return err;
-	return of_link(txn, txn->link->ops->write(link_wire(txn->link), out, out_n, after));
+	return txn_raw_then(txn, out, txn_select(txn->device, bytes, n, out), after);
 }
 
 /* The strong pull-up, or what takes its place. */
 static int choose_pullup(const struct txn *txn, enum link_after *after)
 {
-	*after = txn->link->passive ? LINK_IDLE : LINK_STRONG;
-	return txn->link->passive && txn->device && txn->device->power == POWER_PARASITE
-	               ? -EOPNOTSUPP
-	               : 0;
+	bool strong = txn->link->facts->strong;
+
+	*after = strong ? LINK_STRONG : LINK_IDLE;
+	return !strong && txn->device && txn->device->power == POWER_PARASITE ? -EOPNOTSUPP : 0;
 }
 
 static int hold_pullup(struct txn *txn, int err, int64_t ns)
 {
 	if (err < 0)
 		return err;
-	txn->strong = !txn->link->passive;
+	txn->strong = txn->link->facts->strong;
 	return txn_wait(txn, ns);
 }
 
@@ -177,25 +188,21 @@ int txn_command_strong(struct txn *txn, const uint8_t *bytes, size_t n, int64_t 
 
 int txn_write(struct txn *txn, const uint8_t *bytes, size_t n)
 {
-	int err = leave_done(txn);
-
-	return err ? err
-	           : of_link(txn, txn->link->ops->write(link_wire(txn->link), bytes, n, LINK_IDLE));
+	return txn->has_read && !txn->link->facts->splits ? -EOPNOTSUPP : keep(txn, bytes, n);
 }
 
 int txn_write_paused(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns)
 {
 	const struct bus_env *env = txn->link->env;
+	const struct link_facts *facts = txn->link->facts;
 	bool external = txn->device && txn->device->power == POWER_EXTERNAL;
 
-	/* What is kept back would be sent behind the pause, with what is to come after it. */
-	if (txn->link->ops->flush || (txn->link->passive && !external))
+	if (!facts->splits || (!facts->strong && !external))
 		return -EOPNOTSUPP;
-	enum link_after after = txn->link->passive ? LINK_IDLE : LINK_STRONG;
-	int err = leave_done(txn);
+	int err = keep(txn, bytes, n);
 
 	if (!err)
-		err = of_link(txn, txn->link->ops->write(link_wire(txn->link), bytes, n, after));
+		err = run_part(txn, NULL, 0, facts->strong ? LINK_STRONG : LINK_IDLE);
 	if (!err && env->wait(env->ctx, -1, 0, bus_now(env) + ns) < 0)
 		err = -ECANCELED;
 	return err;
@@ -216,13 +223,8 @@ static void note_heard(struct txn *txn, const uint8_t *bytes, size_t n)
 
 int txn_read(struct txn *txn, uint8_t *bytes, size_t n)
 {
-	int err = 0;
+	int err = run_part(txn, bytes, n, LINK_IDLE);
 
-	if (!was_read(txn, bytes, n)) {
-		err = leave_done(txn);
-		if (!err)
-			err = of_link(txn, txn->link->ops->read(link_wire(txn->link), bytes, n));
-	}
 	if (err < 0)
 		return err;
 	note_heard(txn, bytes, n);
@@ -238,20 +240,22 @@ int txn_read_slots(struct txn *txn, uint8_t *bytes, size_t n)
 	return err;
 }
 
+static int slot(struct txn *txn, enum link_after after)
+{
+	int err = send_kept(txn);
+
+	txn->has_read = true;
+	return err ? err : of_link(txn, link_slot(txn->link, true, after));
+}
+
 int txn_bit(struct txn *txn)
 {
-	int err = leave_done(txn);
-
-	return err ? err : of_link(txn, txn->link->ops->bit(link_wire(txn->link), true, LINK_IDLE));
+	return slot(txn, LINK_IDLE);
 }
 
 int txn_bit_strong(struct txn *txn, int64_t ns)
 {
-	int err = leave_done(txn);
-
-	if (!err)
-		err = of_link(txn, txn->link->ops->bit(link_wire(txn->link), true, LINK_STRONG));
-	return hold_pullup(txn, err, ns);
+	return hold_pullup(txn, slot(txn, LINK_STRONG), ns);
 }
 
 /*
@@ -373,6 +377,10 @@ int txn_driver_convert(struct txn *txn, const char *what)
 
 int txn_verify(struct txn *txn, bool alarm)
 {
+	int err = send_kept(txn);
+
+	if (err)
+		return err;
 	int there = of_link(txn, search_verify(txn->link, txn->device->rom, alarm));
 
 	txn->heard |= there > 0;

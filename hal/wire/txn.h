@@ -32,6 +32,7 @@ struct area_visit {
 	uint8_t have[AREA_UNIT], want[AREA_UNIT];
 };
 #define TXN_OWN 64
+#define TXN_OUT 128
 
 struct txn {
 	struct native *native;
@@ -63,9 +64,14 @@ struct txn {
 	int64_t wake_ns;                  /* not to be called before */
 	bool strong; /* the strong pull-up is on until then: the channel is held */
 
-	const struct link_visit *done; /* txn_done() */
-	uint8_t done_in;               /* bytes of it that were taken */
-	bool done_begun;
+	/* What is kept until something is read or has to follow it, so that it is one part. */
+	uint8_t out[TXN_OUT];
+	uint8_t out_n;
+	bool resets;
+	bool has_read; /* since the last reset */
+
+	const struct link_run *done; /* txn_done() */
+	int64_t done_ns;             /* when that ended, while nothing has followed it */
 
 	/* Found out on the way. */
 	bool on_wire;   /* something was sent */
@@ -98,8 +104,8 @@ int txn_raw_then(struct txn *txn, const uint8_t *bytes, size_t n, enum link_afte
 int txn_write(struct txn *txn, const uint8_t *bytes, size_t n);
 /*
  * The same where the chip answers after it in the same transaction: it returns after ns, which are
- * a few milliseconds at the most. -EOPNOTSUPP on a link that keeps back what is written
- * (link_ops.flush): it would make no pause. Without a strong pull-up only for a device that is
+ * a few milliseconds at the most. -EOPNOTSUPP where others may use the wire meanwhile
+ * (link_facts.splits). Without a strong pull-up only for a device that is
  * known to have a supply of its own.
  */
 int txn_write_paused(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns);
@@ -162,17 +168,17 @@ int64_t txn_measured(const struct txn *txn);
 #define TXN_SELECT 9
 size_t txn_select(const struct device *device, const uint8_t *bytes, size_t n, uint8_t *out);
 /*
- * The next transaction has been made already, with others (link_ops.together); NULL: it has not.
- * The command that comes next takes it up if it is what was sent, else it is dropped. Call it again
- * with NULL after that.
+ * The next transaction has been made already, with others (link_ops.run_many); NULL: it has not.
+ * It is taken up if it is what was sent and read, else it is dropped. Call it again with NULL after
+ * that.
  */
-void txn_done(struct txn *txn, const struct link_visit *done);
+void txn_done(struct txn *txn, const struct link_run *done);
 /* When the last transaction ended: this moment, if it was not made already. */
 int64_t txn_ended(const struct txn *txn);
 
 /*
- * After each call of a property function: what a link keeps back is sent (link_ops.flush). err is
- * what the function returned, and so is this, unless sending failed.
+ * After each call of a property function: what is kept is sent. err is what the function returned,
+ * and so is this, unless sending failed.
  */
 int txn_end(struct txn *txn, int err);
 /*

@@ -33,7 +33,7 @@ static int family_37_begin(struct txn *txn, const struct area *area, unsigned at
 	                                     (uint8_t)((area->at + at) >> 8)};
 
 	memcpy(command, bytes, 3);
-	if (txn->link->passive) {
+	if (!txn->link->facts->strong) {
 		visit->sent = !visit->sent;
 		return visit->sent ? txn_command_strong(txn, bytes, sizeof(bytes), READ_NS) : 0;
 	}

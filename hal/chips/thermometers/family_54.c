@@ -43,8 +43,8 @@ static int start_conversion(struct txn *txn)
 	int err = txn_command(txn, &command, 1);
 
 	if (!err)
-		err = txn_read_slots(txn, crc, txn->link->passive ? 2 : 1);
-	for (unsigned i = 0; !err && !txn->link->passive && i < 7; i++) {
+		err = txn_read_slots(txn, crc, txn->link->facts->strong ? 1 : 2);
+	for (unsigned i = 0; !err && txn->link->facts->strong && i < 7; i++) {
 		int bit = txn_bit(txn);
 
 		err = bit < 0 ? bit : 0;
@@ -53,11 +53,12 @@ static int start_conversion(struct txn *txn)
 	if (err)
 		return err;
 	/* The last one is what it has to be, or the result will not be there. */
-	if (!txn->link->passive)
+	if (txn->link->facts->strong)
 		crc[1] |= (uint8_t)(~covered >> 8 & 0x80);
 	if (!onewire_crc16_matches(covered, crc))
 		return txn_checked(txn, false);
-	return txn->link->passive ? txn_wait(txn, CONVERT_NS) : txn_bit_strong(txn, CONVERT_NS);
+	return txn->link->facts->strong ? txn_bit_strong(txn, CONVERT_NS)
+	                                : txn_wait(txn, CONVERT_NS);
 }
 
 static int flush_fifo(struct txn *txn)

@@ -232,7 +232,7 @@ static bool convert_one(struct native *native, unsigned n, const struct job *fed
 	if (!first)
 		return false;
 	struct device *device = first->txn.device;
-	if (first->txn.link->passive && device->power != POWER_EXTERNAL) {
+	if (!first->txn.link->facts->strong && device->power != POWER_EXTERNAL) {
 		job_failed(native, first, -EOPNOTSUPP);
 		return true;
 	}
@@ -392,12 +392,12 @@ bool convert_step(struct native *native, int64_t now, int64_t *next, struct job 
 		}
 		if (plan.parasitic && supply_ask_one(native, n))
 			return true;
-		if (plan.fed && !channel->link->passive) {
+		if (plan.fed && channel->link->facts->strong) {
 			if (convert_fed(native, n, &plan, now, next))
 				return true;
 			continue;
 		}
-		if (plan.parasitic ? !plan.parasitic_due || channel->link->passive
+		if (plan.parasitic ? !plan.parasitic_due || !channel->link->facts->strong
 		                   : starts_single(native, n, &plan, now)) {
 			if (!convert_one(native, n, NULL))
 				continue;

@@ -28,7 +28,7 @@ void ending_begin(struct native *native, unsigned n, int64_t longest)
 	int64_t now = native_now(native), before = ending->took_ns / BEFORE_SHARE;
 
 	ending->resets = link_cost_of(channel->link).resets;
-	ending->asks = ending->resets && !channel->trunk && !channel->link->ops->flush &&
+	ending->asks = ending->resets && !channel->trunk && channel->link->facts->splits &&
 	               n < NATIVE_CHANNELS;
 	ending->begun_ns = now;
 	ending->next_ns = now + longest / FIRST_SHARE;
@@ -54,7 +54,8 @@ static void ending_ask(struct native *native, unsigned n)
 	struct link *link = native->channel[n].link;
 	struct ending *ending = &native->channel[n].ending;
 	uint8_t busy;
-	int err = link->ops->read(link_wire(link), &busy, 1);
+	const struct link_part slots = {.in = &busy, .in_n = 1};
+	int err = link->ops->run(link, &slots);
 	int64_t now = native_now(native);
 
 	native_count(native, COUNT_TRANSACTIONS);

@@ -59,7 +59,7 @@ struct load {
 static void add_load(struct load *load, const struct native *native, unsigned channel)
 {
 	const struct link *link = native_abreast(native, channel);
-	unsigned width = link ? link->ops->abreast(link) : 1, *chip;
+	unsigned width = link ? link->ops->many(link) : 1, *chip;
 
 	if (!link || width < 2) {
 		load->alone++;

@@ -13,12 +13,12 @@
 
 struct group {
 	unsigned n;
-	struct job *job[LINK_TOGETHER];
-	struct device *device[LINK_TOGETHER];
-	const struct bus_req *req[LINK_TOGETHER]; /* the request of the job */
-	uint8_t state[LINK_TOGETHER];             /* ... and its state */
-	struct link_visit visit[LINK_TOGETHER];
-	uint8_t out[LINK_TOGETHER][TXN_SELECT + 1], in[LINK_TOGETHER][SCRATCHPAD_SIZE];
+	struct job *job[LINK_MANY];
+	struct device *device[LINK_MANY];
+	const struct bus_req *req[LINK_MANY]; /* the request of the job */
+	uint8_t state[LINK_MANY];             /* ... and its state */
+	struct link_run run[LINK_MANY];
+	uint8_t out[LINK_MANY][TXN_SELECT + 1], in[LINK_MANY][SCRATCHPAD_SIZE];
 };
 
 static void together_add(const struct native *native, struct group *group, struct job *job)
@@ -31,12 +31,13 @@ static void together_add(const struct native *native, struct group *group, struc
 	group->device[i] = job->txn.device;
 	group->req[i] = job->req;
 	group->state[i] = job->state;
-	group->visit[i] = (struct link_visit){
+	group->run[i] = (struct link_run){
 		.link = native_abreast(native, job->txn.device->channel),
-		.out = group->out[i],
-		.out_n = (uint8_t)txn_select(job->txn.device, &command, 1, group->out[i]),
-		.in = group->in[i],
-		.in_n = starts ? 1 : SCRATCHPAD_SIZE,
+		.part = {.reset = true,
+	                 .out = group->out[i],
+	                 .out_n = txn_select(job->txn.device, &command, 1, group->out[i]),
+	                 .in = group->in[i],
+	                 .in_n = starts ? 1 : SCRATCHPAD_SIZE},
 	};
 }
 
@@ -50,24 +51,16 @@ static bool together_begin(const struct native *native, struct group *group, str
 	return true;
 }
 
-/* false: the transaction is made by the job's own steps, as it is not quicker so. */
-static bool is_worth_it(const struct group *group)
-{
-	const struct link *link = group->visit[0].link;
-
-	return group->n > 1 || link->ops->visits(link);
-}
-
 /* Is there room for a job on this channel? */
 static bool fits_group(const struct native *native, const struct group *group, unsigned channel)
 {
-	const struct link *link = native_abreast(native, channel), *first = group->visit[0].link;
+	const struct link *link = native_abreast(native, channel), *first = group->run[0].link;
 
-	if (!link || link->ops->together != first->ops->together || group->n == LINK_TOGETHER ||
-	    group->n >= first->ops->abreast(first) || group->n >= link->ops->abreast(link))
+	if (!link || link->ops->run_many != first->ops->run_many || group->n == LINK_MANY ||
+	    group->n >= first->ops->many(first) || group->n >= link->ops->many(link))
 		return false;
 	for (unsigned i = 0; i < group->n; i++)
-		if (group->visit[i].link->chip == link->chip)
+		if (group->run[i].link->chip == link->chip)
 			return false;
 	return true;
 }
@@ -76,19 +69,19 @@ static bool fits_group(const struct native *native, const struct group *group, u
  * Does the i-th job find its transaction done now? What befell a job before it may have answered
  * it, or made it begin again.
  */
-static bool take_visit(const struct native *native, struct group *group, unsigned i)
+static bool take_run(const struct native *native, struct group *group, unsigned i)
 {
 	struct job *job = group->job[i];
 
 	if (!native->up || job->req != group->req[i] || job->state != group->state[i] ||
-	    group->visit[i].err)
+	    group->run[i].err)
 		return false;
-	txn_done(&job->txn, &group->visit[i]);
+	txn_done(&job->txn, &group->run[i]);
 	return true;
 }
 
-/* After its step the slot may be another request's: the visit is no longer its. */
-static void drop_visit(struct group *group, unsigned i)
+/* After its step the slot may be another request's: the run is no longer its. */
+static void drop_run(struct group *group, unsigned i)
 {
 	txn_done(&group->job[i]->txn, NULL);
 }
@@ -149,14 +142,14 @@ void together_step(struct native *native, struct job *job, int64_t now)
 	/* Not with others: an alarm or an output, which would wait for them. */
 	if (job->req->prio > BUS_OUTPUT)
 		gather_group(native, &group, now);
-	if (!is_worth_it(&group)) {
+	if (group.n == 1) {
 		step_alone(native, job, now);
 		return;
 	}
-	group.visit[0].link->ops->together(group.visit, group.n);
+	group.run[0].link->ops->run_many(group.run, group.n);
 	for (unsigned i = 0; i < group.n; i++) {
-		group.job[i]->alone = group.visit[i].err != 0;
-		if (!group.visit[i].err)
+		group.job[i]->alone = group.run[i].err != 0;
+		if (!group.run[i].err)
 			continue;
 		job_count_retry(group.job[i]);
 		cost_of_job(native, group.job[i]);
@@ -165,13 +158,13 @@ void together_step(struct native *native, struct job *job, int64_t now)
 	}
 	for (unsigned i = 0; i < group.n; i++) {
 		reads |= group.state[i] != JOB_DUE;
-		if (!take_visit(native, &group, i)) {
+		if (!take_run(native, &group, i)) {
 			if (group.state[i] == JOB_DUE)
-				broadcast_told(native, group.device[i], group.visit[i].ended_ns);
+				broadcast_told(native, group.device[i], group.run[i].ended_ns);
 			continue;
 		}
 		step_alone(native, group.job[i], native_now(native));
-		drop_visit(&group, i);
+		drop_run(&group, i);
 	}
 	native->schedule.doing = reads ? SCHEDULE_READ : SCHEDULE_START;
 }

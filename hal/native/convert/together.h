@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Thermometers on different chips of a master are read, and start in turn, at the same time
- * (link_ops.together): the transactions of a group are made first; then each job takes its step,
+ * (link_ops.run_many): the transactions of a group are made first; then each job takes its step,
  * and finds its transaction done. What has gone wrong is not judged here: the job makes its
  * transaction again by itself, in a later step, with all that follows an error.
  *

@@ -10,6 +10,7 @@
 #include "hal/sim/event.h"
 #include "hal/sim/scenario.h"
 #include "tests/unit/aid/ds2482_scene.h"
+#include "tests/unit/aid/parts.h"
 
 struct ds ds;
 
@@ -82,14 +83,14 @@ void ds_event(const char *text)
 int ds_read_scratchpad(const char *name, uint8_t scratchpad[9])
 {
 	uint8_t out[10] = {0x55};
-	int err = ds.wire->ops->reset(ds.wire);
+	int err = part_reset(ds.wire);
 
 	if (err < 0)
 		return err;
 	memcpy(out + 1, sim_net_slave(&ds.net, name)->rom, 8);
 	out[9] = 0xBE;
-	err = ds.wire->ops->write(ds.wire, out, 10, LINK_IDLE);
-	return err ? err : ds.wire->ops->read(ds.wire, scratchpad, 9);
+	err = part_write(ds.wire, out, 10, LINK_IDLE);
+	return err ? err : part_read(ds.wire, scratchpad, 9);
 }
 
 void ds_check_scratchpad(void)

@@ -83,7 +83,7 @@ static int wire_reset(struct link *link)
 	if (wire_net.trouble)
 		presence = trouble_presence(wire_net.trouble, presence);
 	err = spend(RESET_NS);
-	return err ? err : presence;
+	return err ? err : presence ? 0 : -EHOSTDOWN;
 }
 
 static void break_down(struct sim_wire *wire)
@@ -153,7 +153,16 @@ static int wire_read(struct link *link, uint8_t *data, size_t n)
 	return 0;
 }
 
-static int wire_bit(struct link *link, bool out, enum link_after after)
+static int wire_run(struct link *link, const struct link_part *part)
+{
+	int err = part->reset ? wire_reset(link) : 0;
+
+	if (!err && part->out_n)
+		err = wire_write(link, part->out, part->out_n, part->after);
+	return err || !part->in_n ? err : wire_read(link, part->in, part->in_n);
+}
+
+static int wire_slot(struct link *link, bool out, enum link_after after)
 {
 	int err = wire_net.passive && after == LINK_STRONG ? -EOPNOTSUPP : begin(link);
 
@@ -201,11 +210,13 @@ static void wire_cost(const struct link *link, struct link_cost *cost)
 }
 
 #define LINK_OPS \
-	.name = "test wire", .reset = wire_reset, .write = wire_write, .read = wire_read, \
-	.bit = wire_bit, .recover = wire_recover, .cost = wire_cost
+	.name = "test wire", .run = wire_run, .slot = wire_slot, .recover = wire_recover, \
+	.cost = wire_cost
 
 static const struct link_ops link_ops = {LINK_OPS};
 static const struct link_ops troubled_ops = {LINK_OPS, .triplet = wire_triplet};
+
+static struct link_facts facts;
 
 static int master_create(const char *where, const struct bus_env *env, struct link_master **master,
                          char *why, size_t why_size)
@@ -231,10 +242,11 @@ static int master_open(struct link_master *master, char *why, size_t why_size)
 		snprintf(why, why_size, "no such chip");
 		return wire_net.open_error;
 	}
+	facts = (struct link_facts){.strong = !wire_net.passive, .splits = true};
 	for (unsigned i = 0; i < wire_net.channels; i++)
 		links[i] = (struct link){.ops = wire_net.trouble ? &troubled_ops : &link_ops,
+		                         .facts = &facts,
 		                         .env = master->env,
-		                         .passive = wire_net.passive,
 		                         .chip = wire_net.chips == 1 ? 0 : i};
 	return 0;
 }

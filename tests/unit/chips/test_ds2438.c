@@ -11,29 +11,20 @@
 static uint8_t begun; /* the first command since setUp() */
 static int fault;
 
-static int reset(struct link *link)
-{
-	(void)link;
-	return 1;
-}
-
-static int write_of(struct link *link, const uint8_t *data, size_t n, enum link_after after)
-{
-	(void)link, (void)after;
-	if (!begun && n > 9)
-		begun = data[9];
-	return 0;
-}
-
 /* Bytes whose checksum is wrong, or an error. */
-static int read_of(struct link *link, uint8_t *data, size_t n)
+static int run(struct link *link, const struct link_part *part)
 {
 	(void)link;
-	memset(data, 0x5a, n);
+	if (!begun && part->out_n > 9)
+		begun = part->out[9];
+	if (!part->in_n)
+		return 0;
+	memset(part->in, 0x5a, part->in_n);
 	return fault;
 }
 
-static const struct link_ops ops = {.reset = reset, .write = write_of, .read = read_of};
+static const struct link_ops ops = {.run = run};
+static const struct link_facts facts = {.strong = true, .splits = true};
 static struct ds2438 known;
 static struct device device;
 static struct link wire;
@@ -41,7 +32,7 @@ static struct txn txn;
 
 void setUp(void)
 {
-	wire = (struct link){.ops = &ops};
+	wire = (struct link){.ops = &ops, .facts = &facts};
 	device = (struct device){.rom = {0x26, 1}, .own = &known};
 	known = (struct ds2438){0};
 	fault = 0;

@@ -21,7 +21,7 @@ static struct txn txn;
 static const struct property property = {.convert = CONVERT_TEMPRES};
 static uint8_t out[10] = {0x55, 0x28, 1, 0, 0, 0, 0, 0, 0, 0xbe};
 static uint8_t in[9] = {0x60, 0x01, 0x4b, 0x46, 0x7f, 0xff, 0x10, 0x10};
-static struct link_visit visit;
+static struct link_run run;
 
 void setUp(void)
 {
@@ -39,14 +39,14 @@ void setUp(void)
 	                             .busy_ns = host.now + 50 * HOST_MS,
 	                             .least_ns = host.now + 50 * HOST_MS};
 	in[8] = sim_crc8(0, in, 8);
-	visit = (struct link_visit){.link = &wire,
-	                            .out = out,
-	                            .out_n = sizeof(out),
-	                            .in = in,
-	                            .in_n = sizeof(in),
-	                            .ended_ns = host.now};
+	run = (struct link_run){.part = {.reset = true,
+	                                 .out = out,
+	                                 .out_n = sizeof(out),
+	                                 .in = in,
+	                                 .in_n = sizeof(in)},
+	                        .ended_ns = host.now};
 	txn = (struct txn){.link = &wire, .device = &device, .property = &property};
-	txn_done(&txn, &visit);
+	txn_done(&txn, &run);
 }
 
 void tearDown(void)
@@ -68,11 +68,11 @@ static void test_what_nothing_proves_is_not_good_for_being_judged_late(void)
 
 static void test_what_was_read_after_the_longest_time_is_good(void)
 {
-	visit.ended_ns = known.converted_ns;
+	run.ended_ns = known.converted_ns;
 	judged_later_by(60 * HOST_MS);
 	TEST_ASSERT_EQUAL_INT(0, thermometer_read_temperature(&txn));
 	TEST_ASSERT_EQUAL_DOUBLE(22.0, txn.number[0]);
-	TEST_ASSERT_EQUAL_INT64(visit.ended_ns, known.raw_ns);
+	TEST_ASSERT_EQUAL_INT64(run.ended_ns, known.raw_ns);
 }
 
 static void test_another_value_proves_the_end_and_counts_from_its_reading(void)
@@ -81,8 +81,8 @@ static void test_another_value_proves_the_end_and_counts_from_its_reading(void)
 	known.latched[0] = 0x50;
 	judged_later_by(60 * HOST_MS);
 	TEST_ASSERT_EQUAL_INT(0, thermometer_read_temperature(&txn));
-	TEST_ASSERT_EQUAL_INT64(visit.ended_ns, known.raw_ns);
-	TEST_ASSERT_LESS_OR_EQUAL_INT64(visit.ended_ns, txn.measured_ns);
+	TEST_ASSERT_EQUAL_INT64(run.ended_ns, known.raw_ns);
+	TEST_ASSERT_LESS_OR_EQUAL_INT64(run.ended_ns, txn.measured_ns);
 }
 
 int main(void)

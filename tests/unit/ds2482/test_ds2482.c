@@ -10,6 +10,7 @@
 
 #include "hal/sim/crc.h"
 #include "tests/unit/aid/ds2482_scene.h"
+#include "tests/unit/aid/parts.h"
 
 void setUp(void)
 {
@@ -91,14 +92,14 @@ static void test_presence_nobody_and_a_short_are_told_apart(void)
 {
 	for (unsigned i = 0; i < DS_KINDS; i++) {
 		ds_start(ds_kinds[i]);
-		TEST_ASSERT_EQUAL_INT(1, ds.wire->ops->reset(ds.wire));
+		TEST_ASSERT_EQUAL_INT(1, part_reset(ds.wire));
 		ds_event("unplug t");
-		TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->reset(ds.wire));
+		TEST_ASSERT_EQUAL_INT(0, part_reset(ds.wire));
 		ds_event(i == 7 ? "short 0x1f" : "short 0x18");
-		TEST_ASSERT_EQUAL_INT(-ECOMM, ds.wire->ops->reset(ds.wire));
+		TEST_ASSERT_EQUAL_INT(-ECOMM, part_reset(ds.wire));
 		ds_event(i == 7 ? "end short 0x1f" : "end short 0x18");
 		ds_event("plug t");
-		TEST_ASSERT_EQUAL_INT(1, ds.wire->ops->reset(ds.wire));
+		TEST_ASSERT_EQUAL_INT(1, part_reset(ds.wire));
 		ds_check_scratchpad();
 		tearDown();
 	}
@@ -109,16 +110,16 @@ static void test_triplets_and_bits_read_the_wire(void)
 	const uint8_t search = 0xF0;
 
 	ds_start(ds_kinds[1]);
-	TEST_ASSERT_EQUAL_INT(1, ds.wire->ops->reset(ds.wire));
-	TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->write(ds.wire, &search, 1, LINK_IDLE));
+	TEST_ASSERT_EQUAL_INT(1, part_reset(ds.wire));
+	TEST_ASSERT_EQUAL_INT(0, part_write(ds.wire, &search, 1, LINK_IDLE));
 	for (unsigned i = 0; i < 8; i++) /* 28h, least bit first */
 		TEST_ASSERT_EQUAL_INT(0x28 >> i & 1 ? 1 | 4 : 2,
 		                      ds.wire->ops->triplet(ds.wire, i & 1));
 	/* 0, and its complement */
-	TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->bit(ds.wire, true, LINK_IDLE));
-	TEST_ASSERT_EQUAL_INT(1, ds.wire->ops->bit(ds.wire, true, LINK_IDLE));
-	TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->bit(ds.wire, false, LINK_IDLE));
-	TEST_ASSERT_EQUAL_INT(1, ds.wire->ops->reset(ds.wire));
+	TEST_ASSERT_EQUAL_INT(0, link_slot(ds.wire, true, LINK_IDLE));
+	TEST_ASSERT_EQUAL_INT(1, link_slot(ds.wire, true, LINK_IDLE));
+	TEST_ASSERT_EQUAL_INT(0, link_slot(ds.wire, false, LINK_IDLE));
+	TEST_ASSERT_EQUAL_INT(1, part_reset(ds.wire));
 	TEST_ASSERT_EQUAL_INT(3 | 4, ds.wire->ops->triplet(ds.wire, false)); /* nobody */
 }
 
@@ -135,9 +136,8 @@ static void test_the_strong_pullup_feeds_a_parasite_until_the_next_call(void)
 		slave->parasite = true;
 		slave->input[0] = sim_constant(25.0625);
 		for (unsigned n = 0; n < 2; n++) {
-			TEST_ASSERT_EQUAL_INT(1, ds.wire->ops->reset(ds.wire));
-			TEST_ASSERT_EQUAL_INT(
-				0, ds.wire->ops->write(ds.wire, convert, 2, LINK_STRONG));
+			TEST_ASSERT_EQUAL_INT(1, part_reset(ds.wire));
+			TEST_ASSERT_EQUAL_INT(0, part_write(ds.wire, convert, 2, LINK_STRONG));
 			/* Who waits counts from the call's end. */
 			ds.host.now += 750 * HOST_MS;
 			TEST_ASSERT_EQUAL_INT(0, ds_read_scratchpad("t", scratchpad));
@@ -155,7 +155,7 @@ static void test_each_channel_of_an_800_is_its_own_wire(void)
 	TEST_ASSERT_EQUAL_UINT(8, ds.master->ops->channels(ds.master));
 	for (unsigned i = 0; i < 8; i++) {
 		ds.wire = ds.master->ops->channel(ds.master, i);
-		TEST_ASSERT_EQUAL_INT(i == 0 || i == 6, ds.wire->ops->reset(ds.wire));
+		TEST_ASSERT_EQUAL_INT(i == 0 || i == 6, part_reset(ds.wire));
 	}
 	ds.wire = ds.master->ops->channel(ds.master, 6);
 	ds_check_scratchpad();
@@ -218,10 +218,9 @@ static void test_a_shutdown_ends_every_call(void)
 
 		ds_start(ds_kinds[i]);
 		ds.host.shutdown = true;
-		TEST_ASSERT_EQUAL_INT(-ECANCELED, ds.wire->ops->reset(ds.wire));
-		TEST_ASSERT_EQUAL_INT(-ECANCELED,
-		                      ds.wire->ops->write(ds.wire, &byte, 1, LINK_IDLE));
-		TEST_ASSERT_EQUAL_INT(-ECANCELED, ds.wire->ops->read(ds.wire, &byte, 1));
+		TEST_ASSERT_EQUAL_INT(-ECANCELED, part_reset(ds.wire));
+		TEST_ASSERT_EQUAL_INT(-ECANCELED, part_write(ds.wire, &byte, 1, LINK_IDLE));
+		TEST_ASSERT_EQUAL_INT(-ECANCELED, part_read(ds.wire, &byte, 1));
 		TEST_ASSERT_EQUAL_INT(-ECANCELED, ds.wire->ops->triplet(ds.wire, false));
 		ds.host.shutdown = false;
 		tearDown();

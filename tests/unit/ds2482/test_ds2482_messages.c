@@ -9,6 +9,7 @@
 #include "hal/ds2482/master.h"
 #include "unity.h"
 
+#include "hal/ds2482/visit.h"
 #include "hal/sim/scenario.h"
 #include "tests/unit/aid/ds2482_scene.h"
 
@@ -20,7 +21,7 @@ static int64_t between_ns;
 static uint32_t jitter; /* 0: none */
 static unsigned messages;
 static bool is_plain; /* the driver knows one error for whatever is refused */
-static bool is_whole; /* read in a transaction that is made as a whole (link_ops.together) */
+static bool is_whole; /* read in a transaction that is made as a whole (visit.h) */
 
 void setUp(void)
 {
@@ -144,13 +145,12 @@ static void test_where_messages_are_slow_a_written_byte_is_one(void)
 static int visit(uint8_t scratchpad[9])
 {
 	uint8_t out[10] = {0x55};
-	struct link_visit one = {
-		.link = ds.wire, .out = out, .out_n = 10, .in = scratchpad, .in_n = 9};
+	const struct link_part part = {
+		.reset = true, .out = out, .out_n = 10, .in = scratchpad, .in_n = 9};
 
 	memcpy(out + 1, sim_net_slave(&ds.net, "t")->rom, 8);
 	out[9] = 0xbe;
-	ds.wire->ops->together(&one, 1);
-	return one.err;
+	return ds.wire->ops->run(ds.wire, &part);
 }
 
 /* As a whole there is one status at the end. */
@@ -161,7 +161,7 @@ static void test_where_messages_are_slow_a_whole_reading_has_the_fewest(void)
 
 	for (int64_t between = 600; between <= 1800; between += 600) {
 		begin(between * US);
-		TEST_ASSERT_TRUE(ds.wire->ops->visits(ds.wire));
+		TEST_ASSERT_TRUE(ds2482_visits(ds2482_link_of(ds.wire)));
 		messages = 0;
 		TEST_ASSERT_EQUAL_INT(0, visit(scratchpad));
 		TEST_ASSERT_EQUAL_HEX8_ARRAY(expect, scratchpad, 5);
@@ -175,11 +175,11 @@ static void test_where_messages_are_slow_a_whole_reading_has_the_fewest(void)
 static void test_where_messages_are_slow_there_are_no_groups(void)
 {
 	begin(1000 * US);
-	TEST_ASSERT_EQUAL_UINT(1, ds.wire->ops->abreast(ds.wire));
+	TEST_ASSERT_EQUAL_UINT(1, ds.wire->ops->many(ds.wire));
 	tearDown();
 	setUp();
 	begin(0);
-	TEST_ASSERT_GREATER_OR_EQUAL_UINT(2, ds.wire->ops->abreast(ds.wire));
+	TEST_ASSERT_GREATER_OR_EQUAL_UINT(2, ds.wire->ops->many(ds.wire));
 }
 
 /* Then the time of a byte is waited for by reading on. */

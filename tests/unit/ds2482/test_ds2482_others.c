@@ -10,6 +10,7 @@
 #include "unity.h"
 
 #include "tests/unit/aid/ds2482_scene.h"
+#include "tests/unit/aid/parts.h"
 
 void setUp(void)
 {
@@ -164,9 +165,9 @@ static void test_a_chip_that_a_driver_took_is_left_alone_soon(void)
 	driver_takes_it();
 	ds.host.now += HOST_S;
 	uint64_t transfers = ds.adapter.adapter.transfers;
-	TEST_ASSERT_EQUAL_INT(-ENXIO, ds.wire->ops->reset(ds.wire));
+	TEST_ASSERT_EQUAL_INT(-ENXIO, part_reset(ds.wire));
 	TEST_ASSERT_EQUAL_INT(-EBUSY, ds.wire->ops->recover(ds.wire, LINK_CHIP_RESET));
-	TEST_ASSERT_EQUAL_INT(-ENXIO, ds.wire->ops->reset(ds.wire));
+	TEST_ASSERT_EQUAL_INT(-ENXIO, part_reset(ds.wire));
 	TEST_ASSERT_EQUAL_UINT64(transfers, ds.adapter.adapter.transfers);
 }
 
@@ -175,7 +176,7 @@ static void test_a_chip_that_a_driver_took_is_not_reset(void)
 {
 	ds_start("chip DS2482-100 0x18\nDS18B20 28.A0B1C2000028 as t temperature 20\n");
 	ds_event("reset 0x18");
-	TEST_ASSERT_EQUAL_INT(-ENXIO, ds.wire->ops->reset(ds.wire));
+	TEST_ASSERT_EQUAL_INT(-ENXIO, part_reset(ds.wire));
 	driver_takes_it();
 	uint64_t transfers = ds.adapter.adapter.transfers;
 	TEST_ASSERT_EQUAL_INT(-EBUSY, ds.wire->ops->recover(ds.wire, LINK_CHIP_RESET));

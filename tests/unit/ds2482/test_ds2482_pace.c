@@ -7,6 +7,7 @@
 
 #include "hal/sim/scenario.h"
 #include "tests/unit/aid/ds2482_scene.h"
+#include "tests/unit/aid/parts.h"
 
 static int64_t (*true_now)(void *ctx);
 static int (*true_wait)(void *ctx, int fd, short events, int64_t until_ns);
@@ -85,7 +86,7 @@ static unsigned errors_until_steady(unsigned most)
 		} else {
 			failed++;
 			right = 0;
-			ds.wire->ops->reset(ds.wire);
+			part_reset(ds.wire);
 		}
 	}
 	return failed;

@@ -8,13 +8,14 @@
 
 #include "hal/sim/crc.h"
 #include "tests/unit/aid/ds2482_scene.h"
+#include "tests/unit/aid/parts.h"
 
 #define CHIPS 5
 /* The longest times of a reset and 19 bytes, and ten reads of the status or a register. */
 #define ALONE_NS (INT64_C(1243200) + 19 * 8 * INT64_C(72800) + 3 * HOST_MS)
 
 static uint8_t out[CHIPS][10], in[CHIPS][9];
-static struct link_visit visit[CHIPS];
+static struct link_run run[CHIPS];
 
 void setUp(void)
 {
@@ -50,7 +51,7 @@ static void begin(const char *adapter)
 /* Write Scratchpad alone: limits that nobody else has. */
 static void mark(unsigned i)
 {
-	struct link *link = visit[i].link;
+	struct link *link = run[i].link;
 	uint8_t settings[13];
 
 	memcpy(settings, out[i], 9);
@@ -58,8 +59,8 @@ static void mark(unsigned i)
 	settings[10] = (uint8_t)(10 + i);
 	settings[11] = (uint8_t)(100 + i);
 	settings[12] = 0x7f;
-	TEST_ASSERT_EQUAL_INT(1, link->ops->reset(link));
-	TEST_ASSERT_EQUAL_INT(0, link->ops->write(link, settings, 13, LINK_IDLE));
+	TEST_ASSERT_EQUAL_INT(1, part_reset(link));
+	TEST_ASSERT_EQUAL_INT(0, part_write(link, settings, 13, LINK_IDLE));
 }
 
 static void prepare(const char *adapter)
@@ -67,15 +68,12 @@ static void prepare(const char *adapter)
 	begin(adapter);
 	for (unsigned i = 0; i < CHIPS; i++) {
 		out[i][9] = 0xbe;
-		visit[i] = (struct link_visit){
+		run[i] = (struct link_run){
 			.link = ds.master->ops->channel(ds.master, i < 4 ? i : 4 + 3),
-			.out = out[i],
-			.out_n = 10,
-			.in = in[i],
-			.in_n = 9,
+			.part = {.reset = true, .out = out[i], .out_n = 10, .in = in[i], .in_n = 9},
 			.err = 1,
 		};
-		TEST_ASSERT_NOT_NULL(visit[i].link);
+		TEST_ASSERT_NOT_NULL(run[i].link);
 		mark(i);
 	}
 	memset(in, 0, sizeof(in));
@@ -83,7 +81,7 @@ static void prepare(const char *adapter)
 
 static bool is_right(unsigned i)
 {
-	return visit[i].err == 0 && sim_crc8(0, in[i], 9) == 0 && in[i][2] == 10 + i &&
+	return run[i].err == 0 && sim_crc8(0, in[i], 9) == 0 && in[i][2] == 10 + i &&
 	       in[i][3] == 100 + i;
 }
 
@@ -91,7 +89,7 @@ static int64_t together(void)
 {
 	int64_t begun = ds.host.now;
 
-	visit[0].link->ops->together(visit, CHIPS);
+	run[0].link->ops->run_many(run, CHIPS);
 	return ds.host.now - begun;
 }
 
@@ -121,24 +119,24 @@ static void test_each_chip_gives_its_own_bytes(void)
 static void test_five_take_little_longer_than_one(void)
 {
 	prepare("speed 400 combine any");
-	TEST_ASSERT_GREATER_OR_EQUAL_UINT(CHIPS, visit[0].link->ops->abreast(visit[0].link));
+	TEST_ASSERT_GREATER_OR_EQUAL_UINT(CHIPS, run[0].link->ops->many(run[0].link));
 	TEST_ASSERT_LESS_THAN_INT64(ALONE_NS + 4 * HOST_MS, together());
-	TEST_ASSERT_GREATER_OR_EQUAL_UINT(CHIPS, visit[0].link->ops->abreast(visit[0].link));
+	TEST_ASSERT_GREATER_OR_EQUAL_UINT(CHIPS, run[0].link->ops->many(run[0].link));
 }
 
 /* At 100 kHz there is time for two; where bytes take no known time, nobody can tell. */
 static void test_a_slow_bus_takes_fewer(void)
 {
 	prepare("speed 100 combine any");
-	TEST_ASSERT_EQUAL_UINT(2, visit[0].link->ops->abreast(visit[0].link));
+	TEST_ASSERT_EQUAL_UINT(2, run[0].link->ops->many(run[0].link));
 	tearDown();
 	setUp();
 	prepare("speed 50 combine any");
-	TEST_ASSERT_EQUAL_UINT(1, visit[0].link->ops->abreast(visit[0].link));
+	TEST_ASSERT_EQUAL_UINT(1, run[0].link->ops->many(run[0].link));
 	tearDown();
 	setUp();
 	prepare("speed 400 combine smbus");
-	TEST_ASSERT_EQUAL_UINT(1, visit[0].link->ops->abreast(visit[0].link));
+	TEST_ASSERT_EQUAL_UINT(1, run[0].link->ops->many(run[0].link));
 }
 
 static int64_t call_ns;
@@ -156,15 +154,15 @@ static int wait_longer(void *ctx, int fd, short events, int64_t until_ns)
 static void test_an_adapter_with_slow_calls_gets_fewer_at_a_time(void)
 {
 	prepare("speed 400 combine any");
-	unsigned before = visit[0].link->ops->abreast(visit[0].link);
+	unsigned before = run[0].link->ops->many(run[0].link);
 
 	wait_plainly = ds.host.env.wait;
 	ds.host.env.wait = wait_longer;
 	call_ns = HOST_MS / 4;
 	for (unsigned n = 0; n < 40; n++)
 		together();
-	TEST_ASSERT_LESS_THAN_UINT(before, visit[0].link->ops->abreast(visit[0].link));
-	TEST_ASSERT_GREATER_OR_EQUAL_UINT(2, visit[0].link->ops->abreast(visit[0].link));
+	TEST_ASSERT_LESS_THAN_UINT(before, run[0].link->ops->many(run[0].link));
+	TEST_ASSERT_GREATER_OR_EQUAL_UINT(2, run[0].link->ops->many(run[0].link));
 	for (unsigned i = 0; i < CHIPS; i++)
 		TEST_ASSERT_TRUE(is_right(i));
 }
@@ -188,10 +186,9 @@ static void test_trouble_of_one_chip_is_no_trouble_of_the_others(void)
 		for (unsigned i = 0; i < CHIPS; i++)
 			if (i != 2)
 				TEST_ASSERT_TRUE_MESSAGE(is_right(i), troubles[k].event);
-		TEST_ASSERT_LESS_THAN_INT_MESSAGE(0, visit[2].err, troubles[k].event);
+		TEST_ASSERT_LESS_THAN_INT_MESSAGE(0, run[2].err, troubles[k].event);
 		/* What the link says next is what it would have said without all that. */
-		TEST_ASSERT_EQUAL_INT_MESSAGE(troubles[k].alone,
-		                              visit[2].link->ops->reset(visit[2].link),
+		TEST_ASSERT_EQUAL_INT_MESSAGE(troubles[k].alone, part_reset(run[2].link),
 		                              troubles[k].event);
 		tearDown();
 		setUp();
@@ -214,8 +211,8 @@ static void test_a_chip_that_restarts_meanwhile_gives_no_false_bytes(void)
 		for (unsigned i = 0; i < CHIPS; i++)
 			if (i != 3)
 				TEST_ASSERT_TRUE(is_right(i));
-		errors += visit[3].err != 0;
-		wrong += visit[3].err == 0 && !is_right(3);
+		errors += run[3].err != 0;
+		wrong += run[3].err == 0 && !is_right(3);
 		tearDown();
 		setUp();
 	}
@@ -232,7 +229,7 @@ static void test_an_adapter_that_goes_ends_all_of_them(void)
 	                                                          .at_ns = ds.net.time + 3000000}));
 	TEST_ASSERT_LESS_THAN_INT64(10 * HOST_MS, together());
 	for (unsigned i = 0; i < CHIPS; i++)
-		TEST_ASSERT_EQUAL_INT(-ENODEV, visit[i].err);
+		TEST_ASSERT_EQUAL_INT(-ENODEV, run[i].err);
 }
 
 static struct i2c_adapter_ops held;
@@ -258,7 +255,7 @@ static void test_a_bus_that_is_held_ends_all_of_them(void)
 	together();
 	TEST_ASSERT_EQUAL_UINT(1, transfers);
 	for (unsigned i = 0; i < CHIPS; i++)
-		TEST_ASSERT_EQUAL_INT(-ETIMEDOUT, visit[i].err);
+		TEST_ASSERT_EQUAL_INT(-ETIMEDOUT, run[i].err);
 }
 
 static void test_a_shutdown_ends_all_of_them(void)
@@ -267,7 +264,7 @@ static void test_a_shutdown_ends_all_of_them(void)
 	ds.host.shutdown = true;
 	TEST_ASSERT_LESS_THAN_INT64(10 * HOST_MS, together());
 	for (unsigned i = 0; i < CHIPS; i++)
-		TEST_ASSERT_LESS_THAN_INT(0, visit[i].err);
+		TEST_ASSERT_LESS_THAN_INT(0, run[i].err);
 }
 
 /* What was armed for the strong pull-up, and what a chip is busy with, is seen to first. */
@@ -277,9 +274,8 @@ static void test_they_begin_where_the_last_call_has_ended(void)
 
 	prepare("speed 100 combine one-read");
 	for (unsigned i = 0; i < CHIPS; i++)
-		TEST_ASSERT_EQUAL_INT(0,
-		                      visit[i].link->ops->write(visit[i].link, &byte, 1,
-		                                                i & 1 ? LINK_STRONG : LINK_IDLE));
+		TEST_ASSERT_EQUAL_INT(
+			0, part_write(run[i].link, &byte, 1, i & 1 ? LINK_STRONG : LINK_IDLE));
 	together();
 	for (unsigned i = 0; i < CHIPS; i++)
 		TEST_ASSERT_TRUE(is_right(i));

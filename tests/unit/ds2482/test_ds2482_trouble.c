@@ -10,6 +10,7 @@
 
 #include "hal/sim/crc.h"
 #include "tests/unit/aid/ds2482_scene.h"
+#include "tests/unit/aid/parts.h"
 
 void setUp(void)
 {
@@ -31,17 +32,17 @@ static void test_a_chip_that_restarted_is_noticed_and_set_up_again(void)
 		ds_check_scratchpad();
 		ds_event("reset 0x18");
 		TEST_ASSERT_EQUAL_INT(-ENXIO, ds_read_scratchpad("t", scratchpad));
-		TEST_ASSERT_EQUAL_INT(-ENXIO, ds.wire->ops->reset(ds.wire));
+		TEST_ASSERT_EQUAL_INT(-ENXIO, part_reset(ds.wire));
 		TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->recover(ds.wire, LINK_CHIP_RESET));
 		TEST_ASSERT_EQUAL_HEX8(SIM_APU, ds.net.chip[0].config);
 		ds_check_scratchpad();
 		/* And in the middle of a call. */
-		TEST_ASSERT_EQUAL_INT(1, ds.wire->ops->reset(ds.wire));
+		TEST_ASSERT_EQUAL_INT(1, part_reset(ds.wire));
 		TEST_ASSERT_EQUAL_INT(
 			0, sim_net_add_event(&ds.net,
 		                             &(struct sim_event){.what = SIM_CHIP_RESET,
 		                                                 .at_ns = ds.net.time + 2000000}));
-		err = ds.wire->ops->read(ds.wire, scratchpad, 9);
+		err = part_read(ds.wire, scratchpad, 9);
 		TEST_ASSERT_EQUAL_INT(-ENXIO, err);
 		tearDown();
 	}
@@ -55,12 +56,12 @@ static void test_a_stuck_chip_is_an_error_in_time_and_a_reset_frees_it(void)
 		ds_start(ds_kinds[i]);
 		ds_event("stick 0x18");
 		begun = ds.host.now;
-		TEST_ASSERT_EQUAL_INT(-ETIMEDOUT, ds.wire->ops->reset(ds.wire));
+		TEST_ASSERT_EQUAL_INT(-ETIMEDOUT, part_reset(ds.wire));
 		TEST_ASSERT_LESS_THAN_INT64(50 * HOST_MS, ds.host.now - begun);
 		TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->recover(ds.wire, LINK_CHIP_RESET));
 		ds_check_scratchpad();
 		ds_event("jam 0x18");
-		TEST_ASSERT_EQUAL_INT(-ETIMEDOUT, ds.wire->ops->reset(ds.wire));
+		TEST_ASSERT_EQUAL_INT(-ETIMEDOUT, part_reset(ds.wire));
 		TEST_ASSERT_EQUAL_INT(-ETIMEDOUT, ds.wire->ops->recover(ds.wire, LINK_BUS_RESET));
 		TEST_ASSERT_EQUAL_INT(-ETIMEDOUT, ds.wire->ops->recover(ds.wire, LINK_CHIP_RESET));
 		ds_event("end jam 0x18");
@@ -97,10 +98,10 @@ static void test_a_chip_that_takes_no_configuration_or_channel_is_not_used(void)
 	ds.adapter.adapter.ops = &ops;
 	untaken = DS2482_WRITE_CONFIG;
 	TEST_ASSERT_EQUAL_INT(-ENXIO, ds.wire->ops->recover(ds.wire, LINK_CHIP_RESET));
-	TEST_ASSERT_EQUAL_INT(-ENXIO, ds.wire->ops->reset(ds.wire));
+	TEST_ASSERT_EQUAL_INT(-ENXIO, part_reset(ds.wire));
 	untaken = DS2482_CHANNEL;
 	TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->recover(ds.wire, LINK_CHIP_RESET));
-	TEST_ASSERT_EQUAL_INT(-ENXIO, ds.wire->ops->reset(ds.wire));
+	TEST_ASSERT_EQUAL_INT(-ENXIO, part_reset(ds.wire));
 	untaken = 0;
 	TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->recover(ds.wire, LINK_CHIP_RESET));
 	ds_check_scratchpad();
@@ -130,7 +131,7 @@ static void test_a_short_that_ends_within_the_reset_is_a_short(void)
 		event.on = false;
 		event.at_ns += 1100000;
 		TEST_ASSERT_EQUAL_INT(0, sim_net_add_event(&ds.net, &event));
-		TEST_ASSERT_EQUAL_INT(-ECOMM, ds.wire->ops->reset(ds.wire));
+		TEST_ASSERT_EQUAL_INT(-ECOMM, part_reset(ds.wire));
 		ds_check_scratchpad();
 		tearDown();
 	}
@@ -164,8 +165,7 @@ static void test_a_process_that_was_not_scheduled_takes_no_chip_for_stuck(void)
 			TEST_ASSERT_EQUAL_INT_MESSAGE(0, ds_try_open(ds_kinds[i], ""), text);
 			ds.wire = ds.master->ops->channel(ds.master, 0);
 			for (unsigned n = 0; n < 5; n++)
-				TEST_ASSERT_EQUAL_INT_MESSAGE(1, ds.wire->ops->reset(ds.wire),
-				                              text);
+				TEST_ASSERT_EQUAL_INT_MESSAGE(1, part_reset(ds.wire), text);
 			tearDown();
 		}
 	}
@@ -190,7 +190,7 @@ static void test_a_missing_chip_is_taken_when_it_is_there_again(void)
 	TEST_ASSERT_EQUAL_UINT(9, ds.master->ops->channels(ds.master));
 	ds_check_scratchpad();
 	ds.wire = ds.master->ops->channel(ds.master, 6);
-	TEST_ASSERT_EQUAL_INT(1, ds.wire->ops->reset(ds.wire));
+	TEST_ASSERT_EQUAL_INT(1, part_reset(ds.wire));
 }
 
 static void test_a_refused_call_is_an_error_and_the_next_one_works(void)
@@ -200,7 +200,7 @@ static void test_a_refused_call_is_an_error_and_the_next_one_works(void)
 
 		ds_start(ds_kinds[i]);
 		ds_event("refuse 0x18 for 1ms");
-		TEST_ASSERT_EQUAL_INT(-EIO, ds.wire->ops->reset(ds.wire));
+		TEST_ASSERT_EQUAL_INT(-EIO, part_reset(ds.wire));
 		ds.host.now += 5 * HOST_MS;
 		ds_check_scratchpad();
 		ds_event("refuse-data 0x18 each 15");
@@ -224,7 +224,7 @@ static void test_an_adapter_that_is_gone_comes_back_by_opening_it_again(void)
 	ds_event("remove adapter for 2s");
 	TEST_ASSERT_EQUAL_INT(-ENODEV, ds_read_scratchpad("t", scratchpad));
 	ds.master->ops->close(ds.master);
-	TEST_ASSERT_EQUAL_INT(-ENODEV, ds.wire->ops->reset(ds.wire));
+	TEST_ASSERT_EQUAL_INT(-ENODEV, part_reset(ds.wire));
 	TEST_ASSERT_EQUAL_INT(-ENODEV, ds.wire->ops->recover(ds.wire, LINK_CHIP_RESET));
 	TEST_ASSERT_EQUAL_INT(-ENODEV, ds.master->ops->open(ds.master, ds.why, sizeof(ds.why)));
 	ds.host.now += 3 * HOST_S;

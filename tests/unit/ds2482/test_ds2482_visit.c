@@ -9,14 +9,16 @@
 
 #include "unity.h"
 
+#include "hal/ds2482/visit.h"
 #include "hal/sim/crc.h"
 #include "tests/unit/aid/ds2482_scene.h"
+#include "tests/unit/aid/parts.h"
 
 #define US INT64_C(1000)
 #define LOOKS 8 /* after so many resets and bytes it is known how long they take */
 
 static uint8_t out[10], in[9];
-static struct link_visit visit;
+static int visit_err;
 static unsigned limit; /* of the scratchpad: no other is the same */
 
 static struct i2c_adapter_ops ops;
@@ -58,8 +60,8 @@ static void mark(void)
 	settings[10] = (uint8_t)(limit = (limit + 1) % 100);
 	settings[11] = 100;
 	settings[12] = 0x7f;
-	TEST_ASSERT_EQUAL_INT(1, ds.wire->ops->reset(ds.wire));
-	TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->write(ds.wire, settings, 13, LINK_IDLE));
+	TEST_ASSERT_EQUAL_INT(1, part_reset(ds.wire));
+	TEST_ASSERT_EQUAL_INT(0, part_write(ds.wire, settings, 13, LINK_IDLE));
 }
 
 static void begin(const char *adapter)
@@ -87,23 +89,19 @@ static int64_t run(uint8_t command)
 
 	out[9] = command;
 	memset(in, 0xa5, sizeof(in));
-	visit = (struct link_visit){.link = ds.wire,
-	                            .out = out,
-	                            .out_n = 10,
-	                            .in = in,
-	                            .in_n = command == 0xbe ? 9 : 1,
-	                            .err = 1};
+	const struct link_part part = {
+		.reset = true, .out = out, .out_n = 10, .in = in, .in_n = command == 0xbe ? 9 : 1};
+
 	transfers = messages = 0;
 	longest_ns = 0;
-	ds.wire->ops->together(&visit, 1);
-	TEST_ASSERT_LESS_OR_EQUAL_INT(0, visit.err);
-	TEST_ASSERT_EQUAL_INT64(ds.host.now, visit.ended_ns);
+	visit_err = ds.wire->ops->run(ds.wire, &part);
+	TEST_ASSERT_LESS_OR_EQUAL_INT(0, visit_err);
 	return ds.host.now - begun;
 }
 
 static bool is_right(void)
 {
-	return visit.err == 0 && sim_crc8(0, in, 9) == 0 && in[2] == limit && in[3] == 100;
+	return visit_err == 0 && sim_crc8(0, in, 9) == 0 && in[2] == limit && in[3] == 100;
 }
 
 static void learn(void)
@@ -121,7 +119,7 @@ static void test_it_gives_the_chips_bytes(void)
 	for (unsigned a = 0; a < ADAPTERS; a++)
 		for (int percent = 95; percent <= 105; percent++) {
 			begin(adapters[a]);
-			TEST_ASSERT_TRUE(ds.wire->ops->visits(ds.wire));
+			TEST_ASSERT_TRUE(ds2482_visits(ds2482_link_of(ds.wire)));
 			ds.net.chip[0].percent = percent;
 			for (unsigned n = 0; n < 3 * LOOKS; n++) {
 				mark();
@@ -142,7 +140,7 @@ static void test_it_takes_little_longer_than_its_slots(void)
 	TEST_ASSERT_LESS_THAN_INT64(13400 * US, run(0xbe));
 	TEST_ASSERT_TRUE(is_right());
 	TEST_ASSERT_LESS_THAN_INT64(7950 * US, run(0x44));
-	TEST_ASSERT_EQUAL_INT(0, visit.err);
+	TEST_ASSERT_EQUAL_INT(0, visit_err);
 	TEST_ASSERT_EQUAL_HEX8(0, in[0]);
 }
 
@@ -188,7 +186,7 @@ static void test_where_waits_are_timed_it_is_not_used(void)
 
 	for (unsigned a = 0; a < 2; a++) {
 		begin(slow[a]);
-		TEST_ASSERT_FALSE(ds.wire->ops->visits(ds.wire));
+		TEST_ASSERT_FALSE(ds2482_visits(ds2482_link_of(ds.wire)));
 		tearDown();
 		setUp();
 	}
@@ -212,8 +210,8 @@ static void check_slower(const char *adapter, int from, int to, unsigned marks)
 		for (unsigned i = 0; i < marks; i++)
 			mark();
 		run(0xbe);
-		if (visit.err) {
-			TEST_ASSERT_TRUE(visit.err == -EIO || visit.err == -ENXIO);
+		if (visit_err) {
+			TEST_ASSERT_TRUE(visit_err == -EIO || visit_err == -ENXIO);
 			errors++;
 			last = n;
 			continue;
@@ -242,7 +240,7 @@ static void test_a_chip_that_becomes_slower_is_refused_once_at_least(void)
 	learn();
 	ds.net.chip[0].percent = 105;
 	run(0xbe);
-	TEST_ASSERT_LESS_THAN_INT(0, visit.err);
+	TEST_ASSERT_LESS_THAN_INT(0, visit_err);
 	/* What the link's functions do meanwhile is right. */
 	mark();
 	run(0xbe);
@@ -255,7 +253,7 @@ static void test_what_is_wrong_is_told(void)
 		const char *event;
 		int err;
 	} troubles[] = {{"unplug t", -EHOSTDOWN}, {"short 0x18.3", -ECOMM}, {"stick 0x18", 0},
-	                {"sleep 0x18", -ENXIO},   {"reset 0x18", 0},        {"jam 0x18", 0}};
+	                {"sleep 0x18", -EIO},     {"reset 0x18", 0},        {"jam 0x18", 0}};
 
 	for (unsigned a = 0; a < ADAPTERS; a++)
 		for (unsigned k = 0; k < sizeof(troubles) / sizeof(troubles[0]); k++) {
@@ -263,9 +261,9 @@ static void test_what_is_wrong_is_told(void)
 			learn();
 			ds_event(troubles[k].event);
 			TEST_ASSERT_LESS_THAN_INT64(40 * HOST_MS, run(0xbe));
-			TEST_ASSERT_LESS_THAN_INT_MESSAGE(0, visit.err, troubles[k].event);
+			TEST_ASSERT_LESS_THAN_INT_MESSAGE(0, visit_err, troubles[k].event);
 			if (troubles[k].err)
-				TEST_ASSERT_EQUAL_INT_MESSAGE(troubles[k].err, visit.err,
+				TEST_ASSERT_EQUAL_INT_MESSAGE(troubles[k].err, visit_err,
 				                              troubles[k].event);
 			tearDown();
 			setUp();
@@ -287,8 +285,8 @@ static void test_a_chip_that_restarts_meanwhile_gives_no_false_bytes(void)
 								      .chip = 0,
 								      .at_ns = ds.net.time + at}));
 			run(0xbe);
-			errors += visit.err != 0;
-			TEST_ASSERT_TRUE(visit.err || is_right());
+			errors += visit_err != 0;
+			TEST_ASSERT_TRUE(visit_err || is_right());
 			tearDown();
 			setUp();
 		}

@@ -12,6 +12,7 @@
 #include "hal/sim/adapter.h"
 #include "hal/sim/scenario.h"
 #include "tests/unit/aid/host.h"
+#include "tests/unit/aid/parts.h"
 
 #define ADAPTERS 3
 
@@ -148,7 +149,7 @@ static int presence(unsigned channel)
 	struct link *link = every->ops->channel(every, channel);
 
 	TEST_ASSERT_NOT_NULL(link);
-	return link->ops->reset(link);
+	return part_reset(link);
 }
 
 static void test_the_chips_of_all_adapters_are_one_row_of_links(void)

@@ -17,6 +17,7 @@
 #include "unity.h"
 
 #include "tests/unit/aid/ds2482_scene.h"
+#include "tests/unit/aid/parts.h"
 
 #define DEVICE "/dev/null" /* of the adapter: a device file that every machine has */
 
@@ -175,7 +176,7 @@ static void later(int64_t minutes)
 static void change(void)
 {
 	ds_event("reset 0x18");
-	TEST_ASSERT_EQUAL_INT(-ENXIO, ds.wire->ops->reset(ds.wire));
+	TEST_ASSERT_EQUAL_INT(-ENXIO, part_reset(ds.wire));
 	TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->recover(ds.wire, LINK_CHIP_RESET));
 }
 
@@ -267,7 +268,7 @@ static void test_a_chip_that_does_not_come_back_was_not_changed(void)
 {
 	start();
 	ds_event("refuse 0x18 for 60s");
-	TEST_ASSERT_LESS_THAN_INT(0, ds.wire->ops->reset(ds.wire));
+	TEST_ASSERT_LESS_THAN_INT(0, part_reset(ds.wire));
 	TEST_ASSERT_LESS_THAN_INT(0, ds.wire->ops->recover(ds.wire, LINK_CHIP_RESET));
 	TEST_ASSERT_EQUAL_STRING("", trouble(true));
 }

@@ -13,6 +13,7 @@
 #include "hal/sim/master.h"
 #include "hal/sim/scenario.h"
 #include "tests/unit/aid/host.h"
+#include "tests/unit/aid/parts.h"
 
 #define S INT64_C(1000000000)
 
@@ -382,7 +383,7 @@ static void test_the_target_sim_opens_the_house_of_the_demonstration(void)
 	TEST_ASSERT_TRUE(master->ops->simulated);
 	TEST_ASSERT_EQUAL_INT_MESSAGE(0, master->ops->open(master, why, sizeof(why)), why);
 	link = master->ops->channel(master, 0);
-	TEST_ASSERT_EQUAL_INT(1, link->ops->reset(link));
+	TEST_ASSERT_EQUAL_INT(1, part_reset(link));
 	TEST_ASSERT_NOT_NULL(sim_net_slave(sim_master_net(master), "boiler"));
 	master->ops->destroy(master);
 	TEST_ASSERT_EQUAL_INT(-EINVAL, sim_master.create("no-such-file:0x18", &host.env, &master,

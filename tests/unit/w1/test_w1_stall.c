@@ -165,30 +165,20 @@ static void test_a_read_that_never_returns_stalls_its_own_bus_only(void)
 static uint8_t sent[16];
 static size_t sent_n;
 
-static int reset(struct link *link)
+static void write_bytes(const uint8_t *bytes, size_t n)
 {
-	(void)link;
-	return 1;
-}
-
-static int write_bytes(struct link *link, const uint8_t *bytes, size_t n, enum link_after after)
-{
-	(void)link;
-	(void)after;
 	sent_n = n - 9;
 	memcpy(sent, bytes + 9, sent_n);
-	return 0;
 }
 
 /* A DS2450 that keeps what is written, in pages of eight bytes with a checksum each. */
 static uint8_t kept[32];
 
-static int read_bytes(struct link *link, uint8_t *bytes, size_t n)
+static void read_bytes(uint8_t *bytes, size_t n)
 {
 	uint16_t crc = onewire_crc16(0, sent, sent_n);
 	size_t at = sent[1];
 
-	(void)link;
 	if (sent[0] == 0x55)
 		kept[at] = sent[sent_n - 1];
 	for (size_t i = 0; i < n; crc = 0) {
@@ -203,10 +193,19 @@ static int read_bytes(struct link *link, uint8_t *bytes, size_t n)
 		if (i < n && !part)
 			bytes[i++] = kept[at];
 	}
+}
+
+static int run(struct link *link, const struct link_part *part)
+{
+	(void)link;
+	if (part->out_n)
+		write_bytes(part->out, part->out_n);
+	if (part->in_n)
+		read_bytes(part->in, part->in_n);
 	return 0;
 }
 
-static int bit(struct link *link, bool out, enum link_after after)
+static int slot(struct link *link, bool out, enum link_after after)
 {
 	(void)link;
 	(void)out;
@@ -226,12 +225,12 @@ static int64_t now(void *ctx)
 
 static void test_a_pull_up_that_a_driver_has_not_is_no_error_of_the_master(void)
 {
-	static const struct link_ops ops = {
-		.reset = reset, .write = write_bytes, .read = read_bytes, .bit = bit};
+	static const struct link_ops ops = {.run = run, .slot = slot};
+	static const struct link_facts facts = {.strong = true, .splits = true};
 	static const struct driver_ops driver = {.has = has_no_driver};
 	int64_t time = S;
 	struct bus_env env = {.ctx = &time, .now = now};
-	struct link link = {.ops = &ops, .env = &env, .driver = &driver};
+	struct link link = {.ops = &ops, .facts = &facts, .env = &env, .driver = &driver};
 	static unsigned char own[DEVICE_OWN];
 	struct device device = {.rom = {0x20, 1}, .family = family_of(0x20), .own = own};
 	struct txn txn = {.link = &link, .device = &device};
