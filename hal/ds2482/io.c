@@ -140,6 +140,13 @@ void ds2482_was_early(struct ds2482_chip *chip)
 		master->measured_again++;
 }
 
+unsigned ds2482_room(const struct ds2482_chip *chip)
+{
+	unsigned most = chip->master->adapter->max_messages;
+
+	return most < DS2482_MAX_MESSAGES ? most : DS2482_MAX_MESSAGES;
+}
+
 /* Send messages that change nothing; -EOPNOTSUPP: the adapter cannot. */
 static int try_messages(struct ds2482_chip *chip, size_t writes, size_t reads)
 {
@@ -192,13 +199,10 @@ static int measure_messages(struct ds2482_chip *chip)
 int ds2482_learn(struct ds2482_chip *chip)
 {
 	struct i2c_adapter *adapter = chip->master->adapter;
-	unsigned room = adapter->max_messages;
 	int err = 0;
 
-	if (room > DS2482_MAX_MESSAGES)
-		room = DS2482_MAX_MESSAGES;
 	if (adapter->combine == I2C_ANY) {
-		err = try_messages(chip, 0, room);
+		err = try_messages(chip, 0, ds2482_room(chip));
 		if (err == -EOPNOTSUPP)
 			adapter->combine = I2C_ONE_READ_LAST;
 	}

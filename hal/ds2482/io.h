@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Of one message, and of one transfer. */
+/* Of one message, and of one transfer if the adapter takes so many (ds2482_room()). */
 #define DS2482_MAX_BYTES 180
 #define DS2482_MAX_MESSAGES 42
 
@@ -26,6 +26,7 @@ int ds2482_read1(struct ds2482_chip *chip);
 int ds2482_write_read(struct ds2482_chip *chip, uint8_t command, uint8_t parameter);
 /* Can the adapter do more than the SMBus calls? */
 bool ds2482_combines(const struct ds2482_chip *chip);
+unsigned ds2482_room(const struct ds2482_chip *chip);
 /*
  * Try what the adapter takes in one transfer, and measure how long an I2C byte takes at least, for
  * reading on instead of waiting. There has to be a chip, and it has to be idle.

@@ -23,78 +23,69 @@ static int arm_pullup(struct ds2482_chip *chip)
 	return ds2482_configure(chip, chip->config | DS2482_SPU);
 }
 
-static int link_reset(struct ds2482_link *link)
+/* A reset, and with it all of a whole transaction; NULL: alone. */
+static int link_begin(struct ds2482_link *link, const struct link_part *whole)
 {
-	int status = ds2482_claimed(link->chip) ? ds2482_select(link) : -ENXIO;
+	struct ds2482_chip *chip = link->chip;
+	int status = ds2482_claimed(chip) ? ds2482_select(link) : -ENXIO;
 
 	if (status < 0)
 		return status;
-	status = ds2482_run(link->chip, DS2482_RESET, DS2482_NO_PARAMETER, ds2482_reset_max_ns);
+	status = whole ? ds2482_visit(chip, whole)
+	               : ds2482_run(chip, DS2482_RESET, DS2482_NO_PARAMETER, ds2482_reset_max_ns);
 	if (status < 0)
 		return status;
-	ds2482_began(link->chip);
-	link->cost.resets++;
-	link->cost.wire_ns += (uint64_t)ds2482_reset_ns;
-	if (status & DS2482_SD)
-		return -ECOMM;
-	if (status & DS2482_PPD)
-		return 0;
-	return status & DS2482_LL ? -EHOSTDOWN : -ECOMM;
+	ds2482_began(chip);
+	return ds2482_presence(link, status);
 }
 
-static int link_write(struct ds2482_link *link, const uint8_t *data, size_t n,
-                      enum link_after after)
+static int write_strong(struct ds2482_chip *chip, const uint8_t *data, size_t n)
 {
-	size_t before = after == LINK_STRONG && n > 0 ? n - 1 : n;
+	const struct link_part head = {.out = data, .out_n = n - 1},
+			       last = {.out = data + n - 1, .out_n = 1};
+	int err = n > 1 ? ds2482_visit(chip, &head) : 0;
+
+	if (n > 1)
+		ds2482_began(chip);
+	if (err >= 0)
+		err = arm_pullup(chip);
+	if (err >= 0)
+		err = ds2482_visit(chip, &last);
+	/* the pull-up begins with the last slot of the byte, and so does its time */
+	return err < 0 ? err : ds2482_wait_until(chip->master, chip->free_at);
+}
+
+/* The transaction goes on: bytes written, then bytes read. */
+static int link_go_on(struct ds2482_link *link, const struct link_part *part)
+{
+	const struct link_part out = {.out = part->out, .out_n = part->out_n},
+			       in = {.in = part->in, .in_n = part->in_n};
+	bool strong = part->out_n && part->after == LINK_STRONG;
 	int err = ds2482_select(link);
 
-	if (!err && before > 0) {
-		err = ds2482_write_block(link->chip, data, before);
+	if (err >= 0 && part->out_n)
+		err = strong ? write_strong(link->chip, part->out, part->out_n)
+		             : ds2482_visit(link->chip, &out);
+	if (!strong)
 		ds2482_began(link->chip);
-	}
-	if (!err && before < n) {
-		err = arm_pullup(link->chip);
-		if (!err)
-			err = ds2482_write_block(link->chip, data + before, 1);
-		/* the pull-up begins with the last slot of the byte, and so does its time */
-		if (!err)
-			err = ds2482_wait_until(link->chip->master, link->chip->free_at);
-	}
-	if (!err)
-		spend_slots(link, 8 * n);
-	return err;
-}
-
-static int link_read(struct ds2482_link *link, uint8_t *data, size_t n)
-{
-	int err = ds2482_select(link);
-
-	if (!err)
-		err = ds2482_read_block(link->chip, data, n);
-	if (err)
-		return err;
-	ds2482_began(link->chip);
-	spend_slots(link, 8 * n);
-	return 0;
+	return err >= 0 && part->in_n ? ds2482_visit(link->chip, &in) : err;
 }
 
 static int link_run(struct link *base, const struct link_part *part)
 {
 	struct ds2482_link *link = ds2482_link_of(base);
-	int err = 0;
+	bool whole = part->reset && part->in_n && ds2482_visits(link->chip);
+	int err = part->reset ? link_begin(link, whole ? part : NULL) : 0;
 
-	if (part->reset && part->in_n && ds2482_visits(link))
-		return ds2482_visit(link, part);
-	if (part->reset)
-		err = link_reset(link);
-	if (!err && part->out_n)
-		err = link_write(link, part->out, part->out_n, part->after);
-	if (!err && part->in_n)
-		err = link_read(link, part->in, part->in_n);
-	return err;
+	if (err >= 0 && !whole && (part->out_n || part->in_n))
+		err = link_go_on(link, part);
+	if (err < 0)
+		return err;
+	spend_slots(link, 8 * (part->out_n + part->in_n));
+	return 0;
 }
 
-static int link_slot_of(struct link *base, bool out, enum link_after after)
+static int link_bit(struct link *base, bool out, enum link_after after)
 {
 	struct ds2482_link *link = ds2482_link_of(base);
 	int status = ds2482_select(link);
@@ -158,7 +149,7 @@ static int link_recover(struct link *base, enum link_rung rung)
 		return -ENODEV;
 	switch (rung) {
 	case LINK_BUS_RESET:
-		err = link_reset(link);
+		err = link_begin(link, NULL);
 		return err == -EHOSTDOWN ? 0 : err;
 	case LINK_CHIP_RESET:
 		/* a kernel driver may have taken the chip, whose reset looks like this */
@@ -183,7 +174,7 @@ static void link_cost(const struct link *base, struct link_cost *cost)
 static const struct link_ops link_ops = {
 	.name = "DS2482",
 	.run = link_run,
-	.slot = link_slot_of,
+	.slot = link_bit,
 	.triplet = link_triplet,
 	.run_many = ds2482_together,
 	.many = ds2482_many,

@@ -72,3 +72,14 @@ void ds2482_began(struct ds2482_chip *chip)
 {
 	chip->config &= (uint8_t)~DS2482_SPU;
 }
+
+int ds2482_presence(struct ds2482_link *link, int status)
+{
+	link->cost.resets++;
+	link->cost.wire_ns += (uint64_t)ds2482_reset_ns;
+	if (status & DS2482_SD)
+		return -ECOMM;
+	if (status & DS2482_PPD)
+		return 0;
+	return status & DS2482_LL ? -EHOSTDOWN : -ECOMM;
+}

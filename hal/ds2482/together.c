@@ -126,11 +126,8 @@ static int look_for_presence(struct course *course)
 	}
 	if (status & DS2482_RST)
 		return -ENXIO;
-	link->cost.resets++;
-	link->cost.wire_ns += (uint64_t)ds2482_reset_ns;
-	if (status & DS2482_SD)
-		return -ECOMM;
-	return status & DS2482_PPD ? write_byte_next(course) : -EHOSTDOWN;
+	err = ds2482_presence(link, status);
+	return err ? err : write_byte_next(course);
 }
 
 /* One byte is fetched; after the last the status says whether the chip was idle, and is set up. */

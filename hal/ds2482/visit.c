@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A reset, bytes written and bytes read, in as few I2C transfers as the adapter takes. */
 #include "hal/ds2482/visit.h"
-#include "hal/ds2482/select.h"
 
 #include <errno.h>
 
@@ -17,6 +16,9 @@
 #define LEAST 3
 /* Bytes on the I2C bus between a pause and the chip's look at the next command. */
 #define TO_COMMAND 4
+/* Reading on pays with bytes of at most 45 us (200 kHz). */
+#define FAST_BYTE_NS 45000
+#define BETWEEN_NS 100000
 
 /* The messages that are gathered for the next transfer. */
 struct train {
@@ -28,16 +30,41 @@ struct train {
 	unsigned count, reads, wait;
 	long max_ns; /* of the operation with which it ends; 0: that has ended */
 	bool any, slow;
+	bool learnt;    /* the pauses are as long as the chip was seen to take */
 	bool read_last; /* the last message is a read */
 };
 
-bool ds2482_visits(const struct ds2482_link *link)
+/*
+ * Does a message take longer than a byte on the wire? Then nothing is read between two; if it does
+ * not after all, the chip refuses the next command.
+ */
+static bool is_slow(const struct ds2482_chip *chip, long max_ns)
 {
-	const struct ds2482_chip *chip = link->chip;
-	const struct i2c_adapter *adapter = chip->master->adapter;
+	return chip->master->message_ns > max_ns;
+}
 
-	return adapter && ds2482_reads_on(chip) &&
-	       (adapter->combine != I2C_ANY || adapter->max_messages >= LEAST);
+/* Is time passed by reading on, and not by timed waits, between bytes that are written? */
+static bool reads_on(const struct ds2482_chip *chip)
+{
+	bool slow = is_slow(chip, ds2482_byte_max_ns);
+
+	/* A message between takes longer than what is left to wait. */
+	if (!ds2482_combines(chip) || (ds2482_between(chip) > BETWEEN_NS && !slow))
+		return false;
+	return chip->master->byte_ns <= FAST_BYTE_NS ||
+	       (chip->master->adapter->combine == I2C_ANY && ds2482_room(chip) >= (slow ? 2 : 4));
+}
+
+/* Is a byte read in one transfer? */
+static bool reads_whole(const struct ds2482_chip *chip)
+{
+	return ds2482_combines(chip) &&
+	       (chip->master->adapter->combine != I2C_ANY || ds2482_room(chip) >= LEAST);
+}
+
+bool ds2482_visits(const struct ds2482_chip *chip)
+{
+	return chip->master->adapter && reads_on(chip) && reads_whole(chip);
 }
 
 static void append_write(struct train *train, uint8_t command, int parameter)
@@ -61,14 +88,16 @@ static int visit_send(struct train *train)
 {
 	struct ds2482_chip *chip = train->chip;
 	struct i2c_adapter *adapter = chip->master->adapter;
-	int err = train->count ? ds2482_wait_until(chip->master, chip->free_at) : 0;
 
-	if (!err && train->count)
+	if (!train->count)
+		return 0;
+	int err = ds2482_wait_until(chip->master, chip->free_at);
+	if (!err)
 		err = adapter->ops->transfer(adapter, chip->address, train->message, train->count);
 	if (ds2482_is_refused(err)) {
 		if (train->slow)
 			ds2482_was_refused(chip);
-		else
+		else if (train->learnt)
 			ds2482_forget_ends(&chip->ends);
 	}
 	for (unsigned i = 0; !err && i < train->reads; i++)
@@ -82,13 +111,9 @@ static int visit_send(struct train *train)
 /* Room for another operation of so many messages. A read ends what a bcm2835 can combine. */
 static int make_room_for(struct train *train, unsigned messages)
 {
-	const struct i2c_adapter *adapter = train->chip->master->adapter;
-	unsigned room = adapter->max_messages < DS2482_MAX_MESSAGES ? adapter->max_messages
-	                                                            : DS2482_MAX_MESSAGES;
+	bool fits = train->count + messages <= ds2482_room(train->chip);
 
-	if (train->count + messages <= room && (train->any || !train->read_last))
-		return 0;
-	return train->count ? visit_send(train) : 0;
+	return fits && (train->any || !train->read_last) ? 0 : visit_send(train);
 }
 
 /* Let the time of an operation pass, unless the next message takes longer anyway. */
@@ -98,11 +123,11 @@ static void pass_time(struct train *train, enum ds2482_operation operation, long
 	struct ds2482_chip *chip = train->chip;
 	unsigned most = ds2482_reading_on(chip, max_ns, TO_COMMAND);
 
-	if (ds2482_is_slow(chip, max_ns)) {
+	if (is_slow(chip, max_ns)) {
 		train->max_ns = max_ns;
 		return;
 	}
-	if (!train->slow)
+	if (train->learnt && !train->slow)
 		most = ds2482_pause(&chip->ends, operation,
 		                    ds2482_reading_on(chip, min_ns, TO_COMMAND), most);
 	append_read(train, train->pause, most);
@@ -118,6 +143,24 @@ static int visit_write(struct train *train, uint8_t byte)
 	append_write(train, DS2482_WRITE, byte);
 	pass_time(train, DS2482_OF_BYTE, 8 * ds2482_slot_min_ns, ds2482_byte_max_ns);
 	return 0;
+}
+
+/* The last byte where none is read: its status, read on to its end. */
+static int visit_write_last(struct train *train, uint8_t byte)
+{
+	unsigned n = ds2482_reading_status(train->chip, ds2482_byte_max_ns);
+	int err = make_room_for(train, 2);
+
+	if (err)
+		return err;
+	append_write(train, DS2482_WRITE, byte);
+	append_read(train, train->pause, n);
+	train->max_ns = 0;
+	err = visit_send(train);
+	if (err)
+		return err;
+	ds2482_saw_end(&train->chip->ends, ds2482_byte_max_ns, train->pause, n);
+	return train->pause[n - 1];
 }
 
 static int visit_read(struct train *train, uint8_t *byte)
@@ -157,10 +200,15 @@ static int visit_run(struct train *train, const struct link_part *part)
 	bool few = train->slow || part->in_n <= FEW_READS;
 	int err = 0;
 
-	append_write(train, DS2482_RESET, DS2482_NO_PARAMETER);
-	pass_time(train, DS2482_OF_RESET, ds2482_reset_min_ns, ds2482_reset_max_ns);
-	for (size_t i = 0; !err && i < part->out_n; i++)
+	if (part->reset) {
+		append_write(train, DS2482_RESET, DS2482_NO_PARAMETER);
+		pass_time(train, DS2482_OF_RESET, ds2482_reset_min_ns, ds2482_reset_max_ns);
+	}
+	for (size_t i = 0; !err && i < part->out_n; i++) {
+		if (!part->in_n && i + 1 == part->out_n)
+			return visit_write_last(train, part->out[i]);
 		err = visit_write(train, part->out[i]);
+	}
 	if (!err && !few)
 		err = visit_send(train);
 	for (size_t i = 0; !err && i < part->in_n; i++)
@@ -168,36 +216,36 @@ static int visit_run(struct train *train, const struct link_part *part)
 	return err ? err : visit_look(train);
 }
 
-/* The adapter is open: ds2482_visits() has looked. */
-int ds2482_visit(struct ds2482_link *link, const struct link_part *part)
+static int visit_timed(struct ds2482_chip *chip, const struct link_part *part)
 {
-	struct ds2482_chip *chip = link->chip;
-	struct train train;
-	int err = ds2482_claimed(chip) ? ds2482_select(link) : -ENXIO;
+	int err = 0;
 
-	if (err)
-		return err;
+	for (size_t i = 0; !err && i < part->out_n; i++)
+		err = ds2482_write_timed(chip, part->out[i]);
+	for (size_t i = 0; !err && i < part->in_n; i++)
+		err = ds2482_read_timed(chip, &part->in[i]);
+	return err;
+}
+
+int ds2482_visit(struct ds2482_chip *chip, const struct link_part *part)
+{
+	struct train train;
+
+	if (part->in_n ? !reads_whole(chip) : !reads_on(chip))
+		return visit_timed(chip, part);
 	train.chip = chip;
 	train.count = train.reads = 0;
 	train.max_ns = 0;
 	train.any = chip->master->adapter->combine == I2C_ANY;
-	train.slow = ds2482_is_slow(chip, ds2482_byte_max_ns);
+	train.slow = is_slow(chip, ds2482_byte_max_ns);
+	train.learnt = part->reset;
 	train.wait = ds2482_reading_on(chip, ds2482_byte_max_ns, TO_COMMAND);
-	int status = visit_run(&train, part);
+	int status = visit_run(&train, part), err;
 
-	ds2482_began(chip);
 	chip->free_at = 0;
+	if (status >= 0)
+		return part->in_n ? status : ds2482_judge(chip, status);
 	/* a chip that has refused a command is at work, which is no sign of its being stuck */
-	if (status < 0)
-		err = ds2482_wait(chip->master, ds2482_reset_max_ns);
-	if (status < 0)
-		return err ? err : ds2482_diagnose(chip, status);
-	link->cost.resets++;
-	link->cost.wire_ns += (uint64_t)ds2482_reset_ns;
-	if (status & DS2482_SD)
-		return -ECOMM;
-	if (!(status & DS2482_PPD))
-		return status & DS2482_LL ? -EHOSTDOWN : -ECOMM;
-	link->cost.wire_ns += 8 * (part->out_n + part->in_n) * (uint64_t)ds2482_slot_ns;
-	return 0;
+	err = ds2482_wait(chip->master, ds2482_reset_max_ns);
+	return err ? err : ds2482_diagnose(chip, status);
 }

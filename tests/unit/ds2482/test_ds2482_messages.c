@@ -161,7 +161,7 @@ static void test_where_messages_are_slow_a_whole_reading_has_the_fewest(void)
 
 	for (int64_t between = 600; between <= 1800; between += 600) {
 		begin(between * US);
-		TEST_ASSERT_TRUE(ds2482_visits(ds2482_link_of(ds.wire)));
+		TEST_ASSERT_TRUE(ds2482_visits(ds2482_link_of(ds.wire)->chip));
 		messages = 0;
 		TEST_ASSERT_EQUAL_INT(0, visit(scratchpad));
 		TEST_ASSERT_EQUAL_HEX8_ARRAY(expect, scratchpad, 5);

@@ -119,7 +119,7 @@ static void test_it_gives_the_chips_bytes(void)
 	for (unsigned a = 0; a < ADAPTERS; a++)
 		for (int percent = 95; percent <= 105; percent++) {
 			begin(adapters[a]);
-			TEST_ASSERT_TRUE(ds2482_visits(ds2482_link_of(ds.wire)));
+			TEST_ASSERT_TRUE(ds2482_visits(ds2482_link_of(ds.wire)->chip));
 			ds.net.chip[0].percent = percent;
 			for (unsigned n = 0; n < 3 * LOOKS; n++) {
 				mark();
@@ -186,7 +186,7 @@ static void test_where_waits_are_timed_it_is_not_used(void)
 
 	for (unsigned a = 0; a < 2; a++) {
 		begin(slow[a]);
-		TEST_ASSERT_FALSE(ds2482_visits(ds2482_link_of(ds.wire)));
+		TEST_ASSERT_FALSE(ds2482_visits(ds2482_link_of(ds.wire)->chip));
 		tearDown();
 		setUp();
 	}
