@@ -339,7 +339,7 @@ struct bus {
 
 /* The backends of this program, NULL at the end. */
 extern const struct bus_ops *const bus_backends[];
-#define BACKEND(name) extern const struct bus_ops name##_bus;
+#define BACKEND(name, automatic) extern const struct bus_ops name##_bus;
 #include "hal/bus/schemes.h"
 #undef BACKEND
 

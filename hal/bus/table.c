@@ -3,7 +3,7 @@
 #include "hal/bus/bus.h"
 
 const struct bus_ops *const bus_backends[] = {
-#define BACKEND(name) &name##_bus,
+#define BACKEND(name, automatic) &name##_bus,
 #include "hal/bus/schemes.h"
 #undef BACKEND
 	NULL,

@@ -98,8 +98,7 @@ int native_option(struct bus *bus, const char *key, const char *text, char *why,
 	struct native *native = (struct native *)bus;
 	struct link_master *master = native->master;
 
-	/* The kernel's drivers search and convert too slowly for it. */
-	if (strcmp(key, "Touch") == 0 && strcmp(bus->ops->scheme, "w1") != 0)
+	if (strcmp(key, "Touch") == 0 && !master->ops->slow)
 		return take_switch(&native->touch, text, why, why_size);
 	if (strcmp(key, "Sensors") == 0)
 		return sensors_read(&native->sensors, text, why, why_size);

@@ -226,4 +226,5 @@ const struct link_master_ops w1_netlink_master = {
 	.channel = netlink_channel,
 	.cost = netlink_master_cost,
 	.destroy = netlink_destroy,
+	.slow = true,
 };

@@ -180,4 +180,5 @@ const struct link_master_ops w1_master = {
 	.channels = w1_channels,
 	.channel = w1_channel,
 	.destroy = w1_destroy_master,
+	.slow = true,
 };

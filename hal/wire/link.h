@@ -246,6 +246,7 @@ struct link_master_ops {
 	bool (*own)(struct link_master *master, struct bus_req *req, struct bus_answer *answer);
 	void (*destroy)(struct link_master *master);
 	bool simulated; /* its devices are not real: answers say BUS_DETAIL_SIMULATED */
+	bool slow;      /* searches and converts too slowly to look for buttons (Touch) */
 };
 struct link_master {
 	const struct link_master_ops *ops;

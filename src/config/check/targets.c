@@ -13,7 +13,7 @@
 static bool is_scheme(const char *text, size_t len)
 {
 	static const char *const schemes[] = {
-#define BACKEND(name) #name,
+#define BACKEND(name, automatic) #name,
 #include "hal/bus/schemes.h"
 #undef BACKEND
 		"sim", NULL};

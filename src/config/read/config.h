@@ -114,8 +114,6 @@ enum config_relation {
 	CONFIG_BAR,   /* another way to the wire of the target before it */
 };
 #define CONFIG_TARGETS_MAX 64
-/* "auto" stands for its ways: an owserver here, else every DS2482, else the kernel's masters. */
-#define CONFIG_AUTO_WAYS 3u
 struct config_target {
 	const char *text; /* "localhost:4304"; never empty */
 	enum config_relation relation;

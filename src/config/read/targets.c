@@ -57,7 +57,20 @@ const char *relative_file(struct build *build, const char *text, size_t prefix,
 #define SIMULATED "sim:"
 
 #define AUTO "auto"
-const char *const config_auto_ways[CONFIG_AUTO_WAYS] = {DEFAULT_TARGET, "i2c:auto", "w1"};
+
+const char *config_auto_way(unsigned *row)
+{
+	static const char *const ways[] = {
+#define BACKEND(name, automatic) automatic,
+#include "hal/bus/schemes.h"
+#undef BACKEND
+	};
+
+	while (*row < sizeof(ways) / sizeof(ways[0]))
+		if (*ways[(*row)++])
+			return ways[*row - 1];
+	return NULL;
+}
 
 const char *target_of_file(struct build *build, const char *text, struct rio_position position)
 {
@@ -85,8 +98,8 @@ static void target_add(struct build *build, const char *text, size_t len,
 	if (config->target_count == CONFIG_TARGETS_MAX) {
 		report_error(build->report, position,
 		             "\"%.*s\" is one too many: owsd serves at most %d targets, ways "
-		             "after a bar and the %u of auto counted",
-		             (int)len, text, CONFIG_TARGETS_MAX, CONFIG_AUTO_WAYS);
+		             "after a bar and those of auto counted",
+		             (int)len, text, CONFIG_TARGETS_MAX);
 		return;
 	}
 	target->text = target_of_file(build, build_keep(build, text, len), position);
@@ -114,16 +127,17 @@ static void add_member(struct build *build, const char *text, size_t len,
 {
 	struct config *config = &build->box->config;
 	unsigned errors = build->report->errors;
+	const char *way;
 
 	if (len != strlen(AUTO) || memcmp(text, AUTO, len) != 0) {
 		target_add(build, text, len, relation, position);
 		return;
 	}
-	for (unsigned i = 0; i < CONFIG_AUTO_WAYS && build->report->errors == errors; i++) {
-		target_add(build, config_auto_ways[i], strlen(config_auto_ways[i]),
-		           i ? CONFIG_BAR : relation, position);
+	for (unsigned row = 0; build->report->errors == errors && (way = config_auto_way(&row));) {
+		target_add(build, way, strlen(way), relation, position);
 		if (build->report->errors == errors)
 			config->targets[config->target_count - 1].automatic = true;
+		relation = CONFIG_BAR;
 	}
 }
 

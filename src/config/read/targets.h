@@ -8,7 +8,11 @@
 
 struct build;
 
-extern const char *const config_auto_ways[CONFIG_AUTO_WAYS];
+/*
+ * "auto" stands for its ways: an owserver here, else every DS2482, else the kernel's masters. The
+ * one of the row *row or of a later one, and the row after it; NULL: no more.
+ */
+const char *config_auto_way(unsigned *row);
 
 #define TARGET_MAX 255
 

@@ -30,14 +30,15 @@ static int open_way(struct target *target, const char *name, char *why, size_t w
 static int open_auto(struct target *target, char *why, size_t why_size)
 {
 	size_t used = (size_t)snprintf(why, why_size, "auto finds nothing");
+	const char *way, *between = ": ";
 
-	for (unsigned i = 0; i < CONFIG_AUTO_WAYS; i++) {
+	for (unsigned row = 0; (way = config_auto_way(&row)); between = "; ") {
 		char reason[200] = "";
 		int n;
 
-		if (open_way(target, config_auto_ways[i], reason, sizeof(reason)) == 0)
+		if (open_way(target, way, reason, sizeof(reason)) == 0)
 			return CTL_DONE;
-		n = snprintf(why + used, why_size - used, "%s%s", i ? "; " : ": ", reason);
+		n = snprintf(why + used, why_size - used, "%s%s", between, reason);
 		used = n < 0 || (size_t)n >= why_size - used ? why_size - 1 : used + (size_t)n;
 	}
 	return CTL_FAILED;

@@ -281,7 +281,7 @@ static const struct bus_ops late_bus = {
 };
 
 const struct bus_ops *const bus_backends[] = {
-#define BACKEND(name) &name##_bus,
+#define BACKEND(name, automatic) &name##_bus,
 #include "hal/bus/schemes.h"
 #undef BACKEND
 	&sim_bus,

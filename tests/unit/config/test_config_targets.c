@@ -50,7 +50,7 @@ static void test_a_target_finds_its_bus_however_it_is_spelt(void)
 static void test_the_scheme_of_each_backend_is_no_host(void)
 {
 	static const char *const targets[] = {
-#define BACKEND(name) #name ":x",
+#define BACKEND(name, automatic) #name ":x",
 #include "hal/bus/schemes.h"
 #undef BACKEND
 		"sim:x"};
@@ -95,10 +95,12 @@ static void test_a_comma_separates_two_wires_and_a_bar_two_ways(void)
 
 static void test_auto_is_a_bar_of_three_ways(void)
 {
+	const char *way;
+
 	TEST_ASSERT_EQUAL_INT(0, parse_driver("TargetName \"sim:a, auto | far:4304\""));
 	TEST_ASSERT_EQUAL_UINT(5, config->target_count);
-	for (unsigned i = 0; i < CONFIG_AUTO_WAYS; i++)
-		TEST_ASSERT_EQUAL_STRING(config_auto_ways[i], config->targets[1 + i].text);
+	for (unsigned i = 1, row = 0; (way = config_auto_way(&row)); i++)
+		TEST_ASSERT_EQUAL_STRING(way, config->targets[i].text);
 	TEST_ASSERT_EQUAL_STRING("localhost:4304", config->targets[1].text);
 	TEST_ASSERT_EQUAL_INT(CONFIG_COMMA, config->targets[1].relation);
 	for (int i = 2; i < 5; i++)
@@ -165,7 +167,7 @@ static void test_more_than_sixty_four_targets_are_refused(void)
 		snprintf(line + strlen(line), sizeof(line) - strlen(line), ",h%d", i);
 	TEST_ASSERT_EQUAL_INT(-EINVAL, parse_driver(strcat(line, "|one.more\"")));
 	TEST_ASSERT_EQUAL_STRING("f:2:12: error: \"one.more\" is one too many: owsd serves at most "
-	                         "64 targets, ways after a bar and the 3 of auto counted\n",
+	                         "64 targets, ways after a bar and those of auto counted\n",
 	                         said);
 	strcpy(strrchr(line, '|'), "\"");
 	TEST_ASSERT_EQUAL_INT(0, parse_driver(line));
