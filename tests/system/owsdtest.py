@@ -283,7 +283,7 @@ class Owserver(Program):
     # It does not always end at its first SIGTERM, and has nothing to save
     last_signal = signal.SIGKILL
 
-    def __init__(self, scene, port, buses, host, options):
+    def __init__(self, scene, port, buses, host, options, env=None):
         self.host, self.port, self.buses, self.options = host, port, buses, list(options)
         self.target = f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
         # In a file: owserver aborts when its command line exceeds about 480 bytes
@@ -291,7 +291,7 @@ class Owserver(Program):
                           "".join(f"{kind} = {','.join(ids)}\n" for kind, ids in buses))
         super().__init__(scene, [shutil.which("owserver"), "-c", conf, "-p",
                                  f"{host}:{port}",  # it knows no brackets
-                                 "--foreground", *self.options])
+                                 "--foreground", *self.options], env)
 
     def request(self, kind, path="", data=b"", size=8192, flags=0x10A, seconds=60):
         """One request on a connection of its own: (ret, payload)."""
@@ -425,14 +425,14 @@ class Scene:
         """Any program that is to end with the case."""
         return Program(self, command, env)
 
-    def owserver(self, fake=(), tester=(), mock=(), port=None, host="127.0.0.1", options=()):
+    def owserver(self, fake=(), tester=(), mock=(), port=None, host="127.0.0.1", options=(), env=None):
         """Start owserver with simulated buses in this order, and wait until it answers."""
         if shutil.which("owserver") is None:
             skip("owserver is not installed")
         buses = [(kind, ids) for kind, ids in
                  (("fake", fake), ("tester", tester), ("mock", mock)) if ids]
         for _attempt in range(1 if port else 5):
-            server = Owserver(self, port or free_port(), buses, host, options)
+            server = Owserver(self, port or free_port(), buses, host, options, env)
             until(lambda: server.answers() or not server.running(), 10, "owserver answers")
             if server.running():
                 return server

@@ -1,75 +1,172 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * serial SCENARIO: a simulated wire behind a serial port, so that the genuine owserver reaches the
- * simulated chips without a kernel's driver. Prints the name of the pseudo-terminal, then serves it
- * until it is ended. The wire is channel 0 of the scenario's first chip.
+ * serial [--ds2480b] [--paced] [--strict] SCENARIO: a simulated serial adapter at a
+ * pseudo-terminal, for owsd and for the genuine owserver and digitemp. Prints the name of the
+ * pseudo-terminal, then serves it until it is ended. The adapter is a passive one (DS9097), or with
+ * --ds2480b a DS9097U; its wire is channel 0 of the scenario's first chip.
  *
- * The adapter is the passive one: the DS9097, of Maxim's application note 214, "Using a UART to
- * Implement a 1-Wire Bus Master". Each byte of the host comes back as what the line made of it: F0
- * is a reset pulse, and comes back as E0 if a slave answers; a byte whose first bit is 1 is a slot
- * that writes 1 or reads, and comes back with low bits if the line was low; any other writes 0.
+ * Bytes take the time of the line and of the wire; the clock of the simulation leaps over what the
+ * host would have to wait, unless it is --paced. With --strict the program ends with status 3 when
+ * the host has sent bytes faster than the adapter can carry them out.
+ *
+ * A line on standard input is a command, which is answered with a line: an event of a scenario
+ * without its time ("unplug kitchen"), "silent on", "silent off", "noise N" (of each N-th answer a
+ * bit is turned; 0: none), "unplug N" (end after so many more bytes, as an adapter that is pulled),
+ * "stats".
  */
+#include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <termios.h>
 #include <time.h>
 #include <unistd.h>
 
+#include "hal/sim/event.h"
 #include "hal/sim/scenario.h"
+#include "hal/sim/serial/line.h"
 
-enum { RESET = 0xF0, PRESENT = 0xE0, SLOT_WAS_LOW = 0xFE };
-/* What the UART needs for a byte of 10 bits at 9600 and 115200 baud. */
-#define RESET_NS 1041667
-#define SLOT_NS 86806
+static struct sim_net net;
+static struct sim_serial serial;
+static bool paced, strict;
+static int64_t leapt_ns; /* over waiting */
+static uint64_t pull_at; /* the adapter is pulled after this byte; 0: never */
 
-/* What the wire would have taken so far. */
-static int64_t spent_ns;
-
-/*
- * The time of the simulation: a pseudo-terminal has a byte at once, so the time of the wire is
- * added to the real one. Chips then have all the time that they have on a true wire.
- */
 static int64_t now(void)
 {
 	struct timespec time;
 
 	clock_gettime(CLOCK_MONOTONIC, &time);
-	return (int64_t)time.tv_sec * 1000000000 + time.tv_nsec + spent_ns;
+	return (int64_t)time.tv_sec * 1000000000 + time.tv_nsec + leapt_ns;
 }
 
-/* The host's byte, and what the line makes of it. */
-static uint8_t echo(struct sim_net *net, uint8_t byte)
+/* The speed that the host has set: the other side of the pseudo-terminal shows it. */
+static uint32_t host_baud(int port)
 {
-	struct sim_wire *wire = &net->chip[0].wire[0];
-	int64_t at = now();
+	static const struct {
+		speed_t speed;
+		uint32_t baud;
+	} speeds[] = {{B4800, 4800},   {B9600, 9600},   {B19200, 19200},
+	              {B38400, 38400}, {B57600, 57600}, {B115200, 115200}};
+	struct termios set;
 
-	sim_net_run(net, at);
-	at -= net->epoch;
-	spent_ns += byte == RESET ? RESET_NS : SLOT_NS;
-	if (byte == RESET)
-		return sim_wire_reset(wire, false, at) ? PRESENT : RESET;
-	if (!(byte & 1)) {
-		sim_wire_slot(wire, false, false, at);
-		return byte;
-	}
-	return sim_wire_slot(wire, true, false, at) ? byte : byte & SLOT_WAS_LOW;
+	if (tcgetattr(port, &set))
+		return 9600;
+	for (size_t i = 0; i < sizeof(speeds) / sizeof(speeds[0]); i++)
+		if (speeds[i].speed == cfgetospeed(&set))
+			return speeds[i].baud;
+	return 9600;
 }
 
-/* Until the port fails, which it does not: the host closes and opens it as it likes. */
-static void serve(struct sim_net *net, int port)
+static void stats(void)
+{
+	const struct sim_wire *wire = &net.chip[0].wire[0];
+	unsigned long long conversions = 0;
+
+	for (size_t i = 0; i < wire->count; i++)
+		conversions += wire->slaves[i]->conversions;
+	printf("bytes %llu answers %llu overruns %llu resets %llu slots %llu conversions %llu "
+	       "master_resets %llu baud %u\n",
+	       (unsigned long long)serial.bytes, (unsigned long long)serial.answered,
+	       (unsigned long long)serial.overruns, (unsigned long long)wire->resets,
+	       (unsigned long long)wire->slots, conversions,
+	       (unsigned long long)serial.master_resets, serial.baud);
+}
+
+static void command(const char *line)
+{
+	char why[256] = "ok";
+	unsigned n;
+
+	if (strcmp(line, "stats") == 0) {
+		stats();
+	} else {
+		if (strncmp(line, "silent ", 7) == 0)
+			serial.silent = strcmp(line + 7, "on") == 0;
+		else if (sscanf(line, "noise %u", &n) == 1)
+			serial.noise_each = n;
+		else if (sscanf(line, "unplug %u", &n) == 1)
+			pull_at = serial.bytes + n;
+		else
+			sim_scenario_event(&net, line, now(), why, sizeof(why));
+		puts(why[0] ? why : "ok");
+	}
+	fflush(stdout);
+}
+
+/* Commands come whole, one at a time. False: nobody will send any more. */
+static bool commands(void)
+{
+	char line[256];
+	ssize_t n = read(STDIN_FILENO, line, sizeof(line) - 1);
+
+	if (n <= 0)
+		return false;
+	line[n] = '\0';
+	line[strcspn(line, "\n")] = '\0';
+	command(line);
+	return true;
+}
+
+static bool is_pulled(void)
+{
+	return pull_at && serial.bytes >= pull_at;
+}
+
+static void take_bytes(int port)
 {
 	uint8_t bytes[4096];
+	ssize_t n = read(port, bytes, sizeof(bytes));
+	uint32_t baud = host_baud(port);
+
+	for (ssize_t i = 0; i < n && !is_pulled(); i++)
+		sim_serial_send(&serial, bytes[i], baud, now());
+}
+
+/* Returns how long there is nothing to give, in ns; -1: for ever. */
+static int64_t give_bytes(int port)
+{
+	uint32_t baud = host_baud(port);
+	int64_t due;
+
+	while ((due = sim_serial_due(&serial)) != INT64_MAX) {
+		uint8_t byte;
+
+		if (due > now() && paced)
+			return due - now();
+		if (due > now())
+			leapt_ns += due - now();
+		byte = sim_serial_take(&serial, baud);
+		if (write(port, &byte, 1) != 1)
+			break;
+	}
+	return -1;
+}
+
+/* Until the adapter is pulled: the host closes and opens it as it likes. */
+static int serve(int port)
+{
+	struct pollfd fds[2] = {{.fd = port, .events = POLLIN},
+	                        {.fd = STDIN_FILENO, .events = POLLIN}};
 
 	for (;;) {
-		ssize_t n = read(port, bytes, sizeof(bytes));
+		int64_t rest = give_bytes(port);
+		struct timespec wait = {.tv_sec = rest / 1000000000, .tv_nsec = rest % 1000000000};
 
-		if (n <= 0)
-			return;
-		for (ssize_t i = 0; i < n; i++)
-			bytes[i] = echo(net, bytes[i]);
-		if (write(port, bytes, (size_t)n) != n)
-			return;
+		if (strict && serial.overruns) {
+			fputs("serial: overrun\n", stderr);
+			return 3;
+		}
+		if (is_pulled())
+			return 0;
+		if (ppoll(fds, 2, rest < 0 ? NULL : &wait, NULL) < 0 && errno != EINTR)
+			return 1;
+		if (fds[0].revents)
+			take_bytes(port);
+		if (fds[1].revents && !commands())
+			fds[1].fd = -1;
 	}
 }
 
@@ -85,20 +182,31 @@ static int open_port(void)
 	if (end < 0 || tcgetattr(end, &raw))
 		return -1;
 	cfmakeraw(&raw);
+	cfsetspeed(&raw, B9600);
 	return tcsetattr(end, TCSANOW, &raw) ? -1 : port;
 }
 
 int main(int argc, char **argv)
 {
-	struct sim_net net;
+	enum sim_serial_kind kind = SIM_PASSIVE;
 	char why[256];
-	int port;
+	int port, i;
 
-	if (argc != 2) {
-		fprintf(stderr, "usage: serial SCENARIO\n");
+	for (i = 1; i < argc - 1; i++) {
+		if (strcmp(argv[i], "--ds2480b") == 0)
+			kind = SIM_DS2480B;
+		else if (strcmp(argv[i], "--paced") == 0)
+			paced = true;
+		else if (strcmp(argv[i], "--strict") == 0)
+			strict = true;
+		else
+			break;
+	}
+	if (i != argc - 1) {
+		fprintf(stderr, "usage: serial [--ds2480b] [--paced] [--strict] SCENARIO\n");
 		return 2;
 	}
-	if (sim_scenario_read(argv[1], &net, why, sizeof(why))) {
+	if (sim_scenario_read(argv[i], &net, why, sizeof(why))) {
 		fprintf(stderr, "%s\n", why);
 		return 1;
 	}
@@ -108,9 +216,8 @@ int main(int argc, char **argv)
 		return 1;
 	}
 	sim_net_start(&net, now());
+	sim_serial_init(&serial, kind, &net);
 	puts(ptsname(port));
 	fflush(stdout);
-	serve(&net, port);
-	perror("the pseudo-terminal");
-	return 1;
+	return serve(port);
 }
