@@ -7,11 +7,11 @@
  */
 #pragma once
 
+#include "hal/base/rivals.h"
 #include "hal/base/time.h"
 #include "hal/ds2482/codes.h"
 #include "hal/ds2482/ends.h"
 #include "hal/ds2482/i2c.h"
-#include "hal/ds2482/rivals.h"
 #include "hal/gpio/line.h"
 #include "hal/wire/link.h"
 

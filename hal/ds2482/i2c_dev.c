@@ -3,7 +3,7 @@
 #include <errno.h>
 #include <stdbool.h>
 
-#include "hal/ds2482/chip_lock.h"
+#include "hal/base/chip_lock.h"
 #include "hal/ds2482/i2c_dev.h"
 
 #ifdef OWSD_LIBI2C

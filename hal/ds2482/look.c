@@ -10,7 +10,7 @@
 #include <sys/sysmacros.h>
 #include <unistd.h>
 
-#include "hal/ds2482/chip_lock.h"
+#include "hal/base/chip_lock.h"
 #include "hal/ds2482/ds2482.h"
 #include "hal/ds2482/look.h"
 

@@ -5,12 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/base/rivals.h"
 #include "hal/ds2482/detect.h"
 #include "hal/ds2482/ds2482.h"
 #include "hal/ds2482/link.h"
 #include "hal/ds2482/master.h"
 #include "hal/ds2482/power.h"
-#include "hal/ds2482/rivals.h"
 
 static int parse_where(struct ds2482_master *master, const char *where, char *why, size_t why_size)
 {

@@ -2,11 +2,11 @@
 /* When to look for other programs on the adapter, and what to say of them. */
 #include <stdio.h>
 
+#include "hal/base/rivals.h"
 #include "hal/base/time.h"
 #include "hal/ds2482/ds2482.h"
 #include "hal/ds2482/io.h"
 #include "hal/ds2482/notice.h"
-#include "hal/ds2482/rivals.h"
 
 #define LOOK_NS (60 * NS_PER_S)
 #define QUIET_NS (600 * NS_PER_S) /* so long after its last sign, what was not seen has gone */

@@ -13,9 +13,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "hal/base/rivals.h"
 #include "hal/ds2482/ds2482.h"
 #include "hal/ds2482/look.h"
-#include "hal/ds2482/rivals.h"
 #include "src/ground/board/data.h"
 #include "src/ground/board/files.h"
 #include "src/ground/board/look.h"

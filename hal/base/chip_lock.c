@@ -3,7 +3,7 @@
 #include <errno.h>
 #include <fcntl.h>
 
-#include "hal/ds2482/chip_lock.h"
+#include "hal/base/chip_lock.h"
 
 /*
  * The lock belongs to the descriptor (OFD lock), so it also keeps two targets of one process apart.

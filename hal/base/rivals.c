@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "hal/ds2482/rivals.h"
+#include "hal/base/rivals.h"
 
 /* "" if it has ended, or is hidden. */
 static void read_comm(const char *proc, int pid, char *name, size_t size)

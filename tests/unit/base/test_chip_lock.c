@@ -8,7 +8,7 @@
 
 #include "unity.h"
 
-#include "hal/ds2482/chip_lock.h"
+#include "hal/base/chip_lock.h"
 
 static char path[] = "/tmp/owsd-chip-lock-XXXXXX";
 static int fd;

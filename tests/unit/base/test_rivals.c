@@ -7,11 +7,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "hal/base/rivals.h"
 #include "hal/base/time.h"
 #include "hal/ds2482/every.h"
 #include "hal/ds2482/master.h"
 #include "hal/ds2482/notice.h"
-#include "hal/ds2482/rivals.h"
 #include "hal/native/native.h"
 #include "hal/sim/scenario.h"
 #include "unity.h"
