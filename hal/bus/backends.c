@@ -63,7 +63,7 @@ static bool is_i2c_word(const char *word, size_t len)
 	return number == end;
 }
 
-/* Chips and adapters of OWFS that owsd reaches by another target: what each is, and the remedy. */
+/* Chips and adapters that owsd reaches by another target: what each is, and the remedy. */
 static const struct {
 	const char *words[7];
 	const char *remedy;
@@ -71,8 +71,9 @@ static const struct {
 	{{"usb", "ds9490", "ds9490r", "ds2490"},
          "is a USB adapter: take target w1, which has a DS9490R by the kernel's ds2490, or an "
          "owserver"},
-	{{"serial", "link", "linkusb", "ds9097", "ds9097u", "ds2480b"},
-         "is a serial adapter: let an owserver have it, and name that: localhost:4304"},
+	{{"link", "linkusb", "ds9097u", "ds2480b"},
+         "is a serial adapter: write serial:/dev/ttyUSB0"},
+	{{"passive", "ds9097"}, "is a passive serial adapter: write uart:/dev/ttyUSB0"},
 };
 
 /* NULL: the word is none of these. */
@@ -143,8 +144,9 @@ int bus_create(const char *target, const struct bus_env *env, struct bus **bus, 
 		}
 		if (strncmp(target, "/dev/tty", 8) == 0) {
 			snprintf(why, why_size,
-			         "a serial adapter (DS9097U, LinkUSB): let an owserver "
-			         "have it, and name that: localhost:4304");
+			         "a serial adapter: write serial:%.80s (DS9097U, LinkUSB), "
+			         "or uart:%.80s (passive, DS9097)",
+			         target, target);
 			return -EINVAL;
 		}
 		if (target[0] == '/') {

@@ -8,5 +8,7 @@
 BACKEND(owserver, "localhost:4304")
 BACKEND(i2c, "i2c:auto")
 BACKEND(w1, "w1")
+BACKEND(serial, "")
+BACKEND(uart, "")
 BACKEND(gpio, "")
 BACKEND(null, "")

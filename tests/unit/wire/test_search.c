@@ -113,7 +113,7 @@ static void test_one_path_shows_several_to_be_away(void)
 		roms[0] = chip[1]->rom;
 		roms[1] = chip[9]->rom;
 		roms[2] = chip[0]->rom;
-		TEST_ASSERT_EQUAL_INT(0, search_among(link, roms, away, 3));
+		TEST_ASSERT_EQUAL_INT(0, search_among(link, roms, away, 3, 64));
 		TEST_ASSERT_TRUE(away[0] && away[1]);
 		TEST_ASSERT_FALSE(away[2]);
 		again();

@@ -1,0 +1,179 @@
+/* SPDX-License-Identifier: MIT */
+/* A serial port of this machine, by termios. */
+#include <errno.h>
+#include <fcntl.h>
+#include <linux/serial.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <sys/ioctl.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include "hal/base/chip_lock.h"
+#include "hal/base/time.h"
+#include "hal/serial/tty.h"
+
+#define BREAK_NS (5 * NS_PER_MS)
+#define WRITE_NS (2 * NS_PER_S)
+
+struct tty {
+	struct serial_port port;
+	int fd;
+};
+
+static struct tty *tty_of(struct serial_port *port)
+{
+	return (struct tty *)port;
+}
+
+/* What a device says that was pulled. */
+static int gone(int err)
+{
+	return err == EIO || err == ENXIO || err == ENODEV || err == EBADF ? -ENODEV : -err;
+}
+
+static speed_t code_of(unsigned baud)
+{
+	static const struct {
+		unsigned baud;
+		speed_t code;
+	} speeds[] = {{4800, B4800}, {9600, B9600}, {115200, B115200}};
+
+	for (size_t i = 0; i < sizeof(speeds) / sizeof(speeds[0]); i++)
+		if (speeds[i].baud == baud)
+			return speeds[i].code;
+	return B0;
+}
+
+static int tty_speed(struct serial_port *port, unsigned baud)
+{
+	struct termios set, is;
+	int fd = tty_of(port)->fd;
+
+	port->syscalls += 3;
+	if (tcgetattr(fd, &set))
+		return gone(errno);
+	cfmakeraw(&set);
+	set.c_cflag = (set.c_cflag & ~(tcflag_t)(CRTSCTS | CSTOPB | PARENB)) | CLOCAL | CREAD | CS8;
+	set.c_cc[VMIN] = 0;
+	set.c_cc[VTIME] = 0;
+	cfsetspeed(&set, code_of(baud));
+	if (tcsetattr(fd, TCSANOW, &set) || tcgetattr(fd, &is))
+		return errno == EINVAL ? -ENOTTY : gone(errno);
+	return cfgetospeed(&is) == code_of(baud) ? 0 : -ENOTTY;
+}
+
+static int tty_write(struct serial_port *port, const uint8_t *bytes, size_t n)
+{
+	const struct bus_env *env = port->env;
+	int64_t until_ns = bus_now(env) + WRITE_NS;
+
+	while (n) {
+		ssize_t sent = write(tty_of(port)->fd, bytes, n);
+
+		port->syscalls++;
+		if (sent > 0) {
+			port->bytes += (size_t)sent;
+			bytes += sent;
+			n -= (size_t)sent;
+			continue;
+		}
+		if (sent < 0 && errno != EAGAIN && errno != EINTR)
+			return gone(errno);
+		int ready = env->wait(env->ctx, tty_of(port)->fd, POLLOUT, until_ns);
+		if (ready <= 0)
+			return ready < 0 ? -ECANCELED : -ETIMEDOUT;
+	}
+	return 0;
+}
+
+/* A port that was pulled is ready at once, and has nothing. */
+static int tty_read(struct serial_port *port, uint8_t *bytes, size_t n, int64_t until_ns)
+{
+	const struct bus_env *env = port->env;
+
+	for (;;) {
+		int ready = env->wait(env->ctx, tty_of(port)->fd, POLLIN, until_ns);
+
+		if (ready <= 0)
+			return ready;
+		port->syscalls++;
+		ssize_t came = read(tty_of(port)->fd, bytes, n);
+
+		if (came > 0) {
+			port->bytes += (size_t)came;
+			return (int)came;
+		}
+		if (came == 0)
+			return -ENODEV;
+		if (errno != EAGAIN && errno != EINTR)
+			return gone(errno);
+	}
+}
+
+static void tty_break(struct serial_port *port)
+{
+	const struct bus_env *env = port->env;
+
+	if (ioctl(tty_of(port)->fd, TIOCSBRK) < 0)
+		return;
+	(void)env->wait(env->ctx, -1, 0, bus_now(env) + BREAK_NS);
+	(void)ioctl(tty_of(port)->fd, TIOCCBRK);
+}
+
+static void tty_close(struct serial_port *port)
+{
+	int fd = tty_of(port)->fd;
+
+	(void)ioctl(fd, TIOCNXCL);
+	chip_unlock(fd, 0);
+	(void)close(fd);
+	free(port);
+}
+
+static const struct serial_port_ops tty_ops = {
+	.speed = tty_speed,
+	.write = tty_write,
+	.read = tty_read,
+	.send_break = tty_break,
+	.close = tty_close,
+};
+
+/* FTDI's driver gathers answers for 16 ms, unless it is asked not to. Others may refuse. */
+static void ask_low_latency(int fd)
+{
+	struct serial_struct serial;
+
+	if (ioctl(fd, TIOCGSERIAL, &serial) < 0)
+		return;
+	serial.flags |= ASYNC_LOW_LATENCY;
+	(void)ioctl(fd, TIOCSSERIAL, &serial);
+}
+
+int tty_open(const char *path, const struct bus_env *env, struct serial_port **port, int *holder)
+{
+	struct tty *tty = calloc(1, sizeof(*tty));
+	int err = 0;
+
+	if (!tty)
+		return -ENOMEM;
+	*holder = 0;
+	tty->port = (struct serial_port){.ops = &tty_ops, .env = env};
+	tty->fd = open(path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+	if (tty->fd < 0)
+		err = -errno;
+	else if (!isatty(tty->fd))
+		err = -ENOTTY;
+	else
+		err = chip_lock(tty->fd, 0, holder);
+	if (err) {
+		if (tty->fd >= 0)
+			close(tty->fd);
+		free(tty);
+		return err;
+	}
+	(void)ioctl(tty->fd, TIOCEXCL);
+	ask_low_latency(tty->fd);
+	*port = &tty->port;
+	return 0;
+}

@@ -1,0 +1,355 @@
+/* SPDX-License-Identifier: MIT */
+/* The driver of the DS2480B on a simulated one: transactions, searches, pull-ups, recovery. */
+#include <errno.h>
+#include <string.h>
+
+#include "unity.h"
+
+#include "hal/serial/ds2480b.h"
+#include "hal/wire/search.h"
+#include "tests/unit/aid/parts.h"
+#include "tests/unit/aid/serial_scene.h"
+
+/* An E3 in an id is a command to the adapter, unless it is doubled. */
+static const char house[] = "chip DS2482-100 0x18\n"
+			    "DS18B20 28.0000000000E3 as t temperature 21.5\n"
+			    "DS18B20 28.0000000000A2 as u temperature 85 parasite\n"
+			    "DS2413 3A.0000000000E3 as s\n"
+			    "DS2401 01.000000000001\n";
+static const char nobody[] = "chip DS2482-100 0x18\n";
+
+void setUp(void)
+{
+	serial_begin();
+}
+
+void tearDown(void)
+{
+	/* whatever a test does, the adapter's one byte of buffer never overflows */
+	TEST_ASSERT_EQUAL_UINT64(0, serial.sim.overruns);
+	serial_end();
+}
+
+static void test_a_reading_is_one_write_and_takes_the_time_of_its_bytes(void)
+{
+	int64_t begun;
+
+	serial_start(SIM_DS2480B, &serial_ds2480b, house);
+	unsigned writes = serial.writes;
+	begun = serial.host.now;
+	serial_check("t");
+	TEST_ASSERT_EQUAL_UINT(writes + 1, serial.writes);
+	TEST_ASSERT_LESS_THAN_INT64(27 * HOST_MS, serial.host.now - begun);
+}
+
+static void test_bytes_that_are_commands_reach_the_wire_as_data(void)
+{
+	static const uint8_t bytes[] = {0xE1, 0xE3, 0xE3, 0xF1, 0xC5, 0xE3};
+	uint8_t out[10 + sizeof(bytes)] = {0x55}, back[9];
+	const struct link_part write = {.reset = true, .out = out, .out_n = 13};
+
+	serial_start(SIM_DS2480B, &serial_ds2480b, house);
+	memcpy(out + 1, sim_net_slave(&serial.net, "t")->rom, 8);
+	out[9] = 0x4E;
+	memcpy(out + 10, bytes, sizeof(bytes));
+	TEST_ASSERT_EQUAL_INT(0, serial.wire->ops->run(serial.wire, &write));
+	TEST_ASSERT_EQUAL_INT(0, serial_scratchpad("t", back));
+	TEST_ASSERT_EQUAL_HEX8(0xE1, back[2]);
+	TEST_ASSERT_EQUAL_HEX8(0xE3, back[3]);
+}
+
+static void test_a_long_transaction_goes_in_pieces(void)
+{
+	uint8_t out[150], in[150];
+	const struct link_part part = {
+		.reset = true, .out = out, .out_n = 150, .in = in, .in_n = 150};
+
+	serial_start(SIM_DS2480B, &serial_ds2480b, house);
+	memset(out, 0, sizeof(out));
+	TEST_ASSERT_EQUAL_INT(0, serial.wire->ops->run(serial.wire, &part));
+	for (unsigned i = 0; i < sizeof(in); i++)
+		TEST_ASSERT_EQUAL_HEX8(0xFF, in[i]);
+}
+
+static void test_a_short_and_nobody_are_told_apart(void)
+{
+	serial_start(SIM_DS2480B, &serial_ds2480b, house);
+	serial_event("short 0x18 for 10ms");
+	TEST_ASSERT_EQUAL_INT(-ECOMM, part_reset(serial.wire));
+	serial.host.now += 20 * HOST_MS;
+	TEST_ASSERT_EQUAL_INT(1, part_reset(serial.wire));
+	tearDown();
+	setUp();
+	serial_start(SIM_DS2480B, &serial_ds2480b, nobody);
+	TEST_ASSERT_EQUAL_INT(0, part_reset(serial.wire));
+}
+
+static unsigned found_by(bool alarm, uint8_t family)
+{
+	struct search search;
+	unsigned count = 0;
+
+	search_begin(&search, alarm, family);
+	for (int found = 1; found == 1 && count < 20; count += found == 1) {
+		found = search_next(&search, serial.wire);
+		TEST_ASSERT_GREATER_OR_EQUAL_INT(0, found);
+		if (found == 1)
+			TEST_ASSERT_TRUE(!family || search.rom[0] == family);
+	}
+	return count;
+}
+
+static void test_the_accelerator_finds_all_devices_of_a_family_of_an_alarm_or_none(void)
+{
+	serial_start(SIM_DS2480B, &serial_ds2480b, house);
+	TEST_ASSERT_EQUAL_UINT(4, found_by(false, 0));
+	TEST_ASSERT_EQUAL_UINT(2, found_by(false, 0x28));
+	TEST_ASSERT_EQUAL_UINT(1, found_by(false, 0x3A));
+	TEST_ASSERT_EQUAL_UINT(0, found_by(false, 0x29));
+	TEST_ASSERT_EQUAL_UINT(0, found_by(true, 0));
+	serial_check("t");
+}
+
+static void test_a_search_for_one_id_says_whether_it_is_there_and_leaves_it_selected(void)
+{
+	static const uint8_t absent[8] = {0x28, 1, 2, 3, 4, 5, 6, 0x7b};
+	const uint8_t *rom;
+	uint8_t state = 0;
+
+	serial_start(SIM_DS2480B, &serial_ds2480b, house);
+	rom = sim_net_slave(&serial.net, "s")->rom;
+	TEST_ASSERT_EQUAL_INT(1, search_verify(serial.wire, rom, false));
+	state = 0xF5; /* PIO access read */
+	TEST_ASSERT_EQUAL_INT(0, part_write(serial.wire, &state, 1, LINK_IDLE));
+	TEST_ASSERT_EQUAL_INT(0, part_read(serial.wire, &state, 1));
+	TEST_ASSERT_EQUAL_HEX8(0x0F, (state & 0x0F) ^ (state >> 4 & 0x0F));
+	TEST_ASSERT_EQUAL_INT(0, search_verify(serial.wire, absent, false));
+	TEST_ASSERT_EQUAL_INT(0, search_verify(serial.wire, rom, true));
+}
+
+static void test_a_path_that_breaks_off_turns_the_accelerator_off_and_says_how_far_it_came(void)
+{
+	uint8_t command = ONEWIRE_SEARCH;
+	struct link_path path = {0};
+	const struct link_part part = {.reset = true, .out = &command, .out_n = 1, .path = &path};
+
+	serial_start(SIM_DS2480B, &serial_ds2480b, house);
+	for (unsigned i = 0; i < 4; i++) {
+		const struct sim_event pull = {.what = SIM_PLUG,
+		                               .slave = serial.net.chip[0].wire[0].slaves[i],
+		                               .at_ns = serial.net.time + 10 * HOST_MS};
+
+		TEST_ASSERT_EQUAL_INT(0, sim_net_add_event(&serial.net, &pull));
+	}
+	TEST_ASSERT_EQUAL_INT(0, serial.wire->ops->run(serial.wire, &part));
+	TEST_ASSERT_LESS_THAN_UINT(64, path.answered);
+	TEST_ASSERT_FALSE(serial.sim.search);
+	TEST_ASSERT_EQUAL_INT(0, part_reset(serial.wire));
+}
+
+static void test_the_strong_pull_up_lasts_until_the_next_call(void)
+{
+	uint8_t out[10] = {0x55}, in[9];
+	const struct link_part part = {
+		.reset = true, .out = out, .out_n = 10, .after = LINK_STRONG};
+
+	serial_start(SIM_DS2480B, &serial_ds2480b, house);
+	memcpy(out + 1, sim_net_slave(&serial.net, "u")->rom, 8);
+	out[9] = 0x44;
+	TEST_ASSERT_EQUAL_INT(0, serial.wire->ops->run(serial.wire, &part));
+	TEST_ASSERT_TRUE(serial.net.chip[0].wire[0].strong);
+	serial.host.now += 800 * HOST_MS;
+	TEST_ASSERT_EQUAL_INT(0, serial_scratchpad("u", in));
+	TEST_ASSERT_FALSE(serial.net.chip[0].wire[0].strong);
+	TEST_ASSERT_EQUAL_UINT64(1, sim_net_slave(&serial.net, "u")->conversions);
+	TEST_ASSERT_EQUAL_UINT64(1, sim_net_slave(&serial.net, "u")->power_ons);
+}
+
+static void test_a_slot_is_read_and_may_be_followed_by_the_strong_pull_up(void)
+{
+	serial_start(SIM_DS2480B, &serial_ds2480b, house);
+	TEST_ASSERT_EQUAL_INT(1, part_reset(serial.wire));
+	TEST_ASSERT_EQUAL_INT(1, link_slot(serial.wire, true, LINK_IDLE));
+	TEST_ASSERT_EQUAL_INT(0, link_slot(serial.wire, false, LINK_STRONG));
+	TEST_ASSERT_TRUE(serial.net.chip[0].wire[0].strong);
+	TEST_ASSERT_EQUAL_INT(1, link_slot(serial.wire, true, LINK_IDLE));
+	TEST_ASSERT_FALSE(serial.net.chip[0].wire[0].strong);
+}
+
+static void test_an_adapter_in_any_state_is_taken(void)
+{
+	static const struct {
+		uint8_t bytes[4];
+		unsigned n, baud;
+	} before[] = {{{0xE1}, 1, 9600},       {{0xE1, 0xE3}, 2, 9600}, {{0xB1, 0xE1}, 2, 9600},
+	              {{0x3F, 0x93}, 2, 9600}, {{0x77}, 1, 9600},       {{0x77, 0xE1}, 1, 9600}};
+
+	for (unsigned deaf = 0; deaf < 2; deaf++) {
+		for (size_t i = 0; i < sizeof(before) / sizeof(before[0]); i++) {
+			serial_make(SIM_DS2480B, &serial_ds2480b, house);
+			serial.deaf_to_break = deaf;
+			for (unsigned k = 0; k < before[i].n; k++)
+				sim_serial_send(&serial.sim, before[i].bytes[k], before[i].baud,
+				                serial.host.now);
+			serial.host.now += HOST_S / 10;
+			TEST_ASSERT_EQUAL_INT_MESSAGE(0, serial_try(), serial.why);
+			serial_check("t");
+			tearDown();
+			setUp();
+		}
+	}
+}
+
+static void test_what_answers_in_place_of_a_ds2480b_is_named(void)
+{
+	serial_make(SIM_DS2480B, &serial_ds2480b, house);
+	serial.sim.silent = true;
+	TEST_ASSERT_EQUAL_INT(-ENXIO, serial_try());
+	TEST_ASSERT_NOT_NULL(strstr(serial.why, "nothing answers on port"));
+	serial.sim.silent = false;
+	TEST_ASSERT_EQUAL_INT(0, serial_try());
+	tearDown();
+	setUp();
+	serial_make(SIM_PASSIVE, &serial_ds2480b, house);
+	TEST_ASSERT_EQUAL_INT(-ENXIO, serial_try());
+	TEST_ASSERT_NOT_NULL(strstr(serial.why, "its target is uart:port"));
+	TEST_ASSERT_EQUAL_UINT(0, serial.master->ops->channels(serial.master));
+}
+
+/* A turned bit of the adapter's answers never becomes a value that the checksum does not know. */
+static void test_after_an_answer_that_is_wrong_or_missing_the_next_transaction_is_right(void)
+{
+	serial_start(SIM_DS2480B, &serial_ds2480b, house);
+	for (unsigned turned = 1; turned <= 20; turned++) {
+		uint8_t scratchpad[9];
+
+		serial.sim.answered = 0;
+		serial.sim.noise_each = turned;
+		int err = serial_scratchpad("t", scratchpad);
+		serial.sim.noise_each = 0;
+		/* the answer to the reset, and the ten bytes that are written, are checked */
+		TEST_ASSERT_EQUAL_INT(turned <= 11 ? -EIO : 0, err == -EHOSTDOWN ? -EIO : err);
+		serial_check("t");
+	}
+}
+
+static void test_a_silent_adapter_is_an_error_in_time_and_serves_when_it_is_back(void)
+{
+	uint8_t scratchpad[9];
+	int64_t begun;
+
+	serial_start(SIM_DS2480B, &serial_ds2480b, house);
+	serial.sim.silent = true;
+	begun = serial.host.now;
+	TEST_ASSERT_EQUAL_INT(-ETIMEDOUT, serial_scratchpad("t", scratchpad));
+	TEST_ASSERT_EQUAL_INT(-ETIMEDOUT, serial.wire->ops->recover(serial.wire, LINK_BUS_RESET));
+	TEST_ASSERT_EQUAL_INT(-ENXIO, serial.wire->ops->recover(serial.wire, LINK_CHIP_RESET));
+	TEST_ASSERT_EQUAL_INT(-EOPNOTSUPP,
+	                      serial.wire->ops->recover(serial.wire, LINK_POWER_CYCLE));
+	TEST_ASSERT_LESS_THAN_INT64(2 * HOST_S, serial.host.now - begun);
+	serial.sim.silent = false;
+	TEST_ASSERT_EQUAL_INT(0, serial.wire->ops->recover(serial.wire, LINK_BUS_RESET));
+	serial_check("t");
+}
+
+static void test_an_adapter_that_lost_its_supply_is_noticed_before_a_pull_up(void)
+{
+	uint8_t out[2] = {0xCC, 0x44};
+	const struct link_part part = {.reset = true, .out = out, .out_n = 2, .after = LINK_STRONG};
+
+	serial_start(SIM_DS2480B, &serial_ds2480b, house);
+	sim_serial_break(&serial.sim, serial.host.now);
+	serial_check("t");
+	TEST_ASSERT_EQUAL_INT(-ENXIO, serial.wire->ops->run(serial.wire, &part));
+	TEST_ASSERT_EQUAL_INT(0, serial.wire->ops->recover(serial.wire, LINK_CHIP_RESET));
+	TEST_ASSERT_EQUAL_INT(0, serial.wire->ops->run(serial.wire, &part));
+	serial_check("t");
+}
+
+/* A transaction with a strong pull-up, a reading, and a path of a search. */
+static int visit(void)
+{
+	uint8_t out = 0xCC, in[9];
+	const struct link_part part = {
+		.reset = true, .out = &out, .out_n = 1, .after = LINK_STRONG};
+	struct search search;
+	int err = serial.wire->ops->run(serial.wire, &part);
+
+	if (!err)
+		err = serial_scratchpad("t", in);
+	search_begin(&search, false, 0);
+	return err ? err : search_next(&search, serial.wire);
+}
+
+static void test_pulled_anywhere_the_adapter_is_gone_and_is_back_when_it_is_plugged_in(void)
+{
+	int err = -ENODEV;
+
+	serial_start(SIM_DS2480B, &serial_ds2480b, house);
+	for (unsigned n = 1; err; n++) {
+		serial.pull_at = serial.sim.bytes + n;
+		err = visit();
+		if (err == 1) {
+			TEST_ASSERT_GREATER_THAN_UINT(50, n);
+			break;
+		}
+		TEST_ASSERT_EQUAL_INT(-ENODEV, err);
+		serial.master->ops->close(serial.master);
+		TEST_ASSERT_EQUAL_INT(-ENODEV, part_reset(serial.wire));
+		TEST_ASSERT_EQUAL_INT(-ENODEV,
+		                      serial.wire->ops->recover(serial.wire, LINK_BUS_RESET));
+		serial.pulled = false;
+		serial.pull_at = 0;
+		TEST_ASSERT_EQUAL_INT_MESSAGE(0, serial_try(), serial.why);
+		serial_check("t");
+	}
+}
+
+static void test_a_shutdown_ends_every_wait(void)
+{
+	uint8_t in[9];
+
+	serial_start(SIM_DS2480B, &serial_ds2480b, house);
+	serial.host.shutdown = true;
+	TEST_ASSERT_EQUAL_INT(-ECANCELED, serial_scratchpad("t", in));
+	TEST_ASSERT_EQUAL_INT(-ECANCELED, serial_try());
+}
+
+static void test_what_a_transaction_costs_is_counted(void)
+{
+	struct link_cost before, after;
+	struct link_master_cost shared;
+
+	serial_start(SIM_DS2480B, &serial_ds2480b, house);
+	serial.wire->ops->cost(serial.wire, &before);
+	serial_check("t");
+	serial.wire->ops->cost(serial.wire, &after);
+	TEST_ASSERT_EQUAL_UINT64(1, after.resets - before.resets);
+	TEST_ASSERT_EQUAL_UINT64(1096000 + 19 * 8 * 69400, after.wire_ns - before.wire_ns);
+	serial.master->ops->cost(serial.master, &shared);
+	TEST_ASSERT_GREATER_THAN_UINT64(20, shared.bytes);
+	TEST_ASSERT_GREATER_THAN_UINT64(0, shared.transfers);
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_a_reading_is_one_write_and_takes_the_time_of_its_bytes);
+	RUN_TEST(test_bytes_that_are_commands_reach_the_wire_as_data);
+	RUN_TEST(test_a_long_transaction_goes_in_pieces);
+	RUN_TEST(test_a_short_and_nobody_are_told_apart);
+	RUN_TEST(test_the_accelerator_finds_all_devices_of_a_family_of_an_alarm_or_none);
+	RUN_TEST(test_a_search_for_one_id_says_whether_it_is_there_and_leaves_it_selected);
+	RUN_TEST(test_a_path_that_breaks_off_turns_the_accelerator_off_and_says_how_far_it_came);
+	RUN_TEST(test_the_strong_pull_up_lasts_until_the_next_call);
+	RUN_TEST(test_a_slot_is_read_and_may_be_followed_by_the_strong_pull_up);
+	RUN_TEST(test_an_adapter_in_any_state_is_taken);
+	RUN_TEST(test_what_answers_in_place_of_a_ds2480b_is_named);
+	RUN_TEST(test_after_an_answer_that_is_wrong_or_missing_the_next_transaction_is_right);
+	RUN_TEST(test_a_silent_adapter_is_an_error_in_time_and_serves_when_it_is_back);
+	RUN_TEST(test_an_adapter_that_lost_its_supply_is_noticed_before_a_pull_up);
+	RUN_TEST(test_pulled_anywhere_the_adapter_is_gone_and_is_back_when_it_is_plugged_in);
+	RUN_TEST(test_a_shutdown_ends_every_wait);
+	RUN_TEST(test_what_a_transaction_costs_is_counted);
+	return UNITY_END();
+}

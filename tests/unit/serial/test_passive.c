@@ -1,0 +1,154 @@
+/* SPDX-License-Identifier: MIT */
+/* The driver of a passive serial adapter on a simulated one. */
+#include <errno.h>
+#include <string.h>
+
+#include "unity.h"
+
+#include "hal/serial/passive.h"
+#include "hal/wire/search.h"
+#include "tests/unit/aid/parts.h"
+#include "tests/unit/aid/serial_scene.h"
+
+static const char house[] = "chip DS2482-100 0x18\n"
+			    "DS18B20 28.0000000000E3 as t temperature 21.5\n"
+			    "DS2413 3A.0000000000E3 as s\n";
+
+void setUp(void)
+{
+	serial_begin();
+}
+
+void tearDown(void)
+{
+	serial_end();
+}
+
+static void test_a_reading_is_a_reset_and_slots(void)
+{
+	struct link_cost before, after;
+
+	serial_start(SIM_PASSIVE, &serial_passive, house);
+	serial.wire->ops->cost(serial.wire, &before);
+	serial_check("t");
+	serial.wire->ops->cost(serial.wire, &after);
+	TEST_ASSERT_EQUAL_UINT64(1, after.resets - before.resets);
+	TEST_ASSERT_EQUAL_UINT64(1041667 + 19 * 8 * 86806, after.wire_ns - before.wire_ns);
+}
+
+static void test_a_short_and_nobody_are_told_apart(void)
+{
+	serial_start(SIM_PASSIVE, &serial_passive, house);
+	serial_event("short 0x18 for 10ms");
+	TEST_ASSERT_EQUAL_INT(-ECOMM, part_reset(serial.wire));
+	serial.host.now += 20 * HOST_MS;
+	TEST_ASSERT_EQUAL_INT(1, part_reset(serial.wire));
+	serial_event("unplug t");
+	serial_event("unplug s");
+	TEST_ASSERT_EQUAL_INT(0, part_reset(serial.wire));
+}
+
+static void test_devices_are_found_slot_by_slot(void)
+{
+	struct search search;
+
+	serial_start(SIM_PASSIVE, &serial_passive, house);
+	search_begin(&search, false, 0);
+	TEST_ASSERT_EQUAL_INT(1, search_next(&search, serial.wire));
+	TEST_ASSERT_EQUAL_INT(1, search_next(&search, serial.wire));
+	TEST_ASSERT_EQUAL_INT(0, search_next(&search, serial.wire));
+}
+
+static void test_there_is_no_strong_pull_up(void)
+{
+	uint8_t byte = 0x44;
+	uint64_t sent;
+
+	serial_start(SIM_PASSIVE, &serial_passive, house);
+	TEST_ASSERT_FALSE(serial.wire->facts->strong);
+	sent = serial.sim.bytes;
+	TEST_ASSERT_EQUAL_INT(-EOPNOTSUPP, part_write(serial.wire, &byte, 1, LINK_STRONG));
+	TEST_ASSERT_EQUAL_INT(-EOPNOTSUPP, link_slot(serial.wire, true, LINK_STRONG));
+	TEST_ASSERT_EQUAL_UINT64(sent, serial.sim.bytes);
+	TEST_ASSERT_EQUAL_INT(-EOPNOTSUPP, serial.wire->ops->recover(serial.wire, LINK_CHIP_RESET));
+}
+
+static void test_what_is_there_in_place_of_a_passive_adapter_is_named(void)
+{
+	serial_make(SIM_DS2480B, &serial_passive, house);
+	TEST_ASSERT_EQUAL_INT(-ENXIO, serial_try());
+	TEST_ASSERT_NOT_NULL(strstr(serial.why, "is serial:port"));
+	tearDown();
+	setUp();
+	serial_make(SIM_PASSIVE, &serial_passive, house);
+	serial.sim.noise_each = 1;
+	serial.sim.answered = 8; /* the lowest bit of the next answer is turned */
+	serial.sim.noise_each = 3;
+	TEST_ASSERT_EQUAL_INT(-EIO, serial_try());
+	TEST_ASSERT_NOT_NULL(strstr(serial.why, "does not give back what is sent"));
+	serial.sim.noise_each = 0;
+	TEST_ASSERT_EQUAL_INT(0, serial_try());
+}
+
+static void test_a_byte_that_does_not_come_back_as_it_was_written_is_an_error(void)
+{
+	uint8_t scratchpad[9];
+	unsigned errors = 0;
+
+	serial_start(SIM_PASSIVE, &serial_passive, house);
+	for (unsigned i = 0; i < 80; i++) {
+		serial.sim.answered = 8 * 200 - 1 - i;
+		serial.sim.noise_each = 200;
+		errors += serial_scratchpad("t", scratchpad) == -EIO;
+		serial.sim.noise_each = 0;
+		serial_check("t");
+	}
+	TEST_ASSERT_EQUAL_UINT(80, errors);
+}
+
+static void test_pulled_anywhere_the_adapter_is_gone_and_is_back(void)
+{
+	uint8_t scratchpad[9];
+
+	serial_start(SIM_PASSIVE, &serial_passive, house);
+	for (unsigned n = 1; n < 150; n += 7) {
+		serial.pull_at = serial.sim.bytes + n;
+		TEST_ASSERT_EQUAL_INT(-ENODEV, serial_scratchpad("t", scratchpad));
+		serial.master->ops->close(serial.master);
+		TEST_ASSERT_EQUAL_INT(-ENODEV, part_reset(serial.wire));
+		serial.pulled = false;
+		serial.pull_at = 0;
+		TEST_ASSERT_EQUAL_INT_MESSAGE(0, serial_try(), serial.why);
+		serial_check("t");
+	}
+}
+
+static void test_silence_is_an_error_in_time(void)
+{
+	uint8_t scratchpad[9];
+	int64_t begun;
+
+	serial_start(SIM_PASSIVE, &serial_passive, house);
+	serial.sim.silent = true;
+	begun = serial.host.now;
+	TEST_ASSERT_EQUAL_INT(-ETIMEDOUT, serial_scratchpad("t", scratchpad));
+	TEST_ASSERT_EQUAL_INT(-ETIMEDOUT, serial.wire->ops->recover(serial.wire, LINK_BUS_RESET));
+	TEST_ASSERT_LESS_THAN_INT64(HOST_S, serial.host.now - begun);
+	serial.sim.silent = false;
+	TEST_ASSERT_EQUAL_INT(0, serial.wire->ops->recover(serial.wire, LINK_BUS_RESET));
+	serial_check("t");
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_a_reading_is_a_reset_and_slots);
+	RUN_TEST(test_a_short_and_nobody_are_told_apart);
+	RUN_TEST(test_devices_are_found_slot_by_slot);
+	RUN_TEST(test_there_is_no_strong_pull_up);
+	RUN_TEST(test_what_is_there_in_place_of_a_passive_adapter_is_named);
+	RUN_TEST(test_a_byte_that_does_not_come_back_as_it_was_written_is_an_error);
+	RUN_TEST(test_pulled_anywhere_the_adapter_is_gone_and_is_back);
+	RUN_TEST(test_silence_is_an_error_in_time);
+	return UNITY_END();
+}
