@@ -9,7 +9,7 @@
 #include "hal/serial/master.h"
 
 /* What a USB adapter and a busy machine may add to the time of the line. */
-#define LATE_NS (250 * NS_PER_MS)
+#define LATE_NS (200 * NS_PER_MS)
 #define QUIET_NS (30 * NS_PER_MS) /* nothing comes for longer than a USB adapter gathers bytes */
 #define SETTLE_NS (200 * NS_PER_MS)
 

@@ -131,6 +131,42 @@ static int passive_slot(struct link *base, bool out, enum link_after after)
 	return back & 1;
 }
 
+static void set_bit(uint8_t bits[8], unsigned i, bool on)
+{
+	bits[i / 8] = (uint8_t)((bits[i / 8] & ~(1u << i % 8)) | (unsigned)on << i % 8);
+}
+
+/* The direction goes out with the two slots of the next bit: one exchange for each bit of an id. */
+static int passive_path(struct link *base, uint8_t rom[8], uint8_t conflict[8])
+{
+	struct serial_master *master = serial_of(base);
+	uint8_t line[3] = {ONE, ONE, ONE}, back[3] = {ONE};
+	int err = 0;
+
+	for (unsigned i = 0; !err && i <= 64; i++) {
+		unsigned first = i == 0, n = i == 0 ? 2 : i == 64 ? 1 : 3;
+		bool id, complement, taken;
+
+		err = pass(master, SLOT_BAUD, line + first, back + first, n);
+		if (!err && !line[0] && (back[0] & 1)) {
+			master->lost = true;
+			err = -EIO;
+		}
+		if (err || i == 64)
+			break;
+		id = back[1] & 1;
+		complement = back[2] & 1;
+		if (id && complement)
+			err = i == 0 ? -EHOSTDOWN : -EBADMSG;
+		taken = id == complement ? rom[i / 8] >> i % 8 & 1 : id;
+		set_bit(conflict, i, id == complement);
+		set_bit(rom, i, taken);
+		line[0] = taken ? ONE : ZERO;
+	}
+	master->cost.wire_ns += UINT64_C(192) * SLOT_NS;
+	return err;
+}
+
 static int passive_begin(struct serial_master *master, char *why, size_t why_size)
 {
 	int err;
@@ -178,6 +214,7 @@ static const struct link_ops passive_link = {
 	.recover = passive_recover,
 	.run = passive_run,
 	.slot = passive_slot,
+	.path = passive_path,
 	.cost = serial_cost,
 };
 

@@ -48,15 +48,24 @@ static void test_a_short_and_nobody_are_told_apart(void)
 	TEST_ASSERT_EQUAL_INT(0, part_reset(serial.wire));
 }
 
-static void test_devices_are_found_slot_by_slot(void)
+static void test_a_search_is_one_exchange_for_each_bit(void)
 {
 	struct search search;
+	unsigned writes;
 
 	serial_start(SIM_PASSIVE, &serial_passive, house);
 	search_begin(&search, false, 0);
+	writes = serial.writes;
 	TEST_ASSERT_EQUAL_INT(1, search_next(&search, serial.wire));
+	TEST_ASSERT_EQUAL_UINT(writes + 2 + 65, serial.writes);
 	TEST_ASSERT_EQUAL_INT(1, search_next(&search, serial.wire));
 	TEST_ASSERT_EQUAL_INT(0, search_next(&search, serial.wire));
+	search_begin(&search, true, 0);
+	TEST_ASSERT_EQUAL_INT(0, search_next(&search, serial.wire));
+	TEST_ASSERT_EQUAL_INT(
+		1, search_verify(serial.wire, sim_net_slave(&serial.net, "t")->rom, false));
+	TEST_ASSERT_EQUAL_INT(
+		0, search_verify(serial.wire, sim_net_slave(&serial.net, "t")->rom, true));
 }
 
 static void test_there_is_no_strong_pull_up(void)
@@ -144,7 +153,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_a_reading_is_a_reset_and_slots);
 	RUN_TEST(test_a_short_and_nobody_are_told_apart);
-	RUN_TEST(test_devices_are_found_slot_by_slot);
+	RUN_TEST(test_a_search_is_one_exchange_for_each_bit);
 	RUN_TEST(test_there_is_no_strong_pull_up);
 	RUN_TEST(test_what_is_there_in_place_of_a_passive_adapter_is_named);
 	RUN_TEST(test_a_byte_that_does_not_come_back_as_it_was_written_is_an_error);
