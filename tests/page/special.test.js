@@ -14,6 +14,8 @@ test("a counter is shown, and one without a value is not a number", () => {
 	assert.equal(of("_PerCount", "7").act, null);
 	assert.equal(of("_Age", null).text, "unknown");
 	assert.equal(of("_Something", "1").words, "");
+	assert.equal(of("_Age", "0.123456789").text, "0.12");
+	assert.equal(of("_Raw", "0.123456789").text, "0.123456789");
 });
 
 test("a flag that can be read is a switch, and one that cannot is a button", () => {

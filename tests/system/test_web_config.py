@@ -448,6 +448,10 @@ def test_a_file_is_begun_and_saved_without_an_owsd(scene):
     assert page.json("/api/config")["configurable"]
     web.stop()
     until(lambda: not socket_of_writer.exists(), 20, "the writer ends with owsd-web")
+    web = scene.start([owsdtest.BUILD / "owsd-web", "--edit", file, "-l", f"127.0.0.1:{port}"])
+    until(socket_of_writer.exists, 20, web.log)
+    web.process.kill()
+    until(lambda: not socket_of_writer.exists(), 20, "it ends with a killed one, too")
     refused = subprocess.run([owsdtest.BUILD / "owsd-web", "--edit", scene.path / "no" / "x.rio"],
                              capture_output=True, text=True, check=False)
     assert refused.returncode == 2 and "No such file" in refused.stderr, refused

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -19,7 +20,7 @@
 
 #define FILES 3
 
-/* What it reads, prints and says: files in memory, so that nothing has to be passed on, or NULL. */
+/* What it reads, prints and says: files in memory, so that nothing has to be passed on. */
 static int spawn(const struct child *child, const char *path, const int *files, pid_t *pid)
 {
 	posix_spawn_file_actions_t actions;
@@ -31,7 +32,7 @@ static int spawn(const struct child *child, const char *path, const int *files, 
 	sigemptyset(&usual);
 	sigaddset(&usual, SIGPIPE);
 	posix_spawn_file_actions_init(&actions);
-	for (int i = 0; files && i < FILES; i++)
+	for (int i = 0; i < FILES; i++)
 		posix_spawn_file_actions_adddup2(&actions, files[i], i);
 	posix_spawnattr_init(&attributes);
 	posix_spawnattr_setsigmask(&attributes, &none);
@@ -45,28 +46,41 @@ static int spawn(const struct child *child, const char *path, const int *files, 
 }
 
 /* In the folder of this program, as it is built and installed, else in bin beside that. */
-static int spawn_beside(const struct child *child, const int *files, pid_t *pid)
+static int find_beside(const char *name, char path[PATH_MAX])
 {
 	static const char *const folders[] = {"", "../bin/"};
-	char self[PATH_MAX / 2], path[PATH_MAX];
+	char self[PATH_MAX / 2];
 	ssize_t len = readlink("/proc/self/exe", self, sizeof(self) - 1);
-	int err = -ENOENT;
 
 	if (len < 0)
 		return -errno;
 	while (len && self[len - 1] != '/')
 		len--;
-	for (int i = 0; i < 2 && err == -ENOENT; i++) {
-		snprintf(path, sizeof(path), "%.*s%s%s", (int)len, self, folders[i],
-		         child->argv[0]);
-		err = spawn(child, path, files, pid);
+	for (int i = 0; i < 2; i++) {
+		snprintf(path, PATH_MAX, "%.*s%s%s", (int)len, self, folders[i], name);
+		if (access(path, X_OK) == 0)
+			return 0;
 	}
-	return err;
+	return -errno;
 }
 
 int child_start(const char *const *argv, pid_t *pid)
 {
-	return spawn_beside(&(struct child){.argv = argv}, NULL, pid);
+	pid_t parent = getpid();
+	char path[PATH_MAX];
+	int err = find_beside(argv[0], path);
+
+	if (err)
+		return err;
+	*pid = fork();
+	if (*pid < 0)
+		return -errno;
+	if (*pid)
+		return 0;
+	/* a parent that is killed tells its children nothing else */
+	if (prctl(PR_SET_PDEATHSIG, SIGTERM) == 0 && getppid() == parent)
+		execv(path, (char *const *)(uintptr_t)argv);
+	_exit(127);
 }
 
 static int make_files(const struct child *child, int files[FILES])
@@ -134,15 +148,17 @@ static void take_why(struct child *child, char *words)
 int child_run(struct child *child)
 {
 	int files[FILES], err = make_files(child, files);
+	char path[PATH_MAX], *words;
 	size_t words_len;
-	char *words;
 	pid_t pid = -1;
 
 	child->status = -1;
 	child->why[0] = '\0';
 	child->out = NULL;
 	if (!err)
-		err = spawn_beside(child, files, &pid);
+		err = find_beside(child->argv[0], path);
+	if (!err)
+		err = spawn(child, path, files, &pid);
 	if (!err)
 		err = await(child, pid);
 	if (!err) {

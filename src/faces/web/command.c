@@ -15,6 +15,7 @@
 #include "src/faces/web/guard.h"
 #include "src/faces/web/http.h"
 #include "src/faces/web/paths.h"
+#include "src/ground/signal/value.h"
 
 #define CONFIRM_NS NS_PER_S     /* so long a page waits for the bus */
 #define TAKEN_NS (2 * NS_PER_S) /* and for owsd */
@@ -28,6 +29,7 @@ struct order {
 	struct ows *h;
 	int id;
 	bool special; /* it is no value of a signal: no device confirms it */
+	bool readable;
 	struct ows_info info;
 };
 
@@ -103,6 +105,7 @@ static int find_special(struct order *order)
 	    ows_info(order->h, signal, &order->info))
 		return -ENOENT;
 	order->special = true;
+	order->readable = attribute_table[attribute].readable;
 	order->info.type = attribute_table[attribute].type;
 	order->info.min = order->info.max = NAN;
 	id = ows_find(order->h, body_string(&order->body, "name"));
@@ -135,6 +138,25 @@ static bool command_begin(struct order *order)
 	return !err;
 }
 
+/* owsd shows what it has taken of a special signal; what none shows is only sent. */
+static const char *special_result(struct order *order, const struct face_command *given)
+{
+	int64_t until_ns = ows_now() + TAKEN_NS;
+	enum ows_type type = (enum ows_type)order->info.type;
+	struct ows_value value = {0};
+	int64_t wanted = 0;
+	uint32_t news = 0;
+
+	if (!order->readable || value_parse(type, given->text, &wanted))
+		return "sent";
+	while (ows_get(order->h, order->id, ows_now(), &value) || value.integer != wanted) {
+		if (ows_now() >= until_ns)
+			return "pending";
+		ows_wait(order->h, &news, 50 * NS_PER_MS);
+	}
+	return "taken";
+}
+
 /* --- Values ---------------------------------------------------------------------------------- */
 
 static void run_set(struct job *job)
@@ -159,11 +181,11 @@ static void run_set(struct job *job)
 		}
 		if (err)
 			command_refuse(order, err);
+		else if (order->special)
+			command_answer(order, special_result(order, &given));
 		else
-			command_answer(order,
-			               order->special || (int32_t)(command.applied - stamp) >= 0
-			                       ? "taken"
-			                       : "pending");
+			command_answer(order, (int32_t)(command.applied - stamp) >= 0 ? "taken"
+			                                                              : "pending");
 	}
 	ows_close(order->h);
 }

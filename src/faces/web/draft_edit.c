@@ -174,7 +174,7 @@ static int draft_edit_run(struct rio **rio, const struct edit *edit, struct orde
 	return edit->run(rio, order, report);
 }
 
-int draft_edit(struct rio **rio, const struct body *body, struct config_report *report)
+static int edit_one(struct rio **rio, const struct body *body, struct config_report *report)
 {
 	struct order order = {.name = body_string(body, "name"), .body = body};
 	const char *what = body_string(body, "do"), *target = body_string(body, "target");
@@ -196,5 +196,37 @@ int draft_edit(struct rio **rio, const struct body *body, struct config_report *
 	err = draft_edit_run(rio, &edits[i], &order, report);
 	free(order.lines);
 	free(bus);
+	return err;
+}
+
+/* Edits in a row, each a JSON object in a line of its own. */
+static int edit_steps(struct rio **rio, char *line, struct config_report *report)
+{
+	struct body step;
+	int err = 0;
+
+	for (char *end; !err && line && *line; line = end) {
+		end = strchr(line, '\n');
+		err = body_parse(line, end ? (size_t)(end - line) : strlen(line), &step);
+		if (err)
+			return draft_edit_refuse(report, "expected \"steps\": edits as JSON "
+			                                 "objects, one in each line");
+		err = edit_one(rio, &step, report);
+		if (end)
+			end++;
+	}
+	return err;
+}
+
+int draft_edit(struct rio **rio, const struct body *body, struct config_report *report)
+{
+	char *steps;
+	int err;
+
+	if (strcmp(body_string(body, "do"), "steps") != 0)
+		return edit_one(rio, body, report);
+	steps = strdup(body_string(body, "steps"));
+	err = steps ? edit_steps(rio, steps, report) : -ENOMEM;
+	free(steps);
 	return err;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Trends and journals, on the worker for the past. */
 #include <errno.h>
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,15 +20,15 @@
 #define RINGS 512     /* entries that owsd keeps */
 #define NAME 256
 #define DAY_MS (86400 * 1000LL)
-#define HOUR_SIGNALS 200
-#define HOUR_POINTS 30 /* of two minutes, which come from sums */
+#define HOUR_SIGNALS 200 /* in one answer */
+#define HOUR_POINTS 30   /* of two minutes, which come from sums */
 
 struct past_job {
 	struct job job;
 	char instance[128], directory[DIRECTORY], name[NAME];
 	char identity[2 * NAME]; /* of the signal that has the name now; else the name */
 	int64_t from_ns, until_ns;
-	int n;
+	int n, first;
 };
 
 static bool place(const char *instance, const struct config *config, char path[DIRECTORY])
@@ -301,6 +302,7 @@ static void put_hour(struct past_job *past, struct ows *ows, struct ows_history 
 	struct ows_history_signal signal;
 	struct ows_info info;
 	struct json json;
+	int i;
 
 	if (!json_start(&json, &past->job.text, &past->job.len))
 		return;
@@ -308,7 +310,7 @@ static void put_hour(struct past_job *past, struct ows *ows, struct ows_history 
 	json_int(&json, "from", past->from_ns / NS_PER_MS);
 	json_int(&json, "step", (past->until_ns - past->from_ns) / HOUR_POINTS / NS_PER_MS);
 	json_object(&json, "signals");
-	for (int i = 0; i < HOUR_SIGNALS && !ows_info(ows, i, &info); i++) {
+	for (i = past->first; i < past->first + HOUR_SIGNALS && !ows_info(ows, i, &info); i++) {
 		snprintf(past->name, sizeof(past->name), "%s", info.name);
 		snprintf(past->identity, sizeof(past->identity), "%s", info.identity);
 		if (read_points(past, h, &signal, points) != HOUR_POINTS)
@@ -318,6 +320,10 @@ static void put_hour(struct past_job *past, struct ows *ows, struct ows_history 
 		json_object_end(&json);
 	}
 	json_object_end(&json);
+	if (i < ows_count(ows))
+		json_int(&json, "next", i);
+	else
+		json_null(&json, "next");
 	json_finish(&json);
 }
 
@@ -339,9 +345,15 @@ static void run_hour(struct job *job)
 
 int past_hour(struct request *request)
 {
-	struct past_job *past = make(request, run_hour);
+	struct past_job *past;
+	long long first = 0;
 
+	if (!number(request, "first", 0, INT_MAX - HOUR_SIGNALS, &first))
+		return http_error(request, 400,
+		                  "first=: expected the \"next\" of the answer before");
+	past = make(request, run_hour);
 	if (past) {
+		past->first = (int)first;
 		past->until_ns = when_now().wall;
 		past->from_ns = past->until_ns - 3600 * NS_PER_S;
 		past->n = HOUR_POINTS;

@@ -136,6 +136,23 @@ static void test_a_hundred_thousand_keys_take_the_steps_of_a_sort(void)
 	has("\"k1869f\":\"1\"");
 }
 
+static void test_edits_in_a_row_stand_in_lines_and_the_first_that_is_refused_ends_them(void)
+{
+	parse(house);
+	TEST_ASSERT_EQUAL_INT(
+		0, edit("{\"do\":\"steps\",\"steps\":\"{\\\"do\\\":\\\"set\\\",\\\"name\\\":"
+	                "\\\"b\\\",\\\"keys\\\":\\\"Unit=K\\\"}\\n{\\\"do\\\":\\\"remove\\\","
+	                "\\\"name\\\":\\\"a\\\\\\\"\\\"}\"}"));
+	TEST_ASSERT_NOT_NULL(strstr(rio->text, "Unit"));
+	TEST_ASSERT_NULL(strstr(rio->text, "28551ddf030000"));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, edit("{\"do\":\"steps\",\"steps\":\"no\"}"));
+	TEST_ASSERT_EQUAL_INT(-EINVAL,
+	                      edit("{\"do\":\"steps\",\"steps\":\"{\\\"do\\\":\\\"remove\\\","
+	                           "\\\"name\\\":\\\"c\\\"}\\n{\\\"do\\\":\\\"remove\\\","
+	                           "\\\"name\\\":\\\"b\\\"}\"}"));
+	TEST_ASSERT_NOT_NULL(strstr(rio->text, "Name b"));
+}
+
 static void test_settings_stand_in_lines(void)
 {
 	parse(house);
@@ -190,6 +207,7 @@ int main(void)
 	RUN_TEST(test_a_text_without_a_driver_has_an_empty_model);
 	RUN_TEST(test_of_a_key_that_stands_twice_the_first_counts);
 	RUN_TEST(test_a_hundred_thousand_keys_take_the_steps_of_a_sort);
+	RUN_TEST(test_edits_in_a_row_stand_in_lines_and_the_first_that_is_refused_ends_them);
 	RUN_TEST(test_settings_stand_in_lines);
 	RUN_TEST(test_too_many_settings_are_refused);
 	RUN_TEST(test_a_problem_knows_what_stands_at_its_place);

@@ -114,12 +114,9 @@ class Draft extends EventTarget {
 	/** Do these edits as one step; throws why they are refused, and then nothing is changed. */
 	edit(...steps) {
 		return this.#queue(async () => {
-			let answer = null, text = this.text;
-			for (const step of steps) {
-				answer = await post("config/draft", {...step, text});
-				({text} = answer);
-			}
-			this.#step(answer);
+			const step = steps.length === 1 ? steps[0]
+				: {do: "steps", steps: steps.map((one) => JSON.stringify(one)).join("\n")};
+			this.#step(await post("config/draft", {...step, text: this.text}));
 		});
 	}
 

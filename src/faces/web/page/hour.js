@@ -34,8 +34,11 @@ export function precede(recent, {min, max, last, quality}, from, step) {
 export async function begin() {
 	if (!store.info?.history)
 		return;
-	const {from, step, signals} = await get("hour");
-	for (const signal of store.signals)
-		if (Object.hasOwn(signals, signal.name))
-			precede(signal.recent, signals[signal.name], from, step);
+	for (let first = 0; first !== null;) {
+		const {from, step, signals, next} = await get("hour", {first});
+		for (const signal of store.signals)
+			if (Object.hasOwn(signals, signal.name))
+				precede(signal.recent, signals[signal.name], from, step);
+		first = next ?? null;
+	}
 }

@@ -211,7 +211,8 @@ function paintEditor() {
 
 function paintValue() {
 	const signal = store.find(state.selected);
-	special.show(store.unknown ? null : signal ?? null);
+	const {io, keys} = draft.item(state.selected) ?? {};
+	special.show(store.unknown ? null : signal ?? null, io === "output" || keys?.Writable === "on");
 	const now = signal ? store.value(signal) : null;
 	put(value, !signal ? "" : now === null ? qualityWords(store.quality(signal))
 		: withUnit(signal, valueText(signal, now)));

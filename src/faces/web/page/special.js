@@ -8,6 +8,7 @@ import {store} from "./store.js";
 
 const EVERY_MS = 2000;
 const WRITES = ["_WriteEnable", "_WriteOneShot"]; // what moves an output
+const SECONDS = ["_Age", "_AgeMax", "_Period"]; // a hundredth is enough
 const WORDS = {
 	_Age: "seconds since it was measured", _AgeMax: "the greatest age since the reset",
 	_PerFactor: "periods between two reads", _PerCount: "periods since the last update",
@@ -24,7 +25,8 @@ export function rowOf({name, value, flag, readable, writable}) {
 	const act = !writable ? null : readable ? "switch" : "button";
 	const on = Number(value) !== 0;
 	return {name, words: WORDS[name] ?? "", act, on, text: !readable ? ""
-		: value === null ? "unknown" : flag ? on ? "on" : "off" : value};
+		: value === null ? "unknown" : flag ? on ? "on" : "off"
+			: SECONDS.includes(name) ? String(Number(Number(value).toFixed(2))) : value};
 }
 
 export class Special {
@@ -40,8 +42,9 @@ export class Special {
 			el("summary", {}, "Watch by hand ", this.summary), this.list, this.fault);
 	}
 
-	/** signal: of the store; null: there is none, or it does not run. */
-	show(signal) {
+	/** signal: of the store; null: there is none, or it does not run. written: owsd can write it. */
+	show(signal, written) {
+		this.hidden = written ? [] : WRITES;
 		this.node.hidden = !signal;
 		if (signal?.name === this.#signal?.name)
 			return;
@@ -62,7 +65,8 @@ export class Special {
 				const {signals} = await get("special", {name: signal.name});
 				if (signal !== this.#signal)
 					return;
-				signals.map(rowOf).forEach((row) => this.#paint(row));
+				signals.filter(({name}) => !this.hidden.includes(name)).map(rowOf)
+					.forEach((row) => this.#paint(row));
 				put(this.fault, "");
 			} catch (error) {
 				put(this.fault, `They cannot be read now: ${error.message}.`);
@@ -95,9 +99,10 @@ export class Special {
 			`${signal.name}${name}?`, "Do it", [el("p", {}, `${WORDS[name]}.`)]))
 			return;
 		try {
-			await post("set", {name: `${signal.name}${name}`, value});
-			put(this.fault, "");
-			announce(`${name}: ${act === "button" ? "done" : value ? "on" : "off"}`);
+			const {result} = await post("set", {name: `${signal.name}${name}`, value});
+			put(this.fault, result === "pending" ? `${name}: owsd has not taken it yet.` : "");
+			announce(`${name}: ${result === "pending" ? "not taken yet" : act === "button" ? "sent"
+				: value ? "on" : "off"}`);
 		} catch (error) {
 			put(this.fault, `${name}: ${error.message}`);
 		}
