@@ -32,8 +32,18 @@ test("a window is understood as people say it", () => {
 
 test("what is no window is refused", () => {
 	for (const text of ["", "soon", "25:00", "12:60", "30 Feb", "2026-13-01", "yesterday - ",
-		"18:00 to soon", "2026-11-08 to 2026-11-01"])
+		"18:00 to soon"])
 		assert.equal(windowOf(text, NOW, HOUR), null, text);
+});
+
+test("an end before the begin is the last night, or not turned round", () => {
+	for (const [text, from, until] of [["22:00 - 6:00", at(27, 22), at(28, 6)],
+		["19:00 to 18:00", at(28, 19), at(28, 18)], ["10:24 - 10:20", at(28, 10, 24), at(28, 10, 20)],
+		["Fri 10:24 - 10:20", at(27, 10, 24), at(27, 10, 20)],
+		["23:00 - now", at(28, 23), NOW],
+		["2026-11-08 to 2026-11-01", at(8, 0), at(2, 0)]])
+		assert.deepEqual(windowOf(text, NOW, HOUR), [from, until], text);
+	assert.deepEqual(windowOf("23:00 - now", at(28, 9), HOUR), [at(27, 23), at(28, 9)]);
 });
 
 test("a window is written with as much of its dates as it needs, and can be read again", () => {

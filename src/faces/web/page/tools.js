@@ -19,7 +19,7 @@ export class Tools {
 		this.spans = SPANS.map(([seconds, text]) => button(text, () => act.span(seconds * 1000),
 			{"data-span": seconds * 1000}));
 		this.field = el("input", {type: "text", class: "times", autocomplete: "off",
-			spellcheck: "false", "aria-label": "Window of time; for example: yesterday 18:00",
+			spellcheck: "false", "aria-describedby": "trend-told", "aria-label": "Window of time; for example: yesterday 18:00",
 			onchange: () => this.#typed(), onfocus: () => this.field.select(),
 			onblur: () => this.draw(this.state), onkeydown: (event) => this.#key(event)});
 		this.date = el("input", {type: "datetime-local", class: "date", tabindex: -1,
@@ -58,14 +58,16 @@ export class Tools {
 
 	#typed() {
 		const {value} = this.field, wanted = windowOf(value, store.now(), this.state.span);
-		const past = wanted && wanted[0] < store.now();
+		const turned = wanted && wanted[1] <= wanted[0];
+		const past = wanted && !turned && wanted[0] < store.now();
 		this.field.setAttribute("aria-invalid", String(!past));
 		if (past) {
 			this.field.blur();
 			this.act.go(wanted);
 			return;
 		}
-		this.act.fault(`\u201c${value}\u201d is no time that was. Type \u201cyesterday 18:00\u201d, `
+		this.act.fault(turned ? `\u201c${value}\u201d ends before it begins.`
+			: `\u201c${value}\u201d is no time that was. Type \u201cyesterday 18:00\u201d, `
 			+ "\u201cFri 18:00 \u2013 Sat 8:00\u201d or \u201c12 Nov\u201d.");
 	}
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The view Trends: the signals that the user picks, in a window of time that is moved by buttons, by
 // dragging, by the wheel or by keys, and that follows the present until it is.
-import {get} from "./api.js";
 import {saveTable} from "./csv.js";
 import {el, later, put} from "./dom.js";
+import {Entries} from "./entries.js";
 import {alarmsOf} from "./marks.js";
 import {Picker} from "./picker.js";
 import {continued, heldAt, pastOf} from "./series.js";
@@ -21,13 +21,14 @@ const BEFORE_MS = 86400000, ENTRIES = 1000; // of the journal, for alarms that b
 // of days before is drawn, too
 const state = {picked: [], span: 600000, until: null, given: false, beside: false};
 const LIBRARY = "dygraph.min.js"; // comes when it is needed: it is as large as all else
+const journal = new Entries();
 let shown = false, ready = false, picker, stack, hint, told, absent, tools, before = [];
 let pasts = new Map(), olds = new Map(), entries = [], asked = 0, cursor = null;
 let resting = 0; // a timer: the window has not moved for a while
 
 export function build(root) {
 	hint = el("p", {class: "hint", role: "status"});
-	told = el("p", {class: "hint", role: "status"});
+	told = el("p", {class: "hint", role: "status", id: "trend-told"});
 	absent = el("p", {class: "note", role: "status", hidden: true});
 	picker = new Picker({add, remove: (name) => pick(state.picked.filter((one) => one !== name)),
 		has: (name) => state.given && state.picked.includes(name)});
@@ -197,7 +198,6 @@ function zoom(factor) {
 	move(state.until === null ? null : middle + state.span / 2);
 }
 
-
 // --- Plots ----------------------------------------------------------------------------------
 
 /** A plot for each unit; those that are on or off are below. */
@@ -228,12 +228,12 @@ async function fetchAll() {
 	try {
 		const all = (start, end) => Promise.all(picked().map((signal) =>
 			pastOf(signal, start, end, points)));
-		const [journal, now, old] = await Promise.all([
-			get("journal", {since: Math.round(from - BEFORE_MS), n: ENTRIES}), all(from, until),
+		const [happened, now, old] = await Promise.all([
+			journal.from(from - BEFORE_MS, ENTRIES), all(from, until),
 			state.beside ? all(daysLater(from, -days()), daysLater(until, -days())) : []]);
 		if (mine !== asked)
 			return;
-		entries = journal.entries ?? [];
+		entries = happened;
 		pasts = new Map(now.map((past) => [past.name, past]));
 		olds = new Map(old.map((past) => [past.name, {...past, x: past.x.map((time) =>
 			daysLater(time, days()))}]));

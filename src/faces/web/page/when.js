@@ -7,6 +7,7 @@ const DAYS = ["sun", "mon", "tue", "wed", "thu", "fri", "sat"];
 const MONTHS = ["jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec"];
 const NIGHT = [18, 8]; // begins and ends at these hours
 const DAY_MS = 86400000, WEEK_MS = 7 * DAY_MS;
+const NIGHT_MS = 18 * 3600000; // longer nobody means by "22:00 - 6:00"
 
 const same = (a, b) => new Date(a).toDateString() === new Date(b).toDateString();
 /** So many days later, at the same time of the day. */
@@ -71,13 +72,14 @@ function momentOf(text, now, day) {
 	const [hour, minute, second] = clock.slice(1).map((one) => Number(one ?? 0));
 	if (hour > 24 || minute > 59 || second > 59)
 		return null;
-	return {time: new Date(start).setHours(hour, minute, second), whole: false};
+	return {time: new Date(start).setHours(hour, minute, second), whole: false, bare: !wanted};
 }
 
 /**
  * The window that a text names, as [from, until]: "yesterday", "yesterday 18:00", "Fri 18:00 - Sat
- * 6:00", "last night". A moment alone is its begin; it is so long then (ms), a day whole. null: no
- * window.
+ * 6:00", "last night". A moment alone is its begin; it is so long then (ms), a day whole. Two times
+ * of which the second is before the first are of a night, the last one. null: no window. An end that
+ * is not after the begin is left to the caller.
  */
 export function windowOf(text, now, span) {
 	const plain = text.toLowerCase().replace(/\s+/g, " ").trim();
@@ -92,10 +94,13 @@ export function windowOf(text, now, span) {
 	const until = momentOf(second, now, midnight(from.time));
 	if (!until)
 		return null;
-	let end = until.whole ? daysLater(until.time, 1) : until.time;
-	if (end <= from.time && !until.whole)
-		end = daysLater(end, end + DAY_MS > from.time ? 1 : 7); // past midnight; a day of the week
-	return end > from.time ? [from.time, end] : null;
+	const end = until.whole ? daysLater(until.time, 1) : until.time;
+	if (end > from.time || until.whole)
+		return [from.time, end];
+	const night = from.bare ? [daysLater(from.time, -1), end]
+		: [from.time, daysLater(end, end + DAY_MS > from.time ? 1 : 7)]; // 7: a day of the week
+	const short = night[1] - night[0] <= NIGHT_MS || !until.bare && second !== "now";
+	return short ? night : [from.time, end];
 }
 
 /** With what a window is compared, in days before, and the words for it. */
