@@ -259,6 +259,11 @@ def test_items_are_added_renamed_moved_and_removed_and_all_is_undone(scene):
     with dialog(scene) as (daemon, _, page):
         page.click("[data-action=add]")
         page.type("#add-name", "shed")
+        page.type("#add-path", "nowhere")
+        page.click("dialog button.primary")
+        page.find("dialog #add-path[aria-invalid=true]")
+        shows(page, "#add-fault", "path")
+        page.run("document.querySelector('#add-path').value = ''")
         page.type("#add-path", f"/{NEW}/temperature12")
         page.click("dialog button.primary")
         until(lambda: names(page) == ["room", "boiler", "attic", "shed"], 20, lambda: names(page))
@@ -376,6 +381,14 @@ def test_several_items_are_set_duplicated_and_removed_as_one_step(scene):
         page.press("tab")
         page.click("[data-action=set-key]")
         shows(page, "dialog", "1 of them not shown")
+        page.run("const k = document.querySelector('#set-key'); k.value = 'Unit';"
+                 "k.dispatchEvent(new Event('change'))")
+        page.run("const k = document.querySelector('#set-key'); k.value = 'LimitH';"
+                 "k.dispatchEvent(new Event('change'))")
+        page.run("document.querySelector('#set-value').value = 'warm'")
+        page.click("dialog button.primary")
+        page.find("dialog #set-value[aria-invalid=true]")
+        shows(page, "#set-fault", "LimitH")
         page.run("const k = document.querySelector('#set-key'); k.value = 'Unit';"
                  "k.dispatchEvent(new Event('change'))")
         page.type("#set-value", "K")

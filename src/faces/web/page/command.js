@@ -100,16 +100,16 @@ function buttonOf(signal, send) {
 
 const dialog = () => document.getElementById("command");
 
-/** Show the dialog with these nodes above its buttons; true: confirmed. */
+/** Show the dialog with these nodes above its buttons; true: confirmed, and ready() is. */
 export function ask(title, accept, nodes, ready = () => true) {
 	const box = dialog();
 	const yes = el("button", {type: "submit", class: "primary", value: "yes"}, accept);
 	const form = el("form", {method: "dialog"}, el("h2", {id: "command-title"}, title), ...nodes,
 		el("div", {class: "buttons"},
 			el("button", {type: "button", onclick: () => box.close("no")}, "Cancel"), yes));
-	form.addEventListener("submit", (event) => {
+	form.addEventListener("submit", async (event) => {
 		event.preventDefault();
-		if (ready())
+		if (await ready() && form.isConnected)
 			box.close("yes");
 	});
 	box.replaceChildren(form);

@@ -55,8 +55,8 @@ export function build(root) {
 		body.append(panel);
 	}
 	root.append(el("p", {class: "hint"}, "File ", file), why, fault, notice, taken,
-		el("div", {class: "tools draft-tools"}, ...Object.values(buttons), input, state), list,
-		body);
+		el("div", {class: "draft-bar"}, el("div", {class: "tools"}, ...Object.values(buttons), input,
+			state), list), body);
 	draft.addEventListener("change", paint);
 	draft.addEventListener("go", ({detail}) => open(detail));
 	window.addEventListener("beforeunload", (event) => draft.dirty && event.preventDefault());

@@ -26,7 +26,8 @@ export function fillDetail(row, star) {
 	const focused = detail.contains(document.activeElement) && document.activeElement.className;
 	detail.key_ = key;
 	detail.age_ = el("span", {}, row.age === null ? "" : `${span(row.age)} old`);
-	detail.replaceChildren(...words.filter(Boolean), el("p", {class: "facts-line"},
+	detail.replaceChildren(s.description ? el("p", {}, s.description) : "",
+		...words.filter(Boolean), el("p", {class: "facts-line"},
 		...[fact("Place", placeOf(s)), fact("Limits", limits), text && s.type !== "bool"
 			? fact(`Since ${since}`, text) : null, s.simulated ? el("span", {}, "Simulated") : null,
 		detail.age_].filter(Boolean)),

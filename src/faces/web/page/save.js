@@ -15,7 +15,7 @@ const WATCH_MS = 30000;
 const LINES = 1000; // of a difference that are shown
 const NAMED = 10;
 
-let problems, loss, lock, heading, difference, theirs, conflict, fault, result, back, running, buttons;
+let problems, loss, lock, sum, heading, difference, theirs, conflict, fault, result, back, running, buttons;
 let timer = 0, shown = false, clean = true, quiet = false;
 
 export function build(root) {
@@ -36,6 +36,7 @@ export function build(root) {
 	problems = el("div", {});
 	loss = el("p", {class: "note", id: "save-loss"});
 	lock = el("p", {class: "note is-bad", id: "save-lock", hidden: true});
+	sum = el("p", {class: "count", id: "save-sum"});
 	heading = el("h2", {});
 	difference = el("div", {});
 	theirs = el("div", {hidden: true});
@@ -49,9 +50,9 @@ export function build(root) {
 			+ "before you choose. Take the file as it is, and your draft is dropped (undo brings it "
 			+ "back). Or put your changes on top of it, and look at the difference."),
 		el("div", {class: "tools"}, buttons.look, buttons.drop, buttons.top), theirs);
-	root.append(conflict, el("h2", {}, "Problems"), problems, lock, loss,
-		heading, difference, running, back,
-	el("div", {class: "bar"}, fault, result, el("div", {class: "tools"}, buttons.save,
+	root.append(conflict, el("h2", {}, "Problems"), problems, heading,
+		difference, running, back,
+	el("div", {class: "bar"}, sum, lock, loss, fault, result, el("div", {class: "tools"}, buttons.save,
 		buttons.restore)));
 }
 
@@ -88,6 +89,7 @@ export function paint() {
 		: "Difference to the file on disk");
 	difference.replaceChildren(differenceOf(draft.overtaken ? draft.base.text : draft.disk.text,
 		draft.text, "The draft is the same as the file."));
+	put(sum, draft.dirty ? `This save: ${difference.querySelector(".count")?.textContent ?? ""}` : "");
 	theirs.replaceChildren(theirs.hidden ? "" : differenceOf(draft.base.text, draft.disk.text,
 		"The other has changed nothing."));
 }

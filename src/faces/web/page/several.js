@@ -17,6 +17,18 @@ const namesOf = (items) => items.slice(0, NAMED).map(({name}) => name).join(", "
 const hiddenOf = ({length}, hidden) => !hidden ? ""
 	: length > 1 ? `${hidden} of them not shown. ` : "It is not shown. ";
 
+/* For ask(): do it; what is refused stays, with the reason at the field. */
+const tried = (field, fault, act) => async () => {
+	try {
+		await act();
+	} catch (error) {
+		put(fault, error.message);
+		field().setAttribute("aria-invalid", "true");
+		field().focus();
+	}
+	return !fault.textContent;
+};
+
 export async function duplicate(items) {
 	const taken = new Set(draft.model.items.map(({name}) => name)), steps = [];
 	let first = null;
@@ -51,13 +63,15 @@ export async function setKey(items, hidden) {
 	const key = el("select", {id: "set-key", onchange: () => show()},
 		...options.map((option) => el("option", {}, option.key)));
 	const field = el("div", {}), hint = el("p", {class: "hint"});
-	let option, control;
+	const fault = el("p", {class: "problem", id: "set-fault", role: "alert"});
+	let option, control, value, done = false;
 	const show = () => {
 		const texts = new Set(items.map((item) => textOf(item, key.value)));
 		option = options.find((one) => one.key === key.value);
-		control = controlOf(option, {id: "set-value"}, texts.size > 1 ? ""
+		control = controlOf(option, {id: "set-value", "aria-describedby": "set-fault"}, texts.size > 1 ? ""
 			: shownOf(option, items[0].keys[key.value] ?? textOf(items[0], key.value)));
 		field.replaceChildren(control);
+		put(fault, "");
 		put(hint, `${hintOf(option)}${texts.size > 1 ? " They differ now." : ""} `
 			+ "An empty field takes the key out.");
 	};
@@ -65,33 +79,44 @@ export async function setKey(items, hidden) {
 	show();
 	if (!await ask(`Set a key of ${items.length > 1 ? `${items.length} items` : items[0].name}`, "Set",
 		[el("p", {}, `${namesOf(items)}. ${hiddenOf(items, hidden)}`), el("label", {for: "set-key"}, "Key"), key,
-			el("label", {for: "set-value"}, "Value"), field, hint]))
+			el("label", {for: "set-value"}, "Value"), field, fault, hint],
+	tried(() => control, fault, async () => {
+		put(fault, "");
+		value = valueOf(option, control.value.trim());
+		const steps = items.filter((item) => value !== null || item.keys[option.key] !== undefined)
+			.flatMap(({name}) => edits({[option.key]: value}, "set", "unset", {name}));
+		if (steps.length)
+			await draft.edit(...steps);
+		done = steps.length > 0;
+	})))
 		return null;
 	last = option.key;
-	const value = valueOf(option, control.value.trim());
-	const steps = items.filter((item) => value !== null || item.keys[last] !== undefined)
-		.flatMap(({name}) => edits({[last]: value}, "set", "unset", {name}));
-	if (!steps.length)
-		return null;
-	await draft.edit(...steps);
-	return {words: `${last} of ${namesOf(items)}: ${value ?? "not set"}.`};
+	return !done ? null : {words: `${last} of ${namesOf(items)}: ${value ?? "not set"}.`};
 }
 
 export async function add() {
-	const name = el("input", {id: "add-name", required: true, autocomplete: "off"});
-	const path = el("input", {id: "add-path", required: true, autocomplete: "off",
-		placeholder: "/28.0123456789AB/temperature12"});
-	const refusal = el("p", {class: "fault", role: "alert"});
+	const fault = el("p", {class: "problem", id: "add-fault", role: "alert"});
+	const input = (id, more) => el("input", {id, required: true, autocomplete: "off",
+		"aria-describedby": "add-fault", ...more});
+	const name = input("add-name"), path = input("add-path",
+		{placeholder: "/28.0123456789AB/temperature12"});
+	let wanted;
 	const yes = await ask("Add an item", "Add", [el("label", {for: "add-name"}, "Name"), name,
-		el("label", {for: "add-path"}, "Path"), path,
+		el("label", {for: "add-path"}, "Path"), path, fault,
 		el("p", {class: "hint"}, "An input of type double; the form changes it. A scan adds "
-			+ "devices with less typing."), refusal], () => {
-		put(refusal, draft.item(name.value.trim()) ? "Another item has this name." : "");
-		return !refusal.textContent;
-	});
-	const wanted = name.value.trim();
-	if (!yes)
-		return null;
-	await draft.edit({do: "add", name: wanted, path: path.value.trim()});
-	return {form: wanted, words: `${wanted} is added.`};
+			+ "devices with less typing.")], tried(() => fault.of, fault, async () => {
+		put(fault, "");
+		for (const one of [name, path])
+			one.removeAttribute("aria-invalid");
+		wanted = name.value.trim();
+		fault.of = name;
+		if (draft.item(wanted))
+			throw new Error("Another item has this name.");
+		fault.of = path;
+		await draft.edit({do: "add", name: wanted, path: path.value.trim()}).catch((error) => {
+			fault.of = /path|device|property/i.test(error.message) ? path : name;
+			throw error;
+		});
+	}));
+	return yes ? {form: wanted, words: `${wanted} is added.`} : null;
 }
