@@ -68,9 +68,13 @@ void edit_name(const char *file, char name[EDIT_NAME])
 /* False after printing why. */
 static bool start_writer(const char *file, const char *name)
 {
-	const char *const arguments[] = {"owsd-writer", "-n", name, "-c", file, NULL};
+	const char *arguments[] = {"owsd-writer-sim", "-n", name, "-c", file, NULL};
 	int err = child_start(arguments, &writer);
 
+	/* where there is none, no file of simulated devices can be of use */
+	arguments[0] = "owsd-writer";
+	if (err == -ENOENT)
+		err = child_start(arguments, &writer);
 	if (err) {
 		face_complain(PROGRAM, "cannot start owsd-writer, which saves the file: %s",
 		              strerror(-err));
