@@ -235,6 +235,16 @@ def test_a_wrong_value_is_refused_at_its_field(scene):
         well(page)
 
 
+def test_special_signals_have_short_ages_and_of_an_input_no_switch_for_writing(scene):
+    with dialog(scene) as (_, _, page):
+        open_item(page, "room")  # and all its details
+        shows(page, ".special", "_ReadEnable", "_DGNRESET")
+        assert "_Write" not in text_of(page, ".special"), text_of(page, ".special")
+        page.until(r"return [...document.querySelectorAll('.special dd')].every((one) =>"
+                   r"!/[.]\d{3}/.test(one.textContent))", "at most two decimals")
+        well(page)
+
+
 def test_problems_link_to_their_fields_and_undo_takes_them_away(scene):
     with dialog(scene, part="text") as (daemon, _, page):
         wrong = on_disk(daemon).replace('"Living room"', '"Living room" LimitL cold')

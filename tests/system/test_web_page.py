@@ -49,6 +49,13 @@ def test_a_quality_that_is_not_good_is_explained_with_its_remedy(scene):
         assert not page.complaints()
 
 
+def test_the_details_of_a_row_have_the_whole_description(scene):
+    with plant(scene) as (_, _, page):
+        page.run("[...document.querySelectorAll('#live tbody .row .name')].find((one) =>"
+                 "one.textContent === 'room').click()")
+        shows(page, "#live .c-detail", "Living room, by the window")
+
+
 def test_the_search_and_the_order_stand_in_the_address(scene):
     with plant(scene) as (_, web, page):
         page.type("#search", "relay 29.0")
@@ -364,6 +371,22 @@ def test_one_cursor_goes_through_all_plots_by_keys_too(scene):
         page.press("escape")
         shows(page, "#trends .picker", "Figures of now")
         assert not page.complaints()
+
+
+def test_a_window_that_ends_before_it_begins_is_refused_at_its_field(scene):
+    with plant(scene) as (_, web, page):
+        page.go(web.address + "#trends?s=room")
+        page.find("#trends .chart canvas")
+        before = page.run(WINDOW)[0]
+        page.run("const t = document.querySelector('#trends .times'); t.blur(); t.focus()")  # all is selected
+        page.press(*"10:24 - 10:20", "enter")
+        page.find("#trends .times[aria-invalid=true]")
+        shows(page, "#trend-told", "10:24 - 10:20", "ends before it begins")
+        assert page.run(WINDOW)[0] == before
+        page.run("const t = document.querySelector('#trends .times'); t.blur(); t.focus()")  # all is selected
+        page.press(*"22:00 - 6:00", "enter")
+        until(lambda: page.run(WINDOW)[0] == 8 * 3_600_000, 10, lambda: page.run(WINDOW))
+        assert not page.complaints(), page.complaints()
 
 
 def test_a_turn_of_the_wheel_is_one_step_back_and_asks_once(scene):
