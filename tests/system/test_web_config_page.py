@@ -705,6 +705,12 @@ def test_each_part_fits_a_phone_and_axe_finds_nothing(scene):
                 page.run("document.querySelectorAll('#config details').forEach((one) => {"
                          "one.open = true; })")
                 wide = page.run("return document.documentElement.scrollWidth")
+                found += [(width, name, "covered", one) for one in page.run("""
+                    return [...document.querySelectorAll('.bar button, #config [role=tab]')].filter((one) => {
+                        const {left, top, width, height} = one.getBoundingClientRect();
+                        const at = document.elementFromPoint(left + width / 2, top + height / 2);
+                        return one.checkVisibility() && top > 0 && top < innerHeight && !one.contains(at);
+                    }).map((one) => one.textContent)""")]
                 found += [(name, "is as wide as", wide)] if wide > width else []
                 found += [(scheme, width, name, fault) for fault in page.run(
                     "return axe.run(document).then((r) => r.violations.flatMap((v) => v.nodes.map("
