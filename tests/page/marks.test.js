@@ -5,7 +5,7 @@ import {test} from "node:test";
 import "./browser.js";
 import {UNKNOWN} from "./page/words.js";
 
-const {alarmsOf, gapsOf, limitsOf} = await import("./page/marks.js");
+const {alarmsOf, gapsOf, limitsOf, linesOf} = await import("./page/marks.js");
 const GOOD = 0xc0, ABSENT = 0x08, STALE = 0x14, MIN = 60000;
 const boiler = {name: "boiler", decimals: 1, limits: {hh: null, h: 65, l: 10, ll: null}, alarm: ""};
 const raised = (time, more) => ({time, name: "boiler", journal: "alarms", alarm: "high",
@@ -31,6 +31,14 @@ test("a limit is shown where values come near it", () => {
 	assert.deepEqual(limitsOf(boiler, [50, 60]), [{value: 65, words: "boiler limit 65.0"}]);
 	assert.deepEqual(limitsOf(boiler, [40, 45]), []);
 	assert.deepEqual(limitsOf({name: "a", limits: null}, [0, 1]), []);
+});
+
+test("labels that would overlap stand in lines below each other, as far as there are lines", () => {
+	const at = (from, until) => ({from, until});
+	assert.deepEqual(linesOf([at(0, 10), at(20, 30), at(10, 20)], 3), [0, 0, 0]);
+	assert.deepEqual(linesOf([at(0, 10), at(5, 15), at(8, 30)], 3), [2, 1, 0]);
+	assert.deepEqual(linesOf([at(0, 10), at(0, 10), at(0, 10)], 2).filter((line) => line < 0), [-1]);
+	assert.deepEqual(linesOf([], 2), []);
 });
 
 test("an alarm is drawn from raised to returned, or to the present while it stands", () => {

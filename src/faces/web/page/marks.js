@@ -39,6 +39,26 @@ export function limitsOf(signal, extremes) {
 }
 
 /**
+ * The line of each label {from, until}, so that no two of a line overlap: 0, 1, ...; -1: there are
+ * no more than most lines. The last are the newest, and the first to have a line.
+ */
+export function linesOf(labels, most) {
+	const ends = []; // of each line: where its leftmost label begins
+	const lines = labels.map(() => -1);
+	const order = labels.map((_, n) => n).sort((a, b) => labels[b].until - labels[a].until);
+	for (const n of order) {
+		let line = ends.findIndex((from) => labels[n].until <= from);
+		if (line < 0 && ends.length < most)
+			line = ends.push(Infinity) - 1;
+		if (line < 0)
+			continue;
+		ends[line] = labels[n].from;
+		lines[n] = line;
+	}
+	return lines;
+}
+
+/**
  * Alarms of these signals in the window, by entries of the journal and by how they stand now:
  * [{name, kind, turn, from, until}]; until null: it is not known how long it lasted.
  */

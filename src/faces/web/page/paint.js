@@ -60,7 +60,7 @@ export function bars(pen, {x: times, last}, x, middle) {
 }
 
 /** A text with a ground of its own; align: "left", "right" or "center" of x. */
-function words(pen, text, x, middle, colour, align) {
+export function words(pen, text, x, middle, colour, align) {
 	const {fontFamily, fontSize} = getComputedStyle(pen.canvas.parentNode);
 	pen.save();
 	pen.font = `600 ${fontSize} ${fontFamily}`;
@@ -89,7 +89,10 @@ export function limit(pen, left, right, y, text) {
 	words(pen, text, left + 6, y - 9, "--warn", "left");
 }
 
-/** An alarm: a tint over the height, a filled strip on top, and words, where there is room. */
+/**
+ * An alarm: a tint over the height, and a filled strip on top. Where its words belong, from and
+ * until which x: {text, x, align, from, until}.
+ */
 export function alarm(pen, {left, right, bottom}, a, b, text) {
 	const from = Math.max(left, a), until = Math.max(from + 2, Math.min(right, b));
 	pen.save();
@@ -101,9 +104,9 @@ export function alarm(pen, {left, right, bottom}, a, b, text) {
 	pen.strokeStyle = css("--warn");
 	pen.strokeRect(from + 0.5, 0.5, until - from - 1, 4);
 	pen.restore();
-	const inside = from - left < text.length * 8;
-	if (!inside || until - from > text.length * 8)
-		words(pen, text, inside ? from + 6 : from - 6, 14, "--warn", inside ? "left" : "right");
+	const width = text.length * 8, inside = from - left < width;
+	return inside ? {text, x: from + 6, align: "left", from, until: from + 6 + width}
+		: {text, x: from - 6, align: "right", from: from - 6 - width, until: from};
 }
 
 /** A gap: a hatched bar at the height of the curve, with its reason if that has room. */

@@ -3,13 +3,14 @@
 // to the greatest, gaps as gaps, and names at the end of the curves; or of signals that are on or
 // off: a bar each. dygraphs has the axes and the gestures.
 import {el, later, put} from "./dom.js";
-import {gapsOf, limitsOf} from "./marks.js";
+import {gapsOf, limitsOf, linesOf} from "./marks.js";
 import * as paint from "./paint.js";
 import {apart, numberTicks, timeTicks} from "./axes.js";
 import {extremes, heldAt, padded} from "./series.js";
 import {UNKNOWN} from "./words.js";
 
 const SETTLED_MS = 250, LANE = 24, NAME = 16, TAPS_MS = 350;
+const LABELS = 3; // lines of them, of alarms that are near each other
 const SHAPES = {up: "\u25b2", down: "\u25bc"};
 const same = (a, b) => a[0] === b[0] && a[1] === b[1];
 
@@ -51,9 +52,14 @@ export class Plot {
 		return paint.css(this.lanes ? "--edge" : `--line-${this.numbers[n]}`);
 	}
 
+	/* On a phone the name of a bar stands above it, else at its end. */
+	get #lanePx() {
+		return LANE + (this.narrow ? NAME : 0);
+	}
+
 	/** The height that lanes need; 0: a plot takes what there is. */
 	get wanted() {
-		return this.lanes ? this.signals.length * LANE : 0;
+		return this.lanes ? this.signals.length * this.#lanePx : 0;
 	}
 
 	/** Characters of the widest figure of the axis. */
@@ -196,29 +202,33 @@ export class Plot {
 	#nameEnds({x, w}) {
 		const ends = this.pasts.map((past, n) => this.lanes ? this.#y(this.#lane(n))
 			: this.#y(past.last.findLast((value) => value !== null) ?? this.range[1]));
-		const places = apart(ends.map((y) => y - NAME / 2), NAME,
-			this.chart.offsetTop + this.height - NAME);
+		const above = this.narrow && this.lanes;
+		const places = above ? ends.map((y) => y - LANE / 2 - NAME)
+			: apart(ends.map((y) => y - NAME / 2), NAME, this.chart.offsetTop + this.height - NAME);
 		this.names.forEach((name, n) => {
-			name.hidden = this.right < 60;
-			name.style.left = `${x + w + 8}px`;
-			name.style.maxWidth = `${this.right - 8}px`;
+			name.hidden = this.narrow && !this.lanes;
+			name.style.left = `${above ? x : x + w + 8}px`;
+			name.style.maxWidth = `${above ? w : this.right - 8}px`;
 			name.style.top = `${places[n]}px`;
 			put(name, this.signals[n].name);
 		});
 	}
 
 	#lane(n) {
-		return this.signals.length - n - 0.5;
+		return this.signals.length - n - 1 + LANE / 2 / this.#lanePx;
 	}
 
 	#draw({drawingContext: pen, dygraph: graph}) {
 		const x = (time) => graph.toDomXCoord(time), y = (value) => graph.toDomYCoord(value);
 		const {x: left, w, y: top, h} = graph.getArea();
 		const area = {left, right: left + w, bottom: top + h};
-		for (const {name, kind, turn, from, until} of this.alarms.filter(({name}) =>
-			this.signals.some((signal) => signal.name === name)))
+		const labels = this.alarms.filter(({name}) =>
+			this.signals.some((signal) => signal.name === name)).map(({name, kind, turn, from, until}) =>
 			paint.alarm(pen, area, x(from), x(until ?? from), `${SHAPES[turn] ?? ""} ${
-				this.signals.length > 1 ? `${name} ` : ""}${kind}`);
+				this.signals.length > 1 ? `${name} ` : ""}${kind}`));
+		linesOf(labels, Math.min(LABELS, Math.floor(h / 2 / NAME))).forEach((line, n) => line >= 0
+			&& paint.words(pen, labels[n].text, labels[n].x, 14 + line * NAME, "--warn",
+				labels[n].align));
 		for (const {value, words} of this.#limits())
 			paint.limit(pen, area.left, area.right, y(value), words);
 		for (const old of this.lanes ? [] : this.olds.filter(Boolean))

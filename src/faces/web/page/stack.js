@@ -52,6 +52,8 @@ export class Stack {
 		for (const plot of this.plots)
 			plot.take(plot.signals.map(of), plot.signals.map(old), window, alarms);
 		const phone = matchMedia("(max-width: 37.5rem)").matches;
+		for (const plot of this.plots)
+			plot.narrow = phone;
 		const heights = this.#heights(phone);
 		const figures = Math.max(...this.plots.map((plot) => plot.figures));
 		const left = Math.max(LEFT[phone ? 0 : 1], figures * FIGURE + 12);
