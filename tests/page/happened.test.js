@@ -2,7 +2,7 @@
 // What happened, as lines of whole happenings, and the curve of an alarm.
 import assert from "node:assert/strict";
 import {test} from "node:test";
-import {actorOf, curveOf, happenings, hoursOf, isLost, limitOf, matches, overWords}
+import {actorOf, curveOf, happenings, hoursOf, isLost, joined, limitOf, matches, overWords}
 	from "./page/happened.js";
 
 const at = (clock) => `2026-11-28T${clock}Z`;
@@ -74,4 +74,16 @@ test("a curve has its limit in its box, and a gap where nothing was good", () =>
 	assert.equal(limit, "3.0");
 	assert.deepEqual(curveOf({x: [0], last: [null]}, 0, 40, 5, 40, 26), {path: "", limit: null});
 	assert.equal(curveOf({x: [0, 10], last: [2, 2]}, 0, 20, null, 20, 26).path, "M0.0 13.0L10.0 13.0H20");
+});
+
+test("what is fetched anew and what was here before are each once, and leave no gap unseen", () => {
+	const [a, b, c, d] = ["10:04:00", "10:03:00", "10:02:00", "10:01:00"].map((clock) =>
+		alarm(clock, "raised"));
+	assert.deepEqual(joined([a, b], [b, c, d], 2), [a, b, c, d]);
+	assert.deepEqual(joined([a, b], [a, b, c], Infinity), [a, b, c]);
+	assert.deepEqual(joined([a, b], [c, d], 2), [a, b], "between b and c others may be missing");
+	assert.deepEqual(joined([a, b], [c, d], 3), [a, b, c, d], "these are all that there are");
+	assert.deepEqual(joined([], [c], 2), []);
+	const same = {...b, name: "other"}; // at the same time as b
+	assert.deepEqual(joined([a, b], [same, b], Infinity), [a, b, same]);
 });

@@ -4,6 +4,7 @@
 
 import base64
 import contextlib
+import datetime
 import getpass
 import grp
 import gzip
@@ -455,6 +456,10 @@ def test_alarms_journal_and_stats_are_those_of_owsctl(scene):
     assert len(page.json("/api/journal?n=2")["entries"]) == 2
     later = int((time.time() + 60) * 1000)
     assert page.json(f"/api/journal?since={later}")["entries"] == []
+    assert page.json(f"/api/journal?until={later}")["entries"] == entries
+    newest = int(datetime.datetime.fromisoformat(entries[0]["time"].replace("Z", "+00:00")).timestamp() * 1000)
+    before = page.json(f"/api/journal?until={newest}")["entries"]
+    assert 0 < len(before) < len(entries) and before == entries[-len(before):], (entries, before)
     stats = page.json("/api/stats")
     told = json.loads(scene.owsctl(daemon, "--json", "stats").stdout)
     assert stats.keys() == told.keys() and stats["daemon"].keys() == told["daemon"].keys()

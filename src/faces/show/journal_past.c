@@ -120,10 +120,10 @@ static int journal_past_take(struct reading *r, const struct ows_history_event *
 	return 0;
 }
 
-static int read_from(struct reading *r, int64_t from_ns)
+static int read_from(struct reading *r, int64_t from_ns, int64_t until_ns)
 {
 	struct ows_history_event event;
-	int err = ows_history_events(r->history, from_ns, INT64_MAX,
+	int err = ows_history_events(r->history, from_ns, until_ns,
 	                             1u << OWS_HISTORY_COMMAND | 1u << OWS_HISTORY_ALARM);
 	int got = 0;
 
@@ -133,7 +133,8 @@ static int read_from(struct reading *r, int64_t from_ns)
 }
 
 int journal_past(struct ows_history *history, const struct when *now, int64_t from_ns,
-                 char *const *patterns, int count, unsigned most, struct journal_entries *past)
+                 int64_t until_ns, char *const *patterns, int count, unsigned most,
+                 struct journal_entries *past)
 {
 	struct reading r = {.history = history,
 	                    .now = now,
@@ -144,7 +145,7 @@ int journal_past(struct ows_history *history, const struct when *now, int64_t fr
 	int err;
 
 	*past = (struct journal_entries){0};
-	err = read_from(&r, from_ns);
+	err = read_from(&r, from_ns, until_ns);
 	if (err)
 		journal_free(past);
 	else if (past->count)

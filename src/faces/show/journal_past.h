@@ -6,13 +6,15 @@
 #include "src/public/ows_history.h"
 
 /*
- * Read the entries from from_ns on (wall clock) into *past, at most the last `most` of them: oldest
- * first, in the order of time, those of earlier boots of the machine in front. 0, or a negative
+ * Read the entries from from_ns on, before until_ns (wall clock), into *past, at most the last
+ * `most` of them: oldest first, in the order of time, those of earlier boots of the machine in
+ * front. 0, or a negative
  * errno of libows-history. Names are valid until the history is refreshed or
  * closed.
  */
 int journal_past(struct ows_history *history, const struct when *now, int64_t from_ns,
-                 char *const *patterns, int count, unsigned most, struct journal_entries *past);
+                 int64_t until_ns, char *const *patterns, int count, unsigned most,
+                 struct journal_entries *past);
 
 /*
  * Drop from *past what is among `entries` too. The disk has times in whole milliseconds and no

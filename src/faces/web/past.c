@@ -20,6 +20,7 @@
 #define RINGS 512     /* entries that owsd keeps */
 #define NAME 256
 #define DAY_MS (86400 * 1000LL)
+#define TIME_MOST 4000000000000LL /* ms since 1970 */
 #define HOUR_SIGNALS 200 /* in one answer */
 #define HOUR_POINTS 30   /* of two minutes, which come from sums */
 
@@ -263,11 +264,11 @@ static int past_stretch(struct request *request, void (*run)(struct job *job))
 
 	if (!name || !*name || strlen(name) >= NAME)
 		return http_error(request, 400, "name=: expected the name of a signal");
-	if (!number(request, "until", 1, 4000000000000LL, &until))
+	if (!number(request, "until", 1, TIME_MOST, &until))
 		return http_error(request, 400, "until=: expected milliseconds since 1970");
 	if (!http_argument(request, "from"))
 		from = until - DAY_MS;
-	if (!number(request, "from", 0, 4000000000000LL, &from) || from >= until)
+	if (!number(request, "from", 0, TIME_MOST, &from) || from >= until)
 		return http_error(request, 400,
 		                  "from=: expected milliseconds since 1970, before until");
 	if (!number(request, "points", 1, POINTS, &n))
@@ -375,7 +376,9 @@ static void put_journal(struct past_job *past, const struct journal_entries *ent
 	past->job.status = 200;
 	json_array(&json, "entries");
 	for (unsigned i = entries->count; i-- > 0 && count < (unsigned)past->n;) {
-		if (now->wall - (now->boot - entries->entry[i].when_ns) < past->from_ns)
+		int64_t at_ns = now->wall - (now->boot - entries->entry[i].when_ns);
+
+		if (at_ns < past->from_ns || at_ns >= past->until_ns)
 			continue;
 		journal_json(&json, now, &entries->entry[i]);
 		count++;
@@ -394,8 +397,8 @@ static void run_journal(struct job *job)
 	struct ows *h = NULL;
 
 	if (*past->directory && ows_history_open(NULL, past->directory, &history) == 0)
-		journal_past(history, &now, past->from_ns, NULL, 0, (unsigned)past->n + RINGS,
-		             &older);
+		journal_past(history, &now, past->from_ns, past->until_ns, NULL, 0,
+		             (unsigned)past->n + RINGS, &older);
 	if ((ows_open_as(past->instance, OWS_READ, "owsd-web", &h) == 0 &&
 	     !journal_look(h, NULL, 0, &entries)) ||
 	    !journal_past_drop(&older, &entries) || !journal_add(&entries, &older))
@@ -410,16 +413,19 @@ static void run_journal(struct job *job)
 
 int past_journal(struct request *request)
 {
-	long long since = when_now().wall / NS_PER_MS - 7 * DAY_MS, n = 200;
+	long long since = when_now().wall / NS_PER_MS - 7 * DAY_MS, until = TIME_MOST, n = 200;
 	struct past_job *past;
 
-	if (!number(request, "since", 0, 4000000000000LL, &since))
+	if (!number(request, "since", 0, TIME_MOST, &since))
 		return http_error(request, 400, "since=: expected milliseconds since 1970");
+	if (!number(request, "until", 0, TIME_MOST, &until))
+		return http_error(request, 400, "until=: expected milliseconds since 1970");
 	if (!number(request, "n", 1, ENTRIES, &n))
 		return http_error(request, 400, "n=: expected a number from 1 to %d", ENTRIES);
 	past = make(request, run_journal);
 	if (past) {
 		past->from_ns = since * NS_PER_MS;
+		past->until_ns = until * NS_PER_MS;
 		past->n = (int)n;
 	}
 	return http_defer(request, request->web->past, past ? &past->job : NULL);

@@ -80,6 +80,21 @@ export function happenings(entries, find) {
 	return all.reverse();
 }
 
+/**
+ * Newer entries before older ones, both newest first, and each once. Of newer ones that are as many
+ * as are asked for at once, and begin after all older ones, those between are missing: then they
+ * stand alone.
+ */
+export function joined(newer, older, most) {
+	if (!newer.length)
+		return newer;
+	const end = msOf(newer.at(-1).time), kept = new Set(newer.map((one) => JSON.stringify(one)));
+	if (newer.length >= most && older.length && msOf(older[0].time) < end)
+		return newer;
+	return [...newer, ...older.filter((one) => msOf(one.time) <= end
+		&& !kept.has(JSON.stringify(one)))];
+}
+
 /** Has it all these words somewhere? */
 export function matches(one, words) {
 	const {name, alarm, what, by, more, seen, names} = one;

@@ -3,16 +3,16 @@
 import {get} from "./api.js";
 import {badge} from "./badge.js";
 import {el, put, table} from "./dom.js";
-import {happenings, hoursOf, isLost, matches} from "./happened.js";
+import {happenings, hoursOf, isLost, joined, matches} from "./happened.js";
 import {store} from "./store.js";
-import {alarmOf, clock, dateAndClock, dayText, span, valueText, withUnit} from "./words.js";
+import {alarmOf, clock, dateAndClock, dayText, moment, msOf, span, valueText, withUnit} from "./words.js";
 
 const DAY_MS = 86400000, DAYS = 7, ENTRIES = 1000, PAGE = 50;
 const KINDS = [["", "All"], ["alarms", "Alarms"], ["commands", "Commands"]];
 const COLUMNS = [["Time", "time"], "Signal", "What", ["Value", "right"], ["Lasted", "right"], "By"];
 
 const state = {words: [], kind: "", day: null, hour: null, pages: 1};
-let kinds, day, hours, lines, foot, all = [], cut = false, standing = new Set();
+let kinds, day, hours, lines, foot, all = [], raw = [], cut = false, standing = new Set();
 
 const midnight = (time) => new Date(time).setHours(0, 0, 0, 0);
 
@@ -31,7 +31,7 @@ export function build(root) {
 	kinds = KINDS.map(([value, text]) => el("button", {type: "button", class: "chip",
 		"aria-pressed": "false", "data-kind": value, onclick: () => change({kind: value})}, text));
 	day = el("select", {id: "day", "aria-label": "Day",
-		onchange: () => change({day: Number(day.value), hour: null})});
+		onchange: () => choose(Number(day.value))});
 	hours = el("div", {class: "hours", role: "group", "aria-label": "How much in each hour"});
 	lines = el("div", {});
 	foot = el("p", {class: "hint"});
@@ -39,11 +39,38 @@ export function build(root) {
 		...kinds, day), el("div", {class: "sheet happened"}, hours, lines, foot));
 }
 
+const begin = () => midnight(store.now() - (DAYS - 1) * DAY_MS);
+
+/** Fetch what was before the oldest entry that is here. */
+async function older() {
+	const {entries = []} = await get("journal", {since: begin(), until: msOf(raw.at(-1).time) + 1,
+		n: ENTRIES});
+	const known = raw.length;
+	raw = joined(raw, entries, Infinity);
+	cut = entries.length >= ENTRIES && raw.length > known;
+	all = happenings(raw, (name) => store.find(name));
+}
+
+/* A day, with all its entries. */
+async function choose(value) {
+	change({day: value, hour: null});
+	try {
+		while (cut && state.day === value && msOf(raw.at(-1).time) >= value)
+			await older();
+	} catch (error) {
+		put(foot, `The entries of this day cannot be fetched: ${error.message}.`);
+		return;
+	}
+	paint();
+}
+
 export async function look() {
-	const now = store.now(), {entries = []} = await get("journal",
-		{since: midnight(now - (DAYS - 1) * DAY_MS), n: ENTRIES});
-	all = happenings(entries, (name) => store.find(name));
-	cut = entries.length >= ENTRIES;
+	const now = store.now(), {entries = []} = await get("journal", {since: begin(), n: ENTRIES});
+	const known = raw.length;
+	raw = joined(entries, raw, ENTRIES).filter(({time}) => msOf(time) >= begin());
+	if (!known || raw.length === entries.length)
+		cut = entries.length >= ENTRIES;
+	all = happenings(raw, (name) => store.find(name));
 	const today = midnight(now);
 	if (Number(day.lastChild?.value) === midnight(now - (DAYS - 1) * DAY_MS))
 		return;
@@ -121,12 +148,15 @@ function paintLines(wanted) {
 		if (stands(one))
 			made.tBodies[0].rows[n].firstChild.classList.add(isLost(one.alarm) ? "edge-bad" : "edge-alarm");
 	lines.replaceChildren(made);
-	const left = wanted.length - some.length;
+	const left = wanted.length - some.length, from = state.day;
 	const focused = foot.contains(document.activeElement);
 	foot.replaceChildren(left ? el("button", {type: "button",
 		onclick: () => change({pages: state.pages + 1})}, `Older, ${left} more`)
 		: "Each line is a whole happening: raised and returned are one.",
-	cut ? ` Of the last ${DAYS} days the newest ${ENTRIES} entries are here.` : "");
+	cut && msOf(raw.at(-1).time) >= from ? el("button", {type: "button",
+		onclick: () => choose(state.day)},
+		`Fetch all of this day, here is what came after ${moment(raw.at(-1).time, store.now())}`)
+		: "");
 	if (focused)
 		foot.querySelector("button")?.focus();
 }

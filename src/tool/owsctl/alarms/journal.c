@@ -145,8 +145,8 @@ static int look_at_both(struct journal *j)
 	int err = 0;
 
 	if (j->history)
-		err = journal_past(j->history, &now, j->since_ns, j->patterns, j->pattern_count,
-		                   most ? most + RINGS : 0, &past);
+		err = journal_past(j->history, &now, j->since_ns, INT64_MAX, j->patterns,
+		                   j->pattern_count, most ? most + RINGS : 0, &past);
 	if ((j->h && !journal_look(j->h, j->patterns, j->pattern_count, &j->entries)) ||
 	    !journal_past_drop(&past, &j->entries))
 		ctl_need(NULL);
