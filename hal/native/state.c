@@ -136,6 +136,7 @@ static uint64_t take_wire(struct native *native, unsigned wire)
 	grown = cost.wire_ns -
 	        (cost.wire_ns < native->wire_seen_ns[wire] ? 0 : native->wire_seen_ns[wire]);
 	native->wire_ns += grown;
+	native->wire_each_ns[wire] += grown;
 	native->wire_seen_ns[wire] = cost.wire_ns;
 	return grown;
 }
@@ -145,12 +146,26 @@ void cost_of_job(struct native *native, struct job *job)
 	job->wire_ns += take_wire(native, native->channel[job->txn.channel].wire);
 }
 
+static void count_wire(struct native *native, unsigned wire)
+{
+	const struct channel *channel = &native->channel[wire];
+	uint64_t *counts = &native->count[COUNT_WIRE_0_US + 2 * wire];
+
+	__atomic_store_n(&counts[0], native->wire_each_ns[wire] / 1000, __ATOMIC_RELAXED);
+	__atomic_store_n(&counts[1], channel->errors + channel->shorts + channel->checksums,
+	                 __ATOMIC_RELAXED);
+}
+
 void cost_take(struct native *native)
 {
 	struct link_master_cost shared = {0};
 
-	for (unsigned i = 0; i < native->channels; i++)
+	for (unsigned i = 0; i < native->channels; i++) {
 		take_wire(native, i);
+		if (i < NATIVE_COUNTED)
+			count_wire(native, i);
+	}
+	__atomic_store_n(&native->count[COUNT_WIRES], native->channels, __ATOMIC_RELAXED);
 	if (native->master->ops->cost)
 		native->master->ops->cost(native->master, &shared);
 	__atomic_store_n(&native->count[COUNT_WIRE_US], native->wire_ns / 1000, __ATOMIC_RELAXED);

@@ -41,13 +41,27 @@
 	X(RESTARTED, "devices_restarted") \
 	X(WIRE_US, "wire_us") \
 	X(I2C_TRANSFERS, "i2c_transfers") \
-	X(SYSCALLS, "syscalls")
+	X(SYSCALLS, "syscalls") \
+	X(WIRES, "wires") \
+	NATIVE_WIRE_COUNTS(X, 0) \
+	NATIVE_WIRE_COUNTS(X, 1) \
+	NATIVE_WIRE_COUNTS(X, 2) \
+	NATIVE_WIRE_COUNTS(X, 3) \
+	NATIVE_WIRE_COUNTS(X, 4) \
+	NATIVE_WIRE_COUNTS(X, 5) \
+	NATIVE_WIRE_COUNTS(X, 6) \
+	NATIVE_WIRE_COUNTS(X, 7)
+/* Of the first wires, those of a DS2482-800, each by itself. */
+#define NATIVE_WIRE_COUNTS(X, n) \
+	X(WIRE_##n##_US, "wire_" #n "_us") \
+	X(WIRE_##n##_ERRORS, "wire_" #n "_errors")
 enum native_count {
 #define X(count, name) COUNT_##count,
 	NATIVE_COUNTS(X)
 #undef X
 		COUNTS,
 };
+#define NATIVE_COUNTED ((COUNTS - COUNT_WIRE_0_US) / 2)
 
 enum job_kind {
 	JOB_NONE,      /* a free slot */
@@ -271,7 +285,8 @@ struct native {
 
 	/* state.c */
 	uint64_t wire_ns,
-		wire_seen_ns[NATIVE_CHANNELS]; /* of all links so far; what each said last */
+		wire_seen_ns[NATIVE_CHANNELS], /* of all links so far; what each said last */
+		wire_each_ns[NATIVE_CHANNELS]; /* of each so far */
 
 	/* master.c; native.c, when it suspends the bus or lets it go on */
 	bool up, told;

@@ -37,6 +37,18 @@ test("a terminal has the errors of its chips and their load, a lone one that of 
 	assert.deepEqual([garden.load, lost.load], [9, null]);
 });
 
+test("an adapter that counts its wires has all its terminals, with their own load and errors", () => {
+	const wires = new Map([["cabinet", [{load: 30, errors: 7}, {load: 0, errors: 1},
+		{load: null, errors: 0}, null]], ["garden", []]]);
+	const found = terminalsOf(HOUSE, {...CABINET, wires});
+	assert.deepEqual(found.filter(({adapter}) => adapter === "cabinet").map((one) =>
+		[one.label, one.chips.length, one.load, one.errors]),
+	[["0", 1, 30, 7], ["1", 0, 0, 1], ["2", 2, null, 0], ["3", 0, null, 0]]);
+	const empty = {targets: [target("far")], wires: new Map([["far", [null, null]]])};
+	assert.deepEqual(brief(terminalsOf([], empty)),
+		[["terminal 0 of far", "0", 0], ["terminal 1 of far", "1", 0]]);
+});
+
 test("a chip is as bad as its worst signal, and answers unless nothing comes of it", () => {
 	const chips = terminalsOf(HOUSE, CABINET).flatMap((terminal) => terminal.chips);
 	const [, bath, office] = chips;

@@ -162,6 +162,27 @@ static void test_what_asks_no_chip_takes_no_time_of_the_wire(void)
 	TEST_ASSERT_EQUAL_UINT32(0, reading(slave, "family")->wire_us);
 }
 
+static void test_each_wire_counts_its_errors(void)
+{
+	struct sim_slave *slave;
+
+	wire_init(&host, 3, 1);
+	wire_net.trouble = &trouble;
+	slave = wire_add(1, "DS18B20", 1);
+	wire_add(0, "DS18B20", 2);
+	start();
+	reading(slave, "temperature");
+	TEST_ASSERT_EQUAL_UINT64(3, counted("wires"));
+	TEST_ASSERT_EQUAL_UINT64(0, counted("wire_1_errors"));
+	trouble_none(&trouble);
+	trouble.kind = TROUBLE_TURN;
+	trouble.at = 100;
+	trouble.mask = 1;
+	reading(slave, "scratchpad");
+	TEST_ASSERT_EQUAL_UINT64(1, counted("wire_1_errors"));
+	TEST_ASSERT_EQUAL_UINT64(0, counted("wire_0_errors") + counted("wire_2_errors"));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -173,5 +194,6 @@ int main(void)
 	RUN_TEST(test_what_failed_for_good_says_how_often_it_was_tried_again);
 	RUN_TEST(test_an_answer_has_the_time_that_its_own_slots_took);
 	RUN_TEST(test_what_asks_no_chip_takes_no_time_of_the_wire);
+	RUN_TEST(test_each_wire_counts_its_errors);
 	return UNITY_END();
 }

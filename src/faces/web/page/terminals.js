@@ -29,9 +29,10 @@ function chipOf(id, signals, device) {
 }
 
 /**
- * [{key, adapter, channel, name, label, chips, short, load, errors}] in the order of the adapters.
- * A channel that is not known is null; where an adapter has one wire, all its chips are on it.
- * stats: of api/stats, with load and share: in per cent, by the name of a target, the id of a device.
+ * [{key, adapter, channel, name, label, chips, short, load, errors}] in the order of the adapters,
+ * empty ones too. A channel that is not known is null; where an adapter has one wire, all its chips
+ * are on it. stats: of api/stats, with load and share: in per cent, by the name of a target, the id
+ * of a device; and wires: by the name of a target, of each {load, errors}, or null.
  */
 export function terminalsOf(signals, stats) {
 	const {targets = [], devices = []} = stats ?? {}, found = new Map();
@@ -49,6 +50,8 @@ export function terminalsOf(signals, stats) {
 	for (const {target, channel} of devices)
 		if (most.has(target))
 			most.set(target, Math.max(most.get(target), channel ?? -1));
+	for (const [target, {length}] of stats?.wires ?? [])
+		most.set(target, Math.max(most.get(target), length - 1));
 	for (const [name, last] of most)
 		for (let n = 0; n <= last; n++)
 			of(name, n);
@@ -67,6 +70,11 @@ export function terminalsOf(signals, stats) {
 	for (const [adapter, of] of grouped(found.values(), (terminal) => terminal.adapter))
 		if (of.length === 1 && stats?.load?.has(adapter))
 			of[0].load = stats.load.get(adapter); // conversions of all chips at once count too
+	for (const terminal of found.values()) {
+		const wire = stats?.wires?.get(terminal.adapter)?.[terminal.channel];
+		if (wire)
+			Object.assign(terminal, wire); // what chips share counts too
+	}
 	return [...found.values()];
 }
 

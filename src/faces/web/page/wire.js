@@ -128,11 +128,17 @@ function countsOf(stats) {
 	return counts;
 }
 
+/* The wires of an adapter: {load, errors}; null: it is not counted by itself. */
+const wiresOf = (counts, target) => Array.from({length: counts.get(`${target} bus_wires`) ?? 0},
+	(_, n) => counts.has(`${target} bus_wire_${n}_errors`)
+		? {load: null, errors: counts.get(`${target} bus_wire_${n}_errors`)} : null);
+
 /* What happened since the last look: steps of recovery, and the load of each wire. */
 function compare(stats) {
 	const now = performance.now(), counts = countsOf(stats);
 	const generation = stats.daemon?.generation;
 	stats.load = new Map();
+	stats.wires = new Map((stats.targets ?? []).map(({name}) => [name, wiresOf(counts, name)]));
 	if (before && before.generation === generation)
 		for (const {name: target} of stats.targets ?? []) {
 			const grown = (name) => counts.get(`${target} ${name}`)
@@ -140,6 +146,10 @@ function compare(stats) {
 			const load = grown("bus_wire_us") / 1000 / (now - before.now) * 100;
 			if (load >= 0)
 				stats.load.set(target, Math.min(100, load));
+			for (const [n, wire] of stats.wires.get(target).entries())
+				if (wire)
+					wire.load = Math.max(0, Math.min(100,
+						grown(`bus_wire_${n}_us`) / 1000 / (now - before.now) * 100));
 			for (const [name, words] of STEPS_OF)
 				if (grown(name) > 0)
 					seen.unshift({time: store.now(), target, words, times: grown(name)});
