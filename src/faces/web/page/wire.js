@@ -42,7 +42,7 @@ const STEPS_OF = new Map([
 
 let shown = false, sentence, aside, faults, strips, figures, steps, devices, heading, search, fault;
 let before = null, seen = [], last = null, chosen = null, asTable = false;
-let looks = []; // {now, generation, wire: by device, microseconds}
+let looks = []; // {now, counts, generation, wire: by device, microseconds}
 
 export function build(root) {
 	[figures, steps, devices] = ["Figures", "Recovery", "Devices"].map(wide);
@@ -146,31 +146,33 @@ function compare(stats) {
 			const load = grown("bus_wire_us") / 1000 / (now - before.now) * 100;
 			if (load >= 0)
 				stats.load.set(target, Math.min(100, load));
-			for (const [n, wire] of stats.wires.get(target).entries())
-				if (wire)
-					wire.load = Math.max(0, Math.min(100,
-						grown(`bus_wire_${n}_us`) / 1000 / (now - before.now) * 100));
 			for (const [name, words] of STEPS_OF)
 				if (grown(name) > 0)
 					seen.unshift({time: store.now(), target, words, times: grown(name)});
 		}
 	seen = seen.slice(0, STEPS);
 	before = {now, counts, generation};
-	compareDevices(stats, now, generation);
+	compareWires(stats, now, counts, generation);
 }
 
-/* How much of the time each device took of its wire, in per cent. */
-function compareDevices(stats, now, generation) {
+/* How much of the time a wire was busy, and each device took of its wire, in per cent. */
+function compareWires(stats, now, counts, generation) {
 	const wire = new Map((stats.devices ?? []).filter(({wire_us: us}) => us !== null)
 		.map(({id, wire_us: us}) => [id, us]));
-	looks = [...looks.filter((look) => look.generation === generation), {now, generation, wire}]
-		.slice(-LOOKS);
-	const [first] = looks;
+	looks = [...looks.filter((look) => look.generation === generation), {now, counts, generation,
+		wire}].slice(-LOOKS);
+	const [first] = looks, parted = (us) => Math.min(100, us / 1000 / (now - first.now) * 100);
+	for (const [target, wires] of first.now < now ? stats.wires : [])
+		for (const [n, one] of wires.entries()) {
+			const name = `${target} bus_wire_${n}_us`;
+			if (one)
+				one.load = Math.max(0, parted(counts.get(name) - first.counts.get(name)));
+		}
 	stats.share = new Map();
 	for (const [id, us] of wire) {
-		const share = (us - first.wire.get(id)) / 1000 / (now - first.now) * 100;
+		const share = parted(us - first.wire.get(id));
 		if (share >= 0)
-			stats.share.set(id, Math.min(100, share));
+			stats.share.set(id, share);
 	}
 }
 
