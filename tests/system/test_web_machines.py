@@ -14,6 +14,7 @@ import browser
 import owsdtest
 from owsdtest import free_port, raw, until
 from test_web import Page, item, text
+from test_web_everywhere import axe
 from webhouse import serve, shows, text_of, view
 
 GOOD = json.dumps({"instance": "OWS", "host": "<b>pi</b>", "version": "<script>", "first": None, "alarm": None,
@@ -194,6 +195,13 @@ def test_the_page_shows_the_machines_and_a_link_to_each(scene):
         shows(shown, "#machines", "A", "the one signal is good", "boiler", "high", "pi", "all 3 good",
               "gone", "no answer since", "refused")
         assert "<" not in text_of(shown, "#machines")
+        shown.run(axe())
+        for scheme, width in (("light", 1280), ("dark", 360)):
+            shown.scheme(scheme)
+            shown.size(width, 800)
+            assert shown.run("return axe.run(document).then((r) => r.violations.map((v) => v.id))") == []
+            assert shown.run("return document.documentElement.scrollWidth") == width
+        shown.size(1280, 800)
         view(shown, "wire")
         shows(shown, "#machines", "boiler")  # above each view
         web.freeze()
