@@ -108,8 +108,14 @@ class House:
         block = " ".join(f"{k} {v}" if isinstance(v, raw) else f'{k} "{v}"' for k, v in keys.items())
         return owsdtest.rio(f"sim:{self.wire}", items, Period=0.05, Timeout=3, **self.top, Mqtt=raw("{ " + block + " }"))
 
+    @property
+    def state(self):
+        """The directory that owsd-mqtt keeps."""
+        return self.scene.path / f"mqtt-{self.daemon.name}"
+
     def start(self, env=None):
-        return self.scene.start([MQTT, "-n", self.daemon.name, "-c", self.daemon.config, "-v"], env)
+        return self.scene.start([MQTT, "-n", self.daemon.name, "-c", self.daemon.config, "-v"],
+                                {"STATE_DIRECTORY": str(self.state), **(env or {})})
 
     def last(self, name):
         """What was published last of a signal; None: nothing, or it was emptied."""

@@ -15,7 +15,6 @@
 
 #define NS_PER_US 1000
 #define US_PER_S INT64_C(1000000)
-#define BATCHES_NS (10 * NS_PER_S) /* ... while batches go out */
 /* The recorder writes in five minutes, or what Flush says, ten minutes at most */
 #define WAIT_NS (2 * NS_PER_S)
 #define WAIT_MOST_NS (30 * NS_PER_S)
@@ -101,6 +100,51 @@ void missed_keep(struct missed *m, int64_t least_ns, int64_t now_ns)
 	bad = fflush(f) || fsync(fileno(f)) < 0;
 	if (fclose(f) || bad || rename(part, m->path) < 0)
 		complain(m, m->path, errno);
+}
+
+static void number_path(const struct missed *m, char path[sizeof(m->path) + 8])
+{
+	snprintf(path, sizeof(m->path) + 8, "%.*s/number", (int)(strrchr(m->path, '/') - m->path),
+	         m->path);
+}
+
+int missed_number(const struct missed *m)
+{
+	char path[sizeof(m->path) + 8];
+	int number = -1;
+	FILE *f;
+
+	if (!*m->path)
+		return -1;
+	number_path(m, path);
+	f = fopen(path, "re");
+	/* NOLINTNEXTLINE(cert-err34-c): a number out of range is none of ours */
+	if (!f || fscanf(f, "%d", &number) != 1 || number < 0)
+		number = -1;
+	if (f)
+		fclose(f);
+	return number;
+}
+
+/* One that is damaged in a power cut is none: this one is written over itself. */
+void missed_keep_number(struct missed *m, int number)
+{
+	char path[sizeof(m->path) + 8];
+	FILE *f;
+	int bad;
+
+	if (!*m->path)
+		return;
+	number_path(m, path);
+	bad = history_make_above(path);
+	f = bad ? NULL : fopen(path, "we");
+	if (!f) {
+		complain(m, path, bad ? -bad : errno);
+		return;
+	}
+	fprintf(f, "%d\n", number);
+	if (fclose(f))
+		complain(m, path, errno);
 }
 
 /* False: there is none, of another peer, or damaged. */
@@ -347,7 +391,7 @@ void missed_given(struct missed *m, const struct replay_point *last, int sent, i
 	m->wait_ns = WAIT_NS;
 	if (sent)
 		say_once(m, &m->said, ", from the history");
-	missed_keep(m, BATCHES_NS, now_ns);
+	missed_keep(m, 0, now_ns);
 }
 
 /* --- Sessions -------------------------------------------------------------------------------- */

@@ -53,6 +53,12 @@ struct missed {
  * does not get what changes until missed_resume().
  */
 void missed_begin(struct missed *m, uint64_t key, int64_t now_ns);
+/*
+ * A small number of the face beside what is known, between missed_begin() and the end; -1: none was
+ * kept. It is kept without a history, too.
+ */
+int missed_number(const struct missed *m);
+void missed_keep_number(struct missed *m, int number);
 /* The rows of the face are others, or the configuration is; the end. */
 void missed_drop(struct missed *m);
 /* Write down what is known, unless that was done less than least_ns ago. */

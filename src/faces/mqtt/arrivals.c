@@ -18,7 +18,7 @@ static bool will(void *ctx, bool ending, const struct outlet *to)
 	bool put;
 
 	if (m->broker.state != BROKER_CONNECTED)
-		s->bdseq = (uint8_t)m->broker.sent; /* before this one */
+		s->bdseq = (uint8_t)(m->bdseq + (int)m->broker.sent); /* before this one */
 	s->outlet = *to;
 	put = s->profile->state(s, ending ? STREAM_ENDED : STREAM_KILLED);
 	s->outlet = outlet;
@@ -31,6 +31,8 @@ static void on_connected(void *ctx)
 	char topic[TOPIC_SIZE];
 
 	past_lost(&m->past);
+	if (m->past.on)
+		missed_keep_number(&m->past.missed, m->stream.bdseq);
 	if (m->stream.profile->listen) {
 		m->stream.profile->listen(&m->stream, topic);
 		client_subscribe(&m->broker, topic);

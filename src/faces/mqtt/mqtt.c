@@ -94,6 +94,9 @@ static void mqtt_begin(struct face *face, int64_t now_ns)
 	m->past.stream = &m->stream;
 	m->past.broker = &m->broker;
 	past_begin(&m->past, broker_key(&m->options));
+	/* a will that comes late is of none of the last sessions then */
+	if (m->past.on)
+		m->bdseq = missed_number(&m->past.missed) + 1 - (int)m->broker.sent;
 	broker_begin(&m->broker, now_ns);
 }
 

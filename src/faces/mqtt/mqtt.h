@@ -21,6 +21,7 @@ struct mqtt {
 	struct commands commands;
 	struct past past;
 	struct wall_clock clock;
+	int bdseq;               /* of the first session of this process */
 	int64_t health_ns;       /* when to look at it again */
 	int64_t announced_ns;    /* when somebody asked for the birth last */
 	bool asked;              /* again, too soon after that */

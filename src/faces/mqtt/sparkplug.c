@@ -17,6 +17,7 @@
 #include "src/ground/signal/value.h"
 
 #define REBIRTH "Node Control/Rebirth"
+#define REBOOT "Node Control/Reboot"
 /* Data types, as chapter 6 numbers them */
 enum {
 	INT16 = 2,
@@ -780,6 +781,10 @@ static bool take_all(struct stream *s, const char *topic, const char *text, size
 		if (!device && metric->name && !strcmp(metric->name, REBIRTH))
 			again = again || (metric->value_case == SPB__METRIC__VALUE_BOOLEAN_VALUE &&
 			                  metric->boolean_value);
+		else if (!device && metric->name && !strcmp(metric->name, REBOOT))
+			take(ctx, REBOOT, "",
+			     "nothing restarts a plant over a broker: systemctl restart owsd-mqtt "
+			     "on the machine itself");
 		else
 			sparkplug_command(s, metric,
 			                  chip     ? (int)(chip - s->chips)
