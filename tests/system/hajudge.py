@@ -21,7 +21,8 @@ import mqtthouse
 import owsdtest
 from owsdtest import until
 
-WANTED = pathlib.Path(__file__).resolve().parent / "hajudge.txt"
+# What each version wants of the package index, and the Python that it runs on
+WANTED = {"2025": ("hajudge.txt", (3, 13)), "2024": ("hajudge-2024.txt", (3, 11))}
 INSTALL_SECONDS = 1500
 READY_SECONDS = 300
 # Of each entity, with nothing in it that makes a list or a number of it
@@ -35,55 +36,56 @@ http: {{server_host: 127.0.0.1, server_port: {port}}}
 logger: {{default: warning}}
 automation:
 - alias: look
-  triggers: {{trigger: time_pattern, seconds: "/1"}}
-  actions: {{action: mqtt.publish, data: {{topic: judge/states, payload: "{look}"}}}}
+  trigger: {{platform: time_pattern, seconds: "/1"}}
+  action: {{service: mqtt.publish, data: {{topic: judge/states, payload: "{look}"}}}}
 - alias: act
   mode: queued
-  triggers: {{trigger: mqtt, topic: judge/act}}
-  actions:
-    action: "{{{{ trigger.payload_json.action }}}}"
+  trigger: {{platform: mqtt, topic: judge/act}}
+  action:
+    service: "{{{{ trigger.payload_json.action }}}}"
     target: {{entity_id: "{{{{ trigger.payload_json.entity }}}}"}}
     data: "{{{{ trigger.payload_json.data }}}}"
 - alias: tag
   mode: queued
-  triggers: {{trigger: event, event_type: tag_scanned}}
-  actions: {{action: mqtt.publish, data: {{topic: judge/tag,
+  trigger: {{platform: event, event_type: tag_scanned}}
+  action: {{service: mqtt.publish, data: {{topic: judge/tag,
              payload: "tag {{{{ trigger.event.data.tag_id }}}}"}}}}
 """
 
 
-def _base():
+def _base(year):
     """A Python that this Home Assistant runs on."""
-    homes = sorted(pathlib.Path.home().glob(".pyenv/versions/3.13.*/bin/python3"))
-    for path in (sys.executable, shutil.which("python3.13"), *map(str, homes)):
-        if path and subprocess.run([path, "-c", "import sys; sys.exit(sys.version_info[:2] != (3, 13))"],
+    major, minor = WANTED[year][1]
+    homes = sorted(pathlib.Path.home().glob(f".pyenv/versions/{major}.{minor}.*/bin/python3"))
+    for path in (sys.executable, shutil.which(f"python{major}.{minor}"), *map(str, homes)):
+        if path and subprocess.run([path, "-c", f"import sys; sys.exit(sys.version_info[:2] != ({major}, {minor}))"],
                                    check=False, capture_output=True).returncode == 0:
             return path
-    return owsdtest.skip("Home Assistant 2025.4 wants Python 3.13")
+    return owsdtest.skip(f"Home Assistant of {year} wants Python {major}.{minor}")
 
 
-def python():
+def python(year):
     """The Python that has it, out of the user's cache or, once and for some minutes, from the package index."""
+    wanted = pathlib.Path(__file__).resolve().parent / WANTED[year][0]
     base = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "owsd"
     try:
         base.mkdir(parents=True, exist_ok=True)
     except OSError:
         base = owsdtest.BUILD
-    place = base / "homeassistant"
+    place = base / ("homeassistant" if year == "2025" else f"homeassistant-{year}")
     with open(base / "homeassistant.lock", "w", encoding="ascii") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        if not (place / WANTED.name).exists() or (place / WANTED.name).read_text() != WANTED.read_text():
-            _install(place)
+        if not (place / wanted.name).exists() or (place / wanted.name).read_text() != wanted.read_text():
+            _install(place, wanted, _base(year))
     return place / "bin/python"
 
 
-def _install(place):
-    base = _base()
+def _install(place, wanted, base):
     shutil.rmtree(place, ignore_errors=True)
     pip = [f"{place}/bin/python", "-m", "pip", "--quiet", "--disable-pip-version-check", "--retries", "1",
            "--timeout", "30", "install"]
-    core = next(line for line in WANTED.read_text().splitlines() if line.startswith("homeassistant=="))
-    for command in ([base, "-m", "venv", str(place)], [*pip, "--no-deps", core], [*pip, "-r", str(WANTED)]):
+    core = next(line for line in wanted.read_text().splitlines() if line.startswith("homeassistant=="))
+    for command in ([base, "-m", "venv", str(place)], [*pip, "--no-deps", core], [*pip, "-r", str(wanted)]):
         # it has a list of the versions that it was tried with
         if known := list(place.glob("lib/python3.*/site-packages/homeassistant/package_constraints.txt")):
             command += ["-c", str(known[0])]
@@ -96,11 +98,11 @@ def _install(place):
         if not done or done.returncode:
             shutil.rmtree(place, ignore_errors=True)
             owsdtest.skip(f"not cached and cannot be had: Home Assistant: {last}")
-    shutil.copy(WANTED, place)
+    shutil.copy(wanted, place)
 
 
 class HomeAssistant:
-    def __init__(self, scene, port, blueprint=None, **inputs):
+    def __init__(self, scene, port, blueprint=None, year="2025", **inputs):
         """With a blueprint: its automation has these inputs."""
         self.broker_port, where = port, scene.path / "homeassistant"
         (where / ".storage").mkdir(parents=True)
@@ -116,11 +118,13 @@ class HomeAssistant:
                  "disabled_by": None, "discovery_keys": {}, "domain": "mqtt", "entry_id": "judge",
                  "minor_version": 2, "pref_disable_new_entities": False, "pref_disable_polling": False,
                  "source": "user", "subentries": [], "title": "judge", "unique_id": None, "version": 1}
+        if year == "2024":
+            entry["minor_version"] = 1
         (where / ".storage/core.config_entries").write_text(json.dumps(
-            {"version": 1, "minor_version": 5, "key": "core.config_entries", "data": {"entries": [entry]}}))
+            {"version": 1, "minor_version": 1 if year == "2024" else 5, "key": "core.config_entries", "data": {"entries": [entry]}}))
         self.registry = where / ".storage/core.device_registry"
         self.listener = mqtthouse.Listener(scene, port, "judge/#")
-        self.process = scene.start([python(), "-m", "homeassistant", "-c", where, "--skip-pip"], {"HOME": str(where), "PYTHONPATH": ""})
+        self.process = scene.start([python(year), "-m", "homeassistant", "-c", where, "--skip-pip"], {"HOME": str(where), "PYTHONPATH": ""})
         until(self.states, READY_SECONDS, lambda: f"Home Assistant is ready: {self.process.log()[-3000:]}", step=0.2)
 
     def states(self):

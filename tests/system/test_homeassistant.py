@@ -154,5 +154,28 @@ def test_the_blueprint_tells_of_alarms_and_of_what_is_lost(scene):
     assert not judge.complaints(), "\n".join(judge.complaints())
 
 
+def test_one_of_2024_takes_messages_of_entities(scene):
+    house = House(scene, {**ROOM, "LimitH": 30, "Decimals": 1}, RELAY, *KINDS[2:], wire=WIRE, Write=raw("on"), OldReaders=raw("on"),
+                  Link="http://pi7.local:8080/")
+    judge = HomeAssistant(scene, house.broker.port, year="2024")
+    judge.shows("sensor.room", "21.5")
+    judge.shows("binary_sensor.room_problem", "off")
+    assert judge.device(SENSOR)["serial_number"] == SENSOR
+    for action, state, value in (("turn_on", "on", True), ("turn_off", "off", False)):
+        judge.act(f"switch.{action}", f"switch.{BOARD}_relay")
+        house.arrives("relay", lambda m, v=value: m["good"] and m["v"] is v)
+        judge.shows(f"switch.{BOARD}_relay", state)
+    until(lambda: judge.listener.last("judge/tag") == f"tag {KEY}", 30, "the key is a tag")
+    announced = [topic.split("/")[1] for topic in house.kept("homeassistant/+/owsd_pi7/+/config")]
+    kinds = sorted(e.split(".")[0] for e, (_, device, *_) in judge.states().items() if device != "None")
+    assert kinds == sorted(kind for kind in announced if kind != "tag"), (kinds, announced)
+    assert not judge.complaints(), "\n".join(judge.complaints())
+    # an entity that goes leaves it, and the others stay; it may still read the topic that is emptied behind it
+    house.daemon.config.write_text(house.text(ROOM, *KINDS[2:], OldReaders=raw("on"), Write=raw("on")))
+    house.daemon.signal(signal.SIGHUP)
+    until(lambda: f"switch.{BOARD}_relay" not in judge.states(), 60, lambda: judge.states())
+    judge.shows("sensor.room", "21.5")
+
+
 if __name__ == "__main__":
     owsdtest.main(at_once=2)

@@ -198,19 +198,19 @@ def test_a_reload_announces_what_is_another_alone_and_empties_nothing(scene):
     assert all(text for topic in before for _, _, text in house.listener.all(topic))
 
 
-def test_each_entity_has_a_message_and_the_way_can_be_changed(scene):
+def test_old_readers_has_a_message_and_the_way_can_be_changed(scene):
     house = House(scene, ROOM, RELAY)
     sensor, problem = (f"homeassistant/{p}/owsd_pi7/owsd_28_A0B1C2000001_{name}/config"
                        for p, name in (("sensor", "temperature"), ("binary_sensor", "problem")))
     device(house, CHIP)
     for each, there, gone in (("on", {sensor, problem}, {CHIP, PORTS, NODE}), ("off", {CHIP, PORTS, NODE}, {sensor, problem})):
-        house.daemon.config.write_text(house.text(ROOM, RELAY, EachEntity=raw(each)))
+        house.daemon.config.write_text(house.text(ROOM, RELAY, OldReaders=raw(each)))
         house.face.signal(signal.SIGHUP)
         until(lambda t=there, g=gone: t <= set(house.kept()) and not g & set(house.kept()), 40, house.kept, step=0.5)
         # who took the old ones gets the new ones after their end
         lines = [(t, bool(p)) for _, t, p in house.listener.all()]
         assert max(lines.index((t, False)) for t in gone) < len(lines) - 1 - lines[::-1].index((min(there), True)), lines
-    house.daemon.config.write_text(house.text(ROOM, EachEntity=raw("on")))
+    house.daemon.config.write_text(house.text(ROOM, OldReaders=raw("on")))
     house.daemon.signal(signal.SIGHUP)
     until(lambda: sensor in house.kept() and not [t for t in house.kept() if "29_A0B1" in t], 40, house.kept, step=0.5)
     text = json.loads(house.kept()[sensor])

@@ -204,7 +204,7 @@ struct config_mqtt {
 	const char *node; /* NULL: the program's own */
 	const char *protocol, *topic, *profile, *discovery;
 	const char *primary_host, *link; /* NULL: none */
-	bool mqtt5, write, each_entity;
+	bool mqtt5, write, old_readers;
 };
 
 /* The Notify block, for owsd-notify; the texts are NULL where the file has none. */

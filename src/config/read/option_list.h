@@ -268,8 +268,8 @@ OPTION(MQTT_PROFILE, "Profile", MQTT, TEXT, profile, .check = text_is_profile,
        .help = "for whom it is published:" MQTT_PROFILES(MQTT_PROFILE_WORD))
 OPTION(MQTT_DISCOVERY, "Discovery", MQTT, TEXT, discovery, .check = text_is_topic,
        .preset = "homeassistant", .help = "where Home Assistant looks for devices")
-OPTION(MQTT_EACH_ENTITY, "EachEntity", MQTT, FLAG, each_entity, .preset = "off",
-       .help = "a message for each entity: for Home Assistant before 2024.11")
+OPTION(MQTT_OLD_READERS, "OldReaders", MQTT, FLAG, old_readers, .preset = "off",
+       .help = "publish as readers of years ago want it, too")
 OPTION(MQTT_LINK, "Link", MQTT, TEXT, link, .check = text_is_url,
        .help = "address of the page, for Home Assistant")
 OPTION(MQTT_PRIMARY_HOST, "PrimaryHost", MQTT, TEXT, primary_host, .check = text_is_name,

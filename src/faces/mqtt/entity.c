@@ -11,6 +11,8 @@
 #include "src/ground/signal/value.h"
 
 #define GOOD_OR_NONE " if value_json.good else None }}"
+/* A cover takes no None before 2025 */
+#define GOOD_OR_EMPTY " if value_json.good else '' }}"
 /* Of a brightness and a position Home Assistant takes no None: they stay, the state is unknown */
 #define NUMBER_OR_NOTHING "{{ value_json.v if value_json.good else '' }}"
 #define MARGIN_NS (5 * NS_PER_S)
@@ -24,7 +26,7 @@ static const struct {
 	[ENTITY_SWITCH] = {"switch", "{{ ('on' if value_json.v else 'off')" GOOD_OR_NONE},
 	[ENTITY_NUMBER] = {"number", "{{ value_json.v" GOOD_OR_NONE},
 	[ENTITY_LIGHT] = {"light", "{{ ('on' if value_json.v else 'off')" GOOD_OR_NONE},
-	[ENTITY_COVER] = {"cover", "{{ ('open' if value_json.v else 'closed')" GOOD_OR_NONE},
+	[ENTITY_COVER] = {"cover", "{{ ('open' if value_json.v else 'closed')" GOOD_OR_EMPTY},
 	[ENTITY_TEXT] = {"text", "{{ value_json.v[:255]" GOOD_OR_NONE},
 };
 
@@ -243,15 +245,18 @@ static void put_cover(struct json *json, const struct stream *s, const struct ro
 
 	put_commands(json, row, "pl_open", "on", "pl_cls", "off");
 	json_null(json, "pl_stop");
-	if (row->info.type == OWS_BOOL)
-		return;
-	entity_range(&row->info, &least, &most);
-	put_topic(json, "set_pos_t", row, "/set");
-	put_topic(json, "pos_t", row, "");
-	json_string(json, "pos_tpl", NUMBER_OR_NOTHING);
-	json_double(json, "pos_clsd", least);
-	json_double(json, "pos_open", most);
-	/* it keeps a position that is bad; but one that nobody has set yet can be set */
+	if (row->info.type != OWS_BOOL) {
+		entity_range(&row->info, &least, &most);
+		put_topic(json, "set_pos_t", row, "/set");
+		put_topic(json, "pos_t", row, "");
+		json_string(json, "pos_tpl", NUMBER_OR_NOTHING);
+		json_double(json, "pos_clsd", least);
+		json_double(json, "pos_open", most);
+	}
+	/*
+	 * Of one that is bad it keeps state and position; but one that nobody has set yet can be
+	 * set.
+	 */
 	put_availables(json, s, row->chip >= 0 ? &s->chips[row->chip] : NULL, row->topic);
 }
 
@@ -268,9 +273,10 @@ static void put_state_template(struct json *json, const struct row *row, enum en
 		return;
 	}
 	entity_range(&row->info, &least, &most);
-	snprintf(text, sizeof(text), "{{ ('%s' if value_json.v > %.9g else '%s')" GOOD_OR_NONE,
+	snprintf(text, sizeof(text), "{{ ('%s' if value_json.v > %.9g else '%s')%s",
 	         kind == ENTITY_LIGHT ? "on" : "open", least,
-	         kind == ENTITY_LIGHT ? "off" : "closed");
+	         kind == ENTITY_LIGHT ? "off" : "closed",
+	         kind == ENTITY_LIGHT ? GOOD_OR_NONE : GOOD_OR_EMPTY);
 	json_string(json, key, text);
 }
 

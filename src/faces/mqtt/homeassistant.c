@@ -159,7 +159,7 @@ static bool birth(struct stream *s, int number, bool *more)
 	if (fflush(s->out))
 		return false;
 	print = hash_text(HASH_BEGIN, s->text, s->len);
-	if (print != *had && !(s->each_entity ? put_each(s) : stream_put(s, topic, true)))
+	if (print != *had && !(s->old_readers ? put_each(s) : stream_put(s, topic, true)))
 		return false;
 	*had = print;
 	*announced = true;
@@ -284,7 +284,7 @@ static const char *entity_outlived(struct stream *s, const char *topic, bool *is
 	if (!*is_one)
 		return NULL;
 	chip = chip_of(s, id + strcspn(id, "_") + 1);
-	if (!s->each_entity || s->profile->outlived != outlived) {
+	if (!s->old_readers || s->profile->outlived != outlived) {
 		*(chip ? &chip->birth_print : &s->birth_print) = 0;
 		return "";
 	}
@@ -314,7 +314,7 @@ static const char *outlived(struct stream *s, const char *topic, const char *tex
 		chip = chip_of(s, id);
 	if (!node && !chip)
 		return "";
-	if (s->each_entity) {
+	if (s->old_readers) {
 		*(chip ? &chip->birth_print : &s->birth_print) = 0;
 		return "";
 	}

@@ -79,7 +79,7 @@ static void mqtt_begin(struct face *face, int64_t now_ns)
 	m->stream.host_ms = 0;
 	m->stream.link = m->options.link;
 	m->stream.write = m->options.write;
-	m->stream.each_entity = m->options.each_entity;
+	m->stream.old_readers = m->options.old_readers;
 	m->stream.outlet = (struct outlet){.put = broker_put, .ctx = &m->broker};
 	m->stream.class_of = class_of;
 	m->stream.class_ctx = face;

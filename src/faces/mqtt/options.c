@@ -84,7 +84,7 @@ void mqtt_options_take(struct mqtt_options *options, const struct face *face)
 	name_page(options, face->config);
 	options->mqtt5 = mqtt->mqtt5;
 	options->write = mqtt->write;
-	options->each_entity = mqtt->each_entity;
+	options->old_readers = mqtt->old_readers;
 }
 
 const char *mqtt_way_name(const struct mqtt_way *way, char text[MQTT_WAY_NAME])

@@ -66,15 +66,16 @@ void profiles_place(const struct stream *s, int number, char topic[TOPIC_SIZE])
 
 		last = p->below;
 		profiles_prefix(p, s->topic, s->node, prefix);
+		/* who reads the births lets go of a topic before that is emptied */
+		for (int n = 0; p->births && (!i || p != s->profile) && p->births(s, n, topic); n++)
+			if (!number--)
+				return;
+		topic[0] = '\0';
 		for (const char *const *below = p->below; below && *below && !again; below++)
 			if (!number--) {
 				snprintf(topic, TOPIC_SIZE, "%.300s/%s", prefix, *below);
 				return;
 			}
-		for (int n = 0; p->births && (!i || p != s->profile) && p->births(s, n, topic); n++)
-			if (!number--)
-				return;
-		topic[0] = '\0';
 	}
 }
 

@@ -132,13 +132,13 @@ void stream_clear(struct stream *s)
 
 static void free_gone(struct stream *s)
 {
-	for (int i = 0; i < s->gone_count; i++) {
+	for (int i = s->gone_at; i < s->gone_count; i++) {
 		free(s->gone[i].topic);
 		free(s->gone[i].text);
 	}
 	free(s->gone);
 	s->gone = NULL;
-	s->gone_count = s->gone_room = 0;
+	s->gone_at = s->gone_count = s->gone_room = 0;
 }
 
 void stream_close(struct stream *s)
@@ -473,21 +473,23 @@ void stream_live(struct stream *s, bool live)
 /* Who has the last value in mind unlearns it, and who comes later finds nothing. */
 static bool pump_gone(struct stream *s)
 {
-	while (s->settled && s->gone_count) {
-		struct gone *last = &s->gone[s->gone_count - 1];
-		const char *topic = last->topic, *below = stream_below(topic, s->prefix);
+	while (s->settled && s->gone_at < s->gone_count) {
+		struct gone *first = &s->gone[s->gone_at];
+		const char *topic = first->topic, *below = stream_below(topic, s->prefix);
 		bool value = s->profile->none && below && !strchr(below, '/');
 
 		if ((value && !stream_put_text(s, topic, s->profile->none, true)) ||
-		    !stream_put_text(s, topic, last->text, true))
+		    !stream_put_text(s, topic, first->text, true))
 			return false;
 		/* it names what is gone, too, or made room: what there is follows */
-		if (*last->text || (!below && s->profile->outlived))
+		if (*first->text || (!below && s->profile->outlived))
 			stream_announce(s, false);
-		free(last->topic);
-		free(last->text);
-		s->gone_count--;
+		free(first->topic);
+		free(first->text);
+		s->gone_at++;
 	}
+	if (s->gone_at == s->gone_count)
+		s->gone_at = s->gone_count = 0;
 	return true;
 }
 

@@ -114,7 +114,7 @@ struct stream {
 	struct outlet outlet;
 	/* What all topics begin with; the keys. The texts belong to the caller. */
 	const char *prefix, *topic, *node, *discovery, *link;
-	bool write, each_entity;
+	bool write, old_readers;
 	struct ows *h;
 	/* The key Class of a signal; "": none. The text counts until the next stream_make(). */
 	const char *(*class_of)(void *ctx, const char *name);
@@ -124,9 +124,9 @@ struct stream {
 	struct row **by_topic, **by_chip; /* all rows; those without a chip are first */
 	struct chip *chips;
 	int chip_count;
-	int *queue, queue_at, queue_len; /* rows with news, the oldest first */
-	struct gone *gone;               /* topics of which something is no more */
-	int gone_count, gone_room;
+	int *queue, queue_at, queue_len;    /* rows with news, the oldest first */
+	struct gone *gone;                  /* topics of which something is no more */
+	int gone_at, gone_count, gone_room; /* those before gone_at are published */
 	bool settled;   /* what the broker keeps of the node is ours alone, and can be emptied */
 	bool live;      /* owsd is there: else no value is good */
 	int birth;      /* the next message of the birth; -1: all is published */

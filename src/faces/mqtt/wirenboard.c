@@ -5,8 +5,10 @@
  * tells them apart.
  */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "src/faces/kit/body.h"
 #include "src/faces/mqtt/entity.h"
 #include "src/faces/mqtt/plain.h"
 #include "src/faces/mqtt/stream.h"
@@ -76,6 +78,36 @@ static void put_number(struct json *json, const char *key, double number)
 		json_double(json, key, number);
 }
 
+/* What meta of a control has, in s->text, at a topic for each, as the conventions had it first. */
+static bool put_members(struct stream *s, const char *control)
+{
+	char *end = s->old_readers ? strstr(s->text, ",\"title\":") : NULL, *text;
+	char topic[TOPIC_SIZE];
+	struct body body;
+	bool put = true;
+
+	if (!end)
+		return true;
+	text = strndup(s->text, (size_t)(end - s->text) + 1);
+	if (!text)
+		return false;
+	text[end - s->text] = '}';
+	if (body_parse(text, strlen(text), &body))
+		body.count = 0;
+	for (unsigned i = 0; put && i < body.count; i++) {
+		const struct body_member *member = &body.members[i];
+
+		snprintf(topic, sizeof(topic), "%s/" META "/%s", control, member->key);
+		put = stream_put_text(s, topic,
+		                      member->kind == BODY_TRUE    ? "1"
+		                      : member->kind == BODY_FALSE ? "0"
+		                                                   : member->text,
+		                      true);
+	}
+	free(text);
+	return put;
+}
+
 static bool put_control(struct stream *s, const struct row *row)
 {
 	const struct ows_info *info = &row->info;
@@ -102,7 +134,7 @@ static bool put_control(struct stream *s, const struct row *row)
 	json_bool(&json, "readonly", !s->write || !info->output);
 	put_title(&json, *info->description ? info->description : info->name, row->simulated);
 	json_object_end(&json);
-	return put_below_row(s, row, META, NULL);
+	return put_below_row(s, row, META, NULL) && put_members(s, row->topic);
 }
 
 /* A control beside that of the signal: does its limit alarm stand? */
@@ -123,7 +155,10 @@ static bool put_alarm_control(struct stream *s, const struct row *row)
 	put_title(&json, title, false);
 	json_object_end(&json);
 	snprintf(topic, sizeof(topic), "%s" ALARM "/" META, row->topic);
-	return stream_put(s, topic, true);
+	if (!stream_put(s, topic, true))
+		return false;
+	topic[strlen(topic) - strlen("/" META)] = '\0';
+	return put_members(s, topic);
 }
 
 static bool put_device(struct stream *s)
@@ -137,7 +172,8 @@ static bool put_device(struct stream *s)
 	json_string(&json, "driver", "owsd");
 	put_title(&json, title, false);
 	json_object_end(&json);
-	return stream_put_below(s, META, NULL);
+	return stream_put_below(s, META, NULL) &&
+	       (!s->old_readers || stream_put_below(s, META "/name", title));
 }
 
 static bool birth(struct stream *s, int number, bool *more)
@@ -228,6 +264,12 @@ static bool writes(const struct stream *s, const char *topic, const char *below)
 
 	if (!strcmp(below, META) || !strcmp(below, ERROR))
 		return true;
+	if (!strncmp(below, META "/", strlen(META "/")))
+		return s->old_readers;
+	/* a member of meta, behind the topic of a control */
+	if (end && !strncmp(end, "/" META "/", strlen("/" META "/")) &&
+	    strcmp(end, "/" ERROR) != 0 && !s->old_readers)
+		return false;
 	if (len <= tail || memcmp(topic + len - tail, ALARM, tail) != 0)
 		return stream_row(s, topic, len);
 	row = stream_row(s, topic, len - tail);
@@ -235,7 +277,7 @@ static bool writes(const struct stream *s, const char *topic, const char *below)
 }
 
 static const char *const places[] = {
-	META, ERROR, "controls/+", "controls/+/" META, "controls/+/" ERROR, NULL};
+	META, META "/+", "controls/+", "controls/+/" META, "controls/+/" META "/+", NULL};
 
 const struct profile profile_wirenboard = {
 	.name = "wirenboard",

@@ -341,13 +341,13 @@ static void test_a_chip_has_a_problem_with_its_reason_also_while_it_is_away(void
 	TEST_ASSERT_NULL(published_at(&p, "o/pi/chip/01.000000000007/problem"));
 }
 
-static void test_each_entity_has_a_message_of_its_own_if_that_is_wanted(void)
+static void test_old_readers_has_a_message_of_its_own_if_that_is_wanted(void)
 {
 	static const char topic[] = "ha/switch/owsd_pi/owsd_29_000000000001_PIO_0/config";
 	const char *c;
 	int count = 0;
 
-	p.s.each_entity = true;
+	p.s.old_readers = true;
 	stream_announce(&p.s, true);
 	instance_put(&p.in, LAMP + 1, 1, ows_now());
 	/* the outlet takes little at a time, and no entity is left out or comes twice */
@@ -387,7 +387,7 @@ static void test_entities_and_devices_of_the_other_way_are_emptied(void)
 	profiles_kept(&p.s, "ha/switch/owsd_pi/owsd_29_000000000001_PIO_0/config", "{}");
 	published_pump(&p);
 	has(p.said, "ha/switch/owsd_pi/owsd_29_000000000001_PIO_0/config \nha/device/owsd_29");
-	p.s.each_entity = true;
+	p.s.old_readers = true;
 	profiles_kept(&p.s, "ha/switch/owsd_pi/owsd_29_000000000001_PIO_0/config", "{}");
 	profiles_kept(&p.s, "ha/switch/owsd_pi/owsd_29_000000000001_PIO_1/config", "{}");
 	profiles_kept(&p.s, "ha/switch/owsd_pi2/owsd_29_000000000001_PIO_1/config", "{}");
@@ -469,7 +469,7 @@ int main(void)
 	RUN_TEST(test_at_a_reload_only_what_is_another_is_announced);
 	RUN_TEST(test_a_device_names_its_maker_its_chip_and_the_page);
 	RUN_TEST(test_a_chip_has_a_problem_with_its_reason_also_while_it_is_away);
-	RUN_TEST(test_each_entity_has_a_message_of_its_own_if_that_is_wanted);
+	RUN_TEST(test_old_readers_has_a_message_of_its_own_if_that_is_wanted);
 	RUN_TEST(test_entities_and_devices_of_the_other_way_are_emptied);
 	RUN_TEST(test_home_assistant_that_comes_is_told_all_again_and_nobody_else);
 	RUN_TEST(test_health_is_published_when_it_is_another_and_has_the_trouble);

@@ -244,19 +244,19 @@ static const char *places(void)
 static void test_the_topics_of_all_profiles_are_looked_at_our_own_first(void)
 {
 	TEST_ASSERT_EQUAL_STRING(
-		"o/pi/+\no/pi/+/alarm\no/pi/chip/+\no/pi/chip/+/problem\nha/device/+/config\n"
-		"ha/+/owsd_pi/+/config\n"
+		"o/pi/+\no/pi/+/alarm\no/pi/chip/+\no/pi/chip/+/problem\n"
+		"ha/device/+/config\nha/+/owsd_pi/+/config\n"
 		"homie/5/owsd-pi/+\nhomie/5/owsd-pi/+/+\n"
-		"/devices/owsd_pi/meta\n/devices/owsd_pi/meta/error\n/devices/owsd_pi/controls/+\n"
-		"/devices/owsd_pi/controls/+/meta\n/devices/owsd_pi/controls/+/meta/error\n\n",
+		"/devices/owsd_pi/meta\n/devices/owsd_pi/meta/+\n/devices/owsd_pi/controls/+\n"
+		"/devices/owsd_pi/controls/+/meta\n/devices/owsd_pi/controls/+/meta/+\n\n",
 		places());
 	take_profile(&profile_homie5);
 	TEST_ASSERT_EQUAL_STRING(
 		"homie/5/owsd-pi/+\nhomie/5/owsd-pi/+/+\n"
-		"o/pi/+\no/pi/+/alarm\no/pi/chip/+\no/pi/chip/+/problem\nha/device/+/config\n"
-		"ha/+/owsd_pi/+/config\n"
-		"/devices/owsd_pi/meta\n/devices/owsd_pi/meta/error\n/devices/owsd_pi/controls/+\n"
-		"/devices/owsd_pi/controls/+/meta\n/devices/owsd_pi/controls/+/meta/error\n\n",
+		"ha/device/+/config\nha/+/owsd_pi/+/config\n"
+		"o/pi/+\no/pi/+/alarm\no/pi/chip/+\no/pi/chip/+/problem\n"
+		"/devices/owsd_pi/meta\n/devices/owsd_pi/meta/+\n/devices/owsd_pi/controls/+\n"
+		"/devices/owsd_pi/controls/+/meta\n/devices/owsd_pi/controls/+/meta/+\n\n",
 		places());
 }
 

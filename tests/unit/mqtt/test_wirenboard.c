@@ -54,6 +54,31 @@ static void test_each_signal_is_a_control_in_the_order_of_the_file(void)
 	     "{\"type\":\"switch\",\"order\":3,\"readonly\":true,\"title\":{\"en\":\"lamp\"}}");
 }
 
+static void test_members_of_meta_have_topics_of_their_own_if_that_is_wanted(void)
+{
+	p.s.old_readers = true;
+	says("level", "{\"type\":\"value\",\"precision\":1,\"order\":2,\"readonly\":false,"
+	              "\"title\":{\"en\":\"level\"}}");
+	TEST_ASSERT_EQUAL_STRING("value", published_at(&p, CONTROL "level/meta/type"));
+	TEST_ASSERT_EQUAL_STRING("1", published_at(&p, CONTROL "level/meta/precision"));
+	TEST_ASSERT_EQUAL_STRING("2", published_at(&p, CONTROL "level/meta/order"));
+	TEST_ASSERT_EQUAL_STRING("0", published_at(&p, CONTROL "level/meta/readonly"));
+	TEST_ASSERT_EQUAL_STRING("1", published_at(&p, CONTROL "room/meta/readonly"));
+	TEST_ASSERT_EQUAL_STRING("owsd pi", published_at(&p, AT "meta/name"));
+	/* they stay as long as they are wanted */
+	profiles_kept(&p.s, CONTROL "level/meta/type", "value");
+	profiles_kept(&p.s, AT "meta/name", "owsd pi");
+	TEST_ASSERT_EQUAL_STRING("", published_pump(&p));
+	p.s.old_readers = false;
+	profiles_kept(&p.s, CONTROL "level/meta/type", "value");
+	TEST_ASSERT_EQUAL_STRING(CONTROL "level/meta/type \n", published_pump(&p));
+	profiles_kept(&p.s, AT "meta/name", "owsd pi");
+	TEST_ASSERT_EQUAL_STRING(AT "meta/name \n", published_pump(&p));
+	profiles_kept(&p.s, CONTROL "level/meta/error", "r");
+	profiles_kept(&p.s, AT "meta/error", "r");
+	TEST_ASSERT_EQUAL_STRING("", published_pump(&p));
+}
+
 static void test_units_are_those_of_the_conventions(void)
 {
 	static const struct {
@@ -201,6 +226,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_each_signal_is_a_control_in_the_order_of_the_file);
+	RUN_TEST(test_members_of_meta_have_topics_of_their_own_if_that_is_wanted);
 	RUN_TEST(test_units_are_those_of_the_conventions);
 	RUN_TEST(test_range_precision_and_description_go_along);
 	RUN_TEST(test_an_error_says_whether_it_is_of_reading_writing_or_time);
