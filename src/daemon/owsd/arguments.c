@@ -198,9 +198,7 @@ static int check_together(struct arguments *a)
 		return EXIT_USAGE;
 	}
 	if (!segment_name_ok(a->instance)) {
-		complain("instance name '%s': 1 to %d letters, digits, '-', '_', '.' expected, "
-		         "not first a dot",
-		         a->instance, SEGMENT_NAME_MAX);
+		complain("instance name '%s': " SEGMENT_NAME_WANTED, a->instance);
 		return EXIT_USAGE;
 	}
 	if (!a->file) {

@@ -14,9 +14,9 @@
 #include "src/ground/text/printable.h"
 #include "src/ground/text/refused.h"
 #include "src/memory/shm/dir.h"
+#include "src/memory/shm/segment.h"
 
-#define OPT_CHECK 256    /* it has no letter */
-#define INSTANCE_MAX 100 /* owsd's own limit is lower, and libows knows it */
+#define OPT_CHECK 256 /* it has no letter */
 
 void face_complain(const char *program, const char *format, ...)
 {
@@ -75,11 +75,8 @@ static int arguments_refuse(int option, const struct option *words, const struct
 
 static int arguments_check(struct face_arguments *a)
 {
-	size_t len = strlen(a->instance);
-
-	if (!len || len > INSTANCE_MAX || a->instance[0] == '.' || strchr(a->instance, '/')) {
-		face_complain(a->program, "instance name '%s': expected that of an owsd",
-		              a->instance);
+	if (!segment_name_ok(a->instance)) {
+		face_complain(a->program, "instance name '%s': " SEGMENT_NAME_WANTED, a->instance);
 		return FACE_EXIT_USAGE;
 	}
 	if (a->file)

@@ -19,6 +19,7 @@ enum segment_kind { SEGMENT_IMAGE, SEGMENT_FORCE };
 
 /* The longest name of an instance: letters, digits, '-', '_', '.', and no dot at the beginning. */
 #define SEGMENT_NAME_MAX 32
+#define SEGMENT_NAME_WANTED "1 to 32 letters, digits, '-', '_', '.' expected, not first a dot"
 bool segment_name_ok(const char *instance);
 /* The name of an instance's file in its place: "OWS.image". */
 #define SEGMENT_FILE (SEGMENT_NAME_MAX + 16)

@@ -25,7 +25,7 @@ void tearDown(void)
 /* Words up to the first NULL, after the name of the program. */
 static int start(const struct face_option *own, const char *one, const char *two)
 {
-	static char words[3][32];
+	static char words[3][40];
 	const char *const given[] = {"owsd-test", one, two};
 	char *argv[4] = {NULL};
 	int argc = 0;
@@ -74,6 +74,10 @@ static void test_what_is_wrong_ends_it_with_two_and_help_with_none(void)
 	TEST_ASSERT_EQUAL_INT(FACE_EXIT_USAGE, start(&none, "x.rio", NULL));
 	TEST_ASSERT_EQUAL_INT(FACE_EXIT_USAGE, start(&none, "-n", "a/b"));
 	TEST_ASSERT_EQUAL_INT(FACE_EXIT_USAGE, start(&none, "-n", ""));
+	/* no owsd has such a name: it would be waited for without end */
+	TEST_ASSERT_EQUAL_INT(FACE_EXIT_USAGE,
+	                      start(&none, "-n", "the_house_of_our_neighbours_at_1_"));
+	TEST_ASSERT_EQUAL_INT(FACE_EXIT_USAGE, start(&none, "-n", "my house"));
 	TEST_ASSERT_EQUAL_INT(FACE_EXIT_USAGE, start(&none, "-n", NULL));
 	TEST_ASSERT_EQUAL_INT(EXIT_SUCCESS, start(&none, "-h", NULL));
 	TEST_ASSERT_EQUAL_INT(EXIT_SUCCESS, start(&none, "--version", NULL));
