@@ -187,40 +187,6 @@ static int run_piece(struct serial_master *master, bool reset, const uint8_t *ou
 	return 0;
 }
 
-/* Two bits for each of an id: the direction or what was taken, and below it whether chips had both. */
-static int run_path(struct serial_master *master, struct link_path *path)
-{
-	struct stream stream = {.out_n = 0};
-
-	put_command(master, &stream, SEARCH_ON, false);
-	for (unsigned i = 0; i < 16; i++) {
-		uint8_t four = path->rom[i / 2] >> i % 2 * 4 & 0x0F, byte = 0;
-
-		for (unsigned bit = 0; bit < 4; bit++)
-			byte |= (uint8_t)((four >> bit & 1) << (2 * bit + 1));
-		put_data(master, &stream, byte);
-	}
-	put_command(master, &stream, SEARCH_OFF, false);
-	int err = send(master, &stream);
-
-	if (err)
-		return err;
-	const uint8_t *answer = stream.in + stream.in_n - 16;
-
-	master->cost.wire_ns += UINT64_C(192) * SLOT_NS;
-	memset(path, 0, sizeof(*path));
-	for (unsigned i = 0; i < 64; i++) {
-		unsigned two = answer[i / 4] >> i % 4 * 2 & 3;
-
-		path->rom[i / 8] |= (uint8_t)((two >> 1) << i % 8);
-		path->both[i / 8] |= (uint8_t)((two & 1) << i % 8);
-		/* no chip is left: 1 and 1 from here on */
-		if (two != 3)
-			path->answered = (uint8_t)(i + 1);
-	}
-	return 0;
-}
-
 static int ds2480b_run(struct link *base, const struct link_part *part)
 {
 	struct serial_master *master = serial_of(base);
@@ -229,6 +195,8 @@ static int ds2480b_run(struct link *base, const struct link_part *part)
 	bool reset = part->reset;
 	int err = master->lost ? resync(master) : 0;
 
+	if (!err && !reset && !out_n && !part->in_n && !strong)
+		return 0;
 	while (!err && (reset || out_at < out_n || (!strong && in_at < part->in_n))) {
 		size_t out = out_n - out_at < PIECE ? out_n - out_at : PIECE;
 		size_t in = out_at + out < out_n ? 0 : part->in_n - in_at;
@@ -240,9 +208,7 @@ static int ds2480b_run(struct link *base, const struct link_part *part)
 		out_at += out;
 		in_at += in;
 	}
-	if (!err && strong)
-		err = write_strong(master, part->out[out_n]);
-	return !err && part->path ? run_path(master, part->path) : err;
+	return !err && strong ? write_strong(master, part->out[out_n]) : err;
 }
 
 static int ds2480b_slot(struct link *base, bool out, enum link_after after)
@@ -267,6 +233,43 @@ static int ds2480b_slot(struct link *base, bool out, enum link_after after)
 		return lose(master, -EIO);
 	master->strong = after == LINK_STRONG;
 	return line != 0;
+}
+
+/* Two bits for each of an id: the direction or what was taken, and below it the conflict. */
+static int ds2480b_path(struct link *base, uint8_t rom[8], uint8_t conflict[8])
+{
+	struct serial_master *master = serial_of(base);
+	struct stream stream = {.out_n = 0};
+	uint8_t answer[16];
+	bool nobody = true;
+
+	if (master->lost)
+		return -EIO;
+	put_command(master, &stream, SEARCH_ON, false);
+	for (unsigned i = 0; i < 16; i++) {
+		uint8_t four = rom[i / 2] >> i % 2 * 4 & 0x0F, byte = 0;
+
+		for (unsigned bit = 0; bit < 4; bit++)
+			byte |= (uint8_t)((four >> bit & 1) << (2 * bit + 1));
+		put_data(master, &stream, byte);
+	}
+	put_command(master, &stream, SEARCH_OFF, false);
+	int err = send(master, &stream);
+
+	if (err)
+		return err;
+	master->cost.wire_ns += UINT64_C(192) * SLOT_NS;
+	memcpy(answer, stream.in + stream.in_n - 16, 16);
+	memset(rom, 0, 8);
+	memset(conflict, 0, 8);
+	for (unsigned i = 0; i < 64; i++) {
+		unsigned two = answer[i / 4] >> i % 4 * 2 & 3;
+
+		rom[i / 8] |= (uint8_t)((two >> 1) << i % 8);
+		conflict[i / 8] |= (uint8_t)((two & 1) << i % 8);
+		nobody &= two == 3;
+	}
+	return nobody ? -EHOSTDOWN : answer[15] >> 6 == 3 ? -EBADMSG : 0;
 }
 
 /* What answers in place of a DS2480B. */
@@ -367,11 +370,12 @@ static const struct link_ops ds2480b_link = {
 	.recover = ds2480b_recover,
 	.run = ds2480b_run,
 	.slot = ds2480b_slot,
+	.path = ds2480b_path,
 	.cost = serial_cost,
 };
 
 const struct serial_kind serial_ds2480b = {
 	.link = &ds2480b_link,
-	.facts = {.strong = true, .splits = true, .paths = true},
+	.facts = {.strong = true, .splits = true},
 	.begin = ds2480b_begin,
 };

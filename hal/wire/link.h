@@ -57,25 +57,14 @@ struct driver_ops;
 typedef int link_found(void *ctx, const uint8_t rom[8]);
 
 /*
- * The path of a search: for each of 64 bits two read slots, and a write slot that keeps the chips
- * of one direction.
- */
-struct link_path {
-	uint8_t rom[8];   /* which direction where chips have both; then: which was taken */
-	uint8_t both[8];  /* then: the bits where chips had both */
-	uint8_t answered; /* then: how many bits chips answered; 64: the path ends at one */
-};
-
-/*
  * What one call does on the wire, in this order: a reset, or the transaction before goes on; out_n
- * bytes written; in_n bytes read, each byte from its lowest bit on, or a path (link_facts.paths).
- * Each may be left out. What follows is LINK_IDLE where bytes are read.
+ * bytes written; in_n bytes read, each byte from its lowest bit on. Each may be left out. What
+ * follows is LINK_IDLE where bytes are read.
  */
 struct link_part {
 	const uint8_t *out;
 	uint8_t *in;
 	size_t out_n, in_n;
-	struct link_path *path; /* NULL: none */
 	bool reset;
 	enum link_after after;
 };
@@ -99,8 +88,6 @@ struct link_facts {
 	bool strong;
 	/* A transaction may write after it has read: no other user of the wire comes between. */
 	bool splits;
-	/* run() makes paths; else triplet() does, or slot(). */
-	bool paths;
 };
 
 /*
@@ -136,10 +123,16 @@ struct link_ops {
 	/*
 	 * Two read slots and one write slot: of the id's bit, its complement, and the direction,
 	 * which is the bit where the two differ. Returns bit 0: the id bit read, bit 1: its
-	 * complement, bit 2: the direction taken; or an error. NULL: made of slot(). Not used where
-	 * run() makes paths.
+	 * complement, bit 2: the direction taken; or an error. NULL: made of slot().
 	 */
 	int (*triplet)(struct link *link, bool direction);
+	/*
+	 * All 64 triplets of a search whose command was run: the directions, a bit each, become the
+	 * id that was taken; conflict has the bits where devices differ. 0; -EHOSTDOWN: nobody is
+	 * in this search; -EBADMSG: devices left in the middle; or an error. NULL: made of
+	 * triplet().
+	 */
+	int (*path)(struct link *link, uint8_t rom[8], uint8_t conflict[8]);
 	/*
 	 * n transactions at the same time, LINK_MANY at most, on links with this function, each of
 	 * another chip. None waits for another beyond what it takes of the way to the chips. An
@@ -151,7 +144,7 @@ struct link_ops {
 	unsigned (*many)(const struct link *link);
 	/*
 	 * A whole search, of one family or (0) of all: 0, what found returned, or an error. NULL:
-	 * made of run() and triplet() (hal/wire/search.h).
+	 * made of run and triplet (hal/wire/search.h).
 	 */
 	int (*search)(struct link *link, bool alarm, uint8_t family, link_found *found, void *ctx);
 	/*

@@ -15,41 +15,8 @@ void search_begin(struct search *search, bool alarm, uint8_t family)
 	search->branch = family ? 64 : 0;
 }
 
-static bool rom_bit(const uint8_t rom[8], unsigned position)
+static int triplet(struct link *link, bool direction)
 {
-	return rom[(position - 1) / 8] >> (position - 1) % 8 & 1;
-}
-
-static void set_rom_bit(uint8_t rom[8], unsigned position, bool value)
-{
-	uint8_t mask = (uint8_t)(1 << (position - 1) % 8);
-
-	rom[(position - 1) / 8] = (uint8_t)(value ? rom[(position - 1) / 8] | mask
-	                                          : rom[(position - 1) / 8] & ~mask);
-}
-
-/* 1: a chip is there; 0: none is. *path: its directions are set; it is made where the link can. */
-static int begin_search(struct link *link, uint8_t command, struct link_path *path)
-{
-	const struct link_part part = {.reset = true,
-	                               .out = &command,
-	                               .out_n = 1,
-	                               .path = link->facts->paths ? path : NULL};
-	int err = link->ops->run(link, &part);
-
-	return err == -EHOSTDOWN ? 0 : err ? err : 1;
-}
-
-/* As link_ops.triplet. */
-static int triplet_at(struct link *link, const struct link_path *path, unsigned position)
-{
-	bool direction = rom_bit(path->rom, position);
-
-	if (link->facts->paths) {
-		if (position > path->answered)
-			return 7;
-		return (rom_bit(path->both, position) ? 0 : direction ? 1 : 2) | direction << 2;
-	}
 	if (link->ops->triplet)
 		return link->ops->triplet(link_wire(link), direction);
 
@@ -66,6 +33,27 @@ static int triplet_at(struct link *link, const struct link_path *path, unsigned 
 	return err < 0 ? err : id | complement << 1 | taken << 2;
 }
 
+static int begin_search(struct link *link, uint8_t command)
+{
+	const struct link_part part = {.reset = true, .out = &command, .out_n = 1};
+	int err = link->ops->run(link, &part);
+
+	return err == -EHOSTDOWN ? 0 : err ? err : 1;
+}
+
+static bool rom_bit(const uint8_t rom[8], unsigned position)
+{
+	return rom[(position - 1) / 8] >> (position - 1) % 8 & 1;
+}
+
+static void set_rom_bit(uint8_t rom[8], unsigned position, bool value)
+{
+	uint8_t mask = (uint8_t)(1 << (position - 1) % 8);
+
+	rom[(position - 1) / 8] = (uint8_t)(value ? rom[(position - 1) / 8] | mask
+	                                          : rom[(position - 1) / 8] & ~mask);
+}
+
 /* The direction at a branch: as last time before the deepest untried one, 1 there, 0 behind. */
 static bool direction_at(const struct search *search, unsigned position)
 {
@@ -74,23 +62,55 @@ static bool direction_at(const struct search *search, unsigned position)
 	return position == search->branch;
 }
 
+/* The triplets of a search: made all at once, or each when it is asked for. */
+struct pass {
+	bool made;
+	uint8_t rom[8], conflict[8];
+};
+
+/* rom: the directions. As link_ops.path. */
+static int make_pass(struct link *link, const uint8_t rom[8], struct pass *pass)
+{
+	pass->made = link->ops->path;
+	if (!pass->made)
+		return 0;
+	memcpy(pass->rom, rom, sizeof(pass->rom));
+	return link->ops->path(link_wire(link), pass->rom, pass->conflict);
+}
+
+static int next_bits(struct link *link, const struct pass *pass, unsigned position, bool direction)
+{
+	if (!pass->made)
+		return triplet(link, direction);
+	int taken = rom_bit(pass->rom, position);
+
+	return taken << 2 | (rom_bit(pass->conflict, position) ? 0 : taken ? 1 : 2);
+}
+
 int search_next(struct search *search, struct link *link)
 {
-	struct link_path path = {0};
-	uint8_t rom[8] = {0};
+	uint8_t rom[8] = {0}, directions[8] = {0};
 	unsigned untried = 0;
+	struct pass pass;
 
 	if (search->last)
 		return 0;
-	for (unsigned position = 1; position <= 64; position++)
-		set_rom_bit(path.rom, position, direction_at(search, position));
-	int present = begin_search(link, search->command, &path);
+	int present = begin_search(link, search->command);
+	if (present > 0) {
+		for (unsigned position = 1; position <= 64; position++)
+			set_rom_bit(directions, position, direction_at(search, position));
+		int err = make_pass(link, directions, &pass);
+
+		if (err && err != -EHOSTDOWN)
+			return err;
+		present = !err;
+	}
 	if (present <= 0) {
 		search->last = true;
 		return present;
 	}
 	for (unsigned position = 1; position <= 64; position++) {
-		int bits = triplet_at(link, &path, position);
+		int bits = next_bits(link, &pass, position, direction_at(search, position));
 
 		if (bits < 0)
 			return bits;
@@ -107,8 +127,7 @@ int search_next(struct search *search, struct link *link)
 		if ((bits & 3) == 0 && !taken)
 			untried = position;
 		set_rom_bit(rom, position, taken);
-		if (search->lone && !link->facts->paths &&
-		    search->lone(search->ctx, rom, position, rom))
+		if (search->lone && !pass.made && search->lone(search->ctx, rom, position, rom))
 			break;
 	}
 	if (!onewire_rom_valid(rom))
@@ -158,17 +177,21 @@ static void exclude(const uint8_t *const roms[], bool away[], unsigned n, unsign
 static int follow(struct link *link, uint8_t command, const uint8_t *const roms[], bool away[],
                   unsigned n, unsigned length)
 {
-	struct link_path path = {0};
+	int present = begin_search(link, command);
+	struct pass pass;
 
-	memcpy(path.rom, roms[0], sizeof(path.rom));
-	int present = begin_search(link, command, &path);
+	if (present > 0) {
+		int err = make_pass(link, roms[0], &pass);
+
+		present = err == -EHOSTDOWN ? 0 : err ? err : 1;
+	}
 	if (present == 0)
 		for (unsigned i = 0; i < n; i++)
 			away[i] = true;
 	if (present <= 0)
 		return present;
 	for (unsigned position = 1; position <= length; position++) {
-		int bits = triplet_at(link, &path, position);
+		int bits = next_bits(link, &pass, position, rom_bit(roms[0], position));
 
 		if (bits < 0)
 			return bits;

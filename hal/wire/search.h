@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The ROM search (Maxim application note 187), one device per call, so that other work fits
- * between. Made of run() of a link where it makes paths, else of triplet() or slot().
+ * between. Made of run() and triplet() of a link, or of slot() where it has no triplet.
  */
 #pragma once
 

@@ -153,35 +153,12 @@ static int wire_read(struct link *link, uint8_t *data, size_t n)
 	return 0;
 }
 
-static int wire_triplet(struct link *link, bool direction);
-
-static int wire_path(struct link *link, struct link_path *path)
-{
-	for (path->answered = 0; path->answered < 64; path->answered++) {
-		uint8_t *byte = &path->rom[path->answered / 8];
-		uint8_t mask = (uint8_t)(1 << path->answered % 8);
-		int bits = wire_triplet(link, *byte & mask);
-
-		if (bits < 0)
-			return bits;
-		if ((bits & 3) == 3)
-			break;
-		*byte = (uint8_t)(bits & 4 ? *byte | mask : *byte & ~mask);
-		if (!(bits & 3))
-			path->both[path->answered / 8] |= mask;
-	}
-	wire_net.paths++;
-	return 0;
-}
-
 static int wire_run(struct link *link, const struct link_part *part)
 {
 	int err = part->reset ? wire_reset(link) : 0;
 
 	if (!err && part->out_n)
 		err = wire_write(link, part->out, part->out_n, part->after);
-	if (!err && part->path)
-		err = wire_path(link, part->path);
 	return err || !part->in_n ? err : wire_read(link, part->in, part->in_n);
 }
 
@@ -265,8 +242,7 @@ static int master_open(struct link_master *master, char *why, size_t why_size)
 		snprintf(why, why_size, "no such chip");
 		return wire_net.open_error;
 	}
-	facts = (struct link_facts){
-		.strong = !wire_net.passive, .splits = true, .paths = wire_net.has_paths};
+	facts = (struct link_facts){.strong = !wire_net.passive, .splits = true};
 	for (unsigned i = 0; i < wire_net.channels; i++)
 		links[i] = (struct link){.ops = wire_net.trouble ? &troubled_ops : &link_ops,
 		                         .facts = &facts,

@@ -28,8 +28,6 @@ struct wire_net {
 	unsigned recovered[LINK_RUNGS];
 	int rung_err[LINK_RUNGS]; /* what recover() returns */
 	bool passive;             /* the links have no strong pull-up */
-	bool has_paths;           /* the links make paths of searches, ... */
-	unsigned paths;           /* ... which are counted */
 	int open_error;
 	unsigned opens, closes;
 	int64_t converts[64]; /* when a broadcast Convert T went out */

@@ -12,14 +12,12 @@
 #include "tests/unit/aid/native_scene.h"
 #include "tests/unit/aid/parts.h"
 
-static bool has_paths;
 static struct sim_slave *coupler, *inner, *trunk, *on_main, *on_aux, *deep, *relay;
 
 /* coupler: main (on_main, inner: aux (deep)), aux (on_aux, relay); trunk; a second wire. */
 static void plant(void)
 {
 	wire_init(&host, 2, 2);
-	wire_net.has_paths = has_paths;
 	trunk = wire_add(0, "DS18B20", 1);
 	coupler = wire_add(0, "DS2409", 2);
 	inner = wire_add(0, "DS2409", 3);
@@ -478,9 +476,5 @@ int main(void)
 	RUN_TEST(test_the_properties_of_a_coupler);
 	RUN_TEST(test_a_discharge_restarts_what_the_branches_feed);
 	RUN_TEST(test_more_couplers_than_the_bus_takes_leave_the_rest_out);
-	has_paths = true;
-	RUN_TEST(test_a_branch_is_a_directory_of_what_is_behind_it);
-	RUN_TEST(test_each_device_is_read_by_its_way_and_by_its_id);
-	RUN_TEST(test_an_alarm_behind_a_branch_is_listed_with_its_way);
 	return UNITY_END();
 }
