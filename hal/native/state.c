@@ -165,7 +165,9 @@ void cost_take(struct native *native)
 		if (i < NATIVE_COUNTED)
 			count_wire(native, i);
 	}
-	__atomic_store_n(&native->count[COUNT_WIRES], native->channels, __ATOMIC_RELAXED);
+	/* the most that there were: a chip that is away comes back */
+	if (native->channels > native->count[COUNT_WIRES])
+		__atomic_store_n(&native->count[COUNT_WIRES], native->channels, __ATOMIC_RELAXED);
 	if (native->master->ops->cost)
 		native->master->ops->cost(native->master, &shared);
 	__atomic_store_n(&native->count[COUNT_WIRE_US], native->wire_ns / 1000, __ATOMIC_RELAXED);

@@ -23,6 +23,8 @@
 
 static void add(struct entry *entry, const char *format, ...) __attribute__((format(printf, 2, 3)));
 static void add_args(struct entry *entry, const char *format, va_list args)
+	__attribute__((format(printf, 2, 0)));
+static void add_args(struct entry *entry, const char *format, va_list args)
 {
 	size_t len = strlen(entry->text);
 

@@ -107,10 +107,11 @@ int devices_get(struct request *request)
 	if (status)
 		return http_error(request, status, "%s", words);
 	if (!web->face->live)
-		return http_error(request, 503,
-		                  "a scan asks owsd, and owsd %s does not run: start it, or look with "
-		                  "owsctl -t TARGET scan, and add items by their paths",
-		                  web->face->arguments->instance);
+		return http_error(
+			request, 503,
+			"a scan asks owsd, and owsd %s does not run: start it, or look with "
+			"owsctl -t TARGET scan, and add items by their paths",
+			web->face->arguments->instance);
 	devices = (struct devices *)http_job(request, sizeof(*devices), devices_run);
 	if (!devices)
 		return MHD_NO;

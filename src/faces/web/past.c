@@ -21,8 +21,8 @@
 #define NAME 256
 #define DAY_MS (86400 * 1000LL)
 #define TIME_MOST 4000000000000LL /* ms since 1970 */
-#define HOUR_SIGNALS 200 /* in one answer */
-#define HOUR_POINTS 30   /* of two minutes, which come from sums */
+#define HOUR_SIGNALS 200          /* in one answer */
+#define HOUR_POINTS 30            /* of two minutes, which come from sums */
 
 struct past_job {
 	struct job job;

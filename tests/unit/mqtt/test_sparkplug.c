@@ -229,8 +229,13 @@ static void test_what_other_profiles_have_left_is_emptied_and_nothing_else(void)
 
 	pump();
 	s.settled = true;
+	/* births go first: who reads them lets go of a topic before that is emptied */
 	profiles_place(&s, 0, topic);
-	TEST_ASSERT_EQUAL_STRING("plant/pi/+", topic);
+	TEST_ASSERT_EQUAL_STRING("ha/device/+/config", topic);
+	for (int i = 1; strcmp(topic, "plant/pi/+") != 0; i++) {
+		profiles_place(&s, i, topic);
+		TEST_ASSERT_NOT_EQUAL(0, topic[0]);
+	}
 	for (size_t i = 0; i < sizeof(theirs) / sizeof(theirs[0]); i++)
 		profiles_kept(&s, theirs[i], "x");
 	TEST_ASSERT_EQUAL_STRING("", pump());
