@@ -6,6 +6,7 @@
 
 #include "unity.h"
 
+#include "hal/native/native.h"
 #include "hal/sim/crc.h"
 #include "hal/sim/event.h"
 #include "hal/sim/scenario.h"
@@ -133,6 +134,39 @@ void serial_make(enum sim_serial_kind kind, const struct serial_kind *driver, co
 	sim_serial_init(&serial.sim, kind, &serial.net);
 	TEST_ASSERT_EQUAL_INT(
 		0, serial_create(&master_ops, driver, &serial.host.env, &source, &serial.master));
+}
+
+static enum sim_serial_kind bus_kind;
+static const struct serial_kind *bus_driver;
+static const char *bus_scenario;
+
+static int make_master(const char *where, const struct bus_env *env, struct link_master **out,
+                       char *why, size_t why_size)
+{
+	(void)where, (void)env, (void)why, (void)why_size;
+	serial_make(bus_kind, bus_driver, bus_scenario);
+	*out = serial.master;
+	serial.master = NULL; /* the bus owns it */
+	return 0;
+}
+
+struct bus *serial_bus_of(enum sim_serial_kind kind, const struct serial_kind *driver,
+                          const char *scenario)
+{
+	static struct link_master_ops of_bus;
+	static const struct bus_ops ops = {NATIVE_BUS_SLOTS};
+	struct bus *bus;
+
+	of_bus = master_ops;
+	of_bus.create = make_master;
+	bus_kind = kind;
+	bus_driver = driver;
+	bus_scenario = scenario;
+	TEST_ASSERT_EQUAL_INT(0, native_create(&ops, &of_bus, "", &serial.host.env, &bus,
+	                                       serial.why, sizeof(serial.why)));
+	host_run(&serial.host, bus, serial.host.now + 10 * HOST_S);
+	TEST_ASSERT_EQUAL_UINT(1, host_events(&serial.host, BUS_UP));
+	return bus;
 }
 
 int serial_try(void)

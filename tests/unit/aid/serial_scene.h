@@ -25,6 +25,9 @@ void serial_begin(void);
 void serial_end(void);
 /* The adapter of a kind, on the wire of a scenario, and a driver of a kind at it. */
 void serial_make(enum sim_serial_kind kind, const struct serial_kind *driver, const char *scenario);
+/* The same as a native bus, which is up. */
+struct bus *serial_bus_of(enum sim_serial_kind kind, const struct serial_kind *driver,
+                          const char *scenario);
 /* Open it: 0 and serial.wire, or an error and serial.why. */
 int serial_try(void);
 void serial_start(enum sim_serial_kind kind, const struct serial_kind *driver,
