@@ -24,8 +24,8 @@ export class Tools {
 			onblur: () => this.draw(this.state), onkeydown: (event) => this.#key(event)});
 		this.date = el("input", {type: "datetime-local", class: "date", tabindex: -1,
 			"aria-hidden": "true", onchange: () => this.date.value && this.#begin()});
-		this.beside = button("", act.beside);
-		this.live = button("", act.follow, {class: "follow"});
+		this.beside = button("Beside yesterday", act.beside);
+		this.live = button("Follow", act.follow, {class: "follow"});
 		this.node = el("div", {class: "tools"}, title,
 			el("div", {class: "joined", role: "group", "aria-label": "How long"}, ...this.spans),
 			el("div", {class: "joined moves", role: "group", "aria-label": "Which time"},
