@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/config/check/check.h"
 #include "src/config/edit/edit.h"
 #include "src/config/edit/print.h"
 #include "src/config/edit/rio_write.h"
@@ -54,12 +55,17 @@ static struct config *parse(const char *text, size_t n, struct config_report *re
 	struct config *config;
 	int err;
 
-	*report = (struct config_report){.line = said};
+	*report = (struct config_report){.line = said, .keeps_wrong = true};
 	err = config_parse("f", text, n, report, &config);
 	TEST_ASSERT_TRUE(err == 0 || err == -EINVAL);
 	TEST_ASSERT_EQUAL_MESSAGE(err == 0, report->errors == 0, "errors do not fit the status");
-	TEST_ASSERT_EQUAL_MESSAGE(err == 0, config != NULL, "status does not fit the result");
-	return config;
+	TEST_ASSERT_TRUE_MESSAGE(err || config, "status does not fit the result");
+	if (config)
+		config_check_items(config, NULL, report);
+	if (!err)
+		return config;
+	config_free(config);
+	return NULL;
 }
 
 /* What was understood, printed, is understood as the same. */

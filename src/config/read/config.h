@@ -78,6 +78,7 @@ struct config_item {
 	bool alarm;
 	/* NULL: not defined, "": empty; Table 3.1 tells the two apart */
 	const char *latch_alarm, *por_alarm, *set_alarm, *reset_latch;
+	bool wrong;       /* has an error: so has the configuration */
 	bool latch_stays; /* nothing of the item clears its latch */
 	bool whole;       /* its property takes whole numbers only */
 	struct config_limits limits;
@@ -260,6 +261,11 @@ struct config_report {
 	/* The same in parts, in place of line; line and column 0: the file as a whole. */
 	void (*problem)(void *ctx, bool is_error, int line, int column, const char *text);
 	void *ctx;
+	/*
+	 * A configuration with errors is given all the same, without the items that have some: what
+	 * else is wrong can be looked for in it, nothing else.
+	 */
+	bool keeps_wrong;
 	unsigned errors, warnings;
 	int at_line; /* of what is reported now; 0: of none; INT_MAX: after all others */
 };

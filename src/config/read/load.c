@@ -149,8 +149,12 @@ static void build_items(struct build *build, const struct rio_node *driver,
 	}
 	for (const struct rio_node *node = driver->first; node; node = node->next)
 		if (option_is_block(node, OPT_ITEM)) {
-			names[config->item_count] = name_position(node);
-			item_build(build, node, &config->items[config->item_count++]);
+			unsigned before = build->report->errors;
+			struct config_item *item = &config->items[config->item_count];
+
+			names[config->item_count++] = name_position(node);
+			item_build(build, node, item);
+			item->wrong = build->report->errors > before;
 		}
 	items_check(build, names);
 	if (count->given && count->number != items)
@@ -181,6 +185,16 @@ static void build_config(struct build *build, const struct rio *rio, const char 
 	allow_build(build, driver);
 }
 
+static void leave_out_wrong_items(struct config *config)
+{
+	unsigned count = config->item_count;
+
+	config->item_count = 0;
+	for (unsigned i = 0; i < count; i++)
+		if (!config->items[i].wrong)
+			config->items[config->item_count++] = config->items[i];
+}
+
 int config_parse(const char *file, const char *text, size_t len, struct config_report *report,
                  struct config **config)
 {
@@ -201,7 +215,9 @@ int config_parse(const char *file, const char *text, size_t len, struct config_r
 	else if (report->errors > before)
 		err = -EINVAL;
 	rio_free(rio);
-	if (!err)
+	if (err == -EINVAL && report->keeps_wrong && build.box->config.period_ns > 0)
+		leave_out_wrong_items(*config = &build.box->config);
+	else if (!err)
 		*config = &build.box->config;
 	else if (build.box)
 		config_free(&build.box->config);

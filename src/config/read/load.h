@@ -8,8 +8,9 @@ struct config;
 struct config_report;
 
 /*
- * Read and check a file. Returns 0, -EINVAL when report->errors > 0 (*config is then NULL), or a
- * negative errno of reading the file (also reported). Blocking (file).
+ * Read and check a file. Returns 0, -EINVAL when report->errors > 0 (*config is NULL then, or, if
+ * the report keeps what is wrong, there to be checked and freed), or a negative errno of reading
+ * the file (also reported). Blocking (file).
  */
 int config_load(const char *file, struct config_report *report, struct config **config);
 /* The same from memory; file is for messages. */

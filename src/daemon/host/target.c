@@ -140,6 +140,10 @@ int target_check_config(struct config *config, struct config_report *report)
 	struct bus *bus;
 	int err = 0;
 
+	if (report->errors) {
+		config_check_items(config, NULL, report);
+		return -EINVAL;
+	}
 	for (unsigned i = 0; !err && i < config->target_count; i++) {
 		const struct config_target *target = &config->targets[i];
 

@@ -16,7 +16,8 @@ int target_options(struct bus *bus, const struct config *config, const char *tar
 /*
  * Check a configuration as owsd does at its start: can owsd make the buses of its targets, do they
  * take their options, do AlarmLine and HeartbeatLine name GPIO lines; then config_check(). Opens
- * nothing but the files that describe simulations. 0, or a negative errno with errors in report.
+ * nothing but the files that describe simulations. 0, or a negative errno with errors in report. Of
+ * a configuration that has errors by the report already, its items alone are checked.
  */
 int target_check_config(struct config *config, struct config_report *report);
 

@@ -137,14 +137,15 @@ static int owsd_load(const struct arguments *a, struct told *told, struct config
 {
 	struct config_report *report = &told->report;
 
-	*report = (struct config_report){.line = report_line, .ctx = told};
+	*report = (struct config_report){.line = report_line, .ctx = told, .keeps_wrong = true};
 	int err = read_config(a, report, config);
 
 	if (!err && a->target_count)
 		err = config_set_targets(*config, a->targets, a->target_count, report);
 	if (!err && a->listen_count)
 		err = config_set_listens(*config, a->listens, a->listen_count, report);
-	if (!err)
+	/* of a file with errors its items: one run names all that is wrong */
+	if (*config)
 		err = target_check_config(*config, report);
 	if (!err && a->check)
 		err = target_look(*config, report);

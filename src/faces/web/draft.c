@@ -68,7 +68,7 @@ int draft_check(const char *file, const char *text, size_t len, struct problems 
 	if (!err)
 		err = config_check_own(config, &report);
 	config_free(config);
-	if (!err)
+	if (err != -ENOMEM)
 		check_items(text, len, &report);
 	*rio = NULL;
 	if (err == -ENOMEM)

@@ -29,25 +29,25 @@ static void take_problem(void *ctx, bool is_error, int line, int column, const c
  */
 static int check_text(const char *file, const char *text, size_t len, struct answer *answer)
 {
-	struct config_report report = {.problem = take_problem, .ctx = answer};
+	struct config_report report = {.problem = take_problem, .ctx = answer, .keeps_wrong = true};
 	struct config *config;
 	int err = config_parse(file, text, len, &report, &config);
 
-	if (err)
-		return err;
-	err = target_check_config(config, &report);
+	if (config)
+		err = target_check_config(config, &report);
 	config_free(config);
 	return err;
 }
 
 void store_check_items(const char *text, size_t len, struct answer *answer)
 {
-	struct config_report report = {.problem = take_problem, .ctx = answer}, silent = {0};
+	struct config_report report = {.problem = take_problem, .ctx = answer},
+			     silent = {.keeps_wrong = true};
 	struct config *config;
 
-	if (config_parse("draft", text, len, &silent, &config))
-		return;
-	config_check_items(config, NULL, &report);
+	(void)config_parse("draft", text, len, &silent, &config);
+	if (config)
+		config_check_items(config, NULL, &report);
 	config_free(config);
 }
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What --check says of ids, properties and directions by the tables of the families. */
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -352,6 +353,50 @@ static void test_no_property_of_any_family_in_its_own_direction_is_complained_of
 	}
 }
 
+static int parse_wrong(const char *text)
+{
+	config_case_begin();
+	report.keeps_wrong = true;
+	int err = config_parse("f", text, strlen(text), &report, &config);
+
+	report.keeps_wrong = false;
+	return err;
+}
+
+static void test_the_items_of_a_file_with_errors_are_checked_too(void)
+{
+	static const char *const unreadable[] = {
+		"",
+		"Items { }",
+		"OwsDrv { Period 0\nItem { Name a Path /x/y PerFactor 0 StaleAfter 1 } }",
+		"OwsDrv { Period x\nItem { Name a Path /x/y StaleAfter 1 } }",
+		"OwsDrv { Item { Name a Path /x/y }",
+		"OwsDrv { Item { Path } Item { } Item { Name a Path /x/y Type string Alarm on }",
+		"OwsDrv { TargetName \"\" Bus { } Bus { Target x Sensors }\nItem { Name a } }",
+		"OwsDrv { Mqtt { Broker } Web { Listen x } ControlAllow { } }",
+	};
+
+	TEST_ASSERT_EQUAL_INT(
+		-EINVAL,
+		parse_wrong("OwsDrv { Timeout x\n"
+	                    "Item { Name a Path /28.000000000001/temperatur Type double }\n"
+	                    "Item { Name b Path /28.000000000001/temperatur Type dubble }\n"
+	                    "Item { Name c Path /28.000000000001/temperature Type double } }"));
+	TEST_ASSERT_NOT_NULL(config);
+	TEST_ASSERT_EQUAL_UINT(2, config->item_count);
+	TEST_ASSERT_EQUAL_STRING("c", config->items[1].name);
+	config_check_items(config, NULL, &report);
+	TEST_ASSERT_EQUAL_UINT(2, report.errors);
+	TEST_ASSERT_EQUAL_UINT(1, report.warnings);
+	TEST_ASSERT_NOT_NULL_MESSAGE(
+		strstr(said, "f:2:20: warning: \"a\": a DS18B20 has no temperatur"), said);
+	for (unsigned i = 0; i < COUNT(unreadable); i++) {
+		TEST_ASSERT_EQUAL_INT_MESSAGE(-EINVAL, parse_wrong(unreadable[i]), unreadable[i]);
+		if (config)
+			config_check_items(config, NULL, &report);
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -362,5 +407,6 @@ int main(void)
 	RUN_TEST(test_alarms_that_fit_are_not_mentioned);
 	RUN_TEST(test_two_outputs_of_the_same_bits_are_named);
 	RUN_TEST(test_no_property_of_any_family_in_its_own_direction_is_complained_of);
+	RUN_TEST(test_the_items_of_a_file_with_errors_are_checked_too);
 	return UNITY_END();
 }
