@@ -36,21 +36,21 @@ const char *bridge_type(uint8_t code)
 struct sensor {
 	const struct sensor_table *table;
 	const struct sensor_kind *kind;
-	struct sensor_place *place;
+	struct sensor_chip *chip;
 	const struct sensor_value *value;
 };
 
-/* That of the property: arg has the place and the value. */
+/* That of the property: arg has the chip and the value. */
 static struct sensor sensor_of(const struct txn *txn)
 {
 	const struct sensor_bridge *bridge = (const struct sensor_bridge *)txn->device->family;
-	struct sensor_place *place = &bridge->places[txn->property->arg >> 8];
-	const struct sensor_kind *kind = &bridge->table->kinds[place->kind];
+	struct sensor_chip *chip = &bridge->chips[txn->property->arg >> 8];
+	const struct sensor_kind *kind = &bridge->table->kinds[chip->kind];
 
 	return (struct sensor){
 		.table = bridge->table,
 		.kind = kind,
-		.place = place,
+		.chip = chip,
 		.value = &bridge->table->values[kind->first_value +
 	                                        (unsigned)(txn->property->arg & 0xff)],
 	};
@@ -59,7 +59,7 @@ static struct sensor sensor_of(const struct txn *txn)
 static double evaluate(const struct sensor *sensor, struct formula formula, double set)
 {
 	const struct formula_input input = {
-		.bytes = sensor->place->bytes, .names = sensor->place->names, .set = set};
+		.bytes = sensor->chip->bytes, .names = sensor->chip->names, .set = set};
 
 	return formula_value(&sensor->table->pool, formula, &input);
 }
@@ -85,7 +85,7 @@ static int write_to_sensor(struct txn *txn, const struct sensor *sensor, unsigne
 		out[i] = (uint8_t)byte;
 	}
 	return bridge_exchange(txn,
-	                       &(struct i2c_transfer){sensor->place->address, out, count, in, m});
+	                       &(struct i2c_transfer){sensor->chip->address, out, count, in, m});
 }
 
 static bool checksum_fits(const struct sensor_step *step, const uint8_t *bytes)
@@ -114,7 +114,7 @@ static int bridge_look(struct txn *txn, const struct sensor *sensor, const struc
 	memcpy(visit->last, in, step->n);
 	if (++visit->looks < (txn->device->rom[0] == DS28E17_CODE ? LOOKS : 1))
 		return ++visit->tries < TRIES ? TXN_MORE : -EBADMSG;
-	memcpy(sensor->place->bytes + step->at, in, step->n);
+	memcpy(sensor->chip->bytes + step->at, in, step->n);
 	visit->looks = visit->tries = 0;
 	return 0;
 }
@@ -125,9 +125,9 @@ static int compute(struct txn *txn, const struct sensor *sensor, const struct se
 	double a = evaluate(sensor, step->a, 0);
 
 	if (step->kind == SENSOR_CRC8)
-		return txn_checked(txn, checksum_fits(step, sensor->place->bytes));
+		return txn_checked(txn, checksum_fits(step, sensor->chip->bytes));
 	if (step->kind == SENSOR_LET)
-		sensor->place->names[step->name] = a;
+		sensor->chip->names[step->name] = a;
 	return step->kind == SENSOR_SAME && a != evaluate(sensor, step->b, 0) ? -EIO : 0;
 }
 
@@ -148,8 +148,8 @@ static int bridge_step(struct txn *txn, const struct sensor *sensor)
 		break;
 	case SENSOR_READ:
 		err = bridge_exchange(txn,
-		                      &(struct i2c_transfer){.address = sensor->place->address,
-		                                             .in = sensor->place->bytes + step->at,
+		                      &(struct i2c_transfer){.address = sensor->chip->address,
+		                                             .in = sensor->chip->bytes + step->at,
 		                                             .m = step->n});
 		break;
 	case SENSOR_WAIT:
@@ -172,7 +172,7 @@ static bool take_shared(struct txn *txn, const struct sensor *sensor)
 	unsigned n = sensor->kind->bytes;
 
 	for (unsigned at = 0; at < n; at += SHARED)
-		if (!txn_shared(txn, sensor->place, at, sensor->place->bytes + at,
+		if (!txn_shared(txn, sensor->chip, at, sensor->chip->bytes + at,
 		                n - at < SHARED ? n - at : SHARED))
 			return false;
 	for (unsigned i = 0; i < sensor->kind->steps; i++) {
@@ -191,7 +191,7 @@ static void share_bytes(struct txn *txn, const struct sensor *sensor)
 	unsigned n = sensor->kind->bytes;
 
 	for (unsigned at = 0; at < n; at += SHARED)
-		txn_share(txn, sensor->place, at, sensor->place->bytes + at,
+		txn_share(txn, sensor->chip, at, sensor->chip->bytes + at,
 		          n - at < SHARED ? n - at : SHARED, visit->begun_ns);
 }
 
@@ -205,7 +205,7 @@ static int bridge_measure(struct txn *txn, const struct sensor *sensor)
 		visit->begun_ns = txn_now(txn);
 		if (take_shared(txn, sensor))
 			return 0;
-		memset(sensor->place->bytes, 0, sizeof(sensor->place->bytes));
+		memset(sensor->chip->bytes, 0, sizeof(sensor->chip->bytes));
 	}
 	while (!err && visit->step < sensor->kind->steps)
 		err = bridge_step(txn, sensor);
@@ -325,15 +325,15 @@ int bridge_place(const struct sensor_table *table, struct sensor_bridge *bridge,
                  uint8_t address, const char *prefix)
 {
 	const struct sensor_kind *of = &table->kinds[kind];
-	struct sensor_place *places = realloc(bridge->places,
-	                                      (bridge->count + 1) * sizeof(*bridge->places));
+	struct sensor_chip *chips = realloc(bridge->chips,
+	                                    (bridge->count + 1) * sizeof(*bridge->chips));
 	struct property directory = {.type = PROPERTY_DIRECTORY, .life = LIFE_STATIC};
 	int err = 0;
 
-	if (!places)
+	if (!chips)
 		return -ENOMEM;
-	bridge->places = places;
-	places[bridge->count] = (struct sensor_place){.kind = kind, .address = address};
+	bridge->chips = chips;
+	chips[bridge->count] = (struct sensor_chip){.kind = kind, .address = address};
 	if (*prefix) {
 		snprintf(directory.name, sizeof(directory.name), "%s", prefix);
 		err = bridge_add_row(bridge, &directory);

@@ -55,7 +55,7 @@ struct sensor_kind {
 };
 
 /* A sensor behind a bridge. */
-struct sensor_place {
+struct sensor_chip {
 	unsigned kind;               /* which of the table's */
 	uint8_t address;             /* 7 bits */
 	uint8_t bytes[SENSOR_BYTES]; /* as they are read, by one request at a time */
@@ -66,7 +66,7 @@ struct sensor_bridge {
 	struct family family; /* what its device has in place of the code's */
 	uint8_t rom[8];
 	struct property *properties;
-	struct sensor_place *places;
+	struct sensor_chip *chips;
 	unsigned count;
 	struct sensor_table *table;
 };

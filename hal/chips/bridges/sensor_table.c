@@ -311,7 +311,7 @@ static int read_set(struct sensor_reader *r)
 	                               : reader_fail(r, "expected write at \"%.24s\"", r->at);
 }
 
-/* --- Kinds and places ------------------------------------------------------------------------ */
+/* --- Kinds and chips ------------------------------------------------------------------------- */
 
 /* What the kind that ends here lacks. */
 static int end_kind(struct sensor_reader *r)
@@ -482,7 +482,7 @@ void sensor_table_free(struct sensor_table *table)
 {
 	for (unsigned i = 0; i < table->bridge_count; i++) {
 		free(table->bridges[i].properties);
-		free(table->bridges[i].places);
+		free(table->bridges[i].chips);
 	}
 	free(table->bridges);
 	free(table->kinds);
