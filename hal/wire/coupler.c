@@ -67,7 +67,8 @@ static int coupler_command(const struct coupler *coupler, const uint8_t *bytes, 
 static int coupler_enter(struct branch *branch)
 {
 	struct trunk *trunk = branch->coupler->trunk;
-	uint8_t code = branch->number == COUPLER_MAIN ? SMART_ON_MAIN : SMART_ON_AUX, answer[2];
+	uint8_t code = branch->number == COUPLER_MAIN ? SMART_ON_MAIN : SMART_ON_AUX;
+	uint8_t answer[2] = {SILENT, SILENT};
 	const uint8_t smart_on[] = {code, STIMULUS};
 
 	if (!leads_to(branch, trunk->on))
@@ -87,7 +88,7 @@ static int coupler_enter(struct branch *branch)
 static int look_at_status(struct coupler *coupler, uint8_t *info)
 {
 	static const uint8_t status[] = {STATUS, LOOK};
-	uint8_t answer[2];
+	uint8_t answer[2] = {SILENT, SILENT};
 	int err = 0;
 
 	for (int looks = 0; looks < LOOKS; looks++) {
@@ -116,7 +117,7 @@ static int look_at_status(struct coupler *coupler, uint8_t *info)
 static int try_off(struct coupler *coupler)
 {
 	static const uint8_t off = ALL_LINES_OFF;
-	uint8_t info, answer;
+	uint8_t info, answer = SILENT;
 	int err = look_at_status(coupler, &info);
 
 	if (!err)

@@ -39,8 +39,9 @@ static bool take_done(struct txn *txn, const struct link_part *part)
 
 	txn->done = NULL;
 	txn->done_ns = 0;
-	if (!done || !part->reset || part->after != LINK_IDLE || part->in_n != done->part.in_n ||
-	    part->out_n != done->part.out_n || memcmp(part->out, done->part.out, part->out_n) != 0)
+	if (!done || !part->reset || !part->in || part->after != LINK_IDLE ||
+	    part->in_n != done->part.in_n || part->out_n != done->part.out_n ||
+	    memcmp(part->out, done->part.out, part->out_n) != 0)
 		return false;
 	memcpy(part->in, done->part.in, part->in_n);
 	txn->done_ns = done->ended_ns;
