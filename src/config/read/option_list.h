@@ -4,8 +4,17 @@
  * holds it in the struct of the block, and the other members of struct option_def. OTHER() has no
  * such member: code of its own takes the value. BLOCK() is a block of a program, which stands once:
  * its place, its name, its member of struct config, which is a struct config_MEMBER. Included where
- * the three say what is made of each.
+ * one or more of the three say what is made of each.
  */
+#ifndef OTHER
+#define OTHER(...)
+#endif
+#ifndef OPTION
+#define OPTION OTHER
+#endif
+#ifndef BLOCK
+#define BLOCK OTHER
+#endif
 /* clang-format off */
 OTHER(VERSION, "Version", DRIVER, TEXT, .preset = "1.00", .help = "version of the file format")
 OTHER(TARGET_NAME, "TargetName", DRIVER, TEXT, .preset = "localhost:4304",
@@ -277,3 +286,6 @@ OPTION(MQTT_PRIMARY_HOST, "PrimaryHost", MQTT, TEXT, primary_host, .check = text
 OPTION(MQTT_WRITE, "Write", MQTT, FLAG, write, .preset = "off",
        .help = "take commands from the broker")
 /* clang-format on */
+#undef BLOCK
+#undef OPTION
+#undef OTHER

@@ -16,13 +16,8 @@
 /* The struct of each place. */
 typedef struct config of_DRIVER;
 typedef struct config_item of_ITEM;
-#define OTHER(...)
-#define OPTION(...)
 #define BLOCK(name, key, member, ...) typedef struct config_##member of_##name;
 #include "src/config/read/option_list.h"
-#undef BLOCK
-#undef OPTION
-#undef OTHER
 
 const struct option_def option_table[OPTION_COUNT_ALL] = {
 #define RANGE(least_, most_) .least = (least_), .most = (most_)
@@ -48,9 +43,6 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
 	OTHER(name, key_, place_, kind_, .offset = offsetof(of_##place_, member), \
 	      .store = STORE_OF(((of_##place_ *)0)->member), __VA_ARGS__)
 #include "src/config/read/option_list.h"
-#undef BLOCK
-#undef OPTION
-#undef OTHER
 };
 
 const char *option_place_name(enum option_place place)
@@ -59,8 +51,6 @@ const char *option_place_name(enum option_place place)
 		[PLACE_DRIVER] = "OwsDrv",
 		[PLACE_ITEM] = "Item",
 		[PLACE_BUS] = "Bus",
-#define OTHER(...)
-#define OPTION(...)
 #define BLOCK(name, key, ...) [PLACE_##name] = (key),
 #include "src/config/read/option_list.h"
 	};

@@ -14,13 +14,8 @@ enum option_place {
 	PLACE_DRIVER,
 	PLACE_ITEM,
 	PLACE_BUS,
-#define OTHER(...)
-#define OPTION(...)
 #define BLOCK(name, ...) PLACE_##name,
 #include "src/config/read/option_list.h"
-#undef BLOCK
-#undef OPTION
-#undef OTHER
 	PLACE_COUNT,
 };
 
@@ -47,12 +42,7 @@ enum option_store {
 
 enum option {
 #define OTHER(name, ...) OPT_##name,
-#define OPTION OTHER
-#define BLOCK OTHER
 #include "src/config/read/option_list.h"
-#undef BLOCK
-#undef OPTION
-#undef OTHER
 	OPTION_COUNT_ALL,
 };
 
