@@ -7,7 +7,9 @@
  * minute. Bytes are those that an ext4 on a loop device writes to it; what nobody syncs is written
  * each half minute, as the kernel does, and its journal has the times of files in five seconds.
  * Needs root, for the loop device.
- *     bench_recorder [DIRECTORY]   on a file system that nothing else writes, in place of the loop
+ *     bench_recorder [HOURS [DIRECTORY]]
+ * HOURS: of a day no more than that. DIRECTORY: on a file system that nothing else writes, in place
+ * of the loop device.
  */
 #include <fcntl.h>
 #include <sched.h>
@@ -76,14 +78,17 @@ static void sync_disk(void)
 	settled = sectors_written();
 }
 
-/* Have ext4 write its journal, if anything else was written since. */
-static void commit_journal(void)
+/*
+ * Have ext4 write its journal, if anything else was written since. The folder's inode is in the
+ * block of those of its files, which the journal has anyway.
+ */
+static void commit_journal(const char *folder)
 {
 	int fd;
 
 	if (sectors_written() == settled)
 		return;
-	fd = open(disk, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+	fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
 	want(fd >= 0 && futimens(fd, NULL) == 0 && fsync(fd) == 0, "fsync");
 	close(fd);
 	settled = sectors_written();
@@ -112,7 +117,7 @@ static double bytes_in(const char *folder)
 	double kb = 0;
 	FILE *du;
 
-	snprintf(command, sizeof(command), "du -sk %s", folder);
+	snprintf(command, sizeof(command), "du -sk --exclude=*-wal %s", folder);
 	du = popen(command, "r");
 	want(du && fscanf(du, "%lf", &kb) == 1, command);
 	pclose(du);
@@ -351,7 +356,7 @@ static void measure(const struct plant *plant, const struct keeper *keeper, int6
 		if (now % KERNEL == KERNEL / 2)
 			sync_disk();
 		else if (now % JOURNAL == JOURNAL / 2)
-			commit_journal();
+			commit_journal(folder);
 		if (now == KERNEL) {
 			before = sectors_written();
 			kept = bytes_in(folder);
@@ -378,14 +383,21 @@ static void measure(const struct plant *plant, const struct keeper *keeper, int6
 
 int main(int argc, char **argv)
 {
-	if (argc > 1) {
-		snprintf(disk, sizeof(disk), "%s", argv[1]);
+	int64_t most = argc > 1 ? (int64_t)(atof(argv[1]) * 3600) : 86400;
+
+	if (most <= KERNEL) {
+		fputs("usage: bench_recorder [HOURS [DIRECTORY]]\n", stderr);
+		return 2;
+	}
+	if (argc > 2) {
+		snprintf(disk, sizeof(disk), "%s", argv[2]);
 	} else if (!make_disk()) {
 		bench_note("recorder: no loop device with ext4 here; as root, with mkfs.ext4");
 		return 0;
 	}
 	for (size_t i = 0; i < sizeof(plants) / sizeof(plants[0]); i++) {
 		for (size_t k = 0; k < sizeof(keepers) / sizeof(keepers[0]); k++) {
+			int64_t seconds = plants[i].seconds[k];
 			int status = 0;
 			pid_t child;
 
@@ -398,7 +410,7 @@ int main(int argc, char **argv)
 			fflush(stdout);
 			child = fork();
 			if (child == 0) {
-				measure(&plants[i], &keepers[k], plants[i].seconds[k]);
+				measure(&plants[i], &keepers[k], seconds < most ? seconds : most);
 				fflush(stdout);
 				_exit(0);
 			}
@@ -406,6 +418,6 @@ int main(int argc, char **argv)
 			     keepers[k].name);
 		}
 	}
-	umount2(argc > 1 ? "" : disk, MNT_DETACH);
+	umount2(argc > 2 ? "" : disk, MNT_DETACH);
 	return 0;
 }

@@ -179,7 +179,7 @@ OPTION(RECORDER_KEEP_HOURS, "KeepHours", RECORDER, COUNT, keep_hours, RANGE(0, 3
        .preset = "0", .help = "the same of sums by the hour")
 OPTION(RECORDER_SIZE, "Size", RECORDER, COUNT, size_mb, RANGE(0, 1e6), .preset = "2000",
        .help = "most megabytes of history, the oldest is deleted; 0: no limit")
-OPTION(RECORDER_FLUSH, "Flush", RECORDER, SECONDS, flush_ns, RANGE(1, 600), .preset = "300",
+OPTION(RECORDER_FLUSH, "Flush", RECORDER, SECONDS, flush_ns, RANGE(1, 600), .preset = "600",
        .help = "how long what is recorded may be in memory alone, seconds")
 OPTION(RECORDER_RECORD, "Record", RECORDER, TEXT, record_text, .preset = "change",
        .help = "of items without a Record of their own")

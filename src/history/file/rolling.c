@@ -102,8 +102,7 @@ int rolling_advance(struct rolling *rolling, int64_t id)
 
 bool rolling_is_due(const struct rolling *rolling, int64_t id)
 {
-	return (rolling->minute_touched && id >= minute_begin(rolling) + MINUTE_US) ||
-	       ((rolling->known || rolling->hour_touched) && id >= hour_begin(rolling) + HOUR_US);
+	return (rolling->known || rolling->hour_touched) && id >= hour_begin(rolling) + HOUR_US;
 }
 
 static int room_for_signal(struct rolling *rolling, uint32_t signal)

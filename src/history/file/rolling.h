@@ -40,5 +40,5 @@ int rolling_value(struct rolling *rolling, int64_t id, uint32_t signal,
                   const struct rollup_state *state);
 /* signal 0: of all. */
 int rolling_gap(struct rolling *rolling, int64_t id, uint32_t signal);
-/* Would rolling_advance() give something out? */
+/* Would rolling_advance() give an hour out? */
 bool rolling_is_due(const struct rolling *rolling, int64_t id);

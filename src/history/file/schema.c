@@ -24,17 +24,19 @@
 #define SESSION(id) \
 	"join session on session.start = " \
 	"(select max(start) from session where start <= " id ")"
-/* real: a whole number takes a byte or two of the file, and a query that divides gets a fraction */
-#define ROLLUP(name, us, number, signals) \
-	"create table " name " (id integer primary key, least real, most real, mean real," \
-	" last real, good real, known real, count, quality, worst);" \
+/* Rows with t.id, least and so on; the number of their minute or hour, and their signal. */
+#define ROLLUP_VIEW(name, rows, us, number, signals) \
 	"create view trend_" name " as select " ISO( \
 		number \
 		" * " us) " as time, name, least," \
 			  " most, mean, last, unit, good, known, count, q.text as quality, w.text as worst" \
-			  " from " name " t join signal on signal.signal = " signals " & 65535" \
+			  " from " rows " t join signal on signal.signal = " signals " & 65535" \
 			  " left join quality q on q.quality = t.quality left join quality w on w.quality = t.worst" \
 			  " " SESSION(number " * " us " + " us " - 1") ";"
+/* real: a whole number takes a byte or two of the file, and a query that divides gets a fraction */
+#define ROLLUP(name) \
+	"create table " name " (id integer primary key, least real, most real, mean real," \
+	" last real, good real, known real, count, quality, worst);"
 
 /* Words for numbers */
 #define WORDS(name) \
@@ -54,7 +56,30 @@
 	" on event.kind = 8 and alarm_event = event.event " SESSION("event.id") ";"
 /* clang-format on */
 
-#define HOURS ROLLUP("hour", "3600000000", SCHEMA_HOUR("t.id"), "(t.id >> 3)")
+/*
+ * An hour of minutes as rows, as src/history/file/minutes.h has them: what is missing at the end of
+ * one is what it mostly is. A row of a sum has a count.
+ */
+/* clang-format off */
+#define FIELD(at, name) " json_extract(value, '$[" at "]') as " name
+#define VALUE(field) " (base + step * coalesce(" field ", last)) / 1e6,"
+#define MINUTE_ROWS \
+	"(select id, least, most, mean, last, good, known, count, quality, worst" \
+	" from minute where count is not null union all select" \
+	" ((id >> 16) - 59 + minute) << 16 | (id & 65535)," \
+	VALUE("least") VALUE("most") VALUE("mean / 1000.0") VALUE("last") \
+	" coalesce(good / 1e6, 60.0), coalesce(known / 1e6, 60.0), count," \
+	" nullif(coalesce(quality, 192), -1), nullif(coalesce(worst, 192), -1) from (select" \
+	" minute.id as id, json_extract(minutes, '$[0]') as base," \
+	" json_extract(minutes, '$[1]') as step," \
+	FIELD("0", "minute,") FIELD("1", "count,") FIELD("2", "last,") FIELD("3", "least,") \
+	FIELD("4", "most,") FIELD("5", "mean,") FIELD("6", "good,") FIELD("7", "known,") \
+	FIELD("8", "quality,") FIELD("9", "worst") \
+	" from minute, json_each(minutes) where key > 1))"
+/* clang-format on */
+#define HOURS \
+	ROLLUP("hour") \
+	ROLLUP_VIEW("hour", "hour", "3600000000", SCHEMA_HOUR("t.id"), "(t.id >> 3)")
 
 /* An empty file becomes one of version 3. */
 #define CREATED 3
@@ -82,7 +107,7 @@ static const char create[] =
 	" union all select " ISO("gap.start") ", coalesce(name, '*'), null, unit, r.text"
 	" from gap left join signal using (signal) left join reason r on r.reason = gap.reason "
 	SESSION("gap.start") ";"
-	ROLLUP("minute", "60000000", "(t.id >> 16)", "t.id")
+	ROLLUP("minute")
 	HOURS EVENTS;
 /* clang-format on */
 
@@ -102,6 +127,14 @@ static const char *const steps[HISTORY_SCHEMA] = {
 	[3] = "alter table signal add column identity text;"
 	      "alter table signal add column former text not null default ' ';"
 	      "create unique index signal_identity on signal (identity);",
+	/*
+	 * Each minute had a row of its own: these stay. Those of the hour under way are made again,
+	 * as one text with the others of that hour.
+	 */
+	[4] = "drop view if exists trend_minute; alter table minute add column minutes text;"
+	      "delete from minute where id >= (coalesce((" SCHEMA_HOURS_END
+	      "), 0) / 60000000) << 16;" ROLLUP_VIEW("minute", MINUTE_ROWS, "60000000",
+                                                     "(t.id >> 16)", "t.id"),
 };
 
 _Static_assert(OWS_HISTORY_CLOCK == 6 && OWS_HISTORY_COMMAND == 7 && OWS_HISTORY_ALARM == 8,
@@ -150,7 +183,7 @@ static int migrate(sqlite3 *db, int64_t version)
 	if (!err)
 		err = add_words(db);
 	if (!err)
-		err = sql_exec(db, "pragma application_id = 1870099300; pragma user_version = 4");
+		err = sql_exec(db, "pragma application_id = 1870099300; pragma user_version = 5");
 	if (!err)
 		err = sql_exec(db, "commit");
 	if (err)
@@ -158,7 +191,7 @@ static int migrate(sqlite3 *db, int64_t version)
 	return err;
 }
 
-_Static_assert(HISTORY_APPLICATION == 1870099300 && HISTORY_SCHEMA == 4,
+_Static_assert(HISTORY_APPLICATION == 1870099300 && HISTORY_SCHEMA == 5,
                "migrate() says these in words");
 _Static_assert(LOG_BYTES == 4194304, "schema_check() says this in words");
 

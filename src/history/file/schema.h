@@ -20,8 +20,10 @@
  *              number of rows, quality at the end (null: not known) and the worst one. The id is
  *              minute: its number (of ids) times 65536, plus the signal; hour: the number of eight
  *              hours times 65536, plus the signal, times eight, plus which of them it is, so that a
- *              year of a signal is in fewer pages. A minute in which nothing came has no row: the
- *              value held.
+ *              year of a signal is in fewer pages. The row of the last minute of an hour has all
+ *              its minutes as one text (minutes, src/history/file/minutes.h), and no sum of its
+ *              own; an older file, and a signal whose values do not fit, has a row for each minute.
+ *              A minute in which nothing came is in neither: the value held.
  *     trend, trend_minute, trend_hour, trend_event  the same with names, ISO times and words
  */
 #pragma once
@@ -30,7 +32,7 @@
 #include <stdint.h>
 
 #define HISTORY_FILE "history.sqlite"
-#define HISTORY_SCHEMA 4               /* user_version */
+#define HISTORY_SCHEMA 5               /* user_version */
 #define HISTORY_SCHEMA_READ 2          /* what a reader needs is the same since then */
 #define HISTORY_SCHEMA_IDENTITY 4      /* since then a signal has one */
 #define HISTORY_APPLICATION 0x6f777364 /* application_id: "owsd" */
@@ -44,6 +46,11 @@
 static inline int64_t schema_minute(int64_t minute, uint32_t signal)
 {
 	return minute << 16 | signal;
+}
+/* The row that has all minutes of an hour: that of the last one. */
+static inline int64_t schema_minutes(int64_t hour, uint32_t signal)
+{
+	return schema_minute(hour * 60 + 59, signal);
 }
 static inline int64_t schema_hour(int64_t hour, uint32_t signal)
 {

@@ -7,7 +7,7 @@
 #include "src/history/file/schema.h"
 #include "src/history/file/sql.h"
 
-#define ROLLUP_ROW "values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"
+#define ROLLUP_ROW "values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?"
 static const char *const texts[S_COUNT] = {
 	[S_BEGIN] = "begin immediate",
 	[S_COMMIT] = "commit",
@@ -29,8 +29,9 @@ static const char *const texts[S_COUNT] = {
 	[S_LONGER] = "update gap set until = ?1 where start = ?2 and signal = 0",
 	[S_END_GAP] = "update gap set until = ? where signal = 0 and until is null",
 	[S_EVENT] = "insert into event values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-	[S_MINUTE] = "insert or ignore into minute " ROLLUP_ROW,
-	[S_HOUR] = "insert or ignore into hour " ROLLUP_ROW,
+	[S_MINUTE] = "insert or ignore into minute " ROLLUP_ROW ", null)",
+	[S_MINUTES] = "insert or ignore into minute (id, minutes) values (?, ?)",
+	[S_HOUR] = "insert or ignore into hour " ROLLUP_ROW ")",
 	[S_SESSION] = "insert into session values (?, ?, ?, ?, ?, null)",
 	[S_DATE] = "update session set date = ?1 - base, trusted = ?2 where boot = ?3"
 		   " and (trusted = 0 or ?2) and (date <> ?1 - base or trusted <> ?2)",

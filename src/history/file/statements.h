@@ -18,6 +18,7 @@ enum statement {
 	S_END_GAP,
 	S_EVENT,
 	S_MINUTE,
+	S_MINUTES,
 	S_HOUR,
 	S_SESSION,
 	S_DATE,

@@ -22,31 +22,13 @@ static int store_run(struct history_store *store, enum statement which)
  * --- The file ----------------------------------------------------------------------------------
  */
 
-static int give_rollup(void *ctx, bool hour, int64_t bucket, uint32_t signal,
-                       const struct rollup *sum, const struct rollup_state *state)
-{
-	struct history_store *store = ctx;
-	sqlite3_stmt *to = store->statements[hour ? S_HOUR : S_MINUTE];
-	bool has = sum->has_value;
-
-	sql_bind(to, "iddddddinn",
-	         hour ? schema_hour(bucket, signal) : schema_minute(bucket, signal),
-	         has ? sum->least : NAN, has ? sum->most : NAN, rollup_mean(sum),
-	         has ? sum->last : NAN, (double)sum->good_us / 1e6, (double)sum->known_us / 1e6,
-	         (int64_t)sum->count);
-	if (state->known)
-		sqlite3_bind_int(to, 9, state->quality);
-	if (sum->has_quality)
-		sqlite3_bind_int(to, 10, sum->worst);
-	return sql_next(to);
-}
-
 void store_begin(struct history_store *store)
 {
 	store->file.lock = -1;
 	store->gap_us = -1;
-	store->rolling.give = give_rollup;
-	store->rolling.ctx = store;
+	store->sums.statements = store->statements;
+	store->rolling.give = sums_give;
+	store->rolling.ctx = &store->sums;
 }
 
 static void close_file(struct history_store *store)
@@ -59,6 +41,7 @@ void store_close(struct history_store *store)
 {
 	close_file(store);
 	rolling_free(&store->rolling);
+	sums_free(&store->sums);
 }
 
 int store_ready(struct history_store *store)
@@ -135,6 +118,7 @@ static int replay(struct history_store *store)
 	got = sql_number(store->statements[S_SINCE], &since);
 	if (got < 0)
 		return got;
+	sums_begin(&store->sums, since / HOUR_US);
 	rolling_begin(&store->rolling, since - LOOK_BACK_US > 0 ? since - LOOK_BACK_US : 0);
 	sql_bind(from, "i", since - LOOK_BACK_US);
 	while ((got = sql_next(from)) == 1) {

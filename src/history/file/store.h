@@ -10,6 +10,7 @@
 #include "src/history/file/record.h"
 #include "src/history/file/rolling.h"
 #include "src/history/file/statements.h"
+#include "src/history/file/sums.h"
 
 /* A signal, by its identity; its number is that of the file, 0: not looked up. */
 struct history_key {
@@ -48,6 +49,7 @@ struct history_store {
 	int64_t gap_us, gap_start; /* the last gap of all */
 	uint8_t gap_reason;
 	struct rolling rolling;
+	struct sums sums;
 	uint32_t begun; /* how often this run began in a file */
 	uint64_t commits, rows;
 };

@@ -13,7 +13,7 @@
 
 #define NS_PER_US 1000
 #define SECOND_US INT64_C(1000000)
-#define FLUSH_US (5 * MINUTE_US)
+#define FLUSH_US (10 * MINUTE_US)
 /* Who has a long Flush has it for the card: so much in the file is worth a commit a minute */
 #define ENOUGH (64u << 10)
 #define ROW_BYTES 27

@@ -19,7 +19,7 @@ struct history_writer;
 struct history_options {
 	const char *directory; /* made if it is missing; its parent has to be there */
 	int64_t boot;          /* history_boot_present() */
-	int64_t flush_ns;      /* from one commit to the next at most; 0: five minutes */
+	int64_t flush_ns;      /* from one commit to the next at most; 0: ten minutes */
 	uint32_t memory_bytes; /* kept while the disk fails; 0: 4 MiB */
 	struct history_keep keep;
 	void (*say)(void *ctx, const char *text); /* of a damaged file; NULL: it is not reported */

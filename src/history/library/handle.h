@@ -20,7 +20,17 @@
 #define MOST_US (INT64_C(4600000000) * 1000000) /* 2115 */
 #define READY 256
 
-enum handle_statement { H_RAW, H_GAPS, H_STEPS, H_ALL, H_MINUTE, H_HOUR, H_EVENTS, H_COUNT };
+enum handle_statement {
+	H_RAW,
+	H_GAPS,
+	H_STEPS,
+	H_ALL,
+	H_MINUTES,
+	H_MINUTE,
+	H_HOUR,
+	H_EVENTS,
+	H_COUNT
+};
 
 /* A run of the recorder: ids from start up to end. */
 struct session {

@@ -37,6 +37,9 @@ static const char *const texts[H_COUNT] = {
 	[H_ALL] = "select id, value, quality, null, signal from raw where id >= ?1 and id < ?2"
 		  " union all select start, null, null, reason, 0 from gap where start >= ?1"
 		  " and start < ?2 and signal = 0 order by 1 limit ?3",
+	/* an older file has no such column: the name is then that of the other row */
+	[H_MINUTES] =
+		"select (select minutes from minute where id = ?) from (select null as minutes)",
 	[H_MINUTE] = "select least, most, mean, last, good, known, count, quality, worst"
 		     " from minute where id = ?",
 	[H_HOUR] = "select least, most, mean, last, good, known, count, quality, worst"
@@ -294,7 +297,7 @@ static int read_places(struct ows_history *h)
 		{"select max(id) from event", &event},
 		{"select max(seen) from session", &seen},
 		{"select (min(id) >> 16) * 60000000 from minute", &minute},
-		{"select ((max(id) >> 16) + 1) * 60000000 from minute", &h->minute_end},
+		{"select ((max(id) >> 16) + 1) / 60 * 3600000000 from minute", &h->minute_end},
 	};
 
 	h->hour_end = h->minute_end = 0;

@@ -3,8 +3,9 @@
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-#include "src/history/file/rollup.h"
+#include "src/history/file/minutes.h"
 #include "src/history/file/schema.h"
 #include "src/history/file/sql.h"
 #include "src/history/library/open.h"
@@ -125,7 +126,6 @@ static int draw_steps(struct draw *d, int64_t first, int64_t end)
  * --- Of roll-ups -------------------------------------------------------------------------------
  */
 
-/* Seconds as microseconds, of an hour at most. */
 static int64_t column_us(sqlite3_stmt *from, int column)
 {
 	double seconds = sqlite3_column_double(from, column);
@@ -133,39 +133,65 @@ static int64_t column_us(sqlite3_stmt *from, int column)
 	return !(seconds > 0) ? 0 : seconds < 3600 ? (int64_t)(seconds * 1e6 + 0.5) : HOUR_US;
 }
 
-/* Columns: least, most, mean, last, good, known, count, quality, worst. 1; 0: there is none. */
-static int read_rollup(struct draw *d, bool hour, int64_t bucket, struct rollup *sum,
-                       struct rollup_state *end)
+static int16_t column_quality(sqlite3_stmt *from, int column)
 {
-	sqlite3_stmt *from = d->h->statements[hour ? H_HOUR : H_MINUTE];
+	bool known = sqlite3_column_type(from, column) != SQLITE_NULL;
+
+	return known ? (uint8_t)sqlite3_column_int(from, column) : -1;
+}
+
+/*
+ * A row of its own. Columns: least, most, mean, last, good, known, count, quality, worst. 1; 0:
+ * there is none.
+ */
+static int read_sum(const struct draw *d, enum handle_statement which, int64_t id,
+                    struct minute *row)
+{
+	sqlite3_stmt *from = d->h->statements[which];
 	int got;
 
-	sql_bind(from, "i",
-	         hour ? schema_hour(bucket, d->signal->number)
-	              : schema_minute(bucket, d->signal->number));
+	sql_bind(from, "i", id);
 	got = sql_next(from);
-	if (got != 1)
-		return got;
-	*sum = (struct rollup){
-		.least = sqlite3_column_double(from, 0),
-		.most = sqlite3_column_double(from, 1),
-		.last = sqlite3_column_double(from, 3),
-		.good_us = column_us(from, 4),
-		.known_us = column_us(from, 5),
-		.count = (uint32_t)sqlite3_column_int64(from, 6),
-		.worst = (uint8_t)sqlite3_column_int(from, 8),
-		.has_value = sqlite3_column_type(from, 0) != SQLITE_NULL,
-		.has_quality = sqlite3_column_type(from, 8) != SQLITE_NULL,
-	};
-	sum->sum_us = sum->has_value ? sum->good_us : 0;
-	sum->sum = sqlite3_column_double(from, 2) * (double)sum->sum_us;
-	*end = (struct rollup_state){
-		.value = sum->has_value ? sum->last : NAN,
-		.quality = (uint8_t)sqlite3_column_int(from, 7),
-		.known = sqlite3_column_type(from, 7) != SQLITE_NULL,
-	};
+	if (got == 1)
+		*row = (struct minute){
+			.least = sqlite3_column_type(from, 0) == SQLITE_NULL
+		                         ? NAN
+		                         : sqlite3_column_double(from, 0),
+			.most = sqlite3_column_double(from, 1),
+			.mean = sqlite3_column_double(from, 2),
+			.last = sqlite3_column_double(from, 3),
+			.good_us = column_us(from, 4),
+			.known_us = column_us(from, 5),
+			.count = (uint32_t)sqlite3_column_int64(from, 6),
+			.quality = column_quality(from, 7),
+			.worst = column_quality(from, 8),
+			.there = true,
+		};
 	sqlite3_reset(from);
-	return 1;
+	return got;
+}
+
+/* The minutes of an hour: of the row that has them all, or each of its own. */
+static int read_minutes(const struct draw *d, int64_t hour, struct minute minutes[MINUTES])
+{
+	sqlite3_stmt *from = d->h->statements[H_MINUTES];
+	uint32_t signal = d->signal->number;
+	const char *text;
+	int got;
+
+	sql_bind(from, "i", schema_minutes(hour, signal));
+	got = sql_next(from);
+	text = got == 1 ? (const char *)sqlite3_column_text(from, 0) : NULL;
+	if (text) {
+		got = minutes_unpack(text, minutes);
+		sqlite3_reset(from);
+		return got;
+	}
+	sqlite3_reset(from);
+	memset(minutes, 0, MINUTES * sizeof(*minutes));
+	for (int i = 0; got >= 0 && i < MINUTES; i++)
+		got = read_sum(d, H_MINUTE, schema_minute(hour * MINUTES + i, signal), &minutes[i]);
+	return got < 0 ? got : 0;
 }
 
 /*
@@ -198,43 +224,39 @@ static int draw_hours(struct draw *d, int64_t first, int64_t end)
 	for (int64_t hour = first / HOUR_US; got >= 0 && hour * HOUR_US < end; hour++) {
 		struct rollup_state last = {0};
 		struct rollup sum = {0};
+		struct minute row;
 
-		got = read_rollup(d, true, hour, &sum, &last);
+		got = read_sum(d, H_HOUR, schema_hour(hour, d->signal->number), &row);
+		if (got == 1)
+			minute_take(&row, HOUR_US, &sum, &last);
 		if (got >= 0)
 			add_rollup(d, &sum, &last, hour * HOUR_US, HOUR_US);
 	}
 	return got < 0 ? got : 0;
 }
 
-/* A minute without a row is as the one before it ended. */
+/* A minute in which nothing came is as the one before it ended, up to an hour before. */
 static int draw_minutes(struct draw *d, int64_t first, int64_t end)
 {
+	int64_t minute = (first - LOOK_BACK_US > 0 ? first - LOOK_BACK_US : 0) / MINUTE_US;
+	struct minute minutes[MINUTES];
 	struct rollup_state state = {0};
-	struct rollup sum = {0};
-	int got = 0;
+	int err = read_minutes(d, minute / MINUTES, minutes);
 
-	/*
-	 * The signals of a minute lie side by side: the next signal needs the pages of this one,
-	 * and a day of 50 signals fits in 8 MB. A read of hours comes to no page twice, and is
-	 * faster with the default.
-	 */
-	sqlite3_exec(d->h->db, "pragma cache_size = -8000", NULL, NULL, NULL);
-	for (int64_t back = 1;
-	     got == 0 && back <= LOOK_BACK_US / MINUTE_US && back <= first / MINUTE_US; back++)
-		got = read_rollup(d, false, first / MINUTE_US - back, &sum, &state);
-	for (int64_t minute = first / MINUTE_US; got >= 0 && minute * MINUTE_US < end; minute++) {
-		struct rollup_state before = state;
+	for (; !err && minute * MINUTE_US < end; minute++) {
+		const struct minute *row = &minutes[minute % MINUTES];
+		struct rollup sum = {0};
 
-		got = read_rollup(d, false, minute, &sum, &state);
-		if (got == 0) {
-			sum = (struct rollup){0};
-			rollup_hold(&sum, &before, MINUTE_US);
-			state = before;
-		}
-		if (got >= 0)
+		if (minute % MINUTES == 0)
+			err = read_minutes(d, minute / MINUTES, minutes);
+		if (row->there)
+			minute_take(row, MINUTE_US, &sum, &state);
+		else
+			rollup_hold(&sum, &state, MINUTE_US);
+		if (!err && (minute + 1) * MINUTE_US > first)
 			add_rollup(d, &sum, &state, minute * MINUTE_US, MINUTE_US);
 	}
-	return got < 0 ? got : 0;
+	return err;
 }
 
 /*

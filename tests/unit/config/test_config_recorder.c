@@ -104,7 +104,7 @@ static void test_a_file_without_the_block_has_its_defaults(void)
 	TEST_ASSERT_EQUAL_UINT(730, config->recorder.keep_minutes);
 	TEST_ASSERT_EQUAL_UINT(0, config->recorder.keep_hours);
 	TEST_ASSERT_EQUAL_UINT(2000, config->recorder.size_mb);
-	TEST_ASSERT_EQUAL_INT64(300000000000, config->recorder.flush_ns);
+	TEST_ASSERT_EQUAL_INT64(600000000000, config->recorder.flush_ns);
 	TEST_ASSERT_TRUE(config_record_of(config, &config->items[0]).change);
 }
 

@@ -172,7 +172,8 @@ static void test_an_hour_in_which_nothing_is_known_has_no_row_and_years_of_them_
 	rolling_begin(&rolling, BEGIN);
 	rolling_value(&rolling, BEGIN + 5, 3, &state);
 	rolling_gap(&rolling, BEGIN + 9, 0);
-	TEST_ASSERT_TRUE(rolling_is_due(&rolling, BEGIN + MINUTE_US));
+	TEST_ASSERT_FALSE(rolling_is_due(&rolling, BEGIN + MINUTE_US));
+	TEST_ASSERT_TRUE(rolling_is_due(&rolling, BEGIN + HOUR_US));
 	TEST_ASSERT_EQUAL_INT(0, rolling_advance(&rolling, BEGIN + INT64_C(1000000) * HOUR_US));
 	TEST_ASSERT_EQUAL_INT(1, minutes);
 	TEST_ASSERT_EQUAL_INT(1, hours);

@@ -74,19 +74,22 @@ static void test_a_commit_is_whole_in_the_file_and_counted(void)
 	TEST_ASSERT_EQUAL_INT64(1, past_ask(&past, "select count(*) from signal"));
 }
 
-/* Without a row: when the sum of a minute can be written. */
-static void test_without_rows_it_is_due_when_a_minute_is_over(void)
+/* Without a row: when the sums of an hour can be written. */
+static void test_without_rows_it_is_due_when_an_hour_is_over(void)
 {
 	const struct history_row row = value_at(2, 20);
 
 	TEST_ASSERT_EQUAL_INT(0, store_ready(&store));
 	TEST_ASSERT_EQUAL_INT(0, commit(&row, 1, 4));
-	TEST_ASSERT_FALSE(store_is_due(&store, 59 * SECOND_US));
-	TEST_ASSERT_TRUE(store_is_due(&store, 61 * SECOND_US));
-	TEST_ASSERT_EQUAL_INT(0, commit(NULL, 0, 61));
-	TEST_ASSERT_FALSE(store_is_due(&store, 62 * SECOND_US));
+	for (int64_t s = 590; s < 3600; s += 590)
+		TEST_ASSERT_EQUAL_INT(0, commit(NULL, 0, s));
+	TEST_ASSERT_FALSE(store_is_due(&store, 3599 * SECOND_US));
+	TEST_ASSERT_TRUE(store_is_due(&store, 3601 * SECOND_US));
+	TEST_ASSERT_EQUAL_INT(0, commit(NULL, 0, 3601));
+	TEST_ASSERT_FALSE(store_is_due(&store, 3602 * SECOND_US));
 	store_close(&store);
 	TEST_ASSERT_EQUAL_INT64(1, past_ask(&past, "select count(*) from minute"));
+	TEST_ASSERT_EQUAL_INT64(1, past_ask(&past, "select count(*) from hour"));
 }
 
 static void test_a_file_that_was_removed_is_made_again_and_nothing_is_written_beside_it(void)
@@ -111,7 +114,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_a_commit_is_whole_in_the_file_and_counted);
-	RUN_TEST(test_without_rows_it_is_due_when_a_minute_is_over);
+	RUN_TEST(test_without_rows_it_is_due_when_an_hour_is_over);
 	RUN_TEST(test_a_file_that_was_removed_is_made_again_and_nothing_is_written_beside_it);
 	return UNITY_END();
 }

@@ -343,7 +343,7 @@ static void test_a_value_that_holds_is_repeated_each_hour_and_one_of_a_gone_sign
  * --- Commits -----------------------------------------------------------------------------------
  */
 
-static void test_values_are_committed_in_five_minutes_and_the_begin_of_a_run_at_once(void)
+static void test_values_are_committed_in_ten_minutes_and_the_begin_of_a_run_at_once(void)
 {
 	past.options.flush_ns = 0;
 	past_begin(&past, 0, PAST_NOON, true);
@@ -352,9 +352,9 @@ static void test_values_are_committed_in_five_minutes_and_the_begin_of_a_run_at_
 	TEST_ASSERT_EQUAL_INT(0, new_commits());
 	seconds(10, 12, 1);
 	TEST_ASSERT_EQUAL_INT(1, new_commits());
-	seconds(12, 310, 1);
+	seconds(12, 610, 1);
 	TEST_ASSERT_EQUAL_INT(0, new_commits());
-	seconds(310, 311, 1);
+	seconds(610, 611, 1);
 	TEST_ASSERT_EQUAL_INT(1, new_commits());
 }
 
@@ -583,11 +583,11 @@ static void test_a_disk_that_takes_no_more_gets_all_once_it_does(void)
 	}
 	TEST_ASSERT_TRUE(state().error < 0);
 	setrlimit(RLIMIT_FSIZE, &before);
-	past_end(&past, 400 * PAST_S);
+	past_end(&past, 4000 * PAST_S);
 	TEST_ASSERT_EQUAL_INT(400, count_of(PAST_ROOM));
 	for (int i = 1; i < 399; i++)
 		expect(i, (i + 1) * PAST_S, i + 1);
-	TEST_ASSERT_TRUE(past_ask(&past, "select count(*) from minute") >= 6);
+	TEST_ASSERT_TRUE(past_ask(&past, "select count(*) from trend_minute") >= 6);
 }
 
 /* As a history that root's recorder has made, for the recorder of the service. */
@@ -916,7 +916,15 @@ static void test_an_older_file_is_brought_up_to_date(void)
 	TEST_ASSERT_EQUAL_STRING("", past.said);
 }
 
+/* Each minute has a row of its own. */
+#define OWN_MINUTES \
+	"create table former as select * from trend_minute; drop view trend_minute;" \
+	"delete from minute; alter table minute drop column minutes;" \
+	"insert into minute select unixepoch(time) / 60 << 16 | signal, least, most, mean, last, good," \
+	" known, count, 192, 192 from former join signal using (name); drop table former;" \
+	"create view trend_minute as select * from minute;"
 #define WITHOUT_IDENTITY \
+	OWN_MINUTES \
 	"drop index signal_identity; alter table signal drop column identity;" \
 	"alter table signal drop column former;"
 
@@ -944,6 +952,58 @@ static void test_hours_of_the_first_version_are_numbered_anew(void)
 	TEST_ASSERT_EQUAL_INT64(0, past_ask(&past, "select count(*) from sqlite_master"
 	                                           " where name = 'hours'"));
 	TEST_ASSERT_EQUAL_STRING("", past.said);
+}
+
+/* The second run begins microseconds after its minute. */
+static void check_hours_of_minutes(struct ows_history *h, int hours)
+{
+	static struct ows_history_point points[600];
+	int n = hours * 30;
+
+	TEST_ASSERT_EQUAL_INT(n, ows_history_points(h, PAST_ROOM, PAST_NOON,
+	                                            PAST_NOON + hours * 3600 * PAST_S, points, n));
+	for (int i = 0; i < n; i++) {
+		TEST_ASSERT_EQUAL_DOUBLE(2 * i - (2 * i > 210), points[i].min);
+		TEST_ASSERT_EQUAL_DOUBLE(2 * i + 1, points[i].max);
+		TEST_ASSERT_DOUBLE_WITHIN(1e-3, 2 * i + 0.5, points[i].mean);
+		TEST_ASSERT_INT64_WITHIN(2000, 120 * PAST_S, points[i].good_ns);
+		TEST_ASSERT_EQUAL_INT(2, points[i].count);
+	}
+}
+
+/*
+ * In version 4 each minute had a row, and keeps it. What the recorder adds to the hour under way
+ * goes into the row of that hour, with what is of before. A reader has the file open meanwhile.
+ */
+static void test_minutes_of_the_fourth_version_stay_and_are_read_with_those_that_follow(void)
+{
+	int64_t ends = 210 * 60 * PAST_S;
+	struct ows_history *h;
+
+	past_begin(&past, 0, PAST_NOON, true);
+	for (int minute = 0; minute < 210; minute++)
+		past_room(&past, minute * 60 * PAST_S, minute);
+	past_end(&past, ends);
+	sql(OWN_MINUTES "insert into minute select id + 65536, least, most, mean, last, good,"
+	                " known, count, quality, worst from minute where id >> 16 = (select max(id)"
+	                " >> 16 from minute); pragma user_version = 4");
+	TEST_ASSERT_EQUAL_INT64(181, past_ask(&past, "select count(*) from minute"));
+	TEST_ASSERT_EQUAL_INT(0, ows_history_open(NULL, past.directory, &h));
+	check_hours_of_minutes(h, 3);
+	past_begin(&past, ends, PAST_NOON, true);
+	for (int minute = 210; minute < 600; minute++)
+		past_room(&past, minute * 60 * PAST_S, minute);
+	past_end(&past, 600 * 60 * PAST_S);
+	TEST_ASSERT_EQUAL_INT64(HISTORY_SCHEMA, past_ask(&past, "pragma user_version"));
+	TEST_ASSERT_EQUAL_INT64(600, past_ask(&past, "select count(*) from trend_minute"));
+	TEST_ASSERT_EQUAL_INT64(600, past_ask(&past, "select count(distinct time) from trend_minute"
+	                                             " where most = last and count = 1"));
+	TEST_ASSERT_EQUAL_INT64(187, past_ask(&past, "select count(*) from minute"));
+	/* what is left of raw would do as well */
+	sql("delete from raw where id < (select max(id) from raw) - 600000000");
+	TEST_ASSERT_EQUAL_INT(0, ows_history_refresh(h));
+	check_hours_of_minutes(h, 10);
+	ows_history_close(h);
 }
 
 /* Version 2 had no words for events. */
@@ -1101,7 +1161,7 @@ int main(void)
 	RUN_TEST(test_a_gap_at_the_time_of_values_after_a_gap_is_another);
 	RUN_TEST(test_gaps_are_read_as_gaps_and_values_after_them_are_new);
 	RUN_TEST(test_a_value_that_holds_is_repeated_each_hour_and_one_of_a_gone_signal_is_not);
-	RUN_TEST(test_values_are_committed_in_five_minutes_and_the_begin_of_a_run_at_once);
+	RUN_TEST(test_values_are_committed_in_ten_minutes_and_the_begin_of_a_run_at_once);
 	RUN_TEST(test_an_alarm_and_a_gap_are_committed_at_once_and_many_of_them_each_ten_seconds);
 	RUN_TEST(test_from_a_minute_on_64_kb_of_values_are_worth_a_commit);
 	RUN_TEST(test_the_log_of_commits_has_its_size_from_the_begin);
@@ -1124,6 +1184,7 @@ int main(void)
 	RUN_TEST(test_a_newer_file_and_one_of_another_program_are_left_alone);
 	RUN_TEST(test_an_older_file_is_brought_up_to_date);
 	RUN_TEST(test_hours_of_the_first_version_are_numbered_anew);
+	RUN_TEST(test_minutes_of_the_fourth_version_stay_and_are_read_with_those_that_follow);
 	RUN_TEST(test_events_of_the_second_version_get_words_and_its_readers_need_none);
 	RUN_TEST(test_a_signal_of_the_third_version_gets_an_identity_by_its_name);
 	RUN_TEST(test_a_reader_sees_the_identities_when_the_file_is_brought_up_to_date);
