@@ -291,6 +291,9 @@ def mqtt_keys(house):
     yield key("Topic", "plant", linked(lambda c: c["will"].startswith("plant/")))
     yield key("Profile", "sparkplug", linked(lambda c: c["will"].startswith("spBv1.0/")))
     yield key("Discovery", "ha2", published("ha2/"))
+    yield key("Link", "http://page.example/",
+              linked(lambda c: any(b"http://page.example/" in body for body in c["topics"].values())))
+    yield key("OldReaders", raw("on"), linked(lambda c: any("/sensor/" in topic for topic in c["topics"])))
     yield key("PrimaryHost", "scada", linked(lambda c: any("STATE/scada" in asked for asked in c["asked"])),
               Profile="sparkplug")
     yield key("Write", raw("on"), linked(lambda c: any(b'"cmd_t"' in body for body in c["topics"].values())))
