@@ -143,7 +143,7 @@ struct ows_history_point {
 };
 /*
  * Divide the time into n stretches of the same length, to draw a signal: a year in milliseconds.
- * Stretches of two hours or more come from sums of hours, those of two minutes or more from sums of
+ * Stretches of two hours or more come from sums of hours, those of a minute or more from sums of
  * minutes; so does what is so old that its values are deleted. A sum is of the stretch that its
  * middle is in. mean is weighted by time. Returns n.
  * -EINVAL: n below 1, a time before 1970 or after 2116, or an end that is not after the begin; no

@@ -179,6 +179,7 @@ int main(int argc, char **argv)
 	if (end > YEAR)
 		report_trend("history.all_of_one", 1, end, end, POINTS);
 	report_trend("history.day_of_ten", 10, end, DAY, POINTS / 2);
-	report_trend("history.day_of_ten_in_values", 10, end, DAY, POINTS);
+	report_trend("history.day_of_ten_by_minutes", 10, end, DAY, POINTS);
+	report_trend("history.quarter_of_ten_in_values", 10, end, DAY / 4, POINTS);
 	return 0;
 }

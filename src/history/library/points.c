@@ -12,7 +12,7 @@
 #include "src/history/library/steps.h"
 
 #define STEPS 512
-#define PER_POINT 2     /* roll-ups that a point needs at least */
+#define PER_POINT 2     /* hours that a point needs at least; a minute is enough */
 #define NOTICED_US 1000 /* less than that is no gap */
 
 struct draw {
@@ -276,7 +276,7 @@ static void choose_sources(const struct draw *d, int64_t *hours, int64_t *minute
 	      : raw < oldest + LOOK_BACK_US ? oldest
 	                                    : raw + HOUR_US;
 	minute = minute < oldest + HOUR_US ? 0 : minute + HOUR_US;
-	*minutes = width >= PER_POINT * MINUTE_US ? h->minute_end : raw;
+	*minutes = width >= MINUTE_US ? h->minute_end : raw;
 	*hours = width >= PER_POINT * HOUR_US ? h->hour_end : minute < *minutes ? minute : *minutes;
 	if (*minutes < *hours)
 		*minutes = *hours;

@@ -551,7 +551,7 @@ static void sum_items(const struct ows_history_item *items, int count, int64_t f
 /* Of whole minutes and hours the points are what the values are, and no point is beyond them. */
 static void test_points_of_sums_are_those_of_the_values(void)
 {
-	static const int64_t widths[] = {40, 120, 600, 3600, 7200, 10800}; /* seconds */
+	static const int64_t widths[] = {40, 60, 120, 600, 3600, 7200, 10800}; /* seconds */
 	static struct ows_history_item items[7000];
 	struct ows_history_point points[STRETCHES], sum, wide;
 	int count = 0, got;
