@@ -47,8 +47,9 @@
 	WORDS("alarm_kind") WORDS("alarm_event") WORDS("command_reason") \
 	"create view trend_event as select " ISO("event.time") " as time," \
 	" case event.kind when 6 then 'clock' when 7 then 'command' else 'alarm' end as kind," \
-	" coalesce(c.text, ltrim(coalesce(k.text, '') || ' ' || a.text)) as what, name, value," \
-	" before, unit, q.text as quality, event.text, program, person" \
+	" coalesce(c.text, ltrim(coalesce(k.text, '') || ' ' || a.text)," \
+	" case value when 0 then 'trusted' else 'set' end) as what, name, value," \
+	" before, coalesce(unit, 's') as unit, q.text as quality, event.text, program, person" \
 	" from event left join signal using (signal) left join quality q" \
 	" on q.quality = event.quality left join command_reason c" \
 	" on event.kind = 7 and command_reason = event.reason left join alarm_kind k" \
@@ -132,6 +133,7 @@ static const char *const steps[HISTORY_SCHEMA] = {
 	 * as one text with the others of that hour.
 	 */
 	[4] = "drop view if exists trend_minute; alter table minute add column minutes text;"
+	      "drop view trend_event; " EVENTS
 	      "delete from minute where id >= (coalesce((" SCHEMA_HOURS_END
 	      "), 0) / 60000000) << 16;" ROLLUP_VIEW("minute", MINUTE_ROWS, "60000000",
                                                      "(t.id >> 16)", "t.id"),

@@ -314,6 +314,8 @@ static int put_event(struct history_store *store, const struct history_key *key,
 	sql_bind(to, "iiinnnnnnnnnnnnn", id, store->base + row->us,
 	         (int64_t)(event ? event->kind : OWS_HISTORY_CLOCK));
 	store->last_id = id;
+	if (!event)
+		sqlite3_bind_double(to, 9, (double)row->value / 1e6);
 	if (!event || !key)
 		return event ? -EINVAL : sql_next(to);
 	sqlite3_bind_int64(to, 4, key->number);

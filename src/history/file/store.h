@@ -27,9 +27,9 @@ void history_key_leave(struct history_key *key, const struct history_signal *sig
 
 enum history_row_kind { ROW_VALUE, ROW_GAP, ROW_EVENT, ROW_CLOCK };
 struct history_row {
-	int64_t us;                  /* boot time */
-	int64_t value;               /* of a value; until when, of a gap of all */
-	char *text;                  /* of a string, owned */
+	int64_t us;    /* boot time */
+	int64_t value; /* of a value; until when, of a gap of all; how far, of a clock */
+	char *text;    /* of a string, owned */
 	struct history_event *event; /* owned */
 	uint32_t key;                /* index; of a gap UINT32_MAX: of all */
 	uint32_t seq;                /* rows of the same time stay in their order */

@@ -281,10 +281,12 @@ void history_writer_clock(struct history_writer *w, int64_t now_ns, int64_t offs
 {
 	if (offset_ns / NS_PER_US == w->offset_us && trusted == w->trusted)
 		return;
+	writer_add(w, (struct history_row){.kind = ROW_CLOCK,
+	                                   .us = now_ns / NS_PER_US,
+	                                   .value = offset_ns / NS_PER_US - w->offset_us,
+	                                   .key = ROW_OF_ALL});
 	w->offset_us = offset_ns / NS_PER_US;
 	w->trusted = trusted;
-	writer_add(w, (struct history_row){
-			      .kind = ROW_CLOCK, .us = now_ns / NS_PER_US, .key = ROW_OF_ALL});
 }
 
 /*

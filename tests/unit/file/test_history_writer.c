@@ -177,6 +177,14 @@ static void test_a_reader_of_sql_sees_what_an_event_was(void)
 {
 	record_events();
 	check_events();
+	past_begin(&past, 40 * PAST_S, PAST_NOON, false);
+	history_writer_clock(past.writer, 41 * PAST_S, PAST_NOON - 90 * PAST_S, false);
+	history_writer_clock(past.writer, 42 * PAST_S, PAST_NOON - 90 * PAST_S, true);
+	past_end(&past, 43 * PAST_S);
+	check_words("clock", "set");
+	check_words("clock", "trusted");
+	TEST_ASSERT_EQUAL_INT64(-90, past_ask(&past, "select value from trend_event where"
+	                                             " what = 'set' and unit = 's'"));
 }
 
 /* A hash of all values with their ids. */
