@@ -189,6 +189,11 @@ LIBMOSQUITTO ?= $(shell printf '\043include <stdint.h>\n\043include <mosquitto.h
 LIBMOSQUITTO := $(LIBMOSQUITTO)
 MOSQUITTO := $(filter 1,$(LIBMOSQUITTO))
 
+# Its reasons why a certificate is refused, where OpenSSL is, which libmosquitto uses; OPENSSL=0 leaves them out
+OPENSSL ?= $(and $(MOSQUITTO),$(shell printf '\043include <openssl/ssl.h>\nint main(void) { return !TLS_client_method(); }\n' | \
+              $(CC) $(CPPFLAGS) $(CFLAGS) $(EXTRA_CFLAGS) $(LDFLAGS) -x c -o /dev/null - -lssl -lcrypto 2>/dev/null && echo 1))
+OPENSSL := $(filter 1,$(OPENSSL))
+
 # The profile sparkplug of owsd-mqtt, where libprotobuf-c and its compiler are; LIBPROTOBUFC=0 leaves it out
 PROTOC_C ?= $(or $(and $(shell command -v protoc-gen-c),$(shell command -v protoc)),$(shell command -v protoc-c))
 LIBPROTOBUFC ?= $(and $(PROTOC_C),$(shell printf '\043include <stdint.h>\n\043include <protobuf-c/protobuf-c.h>\nint main(void) { return !protobuf_c_version_number(); }\n' | \
@@ -207,7 +212,7 @@ with_ld  := $(CC): $(ALL_LDFLAGS) $(LIBS)
 with_libraries := libi2c $(if $(filter 1,$(LIBI2C)),yes,no) libgpiod $(or $(filter 1 2,$(LIBGPIOD)),no) \
     libsqlite3 $(if $(SQLITE),yes,no owsd-recorder left-out) libcurl $(if $(CURL),yes,no owsd-influx left-out owsd-notify left-out) \
     libmicrohttpd $(if $(HTTPD),yes,no owsd-web left-out) libmosquitto $(if $(MOSQUITTO),yes,no owsd-mqtt left-out) \
-    dygraphs $(if $(DYGRAPHS),yes,no plots left-out) libprotobuf-c $(if $(PROTOBUFC),yes,no)
+    dygraphs $(if $(DYGRAPHS),yes,no plots left-out) libprotobuf-c $(if $(PROTOBUFC),yes,no) openssl $(if $(OPENSSL),yes,no)
 compiler := $(firstword $(filter-out ccache,$(CC)))
 WITH     := $(patsubst %,$(B)/with/%,cc cxx ld libraries)
 same      = $(and $(findstring x$(1)x,x$(2)x),$(findstring x$(2)x,x$(1)x))
@@ -351,7 +356,9 @@ $(B)/owsctl $(B)/owsctl-sim: $(B)/src/tool/owsctl/owsctl.o
 $(foreach f,$(FACES),$(eval $(B)/$f: $(call obj,$(filter %/$(subst -,_,$f).c,$(FACE_MAIN)))))
 $(B)/owsd-writer-sim: $(B)/src/faces/writer/owsd_writer.o
 $(B)/owsd-influx $(B)/owsd-notify: LIBS += -lcurl
-$(B)/owsd-mqtt: LIBS += -lmosquitto $(if $(PROTOBUFC),-lprotobuf-c)
+$(B)/owsd-mqtt: LIBS += -lmosquitto $(if $(PROTOBUFC),-lprotobuf-c) $(if $(OPENSSL),-lssl -lcrypto)
+$(B)/src/faces/mqtt/client.o: PIC := $(if $(OPENSSL),-DOWSD_OPENSSL)
+$(B)/src/faces/mqtt/client.o: $(B)/with/libraries
 $(B)/owsd-web: $(call obj,$(WEB_ALONE))
 $(B)/owsd-web: LIBS += -lmicrohttpd -Wl,--export-dynamic-symbol=_gnutls_global_init_skip
 

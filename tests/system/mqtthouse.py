@@ -52,6 +52,17 @@ def certificates(scene):
     (scene.path / "client.key").chmod(0o600)
 
 
+def dated(scene, name, begins, ends):
+    """NAME.pem for broker.key, by the CA of certificates(), of that time (YYYYMMDDHHMMSSZ)."""
+    (scene.path / "newcerts").mkdir(exist_ok=True)
+    scene.file("index.txt", "")
+    scene.file("serial", "01\n")
+    conf = scene.file("ca.conf", "[ca]\ndefault_ca = d\n[d]\ndatabase = index.txt\nserial = serial\nnew_certs_dir = newcerts\n"
+                                 "default_md = sha256\npolicy = p\nunique_subject = no\n[p]\ncommonName = supplied\n")
+    openssl(scene, "ca", "-batch", "-notext", "-config", conf, "-cert", "ca.pem", "-keyfile", "ca.key", "-in", "broker.csr",
+            "-startdate", begins, "-enddate", ends, "-extfile", "broker.ext", "-out", f"{name}.pem")
+
+
 class Broker:
     def __init__(self, scene, port=None, lines=("allow_anonymous true",)):
         self.scene, self.port = scene, port or free_port()

@@ -11,7 +11,7 @@ import subprocess
 import threading
 
 import owsdtest
-from mqtthouse import ROOM, SENSOR, Broker, House, Listener, certificates, item, openssl, program
+from mqtthouse import ROOM, SENSOR, Broker, House, Listener, certificates, dated, item, openssl, program
 from owsdtest import free_port, logged, raw, until
 
 STATE = "owsd/pi7/state"
@@ -100,7 +100,7 @@ def test_tls_takes_the_broker_that_the_ca_vouches_for_and_shows_our_certificate(
     # a broker that nobody vouches for
     house.daemon.config.write_text(house.text(ROOM, CaFile=scene.path / "client.pem"))
     house.face = house.start()
-    logged(house.face, "certificate verify failed; look at CaFile, and at the clock of this machine")
+    logged(house.face, "self-signed certificate in certificate chain; CaFile has not the CA that signed it")
     house.face.stop()
     # another name than the certificate's
     house.daemon.config.write_text(house.text(ROOM, Broker=f"mqtts://127.0.0.1:{port}"))
@@ -129,6 +129,37 @@ def test_a_fault_of_ours_and_a_wrong_scheme_are_told_from_a_broker_that_is_away(
         house.face = house.start()
         logged(house.face, words)
         assert "does a broker run there?" not in house.face.log(), house.face.log()
+
+
+def test_a_certificate_of_another_time_is_told_from_one_of_another_ca(scene):
+    certificates(scene)
+    ports = {}
+    lines = ["allow_anonymous true"]
+    # to a clock that says 1970 each certificate is of the future
+    for name, begins, ends in (("old", "20200101000000Z", "20210101000000Z"), ("future", "21200101000000Z", "21210101000000Z")):
+        dated(scene, name, begins, ends)
+        ports[name] = free_port()
+        lines += [f"listener {ports[name]} 127.0.0.1", f"certfile {scene.path}/{name}.pem", f"keyfile {scene.path}/broker.key",
+                  "allow_anonymous true"]
+    house = House(scene, ROOM, lines=lines)
+    for name, words in (("old", "certificate has expired; renew it there, or look at the clock here"),
+                        ("future", "certificate is not yet valid; set the clock of this machine")):
+        house.face.stop()
+        house.daemon.config.write_text(house.text(ROOM, Broker=f"mqtts://localhost:{ports[name]}", CaFile=scene.path / "ca.pem"))
+        house.face = house.start()
+        logged(house.face, words)
+        assert "connected" not in house.face.log(), house.face.log()
+
+
+def test_what_is_too_large_for_the_broker_names_its_limits(scene):
+    house = House(scene, ROOM, lines=("allow_anonymous true", "message_size_limit 400"))
+    logged(house.face, "refuses what is published: Packet too large; raise there max_packet_size, message_size_limit")
+    house.arrives("room", lambda m: m["good"])
+    house.face.stop()
+    house = House(scene, ROOM, lines=("allow_anonymous true", "max_packet_size 900"))
+    logged(house.face, "homeassistant/device/owsd_pi7/config cannot be published: ")
+    logged(house.face, "raise there max_packet_size")
+    house.arrives("room", lambda m: m["good"])
 
 
 def test_the_first_way_that_works_is_taken_and_by_the_address_that_works(scene):

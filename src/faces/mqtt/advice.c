@@ -25,7 +25,7 @@ static const struct {
 	{ADVICE_TAKEN_OVER, "another client took its place",
          "look for a second owsd-mqtt of this Node"},
 	{0x95, "the broker calls a message too large",
-         "raise its limit (mosquitto: max_packet_size)"},
+         "raise there max_packet_size, message_size_limit"},
 	{0x97, "the broker calls it too much", "raise its quota"},
 	{0x9a, "the broker keeps no retained messages", "switch them on there"},
 	{0x9b, "the broker has no QoS 1", "take another broker"},
@@ -72,6 +72,13 @@ const char *advice_words(int code, int err, const char *tls)
 static const struct {
 	const char *part, *remedy;
 } tls_reasons[] = {
+	/* of OpenSSL's check; else what it logs of all of these */
+	{"has expired", "renew it there, or look at the clock here"},
+	{"not yet valid", "set the clock of this machine"},
+	{"issuer certificate", "CaFile has not the CA that signed it"},
+	{"first certificate", "CaFile has not the CA that signed it"},
+	{"self-signed", "CaFile has not the CA that signed it"},
+	{"self signed", "CaFile has not the CA that signed it"},
 	{"certificate verify failed", "look at CaFile, and at the clock of this machine"},
 	{"host name verification failed", "write a name of its certificate in Broker"},
 	{"certificate required", "the broker wants CertFile and KeyFile"},

@@ -8,6 +8,8 @@
 #define ADVICE_PROTOCOL 0x84
 /* Another client took our place */
 #define ADVICE_TAKEN_OVER 0x8e
+/* Of a message that the broker does not take, and that was not sent */
+#define ADVICE_LARGE "it is too large; raise there max_packet_size"
 
 /* The code of a CONNACK; old: of MQTT 3.1.1; as one of MQTT 5. */
 int advice_connack(int code, bool old);

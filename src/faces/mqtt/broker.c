@@ -329,12 +329,14 @@ static void work(struct broker *b, short ready, int64_t now_ns)
 		finish(b, MOSQ_ERR_ERRNO, err ? err : ECONNRESET, now_ns);
 		return;
 	}
+	client_explain(b);
 	if (ready & POLLOUT) {
 		b->sent += !b->tcp;
 		b->tcp = true;
 	}
 	if (mosquitto_want_write(b->client) || (ready & POLLOUT))
 		code = mosquitto_loop_write(b->client, 1);
+	client_explain(b); /* TLS may have begun in that */
 	if (!code && b->tcp)
 		code = read_all(b);
 	if (!code)
@@ -439,12 +441,7 @@ static bool publish(struct broker *b, const char *topic, const char *text, size_
 	if (err == MOSQ_ERR_NO_CONN || err == MOSQ_ERR_CONN_LOST || err == MOSQ_ERR_NOMEM)
 		return false;
 	/* it would never be taken, and must not stand in the way of the others */
-	b->refusals++;
-	if (*b->refusal)
-		return true;
-	snprintf(b->refusal, sizeof(b->refusal), "%.150s cannot be published: %s", topic,
-	         mosquitto_strerror(err));
-	log_err(b->face->log, "%s", b->refusal);
+	client_refuse(b, topic, err);
 	return true;
 }
 

@@ -2,6 +2,9 @@
 /* Makes a client of libmosquitto, with its secrets, its will and what its callbacks note. */
 #include <mosquitto.h>
 #include <mqtt_protocol.h>
+#ifdef OWSD_OPENSSL
+#include <openssl/ssl.h>
+#endif
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -64,6 +67,7 @@ static void on_publish(struct mosquitto *client, void *ctx, int mid, int reason,
 {
 	struct broker *b = ctx;
 	char name[MQTT_WAY_NAME];
+	bool denied;
 
 	(void)client;
 	(void)mid;
@@ -76,11 +80,22 @@ static void on_publish(struct mosquitto *client, void *ctx, int mid, int reason,
 	b->refusals++;
 	if (*b->refusal)
 		return;
-	snprintf(b->refusal, sizeof(b->refusal),
-	         "%.100s refuses what is published: %s; its access list has to let us write "
-	         "%.60s/# and the topics of discovery",
+	/* what has no remedy of its own may be forbidden, too */
+	denied = reason == 0x87 || !*advice_remedy(reason, 0, "");
+	snprintf(b->refusal, sizeof(b->refusal), "%.100s refuses what is published: %s; %s%.60s%s",
 	         mqtt_way_name(&b->options->ways[b->way], name), mosquitto_reason_string(reason),
-	         b->options->prefix);
+	         denied ? "its access list has to let us write " : advice_remedy(reason, 0, ""),
+	         denied ? b->options->prefix : "", denied ? "/# and the topics of discovery" : "");
+	log_err(b->face->log, "%s", b->refusal);
+}
+
+void client_refuse(struct broker *b, const char *topic, int err)
+{
+	b->refusals++;
+	if (*b->refusal)
+		return;
+	snprintf(b->refusal, sizeof(b->refusal), "%.150s cannot be published: %s", topic,
+	         err == MOSQ_ERR_OVERSIZE_PACKET ? ADVICE_LARGE : mosquitto_strerror(err));
 	log_err(b->face->log, "%s", b->refusal);
 }
 
@@ -226,6 +241,33 @@ static bool set_password(struct broker *b, char *why, size_t size)
 	explicit_bzero(password, sizeof(password));
 	snprintf(why, size, "%s", mosquitto_strerror(err));
 	return !err;
+}
+
+#ifdef OWSD_OPENSSL
+/* OpenSSL's own check, whose reason libmosquitto does not log. The host's name is checked in it. */
+static int judge(X509_STORE_CTX *store, void *ctx)
+{
+	struct broker *b = ctx;
+	int good = X509_verify_cert(store);
+
+	if (good <= 0 && !*b->tls_words)
+		snprintf(b->tls_words, sizeof(b->tls_words), "%s",
+		         X509_verify_cert_error_string(X509_STORE_CTX_get_error(store)));
+	return good;
+}
+
+#endif
+
+void client_explain(struct broker *b)
+{
+#ifdef OWSD_OPENSSL
+	SSL *tls = mosquitto_ssl_get(b->client);
+
+	if (tls)
+		SSL_CTX_set_cert_verify_callback(SSL_get_SSL_CTX(tls), judge, b);
+#else
+	(void)b;
+#endif
 }
 
 static bool set_tls(struct broker *b, char *why, size_t size)

@@ -96,6 +96,13 @@ struct broker {
  * files of secrets. False, with the reason in why; b->client is to be destroyed then, too.
  */
 bool client_make(struct broker *b, char *why, size_t size);
+/*
+ * Let b->tls_words say why the certificate of the broker is refused, once TLS begins. Before what
+ * comes is read.
+ */
+void client_explain(struct broker *b);
+/* What was to be published there is not, by an error of libmosquitto. */
+void client_refuse(struct broker *b, const char *topic, int err);
 /* MQTT 5, else 3.1.1. */
 bool client_mqtt5(const struct broker *b);
 /* The QoS of what has to come: the will and commands. */

@@ -87,6 +87,16 @@ static void test_what_tls_reported_leads_to_its_remedy(void)
 {
 	TEST_ASSERT_EQUAL_STRING("look at CaFile, and at the clock of this machine",
 	                         advice_remedy(MOSQ_ERR_TLS, 0, "certificate verify failed"));
+	TEST_ASSERT_EQUAL_STRING("renew it there, or look at the clock here",
+	                         advice_remedy(MOSQ_ERR_TLS, 0, "certificate has expired"));
+	TEST_ASSERT_EQUAL_STRING("set the clock of this machine",
+	                         advice_remedy(MOSQ_ERR_TLS, 0, "certificate is not yet valid"));
+	TEST_ASSERT_EQUAL_STRING(
+		"CaFile has not the CA that signed it",
+		advice_remedy(MOSQ_ERR_TLS, 0, "unable to get local issuer certificate"));
+	TEST_ASSERT_EQUAL_STRING(
+		"CaFile has not the CA that signed it",
+		advice_remedy(MOSQ_ERR_TLS, 0, "self-signed certificate in certificate chain"));
 	TEST_ASSERT_EQUAL_STRING(
 		"the broker wants CertFile and KeyFile",
 		advice_remedy(MOSQ_ERR_PROTOCOL, 0, "tlsv13 alert certificate required"));
@@ -106,9 +116,10 @@ static void test_what_tls_reported_leads_to_its_remedy(void)
 /* broker.c has fifty letters for a remedy. */
 static void test_no_remedy_is_cut(void)
 {
-	static const char *const tls[] = {"certificate verify failed", "certificate required",
-	                                  "alert certificate expired", "alert bad certificate",
-	                                  "alert unknown ca",          "wrong version number"};
+	static const char *const tls[] = {
+		"certificate verify failed", "certificate required",      "has expired",
+		"first certificate",         "alert certificate expired", "alert bad certificate",
+		"alert unknown ca",          "wrong version number"};
 
 	for (size_t i = 0; i < sizeof(tls) / sizeof(tls[0]); i++) {
 		size_t len = strlen(advice_remedy(MOSQ_ERR_TLS, 0, tls[i]));
