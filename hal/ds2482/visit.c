@@ -236,6 +236,7 @@ int ds2482_visit(struct ds2482_chip *chip, const struct link_part *part)
 	train.chip = chip;
 	train.count = train.reads = 0;
 	train.max_ns = 0;
+	train.read_last = false;
 	train.any = chip->master->adapter->combine == I2C_ANY;
 	train.slow = is_slow(chip, ds2482_byte_max_ns);
 	train.learnt = part->reset;
