@@ -63,7 +63,9 @@ static int link_go_on(struct ds2482_link *link, const struct link_part *part)
 	bool strong = part->out_n && part->after == LINK_STRONG;
 	int err = ds2482_select(link);
 
-	if (err >= 0 && part->out_n)
+	if (err < 0)
+		return err;
+	if (part->out_n)
 		err = strong ? write_strong(link->chip, part->out, part->out_n)
 		             : ds2482_visit(link->chip, &out);
 	if (!strong)

@@ -100,8 +100,8 @@ void job_look(struct native *native, struct job *job, int64_t now)
 		return;
 	case JOB_PROBE:
 		if (job->path.device.len == 0 ||
-		    (!job->fresh && !lost && job->txn.device->ok_ns + native->presence_ns > now &&
-		     job->txn.device->ok_ns))
+		    (!job->fresh && !lost && !job->txn.device->likely &&
+		     job->txn.device->ok_ns + native->presence_ns > now && job->txn.device->ok_ns))
 			job_answer(native, job, 0);
 		break;
 	case JOB_PROPERTY:

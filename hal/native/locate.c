@@ -69,8 +69,11 @@ static void missing_end(struct native *native, struct job *job)
 
 	if (moved && is_found(native, job))
 		return;
-	/* After the adapter was lost it may have been plugged in elsewhere. */
-	if (native_initial(native)) {
+	/*
+	 * After the adapter was lost it may have been plugged in elsewhere. What was found by its
+	 * first bits alone may be another one, and it on a wire that was not looked at.
+	 */
+	if (native_initial(native) || job->txn.device->likely) {
 		job->txn.device->astray |= !moved;
 		job->verified = false;
 		locate_wait(native, job, now);

@@ -95,6 +95,17 @@ static int send(struct serial_master *master, struct stream *stream)
 	return err ? lose(master, err) : 0;
 }
 
+/* -ENXIO: the chip was without supply, and has forgotten its parameters. */
+static int ask_parameters(struct serial_master *master)
+{
+	static const uint8_t ask = READ_STRONG;
+	uint8_t answer = 0;
+	size_t got;
+	int err = serial_exchange(master, BAUD, &ask, 1, &answer, 1, &got);
+
+	return err ? err : answer == ENDLESS ? 0 : -ENXIO;
+}
+
 /*
  * Back to command mode, whatever the adapter does: out of data mode, the accelerator off, the end
  * of a pulse. Twice, since the first byte may be the second of a doubled one.
@@ -112,6 +123,8 @@ static int resync(struct serial_master *master)
 	if (!err)
 		err = serial_settle(master);
 	master->data_mode = master->strong = false;
+	if (!err)
+		err = ask_parameters(master);
 	master->lost = err != 0;
 	return err;
 }
@@ -193,6 +206,9 @@ static int ds2480b_run(struct link *base, const struct link_part *part)
 	size_t strong = part->after == LINK_STRONG && part->out_n;
 	size_t out_n = part->out_n - strong, out_at = 0, in_at = 0;
 	bool reset = part->reset;
+
+	if (master->lost && !reset)
+		return -EIO; /* what went before is not known */
 	int err = master->lost ? resync(master) : 0;
 
 	if (!err && !reset && !out_n && !part->in_n && !strong)

@@ -13,10 +13,14 @@
 #include "hal/serial/find.h"
 #include "hal/serial/tty.h"
 
+/* Names below it stay; of two adapters without a serial number those by-path alone are two. */
+#define STAYS "/dev/serial/"
+
 struct place {
 	const char *by_id;
 	char *where;
-	char known[PATH_MAX]; /* its name below by_id, as soon as it was seen; "": none */
+	/* its name below by_id, as soon as it was seen; "": none, or where is a name that stays */
+	char known[PATH_MAX];
 };
 
 /*
@@ -48,13 +52,16 @@ static unsigned look(const char *by_id, const char *device, char *name, size_t s
 	return count;
 }
 
-/* Its name now: as it is known, else as it was given. "": there is none, or there are several. */
+/*
+ * Its name now: as it is known, else as it was given. "": there is none, or there are several. One
+ * that is known and away is waited for: what has its number meanwhile is another device.
+ */
 static unsigned find(struct place *place, char *path, size_t size)
 {
 	unsigned count = 1;
 
 	path[0] = '\0';
-	if (place->known[0] && access(place->known, F_OK) == 0)
+	if (place->known[0])
 		snprintf(path, size, "%s", place->known);
 	else if (place->where[0])
 		snprintf(path, size, "%s", place->where);
@@ -116,12 +123,16 @@ static int open_place(void *ctx, const struct bus_env *env, struct serial_port *
 		         count, place->by_id);
 		return -EINVAL;
 	}
-	snprintf(name, name_size, "%s", path);
+	if ((size_t)snprintf(name, name_size, "%s", path) >= name_size) {
+		snprintf(why, why_size, "the name of the port is longer than %zu characters",
+		         name_size - 1);
+		return -ENAMETOOLONG;
+	}
 	int err = tty_open(path, env, port, &holder);
 
 	if (err)
 		return explain(err, path, holder, why, why_size);
-	if (!place->known[0])
+	if (!place->known[0] && strncmp(place->where, STAYS, strlen(STAYS)) != 0)
 		look(place->by_id, path, place->known, sizeof(place->known));
 	return 0;
 }

@@ -12,6 +12,10 @@
 #define LATE_NS (200 * NS_PER_MS)
 #define QUIET_NS (30 * NS_PER_MS) /* nothing comes for longer than a USB adapter gathers bytes */
 #define SETTLE_NS (200 * NS_PER_MS)
+#define END_NS (5 * NS_PER_MS) /* a byte is on the line by then */
+
+/* Of a DS2480B, the only one that has a strong pull-up. */
+static const uint8_t end_pulse = 0xF1;
 
 int serial_create(const struct link_master_ops *ops, const struct serial_kind *kind,
                   const struct bus_env *env, const struct serial_source *source,
@@ -54,6 +58,10 @@ void serial_close(struct link_master *base)
 	if (!master->port)
 		return;
 	serial_master_cost(base, &master->closed);
+	/* nobody else would end a strong pull-up */
+	if (master->strong && !master->port->ops->write(master->port, &end_pulse, 1))
+		(void)serial_wait(master, END_NS);
+	master->strong = false;
 	master->port->ops->close(master->port);
 	master->port = NULL;
 }

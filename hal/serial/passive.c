@@ -103,6 +103,8 @@ static int passive_run(struct link *base, const struct link_part *part)
 
 	if (part->after == LINK_STRONG)
 		return -EOPNOTSUPP;
+	if (master->lost && !part->reset)
+		return -EIO; /* what went before is not known */
 	if (part->reset)
 		err = reset(master);
 	for (size_t at = 0, n; !err && at < part->out_n; at += n) {
@@ -123,6 +125,8 @@ static int passive_slot(struct link *base, bool out, enum link_after after)
 
 	if (after == LINK_STRONG)
 		return -EOPNOTSUPP;
+	if (master->lost)
+		return -EIO;
 	int err = pass(master, SLOT_BAUD, &line, &back, 1);
 
 	if (err)
@@ -141,7 +145,7 @@ static int passive_path(struct link *base, uint8_t rom[8], uint8_t conflict[8])
 {
 	struct serial_master *master = serial_of(base);
 	uint8_t line[3] = {ONE, ONE, ONE}, back[3] = {ONE};
-	int err = 0;
+	int err = master->lost ? -EIO : 0;
 
 	for (unsigned i = 0; !err && i <= 64; i++) {
 		unsigned first = i == 0, n = i == 0 ? 2 : i == 64 ? 1 : 3;

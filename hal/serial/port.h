@@ -10,7 +10,7 @@
 
 struct serial_port;
 struct serial_port_ops {
-	/* -ENOTTY: the port cannot have this speed. What has been sent is on the line by then. */
+	/* -ENOTTY: the port cannot have this speed. The caller has waited for what it sent. */
 	int (*speed)(struct serial_port *port, unsigned baud);
 	/* All of them, or an error: -ETIMEDOUT, the port takes no more. */
 	int (*write)(struct serial_port *port, const uint8_t *bytes, size_t n);

@@ -55,7 +55,7 @@ static int tty_speed(struct serial_port *port, unsigned baud)
 		return gone(errno);
 	cfmakeraw(&set);
 	set.c_cflag = (set.c_cflag & ~(tcflag_t)(CRTSCTS | CSTOPB | PARENB)) | CLOCAL | CREAD | CS8;
-	set.c_cc[VMIN] = 0;
+	set.c_cc[VMIN] = 1; /* with 0 a read of nothing returns 0, as that of a port that is gone */
 	set.c_cc[VTIME] = 0;
 	cfsetspeed(&set, code_of(baud));
 	if (tcsetattr(fd, TCSANOW, &set) || tcgetattr(fd, &is))
@@ -80,6 +80,8 @@ static int tty_write(struct serial_port *port, const uint8_t *bytes, size_t n)
 		}
 		if (sent < 0 && errno != EAGAIN && errno != EINTR)
 			return gone(errno);
+		if (bus_now(env) >= until_ns)
+			return -ETIMEDOUT;
 		int ready = env->wait(env->ctx, tty_of(port)->fd, POLLOUT, until_ns);
 		if (ready <= 0)
 			return ready < 0 ? -ECANCELED : -ETIMEDOUT;
@@ -108,6 +110,8 @@ static int tty_read(struct serial_port *port, uint8_t *bytes, size_t n, int64_t 
 			return -ENODEV;
 		if (errno != EAGAIN && errno != EINTR)
 			return gone(errno);
+		if (bus_now(env) >= until_ns)
+			return 0;
 	}
 }
 
@@ -125,6 +129,7 @@ static void tty_close(struct serial_port *port)
 {
 	int fd = tty_of(port)->fd;
 
+	(void)tcflush(fd, TCIOFLUSH); /* or close() waits for what a stuck adapter does not take */
 	(void)ioctl(fd, TIOCNXCL);
 	chip_unlock(fd, 0);
 	(void)close(fd);

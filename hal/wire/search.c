@@ -184,6 +184,8 @@ static int follow(struct link *link, uint8_t command, const uint8_t *const roms[
 		int err = make_pass(link, roms[0], &pass);
 
 		present = err == -EHOSTDOWN ? 0 : err ? err : 1;
+		if (pass.made)
+			length = 64;
 	}
 	if (present == 0)
 		for (unsigned i = 0; i < n; i++)

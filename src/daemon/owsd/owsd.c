@@ -145,7 +145,7 @@ static int owsd_load(const struct arguments *a, struct told *told, struct config
 	if (!err && a->listen_count)
 		err = config_set_listens(*config, a->listens, a->listen_count, report);
 	/* of a file with errors its items: one run names all that is wrong */
-	if (*config)
+	if (*config && (!err || err == -EINVAL))
 		err = target_check_config(*config, report);
 	if (!err && a->check)
 		err = target_look(*config, report);

@@ -16,6 +16,7 @@
 #define NS_PER_US 1000
 #define US_PER_S INT64_C(1000000)
 /* The recorder writes in five minutes, or what Flush says, ten minutes at most */
+#define BATCHES_NS (10 * NS_PER_S) /* between two writes of a position that nothing was sent for */
 #define WAIT_NS (2 * NS_PER_S)
 #define WAIT_MOST_NS (30 * NS_PER_S)
 #define LATE_NS (660 * NS_PER_S)
@@ -119,7 +120,7 @@ int missed_number(const struct missed *m)
 	number_path(m, path);
 	f = fopen(path, "re");
 	/* NOLINTNEXTLINE(cert-err34-c): a number out of range is none of ours */
-	if (!f || fscanf(f, "%d", &number) != 1 || number < 0)
+	if (!f || fscanf(f, "%3d", &number) != 1 || number < 0)
 		number = -1;
 	if (f)
 		fclose(f);
@@ -391,7 +392,7 @@ void missed_given(struct missed *m, const struct replay_point *last, int sent, i
 	m->wait_ns = WAIT_NS;
 	if (sent)
 		say_once(m, &m->said, ", from the history");
-	missed_keep(m, 0, now_ns);
+	missed_keep(m, sent ? 0 : BATCHES_NS, now_ns);
 }
 
 /* --- Sessions -------------------------------------------------------------------------------- */

@@ -64,6 +64,14 @@ static void on_connected(void *ctx)
 	stream_begin(&m->stream);
 }
 
+/* What somebody takes for a command or a question is no topic for answers. */
+static bool asks(const char *topic)
+{
+	const char *last = strrchr(topic, '/');
+
+	return last && (!strcmp(last, "/set") || !strcmp(last, "/on") || !strcmp(last, "/get"));
+}
+
 /*
  * The message that was begun is the answer: to all at the topic RESULT, and to whom the question
  * names. That one must not be a topic of the nodes, or of discovery: not every sender may publish
@@ -81,7 +89,7 @@ static void answer(struct mqtt *m, struct json *json, const struct broker_messag
 	snprintf(topic, sizeof(topic), "%.*s/" TOPIC_RESULT,
 	         (int)(strrchr(message->topic, '/') - message->topic), message->topic);
 	client_answer(&m->broker, topic, s->text, s->len, &(struct broker_message){0});
-	if (reply && *reply != '$' && !stream_below(reply, s->topic) &&
+	if (reply && *reply != '$' && !asks(reply) && !stream_below(reply, s->topic) &&
 	    !stream_below(reply, s->discovery))
 		client_answer(&m->broker, reply, s->text, s->len, message);
 }

@@ -201,8 +201,9 @@ void client_answer(struct broker *b, const char *topic, const char *text, size_t
 	                                  message->correlation, message->correlation_len))
 		return;
 	b->in_flight++;
-	if (mosquitto_publish_v5(b->client, NULL, topic, (int)len, text, client_sure_qos(b), false,
-	                         properties))
+	/* a topic that others name may be refused, which is no trouble of ours: so QoS 0 */
+	if (mosquitto_publish_v5(b->client, NULL, topic, (int)len, text,
+	                         message->topic ? 0 : client_sure_qos(b), false, properties))
 		b->in_flight--;
 	else
 		b->published++;

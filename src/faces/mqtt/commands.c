@@ -12,6 +12,8 @@
 #include "src/ground/signal/hash.h"
 #include "src/ground/signal/value.h"
 
+#define UNDER_WAY_NS (10 * NS_PER_S) /* a command is written by then, or it failed */
+
 void commands_tell(struct commands *c, int64_t now_ns)
 {
 	for (size_t i = 0; i < COMMANDS_CAUSES; i++) {
@@ -52,8 +54,9 @@ static void commands_refuse(struct commands *c, const char *name, const char *wh
  * on and off are all of a light or a cover that has a number, or nothing, and toggle is the other
  * one of them; else text. NULL: nothing says which is the other one.
  */
-static const char *number_of(const struct commands *c, int id, const struct ows_info *info,
-                             const char *text, char number[VALUE_TEXT_MAX])
+static const char *number_of(const struct commands *c, int id, int64_t given_ns,
+                             const struct ows_info *info, const char *text,
+                             char number[VALUE_TEXT_MAX])
 {
 	const struct stream *s = c->stream;
 	bool toggle = !strcmp(text, "toggle"), is_bool = info->type == OWS_BOOL;
@@ -70,6 +73,9 @@ static const char *number_of(const struct commands *c, int id, const struct ows_
 		entity_range(info, &least, &most);
 	if (toggle) {
 		if (ows_get(c->way.h, id, ows_now(), &v) || !ows_good(v.quality))
+			return NULL;
+		/* what was set just now is on its way, and the value that of before */
+		if (v.measured_ns < given_ns && ows_now() - given_ns < UNDER_WAY_NS)
 			return NULL;
 		text = v.number > least ? "off" : "on";
 	}
@@ -101,8 +107,11 @@ static int fit(void *ctx, int id, const struct ows_info *info, struct face_comma
 
 	if (!credit || !credit_spend(credit, ows_now()))
 		return credit ? -EDQUOT : -ENOMEM;
-	command->text = number_of(ctx, id, info, command->text, number);
-	return command->text ? 0 : -ENODATA;
+	command->text = number_of(ctx, id, credit->given_ns, info, command->text, number);
+	if (!command->text)
+		return -ENODATA;
+	credit->given_ns = ows_now();
+	return 0;
 }
 
 static void forget_credits(struct commands *c)
@@ -131,7 +140,8 @@ static const char *refusal_of(int err)
 	case EDQUOT:
 		return "more than 50 commands in a second";
 	case ENODATA:
-		return "its value is not good, so nothing says which the other one is: on or off";
+		return "nothing says which the other one is: its value is not good, or a command is "
+		       "under way: send on or off";
 	default:
 		return NULL;
 	}
@@ -175,7 +185,7 @@ int commands_take(struct commands *c, const char *name, bool known, bool plain,
 	}
 	c->taken++;
 	c->trouble[0] = '\0';
-	log_info(c->log, "%s set to %.60s for %s", name, c->ask.value, person);
+	log_info(c->log, "%s set to %.60s for %s", name, command.text, person);
 	return 0;
 }
 

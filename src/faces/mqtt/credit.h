@@ -11,6 +11,7 @@
 /* Of one topic; all zero: nothing has come yet. */
 struct credit {
 	int64_t counted_ns, credit_ns;
+	int64_t given_ns; /* when the last command was taken */
 };
 
 /* Is there credit for one more? Then it is spent. It grows with time, up to that of a burst. */

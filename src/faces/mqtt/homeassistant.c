@@ -265,7 +265,7 @@ static const char *entity_outlived(struct stream *s, const char *topic, bool *is
 {
 	char present[TOPIC_SIZE], part[2 * ENTITY_ID + 64];
 	size_t prefix = strlen(s->discovery) + 1, len, id_len;
-	const char *platform, *id;
+	const char *platform, *id, *owner;
 	struct chip *chip;
 
 	*is_one = false;
@@ -283,7 +283,8 @@ static const char *entity_outlived(struct stream *s, const char *topic, bool *is
 	*is_one = !strcmp(topic, present);
 	if (!*is_one)
 		return NULL;
-	chip = chip_of(s, id + strcspn(id, "_") + 1);
+	owner = memchr(id, '_', id_len);
+	chip = owner ? chip_of(s, owner + 1) : NULL;
 	if (!s->old_readers || s->profile->outlived != outlived) {
 		*(chip ? &chip->birth_print : &s->birth_print) = 0;
 		return "";

@@ -83,11 +83,17 @@ static void put(struct face *face, int signal, const struct entry *entry)
 }
 
 /* Since when nobody acknowledges it: what is raised anew meanwhile is no new beginning. */
-static void follow(struct row *row, const struct ows_alarm *alarm)
+static void follow(const struct face *face, struct row *row, const struct ows_alarm *alarm)
 {
 	bool deed = alarm->event == OWS_ALARM_ACKNOWLEDGED || alarm->event == OWS_ALARM_SHELVED;
+	struct ows_alarm_state state;
+	struct ows_info info;
 
 	if (alarm->event != OWS_ALARM_RAISED && alarm->event != OWS_ALARM_RETURNED && !deed)
+		return;
+	/* HH that falls to H is entered as returned, and the alarm stands on */
+	if (alarm->event == OWS_ALARM_RETURNED && rules_of_limit(alarm->kind) &&
+	    standing_find(face->ows, alarm->signal, &info, &state))
 		return;
 	if (alarm->event != OWS_ALARM_RAISED)
 		queue_ended(&notify.ways.queue, alarm->signal, deed ? OWS_ALARM_H : alarm->kind,
@@ -114,7 +120,7 @@ static void take_alarm(struct face *face, const struct ows_alarm *alarm)
 	row = &notify.rows.row[alarm->signal];
 	if (!row->chosen || ows_info(face->ows, alarm->signal, &info))
 		return;
-	follow(row, alarm);
+	follow(face, row, alarm);
 	if (alarm->occurred_ns <= notify.known_ns ||
 	    (alarm->event != OWS_ALARM_RAISED && alarm->event != OWS_ALARM_FAILED &&
 	     !(alarm->event == OWS_ALARM_RETURNED && file_of(face)->returns)))
@@ -130,12 +136,8 @@ static bool write_escalated(struct face *face, int signal, int64_t raised_ns,
 	struct face_value value;
 	struct ows_alarm_state state;
 	struct ows_info info;
-	int id;
 
-	if (ows_info(face->ows, signal, &info) || (id = ows_find(face->ows, info.name)) < 0)
-		return false;
-	state = standing_of(face->ows, id);
-	if (state.limit_state != OWS_LIMIT_UNACKNOWLEDGED)
+	if (!standing_find(face->ows, signal, &info, &state))
 		return false;
 	face_value(face->ows, signal, face->live, now->boot, &value);
 	if (value.good && value.v.type != OWS_STRING)

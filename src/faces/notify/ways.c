@@ -220,8 +220,13 @@ static bool gather(struct ways *ways, const struct config_notify *notify, enum w
 {
 	struct way *way = &ways->way[kind];
 	struct queue *queue = &ways->queue;
+	bool out[QUEUE_ENTRIES] = {false};
 	int64_t came_ns = INT64_MAX;
 
+	/* first of all: it may change how severe one is */
+	for (uint64_t n = way->next; n < queue->end; n++)
+		out[n % QUEUE_ENTRIES] = ways->judge &&
+		                         !ways->judge(ways->judge_ctx, queue_at(queue, n));
 	way->out = way->missed;
 	way->end = queue->end;
 	message->others = way->out;
@@ -230,7 +235,7 @@ static bool gather(struct ways *ways, const struct config_notify *notify, enum w
 			struct entry *entry = queue_at(queue, n);
 
 			if (entry->critical != critical || !ways_tells(kind, entry->escalated) ||
-			    (ways->judge && !ways->judge(ways->judge_ctx, entry)))
+			    out[n % QUEUE_ENTRIES])
 				continue;
 			message_add(message, entry);
 			if (entry->came_ns < came_ns)

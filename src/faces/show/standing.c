@@ -84,3 +84,13 @@ void standing_json(struct json *json, const struct ows_alarm_state *state)
 	json_array_end(json);
 	json_bool(json, "shelved", state->shelved);
 }
+
+bool standing_find(struct ows *h, int signal, struct ows_info *info, struct ows_alarm_state *state)
+{
+	int id;
+
+	if (ows_info(h, signal, info) || (id = ows_find(h, info->name)) < 0)
+		return false;
+	*state = standing_of(h, id);
+	return state->limit_state == OWS_LIMIT_UNACKNOWLEDGED;
+}

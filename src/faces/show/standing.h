@@ -29,3 +29,5 @@ const char *standing_text(const struct ows_alarm_state *state, char words[STANDI
 
 /* The member "alarms": an array with an object for each present alarm; and the member "shelved". */
 void standing_json(struct json *json, const struct ows_alarm_state *state);
+/* The same by the number in ows_info(). Is it of a limit, and has nobody acknowledged it? */
+bool standing_find(struct ows *h, int signal, struct ows_info *info, struct ows_alarm_state *state);

@@ -5,10 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/base/time.h"
 #include "src/config/edit/edit.h"
 #include "src/config/edit/edit_block.h"
 #include "src/config/edit/edit_device.h"
 #include "src/faces/web/draft_edit.h"
+
+#define STEPS_NS (10 * NS_PER_S) /* others wait, and so does the end of owsd-web */
 
 /* The name of a block, and its keys, or settings. */
 struct order {
@@ -202,10 +205,14 @@ static int edit_one(struct rio **rio, const struct body *body, struct config_rep
 /* Edits in a row, each a JSON object in a line of its own. */
 static int edit_steps(struct rio **rio, char *line, struct config_report *report)
 {
+	int64_t until_ns = ows_now() + STEPS_NS;
 	struct body step;
 	int err = 0;
 
 	for (char *end; !err && line && *line; line = end) {
+		if (ows_now() >= until_ns)
+			return draft_edit_refuse(report,
+			                         "too many edits at once: choose fewer items");
 		end = strchr(line, '\n');
 		err = body_parse(line, end ? (size_t)(end - line) : strlen(line), &step);
 		if (err)

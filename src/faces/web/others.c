@@ -142,7 +142,11 @@ struct others *others_begin(const char *list)
 	others->users = 1;
 	others->count = others->list ? take_list(others) : 0;
 	for (unsigned i = 0; i < others->count; i++)
-		others->users += start(&others->other[i]);
+		if (start(&others->other[i]))
+			others->users++;
+		else
+			note(&others->other[i], NULL,
+			     "it is not asked, for want of a thread: reload owsd later", ows_now());
 	if (!others->count) {
 		leave(others);
 		return NULL;

@@ -458,6 +458,7 @@ static void close_web(struct face *face)
 	web->past = web->commands = web->drafts = web->saves = web->scans =
 		NULL; /* a request whose body comes now is refused */
 	others_end(web->others);
+	web->others = NULL;
 	doors_close(&web->doors);
 	end_streams(web);
 	http_close(web);

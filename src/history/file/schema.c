@@ -47,9 +47,9 @@
 	WORDS("alarm_kind") WORDS("alarm_event") WORDS("command_reason") \
 	"create view trend_event as select " ISO("event.time") " as time," \
 	" case event.kind when 6 then 'clock' when 7 then 'command' else 'alarm' end as kind," \
-	" coalesce(c.text, ltrim(coalesce(k.text, '') || ' ' || a.text)," \
-	" case value when 0 then 'trusted' else 'set' end) as what, name, value," \
-	" before, coalesce(unit, 's') as unit, q.text as quality, event.text, program, person" \
+	" case when event.kind <> 6 then coalesce(c.text, ltrim(coalesce(k.text, '') || ' ' || a.text))" \
+	" when value <> 0 then 'set' when value = 0 then 'trust changed' end as what, name, value," \
+	" before, case event.kind when 6 then 's' else unit end as unit, q.text as quality, event.text, program, person" \
 	" from event left join signal using (signal) left join quality q" \
 	" on q.quality = event.quality left join command_reason c" \
 	" on event.kind = 7 and command_reason = event.reason left join alarm_kind k" \

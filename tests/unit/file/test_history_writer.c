@@ -182,7 +182,7 @@ static void test_a_reader_of_sql_sees_what_an_event_was(void)
 	history_writer_clock(past.writer, 42 * PAST_S, PAST_NOON - 90 * PAST_S, true);
 	past_end(&past, 43 * PAST_S);
 	check_words("clock", "set");
-	check_words("clock", "trusted");
+	check_words("clock", "trust changed");
 	TEST_ASSERT_EQUAL_INT64(-90, past_ask(&past, "select value from trend_event where"
 	                                             " what = 'set' and unit = 's'"));
 }
