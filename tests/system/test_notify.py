@@ -239,6 +239,18 @@ def test_an_alarm_that_nobody_acknowledges_goes_to_another_person_and_one_that_i
         assert "cellar" not in second.read_text() and "boss" not in first.read_text()
 
 
+def test_an_alarm_that_falls_from_hh_to_h_is_escalated_all_the_same(scene):
+    with peer.Peer({FREEZER: "20"}) as house, Web() as web:
+        daemon, _ = notify(scene, house.target, dict(Url=web.url, Gather=0, Every=0, EscalateAfter=4),
+                           item(LimitH=30, LimitHH=40))
+        until(lambda: scene.get(daemon, "freezer") == "20", 10, "a value")
+        house[FREEZER] = "45"
+        until(lambda: web.got, 20, "the alarm is told")
+        house[FREEZER] = "35"
+        until(lambda: any("nobody has acknowledged" in text for text in web.texts()), 30, web.texts)
+        assert [text for text in web.texts() if "nobody" in text][0].count("freezer") == 1, web.texts()
+
+
 def test_an_escalation_that_waits_survives_an_end(scene):
     with peer.Peer({FREEZER: "20"}) as house, Web() as web:
         daemon, one = notify(scene, house.target, dict(Url=web.url, Gather=0, Every=0, EscalateAfter=3))

@@ -130,6 +130,28 @@ static void test_an_adapter_that_came_back_as_another_device_is_found_by_what_it
 	TEST_ASSERT_EQUAL_INT(1, read(adapter[2], device, 1));
 }
 
+static void test_one_that_is_away_is_waited_for_and_no_other_taken(void)
+{
+	char device[64];
+	uint64_t mark;
+
+	snprintf(device, sizeof(device), "%s", ptsname(adapter[0]));
+	for (unsigned i = 0; i < 2; i++) {
+		link_to("one", 0);
+		make(i ? "" : device);
+		TEST_ASSERT_EQUAL_INT_MESSAGE(0, try_open(), why);
+		close_port();
+		/* another device is the only one, and has the number that it had */
+		TEST_ASSERT_EQUAL_INT(0, unlink(link_path("one")));
+		link_to("two", 0);
+		TEST_ASSERT_EQUAL_INT(0, source.visible(source.ctx, &mark));
+		refused(-ENODEV, "/one: is the adapter plugged in?");
+		TEST_ASSERT_EQUAL_INT(0, unlink(link_path("two")));
+		source.destroy(source.ctx);
+		source.ctx = NULL;
+	}
+}
+
 static void test_two_targets_do_not_share_a_port(void)
 {
 	struct serial_port *second;
@@ -193,6 +215,7 @@ int main(void)
 	RUN_TEST(test_a_target_names_a_device_or_nothing);
 	RUN_TEST(test_without_a_device_the_only_port_is_taken);
 	RUN_TEST(test_an_adapter_that_came_back_as_another_device_is_found_by_what_it_is);
+	RUN_TEST(test_one_that_is_away_is_waited_for_and_no_other_taken);
 	RUN_TEST(test_two_targets_do_not_share_a_port);
 	RUN_TEST(test_bytes_go_both_ways_untouched_and_a_read_has_a_deadline);
 	RUN_TEST(test_a_port_that_was_pulled_is_gone);
