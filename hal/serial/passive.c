@@ -137,7 +137,9 @@ static int passive_slot(struct link *base, bool out, enum link_after after)
 
 static void set_bit(uint8_t bits[8], unsigned i, bool on)
 {
-	bits[i / 8] = (uint8_t)((bits[i / 8] & ~(1u << i % 8)) | (unsigned)on << i % 8);
+	uint8_t mask = (uint8_t)(1 << i % 8);
+
+	bits[i / 8] = (uint8_t)(on ? bits[i / 8] | mask : bits[i / 8] & ~mask);
 }
 
 /* The direction goes out with the two slots of the next bit: one exchange for each bit of an id. */

@@ -43,7 +43,7 @@ out=$2
 shift 2
 cat "$@" | cksum >"$out"
 """
-MAKEFILES = ["Makefile", *(p.relative_to(SOURCE) for p in SOURCE.glob("tests/*/*.mk"))]
+MAKEFILES = ["Makefile", "board/faces", *(p.relative_to(SOURCE) for p in SOURCE.glob("tests/*/*.mk"))]
 TARGETS = ["all", "examples", "unit-programs", "benches", "kernel-programs"]
 # FILE of B for each source
 OTHERS = {"system/{}": "tests/system/*.c", "system/{}.so": "tests/system/preload/*.c"}
@@ -70,8 +70,9 @@ class Tree:
                 for name in names:
                     file = pathlib.Path(folder, name)
                     is_named = file.stem in words if top == "tests" else str(file.relative_to(SOURCE)) in named
-                    if name in sources[:1] or name in MORE or is_named and file.suffix in (".c", ".h") or \
-                            file.suffix == ".proto":
+                    is_main = name.startswith("owsd_")  # of a face, by board/faces
+                    if name in sources[:1] or name in MORE or is_main or file.suffix == ".proto" or \
+                            is_named and file.suffix in (".c", ".h"):
                         self._copy(file)
         (self.path / "unity").mkdir()
         for name in ("unity.c", "unity.h"):

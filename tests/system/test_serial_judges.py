@@ -3,6 +3,7 @@
 """The simulated serial adapters serve the genuine programs as the true ones do: owserver and
 digitemp find the devices and read what the scenario says, and never too fast."""
 
+import os
 import shutil
 import subprocess
 
@@ -80,7 +81,8 @@ def test_owserver_reads_a_passive_adapter(scene):
 def test_bytes_that_come_faster_than_the_wire_are_lost_and_end_the_strict_adapter(scene):
     """The adapter has one byte of buffer, and a byte takes the wire 0.56 ms."""
     adapter = serialport.Adapter(scene, HOUSE, "--ds2480b", "--strict")
-    with open(adapter.name, "r+b", buffering=0) as port:
+    # not the terminal that controls the test: whose end ends the test, too
+    with open(adapter.name, "r+b", buffering=0, opener=lambda path, how: os.open(path, how | os.O_NOCTTY)) as port:
         port.write(b"\xE1" + b"\xFF" * 200)
         owsdtest.until(lambda: adapter.stats()["answers"] == 200, 10, "200 bytes at 9600")
         assert adapter.stats()["overruns"] == 0

@@ -53,7 +53,7 @@ static void ending_ask(struct native *native, unsigned n)
 {
 	struct link *link = native->channel[n].link;
 	struct ending *ending = &native->channel[n].ending;
-	uint8_t busy;
+	uint8_t busy = 0;
 	const struct link_part slots = {.in = &busy, .in_n = 1};
 	int err = link->ops->run(link, &slots);
 	int64_t now = native_now(native);

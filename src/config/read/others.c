@@ -57,7 +57,9 @@ static bool is_name(const char *name)
 
 static bool is_port(const char *port)
 {
-	return strspn(port, "0123456789") == strlen(port) && atoi(port) > 0 && atoi(port) < 65536;
+	unsigned long number = strtoul(port, NULL, 10);
+
+	return strspn(port, "0123456789") == strlen(port) && number > 0 && number < 65536;
 }
 
 /* HOST, HOST:PORT or [IPv6]:PORT, and a path that ends with "/". */
@@ -78,12 +80,12 @@ static bool take_http(struct word rest, struct other_place *place)
 		return false;
 	colon = rest.at + end + v6;
 	len -= end + v6;
-	strcpy(place->port, "80");
+	memcpy(place->port, "80", sizeof("80"));
 	if (len && (*colon != ':' ||
 	            !copy((struct word){colon + 1, len - 1}, place->port, sizeof(place->port)) ||
 	            !is_port(place->port)))
 		return false;
-	strcpy(place->path, "/");
+	memcpy(place->path, "/", sizeof("/"));
 	if (!slash)
 		return true;
 	len = rest.len - (size_t)(slash - rest.at);
@@ -91,13 +93,13 @@ static bool take_http(struct word rest, struct other_place *place)
 	    strspn(place->path, of_path) != len)
 		return false;
 	if (place->path[len - 1] != '/')
-		strcpy(place->path + len, "/");
+		memcpy(place->path + len, "/", sizeof("/"));
 	return true;
 }
 
 static bool take_socket(struct word word, struct other_place *place)
 {
-	strcpy(place->path, "/");
+	memcpy(place->path, "/", sizeof("/"));
 	return copy(word, place->host, SOCKET_MAX + 1) && word.len > 4 &&
 	       !strcmp(place->host + word.len - 4, ".web");
 }

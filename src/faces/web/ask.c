@@ -187,7 +187,7 @@ bool ask_summary(const struct other_place *place, int64_t until_ns, struct summa
                  char why[ASK_WORDS])
 {
 	bool named = *place->port, v6 = named && strchr(place->host, ':');
-	char request[800], bytes[ASK_MAX + 1];
+	char request[800], bytes[ASK_MAX + 1] = "";
 	int len, fd = named ? connect_name(place, until_ns, why)
 	                    : connect_socket(place, until_ns, why);
 

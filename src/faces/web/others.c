@@ -56,7 +56,7 @@ static void note(struct other *other, const struct summary *summary, const char 
 {
 	if (!other->asked)
 		other->since_ns = began_ns;
-	if (!why) {
+	if (summary) {
 		if (!other->answers)
 			other->since_ns = began_ns;
 		other->summary = *summary;
@@ -64,7 +64,7 @@ static void note(struct other *other, const struct summary *summary, const char 
 	} else {
 		snprintf(other->why, sizeof(other->why), "%s", why);
 	}
-	other->answers = !why;
+	other->answers = summary;
 	other->asked = true;
 }
 
@@ -84,7 +84,7 @@ static void *ask_again(void *ctx)
 		pthread_mutex_unlock(&all->lock);
 		is = ask_summary(&other->place, now_ns + DEADLINE_NS, &summary, why);
 		pthread_mutex_lock(&all->lock);
-		note(other, &summary, is ? NULL : why, now_ns);
+		note(other, is ? &summary : NULL, why, now_ns);
 		clock_gettime(CLOCK_MONOTONIC, &until);
 		until.tv_sec += EVERY_S;
 		while (!all->ended &&
