@@ -13,6 +13,7 @@ SCRIPT = "src/faces/web/page/words.js"
 PAGE = "docs/troubleshooting.md"
 PUBLIC = "src/public/ows.h"
 MACROS = ("QUALITY", "ERROR", "ALARM")
+HEALTHS = {"FAILURE": "failure", "CHECK": "check function", "OFF_SPEC": "off spec"}
 STRINGS = r'"(?:[^"\\]|\\.)*"'
 
 
@@ -31,7 +32,8 @@ def rows(text, macro):
 def script_of(table, public):
     """The rows of the Map that words.js has."""
     out = []
-    for code, *texts in rows(table, "QUALITY"):
+    for names, *texts in rows(table, "QUALITY"):
+        code = names.split(", ")[0]
         number = re.search(rf"\bOWS_Q_{code} = (0x\w+)", public)[1]
         lines = [f"\t[{number}, ["]
         for text in texts:
@@ -63,6 +65,14 @@ def page_of(table):
         out += ["", title, ""] if title else []
         out += [line for _, word, cause, remedy in rows(table, macro)
                 for line in entry([f"`{word}`: {cause}", f"Remedy: {remedy}"])]
+    out += ["", "The health of a device is the worst of its signals, in the words of NAMUR NE 107:",
+            ""]
+    for health in dict.fromkeys(names.split(", ")[1] for names, *_ in rows(table, "QUALITY")):
+        out += entry([f"`{HEALTHS[health]}`: " + ", ".join(
+            f"`{word}`" for names, word, *_ in rows(table, "QUALITY") if names.endswith(health))])
+    out += entry(["`check function` too: what is simulated"])
+    out += entry(["`maintenance required`: all values are good, and of 1000 requests and more since owsd "
+                  "started one of a hundred failed"])
     out += ["", "The errors:", ""]
     errors = {}
     for _, word, remedy in rows(table, "ERROR"):

@@ -12,7 +12,7 @@ const source = (path) => readFileSync(`${process.env.PAGE_SOURCE}/${path}`, "utf
 function qualities() {
 	const codes = new Map([...source("src/public/ows.h").matchAll(
 		/(OWS_Q_\w+)\s*=\s*(0x[0-9a-f]+)/gi)].map(([, name, code]) => [name, Number(code)]));
-	return [...source("src/ground/signal/words_list.h").matchAll(/^QUALITY\((\w+),\s*"([^"]+)"/gm)]
+	return [...source("src/ground/signal/words_list.h").matchAll(/^QUALITY\((\w+), \w+,\s*"([^"]+)"/gm)]
 		.map(([, name, words]) => [codes.get(`OWS_Q_${name}`), words]);
 }
 

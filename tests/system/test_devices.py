@@ -106,10 +106,10 @@ def test_the_texts_of_stats_and_metrics_have_each_device(scene):
                       for device in (CLONE, FED, RELAYS)), 20, "each has answered well")
     rows = {line.split()[0]: line for line in scene.owsctl(daemon, "stats").stdout.splitlines()
             if line.strip()}
-    assert rows["DEVICE"].split() == ["DEVICE", "IDENTITY", "POWER", "TARGET", "REQUESTS", "ERRORS",
+    assert rows["DEVICE"].split() == ["DEVICE", "IDENTITY", "HEALTH", "POWER", "TARGET", "REQUESTS", "ERRORS",
                                       "RETRIES", "WIRE", "LAST"]
     assert " parasite " in rows[FED] and "DS18B20 clone, family B1" in rows[CLONE], rows
-    assert "%" in rows[CLONE] and rows[GONE].split()[1:3] == ["-", "-"], rows
+    assert "%" in rows[CLONE] and rows[GONE].split()[1:4] == ["-", "failure", "-"], rows
     lines = scene.owsctl(daemon, "metrics").stdout.splitlines()
     label = f'owsd="{daemon.name}",device="{NOISY}"'
     retries = [line for line in lines if line.startswith(f"ows_device_retries_total{{{label}}}")]

@@ -57,7 +57,7 @@ def test_each_chip_that_was_there_is_a_device_by_its_id_behind_the_node(scene):
     assert (alarm["p"], alarm["dev_cla"], alarm["stat_t"]) == ("binary_sensor", "problem", "owsd/pi7/room/alarm")
     problem = message["cmps"]["owsd_28_A0B1C2000001_problem"]
     assert (problem["dev_cla"], problem["stat_t"], problem["avty"]) == ("problem", PROBLEM, [{"t": "owsd/pi7/state"}])
-    house.says(PROBLEM, '{"problem":false,"why":null,"signal":null,"bad":0}')
+    house.says(PROBLEM, '{"problem":false,"health":"check function","why":null,"signal":null,"bad":0}')
     node = device(house, NODE)
     assert node["dev"]["ids"] == ["owsd_pi7"] and [a["t"] for a in node["avty"]] == ["owsd/pi7/state"]
     assert {c["stat_t"] for c in node["cmps"].values()} == {"owsd/pi7/health"}
@@ -222,8 +222,8 @@ def test_a_chip_that_is_away_has_a_problem_with_its_reason(scene):
     house = House(scene, ROOM, item("attic", "/28.A0B1C2000002/temperature"),
                   wire="DS18B20 28.A0B1C2000002 as attic temperature 18\nat 4s unplug attic\n")
     topic = PROBLEM.replace(SENSOR, "28.A0B1C2000002")
-    house.says(topic, '{"problem":false,"why":null,"signal":null,"bad":0}')
-    house.says(topic, '{"problem":true,"why":"device absent","signal":"attic","bad":1}')
+    house.says(topic, '{"problem":false,"health":"check function","why":null,"signal":null,"bad":0}')
+    house.says(topic, '{"problem":true,"health":"failure","why":"device absent","signal":"attic","bad":1}')
     assert json.loads(house.listener.last(PROBLEM))["problem"] is False
 
 

@@ -7,6 +7,7 @@
 #include "hal/base/time.h"
 #include "src/faces/mqtt/entity.h"
 #include "src/faces/mqtt/plain.h"
+#include "src/faces/show/health.h"
 #include "src/ground/signal/unit.h"
 #include "src/ground/signal/value.h"
 
@@ -359,7 +360,7 @@ void entity_json(struct json *json, const struct stream *s, const struct row *ro
 		json_array_end(json);
 		json_object_end(json);
 	}
-	if (plain_is_key(row)) {
+	if (health_is_key(&row->info)) {
 		snprintf(title, sizeof(title), "%.200s_tag", id);
 		json_object(json, title);
 		json_string(json, "p", "tag");

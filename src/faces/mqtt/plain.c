@@ -5,16 +5,9 @@
 
 #include "hal/base/time.h"
 #include "src/faces/mqtt/plain.h"
+#include "src/faces/show/health.h"
 #include "src/faces/show/reading.h"
 #include "src/faces/show/when.h"
-
-bool plain_is_key(const struct row *row)
-{
-	const char *path = strrchr(row->info.path, '/');
-
-	return (!strncmp(row->chip_id, "01.", 3) || !strncmp(row->chip_id, "81.", 3)) && path &&
-	       !strcmp(path, "/present");
-}
 
 void plain_topic(const struct stream *s, const struct row *row, char topic[TOPIC_SIZE])
 {
@@ -206,7 +199,9 @@ static bool publish_limit(struct stream *s, struct row *row)
 /* What is wrong with a chip, if it is another than was published; once all its rows are. */
 static bool publish_problem(struct stream *s, const struct row *row)
 {
+	enum device_health health = HEALTH_NORMAL;
 	const struct row *first = NULL;
+	struct ows_device device;
 	char topic[TOPIC_SIZE];
 	struct chip *chip;
 	struct json json;
@@ -221,20 +216,25 @@ static bool publish_problem(struct stream *s, const struct row *row)
 
 		if (!one->published)
 			return true;
+		health = health_worse(health,
+		                      health_of_signal(&one->info, one->quality, one->simulated));
 		/* what nobody has set yet, and a key that is away, are as they should be */
-		if (one->good || one->quality == OWS_Q_INITIAL || plain_is_key(one))
+		if (one->good || one->quality == OWS_Q_INITIAL || health_is_key(&one->info))
 			continue;
 		first = first ? first : one;
 		bad++;
 	}
 	print = first ? (uint64_t)(first - s->rows) << 32 | (unsigned)bad << 9 | first->quality << 1
 	              : 0;
-	print |= 1;
+	if (health_find(s->h, row->info.device, &device) >= 0)
+		health = health_worse(health, health_of_wire(&device));
+	print |= (uint64_t)health << 60 | 1;
 	if (print == chip->problem_print)
 		return true;
 	stream_message(s, &json);
 	json_object(&json, NULL);
 	json_bool(&json, "problem", first);
+	json_string(&json, "health", health_word(health));
 	json_string(&json, "why", first ? ows_quality_text(first->quality) : NULL);
 	json_string(&json, "signal", first ? first->name : NULL);
 	json_int(&json, "bad", bad);
@@ -254,7 +254,7 @@ bool plain_value(struct stream *s, struct row *row)
 
 	if (!publish_chip(s, row, news.value.v.quality) || !publish_limit(s, row))
 		return false;
-	if (s->live && plain_is_key(row) && !publish_key(s, row, &news.value.v))
+	if (s->live && health_is_key(&row->info) && !publish_key(s, row, &news.value.v))
 		return false;
 	if (due) {
 		stream_message(s, &json);

@@ -4,9 +4,6 @@
 
 #include "src/faces/mqtt/stream.h"
 
-/* Is it a key that touches the wire: "/01.7A3B4C5D6E7F/present"? */
-bool plain_is_key(const struct row *row);
-
 extern const char *const plain_below[];
 void plain_topic(const struct stream *s, const struct row *row, char topic[TOPIC_SIZE]);
 bool plain_writes(const struct stream *s, const char *topic, const char *below);

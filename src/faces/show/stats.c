@@ -2,6 +2,7 @@
 /* The state of owsd, its targets, devices and counters as JSON. */
 #include <errno.h>
 #include <limits.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -48,6 +49,20 @@ void stats_served(struct ows *h, int64_t now_ns, unsigned served[STATS_TARGETS +
 			served[value.target]++;
 }
 
+enum device_health *stats_healths(struct ows *h, int64_t now_ns)
+{
+	struct ows_device device;
+	enum device_health *healths;
+	int count = 0;
+
+	while (ows_device(h, count, &device) != -ENOENT)
+		count++;
+	healths = calloc((size_t)count + 1, sizeof(*healths));
+	if (healths)
+		health_devices(h, now_ns, healths, count);
+	return healths;
+}
+
 const char *stats_power(uint32_t power)
 {
 	switch (power) {
@@ -74,7 +89,7 @@ static void cost_json(struct json *json, const char *key, const struct ows_devic
 }
 
 static void device_json(struct json *json, struct ows *h, const struct ows_device *device,
-                        int64_t now_ns)
+                        enum device_health health, int64_t now_ns)
 {
 	struct ows_target target;
 
@@ -83,6 +98,7 @@ static void device_json(struct json *json, struct ows *h, const struct ows_devic
 	json_string(json, "family", *device->family ? device->family : NULL);
 	json_string(json, "identity", *device->identity ? device->identity : NULL);
 	json_string(json, "power", stats_power(device->power));
+	json_string(json, "health", health_word(health));
 	json_string(json, "target",
 	            ows_target(h, device->target, &target) == 0 ? target.name : NULL);
 	json_known(json, "channel", (int32_t)device->wire - 1);
@@ -126,6 +142,7 @@ void stats_json(struct json *json, const char *instance, struct ows *h,
                 const struct ows_daemon *daemon, const struct when *now)
 {
 	char text[WHEN_TEXT];
+	enum device_health *healths;
 	unsigned served[STATS_TARGETS + 1];
 	struct ows_target target;
 	struct ows_log_line note;
@@ -167,9 +184,11 @@ void stats_json(struct json *json, const char *instance, struct ows *h,
 	}
 	json_array_end(json);
 	json_array(json, "devices");
-	for (int i = 0; (err = ows_device(h, i, &device)) != -ENOENT; i++)
+	healths = stats_healths(h, now->boot);
+	for (int i = 0; healths && (err = ows_device(h, i, &device)) != -ENOENT; i++)
 		if (!err)
-			device_json(json, h, &device, now->boot);
+			device_json(json, h, &device, healths[i], now->boot);
+	free(healths);
 	json_array_end(json);
 	json_array(json, "counters");
 	for (int i = 0; ows_counter(h, i, &counter) == 0; i++) {

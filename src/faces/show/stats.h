@@ -4,6 +4,7 @@
 
 #include <stdbool.h>
 
+#include "src/faces/show/health.h"
 #include "src/faces/show/json.h"
 #include "src/faces/show/when.h"
 #include "src/public/ows.h"
@@ -17,6 +18,8 @@ const char *stats_target_state(uint32_t state);
 int stats_not_good(struct ows *h, int64_t now_ns);
 /* How many signals each target serves now. */
 void stats_served(struct ows *h, int64_t now_ns, unsigned served[STATS_TARGETS + 1]);
+/* The health of each device, in the order of ows_device(), for free(); NULL: no memory. */
+enum device_health *stats_healths(struct ows *h, int64_t now_ns);
 /* "parasite", "external"; NULL: not known. */
 const char *stats_power(uint32_t power);
 /* Does the target of the device say what requests cost? Else retries and wire_us mean nothing. */

@@ -9,6 +9,7 @@
 #include <strings.h>
 
 #include "hal/base/time.h"
+#include "src/faces/show/health.h"
 #include "src/faces/show/newest.h"
 #include "src/faces/show/reading.h"
 #include "src/faces/show/standing.h"
@@ -99,32 +100,12 @@ void show_value(struct json *json, const struct show *show, int signal)
 	put_all(json, &look);
 }
 
-bool show_device(struct ows *h, const char *id, struct ows_device *device)
-{
-	int low = 0, high = 1;
-
-	while (high < ows_count(h) && ows_device(h, high, device) != -ENOENT)
-		high *= 2;
-	while (low < high) {
-		int middle = low + (high - low) / 2, err = ows_device(h, middle, device);
-		int order = err == -ENOENT ? 1 : err ? -1 : strcasecmp(device->id, id);
-
-		if (!order)
-			return true;
-		if (order < 0)
-			low = middle + 1;
-		else
-			high = middle;
-	}
-	return false;
-}
-
 static void put_terminal(struct json *json, struct ows *h, const char *id)
 {
 	struct ows_device device;
 	struct ows_target target;
 
-	if (!*id || !show_device(h, id, &device) || ows_target(h, device.target, &target)) {
+	if (!*id || health_find(h, id, &device) < 0 || ows_target(h, device.target, &target)) {
 		json_null(json, "terminal");
 		return;
 	}

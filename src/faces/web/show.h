@@ -24,8 +24,6 @@ void show_value(struct json *json, const struct show *show, int signal);
 /* The words for its alarms: "! high", "" if it has none. */
 #define SHOW_ALARM 64
 const char *show_alarm(const struct show *show, int signal, char words[SHOW_ALARM]);
-/* The device of that id; they stand in the order of their ids. */
-bool show_device(struct ows *h, const char *id, struct ows_device *device);
 /*
  * How far apart its measurements usually are, ns; 0: not known. A cache answers many times with
  * one: that is no older than usual then.

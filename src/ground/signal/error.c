@@ -13,7 +13,7 @@ static const struct {
 } errors[] = {
 	{0, "no error", ""},
 #define ERROR(err, word, remedy) {err, word, remedy},
-#define QUALITY(code, word, cause, remedy)
+#define QUALITY(code, health, word, cause, remedy)
 #define ALARM(kind, event, word, cause, remedy)
 #include "src/ground/signal/words_list.h"
 #undef ALARM

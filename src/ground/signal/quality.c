@@ -7,9 +7,10 @@
 
 static const struct {
 	uint8_t quality;
+	enum device_health health;
 	const char *cause, *remedy;
 } table[] = {
-#define QUALITY(code, word, cause, remedy) {OWS_Q_##code, cause, remedy},
+#define QUALITY(code, health, word, cause, remedy) {OWS_Q_##code, HEALTH_##health, cause, remedy},
 #define ERROR(err, word, remedy)
 #define ALARM(kind, event, word, cause, remedy)
 #include "src/ground/signal/words_list.h"
@@ -35,6 +36,26 @@ const char *quality_cause(uint8_t quality)
 	return i < QUALITIES ? table[i].cause : "";
 }
 
+enum device_health quality_health(uint8_t quality)
+{
+	size_t i = quality_find(quality);
+
+	return i < QUALITIES ? table[i].health : ows_good(quality) ? HEALTH_NORMAL : HEALTH_FAILURE;
+}
+
+const char *health_word(enum device_health health)
+{
+	static const char *const words[] = {
+		[HEALTH_NORMAL] = "normal",
+		[HEALTH_FAILURE] = "failure",
+		[HEALTH_CHECK] = "check function",
+		[HEALTH_OFF_SPEC] = "off spec",
+		[HEALTH_MAINTENANCE] = "maintenance required",
+	};
+
+	return words[health];
+}
+
 const char *quality_remedy(uint8_t quality)
 {
 	size_t i = quality_find(quality);
@@ -46,7 +67,7 @@ static const struct {
 	uint8_t kind, event;
 	const char *word, *cause, *remedy;
 } alarms[] = {
-#define QUALITY(code, word, cause, remedy)
+#define QUALITY(code, health, word, cause, remedy)
 #define ERROR(err, word, remedy)
 #define ALARM(kind, event, word, cause, remedy) \
 	{OWS_ALARM_##kind, OWS_ALARM_##event, word, cause, remedy},

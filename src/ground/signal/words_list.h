@@ -4,7 +4,8 @@
  * (tests/lint/words.py, which compares them, and with --write copies them). No guard: each
  * includer defines QUALITY, ERROR and ALARM.
  *
- * QUALITY(code, word, cause, remedy): a quality of ows.h that is not good.
+ * QUALITY(code, health, word, cause, remedy): a quality of ows.h that is not good, and what it says
+ * of the chip (enum device_health).
  * ERROR(errno, word, remedy): an error of the bus contract (hal/bus/bus.h) or of libows. Its word
  * is the cause. It is printed as "word: remedy".
  *
@@ -14,56 +15,59 @@
  */
 
 /* clang-format off */
-QUALITY(NO_PROPERTY, "no such property", "The device has no property of that name.",
+QUALITY(NO_PROPERTY, FAILURE, "no such property", "The device has no property of that name.",
         "Look for a typing error in the path after the device. \"owsctl dir\" lists what the "
         "device has.")
-QUALITY(TYPE, "wrong type", "The property exists, and the type of the signal does not fit it.",
+QUALITY(TYPE, FAILURE, "wrong type",
+        "The property exists, and the type of the signal does not fit it.",
         "Take the type that the log names; for lists (.ALL) and texts take string.")
-QUALITY(ACCESS, "access refused",
+QUALITY(ACCESS, FAILURE, "access refused",
         "The property is read-only or write-only, or owsd has no permission.",
         "Make the item an input, or an output without Readable. For permissions look at the "
         "owserver's option readonly and at the rights of the files of the kernel.")
-QUALITY(NO_DEVICE, "device absent", "The device does not answer on its wire.",
+QUALITY(NO_DEVICE, FAILURE, "device absent", "The device does not answer on its wire.",
         "Does \"owsctl scan\" list the id? Compare it with the path of the signal. Check ground, "
         "data and the pull-up.")
-QUALITY(DEVICE, "device error",
+QUALITY(DEVICE, FAILURE, "device error",
         "The device answers too late, or what cannot be true: a checksum fails, or the number is "
         "out of the chip's range; or it reports a fault itself.",
         "Look for a bad contact, a long wire without enough pull-up, or noise. \"owsctl read\" of "
         "the same path shows the answer.")
-QUALITY(SENSOR, "sensor power fault",
+QUALITY(SENSOR, FAILURE, "sensor power fault",
         "The answer is that of a sensor without supply: a thermometer reads 85 or 127.94 °C.",
         "Check its supply line. Parasite power over a long wire needs a strong pull-up.")
-QUALITY(STALE, "stale", "No newer value came within StaleAfter.",
+QUALITY(STALE, FAILURE, "stale", "No newer value came within StaleAfter.",
         "Is the target up, and is the signal read at all? _ReadEnable or PerFactor may hold it "
         "back.")
-QUALITY(TARGET, "target down",
+QUALITY(TARGET, FAILURE, "target down",
         "The target does not answer, or one of several bridge chips does not answer.",
         "Does owserver run, and is its port right? Is the bridge chip at its address? owsd tries "
         "again by itself, and the signals come back.")
-QUALITY(SHORT, "wire short", "The data line of the wire is held at ground.",
+QUALITY(SHORT, FAILURE, "wire short", "The data line of the wire is held at ground.",
         "Look for a short between data and ground; unplug branches until the wire lives again.")
-QUALITY(NO_OWSD, "owsd not running",
+QUALITY(NO_OWSD, CHECK, "owsd not running",
         "owsd has ended or hangs: no heartbeat of it comes.",
         "Does the service run: systemctl status owsd@*? The values are back when owsd is.")
-QUALITY(DIFFERS, "not as commanded", "The output reads otherwise than it was written.",
+QUALITY(DIFFERS, FAILURE, "not as commanded", "The output reads otherwise than it was written.",
         "Did the device lose its supply, or did another program switch it? Set it again; Restore "
         "in the configuration does it by itself.")
-QUALITY(INITIAL, "initial", "The signal was never read or written.",
+QUALITY(INITIAL, CHECK, "initial", "The signal was never read or written.",
         "An input has its first value soon. Set an output, or give it an InitValue.")
-QUALITY(LAST_USABLE, "last usable value",
+QUALITY(LAST_USABLE, CHECK, "last usable value",
         "Reading is disabled, another target has not answered yet, what is read jumps beyond MaxStep "
         "each time, or an output was neither read nor written since its target or its device was "
         "away.",
         "Wait for the new target, set _ReadEnable to 1, or raise MaxStep; set the output, or give it "
         "ReadBack.")
-QUALITY(RANGE, "out of range", "The value is beyond Min or Max of the configuration.",
+QUALITY(RANGE, OFF_SPEC, "out of range", "The value is beyond Min or Max of the configuration.",
         "Is the sensor or its wire broken? Else correct Min and Max.")
-QUALITY(LOW, "at lower limit", "The value is held at the lower end of its type or of Points.",
+QUALITY(LOW, OFF_SPEC, "at lower limit",
+        "The value is held at the lower end of its type or of Points.",
         "Take a wider type, or continue Points.")
-QUALITY(HIGH, "at upper limit", "The value is held at the upper end of its type or of Points.",
+QUALITY(HIGH, OFF_SPEC, "at upper limit",
+        "The value is held at the upper end of its type or of Points.",
         "Take a wider type, or continue Points.")
-QUALITY(CUT, "cut", "The text is longer than the room that it has.", "Read a part of it.")
+QUALITY(CUT, OFF_SPEC, "cut", "The text is longer than the room that it has.", "Read a part of it.")
 
 /* What a device reports by itself. */
 ALARM(DEVICE, RAISED, "device alarm", "The device itself reports it: what it watches has happened.",

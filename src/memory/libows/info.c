@@ -208,7 +208,7 @@ const char *ows_quality_text(uint8_t quality)
 		uint8_t quality;
 		const char *text;
 	} texts[] = {
-#define QUALITY(code, word, cause, remedy) {OWS_Q_##code, word},
+#define QUALITY(code, health, word, cause, remedy) {OWS_Q_##code, word},
 #define ERROR(err, word, remedy)
 #define ALARM(kind, event, word, cause, remedy)
 #include "src/ground/signal/words_list.h"

@@ -40,16 +40,16 @@ static void print_note(struct ows *h, int index, int64_t now_ns)
 
 /* clang-format off */
 static const struct table_column device_columns[] = {
-	{"DEVICE"}, {"IDENTITY"}, {"POWER"}, {"TARGET", .right = true}, {"REQUESTS", .right = true},
-	{"ERRORS", .right = true}, {"RETRIES", .right = true}, {"WIRE", .right = true},
-	{"LAST", .right = true},
+	{"DEVICE"}, {"IDENTITY"}, {"HEALTH"}, {"POWER"}, {"TARGET", .right = true},
+	{"REQUESTS", .right = true}, {"ERRORS", .right = true}, {"RETRIES", .right = true},
+	{"WIRE", .right = true}, {"LAST", .right = true},
 };
 /* clang-format on */
 #define DEVICE_COLUMNS (sizeof(device_columns) / sizeof(device_columns[0]))
 
 /* What is not known is "-"; WIRE: of the time since owsd's start. */
-static void add_device(struct table *table, const struct ows_device *device, int64_t uptime_ns,
-                       int64_t now_ns)
+static void add_device(struct table *table, const struct ows_device *device,
+                       enum device_health health, int64_t uptime_ns, int64_t now_ns)
 {
 	char target[16] = "-", answers[24], errors[24], retries[24] = "-", wire[32] = "-",
 	     last[WHEN_TEXT] = "-";
@@ -68,20 +68,22 @@ static void add_device(struct table *table, const struct ows_device *device, int
 		when_span(now_ns - device->ok_ns, last);
 	table_add(table,
 	          (const char *const[]){device->id, *device->identity ? device->identity : "-",
-	                                power ? power : "-", target, answers, errors, retries, wire,
-	                                last});
+	                                health_word(health), power ? power : "-", target, answers,
+	                                errors, retries, wire, last});
 }
 
 static void print_devices(struct ows *h, const struct ows_daemon *daemon, int64_t now_ns)
 {
 	struct ows_device device;
 	struct table table;
+	enum device_health *healths = stats_healths(h, now_ns);
 	int err;
 
 	table_init(&table, device_columns, DEVICE_COLUMNS);
-	for (int i = 0; (err = ows_device(h, i, &device)) != -ENOENT; i++)
+	for (int i = 0; healths && (err = ows_device(h, i, &device)) != -ENOENT; i++)
 		if (!err)
-			add_device(&table, &device, now_ns - daemon->start_ns, now_ns);
+			add_device(&table, &device, healths[i], now_ns - daemon->start_ns, now_ns);
+	free(healths);
 	if (table.rows) {
 		putchar('\n');
 		table_print(&table, true);

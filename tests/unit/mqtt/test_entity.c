@@ -329,10 +329,11 @@ static void test_a_chip_has_a_problem_with_its_reason_also_while_it_is_away(void
 	c = component(CHIP("29_000000000001"), "owsd_29_000000000001_problem");
 	has(c, "\"dev_cla\":\"problem\",\"ent_cat\":\"diagnostic\",\"stat_t\":");
 	has(c, "\"avty\":[{\"t\":\"o/pi/state\"}]");
-	TEST_ASSERT_EQUAL_STRING("{\"problem\":false,\"why\":null,\"signal\":null,\"bad\":0}",
-	                         published_at(&p, topic));
+	TEST_ASSERT_EQUAL_STRING(
+		"{\"problem\":false,\"health\":\"normal\",\"why\":null,\"signal\":null,\"bad\":0}",
+		published_at(&p, topic));
 	lose(DOOR);
-	has(published_at(&p, topic), "{\"problem\":true,\"why\":\"");
+	has(published_at(&p, topic), "{\"problem\":true,\"health\":\"failure\",\"why\":\"");
 	has(published_at(&p, topic), "\"signal\":\"door\",\"bad\":1}");
 	published_change(&p, DOOR);
 	TEST_ASSERT_NULL(published_at(&p, topic));

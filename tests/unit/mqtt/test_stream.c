@@ -66,7 +66,7 @@ void tearDown(void)
 	instance_end(&in);
 }
 
-#define WELL "{\"problem\":false,\"why\":null,\"signal\":null,\"bad\":0}\n"
+#define WELL "{\"problem\":false,\"health\":\"normal\",\"why\":null,\"signal\":null,\"bad\":0}\n"
 
 static const char *pump(void)
 {
@@ -387,7 +387,8 @@ static void test_a_simulated_value_is_no_value_of_a_plant_in_any_profile(void)
 	in.detail = 0;
 	instance_put_double(&in, ROOM + 1, 21, ows_now());
 	stream_changes(&s, &signal, 1);
-	TEST_ASSERT_EQUAL_STRING("o/pi/room {\"v\":21,\"good\":true,\"q\":192,\"t\":null}\n",
+	TEST_ASSERT_EQUAL_STRING("o/pi/room {\"v\":21,\"good\":true,\"q\":192,\"t\":null}\n"
+	                         "o/pi/chip/28.000000000001/problem " WELL,
 	                         pump());
 
 	in.detail = OWS_DETAIL_SIMULATED;

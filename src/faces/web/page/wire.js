@@ -204,6 +204,7 @@ function drawSteps() {
 
 /** What is known of a device, where it is: [heading, cell, is it known?]. */
 const DEVICE_COLUMNS = [
+	["Health", ({health}) => health, ({health}) => health],
 	["Identity", ({identity}) => identity, ({identity}) => identity],
 	["Power", ({power}) => power, ({power}) => power],
 	[["Errors", "right"], ({errors, answers}) => `${errors} of ${answers}`,
@@ -212,7 +213,7 @@ const DEVICE_COLUMNS = [
 	["Share of the wire", ({id}) => percent(last.share.get(id), `Share of ${id}`),
 		({id}) => last.share.has(id)],
 ];
-const DEVICE_HINT = "Identity: which chip it is by its behaviour. Power: parasite is from the data "
+const DEVICE_HINT = "Health: in the words of NAMUR NE 107. Identity: which chip it is by its behaviour. Power: parasite is from the data "
 	+ "line. Errors and retries: since owsd started; retries: owsd asked again after an error. Share: "
 	+ "the time of the wire that the device took in the last half minute; a conversion that all "
 	+ "thermometers begin together belongs to none.";
