@@ -25,7 +25,7 @@ test("an alarm that waits is named, and what needs somebody besides is counted",
 });
 
 test("a machine without owsd, or that does not answer, has no number", () => {
-	assert.match(lineOf({...GOOD, live: false, needs: 9}).words, /does not run/);
+	assert.match(lineOf({...GOOD, live: false, needs: 9}).words, /is not running/);
 	const line = otherLine(other({answers: false, since: 600, why: "it does not answer in time",
 		summary: null}), NOW, false);
 	assert.deepEqual([line.edge, line.words, line.why],

@@ -76,7 +76,7 @@ test("before the first thing that was heard nothing is known", () => {
 test("a value of which the page does not know any more does not reach to the present", () => {
 	const end = now();
 	signal.recent = [{t: end - 1000, v: 1, low: 1, high: 1, code: GOOD}];
-	store.unknown = "owsd does not run.";
+	store.unknown = "owsd is not running.";
 	assert.deepEqual(points(continued(EMPTY, signal, end - 5000, end)).at(-1), [end, null, UNKNOWN]);
 });
 

@@ -224,8 +224,8 @@ test("another owsd-web behind the same address has its stream opened anew", asyn
 });
 
 test("the loss of owsd makes all unknown at once, in its words", () => {
-	streams.at(-1).sends("lost", {why: "owsd does not run"});
-	assert.equal(store.unknown, "owsd does not run.");
+	streams.at(-1).sends("lost", {why: "owsd is not running"});
+	assert.equal(store.unknown, "owsd is not running.");
 	assert.equal(room(), null);
 	assert.equal(store.quality(store.find("room")), UNKNOWN);
 });

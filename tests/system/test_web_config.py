@@ -439,7 +439,7 @@ def test_a_file_is_begun_and_saved_without_an_owsd(scene):
     got = page.json("/api/config")
     assert got["configurable"] and got["file"] == str(file), got
     assert got["model"]["blocks"]["Web"] == {"Configure": "on"}
-    assert "owsd begun does not run: start it" in devices(page, status=503)["error"]
+    assert "owsd begun is not running: start it" in devices(page, status=503)["error"]
     scene.file("house.sim", "chip DS2482-100 0x18\n")
     simulated = got["text"].replace("localhost:4304", f"sim:{scene.path}/house.sim")
     got = {**got, **post(page, "config/save", text=simulated, base=got["tag"])}

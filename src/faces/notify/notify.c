@@ -223,7 +223,7 @@ static void look_for_bad(struct face *face, int64_t now_ns)
 	if (!after_ns)
 		return;
 	if (notify.lost_ns && !notify.lost_told && now_ns - notify.lost_ns >= after_ns) {
-		tell_owsd(face, ENTRY_NO_OWSD, "does not run; no value is known");
+		tell_owsd(face, ENTRY_NO_OWSD, "is not running; no value is known");
 		notify.lost_told = true;
 	}
 	for (int i = 0; look_is_current(face) && i < notify.rows.count; i++) {

@@ -109,7 +109,7 @@ int devices_get(struct request *request)
 	if (!web->face->live)
 		return http_error(
 			request, 503,
-			"a scan asks owsd, and owsd %s does not run: start it, or look with "
+			"a scan asks owsd, and owsd %s is not running: start it, or look with "
 			"owsctl -t TARGET scan, and add items by their paths",
 			web->face->arguments->instance);
 	devices = (struct devices *)http_job(request, sizeof(*devices), devices_run);

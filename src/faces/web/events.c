@@ -56,7 +56,7 @@ static void put_lost(struct stream *stream, FILE *out)
 
 	stream->told_lost = true;
 	events_begin(out, "lost", &json);
-	json_string(&json, "why", "owsd does not run: no value is known until it is started");
+	json_string(&json, "why", "owsd is not running: no value is known until it is started");
 	json_object_end(&json);
 	fputs("\n\n", out);
 }

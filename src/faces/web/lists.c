@@ -23,7 +23,7 @@ static bool lists_begin(struct request *request, struct listing *list, int *resu
 	const struct web *web = request->web;
 
 	if (!look_is_current(web->face)) {
-		*result = http_error(request, 503, "owsd %s does not run: start it",
+		*result = http_error(request, 503, "owsd %s is not running: start it",
 		                     web->face->arguments->instance);
 		return false;
 	}

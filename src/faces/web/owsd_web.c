@@ -70,7 +70,7 @@ static void owsd_web_run(struct web *web)
 	http_run(web);
 	wire_run(now_ns);
 	face_status(web->face, "%u streams, %d signals%s", web->stream_count, web->recent.count,
-	            web->face->live ? "" : ", owsd does not run");
+	            web->face->live ? "" : ", owsd is not running");
 	pace_spent(&web->pace, clock_ns(CLOCK_THREAD_CPUTIME_ID) - begin);
 	now_ns = ows_now();
 	web->face->tick_ns = earlier(earlier(now_ns + TICK_NS, pace_due(&web->pace)),

@@ -46,7 +46,7 @@ int special_get(struct request *request)
 	size_t len;
 
 	if (!look_is_current(face))
-		return http_error(request, 503, "owsd %s does not run: start it",
+		return http_error(request, 503, "owsd %s is not running: start it",
 		                  face->arguments->instance);
 	if (!name || !names_info(face->ows, face->arguments->instance, name, &info))
 		return http_error(request, 404, "expected name=: that of a signal");

@@ -19,7 +19,7 @@ let root = null, list = [], lost = false, at = 0;
 export function lineOf({live, signals, needs, first, alarm}) {
 	const worst = alarmOf(alarm);
 	if (!live)
-		return {edge: "bad", shape: SHAPES.bad, alarm: null, words: "owsd does not run there"};
+		return {edge: "bad", shape: SHAPES.bad, alarm: null, words: "owsd is not running there"};
 	if (worst && first)
 		return {edge: worst.very ? "alarm-2" : "alarm", shape: "", alarm: worst,
 			words: needs > 1 ? `${first} and ${needs - 1} more` : first};

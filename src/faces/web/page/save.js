@@ -76,7 +76,7 @@ export function paint() {
 		+ "the present one; then the present one is kept." : "No file of before is kept.");
 	const {running_tag: runs, tag, writer, configurable} = draft.info ?? {};
 	put(running, configurable && writer ? `Nothing can be saved yet: ${writer}.`
-		: runs && runs !== tag ? "owsd does not run with this file: it has changed since owsd read it. "
+		: runs && runs !== tag ? "owsd is not running with this file: it has changed since owsd read it. "
 			+ "Saving, or systemctl reload, has owsd read it." : "");
 	if (!shown)
 		return;
@@ -159,7 +159,7 @@ function told({reload, why}, good) {
 		report("bad", `Saved, but owsd refused it${because}. It goes on with what it had. Correct `
 			+ "the draft, or take the file of before.");
 	else if (reload === "none")
-		report("good", `Saved. owsd does not run${because}; it takes the file when it starts.`);
+		report("good", `Saved. owsd is not running${because}; it takes the file when it starts.`);
 	else
 		watch(good);
 }

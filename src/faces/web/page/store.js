@@ -96,7 +96,7 @@ class Store extends EventTarget {
 			alive: () => {},
 			missed: () => this.#load(), // alarms: the list has how they stand
 			lost: (data) => {
-				this.#lost = `${data.why || "owsd does not run"}.`;
+				this.#lost = `${data.why || "owsd is not running"}.`;
 				this.trust();
 			},
 			found: ({generation}) => {
