@@ -44,7 +44,8 @@
 
 /*
  * whole: it was right to its end. A pass that is cut ends without a checksum: so the last round by
- * which a device is lost is one whose passes go to the end.
+ * which a device is lost is one whose passes go to the end. One that was found by its first bits
+ * alone may be another: what began as it is no sign of it, until it has answered.
  */
 static void end_round(struct native *native, unsigned n, bool whole, int64_t now)
 {
@@ -65,7 +66,8 @@ static void end_round(struct native *native, unsigned n, bool whole, int64_t now
 	bool cuts = channel->cuts;
 	channel->cuts = !native->touch;
 	for (struct device *device = NULL; (device = native_device(native, n, device));) {
-		if (device->seen == channel->round || device->ok_ns >= channel->round_ns)
+		if (!device->likely &&
+		    (device->seen == channel->round || device->ok_ns >= channel->round_ns))
 			continue;
 		if (++device->missed >= MISSED_MAX && !cuts) {
 			presence_lost(native, device);

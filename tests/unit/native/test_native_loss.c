@@ -133,6 +133,30 @@ static void test_a_stranger_whose_id_begins_the_same_passes_for_a_lost_device_on
 	TEST_ASSERT_EQUAL_UINT(3, found_again(slave));
 }
 
+/* Nobody waits for the answer that would show it: the search does, though it begins the same. */
+static void test_a_lost_device_for_which_a_stranger_passes_is_lost_again(void)
+{
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 0x0001);
+	unsigned lost;
+	uint32_t id;
+
+	wire_add(0, "DS2401", 9);
+	start();
+	expect(true, of(slave, "power"), "1");
+	sim_wire_plug(&wire_net.wire[0], slave, false, wire_time());
+	TEST_ASSERT_EQUAL_INT(-ENODEV, result(BUS_READ, of(slave, "power"), NULL));
+	wire_add(0, "DS18B20", 0x8001);
+	id = ask(BUS_READ, BUS_INPUT, true, of(slave, "power"), NULL);
+	while (found_again(slave) < 2)
+		TEST_ASSERT_TRUE(host_run_events(&host, bus, host.events + 1, host.now + HOST_S));
+	req[id].deadline_ns = host.now;
+	TEST_ASSERT_NOT_EQUAL_INT(0, answer_to(id)->err);
+	lost = host_events(&host, BUS_LOST);
+	host_run(&host, bus, host.now + 12 * HOST_S);
+	TEST_ASSERT_EQUAL_UINT(lost + 1, host_events(&host, BUS_LOST));
+}
+
 static unsigned count_twins(const char **text)
 {
 	unsigned n = 0;
@@ -372,6 +396,7 @@ int main(void)
 	RUN_TEST(test_the_background_search_sees_devices_come_and_go);
 	RUN_TEST(test_the_next_one_of_a_wire_that_lost_several_is_looked_for_once);
 	RUN_TEST(test_a_stranger_whose_id_begins_the_same_passes_for_a_lost_device_once);
+	RUN_TEST(test_a_lost_device_for_which_a_stranger_passes_is_lost_again);
 	RUN_TEST(test_an_id_on_two_wires_is_reported_once);
 	RUN_TEST(test_a_device_that_is_moved_and_moved_back_is_no_twin);
 	RUN_TEST(test_the_ladder_is_climbed_until_the_chip_answers);
