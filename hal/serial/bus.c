@@ -22,7 +22,7 @@ static int create(const struct link_master_ops *ops, const struct serial_kind *k
                   char *why, size_t why_size)
 {
 	struct serial_source source;
-	int err = tty_source(where, SERIAL_BY_ID, &source, why, why_size);
+	int err = tty_source(where, SERIAL_NAMES, &source, why, why_size);
 
 	return err ? err : serial_create(ops, kind, env, &source, master);
 }

@@ -129,11 +129,17 @@ static int resync(struct serial_master *master)
 	return err;
 }
 
+/* Of a chip that answers a reset. A passive adapter gives back CALIBRATE, which is none. */
+static bool is_chip(uint8_t answer)
+{
+	return (answer & RESET_MASK) == RESET_MASK && (answer & CHIP_MASK);
+}
+
 static int judge_reset(struct serial_master *master, uint8_t answer)
 {
 	master->cost.resets++;
 	master->cost.wire_ns += RESET_NS;
-	if ((answer & RESET_MASK) != RESET_MASK || !(answer & CHIP_MASK))
+	if (!is_chip(answer))
 		return lose(master, -EIO);
 	switch (answer & RESULT) {
 	case SHORT:
@@ -146,30 +152,41 @@ static int judge_reset(struct serial_master *master, uint8_t answer)
 }
 
 /*
- * The last byte by single bits: a pull-up after a byte of data would have to end by itself. A chip
- * that was without supply has forgotten how long it lasts.
+ * Slots by single bits, after the last one the strong pull-up: that after a byte of data would have
+ * to end by itself. A chip that was without supply has forgotten how long it lasts. Returns what
+ * the wire had, or an error.
  */
-static int write_strong(struct serial_master *master, uint8_t byte)
+static int run_bits(struct serial_master *master, uint8_t bits, unsigned n, bool strong)
 {
 	struct stream stream = {.out_n = 0};
+	uint8_t command[8];
+	int back = 0;
 
-	put_command(master, &stream, READ_STRONG, true);
-	for (unsigned i = 0; i < 8; i++)
-		put_command(master, &stream,
-		            (uint8_t)((byte >> i & 1 ? BIT_1 : BIT_0) | (i == 7 ? THEN_STRONG : 0)),
-		            true);
+	if (strong)
+		put_command(master, &stream, READ_STRONG, true);
+	for (unsigned i = 0; i < n; i++) {
+		command[i] = (uint8_t)((bits >> i & 1 ? BIT_1 : BIT_0) |
+		                       (strong && i + 1 == n ? THEN_STRONG : 0));
+		put_command(master, &stream, command[i], true);
+	}
 	int err = send(master, &stream);
 
-	const uint8_t *answer = stream.in + stream.in_n - 9;
+	if (err)
+		return err;
+	const uint8_t *answer = stream.in + stream.in_n - n;
 
-	master->cost.wire_ns += 8 * SLOT_NS;
-	if (!err && answer[0] != ENDLESS)
-		err = lose(master, -ENXIO);
-	for (unsigned i = 0; !err && i < 8; i++)
-		if ((answer[1 + i] & 1) != (byte >> i & 1))
-			err = lose(master, -EIO);
-	master->strong = !err;
-	return err;
+	master->cost.wire_ns += (uint64_t)n * SLOT_NS;
+	master->strong = strong;
+	if (strong && answer[-1] != ENDLESS)
+		return lose(master, -ENXIO);
+	for (unsigned i = 0; i < n; i++) {
+		unsigned line = answer[i] & RESULT;
+
+		if (((answer[i] ^ command[i]) & ~(unsigned)RESULT) || (line != 0 && line != RESULT))
+			return lose(master, -EIO);
+		back |= (line != 0) << i;
+	}
+	return back;
 }
 
 /* A reset, if it is asked for, and up to PIECE bytes of what is written and then read. */
@@ -215,7 +232,7 @@ static int ds2480b_run(struct link *base, const struct link_part *part)
 		return 0;
 	while (!err && (reset || out_at < out_n || (!strong && in_at < part->in_n))) {
 		size_t out = out_n - out_at < PIECE ? out_n - out_at : PIECE;
-		size_t in = out_at + out < out_n ? 0 : part->in_n - in_at;
+		size_t in = part->in_n - in_at; /* none while out fills the piece */
 
 		if (in > PIECE - out)
 			in = PIECE - out;
@@ -224,31 +241,18 @@ static int ds2480b_run(struct link *base, const struct link_part *part)
 		out_at += out;
 		in_at += in;
 	}
-	return !err && strong ? write_strong(master, part->out[out_n]) : err;
+	if (err || !strong)
+		return err;
+	int back = run_bits(master, part->out[out_n], 8, true);
+
+	return back < 0 ? back : back == part->out[out_n] ? 0 : lose(master, -EIO);
 }
 
 static int ds2480b_slot(struct link *base, bool out, enum link_after after)
 {
 	struct serial_master *master = serial_of(base);
-	uint8_t command = (uint8_t)((out ? BIT_1 : BIT_0) |
-	                            (after == LINK_STRONG ? THEN_STRONG : 0));
-	struct stream stream = {.out_n = 0};
-	int err = master->lost ? -EIO : 0;
 
-	if (err)
-		return err;
-	put_command(master, &stream, command, true);
-	err = send(master, &stream);
-	if (err)
-		return err;
-	master->cost.wire_ns += SLOT_NS;
-	uint8_t answer = stream.in[stream.in_n - 1];
-	unsigned line = answer & RESULT;
-
-	if (((answer ^ command) & ~(unsigned)RESULT) || (line != 0 && line != RESULT))
-		return lose(master, -EIO);
-	master->strong = after == LINK_STRONG;
-	return line != 0;
+	return master->lost ? -EIO : run_bits(master, out, 1, after == LINK_STRONG);
 }
 
 /* Two bits for each of an id: the direction or what was taken, and below it the conflict. */
@@ -333,7 +337,6 @@ static int master_reset(struct serial_master *master)
 
 static int ds2480b_begin(struct serial_master *master, char *why, size_t why_size)
 {
-	/* a passive adapter gives it back, which is no answer of any of these chips */
 	static const uint8_t reset = CALIBRATE;
 	uint8_t answer[sizeof(parameters)] = {0};
 	size_t got = 0;
@@ -342,7 +345,7 @@ static int ds2480b_begin(struct serial_master *master, char *why, size_t why_siz
 	if (!err)
 		err = serial_exchange(master, BAUD, &reset, 1, answer, 1, &got);
 	if (!err || err == -ETIMEDOUT) {
-		if (!got || (answer[0] & RESET_MASK) != RESET_MASK || !(answer[0] & CHIP_MASK)) {
+		if (!got || !is_chip(answer[0])) {
 			explain(master, got, answer[0], why, why_size);
 			return lose(master, -ENXIO);
 		}

@@ -4,12 +4,16 @@
 
 #include "hal/serial/port.h"
 
-#define SERIAL_BY_ID "/dev/serial/by-id"
+#define SERIAL_NAMES "/dev/serial"
+#define SERIAL_BY_ID SERIAL_NAMES "/by-id"
 
 /*
- * The source of a target's port: a device file, or "" for the only one that by_id has. A device is
- * found again by what it is: the name below by_id that it had when it was opened first, since its
- * ttyUSBn may be another after a replug. 0, -EINVAL with the reason in why, -ENOMEM.
+ * The source of a target's port: a device file, or "" for the only one that names/by-id has. A
+ * device is found again by what it is: the name below names that it had when it was opened first,
+ * since its ttyUSBn may be another after a replug. Of two adapters without a serial number, which
+ * have one name below by-id, that is the one below by-path. A port that was opened is reported
+ * where it is another adapter, or in another place, than the one before. 0, -EINVAL with the reason
+ * in why, -ENOMEM.
  */
-int tty_source(const char *where, const char *by_id, struct serial_source *source, char *why,
+int tty_source(const char *where, const char *names, struct serial_source *source, char *why,
                size_t why_size);

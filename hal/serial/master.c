@@ -43,7 +43,6 @@ int serial_open(struct link_master *base, char *why, size_t why_size)
 
 	if (err)
 		return err;
-	master->data_mode = master->strong = master->lost = false;
 	master->baud = 0;
 	err = master->kind->begin(master, why, why_size);
 	if (err)

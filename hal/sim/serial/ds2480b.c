@@ -39,14 +39,20 @@ void sim_ds2480b_reset(struct sim_serial *serial, int64_t t)
 	memcpy(serial->parameter, defaults, sizeof(defaults));
 	serial->baud = speeds[0];
 	serial->data_mode = serial->escaped = serial->search = serial->lost = false;
-	serial->overdrive = serial->armed = serial->pulse = false;
+	serial->armed = serial->pulse = false;
+	serial->speed = 0;
 	serial->start = serial->end = t;
 	serial->master_resets++;
 }
 
+static bool is_overdrive(const struct sim_serial *serial)
+{
+	return serial->speed == 2;
+}
+
 static int64_t slot_ns(const struct sim_serial *serial)
 {
-	return serial->overdrive ? OVERDRIVE_SLOT_NS : SLOT_NS;
+	return is_overdrive(serial) ? OVERDRIVE_SLOT_NS : SLOT_NS;
 }
 
 /* The strong pull-up from t on: for its time, or until F1. */
@@ -67,7 +73,7 @@ static int64_t begin_pulse(struct sim_serial *serial, uint8_t answer, int64_t t)
 
 static int64_t single_bit(struct sim_serial *serial, uint8_t byte, int64_t t)
 {
-	bool line = sim_serial_slot(serial, byte & BIT_IS_ONE, serial->overdrive, t);
+	bool line = sim_serial_slot(serial, byte & BIT_IS_ONE, is_overdrive(serial), t);
 
 	t += slot_ns(serial);
 	sim_serial_answer(serial, (uint8_t)((byte & 0xFC) | (line ? 3 : 0)), t);
@@ -76,12 +82,12 @@ static int64_t single_bit(struct sim_serial *serial, uint8_t byte, int64_t t)
 
 static int64_t reset(struct sim_serial *serial, int64_t t)
 {
-	bool present = sim_serial_reset(serial, serial->overdrive, t);
+	bool present = sim_serial_reset(serial, is_overdrive(serial), t);
 	uint8_t answer = 0xC0 | CHIP_ID | (present ? PRESENCE : NO_PRESENCE);
 
 	if (sim_serial_is_short(serial))
 		answer = 0xC0 | CHIP_ID | RESET_IS_SHORT;
-	t += serial->overdrive ? OVERDRIVE_RESET_NS : RESET_NS;
+	t += is_overdrive(serial) ? OVERDRIVE_RESET_NS : RESET_NS;
 	sim_serial_answer(serial, answer, t);
 	return t;
 }
@@ -119,18 +125,17 @@ static int64_t command(struct sim_serial *serial, uint8_t byte, int64_t t)
 		return t;
 	if (!(byte & 0x80))
 		return configure(serial, byte, t);
+	if ((byte >> 5 & 3) != PULSE)
+		serial->speed = byte >> 2 & 3;
 	switch (byte >> 5 & 3) {
 	case PULSE:
 		serial->armed = byte & ARM && !(byte & PROGRAM);
 		return begin_pulse(serial, byte & 0xFC, t);
 	case SINGLE_BIT:
-		serial->overdrive = (byte & 0x0C) == 0x08;
 		return single_bit(serial, byte, t);
 	case RESET:
-		serial->overdrive = (byte & 0x0C) == 0x08;
 		return reset(serial, t);
 	default:
-		serial->overdrive = (byte & 0x0C) == 0x08;
 		serial->search = byte & SEARCH_ON;
 		serial->lost = false;
 		return t;
@@ -147,11 +152,11 @@ static uint8_t step(struct sim_serial *serial, bool r, int64_t t)
 
 	if (serial->lost)
 		return 3;
-	id = sim_serial_slot(serial, true, serial->overdrive, t);
-	complement = sim_serial_slot(serial, true, serial->overdrive, t + slot_ns(serial));
+	id = sim_serial_slot(serial, true, is_overdrive(serial), t);
+	complement = sim_serial_slot(serial, true, is_overdrive(serial), t + slot_ns(serial));
 	serial->lost = id && complement;
 	taken = id == complement ? (serial->lost || r) : id;
-	sim_serial_slot(serial, taken, serial->overdrive, t + 2 * slot_ns(serial));
+	sim_serial_slot(serial, taken, is_overdrive(serial), t + 2 * slot_ns(serial));
 	return (uint8_t)(taken << 1 | (id == complement));
 }
 
@@ -166,7 +171,7 @@ static int64_t data(struct sim_serial *serial, uint8_t byte, int64_t t)
 		}
 	} else {
 		for (unsigned i = 0; i < 8; i++) {
-			bool line = sim_serial_slot(serial, byte >> i & 1, serial->overdrive, t);
+			bool line = sim_serial_slot(serial, byte >> i & 1, is_overdrive(serial), t);
 
 			back |= (uint8_t)(line << i);
 			t += slot_ns(serial);

@@ -39,9 +39,9 @@ struct sim_serial {
 	uint32_t baud;
 	bool data_mode, escaped; /* the byte before was E3 in data mode */
 	bool search, lost;       /* the accelerator is on; its path ended without an answer */
-	bool overdrive;          /* by the last reset or search command */
-	bool armed;              /* a strong pull-up follows each byte of the data mode */
-	bool pulse;              /* one without end: only F1 is heard */
+	uint8_t speed; /* of the last reset, bit or search: 0 regular, 1 flexible, 2 overdrive */
+	bool armed;    /* a strong pull-up follows each byte of the data mode */
+	bool pulse;    /* one without end: only F1 is heard */
 	uint8_t pulse_answer;
 	uint8_t parameter[8];
 	/* It is carried out from its start to its end, another one may wait meanwhile. */

@@ -23,6 +23,8 @@ static bool is_gone(void)
 static int set_speed(struct serial_port *port, unsigned baud)
 {
 	(void)port;
+	if (baud == serial.no_speed)
+		return -ENOTTY;
 	serial.baud = baud;
 	return is_gone() ? -ENODEV : 0;
 }
@@ -30,6 +32,8 @@ static int set_speed(struct serial_port *port, unsigned baud)
 static int port_write(struct serial_port *port, const uint8_t *bytes, size_t n)
 {
 	serial.writes++;
+	if (serial.full)
+		return -ETIMEDOUT;
 	for (size_t i = 0; i < n && !is_gone(); i++)
 		sim_serial_send(&serial.sim, bytes[i], serial.baud, serial.host.now);
 	port->bytes += n;
@@ -45,6 +49,11 @@ static int port_read(struct serial_port *port, uint8_t *bytes, size_t n, int64_t
 		return -ENODEV;
 	if (serial.host.shutdown)
 		return -ECANCELED;
+	if (serial.babbles) {
+		serial.host.now += HOST_MS;
+		bytes[0] = 0x55;
+		return 1;
+	}
 	if (sim_serial_due(&serial.sim) > until_ns) {
 		serial.host.now = until_ns;
 		return 0;
@@ -59,6 +68,7 @@ static int port_read(struct serial_port *port, uint8_t *bytes, size_t n, int64_t
 static void port_break(struct serial_port *port)
 {
 	(void)port;
+	serial.breaks++;
 	if (!serial.deaf_to_break)
 		sim_serial_break(&serial.sim, serial.host.now);
 }
@@ -81,12 +91,13 @@ static int open_port(void *ctx, const struct bus_env *env, struct serial_port **
 {
 	(void)ctx;
 	serial.opens++;
-	snprintf(name, name_size, "port");
+	snprintf(name, name_size, "%s", serial.proc ? "/dev/null" : "port");
 	if (is_gone()) {
 		snprintf(why, why_size, "no port");
 		return -ENODEV;
 	}
 	serial.port = (struct serial_port){.ops = &port_ops, .env = env};
+	serial.baud = 1200; /* that of whoever had it before */
 	*port = &serial.port;
 	return 0;
 }
@@ -124,7 +135,8 @@ void serial_end(void)
 
 void serial_make(enum sim_serial_kind kind, const struct serial_kind *driver, const char *scenario)
 {
-	const struct serial_source source = {.open = open_port, .destroy = forget};
+	const struct serial_source source = {
+		.open = open_port, .destroy = forget, .proc = serial.proc};
 
 	TEST_ASSERT_EQUAL_INT_MESSAGE(
 		0,

@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* The driver of the DS2480B on a simulated one: transactions, searches, pull-ups, recovery. */
 #include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "unity.h"
 
@@ -42,6 +46,58 @@ static void test_a_reading_is_one_write_and_takes_the_time_of_its_bytes(void)
 	TEST_ASSERT_LESS_THAN_INT64(27 * HOST_MS, serial.host.now - begun);
 }
 
+/* Slew rate 1.37 V/us, a pull-up without end, write-1 low 10 us, sample offset 8 us; flexible. */
+static void test_the_chip_is_set_up_for_long_lines_and_kept_at_flexible_speed(void)
+{
+	struct search search;
+
+	serial_start(SIM_DS2480B, &serial_ds2480b, house);
+	TEST_ASSERT_EQUAL_UINT(3, serial.sim.parameter[1]);
+	TEST_ASSERT_EQUAL_UINT(7, serial.sim.parameter[3]);
+	TEST_ASSERT_EQUAL_UINT(2, serial.sim.parameter[4]);
+	TEST_ASSERT_EQUAL_UINT(5, serial.sim.parameter[5]);
+	TEST_ASSERT_EQUAL_INT(1, part_reset(serial.wire));
+	TEST_ASSERT_EQUAL_UINT(1, serial.sim.speed);
+	TEST_ASSERT_EQUAL_INT(1, link_slot(serial.wire, true, LINK_IDLE));
+	TEST_ASSERT_EQUAL_UINT(1, serial.sim.speed);
+	search_begin(&search, false, 0);
+	TEST_ASSERT_EQUAL_INT(1, search_next(&search, serial.wire));
+	TEST_ASSERT_EQUAL_UINT(1, serial.sim.speed);
+}
+
+/* The first reset after a break, from which the chip takes its time base, and a second one. */
+static void test_a_chip_is_reset_by_break_and_slow_byte_and_gets_its_time_base(void)
+{
+	serial_start(SIM_DS2480B, &serial_ds2480b, house);
+	TEST_ASSERT_EQUAL_UINT64(2, serial.sim.master_resets);
+	TEST_ASSERT_EQUAL_UINT(1, serial.breaks);
+	TEST_ASSERT_EQUAL_UINT64(2, serial.net.chip[0].wire[0].resets);
+}
+
+static void test_settings_that_do_not_come_back_are_an_error(void)
+{
+	for (unsigned turned = 3; turned <= 6; turned++) {
+		serial_make(SIM_DS2480B, &serial_ds2480b, house);
+		serial.sim.noise_each = turned; /* the answers before are those of two resets */
+		TEST_ASSERT_EQUAL_INT(-EIO, serial_try());
+		tearDown();
+		setUp();
+	}
+}
+
+static void test_a_port_that_never_falls_silent_is_given_up(void)
+{
+	int64_t begun;
+
+	serial_make(SIM_DS2480B, &serial_ds2480b, house);
+	serial.babbles = true;
+	begun = serial.host.now;
+	TEST_ASSERT_EQUAL_INT(-ENXIO, serial_try());
+	TEST_ASSERT_LESS_THAN_INT64(2 * HOST_S, serial.host.now - begun);
+	serial.babbles = false;
+	TEST_ASSERT_EQUAL_INT(0, serial_try());
+}
+
 static void test_bytes_that_are_commands_reach_the_wire_as_data(void)
 {
 	static const uint8_t bytes[] = {0xE1, 0xE3, 0xE3, 0xF1, 0xC5, 0xE3};
@@ -63,12 +119,16 @@ static void test_a_long_transaction_goes_in_pieces(void)
 	uint8_t out[150], in[150];
 	const struct link_part part = {
 		.reset = true, .out = out, .out_n = 150, .in = in, .in_n = 150};
+	struct link_cost before, after;
 
 	serial_start(SIM_DS2480B, &serial_ds2480b, house);
+	serial.wire->ops->cost(serial.wire, &before);
 	memset(out, 0, sizeof(out));
 	TEST_ASSERT_EQUAL_INT(0, serial.wire->ops->run(serial.wire, &part));
 	for (unsigned i = 0; i < sizeof(in); i++)
 		TEST_ASSERT_EQUAL_HEX8(0xFF, in[i]);
+	serial.wire->ops->cost(serial.wire, &after);
+	TEST_ASSERT_EQUAL_UINT64(1, after.resets - before.resets);
 }
 
 static void test_a_short_and_nobody_are_told_apart(void)
@@ -82,6 +142,7 @@ static void test_a_short_and_nobody_are_told_apart(void)
 	setUp();
 	serial_start(SIM_DS2480B, &serial_ds2480b, nobody);
 	TEST_ASSERT_EQUAL_INT(0, part_reset(serial.wire));
+	TEST_ASSERT_EQUAL_INT(0, serial.wire->ops->recover(serial.wire, LINK_CHIP_RESET));
 }
 
 static unsigned found_by(bool alarm, uint8_t family)
@@ -166,6 +227,8 @@ static void test_the_strong_pull_up_lasts_until_the_next_call(void)
 
 static void test_a_slot_is_read_and_may_be_followed_by_the_strong_pull_up(void)
 {
+	uint8_t byte = 0;
+
 	serial_start(SIM_DS2480B, &serial_ds2480b, house);
 	TEST_ASSERT_EQUAL_INT(1, part_reset(serial.wire));
 	TEST_ASSERT_EQUAL_INT(1, link_slot(serial.wire, true, LINK_IDLE));
@@ -173,6 +236,97 @@ static void test_a_slot_is_read_and_may_be_followed_by_the_strong_pull_up(void)
 	TEST_ASSERT_TRUE(serial.net.chip[0].wire[0].strong);
 	TEST_ASSERT_EQUAL_INT(1, link_slot(serial.wire, true, LINK_IDLE));
 	TEST_ASSERT_FALSE(serial.net.chip[0].wire[0].strong);
+	/* the end of a pull-up is answered, before data too */
+	TEST_ASSERT_EQUAL_INT(1, link_slot(serial.wire, true, LINK_STRONG));
+	TEST_ASSERT_EQUAL_INT(0, part_read(serial.wire, &byte, 1));
+	TEST_ASSERT_EQUAL_HEX8(0xFF, byte);
+	TEST_ASSERT_FALSE(serial.net.chip[0].wire[0].strong);
+}
+
+static void test_a_strong_pull_up_ends_with_the_port(void)
+{
+	serial_start(SIM_DS2480B, &serial_ds2480b, house);
+	TEST_ASSERT_EQUAL_INT(1, part_reset(serial.wire));
+	TEST_ASSERT_EQUAL_INT(1, link_slot(serial.wire, true, LINK_STRONG));
+	serial.master->ops->close(serial.master);
+	TEST_ASSERT_FALSE(serial.net.chip[0].wire[0].strong);
+}
+
+static void test_a_reset_or_a_bit_that_is_answered_wrong_is_an_error(void)
+{
+	serial_start(SIM_DS2480B, &serial_ds2480b, house);
+	for (unsigned bit = 6; bit < 8; bit++) {
+		TEST_ASSERT_EQUAL_INT(1, part_reset(serial.wire));
+		serial.sim.answered = 7 + bit;
+		serial.sim.noise_each = 1;
+		TEST_ASSERT_EQUAL_INT(-EIO, part_reset(serial.wire));
+		serial.sim.noise_each = 0;
+	}
+	for (unsigned bit = 0; bit < 8; bit++) {
+		TEST_ASSERT_EQUAL_INT(1, part_reset(serial.wire));
+		TEST_ASSERT_EQUAL_INT(1, link_slot(serial.wire, true, LINK_IDLE));
+		serial.sim.answered = 7 + bit;
+		serial.sim.noise_each = 1;
+		TEST_ASSERT_EQUAL_INT(-EIO, link_slot(serial.wire, true, LINK_IDLE));
+		serial.sim.noise_each = 0;
+	}
+}
+
+/* As where the wire is short while it is written: each answer is right, and the byte another. */
+static void test_a_byte_before_a_pull_up_that_the_wire_had_otherwise_is_an_error(void)
+{
+	uint8_t byte = 0x44;
+
+	serial_start(SIM_DS2480B, &serial_ds2480b, house);
+	TEST_ASSERT_EQUAL_INT(1, part_reset(serial.wire));
+	serial_event("short 0x18 for 20ms");
+	TEST_ASSERT_EQUAL_INT(-EIO, part_write(serial.wire, &byte, 1, LINK_STRONG));
+}
+
+/* What went before is not known: not a byte goes out, until there is a reset. */
+static void test_after_an_error_nothing_goes_on_without_a_reset(void)
+{
+	uint8_t scratchpad[9], byte = 0, rom[8] = {0}, conflict[8];
+	uint64_t sent;
+
+	serial_start(SIM_DS2480B, &serial_ds2480b, house);
+	serial.sim.silent = true;
+	TEST_ASSERT_EQUAL_INT(-ETIMEDOUT, serial_scratchpad("t", scratchpad));
+	serial.sim.silent = false;
+	sent = serial.sim.bytes;
+	TEST_ASSERT_EQUAL_INT(-EIO, part_read(serial.wire, &byte, 1));
+	TEST_ASSERT_EQUAL_INT(-EIO, link_slot(serial.wire, true, LINK_IDLE));
+	TEST_ASSERT_EQUAL_INT(-EIO, serial.wire->ops->path(serial.wire, rom, conflict));
+	TEST_ASSERT_EQUAL_UINT64(sent, serial.sim.bytes);
+	serial_check("t");
+}
+
+static void lose_an_answer(void)
+{
+	uint8_t scratchpad[9];
+
+	serial.sim.silent = true;
+	TEST_ASSERT_EQUAL_INT(-ETIMEDOUT, serial_scratchpad("t", scratchpad));
+	serial.sim.silent = false;
+}
+
+static void test_an_adapter_is_led_out_of_any_mode_and_is_asked_for_its_settings(void)
+{
+	serial_start(SIM_DS2480B, &serial_ds2480b, house);
+	lose_an_answer();
+	/* the next byte is the second one of a doubled one */
+	serial.sim.data_mode = serial.sim.escaped = true;
+	serial_check("t");
+	lose_an_answer();
+	sim_serial_break(&serial.sim, serial.host.now);
+	TEST_ASSERT_EQUAL_INT(-ENXIO, part_reset(serial.wire));
+	TEST_ASSERT_EQUAL_INT(0, serial.wire->ops->recover(serial.wire, LINK_CHIP_RESET));
+	serial_check("t");
+	/* the first rung leads it out, too */
+	TEST_ASSERT_EQUAL_INT(1, part_reset(serial.wire));
+	serial.sim.data_mode = true;
+	TEST_ASSERT_EQUAL_INT(0, serial.wire->ops->recover(serial.wire, LINK_BUS_RESET));
+	serial_check("t");
 }
 
 static void test_an_adapter_in_any_state_is_taken(void)
@@ -261,8 +415,58 @@ static void test_an_adapter_that_lost_its_supply_is_noticed_before_a_pull_up(voi
 	serial_check("t");
 	TEST_ASSERT_EQUAL_INT(-ENXIO, serial.wire->ops->run(serial.wire, &part));
 	TEST_ASSERT_EQUAL_INT(0, serial.wire->ops->recover(serial.wire, LINK_CHIP_RESET));
+	sim_serial_break(&serial.sim, serial.host.now);
+	TEST_ASSERT_EQUAL_INT(1, link_slot(serial.wire, true, LINK_IDLE));
+	TEST_ASSERT_EQUAL_INT(-ENXIO, link_slot(serial.wire, true, LINK_STRONG));
+	TEST_ASSERT_EQUAL_INT(-EIO, link_slot(serial.wire, true, LINK_IDLE));
+	TEST_ASSERT_EQUAL_INT(0, serial.wire->ops->recover(serial.wire, LINK_CHIP_RESET));
 	TEST_ASSERT_EQUAL_INT(0, serial.wire->ops->run(serial.wire, &part));
 	serial_check("t");
+}
+
+static void test_a_port_that_takes_nothing_is_not_waited_for_again(void)
+{
+	uint8_t scratchpad[9];
+	int64_t begun;
+
+	serial_start(SIM_DS2480B, &serial_ds2480b, house);
+	serial.full = true;
+	begun = serial.host.now;
+	TEST_ASSERT_EQUAL_INT(-ETIMEDOUT, serial_scratchpad("t", scratchpad));
+	TEST_ASSERT_EQUAL_INT64(begun, serial.host.now);
+	serial.full = false;
+	serial_check("t");
+}
+
+static void test_another_program_on_the_port_is_named_without_an_error_too(void)
+{
+	char proc[] = "/tmp/owsd-serial-XXXXXX", path[64], text[BUS_EVENT_TEXT];
+	static const char *const folders[] = {"", "/7", "/7/fd"};
+	FILE *f;
+
+	TEST_ASSERT_NOT_NULL(mkdtemp(proc));
+	for (unsigned i = 1; i < 3; i++) {
+		snprintf(path, sizeof(path), "%s%s", proc, folders[i]);
+		TEST_ASSERT_EQUAL_INT(0, mkdir(path, 0755));
+	}
+	snprintf(path, sizeof(path), "%s/7/comm", proc);
+	f = fopen(path, "w");
+	TEST_ASSERT_TRUE(f && fputs("digitemp\n", f) >= 0 && !fclose(f));
+	serial.proc = proc;
+	serial_start(SIM_DS2480B, &serial_ds2480b, house);
+	serial.master->ops->trouble(serial.master, false, text, sizeof(text));
+	TEST_ASSERT_EQUAL_STRING("", text);
+	snprintf(path, sizeof(path), "%s/7/fd/3", proc);
+	TEST_ASSERT_EQUAL_INT(0, symlink("/dev/null", path));
+	serial.master->ops->trouble(serial.master, false, text, sizeof(text));
+	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "/dev/null is also open in digitemp"), text);
+	TEST_ASSERT_EQUAL_INT(0, unlink(path));
+	snprintf(path, sizeof(path), "%s/7/comm", proc);
+	TEST_ASSERT_EQUAL_INT(0, unlink(path));
+	for (unsigned i = 3; i-- > 0;) {
+		snprintf(path, sizeof(path), "%s%s", proc, folders[i]);
+		TEST_ASSERT_EQUAL_INT(0, rmdir(path));
+	}
 }
 
 /* A transaction with a strong pull-up, a reading, and a path of a search. */
@@ -286,6 +490,9 @@ static void test_pulled_anywhere_the_adapter_is_gone_and_is_back_when_it_is_plug
 
 	serial_start(SIM_DS2480B, &serial_ds2480b, house);
 	for (unsigned n = 1; err; n++) {
+		struct link_master_cost before, after;
+
+		serial.master->ops->cost(serial.master, &before);
 		serial.pull_at = serial.sim.bytes + n;
 		err = visit();
 		if (err == 1) {
@@ -294,6 +501,8 @@ static void test_pulled_anywhere_the_adapter_is_gone_and_is_back_when_it_is_plug
 		}
 		TEST_ASSERT_EQUAL_INT(-ENODEV, err);
 		serial.master->ops->close(serial.master);
+		serial.master->ops->cost(serial.master, &after);
+		TEST_ASSERT_GREATER_THAN_UINT64(before.bytes, after.bytes);
 		TEST_ASSERT_EQUAL_INT(-ENODEV, part_reset(serial.wire));
 		TEST_ASSERT_EQUAL_INT(-ENODEV,
 		                      serial.wire->ops->recover(serial.wire, LINK_BUS_RESET));
@@ -334,6 +543,10 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_a_reading_is_one_write_and_takes_the_time_of_its_bytes);
+	RUN_TEST(test_the_chip_is_set_up_for_long_lines_and_kept_at_flexible_speed);
+	RUN_TEST(test_a_chip_is_reset_by_break_and_slow_byte_and_gets_its_time_base);
+	RUN_TEST(test_settings_that_do_not_come_back_are_an_error);
+	RUN_TEST(test_a_port_that_never_falls_silent_is_given_up);
 	RUN_TEST(test_bytes_that_are_commands_reach_the_wire_as_data);
 	RUN_TEST(test_a_long_transaction_goes_in_pieces);
 	RUN_TEST(test_a_short_and_nobody_are_told_apart);
@@ -342,11 +555,18 @@ int main(void)
 	RUN_TEST(test_a_path_that_breaks_off_turns_the_accelerator_off_and_is_an_error);
 	RUN_TEST(test_the_strong_pull_up_lasts_until_the_next_call);
 	RUN_TEST(test_a_slot_is_read_and_may_be_followed_by_the_strong_pull_up);
+	RUN_TEST(test_a_strong_pull_up_ends_with_the_port);
+	RUN_TEST(test_a_reset_or_a_bit_that_is_answered_wrong_is_an_error);
+	RUN_TEST(test_a_byte_before_a_pull_up_that_the_wire_had_otherwise_is_an_error);
+	RUN_TEST(test_after_an_error_nothing_goes_on_without_a_reset);
+	RUN_TEST(test_an_adapter_is_led_out_of_any_mode_and_is_asked_for_its_settings);
 	RUN_TEST(test_an_adapter_in_any_state_is_taken);
 	RUN_TEST(test_what_answers_in_place_of_a_ds2480b_is_named);
 	RUN_TEST(test_after_an_answer_that_is_wrong_or_missing_the_next_transaction_is_right);
 	RUN_TEST(test_a_silent_adapter_is_an_error_in_time_and_serves_when_it_is_back);
 	RUN_TEST(test_an_adapter_that_lost_its_supply_is_noticed_before_a_pull_up);
+	RUN_TEST(test_a_port_that_takes_nothing_is_not_waited_for_again);
+	RUN_TEST(test_another_program_on_the_port_is_named_without_an_error_too);
 	RUN_TEST(test_pulled_anywhere_the_adapter_is_gone_and_is_back_when_it_is_plugged_in);
 	RUN_TEST(test_a_shutdown_ends_every_wait);
 	RUN_TEST(test_what_a_transaction_costs_is_counted);

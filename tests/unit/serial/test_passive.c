@@ -115,6 +115,91 @@ static void test_a_byte_that_does_not_come_back_as_it_was_written_is_an_error(vo
 	TEST_ASSERT_EQUAL_UINT(80, errors);
 }
 
+/* The pulse itself is low whatever answers; a direction that is not taken leads another way. */
+static void test_a_pulse_and_a_direction_that_do_not_come_back_are_errors(void)
+{
+	uint8_t command = ONEWIRE_SEARCH, rom[8] = {0}, conflict[8], byte = 0;
+	const struct link_part part = {.reset = true, .out = &command, .out_n = 1};
+	uint64_t sent;
+
+	serial_start(SIM_PASSIVE, &serial_passive, house);
+	for (unsigned bit = 0; bit < 4; bit++) {
+		serial.sim.answered = 7 + bit;
+		serial.sim.noise_each = 1;
+		TEST_ASSERT_EQUAL_INT(-EIO, serial.wire->ops->run(serial.wire, &part));
+		serial.sim.noise_each = 0;
+		/* not a byte goes out until there is a reset */
+		sent = serial.sim.bytes;
+		TEST_ASSERT_EQUAL_INT(-EIO, part_read(serial.wire, &byte, 1));
+		TEST_ASSERT_EQUAL_INT(-EIO, link_slot(serial.wire, true, LINK_IDLE));
+		TEST_ASSERT_EQUAL_INT(-EIO, serial.wire->ops->path(serial.wire, rom, conflict));
+		TEST_ASSERT_EQUAL_UINT64(sent, serial.sim.bytes);
+	}
+	TEST_ASSERT_EQUAL_INT(0, serial.wire->ops->run(serial.wire, &part));
+	serial.sim.answered = 8 * 200 - 3; /* bit 0 of the third answer from here */
+	serial.sim.noise_each = 200;
+	TEST_ASSERT_EQUAL_INT(-EIO, serial.wire->ops->path(serial.wire, rom, conflict));
+	serial.sim.noise_each = 0;
+	serial_check("t");
+}
+
+static void test_a_path_leads_where_it_is_told_and_ends_where_nobody_answers(void)
+{
+	uint8_t command = ONEWIRE_SEARCH, rom[8] = {0x3A}, conflict[8];
+	const struct link_part part = {.reset = true, .out = &command, .out_n = 1};
+
+	serial_start(SIM_PASSIVE, &serial_passive, house);
+	TEST_ASSERT_EQUAL_INT(0, serial.wire->ops->run(serial.wire, &part));
+	TEST_ASSERT_EQUAL_INT(0, serial.wire->ops->path(serial.wire, rom, conflict));
+	TEST_ASSERT_EQUAL_HEX8(0x3A, rom[0]);
+	TEST_ASSERT_EQUAL_INT(0, serial.wire->ops->run(serial.wire, &part));
+	for (unsigned i = 0; i < 2; i++) {
+		const struct sim_event pull = {.what = SIM_PLUG,
+		                               .slave = serial.net.chip[0].wire[0].slaves[i],
+		                               .at_ns = serial.net.time + 3 * HOST_MS};
+
+		TEST_ASSERT_EQUAL_INT(0, sim_net_add_event(&serial.net, &pull));
+	}
+	TEST_ASSERT_EQUAL_INT(-EBADMSG, serial.wire->ops->path(serial.wire, rom, conflict));
+}
+
+/* More than goes at once, there and back. */
+static void test_a_long_transaction_goes_in_pieces(void)
+{
+	uint8_t out[50] = {0}, in[70];
+	const struct link_part part = {
+		.reset = true, .out = out, .out_n = 50, .in = in, .in_n = sizeof(in)};
+	uint64_t sent;
+
+	serial_start(SIM_PASSIVE, &serial_passive, house);
+	sent = serial.sim.bytes;
+	memset(in, 0, sizeof(in));
+	TEST_ASSERT_EQUAL_INT(0, serial.wire->ops->run(serial.wire, &part));
+	TEST_ASSERT_EQUAL_UINT64(sent + 1 + (50 + 70) * 8, serial.sim.bytes);
+	for (unsigned i = 0; i < sizeof(in); i++)
+		TEST_ASSERT_EQUAL_HEX8(0xFF, in[i]);
+}
+
+static void test_a_port_without_the_speeds_is_named_and_is_taken_when_it_has_them(void)
+{
+	static const unsigned speeds[] = {9600, 115200};
+
+	serial_make(SIM_PASSIVE, &serial_passive, house);
+	for (unsigned i = 0; i < 2; i++) {
+		serial.no_speed = speeds[i];
+		TEST_ASSERT_NOT_EQUAL_INT(0, serial_try());
+		TEST_ASSERT_NOT_EQUAL_INT(-ETIMEDOUT, serial_try());
+	}
+	TEST_ASSERT_NOT_NULL(strstr(serial.why, "cannot have the speeds of a passive adapter"));
+	serial.no_speed = 0;
+	TEST_ASSERT_EQUAL_INT(0, serial_try());
+	/* refused once, it is asked for again */
+	serial.no_speed = 9600;
+	TEST_ASSERT_EQUAL_INT(-EIO, part_reset(serial.wire));
+	serial.no_speed = 0;
+	serial_check("t");
+}
+
 static void test_pulled_anywhere_the_adapter_is_gone_and_is_back(void)
 {
 	uint8_t scratchpad[9];
@@ -157,6 +242,10 @@ int main(void)
 	RUN_TEST(test_there_is_no_strong_pull_up);
 	RUN_TEST(test_what_is_there_in_place_of_a_passive_adapter_is_named);
 	RUN_TEST(test_a_byte_that_does_not_come_back_as_it_was_written_is_an_error);
+	RUN_TEST(test_a_pulse_and_a_direction_that_do_not_come_back_are_errors);
+	RUN_TEST(test_a_path_leads_where_it_is_told_and_ends_where_nobody_answers);
+	RUN_TEST(test_a_long_transaction_goes_in_pieces);
+	RUN_TEST(test_a_port_without_the_speeds_is_named_and_is_taken_when_it_has_them);
 	RUN_TEST(test_pulled_anywhere_the_adapter_is_gone_and_is_back);
 	RUN_TEST(test_silence_is_an_error_in_time);
 	return UNITY_END();
