@@ -54,6 +54,7 @@ LOOKED_AT = {
     "setpriv": ["--reuid owsd-notify --regid owsd --init-groups owsd-notify --test"],
     "ssh": [r"(-[nt] )?pi\d owsctl (list|watch|reload|--json stats)"],
     "i2cdetect": [r"-y \d"],
+    "mbpoll": [r"-m tcp -0 -1 -t 4:float -B -r 46002 -c 3 192\.168\.1\.10"],
     "gpiodetect": [""], "gpioinfo": [""], "lsusb": [""],
     "halcompile": [r"--install --userspace --extra-link-args=-lows owsd_hal\.c"],
     "halrun": [r"-I owsd\.hal"],

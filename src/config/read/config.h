@@ -208,6 +208,18 @@ struct config_mqtt {
 	bool mqtt5, write, old_readers;
 };
 
+/* The Modbus block, for owsd-modbus; with the defaults where the file has none. */
+#define CONFIG_MODBUS_CLIENTS 256
+struct config_modbus {
+	bool given;
+	struct listen_address addresses[LISTEN_MAX];
+	unsigned address_count;
+	const char *listen; /* as written; NULL only without the block, or with an error in it */
+	const char *word_order, *bad_value;
+	const char *map; /* NULL: none */
+	unsigned unit, decimals, clients;
+};
+
 /* The Notify block, for owsd-notify; the texts are NULL where the file has none. */
 struct config_notify {
 	bool given;
@@ -252,6 +264,7 @@ struct config {
 	struct config_influx influx;
 	struct config_web web;
 	struct config_mqtt mqtt;
+	struct config_modbus modbus;
 	struct config_notify notify;
 };
 

@@ -90,6 +90,15 @@ static void build_driver(struct build *build, const struct option_value *values)
 		targets_add(build, option_table[OPT_TARGET_NAME].preset, (struct rio_position){0});
 }
 
+static void modbus_derive(struct build *build, const struct option_value *values)
+{
+	struct config_modbus *modbus = &build->box->config.modbus;
+
+	if (modbus->listen)
+		serve_addresses(build, modbus->listen, values[OPT_MODBUS_LISTEN].node->value_at,
+		                modbus->addresses, &modbus->address_count);
+}
+
 static void notify_derive(struct build *build, const struct option_value *values)
 {
 	const struct config_notify *notify = &build->box->config.notify;
@@ -110,10 +119,9 @@ static void build_block(struct build *build, const struct option_def *def,
                         const struct rio_node *block)
 {
 	static block_derive *const derive[PLACE_COUNT] = {
-		[PLACE_RECORDER] = recorder_derive,
-		[PLACE_WEB] = web_derive,
-		[PLACE_MQTT] = mqtt_derive,
-		[PLACE_NOTIFY] = notify_derive,
+		[PLACE_RECORDER] = recorder_derive, [PLACE_WEB] = web_derive,
+		[PLACE_MQTT] = mqtt_derive,         [PLACE_NOTIFY] = notify_derive,
+		[PLACE_MODBUS] = modbus_derive,
 	};
 	struct option_value values[OPTION_COUNT_ALL];
 

@@ -54,6 +54,8 @@ BLOCK(WEB, "Web", web,
       .help = "options of owsd-web, which shows the signals in a browser")
 BLOCK(MQTT, "Mqtt", mqtt,
       .help = "options of owsd-mqtt, which publishes the signals to a broker")
+BLOCK(MODBUS, "Modbus", modbus,
+      .help = "options of owsd-modbus, which serves the signals to PLCs")
 BLOCK(NOTIFY, "Notify", notify, AT(config, notify.at),
       .help = "options of owsd-notify, which tells people of alarms")
 OTHER(ITEM, "Item", DRIVER, BLOCK, .repeats = true, .help = "one signal")
@@ -285,6 +287,22 @@ OPTION(MQTT_PRIMARY_HOST, "PrimaryHost", MQTT, TEXT, primary_host, .check = text
        .help = "host of Sparkplug without which nothing is published")
 OPTION(MQTT_WRITE, "Write", MQTT, FLAG, write, .preset = "off",
        .help = "take commands from the broker")
+
+/* Of the Modbus block */
+OPTION(MODBUS_LISTEN, "Listen", MODBUS, TEXT, listen, .needed = "127.0.0.1:502",
+       .help = "addresses where Modbus TCP is served")
+OPTION(MODBUS_UNIT_ID, "UnitId", MODBUS, COUNT, unit, RANGE(0, 247), .preset = "0",
+       .help = "the unit that answers; 0: every one")
+OPTION(MODBUS_WORD_ORDER, "WordOrder", MODBUS, TEXT, word_order, .check = text_is_word_order,
+       .preset = "big", .help = "which register of a number comes first: big or little end")
+OPTION(MODBUS_BAD_VALUE, "BadValue", MODBUS, TEXT, bad_value, .check = text_is_bad_value,
+       .preset = "nan", .help = "what is read in place of a value that is not good: nan or exception")
+OPTION(MODBUS_DECIMALS, "Decimals", MODBUS, COUNT, decimals, RANGE(0, 6), .preset = "1",
+       .help = "digits after the point that the whole numbers of a value have")
+OPTION(MODBUS_CLIENTS, "Clients", MODBUS, COUNT, clients, RANGE(1, 256), .preset = "64",
+       .help = "most connections at a time")
+OPTION(MODBUS_MAP, "Map", MODBUS, TEXT, map, .check = text_is_path,
+       .help = "file with places of signals that are fixed")
 /* clang-format on */
 #undef BLOCK
 #undef OPTION

@@ -245,3 +245,14 @@ const char *text_is_identity(const char *text)
 	}
 	return ok ? NULL : "expected the path that the signal had, such as /28.FF01/temperature";
 }
+
+const char *text_is_word_order(const char *text)
+{
+	return !strcmp(text, "big") || !strcmp(text, "little") ? NULL : "expected big or little";
+}
+
+const char *text_is_bad_value(const char *text)
+{
+	return !strcmp(text, "nan") || !strcmp(text, "exception") ? NULL
+	                                                          : "expected nan or exception";
+}

@@ -21,3 +21,5 @@ text_check text_is_unit, text_is_line;
 text_check text_is_date, text_is_start, text_is_class, text_is_identity;
 /* Of owsd-mqtt. */
 text_check text_is_topic, text_is_profile, text_is_protocol;
+/* Of owsd-modbus. */
+text_check text_is_word_order, text_is_bad_value;

@@ -1,0 +1,367 @@
+/* SPDX-License-Identifier: MIT */
+/* Accepts, receives and sends for all clients, by one epoll descriptor. */
+#include <errno.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <string.h>
+#include <sys/epoll.h>
+#include <unistd.h>
+
+#include "src/faces/kit/loop.h"
+#include "src/faces/modbus/clients.h"
+#include "src/ground/service/listen.h"
+
+#define BATCH 64
+#define RETRY_NS (10 * NS_PER_S)
+/* A connection whose other end has gone without a word is closed after half a minute */
+#define KEEP_IDLE_S 15
+#define KEEP_EVERY_S 5
+#define KEEP_TIMES 3
+#define KEEP_MS 20000
+
+static int clients_watch(struct clients *c, int how, int fd, unsigned number, uint32_t events)
+{
+	struct epoll_event event = {.events = events, .data.u32 = number};
+
+	return epoll_ctl(c->epoll, how, fd, &event) ? -errno : 0;
+}
+
+/* Numbers of epoll: a listener, or after these a client. */
+static unsigned number_of(const struct clients *c, const struct client *client)
+{
+	return LISTEN_MAX + (unsigned)(client - c->places);
+}
+
+static void drop(struct clients *c, struct client *client, const char *why)
+{
+	char text[LISTEN_TEXT_MAX];
+
+	listen_print(&client->from, text);
+	log_info(c->face->log, "%s: %s", text, why);
+	close(client->fd);
+	client->used = false;
+	c->count--;
+}
+
+/* --- Requests and answers -------------------------------------------------------------------- */
+
+/* False: the connection is closed. */
+static bool clients_send(struct clients *c, struct client *client)
+{
+	struct budget_call call;
+	ssize_t sent;
+
+	budget_begin(&client->budget, &call);
+	sent = send(client->fd, client->out + client->out_at, client->out_len - client->out_at,
+	            MSG_NOSIGNAL | MSG_DONTWAIT);
+	if (!budget_end(&client->budget, &call, FRAME_MOST)) {
+		drop(c, client, "closed: sending to it takes too long");
+		return false;
+	}
+	if (sent < 0 && errno != EAGAIN && errno != EINTR) {
+		drop(c, client, strerror(errno));
+		return false;
+	}
+	if (sent > 0)
+		client->out_at += (size_t)sent;
+	if (client->out_at == client->out_len)
+		client->out_at = client->out_len = 0;
+	return true;
+}
+
+/*
+ * Answer what is whole, until an answer does not go out. What then owes the rest of a request, or
+ * takes no answer, has a time for it. False: the connection is closed.
+ */
+static bool answer_all(struct clients *c, struct client *client, int64_t now_ns)
+{
+	bool owes = client->out_len, owed = owes;
+	size_t at = 0;
+	int n = 0;
+
+	while (!client->out_len && (n = frame_length(client->in + at, client->in_len - at)) > 0) {
+		client->out_len = c->answer(c->ctx, client, client->in + at, client->out);
+		at += (size_t)n;
+		client->heard_ns = now_ns;
+		client->late_ns = 0;
+		c->requests++;
+		if (!clients_send(c, client))
+			return false;
+		owes = client->out_len;
+	}
+	if (n < 0) {
+		c->refused++;
+		drop(c, client, "closed: it speaks no Modbus TCP");
+		return false;
+	}
+	client->in_len -= at;
+	memmove(client->in, client->in + at, client->in_len);
+	if (!owes && !client->in_len)
+		client->late_ns = 0;
+	else if (!client->late_ns)
+		client->late_ns = now_ns + CLIENTS_LATE_NS;
+	/* nothing more is received before it has taken its answer */
+	if (owes != owed)
+		clients_watch(c, EPOLL_CTL_MOD, client->fd, number_of(c, client),
+		              owes ? EPOLLOUT : EPOLLIN);
+	return true;
+}
+
+static void receive(struct clients *c, struct client *client, int64_t now_ns)
+{
+	size_t room = sizeof(client->in) - client->in_len;
+	int64_t before_ns = ows_now();
+	ssize_t got = recv(client->fd, client->in + client->in_len, room, MSG_DONTWAIT);
+
+	if (got < 0 && (errno == EAGAIN || errno == EINTR))
+		return;
+	if (got <= 0) {
+		drop(c, client, got ? strerror(errno) : "has left");
+		return;
+	}
+	client->came_ns = client->empty_ns;
+	if ((size_t)got < room)
+		client->empty_ns = before_ns;
+	client->in_len += (size_t)got;
+	answer_all(c, client, now_ns);
+}
+
+/* The client is ready, to send or to take. */
+static void turn(struct clients *c, struct client *client, int64_t now_ns)
+{
+	int64_t silent_ns = face_came(c->face, c->epoll);
+
+	if (silent_ns > client->empty_ns)
+		client->empty_ns = silent_ns;
+	/* a look at all did not find it ready: nothing was there */
+	if (client->pass < c->whole_pass && c->whole_ns > client->empty_ns)
+		client->empty_ns = c->whole_ns;
+	client->pass = c->pass;
+	if (!client->out_len) {
+		receive(c, client, now_ns);
+		return;
+	}
+	if (!clients_send(c, client) || client->out_len)
+		return;
+	client->late_ns = 0;
+	clients_watch(c, EPOLL_CTL_MOD, client->fd, number_of(c, client), EPOLLIN);
+	answer_all(c, client, now_ns);
+}
+
+/* --- Places ---------------------------------------------------------------------------------- */
+
+static bool same_host(const struct listen_address *a, const struct listen_address *b)
+{
+	return a->is_v6 == b->is_v6 && !memcmp(a->bytes, b->bytes, a->is_v6 ? 16 : 4);
+}
+
+/* That of all, or of that address, which has been silent for longest. */
+static struct client *most_silent(struct clients *c, const struct listen_address *of,
+                                  unsigned *count)
+{
+	struct client *found = NULL;
+
+	*count = 0;
+	for (unsigned i = 0; i < CONFIG_MODBUS_CLIENTS; i++) {
+		struct client *client = &c->places[i];
+
+		if (!client->used || (of && !same_host(of, &client->from)))
+			continue;
+		++*count;
+		if (!found || client->heard_ns < found->heard_ns)
+			found = client;
+	}
+	return found;
+}
+
+static void make_room(struct clients *c, const struct listen_address *from)
+{
+	unsigned of_it, all;
+	struct client *own = most_silent(c, from, &of_it), *any = most_silent(c, NULL, &all);
+
+	if (own && of_it >= (c->most + 1) / 2)
+		drop(c, own, "closed: a new connection of its address takes its place");
+	else if (any && all >= c->most)
+		drop(c, any, "closed: a new connection takes its place");
+}
+
+static void keep_alive(int fd)
+{
+	static const struct {
+		int level, name, value;
+	} options[] = {
+		{SOL_SOCKET, SO_KEEPALIVE, 1},
+		{IPPROTO_TCP, TCP_KEEPIDLE, KEEP_IDLE_S},
+		{IPPROTO_TCP, TCP_KEEPINTVL, KEEP_EVERY_S},
+		{IPPROTO_TCP, TCP_KEEPCNT, KEEP_TIMES},
+		{IPPROTO_TCP, TCP_USER_TIMEOUT, KEEP_MS},
+		{IPPROTO_TCP, TCP_NODELAY, 1},
+	};
+
+	for (size_t i = 0; i < sizeof(options) / sizeof(options[0]); i++)
+		setsockopt(fd, options[i].level, options[i].name, &options[i].value,
+		           sizeof(options[i].value));
+}
+
+static void welcome(struct clients *c, int fd, const struct listen_address *from, int64_t now_ns)
+{
+	char text[LISTEN_TEXT_MAX];
+	struct client *client = c->places;
+
+	make_room(c, from);
+	while (client->used)
+		client++;
+	if (clients_watch(c, EPOLL_CTL_ADD, fd, number_of(c, client), EPOLLIN)) {
+		close(fd);
+		return;
+	}
+	keep_alive(fd);
+	*client = (struct client){.used = true,
+	                          .fd = fd,
+	                          .from = *from,
+	                          .heard_ns = now_ns,
+	                          .empty_ns = c->whole_ns, /* nobody waited then */
+	                          .pass = c->pass};
+	c->count++;
+	listen_print(from, text);
+	log_info(c->face->log, "%s: connected", text);
+}
+
+static void accept_some(struct clients *c, int listener, int64_t now_ns)
+{
+	for (unsigned i = 0; i < BATCH; i++) {
+		struct sockaddr_storage at;
+		socklen_t len = sizeof(at);
+		struct listen_address from;
+		int fd = listen_accept(listener, (struct sockaddr *)&at, &len);
+
+		if (fd < 0)
+			return;
+		if (listen_of((const struct sockaddr *)&at, &from))
+			welcome(c, fd, &from, now_ns);
+		else
+			close(fd);
+	}
+}
+
+/* --- Of the face ----------------------------------------------------------------------------- */
+
+int clients_open(struct clients *c)
+{
+	c->open_ns = INT64_MAX;
+	c->epoll = epoll_create1(EPOLL_CLOEXEC);
+	return c->epoll < 0 ? -errno : face_watch(c->face, c->epoll, POLLIN);
+}
+
+static void shut_all(struct clients *c)
+{
+	for (unsigned i = 0; i < c->listener_count; i++)
+		if (c->listeners[i] >= 0)
+			close(c->listeners[i]);
+	c->listener_count = 0;
+}
+
+static void open_one(struct clients *c, unsigned i, int64_t now_ns)
+{
+	struct sockaddr_storage at;
+	char text[LISTEN_TEXT_MAX];
+	int fd, err;
+
+	listen_sockaddr(&c->at[i], &at);
+	fd = listen_at_address(&at, true, true);
+	err = fd < 0 ? fd : clients_watch(c, EPOLL_CTL_ADD, fd, i, EPOLLIN);
+	if (err && fd >= 0)
+		close(fd);
+	c->listeners[i] = err ? -1 : fd;
+	listen_print(&c->at[i], text);
+	if (err && err != c->open_err)
+		log_err(c->face->log, "cannot listen at %s: %s%s", text, strerror(-err),
+		        listen_remedy(err));
+	else if (!err)
+		log_at(c->face->log,
+		       listen_is_loopback(&c->at[i]) ? LOG_LEVEL_NOTICE : LOG_LEVEL_WARNING,
+		       "Modbus is served at %s%s", text,
+		       listen_is_loopback(&c->at[i]) ? "" : ": whoever reaches it may read");
+	if (err) {
+		c->open_err = err;
+		c->open_ns = now_ns + RETRY_NS;
+	}
+}
+
+void clients_follow(struct clients *c, const struct config_modbus *options, int64_t now_ns)
+{
+	bool same = options->address_count == c->listener_count;
+	unsigned count;
+
+	c->most = options->clients;
+	for (unsigned i = 0; same && i < c->listener_count; i++)
+		same = listen_same(&options->addresses[i], &c->at[i]);
+	if (!same) {
+		shut_all(c);
+		c->open_ns = INT64_MAX;
+		c->open_err = 0;
+		memcpy(c->at, options->addresses, sizeof(c->at));
+		c->listener_count = options->address_count;
+		for (unsigned i = 0; i < c->listener_count; i++)
+			open_one(c, i, now_ns);
+	}
+	while (c->count > (options->given ? c->most : 0))
+		drop(c, most_silent(c, NULL, &count), "closed: the configuration has another");
+}
+
+void clients_take(struct clients *c)
+{
+	struct epoll_event events[BATCH];
+	int64_t began_ns = ows_now();
+	int n = epoll_wait(c->epoll, events, BATCH, 0);
+
+	c->pass++;
+	for (int i = 0; i < n; i++) {
+		unsigned number = events[i].data.u32;
+
+		if (number < LISTEN_MAX)
+			accept_some(c, c->listeners[number], began_ns);
+		else if (c->places[number - LISTEN_MAX].used)
+			turn(c, &c->places[number - LISTEN_MAX], began_ns);
+	}
+	if (n < BATCH) {
+		c->whole_ns = began_ns;
+		c->whole_pass = c->pass;
+	}
+}
+
+int64_t clients_tick(struct clients *c, int64_t now_ns)
+{
+	int64_t next_ns;
+
+	if (now_ns >= c->open_ns) {
+		c->open_ns = INT64_MAX;
+		for (unsigned i = 0; i < c->listener_count; i++)
+			if (c->listeners[i] < 0)
+				open_one(c, i, now_ns);
+	}
+	next_ns = c->open_ns;
+	for (unsigned i = 0; c->count && i < CONFIG_MODBUS_CLIENTS; i++) {
+		struct client *client = &c->places[i];
+
+		if (!client->used || !client->late_ns)
+			continue;
+		if (now_ns >= client->late_ns)
+			drop(c, client,
+			     client->out_len ? "closed: it does not take its answers"
+			                     : "closed: its request is not whole in time");
+		else if (client->late_ns < next_ns)
+			next_ns = client->late_ns;
+	}
+	return next_ns;
+}
+
+void clients_close(struct clients *c)
+{
+	for (unsigned i = 0; i < CONFIG_MODBUS_CLIENTS; i++)
+		if (c->places[i].used)
+			drop(c, &c->places[i], "closed: owsd-modbus ends");
+	shut_all(c);
+	close(c->epoll);
+}

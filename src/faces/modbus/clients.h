@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The connections of clients: whole requests out, answers in. None of them holds up the others: one
+ * that stops in the middle of a request, or does not take its answers, is closed. When all places
+ * are taken, that which has been silent for longest is; an address has half of the places at most.
+ */
+#pragma once
+
+#include "src/faces/kit/face.h"
+#include "src/faces/modbus/answer.h"
+#include "src/ground/service/budget.h"
+
+#define CLIENTS_LATE_NS (5 * NS_PER_S) /* for the rest of a request, or of an answer */
+
+struct client {
+	bool used;
+	int fd;
+	struct listen_address from;
+	int64_t heard_ns; /* its last request, or when it came */
+	int64_t came_ns;  /* what was received last came later */
+	int64_t empty_ns; /* nothing was left to receive then */
+	int64_t late_ns;  /* when it is closed; 0: it owes nothing */
+	uint64_t pass;    /* epoll reported it last in this one */
+	struct budget budget;
+	size_t in_len, out_len, out_at;
+	uint8_t in[2 * FRAME_MOST], out[FRAME_MOST];
+};
+
+struct clients {
+	struct face *face;
+	int epoll; /* readable when clients_take() has something to do */
+	int listeners[LISTEN_MAX];
+	struct listen_address at[LISTEN_MAX]; /* what they were opened for */
+	unsigned listener_count, most, count;
+	int64_t open_ns; /* when to listen again where it failed; INT64_MAX: it did nowhere */
+	int open_err;
+	uint64_t pass, whole_pass; /* looks at epoll; the last that saw all who were ready, */
+	int64_t whole_ns;          /* and its time */
+	uint64_t requests, refused;
+	struct client places[CONFIG_MODBUS_CLIENTS];
+	/* Makes the answer to a request of that client. */
+	size_t (*answer)(void *ctx, const struct client *client, const uint8_t *request,
+	                 uint8_t answer[FRAME_MOST]);
+	void *ctx;
+};
+
+/* 0 or a negative errno. */
+int clients_open(struct clients *c);
+/* Listen where the file says now. Connections stay, but for those above Clients. */
+void clients_follow(struct clients *c, const struct config_modbus *options, int64_t now_ns);
+/* Accept, receive, answer. Never blocks. */
+void clients_take(struct clients *c);
+/* Close who is late, and listen again; when that is to be done next. */
+int64_t clients_tick(struct clients *c, int64_t now_ns);
+void clients_close(struct clients *c);

@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: MIT */
+/* The map of places, and its file. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "src/faces/modbus/map.h"
+#include "src/history/file/place.h"
+
+#define LINE_MOST 512
+
+static int map_put(struct map *map, unsigned place, const char *identity)
+{
+	char *copy = strdup(identity);
+
+	if (!copy)
+		return -ENOMEM;
+	map->places[place].identity = copy;
+	map->places[place].signal = MAP_NO_SIGNAL;
+	if (place > map->last)
+		map->last = place;
+	return 0;
+}
+
+/* 0: it has none. */
+static unsigned find(const struct map *map, const char *identity)
+{
+	for (unsigned i = 1; i <= map->last; i++)
+		if (map->places[i].identity && !strcmp(map->places[i].identity, identity))
+			return i;
+	return 0;
+}
+
+int map_take(struct map *map, char *line)
+{
+	unsigned long place;
+	char *identity;
+
+	line[strcspn(line, "\r\n")] = '\0';
+	if (!*line || *line == '#')
+		return 0;
+	place = strtoul(line, &identity, 10);
+	if (*line < '0' || *line > '9' || place < 1 || place >= LAYOUT_PLACES ||
+	    (*identity != ' ' && *identity != '\t'))
+		return -EINVAL;
+	identity += strspn(identity, " \t");
+	if (*identity != '/')
+		return -EINVAL;
+	if (map->places[place].identity || find(map, identity))
+		return 0;
+	return map_put(map, (unsigned)place, identity);
+}
+
+int map_read(struct map *map, const char *path, unsigned *line)
+{
+	FILE *in = fopen(path, "re");
+	char text[LINE_MOST];
+	int err = 0;
+
+	*line = 0;
+	if (!in)
+		return -errno;
+	while (!err && fgets(text, sizeof(text), in)) {
+		++*line;
+		err = strchr(text, '\n') || feof(in) ? map_take(map, text) : -EINVAL;
+	}
+	if (!err && ferror(in))
+		err = -EIO;
+	fclose(in);
+	return err;
+}
+
+int map_write(const struct map *map, const char *path)
+{
+	char fresh[HISTORY_PATH + 32];
+	int err = 0;
+	FILE *out;
+
+	if (snprintf(fresh, sizeof(fresh), "%s.new", path) >= (int)sizeof(fresh))
+		return -ENAMETOOLONG;
+	out = fopen(fresh, "we");
+	if (!out)
+		return -errno;
+	fputs("# Places of owsd-modbus: owsctl modbus-map shows them. A place is never used again\n",
+	      out);
+	for (unsigned i = 1; i <= map->last; i++)
+		if (map->places[i].identity)
+			fprintf(out, "%u %s\n", i, map->places[i].identity);
+	/* a power cut must leave the one or the other */
+	if (fflush(out) || fsync(fileno(out)))
+		err = -errno;
+	if (fclose(out) && !err)
+		err = -errno;
+	if (!err && rename(fresh, path))
+		err = -errno;
+	if (err)
+		unlink(fresh);
+	return err;
+}
+
+int map_place(struct map *map, const char *identity)
+{
+	unsigned place = find(map, identity);
+	int err;
+
+	if (place)
+		return (int)place;
+	place = map->last + 1;
+	if (place >= LAYOUT_PLACES)
+		return -ENOSPC;
+	err = map_put(map, place, identity);
+	return err ? err : (int)place;
+}
+
+void map_free(struct map *map)
+{
+	for (unsigned i = 1; i <= map->last; i++)
+		free(map->places[i].identity);
+	*map = (struct map){0};
+}
+
+int map_path(const char *instance, char *path, size_t size)
+{
+	char directory[HISTORY_PATH];
+	int err = history_place_state("owsd-modbus", "modbus", instance, directory);
+
+	if (err)
+		return err;
+	return snprintf(path, size, "%s/map", directory) < (int)size ? 0 : -ENAMETOOLONG;
+}

@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Which place a signal has: kept by its identity, so that it stays when signals are added, removed,
+ * sorted, renamed or their devices replaced. A place is never given to another signal. As a file:
+ * lines of a place and an identity; what begins with # is a comment.
+ */
+#pragma once
+
+#include <stddef.h>
+
+#include "src/faces/modbus/layout.h"
+
+#define MAP_NO_SIGNAL (-1)
+
+struct map {
+	struct {
+		char *identity; /* NULL: the place is free */
+		int signal;     /* by the index of ows_info(), or MAP_NO_SIGNAL */
+	} places[LAYOUT_PLACES];
+	unsigned last; /* the highest place that is not free; 0: none */
+};
+
+/*
+ * Take the places of a file. What the map has already wins. 0; a negative errno: the file cannot be
+ * read, and -EINVAL: it is none; *line says where, from 1.
+ */
+int map_read(struct map *map, const char *path, unsigned *line);
+/* A line of it. 0, -EINVAL or -ENOMEM. Pure. */
+int map_take(struct map *map, char *line);
+/* Replace the file. 0 or a negative errno. */
+int map_write(const struct map *map, const char *path);
+
+/* The place of the identity, after all others if it has none. -ENOSPC, -ENOMEM. Pure. */
+int map_place(struct map *map, const char *identity);
+void map_free(struct map *map);
+
+/* Where the service, or this user, keeps that of the instance. -ENAMETOOLONG. */
+int map_path(const char *instance, char *path, size_t size);

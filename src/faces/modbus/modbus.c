@@ -1,0 +1,346 @@
+/* SPDX-License-Identifier: MIT */
+/* The places of the signals, what is served of each, and what the news of owsd do to it. */
+#include "src/faces/modbus/modbus.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "src/faces/kit/look.h"
+#include "src/faces/kit/loop.h"
+#include "src/faces/show/newest.h"
+
+#define HEART_NS (100 * NS_PER_MS)
+
+/* --- Rows ------------------------------------------------------------------------------------ */
+
+static uint16_t alarm_of(struct ows *ows, int id)
+{
+	struct ows_alarm_state state = {0};
+	int err = id < 0 ? -ENOENT : ows_alarm_state(ows, id, &state);
+	bool limit = state.limit_state == OWS_LIMIT_UNACKNOWLEDGED ||
+	             state.limit_state == OWS_LIMIT_ACKNOWLEDGED;
+	bool wants = state.limit_state == OWS_LIMIT_UNACKNOWLEDGED ||
+	             state.limit_state == OWS_LIMIT_RETURNED;
+
+	if (err && err != -ESTALE)
+		return 0;
+	return (uint16_t)((limit ? LAYOUT_ALARM_LIMIT : 0) |
+	                  (wants ? LAYOUT_ALARM_UNACKNOWLEDGED : 0) |
+	                  (state.stands ? LAYOUT_ALARM_DEVICE : 0) |
+	                  (state.shelved ? LAYOUT_ALARM_SHELVED : 0) | state.limit_kind << 8);
+}
+
+/* Of a signal that owsd has, and of one that it has no more or that nobody knows of now. */
+static enum exception row_of(void *ctx, unsigned place, struct layout_row *row, bool *has)
+{
+	const struct modbus *m = ctx;
+	struct face *face = m->face;
+	const struct served *served = &m->served[place];
+	int signal = m->map.places[place].signal;
+	struct face_value value;
+
+	if (!m->map.places[place].identity)
+		return EXCEPTION_ADDRESS;
+	*has = signal != MAP_NO_SIGNAL;
+	*row = (struct layout_row){.quality = OWS_Q_NO_PROPERTY, .age_ns = -1};
+	if (!*has)
+		return EXCEPTION_NONE;
+	row->decimals = served->decimals;
+	row->flags = served->flags;
+	row->quality = OWS_Q_NO_OWSD;
+	if (!face->live)
+		return EXCEPTION_NONE;
+	if (!look_is_current(face))
+		return EXCEPTION_BUSY;
+	face_value(face->ows, signal, true, m->now_ns, &value);
+	row->good = value.good && isfinite(value.v.number);
+	row->number = value.v.number;
+	row->quality = value.v.quality;
+	row->age_ns = value.v.measured_ns ? value.v.age_ns : -1;
+	row->count = (uint16_t)value.v.count;
+	row->flags |= value.simulated ? LAYOUT_FLAG_SIMULATED : 0;
+	row->alarm = alarm_of(face->ows, served->id);
+	return EXCEPTION_NONE;
+}
+
+static int64_t utc_s(void)
+{
+	return clock_ns(CLOCK_REALTIME) / NS_PER_S;
+}
+
+static void header_of(void *ctx, uint16_t registers[LAYOUT_RECORD])
+{
+	struct modbus *m = ctx;
+	struct ows_daemon daemon = {0};
+	bool little = m->source.little;
+
+	if (m->face->live && !ows_daemon(m->face->ows, m->now_ns, &daemon))
+		m->heart = (uint16_t)((m->now_ns - daemon.beat_age_ns) / HEART_NS);
+	memset(registers, 0, LAYOUT_RECORD * sizeof(*registers));
+	layout_put_32(registers + LAYOUT_MAGIC, LAYOUT_MAGIC_NUMBER, little);
+	registers[LAYOUT_VERSION] = 1;
+	registers[LAYOUT_LIVE] = m->face->live && daemon.alive;
+	registers[LAYOUT_HEART] = m->heart;
+	registers[LAYOUT_GENERATION] = (uint16_t)m->generation;
+	registers[LAYOUT_LAST] = (uint16_t)m->map.last;
+	registers[LAYOUT_SIGNALS] = (uint16_t)m->signals;
+	layout_put_32(registers + LAYOUT_CHANGED, (uint32_t)m->changed_s, little);
+	layout_put_32(registers + LAYOUT_TIME, (uint32_t)utc_s(), little);
+}
+
+static size_t answer(void *ctx, const struct client *client, const uint8_t *request,
+                     uint8_t answer[FRAME_MOST])
+{
+	struct modbus *m = ctx;
+
+	(void)client;
+	m->now_ns = ows_now();
+	return frame_answer(&m->source, request, answer);
+}
+
+/* --- Places ---------------------------------------------------------------------------------- */
+
+/* To look a name up takes long where there are many. */
+static int id_of(struct ows *ows, const struct ows_info *info)
+{
+	bool none = !info->alarm && isnan(info->limit_hh) && isnan(info->limit_h) &&
+	            isnan(info->limit_l) && isnan(info->limit_ll);
+
+	return none ? -1 : ows_find(ows, info->name);
+}
+
+/* False: it has no number, or no place is left. */
+static bool place_signal(struct modbus *m, int signal)
+{
+	struct ows *ows = m->face->ows;
+	struct ows_info info;
+	int place;
+
+	if (ows_info(ows, signal, &info) || info.type == OWS_STRING)
+		return true;
+	place = map_place(&m->map, info.identity);
+	if (place < 0)
+		return false;
+	m->map.places[place].signal = signal;
+	m->served[place].id = id_of(ows, &info);
+	m->served[place].flags = info.output ? LAYOUT_FLAG_OUTPUT : 0;
+	m->served[place].decimals = info.type == OWS_FLOAT || info.type == OWS_DOUBLE
+	                                    ? (uint16_t)m->decimals
+	                                    : 0;
+	m->signals++;
+	return true;
+}
+
+/* False: what is in the file is not known. */
+static bool read_map(struct modbus *m, const char *path)
+{
+	unsigned line;
+	int err = map_read(&m->map, path, &line);
+
+	if (!err || (err == -ENOENT && path == m->path))
+		return true;
+	log_err(m->face->log, "the map %s, line %u: %s: no signal is served until it can be read",
+	        path, line, err == -EINVAL ? "no place and identity" : strerror(-err));
+	return false;
+}
+
+static void keep_map(struct modbus *m)
+{
+	int err = *m->path ? map_write(&m->map, m->path) : -ENOENT;
+
+	m->kept = !err;
+	if (err)
+		log_err(m->face->log,
+		        "the map %s cannot be written: %s: addresses may be others after the next "
+		        "start",
+		        m->path, strerror(-err));
+}
+
+/*
+ * Places of the configuration win, then those that were given before; new ones are kept. With a map
+ * that cannot be read an address could be that of another signal: then there is none.
+ */
+static void make_places(struct modbus *m)
+{
+	const struct config_modbus *options = &m->face->config->modbus;
+	const char *fixed = options->map;
+	int count = m->face->ows ? ows_count(m->face->ows) : 0;
+	unsigned left_out = 0, last;
+
+	map_free(&m->map);
+	m->signals = 0;
+	m->known = !options->given ||
+	           ((!fixed || read_map(m, fixed)) && (!*m->path || read_map(m, m->path)));
+	if (!m->known)
+		map_free(&m->map);
+	if (!m->known || !options->given)
+		return;
+	last = m->map.last;
+	for (int i = 0; i < count; i++)
+		left_out += !place_signal(m, i);
+	if (left_out)
+		log_err(m->face->log, "%u signals have no address: there are %d", left_out,
+		        LAYOUT_PLACES - 1);
+	if (m->map.last != last || !m->kept)
+		keep_map(m);
+}
+
+/* The map belongs to one program alone. */
+static int lock_map(struct modbus *m)
+{
+	char directory[sizeof(m->path)];
+	int fd, lock;
+
+	m->lock = -1;
+	if (map_path(m->face->arguments->instance, m->path, sizeof(m->path)))
+		m->path[0] = '\0';
+	if (history_make_above(m->path))
+		return 0;
+	memcpy(directory, m->path, sizeof(directory));
+	*strrchr(directory, '/') = '\0';
+	fd = open(directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+	if (fd < 0)
+		return 0;
+	lock = history_lock(fd);
+	close(fd);
+	m->lock = lock;
+	return lock == -EBUSY ? lock : 0;
+}
+
+/* --- Of the face ----------------------------------------------------------------------------- */
+
+static void show_status(struct modbus *m)
+{
+	if (!m->face->config->modbus.given)
+		face_status(m->face, "nothing is served: there is no Modbus block");
+	else
+		face_status(m->face, "%u clients, %u signals%s", m->clients.count, m->signals,
+		            m->face->live ? "" : ", owsd does not run");
+}
+
+static void run(struct modbus *m)
+{
+	m->face->tick_ns = clients_tick(&m->clients, ows_now());
+	show_status(m);
+}
+
+static void follow_file(struct modbus *m)
+{
+	const struct config_modbus *options = &m->face->config->modbus;
+
+	if (!options->given)
+		log_notice(m->face->log, "%s has no Modbus block: nothing is served",
+		           m->face->arguments->file);
+	m->source.unit = options->unit;
+	m->source.little = !strcmp(options->word_order, "little");
+	m->source.exceptions = !strcmp(options->bad_value, "exception");
+	m->decimals = options->decimals;
+	clients_follow(&m->clients, options, ows_now());
+}
+
+int modbus_open(struct face *face)
+{
+	static struct modbus modbus;
+	struct modbus *m = face->own = &modbus;
+	int err;
+
+	m->face = face;
+	m->source.row = row_of;
+	m->source.header = header_of;
+	m->source.ctx = m->clients.ctx = m;
+	m->clients.face = face;
+	m->clients.answer = answer;
+	if (lock_map(m)) {
+		face_complain(face->ops->program, "another owsd-modbus serves %s: end it first",
+		              face->arguments->instance);
+		return -EBUSY;
+	}
+	err = clients_open(&m->clients);
+	if (err) {
+		face_complain(face->ops->program, "epoll: %s", strerror(-err));
+		return err;
+	}
+	m->kept = true;
+	make_places(m);
+	follow_file(m);
+	run(m);
+	return 0;
+}
+
+void modbus_changes(struct face *face, const int *signals, int n)
+{
+	struct modbus *m = face->own;
+
+	(void)signals, (void)n;
+	m->changed_s = utc_s();
+}
+
+static void found(struct modbus *m)
+{
+	struct ows_daemon daemon = {0};
+
+	ows_daemon(m->face->ows, ows_now(), &daemon);
+	m->generation = daemon.generation;
+	follow_file(m);
+	make_places(m);
+}
+
+void modbus_event(struct face *face, const struct face_event *event)
+{
+	struct modbus *m = face->own;
+
+	switch (event->news) {
+	case FACE_FOUND:
+	case FACE_RELOADED:
+		found(m);
+		break;
+	case FACE_FILE:
+		follow_file(m);
+		make_places(m);
+		break;
+	case FACE_LOST:
+		log_warning(face->log, "owsd is lost: no value is good");
+		m->changed_s = utc_s();
+		break;
+	case FACE_DESCRIPTOR:
+		clients_take(&m->clients);
+		break;
+	case FACE_OVERRUN:
+	case FACE_ALARM:
+	case FACE_COMMAND:
+	case FACE_ENTRIES_LOST:
+		return;
+	}
+	run(m);
+}
+
+void modbus_tick(struct face *face, int64_t now_ns)
+{
+	(void)now_ns;
+	run(face->own);
+}
+
+void modbus_report(struct face *face, FILE *out)
+{
+	const struct modbus *m = face->own;
+
+	fprintf(out, "count requests %llu\ncount refused %llu\n",
+	        (unsigned long long)m->clients.requests, (unsigned long long)m->clients.refused);
+	if (!m->known || !m->kept)
+		fprintf(out, "trouble the map of addresses cannot be %s\n",
+		        m->known ? "written" : "read");
+}
+
+void modbus_close(struct face *face)
+{
+	struct modbus *m = face->own;
+
+	clients_close(&m->clients);
+	map_free(&m->map);
+	if (m->lock >= 0)
+		close(m->lock);
+}

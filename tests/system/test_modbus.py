@@ -1,0 +1,430 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""owsd-modbus beside a real owsd: genuine clients read what owsctl shows, at addresses that stay."""
+
+import json
+import math
+import os
+import re
+import shutil
+import signal
+import socket
+import struct
+import subprocess
+import time
+
+import owsdtest
+from owsdtest import BUILD, free_port, logged, raw, until
+
+MODBUS = BUILD / "owsd-modbus"
+SENSOR, OTHER, RELAY = "/28.A0B1C2000001", "/28.A0B1C2000002", "/29.A0B1C2000004"
+GOOD, NO_PROPERTY, NO_DEVICE, NO_OWSD = 0xC0, 0x04, 0x08, 0x1A
+DOUBLE, FLOAT, LONG, SHORT, QUALITY, AGE, ALARM, COUNT, DECIMALS, FLAGS = 0, 4, 6, 8, 9, 10, 12, 13, 14, 15
+FUNCTION, ADDRESS, VALUE, FAILURE, BUSY, NO_TARGET = 1, 2, 3, 4, 6, 11
+
+
+def item(name, path, kind="double", io="input", **more):
+    return dict(Name=name, Path=path, Type=raw(kind), IO=raw(io), **more)
+
+
+ROOM = item("room", SENSOR + "/temperature", LimitH=20)
+CELLAR = item("cellar", OTHER + "/temperature")
+RELAYS = item("relays", RELAY + "/PIO.BYTE", "byte", "output")
+TITLE = item("title", SENSOR + "/type", "string", PerFactor=20)
+ABSENT = item("absent", "/28.FFFFFFFFFFFF/temperature")
+
+
+def text(scene, port, *items, **keys):
+    wire = scene.file("house.sim", "chip DS2482-100 0x18\nDS18B20 28.A0B1C2000001 temperature 21.5\n"
+                      "DS18B20 28.A0B1C2000002 temperature -3.25\nDS2408 29.A0B1C2000004\n")
+    block = {"Listen": f"127.0.0.1:{port}", **keys}
+    more = {"Modbus": raw("{ " + " ".join(f'{k} "{v}"' for k, v in block.items()) + " }")} if port else {}
+    return owsdtest.rio(f"sim:{wire}", items or (ROOM, RELAYS, TITLE, ABSENT), Period=0.05, Timeout=3, **more)
+
+
+def serve(scene, daemon, *options, env=None):
+    owsdtest.need(MODBUS)
+    return scene.start([MODBUS, "-n", daemon.name, "-c", daemon.config, *options],
+                       {"STATE_DIRECTORY": str(scene.path / "state"), **(env or {})})
+
+
+class Refused(Exception):
+    pass
+
+
+class Client:
+    """Asks as the specification has it, and takes nothing but an answer to what it asked."""
+
+    def __init__(self, port, unit=1):
+        self.unit, self.number = unit, 0
+        until(lambda: self.connects(port), 20, "owsd-modbus listens")
+
+    def connects(self, port):
+        try:
+            self.socket = socket.create_connection(("127.0.0.1", port), timeout=owsdtest.PATIENCE)
+        except OSError:
+            return False
+        return True
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.socket.close()
+
+    def exactly(self, n):
+        data = b""
+        while len(data) < n:
+            more = self.socket.recv(n - len(data))
+            if not more:
+                raise ConnectionError("closed")
+            data += more
+        return data
+
+    def frame(self, pdu):
+        self.number += 1
+        return struct.pack(">HHHB", self.number, 0, 1 + len(pdu), self.unit) + pdu
+
+    def answer(self):
+        number, protocol, length, unit = struct.unpack(">HHHB", self.exactly(7))
+        assert (number, protocol, unit) == (self.number, 0, self.unit)
+        return self.exactly(length - 1)
+
+    def ask(self, pdu):
+        self.socket.sendall(self.frame(pdu))
+        answer = self.answer()
+        if answer[0] & 0x80:
+            assert answer[0] == pdu[0] | 0x80 and len(answer) == 2, answer
+            raise Refused(answer[1])
+        assert answer[0] == pdu[0], answer
+        return answer[1:]
+
+    def registers(self, address, count, function=3):
+        answer = self.ask(struct.pack(">BHH", function, address, count))
+        assert answer[0] == 2 * count == len(answer) - 1, answer
+        return struct.unpack(f">{count}H", answer[1:])
+
+    def number_at(self, address, form, function=3):
+        words = self.registers(address, struct.calcsize(form) // 2, function)
+        return struct.unpack(form, struct.pack(f">{len(words)}H", *words))[0]
+
+    def bits(self, address, count, function=1):
+        answer = self.ask(struct.pack(">BHH", function, address, count))
+        return [answer[1 + i // 8] >> i % 8 & 1 for i in range(count)]
+
+    def quality(self, place):
+        return self.registers(16 * place + QUALITY, 1)[0]
+
+    def becomes(self, place, quality):
+        until(lambda: self.quality(place) == quality, 20,
+              lambda: f"place {place} has quality {quality}, not {self.quality(place)}")
+
+
+def refused(call, *arguments):
+    """With which exception; None: it is not."""
+    try:
+        call(*arguments)
+    except Refused as why:
+        return why.args[0]
+    return None
+
+
+def known_by(scene):
+    """identity -> place, as the file of the map has it."""
+    lines = (scene.path / "state/map").read_text().splitlines()
+    return {identity: int(place) for place, identity in (line.split(" ", 1) for line in lines if line[0] != "#")}
+
+
+def test_a_signal_is_read_in_each_form_with_its_quality_age_and_alarm(scene):
+    port = free_port()
+    daemon = scene.owsd(text(scene, port))
+    face = serve(scene, daemon)
+    with Client(port) as plc:
+        plc.becomes(1, GOOD)
+        assert plc.number_at(16 + DOUBLE, ">d") == plc.number_at(16 + DOUBLE, ">d", 4) == 21.5
+        assert plc.number_at(16 + FLOAT, ">f") == 21.5
+        assert plc.number_at(16 + LONG, ">i") == plc.number_at(16 + SHORT, ">h") == 215
+        assert plc.registers(16 + DECIMALS, 1) == (1,)
+        until(lambda: plc.registers(16 + ALARM, 1)[0] == 0x0403, 20, "the alarm H stands, and nobody has seen it")
+        assert scene.owsctl(daemon, "alarms", "ack", "room").returncode == 0
+        until(lambda: plc.registers(16 + ALARM, 1)[0] == 0x0401, 20, "it is acknowledged")
+        until(lambda: plc.number_at(16 + AGE, ">I") < 100, 20, "it is measured again and again")
+        count = plc.registers(16 + COUNT, 1)
+        until(lambda: plc.registers(16 + COUNT, 1) != count, 20, "and counted")
+        # an output, of whole numbers; a string has no place
+        assert scene.owsctl(daemon, "set", "-w", "20", "relays", "5").returncode == 0
+        until(lambda: plc.number_at(32 + SHORT, ">h") == 5, 20, "the output is shown")
+        assert plc.registers(32 + DECIMALS, 2) == (0, 3)  # simulated, an output
+        plc.becomes(3, NO_DEVICE)
+        assert math.isnan(plc.number_at(48 + DOUBLE, ">d")) and math.isnan(plc.number_at(48 + FLOAT, ">f"))
+        assert plc.number_at(48 + LONG, ">I") == 0x80000000 and plc.number_at(48 + SHORT, ">H") == 0x8000
+        assert plc.number_at(48 + AGE, ">I") == 0xFFFFFFFF
+        assert refused(plc.registers, 64, 1) == ADDRESS
+        # the same in rows
+        assert plc.registers(43001, 3) == (GOOD, GOOD, NO_DEVICE)
+        assert plc.number_at(46002, ">f") == 21.5 and plc.number_at(56008, ">d") == 5
+        assert plc.bits(1, 2, 2) == [1, 1] and plc.bits(10001, 3, 2) == [1, 1, 0] and plc.bits(20001, 3, 2) == [1, 0, 0]
+        assert refused(plc.bits, 1, 3) == NO_TARGET
+    assert known_by(scene) == {SENSOR + "/temperature": 1, RELAY + "/PIO.BYTE": 2, ABSENT["Path"]: 3}
+    assert face.stop() == 0
+
+
+def test_the_header_shows_that_owsd_lives_and_no_value_is_good_when_it_is_dead(scene):
+    port = free_port()
+    daemon = scene.owsd(text(scene, port))
+    face = serve(scene, daemon)
+    with Client(port) as plc:
+        plc.becomes(1, GOOD)
+        magic, version, live, heart, _, last, signals, changed, now = struct.unpack(
+            ">I6HII", struct.pack(">12H", *plc.registers(0, 12)))
+        assert (magic, version, live, last, signals) == (0x4F575344, 1, 1, 3, 3)
+        assert abs(now - time.time()) < 60 and now - 3600 < changed <= now, (now, changed)
+        until(lambda: plc.registers(4, 1)[0] != heart, 20, "its heart beats")
+        daemon.kill()
+        plc.becomes(1, NO_OWSD)
+        assert math.isnan(plc.number_at(16 + DOUBLE, ">d")) and plc.registers(3, 1) == (0,)
+        heart = plc.registers(4, 1)
+        time.sleep(0.5)  # pace: five beats of a heart that beats
+        assert plc.registers(4, 1) == heart
+        scene.owsd(daemon.config, name=daemon.name)
+        plc.becomes(1, GOOD)
+        assert plc.registers(3, 1) == (1,)
+    assert face.stop() == 0
+
+
+def test_addresses_stay_when_signals_are_added_removed_sorted_renamed_and_replaced(scene):
+    port = free_port()
+    daemon = scene.owsd(text(scene, port, ROOM, ABSENT, RELAYS))
+    face = serve(scene, daemon)
+
+    def reload(*items):
+        daemon.config.write_text(text(scene, port, *items))
+        assert scene.owsctl(daemon, "reload").returncode == 0
+
+    with Client(port) as plc:
+        plc.becomes(1, GOOD)
+        # sorted otherwise, renamed, one more in front, one removed
+        reload(CELLAR, RELAYS, {**ROOM, "Name": "bedroom"})
+        plc.becomes(4, GOOD)
+        assert plc.number_at(16 * 4, ">d") == -3.25 and plc.number_at(16, ">d") == 21.5
+        assert plc.quality(2) == NO_PROPERTY and math.isnan(plc.number_at(32, ">d"))
+        assert plc.registers(5 + 1, 2) == (4, 3)
+        # replaced by another chip, under the identity of the first
+        reload({**CELLAR, "Name": "room", "Identity": SENSOR + "/temperature"}, ABSENT)
+        until(lambda: plc.number_at(16, ">d") == -3.25, 20, "the other chip stands where the first stood")
+        assert plc.quality(3) == plc.quality(4) == NO_PROPERTY
+        # and over a new start
+        assert face.stop() == 0
+    face = serve(scene, daemon)
+    with Client(port) as plc:
+        plc.becomes(1, GOOD)
+        assert plc.number_at(16, ">d") == -3.25 and plc.registers(6, 2) == (4, 2)
+    assert face.stop() == 0
+
+
+def test_places_of_the_configuration_win_and_a_map_that_is_none_serves_nothing(scene):
+    port = free_port()
+    fixed = scene.file("fixed", f"# by hand\n700 {SENSOR}/temperature\n")
+    daemon = scene.owsd(text(scene, port, ROOM, RELAYS, Map=fixed))
+    face = serve(scene, daemon)
+    with Client(port) as plc:
+        plc.becomes(700, GOOD)
+        assert plc.registers(16 * 701 + FLAGS, 1)[0] & 1
+        assert refused(plc.registers, 16, 1) == ADDRESS
+        assert serve(scene, daemon).wait() == 1  # one program has the map
+        fixed.write_text("700\n")
+        face.signal(signal.SIGHUP)
+        logged(face, f"the map {fixed}, line 1: no place and identity: no signal is served until it can be read")
+        assert refused(plc.registers, 16 * 700, 1) == ADDRESS and plc.registers(7, 1) == (0,)
+        done = scene._run([MODBUS, "-c", daemon.config, "--check"], 20)
+        assert done.returncode == 2 and f"Map: {fixed}:1: expected a place from 1 to 2047" in done.stderr, done
+        fixed.write_text(f"7 {RELAY}/PIO.BYTE\n")
+        face.signal(signal.SIGHUP)
+        plc.becomes(700, GOOD)
+        assert plc.registers(16 * 7 + FLAGS, 1)[0] & 1
+    assert face.stop() == 0
+
+
+def test_a_genuine_client_reads_what_is_served(scene):
+    """mbpoll, which is libmodbus."""
+    if not shutil.which("mbpoll"):
+        owsdtest.skip("mbpoll is not installed")
+    port = free_port()
+    daemon = scene.owsd(text(scene, port, ROOM, CELLAR))
+    face = serve(scene, daemon)
+    with Client(port) as plc:
+        plc.becomes(1, GOOD)
+        plc.becomes(2, GOOD)
+
+    def poll(*options):
+        done = scene._run(["mbpoll", "-m", "tcp", "-p", port, "-0", "-1", *options, "127.0.0.1"], 20)
+        assert done.returncode == 0, done
+        return [float(value) for value in re.findall(r"^\[\d+\]:\s+(\S+)", done.stdout, re.M)]
+    assert poll("-t", "4:float", "-B", "-r", "46002", "-c", "2") == [21.5, -3.25]
+    assert poll("-t", "3", "-r", "43001", "-c", "2") == [GOOD, GOOD]
+    assert poll("-t", "4:int", "-B", "-r", str(32 + LONG), "-c", "1") == [-33]
+    assert poll("-t", "0", "-r", "1", "-c", "2") == [1, 1]
+    assert face.stop() == 0
+
+
+def python_with_pymodbus():
+    for python in ("python3", "/usr/bin/python3"):
+        if shutil.which(python) and subprocess.run([python, "-c", "import pymodbus"], check=False,
+                                                   capture_output=True).returncode == 0:
+            return python
+    return owsdtest.skip("pymodbus is not installed")
+
+
+PYMODBUS = """
+import json, sys
+from pymodbus.client import ModbusTcpClient
+client = ModbusTcpClient("127.0.0.1", port=int(sys.argv[1]))
+assert client.connect()
+told = []
+for address, count in json.loads(sys.argv[2]):
+    answer = client.read_holding_registers(address, count=count)
+    told.append(answer.exception_code if answer.isError() else answer.registers)
+print(json.dumps(told))
+"""
+
+
+def test_pymodbus_reads_what_is_served(scene):
+    python = python_with_pymodbus()
+    port = free_port()
+    daemon = scene.owsd(text(scene, port, ROOM, CELLAR))
+    face = serve(scene, daemon)
+    with Client(port) as plc:
+        plc.becomes(1, GOOD)
+        plc.becomes(2, GOOD)
+    done = scene._run([python, "-c", PYMODBUS, port, "[[56004, 8], [0, 2], [60, 1], [16, 32]]"], 20)
+    assert done.returncode == 0, done
+    values, magic, nothing, both = json.loads(done.stdout)
+    assert struct.unpack(">dd", struct.pack(">8H", *values)) == (21.5, -3.25)
+    assert magic == [0x4F57, 0x5344] and nothing == ADDRESS and len(both) == 32
+    assert face.stop() == 0
+
+
+def test_each_option_changes_what_is_served_from_a_reload_on(scene):
+    port, other = free_port(), free_port()
+    daemon = scene.owsd(text(scene, port, ROOM, ABSENT))
+    face = serve(scene, daemon)
+
+    def reload(at=port, **keys):
+        daemon.config.write_text(text(scene, at, ROOM, ABSENT, **keys))
+        assert scene.owsctl(daemon, "reload").returncode == 0
+
+    with Client(port) as plc:
+        plc.becomes(1, GOOD)
+        reload(WordOrder="little")
+        until(lambda: plc.registers(0, 2) == (0x5344, 0x4F57), 20, "the low word is first")
+        assert plc.registers(16 + FLOAT, 2) == (0, 0x41AC) and plc.registers(16 + DOUBLE, 4) == (0, 0, 0x8000, 0x4035)
+        reload(Decimals=2)
+        until(lambda: plc.registers(16 + SHORT, 1) == (2150,), 20, "two decimals")
+        plc.becomes(2, NO_DEVICE)
+        reload(BadValue="exception")
+        until(lambda: refused(plc.registers, 32, 4) == NO_TARGET, 20, "a bad value is an exception")
+        assert plc.registers(32 + QUALITY, 1) == (NO_DEVICE,) and refused(plc.registers, 43003, 1) == ADDRESS
+        reload(UnitId=7)
+        until(lambda: refused(plc.registers, 0, 1) == NO_TARGET, 20, "one unit answers")
+        plc.unit = 7
+        assert plc.registers(0, 1) == (0x4F57,)
+        reload(at=other)
+        logged(face, f"Modbus is served at 127.0.0.1:{other}")
+        with Client(other) as there:
+            there.unit = 7
+            assert there.registers(0, 1) == plc.registers(0, 1)
+            reload(at=other, Clients=1)
+            until(lambda: open_still(there) + open_still(plc) == 1, 20, "one client is left")
+    daemon.config.write_text(text(scene, None, ROOM))
+    face.signal(signal.SIGHUP)
+    logged(face, "has no Modbus block: nothing is served")
+    assert face.stop() == 0
+
+
+def open_still(client):
+    try:
+        client.registers(0, 1)
+    except (OSError, Refused):
+        return False
+    return True
+
+
+def asks_on(greedy):
+    """Sends requests for long answers, and reads none."""
+    try:
+        while True:
+            greedy.socket.send(greedy.frame(struct.pack(">BHH", 3, 0, 32)) * 100)
+    except BlockingIOError:
+        return False
+    except ConnectionError:
+        return True
+
+
+def processor_seconds(face):
+    fields = (owsdtest.pathlib.Path(f"/proc/{face.pid}/stat").read_text()).rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def test_a_client_that_stops_in_the_middle_or_takes_no_answer_holds_up_nobody(scene):
+    port = free_port()
+    daemon = scene.owsd(text(scene, port, ROOM))
+    face = serve(scene, daemon, "-v")
+    with Client(port) as plc, Client(port) as half, Client(port) as greedy, Client(port) as other:
+        plc.becomes(1, GOOD)
+        half.socket.sendall(half.frame(struct.pack(">BHH", 3, 0, 1))[:-1])
+        greedy.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        greedy.socket.setblocking(False)
+        other.socket.sendall(b"GET / HTTP/1.0\r\n\r\n")
+        assert other.socket.recv(1) == b""
+        for _ in range(100):
+            assert plc.number_at(16, ">d") == 21.5
+        logged(face, "closed: its request is not whole in time")
+        until(lambda: asks_on(greedy) or "closed: it does not take its answers" in face.log(), 20, "it is closed")
+        logged(face, "closed: it speaks no Modbus TCP")
+        before = processor_seconds(face)
+        time.sleep(1)  # nothing to do: it costs nothing
+        assert processor_seconds(face) - before < 0.1
+        assert plc.number_at(16, ">d") == 21.5
+        # a byte at a time is whole in the end
+        for byte in plc.frame(struct.pack(">BHH", 3, 16, 1)):
+            plc.socket.sendall(bytes([byte]))
+        assert plc.answer()[0] == 3
+        # and several at once are answered in their order
+        frames = [plc.frame(struct.pack(">BHH", 3, 16, 1)) for _ in range(60)]
+        plc.number -= len(frames)
+        plc.socket.sendall(b"".join(frames))
+        for _ in frames:
+            plc.number += 1
+            assert plc.answer()[0] == 3
+    assert face.stop() == 0
+
+
+def test_of_too_many_clients_the_most_silent_give_way_and_each_is_answered(scene):
+    port = free_port()
+    daemon = scene.owsd(text(scene, port, ROOM, Clients=128))
+    face = serve(scene, daemon, "-v")
+    clients = [Client(port) for _ in range(64)]
+    try:
+        clients[0].becomes(1, GOOD)
+        took = []
+        for _ in range(20):
+            for client in clients:
+                begun = time.monotonic()
+                assert client.registers(0, 32)[:2] == (0x4F57, 0x5344)
+                took.append(time.monotonic() - begun)
+        took.sort()
+        print(f"64 clients: half within {took[len(took) // 2] * 1e3:.2f} ms, 99 % within {took[-len(took) // 100] * 1e3:.2f} ms")
+        # one address has half of the places
+        clients[0].registers(0, 1)
+        clients.append(Client(port))
+        logged(face, "a new connection of its address takes its place")
+        assert open_still(clients[0]) and open_still(clients[64]) and not open_still(clients[1])
+        assert sum(open_still(client) for client in clients) == 64
+    finally:
+        for client in clients:
+            client.socket.close()
+    assert face.stop() == 0
+
+
+if __name__ == "__main__":
+    owsdtest.main()

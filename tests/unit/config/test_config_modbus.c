@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: MIT */
+/* Tests of the Modbus block. */
+#include "unity.h"
+
+#include "src/config/read/texts.h"
+#include "tests/unit/aid/config_case.h"
+
+#define LISTEN "Listen \"127.0.0.1:502\" "
+
+void setUp(void)
+{
+	config_case_begin();
+}
+
+void tearDown(void)
+{
+	config_case_end();
+}
+
+static void test_the_block_has_defaults_but_for_the_address(void)
+{
+	TEST_ASSERT_EQUAL_INT(0, parse_driver("Modbus { " LISTEN "}"));
+	TEST_ASSERT_TRUE(config->modbus.given);
+	TEST_ASSERT_EQUAL_UINT(1, config->modbus.address_count);
+	TEST_ASSERT_EQUAL_UINT(502, config->modbus.addresses[0].port);
+	TEST_ASSERT_EQUAL_STRING("big", config->modbus.word_order);
+	TEST_ASSERT_EQUAL_STRING("nan", config->modbus.bad_value);
+	TEST_ASSERT_EQUAL_UINT(0, config->modbus.unit);
+	TEST_ASSERT_EQUAL_UINT(1, config->modbus.decimals);
+	TEST_ASSERT_EQUAL_UINT(64, config->modbus.clients);
+	TEST_ASSERT_NULL(config->modbus.map);
+}
+
+static void test_without_the_block_nothing_is_served(void)
+{
+	TEST_ASSERT_EQUAL_INT(0, parse_driver(""));
+	TEST_ASSERT_FALSE(config->modbus.given);
+	TEST_ASSERT_EQUAL_UINT(0, config->modbus.address_count);
+	TEST_ASSERT_EQUAL_STRING("nan", config->modbus.bad_value);
+}
+
+static void test_what_cannot_be_is_refused_with_a_reason(void)
+{
+	static const struct line cases[] = {
+		{"Modbus { }", "f:2:1: error: Modbus without Listen: write it, as Listen "
+	                       "\"127.0.0.1:502\"\n"},
+		{"Modbus { " LISTEN "WordOrder mixed }",
+	         "f:2:42: error: WordOrder \"mixed\": expected big or little\n"},
+		{"Modbus { " LISTEN "BadValue 0 }",
+	         "f:2:41: error: BadValue \"0\": expected nan or exception\n"},
+		{"Modbus { " LISTEN "UnitId 248 }",
+	         "f:2:39: error: UnitId \"248\": expected a whole number from 0 to 247\n"},
+		{"Modbus { " LISTEN "Map \"here\" }",
+	         "f:2:36: error: Map \"here\": expected a path from the root, at most 255 bytes\n"},
+	};
+
+	expect_errors(cases, COUNT(cases), parse_driver);
+	TEST_ASSERT_NULL(text_is_word_order("little"));
+	TEST_ASSERT_NULL(text_is_bad_value("exception"));
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_the_block_has_defaults_but_for_the_address);
+	RUN_TEST(test_without_the_block_nothing_is_served);
+	RUN_TEST(test_what_cannot_be_is_refused_with_a_reason);
+	return UNITY_END();
+}
